@@ -1,0 +1,74 @@
+"""Files that appear whole or not at all."""
+
+import os
+from contextlib import contextmanager
+from pathlib import Path
+
+import psutil
+
+_SHELLS = {"sh", "bash", "dash", "zsh"}
+
+
+def _supervisor():
+    """Nearest ancestor process that is no shell: the workflow run that started this stage, or None."""
+    try:
+        return next((p for p in psutil.Process().parents() if p.name() not in _SHELLS), None)
+    except psutil.Error:
+        return None
+
+
+_SUPERVISOR = _supervisor()
+
+
+def orphaned():
+    """Tell whether the workflow run that started this process has ended.
+
+    A stage that survives its killed run must not write over what a newer run made.
+    """
+    return _SUPERVISOR is not None and not _SUPERVISOR.is_running()
+
+
+@contextmanager
+def replacing(path):
+    """Give a path to write to; on success it becomes `path` (fsync, rename), otherwise nothing is left of it.
+
+    Parameters
+    ----------
+    path : path-like
+        The file that is to appear. Its folder is made where it is missing.
+
+    Yields
+    ------
+    pathlib.Path
+        A name in the same folder, with the same suffix.
+
+    Raises
+    ------
+    SystemExit
+        If the workflow run that asked for the file has ended meanwhile.
+    """
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
+    try:
+        yield temporary
+        _sync(temporary)
+        if orphaned():
+            raise SystemExit(f"{path}: not written, the run that asked for it has ended")
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def write_text(path, text):
+    """Write `text` (UTF-8, newlines as given) to `path`, whole or not at all."""
+    with replacing(path) as temporary:
+        temporary.write_bytes(text.encode())
+
+
+def _sync(path):
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

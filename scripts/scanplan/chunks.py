@@ -1,0 +1,59 @@
+"""Work that treats scans one by one, spread over contiguous ranges of scans and over cores."""
+
+import multiprocessing
+from concurrent.futures import ProcessPoolExecutor
+
+import numpy as np
+
+from scanplan import stagelog, tables
+
+_CHUNKS_PER_CORE = 8
+
+
+def map_scans(function, scans_path, *, label, threads=1, **settings):
+    """Call `function(scan_id, xyz_m, **settings)` for every scan of a table of scans, on several cores.
+
+    Parameters
+    ----------
+    function : callable
+        Defined at the top level of a helper module; its result must depend on its arguments alone, so that the
+        result is the same for any number of cores.
+    scans_path : path-like
+        A scans.parquet.
+    label : str
+        The stage's name, for the progress line.
+    threads : int
+        Number of processes.
+    **settings
+        Passed to every call. A dict value under `per_scan` is looked up by scan_id and its value, itself a dict of
+        keywords, is passed to that scan's call alone.
+
+    Returns
+    -------
+    list
+        One result per scan, in the order of the scans.
+    """
+    scan_ids = tables.ScanStore(scans_path).scan_ids
+    per_scan = settings.pop("per_scan", {})
+    parts = [p for p in np.array_split(scan_ids, max(1, threads) * _CHUNKS_PER_CORE) if len(p)]
+    jobs = [
+        (function, str(scans_path), part, {int(s): per_scan.get(int(s), {}) for s in part}, settings) for part in parts
+    ]
+    done = (result for part in _run(jobs, threads) for result in part)
+    return list(stagelog.progress(done, label, total=len(scan_ids)))
+
+
+def _run(jobs, threads):
+    if threads <= 1 or len(jobs) <= 1:
+        yield from map(_work, jobs)
+        return
+    # a forked child of a process with threads (Arrow, TBB) can hang, a spawned one cannot
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(min(threads, len(jobs)), mp_context=context) as pool:
+        yield from pool.map(_work, jobs)
+
+
+def _work(job):
+    function, scans_path, scan_ids, per_scan, settings = job
+    store = tables.ScanStore(scans_path)
+    return [function(scan_id, xyz_m, **per_scan[scan_id], **settings) for scan_id, xyz_m in store.scans(scan_ids)]

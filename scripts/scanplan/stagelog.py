@@ -1,0 +1,102 @@
+"""What a stage says: everything to its log file, progress and errors to the user's screen."""
+
+import faulthandler
+import logging
+import os
+import sys
+import threading
+import time
+from contextlib import contextmanager
+from pathlib import Path
+
+from scanplan import atomic
+from scanplan.errors import StageError
+
+_SCREEN_INTERVAL_S = 2.0
+_WATCH_INTERVAL_S = 1.0
+_log = logging.getLogger("scanplan")
+_screen = None
+
+
+@contextmanager
+def to_file(path):
+    """Send all output of this process, native libraries' too, to a log file for the time of a stage.
+
+    A `StageError` ends the process with status 1 and its one line on the screen; any other exception likewise, its
+    traceback in the log. Should the workflow run that started the stage be killed, the stage ends itself.
+
+    Parameters
+    ----------
+    path : path-like
+        The log file; overwritten, its folder made where missing.
+    """
+    global _screen
+    Path(path).parent.mkdir(parents=True, exist_ok=True)
+    sys.stdout.flush(), sys.stderr.flush()
+    kept = os.dup(1), os.dup(2)
+    target = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o644)
+    os.dup2(target, 1), os.dup2(target, 2), os.close(target)
+    _screen = os.fdopen(os.dup(kept[1]), "w", buffering=1)
+    logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(message)s", force=True)
+    faulthandler.enable()
+    threading.Thread(target=_end_with_the_run, daemon=True).start()
+    stage = Path(path).stem
+    try:
+        yield
+    except StageError as error:
+        _log.error("%s", error)
+        _screen.write(f"{stage}: {error}\n")
+        raise SystemExit(1) from None
+    except Exception as error:
+        _log.exception("stage failed")
+        reason = " ".join(f"{type(error).__name__}: {error}".split())
+        _screen.write(f"{stage}: unexpected failure, {reason}; the details are in {path}\n")
+        raise SystemExit(1) from None
+    finally:
+        sys.stdout.flush(), sys.stderr.flush()
+        os.dup2(kept[0], 1), os.dup2(kept[1], 2)
+        os.close(kept[0]), os.close(kept[1]), _screen.close()
+        _screen = None
+
+
+def say(text):
+    """Write one line to the log and, inside a stage, to the screen."""
+    _log.info("%s", text)
+    if _screen is not None:
+        _screen.write(f"{text}\n")
+
+
+def progress(items, label, total=None, unit="scans"):
+    """Iterate over `items` and report how many are done, of how many, and the rate.
+
+    Parameters
+    ----------
+    items : iterable
+    label : str
+        The stage's name.
+    total : int, optional
+        Number of items, if it is known and `items` has no length.
+    unit : str
+        What is counted.
+    """
+    total = len(items) if total is None and hasattr(items, "__len__") else total
+    started = told = time.monotonic()
+    done = 0
+    for done, item in enumerate(items, 1):
+        yield item
+        now = time.monotonic()
+        if now - told > _SCREEN_INTERVAL_S:
+            told = now
+            say(_line(label, done, total, unit, now - started))
+    say(_line(label, done, total, unit, time.monotonic() - started))
+
+
+def _line(label, done, total, unit, elapsed_s):
+    of_all = f"/{total}" if total is not None else ""
+    return f"{label}: {done}{of_all} {unit}, {done / max(elapsed_s, 1e-3):.0f} per s"
+
+
+def _end_with_the_run():
+    while not atomic.orphaned():
+        time.sleep(_WATCH_INTERVAL_S)
+    os._exit(1)
