@@ -5,7 +5,9 @@ Coordinates are metres in the map frame, z up; stamps nanoseconds; quaternions x
 
 from dataclasses import dataclass
 
-_POSE = dict.fromkeys(("x_m", "y_m", "z_m", "qx", "qy", "qz", "qw"), "float64")
+XYZ = ("x_m", "y_m", "z_m")
+QUAT = ("qx", "qy", "qz", "qw")
+_POSE = dict.fromkeys((*XYZ, *QUAT), "float64")
 _SEGMENT = dict.fromkeys(("x0_m", "y0_m", "x1_m", "y1_m", "nx", "ny"), "float64")
 
 

@@ -55,6 +55,18 @@ def inverse(a_from_b):
     return back
 
 
+def rigid(pose):
+    """Return a 4 x 4 matrix with the nearest true rotation in it.
+
+    `inverse` takes a rotation's transpose for its inverse, so in a chain of products and inverses a rounding error
+    doubles with every link unless it is taken out.
+    """
+    left, _, right = np.linalg.svd(np.asarray(pose, float)[:3, :3])
+    cleaned = np.array(pose, float)
+    cleaned[:3, :3] = left @ np.diag([1, 1, np.linalg.det(left @ right)]) @ right
+    return cleaned
+
+
 def yaw_rad(pose):
     """Return the heading of 4 x 4 matrices: the angle of the x axis about z, radians."""
     pose = np.asarray(pose, float)

@@ -13,16 +13,18 @@ import pyarrow.parquet as pq
 
 from scanplan import atomic
 from scanplan.errors import StageError
-from scanplan.schemas import FACES, HULLS, POSES, REGISTRATION, SCANS, SELECTION, WALLS
+from scanplan.schemas import FACES, HULLS, POSES, QUAT, REGISTRATION, SCANS, SELECTION, WALLS, XYZ
 
 __all__ = [
     "FACES",
     "HULLS",
     "POSES",
+    "QUAT",
     "REGISTRATION",
     "SCANS",
     "SELECTION",
     "WALLS",
+    "XYZ",
     "ScanStore",
     "read",
     "scan_writer",

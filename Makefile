@@ -1,0 +1,51 @@
+# make run                      the demo: simulate an office, make its plan
+# make run DATASET=PATH         the plan of a folder with recordings
+# make run DATASET=PATH CONFIG=FILE   with settings from a file
+# make test                     lint and all tests
+# make bench                    the stages against the literal algorithms
+
+CORES ?= 2
+PYTHON ?= $(shell command -v python3.11 || command -v python3)
+VENV := .venv
+BIN := $(VENV)/bin
+LIBRARIES := libusb-1.0-0 libgl1 libgomp1 libx11-6
+SNAKEMAKE = PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --cores $(CORES)
+
+.PHONY: run test lint bench environment clean
+.DEFAULT_GOAL := run
+
+run: environment
+	@$(SNAKEMAKE) $(if $(CONFIG),--configfile "$(CONFIG)") $(if $(DATASET),--config 'dataset="$(DATASET)"') $(ARGS)
+
+test: environment lint
+	@$(BIN)/pytest $(ARGS)
+
+lint: environment
+	@$(BIN)/ruff check .
+	@$(BIN)/ruff format --check .
+	@$(BIN)/snakefmt --check Snakefile workflow/rules
+	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --lint
+
+bench: environment
+	@$(BIN)/python tests/benchmarks/run.py $(ARGS)
+
+environment: $(VENV)/.ready
+
+$(VENV)/.ready: environment.lock
+	@"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+	    { echo "scanplan needs Python 3.11 or newer; name one with: make PYTHON=/path/to/python3.11"; exit 1; }
+	@echo "setting up $(VENV) from environment.lock (about 1.4 GB, once)"
+	@"$(PYTHON)" -m venv --clear $(VENV) || \
+	    { echo "this Python has no venv module; on Debian: apt-get install python3-venv"; exit 1; }
+	@$(BIN)/pip install -qq --disable-pip-version-check --require-hashes -r environment.lock
+	@$(BIN)/python -c 'import open3d' 2>/dev/null || { \
+	    echo "installing the system libraries that Open3D needs: $(LIBRARIES)"; \
+	    if [ "$$(id -u)" = 0 ]; then as_root=; else as_root="sudo -n"; fi; \
+	    { $$as_root apt-get update -qq && $$as_root apt-get install -y -qq --no-install-recommends $(LIBRARIES); } \
+	        >/dev/null 2>&1; \
+	    $(BIN)/python -c 'import open3d' || \
+	    { echo "Open3D lacks system libraries; install them with: apt-get install $(LIBRARIES)"; exit 1; }; }
+	@touch $@
+
+clean:
+	rm -rf $(VENV) results logs benchmarks .snakemake

@@ -1,0 +1,41 @@
+from snakemake.utils import min_version
+
+min_version("9.20")
+
+
+configfile: f"{workflow.basedir}/config/config.yaml"
+
+
+container: "workflow/envs/scanplan.sif"
+
+
+report: "workflow/report/workflow.rst"
+
+
+include: "workflow/rules/common.smk"
+include: "workflow/rules/simulate.smk"
+include: "workflow/rules/poses.smk"
+include: "workflow/rules/registration.smk"
+include: "workflow/rules/hulls.smk"
+include: "workflow/rules/selection.smk"
+include: "workflow/rules/walls.smk"
+include: "workflow/rules/plan.smk"
+include: "workflow/rules/report.smk"
+
+
+rule all:
+    default_target: True
+    input:
+        all_results(),
+
+
+onstart:
+    run_alone()
+
+
+onsuccess:
+    tell_results()
+
+
+onerror:
+    tell_failure()

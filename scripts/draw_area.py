@@ -1,0 +1,25 @@
+"""Draw the covered area against the number of scans, for every ordering (thesis, figure 5.6)."""
+
+from pathlib import Path
+
+from scanplan import atomic, drawing, figures, stagelog, tables
+
+
+def draw_area(selections, output):
+    """Write the figure as SVG.
+
+    Parameters
+    ----------
+    selections : list of path-like
+        selection/<method>.parquet; the name tells the method.
+    output : path-like
+        figures/area.svg, to write.
+    """
+    orderings = {Path(path).stem: tables.read(path, tables.SELECTION) for path in selections}
+    atomic.write_text(output, drawing.svg(figures.area_figure(orderings)))
+    stagelog.say(f"draw_area: {len(orderings)} orderings")
+
+
+if __name__ == "__main__":
+    with stagelog.to_file(snakemake.log[0]):
+        draw_area(snakemake.input.selections, snakemake.output.figure)

@@ -1,0 +1,49 @@
+"""Find the wall segments that each scan shows (thesis, sections 3.4 and 5.3)."""
+
+import time
+
+from scanplan import chunks, cluster_ransac, iterative_ransac, stagelog, tables, walls
+from scanplan.errors import StageError
+
+EXTRACTORS = {"cluster_ransac": cluster_ransac, "iterative_ransac": iterative_ransac}
+
+
+def extract_walls(scans, registration, output, *, extractor, settings, threads=1):
+    """Write the walls of every registered scan.
+
+    Parameters
+    ----------
+    scans, registration : path-like
+        scans.parquet and registration.parquet.
+    output : path-like
+        walls/<extractor>.parquet, to write.
+    extractor : str
+        A key of `EXTRACTORS`.
+    settings : dict
+        Keywords of that extractor's `Settings`.
+    threads : int
+    """
+    if extractor not in EXTRACTORS:
+        raise StageError(f"extractor {extractor}: is not known; choose one of {', '.join(EXTRACTORS)}")
+    method, store, started = EXTRACTORS[extractor], tables.ScanStore(scans), time.perf_counter()
+    every_scan = {"planar": store.planar, "settings": method.Settings(**settings)}
+    per_scan = walls.sensor_positions(tables.read(registration, tables.REGISTRATION), store.scan_ids, registration)
+    found = chunks.map_scans(
+        method.extract, scans, label=f"extract_walls {extractor}", threads=threads, per_scan=per_scan, **every_scan
+    )
+    columns = walls.table(store.scan_ids, found)
+    tables.write(output, tables.WALLS, columns, allow_empty=True)
+    took_ms = 1e3 * (time.perf_counter() - started)
+    stagelog.say(f"extract_walls: {extractor}, {walls.summary(columns, len(store.scan_ids), took_ms)}")
+
+
+if __name__ == "__main__":
+    with stagelog.to_file(snakemake.log[0]):
+        extract_walls(
+            snakemake.input.scans,
+            snakemake.input.registration,
+            snakemake.output.walls,
+            extractor=snakemake.wildcards.extractor,
+            settings=snakemake.params.settings,
+            threads=snakemake.threads,
+        )

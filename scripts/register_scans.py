@@ -1,0 +1,49 @@
+"""Select continuous scans and register them in the map frame (thesis, algorithm 3)."""
+
+from scanplan import registration, stagelog, surveys, tables, verdicts
+
+
+def register_scans(recordings, poses, scans, registered, *, reading, settings):
+    """Write the retained scans in the map frame, and what became of every candidate.
+
+    Parameters
+    ----------
+    recordings : list of path-like
+        The dataset's files.
+    poses : path-like
+        poses.parquet: the candidates and their poses.
+    scans, registered : path-like
+        scans.parquet and registration.parquet, to write.
+    reading : dict
+        Keywords of `surveys.open_survey`.
+    settings : dict
+        Keywords of `registration.Settings`.
+    """
+    candidates = tables.read(poses, tables.POSES)
+    priors = dict(zip(candidates["scan_id"].tolist(), verdicts.poses(candidates), strict=True))
+    judged, n_dropped = [], 0
+    with surveys.open_survey(recordings, **reading) as survey:
+        registrar = registration.Registrar(registration.Settings(**settings), survey.planar)
+        with tables.scan_writer(scans, planar=survey.planar) as write_scan:
+            found = survey.scans(list(priors))
+            for scan in stagelog.progress(found, "register_scans", total=len(priors)):
+                verdict = registrar.add(scan.xyz_m, priors[scan.scan_id])
+                judged.append(verdict)
+                n_dropped += scan.n_dropped
+                if verdict.kept:
+                    write_scan(scan.scan_id, verdicts.in_map(scan.scan_id, scan.xyz_m, verdict.world_from_sensor))
+            stagelog.say(f"register_scans: {verdicts.summary(judged)}; {n_dropped} points out of range or not finite")
+    rows = verdicts.columns(candidates["scan_id"], candidates["t_ns"], judged)
+    tables.write(registered, tables.REGISTRATION, rows)
+
+
+if __name__ == "__main__":
+    with stagelog.to_file(snakemake.log[0]):
+        register_scans(
+            snakemake.input.recordings,
+            snakemake.input.poses,
+            snakemake.output.scans,
+            snakemake.output.registration,
+            reading=snakemake.params.reading,
+            settings=snakemake.params.settings,
+        )

@@ -1,0 +1,162 @@
+"""What a scan covers on the floor plan: one convex hull per cluster of its points (thesis 3.3.2, algorithm 2)."""
+
+import warnings
+
+import numpy as np
+import shapely
+from scipy.cluster import vq
+
+from scanplan import tables
+
+_LLOYD_ITERATIONS = 20
+_SAME_POINT_DECIMALS = 6
+
+
+def cluster_hulls(scan_id, xyz_m, *, n_clusters, sample_size, seed):
+    """Cluster one scan's points in plan view and draw one convex hull round each cluster (thesis, algorithm 2).
+
+    KMeans runs on a random sample of the points; then every point joins its nearest centre. The sample depends on
+    `seed` and `scan_id` alone. A cluster of fewer than three points, or of points on one line, stays as the Point or
+    LineString it is, with area 0: the convex hull of all rows is exactly that of all points.
+
+    Parameters
+    ----------
+    scan_id : int
+    xyz_m : (n, 2) or (n, 3) float, n >= 1
+        Map coordinates, z up; z is not looked at.
+    n_clusters : int, >= 1
+        Number of clusters. A sample with fewer distinct points makes one cluster of each.
+    sample_size : int, >= 1
+        Number of points that KMeans sees; all of them if the scan has fewer.
+    seed : int, >= 0
+
+    Returns
+    -------
+    dict of str to (m,) numpy.ndarray, 1 <= m <= `n_clusters`
+        The scan's rows of `tables.HULLS`.
+
+    Raises
+    ------
+    ValueError
+        If there are no points, a coordinate is not finite, or a number of clusters or points is below one.
+    """
+    xy_m = _plan_view(xyz_m)
+    if min(n_clusters, sample_size) < 1:
+        raise ValueError(f"n_clusters {n_clusters} and sample_size {sample_size} must be at least 1")
+    # relative to the mean, squared distances keep their digits far from the map's origin
+    centred = xy_m - xy_m.mean(axis=0)
+    rng = np.random.default_rng([seed, scan_id])
+    sample = centred[rng.choice(len(centred), min(sample_size, len(centred)), replace=False, shuffle=False)]
+    label, n_points = _clusters(centred, _centres(sample, n_clusters, rng))
+    hulls = _convex_hulls(xy_m, label, len(n_points))
+    return {
+        "scan_id": np.full(len(hulls), scan_id, np.int32),
+        "cluster": np.arange(len(hulls), dtype=np.int32),
+        "n_points": n_points.astype(np.int32),
+        "area_m2": shapely.area(hulls),
+        "geometry": shapely.to_wkb(hulls, byte_order=1),
+    }
+
+
+def concatenated(parts):
+    """Join the rows of several scans, in their order, to the columns of one table of hulls."""
+    return {name: np.concatenate([part[name] for part in parts]) for name in tables.HULLS.columns}
+
+
+def scan_polygons(columns):
+    """Return each scan's polygon: the union of the hulls of its clusters.
+
+    Parameters
+    ----------
+    columns : dict of str to (n,) numpy.ndarray
+        `scan_id` (sorted) and `geometry` (WKB) of a table of hulls.
+
+    Returns
+    -------
+    scan_ids : (m,) int, increasing
+    polygons : (m,) numpy.ndarray of shapely Polygon or MultiPolygon
+        Empty for a scan of degenerate clusters only.
+    """
+    scan_ids, groups = _by_scan(columns)
+    return scan_ids, _array([shapely.union_all(g[shapely.get_dimensions(g) == 2]) for g in groups], shapely.Polygon())
+
+
+def scan_full_hulls(columns):
+    """Return each scan's one convex hull, the thesis's baseline; see `scan_polygons`."""
+    scan_ids, groups = _by_scan(columns)
+    hulls = shapely.convex_hull([shapely.geometrycollections(g) for g in groups])
+    return scan_ids, np.where(shapely.get_dimensions(hulls) == 2, hulls, shapely.Polygon())
+
+
+def _plan_view(xyz_m):
+    xyz_m = np.asarray(xyz_m, float)
+    if xyz_m.ndim != 2 or xyz_m.shape[0] < 1 or xyz_m.shape[1] not in (2, 3):
+        raise ValueError(f"a scan must be (n, 2) or (n, 3) with n >= 1, not {xyz_m.shape}")
+    xy_m = np.ascontiguousarray(xyz_m[:, :2])
+    if not np.isfinite(xy_m).all():
+        raise ValueError("a scan's x and y must be finite")
+    return xy_m
+
+
+def _centres(sample, n_clusters, rng):
+    """KMeans of the sample (k, 2); its distinct points where they are no more than `n_clusters`."""
+    distinct = np.unique(sample.round(_SAME_POINT_DECIMALS), axis=0)
+    if len(distinct) <= n_clusters:
+        return distinct
+    start = _spread_centres(sample, n_clusters, rng)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="One of the clusters is empty")
+        return vq.kmeans2(sample, start, iter=_LLOYD_ITERATIONS, minit="matrix", missing="warn")[0]
+
+
+def _spread_centres(sample, n_clusters, rng):
+    """Draw first centres far from each other: k-means++ with several candidates a step.
+
+    Each centre is drawn with probability proportional to the squared distance to those already drawn; of a few such
+    candidates the one that leaves the least distance is taken (Arthur and Vassilvitskii 2007, sections 2.2 and 7).
+    """
+    n_candidates = 2 + int(np.log(n_clusters))
+    chosen = [int(rng.integers(len(sample)))]
+    left = _squared_distance(sample, sample[chosen])[0]
+    while len(chosen) < n_clusters:
+        cumulative = np.cumsum(left)
+        drawn = np.searchsorted(cumulative, rng.random(n_candidates) * cumulative[-1], side="right")
+        drawn = np.minimum(drawn, len(sample) - 1)
+        left_by = np.minimum(left, _squared_distance(sample, sample[drawn]))
+        best = int(left_by.sum(axis=1).argmin())
+        chosen.append(int(drawn[best]))
+        left = left_by[best]
+    return sample[chosen]
+
+
+def _squared_distance(xy_m, to_m):
+    """Squared distances (m, n) of points (n, 2) to points (m, 2)."""
+    return (xy_m[:, 0] - to_m[:, :1]) ** 2 + (xy_m[:, 1] - to_m[:, 1:]) ** 2
+
+
+def _clusters(xy_m, centres):
+    """Nearest centre of every point (the first of equals), numbered without gaps, and the points of each."""
+    # neither a matrix product nor threads: the same labels for any core count
+    nearest, _ = vq.vq(xy_m, centres, check_finite=False)
+    n_points = np.bincount(nearest, minlength=len(centres))
+    return (np.cumsum(n_points > 0) - 1)[nearest], n_points[n_points > 0]
+
+
+def _convex_hulls(xy_m, label, n_clusters):
+    """One convex hull per label, of the line through its points: much faster made than a MultiPoint."""
+    first = np.empty(n_clusters, int)
+    first[label[::-1]] = np.arange(len(label))[::-1]
+    # a line needs two points: every cluster's first once more; sorting 16-bit numbers is linear
+    point = np.concatenate([np.arange(len(label)), first])
+    point = point[np.argsort(label[point].astype(np.int16), kind="stable")]
+    return shapely.normalize(shapely.convex_hull(shapely.linestrings(xy_m[point], indices=label[point])))
+
+
+def _by_scan(columns):
+    scan_ids, start = np.unique(columns["scan_id"], return_index=True)
+    return scan_ids, np.split(shapely.from_wkb(columns["geometry"]), start[1:])
+
+
+def _array(geometries, empty):
+    """Object array of geometries, `empty` for those without area."""
+    return np.array([g if g.area > 0 else empty for g in geometries], object)

@@ -1,0 +1,154 @@
+"""ROS messages to arrays: headers, PointCloud2 of any layout, LaserScan, poses, transforms.
+
+A message is any object with the fields of the ROS definition. No loop runs over points.
+"""
+
+import struct
+
+import numpy as np
+
+from scanplan.errors import StageError
+
+_POINT_FIELD_TYPES = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
+_TIME_FIELDS = ("time", "t", "timestamp")
+
+
+def header(raw, *, ros2):
+    """Read stamp and frame of a serialised message that starts with a std_msgs/Header, without the rest of it.
+
+    Parameters
+    ----------
+    raw : bytes-like
+        ROS 1 serialisation, or CDR with its four bytes of encapsulation.
+    ros2 : bool
+
+    Returns
+    -------
+    t_ns : int
+    frame : str
+        Without leading slash.
+
+    Raises
+    ------
+    struct.error, UnicodeDecodeError
+        If the bytes are too short or no text.
+    """
+    order = ">" if ros2 and raw[1] == 0 else "<"
+    seconds, nanoseconds, length = struct.unpack_from(order + ("iII" if ros2 else "III"), raw, 4)
+    if 16 + length > len(raw):
+        raise struct.error(f"frame name of {length} bytes in a message of {len(raw)}")
+    return seconds * 10**9 + nanoseconds, frame_name(bytes(raw[16 : 16 + length]).rstrip(b"\0").decode())
+
+
+def frame_name(text):
+    """Return a frame id without the leading slash of early ROS 1."""
+    return text.lstrip("/")
+
+
+def stamp_ns(stamp):
+    """Return a builtin_interfaces/Time as nanoseconds."""
+    return int(stamp.sec) * 10**9 + int(stamp.nanosec)
+
+
+def pose_row(pose):
+    """Return a geometry_msgs/Pose or Transform as [x, y, z, qx, qy, qz, qw]."""
+    place, turn = getattr(pose, "position", None), getattr(pose, "orientation", None)
+    if place is None:
+        place, turn = pose.translation, pose.rotation
+    return [place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w]
+
+
+def point_cloud(message):
+    """Read the coordinates and per-point times of a sensor_msgs/PointCloud2.
+
+    Parameters
+    ----------
+    message : PointCloud2
+        Any order, offset, type and byte order of fields, padded points and rows.
+
+    Returns
+    -------
+    xyz_m : (n, 3) float32
+    time_raw : (n,) or None
+        The field `time`, `t` or `timestamp` as recorded.
+
+    Raises
+    ------
+    StageError
+        If x, y or z is missing, the layout contradicts itself, or the data are shorter than declared.
+    """
+    if message.width * message.height == 0:
+        return np.empty((0, 3), np.float32), None
+    records = _records(message)
+    xyz_m = np.empty((records.size, 3), np.float32)
+    with np.errstate(over="ignore", invalid="ignore"):
+        for column, name in enumerate("xyz"):
+            xyz_m[:, column] = records[name].reshape(-1)
+    times = [name for name in _TIME_FIELDS if name in records.dtype.names]
+    return xyz_m, records[times[0]].reshape(-1).copy() if times else None
+
+
+def laser_scan(message):
+    """Turn a sensor_msgs/LaserScan into points of the plane z = 0.
+
+    Parameters
+    ----------
+    message : LaserScan
+
+    Returns
+    -------
+    xyz_m : (n, 3) float32
+        One point a beam; NaN where the beam came back from outside [range_min, range_max).
+    time_raw : (n,) float64 or None
+        Seconds since the first beam; None if `time_increment` is not positive.
+
+    Raises
+    ------
+    StageError
+        If the angles of the beams are not given.
+    """
+    range_m = np.asarray(message.ranges, np.float64).reshape(-1)
+    beam = np.arange(len(range_m))
+    angle_rad = message.angle_min + beam * message.angle_increment
+    if len(range_m) > 1 and (message.angle_increment == 0 or not np.isfinite(angle_rad).all()):
+        raise StageError(f"angle_min {message.angle_min}, angle_increment {message.angle_increment} give no directions")
+    # range_max itself is what many drivers report for "no return"
+    limit_m = message.range_max if message.range_max > 0 else np.inf
+    range_m = np.where((range_m >= message.range_min) & (range_m < limit_m), range_m, np.nan)
+    xyz_m = np.column_stack([range_m * np.cos(angle_rad), range_m * np.sin(angle_rad), range_m * 0])
+    return xyz_m.astype(np.float32), beam * float(message.time_increment) if message.time_increment > 0 else None
+
+
+def _records(message):
+    """View the data of a PointCloud2 as (height, width) records; nothing is copied or allocated."""
+    width, height, step = int(message.width), int(message.height), int(message.point_step)
+    row_step = int(message.row_step) if height > 1 else width * step
+    if step == 0 or row_step < width * step:
+        raise StageError(f"point_step {step}, row_step {message.row_step} cannot hold {width} points a row")
+    needed, data = (height - 1) * row_step + width * step, np.ascontiguousarray(message.data).view(np.uint8)
+    if len(data) < needed:
+        raise StageError(f"{width} x {height} points need {needed} bytes, but {len(data)} are there")
+    return np.ndarray((height, width), _point_type(message, step), data, strides=(row_step, step))
+
+
+def _point_type(message, step):
+    order = ">" if message.is_bigendian else "<"
+    fields = {}
+    for field in message.fields:
+        fields.setdefault(field.name, field)  # of two fields of one name the first counts
+    if missing := [name for name in "xyz" if name not in fields]:
+        found = ", ".join(sorted(filter(None, fields))) or "none"
+        raise StageError(f"no field {', '.join(missing)} in the cloud; its fields are: {found}")
+    wanted = [fields[name] for name in ("x", "y", "z", *_TIME_FIELDS) if name in fields]
+    for field in wanted:
+        size = int(_POINT_FIELD_TYPES.get(field.datatype, "x0")[1])
+        if not size or field.offset + size > step:
+            raise StageError(f"field {field.name}: type {field.datatype} at {field.offset} in points of {step} bytes")
+    return np.dtype(
+        {
+            "names": [field.name for field in wanted],
+            "formats": [order + _POINT_FIELD_TYPES[field.datatype] for field in wanted],
+            "offsets": [field.offset for field in wanted],
+            "itemsize": step,
+        }
+    )

@@ -1,0 +1,36 @@
+"""Which helper files a stage's script imports, so that an edit of one reruns exactly the stages that use it."""
+
+import ast
+from pathlib import Path
+
+_PACKAGE = Path(__file__).parent
+
+
+def helpers_of(script):
+    """Return the files of this package that a script imports, directly or through one another.
+
+    Parameters
+    ----------
+    script : path-like
+        A Python file that imports helpers as `from scanplan import name` or `from scanplan.name import ...`.
+
+    Returns
+    -------
+    list of pathlib.Path, sorted
+    """
+    found, waiting = set(), [Path(script)]
+    while waiting:
+        for helper in _imports(waiting.pop()) - found:
+            found.add(helper)
+            waiting.append(helper)
+    return sorted(found)
+
+
+def _imports(path):
+    names = set()
+    for node in ast.walk(ast.parse(Path(path).read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.module == "scanplan":
+            names.update(alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and (node.module or "").startswith("scanplan."):
+            names.add(node.module.split(".")[1])
+    return {file for name in names if (file := _PACKAGE / f"{name}.py").exists()}

@@ -1,0 +1,61 @@
+"""A survey as the stages see it: clouds with stamps and the poses of their sensor, from bags or from a scan folder."""
+
+from contextlib import ExitStack, contextmanager
+
+from scanplan import datasets
+
+
+@contextmanager
+def open_survey(
+    files,
+    *,
+    cloud_topic=None,
+    pose_topic=None,
+    base_frame=None,
+    base_from_sensor=None,
+    ros2_release="humble",
+    min_range_m,
+    max_range_m,
+):
+    """Open all recordings of a dataset as one survey.
+
+    Parameters
+    ----------
+    files : sequence of str
+        As `datasets.find_files` gives them.
+    cloud_topic, pose_topic : str, optional
+        Where there are several candidates. `pose_topic` may be /tf.
+    base_frame : str, optional
+        The frame that the poses are of.
+    base_from_sensor : (6,) float, optional
+        Where the sensor sits on it: x, y, z in metres, roll, pitch, yaw in degrees. By default tf tells.
+    ros2_release : str
+        Whose message definitions hold where a ROS 2 bag carries none.
+    min_range_m, max_range_m : float
+        Points outside are dropped.
+
+    Yields
+    ------
+    object
+        `planar` (bool), `stamps()` -> (n,) int64 nanoseconds in scan_id order, `pose_edges()` -> list of frames.Edge
+        from the world to the sensor, `scans(wanted)` -> iterator of clouds.Scan in scan_id order.
+
+    Raises
+    ------
+    StageError
+        If a recording is damaged or does not tell what to use.
+    """
+    limits = {"min_range_m": min_range_m, "max_range_m": max_range_m}
+    mount = {"base_from_sensor": base_from_sensor}
+    # rosbags and Open3D cost a second each to import: only the one that is needed
+    if datasets.is_scan_folder(files):
+        from scanplan import scanfolder
+
+        yield scanfolder.ScanFolder(files, **mount, **limits)
+        return
+    from scanplan import bags, bagsurvey
+
+    with ExitStack() as stack:
+        opened = [stack.enter_context(bags.opened(path, ros2_release=ros2_release)) for path in datasets.grouped(files)]
+        chosen = {"cloud_topic": cloud_topic, "pose_topic": pose_topic, "base_frame": base_frame}
+        yield bagsurvey.BagSurvey(opened, **chosen, **mount, **limits)

@@ -1,0 +1,142 @@
+"""Which topics of a recording carry the clouds and the poses: found by type, chosen by the config in case of doubt."""
+
+from dataclasses import dataclass
+
+from scanplan.errors import StageError
+
+POINT_CLOUD = "sensor_msgs/msg/PointCloud2"
+LASER_SCAN = "sensor_msgs/msg/LaserScan"
+ODOMETRY = "nav_msgs/msg/Odometry"
+CLOUDS = (POINT_CLOUD, LASER_SCAN)
+POSES = ("geometry_msgs/msg/PoseWithCovarianceStamped", "geometry_msgs/msg/PoseStamped", ODOMETRY)
+TRANSFORMS = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
+# what operators send to a robot has the types of what a localiser reports
+_COMMANDS = ("initialpose", "goal", "goal_pose")
+
+
+@dataclass(frozen=True)
+class Topic:
+    """A topic's name, message type and number of messages."""
+
+    name: str
+    msgtype: str
+    count: int
+
+    def __str__(self):
+        return f"{self.name} ({self.msgtype}, {self.count})"
+
+
+def merge(topics, where):
+    """Add up the topics of several recordings.
+
+    Parameters
+    ----------
+    topics : iterable of Topic
+    where : str
+        What they belong to, for the error.
+
+    Returns
+    -------
+    list of Topic
+        One of each name, sorted.
+
+    Raises
+    ------
+    StageError
+        If one that could be needed has two types.
+    """
+    merged = {}
+    for topic in topics:
+        before = merged.get(topic.name, Topic(topic.name, topic.msgtype, 0))
+        if before.msgtype != topic.msgtype and {before.msgtype, topic.msgtype} & {*CLOUDS, *POSES}:
+            raise StageError(
+                f"{where}: topic {topic.name} is {before.msgtype} here and {topic.msgtype} there;"
+                " split the dataset into one folder each"
+            )
+        merged[topic.name] = Topic(topic.name, before.msgtype, before.count + topic.count)
+    return [merged[name] for name in sorted(merged)]
+
+
+def choose_cloud(topics, wanted, where):
+    """Choose the topic of the clouds.
+
+    Parameters
+    ----------
+    topics : list of Topic
+    wanted : str or None
+        The config's `input.cloud_topic`.
+    where : str
+        The dataset, for errors.
+
+    Returns
+    -------
+    Topic
+
+    Raises
+    ------
+    StageError
+        If there is none, more than one and none wanted, or it has no messages.
+    """
+    candidates = [t for t in topics if t.msgtype in CLOUDS]
+    if wanted:
+        return _named(candidates, wanted, where, "input.cloud_topic")
+    filled = [t for t in candidates if t.count]
+    if not candidates:
+        raise StageError(
+            f"{where}: no cloud topic (PointCloud2 or LaserScan) to make a plan of; topics: {_listed(topics)};"
+            " record the laser scanner too"
+        )
+    if not filled:
+        raise StageError(f"{where}: zero messages on {_listed(candidates)}; record again with the sensor running")
+    return _only(filled, where, "input.cloud_topic")
+
+
+def choose_poses(topics, wanted, where):
+    """Choose the topic of the poses: the first type of `POSES` that occurs, else tf.
+
+    Parameters and errors are those of `choose_cloud`, with `input.pose_topic`.
+
+    Returns
+    -------
+    Topic
+        Of a type of `POSES`, or of `TRANSFORMS` if the poses come from tf.
+    """
+    tf = [t for t in topics if t.msgtype in TRANSFORMS and not is_static(t)]
+    candidates = [t for t in topics if t.msgtype in POSES] + tf
+    if wanted:
+        return _named(candidates, wanted, where, "input.pose_topic")
+    filled = [t for t in candidates if t.count and t.name.rsplit("/", 1)[-1] not in _COMMANDS]
+    for msgtypes in [(p,) for p in POSES] + [TRANSFORMS]:
+        of_type = [t for t in filled if t.msgtype in msgtypes]
+        if of_type:
+            return _only(of_type, where, "input.pose_topic")
+    raise StageError(
+        f"{where}: no pose topic with messages (PoseWithCovarianceStamped, PoseStamped, Odometry or /tf);"
+        f" topics: {_listed(topics)}; record the localiser's poses too"
+    )
+
+
+def is_static(topic):
+    """Tell whether a topic of transforms is /tf_static, in whatever namespace."""
+    return topic.name.rsplit("/", 1)[-1] == "tf_static"
+
+
+def _named(candidates, wanted, where, key):
+    for topic in candidates:
+        if topic.name.lstrip("/") == wanted.lstrip("/"):
+            if topic.count == 0:
+                raise StageError(f"{where}: zero messages on {topic}; set {key} to another topic")
+            return topic
+    raise StageError(f"{where}: no topic {wanted}; set {key} to one of: {_listed(candidates)}")
+
+
+def _only(candidates, where, key):
+    if len(candidates) > 1:
+        raise StageError(
+            f"{where}: {len(candidates)} topics come into question: {_listed(candidates)}; choose by {key}"
+        )
+    return candidates[0]
+
+
+def _listed(topics):
+    return ", ".join(map(str, topics)) or "none"

@@ -1,0 +1,49 @@
+"""The table and the summary of what registration said of every candidate scan."""
+
+from collections import Counter
+
+import numpy as np
+
+from scanplan import se3, tables
+from scanplan.errors import StageError
+
+_FARTHEST_M = 10_000.0
+_FIELDS = ("prior_fitness", "refined_fitness", "rmse_m", "kept", "reason")
+
+
+def in_map(scan_id, xyz_m, world_from_sensor):
+    """Move a scan's points (n, 3) into the map frame.
+
+    Raises
+    ------
+    StageError
+        If they lie so far from the map's origin that the table's single precision would lose millimetres.
+    """
+    moved = se3.transform(world_from_sensor, xyz_m)
+    farthest_m = np.abs(moved).max()
+    if farthest_m > _FARTHEST_M:
+        raise StageError(
+            f"scan {scan_id}: lies {farthest_m:.0f} m from the map's origin, where single precision loses millimetres;"
+            f" the limit is {_FARTHEST_M:.0f} m, so give the poses in a local map frame"
+        )
+    return moved
+
+
+def columns(scan_ids, t_ns, verdicts):
+    """Return the columns of tables.REGISTRATION from one `registration.Verdict` per candidate."""
+    xyz_m, quat_xyzw = se3.position_quaternion(np.array([v.world_from_sensor for v in verdicts]))
+    result = {"scan_id": scan_ids, "t_ns": t_ns} | {f: [getattr(v, f) for v in verdicts] for f in _FIELDS}
+    return result | dict(zip(tables.XYZ, xyz_m.T, strict=True)) | dict(zip(tables.QUAT, quat_xyzw.T, strict=True))
+
+
+def summary(verdicts):
+    """Return how many candidates were kept or dropped, by reason, as one phrase."""
+    reasons = Counter(verdict.reason for verdict in verdicts)
+    counts = ", ".join(f"{n} {reason}" for reason, n in sorted(reasons.items()))
+    return f"{sum(v.kept for v in verdicts)} of {len(verdicts)} candidates retained ({counts})"
+
+
+def poses(columns_of_poses):
+    """Return (n, 4, 4) matrices, NaN where unknown, of a table with the columns of a pose."""
+    xyz_m, quat_xyzw = (np.column_stack([columns_of_poses[c] for c in names]) for names in (tables.XYZ, tables.QUAT))
+    return se3.matrix(xyz_m, quat_xyzw)

@@ -1,0 +1,61 @@
+"""The thesis's algorithm 3, written literally with Open3D: the oracle in tests and the denominator in benchmarks."""
+
+import numpy as np
+import open3d as o3d
+
+from scanplan import se3
+
+
+def interpolate_linearly(pose_t_ns, pose_xyz_m, scan_t_ns):
+    """Step 1: positions linearly interpolated at the scans' stamps."""
+    return np.column_stack([np.interp(scan_t_ns, pose_t_ns, axis) for axis in np.asarray(pose_xyz_m, float).T])
+
+
+def register(scans, poses, *, keep_every, distance_m, min_prior_fitness, min_refined_fitness, n_previous=5):
+    """Steps 2 to 6: full clouds, `evaluate_registration` against the previous scans, point-to-point ICP.
+
+    Parameters
+    ----------
+    scans : sequence of (n, 3) float
+        Points in the sensor frame.
+    poses : sequence of (4, 4) float
+        The localiser's world_from_sensor at each scan.
+    keep_every, distance_m, min_prior_fitness, min_refined_fitness, n_previous
+        The algorithm's numbers.
+
+    Returns
+    -------
+    dict of int to (4, 4) float
+        world_from_sensor of every retained scan, by its index.
+    """
+    retained = {}
+    previous = []
+    for index in range(0, len(scans), keep_every):
+        placed = _cloud(se3.transform(poses[index], scans[index]))
+        if previous:
+            if _mean_fitness(placed, previous[-n_previous:], distance_m) < min_prior_fitness:
+                continue
+            result = o3d.pipelines.registration.registration_icp(
+                placed,
+                previous[-1],
+                distance_m,
+                np.eye(4),
+                o3d.pipelines.registration.TransformationEstimationPointToPoint(),
+            )
+            placed.transform(result.transformation)
+            if _mean_fitness(placed, previous[-n_previous:], distance_m) < min_refined_fitness:
+                continue
+            retained[index] = result.transformation @ poses[index]
+        else:
+            retained[index] = np.array(poses[index])
+        previous.append(placed)
+    return retained
+
+
+def _mean_fitness(source, targets, distance_m):
+    evaluate = o3d.pipelines.registration.evaluate_registration
+    return np.mean([evaluate(source, target, distance_m, np.eye(4)).fitness for target in targets])
+
+
+def _cloud(xyz_m):
+    return o3d.geometry.PointCloud(o3d.utility.Vector3dVector(np.asarray(xyz_m, float)))

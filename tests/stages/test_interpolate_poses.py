@@ -1,0 +1,112 @@
+import numpy as np
+import pytest
+
+import bagmaking
+from interpolate_poses import interpolate_poses
+from scanplan import datasets, tables
+from scanplan.errors import StageError
+
+START, STEP = bagmaking.START_NS, 100_000_000
+SETTINGS = {
+    "keep_every": 5,
+    "max_step_m": 10.0,
+    "max_turn_deg": 180.0,
+    "max_gap_s": 0.5,
+    "cloud_topic": None,
+    "pose_topic": None,
+    "base_frame": None,
+    "base_from_sensor": None,
+    "ros2_release": "humble",
+    "min_range_m": 0.1,
+    "max_range_m": 100.0,
+}
+
+
+@pytest.fixture
+def run(tmp_path):
+    def run_on(entries, **settings):
+        bagmaking.Maker().write(tmp_path / "run", entries)
+        output = tmp_path / "poses.parquet"
+        interpolate_poses(datasets.find_files(tmp_path), output, **(SETTINGS | settings))
+        return tables.read(output, tables.POSES)
+
+    return run_on
+
+
+@pytest.fixture
+def entries():
+    return bagmaking.survey(bagmaking.Maker(), n_scans=12)
+
+
+def test_every_fifth_scan_gets_its_pose(run, entries):
+    poses = run(entries)
+    assert poses["scan_id"].tolist() == [0, 5, 10]
+    assert poses["t_ns"].tolist() == [START, START + 5 * STEP, START + 10 * STEP]
+    np.testing.assert_allclose(poses["x_m"], [0, 0.5, 1.0], atol=1e-6)
+    np.testing.assert_allclose(poses["qw"], 1)
+    assert poses["covered"].all()
+    np.testing.assert_allclose(poses["gap_s"], 0, atol=1e-9)  # each has a pose of its own stamp
+
+
+def test_motion_adds_candidates(run, entries):
+    assert run(entries, max_step_m=0.25)["scan_id"].tolist() == [0, 3, 5, 8, 10]
+
+
+def test_scans_in_a_gap_are_not_covered(run, entries):
+    gap = [e for e in entries if e[0] != "/amcl_pose" or not START + 3 * STEP < e[1] < START + 9 * STEP]
+    poses = run(gap)
+    assert poses["covered"].tolist() == [True, False, True]
+    assert np.isnan(poses["x_m"]).tolist() == np.isnan(poses["qw"]).tolist() == [False, True, False]
+    np.testing.assert_allclose(poses["gap_s"], [0, 0.6, 0], atol=1e-6)
+
+
+def test_a_wider_limit_covers_the_gap(run, entries):
+    gap = [e for e in entries if e[0] != "/amcl_pose" or not START + 3 * STEP < e[1] < START + 9 * STEP]
+    wide = run(gap, max_gap_s=0.7)
+    assert wide["covered"].all()
+    np.testing.assert_allclose(wide["x_m"], [0, 0.5, 1.0], atol=1e-6)
+
+
+def test_never_extrapolates(run, entries):
+    poses = run([e for e in entries if e[0] != "/amcl_pose" or e[1] < START + 4 * STEP])
+    assert poses["covered"].tolist() == [True, False, False]
+    assert np.isinf(poses["gap_s"][1:]).all()
+
+
+def test_an_old_latched_pose_is_a_pose_with_a_gap(run, entries):
+    maker = bagmaking.Maker()
+    old = ("/amcl_pose", START - STEP, maker.amcl(START - 3600 * 10**9, (50, 50, 0)))
+    poses = run([old, *(e for e in entries if e[0] != "/amcl_pose" or e[1] > START)])
+    assert poses["covered"].tolist() == [False, True, True]
+    assert poses["gap_s"][0] == pytest.approx(3600.05)
+
+
+def test_poses_of_another_time_tell_both_spans(run, entries, tmp_path):
+    maker = bagmaking.Maker()
+    late = [(t, r, maker.amcl(r + 3600 * 10**9, (0, 0, 0)) if t == "/amcl_pose" else m) for t, r, m in entries]
+    with pytest.raises(
+        StageError, match=r"clouds 1700000000.000 to 1700000001.100 s, poses 1700003599.950 to 17000036"
+    ):
+        run(late)
+    assert not (tmp_path / "poses.parquet").exists()
+
+
+def test_the_same_bytes_twice(run, entries, tmp_path):
+    run(entries)
+    first = (tmp_path / "poses.parquet").read_bytes()
+    interpolate_poses([str(tmp_path / "run.bag")], tmp_path / "again.parquet", **SETTINGS)
+    assert (tmp_path / "again.parquet").read_bytes() == first
+
+
+@pytest.mark.recordings
+def test_intel_keeps_the_scans_that_are_far_apart(recordings_dir, tmp_path):
+    interpolate_poses(
+        datasets.find_files(recordings_dir / "intel"),
+        tmp_path / "poses.parquet",
+        **(SETTINGS | {"max_step_m": 0.5, "max_turn_deg": 30.0}),
+    )
+    poses = tables.read(tmp_path / "poses.parquet", tables.POSES)
+    assert poses["covered"].all()
+    xy = np.column_stack([poses["x_m"], poses["y_m"]])
+    assert len(xy) > 600
+    assert np.ptp(xy, axis=0).min() > 20

@@ -1,0 +1,48 @@
+import logging
+
+import numpy as np
+import pytest
+import shapely
+
+import order_scans
+from scanplan import orderings, tables
+from scanplan.errors import StageError
+
+
+def write_hulls(path, shapes):
+    columns = {
+        "scan_id": np.arange(len(shapes)) * 5,
+        "cluster": np.zeros(len(shapes), int),
+        "n_points": np.full(len(shapes), 9),
+        "area_m2": shapely.area(shapes),
+        "geometry": shapely.to_wkb(np.array(shapes)),
+    }
+    tables.write(path, tables.HULLS, columns)
+    return path
+
+
+@pytest.fixture
+def hulls(tmp_path):
+    return write_hulls(tmp_path / "hulls.parquet", [shapely.box(i, 0, i + 2 + i % 3, 1) for i in range(12)])
+
+
+@pytest.mark.parametrize("method", orderings.METHODS)
+def test_an_order_of_all_scans(hulls, tmp_path, caplog, method):
+    caplog.set_level(logging.INFO)
+    output = tmp_path / "selection" / f"{method}.parquet"
+    order_scans.order_scans(hulls, output, method=method, seed=1)
+    selection = tables.read(output, tables.SELECTION)
+    assert sorted(selection["scan_id"]) == list(range(0, 60, 5))
+    assert selection["covered_m2"][-1] == pytest.approx(15)
+    assert (selection["bound_m2"] >= selection["covered_m2"]).all()
+    assert f"order_scans: {method}, 12 scans, 15.0 m2; 99% at " in caplog.text
+    again = tmp_path / "again.parquet"
+    order_scans.order_scans(hulls, again, method=method, seed=1)
+    assert again.read_bytes() == output.read_bytes()
+
+
+def test_scans_that_cover_nothing_are_refused(tmp_path):
+    hulls = write_hulls(tmp_path / "hulls.parquet", [shapely.LineString([(0, 0), (1, i)]) for i in range(3)])
+    with pytest.raises(StageError, match="3 scans cover 0 m2"):
+        order_scans.order_scans(hulls, tmp_path / "selection.parquet", method="cluster_hull", seed=0)
+    assert not (tmp_path / "selection.parquet").exists()

@@ -1,0 +1,33 @@
+"""Files appear whole or not at all."""
+
+import psutil
+import pytest
+
+from scanplan import atomic
+
+
+def test_a_failed_write_leaves_the_old_file(tmp_path):
+    target = tmp_path / "plan.svg"
+    atomic.write_text(target, "old")
+    with pytest.raises(RuntimeError), atomic.replacing(target) as temporary:
+        temporary.write_text("half")
+        raise RuntimeError
+    assert target.read_text() == "old" and list(tmp_path.iterdir()) == [target]
+
+
+def test_the_temporary_file_stands_beside_with_the_same_suffix(tmp_path):
+    with atomic.replacing(tmp_path / "a" / "plan.dxf") as temporary:
+        assert temporary.parent == tmp_path / "a" and temporary.suffix == ".dxf"
+        temporary.write_text("x")
+    assert (tmp_path / "a" / "plan.dxf").read_text() == "x"
+
+
+def test_an_orphan_writes_nothing(tmp_path, monkeypatch):
+    class Ended(psutil.Process):
+        def is_running(self):
+            return False
+
+    monkeypatch.setattr(atomic, "_SUPERVISOR", Ended())
+    with pytest.raises(SystemExit, match="has ended"):
+        atomic.write_text(tmp_path / "plan.svg", "x")
+    assert list(tmp_path.iterdir()) == []

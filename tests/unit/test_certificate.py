@@ -1,0 +1,80 @@
+from itertools import combinations
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from shapely import box
+
+from scanplan import certificate, greedy
+
+
+def best_by_trying_all(polygons):
+    n = len(polygons)
+    return [
+        max(shapely.union_all([polygons[i] for i in subset]).area for subset in combinations(range(n), k))
+        for k in range(1, n + 1)
+    ]
+
+
+# greedy takes the middle first (6), then one side (3); the two sides together are 10
+TRAP = [box(2, 0, 8, 1), box(0, 0, 5, 1), box(5, 0, 10, 1)]
+
+
+def test_of_disjoint_polygons_greedy_is_certified_best():
+    order = greedy.greedy_order([box(3 * i, 0, 3 * i + 2, 1 + i % 3) for i in range(7)])
+    assert certificate.upper_bound(order) == pytest.approx(order.covered_m2)
+
+
+def test_on_paper():
+    order = greedy.greedy_order(TRAP)
+    assert order.covered_m2.tolist() == pytest.approx([6, 8, 10])
+    # at k = 2: 6 + 5 with nothing chosen, 6 + (2 + 2) = 10 with the middle chosen, 10 in all
+    assert certificate.upper_bound(order) == pytest.approx([6, 10, 10], abs=1e-5)
+
+
+def polygon(numbers):
+    x, y, w, h = numbers
+    return box(x, y, x + w, y + h) if w * h != 4 else shapely.Point(x, y).buffer(1 + h / 3, quad_segs=3)
+
+
+POLYGONS = st.lists(st.tuples(*[st.integers(0, 6)] * 2, *[st.integers(0, 5)] * 2).map(polygon), min_size=1, max_size=8)
+
+
+@settings(max_examples=150, deadline=None)
+@given(POLYGONS)
+def test_never_below_the_best_subset(polygons):
+    order = greedy.greedy_order(polygons)
+    bound_m2 = certificate.upper_bound(order)
+    assert (bound_m2 >= np.array(best_by_trying_all(polygons)) - 1e-9).all()
+    assert (bound_m2 >= order.covered_m2).all()
+
+
+@settings(max_examples=100, deadline=None)
+@given(POLYGONS)
+def test_as_tight_as_theory_promises(polygons):
+    order = greedy.greedy_order(polygons)
+    bound_m2 = certificate.upper_bound(order)
+    k = np.arange(1, len(polygons) + 1)
+    guarantee = 1 - (1 - 1 / k) ** k
+    assert (order.covered_m2 >= guarantee * bound_m2 - 1e-5 * k).all()
+    assert (np.diff(bound_m2) >= -1e-9).all()
+    assert (bound_m2 <= order.covered_m2[-1] + 1e-9).all()
+    assert bound_m2[0] == pytest.approx(order.covered_m2[0], abs=1e-5)
+
+
+def test_every_step_tightens_the_bound_and_not_the_checkpoints_alone():
+    rng = np.random.default_rng(0)
+    order = greedy.greedy_order([box(x, y, x + w, y + 3) for x, y, w in rng.uniform(1, 9, (40, 3))])
+    covered_m2 = np.concatenate([[0.0], order.covered_m2])
+    k = np.arange(1, 41)
+    of_step = [covered_m2[j] + k * order.gain_m2[j] for j in range(40)]
+    assert (certificate.upper_bound(order) <= np.min(of_step, axis=0) + 1e-4).all()
+    # and the gains of the checkpoints themselves count, not the largest alone
+    assert certificate.upper_bound(order)[3] < 4 * order.gain_m2[0] - 1
+
+
+def test_of_none_and_of_nothing():
+    assert certificate.upper_bound(greedy.greedy_order([])).shape == (0,)
+    assert certificate.upper_bound(greedy.greedy_order([shapely.Polygon()] * 3)).tolist() == [0, 0, 0]

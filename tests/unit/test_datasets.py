@@ -1,0 +1,133 @@
+import pytest
+
+from scanplan import datasets
+from scanplan.errors import StageError
+
+METADATA = "rosbag2_bagfile_information:\n  version: 5\n"
+
+
+def put(path, content="x"):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(content)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("given", "name"),
+    [
+        ("floor1", "floor1"),
+        ("my survey (2)/", "my_survey__2_"),
+        ("a/../b", "b"),
+        ("rec.bag", "rec"),
+        ("rec 1.db3", "rec_1"),
+        ("1.2.mcap", "1.2"),
+        ("not.a.recording", "not.a.recording"),
+    ],
+)
+def test_name_of(given, name):
+    assert datasets.name_of(given) == name
+
+
+def test_name_of_a_folder_keeps_its_suffix(tmp_path):
+    (tmp_path / "run.bag").mkdir()
+    assert datasets.name_of(tmp_path / "run.bag") == "run.bag"
+
+
+@pytest.mark.parametrize("given", ["/", ".hidden", "###", "日本"])
+def test_name_of_refuses_what_leaves_no_name(given):
+    with pytest.raises(StageError, match="rename"):
+        datasets.name_of(given)
+
+
+def test_finds_all_kinds_and_groups_them_back(tmp_path):
+    wanted = [
+        put(tmp_path / "a.bag"),
+        put(tmp_path / "b.mcap"),
+        put(tmp_path / "c.db3"),
+        put(tmp_path / "run" / "metadata.yaml", METADATA),
+        put(tmp_path / "run" / "run_0.db3.zstd"),
+        put(tmp_path / "run" / "run_1.db3.zstd"),
+        put(tmp_path / "bare" / "bare_0.db3"),
+    ]
+    for ignored in ("truth.geojson", "dataset.yaml", "map.pgm", ".x.bag", "notes/readme.txt"):
+        put(tmp_path / ignored)
+    files = datasets.find_files(tmp_path)
+    assert files == sorted(map(str, wanted))
+    expected = [tmp_path / name for name in ("a.bag", "b.mcap", "bare/bare_0.db3", "c.db3", "run")]
+    assert datasets.grouped(files) == list(map(str, expected))
+    assert datasets.grouped(files[::-1]) == datasets.grouped(files)
+
+
+def test_a_rosbag2_folder_is_a_dataset_of_its_own(tmp_path):
+    put(tmp_path / "metadata.yaml", METADATA), put(tmp_path / "x_0.mcap")
+    files = datasets.find_files(tmp_path)
+    assert len(files) == 2
+    assert datasets.grouped(files) == [str(tmp_path)]
+
+
+def test_a_bag_beside_a_rosbag2_recording_stays_a_recording(tmp_path):
+    put(tmp_path / "metadata.yaml", METADATA), put(tmp_path / "x_0.mcap"), put(tmp_path / "y.bag")
+    assert datasets.grouped(datasets.find_files(tmp_path)) == [str(tmp_path), str(tmp_path / "y.bag")]
+
+
+def test_a_single_recording(tmp_path):
+    bag = put(tmp_path / "a.bag")
+    put(tmp_path / "other.bag")
+    assert datasets.find_files(bag) == [str(bag)]
+
+
+def test_paths_stay_as_they_were_given(tmp_path, monkeypatch):
+    put(tmp_path / "d" / "a.bag")
+    monkeypatch.chdir(tmp_path)
+    assert datasets.find_files("d") == ["d/a.bag"]
+
+
+def test_a_scan_folder(tmp_path):
+    put(tmp_path / "poses.tum"), put(tmp_path / "scans" / "2.PCD"), put(tmp_path / "scans" / "1.ply")
+    put(tmp_path / "scans" / "readme.txt")
+    files = datasets.find_files(tmp_path)
+    assert [f.removeprefix(str(tmp_path)) for f in files] == ["/poses.tum", "/scans/1.ply", "/scans/2.PCD"]
+    assert datasets.is_scan_folder(files)
+    assert not datasets.is_scan_folder(["a.bag"])
+
+
+@pytest.mark.parametrize(
+    ("files", "told"),
+    [
+        ([], "accepted are .*bag"),
+        (["readme.txt"], "accepted are .*bag"),
+        (["a.bag", "scans/1.pcd", "poses.tum"], "both"),
+        (["scans/1.pcd"], "no poses"),
+        (["poses.tum"], "no clouds"),
+        (["x.bag.active", "y.bag"], "reindex"),
+        (["run/metadata.yaml"], "no .db3 or .mcap"),
+        (["run.db3", "run.db3-wal"], "wal_checkpoint"),
+    ],
+)
+def test_refuses_in_one_line(tmp_path, files, told):
+    for file in files:
+        put(tmp_path / file, METADATA if file.endswith("yaml") else "x")
+    with pytest.raises(StageError, match=told) as caught:
+        datasets.find_files(tmp_path)
+    assert str(tmp_path) in str(caught.value)
+
+
+def test_an_empty_wal_is_no_harm(tmp_path):
+    put(tmp_path / "run.db3"), put(tmp_path / "run.db3-wal", "")
+    assert len(datasets.find_files(tmp_path)) == 1
+
+
+@pytest.mark.parametrize("name", ["a.bag", "a.mcap", "a.db3"])
+def test_refuses_empty_files(tmp_path, name):
+    put(tmp_path / name, "")
+    with pytest.raises(StageError, match="0 bytes"):
+        datasets.find_files(tmp_path)
+
+
+def test_refuses_what_is_missing_or_no_recording(tmp_path):
+    with pytest.raises(StageError, match="does not exist"):
+        datasets.find_files(tmp_path / "nothing")
+    with pytest.raises(StageError, match="is no recording"):
+        datasets.find_files(put(tmp_path / "a.txt"))
+    with pytest.raises(StageError, match="did not close"):
+        datasets.find_files(put(tmp_path / "a.bag.active"))

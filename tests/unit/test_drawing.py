@@ -1,0 +1,92 @@
+import itertools
+import re
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+from scanplan import drawing, faces
+from wallmaking import BARE, walls
+
+_POINTS_PER_MM = 72 / 25.4
+
+
+@pytest.fixture
+def merged():
+    return faces.merge(walls([(0, 0, 12, 0), (0, 8, 0, 0), (12, 0, 12, 8)]), faces.MergeSettings(**BARE))
+
+
+def groups(text):
+    return {e.get("id"): e for e in ElementTree.fromstring(text).iter() if e.get("id")}
+
+
+def texts(text):
+    return re.findall(r"<!-- (.*?) -->", text, flags=re.DOTALL)
+
+
+def path_points(element):
+    numbers = re.findall(r"-?\d+\.?\d*", element.find("{http://www.w3.org/2000/svg}path").get("d"))
+    return np.array(numbers, float).reshape(-1, 2)
+
+
+def path_length_mm(element):
+    return np.hypot(*np.diff(path_points(element), axis=0).T).sum() / _POINTS_PER_MM
+
+
+def test_faces_are_drawn_at_the_scale_that_is_stated(merged):
+    text = drawing.svg(drawing.plan(merged, "office"))
+    assert any("scale 1:50" in said for said in texts(text))
+    assert path_length_mm(groups(text)["face-0"]) == pytest.approx(12_000 / 50, abs=0.01)
+
+
+def test_scale_bar_is_drawn_at_the_scale_that_is_stated(merged):
+    text = drawing.svg(drawing.plan(merged, "office"))
+    assert "2 m" in texts(text)
+    low, high = groups(text)["scale-bar-0"], groups(text)["scale-bar-3"]
+    starts = [
+        float(re.search(r"M (-?[\d.]+)", e.find("{http://www.w3.org/2000/svg}path").get("d"))[1]) for e in (low, high)
+    ]
+    assert (starts[1] - starts[0]) / _POINTS_PER_MM == pytest.approx(2000 / 50 * 3 / 4, abs=0.01)
+
+
+def test_it_says_what_it_shows(merged):
+    said = texts(drawing.svg(drawing.plan(merged, "office")))
+    assert "office" in said
+    assert any("3 wall faces, 28.0 m in all" in line for line in said)
+    assert any("north unknown" in line for line in said)
+    assert {"12.00", "8.00"} <= set(said)
+
+
+def test_the_same_faces_give_the_same_bytes(merged):
+    assert drawing.svg(drawing.plan(merged, "office")) == drawing.svg(drawing.plan(merged, "office"))
+    assert "<dc:date>" not in drawing.svg(drawing.plan(merged, "office"))
+
+
+@pytest.mark.parametrize("segment", [(0, 0, 0.3, 0), (0, 0, 900, 400), (3, 0, 3, 40)])
+def test_everything_lies_on_the_page_and_no_text_on_another(segment):
+    merged = faces.merge(walls([segment], n_points=10_000), faces.MergeSettings(**BARE))
+    figure = drawing.plan(merged, "W" * 100)
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    boxes = [text.get_window_extent(renderer) for text in figure.axes[0].texts if text.get_text()]
+    page = figure.bbox
+    for box in boxes:
+        assert page.x0 <= box.x0 <= box.x1 <= page.x1
+        assert page.y0 <= box.y0 <= box.y1 <= page.y1
+    assert not [1 for one, other in itertools.combinations(boxes, 2) if one.overlaps(other)]
+
+
+@pytest.mark.parametrize("segment", [(0, 0, 0.3, 0), (5, 5, 5, 9), (0, 0, 900, 400)])
+def test_one_face_of_any_size_can_be_drawn(segment):
+    merged = faces.merge(walls([segment], n_points=10_000), faces.MergeSettings(**BARE))
+    ElementTree.fromstring(drawing.svg(drawing.plan(merged, "$one_face^")))
+
+
+@pytest.mark.parametrize(("extent_m", "scale"), [((3.8, 2.6), 10), ((3.9, 1), 20), ((1, 26), 100), ((30, 30), 200)])
+def test_scale_is_the_largest_usual_one_that_fits(extent_m, scale):
+    assert drawing.scale_for(np.array(extent_m)) == scale
+
+
+@pytest.mark.parametrize(("extent_m", "length_m"), [(12, 2), (12.5, 5), (30, 10), (0.6, 0.2), (5, 2)])
+def test_scale_bar_has_a_round_length(extent_m, length_m):
+    assert drawing.bar_length_m(extent_m) == pytest.approx(length_m)

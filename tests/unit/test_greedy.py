@@ -1,0 +1,172 @@
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.strategies import composite
+from shapely import box
+
+from reference import hull_selection
+from scanplan import greedy
+from scanplan.greedy import TIE_M2
+
+
+@composite
+def hull_sets(draw, max_size=9):
+    """Sets of polygons of every awkward kind: boxes on a grid, convex, several parts, again, nested, empty."""
+    chosen = []
+    for kind in draw(st.lists(st.sampled_from("bbbcccmrns0"), min_size=1, max_size=max_size)):
+        if kind == "b":
+            x, y, w, h = draw(st.tuples(*[st.integers(0, 6)] * 2, *[st.integers(1, 4)] * 2))
+            chosen.append(box(x, y, x + w, y + h))
+        elif kind == "c":
+            corners = draw(st.lists(st.tuples(*[st.floats(0, 8, width=32)] * 2), min_size=3, max_size=8))
+            chosen.append(shapely.MultiPoint(corners).convex_hull)
+        elif kind == "m":
+            x = draw(st.integers(0, 5))
+            chosen.append(box(x, 0, x + 1, 3) | box(x + 2, 1, x + 3, 5))
+        elif kind == "s":
+            chosen.append(shapely.Point(draw(st.floats(0, 8)), 3).buffer(1.5, quad_segs=4))
+        elif kind == "0" or not chosen:
+            chosen.append(shapely.Polygon())
+        else:
+            earlier = draw(st.sampled_from(chosen))
+            chosen.append(earlier if kind == "r" else shapely.affinity.scale(earlier, 0.5, 0.5))
+    return chosen
+
+
+def test_takes_the_largest_then_what_adds_most():
+    boxes = [box(0, 0, 1, 1), box(0, 0, 3, 2), box(2, 0, 5, 2), box(9, 0, 10, 3)]
+    result = greedy.greedy_order(boxes)
+    # 6; then 4 (2 of 6 are covered); then 3; the first box is covered already
+    assert result.order.tolist() == [1, 2, 3, 0]
+    assert result.gain_m2.tolist() == pytest.approx([6, 4, 3, 0])
+    assert result.covered_m2.tolist() == pytest.approx([6, 10, 13, 13])
+
+
+def test_of_equals_the_lowest_index():
+    boxes = [box(0, 0, 1, 1), box(5, 0, 7, 1), box(9, 0, 11, 1), box(5, 0, 7, 1), box(0, 0, 1, 1)]
+    assert greedy.greedy_order(boxes).order.tolist() == [1, 2, 0, 3, 4]
+
+
+def test_a_gain_within_the_tolerance_is_equal_and_beyond_it_is_not():
+    within, beyond = box(0, 0, 1, 1 + 0.5 * TIE_M2), box(5, 0, 6, 1 + 2.5 * TIE_M2)
+    assert greedy.greedy_order([box(9, 0, 10, 1), within]).order.tolist() == [0, 1]
+    assert greedy.greedy_order([box(9, 0, 10, 1), within, beyond]).order.tolist() == [2, 0, 1]
+
+
+def test_identical_one_none_and_all_empty():
+    assert greedy.greedy_order([box(0, 0, 1, 1)] * 5).order.tolist() == [0, 1, 2, 3, 4]
+    assert greedy.greedy_order([box(0, 0, 2, 1)]).covered_m2.tolist() == [2.0]
+    assert len(greedy.greedy_order([]).order) == 0
+    nothing = greedy.greedy_order([shapely.Polygon(), shapely.Point(1, 1), shapely.LineString([(0, 0), (1, 1)])])
+    assert nothing.order.tolist() == [0, 1, 2]
+    assert nothing.covered_m2.tolist() == [0, 0, 0]
+
+
+@settings(max_examples=300, deadline=None)
+@given(hull_sets())
+def test_same_order_as_algorithm_1(polygons):
+    order, covered_m2 = hull_selection.hull_selection(polygons)
+    result = greedy.greedy_order(polygons)
+    assert result.order.tolist() == order
+    assert result.covered_m2 == pytest.approx(covered_m2, abs=1e-9)
+
+
+@settings(max_examples=100, deadline=None)
+@given(hull_sets())
+def test_areas_behave_as_areas_of_unions_do(polygons):
+    result, area_m2 = greedy.greedy_order(polygons), shapely.area(polygons)
+    assert sorted(result.order) == list(range(len(polygons)))
+    assert (result.gain_m2 >= 0).all()
+    assert (np.diff(result.gain_m2) <= TIE_M2).all()
+    assert result.covered_m2[-1] == pytest.approx(shapely.union_all(polygons).area, abs=1e-9)
+    assert area_m2.max() - 1e-9 <= result.covered_m2[-1] <= area_m2.sum() + 1e-9
+
+
+def scattered(n, seed=0):
+    """Long thin hulls along a 60 m walk, three to a scan."""
+    rng = np.random.default_rng(seed)
+    centre = np.column_stack([np.linspace(0, 60, n), rng.normal(0, 0.5, n)])
+    return [
+        shapely.union_all([shapely.MultiPoint(rng.normal(c, (2, 0.8), (12, 2))).convex_hull for _ in range(3)])
+        for c in centre
+    ]
+
+
+def test_same_order_as_algorithm_1_on_a_walk():
+    polygons = scattered(70)
+    order, covered_m2 = hull_selection.hull_selection(polygons)
+    result = greedy.greedy_order(polygons)
+    assert result.order.tolist() == order
+    assert result.covered_m2 == pytest.approx(covered_m2, abs=1e-9)
+
+
+def test_a_move_of_a_thousand_kilometres_changes_nothing():
+    # corners on a grid that float64 holds at both places, so that only the method could differ
+    near = shapely.transform(np.array(scattered(40)), lambda xy: np.round(xy * 1024) / 1024)
+    far = shapely.transform(near, lambda xy: xy + np.array([2.0**20, -(2.0**21)]))
+    order = np.arange(40)
+    assert greedy.greedy_order(far).order.tolist() == greedy.greedy_order(near).order.tolist()
+    assert greedy.greedy_order(far).gain_m2 == pytest.approx(greedy.greedy_order(near).gain_m2, abs=1e-12)
+    assert greedy.gains_of_order(far, order) == pytest.approx(greedy.gains_of_order(near, order), abs=1e-12)
+
+
+@settings(max_examples=100, deadline=None)
+@given(hull_sets(), st.randoms(use_true_random=False))
+def test_gains_of_a_given_order(polygons, random):
+    order = random.sample(range(len(polygons)), len(polygons))
+    gain_m2 = greedy.gains_of_order(polygons, order)
+    union = [shapely.union_all([polygons[i] for i in order[:k]]).area for k in range(len(order) + 1)]
+    assert gain_m2 == pytest.approx(np.diff(union), abs=1e-9)
+    assert (gain_m2 >= 0).all()
+
+
+def test_gains_of_the_greedy_order_are_its_own():
+    result = greedy.greedy_order(scattered(40))
+    assert greedy.gains_of_order(scattered(40), result.order) == pytest.approx(result.gain_m2, abs=1e-9)
+
+
+@pytest.mark.parametrize("order", [[0, 0], [2], [-1]])
+def test_refuses_an_order_of_other_polygons(order):
+    with pytest.raises(ValueError, match="distinct"):
+        greedy.gains_of_order([box(0, 0, 1, 1)] * 2, order)
+
+
+def test_repairs_an_invalid_polygon():
+    bowtie = shapely.Polygon([(0, 0), (2, 2), (2, 0), (0, 2)])
+    overlapping = shapely.GeometryCollection([box(10, 0, 12, 2), box(11, 0, 13, 2), shapely.Point(0, 0)])
+    result = greedy.greedy_order([bowtie, overlapping])
+    assert result.order.tolist() == [1, 0]
+    assert result.gain_m2.tolist() == pytest.approx([6, 2])
+
+
+@pytest.mark.parametrize("wrong", [None, shapely.Point(np.nan, 0), shapely.LineString([(0, 0), (np.inf, 1)])])
+def test_refuses_what_has_no_place(wrong):
+    with pytest.raises(ValueError, match="finite"):
+        greedy.greedy_order([box(0, 0, 1, 1), wrong])
+
+
+def test_an_inconsistent_overlay_is_done_again_on_a_grid(monkeypatch):
+    exact, refused = shapely.difference, []
+
+    def difference(a, b, grid_size=None):
+        if grid_size is None:
+            refused.append(a)
+            raise shapely.GEOSException("TopologyException: side location conflict")
+        return exact(a, b, grid_size=grid_size)
+
+    monkeypatch.setattr(shapely, "difference", difference)
+    result = greedy.greedy_order([box(0, 0, 2, 1), box(1, 0, 4, 1)])
+    assert refused
+    assert result.gain_m2.tolist() == pytest.approx([3, 1], abs=1e-5)
+
+
+def test_checkpoints_tell_what_every_polygon_would_add():
+    polygons = scattered(20)
+    result = greedy.greedy_order(polygons)
+    assert sorted(result.checkpoints) == [0, 1, 2, 4, 8, 16]
+    for j, gain_m2 in result.checkpoints.items():
+        union = shapely.union_all([polygons[i] for i in result.order[:j]])
+        expected = [0 if i in result.order[:j] else (union | p).area - union.area for i, p in enumerate(polygons)]
+        assert gain_m2 == pytest.approx(expected, abs=1e-9)

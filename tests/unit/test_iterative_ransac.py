@@ -1,0 +1,97 @@
+import numpy as np
+import pytest
+
+import toyrooms
+from reference import ransac as literal
+from scanplan import iterative_ransac
+
+SETTINGS = iterative_ransac.Settings(**toyrooms.LIMITS, max_tilt_deg=15.0, trials=200, max_planes=20)
+# per face: normal towards the sensor, normal . xy
+FACES = [((0, 1), 0), ((0, -1), -4), ((1, 0), 0), ((-1, 0), -6), ((-1, 0), -6), ((-1, 0), -9)]
+
+
+def extract(xyz_m, sensor_xyz_m=toyrooms.SENSOR, *, planar=False, settings=SETTINGS, scan_id=3):
+    return iterative_ransac.extract(scan_id, xyz_m, sensor_xyz_m=sensor_xyz_m, planar=planar, settings=settings)
+
+
+def values(found):
+    return np.column_stack([found.start_m, found.end_m, found.normal, found.n_points, found.rmse_m, found.z_range_m])
+
+
+@pytest.mark.parametrize("planar", [False, True])
+@pytest.mark.parametrize("seed", range(3))
+def test_every_wall_of_the_room(planar, seed):
+    found = extract(toyrooms.laser(seed=seed) if planar else toyrooms.vlp16(seed=seed), planar=planar)
+    assert len(found) == len(FACES)
+    left = list(FACES)
+    for middle_m, normal in zip((found.start_m + found.end_m) / 2, found.normal, strict=True):
+        match = next(f for f in left if f[0] @ normal > 0.9999 and abs(middle_m @ f[0] - f[1]) < 0.01)
+        left.remove(match)
+    assert not left
+
+
+@pytest.mark.parametrize("planar", [False, True])
+def test_same_result_again_and_in_any_order(planar):
+    points = toyrooms.laser() if planar else toyrooms.vlp16()
+    first, again = extract(points, planar=planar), extract(points, planar=planar)
+    shuffled = extract(np.random.default_rng(0).permutation(points), planar=planar)
+    assert (values(first) == values(again)).all()
+    assert (values(first) == values(shuffled)).all()
+
+
+def test_moved_room_has_moved_walls():
+    turn = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1.0]])
+    found = extract(toyrooms.laser(), planar=True)
+    moved = extract(toyrooms.laser() @ turn.T + (5, -7, 0), turn @ toyrooms.SENSOR + (5, -7, 0), planar=True)
+    assert len(moved) == len(found)
+    offsets = (found.start_m * found.normal).sum(axis=1)
+    moved_offsets = ((moved.start_m - (5, -7)) * moved.normal).sum(axis=1)
+    assert np.sort(moved_offsets) == pytest.approx(np.sort(offsets), abs=0.01)
+
+
+@pytest.mark.parametrize("planar", [False, True])
+@pytest.mark.parametrize(
+    "points",
+    [np.empty((0, 3)), [(1, 2, 3)], [(1, 2, 3), (2, 2, 3)], [(1, 2, 3)] * 500, [(0, 0, 0)] * 50],
+)
+def test_no_wall_in_next_to_nothing(points, planar):
+    assert len(extract(points, (0, 0, 0), planar=planar)) == 0
+
+
+def test_an_upright_pole_is_no_wall():
+    pole = np.column_stack([np.full(300, 2.0), np.full(300, 1.0), np.linspace(0, 2, 300)])
+    assert len(extract(pole, (0, 0, 1))) == 0
+
+
+def test_a_line_of_points_is_a_wall_in_the_plane_alone():
+    line = np.column_stack([np.linspace(-2, 2, 400), np.full(400, 2.0), np.full(400, 0.7)])
+    assert len(extract(line, (0, 0, 0.5))) == 0
+    assert len(extract(line, (0, 0, 0.5), planar=True)) == 1
+
+
+def test_a_floor_is_no_wall():
+    x, y = np.meshgrid(np.arange(-4, 4, 0.1), np.arange(-4, 4, 0.1))
+    floor = np.column_stack([x.ravel(), y.ravel(), np.random.default_rng(1).normal(0, 0.01, x.size)])
+    assert len(extract(floor, (0, 0, 0.8))) == 0
+
+
+def test_rounds_are_limited():
+    few = iterative_ransac.Settings(**toyrooms.LIMITS, max_tilt_deg=15.0, trials=200, max_planes=1)
+    assert len(extract(toyrooms.laser(), planar=True, settings=few)) == 1
+
+
+def test_points_must_be_finite():
+    with pytest.raises(ValueError, match="finite"):
+        extract([(0, 0, np.nan)] * 50, (0, 0, 0))
+
+
+def test_the_same_lines_as_the_literal_algorithm():
+    points = toyrooms.laser(segments=toyrooms.ROOM[:3], beams=240)
+    lines = literal.repeated(
+        (points - toyrooms.SENSOR)[:, :2], inlier_m=0.05, min_consensus=20, rng=np.random.default_rng(1), max_trials=60
+    )
+    found = extract(points, planar=True)
+    assert len(found) == len(lines) == 3
+    for start_m, normal in zip(found.start_m, found.normal, strict=True):
+        offset_m = normal @ (start_m - toyrooms.SENSOR[:2])
+        assert any(-n @ normal > 0.9999 and abs(d + offset_m) < 0.01 for n, d in lines)

@@ -1,0 +1,139 @@
+"""Algorithm 3 on a hall whose scans and faults are known."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from reference import registration as literal
+from scanplan import registration, se3
+
+SETTINGS = registration.Settings(
+    voxel_m=0.1,
+    n_previous=5,
+    fitness_distance_m=0.2,
+    min_prior_fitness=0.7,
+    min_refined_fitness=0.8,
+    icp_method="gicp",
+    icp_targets=1,
+    icp_distance_m=0.5,
+    icp_max_iterations=40,
+    max_correction_m=0.5,
+    max_correction_deg=5.0,
+    anchor_after=3,
+    min_points=20,
+)
+
+
+def pose(x, y, yaw_deg):
+    return se3.matrix([x, y, 0.4], Rotation.from_euler("z", yaw_deg, degrees=True).as_quat())
+
+
+def hall(rng, planar):
+    """Points of a 6 m by 4 m hall with a pillar, in the map."""
+    outline = np.array([[0, 0], [6, 0], [6, 4], [0, 4], [0, 0]])
+    pillar = np.array([[2, 1.5], [2.4, 1.5], [2.4, 1.9], [2, 1.9], [2, 1.5]])
+    edges = np.concatenate([np.stack([p[:-1], p[1:]], 1) for p in (outline, pillar)])
+    share = rng.uniform(size=(600, 1, 1))
+    xy = (edges[:, 0] * (1 - share) + edges[:, 1] * share).reshape(-1, 2)
+    z = np.full(len(xy), 0.4) if planar else rng.uniform(0, 2.5, len(xy))
+    points = np.column_stack([xy, z])
+    if not planar:
+        floor = np.column_stack([rng.uniform(0, 6, 3000), rng.uniform(0, 4, 3000), np.zeros(3000)])
+        points = np.concatenate([points, floor])
+    return points + rng.normal(0, 0.005, points.shape) * [1, 1, not planar]
+
+
+def drive(n, *, planar, noise_m=0.04, noise_deg=1.0, seed=0):
+    """Scans in the sensor frame, localiser's poses, true poses."""
+    rng = np.random.default_rng(seed)
+    true = [pose(1 + 0.1 * i, 2.8, 3 * i) for i in range(n)]
+    priors = [
+        se3.matrix(t[:3, 3] + [*rng.normal(0, noise_m, 2), 0], Rotation.from_matrix(t[:3, :3]).as_quat())
+        @ pose(0, 0, rng.normal(0, noise_deg))
+        @ se3.inverse(pose(0, 0, 0))
+        for t in true
+    ]
+    priors[0] = true[0]
+    scans = [se3.transform(se3.inverse(t), hall(rng, planar)) for t in true]
+    return scans, priors, true
+
+
+def register(scans, priors, planar, **changes):
+    registrar = registration.Registrar(registration.Settings(**{**vars(SETTINGS), **changes}), planar)
+    return [registrar.add(scan, prior) for scan, prior in zip(scans, priors, strict=True)]
+
+
+@pytest.mark.parametrize("planar", [False, True])
+@pytest.mark.parametrize("icp_targets", [1, 5])
+def test_refinement_removes_the_localisers_error(planar, icp_targets):
+    scans, priors, true = drive(12, planar=planar)
+    verdicts = register(scans, priors, planar, icp_targets=icp_targets)
+    assert [v.reason for v in verdicts] == ["anchor"] + ["kept"] * 11
+    before = [np.linalg.norm((se3.inverse(t) @ p)[:2, 3]) for t, p in zip(true, priors, strict=True)]
+    after = [np.linalg.norm((se3.inverse(t) @ v.world_from_sensor)[:2, 3]) for t, v in zip(true, verdicts, strict=True)]
+    assert np.median(before) > 0.03 and max(after) < 0.015
+    assert all(v.refined_fitness >= 0.8 for v in verdicts[1:]) and np.isnan(verdicts[0].prior_fitness)
+
+
+def test_a_long_chain_stays_rigid():
+    scans, priors, _ = drive(1, planar=True)
+    verdicts = register(scans * 80, priors * 80, True)
+    np.testing.assert_allclose(np.linalg.det(verdicts[-1].world_from_sensor[:3, :3]), 1, atol=1e-9)
+    np.testing.assert_allclose(verdicts[-1].world_from_sensor, priors[0], atol=1e-3)
+
+
+def test_height_and_tilt_of_a_planar_survey_stay_the_localisers():
+    scans, priors, _ = drive(4, planar=True)
+    tilt = se3.matrix([0, 0, 0.05], Rotation.from_euler("x", 1.0, degrees=True).as_quat())
+    priors = [prior @ tilt for prior in priors]
+    scans = [se3.transform(se3.inverse(tilt), scan) for scan in scans]
+    verdicts = register(scans, priors, True)
+    for verdict, prior in zip(verdicts, priors, strict=True):
+        assert verdict.kept
+        np.testing.assert_allclose(verdict.world_from_sensor[2], prior[2], atol=1e-9)
+
+
+def test_a_scan_that_fits_badly_is_dropped_and_the_next_goes_on():
+    scans, priors, _ = drive(6, planar=True)
+    priors[3] = pose(4.0, 2.0, 77)
+    reasons = [v.reason for v in register(scans, priors, True)]
+    assert reasons == ["anchor", "kept", "kept", "low_prior_fitness", "kept", "kept"]
+
+
+def test_each_gate_has_its_reason():
+    scans, priors, _ = drive(3, planar=True)
+    assert register(scans, priors, True, fitness_distance_m=0.005)[1].reason == "low_prior_fitness"
+    tight = {"fitness_distance_m": 0.005, "min_prior_fitness": 0.0, "min_refined_fitness": 0.99}
+    assert register(scans, priors, True, **tight)[1].reason == "low_refined_fitness"
+    assert register(scans, priors, True, max_correction_m=1e-6)[1].reason == "icp_diverged"
+
+
+def test_scans_without_pose_or_points_are_named():
+    scans, priors, _ = drive(4, planar=True)
+    priors[1] = np.full((4, 4), np.nan)
+    scans[2] = scans[2][:5]
+    verdicts = register(scans, priors, True)
+    assert [v.reason for v in verdicts] == ["anchor", "pose_gap", "too_few_points", "kept"]
+    assert np.isnan(verdicts[1].world_from_sensor).all()
+
+
+def test_a_run_of_rejections_ends_in_a_new_anchor():
+    scans, priors, _ = drive(8, planar=True)
+    away = pose(30, 0, 0)
+    priors = priors[:3] + [away @ p for p in priors[3:]]
+    verdicts = register(scans, priors, True)
+    assert [v.reason for v in verdicts] == (
+        ["anchor", "kept", "kept", "low_prior_fitness", "low_prior_fitness", "anchor", "kept", "kept"]
+    )
+    np.testing.assert_allclose(verdicts[5].world_from_sensor, priors[5])
+
+
+def test_the_literal_algorithm_keeps_the_same_scans_at_the_same_places():
+    scans, priors, _ = drive(6, planar=False)
+    priors[4] = pose(4.0, 2.0, 77)
+    limits = {"min_prior_fitness": 0.6, "min_refined_fitness": 0.7}
+    ours = register(scans, priors, False, icp_method="point_to_point", voxel_m=0.02, **limits)
+    theirs = literal.register(scans, priors, keep_every=1, distance_m=0.2, **limits)
+    assert [i for i, v in enumerate(ours) if v.kept] == sorted(theirs) == [0, 1, 2, 3, 5]
+    for index, pose_of_scan in theirs.items():
+        np.testing.assert_allclose(ours[index].world_from_sensor, pose_of_scan, atol=0.02)

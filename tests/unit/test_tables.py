@@ -1,0 +1,124 @@
+"""Tables are whole, checked, and refused when damaged."""
+
+import numpy as np
+import pytest
+
+from scanplan import tables
+from scanplan.errors import StageError
+
+ROWS = {
+    "rank": [1, 2, 3],
+    "scan_id": [7, 3, 5],
+    "gain_m2": [4.0, 2.0, 0.0],
+    "covered_m2": [4.0, 6.0, 6.0],
+    "bound_m2": [4.0, 6.0, 6.0],
+}
+
+
+@pytest.fixture
+def selection(tmp_path):
+    path = tmp_path / "deep" / "selection.parquet"
+    tables.write(path, tables.SELECTION, ROWS)
+    return path
+
+
+@pytest.fixture
+def scans(tmp_path):
+    path = tmp_path / "scans.parquet"
+    with tables.scan_writer(path, planar=True) as write:
+        write(3, np.arange(6.0).reshape(2, 3))
+        write(9, np.ones((1, 3)))
+    return path
+
+
+def test_what_is_written_is_read(selection):
+    rows = tables.read(selection, tables.SELECTION)
+    assert {name: rows[name].tolist() for name in rows} == ROWS
+    assert rows["scan_id"].dtype == np.int32
+    assert list(tables.read(selection, tables.SELECTION, ["gain_m2"])) == ["gain_m2"]
+
+
+def test_the_same_rows_give_the_same_bytes(selection, tmp_path):
+    tables.write(tmp_path / "again.parquet", tables.SELECTION, ROWS)
+    assert (tmp_path / "again.parquet").read_bytes() == selection.read_bytes()
+
+
+def test_scans_are_read_one_by_one(scans):
+    store = tables.ScanStore(scans)
+    assert store.scan_ids.tolist() == [3, 9] and store.planar
+    np.testing.assert_array_equal(store.read(9), [[1, 1, 1]])
+    assert [scan_id for scan_id, _ in store.scans([9, 3])] == [9, 3]
+    assert store.read(3).dtype == np.float32
+    with pytest.raises(ValueError, match="no scan 4"):
+        store.read(4)
+
+
+def test_a_store_without_scans_does_not_appear(tmp_path):
+    with pytest.raises(StageError, match="no scan was kept"), tables.scan_writer(tmp_path / "s.parquet", planar=False):
+        pass
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_interrupted_write_leaves_nothing(tmp_path):
+    with pytest.raises(KeyboardInterrupt), tables.scan_writer(tmp_path / "s.parquet", planar=False) as write:
+        write(0, np.zeros((1, 3)))
+        raise KeyboardInterrupt
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("spoil", ["drop", "add", "unsort"])
+def test_columns_and_order_are_checked_on_write(tmp_path, spoil):
+    rows = dict(ROWS)
+    if spoil == "drop":
+        del rows["bound_m2"]
+    elif spoil == "add":
+        rows["extra"] = [1, 2, 3]
+    else:
+        rows["rank"] = [2, 1, 3]
+    with pytest.raises(ValueError, match="selection"):
+        tables.write(tmp_path / "s.parquet", tables.SELECTION, rows)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_no_rows_only_where_allowed(tmp_path):
+    empty = {name: [] for name in ROWS}
+    with pytest.raises(StageError, match="no rows"):
+        tables.write(tmp_path / "s.parquet", tables.SELECTION, empty)
+    tables.write(tmp_path / "s.parquet", tables.SELECTION, empty, allow_empty=True)
+    assert tables.read(tmp_path / "s.parquet", tables.SELECTION, allow_empty=True)["rank"].size == 0
+
+
+def test_a_flipped_bit_is_noticed(tmp_path):
+    path = tmp_path / "scans.parquet"
+    with tables.scan_writer(path, planar=False) as write:
+        write(0, np.random.default_rng(0).normal(size=(5000, 3)))
+    whole = path.read_bytes()
+    for position in range(2000, 50000, 9601):
+        path.write_bytes(whole[:position] + bytes([whole[position] ^ 1]) + whole[position + 1 :])
+        with pytest.raises(StageError, match="damaged"):
+            list(tables.ScanStore(path).scans())
+
+
+@pytest.mark.parametrize("size", [0, 3, 200])
+def test_a_truncated_file_is_refused(selection, size):
+    selection.write_bytes(selection.read_bytes()[:size])
+    with pytest.raises(StageError, match="damaged"):
+        tables.read(selection, tables.SELECTION)
+
+
+def test_another_table_or_no_table_is_refused(selection, tmp_path):
+    with pytest.raises(StageError, match="expected poses"):
+        tables.read(selection, tables.POSES)
+    with pytest.raises(StageError, match="does not exist"):
+        tables.read(tmp_path / "none.parquet", tables.POSES)
+
+
+def test_hulls_say_that_they_are_local_metres(tmp_path):
+    import json
+
+    import pyarrow.parquet as pq
+
+    row = {"scan_id": [0], "cluster": [0], "n_points": [3], "area_m2": [0.5], "geometry": [b"\x01"]}
+    tables.write(tmp_path / "h.parquet", tables.HULLS, row)
+    geo = json.loads(pq.read_metadata(tmp_path / "h.parquet").metadata[b"geo"])
+    assert geo["columns"]["geometry"]["crs"] is None

@@ -1,0 +1,133 @@
+"""The whole workflow on the tiny office: complete, idle, changed, edited, killed and resumed."""
+
+import os
+import signal
+import subprocess
+import time
+
+import pytest
+
+from projectcopy import TINY, Project
+
+pytestmark = pytest.mark.workflow
+
+
+@pytest.fixture(scope="module")
+def project(project_root, tmp_path_factory):
+    project = Project(project_root, tmp_path_factory.mktemp("work space"))
+    result = project.run()
+    assert result.returncode == 0, result.stdout + result.stderr
+    project.output = result.stdout + result.stderr
+    return project
+
+
+AFTER_HULLS = {"build_hulls", "order_scans", "assemble_plan", "export_plan", "draw_scans", "draw_area", "draw_walls"}
+
+
+def test_every_result_is_there_and_the_user_is_told(project):
+    made = set(project.digests())
+    for name in ("poses.parquet", "scans.parquet", "plan/plan.dxf", "plan/plan.svg", "figures/walls.svg"):
+        assert f"results/demo/{name}" in made
+    assert (project.folder / "results/demo/report.html").stat().st_size > 100_000
+    assert "results/demo/plan/plan.svg" in project.output and "results/demo/report.html" in project.output
+    assert "register_scans:" in project.output and not [p for p in made if ".part" in p]
+
+
+def test_a_second_run_does_nothing(project):
+    before = project.digests()
+    result = project.run()
+    assert result.returncode == 0 and "Nothing to be done" in result.stderr
+    assert project.would_run() == set() and project.digests() == before
+
+
+def test_a_touched_file_reruns_nothing(project):
+    os.utime(project.folder / "scripts/scanplan/hulls.py")
+    assert project.would_run() == set()
+
+
+@pytest.mark.parametrize(
+    ("change", "rules"),
+    [
+        ("hulls: {n_clusters: 7}", AFTER_HULLS),
+        ("plan: {merge: {max_offset_m: 0.08}}", {"assemble_plan", "export_plan", "draw_walls"}),
+        ("plan: {method: sequential}", {"assemble_plan", "export_plan", "draw_scans", "draw_walls"}),
+        (
+            "walls: {cluster_ransac: {min_length_m: 0.7}}",
+            {"extract_walls", "assemble_plan", "export_plan", "draw_walls"},
+        ),
+    ],
+)
+def test_a_changed_parameter_reruns_exactly_its_stages(project, change, rules):
+    other = project.folder / "change.yaml"
+    other.write_text(change)
+    assert project.would_run("--configfile", TINY, str(other)) == rules
+
+
+@pytest.mark.parametrize(
+    ("helper", "rules"),
+    [
+        ("hulls", AFTER_HULLS),
+        ("cad", {"export_plan"}),
+        ("faces", {"assemble_plan", "export_plan", "draw_walls"}),
+    ],
+)
+def test_an_edited_helper_reruns_exactly_the_stages_that_import_it(project, helper, rules):
+    path = project.folder / f"scripts/scanplan/{helper}.py"
+    source = path.read_text()
+    path.write_text(source + "\n# an edit\n")
+    try:
+        assert project.would_run() == rules
+    finally:
+        path.write_text(source)
+
+
+def test_one_stage_can_be_rerun(project):
+    before = project.digests()
+    (project.folder / "results/demo/hulls.parquet").unlink()
+    assert project.run("results/demo/hulls.parquet").returncode == 0
+    assert project.digests() == before
+
+
+def test_one_core_gives_the_same_bytes(project):
+    before = project.digests()
+    result = project.run("--cores", "1", "--forcerun", "build_hulls", "extract_walls")
+    assert result.returncode == 0 and project.digests() == before
+
+
+@pytest.mark.parametrize("sent", [signal.SIGKILL, signal.SIGINT, signal.SIGTERM])
+def test_a_killed_run_resumes_with_the_same_command(project, sent):
+    before = project.digests()
+    run = subprocess.Popen(
+        project.command("--forcerun", "register_scans"),
+        cwd=project.folder,
+        env=project.env(),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    log = project.folder / "logs/demo/register_scans.log"
+    started = log.stat().st_mtime_ns
+    while log.stat().st_mtime_ns == started and run.poll() is None:
+        time.sleep(0.05)
+    os.kill(run.pid, sent) if sent == signal.SIGKILL else os.killpg(run.pid, sent)
+    assert run.wait(timeout=120) != 0
+    result = project.run()
+    assert result.returncode == 0, result.stderr
+    assert project.digests() == before
+
+
+def test_two_runs_at_once_do_not_mix(project):
+    first = subprocess.Popen(
+        project.command("--forcerun", "register_scans"),
+        cwd=project.folder,
+        env=project.env(),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    log = project.folder / "logs/demo/register_scans.log"
+    started = log.stat().st_mtime_ns
+    while log.stat().st_mtime_ns == started and first.poll() is None:
+        time.sleep(0.05)
+    second = project.run("--forcerun", "build_hulls")
+    assert first.wait(timeout=120) == 0
+    assert second.returncode != 0 and "another run is at work" in second.stdout + second.stderr

@@ -1,0 +1,171 @@
+import fcntl
+import os
+import sys
+from pathlib import Path
+
+import yaml
+from snakemake.exceptions import WorkflowError
+
+sys.path.insert(0, f"{workflow.basedir}/scripts")
+from scanplan import configuration, datasets, sources
+from scanplan.errors import StageError
+
+DEMO = "demo"
+METHODS = ["cluster_hull", "hull", "random", "sequential"]
+EXTRACTORS = ["cluster_ransac", "iterative_ransac"]
+FIGURES = ["scans", "area", "walls"]
+PLANS = ["plan.geojson", "plan.svg", "plan.dxf"]
+
+
+def given_datasets():
+    """Dataset folders by results name, as the user gave them; the simulated demo where none is given."""
+    given = config.get("dataset")
+    if given is None:
+        return {DEMO: None}
+    named = {}
+    for path in given if isinstance(given, list) else [given]:
+        name = datasets.name_of(str(path))
+        if name in named:
+            raise StageError(
+                f"{path}: its results would be called {name} like those of {named[name]}; rename one"
+            )
+        named[name] = str(path)
+    return named
+
+
+def settings_of(path):
+    """Checked settings of one dataset: defaults, its dataset.yaml, then what the command line gave."""
+    base = Path(workflow.basedir)
+    schema = configuration.read_yaml(base / "workflow/schemas/config.schema.yaml")
+    defaults = configuration.read_yaml(base / "config/config.yaml")
+    own = None if path is None else Path(path) / "dataset.yaml"
+    return configuration.for_dataset(
+        defaults, own, workflow.config_settings.overwrite_config, schema
+    )
+
+
+def or_end(function, *arguments):
+    """Call a function; a fault of the user's data or settings ends the run in one line."""
+    try:
+        return function(*arguments)
+    except StageError as error:
+        raise WorkflowError(str(error))
+
+
+DATASETS = or_end(given_datasets)
+SETTINGS = {name: or_end(settings_of, path) for name, path in DATASETS.items()}
+RECORDINGS = {
+    name: (
+        [f"results/{name}/survey/survey.bag"]
+        if path is None
+        else or_end(datasets.find_files, path)
+    )
+    for name, path in DATASETS.items()
+}
+
+
+def code_of(script):
+    """Helper files that a script imports: as inputs they make an edit rerun the stages that use them."""
+    files = sources.helpers_of(f"{workflow.basedir}/scripts/{script}.py")
+    return [os.path.relpath(file) for file in files]
+
+
+def setting(section, *keys):
+    """A param function that looks a section, or one key of it, up in the settings of the job's dataset."""
+
+    def look_up(wildcards):
+        value = SETTINGS[wildcards.dataset][section]
+        for key in keys:
+            value = value[key]
+        return value
+
+    return look_up
+
+
+def extractor_settings(wildcards):
+    """Settings of the job's wall extractor."""
+    return SETTINGS[wildcards.dataset]["walls"][wildcards.extractor]
+
+
+def recordings(wildcards):
+    """Files that hold a dataset's clouds and poses."""
+    return RECORDINGS[wildcards.dataset]
+
+
+def plan_selection(wildcards):
+    """The ordering whose first scans make the plan."""
+    return f"results/{wildcards.dataset}/selection/{SETTINGS[wildcards.dataset]['plan']['method']}.parquet"
+
+
+def plan_walls(wildcards):
+    """The walls that make the plan."""
+    return f"results/{wildcards.dataset}/walls/{SETTINGS[wildcards.dataset]['plan']['extractor']}.parquet"
+
+
+def all_selections(wildcards):
+    """Orderings of all methods of one dataset."""
+    return [
+        f"results/{wildcards.dataset}/selection/{method}.parquet" for method in METHODS
+    ]
+
+
+def building(wildcards):
+    """The drawing of the building that the demo is simulated in."""
+    return os.path.relpath(
+        f"{workflow.basedir}/config/buildings/{SETTINGS[DEMO]['simulate']['building']}.geojson"
+    )
+
+
+def simulated_survey(wildcards):
+    """Settings of the simulated rover."""
+    return {
+        key: value
+        for key, value in SETTINGS[DEMO]["simulate"].items()
+        if key != "building"
+    }
+
+
+def all_results():
+    """Everything the workflow makes of the given datasets."""
+    files = [f"selection/{method}.parquet" for method in METHODS]
+    files += [f"walls/{extractor}.parquet" for extractor in EXTRACTORS]
+    files += [f"plan/{plan}" for plan in PLANS]
+    files += [f"figures/{figure}.svg" for figure in FIGURES]
+    return [f"results/{name}/{file}" for name in DATASETS for file in files]
+
+
+def run_alone():
+    """Refuse a second run in the same folder; the lock dies with this process, however it ends."""
+    Path(".snakemake").mkdir(exist_ok=True)
+    run_alone.lock = open(".snakemake/scanplan.lock", "w")
+    try:
+        fcntl.flock(run_alone.lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise WorkflowError(
+            f"{Path.cwd()}: another run is at work in this folder; wait for it or stop it first"
+        )
+
+
+def tell_results():
+    """Say where the plans lie."""
+    for name in DATASETS:
+        print(
+            f"\nplan:   results/{name}/plan/plan.svg (also .dxf, .geojson)",
+            file=sys.stderr,
+        )
+
+
+def tell_failure():
+    """Leave no empty folders behind, and say what remains to be read."""
+    for name in DATASETS:
+        for folder, _, _ in os.walk(f"results/{name}", topdown=False):
+            if not os.listdir(folder):
+                os.rmdir(folder)
+    if os.path.isdir("results") and not os.listdir("results"):
+        os.rmdir("results")
+
+
+wildcard_constraints:
+    dataset="|".join(DATASETS),
+    method="|".join(METHODS),
+    extractor="|".join(EXTRACTORS),

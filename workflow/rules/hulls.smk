@@ -1,0 +1,19 @@
+rule build_hulls:
+    """Cluster every scan and put a convex hull around each cluster."""
+    input:
+        scans="results/{dataset}/scans.parquet",
+        code=code_of("build_hulls"),
+    output:
+        hulls="results/{dataset}/hulls.parquet",
+    log:
+        "logs/{dataset}/build_hulls.log",
+    benchmark:
+        "benchmarks/{dataset}/build_hulls.tsv"
+    threads: 2
+    resources:
+        mem_mb=1500,
+        runtime=30,
+    params:
+        settings=setting("hulls"),
+    script:
+        "../../scripts/build_hulls.py"

@@ -1,0 +1,47 @@
+rule assemble_plan:
+    """Merge the walls of the first scans of an ordering into faces."""
+    input:
+        walls=plan_walls,
+        selection=plan_selection,
+        code=code_of("assemble_plan"),
+    output:
+        faces="results/{dataset}/plan/faces.parquet",
+    log:
+        "logs/{dataset}/assemble_plan.log",
+    benchmark:
+        "benchmarks/{dataset}/assemble_plan.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    params:
+        stop=setting("selection", "stop"),
+        settings=setting("plan", "merge"),
+    script:
+        "../../scripts/assemble_plan.py"
+
+
+rule export_plan:
+    """Write the plan as GeoJSON, SVG and DXF."""
+    input:
+        faces="results/{dataset}/plan/faces.parquet",
+        code=code_of("export_plan"),
+    output:
+        geojson="results/{dataset}/plan/plan.geojson",
+        svg=report(
+            "results/{dataset}/plan/plan.svg",
+            caption="../report/plan.rst",
+            category="{dataset}",
+            labels={"figure": "1 floor plan"},
+        ),
+        dxf="results/{dataset}/plan/plan.dxf",
+    log:
+        "logs/{dataset}/export_plan.log",
+    benchmark:
+        "benchmarks/{dataset}/export_plan.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    script:
+        "../../scripts/export_plan.py"

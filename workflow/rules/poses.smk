@@ -1,0 +1,20 @@
+rule interpolate_poses:
+    """Give every candidate scan the pose its sensor had at that moment."""
+    input:
+        recordings=recordings,
+        code=code_of("interpolate_poses"),
+    output:
+        poses="results/{dataset}/poses.parquet",
+    log:
+        "logs/{dataset}/interpolate_poses.log",
+    benchmark:
+        "benchmarks/{dataset}/interpolate_poses.tsv"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=60,
+    params:
+        reading=setting("input"),
+        settings=setting("poses"),
+    script:
+        "../../scripts/interpolate_poses.py"

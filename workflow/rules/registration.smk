@@ -1,0 +1,22 @@
+rule register_scans:
+    """Keep the scans that fit their predecessors, registered in the map frame."""
+    input:
+        recordings=recordings,
+        poses="results/{dataset}/poses.parquet",
+        code=code_of("register_scans"),
+    output:
+        scans="results/{dataset}/scans.parquet",
+        registration="results/{dataset}/registration.parquet",
+    log:
+        "logs/{dataset}/register_scans.log",
+    benchmark:
+        "benchmarks/{dataset}/register_scans.tsv"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=120,
+    params:
+        reading=setting("input"),
+        settings=setting("registration"),
+    script:
+        "../../scripts/register_scans.py"

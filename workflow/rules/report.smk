@@ -1,0 +1,79 @@
+rule draw_scans:
+    """Draw the registered scans, where they were taken, and which were selected."""
+    input:
+        scans="results/{dataset}/scans.parquet",
+        registration="results/{dataset}/registration.parquet",
+        selection=plan_selection,
+        code=code_of("draw_scans"),
+    output:
+        figure=report(
+            "results/{dataset}/figures/scans.svg",
+            caption="../report/scans.rst",
+            category="{dataset}",
+            labels={"figure": "2 scans and selection"},
+        ),
+    log:
+        "logs/{dataset}/draw_scans.log",
+    benchmark:
+        "benchmarks/{dataset}/draw_scans.tsv"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=10,
+    params:
+        stop=setting("selection", "stop"),
+    script:
+        "../../scripts/draw_scans.py"
+
+
+rule draw_area:
+    """Draw the covered area against the number of scans, for every ordering."""
+    input:
+        selections=all_selections,
+        code=code_of("draw_area"),
+    output:
+        figure=report(
+            "results/{dataset}/figures/area.svg",
+            caption="../report/area.rst",
+            category="{dataset}",
+            labels={"figure": "3 covered area"},
+        ),
+    log:
+        "logs/{dataset}/draw_area.log",
+    benchmark:
+        "benchmarks/{dataset}/draw_area.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    script:
+        "../../scripts/draw_area.py"
+
+
+rule draw_walls:
+    """Draw the walls of the plan over the points of the selected scans."""
+    input:
+        scans="results/{dataset}/scans.parquet",
+        registration="results/{dataset}/registration.parquet",
+        selection=plan_selection,
+        faces="results/{dataset}/plan/faces.parquet",
+        code=code_of("draw_walls"),
+    output:
+        figure=report(
+            "results/{dataset}/figures/walls.svg",
+            caption="../report/walls.rst",
+            category="{dataset}",
+            labels={"figure": "4 walls over points"},
+        ),
+    log:
+        "logs/{dataset}/draw_walls.log",
+    benchmark:
+        "benchmarks/{dataset}/draw_walls.tsv"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=10,
+    params:
+        stop=setting("selection", "stop"),
+    script:
+        "../../scripts/draw_walls.py"

@@ -1,0 +1,21 @@
+rule simulate_survey:
+    """Drive a simulated rover through the demo office and record it."""
+    input:
+        building=building,
+        code=code_of("simulate_survey"),
+    output:
+        bag="results/{dataset}/survey/survey.bag",
+        truth="results/{dataset}/survey/truth.geojson",
+        true_poses="results/{dataset}/survey/truth_poses.tum",
+    log:
+        "logs/{dataset}/simulate_survey.log",
+    benchmark:
+        "benchmarks/{dataset}/simulate_survey.tsv"
+    threads: 2
+    resources:
+        mem_mb=1000,
+        runtime=30,
+    params:
+        settings=simulated_survey,
+    script:
+        "../../scripts/simulate_survey.py"
