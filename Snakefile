@@ -13,6 +13,7 @@ report: "workflow/report/workflow.rst"
 
 
 include: "workflow/rules/common.smk"
+include: "workflow/rules/handlers.smk"
 include: "workflow/rules/simulate.smk"
 include: "workflow/rules/poses.smk"
 include: "workflow/rules/registration.smk"

@@ -73,3 +73,7 @@ def moved(table, yaw_rad, shift_m):
 
 def lengths_m(faces):
     return np.hypot(faces["x1_m"] - faces["x0_m"], faces["y1_m"] - faces["y0_m"])
+
+
+def ends(merged):
+    return np.column_stack([merged[c] for c in ("x0_m", "y0_m", "x1_m", "y1_m")])

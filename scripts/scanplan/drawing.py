@@ -6,7 +6,9 @@ import math
 import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
 from matplotlib.patches import Rectangle
+from matplotlib.textpath import TextPath
 
 _MM_PER_INCH = 25.4
 _POINTS_PER_MM = 72 / _MM_PER_INCH
@@ -14,6 +16,7 @@ _SCALES = [m * 10**e for e in range(1, 7) for m in (1, 2, 5)]
 _LARGEST_MM = np.array([380.0, 260.0])
 _MARGIN_MM = {"left": 22.0, "right": 12.0, "top": 12.0, "bottom": 50.0}
 _LEAST_WIDTH_MM = 150.0
+_LONGEST_NAME = 60
 _INK, _FAINT = "black", "0.35"
 
 
@@ -131,6 +134,9 @@ def _map_axes(axes, low_m, m_per_mm):
 
 def _title(axes, low_m, m_per_mm, name, contents, scale):
     x_m, y_m = low_m[0], low_m[1] - 34 * m_per_mm
-    shown = name if len(name) <= 40 else f"{name[:39]}…"
-    axes.text(x_m, y_m, shown, fontsize=12, weight="bold", va="center", parse_math=False)
+    shown = name if len(name) <= _LONGEST_NAME else f"{name[: _LONGEST_NAME - 1]}…"
+    room_points = (axes.get_xlim()[1] - x_m) / m_per_mm * _POINTS_PER_MM - 10
+    outline = TextPath((0, 0), shown.replace("$", r"\$"), size=12, prop=FontProperties(weight="bold")).get_extents()
+    size = min(12, 12 * room_points / outline.width)
+    axes.text(x_m, y_m, shown, fontsize=size, weight="bold", va="center", parse_math=False)
     axes.text(x_m, y_m - 6 * m_per_mm, f"{contents}   ·   scale 1:{scale}   ·   metres", fontsize=8, va="center")

@@ -101,7 +101,7 @@ def _join(segments, groups, *, max_angle_rad, tolerance_m, reach_m):
             heapq.heappush(offers, (worst, one, other))
 
     alive, offers = dict(enumerate(groups)), []
-    beside = _neighbours(segments, groups, 2 * max_angle_rad, reach_m)
+    beside = _neighbours(segments, groups, max_angle_rad, tolerance_m, reach_m)
     for one in range(len(groups)):
         for other in sorted(o for o in beside[one] if o > one):
             offer(one, other)
@@ -124,20 +124,43 @@ def _gap_m(line, segments, one, other):
     return max(other_low.min() - one_high.max(), one_low.min() - other_high.max())
 
 
-def _neighbours(segments, groups, max_angle_rad, reach_m):
-    """Return for each group the groups within reach whose lines look about the same way."""
+def _neighbours(segments, groups, max_angle_rad, tolerance_m, reach_m):
+    """Return for each group those that may share a line with it: within reach, much the same way, in a strip."""
     lines = [faceline.fit(segments, members) for members in groups]
     extents = [faceline.extents_m(line, segments, members) for line, members in zip(lines, groups, strict=True)]
     starts = np.array([line.at(low.min()) for line, (low, _) in zip(lines, extents, strict=True)])
     ends = np.array([line.at(high.max()) for line, (_, high) in zip(lines, extents, strict=True)])
     normals = np.array([line.normal for line in lines])
     strings = _strings(starts, ends)
-    one, other = shapely.STRtree(strings).query(strings, predicate="dwithin", distance=reach_m)
-    alike = (one != other) & (np.einsum("ij,ij->i", normals[one], normals[other]) >= np.cos(max_angle_rad))
+    pairs = np.stack(shapely.STRtree(strings).query(strings, predicate="dwithin", distance=reach_m), axis=1)
+    alike = np.einsum("ij,ij->i", normals[pairs[:, 0]], normals[pairs[:, 1]]) >= np.cos(2 * max_angle_rad)
+    pairs = pairs[alike & (pairs[:, 0] < pairs[:, 1])]
+    pairs = pairs[_in_a_strip(starts, ends, pairs, tolerance_m)]
     beside = {number: set() for number in range(len(groups))}
-    for a, b in zip(one[alike].tolist(), other[alike].tolist(), strict=True):
-        beside[a].add(b)
+    for one, other in pairs.tolist():
+        beside[one].add(other), beside[other].add(one)
     return beside
+
+
+def _in_a_strip(starts, ends, pairs, tolerance_m):
+    """Tell which pairs of lines any common line could serve, (k,) bool; some that none serves pass, too.
+
+    Where the members of both lie within t of a common line, the ends of either own line lie within 2 t of it. Over the
+    longer one's length L the two lines are then 2 t apart at most, at x beyond its end ``2 t (1 + 2 x / L)``, and the
+    shorter one's ends another 2 t.
+    """
+    length_m = np.hypot(*(ends - starts).T)
+    swap = length_m[pairs[:, 0]] < length_m[pairs[:, 1]]
+    longer, shorter = np.where(swap[:, None], pairs[:, ::-1], pairs).T
+    along = (ends[longer] - starts[longer]) / length_m[longer][:, None]
+    passes = np.ones(len(pairs), bool)
+    for point in (starts[shorter] - starts[longer], ends[shorter] - starts[longer]):
+        place = np.einsum("ij,ij->i", point, along)
+        beyond = np.maximum(0, np.maximum(-place, place - length_m[longer]))
+        offset = np.abs(along[:, 0] * point[:, 1] - along[:, 1] * point[:, 0])
+        # the tenth covers that distances are taken square to slightly different lines
+        passes &= offset <= 1.1 * 4 * tolerance_m * (1 + beyond / length_m[longer])
+    return passes
 
 
 def _strings(start, end):

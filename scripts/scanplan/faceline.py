@@ -6,13 +6,14 @@ so that a face's start and end are told apart by its side alone.
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 _SHORTEST_M = 1e-3
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Segments:
     """Observed wall segments, sorted by scan and number, so that the order of the input does not matter.
 
@@ -43,14 +44,14 @@ class Segments:
         return np.hypot(*(self.end - self.start).T)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Line:
     """A straight line with a side: a point on it (2,) and its unit normal (2,)."""
 
     centre: np.ndarray
     normal: np.ndarray
 
-    @property
+    @cached_property
     def direction(self):
         """Unit direction (2,), the normal on its left."""
         return np.array([self.normal[1], -self.normal[0]])

@@ -1,20 +1,22 @@
 """Pieces of face lines: cut at pauses, met at corners, never two over each other."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import shapely
 
 from scanplan import faceline
-from scanplan.faceline import Line
+from scanplan.faceline import Line, Segments
 
 _LEAST_CORNER_RAD = np.radians(30)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Piece:
     """A stretch of a face's line: from `low_m` to `high_m` along it, and the segments (k,) that show its line."""
 
+    segments: Segments
     line: Line
     low_m: float
     high_m: float
@@ -25,10 +27,27 @@ class Piece:
         """Length of the stretch."""
         return self.high_m - self.low_m
 
-    @property
+    @cached_property
     def ends(self):
         """Start and end, (2, 2) metres."""
         return self.line.at(np.array([self.low_m, self.high_m]))
+
+    @cached_property
+    def points(self):
+        """How many points of each member lie on the stretch, (k,) float64."""
+        low, high = faceline.extents_m(self.line, self.segments, self.members)
+        inside = np.clip(np.minimum(high, self.high_m) - np.maximum(low, self.low_m), 0, None)
+        return self.segments.n_points[self.members] * inside / (high - low)
+
+    @cached_property
+    def n_points(self):
+        """How many points lie on the stretch, float."""
+        return float(self.points.sum())
+
+    @cached_property
+    def n_scans(self):
+        """How many scans show the stretch."""
+        return len(np.unique(self.segments.scan_id[self.members[self.points > 0]]))
 
 
 def cut(segments, members, *, max_gap_m):
@@ -47,7 +66,7 @@ def cut(segments, members, *, max_gap_m):
     first, last = np.r_[0, breaks], np.r_[breaks, len(low)] - 1
     shares = np.split(np.asarray(members)[order], breaks)
     return [
-        Piece(line, float(low[a]), float(high[b]), np.sort(share))
+        Piece(segments, line, float(low[a]), float(high[b]), np.sort(share))
         for a, b, share in zip(first, last, shares, strict=True)
     ]
 
@@ -69,49 +88,42 @@ def meet_at_corners(pieces, *, corner_m):
     list of Piece, in the order given
     """
     moves = [{} for _ in pieces]
-    for one, other in _near(pieces, 2 * corner_m):
-        crossing = _crossing(pieces[one], pieces[other], corner_m)
-        if crossing is not None:
-            end, along_m = crossing
-            moves[one].setdefault(end, []).append(along_m)
+    for piece, end, along_m in _crossings(pieces, corner_m):
+        moves[piece].setdefault(end, []).append(along_m)
     return [_moved(piece, move) for piece, move in zip(pieces, moves, strict=True)]
 
 
-def _crossing(piece, other, corner_m):
-    """Return which end of `piece` the line of `other` meets and where along the piece, or None."""
-    turn = piece.line.direction @ other.line.normal
-    if abs(turn) < np.sin(_LEAST_CORNER_RAD):
-        return None
-    along = -(piece.line.centre - other.line.centre) @ other.line.normal / turn
-    end = "low_m" if abs(along - piece.low_m) <= abs(along - piece.high_m) else "high_m"
-    beyond_m = _beyond_m(other, other.line.along_m(piece.line.at(along)))
-    if abs(along - getattr(piece, end)) > corner_m or beyond_m > corner_m:
-        return None
-    inward = turn if end == "low_m" else -turn
-    if inward > 0 or (_at_an_end(other, piece, along, corner_m) and inward < 0):
-        return end, float(along)
-    return None
-
-
-def _beyond_m(piece, along_m):
-    return max(piece.low_m - along_m, along_m - piece.high_m, 0.0)
-
-
-def _at_an_end(other, piece, along_m, corner_m):
-    """Tell whether the other face, too, ends at the crossing and lies behind this one: an edge seen from outside."""
-    place = other.line.along_m(piece.line.at(along_m))
-    to_low, to_high = abs(place - other.low_m), abs(place - other.high_m)
-    way = other.line.direction if to_low <= to_high else -other.line.direction
-    return min(to_low, to_high) <= corner_m and way @ piece.line.normal < 0
+def _crossings(pieces, corner_m):
+    """Return (piece, name of the end, where along it) for every end that may move to another piece's line."""
+    one, other = _near(pieces, 2 * corner_m)
+    centre, normal, along, low, high = _stacked(pieces)
+    turn = _dot(along[one], normal[other])
+    steep = np.abs(turn) >= np.sin(_LEAST_CORNER_RAD)
+    one, other, turn = one[steep], other[steep], turn[steep]
+    place = -_dot(centre[one] - centre[other], normal[other]) / turn
+    there = _dot(centre[one] + place[:, None] * along[one] - centre[other], along[other])
+    at_low = np.abs(place - low[one]) <= np.abs(place - high[one])
+    moves_m = np.abs(place - np.where(at_low, low[one], high[one]))
+    beyond_m = np.maximum(np.maximum(low[other] - there, there - high[other]), 0)
+    in_front = np.where(at_low, turn, -turn) > 0
+    # an edge seen from outside: the other face, too, ends here and lies behind this one
+    other_at_low = np.abs(there - low[other]) <= np.abs(there - high[other])
+    other_ends = np.abs(there - np.where(other_at_low, low[other], high[other])) <= corner_m
+    other_behind = np.where(other_at_low, 1, -1) * _dot(along[other], normal[one]) < 0
+    taken = (moves_m <= corner_m) & (beyond_m <= corner_m) & (in_front | (other_ends & other_behind))
+    names = np.where(at_low, "low_m", "high_m")
+    return list(zip(one[taken].tolist(), names[taken].tolist(), place[taken].tolist(), strict=True))
 
 
 def _moved(piece, move):
+    if not move:
+        return piece
     nearest = {end: min(places, key=lambda p: (abs(p - getattr(piece, end)), p)) for end, places in move.items()}
     moved = replace(piece, **nearest)
     return moved if moved.length_m >= piece.length_m / 2 else piece
 
 
-def without_doubles(segments, pieces, *, max_angle_rad, distance_m, ghost_distance_m, ghost_share):
+def without_doubles(pieces, *, max_angle_rad, distance_m, ghost_distance_m, ghost_share):
     """Take away from every piece what a stronger one of the same side already draws.
 
     That is what runs closer than `distance_m` beside it, and, further off, up to `ghost_distance_m`, what shows less
@@ -119,7 +131,6 @@ def without_doubles(segments, pieces, *, max_angle_rad, distance_m, ghost_distan
 
     Parameters
     ----------
-    segments : faceline.Segments
     pieces : list of Piece
     max_angle_rad : float
         Faces that turn further from each other are different faces, however close.
@@ -133,17 +144,21 @@ def without_doubles(segments, pieces, *, max_angle_rad, distance_m, ghost_distan
     list of Piece
         The strongest (longest seen by most points) first; a piece may have become several or none.
     """
-    points = [support(segments, piece)[0].sum() for piece in pieces]
-    order = sorted(range(len(pieces)), key=lambda i: (-points[i] * pieces[i].length_m, i))
+    points, length = (np.array([getattr(piece, name) for piece in pieces]) for name in ("n_points", "length_m"))
+    widest_m = max(distance_m, ghost_distance_m)
+    one, other = _near(pieces, widest_m)
+    normal = _stacked(pieces)[1]
+    same_side = _dot(normal[one], normal[other]) >= np.cos(max_angle_rad)
+    one, other = one[same_side], other[same_side]
+    ghost = points[one] * length[other] < ghost_share * points[other] * length[one]
     beside = [[] for _ in pieces]
-    for one, other in _near(pieces, max(distance_m, ghost_distance_m)):
-        if pieces[one].line.normal @ pieces[other].line.normal >= np.cos(max_angle_rad):
-            share = points[one] * pieces[other].length_m / max(points[other] * pieces[one].length_m, 1e-12)
-            beside[one].append((other, max(distance_m, ghost_distance_m) if share < ghost_share else distance_m))
+    for weaker, stronger, width_m in zip(one, other, np.where(ghost, widest_m, distance_m), strict=True):
+        beside[weaker].append((stronger, width_m))
+    order = np.argsort(-points * length, kind="stable")
     kept = {}
     for number in order:
         remains = [pieces[number]]
-        for stronger, width_m in ((p, width) for other, width in sorted(beside[number]) for p in kept.get(other, [])):
+        for stronger, width_m in ((p, width) for other, width in beside[number] for p in kept.get(other, ())):
             remains = [rest for piece in remains for rest in _less(piece, stronger, width_m)]
         kept[number] = remains
     return [piece for number in order for piece in kept[number]]
@@ -174,18 +189,22 @@ def doubled_m(piece, other, distance_m):
     return low, max(low, high)
 
 
-def support(segments, piece):
-    """Return how many points of each member lie on the piece, (k,) float64, and its members' shares of length, (k,)."""
-    low, high = faceline.extents_m(piece.line, segments, piece.members)
-    inside = np.clip(np.minimum(high, piece.high_m) - np.maximum(low, piece.low_m), 0, None)
-    share = inside / (high - low)
-    return segments.n_points[piece.members] * share, share
-
-
 def _near(pieces, distance_m):
-    """Return the ordered pairs of different pieces not further than `distance_m` from each other, sorted."""
-    if not pieces:
-        return []
-    strings = shapely.linestrings(np.array([piece.ends for piece in pieces]))
+    """Return the ordered pairs of different pieces within `distance_m` of each other: (k,), (k,), sorted."""
+    strings = shapely.linestrings(np.array([piece.ends for piece in pieces]).reshape(-1, 2, 2))
     one, other = shapely.STRtree(strings).query(strings, predicate="dwithin", distance=distance_m)
-    return sorted((a, b) for a, b in zip(one.tolist(), other.tolist(), strict=True) if a != b)
+    order = np.lexsort((other, one))
+    order = order[one[order] != other[order]]
+    return one[order], other[order]
+
+
+def _stacked(pieces):
+    """Return centres, normals, directions (n, 2), and where the pieces begin and end, (n,), as arrays."""
+    centre = np.array([piece.line.centre for piece in pieces]).reshape(-1, 2)
+    normal = np.array([piece.line.normal for piece in pieces]).reshape(-1, 2)
+    low, high = (np.array([getattr(piece, name) for piece in pieces]) for name in ("low_m", "high_m"))
+    return centre, normal, np.column_stack([normal[:, 1], -normal[:, 0]]), low, high
+
+
+def _dot(one, other):
+    return np.einsum("ij,ij->i", one, other)

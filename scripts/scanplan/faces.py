@@ -103,8 +103,8 @@ def merge(walls, settings):
         reach_m=max(settings.max_gap_m, settings.align_gap_m),
     )
     pieces = [p for members in groups for p in facepieces.cut(segments, members, max_gap_m=settings.max_gap_m)]
-    pieces = _met(segments, _once(segments, pieces, settings), settings)
-    return _columns([_described(segments, piece) for piece in pieces])
+    pieces = _met(_once(pieces, settings), settings)
+    return _columns([_row(piece) for piece in pieces])
 
 
 def summary(faces):
@@ -113,46 +113,39 @@ def summary(faces):
     return f"{len(faces['face'])} faces, {length_m:,.1f} m in all"
 
 
-def _met(segments, pieces, settings):
+def _met(pieces, settings):
     """Let ends meet at corners until nothing changes: what a corner takes in may lie beside a third face."""
     for _ in range(_MOST_ROUNDS):
         before = [(piece.low_m, piece.high_m) for piece in pieces]
-        pieces = _once(segments, facepieces.meet_at_corners(pieces, corner_m=settings.corner_m), settings)
+        pieces = _once(facepieces.meet_at_corners(pieces, corner_m=settings.corner_m), settings)
         if before == [(piece.low_m, piece.high_m) for piece in pieces]:
             break
     return pieces
 
 
-def _once(segments, pieces, settings):
+def _once(pieces, settings):
     """Return the pieces that are supported, none beside a stronger one."""
     pieces = facepieces.without_doubles(
-        segments,
-        _supported(segments, pieces, settings),
+        [piece for piece in pieces if _is_supported(piece, settings)],
         max_angle_rad=math.radians(settings.max_angle_deg),
         distance_m=settings.merge_distance_m,
         ghost_distance_m=settings.ghost_distance_m,
         ghost_share=settings.ghost_share,
     )
-    return _supported(segments, pieces, settings)
+    return [piece for piece in pieces if _is_supported(piece, settings)]
 
 
-def _supported(segments, pieces, settings):
-    return [piece for piece in pieces if _is_supported(_described(segments, piece), settings)]
-
-
-def _is_supported(face, settings):
-    length_m = math.hypot(face["x1_m"] - face["x0_m"], face["y1_m"] - face["y0_m"])
+def _is_supported(piece, settings):
     return (
-        length_m >= settings.min_length_m
-        and face["n_points"] >= settings.min_points_per_m * length_m
-        and (face["n_scans"] >= settings.min_scans or length_m >= settings.lone_length_m)
+        piece.length_m >= settings.min_length_m
+        and piece.n_points >= max(1, settings.min_points_per_m * piece.length_m)
+        and (piece.length_m >= settings.lone_length_m or piece.n_scans >= settings.min_scans)
     )
 
 
-def _described(segments, piece):
+def _row(piece):
     """Return a piece's row of the table of faces, without its number."""
-    points, share = facepieces.support(segments, piece)
-    shown = piece.members[share > 0]
+    shown = piece.members[piece.points > 0]
     (x0_m, y0_m), (x1_m, y1_m) = piece.ends
     nx, ny = piece.line.normal
     return {
@@ -162,20 +155,20 @@ def _described(segments, piece):
         "y1_m": y1_m,
         "nx": nx,
         "ny": ny,
-        "n_points": round(points.sum()),
-        "n_scans": len(np.unique(segments.scan_id[shown])),
-        "rmse_m": _rmse_m(segments, piece, points),
-        "z_min_m": segments.z_min_m[shown].min(initial=math.inf),
-        "z_max_m": segments.z_max_m[shown].max(initial=-math.inf),
+        "n_points": round(piece.n_points),
+        "n_scans": piece.n_scans,
+        "rmse_m": _rmse_m(piece),
+        "z_min_m": piece.segments.z_min_m[shown].min(initial=math.inf),
+        "z_max_m": piece.segments.z_max_m[shown].max(initial=-math.inf),
     }
 
 
-def _rmse_m(segments, piece, points):
-    """Root mean square distance of the members' points from the face: a segment off by a to b adds (aa + ab + bb)/3."""
-    start = piece.line.offset_m(segments.start[piece.members])
-    end = piece.line.offset_m(segments.end[piece.members])
-    squared = segments.rmse_m[piece.members] ** 2 + (start**2 + start * end + end**2) / 3
-    return float(np.sqrt(points @ squared / max(points.sum(), 1e-12)))
+def _rmse_m(piece):
+    """Root mean square distance of the points from the face: a segment off by a to b adds (aa + ab + bb) / 3."""
+    start = piece.line.offset_m(piece.segments.start[piece.members])
+    end = piece.line.offset_m(piece.segments.end[piece.members])
+    squared = piece.segments.rmse_m[piece.members] ** 2 + (start**2 + start * end + end**2) / 3
+    return float(np.sqrt(piece.points @ squared / piece.n_points))
 
 
 def _columns(rows):

@@ -9,6 +9,7 @@ from scipy.cluster import vq
 from scanplan import tables
 
 _LLOYD_ITERATIONS = 20
+_MOST_CLUSTERS = np.iinfo(np.int16).max
 _SAME_POINT_DECIMALS = 6
 
 
@@ -24,7 +25,7 @@ def cluster_hulls(scan_id, xyz_m, *, n_clusters, sample_size, seed):
     scan_id : int
     xyz_m : (n, 2) or (n, 3) float, n >= 1
         Map coordinates, z up; z is not looked at.
-    n_clusters : int, >= 1
+    n_clusters : int, 1 to 32,767
         Number of clusters. A sample with fewer distinct points makes one cluster of each.
     sample_size : int, >= 1
         Number of points that KMeans sees; all of them if the scan has fewer.
@@ -38,11 +39,11 @@ def cluster_hulls(scan_id, xyz_m, *, n_clusters, sample_size, seed):
     Raises
     ------
     ValueError
-        If there are no points, a coordinate is not finite, or a number of clusters or points is below one.
+        If there are no points, a coordinate is not finite, or a number of clusters or points is out of its range.
     """
     xy_m = _plan_view(xyz_m)
-    if min(n_clusters, sample_size) < 1:
-        raise ValueError(f"n_clusters {n_clusters} and sample_size {sample_size} must be at least 1")
+    if not 1 <= n_clusters <= _MOST_CLUSTERS or sample_size < 1:
+        raise ValueError(f"n_clusters {n_clusters} must be 1 to {_MOST_CLUSTERS}, sample_size {sample_size} at least 1")
     # relative to the mean, squared distances keep their digits far from the map's origin
     centred = xy_m - xy_m.mean(axis=0)
     rng = np.random.default_rng([seed, scan_id])

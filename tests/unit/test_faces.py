@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from scanplan import faces, schemas
-from wallmaking import BARE, SETTINGS, lengths_m, moved, observed, walls
+from wallmaking import BARE, SETTINGS, ends, lengths_m, moved, observed, walls
 
 ARENA = [
     (3.60, -4.05, 3.66, 0.75),
@@ -22,10 +22,6 @@ ARENA = [
 
 def merge(table, **changes):
     return faces.merge(table, faces.MergeSettings(**(BARE | changes)))
-
-
-def ends(merged):
-    return np.column_stack([merged[c] for c in ("x0_m", "y0_m", "x1_m", "y1_m")])
 
 
 def doubled_m(merged, distance_m, max_angle_deg):
@@ -70,6 +66,10 @@ class TestOneFace:
     def test_the_rmse_holds_what_segments_are_off_by(self):
         merged = merge(walls([(0, 0, 4, 0), (0, 0.04, 4, 0.04)], rmse_m=0.01))
         assert merged["rmse_m"][0] == pytest.approx(math.hypot(0.01, 0.02))
+
+    def test_halves_that_fit_one_line_only_together_join(self):
+        # the second is 7 cm off the line of the first, both are within 6 cm of a common one
+        assert len(merge(walls([(0, 0, 4, 0), (4.2, 0.07, 8, 0.07)]))["face"]) == 1
 
     def test_two_segments_of_one_scan_count_as_one_scan(self):
         merged = merge(walls([(0, 0, 2, 0), (2.1, 0, 4, 0)], scan_id=[7, 7]))
@@ -135,24 +135,6 @@ class TestApart:
         merged = merge(walls([(0, 0, 5, 0), (5, 0, 5 + 5 * math.cos(tilt_rad), 5 * math.sin(tilt_rad))]))
         turns = np.arctan2(-merged["nx"], merged["ny"])
         np.testing.assert_allclose(np.sort(turns), [0, tilt_rad], atol=1e-9)
-
-
-class TestCorners:
-    def test_overshooting_ends_of_a_room_meet(self):
-        merged = merge(walls([(-0.1, 0, 3, 0), (3, -0.2, 3, 2)]), corner_m=0.25)
-        np.testing.assert_allclose(ends(merged), [(-0.1, 0, 3, 0), (3, 0, 3, 2)], atol=1e-9)
-
-    def test_short_ends_of_a_pillar_meet(self):
-        merged = merge(walls([(0, 0, 2.9, 0), (3, -0.1, 3, -2)]), corner_m=0.25)
-        np.testing.assert_allclose(ends(merged), [(0, 0, 3, 0), (3, 0, 3, -2)], atol=1e-9)
-
-    def test_ends_too_far_apart_stay(self):
-        merged = merge(walls([(0, 0, 3, 0), (3, 0.3, 3, 2)]), corner_m=0.25)
-        np.testing.assert_allclose(np.sort(lengths_m(merged)), [1.7, 3])
-
-    def test_a_partition_ends_on_the_wall_it_butts_against(self):
-        merged = merge(walls([(0, 0, 6, 0), (3, 2, 3, 0.1)]), corner_m=0.25)
-        np.testing.assert_allclose(lengths_m(merged), [6, 2])
 
 
 class TestSupport:

@@ -133,7 +133,7 @@ def test_refuses_what_is_no_scan(xyz_m):
         hulls.cluster_hulls(0, xyz_m, **SETTINGS)
 
 
-@pytest.mark.parametrize("wrong", [{"n_clusters": 0}, {"sample_size": 0}, {"seed": -1}])
+@pytest.mark.parametrize("wrong", [{"n_clusters": 0}, {"n_clusters": 40_000}, {"sample_size": 0}, {"seed": -1}])
 def test_refuses_settings_out_of_range(wrong):
     with pytest.raises(ValueError):
         hulls.cluster_hulls(0, CORNERS, **{**SETTINGS, **wrong})

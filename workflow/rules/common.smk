@@ -1,5 +1,5 @@
-import fcntl
 import os
+import re
 import sys
 from pathlib import Path
 
@@ -125,47 +125,21 @@ def simulated_survey(wildcards):
     }
 
 
-def all_results():
-    """Everything the workflow makes of the given datasets."""
+def results_of(name):
+    """Everything the workflow makes of one dataset."""
     files = [f"selection/{method}.parquet" for method in METHODS]
     files += [f"walls/{extractor}.parquet" for extractor in EXTRACTORS]
     files += [f"plan/{plan}" for plan in PLANS]
     files += [f"figures/{figure}.svg" for figure in FIGURES]
-    return [f"results/{name}/{file}" for name in DATASETS for file in files]
+    return [f"results/{name}/{file}" for file in files]
 
 
-def run_alone():
-    """Refuse a second run in the same folder; the lock dies with this process, however it ends."""
-    Path(".snakemake").mkdir(exist_ok=True)
-    run_alone.lock = open(".snakemake/scanplan.lock", "w")
-    try:
-        fcntl.flock(run_alone.lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        raise WorkflowError(
-            f"{Path.cwd()}: another run is at work in this folder; wait for it or stop it first"
-        )
-
-
-def tell_results():
-    """Say where the plans lie."""
-    for name in DATASETS:
-        print(
-            f"\nplan:   results/{name}/plan/plan.svg (also .dxf, .geojson)",
-            file=sys.stderr,
-        )
-
-
-def tell_failure():
-    """Leave no empty folders behind, and say what remains to be read."""
-    for name in DATASETS:
-        for folder, _, _ in os.walk(f"results/{name}", topdown=False):
-            if not os.listdir(folder):
-                os.rmdir(folder)
-    if os.path.isdir("results") and not os.listdir("results"):
-        os.rmdir("results")
+def all_results():
+    """Everything the workflow makes of the given datasets."""
+    return [file for name in DATASETS for file in results_of(name)]
 
 
 wildcard_constraints:
-    dataset="|".join(DATASETS),
+    dataset="|".join(map(re.escape, DATASETS)),
     method="|".join(METHODS),
     extractor="|".join(EXTRACTORS),

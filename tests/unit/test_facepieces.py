@@ -1,0 +1,38 @@
+import numpy as np
+
+from scanplan import faces
+from wallmaking import BARE, ends, lengths_m, walls
+
+
+def merge(table, **changes):
+    return faces.merge(table, faces.MergeSettings(**(BARE | changes)))
+
+
+def test_overshooting_ends_of_a_room_meet():
+    merged = merge(walls([(-0.1, 0, 3, 0), (3, -0.2, 3, 2)]), corner_m=0.25)
+    np.testing.assert_allclose(ends(merged), [(-0.1, 0, 3, 0), (3, 0, 3, 2)], atol=1e-9)
+
+
+def test_short_ends_of_a_pillar_meet():
+    merged = merge(walls([(0, 0, 2.9, 0), (3, -0.1, 3, -2)]), corner_m=0.25)
+    np.testing.assert_allclose(ends(merged), [(0, 0, 3, 0), (3, 0, 3, -2)], atol=1e-9)
+
+
+def test_an_end_behind_a_face_that_goes_on_in_front_stays():
+    merged = merge(walls([(0, 0, 2.9, 0), (3, 2, 3, 0.1)]), corner_m=0.25)
+    np.testing.assert_allclose(lengths_m(merged), [2.9, 2])
+
+
+def test_a_short_face_is_not_cut_to_less_than_half():
+    merged = merge(walls([(0.15, 3, 0.15, -3), (0.25, -3, 0.25, 3), (0, 0, 0.4, 0)]), corner_m=0.25)
+    np.testing.assert_allclose(lengths_m(merged), [6, 6, 0.4])
+
+
+def test_ends_too_far_apart_stay():
+    merged = merge(walls([(0, 0, 3, 0), (3, 0.3, 3, 2)]), corner_m=0.25)
+    np.testing.assert_allclose(np.sort(lengths_m(merged)), [1.7, 3])
+
+
+def test_a_partition_ends_on_the_wall_it_butts_against():
+    merged = merge(walls([(0, 0, 6, 0), (3, 2, 3, 0.1)]), corner_m=0.25)
+    np.testing.assert_allclose(lengths_m(merged), [6, 2])

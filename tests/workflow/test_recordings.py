@@ -1,0 +1,62 @@
+"""The workflow on real recordings, kept beside the project."""
+
+import json
+import shutil
+
+import numpy as np
+import pytest
+import shapely
+
+from projectcopy import Project
+from scanplan import tables
+
+pytestmark = [pytest.mark.workflow, pytest.mark.recordings]
+
+
+@pytest.fixture(scope="module")
+def project(project_root, recordings_dir, tmp_path_factory):
+    project = Project(project_root, tmp_path_factory.mktemp("recordings"))
+    named = [str(recordings_dir / name) for name in ("jackal_ros1", "jackal_ros2")]
+    result = project.run("--config", f"dataset={json.dumps(named)}")
+    assert result.returncode == 0, result.stdout + result.stderr
+    return project
+
+
+def plan(project, name):
+    features = json.loads((project.folder / f"results/{name}/plan/plan.geojson").read_text())["features"]
+    return [shapely.LineString(f["geometry"]["coordinates"]) for f in features if f["properties"]["kind"] == "face"]
+
+
+def test_ros1_and_ros2_give_the_same_scans_and_the_same_plan(project):
+    folders = [project.folder / f"results/jackal_ros{n}" for n in (1, 2)]
+    assert (folders[0] / "scans.parquet").read_bytes() == (folders[1] / "scans.parquet").read_bytes()
+    assert [w.wkt for w in plan(project, "jackal_ros1")] == [w.wkt for w in plan(project, "jackal_ros2")]
+
+
+def test_the_arena_has_its_six_walls_once_each(project):
+    """The arena is an L: six walls whose ends meet in pairs, none beside another."""
+    walls = plan(project, "jackal_ros1")
+    assert len(walls) == 6 and min(w.length for w in walls) > 1.5
+    ends = shapely.points(np.concatenate([np.array(w.coords) for w in walls]))
+    assert (shapely.distance(ends[:, None], ends[None]) < 0.05).sum(axis=1).tolist() == [2] * 12
+    for a, first in enumerate(walls):
+        for second in walls[a + 1 :]:
+            assert first.buffer(0.3, cap_style="flat").intersection(second).length < 0.5
+
+
+def test_returns_lie_on_the_walls(project):
+    folder = project.folder / "results/jackal_ros1"
+    points = np.concatenate([xyz_m for _, xyz_m in tables.ScanStore(folder / "scans.parquet").scans()])
+    distance_m = shapely.distance(shapely.points(points[:, :2]), shapely.union_all(plan(project, "jackal_ros1")))
+    assert np.median(distance_m) < 0.03
+
+
+@pytest.mark.parametrize("name", ["intel", "mac_first_floor", "scenes7_room", "vlp16_room"])
+def test_every_recording_ends_with_a_plan(project_root, recordings_dir, tmp_path, name):
+    project = Project(project_root, tmp_path)
+    settings = [f"tests/data/{name}.yaml"] if (project_root / f"tests/data/{name}.yaml").exists() else []
+    arguments = ["--configfile", *settings] if settings else []
+    result = project.run("--config", f"dataset={recordings_dir / name}", *arguments)
+    assert result.returncode == 0, result.stdout + result.stderr
+    assert len(plan(project, name)) >= 5
+    shutil.rmtree(project.folder / "results")

@@ -1,0 +1,75 @@
+import fcntl
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+from snakemake.exceptions import WorkflowError
+
+
+def run_alone():
+    """Refuse a second run in the same folder; the lock dies with this process, however it ends."""
+    Path(".snakemake").mkdir(exist_ok=True)
+    run_alone.lock = open(".snakemake/scanplan.lock", "w")
+    try:
+        fcntl.flock(run_alone.lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise WorkflowError(
+            f"{Path.cwd()}: another run is at work in this folder; wait for it or stop it first"
+        )
+
+
+def tell_results():
+    """Write each dataset's report if all it shows is there, and say where plan and report lie."""
+    for name in DATASETS:
+        folder = f"results/{name}"
+        if not all(Path(file).exists() for file in results_of(name)):
+            continue
+        made = subprocess.run(report_command(name), capture_output=True, text=True)
+        page = (
+            f"{folder}/report.html"
+            if made.returncode == 0
+            else f"none ({made.stderr.strip().splitlines()[-1]})"
+        )
+        print(
+            f"\nplan:    {folder}/plan/plan.svg (also .dxf and .geojson)\nreport:  {page}",
+            file=sys.stderr,
+        )
+
+
+def report_command(name):
+    """Snakemake's own report of one dataset, asked for with the settings of this run."""
+    given = workflow.config_settings
+    command = [
+        sys.executable,
+        "-m",
+        "snakemake",
+        "--snakefile",
+        workflow.main_snakefile,
+        "--cores",
+        "1",
+    ]
+    if given.configfiles:
+        command += ["--configfile", *map(str, given.configfiles)]
+    if given.config:
+        command += [
+            "--config",
+            *(f"{key}={json.dumps(value)}" for key, value in given.config.items()),
+        ]
+    return command + [
+        "--report",
+        f"results/{name}/report.html",
+        "--",
+        *results_of(name),
+    ]
+
+
+def tell_failure():
+    """Leave no empty folders behind, and say what remains to be read."""
+    for name in DATASETS:
+        for folder, _, _ in os.walk(f"results/{name}", topdown=False):
+            if not os.listdir(folder):
+                os.rmdir(folder)
+    if os.path.isdir("results") and not os.listdir("results"):
+        os.rmdir("results")
