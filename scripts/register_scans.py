@@ -3,7 +3,7 @@
 from scanplan import registration, stagelog, surveys, tables, verdicts
 
 
-def register_scans(recordings, poses, scans, registered, *, reading, settings):
+def register_scans(recordings, poses, scans, registered, *, reading, settings, threads=1):
     """Write the retained scans in the map frame, and what became of every candidate.
 
     Parameters
@@ -18,12 +18,13 @@ def register_scans(recordings, poses, scans, registered, *, reading, settings):
         Keywords of `surveys.open_survey`.
     settings : dict
         Keywords of `registration.Settings`.
+    threads : int
     """
     candidates = tables.read(poses, tables.POSES)
     priors = dict(zip(candidates["scan_id"].tolist(), verdicts.poses(candidates), strict=True))
     judged, n_dropped = [], 0
     with surveys.open_survey(recordings, **reading) as survey:
-        registrar = registration.Registrar(registration.Settings(**settings), survey.planar)
+        registrar = registration.Registrar(registration.Settings(**settings), survey.planar, threads)
         with tables.scan_writer(scans, planar=survey.planar) as write_scan:
             found = survey.scans(list(priors))
             for scan in stagelog.progress(found, "register_scans", total=len(priors)):
@@ -46,4 +47,5 @@ if __name__ == "__main__":
             snakemake.output.registration,
             reading=snakemake.params.reading,
             settings=snakemake.params.settings,
+            threads=snakemake.threads,
         )

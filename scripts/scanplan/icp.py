@@ -43,7 +43,7 @@ class Fit:
     rmse_m: float
 
 
-def prepare(xyz_m, *, planar, voxel_m):
+def prepare(xyz_m, *, planar, voxel_m, threads=1):
     """Thin a scan and compute what fitting needs.
 
     Parameters
@@ -53,6 +53,8 @@ def prepare(xyz_m, *, planar, voxel_m):
         Whether to fit in the plane: x, y and the turn about z.
     voxel_m : float
         Edge of the cubes of which each keeps the mean of its points.
+    threads : int
+        Cores to use; the result does not depend on it.
 
     Returns
     -------
@@ -66,11 +68,11 @@ def prepare(xyz_m, *, planar, voxel_m):
         tree = cKDTree(points[:, :2])
         return Cloud(points, tree, True, _normals(points[:, :2], tree, reach_m=10 * voxel_m))
     cloud = small_gicp.PointCloud(points)
-    small_gicp.estimate_normals_covariances(cloud, num_neighbors=20)
+    small_gicp.estimate_normals_covariances(cloud, num_neighbors=20, num_threads=threads)
     return Cloud(points, cKDTree(points), False, cloud)
 
 
-def merge(clouds, target_from_clouds, *, voxel_m):
+def merge(clouds, target_from_clouds, *, voxel_m, threads=1):
     """Join clouds, each moved by its 4 x 4 matrix, into one.
 
     In the plane every point keeps the normal that its own scan gave it: in the joined cloud neighbours of two scans a
@@ -78,7 +80,7 @@ def merge(clouds, target_from_clouds, *, voxel_m):
     """
     points = np.concatenate([se3.transform(t, c.xyz_m) for c, t in zip(clouds, target_from_clouds, strict=True)])
     if not clouds[0].planar:
-        return prepare(points, planar=False, voxel_m=voxel_m)
+        return prepare(points, planar=False, voxel_m=voxel_m, threads=threads)
     normals = [c.features @ t[:2, :2].T for c, t in zip(clouds, target_from_clouds, strict=True)]
     return Cloud(points, cKDTree(points[:, :2]), True, np.concatenate(normals))
 
@@ -93,10 +95,10 @@ def thin(xyz_m, voxel_m):
     return np.column_stack([np.bincount(which, axis) for axis in np.asarray(xyz_m, float).T]) / count[:, None]
 
 
-def fitness(source, target, target_from_source, *, distance_m):
+def fitness(source, target, target_from_source, *, distance_m, threads=1):
     """Return the share of source points that have a target point within `distance_m` (thesis, 3.5)."""
     moved = se3.transform(target_from_source, source.xyz_m)
-    distance, _ = target.tree.query(moved[:, : target.tree.m], distance_upper_bound=distance_m)
+    distance, _ = target.tree.query(moved[:, : target.tree.m], distance_upper_bound=distance_m, workers=threads)
     return float(np.isfinite(distance).mean())
 
 

@@ -25,6 +25,7 @@ class Settings:
     icp_max_iterations: int
     max_correction_m: float
     max_correction_deg: float
+    localiser_share: float
     anchor_after: int
     min_points: int
 
@@ -70,10 +71,13 @@ class Registrar:
     planar : bool
         Whether the sensor measures in one plane: then x, y and heading are refined, and height, roll and pitch stay
         the localiser's.
+    threads : int
+        Cores to use; the verdicts do not depend on it.
     """
 
     settings: Settings
     planar: bool
+    threads: int = 1
     _previous: deque = field(init=False)
     _rejected_in_a_row: int = 0
 
@@ -100,7 +104,12 @@ class Registrar:
             return Verdict(False, "too_few_points", prior)
         level_from_sensor = _level_from_sensor(prior) if self.planar else _IDENTITY
         world_from_cloud = prior @ se3.inverse(level_from_sensor)
-        cloud = icp.prepare(se3.transform(level_from_sensor, xyz_m), planar=self.planar, voxel_m=self.settings.voxel_m)
+        cloud = icp.prepare(
+            se3.transform(level_from_sensor, xyz_m),
+            planar=self.planar,
+            voxel_m=self.settings.voxel_m,
+            threads=self.threads,
+        )
         verdict = self._judge(_Placed(cloud, world_from_cloud), level_from_sensor)
         self._remember(cloud, verdict, level_from_sensor)
         return verdict
@@ -143,6 +152,7 @@ class Registrar:
                         target.cloud,
                         se3.inverse(target.world_from_cloud) @ scan.world_from_cloud,
                         distance_m=self.settings.fitness_distance_m,
+                        threads=self.threads,
                     )
                     for target in self._previous
                 ]
@@ -160,9 +170,11 @@ class Registrar:
             distance_m=s.icp_distance_m,
             max_iterations=s.icp_max_iterations,
         )
-        world_from_cloud = se3.rigid(world_from_target @ fit.target_from_source)
-        shift_m, turn_deg = _size(se3.inverse(scan.world_from_cloud) @ world_from_cloud)
+        refined = se3.rigid(world_from_target @ fit.target_from_source)
+        shift_m, turn_deg = _size(se3.inverse(scan.world_from_cloud) @ refined)
         sound = np.isfinite(fit.rmse_m) and shift_m <= s.max_correction_m and turn_deg <= s.max_correction_deg
+        # a chain of alignments drifts without bound; a share of the localiser's unbiased pose holds it
+        world_from_cloud = se3.between(refined, scan.world_from_cloud, s.localiser_share)
         return _Placed(scan.cloud, world_from_cloud), fit.rmse_m, bool(sound)
 
     def _target(self):
@@ -172,7 +184,9 @@ class Registrar:
             return last[0].cloud
         target_from_world = se3.inverse(last[-1].world_from_cloud)
         motions = [target_from_world @ placed.world_from_cloud for placed in last]
-        return icp.merge([placed.cloud for placed in last], motions, voxel_m=self.settings.voxel_m)
+        return icp.merge(
+            [placed.cloud for placed in last], motions, voxel_m=self.settings.voxel_m, threads=self.threads
+        )
 
 
 def _level_from_sensor(world_from_sensor):

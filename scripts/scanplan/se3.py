@@ -67,6 +67,15 @@ def rigid(pose):
     return cleaned
 
 
+def between(start, end, share):
+    """Return the pose a `share` (0 to 1) of the way between two 4 x 4 poses: linear in position, spherical in turn."""
+    turn = Rotation.from_matrix(start[:3, :3].T @ end[:3, :3]).as_rotvec()
+    pose = np.eye(4)
+    pose[:3, :3] = start[:3, :3] @ Rotation.from_rotvec(share * turn).as_matrix()
+    pose[:3, 3] = (1 - share) * start[:3, 3] + share * end[:3, 3]
+    return pose
+
+
 def yaw_rad(pose):
     """Return the heading of 4 x 4 matrices: the angle of the x axis about z, radians."""
     pose = np.asarray(pose, float)

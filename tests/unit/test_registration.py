@@ -19,6 +19,7 @@ SETTINGS = registration.Settings(
     icp_max_iterations=40,
     max_correction_m=0.5,
     max_correction_deg=5.0,
+    localiser_share=0.0,
     anchor_after=3,
     min_points=20,
 )
@@ -98,6 +99,13 @@ def test_a_scan_that_fits_badly_is_dropped_and_the_next_goes_on():
     priors[3] = pose(4.0, 2.0, 77)
     reasons = [v.reason for v in register(scans, priors, True)]
     assert reasons == ["anchor", "kept", "kept", "low_prior_fitness", "kept", "kept"]
+
+
+def test_a_share_of_the_localisers_pose_holds_the_chain():
+    scans, priors, true = drive(6, planar=True)
+    free, held = register(scans, priors, True), register(scans, priors, True, localiser_share=1.0)
+    assert not np.allclose(free[3].world_from_sensor, priors[3], atol=5e-3)
+    np.testing.assert_allclose([v.world_from_sensor for v in held], priors, atol=1e-9)
 
 
 def test_each_gate_has_its_reason():

@@ -70,6 +70,20 @@ def test_a_motion_and_its_inverse_cancel(xyz, turn):
     np.testing.assert_allclose(se3.transform(pose, [[0, 0, 0]]), [xyz], atol=1e-12)
 
 
+def test_between_is_a_share_of_way_and_turn():
+    start, end = (
+        se3.matrix([x, 0, 0], Rotation.from_euler("z", a, degrees=True).as_quat()) for x, a in ((0, 10), (4, 50))
+    )
+    pose = se3.between(start, end, 0.25)
+    np.testing.assert_allclose(pose[:3, 3], [1, 0, 0])
+    np.testing.assert_allclose(np.degrees(se3.yaw_rad(pose)), 20)
+
+
+def test_a_nearly_rigid_matrix_becomes_rigid():
+    pose = se3.matrix([1, 2, 3], Rotation.from_euler("z", 30, degrees=True).as_quat())
+    np.testing.assert_allclose(se3.rigid(pose * [[1.001], [1.001], [1.001], [1]])[:3, :3], pose[:3, :3], atol=1e-9)
+
+
 def test_yaw_is_the_heading():
     pose = se3.matrix([0, 0, 0], Rotation.from_euler("z", 120, degrees=True).as_quat())
     np.testing.assert_allclose(np.degrees(se3.yaw_rad(pose)), 120)

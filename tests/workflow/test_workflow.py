@@ -49,7 +49,7 @@ def test_a_touched_file_reruns_nothing(project):
     ("change", "rules"),
     [
         ("hulls: {n_clusters: 7}", AFTER_HULLS),
-        ("plan: {merge: {max_offset_m: 0.08}}", {"assemble_plan", "export_plan", "draw_walls"}),
+        ("plan: {merge: {tolerance_m: 0.08}}", {"assemble_plan", "export_plan", "draw_walls"}),
         ("plan: {method: sequential}", {"assemble_plan", "export_plan", "draw_scans", "draw_walls"}),
         (
             "walls: {cluster_ransac: {min_length_m: 0.7}}",

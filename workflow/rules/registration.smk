@@ -11,7 +11,7 @@ rule register_scans:
         "logs/{dataset}/register_scans.log",
     benchmark:
         "benchmarks/{dataset}/register_scans.tsv"
-    threads: 1
+    threads: 2
     resources:
         mem_mb=1500,
         runtime=120,
