@@ -102,7 +102,7 @@ def test_a_scan_that_fits_badly_is_dropped_and_the_next_goes_on():
 
 
 def test_a_share_of_the_localisers_pose_holds_the_chain():
-    scans, priors, true = drive(6, planar=True)
+    scans, priors, _ = drive(6, planar=True)
     free, held = register(scans, priors, True), register(scans, priors, True, localiser_share=1.0)
     assert not np.allclose(free[3].world_from_sensor, priors[3], atol=5e-3)
     np.testing.assert_allclose([v.world_from_sensor for v in held], priors, atol=1e-9)
