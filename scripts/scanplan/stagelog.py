@@ -44,13 +44,15 @@ def to_file(path):
     try:
         yield
     except StageError as error:
-        _log.error("%s", error)
+        _log.error("%s: %s", stage, error)
         _screen.write(f"{stage}: {error}\n")
         raise SystemExit(1) from None
     except Exception as error:
-        _log.exception("stage failed")
+        _log.exception("unexpected failure")
         reason = " ".join(f"{type(error).__name__}: {error}".split())
-        _screen.write(f"{stage}: unexpected failure, {reason}; the details are in {path}\n")
+        line = f"{stage}: unexpected failure, {reason}; the details are in {path}"
+        _log.error("%s", line)
+        _screen.write(f"{line}\n")
         raise SystemExit(1) from None
     finally:
         sys.stdout.flush(), sys.stderr.flush()

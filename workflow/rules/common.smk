@@ -4,7 +4,6 @@ import sys
 from pathlib import Path
 
 import yaml
-from snakemake.exceptions import WorkflowError
 
 sys.path.insert(0, f"{workflow.basedir}/scripts")
 from scanplan import configuration, datasets, sources
@@ -49,7 +48,8 @@ def or_end(function, *arguments):
     try:
         return function(*arguments)
     except StageError as error:
-        raise WorkflowError(str(error))
+        print(f"scanplan: {error}", file=sys.stderr)
+        raise SystemExit(1)
 
 
 DATASETS = or_end(given_datasets)

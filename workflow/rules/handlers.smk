@@ -3,14 +3,14 @@ import json
 import os
 import subprocess
 import sys
+import time
 from pathlib import Path
-
-from snakemake.exceptions import WorkflowError
 
 
 def run_alone():
     """Refuse a second run in the same folder; the lock dies with this process, however it ends."""
     Path(".snakemake").mkdir(exist_ok=True)
+    run_alone.started_ns = time.time_ns()
     run_alone.lock = open(".snakemake/scanplan.lock", "w")
     try:
         fcntl.flock(run_alone.lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -66,10 +66,27 @@ def report_command(name):
 
 
 def tell_failure():
-    """Leave no empty folders behind, and say what remains to be read."""
+    """Leave no empty folders behind, and end with the line that says what went wrong."""
     for name in DATASETS:
         for folder, _, _ in os.walk(f"results/{name}", topdown=False):
             if not os.listdir(folder):
                 os.rmdir(folder)
     if os.path.isdir("results") and not os.listdir("results"):
         os.rmdir("results")
+    for line in failures():
+        print(f"scanplan: {line}", file=sys.stderr)
+    # whatever Snakemake would add says less
+    raise SystemExit(1)
+
+
+def failures():
+    """Last error line of every stage log written since the run began."""
+    for name in DATASETS:
+        for log in sorted(Path("logs", name).glob("*.log")):
+            if log.stat().st_mtime_ns >= run_alone.started_ns:
+                errors = [
+                    line
+                    for line in log.read_text(errors="replace").splitlines()
+                    if " ERROR " in line
+                ]
+                yield from (line.split(" ERROR ", 1)[1] for line in errors[-1:])
