@@ -1,6 +1,7 @@
 """Select continuous scans and register them in the map frame (thesis, algorithm 3)."""
 
 from scanplan import registration, stagelog, surveys, tables, verdicts
+from scanplan.errors import StageError
 
 
 def register_scans(recordings, poses, scans, registered, *, reading, settings, threads=1):
@@ -33,7 +34,13 @@ def register_scans(recordings, poses, scans, registered, *, reading, settings, t
                 n_dropped += scan.n_dropped
                 if verdict.kept:
                     write_scan(scan.scan_id, verdicts.in_map(scan.scan_id, scan.xyz_m, verdict.world_from_sensor))
-            stagelog.say(f"register_scans: {verdicts.summary(judged)}; {n_dropped} points out of range or not finite")
+            outcome = f"{verdicts.summary(judged)}; {n_dropped:,} points out of range or not finite"
+            if not any(verdict.kept for verdict in judged):
+                raise StageError(
+                    f"{recordings[0]}: {outcome}; at least one scan is needed: check input.min_range_m,"
+                    " input.max_range_m and registration.min_points, and whether the clouds hold returns at all"
+                )
+            stagelog.say(f"register_scans: {outcome}")
     rows = verdicts.columns(candidates["scan_id"], candidates["t_ns"], judged)
     tables.write(registered, tables.REGISTRATION, rows)
 

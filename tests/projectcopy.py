@@ -25,7 +25,8 @@ class Project:
                 shutil.copy2(source, target)
 
     def command(self, *arguments):
-        return [sys.executable, "-m", "snakemake", "--cores", "2", "--configfile", TINY, *arguments]
+        settings = () if "--configfile" in arguments else ("--configfile", TINY)
+        return [sys.executable, "-m", "snakemake", *settings, "--cores", "2", *arguments]
 
     def run(self, *arguments):
         return subprocess.run(self.command(*arguments), cwd=self.folder, env=self.env(), capture_output=True, text=True)

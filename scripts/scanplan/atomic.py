@@ -1,5 +1,6 @@
 """Files that appear whole or not at all."""
 
+import glob
 import os
 from contextlib import contextmanager
 from pathlib import Path
@@ -49,6 +50,7 @@ def replacing(path):
     """
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
+    _remove_leftovers(path)
     temporary = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
     try:
         yield temporary
@@ -64,6 +66,14 @@ def write_text(path, text):
     """Write `text` (UTF-8, newlines as given) to `path`, whole or not at all."""
     with replacing(path) as temporary:
         temporary.write_bytes(text.encode())
+
+
+def _remove_leftovers(path):
+    """Remove what processes that were killed while they wrote `path` left beside it."""
+    for leftover in path.parent.glob(f".{glob.escape(path.stem)}.*.part{path.suffix}"):
+        writer = leftover.name.split(".")[-3] if path.suffix else leftover.name.split(".")[-2]
+        if writer.isdigit() and not psutil.pid_exists(int(writer)):
+            leftover.unlink(missing_ok=True)
 
 
 def _sync(path):

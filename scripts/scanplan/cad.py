@@ -36,6 +36,9 @@ def dumps(faces):
             modelspace.add_line((x0_m, y0_m), (x1_m, y1_m), dxfattribs={"layer": LAYER})
         zoom.extents(modelspace)
         _audit(document)
+        # ezdxf would register these in the order of a set, which differs from run to run
+        for name in sorted(document.entitydb.dxf_types_in_use()):
+            document.classes.add_class(name)
         text = io.StringIO()
         document.write(text)
     return text.getvalue()

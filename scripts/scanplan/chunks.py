@@ -49,7 +49,7 @@ def _run(jobs, threads):
         return
     # a forked child of a process with threads (Arrow, TBB) can hang, a spawned one cannot
     context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(min(threads, len(jobs)), mp_context=context) as pool:
+    with ProcessPoolExecutor(min(threads, len(jobs)), context, stagelog.end_with_parent) as pool:
         yield from pool.map(_work, jobs)
 
 

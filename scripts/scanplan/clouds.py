@@ -91,13 +91,19 @@ def relative_time(time_raw, t_ns):
     return seconds if (np.abs(seconds) <= _LONGEST_SWEEP_S).all() else None
 
 
-def lie_in_one_plane(xyz_m):
-    """Tell whether all points (n, 3) lie within a millimetre of one plane; False for fewer than three."""
+def lie_in_sweep_plane(xyz_m):
+    """Tell whether points (n, 3) can be those of a 2-D scanner; False for fewer than three.
+
+    They lie within a millimetre of one plane, and the plane passes the frame's origin at less than a fifth of the
+    farthest point's distance: the wall that fills a depth camera's picture is a plane, too, but far before it.
+    """
     if len(xyz_m) < 3:
         return False
-    centred = np.asarray(xyz_m, np.float64) - np.mean(xyz_m, axis=0, dtype=np.float64)
-    normal = np.linalg.eigh(centred.T @ centred)[1][:, 0]
-    return bool(np.abs(centred @ normal).max() <= _FLAT_M)
+    xyz_m = np.asarray(xyz_m, np.float64)
+    centre = xyz_m.mean(axis=0)
+    normal = np.linalg.eigh((xyz_m - centre).T @ (xyz_m - centre))[1][:, 0]
+    flat = np.abs((xyz_m - centre) @ normal).max() <= _FLAT_M
+    return bool(flat and abs(centre @ normal) < 0.2 * np.linalg.norm(xyz_m, axis=1).max())
 
 
 def are_planar(scans_xyz_m):
@@ -110,4 +116,4 @@ def are_planar(scans_xyz_m):
     """
     filled = (xyz_m for xyz_m in scans_xyz_m if len(xyz_m))
     first = list(islice(filled, _SCANS_TO_JUDGE))
-    return bool(first) and lie_in_one_plane(np.concatenate(first))
+    return bool(first) and lie_in_sweep_plane(np.concatenate(first))

@@ -4,9 +4,19 @@ import math
 from pathlib import Path
 
 import yaml
-from jsonschema import Draft202012Validator
+from jsonschema import Draft202012Validator, validators
 
 from scanplan.errors import StageError
+
+# JSON knows no whole numbers and takes 5.0 for one; range() and a schema's reader do not
+_WHOLE = Draft202012Validator.TYPE_CHECKER.redefine("integer", lambda _, value: type(value) is int)
+_Validator = validators.extend(Draft202012Validator, type_checker=_WHOLE)
+# (section and key, must not be below section and key)
+_ORDERED = [
+    (("input", "max_range_m"), ("input", "min_range_m")),
+    (("registration", "n_previous"), ("registration", "icp_targets")),
+    (("plan", "merge", "merge_distance_m"), ("plan", "merge", "tolerance_m")),
+]
 
 
 def read_yaml(path):
@@ -21,6 +31,8 @@ def read_yaml(path):
         values = yaml.safe_load(Path(path).read_text(encoding="utf-8")) or {}
     except (yaml.YAMLError, UnicodeDecodeError) as error:
         raise StageError(f"{path}: is not valid YAML ({error})") from None
+    except OSError as error:
+        raise StageError(f"{path}: cannot be read ({error.strerror}); it must be a readable file") from None
     if not isinstance(values, dict):
         raise StageError(f"{path}: holds {type(values).__name__}, expected `section: {{key: value}}`")
     return values
@@ -50,12 +62,18 @@ def check(settings, schema, origin):
     StageError
         Naming the key, the value, what is allowed and the remedy, for the first fault in order of the keys.
     """
-    faults = sorted(Draft202012Validator(schema).iter_errors(settings), key=lambda e: (str(e.path), e.message))
+    faults = sorted(_Validator(schema).iter_errors(settings), key=lambda e: (str(e.path), e.message))
     if faults:
         raise StageError(f"{origin}: {_explain(faults[0])}; config/README.md explains every key")
     for key, value in _leaves(settings):
         if isinstance(value, float) and not math.isfinite(value):
             raise StageError(f"{origin}: {key}: {value} is no finite number; config/README.md explains every key")
+    for high, low in _ORDERED:
+        if _value(settings, high) < _value(settings, low):
+            raise StageError(
+                f"{origin}: {'.'.join(high)}: {_value(settings, high)} is below {'.'.join(low)}"
+                f" ({_value(settings, low)}); config/README.md explains every key"
+            )
 
 
 def for_dataset(defaults, dataset_yaml, overrides, schema):
@@ -84,6 +102,12 @@ def for_dataset(defaults, dataset_yaml, overrides, schema):
     return settings
 
 
+def _value(settings, keys):
+    for key in keys:
+        settings = settings[key]
+    return settings
+
+
 def _leaves(settings, prefix=""):
     for key, value in settings.items():
         if isinstance(value, dict):
@@ -96,7 +120,7 @@ def _explain(fault):
     key = ".".join(map(str, fault.path)) or "settings"
     if fault.validator == "additionalProperties":
         known = ", ".join(fault.schema["properties"])
-        extra = ", ".join(sorted(set(fault.instance) - set(fault.schema["properties"])))
+        extra = ", ".join(sorted(str(key) for key in set(fault.instance) - set(fault.schema["properties"])))
         return f"{key}: unknown key {extra}; known are {known}"
     text_for_number = isinstance(fault.instance, str) and fault.validator in ("type", "anyOf", "oneOf")
     hint = " (nested values of --config arrive as text: put them into a file for --configfile)"

@@ -48,7 +48,7 @@ def find_files(path):
     """List every file of a dataset that the stages read.
 
     Recordings are looked for in the folder and one level below: a subfolder with metadata.yaml is one rosbag2
-    recording, the .db3 and .mcap files of one without are recordings of their own.
+    recording, the .bag, .db3 and .mcap files of one without are recordings of their own.
 
     Parameters
     ----------
@@ -121,9 +121,9 @@ def _visible(folder):
 
 def _recordings(folder):
     entries = _visible(folder)
-    bags = [e for e in entries if e.suffix == ".bag" and e.is_file()]
-    subfolders = [e for e in entries if e.is_dir() and e.name != SCANS_FOLDER]
-    return bags + [file for place in [folder, *subfolders] for file in _rosbag2_files(place)]
+    places = [folder, *(e for e in entries if e.is_dir() and e.name != SCANS_FOLDER)]
+    bags = [e for place in places for e in _visible(place) if e.suffix == ".bag" and e.is_file()]
+    return bags + [file for place in places for file in _rosbag2_files(place)]
 
 
 def _rosbag2_files(folder):

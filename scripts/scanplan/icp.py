@@ -36,10 +36,16 @@ class Cloud:
 
 @dataclass(frozen=True)
 class Fit:
-    """Outcome of an alignment: `target_from_source` (4, 4), `converged`, root mean square residual in metres."""
+    """Outcome of an alignment.
+
+    Attributes
+    ----------
+    target_from_source : (4, 4) float64
+    rmse_m : float
+        Root mean square distance of the pairs; infinite where there was nothing to align by.
+    """
 
     target_from_source: np.ndarray
-    converged: bool
     rmse_m: float
 
 
@@ -134,7 +140,7 @@ def align(source, target, target_from_source, *, method, distance_m, max_iterati
         translation_epsilon=1e-4,
     )
     motion = np.asarray(result.T_target_source)
-    return Fit(motion, bool(result.converged) and result.num_inliers > 0, _rmse(source, target, motion, distance_m))
+    return Fit(motion, _rmse(source, target, motion, distance_m) if result.num_inliers else np.inf)
 
 
 def _rmse(source, target, motion, distance_m):
@@ -145,16 +151,15 @@ def _rmse(source, target, motion, distance_m):
 
 
 def _align_planar(source, target, start, distance_m, max_iterations):
-    motion, converged = np.array(start, float), False
+    motion = np.array(start, float)
     for _ in range(max_iterations):
         step = _planar_step(source.xyz_m[:, :2], target, motion, distance_m)
         if step is None:
-            break
+            return Fit(motion, np.inf)
         motion = _planar_motion(step, motion[:2, 3]) @ motion
-        converged = bool(np.abs(step).max() < _STEP_DONE)
-        if converged:
+        if np.abs(step).max() < _STEP_DONE:
             break
-    return Fit(motion, converged, _rmse(source, target, motion, distance_m))
+    return Fit(motion, _rmse(source, target, motion, distance_m))
 
 
 def _planar_step(source_xy, target, motion, distance_m):

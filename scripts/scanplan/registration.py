@@ -8,6 +8,8 @@ import numpy as np
 from scanplan import icp, se3
 
 _IDENTITY = np.eye(4)
+# fewer occupied cubes fix no pose, however many points are in them
+_FEWEST_PLACES = 10
 
 
 @dataclass(frozen=True)
@@ -110,6 +112,8 @@ class Registrar:
             voxel_m=self.settings.voxel_m,
             threads=self.threads,
         )
+        if len(cloud.xyz_m) < _FEWEST_PLACES:
+            return Verdict(False, "too_few_points", prior)
         verdict = self._judge(_Placed(cloud, world_from_cloud), level_from_sensor)
         self._remember(cloud, verdict, level_from_sensor)
         return verdict

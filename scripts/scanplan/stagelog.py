@@ -39,10 +39,12 @@ def to_file(path):
     _screen = os.fdopen(os.dup(kept[1]), "w", buffering=1)
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(message)s", force=True)
     faulthandler.enable()
-    threading.Thread(target=_end_with_the_run, daemon=True).start()
+    end_with_parent()
     stage = Path(path).stem
+    outcome = "failed"
     try:
         yield
+        outcome = "done"
     except StageError as error:
         _log.error("%s: %s", stage, error)
         _screen.write(f"{stage}: {error}\n")
@@ -55,6 +57,7 @@ def to_file(path):
         _screen.write(f"{line}\n")
         raise SystemExit(1) from None
     finally:
+        _log.info("stage %s", outcome)
         sys.stdout.flush(), sys.stderr.flush()
         os.dup2(kept[0], 1), os.dup2(kept[1], 2)
         os.close(kept[0]), os.close(kept[1]), _screen.close()
@@ -98,7 +101,12 @@ def _line(label, done, total, unit, elapsed_s):
     return f"{label}: {done}{of_all} {unit}, {done / max(elapsed_s, 1e-3):.0f} per s"
 
 
-def _end_with_the_run():
+def end_with_parent():
+    """Make this process end itself soon after the one that started it: a run's stage, or a stage's worker."""
+    threading.Thread(target=_watch, daemon=True).start()
+
+
+def _watch():
     while not atomic.orphaned():
         time.sleep(_WATCH_INTERVAL_S)
     os._exit(1)

@@ -1,5 +1,6 @@
 """A survey as the stages see it: clouds with stamps and the poses of their sensor, from bags or from a scan folder."""
 
+import math
 from contextlib import ExitStack, contextmanager
 
 from scanplan import datasets
@@ -14,8 +15,8 @@ def open_survey(
     base_frame=None,
     base_from_sensor=None,
     ros2_release="humble",
-    min_range_m,
-    max_range_m,
+    min_range_m=0.0,
+    max_range_m=math.inf,
 ):
     """Open all recordings of a dataset as one survey.
 

@@ -116,7 +116,8 @@ def scan_writer(path, *, planar):
             last = scan_id
             xyz_m = np.asarray(xyz_m, np.float32)
             columns = [np.full(len(xyz_m), scan_id, np.int32), *xyz_m.T.copy()]
-            writer.write_table(pa.Table.from_arrays([pa.array(c) for c in columns], schema=_arrow(SCANS)))
+            rows = pa.Table.from_arrays([pa.array(c) for c in columns], schema=_arrow(SCANS))
+            writer.write_table(rows, row_group_size=len(rows))
 
         yield write_scan
         if last is None:
@@ -142,6 +143,8 @@ class ScanStore:
         self.scan_ids = np.array([g.min for g in groups], np.int32)
         if len(self.scan_ids) == 0:
             raise StageError(f"{path}: holds no scan; delete it and run again")
+        if (np.diff(self.scan_ids) <= 0).any() or any(g.min != g.max for g in groups):
+            raise StageError(f"{path}: does not hold its scans one by one in order; delete it and run again")
 
     def read(self, scan_id):
         """Return one scan's points, (n, 3) float32, map frame."""

@@ -22,6 +22,14 @@ def test_the_temporary_file_stands_beside_with_the_same_suffix(tmp_path):
     assert (tmp_path / "a" / "plan.dxf").read_text() == "x"
 
 
+def test_what_a_killed_writer_left_is_removed(tmp_path):
+    ended = max(psutil.pids()) + 100_000
+    left, other = tmp_path / f".plan.{ended}.part.svg", tmp_path / f".plan2.{ended}.part.svg"
+    left.touch(), other.touch()
+    atomic.write_text(tmp_path / "plan.svg", "x")
+    assert sorted(p.name for p in tmp_path.iterdir()) == [other.name, "plan.svg"]
+
+
 def test_an_orphan_writes_nothing(tmp_path, monkeypatch):
     class Ended(psutil.Process):
         def is_running(self):

@@ -45,12 +45,17 @@ def test_no_times_of_no_points():
 def test_planes():
     rng = np.random.default_rng(0)
     flat = np.column_stack([rng.uniform(-30, 30, (200, 2)), np.full(200, 0.4)])
-    assert clouds.lie_in_one_plane(flat)
+    assert clouds.lie_in_sweep_plane(flat)
     tilted = flat @ np.linalg.qr(rng.normal(size=(3, 3)))[0]
-    assert clouds.lie_in_one_plane(tilted)
+    assert clouds.lie_in_sweep_plane(tilted)
     tilted[7] += (0, 0.01, 0.02)
-    assert not clouds.lie_in_one_plane(tilted)
-    assert not clouds.lie_in_one_plane(flat[:2])
+    assert not clouds.lie_in_sweep_plane(tilted)
+    assert not clouds.lie_in_sweep_plane(flat[:2])
+
+
+def test_a_wall_before_a_depth_camera_is_no_sweep_plane():
+    rng = np.random.default_rng(0)
+    assert not clouds.lie_in_sweep_plane(np.column_stack([rng.uniform(-2, 2, (200, 2)), np.full(200, 2.0)]))
 
 
 def test_planar_only_if_the_first_scans_share_the_plane_and_no_more_is_read():

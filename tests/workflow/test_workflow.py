@@ -94,9 +94,10 @@ def test_one_core_gives_the_same_bytes(project):
     assert result.returncode == 0 and project.digests() == before
 
 
-@pytest.mark.parametrize("sent", [signal.SIGKILL, signal.SIGINT, signal.SIGTERM])
-def test_a_killed_run_resumes_with_the_same_command(project, sent):
-    before = project.digests()
+def started(project):
+    """Start a run that registers the scans anew, and return it once that stage is at work."""
+    log = project.folder / "logs/demo/register_scans.log"
+    log.unlink()
     run = subprocess.Popen(
         project.command("--forcerun", "register_scans"),
         cwd=project.folder,
@@ -105,10 +106,16 @@ def test_a_killed_run_resumes_with_the_same_command(project, sent):
         stderr=subprocess.DEVNULL,
         start_new_session=True,
     )
-    log = project.folder / "logs/demo/register_scans.log"
-    started = log.stat().st_mtime_ns
-    while log.stat().st_mtime_ns == started and run.poll() is None:
-        time.sleep(0.05)
+    while not log.exists():
+        assert run.poll() is None, "the run ended before the stage began"
+        time.sleep(0.02)
+    return run
+
+
+@pytest.mark.parametrize("sent", [signal.SIGKILL, signal.SIGINT, signal.SIGTERM])
+def test_a_killed_run_resumes_with_the_same_command(project, sent):
+    before = project.digests()
+    run = started(project)
     os.kill(run.pid, sent) if sent == signal.SIGKILL else os.killpg(run.pid, sent)
     assert run.wait(timeout=120) != 0
     result = project.run()
@@ -117,17 +124,9 @@ def test_a_killed_run_resumes_with_the_same_command(project, sent):
 
 
 def test_two_runs_at_once_do_not_mix(project):
-    first = subprocess.Popen(
-        project.command("--forcerun", "register_scans"),
-        cwd=project.folder,
-        env=project.env(),
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-    )
-    log = project.folder / "logs/demo/register_scans.log"
-    started = log.stat().st_mtime_ns
-    while log.stat().st_mtime_ns == started and first.poll() is None:
-        time.sleep(0.05)
+    before = project.digests()
+    first = started(project)
     second = project.run("--forcerun", "build_hulls")
     assert first.wait(timeout=120) == 0
     assert second.returncode != 0 and "another run is at work" in second.stdout + second.stderr
+    assert project.digests() == before

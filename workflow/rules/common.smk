@@ -3,8 +3,6 @@ import re
 import sys
 from pathlib import Path
 
-import yaml
-
 sys.path.insert(0, f"{workflow.basedir}/scripts")
 from scanplan import configuration, datasets, sources
 from scanplan.errors import StageError
@@ -80,6 +78,14 @@ def setting(section, *keys):
         return value
 
     return look_up
+
+
+def topics_and_frames(wildcards):
+    """Settings of the input that poses depend on: all but the ranges."""
+    reading = SETTINGS[wildcards.dataset]["input"]
+    return {
+        key: value for key, value in reading.items() if not key.endswith("_range_m")
+    }
 
 
 def extractor_settings(wildcards):

@@ -21,11 +21,11 @@ def run_alone():
 
 
 def tell_results():
-    """Write each dataset's report if all it shows is there, and say where plan and report lie."""
+    """After a whole run, write each dataset's report and say where plan and report lie."""
+    if workflow.dag_settings.targets:
+        return
     for name in DATASETS:
         folder = f"results/{name}"
-        if not all(Path(file).exists() for file in results_of(name)):
-            continue
         made = subprocess.run(report_command(name), capture_output=True, text=True)
         page = (
             f"{folder}/report.html"
@@ -80,13 +80,18 @@ def tell_failure():
 
 
 def failures():
-    """Last error line of every stage log written since the run began."""
+    """What the stages that failed in this run said last."""
     for name in DATASETS:
         for log in sorted(Path("logs", name).glob("*.log")):
-            if log.stat().st_mtime_ns >= run_alone.started_ns:
-                errors = [
-                    line
-                    for line in log.read_text(errors="replace").splitlines()
-                    if " ERROR " in line
-                ]
-                yield from (line.split(" ERROR ", 1)[1] for line in errors[-1:])
+            lines = log.read_text(errors="replace").splitlines()
+            if (
+                log.stat().st_mtime_ns < run_alone.started_ns
+                or lines[-1:]
+                and lines[-1].endswith(" stage done")
+            ):
+                continue
+            errors = [
+                line.split(" ERROR ", 1)[1] for line in lines if " ERROR " in line
+            ]
+            killed = f"{log.stem}: was ended from outside, perhaps for want of memory; its log is {log}"
+            yield errors[-1] if errors else killed

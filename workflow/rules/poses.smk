@@ -14,7 +14,7 @@ rule interpolate_poses:
         mem_mb=1500,
         runtime=60,
     params:
-        reading=setting("input"),
+        reading=topics_and_frames,
         settings=setting("poses"),
     script:
         "../../scripts/interpolate_poses.py"

@@ -11,7 +11,9 @@ rule simulate_survey:
         "logs/{dataset}/simulate_survey.log",
     benchmark:
         "benchmarks/{dataset}/simulate_survey.tsv"
-    threads: 2
+    wildcard_constraints:
+        dataset=DEMO,
+    threads: 1
     resources:
         mem_mb=1000,
         runtime=30,
