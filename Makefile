@@ -15,6 +15,7 @@ SNAKEMAKE = PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --cores $(CORES)
 .DEFAULT_GOAL := run
 
 run: environment
+	@test -z "$(CONFIG)" || test -f "$(CONFIG)" || { echo "$(CONFIG): no such file; CONFIG= names a YAML file"; exit 1; }
 	@$(SNAKEMAKE) $(if $(CONFIG),--configfile "$(CONFIG)") $(if $(DATASET),--config 'dataset="$(DATASET)"') $(ARGS)
 
 test: environment lint

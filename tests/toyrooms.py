@@ -21,6 +21,7 @@ LIMITS = {
     "max_gap_m": 0.5,
     "min_length_m": 0.4,
     "min_height_m": 0.5,
+    "door_height_m": 1.9,
     "min_points": 30,
     "min_points_planar": 6,
     "seed": 1,

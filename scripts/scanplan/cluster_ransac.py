@@ -64,6 +64,7 @@ def extract(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
     """
     points = walls.around_sensor(xyz_m, sensor_xyz_m)
     facing, upright, level = _surfaces(points, planar, settings)
+    top_m = walls.door_top(points, settings, planar=planar)
     place = np.full(len(points), -1)
     at = feet(points[upright, :2], facing[upright])
     place[upright], places = modes.mean_shift(at, bandwidth_m=settings.bandwidth_m)
@@ -79,9 +80,8 @@ def extract(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
         near = distance_m <= settings.inlier_m
         spare = points[near & ~alike & ~level]
         reach_rad = _CORNER_REACH * np.deg2rad(settings.reach_deg)
-        found = walls.cut(
-            normal, offset_m, points[near & alike], settings, planar=planar, spare_xyz_m=spare, reach_rad=reach_rad
-        )
+        ends = {"planar": planar, "top_m": top_m, "spare_xyz_m": spare, "reach_rad": reach_rad}
+        found = walls.cut(normal, offset_m, points[near & alike], settings, **ends)
         # twice as wide as what belongs to them, else noise leaves a second wall beside the first
         upright &= ~(alike & _beside(points[:, :2], found, _WIDE * settings.inlier_m))
         rows += found

@@ -8,6 +8,7 @@ from jsonschema import Draft202012Validator, validators
 
 from scanplan.errors import StageError
 
+_COMMAND_LINE = "--configfile or --config"
 # JSON knows no whole numbers and takes 5.0 for one; range() and a schema's reader do not
 _WHOLE = Draft202012Validator.TYPE_CHECKER.redefine("integer", lambda _, value: type(value) is int)
 _Validator = validators.extend(Draft202012Validator, type_checker=_WHOLE)
@@ -64,7 +65,7 @@ def check(settings, schema, origin):
     """
     faults = sorted(_Validator(schema).iter_errors(settings), key=lambda e: (str(e.path), e.message))
     if faults:
-        raise StageError(f"{origin}: {_explain(faults[0])}; config/README.md explains every key")
+        raise StageError(f"{origin}: {_explain(faults[0], origin)}; config/README.md explains every key")
     for key, value in _leaves(settings):
         if isinstance(value, float) and not math.isfinite(value):
             raise StageError(f"{origin}: {key}: {value} is no finite number; config/README.md explains every key")
@@ -98,7 +99,7 @@ def for_dataset(defaults, dataset_yaml, overrides, schema):
         raise StageError(f"{dataset_yaml}: `dataset` is given on the command line, not in the dataset's own settings")
     check(merged(defaults, own), schema, dataset_yaml)
     settings = merged(merged(defaults, own), overrides)
-    check(settings, schema, "configuration")
+    check(settings, schema, _COMMAND_LINE)
     return settings
 
 
@@ -116,12 +117,18 @@ def _leaves(settings, prefix=""):
             yield f"{prefix}{key}", value
 
 
-def _explain(fault):
+def _explain(fault, origin):
     key = ".".join(map(str, fault.path)) or "settings"
     if fault.validator == "additionalProperties":
         known = ", ".join(fault.schema["properties"])
         extra = ", ".join(sorted(str(key) for key in set(fault.instance) - set(fault.schema["properties"])))
         return f"{key}: unknown key {extra}; known are {known}"
-    text_for_number = isinstance(fault.instance, str) and fault.validator in ("type", "anyOf", "oneOf")
-    hint = " (nested values of --config arrive as text: put them into a file for --configfile)"
-    return f"{key}: {fault.message}{hint if text_for_number else ''}"
+    if fault.validator == "type" and fault.validator_value == "object":
+        return (
+            f"{key}: is {fault.instance!r}, expected keys with values below it; leave the section out if there are none"
+        )
+    if origin == _COMMAND_LINE and isinstance(fault.instance, str) and fault.validator == "type":
+        return (
+            f"{key}: {fault.message} (nested values of --config arrive as text: put them into a file for --configfile)"
+        )
+    return f"{key}: {fault.message}"

@@ -53,6 +53,7 @@ def extract(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
         If a coordinate is not finite.
     """
     left = walls.around_sensor(xyz_m, sensor_xyz_m)
+    top_m = walls.door_top(left, settings, planar=planar)
     largest = _largest_line if planar else _largest_plane
     least = max(settings.least_points(planar), 3)
     rng = np.random.default_rng([settings.seed, scan_id])
@@ -65,7 +66,7 @@ def extract(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
             break
         found = left[inliers]
         if upright and np.hypot(*np.ptp(found[:, :2], axis=0)) >= settings.min_length_m:
-            rows += walls.cut(*lines.fit(found[:, :2]), found, settings, planar=planar)
+            rows += walls.cut(*lines.fit(found[:, :2]), found, settings, planar=planar, top_m=top_m)
         left = left[~inliers]
     return walls.assemble(rows, sensor_xyz_m)
 

@@ -10,6 +10,7 @@ import numpy as np
 from scanplan.errors import StageError
 
 _HEIGHT_PERCENTILES = (2, 98)
+_FLOOR_PERCENTILE = 1
 _PAUSE_SHARE = 1 / 2  # of the reach: wider than beams apart at grazing angles, narrower than a door
 _FIELDS = ("x0_m", "y0_m", "x1_m", "y1_m", "nx", "ny", "n_points", "rmse_m", "z_min_m", "z_max_m")
 
@@ -27,6 +28,8 @@ class Limits:
     min_length_m : float
     min_height_m : float
         Least vertical extent; for 3-D scans alone.
+    door_height_m : float
+        Above the scan's floor; higher points bridge no gap: they may be the wall above a door. For 3-D scans alone.
     min_points : int
         Of a 3-D scan.
     min_points_planar : int
@@ -39,6 +42,7 @@ class Limits:
     max_gap_m: float
     min_length_m: float
     min_height_m: float
+    door_height_m: float
     min_points: int
     min_points_planar: int
     seed: int
@@ -92,7 +96,14 @@ def around_sensor(xyz_m, sensor_xyz_m):
     return xyz_m[np.lexsort(xyz_m.T)] - sensor_xyz_m
 
 
-def cut(normal, offset_m, xyz_m, limits, *, planar, spare_xyz_m=None, reach_rad=0.0):
+def door_top(xyz_m, limits, *, planar):
+    """Return the height above which points bridge no gap, in the frame of the points (n, 3); infinite in the plane."""
+    if planar or len(xyz_m) == 0:
+        return np.inf
+    return np.percentile(xyz_m[:, 2], _FLOOR_PERCENTILE) + limits.door_height_m
+
+
+def cut(normal, offset_m, xyz_m, limits, *, planar, top_m=np.inf, spare_xyz_m=None, reach_rad=0.0):
     """Cut a line into segments where its points pause, and drop those that are no walls.
 
     Parameters
@@ -104,6 +115,8 @@ def cut(normal, offset_m, xyz_m, limits, *, planar, spare_xyz_m=None, reach_rad=
         Points on the line, relative to the sensor.
     limits : Limits
     planar : bool
+    top_m : float
+        Points higher than this are the segment's where there are lower ones, but make none: see `door_top`.
     spare_xyz_m : (m, 3) float, optional
         Further points near the line that found no segment but prolong one: at a corner no point has a clear normal.
     reach_rad : float
@@ -118,10 +131,11 @@ def cut(normal, offset_m, xyz_m, limits, *, planar, spare_xyz_m=None, reach_rad=
     normal, offset_m = sign * normal, sign * offset_m
     along = np.array([normal[1], -normal[0]])
     every = xyz_m if spare_xyz_m is None else np.vstack([xyz_m, spare_xyz_m])
-    where, every_where = xyz_m[:, :2] @ along, every[:, :2] @ along
+    where, every_where = xyz_m[xyz_m[:, 2] <= top_m, :2] @ along, every[:, :2] @ along
+    low_where = every_where[every[:, 2] <= top_m]
     found = []
     for first, last in _runs(where, limits.max_gap_m, limits.least_points(planar)):
-        first, last = _prolong(first, last, every_where, reach_rad, offset_m)
+        first, last = _prolong(first, last, low_where, reach_rad, offset_m)
         inside = every[(first <= every_where) & (every_where <= last)]
         low, high = np.percentile(inside[:, 2], _HEIGHT_PERCENTILES)
         if last - first < limits.min_length_m or (not planar and high - low < limits.min_height_m):

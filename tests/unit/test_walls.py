@@ -26,6 +26,22 @@ def test_segments_end_where_points_pause():
     assert found.z_range_m == pytest.approx(np.array([(30, 31), (30, 31)]))
 
 
+def test_the_wall_above_a_door_does_not_close_it():
+    jambs = upright(np.r_[np.arange(0, 1.01, 0.25), np.arange(1.9, 3.0, 0.25)])
+    lintel = upright(np.arange(0, 3.0, 0.25), z=(2.2, 2.4))
+    rows = walls.cut(np.array([1.0, 0.0]), 2.0, np.vstack([jambs, lintel]), LIMITS, planar=False, top_m=1.9)
+    found = walls.assemble(rows, (0, 0, 0))
+    assert found.start_m[:, 1] == pytest.approx([0, 1.9]) and found.end_m[:, 1] == pytest.approx([1, 2.9])
+    assert (found.z_range_m[:, 1] > 2.1).all()
+
+
+def test_the_top_of_doors_is_measured_from_the_floor():
+    floor = np.column_stack([np.zeros((300, 2)), np.full(300, -0.4)])
+    points = np.vstack([floor, upright(np.arange(0, 3, 0.1), z=(0, 1, 2))])
+    assert walls.door_top(points, LIMITS, planar=False) == pytest.approx(1.5)
+    assert walls.door_top(points, LIMITS, planar=True) == np.inf
+
+
 def test_a_gap_of_just_the_limit_is_none():
     points = upright([0, 0.5, 1.0, 1.5])
     assert len(walls.cut(np.array([1.0, 0]), 2.0, points, LIMITS, planar=False)) == 1
