@@ -1,7 +1,9 @@
 """Bad input ends in one clear line, a status that is not zero, and an empty results folder."""
 
+import numpy as np
 import pytest
 
+import bagmaking
 from projectcopy import Project
 
 pytestmark = pytest.mark.workflow
@@ -12,14 +14,17 @@ def project(project_root, tmp_path):
     return Project(project_root, tmp_path)
 
 
-def ends_with_one_line(project, dataset, *said):
+def ends_with_one_line(project, dataset, *said, left=()):
     result = project.run("--config", f'dataset="{dataset}"')
     output = result.stdout + result.stderr
-    lines = [line for line in output.splitlines() if all(part in line for part in said)]
+    lines = [line for line in output.splitlines() if line.startswith("scanplan: ")]
     assert result.returncode != 0
-    assert len(lines) >= 1, output
+    assert len(lines) == 1 and output.splitlines()[-1] == lines[0], output
+    assert all(part in lines[0] for part in said), lines[0]
     assert "Traceback" not in output
-    assert not (project.folder / "results").exists()
+    results = project.folder / "results"
+    assert sorted(p.name for p in results.rglob("*") if not p.is_dir()) == sorted(left)
+    assert results.exists() == bool(left)
 
 
 def test_missing_folder(project):
@@ -37,7 +42,53 @@ def test_a_wrong_key_in_dataset_yaml(project, tmp_path):
     ends_with_one_line(project, "survey", "dataset.yaml", "keep_evry")
 
 
+def written(folder, entries):
+    bagmaking.Maker().write(folder / "run", entries)
+    return folder.name
+
+
+def test_a_bag_without_clouds(project, tmp_path):
+    entries = [e for e in bagmaking.survey(bagmaking.Maker()) if e[0] == "/amcl_pose"]
+    ends_with_one_line(project, written(tmp_path / "poses_only", entries), "run.bag", "no cloud topic", "/amcl_pose")
+
+
+def test_a_bag_without_poses(project, tmp_path):
+    entries = [e for e in bagmaking.survey(bagmaking.Maker()) if e[0] == "/points"]
+    ends_with_one_line(project, written(tmp_path / "clouds_only", entries), "run.bag", "no pose", "/points")
+
+
+def test_two_cloud_topics(project, tmp_path):
+    entries = bagmaking.survey(bagmaking.Maker())
+    entries += [("/rear", e[1], e[2]) for e in entries if e[0] == "/points"]
+    entries.sort(key=lambda entry: entry[1])
+    ends_with_one_line(project, written(tmp_path / "two", entries), "/points", "/rear", "input.cloud_topic")
+
+
+def test_poses_of_another_time(project, tmp_path):
+    maker = bagmaking.Maker()
+    entries = [e for e in bagmaking.survey(maker) if e[0] == "/points"]
+    entries += [e for e in bagmaking.survey(maker, start_ns=bagmaking.START_NS + 10**15) if e[0] == "/amcl_pose"]
+    ends_with_one_line(project, written(tmp_path / "elsewhen", entries), "run.bag", "check the clocks")
+
+
+def test_clouds_of_nothing(project, tmp_path):
+    maker = bagmaking.Maker()
+    entries = [
+        (e[0], e[1], maker.cloud(e[1], np.full((4, 3), np.nan, np.float32)) if e[0] == "/points" else e[2])
+        for e in bagmaking.survey(maker)
+    ]
+    said = "run.bag", "too_few_points", "input.min_range_m"
+    ends_with_one_line(project, written(tmp_path / "blind", entries), *said, left=["poses.parquet"])
+
+
+def test_a_truncated_bag(project, tmp_path):
+    name = written(tmp_path / "cut", bagmaking.survey(bagmaking.Maker()))
+    bag = tmp_path / "cut/run.bag"
+    bag.write_bytes(bag.read_bytes()[:-100])
+    ends_with_one_line(project, name, "run.bag", "rosbag reindex")
+
+
 @pytest.mark.recordings
-@pytest.mark.parametrize(("name", "said"), [("amcl_mcap", "cloud"), ("broken", "bad_index.bag")])
+@pytest.mark.parametrize(("name", "said"), [("amcl_mcap", "no cloud topic"), ("broken", "bad_index.bag")])
 def test_recordings_that_cannot_be_used(project, recordings_dir, name, said):
     ends_with_one_line(project, recordings_dir / name, said)

@@ -1,0 +1,93 @@
+import numpy as np
+import pytest
+
+import bagmaking
+from interpolate_poses import interpolate_poses
+from register_scans import register_scans
+from scanplan import configuration, datasets, tables
+from scanplan.errors import StageError
+
+STEP_NS = 100_000_000
+
+
+@pytest.fixture
+def run(tmp_path, project_root):
+    settings = configuration.read_yaml(project_root / "config/config.yaml")
+
+    def run_on(entries, name="a", threads=1, **changes):
+        folder = tmp_path / name
+        bagmaking.Maker().write(folder / "run", entries)
+        files = datasets.find_files(folder)
+        reading = settings["input"] | changes.pop("reading", {})
+        interpolate_poses(files, folder / "poses.parquet", **settings["poses"] | {"keep_every": 1}, **reading)
+        limits = settings["registration"] | {"localiser_share": 0.0} | changes
+        outputs = folder / "scans.parquet", folder / "registration.parquet"
+        register_scans(files, folder / "poses.parquet", *outputs, reading=reading, settings=limits, threads=threads)
+        return outputs
+
+    return run_on
+
+
+def hall(n=4000, seed=0):
+    """Points on floor and walls of a hall of 6 m by 4 m by 2.5 m, in the map."""
+    rng = np.random.default_rng(seed)
+    points = rng.uniform(0, 1, (n, 3)) * (6, 4, 2.5)
+    side = rng.integers(0, 5, n)
+    for s, (axis, value) in enumerate([(0, 0), (0, 6), (1, 0), (1, 4), (2, 0)]):
+        points[side == s, axis] = value
+    return points
+
+
+def survey(n_scans=5, empty=(), moved=()):
+    """Clouds of a sensor that goes 0.1 m a scan through the hall, some empty; true poses, some moved by 4 cm."""
+    maker, entries = bagmaking.Maker(), []
+    for i in range(n_scans):
+        t_ns, place = bagmaking.START_NS + i * STEP_NS, np.array([1 + 0.1 * i, 2, 0.5])
+        seen = np.full((5, 3), np.nan) if i in empty else hall(seed=i) - place
+        entries.append(("/amcl_pose", t_ns, maker.amcl(t_ns, (place[0] + 0.04 * (i in moved), *place[1:]))))
+        entries.append(("/points", t_ns + 1, maker.cloud(t_ns, seen.astype(np.float32))))
+    return entries
+
+
+def test_retained_scans_lie_in_the_map(run):
+    scans, registered = run(survey(moved=[2]))
+    verdicts = tables.read(registered, tables.REGISTRATION)
+    assert verdicts["reason"].tolist() == ["anchor"] + ["kept"] * 4
+    np.testing.assert_allclose(verdicts["x_m"], [1.0, 1.1, 1.2, 1.3, 1.4], atol=0.015)
+    store = tables.ScanStore(scans)
+    assert store.scan_ids.tolist() == [0, 1, 2, 3, 4] and not store.planar
+    for scan_id, xyz_m in store.scans():
+        assert len(xyz_m) == 4000
+        assert np.abs(np.sort(xyz_m[:, 0])[[0, -1]] - (0, 6)).max() < 0.03, scan_id
+
+
+def test_scans_without_points_are_named_and_left_out(run):
+    scans, registered = run(survey(empty=[1, 3]))
+    verdicts = tables.read(registered, tables.REGISTRATION)
+    assert verdicts["reason"].tolist() == ["anchor", "too_few_points", "kept", "too_few_points", "kept"]
+    assert tables.ScanStore(scans).scan_ids.tolist() == [0, 2, 4]
+
+
+def test_the_number_of_cores_changes_no_byte(run):
+    one, two = run(survey(), "one", threads=1), run(survey(), "two", threads=2)
+    assert [path.read_bytes() for path in one] == [path.read_bytes() for path in two]
+
+
+@pytest.mark.parametrize(
+    ("entries", "changes"),
+    [(survey(empty=range(5)), {}), (survey(), {"reading": {"min_range_m": 50.0}}), (survey(), {"min_points": 10_000})],
+)
+def test_nothing_to_retain_is_one_line_and_no_table(run, tmp_path, entries, changes):
+    with pytest.raises(StageError, match=r"run\S*: 0 of 5 candidates retained \(5 too_few_points\).*min_range_m"):
+        run(entries, **changes)
+    assert sorted(p.name for p in (tmp_path / "a").iterdir()) == ["poses.parquet", "run.bag"]
+
+
+def test_a_map_too_far_from_its_origin_is_refused(run):
+    maker = bagmaking.Maker()
+    entries = [
+        entry if entry[0] == "/points" else (entry[0], entry[1], maker.amcl(entry[1], (500_000.0, 0, 0)))
+        for entry in survey()
+    ]
+    with pytest.raises(StageError, match=r"500\d* m from the map's origin.*local map frame"):
+        run(entries)
