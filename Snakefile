@@ -21,6 +21,7 @@ include: "workflow/rules/hulls.smk"
 include: "workflow/rules/selection.smk"
 include: "workflow/rules/walls.smk"
 include: "workflow/rules/plan.smk"
+include: "workflow/rules/evaluate.smk"
 include: "workflow/rules/report.smk"
 
 

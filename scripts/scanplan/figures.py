@@ -13,7 +13,7 @@ from scanplan.errors import StageError
 NEARBY_M = 1.0
 _WIDTH_IN = 7.0
 _SELECTED = "#d55e00"
-_STYLES = {
+STYLES = {
     "cluster_hull": ("greedy by cluster hulls", "#0072b2"),
     "hull": ("greedy by one hull per scan", "#d55e00"),
     "random": ("random", "#009e73"),
@@ -135,9 +135,7 @@ def area_figure(orderings):
     """
     figure = Figure(figsize=(_WIDTH_IN, 4.2), layout="constrained")
     axes = figure.add_subplot()
-    for method in sorted(
-        orderings, key=lambda m: (m == _FULL_HULLS, list(_STYLES).index(m) if m in _STYLES else 99, m)
-    ):
+    for method in sorted(orderings, key=lambda m: (m == _FULL_HULLS, list(STYLES).index(m) if m in STYLES else 99, m)):
         _draw_ordering(axes, method, orderings[method])
     highest = max(columns["covered_m2"].max() for columns in orderings.values())
     axes.set_ylim(0, highest * 1.06)
@@ -152,7 +150,7 @@ def area_figure(orderings):
 
 
 def _draw_ordering(axes, method, columns):
-    label, colour = _STYLES.get(method, (method.replace("_", " "), "0.3"))
+    label, colour = STYLES.get(method, (method.replace("_", " "), "0.3"))
     covered = columns["covered_m2"]
     at = stopping.n_scans(columns, area_share=0.99)[0] - 1
     label = f"{label}: 99 % with {columns['rank'][at]}"

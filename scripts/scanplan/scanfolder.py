@@ -1,13 +1,13 @@
 """One survey as a folder of recorded clouds, scans/*.pcd or *.ply, with their poses in poses.tum."""
 
 import re
-from decimal import Decimal, InvalidOperation
+from decimal import Decimal
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
-from scanplan import clouds, datasets, frames, stagelog
+from scanplan import clouds, datasets, frames, stagelog, tum
 from scanplan.errors import StageError
 from scanplan.mounts import configured_mount
 
@@ -42,7 +42,7 @@ class ScanFolder:
         self._poses_path = next(p for p in paths if p.name == datasets.POSES_FILE)
         self._mount = [] if base_from_sensor is None else configured_mount(base_from_sensor)
         self._limits = {"min_range_m": min_range_m, "max_range_m": max_range_m}
-        pose_ns, rows = _read_tum(self._poses_path)
+        pose_ns, rows = tum.read(self._poses_path)
         self._track, found = frames.track("map", "sensor", pose_ns, pose_ns, rows)
         told = ", ".join(f"{count} {kind}" for kind, count in found.items() if count)
         if told:
@@ -80,23 +80,6 @@ class ScanFolder:
         for scan_id in wanted:
             xyz_m, time_raw = _read_cloud(self._clouds[scan_id])
             yield clouds.within_range(scan_id, self._stamps_ns[scan_id], xyz_m, time_raw, **self._limits)
-
-
-def _read_tum(path):
-    """Read `t tx ty tz qx qy qz qw` lines as stamps (n,) int64, to the nanosecond, and rows (n, 7)."""
-    stamps, rows = [], []
-    for number, line in enumerate(path.read_text(encoding="utf-8", errors="replace").splitlines(), 1):
-        values = line.split("#")[0].replace(",", " ").split()
-        if not values:
-            continue
-        try:
-            stamps.append(int(Decimal(values[0]) * 10**9))
-            rows.append([float(value) for value in values[1:]])
-        except (ValueError, OverflowError, InvalidOperation):
-            raise StageError(f"{path}: line {number} is not `t tx ty tz qx qy qz qw`; mend it") from None
-        if len(values) != 8 or abs(stamps[-1]) >= 2**63:
-            raise StageError(f"{path}: line {number} has {len(values)} numbers instead of 8, or no stamp; mend it")
-    return np.array(stamps, np.int64), np.array(rows).reshape(-1, 7)
 
 
 def _order(paths, pose_ns, poses_path):

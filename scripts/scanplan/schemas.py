@@ -85,3 +85,54 @@ FACES = Schema(
     },
     ("face",),
 )
+_WITHIN = ("005m", "010m", "015m")
+EVALUATION = Schema(
+    "evaluation",
+    1,
+    {
+        "method": "string",
+        "extractor": "string",
+        "k": "int32",
+        **dict.fromkeys(("false_negative", "correct_match", "false_positive"), "float64"),
+        **{
+            f"{truth}{measure}_{within}": "float64"
+            for truth in ("", "visible_")
+            for measure in ("completeness", "correctness", "f1")
+            for within in _WITHIN
+        },
+        "n_walls": "int32",
+        **dict.fromkeys(
+            (
+                "walls_per_true_wall",
+                "redundancy",
+                "seen",
+                "missed_not_seen",
+                "missed_misregistered",
+                "missed_misextracted",
+                "oracle_share",
+                "seconds",
+            ),
+            "float64",
+        ),
+    },
+    ("method", "extractor", "k"),
+)
+ORACLE = Schema("oracle", 1, {"rank": "int32", "scan_id": "int32", "gain_m": "float64", "seen_m": "float64"}, ("rank",))
+POSE_ERRORS = Schema(
+    "pose_errors",
+    1,
+    {
+        "scan_id": "int32",
+        "t_ns": "int64",
+        **dict.fromkeys(
+            (
+                f"{aligned}{stage}_error_{unit}"
+                for aligned in ("", "aligned_")
+                for stage in ("prior", "refined")
+                for unit in ("m", "deg")
+            ),
+            "float64",
+        ),
+    },
+    ("scan_id",),
+)

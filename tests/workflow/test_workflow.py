@@ -1,6 +1,7 @@
 """The whole workflow on the tiny office: complete, idle, changed, edited, killed and resumed."""
 
 import os
+import shutil
 import signal
 import subprocess
 import time
@@ -21,12 +22,21 @@ def project(project_root, tmp_path_factory):
     return project
 
 
+EVALUATED = {"evaluate_walls", "draw_evaluation"}
 AFTER_HULLS = {"build_hulls", "order_scans", "assemble_plan", "export_plan", "draw_scans", "draw_area", "draw_walls"}
+AFTER_HULLS |= EVALUATED
 
 
 def test_every_result_is_there_and_the_user_is_told(project):
     made = set(project.digests())
-    for name in ("poses.parquet", "scans.parquet", "plan/plan.dxf", "plan/plan.svg", "figures/walls.svg"):
+    for name in (
+        "poses.parquet",
+        "scans.parquet",
+        "plan/plan.dxf",
+        "plan/plan.svg",
+        "figures/walls.svg",
+        "evaluation/walls.parquet",
+    ):
         assert f"results/demo/{name}" in made
     assert (project.folder / "results/demo/report.html").stat().st_size > 100_000
     assert "results/demo/plan/plan.svg" in project.output and "results/demo/report.html" in project.output
@@ -50,10 +60,11 @@ def test_a_touched_file_reruns_nothing(project):
     [
         ("hulls: {n_clusters: 7}", AFTER_HULLS),
         ("plan: {merge: {tolerance_m: 0.08}}", {"assemble_plan", "export_plan", "draw_walls"}),
-        ("plan: {method: sequential}", {"assemble_plan", "export_plan", "draw_scans", "draw_walls"}),
+        ("plan: {method: sequential}", {"assemble_plan", "export_plan", "draw_scans", "draw_walls", "draw_evaluation"}),
+        ("evaluation: {bitmap_cell_m: 0.1}", EVALUATED),
         (
             "walls: {cluster_ransac: {min_length_m: 0.7}}",
-            {"extract_walls", "assemble_plan", "export_plan", "draw_walls"},
+            {"extract_walls", "assemble_plan", "export_plan", "draw_walls"} | EVALUATED,
         ),
     ],
 )
@@ -68,6 +79,8 @@ def test_a_changed_parameter_reruns_exactly_its_stages(project, change, rules):
     [
         ("hulls", AFTER_HULLS),
         ("cad", {"export_plan"}),
+        ("visibility", EVALUATED),
+        ("poseerrors", {"evaluate_poses"} | EVALUATED),
         ("faces", {"assemble_plan", "export_plan", "draw_walls"}),
     ],
 )
@@ -79,6 +92,15 @@ def test_an_edited_helper_reruns_exactly_the_stages_that_import_it(project, help
         assert project.would_run() == rules
     finally:
         path.write_text(source)
+
+
+def test_a_truth_beside_the_recording_switches_evaluation_on(project):
+    house = project.folder / "house"
+    shutil.copytree(project.folder / "results/demo/survey", house)
+    both = {"evaluate_walls", "evaluate_poses", "draw_evaluation"}
+    assert both <= project.would_run("--config", "dataset=house")
+    (house / "truth_poses.tum").unlink()
+    assert not both & project.would_run("--config", "dataset=house")
 
 
 def test_one_stage_can_be_rerun(project):

@@ -11,6 +11,13 @@ DEMO = "demo"
 METHODS = ["cluster_hull", "hull", "random", "sequential"]
 EXTRACTORS = ["cluster_ransac", "iterative_ransac"]
 FIGURES = ["scans", "area", "walls"]
+EVALUATION = [
+    "evaluation/walls.parquet",
+    "evaluation/walls_aligned.parquet",
+    "evaluation/oracle.parquet",
+    "evaluation/poses.parquet",
+    "figures/evaluation.svg",
+]
 PLANS = ["plan.geojson", "plan.svg", "plan.dxf"]
 
 
@@ -62,6 +69,18 @@ RECORDINGS = {
 }
 
 
+def truth_of(name, path):
+    """True walls and true sensor poses of a dataset, or None where they are not known."""
+    if path is None:
+        folder = f"results/{name}/survey"
+        return [f"{folder}/truth.geojson", f"{folder}/truth_poses.tum"]
+    files = [Path(path) / "truth.geojson", Path(path) / "truth_poses.tum"]
+    return list(map(str, files)) if all(file.is_file() for file in files) else None
+
+
+TRUTHS = {name: truth_of(name, path) for name, path in DATASETS.items()}
+
+
 def code_of(script):
     """Helper files that a script imports: as inputs they make an edit rerun the stages that use them."""
     files = sources.helpers_of(f"{workflow.basedir}/scripts/{script}.py")
@@ -98,6 +117,16 @@ def recordings(wildcards):
     return RECORDINGS[wildcards.dataset]
 
 
+def true_faces(wildcards):
+    """The true walls of a dataset."""
+    return TRUTHS[wildcards.dataset][0]
+
+
+def true_poses(wildcards):
+    """The true sensor poses of a dataset."""
+    return TRUTHS[wildcards.dataset][1]
+
+
 def plan_selection(wildcards):
     """The ordering whose first scans make the plan."""
     return f"results/{wildcards.dataset}/selection/{SETTINGS[wildcards.dataset]['plan']['method']}.parquet"
@@ -112,6 +141,14 @@ def all_selections(wildcards):
     """Orderings of all methods of one dataset."""
     return [
         f"results/{wildcards.dataset}/selection/{method}.parquet" for method in METHODS
+    ]
+
+
+def all_walls(wildcards):
+    """Walls by all extractors of one dataset."""
+    return [
+        f"results/{wildcards.dataset}/walls/{extractor}.parquet"
+        for extractor in EXTRACTORS
     ]
 
 
@@ -137,6 +174,7 @@ def results_of(name):
     files += [f"walls/{extractor}.parquet" for extractor in EXTRACTORS]
     files += [f"plan/{plan}" for plan in PLANS]
     files += [f"figures/{figure}.svg" for figure in FIGURES]
+    files += EVALUATION if TRUTHS[name] else []
     return [f"results/{name}/{file}" for file in files]
 
 

@@ -1,0 +1,31 @@
+"""Draw how well every ordering's first scans show the true walls (thesis, figure 5.4)."""
+
+from scanplan import atomic, drawing, evaluationfigure, schemas, stagelog, tables
+
+
+def draw_evaluation(walls, aligned, output, *, method, extractor):
+    """Write the figure as SVG.
+
+    Parameters
+    ----------
+    walls, aligned : path-like
+        evaluation/walls.parquet and evaluation/walls_aligned.parquet.
+    output : path-like
+        figures/evaluation.svg, to write.
+    method, extractor : str
+        The plan's: whose misses and whose bitmap metrics are drawn.
+    """
+    measured, moved = (tables.read(path, schemas.EVALUATION) for path in (walls, aligned))
+    atomic.write_text(output, drawing.svg(evaluationfigure.draw(measured, moved, method=method, extractor=extractor)))
+    stagelog.say(f"draw_evaluation: {len(measured['k'])} subsets")
+
+
+if __name__ == "__main__":
+    with stagelog.to_file(snakemake.log[0]):
+        draw_evaluation(
+            snakemake.input.walls,
+            snakemake.input.aligned,
+            snakemake.output.figure,
+            method=snakemake.params.method,
+            extractor=snakemake.params.extractor,
+        )

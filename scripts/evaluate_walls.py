@@ -1,0 +1,56 @@
+"""Measure the walls that the first scans of every ordering show against the true ones (thesis, section 5.1)."""
+
+from pathlib import Path
+
+from scanplan import evaluation, findings, oracle, poseerrors, registered, schemas, stagelog, tables, truthfile
+from scanplan.visibility import thinned
+
+_SURVEY_STEP_M = 0.25
+
+
+def evaluate_walls(
+    walls, selections, registration, truth, true_poses, output, aligned, best, *, max_range_m, bitmap_cell_m
+):
+    """Write how well every ordering and extractor does, and the order that an oracle would take the scans in.
+
+    Parameters
+    ----------
+    walls, selections : list of path-like
+        walls/<extractor>.parquet and selection/<method>.parquet; the names tell extractor and method.
+    registration, truth, true_poses : path-like
+        registration.parquet, truth.geojson and truth_poses.tum.
+    output, aligned, best : path-like
+        evaluation/walls.parquet, with the walls where they are in the map: the localiser's frame is that of the truth;
+        evaluation/walls_aligned.parquet, the same after the rigid motion that best brings the registered scans to
+        where they truly were taken; evaluation/oracle.parquet. To write.
+    max_range_m : float
+        How far a scan can see.
+    bitmap_cell_m : float
+    """
+    scans, poses = registered.read(registration), truthfile.read_poses(true_poses)
+    placed = truthfile.poses_at(poses, scans.t_ns, true_poses)
+    survey_m = poses.xyz_m[thinned(poses.xyz_m[:, :2], _SURVEY_STEP_M), :2]
+    floor = findings.look(truthfile.read_faces(truth), placed[:, :2, 3], survey_m, max_range_m=max_range_m)
+    ceiling = oracle.greedy_order(floor.seen, floor.cells.length_m)
+    tables.write(best, schemas.ORACLE, registered.ordered(ceiling, scans))
+    orders = {Path(path).stem: registered.order(path, scans, registration) for path in selections}
+    orders["oracle"] = ceiling.order
+    shown = {Path(path).stem: registered.walls(path, scans, registration) for path in walls}
+    drawn = {e: findings.segments(w, scans.scan_ids, scans.map_from_sensor, placed) for e, w in shown.items()}
+    motion = poseerrors.alignment(scans.map_from_sensor[:, :3, 3], placed[:, :3, 3])
+    moved = {extractor: findings.moved(lines, motion) for extractor, lines in drawn.items()}
+    for path, lines in ((output, drawn), (aligned, moved)):
+        measured = evaluation.table(floor, orders, lines, bitmap_cell_m)
+        tables.write(path, schemas.EVALUATION, measured)
+        for line in evaluation.summary(measured):
+            stagelog.say(f"evaluate_walls: {Path(path).stem}, {line}")
+
+
+if __name__ == "__main__":
+    with stagelog.to_file(snakemake.log[0]):
+        evaluate_walls(
+            *(snakemake.input[name] for name in ("walls", "selections", "registration", "truth", "true_poses")),
+            *(snakemake.output[name] for name in ("walls", "aligned", "oracle")),
+            max_range_m=snakemake.params.max_range_m,
+            **snakemake.params.settings,
+        )

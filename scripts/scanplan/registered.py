@@ -1,0 +1,101 @@
+"""The registered scans of a dataset as the evaluation needs them: rows in the order of their scan_ids."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from scanplan import se3, tables
+from scanplan.errors import StageError
+
+_RERUN = "delete the results of this dataset and run again"
+
+
+@dataclass(frozen=True)
+class Scans:
+    """The scans that registration kept.
+
+    Attributes
+    ----------
+    scan_ids : (n,) int32, increasing
+    t_ns : (n,) int64
+    map_from_sensor : (n, 4, 4) float64
+        As registered.
+    """
+
+    scan_ids: np.ndarray
+    t_ns: np.ndarray
+    map_from_sensor: np.ndarray
+
+
+def read(path):
+    """Read the kept scans of a registration.parquet.
+
+    Raises
+    ------
+    StageError
+        If there is none, or one has no pose.
+    """
+    columns = tables.read(path, tables.REGISTRATION)
+    columns = {name: values[columns["kept"]] for name, values in columns.items()}
+    pose = _matrices(columns)
+    lost = np.count_nonzero(~np.isfinite(pose).all(axis=(1, 2)))
+    if len(pose) == 0 or lost:
+        raise StageError(f"{path}: {len(pose)} scans are kept, {lost} of them without a pose; {_RERUN}")
+    return Scans(columns["scan_id"], columns["t_ns"], pose)
+
+
+def prior(path, scans, origin):
+    """Return map_from_sensor (n, 4, 4) of the scans as the localiser gave it, from a poses.parquet.
+
+    Raises
+    ------
+    StageError
+        If a scan has no pose there: the tables at `path` and `origin` are of different runs.
+    """
+    columns = tables.read(path, tables.POSES)
+    columns = {name: values[columns["covered"]] for name, values in columns.items()}
+    row = np.searchsorted(columns["scan_id"], scans.scan_ids)
+    known = np.isin(scans.scan_ids, columns["scan_id"])
+    if not known.all():
+        raise StageError(f"{path}: no pose of scan {scans.scan_ids[~known][0]}, which {origin} keeps; {_RERUN}")
+    return _matrices(columns)[row]
+
+
+def rows_of(scan_ids, scans, path, origin):
+    """Return the rows of scans by their scan_ids.
+
+    Raises
+    ------
+    StageError
+        If one is not kept: the tables at `path` and `origin` are of different runs.
+    """
+    unknown = np.setdiff1d(scan_ids, scans.scan_ids)
+    if len(unknown):
+        raise StageError(f"{path}: scan {unknown[0]} is none of the {len(scans.scan_ids)} kept in {origin}; {_RERUN}")
+    return np.searchsorted(scans.scan_ids, scan_ids)
+
+
+def order(path, scans, origin):
+    """Return the rows of the scans in the order of a selection/<method>.parquet."""
+    return rows_of(tables.read(path, tables.SELECTION, ["rank", "scan_id"])["scan_id"], scans, path, origin)
+
+
+def walls(path, scans, origin):
+    """Return the columns of a walls/<extractor>.parquet, of kept scans alone; there may be no row."""
+    columns = tables.read(path, tables.WALLS, allow_empty=True)
+    rows_of(columns["scan_id"], scans, path, origin)
+    return columns
+
+
+def ordered(best, scans):
+    """Return an `oracle.Order` as the columns of `schemas.ORACLE`."""
+    return {
+        "rank": np.arange(1, len(best.order) + 1),
+        "scan_id": scans.scan_ids[best.order],
+        "gain_m": best.gain_m,
+        "seen_m": np.cumsum(best.gain_m),
+    }
+
+
+def _matrices(columns):
+    return se3.matrix(*(np.column_stack([columns[c] for c in names]) for names in (tables.XYZ, tables.QUAT)))

@@ -1,0 +1,159 @@
+"""Which parts of the true wall faces a scan could see: exact in the plane, on faces cut into short cells.
+
+ASSUME a sensor that sees all around, level, at the height at which the faces were cut; only walls hide walls.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+CELL_M = 0.02
+"""Longest cell of a face: what is seen or found is told to half of it at either end of a stretch."""
+
+
+@dataclass(frozen=True)
+class Cells:
+    """Faces cut into equal cells, each face into as few as are no longer than `CELL_M`.
+
+    Attributes
+    ----------
+    faces_m : (n, 2, 2) float64
+    first : (n + 1,) int
+        Cells first[i] to first[i + 1] are those of face i, from its start to its end.
+    face : (c,) int
+        The face of each cell.
+    middle_m : (c, 2) float64
+    length_m : (c,) float64
+    """
+
+    faces_m: np.ndarray
+    first: np.ndarray
+    face: np.ndarray
+    middle_m: np.ndarray
+    length_m: np.ndarray
+
+
+def cut(faces_m):
+    """Cut faces (n, 2, 2), all of some length, into cells."""
+    way = faces_m[:, 1] - faces_m[:, 0]
+    length_m = np.hypot(*way.T)
+    count = np.maximum(np.ceil(length_m / CELL_M - 1e-9), 1).astype(np.int64)
+    first = np.concatenate([[0], np.cumsum(count)])
+    face = np.repeat(np.arange(len(faces_m)), count)
+    share = (np.arange(len(face)) - first[face] + 0.5) / count[face]
+    return Cells(faces_m, first, face, faces_m[face, 0] + share[:, None] * way[face], (length_m / count)[face])
+
+
+def cells_between(cells, face, low_m, high_m):
+    """Return the cells whose middles lie in stretches of faces.
+
+    Parameters
+    ----------
+    cells : Cells
+    face : (p,) int
+    low_m, high_m : (p,) float
+        Along the face from its start.
+
+    Returns
+    -------
+    begin, end : (p,) int
+        Cells begin <= c < end.
+    """
+    first, last = cells.first[face], cells.first[face + 1]
+    size_m = cells.length_m[first]
+    begin = first + np.ceil(low_m / size_m - 0.5).astype(np.int64)
+    end = first + np.floor(high_m / size_m - 0.5).astype(np.int64) + 1
+    begin = np.clip(begin, first, last)
+    return begin, np.clip(end, begin, last)
+
+
+def stretches(cells, chosen):
+    """Join chosen cells (c,) bool that are neighbours on a face to lines (m, 2, 2)."""
+    begins = chosen & ~np.concatenate([[False], chosen[:-1] & (cells.face[1:] == cells.face[:-1])])
+    ends = chosen & ~np.concatenate([chosen[1:] & (cells.face[1:] == cells.face[:-1]), [False]])
+    face = cells.face[begins]
+    start_m, end_m = cells.faces_m[face, 0], cells.faces_m[face, 1]
+    count = np.diff(cells.first)[face]
+    low = (np.flatnonzero(begins) - cells.first[face]) / count
+    high = (np.flatnonzero(ends) + 1 - cells.first[face]) / count
+    way = end_m - start_m
+    return np.stack([start_m + low[:, None] * way, start_m + high[:, None] * way], axis=1)
+
+
+def seen(cells, outer_m, position_m, *, max_range_m):
+    """Tell which cells can be seen from a place.
+
+    All ends of faces, by direction, part the view into sectors; within a sector one face is nearest, as faces do not
+    cross. A cell is seen if its face is the nearest in its direction and its middle is within range.
+
+    Parameters
+    ----------
+    cells : Cells
+    outer_m : (m, 2, 2) float
+        Further faces that only hide.
+    position_m : (2,) float
+    max_range_m : float
+
+    Returns
+    -------
+    (c,) bool
+    """
+    ends = np.concatenate([cells.faces_m, outer_m]) - position_m
+    angle = np.arctan2(ends[:, :, 1], ends[:, :, 0])
+    turn = (angle[:, 1] - angle[:, 0] + np.pi) % (2 * np.pi) - np.pi
+    begin = np.where(turn > 0, angle[:, 0], angle[:, 1])
+    finish = np.where(turn > 0, angle[:, 1], angle[:, 0])
+    edges = np.unique(angle)
+    nearest = _nearest(edges, begin, finish, ends)
+    # only faces that are nearest somewhere have cells to look at
+    candidate = np.zeros(len(ends), bool)
+    candidate[nearest[nearest >= 0]] = True
+    looked = np.flatnonzero(candidate[cells.face])
+    offset_m = cells.middle_m[looked] - position_m
+    sector = (np.searchsorted(edges, np.arctan2(offset_m[:, 1], offset_m[:, 0]), side="right") - 1) % len(edges)
+    is_seen = (nearest[sector] == cells.face[looked]) & (np.hypot(*offset_m.T) <= max_range_m)
+    result = np.zeros(len(cells.face), bool)
+    result[looked[is_seen]] = True
+    return result
+
+
+def seen_by_each(cells, outer_m, positions_m, *, max_range_m):
+    """Tell which cells can be seen from which of several places: (n, c) bool, a byte each."""
+    result = np.zeros((len(positions_m), len(cells.face)), bool)
+    for row, position_m in zip(result, positions_m, strict=True):
+        row[:] = seen(cells, outer_m, position_m, max_range_m=max_range_m)
+    return result
+
+
+def thinned(positions_m, step_m):
+    """Return the places (indices) of a way (n, 2), n >= 1, that are `step_m` or more from the last one taken.
+
+    The first is taken. For the view of a whole survey, which a step of a few centimetres hardly changes.
+    """
+    taken = [0]
+    for i in range(1, len(positions_m)):
+        if np.hypot(*(positions_m[i] - positions_m[taken[-1]])) >= step_m:
+            taken.append(i)
+    return np.array(taken)
+
+
+def _nearest(edges, begin, finish, ends):
+    """Return the nearest face of each sector (from an edge to the next, round), -1 where there is none."""
+    first = np.searchsorted(edges, begin)
+    count = (np.searchsorted(edges, finish) - first) % len(edges)
+    face = np.repeat(np.arange(len(ends)), count)
+    step = np.arange(len(face)) - np.repeat(np.cumsum(count) - count, count)
+    sector = (first[face] + step) % len(edges)
+    middle = edges + np.diff(edges, append=edges[0] + 2 * np.pi) / 2
+    ray = np.column_stack([np.cos(middle), np.sin(middle)])[sector]
+    start, way = ends[face, 0], (ends[:, 1] - ends[:, 0])[face]
+    toward = ray[:, 0] * way[:, 1] - ray[:, 1] * way[:, 0]
+    # in a sector of no width a face can be edge-on, and hides nothing
+    toward = np.where(toward == 0, np.nan, toward)
+    distance = np.nan_to_num((start[:, 0] * way[:, 1] - start[:, 1] * way[:, 0]) / toward, nan=np.inf)
+    best = np.full(len(edges), np.inf)
+    np.minimum.at(best, sector, distance)
+    nearest = np.full(len(edges), -1)
+    won = (distance == best[sector]) & np.isfinite(distance)
+    nearest[sector[won]] = face[won]
+    return nearest

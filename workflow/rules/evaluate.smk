@@ -1,0 +1,75 @@
+rule evaluate_walls:
+    """Measure what the first scans of every ordering show against the true walls."""
+    input:
+        walls=all_walls,
+        selections=all_selections,
+        registration="results/{dataset}/registration.parquet",
+        truth=true_faces,
+        true_poses=true_poses,
+        code=code_of("evaluate_walls"),
+    output:
+        walls="results/{dataset}/evaluation/walls.parquet",
+        aligned="results/{dataset}/evaluation/walls_aligned.parquet",
+        oracle="results/{dataset}/evaluation/oracle.parquet",
+    log:
+        "logs/{dataset}/evaluate_walls.log",
+    benchmark:
+        "benchmarks/{dataset}/evaluate_walls.tsv"
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=30,
+    params:
+        max_range_m=setting("input", "max_range_m"),
+        settings=setting("evaluation"),
+    script:
+        "../../scripts/evaluate_walls.py"
+
+
+rule evaluate_poses:
+    """Measure the registered poses against the true ones, before and after refinement."""
+    input:
+        poses="results/{dataset}/poses.parquet",
+        registration="results/{dataset}/registration.parquet",
+        true_poses=true_poses,
+        code=code_of("evaluate_poses"),
+    output:
+        poses="results/{dataset}/evaluation/poses.parquet",
+    log:
+        "logs/{dataset}/evaluate_poses.log",
+    benchmark:
+        "benchmarks/{dataset}/evaluate_poses.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    script:
+        "../../scripts/evaluate_poses.py"
+
+
+rule draw_evaluation:
+    """Draw completeness and bitmap metrics against the number of scans, for every ordering."""
+    input:
+        walls="results/{dataset}/evaluation/walls.parquet",
+        aligned="results/{dataset}/evaluation/walls_aligned.parquet",
+        code=code_of("draw_evaluation"),
+    output:
+        figure=report(
+            "results/{dataset}/figures/evaluation.svg",
+            caption="../report/evaluation.rst",
+            category="{dataset}",
+            labels={"figure": "5 walls against the truth"},
+        ),
+    log:
+        "logs/{dataset}/draw_evaluation.log",
+    benchmark:
+        "benchmarks/{dataset}/draw_evaluation.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    params:
+        method=setting("plan", "method"),
+        extractor=setting("plan", "extractor"),
+    script:
+        "../../scripts/draw_evaluation.py"
