@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from scanplan import atomic, buildingfile, simulation, stagelog, surveybag, surveymessages, sweeps
+from scanplan import atomic, buildingfile, scanmessages, simulation, stagelog, surveybag, surveymessages, sweeps
 from scanplan import truth as ground_truth
 
 
@@ -34,8 +34,8 @@ def simulate_survey(
     scans = stagelog.progress(sweeps.scans(survey, threads=threads), "simulate_survey", total=len(survey.t_ns))
     surveybag.write(
         recording,
-        surveymessages.mounting(start_ns + belief.t_ns[0], survey.base_from_sensor, survey.sensor),
-        surveymessages.scans(start_ns + survey.t_ns, survey.sensor, scans),
+        surveymessages.mounting(start_ns + belief.t_ns[0], survey.base_from_sensor, scanmessages.frame(survey.sensor)),
+        scanmessages.scans(start_ns + survey.t_ns, survey.sensor, scans),
         *surveymessages.belief(start_ns, belief),
     )
     atomic.write_text(truth, ground_truth.feature_collection(ground_truth.features(plan, mount["height_m"])))

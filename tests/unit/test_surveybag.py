@@ -5,7 +5,7 @@ import pytest
 from rosbags.rosbag1 import Reader
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from scanplan import bags, rover, sensors, surveybag, surveymessages
+from scanplan import bags, rover, scanmessages, sensors, surveybag, surveymessages
 from scanplan.sweeps import Scan
 
 # as ROS noetic itself gives them (rosmsg md5)
@@ -45,8 +45,10 @@ def messages(tmp_path_factory):
 def write(path):
     surveybag.write(
         path,
-        surveymessages.scans(T_NS, LIDAR, SCANS),
-        surveymessages.mounting(T_NS[0] - 20_000_000, rover.mounted(height_m=0.4, forward_m=0.1, yaw_deg=90.0), LIDAR),
+        scanmessages.scans(T_NS, LIDAR, SCANS),
+        surveymessages.mounting(
+            T_NS[0] - 20_000_000, rover.mounted(height_m=0.4, forward_m=0.1, yaw_deg=90.0), "velodyne"
+        ),
         surveymessages.localiser_poses(T_NS + 30_000_000, POSES, noise_m=0.05, noise_rad=0.02),
         surveymessages.odometry(T_NS + 10_000_000, POSES),
         surveymessages.transforms(T_NS + 10_000_000, "map", "odom", POSES, ahead_ns=500_000_000),
@@ -104,7 +106,7 @@ def test_transforms_are_stamped_ahead_and_recorded_when_sent(messages):
 
 @pytest.mark.parametrize("name", ["scan.bag", "scan.db3", "scan.mcap"])
 def test_a_laser_scanner_gives_laser_scans(tmp_path, name):
-    surveybag.write(tmp_path / name, surveymessages.scans(T_NS, LASER, [scan_of(n, (5, 1)) for n in (5, 0, 2)]))
+    surveybag.write(tmp_path / name, scanmessages.scans(T_NS, LASER, [scan_of(n, (5, 1)) for n in (5, 0, 2)]))
     with bags.opened(tmp_path / name) as bag:
         full, empty, some = (bag.decode(connection, raw) for connection, _, raw in bag.messages(["/scan"]))
     assert full.header.frame_id == "laser"
@@ -172,5 +174,5 @@ def test_bag_is_replaced_whole_or_left_alone(tmp_path):
 
     broken = Scan(SCANS[0].range_m, np.zeros(1, np.float32))
     with pytest.raises(IndexError):
-        surveybag.write(path, surveymessages.scans(T_NS, LIDAR, [SCANS[0], broken, SCANS[2]]))
+        surveybag.write(path, scanmessages.scans(T_NS, LIDAR, [SCANS[0], broken, SCANS[2]]))
     assert path.read_bytes() == before and list(tmp_path.iterdir()) == [path]
