@@ -2,59 +2,58 @@
 
 from pathlib import Path
 
-import numpy as np
-
-from scanplan import atomic, buildingfile, buildings, extrusion, raycast, rover, stagelog, surveybag
+from scanplan import atomic, buildingfile, scanmessages, simulation, stagelog, surveybag, surveymessages, sweeps
 from scanplan import truth as ground_truth
 
 
 def simulate_survey(
     building,
-    bag,
+    recording,
     truth,
     true_poses,
+    true_trajectory,
     *,
     seed,
-    sensor_height_m,
-    mount_forward_m,
-    mount_yaw_deg,
-    n_azimuth,
-    scan_rate_hz,
-    speed_m_s,
-    turn_rate_deg_s,
-    range_noise_m,
-    max_range_m,
-    pose_noise_m,
-    pose_noise_deg,
-    update_distance_m,
-    update_angle_deg,
+    mount,
+    sensor,
+    errors,
+    drive,
+    localiser,
+    people,
+    threads=1,
 ):
-    """Write the recording of a drive (ROS1 bag), the floor's truth (GeoJSON) and the sensor's true poses (TUM)."""
+    """Write a drive's recording, the floor's truth (GeoJSON), the sensor's poses at the stamps and its whole way (TUM).
+
+    The recording's suffix says what it is: .bag (ROS1), .db3 or .mcap (ROS2).
+    """
     plan = buildingfile.parse(Path(building).read_bytes(), building)
-    ground, blocked = buildings.footprint(plan), buildings.obstacles(plan, sensor_height_m)
-    rover.check_way(plan.waypoints_m, ground, blocked, building, reach_m=abs(mount_forward_m))
-    drive = rover.drive(plan.waypoints_m, speed_m_s=speed_m_s, turn_rate_rad_s=np.radians(turn_rate_deg_s))
-    base_from_sensor = rover.planar_poses([[mount_forward_m, 0.0]], np.radians([mount_yaw_deg]), sensor_height_m)[0]
-    scan_ns, tick_ns = rover.scan_stamps(drive, scan_rate_hz), rover.tick_stamps(drive)
-    world_from_sensor, world_from_base = rover.poses(drive, scan_ns) @ base_from_sensor, rover.poses(drive, tick_ns)
-    noise = {"noise_m": pose_noise_m, "noise_rad": np.radians(pose_noise_deg)}
-    limits = {"update_distance_m": update_distance_m, "update_angle_rad": np.radians(update_angle_deg)}
-    tick, believed = rover.localise(world_from_base, **noise, **limits, seed=seed)
-    lidar = raycast.vlp16(n_azimuth=n_azimuth, max_range_m=max_range_m, range_noise_m=range_noise_m)
-    scans = raycast.survey(extrusion.building_mesh(plan), lidar, world_from_sensor, seed=seed)
-    stamps, ticks = surveybag.EPOCH_NS + scan_ns, surveybag.EPOCH_NS + tick_ns
+    rig = {"mount": mount, "sensor": sensor, "errors": errors, "drive": drive, "people": people}
+    survey = simulation.prepare(plan, building, seed=seed, **rig)
+    start_ns = surveybag.EPOCH_NS
+    belief = simulation.belief(survey, **localiser)
+    scans = stagelog.progress(sweeps.scans(survey, threads=threads), "simulate_survey", total=len(survey.t_ns))
     surveybag.write(
-        bag,
-        surveybag.mounting(ticks[0], base_from_sensor),
-        surveybag.clouds(stamps, stagelog.progress(scans, "simulate_survey", total=len(stamps))),
-        surveybag.localiser_poses(ticks[tick], believed, **noise),
-        surveybag.odometry(ticks, rover.odometry(world_from_base, seed=seed)),
+        recording,
+        surveymessages.mounting(start_ns + belief.t_ns[0], survey.base_from_sensor, scanmessages.frame(survey.sensor)),
+        scanmessages.scans(start_ns + survey.t_ns, survey.sensor, scans),
+        *surveymessages.belief(start_ns, belief),
     )
-    atomic.write_text(truth, ground_truth.feature_collection(ground_truth.features(plan, sensor_height_m)))
-    atomic.write_text(true_poses, ground_truth.tum(stamps, world_from_sensor))
+    atomic.write_text(truth, ground_truth.feature_collection(ground_truth.features(plan, mount["height_m"])))
+    for path, (t_ns, pose) in (
+        (true_poses, simulation.true_poses(survey)),
+        (true_trajectory, simulation.true_trajectory(survey)),
+    ):
+        atomic.write_text(path, ground_truth.tum(start_ns + t_ns, pose))
 
 
 if __name__ == "__main__":
     with stagelog.to_file(snakemake.log[0]):
-        made, settings = snakemake.output, snakemake.params.settings
-        simulate_survey(snakemake.input.building, made.bag, made.truth, made.true_poses, **settings)
+        simulate_survey(
+            snakemake.input.building,
+            snakemake.output.recording,
+            snakemake.output.truth,
+            snakemake.output.true_poses,
+            snakemake.output.true_trajectory,
+            **snakemake.params.settings,
+            threads=snakemake.threads,
+        )

@@ -1,4 +1,4 @@
-"""The rover: where it drives, where it is at any moment, and where it believes itself to be."""
+"""The rover: where it drives, and where it is at any moment."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -11,11 +11,8 @@ from scanplan.errors import StageError
 
 # half of the thesis's 18 inch rover (section 4.2.1)
 RADIUS_M = 0.23
-TICK_NS = 50_000_000
-_TICK_LEAD_NS = 20_000_000
-# ASSUME wheels and gyro of a small rover: 1 % scale error each, constant over a drive
-_ODOMETRY_SCALE_ERROR = 0.01
-_LOCALISER_STREAM, _ODOMETRY_STREAM = 1, 2
+TICK_NS = 20_000_000
+_TRACE_NS = 10_000_000
 
 
 @dataclass(frozen=True)
@@ -36,7 +33,7 @@ class Drive:
     yaw_rad: np.ndarray
 
 
-def drive(waypoints_m, *, speed_m_s, turn_rate_rad_s):
+def drive(waypoints_m, *, speed_m_s, turn_rate_deg_s):
     """Drive a way: straight at constant speed, turning on the spot at every corner, the shorter way round.
 
     ASSUME the rover starts, stops and turns without inertia.
@@ -45,7 +42,7 @@ def drive(waypoints_m, *, speed_m_s, turn_rate_rad_s):
     ----------
     waypoints_m : (n, 2) float
         Corners; at least two that differ.
-    speed_m_s, turn_rate_rad_s : float
+    speed_m_s, turn_rate_deg_s : float
         Positive.
 
     Returns
@@ -60,7 +57,7 @@ def drive(waypoints_m, *, speed_m_s, turn_rate_rad_s):
     waypoints_m = np.asarray(waypoints_m, float)
     legs_m = np.diff(waypoints_m, axis=0)
     moving = np.hypot(*legs_m.T) > 0
-    if not moving.any() or speed_m_s <= 0 or turn_rate_rad_s <= 0:
+    if not moving.any() or speed_m_s <= 0 or turn_rate_deg_s <= 0:
         raise ValueError("a drive needs two waypoints that differ and positive rates")
     legs_m = legs_m[moving]
     turns = np.diff(np.arctan2(legs_m[:, 1], legs_m[:, 0]), prepend=np.nan)
@@ -68,7 +65,7 @@ def drive(waypoints_m, *, speed_m_s, turn_rate_rad_s):
     xy, yaw, t = [waypoints_m[0]], [float(np.arctan2(legs_m[0, 1], legs_m[0, 0]))], [0.0]
     for leg_m, turn in zip(legs_m, turns, strict=True):
         if abs(turn) > 1e-9:
-            xy, yaw, t = [*xy, xy[-1]], [*yaw, yaw[-1] + turn], [*t, t[-1] + abs(turn) / turn_rate_rad_s]
+            xy, yaw, t = [*xy, xy[-1]], [*yaw, yaw[-1] + turn], [*t, t[-1] + abs(turn) / np.radians(turn_rate_deg_s)]
         xy, yaw, t = [*xy, xy[-1] + leg_m], [*yaw, yaw[-1]], [*t, t[-1] + np.hypot(*leg_m) / speed_m_s]
     return Drive(np.array(t), np.array(xy), np.array(yaw))
 
@@ -112,13 +109,30 @@ def scan_stamps(driven, rate_hz):
     return np.round(np.arange(count) * 1e9 / rate_hz).astype(np.int64)
 
 
-def tick_stamps(driven):
+def tick_stamps(driven, margin_ns):
     """Return the moments at which the rover's own clock ticks: (n,) int64 nanoseconds from the start of the drive.
 
-    The first is before the first scan and the last after the last, and none coincides with a scan at 10 Hz.
+    The first is `margin_ns` or more before the drive and the last as much after it, and none coincides with a scan
+    at 10 Hz.
     """
-    last_ns = int(np.ceil(driven.t_s[-1] * 1e9))
-    return np.arange(-_TICK_LEAD_NS, last_ns + TICK_NS, TICK_NS, dtype=np.int64)
+    first_ns = -(margin_ns // TICK_NS + 1) * TICK_NS + TICK_NS // 2
+    first_ns -= TICK_NS * (first_ns > -margin_ns)
+    return np.arange(first_ns, _end_ns(driven) + margin_ns + TICK_NS, TICK_NS, dtype=np.int64)
+
+
+def trace_stamps(driven, margin_ns):
+    """Return moments between which a drive is even: (n,) int64 nanoseconds from its start, strictly increasing.
+
+    100 a second, and every moment at which the motion changes: interpolated linearly (positions) and spherically
+    (rotations), the poses then are those of a sensor on the rover to a few micrometres. They reach `margin_ns` beyond
+    both ends.
+    """
+    grid = np.arange(-margin_ns, _end_ns(driven) + margin_ns + _TRACE_NS, _TRACE_NS, dtype=np.int64)
+    return np.union1d(grid, np.round(driven.t_s * 1e9).astype(np.int64))
+
+
+def _end_ns(driven):
+    return int(np.ceil(driven.t_s[-1] * 1e9))
 
 
 def poses(driven, t_ns):
@@ -126,6 +140,11 @@ def poses(driven, t_ns):
     t_s = np.asarray(t_ns) / 1e9
     xy_m = np.column_stack([np.interp(t_s, driven.t_s, axis) for axis in driven.xy_m.T])
     return planar_poses(xy_m, np.interp(t_s, driven.t_s, driven.yaw_rad))
+
+
+def mounted(*, height_m, forward_m, yaw_deg):
+    """Return base_from_sensor (4, 4) of a level sensor: above the floor, before the rover's middle, turned."""
+    return planar_poses([[forward_m, 0.0]], np.radians([yaw_deg]), height_m)[0]
 
 
 def planar_poses(xy_m, yaw_rad, z_m=0.0):
@@ -138,53 +157,3 @@ def planar_poses(xy_m, yaw_rad, z_m=0.0):
     pose[:, :2, 3] = xy_m
     pose[:, 2, 3] = z_m
     return pose
-
-
-def localise(world_from_base, *, noise_m, noise_rad, update_distance_m, update_angle_rad, seed):
-    """Return what a localiser publishes: noisy poses, and only after enough motion, as AMCL does.
-
-    ASSUME the errors of one update are independent of the last one's, Gaussian, the same in all directions.
-
-    Parameters
-    ----------
-    world_from_base : (n, 4, 4) float64
-        True planar poses at the rover's ticks.
-    noise_m, noise_rad : float
-        Standard deviation of x and of y, and of the heading.
-    update_distance_m, update_angle_rad : float
-        Motion since the last update that brings the next.
-    seed : int
-
-    Returns
-    -------
-    tick : (m,) int64
-        The ticks with an update: the first, the last, and those after enough motion.
-    believed : (m, 4, 4) float64
-        world_from_base with its error.
-    """
-    xy_m, yaw = world_from_base[:, :2, 3], _yaw(world_from_base)
-    tick = [0]
-    for i in range(1, len(yaw)):
-        turned = abs(np.angle(np.exp(1j * (yaw[i] - yaw[tick[-1]]))))
-        moved_m = np.hypot(*(xy_m[i] - xy_m[tick[-1]]))
-        if moved_m >= update_distance_m or turned >= update_angle_rad or i == len(yaw) - 1:
-            tick.append(i)
-    error = np.random.default_rng([seed, _LOCALISER_STREAM]).standard_normal((len(tick), 3))
-    return np.array(tick), planar_poses(xy_m[tick] + noise_m * error[:, :2], yaw[tick] + noise_rad * error[:, 2])
-
-
-def odometry(world_from_base, *, seed):
-    """Return odom_from_base (n, 4, 4): the motion summed up from its start with a small scale error, so it drifts."""
-    scale = 1 + _ODOMETRY_SCALE_ERROR * np.random.default_rng([seed, _ODOMETRY_STREAM]).standard_normal(2)
-    yaw = np.unwrap(_yaw(world_from_base))
-    step_m = np.diff(world_from_base[:, :2, 3], axis=0)
-    believed_yaw = scale[0] * (yaw - yaw[0])
-    # a step is known in the base's frame, and is added in the direction the base is believed to face
-    error = believed_yaw[:-1] - yaw[:-1]
-    step_m = scale[1] * (step_m[:, 0] + 1j * step_m[:, 1]) * np.exp(1j * error)
-    path_m = np.concatenate([[0], np.cumsum(step_m)])
-    return planar_poses(np.column_stack([path_m.real, path_m.imag]), believed_yaw)
-
-
-def _yaw(pose):
-    return np.arctan2(pose[:, 1, 0], pose[:, 0, 0])

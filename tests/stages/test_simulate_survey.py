@@ -11,32 +11,59 @@ from rosbags.typesys import Stores, get_typestore
 from shapely.geometry import shape
 
 import simple_rooms as drawn
-from scanplan import buildingfile, extrusion, se3
+from scanplan import buildingfile, extrusion, frames, se3, surveys
 from scanplan.errors import StageError
 from simulate_survey import simulate_survey
 
 STORE = get_typestore(Stores.ROS1_NOETIC)
+QUIET = {
+    "noise_m": 0.0,
+    "bias_m": 0.0,
+    "quantum_m": 0.0,
+    "grazing_from_deg": 90.0,
+    "glass_pass": 1.0,
+    "glass_drop": 0.0,
+}
+NOISY = {**QUIET, "noise_m": 0.01, "bias_m": 0.005, "quantum_m": 0.002, "grazing_from_deg": 75.0}
+SURE = {"noise_m": 0.0, "noise_deg": 0.0, "drift_m": 0.0, "drift_deg": 0.0, "jumps_per_min": 0.0}
 SETTINGS = {
     "seed": 7,
-    "sensor_height_m": 0.4,
-    "mount_forward_m": 0.1,
-    "mount_yaw_deg": 30.0,
-    "n_azimuth": 120,
-    "scan_rate_hz": 10.0,
-    "speed_m_s": 0.6,
-    "turn_rate_deg_s": 60.0,
-    "range_noise_m": 0.0,
-    "max_range_m": 100.0,
-    "pose_noise_m": 0.0,
-    "pose_noise_deg": 0.0,
-    "update_distance_m": 0.25,
-    "update_angle_deg": 11.5,
+    "mount": {"height_m": 0.4, "forward_m": 0.1, "yaw_deg": 30.0},
+    "sensor": {
+        "model": "vlp16",
+        "n_azimuth": 120,
+        "elevations_deg": None,
+        "field_deg": 270.0,
+        "rate_hz": 10.0,
+        "sweep": True,
+        "min_range_m": 0.0,
+        "max_range_m": 100.0,
+    },
+    "errors": QUIET,
+    "drive": {"speed_m_s": 0.6, "turn_rate_deg_s": 60.0},
+    "localiser": {
+        **SURE,
+        "drift_time_s": 20.0,
+        "max_jump_m": 0.3,
+        "update_distance_m": 0.25,
+        "update_angle_deg": 11.5,
+        "transform_tolerance_s": 0.1,
+    },
+    "people": {"count": 0, "speed_m_s": 1.0},
 }
 
 
-def run(folder, building, **changes):
-    paths = [folder / name for name in ("survey.bag", "truth.geojson", "truth_poses.tum")]
-    simulate_survey(building, *paths, **{**SETTINGS, **changes})
+def settings(**changes):
+    """The settings with some keys of their groups changed."""
+    return {
+        key: {**value, **changes.get(key, {})} if isinstance(value, dict) else changes.get(key, value)
+        for key, value in SETTINGS.items()
+    }
+
+
+def run(folder, building, *, name="survey.bag", threads=1, **changes):
+    paths = [folder / f for f in (name, "truth.geojson", "truth_poses.tum", "truth_trajectory.tum")]
+    simulate_survey(building, *paths, **settings(**changes), threads=threads)
     return paths
 
 
@@ -51,6 +78,36 @@ def points(cloud):
     return cloud.data.reshape(-1, cloud.point_step)[:, :12].copy().view("<f4").astype(float)
 
 
+def moments(cloud):
+    """The field `time` of every point, seconds after the stamp."""
+    return cloud.data.reshape(-1, cloud.point_step)[:, 18:22].copy().view("<f4")[:, 0].astype(float)
+
+
+def track(file):
+    """Stamps and poses of a TUM file; stamps as whole nanoseconds, which a float does not hold."""
+    rows = [line.split() for line in file.read_text().splitlines()]
+    t_ns = np.array([int(row[0].replace(".", "")) for row in rows])
+    values = np.array([row[1:] for row in rows], float)
+    return t_ns, values[:, :3], values[:, 3:]
+
+
+def deskewed(t_ns, cloud, trajectory):
+    """A cloud's points in the map, each put where the sensor was at its own moment."""
+    fired_ns = t_ns + np.round(moments(cloud) * 1e9).astype(np.int64)
+    when, which = np.unique(fired_ns, return_inverse=True)
+    xyz_m, quat, _, covered = se3.interpolate(*trajectory, when, max_gap_s=0.02)
+    assert covered.all()
+    pose = se3.matrix(xyz_m, quat)[which]
+    return np.einsum("nij,nj->ni", pose[:, :3, :3], points(cloud)) + pose[:, :3, 3]
+
+
+def scene_of(building):
+    mesh = extrusion.building_mesh(buildingfile.parse(building.read_bytes(), building))
+    scene = o3d.t.geometry.RaycastingScene()
+    scene.add_triangles(mesh.vertices_m.astype(np.float32), mesh.triangles.astype(np.uint32))
+    return scene
+
+
 @pytest.fixture(scope="module")
 def building(project_root):
     return project_root / "config/buildings/tiny_office.geojson"
@@ -63,24 +120,47 @@ def survey(tmp_path_factory, building):
 
 @pytest.fixture(scope="module")
 def in_the_map(survey):
-    """Every scan's points, put where its true pose has them."""
-    bag, _, poses = survey
-    rows = np.loadtxt(poses)
-    clouds = [points(cloud) for _, cloud in read(bag, "/velodyne_points")]
-    return [se3.transform(m, p) for m, p in zip(se3.matrix(rows[:, 1:4], rows[:, 4:]), clouds, strict=True)]
+    """Every scan's points, each put where the sensor truly was at its moment."""
+    trajectory = track(survey[3])
+    return [deskewed(t_ns, cloud, trajectory) for t_ns, cloud in read(survey[0], "/velodyne_points")]
 
 
 def test_tiny_has_the_scans_a_quick_test_wants(in_the_map):
     assert 60 <= len(in_the_map) <= 120
 
 
-def test_every_point_at_its_true_pose_lies_on_the_building(in_the_map, building):
-    mesh = extrusion.building_mesh(buildingfile.parse(building.read_bytes(), building))
-    scene = o3d.t.geometry.RaycastingScene()
-    scene.add_triangles(mesh.vertices_m.astype(np.float32), mesh.triangles.astype(np.uint32))
-    off_m = scene.compute_distance(np.concatenate(in_the_map).astype(np.float32)).numpy()
+def off_the_building_m(building, xyz_m):
+    return scene_of(building).compute_distance(xyz_m.astype(np.float32)).numpy()
+
+
+def test_every_point_at_its_own_moments_true_pose_lies_on_the_building(in_the_map, building):
+    off_m = off_the_building_m(building, np.concatenate(in_the_map))
     assert len(off_m) > 100_000
     assert off_m.max() < 0.001
+
+
+def test_points_at_their_scans_pose_are_where_the_sweep_has_drawn_them(survey, building):
+    _, xyz_m, quat = track(survey[2])
+    clouds = [cloud for _, cloud in read(survey[0], "/velodyne_points")]
+    drawn_out = [se3.transform(m, points(c)) for m, c in zip(se3.matrix(xyz_m, quat), clouds, strict=True)]
+    off_m = off_the_building_m(building, np.concatenate(drawn_out))
+    # 6 cm or 6 degrees a turn
+    assert 0.05 < off_m.max() < 1.0
+
+
+def test_without_sweep_every_scan_is_taken_at_its_stamp(tmp_path, building):
+    bag, _, poses, _ = run(tmp_path, building, sensor={"sweep": False, "n_azimuth": 30})
+    clouds = [cloud for _, cloud in read(bag, "/velodyne_points")]
+    assert not any(moments(cloud).any() for cloud in clouds)
+    _, xyz_m, quat = track(poses)
+    seen = [se3.transform(m, points(c)) for m, c in zip(se3.matrix(xyz_m, quat), clouds, strict=True)]
+    assert off_the_building_m(building, np.concatenate(seen)).max() < 0.001
+
+
+def test_times_end_at_the_stamp(survey):
+    for _, cloud in read(survey[0], "/velodyne_points"):
+        time_s = moments(cloud)
+        assert (np.diff(time_s) >= 0).all() and -0.1 < time_s[0] < -0.09 and -0.001 < time_s[-1] <= 0
 
 
 def test_points_at_the_sensors_height_lie_on_the_true_faces(in_the_map, survey):
@@ -101,12 +181,13 @@ def test_stamps_of_truth_and_bag_agree_to_the_nanosecond(survey):
 
 
 def test_localiser_covers_every_scan_and_is_true_without_noise(survey):
-    bag, _, poses = survey
+    bag, _, poses, _ = survey
     told = list(read(bag, "/amcl_pose"))
     t_ns = np.array([t for t, _ in told])
     base = np.array([[m.pose.pose.position.x, m.pose.pose.position.y, 0.0] for _, m in told])
     turn = np.array([[0, 0, m.pose.pose.orientation.z, m.pose.pose.orientation.w] for _, m in told])
     scan_ns = np.array([t for t, _ in read(bag, "/velodyne_points")])
+    assert t_ns[0] <= scan_ns[0] - 100_000_000
     xyz_m, quat, _, covered = se3.interpolate(t_ns, base, turn, scan_ns, max_gap_s=5.0)
     assert covered.all()
     mount = se3.matrix([0.1, 0, 0.4], [0, 0, np.sin(np.radians(15)), np.cos(np.radians(15))])
@@ -116,16 +197,88 @@ def test_localiser_covers_every_scan_and_is_true_without_noise(survey):
     assert np.median(np.linalg.norm(sensor_m - np.loadtxt(poses)[:, 1:4], axis=1)) < 0.002
 
 
-def test_same_seed_same_bytes_other_seed_others(survey, building, tmp_path):
-    noisy = {"range_noise_m": 0.01, "pose_noise_m": 0.05, "pose_noise_deg": 1.0, "n_azimuth": 16}
-    first, again, other = (run(tmp_path / n, building, **noisy, seed=s) for n, s in (("a", 7), ("b", 7), ("c", 8)))
+FEW = {"sensor": {"n_azimuth": 16}, "errors": NOISY, "localiser": {"noise_m": 0.05, "drift_m": 0.05}}
+
+
+@pytest.mark.parametrize("name", ["survey.bag", "survey.db3", "survey.mcap"])
+def test_same_seed_same_bytes_other_seed_others(survey, building, tmp_path, name):
+    people = {"count": 2, "speed_m_s": 1.0}
+    first, again, other = (
+        run(tmp_path / n, building, name=name, **FEW, people=people, seed=s) for n, s in (("a", 7), ("b", 7), ("c", 8))
+    )
     assert [p.read_bytes() for p in first] == [p.read_bytes() for p in again]
     assert first[0].read_bytes() != other[0].read_bytes()
     assert first[1].read_bytes() == other[1].read_bytes() == survey[1].read_bytes()
 
 
+def test_two_processes_write_the_same_bytes(building, tmp_path):
+    one, two = (run(tmp_path / str(n), building, threads=n, **FEW) for n in (1, 2))
+    assert [p.read_bytes() for p in one] == [p.read_bytes() for p in two]
+
+
+def test_true_poses_take_the_sweep_out_of_a_noisy_survey(tmp_path, building):
+    """The mean distance along the ray from where the noise-free wall is, over many points, is below 2 mm."""
+    errors = {**QUIET, "noise_m": 0.01}
+    quiet, noisy = (run(tmp_path / n, building, errors=e) for n, e in (("quiet", QUIET), ("noisy", errors)))
+    trajectory, error_m = track(quiet[3]), []
+    for (t_ns, clean), (_, cloud) in zip(*(read(s[0], "/velodyne_points") for s in (quiet, noisy)), strict=True):
+        moved = deskewed(t_ns, cloud, trajectory) - deskewed(t_ns, clean, trajectory)
+        error_m.append(np.linalg.norm(points(cloud), axis=1) - np.linalg.norm(points(clean), axis=1))
+        np.testing.assert_allclose(np.linalg.norm(moved, axis=1), np.abs(error_m[-1]), atol=1e-5)
+    assert np.std(np.concatenate(error_m)) == pytest.approx(0.01, rel=0.01)
+    assert abs(np.mean(np.concatenate(error_m))) < 2e-4
+
+
+@pytest.mark.parametrize("name", ["survey.bag", "survey.db3", "survey.mcap"])
+def test_stages_read_the_survey_whatever_it_is_written_as(tmp_path, building, name):
+    bag, _, poses, _ = run(tmp_path, building, name=name, sensor={"n_azimuth": 30})
+    for pose_topic in (None, "/tf"):
+        with surveys.open_survey([str(bag)], pose_topic=pose_topic, min_range_m=0.1, max_range_m=100.0) as opened:
+            assert not opened.planar
+            t_ns, xyz_m, _ = track(poses)
+            np.testing.assert_array_equal(opened.stamps(), t_ns)
+            chain, edges = t_ns[10:-10], opened.pose_edges()
+            placed, _, covered = frames.world_from_sensor(edges, chain, max_gap_s=5.0)
+            assert covered.all()
+            assert np.median(np.linalg.norm(placed[:, :3, 3] - xyz_m[10:-10], axis=1)) < 0.01
+            scan = next(iter(opened.scans([5])))
+            assert len(scan.xyz_m) > 400 and scan.time_s.min() >= -0.1 and scan.time_s.max() <= 0
+
+
+@pytest.mark.parametrize(("n_beams", "field_deg", "closed"), [(271, 270.0, False), (180, 360.0, True)])
+def test_a_laser_scanners_survey_is_planar_and_on_the_walls(tmp_path, building, n_beams, field_deg, closed):
+    sensor = {"model": "laser", "n_azimuth": n_beams, "field_deg": field_deg}
+    bag, _, _, trajectory = run(tmp_path, building, sensor=sensor)
+    with surveys.open_survey([str(bag)], min_range_m=0.1, max_range_m=100.0) as opened:
+        assert opened.planar
+        scans = list(opened.scans(range(len(opened.stamps()))))
+    seen, way = [], track(trajectory)
+    for scan in scans:
+        fired_ns = scan.t_ns + np.round(scan.time_s * 1e9).astype(np.int64)
+        # the scanner's first beam is at the stamp
+        assert fired_ns.min() == scan.t_ns and fired_ns.max() < scan.t_ns + 100_000_000
+        xyz_m, quat, _, covered = se3.interpolate(*way, fired_ns, max_gap_s=0.02)
+        assert covered.all()
+        pose = se3.matrix(xyz_m, quat)
+        seen.append(np.einsum("nij,nj->ni", pose[:, :3, :3], scan.xyz_m) + pose[:, :3, 3])
+    assert off_the_building_m(building, np.concatenate(seen)).max() < 0.001
+
+
+def test_contradicting_settings_end_in_one_line(tmp_path, building):
+    for wrong, message in (
+        ({"sensor": {"model": "lidar"}}, "elevations_deg is None with model lidar"),
+        ({"sensor": {"elevations_deg": [0.0]}}, "leave it null"),
+        ({"sensor": {"min_range_m": 200.0}}, "not below max_range_m"),
+        ({"errors": {"glass_pass": 0.8, "glass_drop": 0.3}}, "add up to more than 1"),
+    ):
+        with pytest.raises(StageError, match=message):
+            run(tmp_path, building, **wrong)
+    assert not list(tmp_path.iterdir())
+
+
 def test_demo_is_a_floor_the_rover_can_drive(project_root, tmp_path):
-    bag, truth, poses = run(tmp_path, project_root / "config/buildings/demo_office.geojson", n_azimuth=4)
+    building = project_root / "config/buildings/demo_office.geojson"
+    bag, truth, poses, _ = run(tmp_path, building, sensor={"n_azimuth": 4})
     rooms = [f["properties"] for f in json.loads(truth.read_text())["features"] if f["properties"]["kind"] == "room"]
     assert 900 <= len(poses.read_text().splitlines()) <= 1300
     assert len(rooms) == 13 and sum(r["visited"] for r in rooms) == 10 and all(r["name"] for r in rooms)

@@ -1,14 +1,12 @@
-"""The bag, read back with rosbags alone."""
-
-import dataclasses
+"""The recording, read back with rosbags alone."""
 
 import numpy as np
 import pytest
 from rosbags.rosbag1 import Reader
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from scanplan import rover, surveybag
-from scanplan.raycast import Returns
+from scanplan import bags, rover, scanmessages, sensors, surveybag, surveymessages
+from scanplan.sweeps import Scan
 
 # as ROS noetic itself gives them (rosmsg md5)
 MD5 = {
@@ -19,10 +17,18 @@ MD5 = {
 }
 T_NS = surveybag.EPOCH_NS + np.array([0, 100_000_000, 200_000_000])
 POSES = rover.planar_poses([[1, 2], [1.5, 2], [1.5, 2.5]], [0.0, 0.0, np.pi / 2])
-SCANS = [
-    Returns(np.full((n, 3), [1.5, -2.25, 0.125], np.float32), np.full(n, 80, np.float32), np.arange(n, dtype=np.uint16))
-    for n in (3, 0, 5)
-]
+COMMON = {"rate_hz": 10.0, "sweep": True, "min_range_m": 0.3, "max_range_m": 30.0}
+LIDAR, LASER = sensors.vlp16(4, **COMMON), sensors.laser(5, 180.0, **COMMON)
+
+
+def scan_of(n_returns, shape=(4, 16)):
+    """The first rays come back, the i-th from 1 + i metres."""
+    i = np.arange(np.prod(shape), dtype=np.float32).reshape(shape)
+    return Scan(np.where(i < n_returns, 1 + i, np.float32(np.nan)), 80 + 0 * i)
+
+
+SCANS = [scan_of(n) for n in (3, 0, 20)]
+TIME_S = np.float32([-0.075, -0.05])
 
 
 @pytest.fixture(scope="module")
@@ -39,10 +45,13 @@ def messages(tmp_path_factory):
 def write(path):
     surveybag.write(
         path,
-        surveybag.clouds(T_NS, SCANS),
-        surveybag.mounting(T_NS[0] - 20_000_000, rover.planar_poses([[0.1, 0]], [np.pi / 2], 0.4)[0]),
-        surveybag.localiser_poses(T_NS + 30_000_000, POSES, noise_m=0.05, noise_rad=0.02),
-        surveybag.odometry(T_NS + 10_000_000, POSES),
+        scanmessages.scans(T_NS, LIDAR, SCANS),
+        surveymessages.mounting(
+            T_NS[0] - 20_000_000, rover.mounted(height_m=0.4, forward_m=0.1, yaw_deg=90.0), "velodyne"
+        ),
+        surveymessages.localiser_poses(T_NS + 30_000_000, POSES, noise_m=0.05, noise_rad=0.02),
+        surveymessages.odometry(T_NS + 10_000_000, POSES),
+        surveymessages.transforms(T_NS + 10_000_000, "map", "odom", POSES, ahead_ns=500_000_000),
     )
 
 
@@ -58,10 +67,11 @@ def test_types_are_those_of_ros_and_maps_are_latched(messages):
 
 def test_messages_are_in_order_and_recorded_at_their_stamps(messages):
     stamps = [t for _, t, _ in messages]
-    assert len(stamps) == 10 and stamps == sorted(stamps)
+    assert len(stamps) == 13 and stamps == sorted(stamps)
     for connection, t_ns, message in messages:
-        header = message.transforms[0].header if connection.topic == "/tf_static" else message.header
-        assert header.stamp.sec * 10**9 + header.stamp.nanosec == t_ns
+        header = message.transforms[0].header if connection.topic.startswith("/tf") else message.header
+        ahead_ns = 500_000_000 if connection.topic == "/tf" else 0
+        assert header.stamp.sec * 10**9 + header.stamp.nanosec == t_ns + ahead_ns
     assert [m.header.seq for m in on(messages, "/velodyne_points")] == [0, 1, 2]
 
 
@@ -76,15 +86,57 @@ def test_clouds_are_a_velodyne_drivers(messages):
         ("ring", 16, 4, 1),
         ("time", 18, 7, 1),
     ]
-    for cloud, scan in zip(clouds, SCANS, strict=True):
-        n = len(scan.ring)
+    for cloud, n in zip(clouds, (3, 0, 20), strict=True):
         assert (cloud.header.frame_id, cloud.height, cloud.width) == ("velodyne", 1, n)
         assert (cloud.point_step, cloud.row_step, len(cloud.data), cloud.is_dense) == (22, 22 * n, 22 * n, True)
         rows = cloud.data.reshape(n, 22)
-        np.testing.assert_array_equal(rows[:, :12].copy().view("<f4"), scan.xyz_m)
-        np.testing.assert_array_equal(rows[:, 12:16].copy().view("<f4")[:, 0], scan.intensity)
-        np.testing.assert_array_equal(rows[:, 16:18].copy().view("<u2")[:, 0], scan.ring)
-        assert not rows[:, 18:].any()
+        xyz_m = LIDAR.direction.reshape(-1, 3)[:n] * (1 + np.arange(n, dtype=np.float32))[:, None]
+        np.testing.assert_array_equal(rows[:, :12].copy().view("<f4"), xyz_m)
+        assert (rows[:, 12:16].copy().view("<f4") == 80).all()
+        np.testing.assert_array_equal(rows[:, 16:18].copy().view("<u2")[:, 0], np.tile(LIDAR.ring, 2)[:n])
+        np.testing.assert_array_equal(rows[:, 18:].copy().view("<f4")[:, 0], np.repeat(TIME_S, 16)[:n])
+
+
+def test_transforms_are_stamped_ahead_and_recorded_when_sent(messages):
+    for message, pose in zip(on(messages, "/tf"), POSES, strict=True):
+        (motion,) = message.transforms
+        assert (motion.header.frame_id, motion.child_frame_id) == ("map", "odom")
+        np.testing.assert_allclose([motion.transform.translation.x, motion.transform.translation.y], pose[:2, 3])
+
+
+@pytest.mark.parametrize("name", ["scan.bag", "scan.db3", "scan.mcap"])
+def test_a_laser_scanner_gives_laser_scans(tmp_path, name):
+    surveybag.write(tmp_path / name, scanmessages.scans(T_NS, LASER, [scan_of(n, (5, 1)) for n in (5, 0, 2)]))
+    with bags.opened(tmp_path / name) as bag:
+        full, empty, some = (bag.decode(connection, raw) for connection, _, raw in bag.messages(["/scan"]))
+    assert full.header.frame_id == "laser"
+    angles = [full.angle_min, full.angle_max, full.angle_increment]
+    np.testing.assert_allclose(angles, np.radians([-90, 90, 45]), rtol=1e-6)
+    times = [full.time_increment, full.scan_time, full.range_min, full.range_max]
+    np.testing.assert_allclose(times, [0.1 / 8, 0.1, 0.3, 30.0], rtol=1e-6)
+    np.testing.assert_array_equal(full.ranges, [1, 2, 3, 4, 5])
+    assert np.isinf(empty.ranges).all() and not empty.intensities.any()
+    np.testing.assert_array_equal(some.ranges, [1, 2, np.inf, np.inf, np.inf])
+    assert sorted(tmp_path.iterdir()) == [tmp_path / name]
+
+
+@pytest.mark.parametrize("name", ["survey.db3", "survey.mcap"])
+def test_ros2_recordings_hold_the_same(tmp_path, messages, name):
+    write(tmp_path / name)
+    with bags.opened(tmp_path / name) as bag:
+        found = [(c.topic, t_ns, bag.decode(c, raw)) for c, t_ns, raw in bag.messages([t.name for t in bag.topics])]
+    assert [(topic, t) for topic, t, _ in found] == [(c.topic, t) for c, t, _ in messages]
+    for (topic, _, ros2), (_, _, ros1) in zip(found, messages, strict=True):
+        if topic == "/velodyne_points":
+            np.testing.assert_array_equal(ros2.data, ros1.data)
+    write(tmp_path / f"again_{name}")
+    assert (tmp_path / name).read_bytes() == (tmp_path / f"again_{name}").read_bytes()
+
+
+def test_a_recording_of_another_kind_is_no_recording(tmp_path):
+    with pytest.raises(ValueError, match=r"\.bag, \.db3 or \.mcap"):
+        write(tmp_path / "survey.zip")
+    assert not list(tmp_path.iterdir())
 
 
 def test_poses_are_amcls(messages):
@@ -120,7 +172,7 @@ def test_bag_is_replaced_whole_or_left_alone(tmp_path):
     write(path)
     assert path.read_bytes() == before
 
-    broken = dataclasses.replace(SCANS[0], intensity=np.zeros(99, np.float32))
-    with pytest.raises(ValueError, match="broadcast"):
-        surveybag.write(path, surveybag.clouds(T_NS, [SCANS[0], broken, SCANS[2]]))
+    broken = Scan(SCANS[0].range_m, np.zeros(1, np.float32))
+    with pytest.raises(IndexError):
+        surveybag.write(path, scanmessages.scans(T_NS, LIDAR, [SCANS[0], broken, SCANS[2]]))
     assert path.read_bytes() == before and list(tmp_path.iterdir()) == [path]

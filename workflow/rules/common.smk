@@ -59,9 +59,14 @@ def or_end(function, *arguments):
 
 DATASETS = or_end(given_datasets)
 SETTINGS = {name: or_end(settings_of, path) for name, path in DATASETS.items()}
+SIMULATED = (
+    f"survey.{SETTINGS[DEMO]['simulate']['recording']}"
+    if DEMO in SETTINGS
+    else "survey.bag"
+)
 RECORDINGS = {
     name: (
-        [f"results/{name}/survey/survey.bag"]
+        [f"results/{name}/survey/{SIMULATED}"]
         if path is None
         else or_end(datasets.find_files, path)
     )
@@ -164,7 +169,7 @@ def simulated_survey(wildcards):
     return {
         key: value
         for key, value in SETTINGS[DEMO]["simulate"].items()
-        if key != "building"
+        if key not in ("building", "recording")
     }
 
 

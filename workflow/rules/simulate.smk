@@ -4,9 +4,10 @@ rule simulate_survey:
         building=building,
         code=code_of("simulate_survey"),
     output:
-        bag="results/{dataset}/survey/survey.bag",
+        recording=f"results/{{dataset}}/survey/{SIMULATED}",
         truth="results/{dataset}/survey/truth.geojson",
         true_poses="results/{dataset}/survey/truth_poses.tum",
+        true_trajectory="results/{dataset}/survey/truth_trajectory.tum",
     log:
         "logs/{dataset}/simulate_survey.log",
     benchmark:
