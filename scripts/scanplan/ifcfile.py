@@ -59,7 +59,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Model:
-    """A building model: its storeys from below (name, height of the floor in metres), its parts in order of the file."""
+    """A building model: its storeys from below (name, height of the floor, metres), its parts in the file's order."""
 
     storeys: tuple
     parts: tuple

@@ -64,7 +64,8 @@ def _triangles(data, suffix, source):
         # process=False keeps the corners as they are; no resolver, so that no other file is read
         loaded = trimesh.load_mesh(io.BytesIO(data), file_type=suffix[1:], process=False)
         triangles = np.array(loaded.triangles, float).reshape(-1, 3, 3)
-    except Exception as error:  # noqa: BLE001, trimesh's readers raise whatever their parsing meets
+    # trimesh's readers raise whatever their parsing meets
+    except Exception as error:
         told = str(error).splitlines()[0][:120] if str(error) else type(error).__name__
         raise StageError(
             f"{source}: cannot be read as {suffix[1:].upper()} ({told}); it is cut off or of another format,"

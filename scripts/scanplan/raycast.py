@@ -8,7 +8,15 @@ import open3d as o3d
 from scanplan.extrusion import SURFACES
 
 _NOISE_STREAM = 0
-_REFLECTIVITY = {"wall": 80.0, "floor": 30.0, "ceiling": 90.0, "furniture": 50.0, "glass": 10.0, "door": 60.0, "other": 50.0}
+_REFLECTIVITY = {
+    "wall": 80.0,
+    "floor": 30.0,
+    "ceiling": 90.0,
+    "furniture": 50.0,
+    "glass": 10.0,
+    "door": 60.0,
+    "other": 50.0,
+}
 _VLP16_ELEVATION_DEG = np.arange(-15.0, 16.0, 2.0)
 _VLP16_FIRING_ORDER = np.array([0, 8, 1, 9, 2, 10, 3, 11, 4, 12, 5, 13, 6, 14, 7, 15])
 

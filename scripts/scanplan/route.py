@@ -19,7 +19,7 @@ _MARGIN_M = 0.02
 _FINE_M, _COARSE_M, _COARSE_ABOVE_M2 = 0.05, 0.1, 300.0
 # within this of an obstacle a step costs up to (1 + _NARROW) times its length: the way keeps to the middle
 _PREFERRED_M, _NARROW = 0.6, 3.0
-_ROOMY_M, _YIELD_M = 0.6, 0.05
+_ROOMY_M, _YIELD_M = 0.6, 0.1
 # how far from a stop, by cost, the middle of what is visited may be; the middle is where nothing near has more space
 # about it, and all that has plenty
 _SPACING_M, _RIDGE_M, _PLENTY_M = 6.0, 0.6, 1.5
@@ -245,7 +245,8 @@ def _joined(stops, ways, *, fixed_start, closed):
 
 def _straightened(grid, leg, part, obstacles_m):
     """Corners of a leg, its last left out, that keep the space about it that its cells have, up to a limit."""
-    xy_m, near_m = grid.xy_m[leg], np.minimum(grid.near_m[leg], _ROOMY_M)
+    xy_m = grid.xy_m[leg]
+    near_m = np.minimum(shapely.distance(shapely.points(xy_m), obstacles_m), _ROOMY_M)
     kept, waiting = [], [(0, len(xy_m) - 1)]
     while waiting:
         a, b = waiting.pop()

@@ -38,7 +38,18 @@ class Body:
 
 @dataclass(frozen=True)
 class Storey:
-    """Bodies; openings as (LineString, type, sill_m, lintel_m); spaces as (name, (t, 3, 3)); height to the next floor."""
+    """One storey, its floor at z = 0.
+
+    Attributes
+    ----------
+    bodies : tuple of Body
+    openings : tuple of (LineString, str, float, float)
+        Stretch of the wall's middle line, type, lower and upper edge.
+    spaces : tuple of (str, (t, 3, 3) float64)
+        Name and surface of every room that the model tells.
+    height_m : float
+        Up to the next storey's floor.
+    """
 
     bodies: tuple
     openings: tuple

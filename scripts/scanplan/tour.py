@@ -1,5 +1,7 @@
 """Short tours through places whose distances are known."""
 
+from itertools import pairwise
+
 import numpy as np
 
 _GAIN = 1e-9
@@ -32,7 +34,7 @@ def shortest(metres, *, closed, first=None):
 
 def length(tour, metres, *, closed):
     """Return how long a tour is."""
-    legs = sum(metres[a, b] for a, b in zip(tour, tour[1:], strict=False))
+    legs = sum(metres[a, b] for a, b in pairwise(tour))
     return float(legs + (metres[tour[-1], tour[0]] if closed else 0.0))
 
 

@@ -36,9 +36,9 @@ def features(plan, slice_height_m):
         for w in plan.walls
         for run in pairwise(w.line_m.coords)
     ]
-    return faces + walls + [
-        opening_feature(o.line_m, o.type, o.sill_m, o.lintel_m) for o in plan.openings
-    ] + _rooms(plan)
+    return (
+        faces + walls + [opening_feature(o.line_m, o.type, o.sill_m, o.lintel_m) for o in plan.openings] + _rooms(plan)
+    )
 
 
 def wall_faces(plan, slice_height_m):
