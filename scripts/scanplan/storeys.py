@@ -17,6 +17,7 @@ _STEP_M, _HEADROOM_M, _SPACING_M = 0.06, 0.15, 0.12
 # ASSUME gaps in the outer walls up to twice this are openings as high as the wall, and seams in the floor thresholds
 _CLOSED_GAP_M, _SEAM_M = 0.6, 0.3
 _MIN_ROOM_M = 0.6
+_SOME_FLOOR = 0.05
 _BELOW_M, _ABOVE_M = 0.6, 0.6
 _SAME_M = 0.01
 
@@ -132,7 +133,7 @@ def ground(storey, slice_height_m, source):
         raise StageError(f"{source}: no wall is cut at {slice_height_m:g} m above the floor; lower or raise the sensor")
     shadow = _shadow([b.triangles_m for b in storey.bodies if b.encloses], storey.height_m)
     outline = _filled(shadow)
-    floor, notes = _floor(storey, outline, source)
+    floor, notes = _floor(storey, outline, solid, source)
     return Ground(
         solid=solid,
         faces=slicing.faces(solid, sheets, outline),
@@ -218,11 +219,11 @@ def _filled(shadow):
     return shapely.union_all([*parts, shadow], grid_size=1e-4)
 
 
-def _floor(storey, outline, source):
+def _floor(storey, outline, solid, source):
     levels = [t for body in storey.bodies for _, t in body.surfaces]
     flat = [_level(t[(np.abs(t[..., 2]) <= _FLOOR_WITHIN_M).all(axis=1)]) for t in levels]
     floor = shapely.union_all(shapely.polygons(np.concatenate(flat)), grid_size=1e-4)
-    if floor.area < 0.05 * outline.area:
+    if floor.difference(solid).area < _SOME_FLOOR * outline.area:
         return outline, (f"{source}: has no floor at z = 0; the rover drives on all that the outer walls enclose",)
     closed = floor.buffer(_SEAM_M, join_style="mitre").buffer(-_SEAM_M, join_style="mitre")
     return closed.intersection(outline, grid_size=1e-4), ()

@@ -8,8 +8,11 @@ import pytest
 import shapely
 from rosbags.rosbag1 import Reader
 from rosbags.typesys import Stores, get_typestore
+from scipy.spatial.transform import Rotation
 from shapely.geometry import shape
 
+import boxmaking
+import ifcmaking
 import simple_rooms as drawn
 from scanplan import buildingfile, extrusion, se3
 from scanplan.errors import StageError
@@ -149,3 +152,29 @@ def test_a_bad_building_ends_in_one_line_and_no_output(tmp_path, features, messa
         run(tmp_path, building)
     assert str(refusal.value).startswith(str(building))
     assert list(tmp_path.iterdir()) == [building]
+
+
+@pytest.mark.parametrize(
+    ("name", "data", "reading"),
+    [
+        ("room.stl", boxmaking.written(boxmaking.room() * 1000, "stl"), {"unit": "mm"}),
+        ("room.ifc", ifcmaking.model(("Ground", "Upper")), {"storey": "Upper", "route": "rooms"}),
+    ],
+)
+def test_meshes_and_models_are_surveyed_on_a_way_of_the_rover_s_own(tmp_path, name, data, reading):
+    (tmp_path / name).write_bytes(data)
+    bag, truth, poses = run(tmp_path, tmp_path / name, n_azimuth=16, **reading)
+    found = [
+        shape(f["geometry"]) for f in json.loads(truth.read_text())["features"] if f["properties"]["kind"] == "face"
+    ]
+    world_from_sensor = np.loadtxt(poses, ndmin=2)
+    clouds = [points(cloud) for _, cloud in read(bag, "/velodyne_points")]
+    assert len(clouds) == len(world_from_sensor) > 5
+    walls = shapely.union_all(found)
+    level = clouds[0][np.abs(clouds[0][:, 2]) < 0.25]
+    off_m = shapely.distance(walls, shapely.points(map_frame(level, world_from_sensor[0])[:, :2]))
+    assert len(level) > 20 and np.mean(off_m < 1e-3) > 0.6
+
+
+def map_frame(xyz_m, pose):
+    return xyz_m @ Rotation.from_quat(pose[4:]).as_matrix().T + pose[1:4]
