@@ -5,24 +5,15 @@ from itertools import pairwise
 
 import numpy as np
 import shapely
-from scipy.ndimage import distance_transform_edt, maximum_filter
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import dijkstra
 from shapely import LineString, Point
 
-from scanplan import tour
+from scanplan import roadmap, tour
 from scanplan.errors import StageError
 
 KINDS = ("given", "rooms", "hallways")
-# what the planning keeps beyond the stated clearance, so that steps between cells keep the clearance itself
-_MARGIN_M = 0.02
-_FINE_M, _COARSE_M, _COARSE_ABOVE_M2 = 0.05, 0.1, 300.0
-# within this of an obstacle a step costs up to (1 + _NARROW) times its length: the way keeps to the middle
-_PREFERRED_M, _NARROW = 0.6, 3.0
 _ROOMY_M, _YIELD_M = 0.6, 0.1
-# how far from a stop, by cost, the middle of what is visited may be; the middle is where nothing near has more space
-# about it, and all that has plenty
-_SPACING_M, _RIDGE_M, _PLENTY_M = 6.0, 0.6, 1.5
+# how far from a stop, by cost, the middle of what is visited may be
+_SPACING_M = 6.0
 _HALL_WIDTH_M, _HALL_ASPECT, _HALL_JOINT_M = 3.5, 4.0, 0.5
 
 
@@ -41,16 +32,6 @@ class Route:
     waypoints_m: np.ndarray
     reached: tuple
     missed: tuple
-
-
-@dataclass(frozen=True)
-class _Grid:
-    """Cells that the rover's middle can be in: place, free space about it, if in the middle; costs of steps."""
-
-    xy_m: np.ndarray
-    near_m: np.ndarray
-    middle: np.ndarray
-    steps: coo_array
 
 
 def plan(floor_m, obstacles_m, rooms, source, *, kind, clearance_m, start_m=None):
@@ -89,8 +70,8 @@ def plan(floor_m, obstacles_m, rooms, source, *, kind, clearance_m, start_m=None
     wanted, area_m = _asked(floor_m, rooms, kind, source)
     free = free_ground(area_m, obstacles_m, clearance_m)
     part = _part_of(free, start_m, clearance_m, wanted, source)
-    grid = _grid(part, obstacles_m, clearance_m)
-    first = None if start_m is None else _nearest(grid, start_m)
+    grid = roadmap.over(part, clearance_m)
+    first = None if start_m is None else roadmap.nearest(grid, start_m)
     stops, reached, ways = _stops(grid, wanted, first, _SPACING_M)
     if not any(reached):
         raise StageError(
@@ -160,47 +141,14 @@ def _part_of(free, start_m, clearance_m, rooms, source):
     return held[0]
 
 
-def _grid(part, obstacles_m, clearance_m):
-    if part.is_empty:
-        return _Grid(np.empty((0, 2)), np.empty(0), np.empty(0, bool), coo_array((0, 0)))
-    cell_m = _FINE_M if part.area < _COARSE_ABOVE_M2 else _COARSE_M
-    x0, y0, x1, y1 = part.bounds
-    x, y = (np.arange(low - cell_m, high + 2 * cell_m, cell_m) for low, high in ((x0, x1), (y0, y1)))
-    inner = part.buffer(-_MARGIN_M)
-    shapely.prepare(inner)
-    inside = shapely.contains_xy(inner, *np.meshgrid(x, y))
-    near_m = distance_transform_edt(inside) * cell_m + clearance_m
-    number = np.full(inside.shape, -1)
-    number[inside] = np.arange(np.count_nonzero(inside))
-    row, column = np.nonzero(inside)
-    ridge_m = maximum_filter(near_m, 1 + 2 * round(_RIDGE_M / 2 / cell_m))
-    middle = (near_m >= np.minimum(ridge_m - cell_m / 2, _PLENTY_M))[inside]
-    near_m = near_m[inside]
-    cost = 1 + _NARROW * np.clip(1 - (near_m - clearance_m) / _PREFERRED_M, 0, 1)
-    steps = [_steps(number, cost, dy, dx, cell_m) for dy, dx in ((0, 1), (1, 0), (1, 1), (1, -1))]
-    a, b, metres = (np.concatenate(column) for column in zip(*steps, strict=True))
-    costs = coo_array((metres, (a, b)), shape=(len(row),) * 2).tocsr()
-    return _Grid(np.column_stack([x[column], y[row]]), near_m, middle, costs)
-
-
-def _steps(number, cost, dy, dx, cell_m):
-    """Pairs of neighbouring cells in one direction, and what going from one to the other costs."""
-    rows, columns = number.shape
-    here = number[: rows - dy, max(-dx, 0) : columns - max(dx, 0)].ravel()
-    there = number[dy:, max(dx, 0) : columns + min(dx, 0)].ravel()
-    both = (here >= 0) & (there >= 0)
-    a, b = here[both], there[both]
-    return a, b, cell_m * np.hypot(dx, dy) * (cost[a] + cost[b]) / 2
-
-
 def _stops(grid, rooms, first, spacing_m):
     """Places in the rooms, the middle of a room everywhere near one; which rooms have any; ways to every stop.
 
     The ways are costs (stops, cells) and the cell before each (stops, cells).
     """
-    cells = [_cells(grid, room) for _, room in rooms]
+    cells = [roadmap.cells(grid, room) for _, room in rooms]
     stops = [c[0] for c in cells if len(c)]
-    ways = [_ways(grid, stop) for stop in ([] if first is None else [first]) + stops]
+    ways = [roadmap.ways(grid, stop) for stop in ([] if first is None else [first]) + stops]
     stops = ([] if first is None else [first]) + stops
     # ASSUME what is seen from the middle of a room is the room: cells along its walls need no visit
     middle = [c[grid.middle[c]] for c in cells]
@@ -209,25 +157,9 @@ def _stops(grid, rooms, first, spacing_m):
     # a drive needs two places; then always the one farthest from those chosen
     while len(asked) > 1 and (len(stops) < 2 or far.max() > spacing_m):
         stops.append(int(asked[far.argmax()]))
-        ways.append(_ways(grid, stops[-1]))
+        ways.append(roadmap.ways(grid, stops[-1]))
         far = np.minimum(far, ways[-1][0][asked])
     return stops, [len(c) > 0 for c in cells], ways
-
-
-def _ways(grid, stop):
-    return dijkstra(grid.steps, directed=False, indices=stop, return_predecessors=True)
-
-
-def _cells(grid, room):
-    """The cells of a room, first that with most space about it, of equals the one nearest the room's middle."""
-    shapely.prepare(room)
-    within = np.flatnonzero(shapely.contains_xy(room, *grid.xy_m.T))
-    off_m = np.hypot(*(grid.xy_m[within] - shapely.get_coordinates(room.centroid)[0]).T)
-    return within[np.lexsort((off_m, -np.round(grid.near_m[within], 3)))]
-
-
-def _nearest(grid, xy_m):
-    return int(np.argmin(np.hypot(*(grid.xy_m - np.asarray(xy_m)).T)))
 
 
 def _joined(stops, ways, *, fixed_start, closed):
