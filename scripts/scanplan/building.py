@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scanplan import buildingfile, buildings, extrusion, rover, storeys, truth
+from scanplan import buildingfile, buildings, extrusion, ground, rover, storeys, truth
 from scanplan import route as routes
 from scanplan.errors import StageError
 
@@ -120,8 +120,8 @@ def routed(found, source, *, route, clearance_m, reach_m=0.0, start_m=None):
     if route != "given" or way_m is None:
         kind = "rooms" if route == "given" else route
         clearance_m = max(clearance_m, reach_m)
-        ground = (found.floor_m, found.obstacles_m, found.rooms)
-        planned = routes.plan(*ground, source, kind=kind, clearance_m=clearance_m, start_m=start_m)
+        here = (found.floor_m, found.obstacles_m, found.rooms)
+        planned = routes.plan(*here, source, kind=kind, clearance_m=clearance_m, start_m=start_m)
         way_m, notes = planned.waypoints_m, _told(planned, source)
     rover.check_way(way_m, found.floor_m, found.obstacles_m, source, reach_m=reach_m)
     return replace(found, waypoints_m=way_m, truth=truth.with_visits(found.truth, way_m), notes=(*found.notes, *notes))
@@ -168,19 +168,19 @@ def of_model(model, index, slice_height_m, source, *, doors="open", windows="gla
 
 
 def _of_storey(storey, slice_height_m, source, notes):
-    ground = storeys.ground(storey, slice_height_m, source)
-    faces = [(line, {"kind": "face", "side": side}) for line, side in ground.faces]
+    cut = ground.of_storey(storey, slice_height_m, source)
+    faces = [(line, {"kind": "face", "side": side}) for line, side in cut.faces]
     walls = [
-        (line, {"kind": "wall", "thickness_m": round(thick, 6), "height_m": round(ground.height_m, 6)})
-        for line, thick in storeys.walls(storey, ground, slice_height_m)
+        (line, {"kind": "wall", "thickness_m": round(thick, 6), "height_m": round(cut.height_m, 6)})
+        for line, thick in ground.walls(storey, cut, slice_height_m)
     ]
     openings = [truth.opening_feature(*opening) for opening in storey.openings]
     return Building(
         mesh=extrusion.joined([soup for body in storey.bodies for soup in body.surfaces]),
-        truth=faces + walls + openings + truth.room_features(ground.rooms),
-        rooms=ground.rooms,
-        floor_m=ground.floor_m,
-        obstacles_m=ground.obstacles_m,
+        truth=faces + walls + openings + truth.room_features(cut.rooms),
+        rooms=cut.rooms,
+        floor_m=cut.floor_m,
+        obstacles_m=cut.obstacles_m,
         waypoints_m=None,
-        notes=(*notes, *ground.notes),
+        notes=(*notes, *cut.notes),
     )
