@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from scanplan import atomic, buildingfile, scanmessages, simulation, stagelog, surveybag, surveymessages, sweeps
+from scanplan import atomic, scanmessages, simulation, stagelog, surveybag, surveymessages, sweeps
 from scanplan import truth as ground_truth
 
 
@@ -14,6 +14,7 @@ def simulate_survey(
     true_trajectory,
     *,
     seed,
+    site,
     mount,
     sensor,
     errors,
@@ -22,13 +23,12 @@ def simulate_survey(
     people,
     threads=1,
 ):
-    """Write a drive's recording, the floor's truth (GeoJSON), the sensor's poses at the stamps and its whole way (TUM).
-
-    The recording's suffix says what it is: .bag (ROS1), .db3 or .mcap (ROS2).
-    """
-    plan = buildingfile.parse(Path(building).read_bytes(), building)
+    """Write a drive's recording (.bag, .db3 or .mcap), the floor's truth, the poses at the stamps and the whole way."""
+    found = simulation.site(Path(building).read_bytes(), Path(building), mount, **site)
+    for note in found.notes:
+        stagelog.say(f"simulate_survey: {note}")
     rig = {"mount": mount, "sensor": sensor, "errors": errors, "drive": drive, "people": people}
-    survey = simulation.prepare(plan, building, seed=seed, **rig)
+    survey = simulation.prepare(found, seed=seed, **rig)
     start_ns = surveybag.EPOCH_NS
     belief = simulation.belief(survey, **localiser)
     scans = stagelog.progress(sweeps.scans(survey, threads=threads), "simulate_survey", total=len(survey.t_ns))
@@ -38,7 +38,7 @@ def simulate_survey(
         scanmessages.scans(start_ns + survey.t_ns, survey.sensor, scans),
         *surveymessages.belief(start_ns, belief),
     )
-    atomic.write_text(truth, ground_truth.feature_collection(ground_truth.features(plan, mount["height_m"])))
+    atomic.write_text(truth, ground_truth.feature_collection(found.truth))
     for path, (t_ns, pose) in (
         (true_poses, simulation.true_poses(survey)),
         (true_trajectory, simulation.true_trajectory(survey)),

@@ -33,7 +33,7 @@ def parse(text, source):
         GeoJSON FeatureCollection, coordinates in metres. Every feature has a property `kind`: `wall` (LineString with
         `thickness_m` and optionally `height_m`), `opening` (Point with `width_m`, or LineString along a wall; with
         `type`, `sill_m`, `lintel_m`), `furniture` (Polygon with `height_m`), `room` (Point or Polygon with `name`),
-        and exactly one `waypoints` (LineString). The member `height_m` of the collection is the ceiling (2.7).
+        and at most one `waypoints` (LineString). The member `height_m` of the collection is the ceiling (2.7).
     source : path-like
         What errors name as their origin.
 
@@ -53,10 +53,10 @@ def parse(text, source):
     height_m = _number(document, "height_m", 1.0, 20.0, source, default=2.7)
     of_kind = {k: [rest for kind, *rest in drawn if kind == k] for k in _GEOMETRIES}
     walls = tuple(_wall(*rest, height_m) for rest in of_kind["wall"])
-    if not walls or len(of_kind["waypoints"]) != 1:
+    if not walls or len(of_kind["waypoints"]) > 1:
         raise StageError(
             f"{source}: {len(walls)} walls and {len(of_kind['waypoints'])} features of kind waypoints;"
-            " draw at least one wall and exactly one way for the rover"
+            " draw at least one wall and at most one way for the rover"
         )
     plan = Plan(
         height_m=height_m,
@@ -64,7 +64,7 @@ def parse(text, source):
         openings=tuple(_opening(*rest, walls) for rest in of_kind["opening"]),
         furniture=tuple(_furniture(*rest, height_m) for rest in of_kind["furniture"]),
         room_names=tuple((str(values.get("name", "")), g.representative_point()) for g, values, _ in of_kind["room"]),
-        waypoints_m=shapely.get_coordinates(of_kind["waypoints"][0][0]),
+        waypoints_m=next((shapely.get_coordinates(way) for way, *_ in of_kind["waypoints"]), None),
     )
     _check_names(plan, source)
     return plan

@@ -53,8 +53,8 @@ class Plan:
     furniture : tuple of Furniture
     room_names : tuple of (str, Point)
         A name and a point inside the room that bears it.
-    waypoints_m : (n, 2) float64, n >= 2
-        The corners of the rover's way.
+    waypoints_m : (n, 2) float64, n >= 2, or None
+        The corners of the rover's way, where one is drawn.
     """
 
     height_m: float
@@ -62,7 +62,7 @@ class Plan:
     openings: tuple
     furniture: tuple
     room_names: tuple
-    waypoints_m: np.ndarray
+    waypoints_m: np.ndarray | None
 
 
 def wall_section(plan, z_m):

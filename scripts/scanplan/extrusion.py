@@ -7,7 +7,7 @@ import shapely
 
 from scanplan import buildings
 
-SURFACES = ("wall", "floor", "ceiling", "furniture")
+SURFACES = ("wall", "floor", "ceiling", "furniture", "glass", "door", "other")
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,23 @@ def building_mesh(plan):
         ("ceiling", _slab(ground, plan.height_m, up=False)),
         *(("furniture", extrude([(0.0, f.height_m, f.footprint_m)])) for f in plan.furniture),
     ]
-    corners = np.concatenate([soup for _, soup in soups]).reshape(-1, 3)
+    return joined(soups)
+
+
+def joined(soups):
+    """Return one mesh of triangles given by the kind of their surface.
+
+    Parameters
+    ----------
+    soups : sequence of (str, (t, 3, 3) float64)
+        One of `SURFACES` and the corners of triangles.
+
+    Returns
+    -------
+    Mesh
+        The triangles in the order given, equal corners stored once.
+    """
+    corners = np.concatenate([np.empty((0, 3, 3)), *(soup for _, soup in soups)]).reshape(-1, 3)
     vertices, inverse = np.unique(corners, axis=0, return_inverse=True)
     surface = np.repeat([SURFACES.index(name) for name, _ in soups], [len(soup) for _, soup in soups])
     return Mesh(vertices, inverse.reshape(-1, 3).astype(np.int32), surface.astype(np.uint8))

@@ -7,7 +7,14 @@ import open3d as o3d
 
 from scanplan.extrusion import SURFACES
 
-_REFLECTIVITY = {"wall": 80.0, "floor": 30.0, "ceiling": 90.0, "furniture": 50.0, "glass": 10.0}
+_REFLECTIVITY = {
+    "wall": 80.0,
+    "floor": 30.0,
+    "ceiling": 90.0,
+    "furniture": 50.0,
+    "glass": 10.0,
+    "door": 60.0,
+}
 _UNKNOWN_REFLECTIVITY = 50.0
 
 

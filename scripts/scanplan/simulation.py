@@ -2,17 +2,40 @@
 
 import numpy as np
 
-from scanplan import buildings, clutter, extrusion, localisation, rover, sensors, sweeps
+from scanplan import building, clutter, localisation, rover, sensors, sweeps
 
 
-def prepare(plan, source, *, seed, mount, sensor, errors, drive, people):
+def site(data, source, mount, *, route, clearance_m, **reading):
+    """Read a building and find the rover's way through it.
+
+    Parameters
+    ----------
+    data : bytes
+    source : pathlib.Path
+        The file that `data` is from.
+    mount : dict
+        Settings of `rover.mounted`.
+    route, clearance_m
+        See `building.routed`.
+    **reading
+        Settings of `building.load`.
+
+    Returns
+    -------
+    building.Building
+        With a way.
+    """
+    found = building.load(data, source, slice_height_m=mount["height_m"], **reading)
+    return building.routed(found, source, route=route, clearance_m=clearance_m, reach_m=abs(mount["forward_m"]))
+
+
+def prepare(site, *, seed, mount, sensor, errors, drive, people):
     """Put a rover with a sensor on its way through a floor.
 
     Parameters
     ----------
-    plan : buildings.Plan
-    source : path-like
-        Where the plan is from, for errors.
+    site : building.Building
+        With a way.
     seed : int
     mount, sensor, errors, drive, people : dict
         Settings of `rover.mounted`, `sensors.of_model`, `sensors.errors_of`, `rover.drive` and `clutter.walkers`.
@@ -24,18 +47,16 @@ def prepare(plan, source, *, seed, mount, sensor, errors, drive, people):
     Raises
     ------
     StageError
-        If the way is blocked or settings contradict each other.
+        If settings contradict each other.
     """
-    ground, blocked = buildings.footprint(plan), buildings.obstacles(plan, mount["height_m"])
-    rover.check_way(plan.waypoints_m, ground, blocked, source, reach_m=abs(mount["forward_m"]))
-    device, way = sensors.of_model(**sensor), rover.drive(plan.waypoints_m, **drive)
+    device, way = sensors.of_model(**sensor), rover.drive(site.waypoints_m, **drive)
     return sweeps.Survey(
-        mesh=extrusion.building_mesh(plan),
+        mesh=site.mesh,
         sensor=device,
         errors=sensors.errors_of(device, **errors, seed=seed),
         drive=way,
         base_from_sensor=rover.mounted(**mount),
-        people=clutter.walkers(ground.difference(blocked), until_s=way.t_s[-1], **people, seed=seed),
+        people=clutter.walkers(site.floor_m.difference(site.obstacles_m), until_s=way.t_s[-1], **people, seed=seed),
         t_ns=rover.scan_stamps(way, sensor["rate_hz"]),
         seed=seed,
     )

@@ -7,7 +7,7 @@ import numpy as np
 import shapely
 from shapely import LineString
 
-from scanplan import buildings, se3
+from scanplan import buildings, se3, slicing
 
 _DECIMALS = 6
 
@@ -36,7 +36,9 @@ def features(plan, slice_height_m):
         for w in plan.walls
         for run in pairwise(w.line_m.coords)
     ]
-    return faces + walls + _openings(plan) + _rooms(plan)
+    return (
+        faces + walls + [opening_feature(o.line_m, o.type, o.sill_m, o.lintel_m) for o in plan.openings] + _rooms(plan)
+    )
 
 
 def wall_faces(plan, slice_height_m):
@@ -49,7 +51,7 @@ def wall_faces(plan, slice_height_m):
     section = section.simplify(buildings.GRID_M)
     skin = shapely.boundary(buildings.footprint(plan)).buffer(10 * buildings.GRID_M)
     rings = shapely.get_rings(shapely.get_parts(section))
-    lines = [LineString(run) for ring in rings for run in pairwise(_from_a_corner(ring))]
+    lines = [LineString(run) for ring in rings for run in pairwise(slicing.from_a_corner(ring, buildings.GRID_M))]
     return [(line, "outside" if skin.covers(line) else "inside") for line in lines]
 
 
@@ -71,45 +73,32 @@ def tum(t_ns, world_from_sensor):
     return "".join(lines)
 
 
-def _openings(plan):
+def opening_feature(line_m, kind, sill_m, lintel_m):
+    """Return one opening of the truth; edges in metres above the floor."""
+    width_m = round(line_m.length, _DECIMALS)
+    return line_m, {"kind": "opening", "type": kind, "width_m": width_m, "sill_m": sill_m, "lintel_m": lintel_m}
+
+
+def room_features(rooms):
+    """Return the rooms of the truth, none visited, from (name, Polygon)."""
     return [
-        (
-            o.line_m,
-            {
-                "kind": "opening",
-                "type": o.type,
-                "width_m": round(o.line_m.length, _DECIMALS),
-                "sill_m": o.sill_m,
-                "lintel_m": o.lintel_m,
-            },
-        )
-        for o in plan.openings
+        (room, {"kind": "room", "name": name, "area_m2": round(room.area, _DECIMALS), "visited": False})
+        for name, room in rooms
+    ]
+
+
+def with_visits(drawn, waypoints_m):
+    """Return features with every room marked `visited` that the rover's way leads through; nothing is changed."""
+    way = LineString(waypoints_m)
+    return [
+        (g, {**values, "visited": bool(g.intersects(way))} if values["kind"] == "room" else values)
+        for g, values in drawn
     ]
 
 
 def _rooms(plan):
-    way = LineString(plan.waypoints_m)
-    return [
-        (
-            room,
-            {
-                "kind": "room",
-                "name": name,
-                "area_m2": round(room.area, _DECIMALS),
-                "visited": bool(room.intersects(way)),
-            },
-        )
-        for name, room in buildings.rooms(plan)
-    ]
-
-
-def _from_a_corner(ring):
-    """Coordinates of a closed ring begun where it bends; `simplify` never removes a ring's first vertex."""
-    xy = shapely.get_coordinates(ring)[:-1]
-    before, after = xy[0] - xy[-1], xy[1] - xy[0]
-    straight = abs(before[0] * after[1] - before[1] * after[0]) < buildings.GRID_M * np.hypot(*after)
-    xy = xy[1:] if straight else xy
-    return np.vstack([xy, xy[:1]])
+    rooms = room_features(buildings.rooms(plan))
+    return rooms if plan.waypoints_m is None else with_visits(rooms, plan.waypoints_m)
 
 
 def _rounded(geometry):

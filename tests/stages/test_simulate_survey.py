@@ -8,8 +8,11 @@ import pytest
 import shapely
 from rosbags.rosbag1 import Reader
 from rosbags.typesys import Stores, get_typestore
+from scipy.spatial.transform import Rotation
 from shapely.geometry import shape
 
+import boxmaking
+import ifcmaking
 import simple_rooms as drawn
 from scanplan import buildingfile, extrusion, frames, se3, surveys
 from scanplan.errors import StageError
@@ -28,6 +31,15 @@ NOISY = {**QUIET, "noise_m": 0.01, "bias_m": 0.005, "quantum_m": 0.002, "grazing
 SURE = {"noise_m": 0.0, "noise_deg": 0.0, "drift_m": 0.0, "drift_deg": 0.0, "jumps_per_min": 0.0}
 SETTINGS = {
     "seed": 7,
+    "site": {
+        "route": "given",
+        "clearance_m": 0.3,
+        "storey": None,
+        "unit": "m",
+        "floor_z_m": 0.0,
+        "doors": "open",
+        "windows": "glass",
+    },
     "mount": {"height_m": 0.4, "forward_m": 0.1, "yaw_deg": 30.0},
     "sensor": {
         "model": "vlp16",
@@ -302,3 +314,30 @@ def test_a_bad_building_ends_in_one_line_and_no_output(tmp_path, features, messa
         run(tmp_path, building)
     assert str(refusal.value).startswith(str(building))
     assert list(tmp_path.iterdir()) == [building]
+
+
+@pytest.mark.parametrize(
+    ("name", "data", "reading"),
+    [
+        ("room.stl", boxmaking.written(boxmaking.room() * 1000, "stl"), {"unit": "mm"}),
+        ("room.ifc", ifcmaking.model(("Ground", "Upper")), {"storey": "Upper", "route": "rooms"}),
+    ],
+)
+def test_meshes_and_models_are_surveyed_on_a_way_of_the_rover_s_own(tmp_path, name, data, reading):
+    (tmp_path / name).write_bytes(data)
+    changes = {"site": reading, "sensor": {"n_azimuth": 16, "sweep": False}}
+    bag, truth, poses, _ = run(tmp_path, tmp_path / name, **changes)
+    found = [
+        shape(f["geometry"]) for f in json.loads(truth.read_text())["features"] if f["properties"]["kind"] == "face"
+    ]
+    world_from_sensor = np.loadtxt(poses, ndmin=2)
+    clouds = [points(cloud) for _, cloud in read(bag, "/velodyne_points")]
+    assert len(clouds) == len(world_from_sensor) > 5
+    walls = shapely.union_all(found)
+    level = clouds[0][np.abs(clouds[0][:, 2]) < 0.25]
+    off_m = shapely.distance(walls, shapely.points(map_frame(level, world_from_sensor[0])[:, :2]))
+    assert len(level) > 20 and np.mean(off_m < 1e-3) > 0.6
+
+
+def map_frame(xyz_m, pose):
+    return xyz_m @ Rotation.from_quat(pose[4:]).as_matrix().T + pose[1:4]

@@ -158,10 +158,10 @@ def all_walls(wildcards):
 
 
 def building(wildcards):
-    """The drawing of the building that the demo is simulated in."""
-    return os.path.relpath(
-        f"{workflow.basedir}/config/buildings/{SETTINGS[DEMO]['simulate']['building']}.geojson"
-    )
+    """The file of the building that the demo is simulated in: a path, or the name of a drawing of ours."""
+    named = SETTINGS[DEMO]["simulate"]["building"]
+    drawing = f"{workflow.basedir}/config/buildings/{named}.geojson"
+    return os.path.relpath(drawing) if Path(drawing).exists() else named
 
 
 def simulated_survey(wildcards):

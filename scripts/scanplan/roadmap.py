@@ -1,0 +1,79 @@
+"""A grid over free ground: where the rover's middle can be, and what going from cell to cell costs."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from scipy.ndimage import distance_transform_edt, maximum_filter
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import dijkstra
+
+# what the planning keeps beyond the stated clearance, so that steps between cells keep the clearance itself
+_MARGIN_M = 0.02
+_FINE_M, _COARSE_M, _COARSE_ABOVE_M2 = 0.05, 0.1, 300.0
+# within this of an obstacle a step costs up to (1 + _NARROW) times its length: the way keeps to the middle
+_PREFERRED_M, _NARROW = 0.6, 3.0
+# the middle is where nothing near has more space about it, and all that has plenty
+_RIDGE_M, _PLENTY_M = 0.6, 1.5
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Cells that the rover's middle can be in: place, free space about it, if in the middle; costs of steps."""
+
+    xy_m: np.ndarray
+    near_m: np.ndarray
+    middle: np.ndarray
+    steps: coo_array
+
+
+def over(part, clearance_m):
+    """Return the grid over connected free ground that keeps a clearance already."""
+    if part.is_empty:
+        return Grid(np.empty((0, 2)), np.empty(0), np.empty(0, bool), coo_array((0, 0)))
+    cell_m = _FINE_M if part.area < _COARSE_ABOVE_M2 else _COARSE_M
+    x0, y0, x1, y1 = part.bounds
+    x, y = (np.arange(low - cell_m, high + 2 * cell_m, cell_m) for low, high in ((x0, x1), (y0, y1)))
+    inner = part.buffer(-_MARGIN_M)
+    shapely.prepare(inner)
+    inside = shapely.contains_xy(inner, *np.meshgrid(x, y))
+    near_m = distance_transform_edt(inside) * cell_m + clearance_m
+    number = np.full(inside.shape, -1)
+    number[inside] = np.arange(np.count_nonzero(inside))
+    row, column = np.nonzero(inside)
+    ridge_m = maximum_filter(near_m, 1 + 2 * round(_RIDGE_M / 2 / cell_m))
+    middle = (near_m >= np.minimum(ridge_m - cell_m / 2, _PLENTY_M))[inside]
+    near_m = near_m[inside]
+    cost = 1 + _NARROW * np.clip(1 - (near_m - clearance_m) / _PREFERRED_M, 0, 1)
+    steps = [_steps(number, cost, dy, dx, cell_m) for dy, dx in ((0, 1), (1, 0), (1, 1), (1, -1))]
+    a, b, metres = (np.concatenate(column) for column in zip(*steps, strict=True))
+    costs = coo_array((metres, (a, b)), shape=(len(row),) * 2).tocsr()
+    return Grid(np.column_stack([x[column], y[row]]), near_m, middle, costs)
+
+
+def _steps(number, cost, dy, dx, cell_m):
+    """Pairs of neighbouring cells in one direction, and what going from one to the other costs."""
+    rows, columns = number.shape
+    here = number[: rows - dy, max(-dx, 0) : columns - max(dx, 0)].ravel()
+    there = number[dy:, max(dx, 0) : columns + min(dx, 0)].ravel()
+    both = (here >= 0) & (there >= 0)
+    a, b = here[both], there[both]
+    return a, b, cell_m * np.hypot(dx, dy) * (cost[a] + cost[b]) / 2
+
+
+def ways(grid, stop):
+    """Return what going to a cell costs from every cell, and the cell before each on the way there."""
+    return dijkstra(grid.steps, directed=False, indices=stop, return_predecessors=True)
+
+
+def cells(grid, room):
+    """The cells of a room, first that with most space about it, of equals the one nearest the room's middle."""
+    shapely.prepare(room)
+    within = np.flatnonzero(shapely.contains_xy(room, *grid.xy_m.T))
+    off_m = np.hypot(*(grid.xy_m[within] - shapely.get_coordinates(room.centroid)[0]).T)
+    return within[np.lexsort((off_m, -np.round(grid.near_m[within], 3)))]
+
+
+def nearest(grid, xy_m):
+    """Return the cell nearest a place."""
+    return int(np.argmin(np.hypot(*(grid.xy_m - np.asarray(xy_m)).T)))
