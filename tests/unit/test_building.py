@@ -140,7 +140,7 @@ def test_a_given_way_is_kept_unless_another_is_asked_for():
     [
         (
             {"floor_z_m": 5.0},
-            r"neither its floor at 0 nor the sensor at 0\.4 m may be outside; set simulate\.floor_z_m",
+            r"neither its floor at 0 nor the sensor at 0\.4 m may be outside; set simulate\.site\.floor_z_m",
         ),
         ({"floor_z_m": 2.4}, "simulate.site.floor_z_m"),
     ],

@@ -28,7 +28,8 @@ def test_storeys_are_chosen_by_name_or_index():
     assert model.storeys[1][1] == pytest.approx(2.7)
     assert [ifcfile.find_storey(model, chosen, "made.ifc") for chosen in ("Upper", 0, 1)] == [1, 0, 1]
     for chosen in (None, "Attic", 2, -1):
-        with pytest.raises(StageError, match=r"made\.ifc: .*simulate\.storey .*0 'Ground' at 0\.00 m, 1 'Upper' at 2"):
+        said = r"made\.ifc: .*simulate\.site\.storey .*0 'Ground' at 0\.00 m, 1 'Upper' at 2"
+        with pytest.raises(StageError, match=said):
             ifcfile.find_storey(model, chosen, "made.ifc")
 
 

@@ -37,7 +37,7 @@ def test_millimetres_are_told_and_taken_when_stated():
 
 @pytest.mark.parametrize(("factor", "unit"), [(0.001, "m"), (1.0, "mm"), (1e6, "mm")])
 def test_no_building_is_of_that_size(factor, unit):
-    with pytest.raises(StageError, match=r"spans .* m.*simulate\.unit"):
+    with pytest.raises(StageError, match=r"spans .* m.*simulate\.site\.unit"):
         meshfile.parse(boxmaking.written(BOX * factor, "stl"), ".stl", "box.stl", unit=unit)
 
 

@@ -175,7 +175,14 @@ def simulated_survey(wildcards):
 
 def results_of(name):
     """Everything the workflow makes of one dataset."""
-    files = [f"selection/{method}.parquet" for method in METHODS]
+    files = [
+        "poses.parquet",
+        "registration.parquet",
+        "scans.parquet",
+        "hulls.parquet",
+        "plan/faces.parquet",
+    ]
+    files += [f"selection/{method}.parquet" for method in METHODS]
     files += [f"walls/{extractor}.parquet" for extractor in EXTRACTORS]
     files += [f"plan/{plan}" for plan in PLANS]
     files += [f"figures/{figure}.svg" for figure in FIGURES]

@@ -6,18 +6,30 @@ import sys
 import time
 from pathlib import Path
 
+LOCK = ".snakemake/scanplan.lock"
+# set for the report that a run makes of itself at its end
+OWN_REPORT = "SCANPLAN_OWN_REPORT"
+
+
+def lock():
+    """Take this folder's lock, or end in one line; it dies with its process, however that ends."""
+    Path(LOCK).parent.mkdir(exist_ok=True)
+    held = open(LOCK, "w")
+    try:
+        fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        print(
+            f"scanplan: {Path.cwd()}: another run is at work in this folder; wait for it or stop it",
+            file=sys.stderr,
+        )
+        raise SystemExit(1)
+    return held
+
 
 def run_alone():
-    """Refuse a second run in the same folder; the lock dies with this process, however it ends."""
-    Path(".snakemake").mkdir(exist_ok=True)
+    """Keep the lock for the time of a run."""
     run_alone.started_ns = time.time_ns()
-    run_alone.lock = open(".snakemake/scanplan.lock", "w")
-    try:
-        fcntl.flock(run_alone.lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        raise WorkflowError(
-            f"{Path.cwd()}: another run is at work in this folder; wait for it or stop it first"
-        )
+    run_alone.lock = lock()
 
 
 def tell_results():
@@ -26,7 +38,12 @@ def tell_results():
         return
     for name in DATASETS:
         folder = f"results/{name}"
-        made = subprocess.run(report_command(name), capture_output=True, text=True)
+        made = subprocess.run(
+            report_command(name),
+            env={**os.environ, OWN_REPORT: "1"},
+            capture_output=True,
+            text=True,
+        )
         page = (
             f"{folder}/report.html"
             if made.returncode == 0
@@ -95,3 +112,8 @@ def failures():
             ]
             killed = f"{log.stem}: was ended from outside, perhaps for want of memory; its log is {log}"
             yield errors[-1] if errors else killed
+
+
+# before the jobs are worked out: while another run is at work, files come and go
+if workflow.is_main_process and OWN_REPORT not in os.environ:
+    lock().close()
