@@ -7,6 +7,7 @@ from pathlib import Path
 
 import psutil
 
+_UNFINISHED = set()
 _SHELLS = {"sh", "bash", "dash", "zsh"}
 
 
@@ -26,7 +27,7 @@ def orphaned():
 
     A stage that survives its killed run must not write over what a newer run made.
     """
-    return _SUPERVISOR is not None and not _SUPERVISOR.is_running()
+    return _SUPERVISOR is not None and not (_SUPERVISOR.is_running() and _at_work(_SUPERVISOR.pid))
 
 
 @contextmanager
@@ -52,6 +53,7 @@ def replacing(path):
     path.parent.mkdir(parents=True, exist_ok=True)
     _remove_leftovers(path)
     temporary = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
+    _UNFINISHED.add(temporary)
     try:
         yield temporary
         _sync(temporary)
@@ -60,6 +62,7 @@ def replacing(path):
         temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)
+        _UNFINISHED.discard(temporary)
 
 
 def write_text(path, text):
@@ -72,8 +75,22 @@ def _remove_leftovers(path):
     """Remove what processes that were killed while they wrote `path` left beside it."""
     for leftover in path.parent.glob(f".{glob.escape(path.stem)}.*.part{path.suffix}"):
         writer = leftover.name.split(".")[-3] if path.suffix else leftover.name.split(".")[-2]
-        if writer.isdigit() and not psutil.pid_exists(int(writer)):
+        if writer.isdigit() and not _at_work(int(writer)):
             leftover.unlink(missing_ok=True)
+
+
+def discard_unfinished():
+    """Remove what this process has begun to write and not finished: for one that is about to end itself."""
+    for temporary in list(_UNFINISHED):
+        temporary.unlink(missing_ok=True)
+
+
+def _at_work(pid):
+    """Tell whether a process is there and not just waiting to be reaped."""
+    try:
+        return psutil.Process(pid).status() != psutil.STATUS_ZOMBIE
+    except psutil.Error:
+        return False
 
 
 def _sync(path):

@@ -109,4 +109,5 @@ def end_with_parent():
 def _watch():
     while not atomic.orphaned():
         time.sleep(_WATCH_INTERVAL_S)
+    atomic.discard_unfinished()
     os._exit(1)

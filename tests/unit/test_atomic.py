@@ -1,5 +1,8 @@
 """Files appear whole or not at all."""
 
+import subprocess
+import time
+
 import psutil
 import pytest
 
@@ -28,6 +31,23 @@ def test_what_a_killed_writer_left_is_removed(tmp_path):
     left.touch(), other.touch()
     atomic.write_text(tmp_path / "plan.svg", "x")
     assert sorted(p.name for p in tmp_path.iterdir()) == [other.name, "plan.svg"]
+
+
+def test_a_process_that_ends_itself_leaves_nothing_half_written(tmp_path):
+    with pytest.raises(FileNotFoundError), atomic.replacing(tmp_path / "plan.svg") as temporary:
+        temporary.write_text("half")
+        atomic.discard_unfinished()
+        assert list(tmp_path.iterdir()) == []
+
+
+def test_a_writer_that_waits_to_be_reaped_is_no_writer(tmp_path):
+    ended = subprocess.Popen(["true"])
+    while psutil.Process(ended.pid).status() != psutil.STATUS_ZOMBIE:
+        time.sleep(0.01)
+    (tmp_path / f".plan.{ended.pid}.part.svg").touch()
+    atomic.write_text(tmp_path / "plan.svg", "x")
+    assert [p.name for p in tmp_path.iterdir()] == ["plan.svg"]
+    ended.wait()
 
 
 def test_an_orphan_writes_nothing(tmp_path, monkeypatch):

@@ -116,6 +116,10 @@ def test_one_core_gives_the_same_bytes(project):
     assert result.returncode == 0 and project.digests() == before
 
 
+def restore_sigint():
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
 def started(project):
     """Start a run that registers the scans anew, and return it once that stage is at work."""
     log = project.folder / "logs/demo/register_scans.log"
@@ -127,6 +131,8 @@ def started(project):
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
         start_new_session=True,
+        # whoever runs the tests in the background may ignore SIGINT, and children inherit that
+        preexec_fn=restore_sigint,
     )
     while not log.exists():
         assert run.poll() is None, "the run ended before the stage began"
