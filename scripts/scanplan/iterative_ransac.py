@@ -71,6 +71,33 @@ def extract(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
     return walls.assemble(rows, sensor_xyz_m)
 
 
+def largest_plane(xyz_m, *, inlier_m, trials, seed):
+    """Find the plane most points lie on (thesis, algorithm 4).
+
+    Parameters
+    ----------
+    xyz_m : (n, 3) float, n >= 3
+    inlier_m : float
+    trials : int
+        All are made: stopping early would depend on the number of cores.
+    seed : int
+
+    Returns
+    -------
+    normal : (3,) float64
+    inliers : (n,) bool
+    """
+    import open3d  # 1.3 s, and only this function needs it
+
+    open3d.utility.set_max_threads(1)
+    open3d.utility.random.seed(seed)
+    cloud = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(xyz_m))
+    plane, index = cloud.segment_plane(inlier_m, ransac_n=3, num_iterations=trials, probability=1.0)
+    inliers = np.zeros(len(xyz_m), bool)
+    inliers[index] = True
+    return plane[:3], inliers
+
+
 def _largest_line(xyz_m, settings, rng):
     inliers = lines.ransac(xyz_m[:, :2], inlier_m=settings.inlier_m, trials=settings.trials, rng=rng)[2]
     return True, inliers
@@ -78,5 +105,5 @@ def _largest_line(xyz_m, settings, rng):
 
 def _largest_plane(xyz_m, settings, rng):
     seed = int(rng.integers(2**31))
-    normal, inliers = walls.largest_plane(xyz_m, inlier_m=settings.inlier_m, trials=settings.trials, seed=seed)
+    normal, inliers = largest_plane(xyz_m, inlier_m=settings.inlier_m, trials=settings.trials, seed=seed)
     return abs(normal[2]) <= np.sin(np.deg2rad(settings.max_tilt_deg)), inliers

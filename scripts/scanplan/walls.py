@@ -209,33 +209,6 @@ def summary(columns, n_scans, took_ms):
     return f"{n_scans:,} scans, {len(points):,} walls, {typical}, {took_ms / n_scans:.0f} ms a scan"
 
 
-def largest_plane(xyz_m, *, inlier_m, trials, seed):
-    """Find the plane most points lie on (thesis, algorithm 4).
-
-    Parameters
-    ----------
-    xyz_m : (n, 3) float, n >= 3
-    inlier_m : float
-    trials : int
-        All are made: stopping early would depend on the number of cores.
-    seed : int
-
-    Returns
-    -------
-    normal : (3,) float64
-    inliers : (n,) bool
-    """
-    import open3d  # 1.3 s, and only this function needs it
-
-    open3d.utility.set_max_threads(1)
-    open3d.utility.random.seed(seed)
-    cloud = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(xyz_m))
-    plane, index = cloud.segment_plane(inlier_m, ransac_n=3, num_iterations=trials, probability=1.0)
-    inliers = np.zeros(len(xyz_m), bool)
-    inliers[index] = True
-    return plane[:3], inliers
-
-
 def _runs(where_m, max_gap_m, min_points):
     """Return the first and last of each run of positions without a gap, of runs of enough points."""
     where_m = np.sort(where_m)

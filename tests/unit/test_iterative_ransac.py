@@ -95,3 +95,12 @@ def test_the_same_lines_as_the_literal_algorithm():
     for start_m, normal in zip(found.start_m, found.normal, strict=True):
         offset_m = normal @ (start_m - toyrooms.SENSOR[:2])
         assert any(-n @ normal > 0.9999 and abs(d + offset_m) < 0.01 for n, d in lines)
+
+
+def test_largest_plane_is_the_same_on_every_call():
+    draw = np.random.default_rng(1)
+    points = np.vstack([draw.uniform(-2, 2, (400, 3)) * (1, 1, 0.001), draw.uniform(-2, 2, (300, 3))])
+    results = [iterative_ransac.largest_plane(points, inlier_m=0.02, trials=100, seed=3) for _ in range(3)]
+    assert all((r[0] == results[0][0]).all() and (r[1] == results[0][1]).all() for r in results)
+    assert abs(results[0][0][2]) > 0.99
+    assert results[0][1][:400].all()
