@@ -1,6 +1,6 @@
 """Where along a line there is wall: told by the points at it and the rays through it."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -51,6 +51,8 @@ class Seen:
     hit_scan : (h,) int64
     pass_m, pass_z_m : (p,) float64
     pass_scan : (p,) int64
+    profiles : dict
+        Those that were asked for.
     """
 
     line: Line
@@ -61,6 +63,14 @@ class Seen:
     pass_m: np.ndarray
     pass_z_m: np.ndarray
     pass_scan: np.ndarray
+    profiles: dict = field(default_factory=dict)
+
+    def columns(self, reading, *, planar):
+        """Return the line in columns, a `Profile`."""
+        key = (reading, planar)
+        if key not in self.profiles:
+            self.profiles[key] = _profile(self, reading, planar=planar)
+        return self.profiles[key]
 
     def hits(self, low_m, high_m):
         """Return the slice of the points between two places."""
@@ -80,14 +90,17 @@ class Profile:
     first_m : float
     solid : array
         Points are at it, and hardly a ray went through.
+    crossed : array
+        More rays went through below a door's height than ended there,
     opened : array
-        More rays went through below a door's height than ended there.
+        and not just one or two.
     overlooked : array
         Rays went through above whatever is there.
     """
 
     first_m: float
     solid: np.ndarray
+    crossed: np.ndarray
     opened: np.ndarray
     overlooked: np.ndarray
 
@@ -211,7 +224,7 @@ def find(seen, reading, *, planar, foreign_m=()):
     """
     if len(seen.hit_m) == 0:
         return []
-    columns = profile(seen, reading, planar=planar)
+    columns = seen.columns(reading, planar=planar)
     solid = columns.solid & ~_inside(columns, foreign_m)
     runs = []
     for column in np.flatnonzero(solid):
@@ -234,7 +247,7 @@ def _inside(columns, intervals_m):
     return inside
 
 
-def profile(seen, reading, *, planar):
+def _profile(seen, reading, *, planar):
     """Tell for every 5 cm of a line whether there is wall, a way through, or furniture.
 
     Returns
@@ -252,9 +265,10 @@ def profile(seen, reading, *, planar):
     top_m = np.full(count, -np.inf)
     np.maximum.at(top_m, hit, seen.hit_z_m)
     over = passes if planar else np.bincount(crossing[seen.pass_z_m > top_m[crossing]], minlength=count)
-    opened = (passes >= _LEAST_PASSES) & (passes > hits)
+    crossed = passes > hits
+    opened = crossed & (passes >= _LEAST_PASSES)
     overlooked = (over >= _LEAST_PASSES) & (over >= _OVER_SHARE * hits)
-    return Profile(first_m, (hits > 0) & ~opened, opened, overlooked)
+    return Profile(first_m, (hits > 0) & ~opened, crossed, opened, overlooked)
 
 
 def _trimmed(stretch):
