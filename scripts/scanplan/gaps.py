@@ -7,8 +7,9 @@ import numpy as np
 from scanplan import stretches
 
 OPEN, CLOSED, UNKNOWN = "open", "closed", "unknown"
-_OPEN_SHARE = 0.5
-_LEAST_OPEN_SHARE = 0.1
+_OPEN_SHARE = 0.4
+_OPEN_SHARE_BELOW_LINTEL = 0.2
+_CLOSED_SHARE = 0.1
 _LEAST_RAYS = 10
 _EDGE_M = 0.03
 _HEIGHT_PERCENTILES = (1, 99)
@@ -104,10 +105,11 @@ def judge(wall_line, low_m, high_m, lines, reading, settings, *, planar, needs_l
     n_rays, open_share, sill_m, lintel_m = max(found, key=lambda f: f[:2])
     width_m = high_m - low_m
     is_wide = settings.min_opening_m <= width_m <= settings.max_opening_m
-    is_open = n_rays >= _LEAST_RAYS and open_share >= _OPEN_SHARE
+    least_share = _OPEN_SHARE_BELOW_LINTEL if np.isfinite(lintel_m) else _OPEN_SHARE
+    is_open = n_rays >= _LEAST_RAYS and open_share >= least_share
     if is_wide and is_open and (not needs_lintel or np.isfinite(lintel_m)):
         state = OPEN
-    elif open_share <= _LEAST_OPEN_SHARE and width_m <= settings.max_closed_m and not needs_lintel:
+    elif open_share <= _CLOSED_SHARE and width_m <= settings.max_closed_m and not needs_lintel:
         state = CLOSED
     else:
         state = UNKNOWN
