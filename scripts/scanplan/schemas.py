@@ -196,3 +196,36 @@ POSE_ERRORS = Schema(
     },
     ("scan_id",),
 )
+PLAN_EVALUATION = Schema(
+    "plan_evaluation",
+    1,
+    {
+        "frame": "string",
+        "n_scans": "int32",
+        **dict.fromkeys(
+            (
+                "correctness",
+                "completeness",
+                "visible_completeness",
+                "seen_completeness",
+                "observed_correctness",
+                "observed_visible_completeness",
+                "missed_not_seen",
+                "missed_misplaced",
+                "missed_misextracted",
+                "redundancy",
+            ),
+            "float64",
+        ),
+        "n_walls": "int32",
+        "walls_per_true_wall": "float64",
+        "n_thickness": "int32",
+        "thickness_error_m": "float64",
+        **dict.fromkeys(("n_doors_true", "n_doors_found", "n_doors_drawn"), "int32"),
+        **dict.fromkeys(("door_recall", "door_precision", "door_width_error_m", "door_width_right"), "float64"),
+        **dict.fromkeys(("n_rooms_true", "n_rooms_found", "n_rooms_false"), "int32"),
+        **dict.fromkeys(("room_iou", "least_room_iou"), "float64"),
+    },
+    ("frame",),
+)
+"""How good a plan is: in the map's frame, and after the rigid motion that fits the scans' poses to the true ones."""

@@ -16,6 +16,7 @@ EVALUATION = [
     "evaluation/walls_aligned.parquet",
     "evaluation/oracle.parquet",
     "evaluation/poses.parquet",
+    "evaluation/plan.parquet",
     "figures/evaluation.svg",
 ]
 PLANS = ["plan.geojson", "plan.svg", "plan.dxf"]

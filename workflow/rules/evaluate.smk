@@ -47,6 +47,34 @@ rule evaluate_poses:
         "../../scripts/evaluate_poses.py"
 
 
+rule evaluate_plan:
+    """Measure the plan against the true one."""
+    input:
+        faces="results/{dataset}/plan/faces.parquet",
+        walls="results/{dataset}/plan/walls.parquet",
+        openings="results/{dataset}/plan/openings.parquet",
+        rooms="results/{dataset}/plan/rooms.parquet",
+        evidence="results/{dataset}/plan/evidence.parquet",
+        registration="results/{dataset}/registration.parquet",
+        truth=true_faces,
+        true_poses=true_poses,
+        code=code_of("evaluate_plan"),
+    output:
+        plan="results/{dataset}/evaluation/plan.parquet",
+    log:
+        "logs/{dataset}/evaluate_plan.log",
+    benchmark:
+        "benchmarks/{dataset}/evaluate_plan.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    params:
+        max_range_m=setting("input", "max_range_m"),
+    script:
+        "../../scripts/evaluate_plan.py"
+
+
 rule draw_evaluation:
     """Draw completeness and bitmap metrics against the number of scans, for every ordering."""
     input:
