@@ -13,11 +13,12 @@ import pyarrow.parquet as pq
 
 from scanplan import atomic
 from scanplan.errors import StageError
-from scanplan.schemas import FACES, HULLS, POSES, QUAT, REGISTRATION, SCANS, SELECTION, WALLS, XYZ
+from scanplan.schemas import FACES, HULLS, MOTION, POSES, QUAT, REGISTRATION, SCANS, SELECTION, WALLS, XYZ
 
 __all__ = [
     "FACES",
     "HULLS",
+    "MOTION",
     "POSES",
     "QUAT",
     "REGISTRATION",
