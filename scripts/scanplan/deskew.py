@@ -29,16 +29,20 @@ def at_stamp(xyz_m, time_s, stamp_from_knots):
     (n, 3) float32
         In the sensor's frame at the stamp.
     """
-    table = stamp_from_knots[:, :3, :].reshape(-1, 12).astype(np.float32)
-    steps = np.diff(table, axis=0)
+    start = np.ascontiguousarray(np.moveaxis(stamp_from_knots[:, :3, :], 0, -1), np.float32)
+    step = np.diff(start)
     first_s, last_s = time_s.min(), time_s.max()
-    at = (time_s - first_s) * ((len(table) - 1) / max(last_s - first_s, 1e-9))
-    knot = np.minimum(at.astype(np.intp), len(steps) - 1)
-    motion = steps.take(knot, axis=0)
-    motion *= (at - knot).astype(np.float32)[:, None]
-    motion += table.take(knot, axis=0)
-    motion = motion.reshape(-1, 3, 4)
-    return np.einsum("nij,nj->ni", motion[:, :, :3], xyz_m) + motion[:, :, 3]
+    at = (time_s - first_s) * (step.shape[-1] / max(last_s - first_s, 1e-9))
+    knot = np.minimum(at.astype(np.intp), step.shape[-1] - 1)
+    share = (at - knot).astype(np.float32)
+
+    def entry(row, column):
+        return start[row, column].take(knot) + share * step[row, column].take(knot)
+
+    # one entry of the matrices after the other: half the time of a matrix for every point
+    coordinates = np.ascontiguousarray(xyz_m.T, np.float32)
+    rows = [sum((entry(i, j) * coordinates[j] for j in range(3)), entry(i, 3)) for i in range(3)]
+    return np.column_stack(rows)
 
 
 def knots(time_s, t_ns, motion):
