@@ -4,11 +4,11 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, f"{workflow.basedir}/scripts")
-from scanplan import configuration, datasets, sources
+from scanplan import configuration, datasets, methods, sources
 from scanplan.errors import StageError
 
 DEMO = "demo"
-METHODS = ["cluster_hull", "hull", "random", "sequential"]
+METHODS = methods.METHODS
 EXTRACTORS = ["cluster_ransac", "iterative_ransac"]
 FIGURES = ["scans", "area", "walls"]
 EVALUATION = [
@@ -115,6 +115,19 @@ def topics_and_frames(wildcards):
 def extractor_settings(wildcards):
     """Settings of the job's wall extractor."""
     return SETTINGS[wildcards.dataset]["walls"][wildcards.extractor]
+
+
+def observation_settings(wildcards):
+    """What makes returns a wall: the settings of the thesis's extractor that a scan can be judged by, and the cells'."""
+    settings = SETTINGS[wildcards.dataset]
+    limits = settings["walls"]["cluster_ransac"]
+    return {name: limits[name] for name in methods.WALL_LIMITS} | settings["selection"]["wall_length"]
+
+
+def order_tables(wildcards):
+    """The tables that the job's method needs, by name, beside that of the hulls."""
+    tables = methods.TABLES[wildcards.method]
+    return {table: f"results/{wildcards.dataset}/{table}.parquet" for table in tables}
 
 
 def recordings(wildcards):
