@@ -52,10 +52,23 @@ HULLS = Schema(
     ("scan_id", "cluster"),
     geometry=True,
 )
+OBSERVATIONS = Schema(
+    "observations",
+    1,
+    {"scan_id": "int32", "facing": "int32", "along": "int32", "across": "int32", "length_m": "float64"},
+    ("scan_id", "facing", "along", "across"),
+)
+VISIBILITY = Schema(
+    "visibility", 1, {"scan_id": "int32", "area_m2": "float64", "geometry": "binary"}, ("scan_id",), geometry=True
+)
 SELECTION = Schema(
     "selection",
-    1,
-    {"rank": "int32", "scan_id": "int32", "gain_m2": "float64", "covered_m2": "float64", "bound_m2": "float64"},
+    2,
+    {
+        "rank": "int32",
+        "scan_id": "int32",
+        **dict.fromkeys(("gain_m2", "covered_m2", "bound_m2", "gain", "covered", "bound"), "float64"),
+    },
     ("rank",),
 )
 WALLS = Schema(

@@ -3,7 +3,7 @@ import re
 import sys
 
 sys.path.insert(0, f"{workflow.basedir}/scripts")
-from scanplan import configuration, inventory, sources
+from scanplan import configuration, inventory, methods, sources
 from scanplan.errors import StageError
 
 SCHEMA = configuration.read_yaml(
@@ -84,6 +84,20 @@ def topics_and_frames(wildcards):
 def extractor_settings(wildcards):
     """Settings of the job's wall extractor."""
     return DATASETS[wildcards.dataset].settings["walls"][wildcards.extractor]
+
+
+def observation_settings(wildcards):
+    """What makes returns a wall: settings of the thesis's extractor that a scan can be judged by, and of the cells."""
+    settings = DATASETS[wildcards.dataset].settings
+    limits = settings["walls"]["cluster_ransac"]
+    own = settings["selection"]["wall_length"]
+    return {name: limits[name] for name in methods.WALL_LIMITS} | own
+
+
+def order_tables(wildcards):
+    """The tables that the job's method needs, by name, beside that of the hulls."""
+    tables = methods.TABLES[wildcards.method]
+    return {table: f"results/{wildcards.dataset}/{table}.parquet" for table in tables}
 
 
 def recordings(wildcards):
