@@ -3,7 +3,7 @@
 import numpy as np
 import shapely
 
-from scanplan import lengthmetrics, schemas, visibility
+from scanplan import lengthmetrics, schemas, tables, visibility
 
 WITHIN_M = 0.10
 _MISPLACED_M = 0.30
@@ -13,37 +13,58 @@ _DOOR_M = 0.35
 _WIDTH_M = 0.10
 _SAME_ROOM_IOU = 0.5
 _DOORS = ("door", "passage")
+_TABLES = {
+    "faces": schemas.FACES,
+    "walls": schemas.PLAN_WALLS,
+    "openings": schemas.OPENINGS,
+    "rooms": schemas.ROOMS,
+}
 
 
-def measure(drawn, motion, true, cells, visible, seen):
+def read(plan):
+    """Read the tables of a plan that are measured, columns by name, from paths by name."""
+    return {name: tables.read(plan[name], schema, allow_empty=True) for name, schema in _TABLES.items()}
+
+
+def scans_of(evidence):
+    """Return the scan_ids (n,) that a table of evidence at a path names, increasing."""
+    return np.unique(tables.read(evidence, schemas.EVIDENCE, ["wall", "scan_id"])["scan_id"])
+
+
+def measure(drawn, motion, true, floor):
     """Measure a plan.
 
     Parameters
     ----------
     drawn : dict of str to dict
-        The tables `faces`, `walls`, `openings` and `rooms` of a plan, columns by name.
+        As `read` returns it.
     motion : (4, 4) float
         Level rigid motion that the plan is moved by first.
     true : trueplan.TruePlan
-    cells : visibility.Cells
-        Of the true faces.
-    visible, seen : (c,) bool
-        Whether the survey, and the chosen scans, could see a cell.
+    floor : findings.Truth
+        The true faces, and what of them the survey and the chosen scans could see.
 
     Returns
     -------
     dict of str to float
-        The columns of `schemas.PLAN_EVALUATION` that tell a figure.
+        Columns of `schemas.PLAN_EVALUATION`.
     """
-    lines_m = {name: _moved(_lines_m(drawn[name]), motion) for name in ("faces", "walls", "openings")}
+    walls_m, openings_m = (_moved(_lines_m(drawn[name]), motion) for name in ("walls", "openings"))
+    drawn_m, seen = faces_m(drawn, motion), floor.seen.any(axis=0)
     is_door = np.isin(drawn["openings"]["type"], _DOORS)
     outlines = shapely.transform(shapely.from_wkb(drawn["rooms"]["geometry"]), lambda xy_m: _moved(xy_m, motion))
     return {
-        **faces(lines_m["faces"], drawn["faces"]["state"] == "observed", cells, visible, seen),
-        **walls(lines_m["walls"], drawn["walls"]["thickness_m"], true.walls_m, true.thickness_m),
-        **doors(lines_m["openings"][is_door], true.doors_m, true.rooms, true.visited),
+        "length_m": float(lengthmetrics.lengths_m(drawn_m).sum()),
+        **faces(drawn_m, drawn["faces"]["state"] == "observed", floor.cells, floor.visible, seen),
+        **walls(walls_m, drawn["walls"]["thickness_m"], true.walls_m, true.thickness_m),
+        **doors(openings_m[is_door], true.doors_m, true.rooms, true.visited),
         **rooms(list(outlines), true.rooms, true.visited),
     }
+
+
+def faces_m(drawn, motion):
+    """Return the faces (n, 2, 2) of a plan after a rigid motion (4, 4)."""
+    return _moved(_lines_m(drawn["faces"]), motion)
 
 
 def _lines_m(columns):
@@ -78,18 +99,13 @@ def faces(drawn_m, observed, cells, visible, seen):
     found_observed = _found(cells, drawn_m[observed], WITHIN_M)
     missed = visible & ~found
     whole_m = length_m[visible].sum()
-    found_m = length_m[found].sum()
     return {
-        "correctness": lengthmetrics.compare(drawn_m, true_m, WITHIN_M).correctness,
-        "completeness": lengthmetrics.share(found_m, length_m.sum()),
-        "visible_completeness": lengthmetrics.share(length_m[visible & found].sum(), whole_m),
-        "seen_completeness": lengthmetrics.share(length_m[seen & found].sum(), length_m[seen].sum()),
-        "observed_correctness": lengthmetrics.compare(drawn_m[observed], true_m, WITHIN_M).correctness,
-        "observed_visible_completeness": lengthmetrics.share(length_m[visible & found_observed].sum(), whole_m),
+        "seen_completeness_010m": lengthmetrics.share(length_m[seen & found].sum(), length_m[seen].sum()),
+        "observed_correctness_010m": lengthmetrics.compare(drawn_m[observed], true_m, WITHIN_M).correctness,
+        "observed_visible_completeness_010m": lengthmetrics.share(length_m[visible & found_observed].sum(), whole_m),
         "missed_not_seen": _part(length_m, missed & ~seen, whole_m),
         "missed_misplaced": _part(length_m, missed & seen & nearly, whole_m),
         "missed_misextracted": _part(length_m, missed & seen & ~nearly, whole_m),
-        "redundancy": float(lengthmetrics.lengths_m(drawn_m).sum() / found_m) if found_m > 0 else np.nan,
     }
 
 
@@ -120,7 +136,7 @@ def walls(drawn_m, thickness_m, true_m, true_thickness_m):
     Returns
     -------
     dict of str to float
-        Walls that belong to no true one count in `n_walls` alone.
+        Walls that belong to no true one count in `n_plan_walls` alone.
     """
     near = lengthmetrics.near(drawn_m, true_m, _WALL_M)
     alike = np.abs(np.einsum("ij,ij->i", _ways(drawn_m)[near.line], _ways(true_m)[near.other])) >= _PARALLEL
@@ -132,8 +148,8 @@ def walls(drawn_m, thickness_m, true_m, true_thickness_m):
     known = matched & np.isfinite(thickness_m)
     error_m = np.abs(thickness_m[known] - true_thickness_m[belongs[known]])
     return {
-        "n_walls": len(drawn_m),
-        "walls_per_true_wall": matched.sum() / len(np.unique(belongs[matched])) if matched.any() else np.nan,
+        "n_plan_walls": len(drawn_m),
+        "plan_walls_per_true_wall": matched.sum() / len(np.unique(belongs[matched])) if matched.any() else np.nan,
         "n_thickness": int(known.sum()),
         "thickness_error_m": float(np.median(error_m)) if known.any() else np.nan,
     }
@@ -223,10 +239,11 @@ def table(rows):
 
 def summary(row):
     """Say in a line what a plan is worth."""
+    per_wall = row["plan_walls_per_true_wall"]
     told = {name: value if isinstance(value, str) else f"{value:.3f}" for name, value in row.items()}
     return (
-        f"faces right {told['correctness']}, of the visible found {told['visible_completeness']} (of what the"
-        f" {row['n_scans']} scans see {told['seen_completeness']}); {told['walls_per_true_wall']} walls a true wall,"
+        f"faces right {told['correctness_010m']}, of the visible found {told['visible_completeness_010m']} (of what the"
+        f" {row['n_scans']} scans see {told['seen_completeness_010m']}); {per_wall:.2f} walls a true wall,"
         f" {row['n_thickness']} thicknesses off by {told['thickness_error_m']} m; doors found {row['n_doors_found']}"
         f" of {row['n_doors_true']}, right {told['door_precision']}, width right {told['door_width_right']}; rooms"
         f" {row['n_rooms_found']} of {row['n_rooms_true']}, {row['n_rooms_false']} false, IoU {told['room_iou']}"

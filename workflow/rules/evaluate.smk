@@ -26,27 +26,6 @@ rule evaluate_walls:
         "../../scripts/evaluate_walls.py"
 
 
-rule evaluate_poses:
-    """Measure the registered poses against the true ones, before and after refinement."""
-    input:
-        poses="results/{dataset}/poses.parquet",
-        registration="results/{dataset}/registration.parquet",
-        true_poses=true_poses,
-        code=code_of("evaluate_poses"),
-    output:
-        poses="results/{dataset}/evaluation/poses.parquet",
-    log:
-        "logs/{dataset}/evaluate_poses.log",
-    benchmark:
-        "benchmarks/{dataset}/evaluate_poses.tsv"
-    threads: 1
-    resources:
-        mem_mb=1000,
-        runtime=10,
-    script:
-        "../../scripts/evaluate_poses.py"
-
-
 rule evaluate_plan:
     """Measure the plan against the true one."""
     input:
@@ -71,8 +50,30 @@ rule evaluate_plan:
         runtime=10,
     params:
         max_range_m=setting("input", "max_range_m"),
+        settings=setting("evaluation"),
     script:
         "../../scripts/evaluate_plan.py"
+
+
+rule evaluate_poses:
+    """Measure the registered poses against the true ones, before and after refinement."""
+    input:
+        poses="results/{dataset}/poses.parquet",
+        registration="results/{dataset}/registration.parquet",
+        true_poses=true_poses,
+        code=code_of("evaluate_poses"),
+    output:
+        poses="results/{dataset}/evaluation/poses.parquet",
+    log:
+        "logs/{dataset}/evaluate_poses.log",
+    benchmark:
+        "benchmarks/{dataset}/evaluate_poses.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    script:
+        "../../scripts/evaluate_poses.py"
 
 
 rule draw_evaluation:
@@ -87,6 +88,12 @@ rule draw_evaluation:
             caption="../report/evaluation.rst",
             category="{dataset}",
             labels={"figure": "5 walls against the truth"},
+        ),
+        shares=report(
+            "results/{dataset}/figures/oracle_shares.svg",
+            caption="../report/oracle_shares.rst",
+            category="{dataset}",
+            labels={"figure": "6 orderings against the oracle"},
         ),
     log:
         "logs/{dataset}/draw_evaluation.log",
