@@ -15,6 +15,7 @@ _OVER_SHARE = 0.15
 _OVERLOOKED_SHARE = 0.5
 _REFIT_M = 0.04
 _MOST_TURN_RAD = np.radians(3)
+_ROUND_M = 1e-9
 _COLUMN_WEIGHT = 10  # points of a column that count: a near scan's are not a hundred times as true
 
 
@@ -74,11 +75,11 @@ class Seen:
 
     def hits(self, low_m, high_m):
         """Return the slice of the points between two places."""
-        return slice(*np.searchsorted(self.hit_m, [low_m, high_m], side="left"))
+        return slice(np.searchsorted(self.hit_m, low_m), np.searchsorted(self.hit_m, high_m, side="right"))
 
     def passes(self, low_m, high_m):
         """Return the slice of the crossings between two places."""
-        return slice(*np.searchsorted(self.pass_m, [low_m, high_m], side="left"))
+        return slice(np.searchsorted(self.pass_m, low_m), np.searchsorted(self.pass_m, high_m, side="right"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -273,5 +274,6 @@ def _profile(seen, reading, *, planar):
 
 def _trimmed(stretch):
     """Let a stretch end at its first and last point."""
-    points = stretch.seen.hit_m[stretch.points]
+    # a point on the edge of a column is in it, whichever way the edge was rounded
+    points = stretch.seen.hit_m[stretch.seen.hits(stretch.low_m - _ROUND_M, stretch.high_m + _ROUND_M)]
     return replace(stretch, low_m=float(points[0]), high_m=float(points[-1]))
