@@ -4,7 +4,7 @@ import pytest
 import housemaking
 from scanplan import stretches
 from scanplan.faceline import Line
-from scanplan.stretches import Reading, Seen
+from scanplan.profiles import Reading, Seen
 
 READING = Reading(band_m=0.06, reach_m=1.0, max_gap_m=0.5, door_height_m=1.8)
 AXIS = Line(np.zeros(2), np.array([0.0, 1.0]))

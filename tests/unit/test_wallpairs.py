@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 
 from scanplan import wallpairs
 from scanplan.faceline import Line
-from scanplan.stretches import Seen, Stretch
+from scanplan.profiles import Seen
+from scanplan.stretches import Stretch
 
 SETTINGS = wallpairs.PairSettings(
     max_angle_deg=5.0, min_thickness_m=0.04, max_thickness_m=0.6, offset_m=0.05, max_gap_m=2.0
