@@ -5,10 +5,11 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter, StrMethodFormatter
 
 from scanplan import topview
-from scanplan.figures import STYLES
+from scanplan.figures import STYLES, style
 
 _SIZE_IN = (7.0, 8.6)
-_STYLES = {"oracle": ("oracle: knows the truth", "black"), **STYLES}
+_ORACLE = ("oracle: knows the truth", "black", "-")
+_ORDER = ["oracle", *STYLES]
 _FOUND = "visible_completeness_010m"
 _BITMAP = {"false_negative": "false negative", "correct_match": "correct match", "false_positive": "false positive"}
 _REASONS = {
@@ -63,12 +64,15 @@ def _completeness(axes, table, title):
 
 
 def _curves(axes, table, column):
-    for method in sorted(set(table["method"].tolist()), key=list(_STYLES).index, reverse=True):
-        label, colour = _STYLES[method]
+    methods = set(table["method"].tolist())
+    known = [method for method in _ORDER if method in methods]
+    for front, method in enumerate([*known, *sorted(methods - set(known))]):
+        label, colour, dashes = _ORACLE if method == "oracle" else style(method)
         of_it = _of(table, method=method)
         axes.plot(
-            of_it["k"], of_it[column], color=colour, lw=1.2, marker="o", ms=1.8, label=label, gid=f"{column}-{method}"
-        )
+            of_it["k"], of_it[column], dashes, color=colour, lw=0.8 if dashes == "--" else 1.2, marker="o", ms=1.6,
+            label=label, gid=f"{column}-{method}", zorder=3 - front / 100,
+        )  # fmt: skip
     _scan_axis(axes, table["k"])
 
 

@@ -12,7 +12,9 @@ EVERYTHING = {"n_scans": None, "area_share": None}
 def ordering(scan_ids, covered_m2):
     gain = np.diff(covered_m2, prepend=0.0)
     rank = np.arange(1, len(scan_ids) + 1)
-    return {"rank": rank, "scan_id": scan_ids, "gain_m2": gain, "covered_m2": covered_m2, "bound_m2": covered_m2}
+    areas = {"gain_m2": gain, "covered_m2": covered_m2, "bound_m2": covered_m2}
+    own = {"gain": gain, "covered": covered_m2, "bound": covered_m2}
+    return {"rank": rank, "scan_id": scan_ids, **areas, **own}
 
 
 @pytest.fixture
