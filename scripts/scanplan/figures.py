@@ -158,18 +158,13 @@ def area_figure(orderings):
     return figure
 
 
-def style(method):
-    """Return the label, the colour and the dashes of a method's curves."""
-    label, colour = STYLES.get(method, (method.replace("_", " "), "0.3"))
-    return label, colour, "--" if method in DASHED else "-"
-
-
 def _place(method):
     return (list(STYLES).index(method) if method in STYLES else len(STYLES)), method
 
 
 def _draw_ordering(axes, method, columns):
-    label, colour, dashes = style(method)
+    label, colour = STYLES.get(method, (method.replace("_", " "), "0.3"))
+    dashes = "--" if method in DASHED else "-"
     covered = columns["covered_m2"]
     at = stopping.n_scans(columns, area_share=0.99)[0] - 1
     label = f"{label}: 99 % with {columns['rank'][at]}"

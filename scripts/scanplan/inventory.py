@@ -21,7 +21,7 @@ _DRAWN = (
     "plan/plan.dxf",
     *(f"figures/{f}.svg" for f in ("scans", "area", "walls")),
 )
-_EVALUATION = ("walls", "walls_aligned", "oracle", "poses")
+_EVALUATION = ("walls", "walls_aligned", "oracle", "plan", "poses")
 
 
 @dataclass(frozen=True)
@@ -174,7 +174,8 @@ def results(found, methods, extractors):
     files += [f"walls/{extractor}.parquet" for extractor in extractors]
     files += _DRAWN
     if found.truth:
-        files += [f"evaluation/{table}.parquet" for table in _EVALUATION] + ["figures/evaluation.svg"]
+        files += [f"evaluation/{table}.parquet" for table in _EVALUATION]
+        files += ["figures/evaluation.svg", "figures/oracle_shares.svg"]
     return [f"results/{found.name}/{file}" for file in files]
 
 

@@ -28,6 +28,7 @@ POSES = Schema(
     {"scan_id": "int32", "t_ns": "int64", **_POSE, "gap_s": "float64", "covered": "bool"},
     ("scan_id",),
 )
+MOTION = Schema("motion", 1, {"t_ns": "int64", "piece": "int32", **_POSE}, ("t_ns",))
 REGISTRATION = Schema(
     "registration",
     1,
@@ -159,6 +160,17 @@ EVIDENCE = Schema(
 )
 """Which scans show a wall of the plan, when they were taken and with how many points."""
 _WITHIN = ("005m", "010m", "015m")
+_AGREEMENT = {
+    **dict.fromkeys(("false_negative", "correct_match", "false_positive"), "float64"),
+    **{
+        f"{truth}{measure}_{within}": "float64"
+        for truth in ("", "visible_")
+        for measure in ("completeness", "correctness", "f1")
+        for within in _WITHIN
+    },
+    "n_walls": "int32",
+    **dict.fromkeys(("walls_per_true_wall", "redundancy"), "float64"),
+}
 EVALUATION = Schema(
     "evaluation",
     1,
@@ -166,18 +178,9 @@ EVALUATION = Schema(
         "method": "string",
         "extractor": "string",
         "k": "int32",
-        **dict.fromkeys(("false_negative", "correct_match", "false_positive"), "float64"),
-        **{
-            f"{truth}{measure}_{within}": "float64"
-            for truth in ("", "visible_")
-            for measure in ("completeness", "correctness", "f1")
-            for within in _WITHIN
-        },
-        "n_walls": "int32",
+        **_AGREEMENT,
         **dict.fromkeys(
             (
-                "walls_per_true_wall",
-                "redundancy",
                 "seen",
                 "missed_not_seen",
                 "missed_misregistered",
@@ -190,7 +193,13 @@ EVALUATION = Schema(
     },
     ("method", "extractor", "k"),
 )
-ORACLE = Schema("oracle", 1, {"rank": "int32", "scan_id": "int32", "gain_m": "float64", "seen_m": "float64"}, ("rank",))
+PLAN_EVALUATION = Schema("plan_evaluation", 1, {"frame": "string", "length_m": "float64", **_AGREEMENT}, ("frame",))
+ORACLE = Schema(
+    "oracle",
+    2,
+    {"extractor": "string", "rank": "int32", "scan_id": "int32", "gain_m": "float64", "found_m": "float64"},
+    ("extractor", "rank"),
+)
 POSE_ERRORS = Schema(
     "pose_errors",
     1,

@@ -72,10 +72,12 @@ def setting(section, *keys):
 
 
 def topics_and_frames(wildcards):
-    """Settings of the input that poses depend on: all but the ranges."""
+    """Settings of the input that poses depend on: all but what is done to the points."""
     reading = DATASETS[wildcards.dataset].settings["input"]
     return {
-        key: value for key, value in reading.items() if not key.endswith("_range_m")
+        key: value
+        for key, value in reading.items()
+        if key not in ("min_range_m", "max_range_m", "deskew")
     }
 
 
