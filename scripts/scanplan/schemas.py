@@ -44,6 +44,18 @@ REGISTRATION = Schema(
     },
     ("scan_id",),
 )
+CRISPNESS = Schema(
+    "crispness",
+    1,
+    {
+        "poses": "string",
+        "sigma_m": "float64",
+        "quarter_below_m": "float64",
+        "quarter_above_m": "float64",
+        "n_places": "int32",
+    },
+    ("poses",),
+)
 SCANS = Schema("scans", 1, {"scan_id": "int32", "x_m": "float32", "y_m": "float32", "z_m": "float32"}, ("scan_id",))
 HULLS = Schema(
     "hulls",
