@@ -28,7 +28,12 @@ POSES = Schema(
     {"scan_id": "int32", "t_ns": "int64", **_POSE, "gap_s": "float64", "covered": "bool"},
     ("scan_id",),
 )
-MOTION = Schema("motion", 1, {"t_ns": "int64", "piece": "int32", **_POSE}, ("t_ns",))
+MOTION = Schema(
+    "motion",
+    1,
+    {"t_ns": "int64", "piece": "int32", **_POSE, "time_scale": "float64", "time_shift_s": "float64"},
+    ("t_ns",),
+)
 REGISTRATION = Schema(
     "registration",
     1,

@@ -1,14 +1,9 @@
-import json
-
 import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation
 
 from evaluationmaking import SCAN_IDS, shift, write_registration
-from interpolate_poses import interpolate_poses
 from measure_crispness import measure_crispness
-from register_scans import register_scans
-from scanplan import configuration, crispness, datasets, se3, surveys, tables, verdicts
+from scanplan import tables
 
 SETTINGS = {"radius_m": 0.2, "most_points": 100_000, "most_places": 500, "seed": 1}
 

@@ -14,7 +14,9 @@ def walls(shift_m, noise_m=0.005, n=3000, planar=False, seed=0):
         along, up = rng.uniform(0, 8, n), rng.uniform(0, 2, n)
         across = rng.normal(0, noise_m, n) + shift_m * (scan_id - 1.5)
         second = rng.random(n) < 0.5
-        xyz_m = np.column_stack([np.where(second, across, along), np.where(second, along, across), 0 * up if planar else up])
+        xyz_m = np.column_stack(
+            [np.where(second, across, along), np.where(second, along, across), 0 * up if planar else up]
+        )
         points.append(xyz_m), owners.append(np.full(n, scan_id))
     return np.concatenate(points), np.concatenate(owners)
 
@@ -70,7 +72,10 @@ def test_thinning_takes_as_much_of_each_and_the_same_every_time():
 
 
 def test_columns():
-    measured = {"b": crispness.Places(np.zeros((4, 3)), np.array([1.0, 3, np.nan, 2])), "a": crispness.Places(np.zeros((0, 3)), np.zeros(0))}
+    measured = {
+        "b": crispness.Places(np.zeros((4, 3)), np.array([1.0, 3, np.nan, 2])),
+        "a": crispness.Places(np.zeros((0, 3)), np.zeros(0)),
+    }
     columns = crispness.columns(measured)
     assert columns["poses"] == ["a", "b"] and columns["n_places"] == [0, 3]
     np.testing.assert_array_equal(columns["sigma_m"], [np.nan, 2])
