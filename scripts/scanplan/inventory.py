@@ -19,7 +19,7 @@ _DRAWN = (
     "plan/plan.geojson",
     "plan/plan.svg",
     "plan/plan.dxf",
-    *(f"figures/{f}.svg" for f in ("scans", "area", "walls")),
+    *(f"figures/{f}.svg" for f in ("registration", "scans", "area", "walls")),
 )
 _EVALUATION = ("walls", "walls_aligned", "oracle", "plan", "poses")
 

@@ -28,7 +28,12 @@ POSES = Schema(
     {"scan_id": "int32", "t_ns": "int64", **_POSE, "gap_s": "float64", "covered": "bool"},
     ("scan_id",),
 )
-MOTION = Schema("motion", 1, {"t_ns": "int64", "piece": "int32", **_POSE}, ("t_ns",))
+MOTION = Schema(
+    "motion",
+    1,
+    {"t_ns": "int64", "piece": "int32", **_POSE, "time_scale": "float64", "time_shift_s": "float64"},
+    ("t_ns",),
+)
 REGISTRATION = Schema(
     "registration",
     1,
@@ -43,6 +48,18 @@ REGISTRATION = Schema(
         **_POSE,
     },
     ("scan_id",),
+)
+CRISPNESS = Schema(
+    "crispness",
+    1,
+    {
+        "poses": "string",
+        "sigma_m": "float64",
+        "quarter_below_m": "float64",
+        "quarter_above_m": "float64",
+        "n_places": "int32",
+    },
+    ("poses",),
 )
 SCANS = Schema("scans", 1, {"scan_id": "int32", "x_m": "float32", "y_m": "float32", "z_m": "float32"}, ("scan_id",))
 HULLS = Schema(
