@@ -235,3 +235,23 @@ POSE_ERRORS = Schema(
     },
     ("scan_id",),
 )
+CLUSTERS = Schema(
+    "clusters", 1, {"n_clusters": "int32", "rank": "int32", "scan_id": "int32", "covered_m2": "float64"},
+    ("n_clusters", "rank"),
+)  # fmt: skip
+AREAS = Schema(
+    "areas", 1, {"scan_id": "int32", "full_hull_m2": "float64", "cluster_hull_m2": "float64", "seen_m2": "float64"},
+    ("scan_id",),
+)  # fmt: skip
+TIMES = Schema(
+    "times", 1, {"task": "string", "size": "int32", "item": "int32", "found": "int32", "seconds": "float64"},
+    ("task", "size", "item"),
+)  # fmt: skip
+STEPS = Schema(
+    "steps", 1, {"step": "int32", "name": "string", "seconds": "float64", "n_scans": "int32", "n_bytes": "int64"},
+    ("step",),
+)  # fmt: skip
+CLAIMS = Schema(
+    "claims", 1, {"claim": "string", "survey": "string", "quantity": "string", "value": "float64", "holds": "string"},
+    ("claim", "survey", "quantity"),
+)  # fmt: skip
