@@ -14,7 +14,8 @@ DEMO = "demo"
 RESERVED = "thesis"
 """Name under results/ that the thesis's experiments have to themselves."""
 
-_TABLES = ("poses", "registration", "scans", "hulls", "plan/faces")
+_PLAN = tuple(f"plan/{t}" for t in ("faces", "walls", "openings", "rooms", "evidence", "free"))
+_TABLES = ("poses", "registration", "scans", "hulls", *_PLAN)
 _DRAWN = (
     "plan/plan.geojson",
     "plan/plan.svg",

@@ -110,6 +110,12 @@ def order_tables(wildcards):
     return {table: f"results/{wildcards.dataset}/{table}.parquet" for table in tables}
 
 
+def plan_settings(wildcards):
+    """Settings of the plan's own stage, part by part."""
+    plan = DATASETS[wildcards.dataset].settings["plan"]
+    return {part: plan[part] for part in plan if part not in ("method", "extractor")}
+
+
 def recordings(wildcards):
     """Files that hold a dataset's clouds and poses."""
     return DATASETS[wildcards.dataset].recordings
