@@ -73,7 +73,7 @@ WALLS = Schema(
 )
 FACES = Schema(
     "faces",
-    1,
+    2,
     {
         "face": "int32",
         **_SEGMENT,
@@ -82,9 +82,69 @@ FACES = Schema(
         "rmse_m": "float64",
         "z_min_m": "float64",
         "z_max_m": "float64",
+        "state": "string",
+        "wall": "int32",
     },
     ("face",),
 )
+"""Surfaces of the plan: `state` is observed or inferred, `wall` the wall it is a side of (-1: of none)."""
+_CENTRELINE = dict.fromkeys(("x0_m", "y0_m", "x1_m", "y1_m"), "float64")
+PLAN_WALLS = Schema(
+    "plan_walls",
+    1,
+    {
+        "wall": "int32",
+        **_CENTRELINE,
+        "thickness_m": "float64",
+        "face_left": "int32",
+        "face_right": "int32",
+        "state": "string",
+        **dict.fromkeys(("z_min_m", "z_max_m", "rmse_m", "sigma_offset_m", "sigma_end0_m", "sigma_end1_m"), "float64"),
+        "n_points": "int64",
+        "n_scans": "int32",
+        "verify": "bool",
+    },
+    ("wall",),
+)
+"""Walls of the plan. One seen from a single side has no thickness (NaN), and its line is that of its face."""
+OPENINGS = Schema(
+    "openings",
+    1,
+    {
+        "opening": "int32",
+        "wall": "int32",
+        "type": "string",
+        **_CENTRELINE,
+        **dict.fromkeys(("width_m", "thickness_m", "sill_m", "lintel_m"), "float64"),
+        "room_a": "int32",
+        "room_b": "int32",
+        "n_rays": "int64",
+    },
+    ("opening",),
+)
+"""Doors, windows and passages that rays went through; heights above the floor, NaN where not known; -1: no such."""
+ROOMS = Schema(
+    "rooms",
+    1,
+    {
+        "room": "int32",
+        **dict.fromkeys(("area_m2", "perimeter_m", "x_m", "y_m"), "float64"),
+        "closed": "bool",
+        "n_scans": "int32",
+        "geometry": "binary",
+    },
+    ("room",),
+    geometry=True,
+)
+FREE = Schema("free", 1, {"part": "int32", "geometry": "binary"}, ("part",), geometry=True)
+"""The floor that rays went over: polygons that do not overlap."""
+EVIDENCE = Schema(
+    "evidence",
+    1,
+    {"wall": "int32", "scan_id": "int32", "t_ns": "int64", "n_points": "int32"},
+    ("wall", "scan_id"),
+)
+"""Which scans show a wall of the plan, when they were taken and with how many points."""
 _WITHIN = ("005m", "010m", "015m")
 EVALUATION = Schema(
     "evaluation",

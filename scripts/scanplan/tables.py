@@ -13,14 +13,34 @@ import pyarrow.parquet as pq
 
 from scanplan import atomic
 from scanplan.errors import StageError
-from scanplan.schemas import FACES, HULLS, POSES, QUAT, REGISTRATION, SCANS, SELECTION, WALLS, XYZ
+from scanplan.schemas import (
+    EVIDENCE,
+    FACES,
+    FREE,
+    HULLS,
+    OPENINGS,
+    PLAN_WALLS,
+    POSES,
+    QUAT,
+    REGISTRATION,
+    ROOMS,
+    SCANS,
+    SELECTION,
+    WALLS,
+    XYZ,
+)
 
 __all__ = [
+    "EVIDENCE",
     "FACES",
+    "FREE",
     "HULLS",
+    "OPENINGS",
+    "PLAN_WALLS",
     "POSES",
     "QUAT",
     "REGISTRATION",
+    "ROOMS",
     "SCANS",
     "SELECTION",
     "WALLS",
