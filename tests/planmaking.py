@@ -27,6 +27,7 @@ OPENINGS = [
     ((1.0, -0.1, 2.2, -0.1), 0, "window", 0.9, 2.1, 0, -1),
 ]
 ROOMS = [shapely.box(0, 0, 4, 3), shapely.box(4.1, 0, 7.1, 3)]
+FREE = [shapely.box(0, 0, 4, 3), shapely.box(4, 1.0, 4.1, 1.9), shapely.box(4.1, 0, 7.1, 2)]
 # the outline, with what is assumed behind the east face, less the rooms
 FOOTPRINT_M2 = 7.4 * 3.4 - 12 - 9
 VOID_M3 = 1.0 * 0.2 * 2.0 + 0.9 * 0.1 * 2.0 + 1.2 * 0.2 * 1.2
@@ -38,7 +39,7 @@ FACES = [
     (0, 3, 0, 0, 4),
     (4, 0, 4, 3, 5),
     (4.1, 3, 4.1, 0, 5),
-    (7.3, -0.2, -0.2, -0.2, 0),
+    (7.2, -0.2, -0.2, -0.2, 0),
     (2.0, 2.0, 3.0, 2.0, -1),
 ]
 
@@ -122,7 +123,7 @@ def rooms(polygons=ROOMS):
     }
 
 
-def free(polygons=(shapely.box(0, 0, 4, 3), shapely.box(4, 1.0, 4.1, 1.9), shapely.box(4.1, 0, 7.1, 2))):
+def free(polygons=FREE):
     return {
         "part": np.arange(len(polygons), dtype=np.int32),
         "geometry": np.array([shapely.to_wkb(p) for p in polygons], object),
@@ -140,7 +141,7 @@ def evidence():
 
 def plan(**other):
     tables = {"faces": faces(), "walls": walls(), "openings": openings(), "rooms": rooms(), "free": free()}
-    return FloorPlan(name="office", **(tables | other))
+    return FloorPlan(**({"name": "office"} | tables | other))
 
 
 def bare(rows=((0, 0, 4, 3, -1), (10, 0, 10, 2, -1))):

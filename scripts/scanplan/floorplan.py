@@ -9,8 +9,9 @@ import shapely
 from scanplan import wallbodies
 
 STATES = ("observed", "inferred")
+OPENINGS = ("door", "window", "passage")
 _ENDS = ("x0_m", "y0_m", "x1_m", "y1_m")
-_CLEARANCE_M = 0.02
+CLEARANCE_M = 0.02
 _GRID_M = 1e-4
 _FLAT_M = 0.5
 
@@ -68,17 +69,27 @@ class FloorPlan:
         return wallbodies.bodies(lines_m(self.walls), *self.sides_m)
 
     @cached_property
+    def known(self):
+        """Likewise of the walls of known thickness, none of them mitred with an assumed one."""
+        return wallbodies.bodies(lines_m(self.walls)[self.thick], *(side[self.thick] for side in self.sides_m))
+
+    @cached_property
+    def hosts(self):
+        """The row of the wall that each opening is in, (m,); -1 if it is in none."""
+        row = {wall: i for i, wall in enumerate(self.walls["wall"].tolist())}
+        return np.array([row.get(wall, -1) for wall in self.openings["wall"].tolist()], np.int64)
+
+    @cached_property
     def gaps(self):
         """What each opening cuts out of the walls, (m,) Polygons a little deeper than its wall."""
         deep_m = np.nan_to_num(self.openings["thickness_m"], nan=self.assumed_thickness_m) / 2
-        hosts = self.openings["wall"]
-        walls_m = np.maximum(*self.sides_m) if len(self.thick) else np.zeros(1)
-        deep_m = np.maximum(deep_m, np.where(hosts >= 0, walls_m[hosts], 0)) + _CLEARANCE_M
-        return boxes(lines_m(self.openings), deep_m)
+        # one more for the openings that are in no wall
+        walls_m = np.append(np.maximum(*self.sides_m), 0.0)
+        return boxes(lines_m(self.openings), np.maximum(deep_m, walls_m[self.hosts]) + CLEARANCE_M)
 
     def solid(self, state):
         """Return the ground of the walls of one state whose thickness is known, merged, openings cut out."""
-        chosen = self.bodies[self.thick & (self.walls["state"] == state)]
+        chosen = self.known[self.walls["state"][self.thick] == state]
         merged = shapely.union_all(chosen, grid_size=_GRID_M)
         return shapely.difference(merged, shapely.union_all(self.gaps), grid_size=_GRID_M)
 
@@ -89,7 +100,7 @@ class FloorPlan:
         one_sided = ~self.thick & (self.walls["state"] == state)
         lines = shapely.linestrings(np.concatenate([lines_m(self.walls)[one_sided], lines_m(self.faces)[loose]]))
         # they end at the surfaces of the walls that they meet
-        hidden = shapely.union_all([*self.gaps, *shapely.buffer(self.bodies[self.thick], -_GRID_M)])
+        hidden = shapely.union_all([*self.gaps, *shapely.buffer(self.known, _GRID_M)])
         parts = shapely.get_parts(shapely.difference(lines, hidden))
         return parts[shapely.length(parts) > 0]
 
@@ -105,7 +116,7 @@ class FloorPlan:
     @cached_property
     def bounds_m(self):
         """The least and the greatest x and y of all that is drawn, ((2,), (2,))."""
-        shapes = [*shapely.linestrings(lines_m(self.faces)), *self.bodies[self.thick], *self.areas]
+        shapes = [*shapely.linestrings(lines_m(self.faces)), *self.known, *self.areas]
         x0, y0, x1, y1 = shapely.total_bounds(np.array(shapes, object))
         return np.array([x0, y0]), np.array([x1, y1])
 
@@ -113,6 +124,14 @@ class FloorPlan:
     def areas(self):
         """The rooms' polygons, (r,)."""
         return shapely.from_wkb(np.asarray(self.rooms["geometry"], object))
+
+
+def summary(plan):
+    """Return what a plan holds, in words."""
+    counts = [(len(plan.walls["wall"]), "wall"), (len(plan.faces["face"]), "wall face")]
+    counts += [(int((plan.openings["type"] == kind).sum()), kind) for kind in OPENINGS]
+    counts += [(len(plan.rooms["room"]), "room")]
+    return ", ".join(f"{n} {what}{'s' if n != 1 else ''}" for n, what in counts if n)
 
 
 def boxes(lines, half_m):

@@ -1,10 +1,10 @@
 import numpy as np
-import planmaking
 import pytest
 import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
+import planmaking
 from scanplan import wallbodies
 
 
