@@ -18,7 +18,15 @@ EVALUATION = [
     "evaluation/poses.parquet",
     "figures/evaluation.svg",
 ]
-PLANS = ["plan.geojson", "plan.svg", "plan.dxf"]
+PLANS = [
+    "plan.geojson",
+    "plan.dxf",
+    "plan.svg",
+    "plan.pdf",
+    "plan.ifc",
+    "map.pgm",
+    "map.yaml",
+]
 
 
 def given_datasets():
