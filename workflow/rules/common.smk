@@ -181,6 +181,42 @@ def simulated_survey(wildcards):
     }
 
 
+def all_settings(wildcards):
+    """All settings of the job's dataset."""
+    return SETTINGS[wildcards.dataset]
+
+
+def report_figures(wildcards):
+    """The figures of a dataset, those of the evaluation last."""
+    named = [f"figures/{figure}.svg" for figure in FIGURES]
+    if TRUTHS[wildcards.dataset]:
+        named += [file for file in EVALUATION if file.startswith("figures/")]
+    return [f"results/{wildcards.dataset}/{file}" for file in named]
+
+
+def report_evaluation(wildcards):
+    """The measured walls of a dataset, if its truth is known."""
+    known = TRUTHS[wildcards.dataset]
+    return [f"results/{wildcards.dataset}/evaluation/walls.parquet"] if known else []
+
+
+def report_page(wildcards):
+    """HTML, style and script that the report is made from."""
+    return [
+        os.path.relpath(f"{workflow.basedir}/workflow/report/page/page.{suffix}")
+        for suffix in ("html", "css", "js")
+    ]
+
+
+def report_results(wildcards):
+    """The tables and plans whose sizes the report states."""
+    return [
+        file
+        for file in results_of(wildcards.dataset)
+        if not file.endswith((".html", ".svg"))
+    ]
+
+
 def results_of(name):
     """Everything the workflow makes of one dataset."""
     files = [
@@ -195,6 +231,7 @@ def results_of(name):
     files += [f"plan/{plan}" for plan in PLANS]
     files += [f"figures/{figure}.svg" for figure in FIGURES]
     files += EVALUATION if TRUTHS[name] else []
+    files.append("report.html")
     return [f"results/{name}/{file}" for file in files]
 
 
