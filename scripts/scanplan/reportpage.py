@@ -120,7 +120,7 @@ def _stage_times(benchmarks):
     """Return stage, seconds, processor seconds and peak memory in MB of each benchmark."""
     rows = []
     for stage, text in sorted(benchmarks.items()):
-        head, *lines = (line.split("\t") for line in text.splitlines())
+        head, *lines = [line.split("\t") for line in text.splitlines()] or [[]]
         if not lines or not {"s", "cpu_time", "max_rss"} <= set(head):
             continue
         measured = [dict(zip(head, line, strict=False)) for line in lines]

@@ -120,7 +120,7 @@ def stages(measured):
     rows = [[stage, number(s, 1), number(cpu_s, 1), number(memory_mb, 0)] for stage, s, cpu_s, memory_mb in measured]
     total = [
         {"class": "total", "text": "all"},
-        *(number(sum(row[i] for row in measured), 1) for i in (1, 2)),
+        *(number(np.nansum([row[i] for row in measured]), 1) for i in (1, 2)),
         (None, ""),
     ]
     return table(

@@ -40,9 +40,9 @@ def certificate(survey):
     k, all_m2 = survey.chosen, covered[-1]
     best_m2 = min(bound[k - 1], all_m2)
     return (
-        f"The {k} scans of the plan cover {covered[k - 1]:,.1f} m², {covered[k - 1] / all_m2:.1%} of the {all_m2:,.1f} m²"
-        f" that all {len(covered):,} registered scans cover. Certificate: no {k} of these scans cover more than"
-        f" {best_m2:,.1f} m², so this choice is within {1 - covered[k - 1] / best_m2:.1%} of the best one."
+        f"The {k} scans of the plan cover {covered[k - 1]:,.1f} m², {covered[k - 1] / all_m2:.1%} of the"
+        f" {all_m2:,.1f} m² that all {len(covered):,} registered scans cover. Certificate: no {k} of these scans"
+        f" cover more than {best_m2:,.1f} m², so this choice is within {1 - covered[k - 1] / best_m2:.1%} of the best."
     )
 
 
