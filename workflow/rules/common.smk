@@ -125,6 +125,12 @@ def extractor_settings(wildcards):
     return SETTINGS[wildcards.dataset]["walls"][wildcards.extractor]
 
 
+def plan_settings(wildcards):
+    """Settings of the plan's own stage, part by part."""
+    plan = SETTINGS[wildcards.dataset]["plan"]
+    return {part: plan[part] for part in plan if part not in ("method", "extractor", "export")}
+
+
 def recordings(wildcards):
     """Files that hold a dataset's clouds and poses."""
     return RECORDINGS[wildcards.dataset]

@@ -1,22 +1,29 @@
 rule assemble_plan:
-    """Merge the walls of the first scans of an ordering into faces."""
+    """Make faces, walls, openings and rooms of the first scans of an ordering."""
     input:
         walls=plan_walls,
         selection=plan_selection,
+        scans="results/{dataset}/scans.parquet",
+        registration="results/{dataset}/registration.parquet",
         code=code_of("assemble_plan"),
     output:
         faces="results/{dataset}/plan/faces.parquet",
+        walls="results/{dataset}/plan/walls.parquet",
+        openings="results/{dataset}/plan/openings.parquet",
+        rooms="results/{dataset}/plan/rooms.parquet",
+        evidence="results/{dataset}/plan/evidence.parquet",
+        free="results/{dataset}/plan/free.parquet",
     log:
         "logs/{dataset}/assemble_plan.log",
     benchmark:
         "benchmarks/{dataset}/assemble_plan.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=2000,
+        runtime=20,
     params:
         stop=setting("selection", "stop"),
-        settings=setting("plan", "merge"),
+        settings=plan_settings,
     script:
         "../../scripts/assemble_plan.py"
 
