@@ -113,7 +113,7 @@ def order_tables(wildcards):
 def plan_settings(wildcards):
     """Settings of the plan's own stage, part by part."""
     plan = DATASETS[wildcards.dataset].settings["plan"]
-    return {part: plan[part] for part in plan if part not in ("method", "extractor")}
+    return {part: plan[part] for part in plan if part not in ("method", "extractor", "export")}
 
 
 def recordings(wildcards):
@@ -171,6 +171,43 @@ def simulated_survey(wildcards):
         for key, value in survey.items()
         if key not in ("building", "recording")
     }
+
+
+def all_settings(wildcards):
+    """All settings of the job's dataset."""
+    return DATASETS[wildcards.dataset].settings
+
+
+def report_figures(wildcards):
+    """The figures of a dataset, those of the evaluation last."""
+    return [
+        file
+        for file in results_of(wildcards.dataset)
+        if "/figures/" in file and file.endswith(".svg")
+    ]
+
+
+def report_evaluation(wildcards):
+    """The measured walls of a dataset, if its truth is known."""
+    known = DATASETS[wildcards.dataset].truth
+    return [f"results/{wildcards.dataset}/evaluation/walls.parquet"] if known else []
+
+
+def report_page(wildcards):
+    """HTML, style and script that the report is made from."""
+    return [
+        os.path.relpath(f"{workflow.basedir}/workflow/report/page/page.{suffix}")
+        for suffix in ("html", "css", "js")
+    ]
+
+
+def report_results(wildcards):
+    """The tables and plans whose sizes the report states."""
+    return [
+        file
+        for file in results_of(wildcards.dataset)
+        if not file.endswith((".html", ".svg"))
+    ]
 
 
 def results_of(name):
