@@ -12,7 +12,9 @@ def test_solid_walls_have_the_area_that_is_worked_out_on_paper():
     inferred = (3.0 + 3.05) / 2 * 0.1 + 3.05 * 0.1
     cut = 1.0 * 0.2 + 0.9 * 0.1 + 1.2 * 0.2
     assert plan().solid("inferred").area == pytest.approx(inferred, abs=1e-3)
-    assert plan().solid("observed").area == pytest.approx(floorplanmaking.FOOTPRINT_M2 - east - inferred - cut, abs=1e-3)
+    assert plan().solid("observed").area == pytest.approx(
+        floorplanmaking.FOOTPRINT_M2 - east - inferred - cut, abs=1e-3
+    )
 
 
 def test_openings_are_cut_through():

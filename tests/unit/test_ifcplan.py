@@ -48,7 +48,9 @@ def test_walls_have_the_volume_of_the_plan(model):
     solid = [volume_m3(wall, disable_opening_subtractions=True) for wall in model.by_type("IfcWall")]
     assert sum(solid) == pytest.approx(floorplanmaking.FOOTPRINT_M2 * floorplanmaking.HEIGHT_M, rel=1e-3)
     cut = [volume_m3(wall) for wall in model.by_type("IfcWall")]
-    assert sum(cut) == pytest.approx(floorplanmaking.FOOTPRINT_M2 * floorplanmaking.HEIGHT_M - floorplanmaking.VOID_M3, rel=1e-3)
+    assert sum(cut) == pytest.approx(
+        floorplanmaking.FOOTPRINT_M2 * floorplanmaking.HEIGHT_M - floorplanmaking.VOID_M3, rel=1e-3
+    )
 
 
 def test_the_tree_goes_from_the_project_to_walls_doors_and_spaces(model):
