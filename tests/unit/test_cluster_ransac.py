@@ -49,7 +49,7 @@ def test_every_wall_of_the_room_in_space(seed):
     found = extract(toyrooms.vlp16(seed=seed))
     check_toy_room(found)
     assert (np.diff(found.n_points) <= 0).all()
-    assert found.rmse_m == pytest.approx(0.009, abs=0.003)
+    assert found.rmse_m == pytest.approx(0.009, abs=0.0035)
     assert (found.z_range_m[:, 0] > -0.05).all()
     assert (found.z_range_m[:, 1] < toyrooms.HEIGHT_M + 0.05).all()
 
@@ -159,7 +159,9 @@ def test_a_few_returns_from_far_away_are_no_wall():
 def test_one_wall_in_99_percent_of_outliers():
     draw = np.random.default_rng(1)
     wall = np.column_stack([np.full(400, 3.0), draw.uniform(-1.5, 1.5, 400), draw.uniform(-0.8, 0.8, 400)])
-    dust = draw.uniform(-20, 20, (39_600, 3)) * (1, 1, 0.1)
+    dust = draw.uniform(-20, 20, (60_000, 3)) * (1, 1, 0.1)
+    hidden = (dust[:, 0] > 3) & (np.abs(dust[:, 1]) < dust[:, 0] / 2) & (np.abs(dust[:, 2]) < dust[:, 0] * 0.8 / 3)
+    dust = dust[~hidden][:39_600]
     found = extract(np.vstack([wall, dust]), (0, 0, 0))
     assert len(found) >= 1
     assert found.start_m[0, 0] == pytest.approx(3, abs=0.02)
