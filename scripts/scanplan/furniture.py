@@ -102,8 +102,11 @@ def _upright_walls(values, sound, scan, limits):
     inner, outer = corners(start_m, end_m, normal, limits.corner_m)
     closed = (inner & sound).any(axis=2).all(axis=1)
     tall = top_m >= limits.wall_height_m
-    joined = (inner & (sound & tall)).any(axis=(1, 2)) & ~outer.any(axis=(1, 2))
-    wall = sound & (tall | closed | joined)
+    plain = sound & ~outer.any(axis=(1, 2))
+    wall = sound & (tall | closed)
+    # what meets a wall in an inner corner is one, too, and so on
+    while (joined := plain & ~wall & (inner & wall).any(axis=(1, 2))).any():
+        wall |= joined
     side_of_furniture = (outer & ~sound).any(axis=(1, 2)) & (length_m <= limits.furniture_depth_m)
     wall &= ~(side_of_furniture & lowish)
     continued = (in_line(start_m, end_m, normal, limits) & wall & (length_m >= limits.stub_length_m)).any(axis=1)

@@ -35,6 +35,8 @@ class Cells:
         The points, by cell.
     first : (m + 1,) int64
         Those of cell i are `members[first[i] : first[i + 1]]`.
+    count : (m,) int64
+        Points in each cell.
     mean_m : (m, d) float64
     normal : (m, d) float64
         Unit vectors towards the sensor; NaN where the surroundings are no surface.
@@ -45,14 +47,10 @@ class Cells:
     of_point: np.ndarray
     members: np.ndarray
     first: np.ndarray
+    count: np.ndarray
     mean_m: np.ndarray
     normal: np.ndarray
     radius_m: np.ndarray
-
-    @property
-    def count(self):
-        """Number of points of each cell."""
-        return np.diff(self.first)
 
     def points_of(self, cells):
         """Return the indices of the points of the given cells, (k,) int."""
@@ -188,8 +186,9 @@ def _as_cells(of_point, mean_m, normal, radius_m):
     # a radix sort, for numbers of two bytes
     sortable = of_point.astype(np.uint16) if n_cells <= 2**16 else of_point
     members = np.argsort(sortable, kind="stable")
-    first = np.concatenate([[0], np.cumsum(np.bincount(of_point, minlength=n_cells))]).astype(np.int64)
-    return Cells(of_point, members, first, mean_m, normal, radius_m)
+    count = np.bincount(of_point, minlength=n_cells)
+    first = np.concatenate([[0], np.cumsum(count)]).astype(np.int64)
+    return Cells(of_point, members, first, count, mean_m, normal, radius_m)
 
 
 def _moments(points, group, n_groups):
