@@ -22,7 +22,8 @@ class Limits:
     Attributes
     ----------
     max_rmse_m : float
-        Points of a wall scatter less about its line: clutter that fills the band of inliers scatters more.
+        Points of a wall scatter less about its line: clutter that fills the band of inliers scatters more. In space, for
+        faces that may be furniture.
     wall_height_m : float
         A face seen up to here above the floor, and not seen to end, is a wall; a lower one where its corners tell.
     furniture_height_m : float
@@ -82,19 +83,21 @@ def walls_among(rows, xyz_m, limits, *, planar):
     if not rows:
         return rows
     values = np.array(rows, float)
-    sound = values[:, 7] <= limits.max_rmse_m
-    if not planar:
-        sound = _upright_walls(values, sound, sightlines.view(xyz_m), limits)
+    if planar:
+        sound = values[:, 7] <= limits.max_rmse_m
+    else:
+        sound = _upright_walls(values, sightlines.view(xyz_m), limits)
     return [row for row, good in zip(rows, sound.tolist(), strict=True) if good]
 
 
-def _upright_walls(values, sound, scan, limits):
-    """Return which rows (n, 10) are walls of those (n,) that are sound, by what the rays of a 3-D scan tell."""
+def _upright_walls(values, scan, limits):
+    """Return which rows (n, 10) are walls, by what the rays of a 3-D scan tell."""
     start_m, end_m, normal = values[:, 0:2], values[:, 2:4], values[:, 4:6]
     sights = [sightlines.look(scan, v[0:2], v[2:4], v[8], v[9]) for v in values]
     top_m, over, through, missing = np.array([(s.top_m, s.over, s.through, s.missing) for s in sights]).T
     length_m, lowish = np.hypot(*(end_m - start_m).T), top_m < limits.furniture_height_m
-    sound = sound & (through <= limits.through_share) & (missing <= limits.missing_share)
+    sound = (values[:, 7] <= limits.max_rmse_m) | ~lowish
+    sound &= (through <= limits.through_share) & (missing <= limits.missing_share)
     hangs = values[:, 8] - scan.floor_m > limits.hang_height_m
     sound &= ~(lowish & (hangs | (over > limits.over_share)))
     small = lowish & (length_m <= limits.furniture_length_m)

@@ -17,7 +17,7 @@ _STILL = 1e-2  # a seed that moves less than this share of the bandwidth has arr
 def mean_shift(xy_m, *, bandwidth_m, weight=None):
     """Find the modes of a flat kernel's density, and each point's nearest mode.
 
-    The points are gathered in square bins of an eighth of the bandwidth, each a mean and a weight; a bin of every square
+    The points are gathered in square bins of an eighth of the bandwidth, each a mean and a weight; one of every square
     of a quarter is a seed. A seed moves to the mean of the bins around it by sums over rows of bins. Modes closer than
     the bandwidth to a heavier one are dropped, as scikit-learn does.
 
