@@ -177,7 +177,12 @@ def _columns(rows):
     names = ("x0_m", "y0_m", "x1_m", "y1_m", "nx", "ny", "n_points", "n_scans", "rmse_m", "z_min_m", "z_max_m")
     dtypes = {"n_points": np.int64, "n_scans": np.int32}
     columns = {name: np.array([row[name] for row in rows], dtypes.get(name, np.float64)) for name in names}
-    return {"face": np.arange(len(rows), dtype=np.int32), **columns}
+    return {
+        "face": np.arange(len(rows), dtype=np.int32),
+        **columns,
+        "state": np.full(len(rows), "observed", object),
+        "wall": np.full(len(rows), -1, np.int32),
+    }
 
 
 def _rank(row):

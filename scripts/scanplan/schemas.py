@@ -28,6 +28,7 @@ POSES = Schema(
     {"scan_id": "int32", "t_ns": "int64", **_POSE, "gap_s": "float64", "covered": "bool"},
     ("scan_id",),
 )
+MOTION = Schema("motion", 1, {"t_ns": "int64", "piece": "int32", **_POSE}, ("t_ns",))
 REGISTRATION = Schema(
     "registration",
     1,
@@ -51,10 +52,23 @@ HULLS = Schema(
     ("scan_id", "cluster"),
     geometry=True,
 )
+OBSERVATIONS = Schema(
+    "observations",
+    1,
+    {"scan_id": "int32", "facing": "int32", "along": "int32", "across": "int32", "length_m": "float64"},
+    ("scan_id", "facing", "along", "across"),
+)
+VISIBILITY = Schema(
+    "visibility", 1, {"scan_id": "int32", "area_m2": "float64", "geometry": "binary"}, ("scan_id",), geometry=True
+)
 SELECTION = Schema(
     "selection",
-    1,
-    {"rank": "int32", "scan_id": "int32", "gain_m2": "float64", "covered_m2": "float64", "bound_m2": "float64"},
+    2,
+    {
+        "rank": "int32",
+        "scan_id": "int32",
+        **dict.fromkeys(("gain_m2", "covered_m2", "bound_m2", "gain", "covered", "bound"), "float64"),
+    },
     ("rank",),
 )
 WALLS = Schema(
@@ -73,7 +87,7 @@ WALLS = Schema(
 )
 FACES = Schema(
     "faces",
-    1,
+    2,
     {
         "face": "int32",
         **_SEGMENT,
@@ -82,10 +96,81 @@ FACES = Schema(
         "rmse_m": "float64",
         "z_min_m": "float64",
         "z_max_m": "float64",
+        "state": "string",
+        "wall": "int32",
     },
     ("face",),
 )
+"""Surfaces of the plan: `state` is observed or inferred, `wall` the wall it is a side of (-1: of none)."""
+_CENTRELINE = dict.fromkeys(("x0_m", "y0_m", "x1_m", "y1_m"), "float64")
+PLAN_WALLS = Schema(
+    "plan_walls",
+    1,
+    {
+        "wall": "int32",
+        **_CENTRELINE,
+        "thickness_m": "float64",
+        "face_left": "int32",
+        "face_right": "int32",
+        "state": "string",
+        **dict.fromkeys(("z_min_m", "z_max_m", "rmse_m", "sigma_offset_m", "sigma_end0_m", "sigma_end1_m"), "float64"),
+        "n_points": "int64",
+        "n_scans": "int32",
+        "verify": "bool",
+    },
+    ("wall",),
+)
+"""Walls of the plan. One seen from a single side has no thickness (NaN), and its line is that of its face."""
+OPENINGS = Schema(
+    "openings",
+    1,
+    {
+        "opening": "int32",
+        "wall": "int32",
+        "type": "string",
+        **_CENTRELINE,
+        **dict.fromkeys(("width_m", "thickness_m", "sill_m", "lintel_m"), "float64"),
+        "room_a": "int32",
+        "room_b": "int32",
+        "n_rays": "int64",
+    },
+    ("opening",),
+)
+"""Doors, windows and passages that rays went through; heights above the floor, NaN where not known; -1: no such."""
+ROOMS = Schema(
+    "rooms",
+    1,
+    {
+        "room": "int32",
+        **dict.fromkeys(("area_m2", "perimeter_m", "x_m", "y_m"), "float64"),
+        "closed": "bool",
+        "n_scans": "int32",
+        "geometry": "binary",
+    },
+    ("room",),
+    geometry=True,
+)
+FREE = Schema("free", 1, {"part": "int32", "geometry": "binary"}, ("part",), geometry=True)
+"""The floor that rays went over: polygons that do not overlap."""
+EVIDENCE = Schema(
+    "evidence",
+    1,
+    {"wall": "int32", "scan_id": "int32", "t_ns": "int64", "n_points": "int32"},
+    ("wall", "scan_id"),
+)
+"""Which scans show a wall of the plan, when they were taken and with how many points."""
 _WITHIN = ("005m", "010m", "015m")
+_AGREEMENT = {
+    **dict.fromkeys(("false_negative", "correct_match", "false_positive"), "float64"),
+    **{
+        f"{truth}{measure}_{within}": "float64"
+        for truth in ("", "visible_")
+        for measure in ("completeness", "correctness", "f1")
+        for within in _WITHIN
+    },
+    "n_walls": "int32",
+    **dict.fromkeys(("walls_per_true_wall", "redundancy"), "float64"),
+}
 EVALUATION = Schema(
     "evaluation",
     1,
@@ -93,18 +178,9 @@ EVALUATION = Schema(
         "method": "string",
         "extractor": "string",
         "k": "int32",
-        **dict.fromkeys(("false_negative", "correct_match", "false_positive"), "float64"),
-        **{
-            f"{truth}{measure}_{within}": "float64"
-            for truth in ("", "visible_")
-            for measure in ("completeness", "correctness", "f1")
-            for within in _WITHIN
-        },
-        "n_walls": "int32",
+        **_AGREEMENT,
         **dict.fromkeys(
             (
-                "walls_per_true_wall",
-                "redundancy",
                 "seen",
                 "missed_not_seen",
                 "missed_misregistered",
@@ -117,7 +193,13 @@ EVALUATION = Schema(
     },
     ("method", "extractor", "k"),
 )
-ORACLE = Schema("oracle", 1, {"rank": "int32", "scan_id": "int32", "gain_m": "float64", "seen_m": "float64"}, ("rank",))
+PLAN_EVALUATION = Schema("plan_evaluation", 1, {"frame": "string", "length_m": "float64", **_AGREEMENT}, ("frame",))
+ORACLE = Schema(
+    "oracle",
+    2,
+    {"extractor": "string", "rank": "int32", "scan_id": "int32", "gain_m": "float64", "found_m": "float64"},
+    ("extractor", "rank"),
+)
 POSE_ERRORS = Schema(
     "pose_errors",
     1,

@@ -117,3 +117,15 @@ def failures():
 # before the jobs are worked out: while another run is at work, files come and go
 if workflow.is_main_process and OWN_REPORT not in os.environ:
     lock().close()
+
+
+onstart:
+    run_alone()
+
+
+onsuccess:
+    tell_results()
+
+
+onerror:
+    tell_failure()
