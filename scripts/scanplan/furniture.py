@@ -83,10 +83,7 @@ def walls_among(rows, xyz_m, limits, *, planar):
     if not rows:
         return rows
     values = np.array(rows, float)
-    if planar:
-        sound = values[:, 7] <= limits.max_rmse_m
-    else:
-        sound = _upright_walls(values, sightlines.view(xyz_m), limits)
+    sound = values[:, 7] <= limits.max_rmse_m if planar else _upright_walls(values, sightlines.view(xyz_m), limits)
     return [row for row, good in zip(rows, sound.tolist(), strict=True) if good]
 
 
