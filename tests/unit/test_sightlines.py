@@ -3,10 +3,12 @@ import pytest
 
 from scanplan import sightlines
 
+AZIMUTH_DEG = np.arange(-180, 180, 0.5)
 
-def scan(elevations_deg, range_m, azimuth_deg=np.arange(-180, 180, 0.5)):
+
+def scan(elevations_deg, range_m):
     """Return a view of rays of given elevations, each ending at `range_m(azimuth_rad, slope)`, horizontally."""
-    azimuth, slope = np.meshgrid(np.deg2rad(azimuth_deg), np.tan(np.deg2rad(elevations_deg)))
+    azimuth, slope = np.meshgrid(np.deg2rad(AZIMUTH_DEG), np.tan(np.deg2rad(elevations_deg)))
     azimuth, slope = azimuth.ravel(), slope.ravel()
     reach = range_m(azimuth, slope)
     points = np.column_stack([np.cos(azimuth) * reach, np.sin(azimuth) * reach, slope * reach])
@@ -44,13 +46,12 @@ def test_rays_that_pass_over_an_edge():
 
 def test_rays_that_pass_through():
     """Every other column of rays goes through to 5 m."""
-    grid = np.arange(-180, 180, 0.5)
 
     def reach(azimuth, slope):
         gap = np.round(np.rad2deg(azimuth) * 2).astype(int) % 2 == 0
         return np.where(gap, 5.0, np.minimum(plane(2, azimuth), 5))
 
-    seen = sightlines.look(scan(range(-10, 11, 2), reach, grid), START, END, -0.35, 0.35)
+    seen = sightlines.look(scan(range(-10, 11, 2), reach), START, END, -0.35, 0.35)
     assert seen.through == pytest.approx(1, abs=0.1)
 
 
