@@ -31,7 +31,9 @@ class CellCoverage:
         self._first = np.searchsorted(scan, np.arange(n + 1))
         self._weight = np.asarray(weight, float)
         if not len(scan) == len(cell) == len(self._weight) or (np.diff(scan) < 0).any():
-            raise ValueError(f"{len(scan)} scans, {len(cell)} cells and {len(weight)} weights must be one each, by scan")
+            raise ValueError(
+                f"{len(scan)} scans, {len(cell)} cells and {len(weight)} weights must be one each, by scan"
+            )
         if len(scan) and (scan[0] < 0 or scan[-1] >= n or not (self._weight >= 0).all() or np.isinf(weight).any()):
             raise ValueError(f"scans must be 0 to {n - 1}, weights finite and not below 0")
         self._n, (_, self._cell) = n, np.unique(cell, return_inverse=True)

@@ -31,7 +31,7 @@ def visible(rays):
 
 
 def _star(origin_m, azimuth_rad, range_m):
-    count = int(round(2 * np.pi / _SECTOR_RAD))
+    count = round(2 * np.pi / _SECTOR_RAD)
     sector = np.minimum(((azimuth_rad + np.pi) / _SECTOR_RAD).astype(np.int64), count - 1)
     reach_m = np.zeros(count)
     order = np.lexsort((range_m, sector))
@@ -55,9 +55,7 @@ def together(stars):
 def polygons_of(geometry):
     """Return what of a geometry has an area."""
     parts = [p for p in shapely.get_parts(geometry) if p.geom_type == "Polygon" and p.area > 0]
-    parts += [
-        q for p in shapely.get_parts(geometry) if p.geom_type == "MultiPolygon" for q in p.geoms if q.area > 0
-    ]
+    parts += [q for p in shapely.get_parts(geometry) if p.geom_type == "MultiPolygon" for q in p.geoms if q.area > 0]
     return MultiPolygon(parts)
 
 
@@ -70,11 +68,16 @@ def strips(walls, unpaired_m):
     unpaired_m : float
         How thick a wall is taken for of which one side is known; it lies behind that.
     """
-    result = []
-    for wall in walls:
-        left_m, right_m = (0.0, -unpaired_m) if np.isnan(wall.thickness_m) else (wall.half_m, -wall.half_m)
-        ends = wall.ends
-        corners = [ends[0] + right_m * wall.line.normal, ends[1] + right_m * wall.line.normal]
-        corners += [ends[1] + left_m * wall.line.normal, ends[0] + left_m * wall.line.normal]
-        result.append(Polygon(corners))
-    return result
+    return [_ground(wall, wall.low_m, wall.high_m, unpaired_m) for wall in walls]
+
+
+def opening_ground(wall, gap, unpaired_m):
+    """Return the ground of an opening in a wall, a polygon a little deeper than the wall."""
+    return _ground(wall, gap.low_m, gap.high_m, unpaired_m).buffer(1e-3, join_style="mitre")
+
+
+def _ground(wall, low_m, high_m, unpaired_m):
+    left_m, right_m = (0.0, -unpaired_m) if np.isnan(wall.thickness_m) else (wall.half_m, -wall.half_m)
+    start, end = wall.line.at(np.array([low_m, high_m]))
+    across = np.array([right_m, left_m])[:, None] * wall.line.normal
+    return Polygon([start + across[0], end + across[0], end + across[1], start + across[1]])

@@ -3,8 +3,6 @@
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
 from scanplan import facepieces, stretches
 
 _LEAST_CROSSING_RAD = math.radians(30)

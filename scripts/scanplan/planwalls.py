@@ -1,5 +1,6 @@
 """The walls of the plan: paired faces with their openings, cut where nothing was seen, met at corners."""
 
+import itertools
 import math
 from dataclasses import dataclass, replace
 
@@ -91,7 +92,7 @@ def _cut(paired, found, reading, gapping, planar):
     breaks = [g for g in judged if g.state == gaps.UNKNOWN and g.width_m >= gapping.min_opening_m]
     bounds = [-math.inf, *((g.low_m + g.high_m) / 2 for g in breaks), math.inf]
     parts = []
-    for begin, end in zip(bounds[:-1], bounds[1:], strict=True):
+    for begin, end in itertools.pairwise(bounds):
         inside = {i: m for i, m in members.items() if begin < m.mean() < end}
         spans = np.array(list(inside.values()))
         of_it = [g for g in judged if begin < (g.low_m + g.high_m) / 2 < end and g not in breaks]

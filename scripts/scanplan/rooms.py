@@ -105,7 +105,7 @@ def _without_necks(floor):
 
 
 def _largest(geometry):
-    parts = [p for p in freespace.polygons_of(geometry.buffer(-_NECK_M).buffer(_NECK_M, join_style="mitre")).geoms]
+    parts = list(freespace.polygons_of(geometry.buffer(-_NECK_M).buffer(_NECK_M, join_style="mitre")).geoms)
     return max(parts, key=lambda p: p.area, default=None)
 
 
@@ -154,7 +154,8 @@ def _lines(wall, part, unpaired_m):
     """Return (point, way) of what of a wall may bound the part: its faces, and its ends near to it."""
     back_m = unpaired_m if np.isnan(wall.thickness_m) else wall.half_m
     offsets = (off_m * wall.line.normal for off_m in (wall.half_m, -back_m))
-    lines = [(wall.ends[0] + offset, wall.line.direction) for offset in offsets]
+    beside_m = wall.line.at(wall.line.along_m(np.array(part.centroid.coords[0])))
+    lines = [(beside_m + offset, wall.line.direction) for offset in offsets]
     return lines + [(end, wall.line.normal) for end in wall.ends if shapely.Point(end).distance(part) <= _NEAR_M]
 
 
@@ -168,4 +169,3 @@ def beside(rooms, line_m, half_m):
         hit = [i for p in points for i, room in enumerate(rooms) if room.polygon.covers(p)]
         found.append(hit[0] if hit else -1)
     return found
-

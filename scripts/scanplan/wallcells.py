@@ -152,7 +152,9 @@ class _Grid:
     def sums(self, weight):
         """Add up a weight of the points in every cell."""
         flat = np.bincount(self._lower, weight * (1 - self._upper_share), minlength=np.prod(self.shape))
-        return (flat + np.bincount(self._lower + 1, weight * self._upper_share, minlength=len(flat))).reshape(self.shape)
+        return (flat + np.bincount(self._lower + 1, weight * self._upper_share, minlength=len(flat))).reshape(
+            self.shape
+        )
 
     def extent(self, value, window):
         """Return the range of a value of the points in a window around every cell; -inf without any."""
