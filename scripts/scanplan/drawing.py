@@ -1,6 +1,7 @@
 """The plan as a drawing to scale."""
 
 import io
+import logging
 import math
 
 import matplotlib
@@ -14,6 +15,8 @@ from matplotlib.textpath import TextPath
 
 from scanplan import floorplan
 
+# it tells of every table that it leaves out of a font
+logging.getLogger("fontTools").setLevel(logging.WARNING)
 _MM_PER_INCH = 25.4
 _POINTS_PER_MM = 72 / _MM_PER_INCH
 _SCALES = [m * 10**e for e in range(1, 7) for m in (1, 2, 5)]
