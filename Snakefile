@@ -29,15 +29,3 @@ rule all:
     default_target: True
     input:
         all_results(),
-
-
-onstart:
-    run_alone()
-
-
-onsuccess:
-    tell_results()
-
-
-onerror:
-    tell_failure()

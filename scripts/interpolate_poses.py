@@ -2,22 +2,25 @@
 
 import numpy as np
 
-from scanplan import candidates, frames, se3, stagelog, surveys, tables
+from scanplan import candidates, frames, motion, se3, stagelog, surveys, tables
 from scanplan.errors import StageError
 
 
-def interpolate_poses(files, output, *, keep_every, max_step_m, max_turn_deg, max_gap_s, **reading):
-    """Write the poses table: the candidates for registration with their interpolated poses.
+def interpolate_poses(files, output, *, keep_every, max_step_m, max_turn_deg, max_gap_s, moved=None, **reading):
+    """Write the candidates for registration with their interpolated poses, and how the sensor moved.
 
     Parameters
     ----------
     files : sequence of str
         All files of the dataset.
     output : path-like
+        poses.parquet.
     keep_every, max_step_m, max_turn_deg
         See `candidates.choose`.
     max_gap_s : float
         Longest time between two poses to interpolate over.
+    moved : path-like, optional
+        motion.parquet, to write.
     **reading
         Keywords of `surveys.open_survey`.
 
@@ -27,7 +30,7 @@ def interpolate_poses(files, output, *, keep_every, max_step_m, max_turn_deg, ma
         If the recordings cannot be used or no candidate has a pose.
     """
     with surveys.open_survey(files, **reading) as survey:
-        t_ns, edges = survey.stamps(), survey.pose_edges()
+        t_ns, edges, chains = survey.stamps(), survey.pose_edges(), survey.motion_chains() if moved else []
     pose, gap_s, covered = frames.world_from_sensor(edges, t_ns, max_gap_s=max_gap_s)
     chosen = candidates.choose(pose, keep_every=keep_every, max_step_m=max_step_m, max_turn_deg=max_turn_deg)
     if not covered[chosen].any():
@@ -39,6 +42,8 @@ def interpolate_poses(files, output, *, keep_every, max_step_m, max_turn_deg, ma
     columns = {"scan_id": chosen, "t_ns": t_ns[chosen], "gap_s": gap_s[chosen], "covered": covered[chosen]}
     columns |= dict(zip(("x_m", "y_m", "z_m", "qx", "qy", "qz", "qw"), np.hstack([xyz_m, quat]).T, strict=True))
     tables.write(output, tables.POSES, columns)
+    if moved is not None:
+        tables.write(moved, tables.MOTION, motion.choose(chains, t_ns, max_gap_s=max_gap_s).columns())
     n_covered = int(covered[chosen].sum())
     stagelog.say(
         f"interpolate_poses: {len(t_ns):,} scans, {len(chosen):,} candidates,"
@@ -55,6 +60,7 @@ if __name__ == "__main__":
         interpolate_poses(
             snakemake.input.recordings,
             snakemake.output.poses,
+            moved=snakemake.output.motion,
             **snakemake.params.settings,
             **snakemake.params.reading,
         )

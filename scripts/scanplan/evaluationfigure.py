@@ -8,7 +8,8 @@ from scanplan import topview
 from scanplan.figures import STYLES
 
 _SIZE_IN = (7.0, 8.6)
-_STYLES = {"oracle": ("oracle: knows the truth", "black"), **STYLES}
+_STYLES = {"oracle": ("oracle: knows the truth", "black"), "sight": ("oracle by sight alone", "0.55"), **STYLES}
+_OTHER = ("#e69f00", "#56b4e9", "#f0e442", "#8c510a", "#762a83", "#5ab4ac")
 _FOUND = "visible_completeness_010m"
 _BITMAP = {"false_negative": "false negative", "correct_match": "correct match", "false_positive": "false positive"}
 _REASONS = {
@@ -55,6 +56,17 @@ def draw(measured, aligned, *, method, extractor):
     return figure
 
 
+def by_rank(methods):
+    """Return the methods in the order to draw them in: the known ones last, the oracle on top."""
+    known = list(_STYLES)
+    return sorted(set(np.asarray(methods).tolist()), key=lambda m: (-known.index(m) if m in known else -99, m))
+
+
+def style(method):
+    """Return how a method is called in a legend, and its colour."""
+    return _STYLES.get(method, (method.replace("_", " "), _OTHER[sum(map(ord, method)) % len(_OTHER)]))
+
+
 def _completeness(axes, table, title):
     _curves(axes, table, _FOUND)
     axes.set_ylim(0, 1.02)
@@ -63,8 +75,8 @@ def _completeness(axes, table, title):
 
 
 def _curves(axes, table, column):
-    for method in sorted(set(table["method"].tolist()), key=list(_STYLES).index, reverse=True):
-        label, colour = _STYLES[method]
+    for method in by_rank(table["method"]):
+        label, colour = style(method)
         of_it = _of(table, method=method)
         axes.plot(
             of_it["k"], of_it[column], color=colour, lw=1.2, marker="o", ms=1.8, label=label, gid=f"{column}-{method}"

@@ -37,7 +37,7 @@ def trace(pieces, rays, merging, reading):
         Those of one group share their line.
     rays : rays.Rays
     merging : faces.MergeSettings
-    reading : stretches.Reading
+    reading : profiles.Reading
 
     Returns
     -------

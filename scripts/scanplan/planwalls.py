@@ -64,7 +64,7 @@ def assemble(found, reading, pairing, gapping, *, planar, corner_m):
     Parameters
     ----------
     found : list of stretches.Stretch
-    reading : stretches.Reading
+    reading : profiles.Reading
     pairing : wallpairs.PairSettings
     gapping : gaps.GapSettings
     planar : bool

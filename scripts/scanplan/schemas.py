@@ -28,6 +28,7 @@ POSES = Schema(
     {"scan_id": "int32", "t_ns": "int64", **_POSE, "gap_s": "float64", "covered": "bool"},
     ("scan_id",),
 )
+MOTION = Schema("motion", 1, {"t_ns": "int64", "piece": "int32", **_POSE}, ("t_ns",))
 REGISTRATION = Schema(
     "registration",
     1,
@@ -51,10 +52,23 @@ HULLS = Schema(
     ("scan_id", "cluster"),
     geometry=True,
 )
+OBSERVATIONS = Schema(
+    "observations",
+    1,
+    {"scan_id": "int32", "facing": "int32", "along": "int32", "across": "int32", "length_m": "float64"},
+    ("scan_id", "facing", "along", "across"),
+)
+VISIBILITY = Schema(
+    "visibility", 1, {"scan_id": "int32", "area_m2": "float64", "geometry": "binary"}, ("scan_id",), geometry=True
+)
 SELECTION = Schema(
     "selection",
-    1,
-    {"rank": "int32", "scan_id": "int32", "gain_m2": "float64", "covered_m2": "float64", "bound_m2": "float64"},
+    2,
+    {
+        "rank": "int32",
+        "scan_id": "int32",
+        **dict.fromkeys(("gain_m2", "covered_m2", "bound_m2", "gain", "covered", "bound"), "float64"),
+    },
     ("rank",),
 )
 WALLS = Schema(
@@ -146,6 +160,17 @@ EVIDENCE = Schema(
 )
 """Which scans show a wall of the plan, when they were taken and with how many points."""
 _WITHIN = ("005m", "010m", "015m")
+_AGREEMENT = {
+    **dict.fromkeys(("false_negative", "correct_match", "false_positive"), "float64"),
+    **{
+        f"{truth}{measure}_{within}": "float64"
+        for truth in ("", "visible_")
+        for measure in ("completeness", "correctness", "f1")
+        for within in _WITHIN
+    },
+    "n_walls": "int32",
+    **dict.fromkeys(("walls_per_true_wall", "redundancy"), "float64"),
+}
 EVALUATION = Schema(
     "evaluation",
     1,
@@ -153,18 +178,9 @@ EVALUATION = Schema(
         "method": "string",
         "extractor": "string",
         "k": "int32",
-        **dict.fromkeys(("false_negative", "correct_match", "false_positive"), "float64"),
-        **{
-            f"{truth}{measure}_{within}": "float64"
-            for truth in ("", "visible_")
-            for measure in ("completeness", "correctness", "f1")
-            for within in _WITHIN
-        },
-        "n_walls": "int32",
+        **_AGREEMENT,
         **dict.fromkeys(
             (
-                "walls_per_true_wall",
-                "redundancy",
                 "seen",
                 "missed_not_seen",
                 "missed_misregistered",
@@ -177,7 +193,12 @@ EVALUATION = Schema(
     },
     ("method", "extractor", "k"),
 )
-ORACLE = Schema("oracle", 1, {"rank": "int32", "scan_id": "int32", "gain_m": "float64", "seen_m": "float64"}, ("rank",))
+ORACLE = Schema(
+    "oracle",
+    2,
+    {"extractor": "string", "rank": "int32", "scan_id": "int32", "gain_m": "float64", "found_m": "float64"},
+    ("extractor", "rank"),
+)
 POSE_ERRORS = Schema(
     "pose_errors",
     1,
@@ -196,3 +217,37 @@ POSE_ERRORS = Schema(
     },
     ("scan_id",),
 )
+PLAN_EVALUATION = Schema(
+    "plan_evaluation",
+    2,
+    {
+        "frame": "string",
+        "n_scans": "int32",
+        "length_m": "float64",
+        **_AGREEMENT,
+        **dict.fromkeys(
+            (
+                "seen_completeness_010m",
+                "observed_correctness_010m",
+                "observed_visible_completeness_010m",
+                "missed_not_seen",
+                "missed_misplaced",
+                "missed_misextracted",
+            ),
+            "float64",
+        ),
+        "n_plan_walls": "int32",
+        "plan_walls_per_true_wall": "float64",
+        "n_thickness": "int32",
+        "thickness_error_m": "float64",
+        **dict.fromkeys(("n_doors_true", "n_doors_found", "n_doors_drawn"), "int32"),
+        **dict.fromkeys(("door_recall", "door_precision", "door_width_error_m", "door_width_right"), "float64"),
+        **dict.fromkeys(("n_rooms_true", "n_rooms_found", "n_rooms_false"), "int32"),
+        **dict.fromkeys(("room_iou", "least_room_iou"), "float64"),
+    },
+    ("frame",),
+)
+"""How good a plan is: where it is in the map, and after the rigid motion that fits the scans' poses to the true ones.
+
+The agreement and what begins with `n_walls` is of its faces; `plan_walls` are its paired and single walls.
+"""

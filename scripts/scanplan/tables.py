@@ -14,12 +14,16 @@ import pyarrow.parquet as pq
 from scanplan import atomic
 from scanplan.errors import StageError
 from scanplan.schemas import (
+    EVALUATION,
     EVIDENCE,
     FACES,
     FREE,
     HULLS,
+    MOTION,
     OPENINGS,
+    ORACLE,
     PLAN_WALLS,
+    POSE_ERRORS,
     POSES,
     QUAT,
     REGISTRATION,
@@ -31,13 +35,17 @@ from scanplan.schemas import (
 )
 
 __all__ = [
+    "EVALUATION",
     "EVIDENCE",
     "FACES",
     "FREE",
     "HULLS",
+    "MOTION",
     "OPENINGS",
+    "ORACLE",
     "PLAN_WALLS",
     "POSES",
+    "POSE_ERRORS",
     "QUAT",
     "REGISTRATION",
     "ROOMS",

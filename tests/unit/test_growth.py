@@ -1,6 +1,6 @@
 import numpy as np
 
-from planmaking import faces
+from drawnplan import faces
 from scanplan import growth
 from scanplan.growth import NEVER
 from wallmaking import walls

@@ -103,6 +103,20 @@ def test_a_truth_beside_the_recording_switches_evaluation_on(project):
     assert not both & project.would_run("--config", "dataset=house")
 
 
+def test_a_file_is_a_simulated_dataset_beside_recorded_ones(project):
+    (project.folder / "toy.yaml").write_text("simulate: {building: tiny_office}")
+    (project.folder / "other.yaml").write_text("simulate: {building: tiny_office, recording: mcap}")
+    house = project.folder / "recorded"
+    house.mkdir()
+    shutil.copy2(project.folder / "results/demo/survey/survey.bag", house)
+    listed = project.run(
+        "--dry-run", "--quiet", "reason", "--config", "dataset=[toy.yaml, recorded, other.yaml]"
+    ).stdout
+    assert "output: results/toy/survey/survey.bag" in listed and "output: results/other/survey/survey.mcap" in listed
+    assert "results/recorded/plan/plan.svg" in listed and "results/recorded/survey" not in listed
+    assert "results/toy/evaluation/walls.parquet" in listed and "results/recorded/evaluation" not in listed
+
+
 def test_one_stage_can_be_rerun(project):
     before = project.digests()
     (project.folder / "results/demo/hulls.parquet").unlink()

@@ -76,3 +76,15 @@ def failures():
 # before the jobs are worked out: while another run is at work, files come and go
 if workflow.is_main_process:
     lock().close()
+
+
+onstart:
+    run_alone()
+
+
+onsuccess:
+    tell_results()
+
+
+onerror:
+    tell_failure()
