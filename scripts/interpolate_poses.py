@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from scanplan import candidates, frames, motion, se3, stagelog, surveys, tables
+from scanplan import candidates, frames, motion, se3, stagelog, surveys, sweepcheck, tables
 from scanplan.errors import StageError
 
 
@@ -30,7 +30,10 @@ def interpolate_poses(files, output, *, keep_every, max_step_m, max_turn_deg, ma
         If the recordings cannot be used or no candidate has a pose.
     """
     with surveys.open_survey(files, **reading) as survey:
-        t_ns, edges, chains = survey.stamps(), survey.pose_edges(), survey.motion_chains() if moved else []
+        t_ns, edges = survey.stamps(), survey.pose_edges()
+        if moved is not None:
+            way = motion.choose(survey.motion_chains(), t_ns, max_gap_s=max_gap_s)
+            tables.write(moved, tables.MOTION, sweepcheck.checked(survey, way).columns())
     pose, gap_s, covered = frames.world_from_sensor(edges, t_ns, max_gap_s=max_gap_s)
     chosen = candidates.choose(pose, keep_every=keep_every, max_step_m=max_step_m, max_turn_deg=max_turn_deg)
     if not covered[chosen].any():
@@ -42,8 +45,6 @@ def interpolate_poses(files, output, *, keep_every, max_step_m, max_turn_deg, ma
     columns = {"scan_id": chosen, "t_ns": t_ns[chosen], "gap_s": gap_s[chosen], "covered": covered[chosen]}
     columns |= dict(zip(("x_m", "y_m", "z_m", "qx", "qy", "qz", "qw"), np.hstack([xyz_m, quat]).T, strict=True))
     tables.write(output, tables.POSES, columns)
-    if moved is not None:
-        tables.write(moved, tables.MOTION, motion.choose(chains, t_ns, max_gap_s=max_gap_s).columns())
     n_covered = int(covered[chosen].sum())
     stagelog.say(
         f"interpolate_poses: {len(t_ns):,} scans, {len(chosen):,} candidates,"

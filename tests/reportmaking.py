@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-import drawnplan
+import floorplanmaking
 from scanplan import schemas, tables
 from wallmaking import walls as wall_table
 
@@ -63,7 +63,7 @@ def selection():
 
 def segments():
     rows = sorted(SEEN)
-    lines = [drawnplan.FACES[face][:4] for _, face in rows]
+    lines = [floorplanmaking.FACES[face][:4] for _, face in rows]
     table = wall_table(lines, scan_id=[scan for scan, _ in rows])
     table["wall"] = np.array([sum(s == scan for s, _ in rows[:i]) for i, (scan, _) in enumerate(rows)], np.int32)
     return table
@@ -84,12 +84,12 @@ def evaluation(methods=("cluster_hull", "random")):
 def files(folder):
     """Write everything that the report is made of into a folder, and return what `write_report` is given."""
     made = {
-        "faces": (tables.FACES, drawnplan.faces()),
-        "walls": (tables.PLAN_WALLS, drawnplan.walls()),
-        "openings": (tables.OPENINGS, drawnplan.openings()),
-        "rooms": (tables.ROOMS, drawnplan.rooms()),
-        "free": (tables.FREE, drawnplan.free()),
-        "evidence": (tables.EVIDENCE, drawnplan.evidence()),
+        "faces": (tables.FACES, floorplanmaking.faces()),
+        "walls": (tables.PLAN_WALLS, floorplanmaking.walls()),
+        "openings": (tables.OPENINGS, floorplanmaking.openings()),
+        "rooms": (tables.ROOMS, floorplanmaking.rooms()),
+        "free": (tables.FREE, floorplanmaking.free()),
+        "evidence": (tables.EVIDENCE, floorplanmaking.evidence()),
         "selection": (tables.SELECTION, selection()),
         "segments": (tables.WALLS, segments()),
         "poses": (tables.POSES, poses()),

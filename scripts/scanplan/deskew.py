@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from scanplan import se3, stagelog, sweeptimes
 
@@ -60,6 +59,23 @@ def knots(time_s, t_ns, motion):
     return None if pose is None else se3.inverse(pose[-1]) @ pose[:-1]
 
 
+def freed(scan, motion):
+    """Return a scan's points (n, 3) float32 as seen at its stamp, or None if the motion is not known throughout.
+
+    Parameters
+    ----------
+    scan : clouds.Scan
+        With times, n >= 1.
+    motion : motion.Motion
+        It also tells how the times are to be read.
+    """
+    if motion.time_scale == 0:
+        return scan.xyz_m
+    time_s = motion.time_scale * scan.time_s + motion.time_shift_s
+    stamp_from_knots = knots(time_s, scan.t_ns, motion)
+    return None if stamp_from_knots is None else at_stamp(scan.xyz_m, time_s, stamp_from_knots)
+
+
 class Deskewed:
     """A survey whose scans are free of the motion during their sweeps.
 
@@ -96,29 +112,27 @@ class Deskewed:
 
     def scans(self, wanted):
         """Iterate over the scans asked for like the survey itself, each with its points at its stamp."""
-        counts, largest = dict.fromkeys(("moved", "untimed", "unknown"), 0), np.zeros(2)
+        counts, farthest_m = dict.fromkeys(("moved", "untimed", "unknown"), 0), 0.0
         for scan in self._survey.scans(wanted):
-            outcome, scan, size = self._deskewed(scan)
+            outcome, moved = self._moved(scan)
             counts[outcome] += 1
-            largest = np.maximum(largest, size)
-            yield scan
-        self._tell(counts, largest)
+            if outcome == "moved":
+                farthest_m = max(farthest_m, _farthest_m(scan.xyz_m, moved.xyz_m))
+            yield moved
+        self._tell(counts, farthest_m)
 
-    def _deskewed(self, scan):
+    def _moved(self, scan):
         if scan.time_s is None or len(scan.xyz_m) == 0:
-            return "untimed", scan, 0.0
-        stamp_from_knots = knots(scan.time_s, scan.t_ns, self._motion)
-        if stamp_from_knots is None:
-            return "unknown", scan, 0.0
-        moved = at_stamp(scan.xyz_m, scan.time_s, stamp_from_knots)
-        return "moved", replace(scan, xyz_m=moved), _size(se3.inverse(stamp_from_knots[0]) @ stamp_from_knots[-1])
+            return "untimed", scan
+        xyz_m = freed(scan, self._motion)
+        return ("unknown", scan) if xyz_m is None else ("moved", replace(scan, xyz_m=xyz_m))
 
-    def _tell(self, counts, largest):
+    def _tell(self, counts, farthest_m):
         if self.sweep_times is None:
             return
-        told = f"deskew: {counts['moved']} scans moved to their stamps"
-        if counts["moved"]:
-            told += f", at most by {largest[0]:.3f} m and {largest[1]:.1f} degrees"
+        told = f"deskew: {counts['moved']} scans with points at their stamps, moved by at most {farthest_m:.3f} m"
+        if self._motion.time_scale == 0:
+            told = "deskew: scans left as recorded, as their points' times do not fit them"
         if counts["unknown"]:
             told += f"; {counts['unknown']} beyond the known motion left as recorded"
         if counts["untimed"]:
@@ -127,6 +141,7 @@ class Deskewed:
         stagelog.say(told)
 
 
-def _size(motion):
-    """Length in metres and angle in degrees of a 4 x 4 motion, (2,)."""
-    return np.array([np.linalg.norm(motion[:3, 3]), np.degrees(Rotation.from_matrix(motion[:3, :3]).magnitude())])
+def _farthest_m(before_m, after_m):
+    """The largest way of a point, from every 16th of them."""
+    moved = (after_m - before_m)[::16]
+    return float(np.sqrt(np.einsum("ij,ij->i", moved, moved).max()))

@@ -14,12 +14,12 @@ _OF_PLAN = set(PLAN_EVALUATION.columns)
 
 
 def sizes(n_scans):
-    """Return the numbers of scans that are evaluated: 1 to 5, 8, 10, 15, 20, 30, 40, 60, 80, doubling on, and all."""
-    wanted, doubled = list(_FIRST_SIZES), (60, 80)
+    """Return the numbers of scans to evaluate: 1 to 5, 8, 10, 15, 20, 30, 40, 60, 80, doubling on, a tenth, all."""
+    wanted, doubled = [*_FIRST_SIZES, n_scans // 10], (60, 80)
     while doubled[0] < n_scans:
         doubled = (2 * doubled[0], 2 * doubled[1])
         wanted += doubled
-    return [k for k in wanted if k < n_scans] + [n_scans]
+    return [*sorted({k for k in wanted if 0 < k < n_scans}), n_scans]
 
 
 def table(truth, orders, drawn, cell_m):

@@ -20,7 +20,8 @@ _DRAWN = (
     *(f"plan/plan.{suffix}" for suffix in ("geojson", "dxf", "svg", "pdf", "ifc")),
     "plan/map.pgm",
     "plan/map.yaml",
-    *(f"figures/{f}.svg" for f in ("scans", "area", "walls")),
+    *(f"figures/{f}.svg" for f in ("registration", "scans", "area", "walls")),
+    "report.html",
 )
 _EVALUATION = ("walls", "walls_aligned", "oracle", "plan", "poses")
 
@@ -177,7 +178,6 @@ def results(found, methods, extractors):
     if found.truth:
         files += [f"evaluation/{table}.parquet" for table in _EVALUATION]
         files += ["figures/evaluation.svg", "figures/oracle_shares.svg"]
-    files.append("report.html")
     return [f"results/{found.name}/{file}" for file in files]
 
 

@@ -43,13 +43,13 @@ def order(cover, *, tie, min_overlap=0.0):
     if not 0 <= min_overlap <= 1:
         raise ValueError(f"min_overlap is {min_overlap}, must be 0 to 1")
     alone = np.array(cover.gain, float)
-    # with nothing chosen there is nothing to share
-    largest_gain = [np.full(len(alone), np.inf), alone * (1 - min_overlap) + _ROUNDING * alone]
+    anything, sharing = np.full(len(alone), np.inf), alone * (1 - min_overlap + _ROUNDING)
     heap = [(-gain, i) for i, gain in enumerate(alone.tolist())]
     heapq.heapify(heap)
     checkpoints, chosen, gains = {0: alone}, [], []
     while heap and -heap[0][0] > tie:
-        chosen.append(_pop_best(heap, cover, tie, largest_gain[min_overlap > 0 and len(chosen) > 0]))
+        # with nothing chosen there is nothing to share
+        chosen.append(_pop_best(heap, cover, tie, sharing if chosen and min_overlap > 0 else anything))
         gains.append(cover.choose(chosen[-1]))
         if len(chosen).bit_count() == 1:
             heap = [(-cover.refresh(i), i) for _, i in heap]

@@ -28,12 +28,17 @@ class Motion:
     quat_xyzw : (n, 4) float64
     piece : (n,) int32, not decreasing
         Between poses of two pieces too much time passed to say what happened.
+    time_scale, time_shift_s : float
+        How the times of points are to be read: seconds after the stamp are `time_scale` times those stated plus
+        `time_shift_s`; not at all if the scale is 0. See `sweepcheck`.
     """
 
     t_ns: np.ndarray
     xyz_m: np.ndarray
     quat_xyzw: np.ndarray
     piece: np.ndarray
+    time_scale: float = 1.0
+    time_shift_s: float = 0.0
 
     def columns(self):
         """Return the columns of `schemas.MOTION`."""
@@ -42,6 +47,8 @@ class Motion:
             "t_ns": self.t_ns,
             "piece": self.piece,
             **dict(zip((*schemas.XYZ, *schemas.QUAT), values, strict=True)),
+            "time_scale": np.full(len(self.t_ns), self.time_scale),
+            "time_shift_s": np.full(len(self.t_ns), self.time_shift_s),
         }
 
     def at(self, query_ns):
@@ -80,7 +87,8 @@ class Motion:
 def from_columns(columns):
     """Return the Motion whose `columns` these are."""
     xyz_m, quat = (np.column_stack([columns[c] for c in names]) for names in (schemas.XYZ, schemas.QUAT))
-    return Motion(columns["t_ns"], xyz_m, quat, columns["piece"])
+    reading = float(columns["time_scale"][0]), float(columns["time_shift_s"][0])
+    return Motion(columns["t_ns"], xyz_m, quat, columns["piece"], *reading)
 
 
 def along(edges, t_ns, *, max_gap_s):

@@ -3,7 +3,7 @@
 from scanplan import hulls
 from scanplan.areas import PolygonArea
 
-UNIT = "m²"
+UNIT = "m2"
 
 
 def objective(_scan_ids, columns):

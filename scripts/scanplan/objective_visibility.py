@@ -6,7 +6,7 @@ import shapely
 from scanplan.areas import PolygonArea
 from scanplan.errors import StageError
 
-UNIT = "m²"
+UNIT = "m2"
 
 
 def objective(scan_ids, columns):

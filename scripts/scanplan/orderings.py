@@ -1,7 +1,7 @@
 """The orders in which scans can be taken into the plan: by objectives, and those that look at no point (thesis, 5.2).
 
-An objective is a file `objective_<method>.py` with its `UNIT` and a function `objective(scan_ids, columns)` that returns
-an object with `greedy(min_overlap)`, a `greedy.Order`, and `gains(order)`.
+An objective is a file `objective_<method>.py` with its `UNIT` and a function `objective(scan_ids, columns)`, which
+returns an object with `greedy(min_overlap)`, a `greedy.Order`, and `gains(order)`.
 """
 
 import numpy as np

@@ -28,7 +28,12 @@ POSES = Schema(
     {"scan_id": "int32", "t_ns": "int64", **_POSE, "gap_s": "float64", "covered": "bool"},
     ("scan_id",),
 )
-MOTION = Schema("motion", 1, {"t_ns": "int64", "piece": "int32", **_POSE}, ("t_ns",))
+MOTION = Schema(
+    "motion",
+    1,
+    {"t_ns": "int64", "piece": "int32", **_POSE, "time_scale": "float64", "time_shift_s": "float64"},
+    ("t_ns",),
+)
 REGISTRATION = Schema(
     "registration",
     1,
@@ -43,6 +48,18 @@ REGISTRATION = Schema(
         **_POSE,
     },
     ("scan_id",),
+)
+CRISPNESS = Schema(
+    "crispness",
+    1,
+    {
+        "poses": "string",
+        "sigma_m": "float64",
+        "quarter_below_m": "float64",
+        "quarter_above_m": "float64",
+        "n_places": "int32",
+    },
+    ("poses",),
 )
 SCANS = Schema("scans", 1, {"scan_id": "int32", "x_m": "float32", "y_m": "float32", "z_m": "float32"}, ("scan_id",))
 HULLS = Schema(
@@ -217,6 +234,26 @@ POSE_ERRORS = Schema(
     },
     ("scan_id",),
 )
+CLUSTERS = Schema(
+    "clusters", 1, {"n_clusters": "int32", "rank": "int32", "scan_id": "int32", "covered_m2": "float64"},
+    ("n_clusters", "rank"),
+)  # fmt: skip
+AREAS = Schema(
+    "areas", 1, {"scan_id": "int32", "full_hull_m2": "float64", "cluster_hull_m2": "float64", "seen_m2": "float64"},
+    ("scan_id",),
+)  # fmt: skip
+TIMES = Schema(
+    "times", 1, {"task": "string", "size": "int32", "item": "int32", "found": "int32", "seconds": "float64"},
+    ("task", "size", "item"),
+)  # fmt: skip
+STEPS = Schema(
+    "steps", 1, {"step": "int32", "name": "string", "seconds": "float64", "n_scans": "int32", "n_bytes": "int64"},
+    ("step",),
+)  # fmt: skip
+CLAIMS = Schema(
+    "claims", 1, {"claim": "string", "survey": "string", "quantity": "string", "value": "float64", "holds": "string"},
+    ("claim", "survey", "quantity"),
+)  # fmt: skip
 PLAN_EVALUATION = Schema(
     "plan_evaluation",
     2,

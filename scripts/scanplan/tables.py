@@ -14,6 +14,7 @@ import pyarrow.parquet as pq
 from scanplan import atomic
 from scanplan.errors import StageError
 from scanplan.schemas import (
+    CRISPNESS,
     EVALUATION,
     EVIDENCE,
     FACES,
@@ -35,6 +36,7 @@ from scanplan.schemas import (
 )
 
 __all__ = [
+    "CRISPNESS",
     "EVALUATION",
     "EVIDENCE",
     "FACES",

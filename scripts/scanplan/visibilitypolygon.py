@@ -37,9 +37,10 @@ class Settings:
 def free_space(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
     """Return one scan's row of `schemas.VISIBILITY`.
 
-    A sector is free up to its nearest return; a corner between two sectors lies at the nearer one's. Both ends of a
-    straight piece of wall that spans sectors are then on or beyond the outline, and so is all of it. A sector without
-    any return is not known to be free.
+    A sector is free up to its nearest return, a corner between two sectors lies at the nearer one's: where a wall
+    crosses a sector both its ends there are on or beyond the outline, and so is all between. That leaves what lies
+    between two beams, such as the last centimetres of a wall that ends. A sector without any return is not known to be
+    free.
 
     Parameters
     ----------

@@ -9,19 +9,19 @@ import yaml
 from ifcopenshell.util.element import get_psets
 from PIL import Image
 
-import drawnplan
+import floorplanmaking
 from export_plan import export_plan
 from scanplan import tables
 from scanplan.errors import StageError
 
 SETTINGS = {"assumed_thickness_m": 0.1, "assumed_height_m": 2.5, "map_cell_m": 0.05}
 TABLES = {
-    "faces": (tables.FACES, drawnplan.faces),
-    "walls": (tables.PLAN_WALLS, drawnplan.walls),
-    "openings": (tables.OPENINGS, drawnplan.openings),
-    "rooms": (tables.ROOMS, drawnplan.rooms),
-    "free": (tables.FREE, drawnplan.free),
-    "evidence": (tables.EVIDENCE, drawnplan.evidence),
+    "faces": (tables.FACES, floorplanmaking.faces),
+    "walls": (tables.PLAN_WALLS, floorplanmaking.walls),
+    "openings": (tables.OPENINGS, floorplanmaking.openings),
+    "rooms": (tables.ROOMS, floorplanmaking.rooms),
+    "free": (tables.FREE, floorplanmaking.free),
+    "evidence": (tables.EVIDENCE, floorplanmaking.evidence),
 }
 NAMES = {
     "geojson": "plan.geojson", "dxf": "plan.dxf", "svg": "plan.svg", "pdf": "plan.pdf", "ifc": "plan.ifc",
@@ -37,7 +37,9 @@ def plan(tmp_path):
     rng = np.random.default_rng(1)
     with tables.scan_writer(tmp_path / "scans.parquet", planar=False) as write:
         for scan_id in (5, 9):
-            z_m = np.concatenate([np.zeros(500), np.full(500, drawnplan.HEIGHT_M + 0.1), rng.uniform(0, 2.6, 500)])
+            z_m = np.concatenate(
+                [np.zeros(500), np.full(500, floorplanmaking.HEIGHT_M + 0.1), rng.uniform(0, 2.6, 500)]
+            )
             write(scan_id, np.column_stack([rng.uniform(0, 7, (1500, 2)), z_m]))
     return paths
 
@@ -56,7 +58,7 @@ def test_all_files_hold_the_same_plan(plan, tmp_path):
     model = ifcopenshell.open(files["ifc"])
     heights = [get_psets(wall)["Qto_WallBaseQuantities"]["Height"] for wall in model.by_type("IfcWall")]
     # up to the ceiling, which the scans show a little above what they show of the walls
-    assert heights == pytest.approx([drawnplan.HEIGHT_M + 0.1] * 6, abs=0.02)
+    assert heights == pytest.approx([floorplanmaking.HEIGHT_M + 0.1] * 6, abs=0.02)
     drawn = {e.get("id") for e in ElementTree.parse(files["svg"]).iter()}
     assert {"door-0", "door-1", "window-2"} <= drawn
     assert files["pdf"].read_bytes().startswith(b"%PDF")
@@ -72,11 +74,11 @@ def test_a_second_run_gives_the_same_bytes(plan, tmp_path):
 
 
 def test_faces_alone_are_enough(plan, tmp_path):
-    tables.write(plan["walls"], tables.PLAN_WALLS, drawnplan.walls([]), allow_empty=True)
-    tables.write(plan["openings"], tables.OPENINGS, drawnplan.openings([]), allow_empty=True)
-    tables.write(plan["rooms"], tables.ROOMS, drawnplan.rooms([]), allow_empty=True)
-    tables.write(plan["free"], tables.FREE, drawnplan.free([]), allow_empty=True)
-    nobody = {name: values[:0] for name, values in drawnplan.evidence().items()}
+    tables.write(plan["walls"], tables.PLAN_WALLS, floorplanmaking.walls([]), allow_empty=True)
+    tables.write(plan["openings"], tables.OPENINGS, floorplanmaking.openings([]), allow_empty=True)
+    tables.write(plan["rooms"], tables.ROOMS, floorplanmaking.rooms([]), allow_empty=True)
+    tables.write(plan["free"], tables.FREE, floorplanmaking.free([]), allow_empty=True)
+    nobody = {name: values[:0] for name, values in floorplanmaking.evidence().items()}
     tables.write(plan["evidence"], tables.EVIDENCE, nobody, allow_empty=True)
     files = exported(plan, tmp_path / "plan")
     assert all(file.stat().st_size > 100 for file in files.values())
@@ -85,7 +87,7 @@ def test_faces_alone_are_enough(plan, tmp_path):
 def test_a_planar_survey_has_the_assumed_height(plan, tmp_path):
     with tables.scan_writer(tmp_path / "scans.parquet", planar=True) as write:
         write(5, np.zeros((3, 3)))
-    flat = drawnplan.walls() | {"z_min_m": np.full(6, np.nan), "z_max_m": np.full(6, np.nan)}
+    flat = floorplanmaking.walls() | {"z_min_m": np.full(6, np.nan), "z_max_m": np.full(6, np.nan)}
     tables.write(plan["walls"], tables.PLAN_WALLS, flat)
     model = ifcopenshell.open(exported(plan, tmp_path / "plan")["ifc"])
     wall = model.by_type("IfcWall")[0]
@@ -94,6 +96,6 @@ def test_a_planar_survey_has_the_assumed_height(plan, tmp_path):
 
 
 def test_a_plan_of_nothing_is_told(plan, tmp_path):
-    tables.write(plan["faces"], tables.FACES, drawnplan.faces([]), allow_empty=True)
+    tables.write(plan["faces"], tables.FACES, floorplanmaking.faces([]), allow_empty=True)
     with pytest.raises(StageError, match="no rows"):
         exported(plan, tmp_path / "plan")

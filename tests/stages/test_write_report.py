@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import browser
-import drawnplan
+import floorplanmaking
 import reportmaking
 from scanplan import tables
 from scanplan.errors import StageError
@@ -85,8 +85,8 @@ def test_the_same_input_gives_the_same_bytes(report, tmp_path):
 def test_faces_alone_without_truth_and_times_make_a_report(tmp_path):
     files = reportmaking.files(tmp_path)
     for name, schema in (("walls", tables.PLAN_WALLS), ("openings", tables.OPENINGS), ("rooms", tables.ROOMS)):
-        tables.write(files[name], schema, getattr(drawnplan, name)([]), allow_empty=True)
-    nobody = {column: values[:0] for column, values in drawnplan.evidence().items()}
+        tables.write(files[name], schema, getattr(floorplanmaking, name)([]), allow_empty=True)
+    nobody = {column: values[:0] for column, values in floorplanmaking.evidence().items()}
     tables.write(files["evidence"], tables.EVIDENCE, nobody, allow_empty=True)
     (tmp_path / "benchmarks/build_hulls.tsv").write_text("")
     (tmp_path / "benchmarks/draw_area.tsv").unlink()

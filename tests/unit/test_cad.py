@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 import shapely
 
-from drawnplan import FOOTPRINT_M2, bare, plan
+from floorplanmaking import FOOTPRINT_M2, bare, plan
 from scanplan import cad
 
 

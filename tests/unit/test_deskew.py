@@ -1,3 +1,4 @@
+import dataclasses
 from types import SimpleNamespace
 
 import numpy as np
@@ -94,8 +95,20 @@ def test_what_is_not_known_stays_as_recorded_and_is_counted(caplog):
         first, *others = survey.scans([0, 1, 2, 3])
     assert np.abs(first.xyz_m - xyz_m).max() > 0.01
     assert [s.xyz_m is o.xyz_m for s, o in zip(others, (late, untimed, empty), strict=True)] == [True] * 3
-    assert "deskew: 1 scans moved to their stamps, at most by 0.064 m and 5.9 degrees" in caplog.text
+    assert "deskew: 1 scans with points at their stamps, moved by at most" in caplog.text
     assert "1 beyond the known motion left as recorded; 2 without points, or with times" in caplog.text
+
+
+def test_times_are_read_as_the_motion_says(caplog):
+    time_s = np.random.default_rng(1).uniform(0, 0.1, len(WORLD))
+    reversed_way = dataclasses.replace(way(), time_scale=-1.0, time_shift_s=0.1)
+    (found,) = deskew.Deskewed(Survey([scan(seen(WORLD, 0.1 - time_s), time_s)]), reversed_way).scans([0])
+    np.testing.assert_allclose(found.xyz_m, seen(WORLD, np.zeros(len(WORLD))), atol=2e-4)
+    contradicted = dataclasses.replace(way(), time_scale=0.0)
+    with caplog.at_level("INFO"):
+        (found,) = deskew.Deskewed(Survey([scan(seen(WORLD, time_s), time_s)]), contradicted).scans([0])
+    np.testing.assert_array_equal(found.xyz_m, seen(WORLD, time_s))
+    assert "left as recorded, as their points' times do not fit" in caplog.text
 
 
 def test_a_survey_without_times_has_nothing_to_tell(caplog):

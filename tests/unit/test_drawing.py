@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-import drawnplan
-from drawnplan import bare
+import floorplanmaking
+from floorplanmaking import bare
 from scanplan import drawing
 
 _POINTS_PER_MM = 72 / 25.4
@@ -66,7 +66,7 @@ def test_the_same_plan_give_the_same_bytes(plan):
 
 
 def test_walls_openings_and_rooms_are_drawn():
-    text = drawing.svg(drawing.plan(drawnplan.plan()))
+    text = drawing.svg(drawing.plan(floorplanmaking.plan()))
     drawn = set(groups(text))
     assert {"walls-observed-0", "walls-inferred-0", "door-0", "door-1", "window-2", "single-observed-0"} <= drawn
     said = "\n".join(texts(text))
@@ -76,16 +76,16 @@ def test_walls_openings_and_rooms_are_drawn():
 
 
 def test_an_area_of_an_open_room_is_told_as_such():
-    rooms = drawnplan.rooms() | {"closed": np.array([True, False])}
-    assert "about 9.0 m²" in "\n".join(texts(drawing.svg(drawing.plan(drawnplan.plan(rooms=rooms)))))
+    rooms = floorplanmaking.rooms() | {"closed": np.array([True, False])}
+    assert "about 9.0 m²" in "\n".join(texts(drawing.svg(drawing.plan(floorplanmaking.plan(rooms=rooms)))))
 
 
 def test_pdf_is_one_page_of_the_same_bytes_and_size():
-    made = drawing.pdf(drawing.plan(drawnplan.plan()))
-    assert made == drawing.pdf(drawing.plan(drawnplan.plan()))
+    made = drawing.pdf(drawing.plan(floorplanmaking.plan()))
+    assert made == drawing.pdf(drawing.plan(floorplanmaking.plan()))
     assert made.startswith(b"%PDF") and b"CreationDate" not in made
     (box,) = re.findall(rb"/MediaBox \[ 0 0 ([\d.]+) ([\d.]+) \]", made)
-    svg = ElementTree.fromstring(drawing.svg(drawing.plan(drawnplan.plan())))
+    svg = ElementTree.fromstring(drawing.svg(drawing.plan(floorplanmaking.plan())))
     size = [float(svg.get(side).removesuffix("pt")) for side in ("width", "height")]
     assert np.array(box, float) == pytest.approx(size, abs=0.01)
 

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 import shapely
 
-import drawnplan
-from drawnplan import bare, plan
+import floorplanmaking
+from floorplanmaking import bare, plan
 
 
 def test_solid_walls_have_the_area_that_is_worked_out_on_paper():
@@ -12,7 +12,9 @@ def test_solid_walls_have_the_area_that_is_worked_out_on_paper():
     inferred = (3.0 + 3.05) / 2 * 0.1 + 3.05 * 0.1
     cut = 1.0 * 0.2 + 0.9 * 0.1 + 1.2 * 0.2
     assert plan().solid("inferred").area == pytest.approx(inferred, abs=1e-3)
-    assert plan().solid("observed").area == pytest.approx(drawnplan.FOOTPRINT_M2 - east - inferred - cut, abs=1e-3)
+    assert plan().solid("observed").area == pytest.approx(
+        floorplanmaking.FOOTPRINT_M2 - east - inferred - cut, abs=1e-3
+    )
 
 
 def test_openings_are_cut_through():
@@ -31,7 +33,7 @@ def test_single_faces_end_at_the_surfaces_of_the_walls_they_meet():
 
 def test_what_is_assumed_lies_behind_the_face():
     assert plan().bodies[1].bounds == pytest.approx((7.1, -0.2, 7.2, 3.2))
-    turned = drawnplan.walls()
+    turned = floorplanmaking.walls()
     turned["face_left"][1], turned["face_right"][1] = -1, 1
     assert plan(walls=turned).bodies[1].bounds[:3:2] == pytest.approx((7.0, 7.1))
 
@@ -47,16 +49,16 @@ def test_the_storey_reaches_from_the_floor_to_the_ceiling():
 
 
 def test_without_a_ceiling_it_is_as_high_as_the_highest_wall():
-    walls = drawnplan.walls()
+    walls = floorplanmaking.walls()
     walls["z_min_m"] -= 1
     walls["z_min_m"][3] = np.nan
     walls["z_max_m"][5] = 0.7
-    assert plan(walls=walls).storey_m == (-1, drawnplan.HEIGHT_M + 1)
-    assert plan(walls=walls, floor_z_m=0.0).storey_m == (0, drawnplan.HEIGHT_M)
+    assert plan(walls=walls).storey_m == (-1, floorplanmaking.HEIGHT_M + 1)
+    assert plan(walls=walls, floor_z_m=0.0).storey_m == (0, floorplanmaking.HEIGHT_M)
 
 
 @pytest.mark.parametrize("z_m", [0.3, np.nan])
 def test_the_height_of_a_planar_survey_is_assumed(z_m):
-    walls = drawnplan.walls() | {"z_min_m": np.full(6, z_m), "z_max_m": np.full(6, z_m)}
+    walls = floorplanmaking.walls() | {"z_min_m": np.full(6, z_m), "z_max_m": np.full(6, z_m)}
     assert plan(walls=walls, assumed_height_m=3.0).storey_m == (np.nan_to_num(z_m), 3.0)
     assert bare().storey_m == (0.0, 2.5)

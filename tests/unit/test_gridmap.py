@@ -6,8 +6,8 @@ import pytest
 import yaml
 from PIL import Image
 
-import drawnplan
-from drawnplan import bare, plan
+import floorplanmaking
+from floorplanmaking import bare, plan
 from scanplan import gridmap
 
 
@@ -50,7 +50,7 @@ def test_a_map_server_sees_what_is_there(place, value):
 
 
 def test_walls_have_no_hole_that_a_planner_could_leak_through():
-    cells = gridmap.draw(plan(openings=drawnplan.openings([])), 0.05).cells[::-1]
+    cells = gridmap.draw(plan(openings=floorplanmaking.openings([])), 0.05).cells[::-1]
     # from a cell of the room, through cells that share an edge, nothing outside of both rooms is reached
     reached = np.zeros(cells.shape, bool)
     reached[int((1 + 0.7) / 0.05), int((1 + 0.7) / 0.05)] = True
@@ -70,14 +70,14 @@ def test_walls_have_no_hole_that_a_planner_could_leak_through():
 
 @pytest.mark.parametrize("cell_m", [0.02, 0.05, 0.1])
 def test_free_area_is_that_of_the_floor(cell_m):
-    drawn = replace(bare([(20, 0, 21, 0, -1)]), free=drawnplan.free([drawnplan.ROOMS[0]]))
+    drawn = replace(bare([(20, 0, 21, 0, -1)]), free=floorplanmaking.free([floorplanmaking.ROOMS[0]]))
     grid = gridmap.draw(drawn, cell_m)
     assert (grid.cells == gridmap.FREE).sum() * cell_m**2 == pytest.approx(12.0, rel=0.02)
 
 
 def test_a_pillar_in_the_floor_is_not_free():
-    floor = drawnplan.ROOMS[0].difference(drawnplan.shapely.box(1, 1, 2, 2))
-    at = as_nav2_reads(gridmap.draw(plan(free=drawnplan.free([floor])), 0.05))
+    floor = floorplanmaking.ROOMS[0].difference(floorplanmaking.shapely.box(1, 1, 2, 2))
+    at = as_nav2_reads(gridmap.draw(plan(free=floorplanmaking.free([floor])), 0.05))
     assert (at(1.5, 1.5), at(0.5, 1.5), at(2.5, 1.5)) == (-1, 0, 0)
 
 

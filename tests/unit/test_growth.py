@@ -1,6 +1,6 @@
 import numpy as np
 
-from drawnplan import faces
+from floorplanmaking import faces
 from scanplan import growth
 from scanplan.growth import NEVER
 from wallmaking import walls

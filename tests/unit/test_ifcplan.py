@@ -8,8 +8,8 @@ import ifcopenshell.validate
 import numpy as np
 import pytest
 
-import drawnplan
-from drawnplan import bare, plan
+import floorplanmaking
+from floorplanmaking import bare, plan
 from scanplan import ifcplan
 
 
@@ -46,9 +46,11 @@ def test_it_is_valid_by_schema_and_by_the_rules_of_ifc4(model):
 
 def test_walls_have_the_volume_of_the_plan(model):
     solid = [volume_m3(wall, disable_opening_subtractions=True) for wall in model.by_type("IfcWall")]
-    assert sum(solid) == pytest.approx(drawnplan.FOOTPRINT_M2 * drawnplan.HEIGHT_M, rel=1e-3)
+    assert sum(solid) == pytest.approx(floorplanmaking.FOOTPRINT_M2 * floorplanmaking.HEIGHT_M, rel=1e-3)
     cut = [volume_m3(wall) for wall in model.by_type("IfcWall")]
-    assert sum(cut) == pytest.approx(drawnplan.FOOTPRINT_M2 * drawnplan.HEIGHT_M - drawnplan.VOID_M3, rel=1e-3)
+    assert sum(cut) == pytest.approx(
+        floorplanmaking.FOOTPRINT_M2 * floorplanmaking.HEIGHT_M - floorplanmaking.VOID_M3, rel=1e-3
+    )
 
 
 def test_the_tree_goes_from_the_project_to_walls_doors_and_spaces(model):
@@ -77,7 +79,7 @@ def test_doors_and_windows_fill_openings_of_their_walls(model):
 
 def test_spaces_are_the_rooms(model):
     for space, area in zip(model.by_type("IfcSpace"), (12.0, 9.0), strict=True):
-        assert volume_m3(space) == pytest.approx(area * drawnplan.HEIGHT_M)
+        assert volume_m3(space) == pytest.approx(area * floorplanmaking.HEIGHT_M)
         stated = ifcopenshell.util.element.get_psets(space)["Qto_SpaceBaseQuantities"]
         assert stated["NetFloorArea"] == pytest.approx(area)
 
@@ -85,20 +87,20 @@ def test_spaces_are_the_rooms(model):
 def test_walls_say_how_well_they_are_known(model):
     east, north = (ifcopenshell.util.element.get_psets(model.by_type("IfcWall")[i]) for i in (1, 2))
     assert east["Scanplan_Evidence"]["ThicknessMeasured"] is False
-    assert east["Qto_WallBaseQuantities"]["Width"] == pytest.approx(drawnplan.ASSUMED_M)
+    assert east["Qto_WallBaseQuantities"]["Width"] == pytest.approx(floorplanmaking.ASSUMED_M)
     assert north["Scanplan_Evidence"]["State"] == "inferred" and north["Scanplan_Evidence"]["VerifyOnSite"] is True
     assert north["Scanplan_Evidence"]["OffsetStandardDeviation"] == pytest.approx(0.002)
 
 
 def test_what_is_not_known_is_left_out():
-    walls = drawnplan.walls() | {"sigma_offset_m": np.full(6, np.nan)}
+    walls = floorplanmaking.walls() | {"sigma_offset_m": np.full(6, np.nan)}
     model = opened(plan(walls=walls))
     stated = ifcopenshell.util.element.get_psets(model.by_type("IfcWall")[0])
     assert "OffsetStandardDeviation" not in stated["Scanplan_Evidence"]
 
 
 def test_unknown_sills_and_lintels_are_as_usual_and_said_to_be():
-    openings = drawnplan.openings() | {"sill_m": np.full(3, np.nan), "lintel_m": np.full(3, np.nan)}
+    openings = floorplanmaking.openings() | {"sill_m": np.full(3, np.nan), "lintel_m": np.full(3, np.nan)}
     model = opened(plan(openings=openings))
     door, window = model.by_type("IfcDoor")[0], model.by_type("IfcWindow")[0]
     assert (door.OverallHeight, window.OverallHeight) == pytest.approx((2.0, 1.1))
@@ -107,14 +109,14 @@ def test_unknown_sills_and_lintels_are_as_usual_and_said_to_be():
 
 
 def test_a_passage_is_a_hole_with_nothing_in_it():
-    openings = drawnplan.openings() | {"type": np.array(["passage"] * 3, object)}
+    openings = floorplanmaking.openings() | {"type": np.array(["passage"] * 3, object)}
     model = opened(plan(openings=openings))
     assert len(model.by_type("IfcOpeningElement")) == 3 and not model.by_type("IfcDoor")
     assert faults(model) == []
 
 
 def test_a_door_in_no_wall_stands_alone():
-    openings = drawnplan.openings() | {"wall": np.full(3, -1, np.int32)}
+    openings = floorplanmaking.openings() | {"wall": np.full(3, -1, np.int32)}
     model = opened(plan(openings=openings))
     assert len(model.by_type("IfcDoor")) == 2 and not model.by_type("IfcOpeningElement")
     assert faults(model) == []
@@ -128,16 +130,16 @@ def test_identifiers_are_unique_and_the_same_for_the_same_plan(model):
 
 
 def test_a_wall_keeps_its_identifier_when_another_goes():
-    fewer = {name: values[2:] for name, values in drawnplan.walls().items()}
-    openings = drawnplan.openings([])
+    fewer = {name: values[2:] for name, values in floorplanmaking.walls().items()}
+    openings = floorplanmaking.openings([])
     before, after = ({w.GlobalId for w in opened(plan(walls=w, openings=openings)).by_type("IfcWall")}
-                     for w in (drawnplan.walls(), fewer))  # fmt: skip
+                     for w in (floorplanmaking.walls(), fewer))  # fmt: skip
     assert len(before) == 6 and len(after) == 4 and after < before
 
 
 def test_two_walls_in_one_place_have_two_identifiers():
-    walls = drawnplan.walls([drawnplan.WALLS[5], drawnplan.WALLS[5]])
-    model = opened(plan(walls=walls, openings=drawnplan.openings([])))
+    walls = floorplanmaking.walls([floorplanmaking.WALLS[5], floorplanmaking.WALLS[5]])
+    model = opened(plan(walls=walls, openings=floorplanmaking.openings([])))
     assert len({w.GlobalId for w in model.by_type("IfcWall")}) == 2
 
 

@@ -1,3 +1,5 @@
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -54,7 +56,9 @@ def test_nothing_is_known_across_a_gap_or_beyond_the_ends():
 
 def test_the_table_gives_the_motion_back():
     way = motion.along([edge([0, 1, 5, 6], [0, 1, 5, 6])], SCANS, max_gap_s=1.5)
+    way = dataclasses.replace(way, time_scale=-1.0, time_shift_s=0.1)
     again = motion.from_columns(way.columns())
+    assert (again.time_scale, again.time_shift_s) == (-1.0, 0.1)
     for name in ("t_ns", "xyz_m", "quat_xyzw", "piece"):
         np.testing.assert_array_equal(getattr(again, name), getattr(way, name))
 

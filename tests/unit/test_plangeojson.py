@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import shapely
 
-import drawnplan
-from drawnplan import bare, plan
+import floorplanmaking
+from floorplanmaking import bare, plan
 from scanplan import plangeojson
 
 
@@ -37,7 +37,7 @@ def test_walls_openings_and_rooms_have_the_columns_of_their_tables():
 
 
 def test_a_wall_lists_the_scans_that_show_it():
-    walls = features(plan(), "wall", drawnplan.evidence())
+    walls = features(plan(), "wall", floorplanmaking.evidence())
     assert walls[0]["properties"]["scan_ids"] == [5, 9]
     assert walls[0]["properties"]["t_ns"] == [5 * 10**9, 9 * 10**9]
     assert walls[2]["properties"]["scan_ids"] == []
@@ -69,7 +69,7 @@ def test_coordinates_have_a_tenth_of_a_millimetre_and_no_negative_zero():
 
 def test_an_infinite_number_is_refused():
     with pytest.raises(ValueError, match="JSON"):
-        plangeojson.dumps(plan(faces=drawnplan.faces() | {"z_max_m": np.full(9, np.inf)}))
+        plangeojson.dumps(plan(faces=floorplanmaking.faces() | {"z_max_m": np.full(9, np.inf)}))
 
 
 def test_a_name_with_quotes_and_accents_survives():

@@ -4,7 +4,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-import drawnplan
+import floorplanmaking
 from scanplan import wallbodies
 
 
@@ -70,13 +70,13 @@ def test_a_sharp_corner_has_no_endless_tip():
 
 
 def test_the_walls_of_a_plan_tile_its_footprint():
-    walls = drawnplan.walls()
+    walls = floorplanmaking.walls()
     half_m = walls["thickness_m"] / 2
     lines_m = np.column_stack([walls[c] for c in ("x0_m", "y0_m", "x1_m", "y1_m")]).reshape(-1, 2, 2)
-    found = wallbodies.bodies(lines_m, np.nan_to_num(half_m), np.nan_to_num(half_m, nan=drawnplan.ASSUMED_M))
-    assert shapely.area(found).sum() == pytest.approx(drawnplan.FOOTPRINT_M2)
-    assert shapely.area(shapely.union_all(found)) == pytest.approx(drawnplan.FOOTPRINT_M2)
-    assert shapely.area(shapely.intersection(shapely.union_all(found), shapely.union_all(drawnplan.ROOMS))) < 1e-9
+    found = wallbodies.bodies(lines_m, np.nan_to_num(half_m), np.nan_to_num(half_m, nan=floorplanmaking.ASSUMED_M))
+    assert shapely.area(found).sum() == pytest.approx(floorplanmaking.FOOTPRINT_M2)
+    assert shapely.area(shapely.union_all(found)) == pytest.approx(floorplanmaking.FOOTPRINT_M2)
+    assert shapely.area(shapely.intersection(shapely.union_all(found), shapely.union_all(floorplanmaking.ROOMS))) < 1e-9
 
 
 def test_no_walls_have_no_bodies():

@@ -3,7 +3,7 @@ import re
 import sys
 
 sys.path.insert(0, f"{workflow.basedir}/scripts")
-from scanplan import configuration, inventory, methods, sources
+from scanplan import configuration, experiments, inventory, methods, sources
 from scanplan.errors import StageError
 
 SCHEMA = configuration.read_yaml(
@@ -13,18 +13,25 @@ METHODS = inventory.choices(SCHEMA, "plan", "method")
 EXTRACTORS = inventory.choices(SCHEMA, "plan", "extractor")
 
 
+KNOWN = {
+    "defaults": configuration.read_yaml(f"{workflow.basedir}/config/config.yaml"),
+    "overrides": workflow.config_settings.overwrite_config,
+    "schema": SCHEMA,
+}
+
+
 def given_datasets():
     """The datasets that the user gave, by name; the simulated demo where none is given."""
-    known = {
-        "defaults": configuration.read_yaml(f"{workflow.basedir}/config/config.yaml"),
-        "overrides": workflow.config_settings.overwrite_config,
-        "schema": SCHEMA,
-        "drawings": f"{workflow.basedir}/config/buildings",
-    }
-    paths = inventory.named(config.get("dataset"))
+    drawings = f"{workflow.basedir}/config/buildings"
     return {
-        name: inventory.dataset(name, path, **known) for name, path in paths.items()
+        name: inventory.dataset(name, path, drawings=drawings, **KNOWN)
+        for name, path in inventory.named(config.get("dataset")).items()
     }
+
+
+def thesis_surveys():
+    """The surveys of the thesis's experiments, by kind."""
+    return experiments.surveys(config=f"{workflow.basedir}/config", **KNOWN)
 
 
 def or_end(function, *arguments):
@@ -36,7 +43,10 @@ def or_end(function, *arguments):
         raise SystemExit(1)
 
 
-DATASETS = or_end(given_datasets)
+GIVEN = or_end(given_datasets)
+THESIS = or_end(thesis_surveys)
+# jobs are worked out for what is asked for; these are all that could be
+DATASETS = GIVEN | {found.name: found for kind in THESIS.values() for found in kind}
 
 
 def any_of(names):
@@ -173,14 +183,18 @@ def all_settings(wildcards):
 
 
 def report_figures(wildcards):
-    """The figures of a dataset."""
-    return [file for file in results_of(wildcards.dataset) if "/figures/" in file]
+    """The figures of a dataset, those of the evaluation last."""
+    return [
+        file
+        for file in results_of(wildcards.dataset)
+        if "/figures/" in file and file.endswith(".svg")
+    ]
 
 
 def report_evaluation(wildcards):
     """The measured walls of a dataset, if its truth is known."""
-    truth = DATASETS[wildcards.dataset].truth
-    return [f"results/{wildcards.dataset}/evaluation/walls.parquet"] if truth else []
+    known = DATASETS[wildcards.dataset].truth
+    return [f"results/{wildcards.dataset}/evaluation/walls.parquet"] if known else []
 
 
 def report_page(wildcards):
@@ -196,7 +210,7 @@ def report_results(wildcards):
     return [
         file
         for file in results_of(wildcards.dataset)
-        if "/figures/" not in file and not file.endswith("/report.html")
+        if not file.endswith((".html", ".svg"))
     ]
 
 
@@ -207,7 +221,7 @@ def results_of(name):
 
 def all_results():
     """Everything the workflow makes of the given datasets."""
-    return [file for name in DATASETS for file in results_of(name)]
+    return [file for name in GIVEN for file in results_of(name)]
 
 
 wildcard_constraints:

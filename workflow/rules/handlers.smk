@@ -30,9 +30,11 @@ def run_alone():
 
 def tell_results():
     """After a whole run, say where each dataset's plan and report lie."""
+    if "thesis" in workflow.dag_settings.targets:
+        print("\nreport:  results/thesis/report.html", file=sys.stderr)
     if workflow.dag_settings.targets:
         return
-    for name in DATASETS:
+    for name in GIVEN:
         folder = f"results/{name}"
         print(
             f"\nplan:    {folder}/plan/plan.svg (also .pdf, .dxf, .ifc, .geojson and map.pgm)\n"
