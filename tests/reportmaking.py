@@ -85,6 +85,14 @@ def evaluation(methods=("random", "wall_length")):
     return columns
 
 
+def plan_evaluation():
+    columns = {
+        name: np.array([3, 3], np.int32) if kind == "int32" else np.array([0.97, 0.98])
+        for name, kind in schemas.PLAN_EVALUATION.columns.items()
+    }
+    return columns | {"frame": np.array(["aligned", "registered"], object)}
+
+
 def files(folder):
     """Write everything that the report is made of into a folder, and return what `write_report` is given."""
     made = {
@@ -99,6 +107,7 @@ def files(folder):
         "poses": (tables.POSES, poses()),
         "registration": (tables.REGISTRATION, registration()),
         "evaluation": (schemas.EVALUATION, evaluation()),
+        "plan_evaluation": (schemas.PLAN_EVALUATION, plan_evaluation()),
     }
     paths = {name: folder / f"{name}.parquet" for name in made}
     for name, (schema, columns) in made.items():
@@ -113,7 +122,7 @@ def files(folder):
     return paths | {
         "page": [PAGE / f"page.{suffix}" for suffix in ("html", "css", "js")],
         "figures": [folder / "scans.svg"],
-        "evaluation": [paths["evaluation"]],
+        "evaluation": [paths["evaluation"], paths["plan_evaluation"]],
         "recordings": [folder / "survey.bag"],
         "results": [paths["faces"], paths["walls"]],
     }

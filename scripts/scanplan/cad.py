@@ -94,11 +94,12 @@ def _add_openings(modelspace, plan):
 
 def _add_rooms(modelspace, plan):
     _outlines(modelspace, plan.areas, ROOMS)
-    for room, area_m2, area in zip(plan.rooms["room"], plan.rooms["area_m2"], plan.areas, strict=True):
-        inside = area.representative_point()
+    for room, area_m2, x_m, y_m in zip(
+        *(plan.rooms[c].tolist() for c in ("room", "area_m2", "x_m", "y_m")), strict=True
+    ):
         for row, said in enumerate((f"Room {room}", f"{area_m2:.1f} m2")):
             text = modelspace.add_text(said, height=_TEXT_M, dxfattribs={"layer": TEXT})
-            text.set_placement((inside.x, inside.y - 1.5 * row * _TEXT_M), align=TextEntityAlignment.MIDDLE_CENTER)
+            text.set_placement((x_m, y_m - 1.5 * row * _TEXT_M), align=TextEntityAlignment.MIDDLE_CENTER)
 
 
 def _audit(document):

@@ -142,14 +142,12 @@ def _openings(axes, drawn, m_per_mm):
 
 
 def _rooms(axes, drawn, m_per_mm):
-    """Write each room's number and area where it is widest, as large as there is room for."""
-    for room, area_m2, closed, area in zip(
-        *(drawn.rooms[c] for c in ("room", "area_m2", "closed")), drawn.areas, strict=True
+    """Write each room's number and area, as large as there is room for."""
+    for room, area_m2, closed, x_m, y_m, width_m in zip(
+        *(drawn.rooms[c] for c in ("room", "area_m2", "closed", "x_m", "y_m")), drawn.label_widths_m, strict=True
     ):
-        circle = shapely.maximum_inscribed_circle(area, tolerance=0.05)
-        (x_m, y_m), _ = shapely.get_coordinates(circle)
         about = "" if closed else "about "
-        size = np.clip(2 * circle.length / m_per_mm * _POINTS_PER_MM / 8, 3.0, 8.0)
+        size = np.clip(width_m / m_per_mm * _POINTS_PER_MM / 8, 3.0, 8.0)
         axes.text(x_m, y_m, f"Room {room}\n{about}{area_m2:.1f} m²", fontsize=size, ha="center", va="center",
                   gid=f"room-{room}")  # fmt: skip
 

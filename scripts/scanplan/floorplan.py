@@ -130,6 +130,12 @@ class FloorPlan:
         """The rooms' polygons, (r,)."""
         return shapely.from_wkb(np.asarray(self.rooms["geometry"], object))
 
+    @cached_property
+    def label_widths_m(self):
+        """How wide a label may be where each room's label goes, (r,): across the circle that has room there."""
+        places = shapely.points(self.rooms["x_m"], self.rooms["y_m"])
+        return 2 * shapely.distance(places, shapely.boundary(self.areas))
+
 
 def summary(plan):
     """Return what a plan holds, in words."""

@@ -32,8 +32,8 @@ class Survey:
         and `EVIDENCE`.
     chosen : int
         How many scans of the selection make the plan.
-    evaluation : dict of str to (n,) array or None
-        The columns of `schemas.EVALUATION`, where the truth is known.
+    evaluation : tuple of dict of str to (n,) array
+        The columns of `schemas.EVALUATION` and of `schemas.PLAN_EVALUATION`, where the truth is known.
     """
 
     selection: dict
@@ -42,7 +42,7 @@ class Survey:
     segments: dict
     evidence: dict
     chosen: int
-    evaluation: dict | None
+    evaluation: tuple
 
 
 @dataclass(frozen=True)
@@ -101,6 +101,7 @@ def page(template, style, script, plan, survey, run):
         chart=reportchart.svg(curves, len(survey.selection["rank"]), survey.chosen),
         legend=_legend(curves),
         certificate=reporttext.certificate(survey, run.settings["plan"]["method"]),
+        against_truth=reporttables.against_truth(survey.evaluation[1]) if survey.evaluation else "",
         verify_note=reporttext.verify_note(plan),
         walls=reporttables.walls(plan, survey.evidence),
         openings=reporttables.openings(plan),
@@ -160,9 +161,10 @@ def _curves(survey, of_plan):
         "covered": (f"{what}, of what all scans give", k, covered / covered[-1]),
         "bound": ("most that any choice of as many scans can give", k, bound),
     }
-    if survey.evaluation is not None:
-        own = np.all([survey.evaluation[part] == of_plan[part] for part in ("method", "extractor")], axis=0)
-        at, found, right = (survey.evaluation[column][own] for column in ("k", _FOUND, _RIGHT))
+    if survey.evaluation:
+        measured = survey.evaluation[0]
+        own = np.all([measured[part] == of_plan[part] for part in ("method", "extractor")], axis=0)
+        at, found, right = (measured[column][own] for column in ("k", _FOUND, _RIGHT))
         curves["found"] = ("visible true walls found, within 0.10 m", at, found)
         curves["right"] = ("wall segments that are right, within 0.10 m", at, right)
     return curves
