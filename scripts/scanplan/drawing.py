@@ -124,12 +124,11 @@ def _walls(axes, drawn, state):
 
 def _openings(axes, drawn, m_per_mm):
     """Draw a window with its panes, a door or passage with its thresholds; which way a door swings is not known."""
-    for number, kind, line, gap in zip(
-        drawn.openings["opening"], drawn.openings["type"], floorplan.lines_m(drawn.openings), drawn.gaps, strict=True
-    ):
+    columns = (drawn.openings[c] for c in ("opening", "type", "thickness_m"))
+    for number, kind, thick_m, line in zip(*columns, floorplan.lines_m(drawn.openings), strict=True):
         way = (line[1] - line[0]) / math.dist(*line)
-        deep_m = gap.area / math.dist(*line) / 2 - floorplan.CLEARANCE_M
-        sides_m = (-deep_m, 0, deep_m) if kind == "window" else (-deep_m, deep_m)
+        # in a wall of unknown thickness one line
+        sides_m = np.array([-0.5, 0.5, 0] if kind == "window" else [-0.5, 0.5]) * np.nan_to_num(thick_m)
         strokes = [line + side_m * np.array([-way[1], way[0]]) for side_m in sides_m]
         vertices = np.concatenate(strokes)
         path = Path(vertices, [Path.MOVETO, Path.LINETO] * len(strokes))

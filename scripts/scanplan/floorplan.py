@@ -11,7 +11,7 @@ from scanplan import wallbodies
 STATES = ("observed", "inferred")
 OPENINGS = ("door", "window", "passage")
 _ENDS = ("x0_m", "y0_m", "x1_m", "y1_m")
-CLEARANCE_M = 0.02
+_CLEARANCE_M = 0.02
 _GRID_M = 1e-4
 _FLAT_M = 0.5
 
@@ -89,7 +89,7 @@ class FloorPlan:
         deep_m = np.nan_to_num(self.openings["thickness_m"], nan=self.assumed_thickness_m) / 2
         # one more for the openings that are in no wall
         walls_m = np.append(np.maximum(*self.sides_m), 0.0)
-        return boxes(lines_m(self.openings), np.maximum(deep_m, walls_m[self.hosts]) + CLEARANCE_M)
+        return boxes(lines_m(self.openings), np.maximum(deep_m, walls_m[self.hosts]) + _CLEARANCE_M)
 
     def solid(self, state):
         """Return the ground of the walls of one state whose thickness is known, merged, openings cut out."""
