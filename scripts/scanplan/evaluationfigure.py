@@ -5,7 +5,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter, StrMethodFormatter
 
 from scanplan import topview
-from scanplan.figures import STYLES
+from scanplan.figures import DASHED, STYLES
 
 _SIZE_IN = (7.0, 8.6)
 _STYLES = {"oracle": ("oracle: knows the truth", "black"), "sight": ("oracle by sight alone", "0.55"), **STYLES}
@@ -50,7 +50,7 @@ def draw(measured, aligned, *, method, extractor):
         _missed(axes[key], _of(measured, extractor=extractor, method=name))
         axes[key].set_title(f"missed, {name}, {extractor}, as registered", fontsize=7)
     handles, labels = axes["0"].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper center", ncols=3, fontsize=7, frameon=False)
+    figure.legend(handles[::-1], labels[::-1], loc="outside upper center", ncols=3, fontsize=7, frameon=False)
     handles, labels = axes["m"].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=3, fontsize=7, frameon=False)
     return figure
@@ -78,9 +78,11 @@ def _curves(axes, table, column):
     for method in by_rank(table["method"]):
         label, colour = style(method)
         of_it = _of(table, method=method)
+        dashes, width = ("--", 0.8) if method in DASHED else ("-", 1.2)
         axes.plot(
-            of_it["k"], of_it[column], color=colour, lw=1.2, marker="o", ms=1.8, label=label, gid=f"{column}-{method}"
-        )
+            of_it["k"], of_it[column], dashes, color=colour, lw=width, marker="o", ms=1.6,
+            label=label, gid=f"{column}-{method}",
+        )  # fmt: skip
     _scan_axis(axes, table["k"])
 
 

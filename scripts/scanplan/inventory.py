@@ -14,12 +14,14 @@ DEMO = "demo"
 RESERVED = "thesis"
 """Name under results/ that the thesis's experiments have to themselves."""
 
-_TABLES = ("poses", "registration", "scans", "hulls", "plan/faces")
+_PLAN = tuple(f"plan/{t}" for t in ("faces", "walls", "openings", "rooms", "evidence", "free"))
+_TABLES = ("poses", "registration", "scans", "hulls", *_PLAN)
 _DRAWN = (
-    "plan/plan.geojson",
-    "plan/plan.svg",
-    "plan/plan.dxf",
-    *(f"figures/{f}.svg" for f in ("scans", "area", "walls")),
+    *(f"plan/plan.{suffix}" for suffix in ("geojson", "dxf", "svg", "pdf", "ifc")),
+    "plan/map.pgm",
+    "plan/map.yaml",
+    *(f"figures/{f}.svg" for f in ("registration", "scans", "area", "walls")),
+    "report.html",
 )
 _EVALUATION = ("walls", "walls_aligned", "oracle", "plan", "poses")
 

@@ -1,21 +1,18 @@
 import numpy as np
 import pytest
 
+import planmaking
 from evaluate_plan import evaluate_plan
-from evaluationmaking import FACES, shift, write_registration, write_truth
+from evaluationmaking import FACES, SCAN_IDS, shift, write_registration, write_truth
 from scanplan import schemas, tables
-from wallmaking import walls
 
 
 def evaluated(folder, segments, **placing):
     write_truth(folder)
     write_registration(folder, **placing)
-    shown = walls(segments)
-    counts = {"face": np.arange(len(segments)), "n_scans": np.ones(len(segments), int)}
-    plan = {name: shown[name] for name in schemas.FACES.columns if name in shown} | counts
-    tables.write(folder / "faces.parquet", schemas.FACES, plan)
-    inputs = [folder / name for name in ("faces.parquet", "registration.parquet", "truth.geojson", "truth_poses.tum")]
-    evaluate_plan(*inputs, folder / "plan.parquet", max_range_m=100.0, bitmap_cell_m=0.05)
+    plan = planmaking.write(folder, SCAN_IDS, face_segments=segments)
+    inputs = [folder / name for name in ("registration.parquet", "truth.geojson", "truth_poses.tum")]
+    evaluate_plan(plan, *inputs, folder / "plan.parquet", max_range_m=100.0, bitmap_cell_m=0.05)
     return tables.read(folder / "plan.parquet", schemas.PLAN_EVALUATION)
 
 

@@ -3,7 +3,7 @@ import re
 import sys
 
 sys.path.insert(0, f"{workflow.basedir}/scripts")
-from scanplan import configuration, experiments, inventory, sources
+from scanplan import configuration, experiments, inventory, methods, sources
 from scanplan.errors import StageError
 
 SCHEMA = configuration.read_yaml(
@@ -82,16 +82,38 @@ def setting(section, *keys):
 
 
 def topics_and_frames(wildcards):
-    """Settings of the input that poses depend on: all but the ranges."""
+    """Settings of the input that poses depend on: all but what is done to the points."""
     reading = DATASETS[wildcards.dataset].settings["input"]
     return {
-        key: value for key, value in reading.items() if not key.endswith("_range_m")
+        key: value
+        for key, value in reading.items()
+        if key not in ("min_range_m", "max_range_m", "deskew")
     }
 
 
 def extractor_settings(wildcards):
     """Settings of the job's wall extractor."""
     return DATASETS[wildcards.dataset].settings["walls"][wildcards.extractor]
+
+
+def observation_settings(wildcards):
+    """What makes returns a wall: settings of the thesis's extractor that a scan can be judged by, and of the cells."""
+    settings = DATASETS[wildcards.dataset].settings
+    limits = settings["walls"]["cluster_ransac"]
+    own = settings["selection"]["wall_length"]
+    return {name: limits[name] for name in methods.WALL_LIMITS} | own
+
+
+def order_tables(wildcards):
+    """The tables that the job's method needs, by name, beside that of the hulls."""
+    tables = methods.TABLES[wildcards.method]
+    return {table: f"results/{wildcards.dataset}/{table}.parquet" for table in tables}
+
+
+def plan_settings(wildcards):
+    """Settings of the plan's own stage, part by part."""
+    plan = DATASETS[wildcards.dataset].settings["plan"]
+    return {part: plan[part] for part in plan if part not in ("method", "extractor", "export")}
 
 
 def recordings(wildcards):
@@ -149,6 +171,43 @@ def simulated_survey(wildcards):
         for key, value in survey.items()
         if key not in ("building", "recording")
     }
+
+
+def all_settings(wildcards):
+    """All settings of the job's dataset."""
+    return DATASETS[wildcards.dataset].settings
+
+
+def report_figures(wildcards):
+    """The figures of a dataset, those of the evaluation last."""
+    return [
+        file
+        for file in results_of(wildcards.dataset)
+        if "/figures/" in file and file.endswith(".svg")
+    ]
+
+
+def report_evaluation(wildcards):
+    """The measured walls of a dataset, if its truth is known."""
+    known = DATASETS[wildcards.dataset].truth
+    return [f"results/{wildcards.dataset}/evaluation/walls.parquet"] if known else []
+
+
+def report_page(wildcards):
+    """HTML, style and script that the report is made from."""
+    return [
+        os.path.relpath(f"{workflow.basedir}/workflow/report/page/page.{suffix}")
+        for suffix in ("html", "css", "js")
+    ]
+
+
+def report_results(wildcards):
+    """The tables and plans whose sizes the report states."""
+    return [
+        file
+        for file in results_of(wildcards.dataset)
+        if not file.endswith((".html", ".svg"))
+    ]
 
 
 def results_of(name):

@@ -27,9 +27,13 @@ rule evaluate_walls:
 
 
 rule evaluate_plan:
-    """Measure the merged plan against the true walls."""
+    """Measure the plan against the true one."""
     input:
         faces="results/{dataset}/plan/faces.parquet",
+        walls="results/{dataset}/plan/walls.parquet",
+        openings="results/{dataset}/plan/openings.parquet",
+        rooms="results/{dataset}/plan/rooms.parquet",
+        evidence="results/{dataset}/plan/evidence.parquet",
         registration="results/{dataset}/registration.parquet",
         truth=true_faces,
         true_poses=true_poses,
