@@ -13,9 +13,10 @@ import pyarrow.parquet as pq
 
 from scanplan import atomic
 from scanplan.errors import StageError
-from scanplan.schemas import FACES, HULLS, POSES, QUAT, REGISTRATION, SCANS, SELECTION, WALLS, XYZ
+from scanplan.schemas import EDGES, FACES, HULLS, POSES, QUAT, REGISTRATION, SCANS, SELECTION, WALLS, XYZ
 
 __all__ = [
+    "EDGES",
     "FACES",
     "HULLS",
     "POSES",

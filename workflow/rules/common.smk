@@ -178,6 +178,7 @@ def results_of(name):
     files = [
         "poses.parquet",
         "registration.parquet",
+        "edges.parquet",
         "scans.parquet",
         "hulls.parquet",
         "plan/faces.parquet",
