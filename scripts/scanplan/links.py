@@ -6,6 +6,8 @@ import numpy as np
 
 from scanplan import icp, se3, twists
 
+_SMALLEST_SHARE = 0.1
+
 
 @dataclass(frozen=True)
 class Placed:
@@ -119,9 +121,18 @@ def facing_overlap(source, target, distance_m, settings):
 
 
 def thinned(xyz_m, level_from_sensor, planar, settings):
-    """Return the points (m, 3) float32 of a scan that fitting uses, in the cloud's frame."""
+    """Return the points (m, 3) float32 of a scan that fitting uses, in the cloud's frame.
+
+    In a small room, or in a camera's narrow view, the usual cubes are too few: then smaller ones are taken.
+    """
     moved = se3.transform(level_from_sensor, xyz_m)
-    return icp.thin(moved, planar=planar, voxel_m=settings.voxel_planar_m if planar else settings.voxel_m)
+    voxel_m = settings.voxel_planar_m if planar else settings.voxel_m
+    found = icp.thin(moved, planar=planar, voxel_m=voxel_m)
+    if planar or len(found) >= settings.voxels:
+        return found
+    # on surfaces the number of cubes goes with the inverse square of their edge
+    share = max(np.sqrt(len(found) / settings.voxels), _SMALLEST_SHARE)
+    return icp.thin(moved, planar=False, voxel_m=share * voxel_m)
 
 
 def reach_m(settings):

@@ -6,6 +6,7 @@ from scanplan import se3, tables
 
 # half of the weight of a measurement that agrees
 _INLIER_WEIGHT = 0.25
+_SLIGHT = 1e-7
 
 
 def columns(result):
@@ -13,7 +14,7 @@ def columns(result):
     edges = [] if result is None else result.edges
     motion = np.array([edge.fit.target_from_source for edge in edges]).reshape(-1, 4, 4)
     xyz_m, quat_xyzw = se3.position_quaternion(motion)
-    residual = np.zeros((0, 6)) if result is None else result.residual
+    residual = np.zeros((0, 6)) if result is None else _observed(result)
     weight = np.zeros(0) if result is None else result.weight
     fields = ("source", "target", "kind", "fitness", "rmse_m")
     return (
@@ -28,6 +29,13 @@ def columns(result):
             "inlier": weight >= _INLIER_WEIGHT,
         }
     )
+
+
+def _observed(result):
+    """Residuals (m, 6) in the directions that each link tells of: in the others it cannot be off."""
+    information = np.array([edge.fit.information for edge in result.edges]).reshape(-1, 6, 6)
+    slight = _SLIGHT * np.trace(information, axis1=1, axis2=2)[:, None, None] * np.eye(6)
+    return np.linalg.solve(information + slight, information @ result.residual[:, :, None])[:, :, 0]
 
 
 def summary(result):

@@ -20,6 +20,7 @@ class Settings:
 
     voxel_m: float
     voxel_planar_m: float
+    voxels: int
     n_previous: int
     fitness_distance_m: float
     fitness_points: int

@@ -10,6 +10,7 @@ from scanplan import registration, se3
 SETTINGS = registration.Settings(
     voxel_m=0.1,
     voxel_planar_m=0.1,
+    voxels=1,
     n_previous=5,
     fitness_distance_m=0.2,
     fitness_points=1000,
