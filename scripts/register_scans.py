@@ -1,9 +1,9 @@
 """Select continuous scans and register them in the map frame (thesis, algorithm 3)."""
 
-from scanplan import linktable, mapping, spool, stagelog, surveys, tables, verdicts, workers
+from scanplan import linktable, mapping, motion, spool, stagelog, surveys, tables, verdicts, workers
 
 
-def register_scans(recordings, poses, scans, registered, edges, *, reading, settings, threads=1):
+def register_scans(recordings, poses, scans, registered, edges, *, reading, settings, moved=None, threads=1):
     """Write the retained scans in the map frame, what became of every candidate, and what links the retained ones.
 
     Parameters
@@ -18,13 +18,16 @@ def register_scans(recordings, poses, scans, registered, edges, *, reading, sett
         Keywords of `surveys.open_survey`.
     settings : dict
         Section `registration` of the settings.
+    moved : path-like, optional
+        motion.parquet: how the sensor moved. Without it scans are not deskewed.
     threads : int
         Cores to use; the result does not depend on it.
     """
     candidates = tables.read(poses, tables.POSES)
     priors, dropped = verdicts.poses(candidates), []
+    way = None if moved is None else motion.from_columns(tables.read(moved, tables.MOTION))
     with spool.beside(scans) as raw, spool.beside(registered) as thinned, workers.pool(threads) as run:
-        with surveys.open_survey(recordings, **reading) as opened:
+        with surveys.open_survey(recordings, **reading, motion=way) as opened:
             survey = mapping.Survey(candidates["scan_id"], priors, opened.planar)
             found = stagelog.progress(opened.scans(survey.scan_ids), "register_scans", total=len(priors))
             counted = (dropped.append(scan.n_dropped) or scan for scan in found)
@@ -50,5 +53,6 @@ if __name__ == "__main__":
             snakemake.output.edges,
             reading=snakemake.params.reading,
             settings=snakemake.params.settings,
+            moved=snakemake.input.motion,
             threads=snakemake.threads,
         )

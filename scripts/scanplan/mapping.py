@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scanplan import links, multiway, registration, se3, stretches
+from scanplan import batches, links, multiway, registration, se3
 
 
 @dataclass(frozen=True)
@@ -29,15 +29,15 @@ class Survey:
 class Settings:
     """Section `registration` of the settings."""
 
-    stretch: int
+    batch_size: int
     limits: registration.Settings
     graph: multiway.Settings
 
 
 def settings_of(section):
     """Return the Settings that a section `registration` holds."""
-    limits = {key: value for key, value in section.items() if key not in ("stretch", "graph")}
-    return Settings(section["stretch"], registration.Settings(**limits), multiway.Settings(**section["graph"]))
+    limits = {key: value for key, value in section.items() if key not in ("batch_size", "graph")}
+    return Settings(section["batch_size"], registration.Settings(**limits), multiway.Settings(**section["graph"]))
 
 
 def register(survey, scans, raw, thinned, run, settings):
@@ -62,9 +62,9 @@ def register(survey, scans, raw, thinned, run, settings):
         None where there is nothing to optimise.
     """
     limits = settings.limits
-    jobs = stretches.jobs(scans, raw, survey.scan_ids, survey.priors, survey.planar, limits, settings.stretch)
+    jobs = batches.jobs(scans, raw, survey.scan_ids, survey.priors, survey.planar, limits, settings.batch_size)
     judged, edges = [], []
-    for verdicts, clouds, found in run(stretches.register, jobs):
+    for verdicts, clouds, found in run(batches.register, jobs):
         judged, edges = judged + verdicts, edges + found
         for xyz_m in clouds:
             thinned.add(xyz_m)

@@ -13,15 +13,46 @@ import pyarrow.parquet as pq
 
 from scanplan import atomic
 from scanplan.errors import StageError
-from scanplan.schemas import EDGES, FACES, HULLS, POSES, QUAT, REGISTRATION, SCANS, SELECTION, WALLS, XYZ
+from scanplan.schemas import (
+    CRISPNESS,
+    EDGES,
+    EVALUATION,
+    EVIDENCE,
+    FACES,
+    FREE,
+    HULLS,
+    MOTION,
+    OPENINGS,
+    ORACLE,
+    PLAN_WALLS,
+    POSE_ERRORS,
+    POSES,
+    QUAT,
+    REGISTRATION,
+    ROOMS,
+    SCANS,
+    SELECTION,
+    WALLS,
+    XYZ,
+)
 
 __all__ = [
+    "CRISPNESS",
     "EDGES",
+    "EVALUATION",
+    "EVIDENCE",
     "FACES",
+    "FREE",
     "HULLS",
+    "MOTION",
+    "OPENINGS",
+    "ORACLE",
+    "PLAN_WALLS",
     "POSES",
+    "POSE_ERRORS",
     "QUAT",
     "REGISTRATION",
+    "ROOMS",
     "SCANS",
     "SELECTION",
     "WALLS",

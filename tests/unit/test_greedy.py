@@ -26,7 +26,7 @@ def hull_sets(draw, max_size=9):
             x = draw(st.integers(0, 5))
             chosen.append(box(x, 0, x + 1, 3) | box(x + 2, 1, x + 3, 5))
         elif kind == "s":
-            chosen.append(shapely.Point(draw(st.floats(0, 8)), 3).buffer(1.5, quad_segs=4))
+            chosen.append(shapely.Point(draw(st.floats(0, 8, width=32)), 3).buffer(1.5, quad_segs=4))
         elif kind == "0" or not chosen:
             chosen.append(shapely.Polygon())
         else:
@@ -162,11 +162,28 @@ def test_an_inconsistent_overlay_is_done_again_on_a_grid(monkeypatch):
     assert result.gain_m2.tolist() == pytest.approx([3, 1], abs=1e-5)
 
 
-def test_checkpoints_tell_what_every_polygon_would_add():
+def test_checkpoints_bound_what_every_polygon_would_add():
     polygons = scattered(20)
     result = greedy.greedy_order(polygons)
     assert sorted(result.checkpoints) == [0, 1, 2, 4, 8, 16]
-    for j, gain_m2 in result.checkpoints.items():
+    for j, bound_m2 in result.checkpoints.items():
         union = shapely.union_all([polygons[i] for i in result.order[:j]])
-        expected = [0 if i in result.order[:j] else (union | p).area - union.area for i, p in enumerate(polygons)]
-        assert gain_m2 == pytest.approx(expected, abs=1e-9)
+        added_m2 = np.array([(union | p).area - union.area for p in polygons])
+        assert (bound_m2 >= added_m2 - 1e-9).all()
+        assert (bound_m2[result.order[:j]] == 0).all()
+        assert (bound_m2 <= result.checkpoints[0]).all()
+
+
+def test_numbers_too_small_to_be_squared_are_nought():
+    circle = shapely.Point(0, 3).buffer(1.5, quad_segs=4)
+    dusty = shapely.transform(circle, lambda xy: np.where(xy == 0, 5e-324, xy))
+    others = [box(0, 0, 2, 1), box(0, 1, 1, 5)]
+    assert greedy.greedy_order([*others, dusty]).gain_m2 == pytest.approx(
+        greedy.greedy_order([*others, circle]).gain_m2
+    )
+
+
+def test_polygons_far_apart_and_of_all_sizes():
+    polygons = [box(0, 0, 1, 1), box(1e5, 0, 1e5 + 300, 2), box(0.5, 0, 1.5, 1), box(1e5 + 299, 0, 1e5 + 301, 2)]
+    assert greedy.gains_of_order(polygons, [0, 1, 2, 3]) == pytest.approx([1, 600, 0.5, 2])
+    assert greedy.greedy_order(polygons).gain_m2 == pytest.approx([600, 2, 1, 0.5])

@@ -55,7 +55,7 @@ def register(drive, folder, threads=1, **changes):
     scans, priors, _ = drive
     section = configuration.read_yaml(ROOT / "config/config.yaml")["registration"]
     graph = section["graph"] | changes.pop("graph", {})
-    settings = mapping.settings_of(section | {"stretch": 20} | changes | {"graph": graph})
+    settings = mapping.settings_of(section | {"batch_size": 20} | changes | {"graph": graph})
     found = (SimpleNamespace(xyz_m=xyz_m) for xyz_m in scans)
     survey = mapping.Survey(np.arange(N) * 5, priors, planar=False)
     with spool.beside(folder / "a") as raw, spool.beside(folder / "b") as thinned, workers.pool(threads) as run:
