@@ -46,7 +46,7 @@ class Settings:
     door_height_m : float
         Above the scan's floor; higher returns are left out: they may be the wall above a door. For 3-D scans alone.
     min_points, min_points_planar : int
-        The fewest returns of a wall; twice as many are one for sure, fewer count in proportion, as an extractor may part
+        The fewest returns of a wall; twice as many are one for sure, fewer count in proportion: an extractor may part
         them otherwise. Of a 3-D scan, of a planar one.
     """
 
