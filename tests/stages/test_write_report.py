@@ -60,7 +60,7 @@ def test_tables_state_what_the_stages_found(report):
         ["build_hulls", "2.5", "3.4", "444"], ["draw_area", "0.1", "–", "–"], ["all", "2.6", "3.4", ""],
     ]  # fmt: skip
     assert ["correctness 010m", "0.970", "0.980"] in found["truth"]
-    assert found["sizes"][1] == ["recordings", "survey.bag", "2.500"]
+    assert found["sizes"][1] == ["recording", "survey.bag", "2.500"]
     assert ["plan.merge.min_scans", "2"] in found["settings"]
 
 
