@@ -36,7 +36,7 @@ class MergeSettings:
     min_points_per_m : float, >= 0
         thinner ones too,
     min_scans : int, >= 1
-        and those that fewer scans show,
+        and those that fewer scans show (`planfaces`, by the points of all of them),
     lone_length_m : float, >= 0
         unless they are this long.
     """
@@ -114,8 +114,6 @@ def _once(pieces, settings):
 
 
 def _is_supported(piece, settings):
-    return (
-        piece.length_m >= settings.min_length_m
-        and piece.n_points >= max(1, settings.min_points_per_m * piece.length_m)
-        and (piece.length_m >= settings.lone_length_m or piece.n_scans >= settings.min_scans)
-    )
+    """Tell whether a piece is worth being looked at: how many scans show it, all points tell better."""
+    is_dense = piece.n_points >= max(1, settings.min_points_per_m * piece.length_m)
+    return is_dense and piece.length_m >= settings.min_length_m

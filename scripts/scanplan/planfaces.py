@@ -85,7 +85,8 @@ def _supported(of_line, merging):
 
 
 def _is_shown(stretch, merging):
-    return stretch.length_m >= merging.lone_length_m or stretch.n_scans >= merging.min_scans
+    # its ends may have been left to faces that cross it there
+    return stretch.length_m + 2 * _FOREIGN_M >= merging.lone_length_m or stretch.n_scans >= merging.min_scans
 
 
 def _crossed_m(seen, found, stacked):

@@ -74,7 +74,7 @@ def assemble(found, reading, pairing, gapping, *, planar, corner_m):
         The longest first.
     """
     walls = []
-    for paired in wallpairs.pair(found, pairing):
+    for paired in wallpairs.pair(found, pairing, reading, planar=planar):
         walls += _cut(paired, found, reading, gapping, planar)
     stacked = crossings.stack(walls)
     walls = [_with_end_openings(w, _crossings(w, walls, stacked), reading, gapping, planar, corner_m) for w in walls]

@@ -126,13 +126,6 @@ class TestApart:
 
 
 class TestSupport:
-    def test_a_lone_short_segment_vanishes_and_a_long_one_stays(self):
-        merged = merge(walls([(0, 0, 0.8, 0), (0, 5, 1.2, 5)]), min_scans=2, lone_length_m=1.0)
-        np.testing.assert_allclose(lengths_m(merged), [1.2])
-
-    def test_a_short_face_seen_twice_stays(self):
-        assert len(merge(walls([(0, 0, 0.8, 0)] * 2), min_scans=2, lone_length_m=1.0)["face"]) == 1
-
     def test_few_points_a_metre_are_no_wall(self):
         assert len(merge(walls([(0, 0, 10, 0)], n_points=49), min_points_per_m=5)["face"]) == 0
 

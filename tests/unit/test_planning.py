@@ -92,6 +92,14 @@ class TestPlan:
         faces = np.column_stack([made.faces[c] for c in ("x0_m", "y0_m", "x1_m", "y1_m")]).reshape(-1, 2, 2)
         assert not shapely.intersects(shapely.linestrings(faces), shapely.box(2.9, 0.2, 3.9, 0.9)).any()
 
+    @pytest.mark.parametrize(("sensors", "walls_"), [(1, 0), (2, 1)])
+    def test_a_short_wall_is_believed_if_two_scans_show_it(self, sensors, walls_):
+        pillar = [(3.4, 2.4, 2.8, 2.4)]
+        looked = housemaking.looked(housemaking.HOUSE + pillar, SENSORS[:2] * [1, 0.5, 1] + [0, 0.3, 0])
+        table = walls(pillar[:1], scan_id=[0])
+        made = planning.make(table, _first(looked, sensors), SENSORS[:1, :2], housemaking.T_NS[:sensors], SETTINGS)
+        assert len(made.walls["wall"]) == walls_
+
     @pytest.mark.parametrize("count", [0, 1000])
     def test_segments_where_no_point_is_make_no_wall(self, house, count):
         y = np.arange(count) * 0.02 + 100
@@ -110,6 +118,12 @@ class TestPlan:
         made = planning.make(table, found, both[:, :2], np.arange(8), SETTINGS)
         assert len(made.rooms["room"]) == 4
         assert len(made.walls["wall"]) == 10
+
+
+def _first(looked, count):
+    """Rays of the first scans alone."""
+    points = zip(looked.scan_ids[:count].tolist(), looked.xyz_m[:count], strict=True)
+    return rays.gather(points, dict(enumerate(looked.sensors_m)), planar=False)
 
 
 def _with_low_box(desk, height_m, sensors):

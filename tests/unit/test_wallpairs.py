@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -7,12 +8,13 @@ from hypothesis import strategies as st
 
 from scanplan import wallpairs
 from scanplan.faceline import Line
-from scanplan.profiles import Seen
+from scanplan.profiles import Reading, Seen
 from scanplan.stretches import Stretch
 
 SETTINGS = wallpairs.PairSettings(
     max_angle_deg=5.0, min_thickness_m=0.04, max_thickness_m=0.6, offset_m=0.05, max_gap_m=2.0
 )
+READING = Reading(band_m=0.06, reach_m=2.0, max_gap_m=0.5, door_height_m=1.8)
 NONE = (np.empty(0),) * 3 + (np.empty(0, int),) + (np.empty(0),) * 2 + (np.empty(0, int),)
 
 
@@ -27,7 +29,7 @@ def stretch(x0, y0, x1, y1, of=None):
 
 
 def pair(*drawn):
-    return wallpairs.pair(list(drawn), SETTINGS)
+    return wallpairs.pair(list(drawn), SETTINGS, READING, planar=True)
 
 
 def test_opposite_faces_are_a_wall_with_a_thickness():
@@ -75,6 +77,17 @@ def test_a_tilted_face_is_another_wall():
     assert len(pair(stretch(0, 0.2, 4, 0.2), stretch(4, 0.05, 0, -0.6))) == 2
 
 
+def test_rays_through_the_unseen_part_of_a_side_part_it_from_the_other():
+    """The back of a cupboard of 0.5 m lies on the wall: its front is no second side of that."""
+    front, wall = stretch(1, 0.5, 2, 0.5), stretch(5, 0, 0, 0)
+    assert len(pair(front, wall)) == 1
+    crossed = np.sort(np.repeat(front.line.along_m(np.column_stack([np.arange(2.2, 4, 0.05), np.full(36, 0.5)])), 3))
+    passed = replace(
+        front.seen, pass_m=crossed, pass_z_m=0 * crossed, pass_scan=np.zeros(len(crossed), int), profiles={}
+    )
+    assert len(pair(replace(front, seen=passed), wall)) == 2
+
+
 def test_nothing_is_no_wall():
     assert pair() == []
 
@@ -87,7 +100,7 @@ def test_every_stretch_is_in_one_wall_and_every_side_is_straight(seed):
     x, length = rng.uniform(0, 8, 12), rng.uniform(0.3, 3, 12)
     ways = rng.choice([-1, 1], 12)
     drawn = [stretch(a, b, a + w * n, b) for a, b, w, n in zip(x, y, ways, length, strict=True)]
-    walls = wallpairs.pair(drawn, SETTINGS)
+    walls = wallpairs.pair(drawn, SETTINGS, READING, planar=True)
     assert sorted(i for w in walls for i in w.members) == list(range(12))
     for wall in walls:
         for sign, side in ((1, wall.left), (-1, wall.right)):
