@@ -165,9 +165,9 @@ def _curves(survey, of_plan):
     """Return the curves of the chart: the certificate and, where the truth is known, what is found of it."""
     k, covered = survey.selection["rank"], survey.selection["covered"]
     what, _ = reporttext.objective(of_plan["method"])
-    bound = np.minimum(survey.selection["bound"] / covered[-1], 1)
+    share, bound = (_of_all(survey.selection[column], covered[-1]) for column in ("covered", "bound"))
     curves = {
-        "covered": (f"{what}, of what all scans give", k, covered / covered[-1]),
+        "covered": (f"{what}, of what all scans give", k, share),
         "bound": ("most that any choice of as many scans can give", k, bound),
     }
     if survey.evaluation:
@@ -211,7 +211,12 @@ def _data(survey, what):
     values = {
         "chosen": survey.chosen,
         "scan_ids": selection["scan_id"][: survey.chosen].tolist(),
-        "covered": (selection["covered"] / selection["covered"][-1]).round(5).tolist(),
+        "covered": _of_all(selection["covered"], selection["covered"][-1]).round(5).tolist(),
         "objective": what,
     }
-    return json.dumps(values)
+    return json.dumps(values, allow_nan=False)
+
+
+def _of_all(values, whole):
+    """Return values as shares of what all scans give; of nothing everything is there."""
+    return np.minimum(values / whole, 1) if whole > 0 else np.ones(len(values))

@@ -67,7 +67,8 @@ def test_tables_state_what_the_stages_found(report):
 def test_it_says_what_it_was_made_of_and_how_good_that_is(report):
     text = report.read_text()
     assert "made of 3 scans chosen from 4 registered ones; 5 were candidates" in text
-    assert "95.0% of the wall shown of all 4 registered scans (19.0 of 20.0 m), and 100.0% of the area" in text
+    assert "cover 100.0% of the area that all 4 registered scans cover (21.0 m²)" in text
+    assert "give 95.0% of their wall shown (19.0 of 20.0 m)" in text
     assert "no 3 of these scans give more than 19.5 m, so this choice is within 2.6% of the best" in text
     assert "office &lt;two&gt; rooms" in text and "<two>" not in text
 
@@ -94,6 +95,13 @@ def test_faces_alone_without_truth_and_times_make_a_report(tmp_path):
     (tmp_path / "benchmarks/draw_area.tsv").unlink()
     found = Tables(written(tmp_path, files | {"evaluation": [], "figures": []}).read_text()).rows
     assert len(found["walls"]) == 1 and len(found["stages"]) == 1
+
+
+def test_a_survey_without_any_wall_in_sight_makes_a_report(tmp_path):
+    files = reportmaking.files(tmp_path)
+    nothing = {column: np.zeros(4) for column in ("gain", "covered", "bound")}
+    tables.write(files["selection"], tables.SELECTION, reportmaking.selection() | nothing)
+    assert "no scan has any wall shown" in written(tmp_path, files).read_text()
 
 
 def test_a_selection_of_another_run_is_told(tmp_path):
