@@ -217,6 +217,26 @@ def test_a_table_is_sorted_by_any_column_and_a_row_shows_its_wall(page):
 
 
 @needs_browser
+def test_a_click_on_a_wall_marks_its_row(page):
+    page.run("document.getElementById('view').scrollIntoView()")
+    place = page.run(
+        "(r => [r.x + r.width / 2, r.y + r.height / 2])"
+        "(document.querySelector('#plan .pick[data-wall=\"3\"]').getBoundingClientRect())"
+    )
+    page.mouse("mousePressed", *place, button="left", clickCount=1)
+    page.mouse("mouseReleased", *place, button="left", clickCount=1)
+    assert page.run("[...document.querySelectorAll('tr.picked')].map(e => e.dataset.wall)") == ["3"]
+
+
+@needs_browser
+def test_play_grows_the_plan_to_its_end(page):
+    page.run("document.getElementById('play').click()")
+    page.run("new Promise(done => setTimeout(done, 2500))")
+    assert page.run("document.getElementById('k').value") == "3"
+    assert page.run("document.getElementById('play').textContent") == "Play"
+
+
+@needs_browser
 def test_layers_can_be_hidden(page):
     page.run("document.querySelector('[data-layer=scans]').click()")
     assert in_sight(page, ".scan") == 0
