@@ -44,7 +44,7 @@ def difference(polygons, others):
 
 
 def intersection(polygons, others):
-    """Intersect (n,) polygons with (n,) others, without the points and lines where they only touch; see `difference`."""
+    """Intersect (n,) polygons with (n,) others, without points and lines where they only touch; see `difference`."""
     return np.array([_polygonal(p) for p in _each(shapely.intersection, polygons, others)], object)
 
 
