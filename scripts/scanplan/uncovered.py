@@ -19,6 +19,8 @@ class Uncovered:
     ----------
     polygons : (n,) sequence of shapely geometries, n >= 0
         As for `overlays.near_origin`.
+    threads : concurrent.futures.Executor, optional
+        Threads to overlay on; the results are the same with any number of them.
 
     Attributes
     ----------
@@ -30,7 +32,8 @@ class Uncovered:
         Whether it has not been chosen.
     """
 
-    def __init__(self, polygons):
+    def __init__(self, polygons, threads=None):
+        self._threads = threads
         polygons = overlays.near_origin(polygons)
         parts, owner = shapely.get_parts(polygons, return_index=True)
         has_area = shapely.area(parts) > 0
@@ -147,7 +150,7 @@ class Uncovered:
         part, chosen = pairs[:, is_first]
         meets = shapely.intersects(self._whole[chosen], self._left[part])
         part, chosen = part[meets], chosen[meets]
-        left = overlays.difference(self._left[part], self._whole[chosen])
+        left = overlays.difference(self._left[part], self._whole[chosen], self._threads)
         area_m2 = shapely.area(left)
         self._left[part], self._left_box[part] = left, shapely.bounds(left).reshape(-1, 4)
         self._area_m2[part] = np.where(area_m2 > _NO_AREA_M2, area_m2, 0.0)
