@@ -17,27 +17,17 @@ include: "workflow/rules/handlers.smk"
 include: "workflow/rules/simulate.smk"
 include: "workflow/rules/poses.smk"
 include: "workflow/rules/registration.smk"
+include: "workflow/rules/audit.smk"
 include: "workflow/rules/hulls.smk"
 include: "workflow/rules/selection.smk"
 include: "workflow/rules/walls.smk"
 include: "workflow/rules/plan.smk"
 include: "workflow/rules/evaluate.smk"
 include: "workflow/rules/report.smk"
+include: "workflow/rules/thesis.smk"
 
 
 rule all:
     default_target: True
     input:
         all_results(),
-
-
-onstart:
-    run_alone()
-
-
-onsuccess:
-    tell_results()
-
-
-onerror:
-    tell_failure()

@@ -1,51 +1,41 @@
-"""Merge the walls of the first scans of an ordering into faces, each standing once."""
+"""Make the floor plan from the first scans of an ordering: faces, walls, openings and rooms, each standing once."""
 
 import numpy as np
 
-from scanplan import faces, stagelog, stopping, tables
-from scanplan.errors import StageError
+from scanplan import planning, plansummary, rays, registered, stagelog, stopping, tables
 
 
-def assemble_plan(walls, selection, output, *, n_scans, area_share, settings):
-    """Write the faces of the plan.
+def assemble_plan(walls, selection, scans, registration, outputs, *, n_scans, area_share, settings):
+    """Write the tables of the plan.
 
     Parameters
     ----------
-    walls : path-like
-        walls/<extractor>.parquet.
-    selection : path-like
-        selection/<method>.parquet.
-    output : path-like
-        plan/faces.parquet, to write.
+    walls, selection, scans, registration : path-like
+        walls/<extractor>.parquet, selection/<method>.parquet, scans.parquet and registration.parquet.
+    outputs : dict of str to path-like
+        Files to write: plan/<name>.parquet for the names in `planning.TABLES`.
     n_scans, area_share : int, float or None
         How many scans to use, see `stopping.n_scans`.
     settings : dict
-        Keywords of `faces.MergeSettings`.
+        Keywords of `planning.settings`.
     """
     seen = tables.read(walls, tables.WALLS, allow_empty=True)
     ordering = tables.read(selection, tables.SELECTION)
     count, reason = stopping.n_scans(ordering, n_scans=n_scans, area_share=area_share)
-    used = np.isin(seen["scan_id"], ordering["scan_id"][:count])
-    if not used.any():
-        raise StageError(
-            f"{walls}: no wall in the first {count} scans ({len(used)} in all scans), at least 1 needed;"
-            " take more scans (selection.stop) or loosen the wall extractor (walls)"
-        )
-    merged = faces.merge(_checked(walls, {c: v[used] for c, v in seen.items()}), faces.MergeSettings(**settings))
-    if len(merged["face"]) == 0:
-        raise StageError(
-            f"{walls}: none of {used.sum()} wall segments of {count} scans is supported enough to be drawn;"
-            " lower plan.merge min_length_m, min_points_per_m, min_scans or lone_length_m"
-        )
-    tables.write(output, tables.FACES, merged)
-    stagelog.say(f"assemble_plan: {used.sum():,} segments of {count} scans ({reason}) make {faces.summary(merged)}")
-
-
-def _checked(path, walls):
-    wrong = sum(int((~np.isfinite(values)).sum()) for values in walls.values())
-    if wrong:
-        raise StageError(f"{path}: {wrong} numbers are not finite, 0 allowed; delete it and run again")
-    return walls
+    chosen = np.sort(ordering["scan_id"][:count])
+    used = np.isin(seen["scan_id"], chosen)
+    plansummary.check_segments(walls, seen, used, count)
+    kept, store = registered.read(registration), tables.ScanStore(scans)
+    rows = registered.rows_of(chosen, kept, selection, registration)
+    positions = dict(zip(chosen.tolist(), kept.map_from_sensor[rows, :3, 3], strict=True))
+    looked = rays.gather(store.scans(chosen), positions, planar=store.planar)
+    track_m = kept.map_from_sensor[:, :2, 3]
+    segments = {column: values[used] for column, values in seen.items()}
+    plan = planning.make(segments, looked, track_m, kept.t_ns[rows], planning.settings(**settings))
+    plansummary.check_plan(walls, plan, used.sum(), count)
+    for name, schema in planning.TABLES.items():
+        tables.write(outputs[name], schema, getattr(plan, name), allow_empty=True)
+    stagelog.say(f"assemble_plan: {used.sum():,} segments of {count} scans ({reason}) make {plansummary.text(plan)}")
 
 
 if __name__ == "__main__":
@@ -53,7 +43,9 @@ if __name__ == "__main__":
         assemble_plan(
             snakemake.input.walls,
             snakemake.input.selection,
-            snakemake.output.faces,
+            snakemake.input.scans,
+            snakemake.input.registration,
+            dict(snakemake.output.items()),
             **snakemake.params.stop,
             settings=snakemake.params.settings,
         )

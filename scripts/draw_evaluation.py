@@ -1,22 +1,23 @@
 """Draw how well every ordering's first scans show the true walls (thesis, figure 5.4)."""
 
-from scanplan import atomic, drawing, evaluationfigure, schemas, stagelog, tables
+from scanplan import atomic, drawing, evaluationfigure, oraclefigure, schemas, stagelog, tables
 
 
-def draw_evaluation(walls, aligned, output, *, method, extractor):
-    """Write the figure as SVG.
+def draw_evaluation(walls, aligned, output, shares, *, method, extractor):
+    """Write the figures as SVG.
 
     Parameters
     ----------
     walls, aligned : path-like
         evaluation/walls.parquet and evaluation/walls_aligned.parquet.
-    output : path-like
-        figures/evaluation.svg, to write.
+    output, shares : path-like
+        figures/evaluation.svg and figures/oracle_shares.svg, to write.
     method, extractor : str
         The plan's: whose misses and whose bitmap metrics are drawn.
     """
     measured, moved = (tables.read(path, schemas.EVALUATION) for path in (walls, aligned))
     atomic.write_text(output, drawing.svg(evaluationfigure.draw(measured, moved, method=method, extractor=extractor)))
+    atomic.write_text(shares, drawing.svg(oraclefigure.draw(measured)))
     stagelog.say(f"draw_evaluation: {len(measured['k'])} subsets")
 
 
@@ -26,6 +27,7 @@ if __name__ == "__main__":
             snakemake.input.walls,
             snakemake.input.aligned,
             snakemake.output.figure,
+            snakemake.output.shares,
             method=snakemake.params.method,
             extractor=snakemake.params.extractor,
         )

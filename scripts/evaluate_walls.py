@@ -6,12 +6,13 @@ from scanplan import evaluation, findings, oracle, poseerrors, registered, schem
 from scanplan.visibility import thinned
 
 _SURVEY_STEP_M = 0.25
+_SIGHT = "sight"
 
 
 def evaluate_walls(
     walls, selections, registration, truth, true_poses, output, aligned, best, *, max_range_m, bitmap_cell_m
 ):
-    """Write how well every ordering and extractor does, and the order that an oracle would take the scans in.
+    """Write how well every ordering and extractor does, and the orders that one who knows the truth would take.
 
     Parameters
     ----------
@@ -31,19 +32,19 @@ def evaluate_walls(
     placed = truthfile.poses_at(poses, scans.t_ns, true_poses)
     survey_m = poses.xyz_m[thinned(poses.xyz_m[:, :2], _SURVEY_STEP_M), :2]
     floor = findings.look(truthfile.read_faces(truth), placed[:, :2, 3], survey_m, max_range_m=max_range_m)
-    ceiling = oracle.greedy_order(floor.seen, floor.cells.length_m)
-    tables.write(best, schemas.ORACLE, registered.ordered(ceiling, scans))
     orders = {Path(path).stem: registered.order(path, scans, registration) for path in selections}
-    orders["oracle"] = ceiling.order
+    orders[_SIGHT] = oracle.greedy_order(floor.seen, floor.cells.length_m).order
     shown = {Path(path).stem: registered.walls(path, scans, registration) for path in walls}
     drawn = {e: findings.segments(w, scans.scan_ids, scans.map_from_sensor, placed) for e, w in shown.items()}
     motion = poseerrors.alignment(scans.map_from_sensor[:, :3, 3], placed[:, :3, 3])
     moved = {extractor: findings.moved(lines, motion) for extractor, lines in drawn.items()}
+    ceilings = {}
     for path, lines in ((output, drawn), (aligned, moved)):
-        measured = evaluation.table(floor, orders, lines, bitmap_cell_m)
+        measured, ceilings[path] = evaluation.table(floor, orders, lines, bitmap_cell_m)
         tables.write(path, schemas.EVALUATION, measured)
         for line in evaluation.summary(measured):
             stagelog.say(f"evaluate_walls: {Path(path).stem}, {line}")
+    tables.write(best, schemas.ORACLE, registered.ordered(ceilings[output], scans))
 
 
 if __name__ == "__main__":

@@ -1,33 +1,47 @@
-"""Write the plan as GeoJSON, SVG and DXF."""
+"""Write the plan in the formats that drawing, building and navigation programs read."""
 
-from scanplan import atomic, cad, drawing, plangeojson, stagelog, tables
+from pathlib import Path
+
+from scanplan import atomic, cad, drawing, floorplan, gridmap, ifcplan, plangeojson, stagelog, tables
+
+_MAY_BE_EMPTY = {"walls": tables.PLAN_WALLS, "openings": tables.OPENINGS, "rooms": tables.ROOMS, "free": tables.FREE}
 
 
-def export_plan(faces, geojson, svg, dxf, *, name):
-    """Write the faces of the plan in the formats others read.
+def export_plan(plan, outputs, *, name, settings):
+    """Write a plan as GeoJSON, DXF, SVG, PDF, IFC and as a map for nav2.
 
     Parameters
     ----------
-    faces : path-like
-        plan/faces.parquet.
-    geojson, svg, dxf : path-like
-        plan/plan.geojson, plan.svg and plan.dxf, to write.
+    plan : dict of str to path-like
+        `faces`, `walls`, `openings`, `rooms`, `free` and `evidence` of plan/.
+    outputs : dict of str to path-like
+        `geojson`, `dxf`, `svg`, `pdf`, `ifc`, `pgm` and `yaml`, to write.
     name : str
-        The dataset's name, for the title.
+        The dataset's name.
+    settings : dict
+        `assumed_thickness_m` and `assumed_height_m`, see `floorplan.FloorPlan`; `map_cell_m`, edge of the map's cells.
     """
-    merged = tables.read(faces, tables.FACES)
-    atomic.write_text(geojson, plangeojson.dumps(merged, name))
-    atomic.write_text(svg, drawing.svg(drawing.plan(merged, name)))
-    atomic.write_text(dxf, cad.dumps(merged))
-    stagelog.say(f"export_plan: {len(merged['face'])} faces as GeoJSON, SVG and DXF")
+    shown = dict(settings)
+    cell_m = shown.pop("map_cell_m")
+    optional = {part: tables.read(plan[part], schema, allow_empty=True) for part, schema in _MAY_BE_EMPTY.items()}
+    drawn = floorplan.FloorPlan(name=name, faces=tables.read(plan["faces"], tables.FACES), **optional, **shown)
+    evidence = tables.read(plan["evidence"], tables.EVIDENCE, allow_empty=True)
+    sheet, grid = drawing.plan(drawn), gridmap.draw(drawn, cell_m)
+    atomic.write_text(outputs["geojson"], plangeojson.dumps(drawn, evidence))
+    atomic.write_text(outputs["dxf"], cad.dumps(drawn))
+    atomic.write_text(outputs["svg"], drawing.svg(sheet))
+    atomic.write_bytes(outputs["pdf"], drawing.pdf(sheet))
+    atomic.write_text(outputs["ifc"], ifcplan.dumps(drawn))
+    atomic.write_bytes(outputs["pgm"], gridmap.pgm(grid))
+    atomic.write_text(outputs["yaml"], gridmap.yaml(grid, Path(outputs["pgm"]).name))
+    stagelog.say(f"export_plan: {floorplan.summary(drawn)}; map of {grid.cells.shape[1]} x {grid.cells.shape[0]} cells")
 
 
 if __name__ == "__main__":
     with stagelog.to_file(snakemake.log[0]):
         export_plan(
-            snakemake.input.faces,
-            snakemake.output.geojson,
-            snakemake.output.svg,
-            snakemake.output.dxf,
+            {part: snakemake.input[part] for part in ("faces", "walls", "openings", "rooms", "free", "evidence")},
+            dict(snakemake.output.items()),
             name=snakemake.wildcards.dataset,
+            settings=snakemake.params.settings,
         )

@@ -2,22 +2,25 @@
 
 import numpy as np
 
-from scanplan import candidates, frames, se3, stagelog, surveys, tables
+from scanplan import candidates, frames, motion, se3, stagelog, surveys, sweepcheck, tables
 from scanplan.errors import StageError
 
 
-def interpolate_poses(files, output, *, keep_every, max_step_m, max_turn_deg, max_gap_s, **reading):
-    """Write the poses table: the candidates for registration with their interpolated poses.
+def interpolate_poses(files, output, *, keep_every, max_step_m, max_turn_deg, max_gap_s, moved=None, **reading):
+    """Write the candidates for registration with their interpolated poses, and how the sensor moved.
 
     Parameters
     ----------
     files : sequence of str
         All files of the dataset.
     output : path-like
+        poses.parquet.
     keep_every, max_step_m, max_turn_deg
         See `candidates.choose`.
     max_gap_s : float
         Longest time between two poses to interpolate over.
+    moved : path-like, optional
+        motion.parquet, to write.
     **reading
         Keywords of `surveys.open_survey`.
 
@@ -28,6 +31,9 @@ def interpolate_poses(files, output, *, keep_every, max_step_m, max_turn_deg, ma
     """
     with surveys.open_survey(files, **reading) as survey:
         t_ns, edges = survey.stamps(), survey.pose_edges()
+        if moved is not None:
+            way = motion.choose(survey.motion_chains(), t_ns, max_gap_s=max_gap_s)
+            tables.write(moved, tables.MOTION, sweepcheck.checked(survey, way).columns())
     pose, gap_s, covered = frames.world_from_sensor(edges, t_ns, max_gap_s=max_gap_s)
     chosen = candidates.choose(pose, keep_every=keep_every, max_step_m=max_step_m, max_turn_deg=max_turn_deg)
     if not covered[chosen].any():
@@ -55,6 +61,7 @@ if __name__ == "__main__":
         interpolate_poses(
             snakemake.input.recordings,
             snakemake.output.poses,
+            moved=snakemake.output.motion,
             **snakemake.params.settings,
             **snakemake.params.reading,
         )

@@ -1,13 +1,34 @@
 """Put the scans in the order in which they are worth most for the plan."""
 
-from scanplan import orderings, stagelog, tables
+from scanplan import orderings, schemas, stagelog, tables
 from scanplan.errors import StageError
 
+_SCHEMAS = {
+    "observations": schemas.OBSERVATIONS,
+    "visibility": schemas.VISIBILITY,
+    "registration": schemas.REGISTRATION,
+}
 
-def order_scans(hulls, output, *, method, seed):
-    """Write the table of one method's ordering of a table of hulls."""
+
+def order_scans(hulls, output, *, method, seed, min_overlap=0.0, others=None):
+    """Write the table of one method's ordering.
+
+    Parameters
+    ----------
+    hulls : path-like
+        hulls.parquet.
+    output : path-like
+        selection/<method>.parquet, to write.
+    method : str
+        One of `methods.METHODS`.
+    seed : int
+    min_overlap : float
+    others : dict of str to path-like, optional
+        The tables that `methods.TABLES` names for the method.
+    """
     columns = tables.read(hulls, tables.HULLS, ["scan_id", "cluster", "geometry"])
-    selection = orderings.order(method, columns, seed=seed)
+    read = {name: tables.read(path, _SCHEMAS[name], allow_empty=True) for name, path in (others or {}).items()}
+    selection = orderings.order(method, columns, seed=seed, others=read, min_overlap=min_overlap)
     if selection["covered_m2"][-1] == 0:
         raise StageError(
             f"{hulls}: {len(selection['rank'])} scans cover 0 m2, more is needed to order them; every cluster of their"
@@ -24,4 +45,6 @@ if __name__ == "__main__":
             snakemake.output.selection,
             method=snakemake.wildcards.method,
             seed=snakemake.params.seed,
+            min_overlap=snakemake.params.min_overlap,
+            others={name: path for name, path in snakemake.input.items() if name in _SCHEMAS},
         )

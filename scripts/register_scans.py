@@ -1,10 +1,10 @@
 """Select continuous scans and register them in the map frame (thesis, algorithm 3)."""
 
-from scanplan import registration, stagelog, surveys, tables, verdicts
+from scanplan import motion, registration, stagelog, surveys, tables, verdicts
 from scanplan.errors import StageError
 
 
-def register_scans(recordings, poses, scans, registered, *, reading, settings, threads=1):
+def register_scans(recordings, poses, scans, registered, *, reading, settings, moved=None, threads=1):
     """Write the retained scans in the map frame, and what became of every candidate.
 
     Parameters
@@ -19,12 +19,15 @@ def register_scans(recordings, poses, scans, registered, *, reading, settings, t
         Keywords of `surveys.open_survey`.
     settings : dict
         Keywords of `registration.Settings`.
+    moved : path-like, optional
+        motion.parquet: how the sensor moved. Without it scans are not deskewed.
     threads : int
     """
     candidates = tables.read(poses, tables.POSES)
     priors = dict(zip(candidates["scan_id"].tolist(), verdicts.poses(candidates), strict=True))
     judged, n_dropped = [], 0
-    with surveys.open_survey(recordings, **reading) as survey:
+    way = None if moved is None else motion.from_columns(tables.read(moved, tables.MOTION))
+    with surveys.open_survey(recordings, **reading, motion=way) as survey:
         registrar = registration.Registrar(registration.Settings(**settings), survey.planar, threads)
         with tables.scan_writer(scans, planar=survey.planar) as write_scan:
             found = survey.scans(list(priors))
@@ -54,5 +57,6 @@ if __name__ == "__main__":
             snakemake.output.registration,
             reading=snakemake.params.reading,
             settings=snakemake.params.settings,
+            moved=snakemake.input.motion,
             threads=snakemake.threads,
         )

@@ -67,8 +67,13 @@ def replacing(path):
 
 def write_text(path, text):
     """Write `text` (UTF-8, newlines as given) to `path`, whole or not at all."""
+    write_bytes(path, text.encode())
+
+
+def write_bytes(path, content):
+    """Write bytes to `path`, whole or not at all."""
     with replacing(path) as temporary:
-        temporary.write_bytes(text.encode())
+        temporary.write_bytes(content)
 
 
 def _remove_leftovers(path):

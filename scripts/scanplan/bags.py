@@ -10,10 +10,11 @@ from pathlib import Path
 
 from rosbags import rosbag1, rosbag2
 from rosbags.interfaces import MessageDefinitionFormat
+from rosbags.rosbag1.reader import decompressors
 from rosbags.serde import SerdeError
 from rosbags.typesys import Stores, TypesysError, get_types_from_idl, get_types_from_msg, get_typestore
 
-from scanplan import messages, stagelog, topics
+from scanplan import messages, plainbag1, stagelog, topics
 from scanplan.errors import StageError
 
 _URI_CHARACTERS = frozenset("#?%")
@@ -83,12 +84,13 @@ class Bag:
         connection
             With `topic` and `msgtype`; for `decode`.
         receive_ns : int
-        raw : bytes
+        raw : bytes or plainbag1.Stored
+            For `header` and `decode`; what is given to neither may not even be read.
         """
         connections = [c for c in self._reader.connections if c.topic in names]
         if not connections:  # rosbags takes an empty choice for all
             return
-        source = self._reader.messages(connections)
+        source = self._plain_messages(connections) if self._is_plain() else self._reader.messages(connections)
         while True:
             with _told(self.path):
                 item = next(source, None)
@@ -99,13 +101,24 @@ class Bag:
     def header(self, connection, raw):
         """Return the header stamp and the frame of a message without decoding the rest."""
         with _told(self.path, connection.topic):
-            return messages.header(raw, ros2=self.ros2)
+            return messages.header(raw.head if isinstance(raw, plainbag1.Stored) else raw, ros2=self.ros2)
 
     def decode(self, connection, raw):
         """Return a message as an object with the fields of its definition."""
         with _told(self.path, connection.topic):
             store = self._typestore(connection)
+            raw = raw.read() if isinstance(raw, plainbag1.Stored) else raw
             return (store.deserialize_cdr if self.ros2 else store.deserialize_ros1)(raw, connection.msgtype)
+
+    def _is_plain(self):
+        return not self.ros2 and all(c.decompressor is decompressors["none"] for c in self._reader.chunks.values())
+
+    def _plain_messages(self, connections):
+        """What rosbags' own iterator gives, without reading the chunks around."""
+        chunks = {position: (c.datapos, c.datasize) for position, c in self._reader.chunks.items()}
+        indexes, by_id = self._reader.indexes, {c.id: c for c in connections}
+        found = plainbag1.messages(self._reader.bio.fileno(), chunks, [indexes[number] for number in by_id])
+        return ((by_id[number], time_ns, stored) for number, time_ns, stored in found)
 
     def _typestore(self, connection):
         key = (connection.msgtype, connection.msgdef)

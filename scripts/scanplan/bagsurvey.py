@@ -1,14 +1,12 @@
-"""One survey recorded in ROS bags: its clouds, and the chain of transforms that places its sensor."""
+"""One survey recorded in ROS bags: its clouds, and the chains of transforms that place its sensor."""
 
 from functools import cached_property
 
 import numpy as np
 
-from scanplan import clouds, frames, messages, stagelog, topics
+from scanplan import bagindex, clouds, messages, posechains, stagelog, sweeptimes, topics
 from scanplan.errors import StageError
-from scanplan.mounts import configured_mount, mount_edges, pose_hint, transform_edges
-
-_CLOCK_TOLERANCE_S = 1.0
+from scanplan.mounts import configured_mount
 
 
 class BagSurvey:
@@ -43,7 +41,19 @@ class BagSurvey:
         """Whether the sensor measures in one plane only: a LaserScan, or clouds that are flat throughout."""
         if self._cloud.msgtype == topics.LASER_SCAN:
             return True
-        return clouds.are_planar(scan.xyz_m for scan in self._scans())
+        return clouds.are_planar(self._within_range(*raw).xyz_m for raw in self._first)
+
+    @cached_property
+    def sweep_times(self):
+        """How the clouds tell when each point was measured: a sweeptimes.Convention, or None if they do not."""
+        units = {"units": ("s",)} if self._cloud.msgtype == topics.LASER_SCAN else {}
+        timed = [(time_raw, t_ns) for _, t_ns, _, time_raw in self._first]
+        found = sweeptimes.convention(timed, **units)
+        if found:
+            stagelog.say(f"{self._cloud}: times of points are {found}")
+        elif any(time_raw is not None for time_raw, _ in timed):
+            stagelog.say(f"{self._cloud}: times of points are not those of a sweep: scans stay as recorded")
+        return found
 
     def stamps(self):
         """Return the header stamps of all clouds, (n,) int64, in scan_id order."""
@@ -59,10 +69,10 @@ class BagSurvey:
         StageError
             If a cloud cannot be decoded.
         """
-        wanted = {int(scan_id) for scan_id in wanted}
-        for scan in self._scans(wanted):
-            wanted.remove(scan.scan_id)
-            yield scan
+        wanted, sweep_times = {int(scan_id) for scan_id in wanted}, self.sweep_times
+        for scan_id, *message in self._messages(wanted):
+            wanted.remove(scan_id)
+            yield self._within_range(*self._decoded(scan_id, *message), sweep_times)
         if wanted:
             raise ValueError(f"{self._where}: there is no scan {min(wanted)}")
 
@@ -78,163 +88,77 @@ class BagSurvey:
         StageError
             If no pose topic can be chosen, none of its poses is usable, or the sensor is not connected to them.
         """
-        index, source = self._index, self._pose_source
-        tree = frames.FrameTree(transform_edges(index.transforms))
-        sensor = index.sensor_frame
-        if source.msgtype in topics.TRANSFORMS:
-            edges = self._transform_chain(tree, sensor)
-        else:
-            track, base = self._pose_track()
-            hint = pose_hint(tree, source, track.parent)
-            mount = self._mount or mount_edges(tree, base, sensor, track.parent, self._where)
-            edges = [track, *mount]
-            if hint:
-                stagelog.say(hint)
-        chain = " -> ".join([edges[0].parent, *(edge.child or sensor for edge in edges)])
-        stagelog.say(f"poses from {source}, clouds from {self._cloud}, frames {chain}")
+        return self._pose_edges
+
+    def motion_chains(self):
+        """Return (name, list of frames.Edge) of all that tells how the sensor moved, the smoothest first."""
+        return [*self._chains.of_odometry(self._odometry), (str(self._pose_source), self.pose_edges())]
+
+    @cached_property
+    def _pose_edges(self):
+        edges = self._chains.of_poses(self._pose_source)
+        chain = " -> ".join([edges[0].parent, *(edge.child or self._index.sensor_frame for edge in edges)])
+        stagelog.say(f"poses from {self._pose_source}, clouds from {self._cloud}, frames {chain}")
         return edges
 
     @cached_property
     def _pose_source(self):
         return topics.choose_poses(self._topics, self._pose_topic, self._where)
 
+    @property
+    def _odometry(self):
+        """Topics of odometry besides the one that the poses are from; the most frequent first."""
+        found = [t for t in self._topics if t.msgtype == topics.ODOMETRY and t.count and t != self._pose_source]
+        return sorted(found, key=lambda t: (-t.count, t.name))
+
     @cached_property
     def _index(self):
-        """Everything small, in one pass over the recordings: compressed ones are unpacked once for it."""
-        index, pose = _Index(), self._pose_source
-        needed = {t.name: t for t in (self._cloud, pose)}
-        if self._mount is None or pose.msgtype in topics.TRANSFORMS:
-            needed |= {t.name: t for t in self._topics if t.msgtype in topics.TRANSFORMS}
-        for bag, connection, receive_ns, raw in stagelog.progress(
-            self._messages(needed), "read_recordings", sum(t.count for t in needed.values()), "messages"
-        ):
-            if connection.topic == self._cloud.name:
-                index.add_cloud(*bag.header(connection, raw), receive_ns)
-            elif needed[connection.topic].msgtype in topics.TRANSFORMS:
-                index.add_transforms(
-                    bag.decode(connection, raw), receive_ns, topics.is_static(needed[connection.topic])
-                )
-            else:
-                index.add_pose(bag.decode(connection, raw), receive_ns)
-        index.finish(self._where, self._cloud)
-        return index
+        needed = [self._pose_source]
+        if self._mount is None or self._pose_source.msgtype in topics.TRANSFORMS:
+            needed += [t for t in self._topics if t.msgtype in topics.TRANSFORMS and t != self._pose_source]
+        return bagindex.read(self._bags, self._cloud, needed, self._odometry, self._where)
 
-    def _pose_track(self):
-        poses = self._index.poses
-        stamps, receive, rows, parents, children = zip(*poses, strict=True) if poses else ((),) * 5
-        if len({*parents}) > 1 or len({*children}) > 1:
-            raise StageError(
-                f"{self._where}: the poses of {self._pose_source} are given in several frames"
-                f" ({', '.join(sorted({*parents, *children} - {''}))}); set input.pose_topic to another topic"
-            )
-        base = self._base_frame or (children[0] if children else "")
-        track, found = frames.track(parents[0] if parents else "", base, stamps, receive, rows)
-        _say_found(f"{self._pose_source}", found)
-        if track is None:
-            raise StageError(
-                f"{self._where}: none of the poses of {self._pose_source} is usable;"
-                " set input.pose_topic to another topic"
-            )
-        self._say_clocks(stamps, receive)
-        return track, base
+    @cached_property
+    def _chains(self):
+        return posechains.Chains(self._index, base_frame=self._base_frame, mount=self._mount, where=self._where)
 
-    def _transform_chain(self, tree, sensor):
-        if self._mount:
-            base = self._base_frame or next((f for f in ("base_link", "base_footprint") if f in tree.frames), None)
-            if base not in tree.frames:
-                raise StageError(f"{self._where}: tf has no frame {base}; set input.base_frame to one of its frames")
-            target, mount = base, self._mount
-        else:
-            target, mount = sensor, []
-        if target not in tree.frames or tree.world_root(target) == target:
-            raise StageError(
-                f"{self._where}: tf does not connect the clouds' frame {target} to a map; its frames are"
-                f" {', '.join(tree.frames) or 'none'}; set input.pose_topic, or input.base_frame and base_from_sensor"
-            )
-        return [*tree.path(tree.world_root(target), target), *mount]
+    @cached_property
+    def _first(self):
+        """The first scans with points, as `_decoded` gives them; those that cannot be decoded may never be wanted."""
+        found = []
+        for message in self._messages():
+            try:
+                scan = self._decoded(*message)
+            except StageError:
+                continue
+            if len(self._within_range(*scan).xyz_m):
+                found.append(scan)
+            if len(found) == clouds.SCANS_TO_JUDGE:
+                break
+        return found
 
-    def _say_clocks(self, stamps, receive):
-        """Clouds and poses stamped by different clocks give wrong poses that look right."""
-        if not any(stamps):
-            return
-        late_s = [
-            float(np.median((np.asarray(got, np.int64) - np.asarray(stamp, np.int64)) / 1e9))
-            for stamp, got in [(stamps, receive), (self._index.stamps_ns, self._index.cloud_receive_ns)]
-        ]
-        if abs(late_s[0] - late_s[1]) > _CLOCK_TOLERANCE_S:
-            stagelog.say(
-                f"{self._where}: poses arrive {late_s[0]:.3f} s after their stamps, clouds {late_s[1]:.3f} s:"
-                " their clocks may differ"
-            )
-
-    def _messages(self, names):
-        for bag in self._bags:
-            for connection, receive_ns, raw in bag.messages(names):
-                yield bag, connection, receive_ns, raw
-
-    def _scans(self, wanted=None):
+    def _messages(self, wanted=None):
+        """Iterate over scan_id, bag, connection and message of the clouds wanted, or of all."""
         last = np.inf if wanted is None else max(wanted, default=-1)
-        for scan_id, (bag, connection, _, raw) in enumerate(self._messages({self._cloud.name})):
+        found = ((bag, *item) for bag in self._bags for item in bag.messages({self._cloud.name}))
+        for scan_id, (bag, connection, _, raw) in enumerate(found):
             if scan_id > last:
                 return
             if wanted is None or scan_id in wanted:
-                t_ns = bag.header(connection, raw)[0] or self.stamps()[scan_id]
-                yield self._scan(scan_id, t_ns, bag, connection, raw)
+                yield scan_id, bag, connection, raw
 
-    def _scan(self, scan_id, t_ns, bag, connection, raw):
+    def _decoded(self, scan_id, bag, connection, raw):
+        """Return scan_id, t_ns, xyz_m and times as recorded."""
+        t_ns = bag.header(connection, raw)[0] or self.stamps()[scan_id]
         message = bag.decode(connection, raw)
         read = messages.laser_scan if connection.msgtype == topics.LASER_SCAN else messages.point_cloud
         try:
-            xyz_m, time_raw = read(message)
+            return scan_id, t_ns, *read(message)
         except StageError as error:
             raise StageError(
                 f"{bag.path}: topic {connection.topic}, scan {scan_id} at {t_ns / 1e9:.3f} s: {error};"
                 " mend the driver or set input.cloud_topic"
             ) from None
-        return clouds.within_range(scan_id, t_ns, xyz_m, time_raw, **self._limits)
 
-
-class _Index:
-    """What one pass over the recordings collects."""
-
-    def __init__(self):
-        self.poses = []
-        self.transforms = {}
-        self._clouds = []
-
-    def add_cloud(self, t_ns, frame, receive_ns):
-        self._clouds.append((t_ns, receive_ns, frame))
-
-    def add_pose(self, message, receive_ns):
-        pose = message.pose.pose if hasattr(message.pose, "pose") else message.pose
-        child = messages.frame_name(getattr(message, "child_frame_id", ""))
-        parent = messages.frame_name(message.header.frame_id)
-        self.poses.append((messages.stamp_ns(message.header.stamp), receive_ns, messages.pose_row(pose), parent, child))
-
-    def add_transforms(self, message, receive_ns, static):
-        for item in message.transforms:
-            key = (static, messages.frame_name(item.header.frame_id), messages.frame_name(item.child_frame_id))
-            sample = messages.stamp_ns(item.header.stamp), receive_ns, messages.pose_row(item.transform)
-            self.transforms.setdefault(key, []).append(sample)
-
-    def finish(self, where, cloud):
-        if not self._clouds:
-            raise StageError(f"{where}: no message of {cloud} can be found; the recording's index is wrong, reindex it")
-        stamps, receive, names = zip(*self._clouds, strict=True)
-        if len(set(names)) > 1:
-            raise StageError(
-                f"{where}: clouds of {cloud} come from several sensors ({', '.join(sorted(set(names)))});"
-                " record each on a topic of its own"
-            )
-        self.sensor_frame = names[0]
-        self.cloud_receive_ns = np.array(receive, np.int64)
-        self.stamps_ns = np.array(stamps, np.int64)
-        if not self.stamps_ns.any():
-            stagelog.say(f"{where}: clouds of {cloud} have no stamps, the times of their receipt are taken")
-            self.stamps_ns = self.cloud_receive_ns
-
-
-def _say_found(what, found):
-    told = ", ".join(f"{count} {kind}" for kind, count in found.items() if count)
-    if told:
-        stagelog.say(f"{what}: {told}")
+    def _within_range(self, scan_id, t_ns, xyz_m, time_raw, sweep_times=None):
+        return clouds.within_range(scan_id, t_ns, xyz_m, time_raw, sweep_times=sweep_times, **self._limits)

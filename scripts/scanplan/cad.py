@@ -4,24 +4,42 @@ import io
 from contextlib import contextmanager
 
 import ezdxf
+import numpy as np
+import shapely
 from ezdxf import units, zoom
+from ezdxf.enums import TextEntityAlignment
 
-LAYER = "WALLS"
-_LINEWEIGHT = 35  # hundredths of a millimetre
+from scanplan import floorplan
+
+WALLS, INFERRED, OPENINGS, ROOMS, TEXT = "WALLS", "WALLS_INFERRED", "OPENINGS", "ROOMS", "TEXT"
+# line weights in hundredths of a millimetre, colours of the AutoCAD index
+_LAYERS = {
+    WALLS: {"lineweight": 35, "color": 7},
+    INFERRED: {"lineweight": 25, "color": 8, "linetype": "DASHED"},
+    OPENINGS: {"lineweight": 18, "color": 5},
+    ROOMS: {"lineweight": 13, "color": 3},
+    TEXT: {"lineweight": 13, "color": 7},
+}
+_DASH_M = (0.15, 0.1, -0.05)
+_TEXT_M = 0.2
+_SMALL_TEXT_M = 0.12
 
 
-def dumps(faces):
-    """Return the faces of a plan as the text of a DXF R2010 file: lines on the layer WALLS, in metres.
+def dumps(plan):
+    """Return a plan as the text of a DXF R2010 file, in metres.
+
+    Walls of known thickness are closed outlines (double lines) with their openings cut out, surfaces with nothing known
+    behind them single lines; what is inferred lies on a layer of its own. Every opening is a line as long as it is
+    wide, with two more along the surfaces for a window; every room is a closed outline.
 
     Parameters
     ----------
-    faces : dict of str to (n,) array
-        The columns of `schemas.FACES`.
+    plan : floorplan.FloorPlan
 
     Returns
     -------
     str
-        The same for the same faces: no time, no random identifier.
+        The same for the same plan: no time, no random identifier.
 
     Raises
     ------
@@ -30,10 +48,16 @@ def dumps(faces):
     """
     with _fixed_metadata():
         document = ezdxf.new("R2010", units=units.M)
-        document.layers.add(LAYER, lineweight=_LINEWEIGHT)
+        document.linetypes.add("DASHED", pattern=[_DASH_M[0], *_DASH_M[1:]], description="Dashed __ __ __")
+        for name, properties in _LAYERS.items():
+            document.layers.add(name, **properties)
         modelspace = document.modelspace()
-        for x0_m, y0_m, x1_m, y1_m in zip(*(faces[c].tolist() for c in ("x0_m", "y0_m", "x1_m", "y1_m")), strict=True):
-            modelspace.add_line((x0_m, y0_m), (x1_m, y1_m), dxfattribs={"layer": LAYER})
+        for state, layer in zip(floorplan.STATES, (WALLS, INFERRED), strict=True):
+            _outlines(modelspace, shapely.get_parts(plan.solid(state)), layer)
+            for line in plan.single(state):
+                modelspace.add_line(*shapely.get_coordinates(line).tolist(), dxfattribs={"layer": layer})
+        _add_openings(modelspace, plan)
+        _add_rooms(modelspace, plan)
         zoom.extents(modelspace)
         _audit(document)
         # ezdxf would register these in the order of a set, which differs from run to run
@@ -42,6 +66,39 @@ def dumps(faces):
         text = io.StringIO()
         document.write(text)
     return text.getvalue()
+
+
+def _outlines(modelspace, polygons, layer):
+    for ring in shapely.get_rings(np.asarray(polygons, object)) if len(polygons) else ():
+        modelspace.add_lwpolyline(shapely.get_coordinates(ring)[:-1].tolist(), close=True, dxfattribs={"layer": layer})
+
+
+def _add_openings(modelspace, plan):
+    for line, gap, kind, width_m in zip(
+        floorplan.lines_m(plan.openings), plan.gaps, plan.openings["type"], plan.openings["width_m"], strict=True
+    ):
+        modelspace.add_lwpolyline(line.tolist(), dxfattribs={"layer": OPENINGS})
+        along = (line[1] - line[0]) / max(np.hypot(*(line[1] - line[0])), 1e-9)
+        left = np.array([-along[1], along[0]])
+        if kind == "window":
+            deep_m = gap.area / np.hypot(*(line[1] - line[0])) / 2 - floorplan.CLEARANCE_M
+            for side_m in (-deep_m, deep_m):
+                modelspace.add_line(*(line + side_m * left).tolist(), dxfattribs={"layer": OPENINGS})
+        angle_deg = np.degrees(np.arctan2(along[1], along[0]))
+        upright = along[0] > 1e-6 or (abs(along[0]) <= 1e-6 and along[1] > 0)
+        place = line.mean(axis=0) + (left if upright else -left) * _SMALL_TEXT_M * 1.5
+        text = modelspace.add_text(f"{width_m:.2f}", height=_SMALL_TEXT_M, dxfattribs={"layer": TEXT})
+        text.dxf.rotation = angle_deg if upright else angle_deg - 180
+        text.set_placement(place.tolist(), align=TextEntityAlignment.MIDDLE_CENTER)
+
+
+def _add_rooms(modelspace, plan):
+    _outlines(modelspace, plan.areas, ROOMS)
+    for room, area_m2, area in zip(plan.rooms["room"], plan.rooms["area_m2"], plan.areas, strict=True):
+        inside = area.representative_point()
+        for row, said in enumerate((f"Room {room}", f"{area_m2:.1f} m2")):
+            text = modelspace.add_text(said, height=_TEXT_M, dxfattribs={"layer": TEXT})
+            text.set_placement((inside.x, inside.y - 1.5 * row * _TEXT_M), align=TextEntityAlignment.MIDDLE_CENTER)
 
 
 def _audit(document):

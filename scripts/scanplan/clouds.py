@@ -5,10 +5,10 @@ from itertools import islice
 
 import numpy as np
 
-_LONGEST_SWEEP_S = 1.0
+from scanplan import sweeptimes
+
 _FLAT_M = 1e-3
-_SCANS_TO_JUDGE = 5
-_ABSOLUTE_S, _ABSOLUTE_NS = 1e6, 1e15
+SCANS_TO_JUDGE = 5
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class Scan:
     xyz_m : (n, 3) float32
         Finite and within the range limits.
     time_s : (n,) float64 or None
-        When each point was measured, relative to `t_ns`; None where the sensor does not tell.
+        When each point was measured, relative to `t_ns`; None where the sensor does not tell, or tells of no sweep.
     n_dropped : int
         Points that were not finite or out of range.
     """
@@ -36,7 +36,7 @@ class Scan:
     n_dropped: int
 
 
-def within_range(scan_id, t_ns, xyz_m, time_raw, *, min_range_m, max_range_m):
+def within_range(scan_id, t_ns, xyz_m, time_raw, *, min_range_m, max_range_m, sweep_times=None):
     """Keep the points that are finite and within [min_range_m, max_range_m] of the sensor, with their times.
 
     Parameters
@@ -45,8 +45,10 @@ def within_range(scan_id, t_ns, xyz_m, time_raw, *, min_range_m, max_range_m):
     xyz_m : (n, 3) float
         Sensor frame.
     time_raw : (n,) number or None
-        As recorded; see `relative_time`.
+        As recorded.
     min_range_m, max_range_m : float
+    sweep_times : sweeptimes.Convention, optional
+        How the times are written; without it there are none.
 
     Returns
     -------
@@ -55,40 +57,11 @@ def within_range(scan_id, t_ns, xyz_m, time_raw, *, min_range_m, max_range_m):
     squared = np.einsum("ij,ij->i", xyz_m, xyz_m, dtype=np.float64)
     # a comparison with NaN is false: this also drops what is not finite
     kept = (squared >= min_range_m**2) & (squared <= max_range_m**2)
-    time_s = None if time_raw is None else relative_time(time_raw[kept], t_ns)
+    time_s = None
+    if time_raw is not None and sweep_times is not None:
+        time_s = sweep_times.seconds(time_raw, t_ns)[kept]
+        time_s = time_s if sweeptimes.is_sweep(time_s) else None
     return Scan(int(scan_id), int(t_ns), np.asarray(xyz_m[kept], np.float32), time_s, int((~kept).sum()))
-
-
-def relative_time(time_raw, t_ns):
-    """Bring per-point times of any convention to seconds relative to the header stamp.
-
-    Parameters
-    ----------
-    time_raw : (n,) number
-        Integers are nanoseconds since the stamp; floats are seconds since the stamp (above 1e6: since the epoch; above
-        1e15: nanoseconds since the epoch).
-    t_ns : int
-        Header stamp.
-
-    Returns
-    -------
-    (n,) float64 or None
-        None if a value is not finite or more than a second away from the stamp: not the time of a sweep.
-    """
-    time_raw = np.asarray(time_raw)
-    values = time_raw.astype(np.float64)
-    if not np.isfinite(values).all():
-        return None
-    largest = np.abs(values).max(initial=0.0)
-    if time_raw.dtype.kind in "iu":
-        seconds = values / 1e9
-    elif largest > _ABSOLUTE_NS:
-        seconds = (values - float(t_ns)) / 1e9
-    elif largest > _ABSOLUTE_S:
-        seconds = values - t_ns / 1e9
-    else:
-        seconds = values
-    return seconds if (np.abs(seconds) <= _LONGEST_SWEEP_S).all() else None
 
 
 def lie_in_sweep_plane(xyz_m):
@@ -115,5 +88,5 @@ def are_planar(scans_xyz_m):
         In the sensor's frame; empty ones do not count, and no more are taken than needed.
     """
     filled = (xyz_m for xyz_m in scans_xyz_m if len(xyz_m))
-    first = list(islice(filled, _SCANS_TO_JUDGE))
+    first = list(islice(filled, SCANS_TO_JUDGE))
     return bool(first) and lie_in_sweep_plane(np.concatenate(first))

@@ -4,12 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan import lines, modes, normals, walls
+from scanplan import furniture, lines, modes, normals, walls
 
 _DUAL_SHIFT_M = 1.0
 _ALIKE = np.cos(np.deg2rad(20))  # a point's normal against its wall's
 _CORNER_REACH = 1.5  # how far a corner smears normals, in reaches
 _WIDE = 2.0
+_LEAST_REFIT = 3
 _STEEP = np.cos(np.deg2rad(45))
 
 
@@ -63,29 +64,49 @@ def extract(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
         If a coordinate is not finite.
     """
     points = walls.around_sensor(xyz_m, sensor_xyz_m)
-    facing, upright, level = _surfaces(points, planar, settings)
+    surfaces = _surfaces(points, planar, settings)
+    cells, facing = surfaces.cells, surfaces.facing
     top_m = walls.door_top(points, settings, planar=planar)
-    place = np.full(len(points), -1)
-    at = feet(points[upright, :2], facing[upright])
-    place[upright], places = modes.mean_shift(at, bandwidth_m=settings.bandwidth_m)
+    free = surfaces.upright.copy()
     rng = np.random.default_rng([settings.seed, scan_id])
     rows = []
-    for cluster in range(len(places)):
-        own = points[upright & (place == cluster), :2]
-        if len(own) < settings.least_points(planar):
+    for cluster in _clusters(surfaces, settings.bandwidth_m):
+        own = cluster[free[cluster]]
+        if cells.count[own].sum() < settings.least_points(planar):
             continue
-        normal, offset_m, _ = lines.ransac(own, inlier_m=settings.inlier_m, trials=settings.trials, rng=rng)
-        distance_m = np.abs(points[:, :2] @ normal - offset_m)
-        alike = upright & (-facing @ normal > _ALIKE)
-        near = distance_m <= settings.inlier_m
-        spare = points[near & ~alike & ~level]
+        line = lines.ransac(
+            cells.mean_m[own, :2], inlier_m=settings.inlier_m, trials=settings.trials, rng=rng, weight=cells.count[own]
+        )
+        normal, offset_m, on_wall, spare = _gather(points, surfaces, free, line[:2], settings.inlier_m)
         reach_rad = _CORNER_REACH * np.deg2rad(settings.reach_deg)
         ends = {"planar": planar, "top_m": top_m, "spare_xyz_m": spare, "reach_rad": reach_rad}
-        found = walls.cut(normal, offset_m, points[near & alike], settings, **ends)
+        found = walls.cut(normal, offset_m, on_wall, settings, **ends)
         # twice as wide as what belongs to them, else noise leaves a second wall beside the first
-        upright &= ~(alike & _beside(points[:, :2], found, _WIDE * settings.inlier_m))
+        alike = -facing @ normal > _ALIKE
+        free &= ~(alike & _beside(cells.mean_m[:, :2], found, _WIDE * settings.inlier_m))
         rows += found
-    return walls.assemble(rows, sensor_xyz_m)
+    return walls.assemble(furniture.walls_among(rows, points, settings, planar=planar), sensor_xyz_m)
+
+
+def _clusters(surfaces, bandwidth_m):
+    """Return the upright cells of each cluster of feet, by the heaviest cluster."""
+    (upright,) = np.nonzero(surfaces.upright)
+    mean_m, weight = surfaces.cells.mean_m[upright, :2], surfaces.cells.count[upright]
+    label, places = modes.mean_shift(feet(mean_m, surfaces.facing[upright]), bandwidth_m=bandwidth_m, weight=weight)
+    return [upright[label == cluster] for cluster in range(len(places))]
+
+
+def _gather(points, surfaces, free, line, inlier_m):
+    """Return the line fitted to all points on it that face its way, these points, and the others near it."""
+    cells, (normal, offset_m) = surfaces.cells, line
+    near = np.abs(cells.mean_m[:, :2] @ normal - offset_m) <= inlier_m + cells.radius_m
+    alike = free & (-surfaces.facing @ normal > _ALIKE)
+    facing = points[cells.points_of(np.flatnonzero(near & alike))]
+    other = points[cells.points_of(np.flatnonzero(near & ~alike & ~surfaces.level))]
+    on_wall = np.abs(facing[:, :2] @ normal - offset_m) <= inlier_m
+    if on_wall.sum() >= _LEAST_REFIT:
+        normal, offset_m, on_wall = lines.refit(facing[:, :2], normal, offset_m, inlier_m=inlier_m)
+    return normal, offset_m, facing[on_wall], other[np.abs(other[:, :2] @ normal - offset_m) <= inlier_m]
 
 
 def feet(xy_m, facing):
@@ -121,15 +142,24 @@ def _beside(xy_m, rows, width_m):
     return beside
 
 
+@dataclass(frozen=True)
+class _Surfaces:
+    """A scan's cells, their horizontal unit normals (m, 2), and which are upright and which level (m,)."""
+
+    cells: normals.Cells
+    facing: np.ndarray
+    upright: np.ndarray
+    level: np.ndarray
+
+
 def _surfaces(points, planar, settings):
-    """Return horizontal unit normals (n, 2), which points are on upright, and on level surfaces."""
     if planar:
-        facing = normals.line_normals(points[:, :2], reach_deg=settings.reach_deg)
-        known = np.isfinite(facing[:, 0])
-        return np.where(known[:, None], facing, 0), known, np.zeros(len(points), bool)
-    facing = normals.surface_normals(points, reach_deg=settings.reach_deg)
-    known = np.isfinite(facing[:, 0])
-    facing = np.where(known[:, None], facing, 0)
-    upright = known & (np.abs(facing[:, 2]) <= np.sin(np.deg2rad(settings.max_tilt_deg)))
-    level = np.abs(facing[:, 2]) >= _STEEP
-    return facing[:, :2] / np.maximum(np.hypot(*facing[:, :2].T), 1e-9)[:, None], upright, level
+        cells = normals.line_cells(points[:, :2], reach_deg=settings.reach_deg)
+        known = np.isfinite(cells.normal[:, 0])
+        return _Surfaces(cells, np.where(known[:, None], cells.normal, 0), known, np.zeros(len(points), bool))
+    cells = normals.surface_cells(points, reach_deg=settings.reach_deg)
+    known = np.isfinite(cells.normal[:, 0])
+    normal = np.where(known[:, None], cells.normal, 0)
+    upright = known & (np.abs(normal[:, 2]) <= np.sin(np.deg2rad(settings.max_tilt_deg)))
+    facing = normal[:, :2] / np.maximum(np.hypot(*normal[:, :2].T), 1e-9)[:, None]
+    return _Surfaces(cells, facing, upright, np.abs(normal[:, 2]) >= _STEEP)

@@ -12,6 +12,7 @@ from scanplan.errors import StageError
 POSES_FILE = "poses.tum"
 SCANS_FOLDER = "scans"
 _BAG_SUFFIXES = (".bag", ".mcap", ".db3")
+_SURVEY_SUFFIXES = (".yaml", ".yml")
 _ROSBAG2_SUFFIXES = (".db3", ".mcap", ".db3.zstd", ".mcap.zstd")
 _CLOUD_SUFFIXES = (".pcd", ".ply")
 _ACCEPTED = "*.bag, *.mcap, *.db3, rosbag2 folders (metadata.yaml), or scans/*.pcd|*.ply with poses.tum"
@@ -23,12 +24,12 @@ def name_of(path):
     Parameters
     ----------
     path : path-like
-        A dataset folder or a single recording.
+        A dataset folder, a single recording or the file of a simulated survey.
 
     Returns
     -------
     str
-        The folder's name or the recording's without its suffix; characters other than A-Z, a-z, 0-9, ``_``, ``.`` and
+        The folder's name or the file's without its suffix; characters other than A-Z, a-z, 0-9, ``_``, ``.`` and
         ``-`` become ``_``.
 
     Raises
@@ -37,11 +38,16 @@ def name_of(path):
         If no letter or digit is left, or the name starts with a dot.
     """
     path = Path(os.path.normpath(Path.cwd() / path))
-    single = path.suffix in _BAG_SUFFIXES and not path.is_dir()
+    single = path.suffix in (*_BAG_SUFFIXES, *_SURVEY_SUFFIXES) and not path.is_dir()
     name = re.sub(r"[^A-Za-z0-9_.-]", "_", path.stem if single else path.name)
     if name.startswith(".") or not re.search(r"[A-Za-z0-9]", name):
         raise StageError(f"{path}: no name for results can be made of it; rename it to letters, digits, _ . -")
     return name
+
+
+def is_survey_file(path):
+    """Tell whether a dataset is given as the file that describes its simulation."""
+    return Path(path).suffix in _SURVEY_SUFFIXES and not Path(path).is_dir()
 
 
 def find_files(path):

@@ -5,10 +5,14 @@ import math
 
 import matplotlib
 import numpy as np
+import shapely
 from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
-from matplotlib.patches import Rectangle
+from matplotlib.patches import PathPatch, Rectangle
+from matplotlib.path import Path
 from matplotlib.textpath import TextPath
+
+from scanplan import floorplan
 
 _MM_PER_INCH = 25.4
 _POINTS_PER_MM = 72 / _MM_PER_INCH
@@ -17,7 +21,17 @@ _LARGEST_MM = np.array([380.0, 260.0])
 _MARGIN_MM = {"left": 22.0, "right": 12.0, "top": 12.0, "bottom": 50.0}
 _LEAST_WIDTH_MM = 150.0
 _LONGEST_NAME = 60
+_LABELLED_MM = 6.0
 _INK, _FAINT = "black", "0.35"
+_STATES = {
+    "observed": {"ec": _INK, "fc": "0.55", "joinstyle": "miter"},
+    "inferred": {"ec": _FAINT, "fc": "0.92", "ls": (0, (4, 2)), "joinstyle": "miter"},
+}
+_OPENINGS = {
+    "door": {"ec": _INK, "ls": (0, (3, 2))},
+    "window": {"ec": _INK},
+    "passage": {"ec": _FAINT, "ls": (0, (1, 2))},
+}
 
 
 def svg(figure):
@@ -29,35 +43,40 @@ def svg(figure):
     return text.getvalue()
 
 
-def plan(faces, name):
-    """Draw the faces of a plan to scale, with overall dimensions, scale bar and title.
+def pdf(figure):
+    """Return a figure as PDF bytes that are the same for the same figure."""
+    with matplotlib.rc_context({"pdf.fonttype": 42}):
+        page = io.BytesIO()
+        figure.savefig(page, format="pdf", metadata={"CreationDate": None, "Creator": "scanplan", "Producer": None})
+    return page.getvalue()
+
+
+def plan(drawn):
+    """Draw a plan to scale: walls by state, openings, rooms with their areas, dimensions, scale bar and title.
 
     The page takes the size the drawing needs, at the largest scale of 1:10, 1:20, 1:50, ... at which it fits on A3.
 
     Parameters
     ----------
-    faces : dict of str to (n,) array, n >= 1
-        The columns of `schemas.FACES`.
-    name : str
-        The dataset's name.
+    drawn : floorplan.FloorPlan
 
     Returns
     -------
     matplotlib.figure.Figure
     """
-    x_m = np.stack([faces["x0_m"], faces["x1_m"]])
-    y_m = np.stack([faces["y0_m"], faces["y1_m"]])
-    low_m, high_m = np.array([x_m.min(), y_m.min()]), np.array([x_m.max(), y_m.max()])
+    low_m, high_m = drawn.bounds_m
     scale = scale_for(high_m - low_m)
     axes, m_per_mm = _sheet(low_m, high_m, scale)
-    for number, x, y in zip(faces["face"].tolist(), x_m.T, y_m.T, strict=True):
-        axes.plot(x, y, color=_INK, lw=0.4 * _POINTS_PER_MM, solid_capstyle="round", gid=f"face-{number}")
+    for state in floorplan.STATES:
+        _walls(axes, drawn, state)
+    _openings(axes, drawn, m_per_mm)
+    _rooms(axes, drawn, m_per_mm)
     _dimension(axes, low_m, np.array([high_m[0], low_m[1]]), m_per_mm)
     _dimension(axes, np.array([low_m[0], high_m[1]]), low_m, m_per_mm)
     _scale_bar(axes, low_m, high_m - low_m, m_per_mm)
     _map_axes(axes, low_m, m_per_mm)
-    total_m = np.hypot(x_m[1] - x_m[0], y_m[1] - y_m[0]).sum()
-    _title(axes, low_m, m_per_mm, name, f"{len(faces['face'])} wall faces, {total_m:,.1f} m in all", scale)
+    _legend(axes, drawn, low_m, m_per_mm)
+    _title(axes, low_m, m_per_mm, drawn.name, floorplan.summary(drawn), scale)
     return axes.figure
 
 
@@ -87,6 +106,81 @@ def _sheet(low_m, high_m, scale):
     axes.set_xlim(left, left + width_mm * m_per_mm)
     axes.set_ylim(bottom, bottom + height_mm * m_per_mm)
     return axes, m_per_mm
+
+
+def _walls(axes, drawn, state):
+    """Fill what walls stand on and draw the surfaces that have nothing known behind them."""
+    style = _STATES[state]
+    for number, part in enumerate(_polygons(drawn.solid(state))):
+        axes.add_patch(PathPatch(_path(part), lw=0.35 * _POINTS_PER_MM, gid=f"walls-{state}-{number}", **style))
+    dashes = {"ls": style["ls"]} if "ls" in style else {}
+    for number, line in enumerate(drawn.single(state)):
+        axes.plot(*shapely.get_coordinates(line).T, color=style["ec"], lw=0.4 * _POINTS_PER_MM,
+                  solid_capstyle="round", gid=f"single-{state}-{number}", **dashes)  # fmt: skip
+
+
+def _openings(axes, drawn, m_per_mm):
+    """Draw a window with its panes, a door or passage with its thresholds; which way a door swings is not known."""
+    for number, kind, line, gap in zip(
+        drawn.openings["opening"], drawn.openings["type"], floorplan.lines_m(drawn.openings), drawn.gaps, strict=True
+    ):
+        way = (line[1] - line[0]) / math.dist(*line)
+        deep_m = gap.area / math.dist(*line) / 2 - floorplan.CLEARANCE_M
+        sides_m = (-deep_m, 0, deep_m) if kind == "window" else (-deep_m, deep_m)
+        strokes = [line + side_m * np.array([-way[1], way[0]]) for side_m in sides_m]
+        vertices = np.concatenate(strokes)
+        path = Path(vertices, [Path.MOVETO, Path.LINETO] * len(strokes))
+        axes.add_patch(PathPatch(path, fc="none", lw=0.13 * _POINTS_PER_MM, gid=f"{kind}-{number}", **_OPENINGS[kind]))
+        if math.dist(*line) > _LABELLED_MM * m_per_mm:
+            upright = way if (abs(way[1]) < abs(way[0]) and way[0] > 0) or way[1] > abs(way[0]) else -way
+            turn_deg = math.degrees(math.atan2(upright[1], upright[0]))
+            axes.text(*line.mean(axis=0), f"{math.dist(*line):.2f}", fontsize=4.5, rotation=turn_deg, ha="center",
+                      va="center_baseline" if kind != "window" else "bottom", rotation_mode="anchor")  # fmt: skip
+
+
+def _rooms(axes, drawn, m_per_mm):
+    """Write each room's number and area where it is widest, as large as there is room for."""
+    for room, area_m2, closed, area in zip(
+        *(drawn.rooms[c] for c in ("room", "area_m2", "closed")), drawn.areas, strict=True
+    ):
+        circle = shapely.maximum_inscribed_circle(area, tolerance=0.05)
+        (x_m, y_m), _ = shapely.get_coordinates(circle)
+        about = "" if closed else "about "
+        size = np.clip(2 * circle.length / m_per_mm * _POINTS_PER_MM / 8, 3.0, 8.0)
+        axes.text(x_m, y_m, f"Room {room}\n{about}{area_m2:.1f} m²", fontsize=size, ha="center", va="center",
+                  gid=f"room-{room}")  # fmt: skip
+
+
+def _polygons(shape):
+    return [part for part in shapely.get_parts(shape) if part.geom_type == "Polygon"]
+
+
+def _path(polygon):
+    rings = [shapely.get_coordinates(ring) for ring in shapely.get_rings(polygon)]
+    codes = [[Path.MOVETO, *[Path.LINETO] * (len(ring) - 2), Path.CLOSEPOLY] for ring in rings]
+    return Path(np.concatenate(rings), np.concatenate(codes))
+
+
+def _legend(axes, drawn, low_m, m_per_mm):
+    """Explain the strokes that there are."""
+    shown = [
+        (label, style)
+        for label, style, there in (
+            ("wall", _STATES["observed"], not drawn.solid("observed").is_empty),
+            ("inferred wall", _STATES["inferred"], not drawn.solid("inferred").is_empty),
+            ("surface, thickness not known", {"ec": _INK, "fc": "none", "line": True}, len(drawn.single("observed"))),
+        )
+        if there
+    ]
+    x_m, y_m = low_m[0], low_m[1] - 44 * m_per_mm
+    for label, style in shown:
+        style = dict(style)
+        high_mm = 0.0 if style.pop("line", False) else 2.0
+        axes.add_patch(
+            Rectangle((x_m, y_m - high_mm / 2 * m_per_mm), 7 * m_per_mm, high_mm * m_per_mm, lw=0.6, **style)
+        )
+        axes.text(x_m + 8.5 * m_per_mm, y_m, label, fontsize=7, va="center")
+        x_m += (13 + 1.5 * len(label)) * m_per_mm
 
 
 def _dimension(axes, start_m, end_m, m_per_mm):

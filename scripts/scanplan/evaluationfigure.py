@@ -5,10 +5,11 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter, StrMethodFormatter
 
 from scanplan import topview
-from scanplan.figures import STYLES
+from scanplan.figures import DASHED, STYLES
 
 _SIZE_IN = (7.0, 8.6)
-_STYLES = {"oracle": ("oracle: knows the truth", "black"), **STYLES}
+_STYLES = {"oracle": ("oracle: knows the truth", "black"), "sight": ("oracle by sight alone", "0.55"), **STYLES}
+_OTHER = ("#e69f00", "#56b4e9", "#f0e442", "#8c510a", "#762a83", "#5ab4ac")
 _FOUND = "visible_completeness_010m"
 _BITMAP = {"false_negative": "false negative", "correct_match": "correct match", "false_positive": "false positive"}
 _REASONS = {
@@ -49,10 +50,21 @@ def draw(measured, aligned, *, method, extractor):
         _missed(axes[key], _of(measured, extractor=extractor, method=name))
         axes[key].set_title(f"missed, {name}, {extractor}, as registered", fontsize=7)
     handles, labels = axes["0"].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper center", ncols=3, fontsize=7, frameon=False)
+    figure.legend(handles[::-1], labels[::-1], loc="outside upper center", ncols=3, fontsize=7, frameon=False)
     handles, labels = axes["m"].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=3, fontsize=7, frameon=False)
     return figure
+
+
+def by_rank(methods):
+    """Return the methods in the order to draw them in: the known ones last, the oracle on top."""
+    known = list(_STYLES)
+    return sorted(set(np.asarray(methods).tolist()), key=lambda m: (-known.index(m) if m in known else -99, m))
+
+
+def style(method):
+    """Return how a method is called in a legend, and its colour."""
+    return _STYLES.get(method, (method.replace("_", " "), _OTHER[sum(map(ord, method)) % len(_OTHER)]))
 
 
 def _completeness(axes, table, title):
@@ -63,12 +75,14 @@ def _completeness(axes, table, title):
 
 
 def _curves(axes, table, column):
-    for method in sorted(set(table["method"].tolist()), key=list(_STYLES).index, reverse=True):
-        label, colour = _STYLES[method]
+    for method in by_rank(table["method"]):
+        label, colour = style(method)
         of_it = _of(table, method=method)
+        dashes, width = ("--", 0.8) if method in DASHED else ("-", 1.2)
         axes.plot(
-            of_it["k"], of_it[column], color=colour, lw=1.2, marker="o", ms=1.8, label=label, gid=f"{column}-{method}"
-        )
+            of_it["k"], of_it[column], dashes, color=colour, lw=width, marker="o", ms=1.6,
+            label=label, gid=f"{column}-{method}",
+        )  # fmt: skip
     _scan_axis(axes, table["k"])
 
 

@@ -93,18 +93,33 @@ def merge(walls, settings):
     ValueError
         If a number of the walls is not finite.
     """
+    return _columns([_row(piece) for piece in pieces(walls, settings)])
+
+
+def pieces(walls, settings):
+    """Do as `merge`, but return the faces with the segments that show them, those of one group on one line.
+
+    Parameters
+    ----------
+    walls : dict of str to (n,) array
+        The columns of `schemas.WALLS`.
+    settings : MergeSettings
+
+    Returns
+    -------
+    list of facepieces.Piece
+    """
     segments = faceline.from_columns(walls, registration_sigma_m=settings.registration_sigma_m)
     if len(segments.start) == 0:
-        return _columns([])
+        return []
     groups = facegroups.group(
         segments,
         max_angle_rad=math.radians(settings.max_angle_deg),
         tolerance_m=settings.tolerance_m,
         reach_m=max(settings.max_gap_m, settings.align_gap_m),
     )
-    pieces = [p for members in groups for p in facepieces.cut(segments, members, max_gap_m=settings.max_gap_m)]
-    pieces = _met(_once(pieces, settings), settings)
-    return _columns([_row(piece) for piece in pieces])
+    cut = [p for members in groups for p in facepieces.cut(segments, members, max_gap_m=settings.max_gap_m)]
+    return _met(_once(cut, settings), settings)
 
 
 def summary(faces):
@@ -177,7 +192,12 @@ def _columns(rows):
     names = ("x0_m", "y0_m", "x1_m", "y1_m", "nx", "ny", "n_points", "n_scans", "rmse_m", "z_min_m", "z_max_m")
     dtypes = {"n_points": np.int64, "n_scans": np.int32}
     columns = {name: np.array([row[name] for row in rows], dtypes.get(name, np.float64)) for name in names}
-    return {"face": np.arange(len(rows), dtype=np.int32), **columns}
+    return {
+        "face": np.arange(len(rows), dtype=np.int32),
+        **columns,
+        "state": np.full(len(rows), "observed", object),
+        "wall": np.full(len(rows), -1, np.int32),
+    }
 
 
 def _rank(row):

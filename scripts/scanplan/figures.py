@@ -14,11 +14,20 @@ NEARBY_M = 1.0
 _WIDTH_IN = 7.0
 _SELECTED = "#d55e00"
 STYLES = {
-    "cluster_hull": ("greedy by cluster hulls", "#0072b2"),
-    "hull": ("greedy by one hull per scan", "#d55e00"),
-    "random": ("random", "#009e73"),
-    "sequential": ("as recorded", "#cc79a7"),
+    "wall_length": ("greedy by wall length", "#0072b2"),
+    "visibility": ("greedy by free space", "#009e73"),
+    "cluster_hull": ("greedy by cluster hulls", "#d55e00"),
+    "hull": ("greedy by one hull per scan", "#e69f00"),
+    "every_nth": ("every n-th", "#cc79a7"),
+    "distance": ("farthest next", "#56b4e9"),
+    "random": ("random", "#8c6d4f"),
+    "sequential": ("as recorded", "#999999"),
 }
+"""Method to label and colour, in the order of legends."""
+
+DASHED = {"every_nth", "distance", "random", "sequential"}
+"""Methods that look at nothing measured."""
+
 _FULL_HULLS = "hull"
 _LOGARITHMIC_FROM = 100
 
@@ -135,7 +144,7 @@ def area_figure(orderings):
     """
     figure = Figure(figsize=(_WIDTH_IN, 4.2), layout="constrained")
     axes = figure.add_subplot()
-    for method in sorted(orderings, key=lambda m: (m == _FULL_HULLS, list(STYLES).index(m) if m in STYLES else 99, m)):
+    for method in sorted(orderings, key=lambda m: (m == _FULL_HULLS, *_place(m))):
         _draw_ordering(axes, method, orderings[method])
     highest = max(columns["covered_m2"].max() for columns in orderings.values())
     axes.set_ylim(0, highest * 1.06)
@@ -149,12 +158,17 @@ def area_figure(orderings):
     return figure
 
 
+def _place(method):
+    return (list(STYLES).index(method) if method in STYLES else len(STYLES)), method
+
+
 def _draw_ordering(axes, method, columns):
     label, colour = STYLES.get(method, (method.replace("_", " "), "0.3"))
+    dashes = "--" if method in DASHED else "-"
     covered = columns["covered_m2"]
     at = stopping.n_scans(columns, area_share=0.99)[0] - 1
     label = f"{label}: 99 % with {columns['rank'][at]}"
-    axes.plot(columns["rank"], covered, color=colour, lw=1.4, label=label, gid=f"covered-{method}")
+    axes.plot(columns["rank"], covered, dashes, color=colour, lw=1.4, label=label, gid=f"covered-{method}")
     if method in ("cluster_hull", _FULL_HULLS):
         bound = np.minimum(columns["bound_m2"], covered[-1])
         axes.plot(columns["rank"], bound, ":", color=colour, lw=1, gid=f"bound-{method}")

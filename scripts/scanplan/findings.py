@@ -195,6 +195,29 @@ def first_rank_found(found, segment_rank, n_cells):
     return first
 
 
+def found_by_scan(found, scan, shape):
+    """Tell which cells the segments of each scan find.
+
+    Parameters
+    ----------
+    found : (segment, begin, end)
+        (p,) int each: cells begin <= c < end.
+    scan : (s,) int
+        The scan of each segment.
+    shape : (n, c)
+        Numbers of scans and of cells.
+
+    Returns
+    -------
+    (n, c) bool
+    """
+    segment, begin, end = found
+    result = np.zeros(shape, bool)
+    for row, b, e in zip(scan[segment].tolist(), begin.tolist(), end.tolist(), strict=True):
+        result[row, b:e] = True
+    return result
+
+
 def _found(cells, lines_m, within_m):
     """Return segment, begin and end of the runs of cells whose middles lie near segments."""
     near = lengthmetrics.near(cells.faces_m, lines_m, within_m)

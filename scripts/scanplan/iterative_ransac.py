@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan import lines, walls
+from scanplan import furniture, lines, walls
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,8 +52,8 @@ def extract(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
     ValueError
         If a coordinate is not finite.
     """
-    left = walls.around_sensor(xyz_m, sensor_xyz_m)
-    top_m = walls.door_top(left, settings, planar=planar)
+    points = left = walls.around_sensor(xyz_m, sensor_xyz_m)
+    top_m = walls.door_top(points, settings, planar=planar)
     largest = _largest_line if planar else _largest_plane
     least = max(settings.least_points(planar), 3)
     rng = np.random.default_rng([settings.seed, scan_id])
@@ -68,7 +68,7 @@ def extract(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
         if upright and np.hypot(*np.ptp(found[:, :2], axis=0)) >= settings.min_length_m:
             rows += walls.cut(*lines.fit(found[:, :2]), found, settings, planar=planar, top_m=top_m)
         left = left[~inliers]
-    return walls.assemble(rows, sensor_xyz_m)
+    return walls.assemble(furniture.walls_among(rows, points, settings, planar=planar), sensor_xyz_m)
 
 
 def largest_plane(xyz_m, *, inlier_m, trials, seed):

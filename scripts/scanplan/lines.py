@@ -6,12 +6,14 @@ _REFITS = 3
 _MAX_SCORED = 1000
 
 
-def fit(xy_m):
+def fit(xy_m, weight=None):
     """Fit a line by total least squares: the least squared distances perpendicular to it.
 
     Parameters
     ----------
     xy_m : (n, 2) float, n >= 2, not all the same
+    weight : (n,) float, optional
+        As how many points each counts.
 
     Returns
     -------
@@ -27,14 +29,15 @@ def fit(xy_m):
     xy_m = np.asarray(xy_m, float)
     if len(xy_m) < 2 or (xy_m == xy_m[0]).all():
         raise ValueError("a line needs two distinct points")
-    centre = xy_m.mean(axis=0)
-    (xx, xy), (_, yy) = (xy_m - centre).T @ (xy_m - centre)
+    weight = np.ones(len(xy_m)) if weight is None else np.asarray(weight, float)
+    centre = weight @ xy_m / weight.sum()
+    (xx, xy), (_, yy) = (weight[:, None] * (xy_m - centre)).T @ (xy_m - centre)
     # the direction of largest variance of a 2 x 2 covariance, in closed form
     direction_rad = 0.5 * np.arctan2(2 * xy, xx - yy)
     return _outward(np.array([-np.sin(direction_rad), np.cos(direction_rad)]), centre)
 
 
-def ransac(xy_m, *, inlier_m, trials, rng):
+def ransac(xy_m, *, inlier_m, trials, rng, weight=None):
     """Find the line most points lie on (thesis, algorithm 4), then fit it to these by least squares.
 
     All pairs are drawn beforehand, so that the result depends on the points and the generator's state alone; ties go to
@@ -47,6 +50,8 @@ def ransac(xy_m, *, inlier_m, trials, rng):
         Largest distance of an inlier from the line.
     trials : int
     rng : numpy.random.Generator
+    weight : (n,) float, optional
+        As how many points each counts.
 
     Returns
     -------
@@ -57,16 +62,17 @@ def ransac(xy_m, *, inlier_m, trials, rng):
     """
     xy_m = np.asarray(xy_m, float).reshape(-1, 2)
     pairs = _pairs(len(xy_m), trials, rng)
-    scored = xy_m if len(xy_m) <= _MAX_SCORED else xy_m[rng.choice(len(xy_m), _MAX_SCORED, replace=False)]
+    weight = np.ones(len(xy_m)) if weight is None else np.asarray(weight, float)
+    chosen = slice(None) if len(xy_m) <= _MAX_SCORED else rng.choice(len(xy_m), _MAX_SCORED, replace=False)
     start, step = xy_m[pairs[:, 0]], xy_m[pairs[:, 1]] - xy_m[pairs[:, 0]]
     length = np.linalg.norm(step, axis=1)
     start, step, length = start[length > 0], step[length > 0], length[length > 0]
     if len(length) == 0:
         return np.full(2, np.nan), np.nan, np.zeros(len(xy_m), bool)
     normals = np.column_stack([-step[:, 1], step[:, 0]]) / length[:, None]
-    distance = np.abs(scored @ normals.T - (normals * start).sum(axis=1))
-    best = np.argmax((distance <= inlier_m).sum(axis=0))
-    return _refit(xy_m, *_outward(normals[best], start[best]), inlier_m)
+    distance = np.abs(normals @ xy_m[chosen].T - (normals * start).sum(axis=1)[:, None])
+    best = np.argmax((distance <= inlier_m) @ weight[chosen])
+    return refit(xy_m, *_outward(normals[best], start[best]), inlier_m=inlier_m, weight=weight)
 
 
 def _pairs(n, trials, rng):
@@ -77,12 +83,27 @@ def _pairs(n, trials, rng):
     return np.column_stack([first, (first + rng.integers(1, n, trials)) % n])
 
 
-def _refit(xy_m, normal, offset_m, inlier_m):
+def refit(xy_m, normal, offset_m, *, inlier_m, weight=None):
+    """Fit a line to the points near it, as long as that brings more points near.
+
+    Parameters
+    ----------
+    xy_m : (n, 2) float
+    normal, offset_m
+        A line with two distinct points within `inlier_m`.
+    inlier_m : float
+    weight : (n,) float, optional
+
+    Returns
+    -------
+    normal, offset_m, inliers : as `ransac` returns them
+    """
+    weight = np.ones(len(xy_m)) if weight is None else weight
     inliers = np.abs(xy_m @ normal - offset_m) <= inlier_m
     for _ in range(_REFITS):
-        normal, offset_m = fit(xy_m[inliers])
+        normal, offset_m = fit(xy_m[inliers], weight[inliers])
         again = np.abs(xy_m @ normal - offset_m) <= inlier_m
-        if again.sum() <= inliers.sum():
+        if weight[again].sum() <= weight[inliers].sum():
             break
         inliers = again
     return normal, offset_m, inliers

@@ -7,22 +7,27 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 _BINS_PER_BANDWIDTH = 8
+_SEEDS_PER_BANDWIDTH = 4
 _MAX_STEPS = 300
-_STILL = 1e-3  # a seed that moves less than this share of the bandwidth has arrived
+_ROWS = np.arange(-_BINS_PER_BANDWIDTH, _BINS_PER_BANDWIDTH + 1)[:, None]
+_LEAST_WEIGHT = 1e-12
+_STILL = 1e-2  # a seed that moves less than this share of the bandwidth has arrived
 
 
-def mean_shift(xy_m, *, bandwidth_m):
+def mean_shift(xy_m, *, bandwidth_m, weight=None):
     """Find the modes of a flat kernel's density, and each point's nearest mode.
 
-    The points are gathered in square bins of an eighth of the bandwidth, each a mean and a weight; every bin is a seed.
-    A seed moves to the mean of the bins around it by sums over rows of bins. Modes closer than the bandwidth to a
-    heavier one are dropped, as scikit-learn does.
+    The points are gathered in square bins of an eighth of the bandwidth, each a mean and a weight; one of every square
+    of a quarter is a seed. A seed moves to the mean of the bins around it by sums over rows of bins. Modes closer than
+    the bandwidth to a heavier one are dropped, as scikit-learn does.
 
     Parameters
     ----------
     xy_m : (n, 2) float
         All finite. Their order does not matter beyond rounding.
     bandwidth_m : float
+    weight : (n,) float, optional
+        As how many points each counts.
 
     Returns
     -------
@@ -40,7 +45,7 @@ def mean_shift(xy_m, *, bandwidth_m):
         raise ValueError(f"mean shift of finite points with a positive bandwidth, not {bandwidth_m}")
     if len(xy_m) == 0:
         return np.empty(0, np.int64), np.empty((0, 2))
-    bins = _Bins(xy_m, bandwidth_m)
+    bins = _Bins(xy_m, np.ones(len(xy_m)) if weight is None else np.asarray(weight, float), bandwidth_m)
     modes = _heaviest_apart(*_climb(bins), bandwidth_m)
     distance, nearest = cKDTree(modes).query(bins.mean)
     return np.where(distance <= bandwidth_m, nearest, -1)[bins.bin_of_point], modes
@@ -49,13 +54,13 @@ def mean_shift(xy_m, *, bandwidth_m):
 class _Bins:
     """Weighted bin means, sorted by row (y) and x within it, with running sums along that order."""
 
-    def __init__(self, xy_m, bandwidth_m):
+    def __init__(self, xy_m, point_weight, bandwidth_m):
         self.bandwidth, self.size = bandwidth_m, bandwidth_m / _BINS_PER_BANDWIDTH
         self.origin = xy_m.min(axis=0)
         column, row = np.floor((xy_m - self.origin) / self.size).astype(np.int64).T
         _, self.bin_of_point = np.unique(row * (column.max() + 1) + column, return_inverse=True)
-        weight = np.bincount(self.bin_of_point).astype(float)
-        self.mean = np.column_stack([np.bincount(self.bin_of_point, c) / weight for c in xy_m.T])
+        weight = np.bincount(self.bin_of_point, point_weight)
+        self.mean = np.column_stack([np.bincount(self.bin_of_point, c * point_weight) / weight for c in xy_m.T])
         self.sums = np.vstack([np.zeros(3), np.cumsum(np.column_stack([weight, weight[:, None] * self.mean]), axis=0)])
         self.span = self.mean[:, 0].max() - self.origin[0] + 4 * bandwidth_m
         self.n_rows = row.max() + 1
@@ -66,33 +71,42 @@ class _Bins:
 
     def around(self, xy_m):
         """Return the weight within the bandwidth around each position and the mean of what is there."""
-        total = np.zeros((len(xy_m), 3))
-        own_row = np.floor((xy_m[:, 1] - self.origin[1]) / self.size)
-        for step in range(-_BINS_PER_BANDWIDTH, _BINS_PER_BANDWIDTH + 1):
-            row = own_row + step
-            rise = (row + 0.5) * self.size + self.origin[1] - xy_m[:, 1] if step else 0.0
-            half = np.sqrt(np.maximum(self.bandwidth**2 - rise**2, 0)) * np.ones(len(xy_m))
-            first = np.searchsorted(self.key, self._key(row, xy_m[:, 0] - half), "left")
-            last = np.searchsorted(self.key, self._key(row, xy_m[:, 0] + half), "right")
-            total += np.where((half > 0)[:, None], self.sums[np.maximum(last, first)] - self.sums[first], 0)
-        return total[:, 0], total[:, 1:] / np.maximum(total[:, :1], 1)
+        row = np.floor((xy_m[:, 1] - self.origin[1]) / self.size) + _ROWS
+        rise = np.where(_ROWS == 0, 0.0, (row + 0.5) * self.size + self.origin[1] - xy_m[:, 1])
+        half = np.sqrt(np.maximum(self.bandwidth**2 - rise**2, 0))
+        ends = np.stack([self._key(row, xy_m[:, 0] - half), self._key(row, xy_m[:, 0] + half)])
+        first, last = np.searchsorted(self.key, ends[0], "left"), np.searchsorted(self.key, ends[1], "right")
+        last = np.where(half > 0, np.maximum(last, first), first)
+        total = (self.sums[last] - self.sums[first]).sum(axis=0)
+        return total[:, 0], total[:, 1:] / np.maximum(total[:, :1], _LEAST_WEIGHT)
+
+    def seeds(self):
+        """Return the mean of the first bin in every square of a quarter of the bandwidth."""
+        square = np.floor((self.mean - self.origin) / (self.bandwidth / _SEEDS_PER_BANDWIDTH))
+        return self.mean[_first_of_each(square)]
 
 
 def _climb(bins):
-    """Move every bin's seed to its mode; return the positions reached and the weights there."""
+    """Move every seed to its mode; return the positions reached and the weights there."""
     arrived, grid = [], _STILL * bins.bandwidth
-    seeds = bins.mean
+    seeds = bins.seeds()
     for _ in range(_MAX_STEPS):
         _, moved = bins.around(seeds)
-        still = np.linalg.norm(moved - seeds, axis=1) < grid
+        still = np.hypot(*(moved - seeds).T) < grid
         arrived.append(moved[still])
         # seeds that have met go on as one
-        _, first = np.unique(np.round(moved[~still] / grid), axis=0, return_index=True)
-        seeds = moved[~still][first]
+        moved = moved[~still]
+        seeds = moved[_first_of_each(np.round(moved / grid))]
         if len(seeds) == 0:
             break
     modes = np.vstack([*arrived, seeds])
     return modes, bins.around(modes)[0]
+
+
+def _first_of_each(whole):
+    """Return the index of the first of each distinct row of two whole numbers."""
+    column, row = (whole - whole.min(axis=0, initial=np.inf)).T if len(whole) else whole.T
+    return np.unique(row * (column.max(initial=0) + 1) + column, return_index=True)[1]
 
 
 def _heaviest_apart(modes, weight, bandwidth):

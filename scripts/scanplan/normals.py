@@ -6,19 +6,61 @@ with range in both directions, so a neighbourhood of constant angle, as seen fro
 at any range.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 from scipy.spatial import cKDTree
 
 _ROUGH = 0.2  # smallest over middle variance of a neighbourhood above which it is no surface; a 90 degree edge has 0.25
+_THREAD = 1e-9  # middle over largest variance below which a neighbourhood is a line in space, and has no normal
 _MIN_NEIGHBOURS_3D = 6
 _MIN_NEIGHBOURS_2D = 4
 _MIN_RADIUS_2D_M = 0.08
 _NEAREST_2D = 5
 _NEAREST_REACH_2D = 3.0
+_NEAR_M, _FAR_M = 0.05, 1000.0  # ranges beyond count as these: no surface of a building is there
+_STEEPEST = 4.0  # of z / r, likewise: right above or below the sensor is no wall
+_TABLE_SIZE = 2**23
 
 
-def surface_normals(xyz_m, *, reach_deg):
-    """Return the unit normals of a 3-D scan's surfaces, towards the sensor.
+@dataclass(frozen=True)
+class Cells:
+    """Groups of neighbouring points that share a normal.
+
+    Attributes
+    ----------
+    of_point : (n,) int64
+        The cell of each point.
+    members : (n,) int64
+        The points, by cell.
+    first : (m + 1,) int64
+        Those of cell i are `members[first[i] : first[i + 1]]`.
+    count : (m,) int64
+        Points in each cell.
+    mean_m : (m, d) float64
+    normal : (m, d) float64
+        Unit vectors towards the sensor; NaN where the surroundings are no surface.
+    radius_m : (m,) float64
+        About how far a cell's points are from their mean.
+    """
+
+    of_point: np.ndarray
+    members: np.ndarray
+    first: np.ndarray
+    count: np.ndarray
+    mean_m: np.ndarray
+    normal: np.ndarray
+    radius_m: np.ndarray
+
+    def points_of(self, cells):
+        """Return the indices of the points of the given cells, (k,) int."""
+        count = self.count[cells]
+        skipped = self.first[cells] - np.concatenate([[0], np.cumsum(count)[:-1]]) if len(count) else count
+        return self.members[np.arange(count.sum()) + np.repeat(skipped, count)]
+
+
+def surface_cells(xyz_m, *, reach_deg):
+    """Part a 3-D scan into cells of equal angle and find the normal of each.
 
     The points are binned in (azimuth, z / r, ln r), r the horizontal range: cells of equal angle, about cubic in space.
     A cell's normal is the direction of least variance of the points in it and its 26 neighbours.
@@ -33,16 +75,32 @@ def surface_normals(xyz_m, *, reach_deg):
 
     Returns
     -------
-    (n, 3) float64
-        NaN where the surroundings are no surface: too few points, one ring alone, an edge, clutter.
+    Cells
+        No normal where there are too few points, one ring alone, an edge or clutter.
     """
-    xyz_m = np.asarray(xyz_m, float)
+    xyz_m = np.asarray(xyz_m, float).reshape(-1, 3)
     if len(xyz_m) == 0:
-        return np.empty((0, 3))
-    cells, cell_of_point, turn = _cells(xyz_m, np.deg2rad(reach_deg) / 1.5)
-    sums = _neighbourhood_sums(cells, _moments(xyz_m, cell_of_point, len(cells)), turn)
-    normals = _least_variance(sums)[cell_of_point]
-    return normals * -np.where((normals * xyz_m).sum(axis=1) > 0, 1, -1)[:, None]
+        return _as_cells(np.empty(0, np.int64), np.empty((0, 3)), np.empty((0, 3)), np.empty(0))
+    step = np.deg2rad(reach_deg) / 1.5
+    grid = _Grid(xyz_m, step)
+    moments = _moments(_within(xyz_m), grid.of_point, len(grid.key))
+    mean_m = moments[1:4] / moments[0]
+    normal = _least_variance(grid.neighbourhood_sums(moments))
+    radius_m = step * np.hypot(mean_m[0], mean_m[1])
+    return _as_cells(grid.of_point, mean_m.T, _towards_sensor(normal, mean_m), radius_m)
+
+
+def surface_normals(xyz_m, *, reach_deg):
+    """Return the unit normals (n, 3) of a 3-D scan's surfaces, those of `surface_cells`; NaN where there is none."""
+    cells = surface_cells(xyz_m, reach_deg=reach_deg)
+    return cells.normal[cells.of_point]
+
+
+def line_cells(xy_m, *, reach_deg):
+    """Return the points of a planar scan as cells of one point each, see `line_normals`."""
+    xy_m = np.asarray(xy_m, float)
+    normal = line_normals(xy_m, reach_deg=reach_deg)
+    return _as_cells(np.arange(len(xy_m)), xy_m, normal, np.zeros(len(xy_m)))
 
 
 def line_normals(xy_m, *, reach_deg):
@@ -70,57 +128,124 @@ def line_normals(xy_m, *, reach_deg):
     radius = np.maximum(radius, np.minimum(nearest * (1 + 1e-9), _NEAREST_REACH_2D * radius))
     near = tree.query_ball_point(xy_m, radius, return_sorted=True)
     owner = np.repeat(np.arange(len(xy_m)), [len(n) for n in near])
-    normals = _least_variance(_moments(xy_m[np.concatenate(near).astype(int)], owner, len(xy_m)))
-    return normals * -np.where((normals * xy_m).sum(axis=1) > 0, 1, -1)[:, None]
+    moments = _moments(xy_m[np.concatenate(near).astype(int)], owner, len(xy_m))
+    return _towards_sensor(_least_variance(moments), xy_m.T)
 
 
-def _cells(xyz_m, step):
-    """Return the occupied cells (m, 3) int, each point's cell, and the number of cells of a full turn."""
-    horizontal = np.maximum(np.hypot(xyz_m[:, 0], xyz_m[:, 1]), 1e-3)
-    turn = max(3, round(2 * np.pi / step))
-    azimuth = np.floor(np.arctan2(xyz_m[:, 1], xyz_m[:, 0]) / (2 * np.pi) * turn).astype(np.int64) % turn
-    # the limits only concern points right above or below the sensor, which no wall has
-    height = np.clip(np.floor(xyz_m[:, 2] / horizontal / step), -10_000, 10_000).astype(np.int64)
-    distance = np.floor(np.log(horizontal) / step).astype(np.int64)
-    lowest = np.array([0, height.min() - 1, distance.min() - 1])
-    spans = height.max() - lowest[1] + 2, distance.max() - lowest[2] + 2
-    key = (azimuth * spans[0] + height - lowest[1]) * spans[1] + distance - lowest[2]
-    unique, cell_of_point = np.unique(key, return_inverse=True)
-    rest, d = np.divmod(unique, spans[1])
-    a, h = np.divmod(rest, spans[0])
-    return np.column_stack([a, h, d]), cell_of_point, turn
+class _Grid:
+    """The occupied cells of a scan, sorted by (azimuth, z / r, ln r)."""
+
+    def __init__(self, xyz_m, step):
+        horizontal = np.clip(np.hypot(xyz_m[:, 0], xyz_m[:, 1]), _NEAR_M, _FAR_M)
+        self.turn = max(3, round(2 * np.pi / step))
+        azimuth = np.floor(np.arctan2(xyz_m[:, 1], xyz_m[:, 0]) * (self.turn / (2 * np.pi))).astype(np.int64)
+        height = np.floor(np.clip(xyz_m[:, 2] / horizontal, -_STEEPEST, _STEEPEST) / step).astype(np.int64)
+        distance = np.floor(np.log(horizontal) / step).astype(np.int64)
+        # a border of empty cells: the neighbours of one row are not in the next
+        height, distance = height - height.min() + 1, distance - distance.min() + 1
+        self.rows, self.shells = int(height.max()) + 2, int(distance.max()) + 2
+        key = ((azimuth % self.turn) * self.rows + height) * self.shells + distance
+        self.size = self.turn * self.rows * self.shells
+        if self.size > _TABLE_SIZE:
+            self.key, self.of_point = np.unique(key, return_inverse=True)
+            return
+        occupied = np.zeros(self.size, bool)
+        occupied[key] = True
+        self.key = np.flatnonzero(occupied)
+        self._before = np.concatenate([[0], np.cumsum(occupied, dtype=np.int32)])
+        self.of_point = self._before[key].astype(np.int64)
+
+    def before(self, key):
+        """Return the number of occupied cells before each key."""
+        return np.searchsorted(self.key, key) if self.size > _TABLE_SIZE else self._before[key]
+
+    def neighbourhood_sums(self, moments):
+        """Add to each cell's moments (k, m) those of its occupied neighbours; azimuth closes after a turn."""
+        # three neighbours in ln r follow each other: their sum is a difference of running sums
+        running = np.concatenate([np.zeros((1, len(moments))), np.cumsum(moments.T, axis=0)])
+        row_size = self.rows * self.shells
+        azimuth, inside = np.divmod(self.key, row_size)
+        total = np.zeros((len(self.key), len(moments)))
+        for turn in (-1, 0, 1):
+            start = (azimuth + turn) % self.turn * row_size + inside
+            for rise in (-self.shells, 0, self.shells):
+                total += running[self.before(start + rise + 2)] - running[self.before(start + rise - 1)]
+        return total.T
+
+
+def _within(xyz_m):
+    """Return the points, those farther than 1 km moved there: running sums must keep the digits of the near ones."""
+    distance_m = np.sqrt(np.einsum("ij,ij->i", xyz_m, xyz_m))
+    if distance_m.max() <= _FAR_M:
+        return xyz_m
+    return xyz_m * np.minimum(1, _FAR_M / np.maximum(distance_m, _NEAR_M))[:, None]
+
+
+def _as_cells(of_point, mean_m, normal, radius_m):
+    n_cells = len(mean_m)
+    # a radix sort, for numbers of two bytes
+    sortable = of_point.astype(np.uint16) if n_cells <= 2**16 else of_point
+    members = np.argsort(sortable, kind="stable")
+    count = np.bincount(of_point, minlength=n_cells)
+    first = np.concatenate([[0], np.cumsum(count)]).astype(np.int64)
+    return Cells(of_point, members, first, count, mean_m, normal, radius_m)
 
 
 def _moments(points, group, n_groups):
-    """Return per group the count, the sums and the sums of products of coordinates, (n_groups, 1 + d + d * d)."""
-    d = points.shape[1]
-    products = (points[:, :, None] * points[:, None, :]).reshape(len(points), d * d)
-    columns = [None, *points.T, *products.T]
-    return np.column_stack([np.bincount(group, c, n_groups) for c in columns]).astype(float)
-
-
-def _neighbourhood_sums(cells, moments, turn):
-    """Add to each cell's moments those of its occupied neighbours; azimuth closes after a turn."""
-    spans = cells.max(axis=0) + 2
-    key = (cells[:, 0] * spans[1] + cells[:, 1]) * spans[2] + cells[:, 2]
-    total = np.zeros_like(moments)
-    for step in np.ndindex(3, 3, 3):
-        a, h, d = (cells + step - 1).T
-        wanted = (a % turn * spans[1] + h) * spans[2] + d
-        at = np.minimum(np.searchsorted(key, wanted), len(key) - 1)
-        found = key[at] == wanted
-        total[found] += moments[at[found]]
-    return total
+    """Return per group the count, the sums and the sums of products of coordinates, (1 + d + d (d + 1) / 2, groups)."""
+    axes = list(points.T)
+    products = [axes[i] * axes[j] for i in range(len(axes)) for j in range(i, len(axes))]
+    columns = [None, *axes, *products]
+    return np.stack([np.bincount(group, c, n_groups) for c in columns]).astype(float)
 
 
 def _least_variance(moments):
-    """Return the direction of least variance of each group of points, NaN where it is not clearly the least."""
-    d = 2 if moments.shape[1] == 7 else 3
-    count, sums = moments[:, :1], moments[:, 1 : 1 + d]
-    mean = sums / np.maximum(count, 1)
-    covariance = moments[:, 1 + d :].reshape(-1, d, d) / np.maximum(count, 1)[:, :, None]
-    covariance = covariance - mean[:, :, None] * mean[:, None, :]
-    variances, axes = np.linalg.eigh(covariance)
-    enough = count[:, 0] >= (_MIN_NEIGHBOURS_2D if d == 2 else _MIN_NEIGHBOURS_3D)
-    clear = enough & (variances[:, 0] < _ROUGH * variances[:, 1])
-    return np.where(clear[:, None], axes[:, :, 0], np.nan)
+    """Return the direction (d, m) of least variance of each group, NaN where it is not clearly the least."""
+    d = 2 if len(moments) == 6 else 3
+    count = np.maximum(moments[0], 1)
+    mean = moments[1 : 1 + d] / count
+    pairs = [(i, j) for i in range(d) for j in range(i, d)]
+    covariance = {p: c / count - mean[p[0]] * mean[p[1]] for p, c in zip(pairs, moments[1 + d :], strict=True)}
+    least, middle, largest, axis = (_spread_2d if d == 2 else _spread_3d)(covariance)
+    enough = moments[0] >= (_MIN_NEIGHBOURS_2D if d == 2 else _MIN_NEIGHBOURS_3D)
+    clear = enough & (least < _ROUGH * middle) & (middle > _THREAD * largest)
+    return np.where(clear, axis, np.nan)
+
+
+def _spread_2d(c):
+    """Return the eigenvalues of symmetric 2 x 2 matrices (the largest twice) and the axis of the least."""
+    half, away = (c[0, 0] + c[1, 1]) / 2, np.hypot((c[0, 0] - c[1, 1]) / 2, c[0, 1])
+    turn = 0.5 * np.arctan2(2 * c[0, 1], c[0, 0] - c[1, 1])
+    return half - away, half + away, half + away, np.stack([-np.sin(turn), np.cos(turn)])
+
+
+def _spread_3d(c):
+    """Return the eigenvalues of symmetric 3 x 3 matrices, rising, and the axis of the least, in closed form.
+
+    O. K. Smith: Eigenvalues of a symmetric 3 x 3 matrix, Communications of the ACM 4 (1961).
+    """
+    xy, xz, yz = c[0, 1], c[0, 2], c[1, 2]
+    centre = (c[0, 0] + c[1, 1] + c[2, 2]) / 3
+    xx, yy, zz = c[0, 0] - centre, c[1, 1] - centre, c[2, 2] - centre
+    scale = np.sqrt((xx**2 + yy**2 + zz**2 + 2 * (xy**2 + xz**2 + yz**2)) / 6)
+    scale = np.maximum(scale, 1e-30)
+    determinant = xx * (yy * zz - yz**2) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)
+    angle = np.arccos(np.clip(determinant / scale**3 / 2, -1, 1)) / 3
+    largest, least = 2 * scale * np.cos(angle), 2 * scale * np.cos(angle + 2 * np.pi / 3)
+    # the axis is perpendicular to every row of the matrix less its eigenvalue; the longest product is the safest
+    rows = [(xx - least, xy, xz), (xy, yy - least, yz), (xz, yz, zz - least)]
+    crosses = np.stack([_cross(rows[0], rows[1]), _cross(rows[0], rows[2]), _cross(rows[1], rows[2])])
+    length = np.sqrt((crosses**2).sum(axis=1))
+    best = np.argmax(length, axis=0)
+    each = np.arange(len(best))
+    axis = crosses[best, :, each].T / np.maximum(length[best, each], np.finfo(float).tiny)
+    return centre + least, centre - least - largest, centre + largest, axis
+
+
+def _cross(a, b):
+    return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+
+
+def _towards_sensor(normal, at):
+    """Return normals (d, m) as rows (m, d), turned towards the sensor from where they are (d, m)."""
+    return (normal * -np.where((normal * at).sum(axis=0) > 0, 1, -1)).T

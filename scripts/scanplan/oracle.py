@@ -1,6 +1,7 @@
 """The order of scans that shows most true wall soonest: the ceiling for every method that does not know the truth.
 
-Seen wall length is monotone submodular like covered area, so lazy evaluation gives the greedy order (Minoux 1978).
+It is asked of what scans could see of the walls, and of what an extractor finds of them in each scan. Either length is
+monotone submodular like covered area, so lazy evaluation gives the greedy order (Minoux 1978).
 """
 
 import heapq
@@ -20,7 +21,7 @@ class Order:
     order : (n,) int
         Rows of scans.
     gain_m : (n,) float64
-        True wall length that each adds to what those before it could see.
+        True wall length that each adds to what those before it show.
     """
 
     order: np.ndarray
@@ -28,15 +29,15 @@ class Order:
 
 
 def greedy_order(seen, length_m):
-    """Order scans so that each adds the most seen length, the first row of equals.
+    """Order scans so that each adds the most length, the first row of equals.
 
-    Once no scan adds anything, the rest is ordered in the same way as if nothing had been seen yet: all walls are seen
-    a second time as soon as can be, then a third.
+    Once no scan adds anything, the rest is ordered in the same way as if nothing had been shown yet: all walls are
+    shown a second time as soon as can be, then a third.
 
     Parameters
     ----------
     seen : (n, c) bool
-        Which cells of the true faces each scan could see.
+        Which cells of the true faces each scan shows: could see, or has a wall at.
     length_m : (c,) float
         Length of each cell.
 

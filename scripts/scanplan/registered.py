@@ -88,12 +88,15 @@ def walls(path, scans, origin):
 
 
 def ordered(best, scans):
-    """Return an `oracle.Order` as the columns of `schemas.ORACLE`."""
+    """Return the `oracle.Order` of every extractor as the columns of `schemas.ORACLE`."""
+    n = len(scans.scan_ids)
+    orders = [best[extractor] for extractor in sorted(best)]
     return {
-        "rank": np.arange(1, len(best.order) + 1),
-        "scan_id": scans.scan_ids[best.order],
-        "gain_m": best.gain_m,
-        "seen_m": np.cumsum(best.gain_m),
+        "extractor": np.repeat(sorted(best), n),
+        "rank": np.tile(np.arange(1, n + 1), len(best)),
+        "scan_id": np.concatenate([scans.scan_ids[order.order] for order in orders]),
+        "gain_m": np.concatenate([order.gain_m for order in orders]),
+        "found_m": np.concatenate([np.cumsum(order.gain_m) for order in orders]),
     }
 
 

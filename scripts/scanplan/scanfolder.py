@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from scanplan import clouds, datasets, frames, stagelog, tum
+from scanplan import clouds, datasets, frames, stagelog, sweeptimes, tum
 from scanplan.errors import StageError
 from scanplan.mounts import configured_mount
 
@@ -54,7 +54,16 @@ class ScanFolder:
     @cached_property
     def planar(self):
         """Whether the clouds are flat throughout."""
-        return clouds.are_planar(scan.xyz_m for scan in self.scans(range(len(self._clouds))))
+        return clouds.are_planar(scan.xyz_m for scan in map(self._scan, range(len(self._clouds))))
+
+    @cached_property
+    def sweep_times(self):
+        """How the clouds tell when each point was measured: a sweeptimes.Convention, or None if they do not."""
+        first = range(min(len(self._clouds), clouds.SCANS_TO_JUDGE))
+        found = sweeptimes.convention((_read_cloud(self._clouds[i])[1], self._stamps_ns[i]) for i in first)
+        if found:
+            stagelog.say(f"{self._poses_path.parent}: times of points are {found}")
+        return found
 
     def stamps(self):
         """Return the stamps of all clouds, (n,) int64, in scan_id order."""
@@ -63,6 +72,10 @@ class ScanFolder:
     def pose_edges(self):
         """Return the chain of transforms whose product is world_from_sensor, a list of frames.Edge."""
         return [self._track, *self._mount]
+
+    def motion_chains(self):
+        """Return (name, list of frames.Edge) of all that tells how the sensor moved: the poses."""
+        return [(str(self._poses_path), self.pose_edges())]
 
     def scans(self, wanted):
         """Iterate over the scans of the scan_ids in `wanted`, in scan_id order; only these files are read.
@@ -78,8 +91,11 @@ class ScanFolder:
         if wanted and not 0 <= wanted[0] <= wanted[-1] < len(self._clouds):
             raise ValueError(f"{self._poses_path.parent}: {len(self._clouds)} scans, asked for up to {wanted[-1]}")
         for scan_id in wanted:
-            xyz_m, time_raw = _read_cloud(self._clouds[scan_id])
-            yield clouds.within_range(scan_id, self._stamps_ns[scan_id], xyz_m, time_raw, **self._limits)
+            yield self._scan(scan_id, self.sweep_times)
+
+    def _scan(self, scan_id, sweep_times=None):
+        read = _read_cloud(self._clouds[scan_id])
+        return clouds.within_range(scan_id, self._stamps_ns[scan_id], *read, sweep_times=sweep_times, **self._limits)
 
 
 def _order(paths, pose_ns, poses_path):

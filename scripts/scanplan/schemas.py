@@ -28,6 +28,12 @@ POSES = Schema(
     {"scan_id": "int32", "t_ns": "int64", **_POSE, "gap_s": "float64", "covered": "bool"},
     ("scan_id",),
 )
+MOTION = Schema(
+    "motion",
+    1,
+    {"t_ns": "int64", "piece": "int32", **_POSE, "time_scale": "float64", "time_shift_s": "float64"},
+    ("t_ns",),
+)
 REGISTRATION = Schema(
     "registration",
     1,
@@ -43,6 +49,18 @@ REGISTRATION = Schema(
     },
     ("scan_id",),
 )
+CRISPNESS = Schema(
+    "crispness",
+    1,
+    {
+        "poses": "string",
+        "sigma_m": "float64",
+        "quarter_below_m": "float64",
+        "quarter_above_m": "float64",
+        "n_places": "int32",
+    },
+    ("poses",),
+)
 SCANS = Schema("scans", 1, {"scan_id": "int32", "x_m": "float32", "y_m": "float32", "z_m": "float32"}, ("scan_id",))
 HULLS = Schema(
     "hulls",
@@ -51,10 +69,23 @@ HULLS = Schema(
     ("scan_id", "cluster"),
     geometry=True,
 )
+OBSERVATIONS = Schema(
+    "observations",
+    1,
+    {"scan_id": "int32", "facing": "int32", "along": "int32", "across": "int32", "length_m": "float64"},
+    ("scan_id", "facing", "along", "across"),
+)
+VISIBILITY = Schema(
+    "visibility", 1, {"scan_id": "int32", "area_m2": "float64", "geometry": "binary"}, ("scan_id",), geometry=True
+)
 SELECTION = Schema(
     "selection",
-    1,
-    {"rank": "int32", "scan_id": "int32", "gain_m2": "float64", "covered_m2": "float64", "bound_m2": "float64"},
+    2,
+    {
+        "rank": "int32",
+        "scan_id": "int32",
+        **dict.fromkeys(("gain_m2", "covered_m2", "bound_m2", "gain", "covered", "bound"), "float64"),
+    },
     ("rank",),
 )
 WALLS = Schema(
@@ -73,7 +104,7 @@ WALLS = Schema(
 )
 FACES = Schema(
     "faces",
-    1,
+    2,
     {
         "face": "int32",
         **_SEGMENT,
@@ -82,10 +113,81 @@ FACES = Schema(
         "rmse_m": "float64",
         "z_min_m": "float64",
         "z_max_m": "float64",
+        "state": "string",
+        "wall": "int32",
     },
     ("face",),
 )
+"""Surfaces of the plan: `state` is observed or inferred, `wall` the wall it is a side of (-1: of none)."""
+_CENTRELINE = dict.fromkeys(("x0_m", "y0_m", "x1_m", "y1_m"), "float64")
+PLAN_WALLS = Schema(
+    "plan_walls",
+    1,
+    {
+        "wall": "int32",
+        **_CENTRELINE,
+        "thickness_m": "float64",
+        "face_left": "int32",
+        "face_right": "int32",
+        "state": "string",
+        **dict.fromkeys(("z_min_m", "z_max_m", "rmse_m", "sigma_offset_m", "sigma_end0_m", "sigma_end1_m"), "float64"),
+        "n_points": "int64",
+        "n_scans": "int32",
+        "verify": "bool",
+    },
+    ("wall",),
+)
+"""Walls of the plan. One seen from a single side has no thickness (NaN), and its line is that of its face."""
+OPENINGS = Schema(
+    "openings",
+    1,
+    {
+        "opening": "int32",
+        "wall": "int32",
+        "type": "string",
+        **_CENTRELINE,
+        **dict.fromkeys(("width_m", "thickness_m", "sill_m", "lintel_m"), "float64"),
+        "room_a": "int32",
+        "room_b": "int32",
+        "n_rays": "int64",
+    },
+    ("opening",),
+)
+"""Doors, windows and passages that rays went through; heights above the floor, NaN where not known; -1: no such."""
+ROOMS = Schema(
+    "rooms",
+    1,
+    {
+        "room": "int32",
+        **dict.fromkeys(("area_m2", "perimeter_m", "x_m", "y_m"), "float64"),
+        "closed": "bool",
+        "n_scans": "int32",
+        "geometry": "binary",
+    },
+    ("room",),
+    geometry=True,
+)
+FREE = Schema("free", 1, {"part": "int32", "geometry": "binary"}, ("part",), geometry=True)
+"""The floor that rays went over: polygons that do not overlap."""
+EVIDENCE = Schema(
+    "evidence",
+    1,
+    {"wall": "int32", "scan_id": "int32", "t_ns": "int64", "n_points": "int32"},
+    ("wall", "scan_id"),
+)
+"""Which scans show a wall of the plan, when they were taken and with how many points."""
 _WITHIN = ("005m", "010m", "015m")
+_AGREEMENT = {
+    **dict.fromkeys(("false_negative", "correct_match", "false_positive"), "float64"),
+    **{
+        f"{truth}{measure}_{within}": "float64"
+        for truth in ("", "visible_")
+        for measure in ("completeness", "correctness", "f1")
+        for within in _WITHIN
+    },
+    "n_walls": "int32",
+    **dict.fromkeys(("walls_per_true_wall", "redundancy"), "float64"),
+}
 EVALUATION = Schema(
     "evaluation",
     1,
@@ -93,18 +195,9 @@ EVALUATION = Schema(
         "method": "string",
         "extractor": "string",
         "k": "int32",
-        **dict.fromkeys(("false_negative", "correct_match", "false_positive"), "float64"),
-        **{
-            f"{truth}{measure}_{within}": "float64"
-            for truth in ("", "visible_")
-            for measure in ("completeness", "correctness", "f1")
-            for within in _WITHIN
-        },
-        "n_walls": "int32",
+        **_AGREEMENT,
         **dict.fromkeys(
             (
-                "walls_per_true_wall",
-                "redundancy",
                 "seen",
                 "missed_not_seen",
                 "missed_misregistered",
@@ -117,7 +210,12 @@ EVALUATION = Schema(
     },
     ("method", "extractor", "k"),
 )
-ORACLE = Schema("oracle", 1, {"rank": "int32", "scan_id": "int32", "gain_m": "float64", "seen_m": "float64"}, ("rank",))
+ORACLE = Schema(
+    "oracle",
+    2,
+    {"extractor": "string", "rank": "int32", "scan_id": "int32", "gain_m": "float64", "found_m": "float64"},
+    ("extractor", "rank"),
+)
 POSE_ERRORS = Schema(
     "pose_errors",
     1,
@@ -136,3 +234,57 @@ POSE_ERRORS = Schema(
     },
     ("scan_id",),
 )
+CLUSTERS = Schema(
+    "clusters", 1, {"n_clusters": "int32", "rank": "int32", "scan_id": "int32", "covered_m2": "float64"},
+    ("n_clusters", "rank"),
+)  # fmt: skip
+AREAS = Schema(
+    "areas", 1, {"scan_id": "int32", "full_hull_m2": "float64", "cluster_hull_m2": "float64", "seen_m2": "float64"},
+    ("scan_id",),
+)  # fmt: skip
+TIMES = Schema(
+    "times", 1, {"task": "string", "size": "int32", "item": "int32", "found": "int32", "seconds": "float64"},
+    ("task", "size", "item"),
+)  # fmt: skip
+STEPS = Schema(
+    "steps", 1, {"step": "int32", "name": "string", "seconds": "float64", "n_scans": "int32", "n_bytes": "int64"},
+    ("step",),
+)  # fmt: skip
+CLAIMS = Schema(
+    "claims", 1, {"claim": "string", "survey": "string", "quantity": "string", "value": "float64", "holds": "string"},
+    ("claim", "survey", "quantity"),
+)  # fmt: skip
+PLAN_EVALUATION = Schema(
+    "plan_evaluation",
+    2,
+    {
+        "frame": "string",
+        "n_scans": "int32",
+        "length_m": "float64",
+        **_AGREEMENT,
+        **dict.fromkeys(
+            (
+                "seen_completeness_010m",
+                "observed_correctness_010m",
+                "observed_visible_completeness_010m",
+                "missed_not_seen",
+                "missed_misplaced",
+                "missed_misextracted",
+            ),
+            "float64",
+        ),
+        "n_plan_walls": "int32",
+        "plan_walls_per_true_wall": "float64",
+        "n_thickness": "int32",
+        "thickness_error_m": "float64",
+        **dict.fromkeys(("n_doors_true", "n_doors_found", "n_doors_drawn"), "int32"),
+        **dict.fromkeys(("door_recall", "door_precision", "door_width_error_m", "door_width_right"), "float64"),
+        **dict.fromkeys(("n_rooms_true", "n_rooms_found", "n_rooms_false"), "int32"),
+        **dict.fromkeys(("room_iou", "least_room_iou"), "float64"),
+    },
+    ("frame",),
+)
+"""How good a plan is: where it is in the map, and after the rigid motion that fits the scans' poses to the true ones.
+
+The agreement and what begins with `n_walls` is of its faces; `plan_walls` are its paired and single walls.
+"""

@@ -1,6 +1,7 @@
 """Which helper files a stage's script imports, so that an edit of one reruns exactly the stages that use it."""
 
 import ast
+import hashlib
 from pathlib import Path
 
 _PACKAGE = Path(__file__).parent
@@ -24,6 +25,14 @@ def helpers_of(script):
             found.add(helper)
             waiting.append(helper)
     return sorted(found)
+
+
+def digest():
+    """Return 12 hexadecimal digits that name the code: a digest of all scripts and helpers."""
+    total = hashlib.sha256()
+    for file in sorted(_PACKAGE.parent.rglob("*.py")):
+        total.update(file.read_bytes())
+    return total.hexdigest()[:12]
 
 
 def _imports(path):

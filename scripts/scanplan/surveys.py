@@ -4,6 +4,7 @@ import math
 from contextlib import ExitStack, contextmanager
 
 from scanplan import datasets
+from scanplan.deskew import Deskewed
 
 
 @contextmanager
@@ -17,6 +18,8 @@ def open_survey(
     ros2_release="humble",
     min_range_m=0.0,
     max_range_m=math.inf,
+    deskew=True,
+    motion=None,
 ):
     """Open all recordings of a dataset as one survey.
 
@@ -34,29 +37,42 @@ def open_survey(
         Whose message definitions hold where a ROS 2 bag carries none.
     min_range_m, max_range_m : float
         Points outside are dropped.
+    deskew : bool
+        Whether to move points to where they would have been seen at their scan's stamp, given a `motion`.
+    motion : motion.Motion, optional
+        How the sensor moved.
 
     Yields
     ------
     object
-        `planar` (bool), `stamps()` -> (n,) int64 nanoseconds in scan_id order, `pose_edges()` -> list of frames.Edge
-        from the world to the sensor, `scans(wanted)` -> iterator of clouds.Scan in scan_id order.
+        `planar` (bool), `sweep_times` (sweeptimes.Convention or None), `stamps()` -> (n,) int64 nanoseconds in scan_id
+        order, `pose_edges()` -> list of frames.Edge from the world to the sensor, `motion_chains()` -> list of (name,
+        list of frames.Edge), the smoothest motion first and the poses last, `scans(wanted)` -> iterator of clouds.Scan
+        in scan_id order.
 
     Raises
     ------
     StageError
         If a recording is damaged or does not tell what to use.
     """
-    limits = {"min_range_m": min_range_m, "max_range_m": max_range_m}
-    mount = {"base_from_sensor": base_from_sensor}
+    with ExitStack() as stack:
+        survey = _opened(
+            files,
+            stack,
+            ros2_release,
+            {"cloud_topic": cloud_topic, "pose_topic": pose_topic, "base_frame": base_frame},
+            {"base_from_sensor": base_from_sensor, "min_range_m": min_range_m, "max_range_m": max_range_m},
+        )
+        yield Deskewed(survey, motion) if deskew and motion is not None else survey
+
+
+def _opened(files, stack, ros2_release, chosen, common):
     # rosbags and Open3D cost a second each to import: only the one that is needed
     if datasets.is_scan_folder(files):
         from scanplan import scanfolder
 
-        yield scanfolder.ScanFolder(files, **mount, **limits)
-        return
+        return scanfolder.ScanFolder(files, **common)
     from scanplan import bags, bagsurvey
 
-    with ExitStack() as stack:
-        opened = [stack.enter_context(bags.opened(path, ros2_release=ros2_release)) for path in datasets.grouped(files)]
-        chosen = {"cloud_topic": cloud_topic, "pose_topic": pose_topic, "base_frame": base_frame}
-        yield bagsurvey.BagSurvey(opened, **chosen, **mount, **limits)
+    opened = [stack.enter_context(bags.opened(path, ros2_release=ros2_release)) for path in datasets.grouped(files)]
+    return bagsurvey.BagSurvey(opened, **chosen, **common)

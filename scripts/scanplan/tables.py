@@ -13,14 +13,44 @@ import pyarrow.parquet as pq
 
 from scanplan import atomic
 from scanplan.errors import StageError
-from scanplan.schemas import FACES, HULLS, POSES, QUAT, REGISTRATION, SCANS, SELECTION, WALLS, XYZ
+from scanplan.schemas import (
+    CRISPNESS,
+    EVALUATION,
+    EVIDENCE,
+    FACES,
+    FREE,
+    HULLS,
+    MOTION,
+    OPENINGS,
+    ORACLE,
+    PLAN_WALLS,
+    POSE_ERRORS,
+    POSES,
+    QUAT,
+    REGISTRATION,
+    ROOMS,
+    SCANS,
+    SELECTION,
+    WALLS,
+    XYZ,
+)
 
 __all__ = [
+    "CRISPNESS",
+    "EVALUATION",
+    "EVIDENCE",
     "FACES",
+    "FREE",
     "HULLS",
+    "MOTION",
+    "OPENINGS",
+    "ORACLE",
+    "PLAN_WALLS",
     "POSES",
+    "POSE_ERRORS",
     "QUAT",
     "REGISTRATION",
+    "ROOMS",
     "SCANS",
     "SELECTION",
     "WALLS",

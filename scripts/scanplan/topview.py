@@ -52,15 +52,24 @@ def draw(points_xy_m, must_show_xy_m, *, beside_in=0.0):
     drawn_in = np.clip((_WIDTH_IN - _BESIDE_IN - beside_in) * extent[1] / extent[0], _LEAST_IN, _MOST_IN)
     figure = Figure(figsize=(_WIDTH_IN, float(drawn_in) + _BELOW_IN), layout="constrained")
     axes = figure.add_subplot()
-    grey, edges = _density(points_xy_m, low, extent)
+    _shade(axes, points_xy_m, low, high)
+    axes.set_xlabel("x in the map frame (m)", fontsize=8)
+    axes.set_ylabel("y in the map frame (m)", fontsize=8)
+    return figure, axes
+
+
+def onto(axes, points_xy_m, must_show_xy_m):
+    """Draw the points on axes of another figure, in metres; see `draw`."""
+    _shade(axes, points_xy_m, *_view(points_xy_m, must_show_xy_m))
+
+
+def _shade(axes, points_xy_m, low, high):
+    grey, edges = _density(points_xy_m, low, high - low)
     axes.imshow(
         grey, cmap="Greys", vmin=0, vmax=1, origin="lower", extent=edges.ravel(), interpolation="none", zorder=1
     )
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
-    axes.set_xlabel("x in the map frame (m)", fontsize=8)
-    axes.set_ylabel("y in the map frame (m)", fontsize=8)
     plain(axes)
-    return figure, axes
 
 
 def plain(axes):

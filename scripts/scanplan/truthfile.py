@@ -55,14 +55,14 @@ def read_faces(path):
         If it is no GeoJSON, a face is no line of finite coordinates, or there is no inner face.
     """
     lines = {"inside": [], "outside": []}
-    for number, feature in enumerate(_features(path)):
-        properties = _part(feature, "properties")
+    for number, feature in enumerate(features(path)):
+        properties = part(feature, "properties")
         if properties.get("kind") != "face":
             continue
         side = properties.get("side", "inside")
         if side not in lines:
             raise StageError(f"{path}: feature {number} has side {side!r}, inside or outside needed; {_REMEDY}")
-        lines[side].append(_runs(path, number, _part(feature, "geometry")))
+        lines[side].append(_runs(path, number, part(feature, "geometry")))
     inner, outer = (np.concatenate([np.empty((0, 2, 2)), *lines[side]]) for side in ("inside", "outside"))
     if len(inner) == 0:
         raise StageError(f"{path}: holds 0 inner faces (kind: face), at least 1 needed; {_REMEDY}")
@@ -115,7 +115,8 @@ def poses_at(poses, t_ns, path):
     return se3.matrix(xyz_m, quat)
 
 
-def _features(path):
+def features(path):
+    """Return the features of a truth.geojson, a list of anything; StageError if it is no FeatureCollection."""
     try:
         content = json.loads(Path(path).read_bytes())
     except OSError as error:
@@ -128,9 +129,10 @@ def _features(path):
     return features
 
 
-def _part(feature, name):
-    part = feature.get(name) if isinstance(feature, dict) else None
-    return part if isinstance(part, dict) else {}
+def part(feature, name):
+    """Return the member `name` of a feature, empty where there is no such object."""
+    found = feature.get(name) if isinstance(feature, dict) else None
+    return found if isinstance(found, dict) else {}
 
 
 def _runs(path, number, geometry):

@@ -117,6 +117,37 @@ def seen(cells, outer_m, position_m, *, max_range_m):
     return result
 
 
+def view(faces_m, position_m, *, max_range_m):
+    """Return the outline of what can be seen from a place.
+
+    Parameters
+    ----------
+    faces_m : (n, 2, 2) float, n >= 1
+        All that hides; no two cross.
+    position_m : (2,) float
+    max_range_m : float
+        Where no face is nearer, the view ends here.
+
+    Returns
+    -------
+    (p, 2) float64
+        Corners, counter-clockwise.
+    """
+    ends = faces_m - position_m
+    angle = np.arctan2(ends[:, :, 1], ends[:, :, 0])
+    turn = (angle[:, 1] - angle[:, 0] + np.pi) % (2 * np.pi) - np.pi
+    begin, finish = np.where(turn > 0, angle.T, angle.T[::-1])
+    edges = np.unique(angle)
+    nearest = _nearest(edges, begin, finish, ends)
+    beam = np.column_stack([edges, np.append(edges[1:], edges[0])])
+    ray = np.stack([np.cos(beam), np.sin(beam)], axis=-1)
+    start, way = ends[nearest, 0][:, None], (ends[:, 1] - ends[:, 0])[nearest][:, None]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        distance_m = _cross(start, way) / _cross(ray, way)
+    distance_m = np.where((nearest < 0)[:, None], max_range_m, np.nan_to_num(distance_m, nan=max_range_m))
+    return (position_m + ray * np.clip(distance_m, 0, max_range_m)[..., None]).reshape(-1, 2)
+
+
 def seen_by_each(cells, outer_m, positions_m, *, max_range_m):
     """Tell which cells can be seen from which of several places: (n, c) bool, a byte each."""
     result = np.zeros((len(positions_m), len(cells.face)), bool)
@@ -147,13 +178,17 @@ def _nearest(edges, begin, finish, ends):
     middle = edges + np.diff(edges, append=edges[0] + 2 * np.pi) / 2
     ray = np.column_stack([np.cos(middle), np.sin(middle)])[sector]
     start, way = ends[face, 0], (ends[:, 1] - ends[:, 0])[face]
-    toward = ray[:, 0] * way[:, 1] - ray[:, 1] * way[:, 0]
+    toward = _cross(ray, way)
     # in a sector of no width a face can be edge-on, and hides nothing
     toward = np.where(toward == 0, np.nan, toward)
-    distance = np.nan_to_num((start[:, 0] * way[:, 1] - start[:, 1] * way[:, 0]) / toward, nan=np.inf)
+    distance = np.nan_to_num(_cross(start, way) / toward, nan=np.inf)
     best = np.full(len(edges), np.inf)
     np.minimum.at(best, sector, distance)
     nearest = np.full(len(edges), -1)
     won = (distance == best[sector]) & np.isfinite(distance)
     nearest[sector[won]] = face[won]
     return nearest
+
+
+def _cross(a, b):
+    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]

@@ -7,17 +7,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from scanplan import furniture, sightlines
 from scanplan.errors import StageError
 
 _HEIGHT_PERCENTILES = (2, 98)
-_FLOOR_PERCENTILE = 1
 _PAUSE_SHARE = 1 / 2  # of the reach: wider than beams apart at grazing angles, narrower than a door
 _FIELDS = ("x0_m", "y0_m", "x1_m", "y1_m", "nx", "ny", "n_points", "rmse_m", "z_min_m", "z_max_m")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Limits:
-    """What a wall segment must be; the settings of both extractors begin with these.
+class Limits(furniture.Limits):
+    """What a wall segment must be, beside `furniture.Limits`; the settings of both extractors begin with these.
 
     Attributes
     ----------
@@ -93,14 +93,14 @@ def around_sensor(xyz_m, sensor_xyz_m):
         raise ValueError(f"points (n, 3) and a position (3,), not {xyz_m.shape} and {sensor_xyz_m.shape}")
     if not (np.isfinite(xyz_m).all() and np.isfinite(sensor_xyz_m).all()):
         raise ValueError("points and sensor position must be finite")
-    return xyz_m[np.lexsort(xyz_m.T)] - sensor_xyz_m
+    return xyz_m[_order(xyz_m)] - sensor_xyz_m
 
 
 def door_top(xyz_m, limits, *, planar):
     """Return the height above which points bridge no gap, in the frame of the points (n, 3); infinite in the plane."""
     if planar or len(xyz_m) == 0:
         return np.inf
-    return np.percentile(xyz_m[:, 2], _FLOOR_PERCENTILE) + limits.door_height_m
+    return sightlines.floor(xyz_m) + limits.door_height_m
 
 
 def cut(normal, offset_m, xyz_m, limits, *, planar, top_m=np.inf, spare_xyz_m=None, reach_rad=0.0):
@@ -137,7 +137,8 @@ def cut(normal, offset_m, xyz_m, limits, *, planar, top_m=np.inf, spare_xyz_m=No
     for first, last in _runs(where, limits.max_gap_m, limits.least_points(planar)):
         first, last = _prolong(first, last, low_where, reach_rad, offset_m)
         inside = every[(first <= every_where) & (every_where <= last)]
-        low, high = np.percentile(inside[:, 2], _HEIGHT_PERCENTILES)
+        heights = np.sort(inside[:, 2])
+        low, high = (heights[round(p / 100 * (len(heights) - 1))] for p in _HEIGHT_PERCENTILES)
         if last - first < limits.min_length_m or (not planar and high - low < limits.min_height_m):
             continue
         ends = [*(offset_m * normal + first * along), *(offset_m * normal + last * along)]
@@ -207,6 +208,15 @@ def summary(columns, n_scans, took_ms):
     points = columns["n_points"]
     typical = f"{np.median(points):.0f} points in the median wall" if len(points) else "no wall at all"
     return f"{n_scans:,} scans, {len(points):,} walls, {typical}, {took_ms / n_scans:.0f} ms a scan"
+
+
+def _order(xyz_m):
+    """Return an order of points that depends on them alone."""
+    mixed = xyz_m @ (1.0, np.sqrt(2), np.sqrt(3))
+    order = np.argsort(mixed)
+    tied = mixed[order][1:] == mixed[order][:-1]
+    # one number a point sorts faster than three, and seldom do different points share it
+    return order if not tied.any() else np.lexsort([*xyz_m.T, mixed])
 
 
 def _runs(where_m, max_gap_m, min_points):

@@ -1,71 +1,112 @@
 import numpy as np
 import pytest
+import shapely
 
+import housemaking
 from assemble_plan import assemble_plan
-from scanplan import tables
+from scanplan import planning, tables
 from scanplan.errors import StageError
-from wallmaking import BARE, SETTINGS, lengths_m, observed, walls
+from wallmaking import lengths_m, walls
 
 EVERYTHING = {"n_scans": None, "area_share": None}
 
 
-def ordering(scan_ids, covered_m2):
-    gain = np.diff(covered_m2, prepend=0.0)
-    rank = np.arange(1, len(scan_ids) + 1)
-    return {"rank": rank, "scan_id": scan_ids, "gain_m2": gain, "covered_m2": covered_m2, "bound_m2": covered_m2}
+@pytest.fixture(scope="module")
+def house(tmp_path_factory):
+    return housemaking.write(tmp_path_factory.mktemp("house"), housemaking.segments())
 
 
-@pytest.fixture
-def files(tmp_path):
-    """Three scans in the order 2, 0, 1; each sees another wall."""
-    tables.write(tmp_path / "walls.parquet", tables.WALLS, walls([(0, 0, 1, 0), (0, 5, 2, 5), (0, 9, 3, 9)]))
-    tables.write(tmp_path / "selection.parquet", tables.SELECTION, ordering([2, 0, 1], np.array([80.0, 95, 100])))
-    return tmp_path / "walls.parquet", tmp_path / "selection.parquet", tmp_path / "faces.parquet"
+def outputs(folder):
+    folder.mkdir(exist_ok=True)
+    return {name: folder / f"{name}.parquet" for name in planning.TABLES}
 
 
-def test_only_the_first_scans_make_the_plan(files):
-    assemble_plan(*files, n_scans=2, area_share=None, settings=BARE)
-    np.testing.assert_allclose(lengths_m(tables.read(files[2], tables.FACES)), [3, 1])
+def assembled(inputs, folder, *, settings=housemaking.PLAN, **stop):
+    paths = outputs(folder)
+    assemble_plan(*inputs, paths, **(EVERYTHING | stop), settings=settings)
+    return {n: tables.read(paths[n], schema, allow_empty=True) for n, schema in planning.TABLES.items()}
 
 
-def test_the_covered_share_decides_as_well(files):
-    assemble_plan(*files, n_scans=None, area_share=0.75, settings=BARE)
-    np.testing.assert_allclose(lengths_m(tables.read(files[2], tables.FACES)), [3])
+def with_walls(inputs, folder, table):
+    folder.mkdir(exist_ok=True)
+    path = folder / "walls.parquet"
+    tables.write(path, tables.WALLS, table, allow_empty=True)
+    return [path, *inputs[1:]]
 
 
-def test_without_a_limit_all_scans_count(files):
-    assemble_plan(*files, **EVERYTHING, settings=BARE)
-    assert len(tables.read(files[2], tables.FACES)["face"]) == 3
+def test_a_house_of_two_rooms(house, tmp_path):
+    plan = assembled(house, tmp_path / "plan")
+    np.testing.assert_allclose(plan["rooms"]["area_m2"], [16, 15.2], rtol=0.02)
+    assert plan["rooms"]["closed"].all()
+    assert len(plan["walls"]["wall"]) == 5
+    thick = np.isfinite(plan["walls"]["thickness_m"])
+    np.testing.assert_allclose(plan["walls"]["thickness_m"][thick], [0.2], atol=0.01)
+    assert plan["openings"]["type"].tolist() == ["door"]
+    assert plan["openings"]["width_m"][0] == pytest.approx(0.9, abs=0.06)
+    assert {plan["openings"]["room_a"][0], plan["openings"]["room_b"][0]} == {0, 1}
+    assert (plan["openings"]["sill_m"][0], plan["openings"]["wall"][0]) == (0, np.flatnonzero(thick)[0])
 
 
-def test_the_same_tables_give_the_same_bytes(files, tmp_path):
-    table = observed([(0, 0, 5, 0.3), (5, 0.3, 5, 4)], np.random.default_rng(1), n_scans=3)
-    tables.write(files[0], tables.WALLS, table)
-    assemble_plan(*files, **EVERYTHING, settings=SETTINGS)
-    first = files[2].read_bytes()
-    assemble_plan(*files, **EVERYTHING, settings=SETTINGS)
-    assert files[2].read_bytes() == first
+def test_tables_refer_to_each_other(house, tmp_path):
+    plan = assembled(house, tmp_path / "plan")
+    assert np.isin(plan["faces"]["wall"], plan["walls"]["wall"]).all()
+    for side, sign in (("face_left", 1), ("face_right", -1)):
+        for wall, face in zip(plan["walls"]["wall"], plan["walls"][side], strict=True):
+            if face >= 0:
+                assert plan["faces"]["wall"][face] == wall
+                way = [plan["walls"][f"{c}1_m"][wall] - plan["walls"][f"{c}0_m"][wall] for c in "xy"]
+                normal = [plan["faces"][c][face] for c in ("nx", "ny")]
+                assert np.sign(way[0] * normal[1] - way[1] * normal[0]) == sign
+    counted = np.bincount(plan["evidence"]["wall"], plan["evidence"]["n_points"])
+    np.testing.assert_array_equal(counted, plan["walls"]["n_points"])
+    np.testing.assert_array_equal(plan["evidence"]["t_ns"], housemaking.T_NS[plan["evidence"]["scan_id"]])
 
 
-def test_no_wall_in_the_selected_scans_is_told(files):
-    tables.write(files[0], tables.WALLS, walls([(0, 0, 1, 0)]))
+def test_free_floor_goes_through_the_door_and_not_through_walls(house, tmp_path):
+    free = shapely.union_all(shapely.from_wkb(assembled(house, tmp_path / "plan")["free"]["geometry"]))
+    assert free.covers(shapely.Point(4.1, 1.95))
+    assert not free.intersects(shapely.Point(4.1, 1.0))
+    assert not free.intersects(shapely.Point(4.1, 3.0))
+
+
+def test_only_the_first_scans_make_the_plan(house, tmp_path):
+    one = assembled(house, tmp_path / "one", n_scans=1)
+    assert set(one["evidence"]["scan_id"]) == {2}
+    by_share = assembled(house, tmp_path / "share", area_share=0.75)
+    assert set(by_share["evidence"]["scan_id"]) == {2}
+
+
+def test_the_same_tables_give_the_same_bytes(house, tmp_path):
+    assembled(house, tmp_path / "one"), assembled(house, tmp_path / "other")
+    for name in planning.TABLES:
+        assert (tmp_path / f"one/{name}.parquet").read_bytes() == (tmp_path / f"other/{name}.parquet").read_bytes()
+
+
+def test_no_wall_in_the_selected_scans_is_told(house, tmp_path):
+    inputs = with_walls(house, tmp_path, walls([(0, 0, 1, 0)]))
     with pytest.raises(StageError, match=r"walls\.parquet: no wall in the first 1 scans .*selection\.stop"):
-        assemble_plan(*files, n_scans=1, area_share=None, settings=BARE)
-    assert not files[2].exists()
+        assembled(inputs, tmp_path / "plan", n_scans=1)
+    assert not (tmp_path / "plan/faces.parquet").exists()
 
 
-def test_no_wall_at_all_is_told(files):
-    tables.write(files[0], tables.WALLS, walls([]), allow_empty=True)
-    with pytest.raises(StageError, match="no wall in the first 3 scans"):
-        assemble_plan(*files, **EVERYTHING, settings=BARE)
+def test_no_wall_at_all_is_told(house, tmp_path):
+    with pytest.raises(StageError, match="no wall in the first 4 scans"):
+        assembled(with_walls(house, tmp_path, walls([])), tmp_path / "plan")
 
 
-def test_walls_that_are_all_too_short_are_told(files):
-    with pytest.raises(StageError, match=r"none of 3 wall segments .*min_length_m"):
-        assemble_plan(*files, **EVERYTHING, settings=BARE | {"min_length_m": 4.0})
+def test_a_single_wall_is_a_plan_without_rooms_but_those_entered(house, tmp_path):
+    plan = assembled(with_walls(house, tmp_path, walls([housemaking.ROOM_A[0]])), tmp_path / "plan")
+    assert lengths_m(plan["walls"]).tolist() == pytest.approx([4 + housemaking.PLAN["trace"]["reach_m"]], abs=0.1)
+    assert len(plan["openings"]["opening"]) == 0
+    assert not plan["rooms"]["closed"].any()
 
 
-def test_numbers_that_are_not_finite_are_told(files):
-    tables.write(files[0], tables.WALLS, walls([(0, 0, 1, 0)]) | {"x1_m": np.array([np.nan])})
+def test_walls_where_no_point_is_are_told(house, tmp_path):
+    inputs = with_walls(house, tmp_path, walls([(2, 2.5, 3, 2.5), (20, 0, 30, 0)], scan_id=[0, 1]))
+    with pytest.raises(StageError, match=r"none of 2 wall segments .*min_length_m"):
+        assembled(inputs, tmp_path / "plan")
+
+
+def test_numbers_that_are_not_finite_are_told(house, tmp_path):
     with pytest.raises(StageError, match="1 numbers are not finite"):
-        assemble_plan(*files, **EVERYTHING, settings=BARE)
+        assembled(with_walls(house, tmp_path, walls([(0, 0, 1, 0)]) | {"x1_m": np.array([np.nan])}), tmp_path / "plan")

@@ -28,7 +28,8 @@ def results(tmp_path):
         | pose,
     )
     for method in ("cluster_hull", "random"):
-        columns = dict.fromkeys(("gain_m2", "covered_m2", "bound_m2"), np.array([5.0, 9.0]))
+        measures = ("gain_m2", "covered_m2", "bound_m2", "gain", "covered", "bound")
+        columns = dict.fromkeys(measures, np.array([5.0, 9.0]))
         tables.write(tmp_path / f"{method}.parquet", tables.SELECTION, {"rank": [1, 2], "scan_id": [4, 0]} | columns)
     merged = faces.merge(walls([(0, 0, 6, 0), (6, 4, 0, 4)]), faces.MergeSettings(**BARE))
     tables.write(tmp_path / "faces.parquet", tables.FACES, merged)

@@ -99,12 +99,17 @@ def test_no_walls_at_all(tmp_path):
     assert np.isnan(found["redundancy"]).all() and np.isnan(found["walls_per_true_wall"]).all()
 
 
-def test_the_oracle_is_written_by_rank(tmp_path):
+def test_the_oracle_is_written_by_extractor_and_rank(tmp_path):
     best = tables.read(evaluated(tmp_path)[2], schemas.ORACLE)
-    # every scan sees the whole room
-    np.testing.assert_array_equal(best["scan_id"], SCAN_IDS)
-    np.testing.assert_allclose(best["seen_m"], 20)
-    np.testing.assert_allclose(best["gain_m"], [20, 0, 0], atol=1e-9)
+    # scan 7 shows the whole room
+    assert best["extractor"].tolist() == ["cluster_ransac"] * 3 + ["iterative_ransac"] * 3
+    np.testing.assert_array_equal(best["scan_id"], [7, 2, 4] * 2)
+    np.testing.assert_allclose(best["found_m"], 20)
+    np.testing.assert_allclose(best["gain_m"], [20, 0, 0] * 2, atol=1e-9)
+
+
+def test_what_could_be_in_sight_is_an_order_of_its_own(tmp_path):
+    np.testing.assert_array_equal(rows(evaluated(tmp_path)[0], "sight")["k"], [1, 2, 3])
 
 
 def test_the_same_input_gives_the_same_bytes_and_a_figure(tmp_path):
@@ -112,8 +117,11 @@ def test_the_same_input_gives_the_same_bytes_and_a_figure(tmp_path):
     outputs = evaluated(tmp_path)
     assert [path.read_bytes() for path in outputs] == first
     for name in ("a", "b"):
-        draw_evaluation(*outputs[:2], tmp_path / f"{name}.svg", method="random", extractor="iterative_ransac")
+        figures = tmp_path / f"{name}.svg", tmp_path / f"{name}_shares.svg"
+        draw_evaluation(*outputs[:2], *figures, method="random", extractor="iterative_ransac")
     assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
+    assert (tmp_path / "a_shares.svg").read_bytes() == (tmp_path / "b_shares.svg").read_bytes()
+    assert "3 scans" in (tmp_path / "a_shares.svg").read_text()
     text = (tmp_path / "a.svg").read_text()
     for said in ("oracle: knows the truth", "false negative, iterative_ransac", "found but for the registration"):
         assert said in text

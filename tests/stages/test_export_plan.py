@@ -2,37 +2,77 @@ import json
 from xml.etree import ElementTree
 
 import ezdxf
-import numpy as np
+import ifcopenshell
 import pytest
+import yaml
+from PIL import Image
 
+import floorplanmaking
 from export_plan import export_plan
-from scanplan import faces, tables
-from wallmaking import BARE, lengths_m, walls
+from scanplan import tables
+from scanplan.errors import StageError
+
+SETTINGS = {"assumed_thickness_m": 0.1, "assumed_height_m": 2.5, "map_cell_m": 0.05}
+TABLES = {
+    "faces": (tables.FACES, floorplanmaking.faces),
+    "walls": (tables.PLAN_WALLS, floorplanmaking.walls),
+    "openings": (tables.OPENINGS, floorplanmaking.openings),
+    "rooms": (tables.ROOMS, floorplanmaking.rooms),
+    "free": (tables.FREE, floorplanmaking.free),
+    "evidence": (tables.EVIDENCE, floorplanmaking.evidence),
+}
+NAMES = {
+    "geojson": "plan.geojson", "dxf": "plan.dxf", "svg": "plan.svg", "pdf": "plan.pdf", "ifc": "plan.ifc",
+    "pgm": "map.pgm", "yaml": "map.yaml",
+}  # fmt: skip
 
 
 @pytest.fixture
-def exported(tmp_path):
-    def run(folder):
-        outputs = [tmp_path / folder / f"plan.{suffix}" for suffix in ("geojson", "svg", "dxf")]
-        export_plan(tmp_path / "faces.parquet", *outputs, name="office")
-        return outputs
-
-    merged = faces.merge(walls([(0, 0, 4, 3), (10, 0, 10, 2)]), faces.MergeSettings(**BARE))
-    tables.write(tmp_path / "faces.parquet", tables.FACES, merged)
-    return run, merged
+def plan(tmp_path):
+    paths = {name: tmp_path / f"{name}.parquet" for name in TABLES}
+    for name, (schema, made) in TABLES.items():
+        tables.write(paths[name], schema, made())
+    return paths
 
 
-def test_all_three_files_hold_the_same_faces(exported):
-    run, merged = exported
-    geojson, svg, dxf = run("plan")
-    stated = [f["properties"]["length_m"] for f in json.loads(geojson.read_text())["features"]]
-    lines = ezdxf.readfile(dxf).modelspace().query("LINE")
-    np.testing.assert_allclose(stated, lengths_m(merged), atol=1e-4)
-    np.testing.assert_allclose([line.dxf.start.distance(line.dxf.end) for line in lines], lengths_m(merged))
-    drawn = [e.get("id") for e in ElementTree.parse(svg).iter() if (e.get("id") or "").startswith("face-")]
-    assert drawn == ["face-0", "face-1"]
+def exported(plan, folder):
+    outputs = {kind: folder / name for kind, name in NAMES.items()}
+    export_plan(plan, outputs, name="office", settings=SETTINGS)
+    return outputs
 
 
-def test_a_second_run_gives_the_same_bytes(exported):
-    run, _ = exported
-    assert [f.read_bytes() for f in run("once")] == [f.read_bytes() for f in run("again")]
+def test_all_files_hold_the_same_plan(plan, tmp_path):
+    files = exported(plan, tmp_path / "plan")
+    kinds = [f["properties"]["kind"] for f in json.loads(files["geojson"].read_text())["features"]]
+    assert [kinds.count(kind) for kind in ("face", "wall", "opening", "room")] == [9, 6, 3, 2]
+    assert len(ezdxf.readfile(files["dxf"]).modelspace().query('LWPOLYLINE[layer=="ROOMS"]')) == 2
+    assert len(ifcopenshell.open(files["ifc"]).by_type("IfcWall")) == 6
+    drawn = {e.get("id") for e in ElementTree.parse(files["svg"]).iter()}
+    assert {"door-0", "door-1", "window-2"} <= drawn
+    assert files["pdf"].read_bytes().startswith(b"%PDF")
+    about = yaml.safe_load(files["yaml"].read_text())
+    with Image.open(files["yaml"].parent / about["image"]) as image:
+        width, height = image.size
+    assert (width * about["resolution"], height * about["resolution"]) == pytest.approx((8.4, 4.4), abs=0.11)
+
+
+def test_a_second_run_gives_the_same_bytes(plan, tmp_path):
+    once, again = (exported(plan, tmp_path / folder) for folder in ("once", "again"))
+    assert {kind: file.read_bytes() for kind, file in once.items()} == {k: f.read_bytes() for k, f in again.items()}
+
+
+def test_faces_alone_are_enough(plan, tmp_path):
+    tables.write(plan["walls"], tables.PLAN_WALLS, floorplanmaking.walls([]), allow_empty=True)
+    tables.write(plan["openings"], tables.OPENINGS, floorplanmaking.openings([]), allow_empty=True)
+    tables.write(plan["rooms"], tables.ROOMS, floorplanmaking.rooms([]), allow_empty=True)
+    tables.write(plan["free"], tables.FREE, floorplanmaking.free([]), allow_empty=True)
+    nobody = {name: values[:0] for name, values in floorplanmaking.evidence().items()}
+    tables.write(plan["evidence"], tables.EVIDENCE, nobody, allow_empty=True)
+    files = exported(plan, tmp_path / "plan")
+    assert all(file.stat().st_size > 100 for file in files.values())
+
+
+def test_a_plan_of_nothing_is_told(plan, tmp_path):
+    tables.write(plan["faces"], tables.FACES, floorplanmaking.faces([]), allow_empty=True)
+    with pytest.raises(StageError, match="no rows"):
+        exported(plan, tmp_path / "plan")

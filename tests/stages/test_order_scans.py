@@ -5,7 +5,7 @@ import pytest
 import shapely
 
 import order_scans
-from scanplan import orderings, tables
+from scanplan import methods, orderings, schemas, tables
 from scanplan.errors import StageError
 
 
@@ -26,18 +26,46 @@ def hulls(tmp_path):
     return write_hulls(tmp_path / "hulls.parquet", [shapely.box(i, 0, i + 2 + i % 3, 1) for i in range(12)])
 
 
+def write_others(folder, method, n):
+    """Write the tables that a method needs, of n scans."""
+    ids, zeros = np.arange(n) * 5, np.zeros(n)
+    columns = {
+        "visibility": (
+            schemas.VISIBILITY,
+            {"area_m2": zeros + 2, "geometry": shapely.to_wkb(shapely.box(ids, 0, ids + 2, 1))},
+        ),
+        "observations": (
+            schemas.OBSERVATIONS,
+            {"facing": zeros.astype(int), "along": ids // 7, "across": zeros.astype(int), "length_m": zeros + 0.2},
+        ),
+        "registration": (
+            schemas.REGISTRATION,
+            {"t_ns": ids, "kept": zeros == 0, "reason": ["kept"] * n}
+            | dict.fromkeys(("prior_fitness", "refined_fitness", "rmse_m", "qx", "qy", "qz", "y_m", "z_m"), zeros)
+            | {"qw": zeros + 1, "x_m": ids.astype(float)},
+        ),
+    }
+    written = {table: folder / f"{table}.parquet" for table in methods.TABLES[method]}
+    for table, path in written.items():
+        schema, values = columns[table]
+        tables.write(path, schema, {"scan_id": ids, **values})
+    return written
+
+
 @pytest.mark.parametrize("method", orderings.METHODS)
 def test_an_order_of_all_scans(hulls, tmp_path, caplog, method):
     caplog.set_level(logging.INFO)
     output = tmp_path / "selection" / f"{method}.parquet"
-    order_scans.order_scans(hulls, output, method=method, seed=1)
+    options = {"method": method, "seed": 1, "others": write_others(tmp_path, method, 12)}
+    order_scans.order_scans(hulls, output, **options)
     selection = tables.read(output, tables.SELECTION)
     assert sorted(selection["scan_id"]) == list(range(0, 60, 5))
     assert selection["covered_m2"][-1] == pytest.approx(15)
     assert (selection["bound_m2"] >= selection["covered_m2"]).all()
-    assert f"order_scans: {method}, 12 scans, 15.0 m2; 99% at " in caplog.text
+    covered = {"visibility": "24.0 m2", "wall_length": "1.6 m"}.get(method, "15.0 m2")
+    assert f"order_scans: {method}, 12 scans, {covered}; 99% of the area at " in caplog.text
     again = tmp_path / "again.parquet"
-    order_scans.order_scans(hulls, again, method=method, seed=1)
+    order_scans.order_scans(hulls, again, **options)
     assert again.read_bytes() == output.read_bytes()
 
 

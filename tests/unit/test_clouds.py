@@ -1,16 +1,17 @@
 import numpy as np
-import pytest
 
 from scanplan import clouds
+from scanplan.sweeptimes import Convention
 
 T_NS = 1_700_000_000_250_000_000
 
 
 def test_range_and_finite_mask_goes_over_points_and_times():
     xyz_m = np.array([[1, 0, 0], [np.nan, 0, 0], [0, 0.05, 0], [0, 3, 0], [0, 0, np.inf], [0, 0, 2], [0, 0, 0]])
-    scan = clouds.within_range(3, T_NS, xyz_m, np.arange(7) / 10, min_range_m=0.1, max_range_m=2.0)
+    given = {"min_range_m": 0.1, "max_range_m": 2.0, "sweep_times": Convention("s", "stamp")}
+    scan = clouds.within_range(3, T_NS, xyz_m, np.arange(7) / 20, **given)
     np.testing.assert_array_equal(scan.xyz_m, [[1, 0, 0], [0, 0, 2]])
-    np.testing.assert_allclose(scan.time_s, [0, 0.5])
+    np.testing.assert_allclose(scan.time_s, [0, 0.25])
     assert (scan.scan_id, scan.t_ns, scan.n_dropped, scan.xyz_m.dtype) == (3, T_NS, 5, np.float32)
 
 
@@ -19,27 +20,15 @@ def test_all_points_dropped():
     assert (scan.xyz_m.shape, scan.time_s, scan.n_dropped) == ((0, 3), None, 4)
 
 
-@pytest.mark.parametrize(
-    ("raw", "seconds"),
-    [
-        (np.array([0, 50_000_000], np.uint32), [0, 0.05]),
-        (np.array([-0.1, 0.0], np.float32), [-0.1, 0]),
-        (np.array([T_NS, T_NS + 50_000_000], np.float64), [0, 0.05]),
-        (np.array([T_NS / 1e9, T_NS / 1e9 + 0.05]), [0, 0.05]),
-        (np.array([0.0, 0.0]), [0, 0]),
-    ],
-)
-def test_time_conventions(raw, seconds):
-    np.testing.assert_allclose(clouds.relative_time(raw, T_NS), seconds, atol=1e-6)
-
-
-@pytest.mark.parametrize("raw", [[0, 1.5], [0, np.nan], [T_NS / 1e9 - 5, T_NS / 1e9]])
-def test_implausible_times_are_none(raw):
-    assert clouds.relative_time(np.array(raw), T_NS) is None
-
-
-def test_no_times_of_no_points():
-    assert clouds.relative_time(np.empty(0, np.float32), T_NS).shape == (0,)
+def test_times_that_are_no_sweep_are_none():
+    given = {"min_range_m": 0.1, "max_range_m": 2.0, "sweep_times": Convention("s", "stamp")}
+    xyz_m = np.ones((3, 3), np.float32)
+    for raw in ([0, 0.4, 0.6], [0, np.nan, 0.1], [2.0, 2.1, 2.1]):
+        assert clouds.within_range(0, T_NS, xyz_m, np.array(raw), **given).time_s is None
+    # a point that is dropped may carry any time
+    xyz_m[1] = np.nan
+    scan = clouds.within_range(0, T_NS, xyz_m, np.array([0, np.nan, 0.1]), **given)
+    np.testing.assert_allclose(scan.time_s, [0, 0.1])
 
 
 def test_planes():

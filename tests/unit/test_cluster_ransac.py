@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -49,7 +51,7 @@ def test_every_wall_of_the_room_in_space(seed):
     found = extract(toyrooms.vlp16(seed=seed))
     check_toy_room(found)
     assert (np.diff(found.n_points) <= 0).all()
-    assert found.rmse_m == pytest.approx(0.009, abs=0.003)
+    assert found.rmse_m == pytest.approx(0.009, abs=0.0035)
     assert (found.z_range_m[:, 0] > -0.05).all()
     assert (found.z_range_m[:, 1] < toyrooms.HEIGHT_M + 0.05).all()
 
@@ -160,10 +162,14 @@ def test_one_wall_in_99_percent_of_outliers():
     draw = np.random.default_rng(1)
     wall = np.column_stack([np.full(400, 3.0), draw.uniform(-1.5, 1.5, 400), draw.uniform(-0.8, 0.8, 400)])
     dust = draw.uniform(-20, 20, (39_600, 3)) * (1, 1, 0.1)
-    found = extract(np.vstack([wall, dust]), (0, 0, 0))
+    points = np.vstack([wall, dust])
+    lenient = replace(SETTINGS, over_share=1.0, through_share=np.inf, missing_share=1.0, wall_height_m=0.0)
+    found = extract(points, (0, 0, 0), settings=lenient)
     assert len(found) >= 1
     assert found.start_m[0, 0] == pytest.approx(3, abs=0.02)
     assert found.normal[0] == pytest.approx([-1, 0], abs=0.02)
+    # most rays pass through it: what is behind it was met
+    assert len(extract(points, (0, 0, 0))) == 0
 
 
 def test_points_must_be_finite():

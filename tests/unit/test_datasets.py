@@ -22,6 +22,7 @@ def put(path, content="x"):
         ("rec 1.db3", "rec_1"),
         ("1.2.mcap", "1.2"),
         ("not.a.recording", "not.a.recording"),
+        ("surveys/ring.yaml", "ring"),
     ],
 )
 def test_name_of(given, name):
@@ -131,3 +132,9 @@ def test_refuses_what_is_missing_or_no_recording(tmp_path):
         datasets.find_files(put(tmp_path / "a.txt"))
     with pytest.raises(StageError, match="did not close"):
         datasets.find_files(put(tmp_path / "a.bag.active"))
+
+
+def test_a_survey_file_is_told_from_a_folder(tmp_path):
+    (tmp_path / "run.yaml").mkdir()
+    assert datasets.is_survey_file("a.yaml") and datasets.is_survey_file("a.yml")
+    assert not datasets.is_survey_file(tmp_path / "run.yaml") and not datasets.is_survey_file("a.bag")

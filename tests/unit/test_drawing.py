@@ -1,20 +1,22 @@
 import itertools
 import re
+from dataclasses import replace
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from scanplan import drawing, faces
-from wallmaking import BARE, walls
+import floorplanmaking
+from floorplanmaking import bare
+from scanplan import drawing
 
 _POINTS_PER_MM = 72 / 25.4
 
 
 @pytest.fixture
-def merged():
-    return faces.merge(walls([(0, 0, 12, 0), (0, 8, 0, 0), (12, 0, 12, 8)]), faces.MergeSettings(**BARE))
+def plan():
+    return bare([(0, 0, 12, 0, -1), (0, 8, 0, 0, -1), (12, 0, 12, 8, -1)])
 
 
 def groups(text):
@@ -34,14 +36,14 @@ def path_length_mm(element):
     return np.hypot(*np.diff(path_points(element), axis=0).T).sum() / _POINTS_PER_MM
 
 
-def test_faces_are_drawn_at_the_scale_that_is_stated(merged):
-    text = drawing.svg(drawing.plan(merged, "office"))
+def test_faces_are_drawn_at_the_scale_that_is_stated(plan):
+    text = drawing.svg(drawing.plan(plan))
     assert any("scale 1:50" in said for said in texts(text))
-    assert path_length_mm(groups(text)["face-0"]) == pytest.approx(12_000 / 50, abs=0.01)
+    assert path_length_mm(groups(text)["single-observed-0"]) == pytest.approx(12_000 / 50, abs=0.01)
 
 
-def test_scale_bar_is_drawn_at_the_scale_that_is_stated(merged):
-    text = drawing.svg(drawing.plan(merged, "office"))
+def test_scale_bar_is_drawn_at_the_scale_that_is_stated(plan):
+    text = drawing.svg(drawing.plan(plan))
     assert "2 m" in texts(text)
     low, high = groups(text)["scale-bar-0"], groups(text)["scale-bar-3"]
     starts = [
@@ -50,23 +52,47 @@ def test_scale_bar_is_drawn_at_the_scale_that_is_stated(merged):
     assert (starts[1] - starts[0]) / _POINTS_PER_MM == pytest.approx(2000 / 50 * 3 / 4, abs=0.01)
 
 
-def test_it_says_what_it_shows(merged):
-    said = texts(drawing.svg(drawing.plan(merged, "office")))
+def test_it_says_what_it_shows(plan):
+    said = texts(drawing.svg(drawing.plan(plan)))
     assert "office" in said
-    assert any("3 wall faces, 28.0 m in all" in line for line in said)
+    assert any("3 wall faces" in line for line in said)
     assert any("north unknown" in line for line in said)
     assert {"12.00", "8.00"} <= set(said)
 
 
-def test_the_same_faces_give_the_same_bytes(merged):
-    assert drawing.svg(drawing.plan(merged, "office")) == drawing.svg(drawing.plan(merged, "office"))
-    assert "<dc:date>" not in drawing.svg(drawing.plan(merged, "office"))
+def test_the_same_plan_give_the_same_bytes(plan):
+    assert drawing.svg(drawing.plan(plan)) == drawing.svg(drawing.plan(plan))
+    assert "<dc:date>" not in drawing.svg(drawing.plan(plan))
+
+
+def test_walls_openings_and_rooms_are_drawn():
+    text = drawing.svg(drawing.plan(floorplanmaking.plan()))
+    drawn = set(groups(text))
+    assert {"walls-observed-0", "walls-inferred-0", "door-0", "door-1", "window-2", "single-observed-0"} <= drawn
+    said = "\n".join(texts(text))
+    assert "Room 0" in said and "12.0 m²" in said and "9.0 m²" in said
+    assert "inferred wall" in said and "thickness not known" in said
+    assert {"0.90", "1.00", "1.20"} <= set(texts(text))
+
+
+def test_an_area_of_an_open_room_is_told_as_such():
+    rooms = floorplanmaking.rooms() | {"closed": np.array([True, False])}
+    assert "about 9.0 m²" in "\n".join(texts(drawing.svg(drawing.plan(floorplanmaking.plan(rooms=rooms)))))
+
+
+def test_pdf_is_one_page_of_the_same_bytes_and_size():
+    made = drawing.pdf(drawing.plan(floorplanmaking.plan()))
+    assert made == drawing.pdf(drawing.plan(floorplanmaking.plan()))
+    assert made.startswith(b"%PDF") and b"CreationDate" not in made
+    (box,) = re.findall(rb"/MediaBox \[ 0 0 ([\d.]+) ([\d.]+) \]", made)
+    svg = ElementTree.fromstring(drawing.svg(drawing.plan(floorplanmaking.plan())))
+    size = [float(svg.get(side).removesuffix("pt")) for side in ("width", "height")]
+    assert np.array(box, float) == pytest.approx(size, abs=0.01)
 
 
 @pytest.mark.parametrize("segment", [(0, 0, 0.3, 0), (0, 0, 900, 400), (3, 0, 3, 40)])
 def test_everything_lies_on_the_page_and_no_text_on_another(segment):
-    merged = faces.merge(walls([segment], n_points=10_000), faces.MergeSettings(**BARE))
-    figure = drawing.plan(merged, "W" * 100)
+    figure = drawing.plan(replace(bare([(*segment, -1)]), name="W" * 100))
     renderer = FigureCanvasAgg(figure).get_renderer()
     boxes = [text.get_window_extent(renderer) for text in figure.axes[0].texts if text.get_text()]
     page = figure.bbox
@@ -78,8 +104,7 @@ def test_everything_lies_on_the_page_and_no_text_on_another(segment):
 
 @pytest.mark.parametrize("segment", [(0, 0, 0.3, 0), (5, 5, 5, 9), (0, 0, 900, 400)])
 def test_one_face_of_any_size_can_be_drawn(segment):
-    merged = faces.merge(walls([segment], n_points=10_000), faces.MergeSettings(**BARE))
-    ElementTree.fromstring(drawing.svg(drawing.plan(merged, "$one_face^")))
+    ElementTree.fromstring(drawing.svg(drawing.plan(replace(bare([(*segment, -1)]), name="$one_face^"))))
 
 
 @pytest.mark.parametrize(("extent_m", "scale"), [((3.8, 2.6), 10), ((3.9, 1), 20), ((1, 26), 100), ((30, 30), 200)])

@@ -184,7 +184,7 @@ class TestWhole:
         table = observed(ARENA, np.random.default_rng(seed), n_scans=5, sigma_m=0.03)
         expected = moved(merge(table, **SETTINGS), yaw_rad, shift_m)
         actual = merge(moved(table, yaw_rad, shift_m), **SETTINGS)
-        for column in actual:
+        for column in set(actual) - {"state"}:
             np.testing.assert_allclose(actual[column], expected[column], atol=1e-6)
 
     @given(st.integers(0, 2**32 - 1), st.sampled_from([0.01, 0.03, 0.06]))

@@ -13,7 +13,8 @@ def ordering(covered_m2):
     covered = np.array(covered_m2, float)
     rank = np.arange(1, len(covered) + 1, dtype=np.int32)
     gain = np.diff(covered, prepend=0)
-    return {"rank": rank, "scan_id": rank, "gain_m2": gain, "covered_m2": covered, "bound_m2": covered * 1.2}
+    areas = {"gain_m2": gain, "covered_m2": covered, "bound_m2": covered * 1.2}
+    return {"rank": rank, "scan_id": rank, **areas, "gain": gain, "covered": covered, "bound": covered * 1.2}
 
 
 @pytest.fixture

@@ -3,7 +3,8 @@ import pytest
 import shapely
 from shapely import box
 
-from scanplan import orderings, tables
+from scanplan import methods, orderings, tables
+from scanplan.errors import StageError
 
 # scan 3 covers two far boxes (its one hull is 12), scan 8 one box, scan 20 that box and a strip, scan 21 nothing
 SCANS = {
@@ -20,16 +21,43 @@ def columns(scans=SCANS):
     return {n: np.array([r[j] for r in rows], object if n == "geometry" else None) for j, n in enumerate(names)}
 
 
+def others(scan_ids):
+    """Free space of 1, 2, 3, ... m2; scan i shows cells i and i + 1, the later the longer; ever longer steps."""
+    n = len(scan_ids)
+    free = shapely.box(np.arange(n) * 10, 0, np.arange(n) * 10 + np.arange(1, n + 1), 1)
+    cells = np.arange(n)[:, None] + [0, 1]
+    return {
+        "visibility": {"scan_id": np.array(scan_ids), "geometry": shapely.to_wkb(free)},
+        "observations": {
+            "scan_id": np.repeat(scan_ids, 2),
+            "facing": np.zeros(2 * n, np.int32),
+            "along": cells.ravel(),
+            "across": np.zeros(2 * n, np.int32),
+            "length_m": np.repeat(np.arange(1.0, n + 1), 2),
+        },
+        "registration": {"scan_id": np.array(scan_ids), "x_m": np.arange(n) ** 2.0, "y_m": np.zeros(n)},
+    }
+
+
+def order(method, columns, *, seed=0, **options):
+    known = others(np.unique(columns["scan_id"]).tolist())
+    return orderings.order(method, columns, seed=seed, others={t: known[t] for t in methods.TABLES[method]}, **options)
+
+
 @pytest.mark.parametrize(
     ("method", "scan_ids", "covered_m2"),
     [
+        ("visibility", [21, 20, 8, 3], [0, 5, 5, 7]),
+        ("wall_length", [21, 8, 3, 20], [0, 4, 6, 7]),
+        ("every_nth", [3, 20, 8, 21], [2, 7, 7, 7]),
+        ("distance", [3, 21, 20, 8], [2, 2, 7, 7]),
         ("cluster_hull", [20, 3, 8, 21], [5, 7, 7, 7]),
         ("hull", [3, 20, 8, 21], [12, 17, 17, 17]),
         ("sequential", [3, 8, 20, 21], [2, 6, 7, 7]),
     ],
 )
 def test_orders_on_paper(method, scan_ids, covered_m2):
-    found = orderings.order(method, columns(), seed=0)
+    found = order(method, columns())
     assert list(found) == list(tables.SELECTION.columns)
     assert found["rank"].tolist() == [1, 2, 3, 4]
     assert found["scan_id"].tolist() == scan_ids
@@ -47,7 +75,8 @@ def test_random_is_a_permutation_drawn_with_the_seed():
 
 @pytest.mark.parametrize("method", orderings.METHODS)
 def test_bound_is_above_every_order_of_the_same_polygons(method):
-    found = orderings.order(method, columns(), seed=0)
+    found = order(method, columns())
+    assert (found["bound"] >= found["covered"]).all()
     assert (found["bound_m2"] >= found["covered_m2"]).all()
     if method != "hull":
         assert found["bound_m2"].tolist() == pytest.approx([5, 7, 7, 7], abs=1e-5)
@@ -55,9 +84,10 @@ def test_bound_is_above_every_order_of_the_same_polygons(method):
 
 @pytest.mark.parametrize("method", orderings.METHODS)
 def test_one_scan_and_no_area(method):
-    one = orderings.order(method, columns({5: SCANS[8]}), seed=0)
-    assert [one[n].tolist() for n in one] == [[1], [5], [4.0], [4.0], [4.0]]
-    nothing = orderings.order(method, columns({2: SCANS[21]}), seed=0)
+    one = order(method, columns({5: SCANS[8]}))
+    own = {"wall_length": [2.0], "visibility": [1.0]}.get(method, [4.0])
+    assert [one[n].tolist() for n in one] == [[1], [5], [4.0], [4.0], [4.0], own, own, own]
+    nothing = order(method, columns({2: SCANS[21]}))
     assert nothing["covered_m2"].tolist() == nothing["bound_m2"].tolist() == [0.0]
     assert "first 1 cover at least 100 %" in orderings.summary(method, nothing)
 
@@ -65,10 +95,50 @@ def test_one_scan_and_no_area(method):
 def test_summary():
     found = orderings.order("sequential", columns(), seed=0)
     assert orderings.summary("sequential", found) == (
-        "sequential, 4 scans, 7.0 m2; 99% at 3 scans; first 4 cover at least 100 % of what any 4 could"
+        "sequential, 4 scans, 7.0 m2; 99% of the area at 3 scans; first 4 cover at least 100 % of what any 4 could"
     )
+    assert orderings.summary("wall_length", order("wall_length", columns())).startswith("wall_length, 4 scans, 14.0 m;")
+
+
+def test_own_units_are_those_of_the_objective():
+    # cells of scans 3, 8, 20, 21: 1 1; 2 2; 3 3; 4 4, each scan's second is the next one's first
+    walls = order("wall_length", columns())
+    assert walls["gain"].tolist() == [8, 4, 1, 1] and walls["covered"].tolist() == [8, 12, 13, 14]
+    free = order("visibility", columns())
+    assert free["gain"].tolist() == [*free["bound"][:1].tolist(), 3, 2, 1] == [4, 3, 2, 1]
+    for method in ("cluster_hull", "hull", "random", "sequential", "every_nth", "distance"):
+        found = order(method, columns())
+        for name in ("gain", "covered", "bound"):
+            np.testing.assert_array_equal(found[name], found[f"{name}_m2"])
+
+
+@pytest.mark.parametrize("method", ["wall_length", "visibility", "cluster_hull", "hull"])
+def test_an_overlap_changes_the_order_and_no_bound(method):
+    scans = {i: [box(3 * i, 0, 3 * i + 4 + i, 1)] for i in range(6)}
+    free, bound_to = order(method, columns(scans)), order(method, columns(scans), min_overlap=0.2)
+    assert sorted(bound_to["scan_id"]) == sorted(free["scan_id"])
+    np.testing.assert_array_equal(bound_to["bound"] >= free["covered"], True)
+    if method != "visibility":  # whose parts share nothing
+        assert bound_to["scan_id"].tolist() != free["scan_id"].tolist()
+
+
+@pytest.mark.parametrize("method", ["wall_length", "visibility", "distance"])
+def test_tables_of_other_scans_are_refused(method):
+    with pytest.raises(StageError, match="that have hulls; delete the results"):
+        orderings.order(method, columns(), seed=0, others=others([3, 8, 20, 22]))
+
+
+def test_scans_that_show_no_wall_come_last_by_id():
+    seen = others([3, 8, 20, 21])["observations"]
+    shown = {"observations": {name: values[2:4] for name, values in seen.items()}}
+    assert orderings.order("wall_length", columns(), seed=0, others=shown)["scan_id"].tolist() == [8, 3, 20, 21]
+    none = {"observations": {name: values[:0] for name, values in seen.items()}}
+    found = orderings.order("wall_length", columns(), seed=0, others=none)
+    assert found["scan_id"].tolist() == [3, 8, 20, 21] and found["covered"].tolist() == [0, 0, 0, 0]
 
 
 def test_refuses_an_unknown_method():
-    with pytest.raises(ValueError, match="cluster_hull, hull, random, sequential"):
+    with pytest.raises(
+        ValueError, match="only wall_length, visibility, cluster_hull, hull, every_nth, distance, random, sequential"
+    ):
         orderings.order("best", columns(), seed=0)

@@ -108,6 +108,14 @@ def test_a_share_of_the_localisers_pose_holds_the_chain():
     np.testing.assert_allclose([v.world_from_sensor for v in held], priors, atol=1e-9)
 
 
+def test_a_registered_survey_is_left_as_it_is():
+    scans, priors, _ = drive(4, planar=False)
+    priors[1], priors[2] = np.full((4, 4), np.nan), pose(40, 0, 77)
+    verdicts = register(scans, priors, False, icp_method="none")
+    assert [v.reason for v in verdicts] == ["kept", "pose_gap", "kept", "kept"]
+    np.testing.assert_array_equal([v.world_from_sensor for v in verdicts], priors)
+
+
 def test_each_gate_has_its_reason():
     scans, priors, _ = drive(3, planar=True)
     assert register(scans, priors, True, fitness_distance_m=0.005)[1].reason == "low_prior_fitness"

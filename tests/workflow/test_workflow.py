@@ -23,8 +23,8 @@ def project(project_root, tmp_path_factory):
 
 
 EVALUATED = {"evaluate_walls", "draw_evaluation"}
-AFTER_HULLS = {"build_hulls", "order_scans", "assemble_plan", "export_plan", "draw_scans", "draw_area", "draw_walls"}
-AFTER_HULLS |= EVALUATED
+AFTER_ORDERS = {"order_scans", "assemble_plan", "export_plan", "draw_scans", "draw_area", "draw_walls"} | EVALUATED
+AFTER_HULLS = {"build_hulls"} | AFTER_ORDERS
 
 
 def test_every_result_is_there_and_the_user_is_told(project):
@@ -62,6 +62,9 @@ def test_a_touched_file_reruns_nothing(project):
         ("plan: {merge: {tolerance_m: 0.08}}", {"assemble_plan", "export_plan", "draw_walls"}),
         ("plan: {method: sequential}", {"assemble_plan", "export_plan", "draw_scans", "draw_walls", "draw_evaluation"}),
         ("evaluation: {bitmap_cell_m: 0.1}", EVALUATED),
+        ("selection: {wall_length: {cell_m: 0.5}}", {"observe_walls"} | AFTER_ORDERS),
+        ("selection: {visibility: {range_m: 9.0}}", {"build_visibility", "order_scans", "draw_area"} | EVALUATED),
+        ("selection: {min_overlap: 0.1}", AFTER_ORDERS),
         (
             "walls: {cluster_ransac: {min_length_m: 0.7}}",
             {"extract_walls", "assemble_plan", "export_plan", "draw_walls"} | EVALUATED,
@@ -101,6 +104,20 @@ def test_a_truth_beside_the_recording_switches_evaluation_on(project):
     assert both <= project.would_run("--config", "dataset=house")
     (house / "truth_poses.tum").unlink()
     assert not both & project.would_run("--config", "dataset=house")
+
+
+def test_a_file_is_a_simulated_dataset_beside_recorded_ones(project):
+    (project.folder / "toy.yaml").write_text("simulate: {building: tiny_office}")
+    (project.folder / "other.yaml").write_text("simulate: {building: tiny_office, recording: mcap}")
+    house = project.folder / "recorded"
+    house.mkdir()
+    shutil.copy2(project.folder / "results/demo/survey/survey.bag", house)
+    listed = project.run(
+        "--dry-run", "--quiet", "reason", "--config", "dataset=[toy.yaml, recorded, other.yaml]"
+    ).stdout
+    assert "output: results/toy/survey/survey.bag" in listed and "output: results/other/survey/survey.mcap" in listed
+    assert "results/recorded/plan/plan.svg" in listed and "results/recorded/survey" not in listed
+    assert "results/toy/evaluation/walls.parquet" in listed and "results/recorded/evaluation" not in listed
 
 
 def test_one_stage_can_be_rerun(project):

@@ -1,51 +1,37 @@
 import os
 import re
 import sys
-from pathlib import Path
 
 sys.path.insert(0, f"{workflow.basedir}/scripts")
-from scanplan import configuration, datasets, sources
+from scanplan import configuration, experiments, inventory, methods, sources
 from scanplan.errors import StageError
 
-DEMO = "demo"
-METHODS = ["cluster_hull", "hull", "random", "sequential"]
-EXTRACTORS = ["cluster_ransac", "iterative_ransac"]
-FIGURES = ["scans", "area", "walls"]
-EVALUATION = [
-    "evaluation/walls.parquet",
-    "evaluation/walls_aligned.parquet",
-    "evaluation/oracle.parquet",
-    "evaluation/poses.parquet",
-    "figures/evaluation.svg",
-]
-PLANS = ["plan.geojson", "plan.svg", "plan.dxf"]
+SCHEMA = configuration.read_yaml(
+    f"{workflow.basedir}/workflow/schemas/config.schema.yaml"
+)
+METHODS = inventory.choices(SCHEMA, "plan", "method")
+EXTRACTORS = inventory.choices(SCHEMA, "plan", "extractor")
+
+
+KNOWN = {
+    "defaults": configuration.read_yaml(f"{workflow.basedir}/config/config.yaml"),
+    "overrides": workflow.config_settings.overwrite_config,
+    "schema": SCHEMA,
+}
 
 
 def given_datasets():
-    """Dataset folders by results name, as the user gave them; the simulated demo where none is given."""
-    given = config.get("dataset")
-    if given is None:
-        return {DEMO: None}
-    named = {}
-    for path in given if isinstance(given, list) else [given]:
-        name = datasets.name_of(str(path))
-        if name in named:
-            raise StageError(
-                f"{path}: its results would be called {name} like those of {named[name]}; rename one"
-            )
-        named[name] = str(path)
-    return named
+    """The datasets that the user gave, by name; the simulated demo where none is given."""
+    drawings = f"{workflow.basedir}/config/buildings"
+    return {
+        name: inventory.dataset(name, path, drawings=drawings, **KNOWN)
+        for name, path in inventory.named(config.get("dataset")).items()
+    }
 
 
-def settings_of(path):
-    """Checked settings of one dataset: defaults, its dataset.yaml, then what the command line gave."""
-    base = Path(workflow.basedir)
-    schema = configuration.read_yaml(base / "workflow/schemas/config.schema.yaml")
-    defaults = configuration.read_yaml(base / "config/config.yaml")
-    own = None if path is None else Path(path) / "dataset.yaml"
-    return configuration.for_dataset(
-        defaults, own, workflow.config_settings.overwrite_config, schema
-    )
+def thesis_surveys():
+    """The surveys of the thesis's experiments, by kind."""
+    return experiments.surveys(config=f"{workflow.basedir}/config", **KNOWN)
 
 
 def or_end(function, *arguments):
@@ -57,33 +43,24 @@ def or_end(function, *arguments):
         raise SystemExit(1)
 
 
-DATASETS = or_end(given_datasets)
-SETTINGS = {name: or_end(settings_of, path) for name, path in DATASETS.items()}
-SIMULATED = (
-    f"survey.{SETTINGS[DEMO]['simulate']['recording']}"
-    if DEMO in SETTINGS
-    else "survey.bag"
-)
-RECORDINGS = {
-    name: (
-        [f"results/{name}/survey/{SIMULATED}"]
-        if path is None
-        else or_end(datasets.find_files, path)
+GIVEN = or_end(given_datasets)
+THESIS = or_end(thesis_surveys)
+# jobs are worked out for what is asked for; these are all that could be
+DATASETS = GIVEN | {found.name: found for kind in THESIS.values() for found in kind}
+
+
+def any_of(names):
+    """A wildcard's constraint to some names; to nothing where there is none."""
+    return "|".join(map(re.escape, names)) or "(?!)"
+
+
+def simulated_as(suffix):
+    """Names of the simulated datasets whose recording has a suffix."""
+    return any_of(
+        name
+        for name, dataset in DATASETS.items()
+        if dataset.building and dataset.settings["simulate"]["recording"] == suffix
     )
-    for name, path in DATASETS.items()
-}
-
-
-def truth_of(name, path):
-    """True walls and true sensor poses of a dataset, or None where they are not known."""
-    if path is None:
-        folder = f"results/{name}/survey"
-        return [f"{folder}/truth.geojson", f"{folder}/truth_poses.tum"]
-    files = [Path(path) / "truth.geojson", Path(path) / "truth_poses.tum"]
-    return list(map(str, files)) if all(file.is_file() for file in files) else None
-
-
-TRUTHS = {name: truth_of(name, path) for name, path in DATASETS.items()}
 
 
 def code_of(script):
@@ -96,7 +73,7 @@ def setting(section, *keys):
     """A param function that looks a section, or one key of it, up in the settings of the job's dataset."""
 
     def look_up(wildcards):
-        value = SETTINGS[wildcards.dataset][section]
+        value = DATASETS[wildcards.dataset].settings[section]
         for key in keys:
             value = value[key]
         return value
@@ -105,41 +82,65 @@ def setting(section, *keys):
 
 
 def topics_and_frames(wildcards):
-    """Settings of the input that poses depend on: all but the ranges."""
-    reading = SETTINGS[wildcards.dataset]["input"]
+    """Settings of the input that poses depend on: all but what is done to the points."""
+    reading = DATASETS[wildcards.dataset].settings["input"]
     return {
-        key: value for key, value in reading.items() if not key.endswith("_range_m")
+        key: value
+        for key, value in reading.items()
+        if key not in ("min_range_m", "max_range_m", "deskew")
     }
 
 
 def extractor_settings(wildcards):
     """Settings of the job's wall extractor."""
-    return SETTINGS[wildcards.dataset]["walls"][wildcards.extractor]
+    return DATASETS[wildcards.dataset].settings["walls"][wildcards.extractor]
+
+
+def observation_settings(wildcards):
+    """What makes returns a wall: settings of the thesis's extractor that a scan can be judged by, and of the cells."""
+    settings = DATASETS[wildcards.dataset].settings
+    limits = settings["walls"]["cluster_ransac"]
+    own = settings["selection"]["wall_length"]
+    return {name: limits[name] for name in methods.WALL_LIMITS} | own
+
+
+def order_tables(wildcards):
+    """The tables that the job's method needs, by name, beside that of the hulls."""
+    tables = methods.TABLES[wildcards.method]
+    return {table: f"results/{wildcards.dataset}/{table}.parquet" for table in tables}
+
+
+def plan_settings(wildcards):
+    """Settings of the plan's own stage, part by part."""
+    plan = DATASETS[wildcards.dataset].settings["plan"]
+    return {part: plan[part] for part in plan if part not in ("method", "extractor", "export")}
 
 
 def recordings(wildcards):
     """Files that hold a dataset's clouds and poses."""
-    return RECORDINGS[wildcards.dataset]
+    return DATASETS[wildcards.dataset].recordings
 
 
 def true_faces(wildcards):
     """The true walls of a dataset."""
-    return TRUTHS[wildcards.dataset][0]
+    return DATASETS[wildcards.dataset].truth[0]
 
 
 def true_poses(wildcards):
     """The true sensor poses of a dataset."""
-    return TRUTHS[wildcards.dataset][1]
+    return DATASETS[wildcards.dataset].truth[1]
 
 
 def plan_selection(wildcards):
     """The ordering whose first scans make the plan."""
-    return f"results/{wildcards.dataset}/selection/{SETTINGS[wildcards.dataset]['plan']['method']}.parquet"
+    method = DATASETS[wildcards.dataset].settings["plan"]["method"]
+    return f"results/{wildcards.dataset}/selection/{method}.parquet"
 
 
 def plan_walls(wildcards):
     """The walls that make the plan."""
-    return f"results/{wildcards.dataset}/walls/{SETTINGS[wildcards.dataset]['plan']['extractor']}.parquet"
+    extractor = DATASETS[wildcards.dataset].settings["plan"]["extractor"]
+    return f"results/{wildcards.dataset}/walls/{extractor}.parquet"
 
 
 def all_selections(wildcards):
@@ -158,44 +159,68 @@ def all_walls(wildcards):
 
 
 def building(wildcards):
-    """The file of the building that the demo is simulated in: a path, or the name of a drawing of ours."""
-    named = SETTINGS[DEMO]["simulate"]["building"]
-    drawing = f"{workflow.basedir}/config/buildings/{named}.geojson"
-    return os.path.relpath(drawing) if Path(drawing).exists() else named
+    """The file of the building that a dataset is simulated in."""
+    return DATASETS[wildcards.dataset].building
 
 
 def simulated_survey(wildcards):
     """Settings of the simulated rover."""
+    survey = DATASETS[wildcards.dataset].settings["simulate"]
     return {
         key: value
-        for key, value in SETTINGS[DEMO]["simulate"].items()
+        for key, value in survey.items()
         if key not in ("building", "recording")
     }
 
 
+def all_settings(wildcards):
+    """All settings of the job's dataset."""
+    return DATASETS[wildcards.dataset].settings
+
+
+def report_figures(wildcards):
+    """The figures of a dataset, those of the evaluation last."""
+    return [
+        file
+        for file in results_of(wildcards.dataset)
+        if "/figures/" in file and file.endswith(".svg")
+    ]
+
+
+def report_evaluation(wildcards):
+    """The measured walls of a dataset, if its truth is known."""
+    known = DATASETS[wildcards.dataset].truth
+    return [f"results/{wildcards.dataset}/evaluation/walls.parquet"] if known else []
+
+
+def report_page(wildcards):
+    """HTML, style and script that the report is made from."""
+    return [
+        os.path.relpath(f"{workflow.basedir}/workflow/report/page/page.{suffix}")
+        for suffix in ("html", "css", "js")
+    ]
+
+
+def report_results(wildcards):
+    """The tables and plans whose sizes the report states."""
+    return [
+        file
+        for file in results_of(wildcards.dataset)
+        if not file.endswith((".html", ".svg"))
+    ]
+
+
 def results_of(name):
     """Everything the workflow makes of one dataset."""
-    files = [
-        "poses.parquet",
-        "registration.parquet",
-        "scans.parquet",
-        "hulls.parquet",
-        "plan/faces.parquet",
-    ]
-    files += [f"selection/{method}.parquet" for method in METHODS]
-    files += [f"walls/{extractor}.parquet" for extractor in EXTRACTORS]
-    files += [f"plan/{plan}" for plan in PLANS]
-    files += [f"figures/{figure}.svg" for figure in FIGURES]
-    files += EVALUATION if TRUTHS[name] else []
-    return [f"results/{name}/{file}" for file in files]
+    return inventory.results(DATASETS[name], METHODS, EXTRACTORS)
 
 
 def all_results():
     """Everything the workflow makes of the given datasets."""
-    return [file for name in DATASETS for file in results_of(name)]
+    return [file for name in GIVEN for file in results_of(name)]
 
 
 wildcard_constraints:
-    dataset="|".join(map(re.escape, DATASETS)),
-    method="|".join(METHODS),
-    extractor="|".join(EXTRACTORS),
+    dataset=any_of(DATASETS),
+    method=any_of(METHODS),
+    extractor=any_of(EXTRACTORS),

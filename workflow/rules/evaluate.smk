@@ -26,6 +26,35 @@ rule evaluate_walls:
         "../../scripts/evaluate_walls.py"
 
 
+rule evaluate_plan:
+    """Measure the plan against the true one."""
+    input:
+        faces="results/{dataset}/plan/faces.parquet",
+        walls="results/{dataset}/plan/walls.parquet",
+        openings="results/{dataset}/plan/openings.parquet",
+        rooms="results/{dataset}/plan/rooms.parquet",
+        evidence="results/{dataset}/plan/evidence.parquet",
+        registration="results/{dataset}/registration.parquet",
+        truth=true_faces,
+        true_poses=true_poses,
+        code=code_of("evaluate_plan"),
+    output:
+        plan="results/{dataset}/evaluation/plan.parquet",
+    log:
+        "logs/{dataset}/evaluate_plan.log",
+    benchmark:
+        "benchmarks/{dataset}/evaluate_plan.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    params:
+        max_range_m=setting("input", "max_range_m"),
+        settings=setting("evaluation"),
+    script:
+        "../../scripts/evaluate_plan.py"
+
+
 rule evaluate_poses:
     """Measure the registered poses against the true ones, before and after refinement."""
     input:
@@ -59,6 +88,12 @@ rule draw_evaluation:
             caption="../report/evaluation.rst",
             category="{dataset}",
             labels={"figure": "5 walls against the truth"},
+        ),
+        shares=report(
+            "results/{dataset}/figures/oracle_shares.svg",
+            caption="../report/oracle_shares.rst",
+            category="{dataset}",
+            labels={"figure": "6 orderings against the oracle"},
         ),
     log:
         "logs/{dataset}/draw_evaluation.log",

@@ -1,14 +1,10 @@
 import fcntl
-import json
 import os
-import subprocess
 import sys
 import time
 from pathlib import Path
 
 LOCK = ".snakemake/scanplan.lock"
-# set for the report that a run makes of itself at its end
-OWN_REPORT = "SCANPLAN_OWN_REPORT"
 
 
 def lock():
@@ -33,53 +29,18 @@ def run_alone():
 
 
 def tell_results():
-    """After a whole run, write each dataset's report and say where plan and report lie."""
+    """After a whole run, say where each dataset's plan and report lie."""
+    if "thesis" in workflow.dag_settings.targets:
+        print("\nreport:  results/thesis/report.html", file=sys.stderr)
     if workflow.dag_settings.targets:
         return
-    for name in DATASETS:
+    for name in GIVEN:
         folder = f"results/{name}"
-        made = subprocess.run(
-            report_command(name),
-            env={**os.environ, OWN_REPORT: "1"},
-            capture_output=True,
-            text=True,
-        )
-        page = (
-            f"{folder}/report.html"
-            if made.returncode == 0
-            else f"none ({made.stderr.strip().splitlines()[-1]})"
-        )
         print(
-            f"\nplan:    {folder}/plan/plan.svg (also .dxf and .geojson)\nreport:  {page}",
+            f"\nplan:    {folder}/plan/plan.svg (also .pdf, .dxf, .ifc, .geojson and map.pgm)\n"
+            f"report:  {folder}/report.html",
             file=sys.stderr,
         )
-
-
-def report_command(name):
-    """Snakemake's own report of one dataset, asked for with the settings of this run."""
-    given = workflow.config_settings
-    command = [
-        sys.executable,
-        "-m",
-        "snakemake",
-        "--snakefile",
-        workflow.main_snakefile,
-        "--cores",
-        "1",
-    ]
-    if given.configfiles:
-        command += ["--configfile", *map(str, given.configfiles)]
-    if given.config:
-        command += [
-            "--config",
-            *(f"{key}={json.dumps(value)}" for key, value in given.config.items()),
-        ]
-    return command + [
-        "--report",
-        f"results/{name}/report.html",
-        "--",
-        *results_of(name),
-    ]
 
 
 def tell_failure():
@@ -115,5 +76,17 @@ def failures():
 
 
 # before the jobs are worked out: while another run is at work, files come and go
-if workflow.is_main_process and OWN_REPORT not in os.environ:
+if workflow.is_main_process:
     lock().close()
+
+
+onstart:
+    run_alone()
+
+
+onsuccess:
+    tell_results()
+
+
+onerror:
+    tell_failure()

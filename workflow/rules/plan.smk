@@ -1,47 +1,65 @@
 rule assemble_plan:
-    """Merge the walls of the first scans of an ordering into faces."""
+    """Make faces, walls, openings and rooms of the first scans of an ordering."""
     input:
         walls=plan_walls,
         selection=plan_selection,
+        scans="results/{dataset}/scans.parquet",
+        registration="results/{dataset}/registration.parquet",
         code=code_of("assemble_plan"),
     output:
         faces="results/{dataset}/plan/faces.parquet",
+        walls="results/{dataset}/plan/walls.parquet",
+        openings="results/{dataset}/plan/openings.parquet",
+        rooms="results/{dataset}/plan/rooms.parquet",
+        evidence="results/{dataset}/plan/evidence.parquet",
+        free="results/{dataset}/plan/free.parquet",
     log:
         "logs/{dataset}/assemble_plan.log",
     benchmark:
         "benchmarks/{dataset}/assemble_plan.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=2000,
+        runtime=20,
     params:
         stop=setting("selection", "stop"),
-        settings=setting("plan", "merge"),
+        settings=plan_settings,
     script:
         "../../scripts/assemble_plan.py"
 
 
 rule export_plan:
-    """Write the plan as GeoJSON, SVG and DXF."""
+    """Write the plan as GeoJSON, DXF, SVG, PDF, IFC and as a map for nav2."""
     input:
         faces="results/{dataset}/plan/faces.parquet",
+        walls="results/{dataset}/plan/walls.parquet",
+        openings="results/{dataset}/plan/openings.parquet",
+        rooms="results/{dataset}/plan/rooms.parquet",
+        evidence="results/{dataset}/plan/evidence.parquet",
+        free="results/{dataset}/plan/free.parquet",
         code=code_of("export_plan"),
     output:
         geojson="results/{dataset}/plan/plan.geojson",
+        dxf="results/{dataset}/plan/plan.dxf",
         svg=report(
             "results/{dataset}/plan/plan.svg",
             caption="../report/plan.rst",
             category="{dataset}",
             labels={"figure": "1 floor plan"},
         ),
-        dxf="results/{dataset}/plan/plan.dxf",
+        pdf="results/{dataset}/plan/plan.pdf",
+        ifc="results/{dataset}/plan/plan.ifc",
+        pgm="results/{dataset}/plan/map.pgm",
+        yaml="results/{dataset}/plan/map.yaml",
     log:
         "logs/{dataset}/export_plan.log",
     benchmark:
         "benchmarks/{dataset}/export_plan.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
+        mem_mb=1500,
         runtime=10,
+    params:
+        settings=setting("plan", "export"),
     script:
         "../../scripts/export_plan.py"

@@ -1,10 +1,11 @@
 rule interpolate_poses:
-    """Give every candidate scan the pose its sensor had at that moment."""
+    """Give every candidate scan the pose its sensor had at that moment, and tell how it moved."""
     input:
         recordings=recordings,
         code=code_of("interpolate_poses"),
     output:
         poses="results/{dataset}/poses.parquet",
+        motion="results/{dataset}/motion.parquet",
     log:
         "logs/{dataset}/interpolate_poses.log",
     benchmark:

@@ -3,6 +3,7 @@ rule register_scans:
     input:
         recordings=recordings,
         poses="results/{dataset}/poses.parquet",
+        motion="results/{dataset}/motion.parquet",
         code=code_of("register_scans"),
     output:
         scans="results/{dataset}/scans.parquet",

@@ -77,3 +77,39 @@ rule draw_walls:
         stop=setting("selection", "stop"),
     script:
         "../../scripts/draw_walls.py"
+
+
+rule write_report:
+    """Write the report: one page that opens offline."""
+    input:
+        faces="results/{dataset}/plan/faces.parquet",
+        walls="results/{dataset}/plan/walls.parquet",
+        openings="results/{dataset}/plan/openings.parquet",
+        rooms="results/{dataset}/plan/rooms.parquet",
+        free="results/{dataset}/plan/free.parquet",
+        evidence="results/{dataset}/plan/evidence.parquet",
+        selection=plan_selection,
+        segments=plan_walls,
+        poses="results/{dataset}/poses.parquet",
+        registration="results/{dataset}/registration.parquet",
+        figures=report_figures,
+        evaluation=report_evaluation,
+        recordings=recordings,
+        results=report_results,
+        page=report_page,
+        code=code_of("write_report"),
+    output:
+        page="results/{dataset}/report.html",
+    log:
+        "logs/{dataset}/write_report.log",
+    benchmark:
+        "benchmarks/{dataset}/write_report.tsv"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=10,
+    params:
+        settings=all_settings,
+        benchmarks="benchmarks/{dataset}",
+    script:
+        "../../scripts/write_report.py"

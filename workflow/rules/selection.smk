@@ -1,6 +1,51 @@
-rule order_scans:
-    """Order the scans by how much each adds to the covered area."""
+rule observe_walls:
+    """Measure how much wall every scan shows, and where, without extracting walls."""
     input:
+        scans="results/{dataset}/scans.parquet",
+        registration="results/{dataset}/registration.parquet",
+        code=code_of("observe_walls"),
+    output:
+        observations="results/{dataset}/observations.parquet",
+    log:
+        "logs/{dataset}/observe_walls.log",
+    benchmark:
+        "benchmarks/{dataset}/observe_walls.tsv"
+    threads: 2
+    resources:
+        mem_mb=2000,
+        runtime=30,
+    params:
+        settings=observation_settings,
+    script:
+        "../../scripts/observe_walls.py"
+
+
+rule build_visibility:
+    """Draw the free space that every scan looked through."""
+    input:
+        scans="results/{dataset}/scans.parquet",
+        registration="results/{dataset}/registration.parquet",
+        code=code_of("build_visibility"),
+    output:
+        visibility="results/{dataset}/visibility.parquet",
+    log:
+        "logs/{dataset}/build_visibility.log",
+    benchmark:
+        "benchmarks/{dataset}/build_visibility.tsv"
+    threads: 2
+    resources:
+        mem_mb=1500,
+        runtime=30,
+    params:
+        settings=setting("selection", "visibility"),
+    script:
+        "../../scripts/build_visibility.py"
+
+
+rule order_scans:
+    """Order the scans by how much each adds to what those before it show."""
+    input:
+        unpack(order_tables),
         hulls="results/{dataset}/hulls.parquet",
         code=code_of("order_scans"),
     output:
@@ -15,5 +60,6 @@ rule order_scans:
         runtime=30,
     params:
         seed=setting("selection", "seed"),
+        min_overlap=setting("selection", "min_overlap"),
     script:
         "../../scripts/order_scans.py"

@@ -1,20 +1,17 @@
 rule simulate_survey:
-    """Drive a simulated rover through the demo office and record it."""
+    """Drive a simulated rover through a building and record it as a ROS 1 bag."""
     input:
         building=building,
         code=code_of("simulate_survey"),
     output:
-        recording=f"results/{{dataset}}/survey/{SIMULATED}",
-        truth="results/{dataset}/survey/truth.geojson",
-        true_poses="results/{dataset}/survey/truth_poses.tum",
-        true_trajectory="results/{dataset}/survey/truth_trajectory.tum",
+        **inventory.survey_files("bag"),
     log:
         "logs/{dataset}/simulate_survey.log",
     benchmark:
         "benchmarks/{dataset}/simulate_survey.tsv"
     wildcard_constraints:
-        dataset=DEMO,
-    threads: 1
+        dataset=simulated_as("bag"),
+    threads: 2
     resources:
         mem_mb=1000,
         runtime=30,
@@ -22,3 +19,17 @@ rule simulate_survey:
         settings=simulated_survey,
     script:
         "../../scripts/simulate_survey.py"
+
+
+use rule simulate_survey as simulate_survey_db3 with:
+    output:
+        **inventory.survey_files("db3"),
+    wildcard_constraints:
+        dataset=simulated_as("db3"),
+
+
+use rule simulate_survey as simulate_survey_mcap with:
+    output:
+        **inventory.survey_files("mcap"),
+    wildcard_constraints:
+        dataset=simulated_as("mcap"),

@@ -1,0 +1,46 @@
+"""Draw the audit of the registration: the way, what became of every scan, and how well neighbours fit."""
+
+from scanplan import atomic, drawing, registrationfigure, stagelog, tables, topview
+
+_LINKS = ["source", "target", "kind", "residual_m"]
+
+
+def draw_registration(scans, registration, crispness, output, *, edges=None):
+    """Write the figure as SVG.
+
+    Parameters
+    ----------
+    scans, registration, crispness : path-like
+        scans.parquet, registration.parquet and crispness.parquet.
+    output : path-like
+        figures/registration.svg, to write.
+    edges : path-like, optional
+        edges.parquet; without it every kept scan is linked to the one kept before it.
+    """
+    store = tables.ScanStore(scans)
+    verdicts = tables.read(registration, tables.REGISTRATION)
+    if edges is None:
+        links = registrationfigure.neighbours(verdicts)
+    else:
+        links = tables.read(edges, tables.EDGES, _LINKS, allow_empty=True)
+    measured = tables.read(crispness, tables.CRISPNESS, ["poses", "sigma_m"])
+    found = stagelog.progress(store.scans(), "draw_registration", total=len(store.scan_ids))
+    figure = registrationfigure.draw(
+        topview.thinned(found, len(store.scan_ids)),
+        verdicts,
+        links,
+        dict(zip(measured["poses"].tolist(), measured["sigma_m"].tolist(), strict=True)),
+    )
+    atomic.write_text(output, drawing.svg(figure))
+    stagelog.say(f"draw_registration: {len(verdicts['scan_id'])} candidates, {len(links['source'])} links")
+
+
+if __name__ == "__main__":
+    with stagelog.to_file(snakemake.log[0]):
+        draw_registration(
+            snakemake.input.scans,
+            snakemake.input.registration,
+            snakemake.input.crispness,
+            snakemake.output.figure,
+            edges=snakemake.input.get("edges"),
+        )

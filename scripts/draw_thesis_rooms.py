@@ -1,0 +1,36 @@
+"""Draw the thesis's figures 3.2 and 5.1 to 5.7 from the survey of the rooms."""
+
+from scanplan import atomic, drawing, stagelog, thesisrooms
+
+
+def draw_thesis_rooms(files, evaluated, outputs, *, bitmap_cell_m, max_range_m):
+    """Write the figures as SVG.
+
+    Parameters
+    ----------
+    files : dict of str to path-like
+        Tables of one survey, its truth.geojson and truth_poses.tum; see `thesisrooms.Survey`.
+    evaluated : list of path-like
+        evaluation/walls.parquet of every seed.
+    outputs : list of path-like
+        figure_<number>.svg, to write.
+    bitmap_cell_m : float
+        Of figure 5.1.
+    max_range_m : float
+        How far a scan can see.
+    """
+    survey = thesisrooms.read(files, evaluated, max_range_m=max_range_m)
+    for path in outputs:
+        atomic.write_text(path, drawing.svg(thesisrooms.draw(survey, path, bitmap_cell_m)))
+    stagelog.say(f"draw_thesis_rooms: {len(outputs)} figures")
+
+
+if __name__ == "__main__":
+    with stagelog.to_file(snakemake.log[0]):
+        draw_thesis_rooms(
+            {name: path for name, path in snakemake.input.items() if name not in ("code", "evaluated")},
+            list(snakemake.input.evaluated),
+            snakemake.output.figures,
+            bitmap_cell_m=snakemake.params.bitmap_cell_m,
+            max_range_m=snakemake.params.max_range_m,
+        )

@@ -1,0 +1,70 @@
+"""Measure what hulls cover: by number of clusters, and against what a scan truly sees (thesis, 3.3.2 and 5.2)."""
+
+import numpy as np
+import shapely
+
+from scanplan import chunks, greedy, hulls, registered, stagelog, tables, truthfile, visibility
+from scanplan.schemas import AREAS, CLUSTERS
+
+
+def measure_coverage(
+    scans, built, registration, truth, true_poses, clusters, areas,
+    *, n_clusters, sample_size, seed, max_range_m, threads=1,
+):  # fmt: skip
+    """Write how the covered area grows with every number of clusters, and each scan's areas.
+
+    Parameters
+    ----------
+    scans, built, registration, truth, true_poses : path-like
+        scans.parquet, hulls.parquet, registration.parquet, truth.geojson and truth_poses.tum.
+    clusters, areas : path-like
+        thesis/clusters.parquet and thesis/areas.parquet, to write.
+    n_clusters : sequence of int
+    sample_size, seed : int
+        See `hulls.cluster_hulls`.
+    max_range_m : float
+        How far a scan can see.
+    threads : int
+    """
+    parts = [_growth(scans, n, threads, sample_size=sample_size, seed=seed) for n in sorted(n_clusters)]
+    tables.write(clusters, CLUSTERS, {name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
+    poses, found = truthfile.read_poses(true_poses), registered.read(registration)
+    places_m = truthfile.poses_at(poses, found.t_ns, true_poses)[:, :2, 3]
+    faces = truthfile.read_faces(truth)
+    hiding_m = np.concatenate([faces.inner_m, faces.outer_m])
+    columns = tables.read(built, tables.HULLS)
+    seen = [shapely.Polygon(visibility.view(hiding_m, place_m, max_range_m=max_range_m)) for place_m in places_m]
+    measured = {
+        "scan_id": found.scan_ids,
+        "full_hull_m2": shapely.area(hulls.scan_full_hulls(columns)[1]),
+        "cluster_hull_m2": shapely.area(hulls.scan_polygons(columns)[1]),
+        "seen_m2": shapely.area(seen),
+    }
+    tables.write(areas, AREAS, measured)
+    median = [f"{np.median(values):.1f} m2 {name}" for name, values in list(measured.items())[1:]]
+    stagelog.say(f"measure_coverage: {len(found.scan_ids)} scans, median {', '.join(median)}")
+
+
+def _growth(scans, n_clusters, threads, **sampling):
+    label = f"measure_coverage, {n_clusters} clusters"
+    parts = chunks.map_scans(
+        hulls.cluster_hulls, scans, label=label, threads=threads, n_clusters=n_clusters, **sampling
+    )
+    scan_ids, polygons = hulls.scan_polygons(hulls.concatenated(parts))
+    order, rank = greedy.greedy_order(polygons), np.arange(1, len(scan_ids) + 1)
+    covered = {"scan_id": scan_ids[order.order], "covered_m2": order.covered_m2}
+    return {"n_clusters": np.full(len(rank), n_clusters), "rank": rank, **covered}
+
+
+if __name__ == "__main__":
+    with stagelog.to_file(snakemake.log[0]):
+        measure_coverage(
+            *(snakemake.input[name] for name in ("scans", "hulls", "registration", "truth", "true_poses")),
+            snakemake.output.clusters,
+            snakemake.output.areas,
+            n_clusters=snakemake.params.n_clusters,
+            sample_size=snakemake.params.hulls["sample_size"],
+            seed=snakemake.params.hulls["seed"],
+            max_range_m=snakemake.params.max_range_m,
+            threads=snakemake.threads,
+        )

@@ -1,0 +1,57 @@
+"""The thesis's experiments (chapter 5) as datasets: its two surveys simulated, each with several seeds.
+
+No heavy imports: this runs while the workflow is being parsed.
+"""
+
+from dataclasses import replace
+from pathlib import Path
+
+from scanplan import configuration, inventory
+
+ROOMS, DRIVE, LIMITS = "ring_rooms", "ring_hallways", "ring_hallways_limits"
+"""Registered scans of all rooms (5.2); a drive through the hallways (5.4); the same drive with the thesis's limits."""
+
+
+def surveys(*, defaults, overrides, schema, config):
+    """Gather the surveys of the thesis's experiments.
+
+    Parameters
+    ----------
+    defaults, overrides, schema : dict
+        See `configuration.for_dataset`; section `thesis` says which seeds.
+    config : path-like
+        The folder that holds `surveys`, `buildings` and `thesis.yaml`.
+
+    Returns
+    -------
+    dict of str to tuple of inventory.Dataset
+        `ROOMS`, `DRIVE` and `LIMITS`, each by seed. Of `LIMITS` the recordings are those of `DRIVE`.
+    """
+    config = Path(config)
+    chosen = configuration.for_dataset(defaults, None, overrides, schema)["thesis"]
+    limits = configuration.merged(configuration.read_yaml(config / "thesis.yaml"), overrides)
+
+    def simulated(kind, over, seeds, survey=None):
+        settings = configuration.for_dataset(defaults, config / f"surveys/{survey or kind}.yaml", over, schema)
+        return tuple(
+            inventory.simulated(f"{inventory.RESERVED}/{kind}_{seed}", seeded(settings, seed), config / "buildings")
+            for seed in seeds
+        )
+
+    drives = simulated(DRIVE, overrides, chosen["drive_seeds"])
+    strict = simulated(LIMITS, limits, chosen["drive_seeds"], survey=DRIVE)
+    return {
+        ROOMS: simulated(ROOMS, overrides, chosen["seeds"]),
+        DRIVE: drives,
+        LIMITS: tuple(
+            replace(dataset, recordings=drive.recordings, truth=drive.truth, building=None)
+            for dataset, drive in zip(strict, drives, strict=True)
+        ),
+    }
+
+
+def seeded(settings, seed):
+    """Return settings with every seed replaced; the given ones are not changed."""
+    walls = {extractor: values | {"seed": seed} for extractor, values in settings["walls"].items()}
+    sections = {name: settings[name] | {"seed": seed} for name in ("simulate", "hulls", "selection")}
+    return settings | sections | {"walls": walls}

@@ -1,0 +1,83 @@
+"""Floor that rays went over: what each scan sees of it, and all of them together."""
+
+import numpy as np
+import shapely
+from shapely.geometry import MultiPolygon, Polygon
+
+_SECTOR_RAD = np.radians(0.5)
+_SIMPLIFY_M = 0.02
+_SPIKE_M = 0.04
+
+
+def visible(rays):
+    """Return what each scan's rays went over, as polygons.
+
+    In every half degree a ray of the longest tenth tells how far one can see; where no ray came back from, nothing is
+    known. Spikes thinner than 8 cm are taken off.
+
+    Parameters
+    ----------
+    rays : rays.Rays
+
+    Returns
+    -------
+    list of shapely geometry
+        A polygon, polygons, or an empty one, per scan.
+    """
+    return [
+        _star(sensor_m[:2], azimuth, np.hypot(*(xyz_m[:, :2] - sensor_m[:2]).T))
+        for sensor_m, azimuth, xyz_m in zip(rays.sensors_m, rays.azimuth_rad, rays.xyz_m, strict=True)
+    ]
+
+
+def _star(origin_m, azimuth_rad, range_m):
+    count = round(2 * np.pi / _SECTOR_RAD)
+    sector = np.minimum(((azimuth_rad + np.pi) / _SECTOR_RAD).astype(np.int64), count - 1)
+    reach_m = np.zeros(count)
+    order = np.lexsort((range_m, sector))
+    first = np.searchsorted(sector[order], np.arange(count + 1))
+    number = np.diff(first)
+    # not the longest of all: one stray point would open a way through a wall
+    seen = number > 0
+    reach_m[seen] = range_m[order][first[:-1][seen] + (0.9 * (number[seen] - 1)).astype(np.int64)]
+    edge = -np.pi + _SECTOR_RAD * np.arange(count + 1)
+    begin, end = (np.column_stack([np.cos(e), np.sin(e)]) * reach_m[:, None] for e in (edge[:-1], edge[1:]))
+    corners = origin_m + np.stack([begin, end], axis=1).reshape(-1, 2)
+    star = shapely.make_valid(Polygon(corners)).buffer(-_SPIKE_M, join_style="mitre").buffer(_SPIKE_M)
+    return polygons_of(star.simplify(_SIMPLIFY_M))
+
+
+def together(stars):
+    """Return the floor that any of the scans saw, a polygon or polygons."""
+    return polygons_of(shapely.union_all(stars, grid_size=1e-3)) if stars else MultiPolygon()
+
+
+def polygons_of(geometry):
+    """Return what of a geometry has an area."""
+    parts = [p for p in shapely.get_parts(geometry) if p.geom_type == "Polygon" and p.area > 0]
+    parts += [q for p in shapely.get_parts(geometry) if p.geom_type == "MultiPolygon" for q in p.geoms if q.area > 0]
+    return MultiPolygon(parts)
+
+
+def strips(walls, unpaired_m):
+    """Return the ground that walls stand on, with their openings: a polygon per wall.
+
+    Parameters
+    ----------
+    walls : list of planwalls.PlanWall
+    unpaired_m : float
+        How thick a wall is taken for of which one side is known; it lies behind that.
+    """
+    return [_ground(wall, wall.low_m, wall.high_m, unpaired_m) for wall in walls]
+
+
+def opening_ground(wall, gap, unpaired_m):
+    """Return the ground of an opening in a wall, a polygon a little deeper than the wall."""
+    return _ground(wall, gap.low_m, gap.high_m, unpaired_m).buffer(1e-3, join_style="mitre")
+
+
+def _ground(wall, low_m, high_m, unpaired_m):
+    left_m, right_m = (0.0, -unpaired_m) if np.isnan(wall.thickness_m) else (wall.half_m, -wall.half_m)
+    start, end = wall.line.at(np.array([low_m, high_m]))
+    across = np.array([right_m, left_m])[:, None] * wall.line.normal
+    return Polygon([start + across[0], end + across[0], end + across[1], start + across[1]])

@@ -1,0 +1,167 @@
+"""The rays of the chosen scans, and what those that reach a line tell about it.
+
+A ray runs straight from the sensor to the point it measured: there is something at its end and nothing before it.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+_FLOOR_BIN_M = 0.05
+_FLOOR_SEARCH_M = 0.5
+_LEAST_SIDE_M = 0.15
+_STEADY_M = 0.15
+
+
+@dataclass(frozen=True, eq=False)
+class Rays:
+    """The points of some scans, each scan's by their direction from its sensor.
+
+    Attributes
+    ----------
+    scan_ids : (n,) int64, increasing
+    sensors_m : (n, 3) float64
+    azimuth_rad : list of (k,) float64, increasing, -pi to pi
+    xyz_m : list of (k, 3) float64
+    floor_z_m : float
+        Height of the floor; NaN for planar scans.
+    planar : bool
+        Whether the scans lie in one level plane, so that heights mean nothing.
+    """
+
+    scan_ids: np.ndarray
+    sensors_m: np.ndarray
+    azimuth_rad: list
+    xyz_m: list
+    floor_z_m: float
+    planar: bool
+
+    @property
+    def n_points(self):
+        """Number of points of all scans."""
+        return sum(map(len, self.xyz_m))
+
+
+@dataclass(frozen=True, eq=False)
+class Sight:
+    """What rays tell about a line: where they ended at it, and where they went through it.
+
+    Attributes
+    ----------
+    hit_xy_m : (h, 2) float64
+        Points at the line, seen from its side.
+    hit_z_m : (h,) float64, above the floor
+    hit_scan : (h,) int64
+        Index of the scan.
+    pass_xy_m : (p, 2) float64
+        Where rays cross the line, from either side.
+    pass_z_m : (p,) float64, above the floor
+    pass_scan : (p,) int64
+    """
+
+    hit_xy_m: np.ndarray
+    hit_z_m: np.ndarray
+    hit_scan: np.ndarray
+    pass_xy_m: np.ndarray
+    pass_z_m: np.ndarray
+    pass_scan: np.ndarray
+
+
+def gather(scans, sensors_m, *, planar):
+    """Sort the points of scans by direction.
+
+    Parameters
+    ----------
+    scans : iterable of (int, (k, 3) float)
+        `scan_id`, increasing, and points in the map frame.
+    sensors_m : dict of int to (3,) float
+        Sensor's position by `scan_id`.
+    planar : bool
+
+    Returns
+    -------
+    Rays
+        Without points that are not finite.
+    """
+    ids, azimuths, points = [], [], []
+    for scan_id, xyz_m in scans:
+        xyz_m = np.asarray(xyz_m, float)
+        xyz_m = xyz_m[np.isfinite(xyz_m).all(axis=1)]
+        way = xyz_m[:, :2] - sensors_m[scan_id][:2]
+        azimuth = np.arctan2(way[:, 1], way[:, 0])
+        order = np.argsort(azimuth, kind="stable")
+        ids.append(scan_id)
+        azimuths.append(azimuth[order])
+        points.append(xyz_m[order])
+    sensors = np.array([sensors_m[i] for i in ids], float).reshape(-1, 3)
+    floor_z_m = np.nan if planar else _floor_z_m(points)
+    return Rays(np.array(ids, np.int64), sensors, azimuths, points, floor_z_m, bool(planar))
+
+
+def _floor_z_m(points):
+    """Return the height of the floor: the fullest layer near the lowest points; NaN without any points."""
+    z_m = np.concatenate([np.empty(0), *(p[:, 2] for p in points)])
+    if len(z_m) == 0:
+        return np.nan
+    lowest_m = np.percentile(z_m, 1)
+    layer = np.floor((z_m - lowest_m) / _FLOOR_BIN_M).astype(np.int64)
+    near = (layer >= -1) & (layer < _FLOOR_SEARCH_M / _FLOOR_BIN_M)
+    fullest_m = lowest_m + (np.bincount(layer[near] + 1).argmax() - 0.5) * _FLOOR_BIN_M
+    return float(np.median(z_m[np.abs(z_m - fullest_m) <= _FLOOR_BIN_M]))
+
+
+def look(rays, line, low_m, high_m, *, band_m):
+    """Tell what rays show of a stretch of a line.
+
+    Scans whose sensor stands nearly on the line say nothing about it.
+
+    Parameters
+    ----------
+    rays : Rays
+    line : faceline.Line
+    low_m, high_m : float
+        The stretch along the line.
+    band_m : float, > 0
+        Points this near to the line are at it; rays went through it that end further behind it than a thin wall's
+        other side and noise could explain.
+
+    Returns
+    -------
+    Sight
+    """
+    ends = line.at(np.array([low_m, high_m]))
+    hits, passes = [], []
+    for number, sensor_m in enumerate(rays.sensors_m):
+        side_m = line.offset_m(sensor_m[:2])
+        if abs(side_m) < _LEAST_SIDE_M:
+            continue
+        xyz_m = rays.xyz_m[number][_within(rays.azimuth_rad[number], ends - sensor_m[:2])]
+        offset_m = line.offset_m(xyz_m[:, :2])
+        if side_m > 0:
+            hits.append(_numbered(xyz_m[np.abs(offset_m) <= band_m], number))
+        beyond = offset_m * np.sign(side_m) <= -(band_m + _STEADY_M)
+        share = (side_m / (side_m - offset_m[beyond]))[:, None]
+        passes.append(_numbered(sensor_m + share * (xyz_m[beyond] - sensor_m), number))
+    hit, crossing = (np.concatenate([np.empty((0, 4)), *rows]) for rows in (hits, passes))
+    floor_z_m = 0.0 if rays.planar else rays.floor_z_m
+    return Sight(
+        *(hit[:, :2], hit[:, 2] - floor_z_m, hit[:, 3].astype(np.int64)),
+        *(crossing[:, :2], crossing[:, 2] - floor_z_m, crossing[:, 3].astype(np.int64)),
+    )
+
+
+def _within(azimuth_rad, ends):
+    """Return the rows of the directions between those of two ends (2, 2), the way round that is less than half."""
+    first, last = np.arctan2(ends[:, 1], ends[:, 0])
+    turn = (last - first + np.pi) % (2 * np.pi) - np.pi
+    begin = first if turn > 0 else last
+    stop = begin + abs(turn)
+    low, high = np.searchsorted(azimuth_rad, [begin, min(stop, np.pi)])
+    rows = np.arange(low, high)
+    if stop <= np.pi:
+        return rows
+    return np.concatenate([np.arange(np.searchsorted(azimuth_rad, stop - 2 * np.pi)), rows])
+
+
+def _numbered(xyz_m, number):
+    return np.column_stack([xyz_m, np.full(len(xyz_m), float(number))])

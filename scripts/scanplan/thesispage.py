@@ -1,0 +1,176 @@
+"""The report of the thesis's experiments: one HTML page that needs nothing beside it."""
+
+import re
+from html import escape
+
+import numpy as np
+
+from scanplan.thesisclaims import CLAIMS
+from scanplan.thesisshown import FIGURES, STEPS
+
+_STYLE = """
+body { font: 15px/1.45 system-ui, sans-serif; max-width: 68rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
+table { border-collapse: collapse; margin: .6rem 0; font-size: 13.5px; }
+th, td { border-bottom: 1px solid #ddd; padding: .3rem .6rem; text-align: left; vertical-align: top; }
+td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+figure { margin: 1.2rem 0 2.4rem; } figcaption { font-size: 13.5px; }
+svg { max-width: 100%; height: auto; }
+.yes { color: #04703c; } .no { color: #b3261e; } .some { color: #8a5a00; } .yes, .no, .some { font-weight: 600; }
+nav { font-size: 13.5px; }
+"""
+
+
+def page(figures, claims, steps, limited):
+    """Write the page.
+
+    Parameters
+    ----------
+    figures : dict of str to str
+        File name to SVG text, of all `FIGURES`.
+    claims : dict of str to (n,) array
+        The columns of `schemas.CLAIMS`.
+    steps, limited : dict of str to (4,) array
+        The columns of `schemas.STEPS`, with our limits of registration and with the thesis's.
+
+    Returns
+    -------
+    str
+    """
+    links = " · ".join(f'<a href="#{_anchor(figure)}">{figure.number}</a>' for figure in FIGURES)
+    body = [
+        "<h1>The experiments of the thesis</h1>",
+        "<p>Every figure, the table and every claim of “Pointcloud scan selection for indoor floor plan generation”,"
+        " repeated on simulated surveys with known truth: <i>ring_rooms</i>, registered scans of the rooms of an office"
+        " (thesis, 5.2), and <i>ring_hallways</i>, a drive through its hallways (5.4; the thesis's is a recording of a"
+        " real building). Our numbers are means over the seeds with their range in brackets. Run times are of the"
+        " machine that made this page and differ from run to run.</p>",
+        f'<nav><a href="#claims">Claims</a> · <a href="#table">Table 5.1</a> · Figures {links}</nav>',
+        '<h2 id="claims">Claims</h2>',
+        f"<p>{_score(claims)}</p>",
+        claims_table(claims, [claim for claim in CLAIMS if claim.criterion]),
+        "<h3>Numbers that the thesis states without a claim</h3>",
+        claims_table(claims, [claim for claim in CLAIMS if not claim.criterion]),
+        '<h2 id="table">Table 5.1: computation time required for each step</h2>',
+        steps_table(steps, limited),
+        "<h2>Figures</h2>",
+        *(_figure(figure, figures[figure.file], claims) for figure in FIGURES),
+    ]
+    head = f'<meta charset="utf-8"><title>The experiments of the thesis</title><style>{_STYLE}</style>'
+    return f'<!DOCTYPE html>\n<html lang="en"><head>{head}</head><body>\n' + "\n".join(body) + "\n</body></html>\n"
+
+
+def claims_table(claims, chosen):
+    """Return the table of some claims: what is stated, what was measured, and the verdict."""
+    rows = [
+        f"<tr><td>{escape(claim.states)}<br><small>{escape(claim.where)}</small></td>"
+        f"<td>{_criterion(claim)}</td><td>{_measured(claims, claim)}</td><td>{_verdict(claims, claim)}</td></tr>"
+        for claim in chosen
+    ]
+    head = "<tr><th>The thesis</th><th>Criterion, stated number</th><th>Ours</th><th>Verdict</th></tr>"
+    return f"<table>{head}{''.join(rows)}</table>"
+
+
+def steps_table(steps, limited):
+    """Return table 5.1: the thesis's rows and ours, whose one step both selects continuous scans and registers them."""
+    theirs = "".join(_row(step, [time, scans, size]) for step, time, scans, size in STEPS)
+    ours = [
+        f'<tr><th colspan="4">{title}</th></tr>' + "".join(_row(*_step(table, i)) for i in range(len(table["step"])))
+        for title, table in (("Ours, with our limits", steps), ("Ours, with the thesis's limits", limited))
+    ]
+    head = "<tr><th>Step</th><th>Time</th><th># scans at end of step</th><th>Data size</th></tr>"
+    return f'<table>{head}<tr><th colspan="4">The thesis</th></tr>{theirs}{"".join(ours)}</table>'
+
+
+def verdict(holds):
+    """Return the verdict over some seeds of `yes` and `no`, and its class; nothing where there are none."""
+    n, n_yes = len(holds), list(holds).count("yes")
+    if not n:
+        return "", ""
+    if n_yes in (0, n):
+        return ("holds", "yes") if n_yes else ("does not hold", "no")
+    return f"holds for {n_yes} of {n} seeds", "some"
+
+
+def said(values):
+    """Return the mean of values, and their range where they differ, in digits that suit their size."""
+    shown = [_digits(value) for value in (np.mean(values), np.min(values), np.max(values))]
+    return shown[0] if shown[1] == shown[2] else f"{shown[0]} ({shown[1]} to {shown[2]})"
+
+
+def _figure(figure, svg, claims):
+    about = [claim for claim in CLAIMS if claim.name in figure.claims]
+    return (
+        f'<figure id="{_anchor(figure)}"><h3>Figure {figure.number}</h3>{_inline(svg, figure)}'
+        f"<figcaption><b>The thesis:</b> {escape(figure.caption)}<br><b>Ours:</b> {escape(figure.ours)}</figcaption>"
+        f"{claims_table(claims, about) if about else ''}</figure>"
+    )
+
+
+def _inline(svg, figure):
+    """An SVG without its prologue, its identifiers made the page's own: those of two figures may be the same."""
+    svg = svg[svg.index("<svg") :]
+    mark = _anchor(figure)
+    svg = re.sub(r'\bid="', f'id="{mark}-', svg)
+    svg = re.sub(r"url\(#", f"url(#{mark}-", svg)
+    return re.sub(r'href="#', f'href="#{mark}-', svg)
+
+
+def _anchor(figure):
+    return f"figure-{figure.number.replace('.', '-')}"
+
+
+def _rows(claims, claim):
+    of_it = claims["claim"] == claim.name
+    return {name: values[of_it] for name, values in claims.items()}
+
+
+def _criterion(claim):
+    stated = [f"{escape(quantity)}: {_digits(value)}" for quantity, value in claim.stated.items()]
+    return "<br>".join([escape(claim.criterion)] * bool(claim.criterion) + stated)
+
+
+def _measured(claims, claim):
+    rows = _rows(claims, claim)
+    quantities = list(dict.fromkeys(rows["quantity"].tolist()))
+    return "<br>".join(f"{escape(q)}: {said(rows['value'][rows['quantity'] == q])}" for q in quantities)
+
+
+def _judged(claims, claim):
+    rows = _rows(claims, claim)
+    by_survey = {s: h for s, h in zip(rows["survey"].tolist(), rows["holds"].tolist(), strict=True) if h}
+    return list(by_survey.values())
+
+
+def _verdict(claims, claim):
+    text, kind = verdict(_judged(claims, claim))
+    return f'<span class="{kind}">{text}</span>'
+
+
+def _score(claims):
+    texts = [verdict(_judged(claims, claim))[1] for claim in CLAIMS if claim.criterion]
+    seeds = len(set(claims["survey"].tolist()))
+    return (
+        f"Of {len(texts)} claims {texts.count('yes')} hold, {texts.count('no')} do not, and {texts.count('some')} hold"
+        f" for some of the {seeds} seeds only."
+    )
+
+
+def _row(step, cells):
+    return f"<tr><td>{escape(step)}</td>" + "".join(f'<td class="number">{cell}</td>' for cell in cells) + "</tr>"
+
+
+def _step(table, i):
+    seconds, n_bytes = float(table["seconds"][i]), int(table["n_bytes"][i])
+    minutes, rest = divmod(round(seconds), 60)
+    time = f"{minutes} min {rest} s" if minutes else f"{seconds:.2g} s"
+    size = f"{n_bytes / 1e9:.2f} GB" if n_bytes >= 1e9 else f"{n_bytes / 1e6:.1f} MB"
+    return str(table["name"][i]), [time, f"{table['n_scans'][i]:,}", size]
+
+
+def _digits(value):
+    value = float(value)
+    if not np.isfinite(value):
+        return "none"
+    if value == round(value):
+        return f"{value:,.0f}"
+    return f"{value:,.0f}" if abs(value) >= 100 else f"{value:.3g}"

@@ -1,0 +1,66 @@
+"""Tabulate time, scans and data after each step from recording to subset (thesis, table 5.1)."""
+
+from pathlib import Path
+
+import numpy as np
+
+from scanplan import stagelog, tables
+from scanplan.schemas import STEPS
+
+NAMES = ("Data collection", "Selecting and registering scans", "Hull creation", "Cluster subset selection")
+
+
+def tabulate_steps(recordings, true_poses, scans, built, selection, times, output, *, n_selected):
+    """Write the table; its run times differ from run to run.
+
+    Parameters
+    ----------
+    recordings : list of path-like
+    true_poses, scans, built, selection : path-like
+        truth_poses.tum (a pose per recorded scan), scans.parquet, hulls.parquet and an ordering.
+    times : list of list of path-like
+        The benchmark files of the last three steps, those of a step together.
+    output : path-like
+        thesis/steps.parquet, to write.
+    n_selected : int
+        Size of the subset.
+    """
+    stamps = [float(line.split()[0]) for line in Path(true_poses).read_text().splitlines() if line[:1] != "#"]
+    hulls = tables.read(built, tables.HULLS, ["scan_id", "cluster", "n_points"])
+    chosen = tables.read(selection, tables.SELECTION, ["rank", "scan_id"])["scan_id"][:n_selected]
+    # points take the same room wherever they are in the table
+    share = hulls["n_points"][np.isin(hulls["scan_id"], chosen)].sum() / hulls["n_points"].sum()
+    kept = len(np.unique(hulls["scan_id"]))
+    n_bytes = [sum(Path(file).stat().st_size for file in recordings), _size(scans), _size(built), share * _size(scans)]
+    rows = {
+        "step": np.arange(1, 5),
+        "name": list(NAMES),
+        "seconds": np.array([stamps[-1] - stamps[0], *(sum(map(_seconds, files)) for files in times)]),
+        "n_scans": np.array([len(stamps), kept, kept, len(chosen)]),
+        "n_bytes": np.array(n_bytes).astype(np.int64),
+    }
+    tables.write(output, STEPS, rows)
+    stagelog.say(f"tabulate_steps: {len(stamps):,} scans, {kept} registered, {len(chosen)} selected")
+
+
+def _size(path):
+    return Path(path).stat().st_size
+
+
+def _seconds(benchmark):
+    """The run time in a file that Snakemake measured."""
+    return float(Path(benchmark).read_text().splitlines()[1].split("\t")[0])
+
+
+if __name__ == "__main__":
+    with stagelog.to_file(snakemake.log[0]):
+        tabulate_steps(
+            *(snakemake.input[name] for name in ("recordings", "true_poses", "scans", "hulls", "selection")),
+            [
+                [snakemake.input.interpolated, snakemake.input.registered],
+                [snakemake.input.built],
+                [snakemake.input.ordered],
+            ],
+            snakemake.output.steps,
+            n_selected=snakemake.params.n_selected,
+        )

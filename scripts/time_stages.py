@@ -1,0 +1,52 @@
+"""Time the extractors scan by scan and the selection by number of scans (thesis, figures 5.8 and 5.10)."""
+
+from scanplan import cluster_ransac, iterative_ransac, stagelog, tables, timing
+from scanplan.schemas import TIMES
+
+_EXTRACTORS = {"cluster_ransac": cluster_ransac, "iterative_ransac": iterative_ransac}
+_SELECTION_SIZES = (10, 20, 30, 45, 60, 90, 130, 180, 270, 400, 600, 900, 1300)
+
+
+def time_stages(scans, registration, built, output, *, walls, hulls, n_clusters, timed_scans):
+    """Write run times; they differ from run to run.
+
+    Parameters
+    ----------
+    scans, registration, built : path-like
+        scans.parquet, registration.parquet and hulls.parquet.
+    output : path-like
+        thesis/times.parquet, to write.
+    walls : dict of str to dict
+        Extractor to the keywords of its `Settings`.
+    hulls : dict
+        `sample_size` and `seed` of `hulls.cluster_hulls`.
+    n_clusters : sequence of int
+    timed_scans : int
+        On how many scans, spread over the survey.
+    """
+    store, placed = tables.ScanStore(scans), tables.read(registration, tables.REGISTRATION)
+    columns = tables.read(built, tables.HULLS)
+    chosen, n = timing.spread(store.scan_ids, timed_scans), len(store.scan_ids)
+    sizes = [size for size in _SELECTION_SIZES if size < n] + [n]
+    sampling = {name: hulls[name] for name in ("sample_size", "seed")}
+    rows = [*timing.selection(columns, sizes), *timing.clusters(store, chosen, sorted(n_clusters), **sampling)]
+    for name, method in _EXTRACTORS.items():
+        timed = timing.extractor(name, method, store, placed, chosen, walls[name], registration)
+        rows += stagelog.progress(timed, f"time_stages {name}", total=len(chosen))
+    rows.sort(key=lambda row: (row["task"], row["size"], row["item"]))
+    tables.write(output, TIMES, {name: [row[name] for row in rows] for name in TIMES.columns})
+    stagelog.say(f"time_stages: {len(rows)} times, {sum(row['seconds'] for row in rows):.0f} s in all")
+
+
+if __name__ == "__main__":
+    with stagelog.to_file(snakemake.log[0]):
+        time_stages(
+            snakemake.input.scans,
+            snakemake.input.registration,
+            snakemake.input.hulls,
+            snakemake.output.times,
+            walls=snakemake.params.walls,
+            hulls=snakemake.params.hulls,
+            n_clusters=snakemake.params.settings["n_clusters"],
+            timed_scans=snakemake.params.settings["timed_scans"],
+        )

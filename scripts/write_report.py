@@ -1,0 +1,57 @@
+"""Write the report of a dataset: one page that opens offline."""
+
+from pathlib import Path
+
+from scanplan import atomic, floorplan, reportpage, schemas, sources, stagelog, stopping, tables
+
+_PLAN = {"walls": tables.PLAN_WALLS, "openings": tables.OPENINGS, "rooms": tables.ROOMS, "free": tables.FREE}
+_SURVEY = {"selection": tables.SELECTION, "registration": tables.REGISTRATION, "poses": tables.POSES}
+_SEEN = {"segments": tables.WALLS, "evidence": tables.EVIDENCE}
+
+
+def write_report(files, output, *, name, settings, benchmarks):
+    """Write the report.
+
+    Parameters
+    ----------
+    files : dict of str to path-like, or list of path-like
+        `faces`, `walls`, `openings`, `rooms`, `free`, `evidence` of plan/; `selection`, `segments` (walls/), `poses`,
+        `registration`; `page` (HTML, CSS, JavaScript); `figures`; `evaluation` (none or one); `recordings`; `results`.
+    output : path-like
+        report.html, to write.
+    name : str
+        The dataset's name.
+    settings : dict
+        All settings of the dataset.
+    benchmarks : path-like
+        Folder of the stages' run times, as far as they are there.
+    """
+    parts = {part: tables.read(files[part], schema, allow_empty=True) for part, schema in _PLAN.items()}
+    plan = floorplan.FloorPlan(name=name, faces=tables.read(files["faces"], tables.FACES), **parts)
+    made = {part: tables.read(files[part], schema) for part, schema in _SURVEY.items()}
+    made |= {part: tables.read(files[part], schema, allow_empty=True) for part, schema in _SEEN.items()}
+    chosen, _ = stopping.n_scans(made["selection"], **settings["selection"]["stop"])
+    measured = [tables.read(path, schemas.EVALUATION) for path in files["evaluation"]]
+    survey = reportpage.Survey(**made, chosen=chosen, evaluation=measured[0] if measured else None)
+    run = reportpage.Run(
+        settings=settings,
+        figures={Path(figure).stem: Path(figure).read_text(encoding="utf-8") for figure in files["figures"]},
+        benchmarks={file.stem: file.read_text() for file in sorted(Path(benchmarks).glob("*.tsv"))},
+        sizes=[(what, Path(p).name, Path(p).stat().st_size) for what in ("recordings", "results") for p in files[what]],
+        version=f"Made by scanplan, code {sources.digest()}.",
+    )
+    page = [Path(part).read_text(encoding="utf-8") for part in files["page"]]
+    text = reportpage.page(*page, plan, survey, run)
+    atomic.write_text(output, text)
+    stagelog.say(f"write_report: {len(text) / 1e6:.1f} MB, {chosen} scans, {floorplan.summary(plan)}")
+
+
+if __name__ == "__main__":
+    with stagelog.to_file(snakemake.log[0]):
+        write_report(
+            dict(snakemake.input.items()),
+            snakemake.output.page,
+            name=snakemake.wildcards.dataset,
+            settings=snakemake.params.settings,
+            benchmarks=snakemake.params.benchmarks,
+        )

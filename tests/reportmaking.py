@@ -1,0 +1,115 @@
+"""The tables of a survey of the hand-made plan: five candidates, four of them kept, three chosen."""
+
+from pathlib import Path
+
+import numpy as np
+
+import floorplanmaking
+from scanplan import schemas, tables
+from wallmaking import walls as wall_table
+
+PAGE = Path(__file__).resolve().parents[1] / "workflow/report/page"
+SETTINGS = {
+    "selection": {"stop": {"n_scans": 3, "area_share": None}},
+    "plan": {
+        "method": "cluster_hull",
+        "extractor": "cluster_ransac",
+        "merge": {"max_angle_deg": 10.0, "merge_distance_m": 0.1, "min_scans": 2},
+    },
+}
+SCAN_IDS = [0, 5, 9, 12, 20]
+PLACES_M = [(1.0, 1.0), (2.0, 1.5), (4.05, 1.4), (6.0, 1.0), (6.5, 2.0)]
+START_NS = 1_700_000_000_000_000_000
+# what each scan shows of the faces of the plan
+SEEN = [(9, 0), (9, 1), (9, 5), (5, 0), (5, 3), (5, 4), (12, 0), (12, 1), (0, 4)]
+BENCHMARK = "s\th:m:s\tmax_rss\tmax_vms\tmax_uss\tmax_pss\tio_in\tio_out\tmean_load\tcpu_time\n{}\n"
+
+
+def _poses():
+    n = len(SCAN_IDS)
+    pose = dict(zip(("x_m", "y_m"), np.array(PLACES_M).T.copy(), strict=True))
+    turn = {c: np.full(n, float(c == "qw")) for c in ("qx", "qy", "qz", "qw")}
+    stamps = {"scan_id": np.array(SCAN_IDS, np.int32), "t_ns": START_NS + np.array(SCAN_IDS) * 10**8}
+    return stamps, pose | {"z_m": np.full(n, 0.4)} | turn
+
+
+def poses():
+    stamps, pose = _poses()
+    return stamps | pose | {"gap_s": np.full(5, 0.1), "covered": np.ones(5, bool)}
+
+
+def registration():
+    stamps, pose = _poses()
+    pose["x_m"] = pose["x_m"] + 0.03
+    return stamps | pose | {
+        "prior_fitness": np.array([np.nan, 0.8, 0.7, 0.9, 0.2]),
+        "refined_fitness": np.array([np.nan, 0.9, 0.8, 0.95, np.nan]),
+        "rmse_m": np.array([np.nan, 0.05, 0.06, 0.04, np.nan]),
+        "kept": np.array([True, True, True, True, False]),
+        "reason": np.array(["anchor", "kept", "kept", "kept", "low_prior_fitness"], object),
+    }  # fmt: skip
+
+
+def selection():
+    covered_m2 = np.array([15.0, 20.0, 21.0, 21.0])
+    return {
+        "rank": np.arange(1, 5, dtype=np.int32),
+        "scan_id": np.array([9, 5, 12, 0], np.int32),
+        "gain_m2": np.diff(covered_m2, prepend=0.0),
+        "covered_m2": covered_m2,
+        "bound_m2": np.array([15.0, 20.5, 21.0, 21.0]),
+    }
+
+
+def segments():
+    rows = sorted(SEEN)
+    lines = [floorplanmaking.FACES[face][:4] for _, face in rows]
+    table = wall_table(lines, scan_id=[scan for scan, _ in rows])
+    table["wall"] = np.array([sum(s == scan for s, _ in rows[:i]) for i, (scan, _) in enumerate(rows)], np.int32)
+    return table
+
+
+def evaluation(methods=("cluster_hull", "random")):
+    k = [1, 2, 3, 4]
+    columns = {}
+    for name, kind in schemas.EVALUATION.columns.items():
+        columns[name] = np.tile(np.linspace(0.2, 0.9, 4), len(methods)) if kind == "float64" else None
+    columns["method"] = np.repeat(np.array(methods, object), 4)
+    columns["extractor"] = np.array(["cluster_ransac"] * 4 * len(methods), object)
+    columns["k"] = np.tile(np.array(k, np.int32), len(methods))
+    columns["n_walls"] = columns["k"] * 3
+    return columns
+
+
+def files(folder):
+    """Write everything that the report is made of into a folder, and return what `write_report` is given."""
+    made = {
+        "faces": (tables.FACES, floorplanmaking.faces()),
+        "walls": (tables.PLAN_WALLS, floorplanmaking.walls()),
+        "openings": (tables.OPENINGS, floorplanmaking.openings()),
+        "rooms": (tables.ROOMS, floorplanmaking.rooms()),
+        "free": (tables.FREE, floorplanmaking.free()),
+        "evidence": (tables.EVIDENCE, floorplanmaking.evidence()),
+        "selection": (tables.SELECTION, selection()),
+        "segments": (tables.WALLS, segments()),
+        "poses": (tables.POSES, poses()),
+        "registration": (tables.REGISTRATION, registration()),
+        "evaluation": (schemas.EVALUATION, evaluation()),
+    }
+    paths = {name: folder / f"{name}.parquet" for name in made}
+    for name, (schema, columns) in made.items():
+        tables.write(paths[name], schema, columns)
+    (folder / "scans.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><path d="M0 0"/></svg>'
+    )
+    (folder / "survey.bag").write_bytes(bytes(2_500_000))
+    (folder / "benchmarks").mkdir(exist_ok=True)
+    (folder / "benchmarks/build_hulls.tsv").write_text(BENCHMARK.format("2.5\t0:00:02\t443.8\t1\t1\t1\t0\t0\t80\t3.4"))
+    (folder / "benchmarks/draw_area.tsv").write_text(BENCHMARK.format("0.1\t0:00:00\t-\t-\t-\t-\t-\t-\t-\t-"))
+    return paths | {
+        "page": [PAGE / f"page.{suffix}" for suffix in ("html", "css", "js")],
+        "figures": [folder / "scans.svg"],
+        "evaluation": [paths["evaluation"]],
+        "recordings": [folder / "survey.bag"],
+        "results": [paths["faces"], paths["walls"]],
+    }

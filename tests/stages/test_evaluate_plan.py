@@ -1,0 +1,38 @@
+import numpy as np
+import pytest
+
+import planmaking
+from evaluate_plan import evaluate_plan
+from evaluationmaking import FACES, SCAN_IDS, shift, write_registration, write_truth
+from scanplan import schemas, tables
+
+
+def evaluated(folder, segments, **placing):
+    write_truth(folder)
+    write_registration(folder, **placing)
+    plan = planmaking.write(folder, SCAN_IDS, face_segments=segments)
+    inputs = [folder / name for name in ("registration.parquet", "truth.geojson", "truth_poses.tum")]
+    evaluate_plan(plan, *inputs, folder / "plan.parquet", max_range_m=100.0, bitmap_cell_m=0.05)
+    return tables.read(folder / "plan.parquet", schemas.PLAN_EVALUATION)
+
+
+def test_a_perfect_plan(tmp_path):
+    measured = evaluated(tmp_path, FACES)
+    assert measured["frame"].tolist() == ["aligned", "registered"]
+    for name in ("completeness_005m", "visible_correctness_005m", "f1_015m", "correct_match", "walls_per_true_wall"):
+        np.testing.assert_allclose(measured[name], 1)
+    np.testing.assert_allclose(measured["length_m"], 20)
+
+
+def test_a_plan_beside_the_truth_is_put_there_by_one_motion(tmp_path):
+    moved = [(x0 + 0.3, y0, x1 + 0.3, y1) for x0, y0, x1, y1 in FACES]
+    measured = evaluated(tmp_path, moved, map_from_true=shift(0.3, 0.0))
+    assert measured["completeness_005m"][0] == 1
+    # the walls along the motion are still on themselves, but for what stands out
+    assert measured["completeness_005m"][1] == pytest.approx((6 - 0.25) * 2 / 20, abs=0.01)
+
+
+def test_half_a_plan(tmp_path):
+    measured = evaluated(tmp_path, [FACES[0], (0, 9, 3, 9)])
+    assert measured["completeness_010m"][1] == pytest.approx(6.2 / 20, abs=0.002)
+    assert measured["correctness_010m"][1] == pytest.approx(2 / 3)

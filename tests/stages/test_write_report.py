@@ -1,0 +1,234 @@
+import re
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+
+import browser
+import floorplanmaking
+import reportmaking
+from scanplan import tables
+from scanplan.errors import StageError
+from write_report import write_report
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("report")
+    return written(folder, reportmaking.files(folder))
+
+
+def written(folder, files, name="office <two> rooms", output="report.html"):
+    write_report(files, folder / output, name=name, settings=reportmaking.SETTINGS, benchmarks=folder / "benchmarks")
+    return folder / output
+
+
+class Tables(HTMLParser):
+    """The tables of a page: id to rows of texts."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.rows, self._table, self._cell = {}, None, False
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        if tag == "table":
+            self._table = self.rows.setdefault(dict(attributes)["id"], [])
+        elif tag == "tr":
+            self._table.append([])
+        elif tag in ("td", "th"):
+            self._table[-1].append("")
+            self._cell = True
+
+    def handle_endtag(self, tag):
+        self._cell &= tag not in ("td", "th")
+
+    def handle_data(self, data):
+        if self._cell:
+            self._table[-1][-1] += data
+
+
+def test_tables_state_what_the_stages_found(report):
+    found = Tables(report.read_text()).rows
+    assert found["walls"][1][:7] == ["0", "", "observed", "7.20", "200", "2.0", "10.0"]
+    assert found["walls"][2][4] == "–"
+    assert found["walls"][3][1:3] == ["verify", "inferred"]
+    assert found["openings"][2] == ["1", "door", "0.90", "0.00", "2.00", "room 0 – room 1", "40"]
+    assert found["rooms"][1] == ["0", "12.00", "14.00", "yes", "2"]
+    assert found["registration"][1] == ["kept", "yes", "3", "60.0", "0.800", "0.900", "50", "30"]
+    assert found["stages"][1:] == [
+        ["build_hulls", "2.5", "3.4", "444"], ["draw_area", "0.1", "–", "–"], ["all", "2.6", "3.4", ""],
+    ]  # fmt: skip
+    assert found["sizes"][1] == ["recordings", "survey.bag", "2.500"]
+    assert ["plan.merge.min_scans", "2"] in found["settings"]
+
+
+def test_it_says_what_it_was_made_of_and_how_good_that_is(report):
+    text = report.read_text()
+    assert "made of 3 scans chosen from 4 registered ones; 5 were candidates" in text
+    assert "no 3 of these scans cover more than 21.0 m²" in text
+    assert "office &lt;two&gt; rooms" in text and "<two>" not in text
+
+
+def test_it_holds_all_it_needs(report):
+    text = report.read_text()
+    # names of namespaces and the figures' own data apart, there is no address in it
+    addresses = re.findall(r"""(?:href|src)\s*=\s*["']([^"']*)|url\(([^)]*)|@import""", text)
+    assert addresses and all(a.startswith("data:") for pair in addresses for a in pair if a)
+    assert "http-equiv" in text and "default-src 'none'" in text
+
+
+def test_the_same_input_gives_the_same_bytes(report, tmp_path):
+    assert written(tmp_path, reportmaking.files(tmp_path)).read_bytes() == report.read_bytes()
+
+
+def test_faces_alone_without_truth_and_times_make_a_report(tmp_path):
+    files = reportmaking.files(tmp_path)
+    for name, schema in (("walls", tables.PLAN_WALLS), ("openings", tables.OPENINGS), ("rooms", tables.ROOMS)):
+        tables.write(files[name], schema, getattr(floorplanmaking, name)([]), allow_empty=True)
+    nobody = {column: values[:0] for column, values in floorplanmaking.evidence().items()}
+    tables.write(files["evidence"], tables.EVIDENCE, nobody, allow_empty=True)
+    (tmp_path / "benchmarks/build_hulls.tsv").write_text("")
+    (tmp_path / "benchmarks/draw_area.tsv").unlink()
+    found = Tables(written(tmp_path, files | {"evaluation": [], "figures": []}).read_text()).rows
+    assert len(found["walls"]) == 1 and len(found["stages"]) == 1
+
+
+def test_a_selection_of_another_run_is_told(tmp_path):
+    files = reportmaking.files(tmp_path)
+    selection = reportmaking.selection() | {"scan_id": np.array([9, 7, 12, 0], np.int32)}
+    tables.write(files["selection"], tables.SELECTION, selection)
+    with pytest.raises(StageError, match="scan 7 of the selection"):
+        written(tmp_path, files)
+
+
+needs_browser = pytest.mark.skipif(
+    browser.find() is None, reason="no Chromium on the path (Debian: apt-get install chromium; or name one in CHROMIUM)"
+)
+
+
+@pytest.fixture(scope="module")
+def chromium(tmp_path_factory):
+    with browser.Page(tmp_path_factory.mktemp("browser")) as page:
+        yield page
+
+
+@pytest.fixture
+def page(report, chromium):
+    yield chromium.open(report.as_uri())
+    assert chromium.complaints == []
+
+
+def in_sight(page, selector):
+    """How many of the elements a person could see."""
+    return page.run(
+        f"[...document.querySelectorAll('{selector}')].filter(e => e.getClientRects().length"
+        " && e.getBoundingClientRect().width + e.getBoundingClientRect().height > 0).length"
+    )
+
+
+def slide(page, k):
+    page.run(f"slider = document.getElementById('k'), slider.value = {k}, slider.dispatchEvent(new Event('input'))")
+
+
+@needs_browser
+def test_the_slider_moves_the_plan(page):
+    def state():
+        return [in_sight(page, s) for s in (".scan", ".stretch", ".stretch.sure", "#shown path")]
+
+    whole = page.screenshot()
+    assert state()[0] == 3 and page.run("document.getElementById('plan').classList.contains('growing')") is False
+    slide(page, 1)
+    # the first scan shows three faces, none of them by two scans; the second adds two more, and one is sure
+    assert state() == [1, 3, 0, 1]
+    assert page.screenshot() != whole
+    slide(page, 2)
+    assert state() == [2, 5, 1, 1]
+    assert "2 of 3 (scan 5): 95.2 % of the area" in page.run("document.getElementById('said').textContent")
+    slide(page, 3)
+    assert state() == [3, 5, 2, 0]
+
+
+@needs_browser
+def test_the_mark_in_the_chart_follows_the_slider(page):
+    def marked():
+        return page.run("document.getElementById('chart-k').getBoundingClientRect().x")
+
+    slide(page, 1)
+    first = marked()
+    slide(page, 2)
+    assert marked() > first + 50
+
+
+@needs_browser
+def test_wheel_drag_and_keys_zoom_and_move(page):
+    def box():
+        return np.array(page.run("document.getElementById('plan').getAttribute('viewBox')").split(), float)
+
+    fit = box()
+    page.mouse("mouseWheel", 640, 500, deltaX=0, deltaY=-300)
+    nearer = box()
+    assert nearer[2] < 0.5 * fit[2] and nearer[2] / nearer[3] == pytest.approx(fit[2] / fit[3])
+    page.drag((640, 500), (740, 540))
+    dragged = box()
+    assert dragged[0] < nearer[0] and dragged[1] < nearer[1] and dragged[2] == nearer[2]
+    page.run("document.getElementById('plan').focus()")
+    page.key("ArrowRight")
+    assert box()[0] > dragged[0]
+    page.key("+")
+    assert box()[2] < dragged[2]
+    page.run("document.querySelector('[data-zoom=fit]').click()")
+    np.testing.assert_allclose(box(), fit)
+
+
+@needs_browser
+def test_what_lies_under_the_pointer_stays_there_when_the_wheel_turns(page):
+    def under():
+        place = "new DOMPoint(500, 480).matrixTransform(document.getElementById('plan').getScreenCTM().inverse())"
+        return page.run(f"(p => [p.x, p.y])({place})")
+
+    before = under()
+    page.mouse("mouseWheel", 500, 480, deltaX=0, deltaY=-240)
+    assert under() == pytest.approx(before, abs=1e-3)
+
+
+@needs_browser
+def test_a_table_is_sorted_by_any_column_and_a_row_shows_its_wall(page):
+    def column(number):
+        return page.run(f"[...document.querySelectorAll('#walls tbody tr')].map(r => r.cells[{number}].textContent)")
+
+    page.run("document.querySelectorAll('#walls th button')[3].click()")
+    assert column(3) == ["3.05", "3.20", "3.20", "3.20", "4.15", "7.20"]
+    page.run("document.querySelectorAll('#walls th button')[3].click()")
+    assert column(3)[0] == "7.20"
+    assert page.run("document.querySelectorAll('#walls th')[3].getAttribute('aria-sort')") == "descending"
+    page.run("document.querySelector('#walls tr[data-wall=\"5\"]').click()")
+    assert page.run("[...document.querySelectorAll('#plan .picked')].map(e => e.dataset.wall)") == ["5"]
+
+
+@needs_browser
+def test_layers_can_be_hidden(page):
+    page.run("document.querySelector('[data-layer=scans]').click()")
+    assert in_sight(page, ".scan") == 0
+
+
+@needs_browser
+def test_it_is_dark_where_the_person_likes_it_dark(report, chromium):
+    def ground(dark):
+        colour = chromium.open(report.as_uri(), dark=dark).run("getComputedStyle(document.body).backgroundColor")
+        return sum(map(int, re.findall(r"\d+", colour)))
+
+    assert ground(True) < 150 < 600 < ground(False)
+
+
+@needs_browser
+def test_a_narrow_window_needs_no_sideways_scrolling(report, chromium):
+    assert chromium.open(report.as_uri(), width=390, height=800).run("document.documentElement.scrollWidth") <= 390
+
+
+@needs_browser
+def test_the_browser_tells_when_a_page_complains(chromium, tmp_path):
+    wrong = tmp_path / "wrong.html"
+    wrong.write_text('<img src="missing.png"><script>console.error("no"); missing()</script>')
+    said = "\n".join(chromium.open(wrong.as_uri()).complaints)
+    assert "no" in said and "ReferenceError" in said and "request of" in said

@@ -1,0 +1,57 @@
+import numpy as np
+import pytest
+import shapely
+
+import floorplanmaking
+from floorplanmaking import bare, plan
+
+
+def test_solid_walls_have_the_area_that_is_worked_out_on_paper():
+    east = 3.4 * 0.1
+    # cut off square where the single face begins, and half-way across the end of the partition
+    inferred = (3.0 + 3.05) / 2 * 0.1 + 3.05 * 0.1
+    cut = 1.0 * 0.2 + 0.9 * 0.1 + 1.2 * 0.2
+    assert plan().solid("inferred").area == pytest.approx(inferred, abs=1e-3)
+    assert plan().solid("observed").area == pytest.approx(
+        floorplanmaking.FOOTPRINT_M2 - east - inferred - cut, abs=1e-3
+    )
+
+
+def test_openings_are_cut_through():
+    walls = shapely.union(plan().solid("observed"), plan().solid("inferred"))
+    for line in ((-1, 1.5, 1, 1.5), (3, 1.5, 5, 1.5), (1.5, -1, 1.5, 1)):
+        assert not shapely.LineString(np.reshape(line, (2, 2))).intersects(walls)
+    assert shapely.LineString([(3, 2.5), (5, 2.5)]).intersects(walls)
+
+
+def test_single_faces_end_at_the_surfaces_of_the_walls_they_meet():
+    east, loose = sorted(plan().single("observed"), key=lambda line: -line.length)
+    assert east.bounds == pytest.approx((7.1, 0, 7.1, 3), abs=1e-3)
+    assert loose.bounds == (2, 2, 3, 2)
+    assert len(plan().single("inferred")) == 0
+
+
+def test_what_is_assumed_lies_behind_the_face():
+    assert plan().bodies[1].bounds == pytest.approx((7.1, -0.2, 7.2, 3.2))
+    turned = floorplanmaking.walls()
+    turned["face_left"][1], turned["face_right"][1] = -1, 1
+    assert plan(walls=turned).bodies[1].bounds[:3:2] == pytest.approx((7.0, 7.1))
+
+
+def test_a_plan_of_faces_alone_has_lines_only():
+    assert bare().solid("observed").is_empty
+    assert [line.length for line in bare().single("observed")] == [5, 2]
+    np.testing.assert_allclose(bare().bounds_m, [(0, 0), (10, 3)])
+
+
+def test_the_storey_stands_on_the_lowest_points_and_reaches_the_highest():
+    assert plan().storey_m == (0, floorplanmaking.HEIGHT_M)
+    walls = floorplanmaking.walls()
+    walls["z_min_m"] -= 1
+    walls["z_max_m"][5] = 0.7
+    assert plan(walls=walls).storey_m == (-1, floorplanmaking.HEIGHT_M + 1)
+
+
+def test_the_height_of_a_planar_survey_is_assumed():
+    walls = floorplanmaking.walls() | {"z_min_m": np.full(6, 0.3), "z_max_m": np.full(6, 0.3)}
+    assert plan(walls=walls, assumed_height_m=3.0).storey_m == (0.3, 3.0)

@@ -1,0 +1,143 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import toyrooms
+from scanplan import furniture, walls
+
+LIMITS = walls.Limits(**toyrooms.LIMITS)
+SENSOR_M = 0.4
+
+
+def rays(faces, *, elevations_deg=range(-15, 16, 2), columns=720):
+    """Return what 16 beams from 0.4 m above the floor see of upright faces (x0, y0, x1, y1, low, high above the floor).
+
+    Relative to the sensor; the floor is seen where nothing else is.
+    """
+    azimuth, slope = np.meshgrid(np.arange(columns) / columns * 2 * np.pi, np.tan(np.deg2rad(list(elevations_deg))))
+    way = np.column_stack([np.cos(azimuth.ravel()), np.sin(azimuth.ravel())])
+    slope = slope.ravel()
+    nearest = np.where(slope < 0, -SENSOR_M / np.minimum(slope, -1e-9), np.inf)
+    for x0, y0, x1, y1, low, high in faces:
+        start, along = np.array([x0, y0]), np.array([x1 - x0, y1 - y0])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            across = way[:, 0] * along[1] - way[:, 1] * along[0]
+            range_m = (start[0] * along[1] - start[1] * along[0]) / across
+            share = (start[0] * way[:, 1] - start[1] * way[:, 0]) / across
+            height = SENSOR_M + slope * range_m
+            hit = (range_m > 0) & (share >= 0) & (share <= 1) & (height >= low) & (height <= high)
+        nearest = np.where(hit, np.minimum(nearest, range_m), nearest)
+    seen = np.isfinite(nearest) & (nearest < 30)
+    return np.column_stack([way, slope])[seen] * nearest[seen, None]
+
+
+def row(x0, y0, x1, y1, low, high, rmse_m=0.01):
+    """Return a row of `walls.cut`; the sensor, at the origin, is to the left of the way."""
+    way = np.array([x1 - x0, y1 - y0]) / np.hypot(x1 - x0, y1 - y0)
+    return (x0, y0, x1, y1, -way[1], way[0], 200, rmse_m, low - SENSOR_M, high - SENSOR_M)
+
+
+def kept(faces, others=(), **seen):
+    """Return which faces count as walls, in a scan of them and others."""
+    rows = [row(*face, **seen) for face in faces]
+    walls_found = furniture.walls_among(rows, rays([*faces, *others]), LIMITS, planar=False)
+    return [r in walls_found for r in rows]
+
+
+WALL = (6, -3, 6, 3, 0, 2.6)
+LOW_WALL = (4, -2, 4, 2, 0, 1.6)
+
+
+def test_a_wall_is_one():
+    assert kept([WALL]) == [True]
+
+
+def test_what_rays_pass_over_is_none():
+    # at 4 m beams of 15 degrees reach 1.47 m
+    assert kept([(4, -1, 4, 1, 0, 1.2)], [WALL]) == [False]
+    assert kept([(4, -1, 4, 1, 0, 2.6)], [WALL]) == [True]
+
+
+def test_nothing_behind_is_no_evidence():
+    assert kept([(4, -1, 4, 1, 0, 1.2)]) == [True]
+
+
+def test_what_no_beam_could_pass_over_is_judged_by_its_corners():
+    # at 1.5 m beams of 15 degrees reach 0.8 m: nothing tells a wall from a desk there
+    desk = (1.5, -1, 1.5, 1, 0, 0.8)
+    assert kept([desk], [WALL]) == [False]
+    # but in a small room, whose walls meet in inner corners
+    room = [(1.5, -1, 1.5, 1), (1.5, 1, -1.5, 1), (-1.5, 1, -1.5, -1), (-1.5, -1, 1.5, -1)]
+    assert kept([(*side, 0, 2.6) for side in room]) == [True] * 4
+
+
+def test_an_outer_corner_shows_that_a_low_face_is_furniture():
+    faces = [(1.5, -0.5, 1.5, 0.5, 0, 0.8), (1.5, 0.5, 2.5, 0.5, 0, 0.8)]
+    # the second is seen edge-on from the origin's side; its normal is up
+    rows = [row(*faces[0]), row(2.5, 0.5, 1.5, 0.5, 0, 0.8)]
+    assert furniture.walls_among(rows, rays(faces), LIMITS, planar=False) == []
+
+
+def test_stairs_let_rays_through():
+    treads = [(4, -1 + 0.1 * i, 4, -0.95 + 0.1 * i, 0, 2.6) for i in range(20)]
+    rows = [row(4, -1, 4, 1, 0, 2.6)]
+    assert furniture.walls_among(rows, rays([*treads, WALL]), LIMITS, planar=False) == []
+    assert furniture.walls_among(rows, rays([(4, -1, 4, 1, 0, 2.6), WALL]), LIMITS, planar=False) == rows
+
+
+def test_glass_gives_few_returns():
+    points = rays([(4, -1, 4, 1, 0, 2.6), (-4, 1, -4, -1, 0, 2.6)])
+    pane = np.abs(points[:, 0] - 4) < 1e-6
+    few = points[~pane | (np.arange(len(points)) % 10 == 0)]
+    rows = [row(4, -1, 4, 1, 0, 1.4), row(-4, 1, -4, -1, 0, 1.4)]
+    assert furniture.walls_among(rows, few, LIMITS, planar=False) == rows[1:]
+
+
+def test_what_stands_close_before_a_wall_is_furniture():
+    # 1.5 m tall at 4 m: no ray passes over it, but the wall goes on to both sides 0.6 m behind it
+    cabinet, wall = (4, -0.7, 4, 0.7, 0, 2.0), [(4.6, -3, 4.6, -0.9, 0, 2.6), (4.6, 0.9, 4.6, 3, 0, 2.6)]
+    assert kept([cabinet, *wall]) == [False, True, True]
+    far_behind = [(7, -4, 7, -1.5, 0, 2.6), (7, 1.5, 7, 4, 0, 2.6)]
+    assert kept([cabinet, *far_behind]) == [True, True, True]
+
+
+def test_what_hangs_is_no_wall():
+    assert kept([(6, -1, 6, 1, 1.4, 2.0)]) == [False]
+
+
+def test_a_short_face_is_a_wall_where_it_goes_on_beyond_a_door():
+    short, on = (4, -0.3, 4, 0.3, 0, 2.6), (4, 1.2, 4, 3, 0, 2.6)
+    assert kept([short]) == [False]
+    assert kept([short, on]) == [True, True]
+
+
+@pytest.mark.parametrize("planar", [False, True])
+def test_clutter_scatters(planar):
+    points = rays([LOW_WALL])
+    rows = [row(*LOW_WALL, rmse_m=0.028), row(*LOW_WALL, rmse_m=0.02)]
+    assert furniture.walls_among(rows, points, LIMITS, planar=planar) == rows[1:]
+    assert furniture.walls_among([], points, LIMITS, planar=planar) == []
+
+
+def test_corners_on_paper():
+    # an inner corner at (2, 2) and an outer one at (2, -1)
+    start = np.array([(2.0, -1), (2, 2), (5, -1)])
+    end = np.array([(2.0, 2), (-1, 2), (2, -1)])
+    normal = np.array([(-1.0, 0), (0, -1), (0, -1)])
+    inner, outer = furniture.corners(start, end, normal, 0.1)
+    assert np.argwhere(inner).tolist() == [[0, 1, 1], [1, 0, 0]]
+    assert np.argwhere(outer).tolist() == [[0, 0, 2], [2, 1, 0]]
+
+
+@given(st.floats(-3.1, 3.1))
+@settings(max_examples=10, deadline=None)
+def test_a_turn_of_the_room_changes_nothing(angle_rad):
+    cabinet, wall = (4, -0.7, 4, 0.7, 0, 2.0), [(4.6, -3, 4.6, -0.9, 0, 2.6), (4.6, 0.9, 4.6, 3, 0, 2.6)]
+    turn = np.array([[np.cos(angle_rad), -np.sin(angle_rad)], [np.sin(angle_rad), np.cos(angle_rad)]])
+    rows = [row(*face) for face in [cabinet, *wall]]
+    points = rays([cabinet, *wall])
+    turned = [(*turn @ r[0:2], *turn @ r[2:4], *turn @ r[4:6], *r[6:]) for r in rows]
+    points = np.column_stack([points[:, :2] @ turn.T, points[:, 2]])
+    found = furniture.walls_among(turned, points, LIMITS, planar=False)
+    assert [r in found for r in turned] == [False, True, True]

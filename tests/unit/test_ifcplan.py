@@ -1,0 +1,148 @@
+import re
+
+import ifcopenshell
+import ifcopenshell.geom
+import ifcopenshell.util.element
+import ifcopenshell.util.placement
+import ifcopenshell.validate
+import numpy as np
+import pytest
+
+import floorplanmaking
+from floorplanmaking import bare, plan
+from scanplan import ifcplan
+
+
+def opened(drawn):
+    return ifcopenshell.file.from_string(ifcplan.dumps(drawn))
+
+
+def faults(model, rules=False):
+    log = ifcopenshell.validate.json_logger()
+    ifcopenshell.validate.validate(model, log, express_rules=rules)
+    return log.statements
+
+
+def volume_m3(product, **options):
+    settings = ifcopenshell.geom.settings()
+    for name, value in options.items():
+        settings.set(name.replace("_", "-"), value)
+    shape = ifcopenshell.geom.create_shape(settings, product).geometry
+    corners = np.reshape(shape.verts, (-1, 3))[np.reshape(shape.faces, (-1, 3))]
+    return abs(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6
+
+
+@pytest.fixture(scope="module")
+def model():
+    return opened(plan())
+
+
+# the rules' module is opened and left open by ifcopenshell
+@pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::pytest.PytestUnraisableExceptionWarning")
+def test_it_is_valid_by_schema_and_by_the_rules_of_ifc4(model):
+    assert model.schema == "IFC4"
+    assert faults(model, rules=True) == []
+
+
+def test_walls_have_the_volume_of_the_plan(model):
+    solid = [volume_m3(wall, disable_opening_subtractions=True) for wall in model.by_type("IfcWall")]
+    assert sum(solid) == pytest.approx(floorplanmaking.FOOTPRINT_M2 * floorplanmaking.HEIGHT_M, rel=1e-3)
+    cut = [volume_m3(wall) for wall in model.by_type("IfcWall")]
+    assert sum(cut) == pytest.approx(
+        floorplanmaking.FOOTPRINT_M2 * floorplanmaking.HEIGHT_M - floorplanmaking.VOID_M3, rel=1e-3
+    )
+
+
+def test_the_tree_goes_from_the_project_to_walls_doors_and_spaces(model):
+    (storey,) = model.by_type("IfcBuildingStorey")
+    for wall in model.by_type("IfcWall"):
+        assert ifcopenshell.util.element.get_container(wall) == storey
+    for space in model.by_type("IfcSpace"):
+        assert ifcopenshell.util.element.get_aggregate(space) == storey
+    above = [ifcopenshell.util.element.get_aggregate(storey)]
+    while above[-1] is not None:
+        above.append(ifcopenshell.util.element.get_aggregate(above[-1]))
+    assert [part.is_a() for part in above[:-1]] == ["IfcBuilding", "IfcSite", "IfcProject"]
+
+
+def test_doors_and_windows_fill_openings_of_their_walls(model):
+    assert len(model.by_type("IfcOpeningElement")) == 3
+    hosts = {}
+    for leaf in [*model.by_type("IfcDoor"), *model.by_type("IfcWindow")]:
+        hole = leaf.FillsVoids[0].RelatingOpeningElement
+        hosts[leaf.Name] = hole.VoidsElements[0].RelatingBuildingElement.Name
+    assert hosts == {"Door 0": "Wall 4", "Door 1": "Wall 5", "Window 2": "Wall 0"}
+    window = model.by_type("IfcWindow")[0]
+    assert (window.OverallWidth, window.OverallHeight) == pytest.approx((1.2, 1.2))
+    assert ifcopenshell.util.placement.get_local_placement(window.ObjectPlacement)[:3, 3] == pytest.approx([1, -0.1, 0])
+
+
+def test_spaces_are_the_rooms(model):
+    for space, area in zip(model.by_type("IfcSpace"), (12.0, 9.0), strict=True):
+        assert volume_m3(space) == pytest.approx(area * floorplanmaking.HEIGHT_M)
+        stated = ifcopenshell.util.element.get_psets(space)["Qto_SpaceBaseQuantities"]
+        assert stated["NetFloorArea"] == pytest.approx(area)
+
+
+def test_walls_say_how_well_they_are_known(model):
+    east, north = (ifcopenshell.util.element.get_psets(model.by_type("IfcWall")[i]) for i in (1, 2))
+    assert east["Scanplan_Evidence"]["ThicknessMeasured"] is False
+    assert east["Qto_WallBaseQuantities"]["Width"] == pytest.approx(floorplanmaking.ASSUMED_M)
+    assert north["Scanplan_Evidence"]["State"] == "inferred" and north["Scanplan_Evidence"]["VerifyOnSite"] is True
+    assert north["Scanplan_Evidence"]["OffsetStandardDeviation"] == pytest.approx(0.002)
+
+
+def test_what_is_not_known_is_left_out():
+    walls = floorplanmaking.walls() | {"sigma_offset_m": np.full(6, np.nan)}
+    model = opened(plan(walls=walls))
+    stated = ifcopenshell.util.element.get_psets(model.by_type("IfcWall")[0])
+    assert "OffsetStandardDeviation" not in stated["Scanplan_Evidence"]
+
+
+def test_unknown_sills_and_lintels_are_as_usual_and_said_to_be():
+    openings = floorplanmaking.openings() | {"sill_m": np.full(3, np.nan), "lintel_m": np.full(3, np.nan)}
+    model = opened(plan(openings=openings))
+    door, window = model.by_type("IfcDoor")[0], model.by_type("IfcWindow")[0]
+    assert (door.OverallHeight, window.OverallHeight) == pytest.approx((2.0, 1.1))
+    assert ifcopenshell.util.element.get_psets(door)["Scanplan_Evidence"]["LintelMeasured"] is False
+    assert faults(model) == []
+
+
+def test_a_passage_is_a_hole_with_nothing_in_it():
+    openings = floorplanmaking.openings() | {"type": np.array(["passage"] * 3, object)}
+    model = opened(plan(openings=openings))
+    assert len(model.by_type("IfcOpeningElement")) == 3 and not model.by_type("IfcDoor")
+    assert faults(model) == []
+
+
+def test_a_door_in_no_wall_stands_alone():
+    openings = floorplanmaking.openings() | {"wall": np.full(3, -1, np.int32)}
+    model = opened(plan(openings=openings))
+    assert len(model.by_type("IfcDoor")) == 2 and not model.by_type("IfcOpeningElement")
+    assert faults(model) == []
+
+
+def test_identifiers_are_unique_and_the_same_for_the_same_plan(model):
+    ids = [root.GlobalId for root in model.by_type("IfcRoot")]
+    assert len(ids) == len(set(ids))
+    assert ifcplan.dumps(plan()) == ifcplan.dumps(plan())
+    assert re.search(r"FILE_NAME\('office','1970-01-01T00:00:00'", ifcplan.dumps(plan()))
+
+
+def test_a_wall_keeps_its_identifier_when_another_goes():
+    fewer = {name: values[2:] for name, values in floorplanmaking.walls().items()}
+    openings = floorplanmaking.openings([])
+    before, after = ({w.GlobalId for w in opened(plan(walls=w, openings=openings)).by_type("IfcWall")}
+                     for w in (floorplanmaking.walls(), fewer))  # fmt: skip
+    assert len(before) == 6 and len(after) == 4 and after < before
+
+
+def test_two_walls_in_one_place_have_two_identifiers():
+    walls = floorplanmaking.walls([floorplanmaking.WALLS[5], floorplanmaking.WALLS[5]])
+    model = opened(plan(walls=walls, openings=floorplanmaking.openings([])))
+    assert len({w.GlobalId for w in model.by_type("IfcWall")}) == 2
+
+
+def test_a_plan_of_faces_alone_is_a_valid_model_without_walls():
+    model = opened(bare())
+    assert not model.by_type("IfcWall") and faults(model) == []

@@ -1,0 +1,112 @@
+import dataclasses
+
+import numpy as np
+import pytest
+
+import toyrooms
+from scanplan import methods, wallcells
+from scanplan.coverage import CellCoverage
+
+LIMITS = {name: toyrooms.LIMITS[name] for name in methods.WALL_LIMITS if name in toyrooms.LIMITS}
+SETTINGS = wallcells.Settings(cell_m=0.25, reach_deg=3.5, max_tilt_deg=15.0, **LIMITS)
+# what the toy sensor sees of its room's walls, and 1.5 m of the wall behind the doorway
+SEEN_M = 6 + 6 + 4 + 1.5 + 1.6 + 1.5
+MAKE = {False: toyrooms.vlp16, True: toyrooms.laser}
+
+
+def observe(xyz_m, sensor_xyz_m=toyrooms.SENSOR, *, planar=False, settings=SETTINGS):
+    return wallcells.observe(3, xyz_m, sensor_xyz_m=np.asarray(sensor_xyz_m, float), planar=planar, settings=settings)
+
+
+def turned(xyz_m, angle_rad):
+    c, s = np.cos(angle_rad), np.sin(angle_rad)
+    return xyz_m @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
+
+
+def shown_m(*observed):
+    """What several scans show together."""
+    columns = wallcells.table(np.arange(len(observed)), observed)
+    cells = CellCoverage(columns["scan_id"], wallcells.number(columns), columns["length_m"], len(observed))
+    return cells.greedy().covered_m2[-1]
+
+
+@pytest.mark.parametrize("planar", [False, True])
+def test_a_room_has_the_length_of_its_walls(planar):
+    seen = observe(MAKE[planar](), planar=planar)
+    assert seen["length_m"].sum() == pytest.approx(SEEN_M, rel=0.06)
+    assert (seen["length_m"] > 0).all() and (seen["length_m"] <= SETTINGS.cell_m + 1e-9).all()
+
+
+@pytest.mark.parametrize("planar", [False, True])
+@pytest.mark.parametrize("angle_deg", [10, 30, 45, 80])
+def test_walls_of_any_direction_count_their_length(angle_deg, planar):
+    angle = np.deg2rad(angle_deg)
+    seen = observe(turned(MAKE[planar](), angle), turned(toyrooms.SENSOR, angle), planar=planar)
+    assert seen["length_m"].sum() == pytest.approx(SEEN_M, rel=0.12)
+
+
+def test_a_quarter_turn_and_whole_cells_change_nothing_but_the_cells():
+    scan, whole = toyrooms.vlp16(), np.array([40 * SETTINGS.cell_m, -8 * SETTINGS.cell_m, 0])
+    here, there = observe(scan), observe(scan + whole, toyrooms.SENSOR + whole)
+    np.testing.assert_allclose(there["length_m"], here["length_m"], atol=1e-9)
+    along_x = here["facing"] >= 2
+    np.testing.assert_array_equal(there["along"] - here["along"], np.where(along_x, 40, -8))
+    quarter = turned(scan, np.pi / 2), turned(toyrooms.SENSOR, np.pi / 2)
+    assert observe(*quarter)["length_m"].sum() == pytest.approx(here["length_m"].sum(), rel=0.01)
+
+
+def test_both_faces_of_a_thin_wall_count():
+    sheet = np.array([(0, 0, 8, 0.0)])
+    above, below = np.array([4, 2.0, 0.9]), np.array([4, -2.0, 0.9])
+    scans = [observe(toyrooms.vlp16(at, sheet), at) for at in (above, below)]
+    assert shown_m(*scans) == pytest.approx(shown_m(scans[0]) + shown_m(scans[1]))
+    assert {f for s in scans for f in s["facing"][s["length_m"] > 0.1].tolist()} == {2, 3}
+
+
+def test_the_same_wall_a_little_off_counts_little_more_than_once():
+    scan = toyrooms.vlp16()
+    alone = shown_m(observe(scan))
+    for off_m in (0.01, 0.03, 0.06):
+        moved = np.array([off_m, off_m, 0])
+        both = shown_m(observe(scan), observe(scan + moved, toyrooms.SENSOR + moved))
+        assert alone <= both <= alone * (1 + 1.5 * off_m / SETTINGS.cell_m)
+
+
+def test_fewer_returns_show_less_and_none_nothing():
+    scan, rng = toyrooms.vlp16(), np.random.default_rng(0)
+    lengths = [observe(scan[rng.random(len(scan)) < share])["length_m"].sum() for share in (1, 0.3, 0.1, 0.02)]
+    assert (np.diff(lengths) < 0).all()
+    for empty in (np.empty((0, 3)), scan[:3]):
+        assert [len(column) for column in observe(empty).values()] == [0, 0, 0, 0]
+
+
+def test_low_things_are_no_walls():
+    scan = toyrooms.vlp16()
+    low = np.concatenate([scan[:, :2], 0.1 * scan[:, 2:]], axis=1)
+    sensor = toyrooms.SENSOR * (1, 1, 0.1)
+    assert observe(low, sensor)["length_m"].sum() < 0.05 * SEEN_M
+    anything = dataclasses.replace(SETTINGS, min_height_m=0.0)
+    assert observe(low, sensor, settings=anything)["length_m"].sum() > 5 * observe(low, sensor)["length_m"].sum()
+
+
+def test_the_order_of_points_and_the_map_s_origin_do_not_matter():
+    scan = toyrooms.vlp16()
+    shuffled = observe(scan[np.random.default_rng(2).permutation(len(scan))])
+    for name, column in observe(scan).items():
+        np.testing.assert_array_equal(shuffled[name], column)
+    far = np.array([5e5, 4e6, 0])
+    moved = observe(scan + far, toyrooms.SENSOR + far)
+    np.testing.assert_allclose(moved["length_m"].sum(), observe(scan)["length_m"].sum(), rtol=1e-6)
+
+
+def test_cells_have_one_number_each():
+    columns = wallcells.table([4, 9], [observe(toyrooms.vlp16(seed=s)) for s in (1, 2)])
+    numbers = wallcells.number(columns)
+    named = list(zip(columns["facing"], columns["along"], columns["across"], strict=True))
+    assert len(set(zip(numbers.tolist(), named, strict=True))) == len(set(named)) == len(set(numbers.tolist()))
+    assert numbers.min() >= 0
+
+
+def test_points_that_are_not_finite_are_refused():
+    with pytest.raises(ValueError, match="finite"):
+        observe(np.full((50, 3), np.nan))

@@ -1,0 +1,47 @@
+rule measure_crispness:
+    """Measure how thick the walls of the merged map are."""
+    input:
+        scans="results/{dataset}/scans.parquet",
+        registration="results/{dataset}/registration.parquet",
+        poses="results/{dataset}/poses.parquet",
+        code=code_of("measure_crispness"),
+    output:
+        crispness="results/{dataset}/crispness.parquet",
+    log:
+        "logs/{dataset}/measure_crispness.log",
+    benchmark:
+        "benchmarks/{dataset}/measure_crispness.tsv"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=30,
+    params:
+        settings=setting("crispness"),
+    script:
+        "../../scripts/measure_crispness.py"
+
+
+rule draw_registration:
+    """Draw what became of every scan, and how well neighbours fit."""
+    input:
+        scans="results/{dataset}/scans.parquet",
+        registration="results/{dataset}/registration.parquet",
+        crispness="results/{dataset}/crispness.parquet",
+        code=code_of("draw_registration"),
+    output:
+        figure=report(
+            "results/{dataset}/figures/registration.svg",
+            caption="../report/registration.rst",
+            category="{dataset}",
+            labels={"figure": "7 registration"},
+        ),
+    log:
+        "logs/{dataset}/draw_registration.log",
+    benchmark:
+        "benchmarks/{dataset}/draw_registration.tsv"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=10,
+    script:
+        "../../scripts/draw_registration.py"

@@ -1,0 +1,255 @@
+from scanplan import thesisshown
+
+# what the claims are measured on: table of the results by the name that the measures know it by
+ROOMS_TABLES = {
+    "walls": "evaluation/walls",
+    "hull": "selection/hull",
+    "cluster_hull": "selection/cluster_hull",
+    "clusters": "thesis/clusters",
+    "areas": "thesis/areas",
+    "times": "thesis/times",
+}
+DRIVE_TABLES = {
+    "walls": "evaluation/walls",
+    "times": "thesis/times",
+    "poses": "evaluation/poses",
+    "steps": "thesis/steps",
+}
+
+
+def of_kind(kind, table):
+    """A table of every survey of a kind, by seed."""
+    return [f"results/{survey.name}/{table}.parquet" for survey in THESIS[kind]]
+
+
+def evidence():
+    """All tables that the claims are measured on."""
+    files = {
+        f"rooms_{name}": of_kind(experiments.ROOMS, table)
+        for name, table in ROOMS_TABLES.items()
+    }
+    files |= {
+        f"drive_{name}": of_kind(experiments.DRIVE, table)
+        for name, table in DRIVE_TABLES.items()
+    }
+    return files | {"limits_steps": of_kind(experiments.LIMITS, "thesis/steps")}
+
+
+def seeds_of(kind):
+    """The seeds that the surveys of a kind are simulated with."""
+    return [survey.settings["simulate"]["seed"] for survey in THESIS[kind]]
+
+
+def first_of(kind, *files):
+    """Files of the first survey of a kind, by their stems."""
+    name = THESIS[kind][0].name
+    return {file.split("/")[-1]: f"results/{name}/{file}.parquet" for file in files}
+
+
+def figures_of(*numbers):
+    """Our figures of these numbers."""
+    return [
+        f"results/thesis/figures/{figure.file}"
+        for figure in thesisshown.FIGURES
+        if figure.number in numbers
+    ]
+
+
+ROOMS_FIGURES = ["3.2", "5.1", "5.2", "5.3", "5.4", "5.5", "5.6", "5.7"]
+DRIVE_FIGURES = ["5.8", "5.9", "5.10", "5.11", "5.12"]
+
+
+rule thesis:
+    """Repeat the experiments of the thesis."""
+    input:
+        "results/thesis/report.html",
+
+
+rule measure_coverage:
+    """Measure covered areas by number of clusters, and against what scans truly see."""
+    input:
+        scans="results/{dataset}/scans.parquet",
+        hulls="results/{dataset}/hulls.parquet",
+        registration="results/{dataset}/registration.parquet",
+        truth=true_faces,
+        true_poses=true_poses,
+        code=code_of("measure_coverage"),
+    output:
+        clusters="results/{dataset}/thesis/clusters.parquet",
+        areas="results/{dataset}/thesis/areas.parquet",
+    log:
+        "logs/{dataset}/measure_coverage.log",
+    benchmark:
+        "benchmarks/{dataset}/measure_coverage.tsv"
+    threads: 2
+    resources:
+        mem_mb=1500,
+        runtime=30,
+    params:
+        n_clusters=setting("thesis", "n_clusters"),
+        hulls=setting("hulls"),
+        max_range_m=setting("input", "max_range_m"),
+    script:
+        "../../scripts/measure_coverage.py"
+
+
+rule time_stages:
+    """Time extraction scan by scan and selection by number of scans, with all cores to itself."""
+    input:
+        scans="results/{dataset}/scans.parquet",
+        registration="results/{dataset}/registration.parquet",
+        hulls="results/{dataset}/hulls.parquet",
+        code=code_of("time_stages"),
+    output:
+        times="results/{dataset}/thesis/times.parquet",
+    log:
+        "logs/{dataset}/time_stages.log",
+    benchmark:
+        "benchmarks/{dataset}/time_stages.tsv"
+    threads: workflow.cores
+    resources:
+        mem_mb=1500,
+        runtime=30,
+    params:
+        walls=setting("walls"),
+        hulls=setting("hulls"),
+        settings=setting("thesis"),
+    script:
+        "../../scripts/time_stages.py"
+
+
+rule tabulate_steps:
+    """Tabulate time, scans and data after each step."""
+    input:
+        recordings=recordings,
+        true_poses=true_poses,
+        scans="results/{dataset}/scans.parquet",
+        hulls="results/{dataset}/hulls.parquet",
+        selection="results/{dataset}/selection/cluster_hull.parquet",
+        interpolated="benchmarks/{dataset}/interpolate_poses.tsv",
+        registered="benchmarks/{dataset}/register_scans.tsv",
+        built="benchmarks/{dataset}/build_hulls.tsv",
+        ordered="benchmarks/{dataset}/order_scans_cluster_hull.tsv",
+        code=code_of("tabulate_steps"),
+    output:
+        steps="results/{dataset}/thesis/steps.parquet",
+    log:
+        "logs/{dataset}/tabulate_steps.log",
+    benchmark:
+        "benchmarks/{dataset}/tabulate_steps.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    params:
+        n_selected=15,
+    script:
+        "../../scripts/tabulate_steps.py"
+
+
+rule judge_claims:
+    """Measure every claim of the thesis on every seed."""
+    input:
+        **evidence(),
+        code=code_of("judge_claims"),
+    output:
+        claims="results/thesis/claims.parquet",
+    log:
+        "logs/thesis/judge_claims.log",
+    benchmark:
+        "benchmarks/thesis/judge_claims.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    params:
+        rooms_seeds=seeds_of(experiments.ROOMS),
+        drive_seeds=seeds_of(experiments.DRIVE),
+    script:
+        "../../scripts/judge_claims.py"
+
+
+rule draw_thesis_rooms:
+    """Draw the thesis's figures of the synthetic survey from the survey of the rooms."""
+    input:
+        **first_of(
+            experiments.ROOMS,
+            "scans",
+            "registration",
+            "hulls",
+            "selection/cluster_hull",
+            "selection/hull",
+            "selection/sequential",
+            "walls/cluster_ransac",
+            "thesis/clusters",
+        ),
+        truth=THESIS[experiments.ROOMS][0].truth[0],
+        true_poses=THESIS[experiments.ROOMS][0].truth[1],
+        evaluated=of_kind(experiments.ROOMS, "evaluation/walls"),
+        code=code_of("draw_thesis_rooms"),
+    output:
+        figures=figures_of(*ROOMS_FIGURES),
+    log:
+        "logs/thesis/draw_thesis_rooms.log",
+    benchmark:
+        "benchmarks/thesis/draw_thesis_rooms.tsv"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=10,
+    params:
+        bitmap_cell_m=THESIS[experiments.ROOMS][0].settings["evaluation"][
+            "bitmap_cell_m"
+        ],
+        max_range_m=THESIS[experiments.ROOMS][0].settings["input"]["max_range_m"],
+    script:
+        "../../scripts/draw_thesis_rooms.py"
+
+
+rule draw_thesis_drive:
+    """Draw the thesis's figures of the real survey from the drive."""
+    input:
+        **first_of(
+            experiments.DRIVE,
+            "scans",
+            "registration",
+            "selection/cluster_hull",
+            "walls/cluster_ransac",
+            "walls/iterative_ransac",
+            "thesis/times",
+        ),
+        code=code_of("draw_thesis_drive"),
+    output:
+        figures=figures_of(*DRIVE_FIGURES),
+    log:
+        "logs/thesis/draw_thesis_drive.log",
+    benchmark:
+        "benchmarks/thesis/draw_thesis_drive.tsv"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=10,
+    script:
+        "../../scripts/draw_thesis_drive.py"
+
+
+rule write_thesis:
+    """Write the report of the experiments: figures, table 5.1 and claims beside the thesis's."""
+    input:
+        figures=figures_of(*ROOMS_FIGURES, *DRIVE_FIGURES),
+        claims="results/thesis/claims.parquet",
+        steps=of_kind(experiments.DRIVE, "thesis/steps")[:1],
+        limited=of_kind(experiments.LIMITS, "thesis/steps")[:1],
+        code=code_of("write_thesis"),
+    output:
+        page="results/thesis/report.html",
+    log:
+        "logs/thesis/write_thesis.log",
+    benchmark:
+        "benchmarks/thesis/write_thesis.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    script:
+        "../../scripts/write_thesis.py"
