@@ -65,3 +65,9 @@ def test_steps_between_the_checkpoints_tighten_the_bound():
 def test_of_none_and_of_nothing():
     assert certificate.upper_bound(greedy.greedy_order([])).shape == (0,)
     assert certificate.upper_bound(greedy.greedy_order([shapely.Polygon()] * 3)).tolist() == [0, 0, 0]
+
+
+def test_nearly_linear_in_the_number_of_scans():
+    steps = [len(certificate._steps(n)) for n in (1000, 10_000)]
+    assert steps[0] < 180 and steps[1] < 260
+    assert certificate._steps(1) == [0] and certificate._steps(40) == list(range(40))
