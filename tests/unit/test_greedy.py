@@ -68,6 +68,16 @@ def test_same_order_as_algorithm_1_on_a_walk():
     assert result.covered_m2 == pytest.approx(covered_m2, abs=1e-9)
 
 
+def test_same_order_as_algorithm_1_on_a_dense_walk_and_on_any_threads():
+    # every scan beside a hundred others, so that batches are large and parts are covered together
+    polygons = scattered(160, seed=3)
+    order, covered_m2 = hull_selection.hull_selection(polygons, 40)
+    found = [greedy.greedy_order(polygons, threads=threads) for threads in (1, 2)]
+    assert found[0].order[:40].tolist() == order
+    assert found[0].covered_m2[:40] == pytest.approx(covered_m2, abs=1e-9)
+    assert found[0].order.tolist() == found[1].order.tolist() and (found[0].gain_m2 == found[1].gain_m2).all()
+
+
 def test_a_move_of_a_thousand_kilometres_changes_nothing():
     # corners on a grid that float64 holds at both places, so that only the method could differ
     near = shapely.transform(np.array(scattered(40)), lambda xy: np.round(xy * 1024) / 1024)
