@@ -13,15 +13,13 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "tests")]
 
+import selecting  # noqa: E402
 import wallbench  # noqa: E402
 
 import register_scans  # noqa: E402
-from reference import hull_selection  # noqa: E402
 from reference import registration as literal_registration  # noqa: E402
 from scanplan import (  # noqa: E402
     configuration,
-    greedy,
-    hulls,
     surveys,
     tables,
     verdicts,
@@ -67,16 +65,9 @@ def bench_registration(n_literal=60):
     report(f"registration (literally: extrapolated from {n_literal})", n, "candidates", timed(ours)[1], literal_s)
 
 
-def bench_selection(n_scans=150):
-    """Algorithm 1: lazy greedy against all unions in every round; the orders must be the same."""
-    columns = tables.read(DEMO / "hulls.parquet", tables.HULLS)
-    _, polygons = hulls.scan_polygons(columns)
-    polygons = polygons[:n_scans]
-    lazy, lazy_s = timed(lambda: greedy.greedy_order(polygons))
-    literal, literal_s = timed(lambda: hull_selection.hull_selection(list(polygons)))
-    order = literal[0] if isinstance(literal, tuple) else literal
-    assert list(lazy.order) == list(order), "lazy greedy left algorithm 1's order"
-    report("selection, the same order", len(polygons), "scans", lazy_s, literal_s)
+def bench_selection():
+    """Algorithms 1 and 2 on a drive through a large office."""
+    selecting.run(ROOT / "config/buildings/ring_office.geojson", SETTINGS, lambda line: print(line, flush=True))
 
 
 def bench_walls():
