@@ -27,6 +27,7 @@ rule draw_registration:
         scans="results/{dataset}/scans.parquet",
         registration="results/{dataset}/registration.parquet",
         crispness="results/{dataset}/crispness.parquet",
+        edges="results/{dataset}/edges.parquet",
         code=code_of("draw_registration"),
     output:
         figure=report(
