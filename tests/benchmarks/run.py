@@ -1,4 +1,4 @@
-"""The stages against the algorithms written literally, on the demo survey, each pair timed in this one process.
+"""The stages against the algorithms written literally, on the demo survey or one of their own, each pair timed in this one process.
 
 Usage: run.py [registration] [selection] [walls] [wall_quality]
 
@@ -6,25 +6,21 @@ Without a name all of them but wall_quality, which takes minutes.
 """
 
 import sys
-import tempfile
 import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "tests")]
 
+import registrationbench  # noqa: E402
 import wallbench  # noqa: E402
 
-import register_scans  # noqa: E402
 from reference import hull_selection  # noqa: E402
-from reference import registration as literal_registration  # noqa: E402
 from scanplan import (  # noqa: E402
     configuration,
     greedy,
     hulls,
-    surveys,
     tables,
-    verdicts,
 )
 
 DEMO = ROOT / "results" / "demo"
@@ -37,34 +33,9 @@ def timed(function):
     return function(), time.perf_counter() - started
 
 
-def bench_registration(n_literal=60):
+def bench_registration():
     """Algorithm 3: this whole stage, from bag to registered scans, against Open3D on full clouds, point to point."""
-    bag = str(DEMO / "survey/survey.bag")
-    candidates = tables.read(DEMO / "poses.parquet", tables.POSES)
-    section = SETTINGS["registration"]
-
-    def ours():
-        with tempfile.TemporaryDirectory() as folder:
-            outputs = (Path(folder) / f"{name}.parquet" for name in ("scans", "registration", "edges"))
-            register_scans.register_scans(
-                [bag], DEMO / "poses.parquet", *outputs, reading=SETTINGS["input"], settings=section, threads=2
-            )
-
-    def literally():
-        with surveys.open_survey([bag], **SETTINGS["input"]) as survey:
-            scans = [scan.xyz_m for scan in survey.scans(candidates["scan_id"][:n_literal].tolist())]
-        return literal_registration.register(
-            scans,
-            verdicts.poses(candidates)[:n_literal],
-            keep_every=1,
-            distance_m=section["fitness_distance_m"],
-            min_prior_fitness=section["min_prior_fitness"],
-            min_refined_fitness=section["min_refined_fitness"],
-        )
-
-    n = len(candidates["scan_id"])
-    literal_s = timed(literally)[1] * n / min(n, n_literal)
-    report(f"registration (literally: extrapolated from {n_literal})", n, "candidates", timed(ours)[1], literal_s)
+    registrationbench.bench(ROOT, SETTINGS)
 
 
 def bench_selection(n_scans=150):
