@@ -17,7 +17,8 @@ def n_scans(columns, *, n_scans=None, area_share=None, min_gain_m2=None, max_poi
     Parameters
     ----------
     columns : dict of str to (n,) numpy.ndarray, n >= 1
-        `covered_m2`, or both it and `covered`, of a table of an ordering, by rank; `gain_m2` for `min_gain_m2`, `n_points` for a budget.
+        `covered_m2`, or both it and `covered`, of a table of an ordering, by rank; `gain_m2` for `min_gain_m2`,
+        `n_points` for a budget.
     n_scans : int, >= 1, optional
         Use so many scans, or all if there are fewer.
     area_share : float in (0, 1], optional
