@@ -113,7 +113,11 @@ def order_tables(wildcards):
 def plan_settings(wildcards):
     """Settings of the plan's own stage, part by part."""
     plan = DATASETS[wildcards.dataset].settings["plan"]
-    return {part: plan[part] for part in plan if part not in ("method", "extractor", "export")}
+    return {
+        part: plan[part]
+        for part in plan
+        if part not in ("method", "extractor", "export")
+    }
 
 
 def recordings(wildcards):
