@@ -22,8 +22,8 @@ class Limits:
     Attributes
     ----------
     max_rmse_m : float
-        Points of a wall scatter less about its line: clutter that fills the band of inliers scatters more. In space, for
-        faces that may be furniture.
+        Points of a wall scatter less about its line: clutter that fills the band of inliers scatters more. In space
+        asked of what may be furniture.
     wall_height_m : float
         A face seen up to here above the floor, and not seen to end, is a wall; a lower one where its corners tell.
     furniture_height_m : float
@@ -83,10 +83,7 @@ def walls_among(rows, xyz_m, limits, *, planar):
     if not rows:
         return rows
     values = np.array(rows, float)
-    if planar:
-        sound = values[:, 7] <= limits.max_rmse_m
-    else:
-        sound = _upright_walls(values, sightlines.view(xyz_m), limits)
+    sound = values[:, 7] <= limits.max_rmse_m if planar else _upright_walls(values, sightlines.view(xyz_m), limits)
     return [row for row, good in zip(rows, sound.tolist(), strict=True) if good]
 
 

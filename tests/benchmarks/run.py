@@ -1,31 +1,29 @@
 """The stages against the algorithms written literally, on the demo survey, each pair timed in this one process.
 
-Usage: run.py [registration] [selection] [walls]
+Usage: run.py [registration] [selection] [walls] [wall_quality]
+
+Without a name all of them but wall_quality, which takes minutes.
 """
 
 import sys
 import time
 from pathlib import Path
 
-import numpy as np
-
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "tests")]
 
-from reference import cluster_ransac as literal_clusters  # noqa: E402
+import wallbench  # noqa: E402
+
 from reference import hull_selection  # noqa: E402
 from reference import registration as literal_registration  # noqa: E402
 from scanplan import (  # noqa: E402
-    cluster_ransac,
     configuration,
     greedy,
     hulls,
-    iterative_ransac,
     registration,
     surveys,
     tables,
     verdicts,
-    walls,
 )
 
 DEMO = ROOT / "results" / "demo"
@@ -76,36 +74,14 @@ def bench_selection(n_scans=150):
     report("selection, the same order", len(polygons), "scans", lazy_s, literal_s)
 
 
-def bench_walls(n_scans=6):
+def bench_walls():
     """Cluster RANSAC against iterative RANSAC, and against itself written literally with sklearn's MeanShift."""
-    store = tables.ScanStore(DEMO / "scans.parquet")
-    scan_ids = store.scan_ids[:: max(1, len(store.scan_ids) // n_scans)][:n_scans]
-    sensors = walls.sensor_positions(
-        tables.read(DEMO / "registration.parquet", tables.REGISTRATION), store.scan_ids, DEMO / "registration.parquet"
-    )
-    scans = list(store.scans(scan_ids))
+    wallbench.speed(ROOT, SETTINGS)
 
-    def all_scans(method, name):
-        settings = method.Settings(**SETTINGS["walls"][name])
-        return timed(
-            lambda: [method.extract(i, xyz, **sensors[i], planar=False, settings=settings) for i, xyz in scans]
-        )
 
-    cluster_s = all_scans(cluster_ransac, "cluster_ransac")[1]
-    iterative_s = all_scans(iterative_ransac, "iterative_ransac")[1]
-    report("cluster RANSAC against iterative", len(scans), "scans", cluster_s, iterative_s)
-    chosen = SETTINGS["walls"]["cluster_ransac"]
-    keys = ("reach_deg", "max_tilt_deg", "bandwidth_m", "inlier_m", "min_points")
-    centred = [np.asarray(xyz, float) - sensors[i]["sensor_xyz_m"] for i, xyz in scans[:1]]
-    literal_s = timed(
-        lambda: [
-            literal_clusters.lines(
-                xyz, **{k: chosen[k] for k in keys}, rng=np.random.default_rng(1), max_trials=chosen["trials"]
-            )
-            for xyz in centred
-        ]
-    )[1]
-    report("cluster RANSAC against the literal one", 1, "scan", cluster_s / len(scans), literal_s)
+def bench_wall_quality():
+    """What both extractors and a line detector on a raster of all points find of the truth."""
+    wallbench.quality(ROOT, SETTINGS)
 
 
 def report(what, count, unit, ours_s, reference_s):
@@ -119,8 +95,9 @@ def report(what, count, unit, ours_s, reference_s):
 
 if __name__ == "__main__":
     benches = {"registration": bench_registration, "selection": bench_selection, "walls": bench_walls}
-    unknown = set(sys.argv[1:]) - set(benches)
+    more = {"wall_quality": bench_wall_quality}
+    unknown = set(sys.argv[1:]) - set(benches | more)
     if unknown:
-        sys.exit(f"no benchmark {', '.join(sorted(unknown))}; there are {', '.join(benches)}")
+        sys.exit(f"no benchmark {', '.join(sorted(unknown))}; there are {', '.join(benches | more)}")
     for name in sys.argv[1:] or benches:
-        benches[name]()
+        (benches | more)[name]()

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+
 from scanplan import findings, lengthmetrics, raycast, simulation, sweeps, truthfile
 
 N_AZIMUTH = 1800  # of a real VLP-16

@@ -192,9 +192,12 @@ def report_figures(wildcards):
 
 
 def report_evaluation(wildcards):
-    """The measured walls of a dataset, if its truth is known."""
+    """The measured walls and plan of a dataset, if its truth is known."""
     known = DATASETS[wildcards.dataset].truth
-    return [f"results/{wildcards.dataset}/evaluation/walls.parquet"] if known else []
+    tables = ["walls", "plan"] if known else []
+    return [
+        f"results/{wildcards.dataset}/evaluation/{table}.parquet" for table in tables
+    ]
 
 
 def report_page(wildcards):
