@@ -25,7 +25,7 @@ def claims(**changes):
 def page(**changes):
     drawn = {figure.file: SVG for figure in FIGURES}
     strict, ours = made.steps(3600, 76, 76, 15), made.steps(3600, 700, 700, 15)
-    return thesispage.page(drawn, claims(**changes), ours, strict)
+    return thesispage.page(drawn, SVG, claims(**changes), ours, strict)
 
 
 def test_every_figure_and_claim_is_there():
@@ -75,3 +75,12 @@ def test_means_come_with_their_range(values, text):
 def test_every_claim_belongs_to_figures_that_there_are():
     names = {claim.name for claim in CLAIMS}
     assert {name for figure in FIGURES for name in figure.claims} <= names
+
+
+def test_numbers_of_clusters_come_in_their_order():
+    assert sorted(["m, 10 c", "m, 2 c", "m, 1 c", "a"], key=thesispage._by_number) == [
+        "a",
+        "m, 1 c",
+        "m, 2 c",
+        "m, 10 c",
+    ]
