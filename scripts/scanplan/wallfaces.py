@@ -47,15 +47,17 @@ class Face:
         return INFERRED if self.shown is None else OBSERVED
 
 
-def of_walls(walls):
+def of_walls(walls, *, max_beyond_m):
     """Return the faces of walls, cut where other walls butt against them.
 
-    Where one side of a wall was seen and the other was not, the other is inferred, and so is what lies in a pause
-    that no ray went through; never an opening.
+    Where one side of a wall was seen and the other was not, the other is inferred between pieces of it that were seen,
+    and a little beyond; so is what lies in a pause that no ray went through; never an opening.
 
     Parameters
     ----------
     walls : list of planwalls.PlanWall
+    max_beyond_m : float
+        How far a side may go on to the wall's end beyond where it was seen.
 
     Returns
     -------
@@ -72,14 +74,14 @@ def of_walls(walls):
                 part = replace(stretch, low_m=low_m, high_m=high_m)
                 if part.n_points:
                     faces.append(Face(part.line, low_m, high_m, part, number, is_left))
-        for line, low_m, high_m, is_left in _missing(wall):
+        for line, low_m, high_m, is_left in _missing(wall, max_beyond_m):
             for begin_m, end_m in _outside(line, low_m, high_m, number, blocks, tree):
                 if end_m - begin_m >= _SHORTEST_M:
                     faces.append(Face(line, begin_m, end_m, None, number, is_left))
     return faces
 
 
-def _missing(wall):
+def _missing(wall, max_beyond_m):
     """Return (line, from, to, left) of what was not seen of the sides of a wall and is there all the same."""
     for is_left, side in ((True, wall.left), (False, wall.right)):
         if not side:
@@ -90,7 +92,10 @@ def _missing(wall):
         if wall.right:
             known += [line.along_m(wall.line.at(np.array([g.low_m, g.high_m]))) for g in wall.openings]
             span = np.sort(line.along_m(wall.ends))
-            yield from ((line, low, high, is_left) for low, high in _gaps(np.sort(known, axis=1), *span))
+            seen = np.sort(known[: len(side)], axis=1)
+            inner = span[0] if seen.min() - span[0] <= max_beyond_m else seen.min()
+            outer = span[1] if span[1] - seen.max() <= max_beyond_m else seen.max()
+            yield from ((line, low, high, is_left) for low, high in _gaps(np.sort(known, axis=1), inner, outer))
         else:
             for gap in wall.closed:
                 span = np.sort(line.along_m(wall.line.at(np.array([gap.low_m, gap.high_m]))))
