@@ -12,6 +12,7 @@ import numpy as np
 from scanplan import sightlines
 
 _PARALLEL = np.cos(np.deg2rad(10))
+_LEVEL_M = 0.15  # tops that differ less are one
 _ACROSS = np.cos(np.deg2rad(45))
 
 
@@ -22,8 +23,8 @@ class Limits:
     Attributes
     ----------
     max_rmse_m : float
-        Points of a wall scatter less about its line: clutter that fills the band of inliers scatters more. In space, for
-        faces that may be furniture.
+        Points of a wall scatter less about its line: clutter that fills the band of inliers scatters more. In space
+        asked of what may be furniture.
     wall_height_m : float
         A face seen up to here above the floor, and not seen to end, is a wall; a lower one where its corners tell.
     furniture_height_m : float
@@ -83,10 +84,7 @@ def walls_among(rows, xyz_m, limits, *, planar):
     if not rows:
         return rows
     values = np.array(rows, float)
-    if planar:
-        sound = values[:, 7] <= limits.max_rmse_m
-    else:
-        sound = _upright_walls(values, sightlines.view(xyz_m), limits)
+    sound = values[:, 7] <= limits.max_rmse_m if planar else _upright_walls(values, sightlines.view(xyz_m), limits)
     return [row for row, good in zip(rows, sound.tolist(), strict=True) if good]
 
 
@@ -110,7 +108,9 @@ def _upright_walls(values, scan, limits):
     # what meets a wall in an inner corner is one, too, and so on
     while (joined := plain & ~wall & (inner & wall).any(axis=(1, 2))).any():
         wall |= joined
-    side_of_furniture = (outer & ~sound).any(axis=(1, 2)) & (length_m <= limits.furniture_depth_m)
+    # what is seen higher than a piece of furniture is no side of it
+    as_high = top_m[None, :] > top_m[:, None] - _LEVEL_M
+    side_of_furniture = (outer & (~sound & as_high)[:, None]).any(axis=(1, 2)) & (length_m <= limits.furniture_depth_m)
     wall &= ~(side_of_furniture & lowish)
     continued = (in_line(start_m, end_m, normal, limits) & wall & (length_m >= limits.stub_length_m)).any(axis=1)
     return wall & ~((length_m < limits.stub_length_m) & lowish & ~closed & ~continued)

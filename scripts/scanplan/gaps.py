@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan import stretches
+from scanplan import profiles
 
 OPEN, CLOSED, UNKNOWN = "open", "closed", "unknown"
 _OPEN_SHARE = 0.4
@@ -87,9 +87,9 @@ def judge(wall_line, low_m, high_m, lines, reading, settings, *, planar, needs_l
     wall_line : faceline.Line
     low_m, high_m : float
         The pause along it.
-    lines : list of stretches.Seen
+    lines : list of profiles.Seen
         The lines of the wall's faces.
-    reading : stretches.Reading
+    reading : profiles.Reading
     settings : GapSettings
     planar : bool
     needs_lintel : bool
@@ -98,11 +98,12 @@ def judge(wall_line, low_m, high_m, lines, reading, settings, *, planar, needs_l
     Returns
     -------
     Gap
-        Of the line that most rays crossed there.
+        Of the line that most rays crossed there; what that does not tell of sill and lintel is taken from the others.
     """
     ends = wall_line.at(np.array([low_m, high_m]))
     found = [_look(seen, np.sort(seen.line.along_m(ends)), reading, planar) for seen in lines]
-    n_rays, open_share, sill_m, lintel_m = max(found, key=lambda f: f[:2])
+    found.sort(key=lambda f: f[:2], reverse=True)
+    (n_rays, open_share), (sill_m, lintel_m) = found[0][:2], (_first_known(f[i] for f in found) for i in (2, 3))
     width_m = high_m - low_m
     is_wide = settings.min_opening_m <= width_m <= settings.max_opening_m
     least_share = _OPEN_SHARE_BELOW_LINTEL if np.isfinite(lintel_m) else _OPEN_SHARE
@@ -116,6 +117,10 @@ def judge(wall_line, low_m, high_m, lines, reading, settings, *, planar, needs_l
     return Gap(float(low_m), float(high_m), state, n_rays, sill_m, lintel_m)
 
 
+def _first_known(values_m):
+    return next((value_m for value_m in values_m if np.isfinite(value_m)), np.nan)
+
+
 def _look(seen, span_m, reading, planar):
     """Return how many rays crossed, on what share of the width, and the heights of sill and lintel."""
     low_m, high_m = span_m[0] + _EDGE_M, span_m[1] - _EDGE_M
@@ -124,7 +129,7 @@ def _look(seen, span_m, reading, planar):
     passes = seen.passes(low_m, high_m)
     columns = seen.columns(reading, planar=planar)
     crossed = columns.crossed[columns.between(low_m, high_m)]
-    open_share = float(crossed.sum() / max(round((high_m - low_m) / stretches.COLUMN_M), 1))
+    open_share = float(crossed.sum() / max(round((high_m - low_m) / profiles.COLUMN_M), 1))
     n_rays = passes.stop - passes.start
     if planar or n_rays < _LEAST_RAYS:
         return n_rays, min(open_share, 1.0), np.nan, np.nan

@@ -23,6 +23,7 @@ WALL_LIMITS = (
     "max_tilt_deg",
     "max_gap_m",
     "min_height_m",
+    "wall_height_m",
     "door_height_m",
     "min_points",
     "min_points_planar",

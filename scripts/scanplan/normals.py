@@ -11,10 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-_ROUGH = 0.2  # smallest over middle variance of a neighbourhood above which it is no surface; a 90 degree edge has 0.25
-_THREAD = 1e-9  # middle over largest variance below which a neighbourhood is a line in space, and has no normal
-_MIN_NEIGHBOURS_3D = 6
-_MIN_NEIGHBOURS_2D = 4
+from scanplan import spread
+
+_FEWEST = spread.FEWEST[2]
 _MIN_RADIUS_2D_M = 0.08
 _NEAREST_2D = 5
 _NEAREST_REACH_2D = 3.0
@@ -83,9 +82,9 @@ def surface_cells(xyz_m, *, reach_deg):
         return _as_cells(np.empty(0, np.int64), np.empty((0, 3)), np.empty((0, 3)), np.empty(0))
     step = np.deg2rad(reach_deg) / 1.5
     grid = _Grid(xyz_m, step)
-    moments = _moments(_within(xyz_m), grid.of_point, len(grid.key))
+    moments = spread.moments(_within(xyz_m), grid.of_point, len(grid.key))
     mean_m = moments[1:4] / moments[0]
-    normal = _least_variance(grid.neighbourhood_sums(moments))
+    normal = spread.least_variance(grid.neighbourhood_sums(moments))
     radius_m = step * np.hypot(mean_m[0], mean_m[1])
     return _as_cells(grid.of_point, mean_m.T, _towards_sensor(normal, mean_m), radius_m)
 
@@ -120,7 +119,7 @@ def line_normals(xy_m, *, reach_deg):
     (n, 2) float64, NaN where the surroundings are no line
     """
     xy_m = np.asarray(xy_m, float)
-    if len(xy_m) < _MIN_NEIGHBOURS_2D:
+    if len(xy_m) < _FEWEST:
         return np.full((len(xy_m), 2), np.nan)
     tree = cKDTree(xy_m)
     radius = np.maximum(_MIN_RADIUS_2D_M, np.deg2rad(reach_deg) * np.linalg.norm(xy_m, axis=1))
@@ -128,8 +127,8 @@ def line_normals(xy_m, *, reach_deg):
     radius = np.maximum(radius, np.minimum(nearest * (1 + 1e-9), _NEAREST_REACH_2D * radius))
     near = tree.query_ball_point(xy_m, radius, return_sorted=True)
     owner = np.repeat(np.arange(len(xy_m)), [len(n) for n in near])
-    moments = _moments(xy_m[np.concatenate(near).astype(int)], owner, len(xy_m))
-    return _towards_sensor(_least_variance(moments), xy_m.T)
+    moments = spread.moments(xy_m[np.concatenate(near).astype(int)], owner, len(xy_m))
+    return _towards_sensor(spread.least_variance(moments), xy_m.T)
 
 
 class _Grid:
@@ -189,61 +188,6 @@ def _as_cells(of_point, mean_m, normal, radius_m):
     count = np.bincount(of_point, minlength=n_cells)
     first = np.concatenate([[0], np.cumsum(count)]).astype(np.int64)
     return Cells(of_point, members, first, count, mean_m, normal, radius_m)
-
-
-def _moments(points, group, n_groups):
-    """Return per group the count, the sums and the sums of products of coordinates, (1 + d + d (d + 1) / 2, groups)."""
-    axes = list(points.T)
-    products = [axes[i] * axes[j] for i in range(len(axes)) for j in range(i, len(axes))]
-    columns = [None, *axes, *products]
-    return np.stack([np.bincount(group, c, n_groups) for c in columns]).astype(float)
-
-
-def _least_variance(moments):
-    """Return the direction (d, m) of least variance of each group, NaN where it is not clearly the least."""
-    d = 2 if len(moments) == 6 else 3
-    count = np.maximum(moments[0], 1)
-    mean = moments[1 : 1 + d] / count
-    pairs = [(i, j) for i in range(d) for j in range(i, d)]
-    covariance = {p: c / count - mean[p[0]] * mean[p[1]] for p, c in zip(pairs, moments[1 + d :], strict=True)}
-    least, middle, largest, axis = (_spread_2d if d == 2 else _spread_3d)(covariance)
-    enough = moments[0] >= (_MIN_NEIGHBOURS_2D if d == 2 else _MIN_NEIGHBOURS_3D)
-    clear = enough & (least < _ROUGH * middle) & (middle > _THREAD * largest)
-    return np.where(clear, axis, np.nan)
-
-
-def _spread_2d(c):
-    """Return the eigenvalues of symmetric 2 x 2 matrices (the largest twice) and the axis of the least."""
-    half, away = (c[0, 0] + c[1, 1]) / 2, np.hypot((c[0, 0] - c[1, 1]) / 2, c[0, 1])
-    turn = 0.5 * np.arctan2(2 * c[0, 1], c[0, 0] - c[1, 1])
-    return half - away, half + away, half + away, np.stack([-np.sin(turn), np.cos(turn)])
-
-
-def _spread_3d(c):
-    """Return the eigenvalues of symmetric 3 x 3 matrices, rising, and the axis of the least, in closed form.
-
-    O. K. Smith: Eigenvalues of a symmetric 3 x 3 matrix, Communications of the ACM 4 (1961).
-    """
-    xy, xz, yz = c[0, 1], c[0, 2], c[1, 2]
-    centre = (c[0, 0] + c[1, 1] + c[2, 2]) / 3
-    xx, yy, zz = c[0, 0] - centre, c[1, 1] - centre, c[2, 2] - centre
-    scale = np.sqrt((xx**2 + yy**2 + zz**2 + 2 * (xy**2 + xz**2 + yz**2)) / 6)
-    scale = np.maximum(scale, 1e-30)
-    determinant = xx * (yy * zz - yz**2) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)
-    angle = np.arccos(np.clip(determinant / scale**3 / 2, -1, 1)) / 3
-    largest, least = 2 * scale * np.cos(angle), 2 * scale * np.cos(angle + 2 * np.pi / 3)
-    # the axis is perpendicular to every row of the matrix less its eigenvalue; the longest product is the safest
-    rows = [(xx - least, xy, xz), (xy, yy - least, yz), (xz, yz, zz - least)]
-    crosses = np.stack([_cross(rows[0], rows[1]), _cross(rows[0], rows[2]), _cross(rows[1], rows[2])])
-    length = np.sqrt((crosses**2).sum(axis=1))
-    best = np.argmax(length, axis=0)
-    each = np.arange(len(best))
-    axis = crosses[best, :, each].T / np.maximum(length[best, each], np.finfo(float).tiny)
-    return centre + least, centre - least - largest, centre + largest, axis
-
-
-def _cross(a, b):
-    return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
 
 def _towards_sensor(normal, at):

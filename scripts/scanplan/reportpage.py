@@ -11,12 +11,17 @@ import numpy as np
 
 from scanplan import figures, floorplan, growth, reportchart, reportplan, reporttables, reporttext
 
+_STAGES = (
+    "simulate", "interpolate", "register", "measure", "build", "observe", "order", "extract", "assemble", "export",
+    "evaluate", "draw",
+)  # fmt: skip
 _FOUND, _RIGHT = "visible_completeness_010m", "correctness_010m"
 _CAPTIONS = {
     "scans": "Points of the registered scans from above, where each was taken, and the selected scans by rank.",
     "registration": "How registration went along the survey.",
     "area": "Covered area against the number of scans for every ordering, and the most any choice could cover.",
     "walls": "Wall faces of the plan over the points of the selected scans.",
+    "oracle_shares": "What the first scans of every ordering find, as a share of what the oracle's do.",
     "evaluation": "What the first scans of every ordering find of the true walls, and why walls are missed.",
 }
 
@@ -32,8 +37,8 @@ class Survey:
         and `EVIDENCE`.
     chosen : int
         How many scans of the selection make the plan.
-    evaluation : dict of str to (n,) array or None
-        The columns of `schemas.EVALUATION`, where the truth is known.
+    evaluation : tuple of dict of str to (n,) array
+        The columns of `schemas.EVALUATION` and of `schemas.PLAN_EVALUATION`, where the truth is known.
     """
 
     selection: dict
@@ -42,7 +47,7 @@ class Survey:
     segments: dict
     evidence: dict
     chosen: int
-    evaluation: dict | None
+    evaluation: tuple
 
 
 @dataclass(frozen=True)
@@ -100,7 +105,8 @@ def page(template, style, script, plan, survey, run):
         min_scans=run.settings["plan"]["merge"]["min_scans"],
         chart=reportchart.svg(curves, len(survey.selection["rank"]), survey.chosen),
         legend=_legend(curves),
-        certificate=reporttext.certificate(survey),
+        certificate=reporttext.certificate(survey, run.settings["plan"]["method"]),
+        against_truth=reporttables.against_truth(survey.evaluation[1]) if survey.evaluation else "",
         verify_note=reporttext.verify_note(plan),
         walls=reporttables.walls(plan, survey.evidence),
         openings=reporttables.openings(plan),
@@ -112,14 +118,14 @@ def page(template, style, script, plan, survey, run):
         sizes=reporttables.sizes(run.sizes),
         settings=reporttables.settings(run.settings),
         version=escape(run.version),
-        data=_data(survey),
+        data=_data(survey, reporttext.objective(run.settings["plan"]["method"])[0]),
     )
 
 
 def _stage_times(benchmarks):
-    """Return stage, seconds, processor seconds and peak memory in MB of each benchmark."""
+    """Return stage, seconds, processor seconds and peak memory in MB of each benchmark, in the workflow's order."""
     rows = []
-    for stage, text in sorted(benchmarks.items()):
+    for stage, text in sorted(benchmarks.items(), key=lambda item: (_place(item[0]), item[0])):
         head, *lines = [line.split("\t") for line in text.splitlines()] or [[]]
         if not lines or not {"s", "cpu_time", "max_rss"} <= set(head):
             continue
@@ -127,6 +133,10 @@ def _stage_times(benchmarks):
         values = [[_float(row.get(c)) for row in measured] for c in ("s", "cpu_time", "max_rss")]
         rows.append((stage, *(float(np.mean(v)) for v in values)))
     return rows
+
+
+def _place(stage):
+    return next((i for i, name in enumerate(_STAGES) if stage.startswith(name)), len(_STAGES))
 
 
 def _float(text):
@@ -153,15 +163,17 @@ def _plan(plan, survey, ranked, merging):
 
 def _curves(survey, of_plan):
     """Return the curves of the chart: the certificate and, where the truth is known, what is found of it."""
-    k, covered_m2 = survey.selection["rank"], survey.selection["covered_m2"]
-    bound = np.minimum(survey.selection["bound_m2"] / covered_m2[-1], 1)
+    k, covered = survey.selection["rank"], survey.selection["covered"]
+    what, _ = reporttext.objective(of_plan["method"])
+    share, bound = (_of_all(survey.selection[column], covered[-1]) for column in ("covered", "bound"))
     curves = {
-        "covered": ("area covered, of what all scans cover", k, covered_m2 / covered_m2[-1]),
-        "bound": ("most that any choice of as many scans can cover", k, bound),
+        "covered": (f"{what}, of what all scans give", k, share),
+        "bound": ("most that any choice of as many scans can give", k, bound),
     }
-    if survey.evaluation is not None:
-        own = np.all([survey.evaluation[part] == of_plan[part] for part in ("method", "extractor")], axis=0)
-        at, found, right = (survey.evaluation[column][own] for column in ("k", _FOUND, _RIGHT))
+    if survey.evaluation:
+        measured = survey.evaluation[0]
+        own = np.all([measured[part] == of_plan[part] for part in ("method", "extractor")], axis=0)
+        at, found, right = (measured[column][own] for column in ("k", _FOUND, _RIGHT))
         curves["found"] = ("visible true walls found, within 0.10 m", at, found)
         curves["right"] = ("wall segments that are right, within 0.10 m", at, right)
     return curves
@@ -194,11 +206,17 @@ def _figure(name, svg):
     )
 
 
-def _data(survey):
+def _data(survey, what):
     selection = survey.selection
     values = {
         "chosen": survey.chosen,
         "scan_ids": selection["scan_id"][: survey.chosen].tolist(),
-        "covered": [round(v, 3) for v in selection["covered_m2"].tolist()],
+        "covered": _of_all(selection["covered"], selection["covered"][-1]).round(5).tolist(),
+        "objective": what,
     }
-    return json.dumps(values)
+    return json.dumps(values, allow_nan=False)
+
+
+def _of_all(values, whole):
+    """Return values as shares of what all scans give; of nothing everything is there."""
+    return np.minimum(values / whole, 1) if whole > 0 else np.ones(len(values))

@@ -17,11 +17,13 @@ def n_scans(columns, *, n_scans=None, area_share=None, min_gain_m2=None, max_poi
     Parameters
     ----------
     columns : dict of str to (n,) numpy.ndarray, n >= 1
-        `covered_m2` of a table of an ordering, by rank; `gain_m2` for `min_gain_m2`, `n_points` for a budget.
+        `covered_m2`, or both it and `covered`, of a table of an ordering, by rank; `gain_m2` for `min_gain_m2`,
+        `n_points` for a budget.
     n_scans : int, >= 1, optional
         Use so many scans, or all if there are fewer.
     area_share : float in (0, 1], optional
-        Use the fewest scans that cover this share of what all cover (within `greedy.TIE_M2`).
+        Use the fewest scans that cover this share of what all cover (within `greedy.TIE_M2`), measured by `covered`,
+        the objective of the method itself, where it is given.
     min_gain_m2 : float, > 0, optional
         Use no scan after the last that adds this much area.
     max_points, max_bytes : int, >= 1, optional
@@ -46,7 +48,7 @@ def n_scans(columns, *, n_scans=None, area_share=None, min_gain_m2=None, max_poi
     if n_scans is not None:
         limits.append(_by_number(n, n_scans))
     if area_share is not None:
-        limits.append(_by_area(columns["covered_m2"], area_share))
+        limits.append(_by_share(columns, area_share))
     if min_gain_m2 is not None:
         limits.append(_by_gain(columns["gain_m2"], min_gain_m2))
     for limit, unit, size in ((max_points, "points", 1), (max_bytes, "bytes", BYTES_PER_POINT)):
@@ -70,12 +72,15 @@ def _by_number(n, wanted):
     return int(wanted), f"{wanted} of {n} scans, as asked for"
 
 
-def _by_area(covered_m2, share):
+def _by_share(columns, share):
     if not 0 < share <= 1:
         raise ValueError(f"area_share is {share}, must be above 0 and at most 1")
-    enough = covered_m2 >= share * covered_m2[-1] - greedy.TIE_M2
-    k = int(enough.argmax()) + 1
-    return k, f"{k} of {len(covered_m2)} scans cover {share:.4g} of the {covered_m2[-1]:.1f} m2 that all cover"
+    covered_m2 = columns["covered_m2"]
+    covered = columns.get("covered", covered_m2)
+    k = int((covered >= share * covered[-1] - greedy.TIE_M2).argmax()) + 1
+    area = np.array_equal(covered, covered_m2)
+    whole = f"the {covered[-1]:.1f} m2 that all cover" if area else "what all show, by the method's own measure"
+    return k, f"{k} of {len(covered)} scans {'cover' if area else 'show'} {share:.4g} of {whole}"
 
 
 def _by_gain(gain_m2, least_m2):

@@ -207,3 +207,40 @@ def test_the_same_walls_as_the_literal_method():
         offset_m = normal @ (start_m - toyrooms.SENSOR[:2])
         assert any(-n @ normal > 0.999 and abs(d + offset_m) < 0.01 for n, d in lines)
     assert len(lines) >= 3
+
+
+@pytest.mark.parametrize("planar", [False, True])
+def test_a_map_far_from_its_origin(planar):
+    points = toyrooms.laser() if planar else toyrooms.vlp16()
+    shift = np.array([1e6, -1e6, 0])
+    near, far = extract(points, planar=planar), extract(points + shift, toyrooms.SENSOR + shift, planar=planar)
+    assert len(near) == len(far)
+    for found, expected in ((far.start_m - shift[:2], near.start_m), (far.end_m - shift[:2], near.end_m)):
+        assert found == pytest.approx(expected, abs=1e-3)
+
+
+def test_one_return_from_a_thousand_kilometres_spoils_nothing():
+    found = extract(np.vstack([toyrooms.vlp16(), [(1e6, 3e5, 2e5)]]))
+    check_toy_room(found)
+
+
+def test_one_beam_in_space_shows_no_upright_surface():
+    points = toyrooms.laser(beams=1800)
+    assert len(extract(points)) == 0
+
+
+def test_duplicate_points_are_more_points():
+    points = toyrooms.vlp16()
+    check_toy_room(extract(np.repeat(points, 2, axis=0)))
+
+
+def test_a_round_wall_in_space_becomes_chords():
+    angle = np.linspace(-1.2, 1.2, 200)
+    corners = 5 * np.column_stack([np.cos(angle), np.sin(angle)])
+    segments = np.column_stack([corners[:-1], corners[1:]])
+    found = extract(toyrooms.vlp16(np.array([1.0, 0, 0.9]), segments, columns=900), np.array([1.0, 0, 0.9]))
+    lengths = np.linalg.norm(found.end_m - found.start_m, axis=1)
+    assert len(found) >= 4
+    assert lengths.sum() > 0.7 * 12
+    for ends in (found.start_m, found.end_m):
+        assert np.linalg.norm(ends, axis=1) == pytest.approx(np.full(len(found), 5), abs=0.08)

@@ -1,0 +1,108 @@
+"""Walls: cluster RANSAC against iterative RANSAC, the literal method, and a line detector on a raster of all points."""
+
+import importlib.util
+import time
+
+import numpy as np
+import wallscans
+
+from reference import cluster_ransac as literal_clusters
+from scanplan import cluster_ransac, iterative_ransac, normals, walls
+
+METHODS = {"cluster_ransac": cluster_ransac, "iterative_ransac": iterative_ransac}
+_LITERAL_EVERY = 4  # points: the literal method's time grows with their square
+_LITERAL_KEYS = ("reach_deg", "max_tilt_deg", "bandwidth_m", "inlier_m", "min_points")
+_CELL_M = 0.02
+_SLICE_M = (0.9, 2.1)
+
+
+def speed(root, settings, n_scans=16):
+    """Time both extractors on the same scans of the demo, turn by turn, each on one core."""
+    survey = wallscans.standing(root / "config/buildings/demo_office.geojson", settings["simulate"], every=8)
+    scans = survey.scans[:n_scans]
+    took_ms = {name: [] for name in METHODS}
+    normals_ms = []
+    _extract(survey, scans[:2], settings["walls"], took_ms)  # imports and caches
+    took_ms = {name: [] for name in METHODS}
+    for scan in scans:
+        _extract(survey, [scan], settings["walls"], took_ms)
+        xyz_m = walls.around_sensor(scan[1], survey.sensors[scan[0]])
+        reach_deg = settings["walls"]["cluster_ransac"]["reach_deg"]
+        normals_ms.append(_milliseconds(lambda p=xyz_m, r=reach_deg: normals.surface_cells(p, reach_deg=r)))
+    for name, times in took_ms.items():
+        varies = np.std(times) / np.mean(times)
+        print(f"walls, {name}: {len(scans)} scans of {np.mean([len(x) for _, x in scans]):,.0f} points,", end=" ")
+        print(f"{np.mean(times):.1f} ms each of one core, coefficient of variation {varies:.2f}", flush=True)
+    ours_ms = np.mean(took_ms["cluster_ransac"])
+    share = np.mean(normals_ms) / ours_ms
+    ratio = np.mean(took_ms["iterative_ransac"]) / ours_ms
+    print(
+        f"walls, cluster against iterative RANSAC: {ratio:.1f} times faster; normals are {share:.0%} of it", flush=True
+    )
+    few_m = walls.around_sensor(scans[0][1], survey.sensors[scans[0][0]])[::_LITERAL_EVERY]
+    chosen = settings["walls"]["cluster_ransac"]
+    limits = {key: chosen[key] for key in _LITERAL_KEYS} | {"max_trials": chosen["trials"]}
+    literal_ms = _milliseconds(lambda: literal_clusters.lines(few_m, **limits, rng=np.random.default_rng(1)))
+    print(
+        f"walls, the literal method on every {_LITERAL_EVERY}th point of one scan: {literal_ms / 1e3:.1f} s,", end=" "
+    )
+    print(f"{literal_ms / ours_ms:,.0f} times as long as ours on all of them", flush=True)
+
+
+def quality(root, settings, every=3):
+    """Compare the walls that both extractors and a line detector show with the truth."""
+    routes = {"demo_office": ("given", 0.4), "ring_office": ("rooms", 1.2)}
+    for building, (route, step_m) in routes.items():
+        path = root / f"config/buildings/{building}.geojson"
+        survey = wallscans.standing(path, settings["simulate"], route=route, step_m=step_m, every=every)
+        found = {name: _lines(survey, name, settings["walls"]) for name in METHODS}
+        if importlib.util.find_spec("cv2"):
+            found["raster and LSD"] = raster_lines(survey), np.zeros(0, int)
+        else:
+            print("walls, quality: no OpenCV (cv2) here, so without its line detector", flush=True)
+        for name, (lines_m, scan) in found.items():
+            scan = scan if len(scan) else np.zeros(len(lines_m), int)
+            row = wallscans.quality(lines_m, scan, survey.truth)
+            values = ", ".join(f"{key} {value:.3f}" for key, value in row.items())
+            print(f"walls, {building}, {len(survey.scans)} scans, {name}: {values}", flush=True)
+
+
+def raster_lines(survey):
+    """Return the lines (n, 2, 2) that OpenCV's LSD finds on a raster of all points of a slice, 2 cm a pixel."""
+    import cv2  # only where it is installed: no stage needs it
+
+    points = np.concatenate([xyz for _, xyz in survey.scans]).astype(float)
+    points = points[(points[:, 2] > _SLICE_M[0]) & (points[:, 2] < _SLICE_M[1]), :2]
+    low_m = points.min(axis=0) - 1
+    cell = np.floor((points - low_m) / _CELL_M).astype(int)
+    image = np.zeros(cell.max(axis=0)[::-1] + 50, np.uint8)
+    image[cell[:, 1], cell[:, 0]] = 255
+    lines = cv2.createLineSegmentDetector().detect(image)[0]
+    lines_m = lines.reshape(-1, 2, 2) * _CELL_M + low_m + _CELL_M / 2
+    return lines_m[np.hypot(*(lines_m[:, 1] - lines_m[:, 0]).T) >= 0.4]
+
+
+def _lines(survey, name, settings):
+    method = METHODS[name]
+    limits = method.Settings(**settings[name])
+    lines, scan = [np.empty((0, 2, 2))], [np.empty(0, int)]
+    for i, xyz_m in survey.scans:
+        found = method.extract(i, xyz_m, sensor_xyz_m=survey.sensors[i], planar=False, settings=limits)
+        lines.append(np.stack([found.start_m, found.end_m], axis=1))
+        scan.append(np.full(len(found), i))
+    return np.concatenate(lines), np.concatenate(scan)
+
+
+def _extract(survey, scans, settings, took_ms):
+    for name, method in METHODS.items():
+        limits = method.Settings(**settings[name])
+        for i, xyz_m in scans:
+            keywords = {"sensor_xyz_m": survey.sensors[i], "planar": False, "settings": limits}
+            took_ms[name].append(_milliseconds(lambda m=method, s=i, p=xyz_m, k=keywords: m.extract(s, p, **k)))
+
+
+def _milliseconds(function):
+    """Return the processor time of a call: both extractors run on one thread, whatever else the machine does."""
+    started = time.process_time()
+    function()
+    return 1e3 * (time.process_time() - started)
