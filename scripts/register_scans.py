@@ -1,11 +1,10 @@
 """Select continuous scans and register them in the map frame (thesis, algorithm 3)."""
 
-from scanplan import motion, registration, stagelog, surveys, tables, verdicts
-from scanplan.errors import StageError
+from scanplan import linktable, mapping, motion, spool, stagelog, surveys, tables, verdicts, workers
 
 
-def register_scans(recordings, poses, scans, registered, *, reading, settings, moved=None, threads=1):
-    """Write the retained scans in the map frame, and what became of every candidate.
+def register_scans(recordings, poses, scans, registered, edges, *, reading, settings, moved=None, threads=1):
+    """Write the retained scans in the map frame, what became of every candidate, and what links the retained ones.
 
     Parameters
     ----------
@@ -13,39 +12,35 @@ def register_scans(recordings, poses, scans, registered, *, reading, settings, m
         The dataset's files.
     poses : path-like
         poses.parquet: the candidates and their poses.
-    scans, registered : path-like
-        scans.parquet and registration.parquet, to write.
+    scans, registered, edges : path-like
+        scans.parquet, registration.parquet and edges.parquet, to write.
     reading : dict
         Keywords of `surveys.open_survey`.
     settings : dict
-        Keywords of `registration.Settings`.
+        Section `registration` of the settings.
     moved : path-like, optional
         motion.parquet: how the sensor moved. Without it scans are not deskewed.
     threads : int
+        Cores to use; the result does not depend on it.
     """
     candidates = tables.read(poses, tables.POSES)
-    priors = dict(zip(candidates["scan_id"].tolist(), verdicts.poses(candidates), strict=True))
-    judged, n_dropped = [], 0
+    priors, dropped = verdicts.poses(candidates), []
     way = None if moved is None else motion.from_columns(tables.read(moved, tables.MOTION))
-    with surveys.open_survey(recordings, **reading, motion=way) as survey:
-        registrar = registration.Registrar(registration.Settings(**settings), survey.planar, threads)
+    with spool.beside(scans) as raw, spool.beside(registered) as thinned, workers.pool(threads) as run:
+        with surveys.open_survey(recordings, **reading, motion=way) as opened:
+            survey = mapping.Survey(candidates["scan_id"], priors, opened.planar)
+            found = stagelog.progress(opened.scans(survey.scan_ids), "register_scans", total=len(priors))
+            counted = (dropped.append(scan.n_dropped) or scan for scan in found)
+            judged, links = mapping.register(survey, counted, raw, thinned, run, mapping.settings_of(settings))
+        verdicts.check_any_kept(judged, sum(dropped), recordings[0])
+        rows = [row for row, verdict in enumerate(judged) if verdict.kept]
         with tables.scan_writer(scans, planar=survey.planar) as write_scan:
-            found = survey.scans(list(priors))
-            for scan in stagelog.progress(found, "register_scans", total=len(priors)):
-                verdict = registrar.add(scan.xyz_m, priors[scan.scan_id])
-                judged.append(verdict)
-                n_dropped += scan.n_dropped
-                if verdict.kept:
-                    write_scan(scan.scan_id, verdicts.in_map(scan.scan_id, scan.xyz_m, verdict.world_from_sensor))
-            outcome = f"{verdicts.summary(judged)}; {n_dropped:,} points out of range or not finite"
-            if not any(verdict.kept for verdict in judged):
-                raise StageError(
-                    f"{recordings[0]}: {outcome}; at least one scan is needed: check input.min_range_m,"
-                    " input.max_range_m and registration.min_points, and whether the clouds hold returns at all"
-                )
-            stagelog.say(f"register_scans: {outcome}")
-    rows = verdicts.columns(candidates["scan_id"], candidates["t_ns"], judged)
-    tables.write(registered, tables.REGISTRATION, rows)
+            for row, xyz_m in zip(rows, raw.part(rows), strict=True):
+                scan_id = survey.scan_ids[row]
+                write_scan(scan_id, verdicts.in_map(scan_id, xyz_m, judged[row].world_from_sensor))
+    stagelog.say(f"register_scans: {verdicts.summary(judged, sum(dropped))}; {linktable.summary(links)}")
+    tables.write(edges, tables.EDGES, linktable.columns(links), allow_empty=True)
+    tables.write(registered, tables.REGISTRATION, verdicts.columns(survey.scan_ids, candidates["t_ns"], judged))
 
 
 if __name__ == "__main__":
@@ -55,6 +50,7 @@ if __name__ == "__main__":
             snakemake.input.poses,
             snakemake.output.scans,
             snakemake.output.registration,
+            snakemake.output.edges,
             reading=snakemake.params.reading,
             settings=snakemake.params.settings,
             moved=snakemake.input.motion,

@@ -16,7 +16,8 @@ def write_report(files, output, *, name, settings, benchmarks):
     ----------
     files : dict of str to path-like, or list of path-like
         `faces`, `walls`, `openings`, `rooms`, `free`, `evidence` of plan/; `selection`, `segments` (walls/), `poses`,
-        `registration`; `page` (HTML, CSS, JavaScript); `figures`; `evaluation` (none or one); `recordings`; `results`.
+        `registration`; `page` (HTML, CSS, JavaScript); `figures`; `evaluation` (none, or of walls and of plan);
+        `recordings`; `results`.
     output : path-like
         report.html, to write.
     name : str
@@ -31,8 +32,9 @@ def write_report(files, output, *, name, settings, benchmarks):
     made = {part: tables.read(files[part], schema) for part, schema in _SURVEY.items()}
     made |= {part: tables.read(files[part], schema, allow_empty=True) for part, schema in _SEEN.items()}
     chosen, _ = stopping.n_scans(made["selection"], **settings["selection"]["stop"])
-    measured = [tables.read(path, schemas.EVALUATION) for path in files["evaluation"]]
-    survey = reportpage.Survey(**made, chosen=chosen, evaluation=measured[0] if measured else None)
+    kinds = (schemas.EVALUATION, schemas.PLAN_EVALUATION)
+    measured = [tables.read(path, kind) for path, kind in zip(files["evaluation"], kinds, strict=False)]
+    survey = reportpage.Survey(**made, chosen=chosen, evaluation=tuple(measured))
     run = reportpage.Run(
         settings=settings,
         figures={Path(figure).stem: Path(figure).read_text(encoding="utf-8") for figure in files["figures"]},

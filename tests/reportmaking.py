@@ -12,7 +12,7 @@ PAGE = Path(__file__).resolve().parents[1] / "workflow/report/page"
 SETTINGS = {
     "selection": {"stop": {"n_scans": 3, "area_share": None}},
     "plan": {
-        "method": "cluster_hull",
+        "method": "wall_length",
         "extractor": "cluster_ransac",
         "merge": {"max_angle_deg": 10.0, "merge_distance_m": 0.1, "min_scans": 2},
     },
@@ -58,6 +58,10 @@ def selection():
         "gain_m2": np.diff(covered_m2, prepend=0.0),
         "covered_m2": covered_m2,
         "bound_m2": np.array([15.0, 20.5, 21.0, 21.0]),
+        # walls that the scans show
+        "gain": np.array([12.0, 6.0, 1.0, 1.0]),
+        "covered": np.array([12.0, 18.0, 19.0, 20.0]),
+        "bound": np.array([12.0, 18.5, 19.5, 20.0]),
     }
 
 
@@ -69,7 +73,7 @@ def segments():
     return table
 
 
-def evaluation(methods=("cluster_hull", "random")):
+def evaluation(methods=("random", "wall_length")):
     k = [1, 2, 3, 4]
     columns = {}
     for name, kind in schemas.EVALUATION.columns.items():
@@ -79,6 +83,14 @@ def evaluation(methods=("cluster_hull", "random")):
     columns["k"] = np.tile(np.array(k, np.int32), len(methods))
     columns["n_walls"] = columns["k"] * 3
     return columns
+
+
+def plan_evaluation():
+    columns = {
+        name: np.array([3, 3], np.int32) if kind == "int32" else np.array([0.97, 0.98])
+        for name, kind in schemas.PLAN_EVALUATION.columns.items()
+    }
+    return columns | {"frame": np.array(["aligned", "registered"], object)}
 
 
 def files(folder):
@@ -95,6 +107,7 @@ def files(folder):
         "poses": (tables.POSES, poses()),
         "registration": (tables.REGISTRATION, registration()),
         "evaluation": (schemas.EVALUATION, evaluation()),
+        "plan_evaluation": (schemas.PLAN_EVALUATION, plan_evaluation()),
     }
     paths = {name: folder / f"{name}.parquet" for name in made}
     for name, (schema, columns) in made.items():
@@ -109,7 +122,7 @@ def files(folder):
     return paths | {
         "page": [PAGE / f"page.{suffix}" for suffix in ("html", "css", "js")],
         "figures": [folder / "scans.svg"],
-        "evaluation": [paths["evaluation"]],
+        "evaluation": [paths["evaluation"], paths["plan_evaluation"]],
         "recordings": [folder / "survey.bag"],
         "results": [paths["faces"], paths["walls"]],
     }

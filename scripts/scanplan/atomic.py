@@ -49,6 +49,28 @@ def replacing(path):
     SystemExit
         If the workflow run that asked for the file has ended meanwhile.
     """
+    with scratch(path) as temporary:
+        yield temporary
+        _sync(temporary)
+        if orphaned():
+            raise SystemExit(f"{path}: not written, the run that asked for it has ended")
+        temporary.replace(path)
+
+
+@contextmanager
+def scratch(path):
+    """Give a path beside `path` for a file that is needed meanwhile; nothing is left of it afterwards.
+
+    Parameters
+    ----------
+    path : path-like
+        What the file belongs to. Its folder is made where it is missing.
+
+    Yields
+    ------
+    pathlib.Path
+        A name in the same folder, with the same suffix.
+    """
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     _remove_leftovers(path)
@@ -56,10 +78,6 @@ def replacing(path):
     _UNFINISHED.add(temporary)
     try:
         yield temporary
-        _sync(temporary)
-        if orphaned():
-            raise SystemExit(f"{path}: not written, the run that asked for it has ended")
-        temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)
         _UNFINISHED.discard(temporary)

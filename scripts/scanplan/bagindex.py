@@ -1,8 +1,10 @@
 """All that is small in a survey's recordings, collected in one pass: stamps of the clouds, poses, transforms."""
 
+from collections import Counter
+
 import numpy as np
 
-from scanplan import messages, stagelog, topics
+from scanplan import clocks, messages, stagelog, topics
 from scanplan.errors import StageError
 
 
@@ -23,6 +25,7 @@ class Index:
         self.poses = {}
         self.transforms = {}
         self._clouds = []
+        self._no_covariance = Counter()
 
     def add_cloud(self, t_ns, frame, receive_ns):
         """Note a cloud."""
@@ -34,6 +37,8 @@ class Index:
         child = messages.frame_name(getattr(message, "child_frame_id", ""))
         parent = messages.frame_name(message.header.frame_id)
         sample = messages.stamp_ns(message.header.stamp), receive_ns, messages.pose_row(pose), parent, child
+        if not np.isfinite(getattr(message.pose, "covariance", 0)).all():
+            self._no_covariance[topic] += 1
         self.poses.setdefault(topic, []).append(sample)
 
     def add_transforms(self, message, receive_ns, static):
@@ -65,6 +70,11 @@ class Index:
         if not self.stamps_ns.any():
             stagelog.say(f"{where}: clouds of {cloud} have no stamps, the times of their receipt are taken")
             self.stamps_ns = self.cloud_receive_ns
+        odd = clocks.oddities(self.stamps_ns, self.cloud_receive_ns)
+        if told := ", ".join(f"{count} {kind}" for kind, count in odd.items() if count):
+            stagelog.say(f"{cloud}: {told}; each scan keeps the pose of its own stamp")
+        for topic, count in self._no_covariance.items():
+            stagelog.say(f"{topic}: {count} poses with a covariance that is no number; the poses themselves are used")
 
 
 def read(bags, cloud, needed, optional, where):

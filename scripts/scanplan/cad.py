@@ -74,31 +74,35 @@ def _outlines(modelspace, polygons, layer):
 
 
 def _add_openings(modelspace, plan):
-    for line, gap, kind, width_m in zip(
-        floorplan.lines_m(plan.openings), plan.gaps, plan.openings["type"], plan.openings["width_m"], strict=True
-    ):
+    columns = (plan.openings[c].tolist() for c in ("type", "width_m", "thickness_m"))
+    for kind, width_m, thick_m, line in zip(*columns, floorplan.lines_m(plan.openings), strict=True):
         modelspace.add_lwpolyline(line.tolist(), dxfattribs={"layer": OPENINGS})
-        along = (line[1] - line[0]) / max(np.hypot(*(line[1] - line[0])), 1e-9)
+        along = (line[1] - line[0]) / np.hypot(*(line[1] - line[0]))
         left = np.array([-along[1], along[0]])
-        if kind == "window":
-            deep_m = gap.area / np.hypot(*(line[1] - line[0])) / 2 - floorplan.CLEARANCE_M
-            for side_m in (-deep_m, deep_m):
+        if kind == "window" and np.isfinite(thick_m):
+            for side_m in (-thick_m / 2, thick_m / 2):
                 modelspace.add_line(*(line + side_m * left).tolist(), dxfattribs={"layer": OPENINGS})
-        angle_deg = np.degrees(np.arctan2(along[1], along[0]))
-        upright = along[0] > 1e-6 or (abs(along[0]) <= 1e-6 and along[1] > 0)
-        place = line.mean(axis=0) + (left if upright else -left) * _SMALL_TEXT_M * 1.5
-        text = modelspace.add_text(f"{width_m:.2f}", height=_SMALL_TEXT_M, dxfattribs={"layer": TEXT})
-        text.dxf.rotation = angle_deg if upright else angle_deg - 180
-        text.set_placement(place.tolist(), align=TextEntityAlignment.MIDDLE_CENTER)
+        _add_width(modelspace, line.mean(axis=0), along, width_m)
+
+
+def _add_width(modelspace, place_m, along, width_m):
+    """Write an opening's width beside it, along it, to be read from below or from the right."""
+    if along[0] < -1e-6 or (along[0] <= 1e-6 and along[1] < 0):
+        along = -along
+    beside_m = place_m + 1.5 * _SMALL_TEXT_M * np.array([-along[1], along[0]])
+    text = modelspace.add_text(f"{width_m:.2f}", height=_SMALL_TEXT_M, dxfattribs={"layer": TEXT})
+    text.dxf.rotation = np.degrees(np.arctan2(along[1], along[0]))
+    text.set_placement(beside_m.tolist(), align=TextEntityAlignment.MIDDLE_CENTER)
 
 
 def _add_rooms(modelspace, plan):
     _outlines(modelspace, plan.areas, ROOMS)
-    for room, area_m2, area in zip(plan.rooms["room"], plan.rooms["area_m2"], plan.areas, strict=True):
-        inside = area.representative_point()
+    for room, area_m2, x_m, y_m in zip(
+        *(plan.rooms[c].tolist() for c in ("room", "area_m2", "x_m", "y_m")), strict=True
+    ):
         for row, said in enumerate((f"Room {room}", f"{area_m2:.1f} m2")):
             text = modelspace.add_text(said, height=_TEXT_M, dxfattribs={"layer": TEXT})
-            text.set_placement((inside.x, inside.y - 1.5 * row * _TEXT_M), align=TextEntityAlignment.MIDDLE_CENTER)
+            text.set_placement((x_m, y_m - 1.5 * row * _TEXT_M), align=TextEntityAlignment.MIDDLE_CENTER)
 
 
 def _audit(document):

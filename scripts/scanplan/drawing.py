@@ -1,6 +1,7 @@
 """The plan as a drawing to scale."""
 
 import io
+import logging
 import math
 
 import matplotlib
@@ -14,6 +15,8 @@ from matplotlib.textpath import TextPath
 
 from scanplan import floorplan
 
+# it tells of every table that it leaves out of a font
+logging.getLogger("fontTools").setLevel(logging.WARNING)
 _MM_PER_INCH = 25.4
 _POINTS_PER_MM = 72 / _MM_PER_INCH
 _SCALES = [m * 10**e for e in range(1, 7) for m in (1, 2, 5)]
@@ -121,12 +124,11 @@ def _walls(axes, drawn, state):
 
 def _openings(axes, drawn, m_per_mm):
     """Draw a window with its panes, a door or passage with its thresholds; which way a door swings is not known."""
-    for number, kind, line, gap in zip(
-        drawn.openings["opening"], drawn.openings["type"], floorplan.lines_m(drawn.openings), drawn.gaps, strict=True
-    ):
+    columns = (drawn.openings[c] for c in ("opening", "type", "thickness_m"))
+    for number, kind, thick_m, line in zip(*columns, floorplan.lines_m(drawn.openings), strict=True):
         way = (line[1] - line[0]) / math.dist(*line)
-        deep_m = gap.area / math.dist(*line) / 2 - floorplan.CLEARANCE_M
-        sides_m = (-deep_m, 0, deep_m) if kind == "window" else (-deep_m, deep_m)
+        # in a wall of unknown thickness one line
+        sides_m = np.array([-0.5, 0.5, 0] if kind == "window" else [-0.5, 0.5]) * np.nan_to_num(thick_m)
         strokes = [line + side_m * np.array([-way[1], way[0]]) for side_m in sides_m]
         vertices = np.concatenate(strokes)
         path = Path(vertices, [Path.MOVETO, Path.LINETO] * len(strokes))
@@ -139,14 +141,12 @@ def _openings(axes, drawn, m_per_mm):
 
 
 def _rooms(axes, drawn, m_per_mm):
-    """Write each room's number and area where it is widest, as large as there is room for."""
-    for room, area_m2, closed, area in zip(
-        *(drawn.rooms[c] for c in ("room", "area_m2", "closed")), drawn.areas, strict=True
+    """Write each room's number and area, as large as there is room for."""
+    for room, area_m2, closed, x_m, y_m, width_m in zip(
+        *(drawn.rooms[c] for c in ("room", "area_m2", "closed", "x_m", "y_m")), drawn.label_widths_m, strict=True
     ):
-        circle = shapely.maximum_inscribed_circle(area, tolerance=0.05)
-        (x_m, y_m), _ = shapely.get_coordinates(circle)
         about = "" if closed else "about "
-        size = np.clip(2 * circle.length / m_per_mm * _POINTS_PER_MM / 8, 3.0, 8.0)
+        size = np.clip(width_m / m_per_mm * _POINTS_PER_MM / 8, 3.0, 8.0)
         axes.text(x_m, y_m, f"Room {room}\n{about}{area_m2:.1f} m²", fontsize=size, ha="center", va="center",
                   gid=f"room-{room}")  # fmt: skip
 

@@ -3,11 +3,7 @@
 import math
 from dataclasses import dataclass, fields
 
-import numpy as np
-
 from scanplan import facegroups, faceline, facepieces
-
-_MOST_ROUNDS = 10
 
 
 @dataclass(frozen=True)
@@ -40,7 +36,7 @@ class MergeSettings:
     min_points_per_m : float, >= 0
         thinner ones too,
     min_scans : int, >= 1
-        and those that fewer scans show,
+        and those that fewer scans show (`planfaces`, by the points of all of them),
     lone_length_m : float, >= 0
         unless they are this long.
     """
@@ -69,35 +65,12 @@ class MergeSettings:
             raise ValueError(f"merge settings out of range: {', '.join(dict.fromkeys(wrong))}")
 
 
-def merge(walls, settings):
-    """Merge the wall segments of many scans into faces.
+def pieces(walls, settings):
+    """Merge the wall segments of many scans into pieces of common lines.
 
     Segments are grouped around common lines (`facegroups`); each group's line is cut at pauses, what too little
-    supports is dropped, what weaker faces draw over stronger ones is taken away, and ends meet at corners
-    (`facepieces`). The two sides of a wall are different faces. Neither the order of the rows nor the place and turn
-    of the map frame matters.
-
-    Parameters
-    ----------
-    walls : dict of str to (n,) array
-        The columns of `schemas.WALLS`.
-    settings : MergeSettings
-
-    Returns
-    -------
-    dict of str to (m,) array
-        The columns of `schemas.FACES`, the longest face first; m may be 0.
-
-    Raises
-    ------
-    ValueError
-        If a number of the walls is not finite.
-    """
-    return _columns([_row(piece) for piece in pieces(walls, settings)])
-
-
-def pieces(walls, settings):
-    """Do as `merge`, but return the faces with the segments that show them, those of one group on one line.
+    supports is dropped, and so is what weaker faces draw over stronger ones (`facepieces`). The two sides of a wall
+    are different lines. Neither the order of the rows nor the place and turn of the map frame matters.
 
     Parameters
     ----------
@@ -108,6 +81,12 @@ def pieces(walls, settings):
     Returns
     -------
     list of facepieces.Piece
+        Those of one group share one line.
+
+    Raises
+    ------
+    ValueError
+        If a number of the walls is not finite.
     """
     segments = faceline.from_columns(walls, registration_sigma_m=settings.registration_sigma_m)
     if len(segments.start) == 0:
@@ -119,23 +98,7 @@ def pieces(walls, settings):
         reach_m=max(settings.max_gap_m, settings.align_gap_m),
     )
     cut = [p for members in groups for p in facepieces.cut(segments, members, max_gap_m=settings.max_gap_m)]
-    return _met(_once(cut, settings), settings)
-
-
-def summary(faces):
-    """Say in a few words how many faces there are and how long all of them are."""
-    length_m = np.hypot(faces["x1_m"] - faces["x0_m"], faces["y1_m"] - faces["y0_m"]).sum()
-    return f"{len(faces['face'])} faces, {length_m:,.1f} m in all"
-
-
-def _met(pieces, settings):
-    """Let ends meet at corners until nothing changes: what a corner takes in may lie beside a third face."""
-    for _ in range(_MOST_ROUNDS):
-        before = [(piece.low_m, piece.high_m) for piece in pieces]
-        pieces = _once(facepieces.meet_at_corners(pieces, corner_m=settings.corner_m), settings)
-        if before == [(piece.low_m, piece.high_m) for piece in pieces]:
-            break
-    return pieces
+    return _once(cut, settings)
 
 
 def _once(pieces, settings):
@@ -151,55 +114,6 @@ def _once(pieces, settings):
 
 
 def _is_supported(piece, settings):
-    return (
-        piece.length_m >= settings.min_length_m
-        and piece.n_points >= max(1, settings.min_points_per_m * piece.length_m)
-        and (piece.length_m >= settings.lone_length_m or piece.n_scans >= settings.min_scans)
-    )
-
-
-def _row(piece):
-    """Return a piece's row of the table of faces, without its number."""
-    shown = piece.members[piece.points > 0]
-    (x0_m, y0_m), (x1_m, y1_m) = piece.ends
-    nx, ny = piece.line.normal
-    return {
-        "x0_m": x0_m,
-        "y0_m": y0_m,
-        "x1_m": x1_m,
-        "y1_m": y1_m,
-        "nx": nx,
-        "ny": ny,
-        "n_points": round(piece.n_points),
-        "n_scans": piece.n_scans,
-        "rmse_m": _rmse_m(piece),
-        "z_min_m": piece.segments.z_min_m[shown].min(initial=math.inf),
-        "z_max_m": piece.segments.z_max_m[shown].max(initial=-math.inf),
-    }
-
-
-def _rmse_m(piece):
-    """Root mean square distance of the points from the face: a segment off by a to b adds (aa + ab + bb) / 3."""
-    start = piece.line.offset_m(piece.segments.start[piece.members])
-    end = piece.line.offset_m(piece.segments.end[piece.members])
-    squared = piece.segments.rmse_m[piece.members] ** 2 + (start**2 + start * end + end**2) / 3
-    return float(np.sqrt(piece.points @ squared / piece.n_points))
-
-
-def _columns(rows):
-    """Return the rows as columns, numbered from 0: the longest first, equals by place."""
-    rows = sorted(rows, key=_rank)
-    names = ("x0_m", "y0_m", "x1_m", "y1_m", "nx", "ny", "n_points", "n_scans", "rmse_m", "z_min_m", "z_max_m")
-    dtypes = {"n_points": np.int64, "n_scans": np.int32}
-    columns = {name: np.array([row[name] for row in rows], dtypes.get(name, np.float64)) for name in names}
-    return {
-        "face": np.arange(len(rows), dtype=np.int32),
-        **columns,
-        "state": np.full(len(rows), "observed", object),
-        "wall": np.full(len(rows), -1, np.int32),
-    }
-
-
-def _rank(row):
-    length_m = math.hypot(row["x1_m"] - row["x0_m"], row["y1_m"] - row["y0_m"])
-    return -length_m, row["x0_m"], row["y0_m"], row["nx"], row["ny"]
+    """Tell whether a piece is worth being looked at: how many scans show it, all points tell better."""
+    is_dense = piece.n_points >= max(1, settings.min_points_per_m * piece.length_m)
+    return is_dense and piece.length_m >= settings.min_length_m

@@ -166,7 +166,7 @@ def _draw_ordering(axes, method, columns):
     label, colour = STYLES.get(method, (method.replace("_", " "), "0.3"))
     dashes = "--" if method in DASHED else "-"
     covered = columns["covered_m2"]
-    at = stopping.n_scans(columns, area_share=0.99)[0] - 1
+    at = stopping.n_scans({"covered_m2": covered}, area_share=0.99)[0] - 1
     label = f"{label}: 99 % with {columns['rank'][at]}"
     axes.plot(columns["rank"], covered, dashes, color=colour, lw=1.4, label=label, gid=f"covered-{method}")
     if method in ("cluster_hull", _FULL_HULLS):

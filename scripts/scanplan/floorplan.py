@@ -11,7 +11,7 @@ from scanplan import wallbodies
 STATES = ("observed", "inferred")
 OPENINGS = ("door", "window", "passage")
 _ENDS = ("x0_m", "y0_m", "x1_m", "y1_m")
-CLEARANCE_M = 0.02
+_CLEARANCE_M = 0.02
 _GRID_M = 1e-4
 _FLAT_M = 0.5
 
@@ -34,7 +34,9 @@ class FloorPlan:
     assumed_thickness_m : float, > 0
         ASSUME of a wall that was seen from one side only, behind its face.
     assumed_height_m : float, > 0
-        ASSUME of the storey, where the scans lie in a plane.
+        ASSUME of the storey, where neither its ceiling nor walls were seen in their height.
+    floor_z_m, ceiling_z_m : float
+        Heights in the map frame, NaN where not seen.
     """
 
     name: str
@@ -45,6 +47,8 @@ class FloorPlan:
     free: dict = field(repr=False)
     assumed_thickness_m: float = 0.1
     assumed_height_m: float = 2.5
+    floor_z_m: float = np.nan
+    ceiling_z_m: float = np.nan
 
     @cached_property
     def thick(self):
@@ -85,7 +89,7 @@ class FloorPlan:
         deep_m = np.nan_to_num(self.openings["thickness_m"], nan=self.assumed_thickness_m) / 2
         # one more for the openings that are in no wall
         walls_m = np.append(np.maximum(*self.sides_m), 0.0)
-        return boxes(lines_m(self.openings), np.maximum(deep_m, walls_m[self.hosts]) + CLEARANCE_M)
+        return boxes(lines_m(self.openings), np.maximum(deep_m, walls_m[self.hosts]) + _CLEARANCE_M)
 
     def solid(self, state):
         """Return the ground of the walls of one state whose thickness is known, merged, openings cut out."""
@@ -106,12 +110,13 @@ class FloorPlan:
 
     @cached_property
     def storey_m(self):
-        """Height of the floor in the map frame and of the storey above it, metres; the second assumed if not seen."""
-        spans = self.walls if len(self.walls["wall"]) else self.faces
-        length_m = np.hypot(*(lines_m(spans)[:, 1] - lines_m(spans)[:, 0]).T)
-        floor_m = _weighted_quantile(spans["z_min_m"], length_m, 0.1)
-        height_m = _weighted_quantile(spans["z_max_m"], length_m, 0.9) - floor_m
-        return (floor_m, height_m) if height_m > _FLAT_M else (floor_m, self.assumed_height_m)
+        """Height of the floor in the map frame and of the ceiling above it, metres.
+
+        Where these were not seen, the lowest and the highest that was seen of the walls stand for them.
+        """
+        floor_m = self.floor_z_m if np.isfinite(self.floor_z_m) else _extreme(self.walls["z_min_m"], np.fmin)
+        top_m = self.ceiling_z_m if np.isfinite(self.ceiling_z_m) else _extreme(self.walls["z_max_m"], np.fmax)
+        return (floor_m, top_m - floor_m) if top_m - floor_m > _FLAT_M else (floor_m, self.assumed_height_m)
 
     @cached_property
     def bounds_m(self):
@@ -124,6 +129,12 @@ class FloorPlan:
     def areas(self):
         """The rooms' polygons, (r,)."""
         return shapely.from_wkb(np.asarray(self.rooms["geometry"], object))
+
+    @cached_property
+    def label_widths_m(self):
+        """How wide a label may be where each room's label goes, (r,): across the circle that has room there."""
+        places = shapely.points(self.rooms["x_m"], self.rooms["y_m"])
+        return 2 * shapely.distance(places, shapely.boundary(self.areas))
 
 
 def summary(plan):
@@ -139,7 +150,7 @@ def boxes(lines, half_m):
     return shapely.buffer(shapely.linestrings(lines), half_m, cap_style="flat") if len(lines) else np.array([], object)
 
 
-def _weighted_quantile(values, weights, share):
-    order = np.argsort(values, kind="stable")
-    total = np.cumsum(weights[order])
-    return float(values[order][np.searchsorted(total, share * total[-1])])
+def _extreme(values, choose):
+    """Return the least or greatest of values, NaN left out; 0 of none."""
+    found = choose.reduce(values, initial=np.nan)
+    return float(found) if np.isfinite(found) else 0.0

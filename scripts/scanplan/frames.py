@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan import se3
+from scanplan import clocks, jumps, se3
 from scanplan.errors import StageError
 
 WORLD_FRAMES = ("map", "odom", "world", "earth")
@@ -72,7 +72,8 @@ def track(parent, child, t_ns, receive_ns, rows):
     edge : Edge or None
         None if nothing is left. Of poses with the same stamp the one recorded last is kept.
     found : dict of str to int
-        How many were not finite, had no unit quaternion, came backwards in time, repeated a stamp, had no stamp.
+        How many were not finite, had no unit quaternion, came backwards in time, lay in a time that went by twice
+        (none of them is kept: nobody knows which of the two a scan belongs to), repeated a stamp, had no stamp.
     """
     t_ns, rows = np.asarray(t_ns, np.int64), np.asarray(rows, float).reshape(-1, 7)
     unstamped = len(t_ns) > 0 and not t_ns.any()
@@ -81,6 +82,9 @@ def track(parent, child, t_ns, receive_ns, rows):
     with np.errstate(invalid="ignore", over="ignore"):
         unit = np.abs(np.linalg.norm(rows[:, 3:], axis=1) - 1) <= _NORM_TOLERANCE
     good = finite & unit
+    twice = np.zeros(len(t_ns), bool)
+    twice[good] = clocks.told_twice(t_ns[good])
+    good &= ~twice
     t_good, rows_good = t_ns[good], rows[good]
     backwards = int((t_good[1:] < np.maximum.accumulate(t_good)[:-1]).sum())
     # the first of the reversed order is the one recorded last
@@ -90,6 +94,7 @@ def track(parent, child, t_ns, receive_ns, rows):
         "not finite": int((~finite).sum()),
         "without unit quaternion": int((finite & ~unit).sum()),
         "backwards in time": backwards,
+        "in a time that the clock told twice (dropped)": int(twice.sum()),
         "of a repeated stamp": len(t_good) - len(t_kept),
         "without stamp (receive time taken)": len(t_ns) if unstamped else 0,
     }
@@ -190,7 +195,7 @@ class FrameTree:
         return next((name for name in ("map", "odom") if name in above), above[-1])
 
 
-def world_from_sensor(edges, query_ns, *, max_gap_s):
+def world_from_sensor(edges, query_ns, *, max_gap_s, max_speed_m_s=np.inf):
     """Multiply a chain of edges at given times (thesis, algorithm 3, step 1, for each edge that changes).
 
     Parameters
@@ -200,6 +205,8 @@ def world_from_sensor(edges, query_ns, *, max_gap_s):
     query_ns : (m,) int64
     max_gap_s : float
         Longest time between two samples to interpolate over.
+    max_speed_m_s : float
+        Nothing is interpolated within a jump (`jumps.steps`).
 
     Returns
     -------
@@ -217,6 +224,8 @@ def world_from_sensor(edges, query_ns, *, max_gap_s):
             continue
         xyz_m, quat, gap, inside = se3.interpolate(edge.t_ns, edge.xyz_m, edge.quat_xyzw, query_ns, max_gap_s=max_gap_s)
         pose = pose @ se3.matrix(xyz_m, quat)
+        jumping = jumps.steps(edge.t_ns, edge.xyz_m, max_speed_m_s=max_speed_m_s)
+        inside &= ~jumps.inside(edge.t_ns, jumping, query_ns)
         gap_s, covered = np.maximum(gap_s, gap), covered & inside
     pose[~covered] = np.nan
     return pose, gap_s, covered

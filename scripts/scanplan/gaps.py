@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan import stretches
+from scanplan import profiles
 
 OPEN, CLOSED, UNKNOWN = "open", "closed", "unknown"
 _OPEN_SHARE = 0.4
@@ -87,9 +87,9 @@ def judge(wall_line, low_m, high_m, lines, reading, settings, *, planar, needs_l
     wall_line : faceline.Line
     low_m, high_m : float
         The pause along it.
-    lines : list of stretches.Seen
+    lines : list of profiles.Seen
         The lines of the wall's faces.
-    reading : stretches.Reading
+    reading : profiles.Reading
     settings : GapSettings
     planar : bool
     needs_lintel : bool
@@ -124,7 +124,7 @@ def _look(seen, span_m, reading, planar):
     passes = seen.passes(low_m, high_m)
     columns = seen.columns(reading, planar=planar)
     crossed = columns.crossed[columns.between(low_m, high_m)]
-    open_share = float(crossed.sum() / max(round((high_m - low_m) / stretches.COLUMN_M), 1))
+    open_share = float(crossed.sum() / max(round((high_m - low_m) / profiles.COLUMN_M), 1))
     n_rays = passes.stop - passes.start
     if planar or n_rays < _LEAST_RAYS:
         return n_rays, min(open_share, 1.0), np.nan, np.nan

@@ -66,6 +66,7 @@ def _add_wall(model, plan, i, height_m):
         "StartStandardDeviation": ("IfcLengthMeasure", number["sigma_end0_m"]),
         "EndStandardDeviation": ("IfcLengthMeasure", number["sigma_end1_m"]),
         "Residual": ("IfcLengthMeasure", number["rmse_m"]),
+        "HeightMeasured": ("IfcBoolean", bool(np.isfinite(plan.ceiling_z_m))),
         "SeenFromHeight": ("IfcLengthMeasure", _known(columns["z_min_m"][i] - floor_m)),
         "SeenToHeight": ("IfcLengthMeasure", _known(columns["z_max_m"][i] - floor_m)),
         "Points": ("IfcInteger", int(columns["n_points"][i])),

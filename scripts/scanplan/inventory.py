@@ -15,7 +15,7 @@ RESERVED = "thesis"
 """Name under results/ that the thesis's experiments have to themselves."""
 
 _PLAN = tuple(f"plan/{t}" for t in ("faces", "walls", "openings", "rooms", "evidence", "free"))
-_TABLES = ("poses", "registration", "scans", "hulls", *_PLAN)
+_TABLES = ("poses", "registration", "edges", "scans", "hulls", *_PLAN)
 _DRAWN = (
     *(f"plan/plan.{suffix}" for suffix in ("geojson", "dxf", "svg", "pdf", "ifc")),
     "plan/map.pgm",

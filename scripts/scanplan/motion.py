@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan import frames, schemas, se3, stagelog
+from scanplan import frames, jumps, schemas, se3, stagelog
 from scanplan.errors import StageError
 
 _ENOUGH = 0.95
@@ -91,7 +91,7 @@ def from_columns(columns):
     return Motion(columns["t_ns"], xyz_m, quat, columns["piece"], *reading)
 
 
-def along(edges, t_ns, *, max_gap_s):
+def along(edges, t_ns, *, max_gap_s, max_speed_m_s=np.inf):
     """Return the motion along a chain of transforms.
 
     Parameters
@@ -102,6 +102,8 @@ def along(edges, t_ns, *, max_gap_s):
         Stamps of the scans: a chain without time holds over all of them.
     max_gap_s : float
         Longest time between two samples to interpolate over.
+    max_speed_m_s : float
+        Nor is it known within a jump (`jumps.steps`).
 
     Returns
     -------
@@ -117,12 +119,13 @@ def along(edges, t_ns, *, max_gap_s):
     pose, _, covered = frames.world_from_sensor(edges, known_ns, max_gap_s=max_gap_s)
     if not covered.any():
         return None
-    known_ns = known_ns[covered]
-    piece = np.cumsum(np.diff(known_ns, prepend=known_ns[0]) > max_gap_s * 1e9).astype(np.int32)
-    return Motion(known_ns, *se3.position_quaternion(pose[covered]), piece)
+    known_ns, pose = known_ns[covered], pose[covered]
+    breaks = (np.diff(known_ns) > max_gap_s * 1e9) | jumps.steps(known_ns, pose[:, :3, 3], max_speed_m_s=max_speed_m_s)
+    piece = np.concatenate([[0], np.cumsum(breaks)]).astype(np.int32)
+    return Motion(known_ns, *se3.position_quaternion(pose), piece)
 
 
-def choose(chains, t_ns, *, max_gap_s):
+def choose(chains, t_ns, **limits):
     """Choose by which of several chains the sensor's motion is told.
 
     The first one that knows it at nearly as many scans as any does. One that tells of quite another way than the last,
@@ -134,7 +137,8 @@ def choose(chains, t_ns, *, max_gap_s):
         Names and transforms; the smoothest first, the poses themselves last.
     t_ns : (m,) int64
         Stamps of the scans.
-    max_gap_s : float
+    **limits
+        Of `along`.
 
     Returns
     -------
@@ -145,7 +149,7 @@ def choose(chains, t_ns, *, max_gap_s):
     StageError
         If not even the poses are ever known.
     """
-    found = [(name, along(edges, t_ns, max_gap_s=max_gap_s)) for name, edges in chains]
+    found = [(name, along(edges, t_ns, **limits)) for name, edges in chains]
     found = [(name, motion) for name, motion in found if motion is not None]
     if not found:
         raise StageError(

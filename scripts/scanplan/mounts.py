@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from scanplan import frames, stagelog, topics
+from scanplan import clocks, frames, stagelog, topics
 from scanplan.errors import StageError
 
 
@@ -36,29 +36,38 @@ def configured_mount(base_from_sensor):
     return [frames.static_edge("", "", pose)]
 
 
-def transform_edges(samples):
-    """Make edges of recorded transforms.
+def transform_edges(samples, cloud_t_ns, cloud_receive_ns):
+    """Make edges of recorded transforms; those stamped ahead of their time are taken back to it.
 
     Parameters
     ----------
     samples : dict of (static, parent, child) to list of (t_ns, receive_ns, row)
         In the order of recording.
+    cloud_t_ns, cloud_receive_ns : (m,) int64, m >= 1
+        Stamps and times of receipt of the clouds, for `clocks.ahead_ns`.
 
     Returns
     -------
     list of frames.Edge
         The constant ones last; of each constant transform the one recorded last, whatever its stamp.
     """
-    edges, dropped = [], 0
+    edges, dropped, unclear = [], 0, 0
     for (static, parent, child), recorded in sorted(samples.items(), key=lambda item: item[0]):
         t_ns, receive_ns, rows = zip(*recorded, strict=True)
         order = range(1, len(rows) + 1)
+        ahead_ns = 0 if static else clocks.ahead_ns(t_ns, receive_ns, cloud_t_ns, cloud_receive_ns)
+        if ahead_ns:
+            stagelog.say(f"tf {parent} -> {child} is stamped {ahead_ns / 1e9:.3f} s ahead of its receipt: taken back")
+            t_ns = np.asarray(t_ns, np.int64) - ahead_ns
         edge, found = frames.track(parent, child, order if static else t_ns, order if static else receive_ns, rows)
+        unclear += sum(count for kind, count in found.items() if "clock told twice" in kind)
         dropped += found["not finite"] + found["without unit quaternion"]
         if edge is not None:
             edges.append(edge.frozen() if static else edge)
     if dropped:
         stagelog.say(f"tf: {dropped} transforms dropped: not finite or without unit quaternion")
+    if unclear:
+        stagelog.say(f"tf: {unclear} transforms dropped: in a time that the clock told twice")
     return edges
 
 

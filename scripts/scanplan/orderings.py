@@ -93,7 +93,7 @@ def summary(method, columns):
     share = covered[first - 1] / bound if bound > 0 else 1.0
     unit = _OBJECTIVES[method].UNIT if method in _OBJECTIVES else _AREAS.get(method, objective_cluster_hull).UNIT
     return (
-        f"{method}, {n} scans, {covered[-1]:.1f} {unit}; {_TOLD_SHARE:.0%} of the area at {soon} scans;"
+        f"{method}, {n} scans, {covered[-1]:.1f} {unit}; {_TOLD_SHARE:.0%} at {soon} scans;"
         f" first {first} cover at least {np.floor(100 * share):.0f} % of what any {first} could"
     )
 

@@ -3,9 +3,8 @@
 import math
 from dataclasses import dataclass
 
-from scanplan import facepieces, stretches
+from scanplan import crossings, facepieces, stretches
 
-_LEAST_CROSSING_RAD = math.radians(30)
 _STUB_M = 0.1
 _FOREIGN_M = 0.08
 _REACHES_M = 0.15
@@ -37,7 +36,7 @@ def trace(pieces, rays, merging, reading):
         Those of one group share their line.
     rays : rays.Rays
     merging : faces.MergeSettings
-    reading : stretches.Reading
+    reading : profiles.Reading
 
     Returns
     -------
@@ -49,7 +48,8 @@ def trace(pieces, rays, merging, reading):
         lines.setdefault(id(piece.line), []).append(piece)
     seen = [_seen(group, rays, reading) for group in lines.values()]
     found = _once([stretches.find(s, reading, planar=rays.planar) for s in seen], merging)
-    foreign = [_crossed_m(s.line, [f for f in found if f.seen is not s]) for s in seen]
+    stacked = crossings.stack(found)
+    foreign = [_crossed_m(s, found, stacked) for s in seen]
     runs = (stretches.find(s, reading, planar=rays.planar, foreign_m=m) for s, m in zip(seen, foreign, strict=True))
     found = _once(list(runs), merging)
     met = facepieces.meet_at_corners(found, corner_m=merging.corner_m)
@@ -85,19 +85,12 @@ def _supported(of_line, merging):
 
 
 def _is_shown(stretch, merging):
-    return stretch.length_m >= merging.lone_length_m or stretch.n_scans >= merging.min_scans
+    # its ends may have been left to faces that cross it there
+    return stretch.length_m + 2 * _FOREIGN_M >= merging.lone_length_m or stretch.n_scans >= merging.min_scans
 
 
-def _crossed_m(line, others):
-    """Return from where to where along a line other stretches cross it: list of (low, high)."""
-    crossed = []
-    for other in others:
-        turn = float(line.direction @ other.line.normal)
-        if abs(turn) < math.sin(_LEAST_CROSSING_RAD):
-            continue
-        place_m = -float(other.line.offset_m(line.centre)) / turn
-        there_m = float(other.line.along_m(line.at(place_m)))
-        if other.low_m - _REACHES_M <= there_m <= other.high_m + _REACHES_M:
-            half_m = _FOREIGN_M / abs(turn)
-            crossed.append((place_m - half_m, place_m + half_m))
-    return crossed
+def _crossed_m(seen, found, stacked):
+    """Return from where to where along a line stretches of other lines cross it: list of (low, high)."""
+    crossed = crossings.find(seen.line, stacked, reach_m=_REACHES_M)
+    spans = zip(crossed.which.tolist(), crossed.place_m, _FOREIGN_M / crossed.sine, strict=True)
+    return [(place_m - half_m, place_m + half_m) for i, place_m, half_m in spans if found[i].seen is not seen]

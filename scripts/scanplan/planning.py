@@ -14,9 +14,9 @@ from scanplan import (
     planfaces,
     plantables,
     planwalls,
+    profiles,
     rooms,
     schemas,
-    stretches,
     wallevidence,
     wallfaces,
     wallpairs,
@@ -54,7 +54,7 @@ class PlanSettings:
     """All that a plan is made with: each part as its own class says."""
 
     merge: faces.MergeSettings
-    reading: stretches.Reading
+    reading: profiles.Reading
     pairs: wallpairs.PairSettings
     openings: gaps.GapSettings
     rooms: RoomSettings
@@ -86,7 +86,7 @@ def settings(*, merge, trace, pair, openings, rooms, trust):
     merging = faces.MergeSettings(**merge)
     return PlanSettings(
         merge=merging,
-        reading=stretches.Reading(**trace),
+        reading=profiles.Reading(**trace),
         pairs=wallpairs.PairSettings(**pair, max_gap_m=openings["max_opening_m"]),
         openings=gaps.GapSettings(**openings),
         rooms=RoomSettings(**rooms),

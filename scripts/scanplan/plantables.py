@@ -43,16 +43,15 @@ def walls(found, evidence, face_rows, of_walls, floor_z_m, trust):
     floor_z_m : float
     trust : wallevidence.Trust
     """
-    rows = []
+    rows, sides = [], _main_faces(face_rows, of_walls)
     for number, (wall, known) in enumerate(zip(found, evidence, strict=True)):
-        sides = {left: _main_face(number, left, face_rows, of_walls) for left in (True, False)}
         rows.append(
             {
                 "wall": number,
                 **_ends(wall.ends),
                 "thickness_m": wall.thickness_m,
-                "face_left": sides[True],
-                "face_right": sides[False],
+                "face_left": sides.get((number, True), -1),
+                "face_right": sides.get((number, False), -1),
                 "state": "observed" if known.observed >= 0.5 else "inferred",
                 "z_min_m": known.z_m[0] + floor_z_m,
                 "z_max_m": known.z_m[1] + floor_z_m,
@@ -155,14 +154,13 @@ def _rank(face):
     return face.shown is None, face.low_m - face.high_m, *face.ends.ravel().tolist()
 
 
-def _main_face(wall, left, face_rows, of_walls):
-    """Return the row of the longest observed face of a side of a wall; -1 without any."""
-    own = [
-        row
-        for row, face in zip(face_rows, of_walls, strict=True)
-        if (face.wall, face.left) == (wall, left) and face.shown
-    ]
-    return min(own, default=-1)
+def _main_faces(face_rows, of_walls):
+    """Return the row of the longest observed face of each side, by (wall, left)."""
+    rows = {}
+    for row, face in sorted(zip(face_rows, of_walls, strict=True), key=lambda known: -known[0]):
+        if face.shown is not None:
+            rows[face.wall, face.left] = row
+    return rows
 
 
 def _ends(ends):

@@ -6,10 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scanplan import gaps, wallpairs
+from scanplan import crossings, gaps, wallpairs
 from scanplan.faceline import Line
-
-_LEAST_CORNER_RAD = math.radians(30)
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +62,7 @@ def assemble(found, reading, pairing, gapping, *, planar, corner_m):
     Parameters
     ----------
     found : list of stretches.Stretch
-    reading : stretches.Reading
+    reading : profiles.Reading
     pairing : wallpairs.PairSettings
     gapping : gaps.GapSettings
     planar : bool
@@ -76,10 +74,12 @@ def assemble(found, reading, pairing, gapping, *, planar, corner_m):
         The longest first.
     """
     walls = []
-    for paired in wallpairs.pair(found, pairing):
+    for paired in wallpairs.pair(found, pairing, reading, planar=planar):
         walls += _cut(paired, found, reading, gapping, planar)
-    walls = [_with_end_openings(wall, walls, reading, gapping, planar, corner_m) for wall in walls]
-    walls = [_met(wall, walls, corner_m) for wall in walls]
+    stacked = crossings.stack(walls)
+    walls = [_with_end_openings(w, _crossings(w, walls, stacked), reading, gapping, planar, corner_m) for w in walls]
+    stacked = crossings.stack(walls)
+    walls = [_met(wall, _crossings(wall, walls, stacked), corner_m) for wall in walls]
     return sorted(walls, key=lambda w: (-w.length_m, *w.ends.ravel()))
 
 
@@ -106,12 +106,12 @@ def _cut(paired, found, reading, gapping, planar):
     return parts
 
 
-def _with_end_openings(wall, walls, reading, gapping, planar, corner_m):
+def _with_end_openings(wall, crossed, reading, gapping, planar, corner_m):
     """Let a wall go on over an opening beside the wall that it ends at, where wall is seen above it."""
     lines = list({id(s.seen): s.seen for s in wall.members}.values())
     for name, sign in (("low_m", -1), ("high_m", 1)):
         end_m = getattr(wall, name)
-        ahead = [(sign * (c - end_m) - other.half_m, c - sign * other.half_m) for other, c in _crossings(wall, walls)]
+        ahead = [(sign * (c - end_m) - other.half_m, c - sign * other.half_m) for other, c in crossed]
         ahead = [a for a in ahead if max(corner_m, gapping.min_opening_m) < a[0] <= gapping.max_door_m]
         if planar or not ahead:
             continue
@@ -123,27 +123,17 @@ def _with_end_openings(wall, walls, reading, gapping, planar, corner_m):
     return wall
 
 
-def _met(wall, walls, corner_m):
+def _met(wall, crossed, corner_m):
     """Move the ends of a wall to the middles of walls that it meets there."""
-    crossings = _crossings(wall, walls)
     moved = {}
     for name in ("low_m", "high_m"):
         end_m = getattr(wall, name)
-        near = [c for other, c in crossings if abs(c - end_m) <= corner_m + other.half_m]
+        near = [c for other, c in crossed if abs(c - end_m) <= corner_m + other.half_m]
         moved[name] = min(near, key=lambda c: (abs(c - end_m), c), default=end_m)
     return replace(wall, **moved) if moved["high_m"] - moved["low_m"] > wall.length_m / 2 else wall
 
 
-def _crossings(wall, walls):
+def _crossings(wall, walls, stacked):
     """Return (other wall, where along this one its middle crosses) of walls that are there."""
-    crossings = []
-    for other in walls:
-        turn = float(wall.line.direction @ other.line.normal)
-        if other is wall or abs(turn) < math.sin(_LEAST_CORNER_RAD):
-            continue
-        place_m = -float(other.line.offset_m(wall.line.centre)) / turn
-        there_m = float(other.line.along_m(wall.line.at(place_m)))
-        reach_m = wall.half_m + wallpairs.CORNER_M
-        if other.low_m - reach_m <= there_m <= other.high_m + reach_m:
-            crossings.append((other, place_m))
-    return crossings
+    found = crossings.find(wall.line, stacked, reach_m=wall.half_m + wallpairs.CORNER_M)
+    return [(walls[i], place_m) for i, place_m in zip(found.which.tolist(), found.place_m.tolist(), strict=True)]

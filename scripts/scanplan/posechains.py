@@ -29,7 +29,7 @@ class Chains:
 
     def __init__(self, index, *, base_frame, mount, where):
         self._index, self._base_frame, self._mount, self._where = index, base_frame, mount, where
-        self._tree = frames.FrameTree(transform_edges(index.transforms))
+        self._tree = frames.FrameTree(transform_edges(index.transforms, index.stamps_ns, index.cloud_receive_ns))
 
     def of_poses(self, source):
         """Return the edges from the world to the sensor.

@@ -77,8 +77,7 @@ class Scene:
         rays[..., :3] = (np.asarray(origin_m) - self._centre_m)[:, None]
         rays[..., 3:] = direction
         rays = rays.reshape(-1, 6)
-        nothing = Hits(*np.full((3, len(rays)), np.inf, np.float32))
-        opaque = self._opaque.hits(rays) if self._opaque else nothing
+        opaque = self._opaque.hits(rays) if self._opaque else Hits(*np.full((3, len(rays)), np.inf, np.float32))
         return opaque, self._glass.hits(rays) if self._glass else None
 
 

@@ -1,11 +1,11 @@
-"""Selecting and registering continuous scans (thesis 3.5, algorithm 3)."""
+"""Selecting continuous scans and registering them one after the other (thesis 3.5, algorithm 3)."""
 
 from collections import deque
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from scanplan import icp, se3
+from scanplan import icp, links, se3, twists
 
 # the method that leaves a survey as it is: its poses are exact, its scans all sound
 GIVEN_POSES = "none"
@@ -19,19 +19,29 @@ class Settings:
     """Limits of the registration; config/README.md explains each key of section `registration`."""
 
     voxel_m: float
+    voxel_planar_m: float
+    voxels: int
     n_previous: int
     fitness_distance_m: float
+    fitness_points: int
     min_prior_fitness: float
     min_refined_fitness: float
     icp_method: str
     icp_targets: int
-    icp_distance_m: float
+    icp_distances_m: tuple
     icp_max_iterations: int
     max_correction_m: float
     max_correction_deg: float
-    localiser_share: float
+    localiser_sigma_m: float
+    localiser_sigma_deg: float
+    localiser_sigma_tilt_deg: float
     anchor_after: int
     min_points: int
+
+    def localiser_information(self, priors):
+        """Inverse covariances (..., 6, 6) of poses (..., 4, 4) that the localiser gave, as twists in their frames."""
+        heading, tilt = np.radians([self.localiser_sigma_deg, self.localiser_sigma_tilt_deg])
+        return twists.information([self.localiser_sigma_m] * 3 + [tilt, tilt, heading], priors)
 
 
 @dataclass(frozen=True)
@@ -59,40 +69,35 @@ class Verdict:
     rmse_m: float = np.nan
 
 
-@dataclass(frozen=True)
-class _Placed:
-    cloud: icp.Cloud
-    world_from_cloud: np.ndarray
-
-
 @dataclass
 class Registrar:
     """Takes the candidate scans one after the other and says of each whether, and where, it is kept.
 
-    Parameters
+    Attributes
     ----------
     settings : Settings
     planar : bool
         Whether the sensor measures in one plane: then x, y and heading are refined, and height, roll and pitch stay
         the localiser's.
-    threads : int
-        Cores to use; the verdicts do not depend on it.
+    edges : list of links.Edge
+        Of the scans kept so far to their predecessors.
     """
 
     settings: Settings
     planar: bool
-    threads: int = 1
+    edges: list = field(default_factory=list)
     _previous: deque = field(init=False)
     _rejected_in_a_row: int = 0
 
     def __post_init__(self):
         self._previous = deque(maxlen=self.settings.n_previous)
 
-    def add(self, xyz_m, prior):
+    def add(self, scan_id, xyz_m, prior):
         """Judge the next scan.
 
         Parameters
         ----------
+        scan_id : int
         xyz_m : (n, 3) float
             Points in the sensor frame, finite.
         prior : (4, 4) float
@@ -101,113 +106,56 @@ class Registrar:
         Returns
         -------
         Verdict
+        thinned_m : (m, 3) float32
+            The points that fitting uses, in the cloud's frame: what `icp.prepare` takes.
         """
+        nothing = np.zeros((0, 3), np.float32)
         if not np.isfinite(prior).all():
-            return Verdict(False, "pose_gap", np.full((4, 4), np.nan))
+            return Verdict(False, "pose_gap", np.full((4, 4), np.nan)), nothing
         if len(xyz_m) < self.settings.min_points:
-            return Verdict(False, "too_few_points", prior)
+            return Verdict(False, "too_few_points", prior), nothing
         if self.settings.icp_method == GIVEN_POSES:
-            return Verdict(True, "kept", prior)
-        level_from_sensor = _level_from_sensor(prior) if self.planar else _IDENTITY
-        world_from_cloud = prior @ se3.inverse(level_from_sensor)
-        cloud = icp.prepare(
-            se3.transform(level_from_sensor, xyz_m),
-            planar=self.planar,
-            voxel_m=self.settings.voxel_m,
-            threads=self.threads,
+            return Verdict(True, "kept", prior), nothing
+        level_from_sensor = links.levelled(prior) if self.planar else _IDENTITY
+        thinned_m = links.thinned(xyz_m, level_from_sensor, self.planar, self.settings)
+        if len(thinned_m) < _FEWEST_PLACES:
+            return Verdict(False, "too_few_points", prior), thinned_m
+        cloud = icp.prepare(thinned_m, planar=self.planar, reach_m=links.reach_m(self.settings))
+        verdict, edges = self._judge(
+            links.Placed(scan_id, cloud, prior @ se3.inverse(level_from_sensor)), level_from_sensor
         )
-        if len(cloud.xyz_m) < _FEWEST_PLACES:
-            return Verdict(False, "too_few_points", prior)
-        verdict = self._judge(_Placed(cloud, world_from_cloud), level_from_sensor)
-        self._remember(cloud, verdict, level_from_sensor)
-        return verdict
+        self.edges += edges
+        self._remember(scan_id, cloud, verdict, level_from_sensor)
+        return verdict, thinned_m
 
     def _judge(self, scan, level_from_sensor):
-        prior = scan.world_from_cloud @ level_from_sensor
+        prior, s = scan.world_from_cloud @ level_from_sensor, self.settings
         if not self._previous:
-            return Verdict(True, "anchor", prior)
-        s = self.settings
-        before = self._mean_fitness(scan)
+            return Verdict(True, "anchor", prior), []
+        before = self._mean_overlap(scan)[0]
         if before < s.min_prior_fitness:
             return self._rejected("low_prior_fitness", prior, before)
-        refined, rmse_m, sound = self._refine(scan)
-        if not sound:
-            return self._rejected("icp_diverged", prior, before, rmse_m=rmse_m)
-        after = self._mean_fitness(refined)
+        refined, edges = links.refine(scan, list(self._previous)[: -s.icp_targets - 1 : -1], s)
+        if refined is None:
+            return self._rejected("icp_diverged", prior, before)
+        after, rmse_m = self._mean_overlap(refined)
         if after < s.min_refined_fitness:
             return self._rejected("low_refined_fitness", prior, before, after, rmse_m)
-        return Verdict(True, "kept", refined.world_from_cloud @ level_from_sensor, before, after, rmse_m)
+        return Verdict(True, "kept", refined.world_from_cloud @ level_from_sensor, before, after, rmse_m), edges
 
     def _rejected(self, reason, prior, before, after=np.nan, rmse_m=np.nan):
         # a lost region is worse than a seam: after a run of rejections the localiser is believed again
-        if self._rejected_in_a_row + 1 >= self.settings.anchor_after:
-            return Verdict(True, "anchor", prior, before, after, rmse_m)
-        return Verdict(False, reason, prior, before, after, rmse_m)
+        anew = self._rejected_in_a_row + 1 >= self.settings.anchor_after
+        return Verdict(anew, "anchor" if anew else reason, prior, before, after, rmse_m), []
 
-    def _remember(self, cloud, verdict, level_from_sensor):
+    def _remember(self, scan_id, cloud, verdict, level_from_sensor):
         self._rejected_in_a_row = 0 if verdict.kept else self._rejected_in_a_row + 1
         if verdict.reason == "anchor":
             self._previous.clear()
         if verdict.kept:
-            self._previous.append(_Placed(cloud, verdict.world_from_sensor @ se3.inverse(level_from_sensor)))
+            world_from_cloud = verdict.world_from_sensor @ se3.inverse(level_from_sensor)
+            self._previous.append(links.Placed(scan_id, cloud, world_from_cloud))
 
-    def _mean_fitness(self, scan):
-        return float(
-            np.mean(
-                [
-                    icp.fitness(
-                        scan.cloud,
-                        target.cloud,
-                        se3.inverse(target.world_from_cloud) @ scan.world_from_cloud,
-                        distance_m=self.settings.fitness_distance_m,
-                        threads=self.threads,
-                    )
-                    for target in self._previous
-                ]
-            )
-        )
-
-    def _refine(self, scan):
-        s = self.settings
-        world_from_target = self._previous[-1].world_from_cloud
-        fit = icp.align(
-            scan.cloud,
-            self._target(),
-            se3.inverse(world_from_target) @ scan.world_from_cloud,
-            method=s.icp_method,
-            distance_m=s.icp_distance_m,
-            max_iterations=s.icp_max_iterations,
-        )
-        refined = se3.rigid(world_from_target @ fit.target_from_source)
-        shift_m, turn_deg = _size(se3.inverse(scan.world_from_cloud) @ refined)
-        sound = np.isfinite(fit.rmse_m) and shift_m <= s.max_correction_m and turn_deg <= s.max_correction_deg
-        # a chain of alignments drifts without bound; a share of the localiser's unbiased pose holds it
-        world_from_cloud = se3.between(refined, scan.world_from_cloud, s.localiser_share)
-        return _Placed(scan.cloud, world_from_cloud), fit.rmse_m, bool(sound)
-
-    def _target(self):
-        """The last retained scans as one cloud, in the frame of the very last."""
-        last = list(self._previous)[-self.settings.icp_targets :]
-        if len(last) == 1:
-            return last[0].cloud
-        target_from_world = se3.inverse(last[-1].world_from_cloud)
-        motions = [target_from_world @ placed.world_from_cloud for placed in last]
-        return icp.merge(
-            [placed.cloud for placed in last], motions, voxel_m=self.settings.voxel_m, threads=self.threads
-        )
-
-
-def _level_from_sensor(world_from_sensor):
-    """Rotation part of a pose without its heading, and its height: what a planar survey's scans are levelled by."""
-    heading = se3.yaw_rad(world_from_sensor)
-    cos, sin = np.cos(heading), np.sin(heading)
-    world_from_level = np.eye(4)
-    world_from_level[:2, :2] = [[cos, -sin], [sin, cos]]
-    world_from_level[:2, 3] = world_from_sensor[:2, 3]
-    return se3.inverse(world_from_level) @ world_from_sensor
-
-
-def _size(motion):
-    """Length in metres and angle in degrees of a 4 x 4 motion."""
-    cosine = np.clip((np.trace(motion[:3, :3]) - 1) / 2, -1, 1)
-    return float(np.linalg.norm(motion[:3, 3])), float(np.degrees(np.arccos(cosine)))
+    def _mean_overlap(self, scan):
+        found = [links.overlap(scan, target, self.settings) for target in self._previous]
+        return tuple(float(mean) for mean in np.mean(found, axis=0))

@@ -32,8 +32,8 @@ class Survey:
         and `EVIDENCE`.
     chosen : int
         How many scans of the selection make the plan.
-    evaluation : dict of str to (n,) array or None
-        The columns of `schemas.EVALUATION`, where the truth is known.
+    evaluation : tuple of dict of str to (n,) array
+        The columns of `schemas.EVALUATION` and of `schemas.PLAN_EVALUATION`, where the truth is known.
     """
 
     selection: dict
@@ -42,7 +42,7 @@ class Survey:
     segments: dict
     evidence: dict
     chosen: int
-    evaluation: dict | None
+    evaluation: tuple
 
 
 @dataclass(frozen=True)
@@ -100,7 +100,8 @@ def page(template, style, script, plan, survey, run):
         min_scans=run.settings["plan"]["merge"]["min_scans"],
         chart=reportchart.svg(curves, len(survey.selection["rank"]), survey.chosen),
         legend=_legend(curves),
-        certificate=reporttext.certificate(survey),
+        certificate=reporttext.certificate(survey, run.settings["plan"]["method"]),
+        against_truth=reporttables.against_truth(survey.evaluation[1]) if survey.evaluation else "",
         verify_note=reporttext.verify_note(plan),
         walls=reporttables.walls(plan, survey.evidence),
         openings=reporttables.openings(plan),
@@ -112,7 +113,7 @@ def page(template, style, script, plan, survey, run):
         sizes=reporttables.sizes(run.sizes),
         settings=reporttables.settings(run.settings),
         version=escape(run.version),
-        data=_data(survey),
+        data=_data(survey, reporttext.objective(run.settings["plan"]["method"])[0]),
     )
 
 
@@ -153,15 +154,17 @@ def _plan(plan, survey, ranked, merging):
 
 def _curves(survey, of_plan):
     """Return the curves of the chart: the certificate and, where the truth is known, what is found of it."""
-    k, covered_m2 = survey.selection["rank"], survey.selection["covered_m2"]
-    bound = np.minimum(survey.selection["bound_m2"] / covered_m2[-1], 1)
+    k, covered = survey.selection["rank"], survey.selection["covered"]
+    what, _ = reporttext.objective(of_plan["method"])
+    bound = np.minimum(survey.selection["bound"] / covered[-1], 1)
     curves = {
-        "covered": ("area covered, of what all scans cover", k, covered_m2 / covered_m2[-1]),
-        "bound": ("most that any choice of as many scans can cover", k, bound),
+        "covered": (f"{what}, of what all scans give", k, covered / covered[-1]),
+        "bound": ("most that any choice of as many scans can give", k, bound),
     }
-    if survey.evaluation is not None:
-        own = np.all([survey.evaluation[part] == of_plan[part] for part in ("method", "extractor")], axis=0)
-        at, found, right = (survey.evaluation[column][own] for column in ("k", _FOUND, _RIGHT))
+    if survey.evaluation:
+        measured = survey.evaluation[0]
+        own = np.all([measured[part] == of_plan[part] for part in ("method", "extractor")], axis=0)
+        at, found, right = (measured[column][own] for column in ("k", _FOUND, _RIGHT))
         curves["found"] = ("visible true walls found, within 0.10 m", at, found)
         curves["right"] = ("wall segments that are right, within 0.10 m", at, right)
     return curves
@@ -194,11 +197,12 @@ def _figure(name, svg):
     )
 
 
-def _data(survey):
+def _data(survey, what):
     selection = survey.selection
     values = {
         "chosen": survey.chosen,
         "scan_ids": selection["scan_id"][: survey.chosen].tolist(),
-        "covered": [round(v, 3) for v in selection["covered_m2"].tolist()],
+        "covered": (selection["covered"] / selection["covered"][-1]).round(5).tolist(),
+        "objective": what,
     }
     return json.dumps(values)

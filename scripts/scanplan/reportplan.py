@@ -72,10 +72,9 @@ def _rooms(plan):
 
 def _labels(plan):
     extent_m = float(np.max(plan.bounds_m[1] - plan.bounds_m[0]))
-    for room, area_m2, area in zip(plan.rooms["room"].tolist(), plan.rooms["area_m2"], plan.areas, strict=True):
-        circle = shapely.maximum_inscribed_circle(area, tolerance=0.05)
-        (x_m, y_m), _ = shapely.get_coordinates(circle)
-        size_m = float(np.clip(circle.length / 4, 0.1, min(0.4, extent_m / 40)))
+    columns = (plan.rooms[c].tolist() for c in ("room", "area_m2", "x_m", "y_m"))
+    for room, area_m2, x_m, y_m, width_m in zip(*columns, plan.label_widths_m.tolist(), strict=True):
+        size_m = min(max(width_m / 8, 0.1), 0.4, max(extent_m / 40, 0.1))
         at = f'x="{_number(x_m)}" font-size="{size_m:.2f}"'
         yield (
             f'<text y="{_number(-y_m)}" {at}>Room {room}</text>'

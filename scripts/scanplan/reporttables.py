@@ -115,6 +115,17 @@ def registration(verdicts, shift_m):
     return table("registration", heads, rows)
 
 
+def against_truth(measured):
+    """Return the table of the plan's agreement with the truth, from the columns of `schemas.PLAN_EVALUATION`."""
+    rows = [
+        [name.replace("_", " "), *(number(value, 0 if name.startswith("n_") else 3) for value in values.tolist())]
+        for name, values in measured.items()
+        if name != "frame"
+    ]
+    title = "<details><summary><h3>The plan against the truth</h3></summary>"
+    return f"{title}{table('truth', ['measure', *(f'#{frame}' for frame in measured['frame'])], rows)}</details>"
+
+
 def stages(measured):
     """Return the table of run times: rows of stage, seconds, processor seconds, peak memory in MB."""
     rows = [[stage, number(s, 1), number(cpu_s, 1), number(memory_mb, 0)] for stage, s, cpu_s, memory_mb in measured]

@@ -7,6 +7,8 @@ import numpy as np
 
 from scanplan import floorplan
 
+_OBJECTIVES = {"wall_length": ("wall shown", "m"), "visibility": ("free space seen", "m²")}
+
 
 def summary(plan, survey):
     """Return what the plan is and what it was made of, in one sentence."""
@@ -34,15 +36,23 @@ def facts(plan, survey):
     return "\n".join(f"<div><dt>{name}</dt><dd>{value}</dd></div>" for name, value in facts.items())
 
 
-def certificate(survey):
+def objective(method):
+    """Return what a method of selection looks for, in words, and its unit; of one that measures nothing, the area."""
+    return _OBJECTIVES.get(method, ("area covered", "m²"))
+
+
+def certificate(survey, method):
     """Return what the chosen scans cover, and how much better any other choice could be."""
-    covered, bound = (survey.selection[c] for c in ("covered_m2", "bound_m2"))
-    k, all_m2 = survey.chosen, covered[-1]
-    best_m2 = min(bound[k - 1], all_m2)
+    selection, k = survey.selection, survey.chosen
+    covered, covered_m2 = selection["covered"], selection["covered_m2"]
+    best = min(selection["bound"][k - 1], covered[-1])
+    what, unit = objective(method)
     return (
-        f"The {k} scans of the plan cover {covered[k - 1]:,.1f} m², {covered[k - 1] / all_m2:.1%} of the"
-        f" {all_m2:,.1f} m² that all {len(covered):,} registered scans cover. Certificate: no {k} of these scans"
-        f" cover more than {best_m2:,.1f} m², so this choice is within {1 - covered[k - 1] / best_m2:.1%} of the best."
+        f"The {k} scans of the plan give {covered[k - 1] / covered[-1]:.1%} of the {what} of all {len(covered):,}"
+        f" registered scans ({covered[k - 1]:,.1f} of {covered[-1]:,.1f} {unit}), and"
+        f" {covered_m2[k - 1] / covered_m2[-1]:.1%} of the area that these cover ({covered_m2[-1]:,.1f} m²)."
+        f" Certificate: no {k} of these scans give more than {best:,.1f} {unit}, so this choice is within"
+        f" {1 - covered[k - 1] / best:.1%} of the best."
     )
 
 

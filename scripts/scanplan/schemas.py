@@ -49,6 +49,24 @@ REGISTRATION = Schema(
     },
     ("scan_id",),
 )
+EDGES = Schema(
+    "edges",
+    1,
+    {
+        "source": "int32",
+        "target": "int32",
+        "kind": "string",
+        "fitness": "float64",
+        "rmse_m": "float64",
+        **_POSE,
+        "unobservable": "int32",
+        "residual_m": "float64",
+        "residual_deg": "float64",
+        "weight": "float64",
+        "inlier": "bool",
+    },
+    ("source", "target"),
+)
 CRISPNESS = Schema(
     "crispness",
     1,

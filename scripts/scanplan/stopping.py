@@ -1,5 +1,7 @@
 """How many scans of an ordering the plan is made of."""
 
+import numpy as np
+
 from scanplan import greedy
 
 
@@ -9,12 +11,13 @@ def n_scans(columns, *, n_scans=None, area_share=None):
     Parameters
     ----------
     columns : dict of str to (n,) numpy.ndarray, n >= 1
-        `covered_m2` of a table of an ordering, by rank.
+        `covered_m2`, or both it and `covered`, of a table of an ordering, by rank.
     n_scans : int, >= 1, optional
         Use so many scans, or all if there are fewer.
     area_share : float in (0, 1], optional
-        Use the fewest scans that cover this share of what all cover (within `greedy.TIE_M2`). Given together with
-        `n_scans`, whichever needs fewer scans decides; given neither, all scans are used.
+        Use the fewest scans that cover this share of what all cover (within `greedy.TIE_M2`), measured by `covered`,
+        the objective of the method itself, where it is given. Given together with `n_scans`, whichever needs fewer
+        scans decides; given neither, all scans are used.
 
     Returns
     -------
@@ -38,7 +41,7 @@ def n_scans(columns, *, n_scans=None, area_share=None):
     if n_scans is not None:
         limits.append(_by_number(n, n_scans))
     if area_share is not None:
-        limits.append(_by_area(covered_m2, area_share))
+        limits.append(_by_share(columns, area_share))
     # of equals the last: the limit that was asked for
     return min(reversed(limits), key=lambda limit: limit[0])
 
@@ -49,7 +52,10 @@ def _by_number(n, wanted):
     return int(wanted), f"{wanted} of {n} scans, as asked for"
 
 
-def _by_area(covered_m2, share):
-    enough = covered_m2 >= share * covered_m2[-1] - greedy.TIE_M2
-    k = int(enough.argmax()) + 1
-    return k, f"{k} of {len(covered_m2)} scans cover {share:.4g} of the {covered_m2[-1]:.1f} m2 that all cover"
+def _by_share(columns, share):
+    covered_m2 = columns["covered_m2"]
+    covered = columns.get("covered", covered_m2)
+    k = int((covered >= share * covered[-1] - greedy.TIE_M2).argmax()) + 1
+    area = np.array_equal(covered, covered_m2)
+    whole = f"the {covered[-1]:.1f} m2 that all cover" if area else "what all show, by the method's own measure"
+    return k, f"{k} of {len(covered)} scans {'cover' if area else 'show'} {share:.4g} of {whole}"

@@ -1,113 +1,20 @@
 """Where along a line there is wall: told by the points at it and the rays through it."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from scanplan import rays as sights
 from scanplan.faceline import Line
+from scanplan.profiles import COLUMN_M, Seen
 
-COLUMN_M = 0.05
 _LEAST_HEIGHT_M = 0.1
-_LEAST_PASSES = 3
-_OVER_SHARE = 0.15
 _OVERLOOKED_SHARE = 0.5
 _REFIT_M = 0.04
 _MOST_TURN_RAD = np.radians(3)
+_ROUND_M = 1e-9
 _COLUMN_WEIGHT = 10  # points of a column that count: a near scan's are not a hundred times as true
-
-
-@dataclass(frozen=True)
-class Reading:
-    """How points and rays are read.
-
-    Attributes
-    ----------
-    band_m : float, > 0
-        Points this near to a line are at it.
-    reach_m : float, >= 0
-        How far beyond what was extracted of a line more of it is looked for.
-    max_gap_m : float, >= 0
-        Longest pause that is wall all the same where no ray went through.
-    door_height_m : float, > 0
-        Above the floor; what is higher says nothing about a way through.
-    """
-
-    band_m: float
-    reach_m: float
-    max_gap_m: float
-    door_height_m: float
-
-
-@dataclass(frozen=True, eq=False)
-class Seen:
-    """A line with what rays tell about it: positions along it, increasing.
-
-    Attributes
-    ----------
-    line : faceline.Line
-    hit_m, hit_off_m, hit_z_m : (h,) float64
-    hit_scan : (h,) int64
-    pass_m, pass_z_m : (p,) float64
-    pass_scan : (p,) int64
-    profiles : dict
-        Those that were asked for.
-    """
-
-    line: Line
-    hit_m: np.ndarray
-    hit_off_m: np.ndarray
-    hit_z_m: np.ndarray
-    hit_scan: np.ndarray
-    pass_m: np.ndarray
-    pass_z_m: np.ndarray
-    pass_scan: np.ndarray
-    profiles: dict = field(default_factory=dict)
-
-    def columns(self, reading, *, planar):
-        """Return the line in columns, a `Profile`."""
-        key = (reading, planar)
-        if key not in self.profiles:
-            self.profiles[key] = _profile(self, reading, planar=planar)
-        return self.profiles[key]
-
-    def hits(self, low_m, high_m):
-        """Return the slice of the points between two places."""
-        return slice(*np.searchsorted(self.hit_m, [low_m, high_m], side="left"))
-
-    def passes(self, low_m, high_m):
-        """Return the slice of the crossings between two places."""
-        return slice(*np.searchsorted(self.pass_m, [low_m, high_m], side="left"))
-
-
-@dataclass(frozen=True, eq=False)
-class Profile:
-    """A line in columns of 5 cm, the first beginning at `first_m`; all else (n,) bool.
-
-    Attributes
-    ----------
-    first_m : float
-    solid : array
-        Points are at it, and hardly a ray went through.
-    crossed : array
-        More rays went through below a door's height than ended there,
-    opened : array
-        and not just one or two.
-    overlooked : array
-        Rays went through above whatever is there.
-    """
-
-    first_m: float
-    solid: np.ndarray
-    crossed: np.ndarray
-    opened: np.ndarray
-    overlooked: np.ndarray
-
-    def between(self, low_m, high_m):
-        """Return the slice of the columns whose middles lie between two places."""
-        low, high = np.ceil((np.array([low_m, high_m]) - self.first_m) / COLUMN_M - 0.5).astype(np.int64)
-        return slice(max(low, 0), max(high, 0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,11 +65,11 @@ def look_along(rays, line, low_m, high_m, reading):
     line : faceline.Line
     low_m, high_m : float
         What was extracted of it.
-    reading : Reading
+    reading : profiles.Reading
 
     Returns
     -------
-    Seen
+    profiles.Seen
     """
     span = low_m - reading.reach_m, high_m + reading.reach_m
     sight = sights.look(rays, line, *span, band_m=reading.band_m)
@@ -211,8 +118,8 @@ def find(seen, reading, *, planar, foreign_m=()):
 
     Parameters
     ----------
-    seen : Seen
-    reading : Reading
+    seen : profiles.Seen
+    reading : profiles.Reading
     planar : bool
     foreign_m : sequence of (float, float)
         From where to where other faces cross the line: points there are theirs, so no stretch begins or ends there.
@@ -247,31 +154,8 @@ def _inside(columns, intervals_m):
     return inside
 
 
-def _profile(seen, reading, *, planar):
-    """Tell for every 5 cm of a line whether there is wall, a way through, or furniture.
-
-    Returns
-    -------
-    Profile
-    """
-    edges_m = np.concatenate([seen.hit_m, seen.pass_m])
-    first_m = edges_m.min(initial=0.0)
-    count = int((edges_m.max(initial=0.0) - first_m) / COLUMN_M) + 1
-    hit, crossing = (((place - first_m) / COLUMN_M).astype(np.int64) for place in (seen.hit_m, seen.pass_m))
-    low_hit = np.full(len(hit), True) if planar else seen.hit_z_m <= reading.door_height_m
-    low_pass = np.full(len(crossing), True) if planar else seen.pass_z_m <= reading.door_height_m
-    hits = np.bincount(hit[low_hit], minlength=count)
-    passes = np.bincount(crossing[low_pass], minlength=count)
-    top_m = np.full(count, -np.inf)
-    np.maximum.at(top_m, hit, seen.hit_z_m)
-    over = passes if planar else np.bincount(crossing[seen.pass_z_m > top_m[crossing]], minlength=count)
-    crossed = passes > hits
-    opened = crossed & (passes >= _LEAST_PASSES)
-    overlooked = (over >= _LEAST_PASSES) & (over >= _OVER_SHARE * hits)
-    return Profile(first_m, (hits > 0) & ~opened, crossed, opened, overlooked)
-
-
 def _trimmed(stretch):
     """Let a stretch end at its first and last point."""
-    points = stretch.seen.hit_m[stretch.points]
+    # a point on the edge of a column is in it, whichever way the edge was rounded
+    points = stretch.seen.hit_m[stretch.seen.hits(stretch.low_m - _ROUND_M, stretch.high_m + _ROUND_M)]
     return replace(stretch, low_m=float(points[0]), high_m=float(points[-1]))

@@ -15,6 +15,7 @@ from scanplan import atomic
 from scanplan.errors import StageError
 from scanplan.schemas import (
     CRISPNESS,
+    EDGES,
     EVALUATION,
     EVIDENCE,
     FACES,
@@ -37,6 +38,7 @@ from scanplan.schemas import (
 
 __all__ = [
     "CRISPNESS",
+    "EDGES",
     "EVALUATION",
     "EVIDENCE",
     "FACES",

@@ -36,11 +36,32 @@ def columns(scan_ids, t_ns, verdicts):
     return result | dict(zip(tables.XYZ, xyz_m.T, strict=True)) | dict(zip(tables.QUAT, quat_xyzw.T, strict=True))
 
 
-def summary(verdicts):
-    """Return how many candidates were kept or dropped, by reason, as one phrase."""
+def summary(verdicts, n_dropped):
+    """Return how many candidates were kept or dropped, by reason, and how many points were dropped, as one phrase."""
     reasons = Counter(verdict.reason for verdict in verdicts)
     counts = ", ".join(f"{n} {reason}" for reason, n in sorted(reasons.items()))
-    return f"{sum(v.kept for v in verdicts)} of {len(verdicts)} candidates retained ({counts})"
+    return (
+        f"{sum(v.kept for v in verdicts)} of {len(verdicts)} candidates retained ({counts});"
+        f" {n_dropped:,} points out of range or not finite"
+    )
+
+
+def check_any_kept(verdicts, n_dropped, where):
+    """Raise StageError if no candidate was kept.
+
+    Parameters
+    ----------
+    verdicts : list of registration.Verdict
+    n_dropped : int
+        Points that were dropped on reading.
+    where : path-like
+        The recording.
+    """
+    if not any(verdict.kept for verdict in verdicts):
+        raise StageError(
+            f"{where}: {summary(verdicts, n_dropped)}; at least one scan is needed: check input.min_range_m,"
+            " input.max_range_m and registration.min_points, and whether the clouds hold returns at all"
+        )
 
 
 def poses(columns_of_poses):

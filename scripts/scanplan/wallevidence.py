@@ -5,8 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from scanplan import crossings
+
 _NEAR_END_M = 0.25
 _MET_M = 1e-6
+_REACH_M = 0.5
 _HEIGHT_PERCENTILES = (2, 98)
 
 
@@ -82,18 +85,18 @@ def weigh(walls, trust):
     list of Evidence
     """
     sides = [[_side_sigma_m(side, trust) for side in (wall.left, wall.right) if side] for wall in walls]
-    offsets = [math.sqrt(sum(s**2 for s in of_wall)) / len(of_wall) for of_wall in sides]
-    return [_weigh(i, walls, offsets, trust) for i in range(len(walls))]
+    offsets_m = np.array([math.sqrt(sum(s**2 for s in of_wall)) / len(of_wall) for of_wall in sides])
+    stacked = crossings.stack(walls)
+    return [_weigh(wall, off_m, stacked, offsets_m, trust) for wall, off_m in zip(walls, offsets_m, strict=True)]
 
 
-def _weigh(number, walls, offsets_m, trust):
-    wall = walls[number]
-    scan, offset_m, z_m = _hits(wall.members)
+def _weigh(wall, offset_m, stacked, offsets_m, trust):
+    scan, residual_m, z_m = _hits(wall.members)
     scans, points = np.unique(scan, return_counts=True)
-    ends = tuple(_end_sigma_m(wall, end, walls, offsets_m, trust) for end in (0, 1))
+    ends = tuple(_end_sigma_m(wall, end, stacked, offsets_m, trust) for end in (0, 1))
     return Evidence(
-        rmse_m=float(np.sqrt(np.mean(offset_m**2))),
-        sigma_offset_m=float(offsets_m[number]),
+        rmse_m=float(np.sqrt(np.mean(residual_m**2))),
+        sigma_offset_m=float(offset_m),
         sigma_end_m=ends,
         n_points=len(scan),
         scans=scans,
@@ -123,16 +126,12 @@ def _side_sigma_m(stretches, trust):
     )
 
 
-def _end_sigma_m(wall, end, walls, offsets_m, trust):
+def _end_sigma_m(wall, end, stacked, offsets_m, trust):
     """Return the standard deviation of an end: of the wall it meets there, or of where its points cease."""
-    place = wall.ends[end]
-    met = []
-    for other, sigma_m in zip(walls, offsets_m, strict=True):
-        sine = abs(float(wall.line.direction @ other.line.normal))
-        if other is not wall and sine > 0.1 and abs(float(other.line.offset_m(place))) < _MET_M:
-            met.append(sigma_m / sine)
-    if met:
-        return float(min(met))
+    crossed = crossings.find(wall.line, stacked, reach_m=_REACH_M)
+    at_it = np.abs(crossed.place_m - (wall.low_m, wall.high_m)[end]) < _MET_M
+    if at_it.any():
+        return float((offsets_m[crossed.which] / crossed.sine)[at_it].min())
     n_scans, pitch_m = 0, math.inf
     for stretch in wall.members:
         along_m = wall.line.along_m(stretch.line.at(stretch.seen.hit_m[stretch.points]))

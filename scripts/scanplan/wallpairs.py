@@ -6,9 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
+from scanplan import profiles
 from scanplan.faceline import Line
 
 _LEAST_OVERLAP_M = 0.2
+_LEAST_OPEN_M = 0.3
+_OPEN_SHARE = 0.3
 CORNER_M = 0.3
 _SHORTEST_M = 1e-9
 _SAME_LINE, _OPPOSITE, _ONWARD = range(3)
@@ -65,16 +68,19 @@ class Wall:
         return 0.0 if math.isnan(self.thickness_m) else self.thickness_m / 2
 
 
-def pair(stretches, settings):
+def pair(stretches, settings, reading, *, planar):
     """Sort stretches into walls.
 
     Stretches of one line are joined first, then those opposite to each other, the longest overlap before others, then
-    those that go on from each other; never so that a side would not be straight within `offset_m`.
+    those that go on from each other; never so that a side would not be straight within `offset_m`, nor where rays went
+    through what would be one side while the other was seen.
 
     Parameters
     ----------
     stretches : list of stretches.Stretch
     settings : PairSettings
+    reading : profiles.Reading
+    planar : bool
 
     Returns
     -------
@@ -83,7 +89,7 @@ def pair(stretches, settings):
     """
     group = list(range(len(stretches)))
     members = {i: [i] for i in group}
-    for one, other in _offers(stretches, settings):
+    for one, other in _offers(stretches, settings, reading, planar):
         a, b = group[one], group[other]
         if a == b or _joined(stretches, members[a] + members[b], settings) is None:
             continue
@@ -93,7 +99,7 @@ def pair(stretches, settings):
     return [_joined(stretches, of_wall, settings) for _, of_wall in sorted(members.items())]
 
 
-def _offers(stretches, settings):
+def _offers(stretches, settings, reading, planar):
     """Return pairs that may be of one wall, the surest first."""
     ends = np.array([s.ends for s in stretches]).reshape(-1, 2, 2)
     lines = shapely.linestrings(ends)
@@ -107,7 +113,12 @@ def _offers(stretches, settings):
     for i, j in pairs[np.abs(alike) >= steep].tolist():
         overlap_m, behind_m = _beside(stretches[i], stretches[j])
         if stretches[i].line.normal @ stretches[j].line.normal < 0:
-            if overlap_m >= _LEAST_OVERLAP_M and settings.min_thickness_m <= behind_m <= settings.max_thickness_m:
+            is_thick = settings.min_thickness_m <= behind_m <= settings.max_thickness_m
+            if (
+                overlap_m >= _LEAST_OVERLAP_M
+                and is_thick
+                and not _contradict(stretches[i], stretches[j], reading, planar)
+            ):
                 offers.append((_OPPOSITE, -overlap_m, i, j))
         elif -overlap_m <= settings.max_gap_m and abs(behind_m) <= settings.offset_m:
             kind = _SAME_LINE if stretches[i].seen is stretches[j].seen else _ONWARD
@@ -121,6 +132,21 @@ def _beside(one, other):
     along = np.sort(longer.line.along_m(shorter.ends))
     overlap_m = min(along[1], longer.high_m) - max(along[0], longer.low_m)
     return float(overlap_m), -float(longer.line.offset_m(shorter.ends).mean())
+
+
+def _contradict(one, other, reading, planar):
+    """Tell whether rays went through the line of one side where the other side was seen and it was not."""
+    for seen, unseen in ((one, other), (other, one)):
+        span = np.sort(unseen.line.along_m(seen.ends))
+        open_m = solid_m = 0.0
+        for low_m, high_m in ((span[0], min(span[1], unseen.low_m)), (max(span[0], unseen.high_m), span[1])):
+            if high_m > low_m:
+                columns = unseen.seen.columns(reading, planar=planar)
+                open_m += profiles.COLUMN_M * columns.opened[columns.between(low_m, high_m)].sum()
+                solid_m += high_m - low_m
+        if open_m > max(_LEAST_OPEN_M, _OPEN_SHARE * solid_m):
+            return True
+    return False
 
 
 def _joined(stretches, members, settings):

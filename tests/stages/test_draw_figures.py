@@ -3,10 +3,11 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
+import facemaking
 from draw_area import draw_area
 from draw_scans import draw_scans
 from draw_walls import draw_walls
-from scanplan import faces, tables
+from scanplan import tables
 from scanplan.errors import StageError
 from wallmaking import BARE, walls
 
@@ -31,7 +32,7 @@ def results(tmp_path):
         measures = ("gain_m2", "covered_m2", "bound_m2", "gain", "covered", "bound")
         columns = dict.fromkeys(measures, np.array([5.0, 9.0]))
         tables.write(tmp_path / f"{method}.parquet", tables.SELECTION, {"rank": [1, 2], "scan_id": [4, 0]} | columns)
-    merged = faces.merge(walls([(0, 0, 6, 0), (6, 4, 0, 4)]), faces.MergeSettings(**BARE))
+    merged = facemaking.merge(walls([(0, 0, 6, 0), (6, 4, 0, 4)]), BARE)
     tables.write(tmp_path / "faces.parquet", tables.FACES, merged)
     return tmp_path
 

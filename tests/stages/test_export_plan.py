@@ -3,8 +3,10 @@ from xml.etree import ElementTree
 
 import ezdxf
 import ifcopenshell
+import numpy as np
 import pytest
 import yaml
+from ifcopenshell.util.element import get_psets
 from PIL import Image
 
 import floorplanmaking
@@ -32,12 +34,19 @@ def plan(tmp_path):
     paths = {name: tmp_path / f"{name}.parquet" for name in TABLES}
     for name, (schema, made) in TABLES.items():
         tables.write(paths[name], schema, made())
+    rng = np.random.default_rng(1)
+    with tables.scan_writer(tmp_path / "scans.parquet", planar=False) as write:
+        for scan_id in (5, 9):
+            z_m = np.concatenate(
+                [np.zeros(500), np.full(500, floorplanmaking.HEIGHT_M + 0.1), rng.uniform(0, 2.6, 500)]
+            )
+            write(scan_id, np.column_stack([rng.uniform(0, 7, (1500, 2)), z_m]))
     return paths
 
 
 def exported(plan, folder):
     outputs = {kind: folder / name for kind, name in NAMES.items()}
-    export_plan(plan, outputs, name="office", settings=SETTINGS)
+    export_plan(plan, plan["faces"].parent / "scans.parquet", outputs, name="office", settings=SETTINGS)
     return outputs
 
 
@@ -46,7 +55,10 @@ def test_all_files_hold_the_same_plan(plan, tmp_path):
     kinds = [f["properties"]["kind"] for f in json.loads(files["geojson"].read_text())["features"]]
     assert [kinds.count(kind) for kind in ("face", "wall", "opening", "room")] == [9, 6, 3, 2]
     assert len(ezdxf.readfile(files["dxf"]).modelspace().query('LWPOLYLINE[layer=="ROOMS"]')) == 2
-    assert len(ifcopenshell.open(files["ifc"]).by_type("IfcWall")) == 6
+    model = ifcopenshell.open(files["ifc"])
+    heights = [get_psets(wall)["Qto_WallBaseQuantities"]["Height"] for wall in model.by_type("IfcWall")]
+    # up to the ceiling, which the scans show a little above what they show of the walls
+    assert heights == pytest.approx([floorplanmaking.HEIGHT_M + 0.1] * 6, abs=0.02)
     drawn = {e.get("id") for e in ElementTree.parse(files["svg"]).iter()}
     assert {"door-0", "door-1", "window-2"} <= drawn
     assert files["pdf"].read_bytes().startswith(b"%PDF")
@@ -70,6 +82,17 @@ def test_faces_alone_are_enough(plan, tmp_path):
     tables.write(plan["evidence"], tables.EVIDENCE, nobody, allow_empty=True)
     files = exported(plan, tmp_path / "plan")
     assert all(file.stat().st_size > 100 for file in files.values())
+
+
+def test_a_planar_survey_has_the_assumed_height(plan, tmp_path):
+    with tables.scan_writer(tmp_path / "scans.parquet", planar=True) as write:
+        write(5, np.zeros((3, 3)))
+    flat = floorplanmaking.walls() | {"z_min_m": np.full(6, np.nan), "z_max_m": np.full(6, np.nan)}
+    tables.write(plan["walls"], tables.PLAN_WALLS, flat)
+    model = ifcopenshell.open(exported(plan, tmp_path / "plan")["ifc"])
+    wall = model.by_type("IfcWall")[0]
+    assert get_psets(wall)["Qto_WallBaseQuantities"]["Height"] == SETTINGS["assumed_height_m"]
+    assert get_psets(wall)["Scanplan_Evidence"]["HeightMeasured"] is False
 
 
 def test_a_plan_of_nothing_is_told(plan, tmp_path):

@@ -81,6 +81,31 @@ def test_an_old_latched_pose_is_a_pose_with_a_gap(run, entries):
     assert poses["gap_s"][0] == pytest.approx(3600.05)
 
 
+def test_no_pose_within_a_jump_of_the_localiser(run, entries, caplog):
+    """Between scan 4 and scan 5 it finds itself 2 m elsewhere; the poses in between are lost."""
+    maker = bagmaking.Maker()
+    kept = [e for e in entries if e[0] != "/amcl_pose" or not START + 4 * STEP < e[1] < START + 6 * STEP]
+    jumped = [
+        (t, r, maker.amcl(r, ((r - START) / 1e9 + 2, 0, 0)))
+        if t == "/amcl_pose" and r > START + 5 * STEP
+        else (t, r, m)
+        for t, r, m in kept
+    ]
+    with caplog.at_level("INFO"):
+        poses = run(jumped, keep_every=1, max_speed_m_s=3.0)
+    assert poses["covered"].tolist() == [i != 5 for i in range(12)]
+    np.testing.assert_allclose(poses["x_m"][6:], np.arange(6, 12) / 10 + 2, atol=1e-6)
+    assert "the poses jump 1 times by more than 0.5 m" in caplog.text
+
+
+def test_how_the_sensor_moved_is_written_beside(run, entries, tmp_path):
+    run(entries, moved=tmp_path / "motion.parquet")
+    way = tables.read(tmp_path / "motion.parquet", tables.MOTION)
+    assert way["t_ns"].tolist() == [START + (i - 1) * STEP // 2 for i in range(25)]
+    np.testing.assert_allclose(way["x_m"], (way["t_ns"] - START) / 1e9, atol=1e-6)
+    assert set(way["time_scale"]) == {1.0}
+
+
 def test_poses_of_another_time_tell_both_spans(run, entries, tmp_path):
     maker = bagmaking.Maker()
     late = [(t, r, maker.amcl(r + 3600 * 10**9, (0, 0, 0)) if t == "/amcl_pose" else m) for t, r, m in entries]

@@ -63,7 +63,7 @@ def test_an_order_of_all_scans(hulls, tmp_path, caplog, method):
     assert selection["covered_m2"][-1] == pytest.approx(15)
     assert (selection["bound_m2"] >= selection["covered_m2"]).all()
     covered = {"visibility": "24.0 m2", "wall_length": "1.6 m"}.get(method, "15.0 m2")
-    assert f"order_scans: {method}, 12 scans, {covered}; 99% of the area at " in caplog.text
+    assert f"order_scans: {method}, 12 scans, {covered}; 99% at " in caplog.text
     again = tmp_path / "again.parquet"
     order_scans.order_scans(hulls, again, **options)
     assert again.read_bytes() == output.read_bytes()

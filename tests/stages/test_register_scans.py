@@ -20,8 +20,8 @@ def run(tmp_path, project_root):
         files = datasets.find_files(folder)
         reading = settings["input"] | changes.pop("reading", {})
         interpolate_poses(files, folder / "poses.parquet", **settings["poses"] | {"keep_every": 1}, **reading)
-        limits = settings["registration"] | {"localiser_share": 0.0} | changes
-        outputs = folder / "scans.parquet", folder / "registration.parquet"
+        limits = settings["registration"] | changes
+        outputs = folder / "scans.parquet", folder / "registration.parquet", folder / "edges.parquet"
         register_scans(files, folder / "poses.parquet", *outputs, reading=reading, settings=limits, threads=threads)
         return outputs
 
@@ -50,7 +50,7 @@ def survey(n_scans=5, empty=(), moved=()):
 
 
 def test_retained_scans_lie_in_the_map(run):
-    scans, registered = run(survey(moved=[2]))
+    scans, registered, _ = run(survey(moved=[2]))
     verdicts = tables.read(registered, tables.REGISTRATION)
     assert verdicts["reason"].tolist() == ["anchor"] + ["kept"] * 4
     np.testing.assert_allclose(verdicts["x_m"], [1.0, 1.1, 1.2, 1.3, 1.4], atol=0.015)
@@ -62,7 +62,7 @@ def test_retained_scans_lie_in_the_map(run):
 
 
 def test_scans_without_points_are_named_and_left_out(run):
-    scans, registered = run(survey(empty=[1, 3]))
+    scans, registered, _ = run(survey(empty=[1, 3]))
     verdicts = tables.read(registered, tables.REGISTRATION)
     assert verdicts["reason"].tolist() == ["anchor", "too_few_points", "kept", "too_few_points", "kept"]
     assert tables.ScanStore(scans).scan_ids.tolist() == [0, 2, 4]

@@ -1,11 +1,11 @@
 import numpy as np
 
-from scanplan import faces
+import facemaking
 from wallmaking import BARE, ends, lengths_m, walls
 
 
 def merge(table, **changes):
-    return faces.merge(table, faces.MergeSettings(**(BARE | changes)))
+    return facemaking.merge(table, BARE | changes)
 
 
 def test_overshooting_ends_of_a_room_meet():

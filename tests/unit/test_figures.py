@@ -4,7 +4,8 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from scanplan import drawing, faces, figures, topview
+import facemaking
+from scanplan import drawing, figures, topview
 from scanplan.errors import StageError
 from wallmaking import BARE, walls
 
@@ -82,14 +83,14 @@ class TestScansFigure:
 
 class TestWallsFigure:
     def test_it_draws_every_face(self, points, path):
-        merged = faces.merge(walls([(0, 0, 10, 0), (10, 6, 0, 6)]), faces.MergeSettings(**BARE))
+        merged = facemaking.merge(walls([(0, 0, 10, 0), (10, 6, 0, 6)]), BARE)
         axes = figures.walls_figure(points, merged, path[:3]).axes[0]
         (lines,) = axes.collections
         drawn = sorted(segment.ravel().tolist() for segment in lines.get_segments())
         np.testing.assert_allclose(drawn, [(0, 0, 10, 0), (10, 6, 0, 6)], atol=1e-9)
 
     def test_a_face_beyond_the_points_is_in_view(self, points, path):
-        merged = faces.merge(walls([(0, 0, 30, 0)]), faces.MergeSettings(**BARE))
+        merged = facemaking.merge(walls([(0, 0, 30, 0)]), BARE)
         assert figures.walls_figure(points, merged, path[:3]).axes[0].get_xlim()[1] > 30
 
 

@@ -44,14 +44,21 @@ def test_a_plan_of_faces_alone_has_lines_only():
     np.testing.assert_allclose(bare().bounds_m, [(0, 0), (10, 3)])
 
 
-def test_the_storey_stands_on_the_lowest_points_and_reaches_the_highest():
-    assert plan().storey_m == (0, floorplanmaking.HEIGHT_M)
+def test_the_storey_reaches_from_the_floor_to_the_ceiling():
+    assert plan(floor_z_m=-0.1, ceiling_z_m=2.6).storey_m == pytest.approx((-0.1, 2.7))
+
+
+def test_without_a_ceiling_it_is_as_high_as_the_highest_wall():
     walls = floorplanmaking.walls()
     walls["z_min_m"] -= 1
+    walls["z_min_m"][3] = np.nan
     walls["z_max_m"][5] = 0.7
     assert plan(walls=walls).storey_m == (-1, floorplanmaking.HEIGHT_M + 1)
+    assert plan(walls=walls, floor_z_m=0.0).storey_m == (0, floorplanmaking.HEIGHT_M)
 
 
-def test_the_height_of_a_planar_survey_is_assumed():
-    walls = floorplanmaking.walls() | {"z_min_m": np.full(6, 0.3), "z_max_m": np.full(6, 0.3)}
-    assert plan(walls=walls, assumed_height_m=3.0).storey_m == (0.3, 3.0)
+@pytest.mark.parametrize("z_m", [0.3, np.nan])
+def test_the_height_of_a_planar_survey_is_assumed(z_m):
+    walls = floorplanmaking.walls() | {"z_min_m": np.full(6, z_m), "z_max_m": np.full(6, z_m)}
+    assert plan(walls=walls, assumed_height_m=3.0).storey_m == (np.nan_to_num(z_m), 3.0)
+    assert bare().storey_m == (0.0, 2.5)

@@ -95,7 +95,7 @@ def test_one_scan_and_no_area(method):
 def test_summary():
     found = orderings.order("sequential", columns(), seed=0)
     assert orderings.summary("sequential", found) == (
-        "sequential, 4 scans, 7.0 m2; 99% of the area at 3 scans; first 4 cover at least 100 % of what any 4 could"
+        "sequential, 4 scans, 7.0 m2; 99% at 3 scans; first 4 cover at least 100 % of what any 4 could"
     )
     assert orderings.summary("wall_length", order("wall_length", columns())).startswith("wall_length, 4 scans, 14.0 m;")
 

@@ -9,17 +9,22 @@ from scanplan import registration, se3
 
 SETTINGS = registration.Settings(
     voxel_m=0.1,
+    voxel_planar_m=0.1,
+    voxels=1,
     n_previous=5,
     fitness_distance_m=0.2,
+    fitness_points=1000,
     min_prior_fitness=0.7,
     min_refined_fitness=0.8,
     icp_method="gicp",
     icp_targets=1,
-    icp_distance_m=0.5,
+    icp_distances_m=(0.5, 0.15),
     icp_max_iterations=40,
     max_correction_m=0.5,
     max_correction_deg=5.0,
-    localiser_share=0.0,
+    localiser_sigma_m=100.0,
+    localiser_sigma_deg=180.0,
+    localiser_sigma_tilt_deg=180.0,
     anchor_after=3,
     min_points=20,
 )
@@ -61,7 +66,7 @@ def drive(n, *, planar, noise_m=0.04, noise_deg=1.0, seed=0):
 
 def register(scans, priors, planar, **changes):
     registrar = registration.Registrar(registration.Settings(**{**vars(SETTINGS), **changes}), planar)
-    return [registrar.add(scan, prior) for scan, prior in zip(scans, priors, strict=True)]
+    return [registrar.add(i, scan, prior)[0] for i, (scan, prior) in enumerate(zip(scans, priors, strict=True))]
 
 
 @pytest.mark.parametrize("planar", [False, True])
@@ -101,11 +106,33 @@ def test_a_scan_that_fits_badly_is_dropped_and_the_next_goes_on():
     assert reasons == ["anchor", "kept", "kept", "low_prior_fitness", "kept", "kept"]
 
 
-def test_a_share_of_the_localisers_pose_holds_the_chain():
+def test_a_localiser_that_is_sure_of_itself_is_believed():
     scans, priors, _ = drive(6, planar=True)
-    free, held = register(scans, priors, True), register(scans, priors, True, localiser_share=1.0)
+    sure = {"localiser_sigma_m": 1e-3, "localiser_sigma_deg": 0.01, "localiser_sigma_tilt_deg": 0.01}
+    free, held = register(scans, priors, True), register(scans, priors, True, **sure)
     assert not np.allclose(free[3].world_from_sensor, priors[3], atol=5e-3)
-    np.testing.assert_allclose([v.world_from_sensor for v in held], priors, atol=1e-9)
+    np.testing.assert_allclose([v.world_from_sensor for v in held], priors, atol=8e-3)
+
+
+def test_kept_scans_are_linked_to_the_ones_before():
+    scans, priors, true = drive(6, planar=False)
+    priors[3] = pose(4.0, 2.0, 77)
+    registrar = registration.Registrar(registration.Settings(**{**vars(SETTINGS), "icp_targets": 2}), False)
+    for i, (scan, prior) in enumerate(zip(scans, priors, strict=True)):
+        registrar.add(10 * i, scan, prior)
+    assert [(e.source, e.target) for e in registrar.edges] == [
+        (10, 0),
+        (20, 10),
+        (20, 0),
+        (40, 20),
+        (40, 10),
+        (50, 40),
+        (50, 20),
+    ]
+    for edge in registrar.edges:
+        truth = se3.inverse(true[edge.target // 10]) @ true[edge.source // 10]
+        np.testing.assert_allclose(edge.fit.target_from_source, truth, atol=0.01)
+        assert edge.fitness > 0.8 and edge.rmse_m < 0.1 and edge.fit.information[0, 0] > 0
 
 
 def test_a_registered_survey_is_left_as_it_is():

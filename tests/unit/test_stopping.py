@@ -24,6 +24,13 @@ def test_number_and_reason(limits, k, reason):
     assert stopping.n_scans(COLUMNS, **limits) == (k, reason)
 
 
+def test_a_share_is_of_the_method_s_own_measure():
+    own = {**COLUMNS, "covered": np.array([5.0, 6.0, 7.0, 8.0, 10.0])}
+    k, reason = stopping.n_scans(own, area_share=0.8)
+    assert (k, reason) == (4, "4 of 5 scans show 0.8 of what all show, by the method's own measure")
+    assert stopping.n_scans({**COLUMNS, "covered": COLUMNS["covered_m2"]}, area_share=0.8)[0] == 2
+
+
 def test_rounding_of_areas_needs_no_further_scan():
     covered_m2 = np.array([10.0, 20.0, 20.0 + 1e-9])
     assert stopping.n_scans({"covered_m2": covered_m2}, area_share=1.0)[0] == 2

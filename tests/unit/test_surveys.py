@@ -280,6 +280,64 @@ def test_damaged_poses_are_dropped(tmp_path, maker):
         np.testing.assert_allclose(positions(survey), [[0, 0, 0], [0.1, 1, 0], [0.2, 0, 0]], atol=1e-6)
 
 
+def test_the_sign_of_a_quaternion_is_free(tmp_path, maker):
+    def flipping(t_ns, xyz):
+        sign = -1 if (t_ns - START) // (STEP // 2) % 2 else 1
+        return maker.amcl(t_ns, xyz, sign * np.array(QUARTER))
+
+    with opened(recorded(tmp_path, bagmaking.survey(maker, n_scans=4, pose_of=flipping))) as survey:
+        between = survey.stamps()[:3] + STEP // 4
+        pose = frames.world_from_sensor(survey.pose_edges(), between, max_gap_s=1)[0]
+    np.testing.assert_allclose(np.degrees(se3.yaw_rad(pose)), 90)
+
+
+def test_a_covariance_that_is_no_number_is_counted_and_its_pose_used(tmp_path, maker, caplog):
+    entries = bagmaking.survey(maker, n_scans=3)
+    for _, _, message in entries[:3]:
+        if hasattr(message, "pose"):
+            message.pose.covariance[0] = np.nan
+    with caplog.at_level("INFO"), opened(recorded(tmp_path, entries)) as survey:
+        np.testing.assert_allclose(positions(survey)[:, 0], [0, 0.1, 0.2], atol=1e-6)
+    assert "/amcl_pose: 2 poses with a covariance that is no number" in caplog.text
+
+
+def test_transforms_stamped_ahead_are_taken_back(tmp_path, maker, caplog):
+    """The localiser corrects the pose by 1 m half way; its transform is stamped a second ahead, as AMCL's is."""
+    entries = without(with_tf(maker, ("base_link", "lidar", (0, 0, 1))), "/amcl_pose")
+    for i in range(-1, 12):
+        t = START + i * STEP
+        entries.append(("/tf", t, maker.transforms((t + 10 * STEP, "map", "odom", (0, float(i > 4), 0)))))
+        entries.append(("/tf", t, maker.transforms((t, "odom", "base_link", (i / 10, 0, 0)))))
+    with caplog.at_level("INFO"), opened(recorded(tmp_path, sorted(entries, key=lambda e: e[1]))) as survey:
+        np.testing.assert_allclose(positions(survey), [[i / 10, i > 4, 1] for i in range(10)], atol=1e-6)
+    assert "tf map -> odom is stamped 1.000 s ahead of its receipt: taken back" in caplog.text
+
+
+def test_odd_stamps_of_clouds_are_said(tmp_path, maker, caplog):
+    entries = bagmaking.survey(maker, n_scans=4)
+    for i, (shown, wrong) in enumerate([(1, 0), (3, 3600)]):
+        t_ns = START + 10**9 * wrong
+        at = [j for j, e in enumerate(entries) if e[0] == "/points"][shown]
+        entries[at] = ("/points", entries[at][1], maker.cloud(t_ns, bagmaking.room_points() + np.float32(i)))
+    with caplog.at_level("INFO"), opened(recorded(tmp_path, entries)) as survey:
+        known = frames.world_from_sensor(survey.pose_edges(), survey.stamps(), max_gap_s=1)[2]
+    assert known.tolist() == [True, True, True, False]
+    assert "1 of a repeated stamp, 1 jumping by more than 1 s; each scan keeps the pose of its own stamp" in caplog.text
+
+
+def test_a_clock_set_back_leaves_no_pose_where_nobody_knows_which(tmp_path, maker, caplog):
+    """Two seconds are driven, then the clock goes back by one."""
+    entries = bagmaking.survey(maker, n_scans=20)
+    last_ns = entries[-1][1]
+    for topic, receive_ns, message in bagmaking.survey(maker, n_scans=20, start_ns=START + 10 * STEP, first=50):
+        entries.append((topic, receive_ns - START - 10 * STEP + last_ns + STEP, message))
+    with caplog.at_level("INFO"), opened(recorded(tmp_path, entries)) as survey:
+        pose, _, known = frames.world_from_sensor(survey.pose_edges(), survey.stamps(), max_gap_s=0.5)
+    assert known.tolist() == [True] * 10 + [False] * 20 + [True] * 10
+    np.testing.assert_allclose(pose[known, 0, 3], np.concatenate([np.arange(10), np.arange(60, 70)]) / 10, atol=0.01)
+    assert "in a time that the clock told twice (dropped)" in caplog.text
+
+
 @pytest.mark.recordings
 def test_ros1_and_ros2_of_one_run_agree(recordings_dir):
     results = []

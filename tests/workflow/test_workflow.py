@@ -32,8 +32,8 @@ def test_every_result_is_there_and_the_user_is_told(project):
     for name in (
         "poses.parquet",
         "scans.parquet",
-        "plan/plan.dxf",
-        "plan/plan.svg",
+        *(f"plan/plan.{suffix}" for suffix in ("geojson", "dxf", "svg", "pdf", "ifc")),
+        "plan/map.yaml",
         "figures/walls.svg",
         "evaluation/walls.parquet",
     ):
@@ -74,7 +74,8 @@ def test_a_touched_file_reruns_nothing(project):
 def test_a_changed_parameter_reruns_exactly_its_stages(project, change, rules):
     other = project.folder / "change.yaml"
     other.write_text(change)
-    assert project.would_run("--configfile", TINY, str(other)) == rules
+    # the report states all settings
+    assert project.would_run("--configfile", TINY, str(other)) == rules | {"write_report"}
 
 
 @pytest.mark.parametrize(
@@ -85,6 +86,7 @@ def test_a_changed_parameter_reruns_exactly_its_stages(project, change, rules):
         ("visibility", EVALUATED),
         ("poseerrors", {"evaluate_poses"} | EVALUATED),
         ("faces", {"assemble_plan", "export_plan", "draw_walls"}),
+        ("reportplan", set()),
     ],
 )
 def test_an_edited_helper_reruns_exactly_the_stages_that_import_it(project, helper, rules):
@@ -92,7 +94,7 @@ def test_an_edited_helper_reruns_exactly_the_stages_that_import_it(project, help
     source = path.read_text()
     path.write_text(source + "\n# an edit\n")
     try:
-        assert project.would_run() == rules
+        assert project.would_run() == rules | {"write_report"}
     finally:
         path.write_text(source)
 
@@ -118,6 +120,13 @@ def test_a_file_is_a_simulated_dataset_beside_recorded_ones(project):
     assert "output: results/toy/survey/survey.bag" in listed and "output: results/other/survey/survey.mcap" in listed
     assert "results/recorded/plan/plan.svg" in listed and "results/recorded/survey" not in listed
     assert "results/toy/evaluation/walls.parquet" in listed and "results/recorded/evaluation" not in listed
+
+
+def test_a_deleted_report_is_made_again(project):
+    report = project.folder / "results/demo/report.html"
+    report.unlink()
+    assert project.would_run() == {"write_report"}
+    assert project.run().returncode == 0 and report.stat().st_size > 100_000
 
 
 def test_one_stage_can_be_rerun(project):

@@ -113,7 +113,11 @@ def order_tables(wildcards):
 def plan_settings(wildcards):
     """Settings of the plan's own stage, part by part."""
     plan = DATASETS[wildcards.dataset].settings["plan"]
-    return {part: plan[part] for part in plan if part not in ("method", "extractor", "export")}
+    return {
+        part: plan[part]
+        for part in plan
+        if part not in ("method", "extractor", "export")
+    }
 
 
 def recordings(wildcards):
@@ -188,9 +192,12 @@ def report_figures(wildcards):
 
 
 def report_evaluation(wildcards):
-    """The measured walls of a dataset, if its truth is known."""
+    """The measured walls and plan of a dataset, if its truth is known."""
     known = DATASETS[wildcards.dataset].truth
-    return [f"results/{wildcards.dataset}/evaluation/walls.parquet"] if known else []
+    tables = ["walls", "plan"] if known else []
+    return [
+        f"results/{wildcards.dataset}/evaluation/{table}.parquet" for table in tables
+    ]
 
 
 def report_page(wildcards):

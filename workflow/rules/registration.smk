@@ -1,5 +1,5 @@
 rule register_scans:
-    """Keep the scans that fit their predecessors, registered in the map frame."""
+    """Keep the scans that fit their predecessors, registered in one map."""
     input:
         recordings=recordings,
         poses="results/{dataset}/poses.parquet",
@@ -8,6 +8,7 @@ rule register_scans:
     output:
         scans="results/{dataset}/scans.parquet",
         registration="results/{dataset}/registration.parquet",
+        edges="results/{dataset}/edges.parquet",
     log:
         "logs/{dataset}/register_scans.log",
     benchmark:

@@ -25,8 +25,8 @@
       scan.classList.toggle("newest", Number(scan.dataset.rank) === k && k < data.chosen);
     }
     for (const path of shown) path.classList.toggle("later", Number(path.dataset.rank) !== k);
-    const covered = data.covered[k - 1] / data.covered.at(-1);
-    const said = `${k} of ${data.chosen} (scan ${data.scan_ids[k - 1]}): ${percent(covered)} of the area`;
+    const covered = percent(data.covered[k - 1]);
+    const said = `${k} of ${data.chosen} (scan ${data.scan_ids[k - 1]}): ${covered} of the ${data.objective}`;
     document.getElementById("said").textContent = said;
     slider.setAttribute("aria-valuetext", said);
     mark(k);

@@ -1,0 +1,89 @@
+"""Links between scans that lie near each other and were taken far apart in time."""
+
+from functools import lru_cache
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from scanplan import icp, links
+
+_PREPARED_AT_ONCE = 128
+# what overlaps after alignment overlaps this many times less narrowly before
+_LOOSE = 2
+
+
+def pairs(xy_m, *, radius_m, apart, most):
+    """Choose which scans to link: with every earlier visit of a scan's surroundings, at its nearest scan.
+
+    Parameters
+    ----------
+    xy_m : (n, 2) float
+        Where the scans are, in the order of their recording.
+    radius_m : float
+        Two scans farther apart are no pair.
+    apart : int
+        Nor are two with fewer scans than this between them, nor do such belong to different visits.
+    most : int
+        A scan is linked back to this many visits, the nearest ones.
+
+    Returns
+    -------
+    list of (source, target)
+        Rows, source > target, sorted.
+    """
+    tree = cKDTree(xy_m)
+    found = []
+    for source, near in enumerate(tree.query_ball_point(xy_m, radius_m, return_sorted=True)):
+        earlier = np.array([row for row in near if row < source - apart], np.int64)
+        if len(earlier) == 0:
+            continue
+        visits = np.split(earlier, np.flatnonzero(np.diff(earlier) > apart) + 1)
+        distance_m = [np.linalg.norm(xy_m[visit] - xy_m[source], axis=1) for visit in visits]
+        nearest = sorted((d.min(), int(visit[d.argmin()])) for d, visit in zip(distance_m, visits, strict=True))
+        found += [(source, target) for _, target in nearest[:most]]
+    return sorted(found)
+
+
+def link(part, rows, scan_ids, world_from_cloud, chosen, planar, settings, min_fitness):
+    """Align chosen pairs of scans.
+
+    Parameters
+    ----------
+    part : spool.Part
+        Thinned points of the scans that occur in `chosen`.
+    rows : list of int
+        Their rows.
+    scan_ids : list of int
+        Their scan_ids.
+    world_from_cloud : (len(rows), 4, 4) float64
+        About where they are.
+    chosen : list of (source, target)
+        Rows.
+    planar : bool
+    settings : registration.Settings
+    min_fitness : float
+        Pairs that overlap less after alignment are no link.
+
+    Returns
+    -------
+    list of links.Edge
+    """
+    thinned = dict(zip(rows, part, strict=True))
+    place = {row: i for i, row in enumerate(rows)}
+
+    @lru_cache(_PREPARED_AT_ONCE)
+    def prepared(row):
+        cloud = icp.prepare(thinned[row], planar=planar, reach_m=links.reach_m(settings))
+        return links.Placed(int(scan_ids[place[row]]), cloud, world_from_cloud[place[row]])
+
+    edges = (_linked(prepared(s), prepared(t), settings, min_fitness) for s, t in chosen)
+    return [edge for edge in edges if edge is not None]
+
+
+def _linked(source, target, settings, min_fitness):
+    # a neighbour is near its place already, and a wider search would take one side of a wall for the other
+    fine_m = settings.icp_distances_m[-1]
+    if links.facing_overlap(source, target, _LOOSE * fine_m, settings)[0] < min_fitness:
+        return None
+    edge = links.aligned(source, target, "loop", [fine_m], settings)
+    return None if edge is None or edge.fitness < min_fitness else edge

@@ -1,0 +1,93 @@
+"""From candidate scans to verdicts, and to the poses of one common map."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from scanplan import batches, links, multiway, registration, se3
+
+
+@dataclass(frozen=True)
+class Survey:
+    """The candidates of a survey.
+
+    Attributes
+    ----------
+    scan_ids : (n,) int, increasing
+    priors : (n, 4, 4) float64
+        The localiser's world_from_sensor; NaN where it has none.
+    planar : bool
+        Whether the sensor measures in one plane.
+    """
+
+    scan_ids: np.ndarray
+    priors: np.ndarray
+    planar: bool
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Section `registration` of the settings."""
+
+    batch_size: int
+    limits: registration.Settings
+    graph: multiway.Settings
+
+
+def settings_of(section):
+    """Return the Settings that a section `registration` holds."""
+    limits = {key: value for key, value in section.items() if key not in ("batch_size", "graph")}
+    return Settings(section["batch_size"], registration.Settings(**limits), multiway.Settings(**section["graph"]))
+
+
+def register(survey, scans, raw, thinned, run, settings):
+    """Judge all candidates, and bring those that are kept into one map.
+
+    Parameters
+    ----------
+    survey : Survey
+    scans : iterable of clouds.Scan
+        The candidates' points, in order.
+    raw, thinned : spool.Spool
+        Empty; left with the points of all candidates, and with what fitting used of the kept ones.
+    run : callable
+        As `workers.pool` gives it.
+    settings : Settings
+
+    Returns
+    -------
+    list of registration.Verdict
+        One per candidate.
+    multiway.Result or None
+        None where there is nothing to optimise.
+    """
+    limits = settings.limits
+    jobs = batches.jobs(scans, raw, survey.scan_ids, survey.priors, survey.planar, limits, settings.batch_size)
+    judged, edges = [], []
+    for verdicts, clouds, found in run(batches.register, jobs):
+        judged, edges = judged + verdicts, edges + found
+        for xyz_m in clouds:
+            thinned.add(xyz_m)
+    kept = np.flatnonzero([verdict.kept for verdict in judged])
+    if not settings.graph.optimise or limits.icp_method == registration.GIVEN_POSES or len(kept) == 0:
+        return judged, None
+    level_from_sensor = np.array([_level_from_sensor(survey, row) for row in kept])
+    sensor_from_level = se3.inverse(level_from_sensor)
+    result = multiway.optimise(
+        survey.scan_ids[kept],
+        np.array([judged[row].world_from_sensor for row in kept]) @ sensor_from_level,
+        survey.priors[kept] @ sensor_from_level,
+        edges,
+        thinned,
+        run,
+        planar=survey.planar,
+        limits=limits,
+        settings=settings.graph,
+    )
+    for row, pose in zip(kept, result.world_from_cloud @ level_from_sensor, strict=True):
+        judged[row] = replace(judged[row], world_from_sensor=pose)
+    return judged, result
+
+
+def _level_from_sensor(survey, row):
+    return links.levelled(survey.priors[row]) if survey.planar else np.eye(4)

@@ -1,0 +1,43 @@
+"""Jobs on several cores whose results come back in order."""
+
+import multiprocessing
+from collections import deque
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
+
+from scanplan import stagelog
+
+_WAITING_PER_CORE = 2
+
+
+@contextmanager
+def pool(threads):
+    """Open a pool of worker processes; with one thread there is none, and the work is done here.
+
+    Parameters
+    ----------
+    threads : int
+
+    Yields
+    ------
+    callable
+        `run(function, jobs)`: iterates over `function(*job)` of all jobs, in their order. Jobs are taken from their
+        iterable as workers become free, so that few wait.
+    """
+    if threads <= 1:
+        yield lambda function, jobs: (function(*job) for job in jobs)
+        return
+    # a forked child of a process with threads (Arrow, TBB) can hang, a spawned one cannot
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(threads, context, stagelog.end_with_parent) as executor:
+        yield lambda function, jobs: _in_order(executor, function, jobs, threads * _WAITING_PER_CORE)
+
+
+def _in_order(executor, function, jobs, most_waiting):
+    waiting = deque()
+    for job in jobs:
+        waiting.append(executor.submit(function, *job))
+        while waiting and (waiting[0].done() or len(waiting) > most_waiting):
+            yield waiting.popleft().result()
+    while waiting:
+        yield waiting.popleft().result()

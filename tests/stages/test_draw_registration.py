@@ -1,0 +1,74 @@
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+from draw_registration import draw_registration
+from scanplan import registrationfigure, tables
+
+REASONS = ["anchor", "kept", "low_prior_fitness", "pose_gap", "kept", "odd_thing", "anchor", "kept"]
+KEPT = [r in ("anchor", "kept") for r in REASONS]
+
+
+@pytest.fixture
+def results(tmp_path):
+    """Eight candidates along x, a metre apart; one without a place, one of a reason nobody knows."""
+    rng = np.random.default_rng(1)
+    scan_ids = np.arange(0, 40, 5)
+    with tables.scan_writer(tmp_path / "scans.parquet", planar=True) as write:
+        for scan_id in scan_ids[KEPT]:
+            write(scan_id, rng.uniform((0, -2, 0), (7, 2, 0), (200, 3)))
+    x_m = np.where(np.array(REASONS) == "pose_gap", np.nan, np.arange(8.0))
+    zeros = np.where(np.isnan(x_m), np.nan, 0.0)
+    columns = {"scan_id": scan_ids, "t_ns": scan_ids, "kept": KEPT, "reason": REASONS, "x_m": x_m, "qw": zeros + 1}
+    columns |= dict.fromkeys(("y_m", "z_m", "qx", "qy", "qz"), zeros)
+    columns |= dict.fromkeys(("prior_fitness", "refined_fitness"), zeros) | {"rmse_m": np.arange(8) / 100}
+    tables.write(tmp_path / "registration.parquet", tables.REGISTRATION, columns)
+    spread = {key: [0.031, 0.012] for key in ("sigma_m", "quarter_below_m", "quarter_above_m")}
+    crispness = {"poses": ["localiser", "registered"], "n_places": [9, 9], **spread}
+    tables.write(tmp_path / "crispness.parquet", tables.CRISPNESS, crispness)
+    return tmp_path
+
+
+def test_the_figure_names_every_reason_with_its_number(results):
+    inputs = [results / f"{name}.parquet" for name in ("scans", "registration", "crispness")]
+    for name in ("once", "again"):
+        draw_registration(*inputs, results / f"{name}.svg")
+    text = (results / "once.svg").read_text()
+    ElementTree.fromstring(text)
+    assert (results / "again.svg").read_text() == text
+    for told in (
+        "kept (3)",
+        "kept at the localiser's pose (2)",
+        "dropped: little overlap (1)",
+        "dropped: pose gap (1, nowhere on the map)",
+        "dropped: odd thing (1)",
+        "5 of 8 candidates kept; thickness of walls: 31 mm localiser, 12 mm registered",
+        "3 thick to neighbours, 0 thin loops",
+    ):
+        assert told in text, told
+
+
+def test_neighbours_are_linked_but_no_anchor_to_what_was_before(results):
+    links = registrationfigure.neighbours(tables.read(results / "registration.parquet", tables.REGISTRATION))
+    assert list(zip(links["source"], links["target"], strict=True)) == [(0, 5), (5, 20), (30, 35)]
+    np.testing.assert_allclose(links["residual_m"], [0.01, 0.04, 0.07])
+
+
+def test_a_registration_without_links_is_drawn(results):
+    registration = tables.read(results / "registration.parquet", tables.REGISTRATION)
+    none = {name: np.array([], float) for name in ("source", "target", "residual_m")} | {"kind": np.array([], object)}
+    figure = registrationfigure.draw(np.random.default_rng(0).uniform(0, 7, (50, 2)), registration, none, {})
+    assert len(figure.axes) == 1
+
+
+def test_loops_are_told_apart(results):
+    registration = tables.read(results / "registration.parquet", tables.REGISTRATION)
+    links = {
+        "source": np.array([0, 5, 5]),
+        "target": np.array([5, 35, 5]),
+        "kind": np.array(["sequence", "loop", "prior"], object),
+        "residual_m": np.array([0.01, 0.02, 9.0]),
+    }
+    figure = registrationfigure.draw(np.random.default_rng(0).uniform(0, 7, (50, 2)), registration, links, {})
+    assert "1 thick to neighbours, 1 thin loops" in figure.axes[1].get_ylabel()

@@ -1,0 +1,93 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from scanplan import gaps
+from scanplan.faceline import Line
+from scanplan.profiles import Reading, Seen
+
+READING = Reading(band_m=0.06, reach_m=2.0, max_gap_m=0.5, door_height_m=1.8)
+SETTINGS = gaps.GapSettings(min_opening_m=0.5, max_opening_m=2.0, max_closed_m=1.5, max_door_m=1.5)
+AXIS = Line(np.zeros(2), np.array([0.0, 1.0]))
+
+
+def seen(hits, passes):
+    hits, passes = (np.array(sorted(rows), float).reshape(-1, 2) for rows in (hits, passes))
+    return Seen(
+        AXIS,
+        *(hits[:, 0], np.zeros(len(hits)), hits[:, 1], np.zeros(len(hits), int)),
+        *(passes[:, 0], passes[:, 1], np.zeros(len(passes), int)),
+    )
+
+
+def grid(low, high, *heights):
+    return [(x, z) for x in np.arange(low + 0.01, high, 0.03) for z in heights]
+
+
+def judge(hits, passes, low=1.0, high=1.9, **more):
+    return gaps.judge(AXIS, low, high, [seen(hits, passes)], READING, SETTINGS, **({"planar": False} | more))
+
+
+def test_a_door():
+    gap = judge(grid(1, 1.9, 2.2, 2.5), grid(1, 1.9, 0.1, 1.0, 2.0))
+    assert (gap.state, gap.kind(SETTINGS), gap.sill_m) == (gaps.OPEN, "door", 0)
+    assert gap.lintel_m == pytest.approx(2.1, abs=0.11)
+    assert gap.width_m == pytest.approx(0.9)
+
+
+def test_a_window():
+    gap = judge(grid(1, 1.9, 0.5, 0.8, 2.2), grid(1, 1.9, 1.0, 1.6))
+    assert gap.kind(SETTINGS) == "window"
+    assert gap.sill_m == pytest.approx(0.9, abs=0.11)
+
+
+def test_a_wide_opening_is_a_passage():
+    assert judge([], grid(1, 2.8, 0.1, 1.0), high=2.8).kind(SETTINGS) == "passage"
+
+
+def test_nothing_seen_to_pass_is_wall():
+    assert judge([], []).state == gaps.CLOSED
+
+
+def test_a_long_pause_that_nothing_passed_is_not_known():
+    assert judge([], [], high=2.8).state == gaps.UNKNOWN
+
+
+def test_few_rays_on_one_edge_are_no_opening():
+    assert judge([], grid(1, 1.2, 0.5, 1.0, 1.5)).state == gaps.UNKNOWN
+
+
+def test_a_slit_is_no_opening():
+    assert judge([], grid(1, 1.3, 0.5, 1.0, 1.5), high=1.3).state != gaps.OPEN
+
+
+def test_the_side_that_more_rays_crossed_decides():
+    sides = [seen([], []), seen([], grid(1, 1.9, 0.1, 1.0))]
+    assert gaps.judge(AXIS, 1.0, 1.9, sides, READING, SETTINGS, planar=False).state == gaps.OPEN
+
+
+def test_beside_the_end_of_a_wall_only_a_lintel_makes_an_opening():
+    passes = grid(1, 1.9, 0.1, 1.0)
+    assert judge([], passes, needs_lintel=True).state == gaps.UNKNOWN
+    assert judge(grid(1, 1.9, 2.2), passes, needs_lintel=True).state == gaps.OPEN
+
+
+def test_heights_are_not_told_of_a_plane():
+    gap = judge([], grid(1, 1.9, 0.0, 0.0), planar=True)
+    assert (gap.state, gap.kind(SETTINGS)) == (gaps.OPEN, "door")
+    assert np.isnan([gap.sill_m, gap.lintel_m]).all()
+
+
+def test_pauses_between_spans_that_overlap():
+    np.testing.assert_allclose(gaps.between(np.array([(4.0, 6), (0, 3), (1, 2), (5, 7), (9, 9.5)])), [(3, 4), (7, 9)])
+
+
+@given(st.lists(st.tuples(st.floats(-9, 9), st.floats(0.01, 4)), min_size=1, max_size=8))
+def test_pauses_and_spans_are_the_whole(spans):
+    spans = np.array([(low, low + length) for low, length in spans])
+    pauses = gaps.between(spans)
+    places = np.linspace(spans.min(), spans.max(), 301)
+    in_span = ((places[:, None] >= spans[:, 0]) & (places[:, None] <= spans[:, 1])).any(axis=1)
+    in_pause = ((places[:, None] > pauses[:, 0]) & (places[:, None] < pauses[:, 1])).any(axis=1)
+    np.testing.assert_array_equal(in_span, ~in_pause)

@@ -1,0 +1,30 @@
+import numpy as np
+
+from scanplan import loops
+
+
+def there_and_back():
+    """Along a line to x = 9 and back, 0.5 m beside it, a scan a metre."""
+    x = np.r_[np.arange(10), np.arange(9, -1, -1)]
+    return np.column_stack([x, np.repeat([0.0, 0.5], 10)])
+
+
+def test_a_scan_is_linked_to_the_earlier_visit_of_its_place():
+    pairs = loops.pairs(there_and_back(), radius_m=0.9, apart=2, most=4)
+    assert pairs == [(i, 19 - i) for i in range(11, 20)]
+
+
+def test_each_visit_gives_one_link_and_the_nearest_come_first():
+    """Four times past the origin, ever nearer, with a long way between."""
+    away = np.column_stack([np.full(5, 50.0), np.arange(5.0)])
+    passes = [[[-1, y], [0, y], [1, y]] for y in (0.9, 0.6, 0.3, 0.0)]
+    xy = np.concatenate([np.concatenate([p, away + np.array([0, 10 * i])]) for i, p in enumerate(passes)])
+    pairs = loops.pairs(xy, radius_m=2.0, apart=3, most=2)
+    assert [p for p in pairs if p[0] == 25] == [(25, 9), (25, 17)]
+    assert [p for p in loops.pairs(xy, radius_m=2.0, apart=3, most=9) if p[0] == 25] == [(25, 1), (25, 9), (25, 17)]
+
+
+def test_standing_still_links_to_none_too_near_in_time():
+    still = np.zeros((12, 2))
+    assert all(source - target > 4 for source, target in loops.pairs(still, radius_m=1.0, apart=4, most=3))
+    assert loops.pairs(still[:4], radius_m=1.0, apart=4, most=3) == []

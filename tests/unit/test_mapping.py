@@ -1,0 +1,114 @@
+"""A drive round a block of rooms: candidates to one map, and what links them."""
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from scanplan import configuration, linktable, mapping, poseerrors, se3, spool, tables, workers
+
+ROOT = Path(__file__).resolve().parents[2]
+N = 60
+
+
+def pose(x, y, yaw_deg):
+    return se3.matrix([x, y, 0.4], Rotation.from_euler("z", yaw_deg, degrees=True).as_quat())
+
+
+def block(rng, n=9000):
+    """Points on floor and walls of a ring of corridors around a block, with niches that tell the places apart."""
+    walls = [((-6, -5), (6, -5)), ((6, -5), (6, 5)), ((6, 5), (-6, 5)), ((-6, 5), (-6, -5))]
+    walls += [((-4, -3), (4, -3)), ((4, -3), (4, 3)), ((4, 3), (-4, 3)), ((-4, 3), (-4, -3))]
+    for x, y in rng.permutation([(-5.5, -2), (-2, -4.7), (3, -4.7), (5.5, 1), (1, 4.5), (-5.5, 3), (-1, 3.4)]):
+        walls += [((x, y), (x + 0.4, y)), ((x + 0.4, y), (x + 0.4, y + 0.3)), ((x, y), (x, y + 0.3))]
+    ends = np.array(walls, float)
+    length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    which, share = rng.choice(len(ends), n, p=length / length.sum()), rng.uniform(size=(n, 1))
+    wall = np.column_stack([ends[which, 0] * (1 - share) + ends[which, 1] * share, rng.uniform(0, 2.4, n)])
+    floor = np.column_stack([rng.uniform(-6, 6, n // 3), rng.uniform(-5, 5, n // 3), np.zeros(n // 3)])
+    return np.concatenate([wall, floor])
+
+
+@pytest.fixture(scope="module")
+def drive():
+    """Scans of what lies within 5 m on the near side of the block; poses of a localiser; true poses."""
+    rng = np.random.default_rng(2)
+    along = np.linspace(0, 1.25, N) % 1 * 4
+    corners = np.array([(-5, -4), (5, -4), (5, 4), (-5, 4), (-5, -4)])
+    leg = along.astype(int)
+    xy = corners[leg] + (along - leg)[:, None] * (corners[leg + 1] - corners[leg])
+    true = np.array([pose(*p, 90 * side) for p, side in zip(xy, leg, strict=True)])
+    scans = []
+    for number, world_from_sensor in enumerate(true):
+        points = block(np.random.default_rng(100 + number)) + rng.normal(0, 0.01, (12000, 3))
+        seen = points[np.linalg.norm(points[:, :2] - world_from_sensor[:2, 3], axis=1) < 5]
+        scans.append(se3.transform(se3.inverse(world_from_sensor), seen))
+    drift = np.cumsum(rng.normal(0, 0.01, (N, 2)), axis=0)
+    priors = true.copy()
+    priors[:, :2, 3] += drift - drift.mean(axis=0) + rng.normal(0, 0.03, (N, 2))
+    return scans, priors, true
+
+
+def register(drive, folder, threads=1, **changes):
+    scans, priors, _ = drive
+    section = configuration.read_yaml(ROOT / "config/config.yaml")["registration"]
+    graph = section["graph"] | changes.pop("graph", {})
+    settings = mapping.settings_of(section | {"batch_size": 20} | changes | {"graph": graph})
+    found = (SimpleNamespace(xyz_m=xyz_m) for xyz_m in scans)
+    survey = mapping.Survey(np.arange(N) * 5, priors, planar=False)
+    with spool.beside(folder / "a") as raw, spool.beside(folder / "b") as thinned, workers.pool(threads) as run:
+        return mapping.register(survey, found, raw, thinned, run, settings)
+
+
+@pytest.fixture(scope="module")
+def mapped(drive, tmp_path_factory):
+    return register(drive, tmp_path_factory.mktemp("mapped"))
+
+
+def errors_m(judged, true):
+    pose_of = np.array([verdict.world_from_sensor for verdict in judged])
+    motion = poseerrors.alignment(pose_of[:, :3, 3], true[:, :3, 3])
+    return poseerrors.errors(motion @ pose_of, true)
+
+
+def test_the_map_is_better_than_the_localiser_and_than_the_chain(drive, mapped, tmp_path):
+    judged, result = mapped
+    chain, none = register(drive, tmp_path, graph={"optimise": False})
+    true = drive[2]
+    assert none is None and all(verdict.kept for verdict in judged)
+    assert [v.reason for v in judged] == ["anchor"] + ["kept"] * (N - 1)
+    prior_m = np.median(errors_m([SimpleNamespace(world_from_sensor=p) for p in drive[1]], true)[0])
+    distance_m, angle_deg = errors_m(judged, true)
+    assert prior_m > 0.03
+    assert np.median(distance_m) < 0.01 and np.median(angle_deg) < 0.1
+    assert np.median(errors_m(chain, true)[0]) > 1.5 * np.median(distance_m)
+    kinds = {edge.kind for edge in result.edges}
+    assert kinds == {"sequence", "loop"}
+    assert max(e.source - e.target for e in result.edges) > 5 * 30
+
+
+def test_cores_change_nothing(drive, mapped, tmp_path):
+    (one, links), (two, same) = mapped, register(drive, tmp_path, threads=2)
+    np.testing.assert_array_equal([v.world_from_sensor for v in one], [v.world_from_sensor for v in two])
+    np.testing.assert_array_equal(links.residual, same.residual)
+
+
+def test_links_make_a_table(drive, mapped, tmp_path):
+    result = mapped[1]
+    tables.write(tmp_path / "edges.parquet", tables.EDGES, linktable.columns(result))
+    edges = tables.read(tmp_path / "edges.parquet", tables.EDGES)
+    assert set(edges["kind"]) == {"sequence", "loop"} and edges["inlier"].all()
+    assert np.median(edges["residual_m"]) < 0.01 and (edges["fitness"] > 0.3).all()
+    true = drive[2]
+    motion = se3.matrix(*(np.column_stack([edges[c] for c in names]) for names in (tables.XYZ, tables.QUAT)))
+    truth = se3.inverse(true[edges["target"] // 5]) @ true[edges["source"] // 5]
+    assert np.median(np.linalg.norm((motion - truth)[:, :3, 3], axis=1)) < 0.01
+    assert "sequence (0 outliers)" in linktable.summary(result)
+
+
+def test_no_links_make_an_empty_table(tmp_path):
+    tables.write(tmp_path / "edges.parquet", tables.EDGES, linktable.columns(None), allow_empty=True)
+    assert len(tables.read(tmp_path / "edges.parquet", tables.EDGES, allow_empty=True)["source"]) == 0
+    assert linktable.summary(None) == "no pose graph"

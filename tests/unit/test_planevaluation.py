@@ -1,0 +1,124 @@
+import json
+
+import numpy as np
+import pytest
+import shapely
+
+from scanplan import lengthmetrics, planevaluation, trueplan, visibility
+from scanplan.errors import StageError
+
+SQUARE = np.array([[(0, 0), (4, 0)], [(4, 0), (4, 4)], [(4, 4), (0, 4)], [(0, 4), (0, 0)]], float)
+
+
+def cells():
+    return visibility.cut(SQUARE)
+
+
+def everything():
+    return np.ones(len(cells().face), bool)
+
+
+class TestFaces:
+    def measure(self, drawn, observed=None, seen=None):
+        drawn = np.array(drawn, float).reshape(-1, 2, 2)
+        observed = np.ones(len(drawn), bool) if observed is None else np.array(observed)
+        seen = everything() if seen is None else seen
+        return planevaluation.faces(drawn, observed, cells(), everything(), seen)
+
+    def test_the_truth_misses_nothing(self):
+        row = self.measure(SQUARE)
+        assert (row["seen_completeness_010m"], row["observed_correctness_010m"]) == (pytest.approx(1), pytest.approx(1))
+        assert row["missed_not_seen"] + row["missed_misplaced"] + row["missed_misextracted"] == 0
+
+    def test_what_is_missed_has_one_reason_each(self):
+        seen = cells().face != 1
+        # the first wall is right, the second was not seen, the third is drawn 0.2 m off, the fourth not at all
+        row = self.measure([SQUARE[0], SQUARE[2] - [0, 0.2]], seen=seen)
+        assert row["missed_not_seen"] == pytest.approx(0.25, abs=0.02)
+        # and 0.3 m of the ends of what is missed lie near to it and to the first
+        assert row["missed_misplaced"] == pytest.approx((4 + 0.5) / 16, abs=0.02)
+        assert row["missed_misextracted"] == pytest.approx((4 - 0.6) / 16, abs=0.02)
+
+    def test_inferred_faces_count_apart(self):
+        row = self.measure(SQUARE, observed=[True, False, False, False])
+        assert row["observed_visible_completeness_010m"] == pytest.approx(0.25, abs=0.03)
+
+
+class TestWalls:
+    def test_two_pieces_of_one_wall_are_two_walls_a_true_wall(self):
+        drawn = np.array([[(0, 0.1), (1, 0.1)], [(2, 0.1), (4, 0.1)], [(4.05, 0), (4.05, 4)]])
+        row = planevaluation.walls(drawn, np.array([0.2, np.nan, 0.35]), SQUARE, np.array([0.21, 0.3, 1, 1]))
+        assert row["plan_walls_per_true_wall"] == pytest.approx(3 / 2)
+        assert (row["n_plan_walls"], row["n_thickness"]) == (3, 2)
+        assert row["thickness_error_m"] == pytest.approx((0.01 + 0.05) / 2)
+
+    def test_a_wall_across_belongs_to_none(self):
+        row = planevaluation.walls(np.array([[(2, -0.3), (2, 0.3)]]), np.array([0.2]), SQUARE, np.ones(4))
+        assert np.isnan(row["plan_walls_per_true_wall"])
+
+    def test_no_walls(self):
+        assert planevaluation.walls(np.empty((0, 2, 2)), np.empty(0), SQUARE, np.ones(4))["n_plan_walls"] == 0
+
+
+class TestDoors:
+    TRUE = np.array([[(1, 0), (1.9, 0)], [(3, 0), (3.9, 0)], [(50, 0), (50.9, 0)]])
+    ROOM = shapely.box(0, 0, 4, 4)
+
+    def measure(self, drawn):
+        return planevaluation.doors(np.array(drawn, float).reshape(-1, 2, 2), self.TRUE, [self.ROOM], np.array([True]))
+
+    def test_doors_of_rooms_entered_are_to_be_found(self):
+        row = self.measure([[(1, 0.1), (1.95, 0.1)]])
+        assert (row["n_doors_true"], row["n_doors_found"], row["door_recall"]) == (2, 1, 0.5)
+        assert (row["door_precision"], row["door_width_right"]) == (1, 1)
+        assert row["door_width_error_m"] == pytest.approx(0.05)
+
+    def test_a_door_elsewhere_or_across_is_wrong(self):
+        row = self.measure([[(1, 0), (1.9, 0)], [(2, 2), (2.9, 2)], [(3.45, -0.45), (3.45, 0.45)]])
+        assert (row["n_doors_found"], row["door_precision"]) == (1, pytest.approx(1 / 3))
+
+    def test_one_door_is_not_found_twice(self):
+        row = self.measure([[(1, 0), (1.9, 0)], [(1.1, 0), (2.0, 0)]])
+        assert (row["n_doors_found"], row["door_precision"]) == (1, 0.5)
+
+    def test_no_doors(self):
+        assert (self.measure([])["door_recall"], self.measure([])["door_precision"]) == (0, 1)
+
+
+class TestRooms:
+    TRUE = (shapely.box(0, 0, 4, 4), shapely.box(5, 0, 9, 4), shapely.box(20, 0, 24, 4))
+
+    def test_iou_by_the_best_room(self):
+        drawn = [shapely.box(0, 0, 4, 3), shapely.box(30, 0, 31, 1)]
+        row = planevaluation.rooms(drawn, self.TRUE, np.array([True, True, False]))
+        assert (row["n_rooms_true"], row["n_rooms_found"], row["n_rooms_false"]) == (2, 1, 1)
+        assert (row["room_iou"], row["least_room_iou"]) == (pytest.approx(0.375), 0)
+
+    def test_no_rooms(self):
+        row = planevaluation.rooms([], self.TRUE, np.array([True, True, False]))
+        assert (row["n_rooms_found"], row["n_rooms_false"], row["room_iou"]) == (0, 0, 0)
+
+
+class TestTruth:
+    def write(self, path, *features):
+        rows = [{"type": "Feature", "properties": p, "geometry": shapely.geometry.mapping(g)} for g, p in features]
+        path.write_text(json.dumps({"type": "FeatureCollection", "features": rows}))
+        return path
+
+    def test_rooms_that_no_wall_parts_are_one(self, tmp_path):
+        boxes = [(shapely.box(0, 0, 2, 2), True), (shapely.box(2, 0, 4, 2), False), (shapely.box(4.2, 0, 6, 2), False)]
+        features = [(box, {"kind": "room", "name": "a", "visited": was}) for box, was in boxes]
+        true = trueplan.read(self.write(tmp_path / "truth.geojson", *features))
+        assert [room.area for room in true.rooms] == [pytest.approx(8, abs=0.01), pytest.approx(3.6)]
+        assert true.visited.tolist() == [True, False]
+
+    def test_doors_and_passages_but_no_windows(self, tmp_path):
+        line = shapely.LineString([(0, 0), (0.9, 0)])
+        features = [(line, {"kind": "opening", "type": t}) for t in ("door", "window", "passage")]
+        true = trueplan.read(self.write(tmp_path / "truth.geojson", *features))
+        np.testing.assert_allclose(lengthmetrics.lengths_m(true.doors_m), [0.9, 0.9])
+
+    def test_a_wall_without_thickness_is_told(self, tmp_path):
+        path = self.write(tmp_path / "truth.geojson", (shapely.LineString([(0, 0), (1, 0)]), {"kind": "wall"}))
+        with pytest.raises(StageError, match=r"truth\.geojson: feature 0 is no wall"):
+            trueplan.read(path)

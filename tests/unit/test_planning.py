@@ -1,0 +1,246 @@
+"""Walls, faces, rooms and evidence of houses known on paper."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import housemaking
+from scanplan import freespace, planning, rays, rooms, wallevidence, wallfaces
+from scanplan.faceline import Line
+from scanplan.gaps import CLOSED, OPEN, Gap
+from scanplan.planwalls import PlanWall
+from scanplan.profiles import Seen
+from scanplan.stretches import Stretch
+from wallmaking import moved, walls
+
+SETTINGS = planning.settings(**housemaking.PLAN)
+TRUST = SETTINGS.trust
+SENSORS = np.array(housemaking.SENSORS, float)
+
+
+def wall(x0, y0, x1, y1, thickness=0.2, openings=(), closed=()):
+    """A wall without points, for what looks at its shape alone."""
+    start, end = np.array([x0, y0], float), np.array([x1, y1], float)
+    length = np.hypot(*(end - start))
+    along = (end - start) / length
+    line = Line(start, np.array([-along[1], along[0]]))
+    ways = [Gap(low, high, OPEN, 99, 0.0, np.nan) for low, high in openings]
+    taken = [Gap(low, high, CLOSED, 0, np.nan, np.nan) for low, high in closed]
+    return PlanWall(line, 0.0, length, thickness, [], [], ways, taken)
+
+
+def box(size=4.0, thickness=np.nan, **of_first):
+    """Walls around a square, seen from inside: on the left of their way."""
+    corners = [(0, 0), (size, 0), (size, size), (0, size), (0, 0)]
+    drawn = zip(corners[:-1], corners[1:], [of_first, {}, {}, {}], strict=True)
+    return [wall(*a, *b, thickness, **more) for a, b, more in drawn]
+
+
+@pytest.fixture(scope="module")
+def house():
+    return housemaking.looked()
+
+
+def plan(looked, table=None, sensors=SENSORS):
+    made = housemaking.segments() if table is None else table
+    return planning.make(made, looked, sensors[:, :2], housemaking.T_NS[: len(sensors)], SETTINGS)
+
+
+class TestPlan:
+    @settings(max_examples=4, deadline=None)
+    @given(st.floats(-3.1, 3.1), st.tuples(st.floats(-200, 200), st.floats(-200, 200)))
+    def test_neither_place_nor_turn_of_the_map_matters(self, yaw_rad, shift):
+        points = [(i, housemaking.moved(xyz, yaw_rad, shift)) for i, xyz in housemaking.scans()]
+        sensors = housemaking.moved(SENSORS, yaw_rad, shift)
+        there = rays.gather(points, dict(enumerate(sensors)), planar=False)
+        made = plan(there, moved(housemaking.segments(), yaw_rad, shift), sensors)
+        np.testing.assert_allclose(np.sort(made.rooms["area_m2"]), [15.2, 16], rtol=0.02)
+        assert len(made.walls["wall"]) == 5
+        np.testing.assert_allclose(made.openings["width_m"], [0.9], atol=0.07)
+
+    def test_faces_of_two_rooms_do_not_run_through_the_wall_between_them(self, house):
+        made = plan(house)
+        faces = np.column_stack([made.faces[c] for c in ("x0_m", "y0_m", "x1_m", "y1_m")]).reshape(-1, 2, 2)
+        inside = shapely.box(4.03, -0.5, 4.17, 1.4)
+        crossing = shapely.intersects(shapely.linestrings(faces), inside)
+        assert not crossing.any()
+
+    def test_what_one_scan_of_one_room_shows(self):
+        made = plan(housemaking.looked(sensors=SENSORS[:1]), walls(housemaking.ROOM_A, scan_id=[0] * 5), SENSORS[:1])
+        assert made.rooms["area_m2"][0] == pytest.approx(16, rel=0.03)
+        assert made.walls["verify"].all()
+        assert np.isnan(made.walls["thickness_m"]).all()
+
+    def test_a_planar_scanner_makes_a_plan_too(self):
+        flat = [(i, np.column_stack([xyz[:, :2], 0 * xyz[:, 2]])) for i, xyz in housemaking.scans()]
+        flat = [(i, xyz[:: 16 // 2]) for i, xyz in flat]
+        made = plan(rays.gather(flat, dict(enumerate(SENSORS)), planar=True))
+        assert np.isnan(made.openings["sill_m"]).all()
+        np.testing.assert_allclose(np.sort(made.rooms["area_m2"]), [15.2, 16], rtol=0.03)
+
+    @pytest.mark.parametrize("sensor_z_m", [0.4, 0.9])
+    def test_a_table_is_no_wall(self, sensor_z_m):
+        desk = [(3, 0.3, 3.8, 0.3), (3.8, 0.3, 3.8, 0.8), (3.8, 0.8, 3, 0.8), (3, 0.8, 3, 0.3)]
+        sensors = SENSORS[:2] * [1, 1, 0] + [0, 0, sensor_z_m]
+        outward = [(x1, y1, x0, y0) for x0, y0, x1, y1 in desk]
+        shown = walls((housemaking.ROOM_A + outward) * 2, scan_id=[0] * 9 + [1] * 9)
+        made = plan(_with_low_box(desk, 0.7, sensors), shown, sensors)
+        faces = np.column_stack([made.faces[c] for c in ("x0_m", "y0_m", "x1_m", "y1_m")]).reshape(-1, 2, 2)
+        assert not shapely.intersects(shapely.linestrings(faces), shapely.box(2.9, 0.2, 3.9, 0.9)).any()
+
+    @pytest.mark.parametrize(("sensors", "walls_"), [(1, 0), (2, 1)])
+    def test_a_short_wall_is_believed_if_two_scans_show_it(self, sensors, walls_):
+        pillar = [(3.4, 2.4, 2.8, 2.4)]
+        looked = housemaking.looked(housemaking.HOUSE + pillar, SENSORS[:2] * [1, 0.5, 1] + [0, 0.3, 0])
+        table = walls(pillar[:1], scan_id=[0])
+        made = planning.make(table, _first(looked, sensors), SENSORS[:1, :2], housemaking.T_NS[:sensors], SETTINGS)
+        assert len(made.walls["wall"]) == walls_
+
+    @pytest.mark.parametrize("count", [0, 1000])
+    def test_segments_where_no_point_is_make_no_wall(self, house, count):
+        y = np.arange(count) * 0.02 + 100
+        made = plan(house, walls(np.column_stack([0 * y, y, 0 * y + 3, y])))
+        assert len(made.walls["wall"]) == 0
+        assert made.n_dropped == made.n_lines
+
+    def test_a_plan_half_a_kilometre_wide(self):
+        far = housemaking.moved(SENSORS, 0.0, (500, 0))
+        points = housemaking.scans() + [(i + 4, housemaking.moved(p, 0.0, (500, 0))) for i, p in housemaking.scans()]
+        both = np.concatenate([SENSORS, far])
+        near = housemaking.segments()
+        away = moved(near, 0.0, (500, 0)) | {"scan_id": near["scan_id"] + 4}
+        table = {c: np.concatenate([near[c], away[c]]) for c in near}
+        found = rays.gather(points, dict(enumerate(both)), planar=False)
+        made = planning.make(table, found, both[:, :2], np.arange(8), SETTINGS)
+        assert len(made.rooms["room"]) == 4
+        assert len(made.walls["wall"]) == 10
+
+
+def _first(looked, count):
+    """Rays of the first scans alone."""
+    points = zip(looked.scan_ids[:count].tolist(), looked.xyz_m[:count], strict=True)
+    return rays.gather(points, dict(enumerate(looked.sensors_m)), planar=False)
+
+
+def _with_low_box(desk, height_m, sensors):
+    """Rays of the house where a desk stands: those that meet it below its top end there."""
+    houses = housemaking.HOUSE, housemaking.HOUSE + desk
+    full, cut = (housemaking.scans(house, sensors, columns=1800) for house in houses)
+    points = [
+        (i, np.concatenate([far[far[:, 2] > height_m], near[near[:, 2] <= height_m]]))
+        for (i, far), (_, near) in zip(full, cut, strict=True)
+    ]
+    return rays.gather(points, dict(enumerate(sensors)), planar=False)
+
+
+class TestRooms:
+    def test_a_square_is_filled_to_its_faces(self):
+        star = shapely.Point(2, 2).buffer(1.9)
+        (room,) = rooms.find(box(), [star], np.array([(2.0, 2.0)]), min_area_m2=1, min_walled=0.7, unpaired_m=0.1)
+        assert room.polygon.area == pytest.approx(16, abs=0.05)
+        assert (room.closed, room.entered, room.n_scans) == (True, True, 1)
+
+    def test_an_opening_parts_rooms_and_tells_which(self):
+        walls_ = [*box(4.0), wall(2, 0, 2, 4, 0.2, openings=[(1.0, 1.9)])]
+        star = shapely.box(0, 0, 4, 4)
+        found = rooms.find(walls_, [star], np.array([(1.0, 1.0)]), min_area_m2=1, min_walled=0.7, unpaired_m=0.1)
+        np.testing.assert_allclose([r.polygon.area for r in found], [7.6, 7.6], rtol=0.01)
+        left, right = rooms.beside(found, np.array([(2.0, 1.0), (2.0, 1.9)]), 0.1)
+        assert {left, right} == {0, 1}
+        assert found[left].polygon.centroid.x < found[right].polygon.centroid.x
+
+    def test_what_is_seen_through_a_window_is_no_room(self):
+        found = rooms.find(
+            *(box(), [shapely.box(0, 0, 4, 4), shapely.box(-3, 1, -0.2, 3)], np.array([(2.0, 2.0)])),
+            **{"min_area_m2": 1, "min_walled": 0.7, "unpaired_m": 0.1},
+        )
+        assert len(found) == 1
+
+    def test_walls_that_never_close_still_bound_a_room_that_was_entered(self):
+        open_side = box()[:3]
+        (room,) = rooms.find(
+            *(open_side, [shapely.box(0.5, 0.1, 3.9, 3.9)], np.array([(2.0, 2.0)])),
+            **{"min_area_m2": 1, "min_walled": 0.7, "unpaired_m": 0.1},
+        )
+        assert not room.closed
+        assert room.walled == pytest.approx(0.75, abs=0.06)
+
+    def test_no_walls_leave_what_was_seen(self):
+        found = rooms.find(
+            [], [shapely.box(0, 0, 3, 3)], np.array([(1.0, 1.0)]), min_area_m2=1, min_walled=0.7, unpaired_m=0.1
+        )
+        assert [r.polygon.area for r in found] == [pytest.approx(9, rel=0.01)]
+        assert rooms.find([], [], np.empty((0, 2)), min_area_m2=1, min_walled=0.7, unpaired_m=0.1) == []
+
+
+class TestFreeSpace:
+    def test_a_scan_sees_its_room(self, house):
+        assert freespace.visible(house)[0].intersection(shapely.box(0, 0, 4, 4)).area == pytest.approx(16, rel=0.02)
+
+    def test_a_scan_of_no_points_sees_nothing(self):
+        empty = rays.gather([(0, np.empty((0, 3)))], {0: np.zeros(3)}, planar=True)
+        assert freespace.visible(empty)[0].is_empty
+
+    def test_an_unpaired_wall_stands_behind_its_face(self):
+        (ground,) = freespace.strips([wall(0, 0, 4, 0, np.nan)], 0.1)
+        assert ground.bounds == (0, -0.1, 4, 0)
+
+
+class TestFaces:
+    def test_a_face_is_cut_where_a_wall_butts_against_it(self):
+        long = _shown(wall(0, 0, 8, 0, np.nan, closed=[(6, 7)]), (0, 6), (7, 8))
+        faces = wallfaces.of_walls([long, wall(4, 3, 4, 0, 0.2), wall(6.5, 3, 6.5, 0, 0.2)])
+        spans = {state: sorted(f.ends[:, 0].tolist() for f in faces if f.state == state) for state in _STATES}
+        np.testing.assert_allclose(spans["observed"], [(0, 3.91), (4.09, 6), (7, 8)], atol=0.001)
+        np.testing.assert_allclose(spans["inferred"], [(6, 6.41), (6.59, 7)], atol=0.001)
+
+    def test_the_unseen_side_of_a_seen_wall_is_inferred_but_not_in_openings(self):
+        one = wall(0, 0, 8, 0, 0.2, openings=[(3, 4)])
+        one = replace(_shown(one, (0, 3), (4, 8)), right=[_stretch(one, -0.1, (0, 1))])
+        faces = [f for f in wallfaces.of_walls([one]) if f.state == "inferred"]
+        spans = sorted(np.sort(f.ends[:, 0]).tolist() for f in faces if not f.left)
+        np.testing.assert_allclose(spans, [(1, 3), (4, 8)], atol=0.001)
+        np.testing.assert_allclose([f.ends[:, 1] for f in faces], -0.1)
+        assert [f for f in faces if f.left] == []
+
+
+_STATES = ("observed", "inferred")
+
+
+def _shown(of, *spans):
+    """A wall whose left side points show."""
+    return replace(of, left=[_stretch(of, of.half_m, span) for span in spans])
+
+
+def _stretch(of, offset_m, span):
+    sign = 1 if offset_m >= 0 else -1
+    line = Line(of.line.centre + offset_m * of.line.normal, sign * of.line.normal)
+    low, high = np.sort(sign * np.array(span, float))
+    place = np.linspace(low, high, 100)
+    nothing = (0 * place, 0 * place, np.zeros(100, int), np.empty(0), np.empty(0), np.empty(0, int))
+    return Stretch(Seen(line, place, *nothing), float(low), float(high))
+
+
+class TestEvidence:
+    def test_more_scans_make_a_wall_surer(self, house):
+        made = plan(house)
+        seen_by = np.array([len(np.unique(made.evidence["scan_id"][made.evidence["wall"] == w])) for w in range(5)])
+        np.testing.assert_array_equal(made.walls["n_scans"], seen_by)
+        assert (made.walls["sigma_offset_m"] < 0.02).all()
+        assert not made.walls["verify"].any()
+
+    def test_a_wall_that_few_points_show_is_to_be_verified(self):
+        known = {"rmse_m": 0.01, "n_points": 9, "points": np.array([9]), "z_m": (0, 1)}
+        sure = {"sigma_offset_m": 0.01, "sigma_end_m": (0.01, 0.01), "scans": np.arange(2), "observed": 1.0}
+        assert not wallevidence.Evidence(**known, **sure).needs_a_visit(TRUST)
+        for doubt in (
+            {"sigma_offset_m": 0.1},
+            {"sigma_end_m": (0.01, 0.1)},
+            {"scans": np.arange(1)},
+            {"observed": 0.2},
+        ):
+            assert wallevidence.Evidence(**known, **(sure | doubt)).needs_a_visit(TRUST)

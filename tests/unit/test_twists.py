@@ -1,0 +1,30 @@
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from scanplan import se3, twists
+
+small = st.lists(st.floats(-0.5, 0.5), min_size=6, max_size=6)
+
+
+@given(small)
+def test_a_motion_has_the_numbers_it_was_made_of(numbers):
+    motion = twists.motion(numbers)
+    np.testing.assert_allclose(twists.of_motion(motion), numbers, atol=1e-12)
+    np.testing.assert_allclose(motion @ se3.inverse(motion), np.eye(4), atol=1e-12)
+
+
+@given(small, small)
+def test_the_adjoint_takes_a_twist_to_the_other_frame(pose, twist):
+    a_from_b, twist = twists.motion(pose), 1e-6 * np.array(twist)
+    elsewhere = twists.of_motion(a_from_b @ twists.motion(twist) @ se3.inverse(a_from_b))
+    np.testing.assert_allclose(twists.adjoint(a_from_b) @ twist, elsewhere, atol=1e-11)
+
+
+def test_information_is_stated_along_the_worlds_axes():
+    """A scan that looks along the world's y: what is sure along the world's x is sure along the scan's -y."""
+    world_from_scan = se3.matrix([3, 4, 5], Rotation.from_euler("z", 90, degrees=True).as_quat())
+    found = twists.information([0.1, 1, 2, 3, 4, 5], np.stack([np.eye(4), world_from_scan]))
+    np.testing.assert_allclose(np.diag(found[0]), [100, 1, 1 / 4, 1 / 9, 1 / 16, 1 / 25])
+    np.testing.assert_allclose(np.diag(found[1]), [1, 100, 1 / 4, 1 / 16, 1 / 9, 1 / 25])
