@@ -1,4 +1,4 @@
-"""The stages against the algorithms written literally, on the demo survey or one of their own, each pair timed in this one process.
+"""The stages against the algorithms written literally, each pair timed in this one process.
 
 Usage: run.py [registration] [selection] [walls] [wall_quality]
 
