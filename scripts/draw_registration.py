@@ -5,24 +5,19 @@ from scanplan import atomic, drawing, registrationfigure, stagelog, tables, topv
 _LINKS = ["source", "target", "kind", "residual_m"]
 
 
-def draw_registration(scans, registration, crispness, output, *, edges=None):
+def draw_registration(scans, registration, edges, crispness, output):
     """Write the figure as SVG.
 
     Parameters
     ----------
-    scans, registration, crispness : path-like
-        scans.parquet, registration.parquet and crispness.parquet.
+    scans, registration, edges, crispness : path-like
+        scans.parquet, registration.parquet, edges.parquet and crispness.parquet.
     output : path-like
         figures/registration.svg, to write.
-    edges : path-like, optional
-        edges.parquet; without it every kept scan is linked to the one kept before it.
     """
     store = tables.ScanStore(scans)
     verdicts = tables.read(registration, tables.REGISTRATION)
-    if edges is None:
-        links = registrationfigure.neighbours(verdicts)
-    else:
-        links = tables.read(edges, tables.EDGES, _LINKS, allow_empty=True)
+    links = tables.read(edges, tables.EDGES, _LINKS, allow_empty=True)
     measured = tables.read(crispness, tables.CRISPNESS, ["poses", "sigma_m"])
     found = stagelog.progress(store.scans(), "draw_registration", total=len(store.scan_ids))
     figure = registrationfigure.draw(
@@ -40,7 +35,7 @@ if __name__ == "__main__":
         draw_registration(
             snakemake.input.scans,
             snakemake.input.registration,
+            snakemake.input.edges,
             snakemake.input.crispness,
             snakemake.output.figure,
-            edges=snakemake.input.get("edges"),
         )

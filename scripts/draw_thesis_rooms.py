@@ -1,9 +1,9 @@
-"""Draw the thesis's figures 3.2 and 5.1 to 5.7 from the survey of the rooms."""
+"""Draw the thesis's figures 3.2 and 5.1 to 5.7, and all orders beside them, from the survey of the rooms."""
 
-from scanplan import atomic, drawing, stagelog, thesisrooms
+from scanplan import atomic, drawing, oraclefigure, stagelog, thesisrooms
 
 
-def draw_thesis_rooms(files, evaluated, outputs, *, bitmap_cell_m, max_range_m):
+def draw_thesis_rooms(files, evaluated, outputs, orders, *, bitmap_cell_m, max_range_m):
     """Write the figures as SVG.
 
     Parameters
@@ -14,6 +14,8 @@ def draw_thesis_rooms(files, evaluated, outputs, *, bitmap_cell_m, max_range_m):
         evaluation/walls.parquet of every seed.
     outputs : list of path-like
         figure_<number>.svg, to write.
+    orders : path-like
+        orders.svg, to write: how near every order comes to the oracle's.
     bitmap_cell_m : float
         Of figure 5.1.
     max_range_m : float
@@ -22,6 +24,7 @@ def draw_thesis_rooms(files, evaluated, outputs, *, bitmap_cell_m, max_range_m):
     survey = thesisrooms.read(files, evaluated, max_range_m=max_range_m)
     for path in outputs:
         atomic.write_text(path, drawing.svg(thesisrooms.draw(survey, path, bitmap_cell_m)))
+    atomic.write_text(orders, drawing.svg(oraclefigure.draw(survey.evaluated[0])))
     stagelog.say(f"draw_thesis_rooms: {len(outputs)} figures")
 
 
@@ -31,6 +34,7 @@ if __name__ == "__main__":
             {name: path for name, path in snakemake.input.items() if name not in ("code", "evaluated")},
             list(snakemake.input.evaluated),
             snakemake.output.figures,
+            snakemake.output.orders,
             bitmap_cell_m=snakemake.params.bitmap_cell_m,
             max_range_m=snakemake.params.max_range_m,
         )

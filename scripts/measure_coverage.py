@@ -3,7 +3,7 @@
 import numpy as np
 import shapely
 
-from scanplan import chunks, greedy, hulls, registered, stagelog, tables, truthfile, visibility
+from scanplan import chunks, greedy, hulls, registered, seenarea, stagelog, tables, truthfile
 from scanplan.schemas import AREAS, CLUSTERS
 
 
@@ -30,10 +30,8 @@ def measure_coverage(
     tables.write(clusters, CLUSTERS, {name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
     poses, found = truthfile.read_poses(true_poses), registered.read(registration)
     places_m = truthfile.poses_at(poses, found.t_ns, true_poses)[:, :2, 3]
-    faces = truthfile.read_faces(truth)
-    hiding_m = np.concatenate([faces.inner_m, faces.outer_m])
+    seen = seenarea.polygons(truthfile.read_faces(truth), places_m, max_range_m=max_range_m)
     columns = tables.read(built, tables.HULLS)
-    seen = [shapely.Polygon(visibility.view(hiding_m, place_m, max_range_m=max_range_m)) for place_m in places_m]
     measured = {
         "scan_id": found.scan_ids,
         "full_hull_m2": shapely.area(hulls.scan_full_hulls(columns)[1]),

@@ -1,5 +1,6 @@
 """Write the report of a dataset: one page that opens offline."""
 
+import os
 from pathlib import Path
 
 from scanplan import atomic, floorplan, reportpage, schemas, sources, stagelog, stopping, tables
@@ -21,7 +22,6 @@ def write_report(files, output, *, name, settings, benchmarks):
     output : path-like
         report.html, to write.
     name : str
-        The dataset's name.
     settings : dict
         All settings of the dataset.
     benchmarks : path-like
@@ -39,7 +39,8 @@ def write_report(files, output, *, name, settings, benchmarks):
         settings=settings,
         figures={Path(figure).stem: Path(figure).read_text(encoding="utf-8") for figure in files["figures"]},
         benchmarks={file.stem: file.read_text() for file in sorted(Path(benchmarks).glob("*.tsv"))},
-        sizes=[(what, Path(p).name, Path(p).stat().st_size) for what in ("recordings", "results") for p in files[what]],
+        sizes=[("recording", Path(p).name, Path(p).stat().st_size) for p in files["recordings"]]
+        + [("result", os.path.relpath(p, Path(output).parent), Path(p).stat().st_size) for p in files["results"]],
         version=f"Made by scanplan, code {sources.digest()}.",
     )
     page = [Path(part).read_text(encoding="utf-8") for part in files["page"]]

@@ -6,20 +6,24 @@ from scanplan import atomic, stagelog, tables, thesispage
 from scanplan.schemas import CLAIMS, STEPS
 
 
-def write_thesis(figures, claims, steps, limited, output):
+def write_thesis(figures, orders, claims, steps, limited, output):
     """Write one HTML page with figures, table and claims, which needs no other file.
 
     Parameters
     ----------
     figures : list of path-like
         figure_<number>.svg.
+    orders : path-like
+        orders.svg.
     claims, steps, limited : path-like
         claims.parquet, and thesis/steps.parquet of the drive with our limits and with the thesis's.
     output : path-like
         report.html, to write.
     """
     drawn = {Path(path).name: Path(path).read_text(encoding="utf-8") for path in figures}
-    page = thesispage.page(drawn, tables.read(claims, CLAIMS), tables.read(steps, STEPS), tables.read(limited, STEPS))
+    beyond = Path(orders).read_text(encoding="utf-8")
+    measured = tables.read(claims, CLAIMS), tables.read(steps, STEPS), tables.read(limited, STEPS)
+    page = thesispage.page(drawn, beyond, *measured)
     atomic.write_text(output, page)
     stagelog.say(f"write_thesis: {len(drawn)} figures, {len(page) / 1e6:.1f} MB")
 
@@ -28,6 +32,7 @@ if __name__ == "__main__":
     with stagelog.to_file(snakemake.log[0]):
         write_thesis(
             list(snakemake.input.figures),
+            snakemake.input.orders,
             snakemake.input.claims,
             snakemake.input.steps[0],
             snakemake.input.limited[0],

@@ -12,6 +12,7 @@ import numpy as np
 from scanplan import sightlines
 
 _PARALLEL = np.cos(np.deg2rad(10))
+_LEVEL_M = 0.15  # tops that differ less are one
 _ACROSS = np.cos(np.deg2rad(45))
 
 
@@ -107,7 +108,9 @@ def _upright_walls(values, scan, limits):
     # what meets a wall in an inner corner is one, too, and so on
     while (joined := plain & ~wall & (inner & wall).any(axis=(1, 2))).any():
         wall |= joined
-    side_of_furniture = (outer & ~sound).any(axis=(1, 2)) & (length_m <= limits.furniture_depth_m)
+    # what is seen higher than a piece of furniture is no side of it
+    as_high = top_m[None, :] > top_m[:, None] - _LEVEL_M
+    side_of_furniture = (outer & (~sound & as_high)[:, None]).any(axis=(1, 2)) & (length_m <= limits.furniture_depth_m)
     wall &= ~(side_of_furniture & lowish)
     continued = (in_line(start_m, end_m, normal, limits) & wall & (length_m >= limits.stub_length_m)).any(axis=1)
     return wall & ~((length_m < limits.stub_length_m) & lowish & ~closed & ~continued)

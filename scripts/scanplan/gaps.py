@@ -98,11 +98,12 @@ def judge(wall_line, low_m, high_m, lines, reading, settings, *, planar, needs_l
     Returns
     -------
     Gap
-        Of the line that most rays crossed there.
+        Of the line that most rays crossed there; what that does not tell of sill and lintel is taken from the others.
     """
     ends = wall_line.at(np.array([low_m, high_m]))
     found = [_look(seen, np.sort(seen.line.along_m(ends)), reading, planar) for seen in lines]
-    n_rays, open_share, sill_m, lintel_m = max(found, key=lambda f: f[:2])
+    found.sort(key=lambda f: f[:2], reverse=True)
+    (n_rays, open_share), (sill_m, lintel_m) = found[0][:2], (_first_known(f[i] for f in found) for i in (2, 3))
     width_m = high_m - low_m
     is_wide = settings.min_opening_m <= width_m <= settings.max_opening_m
     least_share = _OPEN_SHARE_BELOW_LINTEL if np.isfinite(lintel_m) else _OPEN_SHARE
@@ -114,6 +115,10 @@ def judge(wall_line, low_m, high_m, lines, reading, settings, *, planar, needs_l
     else:
         state = UNKNOWN
     return Gap(float(low_m), float(high_m), state, n_rays, sill_m, lintel_m)
+
+
+def _first_known(values_m):
+    return next((value_m for value_m in values_m if np.isfinite(value_m)), np.nan)
 
 
 def _look(seen, span_m, reading, planar):

@@ -7,7 +7,6 @@ from matplotlib.collections import LineCollection
 
 from scanplan import topview
 
-_KEPT = ("kept", "anchor")
 _MARKS = {
     "anchor": ("s", "#000000", "kept at the localiser's pose"),
     "low_prior_fitness": ("x", "#d55e00", "dropped: little overlap"),
@@ -17,29 +16,6 @@ _MARKS = {
 }
 _OTHER = ("d", "#e69f00", "dropped: {}")
 _LINK_COLOURS = "viridis_r"
-
-
-def neighbours(registration):
-    """Return the links from every kept scan to the one kept before it, with its residual; none to an anchor.
-
-    Parameters
-    ----------
-    registration : dict of str to (n,) array
-        The columns of `schemas.REGISTRATION`.
-
-    Returns
-    -------
-    dict of str to (m,) array
-        `source`, `target`, `kind` and `residual_m`, as of a table of edges.
-    """
-    kept = np.flatnonzero(registration["kept"])
-    linked = np.isfinite(registration["rmse_m"][kept[1:]]) & (registration["reason"][kept[1:]] != "anchor")
-    return {
-        "source": registration["scan_id"][kept[:-1]][linked],
-        "target": registration["scan_id"][kept[1:]][linked],
-        "kind": np.full(linked.sum(), "sequential", object),
-        "residual_m": registration["rmse_m"][kept[1:]][linked],
-    }
 
 
 def draw(points_xy_m, registration, links, crispness):
@@ -52,7 +28,7 @@ def draw(points_xy_m, registration, links, crispness):
     registration : dict of str to (m,) array
         The columns of `schemas.REGISTRATION`.
     links : dict of str to (k,) array
-        `source`, `target`, `kind` and `residual_m`; a link of a scan to itself is not drawn.
+        `source`, `target`, `kind` and `residual_m` of `schemas.EDGES`.
     crispness : dict of str to float
         How thick walls are, metres, by the poses of the map.
 
@@ -78,7 +54,7 @@ def _title(registration, crispness):
 
 
 def _draw_links(figure, axes, place_m, scan_ids, links):
-    drawn = links["source"] != links["target"]
+    drawn = np.isfinite(links["residual_m"])
     ends = np.stack([place_m[np.searchsorted(scan_ids, links[end][drawn])] for end in ("source", "target")], axis=1)
     residual_m = links["residual_m"][drawn]
     if len(ends) == 0:

@@ -11,12 +11,17 @@ import numpy as np
 
 from scanplan import figures, floorplan, growth, reportchart, reportplan, reporttables, reporttext
 
+_STAGES = (
+    "simulate", "interpolate", "register", "measure", "build", "observe", "order", "extract", "assemble", "export",
+    "evaluate", "draw",
+)  # fmt: skip
 _FOUND, _RIGHT = "visible_completeness_010m", "correctness_010m"
 _CAPTIONS = {
     "scans": "Points of the registered scans from above, where each was taken, and the selected scans by rank.",
     "registration": "How registration went along the survey.",
     "area": "Covered area against the number of scans for every ordering, and the most any choice could cover.",
     "walls": "Wall faces of the plan over the points of the selected scans.",
+    "oracle_shares": "What the first scans of every ordering find, as a share of what the oracle's do.",
     "evaluation": "What the first scans of every ordering find of the true walls, and why walls are missed.",
 }
 
@@ -118,9 +123,9 @@ def page(template, style, script, plan, survey, run):
 
 
 def _stage_times(benchmarks):
-    """Return stage, seconds, processor seconds and peak memory in MB of each benchmark."""
+    """Return stage, seconds, processor seconds and peak memory in MB of each benchmark, in the workflow's order."""
     rows = []
-    for stage, text in sorted(benchmarks.items()):
+    for stage, text in sorted(benchmarks.items(), key=lambda item: (_place(item[0]), item[0])):
         head, *lines = [line.split("\t") for line in text.splitlines()] or [[]]
         if not lines or not {"s", "cpu_time", "max_rss"} <= set(head):
             continue
@@ -128,6 +133,10 @@ def _stage_times(benchmarks):
         values = [[_float(row.get(c)) for row in measured] for c in ("s", "cpu_time", "max_rss")]
         rows.append((stage, *(float(np.mean(v)) for v in values)))
     return rows
+
+
+def _place(stage):
+    return next((i for i, name in enumerate(_STAGES) if stage.startswith(name)), len(_STAGES))
 
 
 def _float(text):
@@ -156,9 +165,9 @@ def _curves(survey, of_plan):
     """Return the curves of the chart: the certificate and, where the truth is known, what is found of it."""
     k, covered = survey.selection["rank"], survey.selection["covered"]
     what, _ = reporttext.objective(of_plan["method"])
-    bound = np.minimum(survey.selection["bound"] / covered[-1], 1)
+    share, bound = (_of_all(survey.selection[column], covered[-1]) for column in ("covered", "bound"))
     curves = {
-        "covered": (f"{what}, of what all scans give", k, covered / covered[-1]),
+        "covered": (f"{what}, of what all scans give", k, share),
         "bound": ("most that any choice of as many scans can give", k, bound),
     }
     if survey.evaluation:
@@ -202,7 +211,12 @@ def _data(survey, what):
     values = {
         "chosen": survey.chosen,
         "scan_ids": selection["scan_id"][: survey.chosen].tolist(),
-        "covered": (selection["covered"] / selection["covered"][-1]).round(5).tolist(),
+        "covered": _of_all(selection["covered"], selection["covered"][-1]).round(5).tolist(),
         "objective": what,
     }
-    return json.dumps(values)
+    return json.dumps(values, allow_nan=False)
+
+
+def _of_all(values, whole):
+    """Return values as shares of what all scans give; of nothing everything is there."""
+    return np.minimum(values / whole, 1) if whole > 0 else np.ones(len(values))

@@ -45,14 +45,15 @@ def certificate(survey, method):
     """Return what the chosen scans cover, and how much better any other choice could be."""
     selection, k = survey.selection, survey.chosen
     covered, covered_m2 = selection["covered"], selection["covered_m2"]
-    best = min(selection["bound"][k - 1], covered[-1])
     what, unit = objective(method)
+    area = f"{covered_m2[k - 1] / covered_m2[-1]:.1%} of the area that all {len(covered):,} registered scans cover"
+    if covered[-1] <= 0:
+        return f"The {k} scans of the plan cover {area} ({covered_m2[-1]:,.1f} m²); no scan has any {what}."
+    given, best = covered[k - 1], min(selection["bound"][k - 1], covered[-1])
     return (
-        f"The {k} scans of the plan give {covered[k - 1] / covered[-1]:.1%} of the {what} of all {len(covered):,}"
-        f" registered scans ({covered[k - 1]:,.1f} of {covered[-1]:,.1f} {unit}), and"
-        f" {covered_m2[k - 1] / covered_m2[-1]:.1%} of the area that these cover ({covered_m2[-1]:,.1f} m²)."
-        f" Certificate: no {k} of these scans give more than {best:,.1f} {unit}, so this choice is within"
-        f" {1 - covered[k - 1] / best:.1%} of the best."
+        f"The {k} scans of the plan cover {area} ({covered_m2[-1]:,.1f} m²) and give {given / covered[-1]:.1%} of their"
+        f" {what} ({given:,.1f} of {covered[-1]:,.1f} {unit}). Certificate: no {k} of these scans give more than"
+        f" {best:,.1f} {unit}, so this choice is within {1 - given / best:.1%} of the best."
     )
 
 

@@ -77,9 +77,9 @@ def more_clusters_less_area(tables):
     growth = [table["covered_m2"][table["n_clusters"] == n] for n in numbers]
     at = np.array([[covered[min(SUBSET, len(covered)) - 1], covered[-1]] for covered in growth])
     values = {
-        f"m² by {SUBSET} and by all scans, {n} clusters, {which}": area
+        f"m² by {which} scans, {n} clusters": area
         for n, row in zip(numbers, at, strict=True)
-        for which, area in zip(("first", "all"), row, strict=True)
+        for which, area in zip((str(SUBSET), "all"), row, strict=True)
     }
     return Measured(values, bool((np.diff(at, axis=0) < 0).all()))
 

@@ -22,7 +22,7 @@ def hulls_figure(points_xy_m, place_m, full, clusters, seen):
     ----------
     points_xy_m : (n, 2) float
     place_m : (2,) float
-    full, seen : shapely Polygon
+    full, seen : shapely Polygon or MultiPolygon
     clusters : sequence of shapely Polygon
 
     Returns
@@ -40,7 +40,8 @@ def hulls_figure(points_xy_m, place_m, full, clusters, seen):
         figure.subplots(1, 3, sharex=True, sharey=True), panels, strict=True
     ):
         axes.scatter(*points_xy_m.T, s=0.4, c="0.3", lw=0, rasterized=True, zorder=2)
-        patches = [Polygon(np.array(shape.exterior.coords)) for shape in shapes]
+        parts = shapely.get_parts(shapes)
+        patches = [Polygon(np.array(p.exterior.coords)) for p in parts if p.geom_type == "Polygon"]
         axes.add_collection(PatchCollection(patches, facecolor=colour, edgecolor=colour, alpha=0.35, lw=0.8))
         axes.plot(*place_m, "o", ms=4, mfc="white", mec="black", zorder=3)
         axes.set_title(f"{title}: {area.area:.0f} m²", fontsize=9)
@@ -124,7 +125,7 @@ def clusters_figure(clusters):
     figure = Figure(figsize=(9.6, 3.8), layout="constrained")
     left, right = figure.subplots(1, 2)
     numbers = np.unique(clusters["n_clusters"])
-    shades = matplotlib_blues(len(numbers))
+    shades = blues(len(numbers))
     covered = [clusters["covered_m2"][clusters["n_clusters"] == n] for n in numbers]
     for number, colour, area in zip(numbers, shades, covered, strict=True):
         label = f"{number} cluster{'s' if number > 1 else ''}"
@@ -147,7 +148,7 @@ def clusters_figure(clusters):
     return figure
 
 
-def matplotlib_blues(count):
+def blues(count):
     """Return that many colours, from light to dark."""
     return [(0.62 * (1 - t), 0.79 - 0.60 * t, 0.88 - 0.46 * t) for t in np.linspace(0, 1, count)]
 

@@ -30,7 +30,7 @@ def selection_figure(times):
     axes = figure.add_subplot()
     axes.plot(times["size"][of_it], times["seconds"][of_it], "o-", ms=3.5, lw=1.2, color=_COLOURS[OURS])
     axes.set(xlim=(0, None), ylim=(0, None))
-    _named(axes, "number of scans", "time of the whole greedy order (s)")
+    _named(axes, "number of scans", "processor time of the whole greedy order (s)")
     return figure
 
 
@@ -65,7 +65,7 @@ def times_figure(times):
         frames[0].plot(number, milliseconds, color=colour, lw=1.0, label=label)
         walls = np.cumsum(times["found"][of_it])
         frames[1].plot(number, walls, color=colour, lw=1.4, label=f"{_NAMES[extractor]}: {walls[-1]:,}")
-    for axes, name in zip(frames, ("time of a scan (ms)", "walls, cumulative"), strict=True):
+    for axes, name in zip(frames, ("processor time of a scan (ms)", "walls, cumulative"), strict=True):
         axes.set(xlim=(0, None), ylim=(0, None))
         _named(axes, "scan", name)
         axes.legend(fontsize=8, frameon=False)

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import shapely
 
-from scanplan import hulls, registered, tables, thesiscoverage, thesisplans, truthfile, visibility
+from scanplan import hulls, registered, seenarea, tables, thesiscoverage, thesisplans, truthfile
 from scanplan.claims import MANY, OURS, SUBSET
 from scanplan.schemas import CLUSTERS, EVALUATION, HULLS, SELECTION, WALLS
 
@@ -22,8 +22,7 @@ class Survey:
         Of the registered scans.
     places_m : (n, 2) float64
         Where each was truly taken.
-    faces_m, hiding_m : (m, 2, 2) float64
-        True faces to be found; all that hide.
+    faces : truthfile.TrueFaces
     hulls, walls, clusters : dict
         Columns of hulls.parquet, walls/cluster_ransac.parquet and thesis/clusters.parquet.
     selections : dict of str to dict
@@ -36,8 +35,7 @@ class Survey:
     store: tables.ScanStore
     scan_ids: np.ndarray
     places_m: np.ndarray
-    faces_m: np.ndarray
-    hiding_m: np.ndarray
+    faces: truthfile.TrueFaces
     hulls: dict
     walls: dict
     clusters: dict
@@ -54,8 +52,7 @@ def read(files, evaluated, *, max_range_m):
         store=tables.ScanStore(files["scans"]),
         scan_ids=scans.scan_ids,
         places_m=poses[:, :2, 3],
-        faces_m=faces.inner_m,
-        hiding_m=np.concatenate([faces.inner_m, faces.outer_m]),
+        faces=faces,
         hulls=tables.read(files["hulls"], HULLS),
         walls=tables.read(files[OURS], WALLS, allow_empty=True),
         clusters=tables.read(files["clusters"], CLUSTERS),
@@ -70,9 +67,9 @@ def draw(survey, path, bitmap_cell_m):
     figures = {
         "figure_3_2": lambda: _hulls(survey),
         "figure_5_1": lambda: thesisplans.overlay_figure(
-            first_walls(survey, "cluster_hull", MANY)[0], survey.faces_m, bitmap_cell_m
+            first_walls(survey, "cluster_hull", MANY)[0], survey.faces.inner_m, bitmap_cell_m
         ),
-        "figure_5_2": lambda: thesisplans.survey_figure(survey.faces_m, survey.places_m),
+        "figure_5_2": lambda: thesisplans.survey_figure(survey.faces.inner_m, survey.places_m),
         "figure_5_3": lambda: _walls(survey, {"cluster_hull": "order by cluster hulls"}, MANY),
         "figure_5_4": lambda: thesiscoverage.shares_figure(survey.evaluated, OURS),
         "figure_5_5": lambda: _walls(
@@ -95,15 +92,14 @@ def first_walls(survey, method, k):
 
 def _walls(survey, methods, k):
     return thesisplans.walls_figure(
-        survey.faces_m, {title: first_walls(survey, method, k) for method, title in methods.items()}
+        survey.faces.inner_m, {title: first_walls(survey, method, k) for method, title in methods.items()}
     )
 
 
 def _hulls(survey):
     """Draw the scan whose full hull exceeds what it sees by the median of all scans."""
     _, full = hulls.scan_full_hulls(survey.hulls)
-    seen = [visibility.view(survey.hiding_m, p, max_range_m=survey.max_range_m) for p in survey.places_m]
-    seen = shapely.polygons([shapely.linearrings(outline) for outline in seen])
+    seen = seenarea.polygons(survey.faces, survey.places_m, max_range_m=survey.max_range_m)
     ratio = shapely.area(full) / shapely.area(seen)
     row = int(np.argsort(ratio, kind="stable")[len(ratio) // 2])
     scan_id = survey.scan_ids[row]

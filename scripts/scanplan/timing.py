@@ -1,9 +1,10 @@
-"""How long stages take: run times of single calls, measured in one process with nothing beside them.
+"""How long stages take: processor time of single calls in one process, which other work on the machine disturbs least.
 
 Times differ from run to run; a table of them is no result to compare byte by byte.
 """
 
 import time
+from functools import partial
 
 import numpy as np
 
@@ -40,10 +41,12 @@ def extractor(task, method, store, registered, scan_ids, settings, origin):
         A row of `schemas.TIMES`: `size` is the scan's number of points, `item` its scan_id, `found` its walls.
     """
     sensors, chosen = walls.sensor_positions(registered, scan_ids, origin), method.Settings(**settings)
-    for scan_id, xyz_m in store.scans(scan_ids):
-        seconds, found = _timed(
-            method.extract, scan_id, xyz_m, planar=store.planar, settings=chosen, **sensors[scan_id]
-        )
+    for number, (scan_id, xyz_m) in enumerate(store.scans(scan_ids)):
+        call = partial(method.extract, scan_id, xyz_m, planar=store.planar, settings=chosen, **sensors[scan_id])
+        if number == 0:
+            # the first call loads and compiles what all others use
+            call()
+        seconds, found = _timed(call)
         yield {"task": task, "size": len(xyz_m), "item": scan_id, "found": len(found), "seconds": seconds}
 
 
@@ -63,6 +66,7 @@ def selection(columns, sizes):
         A row of `schemas.TIMES`: `size` is the number of scans, `found` as many.
     """
     _, polygons = hulls.scan_polygons(columns)
+    greedy.greedy_order(polygons[:2])
     for size in sizes:
         chosen = polygons[spread(np.arange(len(polygons)), size)]
         seconds, order = _timed(greedy.greedy_order, chosen)
@@ -78,6 +82,7 @@ def clusters(store, scan_ids, numbers, **sampling):
         A row of `schemas.TIMES`: `size` is the number of clusters, `found` the scans.
     """
     points = [(scan_id, xyz_m) for scan_id, xyz_m in store.scans(scan_ids)]
+    _hulls_and_order(points[:1], n_clusters=2, **sampling)
     for number in numbers:
         seconds, order = _timed(_hulls_and_order, points, n_clusters=number, **sampling)
         yield {"task": "build_hulls", "size": number, "item": 0, "found": len(order.order), "seconds": seconds}
@@ -89,6 +94,6 @@ def _hulls_and_order(points, **settings):
 
 
 def _timed(function, *arguments, **keywords):
-    started = time.perf_counter()
+    started = time.process_time()
     result = function(*arguments, **keywords)
-    return time.perf_counter() - started, result
+    return time.process_time() - started, result

@@ -117,7 +117,7 @@ def seen(cells, outer_m, position_m, *, max_range_m):
     return result
 
 
-def view(faces_m, position_m, *, max_range_m):
+def view(faces_m, position_m, *, open_m):
     """Return the outline of what can be seen from a place.
 
     Parameters
@@ -125,8 +125,8 @@ def view(faces_m, position_m, *, max_range_m):
     faces_m : (n, 2, 2) float, n >= 1
         All that hides; no two cross.
     position_m : (2,) float
-    max_range_m : float
-        Where no face is nearer, the view ends here.
+    open_m : float
+        How far the view goes in directions without any face.
 
     Returns
     -------
@@ -142,10 +142,11 @@ def view(faces_m, position_m, *, max_range_m):
     beam = np.column_stack([edges, np.append(edges[1:], edges[0])])
     ray = np.stack([np.cos(beam), np.sin(beam)], axis=-1)
     start, way = ends[nearest, 0][:, None], (ends[:, 1] - ends[:, 0])[nearest][:, None]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        distance_m = _cross(start, way) / _cross(ray, way)
-    distance_m = np.where((nearest < 0)[:, None], max_range_m, np.nan_to_num(distance_m, nan=max_range_m))
-    return (position_m + ray * np.clip(distance_m, 0, max_range_m)[..., None]).reshape(-1, 2)
+    toward = _cross(ray, way)
+    # nearest faces are met at both edges of their sectors, where there is no face this is not looked at
+    distance_m = _cross(start, way) / np.where(toward == 0, np.inf, toward)
+    distance_m = np.where((nearest < 0)[:, None], open_m, distance_m)
+    return (position_m + ray * distance_m[..., None]).reshape(-1, 2)
 
 
 def seen_by_each(cells, outer_m, positions_m, *, max_range_m):

@@ -18,6 +18,8 @@ FACINGS = 4
 _LEAST_M = 1e-3
 _ROWS = 3  # a wall's returns are in two rows of cells, noise puts some into a third
 _SAME_SIDE = 1e-3
+_MAYBE = 0.5
+_SURE = 2  # times the fewest returns
 _KEYS = ("facing", "along", "across")
 
 
@@ -37,10 +39,15 @@ class Settings:
         How far along a wall returns belong together.
     min_height_m : float
         Least vertical extent of what belongs together; for 3-D scans alone.
+    wall_height_m : float
+        Above the scan's floor: what has a return from here up is a wall. What is seen up to as high as the sensor looks
+        at that distance, but not up to here, may be one and counts half; what ends below is furniture and does not.
+        For 3-D scans alone.
     door_height_m : float
         Above the scan's floor; higher returns are left out: they may be the wall above a door. For 3-D scans alone.
     min_points, min_points_planar : int
-        That many returns together are a wall for sure, half as many half a wall; of a 3-D scan, of a planar one.
+        The fewest returns of a wall; twice as many are one for sure, fewer count in proportion: an extractor may part
+        them otherwise. Of a 3-D scan, of a planar one.
     """
 
     cell_m: float
@@ -48,6 +55,7 @@ class Settings:
     max_tilt_deg: float
     max_gap_m: float
     min_height_m: float
+    wall_height_m: float
     door_height_m: float
     min_points: int
     min_points_planar: int
@@ -80,10 +88,14 @@ def observe(_scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
         If a coordinate is not finite.
     """
     points = walls.around_sensor(xyz_m, sensor_xyz_m)
-    points = points[points[:, 2] <= walls.door_top(points, settings, planar=planar)]
-    points, facing = _upright(points, planar, settings)
-    xy_m, z_m = points[:, :2] + np.asarray(sensor_xyz_m, float)[:2], points[:, 2]
-    parts = [_one_facing(f, xy_m, z_m, facing, planar, settings) for f in range(FACINGS)]
+    top_m = walls.door_top(points, settings, planar=planar)
+    tall = _tall(points, top_m - settings.door_height_m + settings.wall_height_m, np.deg2rad(settings.reach_deg))
+    low = points[:, 2] <= top_m
+    points, tall = points[low], tall[low]
+    upright, facing = _upright(points, planar, settings)
+    xy_m = points[upright, :2] + np.asarray(sensor_xyz_m, float)[:2]
+    seen = xy_m, facing, None if planar else (points[upright, 2], tall[upright])
+    parts = [_one_facing(which, *seen, settings) for which in range(FACINGS)]
     along, across, length_m = (np.concatenate(column) for column in zip(*parts, strict=True))
     facings = np.repeat(np.arange(FACINGS), [len(part[0]) for part in parts])
     return {"facing": facings, "along": along, "across": across, "length_m": length_m}
@@ -106,19 +118,29 @@ def number(columns):
 
 
 def _upright(points, planar, settings):
-    """Return the points on upright surfaces and the horizontal unit normals (m, 2) of these."""
+    """Return which points (n,) bool are on upright surfaces, and the horizontal unit normals (m, 2) of these."""
     if planar:
         facing = normals.line_normals(points[:, :2], reach_deg=settings.reach_deg)
         upright = np.isfinite(facing[:, 0])
-        return points[upright], facing[upright]
+        return upright, facing[upright]
     facing = normals.surface_normals(points, reach_deg=settings.reach_deg)
     upright = np.abs(facing[:, 2]) <= np.sin(np.deg2rad(settings.max_tilt_deg))
     facing = facing[upright, :2]
-    return points[upright], facing / np.hypot(*facing.T)[:, None]
+    return upright, facing / np.hypot(*facing.T)[:, None]
 
 
-def _one_facing(which, xy_m, z_m, facing, planar, settings):
-    """Return the cells along and across (m,) int32 that face one way, and the length (m,) of wall in each."""
+def _tall(points, height_m, reach_rad):
+    """Return 1 for points above a height, `_MAYBE` for those about as high as the scan looks there, 0 for others."""
+    elevation = np.arctan2(points[:, 2], np.hypot(points[:, 0], points[:, 1]))
+    as_high = elevation >= elevation.max(initial=-np.inf) - reach_rad
+    return np.where(points[:, 2] >= height_m, 1.0, np.where(as_high, _MAYBE, 0.0))
+
+
+def _one_facing(which, xy_m, facing, heights, settings):
+    """Return the cells along and across (m,) int32 that face one way, and the length (m,) of wall in each.
+
+    Heights are z and what `_tall` says of each point, (n,) each, or None of a planar scan.
+    """
     axis, sign = which // 2, 2 * (which % 2) - 1
     there = facing[:, axis] * sign > _SAME_SIDE
     if not there.any():
@@ -128,10 +150,13 @@ def _one_facing(which, xy_m, z_m, facing, planar, settings):
     mean_cosine = _ratio(grid.sums(cosine**3), n_points)
     n_beside = ndimage.convolve1d(n_points, np.ones(_ROWS), axis=1, mode="constant")
     window = 2 * round(settings.max_gap_m / settings.cell_m) + 1
+    wanted = settings.min_points_planar if heights is None else settings.min_points
     n_together = ndimage.convolve1d(n_beside, np.ones(window), axis=0, mode="constant")
-    found = np.minimum(n_together / (settings.min_points_planar if planar else settings.min_points), 1.0)
-    if not planar:
-        found = found * (grid.extent(z_m[there], (window, _ROWS)) >= settings.min_height_m)
+    found = np.minimum(n_together / (_SURE * wanted), 1.0)
+    if heights is not None:
+        z_m, tall = (values[there] for values in heights)
+        found = found * (grid.top(z_m, (window, _ROWS)) + grid.top(-z_m, (window, _ROWS)) >= settings.min_height_m)
+        found = found * np.maximum(grid.top(tall, (window, _ROWS)), 0.0)
     length_m = settings.cell_m * mean_cosine * _ratio(n_points, n_beside) * found
     along, across = np.nonzero(length_m >= _LEAST_M)
     origin = grid.origin.astype(np.int32)
@@ -156,14 +181,12 @@ class _Grid:
             self.shape
         )
 
-    def extent(self, value, window):
-        """Return the range of a value of the points in a window around every cell; -inf without any."""
-        low, high = np.full((2, *self.shape), np.inf)
+    def top(self, value, window):
+        """Return the largest value of the points in a window around every cell; -inf without any."""
+        largest = np.full(self.shape, -np.inf)
         for cells in (self._lower, self._lower + 1):
-            np.minimum.at(low.reshape(-1), cells, value)
-            np.minimum.at(high.reshape(-1), cells, -value)
-        low, high = (ndimage.minimum_filter(side, window, mode="constant", cval=np.inf) for side in (low, high))
-        return -(low + high)
+            np.maximum.at(largest.reshape(-1), cells, value)
+        return ndimage.maximum_filter(largest, window, mode="constant", cval=-np.inf)
 
 
 def _ratio(part, whole):

@@ -27,11 +27,15 @@ def results(tmp_path):
     spread = {key: [0.031, 0.012] for key in ("sigma_m", "quarter_below_m", "quarter_above_m")}
     crispness = {"poses": ["localiser", "registered"], "n_places": [9, 9], **spread}
     tables.write(tmp_path / "crispness.parquet", tables.CRISPNESS, crispness)
+    links = {"source": [0, 0, 5], "target": [5, 20, 35], "kind": ["sequence", "sequence", "loop"]}
+    links |= {"residual_m": [0.01, 0.02, np.nan], "unobservable": [0, 0, 0], "inlier": [True, True, False]}
+    others = set(tables.EDGES.columns) - set(links)
+    tables.write(tmp_path / "edges.parquet", tables.EDGES, links | {name: np.zeros(3) for name in others})
     return tmp_path
 
 
 def test_the_figure_names_every_reason_with_its_number(results):
-    inputs = [results / f"{name}.parquet" for name in ("scans", "registration", "crispness")]
+    inputs = [results / f"{name}.parquet" for name in ("scans", "registration", "edges", "crispness")]
     for name in ("once", "again"):
         draw_registration(*inputs, results / f"{name}.svg")
     text = (results / "once.svg").read_text()
@@ -44,15 +48,9 @@ def test_the_figure_names_every_reason_with_its_number(results):
         "dropped: pose gap (1, nowhere on the map)",
         "dropped: odd thing (1)",
         "5 of 8 candidates kept; thickness of walls: 31 mm localiser, 12 mm registered",
-        "3 thick to neighbours, 0 thin loops",
+        "2 thick to neighbours, 0 thin loops",
     ):
         assert told in text, told
-
-
-def test_neighbours_are_linked_but_no_anchor_to_what_was_before(results):
-    links = registrationfigure.neighbours(tables.read(results / "registration.parquet", tables.REGISTRATION))
-    assert list(zip(links["source"], links["target"], strict=True)) == [(0, 5), (5, 20), (30, 35)]
-    np.testing.assert_allclose(links["residual_m"], [0.01, 0.04, 0.07])
 
 
 def test_a_registration_without_links_is_drawn(results):
@@ -65,10 +63,10 @@ def test_a_registration_without_links_is_drawn(results):
 def test_loops_are_told_apart(results):
     registration = tables.read(results / "registration.parquet", tables.REGISTRATION)
     links = {
-        "source": np.array([0, 5, 5]),
-        "target": np.array([5, 35, 5]),
-        "kind": np.array(["sequence", "loop", "prior"], object),
-        "residual_m": np.array([0.01, 0.02, 9.0]),
+        "source": np.array([0, 5]),
+        "target": np.array([5, 35]),
+        "kind": np.array(["sequence", "loop"], object),
+        "residual_m": np.array([0.01, 0.02]),
     }
     figure = registrationfigure.draw(np.random.default_rng(0).uniform(0, 7, (50, 2)), registration, links, {})
     assert "1 thick to neighbours, 1 thin loops" in figure.axes[1].get_ylabel()

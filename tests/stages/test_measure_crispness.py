@@ -70,7 +70,7 @@ def of_kept(folder, poses_file):
 
 
 @pytest.mark.recordings
-@pytest.mark.parametrize(("name", "of_recorded"), [("jackal_ros1", 1.0), ("scenes7_room", 1.6), ("intel", 2.2)])
+@pytest.mark.parametrize(("name", "of_recorded"), [("jackal_ros1", 1.0), ("scenes7_room", 1.4), ("intel", 1.1)])
 def test_registration_makes_disturbed_recordings_crisper(recordings_dir, project_root, tmp_path, name, of_recorded):
     """Far crisper than the poses it starts from; against the recorded ones no worse than it is known to be."""
     settings = configuration.read_yaml(project_root / "config/config.yaml")
@@ -83,8 +83,8 @@ def test_registration_makes_disturbed_recordings_crisper(recordings_dir, project
     interpolate_poses(files, given, moved=moved, **settings["poses"], **topics)
     with surveys.open_survey(files, **reading) as survey:
         tables.write(poses_file, tables.POSES, disturbed(tables.read(given, tables.POSES), survey.planar))
-    outputs = [tmp_path / f for f in ("scans.parquet", "registration.parquet")]
+    outputs = [tmp_path / f for f in ("scans.parquet", "registration.parquet", "edges.parquet")]
     register_scans(files, poses_file, *outputs, reading=reading, settings=settings["registration"], moved=moved)
     start, recorded = of_kept(tmp_path, poses_file.name), of_kept(tmp_path, given.name)
-    assert start["registered"] < 0.85 * start["localiser"]
+    assert start["registered"] < 0.7 * start["localiser"]
     assert recorded["registered"] < of_recorded * recorded["localiser"]

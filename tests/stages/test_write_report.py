@@ -60,14 +60,15 @@ def test_tables_state_what_the_stages_found(report):
         ["build_hulls", "2.5", "3.4", "444"], ["draw_area", "0.1", "–", "–"], ["all", "2.6", "3.4", ""],
     ]  # fmt: skip
     assert ["correctness 010m", "0.970", "0.980"] in found["truth"]
-    assert found["sizes"][1] == ["recordings", "survey.bag", "2.500"]
+    assert found["sizes"][1] == ["recording", "survey.bag", "2.500"]
     assert ["plan.merge.min_scans", "2"] in found["settings"]
 
 
 def test_it_says_what_it_was_made_of_and_how_good_that_is(report):
     text = report.read_text()
     assert "made of 3 scans chosen from 4 registered ones; 5 were candidates" in text
-    assert "95.0% of the wall shown of all 4 registered scans (19.0 of 20.0 m), and 100.0% of the area" in text
+    assert "cover 100.0% of the area that all 4 registered scans cover (21.0 m²)" in text
+    assert "give 95.0% of their wall shown (19.0 of 20.0 m)" in text
     assert "no 3 of these scans give more than 19.5 m, so this choice is within 2.6% of the best" in text
     assert "office &lt;two&gt; rooms" in text and "<two>" not in text
 
@@ -94,6 +95,13 @@ def test_faces_alone_without_truth_and_times_make_a_report(tmp_path):
     (tmp_path / "benchmarks/draw_area.tsv").unlink()
     found = Tables(written(tmp_path, files | {"evaluation": [], "figures": []}).read_text()).rows
     assert len(found["walls"]) == 1 and len(found["stages"]) == 1
+
+
+def test_a_survey_without_any_wall_in_sight_makes_a_report(tmp_path):
+    files = reportmaking.files(tmp_path)
+    nothing = {column: np.zeros(4) for column in ("gain", "covered", "bound")}
+    tables.write(files["selection"], tables.SELECTION, reportmaking.selection() | nothing)
+    assert "no scan has any wall shown" in written(tmp_path, files).read_text()
 
 
 def test_a_selection_of_another_run_is_told(tmp_path):
@@ -206,6 +214,26 @@ def test_a_table_is_sorted_by_any_column_and_a_row_shows_its_wall(page):
     assert page.run("document.querySelectorAll('#walls th')[3].getAttribute('aria-sort')") == "descending"
     page.run("document.querySelector('#walls tr[data-wall=\"5\"]').click()")
     assert page.run("[...document.querySelectorAll('#plan .picked')].map(e => e.dataset.wall)") == ["5"]
+
+
+@needs_browser
+def test_a_click_on_a_wall_marks_its_row(page):
+    page.run("document.getElementById('view').scrollIntoView()")
+    place = page.run(
+        "(r => [r.x + r.width / 2, r.y + r.height / 2])"
+        "(document.querySelector('#plan .pick[data-wall=\"3\"]').getBoundingClientRect())"
+    )
+    page.mouse("mousePressed", *place, button="left", clickCount=1)
+    page.mouse("mouseReleased", *place, button="left", clickCount=1)
+    assert page.run("[...document.querySelectorAll('tr.picked')].map(e => e.dataset.wall)") == ["3"]
+
+
+@needs_browser
+def test_play_grows_the_plan_to_its_end(page):
+    page.run("document.getElementById('play').click()")
+    page.run("new Promise(done => setTimeout(done, 2500))")
+    assert page.run("document.getElementById('k').value") == "3"
+    assert page.run("document.getElementById('play').textContent") == "Play"
 
 
 @needs_browser

@@ -79,6 +79,15 @@ def test_an_outer_corner_shows_that_a_low_face_is_furniture():
     assert furniture.walls_among(rows, rays(faces), LIMITS, planar=False) == []
 
 
+def test_what_is_seen_higher_than_furniture_is_no_side_of_it():
+    """A wall of 0.9 m, at whose end stands a unit of 0.9 m height; and the side of clutter as high as itself."""
+    wall, unit = (3, -0.5, 3, 0.4, 0, 2.6), (3, 0.4, 5, 0.9, 0, 0.9)
+    assert kept([wall, unit], [(9, -6, 9, 6, 0, 2.6)]) == [True, False]
+    clutter = (3, 0.4, 5, 0.9, 0, 2.0)
+    rows = [row(*wall), row(*clutter, rmse_m=0.03)]
+    assert furniture.walls_among(rows, rays([wall, clutter]), LIMITS, planar=False) == []
+
+
 def test_stairs_let_rays_through():
     treads = [(4, -1 + 0.1 * i, 4, -0.95 + 0.1 * i, 0, 2.6) for i in range(20)]
     rows = [row(4, -1, 4, 1, 0, 2.6)]

@@ -67,6 +67,12 @@ def test_the_side_that_more_rays_crossed_decides():
     assert gaps.judge(AXIS, 1.0, 1.9, sides, READING, SETTINGS, planar=False).state == gaps.OPEN
 
 
+def test_a_lintel_that_one_side_shows_is_known():
+    sides = [seen([], grid(1, 1.3, 0.1, 1.0)), seen(grid(1, 1.9, 2.2), grid(1, 1.25, 0.1, 1.0))]
+    gap = gaps.judge(AXIS, 1.0, 1.9, sides, READING, SETTINGS, planar=False)
+    assert (gap.state, gap.lintel_m) == (gaps.OPEN, pytest.approx(2.2))
+
+
 def test_beside_the_end_of_a_wall_only_a_lintel_makes_an_opening():
     passes = grid(1, 1.9, 0.1, 1.0)
     assert judge([], passes, needs_lintel=True).state == gaps.UNKNOWN

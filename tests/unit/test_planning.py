@@ -100,6 +100,20 @@ class TestPlan:
         made = planning.make(table, _first(looked, sensors), SENSORS[:1, :2], housemaking.T_NS[:sensors], SETTINGS)
         assert len(made.walls["wall"]) == walls_
 
+    def test_a_round_room_is_drawn_as_a_chain_of_chords(self):
+        turn = np.linspace(0, 2 * np.pi, 181)
+        ring = 5 * np.column_stack([np.cos(turn), np.sin(turn)])
+        sensors = np.array([(0.3, 0.2, 0.9), (-0.5, 0.4, 0.9), (0.2, -0.8, 0.9)])
+        looked = housemaking.looked(np.hstack([ring[:-1], ring[1:]]).tolist(), sensors)
+        chords = [ring[(np.arange(0, 181, 8) + 3 * scan) % 180] for scan in range(3)]
+        segments = np.concatenate([np.hstack([c[:-1], c[1:]]) for c in chords])
+        made = plan(looked, walls(segments, scan_id=np.repeat([0, 1, 2], len(segments) // 3)), sensors)
+        faces = np.column_stack([made.faces[c] for c in ("x0_m", "y0_m", "x1_m", "y1_m")]).reshape(-1, 2, 2)
+        drawn = shapely.linestrings(faces)
+        assert shapely.length(drawn).sum() == pytest.approx(10 * np.pi, rel=0.03)
+        assert shapely.distance(shapely.points(ring), shapely.union_all(drawn)).max() < 0.1
+        assert made.rooms["area_m2"].tolist() == [pytest.approx(25 * np.pi, rel=0.01)]
+
     @pytest.mark.parametrize("count", [0, 1000])
     def test_segments_where_no_point_is_make_no_wall(self, house, count):
         y = np.arange(count) * 0.02 + 100

@@ -106,3 +106,17 @@ class TestCells:
 def test_a_way_is_thinned_by_distance():
     way = np.column_stack([[0, 0.1, 0.2, 0.3, 0.3, 1.0], np.zeros(6)])
     np.testing.assert_array_equal(visibility.thinned(way, 0.25), [0, 3, 5])
+
+
+def test_the_view_is_the_room_and_what_the_door_shows():
+    outline = shapely.Polygon(visibility.view(ROOM, np.array([2.0, 2.0]), open_m=100.0))
+    # the room, all of the door, and a fan whose edges pass its outer corners, 0.5 m off the middle at 2.2 m
+    fan = (0.5 + 6 * 0.5 / 2.2) * 3.8
+    assert outline.area == pytest.approx(16 + 0.2 + fan)
+
+
+def test_the_view_into_the_open_goes_as_far_as_told():
+    wall = np.array([[(1, -1), (1, 1)]], float)
+    corners = visibility.view(wall, np.array([0.0, 0.0]), open_m=5.0)
+    assert np.hypot(*corners.T).max() == pytest.approx(5)
+    assert np.isclose(corners[:, 0], 1).sum() == 2

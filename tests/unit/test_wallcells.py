@@ -110,3 +110,16 @@ def test_cells_have_one_number_each():
 def test_points_that_are_not_finite_are_refused():
     with pytest.raises(ValueError, match="finite"):
         observe(np.full((50, 3), np.nan))
+
+
+def test_what_is_seen_neither_to_a_wall_s_height_nor_to_its_end_counts_half():
+    # 0.4 m above the floor and 1 m away the beams reach 0.67 m
+    sensor, sheet = np.array([0.5, 1.0, 0.4]), np.array([(0, 0, 1, 0.0), (0, 6, 1, 6.0)])
+    scan = toyrooms.vlp16(sensor, sheet)
+    near = {
+        height_m: observe(scan, sensor, settings=dataclasses.replace(SETTINGS, wall_height_m=height_m))
+        for height_m in (0.6, 1.0)
+    }
+    shown = {height_m: seen["length_m"][seen["facing"] == 3].sum() for height_m, seen in near.items()}
+    assert shown[0.6] == pytest.approx(1.0, rel=0.1)
+    assert shown[1.0] == pytest.approx(shown[0.6] / 2)

@@ -51,12 +51,15 @@ def test_returns_lie_on_the_walls(project):
     assert np.median(distance_m) < 0.03
 
 
-@pytest.mark.parametrize("name", ["intel", "mac_first_floor", "scenes7_room", "vlp16_room"])
-def test_every_recording_ends_with_a_plan(project_root, recordings_dir, tmp_path, name):
+# scenes7_room shows one furnished side of a room: next to nothing of its walls
+@pytest.mark.parametrize(
+    ("name", "least"), [("intel", 5), ("mac_first_floor", 5), ("scenes7_room", 1), ("vlp16_room", 5)]
+)
+def test_every_recording_ends_with_a_plan(project_root, recordings_dir, tmp_path, name, least):
     project = Project(project_root, tmp_path)
     settings = [f"tests/data/{name}.yaml"] if (project_root / f"tests/data/{name}.yaml").exists() else []
     arguments = ["--configfile", *settings] if settings else []
     result = project.run("--config", f"dataset={recordings_dir / name}", *arguments)
     assert result.returncode == 0, result.stdout + result.stderr
-    assert len(plan(project, name)) >= 5
+    assert len(plan(project, name)) >= least
     shutil.rmtree(project.folder / "results")

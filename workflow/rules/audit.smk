@@ -26,6 +26,7 @@ rule draw_registration:
     input:
         scans="results/{dataset}/scans.parquet",
         registration="results/{dataset}/registration.parquet",
+        edges="results/{dataset}/edges.parquet",
         crispness="results/{dataset}/crispness.parquet",
         edges="results/{dataset}/edges.parquet",
         code=code_of("draw_registration"),

@@ -45,7 +45,7 @@ def tell_results():
 
 def tell_failure():
     """Leave no empty folders behind, and end with the line that says what went wrong."""
-    for name in DATASETS:
+    for name in (*DATASETS, inventory.RESERVED):
         for folder, _, _ in os.walk(f"results/{name}", topdown=False):
             if not os.listdir(folder):
                 os.rmdir(folder)
@@ -59,7 +59,7 @@ def tell_failure():
 
 def failures():
     """What the stages that failed in this run said last."""
-    for name in DATASETS:
+    for name in (*DATASETS, inventory.RESERVED):
         for log in sorted(Path("logs", name).glob("*.log")):
             lines = log.read_text(errors="replace").splitlines()
             if (

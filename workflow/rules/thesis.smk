@@ -189,6 +189,7 @@ rule draw_thesis_rooms:
         code=code_of("draw_thesis_rooms"),
     output:
         figures=figures_of(*ROOMS_FIGURES),
+        orders="results/thesis/figures/orders.svg",
     log:
         "logs/thesis/draw_thesis_rooms.log",
     benchmark:
@@ -237,6 +238,7 @@ rule write_thesis:
     """Write the report of the experiments: figures, table 5.1 and claims beside the thesis's."""
     input:
         figures=figures_of(*ROOMS_FIGURES, *DRIVE_FIGURES),
+        orders="results/thesis/figures/orders.svg",
         claims="results/thesis/claims.parquet",
         steps=of_kind(experiments.DRIVE, "thesis/steps")[:1],
         limited=of_kind(experiments.LIMITS, "thesis/steps")[:1],

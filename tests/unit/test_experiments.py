@@ -1,0 +1,51 @@
+"""The surveys of the thesis's experiments: names, seeds, settings, and whose recordings they share."""
+
+import pytest
+
+from scanplan import configuration, experiments
+
+
+@pytest.fixture
+def known(project_root):
+    return {
+        "defaults": configuration.read_yaml(project_root / "config/config.yaml"),
+        "overrides": {"thesis": {"seeds": [4, 7], "drive_seeds": [7]}},
+        "schema": configuration.read_yaml(project_root / "workflow/schemas/config.schema.yaml"),
+        "config": project_root / "config",
+    }
+
+
+def test_every_survey_has_its_seed_and_its_place(known):
+    found = experiments.surveys(**known)
+    assert [survey.name for survey in found[experiments.ROOMS]] == ["thesis/ring_rooms_4", "thesis/ring_rooms_7"]
+    for survey, seed in zip(found[experiments.ROOMS], (4, 7), strict=True):
+        sections = [survey.settings[name] for name in ("simulate", "hulls", "selection")]
+        sections += survey.settings["walls"].values()
+        assert {section["seed"] for section in sections} == {seed}
+        assert survey.settings["registration"]["icp_method"] == "none"
+
+
+def test_the_limits_are_tried_on_the_same_recording(known):
+    found = experiments.surveys(**known)
+    (drive,), (strict,) = found[experiments.DRIVE], found[experiments.LIMITS]
+    assert strict.recordings == drive.recordings and strict.truth == drive.truth
+    assert strict.name != drive.name and strict.building is None and drive.building
+    assert strict.settings["registration"]["min_refined_fitness"] == 0.99
+    assert drive.settings["registration"]["min_refined_fitness"] != 0.99
+    assert strict.settings["simulate"] == drive.settings["simulate"]
+
+
+def test_the_command_line_wins(known):
+    known["overrides"] |= {"simulate": {"building": "tiny_office"}, "registration": {"min_refined_fitness": 0.5}}
+    found = experiments.surveys(**known)
+    assert all(survey.settings["simulate"]["building"] == "tiny_office" for kind in found.values() for survey in kind)
+    assert found[experiments.LIMITS][0].settings["registration"]["min_refined_fitness"] == 0.5
+
+
+def test_settings_are_not_changed_by_a_seed(known):
+    walls = {"ransac": {"seed": 1, "inlier_m": 0.1}}
+    given = {"simulate": {"seed": 1}, "hulls": {"seed": 1}, "selection": {"seed": 1, "stop": 3}, "walls": walls}
+    seeded = experiments.seeded(given, 5)
+    assert seeded["selection"] == {"seed": 5, "stop": 3}
+    assert seeded["walls"]["ransac"] == {"seed": 5, "inlier_m": 0.1}
+    assert given["selection"]["seed"] == given["walls"]["ransac"]["seed"] == 1

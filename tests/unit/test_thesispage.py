@@ -1,0 +1,86 @@
+"""The page of the thesis's experiments: every figure and claim, one file, honest verdicts."""
+
+import re
+
+import numpy as np
+import pytest
+
+import claimmaking as made
+from scanplan import judging, thesispage
+from scanplan.schemas import CLAIMS as TABLE
+from scanplan.thesisclaims import CLAIMS
+from scanplan.thesisshown import FIGURES
+
+SVG = '<?xml version="1.0"?>\n<svg id="a"><defs><path id="b"/></defs><use href="#b" fill="url(#c)"/></svg>'
+
+
+def claims(**changes):
+    rows = judging.judge(judging.ROOMS, "seed 1", made.rooms(**changes))
+    rows += judging.judge(judging.ROOMS, "seed 2", made.rooms())
+    rows += judging.judge(judging.DRIVE, "seed 1", made.drive())
+    rows += judging.judge(judging.BOTH, "seed 1", made.rooms() | made.drive())
+    return {name: np.array([row[name] for row in rows]) for name in TABLE.columns}
+
+
+def page(**changes):
+    drawn = {figure.file: SVG for figure in FIGURES}
+    strict, ours = made.steps(3600, 76, 76, 15), made.steps(3600, 700, 700, 15)
+    return thesispage.page(drawn, SVG, claims(**changes), ours, strict)
+
+
+def test_every_figure_and_claim_is_there():
+    text = page()
+    numbers = ["3.2", *(f"5.{i}" for i in range(1, 13))]
+    assert [figure.number for figure in FIGURES] == numbers
+    for number in numbers:
+        assert f"<h3>Figure {number}</h3>" in text
+    for claim in CLAIMS:
+        assert thesispage.escape(claim.states) in text
+    assert "4.83 GB" in text and "4.00 GB" in text and "6 min 29 s" in text and "<td>Data collection</td>" in text
+
+
+def test_it_needs_no_other_file():
+    text = page()
+    assert not re.search(r'(src|href)="(?!#)', text) and "@import" not in text and "<?xml" not in text
+
+
+def test_identifiers_of_two_figures_do_not_meet():
+    found = re.findall(r'\bid="([^"]+)"', page())
+    assert len(found) == len(set(found))
+    text = page()
+    assert all(f'id="{target}"' in text for target in re.findall(r'href="#([^"]+)"', text))
+
+
+def test_a_verdict_is_of_all_seeds():
+    assert thesispage.verdict(["yes", "yes"]) == ("holds", "yes")
+    assert thesispage.verdict(["no"]) == ("does not hold", "no")
+    assert thesispage.verdict(["yes", "no", "yes"]) == ("holds for 2 of 3 seeds", "some")
+    assert thesispage.verdict([]) == ("", "")
+    assert "holds for 1 of 2 seeds" in page(rooms_hull=made.growing(40))
+
+
+@pytest.mark.parametrize(
+    ("values", "text"),
+    [
+        ([2, 2], "2"),
+        ([0.5, 0.7], "0.6 (0.5 to 0.7)"),
+        ([1234.5, 1234.9], "1,235 (1,234 to 1,235)"),
+        ([np.nan], "none"),
+    ],
+)
+def test_means_come_with_their_range(values, text):
+    assert thesispage.said(values) == text
+
+
+def test_every_claim_belongs_to_figures_that_there_are():
+    names = {claim.name for claim in CLAIMS}
+    assert {name for figure in FIGURES for name in figure.claims} <= names
+
+
+def test_numbers_of_clusters_come_in_their_order():
+    assert sorted(["m, 10 c", "m, 2 c", "m, 1 c", "a"], key=thesispage._by_number) == [
+        "a",
+        "m, 1 c",
+        "m, 2 c",
+        "m, 10 c",
+    ]

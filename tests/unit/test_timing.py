@@ -1,0 +1,32 @@
+import numpy as np
+
+from scanplan import hulls, tables, timing
+
+
+def test_rows_are_spread_evenly():
+    assert timing.spread(np.arange(9), 3).tolist() == [0, 4, 8]
+    assert timing.spread([5, 6], 4).tolist() == [5, 6]
+
+
+def built(n):
+    rng = np.random.default_rng(0)
+    parts = [
+        hulls.cluster_hulls(i, rng.normal((i, 0), 1, (50, 2)), n_clusters=2, sample_size=20, seed=0) for i in range(n)
+    ]
+    return hulls.concatenated(parts)
+
+
+def test_the_order_is_timed_for_every_number_of_scans():
+    rows = list(timing.selection(built(6), [2, 6]))
+    assert [(row["size"], row["found"]) for row in rows] == [(2, 2), (6, 6)]
+    assert all(row["seconds"] > 0 for row in rows)
+
+
+def test_hulls_are_timed_for_every_number_of_clusters(tmp_path):
+    rng = np.random.default_rng(1)
+    with tables.scan_writer(tmp_path / "scans.parquet", planar=False) as write:
+        for scan_id in (0, 3, 9):
+            write(scan_id, rng.normal(0, 1, (60, 3)))
+    store = tables.ScanStore(tmp_path / "scans.parquet")
+    rows = list(timing.clusters(store, [0, 9], [1, 4], sample_size=30, seed=0))
+    assert [(row["size"], row["found"]) for row in rows] == [(1, 2), (4, 2)]

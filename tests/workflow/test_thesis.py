@@ -1,0 +1,49 @@
+"""The thesis's experiments as a target: what it would run, and on two small rooms the page that comes out."""
+
+import re
+
+import pytest
+
+from projectcopy import Project
+from scanplan.thesisshown import FIGURES
+
+pytestmark = pytest.mark.workflow
+TINY_THESIS = "tests/data/tiny_thesis.yaml"
+
+
+@pytest.fixture(scope="module")
+def project(project_root, tmp_path_factory):
+    return Project(project_root, tmp_path_factory.mktemp("thesis"))
+
+
+def jobs(project, *arguments):
+    """Number of jobs by rule that a run would execute."""
+    result = project.run("--dry-run", *arguments)
+    assert result.returncode == 0, result.stderr
+    counts = re.findall(r"^(\w+) +(\d+)$", result.stdout + result.stderr, re.M)
+    return {rule: int(count) for rule, count in counts}
+
+
+def test_it_runs_every_survey_with_every_seed_and_nothing_of_the_demo(project):
+    found = jobs(project, "thesis", "--configfile", "config/config.yaml")
+    # 3 surveys of the rooms and 3 drives, each of these registered with our limits and with the thesis's
+    assert found["simulate_survey"] == 6 and found["register_scans"] == 9
+    assert found["evaluate_walls"] == found["time_stages"] == 6 and found["measure_coverage"] == 3
+    assert found["judge_claims"] == found["write_thesis"] == found["thesis"] == 1
+    assert not {"all", "assemble_plan", "export_plan"} & set(found)
+
+
+def test_the_demo_runs_nothing_of_it(project):
+    assert not {"thesis", "judge_claims", "time_stages"} & set(jobs(project))
+
+
+def test_the_page_has_every_figure(project):
+    result = project.run("thesis", "--configfile", TINY_THESIS)
+    assert result.returncode == 0, result.stdout + result.stderr
+    page = (project.folder / "results/thesis/report.html").read_text()
+    for figure in FIGURES:
+        assert f"<h3>Figure {figure.number}</h3>" in page
+    assert page.count("<svg") == len(FIGURES) + 1
+    assert re.search(r"Of \d+ claims \d+ hold, \d+ do not", page)
+    assert "report:  results/thesis/report.html" in result.stderr
+    assert jobs(project, "thesis", "--configfile", TINY_THESIS) == {}
