@@ -5,7 +5,7 @@ import numpy as np
 from scanplan import planning, plansummary, rays, registered, stagelog, stopping, tables
 
 
-def assemble_plan(walls, selection, scans, registration, outputs, *, n_scans, area_share, settings):
+def assemble_plan(walls, selection, scans, registration, outputs, *, settings, **stop):
     """Write the tables of the plan.
 
     Parameters
@@ -14,14 +14,14 @@ def assemble_plan(walls, selection, scans, registration, outputs, *, n_scans, ar
         walls/<extractor>.parquet, selection/<method>.parquet, scans.parquet and registration.parquet.
     outputs : dict of str to path-like
         Files to write: plan/<name>.parquet for the names in `planning.TABLES`.
-    n_scans, area_share : int, float or None
-        How many scans to use, see `stopping.n_scans`.
     settings : dict
         Keywords of `planning.settings`.
+    **stop
+        How many scans to use, see `stopping.n_scans`.
     """
     seen = tables.read(walls, tables.WALLS, allow_empty=True)
     ordering = tables.read(selection, tables.SELECTION)
-    count, reason = stopping.n_scans(ordering, n_scans=n_scans, area_share=area_share)
+    count, reason = stopping.n_scans(ordering, **stop)
     chosen = np.sort(ordering["scan_id"][:count])
     used = np.isin(seen["scan_id"], chosen)
     plansummary.check_segments(walls, seen, used, count)

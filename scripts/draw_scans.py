@@ -3,7 +3,7 @@
 from scanplan import atomic, drawing, figures, stagelog, stopping, tables, topview
 
 
-def draw_scans(scans, registration, selection, output, *, n_scans, area_share):
+def draw_scans(scans, registration, selection, output, **stop):
     """Write the figure as SVG.
 
     Parameters
@@ -12,12 +12,12 @@ def draw_scans(scans, registration, selection, output, *, n_scans, area_share):
         scans.parquet, registration.parquet and selection/<method>.parquet.
     output : path-like
         figures/scans.svg, to write.
-    n_scans, area_share : int, float or None
+    **stop
         How many scans are selected, see `stopping.n_scans`.
     """
     store = tables.ScanStore(scans)
     ordering = tables.read(selection, tables.SELECTION)
-    count, reason = stopping.n_scans(ordering, n_scans=n_scans, area_share=area_share)
+    count, reason = stopping.n_scans(ordering, **stop)
     poses = tables.read(registration, tables.REGISTRATION)
     found = stagelog.progress(store.scans(), "draw_scans", total=len(store.scan_ids))
     figure = figures.scans_figure(

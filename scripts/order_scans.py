@@ -1,6 +1,6 @@
 """Put the scans in the order in which they are worth most for the plan."""
 
-from scanplan import orderings, schemas, stagelog, tables
+from scanplan import orderings, schemas, stagelog, stopping, tables
 from scanplan.errors import StageError
 
 _SCHEMAS = {
@@ -10,7 +10,7 @@ _SCHEMAS = {
 }
 
 
-def order_scans(hulls, output, *, method, seed, min_overlap=0.0, others=None):
+def order_scans(hulls, output, *, method, seed, min_overlap=0.0, streaming=None, budget=None, others=None):
     """Write the table of one method's ordering.
 
     Parameters
@@ -23,12 +23,18 @@ def order_scans(hulls, output, *, method, seed, min_overlap=0.0, others=None):
         One of `methods.METHODS`.
     seed : int
     min_overlap : float
+    streaming : dict, optional
+        Keywords of `streaming.order`.
+    budget : dict, optional
+        Keywords of `stopping.points_budget`.
     others : dict of str to path-like, optional
         The tables that `methods.TABLES` names for the method.
     """
-    columns = tables.read(hulls, tables.HULLS, ["scan_id", "cluster", "geometry"])
+    columns = tables.read(hulls, tables.HULLS, ["scan_id", "cluster", "n_points", "geometry"])
     read = {name: tables.read(path, _SCHEMAS[name], allow_empty=True) for name, path in (others or {}).items()}
-    selection = orderings.order(method, columns, seed=seed, others=read, min_overlap=min_overlap)
+    limit = stopping.points_budget(**(budget or {}))
+    settings = {"seed": seed, "min_overlap": min_overlap, "streaming_settings": streaming, "budget": limit}
+    selection = orderings.order(method, columns, others=read, **settings)
     if selection["covered_m2"][-1] == 0:
         raise StageError(
             f"{hulls}: {len(selection['rank'])} scans cover 0 m2, more is needed to order them; every cluster of their"
@@ -44,7 +50,7 @@ if __name__ == "__main__":
             snakemake.input.hulls,
             snakemake.output.selection,
             method=snakemake.wildcards.method,
-            seed=snakemake.params.seed,
-            min_overlap=snakemake.params.min_overlap,
+            **snakemake.params.settings,
+            budget=snakemake.params.budget,
             others={name: path for name, path in snakemake.input.items() if name in _SCHEMAS},
         )

@@ -63,7 +63,8 @@ def write_selection(folder, method, scan_ids):
     measures = ("gain_m2", "covered_m2", "bound_m2", "gain", "covered", "bound")
     areas = dict.fromkeys(measures, np.ones(len(scan_ids)))
     path = folder / "selection" / f"{method}.parquet"
-    tables.write(path, tables.SELECTION, {"rank": np.arange(1, len(scan_ids) + 1), "scan_id": scan_ids, **areas})
+    known = {"rank": np.arange(1, len(scan_ids) + 1), "scan_id": scan_ids, "n_points": np.full(len(scan_ids), 9)}
+    tables.write(path, tables.SELECTION, known | areas)
     return path
 
 

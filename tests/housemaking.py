@@ -72,5 +72,6 @@ def ordering(scan_ids, covered=(80.0, 95.0, 99.0, 100.0)):
     gain = np.diff(covered, prepend=0.0)
     values = {"gain": gain, "covered": covered, "bound": covered}
     known = {"rank": np.arange(1, len(scan_ids) + 1), "scan_id": np.array(scan_ids)}
+    known["n_points"] = np.full(len(scan_ids), 1000)
     columns = known | values | {f"{name}_m2": value for name, value in values.items()}
     return {name: columns[name] for name in tables.SELECTION.columns}

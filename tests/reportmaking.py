@@ -55,6 +55,7 @@ def selection():
     return {
         "rank": np.arange(1, 5, dtype=np.int32),
         "scan_id": np.array([9, 5, 12, 0], np.int32),
+        "n_points": np.full(4, 1000),
         "gain_m2": np.diff(covered_m2, prepend=0.0),
         "covered_m2": covered_m2,
         "bound_m2": np.array([15.0, 20.5, 21.0, 21.0]),

@@ -1,11 +1,8 @@
 """How much area the polygons of scans have covered so far, as an objective for orders of scans."""
 
 import numpy as np
-import shapely
 
-from scanplan import greedy, lazygreedy
-
-_GRID_M = 1e-6
+from scanplan import greedy, knapsack, lazygreedy, uncovered
 
 
 class PolygonArea:
@@ -26,41 +23,25 @@ class PolygonArea:
             return greedy.greedy_order(self._polygons)
         return lazygreedy.order(_Left(self._polygons), tie=greedy.TIE_M2, min_overlap=min_overlap)
 
+    def within(self, cost, budget):
+        """Return the indices to take for a budget; see `knapsack.choose`."""
+        return knapsack.choose(lambda: _Left(self._polygons), cost, budget, tie=greedy.TIE_M2)
+
     def gains(self, order):
         """Return the area (m,) that each polygon of a given order adds to those before it, square metres."""
         return greedy.gains_of_order(self._polygons, order)
 
 
-class _Left:
-    """What the chosen polygons leave of every polygon, brought up to date only when asked."""
+class _Left(uncovered.Uncovered):
+    """What the chosen polygons leave of every polygon, one at a time; see `lazygreedy`."""
 
-    def __init__(self, polygons):
-        self._left = np.empty(len(polygons), object)
-        self._left[:] = [p if p.is_valid else shapely.make_valid(p) for p in polygons]
-        self._whole, self._chosen = self._left.copy(), []
-        self._looked = np.zeros(len(polygons), int)
-        self.gain = shapely.area(self._left)
+    @property
+    def gain(self):
+        """Return what (n,) each polygon would add, as of when it was last looked at."""
+        return self.gain_m2
 
-    def refresh(self, i):
-        for chosen in self._chosen[self._looked[i] :]:
-            # a box first: most pairs are far apart
-            if self.gain[i] > 0 and shapely.intersects(shapely.box(*chosen.bounds), self._left[i]):
-                self._left[i] = _difference(self._left[i], chosen)
-                self.gain[i] = self._left[i].area
-        self._looked[i] = len(self._chosen)
-        return self.gain[i]
-
-    def choose(self, i):
-        gain_m2 = self.refresh(i)
-        if gain_m2 > 0:
-            self._chosen.append(self._whole[i])
-        self.gain[i] = 0.0
-        return gain_m2
-
-
-def _difference(polygon, other):
-    try:
-        return shapely.difference(polygon, other)
-    except shapely.GEOSException:
-        # rounding made an overlay inconsistent: once more with all corners on a micrometre grid
-        return shapely.difference(shapely.make_valid(polygon), shapely.make_valid(other), grid_size=_GRID_M)
+    def refresh(self, some, floor_m2=-np.inf):
+        """Bring the gain of one polygon, or of several, up to date; return it."""
+        if not np.all(self.exact[some]):
+            super().refresh(np.atleast_1d(some), floor_m2)
+        return self.gain_m2[some]

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from scanplan import lazygreedy
+from scanplan import knapsack, lazygreedy
 
 TIE = 1e-9
 """Sums of a scan's cells agree far better than this, metres."""
@@ -41,6 +41,10 @@ class CellCoverage:
     def greedy(self, min_overlap=0.0):
         """Return the greedy order, a `greedy.Order`; see `lazygreedy.order`."""
         return lazygreedy.order(_Best(self._first, self._cell, self._weight), tie=TIE, min_overlap=min_overlap)
+
+    def within(self, cost, budget):
+        """Return the indices to take for a budget; see `knapsack.choose`."""
+        return knapsack.choose(lambda: _Best(self._first, self._cell, self._weight), cost, budget, tie=TIE)
 
     def gains(self, order):
         """Return what (m,) each scan of a given order adds to those before it."""

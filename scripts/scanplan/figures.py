@@ -18,6 +18,7 @@ STYLES = {
     "visibility": ("greedy by free space", "#009e73"),
     "cluster_hull": ("greedy by cluster hulls", "#d55e00"),
     "hull": ("greedy by one hull per scan", "#e69f00"),
+    "streaming": ("in one pass by cluster hulls", "#000000"),
     "every_nth": ("every n-th", "#cc79a7"),
     "distance": ("farthest next", "#56b4e9"),
     "random": ("random", "#8c6d4f"),

@@ -6,6 +6,7 @@ at (Minoux 1978, "Accelerated greedy algorithms for maximizing submodular set fu
 that looking at every scan in every step gives.
 """
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,7 +45,7 @@ class Order:
     checkpoints: dict
 
 
-def greedy_order(polygons):
+def greedy_order(polygons, *, threads=1):
     """Order polygons so that each adds the most area to the union of those before it (thesis, algorithm 1).
 
     Where several gains are within `TIE_M2` of the largest, the lowest index comes first; those that add nothing more
@@ -54,6 +55,8 @@ def greedy_order(polygons):
     ----------
     polygons : (n,) sequence of shapely geometries, n >= 0
         Finite coordinates, metres. Empty ones, points and lines cover nothing; invalid ones are repaired.
+    threads : int, >= 1
+        The order is the same, to the last digit, with any number of them.
 
     Returns
     -------
@@ -64,19 +67,8 @@ def greedy_order(polygons):
     ValueError
         If a geometry is missing or a coordinate is not finite.
     """
-    left = uncovered.Uncovered(polygons)
-    checkpoints, order, gain_m2 = {0: left.gain_m2.copy()}, [], []
-    while left.gain_m2.max(initial=0.0) > TIE_M2:
-        order.append(_best(left))
-        gain_m2.append(left.choose(order[-1]))
-        if len(order).bit_count() == 1:
-            left.drop_covered()
-            checkpoints[len(order)] = left.gain_m2.copy()
-    if order:
-        left.drop_covered()
-    rest = np.flatnonzero(left.remaining).tolist()
-    gain_m2 = np.array(gain_m2 + [left.choose(i) for i in rest])
-    return Order(np.array(order + rest, int), gain_m2, np.cumsum(gain_m2), checkpoints)
+    with ThreadPoolExecutor(threads) as executor:
+        return _greedy_order(uncovered.Uncovered(polygons, executor if threads > 1 else None))
 
 
 def gains_of_order(polygons, order):
@@ -105,6 +97,21 @@ def gains_of_order(polygons, order):
     for same in np.split(np.arange(len(tile)), np.flatnonzero(np.diff(tile)) + 1):
         gain_m2[rank[same]] += _gains(pieces[same])
     return gain_m2
+
+
+def _greedy_order(left):
+    checkpoints, order, gain_m2 = {0: left.gain_m2.copy()}, [], []
+    while left.gain_m2.max(initial=0.0) > TIE_M2:
+        order.append(_best(left))
+        gain_m2.append(left.choose(order[-1]))
+        if len(order).bit_count() == 1:
+            left.drop_covered()
+            checkpoints[len(order)] = left.gain_m2.copy()
+    if order:
+        left.drop_covered()
+    rest = np.flatnonzero(left.remaining).tolist()
+    gain_m2 = np.array(gain_m2 + [left.choose(i) for i in rest])
+    return Order(np.array(order + rest, int), gain_m2, np.cumsum(gain_m2), checkpoints)
 
 
 def _best(left):

@@ -8,6 +8,7 @@ TABLES = {
     "visibility": ("visibility",),
     "cluster_hull": (),
     "hull": (),
+    "streaming": (),
     "every_nth": (),
     "distance": ("registration",),
     "random": (),

@@ -9,11 +9,13 @@ import numpy as np
 from scanplan import (
     baselines,
     certificate,
+    hulls,
     objective_cluster_hull,
     objective_hull,
     objective_visibility,
     objective_wall_length,
     stopping,
+    streaming,
 )
 from scanplan.errors import StageError
 from scanplan.methods import METHODS
@@ -26,11 +28,12 @@ _BASELINES = {
     "random": baselines.random,
     "sequential": baselines.sequential,
 }
+_STREAMING = "streaming"
 _TOLD_SCANS = 15
 _TOLD_SHARE = 0.99
 
 
-def order(method, columns, *, seed, others=None, min_overlap=0.0):
+def order(method, columns, *, seed, others=None, min_overlap=0.0, streaming_settings=None, budget=None):
     """Put all scans of a table of hulls in the order of one method.
 
     Parameters
@@ -38,16 +41,22 @@ def order(method, columns, *, seed, others=None, min_overlap=0.0):
     method : str
         Greedy by an objective: `wall_length`, what the scans show of the walls; `visibility`, the free space they
         looked through; `cluster_hull`, the area of the union of clusters' hulls; `hull`, that of one convex hull per
-        scan. By nothing measured: `every_nth`, evenly over the recording; `distance`, always the one taken farthest
-        from those before; `random`, a permutation drawn with `seed`; `sequential`, as recorded.
+        scan; `streaming`, the area of `cluster_hull` again, but in one pass over the scans as they were recorded. By
+        nothing measured: `every_nth`, evenly over the recording; `distance`, always the one taken farthest from those
+        before; `random`, a permutation drawn with `seed`; `sequential`, as recorded.
     columns : dict of str to (m,) numpy.ndarray
-        `scan_id` and `geometry` of a table of hulls.
+        `scan_id`, `n_points` and `geometry` of a table of hulls.
     seed : int, >= 0
         For `random` only.
     others : dict of str to columns, optional
         The tables that `methods.TABLES` names for the method.
     min_overlap : float, 0 to 1
         For objectives: what a scan must share with those before it, see `lazygreedy.order`.
+    streaming_settings : dict, optional
+        For `streaming` only, keywords of `streaming.order`.
+    budget : int, optional
+        Points that the first scans may have together. Orders by an objective then begin with the scans that
+        `knapsack.choose` takes for it; a `min_overlap` is not asked of them.
 
     Returns
     -------
@@ -72,13 +81,18 @@ def order(method, columns, *, seed, others=None, min_overlap=0.0):
     if method in _OBJECTIVES:
         own = _OBJECTIVES[method].objective(scan_ids, survey)
         most = own.greedy()
-    chosen = _baseline(method, scan_ids, survey, seed) if method in _BASELINES else most.order
-    if min_overlap > 0 and method not in _BASELINES:
-        chosen = own.greedy(min_overlap).order
+    if method in _BASELINES:
+        chosen = _baseline(method, scan_ids, survey, seed)
+    elif method == _STREAMING:
+        chosen = streaming.order(hulls.scan_polygons(columns)[1], **(streaming_settings or {}))[0]
+    else:
+        chosen = own.greedy(min_overlap).order if min_overlap > 0 else most.order
+        chosen = chosen if budget is None else _within(own, _points(columns), budget, chosen)
     areas = _along(chosen, area, most_area)
     return {
         "rank": np.arange(1, len(chosen) + 1, dtype=np.int32),
         "scan_id": scan_ids[chosen],
+        "n_points": _points(columns)[chosen],
         **{f"{name}_m2": values for name, values in areas.items()},
         **(areas if own is area else _along(chosen, own, most)),
     }
@@ -103,6 +117,18 @@ def _along(chosen, objective, best):
     gain = best.gain_m2 if chosen is best.order else objective.gains(chosen)
     covered = np.cumsum(gain)
     return {"gain": gain, "covered": covered, "bound": np.maximum(certificate.upper_bound(best), covered)}
+
+
+def _within(objective, n_points, budget, then):
+    """Return the scans taken for a budget of points, then the others in their order."""
+    first = np.array(objective.within(n_points, budget), int)
+    return np.concatenate([first, then[~np.isin(then, first)]])
+
+
+def _points(columns):
+    """Return how many points (n,) each scan has."""
+    _, row = np.unique(columns["scan_id"], return_inverse=True)
+    return np.bincount(row, columns["n_points"]).astype(np.int64)
 
 
 def _baseline(method, scan_ids, survey, seed):

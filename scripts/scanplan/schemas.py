@@ -98,10 +98,11 @@ VISIBILITY = Schema(
 )
 SELECTION = Schema(
     "selection",
-    2,
+    3,
     {
         "rank": "int32",
         "scan_id": "int32",
+        "n_points": "int64",
         **dict.fromkeys(("gain_m2", "covered_m2", "bound_m2", "gain", "covered", "bound"), "float64"),
     },
     ("rank",),

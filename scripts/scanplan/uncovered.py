@@ -19,6 +19,8 @@ class Uncovered:
     ----------
     polygons : (n,) sequence of shapely geometries, n >= 0
         As for `overlays.near_origin`.
+    threads : concurrent.futures.Executor, optional
+        Threads to overlay on; the results are the same with any number of them.
 
     Attributes
     ----------
@@ -30,7 +32,8 @@ class Uncovered:
         Whether it has not been chosen.
     """
 
-    def __init__(self, polygons):
+    def __init__(self, polygons, threads=None):
+        self._threads = threads
         polygons = overlays.near_origin(polygons)
         parts, owner = shapely.get_parts(polygons, return_index=True)
         has_area = shapely.area(parts) > 0
@@ -46,7 +49,7 @@ class Uncovered:
         self._chosen = []
         self.remaining = np.ones(len(polygons), bool)
         self.exact = self.remaining.copy()
-        self._sum_up()
+        self.gain_m2 = np.bincount(self._owner, self._area_m2, minlength=len(polygons))
 
     def refresh(self, some, floor_m2=-np.inf):
         """Bring the gains of some polygons up to date, each until it is exact or known to be below a floor.
@@ -57,23 +60,23 @@ class Uncovered:
             Distinct indices.
         floor_m2 : float
         """
-        pairs = self._meeting(np.concatenate([self._pairs(i) for i in some], axis=1))
+        parts = np.concatenate([np.arange(self._first[i], self._first[i + 1]) for i in some])
+        place = np.repeat(np.arange(len(some)), self._first[some + 1] - self._first[some])
+        pairs = self._by_overlap(np.concatenate([self._pairs(i) for i in some], axis=1))
         later = []
-        self._sum_up(some)
-        while pairs.shape[1]:
+        while True:
+            self.gain_m2[some] = np.bincount(place, self._area_m2[parts], minlength=len(some))
             worth = self.gain_m2[self._owner[pairs[0]]] >= floor_m2
             later.append(pairs[:, ~worth])
+            if not worth.any():
+                break
             pairs = self._subtract(pairs[:, worth])
-            self._sum_up(some)
-        later = np.concatenate(later, axis=1) if later else pairs
-        for i in some:
-            self._waiting[i] = later[:, self._owner[later[0]] == i]
-            self.exact[i] = self._waiting[i].shape[1] == 0
+        self._wait(some, np.concatenate(later, axis=1))
 
     def choose(self, i):
         """Cover a remaining polygon; return what it added."""
-        if self.gain_m2[i] > 0:
-            self.refresh([i])
+        if not self.exact[i] and self.gain_m2[i] > 0:
+            self.refresh(np.array([i]))
         gain_m2, parts = self.gain_m2[i], self._alive(i)
         # whole parts, not what is left of them: their few straight edges leave no slivers
         shapely.prepare(self._whole[parts])
@@ -99,47 +102,56 @@ class Uncovered:
         part, region = shapely.STRtree(regions).query(self._left[alive])
         part = alive[part]
         self._area_m2[part[shapely.covers(regions[region], self._left[part])]] = 0.0
-        self._sum_up()
+        self.gain_m2 = np.bincount(self._owner, self._area_m2, minlength=len(self.remaining))
 
     def _alive(self, i):
         return np.arange(self._first[i], self._first[i + 1])[self._area_m2[self._first[i] : self._first[i + 1]] > 0]
 
     def _pairs(self, i):
-        """Pairs (2, p) of parts of polygon i and chosen parts not yet subtracted from them."""
-        pairs, self._waiting[i] = self._waiting[i], np.zeros((2, 0), int)
-        if self._new[i]:
-            parts, chosen = self._alive(i), np.concatenate(self._new[i])
-            self._new[i] = []
-            pairs = np.concatenate([pairs, [np.repeat(parts, len(chosen)), np.tile(chosen, len(parts))]], axis=1)
-        return pairs
+        """Pairs (2, p) of parts of polygon i and chosen parts that are not yet subtracted from them."""
+        if not self._new[i]:
+            return self._waiting[i]
+        parts, chosen = self._alive(i), np.concatenate(self._new[i])
+        self._new[i] = []
+        left, whole = self._left_box[parts, None], self._whole_box[chosen]
+        close = (left[..., 0] < whole[:, 2]) & (left[..., 2] > whole[:, 0])
+        close &= (left[..., 1] < whole[:, 3]) & (left[..., 3] > whole[:, 1])
+        part, other = close.nonzero()
+        return np.concatenate([self._waiting[i], [parts[part], chosen[other]]], axis=1)
 
-    def _meeting(self, pairs):
-        """Of pairs those that meet, by part, the largest overlap of their boxes first; covered parts are done with."""
+    def _wait(self, some, pairs):
+        pairs = pairs[:, np.argsort(self._owner[pairs[0]], kind="stable")]
+        start, end = np.searchsorted(self._owner[pairs[0]], [some, some + 1])
+        self.exact[some] = start == end
+        for i, a, b in zip(some, start, end, strict=True):
+            self._waiting[i] = pairs[:, a:b]
+
+    def _still_close(self, pairs):
+        """Of pairs those whose boxes meet and whose part is not all covered."""
         left, whole = self._left_box[pairs[0]], self._whole_box[pairs[1]]
+        close = (left[:, :2] < whole[:, 2:]) & (left[:, 2:] > whole[:, :2])
+        return pairs[:, close[:, 0] & close[:, 1] & (self._area_m2[pairs[0]] > 0)]
+
+    def _by_overlap(self, pairs):
+        """Pairs by part, the largest overlap of their boxes first; parts that one chosen part covers are done with."""
+        pairs = self._still_close(pairs)
+        left, whole = self._left_box[pairs[0]], self._whole_box[pairs[1]]
+        inside = np.flatnonzero(((left[:, :2] >= whole[:, :2]) & (left[:, 2:] <= whole[:, 2:])).all(axis=1))
+        part, chosen = pairs[:, inside]
+        self._area_m2[part[shapely.covers(self._whole[chosen], self._left[part])]] = 0.0
         side_m = np.minimum(left[:, 2:], whole[:, 2:]) - np.maximum(left[:, :2], whole[:, :2])
-        close = (side_m > 0).all(axis=1) & (self._area_m2[pairs[0]] > 0)
-        pairs, overlap_m2 = pairs[:, close], side_m[close].prod(axis=1)
-        whole, left = self._whole[pairs[1]], self._left[pairs[0]]
-        meets = shapely.intersects(whole, left)
-        self._area_m2[pairs[0, shapely.covers(whole, left)]] = 0.0
-        meets &= self._area_m2[pairs[0]] > 0
-        pairs, overlap_m2 = pairs[:, meets], overlap_m2[meets]
-        return pairs[:, np.lexsort((-overlap_m2, pairs[0]))]
+        by_part = np.lexsort((-side_m[:, 0] * side_m[:, 1], pairs[0]))
+        return pairs[:, by_part[self._area_m2[pairs[0, by_part]] > 0]]
 
     def _subtract(self, pairs):
-        """Subtract one chosen part of each part's pairs; return the pairs that remain and meet."""
-        is_first = np.diff(pairs[0], prepend=-1) > 0
+        """Subtract the first chosen part of each part's pairs; return the other pairs that may still meet."""
+        is_first = np.ones(pairs.shape[1], bool)
+        is_first[1:] = pairs[0, 1:] != pairs[0, :-1]
         part, chosen = pairs[:, is_first]
-        left = overlays.difference(self._left[part], self._whole[chosen])
+        meets = shapely.intersects(self._whole[chosen], self._left[part])
+        part, chosen = part[meets], chosen[meets]
+        left = overlays.difference(self._left[part], self._whole[chosen], self._threads)
         area_m2 = shapely.area(left)
         self._left[part], self._left_box[part] = left, shapely.bounds(left).reshape(-1, 4)
         self._area_m2[part] = np.where(area_m2 > _NO_AREA_M2, area_m2, 0.0)
-        pairs = pairs[:, ~is_first & (self._area_m2[pairs[0]] > 0)]
-        return pairs[:, shapely.intersects(self._whole[pairs[1]], self._left[pairs[0]])]
-
-    def _sum_up(self, some=None):
-        if some is None:
-            self.gain_m2 = np.bincount(self._owner, self._area_m2, minlength=len(self.remaining))
-        else:
-            for i in some:
-                self.gain_m2[i] = self._area_m2[self._first[i] : self._first[i + 1]].sum()
+        return self._still_close(pairs[:, ~is_first])

@@ -1,4 +1,4 @@
-"""The stages against the algorithms written literally, on the demo survey, each pair timed in this one process.
+"""The stages against the algorithms written literally, on simulated surveys, each pair timed in this one process.
 
 Usage: run.py [registration] [selection] [walls] [wall_quality]
 
@@ -6,77 +6,28 @@ Without a name all of them but wall_quality, which takes minutes.
 """
 
 import sys
-import tempfile
-import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "tests")]
 
+import registrationbench  # noqa: E402
+import selecting  # noqa: E402
 import wallbench  # noqa: E402
 
-import register_scans  # noqa: E402
-from reference import hull_selection  # noqa: E402
-from reference import registration as literal_registration  # noqa: E402
-from scanplan import (  # noqa: E402
-    configuration,
-    greedy,
-    hulls,
-    surveys,
-    tables,
-    verdicts,
-)
+from scanplan import configuration  # noqa: E402
 
-DEMO = ROOT / "results" / "demo"
 SETTINGS = configuration.read_yaml(ROOT / "config/config.yaml")
 
 
-def timed(function):
-    """Call a function without arguments; return its result and the seconds it took."""
-    started = time.perf_counter()
-    return function(), time.perf_counter() - started
+def bench_registration():
+    """Algorithm 3: the whole stage, from bag to registered scans, against Open3D on full clouds, point to point."""
+    registrationbench.bench(ROOT, SETTINGS)
 
 
-def bench_registration(n_literal=60):
-    """Algorithm 3: this whole stage, from bag to registered scans, against Open3D on full clouds, point to point."""
-    bag = str(DEMO / "survey/survey.bag")
-    candidates = tables.read(DEMO / "poses.parquet", tables.POSES)
-    section = SETTINGS["registration"]
-
-    def ours():
-        with tempfile.TemporaryDirectory() as folder:
-            outputs = (Path(folder) / f"{name}.parquet" for name in ("scans", "registration", "edges"))
-            register_scans.register_scans(
-                [bag], DEMO / "poses.parquet", *outputs, reading=SETTINGS["input"], settings=section, threads=2
-            )
-
-    def literally():
-        with surveys.open_survey([bag], **SETTINGS["input"]) as survey:
-            scans = [scan.xyz_m for scan in survey.scans(candidates["scan_id"][:n_literal].tolist())]
-        return literal_registration.register(
-            scans,
-            verdicts.poses(candidates)[:n_literal],
-            keep_every=1,
-            distance_m=section["fitness_distance_m"],
-            min_prior_fitness=section["min_prior_fitness"],
-            min_refined_fitness=section["min_refined_fitness"],
-        )
-
-    n = len(candidates["scan_id"])
-    literal_s = timed(literally)[1] * n / min(n, n_literal)
-    report(f"registration (literally: extrapolated from {n_literal})", n, "candidates", timed(ours)[1], literal_s)
-
-
-def bench_selection(n_scans=150):
-    """Algorithm 1: lazy greedy against all unions in every round; the orders must be the same."""
-    columns = tables.read(DEMO / "hulls.parquet", tables.HULLS)
-    _, polygons = hulls.scan_polygons(columns)
-    polygons = polygons[:n_scans]
-    lazy, lazy_s = timed(lambda: greedy.greedy_order(polygons))
-    literal, literal_s = timed(lambda: hull_selection.hull_selection(list(polygons)))
-    order = literal[0] if isinstance(literal, tuple) else literal
-    assert list(lazy.order) == list(order), "lazy greedy left algorithm 1's order"
-    report("selection, the same order", len(polygons), "scans", lazy_s, literal_s)
+def bench_selection():
+    """Algorithms 1 and 2 on a drive through a large office."""
+    selecting.run(ROOT / "config/buildings/ring_office.geojson", SETTINGS, lambda line: print(line, flush=True))
 
 
 def bench_walls():
@@ -87,15 +38,6 @@ def bench_walls():
 def bench_wall_quality():
     """What both extractors and a line detector on a raster of all points find of the truth."""
     wallbench.quality(ROOT, SETTINGS)
-
-
-def report(what, count, unit, ours_s, reference_s):
-    """Print one line: both times and their ratio."""
-    print(
-        f"{what}: {count} {unit}, {1e3 * ours_s / count:.1f} ms each against {1e3 * reference_s / count:.1f} ms:"
-        f" {reference_s / ours_s:.1f} times faster",
-        flush=True,
-    )
 
 
 if __name__ == "__main__":

@@ -53,7 +53,7 @@ def standing(building, settings, *, seed=1, step_m=0.4, every=1, **site):
     found = simulation.site(Path(building).read_bytes(), Path(building), chosen["mount"], **chosen["site"] | site)
     survey = simulation.prepare(found, seed=seed, **rig)
     poses, scene = simulation.true_poses(survey)[1], raycast.Scene(survey.mesh)
-    scans = [(i, _points(survey, scene, i, poses[i])) for i in range(0, len(poses), every)]
+    scans = [(i, points(survey, scene, i, poses[i])) for i in range(0, len(poses), every)]
     faces = truthfile.TrueFaces(*(_lines(found.truth, side) for side in ("inside", "outside")))
     places_m = poses[[i for i, _ in scans], :2, 3]
     truth = findings.look(faces, places_m, poses[:, :2, 3], max_range_m=settings["sensor"]["max_range_m"])
@@ -108,7 +108,8 @@ def _lines(features, side):
     return np.array(lines, float).reshape(-1, 2, 2)
 
 
-def _points(survey, scene, scan_id, world_from_sensor):
+def points(survey, scene, scan_id, world_from_sensor):
+    """Return the points (m, 3) float32, in the map, of one scan of a simulated survey at its true pose."""
     range_m = sweeps.take(survey, scene, scan_id).range_m
     hit = np.isfinite(range_m)
     direction = np.broadcast_to(survey.sensor.direction, (*range_m.shape, 3))[hit]

@@ -31,7 +31,8 @@ def results(tmp_path):
     for method in ("cluster_hull", "random"):
         measures = ("gain_m2", "covered_m2", "bound_m2", "gain", "covered", "bound")
         columns = dict.fromkeys(measures, np.array([5.0, 9.0]))
-        tables.write(tmp_path / f"{method}.parquet", tables.SELECTION, {"rank": [1, 2], "scan_id": [4, 0]} | columns)
+        known = {"rank": [1, 2], "scan_id": [4, 0], "n_points": [500, 500]}
+        tables.write(tmp_path / f"{method}.parquet", tables.SELECTION, known | columns)
     merged = facemaking.merge(walls([(0, 0, 6, 0), (6, 4, 0, 4)]), BARE)
     tables.write(tmp_path / "faces.parquet", tables.FACES, merged)
     return tmp_path

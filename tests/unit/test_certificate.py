@@ -1,5 +1,3 @@
-from itertools import combinations
-
 import numpy as np
 import pytest
 import shapely
@@ -7,16 +5,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import box
 
+from hullmaking import best_by_trying_all
 from scanplan import certificate, greedy
-
-
-def best_by_trying_all(polygons):
-    n = len(polygons)
-    return [
-        max(shapely.union_all([polygons[i] for i in subset]).area for subset in combinations(range(n), k))
-        for k in range(1, n + 1)
-    ]
-
 
 # greedy takes the middle first (6), then one side (3); the two sides together are 10
 TRAP = [box(2, 0, 8, 1), box(0, 0, 5, 1), box(5, 0, 10, 1)]
@@ -75,3 +65,9 @@ def test_steps_between_the_checkpoints_tighten_the_bound():
 def test_of_none_and_of_nothing():
     assert certificate.upper_bound(greedy.greedy_order([])).shape == (0,)
     assert certificate.upper_bound(greedy.greedy_order([shapely.Polygon()] * 3)).tolist() == [0, 0, 0]
+
+
+def test_nearly_linear_in_the_number_of_scans():
+    steps = [len(certificate._steps(n)) for n in (1000, 10_000)]
+    assert steps[0] < 180 and steps[1] < 260
+    assert certificate._steps(1) == [0] and certificate._steps(40) == list(range(40))

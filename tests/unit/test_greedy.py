@@ -3,36 +3,12 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from hypothesis.strategies import composite
 from shapely import box
 
+from hullmaking import hull_sets, scattered
 from reference import hull_selection
 from scanplan import greedy
 from scanplan.greedy import TIE_M2
-
-
-@composite
-def hull_sets(draw, max_size=9):
-    """Sets of polygons of every awkward kind: boxes on a grid, convex, several parts, again, nested, empty."""
-    chosen = []
-    for kind in draw(st.lists(st.sampled_from("bbbcccmrns0"), min_size=1, max_size=max_size)):
-        if kind == "b":
-            x, y, w, h = draw(st.tuples(*[st.integers(0, 6)] * 2, *[st.integers(1, 4)] * 2))
-            chosen.append(box(x, y, x + w, y + h))
-        elif kind == "c":
-            corners = draw(st.lists(st.tuples(*[st.floats(0, 8, width=32)] * 2), min_size=3, max_size=8))
-            chosen.append(shapely.MultiPoint(corners).convex_hull)
-        elif kind == "m":
-            x = draw(st.integers(0, 5))
-            chosen.append(box(x, 0, x + 1, 3) | box(x + 2, 1, x + 3, 5))
-        elif kind == "s":
-            chosen.append(shapely.Point(draw(st.floats(0, 8, width=32)), 3).buffer(1.5, quad_segs=4))
-        elif kind == "0" or not chosen:
-            chosen.append(shapely.Polygon())
-        else:
-            earlier = draw(st.sampled_from(chosen))
-            chosen.append(earlier if kind == "r" else shapely.affinity.scale(earlier, 0.5, 0.5))
-    return chosen
 
 
 def test_takes_the_largest_then_what_adds_most():
@@ -84,22 +60,22 @@ def test_areas_behave_as_areas_of_unions_do(polygons):
     assert area_m2.max() - 1e-9 <= result.covered_m2[-1] <= area_m2.sum() + 1e-9
 
 
-def scattered(n, seed=0):
-    """Long thin hulls along a 60 m walk, three to a scan."""
-    rng = np.random.default_rng(seed)
-    centre = np.column_stack([np.linspace(0, 60, n), rng.normal(0, 0.5, n)])
-    return [
-        shapely.union_all([shapely.MultiPoint(rng.normal(c, (2, 0.8), (12, 2))).convex_hull for _ in range(3)])
-        for c in centre
-    ]
-
-
 def test_same_order_as_algorithm_1_on_a_walk():
     polygons = scattered(70)
     order, covered_m2 = hull_selection.hull_selection(polygons)
     result = greedy.greedy_order(polygons)
     assert result.order.tolist() == order
     assert result.covered_m2 == pytest.approx(covered_m2, abs=1e-9)
+
+
+def test_same_order_as_algorithm_1_on_a_dense_walk_and_on_any_threads():
+    # every scan beside a hundred others, so that batches are large and parts are covered together
+    polygons = scattered(160, seed=3)
+    order, covered_m2 = hull_selection.hull_selection(polygons, 40)
+    found = [greedy.greedy_order(polygons, threads=threads) for threads in (1, 2)]
+    assert found[0].order[:40].tolist() == order
+    assert found[0].covered_m2[:40] == pytest.approx(covered_m2, abs=1e-9)
+    assert found[0].order.tolist() == found[1].order.tolist() and (found[0].gain_m2 == found[1].gain_m2).all()
 
 
 def test_a_move_of_a_thousand_kilometres_changes_nothing():

@@ -125,6 +125,22 @@ def test_far_from_the_origin_the_clusters_are_the_same():
     assert far["area_m2"] == pytest.approx(near["area_m2"], abs=1e-6)
 
 
+def test_rows_do_not_depend_on_the_scans_done_before():
+    scans = {i: room(500, seed=i) for i in (3, 8, 9, 40)}
+    alone = [hulls.cluster_hulls(i, scans[i], **SETTINGS) for i in scans]
+    backwards = [hulls.cluster_hulls(i, scans[i], **SETTINGS) for i in reversed(scans)][::-1]
+    whole, again = hulls.concatenated(alone), hulls.concatenated(backwards)
+    assert all((whole[name] == again[name]).all() for name in whole)
+
+
+@pytest.mark.parametrize("xy_m", [[(1, 2)], [(1, 2)] * 5, [(0, 0), (3, 3)], [(i, 2 * i) for i in range(9)]])
+def test_too_few_points_or_a_line_cover_nothing(xy_m):
+    rows = hulls.cluster_hulls(0, np.array(xy_m, float), **SETTINGS)
+    assert rows["n_points"].sum() == len(xy_m)
+    assert (rows["area_m2"] == 0).all() and not shapely.is_empty(geometries(rows)).any()
+    assert hulls.scan_polygons(rows)[1][0].is_empty
+
+
 @pytest.mark.parametrize(
     "xyz_m", [np.zeros((0, 3)), np.zeros(3), np.zeros((4, 4)), [(0, np.nan, 0)], [(np.inf, 0, 0), (0, 0, 0)]]
 )

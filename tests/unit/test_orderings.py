@@ -53,6 +53,7 @@ def order(method, columns, *, seed=0, **options):
         ("distance", [3, 21, 20, 8], [2, 2, 7, 7]),
         ("cluster_hull", [20, 3, 8, 21], [5, 7, 7, 7]),
         ("hull", [3, 20, 8, 21], [12, 17, 17, 17]),
+        ("streaming", [20, 3, 8, 21], [5, 7, 7, 7]),
         ("sequential", [3, 8, 20, 21], [2, 6, 7, 7]),
     ],
 )
@@ -86,7 +87,7 @@ def test_bound_is_above_every_order_of_the_same_polygons(method):
 def test_one_scan_and_no_area(method):
     one = order(method, columns({5: SCANS[8]}))
     own = {"wall_length": [2.0], "visibility": [1.0]}.get(method, [4.0])
-    assert [one[n].tolist() for n in one] == [[1], [5], [4.0], [4.0], [4.0], own, own, own]
+    assert [one[n].tolist() for n in one] == [[1], [5], [4], [4.0], [4.0], [4.0], own, own, own]
     nothing = order(method, columns({2: SCANS[21]}))
     assert nothing["covered_m2"].tolist() == nothing["bound_m2"].tolist() == [0.0]
     assert "first 1 cover at least 100 %" in orderings.summary(method, nothing)
@@ -137,8 +138,39 @@ def test_scans_that_show_no_wall_come_last_by_id():
     assert found["scan_id"].tolist() == [3, 8, 20, 21] and found["covered"].tolist() == [0, 0, 0, 0]
 
 
+def test_streaming_chooses_for_its_slots_and_then_goes_on_as_recorded():
+    scans = {i: [box(3 * i, 0, 3 * i + 1 + i % 3, 1)] for i in range(9)}
+    found = order("streaming", columns(scans), streaming_settings={"k": 3, "epsilon": 0.1})
+    assert found["scan_id"].tolist() == [2, 5, 8, 0, 1, 3, 4, 6, 7]
+    assert found["covered_m2"][2] == found["bound_m2"][2] == 9
+
+
+@pytest.mark.parametrize(
+    ("method", "scan_ids"),
+    [
+        ("wall_length", [21, 8, 3, 20]),
+        ("visibility", [21, 8, 20, 3]),
+        ("cluster_hull", [8, 3, 20, 21]),
+        ("hull", [3, 8, 20, 21]),
+    ],
+)
+def test_a_budget_puts_scans_that_fit_it_first(method, scan_ids):
+    table = columns()
+    # 8, 4, 100 and 5 points: scan 20 alone is too much
+    table["n_points"] = np.array([4, 4, 4, 50, 50, 5])
+    found = order(method, table, budget=14)
+    assert found["scan_id"].tolist() == scan_ids
+    assert found["n_points"].tolist() == [{3: 8, 8: 4, 20: 100, 21: 5}[i] for i in scan_ids]
+    assert (found["bound"] >= found["covered"]).all()
+
+
+@pytest.mark.parametrize("method", ["sequential", "streaming"])
+def test_a_budget_changes_no_order_without_an_objective(method):
+    assert order(method, columns(), budget=5)["scan_id"].tolist() == order(method, columns())["scan_id"].tolist()
+
+
 def test_refuses_an_unknown_method():
     with pytest.raises(
-        ValueError, match="only wall_length, visibility, cluster_hull, hull, every_nth, distance, random, sequential"
+        ValueError, match="only wall_length, visibility, cluster_hull, hull, streaming, every_nth, distance"
     ):
         orderings.order("best", columns(), seed=0)

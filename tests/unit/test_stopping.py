@@ -2,8 +2,13 @@ import numpy as np
 import pytest
 
 from scanplan import stopping
+from scanplan.errors import StageError
 
-COLUMNS = {"covered_m2": np.array([50.0, 80.0, 95.0, 100.0, 100.0])}
+COLUMNS = {
+    "covered_m2": np.array([50.0, 80.0, 95.0, 100.0, 100.0]),
+    "gain_m2": np.array([50.0, 30.0, 15.0, 5.0, 0.0]),
+    "n_points": np.array([1000, 3000, 2000, 1000, 1000]),
+}
 
 
 @pytest.mark.parametrize(
@@ -18,6 +23,12 @@ COLUMNS = {"covered_m2": np.array([50.0, 80.0, 95.0, 100.0, 100.0])}
         ({"area_share": 1.0}, 4, "4 of 5 scans cover 1 of the 100.0 m2 that all cover"),
         ({"n_scans": 3, "area_share": 0.8}, 2, "2 of 5 scans cover 0.8 of the 100.0 m2 that all cover"),
         ({"n_scans": 1, "area_share": 0.8}, 1, "1 of 5 scans, as asked for"),
+        ({"min_gain_m2": 15.0}, 3, "3 of 5 scans: no later one adds 15 m2"),
+        ({"min_gain_m2": 60.0}, 1, "1 of 5 scans: no later one adds 60 m2"),
+        ({"max_points": 5999}, 2, "2 of 5 scans: 4,000 of at most 5,999 points"),
+        ({"max_points": 6000}, 3, "3 of 5 scans: 6,000 of at most 6,000 points"),
+        ({"max_bytes": 12_000}, 1, "1 of 5 scans: 12,000 of at most 12,000 bytes"),
+        ({"max_bytes": 10**9, "min_gain_m2": 5.0}, 4, "4 of 5 scans: no later one adds 5 m2"),
     ],
 )
 def test_number_and_reason(limits, k, reason):
@@ -40,9 +51,39 @@ def test_no_area_needs_one_scan():
     assert stopping.n_scans({"covered_m2": np.zeros(3)}, area_share=0.9)[0] == 1
 
 
-@pytest.mark.parametrize("wrong", [{"n_scans": 0}, {"n_scans": -1}, {"area_share": 0}, {"area_share": 1.01}])
+def test_a_late_scan_that_adds_much_is_not_lost_in_an_order_without_greed():
+    gain_m2 = np.array([3.0, 0.0, 7.0, 1.0])
+    columns = {"covered_m2": np.cumsum(gain_m2), "gain_m2": gain_m2}
+    assert stopping.n_scans(columns, min_gain_m2=2.0)[0] == 3
+
+
+def test_a_budget_below_the_first_scan_is_told():
+    with pytest.raises(StageError, match="max_points: the first scan has 1,000 points, the budget is 999; raise it"):
+        stopping.n_scans(COLUMNS, max_points=999)
+
+
+@pytest.mark.parametrize(
+    ("limits", "points"),
+    [({}, None), ({"max_points": 7}, 7), ({"max_bytes": 25}, 2), ({"max_points": 7, "max_bytes": 120}, 7)],
+)
+def test_budget_in_points(limits, points):
+    assert stopping.points_budget(**limits) == points
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"n_scans": 0},
+        {"n_scans": -1},
+        {"area_share": 0},
+        {"area_share": 1.01},
+        {"min_gain_m2": 0.0},
+        {"min_gain_m2": np.nan},
+        {"max_points": 0},
+    ],
+)
 def test_refuses_a_limit_out_of_range(wrong):
-    with pytest.raises(ValueError, match=r"least one|area_share"):
+    with pytest.raises(ValueError, match=r"n_scans|area_share|min_gain|max_points"):
         stopping.n_scans(COLUMNS, **wrong)
 
 

@@ -9,6 +9,7 @@ from scanplan.errors import StageError
 ROWS = {
     "rank": [1, 2, 3],
     "scan_id": [7, 3, 5],
+    "n_points": [900, 800, 700],
     "gain_m2": [4.0, 2.0, 0.0],
     "covered_m2": [4.0, 6.0, 6.0],
     "bound_m2": [4.0, 6.0, 6.0],

@@ -110,6 +110,19 @@ def order_tables(wildcards):
     return {table: f"results/{wildcards.dataset}/{table}.parquet" for table in tables}
 
 
+def order_settings(wildcards):
+    """Settings of the job's ordering: a method's own only for that method."""
+    selection = DATASETS[wildcards.dataset].settings["selection"]
+    names = ["seed", "min_overlap"] + ["streaming"] * (wildcards.method == "streaming")
+    return {name: selection[name] for name in names}
+
+
+def budget(wildcards):
+    """Limits of what the scans of the plan may cost together."""
+    stop = DATASETS[wildcards.dataset].settings["selection"]["stop"]
+    return {name: stop[name] for name in ("max_points", "max_bytes")}
+
+
 def plan_settings(wildcards):
     """Settings of the plan's own stage, part by part."""
     plan = DATASETS[wildcards.dataset].settings["plan"]

@@ -59,7 +59,7 @@ rule order_scans:
         mem_mb=1500,
         runtime=30,
     params:
-        seed=setting("selection", "seed"),
-        min_overlap=setting("selection", "min_overlap"),
+        settings=order_settings,
+        budget=budget,
     script:
         "../../scripts/order_scans.py"

@@ -1,0 +1,72 @@
+"""A simulated drive at ten scans a second, with exact poses and without sweep, for the benchmarks of selection."""
+
+import copy
+from pathlib import Path
+
+import numpy as np
+import shapely
+import wallscans
+
+from scanplan import hulls, raycast, simulation
+
+RATE_HZ = 10.0
+N_AZIMUTH = 1800  # of a real VLP-16
+SPEED_M_S = 0.75
+
+
+def scans(building, settings, n, **site):
+    """Simulate the first n scans of a drive.
+
+    Parameters
+    ----------
+    building : path-like
+    settings : dict
+        The section `simulate` of the configuration.
+    n : int
+    **site
+        Instead of settings of `simulate.site`.
+
+    Returns
+    -------
+    list of (m, 3) float32
+        Points in the map, of each scan.
+    """
+    chosen = copy.deepcopy(settings)
+    chosen["sensor"] |= {"n_azimuth": N_AZIMUTH, "sweep": False, "rate_hz": RATE_HZ}
+    chosen["drive"]["speed_m_s"] = SPEED_M_S
+    rig = {key: chosen[key] for key in ("mount", "sensor", "errors", "drive", "people")}
+    found = simulation.site(Path(building).read_bytes(), Path(building), chosen["mount"], **chosen["site"] | site)
+    survey = simulation.prepare(found, seed=1, **rig)
+    scene = raycast.Scene(survey.mesh)
+    poses = simulation.true_poses(survey)[1][:n]
+    return [wallscans.points(survey, scene, i, pose) for i, pose in enumerate(poses)]
+
+
+def polygons(scans, settings, *, thin=1):
+    """Return the polygons (n,) of scans; `settings` are those of `hulls`."""
+    parts = [hulls.cluster_hulls(i, xyz_m[::thin], **settings) for i, xyz_m in enumerate(scans)]
+    return hulls.scan_polygons(hulls.concatenated(parts))[1]
+
+
+def side_by_side(scans, settings, *, copies, thin):
+    """Return polygons of a survey of many equal buildings in two rows, each with clusters of its own.
+
+    Parameters
+    ----------
+    scans : list of (m, 3) float32
+        Of the first building.
+    settings : dict
+        Of `hulls`.
+    copies : int
+        Number of buildings.
+    thin : int
+        One point in so many is clustered.
+    """
+    points_m = np.concatenate([xyz_m[:, :2] for xyz_m in scans])
+    width_m = np.ceil(points_m.max(axis=0) - points_m.min(axis=0))
+    floors = []
+    for i in range(copies):
+        shift_m = width_m * [i % (copies // 2), i // (copies // 2)]
+        drawn = polygons(scans, settings | {"seed": i}, thin=thin)
+        floors.append(shapely.transform(drawn, lambda xy, shift_m=shift_m: xy + shift_m))
+    return np.concatenate(floors)
