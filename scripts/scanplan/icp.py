@@ -14,6 +14,8 @@ _COVARIANCE_NEIGHBOURS = 10
 _PAIR_SIGMA_M = 0.045
 _LEAST_SHARE = 0.005
 _FACING = 0.5
+# metres and radians: an alignment that moves less has arrived; a rough one needs not arrive
+_STEP_DONE, _ROUGH_STEP_DONE = 1e-4, 2e-3
 
 
 @dataclass(frozen=True)
@@ -159,13 +161,14 @@ def align(source, target, target_from_source, *, method, distances_m, max_iterat
     step = planarfit.align if target.planar else _align_spatial
     motion = target_from_source
     for distance_m in distances_m:
-        motion, information = step(source, target, motion, method, distance_m, max_iterations)
+        step_done = _STEP_DONE if distance_m == distances_m[-1] else _ROUGH_STEP_DONE
+        motion, information = step(source, target, motion, method, distance_m, max_iterations, step_done)
         if information is None:
             return Fit(target_from_source, np.zeros((6, 6)), 6, False)
     return _observable(target_from_source, motion, information, np.sqrt(np.mean(source.xyz_m**2) * 3))
 
 
-def _align_spatial(source, target, start, method, distance_m, max_iterations):
+def _align_spatial(source, target, start, method, distance_m, max_iterations, step_done):
     result = small_gicp.align(
         target.features,
         source.features,
@@ -174,8 +177,8 @@ def _align_spatial(source, target, start, method, distance_m, max_iterations):
         registration_type=METHODS[method],
         max_correspondence_distance=distance_m,
         max_iterations=max_iterations,
-        rotation_epsilon=1e-4,
-        translation_epsilon=1e-4,
+        rotation_epsilon=step_done,
+        translation_epsilon=step_done,
     )
     if not result.num_inliers:
         return start, None

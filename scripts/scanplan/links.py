@@ -125,7 +125,7 @@ def thinned(xyz_m, level_from_sensor, planar, settings):
 
     In a small room, or in a camera's narrow view, the usual cubes are too few: then smaller ones are taken.
     """
-    moved = se3.transform(level_from_sensor, xyz_m)
+    moved = se3.transform(level_from_sensor, xyz_m) if planar else xyz_m
     voxel_m = settings.voxel_planar_m if planar else settings.voxel_m
     found = icp.thin(moved, planar=planar, voxel_m=voxel_m)
     if planar or len(found) >= settings.voxels:

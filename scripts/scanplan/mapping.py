@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scanplan import batches, links, multiway, registration, se3
+from scanplan import batches, links, multiway, registration, se3, stagelog
 
 
 @dataclass(frozen=True)
@@ -68,6 +68,8 @@ def register(survey, scans, raw, thinned, run, settings):
         judged, edges = judged + verdicts, edges + found
         for xyz_m in clouds:
             thinned.add(xyz_m)
+        share = sum(verdict.kept for verdict in judged) / len(judged)
+        stagelog.say(f"register_scans: {len(judged)}/{len(survey.scan_ids)} scans registered, {share:.0%} kept")
     kept = np.flatnonzero([verdict.kept for verdict in judged])
     if not settings.graph.optimise or limits.icp_method == registration.GIVEN_POSES or len(kept) == 0:
         return judged, None

@@ -3,13 +3,12 @@
 import numpy as np
 
 _NEIGHBOURS = 6
-_STEP_DONE = 1e-5
 _PAIR_SIGMA_M = 0.045
 _LEAST_SHARE = 1e-3
 _PLANAR = np.array([0, 1, 5])
 
 
-def align(source, target, start, _method, distance_m, max_iterations):
+def align(source, target, start, _method, distance_m, max_iterations, step_done):
     """Refine a motion in the plane; see `icp.align`.
 
     Returns
@@ -27,7 +26,7 @@ def align(source, target, start, _method, distance_m, max_iterations):
         information, gradient = equations
         step = _solve(information, gradient, reach_m)
         motion = motion @ _motion(step)
-        if np.abs(step).max() < _STEP_DONE:
+        if np.abs(step).max() < step_done:
             break
     return motion, _in_space(information)
 

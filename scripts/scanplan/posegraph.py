@@ -15,7 +15,7 @@ from scanplan import se3, twists
 PLANAR_DIMENSIONS = (0, 1, 5)
 SPATIAL_DIMENSIONS = (0, 1, 2, 3, 4, 5)
 _STEP_DONE = 1e-5
-_WIDTHS, _ROUGHEST = (1000.0, 100.0, 10.0, 3.0, 1.0), 30.0
+_WIDTHS, _ROUGHEST = (1000.0, 30.0, 3.0, 1.0), 30.0
 _FIRST_DAMPING, _LEAST_DAMPING, _MOST_DAMPING = 1e-6, 1e-9, 1e6
 
 

@@ -7,6 +7,10 @@ makes the six numbers those that errors are stated in.
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+_TINY = 1e-12
+# near half a turn the sine says nothing of the axis
+_NEARLY_REVERSED = -0.99
+
 
 def motion(twist):
     """Return the 4 x 4 matrices of six numbers each, (..., 6) to (..., 4, 4)."""
@@ -21,8 +25,16 @@ def motion(twist):
 def of_motion(a_from_b):
     """Return the six numbers of rigid motions, (..., 4, 4) to (..., 6); the inverse of `motion`."""
     a_from_b = np.asarray(a_from_b, float)
-    turns = Rotation.from_matrix(a_from_b[..., :3, :3].reshape(-1, 3, 3)).as_rotvec()
-    return np.concatenate([a_from_b[..., :3, 3], turns.reshape(*a_from_b.shape[:-2], 3)], axis=-1)
+    turn = a_from_b[..., :3, :3]
+    # sin and cos of the angle, times the axis: a tenth of the time of scipy's way through quaternions
+    axis = np.stack([turn[..., i, j] - turn[..., j, i] for i, j in ((2, 1), (0, 2), (1, 0))], axis=-1) / 2
+    sine, cosine = np.linalg.norm(axis, axis=-1), (np.trace(turn, axis1=-2, axis2=-1) - 1) / 2
+    scale = np.where(sine > _TINY, np.arctan2(sine, cosine) / np.maximum(sine, _TINY), 1.0)
+    vector = axis * scale[..., None]
+    reversed_turn = (cosine < _NEARLY_REVERSED) & np.isfinite(cosine)
+    if np.any(reversed_turn):
+        vector[reversed_turn] = Rotation.from_matrix(turn[reversed_turn]).as_rotvec()
+    return np.concatenate([a_from_b[..., :3, 3], vector], axis=-1)
 
 
 def cross_matrix(vector):

@@ -112,3 +112,27 @@ def test_no_links_make_an_empty_table(tmp_path):
     tables.write(tmp_path / "edges.parquet", tables.EDGES, linktable.columns(None), allow_empty=True)
     assert len(tables.read(tmp_path / "edges.parquet", tables.EDGES, allow_empty=True)["source"]) == 0
     assert linktable.summary(None) == "no pose graph"
+
+
+def test_a_jump_of_the_localiser_by_two_metres_loses_no_region(drive, mapped, tmp_path):
+    """It stays away for a third of the drive: scans are rejected there until it is believed anew, and again after."""
+    scans, priors, true = drive
+    jumped = np.array(priors)
+    jumped[25:45] = pose(1.6, 1.2, 0) @ jumped[25:45]
+    jumped[25:45, 2, 3] -= 0.4
+    judged, _ = register((scans, jumped, true), tmp_path)
+    reasons = [verdict.reason for verdict in judged]
+    assert reasons.count("anchor") == 3 and reasons.count("kept") > 45
+    kept_there = [verdict.kept for verdict in judged[25:45]]
+    assert sum(kept_there) > 10
+
+
+def test_no_candidate_that_is_kept_gives_no_links(drive, tmp_path):
+    judged, result = register(drive, tmp_path, min_points=10**6)
+    assert result is None and {verdict.reason for verdict in judged} == {"too_few_points"}
+
+
+def test_poses_taken_as_given_are_not_moved(drive, tmp_path):
+    judged, result = register(drive, tmp_path, icp_method="none")
+    assert result is None
+    np.testing.assert_array_equal([verdict.world_from_sensor for verdict in judged], drive[1])

@@ -15,6 +15,17 @@ def test_a_motion_has_the_numbers_it_was_made_of(numbers):
     np.testing.assert_allclose(motion @ se3.inverse(motion), np.eye(4), atol=1e-12)
 
 
+def test_large_turns_have_the_rotation_vectors_of_scipy():
+    turns = Rotation.random(300, random_state=1)
+    motions = np.tile(np.eye(4), (301, 1, 1))
+    motions[:300, :3, :3] = turns.as_matrix()
+    motions[300, :3, :3] = Rotation.from_rotvec([0, np.pi - 1e-9, 0]).as_matrix()
+    np.testing.assert_allclose(twists.of_motion(motions)[:300, 3:], turns.as_rotvec(), atol=1e-9)
+    np.testing.assert_allclose(np.abs(twists.of_motion(motions)[300, 3:]), [0, np.pi, 0], atol=1e-6)
+    np.testing.assert_allclose(twists.of_motion(motions[0]), twists.of_motion(motions)[0])
+    np.testing.assert_allclose(twists.of_motion(motions[300])[3:], twists.of_motion(motions)[300, 3:])
+
+
 @given(small, small)
 def test_the_adjoint_takes_a_twist_to_the_other_frame(pose, twist):
     a_from_b, twist = twists.motion(pose), 1e-6 * np.array(twist)
