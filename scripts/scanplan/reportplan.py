@@ -38,6 +38,7 @@ def svg(plan, stretches, positions_m, shown_m):
         f'<svg id="plan" viewBox="{box}" role="img" aria-labelledby="plan-title" tabindex="0">',
         f'<title id="plan-title">Floor plan of {escape(plan.name)}</title>',
         '<g id="finished">', *_rooms(plan), *_walls(plan), *_openings(plan), "</g>",
+        '<g id="picks">', *_picks(plan), "</g>",
         '<g id="growth">', *_stretches(stretches), "</g>",
         '<g id="shown">', *(_path(lines_m, f'class="shown" data-rank="{rank}"')
                             for rank, lines_m in enumerate(shown_m, 1) if len(lines_m)), "</g>",
@@ -53,7 +54,10 @@ def _walls(plan):
             yield f'<path class="wall {state}" d="{_outline(part)}"><title>{_TITLES[state]}</title></path>'
         for line in plan.single(state):
             yield _path(shapely.get_coordinates(line)[None], f'class="single {state}"')
-    # what a row of the table points at
+
+
+def _picks(plan):
+    """Draw what a row of the table of walls points at."""
     for wall, line in zip(plan.walls["wall"].tolist(), floorplan.lines_m(plan.walls), strict=True):
         yield _path(line[None], f'class="pick" data-wall="{wall}"', f"<title>wall {wall}</title>")
 

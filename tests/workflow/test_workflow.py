@@ -23,7 +23,8 @@ def project(project_root, tmp_path_factory):
 
 
 EVALUATED = {"evaluate_walls", "draw_evaluation"}
-AFTER_ORDERS = {"order_scans", "assemble_plan", "export_plan", "draw_scans", "draw_area", "draw_walls"} | EVALUATED
+PLANNED = {"assemble_plan", "export_plan", "draw_walls", "evaluate_plan"}
+AFTER_ORDERS = {"order_scans", "draw_scans", "draw_area"} | PLANNED | EVALUATED
 AFTER_HULLS = {"build_hulls"} | AFTER_ORDERS
 
 
@@ -59,15 +60,15 @@ def test_a_touched_file_reruns_nothing(project):
     ("change", "rules"),
     [
         ("hulls: {n_clusters: 7}", AFTER_HULLS),
-        ("plan: {merge: {tolerance_m: 0.08}}", {"assemble_plan", "export_plan", "draw_walls"}),
-        ("plan: {method: sequential}", {"assemble_plan", "export_plan", "draw_scans", "draw_walls", "draw_evaluation"}),
-        ("evaluation: {bitmap_cell_m: 0.1}", EVALUATED),
+        ("plan: {merge: {tolerance_m: 0.08}}", PLANNED),
+        ("plan: {method: sequential}", PLANNED | {"draw_scans", "draw_evaluation"}),
+        ("evaluation: {bitmap_cell_m: 0.1}", EVALUATED | {"evaluate_plan"}),
         ("selection: {wall_length: {cell_m: 0.5}}", {"observe_walls"} | AFTER_ORDERS),
         ("selection: {visibility: {range_m: 9.0}}", {"build_visibility", "order_scans", "draw_area"} | EVALUATED),
         ("selection: {min_overlap: 0.1}", AFTER_ORDERS),
         (
             "walls: {cluster_ransac: {min_length_m: 0.7}}",
-            {"extract_walls", "assemble_plan", "export_plan", "draw_walls"} | EVALUATED,
+            {"extract_walls"} | PLANNED | EVALUATED,
         ),
     ],
 )
@@ -83,9 +84,9 @@ def test_a_changed_parameter_reruns_exactly_its_stages(project, change, rules):
     [
         ("hulls", AFTER_HULLS),
         ("cad", {"export_plan"}),
-        ("visibility", EVALUATED),
-        ("poseerrors", {"evaluate_poses"} | EVALUATED),
-        ("faces", {"assemble_plan", "export_plan", "draw_walls"}),
+        ("visibility", EVALUATED | {"evaluate_plan"}),
+        ("poseerrors", {"evaluate_poses", "evaluate_plan"} | EVALUATED),
+        ("faces", PLANNED),
         ("reportplan", set()),
     ],
 )
