@@ -64,7 +64,7 @@ def page(figures, beyond, claims, steps, limited):
         claims_table(claims, [claim for claim in CLAIMS if not claim.criterion]),
         '<h2 id="table">Table 5.1: computation time required for each step</h2>',
         steps_table(steps, limited),
-        "<p><small>First seed. Our times are of whole jobs: starting Python and reading and writing tables is part of them;"
+        "<p><small>First seed. Our times are of whole jobs: starting Python and reading and writing tables is in them;"
         " the data after the hulls are the table of hulls.</small></p>",
         "<h2>Figures</h2>",
         *(_figure(figure, figures[figure.file], claims) for figure in FIGURES),
