@@ -24,6 +24,7 @@ include: "workflow/rules/walls.smk"
 include: "workflow/rules/plan.smk"
 include: "workflow/rules/evaluate.smk"
 include: "workflow/rules/report.smk"
+include: "workflow/rules/evidence.smk"
 include: "workflow/rules/thesis.smk"
 
 

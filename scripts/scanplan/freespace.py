@@ -5,6 +5,7 @@ import shapely
 from shapely.geometry import MultiPolygon, Polygon
 
 _SECTOR_RAD = np.radians(0.5)
+_RAYS_A_SECTOR = 2.2
 _SIMPLIFY_M = 0.02
 _SPIKE_M = 0.04
 
@@ -12,8 +13,8 @@ _SPIKE_M = 0.04
 def visible(rays):
     """Return what each scan's rays went over, as polygons.
 
-    In every half degree a ray of the longest tenth tells how far one can see; where no ray came back from, nothing is
-    known. Spikes thinner than 8 cm are taken off.
+    In every half degree (more where a sensor's rays are further apart) a ray of the longest tenth tells how far one
+    can see; where no ray came back from, nothing is known. Spikes thinner than 8 cm are taken off.
 
     Parameters
     ----------
@@ -31,8 +32,12 @@ def visible(rays):
 
 
 def _star(origin_m, azimuth_rad, range_m):
-    count = round(2 * np.pi / _SECTOR_RAD)
-    sector = np.minimum(((azimuth_rad + np.pi) / _SECTOR_RAD).astype(np.int64), count - 1)
+    steps_rad = np.diff(azimuth_rad)
+    steps_rad = steps_rad[steps_rad > 0]
+    width_rad = max(_SECTOR_RAD, _RAYS_A_SECTOR * float(np.median(steps_rad)) if len(steps_rad) else 0.0)
+    count = max(int(2 * np.pi / width_rad), 3)
+    width_rad = 2 * np.pi / count
+    sector = np.minimum(((azimuth_rad + np.pi) / width_rad).astype(np.int64), count - 1)
     reach_m = np.zeros(count)
     order = np.lexsort((range_m, sector))
     first = np.searchsorted(sector[order], np.arange(count + 1))
@@ -40,7 +45,7 @@ def _star(origin_m, azimuth_rad, range_m):
     # not the longest of all: one stray point would open a way through a wall
     seen = number > 0
     reach_m[seen] = range_m[order][first[:-1][seen] + (0.9 * (number[seen] - 1)).astype(np.int64)]
-    edge = -np.pi + _SECTOR_RAD * np.arange(count + 1)
+    edge = -np.pi + width_rad * np.arange(count + 1)
     begin, end = (np.column_stack([np.cos(e), np.sin(e)]) * reach_m[:, None] for e in (edge[:-1], edge[1:]))
     corners = origin_m + np.stack([begin, end], axis=1).reshape(-1, 2)
     star = shapely.make_valid(Polygon(corners)).buffer(-_SPIKE_M, join_style="mitre").buffer(_SPIKE_M)

@@ -6,6 +6,7 @@ import shapely
 _GRID_M = 1e-6
 _DUST_M = 1e-15
 _WORTH_THREADS = 32
+_POLYGON, _MULTIPOLYGON = 3, 6  # shapely's type numbers
 
 
 def near_origin(polygons):
@@ -32,8 +33,7 @@ def near_origin(polygons):
     if shapely.is_missing(array).any() or not np.isfinite(xy_m).all():
         raise ValueError("every polygon must be there, with finite coordinates")
     centre = np.floor(xy_m.mean(axis=0)) if len(xy_m) else 0.0
-    array[:] = [_polygonal(p) for p in shapely.transform(array, lambda xy: _without_dust(xy - centre))]
-    return array
+    return _polygonal(shapely.transform(array, lambda xy: _without_dust(xy - centre)))
 
 
 def difference(polygons, others, threads=None):
@@ -49,7 +49,7 @@ def difference(polygons, others, threads=None):
 
 def intersection(polygons, others):
     """Intersect (n,) polygons with (n,) others, without points and lines where they only touch; see `difference`."""
-    return np.array([_polygonal(p) for p in _each(shapely.intersection, polygons, others)], object)
+    return _polygonal(_each(shapely.intersection, polygons, others))
 
 
 def union(polygons):
@@ -79,9 +79,14 @@ def _without_dust(xy_m):
     return np.where(np.abs(xy_m) < _DUST_M, 0.0, xy_m)
 
 
-def _polygonal(geometry):
-    """Reduce a geometry to a valid Polygon or MultiPolygon of the same area."""
-    if isinstance(geometry, shapely.Polygon | shapely.MultiPolygon) and geometry.is_valid:
-        return geometry
+def _polygonal(geometries):
+    """Reduce geometries (n,) to valid Polygons or MultiPolygons of the same area."""
+    geometries = geometries.copy()
+    fit = np.isin(shapely.get_type_id(geometries), (_POLYGON, _MULTIPOLYGON)) & shapely.is_valid(geometries)
+    geometries[~fit] = [_areas_of(geometry) for geometry in geometries[~fit]]
+    return geometries
+
+
+def _areas_of(geometry):
     members = shapely.get_parts(shapely.get_parts(shapely.make_valid(geometry)))
     return shapely.union_all(members[shapely.get_dimensions(members) == 2])

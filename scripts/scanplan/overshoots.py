@@ -1,4 +1,4 @@
-"""Stretches that cross at a flat angle, as chords of a curve do: each is cut where the other shows the wall better."""
+"""What stretches show too much: chords of a curve beyond each other, and stray points beyond a corner."""
 
 import math
 from dataclasses import replace
@@ -6,9 +6,13 @@ from dataclasses import replace
 import numpy as np
 import shapely
 
+from scanplan import crossings
+
 _MOST_RAD = math.radians(30)
 _ROUND_M = 1e-9
 _LONGER_M = 0.1
+_REACH_M = 0.1
+_TAIL_M = 1.0
 
 
 def without(stretches):
@@ -39,6 +43,40 @@ def without(stretches):
             if arm[loser] <= arm[1 - loser] + _LONGER_M:
                 bound[(one, other)[loser]] = place[loser]
     return [replace(s, low_m=a, high_m=max(a, b)) for s, a, b in zip(stretches, low_m, high_m, strict=True)]
+
+
+def without_tails(stretches, *, share):
+    """Cut what goes on for up to a metre behind a stretch that crosses, with too few points a metre to be of one wall.
+
+    Parameters
+    ----------
+    stretches : list of stretches.Stretch
+    share : float, 0 to 1
+        Fewer points a metre than this share of the whole stretch's are too few; 0 cuts nothing.
+
+    Returns
+    -------
+    list of stretches.Stretch
+        In the order given.
+    """
+    stacked = crossings.stack(stretches)
+    return [_without_tails(s, crossings.find(s.line, stacked, reach_m=_REACH_M).place_m, share) for s in stretches]
+
+
+def _without_tails(stretch, places_m, share):
+    few = share * stretch.n_points / max(stretch.length_m, _ROUND_M)
+    for place_m in sorted(places_m.tolist(), key=lambda place: abs(place - (stretch.low_m + stretch.high_m) / 2)):
+        for name, sign in (("low_m", -1), ("high_m", 1)):
+            tail_m = sign * (getattr(stretch, name) - place_m)
+            far = sorted((place_m + sign * _REACH_M, getattr(stretch, name)))
+            if _REACH_M < tail_m <= _TAIL_M and _count(stretch.seen, *far) < few * (tail_m - _REACH_M):
+                stretch = replace(stretch, **{name: place_m})
+    return stretch
+
+
+def _count(seen, low_m, high_m):
+    points = seen.hits(low_m, high_m)
+    return points.stop - points.start
 
 
 def _flat(stretches):

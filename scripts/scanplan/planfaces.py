@@ -52,7 +52,8 @@ def trace(pieces, rays, merging, reading):
     foreign = [_crossed_m(s, found, stacked) for s in seen]
     runs = (stretches.find(s, reading, planar=rays.planar, foreign_m=m) for s, m in zip(seen, foreign, strict=True))
     found = _once(list(runs), merging)
-    found = [f for f in overshoots.without(found) if f.length_m >= _STUB_M]
+    found = overshoots.without_tails(overshoots.without(found), share=merging.ghost_share)
+    found = [f for f in found if f.length_m >= _STUB_M]
     met = facepieces.meet_at_corners(found, corner_m=merging.corner_m)
     met = [f for f in _without_doubles(met, merging) if f.length_m >= _STUB_M]
     return Traced(met, len(seen), len(seen) - len({id(f.seen) for f in met}))

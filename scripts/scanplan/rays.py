@@ -4,6 +4,7 @@ A ray runs straight from the sensor to the point it measured: there is something
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -11,6 +12,24 @@ _FLOOR_BIN_M = 0.05
 _FLOOR_SEARCH_M = 0.5
 _LEAST_SIDE_M = 0.15
 _STEADY_M = 0.15
+_TURN = 10.0
+
+
+@dataclass(frozen=True, eq=False)
+class Stacked:
+    """Rays of all scans, by scan and direction.
+
+    Attributes
+    ----------
+    key : (n,) float64, increasing
+        Direction in radians, and 10 more for every scan.
+    xyz_m : (n, 3) float64
+    scan : (n,) int64
+    """
+
+    key: np.ndarray
+    xyz_m: np.ndarray
+    scan: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +54,13 @@ class Rays:
     xyz_m: list
     floor_z_m: float
     planar: bool
+
+    @cached_property
+    def stacked(self):
+        """All rays one after another, a `Stacked`."""
+        scan = np.repeat(np.arange(len(self.xyz_m)), [len(xyz_m) for xyz_m in self.xyz_m])
+        azimuth_rad = np.concatenate([np.empty(0), *self.azimuth_rad])
+        return Stacked(azimuth_rad + _TURN * scan, np.concatenate([np.empty((0, 3)), *self.xyz_m]), scan)
 
     @property
     def n_points(self):
@@ -130,38 +156,32 @@ def look(rays, line, low_m, high_m, *, band_m):
     Sight
     """
     ends = line.at(np.array([low_m, high_m]))
-    hits, passes = [], []
-    for number, sensor_m in enumerate(rays.sensors_m):
-        side_m = line.offset_m(sensor_m[:2])
-        if abs(side_m) < _LEAST_SIDE_M:
-            continue
-        xyz_m = rays.xyz_m[number][_within(rays.azimuth_rad[number], ends - sensor_m[:2])]
-        offset_m = line.offset_m(xyz_m[:, :2])
-        if side_m > 0:
-            hits.append(_numbered(xyz_m[np.abs(offset_m) <= band_m], number))
-        beyond = offset_m * np.sign(side_m) <= -(band_m + _STEADY_M)
-        share = (side_m / (side_m - offset_m[beyond]))[:, None]
-        passes.append(_numbered(sensor_m + share * (xyz_m[beyond] - sensor_m), number))
-    hit, crossing = (np.concatenate([np.empty((0, 4)), *rows]) for rows in (hits, passes))
+    side_m = line.offset_m(rays.sensors_m[:, :2])
+    rows = _rows(rays, ends, np.flatnonzero(np.abs(side_m) >= _LEAST_SIDE_M))
+    xyz_m, scan = rays.stacked.xyz_m[rows], rays.stacked.scan[rows]
+    offset_m = line.offset_m(xyz_m[:, :2])
+    hit = (np.abs(offset_m) <= band_m) & (side_m[scan] > 0)
+    beyond = offset_m * np.sign(side_m[scan]) <= -(band_m + _STEADY_M)
+    sensor_m, behind_m = rays.sensors_m[scan[beyond]], side_m[scan[beyond]]
+    share = behind_m / (behind_m - offset_m[beyond])
+    crossing_m = sensor_m + share[:, None] * (xyz_m[beyond] - sensor_m)
     floor_z_m = 0.0 if rays.planar else rays.floor_z_m
     return Sight(
-        *(hit[:, :2], hit[:, 2] - floor_z_m, hit[:, 3].astype(np.int64)),
-        *(crossing[:, :2], crossing[:, 2] - floor_z_m, crossing[:, 3].astype(np.int64)),
+        *(xyz_m[hit, :2], xyz_m[hit, 2] - floor_z_m, scan[hit]),
+        *(crossing_m[:, :2], crossing_m[:, 2] - floor_z_m, scan[beyond]),
     )
 
 
-def _within(azimuth_rad, ends):
-    """Return the rows of the directions between those of two ends (2, 2), the way round that is less than half."""
-    first, last = np.arctan2(ends[:, 1], ends[:, 0])
+def _rows(rays, ends, scans):
+    """Return the rows of `rays.stacked` of some scans' rays that go between two ends (2, 2), the shorter way round."""
+    way = ends[:, None] - rays.sensors_m[scans, :2]
+    first, last = np.arctan2(way[..., 1], way[..., 0])
     turn = (last - first + np.pi) % (2 * np.pi) - np.pi
-    begin = first if turn > 0 else last
-    stop = begin + abs(turn)
-    low, high = np.searchsorted(azimuth_rad, [begin, min(stop, np.pi)])
-    rows = np.arange(low, high)
-    if stop <= np.pi:
-        return rows
-    return np.concatenate([np.arange(np.searchsorted(azimuth_rad, stop - 2 * np.pi)), rows])
-
-
-def _numbered(xyz_m, number):
-    return np.column_stack([xyz_m, np.full(len(xyz_m), float(number))])
+    begin = np.where(turn > 0, first, last)
+    stop = begin + np.abs(turn)
+    # what lies beyond pi goes on from -pi
+    spans = [(begin, np.minimum(stop, np.pi)), (np.full(len(scans), -np.pi), stop - 2 * np.pi)]
+    low, high = (np.concatenate([span[i] + _TURN * scans for span in spans]) for i in (0, 1))
+    low = np.searchsorted(rays.stacked.key, low)
+    count = np.maximum(np.searchsorted(rays.stacked.key, high, side="right") - low, 0)
+    return np.repeat(low - np.cumsum(count) + count, count) + np.arange(count.sum())

@@ -43,7 +43,7 @@ def draw(points_xy_m, registration, links, crispness):
     _draw_links(figure, axes, place_m, registration["scan_id"], links)
     _draw_verdicts(axes, place_m, registration["reason"])
     figure.legend(loc="outside lower left", ncols=2, fontsize=7, frameon=False)
-    axes.set_title(_title(registration, crispness), fontsize=8, loc="left")
+    figure.suptitle(_title(registration, crispness), fontsize=8, x=0.02, ha="left")
     return figure
 
 
@@ -78,7 +78,9 @@ def _draw_verdicts(axes, place_m, reasons):
     for reason, count in sorted(Counter(reasons.tolist()).items()):
         of_reason = place_m[reasons == reason]
         if reason == "kept":
-            axes.plot(*of_reason.T, ".", ms=1.5, color="black", zorder=4, label=f"kept ({count})")
+            # many dots must not hide the links below them
+            size = float(np.clip(300 / count, 0.3, 1.5))
+            axes.plot(*of_reason.T, ".", ms=size, color="black", zorder=4, label=f"kept ({count})")
             continue
         mark, colour, label = _MARKS.get(reason, (_OTHER[0], _OTHER[1], _OTHER[2].format(reason.replace("_", " "))))
         nowhere = "" if np.isfinite(of_reason).any() else ", nowhere on the map"

@@ -18,7 +18,8 @@ _STAGES = (
 _FOUND, _RIGHT = "visible_completeness_010m", "correctness_010m"
 _CAPTIONS = {
     "scans": "Points of the registered scans from above, where each was taken, and the selected scans by rank.",
-    "registration": "How registration went along the survey.",
+    "registration": "The sensor's way, kept and dropped scans by reason, links between scans by what is left of their"
+    " disagreement, and the thickness of walls by the localiser's poses and the registered ones.",
     "area": "Covered area against the number of scans for every ordering, and the most any choice could cover.",
     "walls": "Wall faces of the plan over the points of the selected scans.",
     "oracle_shares": "What the first scans of every ordering find, as a share of what the oracle's do.",

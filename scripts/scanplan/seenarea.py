@@ -21,6 +21,7 @@ def polygons(faces, places_m, *, max_range_m):
     """
     hiding_m = np.concatenate([faces.inner_m, faces.outer_m])
     outlines = [visibility.view(hiding_m, place_m, open_m=2 * max_range_m) for place_m in places_m]
-    # neighbouring corners that coincide make an outline touch itself
-    seen = shapely.make_valid(np.array([shapely.Polygon(outline) for outline in outlines]))
+    # neighbouring corners that coincide make an outline touch itself; what collapses to a line has no area
+    touching = np.array([shapely.Polygon(outline) for outline in outlines])
+    seen = shapely.make_valid(touching, method="structure", keep_collapsed=False)
     return shapely.intersection(seen, shapely.buffer(shapely.points(places_m), max_range_m, quad_segs=64))

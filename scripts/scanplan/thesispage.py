@@ -64,6 +64,8 @@ def page(figures, beyond, claims, steps, limited):
         claims_table(claims, [claim for claim in CLAIMS if not claim.criterion]),
         '<h2 id="table">Table 5.1: computation time required for each step</h2>',
         steps_table(steps, limited),
+        "<p><small>First seed. Our times are of whole jobs: starting Python and reading and writing tables is part of them;"
+        " the data after the hulls are the table of hulls.</small></p>",
         "<h2>Figures</h2>",
         *(_figure(figure, figures[figure.file], claims) for figure in FIGURES),
         '<h2 id="beyond">Beyond the thesis</h2>',
@@ -178,8 +180,14 @@ def _step(table, i):
     seconds, n_bytes = float(table["seconds"][i]), int(table["n_bytes"][i])
     minutes, rest = divmod(round(seconds), 60)
     time = f"{minutes} min {rest} s" if minutes else f"{seconds:.2g} s"
-    size = f"{n_bytes / 1e9:.2f} GB" if n_bytes >= 1e9 else f"{n_bytes / 1e6:.1f} MB"
-    return str(table["name"][i]), [time, f"{table['n_scans'][i]:,}", size]
+    return str(table["name"][i]), [time, f"{table['n_scans'][i]:,}", _size(n_bytes)]
+
+
+def _size(n_bytes):
+    for unit, factor, digits in (("GB", 1e9, 2), ("MB", 1e6, 1)):
+        if n_bytes >= factor:
+            return f"{n_bytes / factor:.{digits}f} {unit}"
+    return f"{n_bytes / 1e3:.0f} kB"
 
 
 def _digits(value):

@@ -104,7 +104,8 @@ def test_evaluation_is_a_result_where_there_is_a_truth():
     files = inventory.results(plain, ["hull", "own"], ["ransac"])
     assert {"results/a/selection/own.parquet", "results/a/walls/ransac.parquet"} <= set(files)
     more = set(inventory.results(known_truth, ["hull", "own"], ["ransac"])) - set(files)
-    assert more and all("evaluation" in file for file in more)
+    assert {file.split("/")[2] for file in more} == {"evaluation", "figures"}
+    assert {"results/a/evaluation/plan.parquet", "results/a/figures/oracle_shares.svg"} <= more
 
 
 @pytest.mark.parametrize("name", ["ring_rooms", "ring_hallways"])

@@ -15,6 +15,7 @@ from scanplan.gaps import CLOSED, OPEN, Gap
 from scanplan.planwalls import PlanWall
 from scanplan.profiles import Seen
 from scanplan.stretches import Stretch
+from toyrooms import laser
 from wallmaking import moved, walls
 
 SETTINGS = planning.settings(**housemaking.PLAN)
@@ -194,6 +195,12 @@ class TestRooms:
 class TestFreeSpace:
     def test_a_scan_sees_its_room(self, house):
         assert freespace.visible(house)[0].intersection(shapely.box(0, 0, 4, 4)).area == pytest.approx(16, rel=0.02)
+
+    @pytest.mark.parametrize("beams", [240, 360, 1440])
+    def test_a_laser_sees_its_room_however_far_apart_its_beams_are(self, beams):
+        flat = laser(SENSORS[0], np.array(housemaking.HOUSE, float), beams=beams)
+        found = freespace.visible(rays.gather([(0, flat)], {0: SENSORS[0]}, planar=True))
+        assert found[0].intersection(shapely.box(0, 0, 4, 4)).area == pytest.approx(16, rel=0.06)
 
     def test_a_scan_of_no_points_sees_nothing(self):
         empty = rays.gather([(0, np.empty((0, 3)))], {0: np.zeros(3)}, planar=True)

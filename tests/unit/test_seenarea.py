@@ -44,3 +44,8 @@ def test_a_place_in_it_is_in_sight_of_its_middle(x, y):
     reached = shapely.dwithin(outline.boundary, shapely.points(cells.middle_m), 1e-6)
     # a face seen edge-on is a matter of rounding, and one of the pillar is a 24th of all
     assert np.mean(reached == in_sight) > 0.95
+
+
+def test_corners_that_coincide_leave_one_polygon():
+    faces = np.concatenate([BOX, PILLAR.reshape(-1, 2, 2)])
+    assert seen(faces, (0.5, 0.5625)).geom_type == "Polygon"

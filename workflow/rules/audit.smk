@@ -28,7 +28,6 @@ rule draw_registration:
         registration="results/{dataset}/registration.parquet",
         edges="results/{dataset}/edges.parquet",
         crispness="results/{dataset}/crispness.parquet",
-        edges="results/{dataset}/edges.parquet",
         code=code_of("draw_registration"),
     output:
         figure=report(

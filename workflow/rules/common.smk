@@ -200,7 +200,8 @@ def report_figures(wildcards):
     return [
         file
         for file in results_of(wildcards.dataset)
-        if "/figures/" in file and file.endswith(".svg")
+        if file.startswith(f"results/{wildcards.dataset}/figures")
+        and file.endswith(".svg")
     ]
 
 
