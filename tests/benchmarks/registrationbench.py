@@ -60,7 +60,8 @@ def bench(root, settings):
     print(
         f"registration, from bag to registered scans: {n} candidates, {ours_ms:.1f} ms each against {theirs_ms:.1f} ms"
         f" (mean of {N_LITERAL} from the middle): {theirs_ms / ours_ms:.1f} times faster\n"
-        f"  by the processors' clocks {cpu_ms:.1f} ms against {literal_cpu_ms:.1f} ms: {literal_cpu_ms / cpu_ms:.1f} times\n"
+        f"  by the processors' clocks {cpu_ms:.1f} ms against {literal_cpu_ms:.1f} ms:"
+        f" {literal_cpu_ms / cpu_ms:.1f} times\n"
         f"  {stage_s:.1f} s in all; a plain read of the {bag.stat().st_size / 1e9:.1f} GB takes {read_s:.1f} s;"
         f" peak memory {peak_mb:.0f} MB\n  {_accuracy(folder)}",
         flush=True,
