@@ -8,12 +8,10 @@ Without a name all of them but wall_quality, which takes minutes.
 import sys
 from pathlib import Path
 
+# each benchmark imports its own: a stage's workers import this file anew, and would wait for all of them
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "tests")]
 
-import registrationbench  # noqa: E402
-import selecting  # noqa: E402
-import wallbench  # noqa: E402
 
 from scanplan import configuration  # noqa: E402
 
@@ -22,21 +20,29 @@ SETTINGS = configuration.read_yaml(ROOT / "config/config.yaml")
 
 def bench_registration():
     """Algorithm 3: the whole stage, from bag to registered scans, against Open3D on full clouds, point to point."""
+    import registrationbench
+
     registrationbench.bench(ROOT, SETTINGS)
 
 
 def bench_selection():
     """Algorithms 1 and 2 on a drive through a large office."""
+    import selecting
+
     selecting.run(ROOT / "config/buildings/ring_office.geojson", SETTINGS, lambda line: print(line, flush=True))
 
 
 def bench_walls():
     """Cluster RANSAC against iterative RANSAC, and against itself written literally with sklearn's MeanShift."""
+    import wallbench
+
     wallbench.speed(ROOT, SETTINGS)
 
 
 def bench_wall_quality():
     """What both extractors and a line detector on a raster of all points find of the truth."""
+    import wallbench
+
     wallbench.quality(ROOT, SETTINGS)
 
 
