@@ -28,7 +28,6 @@ lint: environment
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --lint
 
 bench: environment
-	@$(SNAKEMAKE) --quiet all -- results/demo/hulls.parquet
 	@$(BIN)/python tests/benchmarks/run.py $(ARGS)
 
 environment: $(VENV)/.ready

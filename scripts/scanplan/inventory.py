@@ -120,8 +120,8 @@ def dataset(name, path, *, defaults, overrides, schema, drawings):
             )
         settings = configuration.for_dataset(defaults, path, overrides, schema)
         return simulated(name, settings, drawings)
-    recordings = tuple(datasets.find_files(path))
     settings = configuration.for_dataset(defaults, Path(path) / "dataset.yaml", overrides, schema)
+    recordings = tuple(datasets.find_files(path))
     return Dataset(name, settings, recordings, _truth_beside(Path(path)))
 
 
