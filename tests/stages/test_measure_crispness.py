@@ -77,7 +77,7 @@ def test_registration_makes_disturbed_recordings_crisper(recordings_dir, project
     own = project_root / f"tests/data/{name}.yaml"
     for section, values in configuration.read_yaml(own).items() if own.exists() else ():
         settings[section] |= values
-    settings["registration"] |= {"localiser_sigma_m": 0.1, "localiser_sigma_deg": 2.0}
+    settings["registration"] |= {"localiser_sigma_m": 0.1, "localiser_sigma_deg": 2.0, "localiser_sigma_tilt_deg": 2.0}
     files, reading = datasets.find_files(recordings_dir / name), settings["input"]
     given, poses_file, moved = (tmp_path / f for f in ("recorded.parquet", "poses.parquet", "motion.parquet"))
     topics = {k: v for k, v in reading.items() if k not in ("min_range_m", "max_range_m", "deskew")}
