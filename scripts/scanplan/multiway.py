@@ -87,17 +87,18 @@ def optimise(scan_ids, start, priors, edges, thinned, run, *, planar, limits, se
         )
 
     solution = solve(start)
-    chosen = loops.pairs(
-        solution.world_from_scan[:, :2, 3],
-        radius_m=settings.loop_radius_m,
-        apart=settings.loop_apart,
-        most=settings.loops_per_scan,
-    )
+    chosen = _chosen(solution.world_from_scan[:, :2, 3], {row[edge.source] for edge in edges}, settings)
     jobs = _link_jobs(chosen, scan_ids, solution.world_from_scan, thinned, planar, limits, settings)
     edges += [edge for found in run(loops.link, jobs) for edge in found]
     edges.sort(key=lambda edge: (edge.source, edge.target))
     solution = solve(solution.world_from_scan)
     return Result(solution.world_from_scan, edges, solution.residual, solution.weight, solution.prior_weight)
+
+
+def _chosen(xy_m, linked, settings):
+    near = {"radius_m": settings.loop_radius_m, "apart": settings.loop_apart}
+    is_linked = np.isin(np.arange(len(xy_m)), list(linked))
+    return sorted(loops.pairs(xy_m, **near, most=settings.loops_per_scan) + loops.bridges(is_linked, xy_m, **near))
 
 
 def _links(edges, row, settings):
@@ -123,4 +124,4 @@ def _link_jobs(chosen, scan_ids, world_from_cloud, thinned, planar, limits, sett
         pairs = chosen[begin : begin + _PAIRS_PER_JOB]
         rows = sorted({row for pair in pairs for row in pair})
         own = scan_ids[rows], world_from_cloud[rows]
-        yield thinned.part(rows), rows, *own, pairs, planar, limits, settings.loop_min_fitness
+        yield thinned.part(rows), rows, *own, pairs, planar, limits, settings.loop_min_fitness, settings.loop_apart

@@ -127,6 +127,24 @@ def test_a_jump_of_the_localiser_by_two_metres_loses_no_region(drive, mapped, tm
     assert sum(kept_there) > 10
 
 
+@pytest.mark.parametrize("bad", [15, 17, 19])
+def test_a_scan_out_of_place_before_a_border_costs_only_itself(drive, tmp_path, bad):
+    scans, priors, true = drive
+    disturbed = np.array(priors)
+    disturbed[bad] = pose(1.2, 0.7, 0) @ disturbed[bad] @ se3.inverse(pose(0, 0, -35))
+    judged, result = register((scans, disturbed, true), tmp_path)
+    assert [i for i, verdict in enumerate(judged) if verdict.reason != "kept"] == [0, bad]
+    over = [e for e in result.edges if e.kind == "sequence" and e.source >= 100 > e.target]
+    assert len(over) >= 3
+
+
+def test_a_new_start_is_linked_to_what_was_before(drive, tmp_path):
+    """No scan can pass the gate, and every rejection is a new start."""
+    judged, result = register(drive, tmp_path, n_previous=1, anchor_after=1, min_prior_fitness=1.0)
+    assert {verdict.reason for verdict in judged} == {"anchor"}
+    assert {e.source for e in result.edges if e.kind == "sequence"} >= set(range(5, 200, 5))
+
+
 def test_no_candidate_that_is_kept_gives_no_links(drive, tmp_path):
     judged, result = register(drive, tmp_path, min_points=10**6)
     assert result is None and {verdict.reason for verdict in judged} == {"too_few_points"}
