@@ -54,7 +54,7 @@ class Verdict:
     kept : bool
     reason : str
         `kept`, `anchor` (kept at the localiser's pose), `pose_gap`, `too_few_points`, `low_prior_fitness`,
-        `icp_diverged` or `low_refined_fitness`.
+        `icp_diverged`, `low_refined_fitness`, or `unconfirmed` (see `confirmation`).
     world_from_sensor : (4, 4) float64
         After refinement where the scan is kept, the localiser's otherwise; NaN without a pose.
     prior_fitness, refined_fitness, rmse_m : float
