@@ -33,8 +33,10 @@ def pairs(xy_m, *, radius_m, apart, most):
     """
     tree = cKDTree(xy_m)
     found = []
-    for source, near in enumerate(tree.query_ball_point(xy_m, radius_m, return_sorted=True)):
-        earlier = np.array([row for row in near if row < source - apart], np.int64)
+    for source, place_m in enumerate(xy_m):
+        # one at a time: of a sensor that stands still all are near all
+        near = np.array(tree.query_ball_point(place_m, radius_m, return_sorted=True), np.int64)
+        earlier = near[near < source - apart]
         if len(earlier) == 0:
             continue
         visits = np.split(earlier, np.flatnonzero(np.diff(earlier) > apart) + 1)
