@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from reference import registration as literal
-from scanplan import registration, se3
+from scanplan import configuration, mapping, registration, se3
 
 SETTINGS = registration.Settings(
     voxel_m=0.1,
@@ -206,3 +206,24 @@ def test_the_literal_algorithm_keeps_the_same_scans_at_the_same_places():
     assert [i for i, v in enumerate(ours) if v.kept] == sorted(theirs) == [0, 1, 2, 3, 5]
     for index, pose_of_scan in theirs.items():
         np.testing.assert_allclose(ours[index].world_from_sensor, pose_of_scan, atol=0.02)
+
+
+def test_the_preset_judges_as_the_thesis_does(project_root):
+    """Scans of a part of the hall each, so that fitness falls below 0.96 for some and not for others."""
+    defaults, preset = (configuration.read_yaml(project_root / f"config/{n}.yaml") for n in ("config", "thesis"))
+    section = configuration.merged(defaults, preset)["registration"]
+    limits = mapping.settings_of(section).limits
+    scans, priors, _ = drive(8, planar=False, noise_m=0.02, noise_deg=0.5)
+    scans = [scan[scan[:, 0] < reach_m] for scan, reach_m in zip(scans, (2, 2, 2.1, 4, 2.1, 3, 2.2, 2), strict=True)]
+    registrar = registration.Registrar(limits, False)
+    ours = [registrar.add(i, scan, prior)[0] for i, (scan, prior) in enumerate(zip(scans, priors, strict=True))]
+    gates = {key: section[key] for key in ("min_prior_fitness", "min_refined_fitness", "n_previous")}
+    theirs = literal.register(scans, priors, keep_every=1, distance_m=section["fitness_distance_m"], **gates)
+    assert [i for i, verdict in enumerate(ours) if verdict.kept] == sorted(theirs)
+    assert 2 < len(theirs) < 8
+    first = literal._cloud(se3.transform(priors[0], scans[0]))
+    for scan, prior, verdict in zip(scans[1:2], priors[1:2], ours[1:2], strict=True):
+        placed = literal._cloud(se3.transform(prior, scan))
+        assert verdict.prior_fitness == pytest.approx(literal._mean_fitness(placed, [first], 0.5), abs=2e-3)
+    for index, pose_of_scan in theirs.items():
+        np.testing.assert_allclose(ours[index].world_from_sensor, pose_of_scan, atol=0.01)
