@@ -3,7 +3,7 @@
 import numpy as np
 
 from scanplan.claims import FOUND, ITERATIVE, OURS, SUBSET, Measured, is_about, value_at
-from scanplan.thesisclaims import ALMOST, stated
+from scanplan.thesisclaims import ALMOST, SEVERAL, stated
 
 _THESIS_SCANS = 90
 
@@ -19,14 +19,11 @@ def uneven_harms_random(tables):
 
 
 def several_per_wall(tables):
-    """Count segments per true wall in single scans: the first of every order."""
-    walls = tables["drive_walls"]
-    single = {
-        extractor: np.nanmean(walls["walls_per_true_wall"][(walls["k"] == 1) & (walls["extractor"] == extractor)])
-        for extractor in (ITERATIVE, OURS)
-    }
+    """Count segments per true wall and scan, over every scan of the drive."""
+    column, walls = "walls_per_true_wall_of_a_scan", tables["drive_walls"]
+    single = {extractor: value_at(walls, "sequential", extractor, np.inf, column) for extractor in (ITERATIVE, OURS)}
     values = {f"segments per true wall, {extractor}": count for extractor, count in single.items()}
-    return Measured(values, single[ITERATIVE] > 1)
+    return Measured(values, _if_known(single[ITERATIVE], single[ITERATIVE] >= SEVERAL))
 
 
 def fewer_walls(tables):
@@ -95,6 +92,11 @@ def localiser(tables):
 def own_limits(tables):
     """Count what registration with our limits retains."""
     return Measured({"scans": tables["drive_steps"]["n_scans"][1]})
+
+
+def _if_known(value, holds):
+    """Return a verdict, or none where the value that it goes by could not be measured."""
+    return bool(holds) if np.isfinite(value) else None
 
 
 def _of_task(times, task):

@@ -101,6 +101,7 @@ def measure(truth, findings, rank, at, true_bitmap):
         row |= _agreement("", truth, np.ones(n_cells, bool), found, findings, findings.near_truth_m, used)
         row |= _agreement("visible_", truth, truth.visible, found, findings, findings.near_visible_m, used)
         row |= _counts(truth, findings, used, found[JUDGED])
+        row["walls_per_true_wall_of_a_scan"] = _split(findings, used)
         rows.append(row | _missed(truth, found[JUDGED], first_seen <= k, first_if_true <= k))
     return rows
 
@@ -187,6 +188,13 @@ def _counts(truth, findings, used, found):
         "walls_per_true_wall": len(faces) / len(np.unique(faces)) if len(faces) else np.nan,
         "redundancy": findings.length_m[used].sum() / found_m if found_m > 0 else np.nan,
     }
+
+
+def _split(findings, used):
+    """Return how many segments a true wall has in a single scan, mean over all scans and the walls they show."""
+    known = used & (findings.face >= 0)
+    pairs = np.column_stack([findings.scan, findings.face])[known]
+    return len(pairs) / len(np.unique(pairs, axis=0)) if len(pairs) else np.nan
 
 
 def _missed(truth, found, seen, found_if_true):

@@ -11,6 +11,9 @@ ABOUT = 0.25
 ALMOST = 0.9
 """"Almost complete", "similar" and "little loss": this share or more of what is compared with."""
 
+SEVERAL = 1.5
+"""Several segments per wall: as many or more on average, every wall shown having one at least."""
+
 
 @dataclass(frozen=True)
 class Claim:
@@ -128,7 +131,7 @@ CLAIMS = (
         "several_per_wall",
         "5.3",
         "Iterative RANSAC finds several candidates for each wall of one scan.",
-        "more than one segment per true wall in single scans, mean over the orders' first",
+        f"{SEVERAL} or more segments per true wall and scan, mean over every scan of the drive",
     ),
     Claim(
         "fewer_walls",

@@ -129,6 +129,15 @@ def test_numbers_of_the_drive():
     assert values["localiser", "error of the position, localiser, rms (m)"] == pytest.approx(0.0125**0.5 / 10**0.5)
 
 
+def test_one_segment_and_a_few_more_per_wall_are_not_several():
+    walls = made.evaluation()
+    assert drive()[0]["several_per_wall"] == "yes"
+    for count, holds in ((1.49, "no"), (1.5, "yes"), (np.nan, "")):
+        # of all scans alone, not of the first of the orders
+        walls["walls_per_true_wall_of_a_scan"] = np.where(walls["k"] == 270, count, 2.0 if holds == "no" else 1.0)
+        assert drive(drive_walls=walls)[0]["several_per_wall"] == holds
+
+
 def test_uneven_sampling():
     uneven = made.evaluation(random=(0.1, 0.3, 0.75, 0.85, 0.9, 0.95, 1.0))
     assert judged(judging.BOTH, made.rooms() | made.drive(drive_walls=uneven))[0] == {"uneven_harms_random": "yes"}
