@@ -44,13 +44,13 @@ CLAIMS = (
         "sequential_poorest",
         "5.2, Figure 5.4",
         "Of four orders of the scans, the sequential one performs the poorest.",
-        "most false negatives of the four, mean over the first 1 to 80 scans",
+        "most false negatives of the four, mean over the first 1, 2, ... 80 scans",
     ),
     Claim(
         "sequential_poorest_match",
         "5.2, Figure 5.4",
         "The same by the share of correct matches, which the thesis plots beside it.",
-        "fewest correct matches of the four, mean over the first 1 to 80 scans",
+        "fewest correct matches of the four, mean over the first 1, 2, ... 80 scans",
     ),
     Claim(
         "others_similar",
