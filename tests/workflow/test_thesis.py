@@ -1,6 +1,8 @@
 """The thesis's experiments as a target: what it would run, and on two small rooms the page that comes out."""
 
 import re
+import subprocess
+import sys
 
 import pytest
 
@@ -35,6 +37,24 @@ def test_it_runs_every_survey_with_every_seed_and_nothing_of_the_demo(project):
 
 def test_the_demo_runs_nothing_of_it(project):
     assert not {"thesis", "judge_claims", "time_stages"} & set(jobs(project))
+
+
+WITHOUT_CORES = """
+from pathlib import Path
+from snakemake.api import SnakemakeApi
+from snakemake.settings.types import ConfigSettings, ResourceSettings
+
+with SnakemakeApi() as api:
+    given = ConfigSettings(configfiles=[Path("tests/data/tiny.yaml")])
+    run = api.workflow(ResourceSettings(nodes=2), config_settings=given, snakefile=Path("Snakefile"))
+    print("parsed", len(list(run._workflow.rules)))
+"""
+
+
+def test_it_is_parsed_where_jobs_go_elsewhere_and_no_cores_are_given(project):
+    command = [sys.executable, "-c", WITHOUT_CORES]
+    result = subprocess.run(command, cwd=project.folder, env=project.env(), capture_output=True, text=True)
+    assert result.returncode == 0 and "parsed" in result.stdout, result.stderr
 
 
 def test_the_page_has_every_figure(project):

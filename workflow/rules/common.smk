@@ -69,6 +69,11 @@ def code_of(script):
     return [os.path.relpath(file) for file in files]
 
 
+def all_cores(wildcards):
+    """All cores of this machine's run; where an executor is told none, as many as the other stages use at most."""
+    return workflow.resource_settings.cores or 2
+
+
 def setting(section, *keys):
     """A param function that looks a section, or one key of it, up in the settings of the job's dataset."""
 

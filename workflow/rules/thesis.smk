@@ -45,7 +45,7 @@ rule time_stages:
         "logs/{dataset}/time_stages.log",
     benchmark:
         "benchmarks/{dataset}/time_stages.tsv"
-    threads: workflow.cores
+    threads: all_cores
     resources:
         mem_mb=1500,
         runtime=30,
