@@ -87,7 +87,7 @@ def drive(**changes):
     return {
         "drive_walls": evaluation(),
         "drive_times": times(
-            cluster_ransac=((100, 200, 300), (0.03, 0.03, 0.031)),
+            cluster_ransac=((100, 200, 300), (0.03, 0.031, 0.03)),
             iterative_ransac=((100, 200, 300), (0.05, 0.1, 0.15)),
             order_scans=((10, 90, 270), (0.01, 0.09, 0.27)),
         ),

@@ -3,7 +3,7 @@
 import numpy as np
 
 from scanplan.claims import FOUND, ITERATIVE, OURS, SUBSET, Measured, is_about, value_at
-from scanplan.thesisclaims import ALMOST, SEVERAL, stated
+from scanplan.thesisclaims import ALMOST, CLEAR, SEVERAL, SLIGHT, stated
 
 _THESIS_SCANS = 90
 
@@ -45,10 +45,10 @@ def steadier_times(tables):
 
 
 def time_by_size(tables):
-    """Compare how the extractors' times go with the size of the cloud."""
-    correlation = {e: np.corrcoef(*_of_task(tables["drive_times"], e))[0, 1] for e in (OURS, ITERATIVE)}
-    values = {f"correlation, {e}": c for e, c in correlation.items()}
-    return Measured(values, correlation[ITERATIVE] > correlation[OURS])
+    """Correlate the extractors' times with the size of the cloud."""
+    r = {e: _correlation(*_of_task(tables["drive_times"], e)) for e in (OURS, ITERATIVE)}
+    values = {f"correlation, {e}": of_it for e, of_it in r.items()}
+    return Measured(values, _if_known(sum(r.values()), r[ITERATIVE] >= CLEAR and abs(r[OURS]) <= SLIGHT))
 
 
 def fifteen_like_all(tables):
@@ -57,7 +57,7 @@ def fifteen_like_all(tables):
     few = value_at(walls, "cluster_hull", OURS, SUBSET, FOUND)
     every = value_at(walls, "cluster_hull", ITERATIVE, np.inf, FOUND)
     values = {"walls found, cluster RANSAC, 15 scans": few, "walls found, iterative RANSAC, all scans": every}
-    return Measured(values, few >= ALMOST * every)
+    return Measured(values, few >= ALMOST * every if every > 0 else None)
 
 
 def two_percent_survive(tables):
@@ -92,6 +92,13 @@ def localiser(tables):
 def own_limits(tables):
     """Count what registration with our limits retains."""
     return Measured({"scans": tables["drive_steps"]["n_scans"][1]})
+
+
+def _correlation(seconds, size):
+    """Return Pearson's r, NaN where one of the two does not vary."""
+    if len(size) < 2 or np.ptp(size) == 0 or np.ptp(seconds) == 0:
+        return np.nan
+    return float(np.corrcoef(seconds, size)[0, 1])
 
 
 def _if_known(value, holds):

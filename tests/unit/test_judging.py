@@ -129,6 +129,28 @@ def test_numbers_of_the_drive():
     assert values["localiser", "error of the position, localiser, rms (m)"] == pytest.approx(0.0125**0.5 / 10**0.5)
 
 
+@pytest.mark.parametrize(
+    ("iterative", "cluster", "holds"),
+    [
+        ((1, 2, 3, 4), (1, 2, 2, 1), "yes"),
+        ((1, 2, 3, 4), (1, 2, 3, 4), "no"),
+        # against the size is as much a dependence as with it
+        ((1, 2, 3, 4), (4, 3, 2, 1), "no"),
+        ((4, 3, 2, 1), (1, 2, 2, 1), "no"),
+        # neither depends on it, one by chance less
+        ((1, 2, 2, 1.1), (1, 2, 2, 1), "no"),
+        # what does not vary has no correlation
+        ((1, 2, 3, 4), (1, 1, 1, 1), ""),
+    ],
+)
+def test_time_depends_on_the_size_for_one_and_not_for_the_other(iterative, cluster, holds):
+    size = (100, 200, 300, 400)
+    times = made.times(
+        cluster_ransac=(size, cluster), iterative_ransac=(size, iterative), order_scans=((10, 90), (0.01, 0.09))
+    )
+    assert drive(drive_times=times)[0]["time_by_size"] == holds
+
+
 def test_one_segment_and_a_few_more_per_wall_are_not_several():
     walls = made.evaluation()
     assert drive()[0]["several_per_wall"] == "yes"
