@@ -163,13 +163,16 @@ def _judged(claims, claim):
 
 def _verdict(claims, claim):
     text, kind = verdict(_judged(claims, claim))
+    if claim.criterion and not text:
+        return "not measured"
     return f'<span class="{kind}">{text}</span>'
 
 
 def _score(claims):
     kinds = [verdict(_judged(claims, claim))[1] for claim in CLAIMS if claim.criterion]
-    some = f", and {kinds.count('some')} hold for some seeds only" if "some" in kinds else ""
-    return f"Of {len(kinds)} claims {kinds.count('yes')} hold, {kinds.count('no')} do not{some}."
+    some = f", {kinds.count('some')} hold for some seeds only" if "some" in kinds else ""
+    unknown = f", {kinds.count('')} could not be measured" if "" in kinds else ""
+    return f"Of {len(kinds)} claims {kinds.count('yes')} hold, {kinds.count('no')} do not{some}{unknown}."
 
 
 def _row(step, cells):
