@@ -151,6 +151,20 @@ def test_time_depends_on_the_size_for_one_and_not_for_the_other(iterative, clust
     assert drive(drive_times=times)[0]["time_by_size"] == holds
 
 
+def test_where_nothing_is_found_or_seen_nothing_is_judged():
+    nothing = made.evaluation(cluster_hull=[0.0] * len(made.SIZES))
+    verdicts, values = rooms(rooms_walls=nothing)
+    assert verdicts["fifteen_almost_complete"] == verdicts["tenth_little_loss"] == ""
+    assert np.isnan(values["tenth_little_loss", "share of what all find"])
+    assert drive(drive_walls=nothing)[0]["fifteen_like_all"] == ""
+    blind = made.rooms()["rooms_areas"] | {"seen_m2": np.zeros(3)}
+    verdicts, values = rooms(rooms_areas=blind)
+    assert verdicts["full_hull_overestimates"] == verdicts["cluster_hull_closer"] == ""
+    assert np.isnan(values["full_hull_overestimates", "share of scans over-estimated"])
+    some = made.rooms()["rooms_areas"] | {"seen_m2": np.array([0.0, 10, 10])}
+    assert rooms(rooms_areas=some)[1]["full_hull_overestimates", "hull per seen area, median"] == 3.5
+
+
 def test_one_segment_and_a_few_more_per_wall_are_not_several():
     walls = made.evaluation()
     assert drive()[0]["several_per_wall"] == "yes"
