@@ -81,7 +81,7 @@ rule tabulate_steps:
         mem_mb=1000,
         runtime=10,
     params:
-        n_selected=15,
+        n_selected=claims.SUBSET,
     script:
         "../../scripts/tabulate_steps.py"
 
