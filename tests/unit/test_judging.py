@@ -165,6 +165,13 @@ def test_where_nothing_is_found_or_seen_nothing_is_judged():
     assert rooms(rooms_areas=some)[1]["full_hull_overestimates", "hull per seen area, median"] == 3.5
 
 
+def test_the_time_for_the_thesiss_scans_is_that_of_no_other_number():
+    few = made.times(
+        cluster_ransac=((1, 2), (1, 2)), iterative_ransac=((1, 2), (1, 2)), order_scans=((10, 80), (0.01, 0.08))
+    )
+    assert np.isnan(drive(drive_times=few)[1]["selection_time", "seconds for 90 scans"])
+
+
 def test_one_segment_and_a_few_more_per_wall_are_not_several():
     walls = made.evaluation()
     assert drive()[0]["several_per_wall"] == "yes"
