@@ -67,3 +67,6 @@ def test_the_page_has_every_figure(project):
     assert re.search(r"Of \d+ claims \d+ hold, \d+ do not", page)
     assert "report:  results/thesis/report.html" in result.stderr
     assert jobs(project, "thesis", "--configfile", TINY_THESIS) == {}
+    # another seed is no reason to time or measure those again that there are
+    more = jobs(project, "thesis", "--configfile", TINY_THESIS, "--config", "thesis={seeds: [1, 2], drive_seeds: [1]}")
+    assert more["time_stages"] == more["measure_coverage"] == more["simulate_survey"] == 1

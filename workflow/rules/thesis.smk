@@ -26,7 +26,7 @@ rule measure_coverage:
         runtime=30,
     params:
         n_clusters=setting("thesis", "n_clusters"),
-        hulls=setting("hulls"),
+        hulls=hull_sampling,
         max_range_m=setting("input", "max_range_m"),
     script:
         "../../scripts/measure_coverage.py"
@@ -51,8 +51,9 @@ rule time_stages:
         runtime=30,
     params:
         walls=setting("walls"),
-        hulls=setting("hulls"),
-        settings=setting("thesis"),
+        hulls=hull_sampling,
+        n_clusters=setting("thesis", "n_clusters"),
+        timed_scans=setting("thesis", "timed_scans"),
     script:
         "../../scripts/time_stages.py"
 
