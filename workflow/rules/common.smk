@@ -34,6 +34,31 @@ def thesis_surveys():
     return experiments.surveys(config=f"{workflow.basedir}/config", **KNOWN)
 
 
+THESIS_RULES = (
+    "thesis",
+    "judge_claims",
+    "draw_thesis_rooms",
+    "draw_thesis_drive",
+    "write_thesis",
+)
+
+
+def wanted_of_thesis(arguments):
+    """Those of the command's arguments that ask for the thesis's experiments: rules or results of them."""
+    folder = f"results/{inventory.RESERVED}/"
+    return [a for a in arguments if a in THESIS_RULES or a.startswith(folder)]
+
+
+def thesis_if_fit():
+    """The thesis's surveys; none where settings meant for another survey unfit them and nobody asks for them."""
+    try:
+        return thesis_surveys()
+    except StageError:
+        if wanted_of_thesis(sys.argv[1:]):
+            raise
+        return {}
+
+
 def or_end(function, *arguments):
     """Call a function; a fault of the user's data or settings ends the run in one line."""
     try:
@@ -44,7 +69,7 @@ def or_end(function, *arguments):
 
 
 GIVEN = or_end(given_datasets)
-THESIS = or_end(thesis_surveys)
+THESIS = or_end(thesis_if_fit)
 # jobs are worked out for what is asked for; these are all that could be
 DATASETS = GIVEN | {found.name: found for kind in THESIS.values() for found in kind}
 
@@ -145,12 +170,12 @@ def recordings(wildcards):
 
 def true_faces(wildcards):
     """The true walls of a dataset."""
-    return DATASETS[wildcards.dataset].truth[0]
+    return or_end(inventory.truth_of, DATASETS[wildcards.dataset])[0]
 
 
 def true_poses(wildcards):
     """The true sensor poses of a dataset."""
-    return DATASETS[wildcards.dataset].truth[1]
+    return or_end(inventory.truth_of, DATASETS[wildcards.dataset])[1]
 
 
 def plan_selection(wildcards):
