@@ -25,6 +25,8 @@ include: "workflow/rules/plan.smk"
 include: "workflow/rules/evaluate.smk"
 include: "workflow/rules/report.smk"
 include: "workflow/rules/evidence.smk"
+
+
 if THESIS:
 
     include: "workflow/rules/thesis.smk"

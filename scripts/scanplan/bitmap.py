@@ -58,7 +58,8 @@ def grid_around(lines_m, cell_m):
     if rows * columns > _MOST_CELLS:
         raise StageError(
             f"truth and walls span {columns * cell_m:.6g} m x {rows * cell_m:.6g} m: a bitmap of {rows * columns:.3g}"
-            f" cells, at most {_MOST_CELLS:,}; make evaluation.bitmap_cell_m ({cell_m:g} m) larger or mend truth.geojson"
+            f" cells, at most {_MOST_CELLS:,};"
+            f" make evaluation.bitmap_cell_m ({cell_m:g} m) larger or mend truth.geojson"
         )
     return Grid(first * cell_m, float(cell_m), (int(rows), int(columns)))
 

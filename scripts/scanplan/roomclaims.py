@@ -31,7 +31,10 @@ def others_similar(tables):
 def full_hull_overestimates(tables):
     """Compare the areas of whole scans' hulls with what the scans truly see."""
     ratio = _area_ratio(tables, "full_hull_m2")
-    values = {"hull per seen area, median": np.median(ratio), "share of scans over-estimated": np.mean(np.where(np.isnan(ratio), np.nan, ratio > 1))}
+    values = {
+        "hull per seen area, median": np.median(ratio),
+        "share of scans over-estimated": np.mean(np.where(np.isnan(ratio), np.nan, ratio > 1)),
+    }
     return Measured(values, np.median(ratio) > 1 if np.isfinite(ratio).all() else None)
 
 

@@ -131,8 +131,8 @@ CLAIMS = (
         "uneven_harms_random",
         "5.2, Figure 5.9",
         "Depending on the severity of uneven sampling, random selection suffers and area based selection does not.",
-        "by proxy: at 15 scans cluster hulls lead random by more on the drive (uneven, hallways) than in the rooms, which"
-        " differ in more than their places",
+        "by proxy: at 15 scans cluster hulls lead random by more on the drive (uneven, hallways) than in the rooms,"
+        " which differ in more than their places",
     ),
     Claim(
         "several_per_wall",

@@ -57,8 +57,8 @@ def shares_figure(evaluated, extractor):
     Parameters
     ----------
     evaluated : sequence of dict
-        The columns of `schemas.EVALUATION`, one table per seed; it is drawn to as many scans as all have, linear between the
-        numbers evaluated.
+        The columns of `schemas.EVALUATION`, one table per seed; drawn to as many scans as all have, linear between
+        the numbers evaluated.
     extractor : str
 
     Returns
