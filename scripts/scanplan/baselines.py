@@ -16,12 +16,15 @@ def sequential(n):
 def every_nth(n):
     """Return n scans so that any first k of them are spread evenly over the recording.
 
-    The first, the middle, the quarters, the eighths: the base-2 van der Corput sequence, which is the order of the
-    indices by their bits read backwards (van der Corput 1935, "Verteilungsfunktionen").
+    The first, the middle, the quarters, the eighths: the places that the base-2 van der Corput sequence, indices with
+    their bits read backwards, names in the recording (van der Corput 1935, "Verteilungsfunktionen").
     """
     bits = max(1, int(n - 1).bit_length()) if n else 1
-    reversed_bits = sum(((np.arange(n) >> bit) & 1) << (bits - 1 - bit) for bit in range(bits))
-    return np.argsort(reversed_bits, kind="stable")
+    index = np.arange(2**bits) if n else np.arange(0)
+    reversed_bits = sum(((index >> bit) & 1) << (bits - 1 - bit) for bit in range(bits))
+    place = reversed_bits * n >> bits
+    _, first = np.unique(place, return_index=True)
+    return place[np.sort(first)]
 
 
 def distance(xy_m):

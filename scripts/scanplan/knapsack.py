@@ -42,9 +42,11 @@ def choose(new_cover, cost, budget, *, tie):
     if len(fits) == 0:
         return []
     single = int(fits[alone[fits].argmax()])
-    tried = [_greedy(new_cover(), cost, budget, weight, tie) for weight in (1 / cost, np.ones(len(cost)))]
-    tried.append(([single], alone[single]))
-    return max(tried, key=lambda choice: choice[1])[0]
+    # by gain first: of choices that cover the same it has the best beginnings, and sums differ by rounding
+    best = _greedy(new_cover(), cost, budget, np.ones(len(cost)), tie)
+    for other in (_greedy(new_cover(), cost, budget, 1 / cost, tie), ([single], alone[single])):
+        best = other if other[1] > best[1] + len(cost) * tie else best
+    return best[0]
 
 
 def _greedy(cover, cost, budget, weight, tie):

@@ -27,7 +27,7 @@ def fit(xy_m, weight=None):
         If fewer than two distinct points are given.
     """
     xy_m = np.asarray(xy_m, float)
-    if len(xy_m) < 2 or (xy_m == xy_m[0]).all():
+    if not _distinct(xy_m):
         raise ValueError("a line needs two distinct points")
     weight = np.ones(len(xy_m)) if weight is None else np.asarray(weight, float)
     centre = weight @ xy_m / weight.sum()
@@ -90,7 +90,7 @@ def refit(xy_m, normal, offset_m, *, inlier_m, weight=None):
     ----------
     xy_m : (n, 2) float
     normal, offset_m
-        A line with two distinct points within `inlier_m`.
+        A line. While there are no two distinct points within `inlier_m` of it, it stays as it is.
     inlier_m : float
     weight : (n,) float, optional
 
@@ -101,12 +101,19 @@ def refit(xy_m, normal, offset_m, *, inlier_m, weight=None):
     weight = np.ones(len(xy_m)) if weight is None else weight
     inliers = np.abs(xy_m @ normal - offset_m) <= inlier_m
     for _ in range(_REFITS):
+        if not _distinct(xy_m[inliers]):
+            break
         normal, offset_m = fit(xy_m[inliers], weight[inliers])
         again = np.abs(xy_m @ normal - offset_m) <= inlier_m
         if weight[again].sum() <= weight[inliers].sum():
             break
         inliers = again
     return normal, offset_m, inliers
+
+
+def _distinct(xy_m):
+    """Whether points (n, 2) are not all the same."""
+    return len(xy_m) > 1 and bool((xy_m != xy_m[0]).any())
 
 
 def _outward(normal, point):

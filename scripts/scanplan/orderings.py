@@ -121,6 +121,8 @@ def _along(chosen, objective, best):
 
 def _within(objective, n_points, budget, then):
     """Return the scans taken for a budget of points, then the others in their order."""
+    if n_points.sum() <= budget:
+        return then
     first = np.array(objective.within(n_points, budget), int)
     return np.concatenate([first, then[~np.isin(then, first)]])
 

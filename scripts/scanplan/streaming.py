@@ -102,6 +102,8 @@ class _Sieve:
 def order(polygons, *, k=60, epsilon=0.1):
     """Order polygons by one pass over them: first those that `Sieves` chooses, then the others as they came.
 
+    What is bounded is what the sieves hold; the polygons themselves are all here, to be moved near the origin.
+
     Parameters
     ----------
     polygons : (n,) sequence of shapely geometries

@@ -15,6 +15,8 @@ from scipy import ndimage
 from scanplan import normals, walls
 
 FACINGS = 4
+# beams that are 0.1 degrees apart leave a cell of 0.25 m with one return or none; cells fill the square around all
+_FARTHEST_M = 150.0
 _LEAST_M = 1e-3
 _ROWS = 3  # a wall's returns are in two rows of cells, noise puts some into a third
 _SAME_SIDE = 1e-3
@@ -88,6 +90,7 @@ def observe(_scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
         If a coordinate is not finite.
     """
     points = walls.around_sensor(xyz_m, sensor_xyz_m)
+    points = points[np.hypot(*points[:, :2].T) <= _FARTHEST_M]
     top_m = walls.door_top(points, settings, planar=planar)
     tall = _tall(points, top_m - settings.door_height_m + settings.wall_height_m, np.deg2rad(settings.reach_deg))
     low = points[:, 2] <= top_m

@@ -8,7 +8,9 @@ from scanplan import baselines
 
 def test_every_nth_on_paper():
     assert baselines.every_nth(8).tolist() == [0, 4, 2, 6, 1, 5, 3, 7]
-    assert baselines.every_nth(5).tolist() == [0, 4, 2, 1, 3]
+    assert baselines.every_nth(5).tolist() == [0, 2, 1, 3, 4]
+    assert baselines.every_nth(1100)[:4].tolist() == [0, 550, 275, 825]
+    assert [baselines.every_nth(n).tolist() for n in (0, 1, 2)] == [[], [0], [0, 1]]
 
 
 @given(st.integers(0, 300), st.integers(1, 300))

@@ -234,6 +234,18 @@ def test_duplicate_points_are_more_points():
     check_toy_room(extract(np.repeat(points, 2, axis=0)))
 
 
+@given(st.integers(0, 2**32 - 1), st.booleans())
+def test_poles_and_repeated_returns_are_handled(seed, planar):
+    """Cells in which all returns are at one x, y, such as a thin pole or a beam that returns thrice, end no run."""
+    rng = np.random.default_rng(seed)
+    places = rng.uniform(-4, 4, (rng.integers(1, 40), 3)) * ([1, 1, 0] if planar else [1, 1, 0.3])
+    points = np.repeat(places, rng.integers(1, 40, len(places)), axis=0)
+    if not planar:
+        points[:, 2] += rng.uniform(-0.5, 0.5, len(points))
+    found = extract(points, planar=planar)
+    assert np.isfinite(found.start_m).all() and np.isfinite(found.end_m).all()
+
+
 def test_a_round_wall_in_space_becomes_chords():
     angle = np.linspace(-1.2, 1.2, 200)
     corners = 5 * np.column_stack([np.cos(angle), np.sin(angle)])

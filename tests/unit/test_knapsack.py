@@ -20,7 +20,8 @@ def test_by_gain_per_cost():
     # 10 m2 for 10, or 6 + 6 m2 for 5 each; for 15 the largest and one more
     assert PolygonArea(boxes).within([10, 5, 5], 10) == [1, 2]
     assert PolygonArea(boxes).within([10, 5, 5], 15) == [0, 1]
-    assert PolygonArea(boxes).within([10, 5, 5], 20) == [1, 2, 0]
+    # all fit: by gain
+    assert PolygonArea(boxes).within([10, 5, 5], 20) == [0, 1, 2]
 
 
 def test_a_cheap_trifle_does_not_shut_out_a_good_one():

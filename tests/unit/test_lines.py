@@ -86,3 +86,8 @@ def test_pairs_are_never_twice_the_same_point():
     assert normal == pytest.approx([0, 1])
     assert offset_m == pytest.approx(1)
     assert inliers.all()
+
+
+def test_a_line_through_one_place_alone_stays():
+    normal, offset_m, inliers = lines.refit(np.tile([2.0, 3.0], (4, 1)), np.array([0.0, 1.0]), 3.0, inlier_m=0.1)
+    assert normal.tolist() == [0, 1] and offset_m == 3 and inliers.all()

@@ -164,6 +164,11 @@ def test_a_budget_puts_scans_that_fit_it_first(method, scan_ids):
     assert (found["bound"] >= found["covered"]).all()
 
 
+@pytest.mark.parametrize("method", ["wall_length", "visibility", "cluster_hull", "hull"])
+def test_a_budget_for_all_scans_changes_no_order(method):
+    assert order(method, columns(), budget=10**9)["scan_id"].tolist() == order(method, columns())["scan_id"].tolist()
+
+
 @pytest.mark.parametrize("method", ["sequential", "streaming"])
 def test_a_budget_changes_no_order_without_an_objective(method):
     assert order(method, columns(), budget=5)["scan_id"].tolist() == order(method, columns())["scan_id"].tolist()
