@@ -47,7 +47,10 @@ class BagSurvey:
     def sweep_times(self):
         """How the clouds tell when each point was measured: a sweeptimes.Convention, or None if they do not."""
         units = {"units": ("s",)} if self._cloud.msgtype == topics.LASER_SCAN else {}
-        timed = [(time_raw, t_ns) for _, t_ns, _, time_raw in self._first]
+        timed = [
+            (time_raw if time_raw is None else time_raw[clouds.in_range(xyz_m, **self._limits)], t_ns)
+            for _, t_ns, xyz_m, time_raw in self._first
+        ]
         found = sweeptimes.convention(timed, **units)
         if found:
             stagelog.say(f"{self._cloud}: times of points are {found}")

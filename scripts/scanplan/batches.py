@@ -5,15 +5,14 @@ import numpy as np
 from scanplan import registration
 
 
-def bounds(n_candidates, batch_size, n_previous):
+def bounds(n_candidates, batch_size, n_early):
     """Cut the candidates into batches.
 
-    Each begins early by as many candidates as fitness looks back on: so its first scans are judged against
-    predecessors, and linked to them, like all others.
+    Each begins early: so its first scans are judged against predecessors, and linked to them, like all others.
 
     Parameters
     ----------
-    n_candidates, batch_size, n_previous : int
+    n_candidates, batch_size, n_early : int
 
     Returns
     -------
@@ -21,7 +20,7 @@ def bounds(n_candidates, batch_size, n_previous):
         Candidates `first` to `end` (exclusive) are registered; the verdicts count from `begin` on.
     """
     begins = range(0, n_candidates, batch_size)
-    return [(max(0, begin - n_previous), begin, min(begin + batch_size, n_candidates)) for begin in begins]
+    return [(max(0, begin - n_early), begin, min(begin + batch_size, n_candidates)) for begin in begins]
 
 
 def register(part, scan_ids, priors, n_early, planar, settings):
@@ -73,7 +72,9 @@ def jobs(scans, spool, scan_ids, priors, planar, settings, batch_size):
     settings : registration.Settings
     batch_size : int
     """
-    pending = bounds(len(scan_ids), batch_size, settings.n_previous)
+    # the first candidate is an anchor even where it is out of place: time to find that out, and then to look back on
+    n_early = settings.n_previous + min(settings.anchor_after, batch_size)
+    pending = bounds(len(scan_ids), batch_size, n_early)
     for scan in scans:
         spool.add(scan.xyz_m)
         while pending and len(spool) == pending[0][2]:

@@ -36,6 +36,13 @@ class Scan:
     n_dropped: int
 
 
+def in_range(xyz_m, *, min_range_m, max_range_m):
+    """Tell which points (n, 3) are finite and within [min_range_m, max_range_m] of the sensor: (n,) bool."""
+    squared = np.einsum("ij,ij->i", xyz_m, xyz_m, dtype=np.float64)
+    # a comparison with NaN is false: this also drops what is not finite
+    return (squared >= min_range_m**2) & (squared <= max_range_m**2)
+
+
 def within_range(scan_id, t_ns, xyz_m, time_raw, *, min_range_m, max_range_m, sweep_times=None):
     """Keep the points that are finite and within [min_range_m, max_range_m] of the sensor, with their times.
 
@@ -54,9 +61,7 @@ def within_range(scan_id, t_ns, xyz_m, time_raw, *, min_range_m, max_range_m, sw
     -------
     Scan
     """
-    squared = np.einsum("ij,ij->i", xyz_m, xyz_m, dtype=np.float64)
-    # a comparison with NaN is false: this also drops what is not finite
-    kept = (squared >= min_range_m**2) & (squared <= max_range_m**2)
+    kept = in_range(xyz_m, min_range_m=min_range_m, max_range_m=max_range_m)
     time_s = None
     if time_raw is not None and sweep_times is not None:
         time_s = sweep_times.seconds(time_raw, t_ns)[kept]

@@ -194,6 +194,8 @@ def _observable(start, motion, information, reach_m):
     scale = np.repeat([1, 1 / max(reach_m, 1e-3)], 3)
     free = np.diag(information) > 0
     value, vector = np.linalg.eigh(information * np.outer(scale, scale))
+    if not value[-1] > 0:
+        return Fit(start, np.zeros((6, 6)), 6, False)
     known = value > _LEAST_SHARE * value[-1]
     n_unobservable = int(free.sum() - known.sum())
     if n_unobservable == 0:

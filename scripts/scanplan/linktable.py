@@ -5,7 +5,7 @@ import numpy as np
 from scanplan import se3, tables
 
 # half of the weight of a measurement that agrees
-_INLIER_WEIGHT = 0.25
+INLIER_WEIGHT = 0.25
 _SLIGHT = 1e-7
 
 
@@ -26,7 +26,7 @@ def columns(result):
             "residual_m": np.linalg.norm(residual[:, :3], axis=1),
             "residual_deg": np.degrees(np.linalg.norm(residual[:, 3:], axis=1)),
             "weight": weight,
-            "inlier": weight >= _INLIER_WEIGHT,
+            "inlier": weight >= INLIER_WEIGHT,
         }
     )
 
@@ -41,11 +41,11 @@ def _observed(result):
 def summary(result):
     """Return how many links there are, and how many are disbelieved, as one phrase."""
     if result is None:
-        return "no pose graph"
+        return "no links: poses as given"
     kinds = np.array([edge.kind for edge in result.edges])
-    false = result.weight < _INLIER_WEIGHT
+    false = result.weight < INLIER_WEIGHT
     counts = ", ".join(
         f"{(kinds == k).sum():,} {k} ({(false & (kinds == k)).sum():,} outliers)" for k in sorted(set(kinds))
     )
-    jumps = int((result.prior_weight < _INLIER_WEIGHT).sum())
+    jumps = int((result.prior_weight < INLIER_WEIGHT).sum())
     return f"links: {counts or 'none'}; {jumps:,} of the localiser's poses are outliers"

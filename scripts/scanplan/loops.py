@@ -1,4 +1,4 @@
-"""Links between scans that lie near each other and were taken far apart in time."""
+"""Links between scans that lie near each other and were not registered against each other."""
 
 from functools import lru_cache
 
@@ -33,8 +33,10 @@ def pairs(xy_m, *, radius_m, apart, most):
     """
     tree = cKDTree(xy_m)
     found = []
-    for source, near in enumerate(tree.query_ball_point(xy_m, radius_m, return_sorted=True)):
-        earlier = np.array([row for row in near if row < source - apart], np.int64)
+    for source, place_m in enumerate(xy_m):
+        # one at a time: of a sensor that stands still all are near all
+        near = np.array(tree.query_ball_point(place_m, radius_m, return_sorted=True), np.int64)
+        earlier = near[near < source - apart]
         if len(earlier) == 0:
             continue
         visits = np.split(earlier, np.flatnonzero(np.diff(earlier) > apart) + 1)
@@ -44,7 +46,35 @@ def pairs(xy_m, *, radius_m, apart, most):
     return sorted(found)
 
 
-def link(part, rows, scan_ids, world_from_cloud, chosen, planar, settings, min_fitness):
+def bridges(linked, xy_m, *, radius_m, apart):
+    """Choose which scans to link to the ones before although they were not registered against them.
+
+    These are the first of a batch and the first after an anchor.
+
+    Parameters
+    ----------
+    linked : (n,) bool
+        Whether a scan has a link to one before.
+    xy_m : (n, 2) float
+    radius_m : float
+        Two scans farther apart are no pair.
+    apart : int
+        Nor are two with more than so many rows between them.
+
+    Returns
+    -------
+    list of (source, target)
+        Rows, source > target, sorted.
+    """
+    found = []
+    for source in np.flatnonzero(~np.asarray(linked, bool)):
+        before = np.arange(max(0, source - apart), source)
+        near = np.linalg.norm(xy_m[before] - xy_m[source], axis=1) <= radius_m
+        found += [(int(source), int(target)) for target in before[near]]
+    return found
+
+
+def link(part, rows, scan_ids, world_from_cloud, chosen, planar, settings, min_fitness, apart):
     """Align chosen pairs of scans.
 
     Parameters
@@ -63,6 +93,8 @@ def link(part, rows, scan_ids, world_from_cloud, chosen, planar, settings, min_f
     settings : registration.Settings
     min_fitness : float
         Pairs that overlap less after alignment are no link.
+    apart : int
+        Pairs with no more rows than this between them are of the kind `sequence`, the others of the kind `loop`.
 
     Returns
     -------
@@ -76,14 +108,18 @@ def link(part, rows, scan_ids, world_from_cloud, chosen, planar, settings, min_f
         cloud = icp.prepare(thinned[row], planar=planar, reach_m=links.reach_m(settings))
         return links.Placed(int(scan_ids[place[row]]), cloud, world_from_cloud[place[row]])
 
-    edges = (_linked(prepared(s), prepared(t), settings, min_fitness) for s, t in chosen)
+    kinds = ("sequence" if s - t <= apart else "loop" for s, t in chosen)
+    edges = (
+        _linked(prepared(s), prepared(t), kind, settings, min_fitness)
+        for (s, t), kind in zip(chosen, kinds, strict=True)
+    )
     return [edge for edge in edges if edge is not None]
 
 
-def _linked(source, target, settings, min_fitness):
+def _linked(source, target, kind, settings, min_fitness):
     # a neighbour is near its place already, and a wider search would take one side of a wall for the other
     fine_m = settings.icp_distances_m[-1]
     if links.facing_overlap(source, target, _LOOSE * fine_m, settings)[0] < min_fitness:
         return None
-    edge = links.aligned(source, target, "loop", [fine_m], settings)
+    edge = links.aligned(source, target, kind, [fine_m], settings)
     return None if edge is None or edge.fitness < min_fitness else edge

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scanplan import batches, links, multiway, registration, se3, stagelog
+from scanplan import batches, confirmation, links, linktable, multiway, registration, se3, stagelog
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ def register(survey, scans, raw, thinned, run, settings):
     list of registration.Verdict
         One per candidate.
     multiway.Result or None
-        None where there is nothing to optimise.
+        None where no scan was registered.
     """
     limits = settings.limits
     jobs = batches.jobs(scans, raw, survey.scan_ids, survey.priors, survey.planar, limits, settings.batch_size)
@@ -70,25 +70,44 @@ def register(survey, scans, raw, thinned, run, settings):
             thinned.add(xyz_m)
         share = sum(verdict.kept for verdict in judged) / len(judged)
         stagelog.say(f"register_scans: {len(judged)}/{len(survey.scan_ids)} scans registered, {share:.0%} kept")
-    kept = np.flatnonzero([verdict.kept for verdict in judged])
-    if not settings.graph.optimise or limits.icp_method == registration.GIVEN_POSES or len(kept) == 0:
+    if limits.icp_method == registration.GIVEN_POSES or not any(verdict.kept for verdict in judged):
         return judged, None
+    result = _in_one_map(survey, judged, edges, thinned, run, settings)
+    return _confirmed(survey, judged, result, limits.anchor_apart_m)
+
+
+def _in_one_map(survey, judged, edges, thinned, run, settings):
+    """Give the kept scans in `judged` the poses of one map."""
+    kept = np.flatnonzero([verdict.kept for verdict in judged])
     level_from_sensor = np.array([_level_from_sensor(survey, row) for row in kept])
     sensor_from_level = se3.inverse(level_from_sensor)
+    start = np.array([judged[row].world_from_sensor for row in kept]) @ sensor_from_level
+    if not settings.graph.optimise:
+        return multiway.as_registered(survey.scan_ids[kept], start, edges)
     result = multiway.optimise(
         survey.scan_ids[kept],
-        np.array([judged[row].world_from_sensor for row in kept]) @ sensor_from_level,
+        start,
         survey.priors[kept] @ sensor_from_level,
         edges,
         thinned,
         run,
         planar=survey.planar,
-        limits=limits,
+        limits=settings.limits,
         settings=settings.graph,
     )
     for row, pose in zip(kept, result.world_from_cloud @ level_from_sensor, strict=True):
         judged[row] = replace(judged[row], world_from_sensor=pose)
-    return judged, result
+    return result
+
+
+def _confirmed(survey, judged, result, apart_m):
+    """Drop the anchors that nothing confirms, and their links."""
+    believed = [e for e, weight in zip(result.edges, result.weight, strict=True) if weight >= linktable.INLIER_WEIGHT]
+    is_linked = np.isin(survey.scan_ids, [end for edge in believed for end in (edge.source, edge.target)])
+    lone = confirmation.unconfirmed(judged, is_linked, apart_m)
+    cases = zip(judged, survey.priors, lone, strict=True)
+    judged = [confirmation.dropped(verdict, prior) if drop else verdict for verdict, prior, drop in cases]
+    return judged, result.without(survey.scan_ids[lone])
 
 
 def _level_from_sensor(survey, row):

@@ -120,9 +120,21 @@ def along(edges, t_ns, *, max_gap_s, max_speed_m_s=np.inf):
     if not covered.any():
         return None
     known_ns, pose = known_ns[covered], pose[covered]
-    breaks = (np.diff(known_ns) > max_gap_s * 1e9) | jumps.steps(known_ns, pose[:, :3, 3], max_speed_m_s=max_speed_m_s)
+    breaks = (np.diff(known_ns) > max_gap_s * 1e9) | _jumping(edges, known_ns, max_speed_m_s)
     piece = np.concatenate([[0], np.cumsum(breaks)]).astype(np.int32)
     return Motion(known_ns, *se3.position_quaternion(pose), piece)
+
+
+def _jumping(edges, known_ns, max_speed_m_s):
+    """Tell for each step between times (n,) whether a jump of one of the edges lies in it or reaches into it."""
+    found = np.zeros(len(known_ns) - 1, bool)
+    for edge in edges:
+        if edge.t_ns is None:
+            continue
+        jumping = jumps.steps(edge.t_ns, edge.xyz_m, max_speed_m_s=max_speed_m_s)
+        for start_ns, end_ns in zip(edge.t_ns[:-1][jumping], edge.t_ns[1:][jumping], strict=True):
+            found |= (known_ns[:-1] < end_ns) & (known_ns[1:] > start_ns)
+    return found
 
 
 def choose(chains, t_ns, **limits):

@@ -3,11 +3,11 @@
 Multiway registration (Choi, Zhou and Koltun 2015) with a localiser's poses as further measurements.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scanplan import loops, posegraph
+from scanplan import loops, posegraph, se3, twists
 
 _PAIRS_PER_JOB = 100
 
@@ -49,6 +49,30 @@ class Result:
     weight: np.ndarray
     prior_weight: np.ndarray
 
+    def without(self, scan_ids):
+        """Return the result without the links of some scans."""
+        ends = np.array([(edge.source, edge.target) for edge in self.edges], np.int64).reshape(-1, 2)
+        left = ~np.isin(ends, scan_ids).any(axis=1)
+        edges = [edge for edge, stays in zip(self.edges, left, strict=True) if stays]
+        return replace(self, edges=edges, residual=self.residual[left], weight=self.weight[left])
+
+
+def as_registered(scan_ids, start, edges):
+    """Return the Result of scans that stay as they were registered one after the other: all links count in full.
+
+    Parameters
+    ----------
+    scan_ids, start, edges
+        As of `optimise`.
+    """
+    row = {int(scan_id): i for i, scan_id in enumerate(scan_ids)}
+    edges = sorted((e for e in edges if e.source in row and e.target in row), key=_ends)
+    rows = np.array([[row[end] for end in _ends(edge)] for edge in edges], np.int64).reshape(-1, 2)
+    source, target = start[rows[:, 0]], start[rows[:, 1]]
+    measured = np.array([edge.fit.target_from_source for edge in edges]).reshape(-1, 4, 4)
+    residual = twists.of_motion(se3.inverse(measured) @ se3.inverse(target) @ source)
+    return Result(start, edges, residual, np.ones(len(edges)), np.ones(len(start)))
+
 
 def optimise(scan_ids, start, priors, edges, thinned, run, *, planar, limits, settings):
     """Find the poses of all retained scans at once.
@@ -87,17 +111,22 @@ def optimise(scan_ids, start, priors, edges, thinned, run, *, planar, limits, se
         )
 
     solution = solve(start)
-    chosen = loops.pairs(
-        solution.world_from_scan[:, :2, 3],
-        radius_m=settings.loop_radius_m,
-        apart=settings.loop_apart,
-        most=settings.loops_per_scan,
-    )
+    chosen = _chosen(solution.world_from_scan[:, :2, 3], {row[edge.source] for edge in edges}, settings)
     jobs = _link_jobs(chosen, scan_ids, solution.world_from_scan, thinned, planar, limits, settings)
     edges += [edge for found in run(loops.link, jobs) for edge in found]
-    edges.sort(key=lambda edge: (edge.source, edge.target))
+    edges.sort(key=_ends)
     solution = solve(solution.world_from_scan)
     return Result(solution.world_from_scan, edges, solution.residual, solution.weight, solution.prior_weight)
+
+
+def _ends(edge):
+    return edge.source, edge.target
+
+
+def _chosen(xy_m, linked, settings):
+    near = {"radius_m": settings.loop_radius_m, "apart": settings.loop_apart}
+    is_linked = np.isin(np.arange(len(xy_m)), list(linked))
+    return sorted(loops.pairs(xy_m, **near, most=settings.loops_per_scan) + loops.bridges(is_linked, xy_m, **near))
 
 
 def _links(edges, row, settings):
@@ -123,4 +152,4 @@ def _link_jobs(chosen, scan_ids, world_from_cloud, thinned, planar, limits, sett
         pairs = chosen[begin : begin + _PAIRS_PER_JOB]
         rows = sorted({row for pair in pairs for row in pair})
         own = scan_ids[rows], world_from_cloud[rows]
-        yield thinned.part(rows), rows, *own, pairs, planar, limits, settings.loop_min_fitness
+        yield thinned.part(rows), rows, *own, pairs, planar, limits, settings.loop_min_fitness, settings.loop_apart

@@ -1,7 +1,7 @@
 """Selecting continuous scans and registering them one after the other (thesis 3.5, algorithm 3)."""
 
 from collections import deque
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -36,6 +36,7 @@ class Settings:
     localiser_sigma_deg: float
     localiser_sigma_tilt_deg: float
     anchor_after: int
+    anchor_apart_m: float
     min_points: int
 
     def localiser_information(self, priors):
@@ -53,7 +54,7 @@ class Verdict:
     kept : bool
     reason : str
         `kept`, `anchor` (kept at the localiser's pose), `pose_gap`, `too_few_points`, `low_prior_fitness`,
-        `icp_diverged` or `low_refined_fitness`.
+        `icp_diverged`, `low_refined_fitness`, or `unconfirmed` (see `confirmation`).
     world_from_sensor : (4, 4) float64
         After refinement where the scan is kept, the localiser's otherwise; NaN without a pose.
     prior_fitness, refined_fitness, rmse_m : float
@@ -87,10 +88,14 @@ class Registrar:
     planar: bool
     edges: list = field(default_factory=list)
     _previous: deque = field(init=False)
+    # what was looked back on before an anchor that no scan has confirmed yet
+    _earlier: deque = field(init=False)
+    _confirmed: bool = False
+    _after_gap: bool = False
     _rejected_in_a_row: int = 0
 
     def __post_init__(self):
-        self._previous = deque(maxlen=self.settings.n_previous)
+        self._previous, self._earlier = self._no_scans(), self._no_scans()
 
     def add(self, scan_id, xyz_m, prior):
         """Judge the next scan.
@@ -111,6 +116,7 @@ class Registrar:
         """
         nothing = np.zeros((0, 3), np.float32)
         if not np.isfinite(prior).all():
+            self._after_gap = True
             return Verdict(False, "pose_gap", np.full((4, 4), np.nan)), nothing
         if len(xyz_m) < self.settings.min_points:
             return Verdict(False, "too_few_points", prior), nothing
@@ -129,33 +135,60 @@ class Registrar:
         return verdict, thinned_m
 
     def _judge(self, scan, level_from_sensor):
-        prior, s = scan.world_from_cloud @ level_from_sensor, self.settings
+        prior = scan.world_from_cloud @ level_from_sensor
         if not self._previous:
             return Verdict(True, "anchor", prior), []
-        before = self._mean_overlap(scan)[0]
+        verdict, edges = self._compared(scan, level_from_sensor, self._previous)
+        if not verdict.kept and not self._confirmed and self._earlier:
+            # the anchor may have been the scan that was out of place
+            back, edges_back = self._compared(scan, level_from_sensor, self._earlier)
+            if back.kept:
+                self._previous = self._earlier
+                return back, edges_back
+        if not verdict.kept and self._starts_anew(scan):
+            verdict = replace(verdict, kept=True, reason="anchor")
+        return verdict, edges
+
+    def _compared(self, scan, level_from_sensor, previous):
+        """Judge a scan by some that are in place."""
+        prior, s = scan.world_from_cloud @ level_from_sensor, self.settings
+        before = self._mean_overlap(scan, previous)[0]
         if before < s.min_prior_fitness:
-            return self._rejected("low_prior_fitness", prior, before)
-        refined, edges = links.refine(scan, list(self._previous)[: -s.icp_targets - 1 : -1], s)
+            return Verdict(False, "low_prior_fitness", prior, before), []
+        refined, edges = links.refine(scan, list(previous)[: -s.icp_targets - 1 : -1], s)
         if refined is None:
-            return self._rejected("icp_diverged", prior, before)
-        after, rmse_m = self._mean_overlap(refined)
+            return Verdict(False, "icp_diverged", prior, before), []
+        after, rmse_m = self._mean_overlap(refined, previous)
         if after < s.min_refined_fitness:
-            return self._rejected("low_refined_fitness", prior, before, after, rmse_m)
+            return Verdict(False, "low_refined_fitness", prior, before, after, rmse_m), []
         return Verdict(True, "kept", refined.world_from_cloud @ level_from_sensor, before, after, rmse_m), edges
 
-    def _rejected(self, reason, prior, before, after=np.nan, rmse_m=np.nan):
-        # a lost region is worse than a seam: after a run of rejections the localiser is believed again
-        anew = self._rejected_in_a_row + 1 >= self.settings.anchor_after
-        return Verdict(anew, "anchor" if anew else reason, prior, before, after, rmse_m), []
+    def _starts_anew(self, scan):
+        """Whether a scan that does not fit is believed to be where the localiser says.
+
+        A lost region is worse than a seam: it is after a run of rejections, and at once where the scans before cannot
+        be expected to show the same place.
+        """
+        long_run = self._rejected_in_a_row + 1 >= self.settings.anchor_after
+        return long_run or self._after_gap or self._is_far(scan)
+
+    def _is_far(self, scan):
+        way_m = [np.linalg.norm((p.world_from_cloud - scan.world_from_cloud)[:3, 3]) for p in self._previous]
+        return min(way_m) > self.settings.anchor_apart_m
 
     def _remember(self, scan_id, cloud, verdict, level_from_sensor):
         self._rejected_in_a_row = 0 if verdict.kept else self._rejected_in_a_row + 1
         if verdict.reason == "anchor":
-            self._previous.clear()
+            self._earlier = self._previous if self._confirmed else self._earlier
+            self._previous = self._no_scans()
         if verdict.kept:
+            self._confirmed, self._after_gap = verdict.reason == "kept", False
             world_from_cloud = verdict.world_from_sensor @ se3.inverse(level_from_sensor)
             self._previous.append(links.Placed(scan_id, cloud, world_from_cloud))
 
-    def _mean_overlap(self, scan):
-        found = [links.overlap(scan, target, self.settings) for target in self._previous]
+    def _mean_overlap(self, scan, previous):
+        found = [links.overlap(scan, target, self.settings) for target in previous]
         return tuple(float(mean) for mean in np.mean(found, axis=0))
+
+    def _no_scans(self):
+        return deque(maxlen=self.settings.n_previous)

@@ -12,6 +12,7 @@ _MARKS = {
     "low_prior_fitness": ("x", "#d55e00", "dropped: little overlap"),
     "low_refined_fitness": ("+", "#cc79a7", "dropped: little overlap after refinement"),
     "icp_diverged": ("^", "#0072b2", "dropped: refinement went astray"),
+    "unconfirmed": ("D", "#999999", "dropped: no scan confirms its place"),
     "too_few_points": ("v", "#009e73", "dropped: too few points"),
 }
 _OTHER = ("d", "#e69f00", "dropped: {}")

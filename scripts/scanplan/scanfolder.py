@@ -60,10 +60,14 @@ class ScanFolder:
     def sweep_times(self):
         """How the clouds tell when each point was measured: a sweeptimes.Convention, or None if they do not."""
         first = range(min(len(self._clouds), clouds.SCANS_TO_JUDGE))
-        found = sweeptimes.convention((_read_cloud(self._clouds[i])[1], self._stamps_ns[i]) for i in first)
+        found = sweeptimes.convention((self._times(i), self._stamps_ns[i]) for i in first)
         if found:
             stagelog.say(f"{self._poses_path.parent}: times of points are {found}")
         return found
+
+    def _times(self, scan_id):
+        xyz_m, time_raw = _read_cloud(self._clouds[scan_id])
+        return None if time_raw is None else np.asarray(time_raw)[clouds.in_range(xyz_m, **self._limits)]
 
     def stamps(self):
         """Return the stamps of all clouds, (n,) int64, in scan_id order."""

@@ -11,6 +11,10 @@ import numpy as np
 
 SHORTEST_SWEEP_S, LONGEST_SWEEP_S = 5e-3, 0.5
 _FARTHEST_FROM_STAMP_S = 1.0
+# percentiles between which a sweep is judged, the share that lies between them, and how far others may lie beyond
+_QUANTILES, _BETWEEN, _BEYOND = (5, 95), 0.9, 0.25
+# so many of the scans have to agree
+_MOST = 0.75
 _UNIT_NS = {"s": 10**9, "ms": 10**6, "us": 10**3, "ns": 1}
 
 
@@ -49,10 +53,10 @@ class Convention:
         stamp_ns = t_ns if self.zero == "epoch" else 0
         if values.dtype.kind in "iu":
             values = values.astype(np.int64)
-            start = values.min(initial=np.iinfo(np.int64).max) if self.zero == "earliest" else 0
+            start = _earliest(values) if self.zero == "earliest" else 0
             return ((values - start) * unit_ns - stamp_ns) / 1e9
         values = _floats(values)
-        start = np.nanmin(values, initial=np.inf) if self.zero == "earliest" else 0.0
+        start = _earliest(_finite(values)) if self.zero == "earliest" else 0.0
         return (values - start - stamp_ns / unit_ns) * (unit_ns / 1e9)
 
     def __str__(self):
@@ -77,16 +81,25 @@ def convention(scans, units=tuple(_UNIT_NS)):
     Returns
     -------
     Convention or None
-        None where no points are timed, or their times cannot be those of a sweep: all the same, or too far apart.
+        None where no points are timed, their times cannot be those of a sweep (all the same, or too far apart), or
+        the scans do not agree.
     """
-    spans = [(_span(time_raw), np.asarray(time_raw), t_ns) for time_raw, t_ns in scans if time_raw is not None]
-    longest, time_raw, t_ns = max(spans, key=lambda item: item[0], default=(0.0, None, 0))
-    for unit in units:
-        if SHORTEST_SWEEP_S <= longest * _UNIT_NS[unit] / 1e9 <= LONGEST_SWEEP_S:
-            zeros = (Convention(unit, zero) for zero in ("stamp", "epoch"))
-            found = next((c for c in zeros if is_sweep(_finite(c.seconds(time_raw, t_ns)))), None)
-            return found or Convention(unit, "earliest")
-    return None
+    timed = [
+        (_finite(_floats(time_raw)), np.asarray(time_raw), t_ns) for time_raw, t_ns in scans if time_raw is not None
+    ]
+    most = max((len(values) for values, _, _ in timed), default=0)
+    # of a scan with few returns the sweep is not seen
+    full = [(_span(values), raw, t_ns) for values, raw, t_ns in timed if len(values) > most / 2]
+    if not full:
+        return None
+    span, time_raw, t_ns = sorted(full, key=lambda item: item[0])[len(full) // 2]
+    unit = next((unit for unit in units if _lasts_a_sweep(span, unit)), None)
+    if unit is None or np.mean([_lasts_a_sweep(item[0], unit) for item in full]) < _MOST:
+        return None
+    zeros = (Convention(unit, zero) for zero in ("stamp", "epoch"))
+    return next(
+        (c for c in zeros if is_sweep(_usual(_finite(c.seconds(time_raw, t_ns))))), Convention(unit, "earliest")
+    )
 
 
 def is_sweep(time_s):
@@ -99,9 +112,25 @@ def is_sweep(time_s):
     return bool(near and last_s - first_s <= LONGEST_SWEEP_S)
 
 
-def _span(time_raw):
-    values = _finite(_floats(time_raw))
-    return float(np.ptp(values)) if len(values) else 0.0
+def _lasts_a_sweep(span, unit):
+    return SHORTEST_SWEEP_S <= span * _UNIT_NS[unit] / 1e9 <= LONGEST_SWEEP_S
+
+
+def _span(values):
+    """How long a sweep (n,) lasts, whatever a few bad times say; they go evenly from its start to its end."""
+    return float(np.subtract(*np.percentile(values, _QUANTILES[::-1]))) / _BETWEEN if len(values) else 0.0
+
+
+def _usual(values):
+    """Return the times of (n,) finite ones that are not far from the others."""
+    if len(values) == 0:
+        return values
+    low, high = np.percentile(values, _QUANTILES)
+    return values[(values >= low - _BEYOND * (high - low)) & (values <= high + _BEYOND * (high - low))]
+
+
+def _earliest(values):
+    return _usual(values).min() if len(values) else 0
 
 
 def _floats(time_raw):

@@ -56,3 +56,8 @@ def test_planar_only_if_the_first_scans_share_the_plane_and_no_more_is_read():
     source = iter([flat] * 7)
     assert clouds.are_planar(source)
     assert len(list(source)) == 2
+
+
+def test_points_in_range():
+    xyz_m = np.array([(0, 0, 0), (1, 0, 0), (0, 3, 4), (9, 0, 0), (np.nan, 1, 0)])
+    assert clouds.in_range(xyz_m, min_range_m=1.0, max_range_m=5.0).tolist() == [False, True, True, False, False]

@@ -148,3 +148,11 @@ def test_few_probes_tell_the_fitness_of_all():
     aside = motion([0.4, 0, 0], 0)
     every, some = (icp.overlap(source, target, aside, **limits, n_probes=n)[0] for n in (None, 500))
     assert every == pytest.approx(some, abs=0.04) and 0.2 < every < 0.95
+
+
+@pytest.mark.parametrize("value", [0.0, -1.0])
+def test_pairs_that_tell_of_no_direction_are_no_sound_fit(value):
+    start = motion([0.1, 0, 0], 3)
+    fit = icp._observable(start, np.eye(4), value * np.eye(6), 1.0)
+    assert not fit.sound and fit.n_unobservable == 6 and not fit.information.any()
+    np.testing.assert_array_equal(fit.target_from_source, start)

@@ -1,3 +1,5 @@
+import tracemalloc
+
 import numpy as np
 
 from scanplan import loops
@@ -28,3 +30,19 @@ def test_standing_still_links_to_none_too_near_in_time():
     still = np.zeros((12, 2))
     assert all(source - target > 4 for source, target in loops.pairs(still, radius_m=1.0, apart=4, most=3))
     assert loops.pairs(still[:4], radius_m=1.0, apart=4, most=3) == []
+
+
+def test_a_scan_without_links_is_tried_with_the_near_ones_before():
+    xy = np.column_stack([np.arange(8.0), np.zeros(8)])
+    linked = [False, True, True, True, True, False, True, False]
+    assert loops.bridges(linked, xy, radius_m=2.5, apart=4) == [(5, 3), (5, 4), (7, 5), (7, 6)]
+    assert loops.bridges(linked, xy, radius_m=9.0, apart=1) == [(5, 4), (7, 6)]
+
+
+def test_standing_still_takes_no_memory_for_all_pairs():
+    still = np.random.default_rng(0).normal(0, 0.1, (1500, 2))
+    tracemalloc.start()
+    loops.pairs(still, radius_m=5.0, apart=6, most=4)
+    peak_bytes = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak_bytes < 1500**2

@@ -75,9 +75,9 @@ def errors_m(judged, true):
 
 def test_the_map_is_better_than_the_localiser_and_than_the_chain(drive, mapped, tmp_path):
     judged, result = mapped
-    chain, none = register(drive, tmp_path, graph={"optimise": False})
+    chain, _ = register(drive, tmp_path, graph={"optimise": False})
     true = drive[2]
-    assert none is None and all(verdict.kept for verdict in judged)
+    assert all(verdict.kept for verdict in judged)
     assert [v.reason for v in judged] == ["anchor"] + ["kept"] * (N - 1)
     prior_m = np.median(errors_m([SimpleNamespace(world_from_sensor=p) for p in drive[1]], true)[0])
     distance_m, angle_deg = errors_m(judged, true)
@@ -111,7 +111,7 @@ def test_links_make_a_table(drive, mapped, tmp_path):
 def test_no_links_make_an_empty_table(tmp_path):
     tables.write(tmp_path / "edges.parquet", tables.EDGES, linktable.columns(None), allow_empty=True)
     assert len(tables.read(tmp_path / "edges.parquet", tables.EDGES, allow_empty=True)["source"]) == 0
-    assert linktable.summary(None) == "no pose graph"
+    assert linktable.summary(None) == "no links: poses as given"
 
 
 def test_a_jump_of_the_localiser_by_two_metres_loses_no_region(drive, mapped, tmp_path):
@@ -125,6 +125,47 @@ def test_a_jump_of_the_localiser_by_two_metres_loses_no_region(drive, mapped, tm
     assert reasons.count("anchor") == 3 and reasons.count("kept") > 45
     kept_there = [verdict.kept for verdict in judged[25:45]]
     assert sum(kept_there) > 10
+
+
+@pytest.mark.parametrize("bad", [15, 17, 19])
+def test_a_scan_out_of_place_before_a_border_costs_only_itself(drive, tmp_path, bad):
+    scans, priors, true = drive
+    disturbed = np.array(priors)
+    disturbed[bad] = pose(1.2, 0.7, 0) @ disturbed[bad] @ se3.inverse(pose(0, 0, -35))
+    judged, result = register((scans, disturbed, true), tmp_path)
+    assert [i for i, verdict in enumerate(judged) if verdict.reason != "kept"] == [0, bad]
+    over = [e for e in result.edges if e.kind == "sequence" and e.source >= 100 > e.target]
+    assert len(over) >= 3
+
+
+def test_a_lost_localisers_scans_are_dropped_where_nothing_confirms_them(drive, tmp_path):
+    scans, priors, true = drive
+    lost = np.array(priors)
+    lost[21:29, :2, 3] = [(20 + 10 * (5 * i % 8), -30) for i in range(8)]
+    for graph in ({}, {"optimise": False}):
+        judged, result = register((scans, lost, true), tmp_path, graph=graph)
+        assert {verdict.reason for verdict in judged[21:29]} == {"unconfirmed"}
+        assert [i for i, verdict in enumerate(judged) if not verdict.kept] == list(range(21, 29))
+        np.testing.assert_array_equal(judged[25].world_from_sensor, lost[25])
+        ends = {end // 5 for edge in result.edges for end in (edge.source, edge.target)}
+        assert ends == {*range(21), *range(29, N)}
+
+
+def test_links_are_told_without_optimisation_too(drive, tmp_path):
+    judged, result = register(drive, tmp_path, graph={"optimise": False})
+    assert {edge.kind for edge in result.edges} == {"sequence"} and (result.weight == 1).all()
+    assert {edge.source for edge in result.edges} == set(range(5, 5 * N, 5))
+    edge, residual = result.edges[7], result.residual[7]
+    place = [judged[end // 5].world_from_sensor for end in (edge.target, edge.source)]
+    off = se3.inverse(edge.fit.target_from_source) @ se3.inverse(place[0]) @ place[1]
+    np.testing.assert_allclose(np.linalg.norm(residual[:3]), np.linalg.norm(off[:3, 3]), rtol=0.05)
+
+
+def test_a_new_start_is_linked_to_what_was_before(drive, tmp_path):
+    """No scan can pass the gate, and every rejection is a new start."""
+    judged, result = register(drive, tmp_path, n_previous=1, anchor_after=1, min_prior_fitness=1.0)
+    assert {verdict.reason for verdict in judged} == {"anchor"}
+    assert {e.source for e in result.edges if e.kind == "sequence"} >= set(range(5, 200, 5))
 
 
 def test_no_candidate_that_is_kept_gives_no_links(drive, tmp_path):

@@ -98,3 +98,12 @@ def test_odometry_never_known_is_no_candidate():
     assert len(chosen(("odometry", [line(0, 1), line(5, 6)]), POSES).t_ns) == 21
     with pytest.raises(StageError, match="poses: parts of the chain to the sensor are never known together"):
         chosen(("poses", [line(0, 1), line(5, 6)]))
+
+
+def test_a_jump_of_one_of_two_moving_links_is_no_motion():
+    """The localiser's correction jumps by 2 m from 5.0 s to 5.1 s; the wheels are known twenty times a second."""
+    corrections = edge([4.9, 5.0, 5.1, 5.2], [0, 0, 2, 2], parent="map")
+    way = motion.along([corrections, line(4.9, 5.2, 0.02)], SCANS, max_gap_s=1.0, max_speed_m_s=3.0)
+    assert way.at(np.array([4.92, 4.99]) * S) is not None and way.at(np.array([5.11, 5.19]) * S) is not None
+    for first_s, last_s in ((5.01, 5.03), (5.05, 5.09), (4.99, 5.11)):
+        assert way.at(np.array([first_s, last_s]) * S) is None

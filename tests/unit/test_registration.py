@@ -26,6 +26,7 @@ SETTINGS = registration.Settings(
     localiser_sigma_deg=180.0,
     localiser_sigma_tilt_deg=180.0,
     anchor_after=3,
+    anchor_apart_m=5.0,
     min_points=20,
 )
 
@@ -162,13 +163,38 @@ def test_scans_without_pose_or_points_are_named():
 
 def test_a_run_of_rejections_ends_in_a_new_anchor():
     scans, priors, _ = drive(8, planar=True)
-    away = pose(30, 0, 0)
+    away = pose(3, 1, 0)
     priors = priors[:3] + [away @ p for p in priors[3:]]
     verdicts = register(scans, priors, True)
     assert [v.reason for v in verdicts] == (
         ["anchor", "kept", "kept", "low_prior_fitness", "low_prior_fitness", "anchor", "kept", "kept"]
     )
     np.testing.assert_allclose(verdicts[5].world_from_sensor, priors[5])
+
+
+def test_a_scan_far_from_all_before_starts_anew_at_once():
+    scans, priors, _ = drive(6, planar=True)
+    priors = priors[:3] + [pose(30, 0, 0) @ p for p in priors[3:]]
+    assert [v.reason for v in register(scans, priors, True)] == ["anchor", "kept", "kept"] * 2
+    near = register(scans, priors, True, anchor_apart_m=50.0)
+    assert [v.reason for v in near[3:]] == ["low_prior_fitness", "low_prior_fitness", "anchor"]
+
+
+def test_a_scan_elsewhere_after_a_gap_starts_anew_at_once():
+    scans, priors, _ = drive(7, planar=True)
+    priors = priors[:3] + [np.full((4, 4), np.nan)] + [pose(3, 1, 0) @ p for p in priors[4:]]
+    reasons = [v.reason for v in register(scans, priors, True)]
+    assert reasons == ["anchor", "kept", "kept", "pose_gap", "anchor", "kept", "kept"]
+
+
+def test_scans_out_of_place_cost_none_of_those_after_them():
+    """A localiser that is lost for two scans, each somewhere else, and then finds back."""
+    scans, priors, true = drive(8, planar=True)
+    priors[3], priors[4] = pose(30, 0, 0), pose(-30, 10, 50)
+    verdicts = register(scans, priors, True)
+    assert [v.reason for v in verdicts[5:]] == ["kept"] * 3
+    for verdict, t in zip(verdicts[5:], true[5:], strict=True):
+        np.testing.assert_allclose(verdict.world_from_sensor[:2, 3], t[:2, 3], atol=0.02)
 
 
 def test_the_literal_algorithm_keeps_the_same_scans_at_the_same_places():

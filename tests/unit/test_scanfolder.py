@@ -90,12 +90,13 @@ def test_a_mount_and_bad_poses(tmp_path):
 
 
 def test_times_and_ranges(tmp_path):
-    path = write_pcd(tmp_path / "scans" / "1.0.pcd", [[1, 0, 0], [np.nan, 0, 0], [0, 99, 0]], ("time", [0.1, 0.2, 0.3]))
+    points, times = [[1, 0, 0], [np.nan, 0, 0], [0, 99, 0], [0, 1, 0]], [0.1, 0.2, 30.0, 0.15]
+    path = write_pcd(tmp_path / "scans" / "1.0.pcd", points, ("time", times))
     (tmp_path / "poses.tum").write_text("1 0 0 0 0 0 0 1\n")
     with surveys.open_survey([str(tmp_path / "poses.tum"), str(path)], **LIMITS) as survey:
         (scan,) = survey.scans([0])
-    assert (scan.xyz_m.tolist(), scan.n_dropped) == ([[1, 0, 0]], 2)
-    np.testing.assert_allclose(scan.time_s, [0.1], atol=1e-7)
+    assert (scan.xyz_m.tolist(), scan.n_dropped) == ([[1, 0, 0], [0, 1, 0]], 2)
+    np.testing.assert_allclose(scan.time_s, [0.1, 0.15], atol=1e-7)
 
 
 def test_flat_clouds_are_planar(tmp_path):

@@ -56,10 +56,30 @@ def test_what_is_no_sweep_in_any_unit(raw):
     assert of(raw) is None
 
 
-def test_the_fullest_of_the_first_scans_decides():
+def test_the_fullest_of_the_first_scans_decide():
     few = (np.array([0, 0.0004]) * 1e9).astype(np.uint32)  # 0.4 ms in ns, 0.4 s in us
-    full = (SWEEP * 1e9).astype(np.uint32)
+    full = (np.linspace(0, 0.1, 50) * 1e9).astype(np.uint32)
     assert sweeptimes.convention([(few, T_NS), (None, T_NS), (full, T_NS)]) == Convention("ns", "stamp")
+
+
+@pytest.mark.parametrize(("unit", "per_s"), [("s", 1), ("ms", 1e3), ("us", 1e6), ("ns", 1e9)])
+def test_bad_times_of_some_points_do_not_decide(unit, per_s):
+    good = np.linspace(0, 0.1, 1000)
+    one, many = good.copy(), good + 7.0
+    one[500] = 70.0
+    many[::50] = 0
+    assert sweeptimes.convention([(good * per_s, T_NS), (one * per_s, T_NS)]) == Convention(unit, "stamp")
+    found = sweeptimes.convention([(many * per_s, T_NS)])
+    assert found == Convention(unit, "earliest")
+    np.testing.assert_allclose(found.seconds(many * per_s, T_NS)[1:50], good[1:50] - good[1], atol=1e-6)
+    whole = np.round(many * 1e9).astype(np.int64)
+    np.testing.assert_allclose(Convention("ns", "earliest").seconds(whole, T_NS)[1:50], good[1:50] - good[1], atol=1e-6)
+
+
+def test_scans_that_disagree_give_none():
+    good = np.linspace(0, 0.1, 1000)
+    assert sweeptimes.convention([(good, T_NS)] * 4 + [(good * 1e3, T_NS)]) == Convention("s", "stamp")
+    assert sweeptimes.convention([(good, T_NS)] * 3 + [(good * 1e3, T_NS)] * 2) is None
 
 
 def test_units_can_be_limited():
