@@ -25,7 +25,11 @@ include: "workflow/rules/plan.smk"
 include: "workflow/rules/evaluate.smk"
 include: "workflow/rules/report.smk"
 include: "workflow/rules/evidence.smk"
-include: "workflow/rules/thesis.smk"
+
+
+if THESIS:
+
+    include: "workflow/rules/thesis.smk"
 
 
 rule all:

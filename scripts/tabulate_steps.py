@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from scanplan import stagelog, tables
+from scanplan import stagelog, tables, tum
 from scanplan.schemas import STEPS
 
 NAMES = ("Data collection", "Selecting and registering scans", "Hull creation", "Cluster subset selection")
@@ -25,7 +25,7 @@ def tabulate_steps(recordings, true_poses, scans, built, selection, times, outpu
     n_selected : int
         Size of the subset.
     """
-    stamps = [float(line.split()[0]) for line in Path(true_poses).read_text().splitlines() if line[:1] != "#"]
+    t_ns, _ = tum.read(true_poses)
     hulls = tables.read(built, tables.HULLS, ["scan_id", "cluster", "n_points"])
     chosen = tables.read(selection, tables.SELECTION, ["rank", "scan_id"])["scan_id"][:n_selected]
     # points take the same room wherever they are in the table
@@ -35,12 +35,12 @@ def tabulate_steps(recordings, true_poses, scans, built, selection, times, outpu
     rows = {
         "step": np.arange(1, 5),
         "name": list(NAMES),
-        "seconds": np.array([stamps[-1] - stamps[0], *(sum(map(_seconds, files)) for files in times)]),
-        "n_scans": np.array([len(stamps), kept, kept, len(chosen)]),
+        "seconds": np.array([(t_ns[-1] - t_ns[0]) / 1e9, *(sum(map(_seconds, files)) for files in times)]),
+        "n_scans": np.array([len(t_ns), kept, kept, len(chosen)]),
         "n_bytes": np.array(n_bytes).astype(np.int64),
     }
     tables.write(output, STEPS, rows)
-    stagelog.say(f"tabulate_steps: {len(stamps):,} scans, {kept} registered, {len(chosen)} selected")
+    stagelog.say(f"tabulate_steps: {len(t_ns):,} scans, {kept} registered, {len(chosen)} selected")
 
 
 def _size(path):

@@ -28,8 +28,7 @@ def time_stages(scans, registration, built, output, *, walls, hulls, n_clusters,
     columns = tables.read(built, tables.HULLS)
     chosen, n = timing.spread(store.scan_ids, timed_scans), len(store.scan_ids)
     sizes = [size for size in _SELECTION_SIZES if size < n] + [n]
-    sampling = {name: hulls[name] for name in ("sample_size", "seed")}
-    rows = [*timing.selection(columns, sizes), *timing.clusters(store, chosen, sorted(n_clusters), **sampling)]
+    rows = [*timing.selection(columns, sizes), *timing.clusters(store, chosen, sorted(n_clusters), **hulls)]
     for name, method in _EXTRACTORS.items():
         timed = timing.extractor(name, method, store, placed, chosen, walls[name], registration)
         rows += stagelog.progress(timed, f"time_stages {name}", total=len(chosen))
@@ -47,6 +46,6 @@ if __name__ == "__main__":
             snakemake.output.times,
             walls=snakemake.params.walls,
             hulls=snakemake.params.hulls,
-            n_clusters=snakemake.params.settings["n_clusters"],
-            timed_scans=snakemake.params.settings["timed_scans"],
+            n_clusters=snakemake.params.n_clusters,
+            timed_scans=snakemake.params.timed_scans,
         )

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from scanplan.errors import StageError
+
 _MOST_CELLS = 100_000_000
 _WHOLE = 1e-9  # cells: nearer than this to a grid line is on it
 
@@ -41,8 +43,10 @@ def grid_around(lines_m, cell_m):
 
     Raises
     ------
+    StageError
+        If it would have more than a hundred million cells.
     ValueError
-        If it would have more than a hundred million cells, or the cell is not above 0.
+        If the cell is not above 0.
     """
     if cell_m <= 0:
         raise ValueError(f"cell_m is {cell_m}, must be above 0")
@@ -50,10 +54,14 @@ def grid_around(lines_m, cell_m):
     xy_m = xy_m if len(xy_m) else np.zeros((1, 2))
     first = np.floor(xy_m.min(axis=0) / cell_m + _WHOLE)
     last = np.maximum(np.ceil(xy_m.max(axis=0) / cell_m - _WHOLE), first + 1)
-    columns, rows = (last - first).astype(np.int64).tolist()
+    columns, rows = (last - first).tolist()
     if rows * columns > _MOST_CELLS:
-        raise ValueError(f"a bitmap of {rows} x {columns} cells, at most {_MOST_CELLS}; use a larger cell")
-    return Grid(first * cell_m, float(cell_m), (rows, columns))
+        raise StageError(
+            f"truth and walls span {columns * cell_m:.6g} m x {rows * cell_m:.6g} m: a bitmap of {rows * columns:.3g}"
+            f" cells, at most {_MOST_CELLS:,};"
+            f" make evaluation.bitmap_cell_m ({cell_m:g} m) larger or mend truth.geojson"
+        )
+    return Grid(first * cell_m, float(cell_m), (int(rows), int(columns)))
 
 
 def cells_of(lines_m, grid):

@@ -181,6 +181,21 @@ def results(found, methods, extractors):
     return [f"results/{found.name}/{file}" for file in files]
 
 
+def truth_of(found):
+    """Return truth.geojson and truth_poses.tum of a dataset.
+
+    Raises
+    ------
+    StageError
+        If its truth is not known.
+    """
+    if found.truth is None:
+        raise StageError(
+            f"{found.name}: has no truth to be evaluated against; put truth.geojson and truth_poses.tum into its folder"
+        )
+    return found.truth
+
+
 def _truth_beside(folder):
     files = folder / "truth.geojson", folder / "truth_poses.tum"
     return tuple(map(str, files)) if all(file.is_file() for file in files) else None

@@ -31,8 +31,11 @@ def others_similar(tables):
 def full_hull_overestimates(tables):
     """Compare the areas of whole scans' hulls with what the scans truly see."""
     ratio = _area_ratio(tables, "full_hull_m2")
-    values = {"hull per seen area, median": np.median(ratio), "share of scans over-estimated": np.mean(ratio > 1)}
-    return Measured(values, np.median(ratio) > 1)
+    values = {
+        "hull per seen area, median": np.median(ratio),
+        "share of scans over-estimated": np.mean(np.where(np.isnan(ratio), np.nan, ratio > 1)),
+    }
+    return Measured(values, np.median(ratio) > 1 if np.isfinite(ratio).all() else None)
 
 
 def cluster_hull_closer(tables):
@@ -44,7 +47,7 @@ def cluster_hull_closer(tables):
         "relative error, cluster hulls": error[0],
         "relative error, one hull": error[1],
     }
-    return Measured(values, error[0] < error[1])
+    return Measured(values, error[0] < error[1] if np.isfinite(error).all() else None)
 
 
 def full_hull_99(tables):
@@ -103,14 +106,14 @@ def fifteen_almost_complete(tables):
         "walls found by the first 15 recorded": sequential,
         "of how many scans": walls["k"].max(),
     }
-    return Measured(values, share >= ALMOST)
+    return Measured(values, _almost(share))
 
 
 def tenth_little_loss(tables):
     """Compare what a tenth of the scans finds with what all find."""
     tenth = max(1, tables["rooms_walls"]["k"].max() // 10)
     share = _share_of_all(tables, tenth)
-    return Measured({"scans": tenth, "share of what all find": share}, share >= ALMOST)
+    return Measured({"scans": tenth, "share of what all find": share}, _almost(share))
 
 
 def first_sixty(tables):
@@ -135,8 +138,9 @@ def _mean_of_each(tables, column):
 
 
 def _area_ratio(tables, name):
-    areas = tables["rooms_areas"]
-    return areas[name] / areas["seen_m2"]
+    """Return the ratio for each scan that sees any area; NaN alone where none does."""
+    areas, some = tables["rooms_areas"], tables["rooms_areas"]["seen_m2"] > 0
+    return areas[name][some] / areas["seen_m2"][some] if some.any() else np.array([np.nan])
 
 
 def _at_99(selection, claim):
@@ -145,5 +149,10 @@ def _at_99(selection, claim):
 
 
 def _share_of_all(tables, k):
-    walls = tables["rooms_walls"]
-    return value_at(walls, "cluster_hull", OURS, k, FOUND) / value_at(walls, "cluster_hull", OURS, np.inf, FOUND)
+    """Return what the first k scans find per what all find; NaN where those find nothing."""
+    some, every = (value_at(tables["rooms_walls"], "cluster_hull", OURS, size, FOUND) for size in (k, np.inf))
+    return some / every if every > 0 else np.nan
+
+
+def _almost(share):
+    return bool(share >= ALMOST) if np.isfinite(share) else None

@@ -209,7 +209,7 @@ _AGREEMENT = {
 }
 EVALUATION = Schema(
     "evaluation",
-    1,
+    2,
     {
         "method": "string",
         "extractor": "string",
@@ -217,6 +217,7 @@ EVALUATION = Schema(
         **_AGREEMENT,
         **dict.fromkeys(
             (
+                "walls_per_true_wall_of_a_scan",
                 "seen",
                 "missed_not_seen",
                 "missed_misregistered",

@@ -57,7 +57,8 @@ def shares_figure(evaluated, extractor):
     Parameters
     ----------
     evaluated : sequence of dict
-        The columns of `schemas.EVALUATION`, one table per seed, of equally many scans.
+        The columns of `schemas.EVALUATION`, one table per seed; drawn to as many scans as all have, linear between
+        the numbers evaluated.
     extractor : str
 
     Returns
@@ -69,15 +70,23 @@ def shares_figure(evaluated, extractor):
         for method in FOUR:
             label, colour = STYLES[method]
             rows = [of_method(table, method, extractor) for table in evaluated]
-            share = np.array([row[column] for row in rows])
-            axes.fill_between(rows[0]["k"], share.min(axis=0), share.max(axis=0), color=colour, alpha=0.25, lw=0)
-            axes.plot(rows[0]["k"], share.mean(axis=0), color=colour, lw=1.4, label=label)
+            k = _common(row["k"] for row in rows)
+            share = np.array([np.interp(k, row["k"], row[column]) for row in rows])
+            axes.fill_between(k, share.min(axis=0), share.max(axis=0), color=colour, alpha=0.25, lw=0)
+            axes.plot(k, share.mean(axis=0), color=colour, lw=1.4, label=label)
         axes.set_title(title, fontsize=9)
-        axes.set_xlim(0, min(_SHOWN_TO, rows[0]["k"].max()))
+        axes.set_xlim(0, min(_SHOWN_TO, k.max()))
         _named(axes, "number of scans", "share of all cells")
     handles, labels = axes.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8, frameon=False)
     return figure
+
+
+def _common(sizes):
+    """Return all numbers of scans that any of some tables has, as far as every one of them goes."""
+    sizes = list(sizes)
+    every = np.unique(np.concatenate(sizes))
+    return every[every <= min(k.max() for k in sizes)]
 
 
 def convergence_figure(selections):

@@ -93,6 +93,11 @@ def test_the_steps_are_counted(survey, tmp_path):
     assert found["n_scans"].tolist() == [3, 3, 3, 2]
     np.testing.assert_allclose(found["seconds"], [0.5, 3.0, 2.5, 0.5])
     whole = (survey / "scans.parquet").stat().st_size
+    # a line that says nothing and commas are as good to the reader of all true poses
+    truth = survey / "truth_poses.tum"
+    truth.write_text("\n" + truth.read_text().replace(" ", ","))
+    tabulate_steps([tmp_path / "a.bag"], *inputs, selection, times, tmp_path / "steps.parquet", n_selected=2)
+    np.testing.assert_allclose(tables.read(tmp_path / "steps.parquet", schemas.STEPS)["seconds"], [0.5, 3.0, 2.5, 0.5])
     assert found["n_bytes"].tolist() == [1000, whole, (survey / "hulls.parquet").stat().st_size, whole * 2 // 3]
 
 

@@ -5,6 +5,7 @@ from hypothesis import strategies as st
 
 from reference import bitmap as reference
 from scanplan import bitmap
+from scanplan.errors import StageError
 
 FIVE = bitmap.Grid(np.zeros(2), 1.0, (5, 5))
 
@@ -110,7 +111,9 @@ class TestGrid:
         assert bitmap.grid_around(lines(), 0.1).shape == (1, 1)
 
     def test_too_many_cells_are_refused(self):
-        with pytest.raises(ValueError, match="larger cell"):
-            bitmap.grid_around(lines((0, 0, 1e4, 1e4)), 0.05)
+        with pytest.raises(StageError, match=r"10000 m x 500 m.* evaluation.bitmap_cell_m \(0.05 m\) larger"):
+            bitmap.grid_around(lines((0, 0, 1e4, 500)), 0.05)
+        with pytest.raises(StageError, match="bitmap_cell_m"):
+            bitmap.grid_around(lines((0, 0, 1e30, 1e30)), 0.05)
         with pytest.raises(ValueError, match="above 0"):
             bitmap.grid_around(lines(), 0)

@@ -115,6 +115,16 @@ def test_a_segment_belongs_to_the_face_it_mostly_lies_on():
     np.testing.assert_array_equal(found.face, [0, 1, -1])
 
 
+def test_segments_of_a_wall_are_counted_scan_by_scan():
+    # scan 0 has two segments on one wall and one on the other, scan 1 one, and one on none
+    lines = [(0, 0, 2, 0), (3, 0, 5, 0), (0, 4, 6, 4), (0, 0, 5, 0), (0, 9, 1, 9)]
+    lines_m = np.array(lines, float).reshape(-1, 2, 2)
+    drawn = findings.Segments(lines_m, lines_m, np.array([0, 0, 0, 1, 1]))
+    truth = truth_of([(0, 0, 6, 0), (0, 4, 6, 4)], n_scans=2)
+    table = only(evaluation.table(truth, {"some_order": np.array([1, 0])}, {"some": drawn}, 0.1)[0], "some_order")
+    np.testing.assert_allclose(table["walls_per_true_wall_of_a_scan"], [1, 4 / 3])
+
+
 def test_a_plan_is_measured_as_one_subset():
     truth = truth_of([(0, 0, 6, 0), (0, 4, 6, 4)])
     lines = np.array([[(0, 0.04), (3, 0.04)], [(2.9, 0), (4.9, 0)], [(0, 9), (1, 9)]], float)

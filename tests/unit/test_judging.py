@@ -129,6 +129,58 @@ def test_numbers_of_the_drive():
     assert values["localiser", "error of the position, localiser, rms (m)"] == pytest.approx(0.0125**0.5 / 10**0.5)
 
 
+@pytest.mark.parametrize(
+    ("iterative", "cluster", "holds"),
+    [
+        ((1, 2, 3, 4), (1, 2, 2, 1), "yes"),
+        ((1, 2, 3, 4), (1, 2, 3, 4), "no"),
+        # against the size is as much a dependence as with it
+        ((1, 2, 3, 4), (4, 3, 2, 1), "no"),
+        ((4, 3, 2, 1), (1, 2, 2, 1), "no"),
+        # neither depends on it, one by chance less
+        ((1, 2, 2, 1.1), (1, 2, 2, 1), "no"),
+        # what does not vary has no correlation
+        ((1, 2, 3, 4), (1, 1, 1, 1), ""),
+    ],
+)
+def test_time_depends_on_the_size_for_one_and_not_for_the_other(iterative, cluster, holds):
+    size = (100, 200, 300, 400)
+    times = made.times(
+        cluster_ransac=(size, cluster), iterative_ransac=(size, iterative), order_scans=((10, 90), (0.01, 0.09))
+    )
+    assert drive(drive_times=times)[0]["time_by_size"] == holds
+
+
+def test_where_nothing_is_found_or_seen_nothing_is_judged():
+    nothing = made.evaluation(cluster_hull=[0.0] * len(made.SIZES))
+    verdicts, values = rooms(rooms_walls=nothing)
+    assert verdicts["fifteen_almost_complete"] == verdicts["tenth_little_loss"] == ""
+    assert np.isnan(values["tenth_little_loss", "share of what all find"])
+    assert drive(drive_walls=nothing)[0]["fifteen_like_all"] == ""
+    blind = made.rooms()["rooms_areas"] | {"seen_m2": np.zeros(3)}
+    verdicts, values = rooms(rooms_areas=blind)
+    assert verdicts["full_hull_overestimates"] == verdicts["cluster_hull_closer"] == ""
+    assert np.isnan(values["full_hull_overestimates", "share of scans over-estimated"])
+    some = made.rooms()["rooms_areas"] | {"seen_m2": np.array([0.0, 10, 10])}
+    assert rooms(rooms_areas=some)[1]["full_hull_overestimates", "hull per seen area, median"] == 3.5
+
+
+def test_the_time_for_the_thesiss_scans_is_that_of_no_other_number():
+    few = made.times(
+        cluster_ransac=((1, 2), (1, 2)), iterative_ransac=((1, 2), (1, 2)), order_scans=((10, 80), (0.01, 0.08))
+    )
+    assert np.isnan(drive(drive_times=few)[1]["selection_time", "seconds for 90 scans"])
+
+
+def test_one_segment_and_a_few_more_per_wall_are_not_several():
+    walls = made.evaluation()
+    assert drive()[0]["several_per_wall"] == "yes"
+    for count, holds in ((1.49, "no"), (1.5, "yes"), (np.nan, "")):
+        # of all scans alone, not of the first of the orders
+        walls["walls_per_true_wall_of_a_scan"] = np.where(walls["k"] == 270, count, 2.0 if holds == "no" else 1.0)
+        assert drive(drive_walls=walls)[0]["several_per_wall"] == holds
+
+
 def test_uneven_sampling():
     uneven = made.evaluation(random=(0.1, 0.3, 0.75, 0.85, 0.9, 0.95, 1.0))
     assert judged(judging.BOTH, made.rooms() | made.drive(drive_walls=uneven))[0] == {"uneven_harms_random": "yes"}

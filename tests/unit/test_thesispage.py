@@ -59,6 +59,19 @@ def test_a_verdict_is_of_all_seeds():
     assert "holds for 1 of 2 seeds" in page(rooms_hull=made.growing(40))
 
 
+def test_what_could_not_be_measured_is_counted_apart():
+    table = claims()
+    n = sum(bool(claim.criterion) for claim in CLAIMS)
+    assert "could not be measured" not in page()
+    unknown = np.isin(table["claim"], ["fewer_walls", "full_hull_99"])
+    table["holds"] = np.where(unknown, "", table["holds"])
+    score = thesispage._score(table)
+    assert score.endswith(", 2 could not be measured.")
+    assert sum(map(int, re.findall(r"\d+", score))) == 2 * n
+    fewer = next(claim for claim in CLAIMS if claim.name == "fewer_walls")
+    assert "not measured" in thesispage.claims_table(table, [fewer])
+
+
 @pytest.mark.parametrize(
     ("values", "text"),
     [

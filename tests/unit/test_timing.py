@@ -1,3 +1,5 @@
+import time
+
 import numpy as np
 
 from scanplan import hulls, tables, timing
@@ -20,6 +22,33 @@ def test_the_order_is_timed_for_every_number_of_scans():
     rows = list(timing.selection(built(6), [2, 6]))
     assert [(row["size"], row["found"]) for row in rows] == [(2, 2), (6, 6)]
     assert all(row["seconds"] > 0 for row in rows)
+
+
+class Busy:
+    """An extractor whose every other call is disturbed."""
+
+    Settings = dict
+
+    def __init__(self):
+        self.calls = 0
+
+    def extract(self, scan_id, xyz_m, **_):
+        self.calls += 1
+        until = time.process_time() + (0.05 if self.calls % 2 else 0.001)
+        while time.process_time() < until:
+            pass
+        return [scan_id]
+
+
+def test_a_disturbed_call_does_not_count(tmp_path, monkeypatch):
+    with tables.scan_writer(tmp_path / "scans.parquet", planar=False) as write:
+        for scan_id in (0, 3):
+            write(scan_id, np.ones((5, 3)))
+    monkeypatch.setattr(timing.walls, "sensor_positions", lambda *_: {0: {}, 3: {}})
+    store = tables.ScanStore(tmp_path / "scans.parquet")
+    rows = list(timing.extractor("busy", Busy(), store, {}, [0, 3], {}, "registration.parquet"))
+    assert [(row["item"], row["size"], row["found"]) for row in rows] == [(0, 5, 1), (3, 5, 1)]
+    assert all(0.001 <= row["seconds"] < 0.04 for row in rows)
 
 
 def test_hulls_are_timed_for_every_number_of_clusters(tmp_path):

@@ -57,6 +57,25 @@ def test_a_bag_without_poses(project, tmp_path):
     ends_with_one_line(project, written(tmp_path / "clouds_only", entries), "run.bag", "no pose", "/points")
 
 
+def test_evaluation_without_truth(project, tmp_path):
+    name = written(tmp_path / "untrue", list(bagmaking.survey(bagmaking.Maker())))
+    for table in ("walls", "poses"):
+        result = project.run(f"results/untrue/evaluation/{table}.parquet", "--config", f"dataset={name}")
+        output = result.stdout + result.stderr
+        assert result.returncode != 0 and "Traceback" not in output
+        (line,) = [line for line in output.splitlines() if line.startswith("scanplan: ")]
+        assert "untrue: has no truth" in line and output.splitlines()[-1] == line
+
+
+def test_settings_that_unfit_the_thesiss_surveys_matter_to_them_alone(project, tmp_path):
+    name = written(tmp_path / "own", list(bagmaking.survey(bagmaking.Maker())))
+    settings = ("--config", f"dataset={name}", "simulate={building: nowhere}")
+    other = project.run("--dry-run", "all", *settings)
+    assert other.returncode == 0, other.stderr
+    result = project.run("--dry-run", "thesis", *settings)
+    assert result.returncode != 0 and "scanplan: simulate.building: nowhere is neither" in result.stderr
+
+
 def test_two_cloud_topics(project, tmp_path):
     entries = bagmaking.survey(bagmaking.Maker())
     entries += [("/rear", e[1], e[2]) for e in entries if e[0] == "/points"]

@@ -1,6 +1,8 @@
 """The thesis's experiments as a target: what it would run, and on two small rooms the page that comes out."""
 
 import re
+import subprocess
+import sys
 
 import pytest
 
@@ -37,6 +39,24 @@ def test_the_demo_runs_nothing_of_it(project):
     assert not {"thesis", "judge_claims", "time_stages"} & set(jobs(project))
 
 
+WITHOUT_CORES = """
+from pathlib import Path
+from snakemake.api import SnakemakeApi
+from snakemake.settings.types import ConfigSettings, ResourceSettings
+
+with SnakemakeApi() as api:
+    given = ConfigSettings(configfiles=[Path("tests/data/tiny.yaml")])
+    run = api.workflow(ResourceSettings(nodes=2), config_settings=given, snakefile=Path("Snakefile"))
+    print("parsed", len(list(run._workflow.rules)))
+"""
+
+
+def test_it_is_parsed_where_jobs_go_elsewhere_and_no_cores_are_given(project):
+    command = [sys.executable, "-c", WITHOUT_CORES]
+    result = subprocess.run(command, cwd=project.folder, env=project.env(), capture_output=True, text=True)
+    assert result.returncode == 0 and "parsed" in result.stdout, result.stderr
+
+
 def test_the_page_has_every_figure(project):
     result = project.run("thesis", "--configfile", TINY_THESIS)
     assert result.returncode == 0, result.stdout + result.stderr
@@ -47,3 +67,8 @@ def test_the_page_has_every_figure(project):
     assert re.search(r"Of \d+ claims \d+ hold, \d+ do not", page)
     assert "report:  results/thesis/report.html" in result.stderr
     assert jobs(project, "thesis", "--configfile", TINY_THESIS) == {}
+    # another seed is no reason to time or measure those again that there are
+    settings = (project.folder / TINY_THESIS).read_text()
+    (project.folder / "more.yaml").write_text(re.sub(r"(?m)^  seeds: .*", "  seeds: [1, 2]", settings))
+    more = jobs(project, "thesis", "--configfile", "more.yaml")
+    assert more["time_stages"] == more["measure_coverage"] == more["simulate_survey"] == 1

@@ -34,6 +34,31 @@ def thesis_surveys():
     return experiments.surveys(config=f"{workflow.basedir}/config", **KNOWN)
 
 
+THESIS_RULES = (
+    "thesis",
+    "judge_claims",
+    "draw_thesis_rooms",
+    "draw_thesis_drive",
+    "write_thesis",
+)
+
+
+def wanted_of_thesis(arguments):
+    """Those of the command's arguments that ask for the thesis's experiments: rules or results of them."""
+    folder = f"results/{inventory.RESERVED}/"
+    return [a for a in arguments if a in THESIS_RULES or a.startswith(folder)]
+
+
+def thesis_if_fit():
+    """The thesis's surveys; none where settings meant for another survey unfit them and nobody asks for them."""
+    try:
+        return thesis_surveys()
+    except StageError:
+        if wanted_of_thesis(sys.argv[1:]):
+            raise
+        return {}
+
+
 def or_end(function, *arguments):
     """Call a function; a fault of the user's data or settings ends the run in one line."""
     try:
@@ -44,7 +69,7 @@ def or_end(function, *arguments):
 
 
 GIVEN = or_end(given_datasets)
-THESIS = or_end(thesis_surveys)
+THESIS = or_end(thesis_if_fit)
 # jobs are worked out for what is asked for; these are all that could be
 DATASETS = GIVEN | {found.name: found for kind in THESIS.values() for found in kind}
 
@@ -67,6 +92,11 @@ def code_of(script):
     """Helper files that a script imports: as inputs they make an edit rerun the stages that use them."""
     files = sources.helpers_of(f"{workflow.basedir}/scripts/{script}.py")
     return [os.path.relpath(file) for file in files]
+
+
+def all_cores(wildcards):
+    """All cores of this machine's run; where an executor is told none, as many as the other stages use at most."""
+    return workflow.resource_settings.cores or 2
 
 
 def setting(section, *keys):
@@ -140,12 +170,12 @@ def recordings(wildcards):
 
 def true_faces(wildcards):
     """The true walls of a dataset."""
-    return DATASETS[wildcards.dataset].truth[0]
+    return or_end(inventory.truth_of, DATASETS[wildcards.dataset])[0]
 
 
 def true_poses(wildcards):
     """The true sensor poses of a dataset."""
-    return DATASETS[wildcards.dataset].truth[1]
+    return or_end(inventory.truth_of, DATASETS[wildcards.dataset])[1]
 
 
 def plan_selection(wildcards):
@@ -193,42 +223,6 @@ def simulated_survey(wildcards):
 def all_settings(wildcards):
     """All settings of the job's dataset."""
     return DATASETS[wildcards.dataset].settings
-
-
-def report_figures(wildcards):
-    """The figures of a dataset, those of the evaluation last."""
-    return [
-        file
-        for file in results_of(wildcards.dataset)
-        if file.startswith(f"results/{wildcards.dataset}/figures")
-        and file.endswith(".svg")
-    ]
-
-
-def report_evaluation(wildcards):
-    """The measured walls and plan of a dataset, if its truth is known."""
-    known = DATASETS[wildcards.dataset].truth
-    tables = ["walls", "plan"] if known else []
-    return [
-        f"results/{wildcards.dataset}/evaluation/{table}.parquet" for table in tables
-    ]
-
-
-def report_page(wildcards):
-    """HTML, style and script that the report is made from."""
-    return [
-        os.path.relpath(f"{workflow.basedir}/workflow/report/page/page.{suffix}")
-        for suffix in ("html", "css", "js")
-    ]
-
-
-def report_results(wildcards):
-    """The tables and plans whose sizes the report states."""
-    return [
-        file
-        for file in results_of(wildcards.dataset)
-        if not file.endswith((".html", ".svg"))
-    ]
 
 
 def results_of(name):

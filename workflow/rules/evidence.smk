@@ -1,6 +1,6 @@
 import os
 
-from scanplan import thesisshown
+from scanplan import claims, thesisshown
 
 # what the claims are measured on: table of the results by the name that the measures know it by
 ROOMS_TABLES = {
@@ -35,6 +35,12 @@ def evidence():
         for name, table in DRIVE_TABLES.items()
     }
     return files | {"limits_steps": of_kind(experiments.LIMITS, "thesis/steps")}
+
+
+def hull_sampling(wildcards):
+    """Settings of the hulls but for the number of clusters."""
+    made = DATASETS[wildcards.dataset].settings["hulls"]
+    return {name: made[name] for name in ("sample_size", "seed")}
 
 
 def seeds_of(kind):

@@ -26,7 +26,7 @@ rule measure_coverage:
         runtime=30,
     params:
         n_clusters=setting("thesis", "n_clusters"),
-        hulls=setting("hulls"),
+        hulls=hull_sampling,
         max_range_m=setting("input", "max_range_m"),
     script:
         "../../scripts/measure_coverage.py"
@@ -45,14 +45,15 @@ rule time_stages:
         "logs/{dataset}/time_stages.log",
     benchmark:
         "benchmarks/{dataset}/time_stages.tsv"
-    threads: workflow.cores
+    threads: all_cores
     resources:
         mem_mb=1500,
         runtime=30,
     params:
         walls=setting("walls"),
-        hulls=setting("hulls"),
-        settings=setting("thesis"),
+        hulls=hull_sampling,
+        n_clusters=setting("thesis", "n_clusters"),
+        timed_scans=setting("thesis", "timed_scans"),
     script:
         "../../scripts/time_stages.py"
 
@@ -81,7 +82,7 @@ rule tabulate_steps:
         mem_mb=1000,
         runtime=10,
     params:
-        n_selected=15,
+        n_selected=claims.SUBSET,
     script:
         "../../scripts/tabulate_steps.py"
 
