@@ -23,6 +23,7 @@ include: "workflow/rules/selection.smk"
 include: "workflow/rules/walls.smk"
 include: "workflow/rules/plan.smk"
 include: "workflow/rules/evaluate.smk"
+include: "workflow/rules/reportinputs.smk"
 include: "workflow/rules/report.smk"
 include: "workflow/rules/evidence.smk"
 
