@@ -2,6 +2,7 @@
 
 import ast
 import hashlib
+from functools import cache
 from pathlib import Path
 
 _PACKAGE = Path(__file__).parent
@@ -35,11 +36,13 @@ def digest():
     return total.hexdigest()[:12]
 
 
+@cache
 def _imports(path):
+    # a workflow asks for the helpers of every script when it starts, and most are shared
     names = set()
     for node in ast.walk(ast.parse(Path(path).read_text(encoding="utf-8"))):
         if isinstance(node, ast.ImportFrom) and node.module == "scanplan":
             names.update(alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and (node.module or "").startswith("scanplan."):
             names.add(node.module.split(".")[1])
-    return {file for name in names if (file := _PACKAGE / f"{name}.py").exists()}
+    return frozenset(file for name in names if (file := _PACKAGE / f"{name}.py").exists())
