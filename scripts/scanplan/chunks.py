@@ -1,11 +1,8 @@
 """Work that treats scans one by one, spread over contiguous ranges of scans and over cores."""
 
-import multiprocessing
-from concurrent.futures import ProcessPoolExecutor
-
 import numpy as np
 
-from scanplan import stagelog, tables
+from scanplan import stagelog, tables, workers
 
 _CHUNKS_PER_CORE = 8
 
@@ -39,21 +36,11 @@ def map_scans(function, scans_path, *, label, threads=1, **settings):
     jobs = [
         (function, str(scans_path), part, {int(s): per_scan.get(int(s), {}) for s in part}, settings) for part in parts
     ]
-    done = (result for part in _run(jobs, threads) for result in part)
-    return list(stagelog.progress(done, label, total=len(scan_ids)))
+    with workers.pool(min(threads, len(jobs))) as run:
+        done = (result for part in run(_work, jobs) for result in part)
+        return list(stagelog.progress(done, label, total=len(scan_ids)))
 
 
-def _run(jobs, threads):
-    if threads <= 1 or len(jobs) <= 1:
-        yield from map(_work, jobs)
-        return
-    # a forked child of a process with threads (Arrow, TBB) can hang, a spawned one cannot
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(min(threads, len(jobs)), context, stagelog.end_with_parent) as pool:
-        yield from pool.map(_work, jobs)
-
-
-def _work(job):
-    function, scans_path, scan_ids, per_scan, settings = job
+def _work(function, scans_path, scan_ids, per_scan, settings):
     store = tables.ScanStore(scans_path)
     return [function(scan_id, xyz_m, **per_scan[scan_id], **settings) for scan_id, xyz_m in store.scans(scan_ids)]

@@ -1,22 +1,15 @@
 """Turns of a sensor on the move: each column cast from where the sensor is then, and measured with errors."""
 
-import multiprocessing
-import os
-import threading
-from collections import deque
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
-from multiprocessing.connection import wait
 
 import numpy as np
 
-from scanplan import clutter, raycast, rover
+from scanplan import clutter, raycast, rover, workers
 from scanplan.extrusion import Mesh
 from scanplan.sensors import Errors, Sensor
 
 _NOISE_STREAM, _LOSS_STREAM, _GLASS_STREAM = 0, 4, 5
 _SCANS_PER_JOB = 8
-_JOBS_AHEAD = 2
 
 
 @dataclass(frozen=True)
@@ -81,17 +74,11 @@ def scans(survey, *, threads=1):
         scene = raycast.Scene(survey.mesh)
         yield from (take(survey, scene, scan_id) for scan_id in range(len(survey.t_ns)))
         return
-    starts = range(0, len(survey.t_ns), _SCANS_PER_JOB)
-    # a forked child of a process with threads (TBB) can hang, a spawned one cannot
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(threads, mp_context=context, initializer=_prepare, initargs=(survey,)) as pool:
-        ahead = deque()
-        for start in starts:
-            ahead.append(pool.submit(_take_some, range(start, min(start + _SCANS_PER_JOB, len(survey.t_ns)))))
-            if len(ahead) > _JOBS_AHEAD * threads:
-                yield from ahead.popleft().result()
-        while ahead:
-            yield from ahead.popleft().result()
+    n = len(survey.t_ns)
+    jobs = ((range(start, min(start + _SCANS_PER_JOB, n)),) for start in range(0, n, _SCANS_PER_JOB))
+    with workers.pool(threads, _prepare, survey) as run:
+        for taken in run(_take_some, jobs):
+            yield from taken
 
 
 def take(survey, scene, scan_id):
@@ -188,11 +175,9 @@ def _generator(survey, stream, scan_id):
 
 
 def _prepare(survey):
-    """Set a casting process up, and let it end with the process that it casts for, however that ends."""
+    """Set a casting process up: the mesh is sent and built once, not with every job."""
     global _casting
     _casting = survey, raycast.Scene(survey.mesh)
-    parent = multiprocessing.parent_process().sentinel
-    threading.Thread(target=lambda: (wait([parent]), os._exit(1)), daemon=True).start()
 
 
 def _take_some(scan_ids):

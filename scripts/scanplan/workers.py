@@ -11,12 +11,14 @@ _WAITING_PER_CORE = 2
 
 
 @contextmanager
-def pool(threads):
+def pool(threads, setup=None, *state):
     """Open a pool of worker processes; with one thread there is none, and the work is done here.
 
     Parameters
     ----------
     threads : int
+    setup : callable, optional
+        `setup(*state)` is called once in every process that works, before its first job.
 
     Yields
     ------
@@ -25,12 +27,27 @@ def pool(threads):
         iterable as workers become free, so that few wait.
     """
     if threads <= 1:
+        _begin(setup, state)
         yield lambda function, jobs: (function(*job) for job in jobs)
         return
     # a forked child of a process with threads (Arrow, TBB) can hang, a spawned one cannot
     context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(threads, context, stagelog.end_with_parent) as executor:
-        yield lambda function, jobs: _in_order(executor, function, jobs, threads * _WAITING_PER_CORE)
+    with ProcessPoolExecutor(threads, context, _begin_worker, (setup, state)) as executor:
+        try:
+            yield lambda function, jobs: _in_order(executor, function, jobs, threads * _WAITING_PER_CORE)
+        except BaseException:
+            executor.shutdown(wait=False, cancel_futures=True)
+            raise
+
+
+def _begin(setup, state):
+    if setup is not None:
+        setup(*state)
+
+
+def _begin_worker(setup, state):
+    stagelog.end_with_parent()
+    _begin(setup, state)
 
 
 def _in_order(executor, function, jobs, most_waiting):

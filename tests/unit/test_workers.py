@@ -1,0 +1,43 @@
+import os
+
+import pytest
+
+from scanplan import workers
+
+_known = None
+
+
+def learn(value, other):
+    global _known
+    _known = value + other
+
+
+def use(factor):
+    return factor * _known, os.getpid()
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_every_process_is_set_up_before_its_first_job_and_results_keep_their_order(threads):
+    with workers.pool(threads, learn, 2, 3) as run:
+        results = list(run(use, ((i,) for i in range(20))))
+    assert [result for result, _ in results] == [5 * i for i in range(20)]
+    here = {pid for _, pid in results} == {os.getpid()}
+    assert here == (threads == 1)
+
+
+def test_without_a_set_up():
+    with workers.pool(1) as run:
+        assert list(run(pow, [(2, 3), (3, 2)])) == [8, 9]
+
+
+def touch_or_fail(path, name):
+    if name == "0":
+        raise ValueError("the first job")
+    (path / name).touch()
+
+
+def test_a_failed_job_leaves_the_waiting_ones_undone(tmp_path):
+    jobs = ((tmp_path, str(i)) for i in range(100))
+    with pytest.raises(ValueError, match="the first job"), workers.pool(2) as run:
+        list(run(touch_or_fail, jobs))
+    assert len(list(tmp_path.iterdir())) < 20
