@@ -3,7 +3,6 @@
 import numpy as np
 
 from scanplan import (
-    evaluation,
     findings,
     planevaluation,
     poseerrors,
@@ -14,6 +13,7 @@ from scanplan import (
     trueplan,
     truthfile,
     visibility,
+    wallevaluation,
 )
 
 _SURVEY_STEP_M = 0.25
@@ -42,7 +42,7 @@ def evaluate_plan(plan, registration, truth, true_poses, output, *, max_range_m,
     motion = poseerrors.alignment(scans.map_from_sensor[:, :3, 3], placed)
     for frame, moved in (("aligned", motion), ("registered", np.eye(4))):
         measured = planevaluation.measure(drawn, moved, true, floor)
-        bitmaps = evaluation.of_plan(planevaluation.faces_m(drawn, moved), floor, bitmap_cell_m)
+        bitmaps = wallevaluation.of_plan(planevaluation.faces_m(drawn, moved), floor, bitmap_cell_m)
         rows.append({"frame": frame, "n_scans": len(chosen), **bitmaps, **measured})
         stagelog.say(f"evaluate_plan: {frame}, {planevaluation.summary(rows[-1])}")
     tables.write(output, schemas.PLAN_EVALUATION, planevaluation.table(rows))

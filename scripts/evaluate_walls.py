@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from scanplan import evaluation, findings, oracle, poseerrors, registered, schemas, stagelog, tables, truthfile
+from scanplan import findings, oracle, poseerrors, registered, schemas, stagelog, tables, truthfile, wallevaluation
 from scanplan.visibility import thinned
 
 _SURVEY_STEP_M = 0.25
@@ -40,9 +40,9 @@ def evaluate_walls(
     moved = {extractor: findings.moved(lines, motion) for extractor, lines in drawn.items()}
     ceilings = {}
     for path, lines in ((output, drawn), (aligned, moved)):
-        measured, ceilings[path] = evaluation.table(floor, orders, lines, bitmap_cell_m)
+        measured, ceilings[path] = wallevaluation.table(floor, orders, lines, bitmap_cell_m)
         tables.write(path, schemas.EVALUATION, measured)
-        for line in evaluation.summary(measured):
+        for line in wallevaluation.summary(measured):
             stagelog.say(f"evaluate_walls: {Path(path).stem}, {line}")
     tables.write(best, schemas.ORACLE, registered.ordered(ceilings[output], scans))
 

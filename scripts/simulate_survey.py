@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from scanplan import atomic, scanmessages, simulation, stagelog, surveybag, surveymessages, sweeps
+from scanplan import atomic, scanmessages, stagelog, surveybag, surveying, surveymessages, sweeps
 from scanplan import truth as ground_truth
 
 
@@ -24,13 +24,13 @@ def simulate_survey(
     threads=1,
 ):
     """Write a drive's recording (.bag, .db3 or .mcap), the floor's truth, the poses at the stamps and the whole way."""
-    found = simulation.site(Path(building).read_bytes(), Path(building), mount, **site)
+    found = surveying.site(Path(building).read_bytes(), Path(building), mount, **site)
     for note in found.notes:
         stagelog.say(f"simulate_survey: {note}")
     rig = {"mount": mount, "sensor": sensor, "errors": errors, "drive": drive, "people": people}
-    survey = simulation.prepare(found, seed=seed, **rig)
+    survey = surveying.prepare(found, seed=seed, **rig)
     start_ns = surveybag.EPOCH_NS
-    belief = simulation.belief(survey, **localiser)
+    belief = surveying.belief(survey, **localiser)
     scans = stagelog.progress(sweeps.scans(survey, threads=threads), "simulate_survey", total=len(survey.t_ns))
     surveybag.write(
         recording,
@@ -40,8 +40,8 @@ def simulate_survey(
     )
     atomic.write_text(truth, ground_truth.feature_collection(found.truth))
     for path, (t_ns, pose) in (
-        (true_poses, simulation.true_poses(survey)),
-        (true_trajectory, simulation.true_trajectory(survey)),
+        (true_poses, surveying.true_poses(survey)),
+        (true_trajectory, surveying.true_trajectory(survey)),
     ):
         atomic.write_text(path, ground_truth.tum(start_ns + t_ns, pose))
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from scanplan import registration
+from scanplan import sequential
 
 
 def bounds(n_candidates, batch_size, n_early):
@@ -35,18 +35,18 @@ def register(part, scan_ids, priors, n_early, planar, settings):
     n_early : int
         So many candidates at the start belong to the batch before.
     planar : bool
-    settings : registration.Settings
+    settings : sequential.Settings
 
     Returns
     -------
-    verdicts : list of registration.Verdict
+    verdicts : list of sequential.Verdict
         Of the batch's own candidates.
     thinned_m : list of (m, 3) float32
         Of those of them that are kept.
     edges : list of links.Edge
         From its own kept scans to predecessors.
     """
-    registrar = registration.Registrar(settings, planar)
+    registrar = sequential.Registrar(settings, planar)
     judged = [registrar.add(int(i), xyz_m, prior) for i, xyz_m, prior in zip(scan_ids, part, priors, strict=True)]
     own = judged[n_early:]
     first_own = scan_ids[n_early]
@@ -69,7 +69,7 @@ def jobs(scans, spool, scan_ids, priors, planar, settings, batch_size):
     scan_ids : (n,) int
     priors : (n, 4, 4) float64
     planar : bool
-    settings : registration.Settings
+    settings : sequential.Settings
     batch_size : int
     """
     # the first candidate is an anchor even where it is out of place: time to find that out, and then to look back on

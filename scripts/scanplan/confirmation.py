@@ -14,7 +14,7 @@ def unconfirmed(verdicts, is_linked, apart_m):
 
     Parameters
     ----------
-    verdicts : sequence of registration.Verdict
+    verdicts : sequence of sequential.Verdict
         Of all candidates, in order.
     is_linked : (n,) bool
         Whether a candidate has a link that is believed.
@@ -39,5 +39,5 @@ def unconfirmed(verdicts, is_linked, apart_m):
 
 
 def dropped(verdict, prior):
-    """Return the verdict (registration.Verdict) on an anchor that is not confirmed, with the localiser's pose."""
+    """Return the verdict (sequential.Verdict) on an anchor that is not confirmed, with the localiser's pose."""
     return replace(verdict, kept=False, reason="unconfirmed", world_from_sensor=prior)

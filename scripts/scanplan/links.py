@@ -58,7 +58,7 @@ def refine(scan, targets, settings):
         Where the localiser says.
     targets : sequence of Placed
         The best first.
-    settings : registration.Settings
+    settings : sequential.Settings
 
     Returns
     -------
@@ -94,7 +94,7 @@ def aligned(source, target, kind, distances_m, settings):
     kind : str
     distances_m : sequence of float
         See `icp.align`.
-    settings : registration.Settings
+    settings : sequential.Settings
     """
     start = se3.inverse(target.world_from_cloud) @ source.world_from_cloud
     fit = icp.align(

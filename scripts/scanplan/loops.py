@@ -90,7 +90,7 @@ def link(part, rows, scan_ids, world_from_cloud, chosen, planar, settings, min_f
     chosen : list of (source, target)
         Rows.
     planar : bool
-    settings : registration.Settings
+    settings : sequential.Settings
     min_fitness : float
         Pairs that overlap less after alignment are no link.
     apart : int

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scanplan import batches, confirmation, links, linktable, multiway, registration, se3, stagelog
+from scanplan import batches, confirmation, links, linktable, multiway, se3, sequential, stagelog
 
 
 @dataclass(frozen=True)
@@ -30,14 +30,14 @@ class Settings:
     """Section `registration` of the settings."""
 
     batch_size: int
-    limits: registration.Settings
+    limits: sequential.Settings
     graph: multiway.Settings
 
 
 def settings_of(section):
     """Return the Settings that a section `registration` holds."""
     limits = {key: value for key, value in section.items() if key not in ("batch_size", "graph")}
-    return Settings(section["batch_size"], registration.Settings(**limits), multiway.Settings(**section["graph"]))
+    return Settings(section["batch_size"], sequential.Settings(**limits), multiway.Settings(**section["graph"]))
 
 
 def register(survey, scans, raw, thinned, run, settings):
@@ -56,7 +56,7 @@ def register(survey, scans, raw, thinned, run, settings):
 
     Returns
     -------
-    list of registration.Verdict
+    list of sequential.Verdict
         One per candidate.
     multiway.Result or None
         None where no scan was registered.
@@ -70,7 +70,7 @@ def register(survey, scans, raw, thinned, run, settings):
             thinned.add(xyz_m)
         share = sum(verdict.kept for verdict in judged) / len(judged)
         stagelog.say(f"register_scans: {len(judged)}/{len(survey.scan_ids)} scans registered, {share:.0%} kept")
-    if limits.icp_method == registration.GIVEN_POSES or not any(verdict.kept for verdict in judged):
+    if limits.icp_method == sequential.GIVEN_POSES or not any(verdict.kept for verdict in judged):
         return judged, None
     result = _in_one_map(survey, judged, edges, thinned, run, settings)
     return _confirmed(survey, judged, result, limits.anchor_apart_m)

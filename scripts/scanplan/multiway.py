@@ -90,7 +90,7 @@ def optimise(scan_ids, start, priors, edges, thinned, run, *, planar, limits, se
     run : callable
         As `workers.pool` gives it.
     planar : bool
-    limits : registration.Settings
+    limits : sequential.Settings
     settings : Settings
 
     Returns

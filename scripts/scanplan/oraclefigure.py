@@ -3,8 +3,8 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from scanplan.evaluation import ORACLE, TOLD_SIZES
 from scanplan.evaluationfigure import style
+from scanplan.wallevaluation import ORACLE, TOLD_SIZES
 
 _FOUND = "visible_completeness_010m"
 _WIDTH_IN, _ROW_IN, _REST_IN = 7.0, 0.26, 0.75

@@ -30,7 +30,7 @@ def in_map(scan_id, xyz_m, world_from_sensor):
 
 
 def columns(scan_ids, t_ns, verdicts):
-    """Return the columns of tables.REGISTRATION from one `registration.Verdict` per candidate."""
+    """Return the columns of tables.REGISTRATION from one `sequential.Verdict` per candidate."""
     xyz_m, quat_xyzw = se3.position_quaternion(np.array([v.world_from_sensor for v in verdicts]))
     result = {"scan_id": scan_ids, "t_ns": t_ns} | {f: [getattr(v, f) for v in verdicts] for f in _FIELDS}
     return result | dict(zip(tables.XYZ, xyz_m.T, strict=True)) | dict(zip(tables.QUAT, quat_xyzw.T, strict=True))
@@ -51,7 +51,7 @@ def check_any_kept(verdicts, n_dropped, where):
 
     Parameters
     ----------
-    verdicts : list of registration.Verdict
+    verdicts : list of sequential.Verdict
     n_dropped : int
         Points that were dropped on reading.
     where : path-like

@@ -7,7 +7,7 @@ import numpy as np
 import shapely
 import wallscans
 
-from scanplan import hulls, raycast, simulation
+from scanplan import hulls, raycast, surveying
 
 RATE_HZ = 10.0
 N_AZIMUTH = 1800  # of a real VLP-16
@@ -35,10 +35,10 @@ def scans(building, settings, n, **site):
     chosen["sensor"] |= {"n_azimuth": N_AZIMUTH, "sweep": False, "rate_hz": RATE_HZ}
     chosen["drive"]["speed_m_s"] = SPEED_M_S
     rig = {key: chosen[key] for key in ("mount", "sensor", "errors", "drive", "people")}
-    found = simulation.site(Path(building).read_bytes(), Path(building), chosen["mount"], **chosen["site"] | site)
-    survey = simulation.prepare(found, seed=1, **rig)
+    found = surveying.site(Path(building).read_bytes(), Path(building), chosen["mount"], **chosen["site"] | site)
+    survey = surveying.prepare(found, seed=1, **rig)
     scene = raycast.Scene(survey.mesh)
-    poses = simulation.true_poses(survey)[1][:n]
+    poses = surveying.true_poses(survey)[1][:n]
     return [wallscans.points(survey, scene, i, pose) for i, pose in enumerate(poses)]
 
 

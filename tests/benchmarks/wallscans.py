@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from scanplan import findings, lengthmetrics, raycast, simulation, sweeps, truthfile
+from scanplan import findings, lengthmetrics, raycast, surveying, sweeps, truthfile
 
 N_AZIMUTH = 1800  # of a real VLP-16
 _LONG_M = 0.5
@@ -50,9 +50,9 @@ def standing(building, settings, *, seed=1, step_m=0.4, every=1, **site):
     chosen["sensor"] |= {"n_azimuth": N_AZIMUTH, "sweep": False, "rate_hz": 1.0}
     chosen["drive"] |= {"speed_m_s": step_m, "turn_rate_deg_s": 360.0}
     rig = {key: chosen[key] for key in ("mount", "sensor", "errors", "drive", "people")}
-    found = simulation.site(Path(building).read_bytes(), Path(building), chosen["mount"], **chosen["site"] | site)
-    survey = simulation.prepare(found, seed=seed, **rig)
-    poses, scene = simulation.true_poses(survey)[1], raycast.Scene(survey.mesh)
+    found = surveying.site(Path(building).read_bytes(), Path(building), chosen["mount"], **chosen["site"] | site)
+    survey = surveying.prepare(found, seed=seed, **rig)
+    poses, scene = surveying.true_poses(survey)[1], raycast.Scene(survey.mesh)
     scans = [(i, points(survey, scene, i, poses[i])) for i in range(0, len(poses), every)]
     faces = truthfile.TrueFaces(*(_lines(found.truth, side) for side in ("inside", "outside")))
     places_m = poses[[i for i, _ in scans], :2, 3]

@@ -1,6 +1,6 @@
 import numpy as np
 
-from scanplan import confirmation, registration
+from scanplan import confirmation, sequential
 
 
 def verdicts(places):
@@ -10,7 +10,7 @@ def verdicts(places):
         pose = np.eye(4)
         pose[0, 3] = np.nan if x is None else x
         reason = "pose_gap" if x is None else "anchor"
-        found.append(registration.Verdict(x is not None, reason, pose))
+        found.append(sequential.Verdict(x is not None, reason, pose))
     return found
 
 

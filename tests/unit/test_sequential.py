@@ -5,9 +5,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from reference import registration as literal
-from scanplan import configuration, mapping, registration, se3
+from scanplan import configuration, mapping, se3, sequential
 
-SETTINGS = registration.Settings(
+SETTINGS = sequential.Settings(
     voxel_m=0.1,
     voxel_planar_m=0.1,
     voxels=1,
@@ -66,7 +66,7 @@ def drive(n, *, planar, noise_m=0.04, noise_deg=1.0, seed=0):
 
 
 def register(scans, priors, planar, **changes):
-    registrar = registration.Registrar(registration.Settings(**{**vars(SETTINGS), **changes}), planar)
+    registrar = sequential.Registrar(sequential.Settings(**{**vars(SETTINGS), **changes}), planar)
     return [registrar.add(i, scan, prior)[0] for i, (scan, prior) in enumerate(zip(scans, priors, strict=True))]
 
 
@@ -118,7 +118,7 @@ def test_a_localiser_that_is_sure_of_itself_is_believed():
 def test_kept_scans_are_linked_to_the_ones_before():
     scans, priors, true = drive(6, planar=False)
     priors[3] = pose(4.0, 2.0, 77)
-    registrar = registration.Registrar(registration.Settings(**{**vars(SETTINGS), "icp_targets": 2}), False)
+    registrar = sequential.Registrar(sequential.Settings(**{**vars(SETTINGS), "icp_targets": 2}), False)
     for i, (scan, prior) in enumerate(zip(scans, priors, strict=True)):
         registrar.add(10 * i, scan, prior)
     assert [(e.source, e.target) for e in registrar.edges] == [
@@ -215,7 +215,7 @@ def test_the_preset_judges_as_the_thesis_does(project_root):
     limits = mapping.settings_of(section).limits
     scans, priors, _ = drive(8, planar=False, noise_m=0.02, noise_deg=0.5)
     scans = [scan[scan[:, 0] < reach_m] for scan, reach_m in zip(scans, (2, 2, 2.1, 4, 2.1, 3, 2.2, 2), strict=True)]
-    registrar = registration.Registrar(limits, False)
+    registrar = sequential.Registrar(limits, False)
     ours = [registrar.add(i, scan, prior)[0] for i, (scan, prior) in enumerate(zip(scans, priors, strict=True))]
     gates = {key: section[key] for key in ("min_prior_fitness", "min_refined_fitness", "n_previous")}
     theirs = literal.register(scans, priors, keep_every=1, distance_m=section["fitness_distance_m"], **gates)

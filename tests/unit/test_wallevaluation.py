@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from scanplan import evaluation, findings, lengthmetrics, visibility
+from scanplan import findings, lengthmetrics, visibility, wallevaluation
 from scanplan.truthfile import TrueFaces
 from wallmaking import observed
 
@@ -32,21 +32,21 @@ def truth_of(faces, n_scans=1):
 
 
 def test_sizes_grow_and_end_with_all():
-    assert evaluation.sizes(1) == [1]
-    assert evaluation.sizes(9) == [1, 2, 3, 4, 5, 8, 9]
-    assert evaluation.sizes(80)[-2:] == [60, 80]
-    assert evaluation.sizes(300)[-4:] == [120, 160, 240, 300]
-    assert evaluation.sizes(121)[-2:] == [120, 121] and 12 in evaluation.sizes(121)
+    assert wallevaluation.sizes(1) == [1]
+    assert wallevaluation.sizes(9) == [1, 2, 3, 4, 5, 8, 9]
+    assert wallevaluation.sizes(80)[-2:] == [60, 80]
+    assert wallevaluation.sizes(300)[-4:] == [120, 160, 240, 300]
+    assert wallevaluation.sizes(121)[-2:] == [120, 121] and 12 in wallevaluation.sizes(121)
 
 
 def test_scans_out_of_an_order_have_no_rank():
-    np.testing.assert_array_equal(evaluation.ranks(np.array([2, 0]), 4), [2, findings.NEVER, 1, findings.NEVER])
+    np.testing.assert_array_equal(wallevaluation.ranks(np.array([2, 0]), 4), [2, findings.NEVER, 1, findings.NEVER])
 
 
 def test_all_at_once_agrees_with_every_subset_by_itself():
     truth, drawn = survey()
     order = np.array([2, 0, 1])
-    table = only(evaluation.table(truth, {"some_order": order}, {"some": drawn}, 0.1)[0], "some_order")
+    table = only(wallevaluation.table(truth, {"some_order": order}, {"some": drawn}, 0.1)[0], "some_order")
     visible = visibility.stretches(truth.cells, truth.visible)
     for row, k in enumerate(table["k"]):
         lines = drawn.lines_m[np.isin(drawn.scan, order[:k])]
@@ -61,7 +61,7 @@ def test_all_at_once_agrees_with_every_subset_by_itself():
 
 def test_misses_are_parted_without_rest():
     truth, drawn = survey()
-    table = only(evaluation.table(truth, {"some_order": np.array([2, 0])}, {"some": drawn}, 0.1)[0], "some_order")
+    table = only(wallevaluation.table(truth, {"some_order": np.array([2, 0])}, {"some": drawn}, 0.1)[0], "some_order")
     reasons = [table[name] for name in ("missed_not_seen", "missed_misregistered", "missed_misextracted")]
     np.testing.assert_allclose(table["completeness_010m"] + sum(reasons), 1)
     assert all(0 < reason[0] < 1 for reason in reasons)
@@ -70,11 +70,11 @@ def test_misses_are_parted_without_rest():
 
 def test_a_share_of_the_oracles_is_taken_at_the_same_size():
     truth, drawn = survey()
-    table, _ = evaluation.table(truth, {"other": np.array([2, 1, 0])}, {"some": drawn}, 0.1)
+    table, _ = wallevaluation.table(truth, {"other": np.array([2, 1, 0])}, {"some": drawn}, 0.1)
     best, other = (only(table, method)["visible_completeness_010m"] for method in ("oracle", "other"))
     np.testing.assert_allclose(only(table, "other")["oracle_share"], other / best)
     np.testing.assert_allclose(only(table, "oracle")["oracle_share"], 1)
-    (told,) = evaluation.summary(table)
+    (told,) = wallevaluation.summary(table)
     assert f"first 3 scans: oracle {best[-1]:.2f}; other {other[-1]:.2f}" in told
 
 
@@ -84,7 +84,7 @@ def test_the_oracle_goes_by_what_is_found_and_not_by_what_is_in_sight():
     # the scans show 1 m, 4 m and, of the very wall that is found already, 5 m
     lines = np.array([[(0, 4), (1, 4)], [(1, 0), (5, 0)], [(0.5, 0), (5.5, 0)]], float)
     drawn = findings.Segments(lines, lines, np.arange(3))
-    table, best = evaluation.table(truth, {"as_seen": np.arange(3)}, {"some": drawn}, 0.1)
+    table, best = wallevaluation.table(truth, {"as_seen": np.arange(3)}, {"some": drawn}, 0.1)
     np.testing.assert_array_equal(best["some"].order, [2, 0, 1])
     np.testing.assert_allclose(best["some"].gain_m, [5.2, 1.1, 0], atol=0.03)
     assert (only(table, "as_seen")["oracle_share"] <= 1).all()
@@ -111,7 +111,7 @@ def test_a_segment_belongs_to_the_face_it_mostly_lies_on():
     truth = truth_of([(0, 0, 4, 0), (4, 0, 4, 0.3)])
     lines = np.array([[(3, 0), (3.98, 0)], [(4, 0.02), (4, 0.3)], [(9, 9), (9, 8)]], float)
     drawn = findings.Segments(lines, lines, np.zeros(3, int))
-    found = findings.find(drawn, truth, evaluation.bitmap.grid_around(lines, 1.0))
+    found = findings.find(drawn, truth, wallevaluation.bitmap.grid_around(lines, 1.0))
     np.testing.assert_array_equal(found.face, [0, 1, -1])
 
 
@@ -121,14 +121,14 @@ def test_segments_of_a_wall_are_counted_scan_by_scan():
     lines_m = np.array(lines, float).reshape(-1, 2, 2)
     drawn = findings.Segments(lines_m, lines_m, np.array([0, 0, 0, 1, 1]))
     truth = truth_of([(0, 0, 6, 0), (0, 4, 6, 4)], n_scans=2)
-    table = only(evaluation.table(truth, {"some_order": np.array([1, 0])}, {"some": drawn}, 0.1)[0], "some_order")
+    table = only(wallevaluation.table(truth, {"some_order": np.array([1, 0])}, {"some": drawn}, 0.1)[0], "some_order")
     np.testing.assert_allclose(table["walls_per_true_wall_of_a_scan"], [1, 4 / 3])
 
 
 def test_a_plan_is_measured_as_one_subset():
     truth = truth_of([(0, 0, 6, 0), (0, 4, 6, 4)])
     lines = np.array([[(0, 0.04), (3, 0.04)], [(2.9, 0), (4.9, 0)], [(0, 9), (1, 9)]], float)
-    row = evaluation.of_plan(lines, truth, 0.1)
+    row = wallevaluation.of_plan(lines, truth, 0.1)
     assert row["completeness_010m"] == pytest.approx(5.0 / 12, abs=0.01)
     assert row["completeness_005m"] == pytest.approx(4.95 / 12, abs=0.01)
     assert row["correctness_010m"] == pytest.approx(5 / 6)
