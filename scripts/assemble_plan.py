@@ -2,7 +2,10 @@
 
 import numpy as np
 
-from scanplan import planning, plansummary, rays, registered, stagelog, stopping, tables
+from scanplan import stagelog, tables
+from scanplan.evaluation import registered
+from scanplan.plan import planning, plansummary, rays
+from scanplan.selection import stopping
 
 
 def assemble_plan(walls, selection, scans, registration, outputs, *, settings, **stop):

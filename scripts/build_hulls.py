@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from scanplan import chunks, hulls, stagelog, tables
+from scanplan import chunks, stagelog, tables
+from scanplan.selection import hulls
 
 
 def build_hulls(scans, output, *, n_clusters, sample_size, seed, threads):

@@ -1,6 +1,8 @@
 """Draw the free space that every scan looked through."""
 
-from scanplan import chunks, schemas, stagelog, tables, visibilitypolygon, walls
+from scanplan import chunks, schemas, stagelog, tables
+from scanplan.extraction import walls
+from scanplan.selection import visibilitypolygon
 
 
 def build_visibility(scans, registration, output, *, settings, threads=1):

@@ -2,7 +2,9 @@
 
 from pathlib import Path
 
-from scanplan import atomic, drawing, figures, stagelog, tables
+from scanplan import atomic, stagelog, tables
+from scanplan.exports import drawing
+from scanplan.report import figures
 
 
 def draw_area(selections, output):

@@ -1,6 +1,8 @@
 """Draw how well every ordering's first scans show the true walls (thesis, figure 5.4)."""
 
-from scanplan import atomic, drawing, evaluationfigure, oraclefigure, schemas, stagelog, tables
+from scanplan import atomic, schemas, stagelog, tables
+from scanplan.exports import drawing
+from scanplan.report import evaluationfigure, oraclefigure
 
 
 def draw_evaluation(walls, aligned, output, shares, *, method, extractor):

@@ -1,6 +1,8 @@
 """Draw the audit of the registration: the way, what became of every scan, and how well neighbours fit."""
 
-from scanplan import atomic, drawing, registrationfigure, stagelog, tables, topview
+from scanplan import atomic, stagelog, tables
+from scanplan.exports import drawing
+from scanplan.report import registrationfigure, topview
 
 _LINKS = ["source", "target", "kind", "residual_m"]
 

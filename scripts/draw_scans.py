@@ -1,6 +1,9 @@
 """Draw the registered scans, where they were taken, and which were selected (thesis, figure 5.9)."""
 
-from scanplan import atomic, drawing, figures, stagelog, stopping, tables, topview
+from scanplan import atomic, stagelog, tables
+from scanplan.exports import drawing
+from scanplan.report import figures, topview
+from scanplan.selection import stopping
 
 
 def draw_scans(scans, registration, selection, output, **stop):

@@ -4,8 +4,11 @@ from pathlib import Path
 
 import numpy as np
 
-from scanplan import atomic, drawing, figures, schemas, stagelog, tables, thesisdrive, topview
-from scanplan.claims import ITERATIVE, OURS, SUBSET
+from scanplan import atomic, schemas, stagelog, tables
+from scanplan.exports import drawing
+from scanplan.report import figures, topview
+from scanplan.thesis import thesisdrive
+from scanplan.thesis.claims import ITERATIVE, OURS, SUBSET
 
 
 def draw_thesis_drive(scans, registration, selection, walls, times, outputs):

@@ -1,6 +1,9 @@
 """Draw the thesis's figures 3.2 and 5.1 to 5.7, and all orders beside them, from the survey of the rooms."""
 
-from scanplan import atomic, drawing, oraclefigure, stagelog, thesisrooms
+from scanplan import atomic, stagelog
+from scanplan.exports import drawing
+from scanplan.report import oraclefigure
+from scanplan.thesis import thesisrooms
 
 
 def draw_thesis_rooms(files, evaluated, outputs, orders, *, bitmap_cell_m, max_range_m):

@@ -1,6 +1,9 @@
 """Draw the walls of the plan over the points of the selected scans (thesis, figure 5.11)."""
 
-from scanplan import atomic, drawing, figures, stagelog, stopping, tables, topview
+from scanplan import atomic, stagelog, tables
+from scanplan.exports import drawing
+from scanplan.report import figures, topview
+from scanplan.selection import stopping
 
 
 def draw_walls(scans, faces, registration, selection, output, **stop):

@@ -2,14 +2,12 @@
 
 import numpy as np
 
-from scanplan import (
+from scanplan import schemas, stagelog, tables
+from scanplan.evaluation import (
     findings,
     planevaluation,
     poseerrors,
     registered,
-    schemas,
-    stagelog,
-    tables,
     trueplan,
     truthfile,
     visibility,

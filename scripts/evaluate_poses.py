@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from scanplan import poseerrors, registered, schemas, stagelog, tables, truthfile
+from scanplan import schemas, stagelog, tables
+from scanplan.evaluation import poseerrors, registered, truthfile
 
 
 def evaluate_poses(poses, registration, true_poses, output):

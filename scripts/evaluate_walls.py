@@ -2,8 +2,9 @@
 
 from pathlib import Path
 
-from scanplan import findings, oracle, poseerrors, registered, schemas, stagelog, tables, truthfile, wallevaluation
-from scanplan.visibility import thinned
+from scanplan import schemas, stagelog, tables
+from scanplan.evaluation import findings, oracle, poseerrors, registered, truthfile, wallevaluation
+from scanplan.evaluation.visibility import thinned
 
 _SURVEY_STEP_M = 0.25
 _SIGHT = "sight"

@@ -4,7 +4,9 @@ from pathlib import Path
 
 import numpy as np
 
-from scanplan import atomic, cad, drawing, floorplan, gridmap, ifcplan, levels, plangeojson, stagelog, tables
+from scanplan import atomic, stagelog, tables
+from scanplan.exports import cad, drawing, gridmap, ifcplan, plangeojson
+from scanplan.plan import floorplan, levels
 
 _MAY_BE_EMPTY = {"walls": tables.PLAN_WALLS, "openings": tables.OPENINGS, "rooms": tables.ROOMS, "free": tables.FREE}
 

@@ -2,8 +2,9 @@
 
 import time
 
-from scanplan import chunks, cluster_ransac, iterative_ransac, stagelog, tables, walls
+from scanplan import chunks, stagelog, tables
 from scanplan.errors import StageError
+from scanplan.extraction import cluster_ransac, iterative_ransac, walls
 
 EXTRACTORS = {"cluster_ransac": cluster_ransac, "iterative_ransac": iterative_ransac}
 

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from scanplan import candidates, frames, motion, stagelog, surveys, sweepcheck, tables
+from scanplan import stagelog, tables
+from scanplan.recordings import candidates, frames, motion, surveys, sweepcheck
 
 
 def interpolate_poses(

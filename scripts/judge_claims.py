@@ -1,7 +1,8 @@
 """Measure every claim of the thesis on every seed."""
 
-from scanplan import judging, stagelog, tables
+from scanplan import stagelog, tables
 from scanplan.schemas import AREAS, CLAIMS, CLUSTERS, EVALUATION, POSE_ERRORS, SELECTION, STEPS, TIMES
+from scanplan.thesis import judging
 
 _SCHEMAS = {
     "walls": EVALUATION,

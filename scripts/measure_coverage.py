@@ -3,8 +3,11 @@
 import numpy as np
 import shapely
 
-from scanplan import chunks, greedy, hulls, registered, seenarea, stagelog, tables, truthfile
+from scanplan import chunks, stagelog, tables
+from scanplan.evaluation import registered, truthfile
 from scanplan.schemas import AREAS, CLUSTERS
+from scanplan.selection import greedy, hulls
+from scanplan.thesis import seenarea
 
 
 def measure_coverage(

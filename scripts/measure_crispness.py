@@ -2,7 +2,9 @@
 
 import numpy as np
 
-from scanplan import crispness, registered, se3, stagelog, tables
+from scanplan import se3, stagelog, tables
+from scanplan.evaluation import registered
+from scanplan.registration import crispness
 
 
 def measure_crispness(scans, registration, poses, output, *, radius_m, most_points, most_places, seed):

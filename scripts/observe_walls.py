@@ -1,6 +1,8 @@
 """Measure how much wall every scan shows, and where, without extracting walls."""
 
-from scanplan import chunks, schemas, stagelog, tables, wallcells, walls
+from scanplan import chunks, schemas, stagelog, tables
+from scanplan.extraction import walls
+from scanplan.selection import wallcells
 
 
 def observe_walls(scans, registration, output, *, settings, threads=1):

@@ -1,7 +1,8 @@
 """Put the scans in the order in which they are worth most for the plan."""
 
-from scanplan import orderings, schemas, stagelog, stopping, tables
+from scanplan import schemas, stagelog, tables
 from scanplan.errors import StageError
+from scanplan.selection import orderings, stopping
 
 _SCHEMAS = {
     "observations": schemas.OBSERVATIONS,

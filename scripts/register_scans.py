@@ -1,6 +1,8 @@
 """Select continuous scans and register them in the map frame (thesis, algorithm 3)."""
 
-from scanplan import linktable, mapping, motion, spool, stagelog, surveys, tables, verdicts, workers
+from scanplan import spool, stagelog, tables, workers
+from scanplan.recordings import motion, surveys
+from scanplan.registration import linktable, mapping, verdicts
 
 
 def register_scans(recordings, poses, scans, registered, edges, *, reading, settings, moved=None, threads=1):

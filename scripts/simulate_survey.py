@@ -2,8 +2,9 @@
 
 from pathlib import Path
 
-from scanplan import atomic, scanmessages, stagelog, surveybag, surveying, surveymessages, sweeps
-from scanplan import truth as ground_truth
+from scanplan import atomic, stagelog
+from scanplan.simulation import scanmessages, surveybag, surveying, surveymessages, sweeps
+from scanplan.simulation import truth as ground_truth
 
 
 def simulate_survey(

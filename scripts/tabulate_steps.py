@@ -4,7 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
-from scanplan import stagelog, tables, tum
+from scanplan import stagelog, tables
+from scanplan.recordings import tum
 from scanplan.schemas import STEPS
 
 NAMES = ("Data collection", "Selecting and registering scans", "Hull creation", "Cluster subset selection")

@@ -1,7 +1,9 @@
 """Time the extractors scan by scan and the selection by number of scans (thesis, figures 5.8 and 5.10)."""
 
-from scanplan import cluster_ransac, iterative_ransac, stagelog, tables, timing
+from scanplan import stagelog, tables
+from scanplan.extraction import cluster_ransac, iterative_ransac
 from scanplan.schemas import TIMES
+from scanplan.thesis import timing
 
 _EXTRACTORS = {"cluster_ransac": cluster_ransac, "iterative_ransac": iterative_ransac}
 _SELECTION_SIZES = (10, 20, 30, 45, 60, 90, 130, 180, 270, 400, 600, 900, 1300)

@@ -3,7 +3,10 @@
 import os
 from pathlib import Path
 
-from scanplan import atomic, floorplan, reportpage, schemas, sources, stagelog, stopping, tables
+from scanplan import atomic, schemas, sources, stagelog, tables
+from scanplan.plan import floorplan
+from scanplan.report import reportpage
+from scanplan.selection import stopping
 
 _PLAN = {"walls": tables.PLAN_WALLS, "openings": tables.OPENINGS, "rooms": tables.ROOMS, "free": tables.FREE}
 _SURVEY = {"selection": tables.SELECTION, "registration": tables.REGISTRATION, "poses": tables.POSES}

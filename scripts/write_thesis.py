@@ -2,8 +2,9 @@
 
 from pathlib import Path
 
-from scanplan import atomic, stagelog, tables, thesispage
+from scanplan import atomic, stagelog, tables
 from scanplan.schemas import CLAIMS, STEPS
+from scanplan.thesis import thesispage
 
 
 def write_thesis(figures, orders, claims, steps, limited, output):

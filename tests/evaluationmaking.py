@@ -4,7 +4,8 @@ import json
 
 import numpy as np
 
-from scanplan import rover, se3, tables, truth
+from scanplan import se3, tables
+from scanplan.simulation import rover, truth
 from wallmaking import walls
 
 FACES = [(0, 0, 6, 0), (6, 0, 6, 4), (6, 4, 0, 4), (0, 4, 0, 0)]

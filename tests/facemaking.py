@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from scanplan import facepieces, faces, schemas
+from scanplan import schemas
+from scanplan.plan import facepieces, faces
 
 _MOST_ROUNDS = 10
 

@@ -7,7 +7,7 @@ wall of the small room is inferred. An entrance in the west, a door between the 
 import numpy as np
 import shapely
 
-from scanplan.floorplan import FloorPlan
+from scanplan.plan.floorplan import FloorPlan
 
 HEIGHT_M = 2.5
 ASSUMED_M = 0.1

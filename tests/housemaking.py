@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from scanplan import planning, rays, tables
+from scanplan import tables
+from scanplan.plan import planning, rays
 from toyrooms import vlp16
 from wallmaking import SETTINGS, walls
 

@@ -2,7 +2,7 @@
 
 import json
 
-from scanplan import buildingfile
+from scanplan.simulation import buildingfile
 
 OUTLINE = [[-0.1, -0.1], [4.1, -0.1], [4.1, 3.1], [-0.1, 3.1], [-0.1, -0.1]]
 

@@ -14,7 +14,8 @@ def helpers_of(script):
     Parameters
     ----------
     script : path-like
-        A Python file that imports helpers as `from scanplan import name` or `from scanplan.name import ...`.
+        A Python file that imports helpers as `from scanplan.topic import helper` or
+        `from scanplan.topic.helper import ...`.
 
     Returns
     -------
@@ -39,10 +40,9 @@ def digest():
 @cache
 def _imports(path):
     # a workflow asks for the helpers of every script when it starts, and most are shared
-    names = set()
+    found = set()
     for node in ast.walk(ast.parse(Path(path).read_text(encoding="utf-8"))):
-        if isinstance(node, ast.ImportFrom) and node.module == "scanplan":
-            names.update(alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom) and (node.module or "").startswith("scanplan."):
-            names.add(node.module.split(".")[1])
-    return frozenset(file for name in names if (file := _PACKAGE / f"{name}.py").exists())
+        if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == _PACKAGE.name:
+            named = _PACKAGE.parent.joinpath(*node.module.split("."))
+            found.update([named.with_suffix(".py"), *(named / f"{alias.name}.py" for alias in node.names)])
+    return frozenset(filter(Path.exists, found))

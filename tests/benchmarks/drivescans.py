@@ -7,7 +7,8 @@ import numpy as np
 import shapely
 import wallscans
 
-from scanplan import hulls, raycast, surveying
+from scanplan.selection import hulls
+from scanplan.simulation import raycast, surveying
 
 RATE_HZ = 10.0
 N_AZIMUTH = 1800  # of a real VLP-16

@@ -10,7 +10,10 @@ import interpolate_poses
 import register_scans
 import simulate_survey
 from reference import registration as literal
-from scanplan import motion, poseerrors, surveys, tables, truthfile, verdicts
+from scanplan import tables
+from scanplan.evaluation import poseerrors, truthfile
+from scanplan.recordings import motion, surveys
+from scanplan.registration import verdicts
 
 N_LITERAL = 40
 _TABLES = ("scans", "registration", "edges")

@@ -8,7 +8,7 @@ import shapely
 from sklearn.cluster import KMeans
 
 from reference import hull_selection
-from scanplan import certificate, greedy, hulls, streaming
+from scanplan.selection import certificate, greedy, hulls, streaming
 
 N_SCANS = 1200
 LITERAL_RANKS = 150

@@ -7,7 +7,7 @@ import numpy as np
 import wallscans
 
 from reference import cluster_ransac as literal_clusters
-from scanplan import cluster_ransac, iterative_ransac, normals, walls
+from scanplan.extraction import cluster_ransac, iterative_ransac, normals, walls
 
 METHODS = {"cluster_ransac": cluster_ransac, "iterative_ransac": iterative_ransac}
 _LITERAL_EVERY = 4  # points: the literal method's time grows with their square

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from scanplan import findings, lengthmetrics, raycast, surveying, sweeps, truthfile
+from scanplan.evaluation import findings, lengthmetrics, truthfile
+from scanplan.simulation import raycast, surveying, sweeps
 
 N_AZIMUTH = 1800  # of a real VLP-16
 _LONG_M = 0.5
@@ -93,7 +94,7 @@ def quality(lines_m, scan, truth):
 
 
 def _found(lines_m, truth, distance_m):
-    from scanplan import visibility
+    from scanplan.evaluation import visibility
 
     near = lengthmetrics.near(truth.cells.faces_m, lines_m, distance_m)
     begin, end = visibility.cells_between(truth.cells, near.line, near.low_m, near.high_m)

@@ -4,8 +4,9 @@ import shapely
 
 import housemaking
 from assemble_plan import assemble_plan
-from scanplan import planning, tables
+from scanplan import tables
 from scanplan.errors import StageError
+from scanplan.plan import planning
 from wallmaking import lengths_m, walls
 
 EVERYTHING = {"n_scans": None, "area_share": None}

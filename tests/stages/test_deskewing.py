@@ -7,7 +7,9 @@ import open3d as o3d
 import pytest
 
 from interpolate_poses import interpolate_poses
-from scanplan import buildingfile, configuration, extrusion, motion, se3, surveys, tables, tum
+from scanplan import configuration, se3, tables
+from scanplan.recordings import motion, surveys, tum
+from scanplan.simulation import buildingfile, extrusion
 from simulate_survey import simulate_survey
 
 EXACT = {

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from draw_registration import draw_registration
-from scanplan import registrationfigure, tables
+from scanplan import tables
+from scanplan.report import registrationfigure
 
 REASONS = ["anchor", "kept", "low_prior_fitness", "pose_gap", "kept", "odd_thing", "anchor", "kept"]
 KEPT = [r in ("anchor", "kept") for r in REASONS]

@@ -6,7 +6,9 @@ from evaluationmaking import SCAN_IDS, shift, write_registration
 from interpolate_poses import interpolate_poses
 from measure_crispness import measure_crispness
 from register_scans import register_scans
-from scanplan import configuration, datasets, se3, surveys, tables, verdicts
+from scanplan import configuration, datasets, se3, tables
+from scanplan.recordings import surveys
+from scanplan.registration import verdicts
 
 SETTINGS = {"radius_m": 0.2, "most_points": 100_000, "most_places": 500, "seed": 1}
 

@@ -4,8 +4,9 @@ import pytest
 
 import observe_walls
 import toyrooms
-from scanplan import methods, schemas, tables
+from scanplan import schemas, tables
 from scanplan.errors import StageError
+from scanplan.selection import methods
 from toysurvey import SENSORS, write_survey
 
 SETTINGS = {name: toyrooms.LIMITS[name] for name in methods.WALL_LIMITS if name in toyrooms.LIMITS}

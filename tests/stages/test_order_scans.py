@@ -5,8 +5,9 @@ import pytest
 import shapely
 
 import order_scans
-from scanplan import methods, orderings, schemas, tables
+from scanplan import schemas, tables
 from scanplan.errors import StageError
+from scanplan.selection import methods, orderings
 
 
 def write_hulls(path, shapes):

@@ -5,8 +5,8 @@ import open3d as o3d
 import pytest
 import shapely
 
-from scanplan import building, ifcfile
 from scanplan.errors import StageError
+from scanplan.simulation import building, ifcfile
 
 pytestmark = pytest.mark.recordings
 SLICE_M = 0.4

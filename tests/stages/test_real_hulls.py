@@ -4,7 +4,10 @@ import numpy as np
 import pytest
 
 from reference import hull_selection
-from scanplan import certificate, datasets, frames, greedy, hulls, streaming, surveys, verdicts
+from scanplan import datasets
+from scanplan.recordings import frames, surveys
+from scanplan.registration import verdicts
+from scanplan.selection import certificate, greedy, hulls, streaming
 
 pytestmark = pytest.mark.recordings
 SETTINGS = {"n_clusters": 10, "sample_size": 500, "seed": 1}

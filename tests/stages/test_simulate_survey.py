@@ -14,8 +14,10 @@ from shapely.geometry import shape
 import boxmaking
 import ifcmaking
 import simple_rooms as drawn
-from scanplan import buildingfile, extrusion, frames, se3, surveys
+from scanplan import se3
 from scanplan.errors import StageError
+from scanplan.recordings import frames, surveys
+from scanplan.simulation import buildingfile, extrusion
 from simulate_survey import simulate_survey
 
 STORE = get_typestore(Stores.ROS1_NOETIC)

@@ -11,8 +11,9 @@ from evaluate_walls import evaluate_walls
 from evaluationmaking import FACES, SCAN_IDS, write_registration, write_selection, write_truth, write_walls
 from judge_claims import judge_claims
 from measure_coverage import measure_coverage
-from scanplan import schemas, tables, thesisdrive
-from scanplan.thesisshown import FIGURES
+from scanplan import schemas, tables
+from scanplan.thesis import thesisdrive
+from scanplan.thesis.thesisshown import FIGURES
 from tabulate_steps import tabulate_steps
 from write_thesis import write_thesis
 

@@ -4,8 +4,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import box
 
-from scanplan import greedy
-from scanplan.areas import PolygonArea
+from scanplan.selection import greedy
+from scanplan.selection.areas import PolygonArea
 
 BOXES = st.lists(
     st.tuples(*[st.integers(0, 6)] * 2, *[st.integers(0, 4)] * 2).map(

@@ -3,8 +3,8 @@ import struct
 import pytest
 
 import bagmaking
-from scanplan import bags
 from scanplan.errors import StageError
+from scanplan.recordings import bags
 
 KINDS = bagmaking.KINDS
 

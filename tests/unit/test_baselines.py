@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scanplan import baselines
+from scanplan.selection import baselines
 
 
 def test_every_nth_on_paper():

@@ -1,4 +1,4 @@
-from scanplan import batches
+from scanplan.registration import batches
 
 
 def test_batches_follow_each_other_and_look_back():

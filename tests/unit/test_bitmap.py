@@ -4,8 +4,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from reference import bitmap as reference
-from scanplan import bitmap
 from scanplan.errors import StageError
+from scanplan.evaluation import bitmap
 
 FIVE = bitmap.Grid(np.zeros(2), 1.0, (5, 5))
 

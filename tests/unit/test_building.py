@@ -10,8 +10,8 @@ import shapely
 import boxmaking
 import ifcmaking
 import simple_rooms as drawn
-from scanplan import building, extrusion, ifcfile
 from scanplan.errors import StageError
+from scanplan.simulation import building, extrusion, ifcfile
 
 IFC = ifcmaking.model()
 ROOM = boxmaking.room()

@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import simple_rooms as drawn
-from scanplan import buildingfile
 from scanplan.errors import StageError
+from scanplan.simulation import buildingfile
 
 BAD_FEATURES = [
     (drawn.door(2, 0.2), r"feature 2 \(opening\): at \(2, 0.2\), 0.300 m off"),

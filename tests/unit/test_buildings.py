@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import simple_rooms as drawn
-from scanplan import buildings
 from scanplan.errors import StageError
+from scanplan.simulation import buildings
 
 BOX = shapely.box(-0.2, -0.2, 4.2, 3.2) - shapely.box(0, 0, 4, 3)
 metres = st.integers(1500, 9000).map(lambda mm: mm / 1000)

@@ -6,7 +6,7 @@ import pytest
 import shapely
 
 from floorplanmaking import FOOTPRINT_M2, bare, plan
-from scanplan import cad
+from scanplan.exports import cad
 
 
 def reopened(drawn):

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from scanplan import candidates
+from scanplan.recordings import candidates
 
 FAR = {"max_step_m": 100.0, "max_turn_deg": 360.0}
 

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from shapely import box
 
 from hullmaking import best_by_trying_all
-from scanplan import certificate, greedy
+from scanplan.selection import certificate, greedy
 
 # greedy takes the middle first (6), then one side (3); the two sides together are 10
 TRAP = [box(2, 0, 8, 1), box(0, 0, 5, 1), box(5, 0, 10, 1)]

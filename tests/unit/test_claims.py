@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from scanplan import claims
+from scanplan.thesis import claims
 
 
 def evaluated(k, values):

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from scanplan import clocks
+from scanplan.recordings import clocks
 
 S = 10**9
 

@@ -1,7 +1,7 @@
 import numpy as np
 
-from scanplan import clouds
-from scanplan.sweeptimes import Convention
+from scanplan.recordings import clouds
+from scanplan.recordings.sweeptimes import Convention
 
 T_NS = 1_700_000_000_250_000_000
 

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 import toyrooms
 from reference import cluster_ransac as literal
-from scanplan import cluster_ransac
+from scanplan.extraction import cluster_ransac
 
 SETTINGS = cluster_ransac.Settings(**toyrooms.LIMITS, reach_deg=3.5, max_tilt_deg=15.0, bandwidth_m=0.3, trials=64)
 # start and end of every face the sensor of the toy room sees, the sensor to the left of the way

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import shapely
 
-from scanplan import clutter
-from scanplan.raycast import Hits
+from scanplan.simulation import clutter
+from scanplan.simulation.raycast import Hits
 
 STANDING = clutter.Person(np.array([0.0, 1.0]), np.array([[3.0, 0.0], [3.0, 0.0]]))
 WALKING = clutter.Person(np.array([0.0, 2.0]), np.array([[3.0, -1.0], [3.0, 1.0]]))

@@ -1,6 +1,6 @@
 import numpy as np
 
-from scanplan import confirmation, sequential
+from scanplan.registration import confirmation, sequential
 
 
 def verdicts(places):

@@ -4,8 +4,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from reference import greedy_coverage as literal
-from scanplan import certificate
-from scanplan.coverage import TIE, CellCoverage
+from scanplan.selection import certificate
+from scanplan.selection.coverage import TIE, CellCoverage
 
 # weights of eighths add up without rounding: ties are ties
 SCANS = st.lists(

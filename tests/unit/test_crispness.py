@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from scanplan import crispness
+from scanplan.registration import crispness
 
 OF_MAP = {"radius_m": 0.2, "most_places": 200, "seed": 1}
 

@@ -7,7 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from scanplan import clouds, deskew, motion, se3
+from scanplan import se3
+from scanplan.recordings import clouds, deskew, motion
 
 T_NS = 1_700_000_000_000_000_000
 SPEED, RATE = np.array([0.6, -0.2, 0.1]), np.array([0.1, 0.2, 1.0])

@@ -9,7 +9,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import floorplanmaking
 from floorplanmaking import bare
-from scanplan import drawing
+from scanplan.exports import drawing
 
 _POINTS_PER_MM = 72 / 25.4
 

@@ -2,7 +2,8 @@
 
 import pytest
 
-from scanplan import configuration, experiments
+from scanplan import configuration
+from scanplan.thesis import experiments
 
 
 @pytest.fixture

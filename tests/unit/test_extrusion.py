@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import simple_rooms as drawn
-from scanplan import buildings, extrusion
+from scanplan.simulation import buildings, extrusion
 
 
 def volume(triangles_m):
@@ -71,7 +71,7 @@ def test_volume_is_area_times_height_for_any_stack(boxes, split):
 
 
 def test_the_demo_is_closed(project_root):
-    from scanplan import buildingfile
+    from scanplan.simulation import buildingfile
 
     text = (project_root / "config/buildings/demo_office.geojson").read_bytes()
     plan = buildingfile.parse(text, "demo")

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import facemaking
-from scanplan import faces
+from scanplan.plan import faces
 from wallmaking import BARE, SETTINGS, ends, lengths_m, moved, observed, walls
 
 ARENA = [

@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 
 import facemaking
-from scanplan import drawing, figures, topview
 from scanplan.errors import StageError
+from scanplan.exports import drawing
+from scanplan.report import figures, topview
 from wallmaking import BARE, walls
 
 

@@ -4,8 +4,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from scanplan import frames, se3
+from scanplan import se3
 from scanplan.errors import StageError
+from scanplan.recordings import frames
 
 QUARTER = [0, 0, np.sqrt(0.5), np.sqrt(0.5)]
 NONE = [0, 0, 0, 1]

@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import toyrooms
-from scanplan import furniture, walls
+from scanplan.extraction import furniture, walls
 
 LIMITS = walls.Limits(**toyrooms.LIMITS)
 SENSOR_M = 0.4

@@ -3,9 +3,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scanplan import gaps
-from scanplan.faceline import Line
-from scanplan.profiles import Reading, Seen
+from scanplan.plan import gaps
+from scanplan.plan.faceline import Line
+from scanplan.plan.profiles import Reading, Seen
 
 READING = Reading(band_m=0.06, reach_m=2.0, max_gap_m=0.5, door_height_m=1.8)
 SETTINGS = gaps.GapSettings(min_opening_m=0.5, max_opening_m=2.0, max_closed_m=1.5, max_door_m=1.5)

@@ -7,8 +7,8 @@ from shapely import box
 
 from hullmaking import hull_sets, scattered
 from reference import hull_selection
-from scanplan import greedy
-from scanplan.greedy import TIE_M2
+from scanplan.selection import greedy
+from scanplan.selection.greedy import TIE_M2
 
 
 def test_takes_the_largest_then_what_adds_most():

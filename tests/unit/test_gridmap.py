@@ -8,7 +8,7 @@ from PIL import Image
 
 import floorplanmaking
 from floorplanmaking import bare, plan
-from scanplan import gridmap
+from scanplan.exports import gridmap
 
 
 def as_nav2_reads(grid):

@@ -1,8 +1,8 @@
 import numpy as np
 
 from floorplanmaking import faces
-from scanplan import growth
-from scanplan.growth import NEVER
+from scanplan.report import growth
+from scanplan.report.growth import NEVER
 from wallmaking import walls
 
 

@@ -6,7 +6,8 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from reference import hull_selection
-from scanplan import hulls, tables
+from scanplan import tables
+from scanplan.selection import hulls
 
 CORNERS = np.array([(0, 0), (2, 0), (2, 1), (0, 1)], float)
 SETTINGS = {"n_clusters": 4, "sample_size": 100, "seed": 3}

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from scanplan import icp, se3, twists
+from scanplan import se3
+from scanplan.registration import icp, twists
 
 
 def box_points(n, rng, *, planar=False, size=(4.0, 3.0, 2.5)):

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import ifcmaking
-from scanplan import ifcfile
 from scanplan.errors import StageError
+from scanplan.simulation import ifcfile
 
 DATA = ifcmaking.model()
 

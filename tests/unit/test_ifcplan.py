@@ -10,7 +10,7 @@ import pytest
 
 import floorplanmaking
 from floorplanmaking import bare, plan
-from scanplan import ifcplan
+from scanplan.exports import ifcplan
 
 
 def opened(drawn):

@@ -3,7 +3,7 @@ import pytest
 
 import toyrooms
 from reference import ransac as literal
-from scanplan import iterative_ransac
+from scanplan.extraction import iterative_ransac
 
 SETTINGS = iterative_ransac.Settings(**toyrooms.LIMITS, max_tilt_deg=15.0, trials=200, max_planes=20)
 # per face: normal towards the sensor, normal . xy

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import claimmaking as made
-from scanplan import judging
-from scanplan.thesisclaims import CLAIMS, stated
+from scanplan.thesis import judging
+from scanplan.thesis.thesisclaims import CLAIMS, stated
 
 
 def judged(kind, tables):

@@ -1,6 +1,6 @@
 import numpy as np
 
-from scanplan import jumps
+from scanplan.recordings import jumps
 
 S = 10**9
 T_NS = np.arange(6) * S // 2

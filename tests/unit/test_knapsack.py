@@ -7,8 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import box
 
-from scanplan.areas import PolygonArea
-from scanplan.coverage import CellCoverage
+from scanplan.selection.areas import PolygonArea
+from scanplan.selection.coverage import CellCoverage
 
 
 def area(polygons, chosen):

@@ -4,7 +4,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scanplan import lengthmetrics
+from scanplan.evaluation import lengthmetrics
 
 WALL = (0, 0, 10, 0)
 coordinate = st.integers(-300, 300).map(lambda v: v / 100)

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from scanplan import levels
+from scanplan.plan import levels
 
 
 def room(rng, *, floor=2000, ceiling=2000, walls=20_000, low_m=0.0, high_m=2.7, sigma_m=0.01):

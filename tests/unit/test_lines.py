@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scanplan import lines
+from scanplan.extraction import lines
 
 ANGLE = st.floats(-3.1, 3.1)
 SHIFT = st.floats(-50, 50)

@@ -2,7 +2,7 @@ import tracemalloc
 
 import numpy as np
 
-from scanplan import loops
+from scanplan.registration import loops
 
 
 def there_and_back():

@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from scanplan import configuration, linktable, mapping, poseerrors, se3, spool, tables, workers
+from scanplan import configuration, se3, spool, tables, workers
+from scanplan.evaluation import poseerrors
+from scanplan.registration import linktable, mapping
 
 ROOT = Path(__file__).resolve().parents[2]
 N = 60

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import boxmaking
-from scanplan import meshfile
 from scanplan.errors import StageError
+from scanplan.simulation import meshfile
 
 BOX = boxmaking.box(0, 0, 0, 4, 3, 2.5)
 STL = boxmaking.written(BOX, "stl")

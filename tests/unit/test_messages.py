@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import bagmaking
-from scanplan import messages
 from scanplan.errors import StageError
+from scanplan.recordings import messages
 
 XYZ = np.array([[1, 2, 3], [4, 5, 6], [7, 8, 9], [-1, 0, 0.5]], np.float32)
 

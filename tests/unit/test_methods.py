@@ -1,6 +1,7 @@
 from dataclasses import fields
 
-from scanplan import configuration, inventory, methods, orderings, wallcells
+from scanplan import configuration, inventory
+from scanplan.selection import methods, orderings, wallcells
 
 
 def test_the_schema_allows_the_methods_there_are(project_root):

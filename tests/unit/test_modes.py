@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sklearn.cluster import MeanShift
 
-from scanplan import modes
+from scanplan.extraction import modes
 
 
 def same_partition(first, second):

@@ -3,8 +3,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from scanplan import frames, motion
 from scanplan.errors import StageError
+from scanplan.recordings import frames, motion
 
 S = 10**9
 

@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
 
-from scanplan import mounts, se3
+from scanplan import se3
 from scanplan.errors import StageError
+from scanplan.recordings import mounts
 
 
 def test_roll_comes_before_yaw_about_fixed_axes():

@@ -1,6 +1,6 @@
 import numpy as np
 
-from scanplan import multiway
+from scanplan.registration import multiway
 
 
 def test_a_floor_adds_to_the_covariance():

@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import toyrooms
-from scanplan import normals
+from scanplan.extraction import normals
 
 
 def wall_ahead(distance_m, noise_m=0.0):

@@ -3,7 +3,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from reference import greedy_cover
-from scanplan import oracle
+from scanplan.evaluation import oracle
 
 
 def test_on_paper():

@@ -3,8 +3,9 @@ import pytest
 import shapely
 from shapely import box
 
-from scanplan import methods, orderings, tables
+from scanplan import tables
 from scanplan.errors import StageError
+from scanplan.selection import methods, orderings
 
 # scan 3 covers two far boxes (its one hull is 12), scan 8 one box, scan 20 that box and a strip, scan 21 nothing
 SCANS = {

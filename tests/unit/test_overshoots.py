@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from scanplan import overshoots
-from scanplan.faceline import Line
-from scanplan.profiles import Seen
-from scanplan.stretches import Stretch
+from scanplan.plan import overshoots
+from scanplan.plan.faceline import Line
+from scanplan.plan.profiles import Seen
+from scanplan.plan.stretches import Stretch
 
 
 def stretch(x0, y0, x1, y1, places=None, offsets=None):

@@ -2,8 +2,8 @@ import pytest
 from rosbags import rosbag1
 
 import bagmaking
-from scanplan import bags, plainbag1
 from scanplan.errors import StageError
+from scanplan.recordings import bags, plainbag1
 
 
 @pytest.fixture

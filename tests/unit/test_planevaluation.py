@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import shapely
 
-from scanplan import lengthmetrics, planevaluation, trueplan, visibility
 from scanplan.errors import StageError
+from scanplan.evaluation import lengthmetrics, planevaluation, trueplan, visibility
 
 SQUARE = np.array([[(0, 0), (4, 0)], [(4, 0), (4, 4)], [(4, 4), (0, 4)], [(0, 4), (0, 0)]], float)
 

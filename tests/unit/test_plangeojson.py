@@ -6,7 +6,7 @@ import shapely
 
 import floorplanmaking
 from floorplanmaking import bare, plan
-from scanplan import plangeojson
+from scanplan.exports import plangeojson
 
 
 def features(drawn, kind=None, evidence=None):

@@ -9,12 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import housemaking
-from scanplan import freespace, planning, rays, rooms, wallevidence, wallfaces
-from scanplan.faceline import Line
-from scanplan.gaps import CLOSED, OPEN, Gap
-from scanplan.planwalls import PlanWall
-from scanplan.profiles import Seen
-from scanplan.stretches import Stretch
+from scanplan.plan import freespace, planning, rays, rooms, wallevidence, wallfaces
+from scanplan.plan.faceline import Line
+from scanplan.plan.gaps import CLOSED, OPEN, Gap
+from scanplan.plan.planwalls import PlanWall
+from scanplan.plan.profiles import Seen
+from scanplan.plan.stretches import Stretch
 from toyrooms import laser
 from wallmaking import moved, walls
 

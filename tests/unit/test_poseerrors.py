@@ -2,7 +2,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from scanplan import poseerrors, rover, se3
+from scanplan import se3
+from scanplan.evaluation import poseerrors
+from scanplan.simulation import rover
 
 
 def test_known_errors():

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from scanplan import posegraph, se3, twists
+from scanplan import se3
+from scanplan.registration import posegraph, twists
 
 
 def pose(x, y, yaw_deg, z=0.0):

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import simple_rooms as drawn
-from scanplan import extrusion, raycast, rover, sensors
+from scanplan.simulation import extrusion, raycast, rover, sensors
 
 SIZE_M = np.array([4.0, 3.0, 2.5])
 MESH = extrusion.building_mesh(drawn.plan())

@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scanplan import rays
-from scanplan.faceline import Line
+from scanplan.plan import rays
+from scanplan.plan.faceline import Line
 
 # the x axis, seen from above (y > 0)
 AXIS = Line(np.zeros(2), np.array([0.0, 1.0]))

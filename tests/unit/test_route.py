@@ -9,8 +9,8 @@ import pytest
 import shapely
 
 import simple_rooms as drawn
-from scanplan import building, route
 from scanplan.errors import StageError
+from scanplan.simulation import building, route
 
 WIDE = [[-0.1, -0.1], [12.1, -0.1], [12.1, 6.1], [-0.1, 6.1], [-0.1, -0.1]]
 

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 import shapely
 
-from scanplan import rover, se3
+from scanplan import se3
 from scanplan.errors import StageError
+from scanplan.simulation import rover
 
 # 2 m east at 0.5 m/s, a quarter turn left at 45 deg/s, 1 m north
 ELL = rover.drive([[0, 0], [2, 0], [2, 1]], speed_m_s=0.5, turn_rate_deg_s=45.0)

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 import bagmaking
-from scanplan import frames, scanfolder, surveys
 from scanplan.errors import StageError
+from scanplan.recordings import frames, scanfolder, surveys
 
 LIMITS = {"min_range_m": 0.1, "max_range_m": 50.0}
 POINTS = bagmaking.room_points(40)

@@ -4,8 +4,9 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scanplan import seenarea, visibility
-from scanplan.truthfile import TrueFaces
+from scanplan.evaluation import visibility
+from scanplan.evaluation.truthfile import TrueFaces
+from scanplan.thesis import seenarea
 
 BOX = np.array([(0, 0, 6, 0), (6, 0, 6, 4), (6, 4, 0, 4), (0, 4, 0, 0)], float).reshape(-1, 2, 2)
 # a pillar in the middle of the box

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from scanplan import sensors
 from scanplan.errors import StageError
+from scanplan.simulation import sensors
 
 COMMON = {"rate_hz": 10.0, "sweep": True, "min_range_m": 0.3, "max_range_m": 100.0}
 EXACT = {

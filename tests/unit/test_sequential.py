@@ -5,7 +5,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from reference import registration as literal
-from scanplan import configuration, mapping, se3, sequential
+from scanplan import configuration, se3
+from scanplan.registration import mapping, sequential
 
 SETTINGS = sequential.Settings(
     voxel_m=0.1,

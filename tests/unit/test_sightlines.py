@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from scanplan import sightlines
+from scanplan.extraction import sightlines
 
 AZIMUTH_DEG = np.arange(-180, 180, 0.5)
 

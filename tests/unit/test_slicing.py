@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import boxmaking
-from scanplan import slicing
+from scanplan.simulation import slicing
 
 metres = st.integers(0, 60).map(lambda dm: dm / 10)
 WALL = boxmaking.box(0, 0, 0, 4, 0.2, 2.5)

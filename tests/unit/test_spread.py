@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from scanplan import spread
+from scanplan.extraction import spread
 
 
 @pytest.mark.parametrize("d", [2, 3])

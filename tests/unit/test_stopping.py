@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from scanplan import stopping
 from scanplan.errors import StageError
+from scanplan.selection import stopping
 
 COLUMNS = {
     "covered_m2": np.array([50.0, 80.0, 95.0, 100.0, 100.0]),

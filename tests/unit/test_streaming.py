@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from shapely import box
 
 from hullmaking import best_by_trying_all, hull_sets, scattered
-from scanplan import greedy, streaming
+from scanplan.selection import greedy, streaming
 
 
 def covered(polygons, chosen):

@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 
 import housemaking
-from scanplan import stretches
-from scanplan.faceline import Line
-from scanplan.profiles import Reading, Seen
+from scanplan.plan import stretches
+from scanplan.plan.faceline import Line
+from scanplan.plan.profiles import Reading, Seen
 
 READING = Reading(band_m=0.06, reach_m=1.0, max_gap_m=0.5, door_height_m=1.8)
 AXIS = Line(np.zeros(2), np.array([0.0, 1.0]))

@@ -5,8 +5,9 @@ import pytest
 from rosbags.rosbag1 import Reader
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from scanplan import bags, rover, scanmessages, sensors, surveybag, surveymessages
-from scanplan.sweeps import Scan
+from scanplan.recordings import bags
+from scanplan.simulation import rover, scanmessages, sensors, surveybag, surveymessages
+from scanplan.simulation.sweeps import Scan
 
 # as ROS noetic itself gives them (rosmsg md5)
 MD5 = {

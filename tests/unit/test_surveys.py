@@ -2,8 +2,9 @@ import numpy as np
 import pytest
 
 import bagmaking
-from scanplan import datasets, frames, se3, surveys
+from scanplan import datasets, se3
 from scanplan.errors import StageError
+from scanplan.recordings import frames, surveys
 
 LIMITS = {"min_range_m": 0.1, "max_range_m": 100.0}
 START, STEP = bagmaking.START_NS, 100_000_000

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from scanplan import clouds, motion, se3, sweepcheck
+from scanplan import se3
+from scanplan.recordings import clouds, motion, sweepcheck
 
 T_NS, PERIOD_S, N_SCANS = 1_700_000_000_000_000_000, 0.1, 60
 BEAM_RAD = np.arange(360) * np.radians(1)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import simple_rooms as drawn
-from scanplan import clutter, extrusion, raycast, rover, sensors, sweeps
-from scanplan.raycast import Hits
+from scanplan.simulation import clutter, extrusion, raycast, rover, sensors, sweeps
+from scanplan.simulation.raycast import Hits
 
 MESH = extrusion.building_mesh(drawn.plan())
 EXACT = sensors.Errors(0.0, np.zeros(16, np.float32), 0.0, np.pi / 2, 1.0, 0.0)

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from scanplan import sweeptimes
-from scanplan.sweeptimes import Convention
+from scanplan.recordings import sweeptimes
+from scanplan.recordings.sweeptimes import Convention
 
 T_NS = 1_700_000_000_250_000_000
 # a sweep of 0.1 s, at 0, 0.05 and 0.1 s

@@ -1,8 +1,8 @@
 import numpy as np
 
 import claimmaking as made
-from scanplan import thesiscoverage
-from scanplan.figures import STYLES
+from scanplan.report.figures import STYLES
+from scanplan.thesis import thesiscoverage
 
 
 def shorter(table, n):

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import claimmaking as made
-from scanplan import judging, thesispage
 from scanplan.schemas import CLAIMS as TABLE
-from scanplan.thesisclaims import CLAIMS
-from scanplan.thesisshown import FIGURES
+from scanplan.thesis import judging, thesispage
+from scanplan.thesis.thesisclaims import CLAIMS
+from scanplan.thesis.thesisshown import FIGURES
 
 SVG = '<?xml version="1.0"?>\n<svg id="a"><defs><path id="b"/></defs><use href="#b" fill="url(#c)"/></svg>'
 

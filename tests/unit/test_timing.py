@@ -2,7 +2,9 @@ import time
 
 import numpy as np
 
-from scanplan import hulls, tables, timing
+from scanplan import tables
+from scanplan.selection import hulls
+from scanplan.thesis import timing
 
 
 def test_rows_are_spread_evenly():

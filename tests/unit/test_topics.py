@@ -1,8 +1,8 @@
 import pytest
 
-from scanplan import topics
 from scanplan.errors import StageError
-from scanplan.topics import CLOUDS, POSES, TRANSFORMS, Topic
+from scanplan.recordings import topics
+from scanplan.recordings.topics import CLOUDS, POSES, TRANSFORMS, Topic
 
 CLOUD, LASER = Topic("/points", CLOUDS[0], 9), Topic("/scan", CLOUDS[1], 9)
 AMCL, MOCAP, ODOM = (Topic(n, t, 5) for n, t in zip(("/amcl_pose", "/mocap", "/odom"), POSES, strict=True))

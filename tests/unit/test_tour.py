@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scanplan import tour
+from scanplan.simulation import tour
 
 
 def distances(xy):

@@ -7,7 +7,7 @@ import pytest
 from shapely.geometry import shape
 
 import simple_rooms as drawn
-from scanplan import rover, truth
+from scanplan.simulation import rover, truth
 
 
 def lengths(plan, side, slice_height_m=0.4):

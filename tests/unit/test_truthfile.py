@@ -3,8 +3,9 @@ import json
 import numpy as np
 import pytest
 
-from scanplan import rover, truth, truthfile
 from scanplan.errors import StageError
+from scanplan.evaluation import truthfile
+from scanplan.simulation import rover, truth
 
 
 def geojson(path, *features):

@@ -3,7 +3,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from scanplan import se3, twists
+from scanplan import se3
+from scanplan.registration import twists
 
 small = st.lists(st.floats(-0.5, 0.5), min_size=6, max_size=6)
 

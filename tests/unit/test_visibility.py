@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 import shapely
 
-from scanplan import lengthmetrics, visibility
+from scanplan.evaluation import lengthmetrics, visibility
 
 NO_FACES = np.empty((0, 2, 2))
 # a room of 4 m x 4 m whose east wall, 0.2 m thick, has a door of 1 m, and a larger room behind it

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from shapely.ops import substring
 
 import toyrooms
-from scanplan import visibilitypolygon
+from scanplan.selection import visibilitypolygon
 
 SETTINGS = visibilitypolygon.Settings(range_m=15.0, sector_deg=2.0, min_height_m=0.3, max_height_m=1.9)
 MAKE = {False: toyrooms.vlp16, True: toyrooms.laser}

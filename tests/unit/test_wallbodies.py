@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import floorplanmaking
-from scanplan import wallbodies
+from scanplan.plan import wallbodies
 
 
 def bodies(lines, thickness_m):

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import toyrooms
-from scanplan import methods, wallcells
-from scanplan.coverage import CellCoverage
+from scanplan.selection import methods, wallcells
+from scanplan.selection.coverage import CellCoverage
 
 LIMITS = {name: toyrooms.LIMITS[name] for name in methods.WALL_LIMITS if name in toyrooms.LIMITS}
 SETTINGS = wallcells.Settings(cell_m=0.25, reach_deg=3.5, max_tilt_deg=15.0, **LIMITS)

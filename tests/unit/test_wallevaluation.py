@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from scanplan import findings, lengthmetrics, visibility, wallevaluation
-from scanplan.truthfile import TrueFaces
+from scanplan.evaluation import findings, lengthmetrics, visibility, wallevaluation
+from scanplan.evaluation.truthfile import TrueFaces
 from wallmaking import observed
 
 NO_FACES = np.empty((0, 2, 2))

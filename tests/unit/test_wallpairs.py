@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scanplan import wallpairs
-from scanplan.faceline import Line
-from scanplan.profiles import Reading, Seen
-from scanplan.stretches import Stretch
+from scanplan.plan import wallpairs
+from scanplan.plan.faceline import Line
+from scanplan.plan.profiles import Reading, Seen
+from scanplan.plan.stretches import Stretch
 
 SETTINGS = wallpairs.PairSettings(
     max_angle_deg=5.0, min_thickness_m=0.04, max_thickness_m=0.6, offset_m=0.05, max_gap_m=2.0

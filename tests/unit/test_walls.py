@@ -2,8 +2,9 @@ import numpy as np
 import pytest
 
 import toyrooms
-from scanplan import tables, walls
+from scanplan import tables
 from scanplan.errors import StageError
+from scanplan.extraction import walls
 
 LIMITS = walls.Limits(**{**toyrooms.LIMITS, "min_points": 5, "min_points_planar": 3})
 

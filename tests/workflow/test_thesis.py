@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from projectcopy import Project
-from scanplan.thesisshown import FIGURES
+from scanplan.thesis.thesisshown import FIGURES
 
 pytestmark = pytest.mark.workflow
 TINY_THESIS = "tests/data/tiny_thesis.yaml"

@@ -52,7 +52,7 @@ def test_a_second_run_does_nothing(project):
 
 
 def test_a_touched_file_reruns_nothing(project):
-    os.utime(project.folder / "scripts/scanplan/hulls.py")
+    os.utime(project.folder / "scripts/scanplan/selection/hulls.py")
     assert project.would_run() == set()
 
 
@@ -82,12 +82,12 @@ def test_a_changed_parameter_reruns_exactly_its_stages(project, change, rules):
 @pytest.mark.parametrize(
     ("helper", "rules"),
     [
-        ("hulls", AFTER_HULLS),
-        ("cad", {"export_plan"}),
-        ("visibility", EVALUATED | {"evaluate_plan"}),
-        ("poseerrors", {"evaluate_poses", "evaluate_plan"} | EVALUATED),
-        ("faces", PLANNED),
-        ("reportplan", set()),
+        ("selection/hulls", AFTER_HULLS),
+        ("exports/cad", {"export_plan"}),
+        ("evaluation/visibility", EVALUATED | {"evaluate_plan"}),
+        ("evaluation/poseerrors", {"evaluate_poses", "evaluate_plan"} | EVALUATED),
+        ("plan/faces", PLANNED),
+        ("report/reportplan", set()),
     ],
 )
 def test_an_edited_helper_reruns_exactly_the_stages_that_import_it(project, helper, rules):

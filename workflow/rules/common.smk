@@ -3,7 +3,9 @@ import re
 import sys
 
 sys.path.insert(0, f"{workflow.basedir}/scripts")
-from scanplan import configuration, experiments, inventory, methods, sources
+from scanplan import configuration, inventory, sources
+from scanplan.selection import methods
+from scanplan.thesis import experiments
 from scanplan.errors import StageError
 
 SCHEMA = configuration.read_yaml(

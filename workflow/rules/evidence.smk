@@ -1,6 +1,6 @@
 import os
 
-from scanplan import claims, thesisshown
+from scanplan.thesis import claims, thesisshown
 
 # what the claims are measured on: table of the results by the name that the measures know it by
 ROOMS_TABLES = {

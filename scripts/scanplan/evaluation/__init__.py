@@ -1,0 +1,1 @@
+"""How good poses, walls and plans are, measured against the truth."""

@@ -1,0 +1,1 @@
+"""Wall segments of single scans."""

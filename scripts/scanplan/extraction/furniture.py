@@ -1,0 +1,173 @@
+"""Which of the faces that a scan shows are walls, and which are furniture, stairs or glass.
+
+A wall goes on upward as far as rays reach, lets none through, and has nothing like it close behind. Where no ray could
+show that it ends, a low face is judged by its corners: walls meet in the inner corners of a room, furniture shows its
+outer ones.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from scanplan.extraction import sightlines
+
+_PARALLEL = np.cos(np.deg2rad(10))
+_LEVEL_M = 0.15  # tops that differ less are one
+_ACROSS = np.cos(np.deg2rad(45))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Limits:
+    """What tells a wall from furniture.
+
+    Attributes
+    ----------
+    max_rmse_m : float
+        Points of a wall scatter less about its line: clutter that fills the band of inliers scatters more. In space
+        asked of what may be furniture.
+    wall_height_m : float
+        A face seen up to here above the floor, and not seen to end, is a wall; a lower one where its corners tell.
+    furniture_height_m : float
+        A face seen higher is no furniture.
+    hang_height_m : float
+        A face that begins higher than this and ends below `furniture_height_m` hangs on a wall.
+    over_share : float
+        A face ends at a height if rays pass over this share, by length, of what they cross above it.
+    through_share : float
+        Rays through a face per ray that meets it: above this it is a railing, stairs or the legs of a table.
+    missing_share : float
+        Usual returns that a face does not give: above this share it is glass.
+    furniture_depth_m : float
+        Furniture stands at most this far before the wall, which is seen at most this far beside it; its sides are no
+        longer.
+    furniture_length_m : float
+        Longer faces are not taken for furniture because of a wall behind.
+    stub_length_m : float
+        Shorter faces are walls only where they go on beyond a door or end in inner corners on both sides.
+    door_width_m : float
+        Walls on one line no farther apart than this are pieces of one.
+    corner_m : float
+        Ends no farther apart than this meet.
+    """
+
+    max_rmse_m: float
+    wall_height_m: float
+    furniture_height_m: float
+    hang_height_m: float
+    over_share: float
+    through_share: float
+    missing_share: float
+    furniture_depth_m: float
+    furniture_length_m: float
+    stub_length_m: float
+    door_width_m: float
+    corner_m: float
+
+
+def walls_among(rows, xyz_m, limits, *, planar):
+    """Keep the rows that are walls.
+
+    Parameters
+    ----------
+    rows : list of tuple
+        As `walls.cut` gives them, relative to the sensor.
+    xyz_m : (n, 3) float
+        All points of the scan, relative to the sensor.
+    limits : Limits
+    planar : bool
+        In the plane only the scatter is judged: no ray passes over anything.
+
+    Returns
+    -------
+    list of tuple
+    """
+    if not rows:
+        return rows
+    values = np.array(rows, float)
+    sound = values[:, 7] <= limits.max_rmse_m if planar else _upright_walls(values, sightlines.view(xyz_m), limits)
+    return [row for row, good in zip(rows, sound.tolist(), strict=True) if good]
+
+
+def _upright_walls(values, scan, limits):
+    """Return which rows (n, 10) are walls, by what the rays of a 3-D scan tell."""
+    start_m, end_m, normal = values[:, 0:2], values[:, 2:4], values[:, 4:6]
+    sights = [sightlines.look(scan, v[0:2], v[2:4], v[8], v[9]) for v in values]
+    top_m, over, through, missing = np.array([(s.top_m, s.over, s.through, s.missing) for s in sights]).T
+    length_m, lowish = np.hypot(*(end_m - start_m).T), top_m < limits.furniture_height_m
+    sound = (values[:, 7] <= limits.max_rmse_m) | ~lowish
+    sound &= (through <= limits.through_share) & (missing <= limits.missing_share)
+    hangs = values[:, 8] - scan.floor_m > limits.hang_height_m
+    sound &= ~(lowish & (hangs | (over > limits.over_share)))
+    small = lowish & (length_m <= limits.furniture_length_m)
+    sound &= ~(small & (in_front(start_m, end_m, normal, limits.furniture_depth_m) & sound).any(axis=1))
+    inner, outer = corners(start_m, end_m, normal, limits.corner_m)
+    closed = (inner & sound).any(axis=2).all(axis=1)
+    tall = top_m >= limits.wall_height_m
+    plain = sound & ~outer.any(axis=(1, 2))
+    wall = sound & (tall | closed)
+    # what meets a wall in an inner corner is one, too, and so on
+    while (joined := plain & ~wall & (inner & wall).any(axis=(1, 2))).any():
+        wall |= joined
+    # what is seen higher than a piece of furniture is no side of it
+    as_high = top_m[None, :] > top_m[:, None] - _LEVEL_M
+    side_of_furniture = (outer & (~sound & as_high)[:, None]).any(axis=(1, 2)) & (length_m <= limits.furniture_depth_m)
+    wall &= ~(side_of_furniture & lowish)
+    continued = (in_line(start_m, end_m, normal, limits) & wall & (length_m >= limits.stub_length_m)).any(axis=1)
+    return wall & ~((length_m < limits.stub_length_m) & lowish & ~closed & ~continued)
+
+
+def corners(start_m, end_m, normal, reach_m):
+    """Tell which faces meet at the ends of others, across them.
+
+    Parameters
+    ----------
+    start_m, end_m, normal : (n, 2) float
+        Of the faces; the normals towards the sensor.
+    reach_m : float
+        Largest distance of two ends that meet.
+
+    Returns
+    -------
+    inner, outer : (n, 2, n) bool
+        Whether at the start and the end of a face each other one makes an inner corner with it, in which either stands
+        before the other, or an outer one, at which both turn away.
+    """
+    ends_m = np.stack([start_m, end_m], axis=1)
+    inner = np.zeros((len(ends_m), 2, len(ends_m)), bool)
+    outer = inner.copy()
+    across = np.abs(normal @ normal.T) < _ACROSS
+    for own in (0, 1):
+        for other in (0, 1):
+            apart_m = ends_m[None, :, other] - ends_m[:, None, own]
+            meet = across & (np.hypot(apart_m[..., 0], apart_m[..., 1]) <= reach_m)
+            its_far_end = ends_m[None, :, 1 - other] - ends_m[:, None, own]
+            my_far_end = ends_m[:, None, 1 - own] - ends_m[None, :, other]
+            it_is_before = np.einsum("ijk,ik->ij", its_far_end, normal) > 0
+            i_am_before = np.einsum("ijk,jk->ij", my_far_end, normal) > 0
+            inner[:, own] |= meet & it_is_before & i_am_before
+            outer[:, own] |= meet & ~it_is_before & ~i_am_before
+    return inner, outer
+
+
+def in_front(start_m, end_m, normal, depth_m):
+    """Tell which faces stand before others: parallel, up to `depth_m` before and beside them; (n, n) bool."""
+    forward_m, gap_m = _placed(start_m, end_m, normal)
+    facing = normal @ normal.T > _PARALLEL
+    return facing & (forward_m > sightlines.BEHIND_M) & (forward_m <= depth_m) & (gap_m <= depth_m)
+
+
+def in_line(start_m, end_m, normal, limits):
+    """Tell which faces are on one line with others, no farther than a door's width apart; (n, n) bool."""
+    forward_m, gap_m = _placed(start_m, end_m, normal)
+    same = (normal @ normal.T > _PARALLEL) & (np.abs(forward_m) < sightlines.BEHIND_M)
+    return same & (gap_m <= limits.door_width_m) & ~np.eye(len(normal), dtype=bool)
+
+
+def _placed(start_m, end_m, normal):
+    """Return how far each face's middle is before each other's line, and how far apart they are along that."""
+    middle_m, along = (start_m + end_m) / 2, np.column_stack([normal[:, 1], -normal[:, 0]])
+    forward_m = middle_m @ normal.T - (middle_m * normal).sum(axis=1)
+    starts_m, ends_m = start_m @ along.T, end_m @ along.T
+    own_start_m, own_end_m = np.diag(starts_m), np.diag(ends_m)
+    gap_m = np.maximum(own_start_m - np.maximum(starts_m, ends_m), np.minimum(starts_m, ends_m) - own_end_m)
+    return forward_m, gap_m

@@ -1,0 +1,195 @@
+"""Surface normals of one scan, from neighbourhoods that grow with the distance to the sensor.
+
+A spinning sensor's points are dense along a ring and sparse between rings: at 5 m and 2 degrees between beams, 0.02 m
+against 0.17 m. The k nearest neighbours of a point then lie on its own ring and their plane is arbitrary. Spacing grows
+with range in both directions, so a neighbourhood of constant angle, as seen from the sensor, spans the same few rings
+at any range.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from scanplan.extraction import spread
+
+_FEWEST = spread.FEWEST[2]
+_MIN_RADIUS_2D_M = 0.08
+_NEAREST_2D = 5
+_NEAREST_REACH_2D = 3.0
+_NEAR_M, _FAR_M = 0.05, 1000.0  # ranges beyond count as these: no surface of a building is there
+_STEEPEST = 4.0  # of z / r, likewise: right above or below the sensor is no wall
+_TABLE_SIZE = 2**23
+
+
+@dataclass(frozen=True)
+class Cells:
+    """Groups of neighbouring points that share a normal.
+
+    Attributes
+    ----------
+    of_point : (n,) int64
+        The cell of each point.
+    members : (n,) int64
+        The points, by cell.
+    first : (m + 1,) int64
+        Those of cell i are `members[first[i] : first[i + 1]]`.
+    count : (m,) int64
+        Points in each cell.
+    mean_m : (m, d) float64
+    normal : (m, d) float64
+        Unit vectors towards the sensor; NaN where the surroundings are no surface.
+    radius_m : (m,) float64
+        About how far a cell's points are from their mean.
+    """
+
+    of_point: np.ndarray
+    members: np.ndarray
+    first: np.ndarray
+    count: np.ndarray
+    mean_m: np.ndarray
+    normal: np.ndarray
+    radius_m: np.ndarray
+
+    def points_of(self, cells):
+        """Return the indices of the points of the given cells, (k,) int."""
+        count = self.count[cells]
+        skipped = self.first[cells] - np.concatenate([[0], np.cumsum(count)[:-1]]) if len(count) else count
+        return self.members[np.arange(count.sum()) + np.repeat(skipped, count)]
+
+
+def surface_cells(xyz_m, *, reach_deg):
+    """Part a 3-D scan into cells of equal angle and find the normal of each.
+
+    The points are binned in (azimuth, z / r, ln r), r the horizontal range: cells of equal angle, about cubic in space.
+    A cell's normal is the direction of least variance of the points in it and its 26 neighbours.
+
+    Parameters
+    ----------
+    xyz_m : (n, 3) float
+        Points relative to the sensor, axes of the map (z up).
+    reach_deg : float
+        Half-width of a neighbourhood, as an angle seen from the sensor; at least one and a half times the angle
+        between beams.
+
+    Returns
+    -------
+    Cells
+        No normal where there are too few points, one ring alone, an edge or clutter.
+    """
+    xyz_m = np.asarray(xyz_m, float).reshape(-1, 3)
+    if len(xyz_m) == 0:
+        return _as_cells(np.empty(0, np.int64), np.empty((0, 3)), np.empty((0, 3)), np.empty(0))
+    step = np.deg2rad(reach_deg) / 1.5
+    grid = _Grid(xyz_m, step)
+    moments = spread.moments(_within(xyz_m), grid.of_point, len(grid.key))
+    mean_m = moments[1:4] / moments[0]
+    normal = spread.least_variance(grid.neighbourhood_sums(moments))
+    radius_m = step * np.hypot(mean_m[0], mean_m[1])
+    return _as_cells(grid.of_point, mean_m.T, _towards_sensor(normal, mean_m), radius_m)
+
+
+def surface_normals(xyz_m, *, reach_deg):
+    """Return the unit normals (n, 3) of a 3-D scan's surfaces, those of `surface_cells`; NaN where there is none."""
+    cells = surface_cells(xyz_m, reach_deg=reach_deg)
+    return cells.normal[cells.of_point]
+
+
+def line_cells(xy_m, *, reach_deg):
+    """Return the points of a planar scan as cells of one point each, see `line_normals`."""
+    xy_m = np.asarray(xy_m, float)
+    normal = line_normals(xy_m, reach_deg=reach_deg)
+    return _as_cells(np.arange(len(xy_m)), xy_m, normal, np.zeros(len(xy_m)))
+
+
+def line_normals(xy_m, *, reach_deg):
+    """Return the unit normals of a planar scan's outlines, towards the sensor.
+
+    A point's neighbours are those within `reach_deg` (at least 8 cm), or its five nearest where these are not more than
+    three times as far: where the outline is seen at a grazing angle, beams lie far apart.
+
+    Parameters
+    ----------
+    xy_m : (n, 2) float
+        Points relative to the sensor.
+    reach_deg : float
+
+    Returns
+    -------
+    (n, 2) float64, NaN where the surroundings are no line
+    """
+    xy_m = np.asarray(xy_m, float)
+    if len(xy_m) < _FEWEST:
+        return np.full((len(xy_m), 2), np.nan)
+    tree = cKDTree(xy_m)
+    radius = np.maximum(_MIN_RADIUS_2D_M, np.deg2rad(reach_deg) * np.linalg.norm(xy_m, axis=1))
+    nearest = tree.query(xy_m, k=[min(_NEAREST_2D + 1, len(xy_m))])[0][:, 0]
+    radius = np.maximum(radius, np.minimum(nearest * (1 + 1e-9), _NEAREST_REACH_2D * radius))
+    near = tree.query_ball_point(xy_m, radius, return_sorted=True)
+    owner = np.repeat(np.arange(len(xy_m)), [len(n) for n in near])
+    moments = spread.moments(xy_m[np.concatenate(near).astype(int)], owner, len(xy_m))
+    return _towards_sensor(spread.least_variance(moments), xy_m.T)
+
+
+class _Grid:
+    """The occupied cells of a scan, sorted by (azimuth, z / r, ln r)."""
+
+    def __init__(self, xyz_m, step):
+        horizontal = np.clip(np.hypot(xyz_m[:, 0], xyz_m[:, 1]), _NEAR_M, _FAR_M)
+        self.turn = max(3, round(2 * np.pi / step))
+        azimuth = np.floor(np.arctan2(xyz_m[:, 1], xyz_m[:, 0]) * (self.turn / (2 * np.pi))).astype(np.int64)
+        height = np.floor(np.clip(xyz_m[:, 2] / horizontal, -_STEEPEST, _STEEPEST) / step).astype(np.int64)
+        distance = np.floor(np.log(horizontal) / step).astype(np.int64)
+        # a border of empty cells: the neighbours of one row are not in the next
+        height, distance = height - height.min() + 1, distance - distance.min() + 1
+        self.rows, self.shells = int(height.max()) + 2, int(distance.max()) + 2
+        key = ((azimuth % self.turn) * self.rows + height) * self.shells + distance
+        self.size = self.turn * self.rows * self.shells
+        if self.size > _TABLE_SIZE:
+            self.key, self.of_point = np.unique(key, return_inverse=True)
+            return
+        occupied = np.zeros(self.size, bool)
+        occupied[key] = True
+        self.key = np.flatnonzero(occupied)
+        self._before = np.concatenate([[0], np.cumsum(occupied, dtype=np.int32)])
+        self.of_point = self._before[key].astype(np.int64)
+
+    def before(self, key):
+        """Return the number of occupied cells before each key."""
+        return np.searchsorted(self.key, key) if self.size > _TABLE_SIZE else self._before[key]
+
+    def neighbourhood_sums(self, moments):
+        """Add to each cell's moments (k, m) those of its occupied neighbours; azimuth closes after a turn."""
+        # three neighbours in ln r follow each other: their sum is a difference of running sums
+        running = np.concatenate([np.zeros((1, len(moments))), np.cumsum(moments.T, axis=0)])
+        row_size = self.rows * self.shells
+        azimuth, inside = np.divmod(self.key, row_size)
+        total = np.zeros((len(self.key), len(moments)))
+        for turn in (-1, 0, 1):
+            start = (azimuth + turn) % self.turn * row_size + inside
+            for rise in (-self.shells, 0, self.shells):
+                total += running[self.before(start + rise + 2)] - running[self.before(start + rise - 1)]
+        return total.T
+
+
+def _within(xyz_m):
+    """Return the points, those farther than 1 km moved there: running sums must keep the digits of the near ones."""
+    distance_m = np.sqrt(np.einsum("ij,ij->i", xyz_m, xyz_m))
+    if distance_m.max() <= _FAR_M:
+        return xyz_m
+    return xyz_m * np.minimum(1, _FAR_M / np.maximum(distance_m, _NEAR_M))[:, None]
+
+
+def _as_cells(of_point, mean_m, normal, radius_m):
+    n_cells = len(mean_m)
+    # a radix sort, for numbers of two bytes
+    sortable = of_point.astype(np.uint16) if n_cells <= 2**16 else of_point
+    members = np.argsort(sortable, kind="stable")
+    count = np.bincount(of_point, minlength=n_cells)
+    first = np.concatenate([[0], np.cumsum(count)]).astype(np.int64)
+    return Cells(of_point, members, first, count, mean_m, normal, radius_m)
+
+
+def _towards_sensor(normal, at):
+    """Return normals (d, m) as rows (m, d), turned towards the sensor from where they are (d, m)."""
+    return (normal * -np.where((normal * at).sum(axis=0) > 0, 1, -1)).T

@@ -1,0 +1,152 @@
+"""Pauses of a wall: openings where rays went through, closed where none could, or never seen."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from scanplan.plan import profiles
+
+OPEN, CLOSED, UNKNOWN = "open", "closed", "unknown"
+_OPEN_SHARE = 0.4
+_OPEN_SHARE_BELOW_LINTEL = 0.2
+_CLOSED_SHARE = 0.1
+_LEAST_RAYS = 10
+_EDGE_M = 0.03
+_HEIGHT_PERCENTILES = (1, 99)
+_AT_FLOOR_M = 0.3
+_HEIGHT_GAP_M = 0.6
+
+
+@dataclass(frozen=True)
+class GapSettings:
+    """What a pause of a wall is.
+
+    Attributes
+    ----------
+    min_opening_m, max_opening_m : float
+        Widths of an opening.
+    max_closed_m : float
+        A pause up to this length that no ray went through is wall, too.
+    max_door_m : float
+        A wider opening, or one of which no lintel is seen, is a passage.
+    """
+
+    min_opening_m: float
+    max_opening_m: float
+    max_closed_m: float
+    max_door_m: float
+
+
+@dataclass(frozen=True, eq=False)
+class Gap:
+    """A pause of a wall, from `low_m` to `high_m` along it.
+
+    Attributes
+    ----------
+    low_m, high_m : float
+    state : str
+        `OPEN`, `CLOSED` or `UNKNOWN`.
+    n_rays : int
+        That went through.
+    sill_m, lintel_m : float
+        Above the floor; NaN where not seen.
+    """
+
+    low_m: float
+    high_m: float
+    state: str
+    n_rays: int
+    sill_m: float
+    lintel_m: float
+
+    @property
+    def width_m(self):
+        """Width of the pause."""
+        return self.high_m - self.low_m
+
+    def kind(self, settings):
+        """Return what kind of opening it is."""
+        if self.sill_m > _AT_FLOOR_M:
+            return "window"
+        return "door" if self.width_m <= settings.max_door_m else "passage"
+
+
+def between(intervals_m):
+    """Return the pauses (m, 2) between intervals (n, 2), n >= 1, that may overlap."""
+    order = np.argsort(intervals_m[:, 0], kind="stable")
+    low_m, high_m = intervals_m[order, 0], np.maximum.accumulate(intervals_m[order, 1])
+    pauses = np.column_stack([high_m[:-1], low_m[1:]])
+    return pauses[pauses[:, 1] > pauses[:, 0]]
+
+
+def judge(wall_line, low_m, high_m, lines, reading, settings, *, planar, needs_lintel=False):
+    """Tell what a pause of a wall is.
+
+    Parameters
+    ----------
+    wall_line : faceline.Line
+    low_m, high_m : float
+        The pause along it.
+    lines : list of profiles.Seen
+        The lines of the wall's faces.
+    reading : profiles.Reading
+    settings : GapSettings
+    planar : bool
+    needs_lintel : bool
+        Whether only what has wall above it is an opening: where no wall follows, anything could be beside a wall.
+
+    Returns
+    -------
+    Gap
+        Of the line that most rays crossed there; what that does not tell of sill and lintel is taken from the others.
+    """
+    ends = wall_line.at(np.array([low_m, high_m]))
+    found = [_look(seen, np.sort(seen.line.along_m(ends)), reading, planar) for seen in lines]
+    found.sort(key=lambda f: f[:2], reverse=True)
+    (n_rays, open_share), (sill_m, lintel_m) = found[0][:2], (_first_known(f[i] for f in found) for i in (2, 3))
+    width_m = high_m - low_m
+    is_wide = settings.min_opening_m <= width_m <= settings.max_opening_m
+    least_share = _OPEN_SHARE_BELOW_LINTEL if np.isfinite(lintel_m) else _OPEN_SHARE
+    is_open = n_rays >= _LEAST_RAYS and open_share >= least_share
+    if is_wide and is_open and (not needs_lintel or np.isfinite(lintel_m)):
+        state = OPEN
+    elif open_share <= _CLOSED_SHARE and width_m <= settings.max_closed_m and not needs_lintel:
+        state = CLOSED
+    else:
+        state = UNKNOWN
+    return Gap(float(low_m), float(high_m), state, n_rays, sill_m, lintel_m)
+
+
+def _first_known(values_m):
+    return next((value_m for value_m in values_m if np.isfinite(value_m)), np.nan)
+
+
+def _look(seen, span_m, reading, planar):
+    """Return how many rays crossed, on what share of the width, and the heights of sill and lintel."""
+    low_m, high_m = span_m[0] + _EDGE_M, span_m[1] - _EDGE_M
+    if high_m <= low_m:
+        return 0, 0.0, np.nan, np.nan
+    passes = seen.passes(low_m, high_m)
+    columns = seen.columns(reading, planar=planar)
+    crossed = columns.crossed[columns.between(low_m, high_m)]
+    open_share = float(crossed.sum() / max(round((high_m - low_m) / profiles.COLUMN_M), 1))
+    n_rays = passes.stop - passes.start
+    if planar or n_rays < _LEAST_RAYS:
+        return n_rays, min(open_share, 1.0), np.nan, np.nan
+    hit_z_m = seen.hit_z_m[seen.hits(low_m, high_m)]
+    return n_rays, min(open_share, 1.0), *_heights_m(seen.pass_z_m[passes], hit_z_m, reading)
+
+
+def _heights_m(pass_z_m, hit_z_m, reading):
+    """Return sill and lintel: between the rays that went through and the wall seen below and above them."""
+    low_m, high_m = np.percentile(pass_z_m, _HEIGHT_PERCENTILES)
+    above_m, below_m = hit_z_m[hit_z_m > max(high_m, reading.door_height_m)], hit_z_m[hit_z_m < low_m]
+    sill_m = lintel_m = np.nan
+    if low_m <= _AT_FLOOR_M:
+        sill_m = 0.0
+    elif len(below_m) >= _LEAST_RAYS:
+        sill_m = (np.percentile(below_m, 95) + low_m) / 2
+    if len(above_m) >= _LEAST_RAYS:
+        lowest_m = np.percentile(above_m, 5)
+        lintel_m = (lowest_m + min(high_m, lowest_m)) / 2 if lowest_m - high_m <= _HEIGHT_GAP_M else lowest_m
+    return float(sill_m), float(lintel_m)

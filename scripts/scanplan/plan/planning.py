@@ -1,0 +1,158 @@
+"""From wall segments and the points of the chosen scans to a floor plan."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from shapely.geometry import MultiPolygon
+
+from scanplan import schemas
+from scanplan.plan import (
+    faces,
+    freespace,
+    gaps,
+    planfaces,
+    plantables,
+    planwalls,
+    profiles,
+    rooms,
+    wallevidence,
+    wallfaces,
+    wallpairs,
+)
+
+TABLES = {
+    "faces": schemas.FACES,
+    "walls": schemas.PLAN_WALLS,
+    "openings": schemas.OPENINGS,
+    "rooms": schemas.ROOMS,
+    "evidence": schemas.EVIDENCE,
+    "free": schemas.FREE,
+}
+"""The tables of a plan by the names of their files."""
+_THICKNESS_M = 0.1
+
+
+@dataclass(frozen=True)
+class RoomSettings:
+    """What a room is.
+
+    Attributes
+    ----------
+    min_area_m2 : float, > 0
+    min_walled : float, 0 to 1
+        Least share of the outline of a room that no sensor was in, that runs along walls and openings.
+    """
+
+    min_area_m2: float
+    min_walled: float
+
+
+@dataclass(frozen=True)
+class PlanSettings:
+    """All that a plan is made with: each part as its own class says."""
+
+    merge: faces.MergeSettings
+    reading: profiles.Reading
+    pairs: wallpairs.PairSettings
+    openings: gaps.GapSettings
+    rooms: RoomSettings
+    trust: wallevidence.Trust
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """The tables of a plan, columns by name, and how many lines of faces were dropped on the way."""
+
+    faces: dict
+    walls: dict
+    openings: dict
+    rooms: dict
+    evidence: dict
+    free: dict
+    n_lines: int
+    n_dropped: int
+
+
+def settings(*, merge, trace, pair, openings, rooms, trust):
+    """Return settings from keywords of each part.
+
+    Raises
+    ------
+    ValueError
+        If one is out of its range.
+    """
+    merging = faces.MergeSettings(**merge)
+    return PlanSettings(
+        merge=merging,
+        reading=profiles.Reading(**trace),
+        pairs=wallpairs.PairSettings(**pair, max_gap_m=openings["max_opening_m"]),
+        openings=gaps.GapSettings(**openings),
+        rooms=RoomSettings(**rooms),
+        trust=wallevidence.Trust(registration_sigma_m=merging.registration_sigma_m, **trust),
+    )
+
+
+def make(segments, rays, track_m, t_ns, settings):
+    """Make a plan.
+
+    Parameters
+    ----------
+    segments : dict of str to (n,) array
+        The columns of `schemas.WALLS`, of the chosen scans.
+    rays : rays.Rays
+        Of the chosen scans.
+    track_m : (k, 2) float64
+        Where the sensor was, of all registered scans.
+    t_ns : (s,) int64
+        When each of the chosen scans was taken.
+    settings : PlanSettings
+
+    Returns
+    -------
+    Plan
+        Without any row of faces or walls where nothing is supported enough.
+    """
+    pieces = faces.pieces(segments, settings.merge)
+    traced = planfaces.trace(pieces, rays, settings.merge, settings.reading)
+    found = planwalls.assemble(
+        *(traced.stretches, settings.reading, settings.pairs, settings.openings),
+        planar=rays.planar,
+        corner_m=settings.merge.corner_m,
+    )
+    unpaired_m = _usual_thickness_m(found)
+    stars = freespace.visible(rays)
+    enclosed = rooms.find(
+        *(found, stars, track_m),
+        min_area_m2=settings.rooms.min_area_m2,
+        min_walled=settings.rooms.min_walled,
+        unpaired_m=unpaired_m,
+    )
+    floor_z_m = 0.0 if math.isnan(rays.floor_z_m) else rays.floor_z_m
+    drawn = wallfaces.of_walls(found, max_beyond_m=settings.openings.max_closed_m)
+    face_columns, face_rows = plantables.faces(drawn, floor_z_m)
+    known = wallevidence.weigh(found, settings.trust)
+    return Plan(
+        faces=face_columns,
+        walls=plantables.walls(found, known, face_rows, drawn, floor_z_m, settings.trust),
+        openings=plantables.openings(found, enclosed, settings.openings),
+        rooms=plantables.rooms(enclosed),
+        evidence=plantables.evidence(known, rays.scan_ids, t_ns),
+        free=plantables.free(_free(found, stars, unpaired_m)),
+        n_lines=traced.n_lines,
+        n_dropped=traced.n_dropped,
+    )
+
+
+def _usual_thickness_m(walls):
+    known = [w.thickness_m for w in walls if not math.isnan(w.thickness_m)]
+    return float(np.median(known)) if known else _THICKNESS_M
+
+
+def _free(walls, stars, unpaired_m):
+    """Return the polygons of floor that rays went over, openings with it, walls without."""
+    strips = freespace.strips(walls, unpaired_m)
+    ways = [freespace.opening_ground(w, g, unpaired_m) for w in walls for g in w.openings]
+    solid = shapely.difference(*(shapely.union_all(p, grid_size=1e-3) if p else MultiPolygon() for p in (strips, ways)))
+    return list(freespace.polygons_of(shapely.difference(freespace.together(stars), solid)).geoms)

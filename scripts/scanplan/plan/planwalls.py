@@ -1,0 +1,139 @@
+"""The walls of the plan: paired faces with their openings, cut where nothing was seen, met at corners."""
+
+import itertools
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from scanplan.plan import crossings, gaps, wallpairs
+from scanplan.plan.faceline import Line
+
+
+@dataclass(frozen=True, eq=False)
+class PlanWall:
+    """A wall from `low_m` to `high_m` along its middle.
+
+    Attributes
+    ----------
+    line : faceline.Line
+    low_m, high_m : float
+    thickness_m : float
+        NaN where one side is known; then the line is that of the face, and the wall is behind it.
+    left, right : list of stretches.Stretch
+        Its faces on the side of the line's normal, and on the other.
+    openings, closed : list of gaps.Gap
+        Ways through, and pauses taken for wall; in order along it.
+    """
+
+    line: Line
+    low_m: float
+    high_m: float
+    thickness_m: float
+    left: list
+    right: list
+    openings: list
+    closed: list
+
+    @property
+    def members(self):
+        """All its faces."""
+        return self.left + self.right
+
+    @property
+    def half_m(self):
+        """From the middle to either face; 0 where the line is that of the face."""
+        return 0.0 if math.isnan(self.thickness_m) else self.thickness_m / 2
+
+    @property
+    def ends(self):
+        """Start and end, (2, 2) metres."""
+        return self.line.at(np.array([self.low_m, self.high_m]))
+
+    @property
+    def length_m(self):
+        """Length along the middle."""
+        return self.high_m - self.low_m
+
+
+def assemble(found, reading, pairing, gapping, *, planar, corner_m):
+    """Make walls of stretches.
+
+    Parameters
+    ----------
+    found : list of stretches.Stretch
+    reading : profiles.Reading
+    pairing : wallpairs.PairSettings
+    gapping : gaps.GapSettings
+    planar : bool
+    corner_m : float
+
+    Returns
+    -------
+    list of PlanWall
+        The longest first.
+    """
+    walls = []
+    for paired in wallpairs.pair(found, pairing, reading, planar=planar):
+        walls += _cut(paired, found, reading, gapping, planar)
+    stacked = crossings.stack(walls)
+    walls = [_with_end_openings(w, _crossings(w, walls, stacked), reading, gapping, planar, corner_m) for w in walls]
+    stacked = crossings.stack(walls)
+    walls = [_met(wall, _crossings(wall, walls, stacked), corner_m) for wall in walls]
+    return sorted(walls, key=lambda w: (-w.length_m, *w.ends.ravel()))
+
+
+def _cut(paired, found, reading, gapping, planar):
+    """Return the walls that a paired wall falls into where it pauses for long and was seen neither open nor closed."""
+    members = {i: np.sort(paired.line.along_m(found[i].ends)) for i in paired.members}
+    pauses = gaps.between(np.array(list(members.values())))
+    lines = list({id(found[i].seen): found[i].seen for i in paired.members}.values())
+    judged = [gaps.judge(paired.line, *pause, lines, reading, gapping, planar=planar) for pause in pauses]
+    breaks = [g for g in judged if g.state == gaps.UNKNOWN and g.width_m >= gapping.min_opening_m]
+    bounds = [-math.inf, *((g.low_m + g.high_m) / 2 for g in breaks), math.inf]
+    parts = []
+    for begin, end in itertools.pairwise(bounds):
+        inside = {i: m for i, m in members.items() if begin < m.mean() < end}
+        spans = np.array(list(inside.values()))
+        of_it = [g for g in judged if begin < (g.low_m + g.high_m) / 2 < end and g not in breaks]
+        parts.append(
+            PlanWall(
+                *(paired.line, float(spans.min()), float(spans.max()), paired.thickness_m),
+                *([found[i] for i in side if i in inside] for side in (paired.left, paired.right)),
+                *([g for g in of_it if g.state == state] for state in (gaps.OPEN, gaps.CLOSED)),
+            )
+        )
+    return parts
+
+
+def _with_end_openings(wall, crossed, reading, gapping, planar, corner_m):
+    """Let a wall go on over an opening beside the wall that it ends at, where wall is seen above it."""
+    lines = list({id(s.seen): s.seen for s in wall.members}.values())
+    for name, sign in (("low_m", -1), ("high_m", 1)):
+        end_m = getattr(wall, name)
+        ahead = [(sign * (c - end_m) - other.half_m, c - sign * other.half_m) for other, c in crossed]
+        ahead = [a for a in ahead if max(corner_m, gapping.min_opening_m) < a[0] <= gapping.max_door_m]
+        if planar or not ahead:
+            continue
+        low_m, high_m = sorted((end_m, min(ahead)[1]))
+        gap = gaps.judge(wall.line, low_m, high_m, lines, reading, gapping, planar=planar, needs_lintel=True)
+        if gap.state == gaps.OPEN:
+            openings = sorted([*wall.openings, gap], key=lambda g: g.low_m)
+            wall = replace(wall, **{name: float(min(ahead)[1])}, openings=openings)
+    return wall
+
+
+def _met(wall, crossed, corner_m):
+    """Move the ends of a wall to the middles of walls that it meets there."""
+    moved = {}
+    for name in ("low_m", "high_m"):
+        end_m = getattr(wall, name)
+        near = [c for other, c in crossed if abs(c - end_m) <= corner_m + other.half_m]
+        moved[name] = min(near, key=lambda c: (abs(c - end_m), c), default=end_m)
+    return replace(wall, **moved) if moved["high_m"] - moved["low_m"] > wall.length_m / 2 else wall
+
+
+def _crossings(wall, walls, stacked):
+    """Return (other wall, where along this one its middle crosses) of walls that are there."""
+    found = crossings.find(wall.line, stacked, reach_m=wall.half_m + wallpairs.CORNER_M)
+    return [(walls[i], place_m) for i, place_m in zip(found.which.tolist(), found.place_m.tolist(), strict=True)]

@@ -1,0 +1,1 @@
+"""Reading what a rover recorded: clouds, stamps, poses and motion."""

@@ -1,0 +1,97 @@
+"""Points of one scan, whatever they were read from: range limits, times within the sweep, planarity."""
+
+from dataclasses import dataclass
+from itertools import islice
+
+import numpy as np
+
+from scanplan.recordings import sweeptimes
+
+_FLAT_M = 1e-3
+SCANS_TO_JUDGE = 5
+
+
+@dataclass(frozen=True)
+class Scan:
+    """One scan in its sensor's frame.
+
+    Attributes
+    ----------
+    scan_id : int
+        Index among the cloud messages of the dataset, from 0.
+    t_ns : int
+        Header stamp.
+    xyz_m : (n, 3) float32
+        Finite and within the range limits.
+    time_s : (n,) float64 or None
+        When each point was measured, relative to `t_ns`; None where the sensor does not tell, or tells of no sweep.
+    n_dropped : int
+        Points that were not finite or out of range.
+    """
+
+    scan_id: int
+    t_ns: int
+    xyz_m: np.ndarray
+    time_s: np.ndarray | None
+    n_dropped: int
+
+
+def in_range(xyz_m, *, min_range_m, max_range_m):
+    """Tell which points (n, 3) are finite and within [min_range_m, max_range_m] of the sensor: (n,) bool."""
+    squared = np.einsum("ij,ij->i", xyz_m, xyz_m, dtype=np.float64)
+    # a comparison with NaN is false: this also drops what is not finite
+    return (squared >= min_range_m**2) & (squared <= max_range_m**2)
+
+
+def within_range(scan_id, t_ns, xyz_m, time_raw, *, min_range_m, max_range_m, sweep_times=None):
+    """Keep the points that are finite and within [min_range_m, max_range_m] of the sensor, with their times.
+
+    Parameters
+    ----------
+    scan_id, t_ns : int
+    xyz_m : (n, 3) float
+        Sensor frame.
+    time_raw : (n,) number or None
+        As recorded.
+    min_range_m, max_range_m : float
+    sweep_times : sweeptimes.Convention, optional
+        How the times are written; without it there are none.
+
+    Returns
+    -------
+    Scan
+    """
+    kept = in_range(xyz_m, min_range_m=min_range_m, max_range_m=max_range_m)
+    time_s = None
+    if time_raw is not None and sweep_times is not None:
+        time_s = sweep_times.seconds(time_raw, t_ns)[kept]
+        time_s = time_s if sweeptimes.is_sweep(time_s) else None
+    return Scan(int(scan_id), int(t_ns), np.asarray(xyz_m[kept], np.float32), time_s, int((~kept).sum()))
+
+
+def lie_in_sweep_plane(xyz_m):
+    """Tell whether points (n, 3) can be those of a 2-D scanner; False for fewer than three.
+
+    They lie within a millimetre of one plane, and the plane passes the frame's origin at less than a fifth of the
+    farthest point's distance: the wall that fills a depth camera's picture is a plane, too, but far before it.
+    """
+    if len(xyz_m) < 3:
+        return False
+    xyz_m = np.asarray(xyz_m, np.float64)
+    centre = xyz_m.mean(axis=0)
+    normal = np.linalg.eigh((xyz_m - centre).T @ (xyz_m - centre))[1][:, 0]
+    flat = np.abs((xyz_m - centre) @ normal).max() <= _FLAT_M
+    return bool(flat and abs(centre @ normal) < 0.2 * np.linalg.norm(xyz_m, axis=1).max())
+
+
+def are_planar(scans_xyz_m):
+    """Tell whether a sensor measures in one plane only, from its first scans taken together.
+
+    Parameters
+    ----------
+    scans_xyz_m : iterable of (n, 3) float
+        In the sensor's frame; empty ones do not count, and no more are taken than needed.
+    """
+    filled = (xyz_m for xyz_m in scans_xyz_m if len(xyz_m))
+    first = list(islice(filled, SCANS_TO_JUDGE))
+    return bool(first) and lie_in_sweep_plane(np.concatenate(first))

@@ -1,0 +1,148 @@
+"""Taking the sensor's motion during a sweep out of its scans."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from scanplan import se3, stagelog
+from scanplan.recordings import sweeptimes
+
+# in a hundredth of a sweep a rover turns so little that the chord is within a tenth of a millimetre of the arc
+_KNOTS = 101
+
+
+def at_stamp(xyz_m, time_s, stamp_from_knots):
+    """Move points to where the sensor, at the moment of the scan's stamp, would have seen them.
+
+    Parameters
+    ----------
+    xyz_m : (n, 3) float32
+        Each in the sensor's frame at its own moment.
+    time_s : (n,) float64
+        That moment.
+    stamp_from_knots : (k, 4, 4) float64, k >= 2
+        The sensor's pose, seen from its pose at the stamp, at k moments evenly from the least to the largest of
+        `time_s`. In between every point goes straight.
+
+    Returns
+    -------
+    (n, 3) float32
+        In the sensor's frame at the stamp.
+    """
+    start = np.ascontiguousarray(np.moveaxis(stamp_from_knots[:, :3, :], 0, -1), np.float32)
+    step = np.diff(start)
+    first_s, last_s = time_s.min(), time_s.max()
+    at = (time_s - first_s) * (step.shape[-1] / max(last_s - first_s, 1e-9))
+    knot = np.minimum(at.astype(np.intp), step.shape[-1] - 1)
+    share = (at - knot).astype(np.float32)
+
+    def entry(row, column):
+        return start[row, column].take(knot) + share * step[row, column].take(knot)
+
+    # one entry of the matrices after the other: half the time of a matrix for every point
+    coordinates = np.ascontiguousarray(xyz_m.T, np.float32)
+    rows = [sum((entry(i, j) * coordinates[j] for j in range(3)), entry(i, 3)) for i in range(3)]
+    return np.column_stack(rows)
+
+
+def knots(time_s, t_ns, motion):
+    """Return `stamp_from_knots` of `at_stamp` for a sweep, or None if the motion is not known throughout.
+
+    Parameters
+    ----------
+    time_s : (n,) float64, n >= 1
+    t_ns : int
+        The scan's stamp.
+    motion : motion.Motion
+    """
+    moments_s = np.linspace(time_s.min(), time_s.max(), _KNOTS)
+    pose = motion.at(np.append(t_ns + np.round(moments_s * 1e9).astype(np.int64), t_ns))
+    return None if pose is None else se3.inverse(pose[-1]) @ pose[:-1]
+
+
+def freed(scan, motion):
+    """Return a scan's points (n, 3) float32 as seen at its stamp, or None if the motion is not known throughout.
+
+    Parameters
+    ----------
+    scan : clouds.Scan
+        With times, n >= 1.
+    motion : motion.Motion
+        It also tells how the times are to be read.
+    """
+    if motion.time_scale == 0:
+        return scan.xyz_m
+    time_s = motion.time_scale * scan.time_s + motion.time_shift_s
+    stamp_from_knots = knots(time_s, scan.t_ns, motion)
+    return None if stamp_from_knots is None else at_stamp(scan.xyz_m, time_s, stamp_from_knots)
+
+
+class Deskewed:
+    """A survey whose scans are free of the motion during their sweeps.
+
+    A scan is left as recorded where its points carry no time, where their times cannot be those of one sweep, or where
+    the sensor's motion is not known for all of its sweep and its stamp: motion is never extrapolated. Each is counted.
+
+    Parameters
+    ----------
+    survey : object
+        As `surveys.open_survey` yields it.
+    motion : motion.Motion
+    """
+
+    def __init__(self, survey, motion):
+        self._survey, self._motion = survey, motion
+
+    @property
+    def planar(self):
+        """Whether the sensor measures in one plane only."""
+        return self._survey.planar
+
+    @property
+    def sweep_times(self):
+        """How the clouds tell when each point was measured, a sweeptimes.Convention, or None."""
+        return self._survey.sweep_times
+
+    def stamps(self):
+        """Return the stamps of all clouds, (n,) int64, in scan_id order."""
+        return self._survey.stamps()
+
+    def pose_edges(self):
+        """Return the chain of transforms whose product is world_from_sensor, a list of frames.Edge."""
+        return self._survey.pose_edges()
+
+    def scans(self, wanted):
+        """Iterate over the scans asked for like the survey itself, each with its points at its stamp."""
+        counts, farthest_m = dict.fromkeys(("moved", "untimed", "unknown"), 0), 0.0
+        for scan in self._survey.scans(wanted):
+            outcome, moved = self._moved(scan)
+            counts[outcome] += 1
+            if outcome == "moved":
+                farthest_m = max(farthest_m, _farthest_m(scan.xyz_m, moved.xyz_m))
+            yield moved
+        self._tell(counts, farthest_m)
+
+    def _moved(self, scan):
+        if scan.time_s is None or len(scan.xyz_m) == 0:
+            return "untimed", scan
+        xyz_m = freed(scan, self._motion)
+        return ("unknown", scan) if xyz_m is None else ("moved", replace(scan, xyz_m=xyz_m))
+
+    def _tell(self, counts, farthest_m):
+        if self.sweep_times is None:
+            return
+        told = f"deskew: {counts['moved']} scans with points at their stamps, moved by at most {farthest_m:.3f} m"
+        if self._motion.time_scale == 0:
+            told = "deskew: scans left as recorded, as their points' times do not fit them"
+        if counts["unknown"]:
+            told += f"; {counts['unknown']} beyond the known motion left as recorded"
+        if counts["untimed"]:
+            limit = f"within {sweeptimes.LONGEST_SWEEP_S} s"
+            told += f"; {counts['untimed']} without points, or with times that are not {limit}, left as recorded"
+        stagelog.say(told)
+
+
+def _farthest_m(before_m, after_m):
+    """The largest way of a point, from every 16th of them."""
+    moved = (after_m - before_m)[::16]
+    return float(np.sqrt(np.einsum("ij,ij->i", moved, moved).max()))

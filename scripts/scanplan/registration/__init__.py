@@ -1,0 +1,1 @@
+"""From candidate scans to poses in one map."""

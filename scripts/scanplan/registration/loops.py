@@ -1,0 +1,125 @@
+"""Links between scans that lie near each other and were not registered against each other."""
+
+from functools import lru_cache
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from scanplan.registration import icp, links
+
+_PREPARED_AT_ONCE = 128
+# what overlaps after alignment overlaps this many times less narrowly before
+_LOOSE = 2
+
+
+def pairs(xy_m, *, radius_m, apart, most):
+    """Choose which scans to link: with every earlier visit of a scan's surroundings, at its nearest scan.
+
+    Parameters
+    ----------
+    xy_m : (n, 2) float
+        Where the scans are, in the order of their recording.
+    radius_m : float
+        Two scans farther apart are no pair.
+    apart : int
+        Nor are two with fewer scans than this between them, nor do such belong to different visits.
+    most : int
+        A scan is linked back to this many visits, the nearest ones.
+
+    Returns
+    -------
+    list of (source, target)
+        Rows, source > target, sorted.
+    """
+    tree = cKDTree(xy_m)
+    found = []
+    for source, place_m in enumerate(xy_m):
+        # one at a time: of a sensor that stands still all are near all
+        near = np.array(tree.query_ball_point(place_m, radius_m, return_sorted=True), np.int64)
+        earlier = near[near < source - apart]
+        if len(earlier) == 0:
+            continue
+        visits = np.split(earlier, np.flatnonzero(np.diff(earlier) > apart) + 1)
+        distance_m = [np.linalg.norm(xy_m[visit] - xy_m[source], axis=1) for visit in visits]
+        nearest = sorted((d.min(), int(visit[d.argmin()])) for d, visit in zip(distance_m, visits, strict=True))
+        found += [(source, target) for _, target in nearest[:most]]
+    return sorted(found)
+
+
+def bridges(linked, xy_m, *, radius_m, apart):
+    """Choose which scans to link to the ones before although they were not registered against them.
+
+    These are the first of a batch and the first after an anchor.
+
+    Parameters
+    ----------
+    linked : (n,) bool
+        Whether a scan has a link to one before.
+    xy_m : (n, 2) float
+    radius_m : float
+        Two scans farther apart are no pair.
+    apart : int
+        Nor are two with more than so many rows between them.
+
+    Returns
+    -------
+    list of (source, target)
+        Rows, source > target, sorted.
+    """
+    found = []
+    for source in np.flatnonzero(~np.asarray(linked, bool)):
+        before = np.arange(max(0, source - apart), source)
+        near = np.linalg.norm(xy_m[before] - xy_m[source], axis=1) <= radius_m
+        found += [(int(source), int(target)) for target in before[near]]
+    return found
+
+
+def link(part, rows, scan_ids, world_from_cloud, chosen, planar, settings, min_fitness, apart):
+    """Align chosen pairs of scans.
+
+    Parameters
+    ----------
+    part : spool.Part
+        Thinned points of the scans that occur in `chosen`.
+    rows : list of int
+        Their rows.
+    scan_ids : list of int
+        Their scan_ids.
+    world_from_cloud : (len(rows), 4, 4) float64
+        About where they are.
+    chosen : list of (source, target)
+        Rows.
+    planar : bool
+    settings : sequential.Settings
+    min_fitness : float
+        Pairs that overlap less after alignment are no link.
+    apart : int
+        Pairs with no more rows than this between them are of the kind `sequence`, the others of the kind `loop`.
+
+    Returns
+    -------
+    list of links.Edge
+    """
+    thinned = dict(zip(rows, part, strict=True))
+    place = {row: i for i, row in enumerate(rows)}
+
+    @lru_cache(_PREPARED_AT_ONCE)
+    def prepared(row):
+        cloud = icp.prepare(thinned[row], planar=planar, reach_m=links.reach_m(settings))
+        return links.Placed(int(scan_ids[place[row]]), cloud, world_from_cloud[place[row]])
+
+    kinds = ("sequence" if s - t <= apart else "loop" for s, t in chosen)
+    edges = (
+        _linked(prepared(s), prepared(t), kind, settings, min_fitness)
+        for (s, t), kind in zip(chosen, kinds, strict=True)
+    )
+    return [edge for edge in edges if edge is not None]
+
+
+def _linked(source, target, kind, settings, min_fitness):
+    # a neighbour is near its place already, and a wider search would take one side of a wall for the other
+    fine_m = settings.icp_distances_m[-1]
+    if links.facing_overlap(source, target, _LOOSE * fine_m, settings)[0] < min_fitness:
+        return None
+    edge = links.aligned(source, target, kind, [fine_m], settings)
+    return None if edge is None or edge.fitness < min_fitness else edge

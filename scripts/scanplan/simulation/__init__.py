@@ -1,0 +1,1 @@
+"""Surveys of buildings with known walls."""

@@ -1,0 +1,186 @@
+"""A building of any kind of file as a simulation needs it: what rays hit, what is true, where a rover can be."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from scanplan.errors import StageError
+from scanplan.simulation import buildingfile, buildings, extrusion, ground, rover, storeys, truth
+from scanplan.simulation import route as routes
+
+DOORS = ("open", "closed")
+WINDOWS = ("glass", "empty")
+MESH_SUFFIXES = (".stl", ".obj", ".ply")
+
+
+@dataclass(frozen=True)
+class Building:
+    """One floor in the map frame: metres, z up, the floor at z = 0.
+
+    Attributes
+    ----------
+    mesh : extrusion.Mesh
+    truth : list of (geometry, dict)
+        As `truth.features`; no room is marked visited.
+    rooms : list of (str, Polygon)
+        Name and floor.
+    floor_m : Polygon or MultiPolygon
+        Where there is floor, within the outer walls.
+    obstacles_m : shapely geometry
+        What stands on it up to the sensor's height.
+    waypoints_m : (n, 2) float64 or None
+        The way that the file gives.
+    notes : tuple of str
+        What was odd in the file and is used all the same.
+    """
+
+    mesh: extrusion.Mesh
+    truth: list
+    rooms: list
+    floor_m: object
+    obstacles_m: object
+    waypoints_m: np.ndarray | None
+    notes: tuple = ()
+
+
+def load(data, source, *, slice_height_m, storey=None, unit="m", floor_z_m=0.0, doors="open", windows="glass"):
+    """Read a building from a drawing (.geojson), a mesh (.stl, .obj, .ply) or a building model (.ifc).
+
+    Parameters
+    ----------
+    data : bytes
+        The file's content.
+    source : pathlib.Path
+        The file's name: its suffix tells the format, errors name it.
+    slice_height_m : float
+        Height above the floor at which wall faces are cut, the sensor's.
+    storey : str, int or None
+        Of a building model: name, or index from below; may be None where there is one.
+    unit : str
+        Of a mesh: `m`, `cm`, `mm`, `in` or `ft`. The other formats tell theirs.
+    floor_z_m : float
+        Of a mesh: the height of the floor to drive on, in metres of its own frame.
+    doors : str
+        Of a building model: `open` leaves out doors with their frames, `closed` keeps them.
+    windows : str
+        Of a building model: `glass` keeps windows, their panes marked as glass, `empty` leaves them out.
+
+    Returns
+    -------
+    Building
+
+    Raises
+    ------
+    StageError
+        In one line, if the file cannot be used.
+    """
+    if doors not in DOORS or windows not in WINDOWS:
+        raise ValueError(f"doors {doors!r} is none of {DOORS}, or windows {windows!r} none of {WINDOWS}")
+    suffix = source.suffix.lower()
+    if suffix in (".geojson", ".json"):
+        return _of_drawing(buildingfile.parse(data, source), slice_height_m)
+    if suffix in MESH_SUFFIXES:
+        return _of_mesh(data, source, suffix, unit, floor_z_m, slice_height_m)
+    if suffix == ".ifc":
+        return _of_model(data, source, storey, doors, windows, slice_height_m)
+    raise StageError(
+        f"{source}: is no building; accepted are .geojson (a drawing), {', '.join(MESH_SUFFIXES)} (meshes) and .ifc"
+    )
+
+
+def routed(found, source, *, route, clearance_m, reach_m=0.0, start_m=None):
+    """Give a building the rover's way, and its truth which rooms that visits.
+
+    Parameters
+    ----------
+    found : Building
+    source : path-like
+        What errors name as their origin.
+    route : str
+        `given`: the file's own way, and as `rooms` where it has none; `rooms`, `hallways`: see `route.plan`.
+    clearance_m : float
+        What a planned way keeps from any obstacle.
+    reach_m : float
+        How far the sensor sits from the rover's middle, which any way keeps too.
+    start_m : (2,) float or None
+        Where a planned way begins.
+
+    Returns
+    -------
+    Building
+
+    Raises
+    ------
+    StageError
+        If the way leads through walls or furniture, or none can be planned.
+    """
+    if route not in routes.KINDS:
+        raise ValueError(f"route {route!r} is none of {', '.join(routes.KINDS)}")
+    way_m, notes = found.waypoints_m, ()
+    if route != "given" or way_m is None:
+        kind = "rooms" if route == "given" else route
+        clearance_m = max(clearance_m, reach_m)
+        here = (found.floor_m, found.obstacles_m, found.rooms)
+        planned = routes.plan(*here, source, kind=kind, clearance_m=clearance_m, start_m=start_m)
+        way_m, notes = planned.waypoints_m, _told(planned, source)
+    rover.check_way(way_m, found.floor_m, found.obstacles_m, source, reach_m=reach_m)
+    return replace(found, waypoints_m=way_m, truth=truth.with_visits(found.truth, way_m), notes=(*found.notes, *notes))
+
+
+def _told(planned, source):
+    count = len(planned.reached) + len(planned.missed)
+    missed = f"; cannot be reached: {', '.join(planned.missed)}" if planned.missed else ""
+    return (f"{source}: planned a way through {len(planned.reached)} of {count} rooms{missed}",)
+
+
+def _of_drawing(plan, slice_height_m):
+    return Building(
+        mesh=extrusion.building_mesh(plan),
+        truth=truth.features(plan, slice_height_m),
+        rooms=buildings.rooms(plan),
+        floor_m=buildings.footprint(plan),
+        obstacles_m=buildings.obstacles(plan, slice_height_m),
+        waypoints_m=plan.waypoints_m,
+    )
+
+
+def _of_mesh(data, source, suffix, unit, floor_z_m, slice_height_m):
+    # imported here so that the demo does not wait a second for a reader it has no use for
+    from scanplan.simulation import meshfile
+
+    triangles_m, notes = meshfile.parse(data, suffix, source, unit=unit)
+    storey = storeys.of_mesh(triangles_m - [0.0, 0.0, floor_z_m], slice_height_m, source)
+    return _of_storey(storey, slice_height_m, source, notes)
+
+
+def _of_model(data, source, chosen, doors, windows, slice_height_m):
+    from scanplan.simulation import ifcfile
+
+    model = ifcfile.parse(data, source)
+    index = ifcfile.find_storey(model, chosen, source)
+    return of_model(model, index, slice_height_m, source, doors=doors, windows=windows)
+
+
+def of_model(model, index, slice_height_m, source, *, doors="open", windows="glass"):
+    """Return one storey of an ifcfile.Model that is read already; as `load` otherwise."""
+    storey = storeys.of_model(model, index, doors=doors, windows=windows)
+    return _of_storey(storey, slice_height_m, source, model.notes)
+
+
+def _of_storey(storey, slice_height_m, source, notes):
+    cut = ground.of_storey(storey, slice_height_m, source)
+    faces = [(line, {"kind": "face", "side": side}) for line, side in cut.faces]
+    walls = [
+        (line, {"kind": "wall", "thickness_m": round(thick, 6), "height_m": round(cut.height_m, 6)})
+        for line, thick in ground.walls(storey, cut, slice_height_m)
+    ]
+    openings = [truth.opening_feature(*opening) for opening in storey.openings]
+    return Building(
+        mesh=extrusion.joined([soup for body in storey.bodies for soup in body.surfaces]),
+        truth=faces + walls + openings + truth.room_features(cut.rooms),
+        rooms=cut.rooms,
+        floor_m=cut.floor_m,
+        obstacles_m=cut.obstacles_m,
+        waypoints_m=None,
+        notes=(*notes, *cut.notes),
+    )

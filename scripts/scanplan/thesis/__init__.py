@@ -1,0 +1,1 @@
+"""The thesis's experiments, figures and claims."""

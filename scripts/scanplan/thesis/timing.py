@@ -1,0 +1,103 @@
+"""How long stages take: processor time of single calls in one process, which other work on the machine disturbs least.
+
+Times differ from run to run; a table of them is no result to compare byte by byte.
+"""
+
+import time
+from functools import partial
+
+import numpy as np
+
+from scanplan.extraction import walls
+from scanplan.selection import greedy, hulls
+
+_REPEATS = 3
+
+
+def spread(rows, count):
+    """Return at most `count` of the rows (n,), evenly spread from the first to the last."""
+    rows = np.asarray(rows)
+    return rows[np.unique(np.linspace(0, len(rows) - 1, min(count, len(rows))).round().astype(int))]
+
+
+def extractor(task, method, store, registered, scan_ids, settings, origin):
+    """Time a wall extractor scan by scan: of each the quickest of three calls.
+
+    Parameters
+    ----------
+    task : str
+        Its name in the table.
+    method : module
+        With `extract` and `Settings`.
+    store : tables.ScanStore
+    registered : dict
+        Columns of the table of registration.
+    scan_ids : (n,) int
+    settings : dict
+        Keywords of the method's `Settings`.
+    origin : path-like
+        Of the table of registration, for messages.
+
+    Yields
+    ------
+    dict
+        A row of `schemas.TIMES`: `size` is the scan's number of points, `item` its scan_id, `found` its walls.
+    """
+    sensors, chosen = walls.sensor_positions(registered, scan_ids, origin), method.Settings(**settings)
+    for number, (scan_id, xyz_m) in enumerate(store.scans(scan_ids)):
+        call = partial(method.extract, scan_id, xyz_m, planar=store.planar, settings=chosen, **sensors[scan_id])
+        if number == 0:
+            # the first call loads and compiles what all others use
+            call()
+        # what disturbs a call can only lengthen it
+        seconds, found = min((_timed(call) for _ in range(_REPEATS)), key=lambda timed: timed[0])
+        yield {"task": task, "size": len(xyz_m), "item": scan_id, "found": len(found), "seconds": seconds}
+
+
+def selection(columns, sizes):
+    """Time the greedy ordering of 1, 2, ... scans, spread over the survey.
+
+    Parameters
+    ----------
+    columns : dict of str to (m,) array
+        Of a table of hulls.
+    sizes : iterable of int
+        Numbers of scans.
+
+    Yields
+    ------
+    dict
+        A row of `schemas.TIMES`: `size` is the number of scans, `found` as many.
+    """
+    _, polygons = hulls.scan_polygons(columns)
+    greedy.greedy_order(polygons[:2])
+    for size in sizes:
+        chosen = polygons[spread(np.arange(len(polygons)), size)]
+        seconds, order = _timed(greedy.greedy_order, chosen)
+        yield {"task": "order_scans", "size": size, "item": 0, "found": len(order.order), "seconds": seconds}
+
+
+def clusters(store, scan_ids, numbers, **sampling):
+    """Time making the hulls of scans and ordering them, for several numbers of clusters.
+
+    Yields
+    ------
+    dict
+        A row of `schemas.TIMES`: `size` is the number of clusters, `found` the scans.
+    """
+    points = [(scan_id, xyz_m) for scan_id, xyz_m in store.scans(scan_ids)]
+    _hulls_and_order(points[:1], n_clusters=2, **sampling)
+    for number in numbers:
+        seconds, order = _timed(_hulls_and_order, points, n_clusters=number, **sampling)
+        yield {"task": "build_hulls", "size": number, "item": 0, "found": len(order.order), "seconds": seconds}
+
+
+def _hulls_and_order(points, **settings):
+    parts = [hulls.cluster_hulls(scan_id, xyz_m, **settings) for scan_id, xyz_m in points]
+    return greedy.greedy_order(hulls.scan_polygons(hulls.concatenated(parts))[1])
+
+
+def _timed(function, *arguments, **keywords):
+    started = time.process_time()
+    result = function(*arguments, **keywords)
+    return time.process_time() - started, result
