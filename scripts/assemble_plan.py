@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from scanplan import stagelog, tables
+from scanplan import schemas, stagelog, tables
 from scanplan.evaluation import registered
 from scanplan.plan import planning, plansummary, rays
 from scanplan.selection import stopping
@@ -22,8 +22,8 @@ def assemble_plan(walls, selection, scans, registration, outputs, *, settings, *
     **stop
         How many scans to use, see `stopping.n_scans`.
     """
-    seen = tables.read(walls, tables.WALLS, allow_empty=True)
-    ordering = tables.read(selection, tables.SELECTION)
+    seen = tables.read(walls, schemas.WALLS, allow_empty=True)
+    ordering = tables.read(selection, schemas.SELECTION)
     count, reason = stopping.n_scans(ordering, **stop)
     chosen = np.sort(ordering["scan_id"][:count])
     used = np.isin(seen["scan_id"], chosen)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from scanplan import chunks, stagelog, tables
+from scanplan import chunks, schemas, stagelog, tables
 from scanplan.selection import hulls
 
 
@@ -18,7 +18,7 @@ def build_hulls(scans, output, *, n_clusters, sample_size, seed, threads):
         seed=seed,
     )
     columns = hulls.concatenated(parts)
-    tables.write(output, tables.HULLS, columns)
+    tables.write(output, schemas.HULLS, columns)
     n_degenerate = np.count_nonzero(columns["area_m2"] == 0)
     mean_m2 = columns["area_m2"].sum() / len(parts)
     stagelog.say(

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from scanplan import atomic, stagelog, tables
+from scanplan import atomic, schemas, stagelog, tables
 from scanplan.exports import drawing
 from scanplan.report import figures
 
@@ -17,7 +17,7 @@ def draw_area(selections, output):
     output : path-like
         figures/area.svg, to write.
     """
-    orderings = {Path(path).stem: tables.read(path, tables.SELECTION) for path in selections}
+    orderings = {Path(path).stem: tables.read(path, schemas.SELECTION) for path in selections}
     atomic.write_text(output, drawing.svg(figures.area_figure(orderings)))
     stagelog.say(f"draw_area: {len(orderings)} orderings")
 

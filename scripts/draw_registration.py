@@ -1,6 +1,6 @@
 """Draw the audit of the registration: the way, what became of every scan, and how well neighbours fit."""
 
-from scanplan import atomic, stagelog, tables
+from scanplan import atomic, schemas, stagelog, tables
 from scanplan.exports import drawing
 from scanplan.report import registrationfigure, topview
 
@@ -18,9 +18,9 @@ def draw_registration(scans, registration, edges, crispness, output):
         figures/registration.svg, to write.
     """
     store = tables.ScanStore(scans)
-    verdicts = tables.read(registration, tables.REGISTRATION)
-    links = tables.read(edges, tables.EDGES, _LINKS, allow_empty=True)
-    measured = tables.read(crispness, tables.CRISPNESS, ["poses", "sigma_m"])
+    verdicts = tables.read(registration, schemas.REGISTRATION)
+    links = tables.read(edges, schemas.EDGES, _LINKS, allow_empty=True)
+    measured = tables.read(crispness, schemas.CRISPNESS, ["poses", "sigma_m"])
     found = stagelog.progress(store.scans(), "draw_registration", total=len(store.scan_ids))
     figure = registrationfigure.draw(
         topview.thinned(found, len(store.scan_ids)),

@@ -1,6 +1,6 @@
 """Draw the registered scans, where they were taken, and which were selected (thesis, figure 5.9)."""
 
-from scanplan import atomic, stagelog, tables
+from scanplan import atomic, schemas, stagelog, tables
 from scanplan.exports import drawing
 from scanplan.report import figures, topview
 from scanplan.selection import stopping
@@ -19,9 +19,9 @@ def draw_scans(scans, registration, selection, output, **stop):
         How many scans are selected, see `stopping.n_scans`.
     """
     store = tables.ScanStore(scans)
-    ordering = tables.read(selection, tables.SELECTION)
+    ordering = tables.read(selection, schemas.SELECTION)
     count, reason = stopping.n_scans(ordering, **stop)
-    poses = tables.read(registration, tables.REGISTRATION)
+    poses = tables.read(registration, schemas.REGISTRATION)
     found = stagelog.progress(store.scans(), "draw_scans", total=len(store.scan_ids))
     figure = figures.scans_figure(
         topview.thinned(found, len(store.scan_ids)),

@@ -26,8 +26,8 @@ def draw_thesis_drive(scans, registration, selection, walls, times, outputs):
     store, measured = tables.ScanStore(scans), tables.read(times, schemas.TIMES)
     found = stagelog.progress(store.scans(), "draw_thesis_drive", total=len(store.scan_ids))
     points_m = topview.thinned(found, len(store.scan_ids))
-    poses, shown = tables.read(registration, tables.REGISTRATION), {e: _shown(path) for e, path in walls.items()}
-    order = tables.read(selection, tables.SELECTION)["scan_id"]
+    poses, shown = tables.read(registration, schemas.REGISTRATION), {e: _shown(path) for e, path in walls.items()}
+    order = tables.read(selection, schemas.SELECTION)["scan_id"]
     few_m, all_m = (figures.positions(poses, ids) for ids in (order[:SUBSET], store.scan_ids))
     few = {e: lines_m[np.isin(scan_id, order[:SUBSET])] for e, (scan_id, lines_m) in shown.items()}
     made = {
@@ -43,7 +43,7 @@ def draw_thesis_drive(scans, registration, selection, walls, times, outputs):
 
 
 def _shown(path):
-    columns = tables.read(path, tables.WALLS, allow_empty=True)
+    columns = tables.read(path, schemas.WALLS, allow_empty=True)
     ends = np.column_stack([columns[c] for c in ("x0_m", "y0_m", "x1_m", "y1_m")])
     return columns["scan_id"], ends.reshape(-1, 2, 2)
 

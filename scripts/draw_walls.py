@@ -1,6 +1,6 @@
 """Draw the walls of the plan over the points of the selected scans (thesis, figure 5.11)."""
 
-from scanplan import atomic, stagelog, tables
+from scanplan import atomic, schemas, stagelog, tables
 from scanplan.exports import drawing
 from scanplan.report import figures, topview
 from scanplan.selection import stopping
@@ -19,11 +19,11 @@ def draw_walls(scans, faces, registration, selection, output, **stop):
         How many scans are selected, see `stopping.n_scans`.
     """
     store = tables.ScanStore(scans)
-    ordering = tables.read(selection, tables.SELECTION)
+    ordering = tables.read(selection, schemas.SELECTION)
     count, reason = stopping.n_scans(ordering, **stop)
     selected = ordering["scan_id"][:count]
-    poses = tables.read(registration, tables.REGISTRATION)
-    merged = tables.read(faces, tables.FACES)
+    poses = tables.read(registration, schemas.REGISTRATION)
+    merged = tables.read(faces, schemas.FACES)
     figure = figures.walls_figure(
         topview.thinned(store.scans(selected), count), merged, figures.positions(poses, selected)
     )

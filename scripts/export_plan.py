@@ -4,11 +4,16 @@ from pathlib import Path
 
 import numpy as np
 
-from scanplan import atomic, stagelog, tables
+from scanplan import atomic, schemas, stagelog, tables
 from scanplan.exports import cad, drawing, gridmap, ifcplan, plangeojson
 from scanplan.plan import floorplan, levels
 
-_MAY_BE_EMPTY = {"walls": tables.PLAN_WALLS, "openings": tables.OPENINGS, "rooms": tables.ROOMS, "free": tables.FREE}
+_MAY_BE_EMPTY = {
+    "walls": schemas.PLAN_WALLS,
+    "openings": schemas.OPENINGS,
+    "rooms": schemas.ROOMS,
+    "free": schemas.FREE,
+}
 
 
 def export_plan(plan, scans, outputs, *, name, settings):
@@ -28,9 +33,9 @@ def export_plan(plan, scans, outputs, *, name, settings):
     """
     shown = {key: value for key, value in settings.items() if key.startswith("assumed_")}
     optional = {part: tables.read(plan[part], schema, allow_empty=True) for part, schema in _MAY_BE_EMPTY.items()}
-    evidence = tables.read(plan["evidence"], tables.EVIDENCE, allow_empty=True)
+    evidence = tables.read(plan["evidence"], schemas.EVIDENCE, allow_empty=True)
     floor_z_m, ceiling_z_m = _levels(tables.ScanStore(scans), np.unique(evidence["scan_id"]))
-    known = {"faces": tables.read(plan["faces"], tables.FACES), "floor_z_m": floor_z_m, "ceiling_z_m": ceiling_z_m}
+    known = {"faces": tables.read(plan["faces"], schemas.FACES), "floor_z_m": floor_z_m, "ceiling_z_m": ceiling_z_m}
     drawn = floorplan.FloorPlan(name=name, **known, **optional, **shown)
     sheet, grid = drawing.plan(drawn), gridmap.draw(drawn, settings["map_cell_m"])
     atomic.write_text(outputs["geojson"], plangeojson.dumps(drawn, evidence))

@@ -2,7 +2,7 @@
 
 import time
 
-from scanplan import chunks, stagelog, tables
+from scanplan import chunks, schemas, stagelog, tables
 from scanplan.errors import StageError
 from scanplan.extraction import cluster_ransac, iterative_ransac, walls
 
@@ -28,12 +28,12 @@ def extract_walls(scans, registration, output, *, extractor, settings, threads=1
         raise StageError(f"extractor {extractor}: is not known; choose one of {', '.join(EXTRACTORS)}")
     method, store, started = EXTRACTORS[extractor], tables.ScanStore(scans), time.perf_counter()
     every_scan = {"planar": store.planar, "settings": method.Settings(**settings)}
-    per_scan = walls.sensor_positions(tables.read(registration, tables.REGISTRATION), store.scan_ids, registration)
+    per_scan = walls.sensor_positions(tables.read(registration, schemas.REGISTRATION), store.scan_ids, registration)
     found = chunks.map_scans(
         method.extract, scans, label=f"extract_walls {extractor}", threads=threads, per_scan=per_scan, **every_scan
     )
     columns = walls.table(store.scan_ids, found)
-    tables.write(output, tables.WALLS, columns, allow_empty=True)
+    tables.write(output, schemas.WALLS, columns, allow_empty=True)
     took_ms = 1e3 * (time.perf_counter() - started)
     stagelog.say(f"extract_walls: {extractor}, {walls.summary(columns, len(store.scan_ids), took_ms)}")
 

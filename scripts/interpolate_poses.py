@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from scanplan import stagelog, tables
+from scanplan import schemas, stagelog, tables
 from scanplan.recordings import candidates, frames, motion, surveys, sweepcheck
 
 
@@ -39,8 +39,8 @@ def interpolate_poses(
         candidates.require_poses(chosen, t_ns, known[2], edges, files[0], **limits)
         if moved is not None:
             way = motion.choose(survey.motion_chains(), t_ns, **limits)
-            tables.write(moved, tables.MOTION, sweepcheck.checked(survey, way).columns())
-    tables.write(output, tables.POSES, candidates.columns(chosen, t_ns, *known))
+            tables.write(moved, schemas.MOTION, sweepcheck.checked(survey, way).columns())
+    tables.write(output, schemas.POSES, candidates.columns(chosen, t_ns, *known))
     n_covered = int(known[2][chosen].sum())
     stagelog.say(
         f"interpolate_poses: {len(t_ns):,} scans, {len(chosen):,} candidates,"

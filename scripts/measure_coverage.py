@@ -3,7 +3,7 @@
 import numpy as np
 import shapely
 
-from scanplan import chunks, stagelog, tables
+from scanplan import chunks, schemas, stagelog, tables
 from scanplan.evaluation import registered, truthfile
 from scanplan.schemas import AREAS, CLUSTERS
 from scanplan.selection import greedy, hulls
@@ -34,7 +34,7 @@ def measure_coverage(
     poses, found = truthfile.read_poses(true_poses), registered.read(registration)
     places_m = truthfile.poses_at(poses, found.t_ns, true_poses)[:, :2, 3]
     seen = seenarea.polygons(truthfile.read_faces(truth), places_m, max_range_m=max_range_m)
-    columns = tables.read(built, tables.HULLS)
+    columns = tables.read(built, schemas.HULLS)
     measured = {
         "scan_id": found.scan_ids,
         "full_hull_m2": shapely.area(hulls.scan_full_hulls(columns)[1]),

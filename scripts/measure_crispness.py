@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from scanplan import se3, stagelog, tables
+from scanplan import schemas, se3, stagelog, tables
 from scanplan.evaluation import registered
 from scanplan.registration import crispness
 
@@ -34,7 +34,7 @@ def measure_crispness(scans, registration, poses, output, *, radius_m, most_poin
         )
         for name, points_m in maps.items()
     }
-    tables.write(output, tables.CRISPNESS, crispness.columns(measured))
+    tables.write(output, schemas.CRISPNESS, crispness.columns(measured))
     told = ", ".join(f"{name} {1000 * places.median_m:.1f} mm" for name, places in measured.items())
     stagelog.say(f"measure_crispness: walls are thick by {told} (median of the places with scans on each other)")
 

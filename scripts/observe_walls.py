@@ -24,7 +24,7 @@ def observe_walls(scans, registration, output, *, settings, threads=1):
         scans,
         label="observe_walls",
         threads=threads,
-        per_scan=walls.sensor_positions(tables.read(registration, tables.REGISTRATION), store.scan_ids, registration),
+        per_scan=walls.sensor_positions(tables.read(registration, schemas.REGISTRATION), store.scan_ids, registration),
         planar=store.planar,
         settings=wallcells.Settings(**settings),
     )

@@ -31,7 +31,7 @@ def order_scans(hulls, output, *, method, seed, min_overlap=0.0, streaming=None,
     others : dict of str to path-like, optional
         The tables that `methods.TABLES` names for the method.
     """
-    columns = tables.read(hulls, tables.HULLS, ["scan_id", "cluster", "n_points", "geometry"])
+    columns = tables.read(hulls, schemas.HULLS, ["scan_id", "cluster", "n_points", "geometry"])
     read = {name: tables.read(path, _SCHEMAS[name], allow_empty=True) for name, path in (others or {}).items()}
     limit = stopping.points_budget(**(budget or {}))
     settings = {"seed": seed, "min_overlap": min_overlap, "streaming_settings": streaming, "budget": limit}
@@ -41,7 +41,7 @@ def order_scans(hulls, output, *, method, seed, min_overlap=0.0, streaming=None,
             f"{hulls}: {len(selection['rank'])} scans cover 0 m2, more is needed to order them; every cluster of their"
             " points lies on one line: use fewer clusters (n_clusters) or check the recording"
         )
-    tables.write(output, tables.SELECTION, selection)
+    tables.write(output, schemas.SELECTION, selection)
     stagelog.say(f"order_scans: {orderings.summary(method, selection)}")
 
 

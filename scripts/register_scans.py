@@ -1,6 +1,6 @@
 """Select continuous scans and register them in the map frame (thesis, algorithm 3)."""
 
-from scanplan import spool, stagelog, tables, workers
+from scanplan import schemas, spool, stagelog, tables, workers
 from scanplan.recordings import motion, surveys
 from scanplan.registration import linktable, mapping, verdicts
 
@@ -25,9 +25,9 @@ def register_scans(recordings, poses, scans, registered, edges, *, reading, sett
     threads : int
         Cores to use; the result does not depend on it.
     """
-    candidates = tables.read(poses, tables.POSES)
+    candidates = tables.read(poses, schemas.POSES)
     priors, dropped = verdicts.poses(candidates), []
-    way = None if moved is None else motion.from_columns(tables.read(moved, tables.MOTION))
+    way = None if moved is None else motion.from_columns(tables.read(moved, schemas.MOTION))
     with spool.beside(scans) as raw, spool.beside(registered) as thinned, workers.pool(threads) as run:
         with surveys.open_survey(recordings, **reading, motion=way) as opened:
             survey = mapping.Survey(candidates["scan_id"], priors, opened.planar)
@@ -41,8 +41,8 @@ def register_scans(recordings, poses, scans, registered, edges, *, reading, sett
                 scan_id = survey.scan_ids[row]
                 write_scan(scan_id, verdicts.in_map(scan_id, xyz_m, judged[row].world_from_sensor))
     stagelog.say(f"register_scans: {verdicts.summary(judged, sum(dropped))}; {linktable.summary(links)}")
-    tables.write(edges, tables.EDGES, linktable.columns(links), allow_empty=True)
-    tables.write(registered, tables.REGISTRATION, verdicts.columns(survey.scan_ids, candidates["t_ns"], judged))
+    tables.write(edges, schemas.EDGES, linktable.columns(links), allow_empty=True)
+    tables.write(registered, schemas.REGISTRATION, verdicts.columns(survey.scan_ids, candidates["t_ns"], judged))
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from scanplan import stagelog, tables
+from scanplan import schemas, stagelog, tables
 from scanplan.recordings import tum
 from scanplan.schemas import STEPS
 
@@ -27,8 +27,8 @@ def tabulate_steps(recordings, true_poses, scans, built, selection, times, outpu
         Size of the subset.
     """
     t_ns, _ = tum.read(true_poses)
-    hulls = tables.read(built, tables.HULLS, ["scan_id", "cluster", "n_points"])
-    chosen = tables.read(selection, tables.SELECTION, ["rank", "scan_id"])["scan_id"][:n_selected]
+    hulls = tables.read(built, schemas.HULLS, ["scan_id", "cluster", "n_points"])
+    chosen = tables.read(selection, schemas.SELECTION, ["rank", "scan_id"])["scan_id"][:n_selected]
     # points take the same room wherever they are in the table
     share = hulls["n_points"][np.isin(hulls["scan_id"], chosen)].sum() / hulls["n_points"].sum()
     kept = len(np.unique(hulls["scan_id"]))

@@ -1,6 +1,6 @@
 """Time the extractors scan by scan and the selection by number of scans (thesis, figures 5.8 and 5.10)."""
 
-from scanplan import stagelog, tables
+from scanplan import schemas, stagelog, tables
 from scanplan.extraction import cluster_ransac, iterative_ransac
 from scanplan.schemas import TIMES
 from scanplan.thesis import timing
@@ -26,8 +26,8 @@ def time_stages(scans, registration, built, output, *, walls, hulls, n_clusters,
     timed_scans : int
         On how many scans, spread over the survey.
     """
-    store, placed = tables.ScanStore(scans), tables.read(registration, tables.REGISTRATION)
-    columns = tables.read(built, tables.HULLS)
+    store, placed = tables.ScanStore(scans), tables.read(registration, schemas.REGISTRATION)
+    columns = tables.read(built, schemas.HULLS)
     chosen, n = timing.spread(store.scan_ids, timed_scans), len(store.scan_ids)
     sizes = [size for size in _SELECTION_SIZES if size < n] + [n]
     rows = [*timing.selection(columns, sizes), *timing.clusters(store, chosen, sorted(n_clusters), **hulls)]

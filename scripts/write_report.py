@@ -8,9 +8,9 @@ from scanplan.plan import floorplan
 from scanplan.report import reportpage
 from scanplan.selection import stopping
 
-_PLAN = {"walls": tables.PLAN_WALLS, "openings": tables.OPENINGS, "rooms": tables.ROOMS, "free": tables.FREE}
-_SURVEY = {"selection": tables.SELECTION, "registration": tables.REGISTRATION, "poses": tables.POSES}
-_SEEN = {"segments": tables.WALLS, "evidence": tables.EVIDENCE}
+_PLAN = {"walls": schemas.PLAN_WALLS, "openings": schemas.OPENINGS, "rooms": schemas.ROOMS, "free": schemas.FREE}
+_SURVEY = {"selection": schemas.SELECTION, "registration": schemas.REGISTRATION, "poses": schemas.POSES}
+_SEEN = {"segments": schemas.WALLS, "evidence": schemas.EVIDENCE}
 
 
 def write_report(files, output, *, name, settings, benchmarks):
@@ -31,7 +31,7 @@ def write_report(files, output, *, name, settings, benchmarks):
         Folder of the stages' run times, as far as they are there.
     """
     parts = {part: tables.read(files[part], schema, allow_empty=True) for part, schema in _PLAN.items()}
-    plan = floorplan.FloorPlan(name=name, faces=tables.read(files["faces"], tables.FACES), **parts)
+    plan = floorplan.FloorPlan(name=name, faces=tables.read(files["faces"], schemas.FACES), **parts)
     made = {part: tables.read(files[part], schema) for part, schema in _SURVEY.items()}
     made |= {part: tables.read(files[part], schema, allow_empty=True) for part, schema in _SEEN.items()}
     chosen, _ = stopping.n_scans(made["selection"], **settings["selection"]["stop"])

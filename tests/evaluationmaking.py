@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 
-from scanplan import se3, tables
+from scanplan import schemas, se3, tables
 from scanplan.simulation import rover, truth
 from wallmaking import walls
 
@@ -34,10 +34,10 @@ def write_registration(folder, map_from_true=None, positions=POSITIONS):
     moved = exact if map_from_true is None else map_from_true @ exact
     scan_id, t_ns = np.array([0, *SCAN_IDS]), np.array([0, *T_NS])
     for name, schema, poses, others in (
-        ("poses", tables.POSES, exact, {"gap_s": np.zeros(4), "covered": np.ones(4, bool)}),
+        ("poses", schemas.POSES, exact, {"gap_s": np.zeros(4), "covered": np.ones(4, bool)}),
         (
             "registration",
-            tables.REGISTRATION,
+            schemas.REGISTRATION,
             moved,
             {
                 "kept": np.array([False, True, True, True]),
@@ -47,7 +47,7 @@ def write_registration(folder, map_from_true=None, positions=POSITIONS):
         ),
     ):
         xyz_m, quat = se3.position_quaternion(np.concatenate([poses[:1], poses]))
-        pose = dict(zip((*tables.XYZ, *tables.QUAT), np.column_stack([xyz_m, quat]).T.copy(), strict=True))
+        pose = dict(zip((*schemas.XYZ, *schemas.QUAT), np.column_stack([xyz_m, quat]).T.copy(), strict=True))
         tables.write(folder / f"{name}.parquet", schema, {"scan_id": scan_id, "t_ns": t_ns, **pose, **others})
 
 
@@ -55,7 +55,7 @@ def write_walls(folder, extractor, segments, scan_id):
     """Write walls/<extractor>.parquet; the scan_ids increase."""
     table = walls(segments, scan_id=scan_id)
     path = folder / "walls" / f"{extractor}.parquet"
-    tables.write(path, tables.WALLS, table, allow_empty=True)
+    tables.write(path, schemas.WALLS, table, allow_empty=True)
     return path
 
 
@@ -65,7 +65,7 @@ def write_selection(folder, method, scan_ids):
     areas = dict.fromkeys(measures, np.ones(len(scan_ids)))
     path = folder / "selection" / f"{method}.parquet"
     known = {"rank": np.arange(1, len(scan_ids) + 1), "scan_id": scan_ids, "n_points": np.full(len(scan_ids), 9)}
-    tables.write(path, tables.SELECTION, known | areas)
+    tables.write(path, schemas.SELECTION, known | areas)
     return path
 
 

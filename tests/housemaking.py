@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from scanplan import tables
+from scanplan import schemas, tables
 from scanplan.plan import planning, rays
 from toyrooms import vlp16
 from wallmaking import SETTINGS, walls
@@ -52,18 +52,18 @@ def moved(xyz_m, yaw_rad, shift_m):
 def write(folder, table, sensors=SENSORS):
     """Write walls, selection, scans and registration of the house as stages do; return the paths in that order."""
     paths = [folder / f"{name}.parquet" for name in ("walls", "selection", "scans", "registration")]
-    tables.write(paths[0], tables.WALLS, table, allow_empty=True)
-    tables.write(paths[1], tables.SELECTION, ordering([2, 0, 1, 3]))
+    tables.write(paths[0], schemas.WALLS, table, allow_empty=True)
+    tables.write(paths[1], schemas.SELECTION, ordering([2, 0, 1, 3]))
     with tables.scan_writer(paths[2], planar=False) as write_scan:
         for scan_id, xyz_m in scans(sensors=sensors):
             write_scan(scan_id, xyz_m)
     count = len(sensors)
-    pose = dict(zip(tables.XYZ, np.array(sensors, float).T.copy(), strict=True))
-    pose |= dict(zip(tables.QUAT, (np.zeros(count), np.zeros(count), np.zeros(count), np.ones(count)), strict=True))
+    pose = dict(zip(schemas.XYZ, np.array(sensors, float).T.copy(), strict=True))
+    pose |= dict(zip(schemas.QUAT, (np.zeros(count), np.zeros(count), np.zeros(count), np.ones(count)), strict=True))
     fitness = dict.fromkeys(("prior_fitness", "refined_fitness", "rmse_m"), np.ones(count))
     judged = {"kept": np.ones(count, bool), "reason": ["kept"] * count}
     known = {"scan_id": np.arange(count), "t_ns": T_NS[:count]}
-    tables.write(paths[3], tables.REGISTRATION, known | fitness | judged | pose)
+    tables.write(paths[3], schemas.REGISTRATION, known | fitness | judged | pose)
     return paths
 
 
@@ -75,4 +75,4 @@ def ordering(scan_ids, covered=(80.0, 95.0, 99.0, 100.0)):
     known = {"rank": np.arange(1, len(scan_ids) + 1), "scan_id": np.array(scan_ids)}
     known["n_points"] = np.full(len(scan_ids), 1000)
     columns = known | values | {f"{name}_m2": value for name, value in values.items()}
-    return {name: columns[name] for name in tables.SELECTION.columns}
+    return {name: columns[name] for name in schemas.SELECTION.columns}

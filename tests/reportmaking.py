@@ -97,16 +97,16 @@ def plan_evaluation():
 def files(folder):
     """Write everything that the report is made of into a folder, and return what `write_report` is given."""
     made = {
-        "faces": (tables.FACES, floorplanmaking.faces()),
-        "walls": (tables.PLAN_WALLS, floorplanmaking.walls()),
-        "openings": (tables.OPENINGS, floorplanmaking.openings()),
-        "rooms": (tables.ROOMS, floorplanmaking.rooms()),
-        "free": (tables.FREE, floorplanmaking.free()),
-        "evidence": (tables.EVIDENCE, floorplanmaking.evidence()),
-        "selection": (tables.SELECTION, selection()),
-        "segments": (tables.WALLS, segments()),
-        "poses": (tables.POSES, poses()),
-        "registration": (tables.REGISTRATION, registration()),
+        "faces": (schemas.FACES, floorplanmaking.faces()),
+        "walls": (schemas.PLAN_WALLS, floorplanmaking.walls()),
+        "openings": (schemas.OPENINGS, floorplanmaking.openings()),
+        "rooms": (schemas.ROOMS, floorplanmaking.rooms()),
+        "free": (schemas.FREE, floorplanmaking.free()),
+        "evidence": (schemas.EVIDENCE, floorplanmaking.evidence()),
+        "selection": (schemas.SELECTION, selection()),
+        "segments": (schemas.WALLS, segments()),
+        "poses": (schemas.POSES, poses()),
+        "registration": (schemas.REGISTRATION, registration()),
         "evaluation": (schemas.EVALUATION, evaluation()),
         "plan_evaluation": (schemas.PLAN_EVALUATION, plan_evaluation()),
     }

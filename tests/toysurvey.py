@@ -3,7 +3,7 @@
 import numpy as np
 
 import toyrooms
-from scanplan import tables
+from scanplan import schemas, tables
 
 SENSORS = {0: (2.0, 1.6, 0.9), 5: (3.0, 2.0, 0.9), 15: (4.0, 2.4, 0.9)}
 
@@ -17,6 +17,6 @@ def write_survey(folder, *, planar=False, registered=tuple(SENSORS)):
     n = len(registered)
     columns = {"scan_id": registered, "t_ns": np.arange(n), "kept": np.ones(n, bool), "reason": ["kept"] * n}
     columns |= dict.fromkeys(("prior_fitness", "refined_fitness", "rmse_m", "qx", "qy", "qz"), np.zeros(n))
-    columns |= dict(zip(tables.XYZ, np.array([SENSORS[s] for s in registered]).T.copy(), strict=True))
-    tables.write(registration, tables.REGISTRATION, {**columns, "qw": np.ones(n)})
+    columns |= dict(zip(schemas.XYZ, np.array([SENSORS[s] for s in registered]).T.copy(), strict=True))
+    tables.write(registration, schemas.REGISTRATION, {**columns, "qw": np.ones(n)})
     return scans, registration

@@ -13,55 +13,7 @@ import pyarrow.parquet as pq
 
 from scanplan import atomic
 from scanplan.errors import StageError
-from scanplan.schemas import (
-    CRISPNESS,
-    EDGES,
-    EVALUATION,
-    EVIDENCE,
-    FACES,
-    FREE,
-    HULLS,
-    MOTION,
-    OPENINGS,
-    ORACLE,
-    PLAN_WALLS,
-    POSE_ERRORS,
-    POSES,
-    QUAT,
-    REGISTRATION,
-    ROOMS,
-    SCANS,
-    SELECTION,
-    WALLS,
-    XYZ,
-)
-
-__all__ = [
-    "CRISPNESS",
-    "EDGES",
-    "EVALUATION",
-    "EVIDENCE",
-    "FACES",
-    "FREE",
-    "HULLS",
-    "MOTION",
-    "OPENINGS",
-    "ORACLE",
-    "PLAN_WALLS",
-    "POSES",
-    "POSE_ERRORS",
-    "QUAT",
-    "REGISTRATION",
-    "ROOMS",
-    "SCANS",
-    "SELECTION",
-    "WALLS",
-    "XYZ",
-    "ScanStore",
-    "read",
-    "scan_writer",
-    "write",
-]
+from scanplan.schemas import SCANS
 
 
 def write(path, schema, columns, *, allow_empty=False):

@@ -10,7 +10,7 @@ import interpolate_poses
 import register_scans
 import simulate_survey
 from reference import registration as literal
-from scanplan import tables
+from scanplan import schemas, tables
 from scanplan.evaluation import poseerrors, truthfile
 from scanplan.recordings import motion, surveys
 from scanplan.registration import verdicts
@@ -57,7 +57,7 @@ def bench(root, settings):
     stage_s, stage_cpu_s = _timed(lambda: _register(folder, bag, settings))
     peak_mb = _peak_mb()
     literal_s, literal_cpu_s = _timed(_literal(folder, bag, settings))
-    n = len(tables.read(folder / "poses.parquet", tables.POSES, ["scan_id"])["scan_id"])
+    n = len(tables.read(folder / "poses.parquet", schemas.POSES, ["scan_id"])["scan_id"])
     ours_ms, theirs_ms = 1e3 * stage_s / n, 1e3 * literal_s / N_LITERAL
     cpu_ms, literal_cpu_ms = 1e3 * stage_cpu_s / n, 1e3 * literal_cpu_s / N_LITERAL
     print(
@@ -79,10 +79,10 @@ def _register(folder, bag, settings):
 
 def _literal(folder, bag, settings):
     """Algorithm 3 on some candidates from the middle, of which the points are read beforehand."""
-    candidates = tables.read(folder / "poses.parquet", tables.POSES)
+    candidates = tables.read(folder / "poses.parquet", schemas.POSES)
     middle = len(candidates["scan_id"]) // 2
     some = slice(middle, middle + N_LITERAL)
-    way = motion.from_columns(tables.read(folder / "motion.parquet", tables.MOTION))
+    way = motion.from_columns(tables.read(folder / "motion.parquet", schemas.MOTION))
     with surveys.open_survey([str(bag)], **settings["input"], motion=way) as survey:
         scans = [scan.xyz_m for scan in survey.scans(candidates["scan_id"][some].tolist())]
     limits = {key: settings["registration"][key] for key in ("min_prior_fitness", "min_refined_fitness")}
@@ -92,13 +92,13 @@ def _literal(folder, bag, settings):
 
 
 def _accuracy(folder):
-    found = tables.read(folder / "registration.parquet", tables.REGISTRATION)
+    found = tables.read(folder / "registration.parquet", schemas.REGISTRATION)
     kept = found["kept"]
     truth = truthfile.poses_at(
         truthfile.read_poses(folder / "truth_poses.tum"), found["t_ns"][kept], folder / "truth_poses.tum"
     )
     told = []
-    for name, columns in (("localiser", tables.read(folder / "poses.parquet", tables.POSES)), ("registered", found)):
+    for name, columns in (("localiser", tables.read(folder / "poses.parquet", schemas.POSES)), ("registered", found)):
         pose = verdicts.poses(columns)[kept]
         pose = poseerrors.alignment(pose[:, :3, 3], truth[:, :3, 3]) @ pose
         distance_m, angle_deg = (sorted(error) for error in poseerrors.errors(pose, truth))

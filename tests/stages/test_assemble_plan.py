@@ -4,7 +4,7 @@ import shapely
 
 import housemaking
 from assemble_plan import assemble_plan
-from scanplan import tables
+from scanplan import schemas, tables
 from scanplan.errors import StageError
 from scanplan.plan import planning
 from wallmaking import lengths_m, walls
@@ -31,7 +31,7 @@ def assembled(inputs, folder, *, settings=housemaking.PLAN, **stop):
 def with_walls(inputs, folder, table):
     folder.mkdir(exist_ok=True)
     path = folder / "walls.parquet"
-    tables.write(path, tables.WALLS, table, allow_empty=True)
+    tables.write(path, schemas.WALLS, table, allow_empty=True)
     return [path, *inputs[1:]]
 
 

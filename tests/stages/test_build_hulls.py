@@ -5,7 +5,7 @@ import pytest
 import shapely
 
 import build_hulls
-from scanplan import tables
+from scanplan import schemas, tables
 from scanplan.errors import StageError
 
 SETTINGS = {"n_clusters": 5, "sample_size": 50, "seed": 0}
@@ -24,7 +24,7 @@ def scans(tmp_path):
 def test_rows_of_every_scan(scans, tmp_path, caplog):
     caplog.set_level(logging.INFO)
     build_hulls.build_hulls(scans, tmp_path / "hulls.parquet", **SETTINGS, threads=1)
-    columns = tables.read(tmp_path / "hulls.parquet", tables.HULLS)
+    columns = tables.read(tmp_path / "hulls.parquet", schemas.HULLS)
     assert np.unique(columns["scan_id"]).tolist() == [0, 5, 6, 40, 41]
     assert np.bincount(columns["scan_id"], columns["n_points"])[[0, 5, 6, 40, 41]].tolist() == [300] * 4 + [2]
     shapes = shapely.from_wkb(columns["geometry"])

@@ -7,7 +7,7 @@ import open3d as o3d
 import pytest
 
 from interpolate_poses import interpolate_poses
-from scanplan import configuration, se3, tables
+from scanplan import configuration, schemas, se3, tables
 from scanplan.recordings import motion, surveys, tum
 from scanplan.simulation import buildingfile, extrusion
 from simulate_survey import simulate_survey
@@ -76,7 +76,7 @@ def test_true_motion_restores_the_walls_to_two_millimetres(survey, building):
 
 
 def test_recorded_odometry_takes_nearly_all_of_it_out(survey, building):
-    way = motion.from_columns(tables.read(survey / "motion.parquet", tables.MOTION))
+    way = motion.from_columns(tables.read(survey / "motion.parquet", schemas.MOTION))
     off_m = off_the_walls_m(survey, building, way)
     # the wheels of the simulated rover err by a percent
     assert np.median(off_m) < 0.002 and np.percentile(off_m, 99) < 0.02

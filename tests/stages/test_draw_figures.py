@@ -7,7 +7,7 @@ import facemaking
 from draw_area import draw_area
 from draw_scans import draw_scans
 from draw_walls import draw_walls
-from scanplan import tables
+from scanplan import schemas, tables
 from scanplan.errors import StageError
 from wallmaking import BARE, walls
 
@@ -19,11 +19,11 @@ def results(tmp_path):
     with tables.scan_writer(tmp_path / "scans.parquet", planar=False) as write:
         for scan_id in (0, 4):
             write(scan_id, np.column_stack([rng.uniform(0, 6, 500), rng.choice([0, 4], 500), rng.uniform(0, 2, 500)]))
-    pose = dict(zip((*tables.XYZ, *tables.QUAT), ([1, 2, 3], [2, 2, 2], *np.zeros((4, 3)), np.ones(3)), strict=True))
+    pose = dict(zip((*schemas.XYZ, *schemas.QUAT), ([1, 2, 3], [2, 2, 2], *np.zeros((4, 3)), np.ones(3)), strict=True))
     ones = np.ones(3)
     tables.write(
         tmp_path / "registration.parquet",
-        tables.REGISTRATION,
+        schemas.REGISTRATION,
         {"scan_id": [0, 2, 4], "t_ns": [0, 1, 2], "kept": [True, False, True], "reason": ["kept", "fit", "kept"]}
         | dict.fromkeys(("prior_fitness", "refined_fitness", "rmse_m"), ones)
         | pose,
@@ -32,9 +32,9 @@ def results(tmp_path):
         measures = ("gain_m2", "covered_m2", "bound_m2", "gain", "covered", "bound")
         columns = dict.fromkeys(measures, np.array([5.0, 9.0]))
         known = {"rank": [1, 2], "scan_id": [4, 0], "n_points": [500, 500]}
-        tables.write(tmp_path / f"{method}.parquet", tables.SELECTION, known | columns)
+        tables.write(tmp_path / f"{method}.parquet", schemas.SELECTION, known | columns)
     merged = facemaking.merge(walls([(0, 0, 6, 0), (6, 4, 0, 4)]), BARE)
-    tables.write(tmp_path / "faces.parquet", tables.FACES, merged)
+    tables.write(tmp_path / "faces.parquet", schemas.FACES, merged)
     return tmp_path
 
 
@@ -69,9 +69,9 @@ def test_draw_area(results):
 
 
 def test_tables_of_different_runs_are_refused(results):
-    registration = tables.read(results / "registration.parquet", tables.REGISTRATION)
+    registration = tables.read(results / "registration.parquet", schemas.REGISTRATION)
     registration["kept"] = np.array([False, False, True])
-    tables.write(results / "registration.parquet", tables.REGISTRATION, registration)
+    tables.write(results / "registration.parquet", schemas.REGISTRATION, registration)
     inputs = [results / f"{name}.parquet" for name in ("scans", "registration", "cluster_hull")]
     with pytest.raises(StageError, match="scan 0 "):
         draw_scans(*inputs, results / "scans.svg", n_scans=None, area_share=None)

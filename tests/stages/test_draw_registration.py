@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from draw_registration import draw_registration
-from scanplan import tables
+from scanplan import schemas, tables
 from scanplan.report import registrationfigure
 
 REASONS = ["anchor", "kept", "low_prior_fitness", "pose_gap", "kept", "odd_thing", "anchor", "kept"]
@@ -24,14 +24,14 @@ def results(tmp_path):
     columns = {"scan_id": scan_ids, "t_ns": scan_ids, "kept": KEPT, "reason": REASONS, "x_m": x_m, "qw": zeros + 1}
     columns |= dict.fromkeys(("y_m", "z_m", "qx", "qy", "qz"), zeros)
     columns |= dict.fromkeys(("prior_fitness", "refined_fitness"), zeros) | {"rmse_m": np.arange(8) / 100}
-    tables.write(tmp_path / "registration.parquet", tables.REGISTRATION, columns)
+    tables.write(tmp_path / "registration.parquet", schemas.REGISTRATION, columns)
     spread = {key: [0.031, 0.012] for key in ("sigma_m", "quarter_below_m", "quarter_above_m")}
     crispness = {"poses": ["localiser", "registered"], "n_places": [9, 9], **spread}
-    tables.write(tmp_path / "crispness.parquet", tables.CRISPNESS, crispness)
+    tables.write(tmp_path / "crispness.parquet", schemas.CRISPNESS, crispness)
     links = {"source": [0, 0, 5], "target": [5, 20, 35], "kind": ["sequence", "sequence", "loop"]}
     links |= {"residual_m": [0.01, 0.02, np.nan], "unobservable": [0, 0, 0], "inlier": [True, True, False]}
-    others = set(tables.EDGES.columns) - set(links)
-    tables.write(tmp_path / "edges.parquet", tables.EDGES, links | {name: np.zeros(3) for name in others})
+    others = set(schemas.EDGES.columns) - set(links)
+    tables.write(tmp_path / "edges.parquet", schemas.EDGES, links | {name: np.zeros(3) for name in others})
     return tmp_path
 
 
@@ -55,14 +55,14 @@ def test_the_figure_names_every_reason_with_its_number(results):
 
 
 def test_a_registration_without_links_is_drawn(results):
-    registration = tables.read(results / "registration.parquet", tables.REGISTRATION)
+    registration = tables.read(results / "registration.parquet", schemas.REGISTRATION)
     none = {name: np.array([], float) for name in ("source", "target", "residual_m")} | {"kind": np.array([], object)}
     figure = registrationfigure.draw(np.random.default_rng(0).uniform(0, 7, (50, 2)), registration, none, {})
     assert len(figure.axes) == 1
 
 
 def test_loops_are_told_apart(results):
-    registration = tables.read(results / "registration.parquet", tables.REGISTRATION)
+    registration = tables.read(results / "registration.parquet", schemas.REGISTRATION)
     links = {
         "source": np.array([0, 5]),
         "target": np.array([5, 35]),

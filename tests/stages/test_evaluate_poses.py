@@ -37,9 +37,9 @@ def test_a_turned_map_is_told_in_degrees(tmp_path):
 def test_a_scan_without_a_pose_is_refused(tmp_path):
     write_truth(tmp_path)
     write_registration(tmp_path)
-    poses = tables.read(tmp_path / "poses.parquet", tables.POSES)
+    poses = tables.read(tmp_path / "poses.parquet", schemas.POSES)
     poses["covered"] = poses["scan_id"] != 4
-    tables.write(tmp_path / "poses.parquet", tables.POSES, poses)
+    tables.write(tmp_path / "poses.parquet", schemas.POSES, poses)
     with pytest.raises(StageError, match="no pose of scan 4"):
         evaluated(tmp_path)
 
@@ -47,8 +47,8 @@ def test_a_scan_without_a_pose_is_refused(tmp_path):
 def test_registration_that_keeps_nothing_is_refused(tmp_path):
     write_truth(tmp_path)
     write_registration(tmp_path)
-    columns = tables.read(tmp_path / "registration.parquet", tables.REGISTRATION)
+    columns = tables.read(tmp_path / "registration.parquet", schemas.REGISTRATION)
     columns["kept"] = np.zeros(4, bool)
-    tables.write(tmp_path / "registration.parquet", tables.REGISTRATION, columns)
+    tables.write(tmp_path / "registration.parquet", schemas.REGISTRATION, columns)
     with pytest.raises(StageError, match="0 scans are kept"):
         evaluated(tmp_path)

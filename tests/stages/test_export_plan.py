@@ -11,17 +11,17 @@ from PIL import Image
 
 import floorplanmaking
 from export_plan import export_plan
-from scanplan import tables
+from scanplan import schemas, tables
 from scanplan.errors import StageError
 
 SETTINGS = {"assumed_thickness_m": 0.1, "assumed_height_m": 2.5, "map_cell_m": 0.05}
 TABLES = {
-    "faces": (tables.FACES, floorplanmaking.faces),
-    "walls": (tables.PLAN_WALLS, floorplanmaking.walls),
-    "openings": (tables.OPENINGS, floorplanmaking.openings),
-    "rooms": (tables.ROOMS, floorplanmaking.rooms),
-    "free": (tables.FREE, floorplanmaking.free),
-    "evidence": (tables.EVIDENCE, floorplanmaking.evidence),
+    "faces": (schemas.FACES, floorplanmaking.faces),
+    "walls": (schemas.PLAN_WALLS, floorplanmaking.walls),
+    "openings": (schemas.OPENINGS, floorplanmaking.openings),
+    "rooms": (schemas.ROOMS, floorplanmaking.rooms),
+    "free": (schemas.FREE, floorplanmaking.free),
+    "evidence": (schemas.EVIDENCE, floorplanmaking.evidence),
 }
 NAMES = {
     "geojson": "plan.geojson", "dxf": "plan.dxf", "svg": "plan.svg", "pdf": "plan.pdf", "ifc": "plan.ifc",
@@ -74,12 +74,12 @@ def test_a_second_run_gives_the_same_bytes(plan, tmp_path):
 
 
 def test_faces_alone_are_enough(plan, tmp_path):
-    tables.write(plan["walls"], tables.PLAN_WALLS, floorplanmaking.walls([]), allow_empty=True)
-    tables.write(plan["openings"], tables.OPENINGS, floorplanmaking.openings([]), allow_empty=True)
-    tables.write(plan["rooms"], tables.ROOMS, floorplanmaking.rooms([]), allow_empty=True)
-    tables.write(plan["free"], tables.FREE, floorplanmaking.free([]), allow_empty=True)
+    tables.write(plan["walls"], schemas.PLAN_WALLS, floorplanmaking.walls([]), allow_empty=True)
+    tables.write(plan["openings"], schemas.OPENINGS, floorplanmaking.openings([]), allow_empty=True)
+    tables.write(plan["rooms"], schemas.ROOMS, floorplanmaking.rooms([]), allow_empty=True)
+    tables.write(plan["free"], schemas.FREE, floorplanmaking.free([]), allow_empty=True)
     nobody = {name: values[:0] for name, values in floorplanmaking.evidence().items()}
-    tables.write(plan["evidence"], tables.EVIDENCE, nobody, allow_empty=True)
+    tables.write(plan["evidence"], schemas.EVIDENCE, nobody, allow_empty=True)
     files = exported(plan, tmp_path / "plan")
     assert all(file.stat().st_size > 100 for file in files.values())
 
@@ -88,7 +88,7 @@ def test_a_planar_survey_has_the_assumed_height(plan, tmp_path):
     with tables.scan_writer(tmp_path / "scans.parquet", planar=True) as write:
         write(5, np.zeros((3, 3)))
     flat = floorplanmaking.walls() | {"z_min_m": np.full(6, np.nan), "z_max_m": np.full(6, np.nan)}
-    tables.write(plan["walls"], tables.PLAN_WALLS, flat)
+    tables.write(plan["walls"], schemas.PLAN_WALLS, flat)
     model = ifcopenshell.open(exported(plan, tmp_path / "plan")["ifc"])
     wall = model.by_type("IfcWall")[0]
     assert get_psets(wall)["Qto_WallBaseQuantities"]["Height"] == SETTINGS["assumed_height_m"]
@@ -96,6 +96,6 @@ def test_a_planar_survey_has_the_assumed_height(plan, tmp_path):
 
 
 def test_a_plan_of_nothing_is_told(plan, tmp_path):
-    tables.write(plan["faces"], tables.FACES, floorplanmaking.faces([]), allow_empty=True)
+    tables.write(plan["faces"], schemas.FACES, floorplanmaking.faces([]), allow_empty=True)
     with pytest.raises(StageError, match="no rows"):
         exported(plan, tmp_path / "plan")

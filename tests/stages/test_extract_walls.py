@@ -3,7 +3,7 @@ import pytest
 
 import extract_walls
 import toyrooms
-from scanplan import tables
+from scanplan import schemas, tables
 from scanplan.errors import StageError
 
 SETTINGS = {
@@ -30,7 +30,7 @@ def write_survey(folder, *, planar, shown=tuple(SENSORS), scan=None):
     columns = {name: np.full(n, value, object if value == "" else None) for name, value in {**same, **turn}.items()}
     columns |= {"scan_id": np.array(shown), "t_ns": np.array(shown) * 10**8}
     columns |= dict(zip(("x_m", "y_m", "z_m"), pose.T, strict=True))
-    tables.write(registration, tables.REGISTRATION, columns)
+    tables.write(registration, schemas.REGISTRATION, columns)
     return scans, registration
 
 
@@ -38,7 +38,7 @@ def write_survey(folder, *, planar, shown=tuple(SENSORS), scan=None):
 def test_walls_of_every_scan(survey, extractor, tmp_path):
     output = tmp_path / "walls" / f"{extractor}.parquet"
     extract_walls.extract_walls(*survey, output, extractor=extractor, settings=SETTINGS[extractor])
-    walls = tables.read(output, tables.WALLS)
+    walls = tables.read(output, schemas.WALLS)
     assert set(walls["scan_id"]) == set(SENSORS)
     for scan_id, sensor in SENSORS.items():
         own = {name: column[walls["scan_id"] == scan_id] for name, column in walls.items()}
@@ -64,7 +64,7 @@ def test_no_wall_anywhere_is_an_answer(tmp_path):
     survey = write_survey(tmp_path, planar=False, scan=lambda _, seed: np.full((3, 3), float(seed)))
     output, settings = tmp_path / "walls.parquet", SETTINGS["cluster_ransac"]
     extract_walls.extract_walls(*survey, output, extractor="cluster_ransac", settings=settings)
-    assert len(tables.read(output, tables.WALLS, allow_empty=True)["wall"]) == 0
+    assert len(tables.read(output, schemas.WALLS, allow_empty=True)["wall"]) == 0
 
 
 def test_a_scan_without_a_pose_is_told(tmp_path):

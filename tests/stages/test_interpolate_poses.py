@@ -3,7 +3,7 @@ import pytest
 
 import bagmaking
 from interpolate_poses import interpolate_poses
-from scanplan import datasets, tables
+from scanplan import datasets, schemas, tables
 from scanplan.errors import StageError
 
 START, STEP = bagmaking.START_NS, 100_000_000
@@ -28,7 +28,7 @@ def run(tmp_path):
         bagmaking.Maker().write(tmp_path / "run", entries)
         output = tmp_path / "poses.parquet"
         interpolate_poses(datasets.find_files(tmp_path), output, **(SETTINGS | settings))
-        return tables.read(output, tables.POSES)
+        return tables.read(output, schemas.POSES)
 
     return run_on
 
@@ -100,7 +100,7 @@ def test_no_pose_within_a_jump_of_the_localiser(run, entries, caplog):
 
 def test_how_the_sensor_moved_is_written_beside(run, entries, tmp_path):
     run(entries, moved=tmp_path / "motion.parquet")
-    way = tables.read(tmp_path / "motion.parquet", tables.MOTION)
+    way = tables.read(tmp_path / "motion.parquet", schemas.MOTION)
     assert way["t_ns"].tolist() == [START + (i - 1) * STEP // 2 for i in range(25)]
     np.testing.assert_allclose(way["x_m"], (way["t_ns"] - START) / 1e9, atol=1e-6)
     assert set(way["time_scale"]) == {1.0}
@@ -130,7 +130,7 @@ def test_intel_keeps_the_scans_that_are_far_apart(recordings_dir, tmp_path):
         tmp_path / "poses.parquet",
         **(SETTINGS | {"max_step_m": 0.5, "max_turn_deg": 30.0}),
     )
-    poses = tables.read(tmp_path / "poses.parquet", tables.POSES)
+    poses = tables.read(tmp_path / "poses.parquet", schemas.POSES)
     assert poses["covered"].all()
     xy = np.column_stack([poses["x_m"], poses["y_m"]])
     assert len(xy) > 600

@@ -6,7 +6,7 @@ from evaluationmaking import SCAN_IDS, shift, write_registration
 from interpolate_poses import interpolate_poses
 from measure_crispness import measure_crispness
 from register_scans import register_scans
-from scanplan import configuration, datasets, se3, tables
+from scanplan import configuration, datasets, schemas, se3, tables
 from scanplan.recordings import surveys
 from scanplan.registration import verdicts
 
@@ -24,7 +24,7 @@ def write_scans(folder, moved):
 def measured(folder):
     files = [folder / f"{name}.parquet" for name in ("scans", "registration", "poses", "crispness")]
     measure_crispness(*files, **SETTINGS)
-    return tables.read(files[-1], tables.CRISPNESS)
+    return tables.read(files[-1], schemas.CRISPNESS)
 
 
 def test_maps_of_both_poses_are_measured(tmp_path):
@@ -41,9 +41,9 @@ def test_what_registration_moves_is_put_back_for_the_localisers_map(tmp_path):
     write_scans(tmp_path, {})
     np.testing.assert_allclose(measured(tmp_path)["sigma_m"], 0.003, rtol=0.1)
     # one of the poses corrected by 6 cm: the localiser's map is thick, the registered one is not
-    poses = tables.read(tmp_path / "poses.parquet", tables.POSES)
+    poses = tables.read(tmp_path / "poses.parquet", schemas.POSES)
     poses["y_m"] = poses["y_m"] + np.where(poses["scan_id"] == SCAN_IDS[1], 0.06, 0)
-    tables.write(tmp_path / "poses.parquet", tables.POSES, poses)
+    tables.write(tmp_path / "poses.parquet", schemas.POSES, poses)
     thick_m = dict(zip(*(measured(tmp_path)[c].tolist() for c in ("poses", "sigma_m")), strict=True))
     assert thick_m["localiser"] == pytest.approx(np.sqrt(0.003**2 + 0.06**2 * 2 / 9), rel=0.1)
     assert thick_m["registered"] == pytest.approx(0.003, rel=0.1)
@@ -60,14 +60,14 @@ def disturbed(poses, planar):
     world_from_sensor = world_from_sensor @ turn
     world_from_sensor[:, :3, 3] += 0.1 * errors[:, :3]
     values = np.hstack(se3.position_quaternion(world_from_sensor)).T
-    return poses | dict(zip((*tables.XYZ, *tables.QUAT), values, strict=True))
+    return poses | dict(zip((*schemas.XYZ, *schemas.QUAT), values, strict=True))
 
 
 def of_kept(folder, poses_file):
     """The crispness of the kept scans by the poses of a table and as registered, metres."""
     files = [folder / f for f in ("scans.parquet", "registration.parquet", poses_file, "crispness.parquet")]
     measure_crispness(*files, **SETTINGS | {"most_points": 300_000})
-    table = tables.read(files[-1], tables.CRISPNESS)
+    table = tables.read(files[-1], schemas.CRISPNESS)
     return dict(zip(table["poses"].tolist(), table["sigma_m"].tolist(), strict=True))
 
 
@@ -85,7 +85,7 @@ def test_registration_makes_disturbed_recordings_crisper(recordings_dir, project
     topics = {k: v for k, v in reading.items() if k not in ("min_range_m", "max_range_m", "deskew")}
     interpolate_poses(files, given, moved=moved, **settings["poses"], **topics)
     with surveys.open_survey(files, **reading) as survey:
-        tables.write(poses_file, tables.POSES, disturbed(tables.read(given, tables.POSES), survey.planar))
+        tables.write(poses_file, schemas.POSES, disturbed(tables.read(given, schemas.POSES), survey.planar))
     outputs = [tmp_path / f for f in ("scans.parquet", "registration.parquet", "edges.parquet")]
     register_scans(files, poses_file, *outputs, reading=reading, settings=settings["registration"], moved=moved)
     start, recorded = of_kept(tmp_path, poses_file.name), of_kept(tmp_path, given.name)

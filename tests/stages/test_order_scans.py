@@ -18,7 +18,7 @@ def write_hulls(path, shapes):
         "area_m2": shapely.area(shapes),
         "geometry": shapely.to_wkb(np.array(shapes)),
     }
-    tables.write(path, tables.HULLS, columns)
+    tables.write(path, schemas.HULLS, columns)
     return path
 
 
@@ -59,7 +59,7 @@ def test_an_order_of_all_scans(hulls, tmp_path, caplog, method):
     output = tmp_path / "selection" / f"{method}.parquet"
     options = {"method": method, "seed": 1, "others": write_others(tmp_path, method, 12)}
     order_scans.order_scans(hulls, output, **options)
-    selection = tables.read(output, tables.SELECTION)
+    selection = tables.read(output, schemas.SELECTION)
     assert sorted(selection["scan_id"]) == list(range(0, 60, 5))
     assert selection["covered_m2"][-1] == pytest.approx(15)
     assert (selection["bound_m2"] >= selection["covered_m2"]).all()

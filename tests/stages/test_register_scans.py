@@ -4,7 +4,7 @@ import pytest
 import bagmaking
 from interpolate_poses import interpolate_poses
 from register_scans import register_scans
-from scanplan import configuration, datasets, tables
+from scanplan import configuration, datasets, schemas, tables
 from scanplan.errors import StageError
 
 STEP_NS = 100_000_000
@@ -51,7 +51,7 @@ def survey(n_scans=5, empty=(), moved=()):
 
 def test_retained_scans_lie_in_the_map(run):
     scans, registered, _ = run(survey(moved=[2]))
-    verdicts = tables.read(registered, tables.REGISTRATION)
+    verdicts = tables.read(registered, schemas.REGISTRATION)
     assert verdicts["reason"].tolist() == ["anchor"] + ["kept"] * 4
     np.testing.assert_allclose(verdicts["x_m"], [1.0, 1.1, 1.2, 1.3, 1.4], atol=0.015)
     store = tables.ScanStore(scans)
@@ -63,7 +63,7 @@ def test_retained_scans_lie_in_the_map(run):
 
 def test_scans_without_points_are_named_and_left_out(run):
     scans, registered, _ = run(survey(empty=[1, 3]))
-    verdicts = tables.read(registered, tables.REGISTRATION)
+    verdicts = tables.read(registered, schemas.REGISTRATION)
     assert verdicts["reason"].tolist() == ["anchor", "too_few_points", "kept", "too_few_points", "kept"]
     assert tables.ScanStore(scans).scan_ids.tolist() == [0, 2, 4]
 

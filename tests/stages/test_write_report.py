@@ -7,7 +7,7 @@ import pytest
 import browser
 import floorplanmaking
 import reportmaking
-from scanplan import tables
+from scanplan import schemas, tables
 from scanplan.errors import StageError
 from write_report import write_report
 
@@ -87,10 +87,10 @@ def test_the_same_input_gives_the_same_bytes(report, tmp_path):
 
 def test_faces_alone_without_truth_and_times_make_a_report(tmp_path):
     files = reportmaking.files(tmp_path)
-    for name, schema in (("walls", tables.PLAN_WALLS), ("openings", tables.OPENINGS), ("rooms", tables.ROOMS)):
+    for name, schema in (("walls", schemas.PLAN_WALLS), ("openings", schemas.OPENINGS), ("rooms", schemas.ROOMS)):
         tables.write(files[name], schema, getattr(floorplanmaking, name)([]), allow_empty=True)
     nobody = {column: values[:0] for column, values in floorplanmaking.evidence().items()}
-    tables.write(files["evidence"], tables.EVIDENCE, nobody, allow_empty=True)
+    tables.write(files["evidence"], schemas.EVIDENCE, nobody, allow_empty=True)
     (tmp_path / "benchmarks/build_hulls.tsv").write_text("")
     (tmp_path / "benchmarks/draw_area.tsv").unlink()
     found = Tables(written(tmp_path, files | {"evaluation": [], "figures": []}).read_text()).rows
@@ -100,14 +100,14 @@ def test_faces_alone_without_truth_and_times_make_a_report(tmp_path):
 def test_a_survey_without_any_wall_in_sight_makes_a_report(tmp_path):
     files = reportmaking.files(tmp_path)
     nothing = {column: np.zeros(4) for column in ("gain", "covered", "bound")}
-    tables.write(files["selection"], tables.SELECTION, reportmaking.selection() | nothing)
+    tables.write(files["selection"], schemas.SELECTION, reportmaking.selection() | nothing)
     assert "no scan has any wall shown" in written(tmp_path, files).read_text()
 
 
 def test_a_selection_of_another_run_is_told(tmp_path):
     files = reportmaking.files(tmp_path)
     selection = reportmaking.selection() | {"scan_id": np.array([9, 7, 12, 0], np.int32)}
-    tables.write(files["selection"], tables.SELECTION, selection)
+    tables.write(files["selection"], schemas.SELECTION, selection)
     with pytest.raises(StageError, match="scan 7 of the selection"):
         written(tmp_path, files)
 

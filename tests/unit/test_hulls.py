@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from reference import hull_selection
-from scanplan import tables
+from scanplan import schemas
 from scanplan.selection import hulls
 
 CORNERS = np.array([(0, 0), (2, 0), (2, 1), (0, 1)], float)
@@ -159,7 +159,7 @@ def test_refuses_settings_out_of_range(wrong):
 def table_of(*scans):
     """Columns of a table of hulls, from (scan_id, [geometry, ...])."""
     rows = [(i, c, 3, g.area, g.wkb) for i, shapes in scans for c, g in enumerate(shapes)]
-    names = list(tables.HULLS.columns)
+    names = list(schemas.HULLS.columns)
     return {n: np.array([r[j] for r in rows], object if n == "geometry" else None) for j, n in enumerate(names)}
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from scanplan import configuration, se3, spool, tables, workers
+from scanplan import configuration, schemas, se3, spool, tables, workers
 from scanplan.evaluation import poseerrors
 from scanplan.registration import linktable, mapping
 
@@ -99,20 +99,20 @@ def test_cores_change_nothing(drive, mapped, tmp_path):
 
 def test_links_make_a_table(drive, mapped, tmp_path):
     result = mapped[1]
-    tables.write(tmp_path / "edges.parquet", tables.EDGES, linktable.columns(result))
-    edges = tables.read(tmp_path / "edges.parquet", tables.EDGES)
+    tables.write(tmp_path / "edges.parquet", schemas.EDGES, linktable.columns(result))
+    edges = tables.read(tmp_path / "edges.parquet", schemas.EDGES)
     assert set(edges["kind"]) == {"sequence", "loop"} and edges["inlier"].all()
     assert np.median(edges["residual_m"]) < 0.01 and (edges["fitness"] > 0.3).all()
     true = drive[2]
-    motion = se3.matrix(*(np.column_stack([edges[c] for c in names]) for names in (tables.XYZ, tables.QUAT)))
+    motion = se3.matrix(*(np.column_stack([edges[c] for c in names]) for names in (schemas.XYZ, schemas.QUAT)))
     truth = se3.inverse(true[edges["target"] // 5]) @ true[edges["source"] // 5]
     assert np.median(np.linalg.norm((motion - truth)[:, :3, 3], axis=1)) < 0.01
     assert "sequence (0 outliers)" in linktable.summary(result)
 
 
 def test_no_links_make_an_empty_table(tmp_path):
-    tables.write(tmp_path / "edges.parquet", tables.EDGES, linktable.columns(None), allow_empty=True)
-    assert len(tables.read(tmp_path / "edges.parquet", tables.EDGES, allow_empty=True)["source"]) == 0
+    tables.write(tmp_path / "edges.parquet", schemas.EDGES, linktable.columns(None), allow_empty=True)
+    assert len(tables.read(tmp_path / "edges.parquet", schemas.EDGES, allow_empty=True)["source"]) == 0
     assert linktable.summary(None) == "no links: poses as given"
 
 

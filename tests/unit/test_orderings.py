@@ -3,7 +3,7 @@ import pytest
 import shapely
 from shapely import box
 
-from scanplan import tables
+from scanplan import schemas
 from scanplan.errors import StageError
 from scanplan.selection import methods, orderings
 
@@ -18,7 +18,7 @@ SCANS = {
 
 def columns(scans=SCANS):
     rows = [(i, c, 4, g.area, g.wkb) for i, shapes in scans.items() for c, g in enumerate(shapes)]
-    names = list(tables.HULLS.columns)
+    names = list(schemas.HULLS.columns)
     return {n: np.array([r[j] for r in rows], object if n == "geometry" else None) for j, n in enumerate(names)}
 
 
@@ -60,7 +60,7 @@ def order(method, columns, *, seed=0, **options):
 )
 def test_orders_on_paper(method, scan_ids, covered_m2):
     found = order(method, columns())
-    assert list(found) == list(tables.SELECTION.columns)
+    assert list(found) == list(schemas.SELECTION.columns)
     assert found["rank"].tolist() == [1, 2, 3, 4]
     assert found["scan_id"].tolist() == scan_ids
     assert found["covered_m2"].tolist() == pytest.approx(covered_m2)

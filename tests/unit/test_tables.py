@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from scanplan import tables
+from scanplan import schemas, tables
 from scanplan.errors import StageError
 
 ROWS = {
@@ -22,7 +22,7 @@ ROWS = {
 @pytest.fixture
 def selection(tmp_path):
     path = tmp_path / "deep" / "selection.parquet"
-    tables.write(path, tables.SELECTION, ROWS)
+    tables.write(path, schemas.SELECTION, ROWS)
     return path
 
 
@@ -36,14 +36,14 @@ def scans(tmp_path):
 
 
 def test_what_is_written_is_read(selection):
-    rows = tables.read(selection, tables.SELECTION)
+    rows = tables.read(selection, schemas.SELECTION)
     assert {name: rows[name].tolist() for name in rows} == ROWS
     assert rows["scan_id"].dtype == np.int32
-    assert list(tables.read(selection, tables.SELECTION, ["gain_m2"])) == ["gain_m2"]
+    assert list(tables.read(selection, schemas.SELECTION, ["gain_m2"])) == ["gain_m2"]
 
 
 def test_the_same_rows_give_the_same_bytes(selection, tmp_path):
-    tables.write(tmp_path / "again.parquet", tables.SELECTION, ROWS)
+    tables.write(tmp_path / "again.parquet", schemas.SELECTION, ROWS)
     assert (tmp_path / "again.parquet").read_bytes() == selection.read_bytes()
 
 
@@ -80,16 +80,16 @@ def test_columns_and_order_are_checked_on_write(tmp_path, spoil):
     else:
         rows["rank"] = [2, 1, 3]
     with pytest.raises(ValueError, match="selection"):
-        tables.write(tmp_path / "s.parquet", tables.SELECTION, rows)
+        tables.write(tmp_path / "s.parquet", schemas.SELECTION, rows)
     assert list(tmp_path.iterdir()) == []
 
 
 def test_no_rows_only_where_allowed(tmp_path):
     empty = {name: [] for name in ROWS}
     with pytest.raises(StageError, match="no rows"):
-        tables.write(tmp_path / "s.parquet", tables.SELECTION, empty)
-    tables.write(tmp_path / "s.parquet", tables.SELECTION, empty, allow_empty=True)
-    assert tables.read(tmp_path / "s.parquet", tables.SELECTION, allow_empty=True)["rank"].size == 0
+        tables.write(tmp_path / "s.parquet", schemas.SELECTION, empty)
+    tables.write(tmp_path / "s.parquet", schemas.SELECTION, empty, allow_empty=True)
+    assert tables.read(tmp_path / "s.parquet", schemas.SELECTION, allow_empty=True)["rank"].size == 0
 
 
 def test_a_flipped_bit_is_noticed(tmp_path):
@@ -107,14 +107,14 @@ def test_a_flipped_bit_is_noticed(tmp_path):
 def test_a_truncated_file_is_refused(selection, size):
     selection.write_bytes(selection.read_bytes()[:size])
     with pytest.raises(StageError, match="damaged"):
-        tables.read(selection, tables.SELECTION)
+        tables.read(selection, schemas.SELECTION)
 
 
 def test_another_table_or_no_table_is_refused(selection, tmp_path):
     with pytest.raises(StageError, match="expected poses"):
-        tables.read(selection, tables.POSES)
+        tables.read(selection, schemas.POSES)
     with pytest.raises(StageError, match="does not exist"):
-        tables.read(tmp_path / "none.parquet", tables.POSES)
+        tables.read(tmp_path / "none.parquet", schemas.POSES)
 
 
 def test_hulls_say_that_they_are_local_metres(tmp_path):
@@ -123,6 +123,6 @@ def test_hulls_say_that_they_are_local_metres(tmp_path):
     import pyarrow.parquet as pq
 
     row = {"scan_id": [0], "cluster": [0], "n_points": [3], "area_m2": [0.5], "geometry": [b"\x01"]}
-    tables.write(tmp_path / "h.parquet", tables.HULLS, row)
+    tables.write(tmp_path / "h.parquet", schemas.HULLS, row)
     geo = json.loads(pq.read_metadata(tmp_path / "h.parquet").metadata[b"geo"])
     assert geo["columns"]["geometry"]["crs"] is None

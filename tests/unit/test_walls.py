@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 import toyrooms
-from scanplan import tables
+from scanplan import schemas, tables
 from scanplan.errors import StageError
 from scanplan.extraction import walls
 
@@ -113,14 +113,14 @@ def test_table_of_scans_with_and_without_walls(tmp_path):
     columns = walls.table([4, 7, 9], [one, none, one])
     assert columns["scan_id"].tolist() == [4, 4, 9, 9]
     assert columns["wall"].tolist() == [0, 1, 0, 1]
-    tables.write(tmp_path / "walls.parquet", tables.WALLS, columns)
-    assert tables.read(tmp_path / "walls.parquet", tables.WALLS)["x0_m"].tolist() == [1, 3, 1, 3]
+    tables.write(tmp_path / "walls.parquet", schemas.WALLS, columns)
+    assert tables.read(tmp_path / "walls.parquet", schemas.WALLS)["x0_m"].tolist() == [1, 3, 1, 3]
 
 
 def test_table_without_any_wall(tmp_path):
     columns = walls.table([4], [walls.assemble([], (0, 0, 0))])
-    tables.write(tmp_path / "walls.parquet", tables.WALLS, columns, allow_empty=True)
-    assert len(tables.read(tmp_path / "walls.parquet", tables.WALLS, allow_empty=True)["wall"]) == 0
+    tables.write(tmp_path / "walls.parquet", schemas.WALLS, columns, allow_empty=True)
+    assert len(tables.read(tmp_path / "walls.parquet", schemas.WALLS, allow_empty=True)["wall"]) == 0
     assert walls.summary(columns, 1, 12.0) == "1 scans, 0 walls, no wall at all, 12 ms a scan"
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan import se3, tables
+from scanplan import schemas, se3, tables
 from scanplan.errors import StageError
 
 _RERUN = "delete the results of this dataset and run again"
@@ -35,7 +35,7 @@ def read(path):
     StageError
         If there is none, or one has no pose.
     """
-    columns = tables.read(path, tables.REGISTRATION)
+    columns = tables.read(path, schemas.REGISTRATION)
     columns = {name: values[columns["kept"]] for name, values in columns.items()}
     pose = _matrices(columns)
     lost = np.count_nonzero(~np.isfinite(pose).all(axis=(1, 2)))
@@ -52,7 +52,7 @@ def prior(path, scans, origin):
     StageError
         If a scan has no pose there: the tables at `path` and `origin` are of different runs.
     """
-    columns = tables.read(path, tables.POSES)
+    columns = tables.read(path, schemas.POSES)
     columns = {name: values[columns["covered"]] for name, values in columns.items()}
     row = np.searchsorted(columns["scan_id"], scans.scan_ids)
     known = np.isin(scans.scan_ids, columns["scan_id"])
@@ -77,12 +77,12 @@ def rows_of(scan_ids, scans, path, origin):
 
 def order(path, scans, origin):
     """Return the rows of the scans in the order of a selection/<method>.parquet."""
-    return rows_of(tables.read(path, tables.SELECTION, ["rank", "scan_id"])["scan_id"], scans, path, origin)
+    return rows_of(tables.read(path, schemas.SELECTION, ["rank", "scan_id"])["scan_id"], scans, path, origin)
 
 
 def walls(path, scans, origin):
     """Return the columns of a walls/<extractor>.parquet, of kept scans alone; there may be no row."""
-    columns = tables.read(path, tables.WALLS, allow_empty=True)
+    columns = tables.read(path, schemas.WALLS, allow_empty=True)
     rows_of(columns["scan_id"], scans, path, origin)
     return columns
 
@@ -101,4 +101,4 @@ def ordered(best, scans):
 
 
 def _matrices(columns):
-    return se3.matrix(*(np.column_stack([columns[c] for c in names]) for names in (tables.XYZ, tables.QUAT)))
+    return se3.matrix(*(np.column_stack([columns[c] for c in names]) for names in (schemas.XYZ, schemas.QUAT)))

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from scanplan import se3, tables
+from scanplan import schemas, se3
 
 # half of the weight of a measurement that agrees
 INLIER_WEIGHT = 0.25
@@ -10,7 +10,7 @@ _SLIGHT = 1e-7
 
 
 def columns(result):
-    """Return the columns of tables.EDGES from a `multiway.Result`; no rows from None."""
+    """Return the columns of schemas.EDGES from a `multiway.Result`; no rows from None."""
     edges = [] if result is None else result.edges
     motion = np.array([edge.fit.target_from_source for edge in edges]).reshape(-1, 4, 4)
     xyz_m, quat_xyzw = se3.position_quaternion(motion)
@@ -19,8 +19,8 @@ def columns(result):
     fields = ("source", "target", "kind", "fitness", "rmse_m")
     return (
         {name: [getattr(edge, name) for edge in edges] for name in fields}
-        | dict(zip(tables.XYZ, xyz_m.T, strict=True))
-        | dict(zip(tables.QUAT, quat_xyzw.T, strict=True))
+        | dict(zip(schemas.XYZ, xyz_m.T, strict=True))
+        | dict(zip(schemas.QUAT, quat_xyzw.T, strict=True))
         | {
             "unobservable": [edge.fit.n_unobservable for edge in edges],
             "residual_m": np.linalg.norm(residual[:, :3], axis=1),

@@ -4,7 +4,7 @@ from collections import Counter
 
 import numpy as np
 
-from scanplan import se3, tables
+from scanplan import schemas, se3
 from scanplan.errors import StageError
 
 _FARTHEST_M = 10_000.0
@@ -30,10 +30,10 @@ def in_map(scan_id, xyz_m, world_from_sensor):
 
 
 def columns(scan_ids, t_ns, verdicts):
-    """Return the columns of tables.REGISTRATION from one `sequential.Verdict` per candidate."""
+    """Return the columns of schemas.REGISTRATION from one `sequential.Verdict` per candidate."""
     xyz_m, quat_xyzw = se3.position_quaternion(np.array([v.world_from_sensor for v in verdicts]))
     result = {"scan_id": scan_ids, "t_ns": t_ns} | {f: [getattr(v, f) for v in verdicts] for f in _FIELDS}
-    return result | dict(zip(tables.XYZ, xyz_m.T, strict=True)) | dict(zip(tables.QUAT, quat_xyzw.T, strict=True))
+    return result | dict(zip(schemas.XYZ, xyz_m.T, strict=True)) | dict(zip(schemas.QUAT, quat_xyzw.T, strict=True))
 
 
 def summary(verdicts, n_dropped):
@@ -66,5 +66,5 @@ def check_any_kept(verdicts, n_dropped, where):
 
 def poses(columns_of_poses):
     """Return (n, 4, 4) matrices, NaN where unknown, of a table with the columns of a pose."""
-    xyz_m, quat_xyzw = (np.column_stack([columns_of_poses[c] for c in names]) for names in (tables.XYZ, tables.QUAT))
+    xyz_m, quat_xyzw = (np.column_stack([columns_of_poses[c] for c in names]) for names in (schemas.XYZ, schemas.QUAT))
     return se3.matrix(xyz_m, quat_xyzw)

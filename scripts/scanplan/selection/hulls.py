@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 from scipy.cluster import vq
 
-from scanplan import tables
+from scanplan import schemas
 
 _LLOYD_ITERATIONS = 20
 _MOST_CLUSTERS = np.iinfo(np.int16).max
@@ -34,7 +34,7 @@ def cluster_hulls(scan_id, xyz_m, *, n_clusters, sample_size, seed):
     Returns
     -------
     dict of str to (m,) numpy.ndarray, 1 <= m <= `n_clusters`
-        The scan's rows of `tables.HULLS`.
+        The scan's rows of `schemas.HULLS`.
 
     Raises
     ------
@@ -61,7 +61,7 @@ def cluster_hulls(scan_id, xyz_m, *, n_clusters, sample_size, seed):
 
 def concatenated(parts):
     """Join the rows of several scans, in their order, to the columns of one table of hulls."""
-    return {name: np.concatenate([part[name] for part in parts]) for name in tables.HULLS.columns}
+    return {name: np.concatenate([part[name] for part in parts]) for name in schemas.HULLS.columns}
 
 
 def scan_polygons(columns):

@@ -61,7 +61,7 @@ def order(method, columns, *, seed, others=None, min_overlap=0.0, streaming_sett
     Returns
     -------
     dict of str to (n,) numpy.ndarray
-        The columns of `tables.SELECTION`. Areas are those of one convex hull per scan for `hull` and those of the
+        The columns of `schemas.SELECTION`. Areas are those of one convex hull per scan for `hull` and those of the
         clusters' hulls for the others; `bound_m2` at rank k is what no k scans, of any order, can exceed. `gain`,
         `covered` and `bound` are the same in the unit of the method's objective; areas for methods without one.
 
