@@ -23,7 +23,7 @@ _DRAWN = (
     *(f"figures/{f}.svg" for f in ("registration", "scans", "area", "walls")),
     "report.html",
 )
-_EVALUATION = ("walls", "walls_aligned", "oracle", "plan", "poses")
+_EVALUATION = ("walls", "walls_aligned", "oracle", "plan", "poses", "seconds")
 
 
 @dataclass(frozen=True)
