@@ -16,7 +16,7 @@ _PAIR_SIGMA_M = 0.045
 _LEAST_SHARE = 0.005
 _FACING = 0.5
 # metres and radians: an alignment that moves less has arrived; a rough one needs not arrive
-_STEP_DONE, _ROUGH_STEP_DONE = 1e-4, 2e-3
+_STEP_DONE, _ROUGH_STEP_DONE = 5e-4, 2e-3
 
 
 @dataclass(frozen=True)
