@@ -25,12 +25,19 @@ def test_each_visit_gives_one_link_and_the_nearest_come_first():
     xy = np.concatenate([np.concatenate([p, away + np.array([0, 10 * i])]) for i, p in enumerate(passes)])
     pairs = loops.pairs(xy, np.ones(len(xy), bool), radius_m=2.0, apart=3, most=2)
     assert [p for p in pairs if p[0] == 25] == [(25, 9), (25, 17)]
-    assert [p for p in loops.pairs(xy, np.ones(len(xy), bool), radius_m=2.0, apart=3, most=9) if p[0] == 25] == [(25, 1), (25, 9), (25, 17)]
+    assert [p for p in loops.pairs(xy, np.ones(len(xy), bool), radius_m=2.0, apart=3, most=9) if p[0] == 25] == [
+        (25, 1),
+        (25, 9),
+        (25, 17),
+    ]
 
 
 def test_standing_still_links_to_none_too_near_in_time():
     still = np.zeros((12, 2))
-    assert all(source - target > 4 for source, target in loops.pairs(still, np.ones(len(still), bool), radius_m=1.0, apart=4, most=3))
+    assert all(
+        source - target > 4
+        for source, target in loops.pairs(still, np.ones(len(still), bool), radius_m=1.0, apart=4, most=3)
+    )
     assert loops.pairs(still[:4], np.ones(4, bool), radius_m=1.0, apart=4, most=3) == []
 
 
