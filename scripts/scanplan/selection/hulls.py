@@ -88,7 +88,7 @@ def scan_polygons(columns):
 def scan_full_hulls(columns):
     """Return each scan's one convex hull, the thesis's baseline; see `scan_polygons`."""
     scan_ids, groups = _by_scan(columns)
-    hulls = shapely.convex_hull([shapely.geometrycollections(g) for g in groups])
+    hulls = shapely.convex_hull(np.array([shapely.geometrycollections(g) for g in groups], object))
     return scan_ids, np.where(shapely.get_dimensions(hulls) == 2, hulls, shapely.Polygon())
 
 
@@ -193,7 +193,7 @@ def _outer(xy_m):
 
 def _by_scan(columns):
     scan_ids, start = np.unique(columns["scan_id"], return_index=True)
-    return scan_ids, np.split(shapely.from_wkb(columns["geometry"]), start[1:])
+    return scan_ids, np.split(shapely.from_wkb(columns["geometry"]), start)[1:]
 
 
 def _array(geometries, empty):
