@@ -79,7 +79,7 @@ def extract(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
         )
         normal, offset_m, on_wall, spare = _gather(points, surfaces, free, line[:2], settings.inlier_m)
         reach_rad = _CORNER_REACH * np.deg2rad(settings.reach_deg)
-        ends = {"planar": planar, "top_m": top_m, "spare_xyz_m": spare, "reach_rad": reach_rad}
+        ends = {"planar": planar, "top_m": top_m, "spare_xyz_m": spare, "reach_rad": reach_rad, "scan_xyz_m": points}
         found = walls.cut(normal, offset_m, on_wall, settings, **ends)
         # twice as wide as what belongs to them, else noise leaves a second wall beside the first
         alike = -facing @ normal > _ALIKE

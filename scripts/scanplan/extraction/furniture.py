@@ -112,8 +112,11 @@ def _upright_walls(values, scan, limits):
     as_high = top_m[None, :] > top_m[:, None] - _LEVEL_M
     side_of_furniture = (outer & (~sound & as_high)[:, None]).any(axis=(1, 2)) & (length_m <= limits.furniture_depth_m)
     wall &= ~(side_of_furniture & lowish)
-    continued = (in_line(start_m, end_m, normal, limits) & wall & (length_m >= limits.stub_length_m)).any(axis=1)
-    return wall & ~((length_m < limits.stub_length_m) & lowish & ~closed & ~continued)
+    stub = length_m < limits.stub_length_m
+    wall &= ~(stub & lowish & ~closed)
+    # beyond a door a wall goes on, however short what is seen of it there, or however low where no outer corner shows
+    beyond_door = (in_line(start_m, end_m, normal, limits) & wall & ~stub).any(axis=1)
+    return wall | (beyond_door & (plain | (sound & tall)))
 
 
 def corners(start_m, end_m, normal, reach_m):
@@ -159,7 +162,7 @@ def in_front(start_m, end_m, normal, depth_m):
 def in_line(start_m, end_m, normal, limits):
     """Tell which faces are on one line with others, no farther than a door's width apart; (n, n) bool."""
     forward_m, gap_m = _placed(start_m, end_m, normal)
-    same = (normal @ normal.T > _PARALLEL) & (np.abs(forward_m) < sightlines.BEHIND_M)
+    same = (normal @ normal.T > _PARALLEL) & (np.abs(forward_m) <= sightlines.ON_M)
     return same & (gap_m <= limits.door_width_m) & ~np.eye(len(normal), dtype=bool)
 
 

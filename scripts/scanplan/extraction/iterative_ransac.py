@@ -66,7 +66,8 @@ def extract(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
             break
         found = left[inliers]
         if upright and np.hypot(*np.ptp(found[:, :2], axis=0)) >= settings.min_length_m:
-            rows += walls.cut(*lines.fit(found[:, :2]), found, settings, planar=planar, top_m=top_m)
+            ends = {"planar": planar, "top_m": top_m, "scan_xyz_m": points}
+            rows += walls.cut(*lines.fit(found[:, :2]), found, settings, **ends)
         left = left[~inliers]
     return walls.assemble(furniture.walls_among(rows, points, settings, planar=planar), sensor_xyz_m)
 

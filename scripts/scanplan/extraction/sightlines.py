@@ -13,10 +13,10 @@ _N_SECTORS = 72
 _SECTOR_RAD = 2 * np.pi / _N_SECTORS  # wider than what is between two firings
 _N_ROWS = 180  # elevations, in steps of 1 degree from -90 on
 _FLOOR_PERCENTILE = 1
-_ON_M = 0.08  # from the face: a few times the range noise, and a face's own roughness
+ON_M = 0.08  # from the face: a few times the range noise, and a face's own roughness
 BEHIND_M = 0.15  # a return farther behind a face is not its own
-_CLEAR_M = 0.03  # above a face's edge: the noise of a height
-_SKIRTING_M = 0.2  # above the floor: lower returns may be the floor's
+CLEAR_M = 0.03  # above a face's edge: the noise of a height
+SKIRTING_M = 0.2  # above the floor: lower returns may be the floor's
 _STRETCH_M = 0.3  # of a face's length: less may be a return of something else
 _GOOD_PART = 0.15  # of a face's length, likewise
 _EDGES_M = np.arange(0.4, 2.3, 0.1)  # heights that furniture may end at
@@ -105,7 +105,7 @@ def look(scan, start_m, end_m, low_m, high_m):
     ahead_m = scan.xyz_m[at, :2] @ away
     # where each ray crosses the plane of the face
     height_m = scan.xyz_m[at, 2] * (distance_m / np.maximum(ahead_m, 1e-6)) - scan.floor_m
-    on, beyond = np.abs(ahead_m - distance_m) <= _ON_M, ahead_m > distance_m + BEHIND_M
+    on, beyond = np.abs(ahead_m - distance_m) <= ON_M, ahead_m > distance_m + BEHIND_M
     if not on.any():
         return Sight(0.0, 0.0, 0.0, 0.0)
     n_columns = max(1, round(span_rad / _COLUMN_RAD))
@@ -116,7 +116,7 @@ def look(scan, start_m, end_m, low_m, high_m):
     length_m = np.diff(distance_m * np.tan(edges_rad))
     met_m, passed_m = _highest(column, height_m, on, n_columns), _highest(column, height_m, beyond, n_columns)
     top_m = _top(met_m, length_m)
-    raised = height_m > _SKIRTING_M
+    raised = height_m > SKIRTING_M
     through = (beyond & raised & (height_m < top_m)).sum() / max((on & raised).sum(), 1)
     inside = (height_m >= low_m - scan.floor_m) & (height_m <= high_m - scan.floor_m)
     returns = np.bincount(column[inside], minlength=n_columns)
@@ -132,11 +132,12 @@ def _highest(column, height_m, chosen, n_columns):
 
 
 def _top(met_m, length_m):
-    """Return the height up to which a face is seen over `_STRETCH_M` of its length, or else anywhere."""
+    """Return the height up to which a face is seen over `_STRETCH_M` of its length and in two columns, or anywhere."""
     order = np.argsort(-met_m, kind="stable")
     order = order[np.isfinite(met_m[order])]
     enough = np.searchsorted(np.cumsum(length_m[order]), _STRETCH_M)
-    return met_m[order[min(enough, len(order) - 1)]]
+    # the return of something else at an end may be all that a column has, which is long where it is seen at grazing
+    return met_m[order[min(max(enough, 1), len(order) - 1)]]
 
 
 def _over(met_m, passed_m, length_m):
@@ -145,7 +146,7 @@ def _over(met_m, passed_m, length_m):
     Of all heights at which a good part of the face is free, the one that divides best.
     """
     met = met_m > _EDGES_M[:, None]
-    free = (passed_m > _EDGES_M[:, None] + _CLEAR_M) & ~met & np.isfinite(met_m)
+    free = (passed_m > _EDGES_M[:, None] + CLEAR_M) & ~met & np.isfinite(met_m)
     met, free = met @ length_m, free @ length_m
     enough = free >= max(_STRETCH_M, _GOOD_PART * length_m.sum())
     return np.max(free[enough] / (free + met)[enough], initial=0.0)

@@ -8,10 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.errors import StageError
-from scanplan.extraction import furniture, sightlines
+from scanplan.extraction import furniture, runs, sightlines
 
 _HEIGHT_PERCENTILES = (2, 98)
-_PAUSE_SHARE = 1 / 2  # of the reach: wider than beams apart at grazing angles, narrower than a door
 _FIELDS = ("x0_m", "y0_m", "x1_m", "y1_m", "nx", "ny", "n_points", "rmse_m", "z_min_m", "z_max_m")
 
 
@@ -103,7 +102,7 @@ def door_top(xyz_m, limits, *, planar):
     return sightlines.floor(xyz_m) + limits.door_height_m
 
 
-def cut(normal, offset_m, xyz_m, limits, *, planar, top_m=np.inf, spare_xyz_m=None, reach_rad=0.0):
+def cut(normal, offset_m, xyz_m, limits, *, planar, top_m=np.inf, spare_xyz_m=None, reach_rad=0.0, scan_xyz_m=None):
     """Cut a line into segments where its points pause, and drop those that are no walls.
 
     Parameters
@@ -116,11 +115,15 @@ def cut(normal, offset_m, xyz_m, limits, *, planar, top_m=np.inf, spare_xyz_m=No
     limits : Limits
     planar : bool
     top_m : float
-        Points higher than this are the segment's where there are lower ones, but make none: see `door_top`.
+        Points higher than this make no segment, nor do those of sills lower than `min_height_m` that rays pass over:
+        see `door_top`. They prolong and join segments where no ray passes through the line below them.
     spare_xyz_m : (m, 3) float, optional
-        Further points near the line that found no segment but prolong one: at a corner no point has a clear normal.
+        Further points near the line that make no segment but prolong and join them: at a corner, and in narrow strips
+        above furniture, no point has a clear normal.
     reach_rad : float
-        How far, as an angle seen from the sensor, spare points may prolong a segment.
+        In the plane: how far, as an angle seen from the sensor, spare points may prolong a segment.
+    scan_xyz_m : (k, 3) float, optional
+        All points of the scan: where its rays pass.
 
     Returns
     -------
@@ -131,20 +134,36 @@ def cut(normal, offset_m, xyz_m, limits, *, planar, top_m=np.inf, spare_xyz_m=No
     normal, offset_m = sign * normal, sign * offset_m
     along = np.array([normal[1], -normal[0]])
     every = xyz_m if spare_xyz_m is None else np.vstack([xyz_m, spare_xyz_m])
-    where, every_where = xyz_m[xyz_m[:, 2] <= top_m, :2] @ along, every[:, :2] @ along
-    low_where = every_where[every[:, 2] <= top_m]
-    found = []
-    for first, last in _runs(where, limits.max_gap_m, limits.least_points(planar)):
-        first, last = _prolong(first, last, low_where, reach_rad, offset_m)
-        inside = every[(first <= every_where) & (every_where <= last)]
+    where_m = every[:, :2] @ along
+    makes = (np.arange(len(every)) < len(xyz_m)) & (every[:, 2] <= top_m)
+    if planar or scan_xyz_m is None:
+        found = runs.runs(where_m[makes], limits.max_gap_m, limits.least_points(planar))
+        found = [runs.prolonged(*run, where_m[every[:, 2] <= top_m], reach_rad, offset_m) for run in found]
+    else:
+        found = _upright_runs(normal, offset_m, where_m, every[:, 2], makes, limits, top_m, scan_xyz_m)
+    rows = []
+    for first, last in found:
+        inside = every[(first <= where_m) & (where_m <= last)]
         heights = np.sort(inside[:, 2])
         low, high = (heights[round(p / 100 * (len(heights) - 1))] for p in _HEIGHT_PERCENTILES)
         if last - first < limits.min_length_m or (not planar and high - low < limits.min_height_m):
             continue
         ends = [*(offset_m * normal + first * along), *(offset_m * normal + last * along)]
         rmse_m = np.sqrt(np.mean((inside[:, :2] @ normal - offset_m) ** 2))
-        found.append((*ends, *normal, len(inside), rmse_m, low, high))
-    return found
+        rows.append((*ends, *normal, len(inside), rmse_m, low, high))
+    return rows
+
+
+def _upright_runs(normal, offset_m, where_m, height_m, makes, limits, top_m, scan_xyz_m):
+    """Return the first and last of each run of points on a line in space; `makes` tells those that make one."""
+    if not makes.any():
+        return []
+    line = normal, offset_m, top_m - limits.door_height_m
+    sizes = {"least_m": limits.min_height_m, "door_m": limits.door_height_m}
+    columns = runs.columns(where_m, height_m, scan_xyz_m, line, **sizes)
+    column = columns.of(where_m)
+    found = runs.runs(where_m[makes & ~columns.is_open[column]], limits.max_gap_m, limits.min_points)
+    return runs.grown(found, where_m[columns.is_shut[column]], limits.max_gap_m, columns)
 
 
 def assemble(rows, sensor_xyz_m):
@@ -217,22 +236,3 @@ def _order(xyz_m):
     tied = mixed[order][1:] == mixed[order][:-1]
     # one number a point sorts faster than three, and seldom do different points share it
     return order if not tied.any() else np.lexsort([*xyz_m.T, mixed])
-
-
-def _runs(where_m, max_gap_m, min_points):
-    """Return the first and last of each run of positions without a gap, of runs of enough points."""
-    where_m = np.sort(where_m)
-    parts = np.split(where_m, np.flatnonzero(np.diff(where_m) > max_gap_m) + 1)
-    return [(p[0], p[-1]) for p in parts if len(p) >= max(min_points, 1)]
-
-
-def _prolong(first, last, where_m, reach_rad, offset_m):
-    """Move a segment's ends through positions that go on without a pause, within the reach of a neighbourhood."""
-    ends = []
-    for sign, end in ((-1, first), (1, last)):
-        reach_m = reach_rad * np.hypot(end, offset_m)
-        beyond = np.sort(sign * (where_m - end))
-        beyond = np.concatenate([[0.0], beyond[(beyond > 0) & (beyond <= reach_m)]])
-        pauses = np.flatnonzero(np.diff(beyond) > reach_m * _PAUSE_SHARE)
-        ends.append(end + sign * beyond[pauses[0] if len(pauses) else -1])
-    return ends
