@@ -114,9 +114,23 @@ def _upright_walls(values, scan, limits):
     wall &= ~(side_of_furniture & lowish)
     stub = length_m < limits.stub_length_m
     wall &= ~(stub & lowish & ~closed)
-    # beyond a door a wall goes on, however short what is seen of it there, or however low where no outer corner shows
-    beyond_door = (in_line(start_m, end_m, normal, limits) & wall & ~stub).any(axis=1)
-    return wall | (beyond_door & (plain | (sound & tall)))
+    # beyond a door a wall goes on, however short what is seen of it there; if it is low, what is between must be a door
+    beyond = in_line(start_m, end_m, normal, limits) & (wall & ~stub)
+    low = plain & ~tall & ~wall
+    wall |= sound & tall & beyond.any(axis=1)
+    for one, other in np.argwhere(beyond & low[:, None]):
+        wall[one] |= _door_between(values[one], values[other], scan, limits)
+    return wall
+
+
+def _door_between(one, other, scan, limits):
+    """Tell whether what is between two faces on one line is a door, or nothing."""
+    if (other[2:4] - one[0:2]) @ (one[2:4] - one[0:2]) > 0:
+        one, other = other, one
+    start_m, end_m = other[2:4], one[0:2]
+    if np.hypot(*(end_m - start_m)) <= limits.corner_m:
+        return True
+    return sightlines.leads_on(scan, start_m, end_m, limits.furniture_depth_m)
 
 
 def corners(start_m, end_m, normal, reach_m):

@@ -96,16 +96,13 @@ def look(scan, start_m, end_m, low_m, high_m):
     -------
     Sight
     """
-    way = (end_m - start_m) / np.hypot(*(end_m - start_m))
-    away = np.array([way[1], -way[0]])
-    distance_m = max(start_m @ away, 1e-6)
-    first_rad = np.arctan2(start_m[1], start_m[0])
-    span_rad = max((np.arctan2(end_m[1], end_m[0]) - first_rad) % (2 * np.pi), 1e-6)
-    at = _between(scan.azimuth_rad, first_rad, first_rad + span_rad)
-    ahead_m = scan.xyz_m[at, :2] @ away
-    # where each ray crosses the plane of the face
-    height_m = scan.xyz_m[at, 2] * (distance_m / np.maximum(ahead_m, 1e-6)) - scan.floor_m
-    on, beyond = np.abs(ahead_m - distance_m) <= ON_M, ahead_m > distance_m + BEHIND_M
+    away, distance_m = _plane(start_m, end_m)
+    at, first_rad, span_rad = _towards(scan, start_m, end_m)
+    ahead_m, height_m = _crossing(scan, at, away, distance_m)
+    beyond = ahead_m > distance_m + BEHIND_M
+    # at grazing incidence, what is a little behind the plane was met well beyond the face
+    slant = ahead_m / np.hypot(scan.xyz_m[at, 0], scan.xyz_m[at, 1])
+    on = np.abs(ahead_m - distance_m) <= np.clip(_STRETCH_M * slant, CLEAR_M, ON_M)
     if not on.any():
         return Sight(0.0, 0.0, 0.0, 0.0)
     n_columns = max(1, round(span_rad / _COLUMN_RAD))
@@ -122,6 +119,49 @@ def look(scan, start_m, end_m, low_m, high_m):
     returns = np.bincount(column[inside], minlength=n_columns)
     missing = _missing(scan, returns, edges_rad, distance_m, (low_m, high_m))
     return Sight(top_m, _over(met_m, passed_m, length_m), through, missing)
+
+
+def leads_on(scan, start_m, end_m, depth_m):
+    """Tell whether a gap in a wall leads on, as a door does, and not into a niche or between two cabinets.
+
+    Parameters
+    ----------
+    scan : View
+    start_m, end_m : (2,) float
+        The gap, the sensor to the left of the way.
+    depth_m : float
+        A niche is no deeper.
+
+    Returns
+    -------
+    bool
+        Whether a good part of the rays through it get deeper; true if there are none.
+    """
+    away, distance_m = _plane(start_m, end_m)
+    at, _, _ = _towards(scan, start_m, end_m)
+    ahead_m, height_m = _crossing(scan, at, away, distance_m)
+    behind_m = (ahead_m - distance_m)[(height_m > SKIRTING_M) & (ahead_m > distance_m + BEHIND_M)]
+    return not len(behind_m) or np.mean(behind_m > depth_m) > _GOOD_PART
+
+
+def _plane(start_m, end_m):
+    """Return the direction from the sensor square onto a face, and how far off its plane is."""
+    way = (end_m - start_m) / np.hypot(*(end_m - start_m))
+    away = np.array([way[1], -way[0]])
+    return away, max(start_m @ away, 1e-6)
+
+
+def _towards(scan, start_m, end_m):
+    """Return the returns between two directions, the first of them and the angle to the other."""
+    first_rad = np.arctan2(start_m[1], start_m[0])
+    span_rad = max((np.arctan2(end_m[1], end_m[0]) - first_rad) % (2 * np.pi), 1e-6)
+    return _between(scan.azimuth_rad, first_rad, first_rad + span_rad), first_rad, span_rad
+
+
+def _crossing(scan, at, away, distance_m):
+    """Return how far ahead returns are, and at what height above the floor their rays cross the plane."""
+    ahead_m = scan.xyz_m[at, :2] @ away
+    return ahead_m, scan.xyz_m[at, 2] * (distance_m / np.maximum(ahead_m, 1e-6)) - scan.floor_m
 
 
 def _highest(column, height_m, chosen, n_columns):
