@@ -66,7 +66,7 @@ def extract(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
     points = walls.around_sensor(xyz_m, sensor_xyz_m)
     surfaces = _surfaces(points, planar, settings)
     cells, facing = surfaces.cells, surfaces.facing
-    top_m = walls.door_top(points, settings, planar=planar)
+    scan = walls.sights(points, planar=planar)
     free = surfaces.upright.copy()
     rng = np.random.default_rng([settings.seed, scan_id])
     rows = []
@@ -79,13 +79,12 @@ def extract(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
         )
         normal, offset_m, on_wall, spare = _gather(points, surfaces, free, line[:2], settings.inlier_m)
         reach_rad = _CORNER_REACH * np.deg2rad(settings.reach_deg)
-        ends = {"planar": planar, "top_m": top_m, "spare_xyz_m": spare, "reach_rad": reach_rad, "scan_xyz_m": points}
-        found = walls.cut(normal, offset_m, on_wall, settings, **ends)
+        found = walls.cut(normal, offset_m, on_wall, settings, scan=scan, spare_xyz_m=spare, reach_rad=reach_rad)
         # twice as wide as what belongs to them, else noise leaves a second wall beside the first
         alike = -facing @ normal > _ALIKE
         free &= ~(alike & _beside(cells.mean_m[:, :2], found, _WIDE * settings.inlier_m))
         rows += found
-    return walls.assemble(furniture.walls_among(rows, points, settings, planar=planar), sensor_xyz_m)
+    return walls.assemble(furniture.walls_among(rows, scan, settings), sensor_xyz_m)
 
 
 def _clusters(surfaces, bandwidth_m):

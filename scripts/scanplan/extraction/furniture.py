@@ -64,18 +64,16 @@ class Limits:
     corner_m: float
 
 
-def walls_among(rows, xyz_m, limits, *, planar):
+def walls_among(rows, scan, limits):
     """Keep the rows that are walls.
 
     Parameters
     ----------
     rows : list of tuple
         As `walls.cut` gives them, relative to the sensor.
-    xyz_m : (n, 3) float
-        All points of the scan, relative to the sensor.
+    scan : sightlines.View, optional
+        Of all points of the scan. Without it, in the plane, only the scatter is judged: no ray passes over anything.
     limits : Limits
-    planar : bool
-        In the plane only the scatter is judged: no ray passes over anything.
 
     Returns
     -------
@@ -84,7 +82,7 @@ def walls_among(rows, xyz_m, limits, *, planar):
     if not rows:
         return rows
     values = np.array(rows, float)
-    sound = values[:, 7] <= limits.max_rmse_m if planar else _upright_walls(values, sightlines.view(xyz_m), limits)
+    sound = values[:, 7] <= limits.max_rmse_m if scan is None else _upright_walls(values, scan, limits)
     return [row for row, good in zip(rows, sound.tolist(), strict=True) if good]
 
 

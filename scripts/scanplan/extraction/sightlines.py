@@ -20,6 +20,7 @@ SKIRTING_M = 0.2  # above the floor: lower returns may be the floor's
 _STRETCH_M = 0.3  # of a face's length: less may be a return of something else
 _GOOD_PART = 0.15  # of a face's length, likewise
 _EDGES_M = np.arange(0.4, 2.3, 0.1)  # heights that furniture may end at
+_LEAST_M = 1e-6
 _EDGE_ON_RAD = np.deg2rad(89.5)
 _GRAZING_RAD = np.deg2rad(75)  # from here on returns get lost
 
@@ -42,6 +43,26 @@ class View:
     xyz_m: np.ndarray
     floor_m: float
     usual: np.ndarray
+
+
+@dataclass(frozen=True)
+class Crossings:
+    """Where the rays of some returns cross the upright plane of a line.
+
+    Attributes
+    ----------
+    within_m : (2, k) float64
+        The stretch along the line in which a ray is in the plane or no more than `ON_M` behind it: least, most.
+    height_m : (k,) float64
+        Above the floor, where it crosses the plane.
+    behind, before : (k,) bool
+        Whether it ends farther than `ON_M` behind the plane, or before it.
+    """
+
+    within_m: np.ndarray
+    height_m: np.ndarray
+    behind: np.ndarray
+    before: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -121,6 +142,37 @@ def look(scan, start_m, end_m, low_m, high_m):
     return Sight(top_m, _over(met_m, passed_m, length_m), through, missing)
 
 
+def crossings(scan, normal, offset_m, stretch_m):
+    """Find where rays cross the plane of a line, whether they end before, on or behind it.
+
+    ASSUME no wall is thinner than `ON_M`: where a ray is no farther behind the plane, there is none. Of a doorway at
+    grazing incidence rays may show no more than the reveal.
+
+    Parameters
+    ----------
+    scan : View
+    normal : (2,) float
+        Towards the sensor.
+    offset_m : float
+        normal . xy = offset; not positive.
+    stretch_m : (2,) float
+        The part of the line to look at, measured along (normal y, - normal x) from the foot of the perpendicular.
+
+    Returns
+    -------
+    Crossings
+    """
+    away, along, distance_m = -normal, np.array([normal[1], -normal[0]]), max(-offset_m, _LEAST_M)
+    start_m, end_m = distance_m * away + stretch_m[0] * along, distance_m * away + stretch_m[1] * along
+    at = _towards(scan, start_m, end_m)[0]
+    ahead_m, height_m = _crossing(scan, at, away, distance_m)
+    slope = (scan.xyz_m[at, :2] @ along) / np.maximum(ahead_m, _LEAST_M)
+    behind, before = ahead_m > distance_m + ON_M, ahead_m < distance_m - ON_M
+    at_m = slope * distance_m
+    deep_m = at_m + slope * (ON_M * behind)
+    return Crossings(np.stack([np.minimum(at_m, deep_m), np.maximum(at_m, deep_m)]), height_m, behind, before)
+
+
 def leads_on(scan, start_m, end_m, depth_m):
     """Tell whether a gap in a wall leads on, as a door does, and not into a niche or between two cabinets.
 
@@ -148,7 +200,7 @@ def _plane(start_m, end_m):
     """Return the direction from the sensor square onto a face, and how far off its plane is."""
     way = (end_m - start_m) / np.hypot(*(end_m - start_m))
     away = np.array([way[1], -way[0]])
-    return away, max(start_m @ away, 1e-6)
+    return away, max(start_m @ away, _LEAST_M)
 
 
 def _towards(scan, start_m, end_m):
@@ -161,7 +213,7 @@ def _towards(scan, start_m, end_m):
 def _crossing(scan, at, away, distance_m):
     """Return how far ahead returns are, and at what height above the floor their rays cross the plane."""
     ahead_m = scan.xyz_m[at, :2] @ away
-    return ahead_m, scan.xyz_m[at, 2] * (distance_m / np.maximum(ahead_m, 1e-6)) - scan.floor_m
+    return ahead_m, scan.xyz_m[at, 2] * (distance_m / np.maximum(ahead_m, _LEAST_M)) - scan.floor_m
 
 
 def _highest(column, height_m, chosen, n_columns):
@@ -212,9 +264,9 @@ def _usual(azimuth_rad, xyz_m):
 
 
 def _between(azimuth_rad, first_rad, last_rad):
-    """Return the indices of sorted azimuths from one direction on to another, which may be beyond pi."""
+    """Return the index, a slice if it can be, of sorted azimuths from one direction on to another, maybe beyond pi."""
     begin = np.searchsorted(azimuth_rad, first_rad, "left")
     if last_rad <= np.pi:
-        return np.arange(begin, np.searchsorted(azimuth_rad, last_rad, "right"))
+        return slice(begin, np.searchsorted(azimuth_rad, last_rad, "right"))
     end = np.searchsorted(azimuth_rad, last_rad - 2 * np.pi, "right")
     return np.concatenate([np.arange(begin, len(azimuth_rad)), np.arange(end)])

@@ -102,8 +102,16 @@ def door_top(xyz_m, limits, *, planar):
     return sightlines.floor(xyz_m) + limits.door_height_m
 
 
-def cut(normal, offset_m, xyz_m, limits, *, planar, top_m=np.inf, spare_xyz_m=None, reach_rad=0.0, scan_xyz_m=None):
+def sights(xyz_m, *, planar):
+    """Return what the rays of a scan's points (n, 3) show, for `cut`; None in the plane or where there is no point."""
+    return None if planar or len(xyz_m) == 0 else sightlines.view(xyz_m)
+
+
+def cut(normal, offset_m, xyz_m, limits, *, scan=None, spare_xyz_m=None, reach_rad=0.0):
     """Cut a line into segments where its points pause, and drop those that are no walls.
+
+    In space, points higher than doors make no segment, nor do those of a sill lower than `min_height_m` that rays pass
+    over. The former, and spare points, prolong and join segments where rays end and none passes through.
 
     Parameters
     ----------
@@ -113,17 +121,13 @@ def cut(normal, offset_m, xyz_m, limits, *, planar, top_m=np.inf, spare_xyz_m=No
     xyz_m : (n, 3) float
         Points on the line, relative to the sensor.
     limits : Limits
-    planar : bool
-    top_m : float
-        Points higher than this make no segment, nor do those of sills lower than `min_height_m` that rays pass over:
-        see `door_top`. They prolong and join segments where no ray passes through the line below them.
+    scan : sightlines.View, optional
+        Of all points of the scan; None in the plane.
     spare_xyz_m : (m, 3) float, optional
-        Further points near the line that make no segment but prolong and join them: at a corner, and in narrow strips
-        above furniture, no point has a clear normal.
+        Further points near the line, that make no segment: at a corner and in a narrow strip above furniture none has
+        a clear normal.
     reach_rad : float
         In the plane: how far, as an angle seen from the sensor, spare points may prolong a segment.
-    scan_xyz_m : (k, 3) float, optional
-        All points of the scan: where its rays pass.
 
     Returns
     -------
@@ -134,19 +138,18 @@ def cut(normal, offset_m, xyz_m, limits, *, planar, top_m=np.inf, spare_xyz_m=No
     normal, offset_m = sign * normal, sign * offset_m
     along = np.array([normal[1], -normal[0]])
     every = xyz_m if spare_xyz_m is None else np.vstack([xyz_m, spare_xyz_m])
-    where_m = every[:, :2] @ along
-    makes = (np.arange(len(every)) < len(xyz_m)) & (every[:, 2] <= top_m)
-    if planar or scan_xyz_m is None:
-        found = runs.runs(where_m[makes], limits.max_gap_m, limits.least_points(planar))
-        found = [runs.prolonged(*run, where_m[every[:, 2] <= top_m], reach_rad, offset_m) for run in found]
+    where_m, n = every[:, :2] @ along, len(xyz_m)
+    if scan is None:
+        found = runs.runs(where_m[:n], limits.max_gap_m, limits.min_points_planar)
+        found = [runs.prolonged(*run, where_m, reach_rad, offset_m) for run in found]
     else:
-        found = _upright_runs(normal, offset_m, where_m, every[:, 2], makes, limits, top_m, scan_xyz_m)
+        found = _upright_runs(scan, normal, offset_m, where_m, every[:, 2] - scan.floor_m, n, limits)
     rows = []
     for first, last in found:
         inside = every[(first <= where_m) & (where_m <= last)]
         heights = np.sort(inside[:, 2])
         low, high = (heights[round(p / 100 * (len(heights) - 1))] for p in _HEIGHT_PERCENTILES)
-        if last - first < limits.min_length_m or (not planar and high - low < limits.min_height_m):
+        if last - first < limits.min_length_m or (scan is not None and high - low < limits.min_height_m):
             continue
         ends = [*(offset_m * normal + first * along), *(offset_m * normal + last * along)]
         rmse_m = np.sqrt(np.mean((inside[:, :2] @ normal - offset_m) ** 2))
@@ -154,15 +157,15 @@ def cut(normal, offset_m, xyz_m, limits, *, planar, top_m=np.inf, spare_xyz_m=No
     return rows
 
 
-def _upright_runs(normal, offset_m, where_m, height_m, makes, limits, top_m, scan_xyz_m):
-    """Return the first and last of each run of points on a line in space; `makes` tells those that make one."""
-    if not makes.any():
+def _upright_runs(scan, normal, offset_m, where_m, height_m, n_own, limits):
+    """Return the first and last of each run of points on a line in space; the first `n_own` are its own."""
+    if n_own == 0:
         return []
-    line = normal, offset_m, top_m - limits.door_height_m
-    sizes = {"least_m": limits.min_height_m, "door_m": limits.door_height_m}
-    columns = runs.columns(where_m, height_m, scan_xyz_m, line, **sizes)
+    sizes = {"sill_m": limits.min_height_m, "door_m": limits.door_height_m}
+    columns = runs.columns(scan, normal, offset_m, where_m, height_m, **sizes)
     column = columns.of(where_m)
-    found = runs.runs(where_m[makes & ~columns.is_open[column]], limits.max_gap_m, limits.min_points)
+    makes = (height_m <= limits.door_height_m) & ~columns.is_open[column]
+    found = runs.runs(where_m[:n_own][makes[:n_own]], limits.max_gap_m, limits.min_points)
     return runs.grown(found, where_m[columns.is_shut[column]], limits.max_gap_m, columns)
 
 
