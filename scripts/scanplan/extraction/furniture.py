@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan.extraction import sightlines
+from scanplan.extraction import rays, sightlines
 
 _PARALLEL = np.cos(np.deg2rad(10))
 _LEVEL_M = 0.15  # tops that differ less are one
@@ -71,7 +71,7 @@ def walls_among(rows, scan, limits):
     ----------
     rows : list of tuple
         As `walls.cut` gives them, relative to the sensor.
-    scan : sightlines.View, optional
+    scan : rays.View, optional
         Of all points of the scan. Without it, in the plane, only the scatter is judged: no ray passes over anything.
     limits : Limits
 
@@ -174,7 +174,7 @@ def in_front(start_m, end_m, normal, depth_m):
 def in_line(start_m, end_m, normal, limits):
     """Tell which faces are on one line with others, no farther than a door's width apart; (n, n) bool."""
     forward_m, gap_m = _placed(start_m, end_m, normal)
-    same = (normal @ normal.T > _PARALLEL) & (np.abs(forward_m) <= sightlines.ON_M)
+    same = (normal @ normal.T > _PARALLEL) & (np.abs(forward_m) <= rays.ON_M)
     return same & (gap_m <= limits.door_width_m) & ~np.eye(len(normal), dtype=bool)
 
 

@@ -4,20 +4,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan.extraction import sightlines
+from scanplan.extraction import rays
 
 _COLUMN_M = 0.1
+_MOST_COLUMNS = 10_000  # farther than 1 km is no building
 _PAUSE_SHARE = 1 / 2  # of the reach: wider than beams apart at grazing angles, narrower than a door
 
 
 @dataclass(frozen=True)
 class Columns:
-    """What rays tell of the columns of a line, 0.1 m each.
+    """What rays tell of the columns of a line.
 
     Attributes
     ----------
-    first_m : float
-        Where the first column begins.
+    first_m, width_m : float
+        Where the first column begins, and how wide each is.
     is_open : (n,) bool
         Rays pass through, below the top of a door and above any sill.
     is_shut : (n,) bool
@@ -25,12 +26,13 @@ class Columns:
     """
 
     first_m: float
+    width_m: float
     is_open: np.ndarray
     is_shut: np.ndarray
 
     def of(self, where_m):
         """Return the columns of positions (k,) that are within them."""
-        return ((where_m - self.first_m) / _COLUMN_M).astype(np.int64)
+        return ((where_m - self.first_m) / self.width_m).astype(np.int64)
 
     def open_between(self, where_m):
         """Tell between which of consecutive positions (k,), rising, columns are open: (k - 1,) bool."""
@@ -44,7 +46,7 @@ def columns(scan, normal, offset_m, where_m, height_m, *, sill_m, door_m):
 
     Parameters
     ----------
-    scan : sightlines.View
+    scan : rays.View
     normal : (2,) float
         Of the line, towards the sensor.
     offset_m : float
@@ -60,18 +62,20 @@ def columns(scan, normal, offset_m, where_m, height_m, *, sill_m, door_m):
     -------
     Columns
     """
-    first_m, n = where_m.min(), int(np.ptp(where_m) / _COLUMN_M) + 1
+    first_m, width_m = where_m.min(), max(_COLUMN_M, np.ptp(where_m) / _MOST_COLUMNS)
+    n = int(np.ptp(where_m) / width_m) + 1
     low = height_m <= door_m
     top_m = np.full(n, -np.inf)
-    np.maximum.at(top_m, ((where_m[low] - first_m) / _COLUMN_M).astype(np.int64), height_m[low])
-    rays = sightlines.crossings(scan, normal, offset_m, (first_m, first_m + n * _COLUMN_M))
-    raised = (rays.height_m > sightlines.SKIRTING_M) & (rays.height_m <= door_m)
-    begin, end = np.clip((rays.within_m - first_m) / _COLUMN_M, 0, n - 1).astype(np.int64)
-    through = raised & rays.behind & (rays.height_m > top_m[begin] + sightlines.CLEAR_M)
-    change = np.bincount(begin[through], minlength=n + 1) - np.bincount(end[through] + 1, minlength=n + 1)
+    np.maximum.at(top_m, ((where_m[low] - first_m) / width_m).astype(np.int64), height_m[low])
+    crossed = rays.crossings(scan, normal, offset_m, (first_m, first_m + n * width_m))
+    raised = (crossed.height_m > rays.SKIRTING_M) & (crossed.height_m <= door_m)
+    at, until = (np.clip((m - first_m) / width_m, 0, n - 1).astype(np.int64) for m in (crossed.at_m, crossed.until_m))
+    through = raised & crossed.behind & (crossed.height_m > top_m[at] + rays.CLEAR_M)
+    begin, end = np.minimum(at, until)[through], np.maximum(at, until)[through]
+    change = np.bincount(begin, minlength=n + 1) - np.bincount(end + 1, minlength=n + 1)
     is_open = (np.cumsum(change)[:n] > 0) & (top_m < sill_m)
-    stopped = np.bincount(begin[raised & rays.before], minlength=n) > 0
-    return Columns(first_m, is_open, ~is_open & (stopped | np.isfinite(top_m)))
+    stopped = np.bincount(at[raised & crossed.before], minlength=n) > 0
+    return Columns(first_m, width_m, is_open, ~is_open & (stopped | np.isfinite(top_m)))
 
 
 def runs(where_m, max_gap_m, min_points):

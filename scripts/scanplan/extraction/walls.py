@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.errors import StageError
-from scanplan.extraction import furniture, runs, sightlines
+from scanplan.extraction import furniture, rays, runs
 
 _HEIGHT_PERCENTILES = (2, 98)
 _FIELDS = ("x0_m", "y0_m", "x1_m", "y1_m", "nx", "ny", "n_points", "rmse_m", "z_min_m", "z_max_m")
@@ -99,12 +99,12 @@ def door_top(xyz_m, limits, *, planar):
     """Return the height above which points bridge no gap, in the frame of the points (n, 3); infinite in the plane."""
     if planar or len(xyz_m) == 0:
         return np.inf
-    return sightlines.floor(xyz_m) + limits.door_height_m
+    return rays.floor(xyz_m) + limits.door_height_m
 
 
 def sights(xyz_m, *, planar):
     """Return what the rays of a scan's points (n, 3) show, for `cut`; None in the plane or where there is no point."""
-    return None if planar or len(xyz_m) == 0 else sightlines.view(xyz_m)
+    return None if planar or len(xyz_m) == 0 else rays.view(xyz_m)
 
 
 def cut(normal, offset_m, xyz_m, limits, *, scan=None, spare_xyz_m=None, reach_rad=0.0):
@@ -121,7 +121,7 @@ def cut(normal, offset_m, xyz_m, limits, *, scan=None, spare_xyz_m=None, reach_r
     xyz_m : (n, 3) float
         Points on the line, relative to the sensor.
     limits : Limits
-    scan : sightlines.View, optional
+    scan : rays.View, optional
         Of all points of the scan; None in the plane.
     spare_xyz_m : (m, 3) float, optional
         Further points near the line, that make no segment: at a corner and in a narrow strip above furniture none has
