@@ -3,18 +3,11 @@
 import numpy as np
 import pytest
 
+from exactsensor import EXACT
 from scanplan.errors import StageError
 from scanplan.simulation import sensors
 
 COMMON = {"rate_hz": 10.0, "sweep": True, "min_range_m": 0.3, "max_range_m": 100.0}
-EXACT = {
-    "noise_m": 0.0,
-    "bias_m": 0.0,
-    "quantum_m": 0.0,
-    "grazing_from_deg": 90.0,
-    "glass_pass": 1.0,
-    "glass_drop": 0.0,
-}
 
 
 def test_vlp16_has_its_sixteen_beams_and_turns_clockwise():

@@ -98,13 +98,7 @@ def seen(cells, outer_m, position_m, *, max_range_m):
     -------
     (c,) bool
     """
-    ends = np.concatenate([cells.faces_m, outer_m]) - position_m
-    angle = np.arctan2(ends[:, :, 1], ends[:, :, 0])
-    turn = (angle[:, 1] - angle[:, 0] + np.pi) % (2 * np.pi) - np.pi
-    begin = np.where(turn > 0, angle[:, 0], angle[:, 1])
-    finish = np.where(turn > 0, angle[:, 1], angle[:, 0])
-    edges = np.unique(angle)
-    nearest = _nearest(edges, begin, finish, ends)
+    ends, edges, nearest = _sectors(np.concatenate([cells.faces_m, outer_m]), position_m)
     # only faces that are nearest somewhere have cells to look at
     candidate = np.zeros(len(ends), bool)
     candidate[nearest[nearest >= 0]] = True
@@ -133,12 +127,7 @@ def view(faces_m, position_m, *, open_m):
     (p, 2) float64
         Corners, counter-clockwise.
     """
-    ends = faces_m - position_m
-    angle = np.arctan2(ends[:, :, 1], ends[:, :, 0])
-    turn = (angle[:, 1] - angle[:, 0] + np.pi) % (2 * np.pi) - np.pi
-    begin, finish = np.where(turn > 0, angle.T, angle.T[::-1])
-    edges = np.unique(angle)
-    nearest = _nearest(edges, begin, finish, ends)
+    ends, edges, nearest = _sectors(faces_m, position_m)
     beam = np.column_stack([edges, np.append(edges[1:], edges[0])])
     ray = np.stack([np.cos(beam), np.sin(beam)], axis=-1)
     start, way = ends[nearest, 0][:, None], (ends[:, 1] - ends[:, 0])[nearest][:, None]
@@ -167,6 +156,16 @@ def thinned(positions_m, step_m):
         if np.hypot(*(positions_m[i] - positions_m[taken[-1]])) >= step_m:
             taken.append(i)
     return np.array(taken)
+
+
+def _sectors(faces_m, position_m):
+    """Return the ends of faces from a place, the directions of all ends, and the nearest face from each to the next."""
+    ends = faces_m - position_m
+    angle = np.arctan2(ends[:, :, 1], ends[:, :, 0])
+    turn = (angle[:, 1] - angle[:, 0] + np.pi) % (2 * np.pi) - np.pi
+    begin, finish = np.where(turn > 0, angle.T, angle.T[::-1])
+    edges = np.unique(angle)
+    return ends, edges, _nearest(edges, begin, finish, ends)
 
 
 def _nearest(edges, begin, finish, ends):
