@@ -120,6 +120,18 @@ def test_a_wall_goes_on_between_a_counter_and_the_cabinets_above_it():
     assert len(hidden) == 2
 
 
+def test_a_shelf_on_the_line_of_a_wall_joins_its_pieces_and_the_floor_does_not():
+    """The sensor is 1.5 m above the floor; between y = -0.6 and 0.6 it sees a shelf of 1 m height, or the floor."""
+    fine = np.arange(0, 1, 0.025)
+    along, up = np.meshgrid(np.r_[-3 + 2.4 * fine, 0.6 + 2.4 * fine], -1.5 + 2.4 * fine)
+    pieces = np.column_stack([np.full(along.size, 4.0), along.ravel(), up.ravel()])
+    deep, wide = np.meshgrid(3.4 + 0.62 * fine, -0.6 + 1.2 * fine)
+    shelf = np.column_stack([deep.ravel(), wide.ravel(), np.full(deep.size, -0.5)])
+    floor = np.column_stack([deep.ravel(), wide.ravel(), np.full(deep.size, -1.5)])
+    assert len(extract(np.vstack([pieces, shelf, floor]), (0, 0, 0))) == 1
+    assert len(extract(np.vstack([pieces, floor]), (0, 0, 0))) == 2
+
+
 def test_a_round_wall_becomes_chords():
     angle = np.linspace(-1.2, 1.2, 200)
     corners = 5 * np.column_stack([np.cos(angle), np.sin(angle)])
