@@ -120,11 +120,11 @@ def test_in_the_plane_spare_points_prolong_within_reach_and_no_farther():
     assert rows[0][6] == 12
 
 
-def test_in_space_spare_points_prolong_up_to_a_gap_and_to_an_opening():
-    spare = upright([1.4, 1.8, 2.2, 2.8], z=(0.5,))
-    assert ends(cut(upright([0, 0.5, 1]), spare=spare)) == [(0, 2.2)]
-    through = np.array([(4.0, 4.04, 1.2)])
-    assert ends(cut(upright([0, 0.5, 1]), spare=spare, others=through)) == [(0, 1.8)]
+def test_in_space_spare_points_prolong_up_to_a_pause_and_to_an_opening():
+    spare = upright([1.2, 1.4, 1.6, 2.0], z=(0.5,))
+    assert ends(cut(upright([0, 0.5, 1]), spare=spare)) == [(0, 1.6)]
+    through = np.array([(4.0, 3.04, 1.2)])
+    assert ends(cut(upright([0, 0.5, 1]), spare=spare, others=through)) == [(0, 1.4)]
     assert cut(upright([0]), spare=spare) == []
 
 

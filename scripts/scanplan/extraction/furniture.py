@@ -45,9 +45,9 @@ class Limits:
     stub_length_m : float
         Shorter faces are walls only where they go on beyond a door or end in inner corners on both sides.
     door_width_m : float
-        Walls on one line no farther apart than this are pieces of one.
+        Walls on one line no farther apart than this are pieces of one, if what is between leads on.
     corner_m : float
-        Ends no farther apart than this meet.
+        Ends no farther apart than this meet, and what prolongs a face pauses for no longer.
     """
 
     max_rmse_m: float

@@ -111,7 +111,8 @@ def cut(normal, offset_m, xyz_m, limits, *, scan=None, spare_xyz_m=None, reach_r
     """Cut a line into segments where its points pause, and drop those that are no walls.
 
     In space, points higher than doors make no segment, nor do those of a sill lower than `min_height_m` that rays pass
-    over. The former, and spare points, prolong and join segments where rays end and none passes through.
+    over. The former, and spare points, prolong and join segments where rays end and none passes through, up to a pause of
+    `corner_m`: a strip of wall above furniture is as dense as its beam.
 
     Parameters
     ----------
@@ -166,7 +167,7 @@ def _upright_runs(scan, normal, offset_m, where_m, height_m, n_own, limits):
     column = columns.of(where_m)
     makes = (height_m <= limits.door_height_m) & ~columns.is_open[column]
     found = runs.runs(where_m[:n_own][makes[:n_own]], limits.max_gap_m, limits.min_points)
-    return runs.grown(found, where_m[columns.is_shut[column]], limits.max_gap_m, columns)
+    return runs.grown(found, where_m[columns.is_shut[column]], limits.corner_m, columns)
 
 
 def assemble(rows, sensor_xyz_m):
