@@ -111,8 +111,8 @@ def cut(normal, offset_m, xyz_m, limits, *, scan=None, spare_xyz_m=None, reach_r
     """Cut a line into segments where its points pause, and drop those that are no walls.
 
     In space, points higher than doors make no segment, nor do those of a sill lower than `min_height_m` that rays pass
-    over. The former, and spare points, prolong and join segments where rays end and none passes through, up to a pause of
-    `corner_m`: a strip of wall above furniture is as dense as its beam.
+    over. The former, and spare points, prolong and join segments where rays end and none passes through, with pauses up
+    to `corner_m`: a strip of wall above furniture is as dense as its beam.
 
     Parameters
     ----------
