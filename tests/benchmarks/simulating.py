@@ -39,8 +39,8 @@ def bench(root, settings):
         n, size = len(files[2].read_text().splitlines()), files[0].stat().st_size
     rays = n * 1800 * 16
     print(
-        f"simulation: {n:,} scans, {size / 1e9:.1f} GB in {seconds:.1f} s:"
-        f" {rays / seconds / 1e6:.1f} million rays a second, cast and written on {_THREADS} cores; peak memory {most.stop() / 1e6:.0f} MB with both workers",
+        f"simulation: {n:,} scans, {size / 1e9:.1f} GB in {seconds:.1f} s: {rays / seconds / 1e6:.1f} million rays a"
+        f" second, cast and written on {_THREADS} cores; peak memory {most.stop() / 1e6:.0f} MB with both workers",
         flush=True,
     )
 
