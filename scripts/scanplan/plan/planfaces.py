@@ -20,11 +20,14 @@ class Traced:
     n_lines : int
     n_dropped : int
         Lines of which nothing is left: too little seen, furniture, or drawn by a stronger one.
+    panes : list of (faceline.Line, float, float)
+        From where to where along a line there is glass.
     """
 
     stretches: list
     n_lines: int
     n_dropped: int
+    panes: list
 
 
 def trace(pieces, rays, merging, reading):
@@ -56,7 +59,8 @@ def trace(pieces, rays, merging, reading):
     found = [f for f in found if f.length_m >= _STUB_M]
     met = facepieces.meet_at_corners(found, corner_m=merging.corner_m)
     met = [f for f in _without_doubles(met, merging) if f.length_m >= _STUB_M]
-    return Traced(met, len(seen), len(seen) - len({id(f.seen) for f in met}))
+    lost = [(s.line, *span_m) for s in seen for span_m in s.framed_m.tolist()]
+    return Traced(met, len(seen), len(seen) - len({id(f.seen) for f in met}), lost)
 
 
 def _seen(group, rays, reading):

@@ -32,6 +32,7 @@ TABLES = {
 }
 """The tables of a plan by the names of their files."""
 _THICKNESS_M = 0.1
+_NEAR_M = 0.1
 
 
 @dataclass(frozen=True)
@@ -123,8 +124,9 @@ def make(segments, rays, track_m, t_ns, settings):
     )
     unpaired_m = _usual_thickness_m(found)
     stars = freespace.visible(rays)
+    panes = _panes(traced.panes, found, settings.openings, unpaired_m)
     enclosed = rooms.find(
-        *(found, stars, track_m),
+        *([*found, *panes], stars, track_m),
         min_area_m2=settings.rooms.min_area_m2,
         min_walled=settings.rooms.min_walled,
         unpaired_m=unpaired_m,
@@ -139,7 +141,7 @@ def make(segments, rays, track_m, t_ns, settings):
         openings=plantables.openings(found, enclosed, settings.openings),
         rooms=plantables.rooms(enclosed),
         evidence=plantables.evidence(known, rays.scan_ids, t_ns),
-        free=plantables.free(_free(found, stars, unpaired_m)),
+        free=plantables.free(_free([*found, *panes], stars, unpaired_m)),
         n_lines=traced.n_lines,
         n_dropped=traced.n_dropped,
     )
@@ -148,6 +150,16 @@ def make(segments, rays, track_m, t_ns, settings):
 def _usual_thickness_m(walls):
     known = [w.thickness_m for w in walls if not math.isnan(w.thickness_m)]
     return float(np.median(known)) if known else _THICKNESS_M
+
+
+def _panes(spans, walls, gapping, unpaired_m):
+    """Return panes that are no openings of walls as walls of their own, which nobody drove through."""
+    ways = shapely.union_all(
+        [freespace.opening_ground(w, g, unpaired_m).buffer(_NEAR_M) for w in walls for g in w.openings]
+    )
+    panes = [planwalls.PlanWall(*span, math.nan, [], [], [], []) for span in spans]
+    panes = [pane for pane in panes if pane.length_m >= gapping.min_opening_m]
+    return [pane for pane in panes if not ways.covers(shapely.Point(pane.ends.mean(axis=0)))]
 
 
 def _free(walls, stars, unpaired_m):
