@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -40,6 +42,29 @@ def test_a_window():
     gap = judge(grid(1, 1.9, 0.5, 0.8, 2.2), grid(1, 1.9, 1.0, 1.6))
     assert gap.kind(SETTINGS) == "window"
     assert gap.sill_m == pytest.approx(0.9, abs=0.11)
+
+
+def with_feet(feet):
+    x, z = np.array(sorted(feet), float).T
+    passing = seen(grid(1, 1.9, 2.2), grid(1, 1.9, 0.13, 1.0, 2.0))
+    return replace(passing, foot_m=x, foot_z_m=z)
+
+
+def test_a_low_sill_all_along_makes_a_window():
+    gap = gaps.judge(AXIS, 1.0, 1.9, [with_feet(grid(1, 1.9, 0.02, 0.07, 0.09))], READING, SETTINGS, planar=False)
+    assert (gap.kind(SETTINGS), gap.sill_m) == ("window", pytest.approx(0.11, abs=0.03))
+
+
+@pytest.mark.parametrize("feet", [grid(1, 1.9, 0.0, 0.02, 0.03), grid(1, 1.3, 0.05, 0.07, 0.09)])
+def test_a_floor_or_what_stands_on_it_is_no_sill(feet):
+    gap = gaps.judge(AXIS, 1.0, 1.9, [with_feet(feet)], READING, SETTINGS, planar=False)
+    assert (gap.kind(SETTINGS), gap.sill_m) == ("door", 0)
+
+
+@pytest.mark.parametrize(("lost", "state"), [((1.05, 1.6), gaps.OPEN), ((1.05, 1.3), gaps.CLOSED)])
+def test_where_rays_go_and_do_not_come_back_there_is_an_opening(lost, state):
+    line = replace(seen([], []), panes_m=np.array([lost]))
+    assert gaps.judge(AXIS, 1.0, 1.9, [line], READING, SETTINGS, planar=False).state == state
 
 
 def test_a_wide_opening_is_a_passage():

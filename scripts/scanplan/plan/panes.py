@@ -18,6 +18,7 @@ _LEAST_SCANS = 3
 _MOST_STOPPED = 0.15
 _LEAST_SHARE = 0.5
 _BEFORE_M = 0.1
+_MOST_AWAY_M = 10.0  # further off rays are few and much stands before a line
 _WIDTH = 5  # columns that are judged together
 _GRAZING_RAD = np.deg2rad(75)  # from here on returns get lost
 
@@ -70,7 +71,8 @@ def _together(rows):
 def _rays(rays, line, low_m, count, heights_m):
     """Return how many rays (s, count) scans sent to the columns of a line, ended before it, came back from beyond."""
     side_m, there_m = line.offset_m(rays.sensors_m[:, :2]), line.along_m(rays.sensors_m[:, :2])
-    scans = np.flatnonzero(side_m >= sights.LEAST_SIDE_M)
+    beyond_m = np.maximum(np.maximum(low_m - there_m, there_m - (low_m + COLUMN_M * count)), 0)
+    scans = np.flatnonzero((side_m >= sights.LEAST_SIDE_M) & (np.hypot(side_m, beyond_m) <= _MOST_AWAY_M))
     middle_m = low_m + COLUMN_M * (np.arange(count) + 0.5)
     # scans in rows, columns of the line in columns
     away_m = middle_m - there_m[scans, None]

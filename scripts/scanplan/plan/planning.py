@@ -12,6 +12,7 @@ from scanplan.plan import (
     faces,
     freespace,
     gaps,
+    glazing,
     planfaces,
     plantables,
     planwalls,
@@ -32,7 +33,6 @@ TABLES = {
 }
 """The tables of a plan by the names of their files."""
 _THICKNESS_M = 0.1
-_NEAR_M = 0.1
 
 
 @dataclass(frozen=True)
@@ -124,11 +124,12 @@ def make(segments, rays, track_m, t_ns, settings):
     )
     unpaired_m = _usual_thickness_m(found)
     stars = freespace.visible(rays)
-    panes = _panes(traced.panes, found, settings.openings, unpaired_m)
+    panes = glazing.between(*(found, traced.panes), min_length_m=settings.openings.min_opening_m, unpaired_m=unpaired_m)
     enclosed = rooms.find(
         *([*found, *panes], stars, track_m),
         min_area_m2=settings.rooms.min_area_m2,
         min_walled=settings.rooms.min_walled,
+        min_width_m=settings.pairs.max_thickness_m,
         unpaired_m=unpaired_m,
     )
     floor_z_m = 0.0 if math.isnan(rays.floor_z_m) else rays.floor_z_m
@@ -150,16 +151,6 @@ def make(segments, rays, track_m, t_ns, settings):
 def _usual_thickness_m(walls):
     known = [w.thickness_m for w in walls if not math.isnan(w.thickness_m)]
     return float(np.median(known)) if known else _THICKNESS_M
-
-
-def _panes(spans, walls, gapping, unpaired_m):
-    """Return panes that are no openings of walls as walls of their own, which nobody drove through."""
-    ways = shapely.union_all(
-        [freespace.opening_ground(w, g, unpaired_m).buffer(_NEAR_M) for w in walls for g in w.openings]
-    )
-    panes = [planwalls.PlanWall(*span, math.nan, [], [], [], []) for span in spans]
-    panes = [pane for pane in panes if pane.length_m >= gapping.min_opening_m]
-    return [pane for pane in panes if not ways.covers(shapely.Point(pane.ends.mean(axis=0)))]
 
 
 def _free(walls, stars, unpaired_m):

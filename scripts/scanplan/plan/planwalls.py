@@ -94,6 +94,8 @@ def _cut(paired, found, reading, gapping, planar):
     lines = list({id(found[i].seen): found[i].seen for i in paired.members}.values())
     judged = [gaps.judge(paired.line, *pause, lines, reading, gapping, planar=planar) for pause in pauses]
     breaks = [g for g in judged if g.state == gaps.UNKNOWN and g.width_m >= gapping.min_opening_m]
+    breaks += _between_things(judged, np.array(list(members.values())))
+    breaks.sort(key=lambda g: g.low_m)
     bounds = [-math.inf, *((g.low_m + g.high_m) / 2 for g in breaks), math.inf]
     parts = []
     for begin, end in itertools.pairwise(bounds):
@@ -108,6 +110,18 @@ def _cut(paired, found, reading, gapping, planar):
             )
         )
     return parts
+
+
+def _between_things(judged, spans_m):
+    """Return the openings of what is open for longer than it is wall, unless wall is seen above them.
+
+    An opening is a gap of a wall; a wider one than all of the wall is the space between two things.
+    """
+    ways = [g for g in judged if g.state == gaps.OPEN]
+    unknown_m = sum(g.width_m for g in judged if g.state == gaps.UNKNOWN)
+    open_m = sum(g.width_m for g in ways)
+    solid_m = np.ptp(spans_m) - unknown_m - open_m
+    return [g for g in ways if np.isnan(g.lintel_m)] if open_m > solid_m else []
 
 
 def _between_sides(gap, spans_m):
