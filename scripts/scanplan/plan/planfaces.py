@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from scanplan.plan import crossings, facepieces, overshoots, stretches
+from scanplan.plan import crossings, facepieces, overshoots, rightangles, stretches
 
 _STUB_M = 0.1
 _FOREIGN_M = 0.08
@@ -30,7 +30,7 @@ class Traced:
     panes: list
 
 
-def trace(pieces, rays, merging, reading):
+def trace(pieces, rays, merging, reading, square):
     """Find the faces along the lines of pieces.
 
     Parameters
@@ -40,6 +40,7 @@ def trace(pieces, rays, merging, reading):
     rays : rays.Rays
     merging : faces.MergeSettings
     reading : profiles.Reading
+    square : rightangles.Prior
 
     Returns
     -------
@@ -49,7 +50,7 @@ def trace(pieces, rays, merging, reading):
     lines = {}
     for piece in pieces:
         lines.setdefault(id(piece.line), []).append(piece)
-    seen = [_seen(group, rays, reading) for group in lines.values()]
+    seen = rightangles.turned([_seen(group, rays, reading) for group in lines.values()], square)
     found = _once([stretches.find(s, reading, planar=rays.planar) for s in seen], merging)
     stacked = crossings.stack(found)
     foreign = [_crossed_m(s, found, stacked) for s in seen]

@@ -17,6 +17,7 @@ from scanplan.plan import (
     plantables,
     planwalls,
     profiles,
+    rightangles,
     rooms,
     wallevidence,
     wallfaces,
@@ -56,6 +57,7 @@ class PlanSettings:
 
     merge: faces.MergeSettings
     reading: profiles.Reading
+    square: rightangles.Prior
     pairs: wallpairs.PairSettings
     openings: gaps.GapSettings
     rooms: RoomSettings
@@ -76,7 +78,7 @@ class Plan:
     n_dropped: int
 
 
-def settings(*, merge, trace, pair, openings, rooms, trust):
+def settings(*, merge, trace, right_angles, pair, openings, rooms, trust):
     """Return settings from keywords of each part.
 
     Raises
@@ -88,6 +90,7 @@ def settings(*, merge, trace, pair, openings, rooms, trust):
     return PlanSettings(
         merge=merging,
         reading=profiles.Reading(**trace),
+        square=rightangles.Prior(registration_sigma_m=merging.registration_sigma_m, **right_angles),
         pairs=wallpairs.PairSettings(**pair, max_gap_m=openings["max_opening_m"]),
         openings=gaps.GapSettings(**openings),
         rooms=RoomSettings(**rooms),
@@ -116,7 +119,7 @@ def make(segments, rays, track_m, t_ns, settings):
         Without any row of faces or walls where nothing is supported enough.
     """
     pieces = faces.pieces(segments, settings.merge)
-    traced = planfaces.trace(pieces, rays, settings.merge, settings.reading)
+    traced = planfaces.trace(pieces, rays, settings.merge, settings.reading, settings.square)
     found = planwalls.assemble(
         *(traced.stretches, settings.reading, settings.pairs, settings.openings),
         planar=rays.planar,
