@@ -1,18 +1,17 @@
 """Measure every claim of the thesis on every seed."""
 
-from scanplan import stagelog, tables
-from scanplan.schemas import AREAS, CLAIMS, CLUSTERS, EVALUATION, POSE_ERRORS, SELECTION, STEPS, TIMES
+from scanplan import schemas, stagelog, tables
 from scanplan.thesis import judging
 
 _SCHEMAS = {
-    "walls": EVALUATION,
-    "hull": SELECTION,
-    "cluster_hull": SELECTION,
-    "clusters": CLUSTERS,
-    "areas": AREAS,
-    "times": TIMES,
-    "poses": POSE_ERRORS,
-    "steps": STEPS,
+    "walls": schemas.EVALUATION,
+    "hull": schemas.SELECTION,
+    "cluster_hull": schemas.SELECTION,
+    "clusters": schemas.CLUSTERS,
+    "areas": schemas.AREAS,
+    "times": schemas.TIMES,
+    "poses": schemas.POSE_ERRORS,
+    "steps": schemas.STEPS,
 }
 
 
@@ -35,7 +34,7 @@ def judge_claims(files, output, *, rooms_seeds, drive_seeds):
     for kind, found in ((judging.ROOMS, rooms), (judging.DRIVE, drive), (judging.BOTH, both)):
         rows += [row for seed, known in found.items() for row in judging.judge(kind, f"seed {seed}", known)]
     rows.sort(key=lambda row: (row["claim"], row["survey"], row["quantity"]))
-    tables.write(output, CLAIMS, {name: [row[name] for row in rows] for name in CLAIMS.columns})
+    tables.write(output, schemas.CLAIMS, {name: [row[name] for row in rows] for name in schemas.CLAIMS.columns})
     judged = {(row["claim"], row["survey"]): row["holds"] for row in rows if row["holds"]}
     stagelog.say(f"judge_claims: {len(judged)} judgements, {list(judged.values()).count('yes')} of them yes")
 

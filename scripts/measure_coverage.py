@@ -3,11 +3,10 @@
 import numpy as np
 import shapely
 
-from scanplan import chunks, schemas, stagelog, tables
+from scanplan import schemas, stagelog, tables
 from scanplan.evaluation import registered, truthfile
-from scanplan.schemas import AREAS, CLUSTERS
-from scanplan.selection import greedy, hulls
-from scanplan.thesis import seenarea
+from scanplan.selection import hulls
+from scanplan.thesis import clustergrowth, seenarea
 
 
 def measure_coverage(
@@ -29,8 +28,8 @@ def measure_coverage(
         How far a scan can see.
     threads : int
     """
-    parts = [_growth(scans, n, threads, sample_size=sample_size, seed=seed) for n in sorted(n_clusters)]
-    tables.write(clusters, CLUSTERS, {name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
+    grown = clustergrowth.table(scans, n_clusters, sample_size=sample_size, seed=seed, threads=threads)
+    tables.write(clusters, schemas.CLUSTERS, grown)
     poses, found = truthfile.read_poses(true_poses), registered.read(registration)
     places_m = truthfile.poses_at(poses, found.t_ns, true_poses)[:, :2, 3]
     seen = seenarea.polygons(truthfile.read_faces(truth), places_m, max_range_m=max_range_m)
@@ -41,20 +40,9 @@ def measure_coverage(
         "cluster_hull_m2": shapely.area(hulls.scan_polygons(columns)[1]),
         "seen_m2": shapely.area(seen),
     }
-    tables.write(areas, AREAS, measured)
+    tables.write(areas, schemas.AREAS, measured)
     median = [f"{np.median(values):.1f} m2 {name}" for name, values in list(measured.items())[1:]]
     stagelog.say(f"measure_coverage: {len(found.scan_ids)} scans, median {', '.join(median)}")
-
-
-def _growth(scans, n_clusters, threads, **sampling):
-    label = f"measure_coverage, {n_clusters} clusters"
-    parts = chunks.map_scans(
-        hulls.cluster_hulls, scans, label=label, threads=threads, n_clusters=n_clusters, **sampling
-    )
-    scan_ids, polygons = hulls.scan_polygons(hulls.concatenated(parts))
-    order, rank = greedy.greedy_order(polygons), np.arange(1, len(scan_ids) + 1)
-    covered = {"scan_id": scan_ids[order.order], "covered_m2": order.covered_m2}
-    return {"n_clusters": np.full(len(rank), n_clusters), "rank": rank, **covered}
 
 
 if __name__ == "__main__":

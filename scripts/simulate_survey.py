@@ -32,14 +32,16 @@ def simulate_survey(
     survey = surveying.prepare(found, seed=seed, **rig)
     start_ns = surveybag.EPOCH_NS
     belief = surveying.belief(survey, **localiser)
-    scans = stagelog.progress(sweeps.scans(survey, threads=threads), "simulate_survey", total=len(survey.t_ns))
+    taken = sweeps.scans(survey, threads=threads)
+    scans = stagelog.progress(taken, "simulate_survey", total=len(survey.t_ns))
     surveybag.write(
         recording,
         surveymessages.mounting(start_ns + belief.t_ns[0], survey.base_from_sensor, scanmessages.frame(survey.sensor)),
         scanmessages.scans(start_ns + survey.t_ns, survey.sensor, scans),
         *surveymessages.belief(start_ns, belief),
     )
-    atomic.write_text(truth, ground_truth.feature_collection(found.truth))
+    features, sensor = surveying.truth(found, survey)
+    atomic.write_text(truth, ground_truth.feature_collection(features, sensor=sensor))
     for path, (t_ns, pose) in (
         (true_poses, surveying.true_poses(survey)),
         (true_trajectory, surveying.true_trajectory(survey)),

@@ -6,7 +6,6 @@ import numpy as np
 
 from scanplan import schemas, stagelog, tables
 from scanplan.recordings import tum
-from scanplan.schemas import STEPS
 
 NAMES = ("Data collection", "Selecting and registering scans", "Hull creation", "Cluster subset selection")
 
@@ -40,7 +39,7 @@ def tabulate_steps(recordings, true_poses, scans, built, selection, times, outpu
         "n_scans": np.array([len(t_ns), kept, kept, len(chosen)]),
         "n_bytes": np.array(n_bytes).astype(np.int64),
     }
-    tables.write(output, STEPS, rows)
+    tables.write(output, schemas.STEPS, rows)
     stagelog.say(f"tabulate_steps: {len(t_ns):,} scans, {kept} registered, {len(chosen)} selected")
 
 
@@ -57,11 +56,7 @@ if __name__ == "__main__":
     with stagelog.to_file(snakemake.log[0]):
         tabulate_steps(
             *(snakemake.input[name] for name in ("recordings", "true_poses", "scans", "hulls", "selection")),
-            [
-                [snakemake.input.interpolated, snakemake.input.registered],
-                [snakemake.input.built],
-                [snakemake.input.ordered],
-            ],
+            [snakemake.input[name] for name in ("registering", "hulling", "ordering")],
             snakemake.output.steps,
             n_selected=snakemake.params.n_selected,
         )

@@ -2,7 +2,6 @@
 
 from scanplan import schemas, stagelog, tables
 from scanplan.extraction import cluster_ransac, iterative_ransac
-from scanplan.schemas import TIMES
 from scanplan.thesis import timing
 
 _EXTRACTORS = {"cluster_ransac": cluster_ransac, "iterative_ransac": iterative_ransac}
@@ -35,7 +34,7 @@ def time_stages(scans, registration, built, output, *, walls, hulls, n_clusters,
         timed = timing.extractor(name, method, store, placed, chosen, walls[name], registration)
         rows += stagelog.progress(timed, f"time_stages {name}", total=len(chosen))
     rows.sort(key=lambda row: (row["task"], row["size"], row["item"]))
-    tables.write(output, TIMES, {name: [row[name] for row in rows] for name in TIMES.columns})
+    tables.write(output, schemas.TIMES, {name: [row[name] for row in rows] for name in schemas.TIMES.columns})
     stagelog.say(f"time_stages: {len(rows)} times, {sum(row['seconds'] for row in rows):.0f} s in all")
 
 

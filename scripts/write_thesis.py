@@ -2,8 +2,7 @@
 
 from pathlib import Path
 
-from scanplan import atomic, stagelog, tables
-from scanplan.schemas import CLAIMS, STEPS
+from scanplan import atomic, schemas, stagelog, tables
 from scanplan.thesis import thesispage
 
 
@@ -23,8 +22,8 @@ def write_thesis(figures, orders, claims, steps, limited, output):
     """
     drawn = {Path(path).name: Path(path).read_text(encoding="utf-8") for path in figures}
     beyond = Path(orders).read_text(encoding="utf-8")
-    measured = tables.read(claims, CLAIMS), tables.read(steps, STEPS), tables.read(limited, STEPS)
-    page = thesispage.page(drawn, beyond, *measured)
+    drive, drive_limited = (tables.read(path, schemas.STEPS) for path in (steps, limited))
+    page = thesispage.page(drawn, beyond, tables.read(claims, schemas.CLAIMS), drive, drive_limited)
     atomic.write_text(output, page)
     stagelog.say(f"write_thesis: {len(drawn)} figures, {len(page) / 1e6:.1f} MB")
 

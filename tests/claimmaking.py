@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from scanplan.schemas import EVALUATION
+from scanplan import schemas
 
 SIZES = (1, 15, 27, 40, 60, 80, 270)
 # what the first 1, 15, 27, ... scans of every order find, false negatives being the rest
@@ -21,7 +21,7 @@ def evaluation(**changes):
     for method, found in (FOUND | changes).items():
         for extractor, per_scan in (("cluster_ransac", 10), ("iterative_ransac", 14)):
             for k, share in zip(SIZES, found, strict=True):
-                row = dict.fromkeys(EVALUATION.columns, 0.0)
+                row = dict.fromkeys(schemas.EVALUATION.columns, 0.0)
                 row |= {"method": method, "extractor": extractor, "k": k, "n_walls": per_scan * k}
                 row |= {"visible_completeness_010m": share, "false_negative": (1 - share) / 20}
                 row |= {"false_positive": share / 100, "walls_per_true_wall_of_a_scan": per_scan / 9}

@@ -66,7 +66,7 @@ def check(settings, schema, origin):
     faults = sorted(_Validator(schema).iter_errors(settings), key=lambda e: (str(e.path), e.message))
     if faults:
         raise StageError(f"{origin}: {_explain(faults[0], origin)}; config/README.md explains every key")
-    for key, value in _leaves(settings):
+    for key, value in leaves(settings):
         if isinstance(value, float) and not math.isfinite(value):
             raise StageError(f"{origin}: {key}: {value} is no finite number; config/README.md explains every key")
     for high, low in _ORDERED:
@@ -109,10 +109,11 @@ def _value(settings, keys):
     return settings
 
 
-def _leaves(settings, prefix=""):
+def leaves(settings, prefix=""):
+    """Yield the values of nested settings with their keys, joined by dots: `("plan.method", "hull")`."""
     for key, value in settings.items():
         if isinstance(value, dict):
-            yield from _leaves(value, f"{prefix}{key}.")
+            yield from leaves(value, f"{prefix}{key}.")
         else:
             yield f"{prefix}{key}", value
 

@@ -11,9 +11,8 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from scanplan import atomic
+from scanplan import atomic, schemas
 from scanplan.errors import StageError
-from scanplan.schemas import SCANS
 
 
 def write(path, schema, columns, *, allow_empty=False):
@@ -91,7 +90,7 @@ def scan_writer(path, *, planar):
         If no scan was written: the file does not appear.
     """
     last = None
-    with _writer(path, SCANS, {"planar": json.dumps(bool(planar))}) as writer:
+    with _writer(path, schemas.SCANS, {"planar": json.dumps(bool(planar))}) as writer:
 
         def write_scan(scan_id, xyz_m):
             nonlocal last
@@ -100,7 +99,7 @@ def scan_writer(path, *, planar):
             last = scan_id
             xyz_m = np.asarray(xyz_m, np.float32)
             columns = [np.full(len(xyz_m), scan_id, np.int32), *xyz_m.T.copy()]
-            rows = pa.Table.from_arrays([pa.array(c) for c in columns], schema=_arrow(SCANS))
+            rows = pa.Table.from_arrays([pa.array(c) for c in columns], schema=_arrow(schemas.SCANS))
             writer.write_table(rows, row_group_size=len(rows))
 
         yield write_scan
@@ -120,7 +119,7 @@ class ScanStore:
 
     def __init__(self, path):
         self.path = path
-        with _opened(path, SCANS) as file:
+        with _opened(path, schemas.SCANS) as file:
             metadata = file.metadata
             groups = [metadata.row_group(i).column(0).statistics for i in range(metadata.num_row_groups)]
             self.planar = bool(json.loads(metadata.metadata[b"planar"]))
@@ -143,7 +142,7 @@ class ScanStore:
             If a scan is asked for that is not there.
         """
         group = {int(s): i for i, s in enumerate(self.scan_ids)}
-        with _opened(self.path, SCANS) as file:
+        with _opened(self.path, schemas.SCANS) as file:
             for scan_id in self.scan_ids.tolist() if scan_ids is None else map(int, scan_ids):
                 if scan_id not in group:
                     raise ValueError(f"{self.path}: no scan {scan_id}")

@@ -1,8 +1,5 @@
 """A simulated drive at ten scans a second, with exact poses and without sweep, for the benchmarks of selection."""
 
-import copy
-from pathlib import Path
-
 import numpy as np
 import shapely
 import wallscans
@@ -11,7 +8,6 @@ from scanplan.selection import hulls
 from scanplan.simulation import raycast, surveying
 
 RATE_HZ = 10.0
-N_AZIMUTH = 1800  # of a real VLP-16
 SPEED_M_S = 0.75
 
 
@@ -32,12 +28,8 @@ def scans(building, settings, n, **site):
     list of (m, 3) float32
         Points in the map, of each scan.
     """
-    chosen = copy.deepcopy(settings)
-    chosen["sensor"] |= {"n_azimuth": N_AZIMUTH, "sweep": False, "rate_hz": RATE_HZ}
-    chosen["drive"]["speed_m_s"] = SPEED_M_S
-    rig = {key: chosen[key] for key in ("mount", "sensor", "errors", "drive", "people")}
-    found = surveying.site(Path(building).read_bytes(), Path(building), chosen["mount"], **chosen["site"] | site)
-    survey = surveying.prepare(found, seed=1, **rig)
+    drive = {"speed_m_s": SPEED_M_S}
+    _, survey = wallscans.unswept(building, settings, seed=1, rate_hz=RATE_HZ, drive=drive, **site)
     scene = raycast.Scene(survey.mesh)
     poses = surveying.true_poses(survey)[1][:n]
     return [wallscans.points(survey, scene, i, pose) for i, pose in enumerate(poses)]

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from scanplan.evaluation import findings, lengthmetrics, truthfile
+from scanplan.evaluation import findings, lengthmetrics, truthfile, visibility
 from scanplan.simulation import raycast, surveying, sweeps
 
 N_AZIMUTH = 1800  # of a real VLP-16
@@ -47,18 +47,43 @@ def standing(building, settings, *, seed=1, step_m=0.4, every=1, **site):
     **site
         Instead of settings of `simulate.site`.
     """
-    chosen = copy.deepcopy(settings)
-    chosen["sensor"] |= {"n_azimuth": N_AZIMUTH, "sweep": False, "rate_hz": 1.0}
-    chosen["drive"] |= {"speed_m_s": step_m, "turn_rate_deg_s": 360.0}
-    rig = {key: chosen[key] for key in ("mount", "sensor", "errors", "drive", "people")}
-    found = surveying.site(Path(building).read_bytes(), Path(building), chosen["mount"], **chosen["site"] | site)
-    survey = surveying.prepare(found, seed=seed, **rig)
+    drive = {"speed_m_s": step_m, "turn_rate_deg_s": 360.0}
+    found, survey = unswept(building, settings, seed=seed, rate_hz=1.0, drive=drive, **site)
     poses, scene = surveying.true_poses(survey)[1], raycast.Scene(survey.mesh)
     scans = [(i, points(survey, scene, i, poses[i])) for i in range(0, len(poses), every)]
     faces = truthfile.TrueFaces(*(_lines(found.truth, side) for side in ("inside", "outside")))
-    places_m = poses[[i for i, _ in scans], :2, 3]
-    truth = findings.look(faces, places_m, poses[:, :2, 3], max_range_m=settings["sensor"]["max_range_m"])
+    sight = visibility.Sight(settings["sensor"]["max_range_m"])
+    truth = findings.look(faces, poses[[i for i, _ in scans]], poses, sight=sight)
     return Survey(scans, {i: poses[i, :3, 3] for i, _ in scans}, truth)
+
+
+def unswept(building, settings, *, seed, rate_hz, drive, **site):
+    """Prepare a survey without sweep by a VLP-16.
+
+    Parameters
+    ----------
+    building : path-like
+    settings : dict
+        The section `simulate` of the configuration.
+    seed : int
+    rate_hz : float
+        Scans a second.
+    drive : dict
+        Instead of settings of `simulate.drive`.
+    **site
+        Instead of settings of `simulate.site`.
+
+    Returns
+    -------
+    site : building.Building
+    survey : sweeps.Survey
+    """
+    chosen = copy.deepcopy(settings)
+    chosen["sensor"] |= {"n_azimuth": N_AZIMUTH, "sweep": False, "rate_hz": rate_hz}
+    chosen["drive"] |= drive
+    rig = {key: chosen[key] for key in ("mount", "sensor", "errors", "drive", "people")}
+    found = surveying.site(Path(building).read_bytes(), Path(building), chosen["mount"], **chosen["site"] | site)
+    return found, surveying.prepare(found, seed=seed, **rig)
 
 
 def quality(lines_m, scan, truth):

@@ -6,20 +6,13 @@ import numpy as np
 import open3d as o3d
 import pytest
 
+from exactsensor import EXACT
 from interpolate_poses import interpolate_poses
 from scanplan import configuration, schemas, se3, tables
 from scanplan.recordings import motion, surveys, tum
 from scanplan.simulation import buildingfile, extrusion
 from simulate_survey import simulate_survey
 
-EXACT = {
-    "noise_m": 0.0,
-    "bias_m": 0.0,
-    "quantum_m": 0.0,
-    "grazing_from_deg": 90.0,
-    "glass_pass": 1.0,
-    "glass_drop": 0.0,
-}
 VLP16 = {"model": "vlp16", "n_azimuth": 240, "sweep": True}
 LASER = {"model": "laser", "n_azimuth": 270, "sweep": True}
 

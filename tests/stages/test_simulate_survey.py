@@ -14,6 +14,7 @@ from shapely.geometry import shape
 import boxmaking
 import ifcmaking
 import simple_rooms as drawn
+from exactsensor import EXACT
 from scanplan import se3
 from scanplan.errors import StageError
 from scanplan.recordings import frames, surveys
@@ -21,15 +22,7 @@ from scanplan.simulation import buildingfile, extrusion
 from simulate_survey import simulate_survey
 
 STORE = get_typestore(Stores.ROS1_NOETIC)
-QUIET = {
-    "noise_m": 0.0,
-    "bias_m": 0.0,
-    "quantum_m": 0.0,
-    "grazing_from_deg": 90.0,
-    "glass_pass": 1.0,
-    "glass_drop": 0.0,
-}
-NOISY = {**QUIET, "noise_m": 0.01, "bias_m": 0.005, "quantum_m": 0.002, "grazing_from_deg": 75.0}
+NOISY = {**EXACT, "noise_m": 0.01, "bias_m": 0.005, "quantum_m": 0.002, "grazing_from_deg": 75.0}
 SURE = {"noise_m": 0.0, "noise_deg": 0.0, "drift_m": 0.0, "drift_deg": 0.0, "jumps_per_min": 0.0}
 SETTINGS = {
     "seed": 7,
@@ -53,7 +46,7 @@ SETTINGS = {
         "min_range_m": 0.0,
         "max_range_m": 100.0,
     },
-    "errors": QUIET,
+    "errors": EXACT,
     "drive": {"speed_m_s": 0.6, "turn_rate_deg_s": 60.0},
     "localiser": {
         **SURE,
@@ -232,8 +225,8 @@ def test_two_processes_write_the_same_bytes(building, tmp_path):
 
 def test_true_poses_take_the_sweep_out_of_a_noisy_survey(tmp_path, building):
     """The mean distance along the ray from where the noise-free wall is, over many points, is below 2 mm."""
-    errors = {**QUIET, "noise_m": 0.01}
-    quiet, noisy = (run(tmp_path / n, building, errors=e) for n, e in (("quiet", QUIET), ("noisy", errors)))
+    errors = {**EXACT, "noise_m": 0.01}
+    quiet, noisy = (run(tmp_path / n, building, errors=e) for n, e in (("quiet", EXACT), ("noisy", errors)))
     trajectory, error_m = track(quiet[3]), []
     for (t_ns, clean), (_, cloud) in zip(*(read(s[0], "/velodyne_points") for s in (quiet, noisy)), strict=True):
         moved = deskewed(t_ns, cloud, trajectory) - deskewed(t_ns, clean, trajectory)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import claimmaking as made
-from scanplan.schemas import CLAIMS as TABLE
+from scanplan import schemas
 from scanplan.thesis import judging, thesispage
 from scanplan.thesis.thesisclaims import CLAIMS
 from scanplan.thesis.thesisshown import FIGURES
@@ -19,7 +19,7 @@ def claims(**changes):
     rows += judging.judge(judging.ROOMS, "seed 2", made.rooms())
     rows += judging.judge(judging.DRIVE, "seed 1", made.drive())
     rows += judging.judge(judging.BOTH, "seed 1", made.rooms() | made.drive())
-    return {name: np.array([row[name] for row in rows]) for name in TABLE.columns}
+    return {name: np.array([row[name] for row in rows]) for name in schemas.CLAIMS.columns}
 
 
 def page(**changes):

@@ -66,10 +66,12 @@ rule tabulate_steps:
         scans="results/{dataset}/scans.parquet",
         hulls="results/{dataset}/hulls.parquet",
         selection="results/{dataset}/selection/cluster_hull.parquet",
-        interpolated="benchmarks/{dataset}/interpolate_poses.tsv",
-        registered="benchmarks/{dataset}/register_scans.tsv",
-        built="benchmarks/{dataset}/build_hulls.tsv",
-        ordered="benchmarks/{dataset}/order_scans_cluster_hull.tsv",
+        registering=[
+            "benchmarks/{dataset}/interpolate_poses.tsv",
+            "benchmarks/{dataset}/register_scans.tsv",
+        ],
+        hulling=["benchmarks/{dataset}/build_hulls.tsv"],
+        ordering=["benchmarks/{dataset}/order_scans_cluster_hull.tsv"],
         code=code_of("tabulate_steps"),
     output:
         steps="results/{dataset}/thesis/steps.parquet",

@@ -1,6 +1,6 @@
 """Which parts of the true wall faces a scan could see: exact in the plane, on faces cut into short cells.
 
-ASSUME a sensor that sees all around, level, at the height at which the faces were cut; only walls hide walls.
+ASSUME a level sensor at the height at which the faces were cut; only the given lines hide walls.
 """
 
 from dataclasses import dataclass
@@ -9,6 +9,14 @@ import numpy as np
 
 CELL_M = 0.02
 """Longest cell of a face: what is seen or found is told to half of it at either end of a stretch."""
+
+
+@dataclass(frozen=True)
+class Sight:
+    """How far, and how far around its forward direction in all, a sensor sees."""
+
+    max_range_m: float
+    field_rad: float = 2 * np.pi
 
 
 @dataclass(frozen=True)
@@ -98,13 +106,7 @@ def seen(cells, outer_m, position_m, *, max_range_m):
     -------
     (c,) bool
     """
-    ends = np.concatenate([cells.faces_m, outer_m]) - position_m
-    angle = np.arctan2(ends[:, :, 1], ends[:, :, 0])
-    turn = (angle[:, 1] - angle[:, 0] + np.pi) % (2 * np.pi) - np.pi
-    begin = np.where(turn > 0, angle[:, 0], angle[:, 1])
-    finish = np.where(turn > 0, angle[:, 1], angle[:, 0])
-    edges = np.unique(angle)
-    nearest = _nearest(edges, begin, finish, ends)
+    ends, edges, nearest = _sectors(np.concatenate([cells.faces_m, outer_m]), position_m)
     # only faces that are nearest somewhere have cells to look at
     candidate = np.zeros(len(ends), bool)
     candidate[nearest[nearest >= 0]] = True
@@ -133,12 +135,7 @@ def view(faces_m, position_m, *, open_m):
     (p, 2) float64
         Corners, counter-clockwise.
     """
-    ends = faces_m - position_m
-    angle = np.arctan2(ends[:, :, 1], ends[:, :, 0])
-    turn = (angle[:, 1] - angle[:, 0] + np.pi) % (2 * np.pi) - np.pi
-    begin, finish = np.where(turn > 0, angle.T, angle.T[::-1])
-    edges = np.unique(angle)
-    nearest = _nearest(edges, begin, finish, ends)
+    ends, edges, nearest = _sectors(faces_m, position_m)
     beam = np.column_stack([edges, np.append(edges[1:], edges[0])])
     ray = np.stack([np.cos(beam), np.sin(beam)], axis=-1)
     start, way = ends[nearest, 0][:, None], (ends[:, 1] - ends[:, 0])[nearest][:, None]
@@ -157,6 +154,12 @@ def seen_by_each(cells, outer_m, positions_m, *, max_range_m):
     return result
 
 
+def in_field(cells, world_from_sensor, field_rad):
+    """Tell which cells lie in the field of a sensor at a pose (4, 4), half of it to either side: (c,) bool."""
+    offset_m = (cells.middle_m - world_from_sensor[:2, 3]) @ world_from_sensor[:2, :2]
+    return np.abs(np.arctan2(offset_m[:, 1], offset_m[:, 0])) <= field_rad / 2
+
+
 def thinned(positions_m, step_m):
     """Return the places (indices) of a way (n, 2), n >= 1, that are `step_m` or more from the last one taken.
 
@@ -167,6 +170,16 @@ def thinned(positions_m, step_m):
         if np.hypot(*(positions_m[i] - positions_m[taken[-1]])) >= step_m:
             taken.append(i)
     return np.array(taken)
+
+
+def _sectors(faces_m, position_m):
+    """Return the ends of faces from a place, the directions of all ends, and the nearest face from each to the next."""
+    ends = faces_m - position_m
+    angle = np.arctan2(ends[:, :, 1], ends[:, :, 0])
+    turn = (angle[:, 1] - angle[:, 0] + np.pi) % (2 * np.pi) - np.pi
+    begin, finish = np.where(turn > 0, angle.T, angle.T[::-1])
+    edges = np.unique(angle)
+    return ends, edges, _nearest(edges, begin, finish, ends)
 
 
 def _nearest(edges, begin, finish, ends):

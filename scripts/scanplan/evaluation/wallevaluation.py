@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from scanplan import schemas
 from scanplan.evaluation import bitmap, lengthmetrics, oracle
 from scanplan.evaluation.findings import (
     JUDGED,
@@ -13,13 +14,12 @@ from scanplan.evaluation.findings import (
     first_rank_seen,
     found_by_scan,
 )
-from scanplan.schemas import PLAN_EVALUATION
 
 ORACLE = "oracle"
 _FIRST_SIZES = (1, 2, 3, 4, 5, 8, 10, 15, 20, 30, 40, 60, 80)
 TOLD_SIZES = (5, 10, 20, 40, 80)
 """Numbers of scans at which orderings are compared."""
-_OF_PLAN = set(PLAN_EVALUATION.columns)
+_OF_PLAN = set(schemas.PLAN_EVALUATION.columns)
 
 
 def sizes(n_scans):

@@ -5,6 +5,7 @@ from html import escape
 
 import numpy as np
 
+from scanplan import configuration
 from scanplan.plan import floorplan
 
 _NOT_KNOWN = "–"
@@ -147,15 +148,11 @@ def sizes(files):
 
 def settings(values):
     """Return the table of settings, nested keys joined by dots."""
-    return table("settings", ["key", "value"], [[key, "null" if v is None else str(v)] for key, v in _flat(values)])
-
-
-def _flat(values, prefix=""):
-    for key, value in values.items():
-        if isinstance(value, dict):
-            yield from _flat(value, f"{prefix}{key}.")
-        else:
-            yield f"{prefix}{key}", value
+    return table(
+        "settings",
+        ["key", "value"],
+        [[key, "null" if v is None else str(v)] for key, v in configuration.leaves(values)],
+    )
 
 
 def _head(head, sortable):

@@ -170,6 +170,7 @@ def of_model(model, index, slice_height_m, source, *, doors="open", windows="gla
 def _of_storey(storey, slice_height_m, source, notes):
     cut = ground.of_storey(storey, slice_height_m, source)
     faces = [(line, {"kind": "face", "side": side}) for line, side in cut.faces]
+    faces += [(line, {"kind": "screen"}) for line in cut.screens]
     walls = [
         (line, {"kind": "wall", "thickness_m": round(thick, 6), "height_m": round(cut.height_m, 6)})
         for line, thick in ground.walls(storey, cut, slice_height_m)

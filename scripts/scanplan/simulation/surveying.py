@@ -2,7 +2,9 @@
 
 import numpy as np
 
+from scanplan.evaluation import visibility
 from scanplan.simulation import building, clutter, localisation, rover, sensors, sweeps
+from scanplan.simulation import truth as ground_truth
 
 
 def site(data, source, mount, *, route, clearance_m, **reading):
@@ -78,6 +80,21 @@ def belief(survey, **localiser):
 def true_poses(survey):
     """Return each scan's stamp (m,) int64 from the start of the drive and world_from_sensor (m, 4, 4) at it."""
     return survey.t_ns, rover.poses(survey.drive, survey.t_ns) @ survey.base_from_sensor
+
+
+def truth(site, survey):
+    """Return what is true of a survey.
+
+    Returns
+    -------
+    features : list of (geometry, dict)
+        `truth.features` of the site, with what the scans could see of its walls.
+    sensor : dict
+        How far, and how far around, each scan sees: `max_range_m`, `field_deg`.
+    """
+    sight = visibility.Sight(survey.sensor.max_range_m, survey.sensor.field_rad)
+    features = ground_truth.with_sight(site.truth, true_poses(survey)[1], sight)
+    return features, {"max_range_m": sight.max_range_m, "field_deg": round(float(np.degrees(sight.field_rad)), 3)}
 
 
 def true_trajectory(survey):

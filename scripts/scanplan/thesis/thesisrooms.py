@@ -6,9 +6,8 @@ from pathlib import Path
 import numpy as np
 import shapely
 
-from scanplan import tables
+from scanplan import schemas, tables
 from scanplan.evaluation import registered, truthfile
-from scanplan.schemas import CLUSTERS, EVALUATION, HULLS, SELECTION, WALLS
 from scanplan.selection import hulls
 from scanplan.thesis import seenarea, thesiscoverage, thesisplans
 from scanplan.thesis.claims import MANY, OURS, SUBSET
@@ -56,11 +55,11 @@ def read(files, evaluated, *, max_range_m):
         scan_ids=scans.scan_ids,
         places_m=poses[:, :2, 3],
         faces=faces,
-        hulls=tables.read(files["hulls"], HULLS),
-        walls=tables.read(files[OURS], WALLS, allow_empty=True),
-        clusters=tables.read(files["clusters"], CLUSTERS),
-        selections={m: tables.read(files[m], SELECTION) for m in ("hull", "cluster_hull", "sequential")},
-        evaluated=[tables.read(path, EVALUATION) for path in evaluated],
+        hulls=tables.read(files["hulls"], schemas.HULLS),
+        walls=tables.read(files[OURS], schemas.WALLS, allow_empty=True),
+        clusters=tables.read(files["clusters"], schemas.CLUSTERS),
+        selections={m: tables.read(files[m], schemas.SELECTION) for m in ("hull", "cluster_hull", "sequential")},
+        evaluated=[tables.read(path, schemas.EVALUATION) for path in evaluated],
         max_range_m=max_range_m,
     )
 
