@@ -14,7 +14,6 @@ from scanplan.evaluation import (
     registered,
     trueplan,
     truthfile,
-    visibility,
     wallevaluation,
 )
 from scanplan.plan import planning, rays
@@ -36,7 +35,6 @@ _FIGURES = {
     "missed_misplaced": "misplaced",
     "missed_misextracted": "not extracted",
 }
-_SURVEY_STEP_M = 0.25
 
 
 def bench(results, surveys, settings):
@@ -71,15 +69,15 @@ def _bench(folder, truth, settings):
     count, _ = stopping.n_scans(ordering, **settings["selection"]["stop"])
     everything = np.sort(ordering["scan_id"])
     true, poses = trueplan.read(truth / "truth.geojson"), truthfile.read_poses(truth / "truth_poses.tum")
-    placed_m = truthfile.poses_at(poses, kept.t_ns, truth)[:, :3, 3]
-    survey_m = poses.xyz_m[visibility.thinned(poses.xyz_m[:, :2], _SURVEY_STEP_M), :2]
-    faces, reach_m = truthfile.read_faces(truth / "truth.geojson"), settings["input"]["max_range_m"]
+    placed, survey = truthfile.poses_at(poses, kept.t_ns, truth), truthfile.matrices(poses)
+    faces = truthfile.read_faces(truth / "truth.geojson")
+    sight = truthfile.read_sight(truth / "truth.geojson", max_range_m=settings["input"]["max_range_m"])
     print(
         f"plans, {folder.name}: {count} of {len(everything)} scans chosen ({count / len(everything):.0%})", flush=True
     )
     for name, chosen in (("chosen scans", np.sort(ordering["scan_id"][:count])), ("all scans", everything)):
         rows = registered.rows_of(chosen, kept, folder, folder)
-        floor = findings.look(faces, placed_m[rows, :2], survey_m, max_range_m=reach_m)
+        floor = findings.look(faces, placed[rows], survey, sight=sight)
         started = time.process_time()
         plan = _plan(seen, store, kept, rows, chosen, settings["plan"])
         _tell(f"plan of {name}", _of_plan(plan, true, floor), time.process_time() - started)
