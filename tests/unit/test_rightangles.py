@@ -73,5 +73,11 @@ def test_a_line_turns_about_its_middle_and_its_points_stay():
     np.testing.assert_allclose(np.abs(ends), np.sin(np.radians(0.8)), rtol=0.01)
 
 
+def test_a_line_that_no_point_shows_stays():
+    empty = line(0, 2)
+    nothing = (np.empty(0), np.empty(0), np.empty(0), np.empty(0, int), np.empty(0), np.empty(0), np.empty(0, int))
+    assert turned(Seen(empty.line, *nothing)) == [pytest.approx(0)]
+
+
 def test_no_lines():
     assert rightangles.turned([], PRIOR) == []

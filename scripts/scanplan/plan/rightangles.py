@@ -61,7 +61,7 @@ def turned(lines, prior):
     off = _apart(found[:, None], angle)
     turn = off[np.abs(off).argmin(axis=0), np.arange(len(lines))]
     sigma = np.array([_sigma_rad(s, prior.registration_sigma_m) for s in lines])
-    free = np.abs(turn) <= np.minimum(prior.sigmas * sigma, math.radians(prior.max_turn_deg))
+    free = (length_m > 0) & (np.abs(turn) <= np.minimum(prior.sigmas * sigma, math.radians(prior.max_turn_deg)))
     return [_turned(s, t) if f else s for s, t, f in zip(lines, turn.tolist(), free.tolist(), strict=True)]
 
 
