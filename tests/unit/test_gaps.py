@@ -83,6 +83,13 @@ def test_few_rays_on_one_edge_are_no_opening():
     assert judge([], grid(1, 1.2, 0.5, 1.0, 1.5)).state == gaps.UNKNOWN
 
 
+@pytest.mark.parametrize(
+    ("heights", "state"), [((1.1, 1.2, 1.3, 1.5), gaps.CLOSED), ((0.1, 0.5, 1.0, 1.5), gaps.UNKNOWN)]
+)
+def test_a_corner_of_a_window_that_things_hide_is_wall(heights, state):
+    assert judge(grid(1, 1.9, 2.3), grid(1.05, 1.15, *heights)).state == state
+
+
 def test_a_slit_is_no_opening():
     assert judge([], grid(1, 1.3, 0.5, 1.0, 1.5), high=1.3).state != gaps.OPEN
 

@@ -114,9 +114,11 @@ def judge(wall_line, low_m, high_m, lines, reading, settings, *, planar, needs_l
     is_open = n_rays >= _LEAST_RAYS and open_share >= least_share
     # rays went in and did not come back: through glass, or out of the building
     is_open |= max(_lost_share(seen, np.sort(seen.line.along_m(ends))) for seen in lines) >= _OPEN_SHARE
+    # wall above, some rays through a window, and what is below them hidden: no way through was seen
+    behind_things = np.isfinite(lintel_m) and np.isnan(sill_m)
     if is_wide and is_open and (not needs_lintel or np.isfinite(lintel_m)):
         state = OPEN
-    elif open_share <= _CLOSED_SHARE and width_m <= settings.max_closed_m and not needs_lintel:
+    elif (open_share <= _CLOSED_SHARE or behind_things) and width_m <= settings.max_closed_m and not needs_lintel:
         state = CLOSED
     else:
         state = UNKNOWN
