@@ -25,7 +25,7 @@ def simulate_survey(
     threads=1,
 ):
     """Write a drive's recording (.bag, .db3 or .mcap), the floor's truth, the poses at the stamps and the whole way."""
-    found = surveying.site(Path(building).read_bytes(), Path(building), mount, **site)
+    found = surveying.site(Path(building).read_bytes(), Path(building), mount, seed=seed, **site)
     for note in found.notes:
         stagelog.say(f"simulate_survey: {note}")
     rig = {"mount": mount, "sensor": sensor, "errors": errors, "drive": drive, "people": people}

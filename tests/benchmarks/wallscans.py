@@ -82,7 +82,8 @@ def unswept(building, settings, *, seed, rate_hz, drive, **site):
     chosen["sensor"] |= {"n_azimuth": N_AZIMUTH, "sweep": False, "rate_hz": rate_hz}
     chosen["drive"] |= drive
     rig = {key: chosen[key] for key in ("mount", "sensor", "errors", "drive", "people")}
-    found = surveying.site(Path(building).read_bytes(), Path(building), chosen["mount"], **chosen["site"] | site)
+    chosen["site"] |= site
+    found = surveying.site(Path(building).read_bytes(), Path(building), chosen["mount"], seed=seed, **chosen["site"])
     return found, surveying.prepare(found, seed=seed, **rig)
 
 

@@ -7,7 +7,7 @@ from scanplan.simulation import building, clutter, localisation, rover, sensors,
 from scanplan.simulation import truth as ground_truth
 
 
-def site(data, source, mount, *, route, clearance_m, **reading):
+def site(data, source, mount, *, seed, route, waypoints_m, start_m, clearance_m, **reading):
     """Read a building and find the rover's way through it.
 
     Parameters
@@ -17,7 +17,7 @@ def site(data, source, mount, *, route, clearance_m, **reading):
         The file that `data` is from.
     mount : dict
         Settings of `rover.mounted`.
-    route, clearance_m
+    seed, route, waypoints_m, start_m, clearance_m
         See `building.routed`.
     **reading
         Settings of `building.load`.
@@ -28,7 +28,8 @@ def site(data, source, mount, *, route, clearance_m, **reading):
         With a way.
     """
     found = building.load(data, source, slice_height_m=mount["height_m"], **reading)
-    return building.routed(found, source, route=route, clearance_m=clearance_m, reach_m=abs(mount["forward_m"]))
+    way = {"route": route, "waypoints_m": waypoints_m, "start_m": start_m, "seed": seed}
+    return building.routed(found, source, **way, clearance_m=clearance_m, reach_m=abs(mount["forward_m"]))
 
 
 def prepare(site, *, seed, mount, sensor, errors, drive, people):
