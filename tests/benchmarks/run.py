@@ -1,10 +1,6 @@
 """The stages against the algorithms written literally, on simulated surveys, each pair timed in this one process.
 
-<<<<<<< HEAD
-Usage: run.py [registration] [selection] [walls] [wall_quality] [plans] [FOLDER ...]
-=======
-Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality]
->>>>>>> origin/main
+Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [plans] [FOLDER ...]
 
 Without a name all of them but wall_quality, which takes minutes, and plans, which measures the surveys that the
 workflow has finished under results/; a FOLDER holds the dataset folders with the truths of those it did not simulate.
@@ -66,22 +62,16 @@ def bench_plans(folders=()):
 
 
 if __name__ == "__main__":
-<<<<<<< HEAD
-    benches = {"registration": bench_registration, "selection": bench_selection, "walls": bench_walls}
-    folders = [Path(name) for name in sys.argv[1:] if Path(name).is_dir()]
-    names = [name for name in sys.argv[1:] if Path(name) not in folders]
-    more = {"wall_quality": bench_wall_quality, "plans": lambda: bench_plans(folders)}
-    unknown = set(names) - set(benches | more)
-=======
     benches = {
         "simulation": bench_simulation,
         "registration": bench_registration,
         "selection": bench_selection,
         "walls": bench_walls,
     }
-    more = {"wall_quality": bench_wall_quality}
-    unknown = set(sys.argv[1:]) - set(benches | more)
->>>>>>> origin/main
+    folders = [Path(name) for name in sys.argv[1:] if Path(name).is_dir()]
+    names = [name for name in sys.argv[1:] if Path(name) not in folders]
+    more = {"wall_quality": bench_wall_quality, "plans": lambda: bench_plans(folders)}
+    unknown = set(names) - set(benches | more)
     if unknown:
         sys.exit(f"no benchmark {', '.join(sorted(unknown))}; there are {', '.join(benches | more)}")
     for name in names or benches:
