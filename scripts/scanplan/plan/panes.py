@@ -72,25 +72,28 @@ def _rays(rays, line, low_m, count, heights_m):
     """Return how many rays (s, count) scans sent to the columns of a line, ended before it, came back from beyond."""
     side_m, there_m = line.offset_m(rays.sensors_m[:, :2]), line.along_m(rays.sensors_m[:, :2])
     beyond_m = np.maximum(np.maximum(low_m - there_m, there_m - (low_m + COLUMN_M * count)), 0)
-    scans = np.flatnonzero((side_m >= sights.LEAST_SIDE_M) & (np.hypot(side_m, beyond_m) <= _MOST_AWAY_M))
+    most_m = np.tan(_GRAZING_RAD) * side_m
+    near = (np.hypot(side_m, beyond_m) <= _MOST_AWAY_M) & (beyond_m <= most_m)
+    scans = np.flatnonzero((side_m >= sights.LEAST_SIDE_M) & near)
     middle_m = low_m + COLUMN_M * (np.arange(count) + 0.5)
     # scans in rows, columns of the line in columns
     away_m = middle_m - there_m[scans, None]
     far_m = np.hypot(away_m, side_m[scans, None])
-    looks = np.abs(away_m) < np.tan(_GRAZING_RAD) * side_m[scans, None]
+    looks = np.abs(away_m) < most_m[scans, None]
     up_m = np.array(heights_m) + rays.floor_z_m - rays.sensors_m[scans, 2, None]
     low, high = (_below(rays.usual[scans], np.arctan2(up_m[:, i, None], far_m)) for i in (0, 1))
     width_deg = np.rad2deg(COLUMN_M * side_m[scans, None] / far_m**2)
     sent = (high - low) * width_deg * looks
-    ends = line.at(np.array([low_m, low_m + COLUMN_M * count]))
-    rows = sights.rows_between(rays, ends, scans)
+    edges_m = there_m[scans] + np.array([[-1], [1]]) * most_m[scans]
+    rows = sights.rows_between(rays, line.at(np.clip(edges_m, low_m, low_m + COLUMN_M * count)), scans)
     xyz_m, scan = rays.stacked.xyz_m[rows], rays.stacked.scan[rows]
     before_m = line.offset_m(xyz_m[:, :2])
     share = side_m[scan] / np.maximum(side_m[scan] - before_m, 1e-6)
     z_m = rays.sensors_m[scan, 2] + share * (xyz_m[:, 2] - rays.sensors_m[scan, 2]) - rays.floor_z_m
-    off_m = share * (line.along_m(xyz_m[:, :2]) - there_m[scan])
-    counts = (z_m >= heights_m[0]) & (z_m < heights_m[1])
-    counts &= np.abs(off_m) < np.tan(_GRAZING_RAD) * side_m[scan]
+    inside = np.flatnonzero((z_m >= heights_m[0]) & (z_m < heights_m[1]))
+    scan, before_m = scan[inside], before_m[inside]
+    off_m = share[inside] * (line.along_m(xyz_m[inside, :2]) - there_m[scan])
+    counts = np.abs(off_m) < most_m[scan]
     column = np.floor((there_m[scan] + off_m - low_m) / COLUMN_M).astype(np.int64)
     counts &= (column >= 0) & (column < count)
     cell = np.searchsorted(scans, scan) * count + column

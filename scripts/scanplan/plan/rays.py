@@ -14,6 +14,8 @@ LEAST_SIDE_M = 0.15
 _STEADY_M = 0.15
 _TURN = 10.0
 _SECTORS = 72  # wider than what is between two firings
+_FANS = 180
+_ROUND_M = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +33,22 @@ class Stacked:
     key: np.ndarray
     xyz_m: np.ndarray
     scan: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Fans:
+    """The rays of each scan by the two degrees of azimuth that they lie in.
+
+    Attributes
+    ----------
+    first : (n, 181) int64
+        Row of `Rays.stacked` that each begins at, and that the last ends before.
+    reach_m : (n, 180) float64
+        Level length of the longest ray in each; 0 where there is none.
+    """
+
+    first: np.ndarray
+    reach_m: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +80,22 @@ class Rays:
         scan = np.repeat(np.arange(len(self.xyz_m)), [len(xyz_m) for xyz_m in self.xyz_m])
         azimuth_rad = np.concatenate([np.empty(0), *self.azimuth_rad])
         return Stacked(azimuth_rad + _TURN * scan, np.concatenate([np.empty((0, 3)), *self.xyz_m]), scan)
+
+    @cached_property
+    def fans(self):
+        """All rays by two degrees, a `Fans`."""
+        n = len(self.xyz_m)
+        edges_rad = np.linspace(-np.pi, np.pi, _FANS + 1)[1:-1]
+        inner = [np.searchsorted(azimuth_rad, edges_rad) for azimuth_rad in self.azimuth_rad]
+        count = np.array([len(xyz_m) for xyz_m in self.xyz_m], np.int64)
+        inner = np.column_stack([np.zeros(n, np.int64), np.reshape(inner, (n, _FANS - 1)), count])
+        first = inner + (np.cumsum(count) - count)[:, None]
+        way_m = self.stacked.xyz_m[:, :2] - np.repeat(self.sensors_m[:, :2], count, axis=0)
+        square_m2 = np.einsum("ij,ij->i", way_m, way_m)
+        reach_m, filled = np.zeros((n, _FANS)), np.diff(first) > 0
+        if filled.any():
+            reach_m[filled] = np.sqrt(np.maximum.reduceat(square_m2, first[:, :-1][filled]))
+        return Fans(first, reach_m)
 
     @cached_property
     def usual(self):
@@ -173,7 +207,8 @@ def look(rays, line, low_m, high_m, *, band_m):
     """
     ends = line.at(np.array([low_m, high_m]))
     side_m = line.offset_m(rays.sensors_m[:, :2])
-    rows = rows_between(rays, ends, np.flatnonzero(np.abs(side_m) >= LEAST_SIDE_M))
+    scans = np.flatnonzero(np.abs(side_m) >= LEAST_SIDE_M)
+    rows = _rows(*_reaching(rays, line, scans, band_m, *_spans(rays, ends[:, None], scans)))
     xyz_m, scan = rays.stacked.xyz_m[rows], rays.stacked.scan[rows]
     offset_m = line.offset_m(xyz_m[:, :2])
     hit = (np.abs(offset_m) <= band_m) & (side_m[scan] > 0)
@@ -189,15 +224,45 @@ def look(rays, line, low_m, high_m, *, band_m):
 
 
 def rows_between(rays, ends, scans):
-    """Return the rows of `rays.stacked` of some scans' rays that go between two ends (2, 2), the shorter way round."""
-    way = ends[:, None] - rays.sensors_m[scans, :2]
+    """Return the rows of `rays.stacked` of some scans' rays that go between two ends, the shorter way round.
+
+    Parameters
+    ----------
+    rays : Rays
+    ends : (2, k, 2) float
+        One pair of ends for each of the scans, or one for all.
+    scans : (k,) int
+    """
+    return _rows(*_spans(rays, ends, scans))
+
+
+def _spans(rays, ends, scans):
+    """Return the rows (2, k) that such rays begin at, and those (2, k) that they end before."""
+    way = ends - rays.sensors_m[scans, :2]
     first, last = np.arctan2(way[..., 1], way[..., 0])
     turn = (last - first + np.pi) % (2 * np.pi) - np.pi
     begin = np.where(turn > 0, first, last)
     stop = begin + np.abs(turn)
     # what lies beyond pi goes on from -pi
     spans = [(begin, np.minimum(stop, np.pi)), (np.full(len(scans), -np.pi), stop - 2 * np.pi)]
-    low, high = (np.concatenate([span[i] + _TURN * scans for span in spans]) for i in (0, 1))
-    low = np.searchsorted(rays.stacked.key, low)
-    count = np.maximum(np.searchsorted(rays.stacked.key, high, side="right") - low, 0)
+    low, high = (np.stack([span[i] + _TURN * scans for span in spans]) for i in (0, 1))
+    return np.searchsorted(rays.stacked.key, low), np.searchsorted(rays.stacked.key, high, side="right")
+
+
+def _reaching(rays, line, scans, band_m, low, high):
+    """Leave those two degrees out of the rows (2, k) of some scans in which no ray comes as near as `band_m`."""
+    side_m = line.offset_m(rays.sensors_m[scans, :2])[:, None]
+    towards = -np.sign(side_m) * line.normal
+    middle_rad = (np.arange(_FANS) + 0.5) * (2 * np.pi / _FANS) - np.pi
+    apart_rad = np.abs((middle_rad - np.arctan2(towards[:, 1:], towards[:, :1]) + np.pi) % (2 * np.pi) - np.pi)
+    straightest = np.cos(np.maximum(apart_rad - np.pi / _FANS, 0))
+    gone_m = rays.fans.reach_m[scans] * np.maximum(straightest, 0)
+    row, fan = np.nonzero(gone_m >= np.abs(side_m) - band_m - _ROUND_M)
+    first, stop = rays.fans.first[scans[row], fan], rays.fans.first[scans[row], fan + 1]
+    return np.maximum(low[:, row], first), np.minimum(high[:, row], stop)
+
+
+def _rows(low, high):
+    """Return the rows of spans one after another."""
+    low, count = low.ravel(), np.maximum(high - low, 0).ravel()
     return np.repeat(low - np.cumsum(count) + count, count) + np.arange(count.sum())
