@@ -127,6 +127,7 @@ def make(segments, rays, track_m, t_ns, settings):
     )
     unpaired_m = _usual_thickness_m(found)
     stars = freespace.visible(rays)
+    floor = freespace.together(stars)
     panes = glazing.between(*(found, traced.panes), min_length_m=settings.openings.min_opening_m, unpaired_m=unpaired_m)
     enclosed = rooms.find(
         *([*found, *panes], stars, track_m),
@@ -134,6 +135,7 @@ def make(segments, rays, track_m, t_ns, settings):
         min_walled=settings.rooms.min_walled,
         min_width_m=settings.pairs.max_thickness_m,
         unpaired_m=unpaired_m,
+        floor=floor,
     )
     floor_z_m = 0.0 if math.isnan(rays.floor_z_m) else rays.floor_z_m
     drawn = wallfaces.of_walls(found, max_beyond_m=settings.openings.max_closed_m)
@@ -145,7 +147,7 @@ def make(segments, rays, track_m, t_ns, settings):
         openings=plantables.openings(found, enclosed, settings.openings),
         rooms=plantables.rooms(enclosed),
         evidence=plantables.evidence(known, rays.scan_ids, t_ns),
-        free=plantables.free(_free([*found, *panes], stars, unpaired_m)),
+        free=plantables.free(_free([*found, *panes], floor, unpaired_m)),
         n_lines=traced.n_lines,
         n_dropped=traced.n_dropped,
     )
@@ -156,9 +158,9 @@ def _usual_thickness_m(walls):
     return float(np.median(known)) if known else _THICKNESS_M
 
 
-def _free(walls, stars, unpaired_m):
+def _free(walls, floor, unpaired_m):
     """Return the polygons of floor that rays went over, openings with it, walls without."""
     strips = freespace.strips(walls, unpaired_m)
     ways = [freespace.opening_ground(w, g, unpaired_m) for w in walls for g in w.openings]
     solid = shapely.difference(*(shapely.union_all(p, grid_size=1e-3) if p else MultiPolygon() for p in (strips, ways)))
-    return list(freespace.polygons_of(shapely.difference(freespace.together(stars), solid)).geoms)
+    return list(freespace.polygons_of(shapely.difference(floor, solid)).geoms)

@@ -8,14 +8,14 @@ from functools import cached_property
 
 import numpy as np
 
+from scanplan.plan import fans
+
 _FLOOR_BIN_M = 0.05
 _FLOOR_SEARCH_M = 0.5
 LEAST_SIDE_M = 0.15
 _STEADY_M = 0.15
 _TURN = 10.0
 _SECTORS = 72  # wider than what is between two firings
-_FANS = 180
-_ROUND_M = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,22 +33,6 @@ class Stacked:
     key: np.ndarray
     xyz_m: np.ndarray
     scan: np.ndarray
-
-
-@dataclass(frozen=True, eq=False)
-class Fans:
-    """The rays of each scan by the two degrees of azimuth that they lie in.
-
-    Attributes
-    ----------
-    first : (n, 181) int64
-        Row of `Rays.stacked` that each begins at, and that the last ends before.
-    reach_m : (n, 180) float64
-        Level length of the longest ray in each; 0 where there is none.
-    """
-
-    first: np.ndarray
-    reach_m: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,19 +67,8 @@ class Rays:
 
     @cached_property
     def fans(self):
-        """All rays by two degrees, a `Fans`."""
-        n = len(self.xyz_m)
-        edges_rad = np.linspace(-np.pi, np.pi, _FANS + 1)[1:-1]
-        inner = [np.searchsorted(azimuth_rad, edges_rad) for azimuth_rad in self.azimuth_rad]
-        count = np.array([len(xyz_m) for xyz_m in self.xyz_m], np.int64)
-        inner = np.column_stack([np.zeros(n, np.int64), np.reshape(inner, (n, _FANS - 1)), count])
-        first = inner + (np.cumsum(count) - count)[:, None]
-        way_m = self.stacked.xyz_m[:, :2] - np.repeat(self.sensors_m[:, :2], count, axis=0)
-        square_m2 = np.einsum("ij,ij->i", way_m, way_m)
-        reach_m, filled = np.zeros((n, _FANS)), np.diff(first) > 0
-        if filled.any():
-            reach_m[filled] = np.sqrt(np.maximum.reduceat(square_m2, first[:, :-1][filled]))
-        return Fans(first, reach_m)
+        """How far the rays go in each direction, a `fans.Fans`."""
+        return fans.of(self.azimuth_rad, self.stacked.xyz_m[:, :2], self.sensors_m[:, :2])
 
     @cached_property
     def usual(self):
@@ -208,7 +181,7 @@ def look(rays, line, low_m, high_m, *, band_m):
     ends = line.at(np.array([low_m, high_m]))
     side_m = line.offset_m(rays.sensors_m[:, :2])
     scans = np.flatnonzero(np.abs(side_m) >= LEAST_SIDE_M)
-    rows = _rows(*_reaching(rays, line, scans, band_m, *_spans(rays, ends[:, None], scans)))
+    rows = _rows(*fans.cut(rays.fans, *_spans(rays, ends[:, None], scans), scans, side_m[scans], line.normal, band_m))
     xyz_m, scan = rays.stacked.xyz_m[rows], rays.stacked.scan[rows]
     offset_m = line.offset_m(xyz_m[:, :2])
     hit = (np.abs(offset_m) <= band_m) & (side_m[scan] > 0)
@@ -247,19 +220,6 @@ def _spans(rays, ends, scans):
     spans = [(begin, np.minimum(stop, np.pi)), (np.full(len(scans), -np.pi), stop - 2 * np.pi)]
     low, high = (np.stack([span[i] + _TURN * scans for span in spans]) for i in (0, 1))
     return np.searchsorted(rays.stacked.key, low), np.searchsorted(rays.stacked.key, high, side="right")
-
-
-def _reaching(rays, line, scans, band_m, low, high):
-    """Leave those two degrees out of the rows (2, k) of some scans in which no ray comes as near as `band_m`."""
-    side_m = line.offset_m(rays.sensors_m[scans, :2])[:, None]
-    towards = -np.sign(side_m) * line.normal
-    middle_rad = (np.arange(_FANS) + 0.5) * (2 * np.pi / _FANS) - np.pi
-    apart_rad = np.abs((middle_rad - np.arctan2(towards[:, 1:], towards[:, :1]) + np.pi) % (2 * np.pi) - np.pi)
-    straightest = np.cos(np.maximum(apart_rad - np.pi / _FANS, 0))
-    gone_m = rays.fans.reach_m[scans] * np.maximum(straightest, 0)
-    row, fan = np.nonzero(gone_m >= np.abs(side_m) - band_m - _ROUND_M)
-    first, stop = rays.fans.first[scans[row], fan], rays.fans.first[scans[row], fan + 1]
-    return np.maximum(low[:, row], first), np.minimum(high[:, row], stop)
 
 
 def _rows(low, high):

@@ -48,7 +48,7 @@ class Room:
         return self.walled >= _CLOSED_SHARE
 
 
-def find(walls, stars, track_m, *, min_area_m2, min_walled, min_width_m, unpaired_m):
+def find(walls, stars, track_m, *, min_area_m2, min_walled, min_width_m, unpaired_m, floor=None):
     """Find the rooms.
 
     The floor that was seen falls apart where walls and openings stand. Each part becomes the faces of the cells, in a
@@ -69,6 +69,8 @@ def find(walls, stars, track_m, *, min_area_m2, min_walled, min_width_m, unpaire
         and if it is wider than this somewhere: a wall may be as thick.
     unpaired_m : float
         How thick a wall is taken for of which one side is known.
+    floor : shapely geometry, optional
+        `freespace.together` of the stars, where it is known already.
 
     Returns
     -------
@@ -77,7 +79,7 @@ def find(walls, stars, track_m, *, min_area_m2, min_walled, min_width_m, unpaire
     """
     strips = freespace.strips(walls, unpaired_m)
     solid = shapely.union_all(strips, grid_size=_GRID_M) if strips else MultiPolygon()
-    seen = shapely.difference(freespace.together(stars), solid)
+    seen = shapely.difference(freespace.together(stars) if floor is None else floor, solid)
     parts = [p for p in shapely.get_parts(_without_necks(seen)) if p.area >= min_area_m2]
     track = shapely.points(track_m)
     found, taken = [], MultiPolygon()
