@@ -157,3 +157,25 @@ def test_pairs_that_tell_of_no_direction_are_no_sound_fit(value):
     fit = icp._observable(start, np.eye(4), value * np.eye(6), 1.0)
     assert not fit.sound and fit.n_unobservable == 6 and not fit.information.any()
     np.testing.assert_array_equal(fit.target_from_source, start)
+
+
+def test_the_two_sides_of_a_partition_are_not_drawn_together():
+    rng = np.random.default_rng(3)
+
+    def plane(n, low, high):
+        return rng.uniform(low, high, (n, 3))
+
+    def seen_from(sensor_x_m, face_x_m):
+        """Side walls, floor and end walls of two rooms, and one side of what is between them beside a wide door."""
+        shared = [
+            *(plane(1500, (-4, y, 0), (4, y, 2.5)) for y in (-1.5, 1.5)),
+            plane(1500, (-4, -1.5, 0), (4, 1.5, 0)),
+            *(plane(150, (x, -1.5, 0), (x, 1.5, 2.5)) for x in (-4, 4)),
+        ]
+        points = np.concatenate([*shared, plane(1200, (face_x_m, -1.5, 0), (face_x_m, 0.5, 2.5))])
+        return cloud_of(points - (sensor_x_m, 0, 1), planar=False, voxel_m=0.2)
+
+    source, target = seen_from(2, 0.1), seen_from(-2, 0.0)
+    truth = motion([4.0, 0, 0], 0.0)
+    fit = icp.align(source, target, truth, method="gicp", distances_m=[0.15], max_iterations=30)
+    assert np.linalg.norm(fit.target_from_source[:3, 3] - truth[:3, 3]) < 0.015

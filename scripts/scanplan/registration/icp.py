@@ -15,6 +15,7 @@ _COVARIANCE_NEIGHBOURS = 10
 _PAIR_SIGMA_M = 0.045
 _LEAST_SHARE = 0.005
 _FACING = 0.5
+_LEAST_TURNED = 0.01
 # metres and radians: of a step this small less than half is left to go; a rough alignment needs not arrive
 _STEP_DONE, _ROUGH_STEP_DONE = 1e-3, 2e-3
 
@@ -162,11 +163,29 @@ def align(source, target, target_from_source, *, method, distances_m, max_iterat
     step = planarfit.align if target.planar else _align_spatial
     motion = target_from_source
     for distance_m in distances_m:
+        if distance_m == distances_m[-1] and not target.planar:
+            source = _one_sided(source, target, motion, distance_m)
         step_done = _STEP_DONE if distance_m == distances_m[-1] else _ROUGH_STEP_DONE
         motion, information = step(source, target, motion, method, distance_m, max_iterations, step_done)
         if information is None:
             return Fit(target_from_source, np.zeros((6, 6)), 6, False)
     return _observable(target_from_source, motion, information, np.sqrt(np.mean(source.xyz_m**2) * 3))
+
+
+def _one_sided(source, target, target_from_source, distance_m):
+    """Leave out the points whose nearest neighbour is of a surface that faces the other way.
+
+    They show one side of a wall and the target the other. Taken for the same surface, they draw the scans of two rooms
+    together, and what is between these comes out thinner than it is: a partition is thinner than points are apart.
+    """
+    moved = se3.transform(target_from_source, source.xyz_m)
+    index, squared = (found[:, 0] for found in target.tree.batch_knn_search(moved, 1))
+    facing = np.einsum("ij,ij->i", source.normal @ target_from_source[:3, :3].T, target.normal[index.astype(np.int64)])
+    turned = (squared < distance_m**2) & (facing < -_FACING)
+    # a few are badly known normals at edges
+    if turned.mean() < _LEAST_TURNED or turned.all():
+        return source
+    return prepare(source.xyz_m[~turned], planar=False)
 
 
 def _align_spatial(source, target, start, method, distance_m, max_iterations, step_done):
