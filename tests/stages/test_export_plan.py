@@ -10,9 +10,14 @@ from ifcopenshell.util.element import get_psets
 from PIL import Image
 
 import floorplanmaking
+import housemaking
+import ifcvolumes
+from assemble_plan import assemble_plan
 from export_plan import export_plan
 from scanplan import schemas, tables
 from scanplan.errors import StageError
+from scanplan.plan import planning
+from toyrooms import HEIGHT_M
 
 SETTINGS = {"assumed_thickness_m": 0.1, "assumed_height_m": 2.5, "map_cell_m": 0.05}
 TABLES = {
@@ -99,3 +104,34 @@ def test_a_plan_of_nothing_is_told(plan, tmp_path):
     tables.write(plan["faces"], schemas.FACES, floorplanmaking.faces([]), allow_empty=True)
     with pytest.raises(StageError, match="no rows"):
         exported(plan, tmp_path / "plan")
+
+
+def true_house():
+    """The wall between the two rooms of the house, as truth.geojson tells of it; the scans show no lintel: 2 m."""
+    wall = {"kind": "wall", "thickness_m": 0.2, "height_m": HEIGHT_M}
+    door = {"kind": "opening", "type": "door", "width_m": 0.9, "sill_m": 0.0, "lintel_m": 2.0}
+    drawn = [(wall, [[4.1, 0.0], [4.1, 4.0]]), (door, [[4.1, 1.5], [4.1, 2.4]])]
+    features = [
+        {"type": "Feature", "properties": p, "geometry": {"type": "LineString", "coordinates": c}} for p, c in drawn
+    ]
+    return json.dumps({"type": "FeatureCollection", "features": features})
+
+
+def test_walls_that_scans_show_from_both_sides_have_their_true_volume(tmp_path):
+    inputs = housemaking.write(tmp_path, housemaking.segments())
+    made = {name: tmp_path / f"plan_{name}.parquet" for name in planning.TABLES}
+    assemble_plan(*inputs, made, settings=housemaking.PLAN, n_scans=None, area_share=None)
+    outputs = {kind: tmp_path / name for kind, name in NAMES.items()}
+    # beams of 15 degrees hardly reach floor and ceiling of rooms of 4 m; another sensor's do
+    level = np.random.default_rng(1).uniform(0, 4, (3000, 2))
+    wider = [np.column_stack([level, np.full(3000, z_m)]) for z_m in (0.0, HEIGHT_M)]
+    with tables.scan_writer(tmp_path / "wider.parquet", planar=False) as write:
+        for scan_id, xyz_m in housemaking.scans():
+            write(scan_id, np.concatenate([xyz_m, *wider]))
+    export_plan(made, tmp_path / "wider.parquet", outputs, name="house", settings=SETTINGS)
+    model = ifcopenshell.open(outputs["ifc"])
+    measured = [w for w in model.by_type("IfcWall") if get_psets(w)["Scanplan_Evidence"]["ThicknessMeasured"]]
+    found = {wall: ifcvolumes.match(wall, ifcvolumes.true_walls(true_house())) for wall in measured}
+    assert len(found) == 1
+    for wall, true_m3 in found.items():
+        assert ifcvolumes.volume_m3(wall) == pytest.approx(true_m3, rel=0.03)

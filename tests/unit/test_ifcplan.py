@@ -1,7 +1,6 @@
 import re
 
 import ifcopenshell
-import ifcopenshell.geom
 import ifcopenshell.util.element
 import ifcopenshell.util.placement
 import ifcopenshell.validate
@@ -10,6 +9,7 @@ import pytest
 
 import floorplanmaking
 from floorplanmaking import bare, plan
+from ifcvolumes import volume_m3
 from scanplan.exports import ifcplan
 
 
@@ -21,15 +21,6 @@ def faults(model, rules=False):
     log = ifcopenshell.validate.json_logger()
     ifcopenshell.validate.validate(model, log, express_rules=rules)
     return log.statements
-
-
-def volume_m3(product, **options):
-    settings = ifcopenshell.geom.settings()
-    for name, value in options.items():
-        settings.set(name.replace("_", "-"), value)
-    shape = ifcopenshell.geom.create_shape(settings, product).geometry
-    corners = np.reshape(shape.verts, (-1, 3))[np.reshape(shape.faces, (-1, 3))]
-    return abs(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6
 
 
 @pytest.fixture(scope="module")
