@@ -5,6 +5,7 @@ from html import escape
 
 import numpy as np
 
+from scanplan.thesis.claims import COUNT, NUMBER, SHARE
 from scanplan.thesis.thesisclaims import CLAIMS
 from scanplan.thesis.thesisshown import FIGURES, STEPS
 
@@ -21,11 +22,12 @@ nav { font-size: 13.5px; }
 """
 
 
+_UNKNOWN = "not measured"
 _BEYOND = (
-    "What the first scans of every order find of the visible walls (0.10 m) per what the oracle's find, and in brackets"
-    " what they find; survey of the rooms, first seed. The oracle knows what extraction finds in every scan and takes"
-    " greedily what adds most: at least 63 % (1 - 1/e) of what the best choice of as many scans finds. The thesis's"
-    " orders are cluster hulls, one hull per scan, random and as recorded."
+    "What the first scans of every order find of the visible walls (0.10 m) per what the oracle's find: mean over the"
+    " seeds of the survey of the rooms, in brackets their range. The oracle knows what extraction finds in every scan"
+    " and takes greedily what adds most: at least 63 % (1 - 1/e) of what the best choice of as many scans finds. The"
+    " thesis's orders are cluster hulls, one hull per scan, random and as recorded."
 )
 
 
@@ -79,7 +81,8 @@ def claims_table(claims, chosen):
     """Return the table of some claims: what is stated, what was measured, and the verdict."""
     rows = [
         f"<tr><td>{escape(claim.states)}<br><small>{escape(claim.where)}</small></td>"
-        f"<td>{_criterion(claim)}</td><td>{_measured(claims, claim)}</td><td>{_verdict(claims, claim)}</td></tr>"
+        f"<td>{_criterion(claims, claim)}</td><td>{_measured(claims, claim)}</td>"
+        f"<td>{_verdict(claims, claim)}</td></tr>"
         for claim in chosen
     ]
     head = "<tr><th>The thesis</th><th>Criterion, stated number</th><th>Ours</th><th>Verdict</th></tr>"
@@ -107,10 +110,11 @@ def verdict(holds):
     return f"holds for {n_yes} of {n} seeds", "some"
 
 
-def said(values):
-    """Return the mean of values, and their range where they differ, in digits that suit their size."""
-    shown = [_digits(value) for value in (np.mean(values), np.min(values), np.max(values))]
-    return shown[0] if shown[1] == shown[2] else f"{shown[0]} ({shown[1]} to {shown[2]})"
+def said(values, unit=NUMBER):
+    """Return the mean of values, and their range where they differ, as suits their unit (see `claims`)."""
+    shown = [_digits(value, unit) for value in (np.mean(values), np.min(values), np.max(values))]
+    told = shown[0] if shown[1] == shown[2] else f"{shown[0]} ({shown[1]} to {shown[2]})"
+    return told if unit in (COUNT, NUMBER) or told == _UNKNOWN else f"{told} {unit}"
 
 
 def _figure(figure, svg, claims):
@@ -139,15 +143,25 @@ def _rows(claims, claim):
     return {name: values[of_it] for name, values in claims.items()}
 
 
-def _criterion(claim):
-    stated = [f"{escape(quantity)}: {_digits(value)}" for quantity, value in claim.stated.items()]
+def _criterion(claims, claim):
+    units = _units(claims, claim)
+    stated = [
+        f"{escape(quantity)}: {said([value], units.get(quantity, NUMBER))}" for quantity, value in claim.stated.items()
+    ]
     return "<br>".join([escape(claim.criterion)] * bool(claim.criterion) + stated)
 
 
 def _measured(claims, claim):
     rows = _rows(claims, claim)
-    quantities = sorted(set(rows["quantity"].tolist()), key=_by_number)
-    return "<br>".join(f"{escape(q)}: {said(rows['value'][rows['quantity'] == q])}" for q in quantities)
+    units = _units(claims, claim)
+    quantities = sorted(units, key=_by_number)
+    return "<br>".join(f"{escape(q)}: {said(rows['value'][rows['quantity'] == q], units[q])}" for q in quantities)
+
+
+def _units(claims, claim):
+    """Return the unit of every quantity of a claim."""
+    rows = _rows(claims, claim)
+    return dict(zip(rows["quantity"].tolist(), rows["unit"].tolist(), strict=True))
 
 
 def _by_number(text):
@@ -164,7 +178,7 @@ def _judged(claims, claim):
 def _verdict(claims, claim):
     text, kind = verdict(_judged(claims, claim))
     if claim.criterion and not text:
-        return "not measured"
+        return _UNKNOWN
     return f'<span class="{kind}">{text}</span>'
 
 
@@ -193,10 +207,12 @@ def _size(n_bytes):
     return f"{n_bytes / 1e3:.0f} kB"
 
 
-def _digits(value):
-    value = float(value)
+def _digits(value, unit):
+    """Return a number as suits its unit: shares as per cent, counts whole, all others in three figures at most."""
+    value = 100 * float(value) if unit == SHARE else float(value)
     if not np.isfinite(value):
-        return "none"
-    if value == round(value):
+        return _UNKNOWN
+    if unit == COUNT or abs(value) >= 100 or value == round(value):
         return f"{value:,.0f}"
-    return f"{value:,.0f}" if abs(value) >= 100 else f"{value:.4g}"
+    shown = f"{value:.3g}"
+    return shown if "e" not in shown else f"{value:.6f}".rstrip("0")
