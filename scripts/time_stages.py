@@ -3,15 +3,15 @@
 from scanplan import schemas, stagelog, tables
 from scanplan.extraction import cluster_ransac
 from scanplan.thesis import plainransac, timing
-from scanplan.thesis.claims import ITERATIVE, OURS, PLAIN
+from scanplan.thesis.claims import ITERATIVE, OURS, PLAIN, PLAIN_CLUSTERS
 
-_EXTRACTORS = {OURS: (cluster_ransac, OURS), PLAIN: (plainransac, ITERATIVE)}
+_EXTRACTORS = {PLAIN_CLUSTERS: (cluster_ransac, OURS), PLAIN: (plainransac, ITERATIVE)}
 _CLUSTERED, _THINNED = 3, 8  # a call for every number of clusters, or of points, is long
 _SELECTION_SIZES = (10, 20, 30, 45, 60, 90, 130, 180, 270, 400, 600, 900, 1300)
 
 
 def time_stages(scans, registration, built, output, *, walls, hulls, n_clusters, timed_scans):
-    """Write run times of cluster RANSAC, of iterative RANSAC as in the thesis, and of hulls and orders.
+    """Write run times of cluster and iterative RANSAC as in the thesis, and of hulls and orders.
 
     They differ from run to run.
 
@@ -36,7 +36,7 @@ def time_stages(scans, registration, built, output, *, walls, hulls, n_clusters,
     some, few = (timing.spread(chosen, max(timed_scans // part, 2)) for part in (_CLUSTERED, _THINNED))
     rows = [*timing.selection(columns, sizes), *timing.clusters(store, some, sorted(n_clusters), **hulls)]
     for name, (method, settings) in _EXTRACTORS.items():
-        how = walls[settings], registration
+        how = walls[settings] | plainransac.LIFTED, registration
         timed = timing.extractor(name, method, store, placed, chosen, *how)
         rows += stagelog.progress(timed, f"time_stages {name}", total=len(chosen))
         rows += timing.by_size(name, method, store, placed, few, *how)

@@ -62,7 +62,7 @@ def times(found=5, **seconds):
     The sizes of a task are those of one item, but of an extractor those of scans of their own.
     """
     rows = [
-        (task, size, i * task.startswith(("cluster", "plain")), found * (1 + (task == "plain_ransac")), s)
+        (task, size, i * task.startswith("plain"), found * (1 + (task == "plain_ransac")), s)
         for task, pairs in seconds.items()
         for i, (size, s) in enumerate(zip(*pairs, strict=True))
     ]
@@ -106,9 +106,9 @@ def drive(**changes):
     return {
         "drive_walls": evaluation(),
         "drive_times": times(
-            cluster_ransac=((100, 200, 300), (0.03, 0.031, 0.03)),
+            plain_clusters=((100, 200, 300), (0.03, 0.031, 0.03)),
             plain_ransac=((100, 200, 300), (0.05, 0.1, 0.15)),
-            thinned_cluster_ransac=((10, 20, 40), (0.03, 0.03, 0.03)),
+            thinned_plain_clusters=((10, 20, 40), (0.03, 0.03, 0.03)),
             thinned_plain_ransac=((10, 20, 40), (0.05, 0.1, 0.2)),
             order_scans=((10, 90, 270), (0.01, 0.09, 0.27)),
             choose_scans=((20, 90, 270), (0.01, 0.045, 0.135)),

@@ -62,9 +62,8 @@ def evaluated(folder):
 
 
 def write_times(folder):
-    tasks = ("cluster_ransac", "plain_ransac")
-    rows = [(e, 400, scan_id, 4, 0.01) for e in tasks for scan_id in SCAN_IDS]
-    rows = [*rows[:3], ("order_scans", 3, 0, 3, 0.1), *rows[3:]]
+    tasks = ("plain_clusters", "plain_ransac")
+    rows = [("order_scans", 3, 0, 3, 0.1)] + [(e, 400, scan_id, 4, 0.01) for e in tasks for scan_id in SCAN_IDS]
     columns = dict(zip(schemas.TIMES.columns, map(list, zip(*rows, strict=True)), strict=True))
     tables.write(folder / "times.parquet", schemas.TIMES, columns)
     return folder / "times.parquet"
@@ -109,7 +108,7 @@ def test_every_task_is_timed(survey, tmp_path, project_root):
     inputs = [survey / name for name in ("scans.parquet", "registration.parquet", "hulls.parquet")]
     time_stages(*inputs, tmp_path / "times.parquet", walls=walls, hulls=SAMPLING, n_clusters=[3, 1], timed_scans=3)
     found = tables.read(tmp_path / "times.parquet", schemas.TIMES)
-    extractors = {"cluster_ransac", "plain_ransac"}
+    extractors = {"plain_clusters", "plain_ransac"}
     assert set(found["task"]) == extractors | {f"thinned_{e}" for e in extractors} | {"build_hulls", "order_scans"}
     thinned = found["size"][found["task"] == "thinned_plain_ransac"]
     assert sorted(set(thinned.tolist())) == [50, 100, 200, 400]

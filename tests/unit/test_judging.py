@@ -140,12 +140,12 @@ def test_extraction():
     verdicts, values = drive()
     assert verdicts["fewer_walls"] == verdicts["steadier_times"] == verdicts["time_by_size"] == "yes"
     assert values["fewer_walls", "walls a scan, cluster RANSAC"] == 5
-    assert values["fewer_walls", "walls a scan, iterative RANSAC as in the thesis"] == 10
-    assert values["several_per_wall", "iterative RANSAC of ours"] == pytest.approx(14 / 9)
+    assert values["fewer_walls", "walls a scan, iterative RANSAC"] == 10
+    assert values["several_per_wall", "iterative RANSAC"] == pytest.approx(14 / 9)
     assert verdicts["fifteen_like_all"] == "no"
     swapped = made.times(
-        plain_ransac=((100, 200, 300), (0.03, 0.03, 0.031)), cluster_ransac=((100, 200, 300), (0.05, 0.1, 0.15)),
-        thinned_plain_ransac=((1, 2), (0.03, 0.03)), thinned_cluster_ransac=((1, 2), (0.05, 0.1)),
+        plain_ransac=((100, 200, 300), (0.03, 0.03, 0.031)), plain_clusters=((100, 200, 300), (0.05, 0.1, 0.15)),
+        thinned_plain_ransac=((1, 2), (0.03, 0.03)), thinned_plain_clusters=((1, 2), (0.05, 0.1)),
         order_scans=((10, 90), (0.01, 0.09)),
     )  # fmt: skip
     verdicts, _ = drive(drive_times=swapped)
@@ -186,9 +186,9 @@ def test_time_depends_on_the_size_for_one_and_not_for_the_other(thesis, cluster,
     size, times = np.array((100, 200, 400)), made.drive()["drive_times"]
     of_it = np.char.startswith(times["task"], "thinned")
     rows = {name: values[~of_it].tolist() for name, values in times.items()}
-    for name, seconds in (("plain", thesis), ("cluster", cluster)):
+    for name, seconds in (("plain_ransac", thesis), ("plain_clusters", cluster)):
         for item, factor in ((0, 1.0), (7, 10.0)):
-            rows["task"] += [f"thinned_{name}_ransac"] * 3
+            rows["task"] += [f"thinned_{name}"] * 3
             rows["size"] += (size * (1 + item)).tolist()
             rows["item"] += [item] * 3
             rows["found"] += [5] * 3

@@ -1,9 +1,12 @@
-"""Iterative RANSAC with removal of inliers alone, on a corner of two walls and a floor."""
+"""The thesis's extractors on a corner of two walls and a floor."""
+
+from dataclasses import fields
 
 import numpy as np
 import pytest
 
 from scanplan.configuration import read_yaml
+from scanplan.extraction import cluster_ransac, walls
 from scanplan.thesis import plainransac
 
 
@@ -39,3 +42,19 @@ def test_too_few_points_are_no_wall(settings):
     points = wall(np.random.default_rng(1), settings.min_points - 1, x=0.0)
     assert plainransac.extract(3, points, settings=settings) == []
     assert plainransac.extract(3, points[:0], settings=settings) == []
+
+
+def test_clusters_are_one_wall_each_however_they_pause(project_root):
+    given = read_yaml(project_root / "config/config.yaml")["walls"]["cluster_ransac"]
+    points = wall(np.random.default_rng(1), 4000, x=2.0, pause=True)
+    count = {}
+    for name, over in (("ours", {}), ("lifted", plainransac.LIFTED)):
+        settings = cluster_ransac.Settings(**given | over)
+        sensor_m = np.array([0.0, 2.0, 1.0])
+        count[name] = len(cluster_ransac.extract(3, points, sensor_xyz_m=sensor_m, planar=False, settings=settings))
+    assert count["lifted"] == 1 and count["ours"] != 1
+
+
+def test_every_limit_of_ours_is_lifted():
+    kept = {"inlier_m", "min_points", "min_points_planar", "seed"}
+    assert set(plainransac.LIFTED) == {field.name for field in fields(walls.Limits)} - kept

@@ -10,8 +10,8 @@ from scanplan.thesis.thesisclaims import ABOUT, ALMOST
 FOUR = ("cluster_hull", "hull", "random", "sequential")
 """The orders that the thesis compares."""
 OURS, ITERATIVE = "cluster_ransac", "iterative_ransac"
-PLAIN = "plain_ransac"
-"""Iterative RANSAC as the thesis describes it, see `plainransac`."""
+PLAIN, PLAIN_CLUSTERS = "plain_ransac", "plain_clusters"
+"""Iterative and cluster RANSAC as the thesis describes them, see `plainransac`."""
 FOUND, CORRECT = "visible_completeness_010m", "visible_correctness_010m"
 SUBSET, MANY = 15, 60
 """Sizes of the subsets that the thesis shows walls of."""

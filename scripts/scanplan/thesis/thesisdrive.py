@@ -6,10 +6,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from scanplan.report import figures, topview
-from scanplan.thesis.claims import CHOOSING, ITERATIVE, ORDERING, OURS, PLAIN, SUBSET
+from scanplan.thesis.claims import CHOOSING, ITERATIVE, ORDERING, OURS, PLAIN, PLAIN_CLUSTERS, SUBSET
 
-_COLOURS = {OURS: "#0072b2", ITERATIVE: "#d55e00", PLAIN: "#d55e00"}
-_NAMES = {OURS: "cluster RANSAC", ITERATIVE: "iterative RANSAC of ours", PLAIN: "iterative RANSAC as in the thesis"}
+_COLOURS = {OURS: "#0072b2", ITERATIVE: "#d55e00", PLAIN_CLUSTERS: "#0072b2", PLAIN: "#d55e00"}
+_NAMES = dict.fromkeys((OURS, PLAIN_CLUSTERS), "cluster RANSAC") | dict.fromkeys((ITERATIVE, PLAIN), "iterative RANSAC")
 _CIRCLE_M, _CROWDED = 2.0, 0.75
 
 
@@ -59,7 +59,7 @@ def times_figure(times):
     """Draw time and cumulative walls of both extractors, scan by scan (figure 5.10); `times` as above."""
     figure = Figure(figsize=(9.6, 3.4), layout="constrained")
     frames = figure.subplots(1, 2)
-    for extractor in (OURS, PLAIN):
+    for extractor in (PLAIN_CLUSTERS, PLAIN):
         colour = _COLOURS[extractor]
         of_it = np.flatnonzero(times["task"] == extractor)
         of_it = of_it[np.argsort(times["item"][of_it])]

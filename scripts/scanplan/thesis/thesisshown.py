@@ -97,7 +97,7 @@ FIGURES = (
     Figure(
         "5.10",
         "Time comparison and Cumulative number of walls extracted",
-        "Time and walls of cluster RANSAC and of iterative RANSAC as in 5.3, scan by scan of the drive, one process.",
+        "Time and walls of both extractors as in the thesis (3.4, 5.3), scan by scan of the drive, one process.",
         ("fewer_walls", "steadier_times", "time_by_size", "several_per_wall"),
     ),
     Figure(
