@@ -88,20 +88,20 @@ CLAIMS = (
         "3.3.2, Figure 3.2",
         "The union of cluster hulls is a much better approximation.",
         "what it does not share with the area truly seen (1 - intersection over union, median) is no more than"
-        f" {MUCH:.0%} of that of one hull",
+        f" {100 * MUCH:.0f} % of that of one hull",
     ),
     Claim(
         "full_hull_99",
         "5.2, Figure 5.6",
         "By one hull per scan, 99 % of the area is reached after about 10 scans.",
-        f"within {ABOUT:.0%} of it",
+        f"within {100 * ABOUT:.0f} % of it",
         {"scans for 99 %": 10},
     ),
     Claim(
         "cluster_hull_99",
         "5.2, Figure 5.6",
         "By cluster hulls, 99 % of the area is reached after about 17 scans.",
-        f"within {ABOUT:.0%} of it",
+        f"within {100 * ABOUT:.0f} % of it",
         {"scans for 99 %": 17},
     ),
     Claim(
@@ -132,15 +132,15 @@ CLAIMS = (
         "fifteen_almost_complete",
         "5.2, Figure 5.5",
         "15 of 273 scans in the order of the algorithm give an almost complete floor plan.",
-        f"they find {COMPLETE:.0%} or more of the true walls that any scan can see (0.10 m)",
+        f"they find {100 * COMPLETE:.0f} % or more of the true walls that any scan can see (0.10 m)",
         {"of how many scans": 273},
     ),
     Claim(
         "tenth_little_loss",
         "1.3, 5",
         "A subset, ten times fewer scans, costs little of the final result.",
-        f"of the walls found and of the length that is wall, the first tenth keeps {ALMOST:.0%} or more each of what"
-        " all scans have (0.10 m, visible walls)",
+        f"the first tenth keeps {100 * ALMOST:.0f} % or more of the walls found and of the length that is wall that all"
+        " scans have, each (0.10 m, visible walls)",
     ),
     Claim(
         "uneven_harms_random",
@@ -148,7 +148,8 @@ CLAIMS = (
         "Depending on the severity of uneven sampling, random selection suffers and area based selection does not.",
         "in the survey of the rooms, the tenth of the scans nearest to a place (mean of 3 places) taken 1, 5 and 20"
         " times, each time with clusters drawn anew: the first 15 of a random order (mean of 200) see less true wall"
-        f" with every step and in the end over {HARM:.0%} less; the first 15 by cluster hulls never over {HARM:.0%}",
+        f" with every step and in the end over {100 * HARM:.0f} % less; the first 15 by cluster hulls never over"
+        f" {100 * HARM:.0f} % less",
     ),
     Claim(
         "several_per_wall",
@@ -180,14 +181,14 @@ CLAIMS = (
         "fifteen_like_all",
         "5.4, Figures 5.11, 5.12",
         "Cluster RANSAC on 15 scans performs like iterative RANSAC on all.",
-        f"of the walls found and of the length that is wall it has {ALMOST:.0%} or more each of that (0.10 m, visible"
-        f" walls), on the drive. {_OURS}",
+        f"of the walls found and of the length that is wall it has {100 * ALMOST:.0f} % or more each of that (0.10 m,"
+        f" visible walls), on the drive. {_OURS}",
     ),
     Claim(
         "two_percent_survive",
         "3.5",
         "About 2 % of the scans survive registration with its limits (0.96 and 0.99).",
-        f"within {ABOUT:.0%} of it, with config/thesis.yaml on the drive. The thesis does not state within what"
+        f"within {100 * ABOUT:.0f} % of it, with config/thesis.yaml on the drive. The thesis does not state within what"
         " distance two points count as the same for its fitness: 0.5 m is assumed, and the share hangs on it",
         {"share retained": 0.02, "scans retained": 115},
     ),

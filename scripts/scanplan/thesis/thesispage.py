@@ -13,7 +13,8 @@ _STYLE = """
 body { font: 15px/1.45 system-ui, sans-serif; max-width: 68rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
 table { border-collapse: collapse; margin: .6rem 0; font-size: 13.5px; }
 th, td { border-bottom: 1px solid #ddd; padding: .3rem .6rem; text-align: left; vertical-align: top; }
-td:nth-child(3) { min-width: 18rem; }
+td:nth-child(3) { min-width: 25rem; }
+td:nth-child(4) { white-space: nowrap; }
 td.number { min-width: 0 !important; text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
 figure { margin: 1.2rem 0 2.4rem; } figcaption { font-size: 13.5px; }
 svg { max-width: 100%; height: auto; }
@@ -111,10 +112,22 @@ def verdict(holds):
 
 
 def said(values, unit=NUMBER):
-    """Return the mean of values, and their range where they differ, as suits their unit (see `claims`)."""
-    shown = [_digits(value, unit) for value in (np.mean(values), np.min(values), np.max(values))]
-    told = shown[0] if shown[1] == shown[2] else f"{shown[0]} ({shown[1]} to {shown[2]})"
-    return told if unit in (COUNT, NUMBER) or told == _UNKNOWN else f"{told} {unit}"
+    """Return the mean of values, and their range where they differ, as suits their unit (see `claims`).
+
+    Shares are per cent, counts whole, and the largest number has three figures at most.
+    """
+    told = np.array([np.mean(values), np.min(values), np.max(values)]) * (100 if unit == SHARE else 1)
+    if not np.isfinite(told).all():
+        return _UNKNOWN
+    decimals = 0 if unit == COUNT or (told == told.round()).all() else _decimals(np.abs(told).max())
+    shown = [f"{value + 0.0:,.{decimals}f}" for value in told.round(decimals)]
+    text = shown[0] if shown[1] == shown[2] else f"{shown[0]} ({shown[1]} to {shown[2]})"
+    return text if unit in (COUNT, NUMBER) else f"{text} {unit}"
+
+
+def _decimals(value):
+    """Return how many decimals give a positive number three figures."""
+    return max(0, 2 - int(np.floor(np.log10(value))))
 
 
 def _figure(figure, svg, claims):
@@ -205,14 +218,3 @@ def _size(n_bytes):
         if n_bytes >= factor:
             return f"{n_bytes / factor:.{digits}f} {unit}"
     return f"{n_bytes / 1e3:.0f} kB"
-
-
-def _digits(value, unit):
-    """Return a number as suits its unit: shares as per cent, counts whole, all others in three figures at most."""
-    value = 100 * float(value) if unit == SHARE else float(value)
-    if not np.isfinite(value):
-        return _UNKNOWN
-    if unit == COUNT or abs(value) >= 100 or value == round(value):
-        return f"{value:,.0f}"
-    shown = f"{value:.3g}"
-    return shown if "e" not in shown else f"{value:.6f}".rstrip("0")
