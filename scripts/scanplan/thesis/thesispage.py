@@ -14,7 +14,7 @@ body { font: 15px/1.45 system-ui, sans-serif; max-width: 68rem; margin: 2rem aut
 table { border-collapse: collapse; margin: .6rem 0; font-size: 13.5px; }
 th, td { border-bottom: 1px solid #ddd; padding: .3rem .6rem; text-align: left; vertical-align: top; }
 td:nth-child(3) { min-width: 25rem; }
-td:nth-child(4) { white-space: nowrap; }
+td:nth-child(4), .value { white-space: nowrap; }
 td.number { min-width: 0 !important; text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
 figure { margin: 1.2rem 0 2.4rem; } figcaption { font-size: 13.5px; }
 svg { max-width: 100%; height: auto; }
@@ -67,7 +67,8 @@ def page(figures, beyond, claims, steps, limited):
         claims_table(claims, [claim for claim in CLAIMS if not claim.criterion]),
         '<h2 id="table">Table 5.1: computation time required for each step</h2>',
         steps_table(steps, limited),
-        "<p><small>First seed. Our times are of whole jobs: starting Python and reading and writing tables is in them;"
+        "<p><small>First seed. Our times are of whole jobs: starting Python and reading and writing tables is in them,"
+        " and the last orders all scans, of which the first 15 are the subset;"
         " the data after the hulls are the table of hulls.</small></p>",
         "<h2>Figures</h2>",
         *(_figure(figure, figures[figure.file], claims) for figure in FIGURES),
@@ -168,7 +169,8 @@ def _measured(claims, claim):
     rows = _rows(claims, claim)
     units = _units(claims, claim)
     quantities = sorted(units, key=_by_number)
-    return "<br>".join(f"{escape(q)}: {said(rows['value'][rows['quantity'] == q], units[q])}" for q in quantities)
+    values = {q: said(rows["value"][rows["quantity"] == q], units[q]) for q in quantities}
+    return "<br>".join(f'{escape(q)}: <span class="value">{escape(value)}</span>' for q, value in values.items())
 
 
 def _units(claims, claim):
