@@ -10,11 +10,8 @@ from scanplan.evaluation import (
     registered,
     trueplan,
     truthfile,
-    visibility,
     wallevaluation,
 )
-
-_SURVEY_STEP_M = 0.25
 
 
 def evaluate_plan(plan, registration, truth, true_poses, output, *, max_range_m, bitmap_cell_m):
@@ -30,14 +27,14 @@ def evaluate_plan(plan, registration, truth, true_poses, output, *, max_range_m,
         How far a scan can see; edge of a bitmap's cell.
     """
     scans, poses = registered.read(registration), truthfile.read_poses(true_poses)
-    placed = truthfile.poses_at(poses, scans.t_ns, true_poses)[:, :3, 3]
+    placed = truthfile.poses_at(poses, scans.t_ns, true_poses)
     drawn, chosen = planevaluation.read(plan), planevaluation.scans_of(plan["evidence"])
     used = registered.rows_of(chosen, scans, plan["evidence"], registration)
-    survey_m = poses.xyz_m[visibility.thinned(poses.xyz_m[:, :2], _SURVEY_STEP_M), :2]
-    floor = findings.look(truthfile.read_faces(truth), placed[used, :2], survey_m, max_range_m=max_range_m)
+    sight = truthfile.read_sight(truth, max_range_m=max_range_m)
+    floor = findings.look(truthfile.read_faces(truth), placed[used], truthfile.matrices(poses), sight=sight)
     true = trueplan.read(truth)
     rows = []
-    motion = poseerrors.alignment(scans.map_from_sensor[:, :3, 3], placed)
+    motion = poseerrors.alignment(scans.map_from_sensor[:, :3, 3], placed[:, :3, 3])
     for frame, moved in (("aligned", motion), ("registered", np.eye(4))):
         measured = planevaluation.measure(drawn, moved, true, floor)
         bitmaps = wallevaluation.of_plan(planevaluation.faces_m(drawn, moved), floor, bitmap_cell_m)

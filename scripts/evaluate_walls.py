@@ -4,9 +4,7 @@ from pathlib import Path
 
 from scanplan import schemas, stagelog, tables
 from scanplan.evaluation import findings, oracle, poseerrors, registered, truthfile, wallevaluation
-from scanplan.evaluation.visibility import thinned
 
-_SURVEY_STEP_M = 0.25
 _SIGHT = "sight"
 
 
@@ -31,8 +29,8 @@ def evaluate_walls(
     """
     scans, poses = registered.read(registration), truthfile.read_poses(true_poses)
     placed = truthfile.poses_at(poses, scans.t_ns, true_poses)
-    survey_m = poses.xyz_m[thinned(poses.xyz_m[:, :2], _SURVEY_STEP_M), :2]
-    floor = findings.look(truthfile.read_faces(truth), placed[:, :2, 3], survey_m, max_range_m=max_range_m)
+    sight = truthfile.read_sight(truth, max_range_m=max_range_m)
+    floor = findings.look(truthfile.read_faces(truth), placed, truthfile.matrices(poses), sight=sight)
     orders = {Path(path).stem: registered.order(path, scans, registration) for path in selections}
     orders[_SIGHT] = oracle.greedy_order(floor.seen, floor.cells.length_m).order
     shown = {Path(path).stem: registered.walls(path, scans, registration) for path in walls}

@@ -4,7 +4,7 @@ import time
 
 from scanplan import chunks, schemas, stagelog, tables
 from scanplan.errors import StageError
-from scanplan.extraction import cluster_ransac, iterative_ransac, walls
+from scanplan.extraction import cluster_ransac, iterative_ransac, level, walls
 
 EXTRACTORS = {"cluster_ransac": cluster_ransac, "iterative_ransac": iterative_ransac}
 
@@ -32,6 +32,9 @@ def extract_walls(scans, registration, output, *, extractor, settings, threads=1
     found = chunks.map_scans(
         method.extract, scans, label=f"extract_walls {extractor}", threads=threads, per_scan=per_scan, **every_scan
     )
+    looked_at = ((store.read(i), per_scan[i]["sensor_xyz_m"]) for i in level.sample(store.scan_ids.tolist()))
+    if not store.planar and (tilted := level.warning(looked_at)):
+        stagelog.say(f"extract_walls: {tilted}")
     columns = walls.table(store.scan_ids, found)
     tables.write(output, schemas.WALLS, columns, allow_empty=True)
     took_ms = 1e3 * (time.perf_counter() - started)

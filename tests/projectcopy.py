@@ -42,5 +42,7 @@ class Project:
         return {line.split()[1].rstrip(":") for line in listing.splitlines() if line.startswith("rule ")} - {"all"}
 
     def digests(self):
-        files = [p for p in (self.folder / "results").rglob("*") if p.is_file() and p.name != "report.html"]
+        # these tell run times
+        timed = {"report.html", "seconds.parquet"}
+        files = [p for p in (self.folder / "results").rglob("*") if p.is_file() and p.name not in timed]
         return {str(p.relative_to(self.folder)): hashlib.sha256(p.read_bytes()).hexdigest() for p in sorted(files)}

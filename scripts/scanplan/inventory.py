@@ -23,7 +23,7 @@ _DRAWN = (
     *(f"figures/{f}.svg" for f in ("registration", "scans", "area", "walls")),
     "report.html",
 )
-_EVALUATION = ("walls", "walls_aligned", "oracle", "plan", "poses")
+_EVALUATION = ("walls", "walls_aligned", "oracle", "plan", "poses", "seconds")
 
 
 @dataclass(frozen=True)
@@ -119,6 +119,11 @@ def dataset(name, path, *, defaults, overrides, schema, drawings):
                 f"{path}: does not exist; give a YAML file with a section `simulate`, a folder or a recording"
             )
         settings = configuration.for_dataset(defaults, path, overrides, schema)
+        if path is not None and "simulate" not in configuration.read_yaml(path):
+            raise StageError(
+                f"{path}: has no section `simulate`, which says what is surveyed; to use it as settings of a dataset,"
+                " give it as CONFIG (--configfile)"
+            )
         return simulated(name, settings, drawings)
     settings = configuration.for_dataset(defaults, Path(path) / "dataset.yaml", overrides, schema)
     recordings = tuple(datasets.find_files(path))

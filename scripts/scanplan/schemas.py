@@ -209,7 +209,7 @@ _AGREEMENT = {
 }
 EVALUATION = Schema(
     "evaluation",
-    2,
+    3,
     {
         "method": "string",
         "extractor": "string",
@@ -223,11 +223,16 @@ EVALUATION = Schema(
                 "missed_misregistered",
                 "missed_misextracted",
                 "oracle_share",
-                "seconds",
             ),
             "float64",
         ),
     },
+    ("method", "extractor", "k"),
+)
+SECONDS = Schema(
+    "seconds",
+    1,
+    {"method": "string", "extractor": "string", "k": "int32", "seconds": "float64"},
     ("method", "extractor", "k"),
 )
 ORACLE = Schema(

@@ -1,8 +1,9 @@
 """The stages against the algorithms written literally, on simulated surveys, each pair timed in this one process.
 
-Usage: run.py [registration] [selection] [walls] [wall_quality]
+Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [plans] [FOLDER ...]
 
-Without a name all of them but wall_quality, which takes minutes.
+Without a name all of them but wall_quality, which takes minutes, and plans, which measures the surveys that the
+workflow has finished under results/; a FOLDER holds the dataset folders with the truths of those it did not simulate.
 """
 
 import sys
@@ -16,6 +17,13 @@ sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "tests")]
 from scanplan import configuration  # noqa: E402
 
 SETTINGS = configuration.read_yaml(ROOT / "config/config.yaml")
+
+
+def bench_simulation():
+    """Ten minutes of a 10 Hz VLP-16: rays a second, cast and written, and memory."""
+    import simulating
+
+    simulating.bench(ROOT, SETTINGS)
 
 
 def bench_registration():
@@ -46,11 +54,25 @@ def bench_wall_quality():
     wallbench.quality(ROOT, SETTINGS)
 
 
+def bench_plans(folders=()):
+    """Plans of finished surveys: from the chosen scans, from all scans, and lines on a raster of all points."""
+    import plansbench
+
+    plansbench.bench(ROOT / "results", folders, SETTINGS)
+
+
 if __name__ == "__main__":
-    benches = {"registration": bench_registration, "selection": bench_selection, "walls": bench_walls}
-    more = {"wall_quality": bench_wall_quality}
-    unknown = set(sys.argv[1:]) - set(benches | more)
+    benches = {
+        "simulation": bench_simulation,
+        "registration": bench_registration,
+        "selection": bench_selection,
+        "walls": bench_walls,
+    }
+    folders = [Path(name) for name in sys.argv[1:] if Path(name).is_dir()]
+    names = [name for name in sys.argv[1:] if Path(name) not in folders]
+    more = {"wall_quality": bench_wall_quality, "plans": lambda: bench_plans(folders)}
+    unknown = set(names) - set(benches | more)
     if unknown:
         sys.exit(f"no benchmark {', '.join(sorted(unknown))}; there are {', '.join(benches | more)}")
-    for name in sys.argv[1:] or benches:
+    for name in names or benches:
         (benches | more)[name]()

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from scanplan.evaluation import findings, lengthmetrics, truthfile
+from scanplan.evaluation import findings, lengthmetrics, truthfile, visibility
 from scanplan.simulation import raycast, surveying, sweeps
 
 N_AZIMUTH = 1800  # of a real VLP-16
@@ -52,8 +52,8 @@ def standing(building, settings, *, seed=1, step_m=0.4, every=1, **site):
     poses, scene = surveying.true_poses(survey)[1], raycast.Scene(survey.mesh)
     scans = [(i, points(survey, scene, i, poses[i])) for i in range(0, len(poses), every)]
     faces = truthfile.TrueFaces(*(_lines(found.truth, side) for side in ("inside", "outside")))
-    places_m = poses[[i for i, _ in scans], :2, 3]
-    truth = findings.look(faces, places_m, poses[:, :2, 3], max_range_m=settings["sensor"]["max_range_m"])
+    sight = visibility.Sight(settings["sensor"]["max_range_m"])
+    truth = findings.look(faces, poses[[i for i, _ in scans]], poses, sight=sight)
     return Survey(scans, {i: poses[i, :3, 3] for i, _ in scans}, truth)
 
 
@@ -82,7 +82,8 @@ def unswept(building, settings, *, seed, rate_hz, drive, **site):
     chosen["sensor"] |= {"n_azimuth": N_AZIMUTH, "sweep": False, "rate_hz": rate_hz}
     chosen["drive"] |= drive
     rig = {key: chosen[key] for key in ("mount", "sensor", "errors", "drive", "people")}
-    found = surveying.site(Path(building).read_bytes(), Path(building), chosen["mount"], **chosen["site"] | site)
+    chosen["site"] |= site
+    found = surveying.site(Path(building).read_bytes(), Path(building), chosen["mount"], seed=seed, **chosen["site"])
     return found, surveying.prepare(found, seed=seed, **rig)
 
 

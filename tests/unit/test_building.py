@@ -135,6 +135,38 @@ def test_a_given_way_is_kept_unless_another_is_asked_for():
         building.routed(drawing, "a", route="hallways", clearance_m=0.3)
 
 
+def test_waypoints_of_the_settings_come_before_the_files():
+    drawing = building.load(drawn.text(drawn.WALLS, drawn.WAY).encode(), Path("a.geojson"), slice_height_m=0.4)
+    mine = [[1.0, 2.0], [3.0, 2.0]]
+    given = building.routed(drawing, "a", route="given", waypoints_m=mine, clearance_m=0.3)
+    np.testing.assert_array_equal(given.waypoints_m, mine)
+    with pytest.raises(StageError, match="outside the outer walls"):
+        building.routed(drawing, "a", route="given", waypoints_m=[[1.0, 2.0], [9.0, 2.0]], clearance_m=0.3)
+    for values in ({"route": "rooms"}, {"route": "given", "start_m": [1.0, 1.0]}):
+        with pytest.raises(StageError, match=r"simulate\.site: waypoints_m are given"):
+            building.routed(drawing, "a", **values, waypoints_m=mine, clearance_m=0.3)
+
+
+def test_a_planned_way_begins_where_asked_or_by_the_seed():
+    found = model_of()
+    here = building.routed(found, "room.ifc", route="rooms", clearance_m=0.3, start_m=[3.0, 1.0])
+    np.testing.assert_allclose(here.waypoints_m[0], [3.0, 1.0], atol=0.05)
+    starts = [
+        building.routed(found, "room.ifc", route="rooms", clearance_m=0.3, start_m="random", seed=seed).waypoints_m[0]
+        for seed in (1, 1, 2)
+    ]
+    np.testing.assert_array_equal(starts[0], starts[1])
+    assert np.linalg.norm(starts[0] - starts[2]) > 0.05
+    with pytest.raises(StageError, match="lies within"):
+        building.routed(found, "room.ifc", route="rooms", clearance_m=0.3, start_m=[0.05, 0.05])
+
+
+def test_a_sensor_above_its_storey_is_refused():
+    model = ifcfile.parse(ifcmaking.model(("Ground", "Upper")), "made.ifc")
+    with pytest.raises(StageError, match=r"made\.ifc: the sensor is 3\.5 m above the floor.*lower simulate\.mount"):
+        building.of_model(model, 0, 3.5, "made.ifc")
+
+
 @pytest.mark.parametrize(
     ("values", "message"),
     [

@@ -6,6 +6,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import toyrooms
+import upright
 from reference import cluster_ransac as literal
 from scanplan.extraction import cluster_ransac
 
@@ -106,6 +107,29 @@ def test_a_wall_that_bends_a_little_is_two_and_the_first_takes_nothing_of_the_se
 
 def test_noise_leaves_no_second_wall_beside_the_first():
     check_toy_room(extract(toyrooms.vlp16(noise_m=0.02)), turn_rad=0.01)
+
+
+def test_a_wall_goes_on_between_a_counter_and_the_cabinets_above_it():
+    """One beam alone passes over the counter and under the cabinets: what it meets has no normal."""
+    wall, counter, cabinets = (4, -3, 4, 3, 0, 2.6), (3.4, -0.6, 3.4, 0.9, 0, 0.9), (3.7, -0.6, 3.7, 0.9, 1.1, 2.2)
+    found = extract(upright.returns([wall, counter, cabinets], columns=1800), (0, 0, 0))
+    assert found.start_m == pytest.approx(np.array([(4, -3)]), abs=0.1)
+    assert found.end_m == pytest.approx(np.array([(4, 3)]), abs=0.1)
+    # without that beam it is two: nothing is known of what is between
+    hidden = extract(upright.returns([wall, (*counter[:5], 1.1), cabinets], columns=1800), (0, 0, 0))
+    assert len(hidden) == 2
+
+
+def test_a_shelf_on_the_line_of_a_wall_joins_its_pieces_and_the_floor_does_not():
+    """The sensor is 1.5 m above the floor; between y = -0.6 and 0.6 it sees a shelf of 1 m height, or the floor."""
+    fine = np.arange(0, 1, 0.025)
+    along, up = np.meshgrid(np.r_[-3 + 2.4 * fine, 0.6 + 2.4 * fine], -1.5 + 2.4 * fine)
+    pieces = np.column_stack([np.full(along.size, 4.0), along.ravel(), up.ravel()])
+    deep, wide = np.meshgrid(3.4 + 0.62 * fine, -0.6 + 1.2 * fine)
+    shelf = np.column_stack([deep.ravel(), wide.ravel(), np.full(deep.size, -0.5)])
+    floor = np.column_stack([deep.ravel(), wide.ravel(), np.full(deep.size, -1.5)])
+    assert len(extract(np.vstack([pieces, shelf, floor]), (0, 0, 0))) == 1
+    assert len(extract(np.vstack([pieces, floor]), (0, 0, 0))) == 2
 
 
 def test_a_round_wall_becomes_chords():

@@ -4,32 +4,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import toyrooms
-from scanplan.extraction import furniture, walls
+from scanplan.extraction import furniture, rays, sightlines, walls
+from upright import SENSOR_M, returns
 
 LIMITS = walls.Limits(**toyrooms.LIMITS)
-SENSOR_M = 0.4
-
-
-def rays(faces, *, elevations_deg=range(-15, 16, 2), columns=720):
-    """Return what 16 beams from 0.4 m above the floor see of upright faces (x0, y0, x1, y1, low, high above the floor).
-
-    Relative to the sensor; the floor is seen where nothing else is.
-    """
-    azimuth, slope = np.meshgrid(np.arange(columns) / columns * 2 * np.pi, np.tan(np.deg2rad(list(elevations_deg))))
-    way = np.column_stack([np.cos(azimuth.ravel()), np.sin(azimuth.ravel())])
-    slope = slope.ravel()
-    nearest = np.where(slope < 0, -SENSOR_M / np.minimum(slope, -1e-9), np.inf)
-    for x0, y0, x1, y1, low, high in faces:
-        start, along = np.array([x0, y0]), np.array([x1 - x0, y1 - y0])
-        with np.errstate(divide="ignore", invalid="ignore"):
-            across = way[:, 0] * along[1] - way[:, 1] * along[0]
-            range_m = (start[0] * along[1] - start[1] * along[0]) / across
-            share = (start[0] * way[:, 1] - start[1] * way[:, 0]) / across
-            height = SENSOR_M + slope * range_m
-            hit = (range_m > 0) & (share >= 0) & (share <= 1) & (height >= low) & (height <= high)
-        nearest = np.where(hit, np.minimum(nearest, range_m), nearest)
-    seen = np.isfinite(nearest) & (nearest < 30)
-    return np.column_stack([way, slope])[seen] * nearest[seen, None]
 
 
 def row(x0, y0, x1, y1, low, high, rmse_m=0.01):
@@ -41,7 +19,7 @@ def row(x0, y0, x1, y1, low, high, rmse_m=0.01):
 def kept(faces, others=(), **seen):
     """Return which faces count as walls, in a scan of them and others."""
     rows = [row(*face, **seen) for face in faces]
-    walls_found = furniture.walls_among(rows, rays([*faces, *others]), LIMITS, planar=False)
+    walls_found = furniture.walls_among(rows, rays.view(returns([*faces, *others])), LIMITS)
     return [r in walls_found for r in rows]
 
 
@@ -76,7 +54,7 @@ def test_an_outer_corner_shows_that_a_low_face_is_furniture():
     faces = [(1.5, -0.5, 1.5, 0.5, 0, 0.8), (1.5, 0.5, 2.5, 0.5, 0, 0.8)]
     # the second is seen edge-on from the origin's side; its normal is up
     rows = [row(*faces[0]), row(2.5, 0.5, 1.5, 0.5, 0, 0.8)]
-    assert furniture.walls_among(rows, rays(faces), LIMITS, planar=False) == []
+    assert furniture.walls_among(rows, rays.view(returns(faces)), LIMITS) == []
 
 
 def test_what_is_seen_higher_than_furniture_is_no_side_of_it():
@@ -85,22 +63,22 @@ def test_what_is_seen_higher_than_furniture_is_no_side_of_it():
     assert kept([wall, unit], [(9, -6, 9, 6, 0, 2.6)]) == [True, False]
     clutter = (3, 0.4, 5, 0.9, 0, 2.0)
     rows = [row(*wall), row(*clutter, rmse_m=0.03)]
-    assert furniture.walls_among(rows, rays([wall, clutter]), LIMITS, planar=False) == []
+    assert furniture.walls_among(rows, rays.view(returns([wall, clutter])), LIMITS) == []
 
 
 def test_stairs_let_rays_through():
     treads = [(4, -1 + 0.1 * i, 4, -0.95 + 0.1 * i, 0, 2.6) for i in range(20)]
     rows = [row(4, -1, 4, 1, 0, 2.6)]
-    assert furniture.walls_among(rows, rays([*treads, WALL]), LIMITS, planar=False) == []
-    assert furniture.walls_among(rows, rays([(4, -1, 4, 1, 0, 2.6), WALL]), LIMITS, planar=False) == rows
+    assert furniture.walls_among(rows, rays.view(returns([*treads, WALL])), LIMITS) == []
+    assert furniture.walls_among(rows, rays.view(returns([(4, -1, 4, 1, 0, 2.6), WALL])), LIMITS) == rows
 
 
 def test_glass_gives_few_returns():
-    points = rays([(4, -1, 4, 1, 0, 2.6), (-4, 1, -4, -1, 0, 2.6)])
+    points = returns([(4, -1, 4, 1, 0, 2.6), (-4, 1, -4, -1, 0, 2.6)])
     pane = np.abs(points[:, 0] - 4) < 1e-6
     few = points[~pane | (np.arange(len(points)) % 10 == 0)]
     rows = [row(4, -1, 4, 1, 0, 1.4), row(-4, 1, -4, -1, 0, 1.4)]
-    assert furniture.walls_among(rows, few, LIMITS, planar=False) == rows[1:]
+    assert furniture.walls_among(rows, rays.view(few), LIMITS) == rows[1:]
 
 
 def test_what_stands_close_before_a_wall_is_furniture():
@@ -121,12 +99,30 @@ def test_a_short_face_is_a_wall_where_it_goes_on_beyond_a_door():
     assert kept([short, on]) == [True, True]
 
 
+def test_a_low_face_is_a_wall_beyond_a_door_but_not_beyond_a_niche():
+    """At 1.3 m no beam rises above 0.9 m; the wall goes on beyond a door of 0.9 m, or beyond one of two units."""
+    low, wall, far = (1.3, -1.2, 1.3, -0.2, 0, 1), (1.3, 0.7, 1.3, 5, 0, 2.6), (4, -9, 4, 9, 0, 2.6)
+    assert kept([low, wall], [far]) == [True, True]
+    assert kept([low, wall], [(1.9, -0.2, 1.9, 0.7, 0, 2.6)]) == [False, True]
+    # nor where it shows an outer corner, as the end of a table does
+    rows = [row(*low), row(*wall), row(1.3, -0.2, 2.3, -0.2, 0, 1)]
+    found = furniture.walls_among(rows, rays.view(returns([low, wall, far])), LIMITS)
+    assert rows[0] not in found and rows[1] in found
+
+
+def test_at_grazing_incidence_what_is_behind_the_end_of_a_face_is_not_its_height():
+    """A unit of 0.8 m height seen along from 0.4 m before it; beyond its end the side of a wall, square to it."""
+    unit, side = (-3, 0.4, -1, 0.4, 0, 0.8), (-3, 0.4, -3, 1.4, 0, 2.6)
+    seen = sightlines.look(rays.view(returns([unit, side])), np.array([-1, 0.4]), np.array([-3, 0.4]), -0.4, 0.4)
+    assert seen.top_m < 0.85
+
+
 @pytest.mark.parametrize("planar", [False, True])
 def test_clutter_scatters(planar):
-    points = rays([LOW_WALL])
+    scan = None if planar else rays.view(returns([LOW_WALL]))
     rows = [row(*LOW_WALL, rmse_m=0.028), row(*LOW_WALL, rmse_m=0.02)]
-    assert furniture.walls_among(rows, points, LIMITS, planar=planar) == rows[1:]
-    assert furniture.walls_among([], points, LIMITS, planar=planar) == []
+    assert furniture.walls_among(rows, scan, LIMITS) == rows[1:]
+    assert furniture.walls_among([], scan, LIMITS) == []
 
 
 def test_corners_on_paper():
@@ -145,8 +141,8 @@ def test_a_turn_of_the_room_changes_nothing(angle_rad):
     cabinet, wall = (4, -0.7, 4, 0.7, 0, 2.0), [(4.6, -3, 4.6, -0.9, 0, 2.6), (4.6, 0.9, 4.6, 3, 0, 2.6)]
     turn = np.array([[np.cos(angle_rad), -np.sin(angle_rad)], [np.sin(angle_rad), np.cos(angle_rad)]])
     rows = [row(*face) for face in [cabinet, *wall]]
-    points = rays([cabinet, *wall])
+    points = returns([cabinet, *wall])
     turned = [(*turn @ r[0:2], *turn @ r[2:4], *turn @ r[4:6], *r[6:]) for r in rows]
     points = np.column_stack([points[:, :2] @ turn.T, points[:, 2]])
-    found = furniture.walls_among(turned, points, LIMITS, planar=False)
+    found = furniture.walls_among(turned, rays.view(points), LIMITS)
     assert [r in found for r in turned] == [False, True, True]

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -42,6 +44,29 @@ def test_a_window():
     assert gap.sill_m == pytest.approx(0.9, abs=0.11)
 
 
+def with_feet(feet):
+    x, z = np.array(sorted(feet), float).T
+    passing = seen(grid(1, 1.9, 2.2), grid(1, 1.9, 0.13, 1.0, 2.0))
+    return replace(passing, foot_m=x, foot_z_m=z)
+
+
+def test_a_low_sill_all_along_makes_a_window():
+    gap = gaps.judge(AXIS, 1.0, 1.9, [with_feet(grid(1, 1.9, 0.02, 0.07, 0.09))], READING, SETTINGS, planar=False)
+    assert (gap.kind(SETTINGS), gap.sill_m) == ("window", pytest.approx(0.11, abs=0.03))
+
+
+@pytest.mark.parametrize("feet", [grid(1, 1.9, 0.0, 0.02, 0.03), grid(1, 1.3, 0.05, 0.07, 0.09)])
+def test_a_floor_or_what_stands_on_it_is_no_sill(feet):
+    gap = gaps.judge(AXIS, 1.0, 1.9, [with_feet(feet)], READING, SETTINGS, planar=False)
+    assert (gap.kind(SETTINGS), gap.sill_m) == ("door", 0)
+
+
+@pytest.mark.parametrize(("lost", "state"), [((1.05, 1.6), gaps.OPEN), ((1.05, 1.3), gaps.CLOSED)])
+def test_where_rays_go_and_do_not_come_back_there_is_an_opening(lost, state):
+    line = replace(seen([], []), panes_m=np.array([lost]))
+    assert gaps.judge(AXIS, 1.0, 1.9, [line], READING, SETTINGS, planar=False).state == state
+
+
 def test_a_wide_opening_is_a_passage():
     assert judge([], grid(1, 2.8, 0.1, 1.0), high=2.8).kind(SETTINGS) == "passage"
 
@@ -56,6 +81,13 @@ def test_a_long_pause_that_nothing_passed_is_not_known():
 
 def test_few_rays_on_one_edge_are_no_opening():
     assert judge([], grid(1, 1.2, 0.5, 1.0, 1.5)).state == gaps.UNKNOWN
+
+
+@pytest.mark.parametrize(
+    ("heights", "state"), [((1.1, 1.2, 1.3, 1.5), gaps.CLOSED), ((0.1, 0.5, 1.0, 1.5), gaps.UNKNOWN)]
+)
+def test_a_corner_of_a_window_that_things_hide_is_wall(heights, state):
+    assert judge(grid(1, 1.9, 2.3), grid(1.05, 1.15, *heights)).state == state
 
 
 def test_a_slit_is_no_opening():

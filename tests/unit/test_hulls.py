@@ -174,3 +174,26 @@ def test_polygons_and_full_hulls_of_scans():
     assert scan_ids.tolist() == [2, 5, 9, 11]
     assert [p.area for p in full] == [4.0, 1.5, 0.0, 5.0]
     assert full[2].is_empty
+
+
+@pytest.mark.parametrize("shift_m", [0.0, 1e6])
+@pytest.mark.parametrize("shape", ["disc", "triangle", "one place", "line", "grid"])
+def test_leaving_out_inner_points_leaves_the_hull(shape, shift_m):
+    rng = np.random.default_rng(4)
+    xy_m = {
+        "disc": rng.normal(size=(3000, 2)),
+        "triangle": np.array([(0, 0), (8, 0), (0, 8)]).T @ rng.dirichlet((1, 1, 1), 900).T,
+        "one place": np.ones((2, 60)),
+        "line": np.outer((1, 2), np.arange(70.0)),
+        "grid": np.indices((12, 12)).reshape(2, -1).astype(float),
+    }[shape]
+    xy_m = np.asarray(xy_m if xy_m.shape[1] == 2 else xy_m.T) + shift_m
+    outer = hulls._outer(xy_m)
+    assert shapely.convex_hull(shapely.linestrings(outer)).equals(shapely.convex_hull(shapely.multipoints(xy_m)))
+    assert shape not in ("disc", "triangle") or len(outer) < 0.6 * len(xy_m)
+
+
+def test_iterations_end_where_nothing_changes_and_keep_an_empty_centre():
+    sample = np.array([(0, 0), (0, 2), (10, 0), (10, 2)], float)
+    found = hulls._means(sample, np.array([(0, 0), (9, 9), (99, 99)], float))
+    assert found.tolist() == [[0, 1], [10, 1], [99, 99]]

@@ -116,3 +116,8 @@ def test_the_surveys_that_are_shipped_fit_the_schema(known, project_root, name):
 
 def test_choices_are_what_the_schema_allows(known):
     assert inventory.choices(known["schema"], "plan", "extractor") == ["cluster_ransac", "iterative_ransac"]
+
+
+def test_settings_of_a_recording_are_no_survey(tmp_path, known):
+    with pytest.raises(StageError, match=r"tiny\.yaml: has no section `simulate`.*CONFIG"):
+        inventory.dataset("t", survey_file(tmp_path, "poses: {keep_every: 1}"), **known)

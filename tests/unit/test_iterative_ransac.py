@@ -75,6 +75,31 @@ def test_a_floor_is_no_wall():
     assert len(extract(floor, (0, 0, 0.8))) == 0
 
 
+def test_one_beam_in_space_shows_no_upright_surface():
+    assert len(extract(toyrooms.laser(beams=1800))) == 0
+
+
+def test_duplicate_points_are_more_points():
+    assert len(extract(np.repeat(toyrooms.vlp16(), 2, axis=0))) == len(FACES)
+
+
+def test_in_99_percent_of_outliers_there_is_no_wall():
+    """A pair of the wall's points is one in 10,000: no number of trials that is worth its time finds it."""
+    draw = np.random.default_rng(1)
+    wall = np.column_stack([np.full(400, 3.0), draw.uniform(-1.5, 1.5, 400), draw.uniform(-0.8, 0.8, 400)])
+    points = np.vstack([wall, draw.uniform(-20, 20, (39_600, 3)) * (1, 1, 0.1)])
+    assert len(extract(points, (0, 0, 0))) == 0
+
+
+@pytest.mark.parametrize("planar", [False, True])
+def test_a_map_far_from_its_origin(planar):
+    points = toyrooms.laser() if planar else toyrooms.vlp16()
+    shift = np.array([1e6, -1e6, 0])
+    near, far = extract(points, planar=planar), extract(points + shift, toyrooms.SENSOR + shift, planar=planar)
+    assert far.start_m - shift[:2] == pytest.approx(near.start_m, abs=0.01)
+    assert far.end_m - shift[:2] == pytest.approx(near.end_m, abs=0.01)
+
+
 def test_rounds_are_limited():
     few = iterative_ransac.Settings(**toyrooms.LIMITS, max_tilt_deg=15.0, trials=200, max_planes=1)
     assert len(extract(toyrooms.laser(), planar=True, settings=few)) == 1

@@ -165,7 +165,7 @@ def test_links_are_told_without_optimisation_too(drive, tmp_path):
 
 def test_a_new_start_is_linked_to_what_was_before(drive, tmp_path):
     """No scan can pass the gate, and every rejection is a new start."""
-    judged, result = register(drive, tmp_path, n_previous=1, anchor_after=1, min_prior_fitness=1.0)
+    judged, result = register(drive, tmp_path, n_previous=1, anchor_after=1, min_prior_fitness=1.01)
     assert {verdict.reason for verdict in judged} == {"anchor"}
     assert {e.source for e in result.edges if e.kind == "sequence"} >= set(range(5, 200, 5))
 

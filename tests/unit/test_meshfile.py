@@ -28,11 +28,13 @@ def test_a_binary_stl_may_begin_with_solid():
     assert len(meshfile.parse(b"solid box".ljust(80) + STL[80:], ".stl", "box")[0]) == 12
 
 
-def test_millimetres_are_told_and_taken_when_stated():
-    data = boxmaking.written(BOX * 1000, "stl")
-    with pytest.raises(StageError, match=r"box\.stl: spans 4000 x 3000 x 2500 m; these look like millimetres, set "):
+@pytest.mark.parametrize(("unit", "factor"), [("mm", 1000), ("cm", 100), ("in", 1 / 0.0254)])
+def test_another_unit_is_told_and_taken_when_stated(unit, factor):
+    data = boxmaking.written(BOX * factor, "stl")
+    with pytest.raises(StageError, match=rf"box\.stl: spans .* m in m, .*; set simulate\.site\.unit: {unit}$"):
         meshfile.parse(data, ".stl", "box.stl")
-    np.testing.assert_allclose(np.sort(meshfile.parse(data, ".stl", "b", unit="mm")[0], 0), np.sort(BOX, 0), atol=1e-6)
+    taken = meshfile.parse(data, ".stl", "b", unit=unit)[0]
+    np.testing.assert_allclose(np.sort(taken, 0), np.sort(BOX, 0), atol=1e-5)
 
 
 @pytest.mark.parametrize(("factor", "unit"), [(0.001, "m"), (1.0, "mm"), (1e6, "mm")])

@@ -1,3 +1,5 @@
+from types import SimpleNamespace
+
 import numpy as np
 
 from scanplan.registration import multiway
@@ -15,3 +17,14 @@ def test_a_floor_gives_no_information_where_there_is_none():
     information = np.diag([0, 1e6, 1e6, 0, 1e6, 1e6])
     found = multiway.with_floor(information[None], 1e-4 * np.eye(6))[0]
     np.testing.assert_allclose(np.diag(found), [0, *[1 / (1e-6 + 1e-4)] * 2, 0, *[1 / (1e-6 + 1e-4)] * 2], rtol=1e-9)
+
+
+def test_no_pair_is_linked_twice():
+    """Across anchors a scan may have been registered against one far back: here the last one."""
+    there_and_back = np.tile(np.eye(4), (20, 1, 1))
+    there_and_back[:, 0, 3] = [*range(10), *range(9, -1, -1)]
+    near = SimpleNamespace(loop_radius_m=0.5, loop_apart=2, loop_step_m=0.5, loops_per_scan=4)
+    in_sequence = {(row, row - 1) for row in range(1, 20)}
+    expected = [(row, 19 - row) for row in range(11, 20)]
+    assert multiway._chosen(there_and_back, in_sequence, near) == expected
+    assert multiway._chosen(there_and_back, in_sequence | {(19, 0)}, near) == expected[:-1]

@@ -57,5 +57,11 @@ def test_a_wall_that_goes_on_behind_another_stays():
     assert spans(found) == [(0, 3.5), (0, 4)]
 
 
+def test_a_pier_beside_a_door_stays():
+    # the wall that crosses stands 0.9 m before the pier, not on it
+    pier = stretch(0.9, 0, 1.04, 0)
+    assert spans(overshoots.without_tails([pier, stretch(0, 2, 0, -2)], share=0.2)) == [(0, 0.14), (0, 4)]
+
+
 def test_nothing():
     assert overshoots.without([]) == overshoots.without_tails([], share=0.2) == []

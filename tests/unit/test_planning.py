@@ -21,6 +21,7 @@ from wallmaking import moved, walls
 SETTINGS = planning.settings(**housemaking.PLAN)
 TRUST = SETTINGS.trust
 SENSORS = np.array(housemaking.SENSORS, float)
+ROOMS = {"min_area_m2": 1, "min_walled": 0.7, "min_width_m": 0.6, "unpaired_m": 0.1}
 
 
 def wall(x0, y0, x1, y1, thickness=0.2, openings=(), closed=()):
@@ -155,14 +156,14 @@ def _with_low_box(desk, height_m, sensors):
 class TestRooms:
     def test_a_square_is_filled_to_its_faces(self):
         star = shapely.Point(2, 2).buffer(1.9)
-        (room,) = rooms.find(box(), [star], np.array([(2.0, 2.0)]), min_area_m2=1, min_walled=0.7, unpaired_m=0.1)
+        (room,) = rooms.find(box(), [star], np.array([(2.0, 2.0)]), **ROOMS)
         assert room.polygon.area == pytest.approx(16, abs=0.05)
         assert (room.closed, room.entered, room.n_scans) == (True, True, 1)
 
     def test_an_opening_parts_rooms_and_tells_which(self):
         walls_ = [*box(4.0), wall(2, 0, 2, 4, 0.2, openings=[(1.0, 1.9)])]
         star = shapely.box(0, 0, 4, 4)
-        found = rooms.find(walls_, [star], np.array([(1.0, 1.0)]), min_area_m2=1, min_walled=0.7, unpaired_m=0.1)
+        found = rooms.find(walls_, [star], np.array([(1.0, 1.0)]), **ROOMS)
         np.testing.assert_allclose([r.polygon.area for r in found], [7.6, 7.6], rtol=0.01)
         left, right = rooms.beside(found, np.array([(2.0, 1.0), (2.0, 1.9)]), 0.1)
         assert {left, right} == {0, 1}
@@ -171,25 +172,30 @@ class TestRooms:
     def test_what_is_seen_through_a_window_is_no_room(self):
         found = rooms.find(
             *(box(), [shapely.box(0, 0, 4, 4), shapely.box(-3, 1, -0.2, 3)], np.array([(2.0, 2.0)])),
-            **{"min_area_m2": 1, "min_walled": 0.7, "unpaired_m": 0.1},
+            **ROOMS,
         )
         assert len(found) == 1
+
+    @pytest.mark.parametrize(("width", "count"), [(0.5, 1), (0.9, 2)])
+    def test_a_strip_as_narrow_as_a_wall_is_no_room_unless_entered(self, width, count):
+        walls_ = [*box(), wall(0, 4 - width, 4, 4 - width, 0.02)]
+        found = rooms.find(walls_, [shapely.box(0, 0, 4, 4)], np.array([(2.0, 2.0)]), **ROOMS)
+        assert len(found) == count
+        assert len(rooms.find(walls_, [shapely.box(0, 0, 4, 4)], np.array([(2, 2), (2, 3.8)]), **ROOMS)) == 2
 
     def test_walls_that_never_close_still_bound_a_room_that_was_entered(self):
         open_side = box()[:3]
         (room,) = rooms.find(
             *(open_side, [shapely.box(0.5, 0.1, 3.9, 3.9)], np.array([(2.0, 2.0)])),
-            **{"min_area_m2": 1, "min_walled": 0.7, "unpaired_m": 0.1},
+            **ROOMS,
         )
         assert not room.closed
         assert room.walled == pytest.approx(0.75, abs=0.06)
 
     def test_no_walls_leave_what_was_seen(self):
-        found = rooms.find(
-            [], [shapely.box(0, 0, 3, 3)], np.array([(1.0, 1.0)]), min_area_m2=1, min_walled=0.7, unpaired_m=0.1
-        )
+        found = rooms.find([], [shapely.box(0, 0, 3, 3)], np.array([(1.0, 1.0)]), **ROOMS)
         assert [r.polygon.area for r in found] == [pytest.approx(9, rel=0.01)]
-        assert rooms.find([], [], np.empty((0, 2)), min_area_m2=1, min_walled=0.7, unpaired_m=0.1) == []
+        assert rooms.find([], [], np.empty((0, 2)), **ROOMS) == []
 
 
 class TestFreeSpace:

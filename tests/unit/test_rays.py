@@ -1,87 +1,50 @@
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scanplan.plan import rays
-from scanplan.plan.faceline import Line
+from scanplan.extraction import rays
 
-# the x axis, seen from above (y > 0)
-AXIS = Line(np.zeros(2), np.array([0.0, 1.0]))
+NORMAL = np.array([-1.0, 0.0])  # of the line x = 2, seen from the origin; along it is +y
 
 
-def one_scan(points, sensor=(0.0, 2.0, 1.0), planar=True):
-    return rays.gather([(7, np.array(points, float))], {7: np.array(sensor)}, planar=planar)
+def crossings(points, stretch_m=(-5, 5)):
+    # two returns straight down give the floor, at -1 m
+    return rays.crossings(rays.view(np.vstack([points, [(-1, 0, -1)] * 2])), NORMAL, -2.0, stretch_m)
 
 
-def look(found, low=-5, high=5, band=0.05):
-    return rays.look(found, AXIS, low, high, band_m=band)
+def test_rays_that_end_behind_before_and_on_a_line():
+    found = crossings([(4, 1, 1.0), (1, 1.5, 0.25), (2.05, -1, 0.0)])
+    order = np.argsort(found.at_m)
+    # by azimuth: -1 * 2 / 2.05, then 1 * 2 / 4, then 1.5 * 2 / 1
+    assert found.at_m[order] == pytest.approx([-2 / 2.05, 0.5, 3.0])
+    assert found.height_m[order] == pytest.approx([1.0, 1.5, 1.5])
+    assert found.behind[order].tolist() == [False, True, False]
+    assert found.before[order].tolist() == [False, False, True]
+    # 8 cm behind the line the first has come 0.02 m farther along
+    assert found.until_m[order] == pytest.approx([-2 / 2.05, 0.52, 3.0])
 
 
-def test_points_at_a_line_are_hits_and_those_behind_it_were_seen_through_it():
-    sight = look(one_scan([(1, 0.01, 1), (2, -2, 1), (0, 1, 1)]))
-    np.testing.assert_allclose(sight.hit_xy_m, [(1, 0.01)])
-    # from (0, 2) to (2, -2): half way
-    np.testing.assert_allclose(sight.pass_xy_m, [(1, 0)])
-    assert (sight.hit_scan.tolist(), sight.pass_scan.tolist()) == ([0], [0])
+def test_rays_that_do_not_reach_the_stretch_are_left_out():
+    assert len(crossings([(4, 1, 1.0), (4, 9, 1.0), (-4, 1, 1.0)], (0, 1)).at_m) == 1
 
 
-def test_a_point_just_behind_a_line_says_nothing():
-    sight = look(one_scan([(1, -0.1, 1)]))
-    assert (len(sight.hit_xy_m), len(sight.pass_xy_m)) == (0, 0)
+@given(st.floats(-3.1, 3.1))
+@settings(max_examples=20, deadline=None)
+def test_a_turn_of_all_changes_nothing(angle_rad):
+    turn = np.array([[np.cos(angle_rad), -np.sin(angle_rad)], [np.sin(angle_rad), np.cos(angle_rad)]])
+    points = np.random.default_rng(1).uniform(-4, 4, (200, 3))
+    plain = rays.crossings(rays.view(points), NORMAL, -2.0, (-3, 3))
+    turned = np.column_stack([points[:, :2] @ turn.T, points[:, 2]])
+    other = rays.crossings(rays.view(turned), turn @ NORMAL, -2.0, (-3, 3))
+    assert np.sort(other.at_m) == pytest.approx(np.sort(plain.at_m))
+    assert np.sort(other.until_m) == pytest.approx(np.sort(plain.until_m))
 
 
-def test_the_other_side_hits_nothing_and_passes():
-    found = one_scan([(1, 0.01, 1), (0, 2, 1)], sensor=(0, -2, 1))
-    sight = look(found)
-    assert len(sight.hit_xy_m) == 0
-    np.testing.assert_allclose(sight.pass_xy_m, [(0, 0)])
+def test_a_return_at_the_sensor_itself_is_no_trouble():
+    assert np.isfinite(crossings([(0, 0, 0), (4, 0, 1.0)]).at_m).all()
 
 
-def test_a_sensor_on_the_line_says_nothing():
-    assert len(look(one_scan([(1, 0, 1)], sensor=(0, 0.05, 1))).hit_xy_m) == 0
-
-
-def test_only_rays_towards_the_stretch_count():
-    found = one_scan([(-3, 0, 1), (3, 0, 1)])
-    np.testing.assert_allclose(look(found, 2, 4).hit_xy_m, [(3, 0)])
-
-
-def test_the_stretch_may_lie_where_directions_wrap_round():
-    line = Line(np.array([-2.0, 0.0]), np.array([1.0, 0.0]))
-    found = rays.gather([(0, np.array([(-2, 0.5, 0), (-2, -0.5, 0)], float))], {0: np.zeros(3)}, planar=True)
-    assert len(rays.look(found, line, -1, 1, band_m=0.05).hit_xy_m) == 2
-
-
-def test_heights_are_above_the_floor():
-    floor = [(x, y, -0.4) for x in np.linspace(-3, 3, 30) for y in np.linspace(0.5, 3, 20)]
-    found = one_scan([*floor, (1, 0, 0.6)], planar=False)
-    assert found.floor_z_m == pytest.approx(-0.4)
-    np.testing.assert_allclose(look(found).hit_z_m, [1.0])
-
-
-def test_points_that_are_not_finite_are_left_out():
-    assert one_scan([(1, 0, 1), (np.nan, 0, 1)]).n_points == 1
-
-
-def test_no_points_at_all():
-    found = rays.gather([], {}, planar=False)
-    assert found.n_points == 0
-    assert len(look(found).hit_xy_m) == 0
-
-
-@given(st.floats(-np.pi, np.pi), st.tuples(st.floats(-50, 50), st.floats(-50, 50)))
-def test_neither_place_nor_turn_of_the_map_matters(yaw_rad, shift):
-    rng = np.random.default_rng(3)
-    xyz_m = rng.uniform((-4, -3, 0), (4, 1, 2), (60, 3))
-    turn = np.array([[np.cos(yaw_rad), -np.sin(yaw_rad)], [np.sin(yaw_rad), np.cos(yaw_rad)]])
-    sensor = np.array([0.3, 1.7, 1.0])
-    placed = [np.column_stack([p[..., :2] @ turn.T + shift, p[..., 2:]]) for p in (xyz_m, sensor[None])]
-    there = rays.gather([(0, placed[0])], {0: placed[1][0]}, planar=True)
-    line = Line(np.array(shift), turn @ AXIS.normal)
-    expected = look(rays.gather([(0, xyz_m)], {0: sensor}, planar=True))
-    actual = rays.look(there, line, -5, 5, band_m=0.05)
-    assert len(actual.hit_xy_m) == len(expected.hit_xy_m)
-    np.testing.assert_allclose(
-        np.sort(line.along_m(actual.pass_xy_m)), np.sort(AXIS.along_m(expected.pass_xy_m)), atol=1e-9
-    )
+def test_the_floor_is_the_lowest_but_a_few():
+    heights = np.r_[-9, np.full(150, -1.0), np.linspace(0, 2, 50)]
+    assert rays.floor(np.column_stack([np.ones((201, 2)), heights])) == -1

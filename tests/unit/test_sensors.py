@@ -81,3 +81,9 @@ def test_no_sensor(make, changes):
 def test_elevations_belong_to_a_lidar_alone(model, elevations_deg):
     with pytest.raises(StageError, match="elevations_deg"):
         sensors.of_model(model, n_azimuth=8, elevations_deg=elevations_deg, field_deg=270.0, **COMMON)
+
+
+@pytest.mark.parametrize("field_deg", [90.0, 270.0, 359.0, 360.0])
+def test_a_laser_knows_its_field(field_deg):
+    assert np.degrees(sensors.laser(181, field_deg, **COMMON).field_rad) == pytest.approx(field_deg, abs=1e-3)
+    assert sensors.vlp16(8, **COMMON).field_rad == 2 * np.pi

@@ -6,13 +6,16 @@ from scipy.spatial.transform import Rotation
 
 from reference import registration as literal
 from scanplan import configuration, se3
-from scanplan.registration import mapping, sequential
+from scanplan.registration import links, mapping, sequential
 
 SETTINGS = sequential.Settings(
     voxel_m=0.1,
     voxel_planar_m=0.1,
     voxels=1,
     n_previous=5,
+    previous_apart_m=100.0,
+    previous_turn_deg=180.0,
+    min_facing_fitness=0.0,
     fitness_distance_m=0.2,
     fitness_points=1000,
     min_prior_fitness=0.7,
@@ -228,3 +231,31 @@ def test_the_preset_judges_as_the_thesis_does(project_root):
         assert verdict.prior_fitness == pytest.approx(literal._mean_fitness(placed, [first], 0.5), abs=2e-3)
     for index, pose_of_scan in theirs.items():
         np.testing.assert_allclose(ours[index].world_from_sensor, pose_of_scan, atol=0.01)
+
+
+def test_scans_are_judged_by_those_that_may_show_the_same():
+    """Near and facing the same way; and by the last one in any case."""
+    limits = sequential.Settings(**{**vars(SETTINGS), "previous_apart_m": 2.0, "previous_turn_deg": 60.0})
+    places = [pose(0, 0, 0), pose(3.1, 0, 0), pose(1, 0, 70), pose(1, 0, 50), pose(9, 0, 180)]
+    previous = [links.Placed(i, None, place) for i, place in enumerate(places)]
+    scan = links.Placed(5, None, pose(1, 0, 0))
+    assert [other.scan_id for other in links.comparable(scan, previous, limits)] == [0, 3, 4]
+    assert [other.scan_id for other in links.comparable(scan, previous[:3], limits)] == [0, 2]
+
+
+def test_a_floor_on_a_floor_is_no_fit():
+    """The second scan shows the same floor, and of the walls what no other shows."""
+    rng = np.random.default_rng(3)
+    floor = np.column_stack([rng.uniform(-4, 4, (6000, 2)), np.full(6000, -0.4)])
+    pillars = [
+        [
+            np.column_stack([rng.normal(x, 0.05, 500), rng.normal(y, 0.05, 500), rng.uniform(0, 1, 500)])
+            for x, y in places
+        ]
+        for places in (((3, 3), (-3, 3)), ((3, -3), (-3, -3)))
+    ]
+    scans = [np.concatenate([floor, *two]) for two in pillars]
+    judged = register(scans, [np.eye(4)] * 2, False, min_prior_fitness=0.2, min_refined_fitness=0.2)
+    assert judged[1].kept
+    limits = {"min_prior_fitness": 0.2, "min_refined_fitness": 0.2, "min_facing_fitness": 0.99}
+    assert register(scans, [np.eye(4)] * 2, False, **limits)[1].reason == "low_refined_fitness"

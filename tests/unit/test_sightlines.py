@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from scanplan.extraction import sightlines
+from scanplan.extraction import rays, sightlines
 
 AZIMUTH_DEG = np.arange(-180, 180, 0.5)
 
@@ -12,7 +12,7 @@ def scan(elevations_deg, range_m):
     azimuth, slope = azimuth.ravel(), slope.ravel()
     reach = range_m(azimuth, slope)
     points = np.column_stack([np.cos(azimuth) * reach, np.sin(azimuth) * reach, slope * reach])
-    return sightlines.view(points[np.isfinite(reach)])
+    return rays.view(points[np.isfinite(reach)])
 
 
 def plane(distance_m, azimuth):
@@ -82,6 +82,6 @@ def test_nothing_on_the_face():
 
 @pytest.mark.parametrize("n", [1, 2, 3])
 def test_views_of_next_to_nothing(n):
-    view = sightlines.view(np.array([(2.0, 0, 0.1 * i) for i in range(n)]))
+    view = rays.view(np.array([(2.0, 0, 0.1 * i) for i in range(n)]))
     seen = sightlines.look(view, START, END, 0, 0.2)
     assert np.isfinite([seen.top_m, seen.over, seen.through, seen.missing]).all()

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -72,6 +74,23 @@ def test_a_face_goes_on_over_a_crossing():
 def test_heights_mean_nothing_in_a_plane():
     np.testing.assert_allclose(found(row(0, 1, z=9.0), planar=True), [(0, 1)])
     assert found(row(0, 1, z=0.0), 3 * row(0, 1, z=9.0), planar=True) == []
+
+
+def test_a_stretch_ends_where_most_of_what_is_near_is_seen_to_end():
+    # three scans show it up to 1.99, 2.0 and 2.01 m, a fourth, misplaced, with a few points up to 2.05 m
+    places = [(x, scan) for scan, end in enumerate((1.99, 2.0, 2.01)) for x in np.arange(end, 0, -0.02)]
+    places = np.array(sorted([*places, *((2.05 - 0.03 * i, 3) for i in range(3))]))
+    nothing = (np.empty(0), np.empty(0), np.empty(0, int))
+    along, scan = places.T
+    wall = Seen(AXIS, along, 0 * along, 0 * along + 1, scan.astype(int), *nothing)
+    (stretch,) = stretches.find(wall, READING, planar=False)
+    assert stretch.high_m == pytest.approx(2.0, abs=0.011)
+
+
+def test_a_pane_is_no_wall():
+    pane = replace(seen(row(0, 3)), panes_m=np.array([(1.0, 2.0)]))
+    spans = [(s.low_m, s.high_m) for s in stretches.find(pane, replace(READING, max_gap_m=0.0), planar=False)]
+    np.testing.assert_allclose(spans, [(0, 1), (2, 3)], atol=0.03)
 
 
 def test_nothing_seen_is_no_stretch():

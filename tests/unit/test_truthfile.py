@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from scanplan.errors import StageError
-from scanplan.evaluation import truthfile
+from scanplan.evaluation import truthfile, visibility
 from scanplan.simulation import rover, truth
 
 
@@ -28,6 +28,12 @@ class TestFaces:
         faces = truthfile.read_faces(geojson(tmp_path / "t.geojson", ROOM, INNER, OUTER, bent))
         np.testing.assert_array_equal(faces.inner_m, [[(0, 0), (4, 0)], [(4, 0), (4, 3)], [(4, 3), (0, 3)]])
         np.testing.assert_array_equal(faces.outer_m, [[(0, -0.2), (4, -0.2)]])
+
+    def test_a_screen_hides_and_is_not_to_be_found(self, tmp_path):
+        screen = ({"kind": "screen"}, "LineString", [[1, 1], [2, 1]])
+        faces = truthfile.read_faces(geojson(tmp_path / "t.geojson", INNER, screen))
+        assert len(faces.inner_m) == 1
+        np.testing.assert_array_equal(faces.outer_m, [[(1, 1), (2, 1)]])
 
     @pytest.mark.parametrize(
         ("face", "match"),
@@ -86,3 +92,23 @@ class TestPoses:
         read = truthfile.read_poses(tmp_path / "p.tum")
         with pytest.raises(StageError, match="no true pose for 1 of 2 scans"):
             truthfile.poses_at(read, np.array([1_500_000_000, 9_000_000_000]), "p.tum")
+
+
+class TestSight:
+    def told(self, path, sensor):
+        path.write_text(json.dumps({"type": "FeatureCollection", "sensor": sensor, "features": []}))
+        return path
+
+    def test_a_simulated_survey_tells_its_sensor(self, tmp_path):
+        path = self.told(tmp_path / "t.geojson", {"max_range_m": 8.0, "field_deg": 180.0})
+        assert truthfile.read_sight(path, max_range_m=100.0) == visibility.Sight(8.0, np.pi)
+        assert truthfile.read_sight(path, max_range_m=5.0).max_range_m == 5.0
+
+    def test_another_sees_all_around_as_far_as_points_are_used(self, tmp_path):
+        path = geojson(tmp_path / "t.geojson", INNER)
+        assert truthfile.read_sight(path, max_range_m=30.0) == visibility.Sight(30.0, 2 * np.pi)
+
+    @pytest.mark.parametrize("sensor", [{"max_range_m": 0}, {"field_deg": "all"}, {"max_range_m": None}])
+    def test_nonsense_is_refused(self, tmp_path, sensor):
+        with pytest.raises(StageError, match="positive needed"):
+            truthfile.read_sight(self.told(tmp_path / "t.geojson", sensor), max_range_m=30.0)

@@ -103,6 +103,14 @@ class TestCells:
         np.testing.assert_allclose(lengthmetrics.lengths_m(everything), [0.05, 0.04])
 
 
+def test_a_field_lies_to_either_side_of_forward():
+    cells = visibility.cut(np.array([[(-1, 1), (1, 1)], [(-1, -1), (1, -1)]], float))
+    forward_is_y = np.array([[0, -1, 0, 0], [1, 0, 0, 0], [0, 0, 1, 5], [0, 0, 0, 1]], float)
+    right, whole = visibility.in_field(cells, forward_is_y, np.pi / 2), visibility.in_field(cells, forward_is_y, np.pi)
+    assert right[:100].all() and whole[:100].all() and not right[100:].any()
+    assert not visibility.in_field(cells, forward_is_y, np.pi / 4)[[0, 99]].any()
+
+
 def test_a_way_is_thinned_by_distance():
     way = np.column_stack([[0, 0.1, 0.2, 0.3, 0.3, 1.0], np.zeros(6)])
     np.testing.assert_array_equal(visibility.thinned(way, 0.25), [0, 3, 5])

@@ -18,7 +18,7 @@ def survey():
     wrong[1:, 0, 3] += 0.2
     drawn = findings.segments(table, np.arange(3), wrong, place)
     faces = TrueFaces(np.array(FACES, float).reshape(-1, 2, 2), NO_FACES)
-    return findings.look(faces, place[:, :2, 3], place[:, :2, 3], max_range_m=2.5), drawn
+    return findings.look(faces, place, place, sight=visibility.Sight(2.5)), drawn
 
 
 def only(table, method):

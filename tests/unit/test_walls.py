@@ -14,10 +14,16 @@ def upright(y, z=(0.0, 0.5, 1.0), x=2.0):
     return np.array([(x, a, b) for a in y for b in z], float)
 
 
+def cut(points, *, spare=None, others=(), normal=(1.0, 0.0), offset_m=2.0):
+    """Cut the line x = 2 in a scan of these points, of spare ones on the line, and of others."""
+    parts = [p for p in (points, spare, others) if p is not None and len(p)]
+    scan = walls.sights(np.vstack([*parts, np.empty((0, 3))]), planar=False)
+    return walls.cut(np.array(normal), offset_m, points, LIMITS, scan=scan, spare_xyz_m=spare)
+
+
 def test_segments_end_where_points_pause():
     points = upright(np.r_[np.arange(0, 1.01, 0.25), np.arange(1.9, 3.0, 0.25)])
-    rows = walls.cut(np.array([1.0, 0.0]), 2.0, points, LIMITS, planar=False)
-    found = walls.assemble(rows, (10, 20, 30))
+    found = walls.assemble(cut(points), (10, 20, 30))
     # the sensor is to the left of the way from start to end: the wall x = 2 is walked along with rising y
     assert found.start_m == pytest.approx(np.array([(12, 20), (12, 21.9)]))
     assert found.end_m == pytest.approx(np.array([(12, 21), (12, 22.9)]))
@@ -27,13 +33,46 @@ def test_segments_end_where_points_pause():
     assert found.z_range_m == pytest.approx(np.array([(30, 31), (30, 31)]))
 
 
+JAMBS = upright(np.r_[np.arange(0, 1.01, 0.25), np.arange(2, 3.01, 0.25)])
+LINTEL = upright(np.arange(0, 3.01, 0.125), z=(2.2, 2.4))
+
+
+def ends(rows):
+    return [(round(r[1], 3), round(r[3], 3)) for r in rows]
+
+
 def test_the_wall_above_a_door_does_not_close_it():
-    jambs = upright(np.r_[np.arange(0, 1.01, 0.25), np.arange(1.9, 3.0, 0.25)])
-    lintel = upright(np.arange(0, 3.0, 0.25), z=(2.2, 2.4))
-    rows = walls.cut(np.array([1.0, 0.0]), 2.0, np.vstack([jambs, lintel]), LIMITS, planar=False, top_m=1.9)
-    found = walls.assemble(rows, (0, 0, 0))
-    assert found.start_m[:, 1] == pytest.approx([0, 1.9]) and found.end_m[:, 1] == pytest.approx([1, 2.9])
-    assert (found.z_range_m[:, 1] > 2.1).all()
+    # rays that cross the line at y = 1.5 and 0.8 m end at x = 4
+    through = np.array([(4.0, 3.0, 1.6)] * 3)
+    rows = cut(np.vstack([JAMBS, LINTEL]), others=through)
+    assert ends(rows) == [(0, 1), (2, 3)]
+    assert (walls.assemble(rows, (0, 0, 0)).z_range_m[:, 1] > 2.1).all()
+
+
+def test_the_wall_above_a_cabinet_is_one():
+    # rays end at x = 1 that would have crossed the line between y = 1 and 2, at 0.8 m
+    cabinet = np.array([(1.0, y / 2, 0.4) for y in np.arange(1.05, 2, 0.1)])
+    assert ends(cut(np.vstack([JAMBS, LINTEL]), others=cabinet)) == [(0, 3)]
+
+
+def test_where_no_ray_goes_the_wall_above_tells_nothing():
+    assert ends(cut(np.vstack([JAMBS, LINTEL]))) == [(0, 1), (2, 3)]
+
+
+def test_the_reveal_of_a_door_seen_along_shows_that_it_is_open():
+    """Rays along the wall meet the far reveal 0.1 m behind it, at y = 2: they cross it at y = 1.9."""
+    cabinet = np.array([(1.0, y / 2, 0.4) for y in np.arange(1.05, 2, 0.1)])
+    reveal = np.array([(2.1, 1.99, 0.6)] * 3)
+    assert ends(cut(np.vstack([JAMBS, LINTEL]), others=np.vstack([cabinet, reveal])))[-1] == (2, 3)
+
+
+def test_a_low_sill_makes_no_wall_where_rays_pass_over_it():
+    sill = upright(np.arange(0, 3.01, 0.125), z=(0.0, 0.3))
+    over = np.array([(4.0, 2 * y, 1.6) for y in np.arange(1.02, 2, 0.04)])
+    assert ends(cut(np.vstack([JAMBS, sill]), others=over)) == [(0, 1), (2, 3)]
+    assert ends(cut(np.vstack([JAMBS, sill]))) == [(0, 3)]
+    high = upright(np.arange(0, 3.01, 0.125), z=(0.0, 0.7))
+    assert ends(cut(np.vstack([JAMBS, high]), others=over)) == [(0, 3)]
 
 
 def test_the_top_of_doors_is_measured_from_the_floor():
@@ -44,8 +83,7 @@ def test_the_top_of_doors_is_measured_from_the_floor():
 
 
 def test_a_gap_of_just_the_limit_is_none():
-    points = upright([0, 0.5, 1.0, 1.5])
-    assert len(walls.cut(np.array([1.0, 0]), 2.0, points, LIMITS, planar=False)) == 1
+    assert len(cut(upright([0, 0.5, 1.0, 1.5]))) == 1
 
 
 @pytest.mark.parametrize(
@@ -58,29 +96,36 @@ def test_a_gap_of_just_the_limit_is_none():
     ],
 )
 def test_what_is_no_wall(points, why):
-    assert walls.cut(np.array([1.0, 0]), 2.0, points, LIMITS, planar=False) == [], why
+    assert cut(points, others=upright([0, 0.3, 0.6], x=5.0)) == [], why
 
 
 def test_a_planar_wall_needs_no_height():
     points = upright([0, 0.3, 0.6], z=(0.7,))
-    assert len(walls.cut(np.array([1.0, 0]), 2.0, points, LIMITS, planar=True)) == 1
+    assert len(walls.cut(np.array([1.0, 0]), 2.0, points, LIMITS)) == 1
 
 
 @pytest.mark.parametrize("sign", [1, -1])
 def test_the_normal_points_to_the_sensor_whatever_the_lines_sense(sign):
-    row = walls.cut(sign * np.array([1.0, 0]), sign * 2.0, upright([0, 1 / 2, 1]), LIMITS, planar=False)[0]
+    (row,) = cut(upright([0, 1 / 2, 1]), normal=(sign * 1.0, 0), offset_m=sign * 2.0)
     assert row[4:6] == pytest.approx((-1, 0))
     assert row[:4] == pytest.approx((2, 0, 2, 1))
 
 
-def test_spare_points_prolong_within_reach_and_no_farther():
+def test_in_the_plane_spare_points_prolong_within_reach_and_no_farther():
     spare = upright([-0.06, 1.03, 1.06, 1.09, 1.12, 1.3], z=(0.5,))
-    rows = walls.cut(
-        np.array([1.0, 0]), 2.0, upright([0, 0.5, 1]), LIMITS, planar=False, spare_xyz_m=spare, reach_rad=0.05
-    )
+    points = upright([0, 0.5, 1])
+    rows = walls.cut(np.array([1.0, 0]), 2.0, points, LIMITS, spare_xyz_m=spare, reach_rad=0.05)
     # reach at the end: 0.05 hypot(2, 1) = 0.112 m; at the start 0.1 m, but the first step there is more than half
     assert rows[0][:4] == pytest.approx((2, 0, 2, 1.09))
     assert rows[0][6] == 12
+
+
+def test_in_space_spare_points_prolong_up_to_a_pause_and_to_an_opening():
+    spare = upright([1.2, 1.4, 1.6, 2.0], z=(0.5,))
+    assert ends(cut(upright([0, 0.5, 1]), spare=spare)) == [(0, 1.6)]
+    through = np.array([(4.0, 3.04, 1.2)])
+    assert ends(cut(upright([0, 0.5, 1]), spare=spare, others=through)) == [(0, 1.4)]
+    assert cut(upright([0]), spare=spare) == []
 
 
 def test_order_of_segments_and_of_points_depend_on_the_points_alone():

@@ -57,9 +57,7 @@ def test_returns_lie_on_the_walls(project):
 )
 def test_every_recording_ends_with_a_plan(project_root, recordings_dir, tmp_path, name, least):
     project = Project(project_root, tmp_path)
-    settings = [f"tests/data/{name}.yaml"] if (project_root / f"tests/data/{name}.yaml").exists() else []
-    arguments = ["--configfile", *settings] if settings else []
-    result = project.run("--config", f"dataset={recordings_dir / name}", *arguments)
+    result = project.run("--config", f"dataset={recordings_dir / name}")
     assert result.returncode == 0, result.stdout + result.stderr
     assert len(plan(project, name)) >= least
     shutil.rmtree(project.folder / "results")

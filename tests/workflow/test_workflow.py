@@ -22,7 +22,7 @@ def project(project_root, tmp_path_factory):
     return project
 
 
-EVALUATED = {"evaluate_walls", "draw_evaluation"}
+EVALUATED = {"evaluate_walls", "draw_evaluation", "tabulate_seconds"}
 PLANNED = {"assemble_plan", "export_plan", "draw_walls", "evaluate_plan"}
 AFTER_ORDERS = {"order_scans", "draw_scans", "draw_area"} | PLANNED | EVALUATED
 AFTER_HULLS = {"build_hulls"} | AFTER_ORDERS
@@ -103,7 +103,7 @@ def test_an_edited_helper_reruns_exactly_the_stages_that_import_it(project, help
 def test_a_truth_beside_the_recording_switches_evaluation_on(project):
     house = project.folder / "house"
     shutil.copytree(project.folder / "results/demo/survey", house)
-    both = {"evaluate_walls", "evaluate_poses", "draw_evaluation"}
+    both = {"evaluate_walls", "evaluate_poses", "draw_evaluation", "tabulate_seconds"}
     assert both <= project.would_run("--config", "dataset=house")
     (house / "truth_poses.tum").unlink()
     assert not both & project.would_run("--config", "dataset=house")

@@ -26,6 +26,31 @@ rule evaluate_walls:
         "../../scripts/evaluate_walls.py"
 
 
+rule tabulate_seconds:
+    """State how long ordering and extraction take for the first scans."""
+    input:
+        walls="results/{dataset}/evaluation/walls.parquet",
+        ordering=expand(
+            "benchmarks/{{dataset}}/order_scans_{method}.tsv", method=METHODS
+        ),
+        extraction=expand(
+            "benchmarks/{{dataset}}/extract_walls_{extractor}.tsv", extractor=EXTRACTORS
+        ),
+        code=code_of("tabulate_seconds"),
+    output:
+        seconds="results/{dataset}/evaluation/seconds.parquet",
+    log:
+        "logs/{dataset}/tabulate_seconds.log",
+    benchmark:
+        "benchmarks/{dataset}/tabulate_seconds.tsv"
+    threads: 1
+    resources:
+        mem_mb=500,
+        runtime=5,
+    script:
+        "../../scripts/tabulate_seconds.py"
+
+
 rule evaluate_plan:
     """Measure the plan against the true one."""
     input:

@@ -32,7 +32,7 @@ def tell_results():
     """After a whole run, say where each dataset's plan and report lie."""
     if "thesis" in workflow.dag_settings.targets:
         print("\nreport:  results/thesis/report.html", file=sys.stderr)
-    if workflow.dag_settings.targets:
+    if workflow.dag_settings.targets or workflow.dag_settings.until:
         return
     for name in GIVEN:
         folder = f"results/{name}"

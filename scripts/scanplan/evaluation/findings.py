@@ -18,6 +18,8 @@ JUDGED = "010m"
 NEVER = np.iinfo(np.int32).max
 """Rank of what no scan shows."""
 
+_SURVEY_STEP_M = 0.25
+
 
 @dataclass(frozen=True)
 class Truth:
@@ -85,27 +87,31 @@ class Findings:
     pixels: tuple
 
 
-def look(faces, position_m, survey_m, *, max_range_m):
+def look(faces, placed, survey, *, sight):
     """Work out what could be seen.
 
     Parameters
     ----------
     faces : truthfile.TrueFaces
-    position_m : (n, 2) float
-        Where the registered scans were truly taken.
-    survey_m : (m, 2) float
-        Further places of the survey.
-    max_range_m : float
+    placed : (n, 4, 4) float
+        The true poses of the sensor at the registered scans.
+    survey : (m, 4, 4) float
+        Those at all scans of the survey.
+    sight : visibility.Sight
 
     Returns
     -------
     Truth
     """
     cells = visibility.cut(faces.inner_m)
-    seen = visibility.seen_by_each(cells, faces.outer_m, position_m, max_range_m=max_range_m)
+    seen = np.zeros((len(placed), len(cells.face)), bool)
+    for row, pose in zip(seen, placed, strict=True):
+        row[:] = _seen(cells, faces, pose, sight)
     visible = seen.any(axis=0)
-    for place_m in survey_m:
-        visible |= visibility.seen(cells, faces.outer_m, place_m, max_range_m=max_range_m)
+    # a sensor that sees all around sees the same wherever it is turned
+    around = sight.field_rad >= 2 * np.pi and len(survey)
+    for pose in survey[visibility.thinned(survey[:, :2, 3], _SURVEY_STEP_M)] if around else survey:
+        visible |= _seen(cells, faces, pose, sight)
     return Truth(cells, seen, visible)
 
 
@@ -217,6 +223,11 @@ def found_by_scan(found, scan, shape):
     for row, b, e in zip(scan[segment].tolist(), begin.tolist(), end.tolist(), strict=True):
         result[row, b:e] = True
     return result
+
+
+def _seen(cells, faces, pose, sight):
+    seen = visibility.seen(cells, faces.outer_m, pose[:2, 3], max_range_m=sight.max_range_m)
+    return seen if sight.field_rad >= 2 * np.pi else seen & visibility.in_field(cells, pose, sight.field_rad)
 
 
 def _found(cells, lines_m, within_m):

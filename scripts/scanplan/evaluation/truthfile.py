@@ -8,6 +8,7 @@ import numpy as np
 
 from scanplan import se3
 from scanplan.errors import StageError
+from scanplan.evaluation import visibility
 from scanplan.recordings import tum
 
 _REMEDY = "simulate the survey again, or mend it"
@@ -24,7 +25,8 @@ class TrueFaces:
     inner_m : (n, 2, 2) float64
         Start and end of the faces that can matter: those to be found.
     outer_m : (m, 2, 2) float64
-        Faces that can only be seen from outside the building; they hide what is behind them, nothing more.
+        What hides walls and is none to be found: faces that can only be seen from outside the building, and screens
+        (closed doors, tall furniture).
     """
 
     inner_m: np.ndarray
@@ -48,7 +50,7 @@ class TruePoses:
 
 
 def read_faces(path):
-    """Read the features of kind `face` of a truth.geojson; a face without `side` is taken for an inner one.
+    """Read the features of kind `face` and `screen` of a truth.geojson; a face without `side` is an inner one.
 
     Raises
     ------
@@ -58,9 +60,9 @@ def read_faces(path):
     lines = {"inside": [], "outside": []}
     for number, feature in enumerate(features(path)):
         properties = part(feature, "properties")
-        if properties.get("kind") != "face":
+        if properties.get("kind") not in ("face", "screen"):
             continue
-        side = properties.get("side", "inside")
+        side = "outside" if properties["kind"] == "screen" else properties.get("side", "inside")
         if side not in lines:
             raise StageError(f"{path}: feature {number} has side {side!r}, inside or outside needed; {_REMEDY}")
         lines[side].append(_runs(path, number, part(feature, "geometry")))
@@ -68,6 +70,28 @@ def read_faces(path):
     if len(inner) == 0:
         raise StageError(f"{path}: holds 0 inner faces (kind: face), at least 1 needed; {_REMEDY}")
     return TrueFaces(inner, outer)
+
+
+def read_sight(path, *, max_range_m):
+    """Return how far and how far around a scan of a survey can see: visibility.Sight.
+
+    Parameters
+    ----------
+    path : path-like
+        truth.geojson; its member `sensor` may tell `max_range_m` and `field_deg`, as a simulated survey's does.
+    max_range_m : float
+        Points farther away are not used, however far the sensor sees.
+
+    Raises
+    ------
+    StageError
+        If it is no GeoJSON, or tells no positive numbers.
+    """
+    told = part(_content(path), "sensor")
+    numbers = [told.get("max_range_m", max_range_m), told.get("field_deg", 360.0)]
+    if not all(isinstance(n, int | float) and n > 0 for n in numbers):
+        raise StageError(f"{path}: its sensor has max_range_m, field_deg {numbers}, positive needed; {_REMEDY}")
+    return visibility.Sight(min(numbers[0], max_range_m), np.radians(min(numbers[1], 360.0)))
 
 
 def read_poses(path):
@@ -90,6 +114,11 @@ def read_poses(path):
     if (np.diff(t_ns) <= 0).any():
         raise StageError(f"{path}: stamps do not increase after pose {np.argmax(np.diff(t_ns) <= 0)}; sort the lines")
     return TruePoses(t_ns, rows[:, :3], rows[:, 3:])
+
+
+def matrices(poses):
+    """Return TruePoses as world_from_sensor (n, 4, 4)."""
+    return se3.matrix(poses.xyz_m, poses.quat_xyzw)
 
 
 def poses_at(poses, t_ns, path):
@@ -118,16 +147,19 @@ def poses_at(poses, t_ns, path):
 
 def features(path):
     """Return the features of a truth.geojson, a list of anything; StageError if it is no FeatureCollection."""
+    return _content(path)["features"]
+
+
+def _content(path):
     try:
         content = json.loads(Path(path).read_bytes())
     except OSError as error:
         raise StageError(f"{path}: cannot be read ({error.strerror}); {_REMEDY}") from None
     except (ValueError, RecursionError) as error:
         raise StageError(f"{path}: is no JSON ({error}); {_REMEDY}") from None
-    features = content.get("features") if isinstance(content, dict) else None
-    if not isinstance(features, list):
+    if not isinstance(content, dict) or not isinstance(content.get("features"), list):
         raise StageError(f"{path}: is no GeoJSON FeatureCollection; {_REMEDY}")
-    return features
+    return content
 
 
 def part(feature, name):

@@ -1,6 +1,6 @@
 """Which parts of the true wall faces a scan could see: exact in the plane, on faces cut into short cells.
 
-ASSUME a sensor that sees all around, level, at the height at which the faces were cut; only walls hide walls.
+ASSUME a level sensor at the height at which the faces were cut; only the given lines hide walls.
 """
 
 from dataclasses import dataclass
@@ -9,6 +9,14 @@ import numpy as np
 
 CELL_M = 0.02
 """Longest cell of a face: what is seen or found is told to half of it at either end of a stretch."""
+
+
+@dataclass(frozen=True)
+class Sight:
+    """How far, and how far around its forward direction in all, a sensor sees."""
+
+    max_range_m: float
+    field_rad: float = 2 * np.pi
 
 
 @dataclass(frozen=True)
@@ -144,6 +152,12 @@ def seen_by_each(cells, outer_m, positions_m, *, max_range_m):
     for row, position_m in zip(result, positions_m, strict=True):
         row[:] = seen(cells, outer_m, position_m, max_range_m=max_range_m)
     return result
+
+
+def in_field(cells, world_from_sensor, field_rad):
+    """Tell which cells lie in the field of a sensor at a pose (4, 4), half of it to either side: (c,) bool."""
+    offset_m = (cells.middle_m - world_from_sensor[:2, 3]) @ world_from_sensor[:2, :2]
+    return np.abs(np.arctan2(offset_m[:, 1], offset_m[:, 0])) <= field_rad / 2
 
 
 def thinned(positions_m, step_m):

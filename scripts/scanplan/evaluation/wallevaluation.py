@@ -94,7 +94,7 @@ def measure(truth, findings, rank, at, true_bitmap):
     Returns
     -------
     list of dict
-        Per k a row of `schemas.EVALUATION`, without method, extractor, oracle_share and seconds.
+        Per k a row of `schemas.EVALUATION`, without method, extractor and oracle_share.
     """
     segment_rank = rank[findings.scan]
     n_cells = len(truth.cells.face)
@@ -147,13 +147,12 @@ def columns(measured):
     Returns
     -------
     dict of str to (n,) numpy.ndarray
-        `seconds` is NaN: run times are no part of a table that must be the same each time.
     """
     rows = []
     for method, extractor in sorted(measured):
         for row, best in zip(measured[method, extractor], measured[ORACLE, extractor], strict=True):
             most = best[_OF_ORACLE]
-            named = {"method": method, "extractor": extractor, **row, "seconds": np.nan}
+            named = {"method": method, "extractor": extractor, **row}
             rows.append(named | {"oracle_share": row[_OF_ORACLE] / most if most > 0 else np.nan})
     return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 

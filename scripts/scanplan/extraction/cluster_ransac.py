@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan.extraction import furniture, lines, modes, normals, walls
+from scanplan.extraction import furniture, lines, modes, normals, rays, walls
 
 _DUAL_SHIFT_M = 1.0
 _ALIKE = np.cos(np.deg2rad(20))  # a point's normal against its wall's
@@ -64,9 +64,9 @@ def extract(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
         If a coordinate is not finite.
     """
     points = walls.around_sensor(xyz_m, sensor_xyz_m)
-    surfaces = _surfaces(points, planar, settings)
+    scan = walls.sights(points, planar=planar)
+    surfaces = _surfaces(points, scan, settings)
     cells, facing = surfaces.cells, surfaces.facing
-    top_m = walls.door_top(points, settings, planar=planar)
     free = surfaces.upright.copy()
     rng = np.random.default_rng([settings.seed, scan_id])
     rows = []
@@ -79,13 +79,12 @@ def extract(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
         )
         normal, offset_m, on_wall, spare = _gather(points, surfaces, free, line[:2], settings.inlier_m)
         reach_rad = _CORNER_REACH * np.deg2rad(settings.reach_deg)
-        ends = {"planar": planar, "top_m": top_m, "spare_xyz_m": spare, "reach_rad": reach_rad}
-        found = walls.cut(normal, offset_m, on_wall, settings, **ends)
+        found = walls.cut(normal, offset_m, on_wall, settings, scan=scan, spare_xyz_m=spare, reach_rad=reach_rad)
         # twice as wide as what belongs to them, else noise leaves a second wall beside the first
         alike = -facing @ normal > _ALIKE
         free &= ~(alike & _beside(cells.mean_m[:, :2], found, _WIDE * settings.inlier_m))
         rows += found
-    return walls.assemble(furniture.walls_among(rows, points, settings, planar=planar), sensor_xyz_m)
+    return walls.assemble(furniture.walls_among(rows, scan, settings), sensor_xyz_m)
 
 
 def _clusters(surfaces, bandwidth_m):
@@ -144,7 +143,7 @@ def _beside(xy_m, rows, width_m):
 
 @dataclass(frozen=True)
 class _Surfaces:
-    """A scan's cells, their horizontal unit normals (m, 2), and which are upright and which level (m,)."""
+    """A scan's cells, their horizontal unit normals (m, 2), which are upright, and which floor or ceiling (m,)."""
 
     cells: normals.Cells
     facing: np.ndarray
@@ -152,8 +151,8 @@ class _Surfaces:
     level: np.ndarray
 
 
-def _surfaces(points, planar, settings):
-    if planar:
+def _surfaces(points, scan, settings):
+    if scan is None:
         cells = normals.line_cells(points[:, :2], reach_deg=settings.reach_deg)
         known = np.isfinite(cells.normal[:, 0])
         return _Surfaces(cells, np.where(known[:, None], cells.normal, 0), known, np.zeros(len(points), bool))
@@ -162,4 +161,7 @@ def _surfaces(points, planar, settings):
     normal = np.where(known[:, None], cells.normal, 0)
     upright = known & (np.abs(normal[:, 2]) <= np.sin(np.deg2rad(settings.max_tilt_deg)))
     facing = normal[:, :2] / np.maximum(np.hypot(*normal[:, :2].T), 1e-9)[:, None]
-    return _Surfaces(cells, facing, upright, np.abs(normal[:, 2]) >= _STEEP)
+    # between these heights, a normal that points up is a shelf's or a sill's, or of a strip of wall too narrow for one
+    height_m = cells.mean_m[:, 2] - scan.floor_m
+    outside = (height_m < rays.SKIRTING_M) | (height_m > settings.door_height_m)
+    return _Surfaces(cells, facing, upright, outside & (np.abs(normal[:, 2]) >= _STEEP))

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan.extraction import sightlines
+from scanplan.extraction import rays, sightlines
 
 _PARALLEL = np.cos(np.deg2rad(10))
 _LEVEL_M = 0.15  # tops that differ less are one
@@ -45,9 +45,9 @@ class Limits:
     stub_length_m : float
         Shorter faces are walls only where they go on beyond a door or end in inner corners on both sides.
     door_width_m : float
-        Walls on one line no farther apart than this are pieces of one.
+        Walls on one line no farther apart than this are pieces of one, if what is between leads on.
     corner_m : float
-        Ends no farther apart than this meet.
+        Ends no farther apart than this meet, and what prolongs a face pauses for no longer.
     """
 
     max_rmse_m: float
@@ -64,18 +64,16 @@ class Limits:
     corner_m: float
 
 
-def walls_among(rows, xyz_m, limits, *, planar):
+def walls_among(rows, scan, limits):
     """Keep the rows that are walls.
 
     Parameters
     ----------
     rows : list of tuple
         As `walls.cut` gives them, relative to the sensor.
-    xyz_m : (n, 3) float
-        All points of the scan, relative to the sensor.
+    scan : rays.View, optional
+        Of all points of the scan. Without it, in the plane, only the scatter is judged: no ray passes over anything.
     limits : Limits
-    planar : bool
-        In the plane only the scatter is judged: no ray passes over anything.
 
     Returns
     -------
@@ -84,7 +82,7 @@ def walls_among(rows, xyz_m, limits, *, planar):
     if not rows:
         return rows
     values = np.array(rows, float)
-    sound = values[:, 7] <= limits.max_rmse_m if planar else _upright_walls(values, sightlines.view(xyz_m), limits)
+    sound = values[:, 7] <= limits.max_rmse_m if scan is None else _upright_walls(values, scan, limits)
     return [row for row, good in zip(rows, sound.tolist(), strict=True) if good]
 
 
@@ -112,8 +110,25 @@ def _upright_walls(values, scan, limits):
     as_high = top_m[None, :] > top_m[:, None] - _LEVEL_M
     side_of_furniture = (outer & (~sound & as_high)[:, None]).any(axis=(1, 2)) & (length_m <= limits.furniture_depth_m)
     wall &= ~(side_of_furniture & lowish)
-    continued = (in_line(start_m, end_m, normal, limits) & wall & (length_m >= limits.stub_length_m)).any(axis=1)
-    return wall & ~((length_m < limits.stub_length_m) & lowish & ~closed & ~continued)
+    stub = length_m < limits.stub_length_m
+    wall &= ~(stub & lowish & ~closed)
+    # beyond a door a wall goes on, however short what is seen of it there; if it is low, what is between must be a door
+    beyond = in_line(start_m, end_m, normal, limits) & (wall & ~stub)
+    low = plain & ~tall & ~wall
+    wall |= sound & tall & beyond.any(axis=1)
+    for one, other in np.argwhere(beyond & low[:, None]):
+        wall[one] |= _door_between(values[one], values[other], scan, limits)
+    return wall
+
+
+def _door_between(one, other, scan, limits):
+    """Tell whether what is between two faces on one line is a door, or nothing."""
+    if (other[2:4] - one[0:2]) @ (one[2:4] - one[0:2]) > 0:
+        one, other = other, one
+    start_m, end_m = other[2:4], one[0:2]
+    if np.hypot(*(end_m - start_m)) <= limits.corner_m:
+        return True
+    return sightlines.leads_on(scan, start_m, end_m, limits.furniture_depth_m)
 
 
 def corners(start_m, end_m, normal, reach_m):
@@ -159,7 +174,7 @@ def in_front(start_m, end_m, normal, depth_m):
 def in_line(start_m, end_m, normal, limits):
     """Tell which faces are on one line with others, no farther than a door's width apart; (n, n) bool."""
     forward_m, gap_m = _placed(start_m, end_m, normal)
-    same = (normal @ normal.T > _PARALLEL) & (np.abs(forward_m) < sightlines.BEHIND_M)
+    same = (normal @ normal.T > _PARALLEL) & (np.abs(forward_m) <= rays.ON_M)
     return same & (gap_m <= limits.door_width_m) & ~np.eye(len(normal), dtype=bool)
 
 

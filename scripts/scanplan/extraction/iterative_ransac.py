@@ -53,7 +53,7 @@ def extract(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
         If a coordinate is not finite.
     """
     points = left = walls.around_sensor(xyz_m, sensor_xyz_m)
-    top_m = walls.door_top(points, settings, planar=planar)
+    scan = walls.sights(points, planar=planar)
     largest = _largest_line if planar else _largest_plane
     least = max(settings.least_points(planar), 3)
     rng = np.random.default_rng([settings.seed, scan_id])
@@ -66,9 +66,9 @@ def extract(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
             break
         found = left[inliers]
         if upright and np.hypot(*np.ptp(found[:, :2], axis=0)) >= settings.min_length_m:
-            rows += walls.cut(*lines.fit(found[:, :2]), found, settings, planar=planar, top_m=top_m)
+            rows += walls.cut(*lines.fit(found[:, :2]), found, settings, scan=scan)
         left = left[~inliers]
-    return walls.assemble(furniture.walls_among(rows, points, settings, planar=planar), sensor_xyz_m)
+    return walls.assemble(furniture.walls_among(rows, scan, settings), sensor_xyz_m)
 
 
 def largest_plane(xyz_m, *, inlier_m, trials, seed):

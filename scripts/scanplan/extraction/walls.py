@@ -8,10 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.errors import StageError
-from scanplan.extraction import furniture, sightlines
+from scanplan.extraction import furniture, rays, runs
 
 _HEIGHT_PERCENTILES = (2, 98)
-_PAUSE_SHARE = 1 / 2  # of the reach: wider than beams apart at grazing angles, narrower than a door
 _FIELDS = ("x0_m", "y0_m", "x1_m", "y1_m", "nx", "ny", "n_points", "rmse_m", "z_min_m", "z_max_m")
 
 
@@ -100,11 +99,20 @@ def door_top(xyz_m, limits, *, planar):
     """Return the height above which points bridge no gap, in the frame of the points (n, 3); infinite in the plane."""
     if planar or len(xyz_m) == 0:
         return np.inf
-    return sightlines.floor(xyz_m) + limits.door_height_m
+    return rays.floor(xyz_m) + limits.door_height_m
 
 
-def cut(normal, offset_m, xyz_m, limits, *, planar, top_m=np.inf, spare_xyz_m=None, reach_rad=0.0):
+def sights(xyz_m, *, planar):
+    """Return what the rays of a scan's points (n, 3) show, for `cut`; None in the plane or where there is no point."""
+    return None if planar or len(xyz_m) == 0 else rays.view(xyz_m)
+
+
+def cut(normal, offset_m, xyz_m, limits, *, scan=None, spare_xyz_m=None, reach_rad=0.0):
     """Cut a line into segments where its points pause, and drop those that are no walls.
+
+    In space, points higher than doors make no segment, nor do those of a sill lower than `min_height_m` that rays pass
+    over. The former, and spare points, prolong and join segments where rays end and none passes through, with pauses up
+    to `corner_m`: a strip of wall above furniture is as dense as its beam.
 
     Parameters
     ----------
@@ -114,13 +122,13 @@ def cut(normal, offset_m, xyz_m, limits, *, planar, top_m=np.inf, spare_xyz_m=No
     xyz_m : (n, 3) float
         Points on the line, relative to the sensor.
     limits : Limits
-    planar : bool
-    top_m : float
-        Points higher than this are the segment's where there are lower ones, but make none: see `door_top`.
+    scan : rays.View, optional
+        Of all points of the scan; None in the plane.
     spare_xyz_m : (m, 3) float, optional
-        Further points near the line that found no segment but prolong one: at a corner no point has a clear normal.
+        Further points near the line, that make no segment: at a corner and in a narrow strip above furniture none has
+        a clear normal.
     reach_rad : float
-        How far, as an angle seen from the sensor, spare points may prolong a segment.
+        In the plane: how far, as an angle seen from the sensor, spare points may prolong a segment.
 
     Returns
     -------
@@ -131,20 +139,35 @@ def cut(normal, offset_m, xyz_m, limits, *, planar, top_m=np.inf, spare_xyz_m=No
     normal, offset_m = sign * normal, sign * offset_m
     along = np.array([normal[1], -normal[0]])
     every = xyz_m if spare_xyz_m is None else np.vstack([xyz_m, spare_xyz_m])
-    where, every_where = xyz_m[xyz_m[:, 2] <= top_m, :2] @ along, every[:, :2] @ along
-    low_where = every_where[every[:, 2] <= top_m]
-    found = []
-    for first, last in _runs(where, limits.max_gap_m, limits.least_points(planar)):
-        first, last = _prolong(first, last, low_where, reach_rad, offset_m)
-        inside = every[(first <= every_where) & (every_where <= last)]
+    where_m, n = every[:, :2] @ along, len(xyz_m)
+    if scan is None:
+        found = runs.runs(where_m[:n], limits.max_gap_m, limits.min_points_planar)
+        found = [runs.prolonged(*run, where_m, reach_rad, offset_m) for run in found]
+    else:
+        found = _upright_runs(scan, normal, offset_m, where_m, every[:, 2] - scan.floor_m, n, limits)
+    rows = []
+    for first, last in found:
+        inside = every[(first <= where_m) & (where_m <= last)]
         heights = np.sort(inside[:, 2])
         low, high = (heights[round(p / 100 * (len(heights) - 1))] for p in _HEIGHT_PERCENTILES)
-        if last - first < limits.min_length_m or (not planar and high - low < limits.min_height_m):
+        if last - first < limits.min_length_m or (scan is not None and high - low < limits.min_height_m):
             continue
         ends = [*(offset_m * normal + first * along), *(offset_m * normal + last * along)]
         rmse_m = np.sqrt(np.mean((inside[:, :2] @ normal - offset_m) ** 2))
-        found.append((*ends, *normal, len(inside), rmse_m, low, high))
-    return found
+        rows.append((*ends, *normal, len(inside), rmse_m, low, high))
+    return rows
+
+
+def _upright_runs(scan, normal, offset_m, where_m, height_m, n_own, limits):
+    """Return the first and last of each run of points on a line in space; the first `n_own` are its own."""
+    if n_own == 0:
+        return []
+    sizes = {"sill_m": limits.min_height_m, "door_m": limits.door_height_m}
+    columns = runs.columns(scan, normal, offset_m, where_m, height_m, **sizes)
+    column = columns.of(where_m)
+    makes = (height_m <= limits.door_height_m) & ~columns.is_open[column]
+    found = runs.runs(where_m[:n_own][makes[:n_own]], limits.max_gap_m, limits.min_points)
+    return runs.grown(found, where_m[columns.is_shut[column]], limits.corner_m, columns)
 
 
 def assemble(rows, sensor_xyz_m):
@@ -217,22 +240,3 @@ def _order(xyz_m):
     tied = mixed[order][1:] == mixed[order][:-1]
     # one number a point sorts faster than three, and seldom do different points share it
     return order if not tied.any() else np.lexsort([*xyz_m.T, mixed])
-
-
-def _runs(where_m, max_gap_m, min_points):
-    """Return the first and last of each run of positions without a gap, of runs of enough points."""
-    where_m = np.sort(where_m)
-    parts = np.split(where_m, np.flatnonzero(np.diff(where_m) > max_gap_m) + 1)
-    return [(p[0], p[-1]) for p in parts if len(p) >= max(min_points, 1)]
-
-
-def _prolong(first, last, where_m, reach_rad, offset_m):
-    """Move a segment's ends through positions that go on without a pause, within the reach of a neighbourhood."""
-    ends = []
-    for sign, end in ((-1, first), (1, last)):
-        reach_m = reach_rad * np.hypot(end, offset_m)
-        beyond = np.sort(sign * (where_m - end))
-        beyond = np.concatenate([[0.0], beyond[(beyond > 0) & (beyond <= reach_m)]])
-        pauses = np.flatnonzero(np.diff(beyond) > reach_m * _PAUSE_SHARE)
-        ends.append(end + sign * beyond[pauses[0] if len(pauses) else -1])
-    return ends

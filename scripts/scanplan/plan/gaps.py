@@ -14,6 +14,10 @@ _LEAST_RAYS = 10
 _EDGE_M = 0.03
 _HEIGHT_PERCENTILES = (1, 99)
 _AT_FLOOR_M = 0.3
+_FLOOR_NOISE_M = 0.04
+_STEP_COLUMN_M = 0.1
+_STEP_SHARE = 0.7
+_DOORSTEP_M = 0.06
 _HEIGHT_GAP_M = 0.6
 
 
@@ -66,7 +70,7 @@ class Gap:
 
     def kind(self, settings):
         """Return what kind of opening it is."""
-        if self.sill_m > _AT_FLOOR_M:
+        if self.sill_m > _DOORSTEP_M:
             return "window"
         return "door" if self.width_m <= settings.max_door_m else "passage"
 
@@ -108,13 +112,23 @@ def judge(wall_line, low_m, high_m, lines, reading, settings, *, planar, needs_l
     is_wide = settings.min_opening_m <= width_m <= settings.max_opening_m
     least_share = _OPEN_SHARE_BELOW_LINTEL if np.isfinite(lintel_m) else _OPEN_SHARE
     is_open = n_rays >= _LEAST_RAYS and open_share >= least_share
+    # rays went in and did not come back: through glass, or out of the building
+    is_open |= max(_lost_share(seen, np.sort(seen.line.along_m(ends))) for seen in lines) >= _OPEN_SHARE
+    # wall above, some rays through a window, and what is below them hidden: no way through was seen
+    behind_things = np.isfinite(lintel_m) and np.isnan(sill_m)
     if is_wide and is_open and (not needs_lintel or np.isfinite(lintel_m)):
         state = OPEN
-    elif open_share <= _CLOSED_SHARE and width_m <= settings.max_closed_m and not needs_lintel:
+    elif (open_share <= _CLOSED_SHARE or behind_things) and width_m <= settings.max_closed_m and not needs_lintel:
         state = CLOSED
     else:
         state = UNKNOWN
     return Gap(float(low_m), float(high_m), state, n_rays, sill_m, lintel_m)
+
+
+def _lost_share(seen, span_m):
+    """Return on what share of the width rays did not come back."""
+    inside_m = [min(high_m, span_m[1]) - max(low_m, span_m[0]) for low_m, high_m in seen.panes_m]
+    return sum(max(m, 0.0) for m in inside_m) / (span_m[1] - span_m[0])
 
 
 def _first_known(values_m):
@@ -134,7 +148,23 @@ def _look(seen, span_m, reading, planar):
     if planar or n_rays < _LEAST_RAYS:
         return n_rays, min(open_share, 1.0), np.nan, np.nan
     hit_z_m = seen.hit_z_m[seen.hits(low_m, high_m)]
-    return n_rays, min(open_share, 1.0), *_heights_m(seen.pass_z_m[passes], hit_z_m, reading)
+    sill_m, lintel_m = _heights_m(seen.pass_z_m[passes], hit_z_m, reading)
+    step_m = _step_m(seen, low_m, high_m, float(np.percentile(seen.pass_z_m[passes], _HEIGHT_PERCENTILES[0])))
+    return n_rays, min(open_share, 1.0), max(sill_m, step_m) if step_m > 0 else sill_m, lintel_m
+
+
+def _step_m(seen, low_m, high_m, lowest_m):
+    """Return the height of what stands in the way near the floor all along, below the lowest ray through; 0 if nothing.
+
+    In a doorway rays end on the floor; a sill's front ends them above that.
+    """
+    feet = seen.feet(low_m, high_m)
+    raised = (seen.foot_z_m[feet] > _FLOOR_NOISE_M) & (seen.foot_z_m[feet] < lowest_m)
+    width = int((high_m - low_m) / _STEP_COLUMN_M)
+    column = ((seen.foot_m[feet][raised] - low_m) / _STEP_COLUMN_M).astype(np.int64)
+    if len(column) < _LEAST_RAYS or len(np.unique(column)) < _STEP_SHARE * width:
+        return 0.0
+    return (float(np.percentile(seen.foot_z_m[feet][raised], 95)) + lowest_m) / 2
 
 
 def _heights_m(pass_z_m, hit_z_m, reading):

@@ -65,7 +65,8 @@ def without_tails(stretches, *, share):
 
 def _without_tails(stretch, places_m, share):
     few = share * stretch.n_points / max(stretch.length_m, _ROUND_M)
-    for place_m in sorted(places_m.tolist(), key=lambda place: abs(place - (stretch.low_m + stretch.high_m) / 2)):
+    on_it = places_m[(places_m >= stretch.low_m) & (places_m <= stretch.high_m)]
+    for place_m in sorted(on_it.tolist(), key=lambda place: abs(place - (stretch.low_m + stretch.high_m) / 2)):
         for name, sign in (("low_m", -1), ("high_m", 1)):
             tail_m = sign * (getattr(stretch, name) - place_m)
             far = sorted((place_m + sign * _REACH_M, getattr(stretch, name)))

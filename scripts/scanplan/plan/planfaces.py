@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from scanplan.plan import crossings, facepieces, overshoots, stretches
+from scanplan.plan import crossings, facepieces, overshoots, rightangles, stretches
 
 _STUB_M = 0.1
 _FOREIGN_M = 0.08
@@ -20,14 +20,17 @@ class Traced:
     n_lines : int
     n_dropped : int
         Lines of which nothing is left: too little seen, furniture, or drawn by a stronger one.
+    panes : list of (faceline.Line, float, float)
+        From where to where along a line there is glass.
     """
 
     stretches: list
     n_lines: int
     n_dropped: int
+    panes: list
 
 
-def trace(pieces, rays, merging, reading):
+def trace(pieces, rays, merging, reading, square):
     """Find the faces along the lines of pieces.
 
     Parameters
@@ -37,6 +40,7 @@ def trace(pieces, rays, merging, reading):
     rays : rays.Rays
     merging : faces.MergeSettings
     reading : profiles.Reading
+    square : rightangles.Prior
 
     Returns
     -------
@@ -46,7 +50,7 @@ def trace(pieces, rays, merging, reading):
     lines = {}
     for piece in pieces:
         lines.setdefault(id(piece.line), []).append(piece)
-    seen = [_seen(group, rays, reading) for group in lines.values()]
+    seen = rightangles.turned([_seen(group, rays, reading) for group in lines.values()], square)
     found = _once([stretches.find(s, reading, planar=rays.planar) for s in seen], merging)
     stacked = crossings.stack(found)
     foreign = [_crossed_m(s, found, stacked) for s in seen]
@@ -56,7 +60,8 @@ def trace(pieces, rays, merging, reading):
     found = [f for f in found if f.length_m >= _STUB_M]
     met = facepieces.meet_at_corners(found, corner_m=merging.corner_m)
     met = [f for f in _without_doubles(met, merging) if f.length_m >= _STUB_M]
-    return Traced(met, len(seen), len(seen) - len({id(f.seen) for f in met}))
+    lost = [(s.line, *span_m) for s in seen for span_m in s.framed_m.tolist()]
+    return Traced(met, len(seen), len(seen) - len({id(f.seen) for f in met}), lost)
 
 
 def _seen(group, rays, reading):

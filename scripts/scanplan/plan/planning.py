@@ -12,10 +12,12 @@ from scanplan.plan import (
     faces,
     freespace,
     gaps,
+    glazing,
     planfaces,
     plantables,
     planwalls,
     profiles,
+    rightangles,
     rooms,
     wallevidence,
     wallfaces,
@@ -55,6 +57,7 @@ class PlanSettings:
 
     merge: faces.MergeSettings
     reading: profiles.Reading
+    square: rightangles.Prior
     pairs: wallpairs.PairSettings
     openings: gaps.GapSettings
     rooms: RoomSettings
@@ -75,7 +78,7 @@ class Plan:
     n_dropped: int
 
 
-def settings(*, merge, trace, pair, openings, rooms, trust):
+def settings(*, merge, trace, right_angles, pair, openings, rooms, trust):
     """Return settings from keywords of each part.
 
     Raises
@@ -87,6 +90,7 @@ def settings(*, merge, trace, pair, openings, rooms, trust):
     return PlanSettings(
         merge=merging,
         reading=profiles.Reading(**trace),
+        square=rightangles.Prior(registration_sigma_m=merging.registration_sigma_m, **right_angles),
         pairs=wallpairs.PairSettings(**pair, max_gap_m=openings["max_opening_m"]),
         openings=gaps.GapSettings(**openings),
         rooms=RoomSettings(**rooms),
@@ -115,7 +119,7 @@ def make(segments, rays, track_m, t_ns, settings):
         Without any row of faces or walls where nothing is supported enough.
     """
     pieces = faces.pieces(segments, settings.merge)
-    traced = planfaces.trace(pieces, rays, settings.merge, settings.reading)
+    traced = planfaces.trace(pieces, rays, settings.merge, settings.reading, settings.square)
     found = planwalls.assemble(
         *(traced.stretches, settings.reading, settings.pairs, settings.openings),
         planar=rays.planar,
@@ -123,10 +127,12 @@ def make(segments, rays, track_m, t_ns, settings):
     )
     unpaired_m = _usual_thickness_m(found)
     stars = freespace.visible(rays)
+    panes = glazing.between(*(found, traced.panes), min_length_m=settings.openings.min_opening_m, unpaired_m=unpaired_m)
     enclosed = rooms.find(
-        *(found, stars, track_m),
+        *([*found, *panes], stars, track_m),
         min_area_m2=settings.rooms.min_area_m2,
         min_walled=settings.rooms.min_walled,
+        min_width_m=settings.pairs.max_thickness_m,
         unpaired_m=unpaired_m,
     )
     floor_z_m = 0.0 if math.isnan(rays.floor_z_m) else rays.floor_z_m
@@ -139,7 +145,7 @@ def make(segments, rays, track_m, t_ns, settings):
         openings=plantables.openings(found, enclosed, settings.openings),
         rooms=plantables.rooms(enclosed),
         evidence=plantables.evidence(known, rays.scan_ids, t_ns),
-        free=plantables.free(_free(found, stars, unpaired_m)),
+        free=plantables.free(_free([*found, *panes], stars, unpaired_m)),
         n_lines=traced.n_lines,
         n_dropped=traced.n_dropped,
     )

@@ -9,6 +9,8 @@ import numpy as np
 from scanplan.plan import crossings, gaps, wallpairs
 from scanplan.plan.faceline import Line
 
+_JAMB_M = 0.1
+
 
 @dataclass(frozen=True, eq=False)
 class PlanWall:
@@ -80,6 +82,8 @@ def assemble(found, reading, pairing, gapping, *, planar, corner_m):
     walls = [_with_end_openings(w, _crossings(w, walls, stacked), reading, gapping, planar, corner_m) for w in walls]
     stacked = crossings.stack(walls)
     walls = [_met(wall, _crossings(wall, walls, stacked), corner_m) for wall in walls]
+    stacked = crossings.stack(walls)
+    walls = [_beside_walls(wall, _crossings(wall, walls, stacked), gapping) for wall in walls]
     return sorted(walls, key=lambda w: (-w.length_m, *w.ends.ravel()))
 
 
@@ -90,12 +94,14 @@ def _cut(paired, found, reading, gapping, planar):
     lines = list({id(found[i].seen): found[i].seen for i in paired.members}.values())
     judged = [gaps.judge(paired.line, *pause, lines, reading, gapping, planar=planar) for pause in pauses]
     breaks = [g for g in judged if g.state == gaps.UNKNOWN and g.width_m >= gapping.min_opening_m]
+    breaks += _between_things(judged, np.array(list(members.values())))
+    breaks.sort(key=lambda g: g.low_m)
     bounds = [-math.inf, *((g.low_m + g.high_m) / 2 for g in breaks), math.inf]
     parts = []
     for begin, end in itertools.pairwise(bounds):
         inside = {i: m for i, m in members.items() if begin < m.mean() < end}
         spans = np.array(list(inside.values()))
-        of_it = [g for g in judged if begin < (g.low_m + g.high_m) / 2 < end and g not in breaks]
+        of_it = [_between_sides(g, spans) for g in judged if begin < (g.low_m + g.high_m) / 2 < end and g not in breaks]
         parts.append(
             PlanWall(
                 *(paired.line, float(spans.min()), float(spans.max()), paired.thickness_m),
@@ -104,6 +110,28 @@ def _cut(paired, found, reading, gapping, planar):
             )
         )
     return parts
+
+
+def _between_things(judged, spans_m):
+    """Return the openings of what is open for longer than it is wall, unless wall is seen above them.
+
+    An opening is a gap of a wall; a wider one than all of the wall is the space between two things.
+    """
+    ways = [g for g in judged if g.state == gaps.OPEN]
+    unknown_m = sum(g.width_m for g in judged if g.state == gaps.UNKNOWN)
+    open_m = sum(g.width_m for g in ways)
+    solid_m = np.ptp(spans_m) - unknown_m - open_m
+    return [g for g in ways if np.isnan(g.lintel_m)] if open_m > solid_m else []
+
+
+def _between_sides(gap, spans_m):
+    """Return an opening with its jambs between where the faces of both sides end: each errs its own way."""
+    if gap.state != gaps.OPEN:
+        return gap
+    ends_m, starts_m = spans_m[:, 1], spans_m[:, 0]
+    low_m = ends_m[(ends_m <= gap.low_m) & (ends_m >= gap.low_m - _JAMB_M)].mean()
+    high_m = starts_m[(starts_m >= gap.high_m) & (starts_m <= gap.high_m + _JAMB_M)].mean()
+    return replace(gap, low_m=float(low_m), high_m=float(high_m))
 
 
 def _with_end_openings(wall, crossed, reading, gapping, planar, corner_m):
@@ -131,6 +159,24 @@ def _met(wall, crossed, corner_m):
         near = [c for other, c in crossed if abs(c - end_m) <= corner_m + other.half_m]
         moved[name] = min(near, key=lambda c: (abs(c - end_m), c), default=end_m)
     return replace(wall, **moved) if moved["high_m"] - moved["low_m"] > wall.length_m / 2 else wall
+
+
+def _beside_walls(wall, crossed, gapping):
+    """Let openings begin beside the walls that cross there: a wall that ends at one goes on behind it with a way."""
+    bodies = [(place_m - other.half_m, place_m + other.half_m) for other, place_m in crossed]
+    openings = [_less(gap, bodies) for gap in wall.openings]
+    return replace(wall, openings=[gap for gap in openings if gap.width_m >= gapping.min_opening_m])
+
+
+def _less(gap, bodies_m):
+    """Return what of an opening is left between walls that cross it within `_JAMB_M` of its ends."""
+    low_m, high_m = gap.low_m, gap.high_m
+    for begin_m, end_m in bodies_m:
+        if begin_m - _JAMB_M <= gap.low_m <= end_m:
+            low_m = max(low_m, end_m)
+        if begin_m <= gap.high_m <= end_m + _JAMB_M:
+            high_m = min(high_m, begin_m)
+    return replace(gap, low_m=float(low_m), high_m=float(high_m))
 
 
 def _crossings(wall, walls, stacked):

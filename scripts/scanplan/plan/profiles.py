@@ -9,6 +9,7 @@ from scanplan.plan.faceline import Line
 COLUMN_M = 0.05
 _LEAST_PASSES = 3
 _OVER_SHARE = 0.15
+_FRAMED_SHARE = 0.5
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,10 @@ class Seen:
     hit_scan : (h,) int64
     pass_m, pass_z_m : (p,) float64
     pass_scan : (p,) int64
+    foot_m, foot_z_m : (f,) float64
+        Points at the line that are too low for a wall: a sill, or clutter.
+    panes_m : (n, 2) float64
+        From where to where too few of the rays towards the line came back for what is opaque.
     profiles : dict
         Those that were asked for.
     """
@@ -56,6 +61,9 @@ class Seen:
     pass_m: np.ndarray
     pass_z_m: np.ndarray
     pass_scan: np.ndarray
+    foot_m: np.ndarray = field(default_factory=lambda: np.empty(0))
+    foot_z_m: np.ndarray = field(default_factory=lambda: np.empty(0))
+    panes_m: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))
     profiles: dict = field(default_factory=dict)
 
     def columns(self, reading, *, planar):
@@ -65,6 +73,16 @@ class Seen:
             self.profiles[key] = _profile(self, reading, planar=planar)
         return self.profiles[key]
 
+    @property
+    def framed_m(self):
+        """Of the panes those (k, 2) that points are at, of whatever height, along most of their length.
+
+        Glass has a frame, a sill or a lintel; a line that merely goes on before a pane has none.
+        """
+        at_it_m = np.sort(np.concatenate([self.hit_m, self.foot_m]))
+        share = [_filled(at_it_m, *span_m) for span_m in self.panes_m]
+        return self.panes_m[np.array(share, float) >= _FRAMED_SHARE]
+
     def hits(self, low_m, high_m):
         """Return the slice of the points between two places."""
         return slice(np.searchsorted(self.hit_m, low_m), np.searchsorted(self.hit_m, high_m, side="right"))
@@ -72,6 +90,10 @@ class Seen:
     def passes(self, low_m, high_m):
         """Return the slice of the crossings between two places."""
         return slice(np.searchsorted(self.pass_m, low_m), np.searchsorted(self.pass_m, high_m, side="right"))
+
+    def feet(self, low_m, high_m):
+        """Return the slice of the points too low for a wall between two places."""
+        return slice(np.searchsorted(self.foot_m, low_m), np.searchsorted(self.foot_m, high_m, side="right"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,6 +123,13 @@ class Profile:
         """Return the slice of the columns whose middles lie between two places."""
         low, high = np.ceil((np.array([low_m, high_m]) - self.first_m) / COLUMN_M - 0.5).astype(np.int64)
         return slice(max(low, 0), max(high, 0))
+
+
+def _filled(places_m, low_m, high_m):
+    """Return the share of the columns between two places that hold any of sorted places."""
+    inside_m = places_m[np.searchsorted(places_m, low_m) : np.searchsorted(places_m, high_m)]
+    columns = max(round((high_m - low_m) / COLUMN_M), 1)
+    return len(np.unique(((inside_m - low_m) / COLUMN_M).astype(np.int64))) / columns
 
 
 def _profile(seen, reading, *, planar):

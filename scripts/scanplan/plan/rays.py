@@ -10,9 +10,10 @@ import numpy as np
 
 _FLOOR_BIN_M = 0.05
 _FLOOR_SEARCH_M = 0.5
-_LEAST_SIDE_M = 0.15
+LEAST_SIDE_M = 0.15
 _STEADY_M = 0.15
 _TURN = 10.0
+_SECTORS = 72  # wider than what is between two firings
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,6 +62,11 @@ class Rays:
         scan = np.repeat(np.arange(len(self.xyz_m)), [len(xyz_m) for xyz_m in self.xyz_m])
         azimuth_rad = np.concatenate([np.empty(0), *self.azimuth_rad])
         return Stacked(azimuth_rad + _TURN * scan, np.concatenate([np.empty((0, 3)), *self.xyz_m]), scan)
+
+    @cached_property
+    def usual(self):
+        """Returns that a degree of azimuth usually has below an elevation, by 0.1 degrees from -90, (n, 1801)."""
+        return np.array([_usual(*scan) for scan in zip(self.azimuth_rad, self.xyz_m, self.sensors_m, strict=True)])
 
     @property
     def n_points(self):
@@ -136,6 +142,16 @@ def _floor_z_m(points):
     return float(np.median(z_m[np.abs(z_m - fullest_m) <= _FLOOR_BIN_M]))
 
 
+def _usual(azimuth_rad, xyz_m, sensor_m):
+    """Return the running sums of a scan's returns by elevation, per degree of azimuth around which there are any."""
+    sector = np.minimum(((azimuth_rad + np.pi) / (2 * np.pi) * _SECTORS).astype(np.int64), _SECTORS - 1)
+    seen_deg = max(len(np.unique(sector)), 1) * 360 / _SECTORS
+    way_m = xyz_m - sensor_m
+    elevation_deg = np.rad2deg(np.arctan2(way_m[:, 2], np.hypot(way_m[:, 0], way_m[:, 1])))
+    row = np.clip((elevation_deg + 90) * 10, 0, 1799).astype(np.int64)
+    return np.concatenate([[0.0], np.cumsum(np.bincount(row, minlength=1800))]) / seen_deg
+
+
 def look(rays, line, low_m, high_m, *, band_m):
     """Tell what rays show of a stretch of a line.
 
@@ -157,7 +173,7 @@ def look(rays, line, low_m, high_m, *, band_m):
     """
     ends = line.at(np.array([low_m, high_m]))
     side_m = line.offset_m(rays.sensors_m[:, :2])
-    rows = _rows(rays, ends, np.flatnonzero(np.abs(side_m) >= _LEAST_SIDE_M))
+    rows = rows_between(rays, ends, np.flatnonzero(np.abs(side_m) >= LEAST_SIDE_M))
     xyz_m, scan = rays.stacked.xyz_m[rows], rays.stacked.scan[rows]
     offset_m = line.offset_m(xyz_m[:, :2])
     hit = (np.abs(offset_m) <= band_m) & (side_m[scan] > 0)
@@ -172,7 +188,7 @@ def look(rays, line, low_m, high_m, *, band_m):
     )
 
 
-def _rows(rays, ends, scans):
+def rows_between(rays, ends, scans):
     """Return the rows of `rays.stacked` of some scans' rays that go between two ends (2, 2), the shorter way round."""
     way = ends[:, None] - rays.sensors_m[scans, :2]
     first, last = np.arctan2(way[..., 1], way[..., 0])

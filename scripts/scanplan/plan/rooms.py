@@ -48,7 +48,7 @@ class Room:
         return self.walled >= _CLOSED_SHARE
 
 
-def find(walls, stars, track_m, *, min_area_m2, min_walled, unpaired_m):
+def find(walls, stars, track_m, *, min_area_m2, min_walled, min_width_m, unpaired_m):
     """Find the rooms.
 
     The floor that was seen falls apart where walls and openings stand. Each part becomes the faces of the cells, in a
@@ -64,7 +64,9 @@ def find(walls, stars, track_m, *, min_area_m2, min_walled, unpaired_m):
         Where sensors were.
     min_area_m2 : float
     min_walled : float, 0 to 1
-        A part that no sensor was in is a room only if so much of its outline runs along walls and openings.
+        A part that no sensor was in is a room only if so much of its outline runs along walls and openings,
+    min_width_m : float
+        and if it is wider than this somewhere: a wall may be as thick.
     unpaired_m : float
         How thick a wall is taken for of which one side is known.
 
@@ -89,7 +91,8 @@ def find(walls, stars, track_m, *, min_area_m2, min_walled, unpaired_m):
         walled = _walled(polygon, outline)
         shapely.prepare(polygon)
         room = Room(polygon, walled, bool(shapely.contains(polygon, track).any()), _n_scans(polygon, stars))
-        if room.entered or walled >= min_walled:
+        is_wide = not polygon.buffer(-min_width_m / 2).is_empty
+        if room.entered or (walled >= min_walled and is_wide):
             found.append(room)
             taken = shapely.union_all([taken, polygon])
     return sorted(found, key=lambda r: (-r.polygon.area, *r.polygon.bounds))

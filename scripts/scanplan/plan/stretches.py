@@ -5,6 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
+from scanplan.plan import panes
 from scanplan.plan import rays as sights
 from scanplan.plan.faceline import Line
 from scanplan.plan.profiles import COLUMN_M, Seen
@@ -14,6 +15,8 @@ _OVERLOOKED_SHARE = 0.5
 _REFIT_M = 0.04
 _MOST_TURN_RAD = np.radians(3)
 _ROUND_M = 1e-9
+_END_M = 0.1
+_MOST_LOOKS = 4
 _COLUMN_WEIGHT = 10  # points of a column that count: a near scan's are not a hundred times as true
 
 
@@ -71,11 +74,26 @@ def look_along(rays, line, low_m, high_m, reading):
     -------
     profiles.Seen
     """
-    span = low_m - reading.reach_m, high_m + reading.reach_m
+    reach_m = np.full(2, reading.reach_m)
+    for _ in range(_MOST_LOOKS):
+        seen, span = _look(rays, line, (low_m, high_m), reach_m, reading)
+        goes_on = np.array([np.abs(seen.panes_m - end).min(initial=np.inf) < _END_M for end in span])
+        if not goes_on.any():
+            break
+        # a pane is looked at as a whole
+        reach_m = np.where(goes_on, 2 * reach_m, reach_m)
+    return seen
+
+
+def _look(rays, line, own_m, reach_m, reading):
+    """Return what is seen of a line, `reach_m` (2,) beyond what was extracted, and from where to where."""
+    span = own_m[0] - reach_m[0], own_m[1] + reach_m[1]
     sight = sights.look(rays, line, *span, band_m=reading.band_m)
-    own = (line.along_m(sight.hit_xy_m) >= low_m) & (line.along_m(sight.hit_xy_m) <= high_m)
+    own = (line.along_m(sight.hit_xy_m) >= own_m[0]) & (line.along_m(sight.hit_xy_m) <= own_m[1])
     upright = np.full(len(sight.hit_z_m), True) if rays.planar else sight.hit_z_m > _LEAST_HEIGHT_M
-    return _seen(refitted(line, sight.hit_xy_m[own & upright]), sight, upright, reading)
+    seen = _seen(refitted(line, sight.hit_xy_m[own & upright]), sight, upright, reading)
+    span = seen.line.along_m(line.at(np.array(span)))
+    return seen if rays.planar else replace(seen, panes_m=panes.find(rays, seen.line, *span)), span
 
 
 def refitted(line, xy_m):
@@ -104,17 +122,20 @@ def _seen(line, sight, upright, reading):
     kept = kept[np.argsort(hit_m[kept], kind="stable")]
     pass_m = line.along_m(sight.pass_xy_m)
     order = np.argsort(pass_m, kind="stable")
+    feet = np.flatnonzero(~upright & (np.abs(off_m) <= reading.band_m))
+    feet = feet[np.argsort(hit_m[feet], kind="stable")]
     return Seen(
         line,
         *(hit_m[kept], off_m[kept], sight.hit_z_m[kept], sight.hit_scan[kept]),
         *(pass_m[order], sight.pass_z_m[order], sight.pass_scan[order]),
+        *(hit_m[feet], sight.hit_z_m[feet]),
     )
 
 
 def find(seen, reading, *, planar, foreign_m=()):
     """Find what is wall along a line: columns with points, joined over pauses that no ray went through.
 
-    Stretches that rays look over along most of their length are furniture, and left out.
+    Panes are no wall; stretches that rays look over along most of their length are furniture, and left out.
 
     Parameters
     ----------
@@ -132,7 +153,7 @@ def find(seen, reading, *, planar, foreign_m=()):
     if len(seen.hit_m) == 0:
         return []
     columns = seen.columns(reading, planar=planar)
-    solid = columns.solid & ~_inside(columns, foreign_m)
+    solid = columns.solid & ~_inside(columns, [*foreign_m, *seen.panes_m])
     runs = []
     for column in np.flatnonzero(solid):
         if runs:
@@ -155,7 +176,27 @@ def _inside(columns, intervals_m):
 
 
 def _trimmed(stretch):
-    """Let a stretch end at its first and last point."""
+    """Let a stretch end where scans see it end, half of the points near there being of scans that see no further.
+
+    The outermost point of all scans lies beyond the true end: by the noise of a range, by what one scan or another is
+    misplaced, and by what that scan sees of a door's reveal. A scan that sees an end shows it to half the distance of
+    its points.
+    """
+    seen, round_m = stretch.seen, _ROUND_M
     # a point on the edge of a column is in it, whichever way the edge was rounded
-    points = stretch.seen.hit_m[stretch.seen.hits(stretch.low_m - _ROUND_M, stretch.high_m + _ROUND_M)]
-    return replace(stretch, low_m=float(points[0]), high_m=float(points[-1]))
+    points = seen.hits(stretch.low_m - round_m, stretch.high_m + round_m)
+    along_m, scan = seen.hit_m[points], seen.hit_scan[points]
+    low_m, high_m = -_usual_end_m(-along_m, scan), _usual_end_m(along_m, scan)
+    if low_m >= high_m:
+        low_m, high_m = along_m[0], along_m[-1]
+    return replace(stretch, low_m=float(low_m), high_m=float(high_m))
+
+
+def _usual_end_m(along_m, scan):
+    """Return the weighted median of the last points (n,) of the scans that have any near the last of all."""
+    near = along_m >= along_m.max() - _END_M
+    _, index, count = np.unique(scan[near], return_inverse=True, return_counts=True)
+    last_m = np.full(len(count), -np.inf)
+    np.maximum.at(last_m, index, along_m[near])
+    order = np.argsort(last_m, kind="stable")
+    return last_m[order][np.searchsorted(np.cumsum(count[order]), near.sum() / 2)]

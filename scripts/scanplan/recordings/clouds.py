@@ -61,12 +61,14 @@ def within_range(scan_id, t_ns, xyz_m, time_raw, *, min_range_m, max_range_m, sw
     -------
     Scan
     """
-    kept = in_range(xyz_m, min_range_m=min_range_m, max_range_m=max_range_m)
+    kept = np.flatnonzero(in_range(xyz_m, min_range_m=min_range_m, max_range_m=max_range_m))
     time_s = None
     if time_raw is not None and sweep_times is not None:
-        time_s = sweep_times.seconds(time_raw, t_ns)[kept]
+        time_s = sweep_times.seconds(time_raw, t_ns).take(kept)
         time_s = time_s if sweeptimes.is_sweep(time_s) else None
-    return Scan(int(scan_id), int(t_ns), np.asarray(xyz_m[kept], np.float32), time_s, int((~kept).sum()))
+    # by number and not by mask: a third of the time
+    xyz_kept_m = np.asarray(xyz_m).take(kept, axis=0).astype(np.float32, copy=False)
+    return Scan(int(scan_id), int(t_ns), xyz_kept_m, time_s, len(xyz_m) - len(kept))
 
 
 def lie_in_sweep_plane(xyz_m):

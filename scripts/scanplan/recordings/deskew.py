@@ -29,20 +29,27 @@ def at_stamp(xyz_m, time_s, stamp_from_knots):
     (n, 3) float32
         In the sensor's frame at the stamp.
     """
-    start = np.ascontiguousarray(np.moveaxis(stamp_from_knots[:, :3, :], 0, -1), np.float32)
-    step = np.diff(start)
-    first_s, last_s = time_s.min(), time_s.max()
-    at = (time_s - first_s) * (step.shape[-1] / max(last_s - first_s, 1e-9))
-    knot = np.minimum(at.astype(np.intp), step.shape[-1] - 1)
-    share = (at - knot).astype(np.float32)
+    # beams that fire together share a moment: its matrix is made once
+    first = np.concatenate([[0], np.flatnonzero(np.diff(time_s)) + 1])
+    n_together = np.diff(np.append(first, len(time_s)))
+    entry = np.ascontiguousarray(np.moveaxis(_between(stamp_from_knots, time_s[first]), 0, -1))
+    coordinates = np.ascontiguousarray(xyz_m.T, np.float32)
 
-    def entry(row, column):
-        return start[row, column].take(knot) + share * step[row, column].take(knot)
+    def of_points(row, column):
+        return np.repeat(entry[row, column], n_together)
 
     # one entry of the matrices after the other: half the time of a matrix for every point
-    coordinates = np.ascontiguousarray(xyz_m.T, np.float32)
-    rows = [sum((entry(i, j) * coordinates[j] for j in range(3)), entry(i, 3)) for i in range(3)]
+    rows = [sum((of_points(i, j) * coordinates[j] for j in range(3)), of_points(i, 3)) for i in range(3)]
     return np.column_stack(rows)
+
+
+def _between(knots, time_s):
+    """Return (n, 3, 4) float32 of knots (k, 4, 4) that lie evenly from the least to the largest of the times (n,)."""
+    table, first_s = knots[:, :3].astype(np.float32), time_s.min()
+    at = (time_s - first_s) * ((len(table) - 1) / max(time_s.max() - first_s, 1e-9))
+    knot = np.minimum(at.astype(np.intp), len(table) - 2)
+    share = (at - knot).astype(np.float32)[:, None, None]
+    return table[knot] + share * np.diff(table, axis=0)[knot]
 
 
 def knots(time_s, t_ns, motion):

@@ -15,8 +15,8 @@ _COVARIANCE_NEIGHBOURS = 10
 _PAIR_SIGMA_M = 0.045
 _LEAST_SHARE = 0.005
 _FACING = 0.5
-# metres and radians: an alignment that moves less has arrived; a rough one needs not arrive
-_STEP_DONE, _ROUGH_STEP_DONE = 1e-4, 2e-3
+# metres and radians: of a step this small less than half is left to go; a rough alignment needs not arrive
+_STEP_DONE, _ROUGH_STEP_DONE = 1e-3, 2e-3
 
 
 @dataclass(frozen=True)

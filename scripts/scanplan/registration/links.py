@@ -86,6 +86,29 @@ def refine(scan, targets, settings):
     return Placed(scan.scan_id, scan.cloud, estimate), edges
 
 
+def comparable(scan, previous, settings):
+    """Return those of the previous scans that can be expected to show what a scan shows: near, and not turned away.
+
+    The last one always is among them.
+
+    Parameters
+    ----------
+    scan : Placed
+        Where the localiser says.
+    previous : sequence of Placed
+        Their order is kept.
+    settings : sequential.Settings
+
+    Returns
+    -------
+    list of Placed
+    """
+    sizes = [_size(se3.inverse(other.world_from_cloud) @ scan.world_from_cloud) for other in previous]
+    near = [m <= settings.previous_apart_m and deg <= settings.previous_turn_deg for m, deg in sizes]
+    near[-1] = True
+    return [other for other, is_near in zip(previous, near, strict=True) if is_near]
+
+
 def aligned(source, target, kind, distances_m, settings):
     """Measure the motion between two scans that are about in place: Edge, or None without a sound alignment.
 

@@ -8,23 +8,51 @@ from scipy.spatial import cKDTree
 from scanplan.registration import icp, links
 
 _PREPARED_AT_ONCE = 128
+# a camera that turned this far shows other things
+_TURN = np.sqrt(8) * np.sin(np.radians(30.0) / 2)
 # what overlaps after alignment overlaps this many times less narrowly before
 _LOOSE = 2
 
 
-def pairs(xy_m, *, radius_m, apart, most):
-    """Choose which scans to link: with every earlier visit of a scan's surroundings, at its nearest scan.
+def stations(world_from_scan, step_m):
+    """Choose scans along the way: the first, and each that is `step_m` away or turned by 30 degrees from the last.
+
+    What lies between two of them is tied to both more firmly than a link to another visit could tie it.
+
+    Parameters
+    ----------
+    world_from_scan : (n, 4, 4) float64
+        In the order of their recording.
+    step_m : float
+
+    Returns
+    -------
+    (n,) bool
+    """
+    chosen, last = np.zeros(len(world_from_scan), bool), None
+    for row, pose in enumerate(world_from_scan):
+        # |R - S| in the Frobenius norm is sqrt(8) sin(angle / 2)
+        away = last is None or np.linalg.norm(pose[:3, 3] - last[:3, 3]) >= step_m
+        if away or np.linalg.norm(pose[:3, :3] - last[:3, :3]) >= _TURN:
+            chosen[row], last = True, pose
+    return chosen
+
+
+def pairs(xy_m, is_station, *, radius_m, apart, most):
+    """Choose which scans to link: stations with every earlier visit of their surroundings, at its nearest station.
 
     Parameters
     ----------
     xy_m : (n, 2) float
         Where the scans are, in the order of their recording.
+    is_station : (n,) bool
+        See `stations`.
     radius_m : float
         Two scans farther apart are no pair.
     apart : int
         Nor are two with fewer scans than this between them, nor do such belong to different visits.
     most : int
-        A scan is linked back to this many visits, the nearest ones.
+        A station is linked back to this many visits, the nearest ones.
 
     Returns
     -------
@@ -33,16 +61,17 @@ def pairs(xy_m, *, radius_m, apart, most):
     """
     tree = cKDTree(xy_m)
     found = []
-    for source, place_m in enumerate(xy_m):
+    for source in np.flatnonzero(is_station):
         # one at a time: of a sensor that stands still all are near all
-        near = np.array(tree.query_ball_point(place_m, radius_m, return_sorted=True), np.int64)
+        near = np.array(tree.query_ball_point(xy_m[source], radius_m, return_sorted=True), np.int64)
         earlier = near[near < source - apart]
         if len(earlier) == 0:
             continue
         visits = np.split(earlier, np.flatnonzero(np.diff(earlier) > apart) + 1)
+        visits = [visit[is_station[visit]] if is_station[visit].any() else visit for visit in visits]
         distance_m = [np.linalg.norm(xy_m[visit] - xy_m[source], axis=1) for visit in visits]
         nearest = sorted((d.min(), int(visit[d.argmin()])) for d, visit in zip(distance_m, visits, strict=True))
-        found += [(source, target) for _, target in nearest[:most]]
+        found += [(int(source), target) for _, target in nearest[:most]]
     return sorted(found)
 
 

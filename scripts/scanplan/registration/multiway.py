@@ -20,6 +20,7 @@ class Settings:
     optimise: bool
     loop_radius_m: float
     loop_apart: int
+    loop_step_m: float
     loops_per_scan: int
     loop_min_fitness: float
     edge_sigma_m: float
@@ -112,7 +113,7 @@ def optimise(scan_ids, start, priors, edges, thinned, run, *, planar, limits, se
         )
 
     solution = solve(start)
-    chosen = _chosen(solution.world_from_scan[:, :2, 3], {row[edge.source] for edge in edges}, settings)
+    chosen = _chosen(solution.world_from_scan, {(row[edge.source], row[edge.target]) for edge in edges}, settings)
     jobs = _link_jobs(chosen, scan_ids, solution.world_from_scan, thinned, planar, limits, settings)
     edges += [edge for found in run(loops.link, jobs) for edge in found]
     edges.sort(key=_ends)
@@ -124,10 +125,13 @@ def _ends(edge):
     return edge.source, edge.target
 
 
-def _chosen(xy_m, linked, settings):
+def _chosen(world_from_scan, linked, settings):
+    """Pairs of rows to link besides those that are: across anchors a scan may be linked far back already."""
+    xy_m, is_station = world_from_scan[:, :2, 3], loops.stations(world_from_scan, settings.loop_step_m)
     near = {"radius_m": settings.loop_radius_m, "apart": settings.loop_apart}
-    is_linked = np.isin(np.arange(len(xy_m)), list(linked))
-    return sorted(loops.pairs(xy_m, **near, most=settings.loops_per_scan) + loops.bridges(is_linked, xy_m, **near))
+    is_linked = np.isin(np.arange(len(xy_m)), [source for source, _ in linked])
+    visits = loops.pairs(xy_m, is_station, **near, most=settings.loops_per_scan)
+    return sorted(set(visits + loops.bridges(is_linked, xy_m, **near)) - linked)
 
 
 def _links(edges, row, settings):

@@ -23,10 +23,13 @@ class Settings:
     voxel_planar_m: float
     voxels: int
     n_previous: int
+    previous_apart_m: float
+    previous_turn_deg: float
     fitness_distance_m: float
     fitness_points: int
     min_prior_fitness: float
     min_refined_fitness: float
+    min_facing_fitness: float
     icp_method: str
     icp_targets: int
     icp_distances_m: tuple
@@ -153,16 +156,22 @@ class Registrar:
     def _compared(self, scan, level_from_sensor, previous):
         """Judge a scan by some that are in place."""
         prior, s = scan.world_from_cloud @ level_from_sensor, self.settings
-        before = self._mean_overlap(scan, previous)[0]
+        judges = links.comparable(scan, previous, s)
+        before = self._mean_overlap(scan, judges)[0]
         if before < s.min_prior_fitness:
             return Verdict(False, "low_prior_fitness", prior, before), []
         refined, edges = links.refine(scan, list(previous)[: -s.icp_targets - 1 : -1], s)
         if refined is None:
             return Verdict(False, "icp_diverged", prior, before), []
-        after, rmse_m = self._mean_overlap(refined, previous)
-        if after < s.min_refined_fitness:
+        after, rmse_m = self._mean_overlap(refined, judges)
+        if after < s.min_refined_fitness or not self._faces_any(edges):
             return Verdict(False, "low_refined_fitness", prior, before, after, rmse_m), []
         return Verdict(True, "kept", refined.world_from_cloud @ level_from_sensor, before, after, rmse_m), edges
+
+    def _faces_any(self, edges):
+        """Whether the surfaces of a scan agree with those of another that it is aligned to: any floor lies on any."""
+        # in the plane a few beams on a wall often give no normal, and there is no floor
+        return self.planar or max(edge.fitness for edge in edges) >= self.settings.min_facing_fitness
 
     def _starts_anew(self, scan):
         """Whether a scan that does not fit is believed to be where the localiser says.

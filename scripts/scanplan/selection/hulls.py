@@ -1,6 +1,6 @@
 """What a scan covers on the floor plan: one convex hull per cluster of its points (thesis 3.3.2, algorithm 2)."""
 
-import warnings
+from itertools import pairwise
 
 import numpy as np
 import shapely
@@ -11,6 +11,8 @@ from scanplan import schemas
 _LLOYD_ITERATIONS = 20
 _MOST_CLUSTERS = np.iinfo(np.int16).max
 _SAME_POINT_DECIMALS = 6
+_MANY_POINTS = 50
+_INSIDE_M2 = 1e-6  # rounding is far less, also far from the map's origin
 
 
 def cluster_hulls(scan_id, xyz_m, *, n_clusters, sample_size, seed):
@@ -44,10 +46,11 @@ def cluster_hulls(scan_id, xyz_m, *, n_clusters, sample_size, seed):
     xy_m = _plan_view(xyz_m)
     if not 1 <= n_clusters <= _MOST_CLUSTERS or sample_size < 1:
         raise ValueError(f"n_clusters {n_clusters} must be 1 to {_MOST_CLUSTERS}, sample_size {sample_size} at least 1")
-    # relative to the mean, squared distances keep their digits far from the map's origin
-    centred = xy_m - xy_m.mean(axis=0)
     rng = np.random.default_rng([seed, scan_id])
-    sample = centred[rng.choice(len(centred), min(sample_size, len(centred)), replace=False, shuffle=False)]
+    sample = xy_m[rng.choice(len(xy_m), min(sample_size, len(xy_m)), replace=False, shuffle=False)]
+    # relative to the mean, squared distances keep their digits far from the map's origin
+    middle_m = sample.mean(axis=0)
+    centred, sample = xy_m - middle_m, sample - middle_m
     label, n_points = _clusters(centred, _centres(sample, n_clusters, rng))
     hulls = _convex_hulls(xy_m, label, len(n_points))
     return {
@@ -85,15 +88,15 @@ def scan_polygons(columns):
 def scan_full_hulls(columns):
     """Return each scan's one convex hull, the thesis's baseline; see `scan_polygons`."""
     scan_ids, groups = _by_scan(columns)
-    hulls = shapely.convex_hull([shapely.geometrycollections(g) for g in groups])
+    hulls = shapely.convex_hull(np.array([shapely.geometrycollections(g) for g in groups], object))
     return scan_ids, np.where(shapely.get_dimensions(hulls) == 2, hulls, shapely.Polygon())
 
 
 def _plan_view(xyz_m):
-    xyz_m = np.asarray(xyz_m, float)
+    xyz_m = np.asarray(xyz_m)
     if xyz_m.ndim != 2 or xyz_m.shape[0] < 1 or xyz_m.shape[1] not in (2, 3):
         raise ValueError(f"a scan must be (n, 2) or (n, 3) with n >= 1, not {xyz_m.shape}")
-    xy_m = np.ascontiguousarray(xyz_m[:, :2])
+    xy_m = np.ascontiguousarray(xyz_m[:, :2], float)
     if not np.isfinite(xy_m).all():
         raise ValueError("a scan's x and y must be finite")
     return xy_m
@@ -101,13 +104,26 @@ def _plan_view(xyz_m):
 
 def _centres(sample, n_clusters, rng):
     """KMeans of the sample (k, 2); its distinct points where they are no more than `n_clusters`."""
-    distinct = np.unique(sample.round(_SAME_POINT_DECIMALS), axis=0)
-    if len(distinct) <= n_clusters:
-        return distinct
-    start = _spread_centres(sample, n_clusters, rng)
-    with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", message="One of the clusters is empty")
-        return vq.kmeans2(sample, start, iter=_LLOYD_ITERATIONS, minit="matrix", missing="warn")[0]
+    rounded = sample.round(_SAME_POINT_DECIMALS)
+    # to tell points apart by x is quick, and nearly always enough
+    if len(np.unique(rounded[:, 0])) <= n_clusters:
+        distinct = np.unique(rounded, axis=0)
+        if len(distinct) <= n_clusters:
+            return distinct
+    return _means(sample, _spread_centres(sample, n_clusters, rng))
+
+
+def _means(sample, centres):
+    """Lloyd's iterations from first centres, until nothing changes; a centre that loses all its points stays."""
+    nearest = None
+    for _ in range(_LLOYD_ITERATIONS):
+        before, (nearest, _) = nearest, vq.vq(sample, centres, check_finite=False)
+        if before is not None and np.array_equal(nearest, before):
+            break
+        n_points = np.bincount(nearest, minlength=len(centres))
+        sums = np.column_stack([np.bincount(nearest, axis, minlength=len(centres)) for axis in sample.T])
+        centres = np.where(n_points[:, None] > 0, sums / np.maximum(n_points, 1)[:, None], centres)
+    return centres
 
 
 def _spread_centres(sample, n_clusters, rng):
@@ -144,18 +160,40 @@ def _clusters(xy_m, centres):
 
 
 def _convex_hulls(xy_m, label, n_clusters):
-    """One convex hull per label, of the line through its points: much faster made than a MultiPoint."""
-    first = np.empty(n_clusters, int)
-    first[label[::-1]] = np.arange(len(label))[::-1]
-    # a line needs two points: every cluster's first once more; sorting 16-bit numbers is linear
-    point = np.concatenate([np.arange(len(label)), first])
-    point = point[np.argsort(label[point].astype(np.int16), kind="stable")]
-    return shapely.normalize(shapely.convex_hull(shapely.linestrings(xy_m[point], indices=label[point])))
+    """One convex hull per label, of the line through its outer points: much faster made than a MultiPoint."""
+    # sorting 16-bit numbers is linear
+    by_label = np.argsort(label.astype(np.int16), kind="stable")
+    start = np.cumsum(np.bincount(label + 1, minlength=n_clusters + 1))
+    clusters = [_outer(xy_m.take(by_label[a:b], axis=0)) for a, b in pairwise(start)]
+    indices = np.repeat(np.arange(n_clusters), [len(points) for points in clusters])
+    return shapely.normalize(shapely.convex_hull(shapely.linestrings(np.concatenate(clusters), indices=indices)))
+
+
+def _outer(xy_m):
+    """Return the points (n, 2) but for those well inside the quadrilateral of their diagonal extremes, at least 2.
+
+    None of these is a corner of the convex hull (Akl and Toussaint 1978, "A fast convex hull algorithm"); of walls seen
+    from a room few others are left.
+    """
+    if len(xy_m) < _MANY_POINTS:
+        # a line needs two points
+        return np.concatenate([xy_m, xy_m[:1]])
+    x_m, y_m = xy_m[:, 0].copy(), xy_m[:, 1].copy()
+    along = (x_m + y_m, y_m - x_m)
+    corners = xy_m[[*(a.argmax() for a in along), *(a.argmin() for a in along)]].tolist()
+    inside_m2 = np.full(len(xy_m), np.inf)
+    for (x0_m, y0_m), (x1_m, y1_m) in zip(corners, corners[1:] + corners[:1], strict=True):
+        if (x0_m, y0_m) != (x1_m, y1_m):
+            # twice the area of a point's triangle with this edge: above 0 on the inner side
+            np.minimum(inside_m2, (x1_m - x0_m) * (y_m - y0_m) - (y1_m - y0_m) * (x_m - x0_m), out=inside_m2)
+    outer = inside_m2 <= _INSIDE_M2
+    outer[0] = True
+    return np.concatenate([xy_m[outer], xy_m[:1]])
 
 
 def _by_scan(columns):
     scan_ids, start = np.unique(columns["scan_id"], return_index=True)
-    return scan_ids, np.split(shapely.from_wkb(columns["geometry"]), start[1:])
+    return scan_ids, np.split(shapely.from_wkb(columns["geometry"]), start)[1:]
 
 
 def _array(geometries, empty):

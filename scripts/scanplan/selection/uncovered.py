@@ -3,17 +3,19 @@
 import numpy as np
 import shapely
 
-from scanplan.selection import overlays
+from scanplan.selection import cellbounds, overlays, regions
 
 _NO_AREA_M2 = 1e-12
+_FEW = 6  # chosen parts that are subtracted one by one from the small rest of a part; more are together in the union
+_FEW_OF_WHOLE = 1  # and from a part that nothing was subtracted from yet
 
 
 class Uncovered:
     """What the chosen polygons leave of every polygon.
 
-    A polygon is kept as its parts (a scan's separate hulls): small, so that few pairs meet and each overlay is cheap.
-    What is left of a part shrinks with every chosen part that is subtracted from it; those not subtracted yet wait in
-    a list of pairs. An area with pairs still waiting is too large, never too small.
+    A polygon is kept as its parts (a scan's separate hulls): each is small, and its difference to the union of all that
+    is chosen is one cheap overlay. What is left of a part shrinks, so an area measured earlier is too large, never too
+    small; it is still exact unless something was chosen whose new area meets the box of what was left.
 
     Parameters
     ----------
@@ -38,15 +40,14 @@ class Uncovered:
         parts, owner = shapely.get_parts(polygons, return_index=True)
         has_area = shapely.area(parts) > 0
         self._whole, self._owner = parts[has_area], owner[has_area]
-        self._left, self._area_m2 = self._whole.copy(), shapely.area(self._whole)
-        self._whole_box = shapely.bounds(self._whole).reshape(-1, 4)
-        self._left_box = self._whole_box.copy()
         self._first = np.searchsorted(self._owner, np.arange(len(polygons) + 1))
-        self._box = shapely.box(*shapely.bounds(polygons).reshape(-1, 4).T)
-        self._tree = shapely.STRtree(self._box)
-        self._new = [[] for _ in polygons]
-        self._waiting = [np.zeros((2, 0), int)] * len(polygons)
-        self._chosen = []
+        self._left, self._left_box = self._whole.copy(), shapely.bounds(self._whole).reshape(-1, 4)
+        self._area_m2 = shapely.area(self._whole)
+        self._measured = np.zeros(len(self._whole), bool)
+        # how many chosen parts are still to be subtracted from each, and the first few of them
+        self._n_new, self._new = np.zeros(len(self._whole), int), np.zeros((len(self._whole), _FEW), int)
+        self._tree = shapely.STRtree(self._whole)
+        self._regions, self._cells = regions.Regions(self._whole), cellbounds.CellBounds(self._whole)
         self.remaining = np.ones(len(polygons), bool)
         self.exact = self.remaining.copy()
         self.gain_m2 = np.bincount(self._owner, self._area_m2, minlength=len(polygons))
@@ -60,98 +61,92 @@ class Uncovered:
             Distinct indices.
         floor_m2 : float
         """
-        parts = np.concatenate([np.arange(self._first[i], self._first[i + 1]) for i in some])
-        place = np.repeat(np.arange(len(some)), self._first[some + 1] - self._first[some])
-        pairs = self._by_overlap(np.concatenate([self._pairs(i) for i in some], axis=1))
-        later = []
-        while True:
-            self.gain_m2[some] = np.bincount(place, self._area_m2[parts], minlength=len(some))
-            worth = self.gain_m2[self._owner[pairs[0]]] >= floor_m2
-            later.append(pairs[:, ~worth])
-            if not worth.any():
-                break
-            pairs = self._subtract(pairs[:, worth])
-        self._wait(some, np.concatenate(later, axis=1))
+        parts = self._stale_parts(some)
+        if floor_m2 > 0:
+            self._bound(parts[~self._measured[parts]])
+            self._add_up(some)
+            parts = self._stale_parts(some[self.gain_m2[some] >= floor_m2])
+        self._measure(parts)
+        self._add_up(some)
 
     def choose(self, i):
         """Cover a remaining polygon; return what it added."""
-        if not self.exact[i] and self.gain_m2[i] > 0:
+        if not self.exact[i]:
             self.refresh(np.array([i]))
-        gain_m2, parts = self.gain_m2[i], self._alive(i)
-        # whole parts, not what is left of them: their few straight edges leave no slivers
-        shapely.prepare(self._whole[parts])
-        self._chosen.append(parts)
+        gain_m2, parts = self.gain_m2[i], np.arange(self._first[i], self._first[i + 1])
+        parts = parts[self._area_m2[parts] > 0]
         self.remaining[i] = False
+        if len(parts) == 0:
+            return 0.0
+        new, of = shapely.get_parts(self._left[parts], return_index=True)
+        has_area = shapely.area(new) > 0
+        new, of = new[has_area], of[has_area]
+        # whole parts, not what is left of them: their few straight edges leave no slivers
+        self._regions.cover(self._whole[parts], self._left[parts])
+        self._cells.cover(new)
         self.gain_m2[i] = self._area_m2[parts] = 0.0
-        near = self._tree.query(self._box[i]) if len(parts) else np.zeros(0, int)
-        near = near[self.gain_m2[near] > 0]
-        self.exact[near] = False
-        for j in near:
-            self._new[j].append(parts)
+        self._make_stale(shapely.bounds(new).reshape(-1, 4), parts[of])
         return gain_m2
 
     def drop_covered(self):
-        """Leave nothing of the parts that the chosen ones cover together: far quicker than one by one.
+        """Bring all gains nearer to what they are, by what is far quicker than overlays.
 
         Worth its cost each time the number of chosen polygons has doubled.
         """
-        union = overlays.union(self._whole[np.concatenate(self._chosen)])
-        regions = shapely.get_parts(union)
-        shapely.prepare(regions)
-        alive = np.flatnonzero(self._area_m2 > 0)
-        part, region = shapely.STRtree(regions).query(self._left[alive])
-        part = alive[part]
-        self._area_m2[part[shapely.covers(regions[region], self._left[part])]] = 0.0
-        self.gain_m2 = np.bincount(self._owner, self._area_m2, minlength=len(self.remaining))
+        parts = np.flatnonzero(self._n_new)
+        self._drop_covered(parts)
+        self._bound(parts[~self._measured[parts] & (self._n_new[parts] > 0)])
+        self._add_up(np.arange(len(self.remaining)))
 
-    def _alive(self, i):
-        return np.arange(self._first[i], self._first[i + 1])[self._area_m2[self._first[i] : self._first[i + 1]] > 0]
+    def _stale_parts(self, some):
+        parts = cellbounds.members(self._first, some)[1]
+        return parts[self._n_new[parts] > 0]
 
-    def _pairs(self, i):
-        """Pairs (2, p) of parts of polygon i and chosen parts that are not yet subtracted from them."""
-        if not self._new[i]:
-            return self._waiting[i]
-        parts, chosen = self._alive(i), np.concatenate(self._new[i])
-        self._new[i] = []
-        left, whole = self._left_box[parts, None], self._whole_box[chosen]
-        close = (left[..., 0] < whole[:, 2]) & (left[..., 2] > whole[:, 0])
-        close &= (left[..., 1] < whole[:, 3]) & (left[..., 3] > whole[:, 1])
-        part, other = close.nonzero()
-        return np.concatenate([self._waiting[i], [parts[part], chosen[other]]], axis=1)
+    def _make_stale(self, boxes, parts):
+        """Note that what is left may have become less in some boxes (m, 4), by chosen parts (m,)."""
+        box, part = self._tree.query(shapely.box(*boxes.T))
+        new, left = boxes[box], self._left_box[part]
+        close = ((left[:, :2] < new[:, 2:]) & (left[:, 2:] > new[:, :2])).all(axis=1) & (self._area_m2[part] > 0)
+        part, chosen = np.divmod(np.unique(part[close] * len(self._whole) + parts[box[close]]), len(self._whole))
+        place = self._n_new[part] + np.arange(len(part)) - np.searchsorted(part, part)
+        few = place < _FEW
+        self._new[part[few], place[few]] = chosen[few]
+        np.maximum.at(self._n_new, part, place + 1)
+        self.exact[self._owner[part]] = False
 
-    def _wait(self, some, pairs):
-        pairs = pairs[:, np.argsort(self._owner[pairs[0]], kind="stable")]
-        start, end = np.searchsorted(self._owner[pairs[0]], [some, some + 1])
-        self.exact[some] = start == end
-        for i, a, b in zip(some, start, end, strict=True):
-            self._waiting[i] = pairs[:, a:b]
+    def _add_up(self, some):
+        place, parts = cellbounds.members(self._first, some)
+        self.gain_m2[some] = np.bincount(place, self._area_m2[parts], minlength=len(some))
+        self.exact[some] = np.bincount(place, self._n_new[parts], minlength=len(some)) == 0
 
-    def _still_close(self, pairs):
-        """Of pairs those whose boxes meet and whose part is not all covered."""
-        left, whole = self._left_box[pairs[0]], self._whole_box[pairs[1]]
-        close = (left[:, :2] < whole[:, 2:]) & (left[:, 2:] > whole[:, :2])
-        return pairs[:, close[:, 0] & close[:, 1] & (self._area_m2[pairs[0]] > 0)]
+    def _bound(self, parts):
+        self._area_m2[parts] = np.minimum(self._area_m2[parts], self._cells.area_m2(parts))
 
-    def _by_overlap(self, pairs):
-        """Pairs by part, the largest overlap of their boxes first; parts that one chosen part covers are done with."""
-        pairs = self._still_close(pairs)
-        left, whole = self._left_box[pairs[0]], self._whole_box[pairs[1]]
-        inside = np.flatnonzero(((left[:, :2] >= whole[:, :2]) & (left[:, 2:] <= whole[:, 2:])).all(axis=1))
-        part, chosen = pairs[:, inside]
-        self._area_m2[part[shapely.covers(self._whole[chosen], self._left[part])]] = 0.0
-        side_m = np.minimum(left[:, 2:], whole[:, 2:]) - np.maximum(left[:, :2], whole[:, :2])
-        by_part = np.lexsort((-side_m[:, 0] * side_m[:, 1], pairs[0]))
-        return pairs[:, by_part[self._area_m2[pairs[0, by_part]] > 0]]
+    def _drop_covered(self, parts):
+        """Of stale parts, be done with those that are covered; return the others and the region round each."""
+        region = self._regions.around(parts)
+        covered = shapely.covers(region, self._left[parts])
+        self._done(parts[covered], 0.0)
+        return parts[~covered], region[~covered]
 
-    def _subtract(self, pairs):
-        """Subtract the first chosen part of each part's pairs; return the other pairs that may still meet."""
-        is_first = np.ones(pairs.shape[1], bool)
-        is_first[1:] = pairs[0, 1:] != pairs[0, :-1]
-        part, chosen = pairs[:, is_first]
-        meets = shapely.intersects(self._whole[chosen], self._left[part])
-        part, chosen = part[meets], chosen[meets]
-        left = overlays.difference(self._left[part], self._whole[chosen], self._threads)
-        area_m2 = shapely.area(left)
-        self._left[part], self._left_box[part] = left, shapely.bounds(left).reshape(-1, 4)
-        self._area_m2[part] = np.where(area_m2 > _NO_AREA_M2, area_m2, 0.0)
-        return self._still_close(pairs[:, ~is_first])
+    def _measure(self, parts):
+        """Subtract what is covered of stale parts."""
+        few = self._n_new[parts] <= np.where(self._measured[parts], _FEW, _FEW_OF_WHOLE)
+        for i in range(self._n_new[parts[few]].max(initial=0)):
+            some = parts[few][self._n_new[parts[few]] > i]
+            self._subtract(some, self._whole[self._new[some, i]])
+        rest, region = self._drop_covered(parts[~few])
+        self._subtract(rest, region)
+        parts = np.concatenate([parts[few], rest])
+        self._done(parts, shapely.area(self._left[parts]))
+
+    def _subtract(self, parts, others):
+        if len(parts) == 0:
+            return
+        left = overlays.difference(self._left[parts], others, self._threads)
+        self._left[parts], self._left_box[parts] = left, shapely.bounds(left).reshape(-1, 4)
+        self._measured[parts] = True
+
+    def _done(self, parts, area_m2):
+        self._area_m2[parts] = np.where(area_m2 > _NO_AREA_M2, area_m2, 0.0)
+        self._n_new[parts] = 0

@@ -88,7 +88,7 @@ def load(data, source, *, slice_height_m, storey=None, unit="m", floor_z_m=0.0, 
     )
 
 
-def routed(found, source, *, route, clearance_m, reach_m=0.0, start_m=None):
+def routed(found, source, *, route, clearance_m, reach_m=0.0, waypoints_m=None, start_m=None, seed=0):
     """Give a building the rover's way, and its truth which rooms that visits.
 
     Parameters
@@ -97,13 +97,17 @@ def routed(found, source, *, route, clearance_m, reach_m=0.0, start_m=None):
     source : path-like
         What errors name as their origin.
     route : str
-        `given`: the file's own way, and as `rooms` where it has none; `rooms`, `hallways`: see `route.plan`.
+        `given`: by `waypoints_m`, else the file's own way, else as `rooms`; `rooms`, `hallways`: see `route.plan`.
     clearance_m : float
         What a planned way keeps from any obstacle.
     reach_m : float
         How far the sensor sits from the rover's middle, which any way keeps too.
-    start_m : (2,) float or None
-        Where a planned way begins.
+    waypoints_m : (n, 2) float or None
+        Corners of the way.
+    start_m : (2,) float, "random" or None
+        Where a planned way begins, see `route.plan`.
+    seed : int
+        Of a random start.
 
     Returns
     -------
@@ -112,16 +116,21 @@ def routed(found, source, *, route, clearance_m, reach_m=0.0, start_m=None):
     Raises
     ------
     StageError
-        If the way leads through walls or furniture, or none can be planned.
+        If the way leads through walls or furniture, none can be planned, or it is both given and to be planned.
     """
     if route not in routes.KINDS:
         raise ValueError(f"route {route!r} is none of {', '.join(routes.KINDS)}")
-    way_m, notes = found.waypoints_m, ()
+    if waypoints_m is not None and (route != "given" or start_m is not None):
+        raise StageError(
+            f"simulate.site: waypoints_m are given, and route {route} with start_m {start_m}; keep route: given and"
+            " start_m: null, or leave out waypoints_m"
+        )
+    way_m, notes = found.waypoints_m if waypoints_m is None else np.array(waypoints_m, float), ()
     if route != "given" or way_m is None:
         kind = "rooms" if route == "given" else route
         clearance_m = max(clearance_m, reach_m)
         here = (found.floor_m, found.obstacles_m, found.rooms)
-        planned = routes.plan(*here, source, kind=kind, clearance_m=clearance_m, start_m=start_m)
+        planned = routes.plan(*here, source, kind=kind, clearance_m=clearance_m, start_m=start_m, seed=seed)
         way_m, notes = planned.waypoints_m, _told(planned, source)
     rover.check_way(way_m, found.floor_m, found.obstacles_m, source, reach_m=reach_m)
     return replace(found, waypoints_m=way_m, truth=truth.with_visits(found.truth, way_m), notes=(*found.notes, *notes))
@@ -164,12 +173,18 @@ def _of_model(data, source, chosen, doors, windows, slice_height_m):
 def of_model(model, index, slice_height_m, source, *, doors="open", windows="glass"):
     """Return one storey of an ifcfile.Model that is read already; as `load` otherwise."""
     storey = storeys.of_model(model, index, doors=doors, windows=windows)
+    if not 0 < slice_height_m < storey.height_m:
+        raise StageError(
+            f"{source}: the sensor is {slice_height_m:g} m above the floor, and the next storey's floor"
+            f" {storey.height_m:g} m; lower simulate.mount.height_m"
+        )
     return _of_storey(storey, slice_height_m, source, model.notes)
 
 
 def _of_storey(storey, slice_height_m, source, notes):
     cut = ground.of_storey(storey, slice_height_m, source)
     faces = [(line, {"kind": "face", "side": side}) for line, side in cut.faces]
+    faces += [(line, {"kind": "screen"}) for line in cut.screens]
     walls = [
         (line, {"kind": "wall", "thickness_m": round(thick, 6), "height_m": round(cut.height_m, 6)})
         for line, thick in ground.walls(storey, cut, slice_height_m)

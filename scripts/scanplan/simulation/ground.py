@@ -10,6 +10,8 @@ from scanplan.simulation import slicing, storeys
 
 # ASSUME no storey's walls need be looked at higher than this to tell the outer from the inner
 _LOOKED_AT_M = 3.0
+# ASSUME what is lower than a standing person hides no wall: the sensor's upper beams pass over it
+SCREEN_M = 1.5
 _FLOOR_WITHIN_M = 0.1
 _STEP_M, _HEADROOM_M, _SPACING_M = 0.06, 0.15, 0.12
 # ASSUME gaps in the outer walls up to twice this are openings as high as the wall, and seams in the floor thresholds
@@ -21,10 +23,14 @@ _SAME_M = 0.01
 
 @dataclass(frozen=True)
 class Ground:
-    """What cuts of a storey show; see `building.Building`. `solid` is the matter of walls at the slice."""
+    """What cuts of a storey show; see `building.Building`.
+
+    `solid` is the matter of walls at the slice, `screens` are lines of what hides them there.
+    """
 
     solid: object
     faces: list
+    screens: list
     rooms: list
     floor_m: object
     obstacles_m: object
@@ -54,6 +60,7 @@ def of_storey(storey, slice_height_m, source):
     return Ground(
         solid=solid,
         faces=slicing.faces(solid, sheets, outline),
+        screens=slicing.screens(_tall(storey, slice_height_m), solid),
         rooms=_spaces(storey, slice_height_m) or _enclosed(outline, shadow),
         floor_m=floor,
         obstacles_m=_obstacles(storey, solid, slice_height_m),
@@ -75,6 +82,14 @@ def walls(storey, ground, slice_height_m):
         straight = strips and all(abs(thick - t) < _SAME_M for _, t in strips)
         found += [(line, thick)] if straight else strips
     return found
+
+
+def _tall(storey, slice_height_m):
+    """Outlines at the slice of the bodies that are no walls, stand below it and reach above a person's head."""
+    others = (b for b in storey.bodies if not b.is_wall)
+    opaque = [t for b in others for kind, t in b.surfaces if kind not in ("glass", "floor", "ceiling")]
+    tall = [t for t in opaque if t[..., 2].min() < slice_height_m and t[..., 2].max() >= SCREEN_M]
+    return [shapely.multilinestrings(slicing.segments(triangles_m, slice_height_m)) for triangles_m in tall]
 
 
 def _section(soups, z_m, **limits):

@@ -9,7 +9,9 @@ from scanplan.errors import StageError
 
 SUFFIXES = (".stl", ".obj", ".ply")
 METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
-MIN_EXTENT_M, MAX_EXTENT_M, MAX_STOREYS_M = 1.5, 2000.0, 300.0
+MIN_EXTENT_M, MAX_EXTENT_M, MAX_HEIGHT_M = 1.5, 2000.0, 60.0
+# what a storey is high, to guess a unit by
+_STOREY_M = 3.0
 # below this a triangle's area is that of two corners 0.1 mm apart on an edge of 1 mm
 _MIN_AREA_M2 = 1e-7
 _STL_HEADER, _STL_RECORD = 84, 50
@@ -98,13 +100,13 @@ def _check_size(triangles, unit, source):
         raise StageError(f"{source}: no coordinate is finite; export it again")
     corners = triangles.reshape(-1, 3)
     extent_m = np.ptp(corners, axis=0) * METRES[unit]
-    if extent_m[:2].max() > MAX_EXTENT_M or extent_m[2] > MAX_STOREYS_M:
-        limit = f"limits are {MAX_EXTENT_M:g} m and {MAX_STOREYS_M:g} m of height; set simulate.site.unit"
-        hint = f"{limit} (mm, cm, in, ft)" if unit == "m" else limit
-        guess = (
-            "; these look like millimetres, set simulate.site.unit: mm" if _fits(corners, "mm") and unit == "m" else ""
+    if extent_m[:2].max() > MAX_EXTENT_M or extent_m[2] > MAX_HEIGHT_M:
+        guess = _likely(corners)
+        remedy = f"set simulate.site.unit: {guess}" if guess != unit else "set simulate.site.unit, or cut out a floor"
+        raise StageError(
+            f"{source}: spans {_by(extent_m)} m in {unit}, the limits are {MAX_EXTENT_M:g} m and {MAX_HEIGHT_M:g} m of"
+            f" height; {remedy}"
         )
-        raise StageError(f"{source}: spans {_by(extent_m)} m{guess} ({hint})")
     if extent_m[:2].max() < MIN_EXTENT_M:
         raise StageError(
             f"{source}: spans {_by(extent_m)} m, no room for a rover (at least {MIN_EXTENT_M:g} m);"
@@ -112,10 +114,10 @@ def _check_size(triangles, unit, source):
         )
 
 
-def _fits(corners, unit):
-    """Whether the size is that of a building in a unit."""
-    extent_m = np.ptp(corners, axis=0) * METRES[unit]
-    return MIN_EXTENT_M <= extent_m[:2].max() <= MAX_EXTENT_M and extent_m[2] <= MAX_STOREYS_M
+def _likely(corners):
+    """The unit by which the height is most like a storey's."""
+    height = max(np.ptp(corners[:, 2]), np.finfo(float).tiny)
+    return min(METRES, key=lambda unit: abs(np.log(height * METRES[unit] / _STOREY_M)))
 
 
 def _by(extent_m):

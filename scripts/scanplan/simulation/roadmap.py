@@ -8,9 +8,12 @@ from scipy.ndimage import distance_transform_edt, maximum_filter
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
+from scanplan.errors import StageError
+
 # what the planning keeps beyond the stated clearance, so that steps between cells keep the clearance itself
 _MARGIN_M = 0.02
 _FINE_M, _COARSE_M, _COARSE_ABOVE_M2 = 0.05, 0.1, 300.0
+_MOST_CELLS = 20e6
 # within this of an obstacle a step costs up to (1 + _NARROW) times its length: the way keeps to the middle
 _PREFERRED_M, _NARROW = 0.6, 3.0
 # the middle is where nothing near has more space about it, and all that has plenty
@@ -27,12 +30,23 @@ class Grid:
     steps: coo_array
 
 
-def over(part, clearance_m):
-    """Return the grid over connected free ground that keeps a clearance already."""
+def over(part, clearance_m, source):
+    """Return the grid over connected free ground that keeps a clearance already.
+
+    Raises
+    ------
+    StageError
+        If that would take too many cells.
+    """
     if part.is_empty:
         return Grid(np.empty((0, 2)), np.empty(0), np.empty(0, bool), coo_array((0, 0)))
     cell_m = _FINE_M if part.area < _COARSE_ABOVE_M2 else _COARSE_M
     x0, y0, x1, y1 = part.bounds
+    if (x1 - x0) * (y1 - y0) > _MOST_CELLS * cell_m**2:
+        raise StageError(
+            f"{source}: its floor of {x1 - x0:.0f} x {y1 - y0:.0f} m is too large to plan a way over (limit"
+            f" {_MOST_CELLS * cell_m**2:,.0f} m2); check simulate.site.unit, or give simulate.site.waypoints_m"
+        )
     x, y = (np.arange(low - cell_m, high + 2 * cell_m, cell_m) for low, high in ((x0, x1), (y0, y1)))
     inner = part.buffer(-_MARGIN_M)
     shapely.prepare(inner)

@@ -11,6 +11,7 @@ from scanplan.errors import StageError
 from scanplan.simulation import roadmap, tour
 
 KINDS = ("given", "rooms", "hallways")
+_RANDOM, _START_STREAM = "random", 6
 _ROOMY_M, _YIELD_M = 0.6, 0.1
 # how far from a stop, by cost, the middle of what is visited may be
 _SPACING_M = 6.0
@@ -34,7 +35,7 @@ class Route:
     missed: tuple
 
 
-def plan(floor_m, obstacles_m, rooms, source, *, kind, clearance_m, start_m=None):
+def plan(floor_m, obstacles_m, rooms, source, *, kind, clearance_m, start_m=None, seed=0):
     """Plan a way.
 
     The stops (the widest place of every room, and in large ones others so that no place is far from one) are joined by
@@ -53,8 +54,10 @@ def plan(floor_m, obstacles_m, rooms, source, *, kind, clearance_m, start_m=None
         its area and perimeter; the hallways are the largest of the areas that such rooms make where they meet.
     clearance_m : float
         What the way keeps from any obstacle, the rover's radius or more.
-    start_m : (2,) float or None
-        Where it begins; the end of the shortest tour where None.
+    start_m : (2,) float, "random" or None
+        Where it begins: at a place, anywhere on the free ground, or at the end of the shortest tour.
+    seed : int
+        Of a random start.
 
     Returns
     -------
@@ -70,16 +73,16 @@ def plan(floor_m, obstacles_m, rooms, source, *, kind, clearance_m, start_m=None
     wanted, area_m = _asked(floor_m, rooms, kind, source)
     free = free_ground(area_m, obstacles_m, clearance_m)
     part = _part_of(free, start_m, clearance_m, wanted, source)
-    grid = roadmap.over(part, clearance_m)
-    first = None if start_m is None else roadmap.nearest(grid, start_m)
+    grid = roadmap.over(part, clearance_m, source)
+    first = _first(grid, start_m, seed)
     stops, reached, ways = _stops(grid, wanted, first, _SPACING_M)
     if not any(reached):
         raise StageError(
             f"{source}: none of {len(wanted)} rooms can be entered with {clearance_m:g} m to either side; widen a door,"
-            " or give waypoints"
+            " or give simulate.site.waypoints_m"
         )
     if len(stops) < 2:
-        raise StageError(f"{source}: its free floor is too small to drive on; give waypoints")
+        raise StageError(f"{source}: its free floor is too small to drive on; give simulate.site.waypoints_m")
     legs = _joined(stops, ways, fixed_start=first is not None, closed=kind == "hallways")
     corners = [_straightened(grid, leg, part, obstacles_m) for leg in legs]
     names = [name or f"({room.centroid.x:.1f}, {room.centroid.y:.1f})" for name, room in wanted]
@@ -126,14 +129,23 @@ def _asked(floor_m, rooms, kind, source):
             if kind == "rooms"
             else f"no hallway among its {len(rooms)} rooms; set simulate.site.route: rooms"
         )
-        raise StageError(f"{source}: has {what}, or give waypoints")
+        raise StageError(f"{source}: has {what}, or give simulate.site.waypoints_m")
     return wanted, area_m
+
+
+def _first(grid, start_m, seed):
+    """The cell that the way begins at; None where it may be any."""
+    if start_m is None or len(grid.xy_m) == 0:
+        return None
+    if start_m == _RANDOM:
+        return int(np.random.default_rng([seed, _START_STREAM]).integers(len(grid.xy_m)))
+    return roadmap.nearest(grid, start_m)
 
 
 def _part_of(free, start_m, clearance_m, rooms, source):
     """The connected ground that holds the start, or else the most room."""
     parts = [part for part in shapely.get_parts(free) if part.geom_type == "Polygon" and part.area > 0]
-    if start_m is None:
+    if start_m is None or start_m == _RANDOM:
         floors = shapely.union_all([room for _, room in rooms])
         return max(parts, key=lambda part: part.intersection(floors).area, default=shapely.Polygon())
     held = [part for part in parts if part.covers(Point(start_m))]

@@ -42,6 +42,15 @@ class Sensor:
     min_range_m: float
     max_range_m: float
 
+    @property
+    def field_rad(self):
+        """How far around forward it sees, half of it to either side."""
+        if self.increment_rad is None:
+            return 2 * np.pi
+        # the last beam of a whole turn is followed by the first
+        turn = self.increment_rad * len(self.direction)
+        return 2 * np.pi if np.isclose(turn, 2 * np.pi, rtol=1e-5) else turn - self.increment_rad
+
 
 @dataclass(frozen=True)
 class Errors:

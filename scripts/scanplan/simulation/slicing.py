@@ -114,6 +114,21 @@ def centrelines(solid, max_thickness_m=1.0):
     return [(line, thick) for line, thick in found if matter.covers(line.buffer(thick / 2, cap_style="flat"))]
 
 
+def screens(outlines, walls):
+    """Return what hides walls and is none, without what runs along or inside them: list of straight LineString.
+
+    Parameters
+    ----------
+    outlines : sequence of LineString or MultiLineString
+        Of level cuts of what hides.
+    walls : shapely geometry
+        Level cut of the walls.
+    """
+    free = shapely.difference(shapely.union_all(list(outlines), grid_size=GRID_M), walls.buffer(2 * GRID_M))
+    lines = shapely.line_merge(_lines(free)).simplify(STRAIGHT_M).normalize()
+    return [LineString(run) for line in shapely.get_parts(lines) for run in pairwise(line.coords)]
+
+
 def from_a_corner(ring, straight_m):
     """Coordinates of a closed ring begun where it bends; `simplify` never removes a ring's first vertex."""
     xy = shapely.get_coordinates(ring)[:-1]

@@ -2,10 +2,12 @@
 
 import numpy as np
 
+from scanplan.evaluation import visibility
 from scanplan.simulation import building, clutter, localisation, rover, sensors, sweeps
+from scanplan.simulation import truth as ground_truth
 
 
-def site(data, source, mount, *, route, clearance_m, **reading):
+def site(data, source, mount, *, seed, route, waypoints_m, start_m, clearance_m, **reading):
     """Read a building and find the rover's way through it.
 
     Parameters
@@ -15,7 +17,7 @@ def site(data, source, mount, *, route, clearance_m, **reading):
         The file that `data` is from.
     mount : dict
         Settings of `rover.mounted`.
-    route, clearance_m
+    seed, route, waypoints_m, start_m, clearance_m
         See `building.routed`.
     **reading
         Settings of `building.load`.
@@ -26,7 +28,8 @@ def site(data, source, mount, *, route, clearance_m, **reading):
         With a way.
     """
     found = building.load(data, source, slice_height_m=mount["height_m"], **reading)
-    return building.routed(found, source, route=route, clearance_m=clearance_m, reach_m=abs(mount["forward_m"]))
+    way = {"route": route, "waypoints_m": waypoints_m, "start_m": start_m, "seed": seed}
+    return building.routed(found, source, **way, clearance_m=clearance_m, reach_m=abs(mount["forward_m"]))
 
 
 def prepare(site, *, seed, mount, sensor, errors, drive, people):
@@ -78,6 +81,21 @@ def belief(survey, **localiser):
 def true_poses(survey):
     """Return each scan's stamp (m,) int64 from the start of the drive and world_from_sensor (m, 4, 4) at it."""
     return survey.t_ns, rover.poses(survey.drive, survey.t_ns) @ survey.base_from_sensor
+
+
+def truth(site, survey):
+    """Return what is true of a survey.
+
+    Returns
+    -------
+    features : list of (geometry, dict)
+        `truth.features` of the site, with what the scans could see of its walls.
+    sensor : dict
+        How far, and how far around, each scan sees: `max_range_m`, `field_deg`.
+    """
+    sight = visibility.Sight(survey.sensor.max_range_m, survey.sensor.field_rad)
+    features = ground_truth.with_sight(site.truth, true_poses(survey)[1], sight)
+    return features, {"max_range_m": sight.max_range_m, "field_deg": round(float(np.degrees(sight.field_rad)), 3)}
 
 
 def true_trajectory(survey):

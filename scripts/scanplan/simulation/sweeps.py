@@ -106,8 +106,10 @@ def take(survey, scene, scan_id):
         opaque = through_glass(opaque, pane, survey.errors, _generator(survey, _GLASS_STREAM, scan_id))
     shape = direction.shape[:2]
     range_m = lose(opaque, survey.errors, _generator(survey, _LOSS_STREAM, scan_id)).reshape(shape)
-    range_m = np.where((range_m >= sensor.min_range_m) & (range_m <= sensor.max_range_m), range_m, np.float32(np.nan))
     measured_m = blur(range_m, survey.errors, _generator(survey, _NOISE_STREAM, scan_id))
+    # the sensor knows what it measured, not how far that truly was
+    within = (measured_m >= sensor.min_range_m) & (measured_m <= sensor.max_range_m)
+    measured_m = np.where(within, measured_m, np.float32(np.nan))
     return Scan(measured_m, opaque.reflectivity.reshape(shape))
 
 

@@ -8,9 +8,11 @@ import shapely
 from shapely import LineString
 
 from scanplan import se3
-from scanplan.simulation import buildings, slicing
+from scanplan.evaluation import findings, truthfile
+from scanplan.simulation import buildings, ground, slicing
 
 _DECIMALS = 6
+_ON_WALL_M, _PARALLEL = 0.01, 0.1
 
 
 def features(plan, slice_height_m):
@@ -27,11 +29,15 @@ def features(plan, slice_height_m):
     -------
     list of (geometry, dict)
         By `kind`: `face` (LineString, one straight stretch of wall surface; `side` is `outside` where it can only be
-        seen from outside the building), `wall` (straight centreline with `thickness_m`, `height_m`), `opening`
-        (stretch of a centreline with `type`, `width_m`, `sill_m`, `lintel_m`), `room` (Polygon with `name`, `area_m2`
-        and whether the rover `visited` it).
+        seen from outside the building), `screen` (LineString, the outline of furniture that hides walls), `wall`
+        (straight centreline with `thickness_m`, `height_m`), `opening` (stretch of a centreline with `type`,
+        `width_m`, `sill_m`, `lintel_m`), `room` (Polygon with `name`, `area_m2` and whether the rover `visited` it).
     """
     faces = [(line, {"kind": "face", "side": side}) for line, side in wall_faces(plan, slice_height_m)]
+    tall = [shapely.boundary(f.footprint_m) for f in plan.furniture if f.height_m >= ground.SCREEN_M]
+    faces += [
+        (line, {"kind": "screen"}) for line in slicing.screens(tall, buildings.wall_section(plan, slice_height_m))
+    ]
     walls = [
         (LineString(run), {"kind": "wall", "thickness_m": w.thickness_m, "height_m": w.height_m})
         for w in plan.walls
@@ -56,13 +62,60 @@ def wall_faces(plan, slice_height_m):
     return [(line, "outside" if skin.covers(line) else "inside") for line in lines]
 
 
-def feature_collection(drawn):
-    """Return GeoJSON text, one feature a line, coordinates in metres of the map frame with six decimals."""
+def with_sight(drawn, survey, sight):
+    """Return features with the length of every inner face and every wall that some scan could see: `visible_m`.
+
+    Parameters
+    ----------
+    drawn : list of (geometry, dict)
+    survey : (m, 4, 4) float
+        The sensor's poses at all scans.
+    sight : visibility.Sight
+
+    Returns
+    -------
+    list of (geometry, dict)
+        As given, nothing is changed; of a wall both its faces count.
+    """
+    of = {kind: [i for i, (_, v) in enumerate(drawn) if _hides(v) == kind] for kind in ("inner", "outer")}
+    ends_m = {kind: np.array([drawn[i][0].coords for i in rows]).reshape(-1, 2, 2) for kind, rows in of.items()}
+    floor = findings.look(truthfile.TrueFaces(ends_m["inner"], ends_m["outer"]), survey[:0], survey, sight=sight)
+    length_m = np.where(floor.visible, floor.cells.length_m, 0.0)
+    by_face = np.bincount(floor.cells.face, length_m, len(of["inner"]))
+    visible_m = dict(zip(of["inner"], by_face.tolist(), strict=True))
+    visible_m |= {i: float(length_m[_on(g, v, floor.cells)].sum()) for i, (g, v) in enumerate(drawn) if _is_wall(v)}
+    return [(g, {**v, "visible_m": round(visible_m[i], 3)} if i in visible_m else v) for i, (g, v) in enumerate(drawn)]
+
+
+def _on(line, values, cells):
+    """Which cells are of the faces of a straight wall."""
+    beside = shapely.dwithin(shapely.points(cells.middle_m), line, values["thickness_m"] / 2 + _ON_WALL_M)
+    way, along = np.diff(cells.faces_m, axis=1)[:, 0], np.diff(line.coords, axis=0)[0]
+    across = np.abs(way[:, 0] * along[1] - way[:, 1] * along[0]) / np.linalg.norm(way, axis=1) / np.linalg.norm(along)
+    return beside & (across < _PARALLEL)[cells.face]
+
+
+def _is_wall(values):
+    return values["kind"] == "wall"
+
+
+def _hides(values):
+    if values["kind"] == "screen":
+        return "outer"
+    return {"inside": "inner", "outside": "outer"}[values["side"]] if values["kind"] == "face" else None
+
+
+def feature_collection(drawn, **members):
+    """Return GeoJSON text, one feature a line, coordinates in metres of the map frame with six decimals.
+
+    `members` become members of the collection.
+    """
     rows = [
         json.dumps({"type": "Feature", "properties": values, "geometry": _rounded(geometry)})
         for geometry, values in drawn
     ]
-    return '{"type": "FeatureCollection", "features": [\n' + ",\n".join(rows) + "\n]}\n"
+    more = "".join(f", {json.dumps(name)}: {json.dumps(value)}" for name, value in members.items())
+    return f'{{"type": "FeatureCollection"{more}, "features": [\n' + ",\n".join(rows) + "\n]}\n"
 
 
 def tum(t_ns, world_from_sensor):

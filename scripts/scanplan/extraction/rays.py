@@ -1,0 +1,149 @@
+"""The rays of one scan, by azimuth: where they cross the upright plane of a line.
+
+Nothing is known of the sensor but its place: a ray is known by its return, a direction without any by how many the
+others of its elevation have.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+N_ROWS = 180
+"""Rows of elevation, in steps of 1 degree from -90 on."""
+
+ON_M = 0.08
+"""Returns no farther from a face are its own: a few times the range noise, and a face's own roughness."""
+
+SKIRTING_M = 0.2
+"""Above the floor: lower returns may be the floor's."""
+
+CLEAR_M = 0.03
+"""Above a face's edge: the noise of a height."""
+
+_N_SECTORS = 72
+_SECTOR_RAD = 2 * np.pi / _N_SECTORS  # wider than what is between two firings
+_FLOOR_PERCENTILE = 1
+_LEAST_M, _LEAST_RAD = 1e-6, 1e-6
+
+
+@dataclass(frozen=True)
+class View:
+    """A 3-D scan's returns by azimuth, relative to the sensor.
+
+    Attributes
+    ----------
+    azimuth_rad : (n,) float64, rising
+    xyz_m : (n, 3) float64
+    floor_m : float
+        Height of the lowest returns.
+    usual : (181,) float64
+        Returns that a column of 1 degree usually has below an elevation, in steps of 1 degree from -90 on.
+    """
+
+    azimuth_rad: np.ndarray
+    xyz_m: np.ndarray
+    floor_m: float
+    usual: np.ndarray
+
+
+@dataclass(frozen=True)
+class Crossings:
+    """Where the rays of some returns cross the upright plane of a line.
+
+    Attributes
+    ----------
+    at_m, until_m : (k,) float64
+        Along the line: where a ray crosses the plane, and until where it is no more than `ON_M` behind it.
+    height_m : (k,) float64
+        Above the floor, where it crosses the plane.
+    behind, before : (k,) bool
+        Whether it ends farther than `ON_M` behind the plane, or before it.
+    """
+
+    at_m: np.ndarray
+    until_m: np.ndarray
+    height_m: np.ndarray
+    behind: np.ndarray
+    before: np.ndarray
+
+
+def view(xyz_m):
+    """Sort a scan's points (n, 3), n >= 1, relative to the sensor, for all that looks at it."""
+    azimuth_rad = np.arctan2(xyz_m[:, 1], xyz_m[:, 0])
+    order = np.argsort(azimuth_rad, kind="stable")
+    azimuth_rad, xyz_m = azimuth_rad[order], xyz_m[order]
+    return View(azimuth_rad, xyz_m, floor(xyz_m), _usual(azimuth_rad, xyz_m))
+
+
+def floor(xyz_m):
+    """Return the height of the lowest returns but a few, of points (n, 3), n >= 1."""
+    rank = _FLOOR_PERCENTILE * (len(xyz_m) - 1) // 100
+    return np.partition(xyz_m[:, 2], rank)[rank]
+
+
+def crossings(scan, normal, offset_m, stretch_m):
+    """Find where rays cross the plane of a line, whether they end before, on or behind it.
+
+    ASSUME no wall is thinner than `ON_M`: where a ray is no farther behind the plane, there is none. Of a doorway at
+    grazing incidence rays may show no more than the reveal.
+
+    Parameters
+    ----------
+    scan : View
+    normal : (2,) float
+        Towards the sensor.
+    offset_m : float
+        normal . xy = offset; not positive.
+    stretch_m : (2,) float
+        The part of the line to look at, measured along (normal y, - normal x) from the foot of the perpendicular.
+
+    Returns
+    -------
+    Crossings
+    """
+    away, along, distance_m = -normal, np.array([normal[1], -normal[0]]), max(-offset_m, _LEAST_M)
+    start_m, end_m = distance_m * away + stretch_m[0] * along, distance_m * away + stretch_m[1] * along
+    at = towards(scan, start_m, end_m)[0]
+    ahead_m, height_m = crossing(scan, at, away, distance_m)
+    slope = (scan.xyz_m[at, :2] @ along) / np.maximum(ahead_m, _LEAST_M)
+    behind, before = ahead_m > distance_m + ON_M, ahead_m < distance_m - ON_M
+    at_m = slope * distance_m
+    return Crossings(at_m, at_m + slope * (ON_M * behind), height_m, behind, before)
+
+
+def plane(start_m, end_m):
+    """Return the direction from the sensor square onto a face, and how far off its plane is."""
+    way = (end_m - start_m) / np.hypot(*(end_m - start_m))
+    away = np.array([way[1], -way[0]])
+    return away, max(start_m @ away, _LEAST_M)
+
+
+def towards(scan, start_m, end_m):
+    """Return the returns between two directions, the first of them and the angle to the other."""
+    first_rad = np.arctan2(start_m[1], start_m[0])
+    span_rad = max((np.arctan2(end_m[1], end_m[0]) - first_rad) % (2 * np.pi), _LEAST_RAD)
+    return _between(scan.azimuth_rad, first_rad, first_rad + span_rad), first_rad, span_rad
+
+
+def crossing(scan, at, away, distance_m):
+    """Return how far ahead returns are, and at what height above the floor their rays cross the plane."""
+    ahead_m = scan.xyz_m[at, :2] @ away
+    return ahead_m, scan.xyz_m[at, 2] * (distance_m / np.maximum(ahead_m, _LEAST_M)) - scan.floor_m
+
+
+def _usual(azimuth_rad, xyz_m):
+    """Return the running sums of returns by elevation, per degree of azimuth around which there are any."""
+    sector = np.minimum(((azimuth_rad + np.pi) / _SECTOR_RAD).astype(np.int64), _N_SECTORS - 1)
+    seen_deg = np.count_nonzero(np.bincount(sector)) * np.rad2deg(_SECTOR_RAD)
+    elevation_rad = np.arctan2(xyz_m[:, 2], np.hypot(xyz_m[:, 0], xyz_m[:, 1]))
+    row = np.clip(np.rad2deg(elevation_rad) + N_ROWS / 2, 0, N_ROWS - 1).astype(np.int64)
+    return np.concatenate([[0], np.cumsum(np.bincount(row, minlength=N_ROWS))]) / seen_deg
+
+
+def _between(azimuth_rad, first_rad, last_rad):
+    """Return the index, a slice if it can be, of sorted azimuths from one direction on to another, maybe beyond pi."""
+    begin = np.searchsorted(azimuth_rad, first_rad, "left")
+    if last_rad <= np.pi:
+        return slice(begin, np.searchsorted(azimuth_rad, last_rad, "right"))
+    end = np.searchsorted(azimuth_rad, last_rad - 2 * np.pi, "right")
+    return np.concatenate([np.arange(begin, len(azimuth_rad)), np.arange(end)])

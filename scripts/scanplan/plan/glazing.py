@@ -1,0 +1,51 @@
+"""Glass between walls: what bounds a room though hardly a ray ends there."""
+
+import math
+
+import numpy as np
+import shapely
+
+from scanplan.plan import crossings, freespace, planwalls
+
+_NEAR_M = 0.1
+_REACH_M = 0.3
+_FRAME_M = 0.8
+
+
+def between(walls, spans, *, min_length_m, unpaired_m):
+    """Return panes as walls that nothing shows, drawn on to the walls beside them; openings of walls are none.
+
+    Rays that graze a frame or a deep reveal, or that furniture stops, leave the ends of a pane untold.
+
+    Parameters
+    ----------
+    walls : list of planwalls.PlanWall
+    spans : list of (faceline.Line, float, float)
+        From where to where along a line there is glass.
+    min_length_m : float
+        Shorter panes bound nothing.
+    unpaired_m : float
+        How thick a wall is taken for of which one side is known.
+
+    Returns
+    -------
+    list of planwalls.PlanWall
+        Without any faces.
+    """
+    ways = [freespace.opening_ground(w, g, unpaired_m).buffer(_NEAR_M) for w in walls for g in w.openings]
+    open_m2 = shapely.union_all(ways)
+    stacked = crossings.stack(walls)
+    panes = [planwalls.PlanWall(*_drawn_on(*span, walls, stacked), math.nan, [], [], [], []) for span in spans]
+    shapely.prepare(open_m2)
+    return [p for p in panes if p.length_m >= min_length_m and not open_m2.covers(shapely.Point(p.ends.mean(axis=0)))]
+
+
+def _drawn_on(line, low_m, high_m, walls, stacked):
+    """Return a span with its ends moved to the nearest wall that crosses its line, or begins or ends on it."""
+    places_m = [crossings.find(line, stacked, reach_m=_REACH_M).place_m]
+    places_m += [line.along_m(w.ends)[np.abs(line.offset_m(w.ends)) <= w.half_m + _NEAR_M] for w in walls]
+    places_m = np.concatenate(places_m)
+    before_m = places_m[(places_m <= low_m) & (places_m >= low_m - _FRAME_M)]
+    after_m = places_m[(places_m >= high_m) & (places_m <= high_m + _FRAME_M)]
+    low_m, high_m = max(before_m, default=low_m), min(after_m, default=high_m)
+    return line, float(low_m), float(high_m)

@@ -1,0 +1,123 @@
+"""Plans of finished surveys against the truth: of chosen scans, of all, and a line detector on all points."""
+
+import importlib.util
+import time
+from types import SimpleNamespace
+
+import numpy as np
+import wallbench
+
+from scanplan import schemas, tables
+from scanplan.evaluation import (
+    findings,
+    planevaluation,
+    registered,
+    trueplan,
+    truthfile,
+    wallevaluation,
+)
+from scanplan.plan import planning, rays
+from scanplan.selection import stopping
+
+_FIGURES = {
+    "correctness_010m": "right",
+    "visible_completeness_010m": "of visible",
+    "redundancy": "redundancy",
+    "plan_walls_per_true_wall": "walls/true",
+    "thickness_error_m": "thickness m",
+    "door_recall": "door recall",
+    "door_precision": "precision",
+    "door_width_error_m": "width m",
+    "n_rooms_found": "rooms",
+    "n_rooms_false": "false",
+    "room_iou": "IoU",
+    "missed_not_seen": "not seen",
+    "missed_misplaced": "misplaced",
+    "missed_misextracted": "not extracted",
+}
+
+
+def bench(results, surveys, settings):
+    """Print a table for every survey under `results` that has walls, an ordering and, there or in `surveys`, a truth.
+
+    Parameters
+    ----------
+    results : Path
+        With a folder for each dataset, as the workflow makes them.
+    surveys : list of Path
+        Folders of dataset folders.
+    settings : dict
+        The whole configuration.
+    """
+    found = [(f, _truth(f, surveys)) for f in sorted(p.parent for p in results.glob("*/walls"))]
+    found = [(folder, truth) for folder, truth in found if truth]
+    if not found:
+        print(f"plans: no survey with walls and a truth under {results}; run the workflow on one first", flush=True)
+    for folder, truth in found:
+        _bench(folder, truth, settings)
+
+
+def _truth(folder, surveys):
+    places = [folder / "survey", *(s / folder.name for s in surveys)]
+    return next((p for p in places if (p / "truth.geojson").exists() and (p / "truth_poses.tum").exists()), None)
+
+
+def _bench(folder, truth, settings):
+    kept, store = registered.read(folder / "registration.parquet"), tables.ScanStore(folder / "scans.parquet")
+    ordering = tables.read(folder / f"selection/{settings['plan']['method']}.parquet", schemas.SELECTION)
+    seen = tables.read(folder / f"walls/{settings['plan']['extractor']}.parquet", schemas.WALLS, allow_empty=True)
+    count, _ = stopping.n_scans(ordering, **settings["selection"]["stop"])
+    everything = np.sort(ordering["scan_id"])
+    true, poses = trueplan.read(truth / "truth.geojson"), truthfile.read_poses(truth / "truth_poses.tum")
+    placed, survey = truthfile.poses_at(poses, kept.t_ns, truth), truthfile.matrices(poses)
+    faces = truthfile.read_faces(truth / "truth.geojson")
+    sight = truthfile.read_sight(truth / "truth.geojson", max_range_m=settings["input"]["max_range_m"])
+    print(
+        f"plans, {folder.name}: {count} of {len(everything)} scans chosen ({count / len(everything):.0%})", flush=True
+    )
+    for name, chosen in (("chosen scans", np.sort(ordering["scan_id"][:count])), ("all scans", everything)):
+        rows = registered.rows_of(chosen, kept, folder, folder)
+        floor = findings.look(faces, placed[rows], survey, sight=sight)
+        started = time.process_time()
+        plan = _plan(seen, store, kept, rows, chosen, settings["plan"])
+        _tell(f"plan of {name}", _of_plan(plan, true, floor), time.process_time() - started)
+    if not importlib.util.find_spec("cv2"):
+        print("  raster and LSD: no OpenCV (cv2) here, so without its line detector", flush=True)
+        return
+    survey = SimpleNamespace(scans=[(i, _above_floor(xyz_m, plan)) for i, xyz_m in store.scans(everything)])
+    started = time.process_time()
+    lines_m = wallbench.raster_lines(survey)
+    _tell("raster and LSD, all scans", _of_lines(lines_m, floor), time.process_time() - started)
+
+
+def _plan(seen, store, kept, rows, chosen, settings):
+    parts = {name: part for name, part in settings.items() if name not in ("method", "extractor", "export")}
+    positions = dict(zip(chosen.tolist(), kept.map_from_sensor[rows, :3, 3], strict=True))
+    looked = rays.gather(store.scans(chosen), positions, planar=store.planar)
+    used = np.isin(seen["scan_id"], chosen)
+    segments = {column: values[used] for column, values in seen.items()}
+    plan = planning.make(segments, looked, kept.map_from_sensor[:, :2, 3], kept.t_ns[rows], planning.settings(**parts))
+    return SimpleNamespace(plan=plan, floor_z_m=looked.floor_z_m)
+
+
+def _of_plan(made, true, floor):
+    tables_ = ("faces", "walls", "openings", "rooms")
+    drawn = {t: {name: np.asarray(v) for name, v in getattr(made.plan, t).items()} for t in tables_}
+    return _of_lines(planevaluation.faces_m(drawn, np.eye(4)), floor) | planevaluation.measure(
+        drawn, np.eye(4), true, floor
+    )
+
+
+def _of_lines(lines_m, floor):
+    return wallevaluation.of_plan(lines_m, floor, 0.05) | planevaluation.faces(
+        *(lines_m, np.ones(len(lines_m), bool), floor.cells, floor.visible, floor.seen.any(axis=0))
+    )
+
+
+def _above_floor(xyz_m, made):
+    return np.asarray(xyz_m, float) - (0, 0, np.nan_to_num(made.floor_z_m))
+
+
+def _tell(name, row, took_s):
+    figures = [f"{told} {row[key]:.3g}" for key, told in _FIGURES.items() if key in row]
+    print(f"  {name}: {', '.join(figures)}; {took_s:.1f} s of one core", flush=True)

@@ -1,0 +1,51 @@
+"""Openings of walls made of stretches whose points and rays are known on paper."""
+
+import numpy as np
+import pytest
+
+import housemaking
+from scanplan.plan import planning, planwalls
+from scanplan.plan.faceline import Line
+from scanplan.plan.profiles import Seen
+from scanplan.plan.stretches import Stretch
+
+SETTINGS = planning.settings(**housemaking.PLAN)
+
+
+def stretches(x0, y0, x1, y1, solid, crossed=(), lintel=()):
+    """Stretches of a line, seen from the left of its way: points, rays through it, and points above a door."""
+    start, end = np.array([x0, y0], float), np.array([x1, y1], float)
+    along = (end - start) / np.hypot(*(end - start))
+    hits = [(x, 1.0) for span in solid for x in np.arange(*span, 0.02)]
+    hits += [(x, 2.3) for span in lintel for x in np.arange(*span, 0.02)]
+    x, z = np.array(sorted(hits)).T
+    passes = np.array([p for span in crossed for p in np.arange(*span, 0.01)])
+    line = Line(start, np.array([-along[1], along[0]]))
+    seen = Seen(line, x, 0 * x, z, np.zeros(len(x), int), passes, 0 * passes + 1, np.zeros(len(passes), int))
+    return [Stretch(seen, float(low), float(high)) for low, high in solid]
+
+
+def openings(*found):
+    walls = planwalls.assemble(
+        *([s for of_line in found for s in of_line], SETTINGS.reading, SETTINGS.pairs, SETTINGS.openings),
+        planar=False,
+        corner_m=0.25,
+    )
+    return [np.sort(w.line.at(np.array([g.low_m, g.high_m]))[:, 0]) for w in walls for g in w.openings]
+
+
+def test_an_opening_begins_beside_the_wall_that_ends_there():
+    south = stretches(0, 0, 6, 0, [(0, 2), (3, 6)], [(2.2, 3)])
+    crossing = stretches(2.2, 4, 2.2, 0.05, [(0, 3.95)]) + stretches(2.0, 0.05, 2.0, 4, [(0, 3.95)])
+    np.testing.assert_allclose(openings(south, crossing), [(2.2, 3)], atol=0.02)
+
+
+def test_the_jambs_of_both_sides_are_averaged():
+    one = stretches(0, 0, 6, 0, [(0, 2), (3, 6)], [(2, 3)])
+    other = stretches(6, -0.2, 0, -0.2, [(0, 2.96), (3.96, 6)], [(2.96, 3.96)])
+    np.testing.assert_allclose(openings(one, other), [(2.02, 3.02)], atol=0.005)
+
+
+@pytest.mark.parametrize(("lintel", "count"), [([], 0), ([(0.4, 1.6)], 1)])
+def test_between_two_things_there_is_no_door_but_below_a_lintel(lintel, count):
+    assert len(openings(stretches(0, 0, 2, 0, [(0, 0.4), (1.6, 2)], [(0.4, 1.6)], lintel))) == count
