@@ -28,7 +28,7 @@ from scanplan.thesis.claims import (
 from scanplan.thesis.thesisclaims import COMPLETE, HARM, MUCH, stated
 
 _LATER = 40
-_NAMES = {"cluster_hull": "cluster hulls", "hull": "one hull", "random": "random", "sequential": "as recorded"}
+_NAMES = {"cluster_hull": "cluster hulls", "hull": "one hull", "random": "random", "sequential": "sequential"}
 
 
 def sequential_poorest(tables):
