@@ -27,7 +27,7 @@ def draw_thesis_rooms(files, evaluated, outputs, orders, *, bitmap_cell_m, max_r
     survey = thesisrooms.read(files, evaluated, max_range_m=max_range_m)
     for path in outputs:
         atomic.write_text(path, drawing.svg(thesisrooms.draw(survey, path, bitmap_cell_m)))
-    atomic.write_text(orders, drawing.svg(oraclefigure.draw(survey.evaluated[0])))
+    atomic.write_text(orders, drawing.svg(oraclefigure.draw(*survey.evaluated)))
     stagelog.say(f"draw_thesis_rooms: {len(outputs)} figures")
 
 

@@ -9,6 +9,7 @@ _SCHEMAS = {
     "cluster_hull": schemas.SELECTION,
     "clusters": schemas.CLUSTERS,
     "areas": schemas.AREAS,
+    "unevenness": schemas.UNEVENNESS,
     "times": schemas.TIMES,
     "poses": schemas.POSE_ERRORS,
     "steps": schemas.STEPS,
@@ -29,9 +30,8 @@ def judge_claims(files, output, *, rooms_seeds, drive_seeds):
     """
     rooms = _by_seed(files, rooms_seeds, ["rooms"])
     drive = _by_seed(files, drive_seeds, ["drive", "limits"])
-    both = {seed: rooms[seed] | drive[seed] for seed in rooms if seed in drive}
     rows = []
-    for kind, found in ((judging.ROOMS, rooms), (judging.DRIVE, drive), (judging.BOTH, both)):
+    for kind, found in ((judging.ROOMS, rooms), (judging.DRIVE, drive)):
         rows += [row for seed, known in found.items() for row in judging.judge(kind, f"seed {seed}", known)]
     rows.sort(key=lambda row: (row["claim"], row["survey"], row["quantity"]))
     tables.write(output, schemas.CLAIMS, {name: [row[name] for row in rows] for name in schemas.CLAIMS.columns})

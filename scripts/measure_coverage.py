@@ -34,14 +34,12 @@ def measure_coverage(
     places_m = truthfile.poses_at(poses, found.t_ns, true_poses)[:, :2, 3]
     seen = seenarea.polygons(truthfile.read_faces(truth), places_m, max_range_m=max_range_m)
     columns = tables.read(built, schemas.HULLS)
-    measured = {
-        "scan_id": found.scan_ids,
-        "full_hull_m2": shapely.area(hulls.scan_full_hulls(columns)[1]),
-        "cluster_hull_m2": shapely.area(hulls.scan_polygons(columns)[1]),
-        "seen_m2": shapely.area(seen),
-    }
+    kinds = {"full_hull": hulls.scan_full_hulls(columns)[1], "cluster_hull": hulls.scan_polygons(columns)[1]}
+    measured = {"scan_id": found.scan_ids, "seen_m2": shapely.area(seen)}
+    measured |= {f"{kind}_m2": shapely.area(polygons) for kind, polygons in kinds.items()}
+    measured |= {f"{kind}_iou": seenarea.shared(polygons, seen) for kind, polygons in kinds.items()}
     tables.write(areas, schemas.AREAS, measured)
-    median = [f"{np.median(values):.1f} m2 {name}" for name, values in list(measured.items())[1:]]
+    median = [f"{np.median(values):.2f} {name}" for name, values in measured.items() if name != "scan_id"]
     stagelog.say(f"measure_coverage: {len(found.scan_ids)} scans, median {', '.join(median)}")
 
 

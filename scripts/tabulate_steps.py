@@ -7,8 +7,6 @@ import numpy as np
 from scanplan import schemas, stagelog, tables
 from scanplan.recordings import tum
 
-NAMES = ("Data collection", "Selecting and registering scans", "Hull creation", "Cluster subset selection")
-
 
 def tabulate_steps(recordings, true_poses, scans, built, selection, times, output, *, n_selected):
     """Write the table; its run times differ from run to run.
@@ -34,7 +32,7 @@ def tabulate_steps(recordings, true_poses, scans, built, selection, times, outpu
     n_bytes = [sum(Path(file).stat().st_size for file in recordings), _size(scans), _size(built), share * _size(scans)]
     rows = {
         "step": np.arange(1, 5),
-        "name": list(NAMES),
+        "name": ["Data collection", "Selecting and registering scans", "Hull creation", "Cluster subset selection"],
         "seconds": np.array([(t_ns[-1] - t_ns[0]) / 1e9, *(sum(map(_seconds, files)) for files in times)]),
         "n_scans": np.array([len(t_ns), kept, kept, len(chosen)]),
         "n_bytes": np.array(n_bytes).astype(np.int64),

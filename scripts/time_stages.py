@@ -1,15 +1,19 @@
 """Time the extractors scan by scan and the selection by number of scans (thesis, figures 5.8 and 5.10)."""
 
 from scanplan import schemas, stagelog, tables
-from scanplan.extraction import cluster_ransac, iterative_ransac
-from scanplan.thesis import timing
+from scanplan.extraction import cluster_ransac
+from scanplan.thesis import plainransac, timing
+from scanplan.thesis.claims import ITERATIVE, OURS, PLAIN, PLAIN_CLUSTERS
 
-_EXTRACTORS = {"cluster_ransac": cluster_ransac, "iterative_ransac": iterative_ransac}
+_EXTRACTORS = {PLAIN_CLUSTERS: (cluster_ransac, OURS), PLAIN: (plainransac, ITERATIVE)}
+_CLUSTERED, _THINNED = 3, 8  # a call for every number of clusters, or of points, is long
 _SELECTION_SIZES = (10, 20, 30, 45, 60, 90, 130, 180, 270, 400, 600, 900, 1300)
 
 
 def time_stages(scans, registration, built, output, *, walls, hulls, n_clusters, timed_scans):
-    """Write run times; they differ from run to run.
+    """Write run times of cluster and iterative RANSAC as in the thesis, and of hulls and orders.
+
+    They differ from run to run.
 
     Parameters
     ----------
@@ -23,16 +27,19 @@ def time_stages(scans, registration, built, output, *, walls, hulls, n_clusters,
         `sample_size` and `seed` of `hulls.cluster_hulls`.
     n_clusters : sequence of int
     timed_scans : int
-        On how many scans, spread over the survey.
+        On how many scans, spread over the survey; clusters and thinned scans on a part of these.
     """
     store, placed = tables.ScanStore(scans), tables.read(registration, schemas.REGISTRATION)
     columns = tables.read(built, schemas.HULLS)
     chosen, n = timing.spread(store.scan_ids, timed_scans), len(store.scan_ids)
     sizes = [size for size in _SELECTION_SIZES if size < n] + [n]
-    rows = [*timing.selection(columns, sizes), *timing.clusters(store, chosen, sorted(n_clusters), **hulls)]
-    for name, method in _EXTRACTORS.items():
-        timed = timing.extractor(name, method, store, placed, chosen, walls[name], registration)
+    some, few = (timing.spread(chosen, max(timed_scans // part, 2)) for part in (_CLUSTERED, _THINNED))
+    rows = [*timing.selection(columns, sizes), *timing.clusters(store, some, sorted(n_clusters), **hulls)]
+    for name, (method, settings) in _EXTRACTORS.items():
+        how = walls[settings] | plainransac.LIFTED, registration
+        timed = timing.extractor(name, method, store, placed, chosen, *how)
         rows += stagelog.progress(timed, f"time_stages {name}", total=len(chosen))
+        rows += timing.by_size(name, method, store, placed, few, *how)
     rows.sort(key=lambda row: (row["task"], row["size"], row["item"]))
     tables.write(output, schemas.TIMES, {name: [row[name] for row in rows] for name in schemas.TIMES.columns})
     stagelog.say(f"time_stages: {len(rows)} times, {sum(row['seconds'] for row in rows):.0f} s in all")

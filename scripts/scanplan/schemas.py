@@ -264,9 +264,22 @@ CLUSTERS = Schema(
     ("n_clusters", "rank"),
 )  # fmt: skip
 AREAS = Schema(
-    "areas", 1, {"scan_id": "int32", "full_hull_m2": "float64", "cluster_hull_m2": "float64", "seen_m2": "float64"},
+    "areas",
+    2,
+    {
+        "scan_id": "int32",
+        **dict.fromkeys(("full_hull_m2", "cluster_hull_m2", "seen_m2", "full_hull_iou", "cluster_hull_iou"), "float64"),
+    },
     ("scan_id",),
-)  # fmt: skip
+)
+"""Areas of a scan's hulls and of what it truly sees; `iou` is intersection over union of a hull with the latter."""
+UNEVENNESS = Schema(
+    "unevenness",
+    1,
+    {"order": "string", "crowd": "int32", "repeats": "int32", "draw": "int32", "seen_m": "float64"},
+    ("order", "crowd", "repeats", "draw"),
+)
+"""True wall length that the first scans of an order see where those of a crowd were taken `repeats` times."""
 TIMES = Schema(
     "times", 1, {"task": "string", "size": "int32", "item": "int32", "found": "int32", "seconds": "float64"},
     ("task", "size", "item"),
@@ -276,9 +289,18 @@ STEPS = Schema(
     ("step",),
 )  # fmt: skip
 CLAIMS = Schema(
-    "claims", 1, {"claim": "string", "survey": "string", "quantity": "string", "value": "float64", "holds": "string"},
+    "claims",
+    2,
+    {
+        "claim": "string",
+        "survey": "string",
+        "quantity": "string",
+        "value": "float64",
+        "unit": "string",
+        "holds": "string",
+    },
     ("claim", "survey", "quantity"),
-)  # fmt: skip
+)
 PLAN_EVALUATION = Schema(
     "plan_evaluation",
     2,

@@ -72,9 +72,9 @@ def of_kept(folder, poses_file):
 
 
 @pytest.mark.recordings
-@pytest.mark.parametrize(("name", "of_recorded"), [("jackal_ros1", 1.0), ("scenes7_room", 1.1), ("intel", 1.05)])
+@pytest.mark.parametrize(("name", "of_recorded"), [("jackal_ros1", 0.8), ("scenes7_room", 1.05), ("intel", 1.02)])
 def test_registration_makes_disturbed_recordings_crisper(recordings_dir, project_root, tmp_path, name, of_recorded):
-    """Far crisper than the poses it starts from; against the recorded ones no worse than it is known to be."""
+    """Far crisper than the poses it starts from; the recorded ones of the last two are a SLAM's, and no crisper."""
     settings = configuration.read_yaml(project_root / "config/config.yaml")
     # no localiser tilts by 2 degrees, the defaults do not expect it
     settings["registration"]["localiser_sigma_tilt_deg"] = 2.0
@@ -88,4 +88,4 @@ def test_registration_makes_disturbed_recordings_crisper(recordings_dir, project
     register_scans(files, poses_file, *outputs, reading=reading, settings=settings["registration"], moved=moved)
     start, recorded = of_kept(tmp_path, poses_file.name), of_kept(tmp_path, given.name)
     assert start["registered"] < 0.7 * start["localiser"]
-    assert recorded["registered"] < of_recorded * recorded["localiser"]
+    assert recorded["registered"] <= of_recorded * recorded["localiser"]

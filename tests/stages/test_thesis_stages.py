@@ -11,10 +11,12 @@ from evaluate_walls import evaluate_walls
 from evaluationmaking import FACES, SCAN_IDS, write_registration, write_selection, write_truth, write_walls
 from judge_claims import judge_claims
 from measure_coverage import measure_coverage
-from scanplan import schemas, tables
+from measure_unevenness import measure_unevenness
+from scanplan import configuration, schemas, tables
 from scanplan.thesis import thesisdrive
 from scanplan.thesis.thesisshown import FIGURES
 from tabulate_steps import tabulate_steps
+from time_stages import time_stages
 from write_thesis import write_thesis
 
 SAMPLING = {"sample_size": 200, "seed": 0}
@@ -60,7 +62,8 @@ def evaluated(folder):
 
 
 def write_times(folder):
-    rows = [(e, 400, scan_id, 4, 0.01) for e in EXTRACTORS for scan_id in SCAN_IDS] + [("order_scans", 3, 0, 3, 0.1)]
+    tasks = ("plain_clusters", "plain_ransac")
+    rows = [("order_scans", 3, 0, 3, 0.1)] + [(e, 400, scan_id, 4, 0.01) for e in tasks for scan_id in SCAN_IDS]
     columns = dict(zip(schemas.TIMES.columns, map(list, zip(*rows, strict=True)), strict=True))
     tables.write(folder / "times.parquet", schemas.TIMES, columns)
     return folder / "times.parquet"
@@ -70,6 +73,9 @@ def test_areas_are_those_of_the_room(survey):
     clusters, areas = coverage(survey)
     measured = tables.read(areas, schemas.AREAS)
     np.testing.assert_allclose(measured["seen_m2"], 24)
+    # hulls lie within the room: what they share with it is their own share of it
+    np.testing.assert_allclose(measured["full_hull_iou"], measured["full_hull_m2"] / 24, rtol=1e-6)
+    assert (measured["cluster_hull_iou"] < measured["full_hull_iou"]).all()
     # points on the walls: their one hull is nearly the room, their clusters' hulls leave its middle out
     assert (measured["full_hull_m2"] > 22).all() and (measured["cluster_hull_m2"] < 20).all()
     growth = tables.read(clusters, schemas.CLUSTERS)
@@ -80,6 +86,32 @@ def test_areas_are_those_of_the_room(survey):
 def test_areas_do_not_depend_on_the_number_of_cores(survey):
     first = [path.read_bytes() for path in coverage(survey)]
     assert [path.read_bytes() for path in coverage(survey)] == first
+
+
+def test_of_a_room_that_every_scan_sees_nothing_is_lost(survey, tmp_path):
+    inputs = [survey / name for name in ("scans.parquet", "hulls.parquet", "registration.parquet")]
+    inputs += [survey / name for name in ("truth.geojson", "truth_poses.tum")]
+    sampling, found = SAMPLING | {"n_clusters": 6}, []
+    for name in ("first", "second"):
+        output = tmp_path / f"{name}.parquet"
+        measure_unevenness(*inputs, output, sampling=sampling, max_range_m=100.0, n_selected=2)
+        found.append(output.read_bytes())
+    assert found[0] == found[1]
+    columns = tables.read(output, schemas.UNEVENNESS)
+    # three crowds of one scan each, all within sight of the room's 20 m of wall
+    assert set(columns["crowd"]) == {0, 1, 2} and set(columns["repeats"]) == {1, 5, 20}
+    np.testing.assert_allclose(columns["seen_m"], 20.0)
+
+
+def test_every_task_is_timed(survey, tmp_path, project_root):
+    walls = configuration.read_yaml(project_root / "config/config.yaml")["walls"]
+    inputs = [survey / name for name in ("scans.parquet", "registration.parquet", "hulls.parquet")]
+    time_stages(*inputs, tmp_path / "times.parquet", walls=walls, hulls=SAMPLING, n_clusters=[3, 1], timed_scans=3)
+    found = tables.read(tmp_path / "times.parquet", schemas.TIMES)
+    extractors = {"plain_clusters", "plain_ransac"}
+    assert set(found["task"]) == extractors | {f"thinned_{e}" for e in extractors} | {"build_hulls", "order_scans"}
+    thinned = found["size"][found["task"] == "thinned_plain_ransac"]
+    assert sorted(set(thinned.tolist())) == [50, 100, 200, 400]
 
 
 def test_the_steps_are_counted(survey, tmp_path):
@@ -143,7 +175,7 @@ def test_claims_are_judged_seed_by_seed_and_written_to_the_page(tmp_path):
     found = tables.read(tmp_path / "claims.parquet", schemas.CLAIMS)
     assert set(found["survey"][found["claim"] == "full_hull_99"]) == {"seed 3", "seed 5"}
     assert set(found["survey"][found["claim"] == "fewer_walls"]) == {"seed 5"}
-    assert set(found["survey"][found["claim"] == "uneven_harms_random"]) == {"seed 5"}
+    assert set(found["survey"][found["claim"] == "uneven_harms_random"]) == {"seed 3", "seed 5"}
     figures = [tmp_path / figure.file for figure in FIGURES]
     for path in figures:
         path.write_text("<svg></svg>")

@@ -20,6 +20,11 @@ def test_takes_the_largest_then_what_adds_most():
     assert result.covered_m2.tolist() == pytest.approx([6, 10, 13, 13])
 
 
+@given(hull_sets(), st.integers(0, 12))
+def test_the_first_are_those_of_the_whole_order(polygons, count):
+    assert greedy.first_chosen(polygons, count).tolist() == greedy.greedy_order(polygons).order[:count].tolist()
+
+
 def test_of_equals_the_lowest_index():
     boxes = [box(0, 0, 1, 1), box(5, 0, 7, 1), box(9, 0, 11, 1), box(5, 0, 7, 1), box(0, 0, 1, 1)]
     assert greedy.greedy_order(boxes).order.tolist() == [1, 2, 0, 3, 4]

@@ -18,7 +18,6 @@ def claims(**changes):
     rows = judging.judge(judging.ROOMS, "seed 1", made.rooms(**changes))
     rows += judging.judge(judging.ROOMS, "seed 2", made.rooms())
     rows += judging.judge(judging.DRIVE, "seed 1", made.drive())
-    rows += judging.judge(judging.BOTH, "seed 1", made.rooms() | made.drive())
     return {name: np.array([row[name] for row in rows]) for name in schemas.CLAIMS.columns}
 
 
@@ -73,16 +72,22 @@ def test_what_could_not_be_measured_is_counted_apart():
 
 
 @pytest.mark.parametrize(
-    ("values", "text"),
+    ("values", "unit", "text"),
     [
-        ([2, 2], "2"),
-        ([0.5, 0.7], "0.6 (0.5 to 0.7)"),
-        ([1234.5, 1234.9], "1,235 (1,234 to 1,235)"),
-        ([np.nan], "none"),
+        ([2, 2], "number", "2"),
+        ([0.5, 0.7], "s", "0.600 (0.500 to 0.700) s"),
+        ([1234.5, 1234.9], "m", "1,235 (1,234 to 1,235) m"),
+        ([0.001592, 0.001406, 0.001686], "%", "0.156 (0.141 to 0.169) %"),
+        ([-0.007, 0.007], "%", "0.000 (-0.700 to 0.700) %"),
+        ([0.66, 1.0], "%", "83 (66 to 100) %"),
+        ([0.661, 1.0], "%", "83 (66 to 100) %"),
+        ([5, 6, 6], "count", "6 (5 to 6)"),
+        ([0.0000123], "s", "0.0000123 s"),
+        ([np.nan], "m", "not measured"),
     ],
 )
-def test_means_come_with_their_range(values, text):
-    assert thesispage.said(values) == text
+def test_means_come_with_their_range(values, unit, text):
+    assert thesispage.said(values, unit) == text
 
 
 def test_every_claim_belongs_to_figures_that_there_are():

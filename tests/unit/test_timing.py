@@ -26,6 +26,20 @@ def test_the_order_is_timed_for_every_number_of_scans():
     assert all(row["seconds"] > 0 for row in rows)
 
 
+def test_choosing_the_subset_is_timed_where_there_is_a_choice():
+    rows = list(timing.selection(built(17), [15, 17]))
+    found = [(row["task"], row["size"], row["found"]) for row in rows]
+    assert found == [("order_scans", 15, 15), ("order_scans", 17, 17), ("choose_scans", 17, 15)]
+
+
+def test_a_part_of_the_points_is_kept_in_their_order():
+    points = np.arange(30.0).reshape(10, 3)
+    half = timing.thinned(points, 2, 4)
+    assert len(half) == 5 and (np.diff(half[:, 0]) > 0).all() and np.isin(half, points).all()
+    assert (timing.thinned(points, 1, 4) == points).all() and len(timing.thinned(points, 99, 4)) == 1
+    assert (timing.thinned(points, 2, 4) == half).all()
+
+
 class Busy:
     """An extractor whose every other call is disturbed."""
 

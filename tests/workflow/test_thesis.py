@@ -31,6 +31,7 @@ def test_it_runs_every_survey_with_every_seed_and_nothing_of_the_demo(project):
     # 3 surveys of the rooms and 3 drives, each of these registered with our limits and with the thesis's
     assert found["simulate_survey"] == 6 and found["register_scans"] == 9
     assert found["evaluate_walls"] == found["time_stages"] == 6 and found["measure_coverage"] == 3
+    assert found["measure_unevenness"] == 3
     assert found["judge_claims"] == found["write_thesis"] == found["thesis"] == 1
     assert not {"all", "assemble_plan", "export_plan"} & set(found)
 
@@ -72,3 +73,4 @@ def test_the_page_has_every_figure(project):
     (project.folder / "more.yaml").write_text(re.sub(r"(?m)^  seeds: .*", "  seeds: [1, 2]", settings))
     more = jobs(project, "thesis", "--configfile", "more.yaml")
     assert more["time_stages"] == more["measure_coverage"] == more["simulate_survey"] == 1
+    assert more["measure_unevenness"] == 1

@@ -84,7 +84,7 @@ def test_a_changed_parameter_reruns_exactly_its_stages(project, change, rules):
     [
         ("selection/hulls", AFTER_HULLS),
         ("exports/cad", {"export_plan"}),
-        ("evaluation/visibility", EVALUATED | {"evaluate_plan"}),
+        ("evaluation/lengthmetrics", EVALUATED | {"evaluate_plan"}),
         ("evaluation/poseerrors", {"evaluate_poses", "evaluate_plan"} | EVALUATED),
         ("plan/faces", PLANNED),
         ("report/reportplan", set()),

@@ -9,6 +9,7 @@ ROOMS_TABLES = {
     "cluster_hull": "selection/cluster_hull",
     "clusters": "thesis/clusters",
     "areas": "thesis/areas",
+    "unevenness": "thesis/unevenness",
     "times": "thesis/times",
 }
 DRIVE_TABLES = {

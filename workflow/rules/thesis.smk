@@ -32,6 +32,33 @@ rule measure_coverage:
         "../../scripts/measure_coverage.py"
 
 
+rule measure_unevenness:
+    """Measure what uneven sampling does to a random order and to the area-based one."""
+    input:
+        scans="results/{dataset}/scans.parquet",
+        hulls="results/{dataset}/hulls.parquet",
+        registration="results/{dataset}/registration.parquet",
+        truth=true_faces,
+        true_poses=true_poses,
+        code=code_of("measure_unevenness"),
+    output:
+        unevenness="results/{dataset}/thesis/unevenness.parquet",
+    log:
+        "logs/{dataset}/measure_unevenness.log",
+    benchmark:
+        "benchmarks/{dataset}/measure_unevenness.tsv"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=30,
+    params:
+        hulls=setting("hulls"),
+        max_range_m=setting("input", "max_range_m"),
+        n_selected=claims.SUBSET,
+    script:
+        "../../scripts/measure_unevenness.py"
+
+
 rule time_stages:
     """Time extraction scan by scan and selection by number of scans, with all cores to itself."""
     input:

@@ -18,8 +18,6 @@ JUDGED = "010m"
 NEVER = np.iinfo(np.int32).max
 """Rank of what no scan shows."""
 
-_SURVEY_STEP_M = 0.25
-
 
 @dataclass(frozen=True)
 class Truth:
@@ -106,12 +104,8 @@ def look(faces, placed, survey, *, sight):
     cells = visibility.cut(faces.inner_m)
     seen = np.zeros((len(placed), len(cells.face)), bool)
     for row, pose in zip(seen, placed, strict=True):
-        row[:] = _seen(cells, faces, pose, sight)
-    visible = seen.any(axis=0)
-    # a sensor that sees all around sees the same wherever it is turned
-    around = sight.field_rad >= 2 * np.pi and len(survey)
-    for pose in survey[visibility.thinned(survey[:, :2, 3], _SURVEY_STEP_M)] if around else survey:
-        visible |= _seen(cells, faces, pose, sight)
+        row[:] = visibility.seen_from(cells, faces.outer_m, pose, sight)
+    visible = seen.any(axis=0) | visibility.seen_by_any(cells, faces.outer_m, survey, sight)
     return Truth(cells, seen, visible)
 
 
@@ -223,11 +217,6 @@ def found_by_scan(found, scan, shape):
     for row, b, e in zip(scan[segment].tolist(), begin.tolist(), end.tolist(), strict=True):
         result[row, b:e] = True
     return result
-
-
-def _seen(cells, faces, pose, sight):
-    seen = visibility.seen(cells, faces.outer_m, pose[:2, 3], max_range_m=sight.max_range_m)
-    return seen if sight.field_rad >= 2 * np.pi else seen & visibility.in_field(cells, pose, sight.field_rad)
 
 
 def _found(cells, lines_m, within_m):

@@ -10,6 +10,8 @@ import numpy as np
 CELL_M = 0.02
 """Longest cell of a face: what is seen or found is told to half of it at either end of a stretch."""
 
+_SURVEY_STEP_M = 0.25
+
 
 @dataclass(frozen=True)
 class Sight:
@@ -154,6 +156,25 @@ def seen_by_each(cells, outer_m, positions_m, *, max_range_m):
     return result
 
 
+def seen_from(cells, outer_m, world_from_sensor, sight):
+    """Tell which cells a sensor at a pose (4, 4) sees: (c,) bool; see `seen`."""
+    within = seen(cells, outer_m, world_from_sensor[:2, 3], max_range_m=sight.max_range_m)
+    return within if _is_all_around(sight) else within & in_field(cells, world_from_sensor, sight.field_rad)
+
+
+def seen_by_any(cells, outer_m, survey, sight):
+    """Tell which cells a sensor sees from any of the poses (m, 4, 4) of a survey: (c,) bool.
+
+    One that sees all around is looked at from every place 0.25 m from the last, another one from all.
+    """
+    if _is_all_around(sight) and len(survey):
+        survey = survey[thinned(survey[:, :2, 3], _SURVEY_STEP_M)]
+    result = np.zeros(len(cells.face), bool)
+    for pose in survey:
+        result |= seen_from(cells, outer_m, pose, sight)
+    return result
+
+
 def in_field(cells, world_from_sensor, field_rad):
     """Tell which cells lie in the field of a sensor at a pose (4, 4), half of it to either side: (c,) bool."""
     offset_m = (cells.middle_m - world_from_sensor[:2, 3]) @ world_from_sensor[:2, :2]
@@ -180,6 +201,10 @@ def _sectors(faces_m, position_m):
     begin, finish = np.where(turn > 0, angle.T, angle.T[::-1])
     edges = np.unique(angle)
     return ends, edges, _nearest(edges, begin, finish, ends)
+
+
+def _is_all_around(sight):
+    return sight.field_rad >= 2 * np.pi
 
 
 def _nearest(edges, begin, finish, ends):

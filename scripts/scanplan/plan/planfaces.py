@@ -59,6 +59,8 @@ def trace(pieces, rays, merging, reading, square):
     found = overshoots.without_tails(overshoots.without(found), share=merging.ghost_share)
     found = [f for f in found if f.length_m >= _STUB_M]
     met = facepieces.meet_at_corners(found, corner_m=merging.corner_m)
+    # some faces reach the line that they end at only now
+    met = overshoots.without_tails(met, share=merging.ghost_share)
     met = [f for f in _without_doubles(met, merging) if f.length_m >= _STUB_M]
     lost = [(s.line, *span_m) for s in seen for span_m in s.framed_m.tolist()]
     return Traced(met, len(seen), len(seen) - len({id(f.seen) for f in met}), lost)

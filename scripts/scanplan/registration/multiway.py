@@ -21,6 +21,7 @@ class Settings:
     loop_radius_m: float
     loop_apart: int
     loop_step_m: float
+    loop_step_planar_m: float
     loops_per_scan: int
     loop_min_fitness: float
     edge_sigma_m: float
@@ -113,7 +114,10 @@ def optimise(scan_ids, start, priors, edges, thinned, run, *, planar, limits, se
         )
 
     solution = solve(start)
-    chosen = _chosen(solution.world_from_scan, {(row[edge.source], row[edge.target]) for edge in edges}, settings)
+    linked = {(row[edge.source], row[edge.target]) for edge in edges}
+    # a line of points says less of where it is than a cloud does, and costs less to align
+    step_m = settings.loop_step_planar_m if planar else settings.loop_step_m
+    chosen = _chosen(solution.world_from_scan, linked, step_m, settings)
     jobs = _link_jobs(chosen, scan_ids, solution.world_from_scan, thinned, planar, limits, settings)
     edges += [edge for found in run(loops.link, jobs) for edge in found]
     edges.sort(key=_ends)
@@ -125,9 +129,9 @@ def _ends(edge):
     return edge.source, edge.target
 
 
-def _chosen(world_from_scan, linked, settings):
+def _chosen(world_from_scan, linked, step_m, settings):
     """Pairs of rows to link besides those that are: across anchors a scan may be linked far back already."""
-    xy_m, is_station = world_from_scan[:, :2, 3], loops.stations(world_from_scan, settings.loop_step_m)
+    xy_m, is_station = world_from_scan[:, :2, 3], loops.stations(world_from_scan, step_m)
     near = {"radius_m": settings.loop_radius_m, "apart": settings.loop_apart}
     is_linked = np.isin(np.arange(len(xy_m)), [source for source, _ in linked])
     visits = loops.pairs(xy_m, is_station, **near, most=settings.loops_per_scan)

@@ -71,6 +71,29 @@ def greedy_order(polygons, *, threads=1):
         return _greedy_order(uncovered.Uncovered(polygons, executor if threads > 1 else None))
 
 
+def first_chosen(polygons, count):
+    """Return the first indices of `greedy_order`, without ordering what is left.
+
+    Parameters
+    ----------
+    polygons : (n,) sequence of shapely geometries
+        As for `greedy_order`.
+    count : int, >= 0
+
+    Returns
+    -------
+    (min(n, `count`),) int
+    """
+    left, chosen = uncovered.Uncovered(polygons, None), []
+    while len(chosen) < count and left.gain_m2.max(initial=0.0) > TIE_M2:
+        chosen.append(_best(left))
+        left.choose(chosen[-1])
+        if len(chosen).bit_count() == 1:
+            left.drop_covered()
+    rest = np.flatnonzero(left.remaining)[: count - len(chosen)]
+    return np.concatenate([np.array(chosen, int), rest])
+
+
 def gains_of_order(polygons, order):
     """Return the area (m,) that each polygon of a given order adds to the union of those before it, square metres.
 

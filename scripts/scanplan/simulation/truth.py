@@ -8,7 +8,7 @@ import shapely
 from shapely import LineString
 
 from scanplan import se3
-from scanplan.evaluation import findings, truthfile
+from scanplan.evaluation import visibility
 from scanplan.simulation import buildings, ground, slicing
 
 _DECIMALS = 6
@@ -79,11 +79,11 @@ def with_sight(drawn, survey, sight):
     """
     of = {kind: [i for i, (_, v) in enumerate(drawn) if _hides(v) == kind] for kind in ("inner", "outer")}
     ends_m = {kind: np.array([drawn[i][0].coords for i in rows]).reshape(-1, 2, 2) for kind, rows in of.items()}
-    floor = findings.look(truthfile.TrueFaces(ends_m["inner"], ends_m["outer"]), survey[:0], survey, sight=sight)
-    length_m = np.where(floor.visible, floor.cells.length_m, 0.0)
-    by_face = np.bincount(floor.cells.face, length_m, len(of["inner"]))
+    cells = visibility.cut(ends_m["inner"])
+    length_m = np.where(visibility.seen_by_any(cells, ends_m["outer"], survey, sight), cells.length_m, 0.0)
+    by_face = np.bincount(cells.face, length_m, len(of["inner"]))
     visible_m = dict(zip(of["inner"], by_face.tolist(), strict=True))
-    visible_m |= {i: float(length_m[_on(g, v, floor.cells)].sum()) for i, (g, v) in enumerate(drawn) if _is_wall(v)}
+    visible_m |= {i: float(length_m[_on(g, v, cells)].sum()) for i, (g, v) in enumerate(drawn) if _is_wall(v)}
     return [(g, {**v, "visible_m": round(visible_m[i], 3)} if i in visible_m else v) for i, (g, v) in enumerate(drawn)]
 
 

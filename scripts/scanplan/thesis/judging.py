@@ -7,7 +7,7 @@ A measure takes the tables of one seed, by name, and returns what was measured a
 from scanplan.thesis import driveclaims, roomclaims
 from scanplan.thesis.thesisclaims import CLAIMS
 
-ROOMS, DRIVE, BOTH = "rooms", "drive", "both"
+ROOMS, DRIVE = "rooms", "drive"
 
 
 def judge(kind, survey, tables):
@@ -15,7 +15,7 @@ def judge(kind, survey, tables):
 
     Parameters
     ----------
-    kind : {"rooms", "drive", "both"}
+    kind : {"rooms", "drive"}
     survey : str
         The survey's name, for the table.
     tables : dict of str to dict
@@ -35,18 +35,14 @@ def judge(kind, survey, tables):
         found = measure(tables)
         holds = "" if found.holds is None else ("yes" if found.holds else "no")
         rows += [
-            {"claim": claim.name, "survey": survey, "quantity": quantity, "value": float(value), "holds": holds}
-            for quantity, value in found.values.items()
+            {"claim": claim.name, "survey": survey, "quantity": quantity, "value": float(value), "unit": unit}
+            | {"holds": holds}
+            for quantity, (value, unit) in found.values.items()
         ]
     return rows
 
 
-_OF_BOTH = ("uneven_harms_random",)
-
-
 def _kind(measure):
-    if measure.__name__ in _OF_BOTH:
-        return BOTH
     return ROOMS if measure.__module__ == roomclaims.__name__ else DRIVE
 
 

@@ -2,33 +2,45 @@
 
 import numpy as np
 
+from scanplan.thesis import unevenness
 from scanplan.thesis.claims import (
+    AREA,
+    BUILDING,
+    CORRECT,
+    COUNT,
     FOUND,
     FOUR,
     MANY,
+    METRES,
+    NUMBER,
     OURS,
+    SECONDS,
+    SHARE,
     SUBSET,
     Measured,
+    if_known,
     is_about,
+    is_similar,
     mean_over_first,
     scans_for_99,
     value_at,
 )
-from scanplan.thesis.thesisclaims import ALMOST, stated
+from scanplan.thesis.thesisclaims import COMPLETE, HARM, MUCH, stated
 
 _LATER = 40
+_NAMES = {"cluster_hull": "cluster hulls", "hull": "one hull", "random": "random", "sequential": "sequential"}
 
 
 def sequential_poorest(tables):
     """Compare the orders by what they miss."""
     mean = _mean_of_each(tables, "false_negative")
-    return Measured(mean, all(mean["sequential"] > mean[method] for method in FOUR[:-1]))
+    return Measured(_named(mean), all(mean["sequential"] > mean[method] for method in FOUR[:-1]))
 
 
 def sequential_poorest_match(tables):
     """Compare the orders by the share of cells that agree."""
     mean = _mean_of_each(tables, "correct_match")
-    return Measured(mean, all(mean["sequential"] < mean[method] for method in FOUR[:-1]))
+    return Measured(_named(mean), all(mean["sequential"] < mean[method] for method in FOUR[:-1]))
 
 
 def others_similar(tables):
@@ -36,29 +48,26 @@ def others_similar(tables):
     mean = _mean_of_each(tables, "false_negative")
     others = [mean[method] for method in FOUR[:-1]]
     apart, behind = max(others) - min(others), mean["sequential"] - max(others)
-    return Measured({"range of the other three": apart, "sequential behind them": behind}, apart < behind)
+    return Measured(_shares({"range of the other three": apart, "sequential behind them": behind}), apart < behind)
 
 
 def full_hull_overestimates(tables):
     """Compare the areas of whole scans' hulls with what the scans truly see."""
-    ratio = _area_ratio(tables, "full_hull_m2")
+    areas, some = _seeing(tables["rooms_areas"])
+    ratio = areas["full_hull_m2"] / areas["seen_m2"] if some else np.array([np.nan])
     values = {
-        "hull per seen area, median": np.median(ratio),
-        "share of scans over-estimated": np.mean(np.where(np.isnan(ratio), np.nan, ratio > 1)),
+        "hull per seen area, median": (np.median(ratio), NUMBER),
+        "share of scans over-estimated": (np.mean(ratio > 1) if some else np.nan, SHARE),
     }
-    return Measured(values, np.median(ratio) > 1 if np.isfinite(ratio).all() else None)
+    return Measured(values, if_known(ratio, np.median(ratio) > 1))
 
 
 def cluster_hull_closer(tables):
-    """Compare by how much either kind of hull errs from what the scans truly see."""
-    clusters, full = (_area_ratio(tables, name) for name in ("cluster_hull_m2", "full_hull_m2"))
-    error = [np.median(np.abs(ratio - 1)) for ratio in (clusters, full)]
-    values = {
-        "cluster hulls per seen area, median": np.median(clusters),
-        "relative error, cluster hulls": error[0],
-        "relative error, one hull": error[1],
-    }
-    return Measured(values, error[0] < error[1] if np.isfinite(error).all() else None)
+    """Compare how well the shape of either kind of hull agrees with what the scans truly see."""
+    areas, some = _seeing(tables["rooms_areas"])
+    clusters, full = (np.median(areas[f"{kind}_hull_iou"]) if some else np.nan for kind in ("cluster", "full"))
+    values = {"shared, cluster hulls, median": (clusters, SHARE), "shared, one hull, median": (full, SHARE)}
+    return Measured(values, if_known([clusters, full], 1 - clusters <= MUCH * (1 - full)))
 
 
 def full_hull_99(tables):
@@ -74,96 +83,126 @@ def cluster_hull_99(tables):
 def full_hull_sooner(tables):
     """Compare those two numbers."""
     full, cluster = (scans_for_99(tables[f"rooms_{method}"]) for method in ("hull", "cluster_hull"))
-    return Measured({"one hull": full, "cluster hulls": cluster}, full < cluster)
+    return Measured({"one hull": (full, COUNT), "cluster hulls": (cluster, COUNT)}, full < cluster)
 
 
 def slower_is_better(tables):
     """Compare what later scans of both orders bring."""
     found = [value_at(tables["rooms_walls"], method, OURS, _LATER, FOUND) for method in ("cluster_hull", "hull")]
-    values = {f"walls found by {_LATER}, cluster hulls": found[0], f"walls found by {_LATER}, one hull": found[1]}
-    return Measured(values, found[0] > found[1])
+    names = (f"walls found by {_LATER}, cluster hulls", f"walls found by {_LATER}, one hull")
+    return Measured(_shares(dict(zip(names, found, strict=True))), if_known(found, found[0] > found[1]))
 
 
 def more_clusters_less_area(tables):
-    """Compare the areas by numbers of clusters, at the thesis's subset and at all scans."""
+    """Compare the areas by numbers of clusters, for every number of scans."""
     table = tables["rooms_clusters"]
     numbers = np.unique(table["n_clusters"])
-    growth = [table["covered_m2"][table["n_clusters"] == n] for n in numbers]
-    at = np.array([[covered[min(SUBSET, len(covered)) - 1], covered[-1]] for covered in growth])
+    growth = np.array([table["covered_m2"][table["n_clusters"] == n] for n in numbers])
+    less = (np.diff(growth, axis=0) < 0).all(axis=0)
+    at = {str(SUBSET): SUBSET - 1, "all": -1} if growth.shape[1] > SUBSET else {"all": -1}
     values = {
-        f"m² by {which} scans, {n} clusters": area
-        for n, row in zip(numbers, at, strict=True)
-        for which, area in zip((str(SUBSET), "all"), row, strict=True)
+        f"by {scans} scans, {n} cluster{'s' * bool(n > 1)}": (growth[row, rank], AREA)
+        for scans, rank in at.items()
+        for row, n in ((0, numbers[0]), (-1, numbers[-1]))
     }
-    return Measured(values, bool((np.diff(at, axis=0) < 0).all()))
+    return Measured(values | {"numbers of scans at which it holds": (less.mean(), SHARE)}, bool(less.all()))
 
 
 def more_clusters_more_time(tables):
     """Compare run times by numbers of clusters."""
     times = tables["rooms_times"]
-    of_it = times["task"] == "build_hulls"
-    taken = times["seconds"][of_it][np.argsort(times["size"][of_it])]
-    values = {f"s, {n} clusters": s for n, s in zip(np.sort(times["size"][of_it]), taken, strict=True)}
-    return Measured(values, bool(taken[0] == taken.min() < taken.max() == taken[-1]))
+    of_it = times["task"] == BUILDING
+    numbers, taken = times["size"][of_it], times["seconds"][of_it]
+    taken, numbers = taken[np.argsort(numbers)], np.sort(numbers)
+    values = {f"{n} cluster{'s' * bool(n > 1)}": (s, SECONDS) for n, s in zip(numbers, taken, strict=True)}
+    return Measured(values, bool((np.diff(taken) > 0).all()))
 
 
 def fifteen_almost_complete(tables):
-    """Compare what the thesis's subset finds with what all scans find, and with other orders."""
-    share, walls = _share_of_all(tables, SUBSET), tables["rooms_walls"]
-    oracle, sequential = (value_at(walls, method, OURS, SUBSET, FOUND) for method in ("oracle", "sequential"))
+    """Compare what the thesis's subset finds with the truth, and with what other orders find."""
+    walls = tables["rooms_walls"]
+    found = value_at(walls, "cluster_hull", OURS, SUBSET, FOUND)
     values = {
-        "share of what all find": share,
-        "walls found by the oracle's 15": oracle,
-        "walls found by the first 15 recorded": sequential,
-        "of how many scans": walls["k"].max(),
+        "walls found": found,
+        "length that is wall": value_at(walls, "cluster_hull", OURS, SUBSET, CORRECT),
+        "walls found by all scans": value_at(walls, "cluster_hull", OURS, np.inf, FOUND),
+        "walls found by the oracle's 15": value_at(walls, "oracle", OURS, SUBSET, FOUND),
+        "walls found by the first 15 recorded": value_at(walls, "sequential", OURS, SUBSET, FOUND),
     }
-    return Measured(values, _almost(share))
+    scans = {"of how many scans": (walls["k"].max(), COUNT)}
+    return Measured(_shares(values) | scans, if_known(found, found >= COMPLETE))
 
 
 def tenth_little_loss(tables):
     """Compare what a tenth of the scans finds with what all find."""
     tenth = max(1, tables["rooms_walls"]["k"].max() // 10)
-    share = _share_of_all(tables, tenth)
-    return Measured({"scans": tenth, "share of what all find": share}, _almost(share))
+    some, every = (
+        [value_at(tables["rooms_walls"], "cluster_hull", OURS, k, column) for column in (FOUND, CORRECT)]
+        for k in (tenth, np.inf)
+    )
+    values = {
+        "walls found, a tenth": some[0],
+        "walls found, all": every[0],
+        "length that is wall, a tenth": some[1],
+        "length that is wall, all": every[1],
+    }
+    return Measured({"scans": (tenth, COUNT)} | _shares(values), is_similar(some, every))
+
+
+def uneven_harms_random(tables):
+    """Compare what both orders lose where the scans of a crowd were taken many times."""
+    values, losses = {}, {}
+    for order, said in ((unevenness.RANDOM, "random"), (unevenness.AREA, "cluster hulls")):
+        even_m, losses[order] = unevenness.lost(tables["rooms_unevenness"], order)
+        values[f"seen, {said}, each scan once"] = even_m, METRES
+        for times, lost in list(zip(unevenness.REPEATS, losses[order], strict=True))[1:]:
+            values[f"lost, {said}, crowd {times} times"] = lost, SHARE
+    random, area = losses[unevenness.RANDOM], losses[unevenness.AREA]
+    suffers = (np.diff(random) > 0).all() and random[-1] > HARM
+    return Measured(values, if_known([*random, *area], suffers and (area <= HARM).all()))
 
 
 def first_sixty(tables):
     """Tell how the walls of the first 60 scans agree with the truth."""
-    columns = ("false_negative", "correct_match", "false_positive", "n_walls", FOUND)
-    names = ("false negative", "correct match", "false positive", "walls", "walls found (0.10 m)")
-    return Measured(
-        {
-            name: value_at(tables["rooms_walls"], "cluster_hull", OURS, MANY, column)
-            for name, column in zip(names, columns, strict=True)
-        }
+    columns = ("false_negative", "correct_match", "false_positive", FOUND, CORRECT)
+    names = (
+        "false negative",
+        "correct match",
+        "false positive",
+        "walls found (0.10 m)",
+        "length that is wall (0.10 m)",
     )
+    value = {
+        name: value_at(tables["rooms_walls"], "cluster_hull", OURS, MANY, column)
+        for name, column in zip(names, columns, strict=True)
+    }
+    segments = value_at(tables["rooms_walls"], "cluster_hull", OURS, MANY, "n_walls")
+    return Measured(_shares(value) | {"segments": (segments, COUNT)})
 
 
 def survey_of_rooms(tables):
     """Count the scans of the survey."""
-    return Measured({"scans": tables["rooms_walls"]["k"].max()})
+    return Measured({"scans": (tables["rooms_walls"]["k"].max(), COUNT)})
 
 
 def _mean_of_each(tables, column):
     return {method: mean_over_first(tables["rooms_walls"], method, column) for method in FOUR}
 
 
-def _area_ratio(tables, name):
-    """Return the ratio for each scan that sees any area; NaN alone where none does."""
-    areas, some = tables["rooms_areas"], tables["rooms_areas"]["seen_m2"] > 0
-    return areas[name][some] / areas["seen_m2"][some] if some.any() else np.array([np.nan])
+def _named(mean):
+    return {_NAMES[method]: (value, SHARE) for method, value in mean.items()}
+
+
+def _shares(values):
+    return {name: (value, SHARE) for name, value in values.items()}
+
+
+def _seeing(areas):
+    """Return the rows of the scans that see any area, and whether there are any."""
+    some = areas["seen_m2"] > 0
+    return {name: column[some] for name, column in areas.items()}, some.any()
 
 
 def _at_99(selection, claim):
     ours, quantity = scans_for_99(selection), "scans for 99 %"
-    return Measured({quantity: ours}, is_about(ours, stated(claim, quantity)))
-
-
-def _share_of_all(tables, k):
-    """Return what the first k scans find per what all find; NaN where those find nothing."""
-    some, every = (value_at(tables["rooms_walls"], "cluster_hull", OURS, size, FOUND) for size in (k, np.inf))
-    return some / every if every > 0 else np.nan
-
-
-def _almost(share):
-    return bool(share >= ALMOST) if np.isfinite(share) else None
+    return Measured({quantity: (ours, COUNT)}, is_about(ours, stated(claim, quantity)))

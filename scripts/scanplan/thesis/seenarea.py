@@ -25,3 +25,9 @@ def polygons(faces, places_m, *, max_range_m):
     touching = np.array([shapely.Polygon(outline) for outline in outlines])
     seen = shapely.make_valid(touching, method="structure", keep_collapsed=False)
     return shapely.intersection(seen, shapely.buffer(shapely.points(places_m), max_range_m, quad_segs=64))
+
+
+def shared(polygons, seen):
+    """Return intersection over union of polygons (n,) with what their scans see (n,); 0 where both are empty."""
+    both, either = (shapely.area(overlay(polygons, seen)) for overlay in (shapely.intersection, shapely.union))
+    return np.divide(both, either, out=np.zeros(len(both)), where=either > 0)

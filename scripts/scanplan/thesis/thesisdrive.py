@@ -6,15 +6,15 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from scanplan.report import figures, topview
-from scanplan.thesis.claims import ITERATIVE, OURS
+from scanplan.thesis.claims import CHOOSING, ITERATIVE, ORDERING, OURS, PLAIN, PLAIN_CLUSTERS, SUBSET
 
-_COLOURS = {OURS: "#0072b2", ITERATIVE: "#d55e00"}
-_NAMES = {OURS: "cluster RANSAC", ITERATIVE: "iterative RANSAC"}
+_COLOURS = {OURS: "#0072b2", ITERATIVE: "#d55e00", PLAIN_CLUSTERS: "#0072b2", PLAIN: "#d55e00"}
+_NAMES = dict.fromkeys((OURS, PLAIN_CLUSTERS), "cluster RANSAC") | dict.fromkeys((ITERATIVE, PLAIN), "iterative RANSAC")
 _CIRCLE_M, _CROWDED = 2.0, 0.75
 
 
 def selection_figure(times):
-    """Draw the time of the greedy order against the number of scans (figure 5.8).
+    """Draw the times of choosing the subset and of the whole greedy order against the number of scans (figure 5.8).
 
     Parameters
     ----------
@@ -25,12 +25,14 @@ def selection_figure(times):
     -------
     matplotlib.figure.Figure
     """
-    of_it = times["task"] == "order_scans"
     figure = Figure(figsize=(6.4, 3.4), layout="constrained")
     axes = figure.add_subplot()
-    axes.plot(times["size"][of_it], times["seconds"][of_it], "o-", ms=3.5, lw=1.2, color=_COLOURS[OURS])
+    for task, label, colour in ((CHOOSING, f"to choose {SUBSET}", _COLOURS[OURS]), (ORDERING, "to order all", "0.55")):
+        of_it = times["task"] == task
+        axes.plot(times["size"][of_it], times["seconds"][of_it], "o-", ms=3.5, lw=1.2, color=colour, label=label)
     axes.set(xlim=(0, None), ylim=(0, None))
-    _named(axes, "number of scans", "processor time of the whole greedy order (s)")
+    _named(axes, "number of scans", "processor time (s)")
+    axes.legend(fontsize=8, frameon=False)
     return figure
 
 
@@ -57,7 +59,8 @@ def times_figure(times):
     """Draw time and cumulative walls of both extractors, scan by scan (figure 5.10); `times` as above."""
     figure = Figure(figsize=(9.6, 3.4), layout="constrained")
     frames = figure.subplots(1, 2)
-    for extractor, colour in _COLOURS.items():
+    for extractor in (PLAIN_CLUSTERS, PLAIN):
+        colour = _COLOURS[extractor]
         of_it = np.flatnonzero(times["task"] == extractor)
         of_it = of_it[np.argsort(times["item"][of_it])]
         number, milliseconds = np.arange(1, len(of_it) + 1), 1e3 * times["seconds"][of_it]

@@ -5,6 +5,7 @@ from html import escape
 
 import numpy as np
 
+from scanplan.thesis.claims import COUNT, NUMBER, SHARE
 from scanplan.thesis.thesisclaims import CLAIMS
 from scanplan.thesis.thesisshown import FIGURES, STEPS
 
@@ -12,7 +13,8 @@ _STYLE = """
 body { font: 15px/1.45 system-ui, sans-serif; max-width: 68rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
 table { border-collapse: collapse; margin: .6rem 0; font-size: 13.5px; }
 th, td { border-bottom: 1px solid #ddd; padding: .3rem .6rem; text-align: left; vertical-align: top; }
-td:nth-child(3) { min-width: 18rem; }
+td:nth-child(3) { min-width: 25rem; }
+td:nth-child(4), .value { white-space: nowrap; }
 td.number { min-width: 0 !important; text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
 figure { margin: 1.2rem 0 2.4rem; } figcaption { font-size: 13.5px; }
 svg { max-width: 100%; height: auto; }
@@ -21,11 +23,12 @@ nav { font-size: 13.5px; }
 """
 
 
+_UNKNOWN = "not measured"
 _BEYOND = (
-    "What the first scans of every order find of the visible walls (0.10 m) per what the oracle's find, and in brackets"
-    " what they find; survey of the rooms, first seed. The oracle knows what extraction finds in every scan and takes"
-    " greedily what adds most: at least 63 % (1 - 1/e) of what the best choice of as many scans finds. The thesis's"
-    " orders are cluster hulls, one hull per scan, random and as recorded."
+    "What the first scans of every order find of the visible walls (0.10 m) per what the oracle's find: mean over the"
+    " seeds of the survey of the rooms, in brackets their range. The oracle knows what extraction finds in every scan"
+    " and takes greedily what adds most: at least 63 % (1 - 1/e) of what the best choice of as many scans finds. The"
+    " thesis's orders are cluster hulls, one hull per scan, random and as recorded."
 )
 
 
@@ -64,7 +67,8 @@ def page(figures, beyond, claims, steps, limited):
         claims_table(claims, [claim for claim in CLAIMS if not claim.criterion]),
         '<h2 id="table">Table 5.1: computation time required for each step</h2>',
         steps_table(steps, limited),
-        "<p><small>First seed. Our times are of whole jobs: starting Python and reading and writing tables is in them;"
+        "<p><small>First seed. Our times are of whole jobs: starting Python and reading and writing tables is in them,"
+        " and the last orders all scans, of which the first 15 are the subset;"
         " the data after the hulls are the table of hulls.</small></p>",
         "<h2>Figures</h2>",
         *(_figure(figure, figures[figure.file], claims) for figure in FIGURES),
@@ -79,7 +83,8 @@ def claims_table(claims, chosen):
     """Return the table of some claims: what is stated, what was measured, and the verdict."""
     rows = [
         f"<tr><td>{escape(claim.states)}<br><small>{escape(claim.where)}</small></td>"
-        f"<td>{_criterion(claim)}</td><td>{_measured(claims, claim)}</td><td>{_verdict(claims, claim)}</td></tr>"
+        f"<td>{_criterion(claims, claim)}</td><td>{_measured(claims, claim)}</td>"
+        f"<td>{_verdict(claims, claim)}</td></tr>"
         for claim in chosen
     ]
     head = "<tr><th>The thesis</th><th>Criterion, stated number</th><th>Ours</th><th>Verdict</th></tr>"
@@ -107,10 +112,23 @@ def verdict(holds):
     return f"holds for {n_yes} of {n} seeds", "some"
 
 
-def said(values):
-    """Return the mean of values, and their range where they differ, in digits that suit their size."""
-    shown = [_digits(value) for value in (np.mean(values), np.min(values), np.max(values))]
-    return shown[0] if shown[1] == shown[2] else f"{shown[0]} ({shown[1]} to {shown[2]})"
+def said(values, unit=NUMBER):
+    """Return the mean of values, and their range where they differ, as suits their unit (see `claims`).
+
+    Shares are per cent, counts whole, and the largest number has three figures at most.
+    """
+    told = np.array([np.mean(values), np.min(values), np.max(values)]) * (100 if unit == SHARE else 1)
+    if not np.isfinite(told).all():
+        return _UNKNOWN
+    decimals = 0 if unit == COUNT or (told == told.round()).all() else _decimals(np.abs(told).max())
+    shown = [f"{value + 0.0:,.{decimals}f}" for value in told.round(decimals)]
+    text = shown[0] if shown[1] == shown[2] else f"{shown[0]} ({shown[1]} to {shown[2]})"
+    return text if unit in (COUNT, NUMBER) else f"{text} {unit}"
+
+
+def _decimals(value):
+    """Return how many decimals give a positive number three figures."""
+    return max(0, 2 - int(np.floor(np.log10(value))))
 
 
 def _figure(figure, svg, claims):
@@ -139,15 +157,26 @@ def _rows(claims, claim):
     return {name: values[of_it] for name, values in claims.items()}
 
 
-def _criterion(claim):
-    stated = [f"{escape(quantity)}: {_digits(value)}" for quantity, value in claim.stated.items()]
+def _criterion(claims, claim):
+    units = _units(claims, claim)
+    stated = [
+        f"{escape(quantity)}: {said([value], units.get(quantity, NUMBER))}" for quantity, value in claim.stated.items()
+    ]
     return "<br>".join([escape(claim.criterion)] * bool(claim.criterion) + stated)
 
 
 def _measured(claims, claim):
     rows = _rows(claims, claim)
-    quantities = sorted(set(rows["quantity"].tolist()), key=_by_number)
-    return "<br>".join(f"{escape(q)}: {said(rows['value'][rows['quantity'] == q])}" for q in quantities)
+    units = _units(claims, claim)
+    quantities = sorted(units, key=_by_number)
+    values = {q: said(rows["value"][rows["quantity"] == q], units[q]) for q in quantities}
+    return "<br>".join(f'{escape(q)}: <span class="value">{escape(value)}</span>' for q, value in values.items())
+
+
+def _units(claims, claim):
+    """Return the unit of every quantity of a claim."""
+    rows = _rows(claims, claim)
+    return dict(zip(rows["quantity"].tolist(), rows["unit"].tolist(), strict=True))
 
 
 def _by_number(text):
@@ -164,7 +193,7 @@ def _judged(claims, claim):
 def _verdict(claims, claim):
     text, kind = verdict(_judged(claims, claim))
     if claim.criterion and not text:
-        return "not measured"
+        return _UNKNOWN
     return f'<span class="{kind}">{text}</span>'
 
 
@@ -191,12 +220,3 @@ def _size(n_bytes):
         if n_bytes >= factor:
             return f"{n_bytes / factor:.{digits}f} {unit}"
     return f"{n_bytes / 1e3:.0f} kB"
-
-
-def _digits(value):
-    value = float(value)
-    if not np.isfinite(value):
-        return "none"
-    if value == round(value):
-        return f"{value:,.0f}"
-    return f"{value:,.0f}" if abs(value) >= 100 else f"{value:.4g}"

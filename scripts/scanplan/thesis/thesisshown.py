@@ -67,7 +67,7 @@ FIGURES = (
         "Floor plan extracted with the first 15 scans if analyzed in the order they were collected, and the order"
         " suggested by our algorithm",
         "Walls by cluster RANSAC in the first 15 scans of both orders.",
-        ("fifteen_almost_complete", "tenth_little_loss", "uneven_harms_random"),
+        ("fifteen_almost_complete", "tenth_little_loss"),
     ),
     Figure(
         "5.6",
@@ -84,7 +84,7 @@ FIGURES = (
     Figure(
         "5.8",
         "Time required to compute the subset selection for different number of scans.",
-        "Time of the whole greedy order by cluster hulls against the number of scans of the drive.",
+        "Time to choose 15 scans by cluster hulls, and to order all, against the number of scans of the drive.",
         ("selection_time",),
     ),
     Figure(
@@ -97,19 +97,20 @@ FIGURES = (
     Figure(
         "5.10",
         "Time comparison and Cumulative number of walls extracted",
-        "Time and walls of both extractors, scan by scan of the drive, one process.",
+        "Time and walls of both extractors as in the thesis (3.4, 5.3), scan by scan of the drive, one process.",
         ("fewer_walls", "steadier_times", "time_by_size", "several_per_wall"),
     ),
     Figure(
         "5.11",
         "Walls extracted superimposed on real data, by selecting a subset of 15 scans",
-        "Walls of the first 15 scans by cluster hulls over the registered points of the drive, by both extractors.",
+        "Walls of the first 15 scans by cluster hulls over the registered points of the drive, by both extractors of"
+        " ours.",
         ("fifteen_like_all",),
     ),
     Figure(
         "5.12",
         "Walls extracted superimposed on real data, by using all 90 available scans",
-        "Walls of all registered scans of the drive, by both extractors.",
+        "Walls of all registered scans of the drive, by both extractors of ours.",
         ("fifteen_like_all", "fewer_walls"),
     ),
 )

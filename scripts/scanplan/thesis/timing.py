@@ -10,8 +10,9 @@ import numpy as np
 
 from scanplan.extraction import walls
 from scanplan.selection import greedy, hulls
+from scanplan.thesis.claims import BUILDING, CHOOSING, ORDERING, SUBSET, THINNED
 
-_REPEATS = 3
+_REPEATS, _PARTS = 3, (1, 2, 4, 8)
 
 
 def spread(rows, count):
@@ -20,7 +21,7 @@ def spread(rows, count):
     return rows[np.unique(np.linspace(0, len(rows) - 1, min(count, len(rows))).round().astype(int))]
 
 
-def extractor(task, method, store, registered, scan_ids, settings, origin):
+def extractor(task, method, store, registered, scan_ids, settings, origin, *, part=1):
     """Time a wall extractor scan by scan: of each the quickest of three calls.
 
     Parameters
@@ -37,6 +38,8 @@ def extractor(task, method, store, registered, scan_ids, settings, origin):
         Keywords of the method's `Settings`.
     origin : path-like
         Of the table of registration, for messages.
+    part : int
+        So many points per point that is kept, those drawn at random.
 
     Yields
     ------
@@ -45,17 +48,29 @@ def extractor(task, method, store, registered, scan_ids, settings, origin):
     """
     sensors, chosen = walls.sensor_positions(registered, scan_ids, origin), method.Settings(**settings)
     for number, (scan_id, xyz_m) in enumerate(store.scans(scan_ids)):
+        xyz_m = thinned(xyz_m, part, scan_id)
         call = partial(method.extract, scan_id, xyz_m, planar=store.planar, settings=chosen, **sensors[scan_id])
         if number == 0:
             # the first call loads and compiles what all others use
             call()
-        # what disturbs a call can only lengthen it
-        seconds, found = min((_timed(call) for _ in range(_REPEATS)), key=lambda timed: timed[0])
+        seconds, found = _quickest(call)
         yield {"task": task, "size": len(xyz_m), "item": scan_id, "found": len(found), "seconds": seconds}
 
 
+def by_size(task, *arguments):
+    """Time an extractor on whole scans and on half, a quarter and an eighth of their points; see `extractor`."""
+    for part in _PARTS:
+        yield from extractor(THINNED + task, *arguments, part=part)
+
+
+def thinned(xyz_m, part, seed):
+    """Return one of `part` points (n, 3), in their order, drawn at random but for the seed."""
+    n = max(1, len(xyz_m) // part)
+    return xyz_m[np.sort(np.random.default_rng(seed).choice(len(xyz_m), n, replace=False))]
+
+
 def selection(columns, sizes):
-    """Time the greedy ordering of 1, 2, ... scans, spread over the survey.
+    """Time choosing the thesis's subset of 1, 2, ... scans, spread over the survey, and ordering all of them.
 
     Parameters
     ----------
@@ -67,18 +82,21 @@ def selection(columns, sizes):
     Yields
     ------
     dict
-        A row of `schemas.TIMES`: `size` is the number of scans, `found` as many.
+        A row of `schemas.TIMES`: `size` is the number of scans, `found` those ordered.
     """
     _, polygons = hulls.scan_polygons(columns)
     greedy.greedy_order(polygons[:2])
     for size in sizes:
         chosen = polygons[spread(np.arange(len(polygons)), size)]
         seconds, order = _timed(greedy.greedy_order, chosen)
-        yield {"task": "order_scans", "size": size, "item": 0, "found": len(order.order), "seconds": seconds}
+        yield {"task": ORDERING, "size": size, "item": 0, "found": len(order.order), "seconds": seconds}
+        if size > SUBSET:
+            seconds, subset = _quickest(partial(greedy.first_chosen, chosen, SUBSET))
+            yield {"task": CHOOSING, "size": size, "item": 0, "found": len(subset), "seconds": seconds}
 
 
 def clusters(store, scan_ids, numbers, **sampling):
-    """Time making the hulls of scans and ordering them, for several numbers of clusters.
+    """Time making the hulls of scans and ordering them, for several numbers of clusters: the quickest of three calls.
 
     Yields
     ------
@@ -88,8 +106,8 @@ def clusters(store, scan_ids, numbers, **sampling):
     points = [(scan_id, xyz_m) for scan_id, xyz_m in store.scans(scan_ids)]
     _hulls_and_order(points[:1], n_clusters=2, **sampling)
     for number in numbers:
-        seconds, order = _timed(_hulls_and_order, points, n_clusters=number, **sampling)
-        yield {"task": "build_hulls", "size": number, "item": 0, "found": len(order.order), "seconds": seconds}
+        seconds, order = _quickest(partial(_hulls_and_order, points, n_clusters=number, **sampling))
+        yield {"task": BUILDING, "size": number, "item": 0, "found": len(order.order), "seconds": seconds}
 
 
 def _hulls_and_order(points, **settings):
@@ -97,7 +115,12 @@ def _hulls_and_order(points, **settings):
     return greedy.greedy_order(hulls.scan_polygons(hulls.concatenated(parts))[1])
 
 
-def _timed(function, *arguments, **keywords):
+def _quickest(call):
+    """Return the least processor time of some calls and a result: what disturbs a call can only lengthen it."""
+    return min((_timed(call) for _ in range(_REPEATS)), key=lambda timed: timed[0])
+
+
+def _timed(function, *arguments):
     started = time.process_time()
-    result = function(*arguments, **keywords)
+    result = function(*arguments)
     return time.process_time() - started, result
