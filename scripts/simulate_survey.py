@@ -53,10 +53,7 @@ if __name__ == "__main__":
     with stagelog.to_file(snakemake.log[0]):
         simulate_survey(
             snakemake.input.building,
-            snakemake.output.recording,
-            snakemake.output.truth,
-            snakemake.output.true_poses,
-            snakemake.output.true_trajectory,
+            *(snakemake.output[name] for name in ("recording", "truth", "true_poses", "true_trajectory")),
             **snakemake.params.settings,
             threads=snakemake.threads,
         )

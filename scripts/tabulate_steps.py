@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from scanplan import schemas, stagelog, tables
+from scanplan.evaluation import benchmarks
 from scanplan.recordings import tum
 
 
@@ -33,7 +34,7 @@ def tabulate_steps(recordings, true_poses, scans, built, selection, times, outpu
     rows = {
         "step": np.arange(1, 5),
         "name": ["Data collection", "Selecting and registering scans", "Hull creation", "Cluster subset selection"],
-        "seconds": np.array([(t_ns[-1] - t_ns[0]) / 1e9, *(sum(map(_seconds, files)) for files in times)]),
+        "seconds": np.array([(t_ns[-1] - t_ns[0]) / 1e9, *(sum(map(benchmarks.seconds, files)) for files in times)]),
         "n_scans": np.array([len(t_ns), kept, kept, len(chosen)]),
         "n_bytes": np.array(n_bytes).astype(np.int64),
     }
@@ -43,11 +44,6 @@ def tabulate_steps(recordings, true_poses, scans, built, selection, times, outpu
 
 def _size(path):
     return Path(path).stat().st_size
-
-
-def _seconds(benchmark):
-    """The run time in a file that Snakemake measured."""
-    return float(Path(benchmark).read_text().splitlines()[1].split("\t")[0])
 
 
 if __name__ == "__main__":
