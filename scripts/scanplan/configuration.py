@@ -17,6 +17,8 @@ _ORDERED = [
     (("input", "max_range_m"), ("input", "min_range_m")),
     (("registration", "n_previous"), ("registration", "icp_targets")),
     (("plan", "merge", "merge_distance_m"), ("plan", "merge", "tolerance_m")),
+    (("plan", "openings", "max_opening_m"), ("plan", "openings", "min_opening_m")),
+    (("selection", "visibility", "max_height_m"), ("selection", "visibility", "min_height_m")),
 ]
 
 

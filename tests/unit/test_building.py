@@ -161,6 +161,13 @@ def test_a_planned_way_begins_where_asked_or_by_the_seed():
         building.routed(found, "room.ifc", route="rooms", clearance_m=0.3, start_m=[0.05, 0.05])
 
 
+def test_a_start_of_a_given_way_is_refused():
+    drawing = building.load(drawn.text(drawn.WALLS, drawn.WAY).encode(), Path("a.geojson"), slice_height_m=0.4)
+    with pytest.raises(StageError, match="start_m random is where a planned way begins"):
+        building.routed(drawing, "a", route="given", start_m="random", clearance_m=0.3)
+    assert len(building.routed(model_of(), "m", route="given", start_m="random", clearance_m=0.3).waypoints_m) >= 2
+
+
 def test_a_sensor_above_its_storey_is_refused():
     model = ifcfile.parse(ifcmaking.model(("Ground", "Upper")), "made.ifc")
     with pytest.raises(StageError, match=r"made\.ifc: the sensor is 3\.5 m above the floor.*lower simulate\.mount"):

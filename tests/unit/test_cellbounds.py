@@ -5,8 +5,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import box
 
-from hullmaking import hull_sets, scattered
-from scanplan.selection import cellbounds
+from hullmaking import hull_sets
+from scanplan.selection import cellbounds, greedy
 
 
 def polygons_of(geometries):
@@ -27,13 +27,6 @@ def test_a_cell_that_both_cross_is_all_that_makes_the_bound_loose():
 
 
 def test_nothing_is_left_where_all_is_covered():
-    polygons = polygons_of(scattered(20))
-    bounds = cellbounds.CellBounds(polygons)
-    bounds.cover(shapely.get_parts(shapely.union_all(polygons)))
-    outline_m = shapely.union_all(polygons).length
-    left_m2 = bounds.area_m2(np.arange(len(polygons)))
-    # what the outline's cells may hold; inside there is nothing
-    assert left_m2.max() <= bounds._edge_m * outline_m
     full = cellbounds.CellBounds(np.array([box(0, 0, 9, 9), box(3, 3, 6, 6)]))
     full.cover(np.array([box(0, 0, 9, 9)]))
     assert full.area_m2(np.array([1])) == pytest.approx([0], abs=1e-3)
@@ -44,6 +37,19 @@ def test_a_hole_is_not_covered():
     bounds = cellbounds.CellBounds(np.array([ring, middle]))
     bounds.cover(np.array([ring]))
     assert bounds.area_m2(np.array([1])) == pytest.approx([9], abs=1e-3)
+
+
+@pytest.mark.parametrize(("side_m", "size_m"), [(1e4, 0.1), (300.0, 0.01)])
+def test_small_parts_among_large_ones_keep_their_areas(side_m, size_m):
+    """A cell is as large as the large part wants it, and a small one fills next to nothing of it."""
+    large = shapely.Polygon([(0, 0), (side_m, 0), (0, side_m)])
+    corners_m = 0.9 * side_m + np.arange(4) * 10 * size_m
+    small = shapely.box(corners_m, corners_m, corners_m + size_m, corners_m + size_m * np.linspace(1, 1.3, 4))
+    polygons = np.array([large, *small])
+    bounds = cellbounds.CellBounds(polygons)
+    bounds.cover(np.array([large]))
+    assert (bounds.area_m2(np.arange(1, 5)) >= shapely.area(small)).all()
+    assert greedy.greedy_order(polygons).order.tolist() == [0, 4, 3, 2, 1]
 
 
 @settings(max_examples=150, deadline=None)

@@ -37,6 +37,11 @@ def test_another_unit_is_told_and_taken_when_stated(unit, factor):
     np.testing.assert_allclose(np.sort(taken, 0), np.sort(BOX, 0), atol=1e-5)
 
 
+def test_a_tower_is_not_taken_for_inches():
+    with pytest.raises(StageError, match=r"set simulate\.site\.unit, or cut out a floor$"):
+        meshfile.parse(boxmaking.written(BOX * [10, 10, 40], "stl"), ".stl", "tower.stl")
+
+
 @pytest.mark.parametrize(("factor", "unit"), [(0.001, "m"), (1.0, "mm"), (1e6, "mm")])
 def test_no_building_is_of_that_size(factor, unit):
     with pytest.raises(StageError, match=r"spans .* m.*simulate\.site\.unit"):

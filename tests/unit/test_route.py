@@ -133,3 +133,15 @@ def test_the_ring_office_is_what_its_script_draws(project_root):
     spec.loader.exec_module(script)
     drawn_by_script = json.loads(json.dumps(script.drawing()))
     assert json.loads((folder / "ring_office.geojson").read_text())["features"] == drawn_by_script
+
+
+@pytest.mark.parametrize(
+    ("start_m", "reached"), [(None, "east"), ([1.0, 1.0], "west"), (np.array([1.0, 1.0]), "west"), ("random", "east")]
+)
+def test_ground_with_a_neck_too_narrow_for_the_grid_is_driven_in_part(start_m, reached):
+    """Two rooms joined by a neck 0.63 m wide; with 0.3 m to either side a strip of 3 cm is left of it."""
+    rooms = [("west", shapely.box(0, 0, 4, 4)), ("east", shapely.box(6, 0, 12, 4))]
+    floor = shapely.union_all([shapely.box(4, 1.7, 6, 2.33), *(room for _, room in rooms)])
+    here = (floor, shapely.Polygon(), rooms, "a")
+    found = route.plan(*here, kind="rooms", clearance_m=0.3, start_m=start_m, seed=1)
+    assert found.reached == (reached,) and len(found.missed) == 1

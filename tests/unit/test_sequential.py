@@ -243,19 +243,13 @@ def test_scans_are_judged_by_those_that_may_show_the_same():
     assert [other.scan_id for other in links.comparable(scan, previous[:3], limits)] == [0, 2]
 
 
-def test_a_floor_on_a_floor_is_no_fit():
-    """The second scan shows the same floor, and of the walls what no other shows."""
+@pytest.mark.parametrize(("wall_of_second", "reason"), [("east", "kept"), ("north", "low_refined_fitness")])
+def test_what_faces_elsewhere_is_no_fit(wall_of_second, reason):
+    """Two scans with a bit of floor in common: of the same wall, or of two that face differently."""
     rng = np.random.default_rng(3)
-    floor = np.column_stack([rng.uniform(-4, 4, (6000, 2)), np.full(6000, -0.4)])
-    pillars = [
-        [
-            np.column_stack([rng.normal(x, 0.05, 500), rng.normal(y, 0.05, 500), rng.uniform(0, 1, 500)])
-            for x, y in places
-        ]
-        for places in (((3, 3), (-3, 3)), ((3, -3), (-3, -3)))
-    ]
-    scans = [np.concatenate([floor, *two]) for two in pillars]
-    judged = register(scans, [np.eye(4)] * 2, False, min_prior_fitness=0.2, min_refined_fitness=0.2)
-    assert judged[1].kept
-    limits = {"min_prior_fitness": 0.2, "min_refined_fitness": 0.2, "min_facing_fitness": 0.99}
-    assert register(scans, [np.eye(4)] * 2, False, **limits)[1].reason == "low_refined_fitness"
+    floor = np.column_stack([rng.uniform(-4, 4, (300, 2)), np.full(300, -0.4)])
+    along, up = rng.uniform(-3, 3, 2000), rng.uniform(0, 1, 2000)
+    walls = {"east": [np.full(2000, 3.0), along, up], "north": [along, np.full(2000, 3.0), up]}
+    scans = [np.concatenate([floor, np.column_stack(walls[name])]) for name in ("east", wall_of_second)]
+    limits = {"min_prior_fitness": 0.0, "min_refined_fitness": 0.0, "min_facing_fitness": 0.3}
+    assert register(scans, [np.eye(4)] * 2, False, **limits)[1].reason == reason

@@ -128,6 +128,9 @@ def _door_between(one, other, scan, limits):
     start_m, end_m = other[2:4], one[0:2]
     if np.hypot(*(end_m - start_m)) <= limits.corner_m:
         return True
+    if (end_m - start_m) @ (one[2:4] - one[0:2]) < 0:
+        # side by side: one stands before the other
+        return False
     return sightlines.leads_on(scan, start_m, end_m, limits.furniture_depth_m)
 
 

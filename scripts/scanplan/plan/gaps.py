@@ -150,7 +150,7 @@ def _look(seen, span_m, reading, planar):
     hit_z_m = seen.hit_z_m[seen.hits(low_m, high_m)]
     sill_m, lintel_m = _heights_m(seen.pass_z_m[passes], hit_z_m, reading)
     step_m = _step_m(seen, low_m, high_m, float(np.percentile(seen.pass_z_m[passes], _HEIGHT_PERCENTILES[0])))
-    return n_rays, min(open_share, 1.0), max(sill_m, step_m) if step_m > 0 else sill_m, lintel_m
+    return n_rays, min(open_share, 1.0), float(np.fmax(sill_m, step_m)) if step_m > 0 else sill_m, lintel_m
 
 
 def _step_m(seen, low_m, high_m, lowest_m):

@@ -169,7 +169,10 @@ class Registrar:
         return Verdict(True, "kept", refined.world_from_cloud @ level_from_sensor, before, after, rmse_m), edges
 
     def _faces_any(self, edges):
-        """Whether the surfaces of a scan agree with those of another that it is aligned to: any floor lies on any."""
+        """Whether the surfaces of a scan agree with those of another that it is aligned to.
+
+        A floor agrees with any floor, so this tells of scans that show little of it, as a few level beams do.
+        """
         # in the plane a few beams on a wall often give no normal, and there is no floor
         return self.planar or max(edge.fitness for edge in edges) >= self.settings.min_facing_fitness
 

@@ -52,7 +52,7 @@ def told_sizes(*measured):
 def _best_first(measured):
     methods, mean = sorted(set(measured[0]["method"].tolist())), {}
     for method in methods:
-        extractors = set(measured[0]["extractor"].tolist())
+        extractors = sorted(set(measured[0]["extractor"].tolist()))
         mean[method] = np.mean([_of_all(measured, extractor, [method])[0] for extractor in extractors])
     return sorted(methods, key=lambda method: (method != ORACLE, -mean[method], method))
 

@@ -86,7 +86,9 @@ def rooms(plan):
         [number(room, 0), number(area_m2, 2), number(perimeter_m, 2), "yes" if closed else "no", number(n_scans, 0)]
         for room, area_m2, perimeter_m, closed, n_scans in zip(*(plan.rooms[c].tolist() for c in names), strict=True)
     ]
-    return table("rooms", ["#room", "#area (m²)", "#perimeter (m)", "closed", "#scans inside"], rows, sortable=True)
+    return table(
+        "rooms", ["#room", "#area (m²)", "#perimeter (m)", "closed", "#scans that see it"], rows, sortable=True
+    )
 
 
 def registration(verdicts, shift_m):

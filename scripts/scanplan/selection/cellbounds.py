@@ -16,6 +16,7 @@ _CELLS_PER_SIDE = 8  # of a part of common size; more are tighter, and slower to
 _MOST_CELLS, _MOST_CELLS_PER_PART = 10**6, 400
 _AT_A_TIME = 4096
 _ROUNDING = 1e-6  # of a cell, added to its areas: sums differ by less, and so do 32-bit numbers
+_NOISE = 1e-9  # of a cell: less is not told from nothing, and not listed
 
 
 class CellBounds:
@@ -44,7 +45,10 @@ class CellBounds:
         self._cell = np.concatenate(
             [self._number(at).astype(np.int32) for _, at, _ in filled] + [np.zeros(0, np.int32)]
         )
-        self._share = np.concatenate([(share + _ROUNDING).astype(np.float32) for *_, share in filled] + [np.zeros(0)])
+        no_share = np.zeros(0, np.float32)
+        self._share = np.concatenate([(share + _ROUNDING).astype(np.float32) for *_, share in filled] + [no_share])
+        n_unlisted = _grid(boxes, self._edge_m)[1].prod(axis=1) - np.diff(self._first)
+        self._unlisted_m2 = _NOISE * self._edge_m**2 * n_unlisted
         self._free = np.full(self._shape.prod(), 1 + _ROUNDING)
         self._pending = []
 
@@ -59,7 +63,7 @@ class CellBounds:
         self._bring_up_to_date()
         row, entry = members(self._first, some)
         uncovered = np.minimum(self._share[entry], self._free[self._cell[entry]])
-        return np.bincount(row, uncovered, minlength=len(some)) * self._edge_m**2
+        return np.bincount(row, uncovered, minlength=len(some)) * self._edge_m**2 + self._unlisted_m2[some]
 
     def _bring_up_to_date(self):
         if self._pending:
@@ -115,11 +119,10 @@ def _filled(polygons, edge_m):
     share : (m,) float64
         Of the cell's area.
     """
-    low = np.floor(shapely.bounds(polygons).reshape(-1, 4) / edge_m).astype(np.int64)
-    # one more column: what lies to the right of a piece of an edge is nothing beyond the last
-    width, height = low[:, 2] - low[:, 0] + 2, low[:, 3] - low[:, 1] + 1
+    low, size = _grid(shapely.bounds(polygons).reshape(-1, 4), edge_m)
+    width, height = size.T
     first = np.cumsum(np.concatenate([[0], width * height]))
-    start, end, row = _edges(polygons, edge_m, low[:, :2])
+    start, end, row = _edges(polygons, edge_m, low)
     start, end, row = _cut(*_cut(start, end, row, axis=1), axis=0)
     middle, down = (start + end) / 2, start[:, 1] - end[:, 1]
     x, y = np.floor(middle).astype(np.int64).T
@@ -129,10 +132,17 @@ def _filled(polygons, edge_m):
     in_own = down * (1 + x - middle[:, 0])
     added = np.bincount(own, in_own, minlength=first[-1]) + np.bincount(own + 1, down - in_own, minlength=first[-1])
     share = np.cumsum(added)
-    taken = np.flatnonzero(share > _ROUNDING / 10)
+    taken = np.flatnonzero(share > _NOISE)
     row = np.repeat(np.arange(len(polygons)), width * height)[taken]
     y, x = np.divmod(taken - first[row], width[row])
-    return row, np.column_stack([x, y]) + low[row, :2], share[taken]
+    return row, np.column_stack([x, y]) + low[row], share[taken]
+
+
+def _grid(boxes, edge_m):
+    """Return the first cell (n, 2) of the grid about each box, and the grid's numbers of columns and rows (n, 2)."""
+    low, high = (np.floor(boxes[:, side] / edge_m).astype(np.int64) for side in (slice(0, 2), slice(2, 4)))
+    # one more column: what lies to the right of a piece of an edge is nothing beyond the last
+    return low, high - low + [2, 1]
 
 
 def _edges(polygons, edge_m, low):

@@ -10,8 +10,8 @@ from scanplan.errors import StageError
 SUFFIXES = (".stl", ".obj", ".ply")
 METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
 MIN_EXTENT_M, MAX_EXTENT_M, MAX_HEIGHT_M = 1.5, 2000.0, 60.0
-# what a storey is high, to guess a unit by
-_STOREY_M = 3.0
+# what one storey may measure, to guess a unit by
+_LOW_M, _HIGH_M, _WIDE_M = 2.0, 12.0, 3.0
 # below this a triangle's area is that of two corners 0.1 mm apart on an edge of 1 mm
 _MIN_AREA_M2 = 1e-7
 _STL_HEADER, _STL_RECORD = 84, 50
@@ -102,7 +102,7 @@ def _check_size(triangles, unit, source):
     extent_m = np.ptp(corners, axis=0) * METRES[unit]
     if extent_m[:2].max() > MAX_EXTENT_M or extent_m[2] > MAX_HEIGHT_M:
         guess = _likely(corners)
-        remedy = f"set simulate.site.unit: {guess}" if guess != unit else "set simulate.site.unit, or cut out a floor"
+        remedy = f"set simulate.site.unit: {guess}" if guess else "set simulate.site.unit, or cut out a floor"
         raise StageError(
             f"{source}: spans {_by(extent_m)} m in {unit}, the limits are {MAX_EXTENT_M:g} m and {MAX_HEIGHT_M:g} m of"
             f" height; {remedy}"
@@ -115,9 +115,10 @@ def _check_size(triangles, unit, source):
 
 
 def _likely(corners):
-    """The unit by which the height is most like a storey's."""
-    height = max(np.ptp(corners[:, 2]), np.finfo(float).tiny)
-    return min(METRES, key=lambda unit: abs(np.log(height * METRES[unit] / _STOREY_M)))
+    """The unit in which both width and height are those of one storey; None if there is no such unit."""
+    width, height = np.ptp(corners[:, :2], axis=0).max(), np.ptp(corners[:, 2])
+    fits = (u for u, m in METRES.items() if _LOW_M <= height * m <= _HIGH_M and width * m >= _WIDE_M)
+    return next(fits, None)
 
 
 def _by(extent_m):

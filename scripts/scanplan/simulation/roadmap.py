@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 from scipy.ndimage import distance_transform_edt, maximum_filter
 from scipy.sparse import coo_array
-from scipy.sparse.csgraph import dijkstra
+from scipy.sparse.csgraph import connected_components, dijkstra
 
 from scanplan.errors import StageError
 
@@ -63,6 +63,18 @@ def over(part, clearance_m, source):
     a, b, metres = (np.concatenate(column) for column in zip(*steps, strict=True))
     costs = coo_array((metres, (a, b)), shape=(len(row),) * 2).tocsr()
     return Grid(np.column_stack([x[column], y[row]]), near_m, middle, costs)
+
+
+def connected(grid, start_m=None):
+    """Return the part of a grid that hangs together: that of the cell nearest a start, else the largest.
+
+    Ground that is connected by a neck hardly wider than the rover makes a grid in parts.
+    """
+    if len(grid.xy_m) == 0:
+        return grid
+    _, label = connected_components(grid.steps, directed=False)
+    kept = label == (np.bincount(label).argmax() if start_m is None else label[nearest(grid, start_m)])
+    return Grid(grid.xy_m[kept], grid.near_m[kept], grid.middle[kept], grid.steps.tocsr()[kept][:, kept])
 
 
 def _steps(number, cost, dy, dx, cell_m):

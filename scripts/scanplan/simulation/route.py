@@ -11,7 +11,7 @@ from scanplan.errors import StageError
 from scanplan.simulation import roadmap, tour
 
 KINDS = ("given", "rooms", "hallways")
-_RANDOM, _START_STREAM = "random", 6
+_START_STREAM = 9
 _ROOMY_M, _YIELD_M = 0.6, 0.1
 # how far from a stop, by cost, the middle of what is visited may be
 _SPACING_M = 6.0
@@ -74,6 +74,7 @@ def plan(floor_m, obstacles_m, rooms, source, *, kind, clearance_m, start_m=None
     free = free_ground(area_m, obstacles_m, clearance_m)
     part = _part_of(free, start_m, clearance_m, wanted, source)
     grid = roadmap.over(part, clearance_m, source)
+    grid = roadmap.connected(grid, None if start_m is None or isinstance(start_m, str) else start_m)
     first = _first(grid, start_m, seed)
     stops, reached, ways = _stops(grid, wanted, first, _SPACING_M)
     if not any(reached):
@@ -137,7 +138,7 @@ def _first(grid, start_m, seed):
     """The cell that the way begins at; None where it may be any."""
     if start_m is None or len(grid.xy_m) == 0:
         return None
-    if start_m == _RANDOM:
+    if isinstance(start_m, str):
         return int(np.random.default_rng([seed, _START_STREAM]).integers(len(grid.xy_m)))
     return roadmap.nearest(grid, start_m)
 
@@ -145,7 +146,7 @@ def _first(grid, start_m, seed):
 def _part_of(free, start_m, clearance_m, rooms, source):
     """The connected ground that holds the start, or else the most room."""
     parts = [part for part in shapely.get_parts(free) if part.geom_type == "Polygon" and part.area > 0]
-    if start_m is None or start_m == _RANDOM:
+    if start_m is None or isinstance(start_m, str):
         floors = shapely.union_all([room for _, room in rooms])
         return max(parts, key=lambda part: part.intersection(floors).area, default=shapely.Polygon())
     held = [part for part in parts if part.covers(Point(start_m))]

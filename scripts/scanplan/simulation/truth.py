@@ -34,7 +34,9 @@ def features(plan, slice_height_m):
         `width_m`, `sill_m`, `lintel_m`), `room` (Polygon with `name`, `area_m2` and whether the rover `visited` it).
     """
     faces = [(line, {"kind": "face", "side": side}) for line, side in wall_faces(plan, slice_height_m)]
-    tall = [shapely.boundary(f.footprint_m) for f in plan.furniture if f.height_m >= ground.SCREEN_M]
+    tall = [
+        shapely.boundary(f.footprint_m) for f in plan.furniture if f.height_m >= max(ground.SCREEN_M, slice_height_m)
+    ]
     faces += [
         (line, {"kind": "screen"}) for line in slicing.screens(tall, buildings.wall_section(plan, slice_height_m))
     ]
