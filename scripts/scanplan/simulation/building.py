@@ -127,8 +127,8 @@ def routed(found, source, *, route, clearance_m, reach_m=0.0, waypoints_m=None, 
         )
     if route == "given" and start_m is not None and found.waypoints_m is not None:
         raise StageError(
-            f"simulate.site: start_m {start_m} is where a planned way begins, and the file gives one; set route: rooms or"
-            " hallways"
+            f"simulate.site: start_m {start_m} is where a planned way begins, and the file gives one; set route:"
+            " rooms or hallways"
         )
     way_m, notes = found.waypoints_m if waypoints_m is None else np.array(waypoints_m, float), ()
     if route != "given" or way_m is None:
