@@ -23,9 +23,10 @@ def measure_unevenness(scans, built, registration, truth, true_poses, output, *,
         Size of the subsets.
     """
     store, found = tables.ScanStore(scans), registered.read(registration)
-    places_m = truthfile.poses_at(truthfile.read_poses(true_poses), found.t_ns, true_poses)[:, :2, 3]
-    seen, length_m = unevenness.view(truthfile.read_faces(truth), places_m, max_range_m=max_range_m)
-    crowds = unevenness.crowds(places_m, sampling["seed"])
+    placed = truthfile.poses_at(truthfile.read_poses(true_poses), found.t_ns, true_poses)
+    sight = truthfile.read_sight(truth, max_range_m=max_range_m)
+    seen, length_m = unevenness.view(truthfile.read_faces(truth), placed, sight)
+    crowds = unevenness.crowds(placed[:, :2, 3], sampling["seed"])
     repeated, chosen = {}, sorted({row for crowd in crowds for row in crowd.tolist()})
     taken = stagelog.progress(store.scans(found.scan_ids[chosen]), "measure_unevenness", total=len(chosen))
     for row, (scan_id, xyz_m) in zip(chosen, taken, strict=True):

@@ -1,10 +1,11 @@
 """Registration of a drive with a real sensor's rate and density, against algorithm 3 written literally."""
 
-import copy
 import os
 import resource
 import time
 from pathlib import Path
+
+import simulating
 
 import interpolate_poses
 import register_scans
@@ -33,12 +34,7 @@ def drive(root, settings):
     """
     folder = root / "results/bench/registration"
     if not (folder / "poses.parquet").exists():
-        chosen = copy.deepcopy(settings["simulate"])
-        chosen["sensor"] |= {"n_azimuth": 1800, "sweep": True}
-        chosen["drive"] |= {"speed_m_s": 0.3}
-        chosen["site"] |= {"route": "hallways"}
-        chosen["localiser"] |= {"noise_m": 0.05, "noise_deg": 1.0, "jumps_per_min": 1.0}
-        rig = {key: value for key, value in chosen.items() if key not in ("building", "recording")}
+        rig = simulating.hallways(settings, speed_m_s=0.3, noise_m=0.05, noise_deg=1.0, jumps_per_min=1.0)
         truths = (folder / name for name in ("truth.geojson", "truth_poses.tum", "truth_trajectory.tum"))
         building = root / "config/buildings/ring_office.geojson"
         simulate_survey.simulate_survey(building, folder / "survey.bag", *truths, **rig, threads=_THREADS)

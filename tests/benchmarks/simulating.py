@@ -24,12 +24,8 @@ def bench(root, settings):
     settings : dict
         The whole configuration.
     """
-    chosen = copy.deepcopy(settings["simulate"])
-    chosen["sensor"] |= {"n_azimuth": 1800, "sweep": True}
     # 107 m of hallway
-    chosen["drive"] |= {"speed_m_s": 107 / (N_SCANS / 10)}
-    chosen["site"] |= {"route": "hallways"}
-    rig = {key: value for key, value in chosen.items() if key not in ("building", "recording")}
+    rig = hallways(settings, speed_m_s=107 / (N_SCANS / 10))
     with tempfile.TemporaryDirectory() as folder:
         names = ("survey.bag", "truth.geojson", "truth_poses.tum", "truth_trajectory.tum")
         files = [Path(folder, name) for name in names]
@@ -43,6 +39,25 @@ def bench(root, settings):
         f" second, cast and written on {_THREADS} cores; peak memory {most.stop() / 1e6:.0f} MB with both workers",
         flush=True,
     )
+
+
+def hallways(settings, *, speed_m_s, **localiser):
+    """Return the keywords of `simulate_survey` for a 10 Hz VLP-16 along hallways.
+
+    Parameters
+    ----------
+    settings : dict
+        The whole configuration.
+    speed_m_s : float
+    **localiser
+        Instead of settings of `simulate.localiser`.
+    """
+    chosen = copy.deepcopy(settings["simulate"])
+    chosen["sensor"] |= {"n_azimuth": 1800, "sweep": True}
+    chosen["drive"] |= {"speed_m_s": speed_m_s}
+    chosen["site"] |= {"route": "hallways"}
+    chosen["localiser"] |= localiser
+    return {key: value for key, value in chosen.items() if key not in ("building", "recording")}
 
 
 class _Most:

@@ -3,6 +3,7 @@
 import numpy as np
 import shapely
 
+from scanplan.evaluation import visibility
 from scanplan.evaluation.truthfile import TrueFaces
 from scanplan.thesis import unevenness
 
@@ -66,5 +67,7 @@ def test_no_two_times_that_a_scan_was_taken_are_the_same_to_the_order():
 
 def test_what_a_place_sees_is_told_with_its_length():
     box = np.array([(0, 0, 6, 0), (6, 0, 6, 4), (6, 4, 0, 4), (0, 4, 0, 0)], float).reshape(-1, 2, 2)
-    seen, length_m = unevenness.view(TrueFaces(box, np.empty((0, 2, 2))), np.array([[1.0, 1.0]]), max_range_m=100.0)
+    here = np.eye(4)
+    here[:2, 3] = 1.0
+    seen, length_m = unevenness.view(TrueFaces(box, np.empty((0, 2, 2))), here[None], visibility.Sight(100.0))
     np.testing.assert_allclose((seen @ length_m), 20.0)

@@ -71,7 +71,9 @@ class TestSeen:
 
     def test_of_several_places_each_has_a_row(self):
         cells = visibility.cut(ROOM)
-        both = visibility.seen_by_each(cells, NO_FACES, np.array([(2.0, 2.0), (6.0, 2.0)]), max_range_m=100.0)
+        poses = np.tile(np.eye(4), (2, 1, 1))
+        poses[:, :2, 3] = [(2.0, 2.0), (6.0, 2.0)]
+        both = visibility.seen_by_each(cells, NO_FACES, poses, visibility.Sight(100.0))
         np.testing.assert_array_equal(both[0], visibility.seen(cells, NO_FACES, np.array([2.0, 2]), max_range_m=100.0))
         assert (both[0] != both[1]).any()
 

@@ -34,7 +34,8 @@ rule tabulate_seconds:
             "benchmarks/{{dataset}}/order_scans_{method}.tsv", method=METHODS
         ),
         extraction=expand(
-            "benchmarks/{{dataset}}/extract_walls_{extractor}.tsv", extractor=EXTRACTORS
+            "benchmarks/{{dataset}}/extract_walls_{extractor}.tsv",
+            extractor=EXTRACTORS,
         ),
         code=code_of("tabulate_seconds"),
     output:

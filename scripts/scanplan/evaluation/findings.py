@@ -102,9 +102,7 @@ def look(faces, placed, survey, *, sight):
     Truth
     """
     cells = visibility.cut(faces.inner_m)
-    seen = np.zeros((len(placed), len(cells.face)), bool)
-    for row, pose in zip(seen, placed, strict=True):
-        row[:] = visibility.seen_from(cells, faces.outer_m, pose, sight)
+    seen = visibility.seen_by_each(cells, faces.outer_m, placed, sight)
     visible = seen.any(axis=0) | visibility.seen_by_any(cells, faces.outer_m, survey, sight)
     return Truth(cells, seen, visible)
 

@@ -148,18 +148,18 @@ def view(faces_m, position_m, *, open_m):
     return (position_m + ray * distance_m[..., None]).reshape(-1, 2)
 
 
-def seen_by_each(cells, outer_m, positions_m, *, max_range_m):
-    """Tell which cells can be seen from which of several places: (n, c) bool, a byte each."""
-    result = np.zeros((len(positions_m), len(cells.face)), bool)
-    for row, position_m in zip(result, positions_m, strict=True):
-        row[:] = seen(cells, outer_m, position_m, max_range_m=max_range_m)
-    return result
-
-
 def seen_from(cells, outer_m, world_from_sensor, sight):
     """Tell which cells a sensor at a pose (4, 4) sees: (c,) bool; see `seen`."""
     within = seen(cells, outer_m, world_from_sensor[:2, 3], max_range_m=sight.max_range_m)
     return within if _is_all_around(sight) else within & in_field(cells, world_from_sensor, sight.field_rad)
+
+
+def seen_by_each(cells, outer_m, poses, sight):
+    """Tell which cells a sensor sees from which of the poses (n, 4, 4): (n, c) bool, a byte each."""
+    result = np.zeros((len(poses), len(cells.face)), bool)
+    for row, pose in zip(result, poses, strict=True):
+        row[:] = seen_from(cells, outer_m, pose, sight)
+    return result
 
 
 def seen_by_any(cells, outer_m, survey, sight):

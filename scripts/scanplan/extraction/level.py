@@ -35,7 +35,8 @@ def warning(scans):
     for xyz_m, sensor_xyz_m in scans:
         cells = normals.surface_cells(walls.around_sensor(xyz_m, sensor_xyz_m), reach_deg=_REACH_DEG)
         known = np.isfinite(cells.normal[:, 0])
-        found.append(cells.normal[known]), weight.append(cells.count[known])
+        found.append(cells.normal[known])
+        weight.append(cells.count[known])
     up = up_direction(np.concatenate(found), np.concatenate(weight))
     tilt_deg = np.rad2deg(np.arccos(min(up[2], 1.0)))
     if tilt_deg < _LEAST_TILT_DEG:

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-N_ROWS = 180
-"""Rows of elevation, in steps of 1 degree from -90 on."""
+from scanplan import usualreturns
 
 ON_M = 0.08
 """Returns no farther from a face are its own: a few times the range noise, and a face's own roughness."""
@@ -20,8 +19,6 @@ SKIRTING_M = 0.2
 CLEAR_M = 0.03
 """Above a face's edge: the noise of a height."""
 
-_N_SECTORS = 72
-_SECTOR_RAD = 2 * np.pi / _N_SECTORS  # wider than what is between two firings
 _FLOOR_PERCENTILE = 1
 _LEAST_M, _LEAST_RAD = 1e-6, 1e-6
 
@@ -72,7 +69,7 @@ def view(xyz_m):
     azimuth_rad = np.arctan2(xyz_m[:, 1], xyz_m[:, 0])
     order = np.argsort(azimuth_rad, kind="stable")
     azimuth_rad, xyz_m = azimuth_rad[order], xyz_m[order]
-    return View(azimuth_rad, xyz_m, floor(xyz_m), _usual(azimuth_rad, xyz_m))
+    return View(azimuth_rad, xyz_m, floor(xyz_m), usualreturns.below(azimuth_rad, xyz_m, 1))
 
 
 def floor(xyz_m):
@@ -129,15 +126,6 @@ def crossing(scan, at, away, distance_m):
     """Return how far ahead returns are, and at what height above the floor their rays cross the plane."""
     ahead_m = scan.xyz_m[at, :2] @ away
     return ahead_m, scan.xyz_m[at, 2] * (distance_m / np.maximum(ahead_m, _LEAST_M)) - scan.floor_m
-
-
-def _usual(azimuth_rad, xyz_m):
-    """Return the running sums of returns by elevation, per degree of azimuth around which there are any."""
-    sector = np.minimum(((azimuth_rad + np.pi) / _SECTOR_RAD).astype(np.int64), _N_SECTORS - 1)
-    seen_deg = np.count_nonzero(np.bincount(sector)) * np.rad2deg(_SECTOR_RAD)
-    elevation_rad = np.arctan2(xyz_m[:, 2], np.hypot(xyz_m[:, 0], xyz_m[:, 1]))
-    row = np.clip(np.rad2deg(elevation_rad) + N_ROWS / 2, 0, N_ROWS - 1).astype(np.int64)
-    return np.concatenate([[0], np.cumsum(np.bincount(row, minlength=N_ROWS))]) / seen_deg
 
 
 def _between(azimuth_rad, first_rad, last_rad):

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from scanplan import usualreturns
 from scanplan.extraction import rays
 
 _COLUMN_RAD = np.deg2rad(1.0)
@@ -13,7 +14,6 @@ _GOOD_PART = 0.15  # of a face's length, likewise
 _EDGES_M = np.arange(0.4, 2.3, 0.1)  # heights that furniture may end at
 _EDGE_ON_RAD = np.deg2rad(89.5)
 _LEAST_M = 1e-6
-_GRAZING_RAD = np.deg2rad(75)  # from here on returns get lost
 
 
 @dataclass(frozen=True)
@@ -133,8 +133,8 @@ def _over(met_m, passed_m, length_m):
 def _missing(scan, returns, edges_rad, distance_m, heights_m):
     """Return the share of the usual returns between two heights that are not there, by columns (n,) of returns."""
     middle_rad = (edges_rad[1:] + edges_rad[:-1]) / 2
-    seen = np.abs(middle_rad) < _GRAZING_RAD
+    seen = np.abs(middle_rad) < usualreturns.GRAZING_RAD
     elevation_deg = np.rad2deg(np.arctan2(np.array(heights_m)[:, None] * np.cos(middle_rad), distance_m)) + 90
-    low, high = np.interp(elevation_deg, np.arange(rays.N_ROWS + 1), scan.usual)
+    low, high = np.interp(elevation_deg, np.arange(len(scan.usual)), scan.usual)
     usual = ((high - low) * np.diff(edges_rad) / _COLUMN_RAD)[seen].sum()
     return max(0.0, 1 - returns[seen].sum() / usual) if usual > 0 else 0.0

@@ -13,6 +13,20 @@ import numpy as np
 _SHORTEST_M = 1e-3
 
 
+class Span:
+    """What has a `line`, and reaches along it from `low_m` to `high_m`."""
+
+    @property
+    def length_m(self):
+        """Length along the line."""
+        return self.high_m - self.low_m
+
+    @cached_property
+    def ends(self):
+        """Start and end, (2, 2) metres."""
+        return self.line.at(np.array([self.low_m, self.high_m]))
+
+
 @dataclass(frozen=True, eq=False)
 class Segments:
     """Observed wall segments, sorted by scan and number, so that the order of the input does not matter.

@@ -7,13 +7,13 @@ import numpy as np
 import shapely
 
 from scanplan.plan import faceline
-from scanplan.plan.faceline import Line, Segments
+from scanplan.plan.faceline import Line, Segments, Span
 
 _LEAST_CORNER_RAD = np.radians(30)
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
+class Piece(Span):
     """A stretch of a face's line: from `low_m` to `high_m` along it, and the segments (k,) that show its line."""
 
     segments: Segments
@@ -21,16 +21,6 @@ class Piece:
     low_m: float
     high_m: float
     members: np.ndarray
-
-    @property
-    def length_m(self):
-        """Length of the stretch."""
-        return self.high_m - self.low_m
-
-    @cached_property
-    def ends(self):
-        """Start and end, (2, 2) metres."""
-        return self.line.at(np.array([self.low_m, self.high_m]))
 
     @cached_property
     def points(self):

@@ -7,6 +7,7 @@ nothing is known but their returns: how many a scan sent at an elevation is told
 
 import numpy as np
 
+from scanplan import usualreturns
 from scanplan.plan import rays as sights
 from scanplan.plan.profiles import COLUMN_M
 
@@ -20,7 +21,6 @@ _LEAST_SHARE = 0.5
 _BEFORE_M = 0.1
 _MOST_AWAY_M = 10.0  # further off rays are few and much stands before a line
 _WIDTH = 5  # columns that are judged together
-_GRAZING_RAD = np.deg2rad(75)  # from here on returns get lost
 
 
 def find(rays, line, low_m, high_m):
@@ -72,7 +72,7 @@ def _rays(rays, line, low_m, count, heights_m):
     """Return how many rays (s, count) scans sent to the columns of a line, ended before it, came back from beyond."""
     side_m, there_m = line.offset_m(rays.sensors_m[:, :2]), line.along_m(rays.sensors_m[:, :2])
     beyond_m = np.maximum(np.maximum(low_m - there_m, there_m - (low_m + COLUMN_M * count)), 0)
-    most_m = np.tan(_GRAZING_RAD) * side_m
+    most_m = np.tan(usualreturns.GRAZING_RAD) * side_m
     near = (np.hypot(side_m, beyond_m) <= _MOST_AWAY_M) & (beyond_m <= most_m)
     scans = np.flatnonzero((side_m >= sights.LEAST_SIDE_M) & near)
     middle_m = low_m + COLUMN_M * (np.arange(count) + 0.5)

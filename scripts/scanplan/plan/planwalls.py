@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from scanplan.plan import crossings, gaps, wallpairs
-from scanplan.plan.faceline import Line
+from scanplan.plan.faceline import Line, Span
 
 _JAMB_M = 0.1
 
 
 @dataclass(frozen=True, eq=False)
-class PlanWall:
+class PlanWall(Span, wallpairs.Sides):
     """A wall from `low_m` to `high_m` along its middle.
 
     Attributes
@@ -36,26 +36,6 @@ class PlanWall:
     right: list
     openings: list
     closed: list
-
-    @property
-    def members(self):
-        """All its faces."""
-        return self.left + self.right
-
-    @property
-    def half_m(self):
-        """From the middle to either face; 0 where the line is that of the face."""
-        return 0.0 if math.isnan(self.thickness_m) else self.thickness_m / 2
-
-    @property
-    def ends(self):
-        """Start and end, (2, 2) metres."""
-        return self.line.at(np.array([self.low_m, self.high_m]))
-
-    @property
-    def length_m(self):
-        """Length along the middle."""
-        return self.high_m - self.low_m
 
 
 def assemble(found, reading, pairing, gapping, *, planar, corner_m):

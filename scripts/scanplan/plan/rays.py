@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from scanplan import usualreturns
 from scanplan.plan import fans
 
 _FLOOR_BIN_M = 0.05
@@ -15,7 +16,6 @@ _FLOOR_SEARCH_M = 0.5
 LEAST_SIDE_M = 0.15
 _STEADY_M = 0.15
 _TURN = 10.0
-_SECTORS = 72  # wider than what is between two firings
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +73,8 @@ class Rays:
     @cached_property
     def usual(self):
         """Returns that a degree of azimuth usually has below an elevation, by 0.1 degrees from -90, (n, 1801)."""
-        return np.array([_usual(*scan) for scan in zip(self.azimuth_rad, self.xyz_m, self.sensors_m, strict=True)])
+        scans = zip(self.azimuth_rad, self.xyz_m, self.sensors_m, strict=True)
+        return np.array([usualreturns.below(azimuth, xyz_m - sensor_m, 10) for azimuth, xyz_m, sensor_m in scans])
 
     @property
     def n_points(self):
@@ -147,16 +148,6 @@ def _floor_z_m(points):
     near = (layer >= -1) & (layer < _FLOOR_SEARCH_M / _FLOOR_BIN_M)
     fullest_m = lowest_m + (np.bincount(layer[near] + 1).argmax() - 0.5) * _FLOOR_BIN_M
     return float(np.median(z_m[np.abs(z_m - fullest_m) <= _FLOOR_BIN_M]))
-
-
-def _usual(azimuth_rad, xyz_m, sensor_m):
-    """Return the running sums of a scan's returns by elevation, per degree of azimuth around which there are any."""
-    sector = np.minimum(((azimuth_rad + np.pi) / (2 * np.pi) * _SECTORS).astype(np.int64), _SECTORS - 1)
-    seen_deg = max(len(np.unique(sector)), 1) * 360 / _SECTORS
-    way_m = xyz_m - sensor_m
-    elevation_deg = np.rad2deg(np.arctan2(way_m[:, 2], np.hypot(way_m[:, 0], way_m[:, 1])))
-    row = np.clip((elevation_deg + 90) * 10, 0, 1799).astype(np.int64)
-    return np.concatenate([[0.0], np.cumsum(np.bincount(row, minlength=1800))]) / seen_deg
 
 
 def look(rays, line, low_m, high_m, *, band_m):

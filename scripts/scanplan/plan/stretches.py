@@ -7,7 +7,7 @@ import numpy as np
 
 from scanplan.plan import panes
 from scanplan.plan import rays as sights
-from scanplan.plan.faceline import Line
+from scanplan.plan.faceline import Line, Span
 from scanplan.plan.profiles import COLUMN_M, Seen
 
 _LEAST_HEIGHT_M = 0.1
@@ -21,7 +21,7 @@ _COLUMN_WEIGHT = 10  # points of a column that count: a near scan's are not a hu
 
 
 @dataclass(frozen=True, eq=False)
-class Stretch:
+class Stretch(Span):
     """A stretch of wall surface: from `low_m` to `high_m` along the line of `seen`."""
 
     seen: Seen
@@ -32,16 +32,6 @@ class Stretch:
     def line(self):
         """The line it lies on."""
         return self.seen.line
-
-    @property
-    def length_m(self):
-        """Length of the stretch."""
-        return self.high_m - self.low_m
-
-    @cached_property
-    def ends(self):
-        """Start and end, (2, 2) metres."""
-        return self.line.at(np.array([self.low_m, self.high_m]))
 
     @cached_property
     def points(self):

@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 from shapely.geometry import LineString, Polygon
 
-from scanplan.plan.faceline import Line
+from scanplan.plan.faceline import Line, Span
 from scanplan.plan.stretches import Stretch
 
 OBSERVED, INFERRED = "observed", "inferred"
@@ -16,7 +16,7 @@ _SHORTEST_M = 0.1
 
 
 @dataclass(frozen=True, eq=False)
-class Face:
+class Face(Span):
     """A face of a wall: a stretch of its line, and the points that show it (none where it is inferred).
 
     Attributes
@@ -35,11 +35,6 @@ class Face:
     shown: Stretch | None
     wall: int
     left: bool
-
-    @property
-    def ends(self):
-        """Start and end, (2, 2) metres."""
-        return self.line.at(np.array([self.low_m, self.high_m]))
 
     @property
     def state(self):

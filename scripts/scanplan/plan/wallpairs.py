@@ -38,8 +38,22 @@ class PairSettings:
     max_gap_m: float
 
 
+class Sides:
+    """What has a `left` and a `right` side, lists, and a `thickness_m`, NaN where only one side is known."""
+
+    @property
+    def members(self):
+        """All of both sides."""
+        return self.left + self.right
+
+    @property
+    def half_m(self):
+        """From the middle to either face; 0 where the line is that of the face."""
+        return 0.0 if math.isnan(self.thickness_m) else self.thickness_m / 2
+
+
 @dataclass(frozen=True, eq=False)
-class Wall:
+class Wall(Sides):
     """A straight wall of one or two sides.
 
     Attributes
@@ -56,16 +70,6 @@ class Wall:
     left: list
     right: list
     thickness_m: float
-
-    @property
-    def members(self):
-        """All stretches."""
-        return self.left + self.right
-
-    @property
-    def half_m(self):
-        """From the middle to either face; 0 where the line is that of the face."""
-        return 0.0 if math.isnan(self.thickness_m) else self.thickness_m / 2
 
 
 def pair(stretches, settings, reading, *, planar):

@@ -79,6 +79,13 @@ def plain(axes):
     axes.spines[["left", "bottom"]].set_linewidth(0.5)
 
 
+def named(axes, x, y):
+    """Name the axes of a chart, in the frame of `plain`."""
+    axes.set_xlabel(x, fontsize=8)
+    axes.set_ylabel(y, fontsize=8)
+    plain(axes)
+
+
 def _density(points_xy_m, low, extent):
     """Return shades (rows, columns) from 0 to 1 and the edges ((x0, x1), (y0, y1)) of their image."""
     cell_m = extent.max() / _CELLS

@@ -6,7 +6,6 @@ import numpy as np
 
 from scanplan.errors import StageError
 
-MODELS = ("vlp16", "lidar", "laser")
 _VLP16_ELEVATIONS_DEG = tuple(range(-15, 16, 2))
 _VLP16_FIRING_ORDER = (0, 8, 1, 9, 2, 10, 3, 11, 4, 12, 5, 13, 6, 14, 7, 15)
 _BIAS_STREAM = 3

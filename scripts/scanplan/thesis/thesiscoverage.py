@@ -76,7 +76,7 @@ def shares_figure(evaluated, extractor):
             axes.plot(k, share.mean(axis=0), color=colour, lw=1.4, label=label)
         axes.set_title(title, fontsize=9)
         axes.set_xlim(0, min(_SHOWN_TO, k.max()))
-        _named(axes, "number of scans", "share of all cells")
+        topview.named(axes, "number of scans", "share of all cells")
     handles, labels = axes.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8, frameon=False)
     return figure
@@ -114,7 +114,7 @@ def convergence_figure(selections):
         last = max(last, at)
     axes.axhline(0.99, color="0.5", lw=0.6)
     axes.set(xlim=(0, min(2 * last, len(selection["rank"])) + 1), ylim=(0, 1.03))
-    _named(axes, "number of scans", "area covered, share of that of all scans")
+    topview.named(axes, "number of scans", "area covered, share of that of all scans")
     axes.legend(fontsize=8, frameon=False, loc="lower right")
     return figure
 
@@ -140,7 +140,7 @@ def clusters_figure(clusters):
         label = f"{number} cluster{'s' if number > 1 else ''}"
         left.plot(np.arange(1, len(area) + 1), area, color=colour, lw=1.3, label=label)
     left.set_xlim(0, min(80, len(area)))
-    _named(left, "number of scans", "area covered (m²)")
+    topview.named(left, "number of scans", "area covered (m²)")
     left.legend(fontsize=8, frameon=False, loc="lower right")
     at = min(SUBSET, len(area))
     for label, colour, values in (
@@ -152,7 +152,7 @@ def clusters_figure(clusters):
     right.set_xticks(numbers, [str(n) for n in numbers])
     right.minorticks_off()
     right.set_ylim(0, None)
-    _named(right, "number of clusters", "area covered (m²)")
+    topview.named(right, "number of clusters", "area covered (m²)")
     right.legend(fontsize=8, frameon=False)
     return figure
 
@@ -160,9 +160,3 @@ def clusters_figure(clusters):
 def blues(count):
     """Return that many colours, from light to dark."""
     return [(0.62 * (1 - t), 0.79 - 0.60 * t, 0.88 - 0.46 * t) for t in np.linspace(0, 1, count)]
-
-
-def _named(axes, x, y):
-    axes.set_xlabel(x, fontsize=8)
-    axes.set_ylabel(y, fontsize=8)
-    topview.plain(axes)

@@ -31,7 +31,7 @@ def selection_figure(times):
         of_it = times["task"] == task
         axes.plot(times["size"][of_it], times["seconds"][of_it], "o-", ms=3.5, lw=1.2, color=colour, label=label)
     axes.set(xlim=(0, None), ylim=(0, None))
-    _named(axes, "number of scans", "processor time (s)")
+    topview.named(axes, "number of scans", "processor time (s)")
     axes.legend(fontsize=8, frameon=False)
     return figure
 
@@ -70,7 +70,7 @@ def times_figure(times):
         frames[1].plot(number, walls, color=colour, lw=1.4, label=f"{_NAMES[extractor]}: {walls[-1]:,}")
     for axes, name in zip(frames, ("processor time of a scan (ms)", "walls, cumulative"), strict=True):
         axes.set(xlim=(0, None), ylim=(0, None))
-        _named(axes, "scan", name)
+        topview.named(axes, "scan", name)
         axes.legend(fontsize=8, frameon=False)
     return figure
 
@@ -99,9 +99,3 @@ def walls_figure(points_xy_m, walls, places_m):
         axes.set_title(f"{_NAMES[extractor]}: {len(lines_m):,} walls of {len(places_m)} scans", fontsize=9)
         axes.set_xlabel("x in the map frame (m)", fontsize=8)
     return figure
-
-
-def _named(axes, x, y):
-    axes.set_xlabel(x, fontsize=8)
-    axes.set_ylabel(y, fontsize=8)
-    topview.plain(axes)

@@ -30,10 +30,10 @@ def copies(scan_id, xyz_m, *, n_copies, seed, **sampling):
     return np.concatenate([hulls.scan_polygons(columns)[1] for columns in made])
 
 
-def view(faces, places_m, *, max_range_m):
-    """Return which cells of the true faces each place sees, (n, c) bool, and their lengths (c,), metres."""
+def view(faces, placed, sight):
+    """Return which cells of the true faces each pose (n, 4, 4) sees, (n, c) bool, and their lengths (c,), metres."""
     cells = visibility.cut(faces.inner_m)
-    return visibility.seen_by_each(cells, faces.outer_m, places_m, max_range_m=max_range_m), cells.length_m
+    return visibility.seen_by_each(cells, faces.outer_m, placed, sight), cells.length_m
 
 
 def table(seen, length_m, polygons, repeated, crowd_rows, *, n_selected, seed):
