@@ -34,7 +34,8 @@ def assemble_plan(walls, selection, scans, registration, outputs, *, settings, *
     looked = rays.gather(store.scans(chosen), positions, planar=store.planar)
     track_m = kept.map_from_sensor[:, :2, 3]
     segments = {column: values[used] for column, values in seen.items()}
-    plan = planning.make(segments, looked, track_m, kept.t_ns[rows], planning.settings(**settings))
+    up = kept.map_from_sensor[rows, :3, 2]
+    plan = planning.make(segments, looked, track_m, kept.t_ns[rows], planning.settings(**settings), up)
     plansummary.check_plan(walls, plan, used.sum(), count)
     for name, schema in planning.TABLES.items():
         tables.write(outputs[name], schema, getattr(plan, name), allow_empty=True)

@@ -96,7 +96,8 @@ def _plan(seen, store, kept, rows, chosen, settings):
     looked = rays.gather(store.scans(chosen), positions, planar=store.planar)
     used = np.isin(seen["scan_id"], chosen)
     segments = {column: values[used] for column, values in seen.items()}
-    plan = planning.make(segments, looked, kept.map_from_sensor[:, :2, 3], kept.t_ns[rows], planning.settings(**parts))
+    track_m, up = kept.map_from_sensor[:, :2, 3], kept.map_from_sensor[rows, :3, 2]
+    plan = planning.make(segments, looked, track_m, kept.t_ns[rows], planning.settings(**parts), up)
     return SimpleNamespace(plan=plan, floor_z_m=looked.floor_z_m)
 
 

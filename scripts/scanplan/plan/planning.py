@@ -17,6 +17,7 @@ from scanplan.plan import (
     plantables,
     planwalls,
     profiles,
+    rangeerrors,
     rightangles,
     rooms,
     wallevidence,
@@ -57,6 +58,7 @@ class PlanSettings:
 
     merge: faces.MergeSettings
     reading: profiles.Reading
+    ranges: rangeerrors.RangeSettings
     square: rightangles.Prior
     pairs: wallpairs.PairSettings
     openings: gaps.GapSettings
@@ -66,7 +68,16 @@ class PlanSettings:
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """The tables of a plan, columns by name, and how many lines of faces were dropped on the way."""
+    """The tables of a plan, columns by name, and what was left out and set right on the way.
+
+    Attributes
+    ----------
+    faces, walls, openings, rooms, evidence, free : dict of str to (n,) array
+    n_lines, n_dropped : int
+        Lines of faces, and those dropped.
+    range_errors_m : (181,) float64
+        What ranges were shortened by, see `rangeerrors.estimate`.
+    """
 
     faces: dict
     walls: dict
@@ -76,9 +87,10 @@ class Plan:
     free: dict
     n_lines: int
     n_dropped: int
+    range_errors_m: np.ndarray
 
 
-def settings(*, merge, trace, right_angles, pair, openings, rooms, trust):
+def settings(*, merge, trace, ranges, right_angles, pair, openings, rooms, trust):
     """Return settings from keywords of each part.
 
     Raises
@@ -90,6 +102,7 @@ def settings(*, merge, trace, right_angles, pair, openings, rooms, trust):
     return PlanSettings(
         merge=merging,
         reading=profiles.Reading(**trace),
+        ranges=rangeerrors.RangeSettings(**ranges),
         square=rightangles.Prior(registration_sigma_m=merging.registration_sigma_m, **right_angles),
         pairs=wallpairs.PairSettings(**pair, max_gap_m=openings["max_opening_m"]),
         openings=gaps.GapSettings(**openings),
@@ -98,7 +111,7 @@ def settings(*, merge, trace, right_angles, pair, openings, rooms, trust):
     )
 
 
-def make(segments, rays, track_m, t_ns, settings):
+def make(segments, rays, track_m, t_ns, settings, up=None):
     """Make a plan.
 
     Parameters
@@ -112,12 +125,17 @@ def make(segments, rays, track_m, t_ns, settings):
     t_ns : (s,) int64
         When each of the chosen scans was taken.
     settings : PlanSettings
+    up : (s, 3) float, optional
+        The axis that the beams of each chosen scan's sensor are inclined to, in the map frame; plumb by default.
 
     Returns
     -------
     Plan
         Without any row of faces or walls where nothing is supported enough.
     """
+    up = np.tile((0.0, 0.0, 1.0), (len(rays.scan_ids), 1)) if up is None else up
+    errors_m = rangeerrors.estimate(rays, segments, settings.ranges, settings.reading.band_m, up)
+    rays = rangeerrors.without(rays, errors_m, up)
     pieces = faces.pieces(segments, settings.merge)
     traced = planfaces.trace(pieces, rays, settings.merge, settings.reading, settings.square)
     found = planwalls.assemble(
@@ -150,6 +168,7 @@ def make(segments, rays, track_m, t_ns, settings):
         free=plantables.free(_free([*found, *panes], floor, unpaired_m)),
         n_lines=traced.n_lines,
         n_dropped=traced.n_dropped,
+        range_errors_m=errors_m,
     )
 
 

@@ -37,5 +37,12 @@ def text(plan):
         f"{len(walls['wall'])} walls ({paired} with thickness, {doubtful} to verify), {length_m:,.1f} m;"
         f" {len(faces['face'])} faces, {inferred} of them inferred; {len(plan.openings['opening'])} openings;"
         f" {len(rooms['room'])} rooms, {closed} closed, {rooms['area_m2'].sum():,.1f} m2;"
-        f" {plan.n_dropped} of {plan.n_lines} lines of faces dropped"
+        f" {plan.n_dropped} of {plan.n_lines} lines of faces dropped; {_errors(plan.range_errors_m)}"
     )
+
+
+def _errors(range_errors_m):
+    known_mm = 1000 * range_errors_m[range_errors_m != 0]
+    if len(known_mm) == 0:
+        return "ranges taken as they are"
+    return f"ranges too long by {known_mm.min():.1f} to {known_mm.max():.1f} mm, corrected"

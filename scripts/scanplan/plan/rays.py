@@ -200,6 +200,13 @@ def rows_between(rays, ends, scans):
     return _rows(*_spans(rays, ends, scans))
 
 
+def grouped_between(rays, ends, scans):
+    """Return the rows of `rows_between`, and for each the pair of ends that it goes between."""
+    low, high = _spans(rays, ends, scans)
+    count = np.maximum(high - low, 0)
+    return _rows(low, high), np.repeat(np.tile(np.arange(len(scans)), len(count)), count.ravel())
+
+
 def _spans(rays, ends, scans):
     """Return the rows (2, k) that such rays begin at, and those (2, k) that they end before."""
     way = ends - rays.sensors_m[scans, :2]

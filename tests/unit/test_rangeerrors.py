@@ -1,0 +1,117 @@
+"""Constant errors of beams: put into ranges in a room known on paper, and found again."""
+
+import numpy as np
+import pytest
+
+import wallmaking
+from scanplan.plan import rangeerrors, rays
+from toyrooms import laser, vlp16
+
+# seen from the left of each way
+ROOM = [(0, 0, 6, 0), (6, 0, 6, 4), (6, 4, 0, 4), (0, 4, 0, 0)]
+SENSORS = np.array([(1.0, 1.0, 0.9), (3.0, 1.2, 0.9), (4.6, 2.8, 0.9), (2.0, 3.1, 0.9)])
+SETTINGS = rangeerrors.RangeSettings(sigma_m=0.01, max_incidence_deg=60.0)
+BAND_M = 0.06
+PLUMB = np.tile((0.0, 0.0, 1.0), (len(SENSORS), 1))
+BEAMS = np.arange(-15, 16, 2)
+ERRORS_M = np.random.default_rng(7).normal(0.003, 0.005, len(BEAMS))
+
+
+def lengthened(xyz_m, sensor_m, errors_m):
+    """Return points at ranges that are too long by the error of their beam, the nearest to their elevation."""
+    way = xyz_m - sensor_m
+    range_m = np.linalg.norm(way, axis=1, keepdims=True)
+    elevation_deg = np.degrees(np.arcsin(way[:, 2:] / range_m))
+    return xyz_m + way / range_m * errors_m[np.abs(elevation_deg - BEAMS).argmin(axis=1)][:, None]
+
+
+def looked(errors_m, drawn=ROOM, **more):
+    scans = [
+        (i, lengthened(vlp16(s, np.array(drawn, float), columns=1800, seed=i, **more), s, errors_m))
+        for i, s in enumerate(SENSORS)
+    ]
+    return rays.gather(scans, dict(enumerate(SENSORS)), planar=False)
+
+
+def segments(drawn=ROOM):
+    table = wallmaking.walls(drawn * len(SENSORS), scan_id=np.repeat(np.arange(len(SENSORS)), len(drawn)))
+    return table | {"z_min_m": np.full(len(table["wall"]), 0.15), "z_max_m": np.full(len(table["wall"]), 2.4)}
+
+
+def estimated(found, table, settings=SETTINGS, up=PLUMB):
+    return rangeerrors.estimate(found, table, settings, BAND_M, up)
+
+
+def test_the_error_of_every_beam_is_found():
+    error_m = estimated(looked(ERRORS_M), segments())
+    assert error_m[BEAMS + 90] - ERRORS_M == pytest.approx(0, abs=0.0015)
+    assert np.mean(error_m[BEAMS + 90] - ERRORS_M) == pytest.approx(0, abs=0.001)
+
+
+def test_true_ranges_have_none():
+    error_m = estimated(looked(np.zeros(16)), segments())
+    assert error_m == pytest.approx(0, abs=0.0015)
+
+
+def test_ranges_are_shortened_by_it():
+    found = looked(ERRORS_M)
+    error_m = np.zeros(181)
+    error_m[BEAMS + 90] = ERRORS_M
+    shortened = rangeerrors.without(found, error_m, PLUMB)
+    for after, before, sensor_m in zip(shortened.xyz_m, found.xyz_m, SENSORS, strict=True):
+        assert lengthened(after, sensor_m, ERRORS_M) == pytest.approx(before, abs=1e-9)
+    assert rangeerrors.without(found, np.zeros(181), PLUMB) is found
+
+
+def test_beams_are_told_in_the_sensors_own_frame():
+    found = looked(np.zeros(16), noise_m=0.0)
+    tilted = np.tile((np.sin(0.1), 0.0, np.cos(0.1)), (len(SENSORS), 1))
+    error_m = np.zeros(181)
+    error_m[90] = 0.1
+    moved = [np.abs(a - b).max(axis=1) > 0.01 for a, b in zip(
+        rangeerrors.without(found, error_m, tilted).xyz_m, found.xyz_m, strict=True)]  # fmt: skip
+    for xyz_m, sensor_m, axis, was in zip(found.xyz_m, SENSORS, tilted, moved, strict=True):
+        way = (xyz_m - sensor_m) / np.linalg.norm(xyz_m - sensor_m, axis=1, keepdims=True)
+        assert was.any()
+        assert np.array_equal(was, np.abs(np.degrees(np.arcsin(way @ axis))) <= 0.5)
+
+
+def test_a_wall_with_a_step_tells_nothing():
+    # the first half of a long wall stands out by 3 cm; what was extracted of it is one line
+    stepped = [(0, 0.03, 3, 0.03), (3, 0, 6, 0), *ROOM[1:]]
+    error_m = estimated(looked(ERRORS_M, stepped), segments([(0, 0.03, 6, 0.0), *ROOM[1:]]))
+    assert error_m[BEAMS + 90] - ERRORS_M == pytest.approx(0, abs=0.002)
+
+
+def test_stray_points_before_corners_are_not_taken_for_a_bend():
+    # what is extracted of a wall ends at the wall around the corner, whose points stand before it
+    error_m = estimated(looked(np.zeros(16)), segments([(-0.05, 0, 6.05, 0), (6, -0.05, 6, 4.05)]))
+    assert np.mean(error_m[BEAMS + 90]) == pytest.approx(0, abs=0.0015)
+
+
+def test_a_planar_scanner_has_one_beam():
+    scans = [(i, lengthened_level(s, 0.004, i)) for i, s in enumerate(SENSORS)]
+    found = rays.gather(scans, dict(enumerate(SENSORS)), planar=True)
+    flat = segments() | {name: np.full(4 * len(SENSORS), np.nan) for name in ("z_min_m", "z_max_m")}
+    error_m = estimated(found, flat)
+    assert np.flatnonzero(error_m).tolist() == [90]
+    assert error_m[90] == pytest.approx(0.004, abs=0.002)
+
+
+def lengthened_level(sensor_m, error_m, seed):
+    xyz_m = laser(sensor_m, np.array(ROOM, float), beams=14400, seed=seed)
+    way = xyz_m - sensor_m
+    return xyz_m + error_m * way / np.linalg.norm(way, axis=1, keepdims=True)
+
+
+def test_little_that_is_seen_is_not_believed():
+    seen_squarely = segments([(5.9, 4, 5.5, 4)])
+    assert np.abs(estimated(looked(np.full(16, 0.01)), seen_squarely)).max() < 0.005
+
+
+def test_what_is_not_asked_for_or_not_seen_is_none():
+    found = looked(ERRORS_M)
+    assert not estimated(found, segments(), rangeerrors.RangeSettings(0.0, 60.0)).any()
+    assert not estimated(found, {name: values[:0] for name, values in segments().items()}).any()
+    nowhere = wallmaking.walls([(20, 0, 30, 0)], scan_id=[0])
+    assert not estimated(found, nowhere).any()
