@@ -34,9 +34,11 @@ def export_plan(plan, scans, outputs, *, name, settings):
     shown = {key: value for key, value in settings.items() if key.startswith("assumed_")}
     optional = {part: tables.read(plan[part], schema, allow_empty=True) for part, schema in _MAY_BE_EMPTY.items()}
     evidence = tables.read(plan["evidence"], schemas.EVIDENCE, allow_empty=True)
-    floor_z_m, ceiling_z_m = _levels(tables.ScanStore(scans), np.unique(evidence["scan_id"]))
-    known = {"faces": tables.read(plan["faces"], schemas.FACES), "floor_z_m": floor_z_m, "ceiling_z_m": ceiling_z_m}
-    drawn = floorplan.FloorPlan(name=name, **known, **optional, **shown)
+    store, shows = tables.ScanStore(scans), np.unique(evidence["scan_id"])
+    z_m = [np.empty(0)] if store.planar else [np.empty(0), *(xyz_m[:, 2] for _, xyz_m in store.scans(shows))]
+    known = dict(zip(("floor_z_m", "ceiling_z_m"), levels.floor_and_ceiling(np.concatenate(z_m)), strict=True))
+    faces = tables.read(plan["faces"], schemas.FACES)
+    drawn = floorplan.FloorPlan(name=name, faces=faces, **known, **optional, **shown)
     sheet, grid = drawing.plan(drawn), gridmap.draw(drawn, settings["map_cell_m"])
     atomic.write_text(outputs["geojson"], plangeojson.dumps(drawn, evidence))
     atomic.write_text(outputs["dxf"], cad.dumps(drawn))
@@ -45,15 +47,8 @@ def export_plan(plan, scans, outputs, *, name, settings):
     atomic.write_text(outputs["ifc"], ifcplan.dumps(drawn))
     atomic.write_bytes(outputs["pgm"], gridmap.pgm(grid))
     atomic.write_text(outputs["yaml"], gridmap.yaml(grid, Path(outputs["pgm"]).name))
-    seen = "measured" if np.isfinite(ceiling_z_m) else "no ceiling seen"
-    stagelog.say(f"export_plan: {floorplan.summary(drawn)}; {drawn.storey_m[1]:.2f} m high ({seen})")
-
-
-def _levels(store, scan_ids):
-    """Return the heights of floor and ceiling that scans show; planar ones show none."""
-    if store.planar or len(scan_ids) == 0:
-        return np.nan, np.nan
-    return levels.floor_and_ceiling(np.concatenate([xyz_m[:, 2] for _, xyz_m in store.scans(scan_ids)]))
+    high = f"{drawn.storey_m[1]:.2f} m high ({floorplan.HEIGHTS[drawn.height_from]}), {drawn.low.sum()} walls lower"
+    stagelog.say(f"export_plan: {floorplan.summary(drawn)}; {high}")
 
 
 if __name__ == "__main__":

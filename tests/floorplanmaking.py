@@ -80,6 +80,7 @@ def walls(rows=WALLS):
         "state": np.array([row[4] for row in rows], object),
         "z_min_m": np.zeros(n),
         "z_max_m": np.full(n, HEIGHT_M),
+        "top_m": np.full(n, np.nan),
         "rmse_m": np.full(n, 0.01),
         "sigma_offset_m": np.full(n, 0.002),
         "sigma_end0_m": np.full(n, 0.01),

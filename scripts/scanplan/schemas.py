@@ -141,7 +141,7 @@ FACES = Schema(
 _CENTRELINE = dict.fromkeys(("x0_m", "y0_m", "x1_m", "y1_m"), "float64")
 PLAN_WALLS = Schema(
     "plan_walls",
-    1,
+    2,
     {
         "wall": "int32",
         **_CENTRELINE,
@@ -149,7 +149,9 @@ PLAN_WALLS = Schema(
         "face_left": "int32",
         "face_right": "int32",
         "state": "string",
-        **dict.fromkeys(("z_min_m", "z_max_m", "rmse_m", "sigma_offset_m", "sigma_end0_m", "sigma_end1_m"), "float64"),
+        **dict.fromkeys(
+            ("z_min_m", "z_max_m", "top_m", "rmse_m", "sigma_offset_m", "sigma_end0_m", "sigma_end1_m"), "float64"
+        ),
         "n_points": "int64",
         "n_scans": "int32",
         "verify": "bool",

@@ -57,6 +57,21 @@ def test_without_a_ceiling_it_is_as_high_as_the_highest_wall():
     assert plan(walls=walls, floor_z_m=0.0).storey_m == (0, floorplanmaking.HEIGHT_M)
 
 
+def test_without_a_ceiling_it_is_no_lower_than_assumed():
+    walls = floorplanmaking.walls() | {"z_max_m": np.full(6, 1.4)}
+    low, high = plan(walls=walls, floor_z_m=0.0), plan(floor_z_m=0.0, assumed_height_m=2.2)
+    assert (low.storey_m, low.height_from) == ((0.0, 2.5), "assumed")
+    assert (high.storey_m, high.height_from) == ((0.0, floorplanmaking.HEIGHT_M), "walls")
+    assert plan(floor_z_m=-0.1, ceiling_z_m=2.6).height_from == "ceiling"
+
+
+def test_walls_end_at_the_ceiling_or_where_they_were_seen_to():
+    walls = floorplanmaking.walls() | {"top_m": np.array([np.nan, 1.5, np.nan, np.nan, 3.0, np.nan])}
+    drawn = plan(walls=walls, floor_z_m=-0.1, ceiling_z_m=2.6)
+    assert drawn.low.tolist() == [False, True, False, False, False, False]
+    assert drawn.heights_m == pytest.approx([2.7, 1.6, 2.7, 2.7, 2.7, 2.7])
+
+
 @pytest.mark.parametrize("z_m", [0.3, np.nan])
 def test_the_height_of_a_planar_survey_is_assumed(z_m):
     walls = floorplanmaking.walls() | {"z_min_m": np.full(6, z_m), "z_max_m": np.full(6, z_m)}

@@ -44,6 +44,30 @@ def test_walls_have_the_volume_of_the_plan(model):
     )
 
 
+def test_a_wall_ends_where_it_was_seen_to_and_so_does_the_hole_in_it():
+    top_m = np.array([np.nan] * 4 + [np.nan, 1.2])
+    drawn = plan(walls=floorplanmaking.walls() | {"top_m": top_m}, ceiling_z_m=2.5, floor_z_m=0.0)
+    model = opened(drawn)
+    assert faults(model) == []
+    walls = model.by_type("IfcWall")
+    stated = [ifcopenshell.util.element.get_psets(wall) for wall in walls]
+    assert [s["Qto_WallBaseQuantities"]["Height"] for s in stated] == pytest.approx([2.5] * 5 + [1.2])
+    assert [s["Scanplan_Evidence"]["HeightFrom"] for s in stated] == ["ceiling"] * 5 + ["top of the wall"]
+    solid_m3 = volume_m3(walls[5], disable_opening_subtractions=True)
+    assert solid_m3 == pytest.approx(drawn.bodies[5].area * 1.2, rel=1e-3)
+    assert volume_m3(walls[5]) == pytest.approx(solid_m3 - 0.9 * 0.1 * 1.2, rel=1e-3)
+    door = next(d for d in model.by_type("IfcDoor") if d.Name == "Door 1")
+    assert door.OverallHeight == pytest.approx(1.2)
+
+
+def test_a_height_that_nothing_showed_is_said_to_be_assumed():
+    walls = floorplanmaking.walls() | {"z_max_m": np.full(6, 1.4)}
+    model = opened(plan(walls=walls))
+    stated = ifcopenshell.util.element.get_psets(model.by_type("IfcWall")[0])
+    assert stated["Scanplan_Evidence"]["HeightFrom"] == "assumed"
+    assert stated["Scanplan_Evidence"]["HeightMeasured"] is False
+
+
 def test_the_tree_goes_from_the_project_to_walls_doors_and_spaces(model):
     (storey,) = model.by_type("IfcBuildingStorey")
     for wall in model.by_type("IfcWall"):

@@ -17,9 +17,9 @@ _FILLED_BY = {"door": "IfcDoor", "window": "IfcWindow"}
 def dumps(plan):
     """Return a plan as the text of an IFC4 file in metres.
 
-    Project, site, building and storey; an IfcWall of every wall, as high as the storey, with what is known of it as
-    properties; an IfcOpeningElement with IfcDoor or IfcWindow in its wall; an IfcSpace of every room. Where on earth
-    the site lies and where north is are not known and left out.
+    Project, site, building and storey; an IfcWall of every wall, as high as the storey or up to where it was seen to
+    end below the ceiling, with what is known of it as properties; an IfcOpeningElement with IfcDoor or IfcWindow in its
+    wall; an IfcSpace of every room. Where on earth the site lies and where north is are not known and left out.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def dumps(plan):
     """
     floor_m, height_m = plan.storey_m
     model = ifcmodel.Model(plan.name, floor_m)
-    walls = [_add_wall(model, plan, i, height_m) for i in range(len(plan.walls["wall"]))]
+    walls = [_add_wall(model, plan, i) for i in range(len(plan.walls["wall"]))]
     leaves = [_add_opening(model, plan, i, height_m, walls) for i in range(len(plan.openings["opening"]))]
     model.contain([*walls, *filter(None, leaves)])
     model.aggregate(model.storey, [_add_space(model, plan, i, height_m) for i in range(len(plan.rooms["room"]))])
@@ -48,8 +48,8 @@ def _frame(line):
     return length_m, along, lambda shape: shapely.transform(shape, lambda xy: (xy - line[0]) @ turn.T)
 
 
-def _add_wall(model, plan, i, height_m):
-    line, columns = floorplan.lines_m(plan.walls)[i], plan.walls
+def _add_wall(model, plan, i):
+    line, columns, height_m = floorplan.lines_m(plan.walls)[i], plan.walls, float(plan.heights_m[i])
     length_m, along, local = _frame(line)
     wall = model.root(
         "IfcWall", _place(line), Name=f"Wall {columns['wall'][i]}", Tag=str(columns["wall"][i]),
@@ -67,7 +67,8 @@ def _add_wall(model, plan, i, height_m):
         "StartStandardDeviation": ("IfcLengthMeasure", number["sigma_end0_m"]),
         "EndStandardDeviation": ("IfcLengthMeasure", number["sigma_end1_m"]),
         "Residual": ("IfcLengthMeasure", number["rmse_m"]),
-        "HeightMeasured": ("IfcBoolean", bool(np.isfinite(plan.ceiling_z_m))),
+        "HeightMeasured": ("IfcBoolean", bool(plan.low[i]) or plan.height_from == "ceiling"),
+        "HeightFrom": ("IfcLabel", "top of the wall" if plan.low[i] else floorplan.HEIGHTS[plan.height_from]),
         "SeenFromHeight": ("IfcLengthMeasure", _known(columns["z_min_m"][i] - floor_m)),
         "SeenToHeight": ("IfcLengthMeasure", _known(columns["z_max_m"][i] - floor_m)),
         "Points": ("IfcInteger", int(columns["n_points"][i])),
@@ -85,6 +86,7 @@ def _add_opening(model, plan, i, height_m, walls):
     """Add an opening to its wall, and return the door or window in it; None of a passage or where it is in no wall."""
     line, columns = floorplan.lines_m(plan.openings)[i], plan.openings
     kind, host = columns["type"][i], plan.hosts[i]
+    height_m = float(plan.heights_m[host]) if host >= 0 else height_m
     low_m, high_m = _heights(kind, columns["sill_m"][i], columns["lintel_m"][i], height_m)
     name, (length_m, along, local) = f"{kind.capitalize()} {columns['opening'][i]}", _frame(line)
     where = model.placement((*line[0], 0), along, model.storey.ObjectPlacement)

@@ -9,6 +9,7 @@ import shapely
 from scanplan.plan import wallbodies
 
 STATES = ("observed", "inferred")
+HEIGHTS = {"ceiling": "ceiling", "walls": "highest seen of all walls", "assumed": "assumed"}
 OPENINGS = ("door", "window", "passage")
 _ENDS = ("x0_m", "y0_m", "x1_m", "y1_m")
 _CLEARANCE_M = 0.02
@@ -112,11 +113,39 @@ class FloorPlan:
     def storey_m(self):
         """Height of the floor in the map frame and of the ceiling above it, metres.
 
-        Where these were not seen, the lowest and the highest that was seen of the walls stand for them.
+        Where the floor was not seen, the lowest that was seen of the walls stands for it; a ceiling that was not seen
+        is where it is assumed, or higher if walls were seen higher: they do not end above it.
         """
+        floor_m, seen_m = self._walls_z_m
+        heights_m = {"ceiling": self.ceiling_z_m - floor_m, "walls": seen_m, "assumed": self.assumed_height_m}
+        return floor_m, float(heights_m[self.height_from])
+
+    @cached_property
+    def height_from(self):
+        """What tells the height of the storey: its `ceiling`, its highest `walls`, or neither: `assumed`."""
+        floor_m, seen_m = self._walls_z_m
+        if self.ceiling_z_m - floor_m > _FLAT_M:
+            return "ceiling"
+        return "walls" if seen_m > self.assumed_height_m else "assumed"
+
+    @cached_property
+    def _walls_z_m(self):
+        """Height of the floor in the map frame, and how high above it walls were seen."""
         floor_m = self.floor_z_m if np.isfinite(self.floor_z_m) else _extreme(self.walls["z_min_m"], np.fmin)
-        top_m = self.ceiling_z_m if np.isfinite(self.ceiling_z_m) else _extreme(self.walls["z_max_m"], np.fmax)
-        return (floor_m, top_m - floor_m) if top_m - floor_m > _FLAT_M else (floor_m, self.assumed_height_m)
+        return floor_m, _extreme(self.walls["z_max_m"], np.fmax) - floor_m
+
+    @cached_property
+    def low(self):
+        """Which walls (n,) were seen to end below the ceiling."""
+        floor_m, height_m = self.storey_m
+        top_m = self.walls["top_m"] - floor_m
+        return (top_m > 0) & (top_m < height_m)
+
+    @cached_property
+    def heights_m(self):
+        """How high each wall is above the floor (n,): up to the ceiling, or to where it was seen to end below it."""
+        floor_m, height_m = self.storey_m
+        return np.where(self.low, self.walls["top_m"] - floor_m, height_m)
 
     @cached_property
     def bounds_m(self):

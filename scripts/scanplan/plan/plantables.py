@@ -55,6 +55,7 @@ def walls(found, evidence, face_rows, of_walls, floor_z_m, trust):
                 "state": "observed" if known.observed >= 0.5 else "inferred",
                 "z_min_m": known.z_m[0] + floor_z_m,
                 "z_max_m": known.z_m[1] + floor_z_m,
+                "top_m": known.top_m + floor_z_m,
                 "rmse_m": known.rmse_m,
                 "sigma_offset_m": known.sigma_offset_m,
                 "sigma_end0_m": known.sigma_end_m[0],

@@ -5,12 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan.plan import crossings
+from scanplan.plan import crossings, tops
 
 _NEAR_END_M = 0.25
 _MET_M = 1e-6
 _REACH_M = 0.5
-_HEIGHT_PERCENTILES = (2, 98)
+_LOWEST_PERCENTILE = 2
+_POINTS_ABOVE = 10
 
 
 @dataclass(frozen=True)
@@ -53,6 +54,8 @@ class Evidence:
         With how many points each.
     z_m : tuple of two float
         From where to where its points reach, above the floor.
+    top_m : float
+        Where it ends below the ceiling, above the floor; NaN where it was not seen to.
     observed : float
         Share of its length, openings aside, that points show.
     """
@@ -64,6 +67,7 @@ class Evidence:
     scans: np.ndarray
     points: np.ndarray
     z_m: tuple
+    top_m: float
     observed: float
 
     def needs_a_visit(self, trust):
@@ -101,7 +105,8 @@ def _weigh(wall, offset_m, stacked, offsets_m, trust):
         n_points=len(scan),
         scans=scans,
         points=points,
-        z_m=tuple(np.percentile(z_m, _HEIGHT_PERCENTILES).tolist()),
+        z_m=(float(np.percentile(z_m, _LOWEST_PERCENTILE)), _highest_m(z_m)),
+        top_m=tops.find(wall),
         observed=_observed(wall),
     )
 
@@ -110,6 +115,11 @@ def _hits(stretches):
     """Return scan, offset and height of all points that show stretches."""
     columns = [(s.seen.hit_scan[s.points], s.seen.hit_off_m[s.points], s.seen.hit_z_m[s.points]) for s in stretches]
     return tuple(np.concatenate(column) for column in zip(*columns, strict=True))
+
+
+def _highest_m(z_m):
+    """Return the height that all but ten points stay below: a share of them would, too, where few rays look up."""
+    return float(np.sort(z_m)[max(len(z_m) - 1 - _POINTS_ABOVE, len(z_m) // 2)])
 
 
 def _side_sigma_m(stretches, trust):
