@@ -263,7 +263,7 @@ class TestEvidence:
         assert not made.walls["verify"].any()
 
     def test_a_wall_that_few_points_show_is_to_be_verified(self):
-        known = {"rmse_m": 0.01, "n_points": 9, "points": np.array([9]), "z_m": (0, 1)}
+        known = {"rmse_m": 0.01, "n_points": 9, "points": np.array([9]), "z_m": (0, 1), "top_m": np.nan}
         sure = {"sigma_offset_m": 0.01, "sigma_end_m": (0.01, 0.01), "scans": np.arange(2), "observed": 1.0}
         assert not wallevidence.Evidence(**known, **sure).needs_a_visit(TRUST)
         for doubt in (
