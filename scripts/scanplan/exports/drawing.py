@@ -24,7 +24,10 @@ _LARGEST_MM = np.array([380.0, 260.0])
 _MARGIN_MM = {"left": 22.0, "right": 12.0, "top": 12.0, "bottom": 50.0}
 _LEAST_WIDTH_MM = 150.0
 _LONGEST_NAME = 60
-_LABELLED_MM = 6.0
+_LABELLED_MM = 3.5
+_SMALL_POINTS = 5.5
+_ROOM_IN_WALL_MM = 2.3
+_BESIDE_MM = 1.6
 _INK, _FAINT = "black", "0.35"
 _STATES = {
     "observed": {"ec": _INK, "fc": "0.55", "joinstyle": "miter"},
@@ -67,12 +70,13 @@ def plan(drawn):
     -------
     matplotlib.figure.Figure
     """
-    low_m, high_m = drawn.bounds_m
+    low_m, high_m = drawn.extent_m
     scale = scale_for(high_m - low_m)
     axes, m_per_mm = _sheet(low_m, high_m, scale)
     for state in floorplan.STATES:
         _walls(axes, drawn, state)
     _openings(axes, drawn, m_per_mm)
+    _low_walls(axes, drawn, m_per_mm)
     _rooms(axes, drawn, m_per_mm)
     _dimension(axes, low_m, np.array([high_m[0], low_m[1]]), m_per_mm)
     _dimension(axes, np.array([low_m[0], high_m[1]]), low_m, m_per_mm)
@@ -134,10 +138,26 @@ def _openings(axes, drawn, m_per_mm):
         path = Path(vertices, [Path.MOVETO, Path.LINETO] * len(strokes))
         axes.add_patch(PathPatch(path, fc="none", lw=0.13 * _POINTS_PER_MM, gid=f"{kind}-{number}", **_OPENINGS[kind]))
         if math.dist(*line) > _LABELLED_MM * m_per_mm:
-            upright = way if (abs(way[1]) < abs(way[0]) and way[0] > 0) or way[1] > abs(way[0]) else -way
-            turn_deg = math.degrees(math.atan2(upright[1], upright[0]))
-            axes.text(*line.mean(axis=0), f"{math.dist(*line):.2f}", fontsize=4.5, rotation=turn_deg, ha="center",
-                      va="center_baseline" if kind != "window" else "bottom", rotation_mode="anchor")  # fmt: skip
+            thick_mm = np.nan_to_num(thick_m) / m_per_mm
+            in_wall = thick_mm >= _ROOM_IN_WALL_MM and kind != "window"
+            _along(axes, line, f"{math.dist(*line):.2f}", 0.0 if in_wall else (thick_mm / 2 + _BESIDE_MM) * m_per_mm)
+
+
+def _low_walls(axes, drawn, m_per_mm):
+    """Write how high walls are that end below the ceiling."""
+    sides_m = np.maximum(*drawn.sides_m)
+    for i in np.flatnonzero(drawn.low):
+        line = floorplan.lines_m(drawn.walls)[i]
+        _along(axes, line, f"{drawn.heights_m[i]:.2f} high", sides_m[i] * drawn.thick[i] + _BESIDE_MM * m_per_mm)
+
+
+def _along(axes, line, said, beside_m):
+    """Write along a line, so far above it, to be read from below or from the right."""
+    way = (line[1] - line[0]) / math.dist(*line)
+    upright = way if (abs(way[1]) < abs(way[0]) and way[0] > 0) or way[1] > abs(way[0]) else -way
+    place = line.mean(axis=0) + beside_m * np.array([-upright[1], upright[0]])
+    axes.text(*place, said, fontsize=_SMALL_POINTS, rotation=math.degrees(math.atan2(upright[1], upright[0])),
+              ha="center", va="center_baseline", rotation_mode="anchor")  # fmt: skip
 
 
 def _rooms(axes, drawn, m_per_mm):

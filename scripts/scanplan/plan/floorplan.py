@@ -149,10 +149,15 @@ class FloorPlan:
 
     @cached_property
     def bounds_m(self):
-        """The least and the greatest x and y of all that is drawn, ((2,), (2,))."""
-        shapes = [*shapely.linestrings(lines_m(self.faces)), *self.known, *self.areas]
-        x0, y0, x1, y1 = shapely.total_bounds(np.array(shapes, object))
-        return np.array([x0, y0]), np.array([x1, y1])
+        """The least and the greatest x and y of all that is known, rooms with it, ((2,), (2,))."""
+        return _bounds([*shapely.linestrings(lines_m(self.faces)), *self.known, *self.areas])
+
+    @cached_property
+    def extent_m(self):
+        """Likewise of what is drawn of walls and openings: what a dimension line measures."""
+        walls = [part for state in STATES for part in (self.solid(state), *self.single(state))]
+        drawn = [*walls, *shapely.linestrings(lines_m(self.openings))]
+        return _bounds(drawn) if any(not part.is_empty for part in drawn) else self.bounds_m
 
     @cached_property
     def areas(self):
@@ -177,6 +182,11 @@ def summary(plan):
 def boxes(lines, half_m):
     """Return rectangles (n,) along lines (n, 2, 2), `half_m` (n,) to each side."""
     return shapely.buffer(shapely.linestrings(lines), half_m, cap_style="flat") if len(lines) else np.array([], object)
+
+
+def _bounds(shapes):
+    x0, y0, x1, y1 = shapely.total_bounds(np.array(shapes, object))
+    return np.array([x0, y0]), np.array([x1, y1])
 
 
 def _extreme(values, choose):

@@ -18,6 +18,7 @@ _MOST_POINTS = 500_000
 _LEAST_OF_GROUP = 100
 _END_M = 0.1  # the last points before a corner may be of the wall around it
 _BINS, _MOST_BENT = 16, 3.0
+_BOW_M, _PASSES = 0.001, 3  # no wall is flatter than that
 _TINY = 1e-9
 
 
@@ -166,28 +167,34 @@ def _degrees(sine):
 
 
 def _solved(hits, n_beams, sigma_m):
-    """Return the errors (n_beams,) that explain offsets best; 0 without any."""
+    """Return the errors (n_beams,) that explain offsets best; 0 without any.
+
+    Generalised least squares: a line along each wall is free, and each wall has a bow of its own that looks just like an
+    error that all beams have in common: of `_BOW_M` in the mean of squares, or of what is left of bows in the end.
+    """
     if hits.n_groups == 0:
         return np.zeros(n_beams)
-    offset_m, cosine = hits.level(hits.offset_m), hits.level(hits.cosine)
-    count, along_m = hits.summed(np.ones(len(cosine))), hits.along_m
-    along_m = along_m - (hits.summed(along_m) / count)[hits.group]
+    offset_m, bow = hits.level(hits.offset_m), hits.level(hits.cosine)
+    count = hits.summed(np.ones(len(bow)))
+    noise_m2 = max(np.mean(offset_m**2), _TINY**2)
+    along_m = hits.along_m - (hits.summed(hits.along_m) / count)[hits.group]
+    along_m /= np.sqrt(np.maximum(hits.summed(along_m**2), _TINY))[hits.group]
+    bow /= np.sqrt(np.maximum(hits.summed(bow**2), _TINY))[hits.group]
     cell = hits.group * n_beams + hits.beam
-    level, tilt = (
-        np.bincount(cell, values, hits.n_groups * n_beams).reshape(-1, n_beams)
-        for values in (hits.cosine, hits.cosine * along_m)
+    level, tilt, bowed = (
+        np.bincount(cell, hits.cosine * values, hits.n_groups * n_beams).reshape(-1, n_beams)
+        for values in (1 / np.sqrt(count)[hits.group], along_m, bow)
     )
-    # what a line along each wall takes of the beams' errors
-    level /= np.sqrt(count)[:, None]
-    tilt /= np.sqrt(np.maximum(hits.summed(along_m**2), _TINY))[:, None]
-    normal = np.diag(np.bincount(hits.beam, hits.cosine**2, n_beams)) - level.T @ level - tilt.T @ tilt
-    right = -np.bincount(hits.beam, hits.cosine * offset_m, n_beams)
-    # neighbours do not err independently: walls disagree about a common error by more than noise lets them
-    weight, said = hits.summed(cosine**2), -hits.summed(cosine * offset_m)
-    common_m = said.sum() / max(weight.sum(), _TINY)
-    disagreement_m2 = ((said - common_m * weight) ** 2).sum() / max(weight.sum(), _TINY)
-    noise_m2 = max(np.mean(offset_m**2), disagreement_m2)
-    return np.linalg.solve(normal + np.eye(n_beams) * max(noise_m2, _TINY**2) / sigma_m**2, right)
+    straight = np.diag(np.bincount(hits.beam, hits.cosine**2, n_beams)) - level.T @ level - tilt.T @ tilt
+    said, bow_m = -np.bincount(hits.beam, hits.cosine * offset_m, n_beams), hits.summed(offset_m * bow)
+    prior, bow_m2 = np.eye(n_beams) * noise_m2 / sigma_m**2, _BOW_M**2
+    for _ in range(_PASSES):
+        own = 1 / (1 + noise_m2 / (bow_m2 * count))
+        normal, right = straight - (own[:, None] * bowed).T @ bowed, said + bowed.T @ (own * bow_m)
+        error_m = np.linalg.solve(normal + prior, right)
+        left_m = bow_m + bowed @ error_m
+        bow_m2 = max(_BOW_M**2, float(np.mean((left_m**2 - noise_m2) / count)))
+    return error_m
 
 
 def _are_flat(hits, error_m):
