@@ -169,8 +169,8 @@ def _degrees(sine):
 def _solved(hits, n_beams, sigma_m):
     """Return the errors (n_beams,) that explain offsets best; 0 without any.
 
-    Generalised least squares: a line along each wall is free, and each wall has a bow of its own that looks just like an
-    error that all beams have in common: of `_BOW_M` in the mean of squares, or of what is left of bows in the end.
+    Generalised least squares: a line along each wall is free, and each wall has a bow of its own that looks just like
+    an error that all beams have in common: of `_BOW_M` in the mean of squares, or of what is left of bows in the end.
     """
     if hits.n_groups == 0:
         return np.zeros(n_beams)

@@ -79,7 +79,7 @@ def _labels(plan):
     extent_m = float(np.max(plan.bounds_m[1] - plan.bounds_m[0]))
     columns = (plan.rooms[c].tolist() for c in ("room", "area_m2", "x_m", "y_m"))
     for room, area_m2, x_m, y_m, width_m in zip(*columns, plan.label_widths_m.tolist(), strict=True):
-        size_m = min(max(width_m / 8, 0.1), 0.4, max(extent_m / 40, 0.1))
+        size_m = min(max(width_m / 8, 0.1), max(extent_m / 60, 0.1))
         at = f'x="{_number(x_m)}" font-size="{size_m:.2f}"'
         yield (
             f'<text y="{_number(-y_m)}" {at}>Room {room}</text>'
@@ -98,8 +98,8 @@ def _scan(rank, place_m):
     x_m, y_m = _number(place_m[0]), _number(-place_m[1])
     return (
         f'<g class="scan" data-rank="{rank}"><title>scan of rank {rank}</title>'
-        f'<circle cx="{x_m}" cy="{y_m}" r="0.16"/>'
-        f'<text x="{x_m}" y="{y_m}" font-size="0.17" dy="0.06">{rank}</text></g>'
+        f'<circle cx="{x_m}" cy="{y_m}" r="0.06"/>'
+        f'<text x="{x_m}" y="{y_m}" dy="-0.14" font-size="0.3">{rank}</text></g>'
     )
 
 

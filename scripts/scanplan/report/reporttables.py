@@ -7,6 +7,7 @@ import numpy as np
 
 from scanplan import configuration
 from scanplan.plan import floorplan
+from scanplan.report import truthwords
 
 _NOT_KNOWN = "–"
 
@@ -53,13 +54,14 @@ def walls(plan, evidence):
         first, last = times.get(wall, (None, None))
         cells = [
             number(wall, 0), verify, str(at["state"]), number(length_m[i], 2), number(1000 * at["thickness_m"], 0),
+            number(plan.heights_m[i], 2) if plan.low[i] else (None, ""),
             *(number(1000 * at[c], 1) for c in ("sigma_offset_m", "sigma_end0_m", "sigma_end1_m", "rmse_m")),
             number(at["n_points"], 0), number(at["n_scans"], 0), _moment(first), _moment(last),
         ]  # fmt: skip
         rows.append((f' data-wall="{wall}" tabindex="0"', cells))
     heads = [
-        "#wall", "on site", "state", "#length (m)", "#thickness (mm)", "#σ offset (mm)", "#σ start (mm)", "#σ end (mm)",
-        "#residual (mm)", "#points", "#scans", "#first seen", "#last seen",
+        "#wall", "on site", "state", "#length (m)", "#thickness (mm)", "#ends at height (m)", "#σ offset (mm)",
+        "#σ start (mm)", "#σ end (mm)", "#residual (mm)", "#points", "#scans", "#first seen", "#last seen",
     ]  # fmt: skip
     return table("walls", heads, rows, sortable=True)
 
@@ -121,12 +123,17 @@ def registration(verdicts, shift_m):
 def against_truth(measured):
     """Return the table of the plan's agreement with the truth, from the columns of `schemas.PLAN_EVALUATION`."""
     rows = [
-        [name.replace("_", " "), *(number(value, 0 if name.startswith("n_") else 3) for value in values.tolist())]
+        [
+            name.replace("_", " "),
+            *(number(value, 0 if name.startswith("n_") else 3) for value in values.tolist()),
+            truthwords.meaning(name),
+        ]
         for name, values in measured.items()
         if name != "frame"
     ]
     title = "<details><summary><h3>The plan against the truth</h3></summary>"
-    return f"{title}{table('truth', ['measure', *(f'#{frame}' for frame in measured['frame'])], rows)}</details>"
+    heads = ["measure", *(f"#{frame}" for frame in measured["frame"]), "meaning"]
+    return f"{title}{table('truth', heads, rows)}</details>"
 
 
 def stages(measured):
