@@ -81,7 +81,7 @@ class TestPlan:
         flat = [(i, np.column_stack([xyz[:, :2], 0 * xyz[:, 2]])) for i, xyz in housemaking.scans()]
         flat = [(i, xyz[:: 16 // 2]) for i, xyz in flat]
         made = plan(rays.gather(flat, dict(enumerate(SENSORS)), planar=True))
-        assert np.isnan(made.openings["sill_m"]).all()
+        assert np.isnan(made.openings["sill_m"]).all() and np.isnan(made.walls["top_m"]).all()
         np.testing.assert_allclose(np.sort(made.rooms["area_m2"]), [15.2, 16], rtol=0.03)
 
     @pytest.mark.parametrize("sensor_z_m", [0.4, 0.9])

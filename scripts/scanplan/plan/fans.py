@@ -44,8 +44,8 @@ def of(azimuth_rad, xy_m, sensors_m):
     inner = np.reshape([np.searchsorted(of_scan, edges_rad) for of_scan in azimuth_rad], (n, _FANS - 1))
     count = np.array([len(of_scan) for of_scan in azimuth_rad], np.int64)
     first = np.column_stack([np.zeros(n, np.int64), inner, count]) + (np.cumsum(count) - count)[:, None]
-    way_m = xy_m - np.repeat(sensors_m, count, axis=0)
-    square_m2 = np.einsum("ij,ij->i", way_m, way_m)
+    ways_m = (of_scan - at for of_scan, at in zip(np.split(xy_m, np.cumsum(count)[:-1]), sensors_m, strict=True))
+    square_m2 = np.concatenate([np.empty(0), *(np.einsum("ij,ij->i", way_m, way_m) for way_m in ways_m)])
     reach_m, filled = np.zeros((n, _FANS)), np.diff(first) > 0
     if filled.any():
         reach_m[filled] = np.sqrt(np.maximum.reduceat(square_m2, first[:, :-1][filled]))
@@ -73,6 +73,8 @@ def cut(known, low, high, scans, side_m, normal, band_m):
     -------
     low, high : (2, m) int
         Likewise, in the same order; empty where high is not above low.
+    row : (m,) int
+        Which of the k scans each is of.
     """
     straight = -np.sign(side_m)[:, None] * normal
     straight_rad = np.arctan2(straight[:, 1], straight[:, 0])[:, None]
@@ -82,4 +84,4 @@ def cut(known, low, high, scans, side_m, normal, band_m):
     gone_m = known.reach_m[scans] * np.maximum(straightest, 0)
     row, fan = np.nonzero(gone_m >= np.abs(side_m)[:, None] - band_m - _ROUND_M)
     first, stop = known.first[scans[row], fan], known.first[scans[row], fan + 1]
-    return np.maximum(low[:, row], first), np.minimum(high[:, row], stop)
+    return np.maximum(low[:, row], first), np.minimum(high[:, row], stop), row

@@ -40,12 +40,15 @@ def _star(origin_m, azimuth_rad, range_m):
     width_rad = 2 * np.pi / count
     sector = np.minimum(((azimuth_rad + np.pi) / width_rad).astype(np.int64), count - 1)
     reach_m = np.zeros(count)
-    order = np.lexsort((range_m, sector))
-    first = np.searchsorted(sector[order], np.arange(count + 1))
+    first = np.searchsorted(sector, np.arange(count + 1))
     number = np.diff(first)
+    # a sector a row: much faster to sort than all rays at once
+    by_sector = np.full((count, number.max(initial=0)), np.inf)
+    by_sector[sector, np.arange(len(sector)) - first[sector]] = range_m
+    by_sector.sort(axis=1)
     # not the longest of all: one stray point would open a way through a wall
-    seen = number > 0
-    reach_m[seen] = range_m[order][first[:-1][seen] + (0.9 * (number[seen] - 1)).astype(np.int64)]
+    seen = np.flatnonzero(number)
+    reach_m[seen] = by_sector[seen, (0.9 * (number[seen] - 1)).astype(np.int64)]
     edge = -np.pi + width_rad * np.arange(count + 1)
     begin, end = (np.column_stack([np.cos(e), np.sin(e)]) * reach_m[:, None] for e in (edge[:-1], edge[1:]))
     corners = origin_m + np.stack([begin, end], axis=1).reshape(-1, 2)

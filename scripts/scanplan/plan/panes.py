@@ -85,14 +85,13 @@ def _rays(rays, line, low_m, count, heights_m):
     width_deg = np.rad2deg(COLUMN_M * side_m[scans, None] / far_m**2)
     sent = (high - low) * width_deg * looks
     edges_m = there_m[scans] + np.array([[-1], [1]]) * most_m[scans]
-    rows = sights.rows_between(rays, line.at(np.clip(edges_m, low_m, low_m + COLUMN_M * count)), scans)
-    xyz_m, scan = rays.stacked.xyz_m[rows], rays.stacked.scan[rows]
-    before_m = line.offset_m(xyz_m[:, :2])
-    share = side_m[scan] / np.maximum(side_m[scan] - before_m, 1e-6)
-    z_m = rays.sensors_m[scan, 2] + share * (xyz_m[:, 2] - rays.sensors_m[scan, 2]) - rays.floor_z_m
+    xyz_m, scan = sights.between(rays, line.at(np.clip(edges_m, low_m, low_m + COLUMN_M * count)), scans)
+    before_m, of_scan_m, sensor_z_m = line.offset_m(xyz_m[:, :2]), side_m.take(scan), rays.sensors_m[:, 2].take(scan)
+    share = of_scan_m / np.maximum(of_scan_m - before_m, 1e-6)
+    z_m = sensor_z_m + share * (xyz_m[:, 2] - sensor_z_m) - rays.floor_z_m
     inside = np.flatnonzero((z_m >= heights_m[0]) & (z_m < heights_m[1]))
-    scan, before_m = scan[inside], before_m[inside]
-    off_m = share[inside] * (line.along_m(xyz_m[inside, :2]) - there_m[scan])
+    scan, before_m = scan.take(inside), before_m.take(inside)
+    off_m = share.take(inside) * (line.along_m(xyz_m.take(inside, axis=0)[:, :2]) - there_m[scan])
     counts = np.abs(off_m) < most_m[scan]
     column = np.floor((there_m[scan] + off_m - low_m) / COLUMN_M).astype(np.int64)
     counts &= (column >= 0) & (column < count)

@@ -158,7 +158,7 @@ def make(segments, rays, track_m, t_ns, settings, up=None):
     floor_z_m = 0.0 if math.isnan(rays.floor_z_m) else rays.floor_z_m
     drawn = wallfaces.of_walls(found, max_beyond_m=settings.openings.max_closed_m)
     face_columns, face_rows = plantables.faces(drawn, floor_z_m)
-    known = wallevidence.weigh(found, settings.trust)
+    known = wallevidence.weigh(found, settings.trust, planar=rays.planar)
     return Plan(
         faces=face_columns,
         walls=plantables.walls(found, known, face_rows, drawn, floor_z_m, settings.trust),

@@ -14,7 +14,7 @@ import numpy as np
 
 from scanplan.plan import rays as sights
 
-_MOST_POINTS = 500_000
+_MOST_POINTS = 300_000
 _LEAST_OF_GROUP = 100
 _END_M = 0.1  # the last points before a corner may be of the wall around it
 _BINS, _MOST_BENT = 16, 3.0
@@ -125,12 +125,14 @@ def without(rays, error_m, up):
     """Return rays with ranges shorter by `error_m` (181,), as `estimate` returns it."""
     if not error_m.any():
         return rays
-    points = []
+    moved, start = np.empty_like(rays.stacked.xyz_m), 0
     for xyz_m, sensor_m, axis in zip(rays.xyz_m, rays.sensors_m, up, strict=True):
         way = xyz_m - sensor_m
         range_m = np.maximum(_length(way), _TINY)
-        points.append(xyz_m - way * (error_m[_degrees(way @ axis / range_m)] / range_m)[:, None])
-    return replace(rays, xyz_m=points)
+        way *= (error_m[_degrees(way @ axis / range_m)] / range_m)[:, None]
+        np.subtract(xyz_m, way, out=moved[start : start + len(way)])
+        start += len(way)
+    return rays.with_ranges(moved)
 
 
 def _hits(rays, segments, settings, band_m, up):
@@ -139,10 +141,8 @@ def _hits(rays, segments, settings, band_m, up):
     normal = np.column_stack([segments["nx"], segments["ny"]]).astype(float)
     side_m = np.einsum("ij,ij->i", rays.sensors_m[scan, :2] - first, normal)
     end = (last - first) * np.minimum(_END_M / np.maximum(np.hypot(*(last - first).T), _TINY), 0.5)[:, None]
-    rows, group = sights.grouped_between(rays, np.stack([first + end, last - end]), scan)
-    thinned = slice(None, None, len(rows) // _MOST_POINTS + 1)
-    rows, group = rows[thinned], group[thinned]
-    xyz_m = rays.stacked.xyz_m[rows]
+    rows, group = sights.some_between(rays, np.stack([first + end, last - end]), scan, _MOST_POINTS)
+    xyz_m = rays.stacked.xyz_m.take(rows, axis=0)
     offset_m = np.einsum("ij,ij->i", xyz_m[:, :2] - first[group], normal[group])
     kept = np.abs(offset_m) <= band_m
     if not rays.planar:

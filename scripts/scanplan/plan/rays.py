@@ -3,7 +3,7 @@
 A ray runs straight from the sensor to the point it measured: there is something at its end and nothing before it.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -76,6 +76,13 @@ class Rays:
         scans = zip(self.azimuth_rad, self.xyz_m, self.sensors_m, strict=True)
         return np.array([usualreturns.below(azimuth, xyz_m - sensor_m, 10) for azimuth, xyz_m, sensor_m in scans])
 
+    def with_ranges(self, xyz_m):
+        """Return rays of other lengths: points (n, 3) of all scans, one after another, in the same directions."""
+        stops = np.cumsum([len(of_scan) for of_scan in self.xyz_m])
+        moved = replace(self, xyz_m=np.split(xyz_m, stops[:-1]))
+        vars(moved)["stacked"] = replace(self.stacked, xyz_m=xyz_m)
+        return moved
+
     @property
     def n_points(self):
         """Number of points of all scans."""
@@ -132,7 +139,7 @@ def gather(scans, sensors_m, *, planar):
         order = np.argsort(azimuth, kind="stable")
         ids.append(scan_id)
         azimuths.append(azimuth[order])
-        points.append(xyz_m[order])
+        points.append(xyz_m.take(order, axis=0))
     sensors = np.array([sensors_m[i] for i in ids], float).reshape(-1, 3)
     floor_z_m = np.nan if planar else _floor_z_m(points)
     return Rays(np.array(ids, np.int64), sensors, azimuths, points, floor_z_m, bool(planar))
@@ -172,23 +179,26 @@ def look(rays, line, low_m, high_m, *, band_m):
     ends = line.at(np.array([low_m, high_m]))
     side_m = line.offset_m(rays.sensors_m[:, :2])
     scans = np.flatnonzero(np.abs(side_m) >= LEAST_SIDE_M)
-    rows = _rows(*fans.cut(rays.fans, *_spans(rays, ends[:, None], scans), scans, side_m[scans], line.normal, band_m))
-    xyz_m, scan = rays.stacked.xyz_m[rows], rays.stacked.scan[rows]
+    spans = _spans(rays, ends[:, None], scans)
+    low, high, row = fans.cut(rays.fans, *spans, scans, side_m[scans], line.normal, band_m)
+    xyz_m, scan = _gathered(rays.stacked, low, high, scans[row])
     offset_m = line.offset_m(xyz_m[:, :2])
-    hit = (np.abs(offset_m) <= band_m) & (side_m[scan] > 0)
-    beyond = offset_m * np.sign(side_m[scan]) <= -(band_m + _STEADY_M)
-    sensor_m, behind_m = rays.sensors_m[scan[beyond]], side_m[scan[beyond]]
-    share = behind_m / (behind_m - offset_m[beyond])
-    crossing_m = sensor_m + share[:, None] * (xyz_m[beyond] - sensor_m)
+    sign = np.sign(side_m).take(scan)
+    hit = np.flatnonzero((np.abs(offset_m) <= band_m) & (sign > 0))
+    beyond = np.flatnonzero(offset_m * sign <= -(band_m + _STEADY_M))
+    hit_m, end_m, of_hit, of_beyond = xyz_m.take(hit, 0), xyz_m.take(beyond, 0), scan.take(hit), scan.take(beyond)
+    sensor_m, behind_m = rays.sensors_m.take(of_beyond, 0), side_m.take(of_beyond)
+    share = behind_m / (behind_m - offset_m.take(beyond))
+    crossing_m = sensor_m + share[:, None] * (end_m - sensor_m)
     floor_z_m = 0.0 if rays.planar else rays.floor_z_m
     return Sight(
-        *(xyz_m[hit, :2], xyz_m[hit, 2] - floor_z_m, scan[hit]),
-        *(crossing_m[:, :2], crossing_m[:, 2] - floor_z_m, scan[beyond]),
+        *(hit_m[:, :2], hit_m[:, 2] - floor_z_m, of_hit),
+        *(crossing_m[:, :2], crossing_m[:, 2] - floor_z_m, of_beyond),
     )
 
 
-def rows_between(rays, ends, scans):
-    """Return the rows of `rays.stacked` of some scans' rays that go between two ends, the shorter way round.
+def between(rays, ends, scans):
+    """Return the points of some scans' rays that go between two ends, the shorter way round, and their scans.
 
     Parameters
     ----------
@@ -196,15 +206,23 @@ def rows_between(rays, ends, scans):
     ends : (2, k, 2) float
         One pair of ends for each of the scans, or one for all.
     scans : (k,) int
+
+    Returns
+    -------
+    xyz_m : (n, 3) float64
+    scan : (n,) int64
     """
-    return _rows(*_spans(rays, ends, scans))
+    return _gathered(rays.stacked, *_spans(rays, ends, scans), scans)
 
 
-def grouped_between(rays, ends, scans):
-    """Return the rows of `rows_between`, and for each the pair of ends that it goes between."""
+def some_between(rays, ends, scans, most):
+    """Return the rows of `rays.stacked` of such rays, evenly thinned to `most` or fewer, and which pair each is of."""
     low, high = _spans(rays, ends, scans)
     count = np.maximum(high - low, 0)
-    return _rows(low, high), np.repeat(np.tile(np.arange(len(scans)), len(count)), count.ravel())
+    every = count.sum() // most + 1
+    count = (count // every).ravel()
+    step = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
+    return np.repeat(low.ravel(), count) + every * step, np.repeat(np.tile(np.arange(len(scans)), len(low)), count)
 
 
 def _spans(rays, ends, scans):
@@ -220,7 +238,14 @@ def _spans(rays, ends, scans):
     return np.searchsorted(rays.stacked.key, low), np.searchsorted(rays.stacked.key, high, side="right")
 
 
-def _rows(low, high):
-    """Return the rows of spans one after another."""
-    low, count = low.ravel(), np.maximum(high - low, 0).ravel()
-    return np.repeat(low - np.cumsum(count) + count, count) + np.arange(count.sum())
+def _gathered(stacked, low, high, scan):
+    """Return points and scans of spans (2, k) of rows, one after another; `scan` (k,) is that of each pair."""
+    low, high, scan = low.ravel(), high.ravel(), np.tile(scan, len(low))
+    filled = high > low
+    low, high, scan = low[filled], high[filled], scan[filled]
+    # spans that follow each other are copied as one
+    begins = np.flatnonzero(np.concatenate([[True], low[1:] != high[:-1]])[: len(low)])
+    stops = np.concatenate([begins[1:] - 1, [len(low) - 1]])[: len(begins)]
+    runs = zip(low[begins].tolist(), high[stops].tolist(), strict=True)
+    points = [stacked.xyz_m[begin:stop] for begin, stop in runs]
+    return np.concatenate([np.empty((0, 3)), *points]), np.repeat(scan, high - low)

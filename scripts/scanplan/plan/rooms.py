@@ -101,7 +101,9 @@ def find(walls, stars, track_m, *, min_area_m2, min_walled, min_width_m, unpaire
 
 
 def _n_scans(polygon, stars):
-    return int(sum(shapely.intersection(polygon, star).area >= _STEP_M**2 for star in stars))
+    shapely.prepare(polygon)
+    near = np.array(stars, object)[shapely.intersects(polygon, stars)]
+    return int((shapely.area(shapely.intersection(polygon, near)) >= _STEP_M**2).sum())
 
 
 def _without_necks(floor):

@@ -97,7 +97,7 @@ def refitted(line, xy_m):
         return Line(line.centre + middle * line.normal, line.normal)
     column = np.floor((along - along.min()) / COLUMN_M).astype(np.int64)
     count = np.bincount(column)
-    weight = (np.minimum(count, _COLUMN_WEIGHT) / np.maximum(count, 1))[column]
+    weight = (np.minimum(count, _COLUMN_WEIGHT) / np.maximum(count, 1)).take(column)
     centre_m, off_m = np.average(along, weights=weight), np.average(offset, weights=weight)
     slope = (weight * (along - centre_m)) @ (offset - off_m) / (weight @ (along - centre_m) ** 2)
     turn = np.clip(np.arctan(slope), -_MOST_TURN_RAD, _MOST_TURN_RAD)

@@ -76,13 +76,15 @@ class Evidence:
         return sigma_m > trust.max_sigma_m or len(self.scans) < trust.min_scans or self.observed < trust.min_observed
 
 
-def weigh(walls, trust):
+def weigh(walls, trust, *, planar):
     """Return the evidence of every wall.
 
     Parameters
     ----------
     walls : list of planwalls.PlanWall
     trust : Trust
+    planar : bool
+        Whether heights mean nothing.
 
     Returns
     -------
@@ -91,10 +93,12 @@ def weigh(walls, trust):
     sides = [[_side_sigma_m(side, trust) for side in (wall.left, wall.right) if side] for wall in walls]
     offsets_m = np.array([math.sqrt(sum(s**2 for s in of_wall)) / len(of_wall) for of_wall in sides])
     stacked = crossings.stack(walls)
-    return [_weigh(wall, off_m, stacked, offsets_m, trust) for wall, off_m in zip(walls, offsets_m, strict=True)]
+    tops_m = [np.nan if planar else tops.find(wall) for wall in walls]
+    rows = zip(walls, offsets_m, tops_m, strict=True)
+    return [_weigh(wall, off_m, top_m, stacked, offsets_m, trust) for wall, off_m, top_m in rows]
 
 
-def _weigh(wall, offset_m, stacked, offsets_m, trust):
+def _weigh(wall, offset_m, top_m, stacked, offsets_m, trust):
     scan, residual_m, z_m = _hits(wall.members)
     scans, points = np.unique(scan, return_counts=True)
     ends = tuple(_end_sigma_m(wall, end, stacked, offsets_m, trust) for end in (0, 1))
@@ -106,7 +110,7 @@ def _weigh(wall, offset_m, stacked, offsets_m, trust):
         scans=scans,
         points=points,
         z_m=(float(np.percentile(z_m, _LOWEST_PERCENTILE)), _highest_m(z_m)),
-        top_m=tops.find(wall),
+        top_m=top_m,
         observed=_observed(wall),
     )
 
