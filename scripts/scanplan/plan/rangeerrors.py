@@ -14,11 +14,11 @@ import numpy as np
 
 from scanplan.plan import rays as sights
 
-_MOST_POINTS = 300_000
+_MOST_POINTS = 600_000
 _LEAST_OF_GROUP = 100
 _END_M = 0.1  # the last points before a corner may be of the wall around it
 _BINS, _MOST_BENT = 16, 3.0
-_BOW_M, _PASSES = 0.001, 3  # no wall is flatter than that
+_BOW_M, _PASSES = 0.0005, 3  # no wall is flatter than that
 _TINY = 1e-9
 
 
