@@ -36,3 +36,13 @@ def test_ends_too_far_apart_stay():
 def test_a_partition_ends_on_the_wall_it_butts_against():
     merged = merge(walls([(0, 0, 6, 0), (3, 2, 3, 0.1)]), corner_m=0.25)
     np.testing.assert_allclose(lengths_m(merged), [6, 2])
+
+
+def test_a_face_seen_well_before_another_makes_no_edge_with_it():
+    merged = merge(walls([(0, 0, 3.12, 0), (3, -0.1, 3, -2)]), corner_m=0.25)
+    np.testing.assert_allclose(lengths_m(merged), [3.12, 1.9])
+
+
+def test_an_edge_a_little_overdrawn_is_one():
+    merged = merge(walls([(0, 0, 3.05, 0), (3, -0.1, 3, -2)]), corner_m=0.25)
+    np.testing.assert_allclose(ends(merged), [(0, 0, 3, 0), (3, 0, 3, -2)], atol=1e-9)
