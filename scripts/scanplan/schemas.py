@@ -303,7 +303,7 @@ CLAIMS = Schema(
 )
 PLAN_EVALUATION = Schema(
     "plan_evaluation",
-    2,
+    3,
     {
         "frame": "string",
         "n_scans": "int32",
@@ -326,6 +326,8 @@ PLAN_EVALUATION = Schema(
         "thickness_error_m": "float64",
         **dict.fromkeys(("n_doors_true", "n_doors_found", "n_doors_drawn"), "int32"),
         **dict.fromkeys(("door_recall", "door_precision", "door_width_error_m", "door_width_right"), "float64"),
+        **dict.fromkeys(("n_windows_true", "n_windows_found", "n_windows_drawn"), "int32"),
+        **dict.fromkeys(("window_recall", "window_precision", "window_width_error_m", "window_width_right"), "float64"),
         **dict.fromkeys(("n_rooms_true", "n_rooms_found", "n_rooms_false"), "int32"),
         **dict.fromkeys(("room_iou", "least_room_iou"), "float64"),
     },

@@ -28,6 +28,8 @@ _FIGURES = {
     "door_recall": "door recall",
     "door_precision": "precision",
     "door_width_error_m": "width m",
+    "window_recall": "window recall",
+    "window_precision": "precision",
     "n_rooms_found": "rooms",
     "n_rooms_false": "false",
     "room_iou": "IoU",
