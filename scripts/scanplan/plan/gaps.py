@@ -12,7 +12,7 @@ _OPEN_SHARE_BELOW_LINTEL = 0.2
 _CLOSED_SHARE = 0.1
 _LEAST_RAYS = 10
 _EDGE_M = 0.03
-_REVEAL_M = 0.1
+REVEAL_M = 0.1
 _LOW_PERCENTILE = 1
 _AT_FLOOR_M = 0.3
 _FLOOR_NOISE_M = 0.04
@@ -22,6 +22,7 @@ _DOORSTEP_M = 0.06
 _FEW_RAYS = 3
 _LEVEL_M = 0.03
 _LEVEL_SCANS = 2
+_BEHIND_M = 0.02
 _MOST_DOUBT_M = 0.2  # half of it is what a height may be wrong by
 _ROUND_M = 1e-9
 
@@ -70,6 +71,11 @@ class Gap:
     sill_m: float
     lintel_m: float
     below_wall: bool
+
+    @property
+    def is_above_wall(self):
+        """Whether it is so far above the floor that the wall goes on below it."""
+        return self.sill_m > _AT_FLOOR_M
 
     @property
     def width_m(self):
@@ -160,11 +166,11 @@ def _look(seen, span_m, reading, planar):
     sill_m = _sill_m(pass_z_m, hit_z_m)
     step_m = _step_m(seen, low_m, high_m, float(np.percentile(pass_z_m, _LOW_PERCENTILE)))
     sill_m = float(np.fmax(sill_m, step_m)) if step_m > 0 else sill_m
-    free_m = float(np.partition(pass_z_m, -_FEW_RAYS)[-_FEW_RAYS])
+    free_m = highest_m(pass_z_m)
     least_m = max(free_m, reading.door_height_m)
     if (hit_z_m > least_m).sum() < _LEAST_RAYS:
         return n_rays, min(open_share, 1.0), sill_m, np.nan, False
-    return n_rays, min(open_share, 1.0), sill_m, _lintel_m(seen, low_m, high_m, free_m, least_m), True
+    return n_rays, min(open_share, 1.0), sill_m, lintel_m(seen, low_m, high_m, free_m, least_m), True
 
 
 def _step_m(seen, low_m, high_m, lowest_m):
@@ -190,20 +196,36 @@ def _sill_m(pass_z_m, hit_z_m):
     return float((np.percentile(below_m, 95) + low_m) / 2) if len(below_m) >= _LEAST_RAYS else np.nan
 
 
-def _lintel_m(seen, low_m, high_m, free_m, least_m):
+def lintel_m(seen, low_m, high_m, free_m, least_m):
     """Return the lintel, NaN where it could be anywhere between rays far apart.
 
-    It lies above the rays that went through and below the wall seen above them. Every scan meets a face at heights of
-    its own beams: what several show at one height is the underside of the lintel.
+    It lies above the rays that went through and below the wall seen above them. Points at one height behind the face
+    are of its underside, and show it; those of a face are as high as the beams that met it.
+
+    Parameters
+    ----------
+    seen : profiles.Seen
+    low_m, high_m : float
+        The opening along the line.
+    free_m : float
+        Up to where rays went through.
+    least_m : float
+        Points lower than that are none of the wall above it.
     """
     # beside a jamb points are its reveal's
-    inner = seen.hits(low_m + _REVEAL_M, high_m - _REVEAL_M)
+    inner = seen.hits(low_m + REVEAL_M, high_m - REVEAL_M)
     above = seen.hit_z_m[inner] > least_m
-    above_m, scan = seen.hit_z_m[inner][above], seen.hit_scan[inner][above]
+    above_m, off_m, scan = (of[inner][above] for of in (seen.hit_z_m, seen.hit_off_m, seen.hit_scan))
     if len(above_m) < _FEW_RAYS:
         return np.nan
     lowest_m = np.percentile(above_m, 5)
     level = np.abs(above_m - lowest_m) <= _LEVEL_M
-    if len(np.unique(scan[level])) >= _LEVEL_SCANS:
+    behind = level & (off_m < -_BEHIND_M)
+    if behind.sum() >= _FEW_RAYS and len(np.unique(scan[behind])) >= _LEVEL_SCANS:
         return float(np.median(above_m[level]))
     return float((free_m + lowest_m) / 2) if lowest_m - free_m <= _MOST_DOUBT_M + _ROUND_M else np.nan
+
+
+def highest_m(z_m):
+    """Return the height that not just one or two of heights (n,), n >= 3, reach."""
+    return float(np.partition(z_m, -_FEW_RAYS)[-_FEW_RAYS])

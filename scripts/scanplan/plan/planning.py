@@ -22,6 +22,7 @@ from scanplan.plan import (
     wallevidence,
     wallfaces,
     wallpairs,
+    windows,
 )
 
 TABLES = {
@@ -125,6 +126,7 @@ def make(segments, rays, track_m, t_ns, settings):
         planar=rays.planar,
         corner_m=settings.merge.corner_m,
     )
+    found = windows.added(found, rays, settings.openings)
     unpaired_m = _usual_thickness_m(found)
     stars = freespace.visible(rays)
     floor = freespace.together(stars)
@@ -161,6 +163,6 @@ def _usual_thickness_m(walls):
 def _free(walls, floor, unpaired_m):
     """Return the polygons of floor that rays went over, openings with it, walls without."""
     strips = freespace.strips(walls, unpaired_m)
-    ways = [freespace.opening_ground(w, g, unpaired_m) for w in walls for g in w.openings]
+    ways = [freespace.opening_ground(w, g, unpaired_m) for w in walls for g in w.openings if not g.is_above_wall]
     solid = shapely.difference(*(shapely.union_all(p, grid_size=1e-3) if p else MultiPolygon() for p in (strips, ways)))
     return list(freespace.polygons_of(shapely.difference(floor, solid)).geoms)
