@@ -23,6 +23,7 @@ _FEW_RAYS = 3
 _LEVEL_M = 0.03
 _LEVEL_SCANS = 2
 _BEHIND_M = 0.02
+_BEHIND_SHARE = 0.2
 _MOST_DOUBT_M = 0.2  # half of it is what a height may be wrong by
 _ROUND_M = 1e-9
 
@@ -221,7 +222,8 @@ def lintel_m(seen, low_m, high_m, free_m, least_m):
     lowest_m = np.percentile(above_m, 5)
     level = np.abs(above_m - lowest_m) <= _LEVEL_M
     behind = level & (off_m < -_BEHIND_M)
-    if behind.sum() >= _FEW_RAYS and len(np.unique(scan[behind])) >= _LEVEL_SCANS:
+    enough = max(_FEW_RAYS, _BEHIND_SHARE * level.sum())
+    if behind.sum() >= enough and len(np.unique(scan[behind])) >= _LEVEL_SCANS:
         return float(np.median(above_m[level]))
     return float((free_m + lowest_m) / 2) if lowest_m - free_m <= _MOST_DOUBT_M + _ROUND_M else np.nan
 

@@ -13,6 +13,7 @@ from scanplan.plan.profiles import COLUMN_M
 _BANDS_M = ((0.2, 0.7), (0.9, 1.6))
 _LEAST_LENGTH_M = 0.3
 _LEAST_SHARE = 0.5
+_LEAST_SCANS = 3  # something may stand nearer to a scan or two than they can measure
 
 
 def find(rays, line, low_m, high_m):
@@ -38,7 +39,7 @@ def find(rays, line, low_m, high_m):
     lost = np.full(count, True)
     for heights_m in _BANDS_M:
         if lost.any():
-            reached, back, _ = sentrays.to_line(rays, line, low_m, count, heights_m).reached()
+            reached, back, _ = sentrays.to_line(rays, line, low_m, count, heights_m).reached(least_scans=_LEAST_SCANS)
             lost &= back < _LEAST_SHARE * reached
     edges_m = low_m + COLUMN_M * np.flatnonzero(np.diff(np.concatenate([[False], lost, [False]]).astype(np.int8)))
     spans_m = edges_m.reshape(-1, 2)

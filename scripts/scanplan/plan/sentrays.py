@@ -14,7 +14,6 @@ from scanplan.plan.profiles import COLUMN_M
 
 _LEAST_RAYS = 20.0
 _LEAST_RAYS_A_SCAN = 3.0
-_LEAST_SCANS = 3
 _MOST_STOPPED = 0.15
 _BEFORE_M = 0.1
 _MOST_AWAY_M = 10.0  # further off rays are few and much stands before a line
@@ -42,18 +41,17 @@ class Sent:
     back: np.ndarray
     at_line: np.ndarray
 
-    def reached(self):
-        """Return how many rays reached the columns (n,) and five around each, came back, and ended at the line.
+    def reached(self, *, least_scans):
+        """Return how many rays reached the columns (n,) and those around each, came back, and ended at the line.
 
-        NaN where too few are to be expected for anything to be said.
+        NaN where too few are to be expected for anything to be said, or fewer scans than `least_scans` sent any.
         """
         sent, stopped, back, at_line = map(_together, (self.sent, self.stopped, self.back, self.at_line))
         # where things hide the line from a scan it tells nothing: rays along the tops of furniture get lost
         clear = stopped < _MOST_STOPPED * sent
         reached, back, at_line = ((rows * clear).sum(axis=0) for rows in (sent - stopped, back, at_line))
-        # nor does one alone: something may stand nearer to it than it can measure
         scans = (clear & (sent >= _LEAST_RAYS_A_SCAN)).sum(axis=0)
-        enough = (scans >= _LEAST_SCANS) & (reached >= _LEAST_RAYS)
+        enough = (scans >= least_scans) & (reached >= _LEAST_RAYS)
         return tuple(np.where(enough, rows, np.nan) for rows in (reached, back, at_line))
 
 

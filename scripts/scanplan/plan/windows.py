@@ -13,6 +13,7 @@ from scanplan.plan.profiles import COLUMN_M, filled
 
 _CHEST_M = (1.25, 1.7)  # sills are lower, lintels are higher
 _LEAST_SHOWN = 0.7
+_LEAST_SCANS = 2  # something may stand nearer to one scan than it can measure
 _MOST_AT_IT = 0.2
 _SILL_SHARE = 0.3
 
@@ -83,7 +84,7 @@ def _judged(rays, seen, low_m, high_m):
     if filled(seen.hit_m[inner][below], low_m + gaps.REVEAL_M, high_m - gaps.REVEAL_M) < _SILL_SHARE:
         return None
     count = max(int((high_m - low_m) / COLUMN_M), 1)
-    reached, _, at_line = sentrays.to_line(rays, seen.line, low_m, count, _CHEST_M).reached()
+    reached, _, at_line = sentrays.to_line(rays, seen.line, low_m, count, _CHEST_M).reached(least_scans=_LEAST_SCANS)
     shown = np.isfinite(reached)
     if shown.mean() < _LEAST_SHOWN or at_line[shown].sum() > _MOST_AT_IT * reached[shown].sum():
         return None
