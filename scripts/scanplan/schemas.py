@@ -172,7 +172,10 @@ OPENINGS = Schema(
     },
     ("opening",),
 )
-"""Doors, windows and passages that rays went through; heights above the floor, NaN where not known; -1: no such."""
+"""Doors, windows and passages that rays went through; heights above the floor, NaN where not known; -1: no such.
+
+Rays that never came back count, too, as many as ought to have reached a window above a sill.
+"""
 ROOMS = Schema(
     "rooms",
     1,

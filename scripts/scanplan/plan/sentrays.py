@@ -16,6 +16,7 @@ _LEAST_RAYS = 20.0
 _LEAST_RAYS_A_SCAN = 3.0
 _MOST_STOPPED = 0.15
 _BEFORE_M = 0.1
+_DEEP_M = 0.6  # no wall is thicker
 _MOST_AWAY_M = 10.0  # further off rays are few and much stands before a line
 _WIDTH = 5  # columns that are judged together
 
@@ -32,27 +33,27 @@ class Sent:
         That ended before the line.
     back : array
         That ended at the line or beyond.
-    at_line : array
-        Of these, at the line.
+    in_wall : array
+        Of these, at the line or no further behind it than a wall is thick.
     """
 
     sent: np.ndarray
     stopped: np.ndarray
     back: np.ndarray
-    at_line: np.ndarray
+    in_wall: np.ndarray
 
     def reached(self, *, least_scans):
-        """Return how many rays reached the columns (n,) and those around each, came back, and ended at the line.
+        """Return how many rays reached the columns (n,) and those around each, came back, and ended in the wall.
 
         NaN where too few are to be expected for anything to be said, or fewer scans than `least_scans` sent any.
         """
-        sent, stopped, back, at_line = map(_together, (self.sent, self.stopped, self.back, self.at_line))
+        sent, stopped, back, in_wall = map(_together, (self.sent, self.stopped, self.back, self.in_wall))
         # where things hide the line from a scan it tells nothing: rays along the tops of furniture get lost
         clear = stopped < _MOST_STOPPED * sent
-        reached, back, at_line = ((rows * clear).sum(axis=0) for rows in (sent - stopped, back, at_line))
+        reached, back, in_wall = ((rows * clear).sum(axis=0) for rows in (sent - stopped, back, in_wall))
         scans = (clear & (sent >= _LEAST_RAYS_A_SCAN)).sum(axis=0)
         enough = (scans >= least_scans) & (reached >= _LEAST_RAYS)
-        return tuple(np.where(enough, rows, np.nan) for rows in (reached, back, at_line))
+        return tuple(np.where(enough, rows, np.nan) for rows in (reached, back, in_wall))
 
 
 def to_line(rays, line, low_m, count, heights_m):
@@ -103,7 +104,7 @@ def to_line(rays, line, low_m, count, heights_m):
     counts &= (column >= 0) & (column < count)
     cell = np.searchsorted(scans, scan) * count + column
     stopped, back = before_m > _BEFORE_M, before_m <= _BEFORE_M
-    there = [counts & ended for ended in (stopped, back, back & (before_m >= -_BEFORE_M))]
+    there = [counts & ended for ended in (stopped, back, back & (before_m >= -_DEEP_M))]
     return Sent(sent, *(np.bincount(cell[t], minlength=sent.size).reshape(sent.shape) for t in there))
 
 

@@ -14,7 +14,7 @@ from scanplan.plan.profiles import COLUMN_M, filled
 _CHEST_M = (1.25, 1.7)  # sills are lower, lintels are higher
 _LEAST_SHOWN = 0.7
 _LEAST_SCANS = 2  # something may stand nearer to one scan than it can measure
-_MOST_AT_IT = 0.2
+_MOST_IN_IT = 0.5
 _SILL_SHARE = 0.3
 
 
@@ -52,7 +52,7 @@ def find(rays, seen, low_m, high_m, settings):
     """Find the windows along a line: pauses of the points at the height of a chest, with wall beside and below them.
 
     Rays must have been sent to nearly all of a pause, nothing before it in their way, and hardly one may have ended in
-    it: where no ray is to be expected, or things hide the wall, nothing is known.
+    it, as in a niche: where no ray is to be expected, or things hide the wall, nothing is known.
 
     Parameters
     ----------
@@ -84,11 +84,11 @@ def _judged(rays, seen, low_m, high_m):
     if filled(seen.hit_m[inner][below], low_m + gaps.REVEAL_M, high_m - gaps.REVEAL_M) < _SILL_SHARE:
         return None
     count = max(int((high_m - low_m) / COLUMN_M), 1)
-    reached, _, at_line = sentrays.to_line(rays, seen.line, low_m, count, _CHEST_M).reached(least_scans=_LEAST_SCANS)
+    reached, _, in_wall = sentrays.to_line(rays, seen.line, low_m, count, _CHEST_M).reached(least_scans=_LEAST_SCANS)
     shown = np.isfinite(reached)
-    if shown.mean() < _LEAST_SHOWN or at_line[shown].sum() > _MOST_AT_IT * reached[shown].sum():
+    if shown.mean() < _LEAST_SHOWN or in_wall[shown].sum() > _MOST_IN_IT * reached[shown].sum():
         return None
     sill_m = gaps.highest_m(seen.hit_z_m[inner][below])
-    n_rays = int(reached[shown].sum() - at_line[shown].sum())
+    n_rays = int(reached[shown].sum() - in_wall[shown].sum())
     lintel_m = gaps.lintel_m(seen, low_m, high_m, _CHEST_M[1], _CHEST_M[1])
     return gaps.Gap(low_m, high_m, gaps.OPEN, n_rays, sill_m, lintel_m, bool(np.isfinite(lintel_m)))
