@@ -10,10 +10,10 @@ import numpy as np
 from scanplan.plan import sentrays
 from scanplan.plan.profiles import COLUMN_M
 
-_BANDS_M = ((0.2, 0.7), (0.9, 1.6))
-_LEAST_LENGTH_M = 0.3
-_LEAST_SHARE = 0.5
-_LEAST_SCANS = 3  # something may stand nearer to a scan or two than they can measure
+_BANDS_M = ((0.2, 0.7), (0.9, 1.6))  # between skirting and sill; above sills and below the lintels of low doors
+_LEAST_LENGTH_M = 0.3  # narrower panes are in doors and stairs
+_LEAST_SCANS = 3  # two may share what stands too near to be measured
+_LEAST_SHARE = 0.5  # of the rays; a dark or glossy wall still gives more back
 
 
 def find(rays, line, low_m, high_m):

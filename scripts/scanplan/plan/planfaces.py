@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan.plan import crossings, facepieces, overshoots, rightangles, stretches
+from scanplan.plan import crossings, facepieces, fronts, overshoots, rightangles, stretches
 
 _STUB_M = 0.1
 _FOREIGN_M = 0.08
@@ -32,7 +32,7 @@ class Traced:
     panes: list
 
 
-def trace(pieces, rays, merging, reading, square):
+def trace(pieces, rays, merging, reading, square, furniture):
     """Find the faces along the lines of pieces.
 
     Parameters
@@ -43,6 +43,7 @@ def trace(pieces, rays, merging, reading, square):
     merging : faces.MergeSettings
     reading : profiles.Reading
     square : rightangles.Prior
+    furniture : fronts.Limits
 
     Returns
     -------
@@ -54,9 +55,10 @@ def trace(pieces, rays, merging, reading, square):
         lines.setdefault(id(piece.line), []).append(piece)
     seen = rightangles.turned([_seen(group, rays, reading) for group in lines.values()], square)
     found = _once([stretches.find(s, reading, planar=rays.planar) for s in seen], merging)
+    found = fronts.without(found, furniture, planar=rays.planar)
     claimed = zip(seen, claims(seen, found), strict=True)
     runs = (stretches.find(s, reading, planar=rays.planar, foreign_m=spans_m) for s, spans_m in claimed)
-    found = _once(list(runs), merging)
+    found = fronts.without(_once(list(runs), merging), furniture, planar=rays.planar)
     found = overshoots.without_tails(overshoots.without(found), share=merging.ghost_share)
     found = [f for f in found if f.length_m >= _STUB_M]
     met = facepieces.meet_at_corners(found, corner_m=merging.corner_m)

@@ -12,10 +12,10 @@ from scanplan import usualreturns
 from scanplan.plan import rays as sights
 from scanplan.plan.profiles import COLUMN_M
 
-_LEAST_RAYS = 20.0
-_LEAST_RAYS_A_SCAN = 3.0
-_MOST_STOPPED = 0.15
-_BEFORE_M = 0.1
+_LEAST_RAYS = 20.0  # half of so many are not lost by chance
+_LEAST_RAYS_A_SCAN = 3.0  # fewer and the count expected is mostly rounding
+_MOST_STOPPED = 0.15  # a frame or a plant may stop these; more and the line is hidden
+_BEFORE_M = 0.1  # returns farther before a line are of something else
 _DEEP_M = 0.6  # no wall is thicker
 _MOST_AWAY_M = 10.0  # further off rays are few and much stands before a line
 _WIDTH = 5  # columns that are judged together

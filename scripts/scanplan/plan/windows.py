@@ -12,10 +12,10 @@ from scanplan.plan import gaps, sentrays
 from scanplan.plan.profiles import COLUMN_M, filled
 
 _CHEST_M = (1.25, 1.7)  # sills are lower, lintels are higher
-_LEAST_SHOWN = 0.7
+_LEAST_SHOWN = 0.7  # the jambs' last columns may be hidden from most scans
 _LEAST_SCANS = 2  # something may stand nearer to one scan than it can measure
-_MOST_IN_IT = 0.5
-_SILL_SHARE = 0.3
+_MOST_IN_IT = 0.5  # reveals and panes send some back, a niche all
+_SILL_SHARE = 0.3  # desks hide much of the wall below; in a doorway there is none
 
 
 def added(walls, rays, settings):
