@@ -4,12 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import shapely
 
 import housemaking
 from scanplan.plan import planning, rays, stretches, windows
 from scanplan.plan.faceline import Line
 from scanplan.plan.gaps import OPEN, Gap
 from scanplan.plan.planwalls import PlanWall
+from wallmaking import walls
 
 SENSORS = [(1, 2.5, 0.9), (2, 3, 0.9), (3, 2.5, 0.9), (2.5, 3.4, 0.9)]
 SOUTH = Line(np.array([0.0, 0.0]), np.array([0.0, 1.0]))
@@ -121,5 +123,27 @@ def test_an_opening_is_not_found_again():
 
 def test_a_plane_has_no_windows():
     looked = look((1.0, 2.2), (0.85, 2.4))
-    walls = [wall(looked)]
-    assert windows.added(walls, replace(looked, planar=True), SETTINGS.openings) == walls
+    flat = [wall(looked)]
+    assert windows.added(flat, replace(looked, planar=True), SETTINGS.openings) == flat
+
+
+def plan(ends):
+    table = walls([face for _ in SENSORS for face in ROOM], scan_id=np.repeat(np.arange(4), 4))
+    looked = look((1.0, 2.2), (0.85, 2.4), ends=ends)
+    return planning.make(table, looked, np.array(SENSORS)[:, :2], housemaking.T_NS, SETTINGS)
+
+
+@pytest.mark.parametrize("ends", [LOST, BEYOND])
+def test_no_free_floor_leads_through_the_windows_of_a_plan(ends):
+    made = plan(ends)
+    assert made.openings["type"].tolist() == ["window"]
+    assert made.openings["width_m"][0] == pytest.approx(1.2, abs=0.05)
+    floor = shapely.union_all(shapely.from_wkb(made.free["geometry"]))
+    # the wall's ground, taken to be 0.1 m deep, is whole
+    assert floor.intersection(shapely.box(0.1, -0.08, 3.9, -0.02)).area == pytest.approx(0, abs=1e-3)
+
+
+def test_faces_of_a_plan_go_on_below_windows():
+    faces = plan(LOST).faces
+    south = np.maximum(np.abs(faces["y0_m"]), np.abs(faces["y1_m"])) < 0.1
+    assert np.abs(faces["x1_m"] - faces["x0_m"])[south].sum() == pytest.approx(4, abs=0.1)
