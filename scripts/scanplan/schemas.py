@@ -174,7 +174,10 @@ OPENINGS = Schema(
     },
     ("opening",),
 )
-"""Doors, windows and passages that rays went through; heights above the floor, NaN where not known; -1: no such."""
+"""Doors, windows and passages that rays went through; heights above the floor, NaN where not known; -1: no such.
+
+Rays that never came back count, too, as many as ought to have reached a window above a sill.
+"""
 ROOMS = Schema(
     "rooms",
     1,
@@ -305,7 +308,7 @@ CLAIMS = Schema(
 )
 PLAN_EVALUATION = Schema(
     "plan_evaluation",
-    2,
+    3,
     {
         "frame": "string",
         "n_scans": "int32",
@@ -328,6 +331,8 @@ PLAN_EVALUATION = Schema(
         "thickness_error_m": "float64",
         **dict.fromkeys(("n_doors_true", "n_doors_found", "n_doors_drawn"), "int32"),
         **dict.fromkeys(("door_recall", "door_precision", "door_width_error_m", "door_width_right"), "float64"),
+        **dict.fromkeys(("n_windows_true", "n_windows_found", "n_windows_drawn"), "int32"),
+        **dict.fromkeys(("window_recall", "window_precision", "window_width_error_m", "window_width_right"), "float64"),
         **dict.fromkeys(("n_rooms_true", "n_rooms_found", "n_rooms_false"), "int32"),
         **dict.fromkeys(("room_iou", "least_room_iou"), "float64"),
     },

@@ -1,4 +1,5 @@
 import numpy as np
+import pytest
 
 import facemaking
 from wallmaking import BARE, ends, lengths_m, walls
@@ -36,3 +37,14 @@ def test_ends_too_far_apart_stay():
 def test_a_partition_ends_on_the_wall_it_butts_against():
     merged = merge(walls([(0, 0, 6, 0), (3, 2, 3, 0.1)]), corner_m=0.25)
     np.testing.assert_allclose(lengths_m(merged), [6, 2])
+
+
+@pytest.mark.parametrize(("short_m", "length_m"), [(0.2, 3.12), (0.1, 3.0)])
+def test_a_face_seen_well_before_another_ends_there_if_that_one_begins_there(short_m, length_m):
+    merged = merge(walls([(0, 0, 3.12, 0), (3, -short_m, 3, -2)]), corner_m=0.25)
+    np.testing.assert_allclose(lengths_m(merged)[0], length_m)
+
+
+def test_an_edge_a_little_overdrawn_is_one():
+    merged = merge(walls([(0, 0, 3.05, 0), (3, -0.2, 3, -2)]), corner_m=0.25)
+    np.testing.assert_allclose(ends(merged), [(0, 0, 3, 0), (3, 0, 3, -2)], atol=1e-9)

@@ -110,6 +110,14 @@ def test_a_low_face_is_a_wall_beyond_a_door_but_not_beyond_a_niche():
     assert rows[0] not in found and rows[1] in found
 
 
+def test_faces_side_by_side_have_no_door_between_them():
+    """A low unit before a tall wall on much the same line: nothing lies between their ends, and no door does."""
+    wall, far = (1.3, -0.7, 1.3, 5, 0, 2.6), (4, -9, 4, 9, 0, 2.6)
+    low = (1.25, -1.2, 1.25, -0.2, 0, 1)
+    # from 0.05 m before its end on, the unit hides what a door would show: rays that lead on
+    assert kept([low, wall], [far]) == [False, True]
+
+
 def test_at_grazing_incidence_what_is_behind_the_end_of_a_face_is_not_its_height():
     """A unit of 0.8 m height seen along from 0.4 m before it; beyond its end the side of a wall, square to it."""
     unit, side = (-3, 0.4, -1, 0.4, 0, 0.8), (-3, 0.4, -3, 1.4, 0, 2.6)

@@ -14,11 +14,11 @@ SETTINGS = gaps.GapSettings(min_opening_m=0.5, max_opening_m=2.0, max_closed_m=1
 AXIS = Line(np.zeros(2), np.array([0.0, 1.0]))
 
 
-def seen(hits, passes):
+def seen(hits, passes, n_scans=1, behind_m=0.0):
     hits, passes = (np.array(sorted(rows), float).reshape(-1, 2) for rows in (hits, passes))
     return Seen(
         AXIS,
-        *(hits[:, 0], np.zeros(len(hits)), hits[:, 1], np.zeros(len(hits), int)),
+        *(hits[:, 0], np.full(len(hits), -behind_m), hits[:, 1], np.arange(len(hits)) % n_scans),
         *(passes[:, 0], passes[:, 1], np.zeros(len(passes), int)),
     )
 
@@ -27,8 +27,9 @@ def grid(low, high, *heights):
     return [(x, z) for x in np.arange(low + 0.01, high, 0.03) for z in heights]
 
 
-def judge(hits, passes, low=1.0, high=1.9, **more):
-    return gaps.judge(AXIS, low, high, [seen(hits, passes)], READING, SETTINGS, **({"planar": False} | more))
+def judge(hits, passes, low=1.0, high=1.9, n_scans=1, behind_m=0.0, **more):
+    line = seen(hits, passes, n_scans, behind_m)
+    return gaps.judge(AXIS, low, high, [line], READING, SETTINGS, **({"planar": False} | more))
 
 
 def test_a_door():
@@ -53,6 +54,24 @@ def with_feet(feet):
 def test_a_low_sill_all_along_makes_a_window():
     gap = gaps.judge(AXIS, 1.0, 1.9, [with_feet(grid(1, 1.9, 0.02, 0.07, 0.09))], READING, SETTINGS, planar=False)
     assert (gap.kind(SETTINGS), gap.sill_m) == ("window", pytest.approx(0.11, abs=0.03))
+
+
+@pytest.mark.parametrize(("below", "sill_m"), [([], 0.11), (grid(1, 1.9, 0.15, 0.2), (0.2 + 0.35) / 2)])
+def test_a_step_makes_a_window_whether_or_not_wall_is_seen_below_it(below, sill_m):
+    """No ray went through below 0.35 m: wall up to 0.2 m says more of the sill than a step up to 0.09 m does."""
+    x, z = np.array(sorted(grid(1, 1.9, 0.05, 0.09))).T
+    lowest_m = 0.35 if below else 0.13
+    line = replace(seen([*below, *grid(1, 1.9, 2.2)], grid(1, 1.9, lowest_m, 1.0, 2.0)), foot_m=x, foot_z_m=z)
+    gap = gaps.judge(AXIS, 1.0, 1.9, [line], READING, SETTINGS, planar=False)
+    assert (gap.kind(SETTINGS), gap.sill_m) == ("window", pytest.approx(sill_m))
+
+
+def test_a_step_tells_of_a_sill_that_no_point_is_below():
+    """Rays went through above 0.4 m alone, and no wall is seen below: the step is all that is known of the sill."""
+    x, z = np.array(sorted(grid(1, 1.9, 0.05, 0.09))).T
+    line = replace(seen(grid(1, 1.9, 2.2), grid(1, 1.9, 0.4, 1.0, 2.0)), foot_m=x, foot_z_m=z)
+    gap = gaps.judge(AXIS, 1.0, 1.9, [line], READING, SETTINGS, planar=False)
+    assert gap.sill_m == pytest.approx((0.09 + 0.4) / 2)
 
 
 @pytest.mark.parametrize("feet", [grid(1, 1.9, 0.0, 0.02, 0.03), grid(1, 1.3, 0.05, 0.07, 0.09)])
@@ -100,9 +119,34 @@ def test_the_side_that_more_rays_crossed_decides():
 
 
 def test_a_lintel_that_one_side_shows_is_known():
-    sides = [seen([], grid(1, 1.3, 0.1, 1.0)), seen(grid(1, 1.9, 2.2), grid(1, 1.25, 0.1, 1.0))]
+    sides = [seen([], grid(1, 1.3, 0.1, 1.0)), seen(grid(1, 1.9, 2.2), grid(1, 1.25, 0.1, 1.0), 2, behind_m=0.03)]
     gap = gaps.judge(AXIS, 1.0, 1.9, sides, READING, SETTINGS, planar=False)
     assert (gap.state, gap.lintel_m) == (gaps.OPEN, pytest.approx(2.2))
+
+
+def test_a_lintel_is_between_rays_close_to_each_other():
+    gap = judge(grid(1, 1.9, 2.2, 2.5), grid(1, 1.9, 0.1, 1.0, 2.04))
+    assert (gap.lintel_m, gap.below_wall) == (pytest.approx(2.12), True)
+
+
+@pytest.mark.parametrize(("n_scans", "behind_m", "lintel_m"), [(1, 0.03, np.nan), (2, 0.0, np.nan), (2, 0.03, 2.05)])
+def test_between_rays_far_apart_a_lintel_is_known_by_its_underside_alone(n_scans, behind_m, lintel_m):
+    """Beams on the wall's face may be well above the lintel; what lies behind it, for two scans, is its underside."""
+    gap = judge(grid(1, 1.9, 2.05, 2.5, 2.6), grid(1, 1.9, 0.1, 1.6), n_scans=n_scans, behind_m=behind_m)
+    assert gap.lintel_m == pytest.approx(lintel_m, nan_ok=True)
+    assert (gap.state, gap.below_wall) == (gaps.OPEN, True)
+
+
+def test_how_many_rays_are_low_does_not_move_the_lintel():
+    """As many rays as may be go through near the floor; it is the highest that tell."""
+    few, many = ([*grid(1, 1.9, *[0.1] * n), *grid(1, 1.3, 1.9)] for n in (1, 99))
+    lintels_m = [judge(grid(1, 1.9, 2.1), passes).lintel_m for passes in (few, many)]
+    assert lintels_m == [pytest.approx(2.0)] * 2
+
+
+def test_points_of_the_reveal_are_no_lintel():
+    reveal = [(x, z) for x in (1.04, 1.86) for z in np.arange(1.85, 2.0, 0.01)]
+    assert judge([*grid(1, 1.9, 2.0), *reveal], grid(1, 1.9, 0.1, 1.82)).lintel_m == pytest.approx(1.91)
 
 
 def test_beside_the_end_of_a_wall_only_a_lintel_makes_an_opening():

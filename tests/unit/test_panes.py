@@ -61,7 +61,7 @@ def test_a_pane_has_a_frame():
 def wall(x0, y0, x1, y1, openings=()):
     start, end = np.array([x0, y0], float), np.array([x1, y1], float)
     along = (end - start) / np.hypot(*(end - start))
-    ways = [Gap(low, high, OPEN, 99, 0.0, np.nan) for low, high in openings]
+    ways = [Gap(low, high, OPEN, 99, 0.0, np.nan, False) for low, high in openings]
     return PlanWall(Line(start, np.array([-along[1], along[0]])), 0.0, np.hypot(*(end - start)), 0.2, [], [], ways, [])
 
 

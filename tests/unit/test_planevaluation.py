@@ -60,31 +60,6 @@ class TestWalls:
         assert planevaluation.walls(np.empty((0, 2, 2)), np.empty(0), SQUARE, np.ones(4))["n_plan_walls"] == 0
 
 
-class TestDoors:
-    TRUE = np.array([[(1, 0), (1.9, 0)], [(3, 0), (3.9, 0)], [(50, 0), (50.9, 0)]])
-    ROOM = shapely.box(0, 0, 4, 4)
-
-    def measure(self, drawn):
-        return planevaluation.doors(np.array(drawn, float).reshape(-1, 2, 2), self.TRUE, [self.ROOM], np.array([True]))
-
-    def test_doors_of_rooms_entered_are_to_be_found(self):
-        row = self.measure([[(1, 0.1), (1.95, 0.1)]])
-        assert (row["n_doors_true"], row["n_doors_found"], row["door_recall"]) == (2, 1, 0.5)
-        assert (row["door_precision"], row["door_width_right"]) == (1, 1)
-        assert row["door_width_error_m"] == pytest.approx(0.05)
-
-    def test_a_door_elsewhere_or_across_is_wrong(self):
-        row = self.measure([[(1, 0), (1.9, 0)], [(2, 2), (2.9, 2)], [(3.45, -0.45), (3.45, 0.45)]])
-        assert (row["n_doors_found"], row["door_precision"]) == (1, pytest.approx(1 / 3))
-
-    def test_one_door_is_not_found_twice(self):
-        row = self.measure([[(1, 0), (1.9, 0)], [(1.1, 0), (2.0, 0)]])
-        assert (row["n_doors_found"], row["door_precision"]) == (1, 0.5)
-
-    def test_no_doors(self):
-        assert (self.measure([])["door_recall"], self.measure([])["door_precision"]) == (0, 1)
-
-
 class TestRooms:
     TRUE = (shapely.box(0, 0, 4, 4), shapely.box(5, 0, 9, 4), shapely.box(20, 0, 24, 4))
 
@@ -112,11 +87,13 @@ class TestTruth:
         assert [room.area for room in true.rooms] == [pytest.approx(8, abs=0.01), pytest.approx(3.6)]
         assert true.visited.tolist() == [True, False]
 
-    def test_doors_and_passages_but_no_windows(self, tmp_path):
-        line = shapely.LineString([(0, 0), (0.9, 0)])
-        features = [(line, {"kind": "opening", "type": t}) for t in ("door", "window", "passage")]
+    def test_doors_and_passages_apart_from_windows(self, tmp_path):
+        widths_m = {"door": 0.9, "window": 1.4, "passage": 1.2}
+        lines = {t: shapely.LineString([(0, 0), (width_m, 0)]) for t, width_m in widths_m.items()}
+        features = [(line, {"kind": "opening", "type": t}) for t, line in lines.items()]
         true = trueplan.read(self.write(tmp_path / "truth.geojson", *features))
-        np.testing.assert_allclose(lengthmetrics.lengths_m(true.doors_m), [0.9, 0.9])
+        np.testing.assert_allclose(lengthmetrics.lengths_m(true.doors_m), [0.9, 1.2])
+        np.testing.assert_allclose(lengthmetrics.lengths_m(true.windows_m), [1.4])
 
     def test_a_wall_without_thickness_is_told(self, tmp_path):
         path = self.write(tmp_path / "truth.geojson", (shapely.LineString([(0, 0), (1, 0)]), {"kind": "wall"}))

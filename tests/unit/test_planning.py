@@ -30,8 +30,8 @@ def wall(x0, y0, x1, y1, thickness=0.2, openings=(), closed=()):
     length = np.hypot(*(end - start))
     along = (end - start) / length
     line = Line(start, np.array([-along[1], along[0]]))
-    ways = [Gap(low, high, OPEN, 99, 0.0, np.nan) for low, high in openings]
-    taken = [Gap(low, high, CLOSED, 0, np.nan, np.nan) for low, high in closed]
+    ways = [Gap(low, high, OPEN, 99, 0.0, np.nan, False) for low, high in openings]
+    taken = [Gap(low, high, CLOSED, 0, np.nan, np.nan, False) for low, high in closed]
     return PlanWall(line, 0.0, length, thickness, [], [], ways, taken)
 
 

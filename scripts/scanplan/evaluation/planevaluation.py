@@ -4,14 +4,10 @@ import numpy as np
 import shapely
 
 from scanplan import schemas, tables
-from scanplan.evaluation import lengthmetrics, visibility
+from scanplan.evaluation import lengthmetrics, openings, visibility
 
 WITHIN_M = 0.10
 _MISPLACED_M = 0.30
-_WALL_M = 0.35
-_PARALLEL = np.cos(np.radians(10))
-_DOOR_M = 0.35
-_WIDTH_M = 0.10
 _SAME_ROOM_IOU = 0.5
 _DOORS = ("door", "passage")
 _TABLES = {
@@ -52,13 +48,14 @@ def measure(drawn, motion, true, floor):
     """
     walls_m, openings_m = (_moved(_lines_m(drawn[name]), motion) for name in ("walls", "openings"))
     drawn_m, seen = faces_m(drawn, motion), floor.seen.any(axis=0)
-    is_door = np.isin(drawn["openings"]["type"], _DOORS)
+    kinds = drawn["openings"]["type"]
     outlines = shapely.transform(shapely.from_wkb(drawn["rooms"]["geometry"]), lambda xy_m: _moved(xy_m, motion))
     return {
         "length_m": float(lengthmetrics.lengths_m(drawn_m).sum()),
         **faces(drawn_m, drawn["faces"]["state"] == "observed", floor.cells, floor.visible, seen),
         **walls(walls_m, drawn["walls"]["thickness_m"], true.walls_m, true.thickness_m),
-        **doors(openings_m[is_door], true.doors_m, true.rooms, true.visited),
+        **openings.doors(openings_m[np.isin(kinds, _DOORS)], true.doors_m, true.rooms, true.visited),
+        **openings.windows(openings_m[kinds == "window"], true.windows_m, floor.cells, floor.visible),
         **rooms(list(outlines), true.rooms, true.visited),
     }
 
@@ -139,8 +136,11 @@ def walls(drawn_m, thickness_m, true_m, true_thickness_m):
     dict of str to float
         Walls that belong to no true one count in `n_plan_walls` alone.
     """
-    near = lengthmetrics.near(drawn_m, true_m, _WALL_M)
-    alike = np.abs(np.einsum("ij,ij->i", _ways(drawn_m)[near.line], _ways(true_m)[near.other])) >= _PARALLEL
+    near = lengthmetrics.near(drawn_m, true_m, openings.WALL_M)
+    alike = (
+        np.abs(np.einsum("ij,ij->i", openings.ways(drawn_m)[near.line], openings.ways(true_m)[near.other]))
+        >= openings.PARALLEL
+    )
     line, other, length_m = near.line[alike], near.other[alike], (near.high_m - near.low_m)[alike]
     order = np.lexsort((-other, length_m, line))
     belongs = np.full(len(drawn_m), -1)
@@ -154,55 +154,6 @@ def walls(drawn_m, thickness_m, true_m, true_thickness_m):
         "n_thickness": int(known.sum()),
         "thickness_error_m": float(np.median(error_m)) if known.any() else np.nan,
     }
-
-
-def _ways(lines_m):
-    way = lines_m[:, 1] - lines_m[:, 0]
-    return way / np.maximum(np.hypot(*way.T), 1e-9)[:, None]
-
-
-def doors(drawn_m, true_m, rooms, visited):
-    """Measure doors and passages; to be found are those of rooms that the survey went into.
-
-    Parameters
-    ----------
-    drawn_m, true_m : (n, 2, 2), (m, 2, 2) float
-    rooms : list of shapely geometry
-    visited : (r,) bool
-
-    Returns
-    -------
-    dict of str to float
-        Precision counts all true doors. Without doors to find or drawn, recall or precision is 1.
-    """
-    entered = shapely.union_all([room for room, was in zip(rooms, visited, strict=True) if was])
-    wanted = shapely.distance(shapely.linestrings(true_m), entered) <= _DOOR_M
-    pairs = _nearest_pairs(drawn_m, true_m)
-    found = [(d, t) for d, t in pairs if wanted[t]]
-    width_m = [lengthmetrics.lengths_m(m) for m in (drawn_m, true_m)]
-    error_m = np.array([abs(width_m[0][d] - width_m[1][t]) for d, t in found])
-    return {
-        "n_doors_true": int(wanted.sum()),
-        "n_doors_found": len(found),
-        "n_doors_drawn": len(drawn_m),
-        "door_recall": lengthmetrics.share(len(found), wanted.sum()),
-        "door_precision": lengthmetrics.share(len(pairs), len(drawn_m)),
-        "door_width_error_m": float(np.median(error_m)) if found else np.nan,
-        "door_width_right": float(np.mean(error_m <= _WIDTH_M)) if found else np.nan,
-    }
-
-
-def _nearest_pairs(drawn_m, true_m):
-    """Return pairs (drawn, true), each once, the nearest first: middles within 0.35 m, much the same way."""
-    apart_m = np.hypot(*np.moveaxis(drawn_m.mean(axis=1)[:, None] - true_m.mean(axis=1)[None], -1, 0))
-    alike = np.abs(_ways(drawn_m) @ _ways(true_m).T) >= _PARALLEL
-    i, j = np.nonzero((apart_m <= _DOOR_M) & alike)
-    pairs, used = [], (set(), set())
-    for k in np.lexsort((j, i, apart_m[i, j])):
-        if i[k] not in used[0] and j[k] not in used[1]:
-            pairs.append((int(i[k]), int(j[k])))
-            used[0].add(i[k]), used[1].add(j[k])
-    return pairs
 
 
 def rooms(drawn, true, visited):
@@ -246,6 +197,7 @@ def summary(row):
         f"faces right {told['correctness_010m']}, of the visible found {told['visible_completeness_010m']} (of what the"
         f" {row['n_scans']} scans see {told['seen_completeness_010m']}); {per_wall:.2f} walls a true wall,"
         f" {row['n_thickness']} thicknesses off by {told['thickness_error_m']} m; doors found {row['n_doors_found']}"
-        f" of {row['n_doors_true']}, right {told['door_precision']}, width right {told['door_width_right']}; rooms"
+        f" of {row['n_doors_true']}, right {told['door_precision']}, width right {told['door_width_right']}; windows"
+        f" found {row['n_windows_found']} of {row['n_windows_true']}, right {told['window_precision']}; rooms"
         f" {row['n_rooms_found']} of {row['n_rooms_true']}, {row['n_rooms_false']} false, IoU {told['room_iou']}"
     )

@@ -11,6 +11,7 @@ from scanplan.evaluation import truthfile
 
 _TOUCH_M = 0.01
 _SHARED_M = 0.1
+_OPENINGS = {"door": "door", "passage": "door", "window": "window"}
 _REMEDY = "simulate the survey again, or mend it"
 
 
@@ -25,6 +26,7 @@ class TruePlan:
     thickness_m : (n,) float64
     doors_m : (d, 2, 2) float64
         Middles of doors and passages.
+    windows_m : (w, 2, 2) float64
     rooms : list of shapely geometry
         Those that walls part: spaces that touch each other are one.
     visited : (r,) bool
@@ -34,6 +36,7 @@ class TruePlan:
     walls_m: np.ndarray
     thickness_m: np.ndarray
     doors_m: np.ndarray
+    windows_m: np.ndarray
     rooms: list
     visited: np.ndarray
 
@@ -46,7 +49,8 @@ def read(path):
     StageError
         If it is no GeoJSON, or one of these features is not what it should be.
     """
-    walls, thickness, doors, rooms, visited = [], [], [], [], []
+    walls, thickness, rooms, visited = [], [], [], []
+    openings = {"door": [], "window": []}
     for number, feature in enumerate(truthfile.features(path)):
         properties = truthfile.part(feature, "properties")
         kind = properties.get("kind")
@@ -54,8 +58,8 @@ def read(path):
             if kind == "wall":
                 walls.append(_line(feature))
                 thickness.append(float(properties["thickness_m"]))
-            elif kind == "opening" and properties["type"] in ("door", "passage"):
-                doors.append(_line(feature))
+            elif kind == "opening" and properties["type"] in _OPENINGS:
+                openings[_OPENINGS[properties["type"]]].append(_line(feature))
             elif kind == "room":
                 rooms.append(shapely.make_valid(shape(feature["geometry"])))
                 visited.append(bool(properties["visited"]))
@@ -65,7 +69,7 @@ def read(path):
     return TruePlan(
         np.array(walls, float).reshape(-1, 2, 2),
         np.array(thickness),
-        np.array(doors).reshape(-1, 2, 2),
+        *(np.array(openings[name]).reshape(-1, 2, 2) for name in ("door", "window")),
         spaces,
         entered,
     )

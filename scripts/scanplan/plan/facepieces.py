@@ -10,6 +10,8 @@ from scanplan.plan import faceline
 from scanplan.plan.faceline import Line, Segments, Span
 
 _LEAST_CORNER_RAD = np.radians(30)
+_BEFORE_M = 0.08
+_SHORT_M = 0.15
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +102,13 @@ def _crossings(pieces, corner_m):
     other_at_low = np.abs(there - low[other]) <= np.abs(there - high[other])
     other_ends = np.abs(there - np.where(other_at_low, low[other], high[other])) <= corner_m
     other_behind = np.where(other_at_low, 1, -1) * _dot(along[other], normal[one]) < 0
-    taken = (moves_m <= corner_m) & (beyond_m <= corner_m) & (in_front | (other_ends & other_behind))
+    # a face that is seen well before another one ends there only if that one is seen to begin there: one would look at
+    # the other's front from where the first is
+    before_m = np.where(at_low, place - low[one], high[one] - place)
+    other_before_m = np.where(other_at_low, there - low[other], high[other] - there)
+    meets = (np.maximum(before_m, other_before_m) <= _BEFORE_M) | (np.minimum(before_m, other_before_m) >= -_SHORT_M)
+    is_edge = other_ends & other_behind & meets
+    taken = (moves_m <= corner_m) & (beyond_m <= corner_m) & (in_front | is_edge)
     names = np.where(at_low, "low_m", "high_m")
     return list(zip(one[taken].tolist(), names[taken].tolist(), place[taken].tolist(), strict=True))
 

@@ -12,13 +12,20 @@ _OPEN_SHARE_BELOW_LINTEL = 0.2
 _CLOSED_SHARE = 0.1
 _LEAST_RAYS = 10
 _EDGE_M = 0.03
-_HEIGHT_PERCENTILES = (1, 99)
+REVEAL_M = 0.1  # jambs are drawn this well
+_LOW_PERCENTILE = 1
 _AT_FLOOR_M = 0.3
 _FLOOR_NOISE_M = 0.04
 _STEP_COLUMN_M = 0.1
 _STEP_SHARE = 0.7
 _DOORSTEP_M = 0.06
-_HEIGHT_GAP_M = 0.6
+_FEW_RAYS = 3  # one or two may be stray
+_LEVEL_M = 0.03  # noise of a range seen along 15 degrees, of poses and of beams
+_LEVEL_SCANS = 2  # one scan's beam meets a whole wall at one height
+_BEHIND_M = 0.02  # noise of a range
+_BEHIND_SHARE = 0.2  # noise leaves fewer so far behind a face, an underside most
+_MOST_DOUBT_M = 0.2  # half of it is what a height may be wrong by
+_ROUND_M = 1e-9
 
 
 @dataclass(frozen=True)
@@ -54,6 +61,8 @@ class Gap:
         That went through.
     sill_m, lintel_m : float
         Above the floor; NaN where not seen.
+    below_wall : bool
+        Whether wall was seen above it, at a height that need not be known.
     """
 
     low_m: float
@@ -62,6 +71,12 @@ class Gap:
     n_rays: int
     sill_m: float
     lintel_m: float
+    below_wall: bool
+
+    @property
+    def is_above_wall(self):
+        """Whether it is so far above the floor that the wall goes on below it."""
+        return self.sill_m > _AT_FLOOR_M
 
     @property
     def width_m(self):
@@ -108,21 +123,22 @@ def judge(wall_line, low_m, high_m, lines, reading, settings, *, planar, needs_l
     found = [_look(seen, np.sort(seen.line.along_m(ends)), reading, planar) for seen in lines]
     found.sort(key=lambda f: f[:2], reverse=True)
     (n_rays, open_share), (sill_m, lintel_m) = found[0][:2], (_first_known(f[i] for f in found) for i in (2, 3))
+    below_wall = any(f[4] for f in found)
     width_m = high_m - low_m
     is_wide = settings.min_opening_m <= width_m <= settings.max_opening_m
-    least_share = _OPEN_SHARE_BELOW_LINTEL if np.isfinite(lintel_m) else _OPEN_SHARE
+    least_share = _OPEN_SHARE_BELOW_LINTEL if below_wall else _OPEN_SHARE
     is_open = n_rays >= _LEAST_RAYS and open_share >= least_share
     # rays went in and did not come back: through glass, or out of the building
     is_open |= max(_lost_share(seen, np.sort(seen.line.along_m(ends))) for seen in lines) >= _OPEN_SHARE
     # wall above, some rays through a window, and what is below them hidden: no way through was seen
-    behind_things = np.isfinite(lintel_m) and np.isnan(sill_m)
-    if is_wide and is_open and (not needs_lintel or np.isfinite(lintel_m)):
+    behind_things = below_wall and np.isnan(sill_m)
+    if is_wide and is_open and (below_wall or not needs_lintel):
         state = OPEN
     elif (open_share <= _CLOSED_SHARE or behind_things) and width_m <= settings.max_closed_m and not needs_lintel:
         state = CLOSED
     else:
         state = UNKNOWN
-    return Gap(float(low_m), float(high_m), state, n_rays, sill_m, lintel_m)
+    return Gap(float(low_m), float(high_m), state, n_rays, sill_m, lintel_m, below_wall)
 
 
 def _lost_share(seen, span_m):
@@ -136,21 +152,26 @@ def _first_known(values_m):
 
 
 def _look(seen, span_m, reading, planar):
-    """Return how many rays crossed, on what share of the width, and the heights of sill and lintel."""
+    """Return how many rays crossed, on what share of the width, heights of sill and lintel, if there is wall above."""
     low_m, high_m = span_m[0] + _EDGE_M, span_m[1] - _EDGE_M
     if high_m <= low_m:
-        return 0, 0.0, np.nan, np.nan
+        return 0, 0.0, np.nan, np.nan, False
     passes = seen.passes(low_m, high_m)
     columns = seen.columns(reading, planar=planar)
     crossed = columns.crossed[columns.between(low_m, high_m)]
     open_share = float(crossed.sum() / max(round((high_m - low_m) / profiles.COLUMN_M), 1))
     n_rays = passes.stop - passes.start
     if planar or n_rays < _LEAST_RAYS:
-        return n_rays, min(open_share, 1.0), np.nan, np.nan
-    hit_z_m = seen.hit_z_m[seen.hits(low_m, high_m)]
-    sill_m, lintel_m = _heights_m(seen.pass_z_m[passes], hit_z_m, reading)
-    step_m = _step_m(seen, low_m, high_m, float(np.percentile(seen.pass_z_m[passes], _HEIGHT_PERCENTILES[0])))
-    return n_rays, min(open_share, 1.0), float(np.fmax(sill_m, step_m)) if step_m > 0 else sill_m, lintel_m
+        return n_rays, min(open_share, 1.0), np.nan, np.nan, False
+    pass_z_m, hit_z_m = seen.pass_z_m[passes], seen.hit_z_m[seen.hits(low_m, high_m)]
+    sill_m = _sill_m(pass_z_m, hit_z_m)
+    step_m = _step_m(seen, low_m, high_m, float(np.percentile(pass_z_m, _LOW_PERCENTILE)))
+    sill_m = float(np.fmax(sill_m, step_m)) if step_m > 0 else sill_m
+    free_m = highest_m(pass_z_m)
+    least_m = max(free_m, reading.door_height_m)
+    if (hit_z_m > least_m).sum() < _LEAST_RAYS:
+        return n_rays, min(open_share, 1.0), sill_m, np.nan, False
+    return n_rays, min(open_share, 1.0), sill_m, lintel_m(seen, low_m, high_m, free_m, least_m), True
 
 
 def _step_m(seen, low_m, high_m, lowest_m):
@@ -167,16 +188,46 @@ def _step_m(seen, low_m, high_m, lowest_m):
     return (float(np.percentile(seen.foot_z_m[feet][raised], 95)) + lowest_m) / 2
 
 
-def _heights_m(pass_z_m, hit_z_m, reading):
-    """Return sill and lintel: between the rays that went through and the wall seen below and above them."""
-    low_m, high_m = np.percentile(pass_z_m, _HEIGHT_PERCENTILES)
-    above_m, below_m = hit_z_m[hit_z_m > max(high_m, reading.door_height_m)], hit_z_m[hit_z_m < low_m]
-    sill_m = lintel_m = np.nan
+def _sill_m(pass_z_m, hit_z_m):
+    """Return the sill: between the rays that went through and the wall seen below them."""
+    low_m = np.percentile(pass_z_m, _LOW_PERCENTILE)
     if low_m <= _AT_FLOOR_M:
-        sill_m = 0.0
-    elif len(below_m) >= _LEAST_RAYS:
-        sill_m = (np.percentile(below_m, 95) + low_m) / 2
-    if len(above_m) >= _LEAST_RAYS:
-        lowest_m = np.percentile(above_m, 5)
-        lintel_m = (lowest_m + min(high_m, lowest_m)) / 2 if lowest_m - high_m <= _HEIGHT_GAP_M else lowest_m
-    return float(sill_m), float(lintel_m)
+        return 0.0
+    below_m = hit_z_m[hit_z_m < low_m]
+    return float((np.percentile(below_m, 95) + low_m) / 2) if len(below_m) >= _LEAST_RAYS else np.nan
+
+
+def lintel_m(seen, low_m, high_m, free_m, least_m):
+    """Return the lintel, NaN where it could be anywhere between rays far apart.
+
+    It lies above the rays that went through and below the wall seen above them. Points at one height behind the face
+    are of its underside, and show it; those of a face are as high as the beams that met it.
+
+    Parameters
+    ----------
+    seen : profiles.Seen
+    low_m, high_m : float
+        The opening along the line.
+    free_m : float
+        Up to where rays went through.
+    least_m : float
+        Points lower than that are none of the wall above it.
+    """
+    # beside a jamb points are its reveal's
+    inner = seen.hits(low_m + REVEAL_M, high_m - REVEAL_M)
+    above = seen.hit_z_m[inner] > least_m
+    above_m, off_m, scan = (of[inner][above] for of in (seen.hit_z_m, seen.hit_off_m, seen.hit_scan))
+    if len(above_m) < _FEW_RAYS:
+        return np.nan
+    lowest_m = np.percentile(above_m, 5)
+    level = np.abs(above_m - lowest_m) <= _LEVEL_M
+    behind = level & (off_m < -_BEHIND_M)
+    enough = max(_FEW_RAYS, _BEHIND_SHARE * level.sum())
+    if behind.sum() >= enough and len(np.unique(scan[behind])) >= _LEVEL_SCANS:
+        return float(np.median(above_m[level]))
+    return float((free_m + lowest_m) / 2) if lowest_m - free_m <= _MOST_DOUBT_M + _ROUND_M else np.nan
+
+
+def highest_m(z_m):
+    """Return the height that not just one or two of heights (n,), n >= 3, reach."""
+    return float(np.partition(z_m, -_FEW_RAYS)[-_FEW_RAYS])

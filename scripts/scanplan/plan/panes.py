@@ -7,20 +7,13 @@ nothing is known but their returns: how many a scan sent at an elevation is told
 
 import numpy as np
 
-from scanplan import usualreturns
-from scanplan.plan import rays as sights
+from scanplan.plan import sentrays
 from scanplan.plan.profiles import COLUMN_M
 
-_BANDS_M = ((0.2, 0.7), (0.9, 1.6))
-_LEAST_LENGTH_M = 0.3
-_LEAST_RAYS = 20.0
-_LEAST_RAYS_A_SCAN = 3.0
-_LEAST_SCANS = 3
-_MOST_STOPPED = 0.15
-_LEAST_SHARE = 0.5
-_BEFORE_M = 0.1
-_MOST_AWAY_M = 10.0  # further off rays are few and much stands before a line
-_WIDTH = 5  # columns that are judged together
+_BANDS_M = ((0.2, 0.7), (0.9, 1.6))  # between skirting and sill; above sills and below the lintels of low doors
+_LEAST_LENGTH_M = 0.3  # narrower panes are in doors and stairs
+_LEAST_SCANS = 3  # two may share what stands too near to be measured
+_LEAST_SHARE = 0.5  # of the rays; a dark or glossy wall still gives more back
 
 
 def find(rays, line, low_m, high_m):
@@ -46,64 +39,8 @@ def find(rays, line, low_m, high_m):
     lost = np.full(count, True)
     for heights_m in _BANDS_M:
         if lost.any():
-            lost &= _lost(*map(_together, _rays(rays, line, low_m, count, heights_m)))
+            reached, back, _ = sentrays.to_line(rays, line, low_m, count, heights_m).reached(least_scans=_LEAST_SCANS)
+            lost &= back < _LEAST_SHARE * reached
     edges_m = low_m + COLUMN_M * np.flatnonzero(np.diff(np.concatenate([[False], lost, [False]]).astype(np.int8)))
     spans_m = edges_m.reshape(-1, 2)
     return spans_m[np.diff(spans_m, axis=1)[:, 0] >= _LEAST_LENGTH_M]
-
-
-def _lost(sent, stopped, back):
-    """Tell in which columns (n,) too few rays came back, from what was (s, n) of each scan."""
-    # where things hide the line from a scan it tells nothing: rays along the tops of furniture get lost
-    clear = stopped < _MOST_STOPPED * sent
-    reached, back = ((rows * clear).sum(axis=0) for rows in (sent - stopped, back))
-    # nor does one alone: something may stand nearer to it than it can measure
-    scans = (clear & (sent >= _LEAST_RAYS_A_SCAN)).sum(axis=0)
-    return (scans >= _LEAST_SCANS) & (reached >= _LEAST_RAYS) & (back < _LEAST_SHARE * reached)
-
-
-def _together(rows):
-    """Return running sums over `_WIDTH` columns around each, of rows (s, n)."""
-    sums = np.cumsum(np.pad(rows, ((0, 0), (_WIDTH // 2 + 1, _WIDTH // 2))), axis=1, dtype=float)
-    return sums[:, _WIDTH:] - sums[:, :-_WIDTH]
-
-
-def _rays(rays, line, low_m, count, heights_m):
-    """Return how many rays (s, count) scans sent to the columns of a line, ended before it, came back from beyond."""
-    side_m, there_m = line.offset_m(rays.sensors_m[:, :2]), line.along_m(rays.sensors_m[:, :2])
-    beyond_m = np.maximum(np.maximum(low_m - there_m, there_m - (low_m + COLUMN_M * count)), 0)
-    most_m = np.tan(usualreturns.GRAZING_RAD) * side_m
-    near = (np.hypot(side_m, beyond_m) <= _MOST_AWAY_M) & (beyond_m <= most_m)
-    scans = np.flatnonzero((side_m >= sights.LEAST_SIDE_M) & near)
-    middle_m = low_m + COLUMN_M * (np.arange(count) + 0.5)
-    # scans in rows, columns of the line in columns
-    away_m = middle_m - there_m[scans, None]
-    far_m = np.hypot(away_m, side_m[scans, None])
-    looks = np.abs(away_m) < most_m[scans, None]
-    up_m = np.array(heights_m) + rays.floor_z_m - rays.sensors_m[scans, 2, None]
-    low, high = (_below(rays.usual[scans], np.arctan2(up_m[:, i, None], far_m)) for i in (0, 1))
-    width_deg = np.rad2deg(COLUMN_M * side_m[scans, None] / far_m**2)
-    sent = (high - low) * width_deg * looks
-    edges_m = there_m[scans] + np.array([[-1], [1]]) * most_m[scans]
-    xyz_m, scan = sights.between(rays, line.at(np.clip(edges_m, low_m, low_m + COLUMN_M * count)), scans)
-    before_m, of_scan_m, sensor_z_m = line.offset_m(xyz_m[:, :2]), side_m.take(scan), rays.sensors_m[:, 2].take(scan)
-    share = of_scan_m / np.maximum(of_scan_m - before_m, 1e-6)
-    z_m = sensor_z_m + share * (xyz_m[:, 2] - sensor_z_m) - rays.floor_z_m
-    inside = np.flatnonzero((z_m >= heights_m[0]) & (z_m < heights_m[1]))
-    scan, before_m = scan.take(inside), before_m.take(inside)
-    off_m = share.take(inside) * (line.along_m(xyz_m.take(inside, axis=0)[:, :2]) - there_m[scan])
-    counts = np.abs(off_m) < most_m[scan]
-    column = np.floor((there_m[scan] + off_m - low_m) / COLUMN_M).astype(np.int64)
-    counts &= (column >= 0) & (column < count)
-    cell = np.searchsorted(scans, scan) * count + column
-    there = (counts & (before_m > _BEFORE_M), counts & (before_m <= _BEFORE_M))
-    stopped, back = (np.bincount(cell[t], minlength=sent.size).reshape(sent.shape) for t in there)
-    return sent, stopped, back
-
-
-def _below(usual, elevation_rad):
-    """Return the running sums (s, n) at elevations (s, c), straight between the steps."""
-    per_deg = (usual.shape[1] - 1) / 180
-    at = np.clip((np.rad2deg(elevation_rad) + 90) * per_deg, 0, usual.shape[1] - 1.001)
-    row, scan = at.astype(np.int64), np.arange(len(usual))[:, None]
-    return usual[scan, row] + (at - row) * (usual[scan, row + 1] - usual[scan, row])

@@ -3,7 +3,9 @@
 import math
 from dataclasses import dataclass
 
-from scanplan.plan import crossings, facepieces, overshoots, rightangles, stretches
+import numpy as np
+
+from scanplan.plan import crossings, facepieces, fronts, overshoots, rightangles, stretches
 
 _STUB_M = 0.1
 _FOREIGN_M = 0.08
@@ -30,7 +32,7 @@ class Traced:
     panes: list
 
 
-def trace(pieces, rays, merging, reading, square):
+def trace(pieces, rays, merging, reading, square, furniture):
     """Find the faces along the lines of pieces.
 
     Parameters
@@ -41,6 +43,7 @@ def trace(pieces, rays, merging, reading, square):
     merging : faces.MergeSettings
     reading : profiles.Reading
     square : rightangles.Prior
+    furniture : fronts.Limits
 
     Returns
     -------
@@ -52,10 +55,10 @@ def trace(pieces, rays, merging, reading, square):
         lines.setdefault(id(piece.line), []).append(piece)
     seen = rightangles.turned([_seen(group, rays, reading) for group in lines.values()], square)
     found = _once([stretches.find(s, reading, planar=rays.planar) for s in seen], merging)
-    stacked = crossings.stack(found)
-    foreign = [_crossed_m(s, found, stacked) for s in seen]
-    runs = (stretches.find(s, reading, planar=rays.planar, foreign_m=m) for s, m in zip(seen, foreign, strict=True))
-    found = _once(list(runs), merging)
+    found = fronts.without(found, furniture, planar=rays.planar)
+    claimed = zip(seen, claims(seen, found), strict=True)
+    runs = (stretches.find(s, reading, planar=rays.planar, foreign_m=spans_m) for s, spans_m in claimed)
+    found = fronts.without(_once(list(runs), merging), furniture, planar=rays.planar)
     found = overshoots.without_tails(overshoots.without(found), share=merging.ghost_share)
     found = [f for f in found if f.length_m >= _STUB_M]
     met = facepieces.meet_at_corners(found, corner_m=merging.corner_m)
@@ -96,6 +99,38 @@ def _supported(of_line, merging):
 def _is_shown(stretch, merging):
     # its ends may have been left to faces that cross it there
     return stretch.length_m + 2 * _FOREIGN_M >= merging.lone_length_m or stretch.n_scans >= merging.min_scans
+
+
+def claims(lines, found):
+    """Return from where to where along lines others cross them: points there are theirs.
+
+    What others claim whole is the end of a wall that another line happens to lead through, as a shelf's beside a door's
+    jamb: it is no wall that crosses, and claims nothing.
+
+    Parameters
+    ----------
+    lines : list of profiles.Seen
+    found : list of stretches.Stretch
+
+    Returns
+    -------
+    list of list of (float, float)
+        Per line.
+    """
+    stacked = crossings.stack(found)
+    standing = [f for f in found if _left_m(f, _crossed_m(f.seen, found, stacked)) >= _STUB_M]
+    stacked = crossings.stack(standing)
+    return [_crossed_m(seen, standing, stacked) for seen in lines]
+
+
+def _left_m(stretch, claimed_m):
+    """Return how much of a stretch is in none of some spans along its line."""
+    spans = np.clip(np.array(claimed_m).reshape(-1, 2), stretch.low_m, stretch.high_m)
+    reached_m, left_m = stretch.low_m, 0.0
+    for low_m, high_m in sorted(spans.tolist()):
+        left_m += max(low_m - reached_m, 0.0)
+        reached_m = max(reached_m, high_m)
+    return left_m + stretch.high_m - reached_m
 
 
 def _crossed_m(seen, found, stacked):

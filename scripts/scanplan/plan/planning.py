@@ -11,6 +11,7 @@ from scanplan import schemas
 from scanplan.plan import (
     faces,
     freespace,
+    fronts,
     gaps,
     glazing,
     planfaces,
@@ -23,6 +24,7 @@ from scanplan.plan import (
     wallevidence,
     wallfaces,
     wallpairs,
+    windows,
 )
 
 TABLES = {
@@ -60,6 +62,7 @@ class PlanSettings:
     reading: profiles.Reading
     ranges: rangeerrors.RangeSettings
     square: rightangles.Prior
+    furniture: fronts.Limits
     pairs: wallpairs.PairSettings
     openings: gaps.GapSettings
     rooms: RoomSettings
@@ -90,7 +93,7 @@ class Plan:
     range_errors_m: np.ndarray
 
 
-def settings(*, merge, trace, ranges, right_angles, pair, openings, rooms, trust):
+def settings(*, merge, trace, ranges, right_angles, furniture, pair, openings, rooms, trust):
     """Return settings from keywords of each part.
 
     Raises
@@ -104,6 +107,7 @@ def settings(*, merge, trace, ranges, right_angles, pair, openings, rooms, trust
         reading=profiles.Reading(**trace),
         ranges=rangeerrors.RangeSettings(**ranges),
         square=rightangles.Prior(registration_sigma_m=merging.registration_sigma_m, **right_angles),
+        furniture=fronts.Limits(**furniture),
         pairs=wallpairs.PairSettings(**pair, max_gap_m=openings["max_opening_m"]),
         openings=gaps.GapSettings(**openings),
         rooms=RoomSettings(**rooms),
@@ -137,12 +141,14 @@ def make(segments, rays, track_m, t_ns, settings, up=None):
     errors_m = rangeerrors.estimate(rays, segments, settings.ranges, settings.reading.band_m, up)
     rays = rangeerrors.without(rays, errors_m, up)
     pieces = faces.pieces(segments, settings.merge)
-    traced = planfaces.trace(pieces, rays, settings.merge, settings.reading, settings.square)
+    parts = settings.merge, settings.reading, settings.square, settings.furniture
+    traced = planfaces.trace(pieces, rays, *parts)
     found = planwalls.assemble(
         *(traced.stretches, settings.reading, settings.pairs, settings.openings),
         planar=rays.planar,
         corner_m=settings.merge.corner_m,
     )
+    found = windows.added(found, rays, settings.openings)
     unpaired_m = _usual_thickness_m(found)
     stars = freespace.visible(rays)
     floor = freespace.together(stars)
@@ -180,6 +186,6 @@ def _usual_thickness_m(walls):
 def _free(walls, floor, unpaired_m):
     """Return the polygons of floor that rays went over, openings with it, walls without."""
     strips = freespace.strips(walls, unpaired_m)
-    ways = [freespace.opening_ground(w, g, unpaired_m) for w in walls for g in w.openings]
+    ways = [freespace.opening_ground(w, g, unpaired_m) for w in walls for g in w.openings if not g.is_above_wall]
     solid = shapely.difference(*(shapely.union_all(p, grid_size=1e-3) if p else MultiPolygon() for p in (strips, ways)))
     return list(freespace.polygons_of(shapely.difference(floor, solid)).geoms)

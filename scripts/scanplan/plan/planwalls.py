@@ -101,7 +101,7 @@ def _between_things(judged, spans_m):
     unknown_m = sum(g.width_m for g in judged if g.state == gaps.UNKNOWN)
     open_m = sum(g.width_m for g in ways)
     solid_m = np.ptp(spans_m) - unknown_m - open_m
-    return [g for g in ways if np.isnan(g.lintel_m)] if open_m > solid_m else []
+    return [g for g in ways if not g.below_wall] if open_m > solid_m else []
 
 
 def _between_sides(gap, spans_m):

@@ -80,7 +80,7 @@ class Seen:
         Glass has a frame, a sill or a lintel; a line that merely goes on before a pane has none.
         """
         at_it_m = np.sort(np.concatenate([self.hit_m, self.foot_m]))
-        share = [_filled(at_it_m, *span_m) for span_m in self.panes_m]
+        share = [filled(at_it_m, *span_m) for span_m in self.panes_m]
         return self.panes_m[np.array(share, float) >= _FRAMED_SHARE]
 
     def hits(self, low_m, high_m):
@@ -125,7 +125,7 @@ class Profile:
         return slice(max(low, 0), max(high, 0))
 
 
-def _filled(places_m, low_m, high_m):
+def filled(places_m, low_m, high_m):
     """Return the share of the columns between two places that hold any of sorted places."""
     inside_m = places_m[np.searchsorted(places_m, low_m) : np.searchsorted(places_m, high_m)]
     columns = max(round((high_m - low_m) / COLUMN_M), 1)

@@ -162,5 +162,5 @@ def _observed(wall):
     spans = spans[np.argsort(spans[:, 0], kind="stable")]
     reached = np.maximum.accumulate(np.concatenate([[-np.inf], spans[:, 1]]))[:-1]
     shown_m = np.maximum(spans[:, 1] - np.maximum(spans[:, 0], reached), 0).sum()
-    whole_m = wall.length_m - sum(g.width_m for g in wall.openings)
+    whole_m = wall.length_m - sum(g.width_m for g in wall.openings if not g.is_above_wall)
     return min(float(shown_m / whole_m), 1.0) if whole_m > 0 else 1.0

@@ -85,7 +85,8 @@ def _missing(wall, max_beyond_m):
         line = Line(wall.line.centre + sign * wall.half_m * wall.line.normal, sign * wall.line.normal)
         known = [line.along_m(s.ends) for s in side]
         if wall.right:
-            known += [line.along_m(wall.line.at(np.array([g.low_m, g.high_m]))) for g in wall.openings]
+            ways = [g for g in wall.openings if not g.is_above_wall]
+            known += [line.along_m(wall.line.at(np.array([g.low_m, g.high_m]))) for g in ways]
             span = np.sort(line.along_m(wall.ends))
             seen = np.sort(known[: len(side)], axis=1)
             inner = span[0] if seen.min() - span[0] <= max_beyond_m else seen.min()

@@ -1,0 +1,94 @@
+"""Windows of walls: where rays went through above a sill that was seen.
+
+A lidar near the floor sees the wall below a window, so the window is no pause of the wall. Higher up no ray ends at it:
+rays go through, and come back from what is behind, or, out of the building, never.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from scanplan.plan import gaps, sentrays
+from scanplan.plan.profiles import COLUMN_M, filled
+
+_CHEST_M = (1.25, 1.7)  # sills are lower, lintels are higher
+_LEAST_SHOWN = 0.7  # the jambs' last columns may be hidden from most scans
+_LEAST_SCANS = 2  # something may stand nearer to one scan than it can measure
+_MOST_IN_IT = 0.5  # reveals and panes send some back, a niche all
+_SILL_SHARE = 0.3  # desks hide much of the wall below; in a doorway there is none
+
+
+def added(walls, rays, settings):
+    """Return walls with the windows that rays tell of.
+
+    Parameters
+    ----------
+    walls : list of planwalls.PlanWall
+    rays : rays.Rays
+        Of planar scans nothing is told.
+    settings : gaps.GapSettings
+
+    Returns
+    -------
+    list of planwalls.PlanWall
+    """
+    return list(walls) if rays.planar else [_with_windows(wall, rays, settings) for wall in walls]
+
+
+def _with_windows(wall, rays, settings):
+    lines = list({id(s.seen): s.seen for s in wall.members}.values())
+    found = list(wall.openings)
+    for seen in lines:
+        span_m = np.sort(seen.line.along_m(wall.ends))
+        for window in find(rays, seen, *span_m, settings):
+            ends = seen.line.at(np.array([window.low_m, window.high_m]))
+            low_m, high_m = np.sort(wall.line.along_m(ends)).tolist()
+            if all(high_m <= gap.low_m or low_m >= gap.high_m for gap in found):
+                found.append(replace(window, low_m=low_m, high_m=high_m))
+    return replace(wall, openings=sorted(found, key=lambda gap: gap.low_m))
+
+
+def find(rays, seen, low_m, high_m, settings):
+    """Find the windows along a line: pauses of the points at the height of a chest, with wall beside and below them.
+
+    Rays must have been sent to nearly all of a pause, nothing before it in their way, and hardly one may have ended in
+    it, as in a niche: where no ray is to be expected, or things hide the wall, nothing is known.
+
+    Parameters
+    ----------
+    rays : rays.Rays
+        Of scans in space.
+    seen : profiles.Seen
+    low_m, high_m : float
+        The stretch of the line that is wall.
+    settings : gaps.GapSettings
+
+    Returns
+    -------
+    list of gaps.Gap
+        In order along the line.
+    """
+    points = seen.hits(low_m, high_m)
+    place_m, z_m = seen.hit_m[points], seen.hit_z_m[points]
+    beside_m = place_m[(z_m >= _CHEST_M[0]) & (z_m < _CHEST_M[1])]
+    spans_m = np.column_stack([beside_m[:-1], beside_m[1:]])
+    spans_m = spans_m[np.diff(spans_m, axis=1)[:, 0] >= settings.min_opening_m]
+    judged = [_judged(rays, seen, *span_m) for span_m in spans_m.tolist()]
+    return [window for window in judged if window is not None]
+
+
+def _judged(rays, seen, low_m, high_m):
+    """Return what is between two places of a line as a window, None if it is none."""
+    inner = seen.hits(low_m + gaps.REVEAL_M, high_m - gaps.REVEAL_M)
+    below = seen.hit_z_m[inner] < _CHEST_M[0]
+    if filled(seen.hit_m[inner][below], low_m + gaps.REVEAL_M, high_m - gaps.REVEAL_M) < _SILL_SHARE:
+        return None
+    count = max(int((high_m - low_m) / COLUMN_M), 1)
+    reached, _, in_wall = sentrays.to_line(rays, seen.line, low_m, count, _CHEST_M).reached(least_scans=_LEAST_SCANS)
+    shown = np.isfinite(reached)
+    if shown.mean() < _LEAST_SHOWN or in_wall[shown].sum() > _MOST_IN_IT * reached[shown].sum():
+        return None
+    sill_m = gaps.highest_m(seen.hit_z_m[inner][below])
+    n_rays = int(reached[shown].sum() - in_wall[shown].sum())
+    lintel_m = gaps.lintel_m(seen, low_m, high_m, _CHEST_M[1], _CHEST_M[1])
+    return gaps.Gap(low_m, high_m, gaps.OPEN, n_rays, sill_m, lintel_m, bool(np.isfinite(lintel_m)))

@@ -1,0 +1,40 @@
+"""Which faces claim the points where they cross a line, of stretches known on paper."""
+
+import numpy as np
+import pytest
+
+from scanplan.plan import planfaces
+from scanplan.plan.faceline import Line
+from scanplan.plan.profiles import Seen
+from scanplan.plan.stretches import Stretch
+
+
+def stretch(x0, y0, x1, y1):
+    """Return a stretch seen from the left of its way, without any point."""
+    start, way = np.array([x0, y0], float), np.array([x1 - x0, y1 - y0], float)
+    length_m = float(np.hypot(*way))
+    line = Line(start, np.array([-way[1], way[0]]) / length_m)
+    nothing = (np.empty(0),) * 3
+    return Stretch(Seen(line, *nothing, np.empty(0, int), *nothing[:2], np.empty(0, int)), 0.0, length_m)
+
+
+def claims_on_first(*found):
+    return planfaces.claims([found[0].seen], list(found))[0]
+
+
+def test_a_wall_that_crosses_claims_what_is_beside_it():
+    assert claims_on_first(stretch(0, 0, 4, 0), stretch(3, 0.05, 3, 2)) == [pytest.approx((2.92, 3.08))]
+
+
+def test_a_wall_that_ends_well_before_a_line_claims_nothing():
+    assert claims_on_first(stretch(0, 0, 4, 0), stretch(3, 0.2, 3, 2)) == []
+
+
+def test_the_end_of_a_wall_between_its_two_faces_claims_nothing():
+    jamb = stretch(3.05, 0.01, 3.05, -0.16)
+    assert claims_on_first(stretch(0, 0, 3, 0), stretch(3, -0.15, 0, -0.15), jamb) == []
+
+
+def test_the_end_of_a_thick_wall_claims_its_corners():
+    jamb = stretch(3.05, 0.0, 3.05, -0.5)
+    assert len(claims_on_first(stretch(0, 0, 3, 0), stretch(3, -0.5, 0, -0.5), jamb)) == 1

@@ -1,0 +1,149 @@
+"""Windows of a toy room: what becomes of the rays to a part of its south wall is known on paper."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapely
+
+import housemaking
+from scanplan.plan import planning, rays, stretches, windows
+from scanplan.plan.faceline import Line
+from scanplan.plan.gaps import OPEN, Gap
+from scanplan.plan.planwalls import PlanWall
+from wallmaking import walls
+
+SENSORS = [(1, 2.5, 0.9), (2, 3, 0.9), (3, 2.5, 0.9), (2.5, 3.4, 0.9)]
+SOUTH = Line(np.array([0.0, 0.0]), np.array([0.0, 1.0]))
+ROOM = [(0, 0, 4, 0), (4, 0, 4, 4), (4, 4, 0, 4), (0, 4, 0, 0)]
+SETTINGS = planning.settings(**housemaking.PLAN)
+ENDS_M = (0.0, 4.0)
+LOST, NICHE, BEYOND, BEFORE = None, "niche", 1.5, 0.7
+
+
+def look(x, z, ends=LOST, sensors=SENSORS):
+    """Rays of scans; those to a part of the south wall are lost, end after a share of their way, or just behind it."""
+    scans = []
+    for i, xyz_m in housemaking.scans(ROOM, sensors, columns=1800):
+        there = (np.abs(xyz_m[:, 1]) < 0.1) & (xyz_m[:, 0] > x[0]) & (xyz_m[:, 0] < x[1])
+        there &= (xyz_m[:, 2] > z[0]) & (xyz_m[:, 2] < z[1])
+        if ends is LOST:
+            scans.append((i, xyz_m[~there]))
+        else:
+            moved = xyz_m - (0, 0.3, 0) if ends is NICHE else np.array(sensors[i]) + ends * (xyz_m - sensors[i])
+            scans.append((i, np.where(there[:, None], moved, xyz_m)))
+    # the lowest beam ends at a wall: no floor is seen
+    return replace(rays.gather(scans, dict(enumerate(np.array(sensors, float))), planar=False), floor_z_m=0.0)
+
+
+def seen(looked):
+    """The line refitted, places along it counted from the origin again."""
+    line = stretches.look_along(looked, SOUTH, 0.0, 4.0, SETTINGS.reading)
+    begin_m = float(line.line.along_m(np.zeros(2)))
+    return replace(line, line=Line(line.line.at(begin_m), line.line.normal), hit_m=line.hit_m - begin_m)
+
+
+def find(*part, **more):
+    looked = look(*part, **more)
+    return windows.find(looked, seen(looked), *ENDS_M, SETTINGS.openings)
+
+
+@pytest.mark.parametrize("ends", [LOST, BEYOND])
+def test_rays_that_go_through_above_a_wall_show_a_window(ends):
+    (window,) = find((1.0, 2.2), (0.85, 2.4), ends=ends)
+    assert (window.low_m, window.high_m) == (pytest.approx(1.0, abs=0.03), pytest.approx(2.2, abs=0.03))
+    assert window.sill_m == pytest.approx(0.85, abs=0.04)
+    assert (window.state, window.kind(SETTINGS.openings)) == (OPEN, "window")
+
+
+def test_a_window_may_be_wider_than_a_door():
+    (window,) = find((0.8, 3.2), (0.85, 2.4))
+    assert window.width_m == pytest.approx(2.4, abs=0.05)
+
+
+@pytest.mark.parametrize(
+    ("x", "z", "ends"),
+    [
+        ((1.0, 2.2), (-1.0, 2.4), LOST),  # a door, or glass down to the floor: no sill
+        ((1.0, 2.2), (0.85, 2.4), BEFORE),  # a cupboard before the wall
+        ((1.0, 2.2), (-1.0, 2.4), BEFORE),
+        ((1.0, 2.2), (0.85, 2.4), NICHE),  # 30 cm deep
+        ((1.0, 1.4), (0.85, 2.4), LOST),  # a slit
+        ((-1.0, 1.5), (0.85, 2.4), LOST),  # no wall on one side
+        ((1.0, 2.2), (0.3, 0.8), LOST),  # something dark below
+    ],
+)
+def test_what_is_no_window(x, z, ends):
+    assert find(x, z, ends=ends) == []
+
+
+def test_one_scan_is_not_enough():
+    assert find((1.0, 2.2), (0.85, 2.4), sensors=SENSORS[1:2]) == []
+
+
+def test_where_no_ray_is_sent_nothing_is_known():
+    """From 1 m away the highest beam meets the wall at 1.17 m; of the wall beside more is seen from further off."""
+    looked = look((1.0, 2.2), (0.85, 2.4), sensors=[(1.6, 1, 0.9), (1.4, 0.9, 0.9)])
+    line = seen(looked)
+    more_m = np.array([0.2, 0.5, 0.9, 2.3, 2.6, 3.0])
+    line = replace(
+        line,
+        hit_m=np.concatenate([line.hit_m, more_m]),
+        hit_z_m=np.concatenate([line.hit_z_m, 0 * more_m + 1.5]),
+        hit_off_m=np.concatenate([line.hit_off_m, 0 * more_m]),
+        hit_scan=np.concatenate([line.hit_scan, np.zeros(len(more_m), int)]),
+    )
+    order = np.argsort(line.hit_m, kind="stable")
+    line = replace(line, **{c: getattr(line, c)[order] for c in ("hit_m", "hit_z_m", "hit_off_m", "hit_scan")})
+    assert windows.find(looked, line, *ENDS_M, SETTINGS.openings) == []
+
+
+def wall(looked, openings=()):
+    side = stretches.Stretch(seen(looked), 0.0, 4.0)
+    # the other way round than its face, and begun elsewhere
+    line = Line(np.array([4.0, -0.1]), np.array([0.0, -1.0]))
+    return PlanWall(line, 0.0, 4.0, 0.2, [], [side], list(openings), [])
+
+
+def test_windows_lie_along_the_wall_and_the_wall_goes_on_below_them():
+    looked = look((1.0, 2.2), (0.85, 2.4))
+    (found,) = windows.added([wall(looked)], looked, SETTINGS.openings)
+    (window,) = found.openings
+    ends = found.line.at(np.array([window.low_m, window.high_m]))
+    np.testing.assert_allclose(np.sort(ends[:, 0]), [1.0, 2.2], atol=0.03)
+    assert window.is_above_wall
+
+
+def test_an_opening_is_not_found_again():
+    looked = look((1.0, 2.2), (0.85, 2.4))
+    known = Gap(2.0, 2.9, OPEN, 99, 0.0, np.nan, False)
+    (found,) = windows.added([wall(looked, [known])], looked, SETTINGS.openings)
+    assert found.openings == [known]
+
+
+def test_a_plane_has_no_windows():
+    looked = look((1.0, 2.2), (0.85, 2.4))
+    flat = [wall(looked)]
+    assert windows.added(flat, replace(looked, planar=True), SETTINGS.openings) == flat
+
+
+def plan(ends):
+    table = walls([face for _ in SENSORS for face in ROOM], scan_id=np.repeat(np.arange(4), 4))
+    looked = look((1.0, 2.2), (0.85, 2.4), ends=ends)
+    return planning.make(table, looked, np.array(SENSORS)[:, :2], housemaking.T_NS, SETTINGS)
+
+
+@pytest.mark.parametrize("ends", [LOST, BEYOND])
+def test_no_free_floor_leads_through_the_windows_of_a_plan(ends):
+    made = plan(ends)
+    assert made.openings["type"].tolist() == ["window"]
+    assert made.openings["width_m"][0] == pytest.approx(1.2, abs=0.05)
+    floor = shapely.union_all(shapely.from_wkb(made.free["geometry"]))
+    # the wall's ground, taken to be 0.1 m deep, is whole
+    assert floor.intersection(shapely.box(0.1, -0.08, 3.9, -0.02)).area == pytest.approx(0, abs=1e-3)
+
+
+def test_faces_of_a_plan_go_on_below_windows():
+    faces = plan(LOST).faces
+    south = np.maximum(np.abs(faces["y0_m"]), np.abs(faces["y1_m"])) < 0.1
+    assert np.abs(faces["x1_m"] - faces["x0_m"])[south].sum() == pytest.approx(4, abs=0.1)
