@@ -9,7 +9,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import floorplanmaking
 from floorplanmaking import bare
-from scanplan.exports import drawing
+from scanplan.exports import drawing, drawingframe
 
 _POINTS_PER_MM = 72 / 25.4
 
@@ -114,4 +114,4 @@ def test_scale_is_the_largest_usual_one_that_fits(extent_m, scale):
 
 @pytest.mark.parametrize(("extent_m", "length_m"), [(12, 2), (12.5, 5), (30, 10), (0.6, 0.2), (5, 2)])
 def test_scale_bar_has_a_round_length(extent_m, length_m):
-    assert drawing.bar_length_m(extent_m) == pytest.approx(length_m)
+    assert drawingframe.bar_length_m(extent_m) == pytest.approx(length_m)

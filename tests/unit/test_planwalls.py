@@ -49,3 +49,28 @@ def test_the_jambs_of_both_sides_are_averaged():
 @pytest.mark.parametrize(("lintel", "count"), [([], 0), ([(0.4, 1.6)], 1)])
 def test_between_two_things_there_is_no_door_but_below_a_lintel(lintel, count):
     assert len(openings(stretches(0, 0, 2, 0, [(0, 0.4), (1.6, 2)], [(0.4, 1.6)], lintel))) == count
+
+
+def ends(*found):
+    walls = planwalls.assemble(
+        *([s for of_line in found for s in of_line], SETTINGS.reading, SETTINGS.pairs, SETTINGS.openings),
+        planar=False,
+        corner_m=0.25,
+    )
+    return [np.sort(w.ends[:, 0]) for w in walls if abs(w.line.normal[1]) > 0.9]
+
+
+@pytest.mark.parametrize(
+    ("solid", "crossed", "end_m"),
+    [
+        ((0, 3), [], 4.0),  # neither points nor rays between its end and the next wall: hidden, not open
+        ((0, 3), [(3.1, 3.9)], 3.0),  # rays went through
+        ((0, 1), [], 1.0),  # too far away
+        ((2.6, 3.0), [], 3.0),  # farther than it is long
+    ],
+)
+def test_a_wall_goes_on_to_the_next_through_what_is_hidden(solid, crossed, end_m):
+    south = stretches(0, 0, 6, 0, [solid], crossed)
+    across = stretches(4, 4, 4, -4, [(0, 8)])
+    ((_, high_m),) = ends(south, across)
+    assert high_m == pytest.approx(end_m, abs=0.03)

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scanplan.plan import tops
+from scanplan.plan import planning, tops
 from scanplan.plan.faceline import Line
 from scanplan.plan.profiles import Seen
 
@@ -87,3 +87,15 @@ def test_the_parting_height_is_the_best_of_all(hit_z_m, pass_z_m):
     low_m, high_m = tops._parted(hit_z_m, pass_z_m)
     assert low_m in hit_z_m and low_m <= high_m
     assert wrong(low_m) == min(wrong(top_m) for top_m in hit_z_m)
+
+
+def test_surfaces_that_end_lower_than_a_wall_are_left_out():
+    desk, partition = (wall(rows(2000, 0.1, z_m), rows(100, z_m + 0.02, z_m + 0.3)) for z_m in (0.74, 1.6))
+    desk.right, partition.right = [], []
+    counter = wall(rows(2000, 0.1, 0.9), rows(100, 0.92, 1.2))
+    counter.right = counter.members
+    kept, tops_m = planning._without_low([desk, partition, counter], 1.0, False)
+    assert kept == [partition, counter]
+    assert tops_m == pytest.approx([1.61, 0.91], abs=0.02)
+    kept, tops_m = planning._without_low([desk], 1.0, True)
+    assert kept == [desk] and np.isnan(tops_m).all()

@@ -8,35 +8,32 @@ import matplotlib
 import numpy as np
 import shapely
 from matplotlib.figure import Figure
-from matplotlib.font_manager import FontProperties
 from matplotlib.patches import PathPatch, Rectangle
 from matplotlib.path import Path
-from matplotlib.textpath import TextPath
 
+from scanplan.exports import drawingframe
+from scanplan.exports.drawingframe import FAINT, INK, POINTS_PER_MM
 from scanplan.plan import floorplan
 
 # it tells of every table that it leaves out of a font
 logging.getLogger("fontTools").setLevel(logging.WARNING)
 _MM_PER_INCH = 25.4
-_POINTS_PER_MM = 72 / _MM_PER_INCH
 _SCALES = [m * 10**e for e in range(1, 7) for m in (1, 2, 5)]
 _LARGEST_MM = np.array([380.0, 260.0])
 _MARGIN_MM = {"left": 22.0, "right": 12.0, "top": 12.0, "bottom": 50.0}
 _LEAST_WIDTH_MM = 150.0
-_LONGEST_NAME = 60
 _LABELLED_MM = 3.5
 _SMALL_POINTS = 5.5
 _ROOM_IN_WALL_MM = 2.3
 _BESIDE_MM = 1.6
-_INK, _FAINT = "black", "0.35"
 _STATES = {
-    "observed": {"ec": _INK, "fc": "0.55", "joinstyle": "miter"},
-    "inferred": {"ec": _FAINT, "fc": "0.92", "ls": (0, (4, 2)), "joinstyle": "miter"},
+    "observed": {"ec": INK, "fc": "0.55", "joinstyle": "miter"},
+    "inferred": {"ec": FAINT, "fc": "0.92", "ls": (0, (4, 2)), "joinstyle": "miter"},
 }
 _OPENINGS = {
-    "door": {"ec": _INK, "ls": (0, (3, 2))},
-    "window": {"ec": _INK},
-    "passage": {"ec": _FAINT, "ls": (0, (1, 2))},
+    "door": {"ec": INK, "ls": (0, (3, 2))},
+    "window": {"ec": INK},
+    "passage": {"ec": FAINT, "ls": (0, (1, 2))},
 }
 
 
@@ -78,12 +75,12 @@ def plan(drawn):
     _openings(axes, drawn, m_per_mm)
     _low_walls(axes, drawn, m_per_mm)
     _rooms(axes, drawn, m_per_mm)
-    _dimension(axes, low_m, np.array([high_m[0], low_m[1]]), m_per_mm)
-    _dimension(axes, np.array([low_m[0], high_m[1]]), low_m, m_per_mm)
-    _scale_bar(axes, low_m, high_m - low_m, m_per_mm)
-    _map_axes(axes, low_m, m_per_mm)
+    drawingframe.dimension(axes, low_m, np.array([high_m[0], low_m[1]]), m_per_mm)
+    drawingframe.dimension(axes, np.array([low_m[0], high_m[1]]), low_m, m_per_mm)
+    drawingframe.scale_bar(axes, low_m, high_m - low_m, m_per_mm)
+    drawingframe.map_axes(axes, low_m, m_per_mm)
     _legend(axes, drawn, low_m, m_per_mm)
-    _title(axes, low_m, m_per_mm, drawn.name, floorplan.summary(drawn), scale)
+    drawingframe.title(axes, low_m, m_per_mm, drawn.name, floorplan.summary(drawn), scale)
     return axes.figure
 
 
@@ -91,13 +88,6 @@ def scale_for(extent_m):
     """Return the denominator of the largest usual scale at which a drawing of `extent_m` (2,) fits on A3."""
     needed = float((np.asarray(extent_m) * 1000 / _LARGEST_MM).max())
     return next((scale for scale in _SCALES if scale >= needed), math.ceil(needed))
-
-
-def bar_length_m(extent_m):
-    """Return a round length (1, 2 or 5 times a power of ten), at most 2/5 of `extent_m`, for a scale bar."""
-    longest = 0.4 * extent_m
-    power = 10.0 ** math.floor(math.log10(longest))
-    return next(m * power for m in (5, 2, 1) if m * power <= longest * (1 + 1e-9))
 
 
 def _sheet(low_m, high_m, scale):
@@ -119,10 +109,10 @@ def _walls(axes, drawn, state):
     """Fill what walls stand on and draw the surfaces that have nothing known behind them."""
     style = _STATES[state]
     for number, part in enumerate(_polygons(drawn.solid(state))):
-        axes.add_patch(PathPatch(_path(part), lw=0.35 * _POINTS_PER_MM, gid=f"walls-{state}-{number}", **style))
+        axes.add_patch(PathPatch(_path(part), lw=0.35 * POINTS_PER_MM, gid=f"walls-{state}-{number}", **style))
     dashes = {"ls": style["ls"]} if "ls" in style else {}
     for number, line in enumerate(drawn.single(state)):
-        axes.plot(*shapely.get_coordinates(line).T, color=style["ec"], lw=0.4 * _POINTS_PER_MM,
+        axes.plot(*shapely.get_coordinates(line).T, color=style["ec"], lw=0.4 * POINTS_PER_MM,
                   solid_capstyle="round", gid=f"single-{state}-{number}", **dashes)  # fmt: skip
 
 
@@ -136,7 +126,7 @@ def _openings(axes, drawn, m_per_mm):
         strokes = [line + side_m * np.array([-way[1], way[0]]) for side_m in sides_m]
         vertices = np.concatenate(strokes)
         path = Path(vertices, [Path.MOVETO, Path.LINETO] * len(strokes))
-        axes.add_patch(PathPatch(path, fc="none", lw=0.13 * _POINTS_PER_MM, gid=f"{kind}-{number}", **_OPENINGS[kind]))
+        axes.add_patch(PathPatch(path, fc="none", lw=0.13 * POINTS_PER_MM, gid=f"{kind}-{number}", **_OPENINGS[kind]))
         if math.dist(*line) > _LABELLED_MM * m_per_mm:
             thick_mm = np.nan_to_num(thick_m) / m_per_mm
             in_wall = thick_mm >= _ROOM_IN_WALL_MM and kind != "window"
@@ -166,7 +156,7 @@ def _rooms(axes, drawn, m_per_mm):
         *(drawn.rooms[c] for c in ("room", "area_m2", "closed", "x_m", "y_m")), drawn.label_widths_m, strict=True
     ):
         about = "" if closed else "about "
-        size = np.clip(width_m / m_per_mm * _POINTS_PER_MM / 8, 3.0, 8.0)
+        size = np.clip(width_m / m_per_mm * POINTS_PER_MM / 8, 3.0, 8.0)
         axes.text(x_m, y_m, f"Room {room}\n{about}{area_m2:.1f} m²", fontsize=size, ha="center", va="center",
                   gid=f"room-{room}")  # fmt: skip
 
@@ -188,7 +178,7 @@ def _legend(axes, drawn, low_m, m_per_mm):
         for label, style, there in (
             ("wall", _STATES["observed"], not drawn.solid("observed").is_empty),
             ("inferred wall", _STATES["inferred"], not drawn.solid("inferred").is_empty),
-            ("surface, thickness not known", {"ec": _INK, "fc": "none", "line": True}, len(drawn.single("observed"))),
+            ("surface, thickness not known", {"ec": INK, "fc": "none", "line": True}, len(drawn.single("observed"))),
         )
         if there
     ]
@@ -201,56 +191,3 @@ def _legend(axes, drawn, low_m, m_per_mm):
         )
         axes.text(x_m + 8.5 * m_per_mm, y_m, label, fontsize=7, va="center")
         x_m += (13 + 1.5 * len(label)) * m_per_mm
-
-
-def _dimension(axes, start_m, end_m, m_per_mm):
-    """Draw a dimension line on the right of the way from start to end, with oblique ticks and its length."""
-    length_m = math.dist(start_m, end_m)
-    along = (end_m - start_m) / max(length_m, 1e-9)
-    out = np.array([along[1], -along[0]]) * m_per_mm
-    ends = np.array([start_m, end_m]) + 9 * out
-    axes.plot(*ends.T, color=_FAINT, lw=0.15 * _POINTS_PER_MM)
-    for foot, end in zip((start_m, end_m), ends, strict=True):
-        axes.plot(*np.array([foot + 3 * out, end + 1.5 * out]).T, color=_FAINT, lw=0.15 * _POINTS_PER_MM)
-        tick = (along * m_per_mm - out) * 1.2
-        axes.plot(*np.array([end - tick, end + tick]).T, color=_INK, lw=0.3 * _POINTS_PER_MM)
-    upright = along[0] >= abs(along[1])
-    place = ends.mean(axis=0) + (-1.2 if upright else 1.2) * out
-    axes.text(*place, f"{length_m:.2f}", rotation=0 if upright else 90, fontsize=8, color=_INK,
-              ha="center" if upright else "right", va="bottom" if upright else "center")  # fmt: skip
-
-
-def _scale_bar(axes, low_m, extent_m, m_per_mm):
-    length_m = bar_length_m(max(extent_m[0], 60 * m_per_mm))
-    x_m, y_m, height_m = low_m[0], low_m[1] - 22 * m_per_mm, 1.6 * m_per_mm
-    for part in range(4):
-        axes.add_patch(
-            Rectangle(
-                (x_m + part * length_m / 4, y_m), length_m / 4, height_m, ec=_INK, lw=0.5,
-                fc=_INK if part % 2 == 0 else "white", gid=f"scale-bar-{part}",
-            )
-        )  # fmt: skip
-    for share in (0, 0.5, 1):
-        label = f"{share * length_m:g}" + (" m" if share == 1 else "")
-        axes.text(x_m + share * length_m, y_m - 1.2 * m_per_mm, label, fontsize=8, ha="center", va="top")
-
-
-def _map_axes(axes, low_m, m_per_mm):
-    """Draw the directions of the map frame's axes, as nobody knows where north is."""
-    corner = np.array([axes.get_xlim()[1] - 26 * m_per_mm, low_m[1] - 18 * m_per_mm])
-    for label, way in (("x", np.array([1, 0])), ("y", np.array([0, 1]))):
-        tip = corner + 5 * way * m_per_mm
-        axes.annotate("", tip, corner, arrowprops={"arrowstyle": "-|>", "lw": 0.8, "color": _INK, "shrinkA": 0})
-        axes.text(*(corner + 6.5 * way * m_per_mm), label, fontsize=8, ha="center", va="center", style="italic")
-    axes.text(*(corner - np.array([0, 2]) * m_per_mm), "axes of the map frame,\nnorth unknown", fontsize=7,
-              ha="center", va="top", color=_FAINT)  # fmt: skip
-
-
-def _title(axes, low_m, m_per_mm, name, contents, scale):
-    x_m, y_m = low_m[0], low_m[1] - 34 * m_per_mm
-    shown = name if len(name) <= _LONGEST_NAME else f"{name[: _LONGEST_NAME - 1]}…"
-    room_points = (axes.get_xlim()[1] - x_m) / m_per_mm * _POINTS_PER_MM - 10
-    outline = TextPath((0, 0), shown.replace("$", r"\$"), size=12, prop=FontProperties(weight="bold")).get_extents()
-    size = min(12, 12 * room_points / outline.width)
-    axes.text(x_m, y_m, shown, fontsize=size, weight="bold", va="center", parse_math=False)
-    axes.text(x_m, y_m - 6 * m_per_mm, f"{contents}   ·   scale 1:{scale}   ·   metres", fontsize=8, va="center")

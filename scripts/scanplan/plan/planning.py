@@ -21,6 +21,7 @@ from scanplan.plan import (
     rangeerrors,
     rightangles,
     rooms,
+    tops,
     wallevidence,
     wallfaces,
     wallpairs,
@@ -149,6 +150,7 @@ def make(segments, rays, track_m, t_ns, settings, up=None):
         corner_m=settings.merge.corner_m,
     )
     found = windows.added(found, rays, settings.openings)
+    found, tops_m = _without_low(found, settings.furniture.wall_height_m, rays.planar)
     unpaired_m = _usual_thickness_m(found)
     stars = freespace.visible(rays)
     floor = freespace.together(stars)
@@ -164,7 +166,7 @@ def make(segments, rays, track_m, t_ns, settings, up=None):
     floor_z_m = 0.0 if math.isnan(rays.floor_z_m) else rays.floor_z_m
     drawn = wallfaces.of_walls(found, max_beyond_m=settings.openings.max_closed_m)
     face_columns, face_rows = plantables.faces(drawn, floor_z_m)
-    known = wallevidence.weigh(found, settings.trust, planar=rays.planar)
+    known = wallevidence.weigh(found, settings.trust, tops_m)
     return Plan(
         faces=face_columns,
         walls=plantables.walls(found, known, face_rows, drawn, floor_z_m, settings.trust),
@@ -176,6 +178,13 @@ def make(segments, rays, track_m, t_ns, settings, up=None):
         n_dropped=traced.n_dropped,
         range_errors_m=errors_m,
     )
+
+
+def _without_low(walls, wall_height_m, planar):
+    """Return walls, less surfaces that were seen to end lower than a wall does, and the heights of their tops."""
+    tops_m = [math.nan if planar else tops.find(wall) for wall in walls]
+    known = [(w, t) for w, t in zip(walls, tops_m, strict=True) if w.right or not t < wall_height_m]
+    return [w for w, _ in known], [t for _, t in known]
 
 
 def _usual_thickness_m(walls):

@@ -61,6 +61,8 @@ def assemble(found, reading, pairing, gapping, *, planar, corner_m):
     stacked = crossings.stack(walls)
     walls = [_with_end_openings(w, _crossings(w, walls, stacked), reading, gapping, planar, corner_m) for w in walls]
     stacked = crossings.stack(walls)
+    walls = [_with_closed_ends(w, _crossings(w, walls, stacked), reading, gapping, planar, corner_m) for w in walls]
+    stacked = crossings.stack(walls)
     walls = [_met(wall, _crossings(wall, walls, stacked), corner_m) for wall in walls]
     stacked = crossings.stack(walls)
     walls = [_beside_walls(wall, _crossings(wall, walls, stacked), gapping) for wall in walls]
@@ -128,6 +130,26 @@ def _with_end_openings(wall, crossed, reading, gapping, planar, corner_m):
         if gap.state == gaps.OPEN:
             openings = sorted([*wall.openings, gap], key=lambda g: g.low_m)
             wall = replace(wall, **{name: float(min(ahead)[1])}, openings=openings)
+    return wall
+
+
+def _with_closed_ends(wall, crossed, reading, gapping, planar, corner_m):
+    """Let a wall go on to the wall ahead of it through what no ray went through and nothing showed, if that is shorter.
+
+    What stands on both sides hides it: a gap there would have let some ray pass, as in a pause of the wall.
+    """
+    lines = list({id(s.seen): s.seen for s in wall.members}.values())
+    for name, sign in (("low_m", -1), ("high_m", 1)):
+        end_m = getattr(wall, name)
+        ahead = [(sign * (c - end_m) - other.half_m, c - sign * other.half_m, c) for other, c in crossed]
+        ahead = [a for a in ahead if corner_m < a[0] <= min(gapping.max_closed_m, wall.length_m)]
+        if not ahead:
+            continue
+        _, side_m, middle_m = min(ahead)
+        gap = gaps.judge(wall.line, *sorted((end_m, side_m)), lines, reading, gapping, planar=planar)
+        if gap.state == gaps.CLOSED and gap.n_rays == 0:
+            closed = sorted([*wall.closed, gap], key=lambda g: g.low_m)
+            wall = replace(wall, **{name: float(middle_m)}, closed=closed)
     return wall
 
 

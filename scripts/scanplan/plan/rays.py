@@ -206,11 +206,6 @@ def between(rays, ends, scans):
     ends : (2, k, 2) float
         One pair of ends for each of the scans, or one for all.
     scans : (k,) int
-
-    Returns
-    -------
-    xyz_m : (n, 3) float64
-    scan : (n,) int64
     """
     return _gathered(rays.stacked, *_spans(rays, ends, scans), scans)
 

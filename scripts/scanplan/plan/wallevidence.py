@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan.plan import crossings, tops
+from scanplan.plan import crossings
 
 _NEAR_END_M = 0.25
 _MET_M = 1e-6
@@ -76,15 +76,15 @@ class Evidence:
         return sigma_m > trust.max_sigma_m or len(self.scans) < trust.min_scans or self.observed < trust.min_observed
 
 
-def weigh(walls, trust, *, planar):
+def weigh(walls, trust, tops_m):
     """Return the evidence of every wall.
 
     Parameters
     ----------
     walls : list of planwalls.PlanWall
     trust : Trust
-    planar : bool
-        Whether heights mean nothing.
+    tops_m : list of float
+        Where each ends below the ceiling, above the floor; NaN where it was not seen to.
 
     Returns
     -------
@@ -93,7 +93,6 @@ def weigh(walls, trust, *, planar):
     sides = [[_side_sigma_m(side, trust) for side in (wall.left, wall.right) if side] for wall in walls]
     offsets_m = np.array([math.sqrt(sum(s**2 for s in of_wall)) / len(of_wall) for of_wall in sides])
     stacked = crossings.stack(walls)
-    tops_m = [np.nan if planar else tops.find(wall) for wall in walls]
     rows = zip(walls, offsets_m, tops_m, strict=True)
     return [_weigh(wall, off_m, top_m, stacked, offsets_m, trust) for wall, off_m, top_m in rows]
 
