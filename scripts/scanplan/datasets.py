@@ -11,6 +11,8 @@ from scanplan.errors import StageError
 
 POSES_FILE = "poses.tum"
 SCANS_FOLDER = "scans"
+SETTINGS_FILE = "dataset.yaml"
+TRUTH_FILES = ("truth.geojson", "truth_poses.tum")
 _BAG_SUFFIXES = (".bag", ".mcap", ".db3")
 _SURVEY_SUFFIXES = (".yaml", ".yml")
 _ROSBAG2_SUFFIXES = (".db3", ".mcap", ".db3.zstd", ".mcap.zstd")
@@ -93,6 +95,49 @@ def find_files(path):
     for file in files:
         _check_file(file)
     return [str(file) for file in files]
+
+
+def overlooked(path):
+    """Tell of files that seem to belong to a dataset, and are not read.
+
+    Parameters
+    ----------
+    path : path-like
+        A dataset folder, a rosbag2 folder, or a single recording; it is there.
+
+    Returns
+    -------
+    list of str
+        A line for each reason: the files, why they are not read, and the remedy.
+    """
+    path = Path(path)
+    notes = []
+    if path.is_file() or (path / "metadata.yaml").is_file():
+        beside = [name for name in (SETTINGS_FILE, *TRUTH_FILES) if (path.parent / name).is_file()]
+        if beside:
+            notes.append(
+                f"{path.parent}: {_listed(beside)} not used, as the dataset is {path.name} alone; to use what stands"
+                f" beside it, give the folder {path.parent} as the dataset"
+            )
+    there = [name for name in TRUTH_FILES if (path / name).is_file()]
+    if len(there) == 1:
+        (missing,) = set(TRUTH_FILES) - set(there)
+        notes.append(f"{path / there[0]}: is not used, as {missing} is missing; with both the results are evaluated")
+    other = [e.name for e in _visible(path) if _seems_settings(e)] if path.is_dir() else []
+    if other:
+        notes.append(
+            f"{path}: {_listed(other)} not used; settings of a dataset are read from {SETTINGS_FILE}, rename it"
+        )
+    return notes
+
+
+def _seems_settings(entry):
+    stem, _, suffix = entry.name.lower().partition(".")
+    return stem == "dataset" and suffix in ("yaml", "yml", "yaml.txt", "json") and entry.name != SETTINGS_FILE
+
+
+def _listed(names):
+    return f"{names[0]} is" if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]} are"
 
 
 def grouped(files):

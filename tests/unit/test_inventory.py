@@ -10,7 +10,7 @@ from scanplan.errors import StageError
 def known(project_root):
     return {
         "defaults": configuration.read_yaml(project_root / "config/config.yaml"),
-        "overrides": {},
+        "given": [],
         "schema": configuration.read_yaml(project_root / "workflow/schemas/config.schema.yaml"),
         "drawings": project_root / "config/buildings",
     }
@@ -56,7 +56,7 @@ def test_a_file_describes_a_simulated_survey(known, tmp_path):
 
 
 def test_the_command_line_wins_over_the_file(known, tmp_path):
-    known["overrides"] = {"simulate": {"seed": 9}}
+    known["given"] = [configuration.Layer("--config", {"simulate": {"seed": 9}})]
     assert inventory.dataset("t", survey_file(tmp_path), **known).settings["simulate"]["seed"] == 9
 
 
@@ -92,9 +92,19 @@ def test_a_folder_brings_its_settings_and_its_truth(known, tmp_path):
     found = inventory.dataset("a", tmp_path, **known)
     assert (found.recordings, found.truth, found.building) == ((str(tmp_path / "a.bag"),), None, None)
     assert found.settings["poses"]["keep_every"] == 2
+    half = tmp_path / "truth.geojson"
+    half.touch()
+    found = inventory.dataset("a", tmp_path, **known)
+    assert found.truth is None and f"{half}: is not used" in found.notes[0]
+    found = inventory.dataset("a", tmp_path / "a.bag", **known)
+    assert (
+        found.settings["poses"]["keep_every"] == 5 and "dataset.yaml and truth.geojson are not used" in found.notes[0]
+    )
+    half.unlink()
     for name in ("truth.geojson", "truth_poses.tum"):
         (tmp_path / name).touch()
     found = inventory.dataset("a", tmp_path, **known)
+    assert found.notes == () and found.source == str(tmp_path)
     assert found.truth == (str(tmp_path / "truth.geojson"), str(tmp_path / "truth_poses.tum"))
 
 

@@ -3,7 +3,7 @@ import re
 import sys
 
 sys.path.insert(0, f"{workflow.basedir}/scripts")
-from scanplan import configuration, inventory, sources
+from scanplan import configuration, inventory, madefrom, sources
 from scanplan.selection import methods
 from scanplan.thesis import experiments
 from scanplan.errors import StageError
@@ -15,11 +15,33 @@ METHODS = inventory.choices(SCHEMA, "plan", "method")
 EXTRACTORS = inventory.choices(SCHEMA, "plan", "extractor")
 
 
+def or_end(function, *arguments):
+    """Call a function; a fault of the user's data or settings ends the run in one line."""
+    try:
+        return function(*arguments)
+    except StageError as error:
+        print(f"scanplan: {error}", file=sys.stderr)
+        raise SystemExit(1)
+
+
+def given_settings():
+    """What the command line says, file by file, and last what is not in a file."""
+    files = map(os.path.relpath, workflow.config_settings.configfiles)
+    layers = [
+        configuration.Layer(file, configuration.read_yaml(file)) for file in files
+    ]
+    alone = configuration.Layer(
+        configuration.COMMAND_LINE, dict(workflow.config_settings.config)
+    )
+    return [*layers, alone]
+
+
 KNOWN = {
     "defaults": configuration.read_yaml(f"{workflow.basedir}/config/config.yaml"),
-    "overrides": workflow.config_settings.overwrite_config,
+    "given": or_end(given_settings),
     "schema": SCHEMA,
 }
+RUN = or_end(configuration.of_a_run, *KNOWN.values())
 
 
 def given_datasets():
@@ -27,7 +49,7 @@ def given_datasets():
     drawings = f"{workflow.basedir}/config/buildings"
     return {
         name: inventory.dataset(name, path, drawings=drawings, **KNOWN)
-        for name, path in inventory.named(config.get("dataset")).items()
+        for name, path in inventory.named(RUN["dataset"]).items()
     }
 
 
@@ -61,17 +83,17 @@ def thesis_if_fit():
         return {}
 
 
-def or_end(function, *arguments):
-    """Call a function; a fault of the user's data or settings ends the run in one line."""
-    try:
-        return function(*arguments)
-    except StageError as error:
-        print(f"scanplan: {error}", file=sys.stderr)
-        raise SystemExit(1)
-
-
 GIVEN = or_end(given_datasets)
 THESIS = or_end(thesis_if_fit)
+# a job's own process finds the note that its run has made
+if workflow.is_main_process:
+    for note in (note for found in GIVEN.values() for note in found.notes):
+        print(f"scanplan: {note}", file=sys.stderr)
+    or_end(
+        madefrom.check,
+        {name: found.source for name, found in GIVEN.items()},
+        RUN["replace"] or [],
+    )
 # jobs are worked out for what is asked for; these are all that could be
 DATASETS = GIVEN | {found.name: found for kind in THESIS.values() for found in kind}
 

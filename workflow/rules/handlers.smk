@@ -26,10 +26,14 @@ def run_alone():
     """Keep the lock for the time of a run."""
     run_alone.started_ns = time.time_ns()
     run_alone.lock = lock()
+    for name, found in GIVEN.items():
+        madefrom.record(name, found.source)
 
 
 def tell_results():
     """After a whole run, say where each dataset's plan and report lie."""
+    for name in GIVEN:
+        madefrom.discard_lone(name)
     if "thesis" in workflow.dag_settings.targets:
         print("\nreport:  results/thesis/report.html", file=sys.stderr)
     if workflow.dag_settings.targets or workflow.dag_settings.until:
@@ -45,6 +49,8 @@ def tell_results():
 
 def tell_failure():
     """Leave no empty folders behind, and end with the line that says what went wrong."""
+    for name in GIVEN:
+        madefrom.discard_lone(name)
     for name in (*DATASETS, inventory.RESERVED):
         for folder, _, _ in os.walk(f"results/{name}", topdown=False):
             if not os.listdir(folder):
