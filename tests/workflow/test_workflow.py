@@ -1,6 +1,7 @@
 """The whole workflow on the tiny office: complete, idle, changed, edited, killed and resumed."""
 
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -77,6 +78,22 @@ def test_a_changed_parameter_reruns_exactly_its_stages(project, change, rules):
     other.write_text(change)
     # the report states all settings
     assert project.would_run("--configfile", TINY, str(other)) == rules | {"write_report"}
+
+
+@pytest.mark.parametrize(
+    ("change", "methods"),
+    [
+        ("selection: {seed: 5}", {"random"}),
+        ("selection: {streaming: {k: 7}}", {"streaming"}),
+        ("selection: {min_overlap: 0.1}", {"wall_length", "visibility", "cluster_hull", "hull"}),
+    ],
+)
+def test_a_setting_of_one_order_reruns_no_other(project, change, methods):
+    other = project.folder / "change.yaml"
+    other.write_text(change)
+    listing = project.run("--dry-run", "--quiet", "reason", "--configfile", TINY, str(other)).stdout
+    ordered = re.findall(r"output: results/demo/selection/(\w+)\.parquet", listing)
+    assert sorted(ordered) == sorted(methods)
 
 
 @pytest.mark.parametrize(

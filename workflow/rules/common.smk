@@ -165,16 +165,12 @@ def order_tables(wildcards):
 
 
 def order_settings(wildcards):
-    """Settings of the job's ordering: a method's own only for that method."""
+    """Settings of the job's ordering, by name: a change of one reruns the orderings that depend on it."""
     selection = DATASETS[wildcards.dataset].settings["selection"]
-    names = ["seed", "min_overlap"] + ["streaming"] * (wildcards.method == "streaming")
-    return {name: selection[name] for name in names}
-
-
-def budget(wildcards):
-    """Limits of what the scans of the plan may cost together."""
-    stop = DATASETS[wildcards.dataset].settings["selection"]["stop"]
-    return {name: stop[name] for name in ("max_points", "max_bytes")}
+    stop = selection["stop"]
+    budget = {name: stop[name] for name in ("max_points", "max_bytes")}
+    settings = selection | {"budget": budget}
+    return {name: settings[name] for name in methods.SETTINGS[wildcards.method]}
 
 
 def plan_settings(wildcards):
