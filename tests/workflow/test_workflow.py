@@ -173,7 +173,7 @@ def started(project):
         cwd=project.folder,
         env=project.env(),
         stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
+        stderr=(project.folder / "said.txt").open("w"),
         start_new_session=True,
         # whoever runs the tests in the background may ignore SIGINT, and children inherit that
         preexec_fn=restore_sigint,
@@ -190,6 +190,9 @@ def test_a_killed_run_resumes_with_the_same_command(project, sent):
     run = started(project)
     os.kill(run.pid, sent) if sent == signal.SIGKILL else os.killpg(run.pid, sent)
     assert run.wait(timeout=120) != 0
+    if sent != signal.SIGKILL:
+        last = (project.folder / "said.txt").read_text().splitlines()[-1]
+        assert last == "scanplan: the run was interrupted; the same command goes on from here"
     result = project.run()
     assert result.returncode == 0, result.stderr
     assert project.digests() == before

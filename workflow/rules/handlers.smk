@@ -1,8 +1,11 @@
 import fcntl
 import os
+import signal
 import sys
 import time
 from pathlib import Path
+
+from scanplan import stagelog
 
 LOCK = ".snakemake/scanplan.lock"
 
@@ -25,9 +28,25 @@ def lock():
 def run_alone():
     """Keep the lock for the time of a run."""
     run_alone.started_ns = time.time_ns()
+    run_alone.interrupted = False
+    for number in (signal.SIGINT, signal.SIGTERM):
+        note_signal(number)
     run_alone.lock = lock()
     for name, found in GIVEN.items():
         madefrom.record(name, found.source)
+
+
+def note_signal(number):
+    """Note when a signal asks the run to end; what it does stays."""
+    does = signal.getsignal(number)
+
+    def handle(*arguments):
+        run_alone.interrupted = True
+        does(*arguments)
+
+    # one that is ignored stays so
+    if callable(does):
+        signal.signal(number, handle)
 
 
 def tell_results():
@@ -57,8 +76,13 @@ def tell_failure():
                 os.rmdir(folder)
     if os.path.isdir("results") and not os.listdir("results"):
         os.rmdir("results")
-    for line in failures():
-        print(f"scanplan: {line}", file=sys.stderr)
+    said = list(failures())
+    ended = [line for line in said if line.endswith(stagelog.INTERRUPTED)]
+    for line in said:
+        if line not in ended:
+            print(f"scanplan: {line}", file=sys.stderr)
+    if ended or run_alone.interrupted:
+        print(f"scanplan: the run {stagelog.INTERRUPTED}", file=sys.stderr)
     # whatever Snakemake would add says less
     raise SystemExit(1)
 
@@ -77,8 +101,10 @@ def failures():
             errors = [
                 line.split(" ERROR ", 1)[1] for line in lines if " ERROR " in line
             ]
-            killed = f"{log.stem}: was ended from outside, perhaps for want of memory; its log is {log}"
-            yield errors[-1] if errors else killed
+            if errors:
+                yield errors[-1]
+            elif not run_alone.interrupted:
+                yield f"{log.stem}: was ended from outside, perhaps for want of memory; its log is {log}"
 
 
 # before the jobs are worked out: while another run is at work, files come and go
