@@ -2,6 +2,7 @@
 
 import math
 import os
+import re
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -159,6 +160,21 @@ def origin_of(layers, *keys):
             if any(f"{given}.".startswith(f"{key}.") for key in keys):
                 return layer.origin
     return None
+
+
+def located(fault, layers):
+    """Put the file that gives a setting before a fault that begins with the setting's key.
+
+    Parameters
+    ----------
+    fault : str
+        What a stage said: `simulate.site.start_m: ...`, or anything else, which is returned as it is.
+    layers : sequence of Layer
+        The settings of the dataset.
+    """
+    key = fault.partition(":")[0]
+    origin = origin_of(layers, key) if re.fullmatch(r"[a-z_]+(\.[a-z_]+)+", key) else None
+    return f"{origin}: {fault}" if origin else fault
 
 
 def _check_order(settings, layers):

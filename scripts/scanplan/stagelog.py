@@ -27,8 +27,8 @@ def to_file(path):
     """Send all output of this process, native libraries' too, to a log file for the time of a stage.
 
     A `StageError` ends the process with status 1 and its one line on the screen; any other exception likewise, its
-    traceback in the log; so do Ctrl-C and SIGTERM, with `INTERRUPTED`. Should the workflow run that started the stage be
-    killed, the stage ends itself.
+    traceback in the log; so do Ctrl-C and SIGTERM, with `INTERRUPTED`. Should the workflow run that started the stage
+    be killed, the stage ends itself.
 
     Parameters
     ----------

@@ -169,6 +169,14 @@ def test_where_a_setting_comes_from():
     assert configuration.origin_of(layers, "plan.meth") is configuration.origin_of(layers, "poses.keep_every") is None
 
 
+def test_a_stages_fault_is_told_with_the_file_that_gives_its_setting():
+    layers = [Layer("a.yaml", {"simulate": {"site": {"start_m": [1, 2]}, "errors": {"glass_pass": 1}}})]
+    assert configuration.located("simulate.site.start_m: off", layers) == "a.yaml: simulate.site.start_m: off"
+    assert configuration.located("simulate.errors: too much", layers) == "a.yaml: simulate.errors: too much"
+    for other in ("simulate.site.clearance_m: wide", "run.bag: no cloud topic", "simulate", "a fault"):
+        assert configuration.located(other, layers) == other
+
+
 @pytest.mark.parametrize(
     ("content", "said"),
     [

@@ -102,7 +102,9 @@ def failures():
                 line.split(" ERROR ", 1)[1] for line in lines if " ERROR " in line
             ]
             if errors:
-                yield errors[-1]
+                stage, _, fault = errors[-1].partition(": ")
+                layers = DATASETS[name].layers if name in DATASETS else ()
+                yield f"{stage}: {configuration.located(fault, layers)}"
             elif not run_alone.interrupted:
                 yield f"{log.stem}: was ended from outside, perhaps for want of memory; its log is {log}"
 
