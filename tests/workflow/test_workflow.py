@@ -168,16 +168,17 @@ def started(project):
     """Start a run that registers the scans anew, and return it once that stage is at work."""
     log = project.folder / "logs/demo/register_scans.log"
     log.unlink()
-    run = subprocess.Popen(
-        project.command("--forcerun", "register_scans"),
-        cwd=project.folder,
-        env=project.env(),
-        stdout=subprocess.DEVNULL,
-        stderr=(project.folder / "said.txt").open("w"),
-        start_new_session=True,
-        # whoever runs the tests in the background may ignore SIGINT, and children inherit that
-        preexec_fn=restore_sigint,
-    )
+    with (project.folder / "said.txt").open("w") as said:
+        run = subprocess.Popen(
+            project.command("--forcerun", "register_scans"),
+            cwd=project.folder,
+            env=project.env(),
+            stdout=subprocess.DEVNULL,
+            stderr=said,
+            start_new_session=True,
+            # whoever runs the tests in the background may ignore SIGINT, and children inherit that
+            preexec_fn=restore_sigint,
+        )
     while not log.exists():
         assert run.poll() is None, "the run ended before the stage began"
         time.sleep(0.02)
