@@ -208,6 +208,24 @@ class TestFreeSpace:
         found = freespace.visible(rays.gather([(0, flat)], {0: SENSORS[0]}, planar=True))
         assert found[0].intersection(shapely.box(0, 0, 4, 4)).area == pytest.approx(16, rel=0.06)
 
+    @pytest.mark.parametrize("columns", [240, 360, 1440])
+    def test_beams_above_one_another_see_their_room_however_far_apart_their_columns_are(self, columns):
+        flat = laser(SENSORS[0], np.array(housemaking.HOUSE, float), beams=columns)
+        turns = np.radians(np.arange(16) * 0.001)[:, None]
+        way, beside = (
+            flat[:, :2] - SENSORS[0][:2],
+            np.column_stack([-flat[:, 1], flat[:, 0]]) - [-SENSORS[0][1], SENSORS[0][0]],
+        )
+        near = [SENSORS[0][:2] + way * np.cos(turn) + beside * np.sin(turn) for turn in turns]
+        points = np.column_stack([np.concatenate(near), np.zeros(16 * len(flat))])
+        gathered = rays.gather([(0, points)], {0: SENSORS[0]}, planar=True)
+        assert freespace.visible(gathered)[0].intersection(shapely.box(0, 0, 4, 4)).area == pytest.approx(16, rel=0.06)
+        assert np.degrees(freespace.spacing_rad(gathered.azimuth_rad[0])) == pytest.approx(360 / columns, abs=0.02)
+
+    def test_the_end_of_a_sensors_field_is_no_gap_between_its_columns(self):
+        assert freespace.spacing_rad(np.radians(np.arange(-30, 31, 2.0))) == pytest.approx(np.radians(2))
+        assert freespace.spacing_rad(np.radians([-120.0, 120.0])) == freespace.spacing_rad(np.empty(0)) == 0
+
     def test_a_scan_of_no_points_sees_nothing(self):
         empty = rays.gather([(0, np.empty((0, 3)))], {0: np.zeros(3)}, planar=True)
         assert freespace.visible(empty)[0].is_empty
