@@ -16,6 +16,7 @@ TRUTH_FILES = ("truth.geojson", "truth_poses.tum")
 _BAG_SUFFIXES = (".bag", ".mcap", ".db3")
 _SURVEY_SUFFIXES = (".yaml", ".yml")
 _ROSBAG2_SUFFIXES = (".db3", ".mcap", ".db3.zstd", ".mcap.zstd")
+_PACKED_SUFFIXES = (".gz", ".zip", ".tar", ".tgz", ".7z", ".xz", ".bz2")
 _CLOUD_SUFFIXES = (".pcd", ".ply")
 _ACCEPTED = "*.bag, *.mcap, *.db3, rosbag2 folders (metadata.yaml), or scans/*.pcd|*.ply with poses.tum"
 
@@ -50,6 +51,11 @@ def name_of(path):
 def is_survey_file(path):
     """Tell whether a dataset is given as the file that describes its simulation."""
     return Path(path).suffix in _SURVEY_SUFFIXES and not Path(path).is_dir()
+
+
+def is_rosbag2_metadata(file):
+    """Tell whether a file is the description that stands in every rosbag2 folder."""
+    return os.access(file, os.R_OK) and b"rosbag2_bagfile_information" in Path(file).read_bytes()
 
 
 def find_files(path):
@@ -91,7 +97,9 @@ def find_files(path):
         )
     files = sorted(recordings + scans)
     if not files:
-        raise StageError(f"{path}: holds nothing to read; accepted are {_ACCEPTED}")
+        packed = [e.name for e in _visible(path) if e.suffix.lower() in _PACKED_SUFFIXES]
+        remedy = f"; unpack {', '.join(packed)}" if packed else ""
+        raise StageError(f"{path}: holds nothing to read{remedy}; accepted are {_ACCEPTED}")
     for file in files:
         _check_file(file)
     return [str(file) for file in files]
@@ -181,7 +189,7 @@ def _rosbag2_files(folder):
     """Files of a rosbag2 folder; without metadata.yaml those that can be read one by one."""
     entries = [e for e in _visible(folder) if e.is_file()]
     metadata = folder / "metadata.yaml"
-    if metadata not in entries or b"rosbag2_bagfile_information" not in metadata.read_bytes():
+    if metadata not in entries or not is_rosbag2_metadata(metadata):
         return [e for e in entries if e.name.endswith((".db3", ".mcap"))]
     storage = [e for e in entries if e.name.endswith(_ROSBAG2_SUFFIXES)]
     if not storage:

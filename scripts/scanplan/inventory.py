@@ -90,6 +90,8 @@ def named(given):
     paths = {}
     for path in map(str, given if isinstance(given, list) else [given]):
         name = datasets.name_of(path)
+        if name in paths and madefrom.source(path) == madefrom.source(paths[name]):
+            raise StageError(f"{path}: is given twice, first as {paths[name]}; leave one out")
         if name in paths:
             raise StageError(
                 f"{path}: its results would be called {name} like those of {paths[name]}; rename one of them"
@@ -127,6 +129,8 @@ def dataset(name, path, *, defaults, given, schema, drawings):
     is_survey = path is None or datasets.is_survey_file(path)
     if is_survey and path is not None and not Path(path).is_file():
         raise StageError(f"{path}: does not exist; give a YAML file with a section `simulate`, a folder or a recording")
+    if is_survey and path is not None and datasets.is_rosbag2_metadata(path):
+        raise StageError(f"{path}: describes a rosbag2 recording; give its folder as the dataset, {Path(path).parent}")
     own = configuration.own_settings(path if is_survey else Path(path, datasets.SETTINGS_FILE))
     layers = (*own, *given)
     known = {"layers": layers, "source": madefrom.source(path)}

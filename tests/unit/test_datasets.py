@@ -97,6 +97,7 @@ def test_a_scan_folder(tmp_path):
     [
         ([], "accepted are .*bag"),
         (["readme.txt"], "accepted are .*bag"),
+        (["a.bag.gz", "b.ZIP"], "unpack a.bag.gz, b.ZIP; accepted"),
         (["a.bag", "scans/1.pcd", "poses.tum"], "both"),
         (["scans/1.pcd"], "no poses"),
         (["poses.tum"], "no clouds"),

@@ -33,6 +33,11 @@ def test_two_of_one_name_are_refused():
         inventory.named(["x/a", "y/a.bag"])
 
 
+def test_one_given_twice_is_told_so():
+    with pytest.raises(StageError, match=r"x/\./a: is given twice, first as x/a; leave one out"):
+        inventory.named(["x/a", "x/./a"])
+
+
 def test_the_place_of_the_thesis_is_taken():
     with pytest.raises(StageError, match="thesis"):
         inventory.named("surveys/thesis")
@@ -72,7 +77,7 @@ def test_a_building_may_be_any_file(known, tmp_path):
     [
         ("simulate: {building: palace}", "palace is neither a file nor a drawing of ours .*tiny_office"),
         ("simulate: {speed: 1}", "unknown key speed"),
-        ("rosbag2_bagfile_information: {version: 5}", "unknown key rosbag2_bagfile_information"),
+        ("rosbag2_bagfile_information: {version: 5}", "describes a rosbag2 recording; give its folder"),
     ],
 )
 def test_a_wrong_file_is_refused_in_one_line(known, tmp_path, text, said):
