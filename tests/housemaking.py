@@ -18,6 +18,13 @@ PLAN = {
     "merge": SETTINGS,
     "trace": {"band_m": 0.06, "reach_m": 2.0, "max_gap_m": 0.5, "door_height_m": 1.8},
     "right_angles": {"max_turn_deg": 1.0, "sigmas": 2.0, "min_share": 0.25},
+    "furniture": {
+        "wall_height_m": 1.0,
+        "furniture_height_m": 2.1,
+        "furniture_length_m": 2.6,
+        "furniture_depth_m": 1.0,
+        "door_width_m": 1.5,
+    },
     "pair": {"max_angle_deg": 5.0, "min_thickness_m": 0.04, "max_thickness_m": 0.6, "offset_m": 0.05},
     "openings": {"min_opening_m": 0.5, "max_opening_m": 2.0, "max_closed_m": 2.0, "max_door_m": 1.5},
     "rooms": {"min_area_m2": 1.0, "min_walled": 0.7},

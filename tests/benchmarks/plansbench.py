@@ -16,7 +16,7 @@ from scanplan.evaluation import (
     truthfile,
     wallevaluation,
 )
-from scanplan.plan import planning, rays
+from scanplan.plan import parts, planning, rays
 from scanplan.selection import stopping
 
 _FIGURES = {
@@ -79,7 +79,7 @@ def _bench(folder, truth, settings):
         rows = registered.rows_of(chosen, kept, folder, folder)
         floor = findings.look(faces, placed[rows], survey, sight=sight)
         started = time.process_time()
-        plan = _plan(seen, store, kept, rows, chosen, settings["plan"])
+        plan = _plan(seen, store, kept, rows, chosen, settings)
         _tell(f"plan of {name}", _of_plan(plan, true, floor), time.process_time() - started)
     if not importlib.util.find_spec("cv2"):
         print("  raster and LSD: no OpenCV (cv2) here, so without its line detector", flush=True)
@@ -91,12 +91,13 @@ def _bench(folder, truth, settings):
 
 
 def _plan(seen, store, kept, rows, chosen, settings):
-    parts = {name: part for name, part in settings.items() if name not in ("method", "extractor", "export")}
     positions = dict(zip(chosen.tolist(), kept.map_from_sensor[rows, :3, 3], strict=True))
     looked = rays.gather(store.scans(chosen), positions, planar=store.planar)
     used = np.isin(seen["scan_id"], chosen)
     segments = {column: values[used] for column, values in seen.items()}
-    plan = planning.make(segments, looked, kept.map_from_sensor[:, :2, 3], kept.t_ns[rows], planning.settings(**parts))
+    plan = planning.make(
+        segments, looked, kept.map_from_sensor[:, :2, 3], kept.t_ns[rows], planning.settings(**parts.of(settings))
+    )
     return SimpleNamespace(plan=plan, floor_z_m=looked.floor_z_m)
 
 

@@ -4,6 +4,7 @@ import sys
 
 sys.path.insert(0, f"{workflow.basedir}/scripts")
 from scanplan import configuration, inventory, madefrom, sources
+from scanplan.plan import parts
 from scanplan.selection import methods
 from scanplan.thesis import experiments
 from scanplan.errors import StageError
@@ -175,12 +176,7 @@ def order_settings(wildcards):
 
 def plan_settings(wildcards):
     """Settings of the plan's own stage, part by part."""
-    plan = DATASETS[wildcards.dataset].settings["plan"]
-    return {
-        part: plan[part]
-        for part in plan
-        if part not in ("method", "extractor", "export")
-    }
+    return parts.of(DATASETS[wildcards.dataset].settings)
 
 
 def recordings(wildcards):

@@ -4,12 +4,12 @@ import numpy as np
 
 from scanplan.extraction import normals, walls
 
-_NEAR_RAD = np.deg2rad(5)
+_NEAR_RAD = np.deg2rad(5)  # what normals of good surfaces scatter by
 _STEEPEST = np.cos(np.deg2rad(45))  # a map that is tilted more is no case of this
-_CANDIDATES = 400
-_LEAST_TILT_DEG = 7.0
-_SURER = 1.5
-_SCANS = 10
+_CANDIDATES = 400  # a floor alone is a tenth of all surfaces: dozens of these are its
+_LEAST_TILT_DEG = 7.0  # less is within what `max_tilt_deg` forgives
+_SURER = 1.5  # times the surfaces that agree with z: a ramp or a stair in view shall not warn
+_SCANS = 10  # enough to see a floor somewhere
 _REACH_DEG = 3.5  # as between the beams of a coarse sensor, one and a half times
 
 

@@ -7,9 +7,9 @@ import shapely
 
 from scanplan.plan import crossings, freespace, planwalls
 
-_NEAR_M = 0.1
-_REACH_M = 0.3
-_FRAME_M = 0.8
+_NEAR_M = 0.1  # what registration and a line's fit may be wrong by together, twice over
+_REACH_M = 0.3  # a wall that ends this near before a pane's line meets it: half of a thick wall
+_FRAME_M = 0.8  # frame, reveal and the part of a pane seen at grazing angles only
 
 
 def between(walls, spans, *, min_length_m, unpaired_m):

@@ -11,14 +11,14 @@ from scanplan import usualreturns
 from scanplan.plan import rays as sights
 from scanplan.plan.profiles import COLUMN_M
 
-_BANDS_M = ((0.2, 0.7), (0.9, 1.6))
-_LEAST_LENGTH_M = 0.3
-_LEAST_RAYS = 20.0
-_LEAST_RAYS_A_SCAN = 3.0
-_LEAST_SCANS = 3
-_MOST_STOPPED = 0.15
-_LEAST_SHARE = 0.5
-_BEFORE_M = 0.1
+_BANDS_M = ((0.2, 0.7), (0.9, 1.6))  # between skirting and sill; above sills and below the lintels of low doors
+_LEAST_LENGTH_M = 0.3  # narrower panes are in doors and stairs
+_LEAST_RAYS = 20.0  # half of so many are not lost by chance
+_LEAST_RAYS_A_SCAN = 3.0  # fewer and the count expected is mostly rounding
+_LEAST_SCANS = 3  # two may share what stands too near to be measured
+_MOST_STOPPED = 0.15  # a frame or a plant may stop these; more and the line is hidden
+_LEAST_SHARE = 0.5  # of the rays; a dark or glossy wall still gives more back
+_BEFORE_M = 0.1  # returns farther before a line are of something else
 _MOST_AWAY_M = 10.0  # further off rays are few and much stands before a line
 _WIDTH = 5  # columns that are judged together
 

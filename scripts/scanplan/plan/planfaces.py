@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from scanplan.plan import crossings, facepieces, overshoots, rightangles, stretches
+from scanplan.plan import crossings, facepieces, fronts, overshoots, rightangles, stretches
 
 _STUB_M = 0.1
 _FOREIGN_M = 0.08
@@ -30,7 +30,7 @@ class Traced:
     panes: list
 
 
-def trace(pieces, rays, merging, reading, square):
+def trace(pieces, rays, merging, reading, square, furniture):
     """Find the faces along the lines of pieces.
 
     Parameters
@@ -41,6 +41,7 @@ def trace(pieces, rays, merging, reading, square):
     merging : faces.MergeSettings
     reading : profiles.Reading
     square : rightangles.Prior
+    furniture : fronts.Limits
 
     Returns
     -------
@@ -52,10 +53,11 @@ def trace(pieces, rays, merging, reading, square):
         lines.setdefault(id(piece.line), []).append(piece)
     seen = rightangles.turned([_seen(group, rays, reading) for group in lines.values()], square)
     found = _once([stretches.find(s, reading, planar=rays.planar) for s in seen], merging)
+    found = fronts.without(found, furniture, planar=rays.planar)
     stacked = crossings.stack(found)
     foreign = [_crossed_m(s, found, stacked) for s in seen]
     runs = (stretches.find(s, reading, planar=rays.planar, foreign_m=m) for s, m in zip(seen, foreign, strict=True))
-    found = _once(list(runs), merging)
+    found = fronts.without(_once(list(runs), merging), furniture, planar=rays.planar)
     found = overshoots.without_tails(overshoots.without(found), share=merging.ghost_share)
     found = [f for f in found if f.length_m >= _STUB_M]
     met = facepieces.meet_at_corners(found, corner_m=merging.corner_m)

@@ -11,6 +11,7 @@ from scanplan import schemas
 from scanplan.plan import (
     faces,
     freespace,
+    fronts,
     gaps,
     glazing,
     planfaces,
@@ -58,6 +59,7 @@ class PlanSettings:
     merge: faces.MergeSettings
     reading: profiles.Reading
     square: rightangles.Prior
+    furniture: fronts.Limits
     pairs: wallpairs.PairSettings
     openings: gaps.GapSettings
     rooms: RoomSettings
@@ -78,7 +80,7 @@ class Plan:
     n_dropped: int
 
 
-def settings(*, merge, trace, right_angles, pair, openings, rooms, trust):
+def settings(*, merge, trace, right_angles, furniture, pair, openings, rooms, trust):
     """Return settings from keywords of each part.
 
     Raises
@@ -91,6 +93,7 @@ def settings(*, merge, trace, right_angles, pair, openings, rooms, trust):
         merge=merging,
         reading=profiles.Reading(**trace),
         square=rightangles.Prior(registration_sigma_m=merging.registration_sigma_m, **right_angles),
+        furniture=fronts.Limits(**furniture),
         pairs=wallpairs.PairSettings(**pair, max_gap_m=openings["max_opening_m"]),
         openings=gaps.GapSettings(**openings),
         rooms=RoomSettings(**rooms),
@@ -119,7 +122,8 @@ def make(segments, rays, track_m, t_ns, settings):
         Without any row of faces or walls where nothing is supported enough.
     """
     pieces = faces.pieces(segments, settings.merge)
-    traced = planfaces.trace(pieces, rays, settings.merge, settings.reading, settings.square)
+    parts = settings.merge, settings.reading, settings.square, settings.furniture
+    traced = planfaces.trace(pieces, rays, *parts)
     found = planwalls.assemble(
         *(traced.stretches, settings.reading, settings.pairs, settings.openings),
         planar=rays.planar,
