@@ -6,6 +6,9 @@ from shapely.geometry import MultiPolygon, Polygon
 
 _SECTOR_RAD = np.radians(0.5)
 _RAYS_A_SECTOR = 2.2
+_COLUMNS_A_SECTOR = 1.1
+# ASSUME wider gaps than this are the end of a sensor's field, or openings that nothing came back from
+_WIDEST_RAD = np.radians(10)
 _SIMPLIFY_M = 0.02
 _SPIKE_M = 0.04
 
@@ -32,10 +35,32 @@ def visible(rays):
     ]
 
 
+def spacing_rad(azimuth_rad):
+    """Return the angle between a scan's columns of rays: half of the directions between rays lie in gaps up to this.
+
+    The median of the gaps themselves says nothing of a sensor with several beams, whose rays stand one above the
+    other: nearly all of them are next to none.
+
+    Parameters
+    ----------
+    azimuth_rad : (n,) float64, increasing
+
+    Returns
+    -------
+    float
+        0 where there are no two directions.
+    """
+    steps_rad = np.sort(np.diff(azimuth_rad))
+    steps_rad = steps_rad[steps_rad <= _WIDEST_RAD]
+    turned_rad = np.cumsum(steps_rad)
+    return float(steps_rad[np.searchsorted(turned_rad, turned_rad[-1] / 2)]) if len(steps_rad) else 0.0
+
+
 def _star(origin_m, azimuth_rad, range_m):
     steps_rad = np.diff(azimuth_rad)
     steps_rad = steps_rad[steps_rad > 0]
-    width_rad = max(_SECTOR_RAD, _RAYS_A_SECTOR * float(np.median(steps_rad)) if len(steps_rad) else 0.0)
+    rays_rad = _RAYS_A_SECTOR * float(np.median(steps_rad)) if len(steps_rad) else 0.0
+    width_rad = max(_SECTOR_RAD, rays_rad, _COLUMNS_A_SECTOR * spacing_rad(azimuth_rad))
     count = max(int(2 * np.pi / width_rad), 3)
     width_rad = 2 * np.pi / count
     sector = np.minimum(((azimuth_rad + np.pi) / width_rad).astype(np.int64), count - 1)
