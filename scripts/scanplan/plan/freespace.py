@@ -11,6 +11,7 @@ _COLUMNS_A_SECTOR = 1.1
 _WIDEST_RAD = np.radians(10)
 _SIMPLIFY_M = 0.02
 _SPIKE_M = 0.04
+_GRID_M = 1e-3
 
 
 def visible(rays):
@@ -80,7 +81,20 @@ def _star(origin_m, azimuth_rad, range_m):
 
 def together(stars):
     """Return the floor that any of the scans saw, a polygon or polygons."""
-    return polygons_of(shapely.union_all(stars, grid_size=1e-3)) if stars else MultiPolygon()
+    return polygons_of(joined(stars))
+
+
+def joined(polygons):
+    """Return the union of polygons, its corners on a grid of a millimetre."""
+    return shapely.union_all(polygons, grid_size=_GRID_M) if len(polygons) else MultiPolygon()
+
+
+def without(ground, taken):
+    """Return what of ground is not taken, its corners on a grid of a millimetre.
+
+    Without a grid GEOS 3.14 may return nothing where the ground just fills a hole of what is taken.
+    """
+    return shapely.difference(ground, taken, grid_size=_GRID_M)
 
 
 def polygons_of(geometry):
