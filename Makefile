@@ -1,6 +1,7 @@
 # make run                      the demo: simulate an office, make its plan
 # make run DATASET=PATH         the plan of a folder with recordings
 # make run DATASET=PATH CONFIG=FILE   with settings from a file
+# make run DATASET=PATH REPLACE=NAME  in the place of results/NAME, made of another source
 # make test                     lint and all tests
 # make bench                    the stages against the literal algorithms
 
@@ -15,8 +16,10 @@ SNAKEMAKE = PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --cores $(CORES)
 .DEFAULT_GOAL := run
 
 run: environment
-	@test -z "$(CONFIG)" || test -f "$(CONFIG)" || { echo "$(CONFIG): no such file; CONFIG= names a YAML file"; exit 1; }
-	@$(SNAKEMAKE) $(if $(CONFIG),--configfile "$(CONFIG)") $(if $(DATASET),--config 'dataset="$(DATASET)"') $(ARGS)
+	@test -z "$(CONFIG)" || PYTHONPATH=scripts $(BIN)/python -m scanplan.yamlfile "$(CONFIG)"
+	@$(SNAKEMAKE) $(if $(CONFIG),--configfile "$(CONFIG)") \
+	    $(if $(DATASET)$(REPLACE),--config $(if $(DATASET),'dataset="$(DATASET)"') $(if $(REPLACE),'replace="$(REPLACE)"')) \
+	    $(ARGS)
 
 test: environment lint
 	@$(BIN)/pytest $(ARGS)

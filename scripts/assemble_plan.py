@@ -39,6 +39,8 @@ def assemble_plan(walls, selection, scans, registration, outputs, *, settings, *
     plansummary.check_plan(walls, plan, used.sum(), count)
     for name, schema in planning.TABLES.items():
         tables.write(outputs[name], schema, getattr(plan, name), allow_empty=True)
+    if warning := plansummary.sparse(looked, settings["openings"]["min_opening_m"]):
+        stagelog.say(f"assemble_plan: {warning}")
     stagelog.say(f"assemble_plan: {used.sum():,} segments of {count} scans ({reason}) make {plansummary.text(plan)}")
 
 

@@ -11,7 +11,7 @@ _SCHEMAS = {
 }
 
 
-def order_scans(hulls, output, *, method, seed, min_overlap=0.0, streaming=None, budget=None, others=None):
+def order_scans(hulls, output, *, method, seed=None, min_overlap=0.0, streaming=None, budget=None, others=None):
     """Write the table of one method's ordering.
 
     Parameters
@@ -22,12 +22,9 @@ def order_scans(hulls, output, *, method, seed, min_overlap=0.0, streaming=None,
         selection/<method>.parquet, to write.
     method : str
         One of `methods.METHODS`.
-    seed : int
-    min_overlap : float
-    streaming : dict, optional
-        Keywords of `streaming.order`.
-    budget : dict, optional
-        Keywords of `stopping.points_budget`.
+    seed, min_overlap, streaming, budget
+        Those of them that `methods.SETTINGS` names for the method, see `orderings.order`; `budget` are keywords of
+        `stopping.points_budget`.
     others : dict of str to path-like, optional
         The tables that `methods.TABLES` names for the method.
     """
@@ -52,6 +49,5 @@ if __name__ == "__main__":
             snakemake.output.selection,
             method=snakemake.wildcards.method,
             **snakemake.params.settings,
-            budget=snakemake.params.budget,
             others={name: path for name, path in snakemake.input.items() if name in _SCHEMAS},
         )

@@ -1,44 +1,60 @@
 """The settings of a dataset: defaults, the dataset's own, the command line's; checked against the schema."""
 
 import math
-from pathlib import Path
+import os
+import re
+from dataclasses import dataclass
+from itertools import pairwise
 
-import yaml
 from jsonschema import Draft202012Validator, validators
 
 from scanplan.errors import StageError
+from scanplan.yamlfile import read_yaml
 
-_COMMAND_LINE = "--configfile or --config"
+COMMAND_LINE = "--config"
+"""Origin of the settings that were given one by one on the command line."""
+
+OF_A_RUN = ("dataset", "replace")
+"""Keys that say what a run is of, and nothing of how its results are made."""
+
 # JSON knows no whole numbers and takes 5.0 for one; range() and a schema's reader do not
 _WHOLE = Draft202012Validator.TYPE_CHECKER.redefine("integer", lambda _, value: type(value) is int)
 _Validator = validators.extend(Draft202012Validator, type_checker=_WHOLE)
-# (section and key, must not be below section and key)
-_ORDERED = [
-    (("input", "max_range_m"), ("input", "min_range_m")),
-    (("registration", "n_previous"), ("registration", "icp_targets")),
-    (("plan", "merge", "merge_distance_m"), ("plan", "merge", "tolerance_m")),
-    (("plan", "openings", "max_opening_m"), ("plan", "openings", "min_opening_m")),
-    (("selection", "visibility", "max_height_m"), ("selection", "visibility", "min_height_m")),
+_DEFAULTS, _MANUAL = "config/config.yaml", "config/README.md explains every key"
+_EXTRACTORS = ("cluster_ransac", "iterative_ransac")
+# (key, another): the first must be above the second, as nothing lies between them otherwise
+_ABOVE = [
+    ("input.max_range_m", "input.min_range_m"),
+    ("selection.visibility.max_height_m", "selection.visibility.min_height_m"),
+    *((f"walls.{e}.furniture_height_m", f"walls.{e}.hang_height_m") for e in _EXTRACTORS),
+    ("plan.pair.max_thickness_m", "plan.pair.min_thickness_m"),
+    ("plan.openings.max_opening_m", "plan.openings.min_opening_m"),
+    ("simulate.sensor.max_range_m", "simulate.sensor.min_range_m"),
+]
+# (key, another): the first must not be below the second
+_NOT_BELOW = [
+    ("registration.n_previous", "registration.icp_targets"),
+    ("hulls.sample_size", "hulls.n_clusters"),
+    # of walls, only what is lower than doors is looked at
+    *((f"walls.{e}.door_height_m", f"walls.{e}.{low}_height_m") for e in _EXTRACTORS for low in ("min", "wall")),
+    ("plan.merge.merge_distance_m", "plan.merge.tolerance_m"),
+    ("plan.openings.max_door_m", "plan.openings.min_opening_m"),
 ]
 
 
-def read_yaml(path):
-    """Read a YAML file of settings; plain data only, nothing in it is executed.
+@dataclass(frozen=True)
+class Layer:
+    """Settings from one place, which win over those before them.
 
-    Raises
-    ------
-    StageError
-        If it is no YAML or no mapping.
+    Attributes
+    ----------
+    origin : str
+        A file, or `COMMAND_LINE`.
+    values : dict
     """
-    try:
-        values = yaml.safe_load(Path(path).read_text(encoding="utf-8")) or {}
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise StageError(f"{path}: is not valid YAML ({error})") from None
-    except OSError as error:
-        raise StageError(f"{path}: cannot be read ({error.strerror}); it must be a readable file") from None
-    if not isinstance(values, dict):
-        raise StageError(f"{path}: holds {type(values).__name__}, expected `section: {{key: value}}`")
-    return values
+
+    origin: str
+    values: dict
 
 
 def merged(base, over):
@@ -67,47 +83,118 @@ def check(settings, schema, origin):
     """
     faults = sorted(_Validator(schema).iter_errors(settings), key=lambda e: (str(e.path), e.message))
     if faults:
-        raise StageError(f"{origin}: {_explain(faults[0], origin)}; config/README.md explains every key")
+        raise StageError(f"{origin}: {_explain(faults[0], origin)}; {_MANUAL}")
     for key, value in leaves(settings):
         if isinstance(value, float) and not math.isfinite(value):
-            raise StageError(f"{origin}: {key}: {value} is no finite number; config/README.md explains every key")
-    for high, low in _ORDERED:
-        if _value(settings, high) < _value(settings, low):
-            raise StageError(
-                f"{origin}: {'.'.join(high)}: {_value(settings, high)} is below {'.'.join(low)}"
-                f" ({_value(settings, low)}); config/README.md explains every key"
-            )
+            raise StageError(f"{origin}: {key}: {value} is no finite number; {_MANUAL}")
 
 
-def for_dataset(defaults, dataset_yaml, overrides, schema):
+def for_dataset(defaults, layers, schema):
     """Return the checked settings of one dataset.
 
     Parameters
     ----------
     defaults : dict
         config/config.yaml.
-    dataset_yaml : path-like or None
-        The dataset's own file; may be missing.
-    overrides : dict
-        What was given on the command line; wins over both.
+    layers : sequence of Layer
+        The dataset's own settings and the command line's; the later win.
     schema : dict
 
     Returns
     -------
     dict
+        Without the keys `OF_A_RUN`.
+
+    Raises
+    ------
+    StageError
+        Naming where the fault lies, the key, its value, what is allowed and the remedy.
     """
-    own = read_yaml(dataset_yaml) if dataset_yaml is not None and Path(dataset_yaml).exists() else {}
-    if "dataset" in own:
-        raise StageError(f"{dataset_yaml}: `dataset` is given on the command line, not in the dataset's own settings")
-    check(merged(defaults, own), schema, dataset_yaml)
-    settings = merged(merged(defaults, own), overrides)
-    check(settings, schema, _COMMAND_LINE)
-    return settings
+    settings = defaults
+    for layer in layers:
+        settings = merged(settings, layer.values)
+        check(settings, schema, layer.origin)
+    _check_order(settings, layers)
+    return {key: value for key, value in settings.items() if key not in OF_A_RUN}
 
 
-def _value(settings, keys):
-    for key in keys:
-        settings = settings[key]
+def of_a_run(defaults, layers, schema):
+    """Return what the command line says of the run itself: a dict of `OF_A_RUN`, checked like `for_dataset`."""
+    settings = defaults
+    for layer in layers:
+        settings = merged(settings, {key: layer.values[key] for key in OF_A_RUN if key in layer.values})
+        check(settings, schema, layer.origin)
+    return {key: settings[key] for key in OF_A_RUN}
+
+
+def own_settings(path):
+    """Return the layers of a dataset's own file: none where it has none.
+
+    Raises
+    ------
+    StageError
+        If it says what is for the command line alone.
+    """
+    if path is None or not os.access(path, os.F_OK):
+        return []
+    values = read_yaml(path)
+    for key in OF_A_RUN:
+        if key in values:
+            raise StageError(
+                f"{path}: `{key}` is given on the command line, not in the dataset's own settings; drop it"
+            )
+    return [Layer(str(path), values)]
+
+
+def origin_of(layers, *keys):
+    """Return where one of some keys, or one below them, was set last; None where all are as by default.
+
+    Parameters
+    ----------
+    layers : sequence of Layer
+    *keys : str
+        Joined by dots: `plan.method`, or a section, `plan`.
+    """
+    for layer in reversed(layers):
+        for given, _ in leaves(layer.values):
+            if any(f"{given}.".startswith(f"{key}.") for key in keys):
+                return layer.origin
+    return None
+
+
+def located(fault, layers):
+    """Put the file that gives a setting before a fault that begins with the setting's key.
+
+    Parameters
+    ----------
+    fault : str
+        What a stage said: `simulate.site.start_m: ...`, or anything else, which is returned as it is.
+    layers : sequence of Layer
+        The settings of the dataset.
+    """
+    key = fault.partition(":")[0]
+    origin = origin_of(layers, key) if re.fullmatch(r"[a-z_]+(\.[a-z_]+)+", key) else None
+    return f"{origin}: {fault}" if origin else fault
+
+
+def _check_order(settings, layers):
+    """Refuse limits that cross, in the name of what set one of them last."""
+    rules = [(*pair, True) for pair in _ABOVE] + [(*pair, False) for pair in _NOT_BELOW]
+    for high, low, apart in rules:
+        most, least = _value(settings, high), _value(settings, low)
+        if most < least or (apart and most == least):
+            origin = origin_of(layers, high, low) or _DEFAULTS
+            limit = "must be above" if apart else "must not be below"
+            raise StageError(f"{origin}: {high}: {most} {limit} {low} ({least}); change one of them, {_MANUAL}")
+    key = "registration.icp_distances_m"
+    if any(rough < fine for rough, fine in pairwise(_value(settings, key))):
+        origin = origin_of(layers, key) or _DEFAULTS
+        raise StageError(f"{origin}: {key}: {_value(settings, key)} must not rise, from rough to fine; {_MANUAL}")
+
+
+def _value(settings, key):
+    for part in key.split("."):
+        settings = settings[part]
     return settings
 
 
@@ -130,8 +217,12 @@ def _explain(fault, origin):
         return (
             f"{key}: is {fault.instance!r}, expected keys with values below it; leave the section out if there are none"
         )
-    if origin == _COMMAND_LINE and isinstance(fault.instance, str) and fault.validator == "type":
+    if origin == COMMAND_LINE and isinstance(fault.instance, str) and fault.validator == "type":
         return (
             f"{key}: {fault.message} (nested values of --config arrive as text: put them into a file for --configfile)"
         )
+    if fault.validator in ("anyOf", "oneOf"):
+        numeral = origin == COMMAND_LINE and isinstance(fault.instance, (int, float))
+        quoted = f" (a name of digits wants quotes: --config '{key}=\"{fault.instance}\"')" if numeral else ""
+        return f"{key}: is {fault.instance!r}{quoted}, expected: {fault.schema['description'].rstrip('.')}"
     return f"{key}: {fault.message}"

@@ -11,9 +11,12 @@ from scanplan.errors import StageError
 
 POSES_FILE = "poses.tum"
 SCANS_FOLDER = "scans"
+SETTINGS_FILE = "dataset.yaml"
+TRUTH_FILES = ("truth.geojson", "truth_poses.tum")
 _BAG_SUFFIXES = (".bag", ".mcap", ".db3")
 _SURVEY_SUFFIXES = (".yaml", ".yml")
 _ROSBAG2_SUFFIXES = (".db3", ".mcap", ".db3.zstd", ".mcap.zstd")
+_PACKED_SUFFIXES = (".gz", ".zip", ".tar", ".tgz", ".7z", ".xz", ".bz2")
 _CLOUD_SUFFIXES = (".pcd", ".ply")
 _ACCEPTED = "*.bag, *.mcap, *.db3, rosbag2 folders (metadata.yaml), or scans/*.pcd|*.ply with poses.tum"
 
@@ -48,6 +51,11 @@ def name_of(path):
 def is_survey_file(path):
     """Tell whether a dataset is given as the file that describes its simulation."""
     return Path(path).suffix in _SURVEY_SUFFIXES and not Path(path).is_dir()
+
+
+def is_rosbag2_metadata(file):
+    """Tell whether a file is the description that stands in every rosbag2 folder."""
+    return os.access(file, os.R_OK) and b"rosbag2_bagfile_information" in Path(file).read_bytes()
 
 
 def find_files(path):
@@ -89,10 +97,55 @@ def find_files(path):
         )
     files = sorted(recordings + scans)
     if not files:
-        raise StageError(f"{path}: holds nothing to read; accepted are {_ACCEPTED}")
+        packed = [e.name for e in _visible(path) if e.suffix.lower() in _PACKED_SUFFIXES]
+        remedy = f"; unpack {', '.join(packed)}" if packed else ""
+        raise StageError(f"{path}: holds nothing to read{remedy}; accepted are {_ACCEPTED}")
     for file in files:
         _check_file(file)
     return [str(file) for file in files]
+
+
+def overlooked(path):
+    """Tell of files that seem to belong to a dataset, and are not read.
+
+    Parameters
+    ----------
+    path : path-like
+        A dataset folder, a rosbag2 folder, or a single recording; it is there.
+
+    Returns
+    -------
+    list of str
+        A line for each reason: the files, why they are not read, and the remedy.
+    """
+    path = Path(path)
+    notes = []
+    if path.is_file() or (path / "metadata.yaml").is_file():
+        beside = [name for name in (SETTINGS_FILE, *TRUTH_FILES) if (path.parent / name).is_file()]
+        if beside:
+            notes.append(
+                f"{path.parent}: {_listed(beside)} not used, as the dataset is {path.name} alone; to use what stands"
+                f" beside it, give the folder {path.parent} as the dataset"
+            )
+    there = [name for name in TRUTH_FILES if (path / name).is_file()]
+    if len(there) == 1:
+        (missing,) = set(TRUTH_FILES) - set(there)
+        notes.append(f"{path / there[0]}: is not used, as {missing} is missing; with both the results are evaluated")
+    other = [e.name for e in _visible(path) if _seems_settings(e)] if path.is_dir() else []
+    if other:
+        notes.append(
+            f"{path}: {_listed(other)} not used; settings of a dataset are read from {SETTINGS_FILE}, rename it"
+        )
+    return notes
+
+
+def _seems_settings(entry):
+    stem, _, suffix = entry.name.lower().partition(".")
+    return stem == "dataset" and suffix in ("yaml", "yml", "yaml.txt", "json") and entry.name != SETTINGS_FILE
+
+
+def _listed(names):
+    return f"{names[0]} is" if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]} are"
 
 
 def grouped(files):
@@ -136,7 +189,7 @@ def _rosbag2_files(folder):
     """Files of a rosbag2 folder; without metadata.yaml those that can be read one by one."""
     entries = [e for e in _visible(folder) if e.is_file()]
     metadata = folder / "metadata.yaml"
-    if metadata not in entries or b"rosbag2_bagfile_information" not in metadata.read_bytes():
+    if metadata not in entries or not is_rosbag2_metadata(metadata):
         return [e for e in entries if e.name.endswith((".db3", ".mcap"))]
     storage = [e for e in entries if e.name.endswith(_ROSBAG2_SUFFIXES)]
     if not storage:

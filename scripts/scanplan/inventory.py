@@ -4,10 +4,10 @@ No heavy imports: this runs while the workflow is being parsed.
 """
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from scanplan import configuration, datasets
+from scanplan import configuration, datasets, madefrom
 from scanplan.errors import StageError
 
 DEMO = "demo"
@@ -42,6 +42,12 @@ class Dataset:
         truth.geojson and truth_poses.tum, where the true walls and poses are known.
     building : str or None
         The file of the building that it is simulated in; None of a recorded survey.
+    layers : tuple of configuration.Layer
+        Where its settings come from, beside the defaults.
+    source : str
+        What its results are made of, as `madefrom` compares it.
+    notes : tuple of str
+        What the user should know of it before it is run.
     """
 
     name: str
@@ -49,6 +55,9 @@ class Dataset:
     recordings: tuple
     truth: tuple | None = None
     building: str | None = None
+    layers: tuple = ()
+    source: str = ""
+    notes: tuple = ()
 
 
 def choices(schema, *keys):
@@ -81,6 +90,8 @@ def named(given):
     paths = {}
     for path in map(str, given if isinstance(given, list) else [given]):
         name = datasets.name_of(path)
+        if name in paths and madefrom.source(path) == madefrom.source(paths[name]):
+            raise StageError(f"{path}: is given twice, first as {paths[name]}; leave one out")
         if name in paths:
             raise StageError(
                 f"{path}: its results would be called {name} like those of {paths[name]}; rename one of them"
@@ -91,16 +102,18 @@ def named(given):
     return paths
 
 
-def dataset(name, path, *, defaults, overrides, schema, drawings):
+def dataset(name, path, *, defaults, given, schema, drawings):
     """Gather what is known of a dataset before anything is run.
 
     Parameters
     ----------
     name : str
     path : path-like or None
-        As `named` gives them. A file that ends in .yaml or .yml describes a survey to simulate.
-    defaults, overrides, schema : dict
+        A folder, a recording or the file of a simulated survey; the demo if None.
+    defaults, schema : dict
         See `configuration.for_dataset`.
+    given : sequence of configuration.Layer
+        The command line's settings.
     drawings : path-like
         The folder of the drawings that settings may name.
 
@@ -113,21 +126,25 @@ def dataset(name, path, *, defaults, overrides, schema, drawings):
     StageError
         If files or settings are missing or wrong.
     """
-    if path is None or datasets.is_survey_file(path):
-        if path is not None and not Path(path).is_file():
-            raise StageError(
-                f"{path}: does not exist; give a YAML file with a section `simulate`, a folder or a recording"
-            )
-        settings = configuration.for_dataset(defaults, path, overrides, schema)
-        if path is not None and "simulate" not in configuration.read_yaml(path):
+    is_survey = path is None or datasets.is_survey_file(path)
+    if is_survey and path is not None and not Path(path).is_file():
+        raise StageError(f"{path}: does not exist; give a YAML file with a section `simulate`, a folder or a recording")
+    if is_survey and path is not None and datasets.is_rosbag2_metadata(path):
+        raise StageError(f"{path}: describes a rosbag2 recording; give its folder as the dataset, {Path(path).parent}")
+    own = configuration.own_settings(path if is_survey else Path(path, datasets.SETTINGS_FILE))
+    layers = (*own, *given)
+    known = {"layers": layers, "source": madefrom.source(path)}
+    settings = configuration.for_dataset(defaults, layers, schema)
+    if is_survey:
+        if path is not None and not any("simulate" in layer.values for layer in own):
             raise StageError(
                 f"{path}: has no section `simulate`, which says what is surveyed; to use it as settings of a dataset,"
                 " give it as CONFIG (--configfile)"
             )
-        return simulated(name, settings, drawings)
-    settings = configuration.for_dataset(defaults, Path(path) / "dataset.yaml", overrides, schema)
+        return replace(simulated(name, settings, drawings), **known)
     recordings = tuple(datasets.find_files(path))
-    return Dataset(name, settings, recordings, _truth_beside(Path(path)))
+    truth = _truth_beside(Path(path))
+    return Dataset(name, settings, recordings, truth, notes=tuple(datasets.overlooked(path)), **known)
 
 
 def simulated(name, settings, drawings):
@@ -202,5 +219,5 @@ def truth_of(found):
 
 
 def _truth_beside(folder):
-    files = folder / "truth.geojson", folder / "truth_poses.tum"
+    files = [folder / name for name in datasets.TRUTH_FILES]
     return tuple(map(str, files)) if all(file.is_file() for file in files) else None

@@ -3,6 +3,7 @@
 import faulthandler
 import logging
 import os
+import signal
 import sys
 import threading
 import time
@@ -11,6 +12,9 @@ from pathlib import Path
 
 from scanplan import atomic
 from scanplan.errors import StageError
+
+INTERRUPTED = "was interrupted; the same command goes on from here"
+"""What a stage says last that was ended by Ctrl-C or a signal to end."""
 
 _SCREEN_INTERVAL_S = 2.0
 _WATCH_INTERVAL_S = 1.0
@@ -23,7 +27,8 @@ def to_file(path):
     """Send all output of this process, native libraries' too, to a log file for the time of a stage.
 
     A `StageError` ends the process with status 1 and its one line on the screen; any other exception likewise, its
-    traceback in the log. Should the workflow run that started the stage be killed, the stage ends itself.
+    traceback in the log; so do Ctrl-C and SIGTERM, with `INTERRUPTED`. Should the workflow run that started the stage
+    be killed, the stage ends itself.
 
     Parameters
     ----------
@@ -42,12 +47,16 @@ def to_file(path):
     end_with_parent()
     stage = Path(path).stem
     outcome = "failed"
+    handler = signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         yield
         outcome = "done"
     except StageError as error:
         _log.error("%s: %s", stage, error)
         _screen.write(f"{stage}: {error}\n")
+        raise SystemExit(1) from None
+    except KeyboardInterrupt:
+        _log.error("%s: %s", stage, INTERRUPTED)
         raise SystemExit(1) from None
     except Exception as error:
         _log.exception("unexpected failure")
@@ -57,6 +66,7 @@ def to_file(path):
         _screen.write(f"{line}\n")
         raise SystemExit(1) from None
     finally:
+        signal.signal(signal.SIGTERM, handler)
         _log.info("stage %s", outcome)
         sys.stdout.flush(), sys.stderr.flush()
         os.dup2(kept[0], 1), os.dup2(kept[1], 2)

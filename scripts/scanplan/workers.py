@@ -3,9 +3,11 @@
 import multiprocessing
 from collections import deque
 from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 
 from scanplan import stagelog
+from scanplan.errors import StageError
 
 _WAITING_PER_CORE = 2
 
@@ -25,6 +27,11 @@ def pool(threads, setup=None, *state):
     callable
         `run(function, jobs)`: iterates over `function(*job)` of all jobs, in their order. Jobs are taken from their
         iterable as workers become free, so that few wait.
+
+    Raises
+    ------
+    StageError
+        If a worker is ended from outside.
     """
     if threads <= 1:
         _begin(setup, state)
@@ -35,6 +42,11 @@ def pool(threads, setup=None, *state):
     with ProcessPoolExecutor(threads, context, _begin_worker, (setup, state)) as executor:
         try:
             yield lambda function, jobs: _in_order(executor, function, jobs, threads * _WAITING_PER_CORE)
+        except BrokenProcessPool:
+            raise StageError(
+                "a worker process was ended from outside, perhaps for want of memory; the same command goes on from"
+                " here, with fewer --cores in less memory"
+            ) from None
         except BaseException:
             executor.shutdown(wait=False, cancel_futures=True)
             raise

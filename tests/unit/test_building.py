@@ -140,10 +140,10 @@ def test_waypoints_of_the_settings_come_before_the_files():
     mine = [[1.0, 2.0], [3.0, 2.0]]
     given = building.routed(drawing, "a", route="given", waypoints_m=mine, clearance_m=0.3)
     np.testing.assert_array_equal(given.waypoints_m, mine)
-    with pytest.raises(StageError, match="outside the outer walls"):
+    with pytest.raises(StageError, match=r"^simulate\.site\.waypoints_m: in a: waypoint 1 .* outside the outer walls"):
         building.routed(drawing, "a", route="given", waypoints_m=[[1.0, 2.0], [9.0, 2.0]], clearance_m=0.3)
     for values in ({"route": "rooms"}, {"route": "given", "start_m": [1.0, 1.0]}):
-        with pytest.raises(StageError, match=r"simulate\.site: waypoints_m are given"):
+        with pytest.raises(StageError, match=r"simulate\.site\.waypoints_m: they are given"):
             building.routed(drawing, "a", **values, waypoints_m=mine, clearance_m=0.3)
 
 
@@ -163,7 +163,7 @@ def test_a_planned_way_begins_where_asked_or_by_the_seed():
 
 def test_a_start_of_a_given_way_is_refused():
     drawing = building.load(drawn.text(drawn.WALLS, drawn.WAY).encode(), Path("a.geojson"), slice_height_m=0.4)
-    with pytest.raises(StageError, match="start_m random is where a planned way begins"):
+    with pytest.raises(StageError, match=r"simulate\.site\.start_m: random is where a planned way begins"):
         building.routed(drawing, "a", route="given", start_m="random", clearance_m=0.3)
     assert len(building.routed(model_of(), "m", route="given", start_m="random", clearance_m=0.3).waypoints_m) >= 2
 

@@ -1,10 +1,13 @@
 """Settings are merged in order and every fault names itself."""
 
 import copy
+import subprocess
+import sys
 
 import pytest
 
-from scanplan import configuration
+from scanplan import configuration, yamlfile
+from scanplan.configuration import COMMAND_LINE, Layer
 from scanplan.errors import StageError
 
 
@@ -55,9 +58,24 @@ def test_the_command_line_wins_over_the_dataset_over_the_defaults(defaults, sche
     own = tmp_path / "dataset.yaml"
     own.write_text("poses: {keep_every: 2, max_gap_s: 9.0}\n")
     before = copy.deepcopy(defaults)
-    settings = configuration.for_dataset(defaults, own, {"poses": {"keep_every": 3}}, schema)
+    layers = [*configuration.own_settings(own), Layer("other.yaml", {"poses": {"keep_every": 4}})]
+    layers += [Layer(COMMAND_LINE, {"poses": {"keep_every": 3}})]
+    settings = configuration.for_dataset(defaults, layers, schema)
     assert settings["poses"]["keep_every"] == 3 and settings["poses"]["max_gap_s"] == 9.0
     assert settings["hulls"] == defaults["hulls"] and defaults == before
+
+
+def test_what_a_run_is_of_is_no_setting_of_its_results(defaults, schema):
+    layers = [Layer("a.yaml", {"dataset": "a", "replace": "a"}), Layer(COMMAND_LINE, {"dataset": ["a", "b"]})]
+    assert not {"dataset", "replace"} & set(configuration.for_dataset(defaults, layers, schema))
+    assert configuration.of_a_run(defaults, layers, schema) == {"dataset": ["a", "b"], "replace": "a"}
+    assert configuration.of_a_run(defaults, [], schema) == {"dataset": None, "replace": None}
+
+
+@pytest.mark.parametrize(("given", "said"), [([], r"is \[\], expected: Folder"), (12, "--config 'dataset=\"12\"'")])
+def test_a_dataset_that_is_none(defaults, schema, given, said):
+    with pytest.raises(StageError, match=said):
+        configuration.of_a_run(defaults, [Layer(COMMAND_LINE, {"dataset": given})], schema)
 
 
 @pytest.mark.parametrize(
@@ -71,9 +89,22 @@ def test_the_command_line_wins_over_the_dataset_over_the_defaults(defaults, sche
         ("[1, 2]", "holds list"),
         ("1: 2", "settings: unknown key 1"),
         ("hulls: {n_clusters: 10.0}", "hulls.n_clusters: 10.0 is not of type 'integer'"),
-        ("input: {min_range_m: 5.0, max_range_m: 2.0}", "input.max_range_m: 2.0 is below input.min_range_m (5.0)"),
-        ("plan: {merge: {tolerance_m: 0.5}}", "plan.merge.merge_distance_m: 0.1 is below plan.merge.tolerance_m (0.5)"),
-        ("a: [", "is not valid YAML"),
+        ("input: {min_range_m: 5.0, max_range_m: 2.0}", "input.max_range_m: 2.0 must be above input.min_range_m (5.0)"),
+        ("input: {max_range_m: 0.1}", "input.max_range_m: 0.1 must be above input.min_range_m (0.1)"),
+        ("hulls: {sample_size: 9}", "hulls.sample_size: 9 must not be below hulls.n_clusters (10)"),
+        (
+            "plan: {merge: {tolerance_m: 0.5}}",
+            "plan.merge.merge_distance_m: 0.1 must not be below plan.merge.tolerance_m (0.5)",
+        ),
+        (
+            "walls: {iterative_ransac: {door_height_m: 0.9}}",
+            "walls.iterative_ransac.door_height_m: 0.9 must not be below walls.iterative_ransac.wall_height_m (1.0)",
+        ),
+        ("registration: {icp_distances_m: [0.1, 0.3]}", "registration.icp_distances_m: [0.1, 0.3] must not rise"),
+        ("a: [", "is not valid YAML (line 1, column 5: "),
+        ("poses:\n\tkeep_every: 1", "is not valid YAML (line 2, column 1: "),
+        ("plan: {method: hull}\nplan: {}", "is not valid YAML (line 2, column 1: `plan` is given twice"),
+        ("replace: other", "given on the command line"),
         ("dataset: other", "given on the command line"),
         ("plan: {method: best}", "plan.method: 'best' is not one of"),
         ("hulls: !!python/object/apply:os.system ['true']", "is not valid YAML"),
@@ -83,10 +114,92 @@ def test_a_fault_names_file_key_value_and_limit(defaults, schema, tmp_path, text
     own = tmp_path / "dataset.yaml"
     own.write_text(text)
     with pytest.raises(StageError) as caught:
-        configuration.for_dataset(defaults, own, {}, schema)
+        configuration.for_dataset(defaults, configuration.own_settings(own), schema)
     assert said in str(caught.value) and str(own) in str(caught.value) and "\n" not in str(caught.value)
 
 
 def test_text_for_a_number_on_the_command_line_is_explained(defaults, schema):
     with pytest.raises(StageError, match="--configfile"):
-        configuration.for_dataset(defaults, None, {"poses": {"keep_every": "2"}}, schema)
+        configuration.for_dataset(defaults, [Layer(COMMAND_LINE, {"poses": {"keep_every": "2"}})], schema)
+
+
+def limits_in_pairs(node, where=""):
+    """Keys of the schema that are the least and the most of the same."""
+    for key, child in node.get("properties", {}).items():
+        yield from limits_in_pairs(child, f"{where}{key}.")
+        if key.startswith("min_") and f"max_{key[4:]}" in node["properties"]:
+            yield f"{where}{key}", f"{where}max_{key[4:]}"
+
+
+def with_value(key, value):
+    for part in reversed(key.split(".")):
+        value = {part: value}
+    return value
+
+
+def test_no_least_may_reach_its_most(defaults, schema):
+    pairs = list(limits_in_pairs(schema))
+    assert len(pairs) >= 5
+    for least, most in pairs:
+        both = configuration.merged(with_value(least, 0.75), with_value(most, 0.75))
+        with pytest.raises(StageError) as caught:
+            configuration.for_dataset(defaults, [Layer("a.yaml", both)], schema)
+        assert f"a.yaml: {most}: 0.75 must be above {least} (0.75)" in str(caught.value)
+
+
+def test_limits_may_cross_in_a_file_that_another_mends(defaults, schema):
+    layers = [Layer("a.yaml", {"input": {"min_range_m": 5.0}}), Layer("b.yaml", {"input": {"max_range_m": 2.0}})]
+    with pytest.raises(StageError, match=r"b\.yaml: input\.max_range_m"):
+        configuration.for_dataset(defaults, layers, schema)
+    layers.append(Layer("c.yaml", {"input": {"min_range_m": 1.0}}))
+    assert configuration.for_dataset(defaults, layers, schema)["input"]["min_range_m"] == 1.0
+
+
+def test_a_fault_is_told_in_the_name_of_its_own_file(defaults, schema):
+    layers = [Layer("a.yaml", {"poses": {"keep_every": 2}}), Layer("b.yaml", {"poses": {"keep_every": 0}})]
+    with pytest.raises(StageError, match=r"^b\.yaml: poses\.keep_every: 0"):
+        configuration.for_dataset(defaults, layers, schema)
+
+
+def test_where_a_setting_comes_from():
+    layers = [Layer("a.yaml", {"plan": {"method": "hull", "pair": {"offset_m": 0.1}}}), Layer("b.yaml", {"poses": {}})]
+    assert configuration.origin_of(layers, "plan.method") == "a.yaml"
+    assert configuration.origin_of(layers, "plan.pair") == configuration.origin_of(layers, "plan") == "a.yaml"
+    assert configuration.origin_of(layers, "plan.pair.offset_m", "poses.keep_every") == "a.yaml"
+    assert configuration.origin_of(layers, "plan.meth") is configuration.origin_of(layers, "poses.keep_every") is None
+
+
+def test_a_stages_fault_is_told_with_the_file_that_gives_its_setting():
+    layers = [Layer("a.yaml", {"simulate": {"site": {"start_m": [1, 2]}, "errors": {"glass_pass": 1}}})]
+    assert configuration.located("simulate.site.start_m: off", layers) == "a.yaml: simulate.site.start_m: off"
+    assert configuration.located("simulate.errors: too much", layers) == "a.yaml: simulate.errors: too much"
+    for other in ("simulate.site.clearance_m: wide", "run.bag: no cloud topic", "simulate", "a fault"):
+        assert configuration.located(other, layers) == other
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (None, "does not exist"),
+        (b"# nothing yet", "holds no settings"),
+        (b"a: [", "is not valid YAML (line 1"),
+        (b"\xff\xfe\x00", "is not valid YAML"),
+        (b"only words", "holds str"),
+    ],
+)
+def test_a_file_for_the_command_line_is_checked_first(project_root, tmp_path, content, said):
+    path = tmp_path / "my.yaml"
+    if content is not None:
+        path.write_bytes(content)
+    command = [sys.executable, "-m", "scanplan.yamlfile", str(path)]
+    checked = subprocess.run(command, cwd=project_root / "scripts", capture_output=True, text=True)
+    assert checked.returncode != 0 and said in checked.stderr
+    assert checked.stderr.startswith(f"scanplan: {path}: ") and checked.stderr.count("\n") == 1
+    path.write_text("poses: {keep_every: 2}")
+    assert subprocess.run(command, cwd=project_root / "scripts", check=False).returncode == 0
+
+
+def test_settings_may_share_values_by_anchors(tmp_path):
+    path = tmp_path / "a.yaml"
+    path.write_text("walls:\n  one: &limits {a: 1, b: 2}\n  two: {<<: *limits, b: 3}\n")
+    assert yamlfile.read_yaml(path)["walls"]["two"] == {"a": 1, "b": 3}

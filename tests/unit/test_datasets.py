@@ -97,6 +97,7 @@ def test_a_scan_folder(tmp_path):
     [
         ([], "accepted are .*bag"),
         (["readme.txt"], "accepted are .*bag"),
+        (["a.bag.gz", "b.ZIP"], "unpack a.bag.gz, b.ZIP; accepted"),
         (["a.bag", "scans/1.pcd", "poses.tum"], "both"),
         (["scans/1.pcd"], "no poses"),
         (["poses.tum"], "no clouds"),
@@ -132,6 +133,41 @@ def test_refuses_what_is_missing_or_no_recording(tmp_path):
         datasets.find_files(put(tmp_path / "a.txt"))
     with pytest.raises(StageError, match="did not close"):
         datasets.find_files(put(tmp_path / "a.bag.active"))
+
+
+def test_nothing_of_a_whole_dataset_is_overlooked(tmp_path):
+    for name in ("a.bag", "dataset.yaml", "truth.geojson", "truth_poses.tum", "notes.yaml"):
+        put(tmp_path / name)
+    assert datasets.overlooked(tmp_path) == []
+    assert datasets.overlooked(put(tmp_path / "alone" / "a.bag")) == []
+
+
+def test_what_stands_beside_a_single_recording_is_told(tmp_path):
+    bag = put(tmp_path / "a.bag")
+    put(tmp_path / "truth.geojson"), put(tmp_path / "truth_poses.tum"), put(tmp_path / "dataset.yaml")
+    (note,) = datasets.overlooked(bag)
+    assert "dataset.yaml, truth.geojson and truth_poses.tum are not used" in note
+    assert note.endswith(f"give the folder {tmp_path} as the dataset")
+    put(tmp_path / "run" / "metadata.yaml", METADATA), put(tmp_path / "run" / "x_0.mcap")
+    (note,) = datasets.overlooked(tmp_path / "run")
+    assert "the dataset is run alone" in note
+
+
+@pytest.mark.parametrize(("there", "missing"), [(0, 1), (1, 0)])
+def test_half_a_truth_is_told(tmp_path, there, missing):
+    put(tmp_path / "a.bag")
+    put(tmp_path / datasets.TRUTH_FILES[there])
+    (note,) = datasets.overlooked(tmp_path)
+    assert note.startswith(f"{tmp_path / datasets.TRUTH_FILES[there]}: is not used")
+    assert f"{datasets.TRUTH_FILES[missing]} is missing" in note
+
+
+@pytest.mark.parametrize("name", ["dataset.yml", "Dataset.yaml", "dataset.yaml.txt", "dataset.json"])
+def test_settings_of_another_name_are_told(tmp_path, name):
+    put(tmp_path / "a.bag")
+    put(tmp_path / name)
+    (note,) = datasets.overlooked(tmp_path)
+    assert f"{name} is not used" in note and "dataset.yaml, rename" in note
 
 
 def test_a_survey_file_is_told_from_a_folder(tmp_path):

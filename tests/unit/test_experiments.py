@@ -10,7 +10,7 @@ from scanplan.thesis import experiments
 def known(project_root):
     return {
         "defaults": configuration.read_yaml(project_root / "config/config.yaml"),
-        "overrides": {"thesis": {"seeds": [4, 7], "drive_seeds": [7]}},
+        "given": [configuration.Layer("a.yaml", {"thesis": {"seeds": [4, 7], "drive_seeds": [7]}})],
         "schema": configuration.read_yaml(project_root / "workflow/schemas/config.schema.yaml"),
         "config": project_root / "config",
     }
@@ -37,7 +37,8 @@ def test_the_limits_are_tried_on_the_same_recording(known):
 
 
 def test_the_command_line_wins(known):
-    known["overrides"] |= {"simulate": {"building": "tiny_office"}, "registration": {"min_refined_fitness": 0.5}}
+    own = {"simulate": {"building": "tiny_office"}, "registration": {"min_refined_fitness": 0.5}}
+    known["given"].append(configuration.Layer("b.yaml", own))
     found = experiments.surveys(**known)
     assert all(survey.settings["simulate"]["building"] == "tiny_office" for kind in found.values() for survey in kind)
     assert found[experiments.LIMITS][0].settings["registration"]["min_refined_fitness"] == 0.5

@@ -10,7 +10,7 @@ from scanplan.errors import StageError
 def known(project_root):
     return {
         "defaults": configuration.read_yaml(project_root / "config/config.yaml"),
-        "overrides": {},
+        "given": [],
         "schema": configuration.read_yaml(project_root / "workflow/schemas/config.schema.yaml"),
         "drawings": project_root / "config/buildings",
     }
@@ -31,6 +31,11 @@ def test_names_come_in_the_order_given():
 def test_two_of_one_name_are_refused():
     with pytest.raises(StageError, match=r"y/a\.bag: .* called a like those of x/a"):
         inventory.named(["x/a", "y/a.bag"])
+
+
+def test_one_given_twice_is_told_so():
+    with pytest.raises(StageError, match=r"x/\./a: is given twice, first as x/a; leave one out"):
+        inventory.named(["x/a", "x/./a"])
 
 
 def test_the_place_of_the_thesis_is_taken():
@@ -56,7 +61,7 @@ def test_a_file_describes_a_simulated_survey(known, tmp_path):
 
 
 def test_the_command_line_wins_over_the_file(known, tmp_path):
-    known["overrides"] = {"simulate": {"seed": 9}}
+    known["given"] = [configuration.Layer("--config", {"simulate": {"seed": 9}})]
     assert inventory.dataset("t", survey_file(tmp_path), **known).settings["simulate"]["seed"] == 9
 
 
@@ -72,7 +77,7 @@ def test_a_building_may_be_any_file(known, tmp_path):
     [
         ("simulate: {building: palace}", "palace is neither a file nor a drawing of ours .*tiny_office"),
         ("simulate: {speed: 1}", "unknown key speed"),
-        ("rosbag2_bagfile_information: {version: 5}", "unknown key rosbag2_bagfile_information"),
+        ("rosbag2_bagfile_information: {version: 5}", "describes a rosbag2 recording; give its folder"),
     ],
 )
 def test_a_wrong_file_is_refused_in_one_line(known, tmp_path, text, said):
@@ -92,9 +97,19 @@ def test_a_folder_brings_its_settings_and_its_truth(known, tmp_path):
     found = inventory.dataset("a", tmp_path, **known)
     assert (found.recordings, found.truth, found.building) == ((str(tmp_path / "a.bag"),), None, None)
     assert found.settings["poses"]["keep_every"] == 2
+    half = tmp_path / "truth.geojson"
+    half.touch()
+    found = inventory.dataset("a", tmp_path, **known)
+    assert found.truth is None and f"{half}: is not used" in found.notes[0]
+    found = inventory.dataset("a", tmp_path / "a.bag", **known)
+    assert (
+        found.settings["poses"]["keep_every"] == 5 and "dataset.yaml and truth.geojson are not used" in found.notes[0]
+    )
+    half.unlink()
     for name in ("truth.geojson", "truth_poses.tum"):
         (tmp_path / name).touch()
     found = inventory.dataset("a", tmp_path, **known)
+    assert found.notes == () and found.source == str(tmp_path)
     assert found.truth == (str(tmp_path / "truth.geojson"), str(tmp_path / "truth_poses.tum"))
 
 

@@ -9,6 +9,11 @@ def test_the_schema_allows_the_methods_there_are(project_root):
     assert inventory.choices(schema, "plan", "method") == list(methods.METHODS) == list(orderings.METHODS)
 
 
+def test_every_method_has_its_tables_and_its_settings():
+    assert set(methods.SETTINGS) == set(methods.TABLES) == set(methods.METHODS)
+    assert [m for m in methods.METHODS if "seed" in methods.SETTINGS[m]] == ["random"]
+
+
 def test_every_method_is_in_the_manual(project_root):
     manual = (project_root / "config/README.md").read_text()
     assert [m for m in methods.METHODS if f"\n| `{m}` |" not in manual] == []

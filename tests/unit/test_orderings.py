@@ -175,6 +175,30 @@ def test_a_budget_changes_no_order_without_an_objective(method):
     assert order(method, columns(), budget=5)["scan_id"].tolist() == order(method, columns())["scan_id"].tolist()
 
 
+def varied(method, name):
+    """Orders of 30 overlapping scans by two values of one setting, under the name of the workflow's settings."""
+    scans = {i: [box(i % 7, i // 7, i % 7 + 1 + (i % 5) / 2, i // 7 + 1 + (i % 3) / 2)] for i in range(30)}
+    values = {"seed": (1, 2), "min_overlap": (0.0, 0.9), "budget": (12, 40)}
+    values["streaming"] = [{"k": k, "epsilon": 0.1} for k in (3, 20)]
+    keyword = "streaming_settings" if name == "streaming" else name
+    hulls = columns(scans)
+    # a budget matters only where scans cost different numbers of points
+    hulls["n_points"] = 1 + np.arange(len(hulls["scan_id"])) * 7 % 10
+    return [order(method, hulls, **{keyword: value})["scan_id"].tolist() for value in values[name]]
+
+
+@pytest.mark.parametrize("name", ["seed", "min_overlap", "budget", "streaming"])
+def test_an_order_depends_on_the_settings_that_the_workflow_gives_it_and_on_no_other(name):
+    depends = {method for method in methods.METHODS if len({tuple(o) for o in varied(method, name)}) > 1}
+    named = {method for method in methods.METHODS if name in methods.SETTINGS[method]}
+    assert depends <= named and depends
+
+
+def test_refuses_a_random_order_without_a_seed():
+    with pytest.raises(ValueError, match="needs a seed"):
+        order("random", columns(), seed=None)
+
+
 def test_refuses_an_unknown_method():
     with pytest.raises(
         ValueError, match="only wall_length, visibility, cluster_hull, hull, streaming, every_nth, distance"

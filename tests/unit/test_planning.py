@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import housemaking
-from scanplan.plan import freespace, planning, rays, rooms, wallevidence, wallfaces
+from scanplan.plan import freespace, planning, plansummary, rays, rooms, wallevidence, wallfaces
 from scanplan.plan.faceline import Line
 from scanplan.plan.gaps import CLOSED, OPEN, Gap
 from scanplan.plan.planwalls import PlanWall
@@ -207,6 +207,31 @@ class TestFreeSpace:
         flat = laser(SENSORS[0], np.array(housemaking.HOUSE, float), beams=beams)
         found = freespace.visible(rays.gather([(0, flat)], {0: SENSORS[0]}, planar=True))
         assert found[0].intersection(shapely.box(0, 0, 4, 4)).area == pytest.approx(16, rel=0.06)
+
+    @pytest.mark.parametrize("columns", [240, 360, 1440])
+    def test_beams_above_one_another_see_their_room_however_far_apart_their_columns_are(self, columns):
+        flat = laser(SENSORS[0], np.array(housemaking.HOUSE, float), beams=columns)
+        turns = np.radians(np.arange(16) * 0.001)[:, None]
+        way = flat[:, :2] - SENSORS[0][:2]
+        beside = np.column_stack([-way[:, 1], way[:, 0]])
+        near = [SENSORS[0][:2] + way * np.cos(turn) + beside * np.sin(turn) for turn in turns]
+        points = np.column_stack([np.concatenate(near), np.zeros(16 * len(flat))])
+        gathered = rays.gather([(0, points)], {0: SENSORS[0]}, planar=True)
+        assert freespace.visible(gathered)[0].intersection(shapely.box(0, 0, 4, 4)).area == pytest.approx(16, rel=0.06)
+        assert np.degrees(freespace.spacing_rad(gathered.azimuth_rad[0])) == pytest.approx(360 / columns, abs=0.02)
+
+    def test_rays_too_far_apart_for_an_opening_are_told(self):
+        """In a room of 4 m most walls are some 2 to 3 m away: 0.5 m of them hold two rays that are 5 degrees apart."""
+        told = {}
+        for beams in (360, 90, 45):
+            flat = laser(SENSORS[0], np.array(housemaking.HOUSE, float), beams=beams)
+            told[beams] = plansummary.sparse(rays.gather([(0, flat)], {0: SENSORS[0]}, planar=True), 0.5)
+        assert told[360] == told[90] == ""
+        assert "lie 8.0 deg apart" in told[45] and "up to 1.8 m away" in told[45] and "n_azimuth" in told[45]
+
+    def test_the_end_of_a_sensors_field_is_no_gap_between_its_columns(self):
+        assert freespace.spacing_rad(np.radians(np.arange(-30, 31, 2.0))) == pytest.approx(np.radians(2))
+        assert freespace.spacing_rad(np.radians([-120.0, 120.0])) == freespace.spacing_rad(np.empty(0)) == 0
 
     def test_a_scan_of_no_points_sees_nothing(self):
         empty = rays.gather([(0, np.empty((0, 3)))], {0: np.zeros(3)}, planar=True)

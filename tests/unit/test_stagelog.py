@@ -4,11 +4,13 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 
 
 def run(tmp_path, body):
-    code = "import os, sys\nfrom scanplan import stagelog\nfrom scanplan.errors import StageError\n"
+    code = "import os, signal, sys, time\nfrom scanplan import stagelog\nfrom scanplan.errors import StageError\n"
     code += f"with stagelog.to_file('logs/stage.log'):\n    {body}\n"
     result = subprocess.run(
         [sys.executable, "-c", code], cwd=tmp_path, env={"PYTHONPATH": str(SCRIPTS)}, capture_output=True, text=True
@@ -34,6 +36,15 @@ def test_a_bug_is_one_line_and_its_traceback_in_the_log(tmp_path):
     assert result.returncode == 1
     assert result.stderr.count("\n") == 1 and "ZeroDivisionError" in result.stderr and "logs/stage.log" in result.stderr
     assert "Traceback" in log
+
+
+@pytest.mark.parametrize("sent", ["SIGINT", "SIGTERM"])
+def test_an_interrupted_stage_says_so_and_nothing_of_memory(tmp_path, sent):
+    # whoever runs the tests in the background may ignore SIGINT, and children inherit that
+    body = "signal.signal(signal.SIGINT, signal.default_int_handler); "
+    result, log = run(tmp_path, f"{body}os.kill(os.getpid(), signal.{sent}); time.sleep(9)")
+    assert result.returncode == 1 and "Traceback" not in log + result.stderr
+    assert "ERROR stage: was interrupted; the same command goes on from here" in log
 
 
 def test_progress_counts_and_is_seen(tmp_path):

@@ -1,8 +1,10 @@
 import os
+import signal
 
 import pytest
 
 from scanplan import workers
+from scanplan.errors import StageError
 
 _known = None
 
@@ -41,3 +43,12 @@ def test_a_failed_job_leaves_the_waiting_ones_undone(tmp_path):
     with pytest.raises(ValueError, match="the first job"), workers.pool(2) as run:
         list(run(touch_or_fail, jobs))
     assert len(list(tmp_path.iterdir())) < 20
+
+
+def end_yourself(sent):
+    os.kill(os.getpid(), sent)
+
+
+def test_a_worker_that_is_killed_ends_the_stage_in_one_line():
+    with pytest.raises(StageError, match="ended from outside, perhaps for want of memory"), workers.pool(2) as run:
+        list(run(end_yourself, [(signal.SIGKILL,)]))

@@ -42,6 +42,43 @@ def test_a_wrong_key_in_dataset_yaml(project, tmp_path):
     ends_with_one_line(project, "survey", "dataset.yaml", "keep_evry")
 
 
+def test_a_way_through_a_wall_names_the_file_and_its_key(project, tmp_path):
+    (tmp_path / "walk.yaml").write_text(
+        "simulate: {building: tiny_office, site: {waypoints_m: [[0.7, 0.9], [3.0, 1.7]]}}"
+    )
+    said = "walk.yaml: simulate.site.waypoints_m: ", "tiny_office.geojson", "waypoint 1 (3, 1.7)", "move it"
+    ends_with_one_line(project, "walk.yaml", *said)
+
+
+def test_a_setting_out_of_range_names_the_config_file(project, tmp_path):
+    (tmp_path / "mine.yaml").write_text("poses: {keep_every: 0}")
+    result = project.run("--configfile", "mine.yaml")
+    (line,) = [line for line in result.stderr.splitlines() if line.startswith("scanplan: ")]
+    assert result.returncode != 0 and "mine.yaml: poses.keep_every: 0" in line
+
+
+def test_results_of_another_dataset_of_the_name_are_kept(project, tmp_path):
+    entries = list(bagmaking.survey(bagmaking.Maker()))
+    for place in ("a", "b"):
+        (tmp_path / place).mkdir()
+        written(tmp_path / place / "floor", entries)
+    poses = "results/floor/poses.parquet"
+    assert project.run(poses, "--config", "dataset=a/floor").returncode == 0
+    ends_with_one_line(
+        project, "b/floor", "made of a/floor", "replace=floor", left=["motion.parquet", "poses.parquet", "source.txt"]
+    )
+    other = project.run(poses, "--config", "dataset=b/floor", "replace=floor")
+    assert other.returncode == 0 and (tmp_path / "results/floor/source.txt").read_text() == "b/floor\n"
+
+
+def test_a_truth_that_is_not_used_is_told(project, tmp_path):
+    name = written(tmp_path / "half", list(bagmaking.survey(bagmaking.Maker())))
+    (tmp_path / name / "truth.geojson").touch()
+    result = project.run("--dry-run", "--quiet", "--config", f"dataset={name}")
+    assert result.returncode == 0
+    assert "scanplan: half/truth.geojson: is not used, as truth_poses.tum is missing" in result.stderr
+
+
 def written(folder, entries):
     bagmaking.Maker().write(folder / "run", entries)
     return folder.name
@@ -97,7 +134,9 @@ def test_clouds_of_nothing(project, tmp_path):
         for e in bagmaking.survey(maker)
     ]
     said = "run.bag", "too_few_points", "input.min_range_m"
-    ends_with_one_line(project, written(tmp_path / "blind", entries), *said, left=["motion.parquet", "poses.parquet"])
+    ends_with_one_line(
+        project, written(tmp_path / "blind", entries), *said, left=["motion.parquet", "poses.parquet", "source.txt"]
+    )
 
 
 def test_a_truncated_bag(project, tmp_path):

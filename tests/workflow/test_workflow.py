@@ -1,6 +1,7 @@
 """The whole workflow on the tiny office: complete, idle, changed, edited, killed and resumed."""
 
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -80,6 +81,22 @@ def test_a_changed_parameter_reruns_exactly_its_stages(project, change, rules):
 
 
 @pytest.mark.parametrize(
+    ("change", "methods"),
+    [
+        ("selection: {seed: 5}", {"random"}),
+        ("selection: {streaming: {k: 7}}", {"streaming"}),
+        ("selection: {min_overlap: 0.1}", {"wall_length", "visibility", "cluster_hull", "hull"}),
+    ],
+)
+def test_a_setting_of_one_order_reruns_no_other(project, change, methods):
+    other = project.folder / "change.yaml"
+    other.write_text(change)
+    listing = project.run("--dry-run", "--quiet", "reason", "--configfile", TINY, str(other)).stdout
+    ordered = re.findall(r"output: results/demo/selection/(\w+)\.parquet", listing)
+    assert sorted(ordered) == sorted(methods)
+
+
+@pytest.mark.parametrize(
     ("helper", "rules"),
     [
         ("selection/hulls", AFTER_HULLS),
@@ -151,16 +168,17 @@ def started(project):
     """Start a run that registers the scans anew, and return it once that stage is at work."""
     log = project.folder / "logs/demo/register_scans.log"
     log.unlink()
-    run = subprocess.Popen(
-        project.command("--forcerun", "register_scans"),
-        cwd=project.folder,
-        env=project.env(),
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        start_new_session=True,
-        # whoever runs the tests in the background may ignore SIGINT, and children inherit that
-        preexec_fn=restore_sigint,
-    )
+    with (project.folder / "said.txt").open("w") as said:
+        run = subprocess.Popen(
+            project.command("--forcerun", "register_scans"),
+            cwd=project.folder,
+            env=project.env(),
+            stdout=subprocess.DEVNULL,
+            stderr=said,
+            start_new_session=True,
+            # whoever runs the tests in the background may ignore SIGINT, and children inherit that
+            preexec_fn=restore_sigint,
+        )
     while not log.exists():
         assert run.poll() is None, "the run ended before the stage began"
         time.sleep(0.02)
@@ -173,6 +191,9 @@ def test_a_killed_run_resumes_with_the_same_command(project, sent):
     run = started(project)
     os.kill(run.pid, sent) if sent == signal.SIGKILL else os.killpg(run.pid, sent)
     assert run.wait(timeout=120) != 0
+    if sent != signal.SIGKILL:
+        last = (project.folder / "said.txt").read_text().splitlines()[-1]
+        assert last == "scanplan: the run was interrupted; the same command goes on from here"
     result = project.run()
     assert result.returncode == 0, result.stderr
     assert project.digests() == before

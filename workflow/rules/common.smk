@@ -3,7 +3,7 @@ import re
 import sys
 
 sys.path.insert(0, f"{workflow.basedir}/scripts")
-from scanplan import configuration, inventory, sources
+from scanplan import configuration, inventory, madefrom, sources
 from scanplan.plan import parts
 from scanplan.selection import methods
 from scanplan.thesis import experiments
@@ -16,11 +16,33 @@ METHODS = inventory.choices(SCHEMA, "plan", "method")
 EXTRACTORS = inventory.choices(SCHEMA, "plan", "extractor")
 
 
+def or_end(function, *arguments):
+    """Call a function; a fault of the user's data or settings ends the run in one line."""
+    try:
+        return function(*arguments)
+    except StageError as error:
+        print(f"scanplan: {error}", file=sys.stderr)
+        raise SystemExit(1)
+
+
+def given_settings():
+    """What the command line says, file by file, and last what is not in a file."""
+    files = map(os.path.relpath, workflow.config_settings.configfiles)
+    layers = [
+        configuration.Layer(file, configuration.read_yaml(file)) for file in files
+    ]
+    alone = configuration.Layer(
+        configuration.COMMAND_LINE, dict(workflow.config_settings.config)
+    )
+    return [*layers, alone]
+
+
 KNOWN = {
     "defaults": configuration.read_yaml(f"{workflow.basedir}/config/config.yaml"),
-    "overrides": workflow.config_settings.overwrite_config,
+    "given": or_end(given_settings),
     "schema": SCHEMA,
 }
+RUN = or_end(configuration.of_a_run, *KNOWN.values())
 
 
 def given_datasets():
@@ -28,7 +50,7 @@ def given_datasets():
     drawings = f"{workflow.basedir}/config/buildings"
     return {
         name: inventory.dataset(name, path, drawings=drawings, **KNOWN)
-        for name, path in inventory.named(config.get("dataset")).items()
+        for name, path in inventory.named(RUN["dataset"]).items()
     }
 
 
@@ -62,17 +84,17 @@ def thesis_if_fit():
         return {}
 
 
-def or_end(function, *arguments):
-    """Call a function; a fault of the user's data or settings ends the run in one line."""
-    try:
-        return function(*arguments)
-    except StageError as error:
-        print(f"scanplan: {error}", file=sys.stderr)
-        raise SystemExit(1)
-
-
 GIVEN = or_end(given_datasets)
 THESIS = or_end(thesis_if_fit)
+# a job's own process finds the note that its run has made
+if workflow.is_main_process:
+    for note in (note for found in GIVEN.values() for note in found.notes):
+        print(f"scanplan: {note}", file=sys.stderr)
+    or_end(
+        madefrom.check,
+        {name: found.source for name, found in GIVEN.items()},
+        RUN["replace"] or [],
+    )
 # jobs are worked out for what is asked for; these are all that could be
 DATASETS = GIVEN | {found.name: found for kind in THESIS.values() for found in kind}
 
@@ -144,16 +166,12 @@ def order_tables(wildcards):
 
 
 def order_settings(wildcards):
-    """Settings of the job's ordering: a method's own only for that method."""
+    """Settings of the job's ordering, by name: a change of one reruns the orderings that depend on it."""
     selection = DATASETS[wildcards.dataset].settings["selection"]
-    names = ["seed", "min_overlap"] + ["streaming"] * (wildcards.method == "streaming")
-    return {name: selection[name] for name in names}
-
-
-def budget(wildcards):
-    """Limits of what the scans of the plan may cost together."""
-    stop = DATASETS[wildcards.dataset].settings["selection"]["stop"]
-    return {name: stop[name] for name in ("max_points", "max_bytes")}
+    stop = selection["stop"]
+    budget = {name: stop[name] for name in ("max_points", "max_bytes")}
+    settings = selection | {"budget": budget}
+    return {name: settings[name] for name in methods.SETTINGS[wildcards.method]}
 
 
 def plan_settings(wildcards):

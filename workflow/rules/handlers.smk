@@ -1,8 +1,11 @@
 import fcntl
 import os
+import signal
 import sys
 import time
 from pathlib import Path
+
+from scanplan import stagelog
 
 LOCK = ".snakemake/scanplan.lock"
 
@@ -25,11 +28,31 @@ def lock():
 def run_alone():
     """Keep the lock for the time of a run."""
     run_alone.started_ns = time.time_ns()
+    run_alone.interrupted = False
+    for number in (signal.SIGINT, signal.SIGTERM):
+        note_signal(number)
     run_alone.lock = lock()
+    for name, found in GIVEN.items():
+        madefrom.record(name, found.source)
+
+
+def note_signal(number):
+    """Note when a signal asks the run to end; what it does stays."""
+    does = signal.getsignal(number)
+
+    def handle(*arguments):
+        run_alone.interrupted = True
+        does(*arguments)
+
+    # one that is ignored stays so
+    if callable(does):
+        signal.signal(number, handle)
 
 
 def tell_results():
     """After a whole run, say where each dataset's plan and report lie."""
+    for name in GIVEN:
+        madefrom.discard_lone(name)
     if "thesis" in workflow.dag_settings.targets:
         print("\nreport:  results/thesis/report.html", file=sys.stderr)
     if workflow.dag_settings.targets or workflow.dag_settings.until:
@@ -45,14 +68,21 @@ def tell_results():
 
 def tell_failure():
     """Leave no empty folders behind, and end with the line that says what went wrong."""
+    for name in GIVEN:
+        madefrom.discard_lone(name)
     for name in (*DATASETS, inventory.RESERVED):
         for folder, _, _ in os.walk(f"results/{name}", topdown=False):
             if not os.listdir(folder):
                 os.rmdir(folder)
     if os.path.isdir("results") and not os.listdir("results"):
         os.rmdir("results")
-    for line in failures():
-        print(f"scanplan: {line}", file=sys.stderr)
+    said = list(failures())
+    ended = [line for line in said if line.endswith(stagelog.INTERRUPTED)]
+    for line in said:
+        if line not in ended:
+            print(f"scanplan: {line}", file=sys.stderr)
+    if ended or run_alone.interrupted:
+        print(f"scanplan: the run {stagelog.INTERRUPTED}", file=sys.stderr)
     # whatever Snakemake would add says less
     raise SystemExit(1)
 
@@ -71,8 +101,12 @@ def failures():
             errors = [
                 line.split(" ERROR ", 1)[1] for line in lines if " ERROR " in line
             ]
-            killed = f"{log.stem}: was ended from outside, perhaps for want of memory; its log is {log}"
-            yield errors[-1] if errors else killed
+            if errors:
+                stage, _, fault = errors[-1].partition(": ")
+                layers = DATASETS[name].layers if name in DATASETS else ()
+                yield f"{stage}: {configuration.located(fault, layers)}"
+            elif not run_alone.interrupted:
+                yield f"{log.stem}: was ended from outside, perhaps for want of memory; its log is {log}"
 
 
 # before the jobs are worked out: while another run is at work, files come and go

@@ -60,6 +60,5 @@ rule order_scans:
         runtime=30,
     params:
         settings=order_settings,
-        budget=budget,
     script:
         "../../scripts/order_scans.py"

@@ -6,8 +6,12 @@ from shapely.geometry import MultiPolygon, Polygon
 
 _SECTOR_RAD = np.radians(0.5)
 _RAYS_A_SECTOR = 2.2
+_COLUMNS_A_SECTOR = 1.1
+# ASSUME wider gaps than this are the end of a sensor's field, or openings that nothing came back from
+_WIDEST_RAD = np.radians(10)
 _SIMPLIFY_M = 0.02
 _SPIKE_M = 0.04
+_GRID_M = 1e-3
 
 
 def visible(rays):
@@ -32,10 +36,32 @@ def visible(rays):
     ]
 
 
+def spacing_rad(azimuth_rad):
+    """Return the angle between a scan's columns of rays: half of the directions between rays lie in gaps up to this.
+
+    The median of the gaps themselves says nothing of a sensor with several beams, whose rays stand one above the
+    other: nearly all of them are next to none.
+
+    Parameters
+    ----------
+    azimuth_rad : (n,) float64, increasing
+
+    Returns
+    -------
+    float
+        0 where there are no two directions.
+    """
+    steps_rad = np.sort(np.diff(azimuth_rad))
+    steps_rad = steps_rad[steps_rad <= _WIDEST_RAD]
+    turned_rad = np.cumsum(steps_rad)
+    return float(steps_rad[np.searchsorted(turned_rad, turned_rad[-1] / 2)]) if len(steps_rad) else 0.0
+
+
 def _star(origin_m, azimuth_rad, range_m):
     steps_rad = np.diff(azimuth_rad)
     steps_rad = steps_rad[steps_rad > 0]
-    width_rad = max(_SECTOR_RAD, _RAYS_A_SECTOR * float(np.median(steps_rad)) if len(steps_rad) else 0.0)
+    rays_rad = _RAYS_A_SECTOR * float(np.median(steps_rad)) if len(steps_rad) else 0.0
+    width_rad = max(_SECTOR_RAD, rays_rad, _COLUMNS_A_SECTOR * spacing_rad(azimuth_rad))
     count = max(int(2 * np.pi / width_rad), 3)
     width_rad = 2 * np.pi / count
     sector = np.minimum(((azimuth_rad + np.pi) / width_rad).astype(np.int64), count - 1)
@@ -58,7 +84,20 @@ def _star(origin_m, azimuth_rad, range_m):
 
 def together(stars):
     """Return the floor that any of the scans saw, a polygon or polygons."""
-    return polygons_of(shapely.union_all(stars, grid_size=1e-3)) if stars else MultiPolygon()
+    return polygons_of(joined(stars))
+
+
+def joined(polygons):
+    """Return the union of polygons, its corners on a grid of a millimetre."""
+    return shapely.union_all(polygons, grid_size=_GRID_M) if len(polygons) else MultiPolygon()
+
+
+def without(ground, taken):
+    """Return what of ground is not taken, its corners on a grid of a millimetre.
+
+    Without a grid GEOS 3.14 may return nothing where the ground just fills a hole of what is taken.
+    """
+    return shapely.difference(ground, taken, grid_size=_GRID_M)
 
 
 def polygons_of(geometry):

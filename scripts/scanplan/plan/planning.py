@@ -4,8 +4,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import shapely
-from shapely.geometry import MultiPolygon
 
 from scanplan import schemas
 from scanplan.plan import (
@@ -196,5 +194,5 @@ def _free(walls, floor, unpaired_m):
     """Return the polygons of floor that rays went over, openings with it, walls without."""
     strips = freespace.strips(walls, unpaired_m)
     ways = [freespace.opening_ground(w, g, unpaired_m) for w in walls for g in w.openings if not g.is_above_wall]
-    solid = shapely.difference(*(shapely.union_all(p, grid_size=1e-3) if p else MultiPolygon() for p in (strips, ways)))
-    return list(freespace.polygons_of(shapely.difference(floor, solid)).geoms)
+    solid = freespace.without(*map(freespace.joined, (strips, ways)))
+    return list(freespace.polygons_of(freespace.without(floor, solid)).geoms)

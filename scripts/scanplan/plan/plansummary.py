@@ -3,6 +3,9 @@
 import numpy as np
 
 from scanplan.errors import StageError
+from scanplan.plan import freespace
+
+_FAR_SHARE = 0.5
 
 
 def check_segments(path, segments, used, n_scans):
@@ -24,6 +27,35 @@ def check_plan(path, plan, n_segments, n_scans):
             f"{path}: none of {n_segments} wall segments of {n_scans} scans is supported enough to be drawn;"
             " lower plan.merge min_length_m, min_points_per_m, min_scans or lone_length_m"
         )
+
+
+def sparse(rays, min_opening_m):
+    """Say that rays lie too far apart for the narrowest opening; nothing where they do not.
+
+    An opening is told by rays through it. At a distance r it is met by ``width / (r * spacing)`` columns of rays; two
+    are needed, as one alone may pass beside it.
+
+    Parameters
+    ----------
+    rays : rays.Rays
+    min_opening_m : float
+
+    Returns
+    -------
+    str
+        Empty where most points are near enough.
+    """
+    spacing_rad = float(np.median([freespace.spacing_rad(azimuth_rad) for azimuth_rad in rays.azimuth_rad]))
+    range_m = [np.hypot(*(p[:, :2] - s[:2]).T) for p, s in zip(rays.xyz_m, rays.sensors_m, strict=True)]
+    enough_m = min_opening_m / (2 * spacing_rad) if spacing_rad > 0 else np.inf
+    far = float(np.mean(np.concatenate(range_m) > enough_m))
+    if far <= _FAR_SHARE:
+        return ""
+    return (
+        f"columns of rays lie {np.degrees(spacing_rad):.1f} deg apart: two meet an opening of {min_opening_m:g} m"
+        f" (plan.openings.min_opening_m) up to {enough_m:.1f} m away only, and {far:.0%} of the points are farther;"
+        " doors may be missed and rooms not be parted; record more directions a turn (simulate.sensor.n_azimuth)"
+    )
 
 
 def text(plan):

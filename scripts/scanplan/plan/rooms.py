@@ -78,8 +78,8 @@ def find(walls, stars, track_m, *, min_area_m2, min_walled, min_width_m, unpaire
         The largest first; they do not overlap.
     """
     strips = freespace.strips(walls, unpaired_m)
-    solid = shapely.union_all(strips, grid_size=_GRID_M) if strips else MultiPolygon()
-    seen = shapely.difference(freespace.together(stars) if floor is None else floor, solid)
+    solid = freespace.joined(strips)
+    seen = freespace.without(freespace.together(stars) if floor is None else floor, solid)
     parts = [p for p in shapely.get_parts(_without_necks(seen)) if p.area >= min_area_m2]
     track = shapely.points(track_m)
     found, taken = [], MultiPolygon()
@@ -87,7 +87,7 @@ def find(walls, stars, track_m, *, min_area_m2, min_walled, min_width_m, unpaire
         near = [(w, s) for w, s in zip(walls, strips, strict=True) if s.distance(part) <= _NEAR_M]
         outline = shapely.union_all([s for _, s in near]).buffer(_BESIDE_M) if near else MultiPolygon()
         drawn = _drawn(part, [w for w, _ in near], solid, outline, unpaired_m)
-        polygon = _largest(shapely.difference(drawn, shapely.union_all([solid, taken])))
+        polygon = _largest(freespace.without(drawn, freespace.joined([solid, taken])))
         if polygon is None or polygon.area < min_area_m2:
             continue
         walled = _walled(polygon, outline)
@@ -96,7 +96,7 @@ def find(walls, stars, track_m, *, min_area_m2, min_walled, min_width_m, unpaire
         is_wide = not polygon.buffer(-min_width_m / 2).is_empty
         if room.entered or (walled >= min_walled and is_wide):
             found.append(room)
-            taken = shapely.union_all([taken, polygon])
+            taken = freespace.joined([taken, polygon])
     return sorted(found, key=lambda r: (-r.polygon.area, *r.polygon.bounds))
 
 
@@ -130,7 +130,7 @@ def _drawn(part, walls, solid, outline, unpaired_m):
     chosen = share > _CELL_SHARE
     for i in np.flatnonzero(~chosen & (share > _LEAST_CELL_SHARE)):
         chosen[i] = _walled(cells[i], outline) >= _CLOSED_SHARE
-    drawn = _largest(shapely.difference(shapely.union_all(cells[chosen], grid_size=_GRID_M), solid))
+    drawn = _largest(freespace.without(freespace.joined(cells[chosen]), solid))
     if drawn is None:
         return rough
     both = shapely.intersection(drawn, rough).area / max(shapely.union(drawn, rough).area, 1e-9)

@@ -116,7 +116,8 @@ class Chains:
             stagelog.say(f"{source}: {told}")
         if track is None:
             raise StageError(
-                f"{self._where}: none of the poses of {source} is usable; set input.pose_topic to another topic"
+                f"{self._where}: none of the poses of {source} is usable{f' ({told})' if told else ''}; set"
+                " input.pose_topic to another topic, or take out what is recorded there twice"
             )
         return track, base
 

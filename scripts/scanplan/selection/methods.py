@@ -18,6 +18,20 @@ TABLES = {
 
 METHODS = tuple(TABLES)
 
+_OBJECTIVE = ("min_overlap", "budget")
+SETTINGS = {
+    "wall_length": _OBJECTIVE,
+    "visibility": _OBJECTIVE,
+    "cluster_hull": _OBJECTIVE,
+    "hull": _OBJECTIVE,
+    "streaming": ("streaming",),
+    "every_nth": (),
+    "distance": (),
+    "random": ("seed",),
+    "sequential": (),
+}
+"""Method to the settings that its order depends on: keys of `selection`, and what the scans may cost together."""
+
 WALL_LIMITS = (
     "reach_deg",
     "max_tilt_deg",

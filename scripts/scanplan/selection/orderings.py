@@ -33,7 +33,7 @@ _TOLD_SCANS = 15
 _TOLD_SHARE = 0.99
 
 
-def order(method, columns, *, seed, others=None, min_overlap=0.0, streaming_settings=None, budget=None):
+def order(method, columns, *, seed=None, others=None, min_overlap=0.0, streaming_settings=None, budget=None):
     """Put all scans of a table of hulls in the order of one method.
 
     Parameters
@@ -47,7 +47,7 @@ def order(method, columns, *, seed, others=None, min_overlap=0.0, streaming_sett
     columns : dict of str to (m,) numpy.ndarray
         `scan_id`, `n_points` and `geometry` of a table of hulls.
     seed : int, >= 0
-        For `random` only.
+        For `random` only, which needs it.
     others : dict of str to columns, optional
         The tables that `methods.TABLES` names for the method.
     min_overlap : float, 0 to 1
@@ -68,12 +68,14 @@ def order(method, columns, *, seed, others=None, min_overlap=0.0, streaming_sett
     Raises
     ------
     ValueError
-        If there is no such method.
+        If there is no such method, or no seed for `random`.
     StageError
         If a table is not of the scans that have hulls.
     """
     if method not in METHODS:
         raise ValueError(f"no method {method!r}, only {', '.join(METHODS)}")
+    if method == "random" and seed is None:
+        raise ValueError("a random order needs a seed")
     scan_ids, survey = np.unique(columns["scan_id"]), {"hulls": columns, **(others or {})}
     area = _AREAS.get(method, objective_cluster_hull).objective(scan_ids, survey)
     most_area = area.greedy()

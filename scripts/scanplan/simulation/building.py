@@ -11,6 +11,7 @@ from scanplan.simulation import route as routes
 DOORS = ("open", "closed")
 WINDOWS = ("glass", "empty")
 MESH_SUFFIXES = (".stl", ".obj", ".ply")
+GIVEN_WAY = "simulate.site.waypoints_m"
 
 
 @dataclass(frozen=True)
@@ -122,12 +123,12 @@ def routed(found, source, *, route, clearance_m, reach_m=0.0, waypoints_m=None, 
         raise ValueError(f"route {route!r} is none of {', '.join(routes.KINDS)}")
     if waypoints_m is not None and (route != "given" or start_m is not None):
         raise StageError(
-            f"simulate.site: waypoints_m are given, and route {route} with start_m {start_m}; keep route: given and"
+            f"{GIVEN_WAY}: they are given, and route {route} with start_m {start_m}; keep route: given and"
             " start_m: null, or leave out waypoints_m"
         )
     if route == "given" and start_m is not None and found.waypoints_m is not None:
         raise StageError(
-            f"simulate.site: start_m {start_m} is where a planned way begins, and the file gives one; set route:"
+            f"simulate.site.start_m: {start_m} is where a planned way begins, and the file gives one; set route:"
             " rooms or hallways"
         )
     way_m, notes = found.waypoints_m if waypoints_m is None else np.array(waypoints_m, float), ()
@@ -137,7 +138,8 @@ def routed(found, source, *, route, clearance_m, reach_m=0.0, waypoints_m=None, 
         here = (found.floor_m, found.obstacles_m, found.rooms)
         planned = routes.plan(*here, source, kind=kind, clearance_m=clearance_m, start_m=start_m, seed=seed)
         way_m, notes = planned.waypoints_m, _told(planned, source)
-    rover.check_way(way_m, found.floor_m, found.obstacles_m, source, reach_m=reach_m)
+    given = source if waypoints_m is None else f"{GIVEN_WAY}: in {source}"
+    rover.check_way(way_m, found.floor_m, found.obstacles_m, given, reach_m=reach_m)
     return replace(found, waypoints_m=way_m, truth=truth.with_visits(found.truth, way_m), notes=(*found.notes, *notes))
 
 

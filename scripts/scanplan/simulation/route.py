@@ -79,8 +79,8 @@ def plan(floor_m, obstacles_m, rooms, source, *, kind, clearance_m, start_m=None
     stops, reached, ways = _stops(grid, wanted, first, _SPACING_M)
     if not any(reached):
         raise StageError(
-            f"{source}: none of {len(wanted)} rooms can be entered with {clearance_m:g} m to either side; widen a door,"
-            " or give simulate.site.waypoints_m"
+            f"simulate.site.clearance_m: in {source}: none of {len(wanted)} rooms can be entered with {clearance_m:g} m"
+            " to either side; lower it, widen a door, or give simulate.site.waypoints_m"
         )
     if len(stops) < 2:
         raise StageError(f"{source}: its free floor is too small to drive on; give simulate.site.waypoints_m")
@@ -152,8 +152,9 @@ def _part_of(free, start_m, clearance_m, rooms, source):
     held = [part for part in parts if part.covers(Point(start_m))]
     if not held:
         raise StageError(
-            f"{source}: the start ({start_m[0]:g}, {start_m[1]:g}) lies within {clearance_m:g} m of a wall or furniture"
-            " or off the floor; move it to free floor"
+            f"simulate.site.start_m: in {source}: the start ({start_m[0]:g}, {start_m[1]:g}) lies within"
+            f" {clearance_m:g} m of a wall or furniture or off the floor; move it to free floor, or lower"
+            " simulate.site.clearance_m"
         )
     return held[0]
 

@@ -178,7 +178,7 @@ def of_model(model, *, n_azimuth, elevations_deg, field_deg, **common):
     """
     if (elevations_deg is None) == (model == "lidar"):
         raise StageError(
-            f"simulate.sensor: elevations_deg is {elevations_deg} with model {model};"
+            f"simulate.sensor.elevations_deg: is {elevations_deg} with model {model};"
             " list the beams of a lidar, and leave it null for vlp16 and laser"
         )
     if common["min_range_m"] >= common["max_range_m"]:
@@ -211,7 +211,7 @@ def errors_of(sensor, *, noise_m, bias_m, quantum_m, grazing_from_deg, glass_pas
     """
     if glass_pass + glass_drop > 1:
         raise StageError(
-            f"simulate.sensor: glass_pass {glass_pass:g} and glass_drop {glass_drop:g} add up to more than 1; lower one"
+            f"simulate.errors: glass_pass {glass_pass:g} and glass_drop {glass_drop:g} add up to more than 1; lower one"
         )
     of_beam = np.random.default_rng([seed, _BIAS_STREAM]).standard_normal(len(sensor.ring)) * bias_m
     bias = of_beam[sensor.ring].astype(np.float32)

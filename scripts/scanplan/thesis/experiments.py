@@ -12,13 +12,15 @@ ROOMS, DRIVE, LIMITS = "ring_rooms", "ring_hallways", "ring_hallways_limits"
 """Registered scans of all rooms (5.2); a drive through the hallways (5.4); the same drive with the thesis's limits."""
 
 
-def surveys(*, defaults, overrides, schema, config):
+def surveys(*, defaults, given, schema, config):
     """Gather the surveys of the thesis's experiments.
 
     Parameters
     ----------
-    defaults, overrides, schema : dict
-        See `configuration.for_dataset`; section `thesis` says which seeds.
+    defaults, schema : dict
+        See `configuration.for_dataset`.
+    given : sequence of configuration.Layer
+        The command line's settings; section `thesis` says which seeds.
     config : path-like
         The folder that holds `surveys`, `buildings` and `thesis.yaml`.
 
@@ -28,20 +30,21 @@ def surveys(*, defaults, overrides, schema, config):
         `ROOMS`, `DRIVE` and `LIMITS`, each by seed. Of `LIMITS` the recordings are those of `DRIVE`.
     """
     config = Path(config)
-    chosen = configuration.for_dataset(defaults, None, overrides, schema)["thesis"]
-    limits = configuration.merged(configuration.read_yaml(config / "thesis.yaml"), overrides)
+    chosen = configuration.for_dataset(defaults, given, schema)["thesis"]
+    limits = configuration.own_settings(config / "thesis.yaml")
 
-    def simulated(kind, over, seeds, survey=None):
-        settings = configuration.for_dataset(defaults, config / f"surveys/{survey or kind}.yaml", over, schema)
+    def simulated(kind, seeds, over=(), survey=None):
+        own = configuration.own_settings(config / f"surveys/{survey or kind}.yaml")
+        settings = configuration.for_dataset(defaults, (*own, *over, *given), schema)
         return tuple(
             inventory.simulated(f"{inventory.RESERVED}/{kind}_{seed}", seeded(settings, seed), config / "buildings")
             for seed in seeds
         )
 
-    drives = simulated(DRIVE, overrides, chosen["drive_seeds"])
-    strict = simulated(LIMITS, limits, chosen["drive_seeds"], survey=DRIVE)
+    drives = simulated(DRIVE, chosen["drive_seeds"])
+    strict = simulated(LIMITS, chosen["drive_seeds"], limits, survey=DRIVE)
     return {
-        ROOMS: simulated(ROOMS, overrides, chosen["seeds"]),
+        ROOMS: simulated(ROOMS, chosen["seeds"]),
         DRIVE: drives,
         LIMITS: tuple(
             replace(dataset, recordings=drive.recordings, truth=drive.truth, building=None)

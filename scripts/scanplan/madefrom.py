@@ -1,0 +1,79 @@
+"""What the results under results/<name>/ were made of, so that no dataset takes the place of another of its name."""
+
+import os
+from pathlib import Path
+
+from scanplan import atomic
+from scanplan.errors import StageError
+
+DEMO = "the simulated demo"
+_RECORD = "source.txt"
+
+
+def source(path):
+    """Return what identifies a dataset: its place, links followed; relative to here where it lies below.
+
+    So a project that is moved with its datasets keeps its results.
+
+    Parameters
+    ----------
+    path : path-like or None
+        As given on the command line; the demo if None.
+    """
+    if path is None:
+        return DEMO
+    place, here = os.path.realpath(path), os.path.realpath(".")
+    return os.path.relpath(place, here) if os.path.commonpath([place, here]) == here else place
+
+
+def check(found, replaced=()):
+    """Refuse to make results of one dataset in the place of those of another.
+
+    Parameters
+    ----------
+    found : dict of str to str
+        The datasets of a run: name and `source`.
+    replaced : str or sequence of str
+        Names of those whose results may be replaced.
+
+    Raises
+    ------
+    StageError
+    """
+    replaced = [replaced] if isinstance(replaced, str) else list(replaced)
+    for name in replaced:
+        if name not in found:
+            raise StageError(f"replace: {name} is no dataset of this run; it has {', '.join(found)}")
+    for name, new in found.items():
+        old = _recorded(name)
+        if old is not None and old != new and name not in replaced:
+            raise StageError(
+                f"results/{name}: was made of {old}, not of {new}; rename {new}, move results/{name} away, or have it"
+                f" replaced by `--config replace={name}` (make run: REPLACE={name})"
+            )
+
+
+def record(name, source):
+    """Note what the results of a dataset are made of, before any is."""
+    atomic.write_text(_place(name), f"{source}\n")
+
+
+def discard_lone(name):
+    """Remove the note, and the folder, where there are no results that it would be of."""
+    if _is_lone(_place(name)):
+        _place(name).unlink()
+        _place(name).parent.rmdir()
+
+
+def _place(name):
+    return Path("results", name, _RECORD)
+
+
+def _recorded(name):
+    """What results were made of; None where there are none, or nobody noted it."""
+    place = _place(name)
+    return place.read_text(encoding="utf-8").strip() if place.is_file() and not _is_lone(place) else None
+
+
+def _is_lone(place):
+    return place.parent.is_dir() and [entry.name for entry in place.parent.iterdir()] == [place.name]

@@ -1,0 +1,38 @@
+import numpy as np
+import pytest
+import shapely
+
+from scanplan.plan import freespace
+
+# the corners of a room of ring_office lie up to 1e-6 m off those of the hole that it fills among walls and neighbours
+ROOM = [
+    (25.386, 4.682),
+    (25.382, 0.18099999999999997),
+    (17.08, 0.18799999999999997),
+    (17.08399999914393, 4.689999036493659),
+]
+HOLE = [(17.084, 4.69), (17.08, 0.188), (25.382, 0.181), (25.386, 4.682)]
+AROUND = [
+    (16.887, 4.69),
+    (30.38599802557015, 8.079000186365468),
+    (30.38599802557015, -0.023765000763262482),
+    (16.883, 0.188),
+]
+
+
+def test_ground_that_fills_a_hole_of_what_is_taken_stays():
+    room, around = shapely.Polygon(ROOM), shapely.Polygon(AROUND, [HOLE])
+    assert freespace.without(room, around).area == pytest.approx(room.area, abs=1e-3)
+
+
+def test_ground_without_what_is_taken():
+    left = freespace.without(
+        shapely.box(0, 0, 4, 3), freespace.joined([shapely.box(1, -1, 2, 4), shapely.box(2, 0, 3, 3)])
+    )
+    assert sorted(p.bounds for p in shapely.get_parts(left)) == [(0, 0, 1, 3), (3, 0, 4, 3)]
+
+
+def test_nothing_joined_takes_nothing():
+    ground = shapely.box(0, 0, 4, 3)
+    assert freespace.without(ground, freespace.joined([])).equals(ground)
+    assert freespace.joined(np.array([ground, ground], object)).area == 12
