@@ -4,6 +4,8 @@ import json
 
 import ifcopenshell.geom
 import numpy as np
+import shapely
+from ifcopenshell.util.element import get_psets
 from ifcopenshell.util.placement import get_local_placement
 
 
@@ -39,6 +41,37 @@ def true_walls(text):
         volume = (length_m * values["height_m"] - void_m2) * values["thickness_m"]
         walls.append((line, values["thickness_m"], values["height_m"], volume))
     return walls
+
+
+def compared(model, text, *, within_m=0.35):
+    """Return how many walls of a model have a measured thickness, their volume, and that of the true ones they are.
+
+    The walls of a drawing overlap where they meet; what is built is there once, and of a wall of unknown thickness it
+    is that wall's.
+    """
+    known = true_walls(text)
+    measured = [w for w in model.by_type("IfcWall") if get_psets(w)["Scanplan_Evidence"]["ThicknessMeasured"]]
+    found = {_beside(wall, known, within_m) for wall in measured} - {None}
+    grounds = [shapely.buffer(shapely.LineString(line), thick_m / 2, cap_style="flat") for line, thick_m, *_ in known]
+    others = shapely.union_all([g for i, g in enumerate(grounds) if i not in found])
+    alone_m2 = sum(grounds[i].area for i in found)
+    built_m2 = shapely.difference(shapely.union_all([grounds[i] for i in found]), others).area
+    height_m = np.average([known[i][2] for i in found], weights=[grounds[i].area for i in found])
+    true_m3 = sum(known[i][3] for i in found) - (alone_m2 - built_m2) * height_m
+    return len(measured), sum(volume_m3(wall) for wall in measured), float(true_m3)
+
+
+def _beside(wall, known, within_m):
+    """Return the true wall, of `true_walls`, that an IfcWall runs beside for longest; None where there is none."""
+    axis = axis_m(wall)
+    along = frame(axis)[0]
+    shared_m = []
+    for line, *_ in known:
+        way, normal, length_m = frame(line)
+        near = np.abs((axis - line[0]) @ normal).max() <= within_m and abs(along @ way) >= np.cos(np.radians(10))
+        span_m = np.clip((axis - line[0]) @ way, 0, length_m)
+        shared_m.append(float(np.ptp(span_m)) if near else 0.0)
+    return int(np.argmax(shared_m)) if max(shared_m) > 0 else None
 
 
 def match(wall, known):

@@ -4,9 +4,11 @@ import importlib.util
 import time
 from types import SimpleNamespace
 
+import ifcopenshell
 import numpy as np
 import wallbench
 
+import ifcvolumes
 from scanplan import schemas, tables
 from scanplan.evaluation import (
     findings,
@@ -83,6 +85,10 @@ def _bench(folder, truth, settings):
         started = time.process_time()
         plan = _plan(seen, store, kept, rows, chosen, settings)
         _tell(f"plan of {name}", _of_plan(plan, true, floor), time.process_time() - started)
+    if (folder / "plan/plan.ifc").exists():
+        model, text = ifcopenshell.open(folder / "plan/plan.ifc"), (truth / "truth.geojson").read_text()
+        count, found_m3, true_m3 = ifcvolumes.compared(model, text)
+        print(f"  plan.ifc: {count} walls measured, {found_m3:.2f} m3 of {true_m3:.2f} ({found_m3 / true_m3 - 1:+.1%})")
     if not importlib.util.find_spec("cv2"):
         print("  raster and LSD: no OpenCV (cv2) here, so without its line detector", flush=True)
         return

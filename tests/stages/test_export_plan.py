@@ -135,3 +135,21 @@ def test_walls_that_scans_show_from_both_sides_have_their_true_volume(tmp_path):
     assert len(found) == 1
     for wall, true_m3 in found.items():
         assert ifcvolumes.volume_m3(wall) == pytest.approx(true_m3, rel=0.03)
+    assert ifcvolumes.compared(model, true_house())[1:] == pytest.approx([true_m3] * 2, rel=0.03)
+
+
+def test_true_walls_that_meet_are_built_once(plan, tmp_path):
+    model = ifcopenshell.open(exported(plan, tmp_path / "plan")["ifc"])
+    thick = {"kind": "wall", "thickness_m": 0.2, "height_m": 2.5}
+    lines = [
+        ([7.1, -0.1], [-0.1, -0.1]),
+        ([-0.1, -0.1], [-0.1, 3.1]),
+        ([-0.1, 3.1], [7.1, 3.1]),
+        ([4.05, -0.1], [4.05, 3.1]),
+    ]
+    drawn = [{"properties": thick, "geometry": {"coordinates": line}} for line in lines]
+    count, _, true_m3 = ifcvolumes.compared(model, json.dumps({"features": drawn}))
+    # each of the two corners and of the two junctions is in both its lines by a square, or a half, of the wall
+    whole_m3 = (7.2 + 3.2 + 7.2 + 3.2) * 0.2 * 2.5
+    assert count == 5
+    assert true_m3 == pytest.approx(whole_m3 - (2 * 0.1**2 + 2 * 0.1 * 0.2) * 2.5)
