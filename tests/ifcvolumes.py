@@ -43,7 +43,7 @@ def true_walls(text):
     return walls
 
 
-def compared(model, text, *, within_m=0.35):
+def compared(model, text, *, within_m=0.15):
     """Return how many walls of a model have a measured thickness, their volume, and that of the true ones they are.
 
     The walls of a drawing overlap where they meet; what is built is there once, and of a wall of unknown thickness it
@@ -51,7 +51,7 @@ def compared(model, text, *, within_m=0.35):
     """
     known = true_walls(text)
     measured = [w for w in model.by_type("IfcWall") if get_psets(w)["Scanplan_Evidence"]["ThicknessMeasured"]]
-    found = {_beside(wall, known, within_m) for wall in measured} - {None}
+    found = set().union(*(_beside(wall, known, within_m) for wall in measured))
     grounds = [shapely.buffer(shapely.LineString(line), thick_m / 2, cap_style="flat") for line, thick_m, *_ in known]
     others = shapely.union_all([g for i, g in enumerate(grounds) if i not in found])
     alone_m2 = sum(grounds[i].area for i in found)
@@ -62,16 +62,15 @@ def compared(model, text, *, within_m=0.35):
 
 
 def _beside(wall, known, within_m):
-    """Return the true wall, of `true_walls`, that an IfcWall runs beside for longest; None where there is none."""
+    """Return which of `true_walls` an IfcWall is: those that it runs beside for half of them or more."""
     axis = axis_m(wall)
-    along = frame(axis)[0]
-    shared_m = []
-    for line, *_ in known:
+    along, found = frame(axis)[0], set()
+    for i, (line, *_) in enumerate(known):
         way, normal, length_m = frame(line)
         near = np.abs((axis - line[0]) @ normal).max() <= within_m and abs(along @ way) >= np.cos(np.radians(10))
-        span_m = np.clip((axis - line[0]) @ way, 0, length_m)
-        shared_m.append(float(np.ptp(span_m)) if near else 0.0)
-    return int(np.argmax(shared_m)) if max(shared_m) > 0 else None
+        if near and np.ptp(np.clip((axis - line[0]) @ way, 0, length_m)) >= length_m / 2:
+            found.add(i)
+    return found
 
 
 def match(wall, known):
