@@ -79,25 +79,32 @@ def _star(origin_m, azimuth_rad, range_m):
     begin, end = (np.column_stack([np.cos(e), np.sin(e)]) * reach_m[:, None] for e in (edge[:-1], edge[1:]))
     corners = origin_m + np.stack([begin, end], axis=1).reshape(-1, 2)
     star = shapely.make_valid(Polygon(corners)).simplify(_SIMPLIFY_M)
-    return polygons_of(star.buffer(-_SPIKE_M, join_style="mitre").buffer(_SPIKE_M, join_style="mitre"))
+    return wide(star, _SPIKE_M)
 
 
 def together(stars):
     """Return the floor that any of the scans saw, a polygon or polygons."""
-    return polygons_of(joined(stars))
+    return joined(stars)
 
 
 def joined(polygons):
-    """Return the union of polygons, its corners on a grid of a millimetre."""
-    return shapely.union_all(polygons, grid_size=_GRID_M) if len(polygons) else MultiPolygon()
+    """Return the union of polygons, polygons whose corners are on a grid of a millimetre."""
+    return polygons_of(shapely.union_all(polygons, grid_size=_GRID_M)) if len(polygons) else MultiPolygon()
 
 
 def without(ground, taken):
-    """Return what of ground is not taken, its corners on a grid of a millimetre.
+    """Return what of ground is not taken, polygons whose corners are on a grid of a millimetre.
 
     Without a grid GEOS 3.14 may return nothing where the ground just fills a hole of what is taken.
     """
-    return shapely.difference(ground, taken, grid_size=_GRID_M)
+    return polygons_of(shapely.difference(polygons_of(ground), taken, grid_size=_GRID_M))
+
+
+def wide(ground, half_m):
+    """Return the polygons of ground without what is narrower than twice a width, its corners sharp."""
+    opened = ground.buffer(-half_m, join_style="mitre").buffer(half_m, join_style="mitre")
+    # where a narrow end is blunt its mitre is not, and would reach through a wall
+    return polygons_of(shapely.intersection(opened, polygons_of(ground), grid_size=_GRID_M))
 
 
 def polygons_of(geometry):

@@ -195,4 +195,4 @@ def _free(walls, floor, unpaired_m):
     strips = freespace.strips(walls, unpaired_m)
     ways = [freespace.opening_ground(w, g, unpaired_m) for w in walls for g in w.openings if not g.is_above_wall]
     solid = freespace.without(*map(freespace.joined, (strips, ways)))
-    return list(freespace.polygons_of(freespace.without(floor, solid)).geoms)
+    return list(freespace.without(floor, solid).geoms)

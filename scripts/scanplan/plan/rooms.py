@@ -10,7 +10,7 @@ from scanplan.plan import freespace
 
 _NEAR_M = 0.2
 _BESIDE_M = 0.12
-_NECK_M = 0.1
+_NECK_M = 0.1  # half of what is too narrow to join two parts of a floor
 _MARGIN_M = 0.5
 _CELL_SHARE = 0.5
 _LEAST_CELL_SHARE = 0.25
@@ -80,7 +80,7 @@ def find(walls, stars, track_m, *, min_area_m2, min_walled, min_width_m, unpaire
     strips = freespace.strips(walls, unpaired_m)
     solid = freespace.joined(strips)
     seen = freespace.without(freespace.together(stars) if floor is None else floor, solid)
-    parts = [p for p in shapely.get_parts(_without_necks(seen)) if p.area >= min_area_m2]
+    parts = [p for p in freespace.wide(seen, _NECK_M).geoms if p.area >= min_area_m2]
     track = shapely.points(track_m)
     found, taken = [], MultiPolygon()
     for part in sorted(parts, key=lambda p: (-p.area, *p.bounds)):
@@ -106,14 +106,8 @@ def _n_scans(polygon, stars):
     return int((shapely.area(shapely.intersection(polygon, near)) >= _STEP_M**2).sum())
 
 
-def _without_necks(floor):
-    """Part floor where less than twice `_NECK_M` joins it."""
-    return freespace.polygons_of(floor.buffer(-_NECK_M, join_style="mitre").buffer(_NECK_M, join_style="mitre"))
-
-
 def _largest(geometry):
-    parts = list(freespace.polygons_of(geometry.buffer(-_NECK_M).buffer(_NECK_M, join_style="mitre")).geoms)
-    return max(parts, key=lambda p: p.area, default=None)
+    return max(freespace.wide(geometry, _NECK_M).geoms, key=lambda p: p.area, default=None)
 
 
 def _drawn(part, walls, solid, outline, unpaired_m):
