@@ -11,6 +11,7 @@ from scanplan.plan import planning, rays, stretches, windows
 from scanplan.plan.faceline import Line
 from scanplan.plan.gaps import OPEN, Gap
 from scanplan.plan.planwalls import PlanWall
+from scanplan.plan.profiles import Seen
 from wallmaking import walls
 
 SENSORS = [(1, 2.5, 0.9), (2, 3, 0.9), (3, 2.5, 0.9), (2.5, 3.4, 0.9)]
@@ -119,6 +120,30 @@ def test_an_opening_is_not_found_again():
     known = Gap(2.0, 2.9, OPEN, 99, 0.0, np.nan, False)
     (found,) = windows.added([wall(looked, [known])], looked, SETTINGS.openings)
     assert found.openings == [known]
+
+
+@pytest.mark.parametrize(("to_m", "count"), [(2.1, 0), (1.4, 1)])
+def test_where_the_other_side_is_whole_there_is_no_window(to_m, count):
+    """A screen or a mirror; a frame seen from the other side is not enough."""
+    looked = look((1.0, 2.2), (0.85, 2.4))
+    back = Line(np.array([0.0, -0.2]), np.array([0.0, -1.0]))
+    place_m = np.sort(back.along_m(np.array([(x, -0.2) for x in np.arange(1.1, to_m, 0.04)])))
+    nothing = np.empty(0)
+    other = Seen(back, place_m, 0 * place_m, 0 * place_m + 1.5, np.zeros(len(place_m), int), nothing, nothing, nothing)
+    this = wall(looked)
+    behind = stretches.Stretch(other, -4.0, 0.0)
+    (found,) = windows.added([replace(this, left=[behind])], looked, SETTINGS.openings)
+    assert len(found.openings) == count
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_one_or_two_points_below_show_no_sill(count):
+    looked = look((1.0, 1.5), (0.85, 2.4))
+    line = seen(looked)
+    below = (line.hit_m > 1.1) & (line.hit_m < 1.4)
+    below[np.searchsorted(line.hit_m, [1.12, 1.38][:count])] = False
+    few = replace(line, **{c: getattr(line, c)[~below] for c in ("hit_m", "hit_z_m", "hit_off_m", "hit_scan")})
+    assert windows.find(looked, few, *ENDS_M, SETTINGS.openings) == []
 
 
 def test_a_plane_has_no_windows():
