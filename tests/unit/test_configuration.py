@@ -108,6 +108,8 @@ def test_a_dataset_that_is_none(defaults, schema, given, said):
         ("poses: {keep_every: !!int two}", "line 1, column 21: `two` is no int"),
         ("poses: !!map two", "is not valid YAML (line 1, column 8: expected a mapping"),
         (f"poses: {'[' * 3000}", "is nested too deeply"),
+        ("registration: {icp_distances_m: [.nan]}", "registration.icp_distances_m: [nan] is no finite number"),
+        ("simulate: {site: {waypoints_m: [[0, .inf], [1, 1]]}}", "is no finite number"),
         ("replace: other", "given on the command line"),
         ("dataset: other", "given on the command line"),
         ("plan: {method: best}", "plan.method: 'best' is not one of"),
