@@ -44,6 +44,19 @@ def seen(looked):
     return replace(line, line=Line(line.line.at(begin_m), line.line.normal), hit_m=line.hit_m - begin_m)
 
 
+def with_points(line, places_m):
+    """More points at the height of a chest."""
+    line = replace(
+        line,
+        hit_m=np.concatenate([line.hit_m, places_m]),
+        hit_z_m=np.concatenate([line.hit_z_m, 0 * places_m + 1.5]),
+        hit_off_m=np.concatenate([line.hit_off_m, 0 * places_m]),
+        hit_scan=np.concatenate([line.hit_scan, np.zeros(len(places_m), int)]),
+    )
+    order = np.argsort(line.hit_m, kind="stable")
+    return replace(line, **{c: getattr(line, c)[order] for c in ("hit_m", "hit_z_m", "hit_off_m", "hit_scan")})
+
+
 def find(*part, **more):
     looked = look(*part, **more)
     return windows.find(looked, seen(looked), *ENDS_M, SETTINGS.openings)
@@ -85,18 +98,15 @@ def test_one_scan_is_not_enough():
 def test_where_no_ray_is_sent_nothing_is_known():
     """From 1 m away the highest beam meets the wall at 1.17 m; of the wall beside more is seen from further off."""
     looked = look((1.0, 2.2), (0.85, 2.4), sensors=[(1.6, 1, 0.9), (1.4, 0.9, 0.9)])
-    line = seen(looked)
-    more_m = np.array([0.2, 0.5, 0.9, 2.3, 2.6, 3.0])
-    line = replace(
-        line,
-        hit_m=np.concatenate([line.hit_m, more_m]),
-        hit_z_m=np.concatenate([line.hit_z_m, 0 * more_m + 1.5]),
-        hit_off_m=np.concatenate([line.hit_off_m, 0 * more_m]),
-        hit_scan=np.concatenate([line.hit_scan, np.zeros(len(more_m), int)]),
-    )
-    order = np.argsort(line.hit_m, kind="stable")
-    line = replace(line, **{c: getattr(line, c)[order] for c in ("hit_m", "hit_z_m", "hit_off_m", "hit_scan")})
+    line = with_points(seen(looked), np.repeat([0.2, 0.5, 0.9, 2.3, 2.6, 3.0], 3))
     assert windows.find(looked, line, *ENDS_M, SETTINGS.openings) == []
+
+
+@pytest.mark.parametrize(("places_m", "count"), [([1.6], 1), ([1.4, 1.8], 1), ([1.6] * 2, 1), ([1.6] * 3, 2)])
+def test_stray_points_part_no_window_and_a_mullion_does(places_m, count):
+    looked = look((1.0, 2.2), (0.85, 2.4))
+    line = with_points(seen(looked), np.array(places_m))
+    assert len(windows.find(looked, line, *ENDS_M, SETTINGS.openings)) == count
 
 
 def wall(looked, openings=()):

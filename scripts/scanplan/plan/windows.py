@@ -83,11 +83,19 @@ def find(rays, seen, low_m, high_m, settings):
     """
     points = seen.hits(low_m, high_m)
     place_m, z_m = seen.hit_m[points], seen.hit_z_m[points]
-    beside_m = place_m[_at_chest(z_m)]
+    beside_m = _not_alone(place_m[_at_chest(z_m)])
     spans_m = np.column_stack([beside_m[:-1], beside_m[1:]])
     spans_m = spans_m[np.diff(spans_m, axis=1)[:, 0] >= settings.min_opening_m]
     judged = [_judged(rays, seen, *span_m) for span_m in spans_m.tolist()]
     return [window for window in judged if window is not None]
+
+
+def _not_alone(place_m):
+    """Return those of sorted places that are within a column of enough others: one or two points may be stray."""
+    low, high = (
+        np.searchsorted(place_m, place_m + way * COLUMN_M / 2, side) for way, side in ((-1, "left"), (1, "right"))
+    )
+    return place_m[high - low >= gaps.FEW_RAYS]
 
 
 def _judged(rays, seen, low_m, high_m):
