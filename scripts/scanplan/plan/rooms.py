@@ -106,7 +106,9 @@ def _n_scans(polygon, stars):
 
 def _without_necks(floor):
     """Part floor where less than twice `_NECK_M` joins it."""
-    return freespace.polygons_of(floor.buffer(-_NECK_M, join_style="mitre").buffer(_NECK_M, join_style="mitre"))
+    # each by itself: together, a corner's spike may join two rooms through the wall between them
+    parts = shapely.get_parts(floor.buffer(-_NECK_M, join_style="mitre"))
+    return freespace.polygons_of(shapely.geometrycollections(shapely.buffer(parts, _NECK_M, join_style="mitre")))
 
 
 def _largest(geometry):
