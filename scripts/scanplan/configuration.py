@@ -85,8 +85,14 @@ def check(settings, schema, origin):
     if faults:
         raise StageError(f"{origin}: {_explain(faults[0], origin)}; {_MANUAL}")
     for key, value in leaves(settings):
-        if isinstance(value, float) and not math.isfinite(value):
+        if not _is_finite(value):
             raise StageError(f"{origin}: {key}: {value} is no finite number; {_MANUAL}")
+
+
+def _is_finite(value):
+    if isinstance(value, list):
+        return all(map(_is_finite, value))
+    return not isinstance(value, float) or math.isfinite(value)
 
 
 def for_dataset(defaults, layers, schema):
@@ -173,7 +179,7 @@ def located(fault, layers):
         The settings of the dataset.
     """
     key = fault.partition(":")[0]
-    origin = origin_of(layers, key) if re.fullmatch(r"[a-z_]+(\.[a-z_]+)+", key) else None
+    origin = origin_of(layers, key) if re.fullmatch(r"[a-z0-9_]+(\.[a-z0-9_]+)+", key) else None
     return f"{origin}: {fault}" if origin else fault
 
 

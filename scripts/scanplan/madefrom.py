@@ -62,7 +62,8 @@ def discard_lone(name):
     """Remove the note, and the folder, where there are no results that it would be of."""
     if _is_lone(_place(name)):
         _place(name).unlink()
-        _place(name).parent.rmdir()
+        for folder, _, _ in os.walk(_place(name).parent, topdown=False):
+            Path(folder).rmdir()
 
 
 def _place(name):
@@ -76,4 +77,5 @@ def _recorded(name):
 
 
 def _is_lone(place):
-    return place.parent.is_dir() and [entry.name for entry in place.parent.iterdir()] == [place.name]
+    """Tell whether there is a note and nothing else, but for folders that a killed run left empty."""
+    return place.is_file() and all(entry == place or entry.is_dir() for entry in place.parent.rglob("*"))

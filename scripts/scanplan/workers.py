@@ -10,6 +10,7 @@ from scanplan import stagelog
 from scanplan.errors import StageError
 
 _WAITING_PER_CORE = 2
+_fault = None
 
 
 @contextmanager
@@ -58,14 +59,25 @@ def _begin(setup, state):
 
 
 def _begin_worker(setup, state):
+    global _fault
     stagelog.end_with_parent()
-    _begin(setup, state)
+    try:
+        _begin(setup, state)
+    except Exception as error:
+        # raised here, it would look as if the process had been ended from outside
+        _fault = error
+
+
+def _work(function, job):
+    if _fault is not None:
+        raise _fault
+    return function(*job)
 
 
 def _in_order(executor, function, jobs, most_waiting):
     waiting = deque()
     for job in jobs:
-        waiting.append(executor.submit(function, *job))
+        waiting.append(executor.submit(_work, function, job))
         while waiting and (waiting[0].done() or len(waiting) > most_waiting):
             yield waiting.popleft().result()
     while waiting:

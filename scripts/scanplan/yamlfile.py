@@ -12,7 +12,8 @@ class _Loader(yaml.SafeLoader):
     """Plain data only; a key that is given twice is refused, as its first values would be lost without a word."""
 
     def construct_mapping(self, node, deep=False):
-        keys = [key for key, _ in node.value if isinstance(key, yaml.ScalarNode)]
+        pairs = node.value if isinstance(node, yaml.MappingNode) else ()
+        keys = [key for key, _ in pairs if isinstance(key, yaml.ScalarNode)]
         values = [key.value for key in keys]
         for i, key in enumerate(keys):
             if key.value in values[:i]:
@@ -20,6 +21,15 @@ class _Loader(yaml.SafeLoader):
                     problem=f"`{key.value}` is given twice, keep one of the two", problem_mark=key.start_mark
                 )
         return super().construct_mapping(node, deep)
+
+    def construct_object(self, node, deep=False):
+        try:
+            return super().construct_object(node, deep)
+        except (ValueError, LookupError, AttributeError):
+            # what looks like a date or is tagged as a number, and is none
+            raise yaml.constructor.ConstructorError(
+                problem=f"`{node.value}` is no {node.tag.rpartition(':')[2]}", problem_mark=node.start_mark
+            ) from None
 
 
 def read_yaml(path):
@@ -36,6 +46,8 @@ def read_yaml(path):
         mark = error.problem_mark or error.context_mark
         place = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
         raise StageError(f"{path}: is not valid YAML ({place}{error.problem or error.context}); mend it") from None
+    except RecursionError:
+        raise StageError(f"{path}: is nested too deeply for settings; mend it") from None
     except (yaml.YAMLError, UnicodeDecodeError) as error:
         raise StageError(f"{path}: is not valid YAML ({error}); write it as text, in UTF-8") from None
     except FileNotFoundError:

@@ -40,7 +40,7 @@ def test_nothing_joined_takes_nothing():
 
 def test_what_is_narrow_goes_and_what_is_wide_keeps_its_corners():
     dumb_bell = freespace.joined([shapely.box(0, 0, 2, 2), shapely.box(2, 1, 3, 1.15), shapely.box(3, 0, 5, 2)])
-    parts = freespace.wide(dumb_bell, 0.1).geoms
+    parts = freespace.wide(dumb_bell, 0.1)
     assert sorted(p.bounds for p in parts) == [(0, 0, 2, 2), (3, 0, 5, 2)]
     assert [p.area for p in parts] == pytest.approx([4, 4])
 
@@ -48,6 +48,6 @@ def test_what_is_narrow_goes_and_what_is_wide_keeps_its_corners():
 def test_a_blunt_wedge_reaches_through_no_wall():
     """Its sides would meet 2.5 mm beyond a wall of 0.1 m, in the next room."""
     wedge, beyond = shapely.Polygon([(0, 0), (4, 1.95), (4, 2.05), (0, 4)]), shapely.box(4.1, 0, 8, 4)
-    parts = freespace.wide(shapely.MultiPolygon([wedge, beyond]), 0.1).geoms
+    parts = freespace.wide(shapely.MultiPolygon([wedge, beyond]), 0.1)
     assert len(parts) == 2
     assert max(p.difference(wedge).difference(beyond).area for p in parts) < 1e-3

@@ -79,6 +79,32 @@ def test_the_walls_beside_a_niche_stay_for_they_are_longer():
     assert kept(niche, beside) == [True, True, True]
 
 
+def across(x_m, y_m, normal_x):
+    """Return the stretch of a wall along x = x_m, over a span of y."""
+    line = Line(np.array([x_m, 0.0]), np.array([normal_x, 0.0]))
+    places = np.sort(np.linspace(*y_m, 50) * line.direction[1])
+    nothing = [np.empty(0)] * 2 + [np.empty(0, int)]
+    seen = Seen(line, places, 0 * places, 0 * places + 1.5, np.zeros(50, int), *nothing)
+    return [Stretch(seen, float(places[0]), float(places[-1]))]
+
+
+@pytest.mark.parametrize("mirrored", [1, -1])
+@pytest.mark.parametrize("begin_m", [0.5, 1.7])
+def test_the_wall_of_a_room_beside_a_deeper_one_stays(mirrored, begin_m):
+    # it is drawn into the wall between the rooms, which has a door next to the corner, or none
+    deeper, shallow = (sorted((mirrored * a, mirrored * b)) for a, b in ((2.2, 6.2), (0.0, 2.1)))
+    parting = across(2.0 * mirrored, (begin_m, 4.0), -mirrored)
+    assert kept(stretches(0.0, deeper), stretches(0.5, shallow), parting) == [True, True, True]
+    # what faces the other room, or ends this one elsewhere, parts nothing
+    for other in (across(2.2 * mirrored, (0.0, 4.0), mirrored), across(6.2 * mirrored, (0.0, 4.0), -mirrored)):
+        assert kept(stretches(0.0, deeper), stretches(0.5, shallow), other) == [True, False, True]
+
+
+def test_the_side_of_a_cabinet_is_no_end_of_the_room():
+    deep, side = stretches(0.7, (4.2, 5.2)), across(4.2, (0.0, 0.7), -1.0)
+    assert kept(WALL, stretches(0.5, (2.0, 4.0)), deep, side) == [True, True, False, False, True]
+
+
 def test_a_shelf_before_a_cabinet_goes_with_it():
     assert kept(WALL, stretches(0.5, (2.0, 4.0)), stretches(0.8, (2.0, 3.0))) == [True, True, False, False]
 

@@ -50,6 +50,8 @@ def test_results_of_nobody_knows_what_and_no_results_are_in_nobodys_way():
 def test_a_note_without_results_goes():
     made("x", "a/x")
     madefrom.record("begun", "a/begun")
+    Path("results/begun/plan/empty").mkdir(parents=True)
+    madefrom.check({"begun": "b/begun"})
     for name in ("x", "begun", "never"):
         madefrom.discard_lone(name)
     assert Path("results/x/source.txt").read_text() == "a/x\n"

@@ -11,6 +11,7 @@ from scanplan.plan import planning, rays, stretches, windows
 from scanplan.plan.faceline import Line
 from scanplan.plan.gaps import OPEN, Gap
 from scanplan.plan.planwalls import PlanWall
+from scanplan.plan.profiles import Seen
 from wallmaking import walls
 
 SENSORS = [(1, 2.5, 0.9), (2, 3, 0.9), (3, 2.5, 0.9), (2.5, 3.4, 0.9)]
@@ -41,6 +42,19 @@ def seen(looked):
     line = stretches.look_along(looked, SOUTH, 0.0, 4.0, SETTINGS.reading)
     begin_m = float(line.line.along_m(np.zeros(2)))
     return replace(line, line=Line(line.line.at(begin_m), line.line.normal), hit_m=line.hit_m - begin_m)
+
+
+def with_points(line, places_m):
+    """More points at the height of a chest."""
+    line = replace(
+        line,
+        hit_m=np.concatenate([line.hit_m, places_m]),
+        hit_z_m=np.concatenate([line.hit_z_m, 0 * places_m + 1.5]),
+        hit_off_m=np.concatenate([line.hit_off_m, 0 * places_m]),
+        hit_scan=np.concatenate([line.hit_scan, np.zeros(len(places_m), int)]),
+    )
+    order = np.argsort(line.hit_m, kind="stable")
+    return replace(line, **{c: getattr(line, c)[order] for c in ("hit_m", "hit_z_m", "hit_off_m", "hit_scan")})
 
 
 def find(*part, **more):
@@ -84,18 +98,15 @@ def test_one_scan_is_not_enough():
 def test_where_no_ray_is_sent_nothing_is_known():
     """From 1 m away the highest beam meets the wall at 1.17 m; of the wall beside more is seen from further off."""
     looked = look((1.0, 2.2), (0.85, 2.4), sensors=[(1.6, 1, 0.9), (1.4, 0.9, 0.9)])
-    line = seen(looked)
-    more_m = np.array([0.2, 0.5, 0.9, 2.3, 2.6, 3.0])
-    line = replace(
-        line,
-        hit_m=np.concatenate([line.hit_m, more_m]),
-        hit_z_m=np.concatenate([line.hit_z_m, 0 * more_m + 1.5]),
-        hit_off_m=np.concatenate([line.hit_off_m, 0 * more_m]),
-        hit_scan=np.concatenate([line.hit_scan, np.zeros(len(more_m), int)]),
-    )
-    order = np.argsort(line.hit_m, kind="stable")
-    line = replace(line, **{c: getattr(line, c)[order] for c in ("hit_m", "hit_z_m", "hit_off_m", "hit_scan")})
+    line = with_points(seen(looked), np.repeat([0.2, 0.5, 0.9, 2.3, 2.6, 3.0], 3))
     assert windows.find(looked, line, *ENDS_M, SETTINGS.openings) == []
+
+
+@pytest.mark.parametrize(("places_m", "count"), [([1.6], 1), ([1.4, 1.8], 1), ([1.6] * 2, 1), ([1.6] * 3, 2)])
+def test_stray_points_part_no_window_and_a_mullion_does(places_m, count):
+    looked = look((1.0, 2.2), (0.85, 2.4))
+    line = with_points(seen(looked), np.array(places_m))
+    assert len(windows.find(looked, line, *ENDS_M, SETTINGS.openings)) == count
 
 
 def wall(looked, openings=()):
@@ -119,6 +130,30 @@ def test_an_opening_is_not_found_again():
     known = Gap(2.0, 2.9, OPEN, 99, 0.0, np.nan, False)
     (found,) = windows.added([wall(looked, [known])], looked, SETTINGS.openings)
     assert found.openings == [known]
+
+
+@pytest.mark.parametrize(("to_m", "count"), [(2.1, 0), (1.4, 1)])
+def test_where_the_other_side_is_whole_there_is_no_window(to_m, count):
+    """A screen or a mirror; a frame seen from the other side is not enough."""
+    looked = look((1.0, 2.2), (0.85, 2.4))
+    back = Line(np.array([0.0, -0.2]), np.array([0.0, -1.0]))
+    place_m = np.sort(back.along_m(np.array([(x, -0.2) for x in np.arange(1.1, to_m, 0.04)])))
+    nothing = np.empty(0)
+    other = Seen(back, place_m, 0 * place_m, 0 * place_m + 1.5, np.zeros(len(place_m), int), nothing, nothing, nothing)
+    this = wall(looked)
+    behind = stretches.Stretch(other, -4.0, 0.0)
+    (found,) = windows.added([replace(this, left=[behind])], looked, SETTINGS.openings)
+    assert len(found.openings) == count
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_one_or_two_points_below_show_no_sill(count):
+    looked = look((1.0, 1.5), (0.85, 2.4))
+    line = seen(looked)
+    below = (line.hit_m > 1.1) & (line.hit_m < 1.4)
+    below[np.searchsorted(line.hit_m, [1.12, 1.38][:count])] = False
+    few = replace(line, **{c: getattr(line, c)[~below] for c in ("hit_m", "hit_z_m", "hit_off_m", "hit_scan")})
+    assert windows.find(looked, few, *ENDS_M, SETTINGS.openings) == []
 
 
 def test_a_plane_has_no_windows():

@@ -52,3 +52,13 @@ def end_yourself(sent):
 def test_a_worker_that_is_killed_ends_the_stage_in_one_line():
     with pytest.raises(StageError, match="ended from outside, perhaps for want of memory"), workers.pool(2) as run:
         list(run(end_yourself, [(signal.SIGKILL,)]))
+
+
+def refuse():
+    raise ValueError("no mesh")
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_a_setup_that_fails_is_no_killed_worker(threads):
+    with pytest.raises(ValueError, match="no mesh"), workers.pool(threads, refuse) as run:
+        list(run(abs, [(1,)]))

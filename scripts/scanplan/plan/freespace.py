@@ -79,7 +79,7 @@ def _star(origin_m, azimuth_rad, range_m):
     begin, end = (np.column_stack([np.cos(e), np.sin(e)]) * reach_m[:, None] for e in (edge[:-1], edge[1:]))
     corners = origin_m + np.stack([begin, end], axis=1).reshape(-1, 2)
     star = shapely.make_valid(Polygon(corners)).simplify(_SIMPLIFY_M)
-    return wide(star, _SPIKE_M)
+    return joined(wide(star, _SPIKE_M))
 
 
 def together(stars):
@@ -101,10 +101,20 @@ def without(ground, taken):
 
 
 def wide(ground, half_m):
-    """Return the polygons of ground without what is narrower than twice a width, its corners sharp."""
-    opened = ground.buffer(-half_m, join_style="mitre").buffer(half_m, join_style="mitre")
-    # where a narrow end is blunt its mitre is not, and would reach through a wall
-    return polygons_of(shapely.intersection(opened, polygons_of(ground), grid_size=_GRID_M))
+    """Return the polygons of ground without what is narrower than twice a width, their corners sharp.
+
+    Each is grown by itself and within the ground: at a blunt, narrow end the mitre reaches on, maybe through a wall or
+    into what a neck leads to.
+
+    Returns
+    -------
+    list of shapely.Polygon
+    """
+    ground, found = polygons_of(ground), []
+    for core in polygons_of(ground.buffer(-half_m, join_style="mitre")).geoms:
+        grown = shapely.intersection(core.buffer(half_m, join_style="mitre"), ground, grid_size=_GRID_M)
+        found += [p for p in polygons_of(grown).geoms if p.intersects(core)]
+    return found
 
 
 def polygons_of(geometry):

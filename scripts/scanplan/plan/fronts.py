@@ -42,8 +42,8 @@ def without(stretches, limits, *, planar):
 
     A single scan tells furniture by the wall behind where it sees both. From where it hides that wall, and no ray
     passes over it, it looks like a wall; all scans together know better. The wall is what is longer of the two lines:
-    of a niche and the walls beside it, these stay. A pilaster of which no more is seen than of a cabinet goes with
-    those.
+    of a niche and the walls beside it, these stay, as does the wall of a room beside one that is deeper. A pilaster of
+    which no more is seen than of a cabinet goes with those.
 
     Parameters
     ----------
@@ -85,7 +85,8 @@ def _stand_before(stretches, limits):
     line_m = _line_lengths_m(stretches)
     before &= line_m[:, None] < line_m
     for one, other in np.argwhere(before):
-        before[one, other] = _is_beside(stretches[one], ends[other], _front(stretches[one], stretches, limits), limits)
+        front_m, room_m = (of(stretches[one], stretches, limits) for of in (_front, _room))
+        before[one, other] = _is_beside(stretches[one], ends[other], front_m, room_m, limits)
     return before
 
 
@@ -110,9 +111,27 @@ def _front(stretch, stretches, limits):
     return low_m, high_m
 
 
-def _is_beside(stretch, ends, front_m, limits):
-    """Tell whether enough of what has these ends (2, 2) is seen beside a front, on either side."""
-    begin_m, end_m = np.sort(stretch.line.along_m(ends))
+def _room(stretch, stretches, limits):
+    """Return from where to where along its line the room before a stretch goes: to what stands across and faces it."""
+    middle_m = (stretch.low_m + stretch.high_m) / 2
+    low_m, high_m = -math.inf, math.inf
+    for s in stretches:
+        facing = float(s.line.normal @ stretch.line.direction)
+        before_m = np.sort(stretch.line.offset_m(s.ends))
+        # a door may be next to the corner
+        if abs(facing) < _PARALLEL or before_m[0] > limits.door_width_m or before_m[1] < _BESIDE_M:
+            continue
+        place_m = float(stretch.line.along_m(s.ends).mean())
+        if facing > 0 and place_m < middle_m:
+            low_m = max(low_m, place_m)
+        elif facing < 0 and place_m > middle_m:
+            high_m = min(high_m, place_m)
+    return low_m, high_m
+
+
+def _is_beside(stretch, ends, front_m, room_m, limits):
+    """Tell whether enough of what has these ends (2, 2) is seen beside a front, on either side, in the same room."""
+    begin_m, end_m = np.clip(np.sort(stretch.line.along_m(ends)), *room_m)
     sides = (
         (begin_m, min(end_m, front_m[0]), front_m[0] - end_m),
         (max(begin_m, front_m[1]), end_m, begin_m - front_m[1]),

@@ -19,7 +19,7 @@ _FLOOR_NOISE_M = 0.04
 _STEP_COLUMN_M = 0.1
 _STEP_SHARE = 0.7
 _DOORSTEP_M = 0.06
-_FEW_RAYS = 3  # one or two may be stray
+FEW_RAYS = 3  # one or two may be stray
 _LEVEL_M = 0.03  # noise of a range seen along 15 degrees, of poses and of beams
 _LEVEL_SCANS = 2  # one scan's beam meets a whole wall at one height
 _BEHIND_M = 0.02  # noise of a range
@@ -217,12 +217,12 @@ def lintel_m(seen, low_m, high_m, free_m, least_m):
     inner = seen.hits(low_m + REVEAL_M, high_m - REVEAL_M)
     above = seen.hit_z_m[inner] > least_m
     above_m, off_m, scan = (of[inner][above] for of in (seen.hit_z_m, seen.hit_off_m, seen.hit_scan))
-    if len(above_m) < _FEW_RAYS:
+    if len(above_m) < FEW_RAYS:
         return np.nan
     lowest_m = np.percentile(above_m, 5)
     level = np.abs(above_m - lowest_m) <= _LEVEL_M
     behind = level & (off_m < -_BEHIND_M)
-    enough = max(_FEW_RAYS, _BEHIND_SHARE * level.sum())
+    enough = max(FEW_RAYS, _BEHIND_SHARE * level.sum())
     if behind.sum() >= enough and len(np.unique(scan[behind])) >= _LEVEL_SCANS:
         return float(np.median(above_m[level]))
     return float((free_m + lowest_m) / 2) if lowest_m - free_m <= _MOST_DOUBT_M + _ROUND_M else np.nan
@@ -230,4 +230,4 @@ def lintel_m(seen, low_m, high_m, free_m, least_m):
 
 def highest_m(z_m):
     """Return the height that not just one or two of heights (n,), n >= 3, reach."""
-    return float(np.partition(z_m, -_FEW_RAYS)[-_FEW_RAYS])
+    return float(np.partition(z_m, -FEW_RAYS)[-FEW_RAYS])

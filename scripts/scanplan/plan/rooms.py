@@ -80,7 +80,7 @@ def find(walls, stars, track_m, *, min_area_m2, min_walled, min_width_m, unpaire
     strips = freespace.strips(walls, unpaired_m)
     solid = freespace.joined(strips)
     seen = freespace.without(freespace.together(stars) if floor is None else floor, solid)
-    parts = [p for p in freespace.wide(seen, _NECK_M).geoms if p.area >= min_area_m2]
+    parts = [p for p in freespace.wide(seen, _NECK_M) if p.area >= min_area_m2]
     track = shapely.points(track_m)
     found, taken = [], MultiPolygon()
     for part in sorted(parts, key=lambda p: (-p.area, *p.bounds)):
@@ -107,7 +107,7 @@ def _n_scans(polygon, stars):
 
 
 def _largest(geometry):
-    return max(freespace.wide(geometry, _NECK_M).geoms, key=lambda p: p.area, default=None)
+    return max(freespace.wide(geometry, _NECK_M), key=lambda p: p.area, default=None)
 
 
 def _drawn(part, walls, solid, outline, unpaired_m):

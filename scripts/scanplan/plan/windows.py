@@ -43,9 +43,22 @@ def _with_windows(wall, rays, settings):
         for window in find(rays, seen, *span_m, settings):
             ends = seen.line.at(np.array([window.low_m, window.high_m]))
             low_m, high_m = np.sort(wall.line.along_m(ends)).tolist()
-            if all(high_m <= gap.low_m or low_m >= gap.high_m for gap in found):
+            is_known = any(low_m < gap.high_m and high_m > gap.low_m for gap in found)
+            if not is_known and not any(_is_wall(other, ends) for other in lines):
                 found.append(replace(window, low_m=low_m, high_m=high_m))
     return replace(wall, openings=sorted(found, key=lambda gap: gap.low_m))
+
+
+def _is_wall(seen, ends):
+    """Tell whether a line shows wall between two ends, at the height of a chest: a screen or a mirror hangs there."""
+    low_m, high_m = np.sort(seen.line.along_m(ends))
+    points = seen.hits(low_m, high_m)
+    at_chest = _at_chest(seen.hit_z_m[points])
+    return filled(seen.hit_m[points][at_chest], low_m, high_m) > _MOST_IN_IT
+
+
+def _at_chest(z_m):
+    return (z_m >= _CHEST_M[0]) & (z_m < _CHEST_M[1])
 
 
 def find(rays, seen, low_m, high_m, settings):
@@ -70,18 +83,27 @@ def find(rays, seen, low_m, high_m, settings):
     """
     points = seen.hits(low_m, high_m)
     place_m, z_m = seen.hit_m[points], seen.hit_z_m[points]
-    beside_m = place_m[(z_m >= _CHEST_M[0]) & (z_m < _CHEST_M[1])]
+    beside_m = _not_alone(place_m[_at_chest(z_m)])
     spans_m = np.column_stack([beside_m[:-1], beside_m[1:]])
     spans_m = spans_m[np.diff(spans_m, axis=1)[:, 0] >= settings.min_opening_m]
     judged = [_judged(rays, seen, *span_m) for span_m in spans_m.tolist()]
     return [window for window in judged if window is not None]
 
 
+def _not_alone(place_m):
+    """Return those of sorted places that are within a column of enough others: one or two points may be stray."""
+    low, high = (
+        np.searchsorted(place_m, place_m + way * COLUMN_M / 2, side) for way, side in ((-1, "left"), (1, "right"))
+    )
+    return place_m[high - low >= gaps.FEW_RAYS]
+
+
 def _judged(rays, seen, low_m, high_m):
     """Return what is between two places of a line as a window, None if it is none."""
     inner = seen.hits(low_m + gaps.REVEAL_M, high_m - gaps.REVEAL_M)
     below = seen.hit_z_m[inner] < _CHEST_M[0]
-    if filled(seen.hit_m[inner][below], low_m + gaps.REVEAL_M, high_m - gaps.REVEAL_M) < _SILL_SHARE:
+    sill_share = filled(seen.hit_m[inner][below], low_m + gaps.REVEAL_M, high_m - gaps.REVEAL_M)
+    if below.sum() < gaps.FEW_RAYS or sill_share < _SILL_SHARE:
         return None
     count = max(int((high_m - low_m) / COLUMN_M), 1)
     reached, _, in_wall = sentrays.to_line(rays, seen.line, low_m, count, _CHEST_M).reached(least_scans=_LEAST_SCANS)
