@@ -301,7 +301,7 @@ def test_a_laser_scanners_survey_is_planar_and_on_the_walls(tmp_path, building, 
 
 def test_contradicting_settings_end_in_one_line(tmp_path, building):
     for wrong, message in (
-        ({"sensor": {"model": "lidar"}}, "elevations_deg is None with model lidar"),
+        ({"sensor": {"model": "lidar"}}, "elevations_deg: is None with model lidar"),
         ({"sensor": {"elevations_deg": [0.0]}}, "leave it null"),
         ({"sensor": {"min_range_m": 200.0}}, "not below max_range_m"),
         ({"errors": {"glass_pass": 0.8, "glass_drop": 0.3}}, "add up to more than 1"),
