@@ -133,15 +133,15 @@ def of_a_run(defaults, layers, schema):
     return {key: settings[key] for key in OF_A_RUN}
 
 
-def own_settings(path):
-    """Return the layers of a dataset's own file: none where it has none.
+def own_settings(path, *, may_lack=True):
+    """Return the layers of a dataset's own file: none where it has none, if it may.
 
     Raises
     ------
     StageError
-        If it says what is for the command line alone.
+        If it says what is for the command line alone, or cannot be read.
     """
-    if path is None or not os.access(path, os.F_OK):
+    if may_lack and (path is None or not os.path.lexists(path)):
         return []
     values = read_yaml(path)
     for key in OF_A_RUN:

@@ -209,3 +209,9 @@ def test_settings_may_share_values_by_anchors(tmp_path):
     path = tmp_path / "a.yaml"
     path.write_text("walls:\n  one: &limits {a: 1, b: 2}\n  two: {<<: *limits, b: 3}\n")
     assert yamlfile.read_yaml(path)["walls"]["two"] == {"a": 1, "b": 3}
+
+
+def test_a_file_of_settings_that_must_be_there_is_asked_for(tmp_path):
+    assert configuration.own_settings(tmp_path / "none.yaml") == []
+    with pytest.raises(StageError, match=r"none\.yaml"):
+        configuration.own_settings(tmp_path / "none.yaml", may_lack=False)

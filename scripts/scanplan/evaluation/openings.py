@@ -6,10 +6,10 @@ import shapely
 from scanplan.evaluation import lengthmetrics
 
 PARALLEL = np.cos(np.radians(10))
-WALL_M = 0.35
-_NEAR_M = 0.35
-_WIDTH_M = 0.10
-_BESIDE_M = 0.5
+WALL_M = 0.35  # a wall and what its place may be wrong by: both of its faces are nearer than this
+_NEAR_M = 0.35  # likewise, and less than half of a door's width: never the next door
+_WIDTH_M = 0.10  # as for faces
+_BESIDE_M = 0.5  # a jamb's worth of wall has to be seen for a window to be told
 _VISIBLE_SHARE = 0.5
 
 

@@ -10,8 +10,8 @@ from scanplan.plan import faceline
 from scanplan.plan.faceline import Line, Segments, Span
 
 _LEAST_CORNER_RAD = np.radians(30)
-_BEFORE_M = 0.08
-_SHORT_M = 0.15
+_BEFORE_M = 0.08  # as far as points of a face lie from the line of another all the same
+_SHORT_M = 0.15  # of what noise, a skirting or a frame may hide of a face before a corner
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,7 @@ import numpy as np
 from scanplan.errors import StageError
 from scanplan.plan import freespace
 
-_FAR_SHARE = 0.5
+_FAR_SHARE = 0.5  # of the points: fewer of them too far away still leave most doors met by two columns
 
 
 def check_segments(path, segments, used, n_scans):

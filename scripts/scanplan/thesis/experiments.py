@@ -31,10 +31,10 @@ def surveys(*, defaults, given, schema, config):
     """
     config = Path(config)
     chosen = configuration.for_dataset(defaults, given, schema)["thesis"]
-    limits = configuration.own_settings(config / "thesis.yaml")
+    limits = configuration.own_settings(config / "thesis.yaml", may_lack=False)
 
     def simulated(kind, seeds, over=(), survey=None):
-        own = configuration.own_settings(config / f"surveys/{survey or kind}.yaml")
+        own = configuration.own_settings(config / f"surveys/{survey or kind}.yaml", may_lack=False)
         settings = configuration.for_dataset(defaults, (*own, *over, *given), schema)
         return tuple(
             inventory.simulated(f"{inventory.RESERVED}/{kind}_{seed}", seeded(settings, seed), config / "buildings")
