@@ -85,6 +85,7 @@ def test_a_window_may_be_wider_than_a_door():
         ((1.0, 1.4), (0.85, 2.4), LOST),  # a slit
         ((-1.0, 1.5), (0.85, 2.4), LOST),  # no wall on one side
         ((1.0, 2.2), (0.3, 0.8), LOST),  # something dark below
+        ((1.0, 2.2), (0.2, 2.4), LOST),  # glass down to a plinth
     ],
 )
 def test_what_is_no_window(x, z, ends):

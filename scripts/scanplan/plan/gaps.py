@@ -14,7 +14,7 @@ _LEAST_RAYS = 10
 _EDGE_M = 0.03
 REVEAL_M = 0.1  # jambs are drawn this well
 _LOW_PERCENTILE = 1
-_AT_FLOOR_M = 0.3
+AT_FLOOR_M = 0.3  # lower, points may be of a step or of what lies there
 _FLOOR_NOISE_M = 0.04
 _STEP_COLUMN_M = 0.1
 _STEP_SHARE = 0.7
@@ -39,7 +39,7 @@ class GapSettings:
     max_closed_m : float
         A pause up to this length that no ray went through is wall, too.
     max_door_m : float
-        A wider opening, or one of which no lintel is seen, is a passage.
+        A wider opening is a passage.
     """
 
     min_opening_m: float
@@ -76,7 +76,7 @@ class Gap:
     @property
     def is_above_wall(self):
         """Whether it is so far above the floor that the wall goes on below it."""
-        return self.sill_m > _AT_FLOOR_M
+        return self.sill_m > AT_FLOOR_M
 
     @property
     def width_m(self):
@@ -191,7 +191,7 @@ def _step_m(seen, low_m, high_m, lowest_m):
 def _sill_m(pass_z_m, hit_z_m):
     """Return the sill: between the rays that went through and the wall seen below them."""
     low_m = np.percentile(pass_z_m, _LOW_PERCENTILE)
-    if low_m <= _AT_FLOOR_M:
+    if low_m <= AT_FLOOR_M:
         return 0.0
     below_m = hit_z_m[hit_z_m < low_m]
     return float((np.percentile(below_m, 95) + low_m) / 2) if len(below_m) >= _LEAST_RAYS else np.nan

@@ -111,6 +111,8 @@ def _judged(rays, seen, low_m, high_m):
     if shown.mean() < _LEAST_SHOWN or in_wall[shown].sum() > _MOST_IN_IT * reached[shown].sum():
         return None
     sill_m = gaps.highest_m(seen.hit_z_m[inner][below])
+    if sill_m <= gaps.AT_FLOOR_M:
+        return None
     n_rays = int(reached[shown].sum() - in_wall[shown].sum())
     lintel_m = gaps.lintel_m(seen, low_m, high_m, _CHEST_M[1], _CHEST_M[1])
     return gaps.Gap(low_m, high_m, gaps.OPEN, n_rays, sill_m, lintel_m, bool(np.isfinite(lintel_m)))
