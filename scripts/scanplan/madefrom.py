@@ -46,16 +46,28 @@ def check(found, replaced=()):
             raise StageError(f"replace: {name} is no dataset of this run; it has {', '.join(found)}")
     for name, new in found.items():
         old = _recorded(name)
-        if old is not None and old != new and name not in replaced:
+        if old and new not in old and name not in replaced:
             raise StageError(
-                f"results/{name}: was made of {old}, not of {new}; rename {new}, move results/{name} away, or have it"
-                f" replaced by `--config replace={name}` (make run: REPLACE={name})"
+                f"results/{name}: was made of {old[0]}, not of {new}; rename {new}, move results/{name} away, or have"
+                f" it replaced by `--config replace={name}` (make run: REPLACE={name})"
             )
 
 
-def record(name, source):
-    """Note what the results of a dataset are made of, before any is."""
-    atomic.write_text(_place(name), f"{source}\n")
+def begin(name, source):
+    """Note what the results of a dataset are to be made of, before any is.
+
+    What they were made of so far stays beneath: until a whole run has ended, some of them still are.
+    """
+    _note(name, [source, *(old for old in _recorded(name) if old != source)])
+
+
+def end(name, source):
+    """Note that all results of a dataset are made of one source."""
+    _note(name, [source])
+
+
+def _note(name, sources):
+    atomic.write_text(_place(name), "".join(f"{source}\n" for source in sources))
 
 
 def discard_lone(name):
@@ -71,9 +83,9 @@ def _place(name):
 
 
 def _recorded(name):
-    """What results were made of; None where there are none, or nobody noted it."""
+    """What results were made of, the newest first; nothing where there are none, or nobody noted it."""
     place = _place(name)
-    return place.read_text(encoding="utf-8").strip() if place.is_file() and not _is_lone(place) else None
+    return place.read_text(encoding="utf-8").splitlines() if place.is_file() and not _is_lone(place) else []
 
 
 def _is_lone(place):

@@ -15,7 +15,7 @@ def here(tmp_path, monkeypatch):
 
 def made(name, path):
     """Results of a dataset."""
-    madefrom.record(name, madefrom.source(path))
+    madefrom.begin(name, madefrom.source(path))
     Path("results", name, "poses.parquet").touch()
 
 
@@ -43,13 +43,13 @@ def test_only_what_is_there_can_be_replaced():
 def test_results_of_nobody_knows_what_and_no_results_are_in_nobodys_way():
     Path("results/old").mkdir(parents=True)
     Path("results/old/poses.parquet").touch()
-    madefrom.record("begun", "a/begun")
+    madefrom.begin("begun", "a/begun")
     madefrom.check({"old": "a/old", "begun": "b/begun", "new": "a/new"})
 
 
 def test_a_note_without_results_goes():
     made("x", "a/x")
-    madefrom.record("begun", "a/begun")
+    madefrom.begin("begun", "a/begun")
     Path("results/begun/plan/empty").mkdir(parents=True)
     madefrom.check({"begun": "b/begun"})
     for name in ("x", "begun", "never"):
@@ -67,3 +67,15 @@ def test_links_are_followed_and_a_moved_project_keeps_its_results(tmp_path):
         patch.chdir(tmp_path / "project")
         assert madefrom.source(tmp_path / "project/floor") == madefrom.source("floor") == "floor"
         assert madefrom.source("link") == str(outside)
+
+
+def test_until_a_whole_run_has_ended_results_are_of_both():
+    made("x", "a/x")
+    made("x", "b/x")
+    assert Path("results/x/source.txt").read_text() == "b/x\na/x\n"
+    for known in ("a/x", "b/x"):
+        madefrom.check({"x": known})
+    madefrom.end("x", "b/x")
+    madefrom.check({"x": "b/x"})
+    with pytest.raises(StageError, match="was made of b/x, not of a/x"):
+        madefrom.check({"x": "a/x"})

@@ -68,7 +68,7 @@ def test_results_of_another_dataset_of_the_name_are_kept(project, tmp_path):
         project, "b/floor", "made of a/floor", "replace=floor", left=["motion.parquet", "poses.parquet", "source.txt"]
     )
     other = project.run(poses, "--config", "dataset=b/floor", "replace=floor")
-    assert other.returncode == 0 and (tmp_path / "results/floor/source.txt").read_text() == "b/floor\n"
+    assert other.returncode == 0 and (tmp_path / "results/floor/source.txt").read_text().startswith("b/floor\n")
 
 
 def test_a_truth_that_is_not_used_is_told(project, tmp_path):

@@ -33,7 +33,7 @@ def run_alone():
         note_signal(number)
     run_alone.lock = lock()
     for name, found in GIVEN.items():
-        madefrom.record(name, found.source)
+        madefrom.begin(name, found.source)
 
 
 def note_signal(number):
@@ -57,7 +57,8 @@ def tell_results():
         print("\nreport:  results/thesis/report.html", file=sys.stderr)
     if workflow.dag_settings.targets or workflow.dag_settings.until:
         return
-    for name in GIVEN:
+    for name, found in GIVEN.items():
+        madefrom.end(name, found.source)
         folder = f"results/{name}"
         print(
             f"\nplan:    {folder}/plan/plan.svg (also .pdf, .dxf, .ifc, .geojson and map.pgm)\n"
