@@ -72,11 +72,12 @@ class Line:
 
     def along_m(self, xy_m):
         """Return positions (...,) of points (..., 2) along the line, from its centre."""
-        return (xy_m - self.centre) @ self.direction
+        # nothing of the size of the points but the result: many times as fast as to subtract the centre first
+        return xy_m @ self.direction - self.centre @ self.direction
 
     def offset_m(self, xy_m):
         """Return signed distances (...,) of points (..., 2) from the line, positive on the sensor's side."""
-        return (xy_m - self.centre) @ self.normal
+        return xy_m @ self.normal - self.centre @ self.normal
 
     def at(self, along_m):
         """Return the points (..., 2) at positions (...,) along the line."""
