@@ -12,6 +12,12 @@ BIN := $(VENV)/bin
 LIBRARIES := libusb-1.0-0 libgl1 libgomp1 libx11-6
 SNAKEMAKE = PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --cores $(CORES)
 
+# a misspelt variable would make the demo instead of what was meant
+KNOWN := CORES PYTHON DATASET CONFIG REPLACE ARGS
+GIVEN := $(foreach name,$(.VARIABLES),$(if $(findstring command line,$(origin $(name))),$(name)))
+UNKNOWN := $(filter-out $(KNOWN),$(GIVEN))
+$(if $(UNKNOWN),$(error $(UNKNOWN): no such variable; there are $(KNOWN)))
+
 .PHONY: run test lint bench environment clean
 .DEFAULT_GOAL := run
 

@@ -88,3 +88,12 @@ def test_a_campus_is_drawn_with_larger_cells():
 
 def test_a_plan_of_one_face_has_a_map():
     assert set(np.unique(gridmap.draw(bare([(0, 0, 1, 0, -1)]), 0.05).cells)) == {gridmap.OCCUPIED, gridmap.UNKNOWN}
+
+
+def test_a_window_in_a_wall_of_one_known_side_is_no_thicker_than_that():
+    """The east face is at 7.1 m, a cell's edge; the room before it is free, and behind it nothing is known."""
+    openings = floorplanmaking.openings([((7.1, 0.5, 7.1, 1.7), 1, "window", 0.9, 2.1, 1, -1)])
+    openings["thickness_m"][:] = np.nan
+    at = as_nav2_reads(gridmap.draw(plan(openings=openings), 0.05))
+    assert [at(x, 1.0) for x in (7.03, 7.12, 7.18)] == [0, 100, -1]
+    assert [at(x, 0.2) for x in (7.03, 7.12, 7.18)] == [0, 100, -1]

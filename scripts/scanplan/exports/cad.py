@@ -30,7 +30,7 @@ def dumps(plan):
 
     Walls of known thickness are closed outlines (double lines) with their openings cut out, surfaces with nothing known
     behind them single lines; what is inferred lies on a layer of its own. Every opening is a line as long as it is
-    wide, with two more along the surfaces for a window; every room is a closed outline.
+    wide, with two more along the surfaces for a window in a wall of known thickness; every room is a closed outline.
 
     Parameters
     ----------

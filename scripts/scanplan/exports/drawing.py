@@ -26,6 +26,8 @@ _LABELLED_MM = 3.5
 _SMALL_POINTS = 5.5
 _ROOM_IN_WALL_MM = 2.3
 _BESIDE_MM = 1.6
+_PANE_MM = 0.8
+_LEGEND_ROW_MM = 4.0
 _STATES = {
     "observed": {"ec": INK, "fc": "0.55", "joinstyle": "miter"},
     "inferred": {"ec": FAINT, "fc": "0.92", "ls": (0, (4, 2)), "joinstyle": "miter"},
@@ -121,8 +123,9 @@ def _openings(axes, drawn, m_per_mm):
     columns = (drawn.openings[c] for c in ("opening", "type", "thickness_m"))
     for number, kind, thick_m, line in zip(*columns, floorplan.lines_m(drawn.openings), strict=True):
         way = (line[1] - line[0]) / math.dist(*line)
-        # in a wall of unknown thickness one line
-        sides_m = np.array([-0.5, 0.5, 0] if kind == "window" else [-0.5, 0.5]) * np.nan_to_num(thick_m)
+        # in a wall of unknown thickness a door is one line, and a window as thick as can be told
+        drawn_m = np.nan_to_num(thick_m, nan=_PANE_MM * m_per_mm if kind == "window" else 0.0)
+        sides_m = np.array([-0.5, 0.5, 0] if kind == "window" else [-0.5, 0.5]) * drawn_m
         strokes = [line + side_m * np.array([-way[1], way[0]]) for side_m in sides_m]
         vertices = np.concatenate(strokes)
         path = Path(vertices, [Path.MOVETO, Path.LINETO] * len(strokes))
@@ -178,16 +181,32 @@ def _legend(axes, drawn, low_m, m_per_mm):
         for label, style, there in (
             ("wall", _STATES["observed"], not drawn.solid("observed").is_empty),
             ("inferred wall", _STATES["inferred"], not drawn.solid("inferred").is_empty),
-            ("surface, thickness not known", {"ec": INK, "fc": "none", "line": True}, len(drawn.single("observed"))),
+            ("surface, thickness not known", {"ec": INK}, len(drawn.single("observed"))),
+            (
+                "surface, inferred",
+                {key: _STATES["inferred"][key] for key in ("ec", "ls")},
+                len(drawn.single("inferred")),
+            ),
+            *(
+                (
+                    f"{kind} (width in m)",
+                    style | {"fc": "none"} if kind == "window" else style,
+                    kind in drawn.openings["type"],
+                )
+                for kind, style in _OPENINGS.items()
+            ),
         )
         if there
     ]
     x_m, y_m = low_m[0], low_m[1] - 44 * m_per_mm
     for label, style in shown:
-        style = dict(style)
-        high_mm = 0.0 if style.pop("line", False) else 2.0
-        axes.add_patch(
-            Rectangle((x_m, y_m - high_mm / 2 * m_per_mm), 7 * m_per_mm, high_mm * m_per_mm, lw=0.6, **style)
-        )
+        wide_m = (13 + 1.5 * len(label)) * m_per_mm
+        if x_m + wide_m > axes.get_xlim()[1]:
+            x_m, y_m = low_m[0], y_m - _LEGEND_ROW_MM * m_per_mm
+        if "fc" not in style:
+            axes.plot([x_m, x_m + 7 * m_per_mm], [y_m, y_m], color=style["ec"], lw=0.6, ls=style.get("ls", "-"))
+        else:
+            high_m = (2.0 if style["fc"] != "none" else _PANE_MM) * m_per_mm
+            axes.add_patch(Rectangle((x_m, y_m - high_m / 2), 7 * m_per_mm, high_m, lw=0.6, **style))
         axes.text(x_m + 8.5 * m_per_mm, y_m, label, fontsize=7, va="center")
-        x_m += (13 + 1.5 * len(label)) * m_per_mm
+        x_m += wide_m

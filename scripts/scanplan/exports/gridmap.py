@@ -91,7 +91,11 @@ def _obstacles(plan):
     windows = plan.openings["type"] == "window"
     solid = [part for state in floorplan.STATES for part in shapely.get_parts(plan.solid(state))]
     lines = [line for state in floorplan.STATES for line in plan.single(state)]
-    solid += list(plan.gaps[windows])
+    # of a window in a wall of which one side is known nothing but that side is in the way
+    panes_m, thick_m = floorplan.lines_m(plan.openings)[windows], plan.openings["thickness_m"][windows]
+    known = np.isfinite(thick_m)
+    solid += list(floorplan.boxes(panes_m[known], thick_m[known] / 2))
+    lines += list(shapely.linestrings(panes_m[~known]))
     outlines = list(shapely.get_rings(np.array(solid, object))) if solid else []
     pairs = [np.stack([xy[:-1], xy[1:]], axis=1) for xy in map(shapely.get_coordinates, outlines + lines)]
     return np.array(solid, object), np.concatenate(pairs) if pairs else np.zeros((0, 2, 2))

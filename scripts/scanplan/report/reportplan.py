@@ -77,13 +77,13 @@ def _rooms(plan):
 
 def _labels(plan):
     extent_m = float(np.max(plan.bounds_m[1] - plan.bounds_m[0]))
-    columns = (plan.rooms[c].tolist() for c in ("room", "area_m2", "x_m", "y_m"))
-    for room, area_m2, x_m, y_m, width_m in zip(*columns, plan.label_widths_m.tolist(), strict=True):
+    columns = (plan.rooms[c].tolist() for c in ("room", "area_m2", "closed", "x_m", "y_m"))
+    for room, area_m2, closed, x_m, y_m, width_m in zip(*columns, plan.label_widths_m.tolist(), strict=True):
         size_m = min(max(width_m / 8, 0.1), max(extent_m / 60, 0.1))
         at = f'x="{_number(x_m)}" font-size="{size_m:.2f}"'
         yield (
             f'<text y="{_number(-y_m)}" {at}>Room {room}</text>'
-            f'<text y="{_number(-y_m + 1.2 * size_m)}" {at}>{area_m2:.1f} m²</text>'
+            f'<text y="{_number(-y_m + 1.2 * size_m)}" {at}>{"" if closed else "about "}{area_m2:.1f} m²</text>'
         )
 
 

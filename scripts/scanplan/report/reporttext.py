@@ -30,7 +30,7 @@ def facts(plan, survey):
         "scans of the plan": f"{survey.chosen} of {len(survey.selection['rank']):,}",
         "length of walls": f"{np.hypot(*np.diff(floorplan.lines_m(plan.walls), axis=1)[:, 0].T).sum():,.1f} m",
         "median thickness": f"{1000 * np.median(known_m):.0f} mm" if len(known_m) else "not known",
-        "area of rooms": f"{plan.rooms['area_m2'].sum():,.1f} m²",
+        "area of rooms": _areas(plan.rooms),
         "to verify on site": f"{plan.walls['verify'].sum():,} of {len(plan.walls['wall']):,} walls",
     }
     return "\n".join(f"<div><dt>{name}</dt><dd>{value}</dd></div>" for name, value in facts.items())
@@ -41,12 +41,19 @@ def objective(method):
     return _OBJECTIVES.get(method, ("area covered", "m²"))
 
 
+def _areas(rooms):
+    """Return the area of closed rooms, and of the others, whose outlines are partly a guess."""
+    closed_m2, open_m2 = (rooms["area_m2"][rooms["closed"] == is_closed].sum() for is_closed in (True, False))
+    return f"{closed_m2:,.1f} m²" + (f" and about {open_m2:,.1f} m² not closed" if open_m2 else "")
+
+
 def certificate(survey, method):
     """Return what the chosen scans cover, and how much better any other choice could be."""
     selection, k = survey.selection, survey.chosen
     covered, covered_m2 = selection["covered"], selection["covered_m2"]
     what, unit = objective(method)
-    area = f"{covered_m2[k - 1] / covered_m2[-1]:.1%} of the area that all {len(covered):,} registered scans cover"
+    share = covered_m2[k - 1] / covered_m2[-1]
+    area = f"{share:.1%} of the area that the hulls of all {len(covered):,} registered scans cover"
     if covered[-1] <= 0:
         return f"The {k} scans of the plan cover {area} ({covered_m2[-1]:,.1f} m²); no scan has any {what}."
     given, best = covered[k - 1], min(selection["bound"][k - 1], covered[-1])
