@@ -11,7 +11,8 @@ _COLUMNS_A_SECTOR = 1.1
 _WIDEST_RAD = np.radians(10)
 _SIMPLIFY_M = 0.02
 _SPIKE_M = 0.04
-_GRID_M = 1e-3
+GRID_M = 1e-3
+"""Corners of grounds lie on this."""
 
 
 def visible(rays):
@@ -82,14 +83,9 @@ def _star(origin_m, azimuth_rad, range_m):
     return joined(wide(star, _SPIKE_M))
 
 
-def together(stars):
-    """Return the floor that any of the scans saw, a polygon or polygons."""
-    return joined(stars)
-
-
 def joined(polygons):
     """Return the union of polygons, polygons whose corners are on a grid of a millimetre."""
-    return polygons_of(shapely.union_all(polygons, grid_size=_GRID_M)) if len(polygons) else MultiPolygon()
+    return polygons_of(shapely.union_all(polygons, grid_size=GRID_M)) if len(polygons) else MultiPolygon()
 
 
 def without(ground, taken):
@@ -97,7 +93,7 @@ def without(ground, taken):
 
     Without a grid GEOS 3.14 may return nothing where the ground just fills a hole of what is taken.
     """
-    return polygons_of(shapely.difference(polygons_of(ground), taken, grid_size=_GRID_M))
+    return polygons_of(shapely.difference(polygons_of(ground), taken, grid_size=GRID_M))
 
 
 def wide(ground, half_m):
@@ -112,7 +108,7 @@ def wide(ground, half_m):
     """
     ground, found = polygons_of(ground), []
     for core in polygons_of(ground.buffer(-half_m, join_style="mitre")).geoms:
-        grown = shapely.intersection(core.buffer(half_m, join_style="mitre"), ground, grid_size=_GRID_M)
+        grown = shapely.intersection(core.buffer(half_m, join_style="mitre"), ground, grid_size=GRID_M)
         found += [p for p in polygons_of(grown).geoms if p.intersects(core)]
     return found
 

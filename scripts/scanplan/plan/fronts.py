@@ -84,9 +84,10 @@ def _stand_before(stretches, limits):
     before = (normal @ normal.T > _PARALLEL) & (forward_m > _BEHIND_M) & (forward_m <= limits.furniture_depth_m)
     line_m = _line_lengths_m(stretches)
     before &= line_m[:, None] < line_m
-    for one, other in np.argwhere(before):
+    for one in np.flatnonzero(before.any(axis=1)):
         front_m, room_m = (of(stretches[one], stretches, limits) for of in (_front, _room))
-        before[one, other] = _is_beside(stretches[one], ends[other], front_m, room_m, limits)
+        for other in np.flatnonzero(before[one]):
+            before[one, other] = _is_beside(stretches[one], ends[other], front_m, room_m, limits)
     return before
 
 

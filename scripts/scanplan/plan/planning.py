@@ -151,7 +151,7 @@ def make(segments, rays, track_m, t_ns, settings, up=None):
     found, tops_m = _without_low(found, settings.furniture.wall_height_m, rays.planar)
     unpaired_m = _usual_thickness_m(found)
     stars = freespace.visible(rays)
-    floor = freespace.together(stars)
+    floor = freespace.joined(stars)
     panes = glazing.between(*(found, traced.panes), min_length_m=settings.openings.min_opening_m, unpaired_m=unpaired_m)
     enclosed = rooms.find(
         *([*found, *panes], stars, track_m),

@@ -14,7 +14,6 @@ _NECK_M = 0.1  # half of what is too narrow to join two parts of a floor
 _MARGIN_M = 0.5
 _CELL_SHARE = 0.5
 _LEAST_CELL_SHARE = 0.25
-_GRID_M = 1e-3
 _LEAST_CELL_M2 = 1e-6
 _LEAST_AGREEMENT = 0.75
 _CLOSED_SHARE = 0.9
@@ -70,7 +69,7 @@ def find(walls, stars, track_m, *, min_area_m2, min_walled, min_width_m, unpaire
     unpaired_m : float
         How thick a wall is taken for of which one side is known.
     floor : shapely geometry, optional
-        `freespace.together` of the stars, where it is known already.
+        `freespace.joined` of the stars, where it is known already.
 
     Returns
     -------
@@ -79,7 +78,7 @@ def find(walls, stars, track_m, *, min_area_m2, min_walled, min_width_m, unpaire
     """
     strips = freespace.strips(walls, unpaired_m)
     solid = freespace.joined(strips)
-    seen = freespace.without(freespace.together(stars) if floor is None else floor, solid)
+    seen = freespace.without(freespace.joined(stars) if floor is None else floor, solid)
     parts = [p for p in freespace.wide(seen, _NECK_M) if p.area >= min_area_m2]
     track = shapely.points(track_m)
     found, taken = [], MultiPolygon()
@@ -144,7 +143,7 @@ def _cells(part, walls, unpaired_m):
     reach_m = 2 * float(np.hypot(high_x - low_x, high_y - low_y))
     drawing = [shapely.box(low_x, low_y, high_x, high_y).exterior]
     drawing += [LineString([point - reach_m * way, point + reach_m * way]) for point, way in lines]
-    noded = shapely.union_all(np.array(drawing, object), grid_size=_GRID_M)
+    noded = shapely.union_all(np.array(drawing, object), grid_size=freespace.GRID_M)
     cells = np.array(list(shapely.get_parts(shapely.polygonize(shapely.get_parts(noded)))), object)
     middles = shapely.point_on_surface(cells)
     inside = shapely.covers(shapely.box(low_x, low_y, high_x, high_y), middles)
