@@ -1,9 +1,14 @@
 """The stages against the algorithms written literally, on simulated surveys, each pair timed in this one process.
 
 Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [plans] [FOLDER ...]
+       run.py guard REVISION FOLDER [SURVEY ...]
+       run.py compare FOLDER FOLDER
 
 Without a name all of them but wall_quality, which takes minutes, and plans, which measures the surveys that the
 workflow has finished under results/; a FOLDER holds the dataset folders with the truths of those it did not simulate.
+
+`guard` makes the plans of twelve simulated drives and six real recordings with the code of a commit, in a folder of its
+own; `compare` prints what changed between two such folders, and fails where a measure fell.
 """
 
 import sys
@@ -61,7 +66,25 @@ def bench_plans(folders=()):
     plansbench.bench(ROOT / "results", folders, SETTINGS)
 
 
+def record_guard(revision, folder, *names):
+    """Make the guard's plans with the code of a commit."""
+    import guard
+
+    guard.record(ROOT, revision, Path(folder).resolve(), (ROOT.parent / "shared/data").resolve(), names)
+
+
+def compare_guards(before, after):
+    """Compare two folders of the guard."""
+    import guard
+
+    sys.exit(guard.compare(Path(before), Path(after)) > 0)
+
+
 if __name__ == "__main__":
+    commands = {"guard": record_guard, "compare": compare_guards}
+    if sys.argv[1:] and sys.argv[1] in commands:
+        commands[sys.argv[1]](*sys.argv[2:])
+        sys.exit()
     benches = {
         "simulation": bench_simulation,
         "registration": bench_registration,

@@ -1,0 +1,165 @@
+"""Plans of the same surveys by any commit, kept so that a change of the code shows what it does to them.
+
+The surveys are drives through four buildings with three seeds each, made from one recipe, and the real recordings that lie
+beside the project. A drive is recorded with what a VLP-16 and a localiser on a real rover show: the sweep of the moving
+sensor, constant errors of its beams, and poses that drift and jump.
+"""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pyarrow.parquet as pq
+import yaml
+
+BUILDINGS = {
+    "demo": {"building": "demo_office"},
+    "ring": {"building": "ring_office", "site": {"route": "rooms", "start_m": "random"}, "sensor": {"rate_hz": 5.0}},
+    "duplex": {"building": "duplex.ifc", "site": {"route": "rooms", "storey": "Level 1"}},
+    "fzk": {"building": "AC20-FZK-Haus.ifc", "site": {"route": "rooms", "storey": "Erdgeschoss"}},
+}
+"""Settings of `simulate` by the name of a drive; a building with a suffix is a file among the recordings."""
+LOCALISER = {"noise_m": 0.05, "noise_deg": 1.0, "jumps_per_min": 1.0}
+SEEDS = (1, 2, 3)
+RECORDINGS = ("intel", "jackal_ros1", "jackal_ros2", "mac_first_floor", "scenes7_room", "vlp16_room")
+MOST_DROP = 0.005
+"""A share that a change lowers by more than this is told."""
+
+_MORE_IS_BETTER = ("completeness", "correctness", "f1", "recall", "precision", "iou", "n_rooms_found")
+_LESS_IS_BETTER = ("thickness_error_m", "width_error_m", "n_rooms_false")
+
+
+def record(project, revision, folder, recordings, names=()):
+    """Make the plans of the guard's surveys with the code of a commit.
+
+    Parameters
+    ----------
+    project : Path
+        The checkout that the commit is taken from.
+    revision : str
+        Any name that git knows the commit by.
+    folder : Path
+        Made if need be; a second call with another commit reruns what changed in between.
+    recordings : Path
+        Folder with the real recordings and the buildings.
+    names : sequence of str
+        Only these surveys; all if empty.
+
+    Raises
+    ------
+    subprocess.CalledProcessError
+        If git or the workflow fails; it has said why.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    code = _checked_out(project, revision, folder)
+    surveys = _surveys(folder, recordings)
+    unknown = set(names) - set(surveys)
+    if unknown:
+        sys.exit(f"guard: no survey {', '.join(sorted(unknown))}; there are {', '.join(surveys)}")
+    chosen = {name: path for name, path in surveys.items() if not names or name in names}
+    targets = [f"results/{name}/{table}" for name in chosen for table in _wanted(name)]
+    environment = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
+    given = json.dumps([str(path) for path in chosen.values()])
+    command = [sys.executable, "-m", "snakemake", "--cores", "2", "--quiet", "rules", "--config", f"dataset={given}"]
+    subprocess.run([*command, "--", *targets], cwd=code, env=environment, check=True)
+
+
+def _checked_out(project, revision, folder):
+    code = folder / "code"
+    commit = _git(project, "rev-parse", f"{revision}^{{commit}}")
+    if not code.is_dir():
+        _git(project, "clone", "--quiet", "--no-checkout", str(project), str(code))
+    _git(code, "fetch", "--quiet", str(project), commit)
+    _git(code, "checkout", "--quiet", "--detach", commit)
+    return code
+
+
+def _git(folder, *words):
+    done = subprocess.run(["git", "-C", str(folder), *words], check=True, stdout=subprocess.PIPE, text=True)
+    return done.stdout.strip()
+
+
+def _surveys(folder, recordings):
+    surveys = folder / "surveys"
+    surveys.mkdir(exist_ok=True)
+    paths = {}
+    for name, settings in BUILDINGS.items():
+        building = settings["building"]
+        place = str(recordings / "buildings" / building) if Path(building).suffix else building
+        for seed in SEEDS:
+            drive = {**settings, "building": place, "seed": seed, "localiser": LOCALISER}
+            path = surveys / f"{name}_{seed}.yaml"
+            text = yaml.safe_dump({"simulate": drive})
+            if not path.exists() or path.read_text() != text:
+                path.write_text(text)
+            paths[path.stem] = path
+    return paths | {name: recordings / name for name in RECORDINGS}
+
+
+def _wanted(name):
+    drawn = ("plan/plan.svg", "plan/plan.geojson")
+    return drawn if name in RECORDINGS else (*drawn, "evaluation/plan.parquet", "evaluation/walls.parquet")
+
+
+def compare(before, after):
+    """Print what changed between two folders of the guard, survey by survey.
+
+    Parameters
+    ----------
+    before, after : Path
+        As `record` made them.
+
+    Returns
+    -------
+    int
+        How many measures fell by more than `MOST_DROP`.
+    """
+    fallen = 0
+    for name in [f"{building}_{seed}" for building in BUILDINGS for seed in SEEDS] + list(RECORDINGS):
+        folders = [folder / "code/results" / name for folder in (before, after)]
+        if not all((folder / "plan/plan.geojson").exists() for folder in folders):
+            print(f"{name}: not in both")
+            continue
+        changed = _changed_files(*folders)
+        print(f"{name}: {'all tables equal byte for byte' if not changed else 'differ: ' + ', '.join(changed)}")
+        if name not in RECORDINGS:
+            rows = list(_changed_measures(*folders))
+            fallen += sum(falls for *_, falls in rows)
+            for measure, old, new, falls in rows:
+                print(f"  {'FELL ' if falls else '     '}{measure}: {old:.4f} -> {new:.4f}")
+    print(f"guard: {fallen} measures fell by more than {MOST_DROP:g}")
+    return fallen
+
+
+def _changed_files(before, after):
+    """Return the tables that differ; run times and drawings with their stamps are no tables."""
+    tables = sorted(file.relative_to(before) for file in before.rglob("*.parquet") if file.name != "seconds.parquet")
+    return [str(t) for t in tables if (after / t).exists() and (before / t).read_bytes() != (after / t).read_bytes()]
+
+
+def _changed_measures(before, after):
+    """Yield measures that changed: name, value before and after, whether it fell."""
+    old, new = (_measures(folder) for folder in (before, after))
+    for name, value in old.items():
+        drop = value - new.get(name, float("nan"))
+        if name.rsplit(" ", 1)[-1].endswith(_LESS_IS_BETTER):
+            drop = -drop
+        # what became NaN fell, too
+        if abs(drop) > 1e-9 or drop != drop:
+            yield name, value, new.get(name, float("nan")), not drop <= MOST_DROP
+
+
+def _measures(folder):
+    """Return the guard's measures by name: of the plan in each frame, and means over every k of the walls."""
+    plan = pq.read_table(folder / "evaluation/plan.parquet").to_pandas().set_index("frame")
+    walls = pq.read_table(folder / "evaluation/walls.parquet").to_pandas()
+    by_kind = walls.groupby(["method", "extractor"]).mean(numeric_only=True)
+    measures = {}
+    for table, frame in (("plan", plan), ("walls", by_kind)):
+        names = [c for c in frame.columns if any(s in c for s in _MORE_IS_BETTER) or c.endswith(_LESS_IS_BETTER)]
+        for index, row in frame[names].iterrows():
+            label = index if isinstance(index, str) else " ".join(index)
+            measures |= {f"{table} {label} {name}": float(row[name]) for name in names if row[name] == row[name]}
+    return measures
