@@ -22,7 +22,7 @@ $(if $(UNKNOWN),$(error $(UNKNOWN): no such variable; there are $(KNOWN)))
 .DEFAULT_GOAL := run
 
 run: environment
-	@test -z "$(CONFIG)" || PYTHONPATH=scripts $(BIN)/python -m scanplan.yamlfile "$(CONFIG)"
+	@test -z "$(CONFIG)" || PYTHONPATH=scripts $(BIN)/python -m scanplan.project.yaml_file "$(CONFIG)"
 	@$(SNAKEMAKE) $(if $(CONFIG),--configfile "$(CONFIG)") \
 	    $(if $(DATASET)$(REPLACE),--config $(if $(DATASET),'dataset="$(DATASET)"') $(if $(REPLACE),'replace="$(REPLACE)"')) \
 	    $(ARGS)

@@ -2,14 +2,15 @@
 
 import numpy as np
 
-from scanplan import chunks, schemas, stagelog, tables
 from scanplan.selection import hulls
+from scanplan.stage import log, per_scan
+from scanplan.store import schemas, tables
 
 
 def build_hulls(scans, output, *, n_clusters, sample_size, seed, threads):
     """Write the table of hulls of a table of scans."""
-    parts = chunks.map_scans(
-        hulls.cluster_hulls,
+    parts = per_scan.map_scans(
+        hulls.make_cluster_hulls,
         scans,
         label="build_hulls",
         threads=threads,
@@ -17,18 +18,18 @@ def build_hulls(scans, output, *, n_clusters, sample_size, seed, threads):
         sample_size=sample_size,
         seed=seed,
     )
-    columns = hulls.concatenated(parts)
-    tables.write(output, schemas.HULLS, columns)
+    columns = hulls.concatenate_hulls(parts)
+    tables.write_table(output, schemas.HULLS, columns)
     n_degenerate = np.count_nonzero(columns["area_m2"] == 0)
     mean_m2 = columns["area_m2"].sum() / len(parts)
-    stagelog.say(
+    log.log_line(
         f"build_hulls: {len(parts):,} scans, {len(columns['cluster']):,} hulls, {n_degenerate:,} degenerate,"
         f" {mean_m2:.1f} m2 a scan"
     )
 
 
 if __name__ == "__main__":
-    with stagelog.to_file(snakemake.log[0]):
+    with log.log_to_file(snakemake.log[0]):
         build_hulls(
             snakemake.input.scans,
             snakemake.output.hulls,

@@ -1,8 +1,9 @@
 """Draw the free space that every scan looked through."""
 
-from scanplan import chunks, schemas, stagelog, tables
-from scanplan.extraction import walls
-from scanplan.selection import visibilitypolygon
+from scanplan.extraction import segments
+from scanplan.rays import visibility_polygon
+from scanplan.stage import log, per_scan
+from scanplan.store import schemas, tables
 
 
 def build_visibility(scans, registration, output, *, settings, threads=1):
@@ -15,26 +16,30 @@ def build_visibility(scans, registration, output, *, settings, threads=1):
     output : path-like
         visibility.parquet, to write.
     settings : dict
-        Keywords of `visibilitypolygon.Settings`.
+        Keywords of `visibility_polygon.VisibilitySettings`.
     threads : int
     """
     store = tables.ScanStore(scans)
-    rows = chunks.map_scans(
-        visibilitypolygon.free_space,
+    rows = per_scan.map_scans(
+        visibility_polygon.scan_free_space,
         scans,
         label="build_visibility",
         threads=threads,
-        per_scan=walls.sensor_positions(tables.read(registration, schemas.REGISTRATION), store.scan_ids, registration),
+        per_scan=segments.sensor_keywords(
+            tables.read_table(registration, schemas.REGISTRATION), store.scan_ids, registration
+        ),
         planar=store.planar,
-        settings=visibilitypolygon.Settings(**settings),
+        settings=visibility_polygon.VisibilitySettings(**settings),
     )
-    columns = visibilitypolygon.table(rows)
-    tables.write(output, schemas.VISIBILITY, columns)
-    stagelog.say(f"build_visibility: {len(rows):,} scans, {columns['area_m2'].mean():.1f} m2 of free space a scan")
+    columns = visibility_polygon.visibility_columns(rows)
+    tables.write_table(output, schemas.VISIBILITY, columns)
+    log.log_line(
+        f"build_visibility: {len(rows):,} scans, {columns['area_m2'].mean():.1f} m2 of free space a scan"
+    )
 
 
 if __name__ == "__main__":
-    with stagelog.to_file(snakemake.log[0]):
+    with log.log_to_file(snakemake.log[0]):
         build_visibility(
             snakemake.input.scans,
             snakemake.input.registration,

@@ -2,9 +2,10 @@
 
 from pathlib import Path
 
-from scanplan import atomic, schemas, stagelog, tables
 from scanplan.exports import drawing
 from scanplan.report import figures
+from scanplan.stage import log
+from scanplan.store import atomic, schemas, tables
 
 
 def draw_area(selections, output):
@@ -17,11 +18,11 @@ def draw_area(selections, output):
     output : path-like
         figures/area.svg, to write.
     """
-    orderings = {Path(path).stem: tables.read(path, schemas.SELECTION) for path in selections}
-    atomic.write_text(output, drawing.svg(figures.area_figure(orderings)))
-    stagelog.say(f"draw_area: {len(orderings)} orderings")
+    orderings = {Path(path).stem: tables.read_table(path, schemas.SELECTION) for path in selections}
+    atomic.write_text(output, drawing.format_svg(figures.draw_area_figure(orderings)))
+    log.log_line(f"draw_area: {len(orderings)} orderings")
 
 
 if __name__ == "__main__":
-    with stagelog.to_file(snakemake.log[0]):
+    with log.log_to_file(snakemake.log[0]):
         draw_area(snakemake.input.selections, snakemake.output.figure)

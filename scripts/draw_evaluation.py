@@ -1,8 +1,9 @@
 """Draw how well every ordering's first scans show the true walls (thesis, figure 5.4)."""
 
-from scanplan import atomic, schemas, stagelog, tables
 from scanplan.exports import drawing
-from scanplan.report import evaluationfigure, oraclefigure
+from scanplan.lab.evaluation import evaluation_figure, oracle_figure
+from scanplan.stage import log
+from scanplan.store import atomic, schemas, tables
 
 
 def draw_evaluation(walls, aligned, output, shares, *, method, extractor):
@@ -17,14 +18,21 @@ def draw_evaluation(walls, aligned, output, shares, *, method, extractor):
     method, extractor : str
         The plan's: whose misses and whose bitmap metrics are drawn.
     """
-    measured, moved = (tables.read(path, schemas.EVALUATION) for path in (walls, aligned))
-    atomic.write_text(output, drawing.svg(evaluationfigure.draw(measured, moved, method=method, extractor=extractor)))
-    atomic.write_text(shares, drawing.svg(oraclefigure.draw(measured)))
-    stagelog.say(f"draw_evaluation: {len(measured['k'])} subsets")
+    measured, moved = (tables.read_table(path, schemas.EVALUATION) for path in (walls, aligned))
+    atomic.write_text(
+        output,
+        drawing.format_svg(
+            evaluation_figure.draw_evaluation_figure(
+                measured, moved, method=method, extractor=extractor
+            )
+        ),
+    )
+    atomic.write_text(shares, drawing.format_svg(oracle_figure.draw_oracle_figure(measured)))
+    log.log_line(f"draw_evaluation: {len(measured['k'])} subsets")
 
 
 if __name__ == "__main__":
-    with stagelog.to_file(snakemake.log[0]):
+    with log.log_to_file(snakemake.log[0]):
         draw_evaluation(
             snakemake.input.walls,
             snakemake.input.aligned,

@@ -1,9 +1,10 @@
 """Draw the registered scans, where they were taken, and which were selected (thesis, figure 5.9)."""
 
-from scanplan import atomic, schemas, stagelog, tables
 from scanplan.exports import drawing
-from scanplan.report import figures, topview
+from scanplan.report import figures, top_view
 from scanplan.selection import stopping
+from scanplan.stage import log
+from scanplan.store import atomic, schemas, tables
 
 
 def draw_scans(scans, registration, selection, output, **stop):
@@ -16,24 +17,24 @@ def draw_scans(scans, registration, selection, output, **stop):
     output : path-like
         figures/scans.svg, to write.
     **stop
-        How many scans are selected, see `stopping.n_scans`.
+        How many scans are selected, see `stopping.choose_n_scans`.
     """
     store = tables.ScanStore(scans)
-    ordering = tables.read(selection, schemas.SELECTION)
-    count, reason = stopping.n_scans(ordering, **stop)
-    poses = tables.read(registration, schemas.REGISTRATION)
-    found = stagelog.progress(store.scans(), "draw_scans", total=len(store.scan_ids))
-    figure = figures.scans_figure(
-        topview.thinned(found, len(store.scan_ids)),
-        figures.positions(poses, store.scan_ids),
-        figures.positions(poses, ordering["scan_id"][:count]),
+    ordering = tables.read_table(selection, schemas.SELECTION)
+    count, reason = stopping.choose_n_scans(ordering, **stop)
+    poses = tables.read_table(registration, schemas.REGISTRATION)
+    found = log.report_progress(store.scans(), "draw_scans", total=len(store.scan_ids))
+    figure = figures.draw_scans_figure(
+        top_view.sample_points(found, len(store.scan_ids)),
+        figures.sensor_positions(poses, store.scan_ids),
+        figures.sensor_positions(poses, ordering["scan_id"][:count]),
     )
-    atomic.write_text(output, drawing.svg(figure))
-    stagelog.say(f"draw_scans: {len(store.scan_ids)} scans, {count} selected ({reason})")
+    atomic.write_text(output, drawing.format_svg(figure))
+    log.log_line(f"draw_scans: {len(store.scan_ids)} scans, {count} selected ({reason})")
 
 
 if __name__ == "__main__":
-    with stagelog.to_file(snakemake.log[0]):
+    with log.log_to_file(snakemake.log[0]):
         draw_scans(
             snakemake.input.scans,
             snakemake.input.registration,

@@ -1,9 +1,10 @@
 """Draw the walls of the plan over the points of the selected scans (thesis, figure 5.11)."""
 
-from scanplan import atomic, schemas, stagelog, tables
 from scanplan.exports import drawing
-from scanplan.report import figures, topview
+from scanplan.report import figures, top_view
 from scanplan.selection import stopping
+from scanplan.stage import log
+from scanplan.store import atomic, schemas, tables
 
 
 def draw_walls(scans, faces, registration, selection, output, **stop):
@@ -16,23 +17,25 @@ def draw_walls(scans, faces, registration, selection, output, **stop):
     output : path-like
         figures/walls.svg, to write.
     **stop
-        How many scans are selected, see `stopping.n_scans`.
+        How many scans are selected, see `stopping.choose_n_scans`.
     """
     store = tables.ScanStore(scans)
-    ordering = tables.read(selection, schemas.SELECTION)
-    count, reason = stopping.n_scans(ordering, **stop)
+    ordering = tables.read_table(selection, schemas.SELECTION)
+    count, reason = stopping.choose_n_scans(ordering, **stop)
     selected = ordering["scan_id"][:count]
-    poses = tables.read(registration, schemas.REGISTRATION)
-    merged = tables.read(faces, schemas.FACES)
-    figure = figures.walls_figure(
-        topview.thinned(store.scans(selected), count), merged, figures.positions(poses, selected)
+    poses = tables.read_table(registration, schemas.REGISTRATION)
+    merged = tables.read_table(faces, schemas.FACES)
+    figure = figures.draw_walls_figure(
+        top_view.sample_points(store.scans(selected), count),
+        merged,
+        figures.sensor_positions(poses, selected),
     )
-    atomic.write_text(output, drawing.svg(figure))
-    stagelog.say(f"draw_walls: {len(merged['face'])} faces over {count} scans ({reason})")
+    atomic.write_text(output, drawing.format_svg(figure))
+    log.log_line(f"draw_walls: {len(merged['face'])} faces over {count} scans ({reason})")
 
 
 if __name__ == "__main__":
-    with stagelog.to_file(snakemake.log[0]):
+    with log.log_to_file(snakemake.log[0]):
         draw_walls(
             snakemake.input.scans,
             snakemake.input.faces,

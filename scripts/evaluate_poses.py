@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from scanplan import schemas, stagelog, tables
-from scanplan.evaluation import poseerrors, registered, truthfile
+from scanplan.lab.evaluation import pose_errors, truth_file
+from scanplan.stage import log
+from scanplan.store import registered_scans, schemas, tables
 
 
 def evaluate_poses(poses, registration, true_poses, output):
@@ -16,23 +17,32 @@ def evaluate_poses(poses, registration, true_poses, output):
     output : path-like
         evaluation/poses.parquet, to write.
     """
-    scans = registered.read(registration)
-    truth = truthfile.poses_at(truthfile.read_poses(true_poses), scans.t_ns, true_poses)
+    scans = registered_scans.read_registered_scans(registration)
+    truth = truth_file.interpolate_true_poses(
+        truth_file.read_true_poses(true_poses), scans.t_ns, true_poses
+    )
     columns = {"scan_id": scans.scan_ids, "t_ns": scans.t_ns}
     for stage, estimate in (
-        ("prior", registered.prior(poses, scans, registration)),
+        ("prior", registered_scans.read_prior_poses(poses, scans, registration)),
         ("refined", scans.map_from_sensor),
     ):
-        motion = poseerrors.alignment(estimate[:, :3, 3], truth[:, :3, 3])
+        motion = pose_errors.fit_alignment(estimate[:, :3, 3], truth[:, :3, 3])
         for prefix, placed in (("", estimate), ("aligned_", motion @ estimate)):
-            distance_m, angle_deg = poseerrors.errors(placed, truth)
-            columns[f"{prefix}{stage}_error_m"], columns[f"{prefix}{stage}_error_deg"] = distance_m, angle_deg
-            stagelog.say(f"evaluate_poses: {len(placed)} scans, {prefix}{stage}: {_told(distance_m, angle_deg)}")
-    tables.write(output, schemas.POSE_ERRORS, columns)
+            distance_m, angle_deg = pose_errors.pose_errors(placed, truth)
+            columns[f"{prefix}{stage}_error_m"], columns[f"{prefix}{stage}_error_deg"] = (
+                distance_m,
+                angle_deg,
+            )
+            log.log_line(
+                f"evaluate_poses: {len(placed)} scans, {prefix}{stage}: {_told(distance_m, angle_deg)}"
+            )
+    tables.write_table(output, schemas.POSE_ERRORS, columns)
 
 
 def _told(distance_m, angle_deg):
-    (middle_m, high_m), (middle_deg, high_deg) = (np.percentile(e, (50, 95)) for e in (distance_m, angle_deg))
+    (middle_m, high_m), (middle_deg, high_deg) = (
+        np.percentile(e, (50, 95)) for e in (distance_m, angle_deg)
+    )
     rms_m = np.sqrt(np.mean(distance_m**2))
     return (
         f"median {middle_m:.3f} m, rms {rms_m:.3f} m, 95 % below {high_m:.3f} m, largest {distance_m.max():.3f} m;"
@@ -41,7 +51,10 @@ def _told(distance_m, angle_deg):
 
 
 if __name__ == "__main__":
-    with stagelog.to_file(snakemake.log[0]):
+    with log.log_to_file(snakemake.log[0]):
         evaluate_poses(
-            snakemake.input.poses, snakemake.input.registration, snakemake.input.true_poses, snakemake.output.poses
+            snakemake.input.poses,
+            snakemake.input.registration,
+            snakemake.input.true_poses,
+            snakemake.output.poses,
         )

@@ -2,9 +2,11 @@
 
 import time
 
-from scanplan import chunks, schemas, stagelog, tables
 from scanplan.errors import StageError
-from scanplan.extraction import cluster_ransac, iterative_ransac, level, walls
+from scanplan.extraction import cluster_ransac, iterative_ransac, map_tilt, segments
+from scanplan.stage import log
+from scanplan.stage.per_scan import map_scans
+from scanplan.store import schemas, tables
 
 EXTRACTORS = {"cluster_ransac": cluster_ransac, "iterative_ransac": iterative_ransac}
 
@@ -25,24 +27,38 @@ def extract_walls(scans, registration, output, *, extractor, settings, threads=1
     threads : int
     """
     if extractor not in EXTRACTORS:
-        raise StageError(f"extractor {extractor}: is not known; choose one of {', '.join(EXTRACTORS)}")
+        raise StageError(
+            f"extractor {extractor}: is not known; choose one of {', '.join(EXTRACTORS)}"
+        )
     method, store, started = EXTRACTORS[extractor], tables.ScanStore(scans), time.perf_counter()
     every_scan = {"planar": store.planar, "settings": method.Settings(**settings)}
-    per_scan = walls.sensor_positions(tables.read(registration, schemas.REGISTRATION), store.scan_ids, registration)
-    found = chunks.map_scans(
-        method.extract, scans, label=f"extract_walls {extractor}", threads=threads, per_scan=per_scan, **every_scan
+    per_scan = segments.sensor_keywords(
+        tables.read_table(registration, schemas.REGISTRATION), store.scan_ids, registration
     )
-    looked_at = ((store.read(i), per_scan[i]["sensor_xyz_m"]) for i in level.sample(store.scan_ids.tolist()))
-    if not store.planar and (tilted := level.warning(looked_at)):
-        stagelog.say(f"extract_walls: {tilted}")
-    columns = walls.table(store.scan_ids, found)
-    tables.write(output, schemas.WALLS, columns, allow_empty=True)
+    found = map_scans(
+        method.extract,
+        scans,
+        label=f"extract_walls {extractor}",
+        threads=threads,
+        per_scan=per_scan,
+        **every_scan,
+    )
+    looked_at = (
+        (store.read(i), per_scan[i]["sensor_xyz_m"])
+        for i in map_tilt.sample_scan_ids(store.scan_ids.tolist())
+    )
+    if not store.planar and (tilted := map_tilt.tilt_warning(looked_at)):
+        log.log_line(f"extract_walls: {tilted}")
+    columns = segments.segment_columns(store.scan_ids, found)
+    tables.write_table(output, schemas.WALLS, columns, allow_empty=True)
     took_ms = 1e3 * (time.perf_counter() - started)
-    stagelog.say(f"extract_walls: {extractor}, {walls.summary(columns, len(store.scan_ids), took_ms)}")
+    log.log_line(
+        f"extract_walls: {extractor}, {segments.summarise_segments(columns, len(store.scan_ids), took_ms)}"
+    )
 
 
 if __name__ == "__main__":
-    with stagelog.to_file(snakemake.log[0]):
+    with log.log_to_file(snakemake.log[0]):
         extract_walls(
             snakemake.input.scans,
             snakemake.input.registration,

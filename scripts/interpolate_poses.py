@@ -2,12 +2,24 @@
 
 import numpy as np
 
-from scanplan import schemas, stagelog, tables
-from scanplan.recordings import candidates, frames, motion, surveys, sweepcheck
+from scanplan.recordings import candidates, tf_tree
+from scanplan.recordings.motion import time_check, trajectory
+from scanplan.recordings.survey import open_survey
+from scanplan.stage import log
+from scanplan.store import schemas, tables
 
 
 def interpolate_poses(
-    files, output, *, keep_every, max_step_m, max_turn_deg, max_gap_s, max_speed_m_s=np.inf, moved=None, **reading
+    files,
+    output,
+    *,
+    keep_every,
+    max_step_m,
+    max_turn_deg,
+    max_gap_s,
+    max_speed_m_s=np.inf,
+    moved=None,
+    **reading,
 ):
     """Write the candidates for registration with their interpolated poses, and how the sensor moved.
 
@@ -18,13 +30,13 @@ def interpolate_poses(
     output : path-like
         poses.parquet.
     keep_every, max_step_m, max_turn_deg
-        See `candidates.choose`.
+        See `candidates.choose_candidates`.
     max_gap_s, max_speed_m_s : float
         Longest time between two poses to interpolate over, and fastest way.
     moved : path-like, optional
         motion.parquet, to write.
     **reading
-        Keywords of `surveys.open_survey`.
+        Keywords of `survey.open_survey`.
 
     Raises
     ------
@@ -32,24 +44,28 @@ def interpolate_poses(
         If the recordings cannot be used or no candidate has a pose.
     """
     limits = {"max_gap_s": max_gap_s, "max_speed_m_s": max_speed_m_s}
-    with surveys.open_survey(files, **reading) as survey:
+    with open_survey(files, **reading) as survey:
         t_ns, edges = survey.stamps(), survey.pose_edges()
-        known = frames.world_from_sensor(edges, t_ns, **limits)
-        chosen = candidates.choose(known[0], keep_every=keep_every, max_step_m=max_step_m, max_turn_deg=max_turn_deg)
+        known = tf_tree.chain_poses(edges, t_ns, **limits)
+        chosen = candidates.choose_candidates(
+            known[0], keep_every=keep_every, max_step_m=max_step_m, max_turn_deg=max_turn_deg
+        )
         candidates.require_poses(chosen, t_ns, known[2], edges, files[0], **limits)
         if moved is not None:
-            way = motion.choose(survey.motion_chains(), t_ns, **limits)
-            tables.write(moved, schemas.MOTION, sweepcheck.checked(survey, way).columns())
-    tables.write(output, schemas.POSES, candidates.columns(chosen, t_ns, *known))
+            way = trajectory.choose_motion(survey.motion_chains(), t_ns, **limits)
+            tables.write_table(
+                moved, schemas.MOTION, time_check.check_point_times(survey, way).columns()
+            )
+    tables.write_table(output, schemas.POSES, candidates.pose_columns(chosen, t_ns, *known))
     n_covered = int(known[2][chosen].sum())
-    stagelog.say(
+    log.log_line(
         f"interpolate_poses: {len(t_ns):,} scans, {len(chosen):,} candidates,"
         f" {n_covered:,} with poses, {len(chosen) - n_covered:,} without"
     )
 
 
 if __name__ == "__main__":
-    with stagelog.to_file(snakemake.log[0]):
+    with log.log_to_file(snakemake.log[0]):
         interpolate_poses(
             snakemake.input.recordings,
             snakemake.output.poses,

@@ -1,7 +1,8 @@
 """Measure every claim of the thesis on every seed."""
 
-from scanplan import schemas, stagelog, tables
-from scanplan.thesis import judging
+from scanplan.lab.thesis import judging
+from scanplan.stage import log
+from scanplan.store import schemas, tables
 
 _SCHEMAS = {
     "walls": schemas.EVALUATION,
@@ -22,7 +23,7 @@ def judge_claims(files, output, *, rooms_seeds, drive_seeds):
     Parameters
     ----------
     files : dict of str to list of path-like
-        Tables by kind of survey and table, as `judging.judge` calls them, seed by seed.
+        Tables by kind of survey and table, as `judging.judge_claims` calls them, seed by seed.
     output : path-like
         claims.parquet, to write.
     rooms_seeds, drive_seeds : list of int
@@ -32,17 +33,27 @@ def judge_claims(files, output, *, rooms_seeds, drive_seeds):
     drive = _by_seed(files, drive_seeds, ["drive", "limits"])
     rows = []
     for kind, found in ((judging.ROOMS, rooms), (judging.DRIVE, drive)):
-        rows += [row for seed, known in found.items() for row in judging.judge(kind, f"seed {seed}", known)]
+        rows += [
+            row
+            for seed, known in found.items()
+            for row in judging.judge_claims(kind, f"seed {seed}", known)
+        ]
     rows.sort(key=lambda row: (row["claim"], row["survey"], row["quantity"]))
-    tables.write(output, schemas.CLAIMS, {name: [row[name] for row in rows] for name in schemas.CLAIMS.columns})
+    tables.write_table(
+        output,
+        schemas.CLAIMS,
+        {name: [row[name] for row in rows] for name in schemas.CLAIMS.columns},
+    )
     judged = {(row["claim"], row["survey"]): row["holds"] for row in rows if row["holds"]}
-    stagelog.say(f"judge_claims: {len(judged)} judgements, {list(judged.values()).count('yes')} of them yes")
+    log.log_line(
+        f"judge_claims: {len(judged)} judgements, {list(judged.values()).count('yes')} of them yes"
+    )
 
 
 def _by_seed(files, seeds, kinds):
     return {
         seed: {
-            key: tables.read(paths[i], _SCHEMAS[key.split("_", 1)[1]])
+            key: tables.read_table(paths[i], _SCHEMAS[key.split("_", 1)[1]])
             for key, paths in files.items()
             if key.split("_")[0] in kinds
         }
@@ -51,7 +62,7 @@ def _by_seed(files, seeds, kinds):
 
 
 if __name__ == "__main__":
-    with stagelog.to_file(snakemake.log[0]):
+    with log.log_to_file(snakemake.log[0]):
         judge_claims(
             {key: list(paths) for key, paths in snakemake.input.items() if key != "code"},
             snakemake.output.claims,

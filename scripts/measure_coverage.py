@@ -3,10 +3,11 @@
 import numpy as np
 import shapely
 
-from scanplan import schemas, stagelog, tables
-from scanplan.evaluation import registered, truthfile
+from scanplan.lab.evaluation import truth_file
+from scanplan.lab.thesis import cluster_growth, seen_area
 from scanplan.selection import hulls
-from scanplan.thesis import clustergrowth, seenarea
+from scanplan.stage import log
+from scanplan.store import registered_scans, schemas, tables
 
 
 def measure_coverage(
@@ -23,30 +24,47 @@ def measure_coverage(
         thesis/clusters.parquet and thesis/areas.parquet, to write.
     n_clusters : sequence of int
     sample_size, seed : int
-        See `hulls.cluster_hulls`.
+        See `hulls.make_cluster_hulls`.
     max_range_m : float
         How far a scan can see.
     threads : int
     """
-    grown = clustergrowth.table(scans, n_clusters, sample_size=sample_size, seed=seed, threads=threads)
-    tables.write(clusters, schemas.CLUSTERS, grown)
-    poses, found = truthfile.read_poses(true_poses), registered.read(registration)
-    places_m = truthfile.poses_at(poses, found.t_ns, true_poses)[:, :2, 3]
-    seen = seenarea.polygons(truthfile.read_faces(truth), places_m, max_range_m=max_range_m)
-    columns = tables.read(built, schemas.HULLS)
-    kinds = {"full_hull": hulls.scan_full_hulls(columns)[1], "cluster_hull": hulls.scan_polygons(columns)[1]}
+    grown = cluster_growth.cluster_growth_columns(
+        scans, n_clusters, sample_size=sample_size, seed=seed, threads=threads
+    )
+    tables.write_table(clusters, schemas.CLUSTERS, grown)
+    poses, found = (
+        truth_file.read_true_poses(true_poses),
+        registered_scans.read_registered_scans(registration),
+    )
+    places_m = truth_file.interpolate_true_poses(poses, found.t_ns, true_poses)[:, :2, 3]
+    seen = seen_area.seen_polygons(
+        truth_file.read_true_faces(truth), places_m, max_range_m=max_range_m
+    )
+    columns = tables.read_table(built, schemas.HULLS)
+    kinds = {
+        "full_hull": hulls.scan_full_hulls(columns)[1],
+        "cluster_hull": hulls.scan_polygons(columns)[1],
+    }
     measured = {"scan_id": found.scan_ids, "seen_m2": shapely.area(seen)}
     measured |= {f"{kind}_m2": shapely.area(polygons) for kind, polygons in kinds.items()}
-    measured |= {f"{kind}_iou": seenarea.shared(polygons, seen) for kind, polygons in kinds.items()}
-    tables.write(areas, schemas.AREAS, measured)
-    median = [f"{np.median(values):.2f} {name}" for name, values in measured.items() if name != "scan_id"]
-    stagelog.say(f"measure_coverage: {len(found.scan_ids)} scans, median {', '.join(median)}")
+    measured |= {
+        f"{kind}_iou": seen_area.polygon_iou(polygons, seen) for kind, polygons in kinds.items()
+    }
+    tables.write_table(areas, schemas.AREAS, measured)
+    median = [
+        f"{np.median(values):.2f} {name}" for name, values in measured.items() if name != "scan_id"
+    ]
+    log.log_line(f"measure_coverage: {len(found.scan_ids)} scans, median {', '.join(median)}")
 
 
 if __name__ == "__main__":
-    with stagelog.to_file(snakemake.log[0]):
+    with log.log_to_file(snakemake.log[0]):
         measure_coverage(
-            *(snakemake.input[name] for name in ("scans", "hulls", "registration", "truth", "true_poses")),
+            *(
+                snakemake.input[name]
+                for name in ("scans", "hulls", "registration", "truth", "true_poses")
+            ),
             snakemake.output.clusters,
             snakemake.output.areas,
             n_clusters=snakemake.params.n_clusters,

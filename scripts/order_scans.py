@@ -1,8 +1,9 @@
 """Put the scans in the order in which they are worth most for the plan."""
 
-from scanplan import schemas, stagelog, tables
 from scanplan.errors import StageError
 from scanplan.selection import orderings, stopping
+from scanplan.stage import log
+from scanplan.store import schemas, tables
 
 _SCHEMAS = {
     "observations": schemas.OBSERVATIONS,
@@ -11,7 +12,9 @@ _SCHEMAS = {
 }
 
 
-def order_scans(hulls, output, *, method, seed=None, min_overlap=0.0, streaming=None, budget=None, others=None):
+def order_scans(
+    hulls, output, *, method, seed=None, min_overlap=0.0, streaming=None, budget=None, others=None
+):
     """Write the table of one method's ordering.
 
     Parameters
@@ -23,27 +26,37 @@ def order_scans(hulls, output, *, method, seed=None, min_overlap=0.0, streaming=
     method : str
         One of `methods.METHODS`.
     seed, min_overlap, streaming, budget
-        Those of them that `methods.SETTINGS` names for the method, see `orderings.order`; `budget` are keywords of
+        Those of them that `methods.SETTINGS` names for the method, see `orderings.order_scans`; `budget` are keywords of
         `stopping.points_budget`.
     others : dict of str to path-like, optional
         The tables that `methods.TABLES` names for the method.
     """
-    columns = tables.read(hulls, schemas.HULLS, ["scan_id", "cluster", "n_points", "geometry"])
-    read = {name: tables.read(path, _SCHEMAS[name], allow_empty=True) for name, path in (others or {}).items()}
+    columns = tables.read_table(
+        hulls, schemas.HULLS, ["scan_id", "cluster", "n_points", "geometry"]
+    )
+    read = {
+        name: tables.read_table(path, _SCHEMAS[name], allow_empty=True)
+        for name, path in (others or {}).items()
+    }
     limit = stopping.points_budget(**(budget or {}))
-    settings = {"seed": seed, "min_overlap": min_overlap, "streaming_settings": streaming, "budget": limit}
-    selection = orderings.order(method, columns, others=read, **settings)
+    settings = {
+        "seed": seed,
+        "min_overlap": min_overlap,
+        "streaming_settings": streaming,
+        "budget": limit,
+    }
+    selection = orderings.order_scans(method, columns, others=read, **settings)
     if selection["covered_m2"][-1] == 0:
         raise StageError(
             f"{hulls}: {len(selection['rank'])} scans cover 0 m2, more is needed to order them; every cluster of their"
             " points lies on one line: use fewer clusters (n_clusters) or check the recording"
         )
-    tables.write(output, schemas.SELECTION, selection)
-    stagelog.say(f"order_scans: {orderings.summary(method, selection)}")
+    tables.write_table(output, schemas.SELECTION, selection)
+    log.log_line(f"order_scans: {orderings.summarise_order(method, selection)}")
 
 
 if __name__ == "__main__":
-    with stagelog.to_file(snakemake.log[0]):
+    with log.log_to_file(snakemake.log[0]):
         order_scans(
             snakemake.input.hulls,
             snakemake.output.selection,

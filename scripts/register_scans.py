@@ -1,11 +1,15 @@
 """Select continuous scans and register them in the map frame (thesis, algorithm 3)."""
 
-from scanplan import schemas, spool, stagelog, tables, workers
-from scanplan.recordings import motion, surveys
-from scanplan.registration import linktable, mapping, verdicts
+from scanplan.recordings.motion import trajectory
+from scanplan.recordings.survey import open_survey
+from scanplan.registration import constraint_table, mapping, results
+from scanplan.stage import log, workers
+from scanplan.store import scan_cache, schemas, tables
 
 
-def register_scans(recordings, poses, scans, registered, edges, *, reading, settings, moved=None, threads=1):
+def register_scans(
+    recordings, poses, scans, registered, edges, *, reading, settings, moved=None, threads=1
+):
     """Write the retained scans in the map frame, what became of every candidate, and what links the retained ones.
 
     Parameters
@@ -17,7 +21,7 @@ def register_scans(recordings, poses, scans, registered, edges, *, reading, sett
     scans, registered, edges : path-like
         scans.parquet, registration.parquet and edges.parquet, to write.
     reading : dict
-        Keywords of `surveys.open_survey`.
+        Keywords of `survey.open_survey`.
     settings : dict
         Section `registration` of the settings.
     moved : path-like, optional
@@ -25,28 +29,50 @@ def register_scans(recordings, poses, scans, registered, edges, *, reading, sett
     threads : int
         Cores to use; the result does not depend on it.
     """
-    candidates = tables.read(poses, schemas.POSES)
-    priors, dropped = verdicts.poses(candidates), []
-    way = None if moved is None else motion.from_columns(tables.read(moved, schemas.MOTION))
-    with spool.beside(scans) as raw, spool.beside(registered) as thinned, workers.pool(threads) as run:
-        with surveys.open_survey(recordings, **reading, motion=way) as opened:
-            survey = mapping.Survey(candidates["scan_id"], priors, opened.planar)
-            found = stagelog.progress(opened.scans(survey.scan_ids), "register_scans", total=len(priors))
+    candidates = tables.read_table(poses, schemas.POSES)
+    priors, dropped = results.pose_matrices(candidates), []
+    way = (
+        None
+        if moved is None
+        else trajectory.motion_from_columns(tables.read_table(moved, schemas.MOTION))
+    )
+    with (
+        scan_cache.open_scan_cache(scans) as raw,
+        scan_cache.open_scan_cache(registered) as thinned,
+        workers.open_pool(threads) as run,
+    ):
+        with open_survey(recordings, **reading, motion=way) as opened:
+            survey = mapping.CandidateScans(candidates["scan_id"], priors, opened.planar)
+            found = log.report_progress(
+                opened.scans(survey.scan_ids), "register_scans", total=len(priors)
+            )
             counted = (dropped.append(scan.n_dropped) or scan for scan in found)
-            judged, links = mapping.register(survey, counted, raw, thinned, run, mapping.settings_of(settings))
-        verdicts.check_any_kept(judged, sum(dropped), recordings[0])
+            judged, links = mapping.register_scans(
+                survey, counted, raw, thinned, run, mapping.registration_settings(settings)
+            )
+        results.check_any_kept(judged, sum(dropped), recordings[0])
         rows = [row for row, verdict in enumerate(judged) if verdict.kept]
-        with tables.scan_writer(scans, planar=survey.planar) as write_scan:
+        with tables.open_scan_writer(scans, planar=survey.planar) as write_scan:
             for row, xyz_m in zip(rows, raw.part(rows), strict=True):
                 scan_id = survey.scan_ids[row]
-                write_scan(scan_id, verdicts.in_map(scan_id, xyz_m, judged[row].world_from_sensor))
-    stagelog.say(f"register_scans: {verdicts.summary(judged, sum(dropped))}; {linktable.summary(links)}")
-    tables.write(edges, schemas.EDGES, linktable.columns(links), allow_empty=True)
-    tables.write(registered, schemas.REGISTRATION, verdicts.columns(survey.scan_ids, candidates["t_ns"], judged))
+                write_scan(
+                    scan_id, results.move_to_map(scan_id, xyz_m, judged[row].world_from_sensor)
+                )
+    log.log_line(
+        f"register_scans: {results.summarise_registration(judged, sum(dropped))}; {constraint_table.summarise_constraints(links)}"
+    )
+    tables.write_table(
+        edges, schemas.EDGES, constraint_table.constraint_columns(links), allow_empty=True
+    )
+    tables.write_table(
+        registered,
+        schemas.REGISTRATION,
+        results.registration_columns(survey.scan_ids, candidates["t_ns"], judged),
+    )
 
 
 if __name__ == "__main__":
-    with stagelog.to_file(snakemake.log[0]):
+    with log.log_to_file(snakemake.log[0]):
         register_scans(
             snakemake.input.recordings,
             snakemake.input.poses,

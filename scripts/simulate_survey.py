@@ -2,9 +2,10 @@
 
 from pathlib import Path
 
-from scanplan import atomic, stagelog
-from scanplan.simulation import scanmessages, surveybag, surveying, surveymessages, sweeps
-from scanplan.simulation import truth as ground_truth
+from scanplan.lab.buildings.truth import format_features, format_tum
+from scanplan.lab.simulation import scan_messages, survey_bag, survey_messages, survey_setup, sweeps
+from scanplan.stage import log
+from scanplan.store import atomic
 
 
 def simulate_survey(
@@ -25,35 +26,44 @@ def simulate_survey(
     threads=1,
 ):
     """Write a drive's recording (.bag, .db3 or .mcap), the floor's truth, the poses at the stamps and the whole way."""
-    found = surveying.site(Path(building).read_bytes(), Path(building), mount, seed=seed, **site)
-    for note in found.notes:
-        stagelog.say(f"simulate_survey: {note}")
-    rig = {"mount": mount, "sensor": sensor, "errors": errors, "drive": drive, "people": people}
-    survey = surveying.prepare(found, seed=seed, **rig)
-    start_ns = surveybag.EPOCH_NS
-    belief = surveying.belief(survey, **localiser)
-    taken = sweeps.scans(survey, threads=threads)
-    scans = stagelog.progress(taken, "simulate_survey", total=len(survey.t_ns))
-    surveybag.write(
-        recording,
-        surveymessages.mounting(start_ns + belief.t_ns[0], survey.base_from_sensor, scanmessages.frame(survey.sensor)),
-        scanmessages.scans(start_ns + survey.t_ns, survey.sensor, scans),
-        *surveymessages.belief(start_ns, belief),
+    found = survey_setup.prepare_site(
+        Path(building).read_bytes(), Path(building), mount, seed=seed, **site
     )
-    features, sensor = surveying.truth(found, survey)
-    atomic.write_text(truth, ground_truth.feature_collection(features, sensor=sensor))
+    for note in found.notes:
+        log.log_line(f"simulate_survey: {note}")
+    rig = {"mount": mount, "sensor": sensor, "errors": errors, "drive": drive, "people": people}
+    survey = survey_setup.prepare_survey(found, seed=seed, **rig)
+    start_ns = survey_bag.EPOCH_NS
+    belief = survey_setup.survey_belief(survey, **localiser)
+    taken = sweeps.simulate_scans(survey, threads=threads)
+    scans = log.report_progress(taken, "simulate_survey", total=len(survey.t_ns))
+    survey_bag.write_survey_bag(
+        recording,
+        survey_messages.encode_mounting(
+            start_ns + belief.t_ns[0],
+            survey.base_from_sensor,
+            scan_messages.sensor_frame(survey.sensor),
+        ),
+        scan_messages.encode_scans(start_ns + survey.t_ns, survey.sensor, scans),
+        *survey_messages.encode_belief(start_ns, belief),
+    )
+    features, sensor = survey_setup.survey_truth(found, survey)
+    atomic.write_text(truth, format_features(features, sensor=sensor))
     for path, (t_ns, pose) in (
-        (true_poses, surveying.true_poses(survey)),
-        (true_trajectory, surveying.true_trajectory(survey)),
+        (true_poses, survey_setup.true_poses(survey)),
+        (true_trajectory, survey_setup.true_trajectory(survey)),
     ):
-        atomic.write_text(path, ground_truth.tum(start_ns + t_ns, pose))
+        atomic.write_text(path, format_tum(start_ns + t_ns, pose))
 
 
 if __name__ == "__main__":
-    with stagelog.to_file(snakemake.log[0]):
+    with log.log_to_file(snakemake.log[0]):
         simulate_survey(
             snakemake.input.building,
-            *(snakemake.output[name] for name in ("recording", "truth", "true_poses", "true_trajectory")),
+            *(
+                snakemake.output[name]
+                for name in ("recording", "truth", "true_poses", "true_trajectory")
+            ),
             **snakemake.params.settings,
             threads=snakemake.threads,
         )

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import numpy as np
 
-from scanplan import schemas, stagelog, tables
-from scanplan.evaluation import benchmarks
-from scanplan.recordings import tum
+from scanplan.lab.evaluation import run_times
+from scanplan.stage import log
+from scanplan.store import schemas, tables, tum
 
 
 def tabulate_steps(recordings, true_poses, scans, built, selection, times, output, *, n_selected):
@@ -24,22 +24,39 @@ def tabulate_steps(recordings, true_poses, scans, built, selection, times, outpu
     n_selected : int
         Size of the subset.
     """
-    t_ns, _ = tum.read(true_poses)
-    hulls = tables.read(built, schemas.HULLS, ["scan_id", "cluster", "n_points"])
-    chosen = tables.read(selection, schemas.SELECTION, ["rank", "scan_id"])["scan_id"][:n_selected]
+    t_ns, _ = tum.read_tum(true_poses)
+    hulls = tables.read_table(built, schemas.HULLS, ["scan_id", "cluster", "n_points"])
+    chosen = tables.read_table(selection, schemas.SELECTION, ["rank", "scan_id"])["scan_id"][
+        :n_selected
+    ]
     # points take the same room wherever they are in the table
     share = hulls["n_points"][np.isin(hulls["scan_id"], chosen)].sum() / hulls["n_points"].sum()
     kept = len(np.unique(hulls["scan_id"]))
-    n_bytes = [sum(Path(file).stat().st_size for file in recordings), _size(scans), _size(built), share * _size(scans)]
+    n_bytes = [
+        sum(Path(file).stat().st_size for file in recordings),
+        _size(scans),
+        _size(built),
+        share * _size(scans),
+    ]
     rows = {
         "step": np.arange(1, 5),
-        "name": ["Data collection", "Selecting and registering scans", "Hull creation", "Cluster subset selection"],
-        "seconds": np.array([(t_ns[-1] - t_ns[0]) / 1e9, *(sum(map(benchmarks.seconds, files)) for files in times)]),
+        "name": [
+            "Data collection",
+            "Selecting and registering scans",
+            "Hull creation",
+            "Cluster subset selection",
+        ],
+        "seconds": np.array(
+            [
+                (t_ns[-1] - t_ns[0]) / 1e9,
+                *(sum(map(run_times.read_job_seconds, files)) for files in times),
+            ]
+        ),
         "n_scans": np.array([len(t_ns), kept, kept, len(chosen)]),
         "n_bytes": np.array(n_bytes).astype(np.int64),
     }
-    tables.write(output, schemas.STEPS, rows)
-    stagelog.say(f"tabulate_steps: {len(t_ns):,} scans, {kept} registered, {len(chosen)} selected")
+    tables.write_table(output, schemas.STEPS, rows)
+    log.log_line(f"tabulate_steps: {len(t_ns):,} scans, {kept} registered, {len(chosen)} selected")
 
 
 def _size(path):
@@ -47,9 +64,12 @@ def _size(path):
 
 
 if __name__ == "__main__":
-    with stagelog.to_file(snakemake.log[0]):
+    with log.log_to_file(snakemake.log[0]):
         tabulate_steps(
-            *(snakemake.input[name] for name in ("recordings", "true_poses", "scans", "hulls", "selection")),
+            *(
+                snakemake.input[name]
+                for name in ("recordings", "true_poses", "scans", "hulls", "selection")
+            ),
             [snakemake.input[name] for name in ("registering", "hulling", "ordering")],
             snakemake.output.steps,
             n_selected=snakemake.params.n_selected,

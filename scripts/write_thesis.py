@@ -2,8 +2,9 @@
 
 from pathlib import Path
 
-from scanplan import atomic, schemas, stagelog, tables
-from scanplan.thesis import thesispage
+from scanplan.lab.thesis.page import thesis_page
+from scanplan.stage import log
+from scanplan.store import atomic, schemas, tables
 
 
 def write_thesis(figures, orders, claims, steps, limited, output):
@@ -22,14 +23,16 @@ def write_thesis(figures, orders, claims, steps, limited, output):
     """
     drawn = {Path(path).name: Path(path).read_text(encoding="utf-8") for path in figures}
     beyond = Path(orders).read_text(encoding="utf-8")
-    drive, drive_limited = (tables.read(path, schemas.STEPS) for path in (steps, limited))
-    page = thesispage.page(drawn, beyond, tables.read(claims, schemas.CLAIMS), drive, drive_limited)
+    drive, drive_limited = (tables.read_table(path, schemas.STEPS) for path in (steps, limited))
+    page = thesis_page(
+        drawn, beyond, tables.read_table(claims, schemas.CLAIMS), drive, drive_limited
+    )
     atomic.write_text(output, page)
-    stagelog.say(f"write_thesis: {len(drawn)} figures, {len(page) / 1e6:.1f} MB")
+    log.log_line(f"write_thesis: {len(drawn)} figures, {len(page) / 1e6:.1f} MB")
 
 
 if __name__ == "__main__":
-    with stagelog.to_file(snakemake.log[0]):
+    with log.log_to_file(snakemake.log[0]):
         write_thesis(
             list(snakemake.input.figures),
             snakemake.input.orders,

@@ -54,12 +54,16 @@ def rectangle(x0, y0, x1, y1):
 
 def door(point):
     """Return a door as wide as an office's."""
-    return feature("opening", "Point", point, type="door", width_m=DOOR_M, sill_m=0.0, lintel_m=LINTEL_M)
+    return feature(
+        "opening", "Point", point, type="door", width_m=DOOR_M, sill_m=0.0, lintel_m=LINTEL_M
+    )
 
 
 def window(point, width_m):
     """Return a window above a parapet."""
-    return feature("opening", "Point", point, type="window", width_m=width_m, sill_m=0.9, lintel_m=2.2)
+    return feature(
+        "opening", "Point", point, type="window", width_m=width_m, sill_m=0.9, lintel_m=2.2
+    )
 
 
 def row(letter):
@@ -71,23 +75,36 @@ def row(letter):
     def at(along, across):
         return (across, along) if turned else (along, across)
 
-    low, high = (RING if letter in "SNWE" else CORE)[turned], (RING if letter in "SNWE" else CORE)[2 + turned]
+    low, high = (
+        (RING if letter in "SNWE" else CORE)[turned],
+        (RING if letter in "SNWE" else CORE)[2 + turned],
+    )
     made = [wall(at(edge, outer), at(edge, hall)) for edge in edges[1:-1]]
     made += [door(at(edges[i], outer + 0.35 * (hall - outer))) for i in joined]
     for number, (a, b) in enumerate(pairwise(edges), 1):
         # corner rooms meet the hallway only as far as the ring reaches
         reach = max(a, low) + 0.9, min(b, high) - 0.9
         places = [reach[0] + 0.2, reach[1] - 0.2] if b - a >= TWO_DOORS_FROM_M else [sum(reach) / 2]
-        made += [door(at(place, hall)) for place in places if reach[1] - reach[0] > 1.5 or place == places[0]]
+        made += [
+            door(at(place, hall))
+            for place in places
+            if reach[1] - reach[0] > 1.5 or place == places[0]
+        ]
         if letter in "SNWE":
             made += [window(at(a + share * (b - a), outer), 1.8) for share in (0.28, 0.72)]
-        made.append(feature("room", "Point", at((a + b) / 2, (outer + hall) / 2), name=f"{letter}{number}"))
+        made.append(
+            feature("room", "Point", at((a + b) / 2, (outer + hall) / 2), name=f"{letter}{number}")
+        )
     return made
 
 
 def drawing():
     """Return the features of the whole floor."""
-    made = [rectangle(WEST, SOUTH, EAST, NORTH), rectangle(*CORE), wall((CORE[0], SPINE_Y), (CORE[2], SPINE_Y))]
+    made = [
+        rectangle(WEST, SOUTH, EAST, NORTH),
+        rectangle(*CORE),
+        wall((CORE[0], SPINE_Y), (CORE[2], SPINE_Y)),
+    ]
     # the long sides of the ring go through to the outer walls and end the corner rooms
     made += [wall((WEST, RING[y]), (EAST, RING[y])) for y in (1, 3)]
     made += [wall((RING[x], RING[1]), (RING[x], RING[3])) for x in (0, 2)]

@@ -4,8 +4,8 @@ import numpy as np
 import shapely
 import wallscans
 
+from scanplan.lab.simulation import raycast, survey_setup
 from scanplan.selection import hulls
-from scanplan.simulation import raycast, surveying
 
 RATE_HZ = 10.0
 SPEED_M_S = 0.75
@@ -30,15 +30,17 @@ def scans(building, settings, n, **site):
     """
     drive = {"speed_m_s": SPEED_M_S}
     _, survey = wallscans.unswept(building, settings, seed=1, rate_hz=RATE_HZ, drive=drive, **site)
-    scene = raycast.Scene(survey.mesh)
-    poses = surveying.true_poses(survey)[1][:n]
+    scene = raycast.RayScene(survey.mesh)
+    poses = survey_setup.true_poses(survey)[1][:n]
     return [wallscans.points(survey, scene, i, pose) for i, pose in enumerate(poses)]
 
 
 def polygons(scans, settings, *, thin=1):
     """Return the polygons (n,) of scans; `settings` are those of `hulls`."""
-    parts = [hulls.cluster_hulls(i, xyz_m[::thin], **settings) for i, xyz_m in enumerate(scans)]
-    return hulls.scan_polygons(hulls.concatenated(parts))[1]
+    parts = [
+        hulls.make_cluster_hulls(i, xyz_m[::thin], **settings) for i, xyz_m in enumerate(scans)
+    ]
+    return hulls.scan_polygons(hulls.concatenate_hulls(parts))[1]
 
 
 def side_by_side(scans, settings, *, copies, thin):

@@ -16,18 +16,37 @@ import yaml
 
 BUILDINGS = {
     "demo": {"building": "demo_office"},
-    "ring": {"building": "ring_office", "site": {"route": "rooms", "start_m": "random"}, "sensor": {"rate_hz": 5.0}},
+    "ring": {
+        "building": "ring_office",
+        "site": {"route": "rooms", "start_m": "random"},
+        "sensor": {"rate_hz": 5.0},
+    },
     "duplex": {"building": "duplex.ifc", "site": {"route": "rooms", "storey": "Level 1"}},
     "fzk": {"building": "AC20-FZK-Haus.ifc", "site": {"route": "rooms", "storey": "Erdgeschoss"}},
 }
 """Settings of `simulate` by the name of a drive; a building with a suffix is a file among the recordings."""
 LOCALISER = {"noise_m": 0.05, "noise_deg": 1.0, "jumps_per_min": 1.0}
 SEEDS = (1, 2, 3)
-RECORDINGS = ("intel", "jackal_ros1", "jackal_ros2", "mac_first_floor", "scenes7_room", "vlp16_room")
+RECORDINGS = (
+    "intel",
+    "jackal_ros1",
+    "jackal_ros2",
+    "mac_first_floor",
+    "scenes7_room",
+    "vlp16_room",
+)
 MOST_DROP = 0.005
 """A share that a change lowers by more than this is told."""
 
-_MORE_IS_BETTER = ("completeness", "correctness", "f1", "recall", "precision", "iou", "n_rooms_found")
+_MORE_IS_BETTER = (
+    "completeness",
+    "correctness",
+    "f1",
+    "recall",
+    "precision",
+    "iou",
+    "n_rooms_found",
+)
 _LESS_IS_BETTER = ("thickness_error_m", "width_error_m", "n_rooms_false")
 
 
@@ -62,7 +81,17 @@ def record(project, revision, folder, recordings, names=()):
     targets = [f"results/{name}/{table}" for name in chosen for table in _wanted(name)]
     environment = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
     given = json.dumps([str(path) for path in chosen.values()])
-    command = [sys.executable, "-m", "snakemake", "--cores", "2", "--quiet", "rules", "--config", f"dataset={given}"]
+    command = [
+        sys.executable,
+        "-m",
+        "snakemake",
+        "--cores",
+        "2",
+        "--quiet",
+        "rules",
+        "--config",
+        f"dataset={given}",
+    ]
     subprocess.run([*command, "--", *targets], cwd=code, env=environment, check=True)
 
 
@@ -77,7 +106,9 @@ def _checked_out(project, revision, folder):
 
 
 def _git(folder, *words):
-    done = subprocess.run(["git", "-C", str(folder), *words], check=True, stdout=subprocess.PIPE, text=True)
+    done = subprocess.run(
+        ["git", "-C", str(folder), *words], check=True, stdout=subprocess.PIPE, text=True
+    )
     return done.stdout.strip()
 
 
@@ -100,7 +131,11 @@ def _surveys(folder, recordings):
 
 def _wanted(name):
     drawn = ("plan/plan.svg", "plan/plan.geojson")
-    return drawn if name in RECORDINGS else (*drawn, "evaluation/plan.parquet", "evaluation/walls.parquet")
+    return (
+        drawn
+        if name in RECORDINGS
+        else (*drawn, "evaluation/plan.parquet", "evaluation/walls.parquet")
+    )
 
 
 def compare(before, after):
@@ -117,13 +152,17 @@ def compare(before, after):
         How many measures fell by more than `MOST_DROP`.
     """
     fallen = 0
-    for name in [f"{building}_{seed}" for building in BUILDINGS for seed in SEEDS] + list(RECORDINGS):
+    for name in [f"{building}_{seed}" for building in BUILDINGS for seed in SEEDS] + list(
+        RECORDINGS
+    ):
         folders = [folder / "code/results" / name for folder in (before, after)]
         if not all((folder / "plan/plan.geojson").exists() for folder in folders):
             print(f"{name}: not in both")
             continue
         changed = _changed_files(*folders)
-        print(f"{name}: {'all tables equal byte for byte' if not changed else 'differ: ' + ', '.join(changed)}")
+        print(
+            f"{name}: {'all tables equal byte for byte' if not changed else 'differ: ' + ', '.join(changed)}"
+        )
         if name not in RECORDINGS:
             rows = list(_changed_measures(*folders))
             fallen += sum(falls for *_, falls in rows)
@@ -135,8 +174,16 @@ def compare(before, after):
 
 def _changed_files(before, after):
     """Return the tables that differ; run times and drawings with their stamps are no tables."""
-    tables = sorted(file.relative_to(before) for file in before.rglob("*.parquet") if file.name != "seconds.parquet")
-    return [str(t) for t in tables if (after / t).exists() and (before / t).read_bytes() != (after / t).read_bytes()]
+    tables = sorted(
+        file.relative_to(before)
+        for file in before.rglob("*.parquet")
+        if file.name != "seconds.parquet"
+    )
+    return [
+        str(t)
+        for t in tables
+        if (after / t).exists() and (before / t).read_bytes() != (after / t).read_bytes()
+    ]
 
 
 def _changed_measures(before, after):
@@ -158,8 +205,16 @@ def _measures(folder):
     by_kind = walls.groupby(["method", "extractor"]).mean(numeric_only=True)
     measures = {}
     for table, frame in (("plan", plan), ("walls", by_kind)):
-        names = [c for c in frame.columns if any(s in c for s in _MORE_IS_BETTER) or c.endswith(_LESS_IS_BETTER)]
+        names = [
+            c
+            for c in frame.columns
+            if any(s in c for s in _MORE_IS_BETTER) or c.endswith(_LESS_IS_BETTER)
+        ]
         for index, row in frame[names].iterrows():
             label = index if isinstance(index, str) else " ".join(index)
-            measures |= {f"{table} {label} {name}": float(row[name]) for name in names if row[name] == row[name]}
+            measures |= {
+                f"{table} {label} {name}": float(row[name])
+                for name in names
+                if row[name] == row[name]
+            }
     return measures

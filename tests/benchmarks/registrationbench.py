@@ -11,10 +11,11 @@ import interpolate_poses
 import register_scans
 import simulate_survey
 from reference import registration as literal
-from scanplan import schemas, tables
-from scanplan.evaluation import poseerrors, truthfile
-from scanplan.recordings import motion, surveys
-from scanplan.registration import verdicts
+from scanplan.lab.evaluation import pose_errors, truth_file
+from scanplan.recordings.motion import trajectory
+from scanplan.recordings.survey import open_survey
+from scanplan.registration import results
+from scanplan.store import schemas, tables
 
 N_LITERAL = 40
 _TABLES = ("scans", "registration", "edges")
@@ -34,14 +35,22 @@ def drive(root, settings):
     """
     folder = root / "results/bench/registration"
     if not (folder / "poses.parquet").exists():
-        rig = simulating.hallways(settings, speed_m_s=0.3, noise_m=0.05, noise_deg=1.0, jumps_per_min=1.0)
-        truths = (folder / name for name in ("truth.geojson", "truth_poses.tum", "truth_trajectory.tum"))
+        rig = simulating.hallways(
+            settings, speed_m_s=0.3, noise_m=0.05, noise_deg=1.0, jumps_per_min=1.0
+        )
+        truths = (
+            folder / name for name in ("truth.geojson", "truth_poses.tum", "truth_trajectory.tum")
+        )
         building = root / "config/buildings/ring_office.geojson"
-        simulate_survey.simulate_survey(building, folder / "survey.bag", *truths, **rig, threads=_THREADS)
+        simulate_survey.simulate_survey(
+            building, folder / "survey.bag", *truths, **rig, threads=_THREADS
+        )
         unread = ("min_range_m", "max_range_m", "deskew")
         reading = {key: value for key, value in settings["input"].items() if key not in unread}
         outputs = {"output": folder / "poses.parquet", "moved": folder / "motion.parquet"}
-        interpolate_poses.interpolate_poses([str(folder / "survey.bag")], **outputs, **settings["poses"], **reading)
+        interpolate_poses.interpolate_poses(
+            [str(folder / "survey.bag")], **outputs, **settings["poses"], **reading
+        )
     return folder
 
 
@@ -53,7 +62,7 @@ def bench(root, settings):
     stage_s, stage_cpu_s = _timed(lambda: _register(folder, bag, settings))
     peak_mb = _peak_mb()
     literal_s, literal_cpu_s = _timed(_literal(folder, bag, settings))
-    n = len(tables.read(folder / "poses.parquet", schemas.POSES, ["scan_id"])["scan_id"])
+    n = len(tables.read_table(folder / "poses.parquet", schemas.POSES, ["scan_id"])["scan_id"])
     ours_ms, theirs_ms = 1e3 * stage_s / n, 1e3 * literal_s / N_LITERAL
     cpu_ms, literal_cpu_ms = 1e3 * stage_cpu_s / n, 1e3 * literal_cpu_s / N_LITERAL
     print(
@@ -69,35 +78,50 @@ def bench(root, settings):
 
 def _register(folder, bag, settings):
     outputs = (folder / f"{name}.parquet" for name in _TABLES)
-    keywords = {"reading": settings["input"], "settings": settings["registration"], "moved": folder / "motion.parquet"}
-    register_scans.register_scans([str(bag)], folder / "poses.parquet", *outputs, **keywords, threads=_THREADS)
+    keywords = {
+        "reading": settings["input"],
+        "settings": settings["registration"],
+        "moved": folder / "motion.parquet",
+    }
+    register_scans.register_scans(
+        [str(bag)], folder / "poses.parquet", *outputs, **keywords, threads=_THREADS
+    )
 
 
 def _literal(folder, bag, settings):
     """Algorithm 3 on some candidates from the middle, of which the points are read beforehand."""
-    candidates = tables.read(folder / "poses.parquet", schemas.POSES)
+    candidates = tables.read_table(folder / "poses.parquet", schemas.POSES)
     middle = len(candidates["scan_id"]) // 2
     some = slice(middle, middle + N_LITERAL)
-    way = motion.from_columns(tables.read(folder / "motion.parquet", schemas.MOTION))
-    with surveys.open_survey([str(bag)], **settings["input"], motion=way) as survey:
+    way = trajectory.motion_from_columns(
+        tables.read_table(folder / "motion.parquet", schemas.MOTION)
+    )
+    with open_survey([str(bag)], **settings["input"], motion=way) as survey:
         scans = [scan.xyz_m for scan in survey.scans(candidates["scan_id"][some].tolist())]
-    limits = {key: settings["registration"][key] for key in ("min_prior_fitness", "min_refined_fitness")}
+    limits = {
+        key: settings["registration"][key] for key in ("min_prior_fitness", "min_refined_fitness")
+    }
     distance_m = settings["registration"]["fitness_distance_m"]
-    poses = verdicts.poses(candidates)[some]
+    poses = results.pose_matrices(candidates)[some]
     return lambda: literal.register(scans, poses, keep_every=1, distance_m=distance_m, **limits)
 
 
 def _accuracy(folder):
-    found = tables.read(folder / "registration.parquet", schemas.REGISTRATION)
+    found = tables.read_table(folder / "registration.parquet", schemas.REGISTRATION)
     kept = found["kept"]
-    truth = truthfile.poses_at(
-        truthfile.read_poses(folder / "truth_poses.tum"), found["t_ns"][kept], folder / "truth_poses.tum"
+    truth = truth_file.interpolate_true_poses(
+        truth_file.read_true_poses(folder / "truth_poses.tum"),
+        found["t_ns"][kept],
+        folder / "truth_poses.tum",
     )
     told = []
-    for name, columns in (("localiser", tables.read(folder / "poses.parquet", schemas.POSES)), ("registered", found)):
-        pose = verdicts.poses(columns)[kept]
-        pose = poseerrors.alignment(pose[:, :3, 3], truth[:, :3, 3]) @ pose
-        distance_m, angle_deg = (sorted(error) for error in poseerrors.errors(pose, truth))
+    for name, columns in (
+        ("localiser", tables.read_table(folder / "poses.parquet", schemas.POSES)),
+        ("registered", found),
+    ):
+        pose = results.pose_matrices(columns)[kept]
+        pose = pose_errors.fit_alignment(pose[:, :3, 3], truth[:, :3, 3]) @ pose
+        distance_m, angle_deg = (sorted(error) for error in pose_errors.pose_errors(pose, truth))
         middle, high = len(pose) // 2, int(0.95 * len(pose))
         told.append(
             f"{name} {1e3 * distance_m[middle]:.1f} mm and {angle_deg[middle]:.2f} deg in the median,"
@@ -122,5 +146,8 @@ def _timed(function):
 
 def _peak_mb():
     """The most that this process and its workers have held: an upper bound, as if all had held it at once."""
-    own, worker = (resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    own, worker = (
+        resource.getrusage(who).ru_maxrss
+        for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
+    )
     return (own + _THREADS * worker) / _KIB

@@ -19,9 +19,9 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "tests")]
 
 
-from scanplan import configuration  # noqa: E402
+from scanplan.project import yaml_file  # noqa: E402
 
-SETTINGS = configuration.read_yaml(ROOT / "config/config.yaml")
+SETTINGS = yaml_file.read_yaml(ROOT / "config/config.yaml")
 
 
 def bench_simulation():
@@ -42,7 +42,11 @@ def bench_selection():
     """Algorithms 1 and 2 on a drive through a large office."""
     import selecting
 
-    selecting.run(ROOT / "config/buildings/ring_office.geojson", SETTINGS, lambda line: print(line, flush=True))
+    selecting.run(
+        ROOT / "config/buildings/ring_office.geojson",
+        SETTINGS,
+        lambda line: print(line, flush=True),
+    )
 
 
 def bench_walls():
@@ -70,7 +74,9 @@ def record_guard(revision, folder, *names):
     """Make the guard's plans with the code of a commit."""
     import guard
 
-    guard.record(ROOT, revision, Path(folder).resolve(), (ROOT.parent / "shared/data").resolve(), names)
+    guard.record(
+        ROOT, revision, Path(folder).resolve(), (ROOT.parent / "shared/data").resolve(), names
+    )
 
 
 def compare_guards(before, after):
@@ -96,6 +102,8 @@ if __name__ == "__main__":
     more = {"wall_quality": bench_wall_quality, "plans": lambda: bench_plans(folders)}
     unknown = set(names) - set(benches | more)
     if unknown:
-        sys.exit(f"no benchmark {', '.join(sorted(unknown))}; there are {', '.join(benches | more)}")
+        sys.exit(
+            f"no benchmark {', '.join(sorted(unknown))}; there are {', '.join(benches | more)}"
+        )
     for name in names or benches:
         (benches | more)[name]()

@@ -8,7 +8,7 @@ import shapely
 from sklearn.cluster import KMeans
 
 from reference import hull_selection
-from scanplan.selection import certificate, greedy, hulls, streaming
+from scanplan.selection import area_greedy, bounds, hulls, streaming
 
 N_SCANS = 1200
 LITERAL_RANKS = 150
@@ -40,11 +40,13 @@ def built(scans, settings, say):
 
     def plainly(xy_m):
         label = KMeans(settings["n_clusters"], random_state=settings["seed"]).fit_predict(xy_m)
-        return [shapely.MultiPoint(xy_m[label == c]).convex_hull for c in range(settings["n_clusters"])]
+        return [
+            shapely.MultiPoint(xy_m[label == c]).convex_hull for c in range(settings["n_clusters"])
+        ]
 
     started = time.perf_counter()
     for i, xyz_m in enumerate(scans):
-        hulls.cluster_hulls(i, xyz_m, **settings)
+        hulls.make_cluster_hulls(i, xyz_m, **settings)
     middle = time.perf_counter()
     for xyz_m in scans:
         plainly(xyz_m[:, :2].astype(float))
@@ -58,19 +60,23 @@ def built(scans, settings, say):
 
 def ordered(polygons, say):
     """Algorithm 1: the complete order against the literal one, whose later ranks take as long a union as the first."""
-    order, ours_s = timed(lambda: greedy.greedy_order(polygons))
-    (literal, _), literal_s = timed(lambda: hull_selection.hull_selection(list(polygons), LITERAL_RANKS))
+    order, ours_s = timed(lambda: area_greedy.order_by_area(polygons))
+    (literal, _), literal_s = timed(
+        lambda: hull_selection.hull_selection(list(polygons), LITERAL_RANKS)
+    )
     if literal != order.order[:LITERAL_RANKS].tolist():
         raise SystemExit("lazy greedy left algorithm 1's order")
     n = len(polygons)
     whole_s = literal_s * unions(n, n) / unions(n, LITERAL_RANKS)
-    bound_m2, bound_s = timed(lambda: certificate.upper_bound(order))
+    bound_m2, bound_s = timed(lambda: bounds.bound_any_subset(order))
     say(
         f"selection: complete order of {n:,} scans in {ours_s:.2f} s; the literal algorithm took {literal_s:.0f} s for"
         f" the first {LITERAL_RANKS}, the same scans, so {whole_s:.0f} s for all (by the number of unions):"
         f" {whole_s / ours_s:.0f} times faster"
     )
-    told = ", ".join(f"{order.covered_m2[k - 1] / bound_m2[k - 1]:.0%} at {k}" for k in (5, 10, 20, 40, 80))
+    told = ", ".join(
+        f"{order.covered_m2[k - 1] / bound_m2[k - 1]:.0%} at {k}" for k in (5, 10, 20, 40, 80)
+    )
     say(f"certificate: in {bound_s:.2f} s, at least {told} scans of what any choice covers")
 
 
@@ -86,10 +92,10 @@ def scaled(scans, settings, say):
 
 def streamed(polygons, say):
     """The one-pass choice against greedy: area and what is held."""
-    best = greedy.greedy_order(polygons)
+    best = area_greedy.order_by_area(polygons)
     for k in SLOTS:
-        (order, most_held), taken_s = timed(lambda k=k: streaming.order(polygons, k=k))
-        share = greedy.gains_of_order(polygons, order[:k]).sum() / best.covered_m2[k - 1]
+        (order, most_held), taken_s = timed(lambda k=k: streaming.order_streaming(polygons, k=k))
+        share = area_greedy.area_gains(polygons, order[:k]).sum() / best.covered_m2[k - 1]
         say(
             f"streaming: {k} of {len(polygons)} scans cover {share:.1%} of what greedy's do, {most_held} held at most,"
             f" {1e3 * taken_s / len(polygons):.1f} ms a scan"
@@ -98,8 +104,8 @@ def streamed(polygons, say):
 
 def certified(polygons):
     """Return the order and the bound of every rank."""
-    order = greedy.greedy_order(polygons)
-    return order, certificate.upper_bound(order)
+    order = area_greedy.order_by_area(polygons)
+    return order, bounds.bound_any_subset(order)
 
 
 def unions(n, ranks):

@@ -30,7 +30,9 @@ def bench(root, settings):
         names = ("survey.bag", "truth.geojson", "truth_poses.tum", "truth_trajectory.tum")
         files = [Path(folder, name) for name in names]
         before, most = time.perf_counter(), _Most()
-        simulate_survey.simulate_survey(root / "config/buildings/ring_office.geojson", *files, **rig, threads=_THREADS)
+        simulate_survey.simulate_survey(
+            root / "config/buildings/ring_office.geojson", *files, **rig, threads=_THREADS
+        )
         seconds = time.perf_counter() - before
         n, size = len(files[2].read_text().splitlines()), files[0].stat().st_size
     rays = n * 1800 * 16
@@ -81,7 +83,9 @@ class _Most:
 
 def _children(pid):
     return [
-        int(child) for task in Path(f"/proc/{pid}/task").iterdir() for child in (task / "children").read_text().split()
+        int(child)
+        for task in Path(f"/proc/{pid}/task").iterdir()
+        for child in (task / "children").read_text().split()
     ]
 
 
@@ -91,4 +95,6 @@ def _private_bytes(pid):
         rows = Path(f"/proc/{pid}/smaps_rollup").read_text().splitlines()[1:]
     except OSError:
         return 0
-    return _KIB * sum(int(row.split()[1]) for row in rows if row.startswith(("Private_", "Pss_Shmem")))
+    return _KIB * sum(
+        int(row.split()[1]) for row in rows if row.startswith(("Private_", "Pss_Shmem"))
+    )

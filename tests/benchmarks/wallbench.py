@@ -7,7 +7,7 @@ import numpy as np
 import wallscans
 
 from reference import cluster_ransac as literal_clusters
-from scanplan.extraction import cluster_ransac, iterative_ransac, normals, walls
+from scanplan.extraction import cluster_ransac, iterative_ransac, normals, segments
 
 METHODS = {"cluster_ransac": cluster_ransac, "iterative_ransac": iterative_ransac}
 _ROUTES = {"demo_office": ("given", 0.4), "ring_office": ("rooms", 1.2)}
@@ -26,7 +26,9 @@ def speed(root, settings, n_scans=20):
         took_ms = _best_of_turns(survey, scans, settings["walls"])
         _tell_speed(building, survey, scans, took_ms, settings["walls"])
         if building == "demo_office":
-            _tell_literal(survey, scans[0], took_ms["cluster_ransac"][0], settings["walls"]["cluster_ransac"])
+            _tell_literal(
+                survey, scans[0], took_ms["cluster_ransac"][0], settings["walls"]["cluster_ransac"]
+            )
 
 
 def _best_of_turns(survey, scans, settings, turns=3):
@@ -41,12 +43,17 @@ def _tell_speed(building, survey, scans, took_ms, settings):
     for name, times in took_ms.items():
         print(f"walls, {building}, {name}: {len(scans)} scans of {points:,.0f} points,", end=" ")
         print(f"{np.mean(times):.1f} ms each of one core, coefficient of variation", end=" ")
-        print(f"{np.std(times) / np.mean(times):.2f} (standard deviation {np.std(times):.1f} ms)", flush=True)
+        print(
+            f"{np.std(times) / np.mean(times):.2f} (standard deviation {np.std(times):.1f} ms)",
+            flush=True,
+        )
     reach_deg = settings["cluster_ransac"]["reach_deg"]
     normals_ms = []
     for i, xyz_m in scans:
-        around_m = walls.around_sensor(xyz_m, survey.sensors[i])
-        normals_ms.append(_milliseconds(lambda p=around_m: normals.surface_cells(p, reach_deg=reach_deg)))
+        around_m = segments.centre_on_sensor(xyz_m, survey.sensors[i])
+        normals_ms.append(
+            _milliseconds(lambda p=around_m: normals.cut_surface_cells(p, reach_deg=reach_deg))
+        )
     ours_ms, theirs_ms = (np.mean(took_ms[name]) for name in ("cluster_ransac", "iterative_ransac"))
     print(
         f"walls, {building}, cluster against iterative RANSAC: {theirs_ms / ours_ms:.1f} times faster; normals are"
@@ -57,11 +64,14 @@ def _tell_speed(building, survey, scans, took_ms, settings):
 
 
 def _tell_literal(survey, scan, ours_ms, settings):
-    few_m = walls.around_sensor(scan[1], survey.sensors[scan[0]])[::_LITERAL_EVERY]
+    few_m = segments.centre_on_sensor(scan[1], survey.sensors[scan[0]])[::_LITERAL_EVERY]
     limits = {key: settings[key] for key in _LITERAL_KEYS} | {"max_trials": settings["trials"]}
-    literal_ms = _milliseconds(lambda: literal_clusters.lines(few_m, **limits, rng=np.random.default_rng(1)))
+    literal_ms = _milliseconds(
+        lambda: literal_clusters.lines(few_m, **limits, rng=np.random.default_rng(1))
+    )
     print(
-        f"walls, the literal method on every {_LITERAL_EVERY}th point of one scan: {literal_ms / 1e3:.1f} s,", end=" "
+        f"walls, the literal method on every {_LITERAL_EVERY}th point of one scan: {literal_ms / 1e3:.1f} s,",
+        end=" ",
     )
     print(f"{literal_ms / ours_ms:,.0f} times as long as ours on all of them", flush=True)
 
@@ -70,7 +80,9 @@ def quality(root, settings, every=3):
     """Compare the walls that both extractors and a line detector show with the truth."""
     for building, (route, step_m) in _ROUTES.items():
         path = root / f"config/buildings/{building}.geojson"
-        survey = wallscans.standing(path, settings["simulate"], route=route, step_m=step_m, every=every)
+        survey = wallscans.standing(
+            path, settings["simulate"], route=route, step_m=step_m, every=every
+        )
         found = {name: _lines(survey, name, settings["walls"]) for name in METHODS}
         if importlib.util.find_spec("cv2"):
             found["raster and LSD"] = raster_lines(survey), np.zeros(0, int)
@@ -103,7 +115,9 @@ def _lines(survey, name, settings):
     limits = method.Settings(**settings[name])
     lines, scan = [np.empty((0, 2, 2))], [np.empty(0, int)]
     for i, xyz_m in survey.scans:
-        found = method.extract(i, xyz_m, sensor_xyz_m=survey.sensors[i], planar=False, settings=limits)
+        found = method.extract(
+            i, xyz_m, sensor_xyz_m=survey.sensors[i], planar=False, settings=limits
+        )
         lines.append(np.stack([found.start_m, found.end_m], axis=1))
         scan.append(np.full(len(found), i))
     return np.concatenate(lines), np.concatenate(scan)
@@ -116,7 +130,9 @@ def _extract(survey, scans, settings):
         for name, method in METHODS.items():
             keywords = {"sensor_xyz_m": survey.sensors[i], "planar": False}
             keywords["settings"] = method.Settings(**settings[name])
-            took_ms[name].append(_milliseconds(lambda m=method, s=i, p=xyz_m, k=keywords: m.extract(s, p, **k)))
+            took_ms[name].append(
+                _milliseconds(lambda m=method, s=i, p=xyz_m, k=keywords: m.extract(s, p, **k))
+            )
     return took_ms
 
 

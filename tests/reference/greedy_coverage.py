@@ -5,7 +5,11 @@ from itertools import combinations
 
 def value(weights, chosen):
     """Sum over cells of the largest weight that any chosen scan (a dict of cell to weight) gives."""
-    return sum(max(weights[i].get(c, 0) for i in chosen) for c in set().union(*weights)) if chosen else 0
+    return (
+        sum(max(weights[i].get(c, 0) for i in chosen) for c in set().union(*weights))
+        if chosen
+        else 0
+    )
 
 
 def order(weights, tie, min_overlap=0.0):
@@ -13,8 +17,14 @@ def order(weights, tie, min_overlap=0.0):
     chosen = []
     while len(chosen) < len(weights):
         before = value(weights, chosen)
-        gains = {i: value(weights, [*chosen, i]) - before for i in range(len(weights)) if i not in chosen}
-        allowed = {i: g for i, g in gains.items() if g > tie and _shares(g, value(weights, [i]), min_overlap)}
+        gains = {
+            i: value(weights, [*chosen, i]) - before for i in range(len(weights)) if i not in chosen
+        }
+        allowed = {
+            i: g
+            for i, g in gains.items()
+            if g > tie and _shares(g, value(weights, [i]), min_overlap)
+        }
         if chosen and allowed:
             gains = allowed
         most = max(gains.values())

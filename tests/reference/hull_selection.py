@@ -14,7 +14,9 @@ def cluster_and_hull(scans, n_clusters, seed=0):
     all_hulls = []
     for xy_m in scans:
         label = KMeans(n_clusters, n_init=10, random_state=seed).fit_predict(xy_m)
-        all_hulls.append([shapely.MultiPoint(xy_m[label == c]).convex_hull for c in range(n_clusters)])
+        all_hulls.append(
+            [shapely.MultiPoint(xy_m[label == c]).convex_hull for c in range(n_clusters)]
+        )
     return all_hulls
 
 

@@ -33,7 +33,9 @@ def repeated(points, *, inlier_m, min_consensus, rng, max_trials):
     """Find a model, remove its inliers, and again, until too few points are left for another."""
     models = []
     while len(points) >= min_consensus:
-        found = ransac(points, inlier_m=inlier_m, min_consensus=min_consensus, rng=rng, max_trials=max_trials)
+        found = ransac(
+            points, inlier_m=inlier_m, min_consensus=min_consensus, rng=rng, max_trials=max_trials
+        )
         if found is None:
             break
         normal, offset, inliers = found

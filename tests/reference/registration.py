@@ -3,15 +3,19 @@
 import numpy as np
 import open3d as o3d
 
-from scanplan import se3
+from scanplan.geometry import se3
 
 
 def interpolate_linearly(pose_t_ns, pose_xyz_m, scan_t_ns):
     """Step 1: positions linearly interpolated at the scans' stamps."""
-    return np.column_stack([np.interp(scan_t_ns, pose_t_ns, axis) for axis in np.asarray(pose_xyz_m, float).T])
+    return np.column_stack(
+        [np.interp(scan_t_ns, pose_t_ns, axis) for axis in np.asarray(pose_xyz_m, float).T]
+    )
 
 
-def register(scans, poses, *, keep_every, distance_m, min_prior_fitness, min_refined_fitness, n_previous=5):
+def register(
+    scans, poses, *, keep_every, distance_m, min_prior_fitness, min_refined_fitness, n_previous=5
+):
     """Steps 2 to 6: full clouds, `evaluate_registration` against the previous scans, point-to-point ICP.
 
     Parameters
@@ -31,7 +35,7 @@ def register(scans, poses, *, keep_every, distance_m, min_prior_fitness, min_ref
     retained = {}
     previous = []
     for index in range(0, len(scans), keep_every):
-        placed = _cloud(se3.transform(poses[index], scans[index]))
+        placed = _cloud(se3.transform_points(poses[index], scans[index]))
         if previous:
             if _mean_fitness(placed, previous[-n_previous:], distance_m) < min_prior_fitness:
                 continue

@@ -2,19 +2,19 @@ import numpy as np
 import pytest
 import shapely
 
-import housemaking
 from assemble_plan import assemble_plan
-from scanplan import schemas, tables
+from helpers import house_making
+from helpers.wall_making import lengths_m, walls
 from scanplan.errors import StageError
 from scanplan.plan import planning
-from wallmaking import lengths_m, walls
+from scanplan.store import schemas, tables
 
 EVERYTHING = {"n_scans": None, "area_share": None}
 
 
 @pytest.fixture(scope="module")
 def house(tmp_path_factory):
-    return housemaking.write(tmp_path_factory.mktemp("house"), housemaking.segments())
+    return house_making.write(tmp_path_factory.mktemp("house"), house_making.segments())
 
 
 def outputs(folder):
@@ -22,16 +22,19 @@ def outputs(folder):
     return {name: folder / f"{name}.parquet" for name in planning.TABLES}
 
 
-def assembled(inputs, folder, *, settings=housemaking.PLAN, **stop):
+def assembled(inputs, folder, *, settings=house_making.PLAN, **stop):
     paths = outputs(folder)
     assemble_plan(*inputs, paths, **(EVERYTHING | stop), settings=settings)
-    return {n: tables.read(paths[n], schema, allow_empty=True) for n, schema in planning.TABLES.items()}
+    return {
+        n: tables.read_table(paths[n], schema, allow_empty=True)
+        for n, schema in planning.TABLES.items()
+    }
 
 
 def with_walls(inputs, folder, table):
     folder.mkdir(exist_ok=True)
     path = folder / "walls.parquet"
-    tables.write(path, schemas.WALLS, table, allow_empty=True)
+    tables.write_table(path, schemas.WALLS, table, allow_empty=True)
     return [path, *inputs[1:]]
 
 
@@ -45,7 +48,10 @@ def test_a_house_of_two_rooms(house, tmp_path):
     assert plan["openings"]["type"].tolist() == ["door"]
     assert plan["openings"]["width_m"][0] == pytest.approx(0.9, abs=0.06)
     assert {plan["openings"]["room_a"][0], plan["openings"]["room_b"][0]} == {0, 1}
-    assert (plan["openings"]["sill_m"][0], plan["openings"]["wall"][0]) == (0, np.flatnonzero(thick)[0])
+    assert (plan["openings"]["sill_m"][0], plan["openings"]["wall"][0]) == (
+        0,
+        np.flatnonzero(thick)[0],
+    )
 
 
 def test_tables_refer_to_each_other(house, tmp_path):
@@ -55,16 +61,22 @@ def test_tables_refer_to_each_other(house, tmp_path):
         for wall, face in zip(plan["walls"]["wall"], plan["walls"][side], strict=True):
             if face >= 0:
                 assert plan["faces"]["wall"][face] == wall
-                way = [plan["walls"][f"{c}1_m"][wall] - plan["walls"][f"{c}0_m"][wall] for c in "xy"]
+                way = [
+                    plan["walls"][f"{c}1_m"][wall] - plan["walls"][f"{c}0_m"][wall] for c in "xy"
+                ]
                 normal = [plan["faces"][c][face] for c in ("nx", "ny")]
                 assert np.sign(way[0] * normal[1] - way[1] * normal[0]) == sign
     counted = np.bincount(plan["evidence"]["wall"], plan["evidence"]["n_points"])
     np.testing.assert_array_equal(counted, plan["walls"]["n_points"])
-    np.testing.assert_array_equal(plan["evidence"]["t_ns"], housemaking.T_NS[plan["evidence"]["scan_id"]])
+    np.testing.assert_array_equal(
+        plan["evidence"]["t_ns"], house_making.T_NS[plan["evidence"]["scan_id"]]
+    )
 
 
 def test_free_floor_goes_through_the_door_and_not_through_walls(house, tmp_path):
-    free = shapely.union_all(shapely.from_wkb(assembled(house, tmp_path / "plan")["free"]["geometry"]))
+    free = shapely.union_all(
+        shapely.from_wkb(assembled(house, tmp_path / "plan")["free"]["geometry"])
+    )
     assert free.covers(shapely.Point(4.1, 1.95))
     assert not free.intersects(shapely.Point(4.1, 1.0))
     assert not free.intersects(shapely.Point(4.1, 3.0))
@@ -80,12 +92,16 @@ def test_only_the_first_scans_make_the_plan(house, tmp_path):
 def test_the_same_tables_give_the_same_bytes(house, tmp_path):
     assembled(house, tmp_path / "one"), assembled(house, tmp_path / "other")
     for name in planning.TABLES:
-        assert (tmp_path / f"one/{name}.parquet").read_bytes() == (tmp_path / f"other/{name}.parquet").read_bytes()
+        assert (tmp_path / f"one/{name}.parquet").read_bytes() == (
+            tmp_path / f"other/{name}.parquet"
+        ).read_bytes()
 
 
 def test_no_wall_in_the_selected_scans_is_told(house, tmp_path):
     inputs = with_walls(house, tmp_path, walls([(0, 0, 1, 0)]))
-    with pytest.raises(StageError, match=r"walls\.parquet: no wall in the first 1 scans .*selection\.stop"):
+    with pytest.raises(
+        StageError, match=r"walls\.parquet: no wall in the first 1 scans .*selection\.stop"
+    ):
         assembled(inputs, tmp_path / "plan", n_scans=1)
     assert not (tmp_path / "plan/faces.parquet").exists()
 
@@ -96,8 +112,12 @@ def test_no_wall_at_all_is_told(house, tmp_path):
 
 
 def test_a_single_wall_is_a_plan_without_rooms_but_those_entered(house, tmp_path):
-    plan = assembled(with_walls(house, tmp_path, walls([housemaking.ROOM_A[0]])), tmp_path / "plan")
-    assert lengths_m(plan["walls"]).tolist() == pytest.approx([4 + housemaking.PLAN["trace"]["reach_m"]], abs=0.1)
+    plan = assembled(
+        with_walls(house, tmp_path, walls([house_making.ROOM_A[0]])), tmp_path / "plan"
+    )
+    assert lengths_m(plan["walls"]).tolist() == pytest.approx(
+        [4 + house_making.PLAN["trace"]["reach_m"]], abs=0.1
+    )
     assert len(plan["openings"]["opening"]) == 0
     assert not plan["rooms"]["closed"].any()
 
@@ -110,4 +130,7 @@ def test_walls_where_no_point_is_are_told(house, tmp_path):
 
 def test_numbers_that_are_not_finite_are_told(house, tmp_path):
     with pytest.raises(StageError, match="1 numbers are not finite"):
-        assembled(with_walls(house, tmp_path, walls([(0, 0, 1, 0)]) | {"x1_m": np.array([np.nan])}), tmp_path / "plan")
+        assembled(
+            with_walls(house, tmp_path, walls([(0, 0, 1, 0)]) | {"x1_m": np.array([np.nan])}),
+            tmp_path / "plan",
+        )

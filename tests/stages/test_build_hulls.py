@@ -5,8 +5,8 @@ import pytest
 import shapely
 
 import build_hulls
-from scanplan import schemas, tables
 from scanplan.errors import StageError
+from scanplan.store import schemas, tables
 
 SETTINGS = {"n_clusters": 5, "sample_size": 50, "seed": 0}
 
@@ -14,7 +14,7 @@ SETTINGS = {"n_clusters": 5, "sample_size": 50, "seed": 0}
 @pytest.fixture
 def scans(tmp_path):
     path, rng = tmp_path / "scans.parquet", np.random.default_rng(0)
-    with tables.scan_writer(path, planar=False) as write:
+    with tables.open_scan_writer(path, planar=False) as write:
         for scan_id in (0, 5, 6, 40):
             write(scan_id, rng.normal((scan_id, 0, 1), 2, (300, 3)))
         write(41, np.array([(0.0, 0, 0), (1, 1, 1)]))
@@ -24,15 +24,22 @@ def scans(tmp_path):
 def test_rows_of_every_scan(scans, tmp_path, caplog):
     caplog.set_level(logging.INFO)
     build_hulls.build_hulls(scans, tmp_path / "hulls.parquet", **SETTINGS, threads=1)
-    columns = tables.read(tmp_path / "hulls.parquet", schemas.HULLS)
+    columns = tables.read_table(tmp_path / "hulls.parquet", schemas.HULLS)
     assert np.unique(columns["scan_id"]).tolist() == [0, 5, 6, 40, 41]
-    assert np.bincount(columns["scan_id"], columns["n_points"])[[0, 5, 6, 40, 41]].tolist() == [300] * 4 + [2]
+    assert np.bincount(columns["scan_id"], columns["n_points"])[[0, 5, 6, 40, 41]].tolist() == [
+        300
+    ] * 4 + [2]
     shapes = shapely.from_wkb(columns["geometry"])
     assert shapely.area(shapes) == pytest.approx(columns["area_m2"], abs=1e-9)
     store = tables.ScanStore(scans)
     for scan_id, xyz_m in store.scans():
         hulls = shapes[columns["scan_id"] == scan_id]
-        assert np.all([shapely.dwithin(hulls, p, 1e-12).any() for p in shapely.points(xyz_m[:, :2].astype(float))])
+        assert np.all(
+            [
+                shapely.dwithin(hulls, p, 1e-12).any()
+                for p in shapely.points(xyz_m[:, :2].astype(float))
+            ]
+        )
     assert "build_hulls: 5 scans, 22 hulls, 2 degenerate" in caplog.text
 
 
@@ -44,5 +51,7 @@ def test_same_bytes_for_any_number_of_cores(scans, tmp_path):
 
 def test_no_scans_no_hulls(tmp_path):
     with pytest.raises(StageError, match="does not exist"):
-        build_hulls.build_hulls(tmp_path / "scans.parquet", tmp_path / "hulls.parquet", **SETTINGS, threads=1)
+        build_hulls.build_hulls(
+            tmp_path / "scans.parquet", tmp_path / "hulls.parquet", **SETTINGS, threads=1
+        )
     assert not (tmp_path / "hulls.parquet").exists()

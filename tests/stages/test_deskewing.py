@@ -6,11 +6,14 @@ import numpy as np
 import open3d as o3d
 import pytest
 
-from exactsensor import EXACT
+from helpers.exact_sensor import EXACT
 from interpolate_poses import interpolate_poses
-from scanplan import configuration, schemas, se3, tables
-from scanplan.recordings import motion, surveys, tum
-from scanplan.simulation import buildingfile, extrusion
+from scanplan.geometry import se3
+from scanplan.lab.buildings import drawing_file, extrusion
+from scanplan.project.settings import read_yaml
+from scanplan.recordings.motion import trajectory
+from scanplan.recordings.survey import open_survey
+from scanplan.store import schemas, tables, tum
 from simulate_survey import simulate_survey
 
 VLP16 = {"model": "vlp16", "n_azimuth": 240, "sweep": True}
@@ -19,7 +22,7 @@ LASER = {"model": "laser", "n_azimuth": 270, "sweep": True}
 
 @pytest.fixture(scope="module")
 def settings(project_root):
-    return configuration.read_yaml(project_root / "config/config.yaml")
+    return read_yaml(project_root / "config/config.yaml")
 
 
 @pytest.fixture(scope="module")
@@ -35,28 +38,39 @@ def survey(request, tmp_path_factory, settings, building):
     simulate = {k: v for k, v in simulate.items() if k not in ("building", "recording")}
     simulate["sensor"] |= request.param
     simulate["errors"] |= EXACT
-    files = [folder / f for f in ("survey.bag", "truth.geojson", "truth_poses.tum", "truth_trajectory.tum")]
+    files = [
+        folder / f
+        for f in ("survey.bag", "truth.geojson", "truth_poses.tum", "truth_trajectory.tum")
+    ]
     simulate_survey(building, *files, **simulate)
-    reading = {k: v for k, v in settings["input"].items() if k not in ("min_range_m", "max_range_m", "deskew")}
+    reading = {
+        k: v
+        for k, v in settings["input"].items()
+        if k not in ("min_range_m", "max_range_m", "deskew")
+    }
     interpolate_poses(
-        [str(files[0])], folder / "poses.parquet", moved=folder / "motion.parquet", **settings["poses"], **reading
+        [str(files[0])],
+        folder / "poses.parquet",
+        moved=folder / "motion.parquet",
+        **settings["poses"],
+        **reading,
     )
     return folder
 
 
 def true_motion(folder):
-    t_ns, rows = tum.read(folder / "truth_trajectory.tum")
-    return motion.Motion(t_ns, rows[:, :3], rows[:, 3:], np.zeros(len(t_ns), np.int32))
+    t_ns, rows = tum.read_tum(folder / "truth_trajectory.tum")
+    return trajectory.SensorMotion(t_ns, rows[:, :3], rows[:, 3:], np.zeros(len(t_ns), np.int32))
 
 
 def off_the_walls_m(folder, building, way, **reading):
     """Distance of every point to the building, the scans placed by their true poses."""
-    _, rows = tum.read(folder / "truth_poses.tum")
-    poses = se3.matrix(rows[:, :3], rows[:, 3:])
-    with surveys.open_survey([str(folder / "survey.bag")], motion=way, **reading) as survey:
+    _, rows = tum.read_tum(folder / "truth_poses.tum")
+    poses = se3.pose_matrix(rows[:, :3], rows[:, 3:])
+    with open_survey([str(folder / "survey.bag")], motion=way, **reading) as survey:
         scans = list(survey.scans(range(1, len(poses) - 1)))
-    placed = np.concatenate([se3.transform(poses[s.scan_id], s.xyz_m) for s in scans])
-    mesh = extrusion.building_mesh(buildingfile.parse(building.read_bytes(), building))
+    placed = np.concatenate([se3.transform_points(poses[s.scan_id], s.xyz_m) for s in scans])
+    mesh = extrusion.make_building_mesh(drawing_file.parse_drawing(building.read_bytes(), building))
     scene = o3d.t.geometry.RaycastingScene()
     scene.add_triangles(mesh.vertices_m.astype(np.float32), mesh.triangles.astype(np.uint32))
     return scene.compute_distance(placed.astype(np.float32)).numpy()
@@ -69,7 +83,9 @@ def test_true_motion_restores_the_walls_to_two_millimetres(survey, building):
 
 
 def test_recorded_odometry_takes_nearly_all_of_it_out(survey, building):
-    way = motion.from_columns(tables.read(survey / "motion.parquet", schemas.MOTION))
+    way = trajectory.motion_from_columns(
+        tables.read_table(survey / "motion.parquet", schemas.MOTION)
+    )
     off_m = off_the_walls_m(survey, building, way)
     # the wheels of the simulated rover err by a percent
     assert np.median(off_m) < 0.002 and np.percentile(off_m, 99) < 0.02

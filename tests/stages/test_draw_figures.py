@@ -3,28 +3,44 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-import facemaking
 from draw_area import draw_area
 from draw_scans import draw_scans
 from draw_walls import draw_walls
-from scanplan import schemas, tables
+from helpers import face_making
+from helpers.wall_making import BARE, walls
 from scanplan.errors import StageError
-from wallmaking import BARE, walls
+from scanplan.store import schemas, tables
 
 
 @pytest.fixture
 def results(tmp_path):
     """Two kept scans (0, 4) and a dropped one (2) in a room of 6 m x 4 m."""
     rng = np.random.default_rng(1)
-    with tables.scan_writer(tmp_path / "scans.parquet", planar=False) as write:
+    with tables.open_scan_writer(tmp_path / "scans.parquet", planar=False) as write:
         for scan_id in (0, 4):
-            write(scan_id, np.column_stack([rng.uniform(0, 6, 500), rng.choice([0, 4], 500), rng.uniform(0, 2, 500)]))
-    pose = dict(zip((*schemas.XYZ, *schemas.QUAT), ([1, 2, 3], [2, 2, 2], *np.zeros((4, 3)), np.ones(3)), strict=True))
+            write(
+                scan_id,
+                np.column_stack(
+                    [rng.uniform(0, 6, 500), rng.choice([0, 4], 500), rng.uniform(0, 2, 500)]
+                ),
+            )
+    pose = dict(
+        zip(
+            (*schemas.XYZ, *schemas.QUAT),
+            ([1, 2, 3], [2, 2, 2], *np.zeros((4, 3)), np.ones(3)),
+            strict=True,
+        )
+    )
     ones = np.ones(3)
-    tables.write(
+    tables.write_table(
         tmp_path / "registration.parquet",
         schemas.REGISTRATION,
-        {"scan_id": [0, 2, 4], "t_ns": [0, 1, 2], "kept": [True, False, True], "reason": ["kept", "fit", "kept"]}
+        {
+            "scan_id": [0, 2, 4],
+            "t_ns": [0, 1, 2],
+            "kept": [True, False, True],
+            "reason": ["kept", "fit", "kept"],
+        }
         | dict.fromkeys(("prior_fitness", "refined_fitness", "rmse_m"), ones)
         | pose,
     )
@@ -32,9 +48,9 @@ def results(tmp_path):
         measures = ("gain_m2", "covered_m2", "bound_m2", "gain", "covered", "bound")
         columns = dict.fromkeys(measures, np.array([5.0, 9.0]))
         known = {"rank": [1, 2], "scan_id": [4, 0], "n_points": [500, 500]}
-        tables.write(tmp_path / f"{method}.parquet", schemas.SELECTION, known | columns)
-    merged = facemaking.merge(walls([(0, 0, 6, 0), (6, 4, 0, 4)]), BARE)
-    tables.write(tmp_path / "faces.parquet", schemas.FACES, merged)
+        tables.write_table(tmp_path / f"{method}.parquet", schemas.SELECTION, known | columns)
+    merged = face_making.merge(walls([(0, 0, 6, 0), (6, 4, 0, 4)]), BARE)
+    tables.write_table(tmp_path / "faces.parquet", schemas.FACES, merged)
     return tmp_path
 
 
@@ -49,14 +65,20 @@ def drawn_twice(draw, output):
 
 def test_draw_scans(results):
     inputs = [results / f"{name}.parquet" for name in ("scans", "registration", "cluster_hull")]
-    text = drawn_twice(lambda o: draw_scans(*inputs, o, n_scans=1, area_share=None), results / "scans.svg")
+    text = drawn_twice(
+        lambda o: draw_scans(*inputs, o, n_scans=1, area_share=None), results / "scans.svg"
+    )
     assert "position of a scan (2)" in text
     assert "numbered by rank (1)" in text
 
 
 def test_draw_walls(results):
-    inputs = [results / f"{name}.parquet" for name in ("scans", "faces", "registration", "cluster_hull")]
-    text = drawn_twice(lambda o: draw_walls(*inputs, o, n_scans=None, area_share=None), results / "walls.svg")
+    inputs = [
+        results / f"{name}.parquet" for name in ("scans", "faces", "registration", "cluster_hull")
+    ]
+    text = drawn_twice(
+        lambda o: draw_walls(*inputs, o, n_scans=None, area_share=None), results / "walls.svg"
+    )
     assert "wall face (2)" in text
     assert "position of a selected scan (2)" in text
 
@@ -69,9 +91,9 @@ def test_draw_area(results):
 
 
 def test_tables_of_different_runs_are_refused(results):
-    registration = tables.read(results / "registration.parquet", schemas.REGISTRATION)
+    registration = tables.read_table(results / "registration.parquet", schemas.REGISTRATION)
     registration["kept"] = np.array([False, False, True])
-    tables.write(results / "registration.parquet", schemas.REGISTRATION, registration)
+    tables.write_table(results / "registration.parquet", schemas.REGISTRATION, registration)
     inputs = [results / f"{name}.parquet" for name in ("scans", "registration", "cluster_hull")]
     with pytest.raises(StageError, match="scan 0 "):
         draw_scans(*inputs, results / "scans.svg", n_scans=None, area_share=None)

@@ -1,25 +1,33 @@
 import numpy as np
 import pytest
 
-import planmaking
 from evaluate_plan import evaluate_plan
-from evaluationmaking import FACES, SCAN_IDS, shift, write_registration, write_truth
-from scanplan import schemas, tables
+from helpers import plan_making
+from helpers.evaluation_making import FACES, SCAN_IDS, shift, write_registration, write_truth
+from scanplan.store import schemas, tables
 
 
 def evaluated(folder, segments, **placing):
     write_truth(folder)
     write_registration(folder, **placing)
-    plan = planmaking.write(folder, SCAN_IDS, face_segments=segments)
-    inputs = [folder / name for name in ("registration.parquet", "truth.geojson", "truth_poses.tum")]
+    plan = plan_making.write(folder, SCAN_IDS, face_segments=segments)
+    inputs = [
+        folder / name for name in ("registration.parquet", "truth.geojson", "truth_poses.tum")
+    ]
     evaluate_plan(plan, *inputs, folder / "plan.parquet", max_range_m=100.0, bitmap_cell_m=0.05)
-    return tables.read(folder / "plan.parquet", schemas.PLAN_EVALUATION)
+    return tables.read_table(folder / "plan.parquet", schemas.PLAN_EVALUATION)
 
 
 def test_a_perfect_plan(tmp_path):
     measured = evaluated(tmp_path, FACES)
     assert measured["frame"].tolist() == ["aligned", "registered"]
-    for name in ("completeness_005m", "visible_correctness_005m", "f1_015m", "correct_match", "walls_per_true_wall"):
+    for name in (
+        "completeness_005m",
+        "visible_correctness_005m",
+        "f1_015m",
+        "correct_match",
+        "walls_per_true_wall",
+    ):
         np.testing.assert_allclose(measured[name], 1)
     np.testing.assert_allclose(measured["length_m"], 20)
 

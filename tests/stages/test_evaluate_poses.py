@@ -2,14 +2,19 @@ import numpy as np
 import pytest
 
 from evaluate_poses import evaluate_poses
-from evaluationmaking import SCAN_IDS, shift, write_registration, write_truth
-from scanplan import schemas, tables
+from helpers.evaluation_making import SCAN_IDS, shift, write_registration, write_truth
 from scanplan.errors import StageError
+from scanplan.store import schemas, tables
 
 
 def evaluated(folder):
-    evaluate_poses(*(folder / n for n in ("poses.parquet", "registration.parquet", "truth_poses.tum", "e.parquet")))
-    return tables.read(folder / "e.parquet", schemas.POSE_ERRORS)
+    evaluate_poses(
+        *(
+            folder / n
+            for n in ("poses.parquet", "registration.parquet", "truth_poses.tum", "e.parquet")
+        )
+    )
+    return tables.read_table(folder / "e.parquet", schemas.POSE_ERRORS)
 
 
 def test_a_common_shift_is_an_error_until_it_is_taken_out(tmp_path):
@@ -37,9 +42,9 @@ def test_a_turned_map_is_told_in_degrees(tmp_path):
 def test_a_scan_without_a_pose_is_refused(tmp_path):
     write_truth(tmp_path)
     write_registration(tmp_path)
-    poses = tables.read(tmp_path / "poses.parquet", schemas.POSES)
+    poses = tables.read_table(tmp_path / "poses.parquet", schemas.POSES)
     poses["covered"] = poses["scan_id"] != 4
-    tables.write(tmp_path / "poses.parquet", schemas.POSES, poses)
+    tables.write_table(tmp_path / "poses.parquet", schemas.POSES, poses)
     with pytest.raises(StageError, match="no pose of scan 4"):
         evaluated(tmp_path)
 
@@ -47,8 +52,8 @@ def test_a_scan_without_a_pose_is_refused(tmp_path):
 def test_registration_that_keeps_nothing_is_refused(tmp_path):
     write_truth(tmp_path)
     write_registration(tmp_path)
-    columns = tables.read(tmp_path / "registration.parquet", schemas.REGISTRATION)
+    columns = tables.read_table(tmp_path / "registration.parquet", schemas.REGISTRATION)
     columns["kept"] = np.zeros(4, bool)
-    tables.write(tmp_path / "registration.parquet", schemas.REGISTRATION, columns)
+    tables.write_table(tmp_path / "registration.parquet", schemas.REGISTRATION, columns)
     with pytest.raises(StageError, match="0 scans are kept"):
         evaluated(tmp_path)

@@ -3,7 +3,7 @@ import pytest
 
 from draw_evaluation import draw_evaluation
 from evaluate_walls import evaluate_walls
-from evaluationmaking import (
+from helpers.evaluation_making import (
     FACES,
     SCAN_IDS,
     shift,
@@ -12,8 +12,8 @@ from evaluationmaking import (
     write_truth,
     write_walls,
 )
-from scanplan import schemas, tables
 from scanplan.errors import StageError
+from scanplan.store import schemas, tables
 
 # the scans 2 and 4 show two walls each, 7 shows them all
 SEGMENTS = [FACES[0], FACES[1], FACES[2], FACES[3], *FACES]
@@ -23,16 +23,25 @@ SHOWN_BY = [2, 2, 4, 4, 7, 7, 7, 7]
 def evaluated(folder, segments=SEGMENTS, shown_by=SHOWN_BY, **placing):
     write_truth(folder)
     write_registration(folder, **placing)
-    walls = [write_walls(folder, e, segments, shown_by) for e in ("cluster_ransac", "iterative_ransac")]
-    selections = [write_selection(folder, "sequential", SCAN_IDS), write_selection(folder, "random", [7, 2, 4])]
-    inputs = [folder / name for name in ("registration.parquet", "truth.geojson", "truth_poses.tum")]
-    outputs = [folder / f"evaluation/{name}.parquet" for name in ("walls", "walls_aligned", "oracle")]
+    walls = [
+        write_walls(folder, e, segments, shown_by) for e in ("cluster_ransac", "iterative_ransac")
+    ]
+    selections = [
+        write_selection(folder, "sequential", SCAN_IDS),
+        write_selection(folder, "random", [7, 2, 4]),
+    ]
+    inputs = [
+        folder / name for name in ("registration.parquet", "truth.geojson", "truth_poses.tum")
+    ]
+    outputs = [
+        folder / f"evaluation/{name}.parquet" for name in ("walls", "walls_aligned", "oracle")
+    ]
     evaluate_walls(walls, selections, *inputs, *outputs, max_range_m=100.0, bitmap_cell_m=0.05)
     return outputs
 
 
 def rows(path, method, extractor="cluster_ransac"):
-    table = tables.read(path, schemas.EVALUATION)
+    table = tables.read_table(path, schemas.EVALUATION)
     chosen = (table["method"] == method) & (table["extractor"] == extractor)
     return {name: values[chosen] for name, values in table.items()}
 
@@ -62,7 +71,9 @@ def test_half_of_the_walls_as_worked_out_on_paper(tmp_path):
     # of 121 x 81 cells the truth has 400 round, the other two walls 199 of them
     missed = found["false_negative"][0] * 120 * 80
     assert missed == pytest.approx(198, abs=2)
-    np.testing.assert_allclose(found["false_negative"] + found["correct_match"] + found["false_positive"], 1)
+    np.testing.assert_allclose(
+        found["false_negative"] + found["correct_match"] + found["false_positive"], 1
+    )
 
 
 def test_a_shifted_map_is_told_from_bad_walls(tmp_path):
@@ -78,7 +89,9 @@ def test_what_no_chosen_scan_sees_is_told(tmp_path):
     write_truth(tmp_path, [*FACES, (2, -5, 4, -5)])
     write_registration(tmp_path)
     walls = [write_walls(tmp_path, "cluster_ransac", SEGMENTS, SHOWN_BY)]
-    inputs = [tmp_path / name for name in ("registration.parquet", "truth.geojson", "truth_poses.tum")]
+    inputs = [
+        tmp_path / name for name in ("registration.parquet", "truth.geojson", "truth_poses.tum")
+    ]
     outputs = [tmp_path / f"{name}.parquet" for name in ("walls", "walls_aligned", "oracle")]
     selections = [write_selection(tmp_path, "random", [7, 2, 4])]
     evaluate_walls(walls, selections, *inputs, *outputs, max_range_m=100.0, bitmap_cell_m=0.05)
@@ -86,7 +99,9 @@ def test_what_no_chosen_scan_sees_is_told(tmp_path):
     np.testing.assert_allclose(found["missed_not_seen"], 2 / 22)
     np.testing.assert_allclose(found["visible_completeness_010m"], 1)
     np.testing.assert_allclose(found["completeness_010m"], 20 / 22)
-    parts = [found[name] for name in ("completeness_010m", "missed_not_seen", "missed_misextracted")]
+    parts = [
+        found[name] for name in ("completeness_010m", "missed_not_seen", "missed_misextracted")
+    ]
     np.testing.assert_allclose(sum(parts) + found["missed_misregistered"], 1)
 
 
@@ -100,7 +115,7 @@ def test_no_walls_at_all(tmp_path):
 
 
 def test_the_oracle_is_written_by_extractor_and_rank(tmp_path):
-    best = tables.read(evaluated(tmp_path)[2], schemas.ORACLE)
+    best = tables.read_table(evaluated(tmp_path)[2], schemas.ORACLE)
     # scan 7 shows the whole room
     assert best["extractor"].tolist() == ["cluster_ransac"] * 3 + ["iterative_ransac"] * 3
     np.testing.assert_array_equal(best["scan_id"], [7, 2, 4] * 2)
@@ -123,10 +138,16 @@ def test_the_same_input_gives_the_same_bytes_and_a_figure(tmp_path):
     assert (tmp_path / "a_shares.svg").read_bytes() == (tmp_path / "b_shares.svg").read_bytes()
     assert "3 scans" in (tmp_path / "a_shares.svg").read_text()
     text = (tmp_path / "a.svg").read_text()
-    for said in ("oracle: knows the truth", "false negative, iterative_ransac", "found but for the registration"):
+    for said in (
+        "oracle: knows the truth",
+        "false negative, iterative_ransac",
+        "found but for the registration",
+    ):
         assert said in text
     # an ordering that was not measured has no curve
-    assert "visible_completeness_010m-random" in text and "visible_completeness_010m-hull" not in text
+    assert (
+        "visible_completeness_010m-random" in text and "visible_completeness_010m-hull" not in text
+    )
 
 
 def test_tables_of_different_runs_are_refused(tmp_path):
@@ -138,6 +159,10 @@ def test_tables_of_different_runs_are_refused(tmp_path):
 def test_the_truth_of_another_survey_is_refused(tmp_path):
     evaluated(tmp_path)
     (tmp_path / "truth_poses.tum").write_text("900 0 0 0 0 0 0 1\n")
-    inputs = [tmp_path / name for name in ("registration.parquet", "truth.geojson", "truth_poses.tum")]
+    inputs = [
+        tmp_path / name for name in ("registration.parquet", "truth.geojson", "truth_poses.tum")
+    ]
     with pytest.raises(StageError, match="no true pose for 3 of 3"):
-        evaluate_walls([], [], *inputs, *[tmp_path / "x"] * 3, max_range_m=100.0, bitmap_cell_m=0.05)
+        evaluate_walls(
+            [], [], *inputs, *[tmp_path / "x"] * 3, max_range_m=100.0, bitmap_cell_m=0.05
+        )

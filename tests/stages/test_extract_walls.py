@@ -2,13 +2,19 @@ import numpy as np
 import pytest
 
 import extract_walls
-import toyrooms
-from scanplan import schemas, tables
+from helpers import toy_rooms
 from scanplan.errors import StageError
+from scanplan.store import schemas, tables
 
 SETTINGS = {
-    "cluster_ransac": {**toyrooms.LIMITS, "reach_deg": 3.5, "max_tilt_deg": 15.0, "bandwidth_m": 0.3, "trials": 64},
-    "iterative_ransac": {**toyrooms.LIMITS, "max_tilt_deg": 15.0, "trials": 100, "max_planes": 12},
+    "cluster_ransac": {
+        **toy_rooms.LIMITS,
+        "reach_deg": 3.5,
+        "max_tilt_deg": 15.0,
+        "bandwidth_m": 0.3,
+        "trials": 64,
+    },
+    "iterative_ransac": {**toy_rooms.LIMITS, "max_tilt_deg": 15.0, "trials": 100, "max_planes": 12},
 }
 SENSORS = {0: (2.0, 1.6, 0.9), 5: (3.0, 2.0, 0.9), 15: (4.0, 2.4, 0.9)}
 
@@ -19,18 +25,21 @@ def survey(request, tmp_path):
 
 
 def write_survey(folder, *, planar, shown=tuple(SENSORS), scan=None):
-    make = scan or (toyrooms.laser if planar else toyrooms.vlp16)
+    make = scan or (toy_rooms.laser if planar else toy_rooms.vlp16)
     scans, registration = folder / "scans.parquet", folder / "registration.parquet"
-    with tables.scan_writer(scans, planar=planar) as write:
+    with tables.open_scan_writer(scans, planar=planar) as write:
         for scan_id in SENSORS:
             write(scan_id, make(np.array(SENSORS[scan_id]), seed=scan_id))
     n, pose = len(shown), np.array([SENSORS[s] for s in shown])
     same = {"prior_fitness": 1.0, "refined_fitness": 1.0, "rmse_m": 0.0, "kept": True, "reason": ""}
     turn = {"qx": 0.0, "qy": 0.0, "qz": 0.0, "qw": 1.0}
-    columns = {name: np.full(n, value, object if value == "" else None) for name, value in {**same, **turn}.items()}
+    columns = {
+        name: np.full(n, value, object if value == "" else None)
+        for name, value in {**same, **turn}.items()
+    }
     columns |= {"scan_id": np.array(shown), "t_ns": np.array(shown) * 10**8}
     columns |= dict(zip(("x_m", "y_m", "z_m"), pose.T, strict=True))
-    tables.write(registration, schemas.REGISTRATION, columns)
+    tables.write_table(registration, schemas.REGISTRATION, columns)
     return scans, registration
 
 
@@ -38,7 +47,7 @@ def write_survey(folder, *, planar, shown=tuple(SENSORS), scan=None):
 def test_walls_of_every_scan(survey, extractor, tmp_path):
     output = tmp_path / "walls" / f"{extractor}.parquet"
     extract_walls.extract_walls(*survey, output, extractor=extractor, settings=SETTINGS[extractor])
-    walls = tables.read(output, schemas.WALLS)
+    walls = tables.read_table(output, schemas.WALLS)
     assert set(walls["scan_id"]) == set(SENSORS)
     for scan_id, sensor in SENSORS.items():
         own = {name: column[walls["scan_id"] == scan_id] for name, column in walls.items()}
@@ -64,7 +73,7 @@ def test_no_wall_anywhere_is_an_answer(tmp_path):
     survey = write_survey(tmp_path, planar=False, scan=lambda _, seed: np.full((3, 3), float(seed)))
     output, settings = tmp_path / "walls.parquet", SETTINGS["cluster_ransac"]
     extract_walls.extract_walls(*survey, output, extractor="cluster_ransac", settings=settings)
-    assert len(tables.read(output, schemas.WALLS, allow_empty=True)["wall"]) == 0
+    assert len(tables.read_table(output, schemas.WALLS, allow_empty=True)["wall"]) == 0
 
 
 def test_a_scan_without_a_pose_is_told(tmp_path):
@@ -77,4 +86,6 @@ def test_a_scan_without_a_pose_is_told(tmp_path):
 
 def test_an_unknown_extractor_is_told(tmp_path):
     with pytest.raises(StageError, match=r"hough.*cluster_ransac, iterative_ransac"):
-        extract_walls.extract_walls("scans", "registration", tmp_path / "w", extractor="hough", settings={})
+        extract_walls.extract_walls(
+            "scans", "registration", tmp_path / "w", extractor="hough", settings={}
+        )

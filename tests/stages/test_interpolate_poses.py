@@ -1,12 +1,13 @@
 import numpy as np
 import pytest
 
-import bagmaking
+from helpers import bag_making
 from interpolate_poses import interpolate_poses
-from scanplan import datasets, schemas, tables
 from scanplan.errors import StageError
+from scanplan.project import dataset_files
+from scanplan.store import schemas, tables
 
-START, STEP = bagmaking.START_NS, 100_000_000
+START, STEP = bag_making.START_NS, 100_000_000
 SETTINGS = {
     "keep_every": 5,
     "max_step_m": 10.0,
@@ -25,17 +26,17 @@ SETTINGS = {
 @pytest.fixture
 def run(tmp_path):
     def run_on(entries, **settings):
-        bagmaking.Maker().write(tmp_path / "run", entries)
+        bag_making.Maker().write(tmp_path / "run", entries)
         output = tmp_path / "poses.parquet"
-        interpolate_poses(datasets.find_files(tmp_path), output, **(SETTINGS | settings))
-        return tables.read(output, schemas.POSES)
+        interpolate_poses(dataset_files.find_files(tmp_path), output, **(SETTINGS | settings))
+        return tables.read_table(output, schemas.POSES)
 
     return run_on
 
 
 @pytest.fixture
 def entries():
-    return bagmaking.survey(bagmaking.Maker(), n_scans=12)
+    return bag_making.survey(bag_making.Maker(), n_scans=12)
 
 
 def test_every_fifth_scan_gets_its_pose(run, entries):
@@ -53,7 +54,9 @@ def test_motion_adds_candidates(run, entries):
 
 
 def test_scans_in_a_gap_are_not_covered(run, entries):
-    gap = [e for e in entries if e[0] != "/amcl_pose" or not START + 3 * STEP < e[1] < START + 9 * STEP]
+    gap = [
+        e for e in entries if e[0] != "/amcl_pose" or not START + 3 * STEP < e[1] < START + 9 * STEP
+    ]
     poses = run(gap)
     assert poses["covered"].tolist() == [True, False, True]
     assert np.isnan(poses["x_m"]).tolist() == np.isnan(poses["qw"]).tolist() == [False, True, False]
@@ -61,7 +64,9 @@ def test_scans_in_a_gap_are_not_covered(run, entries):
 
 
 def test_a_wider_limit_covers_the_gap(run, entries):
-    gap = [e for e in entries if e[0] != "/amcl_pose" or not START + 3 * STEP < e[1] < START + 9 * STEP]
+    gap = [
+        e for e in entries if e[0] != "/amcl_pose" or not START + 3 * STEP < e[1] < START + 9 * STEP
+    ]
     wide = run(gap, max_gap_s=0.7)
     assert wide["covered"].all()
     np.testing.assert_allclose(wide["x_m"], [0, 0.5, 1.0], atol=1e-6)
@@ -74,7 +79,7 @@ def test_never_extrapolates(run, entries):
 
 
 def test_an_old_latched_pose_is_a_pose_with_a_gap(run, entries):
-    maker = bagmaking.Maker()
+    maker = bag_making.Maker()
     old = ("/amcl_pose", START - STEP, maker.amcl(START - 3600 * 10**9, (50, 50, 0)))
     poses = run([old, *(e for e in entries if e[0] != "/amcl_pose" or e[1] > START)])
     assert poses["covered"].tolist() == [False, True, True]
@@ -83,8 +88,10 @@ def test_an_old_latched_pose_is_a_pose_with_a_gap(run, entries):
 
 def test_no_pose_within_a_jump_of_the_localiser(run, entries, caplog):
     """Between scan 4 and scan 5 it finds itself 2 m elsewhere; the poses in between are lost."""
-    maker = bagmaking.Maker()
-    kept = [e for e in entries if e[0] != "/amcl_pose" or not START + 4 * STEP < e[1] < START + 6 * STEP]
+    maker = bag_making.Maker()
+    kept = [
+        e for e in entries if e[0] != "/amcl_pose" or not START + 4 * STEP < e[1] < START + 6 * STEP
+    ]
     jumped = [
         (t, r, maker.amcl(r, ((r - START) / 1e9 + 2, 0, 0)))
         if t == "/amcl_pose" and r > START + 5 * STEP
@@ -100,17 +107,21 @@ def test_no_pose_within_a_jump_of_the_localiser(run, entries, caplog):
 
 def test_how_the_sensor_moved_is_written_beside(run, entries, tmp_path):
     run(entries, moved=tmp_path / "motion.parquet")
-    way = tables.read(tmp_path / "motion.parquet", schemas.MOTION)
+    way = tables.read_table(tmp_path / "motion.parquet", schemas.MOTION)
     assert way["t_ns"].tolist() == [START + (i - 1) * STEP // 2 for i in range(25)]
     np.testing.assert_allclose(way["x_m"], (way["t_ns"] - START) / 1e9, atol=1e-6)
     assert set(way["time_scale"]) == {1.0}
 
 
 def test_poses_of_another_time_tell_both_spans(run, entries, tmp_path):
-    maker = bagmaking.Maker()
-    late = [(t, r, maker.amcl(r + 3600 * 10**9, (0, 0, 0)) if t == "/amcl_pose" else m) for t, r, m in entries]
+    maker = bag_making.Maker()
+    late = [
+        (t, r, maker.amcl(r + 3600 * 10**9, (0, 0, 0)) if t == "/amcl_pose" else m)
+        for t, r, m in entries
+    ]
     with pytest.raises(
-        StageError, match=r"clouds 1700000000.000 to 1700000001.100 s, poses 1700003599.950 to 17000036"
+        StageError,
+        match=r"clouds 1700000000.000 to 1700000001.100 s, poses 1700003599.950 to 17000036",
     ):
         run(late)
     assert not (tmp_path / "poses.parquet").exists()
@@ -126,11 +137,11 @@ def test_the_same_bytes_twice(run, entries, tmp_path):
 @pytest.mark.recordings
 def test_intel_keeps_the_scans_that_are_far_apart(recordings_dir, tmp_path):
     interpolate_poses(
-        datasets.find_files(recordings_dir / "intel"),
+        dataset_files.find_files(recordings_dir / "intel"),
         tmp_path / "poses.parquet",
         **(SETTINGS | {"max_step_m": 0.5, "max_turn_deg": 30.0}),
     )
-    poses = tables.read(tmp_path / "poses.parquet", schemas.POSES)
+    poses = tables.read_table(tmp_path / "poses.parquet", schemas.POSES)
     assert poses["covered"].all()
     xy = np.column_stack([poses["x_m"], poses["y_m"]])
     assert len(xy) > 600

@@ -2,29 +2,34 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from evaluationmaking import SCAN_IDS, shift, write_registration
+from helpers.evaluation_making import SCAN_IDS, shift, write_registration
 from interpolate_poses import interpolate_poses
 from measure_crispness import measure_crispness
 from register_scans import register_scans
-from scanplan import configuration, datasets, schemas, se3, tables
-from scanplan.recordings import surveys
-from scanplan.registration import verdicts
+from scanplan.geometry import se3
+from scanplan.project import dataset_files
+from scanplan.project.settings import read_yaml
+from scanplan.recordings.survey import open_survey
+from scanplan.registration import results
+from scanplan.store import schemas, tables
 
 SETTINGS = {"radius_m": 0.2, "most_points": 100_000, "most_places": 500, "seed": 1}
 
 
 def write_scans(folder, moved):
-    with tables.scan_writer(folder / "scans.parquet", planar=False) as write:
+    with tables.open_scan_writer(folder / "scans.parquet", planar=False) as write:
         for scan_id in SCAN_IDS:
             rng = np.random.default_rng(int(scan_id))
-            wall = np.column_stack([rng.uniform(0, 5, 3000), rng.normal(0, 0.003, 3000), rng.uniform(0, 2, 3000)])
+            wall = np.column_stack(
+                [rng.uniform(0, 5, 3000), rng.normal(0, 0.003, 3000), rng.uniform(0, 2, 3000)]
+            )
             write(scan_id, wall + moved.get(int(scan_id), (0, 0, 0)))
 
 
 def measured(folder):
     files = [folder / f"{name}.parquet" for name in ("scans", "registration", "poses", "crispness")]
     measure_crispness(*files, **SETTINGS)
-    return tables.read(files[-1], schemas.CRISPNESS)
+    return tables.read_table(files[-1], schemas.CRISPNESS)
 
 
 def test_maps_of_both_poses_are_measured(tmp_path):
@@ -41,17 +46,19 @@ def test_what_registration_moves_is_put_back_for_the_localisers_map(tmp_path):
     write_scans(tmp_path, {})
     np.testing.assert_allclose(measured(tmp_path)["sigma_m"], 0.003, rtol=0.1)
     # one of the poses corrected by 6 cm: the localiser's map is thick, the registered one is not
-    poses = tables.read(tmp_path / "poses.parquet", schemas.POSES)
+    poses = tables.read_table(tmp_path / "poses.parquet", schemas.POSES)
     poses["y_m"] = poses["y_m"] + np.where(poses["scan_id"] == SCAN_IDS[1], 0.06, 0)
-    tables.write(tmp_path / "poses.parquet", schemas.POSES, poses)
-    thick_m = dict(zip(*(measured(tmp_path)[c].tolist() for c in ("poses", "sigma_m")), strict=True))
+    tables.write_table(tmp_path / "poses.parquet", schemas.POSES, poses)
+    thick_m = dict(
+        zip(*(measured(tmp_path)[c].tolist() for c in ("poses", "sigma_m")), strict=True)
+    )
     assert thick_m["localiser"] == pytest.approx(np.sqrt(0.003**2 + 0.06**2 * 2 / 9), rel=0.1)
     assert thick_m["registered"] == pytest.approx(0.003, rel=0.1)
 
 
 def disturbed(poses, planar):
     """The poses with errors of 10 cm and 2 degrees: along x and y and in heading alone of a planar sensor."""
-    world_from_sensor = verdicts.poses(poses)
+    world_from_sensor = results.pose_matrices(poses)
     errors = np.random.default_rng(1).normal(size=(len(world_from_sensor), 6))
     if planar:
         errors[:, 2:5] = 0
@@ -59,33 +66,48 @@ def disturbed(poses, planar):
     turn[:, :3, :3] = Rotation.from_rotvec(np.radians(2) * errors[:, 3:]).as_matrix()
     world_from_sensor = world_from_sensor @ turn
     world_from_sensor[:, :3, 3] += 0.1 * errors[:, :3]
-    values = np.hstack(se3.position_quaternion(world_from_sensor)).T
+    values = np.hstack(se3.split_pose(world_from_sensor)).T
     return poses | dict(zip((*schemas.XYZ, *schemas.QUAT), values, strict=True))
 
 
 def of_kept(folder, poses_file):
     """The crispness of the kept scans by the poses of a table and as registered, metres."""
-    files = [folder / f for f in ("scans.parquet", "registration.parquet", poses_file, "crispness.parquet")]
+    files = [
+        folder / f
+        for f in ("scans.parquet", "registration.parquet", poses_file, "crispness.parquet")
+    ]
     measure_crispness(*files, **SETTINGS | {"most_points": 300_000})
-    table = tables.read(files[-1], schemas.CRISPNESS)
+    table = tables.read_table(files[-1], schemas.CRISPNESS)
     return dict(zip(table["poses"].tolist(), table["sigma_m"].tolist(), strict=True))
 
 
 @pytest.mark.recordings
-@pytest.mark.parametrize(("name", "of_recorded"), [("jackal_ros1", 0.8), ("scenes7_room", 1.05), ("intel", 1.02)])
-def test_registration_makes_disturbed_recordings_crisper(recordings_dir, project_root, tmp_path, name, of_recorded):
+@pytest.mark.parametrize(
+    ("name", "of_recorded"), [("jackal_ros1", 0.8), ("scenes7_room", 1.05), ("intel", 1.02)]
+)
+def test_registration_makes_disturbed_recordings_crisper(
+    recordings_dir, project_root, tmp_path, name, of_recorded
+):
     """Far crisper than the poses it starts from; the recorded ones of the last two are a SLAM's, and no crisper."""
-    settings = configuration.read_yaml(project_root / "config/config.yaml")
+    settings = read_yaml(project_root / "config/config.yaml")
     # no localiser tilts by 2 degrees, the defaults do not expect it
     settings["registration"]["localiser_sigma_tilt_deg"] = 2.0
-    files, reading = datasets.find_files(recordings_dir / name), settings["input"]
-    given, poses_file, moved = (tmp_path / f for f in ("recorded.parquet", "poses.parquet", "motion.parquet"))
+    files, reading = dataset_files.find_files(recordings_dir / name), settings["input"]
+    given, poses_file, moved = (
+        tmp_path / f for f in ("recorded.parquet", "poses.parquet", "motion.parquet")
+    )
     topics = {k: v for k, v in reading.items() if k not in ("min_range_m", "max_range_m", "deskew")}
     interpolate_poses(files, given, moved=moved, **settings["poses"], **topics)
-    with surveys.open_survey(files, **reading) as survey:
-        tables.write(poses_file, schemas.POSES, disturbed(tables.read(given, schemas.POSES), survey.planar))
+    with open_survey(files, **reading) as survey:
+        tables.write_table(
+            poses_file,
+            schemas.POSES,
+            disturbed(tables.read_table(given, schemas.POSES), survey.planar),
+        )
     outputs = [tmp_path / f for f in ("scans.parquet", "registration.parquet", "edges.parquet")]
-    register_scans(files, poses_file, *outputs, reading=reading, settings=settings["registration"], moved=moved)
+    register_scans(
+        files, poses_file, *outputs, reading=reading, settings=settings["registration"], moved=moved
+    )
     start, recorded = of_kept(tmp_path, poses_file.name), of_kept(tmp_path, given.name)
     assert start["registered"] < 0.7 * start["localiser"]
     assert recorded["registered"] <= of_recorded * recorded["localiser"]

@@ -3,13 +3,15 @@ import logging
 import pytest
 
 import observe_walls
-import toyrooms
-from scanplan import schemas, tables
+from helpers import toy_rooms
+from helpers.toy_survey import SENSORS, write_survey
 from scanplan.errors import StageError
 from scanplan.selection import methods
-from toysurvey import SENSORS, write_survey
+from scanplan.store import schemas, tables
 
-SETTINGS = {name: toyrooms.LIMITS[name] for name in methods.WALL_LIMITS if name in toyrooms.LIMITS}
+SETTINGS = {
+    name: toy_rooms.LIMITS[name] for name in methods.WALL_LIMITS if name in toy_rooms.LIMITS
+}
 SETTINGS |= {"cell_m": 0.25, "reach_deg": 3.5, "max_tilt_deg": 15.0}
 
 
@@ -18,7 +20,7 @@ def test_every_scan_shows_the_room(planar, tmp_path, caplog):
     caplog.set_level(logging.INFO)
     output = tmp_path / "observations.parquet"
     observe_walls.observe_walls(*write_survey(tmp_path, planar=planar), output, settings=SETTINGS)
-    seen = tables.read(output, schemas.OBSERVATIONS)
+    seen = tables.read_table(output, schemas.OBSERVATIONS)
     for scan_id in SENSORS:
         assert 18 < seen["length_m"][seen["scan_id"] == scan_id].sum() < 24
     assert "observe_walls: 3 scans, " in caplog.text and "0 show none" in caplog.text
@@ -27,14 +29,23 @@ def test_every_scan_shows_the_room(planar, tmp_path, caplog):
 def test_same_bytes_for_one_and_two_processes(tmp_path):
     survey = write_survey(tmp_path)
     for threads in (1, 2):
-        observe_walls.observe_walls(*survey, tmp_path / f"{threads}.parquet", settings=SETTINGS, threads=threads)
+        observe_walls.observe_walls(
+            *survey, tmp_path / f"{threads}.parquet", settings=SETTINGS, threads=threads
+        )
     assert (tmp_path / "1.parquet").read_bytes() == (tmp_path / "2.parquet").read_bytes()
 
 
 def test_a_survey_without_walls_is_an_answer(tmp_path):
     blind = {**SETTINGS, "min_height_m": 5.0}
     observe_walls.observe_walls(*write_survey(tmp_path), tmp_path / "none.parquet", settings=blind)
-    assert len(tables.read(tmp_path / "none.parquet", schemas.OBSERVATIONS, allow_empty=True)["scan_id"]) == 0
+    assert (
+        len(
+            tables.read_table(tmp_path / "none.parquet", schemas.OBSERVATIONS, allow_empty=True)[
+                "scan_id"
+            ]
+        )
+        == 0
+    )
 
 
 def test_a_scan_without_pose_is_refused(tmp_path):

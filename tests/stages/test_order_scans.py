@@ -5,9 +5,9 @@ import pytest
 import shapely
 
 import order_scans
-from scanplan import schemas, tables
 from scanplan.errors import StageError
 from scanplan.selection import methods, orderings
+from scanplan.store import schemas, tables
 
 
 def write_hulls(path, shapes):
@@ -18,13 +18,15 @@ def write_hulls(path, shapes):
         "area_m2": shapely.area(shapes),
         "geometry": shapely.to_wkb(np.array(shapes)),
     }
-    tables.write(path, schemas.HULLS, columns)
+    tables.write_table(path, schemas.HULLS, columns)
     return path
 
 
 @pytest.fixture
 def hulls(tmp_path):
-    return write_hulls(tmp_path / "hulls.parquet", [shapely.box(i, 0, i + 2 + i % 3, 1) for i in range(12)])
+    return write_hulls(
+        tmp_path / "hulls.parquet", [shapely.box(i, 0, i + 2 + i % 3, 1) for i in range(12)]
+    )
 
 
 def write_others(folder, method, n):
@@ -37,19 +39,27 @@ def write_others(folder, method, n):
         ),
         "observations": (
             schemas.OBSERVATIONS,
-            {"facing": zeros.astype(int), "along": ids // 7, "across": zeros.astype(int), "length_m": zeros + 0.2},
+            {
+                "facing": zeros.astype(int),
+                "along": ids // 7,
+                "across": zeros.astype(int),
+                "length_m": zeros + 0.2,
+            },
         ),
         "registration": (
             schemas.REGISTRATION,
             {"t_ns": ids, "kept": zeros == 0, "reason": ["kept"] * n}
-            | dict.fromkeys(("prior_fitness", "refined_fitness", "rmse_m", "qx", "qy", "qz", "y_m", "z_m"), zeros)
+            | dict.fromkeys(
+                ("prior_fitness", "refined_fitness", "rmse_m", "qx", "qy", "qz", "y_m", "z_m"),
+                zeros,
+            )
             | {"qw": zeros + 1, "x_m": ids.astype(float)},
         ),
     }
     written = {table: folder / f"{table}.parquet" for table in methods.TABLES[method]}
     for table, path in written.items():
         schema, values = columns[table]
-        tables.write(path, schema, {"scan_id": ids, **values})
+        tables.write_table(path, schema, {"scan_id": ids, **values})
     return written
 
 
@@ -59,7 +69,7 @@ def test_an_order_of_all_scans(hulls, tmp_path, caplog, method):
     output = tmp_path / "selection" / f"{method}.parquet"
     options = {"method": method, "seed": 1, "others": write_others(tmp_path, method, 12)}
     order_scans.order_scans(hulls, output, **options)
-    selection = tables.read(output, schemas.SELECTION)
+    selection = tables.read_table(output, schemas.SELECTION)
     assert sorted(selection["scan_id"]) == list(range(0, 60, 5))
     assert selection["covered_m2"][-1] == pytest.approx(15)
     assert (selection["bound_m2"] >= selection["covered_m2"]).all()
@@ -71,7 +81,11 @@ def test_an_order_of_all_scans(hulls, tmp_path, caplog, method):
 
 
 def test_scans_that_cover_nothing_are_refused(tmp_path):
-    hulls = write_hulls(tmp_path / "hulls.parquet", [shapely.LineString([(0, 0), (1, i)]) for i in range(3)])
+    hulls = write_hulls(
+        tmp_path / "hulls.parquet", [shapely.LineString([(0, 0), (1, i)]) for i in range(3)]
+    )
     with pytest.raises(StageError, match="3 scans cover 0 m2"):
-        order_scans.order_scans(hulls, tmp_path / "selection.parquet", method="cluster_hull", seed=0)
+        order_scans.order_scans(
+            hulls, tmp_path / "selection.parquet", method="cluster_hull", seed=0
+        )
     assert not (tmp_path / "selection.parquet").exists()

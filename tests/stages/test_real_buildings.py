@@ -6,7 +6,7 @@ import pytest
 import shapely
 
 from scanplan.errors import StageError
-from scanplan.simulation import building, ifcfile
+from scanplan.lab.buildings import building, ifc_file
 
 pytestmark = pytest.mark.recordings
 SLICE_M = 0.4
@@ -23,12 +23,18 @@ DUPLEX = {
 @pytest.fixture(scope="module")
 def models(recordings_dir):
     names = {"fzk": "AC20-FZK-Haus.ifc", "duplex": "duplex.ifc"}
-    return {key: ifcfile.parse((recordings_dir / "buildings" / name).read_bytes(), name) for key, name in names.items()}
+    return {
+        key: ifc_file.parse_ifc((recordings_dir / "buildings" / name).read_bytes(), name)
+        for key, name in names.items()
+    }
 
 
 def off_the_mesh(found):
     scene = o3d.t.geometry.RaycastingScene(nthreads=1)
-    vertices, triangles = found.mesh.vertices_m.astype(np.float32), found.mesh.triangles.astype(np.uint32)
+    vertices, triangles = (
+        found.mesh.vertices_m.astype(np.float32),
+        found.mesh.triangles.astype(np.uint32),
+    )
     scene.add_triangles(o3d.core.Tensor(vertices), o3d.core.Tensor(triangles))
     faces = [g for g, values in found.truth if values["kind"] == "face"]
     xy = np.concatenate([shapely.get_coordinates(g.segmentize(0.1)) for g in faces])
@@ -38,29 +44,41 @@ def off_the_mesh(found):
 
 @pytest.mark.parametrize(
     ("name", "storey", "expected"),
-    [*(("fzk", *known) for known in FZK.items()), *(("duplex", *known) for known in DUPLEX.items())],
+    [
+        *(("fzk", *known) for known in FZK.items()),
+        *(("duplex", *known) for known in DUPLEX.items()),
+    ],
 )
 def test_a_storey_has_its_parts_and_its_truth(models, name, storey, expected):
     n_walls, n_doors, n_windows, n_rooms, n_reached = expected
-    index = ifcfile.find_storey(models[name], storey, name)
-    found = building.of_model(models[name], index, SLICE_M, name)
+    index = ifc_file.find_storey(models[name], storey, name)
+    found = building.building_of_model(models[name], index, SLICE_M, name)
     kinds = [values["kind"] for _, values in found.truth]
     types = [values["type"] for _, values in found.truth if values["kind"] == "opening"]
-    assert (types.count("door"), types.count("window"), kinds.count("room")) == (n_doors, n_windows, n_rooms)
+    assert (types.count("door"), types.count("window"), kinds.count("room")) == (
+        n_doors,
+        n_windows,
+        n_rooms,
+    )
     assert kinds.count("wall") >= n_walls
     assert off_the_mesh(found) < 1e-3
     if n_reached is None:
         with pytest.raises(StageError, match="can be entered"):
-            building.routed(found, name, route="rooms", clearance_m=0.25)
+            building.plan_building_route(found, name, route="rooms", clearance_m=0.25)
         return
-    driven = building.routed(found, name, route="rooms", clearance_m=0.25)
-    assert sum(values["visited"] for _, values in driven.truth if values["kind"] == "room") >= n_reached
+    driven = building.plan_building_route(found, name, route="rooms", clearance_m=0.25)
+    assert (
+        sum(values["visited"] for _, values in driven.truth if values["kind"] == "room")
+        >= n_reached
+    )
     assert shapely.LineString(driven.waypoints_m).distance(found.obstacles_m) >= 0.25
 
 
 def test_walls_are_as_thick_as_their_layers(models):
-    found = building.of_model(models["fzk"], 0, SLICE_M, "fzk")
-    walls = [(g.length, values["thickness_m"]) for g, values in found.truth if values["kind"] == "wall"]
+    found = building.building_of_model(models["fzk"], 0, SLICE_M, "fzk")
+    walls = [
+        (g.length, values["thickness_m"]) for g, values in found.truth if values["kind"] == "wall"
+    ]
     assert sorted(thickness for _, thickness in walls) == [0.24] * 5 + [0.3] * 4
     outside = [g.length for g, values in found.truth if values.get("side") == "outside"]
     # 12 m x 10 m, less the front door's 1.01 m and the terrace door's 2.01 m
@@ -68,5 +86,7 @@ def test_walls_are_as_thick_as_their_layers(models):
 
 
 def test_a_building_of_two_storeys_asks_which(models):
-    with pytest.raises(StageError, match=r"0 'Erdgeschoss' at 0\.00 m, 1 'Dachgeschoss' at 2\.70 m"):
-        ifcfile.find_storey(models["fzk"], None, "AC20-FZK-Haus.ifc")
+    with pytest.raises(
+        StageError, match=r"0 'Erdgeschoss' at 0\.00 m, 1 'Dachgeschoss' at 2\.70 m"
+    ):
+        ifc_file.find_storey(models["fzk"], None, "AC20-FZK-Haus.ifc")

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 from reference import hull_selection
-from scanplan import datasets
-from scanplan.recordings import frames, surveys
-from scanplan.registration import verdicts
-from scanplan.selection import certificate, greedy, hulls, streaming
+from scanplan.project import dataset_files
+from scanplan.recordings import tf_tree
+from scanplan.recordings.survey import open_survey
+from scanplan.registration import results
+from scanplan.selection import area_greedy, bounds, hulls, streaming
 
 pytestmark = pytest.mark.recordings
 SETTINGS = {"n_clusters": 10, "sample_size": 500, "seed": 1}
@@ -17,34 +18,40 @@ N_SCANS = 40
 @pytest.fixture(scope="module", params=["intel", "jackal_ros1", "vlp16_room"])
 def polygons(recordings_dir, request):
     """Polygons of scans from all over a recording, placed by the localiser."""
-    with surveys.open_survey(datasets.find_files(str(recordings_dir / request.param)), min_range_m=0.1) as survey:
-        pose, _, covered = frames.world_from_sensor(survey.pose_edges(), survey.stamps(), max_gap_s=2.0)
+    with open_survey(
+        dataset_files.find_files(str(recordings_dir / request.param)), min_range_m=0.1
+    ) as survey:
+        pose, _, covered = tf_tree.chain_poses(survey.pose_edges(), survey.stamps(), max_gap_s=2.0)
         placed = np.flatnonzero(covered)
         chosen = placed[np.linspace(0, len(placed) - 1, N_SCANS).astype(int)].tolist()
         scans = [
-            (scan.scan_id, verdicts.in_map(scan.scan_id, scan.xyz_m, pose[scan.scan_id]))
+            (scan.scan_id, results.move_to_map(scan.scan_id, scan.xyz_m, pose[scan.scan_id]))
             for scan in survey.scans(chosen)
         ]
-    return hulls.scan_polygons(hulls.concatenated([hulls.cluster_hulls(i, xyz_m, **SETTINGS) for i, xyz_m in scans]))[1]
+    return hulls.scan_polygons(
+        hulls.concatenate_hulls(
+            [hulls.make_cluster_hulls(i, xyz_m, **SETTINGS) for i, xyz_m in scans]
+        )
+    )[1]
 
 
 def test_same_order_as_algorithm_1(polygons):
     order, covered_m2 = hull_selection.hull_selection(list(polygons))
-    found = greedy.greedy_order(polygons)
+    found = area_greedy.order_by_area(polygons)
     assert found.order.tolist() == order
     assert found.covered_m2 == pytest.approx(covered_m2, abs=1e-8)
-    assert greedy.gains_of_order(polygons, order) == pytest.approx(found.gain_m2, abs=1e-8)
+    assert area_greedy.area_gains(polygons, order) == pytest.approx(found.gain_m2, abs=1e-8)
 
 
 def test_the_bound_is_above_every_order(polygons):
-    bound_m2 = certificate.upper_bound(greedy.greedy_order(polygons))
+    bound_m2 = bounds.bound_any_subset(area_greedy.order_by_area(polygons))
     for seed in range(5):
         order = np.random.default_rng(seed).permutation(len(polygons))
-        assert (np.cumsum(greedy.gains_of_order(polygons, order)) <= bound_m2 + 1e-8).all()
+        assert (np.cumsum(area_greedy.area_gains(polygons, order)) <= bound_m2 + 1e-8).all()
 
 
 def test_one_pass_covers_much_of_what_greedy_does(polygons):
-    order, most_held = streaming.order(polygons, k=8)
-    covered_m2 = greedy.gains_of_order(polygons, order)[:8].sum()
-    assert covered_m2 >= 0.8 * greedy.greedy_order(polygons).covered_m2[7]
+    order, most_held = streaming.order_streaming(polygons, k=8)
+    covered_m2 = area_greedy.area_gains(polygons, order)[:8].sum()
+    assert covered_m2 >= 0.8 * area_greedy.order_by_area(polygons).covered_m2[7]
     assert most_held < len(polygons)

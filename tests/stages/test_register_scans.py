@@ -1,28 +1,43 @@
 import numpy as np
 import pytest
 
-import bagmaking
+from helpers import bag_making
 from interpolate_poses import interpolate_poses
 from register_scans import register_scans
-from scanplan import configuration, datasets, schemas, tables
 from scanplan.errors import StageError
+from scanplan.project import dataset_files
+from scanplan.project.settings import read_yaml
+from scanplan.store import schemas, tables
 
 STEP_NS = 100_000_000
 
 
 @pytest.fixture
 def run(tmp_path, project_root):
-    settings = configuration.read_yaml(project_root / "config/config.yaml")
+    settings = read_yaml(project_root / "config/config.yaml")
 
     def run_on(entries, name="a", threads=1, **changes):
         folder = tmp_path / name
-        bagmaking.Maker().write(folder / "run", entries)
-        files = datasets.find_files(folder)
+        bag_making.Maker().write(folder / "run", entries)
+        files = dataset_files.find_files(folder)
         reading = settings["input"] | changes.pop("reading", {})
-        interpolate_poses(files, folder / "poses.parquet", **settings["poses"] | {"keep_every": 1}, **reading)
+        interpolate_poses(
+            files, folder / "poses.parquet", **settings["poses"] | {"keep_every": 1}, **reading
+        )
         limits = settings["registration"] | changes
-        outputs = folder / "scans.parquet", folder / "registration.parquet", folder / "edges.parquet"
-        register_scans(files, folder / "poses.parquet", *outputs, reading=reading, settings=limits, threads=threads)
+        outputs = (
+            folder / "scans.parquet",
+            folder / "registration.parquet",
+            folder / "edges.parquet",
+        )
+        register_scans(
+            files,
+            folder / "poses.parquet",
+            *outputs,
+            reading=reading,
+            settings=limits,
+            threads=threads,
+        )
         return outputs
 
     return run_on
@@ -40,18 +55,20 @@ def hall(n=4000, seed=0):
 
 def survey(n_scans=5, empty=(), moved=()):
     """Clouds of a sensor that goes 0.1 m a scan through the hall, some empty; true poses, some moved by 4 cm."""
-    maker, entries = bagmaking.Maker(), []
+    maker, entries = bag_making.Maker(), []
     for i in range(n_scans):
-        t_ns, place = bagmaking.START_NS + i * STEP_NS, np.array([1 + 0.1 * i, 2, 0.5])
+        t_ns, place = bag_making.START_NS + i * STEP_NS, np.array([1 + 0.1 * i, 2, 0.5])
         seen = np.full((5, 3), np.nan) if i in empty else hall(seed=i) - place
-        entries.append(("/amcl_pose", t_ns, maker.amcl(t_ns, (place[0] + 0.04 * (i in moved), *place[1:]))))
+        entries.append(
+            ("/amcl_pose", t_ns, maker.amcl(t_ns, (place[0] + 0.04 * (i in moved), *place[1:])))
+        )
         entries.append(("/points", t_ns + 1, maker.cloud(t_ns, seen.astype(np.float32))))
     return entries
 
 
 def test_retained_scans_lie_in_the_map(run):
     scans, registered, _ = run(survey(moved=[2]))
-    verdicts = tables.read(registered, schemas.REGISTRATION)
+    verdicts = tables.read_table(registered, schemas.REGISTRATION)
     assert verdicts["reason"].tolist() == ["anchor"] + ["kept"] * 4
     np.testing.assert_allclose(verdicts["x_m"], [1.0, 1.1, 1.2, 1.3, 1.4], atol=0.015)
     store = tables.ScanStore(scans)
@@ -63,8 +80,14 @@ def test_retained_scans_lie_in_the_map(run):
 
 def test_scans_without_points_are_named_and_left_out(run):
     scans, registered, _ = run(survey(empty=[1, 3]))
-    verdicts = tables.read(registered, schemas.REGISTRATION)
-    assert verdicts["reason"].tolist() == ["anchor", "too_few_points", "kept", "too_few_points", "kept"]
+    verdicts = tables.read_table(registered, schemas.REGISTRATION)
+    assert verdicts["reason"].tolist() == [
+        "anchor",
+        "too_few_points",
+        "kept",
+        "too_few_points",
+        "kept",
+    ]
     assert tables.ScanStore(scans).scan_ids.tolist() == [0, 2, 4]
 
 
@@ -75,18 +98,26 @@ def test_the_number_of_cores_changes_no_byte(run):
 
 @pytest.mark.parametrize(
     ("entries", "changes"),
-    [(survey(empty=range(5)), {}), (survey(), {"reading": {"min_range_m": 50.0}}), (survey(), {"min_points": 10_000})],
+    [
+        (survey(empty=range(5)), {}),
+        (survey(), {"reading": {"min_range_m": 50.0}}),
+        (survey(), {"min_points": 10_000}),
+    ],
 )
 def test_nothing_to_retain_is_one_line_and_no_table(run, tmp_path, entries, changes):
-    with pytest.raises(StageError, match=r"run\S*: 0 of 5 candidates retained \(5 too_few_points\).*min_range_m"):
+    with pytest.raises(
+        StageError, match=r"run\S*: 0 of 5 candidates retained \(5 too_few_points\).*min_range_m"
+    ):
         run(entries, **changes)
     assert sorted(p.name for p in (tmp_path / "a").iterdir()) == ["poses.parquet", "run.bag"]
 
 
 def test_a_map_too_far_from_its_origin_is_refused(run):
-    maker = bagmaking.Maker()
+    maker = bag_making.Maker()
     entries = [
-        entry if entry[0] == "/points" else (entry[0], entry[1], maker.amcl(entry[1], (500_000.0, 0, 0)))
+        entry
+        if entry[0] == "/points"
+        else (entry[0], entry[1], maker.amcl(entry[1], (500_000.0, 0, 0)))
         for entry in survey()
     ]
     with pytest.raises(StageError, match=r"500\d* m from the map's origin.*local map frame"):

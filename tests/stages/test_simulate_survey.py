@@ -11,14 +11,14 @@ from rosbags.typesys import Stores, get_typestore
 from scipy.spatial.transform import Rotation
 from shapely.geometry import shape
 
-import boxmaking
-import ifcmaking
-import simple_rooms as drawn
-from exactsensor import EXACT
-from scanplan import se3
+from helpers import box_making, ifc_making
+from helpers import simple_rooms as drawn
+from helpers.exact_sensor import EXACT
 from scanplan.errors import StageError
-from scanplan.recordings import frames, surveys
-from scanplan.simulation import buildingfile, extrusion
+from scanplan.geometry import se3
+from scanplan.lab.buildings import drawing_file, extrusion
+from scanplan.recordings import tf_tree
+from scanplan.recordings.survey import open_survey
 from simulate_survey import simulate_survey
 
 STORE = get_typestore(Stores.ROS1_NOETIC)
@@ -65,7 +65,9 @@ SETTINGS = {
 def settings(**changes):
     """The settings with some keys of their groups changed."""
     return {
-        key: {**value, **changes.get(key, {})} if isinstance(value, dict) else changes.get(key, value)
+        key: {**value, **changes.get(key, {})}
+        if isinstance(value, dict)
+        else changes.get(key, value)
         for key, value in SETTINGS.items()
     }
 
@@ -104,14 +106,14 @@ def deskewed(t_ns, cloud, trajectory):
     """A cloud's points in the map, each put where the sensor was at its own moment."""
     fired_ns = t_ns + np.round(moments(cloud) * 1e9).astype(np.int64)
     when, which = np.unique(fired_ns, return_inverse=True)
-    xyz_m, quat, _, covered = se3.interpolate(*trajectory, when, max_gap_s=0.02)
+    xyz_m, quat, _, covered = se3.interpolate_poses(*trajectory, when, max_gap_s=0.02)
     assert covered.all()
-    pose = se3.matrix(xyz_m, quat)[which]
+    pose = se3.pose_matrix(xyz_m, quat)[which]
     return np.einsum("nij,nj->ni", pose[:, :3, :3], points(cloud)) + pose[:, :3, 3]
 
 
 def scene_of(building):
-    mesh = extrusion.building_mesh(buildingfile.parse(building.read_bytes(), building))
+    mesh = extrusion.make_building_mesh(drawing_file.parse_drawing(building.read_bytes(), building))
     scene = o3d.t.geometry.RaycastingScene()
     scene.add_triangles(mesh.vertices_m.astype(np.float32), mesh.triangles.astype(np.uint32))
     return scene
@@ -131,7 +133,9 @@ def survey(tmp_path_factory, building):
 def in_the_map(survey):
     """Every scan's points, each put where the sensor truly was at its moment."""
     trajectory = track(survey[3])
-    return [deskewed(t_ns, cloud, trajectory) for t_ns, cloud in read(survey[0], "/velodyne_points")]
+    return [
+        deskewed(t_ns, cloud, trajectory) for t_ns, cloud in read(survey[0], "/velodyne_points")
+    ]
 
 
 def test_tiny_has_the_scans_a_quick_test_wants(in_the_map):
@@ -151,7 +155,10 @@ def test_every_point_at_its_own_moments_true_pose_lies_on_the_building(in_the_ma
 def test_points_at_their_scans_pose_are_where_the_sweep_has_drawn_them(survey, building):
     _, xyz_m, quat = track(survey[2])
     clouds = [cloud for _, cloud in read(survey[0], "/velodyne_points")]
-    drawn_out = [se3.transform(m, points(c)) for m, c in zip(se3.matrix(xyz_m, quat), clouds, strict=True)]
+    drawn_out = [
+        se3.transform_points(m, points(c))
+        for m, c in zip(se3.pose_matrix(xyz_m, quat), clouds, strict=True)
+    ]
     off_m = off_the_building_m(building, np.concatenate(drawn_out))
     # 6 cm or 6 degrees a turn
     assert 0.05 < off_m.max() < 1.0
@@ -162,14 +169,19 @@ def test_without_sweep_every_scan_is_taken_at_its_stamp(tmp_path, building):
     clouds = [cloud for _, cloud in read(bag, "/velodyne_points")]
     assert not any(moments(cloud).any() for cloud in clouds)
     _, xyz_m, quat = track(poses)
-    seen = [se3.transform(m, points(c)) for m, c in zip(se3.matrix(xyz_m, quat), clouds, strict=True)]
+    seen = [
+        se3.transform_points(m, points(c))
+        for m, c in zip(se3.pose_matrix(xyz_m, quat), clouds, strict=True)
+    ]
     assert off_the_building_m(building, np.concatenate(seen)).max() < 0.001
 
 
 def test_times_end_at_the_stamp(survey):
     for _, cloud in read(survey[0], "/velodyne_points"):
         time_s = moments(cloud)
-        assert (np.diff(time_s) >= 0).all() and -0.1 < time_s[0] < -0.09 and -0.001 < time_s[-1] <= 0
+        assert (
+            (np.diff(time_s) >= 0).all() and -0.1 < time_s[0] < -0.09 and -0.001 < time_s[-1] <= 0
+        )
 
 
 def test_points_at_the_sensors_height_lie_on_the_true_faces(in_the_map, survey):
@@ -177,7 +189,9 @@ def test_points_at_the_sensors_height_lie_on_the_true_faces(in_the_map, survey):
     faces = [shape(f["geometry"]) for f in features if f["properties"]["kind"] == "face"]
     seen = np.concatenate(in_the_map)
     seen = seen[np.abs(seen[:, 2] - 0.4) < 0.05]
-    furniture = shapely.union_all([shapely.box(0.3, 4.0, 1.5, 4.7), shapely.box(5.4, 2.9, 5.8, 4.3)])
+    furniture = shapely.union_all(
+        [shapely.box(0.3, 4.0, 1.5, 4.7), shapely.box(5.4, 2.9, 5.8, 4.3)]
+    )
     at = shapely.points(seen[:, :2])
     at = at[shapely.distance(furniture, at) > 0.01]
     assert len(at) > 5_000
@@ -197,23 +211,28 @@ def test_localiser_covers_every_scan_and_is_true_without_noise(survey):
     turn = np.array([[0, 0, m.pose.pose.orientation.z, m.pose.pose.orientation.w] for _, m in told])
     scan_ns = np.array([t for t, _ in read(bag, "/velodyne_points")])
     assert t_ns[0] <= scan_ns[0] - 100_000_000
-    xyz_m, quat, _, covered = se3.interpolate(t_ns, base, turn, scan_ns, max_gap_s=5.0)
+    xyz_m, quat, _, covered = se3.interpolate_poses(t_ns, base, turn, scan_ns, max_gap_s=5.0)
     assert covered.all()
-    mount = se3.matrix([0.1, 0, 0.4], [0, 0, np.sin(np.radians(15)), np.cos(np.radians(15))])
-    sensor_m = (se3.matrix(xyz_m, quat) @ mount)[:, :3, 3]
+    mount = se3.pose_matrix([0.1, 0, 0.4], [0, 0, np.sin(np.radians(15)), np.cos(np.radians(15))])
+    sensor_m = (se3.pose_matrix(xyz_m, quat) @ mount)[:, :3, 3]
     # between two updates up to 0.28 m apart, across a corner, a straight line cuts it by a few centimetres
     assert np.abs(sensor_m - np.loadtxt(poses)[:, 1:4]).max() < 0.1
     assert np.median(np.linalg.norm(sensor_m - np.loadtxt(poses)[:, 1:4], axis=1)) < 0.002
 
 
-FEW = {"sensor": {"n_azimuth": 16}, "errors": NOISY, "localiser": {"noise_m": 0.05, "drift_m": 0.05}}
+FEW = {
+    "sensor": {"n_azimuth": 16},
+    "errors": NOISY,
+    "localiser": {"noise_m": 0.05, "drift_m": 0.05},
+}
 
 
 @pytest.mark.parametrize("name", ["survey.bag", "survey.db3", "survey.mcap"])
 def test_same_seed_same_bytes_other_seed_others(survey, building, tmp_path, name):
     people = {"count": 2, "speed_m_s": 1.0}
     first, again, other = (
-        run(tmp_path / n, building, name=name, **FEW, people=people, seed=s) for n, s in (("a", 7), ("b", 7), ("c", 8))
+        run(tmp_path / n, building, name=name, **FEW, people=people, seed=s)
+        for n, s in (("a", 7), ("b", 7), ("c", 8))
     )
     assert [p.read_bytes() for p in first] == [p.read_bytes() for p in again]
     assert first[0].read_bytes() != other[0].read_bytes()
@@ -231,7 +250,9 @@ def beside_its_surface_m(building, xyz_m):
     normal = found["primitive_normals"].numpy()
     off_m = np.einsum("ij,ij->i", xyz_m - found["points"].numpy(), normal)
     level = np.einsum("ij,ij->i", found["points"].numpy(), normal)
-    return off_m, np.unique(np.round(np.column_stack([normal, level]), 3), axis=0, return_inverse=True)[1]
+    return off_m, np.unique(
+        np.round(np.column_stack([normal, level]), 3), axis=0, return_inverse=True
+    )[1]
 
 
 def means_of_the_surfaces_m(building, xyz_m):
@@ -249,16 +270,23 @@ def test_true_poses_take_the_sweep_out_of_a_noisy_survey(tmp_path, building):
     means_m = means_of_the_surfaces_m(building, restored_m)
     assert len(means_m) >= 5 and np.abs(means_m).max() < 0.002
     _, xyz_m, quat = track(poses)
-    drawn_out_m = [se3.transform(m, points(c)) for m, (_, c) in zip(se3.matrix(xyz_m, quat), clouds, strict=True)]
+    drawn_out_m = [
+        se3.transform_points(m, points(c))
+        for m, (_, c) in zip(se3.pose_matrix(xyz_m, quat), clouds, strict=True)
+    ]
     assert np.abs(means_of_the_surfaces_m(building, np.concatenate(drawn_out_m))).max() > 0.002
 
 
 def test_noise_is_what_the_settings_say(tmp_path, building):
     errors = {**EXACT, "noise_m": 0.01}
-    quiet, noisy = (run(tmp_path / n, building, errors=e) for n, e in (("quiet", EXACT), ("noisy", errors)))
+    quiet, noisy = (
+        run(tmp_path / n, building, errors=e) for n, e in (("quiet", EXACT), ("noisy", errors))
+    )
     error_m = [
         np.linalg.norm(points(cloud), axis=1) - np.linalg.norm(points(clean), axis=1)
-        for (_, clean), (_, cloud) in zip(*(read(s[0], "/velodyne_points") for s in (quiet, noisy)), strict=True)
+        for (_, clean), (_, cloud) in zip(
+            *(read(s[0], "/velodyne_points") for s in (quiet, noisy)), strict=True
+        )
     ]
     assert np.std(np.concatenate(error_m)) == pytest.approx(0.01, rel=0.01)
     assert abs(np.mean(np.concatenate(error_m))) < 2e-4
@@ -268,23 +296,29 @@ def test_noise_is_what_the_settings_say(tmp_path, building):
 def test_stages_read_the_survey_whatever_it_is_written_as(tmp_path, building, name):
     bag, _, poses, _ = run(tmp_path, building, name=name, sensor={"n_azimuth": 30})
     for pose_topic in (None, "/tf"):
-        with surveys.open_survey([str(bag)], pose_topic=pose_topic, min_range_m=0.1, max_range_m=100.0) as opened:
+        with open_survey(
+            [str(bag)], pose_topic=pose_topic, min_range_m=0.1, max_range_m=100.0
+        ) as opened:
             assert not opened.planar
             t_ns, xyz_m, _ = track(poses)
             np.testing.assert_array_equal(opened.stamps(), t_ns)
             chain, edges = t_ns[10:-10], opened.pose_edges()
-            placed, _, covered = frames.world_from_sensor(edges, chain, max_gap_s=5.0)
+            placed, _, covered = tf_tree.chain_poses(edges, chain, max_gap_s=5.0)
             assert covered.all()
             assert np.median(np.linalg.norm(placed[:, :3, 3] - xyz_m[10:-10], axis=1)) < 0.01
             scan = next(iter(opened.scans([5])))
             assert len(scan.xyz_m) > 400 and scan.time_s.min() >= -0.1 and scan.time_s.max() <= 0
 
 
-@pytest.mark.parametrize(("n_beams", "field_deg", "closed"), [(271, 270.0, False), (180, 360.0, True)])
-def test_a_laser_scanners_survey_is_planar_and_on_the_walls(tmp_path, building, n_beams, field_deg, closed):
+@pytest.mark.parametrize(
+    ("n_beams", "field_deg", "closed"), [(271, 270.0, False), (180, 360.0, True)]
+)
+def test_a_laser_scanners_survey_is_planar_and_on_the_walls(
+    tmp_path, building, n_beams, field_deg, closed
+):
     sensor = {"model": "laser", "n_azimuth": n_beams, "field_deg": field_deg}
     bag, _, _, trajectory = run(tmp_path, building, sensor=sensor)
-    with surveys.open_survey([str(bag)], min_range_m=0.1, max_range_m=100.0) as opened:
+    with open_survey([str(bag)], min_range_m=0.1, max_range_m=100.0) as opened:
         assert opened.planar
         scans = list(opened.scans(range(len(opened.stamps()))))
     seen, way = [], track(trajectory)
@@ -292,9 +326,9 @@ def test_a_laser_scanners_survey_is_planar_and_on_the_walls(tmp_path, building, 
         fired_ns = scan.t_ns + np.round(scan.time_s * 1e9).astype(np.int64)
         # the scanner's first beam is at the stamp
         assert fired_ns.min() == scan.t_ns and fired_ns.max() < scan.t_ns + 100_000_000
-        xyz_m, quat, _, covered = se3.interpolate(*way, fired_ns, max_gap_s=0.02)
+        xyz_m, quat, _, covered = se3.interpolate_poses(*way, fired_ns, max_gap_s=0.02)
         assert covered.all()
-        pose = se3.matrix(xyz_m, quat)
+        pose = se3.pose_matrix(xyz_m, quat)
         seen.append(np.einsum("nij,nj->ni", pose[:, :3, :3], scan.xyz_m) + pose[:, :3, 3])
     assert off_the_building_m(building, np.concatenate(seen)).max() < 0.001
 
@@ -314,9 +348,17 @@ def test_contradicting_settings_end_in_one_line(tmp_path, building):
 def test_demo_is_a_floor_the_rover_can_drive(project_root, tmp_path):
     building = project_root / "config/buildings/demo_office.geojson"
     bag, truth, poses, _ = run(tmp_path, building, sensor={"n_azimuth": 4})
-    rooms = [f["properties"] for f in json.loads(truth.read_text())["features"] if f["properties"]["kind"] == "room"]
+    rooms = [
+        f["properties"]
+        for f in json.loads(truth.read_text())["features"]
+        if f["properties"]["kind"] == "room"
+    ]
     assert 900 <= len(poses.read_text().splitlines()) <= 1300
-    assert len(rooms) == 13 and sum(r["visited"] for r in rooms) == 10 and all(r["name"] for r in rooms)
+    assert (
+        len(rooms) == 13
+        and sum(r["visited"] for r in rooms) == 10
+        and all(r["name"] for r in rooms)
+    )
     assert bag.stat().st_size > 0
 
 
@@ -325,7 +367,10 @@ def test_demo_is_a_floor_the_rover_can_drive(project_root, tmp_path):
     [
         ([drawn.WALLS, drawn.way((1, 1), (9, 1))], "outside the outer walls"),
         ([drawn.WALLS, drawn.way((4.1, 1), (2, 1))], "inside a wall"),
-        ([drawn.WALLS, drawn.wall((2, 0), (2, 3)), drawn.way((1, 1), (3, 1))], "passes a wall or furniture at 0.00 m"),
+        (
+            [drawn.WALLS, drawn.wall((2, 0), (2, 3)), drawn.way((1, 1), (3, 1))],
+            "passes a wall or furniture at 0.00 m",
+        ),
         ([drawn.WALLS, drawn.WAY, drawn.door(2, 1)], "off the nearest wall"),
         ([drawn.wall((0, 0), (4000, 0)), drawn.WAY], "millimetres"),
     ],
@@ -342,8 +387,8 @@ def test_a_bad_building_ends_in_one_line_and_no_output(tmp_path, features, messa
 @pytest.mark.parametrize(
     ("name", "data", "reading"),
     [
-        ("room.stl", boxmaking.written(boxmaking.room() * 1000, "stl"), {"unit": "mm"}),
-        ("room.ifc", ifcmaking.model(("Ground", "Upper")), {"storey": "Upper", "route": "rooms"}),
+        ("room.stl", box_making.written(box_making.room() * 1000, "stl"), {"unit": "mm"}),
+        ("room.ifc", ifc_making.model(("Ground", "Upper")), {"storey": "Upper", "route": "rooms"}),
     ],
 )
 def test_meshes_and_models_are_surveyed_on_a_way_of_the_rover_s_own(tmp_path, name, data, reading):
@@ -351,7 +396,9 @@ def test_meshes_and_models_are_surveyed_on_a_way_of_the_rover_s_own(tmp_path, na
     changes = {"site": reading, "sensor": {"n_azimuth": 16, "sweep": False}}
     bag, truth, poses, _ = run(tmp_path, tmp_path / name, **changes)
     found = [
-        shape(f["geometry"]) for f in json.loads(truth.read_text())["features"] if f["properties"]["kind"] == "face"
+        shape(f["geometry"])
+        for f in json.loads(truth.read_text())["features"]
+        if f["properties"]["kind"] == "face"
     ]
     world_from_sensor = np.loadtxt(poses, ndmin=2)
     clouds = [points(cloud) for _, cloud in read(bag, "/velodyne_points")]

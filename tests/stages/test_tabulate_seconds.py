@@ -1,6 +1,6 @@
 import numpy as np
 
-from scanplan import schemas, tables
+from scanplan.store import schemas, tables
 from tabulate_seconds import tabulate_seconds
 
 
@@ -11,14 +11,18 @@ def test_order_and_share_of_the_extraction_add_up(tmp_path):
         for m, e in names
         for k in (1, 4)
     ]
-    tables.write(tmp_path / "walls.parquet", schemas.EVALUATION, {c: [row[c] for row in rows] for c in rows[0]})
+    tables.write_table(
+        tmp_path / "walls.parquet",
+        schemas.EVALUATION,
+        {c: [row[c] for row in rows] for c in rows[0]},
+    )
     files = {}
     for name, seconds in (("hull", 3.0), ("one", 8.0), ("two", 16.0)):
         files[name] = tmp_path / f"{name}.tsv"
         files[name].write_text(f"s\th:m:s\n{seconds}\t-\n")
     ordering, extraction = {"hull": files.pop("hull")}, files
     tabulate_seconds(tmp_path / "walls.parquet", ordering, extraction, tmp_path / "seconds.parquet")
-    found = tables.read(tmp_path / "seconds.parquet", schemas.SECONDS)
+    found = tables.read_table(tmp_path / "seconds.parquet", schemas.SECONDS)
     assert list(zip(found["method"], found["extractor"], found["k"], strict=True)) == [
         ("hull", "one", 1), ("hull", "one", 4), ("hull", "two", 1), ("hull", "two", 4)
     ]  # fmt: skip

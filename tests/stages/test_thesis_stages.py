@@ -3,18 +3,26 @@
 import numpy as np
 import pytest
 
-import claimmaking as made
 from build_hulls import build_hulls
 from draw_thesis_drive import draw_thesis_drive
 from draw_thesis_rooms import draw_thesis_rooms
 from evaluate_walls import evaluate_walls
-from evaluationmaking import FACES, SCAN_IDS, write_registration, write_selection, write_truth, write_walls
+from helpers import claim_making as made
+from helpers.evaluation_making import (
+    FACES,
+    SCAN_IDS,
+    write_registration,
+    write_selection,
+    write_truth,
+    write_walls,
+)
 from judge_claims import judge_claims
 from measure_coverage import measure_coverage
 from measure_unevenness import measure_unevenness
-from scanplan import configuration, schemas, tables
-from scanplan.thesis import thesisdrive
-from scanplan.thesis.thesisshown import FIGURES
+from scanplan.lab.thesis import drive_figures
+from scanplan.lab.thesis.shown_figures import FIGURES
+from scanplan.project import settings
+from scanplan.store import schemas, tables
 from tabulate_steps import tabulate_steps
 from time_stages import time_stages
 from write_thesis import write_thesis
@@ -29,16 +37,23 @@ def survey(tmp_path):
     write_truth(tmp_path)
     write_registration(tmp_path)
     rng = np.random.default_rng(3)
-    with tables.scan_writer(tmp_path / "scans.parquet", planar=False) as write:
+    with tables.open_scan_writer(tmp_path / "scans.parquet", planar=False) as write:
         for scan_id in SCAN_IDS:
             corners = np.array(FACES, float)[rng.integers(0, 4, 400)]
             share = rng.random((400, 1))
             write(
-                scan_id, np.column_stack([corners[:, :2] + share * (corners[:, 2:] - corners[:, :2]), rng.random(400)])
+                scan_id,
+                np.column_stack(
+                    [corners[:, :2] + share * (corners[:, 2:] - corners[:, :2]), rng.random(400)]
+                ),
             )
-    build_hulls(tmp_path / "scans.parquet", tmp_path / "hulls.parquet", n_clusters=6, threads=1, **SAMPLING)
+    build_hulls(
+        tmp_path / "scans.parquet", tmp_path / "hulls.parquet", n_clusters=6, threads=1, **SAMPLING
+    )
     for extractor in EXTRACTORS:
-        write_walls(tmp_path, extractor, [FACES[0], FACES[1], FACES[2], *FACES], [2, 2, 4, 7, 7, 7, 7])
+        write_walls(
+            tmp_path, extractor, [FACES[0], FACES[1], FACES[2], *FACES], [2, 2, 4, 7, 7, 7, 7]
+        )
     for method in ("cluster_hull", "hull", "random", "sequential"):
         write_selection(tmp_path, method, SCAN_IDS)
     return tmp_path
@@ -55,7 +70,9 @@ def coverage(folder):
 def evaluated(folder):
     walls = [folder / f"walls/{extractor}.parquet" for extractor in EXTRACTORS]
     selections = sorted((folder / "selection").glob("*.parquet"))
-    inputs = [folder / name for name in ("registration.parquet", "truth.geojson", "truth_poses.tum")]
+    inputs = [
+        folder / name for name in ("registration.parquet", "truth.geojson", "truth_poses.tum")
+    ]
     outputs = [folder / f"{name}.parquet" for name in ("evaluated", "aligned", "oracle")]
     evaluate_walls(walls, selections, *inputs, *outputs, max_range_m=100.0, bitmap_cell_m=0.05)
     return outputs[0]
@@ -63,23 +80,28 @@ def evaluated(folder):
 
 def write_times(folder):
     tasks = ("plain_clusters", "plain_ransac")
-    rows = [("order_scans", 3, 0, 3, 0.1)] + [(e, 400, scan_id, 4, 0.01) for e in tasks for scan_id in SCAN_IDS]
+    rows = [("order_scans", 3, 0, 3, 0.1)] + [
+        (e, 400, scan_id, 4, 0.01) for e in tasks for scan_id in SCAN_IDS
+    ]
     columns = dict(zip(schemas.TIMES.columns, map(list, zip(*rows, strict=True)), strict=True))
-    tables.write(folder / "times.parquet", schemas.TIMES, columns)
+    tables.write_table(folder / "times.parquet", schemas.TIMES, columns)
     return folder / "times.parquet"
 
 
 def test_areas_are_those_of_the_room(survey):
     clusters, areas = coverage(survey)
-    measured = tables.read(areas, schemas.AREAS)
+    measured = tables.read_table(areas, schemas.AREAS)
     np.testing.assert_allclose(measured["seen_m2"], 24)
     # hulls lie within the room: what they share with it is their own share of it
     np.testing.assert_allclose(measured["full_hull_iou"], measured["full_hull_m2"] / 24, rtol=1e-6)
     assert (measured["cluster_hull_iou"] < measured["full_hull_iou"]).all()
     # points on the walls: their one hull is nearly the room, their clusters' hulls leave its middle out
     assert (measured["full_hull_m2"] > 22).all() and (measured["cluster_hull_m2"] < 20).all()
-    growth = tables.read(clusters, schemas.CLUSTERS)
-    assert growth["n_clusters"].tolist() == [1, 1, 1, 6, 6, 6] and growth["rank"].tolist() == [1, 2, 3] * 2
+    growth = tables.read_table(clusters, schemas.CLUSTERS)
+    assert (
+        growth["n_clusters"].tolist() == [1, 1, 1, 6, 6, 6]
+        and growth["rank"].tolist() == [1, 2, 3] * 2
+    )
     assert (np.diff(growth["covered_m2"])[[0, 1, 3, 4]] >= 0).all()
 
 
@@ -97,19 +119,29 @@ def test_of_a_room_that_every_scan_sees_nothing_is_lost(survey, tmp_path):
         measure_unevenness(*inputs, output, sampling=sampling, max_range_m=100.0, n_selected=2)
         found.append(output.read_bytes())
     assert found[0] == found[1]
-    columns = tables.read(output, schemas.UNEVENNESS)
+    columns = tables.read_table(output, schemas.UNEVENNESS)
     # three crowds of one scan each, all within sight of the room's 20 m of wall
     assert set(columns["crowd"]) == {0, 1, 2} and set(columns["repeats"]) == {1, 5, 20}
     np.testing.assert_allclose(columns["seen_m"], 20.0)
 
 
 def test_every_task_is_timed(survey, tmp_path, project_root):
-    walls = configuration.read_yaml(project_root / "config/config.yaml")["walls"]
+    walls = settings.read_yaml(project_root / "config/config.yaml")["walls"]
     inputs = [survey / name for name in ("scans.parquet", "registration.parquet", "hulls.parquet")]
-    time_stages(*inputs, tmp_path / "times.parquet", walls=walls, hulls=SAMPLING, n_clusters=[3, 1], timed_scans=3)
-    found = tables.read(tmp_path / "times.parquet", schemas.TIMES)
+    time_stages(
+        *inputs,
+        tmp_path / "times.parquet",
+        walls=walls,
+        hulls=SAMPLING,
+        n_clusters=[3, 1],
+        timed_scans=3,
+    )
+    found = tables.read_table(tmp_path / "times.parquet", schemas.TIMES)
     extractors = {"plain_clusters", "plain_ransac"}
-    assert set(found["task"]) == extractors | {f"thinned_{e}" for e in extractors} | {"build_hulls", "order_scans"}
+    assert set(found["task"]) == extractors | {f"thinned_{e}" for e in extractors} | {
+        "build_hulls",
+        "order_scans",
+    }
     thinned = found["size"][found["task"] == "thinned_plain_ransac"]
     assert sorted(set(thinned.tolist())) == [50, 100, 200, 400]
 
@@ -118,35 +150,64 @@ def test_the_steps_are_counted(survey, tmp_path):
     (tmp_path / "a.bag").write_bytes(b"x" * 1000)
     for name, seconds in (("first", "2.5"), ("second", "0.5")):
         (tmp_path / f"{name}.tsv").write_text(f"s\th:m:s\n{seconds}\t0:00:02\n")
-    times = [[tmp_path / "first.tsv", tmp_path / "second.tsv"], [tmp_path / "first.tsv"], [tmp_path / "second.tsv"]]
+    times = [
+        [tmp_path / "first.tsv", tmp_path / "second.tsv"],
+        [tmp_path / "first.tsv"],
+        [tmp_path / "second.tsv"],
+    ]
     inputs = [survey / name for name in ("truth_poses.tum", "scans.parquet", "hulls.parquet")]
     selection = survey / "selection/cluster_hull.parquet"
-    tabulate_steps([tmp_path / "a.bag"], *inputs, selection, times, tmp_path / "steps.parquet", n_selected=2)
-    found = tables.read(tmp_path / "steps.parquet", schemas.STEPS)
+    tabulate_steps(
+        [tmp_path / "a.bag"], *inputs, selection, times, tmp_path / "steps.parquet", n_selected=2
+    )
+    found = tables.read_table(tmp_path / "steps.parquet", schemas.STEPS)
     assert found["n_scans"].tolist() == [3, 3, 3, 2]
     np.testing.assert_allclose(found["seconds"], [0.5, 3.0, 2.5, 0.5])
     whole = (survey / "scans.parquet").stat().st_size
     # a line that says nothing and commas are as good to the reader of all true poses
     truth = survey / "truth_poses.tum"
     truth.write_text("\n" + truth.read_text().replace(" ", ","))
-    tabulate_steps([tmp_path / "a.bag"], *inputs, selection, times, tmp_path / "steps.parquet", n_selected=2)
-    np.testing.assert_allclose(tables.read(tmp_path / "steps.parquet", schemas.STEPS)["seconds"], [0.5, 3.0, 2.5, 0.5])
-    assert found["n_bytes"].tolist() == [1000, whole, (survey / "hulls.parquet").stat().st_size, whole * 2 // 3]
+    tabulate_steps(
+        [tmp_path / "a.bag"], *inputs, selection, times, tmp_path / "steps.parquet", n_selected=2
+    )
+    np.testing.assert_allclose(
+        tables.read_table(tmp_path / "steps.parquet", schemas.STEPS)["seconds"],
+        [0.5, 3.0, 2.5, 0.5],
+    )
+    assert found["n_bytes"].tolist() == [
+        1000,
+        whole,
+        (survey / "hulls.parquet").stat().st_size,
+        whole * 2 // 3,
+    ]
 
 
 def test_every_figure_is_drawn_and_stands_on_the_page(survey, tmp_path):
     drawn = [tmp_path / "figures" / figure.file for figure in FIGURES]
     files = {name: survey / f"{name}.parquet" for name in ("scans", "registration", "hulls")}
-    files |= {method: survey / f"selection/{method}.parquet" for method in ("cluster_hull", "hull", "sequential")}
-    files |= {"cluster_ransac": survey / "walls/cluster_ransac.parquet", "clusters": coverage(survey)[0]}
+    files |= {
+        method: survey / f"selection/{method}.parquet"
+        for method in ("cluster_hull", "hull", "sequential")
+    }
+    files |= {
+        "cluster_ransac": survey / "walls/cluster_ransac.parquet",
+        "clusters": coverage(survey)[0],
+    }
     files |= {"truth": survey / "truth.geojson", "true_poses": survey / "truth_poses.tum"}
     evaluation = evaluated(survey)
     draw_thesis_rooms(
-        files, [evaluation] * 2, drawn[:8], tmp_path / "orders.svg", bitmap_cell_m=0.05, max_range_m=100.0
+        files,
+        [evaluation] * 2,
+        drawn[:8],
+        tmp_path / "orders.svg",
+        bitmap_cell_m=0.05,
+        max_range_m=100.0,
     )
     walls = {extractor: survey / f"walls/{extractor}.parquet" for extractor in EXTRACTORS}
     tables_of_drive = [survey / name for name in ("scans.parquet", "registration.parquet")]
-    draw_thesis_drive(*tables_of_drive, files["cluster_hull"], walls, write_times(survey), drawn[8:])
+    draw_thesis_drive(
+        *tables_of_drive, files["cluster_hull"], walls, write_times(survey), drawn[8:]
+    )
     assert all("<svg" in path.read_text() for path in [*drawn, tmp_path / "orders.svg"])
 
 
@@ -154,16 +215,26 @@ def claim_files(folder):
     files = {}
     for name, columns in (made.rooms() | made.drive()).items():
         schema = _schema(name)
-        full = {column: columns.get(column, np.zeros(len(next(iter(columns.values()))))) for column in schema.columns}
+        full = {
+            column: columns.get(column, np.zeros(len(next(iter(columns.values())))))
+            for column in schema.columns
+        }
         order = np.lexsort([np.asarray(full[column]) for column in reversed(schema.sorted_by)])
         path = folder / f"{name}.parquet"
-        tables.write(path, schema, {column: np.asarray(values)[order] for column, values in full.items()})
+        tables.write_table(
+            path, schema, {column: np.asarray(values)[order] for column, values in full.items()}
+        )
         files[name] = [path, path]
     return files
 
 
 def _schema(name):
-    known = {"walls": "EVALUATION", "hull": "SELECTION", "cluster_hull": "SELECTION", "poses": "POSE_ERRORS"}
+    known = {
+        "walls": "EVALUATION",
+        "hull": "SELECTION",
+        "cluster_hull": "SELECTION",
+        "poses": "POSE_ERRORS",
+    }
     table = name.split("_", 1)[1]
     return getattr(schemas, known.get(table, table.upper()))
 
@@ -172,7 +243,7 @@ def test_claims_are_judged_seed_by_seed_and_written_to_the_page(tmp_path):
     files = claim_files(tmp_path)
     drive = {key: paths[:1] for key, paths in files.items() if not key.startswith("rooms")}
     judge_claims(files | drive, tmp_path / "claims.parquet", rooms_seeds=[3, 5], drive_seeds=[5])
-    found = tables.read(tmp_path / "claims.parquet", schemas.CLAIMS)
+    found = tables.read_table(tmp_path / "claims.parquet", schemas.CLAIMS)
     assert set(found["survey"][found["claim"] == "full_hull_99"]) == {"seed 3", "seed 5"}
     assert set(found["survey"][found["claim"] == "fewer_walls"]) == {"seed 5"}
     assert set(found["survey"][found["claim"] == "uneven_harms_random"]) == {"seed 3", "seed 5"}
@@ -182,11 +253,17 @@ def test_claims_are_judged_seed_by_seed_and_written_to_the_page(tmp_path):
     steps = files["drive_steps"][0], files["limits_steps"][0]
     write_thesis(figures, figures[0], tmp_path / "claims.parquet", *steps, tmp_path / "report.html")
     page = (tmp_path / "report.html").read_text()
-    assert "does not hold" in page and "<h3>Figure 5.12</h3>" in page and page.count("<svg") == len(FIGURES) + 1
+    assert (
+        "does not hold" in page
+        and "<h3>Figure 5.12</h3>" in page
+        and page.count("<svg") == len(FIGURES) + 1
+    )
 
 
 def test_crowded_places_are_circled_once():
     rng = np.random.default_rng(0)
-    path_m = np.concatenate([rng.normal((0, 0), 0.2, (30, 2)), rng.normal((20, 0), 0.2, (28, 2)), [(10.0, 0)] * 3])
-    found = np.array(thesisdrive.crowded(path_m))
+    path_m = np.concatenate(
+        [rng.normal((0, 0), 0.2, (30, 2)), rng.normal((20, 0), 0.2, (28, 2)), [(10.0, 0)] * 3]
+    )
+    found = np.array(drive_figures.find_crowded_places(path_m))
     assert len(found) == 2 and np.allclose(found, [(0, 0), (20, 0)], atol=0.6)

@@ -4,22 +4,26 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
-import browser
-import floorplanmaking
-import reportmaking
-from scanplan import schemas, tables
+from helpers import browser, floorplan_making, report_making
 from scanplan.errors import StageError
+from scanplan.store import schemas, tables
 from write_report import write_report
 
 
 @pytest.fixture(scope="module")
 def report(tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
-    return written(folder, reportmaking.files(folder))
+    return written(folder, report_making.files(folder))
 
 
 def written(folder, files, name="office <two> rooms", output="report.html"):
-    write_report(files, folder / output, name=name, settings=reportmaking.SETTINGS, benchmarks=folder / "benchmarks")
+    write_report(
+        files,
+        folder / output,
+        name=name,
+        settings=report_making.SETTINGS,
+        benchmarks=folder / "benchmarks",
+    )
     return folder / output
 
 
@@ -68,9 +72,14 @@ def test_tables_state_what_the_stages_found(report):
 def test_it_says_what_it_was_made_of_and_how_good_that_is(report):
     text = report.read_text()
     assert "made of 3 scans chosen from 4 registered ones; 5 were candidates" in text
-    assert "cover 100.0% of the area that the hulls of all 4 registered scans cover (21.0 m²)" in text
+    assert (
+        "cover 100.0% of the area that the hulls of all 4 registered scans cover (21.0 m²)" in text
+    )
     assert "give 95.0% of their wall shown (19.0 of 20.0 m)" in text
-    assert "no 3 of these scans give more than 19.5 m, so this choice is within 2.6% of the best" in text
+    assert (
+        "no 3 of these scans give more than 19.5 m, so this choice is within 2.6% of the best"
+        in text
+    )
     assert "office &lt;two&gt; rooms" in text and "<two>" not in text
 
 
@@ -83,15 +92,21 @@ def test_it_holds_all_it_needs(report):
 
 
 def test_the_same_input_gives_the_same_bytes(report, tmp_path):
-    assert written(tmp_path, reportmaking.files(tmp_path)).read_bytes() == report.read_bytes()
+    assert written(tmp_path, report_making.files(tmp_path)).read_bytes() == report.read_bytes()
 
 
 def test_faces_alone_without_truth_and_times_make_a_report(tmp_path):
-    files = reportmaking.files(tmp_path)
-    for name, schema in (("walls", schemas.PLAN_WALLS), ("openings", schemas.OPENINGS), ("rooms", schemas.ROOMS)):
-        tables.write(files[name], schema, getattr(floorplanmaking, name)([]), allow_empty=True)
-    nobody = {column: values[:0] for column, values in floorplanmaking.evidence().items()}
-    tables.write(files["evidence"], schemas.EVIDENCE, nobody, allow_empty=True)
+    files = report_making.files(tmp_path)
+    for name, schema in (
+        ("walls", schemas.PLAN_WALLS),
+        ("openings", schemas.OPENINGS),
+        ("rooms", schemas.ROOMS),
+    ):
+        tables.write_table(
+            files[name], schema, getattr(floorplan_making, name)([]), allow_empty=True
+        )
+    nobody = {column: values[:0] for column, values in floorplan_making.evidence().items()}
+    tables.write_table(files["evidence"], schemas.EVIDENCE, nobody, allow_empty=True)
     (tmp_path / "benchmarks/build_hulls.tsv").write_text("")
     (tmp_path / "benchmarks/draw_area.tsv").unlink()
     found = Tables(written(tmp_path, files | {"evaluation": [], "figures": []}).read_text()).rows
@@ -99,22 +114,23 @@ def test_faces_alone_without_truth_and_times_make_a_report(tmp_path):
 
 
 def test_a_survey_without_any_wall_in_sight_makes_a_report(tmp_path):
-    files = reportmaking.files(tmp_path)
+    files = report_making.files(tmp_path)
     nothing = {column: np.zeros(4) for column in ("gain", "covered", "bound")}
-    tables.write(files["selection"], schemas.SELECTION, reportmaking.selection() | nothing)
+    tables.write_table(files["selection"], schemas.SELECTION, report_making.selection() | nothing)
     assert "no scan has any wall shown" in written(tmp_path, files).read_text()
 
 
 def test_a_selection_of_another_run_is_told(tmp_path):
-    files = reportmaking.files(tmp_path)
-    selection = reportmaking.selection() | {"scan_id": np.array([9, 7, 12, 0], np.int32)}
-    tables.write(files["selection"], schemas.SELECTION, selection)
+    files = report_making.files(tmp_path)
+    selection = report_making.selection() | {"scan_id": np.array([9, 7, 12, 0], np.int32)}
+    tables.write_table(files["selection"], schemas.SELECTION, selection)
     with pytest.raises(StageError, match="scan 7 of the selection"):
         written(tmp_path, files)
 
 
 needs_browser = pytest.mark.skipif(
-    browser.find() is None, reason="no Chromium on the path (Debian: apt-get install chromium; or name one in CHROMIUM)"
+    browser.find() is None,
+    reason="no Chromium on the path (Debian: apt-get install chromium; or name one in CHROMIUM)",
 )
 
 
@@ -139,7 +155,9 @@ def in_sight(page, selector):
 
 
 def slide(page, k):
-    page.run(f"slider = document.getElementById('k'), slider.value = {k}, slider.dispatchEvent(new Event('input'))")
+    page.run(
+        f"slider = document.getElementById('k'), slider.value = {k}, slider.dispatchEvent(new Event('input'))"
+    )
 
 
 @needs_browser
@@ -148,14 +166,19 @@ def test_the_slider_moves_the_plan(page):
         return [in_sight(page, s) for s in (".scan", ".stretch", ".stretch.sure", "#shown path")]
 
     whole = page.screenshot()
-    assert state()[0] == 3 and page.run("document.getElementById('plan').classList.contains('growing')") is False
+    assert (
+        state()[0] == 3
+        and page.run("document.getElementById('plan').classList.contains('growing')") is False
+    )
     slide(page, 1)
     # the first scan shows three faces, none of them by two scans; the second adds two more, and one is sure
     assert state() == [1, 3, 0, 1]
     assert page.screenshot() != whole
     slide(page, 2)
     assert state() == [2, 5, 1, 1]
-    assert "2 of 3 (scan 5): 90.0 % of the wall shown" in page.run("document.getElementById('said').textContent")
+    assert "2 of 3 (scan 5): 90.0 % of the wall shown" in page.run(
+        "document.getElementById('said').textContent"
+    )
     slide(page, 3)
     assert state() == [3, 5, 2, 0]
 
@@ -174,7 +197,9 @@ def test_the_mark_in_the_chart_follows_the_slider(page):
 @needs_browser
 def test_wheel_drag_and_keys_zoom_and_move(page):
     def box():
-        return np.array(page.run("document.getElementById('plan').getAttribute('viewBox')").split(), float)
+        return np.array(
+            page.run("document.getElementById('plan').getAttribute('viewBox')").split(), float
+        )
 
     fit = box()
     page.mouse("mouseWheel", 640, 500, deltaX=0, deltaY=-300)
@@ -206,15 +231,22 @@ def test_what_lies_under_the_pointer_stays_there_when_the_wheel_turns(page):
 @needs_browser
 def test_a_table_is_sorted_by_any_column_and_a_row_shows_its_wall(page):
     def column(number):
-        return page.run(f"[...document.querySelectorAll('#walls tbody tr')].map(r => r.cells[{number}].textContent)")
+        return page.run(
+            f"[...document.querySelectorAll('#walls tbody tr')].map(r => r.cells[{number}].textContent)"
+        )
 
     page.run("document.querySelectorAll('#walls th button')[3].click()")
     assert column(3) == ["3.05", "3.20", "3.20", "3.20", "4.15", "7.20"]
     page.run("document.querySelectorAll('#walls th button')[3].click()")
     assert column(3)[0] == "7.20"
-    assert page.run("document.querySelectorAll('#walls th')[3].getAttribute('aria-sort')") == "descending"
+    assert (
+        page.run("document.querySelectorAll('#walls th')[3].getAttribute('aria-sort')")
+        == "descending"
+    )
     page.run("document.querySelector('#walls tr[data-wall=\"5\"]').click()")
-    assert page.run("[...document.querySelectorAll('#plan .picked')].map(e => e.dataset.wall)") == ["5"]
+    assert page.run("[...document.querySelectorAll('#plan .picked')].map(e => e.dataset.wall)") == [
+        "5"
+    ]
 
 
 @needs_browser
@@ -246,7 +278,9 @@ def test_layers_can_be_hidden(page):
 @needs_browser
 def test_it_is_dark_where_the_person_likes_it_dark(report, chromium):
     def ground(dark):
-        colour = chromium.open(report.as_uri(), dark=dark).run("getComputedStyle(document.body).backgroundColor")
+        colour = chromium.open(report.as_uri(), dark=dark).run(
+            "getComputedStyle(document.body).backgroundColor"
+        )
         return sum(map(int, re.findall(r"\d+", colour)))
 
     assert ground(True) < 150 < 600 < ground(False)
@@ -254,7 +288,12 @@ def test_it_is_dark_where_the_person_likes_it_dark(report, chromium):
 
 @needs_browser
 def test_a_narrow_window_needs_no_sideways_scrolling(report, chromium):
-    assert chromium.open(report.as_uri(), width=390, height=800).run("document.documentElement.scrollWidth") <= 390
+    assert (
+        chromium.open(report.as_uri(), width=390, height=800).run(
+            "document.documentElement.scrollWidth"
+        )
+        <= 390
+    )
 
 
 @needs_browser

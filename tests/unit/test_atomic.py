@@ -6,20 +6,20 @@ import time
 import psutil
 import pytest
 
-from scanplan import atomic
+from scanplan.store import atomic
 
 
 def test_a_failed_write_leaves_the_old_file(tmp_path):
     target = tmp_path / "plan.svg"
     atomic.write_text(target, "old")
-    with pytest.raises(RuntimeError), atomic.replacing(target) as temporary:
+    with pytest.raises(RuntimeError), atomic.replace_file(target) as temporary:
         temporary.write_text("half")
         raise RuntimeError
     assert target.read_text() == "old" and list(tmp_path.iterdir()) == [target]
 
 
 def test_the_temporary_file_stands_beside_with_the_same_suffix(tmp_path):
-    with atomic.replacing(tmp_path / "a" / "plan.dxf") as temporary:
+    with atomic.replace_file(tmp_path / "a" / "plan.dxf") as temporary:
         assert temporary.parent == tmp_path / "a" and temporary.suffix == ".dxf"
         temporary.write_text("x")
     assert (tmp_path / "a" / "plan.dxf").read_text() == "x"
@@ -34,7 +34,7 @@ def test_what_a_killed_writer_left_is_removed(tmp_path):
 
 
 def test_a_process_that_ends_itself_leaves_nothing_half_written(tmp_path):
-    with pytest.raises(FileNotFoundError), atomic.replacing(tmp_path / "plan.svg") as temporary:
+    with pytest.raises(FileNotFoundError), atomic.replace_file(tmp_path / "plan.svg") as temporary:
         temporary.write_text("half")
         atomic.discard_unfinished()
         assert list(tmp_path.iterdir()) == []

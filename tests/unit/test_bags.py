@@ -2,47 +2,58 @@ import struct
 
 import pytest
 
-import bagmaking
+from helpers import bag_making
 from scanplan.errors import StageError
 from scanplan.recordings import bags
 
-KINDS = bagmaking.KINDS
+KINDS = bag_making.KINDS
 
 
 def simple(maker, n=30):
     """Clouds and poses, enough bytes for several chunks."""
-    entries = bagmaking.survey(maker, n_scans=n)
-    return [*entries, ("/chatter", bagmaking.START_NS, maker.text("x" * 100))]
+    entries = bag_making.survey(maker, n_scans=n)
+    return [*entries, ("/chatter", bag_making.START_NS, maker.text("x" * 100))]
 
 
 @pytest.fixture
 def recording(tmp_path, request):
-    maker = bagmaking.Maker(request.param)
+    maker = bag_making.Maker(request.param)
     return maker.write(tmp_path / "with space" / "run", simple(maker))
 
 
 def read_all(path, names=("/points", "/amcl_pose"), **settings):
-    with bags.opened(path, **settings) as bag:
+    with bags.open_bag(path, **settings) as bag:
         return [bag.decode(connection, raw) for connection, _, raw in bag.messages(set(names))]
 
 
 def storage_of(path):
-    return path if path.is_file() else next(file for file in path.iterdir() if file.suffix != ".yaml")
+    return (
+        path if path.is_file() else next(file for file in path.iterdir() if file.suffix != ".yaml")
+    )
 
 
 @pytest.mark.parametrize("recording", KINDS, indirect=True)
 def test_every_kind_reads(recording):
-    with bags.opened(recording) as bag:
-        assert bag.start_ns == bagmaking.START_NS - 50_000_000
-        assert sorted((t.name, t.count) for t in bag.topics) == [("/amcl_pose", 61), ("/chatter", 1), ("/points", 30)]
-        got = [(c.topic, bag.header(c, raw), bag.decode(c, raw)) for c, _, raw in bag.messages({"/points"})]
+    with bags.open_bag(recording) as bag:
+        assert bag.start_ns == bag_making.START_NS - 50_000_000
+        assert sorted((t.name, t.count) for t in bag.topics) == [
+            ("/amcl_pose", 61),
+            ("/chatter", 1),
+            ("/points", 30),
+        ]
+        got = [
+            (c.topic, bag.header(c, raw), bag.decode(c, raw))
+            for c, _, raw in bag.messages({"/points"})
+        ]
     assert {topic for topic, _, _ in got} == {"/points"}
-    assert [header for _, header, _ in got] == [(bagmaking.START_NS + i * 10**8, "lidar") for i in range(30)]
+    assert [header for _, header, _ in got] == [
+        (bag_making.START_NS + i * 10**8, "lidar") for i in range(30)
+    ]
     assert all(message.width == 60 and message.header.frame_id == "lidar" for _, _, message in got)
 
 
 def test_no_topic_asked_for_is_no_message(tmp_path):
-    maker = bagmaking.Maker()
+    maker = bag_making.Maker()
     assert read_all(maker.write(tmp_path / "run", simple(maker)), ["/nothing"]) == []
 
 
@@ -56,7 +67,7 @@ def test_a_storage_file_alone(recording, tmp_path):
 @pytest.mark.parametrize("folder", ["100% #1?", "a%20b"])
 @pytest.mark.parametrize("kind", ["ros1", "sqlite3", "mcap"])
 def test_names_that_mean_something_in_a_uri(tmp_path, folder, kind):
-    maker = bagmaking.Maker(kind)
+    maker = bag_making.Maker(kind)
     path = maker.write(tmp_path / "plain", simple(maker))
     (tmp_path / folder).mkdir()
     path = path.rename(tmp_path / folder / path.name)
@@ -64,7 +75,7 @@ def test_names_that_mean_something_in_a_uri(tmp_path, folder, kind):
 
 
 def test_files_of_a_rosbag2_folder_named_so(tmp_path):
-    maker = bagmaking.Maker("sqlite3")
+    maker = bag_making.Maker("sqlite3")
     folder = maker.write(tmp_path / "run", simple(maker))
     odd = storage_of(folder).rename(folder / "odd#name.db3")
     assert len(read_all(odd)) == 91
@@ -138,7 +149,7 @@ def test_damage_is_told_in_one_line(recording, damage, remedy):
     ],
 )
 def test_bad_metadata(tmp_path, content, told):
-    maker = bagmaking.Maker("sqlite3")
+    maker = bag_making.Maker("sqlite3")
     path = maker.write(tmp_path / "run", simple(maker))
     (path / "metadata.yaml").write_text(content)
     with pytest.raises(StageError, match=told):
@@ -146,7 +157,7 @@ def test_bad_metadata(tmp_path, content, told):
 
 
 def test_missing_storage_file(tmp_path):
-    maker = bagmaking.Maker("sqlite3")
+    maker = bag_making.Maker("sqlite3")
     path = maker.write(tmp_path / "run", simple(maker))
     storage_of(path).unlink()
     with pytest.raises(StageError, match="missing"):
@@ -154,7 +165,7 @@ def test_missing_storage_file(tmp_path):
 
 
 def test_mcap_of_another_profile(tmp_path):
-    maker = bagmaking.Maker("mcap")
+    maker = bag_making.Maker("mcap")
     path = storage_of(maker.write(tmp_path / "run", simple(maker)))
     path.write_bytes(path.read_bytes().replace(b"\x04\0\0\0ros2", b"\x04\0\0\0ros1", 1))
     with pytest.raises(StageError, match="profile"):
@@ -162,7 +173,7 @@ def test_mcap_of_another_profile(tmp_path):
 
 
 def test_a_bad_definition_on_another_topic_does_not_matter(tmp_path):
-    maker = bagmaking.Maker("ros1")
+    maker = bag_making.Maker("ros1")
     path = maker.write(tmp_path / "run", simple(maker))
     data, good = path.read_bytes(), b"message_definition=string data\n"
     assert good in data
@@ -171,7 +182,7 @@ def test_a_bad_definition_on_another_topic_does_not_matter(tmp_path):
 
 
 def test_a_bad_definition_of_a_needed_topic_falls_back_to_the_standard(tmp_path):
-    maker = bagmaking.Maker("ros1")
+    maker = bag_making.Maker("ros1")
     path = maker.write(tmp_path / "run", simple(maker))
     data, good = path.read_bytes(), b"bool is_bigendian\n"
     path.write_bytes(data.replace(good, b"bool &&_bigendian\n"))
@@ -179,13 +190,21 @@ def test_a_bad_definition_of_a_needed_topic_falls_back_to_the_standard(tmp_path)
 
 
 def test_a_connection_is_decoded_by_its_own_definition(tmp_path):
-    maker = bagmaking.Maker("ros1")
-    definition = "uint8 version\ngeometry_msgs/Point position\n" + "=" * 80 + "\nMSG: geometry_msgs/Point\nfloat32 x\n"
+    maker = bag_making.Maker("ros1")
+    definition = (
+        "uint8 version\ngeometry_msgs/Point position\n"
+        + "=" * 80
+        + "\nMSG: geometry_msgs/Point\nfloat32 x\n"
+    )
     path = tmp_path / "own.bag"
     with bags.rosbag1.Writer(path) as writer:
-        connection = writer.add_connection("/pose", "geometry_msgs/msg/PoseStamped", msgdef=definition, md5sum="0" * 32)
+        connection = writer.add_connection(
+            "/pose", "geometry_msgs/msg/PoseStamped", msgdef=definition, md5sum="0" * 32
+        )
         writer.write(connection, 1, struct.pack("<Bf", 9, 1.5))
-        other = writer.add_connection("/pose2", "geometry_msgs/msg/PoseStamped", typestore=maker.store)
+        other = writer.add_connection(
+            "/pose2", "geometry_msgs/msg/PoseStamped", typestore=maker.store
+        )
         message = maker.pose_stamped(5, (1, 2, 3))
         writer.write(other, 2, maker.store.serialize_ros1(message, message.__msgtype__))
     own, standard = read_all(path, ["/pose", "/pose2"])
@@ -206,7 +225,9 @@ module geometry_msgs {{ module msg {{ struct Point {{ float x; }}; }}; }};
 @pytest.mark.parametrize("plugin", ["MCAP", "SQLITE3"])
 def test_definitions_in_idl(tmp_path, plugin):
     msgtype = "geometry_msgs/msg/PoseStamped"
-    with bags.rosbag2.Writer(tmp_path / "run", version=9, storage_plugin=bags.rosbag2.StoragePlugin[plugin]) as writer:
+    with bags.rosbag2.Writer(
+        tmp_path / "run", version=9, storage_plugin=bags.rosbag2.StoragePlugin[plugin]
+    ) as writer:
         connection = writer.add_connection("/pose", msgtype, msgdef=IDL, rihs01="RIHS01_0")
         writer.write(connection, 1, b"\0\1\0\0" + struct.pack("<Bxxxf", 9, 1.5))
     (message,) = read_all(tmp_path / "run", ["/pose"])
@@ -215,24 +236,31 @@ def test_definitions_in_idl(tmp_path, plugin):
 
 @pytest.mark.parametrize("kind", ["ros1", "sqlite3"])
 def test_the_standard_definitions_know_transforms(kind, tmp_path):
-    maker = bagmaking.Maker(kind)
+    maker = bag_making.Maker(kind)
     entries = [("/tf", 1, maker.transforms((5, "map", "odom", (1, 2, 3))))]
     path = maker.write(tmp_path / "run", entries)
     if kind == "ros1":
-        path.write_bytes(path.read_bytes().replace(b"TransformStamped[] transforms", b"$$$nsformStamped[] transforms"))
+        path.write_bytes(
+            path.read_bytes().replace(
+                b"TransformStamped[] transforms", b"$$$nsformStamped[] transforms"
+            )
+        )
     (message,) = read_all(path, ["/tf"])
     assert message.transforms[0].transform.translation.z == 3
 
 
 def test_unknown_release(tmp_path):
-    with pytest.raises(StageError, match=r"input.ros2_release: hydro .*humble"), bags.opened("x", ros2_release="hydro"):
+    with (
+        pytest.raises(StageError, match=r"input.ros2_release: hydro .*humble"),
+        bags.open_bag("x", ros2_release="hydro"),
+    ):
         pass
 
 
 def test_a_message_cut_short_names_its_topic(tmp_path):
-    maker = bagmaking.Maker("sqlite3")
+    maker = bag_making.Maker("sqlite3")
     path = maker.write(tmp_path / "run", simple(maker))
-    with bags.opened(path) as bag:
+    with bags.open_bag(path) as bag:
         connection, _, raw = next(bag.messages({"/points"}))
         with pytest.raises(StageError, match=r"topic /points.*ros2_release"):
             bag.decode(connection, raw[:-30])
@@ -243,5 +271,7 @@ def test_a_message_cut_short_names_its_topic(tmp_path):
 @pytest.mark.recordings
 def test_the_index_of_an_old_bag(recordings_dir):
     path = recordings_dir / "broken" / "bad_index.bag"
-    with pytest.raises(StageError, match=r"bad_index.bag: cannot be read \(AssertionError\); try `rosbag reindex`"):
+    with pytest.raises(
+        StageError, match=r"bad_index.bag: cannot be read \(AssertionError\); try `rosbag reindex`"
+    ):
         read_all(path)

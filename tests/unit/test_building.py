@@ -7,23 +7,24 @@ import open3d as o3d
 import pytest
 import shapely
 
-import boxmaking
-import ifcmaking
-import simple_rooms as drawn
+from helpers import box_making, ifc_making
+from helpers import simple_rooms as drawn
 from scanplan.errors import StageError
-from scanplan.simulation import building, extrusion, ifcfile
+from scanplan.lab.buildings import building, extrusion, ifc_file
 
-IFC = ifcmaking.model()
-ROOM = boxmaking.room()
+IFC = ifc_making.model()
+ROOM = box_making.room()
 DOOR = drawn.door(2, -0.1)
 
 
 def mesh_of(triangles_m, **values):
-    return building.load(boxmaking.written(triangles_m, "stl"), Path("room.stl"), slice_height_m=0.4, **values)
+    return building.load_building(
+        box_making.written(triangles_m, "stl"), Path("room.stl"), slice_height_m=0.4, **values
+    )
 
 
 def model_of(data=IFC, **values):
-    return building.load(data, Path("room.ifc"), slice_height_m=0.4, **values)
+    return building.load_building(data, Path("room.ifc"), slice_height_m=0.4, **values)
 
 
 def of_kind(found, kind):
@@ -31,7 +32,9 @@ def of_kind(found, kind):
 
 
 def lengths(found, side):
-    return sorted(round(line.length, 4) for line, values in of_kind(found, "face") if values["side"] == side)
+    return sorted(
+        round(line.length, 4) for line, values in of_kind(found, "face") if values["side"] == side
+    )
 
 
 def off_the_mesh(found, slice_height_m=0.4):
@@ -41,13 +44,17 @@ def off_the_mesh(found, slice_height_m=0.4):
         o3d.core.Tensor(found.mesh.vertices_m.astype(np.float32)),
         o3d.core.Tensor(found.mesh.triangles.astype(np.uint32)),
     )
-    xy = np.concatenate([shapely.get_coordinates(g.segmentize(0.05)) for g, _ in of_kind(found, "face")])
+    xy = np.concatenate(
+        [shapely.get_coordinates(g.segmentize(0.05)) for g, _ in of_kind(found, "face")]
+    )
     points = np.column_stack([xy, np.full(len(xy), slice_height_m)]).astype(np.float32)
     return float(scene.compute_distance(o3d.core.Tensor(points)).numpy().max())
 
 
 def test_the_truth_of_a_mesh_is_that_of_the_drawing():
-    drawing = building.load(drawn.text(drawn.WALLS, drawn.WAY, DOOR).encode(), Path("a.geojson"), slice_height_m=0.4)
+    drawing = building.load_building(
+        drawn.text(drawn.WALLS, drawn.WAY, DOOR).encode(), Path("a.geojson"), slice_height_m=0.4
+    )
     mesh = mesh_of(ROOM)
     assert lengths(mesh, "inside") == lengths(drawing, "inside") == [0.2, 0.2, 1.5, 1.5, 3, 3, 4]
     assert lengths(mesh, "outside") == lengths(drawing, "outside") == [1.7, 1.7, 3.4, 3.4, 4.4]
@@ -76,7 +83,7 @@ def test_a_mesh_without_floor_is_driven_on_all_the_same():
 
 
 def test_a_room_drawn_as_one_shell_is_a_room():
-    shell = boxmaking.box(0, 0, 0, 4, 3, 2.5)
+    shell = box_making.box(0, 0, 0, 4, 3, 2.5)
     found = mesh_of(shell)
     assert lengths(found, "inside") == [3, 3, 4, 4] and lengths(found, "outside") == []
     assert [round(room.area, 1) for _, room in found.rooms] == [12.0]
@@ -92,13 +99,20 @@ def test_the_faces_of_a_model_are_those_on_paper():
     assert sorted(round(g.length, 4) for g, _ in walls) == [3, 3, 4.4, 4.4]
     assert {values["thickness_m"] for _, values in walls} == {0.2}
     ((room, values),) = of_kind(found, "room")
-    assert values["name"] == "1 Living" and room.symmetric_difference(shapely.box(0, 0, 4, 3)).area < 1e-3
+    assert (
+        values["name"] == "1 Living"
+        and room.symmetric_difference(shapely.box(0, 0, 4, 3)).area < 1e-3
+    )
     openings = {v["type"]: (g, v) for g, v in of_kind(found, "opening")}
     line, values = openings["door"]
     assert sorted(line.coords) == [pytest.approx((1.0, -0.1)), pytest.approx((1.9, -0.1))]
-    assert (values["width_m"], values["sill_m"], values["lintel_m"]) == pytest.approx((0.9, 0.0, 2.0))
+    assert (values["width_m"], values["sill_m"], values["lintel_m"]) == pytest.approx(
+        (0.9, 0.0, 2.0)
+    )
     _, values = openings["window"]
-    assert (values["width_m"], values["sill_m"], values["lintel_m"]) == pytest.approx((1.0, 0.9, 2.0))
+    assert (values["width_m"], values["sill_m"], values["lintel_m"]) == pytest.approx(
+        (1.0, 0.9, 2.0)
+    )
 
 
 def test_doors_and_windows_by_choice():
@@ -113,65 +127,98 @@ def test_doors_and_windows_by_choice():
 
 
 def test_the_upper_storey_is_moved_to_zero():
-    model = ifcfile.parse(ifcmaking.model(("Ground", "Upper")), "made.ifc")
-    upper = building.of_model(model, 1, 0.4, "made.ifc")
+    model = ifc_file.parse_ifc(ifc_making.model(("Ground", "Upper")), "made.ifc")
+    upper = building.building_of_model(model, 1, 0.4, "made.ifc")
     assert lengths(upper, "inside") == [0.2, 0.2, 1.0, 2.1, 3, 3, 4]
     assert len(of_kind(upper, "opening")) == 2 and len(upper.rooms) == 1
 
 
 def test_a_planned_way_marks_what_it_visits():
-    found = building.routed(model_of(), "room.ifc", route="rooms", clearance_m=0.3)
+    found = building.plan_building_route(model_of(), "room.ifc", route="rooms", clearance_m=0.3)
     assert [values["visited"] for _, values in of_kind(found, "room")] == [True]
     assert shapely.LineString(found.waypoints_m).distance(found.obstacles_m) >= 0.3
     assert "planned a way through 1 of 1 rooms" in found.notes[-1]
 
 
 def test_a_given_way_is_kept_unless_another_is_asked_for():
-    drawing = building.load(drawn.text(drawn.WALLS, drawn.WAY).encode(), Path("a.geojson"), slice_height_m=0.4)
-    kept = building.routed(drawing, "a", route="given", clearance_m=0.3)
+    drawing = building.load_building(
+        drawn.text(drawn.WALLS, drawn.WAY).encode(), Path("a.geojson"), slice_height_m=0.4
+    )
+    kept = building.plan_building_route(drawing, "a", route="given", clearance_m=0.3)
     np.testing.assert_array_equal(kept.waypoints_m, [[1, 1], [3, 1], [3, 2]])
-    assert len(building.routed(drawing, "a", route="rooms", clearance_m=0.3).waypoints_m) >= 2
+    assert (
+        len(building.plan_building_route(drawing, "a", route="rooms", clearance_m=0.3).waypoints_m)
+        >= 2
+    )
     with pytest.raises(StageError, match="no hallway among its 1 rooms"):
-        building.routed(drawing, "a", route="hallways", clearance_m=0.3)
+        building.plan_building_route(drawing, "a", route="hallways", clearance_m=0.3)
 
 
 def test_waypoints_of_the_settings_come_before_the_files():
-    drawing = building.load(drawn.text(drawn.WALLS, drawn.WAY).encode(), Path("a.geojson"), slice_height_m=0.4)
+    drawing = building.load_building(
+        drawn.text(drawn.WALLS, drawn.WAY).encode(), Path("a.geojson"), slice_height_m=0.4
+    )
     mine = [[1.0, 2.0], [3.0, 2.0]]
-    given = building.routed(drawing, "a", route="given", waypoints_m=mine, clearance_m=0.3)
+    given = building.plan_building_route(
+        drawing, "a", route="given", waypoints_m=mine, clearance_m=0.3
+    )
     np.testing.assert_array_equal(given.waypoints_m, mine)
-    with pytest.raises(StageError, match=r"^simulate\.site\.waypoints_m: in a: waypoint 1 .* outside the outer walls"):
-        building.routed(drawing, "a", route="given", waypoints_m=[[1.0, 2.0], [9.0, 2.0]], clearance_m=0.3)
+    with pytest.raises(
+        StageError,
+        match=r"^simulate\.site\.waypoints_m: in a: waypoint 1 .* outside the outer walls",
+    ):
+        building.plan_building_route(
+            drawing, "a", route="given", waypoints_m=[[1.0, 2.0], [9.0, 2.0]], clearance_m=0.3
+        )
     for values in ({"route": "rooms"}, {"route": "given", "start_m": [1.0, 1.0]}):
         with pytest.raises(StageError, match=r"simulate\.site\.waypoints_m: they are given"):
-            building.routed(drawing, "a", **values, waypoints_m=mine, clearance_m=0.3)
+            building.plan_building_route(drawing, "a", **values, waypoints_m=mine, clearance_m=0.3)
 
 
 def test_a_planned_way_begins_where_asked_or_by_the_seed():
     found = model_of()
-    here = building.routed(found, "room.ifc", route="rooms", clearance_m=0.3, start_m=[3.0, 1.0])
+    here = building.plan_building_route(
+        found, "room.ifc", route="rooms", clearance_m=0.3, start_m=[3.0, 1.0]
+    )
     np.testing.assert_allclose(here.waypoints_m[0], [3.0, 1.0], atol=0.05)
     starts = [
-        building.routed(found, "room.ifc", route="rooms", clearance_m=0.3, start_m="random", seed=seed).waypoints_m[0]
+        building.plan_building_route(
+            found, "room.ifc", route="rooms", clearance_m=0.3, start_m="random", seed=seed
+        ).waypoints_m[0]
         for seed in (1, 1, 2)
     ]
     np.testing.assert_array_equal(starts[0], starts[1])
     assert np.linalg.norm(starts[0] - starts[2]) > 0.05
     with pytest.raises(StageError, match="lies within"):
-        building.routed(found, "room.ifc", route="rooms", clearance_m=0.3, start_m=[0.05, 0.05])
+        building.plan_building_route(
+            found, "room.ifc", route="rooms", clearance_m=0.3, start_m=[0.05, 0.05]
+        )
 
 
 def test_a_start_of_a_given_way_is_refused():
-    drawing = building.load(drawn.text(drawn.WALLS, drawn.WAY).encode(), Path("a.geojson"), slice_height_m=0.4)
-    with pytest.raises(StageError, match=r"simulate\.site\.start_m: random is where a planned way begins"):
-        building.routed(drawing, "a", route="given", start_m="random", clearance_m=0.3)
-    assert len(building.routed(model_of(), "m", route="given", start_m="random", clearance_m=0.3).waypoints_m) >= 2
+    drawing = building.load_building(
+        drawn.text(drawn.WALLS, drawn.WAY).encode(), Path("a.geojson"), slice_height_m=0.4
+    )
+    with pytest.raises(
+        StageError, match=r"simulate\.site\.start_m: random is where a planned way begins"
+    ):
+        building.plan_building_route(drawing, "a", route="given", start_m="random", clearance_m=0.3)
+    assert (
+        len(
+            building.plan_building_route(
+                model_of(), "m", route="given", start_m="random", clearance_m=0.3
+            ).waypoints_m
+        )
+        >= 2
+    )
 
 
 def test_a_sensor_above_its_storey_is_refused():
-    model = ifcfile.parse(ifcmaking.model(("Ground", "Upper")), "made.ifc")
-    with pytest.raises(StageError, match=r"made\.ifc: the sensor is 3\.5 m above the floor.*lower simulate\.mount"):
-        building.of_model(model, 0, 3.5, "made.ifc")
+    model = ifc_file.parse_ifc(ifc_making.model(("Ground", "Upper")), "made.ifc")
+    with pytest.raises(
+        StageError, match=r"made\.ifc: the sensor is 3\.5 m above the floor.*lower simulate\.mount"
+    ):
+        building.building_of_model(model, 0, 3.5, "made.ifc")
 
 
 @pytest.mark.parametrize(
@@ -191,8 +238,8 @@ def test_a_floor_beside_the_mesh_is_refused(values, message):
 
 def test_other_files_and_choices_are_refused():
     with pytest.raises(StageError, match=r"accepted are \.geojson"):
-        building.load(b"x", Path("room.dwg"), slice_height_m=0.4)
+        building.load_building(b"x", Path("room.dwg"), slice_height_m=0.4)
     with pytest.raises(ValueError, match="ajar"):
         model_of(doors="ajar")
     with pytest.raises(ValueError, match="by heart"):
-        building.routed(mesh_of(ROOM), "r", route="by heart", clearance_m=0.3)
+        building.plan_building_route(mesh_of(ROOM), "r", route="by heart", clearance_m=0.3)

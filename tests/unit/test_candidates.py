@@ -11,32 +11,50 @@ def poses(xs, yaws_deg=None):
     pose = np.tile(np.eye(4), (len(xs), 1, 1))
     pose[:, 0, 3] = xs
     if yaws_deg is not None:
-        pose[:, :3, :3] = Rotation.from_rotvec(np.radians(yaws_deg)[:, None] * [0, 0, 1]).as_matrix()
+        pose[:, :3, :3] = Rotation.from_rotvec(
+            np.radians(yaws_deg)[:, None] * [0, 0, 1]
+        ).as_matrix()
     return pose
 
 
 def test_every_nth():
-    assert candidates.choose(poses(np.zeros(11)), keep_every=5, **FAR).tolist() == [0, 5, 10]
-    assert candidates.choose(poses(np.zeros(3)), keep_every=1, **FAR).tolist() == [0, 1, 2]
-    assert candidates.choose(poses([]), keep_every=5, **FAR).tolist() == []
+    assert candidates.choose_candidates(poses(np.zeros(11)), keep_every=5, **FAR).tolist() == [
+        0,
+        5,
+        10,
+    ]
+    assert candidates.choose_candidates(poses(np.zeros(3)), keep_every=1, **FAR).tolist() == [
+        0,
+        1,
+        2,
+    ]
+    assert candidates.choose_candidates(poses([]), keep_every=5, **FAR).tolist() == []
 
 
 def test_scans_a_metre_apart_are_all_kept():
-    chosen = candidates.choose(poses(np.arange(12.0)), keep_every=5, max_step_m=0.5, max_turn_deg=30)
+    chosen = candidates.choose_candidates(
+        poses(np.arange(12.0)), keep_every=5, max_step_m=0.5, max_turn_deg=30
+    )
     assert chosen.tolist() == list(range(12))
 
 
 def test_the_step_counts_from_the_last_candidate():
     # 0.2 m a scan, limit 0.5 m: every third (0.6 m), and 10 by its number, from where the count goes on
-    chosen = candidates.choose(poses(np.arange(15) * 0.2), keep_every=10, max_step_m=0.5, max_turn_deg=30)
+    chosen = candidates.choose_candidates(
+        poses(np.arange(15) * 0.2), keep_every=10, max_step_m=0.5, max_turn_deg=30
+    )
     assert chosen.tolist() == [0, 3, 6, 9, 10, 13]
 
 
 def test_turns_count_beyond_the_limit():
     yaws = [0, 29, 31, 60, 62]
-    chosen = candidates.choose(poses(np.zeros(5), yaws), keep_every=100, max_step_m=9, max_turn_deg=30)
+    chosen = candidates.choose_candidates(
+        poses(np.zeros(5), yaws), keep_every=100, max_step_m=9, max_turn_deg=30
+    )
     assert chosen.tolist() == [0, 2, 4]
-    wide = candidates.choose(poses(np.zeros(3), [0, 179, 181]), keep_every=100, max_step_m=9, max_turn_deg=400)
+    wide = candidates.choose_candidates(
+        poses(np.zeros(3), [0, 179, 181]), keep_every=100, max_step_m=9, max_turn_deg=400
+    )
     assert wide.tolist() == [0]
 
 
@@ -44,12 +62,16 @@ def test_scans_without_pose_go_by_their_number():
     pose = poses(np.arange(8) * 1.0)
     pose[[0, 1, 4, 5]] = np.nan
     # 2 and 3 have no candidate with a pose before them
-    assert candidates.choose(pose, keep_every=4, max_step_m=0.5, max_turn_deg=30).tolist() == [0, 4]
+    assert candidates.choose_candidates(
+        pose, keep_every=4, max_step_m=0.5, max_turn_deg=30
+    ).tolist() == [0, 4]
     pose = poses([0, 1, 1, 1, 1, 1, 1, 9])
     pose[[4, 5]] = np.nan
-    assert candidates.choose(pose, keep_every=4, max_step_m=0.5, max_turn_deg=30).tolist() == [0, 1, 4, 7]
+    assert candidates.choose_candidates(
+        pose, keep_every=4, max_step_m=0.5, max_turn_deg=30
+    ).tolist() == [0, 1, 4, 7]
 
 
 def test_wrong_call():
     with pytest.raises(ValueError, match="keep_every"):
-        candidates.choose(poses([0]), keep_every=0, **FAR)
+        candidates.choose_candidates(poses([0]), keep_every=0, **FAR)

@@ -5,12 +5,13 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-import toyrooms
-import upright
+from helpers import toy_rooms, upright
 from reference import cluster_ransac as literal
 from scanplan.extraction import cluster_ransac
 
-SETTINGS = cluster_ransac.Settings(**toyrooms.LIMITS, reach_deg=3.5, max_tilt_deg=15.0, bandwidth_m=0.3, trials=64)
+SETTINGS = cluster_ransac.ClusterRansacSettings(
+    **toy_rooms.LIMITS, reach_deg=3.5, max_tilt_deg=15.0, bandwidth_m=0.3, trials=64
+)
 # start and end of every face the sensor of the toy room sees, the sensor to the left of the way
 FACES = np.array(
     [
@@ -25,12 +26,16 @@ FACES = np.array(
 QUICK = settings(max_examples=8, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 
 
-def extract(xyz_m, sensor_xyz_m=toyrooms.SENSOR, *, planar=False, scan_id=3, settings=SETTINGS):
-    return cluster_ransac.extract(scan_id, xyz_m, sensor_xyz_m=sensor_xyz_m, planar=planar, settings=settings)
+def extract(xyz_m, sensor_xyz_m=toy_rooms.SENSOR, *, planar=False, scan_id=3, settings=SETTINGS):
+    return cluster_ransac.extract_by_clusters(
+        scan_id, xyz_m, sensor_xyz_m=sensor_xyz_m, planar=planar, settings=settings
+    )
 
 
 def values(found):
-    return np.column_stack([found.start_m, found.end_m, found.normal, found.n_points, found.rmse_m, found.z_range_m])
+    return np.column_stack(
+        [found.start_m, found.end_m, found.normal, found.n_points, found.rmse_m, found.z_range_m]
+    )
 
 
 def check_toy_room(found, *, turn_rad=0.005):
@@ -44,26 +49,28 @@ def check_toy_room(found, *, turn_rad=0.005):
         assert abs((middle_m - face[:2]) @ normal) < 0.005
         assert found.normal[nearest] == pytest.approx(normal, abs=turn_rad)
         assert (found.end_m - found.start_m)[nearest] @ along > 0
-        assert np.abs(ends[nearest] - face).max() < 0.17  # where the next beam is beyond the corner (6, 0)
+        assert (
+            np.abs(ends[nearest] - face).max() < 0.17
+        )  # where the next beam is beyond the corner (6, 0)
 
 
 @pytest.mark.parametrize("seed", range(4))
 def test_every_wall_of_the_room_in_space(seed):
-    found = extract(toyrooms.vlp16(seed=seed))
+    found = extract(toy_rooms.vlp16(seed=seed))
     check_toy_room(found)
     assert (np.diff(found.n_points) <= 0).all()
     assert found.rmse_m == pytest.approx(0.009, abs=0.0035)
     assert (found.z_range_m[:, 0] > -0.05).all()
-    assert (found.z_range_m[:, 1] < toyrooms.HEIGHT_M + 0.05).all()
+    assert (found.z_range_m[:, 1] < toy_rooms.HEIGHT_M + 0.05).all()
 
 
 @pytest.mark.parametrize("seed", range(4))
 def test_every_wall_of_the_room_in_the_plane(seed):
-    check_toy_room(extract(toyrooms.laser(seed=seed), planar=True), turn_rad=0.015)
+    check_toy_room(extract(toy_rooms.laser(seed=seed), planar=True), turn_rad=0.015)
 
 
 def test_coarse_planar_scans_too():
-    found = extract(toyrooms.laser(beams=360), planar=True)
+    found = extract(toy_rooms.laser(beams=360), planar=True)
     assert len(found) >= 5
     offsets = (found.start_m * found.normal).sum(axis=1)
     for expected in (0, -4, 0, -6):
@@ -73,50 +80,75 @@ def test_coarse_planar_scans_too():
 @given(st.floats(-3.1, 3.1), st.floats(-30, 30), st.floats(-30, 30))
 @QUICK
 def test_walls_move_with_room_and_sensor(angle_rad, x, y):
-    turn = np.array([[np.cos(angle_rad), -np.sin(angle_rad), 0], [np.sin(angle_rad), np.cos(angle_rad), 0], [0, 0, 1]])
+    turn = np.array(
+        [
+            [np.cos(angle_rad), -np.sin(angle_rad), 0],
+            [np.sin(angle_rad), np.cos(angle_rad), 0],
+            [0, 0, 1],
+        ]
+    )
     shift = np.array([x, y, 1.0])
-    moved = extract(toyrooms.vlp16() @ turn.T + shift, turn @ toyrooms.SENSOR + shift)
-    back = (turn.T[:2, :2] @ (moved.start_m - shift[:2]).T).T, (turn.T[:2, :2] @ (moved.end_m - shift[:2]).T).T
+    moved = extract(toy_rooms.vlp16() @ turn.T + shift, turn @ toy_rooms.SENSOR + shift)
+    back = (
+        (turn.T[:2, :2] @ (moved.start_m - shift[:2]).T).T,
+        (turn.T[:2, :2] @ (moved.end_m - shift[:2]).T).T,
+    )
     check_toy_room(
-        type(moved)(*back, (turn.T[:2, :2] @ moved.normal.T).T, moved.n_points, moved.rmse_m, moved.z_range_m - 1)
+        type(moved)(
+            *back,
+            (turn.T[:2, :2] @ moved.normal.T).T,
+            moved.n_points,
+            moved.rmse_m,
+            moved.z_range_m - 1,
+        )
     )
 
 
 @pytest.mark.parametrize("planar", [False, True])
 def test_order_of_points_does_not_matter(planar):
-    points = toyrooms.laser() if planar else toyrooms.vlp16()
+    points = toy_rooms.laser() if planar else toy_rooms.vlp16()
     shuffled = np.random.default_rng(0).permutation(points)
-    assert (values(extract(points, planar=planar)) == values(extract(shuffled, planar=planar))).all()
+    assert (
+        values(extract(points, planar=planar)) == values(extract(shuffled, planar=planar))
+    ).all()
 
 
 def test_a_wall_close_to_the_sensor_and_one_in_its_direction():
     segments = np.array([(-5, 0.25, 5, 0.25), (-5, -0.25, 5, -0.25), (4, -0.25, 4, 0.25)], float)
     sensor = np.array([0, 0, 0.9])
-    found = extract(toyrooms.laser(sensor, segments, beams=1440), sensor, planar=True)
-    assert found.normal[:2] == pytest.approx(np.array([(0, 1), (0, -1)]) * np.sign(found.normal[0, 1]), abs=0.01)
+    found = extract(toy_rooms.laser(sensor, segments, beams=1440), sensor, planar=True)
+    assert found.normal[:2] == pytest.approx(
+        np.array([(0, 1), (0, -1)]) * np.sign(found.normal[0, 1]), abs=0.01
+    )
     assert np.abs(found.start_m[:2, 1]) == pytest.approx([0.25, 0.25], abs=0.01)
 
 
 def test_a_wall_that_bends_a_little_is_two_and_the_first_takes_nothing_of_the_second():
     segments = np.array([(-3, 2, 0, 2), (0, 2, 3, 1.4)], float)
     sensor = np.array([0.0, 0, 0])
-    found = extract(toyrooms.laser(sensor, segments, beams=1440), sensor, planar=True)
+    found = extract(toy_rooms.laser(sensor, segments, beams=1440), sensor, planar=True)
     assert len(found) == 2
     assert np.linalg.norm(found.end_m - found.start_m, axis=1) == pytest.approx([3, 3], abs=0.45)
 
 
 def test_noise_leaves_no_second_wall_beside_the_first():
-    check_toy_room(extract(toyrooms.vlp16(noise_m=0.02)), turn_rad=0.01)
+    check_toy_room(extract(toy_rooms.vlp16(noise_m=0.02)), turn_rad=0.01)
 
 
 def test_a_wall_goes_on_between_a_counter_and_the_cabinets_above_it():
     """One beam alone passes over the counter and under the cabinets: what it meets has no normal."""
-    wall, counter, cabinets = (4, -3, 4, 3, 0, 2.6), (3.4, -0.6, 3.4, 0.9, 0, 0.9), (3.7, -0.6, 3.7, 0.9, 1.1, 2.2)
+    wall, counter, cabinets = (
+        (4, -3, 4, 3, 0, 2.6),
+        (3.4, -0.6, 3.4, 0.9, 0, 0.9),
+        (3.7, -0.6, 3.7, 0.9, 1.1, 2.2),
+    )
     found = extract(upright.returns([wall, counter, cabinets], columns=1800), (0, 0, 0))
     assert found.start_m == pytest.approx(np.array([(4, -3)]), abs=0.1)
     assert found.end_m == pytest.approx(np.array([(4, 3)]), abs=0.1)
     # without that beam it is two: nothing is known of what is between
-    hidden = extract(upright.returns([wall, (*counter[:5], 1.1), cabinets], columns=1800), (0, 0, 0))
+    hidden = extract(
+        upright.returns([wall, (*counter[:5], 1.1), cabinets], columns=1800), (0, 0, 0)
+    )
     assert len(hidden) == 2
 
 
@@ -136,7 +168,9 @@ def test_a_round_wall_becomes_chords():
     angle = np.linspace(-1.2, 1.2, 200)
     corners = 5 * np.column_stack([np.cos(angle), np.sin(angle)])
     segments = np.column_stack([corners[:-1], corners[1:]])
-    found = extract(toyrooms.laser(np.array([1.0, 0, 0]), segments), np.array([1.0, 0, 0]), planar=True)
+    found = extract(
+        toy_rooms.laser(np.array([1.0, 0, 0]), segments), np.array([1.0, 0, 0]), planar=True
+    )
     lengths = np.linalg.norm(found.end_m - found.start_m, axis=1)
     assert len(found) >= 4
     assert lengths.sum() > 0.75 * 12
@@ -170,7 +204,9 @@ def test_a_line_of_points_is_a_wall_in_the_plane_alone():
 
 def test_a_floor_is_no_wall():
     x, y = np.meshgrid(np.arange(-4, 4, 0.05), np.arange(-4, 4, 0.05))
-    floor = np.column_stack([x.ravel(), y.ravel(), np.random.default_rng(1).normal(0, 0.01, x.size)])
+    floor = np.column_stack(
+        [x.ravel(), y.ravel(), np.random.default_rng(1).normal(0, 0.01, x.size)]
+    )
     assert len(extract(floor, (0, 0, 0.8))) == 0
 
 
@@ -178,16 +214,20 @@ def test_a_few_returns_from_far_away_are_no_wall():
     far = np.random.default_rng(1).normal(0, 0.02, (12, 3)) + np.column_stack(
         [np.full(12, 40.0), np.tile([0, 0.15, 0.3, 0.45], 3), np.repeat([0, 1.4, 2.8], 4)]
     )
-    found = extract(np.vstack([toyrooms.vlp16(), far]))
+    found = extract(np.vstack([toy_rooms.vlp16(), far]))
     check_toy_room(found)
 
 
 def test_one_wall_in_99_percent_of_outliers():
     draw = np.random.default_rng(1)
-    wall = np.column_stack([np.full(400, 3.0), draw.uniform(-1.5, 1.5, 400), draw.uniform(-0.8, 0.8, 400)])
+    wall = np.column_stack(
+        [np.full(400, 3.0), draw.uniform(-1.5, 1.5, 400), draw.uniform(-0.8, 0.8, 400)]
+    )
     dust = draw.uniform(-20, 20, (39_600, 3)) * (1, 1, 0.1)
     points = np.vstack([wall, dust])
-    lenient = replace(SETTINGS, over_share=1.0, through_share=np.inf, missing_share=1.0, wall_height_m=0.0)
+    lenient = replace(
+        SETTINGS, over_share=1.0, through_share=np.inf, missing_share=1.0, wall_height_m=0.0
+    )
     found = extract(points, (0, 0, 0), settings=lenient)
     assert len(found) >= 1
     assert found.start_m[0, 0] == pytest.approx(3, abs=0.02)
@@ -197,7 +237,7 @@ def test_one_wall_in_99_percent_of_outliers():
 
 
 def test_points_must_be_finite():
-    points = toyrooms.vlp16()
+    points = toy_rooms.vlp16()
     points[17, 1] = np.nan
     with pytest.raises(ValueError, match="finite"):
         extract(points)
@@ -206,18 +246,22 @@ def test_points_must_be_finite():
 def test_feet_of_a_wall_coincide_and_near_walls_stay_apart():
     along = np.linspace(-3, 3, 7)
     wall = np.column_stack([np.full(7, 2.0), along])
-    assert cluster_ransac.feet(wall, np.tile([-1.0, 0], (7, 1))) == pytest.approx(np.tile([3.0, 0], (7, 1)))
+    assert cluster_ransac.project_along_normals(wall, np.tile([-1.0, 0], (7, 1))) == pytest.approx(
+        np.tile([3.0, 0], (7, 1))
+    )
     through = np.array([(1.0, 0.0), (0.0, 1.0)])
-    feet = cluster_ransac.feet(through, np.array([(0.0, -1.0), (-1.0, 0.0)]))
+    feet = cluster_ransac.project_along_normals(through, np.array([(0.0, -1.0), (-1.0, 0.0)]))
     assert np.linalg.norm(feet[0] - feet[1]) == pytest.approx(np.sqrt(2))
 
 
 def test_the_same_walls_as_the_literal_method():
-    xyz_m = toyrooms.vlp16(segments=toyrooms.ROOM[:3], columns=90)
-    xyz_m = xyz_m[(xyz_m[:, 0] < 6.1) & (xyz_m[:, 2] > 0.05) & (xyz_m[:, 2] < toyrooms.HEIGHT_M - 0.05)]
+    xyz_m = toy_rooms.vlp16(segments=toy_rooms.ROOM[:3], columns=90)
+    xyz_m = xyz_m[
+        (xyz_m[:, 0] < 6.1) & (xyz_m[:, 2] > 0.05) & (xyz_m[:, 2] < toy_rooms.HEIGHT_M - 0.05)
+    ]
     found = extract(xyz_m)
     lines = literal.lines(
-        xyz_m - toyrooms.SENSOR,
+        xyz_m - toy_rooms.SENSOR,
         reach_deg=5.0,
         max_tilt_deg=15.0,
         bandwidth_m=0.5,
@@ -228,33 +272,39 @@ def test_the_same_walls_as_the_literal_method():
     )
     assert len(found) >= 3
     for start_m, normal in zip(found.start_m, found.normal, strict=True):
-        offset_m = normal @ (start_m - toyrooms.SENSOR[:2])
+        offset_m = normal @ (start_m - toy_rooms.SENSOR[:2])
         assert any(-n @ normal > 0.999 and abs(d + offset_m) < 0.01 for n, d in lines)
     assert len(lines) >= 3
 
 
 @pytest.mark.parametrize("planar", [False, True])
 def test_a_map_far_from_its_origin(planar):
-    points = toyrooms.laser() if planar else toyrooms.vlp16()
+    points = toy_rooms.laser() if planar else toy_rooms.vlp16()
     shift = np.array([1e6, -1e6, 0])
-    near, far = extract(points, planar=planar), extract(points + shift, toyrooms.SENSOR + shift, planar=planar)
+    near, far = (
+        extract(points, planar=planar),
+        extract(points + shift, toy_rooms.SENSOR + shift, planar=planar),
+    )
     assert len(near) == len(far)
-    for found, expected in ((far.start_m - shift[:2], near.start_m), (far.end_m - shift[:2], near.end_m)):
+    for found, expected in (
+        (far.start_m - shift[:2], near.start_m),
+        (far.end_m - shift[:2], near.end_m),
+    ):
         assert found == pytest.approx(expected, abs=1e-3)
 
 
 def test_one_return_from_a_thousand_kilometres_spoils_nothing():
-    found = extract(np.vstack([toyrooms.vlp16(), [(1e6, 3e5, 2e5)]]))
+    found = extract(np.vstack([toy_rooms.vlp16(), [(1e6, 3e5, 2e5)]]))
     check_toy_room(found)
 
 
 def test_one_beam_in_space_shows_no_upright_surface():
-    points = toyrooms.laser(beams=1800)
+    points = toy_rooms.laser(beams=1800)
     assert len(extract(points)) == 0
 
 
 def test_duplicate_points_are_more_points():
-    points = toyrooms.vlp16()
+    points = toy_rooms.vlp16()
     check_toy_room(extract(np.repeat(points, 2, axis=0)))
 
 
@@ -274,7 +324,9 @@ def test_a_round_wall_in_space_becomes_chords():
     angle = np.linspace(-1.2, 1.2, 200)
     corners = 5 * np.column_stack([np.cos(angle), np.sin(angle)])
     segments = np.column_stack([corners[:-1], corners[1:]])
-    found = extract(toyrooms.vlp16(np.array([1.0, 0, 0.9]), segments, columns=900), np.array([1.0, 0, 0.9]))
+    found = extract(
+        toy_rooms.vlp16(np.array([1.0, 0, 0.9]), segments, columns=900), np.array([1.0, 0, 0.9])
+    )
     lengths = np.linalg.norm(found.end_m - found.start_m, axis=1)
     assert len(found) >= 4
     assert lengths.sum() > 0.7 * 12

@@ -10,12 +10,16 @@ def verdicts(places):
         pose = np.eye(4)
         pose[0, 3] = np.nan if x is None else x
         reason = "pose_gap" if x is None else "anchor"
-        found.append(sequential.Verdict(x is not None, reason, pose))
+        found.append(sequential.ScanResult(x is not None, reason, pose))
     return found
 
 
 def unconfirmed(places, linked, apart_m=5.0):
-    return np.flatnonzero(confirmation.unconfirmed(verdicts(places), np.isin(range(len(places)), linked), apart_m))
+    return np.flatnonzero(
+        confirmation.find_unconfirmed(
+            verdicts(places), np.isin(range(len(places)), linked), apart_m
+        )
+    )
 
 
 def test_an_anchor_among_linked_scans_is_unconfirmed_wherever_it_is():
@@ -39,5 +43,5 @@ def test_scans_that_are_far_apart_need_not_confirm_each_other():
 
 
 def test_a_dropped_anchor_has_its_reason_and_the_localisers_pose():
-    found = confirmation.dropped(verdicts([1.0])[0], np.eye(4))
+    found = confirmation.drop_anchor(verdicts([1.0])[0], np.eye(4))
     assert not found.kept and found.reason == "unconfirmed" and found.world_from_sensor[0, 3] == 0

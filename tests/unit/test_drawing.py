@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-import floorplanmaking
-from floorplanmaking import bare
-from scanplan.exports import drawing, drawingframe
+from helpers import floorplan_making
+from helpers.floorplan_making import bare
+from scanplan.exports import drawing, drawing_frame
 
 _POINTS_PER_MM = 72 / 25.4
 
@@ -37,23 +37,24 @@ def path_length_mm(element):
 
 
 def test_faces_are_drawn_at_the_scale_that_is_stated(plan):
-    text = drawing.svg(drawing.plan(plan))
+    text = drawing.format_svg(drawing.draw_plan(plan))
     assert any("scale 1:50" in said for said in texts(text))
     assert path_length_mm(groups(text)["single-observed-0"]) == pytest.approx(12_000 / 50, abs=0.01)
 
 
 def test_scale_bar_is_drawn_at_the_scale_that_is_stated(plan):
-    text = drawing.svg(drawing.plan(plan))
+    text = drawing.format_svg(drawing.draw_plan(plan))
     assert "2 m" in texts(text)
     low, high = groups(text)["scale-bar-0"], groups(text)["scale-bar-3"]
     starts = [
-        float(re.search(r"M (-?[\d.]+)", e.find("{http://www.w3.org/2000/svg}path").get("d"))[1]) for e in (low, high)
+        float(re.search(r"M (-?[\d.]+)", e.find("{http://www.w3.org/2000/svg}path").get("d"))[1])
+        for e in (low, high)
     ]
     assert (starts[1] - starts[0]) / _POINTS_PER_MM == pytest.approx(2000 / 50 * 3 / 4, abs=0.01)
 
 
 def test_it_says_what_it_shows(plan):
-    said = texts(drawing.svg(drawing.plan(plan)))
+    said = texts(drawing.format_svg(drawing.draw_plan(plan)))
     assert "office" in said
     assert any("3 wall faces" in line for line in said)
     assert any("north unknown" in line for line in said)
@@ -61,14 +62,23 @@ def test_it_says_what_it_shows(plan):
 
 
 def test_the_same_plan_give_the_same_bytes(plan):
-    assert drawing.svg(drawing.plan(plan)) == drawing.svg(drawing.plan(plan))
-    assert "<dc:date>" not in drawing.svg(drawing.plan(plan))
+    assert drawing.format_svg(drawing.draw_plan(plan)) == drawing.format_svg(
+        drawing.draw_plan(plan)
+    )
+    assert "<dc:date>" not in drawing.format_svg(drawing.draw_plan(plan))
 
 
 def test_walls_openings_and_rooms_are_drawn():
-    text = drawing.svg(drawing.plan(floorplanmaking.plan()))
+    text = drawing.format_svg(drawing.draw_plan(floorplan_making.plan()))
     drawn = set(groups(text))
-    assert {"walls-observed-0", "walls-inferred-0", "door-0", "door-1", "window-2", "single-observed-0"} <= drawn
+    assert {
+        "walls-observed-0",
+        "walls-inferred-0",
+        "door-0",
+        "door-1",
+        "window-2",
+        "single-observed-0",
+    } <= drawn
     said = "\n".join(texts(text))
     assert "Room 0" in said and "12.0 m²" in said and "9.0 m²" in said
     assert "inferred wall" in said and "thickness not known" in said
@@ -76,23 +86,25 @@ def test_walls_openings_and_rooms_are_drawn():
 
 
 def test_an_area_of_an_open_room_is_told_as_such():
-    rooms = floorplanmaking.rooms() | {"closed": np.array([True, False])}
-    assert "about 9.0 m²" in "\n".join(texts(drawing.svg(drawing.plan(floorplanmaking.plan(rooms=rooms)))))
+    rooms = floorplan_making.rooms() | {"closed": np.array([True, False])}
+    assert "about 9.0 m²" in "\n".join(
+        texts(drawing.format_svg(drawing.draw_plan(floorplan_making.plan(rooms=rooms))))
+    )
 
 
 def test_pdf_is_one_page_of_the_same_bytes_and_size():
-    made = drawing.pdf(drawing.plan(floorplanmaking.plan()))
-    assert made == drawing.pdf(drawing.plan(floorplanmaking.plan()))
+    made = drawing.format_pdf(drawing.draw_plan(floorplan_making.plan()))
+    assert made == drawing.format_pdf(drawing.draw_plan(floorplan_making.plan()))
     assert made.startswith(b"%PDF") and b"CreationDate" not in made
     (box,) = re.findall(rb"/MediaBox \[ 0 0 ([\d.]+) ([\d.]+) \]", made)
-    svg = ElementTree.fromstring(drawing.svg(drawing.plan(floorplanmaking.plan())))
+    svg = ElementTree.fromstring(drawing.format_svg(drawing.draw_plan(floorplan_making.plan())))
     size = [float(svg.get(side).removesuffix("pt")) for side in ("width", "height")]
     assert np.array(box, float) == pytest.approx(size, abs=0.01)
 
 
 @pytest.mark.parametrize("segment", [(0, 0, 0.3, 0), (0, 0, 900, 400), (3, 0, 3, 40)])
 def test_everything_lies_on_the_page_and_no_text_on_another(segment):
-    figure = drawing.plan(replace(bare([(*segment, -1)]), name="W" * 100))
+    figure = drawing.draw_plan(replace(bare([(*segment, -1)]), name="W" * 100))
     renderer = FigureCanvasAgg(figure).get_renderer()
     boxes = [text.get_window_extent(renderer) for text in figure.axes[0].texts if text.get_text()]
     page = figure.bbox
@@ -104,14 +116,20 @@ def test_everything_lies_on_the_page_and_no_text_on_another(segment):
 
 @pytest.mark.parametrize("segment", [(0, 0, 0.3, 0), (5, 5, 5, 9), (0, 0, 900, 400)])
 def test_one_face_of_any_size_can_be_drawn(segment):
-    ElementTree.fromstring(drawing.svg(drawing.plan(replace(bare([(*segment, -1)]), name="$one_face^"))))
+    ElementTree.fromstring(
+        drawing.format_svg(drawing.draw_plan(replace(bare([(*segment, -1)]), name="$one_face^")))
+    )
 
 
-@pytest.mark.parametrize(("extent_m", "scale"), [((3.8, 2.6), 10), ((3.9, 1), 20), ((1, 26), 100), ((30, 30), 200)])
+@pytest.mark.parametrize(
+    ("extent_m", "scale"), [((3.8, 2.6), 10), ((3.9, 1), 20), ((1, 26), 100), ((30, 30), 200)]
+)
 def test_scale_is_the_largest_usual_one_that_fits(extent_m, scale):
-    assert drawing.scale_for(np.array(extent_m)) == scale
+    assert drawing.choose_scale(np.array(extent_m)) == scale
 
 
-@pytest.mark.parametrize(("extent_m", "length_m"), [(12, 2), (12.5, 5), (30, 10), (0.6, 0.2), (5, 2)])
+@pytest.mark.parametrize(
+    ("extent_m", "length_m"), [(12, 2), (12.5, 5), (30, 10), (0.6, 0.2), (5, 2)]
+)
 def test_scale_bar_has_a_round_length(extent_m, length_m):
-    assert drawingframe.bar_length_m(extent_m) == pytest.approx(length_m)
+    assert drawing_frame.round_bar_length_m(extent_m) == pytest.approx(length_m)

@@ -2,23 +2,26 @@
 
 import pytest
 
-from scanplan import configuration
-from scanplan.thesis import experiments
+from scanplan.lab.thesis import experiments
+from scanplan.project import settings
 
 
 @pytest.fixture
 def known(project_root):
     return {
-        "defaults": configuration.read_yaml(project_root / "config/config.yaml"),
-        "given": [configuration.Layer("a.yaml", {"thesis": {"seeds": [4, 7], "drive_seeds": [7]}})],
-        "schema": configuration.read_yaml(project_root / "workflow/schemas/config.schema.yaml"),
+        "defaults": settings.read_yaml(project_root / "config/config.yaml"),
+        "given": [settings.Layer("a.yaml", {"thesis": {"seeds": [4, 7], "drive_seeds": [7]}})],
+        "schema": settings.read_yaml(project_root / "workflow/schemas/config.schema.yaml"),
         "config": project_root / "config",
     }
 
 
 def test_every_survey_has_its_seed_and_its_place(known):
-    found = experiments.surveys(**known)
-    assert [survey.name for survey in found[experiments.ROOMS]] == ["thesis/ring_rooms_4", "thesis/ring_rooms_7"]
+    found = experiments.list_surveys(**known)
+    assert [survey.name for survey in found[experiments.ROOMS]] == [
+        "thesis/ring_rooms_4",
+        "thesis/ring_rooms_7",
+    ]
     for survey, seed in zip(found[experiments.ROOMS], (4, 7), strict=True):
         sections = [survey.settings[name] for name in ("simulate", "hulls", "selection")]
         sections += survey.settings["walls"].values()
@@ -27,7 +30,7 @@ def test_every_survey_has_its_seed_and_its_place(known):
 
 
 def test_the_limits_are_tried_on_the_same_recording(known):
-    found = experiments.surveys(**known)
+    found = experiments.list_surveys(**known)
     (drive,), (strict,) = found[experiments.DRIVE], found[experiments.LIMITS]
     assert strict.recordings == drive.recordings and strict.truth == drive.truth
     assert strict.name != drive.name and strict.building is None and drive.building
@@ -38,16 +41,25 @@ def test_the_limits_are_tried_on_the_same_recording(known):
 
 def test_the_command_line_wins(known):
     own = {"simulate": {"building": "tiny_office"}, "registration": {"min_refined_fitness": 0.5}}
-    known["given"].append(configuration.Layer("b.yaml", own))
-    found = experiments.surveys(**known)
-    assert all(survey.settings["simulate"]["building"] == "tiny_office" for kind in found.values() for survey in kind)
+    known["given"].append(settings.Layer("b.yaml", own))
+    found = experiments.list_surveys(**known)
+    assert all(
+        survey.settings["simulate"]["building"] == "tiny_office"
+        for kind in found.values()
+        for survey in kind
+    )
     assert found[experiments.LIMITS][0].settings["registration"]["min_refined_fitness"] == 0.5
 
 
 def test_settings_are_not_changed_by_a_seed(known):
     walls = {"ransac": {"seed": 1, "inlier_m": 0.1}}
-    given = {"simulate": {"seed": 1}, "hulls": {"seed": 1}, "selection": {"seed": 1, "stop": 3}, "walls": walls}
-    seeded = experiments.seeded(given, 5)
+    given = {
+        "simulate": {"seed": 1},
+        "hulls": {"seed": 1},
+        "selection": {"seed": 1, "stop": 3},
+        "walls": walls,
+    }
+    seeded = experiments.replace_seeds(given, 5)
     assert seeded["selection"] == {"seed": 5, "stop": 3}
     assert seeded["walls"]["ransac"] == {"seed": 5, "inlier_m": 0.1}
     assert given["selection"]["seed"] == given["walls"]["ransac"]["seed"] == 1

@@ -6,8 +6,8 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-import simple_rooms as drawn
-from scanplan.simulation import buildings, extrusion
+from helpers import simple_rooms as drawn
+from scanplan.lab.buildings import drawn_floor, extrusion
 
 
 def volume(triangles_m):
@@ -27,18 +27,23 @@ def corners(mesh, surface):
 
 
 def test_unit_cube():
-    cube = extrusion.extrude([(0.0, 1.0, shapely.box(0, 0, 1, 1))])
+    cube = extrusion.extrude_bands([(0.0, 1.0, shapely.box(0, 0, 1, 1))])
     assert (len(cube), volume(cube), area(cube)) == (12, pytest.approx(1), pytest.approx(6))
 
 
 def test_a_step_has_its_tread():
-    steps = extrusion.extrude([(0.0, 1.0, shapely.box(0, 0, 2, 1)), (1.0, 2.0, shapely.box(0, 0, 1, 1))])
+    steps = extrusion.extrude_bands(
+        [(0.0, 1.0, shapely.box(0, 0, 2, 1)), (1.0, 2.0, shapely.box(0, 0, 1, 1))]
+    )
     assert volume(steps) == pytest.approx(3)
     assert area(steps) == pytest.approx(2 + 1 + 1 + 2 * 3 + 2 + 1 + 1)
 
 
 def test_box_with_a_door_loses_the_door_and_gains_its_reveal():
-    closed, opened = (corners(extrusion.building_mesh(drawn.plan(*d)), "wall") for d in ((), (drawn.door(2, -0.1),)))
+    closed, opened = (
+        corners(extrusion.make_building_mesh(drawn.plan(*d)), "wall")
+        for d in ((), (drawn.door(2, -0.1),))
+    )
     assert volume(closed) == pytest.approx(2.96 * 2.5)
     assert volume(closed) - volume(opened) == pytest.approx(1.0 * 0.2 * 2.0)
     # two faces of 1 x 2 and the foot go, two jambs of 0.2 x 2 and the lintel's underside come
@@ -46,7 +51,7 @@ def test_box_with_a_door_loses_the_door_and_gains_its_reveal():
 
 
 def test_floor_looks_up_and_ceiling_down_over_the_whole_footprint():
-    mesh = extrusion.building_mesh(drawn.plan())
+    mesh = extrusion.make_building_mesh(drawn.plan())
     floor, ceiling = corners(mesh, "floor"), corners(mesh, "ceiling")
     assert area(floor) == area(ceiling) == pytest.approx(4.4 * 3.4)
     assert (np.cross(floor[:, 1] - floor[:, 0], floor[:, 2] - floor[:, 0])[:, 2] > 0).all()
@@ -55,26 +60,35 @@ def test_floor_looks_up_and_ceiling_down_over_the_whole_footprint():
 
 
 def test_furniture_is_closed():
-    box = drawn.feature("furniture", "Polygon", [[[1, 2], [2, 2], [2, 2.5], [1, 2.5], [1, 2]]], height_m=0.8)
-    furniture = corners(extrusion.building_mesh(drawn.plan(box)), "furniture")
+    box = drawn.feature(
+        "furniture", "Polygon", [[[1, 2], [2, 2], [2, 2.5], [1, 2.5], [1, 2]]], height_m=0.8
+    )
+    furniture = corners(extrusion.make_building_mesh(drawn.plan(box)), "furniture")
     assert volume(furniture) == pytest.approx(1 * 0.5 * 0.8)
 
 
 @given(
-    st.lists(st.tuples(*[st.integers(0, 20)] * 2, *[st.integers(1, 8)] * 2), min_size=1, max_size=6), st.integers(1, 5)
+    st.lists(
+        st.tuples(*[st.integers(0, 20)] * 2, *[st.integers(1, 8)] * 2), min_size=1, max_size=6
+    ),
+    st.integers(1, 5),
 )
 def test_volume_is_area_times_height_for_any_stack(boxes, split):
     shapes = [shapely.box(x, y, x + w, y + h) for x, y, w, h in boxes]
     low, high = shapely.union_all(shapes[:split]), shapely.union_all(shapes[split - 1 :])
-    stack = extrusion.extrude([(0.0, 0.7, low), (0.7, 2.0, high)])
+    stack = extrusion.extrude_bands([(0.0, 0.7, low), (0.7, 2.0, high)])
     assert volume(stack) == pytest.approx(0.7 * low.area + 1.3 * high.area, abs=1e-6)
 
 
 def test_the_demo_is_closed(project_root):
-    from scanplan.simulation import buildingfile
+    from scanplan.lab.buildings import drawing_file
 
     text = (project_root / "config/buildings/demo_office.geojson").read_bytes()
-    plan = buildingfile.parse(text, "demo")
-    expected = sum((high - low) * section.area for low, high, section in buildings.wall_bands(plan))
-    assert volume(corners(extrusion.building_mesh(plan), "wall")) == pytest.approx(expected, abs=1e-6)
-    assert len(buildings.rooms(plan)) == 13
+    plan = drawing_file.parse_drawing(text, "demo")
+    expected = sum(
+        (high - low) * section.area for low, high, section in drawn_floor.cut_wall_bands(plan)
+    )
+    assert volume(corners(extrusion.make_building_mesh(plan), "wall")) == pytest.approx(
+        expected, abs=1e-6
+    )
+    assert len(drawn_floor.floor_rooms(plan)) == 13

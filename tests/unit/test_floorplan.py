@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 import shapely
 
-import floorplanmaking
-from floorplanmaking import bare, plan
+from helpers import floorplan_making
+from helpers.floorplan_making import bare, plan
 
 
 def test_solid_walls_have_the_area_that_is_worked_out_on_paper():
@@ -13,7 +13,7 @@ def test_solid_walls_have_the_area_that_is_worked_out_on_paper():
     cut = 1.0 * 0.2 + 0.9 * 0.1 + 1.2 * 0.2
     assert plan().solid("inferred").area == pytest.approx(inferred, abs=1e-3)
     assert plan().solid("observed").area == pytest.approx(
-        floorplanmaking.FOOTPRINT_M2 - east - inferred - cut, abs=1e-3
+        floorplan_making.FOOTPRINT_M2 - east - inferred - cut, abs=1e-3
     )
 
 
@@ -33,7 +33,7 @@ def test_single_faces_end_at_the_surfaces_of_the_walls_they_meet():
 
 def test_what_is_assumed_lies_behind_the_face():
     assert plan().bodies[1].bounds == pytest.approx((7.1, -0.2, 7.2, 3.2))
-    turned = floorplanmaking.walls()
+    turned = floorplan_making.walls()
     turned["face_left"][1], turned["face_right"][1] = -1, 1
     assert plan(walls=turned).bodies[1].bounds[:3:2] == pytest.approx((7.0, 7.1))
 
@@ -49,24 +49,26 @@ def test_the_storey_reaches_from_the_floor_to_the_ceiling():
 
 
 def test_without_a_ceiling_it_is_as_high_as_the_highest_wall():
-    walls = floorplanmaking.walls()
+    walls = floorplan_making.walls()
     walls["z_min_m"] -= 1
     walls["z_min_m"][3] = np.nan
     walls["z_max_m"][5] = 0.7
-    assert plan(walls=walls).storey_m == (-1, floorplanmaking.HEIGHT_M + 1)
-    assert plan(walls=walls, floor_z_m=0.0).storey_m == (0, floorplanmaking.HEIGHT_M)
+    assert plan(walls=walls).storey_m == (-1, floorplan_making.HEIGHT_M + 1)
+    assert plan(walls=walls, floor_z_m=0.0).storey_m == (0, floorplan_making.HEIGHT_M)
 
 
 def test_without_a_ceiling_it_is_no_lower_than_assumed():
-    walls = floorplanmaking.walls() | {"z_max_m": np.full(6, 1.4)}
+    walls = floorplan_making.walls() | {"z_max_m": np.full(6, 1.4)}
     low, high = plan(walls=walls, floor_z_m=0.0), plan(floor_z_m=0.0, assumed_height_m=2.2)
     assert (low.storey_m, low.height_from) == ((0.0, 2.5), "assumed")
-    assert (high.storey_m, high.height_from) == ((0.0, floorplanmaking.HEIGHT_M), "walls")
+    assert (high.storey_m, high.height_from) == ((0.0, floorplan_making.HEIGHT_M), "walls")
     assert plan(floor_z_m=-0.1, ceiling_z_m=2.6).height_from == "ceiling"
 
 
 def test_walls_end_at_the_ceiling_or_where_they_were_seen_to():
-    walls = floorplanmaking.walls() | {"top_m": np.array([np.nan, 1.5, np.nan, np.nan, 3.0, np.nan])}
+    walls = floorplan_making.walls() | {
+        "top_m": np.array([np.nan, 1.5, np.nan, np.nan, 3.0, np.nan])
+    }
     drawn = plan(walls=walls, floor_z_m=-0.1, ceiling_z_m=2.6)
     assert drawn.low.tolist() == [False, True, False, False, False, False]
     assert drawn.heights_m == pytest.approx([2.7, 1.6, 2.7, 2.7, 2.7, 2.7])
@@ -74,6 +76,6 @@ def test_walls_end_at_the_ceiling_or_where_they_were_seen_to():
 
 @pytest.mark.parametrize("z_m", [0.3, np.nan])
 def test_the_height_of_a_planar_survey_is_assumed(z_m):
-    walls = floorplanmaking.walls() | {"z_min_m": np.full(6, z_m), "z_max_m": np.full(6, z_m)}
+    walls = floorplan_making.walls() | {"z_min_m": np.full(6, z_m), "z_max_m": np.full(6, z_m)}
     assert plan(walls=walls, assumed_height_m=3.0).storey_m == (np.nan_to_num(z_m), 3.0)
     assert bare().storey_m == (0.0, 2.5)

@@ -1,24 +1,30 @@
 import numpy as np
 
-from floorplanmaking import faces
+from helpers.floorplan_making import faces
+from helpers.wall_making import walls
 from scanplan.report import growth
 from scanplan.report.growth import NEVER
-from wallmaking import walls
 
 
 def grown(lines, rank, *, face=(0, 0, 4, 0, -1), min_scans=2):
     settings = {"max_angle_deg": 10.0, "distance_m": 0.1, "min_scans": min_scans}
-    found = growth.stretches(faces([face]), walls(lines), np.array(rank, int), **settings)
+    found = growth.cut_by_rank(faces([face]), walls(lines), np.array(rank, int), **settings)
     return [(round(x0, 3), round(x1, 3), f, e) for x0, x1, f, e in
             zip(found["x0_m"], found["x1_m"], found["first"], found["enough"], strict=True)]  # fmt: skip
 
 
 def test_a_stretch_appears_with_the_first_scan_and_is_sure_with_enough():
-    assert grown([(0, 0, 3, 0), (2, 0, 4, 0)], [1, 5]) == [(0, 2, 1, NEVER), (2, 3, 1, 5), (3, 4, 5, NEVER)]
+    assert grown([(0, 0, 3, 0), (2, 0, 4, 0)], [1, 5]) == [
+        (0, 2, 1, NEVER),
+        (2, 3, 1, 5),
+        (3, 4, 5, NEVER),
+    ]
 
 
 def test_the_order_of_the_segments_does_not_matter():
-    assert grown([(2, 0, 4, 0), (0, 0, 3, 0)], [5, 1]) == grown([(0, 0, 3, 0), (2, 0, 4, 0)], [1, 5])
+    assert grown([(2, 0, 4, 0), (0, 0, 3, 0)], [5, 1]) == grown(
+        [(0, 0, 3, 0), (2, 0, 4, 0)], [1, 5]
+    )
 
 
 def test_one_scan_counts_once():
@@ -36,12 +42,14 @@ def test_what_no_scan_shows_stays_open():
 
 
 def test_the_other_side_a_parallel_wall_and_a_turned_one_are_not_of_it():
-    assert grown([(4, 0, 0, 0), (0, 0.2, 4, 0.2), (1, -0.09, 1.4, 0.09)], [1, 1, 1]) == [(0, 4, NEVER, NEVER)]
+    assert grown([(4, 0, 0, 0), (0, 0.2, 4, 0.2), (1, -0.09, 1.4, 0.09)], [1, 1, 1]) == [
+        (0, 4, NEVER, NEVER)
+    ]
 
 
 def test_no_segments_and_no_faces():
     assert grown([], []) == [(0, 4, NEVER, NEVER)]
-    assert len(growth.stretches(faces([]), walls([(0, 0, 1, 0)]), np.array([1]), max_angle_deg=10, distance_m=0.1,
+    assert len(growth.cut_by_rank(faces([]), walls([(0, 0, 1, 0)]), np.array([1]), max_angle_deg=10, distance_m=0.1,
                                 min_scans=1)["face"]) == 0  # fmt: skip
 
 

@@ -6,8 +6,8 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from reference import hull_selection
-from scanplan import schemas
 from scanplan.selection import hulls
+from scanplan.store import schemas
 
 CORNERS = np.array([(0, 0), (2, 0), (2, 1), (0, 1)], float)
 SETTINGS = {"n_clusters": 4, "sample_size": 100, "seed": 3}
@@ -31,7 +31,9 @@ def room(n=4000, seed=0):
 
 
 def test_one_cluster_is_the_hull_of_all_points():
-    rows = hulls.cluster_hulls(7, scan(np.vstack([CORNERS, [(1, 0.5)]])), n_clusters=1, sample_size=10, seed=0)
+    rows = hulls.make_cluster_hulls(
+        7, scan(np.vstack([CORNERS, [(1, 0.5)]])), n_clusters=1, sample_size=10, seed=0
+    )
     assert {name: rows[name].tolist() for name in ("scan_id", "cluster", "n_points")} == {
         "scan_id": [7],
         "cluster": [0],
@@ -43,32 +45,43 @@ def test_one_cluster_is_the_hull_of_all_points():
 
 def test_two_squares_apart_are_two_hulls():
     xy_m = np.vstack([CORNERS, CORNERS + np.array([50, 0])])
-    rows = hulls.cluster_hulls(0, scan(xy_m), n_clusters=2, sample_size=8, seed=0)
+    rows = hulls.make_cluster_hulls(0, scan(xy_m), n_clusters=2, sample_size=8, seed=0)
     assert rows["area_m2"].tolist() == [2.0, 2.0]
-    assert shapely.union_all(geometries(rows)).equals(shapely.box(0, 0, 2, 1) | shapely.box(50, 0, 52, 1))
+    assert shapely.union_all(geometries(rows)).equals(
+        shapely.box(0, 0, 2, 1) | shapely.box(50, 0, 52, 1)
+    )
 
 
 def test_same_hulls_as_algorithm_2_where_clusters_are_clear():
     rng = np.random.default_rng(5)
     xy_m = np.vstack([rng.normal((10 * i, 7 * (i % 2)), 0.5, (60, 2)) for i in range(5)])
     expected = hull_selection.cluster_and_hull([xy_m], 5)[0]
-    rows = hulls.cluster_hulls(0, xy_m, n_clusters=5, sample_size=100, seed=0)
+    rows = hulls.make_cluster_hulls(0, xy_m, n_clusters=5, sample_size=100, seed=0)
     assert {g.normalize().wkb for g in geometries(rows)} == {g.normalize().wkb for g in expected}
 
 
 def test_covers_about_what_algorithm_2_does_on_a_room():
     expected = sum(g.area for g in hull_selection.cluster_and_hull([room()], 8)[0])
-    found = [hulls.cluster_hulls(i, room(), n_clusters=8, sample_size=300, seed=0)["area_m2"].sum() for i in range(10)]
+    found = [
+        hulls.make_cluster_hulls(i, room(), n_clusters=8, sample_size=300, seed=0)["area_m2"].sum()
+        for i in range(10)
+    ]
     assert np.mean(found) == pytest.approx(expected, rel=0.25)
     assert np.mean(found) < 0.6 * 24
 
 
 def test_depends_on_seed_and_scan_alone():
-    rows = hulls.cluster_hulls(4, room(), **SETTINGS)
-    again = hulls.cluster_hulls(4, room(), **SETTINGS)
+    rows = hulls.make_cluster_hulls(4, room(), **SETTINGS)
+    again = hulls.make_cluster_hulls(4, room(), **SETTINGS)
     assert all((rows[name] == again[name]).all() for name in rows)
-    others = [hulls.cluster_hulls(5, room(), **SETTINGS), hulls.cluster_hulls(4, room(), **{**SETTINGS, "seed": 4})]
-    assert all((len(o["area_m2"]) != len(rows["area_m2"])) or (o["area_m2"] != rows["area_m2"]).any() for o in others)
+    others = [
+        hulls.make_cluster_hulls(5, room(), **SETTINGS),
+        hulls.make_cluster_hulls(4, room(), **{**SETTINGS, "seed": 4}),
+    ]
+    assert all(
+        (len(o["area_m2"]) != len(rows["area_m2"])) or (o["area_m2"] != rows["area_m2"]).any()
+        for o in others
+    )
 
 
 @pytest.mark.parametrize(
@@ -82,7 +95,7 @@ def test_depends_on_seed_and_scan_alone():
     ],
 )
 def test_degenerate_clusters_stay_without_area(xy_m, kinds):
-    rows = hulls.cluster_hulls(0, np.array(xy_m, float), n_clusters=2, sample_size=10, seed=0)
+    rows = hulls.make_cluster_hulls(0, np.array(xy_m, float), n_clusters=2, sample_size=10, seed=0)
     assert sorted(g.geom_type for g in geometries(rows)) == kinds
     assert rows["area_m2"].tolist() == [0.0] * len(kinds)
     assert rows["n_points"].sum() == len(xy_m)
@@ -91,19 +104,21 @@ def test_degenerate_clusters_stay_without_area(xy_m, kinds):
 
 
 def test_more_clusters_than_points_gives_one_each():
-    rows = hulls.cluster_hulls(0, scan(CORNERS), n_clusters=10, sample_size=100, seed=0)
+    rows = hulls.make_cluster_hulls(0, scan(CORNERS), n_clusters=10, sample_size=100, seed=0)
     assert rows["n_points"].tolist() == [1, 1, 1, 1]
     assert shapely.union_all(geometries(rows)).convex_hull.equals(shapely.box(0, 0, 2, 1))
 
 
 @settings(max_examples=150, deadline=None)
 @given(
-    hnp.arrays(float, st.tuples(st.integers(1, 60), st.just(2)), elements=st.floats(-50, 50, width=32)),
+    hnp.arrays(
+        float, st.tuples(st.integers(1, 60), st.just(2)), elements=st.floats(-50, 50, width=32)
+    ),
     st.integers(1, 12),
     st.integers(1, 40),
 )
 def test_every_point_is_in_its_hull_and_the_whole_is_the_hull_of_all(xy_m, n_clusters, sample_size):
-    rows = hulls.cluster_hulls(0, xy_m, n_clusters=n_clusters, sample_size=sample_size, seed=1)
+    rows = hulls.make_cluster_hulls(0, xy_m, n_clusters=n_clusters, sample_size=sample_size, seed=1)
     shapes = geometries(rows)
     assert rows["n_points"].sum() == len(xy_m)
     assert 1 <= len(shapes) <= n_clusters
@@ -111,7 +126,11 @@ def test_every_point_is_in_its_hull_and_the_whole_is_the_hull_of_all(xy_m, n_clu
     points = shapely.points(xy_m)
     assert np.all([shapely.dwithin(shapes, p, 1e-12).any() for p in points])
     whole = shapely.multipoints(xy_m).convex_hull
-    assert shapely.geometrycollections(shapes).convex_hull.normalize().equals_exact(whole.normalize(), 0)
+    assert (
+        shapely.geometrycollections(shapes)
+        .convex_hull.normalize()
+        .equals_exact(whole.normalize(), 0)
+    )
     area_m2 = shapely.union_all(shapes).area
     assert area_m2 <= whole.area * (1 + 1e-9) + 1e-12
     assert area_m2 <= rows["area_m2"].sum() + 1e-9
@@ -120,47 +139,61 @@ def test_every_point_is_in_its_hull_and_the_whole_is_the_hull_of_all(xy_m, n_clu
 def test_far_from_the_origin_the_clusters_are_the_same():
     # a power of two and a grid that float64 holds at both places, so that only the method could differ
     snapped = np.round(room() * 1024) / 1024
-    near = hulls.cluster_hulls(0, snapped, **SETTINGS)
-    far = hulls.cluster_hulls(0, snapped + 2.0**20, **SETTINGS)
+    near = hulls.make_cluster_hulls(0, snapped, **SETTINGS)
+    far = hulls.make_cluster_hulls(0, snapped + 2.0**20, **SETTINGS)
     assert far["n_points"].tolist() == near["n_points"].tolist()
     assert far["area_m2"] == pytest.approx(near["area_m2"], abs=1e-6)
 
 
 def test_rows_do_not_depend_on_the_scans_done_before():
     scans = {i: room(500, seed=i) for i in (3, 8, 9, 40)}
-    alone = [hulls.cluster_hulls(i, scans[i], **SETTINGS) for i in scans]
-    backwards = [hulls.cluster_hulls(i, scans[i], **SETTINGS) for i in reversed(scans)][::-1]
-    whole, again = hulls.concatenated(alone), hulls.concatenated(backwards)
+    alone = [hulls.make_cluster_hulls(i, scans[i], **SETTINGS) for i in scans]
+    backwards = [hulls.make_cluster_hulls(i, scans[i], **SETTINGS) for i in reversed(scans)][::-1]
+    whole, again = hulls.concatenate_hulls(alone), hulls.concatenate_hulls(backwards)
     assert all((whole[name] == again[name]).all() for name in whole)
 
 
-@pytest.mark.parametrize("xy_m", [[(1, 2)], [(1, 2)] * 5, [(0, 0), (3, 3)], [(i, 2 * i) for i in range(9)]])
+@pytest.mark.parametrize(
+    "xy_m", [[(1, 2)], [(1, 2)] * 5, [(0, 0), (3, 3)], [(i, 2 * i) for i in range(9)]]
+)
 def test_too_few_points_or_a_line_cover_nothing(xy_m):
-    rows = hulls.cluster_hulls(0, np.array(xy_m, float), **SETTINGS)
+    rows = hulls.make_cluster_hulls(0, np.array(xy_m, float), **SETTINGS)
     assert rows["n_points"].sum() == len(xy_m)
     assert (rows["area_m2"] == 0).all() and not shapely.is_empty(geometries(rows)).any()
     assert hulls.scan_polygons(rows)[1][0].is_empty
 
 
 @pytest.mark.parametrize(
-    "xyz_m", [np.zeros((0, 3)), np.zeros(3), np.zeros((4, 4)), [(0, np.nan, 0)], [(np.inf, 0, 0), (0, 0, 0)]]
+    "xyz_m",
+    [
+        np.zeros((0, 3)),
+        np.zeros(3),
+        np.zeros((4, 4)),
+        [(0, np.nan, 0)],
+        [(np.inf, 0, 0), (0, 0, 0)],
+    ],
 )
 def test_refuses_what_is_no_scan(xyz_m):
     with pytest.raises(ValueError, match=r"scan"):
-        hulls.cluster_hulls(0, xyz_m, **SETTINGS)
+        hulls.make_cluster_hulls(0, xyz_m, **SETTINGS)
 
 
-@pytest.mark.parametrize("wrong", [{"n_clusters": 0}, {"n_clusters": 40_000}, {"sample_size": 0}, {"seed": -1}])
+@pytest.mark.parametrize(
+    "wrong", [{"n_clusters": 0}, {"n_clusters": 40_000}, {"sample_size": 0}, {"seed": -1}]
+)
 def test_refuses_settings_out_of_range(wrong):
     with pytest.raises(ValueError):
-        hulls.cluster_hulls(0, CORNERS, **{**SETTINGS, **wrong})
+        hulls.make_cluster_hulls(0, CORNERS, **{**SETTINGS, **wrong})
 
 
 def table_of(*scans):
     """Columns of a table of hulls, from (scan_id, [geometry, ...])."""
     rows = [(i, c, 3, g.area, g.wkb) for i, shapes in scans for c, g in enumerate(shapes)]
     names = list(schemas.HULLS.columns)
-    return {n: np.array([r[j] for r in rows], object if n == "geometry" else None) for j, n in enumerate(names)}
+    return {
+        n: np.array([r[j] for r in rows], object if n == "geometry" else None)
+        for j, n in enumerate(names)
+    }
 
 
 def test_polygons_and_full_hulls_of_scans():
@@ -189,7 +222,9 @@ def test_leaving_out_inner_points_leaves_the_hull(shape, shift_m):
     }[shape]
     xy_m = np.asarray(xy_m if xy_m.shape[1] == 2 else xy_m.T) + shift_m
     outer = hulls._outer(xy_m)
-    assert shapely.convex_hull(shapely.linestrings(outer)).equals(shapely.convex_hull(shapely.multipoints(xy_m)))
+    assert shapely.convex_hull(shapely.linestrings(outer)).equals(
+        shapely.convex_hull(shapely.multipoints(xy_m))
+    )
     assert shape not in ("disc", "triangle") or len(outer) < 0.6 * len(xy_m)
 
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from scanplan import se3
-from scanplan.registration import icp, twists
+from scanplan.geometry import se3, twists
+from scanplan.registration import icp
 
 
 def box_points(n, rng, *, planar=False, size=(4.0, 3.0, 2.5)):
@@ -21,11 +21,13 @@ def box_points(n, rng, *, planar=False, size=(4.0, 3.0, 2.5)):
 
 
 def cloud_of(points, *, planar, voxel_m):
-    return icp.prepare(icp.thin(points, planar=planar, voxel_m=voxel_m), planar=planar, reach_m=10 * voxel_m)
+    return icp.prepare_cloud(
+        icp.thin_voxels(points, planar=planar, voxel_m=voxel_m), planar=planar, reach_m=10 * voxel_m
+    )
 
 
 def motion(xyz, yaw_deg):
-    return se3.matrix(xyz, Rotation.from_euler("z", yaw_deg, degrees=True).as_quat())
+    return se3.pose_matrix(xyz, Rotation.from_euler("z", yaw_deg, degrees=True).as_quat())
 
 
 @pytest.mark.parametrize("planar", [False, True])
@@ -34,14 +36,18 @@ def test_a_known_motion_is_found(planar, method):
     rng = np.random.default_rng(1)
     truth = motion([0.08, -0.05, 0.0], 2.0)
     target = cloud_of(box_points(8000, rng, planar=planar), planar=planar, voxel_m=0.05)
-    seen = se3.transform(se3.inverse(truth), box_points(8000, rng, planar=planar))
+    seen = se3.transform_points(se3.invert_pose(truth), box_points(8000, rng, planar=planar))
     source = cloud_of(seen, planar=planar, voxel_m=0.05)
-    fit = icp.align(source, target, np.eye(4), method=method, distances_m=[0.5], max_iterations=60)
-    error = se3.inverse(truth) @ fit.target_from_source
-    assert np.linalg.norm(error[:3, 3]) < (0.02 if method == "point_to_point" and not planar else 0.004)
-    assert abs(np.degrees(se3.yaw_rad(error))) < 0.3
+    fit = icp.align_clouds(
+        source, target, np.eye(4), method=method, distances_m=[0.5], max_iterations=60
+    )
+    error = se3.invert_pose(truth) @ fit.target_from_source
+    assert np.linalg.norm(error[:3, 3]) < (
+        0.02 if method == "point_to_point" and not planar else 0.004
+    )
+    assert abs(np.degrees(se3.pose_yaw_rad(error))) < 0.3
     assert fit.sound and fit.n_unobservable == 0
-    assert icp.overlap(source, target, fit.target_from_source, distance_m=0.5)[1] < 0.1
+    assert icp.measure_overlap(source, target, fit.target_from_source, distance_m=0.5)[1] < 0.1
 
 
 def test_a_corridor_leaves_the_way_along_it_to_the_start():
@@ -49,18 +55,20 @@ def test_a_corridor_leaves_the_way_along_it_to_the_start():
     walls = np.concatenate([np.column_stack([x, 0 * x + y, 0 * x]) for y in (0.0, 2.0)])
     cloud = cloud_of(walls, planar=True, voxel_m=0.05)
     start = motion([0.4, 0.1, 0], 1.0)
-    fit = icp.align(cloud, cloud, start, method="gicp", distances_m=[0.5], max_iterations=30)
+    fit = icp.align_clouds(cloud, cloud, start, method="gicp", distances_m=[0.5], max_iterations=30)
     assert abs(fit.target_from_source[1, 3]) < 1e-3
-    assert abs(se3.yaw_rad(fit.target_from_source)) < 1e-3
+    assert abs(se3.pose_yaw_rad(fit.target_from_source)) < 1e-3
     assert abs(fit.target_from_source[0, 3] - 0.4) < 0.02
 
 
 def test_fitness_is_the_share_of_points_with_a_neighbour():
     target = cloud_of([[0, 0, 0], [1, 0, 0], [2, 0, 0]], planar=True, voxel_m=0.01)
-    source = cloud_of([[0.05, 0, 0], [1.05, 0, 0], [9, 0, 0], [2.3, 0, 0]], planar=True, voxel_m=0.01)
-    assert icp.overlap(source, target, np.eye(4), distance_m=0.1)[0] == 0.5
-    assert icp.overlap(source, target, np.eye(4), distance_m=0.4)[0] == 0.75
-    assert icp.overlap(source, target, motion([100, 0, 0], 0), distance_m=0.4)[0] == 0
+    source = cloud_of(
+        [[0.05, 0, 0], [1.05, 0, 0], [9, 0, 0], [2.3, 0, 0]], planar=True, voxel_m=0.01
+    )
+    assert icp.measure_overlap(source, target, np.eye(4), distance_m=0.1)[0] == 0.5
+    assert icp.measure_overlap(source, target, np.eye(4), distance_m=0.4)[0] == 0.75
+    assert icp.measure_overlap(source, target, motion([100, 0, 0], 0), distance_m=0.4)[0] == 0
 
 
 def test_fitness_agrees_with_open3d():
@@ -72,12 +80,18 @@ def test_fitness_agrees_with_open3d():
     source, target = (cloud_of(points, planar=False, voxel_m=1e-4) for points in (a, b))
     clouds = [o3d.geometry.PointCloud(o3d.utility.Vector3dVector(points)) for points in (a, b)]
     theirs = o3d.pipelines.registration.evaluate_registration(*clouds, 0.06, start)
-    assert icp.overlap(source, target, start, distance_m=0.06)[0] == pytest.approx(theirs.fitness, abs=1e-3)
+    assert icp.measure_overlap(source, target, start, distance_m=0.06)[0] == pytest.approx(
+        theirs.fitness, abs=1e-3
+    )
 
 
 def test_far_apart_there_is_nothing_to_fit():
-    cloud = cloud_of(box_points(500, np.random.default_rng(0), planar=True), planar=True, voxel_m=0.05)
-    fit = icp.align(cloud, cloud, motion([50, 0, 0], 0), method="gicp", distances_m=[0.5], max_iterations=10)
+    cloud = cloud_of(
+        box_points(500, np.random.default_rng(0), planar=True), planar=True, voxel_m=0.05
+    )
+    fit = icp.align_clouds(
+        cloud, cloud, motion([50, 0, 0], 0), method="gicp", distances_m=[0.5], max_iterations=10
+    )
     assert not fit.sound and not fit.information.any()
     np.testing.assert_array_equal(fit.target_from_source, motion([50, 0, 0], 0))
 
@@ -85,15 +99,19 @@ def test_far_apart_there_is_nothing_to_fit():
 def test_clutter_without_a_line_is_nothing_to_fit():
     points = np.column_stack([np.random.default_rng(5).uniform(0, 40, (60, 2)), np.zeros(60)])
     cloud = cloud_of(points, planar=True, voxel_m=0.1)
-    assert not icp.align(cloud, cloud, np.eye(4), method="gicp", distances_m=[0.5], max_iterations=10).sound
+    assert not icp.align_clouds(
+        cloud, cloud, np.eye(4), method="gicp", distances_m=[0.5], max_iterations=10
+    ).sound
 
 
 def test_thinning_keeps_the_mean_of_each_cube():
     points = [[0.01, 0, 0], [0.03, 0, 0], [0.25, 0, 0], [-0.01, 0, 0]]
-    thinned = icp.thin(points, planar=False, voxel_m=0.1)
+    thinned = icp.thin_voxels(points, planar=False, voxel_m=0.1)
     assert thinned.dtype == np.float32
-    np.testing.assert_allclose(thinned[np.argsort(thinned[:, 0])], [[-0.01, 0, 0], [0.02, 0, 0], [0.25, 0, 0]])
-    assert icp.thin(np.zeros((0, 3)), planar=False, voxel_m=0.1).shape == (0, 3)
+    np.testing.assert_allclose(
+        thinned[np.argsort(thinned[:, 0])], [[-0.01, 0, 0], [0.02, 0, 0], [0.25, 0, 0]]
+    )
+    assert icp.thin_voxels(np.zeros((0, 3)), planar=False, voxel_m=0.1).shape == (0, 3)
 
 
 def corridor(length_m, *, planar, seed):
@@ -102,19 +120,28 @@ def corridor(length_m, *, planar, seed):
     x, side = rng.uniform(-length_m, length_m, 20_000), rng.integers(0, 2 if planar else 3, 20_000)
     y = np.choose(side, [-1.0 + 0 * x, 1.0 + 0 * x, rng.uniform(-1, 1, len(x))])
     z = np.choose(side, [rng.uniform(0, 2, len(x))] * 2 + [0 * x]) if not planar else 0 * x
-    return np.column_stack([x, y, z - 0.5 * (not planar)]) + rng.normal(0, 0.005, (len(x), 3)) * [0, 1, not planar]
+    return np.column_stack([x, y, z - 0.5 * (not planar)]) + rng.normal(0, 0.005, (len(x), 3)) * [
+        0,
+        1,
+        not planar,
+    ]
 
 
 @pytest.mark.parametrize("planar", [False, True])
 def test_what_a_corridor_does_not_tell_is_left_to_the_start(planar):
-    target, source = (cloud_of(corridor(10, planar=planar, seed=seed), planar=planar, voxel_m=0.1) for seed in (1, 2))
+    target, source = (
+        cloud_of(corridor(10, planar=planar, seed=seed), planar=planar, voxel_m=0.1)
+        for seed in (1, 2)
+    )
     start = motion([0.3, 0.08, 0.0], 1.0)
-    fit = icp.align(source, target, start, method="gicp", distances_m=[0.5, 0.15], max_iterations=30)
+    fit = icp.align_clouds(
+        source, target, start, method="gicp", distances_m=[0.5, 0.15], max_iterations=30
+    )
     assert fit.n_unobservable == 1
     assert np.linalg.norm(fit.information[:3, 0]) < 1e-3 * fit.information[1, 1]
     # along the corridor the start is kept, seen along the direction that was found to be free
     np.testing.assert_allclose(fit.target_from_source[:3, 3], [0.3, 0, 0], atol=0.01)
-    assert abs(np.degrees(se3.yaw_rad(fit.target_from_source))) < 0.05
+    assert abs(np.degrees(se3.pose_yaw_rad(fit.target_from_source))) < 0.05
 
 
 def test_the_information_is_that_of_the_errors():
@@ -122,11 +149,16 @@ def test_the_information_is_that_of_the_errors():
     rng, squared = np.random.default_rng(4), []
     for _ in range(12):
         source, target = (
-            cloud_of(box_points(6000, rng) + rng.normal(0, 0.01, (6000, 3)), planar=False, voxel_m=0.1) for _ in "ab"
+            cloud_of(
+                box_points(6000, rng) + rng.normal(0, 0.01, (6000, 3)), planar=False, voxel_m=0.1
+            )
+            for _ in "ab"
         )
         start = motion([0.03, -0.02, 0.01], 0.5)
-        fit = icp.align(source, target, start, method="gicp", distances_m=[0.5, 0.15], max_iterations=30)
-        twist = twists.of_motion(fit.target_from_source)
+        fit = icp.align_clouds(
+            source, target, start, method="gicp", distances_m=[0.5, 0.15], max_iterations=30
+        )
+        twist = twists.motion_to_twist(fit.target_from_source)
         squared.append(twist @ fit.information @ twist)
     assert 0.05 < np.median(squared) < 12
 
@@ -135,11 +167,16 @@ def test_the_two_sides_of_a_wall_are_not_the_same_surface():
     """Rooms on either side of a wall 0.1 m thick: near each other, and facing away."""
     rng = np.random.default_rng(7)
     wall = np.column_stack([np.zeros(4000), rng.uniform(-2, 2, 4000), rng.uniform(-1, 1, 4000)])
-    here, there = (cloud_of(wall + np.array([x, 0, 0]), planar=False, voxel_m=0.1) for x in (1.0, -1.0))
+    here, there = (
+        cloud_of(wall + np.array([x, 0, 0]), planar=False, voxel_m=0.1) for x in (1.0, -1.0)
+    )
     there_from_here = motion([-2.1, 0, 0], 0)
-    assert icp.overlap(here, there, there_from_here, distance_m=0.2)[0] == 1
-    assert icp.overlap(here, there, there_from_here, distance_m=0.2, facing=True) == (0.0, np.inf)
-    assert icp.overlap(here, here, np.eye(4), distance_m=0.2, facing=True)[0] == 1
+    assert icp.measure_overlap(here, there, there_from_here, distance_m=0.2)[0] == 1
+    assert icp.measure_overlap(here, there, there_from_here, distance_m=0.2, facing=True) == (
+        0.0,
+        np.inf,
+    )
+    assert icp.measure_overlap(here, here, np.eye(4), distance_m=0.2, facing=True)[0] == 1
 
 
 def test_few_probes_tell_the_fitness_of_all():
@@ -147,7 +184,9 @@ def test_few_probes_tell_the_fitness_of_all():
     source, target = (cloud_of(box_points(8000, rng), planar=False, voxel_m=0.1) for _ in "ab")
     limits = {"distance_m": 0.2}
     aside = motion([0.4, 0, 0], 0)
-    every, some = (icp.overlap(source, target, aside, **limits, n_probes=n)[0] for n in (None, 500))
+    every, some = (
+        icp.measure_overlap(source, target, aside, **limits, n_probes=n)[0] for n in (None, 500)
+    )
     assert every == pytest.approx(some, abs=0.04) and 0.2 < every < 0.95
 
 
@@ -177,5 +216,7 @@ def test_the_two_sides_of_a_partition_are_not_drawn_together():
 
     source, target = seen_from(2, 0.1), seen_from(-2, 0.0)
     truth = motion([4.0, 0, 0], 0.0)
-    fit = icp.align(source, target, truth, method="gicp", distances_m=[0.15], max_iterations=30)
+    fit = icp.align_clouds(
+        source, target, truth, method="gicp", distances_m=[0.15], max_iterations=30
+    )
     assert np.linalg.norm(fit.target_from_source[:3, 3] - truth[:3, 3]) < 0.015

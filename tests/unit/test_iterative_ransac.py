@@ -1,38 +1,48 @@
 import numpy as np
 import pytest
 
-import toyrooms
+from helpers import toy_rooms
 from reference import ransac as literal
 from scanplan.extraction import iterative_ransac
 
-SETTINGS = iterative_ransac.Settings(**toyrooms.LIMITS, max_tilt_deg=15.0, trials=200, max_planes=20)
+SETTINGS = iterative_ransac.IterativeRansacSettings(
+    **toy_rooms.LIMITS, max_tilt_deg=15.0, trials=200, max_planes=20
+)
 # per face: normal towards the sensor, normal . xy
 FACES = [((0, 1), 0), ((0, -1), -4), ((1, 0), 0), ((-1, 0), -6), ((-1, 0), -6), ((-1, 0), -9)]
 
 
-def extract(xyz_m, sensor_xyz_m=toyrooms.SENSOR, *, planar=False, settings=SETTINGS, scan_id=3):
-    return iterative_ransac.extract(scan_id, xyz_m, sensor_xyz_m=sensor_xyz_m, planar=planar, settings=settings)
+def extract(xyz_m, sensor_xyz_m=toy_rooms.SENSOR, *, planar=False, settings=SETTINGS, scan_id=3):
+    return iterative_ransac.extract_iteratively(
+        scan_id, xyz_m, sensor_xyz_m=sensor_xyz_m, planar=planar, settings=settings
+    )
 
 
 def values(found):
-    return np.column_stack([found.start_m, found.end_m, found.normal, found.n_points, found.rmse_m, found.z_range_m])
+    return np.column_stack(
+        [found.start_m, found.end_m, found.normal, found.n_points, found.rmse_m, found.z_range_m]
+    )
 
 
 @pytest.mark.parametrize("planar", [False, True])
 @pytest.mark.parametrize("seed", range(3))
 def test_every_wall_of_the_room(planar, seed):
-    found = extract(toyrooms.laser(seed=seed) if planar else toyrooms.vlp16(seed=seed), planar=planar)
+    found = extract(
+        toy_rooms.laser(seed=seed) if planar else toy_rooms.vlp16(seed=seed), planar=planar
+    )
     assert len(found) == len(FACES)
     left = list(FACES)
     for middle_m, normal in zip((found.start_m + found.end_m) / 2, found.normal, strict=True):
-        match = next(f for f in left if f[0] @ normal > 0.9999 and abs(middle_m @ f[0] - f[1]) < 0.01)
+        match = next(
+            f for f in left if f[0] @ normal > 0.9999 and abs(middle_m @ f[0] - f[1]) < 0.01
+        )
         left.remove(match)
     assert not left
 
 
 @pytest.mark.parametrize("planar", [False, True])
 def test_same_result_again_and_in_any_order(planar):
-    points = toyrooms.laser() if planar else toyrooms.vlp16()
+    points = toy_rooms.laser() if planar else toy_rooms.vlp16()
     first, again = extract(points, planar=planar), extract(points, planar=planar)
     shuffled = extract(np.random.default_rng(0).permutation(points), planar=planar)
     assert (values(first) == values(again)).all()
@@ -41,8 +51,10 @@ def test_same_result_again_and_in_any_order(planar):
 
 def test_moved_room_has_moved_walls():
     turn = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1.0]])
-    found = extract(toyrooms.laser(), planar=True)
-    moved = extract(toyrooms.laser() @ turn.T + (5, -7, 0), turn @ toyrooms.SENSOR + (5, -7, 0), planar=True)
+    found = extract(toy_rooms.laser(), planar=True)
+    moved = extract(
+        toy_rooms.laser() @ turn.T + (5, -7, 0), turn @ toy_rooms.SENSOR + (5, -7, 0), planar=True
+    )
     assert len(moved) == len(found)
     offsets = (found.start_m * found.normal).sum(axis=1)
     moved_offsets = ((moved.start_m - (5, -7)) * moved.normal).sum(axis=1)
@@ -71,38 +83,47 @@ def test_a_line_of_points_is_a_wall_in_the_plane_alone():
 
 def test_a_floor_is_no_wall():
     x, y = np.meshgrid(np.arange(-4, 4, 0.1), np.arange(-4, 4, 0.1))
-    floor = np.column_stack([x.ravel(), y.ravel(), np.random.default_rng(1).normal(0, 0.01, x.size)])
+    floor = np.column_stack(
+        [x.ravel(), y.ravel(), np.random.default_rng(1).normal(0, 0.01, x.size)]
+    )
     assert len(extract(floor, (0, 0, 0.8))) == 0
 
 
 def test_one_beam_in_space_shows_no_upright_surface():
-    assert len(extract(toyrooms.laser(beams=1800))) == 0
+    assert len(extract(toy_rooms.laser(beams=1800))) == 0
 
 
 def test_duplicate_points_are_more_points():
-    assert len(extract(np.repeat(toyrooms.vlp16(), 2, axis=0))) == len(FACES)
+    assert len(extract(np.repeat(toy_rooms.vlp16(), 2, axis=0))) == len(FACES)
 
 
 def test_in_99_percent_of_outliers_there_is_no_wall():
     """A pair of the wall's points is one in 10,000: no number of trials that is worth its time finds it."""
     draw = np.random.default_rng(1)
-    wall = np.column_stack([np.full(400, 3.0), draw.uniform(-1.5, 1.5, 400), draw.uniform(-0.8, 0.8, 400)])
+    wall = np.column_stack(
+        [np.full(400, 3.0), draw.uniform(-1.5, 1.5, 400), draw.uniform(-0.8, 0.8, 400)]
+    )
     points = np.vstack([wall, draw.uniform(-20, 20, (39_600, 3)) * (1, 1, 0.1)])
     assert len(extract(points, (0, 0, 0))) == 0
 
 
 @pytest.mark.parametrize("planar", [False, True])
 def test_a_map_far_from_its_origin(planar):
-    points = toyrooms.laser() if planar else toyrooms.vlp16()
+    points = toy_rooms.laser() if planar else toy_rooms.vlp16()
     shift = np.array([1e6, -1e6, 0])
-    near, far = extract(points, planar=planar), extract(points + shift, toyrooms.SENSOR + shift, planar=planar)
+    near, far = (
+        extract(points, planar=planar),
+        extract(points + shift, toy_rooms.SENSOR + shift, planar=planar),
+    )
     assert far.start_m - shift[:2] == pytest.approx(near.start_m, abs=0.01)
     assert far.end_m - shift[:2] == pytest.approx(near.end_m, abs=0.01)
 
 
 def test_rounds_are_limited():
-    few = iterative_ransac.Settings(**toyrooms.LIMITS, max_tilt_deg=15.0, trials=200, max_planes=1)
-    assert len(extract(toyrooms.laser(), planar=True, settings=few)) == 1
+    few = iterative_ransac.IterativeRansacSettings(
+        **toy_rooms.LIMITS, max_tilt_deg=15.0, trials=200, max_planes=1
+    )
+    assert len(extract(toy_rooms.laser(), planar=True, settings=few)) == 1
 
 
 def test_points_must_be_finite():
@@ -111,21 +132,30 @@ def test_points_must_be_finite():
 
 
 def test_the_same_lines_as_the_literal_algorithm():
-    points = toyrooms.laser(segments=toyrooms.ROOM[:3], beams=240)
+    points = toy_rooms.laser(segments=toy_rooms.ROOM[:3], beams=240)
     lines = literal.repeated(
-        (points - toyrooms.SENSOR)[:, :2], inlier_m=0.05, min_consensus=20, rng=np.random.default_rng(1), max_trials=60
+        (points - toy_rooms.SENSOR)[:, :2],
+        inlier_m=0.05,
+        min_consensus=20,
+        rng=np.random.default_rng(1),
+        max_trials=60,
     )
     found = extract(points, planar=True)
     assert len(found) == len(lines) == 3
     for start_m, normal in zip(found.start_m, found.normal, strict=True):
-        offset_m = normal @ (start_m - toyrooms.SENSOR[:2])
+        offset_m = normal @ (start_m - toy_rooms.SENSOR[:2])
         assert any(-n @ normal > 0.9999 and abs(d + offset_m) < 0.01 for n, d in lines)
 
 
 def test_largest_plane_is_the_same_on_every_call():
     draw = np.random.default_rng(1)
-    points = np.vstack([draw.uniform(-2, 2, (400, 3)) * (1, 1, 0.001), draw.uniform(-2, 2, (300, 3))])
-    results = [iterative_ransac.largest_plane(points, inlier_m=0.02, trials=100, seed=3) for _ in range(3)]
+    points = np.vstack(
+        [draw.uniform(-2, 2, (400, 3)) * (1, 1, 0.001), draw.uniform(-2, 2, (300, 3))]
+    )
+    results = [
+        iterative_ransac.find_largest_plane(points, inlier_m=0.02, trials=100, seed=3)
+        for _ in range(3)
+    ]
     assert all((r[0] == results[0][0]).all() and (r[1] == results[0][1]).all() for r in results)
     assert abs(results[0][0][2]) > 0.99
     assert results[0][1][:400].all()

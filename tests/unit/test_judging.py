@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-import claimmaking as made
-from scanplan.thesis import judging
-from scanplan.thesis.thesisclaims import CLAIMS, stated
+from helpers import claim_making as made
+from scanplan.lab.thesis import judging
+from scanplan.lab.thesis.stated_claims import CLAIMS, stated_number
 
 
 def judged(kind, tables):
-    rows = judging.judge(kind, "seed 1", tables)
+    rows = judging.judge_claims(kind, "seed 1", tables)
     verdicts = {row["claim"]: row["holds"] for row in rows}
     return verdicts, {(row["claim"], row["quantity"]): row["value"] for row in rows}
 
@@ -81,7 +81,10 @@ def test_areas_against_what_is_seen():
 @pytest.mark.parametrize(("iou", "holds"), [(0.71, "yes"), (0.69, "no"), (0.3, "no")])
 def test_much_closer_is_half_of_what_is_not_shared_whatever_the_areas(iou, holds):
     # one hull shares 0.4: cluster hulls must share 0.7
-    areas = made.rooms()["rooms_areas"] | {"cluster_hull_iou": np.full(3, iou), "cluster_hull_m2": np.full(3, 10.0)}
+    areas = made.rooms()["rooms_areas"] | {
+        "cluster_hull_iou": np.full(3, iou),
+        "cluster_hull_m2": np.full(3, 10.0),
+    }
     assert rooms(rooms_areas=areas)[0]["cluster_hull_closer"] == holds
 
 
@@ -100,14 +103,19 @@ def test_fewer_area_for_any_number_of_scans():
     growth["covered_m2"][(growth["n_clusters"] == 10) & (growth["rank"] == 3)] = 901.0
     verdicts, values = rooms(rooms_clusters=growth)
     assert verdicts["more_clusters_less_area"] == "no"
-    assert values["more_clusters_less_area", "numbers of scans at which it holds"] == pytest.approx(29 / 30)
+    assert values["more_clusters_less_area", "numbers of scans at which it holds"] == pytest.approx(
+        29 / 30
+    )
 
 
 def test_subsets():
     verdicts, values = rooms()
     assert verdicts["fifteen_almost_complete"] == verdicts["tenth_little_loss"] == "no"
     assert values["fifteen_almost_complete", "walls found"] == 0.6
-    assert (values["tenth_little_loss", "scans"], values["tenth_little_loss", "walls found, a tenth"]) == (27, 0.8)
+    assert (
+        values["tenth_little_loss", "scans"],
+        values["tenth_little_loss", "walls found, a tenth"],
+    ) == (27, 0.8)
     full = made.evaluation(cluster_hull=(0.1, 0.95, 0.96, 0.97, 0.98, 0.99, 1.0))
     verdicts, _ = rooms(rooms_walls=full)
     assert verdicts["fifteen_almost_complete"] == verdicts["tenth_little_loss"] == "yes"
@@ -138,7 +146,9 @@ def test_a_survey_of_fewer_scans_has_no_first_fifteen():
 
 def test_extraction():
     verdicts, values = drive()
-    assert verdicts["fewer_walls"] == verdicts["steadier_times"] == verdicts["time_by_size"] == "yes"
+    assert (
+        verdicts["fewer_walls"] == verdicts["steadier_times"] == verdicts["time_by_size"] == "yes"
+    )
     assert values["fewer_walls", "walls a scan, cluster RANSAC"] == 5
     assert values["fewer_walls", "walls a scan, iterative RANSAC"] == 10
     assert values["several_per_wall", "iterative RANSAC"] == pytest.approx(14 / 9)
@@ -152,7 +162,9 @@ def test_extraction():
     assert verdicts["steadier_times"] == verdicts["time_by_size"] == "no"
 
 
-@pytest.mark.parametrize(("retained", "holds"), [(76, "yes"), (55, "yes"), (89, "yes"), (30, "no"), (700, "no")])
+@pytest.mark.parametrize(
+    ("retained", "holds"), [(76, "yes"), (55, "yes"), (89, "yes"), (30, "no"), (700, "no")]
+)
 def test_two_percent(retained, holds):
     verdicts, values = drive(limits_steps=made.steps(3600, retained))
     assert verdicts["two_percent_survive"] == holds
@@ -164,8 +176,12 @@ def test_numbers_of_the_drive():
     assert values["survey_drive", "minutes"] == 6 and values["own_limits", "scans"] == 700
     assert values["selection_time", "to choose 15 of 90 scans"] == 0.045
     assert values["selection_time", "to order all 90"] == 0.09
-    assert values["selection_time", "exponent of the growth of choosing"] == pytest.approx(1, abs=0.01)
-    assert values["localiser", "error of the position, localiser, rms"] == pytest.approx(0.0125**0.5 / 10**0.5)
+    assert values["selection_time", "exponent of the growth of choosing"] == pytest.approx(
+        1, abs=0.01
+    )
+    assert values["localiser", "error of the position, localiser, rms"] == pytest.approx(
+        0.0125**0.5 / 10**0.5
+    )
 
 
 @pytest.mark.parametrize(
@@ -193,7 +209,10 @@ def test_time_depends_on_the_size_for_one_and_not_for_the_other(thesis, cluster,
             rows["item"] += [item] * 3
             rows["found"] += [5] * 3
             rows["seconds"] += [factor * s for s in seconds]
-    assert drive(drive_times={name: np.array(v) for name, v in rows.items()})[0]["time_by_size"] == holds
+    assert (
+        drive(drive_times={name: np.array(v) for name, v in rows.items()})[0]["time_by_size"]
+        == holds
+    )
 
 
 def test_times_of_one_size_tell_nothing_about_the_size():
@@ -212,7 +231,9 @@ def test_where_nothing_is_found_or_seen_nothing_is_judged():
     assert verdicts["full_hull_overestimates"] == verdicts["cluster_hull_closer"] == ""
     assert np.isnan(values["full_hull_overestimates", "share of scans over-estimated"])
     some = made.rooms()["rooms_areas"] | {"seen_m2": np.array([0.0, 10, 10])}
-    assert rooms(rooms_areas=some)[1]["full_hull_overestimates", "hull per seen area, median"] == 3.5
+    assert (
+        rooms(rooms_areas=some)[1]["full_hull_overestimates", "hull per seen area, median"] == 3.5
+    )
 
 
 def test_the_time_for_the_thesiss_scans_is_that_of_no_other_number():
@@ -226,7 +247,9 @@ def test_one_segment_and_a_few_more_per_wall_are_not_several():
     assert drive()[0]["several_per_wall"] == "yes"
     for count, holds in ((1.49, "no"), (1.5, "yes"), (np.nan, "")):
         # of all scans alone, not of the first of the orders
-        walls["walls_per_true_wall_of_a_scan"] = np.where(walls["k"] == 270, count, 2.0 if holds == "no" else 1.0)
+        walls["walls_per_true_wall_of_a_scan"] = np.where(
+            walls["k"] == 270, count, 2.0 if holds == "no" else 1.0
+        )
         assert drive(drive_walls=walls)[0]["several_per_wall"] == holds
 
 
@@ -245,7 +268,9 @@ def test_one_segment_and_a_few_more_per_wall_are_not_several():
 def test_uneven_sampling(random, area, holds):
     verdicts, values = rooms(rooms_unevenness=made.unevenness(random=random, cluster_hull=area))
     assert verdicts["uneven_harms_random"] == holds
-    assert values["uneven_harms_random", "lost, random, crowd 20 times"] == pytest.approx(1 - random[2] / random[0])
+    assert values["uneven_harms_random", "lost, random, crowd 20 times"] == pytest.approx(
+        1 - random[2] / random[0]
+    )
 
 
 def test_where_no_wall_is_seen_unevenness_tells_nothing():
@@ -255,4 +280,7 @@ def test_where_no_wall_is_seen_unevenness_tells_nothing():
 
 
 def test_stated_numbers_are_the_thesiss():
-    assert stated("full_hull_99", "scans for 99 %") == 10 and stated("cluster_hull_99", "scans for 99 %") == 17
+    assert (
+        stated_number("full_hull_99", "scans for 99 %") == 10
+        and stated_number("cluster_hull_99", "scans for 99 %") == 17
+    )

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from scanplan.plan import levels
+from scanplan.rays import levels
 
 
 def room(rng, *, floor=2000, ceiling=2000, walls=20_000, low_m=0.0, high_m=2.7, sigma_m=0.01):
@@ -12,29 +12,35 @@ def room(rng, *, floor=2000, ceiling=2000, walls=20_000, low_m=0.0, high_m=2.7, 
 @pytest.mark.parametrize(("low_m", "high_m"), [(0, 2.7), (-0.42, 2.1), (13.03, 16.0)])
 def test_floor_and_ceiling_are_found(low_m, high_m):
     z_m = room(np.random.default_rng(1), low_m=low_m, high_m=high_m)
-    assert levels.floor_and_ceiling(z_m) == pytest.approx((low_m, high_m), abs=0.01)
+    assert levels.find_floor_and_ceiling(z_m) == pytest.approx((low_m, high_m), abs=0.01)
 
 
 def test_a_ceiling_that_few_points_show_is_found():
     z_m = room(np.random.default_rng(2), ceiling=1000, walls=0)
     walls_m = np.random.default_rng(3).triangular(0, 0.8, 2.7, 60_000)
-    assert levels.floor_and_ceiling(np.concatenate([z_m, walls_m])) == pytest.approx((0, 2.7), abs=0.03)
+    assert levels.find_floor_and_ceiling(np.concatenate([z_m, walls_m])) == pytest.approx(
+        (0, 2.7), abs=0.03
+    )
 
 
 def test_stray_points_are_no_level():
     z_m = np.concatenate([room(np.random.default_rng(4)), [-8, -7.99, 30, 31]])
-    assert levels.floor_and_ceiling(z_m) == pytest.approx((0, 2.7), abs=0.01)
+    assert levels.find_floor_and_ceiling(z_m) == pytest.approx((0, 2.7), abs=0.01)
 
 
 def test_walls_without_a_ceiling_have_none():
-    floor_z_m, ceiling_z_m = levels.floor_and_ceiling(room(np.random.default_rng(5), ceiling=0))
+    floor_z_m, ceiling_z_m = levels.find_floor_and_ceiling(
+        room(np.random.default_rng(5), ceiling=0)
+    )
     assert floor_z_m == pytest.approx(0, abs=0.01) and np.isnan(ceiling_z_m)
 
 
 def test_walls_alone_have_neither():
-    assert np.isnan(levels.floor_and_ceiling(room(np.random.default_rng(6), floor=0, ceiling=0))).all()
+    assert np.isnan(
+        levels.find_floor_and_ceiling(room(np.random.default_rng(6), floor=0, ceiling=0))
+    ).all()
 
 
 @pytest.mark.parametrize("z_m", [[], [1.0], np.full(500, 0.3), [np.nan] * 50])
 def test_a_plane_or_nothing_has_no_ceiling(z_m):
-    assert np.isnan(levels.floor_and_ceiling(np.array(z_m, float))[1])
+    assert np.isnan(levels.find_floor_and_ceiling(np.array(z_m, float))[1])

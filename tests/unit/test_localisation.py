@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from scanplan import se3
-from scanplan.simulation import localisation, rover
+from scanplan.geometry import se3
+from scanplan.lab.simulation import localisation, rover
 
 # 2 m east at 0.5 m/s, a quarter turn left at 45 deg/s, 1 m north
-ELL = rover.drive([[0, 0], [2, 0], [2, 1]], speed_m_s=0.5, turn_rate_deg_s=45.0)
+ELL = rover.plan_drive([[0, 0], [2, 0], [2, 1]], speed_m_s=0.5, turn_rate_deg_s=45.0)
 TICKS = rover.tick_stamps(ELL, 100_000_000)
-TRUE = rover.poses(ELL, TICKS)
+TRUE = rover.drive_poses(ELL, TICKS)
 SURE = {
     "noise_m": 0.0,
     "noise_deg": 0.0,
@@ -24,14 +24,14 @@ SPEAKING = {"update_distance_m": 0.25, "update_angle_deg": 11.5, "transform_tole
 
 
 def believe(**changes):
-    return localisation.believe(TICKS, TRUE, **{**SURE, **SPEAKING, **changes})
+    return localisation.simulate_belief(TICKS, TRUE, **{**SURE, **SPEAKING, **changes})
 
 
 def test_localiser_speaks_first_last_and_after_enough_motion():
-    update = localisation.updates(TRUE, distance_m=0.25, angle_rad=0.2)
+    update = localisation.choose_updates(TRUE, distance_m=0.25, angle_rad=0.2)
     assert (update[0], update[-1]) == (0, len(TICKS) - 1)
     moved = np.linalg.norm(np.diff(TRUE[update, :2, 3], axis=0), axis=1)
-    turned = np.abs(np.diff(se3.yaw_rad(TRUE[update])))
+    turned = np.abs(np.diff(se3.pose_yaw_rad(TRUE[update])))
     # a tick lasts 0.02 s: 0.01 m or 0.9 degrees of overshoot
     assert ((moved[:-1] >= 0.25) | (turned[:-1] >= 0.2)).all()
     assert moved.max() <= 0.25 + 0.01 + 1e-9 and turned.max() <= 0.2 + np.radians(0.9) + 1e-9
@@ -44,7 +44,9 @@ def test_a_sure_localiser_tells_the_truth():
 
 
 def test_white_noise_has_its_deviation_and_no_memory():
-    error = localisation.errors(np.arange(20_000.0), **{**SURE, "noise_m": 0.05, "noise_deg": 1.0})
+    error = localisation.draw_pose_errors(
+        np.arange(20_000.0), **{**SURE, "noise_m": 0.05, "noise_deg": 1.0}
+    )
     np.testing.assert_allclose(error.std(axis=0), [0.05, 0.05, np.radians(1.0)], rtol=0.03)
     assert np.abs(_correlation(error, 1)).max() < 0.03
 
@@ -52,19 +54,24 @@ def test_white_noise_has_its_deviation_and_no_memory():
 @pytest.mark.parametrize("gap_s", [1.0, 5.0])
 def test_drift_is_an_ornstein_uhlenbeck_process_at_any_spacing(gap_s):
     t_s = gap_s * np.arange(200_000.0)
-    error = localisation.errors(t_s, **{**SURE, "drift_m": 0.04, "drift_deg": 0.5})
+    error = localisation.draw_pose_errors(t_s, **{**SURE, "drift_m": 0.04, "drift_deg": 0.5})
     np.testing.assert_allclose(error.std(axis=0), [0.04, 0.04, np.radians(0.5)], rtol=0.05)
     for steps in (1, 4):
-        np.testing.assert_allclose(_correlation(error, steps), np.exp(-steps * gap_s / 20.0), atol=0.02)
+        np.testing.assert_allclose(
+            _correlation(error, steps), np.exp(-steps * gap_s / 20.0), atol=0.02
+        )
 
 
 def test_drift_starts_as_large_as_it_stays():
-    first = [localisation.errors([0.0, 1.0], **{**SURE, "drift_m": 0.04, "seed": seed})[0, 0] for seed in range(400)]
+    first = [
+        localisation.draw_pose_errors([0.0, 1.0], **{**SURE, "drift_m": 0.04, "seed": seed})[0, 0]
+        for seed in range(400)
+    ]
     assert np.std(first) == pytest.approx(0.04, rel=0.15)
 
 
 def test_jumps_come_at_their_rate_to_their_length_in_every_direction():
-    jump = localisation.jumps(np.full(60_000, 0.5), 2.0, 0.3, np.random.default_rng(1))
+    jump = localisation.draw_jumps(np.full(60_000, 0.5), 2.0, 0.3, np.random.default_rng(1))
     length_m = np.hypot(jump[:, 0], jump[:, 1])
     # 30,000 s are 500 minutes
     assert (length_m > 0).sum() == pytest.approx(1000, rel=0.1)
@@ -75,8 +82,10 @@ def test_jumps_come_at_their_rate_to_their_length_in_every_direction():
 
 
 def test_a_jump_decays_with_the_drifts_time(monkeypatch):
-    monkeypatch.setattr(localisation, "jumps", lambda gap_s, *_: np.eye(3)[[1, 0, 1]] * [[0], [0.3], [0]])
-    error = localisation.errors([0.0, 1.0, 11.0], **SURE)
+    monkeypatch.setattr(
+        localisation, "draw_jumps", lambda gap_s, *_: np.eye(3)[[1, 0, 1]] * [[0], [0.3], [0]]
+    )
+    error = localisation.draw_pose_errors([0.0, 1.0, 11.0], **SURE)
     np.testing.assert_allclose(error[:, 0], [0, 0.3, 0.3 * np.exp(-0.5)], atol=1e-12)
 
 
@@ -96,7 +105,7 @@ def test_transform_holds_what_the_last_update_said():
 
 
 def test_odometry_starts_at_zero_and_drifts_slowly():
-    drifting = localisation.odometry(TRUE, seed=5)
+    drifting = localisation.integrate_odometry(TRUE, seed=5)
     np.testing.assert_allclose(drifting[0], np.eye(4), atol=1e-12)
     off_m = np.linalg.norm(drifting[-1, :2, 3] - TRUE[-1, :2, 3])
     assert 0.001 < off_m < 0.15
@@ -104,9 +113,11 @@ def test_odometry_starts_at_zero_and_drifts_slowly():
 
 def test_odometry_without_error_is_the_motion_from_the_start(monkeypatch):
     monkeypatch.setattr(localisation, "_ODOMETRY_SCALE_ERROR", 0.0)
-    turned = rover.drive([[1, 1], [1, 3], [2, 3]], speed_m_s=0.5, turn_rate_deg_s=60.0)
-    true = rover.poses(turned, rover.tick_stamps(turned, 100_000_000))
-    np.testing.assert_allclose(localisation.odometry(true, seed=5), se3.inverse(true[0]) @ true, atol=1e-9)
+    turned = rover.plan_drive([[1, 1], [1, 3], [2, 3]], speed_m_s=0.5, turn_rate_deg_s=60.0)
+    true = rover.drive_poses(turned, rover.tick_stamps(turned, 100_000_000))
+    np.testing.assert_allclose(
+        localisation.integrate_odometry(true, seed=5), se3.invert_pose(true[0]) @ true, atol=1e-9
+    )
 
 
 def _correlation(error, steps):

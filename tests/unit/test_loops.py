@@ -3,7 +3,7 @@ import tracemalloc
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from scanplan import se3
+from scanplan.geometry import se3
 from scanplan.registration import loops
 
 
@@ -14,7 +14,9 @@ def there_and_back():
 
 
 def test_a_scan_is_linked_to_the_earlier_visit_of_its_place():
-    pairs = loops.pairs(there_and_back(), np.ones(20, bool), radius_m=0.9, apart=2, most=4)
+    pairs = loops.choose_loop_pairs(
+        there_and_back(), np.ones(20, bool), radius_m=0.9, apart=2, most=4
+    )
     assert pairs == [(i, 19 - i) for i in range(11, 20)]
 
 
@@ -22,10 +24,16 @@ def test_each_visit_gives_one_link_and_the_nearest_come_first():
     """Four times past the origin, ever nearer, with a long way between."""
     away = np.column_stack([np.full(5, 50.0), np.arange(5.0)])
     passes = [[[-1, y], [0, y], [1, y]] for y in (0.9, 0.6, 0.3, 0.0)]
-    xy = np.concatenate([np.concatenate([p, away + np.array([0, 10 * i])]) for i, p in enumerate(passes)])
-    pairs = loops.pairs(xy, np.ones(len(xy), bool), radius_m=2.0, apart=3, most=2)
+    xy = np.concatenate(
+        [np.concatenate([p, away + np.array([0, 10 * i])]) for i, p in enumerate(passes)]
+    )
+    pairs = loops.choose_loop_pairs(xy, np.ones(len(xy), bool), radius_m=2.0, apart=3, most=2)
     assert [p for p in pairs if p[0] == 25] == [(25, 9), (25, 17)]
-    assert [p for p in loops.pairs(xy, np.ones(len(xy), bool), radius_m=2.0, apart=3, most=9) if p[0] == 25] == [
+    assert [
+        p
+        for p in loops.choose_loop_pairs(xy, np.ones(len(xy), bool), radius_m=2.0, apart=3, most=9)
+        if p[0] == 25
+    ] == [
         (25, 1),
         (25, 9),
         (25, 17),
@@ -36,38 +44,55 @@ def test_standing_still_links_to_none_too_near_in_time():
     still = np.zeros((12, 2))
     assert all(
         source - target > 4
-        for source, target in loops.pairs(still, np.ones(len(still), bool), radius_m=1.0, apart=4, most=3)
+        for source, target in loops.choose_loop_pairs(
+            still, np.ones(len(still), bool), radius_m=1.0, apart=4, most=3
+        )
     )
-    assert loops.pairs(still[:4], np.ones(4, bool), radius_m=1.0, apart=4, most=3) == []
+    assert loops.choose_loop_pairs(still[:4], np.ones(4, bool), radius_m=1.0, apart=4, most=3) == []
 
 
 def test_stations_are_a_step_or_a_turn_apart():
     x_m = [0.0, 0.2, 0.4, 0.6, 0.6, 0.6, 0.6, 1.2]
     heading_deg = [0, 0, 0, 0, 20, 40, -20, -20]
     turn = Rotation.from_euler("z", np.array(heading_deg)[:, None], degrees=True).as_quat()
-    pose = se3.matrix(np.column_stack([x_m, np.zeros((8, 2))]), turn)
-    assert np.flatnonzero(loops.stations(pose, 0.5)).tolist() == [0, 3, 5, 6, 7]
-    assert loops.stations(pose, 0.0).all()
+    pose = se3.pose_matrix(np.column_stack([x_m, np.zeros((8, 2))]), turn)
+    assert np.flatnonzero(loops.choose_stations(pose, 0.5)).tolist() == [0, 3, 5, 6, 7]
+    assert loops.choose_stations(pose, 0.0).all()
 
 
 def test_stations_alone_are_linked_and_to_the_nearest_station():
     """There a scan a metre, back likewise: of the way there only x = 0, 4, 8 are stations."""
     is_station = np.r_[np.arange(10) % 4 == 0, np.ones(10, bool)]
-    pairs = loops.pairs(there_and_back(), is_station, radius_m=1.2, apart=2, most=4)
-    assert pairs == [(11, 8), (12, 8), (13, 6), (14, 4), (15, 4), (16, 4), (17, 2), (18, 0), (19, 0)]
+    pairs = loops.choose_loop_pairs(there_and_back(), is_station, radius_m=1.2, apart=2, most=4)
+    assert pairs == [
+        (11, 8),
+        (12, 8),
+        (13, 6),
+        (14, 4),
+        (15, 4),
+        (16, 4),
+        (17, 2),
+        (18, 0),
+        (19, 0),
+    ]
 
 
 def test_a_scan_without_links_is_tried_with_the_near_ones_before():
     xy = np.column_stack([np.arange(8.0), np.zeros(8)])
     linked = [False, True, True, True, True, False, True, False]
-    assert loops.bridges(linked, xy, radius_m=2.5, apart=4) == [(5, 3), (5, 4), (7, 5), (7, 6)]
-    assert loops.bridges(linked, xy, radius_m=9.0, apart=1) == [(5, 4), (7, 6)]
+    assert loops.choose_bridges(linked, xy, radius_m=2.5, apart=4) == [
+        (5, 3),
+        (5, 4),
+        (7, 5),
+        (7, 6),
+    ]
+    assert loops.choose_bridges(linked, xy, radius_m=9.0, apart=1) == [(5, 4), (7, 6)]
 
 
 def test_standing_still_takes_no_memory_for_all_pairs():
     still = np.random.default_rng(0).normal(0, 0.1, (1500, 2))
     tracemalloc.start()
-    loops.pairs(still, np.ones(len(still), bool), radius_m=5.0, apart=6, most=4)
+    loops.choose_loop_pairs(still, np.ones(len(still), bool), radius_m=5.0, apart=6, most=4)
     peak_bytes = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert peak_bytes < 1500**2

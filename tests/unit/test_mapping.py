@@ -7,29 +7,42 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from scanplan import configuration, schemas, se3, spool, tables, workers
-from scanplan.evaluation import poseerrors
-from scanplan.registration import linktable, mapping
+from scanplan.geometry import se3
+from scanplan.lab.evaluation import pose_errors
+from scanplan.project.settings import read_yaml
+from scanplan.registration import constraint_table, mapping
+from scanplan.stage import workers
+from scanplan.store import scan_cache, schemas, tables
 
 ROOT = Path(__file__).resolve().parents[2]
 N = 60
 
 
 def pose(x, y, yaw_deg):
-    return se3.matrix([x, y, 0.4], Rotation.from_euler("z", yaw_deg, degrees=True).as_quat())
+    return se3.pose_matrix([x, y, 0.4], Rotation.from_euler("z", yaw_deg, degrees=True).as_quat())
 
 
 def block(rng, n=9000):
     """Points on floor and walls of a ring of corridors around a block, with niches that tell the places apart."""
     walls = [((-6, -5), (6, -5)), ((6, -5), (6, 5)), ((6, 5), (-6, 5)), ((-6, 5), (-6, -5))]
     walls += [((-4, -3), (4, -3)), ((4, -3), (4, 3)), ((4, 3), (-4, 3)), ((-4, 3), (-4, -3))]
-    for x, y in rng.permutation([(-5.5, -2), (-2, -4.7), (3, -4.7), (5.5, 1), (1, 4.5), (-5.5, 3), (-1, 3.4)]):
-        walls += [((x, y), (x + 0.4, y)), ((x + 0.4, y), (x + 0.4, y + 0.3)), ((x, y), (x, y + 0.3))]
+    for x, y in rng.permutation(
+        [(-5.5, -2), (-2, -4.7), (3, -4.7), (5.5, 1), (1, 4.5), (-5.5, 3), (-1, 3.4)]
+    ):
+        walls += [
+            ((x, y), (x + 0.4, y)),
+            ((x + 0.4, y), (x + 0.4, y + 0.3)),
+            ((x, y), (x, y + 0.3)),
+        ]
     ends = np.array(walls, float)
     length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
     which, share = rng.choice(len(ends), n, p=length / length.sum()), rng.uniform(size=(n, 1))
-    wall = np.column_stack([ends[which, 0] * (1 - share) + ends[which, 1] * share, rng.uniform(0, 2.4, n)])
-    floor = np.column_stack([rng.uniform(-6, 6, n // 3), rng.uniform(-5, 5, n // 3), np.zeros(n // 3)])
+    wall = np.column_stack(
+        [ends[which, 0] * (1 - share) + ends[which, 1] * share, rng.uniform(0, 2.4, n)]
+    )
+    floor = np.column_stack(
+        [rng.uniform(-6, 6, n // 3), rng.uniform(-5, 5, n // 3), np.zeros(n // 3)]
+    )
     return np.concatenate([wall, floor])
 
 
@@ -46,7 +59,7 @@ def drive():
     for number, world_from_sensor in enumerate(true):
         points = block(np.random.default_rng(100 + number)) + rng.normal(0, 0.01, (12000, 3))
         seen = points[np.linalg.norm(points[:, :2] - world_from_sensor[:2, 3], axis=1) < 5]
-        scans.append(se3.transform(se3.inverse(world_from_sensor), seen))
+        scans.append(se3.transform_points(se3.invert_pose(world_from_sensor), seen))
     drift = np.cumsum(rng.normal(0, 0.01, (N, 2)), axis=0)
     priors = true.copy()
     priors[:, :2, 3] += drift - drift.mean(axis=0) + rng.normal(0, 0.03, (N, 2))
@@ -55,13 +68,19 @@ def drive():
 
 def register(drive, folder, threads=1, **changes):
     scans, priors, _ = drive
-    section = configuration.read_yaml(ROOT / "config/config.yaml")["registration"]
+    section = read_yaml(ROOT / "config/config.yaml")["registration"]
     graph = section["graph"] | changes.pop("graph", {})
-    settings = mapping.settings_of(section | {"batch_size": 20} | changes | {"graph": graph})
+    settings = mapping.registration_settings(
+        section | {"batch_size": 20} | changes | {"graph": graph}
+    )
     found = (SimpleNamespace(xyz_m=xyz_m) for xyz_m in scans)
-    survey = mapping.Survey(np.arange(N) * 5, priors, planar=False)
-    with spool.beside(folder / "a") as raw, spool.beside(folder / "b") as thinned, workers.pool(threads) as run:
-        return mapping.register(survey, found, raw, thinned, run, settings)
+    survey = mapping.CandidateScans(np.arange(N) * 5, priors, planar=False)
+    with (
+        scan_cache.open_scan_cache(folder / "a") as raw,
+        scan_cache.open_scan_cache(folder / "b") as thinned,
+        workers.open_pool(threads) as run,
+    ):
+        return mapping.register_scans(survey, found, raw, thinned, run, settings)
 
 
 @pytest.fixture(scope="module")
@@ -71,8 +90,8 @@ def mapped(drive, tmp_path_factory):
 
 def errors_m(judged, true):
     pose_of = np.array([verdict.world_from_sensor for verdict in judged])
-    motion = poseerrors.alignment(pose_of[:, :3, 3], true[:, :3, 3])
-    return poseerrors.errors(motion @ pose_of, true)
+    motion = pose_errors.fit_alignment(pose_of[:, :3, 3], true[:, :3, 3])
+    return pose_errors.pose_errors(motion @ pose_of, true)
 
 
 def test_the_map_is_better_than_the_localiser_and_than_the_chain(drive, mapped, tmp_path):
@@ -93,27 +112,43 @@ def test_the_map_is_better_than_the_localiser_and_than_the_chain(drive, mapped, 
 
 def test_cores_change_nothing(drive, mapped, tmp_path):
     (one, links), (two, same) = mapped, register(drive, tmp_path, threads=2)
-    np.testing.assert_array_equal([v.world_from_sensor for v in one], [v.world_from_sensor for v in two])
+    np.testing.assert_array_equal(
+        [v.world_from_sensor for v in one], [v.world_from_sensor for v in two]
+    )
     np.testing.assert_array_equal(links.residual, same.residual)
 
 
 def test_links_make_a_table(drive, mapped, tmp_path):
     result = mapped[1]
-    tables.write(tmp_path / "edges.parquet", schemas.EDGES, linktable.columns(result))
-    edges = tables.read(tmp_path / "edges.parquet", schemas.EDGES)
+    tables.write_table(
+        tmp_path / "edges.parquet", schemas.EDGES, constraint_table.constraint_columns(result)
+    )
+    edges = tables.read_table(tmp_path / "edges.parquet", schemas.EDGES)
     assert set(edges["kind"]) == {"sequence", "loop"} and edges["inlier"].all()
     assert np.median(edges["residual_m"]) < 0.01 and (edges["fitness"] > 0.3).all()
     true = drive[2]
-    motion = se3.matrix(*(np.column_stack([edges[c] for c in names]) for names in (schemas.XYZ, schemas.QUAT)))
-    truth = se3.inverse(true[edges["target"] // 5]) @ true[edges["source"] // 5]
+    motion = se3.pose_matrix(
+        *(np.column_stack([edges[c] for c in names]) for names in (schemas.XYZ, schemas.QUAT))
+    )
+    truth = se3.invert_pose(true[edges["target"] // 5]) @ true[edges["source"] // 5]
     assert np.median(np.linalg.norm((motion - truth)[:, :3, 3], axis=1)) < 0.01
-    assert "sequence (0 outliers)" in linktable.summary(result)
+    assert "sequence (0 outliers)" in constraint_table.summarise_constraints(result)
 
 
 def test_no_links_make_an_empty_table(tmp_path):
-    tables.write(tmp_path / "edges.parquet", schemas.EDGES, linktable.columns(None), allow_empty=True)
-    assert len(tables.read(tmp_path / "edges.parquet", schemas.EDGES, allow_empty=True)["source"]) == 0
-    assert linktable.summary(None) == "no links: poses as given"
+    tables.write_table(
+        tmp_path / "edges.parquet",
+        schemas.EDGES,
+        constraint_table.constraint_columns(None),
+        allow_empty=True,
+    )
+    assert (
+        len(
+            tables.read_table(tmp_path / "edges.parquet", schemas.EDGES, allow_empty=True)["source"]
+        )
+        == 0
+    )
+    assert constraint_table.summarise_constraints(None) == "no links: poses as given"
 
 
 def test_a_jump_of_the_localiser_by_two_metres_loses_no_region(drive, mapped, tmp_path):
@@ -133,7 +168,7 @@ def test_a_jump_of_the_localiser_by_two_metres_loses_no_region(drive, mapped, tm
 def test_a_scan_out_of_place_before_a_border_costs_only_itself(drive, tmp_path, bad):
     scans, priors, true = drive
     disturbed = np.array(priors)
-    disturbed[bad] = pose(1.2, 0.7, 0) @ disturbed[bad] @ se3.inverse(pose(0, 0, -35))
+    disturbed[bad] = pose(1.2, 0.7, 0) @ disturbed[bad] @ se3.invert_pose(pose(0, 0, -35))
     judged, result = register((scans, disturbed, true), tmp_path)
     assert [i for i, verdict in enumerate(judged) if verdict.reason != "kept"] == [0, bad]
     over = [e for e in result.edges if e.kind == "sequence" and e.source >= 100 > e.target]
@@ -159,7 +194,7 @@ def test_links_are_told_without_optimisation_too(drive, tmp_path):
     assert {edge.source for edge in result.edges} == set(range(5, 5 * N, 5))
     edge, residual = result.edges[7], result.residual[7]
     place = [judged[end // 5].world_from_sensor for end in (edge.target, edge.source)]
-    off = se3.inverse(edge.fit.target_from_source) @ se3.inverse(place[0]) @ place[1]
+    off = se3.invert_pose(edge.fit.target_from_source) @ se3.invert_pose(place[0]) @ place[1]
     np.testing.assert_allclose(np.linalg.norm(residual[:3]), np.linalg.norm(off[:3, 3]), rtol=0.05)
 
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import bagmaking
+from helpers import bag_making
 from scanplan.errors import StageError
 from scanplan.recordings import messages
 
@@ -24,25 +24,40 @@ LAYOUTS = {
     "big endian": [("x", ">f4"), ("y", ">f4"), ("z", ">f4")],
     "double": [("x", "<f8"), ("y", "<f8"), ("z", "<f8")],
     "other order": [("intensity", "<u2"), ("z", "<f4"), ("ring", "u1"), ("y", "<f4"), ("x", "<f4")],
-    "count above one": [("normal", "<f4", (3,)), ("x", "<f4"), ("y", "<f4"), ("z", "<f4"), ("rgb", "u1", (4,))],
-    "padding": {"names": list("xyz"), "formats": ["<f4"] * 3, "offsets": [4, 12, 20], "itemsize": 48},
+    "count above one": [
+        ("normal", "<f4", (3,)),
+        ("x", "<f4"),
+        ("y", "<f4"),
+        ("z", "<f4"),
+        ("rgb", "u1", (4,)),
+    ],
+    "padding": {
+        "names": list("xyz"),
+        "formats": ["<f4"] * 3,
+        "offsets": [4, 12, 20],
+        "itemsize": 48,
+    },
 }
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_point_cloud_layouts(layout):
-    message = bagmaking.point_cloud2(structured(LAYOUTS[layout]))
-    xyz_m, time_raw = messages.point_cloud(message)
+    message = bag_making.point_cloud2(structured(LAYOUTS[layout]))
+    xyz_m, time_raw = messages.read_point_cloud(message)
     assert xyz_m.dtype == np.float32
     np.testing.assert_array_equal(xyz_m, XYZ)
     assert time_raw is None
 
 
 def test_unaligned_time_of_livox():
-    dtype = np.dtype([("x", "<f4"), ("y", "<f4"), ("z", "<f4"), ("tag", "<u2"), ("timestamp", "<f8")])
+    dtype = np.dtype(
+        [("x", "<f4"), ("y", "<f4"), ("z", "<f4"), ("tag", "<u2"), ("timestamp", "<f8")]
+    )
     assert dtype.fields["timestamp"][1] == 14
     times = np.arange(4) + 1.7e18
-    xyz_m, time_raw = messages.point_cloud(bagmaking.point_cloud2(structured(dtype, timestamp=times)))
+    xyz_m, time_raw = messages.read_point_cloud(
+        bag_making.point_cloud2(structured(dtype, timestamp=times))
+    )
     np.testing.assert_array_equal(time_raw, times)
     np.testing.assert_array_equal(xyz_m, XYZ)
 
@@ -52,28 +67,33 @@ def test_organised_cloud_with_padded_rows():
     padded = np.concatenate(
         [np.frombuffer(points.tobytes(), np.uint8).reshape(2, 24), np.full((2, 7), 99, np.uint8)], 1
     )
-    message = bagmaking.point_cloud2(points, row_step=31, data=padded.ravel())
-    np.testing.assert_array_equal(messages.point_cloud(message)[0], XYZ)
-    last_row_cut_at_its_padding = bagmaking.point_cloud2(points, row_step=31, data=padded.ravel()[:-7])
-    np.testing.assert_array_equal(messages.point_cloud(last_row_cut_at_its_padding)[0], XYZ)
+    message = bag_making.point_cloud2(points, row_step=31, data=padded.ravel())
+    np.testing.assert_array_equal(messages.read_point_cloud(message)[0], XYZ)
+    last_row_cut_at_its_padding = bag_making.point_cloud2(
+        points, row_step=31, data=padded.ravel()[:-7]
+    )
+    np.testing.assert_array_equal(messages.read_point_cloud(last_row_cut_at_its_padding)[0], XYZ)
 
 
 def test_duplicate_empty_and_unknown_fields_do_not_matter():
-    message = bagmaking.point_cloud2(structured(LAYOUTS["plain"]))
+    message = bag_making.point_cloud2(structured(LAYOUTS["plain"]))
     make = type(message.fields[0])
-    message.fields += [make(name="x", offset=4, datatype=7, count=1), make(name="", offset=0, datatype=2, count=12)]
+    message.fields += [
+        make(name="x", offset=4, datatype=7, count=1),
+        make(name="", offset=0, datatype=2, count=12),
+    ]
     message.fields += [make(name="strange", offset=900, datatype=77, count=5)]
-    np.testing.assert_array_equal(messages.point_cloud(message)[0], XYZ)
+    np.testing.assert_array_equal(messages.read_point_cloud(message)[0], XYZ)
 
 
 def test_a_wrong_row_step_of_one_row_does_not_matter():
-    message = bagmaking.point_cloud2(structured(LAYOUTS["plain"]), row_step=0)
-    np.testing.assert_array_equal(messages.point_cloud(message)[0], XYZ)
+    message = bag_making.point_cloud2(structured(LAYOUTS["plain"]), row_step=0)
+    np.testing.assert_array_equal(messages.read_point_cloud(message)[0], XYZ)
 
 
 def test_no_points():
-    message = bagmaking.point_cloud2(np.empty((0, 3), np.float32), fields=[], point_step=0)
-    xyz_m, time_raw = messages.point_cloud(message)
+    message = bag_making.point_cloud2(np.empty((0, 3), np.float32), fields=[], point_step=0)
+    xyz_m, time_raw = messages.read_point_cloud(message)
     assert xyz_m.shape == (0, 3)
     assert time_raw is None
 
@@ -91,22 +111,22 @@ def test_no_points():
     ],
 )
 def test_contradicting_layouts(overrides, told):
-    message = bagmaking.point_cloud2(structured(LAYOUTS["plain"]), **overrides)
+    message = bag_making.point_cloud2(structured(LAYOUTS["plain"]), **overrides)
     with pytest.raises(StageError, match=told):
-        messages.point_cloud(message)
+        messages.read_point_cloud(message)
 
 
 def test_missing_coordinate_names_the_fields_found():
-    message = bagmaking.point_cloud2(np.zeros(2, [("x", "<f4"), ("y", "<f4"), ("range", "<f4")]))
+    message = bag_making.point_cloud2(np.zeros(2, [("x", "<f4"), ("y", "<f4"), ("range", "<f4")]))
     with pytest.raises(StageError, match=r"no field z .*range, x, y"):
-        messages.point_cloud(message)
+        messages.read_point_cloud(message)
 
 
 def test_unknown_type_of_a_coordinate():
-    message = bagmaking.point_cloud2(structured(LAYOUTS["plain"]))
+    message = bag_making.point_cloud2(structured(LAYOUTS["plain"]))
     message.fields[1].datatype = 42
     with pytest.raises(StageError, match="field y: type 42"):
-        messages.point_cloud(message)
+        messages.read_point_cloud(message)
 
 
 @given(st.data())
@@ -117,50 +137,60 @@ def test_any_layout_gives_the_points_back(data):
     order = data.draw(st.sampled_from("<>"))
     formats = [
         order
-        + (data.draw(st.sampled_from(["f4", "f8"])) if n in "xyz" else data.draw(st.sampled_from(["u1", "u2", "f8"])))
+        + (
+            data.draw(st.sampled_from(["f4", "f8"]))
+            if n in "xyz"
+            else data.draw(st.sampled_from(["u1", "u2", "f8"]))
+        )
         for n in names
     ]
     points = structured(list(zip(names, formats, strict=True)))
-    np.testing.assert_array_equal(messages.point_cloud(bagmaking.point_cloud2(points))[0], XYZ)
+    np.testing.assert_array_equal(
+        messages.read_point_cloud(bag_making.point_cloud2(points))[0], XYZ
+    )
 
 
 def test_laser_scan_on_paper():
-    xyz_m, time_raw = messages.laser_scan(bagmaking.laser_scan([1, 2, 3, 4], time_increment=0.01))
+    xyz_m, time_raw = messages.read_laser_scan(
+        bag_making.laser_scan([1, 2, 3, 4], time_increment=0.01)
+    )
     np.testing.assert_allclose(xyz_m, [[1, 0, 0], [0, 2, 0], [-3, 0, 0], [0, -4, 0]], atol=1e-6)
     np.testing.assert_allclose(time_raw, [0, 0.01, 0.02, 0.03])
 
 
 def test_laser_scan_drops_what_is_no_return():
     ranges = [0.05, np.inf, np.nan, 30.0, 81.8, 0.1, -1]
-    xyz_m, time_raw = messages.laser_scan(bagmaking.laser_scan(ranges))
+    xyz_m, time_raw = messages.read_laser_scan(bag_making.laser_scan(ranges))
     assert np.isfinite(xyz_m).all(axis=1).tolist() == [False] * 5 + [True, False]
     assert time_raw is None
 
 
 def test_laser_scan_without_limit_or_beams():
-    assert np.isfinite(messages.laser_scan(bagmaking.laser_scan([50.0, 60.0], range_max=0.0))[0]).all()
-    assert messages.laser_scan(bagmaking.laser_scan([]))[0].shape == (0, 3)
+    assert np.isfinite(
+        messages.read_laser_scan(bag_making.laser_scan([50.0, 60.0], range_max=0.0))[0]
+    ).all()
+    assert messages.read_laser_scan(bag_making.laser_scan([]))[0].shape == (0, 3)
 
 
 @pytest.mark.parametrize("increment", [0.0, np.nan])
 def test_laser_scan_without_directions(increment):
     with pytest.raises(StageError, match="angle_increment"):
-        messages.laser_scan(bagmaking.laser_scan([1, 1], angle_increment=increment))
+        messages.read_laser_scan(bag_making.laser_scan([1, 1], angle_increment=increment))
 
 
 @pytest.mark.parametrize("kind", ["ros1", "sqlite3"])
 def test_header_without_decoding(kind):
-    maker = bagmaking.Maker(kind)
-    message = maker.laser(bagmaking.START_NS + 7, [1.0], "/laser")
+    maker = bag_making.Maker(kind)
+    message = maker.laser(bag_making.START_NS + 7, [1.0], "/laser")
     serialize = maker.store.serialize_cdr if maker.ros2 else maker.store.serialize_ros1
     raw = serialize(message, message.__msgtype__)
-    assert messages.header(raw, ros2=maker.ros2) == (bagmaking.START_NS + 7, "laser")
+    assert messages.read_header(raw, ros2=maker.ros2) == (bag_making.START_NS + 7, "laser")
     with pytest.raises(struct.error):
-        messages.header(raw[:18], ros2=maker.ros2)
+        messages.read_header(raw[:18], ros2=maker.ros2)
 
 
 def test_header_of_big_endian_cdr():
-    maker = bagmaking.Maker("sqlite3")
-    message = maker.laser(bagmaking.START_NS + 7, [1.0], "laser")
+    maker = bag_making.Maker("sqlite3")
+    message = maker.laser(bag_making.START_NS + 7, [1.0], "laser")
     raw = maker.store.serialize_cdr(message, message.__msgtype__, little_endian=False)
-    assert messages.header(raw, ros2=True) == (bagmaking.START_NS + 7, "laser")
+    assert messages.read_header(raw, ros2=True) == (bag_making.START_NS + 7, "laser")

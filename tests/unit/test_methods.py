@@ -1,12 +1,17 @@
 from dataclasses import fields
 
-from scanplan import configuration, inventory
-from scanplan.selection import methods, orderings, wallcells
+from scanplan.project import dataset
+from scanplan.project.settings import read_yaml
+from scanplan.selection import methods, orderings, wall_cells
 
 
 def test_the_schema_allows_the_methods_there_are(project_root):
-    schema = configuration.read_yaml(project_root / "workflow/schemas/config.schema.yaml")
-    assert inventory.choices(schema, "plan", "method") == list(methods.METHODS) == list(orderings.METHODS)
+    schema = read_yaml(project_root / "workflow/schemas/config.schema.yaml")
+    assert (
+        dataset.list_choices(schema, "plan", "method")
+        == list(methods.METHODS)
+        == list(orderings.METHODS)
+    )
 
 
 def test_every_method_has_its_tables_and_its_settings():
@@ -20,7 +25,7 @@ def test_every_method_is_in_the_manual(project_root):
 
 
 def test_the_limits_of_walls_are_the_extractors_and_all_that_cells_need(project_root):
-    settings = configuration.read_yaml(project_root / "config/config.yaml")
-    needed = {field.name for field in fields(wallcells.Settings)}
+    settings = read_yaml(project_root / "config/config.yaml")
+    needed = {field.name for field in fields(wall_cells.WallCellSettings)}
     assert needed == {*methods.WALL_LIMITS, *settings["selection"]["wall_length"]}
     assert set(methods.WALL_LIMITS) <= set(settings["walls"]["cluster_ransac"])

@@ -9,14 +9,16 @@ def test_a_floor_adds_to_the_covariance():
     rng = np.random.default_rng(0)
     roots = rng.normal(size=(5, 6, 6))
     covariance, floor = roots @ np.swapaxes(roots, 1, 2) + np.eye(6), np.diag([1, 2, 3, 4, 5, 6.0])
-    found = multiway.with_floor(np.linalg.inv(covariance), floor)
+    found = multiway.add_covariance(np.linalg.inv(covariance), floor)
     np.testing.assert_allclose(found, np.linalg.inv(covariance + floor), rtol=1e-9, atol=1e-12)
 
 
 def test_a_floor_gives_no_information_where_there_is_none():
     information = np.diag([0, 1e6, 1e6, 0, 1e6, 1e6])
-    found = multiway.with_floor(information[None], 1e-4 * np.eye(6))[0]
-    np.testing.assert_allclose(np.diag(found), [0, *[1 / (1e-6 + 1e-4)] * 2, 0, *[1 / (1e-6 + 1e-4)] * 2], rtol=1e-9)
+    found = multiway.add_covariance(information[None], 1e-4 * np.eye(6))[0]
+    np.testing.assert_allclose(
+        np.diag(found), [0, *[1 / (1e-6 + 1e-4)] * 2, 0, *[1 / (1e-6 + 1e-4)] * 2], rtol=1e-9
+    )
 
 
 def test_no_pair_is_linked_twice():

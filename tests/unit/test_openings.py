@@ -1,67 +1,207 @@
-"""Doors and windows of plans against true ones, known on paper."""
+from dataclasses import replace
 
 import numpy as np
 import pytest
-import shapely
+from hypothesis import given
+from hypothesis import strategies as st
 
-from scanplan.evaluation import openings, visibility
+from scanplan.geometry.lines import Line
+from scanplan.plan import openings
+from scanplan.rays.face_profile import FaceObservation, RaySettings
 
-
-class TestDoors:
-    TRUE = np.array([[(1, 0), (1.9, 0)], [(3, 0), (3.9, 0)], [(50, 0), (50.9, 0)]])
-    ROOM = shapely.box(0, 0, 4, 4)
-
-    def measure(self, drawn):
-        return openings.doors(np.array(drawn, float).reshape(-1, 2, 2), self.TRUE, [self.ROOM], np.array([True]))
-
-    def test_doors_of_rooms_entered_are_to_be_found(self):
-        row = self.measure([[(1, 0.1), (1.95, 0.1)]])
-        assert (row["n_doors_true"], row["n_doors_found"], row["door_recall"]) == (2, 1, 0.5)
-        assert (row["door_precision"], row["door_width_right"]) == (1, 1)
-        assert row["door_width_error_m"] == pytest.approx(0.05)
-
-    def test_a_door_elsewhere_or_across_is_wrong(self):
-        row = self.measure([[(1, 0), (1.9, 0)], [(2, 2), (2.9, 2)], [(3.45, -0.45), (3.45, 0.45)]])
-        assert (row["n_doors_found"], row["door_precision"]) == (1, pytest.approx(1 / 3))
-
-    def test_one_door_is_not_found_twice(self):
-        row = self.measure([[(1, 0), (1.9, 0)], [(1.1, 0), (2.0, 0)]])
-        assert (row["n_doors_found"], row["door_precision"]) == (1, 0.5)
-
-    def test_no_doors(self):
-        assert (self.measure([])["door_recall"], self.measure([])["door_precision"]) == (0, 1)
+READING = RaySettings(band_m=0.06, reach_m=2.0, max_gap_m=0.5, door_height_m=1.8)
+SETTINGS = openings.OpeningSettings(
+    min_opening_m=0.5, max_opening_m=2.0, max_closed_m=1.5, max_door_m=1.5
+)
+AXIS = Line(np.zeros(2), np.array([0.0, 1.0]))
 
 
-class TestWindows:
-    """A wall along y = 0, 0.2 m thick: its inner face at 0.1, its outer one at -0.1; windows are on its middle."""
+def seen(hits, passes, n_scans=1, behind_m=0.0):
+    hits, passes = (np.array(sorted(rows), float).reshape(-1, 2) for rows in (hits, passes))
+    return FaceObservation(
+        AXIS,
+        *(hits[:, 0], np.full(len(hits), -behind_m), hits[:, 1], np.arange(len(hits)) % n_scans),
+        *(passes[:, 0], passes[:, 1], np.zeros(len(passes), int)),
+    )
 
-    FACES = np.array([[(0, 0.1), (10, 0.1)], [(10, -0.1), (0, -0.1)]])
-    TRUE = np.array([[(1, 0), (2.4, 0)], [(6, 0), (7.4, 0)]])
 
-    def measure(self, drawn, seen_m=(0, 10), faces=FACES):
-        cells = visibility.cut(faces)
-        visible = (
-            (cells.face != len(faces) - 1) & (cells.middle_m[:, 0] > seen_m[0]) & (cells.middle_m[:, 0] < seen_m[1])
-        )
-        return openings.windows(np.array(drawn, float).reshape(-1, 2, 2), self.TRUE, cells, visible)
+def grid(low, high, *heights):
+    return [(x, z) for x in np.arange(low + 0.01, high, 0.03) for z in heights]
 
-    def test_windows_of_visible_walls_are_to_be_found(self):
-        drawn = [[(1, 0.05), (2.36, 0.05)], [(4, 0), (5, 0)]]
-        row = self.measure(drawn)
-        assert (row["n_windows_true"], row["n_windows_found"], row["n_windows_drawn"]) == (2, 1, 2)
-        assert (row["window_recall"], row["window_precision"], row["window_width_right"]) == (0.5, 0.5, 1)
-        assert row["window_width_error_m"] == pytest.approx(0.04)
 
-    @pytest.mark.parametrize(("seen_m", "count"), [((0, 10), 2), ((0, 6), 1), ((0, 6.8), 2), ((3, 5), 0)])
-    def test_a_wall_of_which_less_than_half_could_be_seen_is_not_visible(self, seen_m, count):
-        assert self.measure([], seen_m)["n_windows_true"] == count
+def judge(hits, passes, low=1.0, high=1.9, n_scans=1, behind_m=0.0, **more):
+    line = seen(hits, passes, n_scans, behind_m)
+    return openings.classify_gap(
+        AXIS, low, high, [line], READING, SETTINGS, **({"planar": False} | more)
+    )
 
-    def test_a_window_that_reaches_down_to_the_sensor_is_judged_by_the_wall_beside_it(self):
-        faces = np.array([[(0, 0.1), (1, 0.1)], [(2.4, 0.1), (10, 0.1)], [(10, -0.1), (0, -0.1)]])
-        assert self.measure([], faces=faces)["n_windows_true"] == 2
-        assert self.measure([], (3, 10), faces)["n_windows_true"] == 1
 
-    def test_no_windows(self):
-        row = self.measure([])
-        assert (row["window_recall"], row["window_precision"]) == (0, 1)
-        assert np.isnan(row["window_width_error_m"])
+def test_a_door():
+    gap = judge(grid(1, 1.9, 2.2, 2.5), grid(1, 1.9, 0.1, 1.0, 2.0))
+    assert (gap.state, gap.kind(SETTINGS), gap.sill_m) == (openings.OPEN, "door", 0)
+    assert gap.lintel_m == pytest.approx(2.1, abs=0.11)
+    assert gap.width_m == pytest.approx(0.9)
+
+
+def test_a_window():
+    gap = judge(grid(1, 1.9, 0.5, 0.8, 2.2), grid(1, 1.9, 1.0, 1.6))
+    assert gap.kind(SETTINGS) == "window"
+    assert gap.sill_m == pytest.approx(0.9, abs=0.11)
+
+
+def with_feet(feet):
+    x, z = np.array(sorted(feet), float).T
+    passing = seen(grid(1, 1.9, 2.2), grid(1, 1.9, 0.13, 1.0, 2.0))
+    return replace(passing, foot_m=x, foot_z_m=z)
+
+
+def test_a_low_sill_all_along_makes_a_window():
+    gap = openings.classify_gap(
+        AXIS, 1.0, 1.9, [with_feet(grid(1, 1.9, 0.02, 0.07, 0.09))], READING, SETTINGS, planar=False
+    )
+    assert (gap.kind(SETTINGS), gap.sill_m) == ("window", pytest.approx(0.11, abs=0.03))
+
+
+@pytest.mark.parametrize(
+    ("below", "sill_m"), [([], 0.11), (grid(1, 1.9, 0.15, 0.2), (0.2 + 0.35) / 2)]
+)
+def test_a_step_makes_a_window_whether_or_not_wall_is_seen_below_it(below, sill_m):
+    """No ray went through below 0.35 m: wall up to 0.2 m says more of the sill than a step up to 0.09 m does."""
+    x, z = np.array(sorted(grid(1, 1.9, 0.05, 0.09))).T
+    lowest_m = 0.35 if below else 0.13
+    line = replace(
+        seen([*below, *grid(1, 1.9, 2.2)], grid(1, 1.9, lowest_m, 1.0, 2.0)), foot_m=x, foot_z_m=z
+    )
+    gap = openings.classify_gap(AXIS, 1.0, 1.9, [line], READING, SETTINGS, planar=False)
+    assert (gap.kind(SETTINGS), gap.sill_m) == ("window", pytest.approx(sill_m))
+
+
+def test_a_step_tells_of_a_sill_that_no_point_is_below():
+    """Rays went through above 0.4 m alone, and no wall is seen below: the step is all that is known of the sill."""
+    x, z = np.array(sorted(grid(1, 1.9, 0.05, 0.09))).T
+    line = replace(seen(grid(1, 1.9, 2.2), grid(1, 1.9, 0.4, 1.0, 2.0)), foot_m=x, foot_z_m=z)
+    gap = openings.classify_gap(AXIS, 1.0, 1.9, [line], READING, SETTINGS, planar=False)
+    assert gap.sill_m == pytest.approx((0.09 + 0.4) / 2)
+
+
+@pytest.mark.parametrize("feet", [grid(1, 1.9, 0.0, 0.02, 0.03), grid(1, 1.3, 0.05, 0.07, 0.09)])
+def test_a_floor_or_what_stands_on_it_is_no_sill(feet):
+    gap = openings.classify_gap(AXIS, 1.0, 1.9, [with_feet(feet)], READING, SETTINGS, planar=False)
+    assert (gap.kind(SETTINGS), gap.sill_m) == ("door", 0)
+
+
+@pytest.mark.parametrize(
+    ("lost", "state"), [((1.05, 1.6), openings.OPEN), ((1.05, 1.3), openings.CLOSED)]
+)
+def test_where_rays_go_and_do_not_come_back_there_is_an_opening(lost, state):
+    line = replace(seen([], []), panes_m=np.array([lost]))
+    assert (
+        openings.classify_gap(AXIS, 1.0, 1.9, [line], READING, SETTINGS, planar=False).state
+        == state
+    )
+
+
+def test_a_wide_opening_is_a_passage():
+    assert judge([], grid(1, 2.8, 0.1, 1.0), high=2.8).kind(SETTINGS) == "passage"
+
+
+def test_nothing_seen_to_pass_is_wall():
+    assert judge([], []).state == openings.CLOSED
+
+
+def test_a_long_pause_that_nothing_passed_is_not_known():
+    assert judge([], [], high=2.8).state == openings.UNKNOWN
+
+
+def test_few_rays_on_one_edge_are_no_opening():
+    assert judge([], grid(1, 1.2, 0.5, 1.0, 1.5)).state == openings.UNKNOWN
+
+
+@pytest.mark.parametrize(
+    ("heights", "state"),
+    [((1.1, 1.2, 1.3, 1.5), openings.CLOSED), ((0.1, 0.5, 1.0, 1.5), openings.UNKNOWN)],
+)
+def test_a_corner_of_a_window_that_things_hide_is_wall(heights, state):
+    assert judge(grid(1, 1.9, 2.3), grid(1.05, 1.15, *heights)).state == state
+
+
+def test_a_slit_is_no_opening():
+    assert judge([], grid(1, 1.3, 0.5, 1.0, 1.5), high=1.3).state != openings.OPEN
+
+
+def test_the_side_that_more_rays_crossed_decides():
+    sides = [seen([], []), seen([], grid(1, 1.9, 0.1, 1.0))]
+    assert (
+        openings.classify_gap(AXIS, 1.0, 1.9, sides, READING, SETTINGS, planar=False).state
+        == openings.OPEN
+    )
+
+
+def test_a_lintel_that_one_side_shows_is_known():
+    sides = [
+        seen([], grid(1, 1.3, 0.1, 1.0)),
+        seen(grid(1, 1.9, 2.2), grid(1, 1.25, 0.1, 1.0), 2, behind_m=0.03),
+    ]
+    gap = openings.classify_gap(AXIS, 1.0, 1.9, sides, READING, SETTINGS, planar=False)
+    assert (gap.state, gap.lintel_m) == (openings.OPEN, pytest.approx(2.2))
+
+
+def test_a_lintel_is_between_rays_close_to_each_other():
+    gap = judge(grid(1, 1.9, 2.2, 2.5), grid(1, 1.9, 0.1, 1.0, 2.04))
+    assert (gap.lintel_m, gap.below_wall) == (pytest.approx(2.12), True)
+
+
+@pytest.mark.parametrize(
+    ("n_scans", "behind_m", "lintel_m"), [(1, 0.03, np.nan), (2, 0.0, np.nan), (2, 0.03, 2.05)]
+)
+def test_between_rays_far_apart_a_lintel_is_known_by_its_underside_alone(
+    n_scans, behind_m, lintel_m
+):
+    """Beams on the wall's face may be well above the lintel; what lies behind it, for two scans, is its underside."""
+    gap = judge(
+        grid(1, 1.9, 2.05, 2.5, 2.6), grid(1, 1.9, 0.1, 1.6), n_scans=n_scans, behind_m=behind_m
+    )
+    assert gap.lintel_m == pytest.approx(lintel_m, nan_ok=True)
+    assert (gap.state, gap.below_wall) == (openings.OPEN, True)
+
+
+def test_how_many_rays_are_low_does_not_move_the_lintel():
+    """As many rays as may be go through near the floor; it is the highest that tell."""
+    few, many = ([*grid(1, 1.9, *[0.1] * n), *grid(1, 1.3, 1.9)] for n in (1, 99))
+    lintels_m = [judge(grid(1, 1.9, 2.1), passes).lintel_m for passes in (few, many)]
+    assert lintels_m == [pytest.approx(2.0)] * 2
+
+
+def test_points_of_the_reveal_are_no_lintel():
+    reveal = [(x, z) for x in (1.04, 1.86) for z in np.arange(1.85, 2.0, 0.01)]
+    assert judge([*grid(1, 1.9, 2.0), *reveal], grid(1, 1.9, 0.1, 1.82)).lintel_m == pytest.approx(
+        1.91
+    )
+
+
+def test_beside_the_end_of_a_wall_only_a_lintel_makes_an_opening():
+    passes = grid(1, 1.9, 0.1, 1.0)
+    assert judge([], passes, needs_lintel=True).state == openings.UNKNOWN
+    assert judge(grid(1, 1.9, 2.2), passes, needs_lintel=True).state == openings.OPEN
+
+
+def test_heights_are_not_told_of_a_plane():
+    gap = judge([], grid(1, 1.9, 0.0, 0.0), planar=True)
+    assert (gap.state, gap.kind(SETTINGS)) == (openings.OPEN, "door")
+    assert np.isnan([gap.sill_m, gap.lintel_m]).all()
+
+
+def test_pauses_between_spans_that_overlap():
+    np.testing.assert_allclose(
+        openings.find_gaps(np.array([(4.0, 6), (0, 3), (1, 2), (5, 7), (9, 9.5)])), [(3, 4), (7, 9)]
+    )
+
+
+@given(st.lists(st.tuples(st.floats(-9, 9), st.floats(0.01, 4)), min_size=1, max_size=8))
+def test_pauses_and_spans_are_the_whole(spans):
+    spans = np.array([(low, low + length) for low, length in spans])
+    pauses = openings.find_gaps(spans)
+    places = np.linspace(spans.min(), spans.max(), 301)
+    in_span = ((places[:, None] >= spans[:, 0]) & (places[:, None] <= spans[:, 1])).any(axis=1)
+    in_pause = ((places[:, None] > pauses[:, 0]) & (places[:, None] < pauses[:, 1])).any(axis=1)
+    np.testing.assert_array_equal(in_span, ~in_pause)

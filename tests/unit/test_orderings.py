@@ -3,9 +3,9 @@ import pytest
 import shapely
 from shapely import box
 
-from scanplan import schemas
 from scanplan.errors import StageError
 from scanplan.selection import methods, orderings
+from scanplan.store import schemas
 
 # scan 3 covers two far boxes (its one hull is 12), scan 8 one box, scan 20 that box and a strip, scan 21 nothing
 SCANS = {
@@ -19,7 +19,10 @@ SCANS = {
 def columns(scans=SCANS):
     rows = [(i, c, 4, g.area, g.wkb) for i, shapes in scans.items() for c, g in enumerate(shapes)]
     names = list(schemas.HULLS.columns)
-    return {n: np.array([r[j] for r in rows], object if n == "geometry" else None) for j, n in enumerate(names)}
+    return {
+        n: np.array([r[j] for r in rows], object if n == "geometry" else None)
+        for j, n in enumerate(names)
+    }
 
 
 def others(scan_ids):
@@ -36,13 +39,19 @@ def others(scan_ids):
             "across": np.zeros(2 * n, np.int32),
             "length_m": np.repeat(np.arange(1.0, n + 1), 2),
         },
-        "registration": {"scan_id": np.array(scan_ids), "x_m": np.arange(n) ** 2.0, "y_m": np.zeros(n)},
+        "registration": {
+            "scan_id": np.array(scan_ids),
+            "x_m": np.arange(n) ** 2.0,
+            "y_m": np.zeros(n),
+        },
     }
 
 
 def order(method, columns, *, seed=0, **options):
     known = others(np.unique(columns["scan_id"]).tolist())
-    return orderings.order(method, columns, seed=seed, others={t: known[t] for t in methods.TABLES[method]}, **options)
+    return orderings.order_scans(
+        method, columns, seed=seed, others={t: known[t] for t in methods.TABLES[method]}, **options
+    )
 
 
 @pytest.mark.parametrize(
@@ -69,7 +78,10 @@ def test_orders_on_paper(method, scan_ids, covered_m2):
 
 def test_random_is_a_permutation_drawn_with_the_seed():
     scans = {i: [box(i, 0, i + 1.5, 1)] for i in range(30)}
-    drawn = [orderings.order("random", columns(scans), seed=s)["scan_id"].tolist() for s in (1, 1, 2)]
+    drawn = [
+        orderings.order_scans("random", columns(scans), seed=s)["scan_id"].tolist()
+        for s in (1, 1, 2)
+    ]
     assert drawn[0] == drawn[1] != drawn[2]
     assert sorted(drawn[2]) == list(range(30))
     assert drawn[0] != sorted(drawn[0])
@@ -91,15 +103,17 @@ def test_one_scan_and_no_area(method):
     assert [one[n].tolist() for n in one] == [[1], [5], [4], [4.0], [4.0], [4.0], own, own, own]
     nothing = order(method, columns({2: SCANS[21]}))
     assert nothing["covered_m2"].tolist() == nothing["bound_m2"].tolist() == [0.0]
-    assert "first 1 cover at least 100 %" in orderings.summary(method, nothing)
+    assert "first 1 cover at least 100 %" in orderings.summarise_order(method, nothing)
 
 
 def test_summary():
-    found = orderings.order("sequential", columns(), seed=0)
-    assert orderings.summary("sequential", found) == (
+    found = orderings.order_scans("sequential", columns(), seed=0)
+    assert orderings.summarise_order("sequential", found) == (
         "sequential, 4 scans, 7.0 m2; 99% at 3 scans; first 4 cover at least 100 % of what any 4 could"
     )
-    assert orderings.summary("wall_length", order("wall_length", columns())).startswith("wall_length, 4 scans, 14.0 m;")
+    assert orderings.summarise_order("wall_length", order("wall_length", columns())).startswith(
+        "wall_length, 4 scans, 14.0 m;"
+    )
 
 
 def test_own_units_are_those_of_the_objective():
@@ -127,15 +141,17 @@ def test_an_overlap_changes_the_order_and_no_bound(method):
 @pytest.mark.parametrize("method", ["wall_length", "visibility", "distance"])
 def test_tables_of_other_scans_are_refused(method):
     with pytest.raises(StageError, match="that have hulls; delete the results"):
-        orderings.order(method, columns(), seed=0, others=others([3, 8, 20, 22]))
+        orderings.order_scans(method, columns(), seed=0, others=others([3, 8, 20, 22]))
 
 
 def test_scans_that_show_no_wall_come_last_by_id():
     seen = others([3, 8, 20, 21])["observations"]
     shown = {"observations": {name: values[2:4] for name, values in seen.items()}}
-    assert orderings.order("wall_length", columns(), seed=0, others=shown)["scan_id"].tolist() == [8, 3, 20, 21]
+    assert orderings.order_scans("wall_length", columns(), seed=0, others=shown)[
+        "scan_id"
+    ].tolist() == [8, 3, 20, 21]
     none = {"observations": {name: values[:0] for name, values in seen.items()}}
-    found = orderings.order("wall_length", columns(), seed=0, others=none)
+    found = orderings.order_scans("wall_length", columns(), seed=0, others=none)
     assert found["scan_id"].tolist() == [3, 8, 20, 21] and found["covered"].tolist() == [0, 0, 0, 0]
 
 
@@ -167,17 +183,26 @@ def test_a_budget_puts_scans_that_fit_it_first(method, scan_ids):
 
 @pytest.mark.parametrize("method", ["wall_length", "visibility", "cluster_hull", "hull"])
 def test_a_budget_for_all_scans_changes_no_order(method):
-    assert order(method, columns(), budget=10**9)["scan_id"].tolist() == order(method, columns())["scan_id"].tolist()
+    assert (
+        order(method, columns(), budget=10**9)["scan_id"].tolist()
+        == order(method, columns())["scan_id"].tolist()
+    )
 
 
 @pytest.mark.parametrize("method", ["sequential", "streaming"])
 def test_a_budget_changes_no_order_without_an_objective(method):
-    assert order(method, columns(), budget=5)["scan_id"].tolist() == order(method, columns())["scan_id"].tolist()
+    assert (
+        order(method, columns(), budget=5)["scan_id"].tolist()
+        == order(method, columns())["scan_id"].tolist()
+    )
 
 
 def varied(method, name):
     """Orders of 30 overlapping scans by two values of one setting, under the name of the workflow's settings."""
-    scans = {i: [box(i % 7, i // 7, i % 7 + 1 + (i % 5) / 2, i // 7 + 1 + (i % 3) / 2)] for i in range(30)}
+    scans = {
+        i: [box(i % 7, i // 7, i % 7 + 1 + (i % 5) / 2, i // 7 + 1 + (i % 3) / 2)]
+        for i in range(30)
+    }
     values = {"seed": (1, 2), "min_overlap": (0.0, 0.9), "budget": (12, 40)}
     values["streaming"] = [{"k": k, "epsilon": 0.1} for k in (3, 20)]
     keyword = "streaming_settings" if name == "streaming" else name
@@ -189,7 +214,9 @@ def varied(method, name):
 
 @pytest.mark.parametrize("name", ["seed", "min_overlap", "budget", "streaming"])
 def test_an_order_depends_on_the_settings_that_the_workflow_gives_it_and_on_no_other(name):
-    depends = {method for method in methods.METHODS if len({tuple(o) for o in varied(method, name)}) > 1}
+    depends = {
+        method for method in methods.METHODS if len({tuple(o) for o in varied(method, name)}) > 1
+    }
     named = {method for method in methods.METHODS if name in methods.SETTINGS[method]}
     assert depends <= named and depends
 
@@ -201,6 +228,7 @@ def test_refuses_a_random_order_without_a_seed():
 
 def test_refuses_an_unknown_method():
     with pytest.raises(
-        ValueError, match="only wall_length, visibility, cluster_hull, hull, streaming, every_nth, distance"
+        ValueError,
+        match="only wall_length, visibility, cluster_hull, hull, streaming, every_nth, distance",
     ):
-        orderings.order("best", columns(), seed=0)
+        orderings.order_scans("best", columns(), seed=0)

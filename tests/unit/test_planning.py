@@ -8,19 +8,20 @@ import shapely
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-import housemaking
-from scanplan.plan import freespace, planning, plansummary, rays, rooms, wallevidence, wallfaces
-from scanplan.plan.faceline import Line
-from scanplan.plan.gaps import CLOSED, OPEN, Gap
-from scanplan.plan.planwalls import PlanWall
-from scanplan.plan.profiles import Seen
-from scanplan.plan.stretches import Stretch
-from toyrooms import laser
-from wallmaking import moved, walls
+from helpers import house_making
+from helpers.toy_rooms import laser
+from helpers.wall_making import moved, walls
+from scanplan.geometry.lines import Line
+from scanplan.plan import messages, planning, rooms, uncertainty, wall_faces
+from scanplan.plan.face_intervals import FaceInterval
+from scanplan.plan.openings import CLOSED, OPEN, Opening
+from scanplan.plan.walls import PlanWall
+from scanplan.rays import free_space, ray_set
+from scanplan.rays.face_profile import FaceObservation
 
-SETTINGS = planning.settings(**housemaking.PLAN)
+SETTINGS = planning.make_plan_settings(**house_making.PLAN)
 TRUST = SETTINGS.trust
-SENSORS = np.array(housemaking.SENSORS, float)
+SENSORS = np.array(house_making.SENSORS, float)
 ROOMS = {"min_area_m2": 1, "min_walled": 0.7, "min_width_m": 0.6, "unpaired_m": 0.1}
 
 
@@ -30,8 +31,8 @@ def wall(x0, y0, x1, y1, thickness=0.2, openings=(), closed=()):
     length = np.hypot(*(end - start))
     along = (end - start) / length
     line = Line(start, np.array([-along[1], along[0]]))
-    ways = [Gap(low, high, OPEN, 99, 0.0, np.nan, False) for low, high in openings]
-    taken = [Gap(low, high, CLOSED, 0, np.nan, np.nan, False) for low, high in closed]
+    ways = [Opening(low, high, OPEN, 99, 0.0, np.nan, False) for low, high in openings]
+    taken = [Opening(low, high, CLOSED, 0, np.nan, np.nan, False) for low, high in closed]
     return PlanWall(line, 0.0, length, thickness, [], [], ways, taken)
 
 
@@ -44,12 +45,14 @@ def box(size=4.0, thickness=np.nan, **of_first):
 
 @pytest.fixture(scope="module")
 def house():
-    return housemaking.looked()
+    return house_making.looked()
 
 
 def plan(looked, table=None, sensors=SENSORS):
-    made = housemaking.segments() if table is None else table
-    return planning.make(made, looked, sensors[:, :2], housemaking.T_NS[: len(sensors)], SETTINGS)
+    made = house_making.segments() if table is None else table
+    return planning.make_plan(
+        made, looked, sensors[:, :2], house_making.T_NS[: len(sensors)], SETTINGS
+    )
 
 
 class TestPlan:
@@ -57,31 +60,39 @@ class TestPlan:
     @example(2.2, (0.0, 0.0))
     @given(st.floats(-3.1, 3.1), st.tuples(st.floats(-200, 200), st.floats(-200, 200)))
     def test_neither_place_nor_turn_of_the_map_matters(self, yaw_rad, shift):
-        points = [(i, housemaking.moved(xyz, yaw_rad, shift)) for i, xyz in housemaking.scans()]
-        sensors = housemaking.moved(SENSORS, yaw_rad, shift)
-        there = rays.gather(points, dict(enumerate(sensors)), planar=False)
-        made = plan(there, moved(housemaking.segments(), yaw_rad, shift), sensors)
+        points = [(i, house_making.moved(xyz, yaw_rad, shift)) for i, xyz in house_making.scans()]
+        sensors = house_making.moved(SENSORS, yaw_rad, shift)
+        there = ray_set.gather_rays(points, dict(enumerate(sensors)), planar=False)
+        made = plan(there, moved(house_making.segments(), yaw_rad, shift), sensors)
         np.testing.assert_allclose(np.sort(made.rooms["area_m2"]), [15.2, 16], rtol=0.02)
         assert len(made.walls["wall"]) == 5
         np.testing.assert_allclose(made.openings["width_m"], [0.9], atol=0.07)
 
     def test_faces_of_two_rooms_do_not_run_through_the_wall_between_them(self, house):
         made = plan(house)
-        faces = np.column_stack([made.faces[c] for c in ("x0_m", "y0_m", "x1_m", "y1_m")]).reshape(-1, 2, 2)
+        faces = np.column_stack([made.faces[c] for c in ("x0_m", "y0_m", "x1_m", "y1_m")]).reshape(
+            -1, 2, 2
+        )
         inside = shapely.box(4.03, -0.5, 4.17, 1.4)
         crossing = shapely.intersects(shapely.linestrings(faces), inside)
         assert not crossing.any()
 
     def test_what_one_scan_of_one_room_shows(self):
-        made = plan(housemaking.looked(sensors=SENSORS[:1]), walls(housemaking.ROOM_A, scan_id=[0] * 5), SENSORS[:1])
+        made = plan(
+            house_making.looked(sensors=SENSORS[:1]),
+            walls(house_making.ROOM_A, scan_id=[0] * 5),
+            SENSORS[:1],
+        )
         assert made.rooms["area_m2"][0] == pytest.approx(16, rel=0.03)
         assert made.walls["verify"].all()
         assert np.isnan(made.walls["thickness_m"]).all()
 
     def test_a_planar_scanner_makes_a_plan_too(self):
-        flat = [(i, np.column_stack([xyz[:, :2], 0 * xyz[:, 2]])) for i, xyz in housemaking.scans()]
+        flat = [
+            (i, np.column_stack([xyz[:, :2], 0 * xyz[:, 2]])) for i, xyz in house_making.scans()
+        ]
         flat = [(i, xyz[:: 16 // 2]) for i, xyz in flat]
-        made = plan(rays.gather(flat, dict(enumerate(SENSORS)), planar=True))
+        made = plan(ray_set.gather_rays(flat, dict(enumerate(SENSORS)), planar=True))
         assert np.isnan(made.openings["sill_m"]).all() and np.isnan(made.walls["top_m"]).all()
         np.testing.assert_allclose(np.sort(made.rooms["area_m2"]), [15.2, 16], rtol=0.03)
 
@@ -90,28 +101,40 @@ class TestPlan:
         desk = [(3, 0.3, 3.8, 0.3), (3.8, 0.3, 3.8, 0.8), (3.8, 0.8, 3, 0.8), (3, 0.8, 3, 0.3)]
         sensors = SENSORS[:2] * [1, 1, 0] + [0, 0, sensor_z_m]
         outward = [(x1, y1, x0, y0) for x0, y0, x1, y1 in desk]
-        shown = walls((housemaking.ROOM_A + outward) * 2, scan_id=[0] * 9 + [1] * 9)
+        shown = walls((house_making.ROOM_A + outward) * 2, scan_id=[0] * 9 + [1] * 9)
         made = plan(_with_low_box(desk, 0.7, sensors), shown, sensors)
-        faces = np.column_stack([made.faces[c] for c in ("x0_m", "y0_m", "x1_m", "y1_m")]).reshape(-1, 2, 2)
-        assert not shapely.intersects(shapely.linestrings(faces), shapely.box(2.9, 0.2, 3.9, 0.9)).any()
+        faces = np.column_stack([made.faces[c] for c in ("x0_m", "y0_m", "x1_m", "y1_m")]).reshape(
+            -1, 2, 2
+        )
+        assert not shapely.intersects(
+            shapely.linestrings(faces), shapely.box(2.9, 0.2, 3.9, 0.9)
+        ).any()
 
     @pytest.mark.parametrize(("sensors", "walls_"), [(1, 0), (2, 1)])
     def test_a_short_wall_is_believed_if_two_scans_show_it(self, sensors, walls_):
         pillar = [(3.4, 2.4, 2.8, 2.4)]
-        looked = housemaking.looked(housemaking.HOUSE + pillar, SENSORS[:2] * [1, 0.5, 1] + [0, 0.3, 0])
+        looked = house_making.looked(
+            house_making.HOUSE + pillar, SENSORS[:2] * [1, 0.5, 1] + [0, 0.3, 0]
+        )
         table = walls(pillar[:1], scan_id=[0])
-        made = planning.make(table, _first(looked, sensors), SENSORS[:1, :2], housemaking.T_NS[:sensors], SETTINGS)
+        made = planning.make_plan(
+            table, _first(looked, sensors), SENSORS[:1, :2], house_making.T_NS[:sensors], SETTINGS
+        )
         assert len(made.walls["wall"]) == walls_
 
     def test_a_round_room_is_drawn_as_a_chain_of_chords(self):
         turn = np.linspace(0, 2 * np.pi, 181)
         ring = 5 * np.column_stack([np.cos(turn), np.sin(turn)])
         sensors = np.array([(0.3, 0.2, 0.9), (-0.5, 0.4, 0.9), (0.2, -0.8, 0.9)])
-        looked = housemaking.looked(np.hstack([ring[:-1], ring[1:]]).tolist(), sensors)
+        looked = house_making.looked(np.hstack([ring[:-1], ring[1:]]).tolist(), sensors)
         chords = [ring[(np.arange(0, 181, 8) + 3 * scan) % 180] for scan in range(3)]
         segments = np.concatenate([np.hstack([c[:-1], c[1:]]) for c in chords])
-        made = plan(looked, walls(segments, scan_id=np.repeat([0, 1, 2], len(segments) // 3)), sensors)
-        faces = np.column_stack([made.faces[c] for c in ("x0_m", "y0_m", "x1_m", "y1_m")]).reshape(-1, 2, 2)
+        made = plan(
+            looked, walls(segments, scan_id=np.repeat([0, 1, 2], len(segments) // 3)), sensors
+        )
+        faces = np.column_stack([made.faces[c] for c in ("x0_m", "y0_m", "x1_m", "y1_m")]).reshape(
+            -1, 2, 2
+        )
         drawn = shapely.linestrings(faces)
         assert shapely.length(drawn).sum() == pytest.approx(10 * np.pi, rel=0.03)
         assert shapely.distance(shapely.points(ring), shapely.union_all(drawn)).max() < 0.1
@@ -125,14 +148,16 @@ class TestPlan:
         assert made.n_dropped == made.n_lines
 
     def test_a_plan_half_a_kilometre_wide(self):
-        far = housemaking.moved(SENSORS, 0.0, (500, 0))
-        points = housemaking.scans() + [(i + 4, housemaking.moved(p, 0.0, (500, 0))) for i, p in housemaking.scans()]
+        far = house_making.moved(SENSORS, 0.0, (500, 0))
+        points = house_making.scans() + [
+            (i + 4, house_making.moved(p, 0.0, (500, 0))) for i, p in house_making.scans()
+        ]
         both = np.concatenate([SENSORS, far])
-        near = housemaking.segments()
+        near = house_making.segments()
         away = moved(near, 0.0, (500, 0)) | {"scan_id": near["scan_id"] + 4}
         table = {c: np.concatenate([near[c], away[c]]) for c in near}
-        found = rays.gather(points, dict(enumerate(both)), planar=False)
-        made = planning.make(table, found, both[:, :2], np.arange(8), SETTINGS)
+        found = ray_set.gather_rays(points, dict(enumerate(both)), planar=False)
+        made = planning.make_plan(table, found, both[:, :2], np.arange(8), SETTINGS)
         assert len(made.rooms["room"]) == 4
         assert len(made.walls["wall"]) == 10
 
@@ -140,39 +165,43 @@ class TestPlan:
 def _first(looked, count):
     """Rays of the first scans alone."""
     points = zip(looked.scan_ids[:count].tolist(), looked.xyz_m[:count], strict=True)
-    return rays.gather(points, dict(enumerate(looked.sensors_m)), planar=False)
+    return ray_set.gather_rays(points, dict(enumerate(looked.sensors_m)), planar=False)
 
 
 def _with_low_box(desk, height_m, sensors):
     """Rays of the house where a desk stands: those that meet it below its top end there."""
-    houses = housemaking.HOUSE, housemaking.HOUSE + desk
-    full, cut = (housemaking.scans(house, sensors, columns=1800) for house in houses)
+    houses = house_making.HOUSE, house_making.HOUSE + desk
+    full, cut = (house_making.scans(house, sensors, columns=1800) for house in houses)
     points = [
         (i, np.concatenate([far[far[:, 2] > height_m], near[near[:, 2] <= height_m]]))
         for (i, far), (_, near) in zip(full, cut, strict=True)
     ]
-    return rays.gather(points, dict(enumerate(sensors)), planar=False)
+    return ray_set.gather_rays(points, dict(enumerate(sensors)), planar=False)
 
 
 class TestRooms:
     def test_a_square_is_filled_to_its_faces(self):
         star = shapely.Point(2, 2).buffer(1.9)
-        (room,) = rooms.find(box(), [star], np.array([(2.0, 2.0)]), **ROOMS)
+        (room,) = rooms.find_rooms(box(), [star], np.array([(2.0, 2.0)]), **ROOMS)
         assert room.polygon.area == pytest.approx(16, abs=0.05)
         assert (room.closed, room.entered, room.n_scans) == (True, True, 1)
 
     def test_an_opening_parts_rooms_and_tells_which(self):
         walls_ = [*box(4.0), wall(2, 0, 2, 4, 0.2, openings=[(1.0, 1.9)])]
         star = shapely.box(0, 0, 4, 4)
-        found = rooms.find(walls_, [star], np.array([(1.0, 1.0)]), **ROOMS)
+        found = rooms.find_rooms(walls_, [star], np.array([(1.0, 1.0)]), **ROOMS)
         np.testing.assert_allclose([r.polygon.area for r in found], [7.6, 7.6], rtol=0.01)
-        left, right = rooms.beside(found, np.array([(2.0, 1.0), (2.0, 1.9)]), 0.1)
+        left, right = rooms.rooms_beside(found, np.array([(2.0, 1.0), (2.0, 1.9)]), 0.1)
         assert {left, right} == {0, 1}
         assert found[left].polygon.centroid.x < found[right].polygon.centroid.x
 
     def test_what_is_seen_through_a_window_is_no_room(self):
-        found = rooms.find(
-            *(box(), [shapely.box(0, 0, 4, 4), shapely.box(-3, 1, -0.2, 3)], np.array([(2.0, 2.0)])),
+        found = rooms.find_rooms(
+            *(
+                box(),
+                [shapely.box(0, 0, 4, 4), shapely.box(-3, 1, -0.2, 3)],
+                np.array([(2.0, 2.0)]),
+            ),
             **ROOMS,
         )
         assert len(found) == 1
@@ -180,13 +209,20 @@ class TestRooms:
     @pytest.mark.parametrize(("width", "count"), [(0.5, 1), (0.9, 2)])
     def test_a_strip_as_narrow_as_a_wall_is_no_room_unless_entered(self, width, count):
         walls_ = [*box(), wall(0, 4 - width, 4, 4 - width, 0.02)]
-        found = rooms.find(walls_, [shapely.box(0, 0, 4, 4)], np.array([(2.0, 2.0)]), **ROOMS)
+        found = rooms.find_rooms(walls_, [shapely.box(0, 0, 4, 4)], np.array([(2.0, 2.0)]), **ROOMS)
         assert len(found) == count
-        assert len(rooms.find(walls_, [shapely.box(0, 0, 4, 4)], np.array([(2, 2), (2, 3.8)]), **ROOMS)) == 2
+        assert (
+            len(
+                rooms.find_rooms(
+                    walls_, [shapely.box(0, 0, 4, 4)], np.array([(2, 2), (2, 3.8)]), **ROOMS
+                )
+            )
+            == 2
+        )
 
     def test_walls_that_never_close_still_bound_a_room_that_was_entered(self):
         open_side = box()[:3]
-        (room,) = rooms.find(
+        (room,) = rooms.find_rooms(
             *(open_side, [shapely.box(0.5, 0.1, 3.9, 3.9)], np.array([(2.0, 2.0)])),
             **ROOMS,
         )
@@ -194,72 +230,106 @@ class TestRooms:
         assert room.walled == pytest.approx(0.75, abs=0.06)
 
     def test_no_walls_leave_what_was_seen(self):
-        found = rooms.find([], [shapely.box(0, 0, 3, 3)], np.array([(1.0, 1.0)]), **ROOMS)
+        found = rooms.find_rooms([], [shapely.box(0, 0, 3, 3)], np.array([(1.0, 1.0)]), **ROOMS)
         assert [r.polygon.area for r in found] == [pytest.approx(9, rel=0.01)]
-        assert rooms.find([], [], np.empty((0, 2)), **ROOMS) == []
+        assert rooms.find_rooms([], [], np.empty((0, 2)), **ROOMS) == []
 
 
 class TestFreeSpace:
     def test_a_scan_sees_its_room(self, house):
-        assert freespace.visible(house)[0].intersection(shapely.box(0, 0, 4, 4)).area == pytest.approx(16, rel=0.02)
+        assert free_space.free_polygons(house)[0].intersection(
+            shapely.box(0, 0, 4, 4)
+        ).area == pytest.approx(16, rel=0.02)
 
     @pytest.mark.parametrize("beams", [240, 360, 1440])
     def test_a_laser_sees_its_room_however_far_apart_its_beams_are(self, beams):
-        flat = laser(SENSORS[0], np.array(housemaking.HOUSE, float), beams=beams)
-        found = freespace.visible(rays.gather([(0, flat)], {0: SENSORS[0]}, planar=True))
+        flat = laser(SENSORS[0], np.array(house_making.HOUSE, float), beams=beams)
+        found = free_space.free_polygons(
+            ray_set.gather_rays([(0, flat)], {0: SENSORS[0]}, planar=True)
+        )
         assert found[0].intersection(shapely.box(0, 0, 4, 4)).area == pytest.approx(16, rel=0.06)
 
     @pytest.mark.parametrize("columns", [240, 360, 1440])
-    def test_beams_above_one_another_see_their_room_however_far_apart_their_columns_are(self, columns):
-        flat = laser(SENSORS[0], np.array(housemaking.HOUSE, float), beams=columns)
+    def test_beams_above_one_another_see_their_room_however_far_apart_their_columns_are(
+        self, columns
+    ):
+        flat = laser(SENSORS[0], np.array(house_making.HOUSE, float), beams=columns)
         turns = np.radians(np.arange(16) * 0.001)[:, None]
         way = flat[:, :2] - SENSORS[0][:2]
         beside = np.column_stack([-way[:, 1], way[:, 0]])
         near = [SENSORS[0][:2] + way * np.cos(turn) + beside * np.sin(turn) for turn in turns]
         points = np.column_stack([np.concatenate(near), np.zeros(16 * len(flat))])
-        gathered = rays.gather([(0, points)], {0: SENSORS[0]}, planar=True)
-        assert freespace.visible(gathered)[0].intersection(shapely.box(0, 0, 4, 4)).area == pytest.approx(16, rel=0.06)
-        assert np.degrees(freespace.spacing_rad(gathered.azimuth_rad[0])) == pytest.approx(360 / columns, abs=0.02)
+        gathered = ray_set.gather_rays([(0, points)], {0: SENSORS[0]}, planar=True)
+        assert free_space.free_polygons(gathered)[0].intersection(
+            shapely.box(0, 0, 4, 4)
+        ).area == pytest.approx(16, rel=0.06)
+        assert np.degrees(free_space.column_spacing_rad(gathered.azimuth_rad[0])) == pytest.approx(
+            360 / columns, abs=0.02
+        )
 
     def test_rays_too_far_apart_for_an_opening_are_told(self):
         """In a room of 4 m most walls are some 2 to 3 m away: 0.5 m of them hold two rays that are 5 degrees apart."""
         told = {}
         for beams in (360, 90, 45):
-            flat = laser(SENSORS[0], np.array(housemaking.HOUSE, float), beams=beams)
-            told[beams] = plansummary.sparse(rays.gather([(0, flat)], {0: SENSORS[0]}, planar=True), 0.5)
+            flat = laser(SENSORS[0], np.array(house_making.HOUSE, float), beams=beams)
+            told[beams] = messages.sparse_rays_warning(
+                ray_set.gather_rays([(0, flat)], {0: SENSORS[0]}, planar=True), 0.5
+            )
         assert told[360] == told[90] == ""
-        assert "lie 8.0 deg apart" in told[45] and "up to 1.8 m away" in told[45] and "n_azimuth" in told[45]
+        assert (
+            "lie 8.0 deg apart" in told[45]
+            and "up to 1.8 m away" in told[45]
+            and "n_azimuth" in told[45]
+        )
 
     def test_the_end_of_a_sensors_field_is_no_gap_between_its_columns(self):
-        assert freespace.spacing_rad(np.radians(np.arange(-30, 31, 2.0))) == pytest.approx(np.radians(2))
-        assert freespace.spacing_rad(np.radians([-120.0, 120.0])) == freespace.spacing_rad(np.empty(0)) == 0
+        assert free_space.column_spacing_rad(np.radians(np.arange(-30, 31, 2.0))) == pytest.approx(
+            np.radians(2)
+        )
+        assert (
+            free_space.column_spacing_rad(np.radians([-120.0, 120.0]))
+            == free_space.column_spacing_rad(np.empty(0))
+            == 0
+        )
 
     def test_a_scan_of_no_points_sees_nothing(self):
-        empty = rays.gather([(0, np.empty((0, 3)))], {0: np.zeros(3)}, planar=True)
-        assert freespace.visible(empty)[0].is_empty
+        empty = ray_set.gather_rays([(0, np.empty((0, 3)))], {0: np.zeros(3)}, planar=True)
+        assert free_space.free_polygons(empty)[0].is_empty
 
     def test_an_unpaired_wall_stands_behind_its_face(self):
-        (ground,) = freespace.strips([wall(0, 0, 4, 0, np.nan)], 0.1)
+        (ground,) = free_space.wall_strips([wall(0, 0, 4, 0, np.nan)], 0.1)
         assert ground.bounds == (0, -0.1, 4, 0)
 
 
 class TestFaces:
     def test_a_face_is_cut_where_a_wall_butts_against_it(self):
         long = _shown(wall(0, 0, 8, 0, np.nan, closed=[(6, 7)]), (0, 6), (7, 8))
-        faces = wallfaces.of_walls([long, wall(4, 3, 4, 0, 0.2), wall(6.5, 3, 6.5, 0, 0.2)], max_beyond_m=1)
-        spans = {state: sorted(f.ends[:, 0].tolist() for f in faces if f.state == state) for state in _STATES}
+        faces = wall_faces.cut_wall_faces(
+            [long, wall(4, 3, 4, 0, 0.2), wall(6.5, 3, 6.5, 0, 0.2)], max_beyond_m=1
+        )
+        spans = {
+            state: sorted(f.ends[:, 0].tolist() for f in faces if f.state == state)
+            for state in _STATES
+        }
         np.testing.assert_allclose(spans["observed"], [(0, 3.91), (4.09, 6), (7, 8)], atol=0.001)
         np.testing.assert_allclose(spans["inferred"], [(6, 6.41), (6.59, 7)], atol=0.001)
 
     def test_the_unseen_side_of_a_seen_wall_is_inferred_but_not_in_openings(self):
         one = wall(0, 0, 8, 0, 0.2, openings=[(3, 4)])
-        one = replace(_shown(one, (0, 3), (4, 8)), right=[_stretch(one, -0.1, (0, 1)), _stretch(one, -0.1, (6, 6.5))])
-        faces = [f for f in wallfaces.of_walls([one], max_beyond_m=2) if f.state == "inferred"]
+        one = replace(
+            _shown(one, (0, 3), (4, 8)),
+            right=[_stretch(one, -0.1, (0, 1)), _stretch(one, -0.1, (6, 6.5))],
+        )
+        faces = [
+            f for f in wall_faces.cut_wall_faces([one], max_beyond_m=2) if f.state == "inferred"
+        ]
         spans = sorted(np.sort(f.ends[:, 0]).tolist() for f in faces if not f.left)
         np.testing.assert_allclose(spans, [(1, 3), (4, 6), (6.5, 8)], atol=0.001)
         np.testing.assert_allclose([f.ends[:, 1] for f in faces], -0.1)
         assert [f for f in faces if f.left] == []
-        faces = [f for f in wallfaces.of_walls([one], max_beyond_m=1) if f.state == "inferred"]
+        faces = [
+            f for f in wall_faces.cut_wall_faces([one], max_beyond_m=1) if f.state == "inferred"
+        ]
         assert max(f.ends[:, 0].max() for f in faces) == pytest.approx(6)
 
 
@@ -277,25 +347,38 @@ def _stretch(of, offset_m, span):
     low, high = np.sort(sign * np.array(span, float))
     place = np.linspace(low, high, 100)
     nothing = (0 * place, 0 * place, np.zeros(100, int), np.empty(0), np.empty(0), np.empty(0, int))
-    return Stretch(Seen(line, place, *nothing), float(low), float(high))
+    return FaceInterval(FaceObservation(line, place, *nothing), float(low), float(high))
 
 
 class TestEvidence:
     def test_more_scans_make_a_wall_surer(self, house):
         made = plan(house)
-        seen_by = np.array([len(np.unique(made.evidence["scan_id"][made.evidence["wall"] == w])) for w in range(5)])
+        seen_by = np.array(
+            [len(np.unique(made.evidence["scan_id"][made.evidence["wall"] == w])) for w in range(5)]
+        )
         np.testing.assert_array_equal(made.walls["n_scans"], seen_by)
         assert (made.walls["sigma_offset_m"] < 0.02).all()
         assert not made.walls["verify"].any()
 
     def test_a_wall_that_few_points_show_is_to_be_verified(self):
-        known = {"rmse_m": 0.01, "n_points": 9, "points": np.array([9]), "z_m": (0, 1), "top_m": np.nan}
-        sure = {"sigma_offset_m": 0.01, "sigma_end_m": (0.01, 0.01), "scans": np.arange(2), "observed": 1.0}
-        assert not wallevidence.Evidence(**known, **sure).needs_a_visit(TRUST)
+        known = {
+            "rmse_m": 0.01,
+            "n_points": 9,
+            "points": np.array([9]),
+            "z_m": (0, 1),
+            "top_m": np.nan,
+        }
+        sure = {
+            "sigma_offset_m": 0.01,
+            "sigma_end_m": (0.01, 0.01),
+            "scans": np.arange(2),
+            "observed": 1.0,
+        }
+        assert not uncertainty.WallEvidence(**known, **sure).needs_a_visit(TRUST)
         for doubt in (
             {"sigma_offset_m": 0.1},
             {"sigma_end_m": (0.01, 0.1)},
             {"scans": np.arange(1)},
             {"observed": 0.2},
         ):
-            assert wallevidence.Evidence(**known, **(sure | doubt)).needs_a_visit(TRUST)
+            assert uncertainty.WallEvidence(**known, **(sure | doubt)).needs_a_visit(TRUST)

@@ -7,18 +7,21 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import simple_rooms as drawn
-from scanplan.simulation import extrusion, raycast, rover, sensors
+from helpers import simple_rooms as drawn
+from scanplan.lab.buildings import extrusion
+from scanplan.lab.simulation import raycast, rover, sensors
 
 SIZE_M = np.array([4.0, 3.0, 2.5])
-MESH = extrusion.building_mesh(drawn.plan())
-DIRECTION = sensors.vlp16(360, rate_hz=10.0, sweep=False, min_range_m=0.0, max_range_m=100.0).direction
+MESH = extrusion.make_building_mesh(drawn.plan())
+DIRECTION = sensors.make_vlp16(
+    360, rate_hz=10.0, sweep=False, min_range_m=0.0, max_range_m=100.0
+).direction
 
 
 def cast(mesh, xyz_m, yaw_rad=0.0, direction=DIRECTION):
     """Cast all columns from one place, turned by a heading: opaque hits, panes, and the rays in the map."""
     turned = direction @ rover.planar_poses([[0, 0]], [yaw_rad])[0, :3, :3].T.astype(np.float32)
-    opaque, pane = raycast.Scene(mesh).first_hits(np.tile(xyz_m, (len(turned), 1)), turned)
+    opaque, pane = raycast.RayScene(mesh).first_hits(np.tile(xyz_m, (len(turned), 1)), turned)
     return opaque, pane, turned.reshape(-1, 3).astype(float)
 
 
@@ -48,7 +51,7 @@ def test_cosine_is_that_of_the_surface_hit():
 
 
 def test_an_open_door_lets_rays_out_and_only_there():
-    opened = extrusion.building_mesh(drawn.plan(drawn.door(2, -0.1)))
+    opened = extrusion.make_building_mesh(drawn.plan(drawn.door(2, -0.1)))
     hits, _, ray = cast(opened, [2.0, 1.0, 0.4])
     # out through the reveal, which ends 1.2 m away: |x| < 0.5 there; sill and lintel are out of the beams' reach
     x, y, _ = ray.T
@@ -61,7 +64,10 @@ def test_an_open_door_lets_rays_out_and_only_there():
 def test_a_building_far_from_the_origin_is_measured_as_exactly():
     far = np.array([500_000.0, 4_000_000.0, 0.0])
     moved = dataclasses.replace(MESH, vertices_m=MESH.vertices_m + far)
-    here, there = (cast(mesh, at + np.array([1.3, 1.1, 0.4]), 0.3)[0] for mesh, at in ((MESH, 0 * far), (moved, far)))
+    here, there = (
+        cast(mesh, at + np.array([1.3, 1.1, 0.4]), 0.3)[0]
+        for mesh, at in ((MESH, 0 * far), (moved, far))
+    )
     np.testing.assert_allclose(there.range_m, here.range_m, atol=1e-5)
 
 
@@ -86,7 +92,9 @@ def glazed(monkeypatch):
 
 def test_panes_are_found_apart_from_what_is_behind(glazed):
     opaque, pane, ray = cast(glazed, [1.0, 1.0, 0.4])
-    np.testing.assert_allclose(opaque.range_m, box_range_m(np.array([1.0, 1.0, 0.4]), ray).min(axis=1), atol=1e-5)
+    np.testing.assert_allclose(
+        opaque.range_m, box_range_m(np.array([1.0, 1.0, 0.4]), ray).min(axis=1), atol=1e-5
+    )
     ahead = pane.range_m < opaque.range_m
     np.testing.assert_allclose(pane.range_m[ahead] * ray[ahead, 0], 2.0, atol=1e-5)
     assert ahead.sum() > 500 and (pane.reflectivity[ahead] == 10.0).all()
@@ -95,6 +103,8 @@ def test_panes_are_found_apart_from_what_is_behind(glazed):
 
 def test_nothing_but_glass(glazed):
     chosen = glazed.surface == 4
-    bare = dataclasses.replace(glazed, triangles=glazed.triangles[chosen], surface=glazed.surface[chosen])
+    bare = dataclasses.replace(
+        glazed, triangles=glazed.triangles[chosen], surface=glazed.surface[chosen]
+    )
     opaque, pane, _ = cast(bare, [1.0, 1.0, 0.4])
     assert np.isinf(opaque.range_m).all() and np.isfinite(pane.range_m).any()

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 import shapely
 
-import simple_rooms as drawn
+from helpers import simple_rooms as drawn
 from scanplan.errors import StageError
-from scanplan.simulation import building, route
+from scanplan.lab.buildings import building, route
 
 WIDE = [[-0.1, -0.1], [12.1, -0.1], [12.1, 6.1], [-0.1, 6.1], [-0.1, -0.1]]
 
@@ -19,18 +19,23 @@ OUTER = (drawn.wall(*WIDE),)
 
 
 def floor(*features, walls=OUTER):
-    return building.load(drawn.text(*walls, *features).encode(), Path("floor.geojson"), slice_height_m=0.4)
+    return building.load_building(
+        drawn.text(*walls, *features).encode(), Path("floor.geojson"), slice_height_m=0.4
+    )
 
 
 def planned(found, kind="rooms", clearance_m=0.3, **values):
     ground = (found.floor_m, found.obstacles_m, found.rooms)
-    return route.plan(*ground, "floor.geojson", kind=kind, clearance_m=clearance_m, **values)
+    return route.plan_route(*ground, "floor.geojson", kind=kind, clearance_m=clearance_m, **values)
 
 
 def corridor_floor(**values):
     """A corridor of 12 m x 1.8 m, two rooms on it: the west one with a door of 0.9 m, the east one as asked."""
     walls = [drawn.wall(*WIDE), drawn.wall((0, 1.9), (12, 1.9)), drawn.wall((6, 1.9), (6, 6))]
-    names = [drawn.feature("room", "Point", p, name=n) for p, n in (((6, 1), "hall"), ((3, 4), "W"), ((9, 4), "E"))]
+    names = [
+        drawn.feature("room", "Point", p, name=n)
+        for p, n in (((6, 1), "hall"), ((3, 4), "W"), ((9, 4), "E"))
+    ]
     return floor(drawn.door(3, 1.9, width_m=0.9), drawn.door(9, 1.9, **values), *names, walls=walls)
 
 
@@ -60,7 +65,7 @@ def test_a_room_behind_a_narrow_door_or_a_step_is_missed(values):
 
 def test_hallways_are_driven_there_and_back_and_rooms_left_alone():
     found = corridor_floor()
-    assert [name for name, _ in route.hallways(found.rooms)] == ["hall"]
+    assert [name for name, _ in route.find_hallways(found.rooms)] == ["hall"]
     way = planned(found, "hallways")
     check(found, way.waypoints_m, 0.3)
     np.testing.assert_array_equal(way.waypoints_m[0], way.waypoints_m[-1])
@@ -80,7 +85,7 @@ def test_hallways_are_driven_there_and_back_and_rooms_left_alone():
     ],
 )
 def test_a_hallway_is_long_and_narrow(room, is_hall):
-    assert bool(route.hallways([("", room)])) == is_hall
+    assert bool(route.find_hallways([("", room)])) == is_hall
 
 
 def test_furniture_is_driven_round():
@@ -98,7 +103,9 @@ def test_the_same_floor_gives_the_same_way():
 
 @pytest.mark.parametrize("start_m", [(0.1, 3.0), (6.0, 6.1), (20.0, 3.0)])
 def test_a_start_in_a_wall_is_refused(start_m):
-    with pytest.raises(StageError, match=rf"floor\.geojson: the start \({start_m[0]:g}, .* move it to free floor"):
+    with pytest.raises(
+        StageError, match=rf"floor\.geojson: the start \({start_m[0]:g}, .* move it to free floor"
+    ):
         planned(floor(), start_m=start_m)
 
 
@@ -111,8 +118,8 @@ def test_a_floor_too_tight_for_the_rover_is_refused():
 
 def test_the_ring_office_is_like_the_thesis_and_all_of_it_is_reached(project_root):
     path = project_root / "config/buildings/ring_office.geojson"
-    found = building.load(path.read_bytes(), path, slice_height_m=0.4)
-    halls = route.hallways(found.rooms)
+    found = building.load_building(path.read_bytes(), path, slice_height_m=0.4)
+    halls = route.find_hallways(found.rooms)
     assert [name for name, _ in halls] == ["hallway"] and 330 <= halls[0][1].area <= 370
     assert len(found.rooms) == 25 and all(name for name, _ in found.rooms)
     assert shapely.union_all([found.floor_m]).bounds == pytest.approx((0, 0, 45, 35), abs=1e-6)
@@ -128,7 +135,9 @@ def test_the_ring_office_is_like_the_thesis_and_all_of_it_is_reached(project_roo
 
 def test_the_ring_office_is_what_its_script_draws(project_root):
     folder = project_root / "config/buildings"
-    spec = importlib.util.spec_from_file_location("make_ring_office", folder / "make_ring_office.py")
+    spec = importlib.util.spec_from_file_location(
+        "make_ring_office", folder / "make_ring_office.py"
+    )
     script = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(script)
     drawn_by_script = json.loads(json.dumps(script.drawing()))
@@ -136,12 +145,13 @@ def test_the_ring_office_is_what_its_script_draws(project_root):
 
 
 @pytest.mark.parametrize(
-    ("start_m", "reached"), [(None, "east"), ([1.0, 1.0], "west"), (np.array([1.0, 1.0]), "west"), ("random", "east")]
+    ("start_m", "reached"),
+    [(None, "east"), ([1.0, 1.0], "west"), (np.array([1.0, 1.0]), "west"), ("random", "east")],
 )
 def test_ground_with_a_neck_too_narrow_for_the_grid_is_driven_in_part(start_m, reached):
     """Two rooms joined by a neck 0.63 m wide; with 0.3 m to either side a strip of 3 cm is left of it."""
     rooms = [("west", shapely.box(0, 0, 4, 4)), ("east", shapely.box(6, 0, 12, 4))]
     floor = shapely.union_all([shapely.box(4, 1.7, 6, 2.33), *(room for _, room in rooms)])
     here = (floor, shapely.Polygon(), rooms, "a")
-    found = route.plan(*here, kind="rooms", clearance_m=0.3, start_m=start_m, seed=1)
+    found = route.plan_route(*here, kind="rooms", clearance_m=0.3, start_m=start_m, seed=1)
     assert found.reached == (reached,) and len(found.missed) == 1

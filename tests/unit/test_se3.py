@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from scanplan import se3
+from scanplan.geometry import se3
 
 SECOND = 1_000_000_000
 T_NS = np.array([0, 1, 2, 10]) * SECOND
@@ -16,7 +16,7 @@ QUAT = Rotation.from_euler("z", [[0], [90], [90], [180]], degrees=True).as_quat(
 
 def interpolate(query_s, **options):
     query_ns = (np.atleast_1d(query_s) * SECOND).astype(np.int64)
-    return se3.interpolate(T_NS, XYZ, QUAT, query_ns, **{"max_gap_s": 2.0, **options})
+    return se3.interpolate_poses(T_NS, XYZ, QUAT, query_ns, **{"max_gap_s": 2.0, **options})
 
 
 def test_halfway_is_half_the_way_and_half_the_turn():
@@ -41,13 +41,13 @@ def test_nothing_is_extrapolated_and_long_gaps_are_not_bridged():
 
 def test_the_sign_of_a_quaternion_does_not_matter():
     flipped = QUAT * [[1], [-1], [1], [-1]]
-    a = se3.interpolate(T_NS, XYZ, QUAT, [SECOND // 3], max_gap_s=2)
-    b = se3.interpolate(T_NS, XYZ, flipped, [SECOND // 3], max_gap_s=2)
+    a = se3.interpolate_poses(T_NS, XYZ, QUAT, [SECOND // 3], max_gap_s=2)
+    b = se3.interpolate_poses(T_NS, XYZ, flipped, [SECOND // 3], max_gap_s=2)
     np.testing.assert_allclose(a[1], b[1], atol=1e-12)
 
 
 def test_a_single_pose_covers_its_own_stamp_only():
-    xyz, quat, _, covered = se3.interpolate([5], XYZ[:1], QUAT[:1], [4, 5, 6], max_gap_s=9)
+    xyz, quat, _, covered = se3.interpolate_poses([5], XYZ[:1], QUAT[:1], [4, 5, 6], max_gap_s=9)
     assert covered.tolist() == [False, True, False]
     np.testing.assert_allclose(quat[1], [0, 0, 0, 1])
     np.testing.assert_allclose(xyz[1], [0, 0, 0])
@@ -56,40 +56,46 @@ def test_a_single_pose_covers_its_own_stamp_only():
 @pytest.mark.parametrize("stamps", [[], [1, 1], [2, 1]])
 def test_stamps_that_do_not_increase_are_a_wrong_call(stamps):
     with pytest.raises(ValueError, match="increasing"):
-        se3.interpolate(stamps, XYZ[: len(stamps)], QUAT[: len(stamps)], [1], max_gap_s=1)
+        se3.interpolate_poses(stamps, XYZ[: len(stamps)], QUAT[: len(stamps)], [1], max_gap_s=1)
 
 
-@given(st.lists(st.floats(-50, 50), min_size=3, max_size=3), st.lists(st.floats(-3, 3), min_size=3, max_size=3))
+@given(
+    st.lists(st.floats(-50, 50), min_size=3, max_size=3),
+    st.lists(st.floats(-3, 3), min_size=3, max_size=3),
+)
 def test_a_motion_and_its_inverse_cancel(xyz, turn):
     quat = Rotation.from_rotvec(turn).as_quat(canonical=True)
-    pose = se3.matrix(xyz, quat)
-    np.testing.assert_allclose(pose @ se3.inverse(pose), np.eye(4), atol=1e-12)
-    back_xyz, back_quat = se3.position_quaternion(pose)
+    pose = se3.pose_matrix(xyz, quat)
+    np.testing.assert_allclose(pose @ se3.invert_pose(pose), np.eye(4), atol=1e-12)
+    back_xyz, back_quat = se3.split_pose(pose)
     np.testing.assert_allclose(back_xyz, xyz)
     np.testing.assert_allclose(np.abs(back_quat @ quat), 1, atol=1e-12)
-    np.testing.assert_allclose(se3.transform(pose, [[0, 0, 0]]), [xyz], atol=1e-12)
+    np.testing.assert_allclose(se3.transform_points(pose, [[0, 0, 0]]), [xyz], atol=1e-12)
 
 
 def test_between_is_a_share_of_way_and_turn():
     start, end = (
-        se3.matrix([x, 0, 0], Rotation.from_euler("z", a, degrees=True).as_quat()) for x, a in ((0, 10), (4, 50))
+        se3.pose_matrix([x, 0, 0], Rotation.from_euler("z", a, degrees=True).as_quat())
+        for x, a in ((0, 10), (4, 50))
     )
-    pose = se3.between(start, end, 0.25)
+    pose = se3.interpolate_pose(start, end, 0.25)
     np.testing.assert_allclose(pose[:3, 3], [1, 0, 0])
-    np.testing.assert_allclose(np.degrees(se3.yaw_rad(pose)), 20)
+    np.testing.assert_allclose(np.degrees(se3.pose_yaw_rad(pose)), 20)
 
 
 def test_a_nearly_rigid_matrix_becomes_rigid():
-    pose = se3.matrix([1, 2, 3], Rotation.from_euler("z", 30, degrees=True).as_quat())
-    np.testing.assert_allclose(se3.rigid(pose * [[1.001], [1.001], [1.001], [1]])[:3, :3], pose[:3, :3], atol=1e-9)
+    pose = se3.pose_matrix([1, 2, 3], Rotation.from_euler("z", 30, degrees=True).as_quat())
+    np.testing.assert_allclose(
+        se3.nearest_rigid(pose * [[1.001], [1.001], [1.001], [1]])[:3, :3], pose[:3, :3], atol=1e-9
+    )
 
 
 def test_yaw_is_the_heading():
-    pose = se3.matrix([0, 0, 0], Rotation.from_euler("z", 120, degrees=True).as_quat())
-    np.testing.assert_allclose(np.degrees(se3.yaw_rad(pose)), 120)
+    pose = se3.pose_matrix([0, 0, 0], Rotation.from_euler("z", 120, degrees=True).as_quat())
+    np.testing.assert_allclose(np.degrees(se3.pose_yaw_rad(pose)), 120)
 
 
 def test_unknown_poses_stay_unknown():
-    pose = se3.matrix(np.full((2, 3), np.nan), QUAT[:2])
+    pose = se3.pose_matrix(np.full((2, 3), np.nan), QUAT[:2])
     assert np.isnan(pose[:, :3]).all()
-    assert all(np.isnan(part).all() for part in se3.position_quaternion(pose))
+    assert all(np.isnan(part).all() for part in se3.split_pose(pose))

@@ -3,32 +3,36 @@
 import numpy as np
 import pytest
 
-from exactsensor import EXACT
+from helpers.exact_sensor import EXACT
 from scanplan.errors import StageError
-from scanplan.simulation import sensors
+from scanplan.lab.simulation import sensors
 
 COMMON = {"rate_hz": 10.0, "sweep": True, "min_range_m": 0.3, "max_range_m": 100.0}
 
 
 def test_vlp16_has_its_sixteen_beams_and_turns_clockwise():
-    sensor = sensors.vlp16(4, **COMMON)
+    sensor = sensors.make_vlp16(4, **COMMON)
     np.testing.assert_allclose(np.linalg.norm(sensor.direction, axis=2), 1, rtol=1e-6)
     elevation_deg = np.degrees(np.arcsin(sensor.direction[..., 2]))
     np.testing.assert_allclose(elevation_deg, np.tile(-15 + 2.0 * sensor.ring, (4, 1)), atol=1e-4)
     assert sorted(sensor.ring) == list(range(16))
-    np.testing.assert_allclose(sensor.direction[1, :, 1], -np.cos(np.radians(elevation_deg[1])), atol=1e-6)
+    np.testing.assert_allclose(
+        sensor.direction[1, :, 1], -np.cos(np.radians(elevation_deg[1])), atol=1e-6
+    )
 
 
 def test_a_lidars_stamp_is_its_last_firing():
-    np.testing.assert_allclose(sensors.vlp16(4, **COMMON).time_s, [-0.075, -0.05, -0.025, 0])
-    np.testing.assert_array_equal(sensors.vlp16(4, **{**COMMON, "sweep": False}).time_s, 0)
+    np.testing.assert_allclose(sensors.make_vlp16(4, **COMMON).time_s, [-0.075, -0.05, -0.025, 0])
+    np.testing.assert_array_equal(sensors.make_vlp16(4, **{**COMMON, "sweep": False}).time_s, 0)
 
 
 def test_a_lidar_of_any_beams():
-    sensor = sensors.lidar([-30.0, 10.0], 8, **COMMON)
+    sensor = sensors.make_lidar([-30.0, 10.0], 8, **COMMON)
     assert sensor.direction.shape == (8, 2, 3) and sensor.increment_rad is None
     np.testing.assert_array_equal(sensor.ring, [0, 1])
-    np.testing.assert_allclose(sensor.direction[2], [[0, -np.cos(np.pi / 6), -0.5], _left(-90, 10)], atol=1e-6)
+    np.testing.assert_allclose(
+        sensor.direction[2], [[0, -np.cos(np.pi / 6), -0.5], _left(-90, 10)], atol=1e-6
+    )
 
 
 def _left(azimuth_deg, elevation_deg):
@@ -38,38 +42,48 @@ def _left(azimuth_deg, elevation_deg):
 
 
 def test_a_laser_scanner_turns_anticlockwise_from_its_first_beam_at_the_stamp():
-    sensor = sensors.laser(271, 270.0, **COMMON)
+    sensor = sensors.make_laser(271, 270.0, **COMMON)
     assert sensor.increment_rad == pytest.approx(np.radians(1.0))
-    np.testing.assert_allclose(sensor.direction[[0, 135, 225], 0], [_left(-135, 0), [1, 0, 0], [0, 1, 0]], atol=1e-5)
+    np.testing.assert_allclose(
+        sensor.direction[[0, 135, 225], 0], [_left(-135, 0), [1, 0, 0], [0, 1, 0]], atol=1e-5
+    )
     # a degree takes 1/360 of a turn
     np.testing.assert_allclose(sensor.time_s, np.arange(271) / 3600)
 
 
 def test_a_whole_turn_has_no_beam_twice():
-    sensor = sensors.laser(360, 360.0, **COMMON)
-    np.testing.assert_allclose(sensor.direction[[0, 180, 359], 0], [[-1, 0, 0], [1, 0, 0], _left(179, 0)], atol=1e-5)
+    sensor = sensors.make_laser(360, 360.0, **COMMON)
+    np.testing.assert_allclose(
+        sensor.direction[[0, 180, 359], 0], [[-1, 0, 0], [1, 0, 0], _left(179, 0)], atol=1e-5
+    )
     assert sensor.time_s[-1] == pytest.approx(0.1 * 359 / 360)
 
 
 def test_biases_belong_to_the_beam_and_to_the_specimen():
-    sensor = sensors.vlp16(8, **COMMON)
-    first, again, other = (sensors.errors_of(sensor, **{**EXACT, "bias_m": 0.005}, seed=s).bias_m for s in (1, 1, 2))
+    sensor = sensors.make_vlp16(8, **COMMON)
+    first, again, other = (
+        sensors.draw_sensor_errors(sensor, **{**EXACT, "bias_m": 0.005}, seed=s).bias_m
+        for s in (1, 1, 2)
+    )
     np.testing.assert_array_equal(first, again)
     assert not np.array_equal(first, other) and len(np.unique(first)) == 16
-    many = [sensors.errors_of(sensor, **{**EXACT, "bias_m": 0.005}, seed=s).bias_m for s in range(200)]
+    many = [
+        sensors.draw_sensor_errors(sensor, **{**EXACT, "bias_m": 0.005}, seed=s).bias_m
+        for s in range(200)
+    ]
     assert np.std(many) == pytest.approx(0.005, rel=0.05)
 
 
 @pytest.mark.parametrize(
     ("make", "changes"),
     [
-        (lambda **c: sensors.vlp16(0, **c), {}),
-        (lambda **c: sensors.lidar([], 8, **c), {}),
-        (lambda **c: sensors.laser(1, 270.0, **c), {}),
-        (lambda **c: sensors.laser(10, 400.0, **c), {}),
-        (lambda **c: sensors.vlp16(8, **c), {"max_range_m": 0.2}),
-        (lambda **c: sensors.vlp16(8, **c), {"min_range_m": -1.0}),
-        (lambda **c: sensors.vlp16(8, **c), {"rate_hz": 0.0}),
+        (lambda **c: sensors.make_vlp16(0, **c), {}),
+        (lambda **c: sensors.make_lidar([], 8, **c), {}),
+        (lambda **c: sensors.make_laser(1, 270.0, **c), {}),
+        (lambda **c: sensors.make_laser(10, 400.0, **c), {}),
+        (lambda **c: sensors.make_vlp16(8, **c), {"max_range_m": 0.2}),
+        (lambda **c: sensors.make_vlp16(8, **c), {"min_range_m": -1.0}),
+        (lambda **c: sensors.make_vlp16(8, **c), {"rate_hz": 0.0}),
     ],
 )
 def test_no_sensor(make, changes):
@@ -77,13 +91,19 @@ def test_no_sensor(make, changes):
         make(**{**COMMON, **changes})
 
 
-@pytest.mark.parametrize(("model", "elevations_deg"), [("lidar", None), ("vlp16", [0.0]), ("laser", [0.0])])
+@pytest.mark.parametrize(
+    ("model", "elevations_deg"), [("lidar", None), ("vlp16", [0.0]), ("laser", [0.0])]
+)
 def test_elevations_belong_to_a_lidar_alone(model, elevations_deg):
     with pytest.raises(StageError, match="elevations_deg"):
-        sensors.of_model(model, n_azimuth=8, elevations_deg=elevations_deg, field_deg=270.0, **COMMON)
+        sensors.make_sensor(
+            model, n_azimuth=8, elevations_deg=elevations_deg, field_deg=270.0, **COMMON
+        )
 
 
 @pytest.mark.parametrize("field_deg", [90.0, 270.0, 359.0, 360.0])
 def test_a_laser_knows_its_field(field_deg):
-    assert np.degrees(sensors.laser(181, field_deg, **COMMON).field_rad) == pytest.approx(field_deg, abs=1e-3)
-    assert sensors.vlp16(8, **COMMON).field_rad == 2 * np.pi
+    assert np.degrees(sensors.make_laser(181, field_deg, **COMMON).field_rad) == pytest.approx(
+        field_deg, abs=1e-3
+    )
+    assert sensors.make_vlp16(8, **COMMON).field_rad == 2 * np.pi

@@ -5,10 +5,11 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from reference import registration as literal
-from scanplan import configuration, se3
-from scanplan.registration import links, mapping, sequential
+from scanplan.geometry import se3
+from scanplan.project import settings
+from scanplan.registration import constraints, mapping, sequential
 
-SETTINGS = sequential.Settings(
+SETTINGS = sequential.SequentialSettings(
     voxel_m=0.1,
     voxel_planar_m=0.1,
     voxels=1,
@@ -36,7 +37,7 @@ SETTINGS = sequential.Settings(
 
 
 def pose(x, y, yaw_deg):
-    return se3.matrix([x, y, 0.4], Rotation.from_euler("z", yaw_deg, degrees=True).as_quat())
+    return se3.pose_matrix([x, y, 0.4], Rotation.from_euler("z", yaw_deg, degrees=True).as_quat())
 
 
 def hall(rng, planar):
@@ -59,19 +60,26 @@ def drive(n, *, planar, noise_m=0.04, noise_deg=1.0, seed=0):
     rng = np.random.default_rng(seed)
     true = [pose(1 + 0.1 * i, 2.8, 3 * i) for i in range(n)]
     priors = [
-        se3.matrix(t[:3, 3] + [*rng.normal(0, noise_m, 2), 0], Rotation.from_matrix(t[:3, :3]).as_quat())
+        se3.pose_matrix(
+            t[:3, 3] + [*rng.normal(0, noise_m, 2), 0], Rotation.from_matrix(t[:3, :3]).as_quat()
+        )
         @ pose(0, 0, rng.normal(0, noise_deg))
-        @ se3.inverse(pose(0, 0, 0))
+        @ se3.invert_pose(pose(0, 0, 0))
         for t in true
     ]
     priors[0] = true[0]
-    scans = [se3.transform(se3.inverse(t), hall(rng, planar)) for t in true]
+    scans = [se3.transform_points(se3.invert_pose(t), hall(rng, planar)) for t in true]
     return scans, priors, true
 
 
 def register(scans, priors, planar, **changes):
-    registrar = sequential.Registrar(sequential.Settings(**{**vars(SETTINGS), **changes}), planar)
-    return [registrar.add(i, scan, prior)[0] for i, (scan, prior) in enumerate(zip(scans, priors, strict=True))]
+    registrar = sequential.SequentialRegistrar(
+        sequential.SequentialSettings(**{**vars(SETTINGS), **changes}), planar
+    )
+    return [
+        registrar.add(i, scan, prior)[0]
+        for i, (scan, prior) in enumerate(zip(scans, priors, strict=True))
+    ]
 
 
 @pytest.mark.parametrize("planar", [False, True])
@@ -80,10 +88,17 @@ def test_refinement_removes_the_localisers_error(planar, icp_targets):
     scans, priors, true = drive(12, planar=planar)
     verdicts = register(scans, priors, planar, icp_targets=icp_targets)
     assert [v.reason for v in verdicts] == ["anchor"] + ["kept"] * 11
-    before = [np.linalg.norm((se3.inverse(t) @ p)[:2, 3]) for t, p in zip(true, priors, strict=True)]
-    after = [np.linalg.norm((se3.inverse(t) @ v.world_from_sensor)[:2, 3]) for t, v in zip(true, verdicts, strict=True)]
+    before = [
+        np.linalg.norm((se3.invert_pose(t) @ p)[:2, 3]) for t, p in zip(true, priors, strict=True)
+    ]
+    after = [
+        np.linalg.norm((se3.invert_pose(t) @ v.world_from_sensor)[:2, 3])
+        for t, v in zip(true, verdicts, strict=True)
+    ]
     assert np.median(before) > 0.03 and max(after) < 0.015
-    assert all(v.refined_fitness >= 0.8 for v in verdicts[1:]) and np.isnan(verdicts[0].prior_fitness)
+    assert all(v.refined_fitness >= 0.8 for v in verdicts[1:]) and np.isnan(
+        verdicts[0].prior_fitness
+    )
 
 
 def test_a_long_chain_stays_rigid():
@@ -95,9 +110,9 @@ def test_a_long_chain_stays_rigid():
 
 def test_height_and_tilt_of_a_planar_survey_stay_the_localisers():
     scans, priors, _ = drive(4, planar=True)
-    tilt = se3.matrix([0, 0, 0.05], Rotation.from_euler("x", 1.0, degrees=True).as_quat())
+    tilt = se3.pose_matrix([0, 0, 0.05], Rotation.from_euler("x", 1.0, degrees=True).as_quat())
     priors = [prior @ tilt for prior in priors]
-    scans = [se3.transform(se3.inverse(tilt), scan) for scan in scans]
+    scans = [se3.transform_points(se3.invert_pose(tilt), scan) for scan in scans]
     verdicts = register(scans, priors, True)
     for verdict, prior in zip(verdicts, priors, strict=True):
         assert verdict.kept
@@ -113,7 +128,11 @@ def test_a_scan_that_fits_badly_is_dropped_and_the_next_goes_on():
 
 def test_a_localiser_that_is_sure_of_itself_is_believed():
     scans, priors, _ = drive(6, planar=True)
-    sure = {"localiser_sigma_m": 1e-3, "localiser_sigma_deg": 0.01, "localiser_sigma_tilt_deg": 0.01}
+    sure = {
+        "localiser_sigma_m": 1e-3,
+        "localiser_sigma_deg": 0.01,
+        "localiser_sigma_tilt_deg": 0.01,
+    }
     free, held = register(scans, priors, True), register(scans, priors, True, **sure)
     assert not np.allclose(free[3].world_from_sensor, priors[3], atol=5e-3)
     np.testing.assert_allclose([v.world_from_sensor for v in held], priors, atol=8e-3)
@@ -122,7 +141,9 @@ def test_a_localiser_that_is_sure_of_itself_is_believed():
 def test_kept_scans_are_linked_to_the_ones_before():
     scans, priors, true = drive(6, planar=False)
     priors[3] = pose(4.0, 2.0, 77)
-    registrar = sequential.Registrar(sequential.Settings(**{**vars(SETTINGS), "icp_targets": 2}), False)
+    registrar = sequential.SequentialRegistrar(
+        sequential.SequentialSettings(**{**vars(SETTINGS), "icp_targets": 2}), False
+    )
     for i, (scan, prior) in enumerate(zip(scans, priors, strict=True)):
         registrar.add(10 * i, scan, prior)
     assert [(e.source, e.target) for e in registrar.edges] == [
@@ -135,7 +156,7 @@ def test_kept_scans_are_linked_to_the_ones_before():
         (50, 20),
     ]
     for edge in registrar.edges:
-        truth = se3.inverse(true[edge.target // 10]) @ true[edge.source // 10]
+        truth = se3.invert_pose(true[edge.target // 10]) @ true[edge.source // 10]
         np.testing.assert_allclose(edge.fit.target_from_source, truth, atol=0.01)
         assert edge.fitness > 0.8 and edge.rmse_m < 0.1 and edge.fit.information[0, 0] > 0
 
@@ -171,7 +192,16 @@ def test_a_run_of_rejections_ends_in_a_new_anchor():
     priors = priors[:3] + [away @ p for p in priors[3:]]
     verdicts = register(scans, priors, True)
     assert [v.reason for v in verdicts] == (
-        ["anchor", "kept", "kept", "low_prior_fitness", "low_prior_fitness", "anchor", "kept", "kept"]
+        [
+            "anchor",
+            "kept",
+            "kept",
+            "low_prior_fitness",
+            "low_prior_fitness",
+            "anchor",
+            "kept",
+            "kept",
+        ]
     )
     np.testing.assert_allclose(verdicts[5].world_from_sensor, priors[5])
 
@@ -214,42 +244,68 @@ def test_the_literal_algorithm_keeps_the_same_scans_at_the_same_places():
 
 def test_the_preset_judges_as_the_thesis_does(project_root):
     """Scans of a part of the hall each, so that fitness falls below 0.96 for some and not for others."""
-    defaults, preset = (configuration.read_yaml(project_root / f"config/{n}.yaml") for n in ("config", "thesis"))
-    section = configuration.merged(defaults, preset)["registration"]
-    limits = mapping.settings_of(section).limits
+    defaults, preset = (
+        settings.read_yaml(project_root / f"config/{n}.yaml") for n in ("config", "thesis")
+    )
+    section = settings.merge_settings(defaults, preset)["registration"]
+    limits = mapping.registration_settings(section).limits
     scans, priors, _ = drive(8, planar=False, noise_m=0.02, noise_deg=0.5)
-    scans = [scan[scan[:, 0] < reach_m] for scan, reach_m in zip(scans, (2, 2, 2.1, 4, 2.1, 3, 2.2, 2), strict=True)]
-    registrar = sequential.Registrar(limits, False)
-    ours = [registrar.add(i, scan, prior)[0] for i, (scan, prior) in enumerate(zip(scans, priors, strict=True))]
-    gates = {key: section[key] for key in ("min_prior_fitness", "min_refined_fitness", "n_previous")}
-    theirs = literal.register(scans, priors, keep_every=1, distance_m=section["fitness_distance_m"], **gates)
+    scans = [
+        scan[scan[:, 0] < reach_m]
+        for scan, reach_m in zip(scans, (2, 2, 2.1, 4, 2.1, 3, 2.2, 2), strict=True)
+    ]
+    registrar = sequential.SequentialRegistrar(limits, False)
+    ours = [
+        registrar.add(i, scan, prior)[0]
+        for i, (scan, prior) in enumerate(zip(scans, priors, strict=True))
+    ]
+    gates = {
+        key: section[key] for key in ("min_prior_fitness", "min_refined_fitness", "n_previous")
+    }
+    theirs = literal.register(
+        scans, priors, keep_every=1, distance_m=section["fitness_distance_m"], **gates
+    )
     assert [i for i, verdict in enumerate(ours) if verdict.kept] == sorted(theirs)
     assert 2 < len(theirs) < 8
-    first = literal._cloud(se3.transform(priors[0], scans[0]))
+    first = literal._cloud(se3.transform_points(priors[0], scans[0]))
     for scan, prior, verdict in zip(scans[1:2], priors[1:2], ours[1:2], strict=True):
-        placed = literal._cloud(se3.transform(prior, scan))
-        assert verdict.prior_fitness == pytest.approx(literal._mean_fitness(placed, [first], 0.5), abs=2e-3)
+        placed = literal._cloud(se3.transform_points(prior, scan))
+        assert verdict.prior_fitness == pytest.approx(
+            literal._mean_fitness(placed, [first], 0.5), abs=2e-3
+        )
     for index, pose_of_scan in theirs.items():
         np.testing.assert_allclose(ours[index].world_from_sensor, pose_of_scan, atol=0.01)
 
 
 def test_scans_are_judged_by_those_that_may_show_the_same():
     """Near and facing the same way; and by the last one in any case."""
-    limits = sequential.Settings(**{**vars(SETTINGS), "previous_apart_m": 2.0, "previous_turn_deg": 60.0})
+    limits = sequential.SequentialSettings(
+        **{**vars(SETTINGS), "previous_apart_m": 2.0, "previous_turn_deg": 60.0}
+    )
     places = [pose(0, 0, 0), pose(3.1, 0, 0), pose(1, 0, 70), pose(1, 0, 50), pose(9, 0, 180)]
-    previous = [links.Placed(i, None, place) for i, place in enumerate(places)]
-    scan = links.Placed(5, None, pose(1, 0, 0))
-    assert [other.scan_id for other in links.comparable(scan, previous, limits)] == [0, 3, 4]
-    assert [other.scan_id for other in links.comparable(scan, previous[:3], limits)] == [0, 2]
+    previous = [constraints.PlacedScan(i, None, place) for i, place in enumerate(places)]
+    scan = constraints.PlacedScan(5, None, pose(1, 0, 0))
+    assert [other.scan_id for other in constraints.comparable_scans(scan, previous, limits)] == [
+        0,
+        3,
+        4,
+    ]
+    assert [
+        other.scan_id for other in constraints.comparable_scans(scan, previous[:3], limits)
+    ] == [0, 2]
 
 
-@pytest.mark.parametrize(("wall_of_second", "reason"), [("east", "kept"), ("north", "low_refined_fitness")])
+@pytest.mark.parametrize(
+    ("wall_of_second", "reason"), [("east", "kept"), ("north", "low_refined_fitness")]
+)
 def test_what_faces_elsewhere_is_no_fit(wall_of_second, reason):
     """Two scans with a bit of floor in common: of the same wall, or of two that face differently."""
     rng = np.random.default_rng(3)
     floor = np.column_stack([rng.uniform(-4, 4, (300, 2)), np.full(300, -0.4)])
     along, up = rng.uniform(-3, 3, 2000), rng.uniform(0, 1, 2000)
     walls = {"east": [np.full(2000, 3.0), along, up], "north": [along, np.full(2000, 3.0), up]}
-    scans = [np.concatenate([floor, np.column_stack(walls[name])]) for name in ("east", wall_of_second)]
+    scans = [
+        np.concatenate([floor, np.column_stack(walls[name])]) for name in ("east", wall_of_second)
+    ]
     limits = {"min_prior_fitness": 0.0, "min_refined_fitness": 0.0, "min_facing_fitness": 0.3}
     assert register(scans, [np.eye(4)] * 2, False, **limits)[1].reason == reason

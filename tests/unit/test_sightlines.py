@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from scanplan.extraction import rays, sightlines
+from scanplan.rays import scan_view, sightlines
 
 AZIMUTH_DEG = np.arange(-180, 180, 0.5)
 
@@ -12,7 +12,7 @@ def scan(elevations_deg, range_m):
     azimuth, slope = azimuth.ravel(), slope.ravel()
     reach = range_m(azimuth, slope)
     points = np.column_stack([np.cos(azimuth) * reach, np.sin(azimuth) * reach, slope * reach])
-    return rays.view(points[np.isfinite(reach)])
+    return scan_view.sort_by_azimuth(points[np.isfinite(reach)])
 
 
 def plane(distance_m, azimuth):
@@ -25,7 +25,9 @@ START, END = np.array([2.0, -1.0]), np.array([2.0, 1.0])
 
 
 def test_rays_that_all_end_on_a_face():
-    seen = sightlines.look(scan(range(-10, 11, 2), lambda a, s: np.minimum(plane(2, a), 5)), START, END, -0.35, 0.35)
+    seen = sightlines.observe_face(
+        scan(range(-10, 11, 2), lambda a, s: np.minimum(plane(2, a), 5)), START, END, -0.35, 0.35
+    )
     assert (seen.over, seen.through) == (0, 0)
     assert seen.missing == pytest.approx(0, abs=0.1)
     # 10 degrees over 2.2 m, above a floor at -0.35 - (5 - 2) tan(10): the lowest returns, at 5 m
@@ -39,7 +41,7 @@ def test_rays_that_pass_over_an_edge():
         near = plane(2, azimuth)
         return np.where(slope * near <= 0.2, np.minimum(near, 5), 5.0)
 
-    seen = sightlines.look(scan(range(-10, 11, 2), reach), START, END, -0.35, 0.2)
+    seen = sightlines.observe_face(scan(range(-10, 11, 2), reach), START, END, -0.35, 0.2)
     assert seen.over == pytest.approx(1)
     assert seen.through == 0
 
@@ -51,7 +53,7 @@ def test_rays_that_pass_through():
         gap = np.round(np.rad2deg(azimuth) * 2).astype(int) % 2 == 0
         return np.where(gap, 5.0, np.minimum(plane(2, azimuth), 5))
 
-    seen = sightlines.look(scan(range(-10, 11, 2), reach), START, END, -0.35, 0.35)
+    seen = sightlines.observe_face(scan(range(-10, 11, 2), reach), START, END, -0.35, 0.35)
     assert seen.through == pytest.approx(1, abs=0.1)
 
 
@@ -63,25 +65,27 @@ def test_returns_that_are_missing():
         lost &= np.round(np.rad2deg(azimuth) * 2).astype(int) % 3 > 0
         return np.where(lost, np.nan, np.minimum(plane(2, azimuth), 5))
 
-    seen = sightlines.look(scan(range(-10, 11, 2), reach), START, END, -0.35, 0.35)
+    seen = sightlines.observe_face(scan(range(-10, 11, 2), reach), START, END, -0.35, 0.35)
     assert seen.missing == pytest.approx(2 / 3, abs=0.12)
 
 
 def test_a_face_across_the_cut_of_the_azimuth():
     view = scan(range(-10, 11, 2), lambda a, s: np.minimum(plane(2, np.pi - a), 5))
-    behind = sightlines.look(view, -START, -END, -0.35, 0.35)
+    behind = sightlines.observe_face(view, -START, -END, -0.35, 0.35)
     ahead = scan(range(-10, 11, 2), lambda a, s: np.minimum(plane(2, a), 5))
-    assert behind.top_m == pytest.approx(sightlines.look(ahead, START, END, -0.35, 0.35).top_m, abs=0.02)
+    assert behind.top_m == pytest.approx(
+        sightlines.observe_face(ahead, START, END, -0.35, 0.35).top_m, abs=0.02
+    )
     assert (behind.over, behind.through) == (0, 0)
 
 
 def test_nothing_on_the_face():
     view = scan(range(-10, 11, 2), lambda a, s: np.full(len(a), 5.0))
-    assert sightlines.look(view, START, END, -0.3, 0.3) == sightlines.Sight(0, 0, 0, 0)
+    assert sightlines.observe_face(view, START, END, -0.3, 0.3) == sightlines.FaceSight(0, 0, 0, 0)
 
 
 @pytest.mark.parametrize("n", [1, 2, 3])
 def test_views_of_next_to_nothing(n):
-    view = rays.view(np.array([(2.0, 0, 0.1 * i) for i in range(n)]))
-    seen = sightlines.look(view, START, END, 0, 0.2)
+    view = scan_view.sort_by_azimuth(np.array([(2.0, 0, 0.1 * i) for i in range(n)]))
+    seen = sightlines.observe_face(view, START, END, 0, 0.2)
     assert np.isfinite([seen.top_m, seen.over, seen.through, seen.missing]).all()

@@ -21,7 +21,11 @@ COLUMNS = {
         ({"area_share": 0.8}, 2, "2 of 5 scans cover 0.8 of the 100.0 m2 that all cover"),
         ({"area_share": 0.81}, 3, "3 of 5 scans cover 0.81 of the 100.0 m2 that all cover"),
         ({"area_share": 1.0}, 4, "4 of 5 scans cover 1 of the 100.0 m2 that all cover"),
-        ({"n_scans": 3, "area_share": 0.8}, 2, "2 of 5 scans cover 0.8 of the 100.0 m2 that all cover"),
+        (
+            {"n_scans": 3, "area_share": 0.8},
+            2,
+            "2 of 5 scans cover 0.8 of the 100.0 m2 that all cover",
+        ),
         ({"n_scans": 1, "area_share": 0.8}, 1, "1 of 5 scans, as asked for"),
         ({"min_gain_m2": 15.0}, 3, "3 of 5 scans: no later one adds 15 m2"),
         ({"min_gain_m2": 60.0}, 1, "1 of 5 scans: no later one adds 60 m2"),
@@ -32,39 +36,49 @@ COLUMNS = {
     ],
 )
 def test_number_and_reason(limits, k, reason):
-    assert stopping.n_scans(COLUMNS, **limits) == (k, reason)
+    assert stopping.choose_n_scans(COLUMNS, **limits) == (k, reason)
 
 
 def test_a_share_is_of_the_method_s_own_measure():
     own = {**COLUMNS, "covered": np.array([5.0, 6.0, 7.0, 8.0, 10.0])}
-    k, reason = stopping.n_scans(own, area_share=0.8)
+    k, reason = stopping.choose_n_scans(own, area_share=0.8)
     assert (k, reason) == (4, "4 of 5 scans show 0.8 of what all show, by the method's own measure")
-    assert stopping.n_scans({**COLUMNS, "covered": COLUMNS["covered_m2"]}, area_share=0.8)[0] == 2
+    assert (
+        stopping.choose_n_scans({**COLUMNS, "covered": COLUMNS["covered_m2"]}, area_share=0.8)[0]
+        == 2
+    )
 
 
 def test_rounding_of_areas_needs_no_further_scan():
     covered_m2 = np.array([10.0, 20.0, 20.0 + 1e-9])
-    assert stopping.n_scans({"covered_m2": covered_m2}, area_share=1.0)[0] == 2
+    assert stopping.choose_n_scans({"covered_m2": covered_m2}, area_share=1.0)[0] == 2
 
 
 def test_no_area_needs_one_scan():
-    assert stopping.n_scans({"covered_m2": np.zeros(3)}, area_share=0.9)[0] == 1
+    assert stopping.choose_n_scans({"covered_m2": np.zeros(3)}, area_share=0.9)[0] == 1
 
 
 def test_a_late_scan_that_adds_much_is_not_lost_in_an_order_without_greed():
     gain_m2 = np.array([3.0, 0.0, 7.0, 1.0])
     columns = {"covered_m2": np.cumsum(gain_m2), "gain_m2": gain_m2}
-    assert stopping.n_scans(columns, min_gain_m2=2.0)[0] == 3
+    assert stopping.choose_n_scans(columns, min_gain_m2=2.0)[0] == 3
 
 
 def test_a_budget_below_the_first_scan_is_told():
-    with pytest.raises(StageError, match="max_points: the first scan has 1,000 points, the budget is 999; raise it"):
-        stopping.n_scans(COLUMNS, max_points=999)
+    with pytest.raises(
+        StageError, match="max_points: the first scan has 1,000 points, the budget is 999; raise it"
+    ):
+        stopping.choose_n_scans(COLUMNS, max_points=999)
 
 
 @pytest.mark.parametrize(
     ("limits", "points"),
-    [({}, None), ({"max_points": 7}, 7), ({"max_bytes": 25}, 2), ({"max_points": 7, "max_bytes": 120}, 7)],
+    [
+        ({}, None),
+        ({"max_points": 7}, 7),
+        ({"max_bytes": 25}, 2),
+        ({"max_points": 7, "max_bytes": 120}, 7),
+    ],
 )
 def test_budget_in_points(limits, points):
     assert stopping.points_budget(**limits) == points
@@ -84,9 +98,9 @@ def test_budget_in_points(limits, points):
 )
 def test_refuses_a_limit_out_of_range(wrong):
     with pytest.raises(ValueError, match=r"n_scans|area_share|min_gain|max_points"):
-        stopping.n_scans(COLUMNS, **wrong)
+        stopping.choose_n_scans(COLUMNS, **wrong)
 
 
 def test_refuses_an_ordering_of_nothing():
     with pytest.raises(ValueError, match="no scans"):
-        stopping.n_scans({"covered_m2": np.zeros(0)})
+        stopping.choose_n_scans({"covered_m2": np.zeros(0)})

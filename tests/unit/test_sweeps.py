@@ -5,34 +5,40 @@ import dataclasses
 import numpy as np
 import pytest
 
-import simple_rooms as drawn
-from scanplan.simulation import clutter, extrusion, raycast, rover, sensors, sweeps
-from scanplan.simulation.raycast import Hits
+from helpers import simple_rooms as drawn
+from scanplan.lab.buildings import extrusion
+from scanplan.lab.simulation import raycast, rover, sensors, sweeps
+from scanplan.lab.simulation.people import Person
+from scanplan.lab.simulation.raycast import RayHits
 
-MESH = extrusion.building_mesh(drawn.plan())
-EXACT = sensors.Errors(0.0, np.zeros(16, np.float32), 0.0, np.pi / 2, 1.0, 0.0)
+MESH = extrusion.make_building_mesh(drawn.plan())
+EXACT = sensors.SensorErrors(0.0, np.zeros(16, np.float32), 0.0, np.pi / 2, 1.0, 0.0)
 # along y = 1 at 1 m/s, facing +x, then a quarter turn at 90 deg/s
-DRIVE = rover.drive([[1, 1], [3, 1], [3, 2]], speed_m_s=1.0, turn_rate_deg_s=90.0)
-MOUNT = rover.mounted(height_m=0.4, forward_m=0.1, yaw_deg=0.0)
+DRIVE = rover.plan_drive([[1, 1], [3, 1], [3, 2]], speed_m_s=1.0, turn_rate_deg_s=90.0)
+MOUNT = rover.mount_sensor(height_m=0.4, forward_m=0.1, yaw_deg=0.0)
 
 
 def vlp16(n_azimuth=360, **changes):
     common = {"rate_hz": 10.0, "sweep": True, "min_range_m": 0.0, "max_range_m": 100.0}
-    return sensors.vlp16(n_azimuth, **{**common, **changes})
+    return sensors.make_vlp16(n_azimuth, **{**common, **changes})
 
 
 def survey(sensor=None, errors=EXACT, t_s=(1.0,), people=(), seed=0, mesh=MESH):
     t_ns = np.round(np.array(t_s) * 1e9).astype(np.int64)
-    return sweeps.Survey(mesh, sensor or vlp16(), errors, DRIVE, MOUNT, tuple(people), t_ns, seed)
+    return sweeps.SimulatedSurvey(
+        mesh, sensor or vlp16(), errors, DRIVE, MOUNT, tuple(people), t_ns, seed
+    )
 
 
 def only(**given):
-    (scan,) = sweeps.scans(survey(**given))
+    (scan,) = sweeps.simulate_scans(survey(**given))
     return scan
 
 
 def test_every_column_is_cast_from_where_the_sensor_is_at_its_moment():
-    sensor = sensors.lidar([0.0], 4, rate_hz=10.0, sweep=True, min_range_m=0.0, max_range_m=100.0)
+    sensor = sensors.make_lidar(
+        [0.0], 4, rate_hz=10.0, sweep=True, min_range_m=0.0, max_range_m=100.0
+    )
     errors = dataclasses.replace(EXACT, bias_m=np.zeros(1, np.float32))
     # the last column fires at the stamp, the first 75 ms before; forward, right, back, left
     scan = only(sensor=sensor, errors=errors)
@@ -44,7 +50,9 @@ def test_every_column_is_cast_from_where_the_sensor_is_at_its_moment():
     at = np.column_stack([3 + 0.1 * np.cos(yaw), 1 + 0.1 * np.sin(yaw)])
     expected = [(4 - at[0, 0]) / np.cos(yaw[0]), (at[1, 1]) / np.cos(yaw[1])]
     np.testing.assert_allclose(
-        turning.range_m[:2, 0], np.minimum(expected, [9, (4 - at[1, 0]) / np.sin(yaw[1])]), atol=1e-5
+        turning.range_m[:2, 0],
+        np.minimum(expected, [9, (4 - at[1, 0]) / np.sin(yaw[1])]),
+        atol=1e-5,
     )
 
 
@@ -65,7 +73,9 @@ def test_nothing_comes_back_from_beyond_the_limits():
 
 def test_noise_has_the_deviation_asked_for():
     true_m = only(sensor=vlp16(1800)).range_m
-    error_m = only(sensor=vlp16(1800), errors=dataclasses.replace(EXACT, noise_m=0.02)).range_m - true_m
+    error_m = (
+        only(sensor=vlp16(1800), errors=dataclasses.replace(EXACT, noise_m=0.02)).range_m - true_m
+    )
     # 28,800 samples: the standard error of mean and deviation is 0.12 mm and 0.08 mm
     assert abs(error_m.mean()) < 0.0005
     assert error_m.std() == pytest.approx(0.02, abs=0.0004)
@@ -76,7 +86,8 @@ def test_bias_is_one_number_a_beam_in_every_scan():
     bias_m = np.linspace(-0.01, 0.02, 16).astype(np.float32)
     given = {"t_s": (0.5, 1.0, 2.5)}
     true, off = (
-        list(sweeps.scans(survey(errors=e, **given))) for e in (EXACT, dataclasses.replace(EXACT, bias_m=bias_m))
+        list(sweeps.simulate_scans(survey(errors=e, **given)))
+        for e in (EXACT, dataclasses.replace(EXACT, bias_m=bias_m))
     )
     for a, b in zip(true, off, strict=True):
         np.testing.assert_allclose(b.range_m - a.range_m, np.tile(bias_m, (360, 1)), atol=1e-6)
@@ -89,18 +100,20 @@ def test_ranges_are_multiples_of_the_quantum():
 
 def flat_hits(angle_deg, n=40_000):
     cosine = np.full(n, np.cos(np.radians(angle_deg)), np.float32)
-    return Hits(np.ones(n, np.float32), cosine, cosine)
+    return RayHits(np.ones(n, np.float32), cosine, cosine)
 
 
-@pytest.mark.parametrize(("angle_deg", "share"), [(0, 0), (69.9, 0), (75, 0.25), (80, 0.5), (85, 0.75), (89.99, 1)])
+@pytest.mark.parametrize(
+    ("angle_deg", "share"), [(0, 0), (69.9, 0), (75, 0.25), (80, 0.5), (85, 0.75), (89.99, 1)]
+)
 def test_the_flatter_the_more_is_lost(angle_deg, share):
     errors = dataclasses.replace(EXACT, grazing_from_rad=np.radians(70))
-    lost = np.isnan(sweeps.lose(flat_hits(angle_deg), errors, np.random.default_rng(1)))
+    lost = np.isnan(sweeps.drop_grazing(flat_hits(angle_deg), errors, np.random.default_rng(1)))
     assert lost.mean() == pytest.approx(share, abs=0.01)
 
 
 def test_nothing_is_lost_where_loss_starts_at_ninety():
-    assert np.isfinite(sweeps.lose(flat_hits(90), EXACT, np.random.default_rng(1))).all()
+    assert np.isfinite(sweeps.drop_grazing(flat_hits(90), EXACT, np.random.default_rng(1))).all()
 
 
 def test_grazing_returns_are_missing_from_a_scan():
@@ -112,18 +125,25 @@ def test_grazing_returns_are_missing_from_a_scan():
 
 def test_glass_passes_drops_and_returns_in_their_shares():
     n = 60_000
-    opaque, pane = (Hits(*np.tile(np.array([[r], [1], [i]], np.float32), n)) for r, i in ((5.0, 80.0), (2.0, 10.0)))
+    opaque, pane = (
+        RayHits(*np.tile(np.array([[r], [1], [i]], np.float32), n))
+        for r, i in ((5.0, 80.0), (2.0, 10.0))
+    )
     errors = dataclasses.replace(EXACT, glass_pass=0.7, glass_drop=0.2)
-    seen = sweeps.through_glass(opaque, pane, errors, np.random.default_rng(1))
+    seen = sweeps.pass_glass(opaque, pane, errors, np.random.default_rng(1))
     shares = [(seen.range_m == r).mean() for r in (5.0, np.inf, 2.0)]
     np.testing.assert_allclose(shares, [0.7, 0.2, 0.1], atol=0.01)
-    assert (seen.reflectivity[seen.range_m == 2] == 10).all() and (seen.reflectivity[seen.range_m == 5] == 80).all()
+    assert (seen.reflectivity[seen.range_m == 2] == 10).all() and (
+        seen.reflectivity[seen.range_m == 5] == 80
+    ).all()
 
 
 def test_a_pane_behind_a_wall_does_nothing():
-    opaque, pane = (Hits(*np.tile(np.array([[r], [1], [80]], np.float32), 100)) for r in (2.0, 5.0))
+    opaque, pane = (
+        RayHits(*np.tile(np.array([[r], [1], [80]], np.float32), 100)) for r in (2.0, 5.0)
+    )
     errors = dataclasses.replace(EXACT, glass_pass=0.0, glass_drop=1.0)
-    assert (sweeps.through_glass(opaque, pane, errors, np.random.default_rng(1)).range_m == 2).all()
+    assert (sweeps.pass_glass(opaque, pane, errors, np.random.default_rng(1)).range_m == 2).all()
 
 
 def test_a_glazed_room_is_seen_through_its_pane(monkeypatch):
@@ -135,7 +155,7 @@ def test_a_glazed_room_is_seen_through_its_pane(monkeypatch):
 
 
 def test_a_person_hides_the_wall_behind():
-    person = clutter.Person(np.array([0.0]), np.array([[3.0, 1.0]]))
+    person = Person(np.array([0.0]), np.array([[3.0, 1.0]]))
     alone, hidden = only(), only(people=[person])
     nearer = hidden.range_m < alone.range_m
     np.testing.assert_array_equal(hidden.range_m[~nearer], alone.range_m[~nearer])
@@ -146,7 +166,7 @@ def test_a_person_hides_the_wall_behind():
 def test_a_scan_does_not_depend_on_how_many_others_are_taken_nor_two_on_the_same_noise():
     noisy = dataclasses.replace(EXACT, noise_m=0.01, grazing_from_rad=1.2)
     three = {"errors": noisy, "t_s": (-2.0, -1.0, -0.5), "seed": 3}
-    a, b, c = (scan.range_m for scan in sweeps.scans(survey(**three)))
+    a, b, c = (scan.range_m for scan in sweeps.simulate_scans(survey(**three)))
     np.testing.assert_array_equal(a, only(errors=noisy, t_s=[-2.0], seed=3).range_m)
     assert not np.array_equal(a, b, equal_nan=True) and not np.array_equal(b, c, equal_nan=True)
     assert not np.array_equal(a, only(errors=noisy, t_s=[-2.0], seed=4).range_m, equal_nan=True)

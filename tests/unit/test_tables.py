@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from scanplan import schemas, tables
 from scanplan.errors import StageError
+from scanplan.store import schemas, tables
 
 ROWS = {
     "rank": [1, 2, 3],
@@ -22,28 +22,28 @@ ROWS = {
 @pytest.fixture
 def selection(tmp_path):
     path = tmp_path / "deep" / "selection.parquet"
-    tables.write(path, schemas.SELECTION, ROWS)
+    tables.write_table(path, schemas.SELECTION, ROWS)
     return path
 
 
 @pytest.fixture
 def scans(tmp_path):
     path = tmp_path / "scans.parquet"
-    with tables.scan_writer(path, planar=True) as write:
+    with tables.open_scan_writer(path, planar=True) as write:
         write(3, np.arange(6.0).reshape(2, 3))
         write(9, np.ones((1, 3)))
     return path
 
 
 def test_what_is_written_is_read(selection):
-    rows = tables.read(selection, schemas.SELECTION)
+    rows = tables.read_table(selection, schemas.SELECTION)
     assert {name: rows[name].tolist() for name in rows} == ROWS
     assert rows["scan_id"].dtype == np.int32
-    assert list(tables.read(selection, schemas.SELECTION, ["gain_m2"])) == ["gain_m2"]
+    assert list(tables.read_table(selection, schemas.SELECTION, ["gain_m2"])) == ["gain_m2"]
 
 
 def test_the_same_rows_give_the_same_bytes(selection, tmp_path):
-    tables.write(tmp_path / "again.parquet", schemas.SELECTION, ROWS)
+    tables.write_table(tmp_path / "again.parquet", schemas.SELECTION, ROWS)
     assert (tmp_path / "again.parquet").read_bytes() == selection.read_bytes()
 
 
@@ -58,13 +58,19 @@ def test_scans_are_read_one_by_one(scans):
 
 
 def test_a_store_without_scans_does_not_appear(tmp_path):
-    with pytest.raises(StageError, match="no scan was kept"), tables.scan_writer(tmp_path / "s.parquet", planar=False):
+    with (
+        pytest.raises(StageError, match="no scan was kept"),
+        tables.open_scan_writer(tmp_path / "s.parquet", planar=False),
+    ):
         pass
     assert list(tmp_path.iterdir()) == []
 
 
 def test_an_interrupted_write_leaves_nothing(tmp_path):
-    with pytest.raises(KeyboardInterrupt), tables.scan_writer(tmp_path / "s.parquet", planar=False) as write:
+    with (
+        pytest.raises(KeyboardInterrupt),
+        tables.open_scan_writer(tmp_path / "s.parquet", planar=False) as write,
+    ):
         write(0, np.zeros((1, 3)))
         raise KeyboardInterrupt
     assert list(tmp_path.iterdir()) == []
@@ -80,21 +86,24 @@ def test_columns_and_order_are_checked_on_write(tmp_path, spoil):
     else:
         rows["rank"] = [2, 1, 3]
     with pytest.raises(ValueError, match="selection"):
-        tables.write(tmp_path / "s.parquet", schemas.SELECTION, rows)
+        tables.write_table(tmp_path / "s.parquet", schemas.SELECTION, rows)
     assert list(tmp_path.iterdir()) == []
 
 
 def test_no_rows_only_where_allowed(tmp_path):
     empty = {name: [] for name in ROWS}
     with pytest.raises(StageError, match="no rows"):
-        tables.write(tmp_path / "s.parquet", schemas.SELECTION, empty)
-    tables.write(tmp_path / "s.parquet", schemas.SELECTION, empty, allow_empty=True)
-    assert tables.read(tmp_path / "s.parquet", schemas.SELECTION, allow_empty=True)["rank"].size == 0
+        tables.write_table(tmp_path / "s.parquet", schemas.SELECTION, empty)
+    tables.write_table(tmp_path / "s.parquet", schemas.SELECTION, empty, allow_empty=True)
+    assert (
+        tables.read_table(tmp_path / "s.parquet", schemas.SELECTION, allow_empty=True)["rank"].size
+        == 0
+    )
 
 
 def test_a_flipped_bit_is_noticed(tmp_path):
     path = tmp_path / "scans.parquet"
-    with tables.scan_writer(path, planar=False) as write:
+    with tables.open_scan_writer(path, planar=False) as write:
         write(0, np.random.default_rng(0).normal(size=(5000, 3)))
     whole = path.read_bytes()
     for position in range(2000, 50000, 9601):
@@ -107,14 +116,14 @@ def test_a_flipped_bit_is_noticed(tmp_path):
 def test_a_truncated_file_is_refused(selection, size):
     selection.write_bytes(selection.read_bytes()[:size])
     with pytest.raises(StageError, match="damaged"):
-        tables.read(selection, schemas.SELECTION)
+        tables.read_table(selection, schemas.SELECTION)
 
 
 def test_another_table_or_no_table_is_refused(selection, tmp_path):
     with pytest.raises(StageError, match="expected poses"):
-        tables.read(selection, schemas.POSES)
+        tables.read_table(selection, schemas.POSES)
     with pytest.raises(StageError, match="does not exist"):
-        tables.read(tmp_path / "none.parquet", schemas.POSES)
+        tables.read_table(tmp_path / "none.parquet", schemas.POSES)
 
 
 def test_hulls_say_that_they_are_local_metres(tmp_path):
@@ -123,6 +132,6 @@ def test_hulls_say_that_they_are_local_metres(tmp_path):
     import pyarrow.parquet as pq
 
     row = {"scan_id": [0], "cluster": [0], "n_points": [3], "area_m2": [0.5], "geometry": [b"\x01"]}
-    tables.write(tmp_path / "h.parquet", schemas.HULLS, row)
+    tables.write_table(tmp_path / "h.parquet", schemas.HULLS, row)
     geo = json.loads(pq.read_metadata(tmp_path / "h.parquet").metadata[b"geo"])
     assert geo["columns"]["geometry"]["crs"] is None

@@ -2,42 +2,47 @@ import time
 
 import numpy as np
 
-from scanplan import tables
+from scanplan.lab.thesis import timing
 from scanplan.selection import hulls
-from scanplan.thesis import timing
+from scanplan.store import tables
 
 
 def test_rows_are_spread_evenly():
-    assert timing.spread(np.arange(9), 3).tolist() == [0, 4, 8]
-    assert timing.spread([5, 6], 4).tolist() == [5, 6]
+    assert timing.spread_rows(np.arange(9), 3).tolist() == [0, 4, 8]
+    assert timing.spread_rows([5, 6], 4).tolist() == [5, 6]
 
 
 def built(n):
     rng = np.random.default_rng(0)
     parts = [
-        hulls.cluster_hulls(i, rng.normal((i, 0), 1, (50, 2)), n_clusters=2, sample_size=20, seed=0) for i in range(n)
+        hulls.make_cluster_hulls(
+            i, rng.normal((i, 0), 1, (50, 2)), n_clusters=2, sample_size=20, seed=0
+        )
+        for i in range(n)
     ]
-    return hulls.concatenated(parts)
+    return hulls.concatenate_hulls(parts)
 
 
 def test_the_order_is_timed_for_every_number_of_scans():
-    rows = list(timing.selection(built(6), [2, 6]))
+    rows = list(timing.time_selection(built(6), [2, 6]))
     assert [(row["size"], row["found"]) for row in rows] == [(2, 2), (6, 6)]
     assert all(row["seconds"] > 0 for row in rows)
 
 
 def test_choosing_the_subset_is_timed_where_there_is_a_choice():
-    rows = list(timing.selection(built(17), [15, 17]))
+    rows = list(timing.time_selection(built(17), [15, 17]))
     found = [(row["task"], row["size"], row["found"]) for row in rows]
     assert found == [("order_scans", 15, 15), ("order_scans", 17, 17), ("choose_scans", 17, 15)]
 
 
 def test_a_part_of_the_points_is_kept_in_their_order():
     points = np.arange(30.0).reshape(10, 3)
-    half = timing.thinned(points, 2, 4)
+    half = timing.thin_points(points, 2, 4)
     assert len(half) == 5 and (np.diff(half[:, 0]) > 0).all() and np.isin(half, points).all()
-    assert (timing.thinned(points, 1, 4) == points).all() and len(timing.thinned(points, 99, 4)) == 1
-    assert (timing.thinned(points, 2, 4) == half).all()
+    assert (timing.thin_points(points, 1, 4) == points).all() and len(
+        timing.thin_points(points, 99, 4)
+    ) == 1
+    assert (timing.thin_points(points, 2, 4) == half).all()
 
 
 class Busy:
@@ -57,21 +62,23 @@ class Busy:
 
 
 def test_a_disturbed_call_does_not_count(tmp_path, monkeypatch):
-    with tables.scan_writer(tmp_path / "scans.parquet", planar=False) as write:
+    with tables.open_scan_writer(tmp_path / "scans.parquet", planar=False) as write:
         for scan_id in (0, 3):
             write(scan_id, np.ones((5, 3)))
-    monkeypatch.setattr(timing.walls, "sensor_positions", lambda *_: {0: {}, 3: {}})
+    monkeypatch.setattr(timing.segments, "sensor_keywords", lambda *_: {0: {}, 3: {}})
     store = tables.ScanStore(tmp_path / "scans.parquet")
-    rows = list(timing.extractor("busy", Busy(), store, {}, [0, 3], {}, "registration.parquet"))
+    rows = list(
+        timing.time_extractor("busy", Busy(), store, {}, [0, 3], {}, "registration.parquet")
+    )
     assert [(row["item"], row["size"], row["found"]) for row in rows] == [(0, 5, 1), (3, 5, 1)]
     assert all(0.001 <= row["seconds"] < 0.04 for row in rows)
 
 
 def test_hulls_are_timed_for_every_number_of_clusters(tmp_path):
     rng = np.random.default_rng(1)
-    with tables.scan_writer(tmp_path / "scans.parquet", planar=False) as write:
+    with tables.open_scan_writer(tmp_path / "scans.parquet", planar=False) as write:
         for scan_id in (0, 3, 9):
             write(scan_id, rng.normal(0, 1, (60, 3)))
     store = tables.ScanStore(tmp_path / "scans.parquet")
-    rows = list(timing.clusters(store, [0, 9], [1, 4], sample_size=30, seed=0))
+    rows = list(timing.time_clusters(store, [0, 9], [1, 4], sample_size=30, seed=0))
     assert [(row["size"], row["found"]) for row in rows] == [(1, 2), (4, 2)]

@@ -5,20 +5,24 @@ from scanplan.recordings import topics
 from scanplan.recordings.topics import CLOUDS, POSES, TRANSFORMS, Topic
 
 CLOUD, LASER = Topic("/points", CLOUDS[0], 9), Topic("/scan", CLOUDS[1], 9)
-AMCL, MOCAP, ODOM = (Topic(n, t, 5) for n, t in zip(("/amcl_pose", "/mocap", "/odom"), POSES, strict=True))
+AMCL, MOCAP, ODOM = (
+    Topic(n, t, 5) for n, t in zip(("/amcl_pose", "/mocap", "/odom"), POSES, strict=True)
+)
 TF, TF_STATIC = Topic("/tf", TRANSFORMS[0], 50), Topic("/tf_static", TRANSFORMS[0], 1)
 
 
 def test_cloud_of_one_candidate():
-    assert topics.choose_cloud([AMCL, CLOUD], None, "d") == CLOUD
-    assert topics.choose_cloud([LASER, Topic("/other", CLOUDS[0], 0)], None, "d") == LASER
+    assert topics.choose_cloud_topic([AMCL, CLOUD], None, "d") == CLOUD
+    assert topics.choose_cloud_topic([LASER, Topic("/other", CLOUDS[0], 0)], None, "d") == LASER
 
 
 def test_cloud_in_doubt_is_never_guessed():
-    with pytest.raises(StageError, match=r"/points .*PointCloud2, 9.*/scan .*LaserScan, 9.*input.cloud_topic"):
-        topics.choose_cloud([CLOUD, LASER], None, "d")
-    assert topics.choose_cloud([CLOUD, LASER], "/scan", "d") == LASER
-    assert topics.choose_cloud([CLOUD, LASER], "scan", "d") == LASER
+    with pytest.raises(
+        StageError, match=r"/points .*PointCloud2, 9.*/scan .*LaserScan, 9.*input.cloud_topic"
+    ):
+        topics.choose_cloud_topic([CLOUD, LASER], None, "d")
+    assert topics.choose_cloud_topic([CLOUD, LASER], "/scan", "d") == LASER
+    assert topics.choose_cloud_topic([CLOUD, LASER], "scan", "d") == LASER
 
 
 @pytest.mark.parametrize(
@@ -32,7 +36,7 @@ def test_cloud_in_doubt_is_never_guessed():
 )
 def test_no_cloud(present, wanted, told):
     with pytest.raises(StageError, match=told):
-        topics.choose_cloud(present, wanted, "d")
+        topics.choose_cloud_topic(present, wanted, "d")
 
 
 @pytest.mark.parametrize(
@@ -42,26 +46,33 @@ def test_no_cloud(present, wanted, told):
         ([TF, ODOM, MOCAP], MOCAP),
         ([TF, ODOM], ODOM),
         ([TF_STATIC, TF], TF),
-        ([Topic("/initialpose", POSES[0], 1), Topic("/move_base_simple/goal", POSES[1], 3), ODOM], ODOM),
+        (
+            [
+                Topic("/initialpose", POSES[0], 1),
+                Topic("/move_base_simple/goal", POSES[1], 3),
+                ODOM,
+            ],
+            ODOM,
+        ),
         ([Topic("/amcl_pose", POSES[0], 0), ODOM], ODOM),
     ],
 )
 def test_poses_by_rank(present, chosen):
-    assert topics.choose_poses(present, None, "d") == chosen
+    assert topics.choose_pose_topic(present, None, "d") == chosen
 
 
 def test_poses_in_doubt_or_missing():
     second = Topic("/odometry/filtered", POSES[2], 4)
     with pytest.raises(StageError, match=r"/odom .*/odometry/filtered .*input.pose_topic"):
-        topics.choose_poses([ODOM, second], None, "d")
-    assert topics.choose_poses([ODOM, second, TF], "/tf", "d") == TF
+        topics.choose_pose_topic([ODOM, second], None, "d")
+    assert topics.choose_pose_topic([ODOM, second, TF], "/tf", "d") == TF
     with pytest.raises(StageError, match=r"no pose topic.*/points"):
-        topics.choose_poses([CLOUD, TF_STATIC], None, "d")
+        topics.choose_pose_topic([CLOUD, TF_STATIC], None, "d")
     with pytest.raises(StageError, match="one of: /odom"):
-        topics.choose_poses([ODOM, CLOUD], "/points", "d")
+        topics.choose_pose_topic([ODOM, CLOUD], "/points", "d")
 
 
 def test_merge_adds_up_and_refuses_two_types():
-    assert topics.merge([CLOUD, AMCL, CLOUD], "d") == [AMCL, Topic("/points", CLOUDS[0], 18)]
+    assert topics.merge_topics([CLOUD, AMCL, CLOUD], "d") == [AMCL, Topic("/points", CLOUDS[0], 18)]
     with pytest.raises(StageError, match="/points"):
-        topics.merge([CLOUD, Topic("/points", CLOUDS[1], 1)], "d")
+        topics.merge_topics([CLOUD, Topic("/points", CLOUDS[1], 1)], "d")

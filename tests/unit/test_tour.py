@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scanplan.simulation import tour
+from scanplan.lab.buildings import tour
 
 
 def distances(xy):
@@ -17,28 +17,33 @@ def distances(xy):
 
 def test_places_on_a_line_are_visited_from_end_to_end():
     metres = distances([(3, 0), (0, 0), (7, 0), (1, 0)])
-    assert tour.shortest(metres, closed=False) == [1, 3, 0, 2]
+    assert tour.shortest_tour(metres, closed=False) == [1, 3, 0, 2]
 
 
 def test_a_square_is_walked_round():
-    found = tour.shortest(distances([(0, 0), (1, 1), (1, 0), (0, 1)]), closed=True)
-    assert tour.length(found, distances([(0, 0), (1, 1), (1, 0), (0, 1)]), closed=True) == pytest.approx(4)
+    found = tour.shortest_tour(distances([(0, 0), (1, 1), (1, 0), (0, 1)]), closed=True)
+    assert tour.tour_length(
+        found, distances([(0, 0), (1, 1), (1, 0), (0, 1)]), closed=True
+    ) == pytest.approx(4)
 
 
 def test_it_starts_where_it_must():
-    assert tour.shortest(distances([(3, 0), (0, 0), (7, 0)]), closed=False, first=0)[0] == 0
-    assert tour.shortest([[0.0]], closed=True) == [0]
+    assert tour.shortest_tour(distances([(3, 0), (0, 0), (7, 0)]), closed=False, first=0)[0] == 0
+    assert tour.shortest_tour([[0.0]], closed=True) == [0]
 
 
-@given(st.lists(st.tuples(st.integers(0, 30), st.integers(0, 30)), min_size=2, max_size=6), st.booleans())
+@given(
+    st.lists(st.tuples(st.integers(0, 30), st.integers(0, 30)), min_size=2, max_size=6),
+    st.booleans(),
+)
 def test_it_visits_all_once_and_is_close_to_the_best(xy, closed):
     metres = distances(xy)
-    found = tour.shortest(metres, closed=closed)
+    found = tour.shortest_tour(metres, closed=closed)
     assert sorted(found) == list(range(len(xy)))
-    best = min(tour.length(p, metres, closed=closed) for p in permutations(range(len(xy))))
-    assert tour.length(found, metres, closed=closed) <= 1.25 * best + 1e-6
+    best = min(tour.tour_length(p, metres, closed=closed) for p in permutations(range(len(xy))))
+    assert tour.tour_length(found, metres, closed=closed) <= 1.25 * best + 1e-6
 
 
 def test_places_that_cannot_be_reached_are_a_wrong_call():
     with pytest.raises(ValueError, match="finite"):
-        tour.shortest([[0, np.inf], [np.inf, 0]], closed=False)
+        tour.shortest_tour([[0, np.inf], [np.inf, 0]], closed=False)

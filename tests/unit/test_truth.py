@@ -6,13 +6,18 @@ import numpy as np
 import pytest
 from shapely.geometry import shape
 
-import simple_rooms as drawn
-from scanplan.evaluation import visibility
-from scanplan.simulation import rover, truth
+from helpers import simple_rooms as drawn
+from scanplan.lab.buildings import truth
+from scanplan.lab.evaluation import visible_faces
+from scanplan.lab.simulation import rover
 
 
 def lengths(plan, side, slice_height_m=0.4):
-    return sorted(round(line.length, 6) for line, s in truth.wall_faces(plan, slice_height_m) if s == side)
+    return sorted(
+        round(line.length, 6)
+        for line, s in truth.true_wall_faces(plan, slice_height_m)
+        if s == side
+    )
 
 
 def of_kind(drawn_features, kind):
@@ -41,7 +46,7 @@ def test_a_joint_in_the_drawing_is_no_end_of_a_face(start):
 
 
 def test_the_wall_is_on_the_left_of_its_faces():
-    for line, side in truth.wall_faces(drawn.plan(), 0.4):
+    for line, side in truth.true_wall_faces(drawn.plan(), 0.4):
         (x0, y0), (x1, y1) = line.coords
         x, y = (x0 + x1) / 2, (y0 + y1) / 2
         left = np.array([y0 - y1, x1 - x0]) / line.length
@@ -51,20 +56,26 @@ def test_the_wall_is_on_the_left_of_its_faces():
 
 def test_walls_openings_and_rooms():
     plan = drawn.plan(drawn.wall((2, 0), (2, 3)), drawn.door(2, 1), way=drawn.way((3, 1), (3, 2)))
-    found = truth.features(plan, 0.4)
+    found = truth.truth_features(plan, 0.4)
     walls, ((opening, values),) = of_kind(found, "wall"), of_kind(found, "opening")
     assert [round(g.length, 6) for g, _ in walls] == [4.2, 3.2, 4.2, 3.2, 3.0]
     assert {v["thickness_m"] for _, v in walls} == {0.2}
     assert sorted(opening.coords) == [(2, 0.5), (2, 1.5)]
-    assert values == {"kind": "opening", "type": "door", "width_m": 1.0, "sill_m": 0.0, "lintel_m": 2.0}
+    assert values == {
+        "kind": "opening",
+        "type": "door",
+        "width_m": 1.0,
+        "sill_m": 0.0,
+        "lintel_m": 2.0,
+    }
     rooms = {room.centroid.x > 2: values for room, values in of_kind(found, "room")}
     assert [rooms[east]["area_m2"] for east in (False, True)] == pytest.approx([5.7, 5.7])
     assert [rooms[east]["visited"] for east in (False, True)] == [False, True]
 
 
 def test_geojson_gives_the_shapes_back():
-    found = truth.features(drawn.plan(drawn.door(2, -0.1)), 0.4)
-    read = json.loads(truth.feature_collection(found))
+    found = truth.truth_features(drawn.plan(drawn.door(2, -0.1)), 0.4)
+    read = json.loads(truth.format_features(found))
     assert read["type"] == "FeatureCollection" and len(read["features"]) == len(found)
     for feature, (geometry, values) in zip(read["features"], found, strict=True):
         assert feature["properties"] == values
@@ -73,9 +84,14 @@ def test_geojson_gives_the_shapes_back():
 
 def test_tum_keeps_whole_nanoseconds():
     t_ns = np.array([1_704_067_200_000_000_001, 1_704_067_200_123_456_789])
-    text = truth.tum(t_ns, rover.planar_poses([[1, 2], [3, 4]], [0.0, np.pi], 0.4))
+    text = truth.format_tum(t_ns, rover.planar_poses([[1, 2], [3, 4]], [0.0, np.pi], 0.4))
     first, second = text.splitlines()
-    assert first == "1704067200.000000001 1.000000000 2.000000000 0.400000000" + " 0.000000000" * 3 + " 1.000000000"
+    assert (
+        first
+        == "1704067200.000000001 1.000000000 2.000000000 0.400000000"
+        + " 0.000000000" * 3
+        + " 1.000000000"
+    )
     assert second.split()[0] == "1704067200.123456789"
     np.testing.assert_allclose(np.abs(np.array(second.split()[4:], float)), [0, 0, 1, 0], atol=1e-9)
 
@@ -86,11 +102,17 @@ class TestSight:
     HERE = np.eye(4) + np.array([[0, 0, 0, 2.0], [0, 0, 0, 1.5], [0, 0, 0, 0.4], [0, 0, 0, 0]])
 
     def visible(self, *more, survey=HERE[None], **sight):
-        told = truth.with_sight(truth.features(drawn.plan(*more), 0.4), survey, visibility.Sight(**sight))
+        told = truth.mark_visible(
+            truth.truth_features(drawn.plan(*more), 0.4), survey, visible_faces.SensorView(**sight)
+        )
         walls = [values["visible_m"] for _, values in of_kind(told, "wall")]
-        faces = sum(values["visible_m"] for _, values in of_kind(told, "face") if values["side"] == "inside")
+        faces = sum(
+            values["visible_m"] for _, values in of_kind(told, "face") if values["side"] == "inside"
+        )
         assert faces == pytest.approx(sum(walls), abs=0.01)
-        assert all("visible_m" not in values for g, values in told if values.get("side") == "outside")
+        assert all(
+            "visible_m" not in values for g, values in told if values.get("side") == "outside"
+        )
         return walls
 
     def test_all_around(self):
@@ -98,17 +120,23 @@ class TestSight:
 
     def test_as_far_as_the_sensor_sees(self):
         half_m = (1.6**2 - 1.5**2) ** 0.5
-        assert self.visible(max_range_m=1.6) == pytest.approx([2 * half_m, 0, 2 * half_m, 0], abs=0.03)
+        assert self.visible(max_range_m=1.6) == pytest.approx(
+            [2 * half_m, 0, 2 * half_m, 0], abs=0.03
+        )
 
     def test_only_in_its_field(self):
-        assert self.visible(max_range_m=100.0, field_rad=np.pi / 2) == pytest.approx([0.5, 3, 0.5, 0], abs=0.03)
+        assert self.visible(max_range_m=100.0, field_rad=np.pi / 2) == pytest.approx(
+            [0.5, 3, 0.5, 0], abs=0.03
+        )
 
     @pytest.mark.parametrize(("height_m", "hidden_m"), [(1.9, 1.0), (0.8, 0.0)])
     def test_not_behind_tall_furniture(self, height_m, hidden_m):
         # from the middle its width of 0.5 m, 1 m away, hides twice that of the wall 2 m away
         corners = [[3.0, 1.25], [3.4, 1.25], [3.4, 1.75], [3.0, 1.75], [3.0, 1.25]]
         cupboard = drawn.feature("furniture", "Polygon", [corners], height_m=height_m)
-        assert self.visible(cupboard, max_range_m=100.0) == pytest.approx([4, 3 - hidden_m, 4, 3], abs=0.03)
+        assert self.visible(cupboard, max_range_m=100.0) == pytest.approx(
+            [4, 3 - hidden_m, 4, 3], abs=0.03
+        )
 
     def test_of_no_scan_nothing(self):
         assert self.visible(survey=np.empty((0, 4, 4)), max_range_m=100.0) == [0, 0, 0, 0]
@@ -117,5 +145,7 @@ class TestSight:
 def test_a_cupboard_against_the_wall_is_a_screen_without_its_back():
     corners = [[1.0, 2.5], [2.0, 2.5], [2.0, 3.0], [1.0, 3.0], [1.0, 2.5]]
     cupboard = drawn.feature("furniture", "Polygon", [corners], height_m=2.0)
-    screens = [line for line, _ in of_kind(truth.features(drawn.plan(cupboard), 0.4), "screen")]
+    screens = [
+        line for line, _ in of_kind(truth.truth_features(drawn.plan(cupboard), 0.4), "screen")
+    ]
     assert sorted(round(line.length, 3) for line in screens) == [0.5, 0.5, 1.0]

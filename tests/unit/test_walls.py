@@ -1,176 +1,95 @@
+"""Openings of walls made of stretches whose points and rays are known on paper."""
+
 import numpy as np
 import pytest
 
-import toyrooms
-from scanplan import schemas, tables
-from scanplan.errors import StageError
-from scanplan.extraction import walls
+from helpers import house_making
+from scanplan.geometry.lines import Line
+from scanplan.plan import planning
+from scanplan.plan.face_intervals import FaceInterval
+from scanplan.plan.walls import assemble_walls
+from scanplan.rays.face_profile import FaceObservation
 
-LIMITS = walls.Limits(**{**toyrooms.LIMITS, "min_points": 5, "min_points_planar": 3})
-
-
-def upright(y, z=(0.0, 0.5, 1.0), x=2.0):
-    """Return points on the plane x = 2 at every y and z."""
-    return np.array([(x, a, b) for a in y for b in z], float)
+SETTINGS = planning.make_plan_settings(**house_making.PLAN)
 
 
-def cut(points, *, spare=None, others=(), normal=(1.0, 0.0), offset_m=2.0):
-    """Cut the line x = 2 in a scan of these points, of spare ones on the line, and of others."""
-    parts = [p for p in (points, spare, others) if p is not None and len(p)]
-    scan = walls.sights(np.vstack([*parts, np.empty((0, 3))]), planar=False)
-    return walls.cut(np.array(normal), offset_m, points, LIMITS, scan=scan, spare_xyz_m=spare)
+def stretches(x0, y0, x1, y1, solid, crossed=(), lintel=()):
+    """Stretches of a line, seen from the left of its way: points, rays through it, and points above a door."""
+    start, end = np.array([x0, y0], float), np.array([x1, y1], float)
+    along = (end - start) / np.hypot(*(end - start))
+    hits = [(x, 1.0) for span in solid for x in np.arange(*span, 0.02)]
+    hits += [(x, 2.3) for span in lintel for x in np.arange(*span, 0.02)]
+    x, z = np.array(sorted(hits)).T
+    passes = np.array([p for span in crossed for p in np.arange(*span, 0.01)])
+    line = Line(start, np.array([-along[1], along[0]]))
+    seen = FaceObservation(
+        line, x, 0 * x, z, np.zeros(len(x), int), passes, 0 * passes + 1, np.zeros(len(passes), int)
+    )
+    return [FaceInterval(seen, float(low), float(high)) for low, high in solid]
 
 
-def test_segments_end_where_points_pause():
-    points = upright(np.r_[np.arange(0, 1.01, 0.25), np.arange(1.9, 3.0, 0.25)])
-    found = walls.assemble(cut(points), (10, 20, 30))
-    # the sensor is to the left of the way from start to end: the wall x = 2 is walked along with rising y
-    assert found.start_m == pytest.approx(np.array([(12, 20), (12, 21.9)]))
-    assert found.end_m == pytest.approx(np.array([(12, 21), (12, 22.9)]))
-    assert found.normal == pytest.approx(np.array([(-1, 0), (-1, 0)]))
-    assert found.n_points.tolist() == [15, 15]
-    assert found.rmse_m == pytest.approx([0, 0], abs=1e-12)
-    assert found.z_range_m == pytest.approx(np.array([(30, 31), (30, 31)]))
+def openings(*found):
+    walls = assemble_walls(
+        *(
+            [s for of_line in found for s in of_line],
+            SETTINGS.reading,
+            SETTINGS.pairs,
+            SETTINGS.openings,
+        ),
+        planar=False,
+        corner_m=0.25,
+    )
+    return [
+        np.sort(w.line.at(np.array([g.low_m, g.high_m]))[:, 0]) for w in walls for g in w.openings
+    ]
 
 
-JAMBS = upright(np.r_[np.arange(0, 1.01, 0.25), np.arange(2, 3.01, 0.25)])
-LINTEL = upright(np.arange(0, 3.01, 0.125), z=(2.2, 2.4))
+def test_an_opening_begins_beside_the_wall_that_ends_there():
+    south = stretches(0, 0, 6, 0, [(0, 2), (3, 6)], [(2.2, 3)])
+    crossing = stretches(2.2, 4, 2.2, 0.05, [(0, 3.95)]) + stretches(2.0, 0.05, 2.0, 4, [(0, 3.95)])
+    np.testing.assert_allclose(openings(south, crossing), [(2.2, 3)], atol=0.02)
 
 
-def ends(rows):
-    return [(round(r[1], 3), round(r[3], 3)) for r in rows]
+def test_the_jambs_of_both_sides_are_averaged():
+    one = stretches(0, 0, 6, 0, [(0, 2), (3, 6)], [(2, 3)])
+    other = stretches(6, -0.2, 0, -0.2, [(0, 2.96), (3.96, 6)], [(2.96, 3.96)])
+    np.testing.assert_allclose(openings(one, other), [(2.02, 3.02)], atol=0.005)
 
 
-def test_the_wall_above_a_door_does_not_close_it():
-    # rays that cross the line at y = 1.5 and 0.8 m end at x = 4
-    through = np.array([(4.0, 3.0, 1.6)] * 3)
-    rows = cut(np.vstack([JAMBS, LINTEL]), others=through)
-    assert ends(rows) == [(0, 1), (2, 3)]
-    assert (walls.assemble(rows, (0, 0, 0)).z_range_m[:, 1] > 2.1).all()
+@pytest.mark.parametrize(("lintel", "count"), [([], 0), ([(0.4, 1.6)], 1)])
+def test_between_two_things_there_is_no_door_but_below_a_lintel(lintel, count):
+    assert len(openings(stretches(0, 0, 2, 0, [(0, 0.4), (1.6, 2)], [(0.4, 1.6)], lintel))) == count
 
 
-def test_the_wall_above_a_cabinet_is_one():
-    # rays end at x = 1 that would have crossed the line between y = 1 and 2, at 0.8 m
-    cabinet = np.array([(1.0, y / 2, 0.4) for y in np.arange(1.05, 2, 0.1)])
-    assert ends(cut(np.vstack([JAMBS, LINTEL]), others=cabinet)) == [(0, 3)]
-
-
-def test_where_no_ray_goes_the_wall_above_tells_nothing():
-    assert ends(cut(np.vstack([JAMBS, LINTEL]))) == [(0, 1), (2, 3)]
-
-
-def test_the_reveal_of_a_door_seen_along_shows_that_it_is_open():
-    """Rays along the wall meet the far reveal 0.1 m behind it, at y = 2: they cross it at y = 1.9."""
-    cabinet = np.array([(1.0, y / 2, 0.4) for y in np.arange(1.05, 2, 0.1)])
-    reveal = np.array([(2.1, 1.99, 0.6)] * 3)
-    assert ends(cut(np.vstack([JAMBS, LINTEL]), others=np.vstack([cabinet, reveal])))[-1] == (2, 3)
-
-
-def test_a_low_sill_makes_no_wall_where_rays_pass_over_it():
-    sill = upright(np.arange(0, 3.01, 0.125), z=(0.0, 0.3))
-    over = np.array([(4.0, 2 * y, 1.6) for y in np.arange(1.02, 2, 0.04)])
-    assert ends(cut(np.vstack([JAMBS, sill]), others=over)) == [(0, 1), (2, 3)]
-    assert ends(cut(np.vstack([JAMBS, sill]))) == [(0, 3)]
-    high = upright(np.arange(0, 3.01, 0.125), z=(0.0, 0.7))
-    assert ends(cut(np.vstack([JAMBS, high]), others=over)) == [(0, 3)]
-
-
-def test_the_top_of_doors_is_measured_from_the_floor():
-    floor = np.column_stack([np.zeros((300, 2)), np.full(300, -0.4)])
-    points = np.vstack([floor, upright(np.arange(0, 3, 0.1), z=(0, 1, 2))])
-    assert walls.door_top(points, LIMITS, planar=False) == pytest.approx(1.5)
-    assert walls.door_top(points, LIMITS, planar=True) == np.inf
-
-
-def test_a_gap_of_just_the_limit_is_none():
-    assert len(cut(upright([0, 0.5, 1.0, 1.5]))) == 1
+def ends(*found):
+    walls = assemble_walls(
+        *(
+            [s for of_line in found for s in of_line],
+            SETTINGS.reading,
+            SETTINGS.pairs,
+            SETTINGS.openings,
+        ),
+        planar=False,
+        corner_m=0.25,
+    )
+    return [np.sort(w.ends[:, 0]) for w in walls if abs(w.line.normal[1]) > 0.9]
 
 
 @pytest.mark.parametrize(
-    ("points", "why"),
+    ("solid", "crossed", "end_m"),
     [
-        (upright([0, 0.3]), "short"),
-        (upright([0, 0.3, 0.6], z=(0.0, 0.4)), "low"),
-        (upright([0, 0.45], z=(0.0, 1.0)), "few points"),
-        (np.empty((0, 3)), "nothing"),
+        (
+            (0, 3),
+            [],
+            4.0,
+        ),  # neither points nor rays between its end and the next wall: hidden, not open
+        ((0, 3), [(3.1, 3.9)], 3.0),  # rays went through
+        ((0, 1), [], 1.0),  # too far away
+        ((2.6, 3.0), [], 3.0),  # farther than it is long
     ],
 )
-def test_what_is_no_wall(points, why):
-    assert cut(points, others=upright([0, 0.3, 0.6], x=5.0)) == [], why
-
-
-def test_a_planar_wall_needs_no_height():
-    points = upright([0, 0.3, 0.6], z=(0.7,))
-    assert len(walls.cut(np.array([1.0, 0]), 2.0, points, LIMITS)) == 1
-
-
-@pytest.mark.parametrize("sign", [1, -1])
-def test_the_normal_points_to_the_sensor_whatever_the_lines_sense(sign):
-    (row,) = cut(upright([0, 1 / 2, 1]), normal=(sign * 1.0, 0), offset_m=sign * 2.0)
-    assert row[4:6] == pytest.approx((-1, 0))
-    assert row[:4] == pytest.approx((2, 0, 2, 1))
-
-
-def test_in_the_plane_spare_points_prolong_within_reach_and_no_farther():
-    spare = upright([-0.06, 1.03, 1.06, 1.09, 1.12, 1.3], z=(0.5,))
-    points = upright([0, 0.5, 1])
-    rows = walls.cut(np.array([1.0, 0]), 2.0, points, LIMITS, spare_xyz_m=spare, reach_rad=0.05)
-    # reach at the end: 0.05 hypot(2, 1) = 0.112 m; at the start 0.1 m, but the first step there is more than half
-    assert rows[0][:4] == pytest.approx((2, 0, 2, 1.09))
-    assert rows[0][6] == 12
-
-
-def test_in_space_spare_points_prolong_up_to_a_pause_and_to_an_opening():
-    spare = upright([1.2, 1.4, 1.6, 2.0], z=(0.5,))
-    assert ends(cut(upright([0, 0.5, 1]), spare=spare)) == [(0, 1.6)]
-    through = np.array([(4.0, 3.04, 1.2)])
-    assert ends(cut(upright([0, 0.5, 1]), spare=spare, others=through)) == [(0, 1.4)]
-    assert cut(upright([0]), spare=spare) == []
-
-
-def test_order_of_segments_and_of_points_depend_on_the_points_alone():
-    points = np.random.default_rng(1).normal(size=(50, 3)).round(1)
-    shuffled = np.random.default_rng(2).permutation(points)
-    assert (walls.around_sensor(points, (1, 2, 3)) == walls.around_sensor(shuffled, (1, 2, 3))).all()
-    rows = [(5, 0, 6, 0, 0, 1, 9, 0, 0, 1), (1, 0, 2, 0, 0, 1, 9, 0, 0, 1), (7, 0, 8, 0, 0, 1, 12, 0, 0, 1)]
-    assert walls.assemble(rows, (0, 0, 0)).start_m[:, 0].tolist() == [7, 1, 5]
-    assert walls.assemble(rows[::-1], (0, 0, 0)).start_m[:, 0].tolist() == [7, 1, 5]
-
-
-@pytest.mark.parametrize(
-    ("xyz_m", "sensor"),
-    [
-        ([(0, 0, np.nan)], (0, 0, 0)),
-        ([(0, np.inf, 0)], (0, 0, 0)),
-        ([(0, 0, 0)], (0, np.nan, 0)),
-        ([(0, 0)], (0, 0, 0)),
-        ([(0, 0, 0)], (0, 0)),
-    ],
-)
-def test_points_must_be_finite_and_in_space(xyz_m, sensor):
-    with pytest.raises(ValueError, match=r"finite|points"):
-        walls.around_sensor(xyz_m, sensor)
-
-
-def test_table_of_scans_with_and_without_walls(tmp_path):
-    one = walls.assemble([(1, 0, 2, 0, 0, 1, 9, 0.01, 0, 1), (3, 0, 4, 0, 0, 1, 5, 0.01, 0, 1)], (0, 0, 0))
-    none = walls.assemble([], (0, 0, 0))
-    columns = walls.table([4, 7, 9], [one, none, one])
-    assert columns["scan_id"].tolist() == [4, 4, 9, 9]
-    assert columns["wall"].tolist() == [0, 1, 0, 1]
-    tables.write(tmp_path / "walls.parquet", schemas.WALLS, columns)
-    assert tables.read(tmp_path / "walls.parquet", schemas.WALLS)["x0_m"].tolist() == [1, 3, 1, 3]
-
-
-def test_table_without_any_wall(tmp_path):
-    columns = walls.table([4], [walls.assemble([], (0, 0, 0))])
-    tables.write(tmp_path / "walls.parquet", schemas.WALLS, columns, allow_empty=True)
-    assert len(tables.read(tmp_path / "walls.parquet", schemas.WALLS, allow_empty=True)["wall"]) == 0
-    assert walls.summary(columns, 1, 12.0) == "1 scans, 0 walls, no wall at all, 12 ms a scan"
-
-
-def test_every_scan_needs_a_pose():
-    registered = {"scan_id": np.array([0, 5]), **{c: np.array([1.0, np.nan]) for c in ("x_m", "y_m", "z_m")}}
-    assert walls.sensor_positions(registered, [0], "r.parquet")[0]["sensor_xyz_m"].tolist() == [1, 1, 1]
-    with pytest.raises(StageError, match=r"r\.parquet.*first scan 5"):
-        walls.sensor_positions(registered, [0, 5], "r.parquet")
+def test_a_wall_goes_on_to_the_next_through_what_is_hidden(solid, crossed, end_m):
+    south = stretches(0, 0, 6, 0, [solid], crossed)
+    across = stretches(4, 4, 4, -4, [(0, 8)])
+    ((_, high_m),) = ends(south, across)
+    assert high_m == pytest.approx(end_m, abs=0.03)

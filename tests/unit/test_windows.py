@@ -6,18 +6,19 @@ import numpy as np
 import pytest
 import shapely
 
-import housemaking
-from scanplan.plan import planning, rays, stretches, windows
-from scanplan.plan.faceline import Line
-from scanplan.plan.gaps import OPEN, Gap
-from scanplan.plan.planwalls import PlanWall
-from scanplan.plan.profiles import Seen
-from wallmaking import walls
+from helpers import house_making
+from helpers.wall_making import walls
+from scanplan.geometry.lines import Line
+from scanplan.plan import face_intervals, planning, windows
+from scanplan.plan.openings import OPEN, Opening
+from scanplan.plan.walls import PlanWall
+from scanplan.rays import ray_set
+from scanplan.rays.face_profile import FaceObservation
 
 SENSORS = [(1, 2.5, 0.9), (2, 3, 0.9), (3, 2.5, 0.9), (2.5, 3.4, 0.9)]
 SOUTH = Line(np.array([0.0, 0.0]), np.array([0.0, 1.0]))
 ROOM = [(0, 0, 4, 0), (4, 0, 4, 4), (4, 4, 0, 4), (0, 4, 0, 0)]
-SETTINGS = planning.settings(**housemaking.PLAN)
+SETTINGS = planning.make_plan_settings(**house_making.PLAN)
 ENDS_M = (0.0, 4.0)
 LOST, NICHE, BEYOND, BEFORE = None, "niche", 1.5, 0.7
 
@@ -25,23 +26,32 @@ LOST, NICHE, BEYOND, BEFORE = None, "niche", 1.5, 0.7
 def look(x, z, ends=LOST, sensors=SENSORS):
     """Rays of scans; those to a part of the south wall are lost, end after a share of their way, or just behind it."""
     scans = []
-    for i, xyz_m in housemaking.scans(ROOM, sensors, columns=1800):
+    for i, xyz_m in house_making.scans(ROOM, sensors, columns=1800):
         there = (np.abs(xyz_m[:, 1]) < 0.1) & (xyz_m[:, 0] > x[0]) & (xyz_m[:, 0] < x[1])
         there &= (xyz_m[:, 2] > z[0]) & (xyz_m[:, 2] < z[1])
         if ends is LOST:
             scans.append((i, xyz_m[~there]))
         else:
-            moved = xyz_m - (0, 0.3, 0) if ends is NICHE else np.array(sensors[i]) + ends * (xyz_m - sensors[i])
+            moved = (
+                xyz_m - (0, 0.3, 0)
+                if ends is NICHE
+                else np.array(sensors[i]) + ends * (xyz_m - sensors[i])
+            )
             scans.append((i, np.where(there[:, None], moved, xyz_m)))
     # the lowest beam ends at a wall: no floor is seen
-    return replace(rays.gather(scans, dict(enumerate(np.array(sensors, float))), planar=False), floor_z_m=0.0)
+    return replace(
+        ray_set.gather_rays(scans, dict(enumerate(np.array(sensors, float))), planar=False),
+        floor_z_m=0.0,
+    )
 
 
 def seen(looked):
     """The line refitted, places along it counted from the origin again."""
-    line = stretches.look_along(looked, SOUTH, 0.0, 4.0, SETTINGS.reading)
+    line = face_intervals.observe_along(looked, SOUTH, 0.0, 4.0, SETTINGS.reading)
     begin_m = float(line.line.along_m(np.zeros(2)))
-    return replace(line, line=Line(line.line.at(begin_m), line.line.normal), hit_m=line.hit_m - begin_m)
+    return replace(
+        line, line=Line(line.line.at(begin_m), line.line.normal), hit_m=line.hit_m - begin_m
+    )
 
 
 def with_points(line, places_m):
@@ -54,18 +64,23 @@ def with_points(line, places_m):
         hit_scan=np.concatenate([line.hit_scan, np.zeros(len(places_m), int)]),
     )
     order = np.argsort(line.hit_m, kind="stable")
-    return replace(line, **{c: getattr(line, c)[order] for c in ("hit_m", "hit_z_m", "hit_off_m", "hit_scan")})
+    return replace(
+        line, **{c: getattr(line, c)[order] for c in ("hit_m", "hit_z_m", "hit_off_m", "hit_scan")}
+    )
 
 
 def find(*part, **more):
     looked = look(*part, **more)
-    return windows.find(looked, seen(looked), *ENDS_M, SETTINGS.openings)
+    return windows.find_windows(looked, seen(looked), *ENDS_M, SETTINGS.openings)
 
 
 @pytest.mark.parametrize("ends", [LOST, BEYOND])
 def test_rays_that_go_through_above_a_wall_show_a_window(ends):
     (window,) = find((1.0, 2.2), (0.85, 2.4), ends=ends)
-    assert (window.low_m, window.high_m) == (pytest.approx(1.0, abs=0.03), pytest.approx(2.2, abs=0.03))
+    assert (window.low_m, window.high_m) == (
+        pytest.approx(1.0, abs=0.03),
+        pytest.approx(2.2, abs=0.03),
+    )
     assert window.sill_m == pytest.approx(0.85, abs=0.04)
     assert (window.state, window.kind(SETTINGS.openings)) == (OPEN, "window")
 
@@ -100,18 +115,20 @@ def test_where_no_ray_is_sent_nothing_is_known():
     """From 1 m away the highest beam meets the wall at 1.17 m; of the wall beside more is seen from further off."""
     looked = look((1.0, 2.2), (0.85, 2.4), sensors=[(1.6, 1, 0.9), (1.4, 0.9, 0.9)])
     line = with_points(seen(looked), np.repeat([0.2, 0.5, 0.9, 2.3, 2.6, 3.0], 3))
-    assert windows.find(looked, line, *ENDS_M, SETTINGS.openings) == []
+    assert windows.find_windows(looked, line, *ENDS_M, SETTINGS.openings) == []
 
 
-@pytest.mark.parametrize(("places_m", "count"), [([1.6], 1), ([1.4, 1.8], 1), ([1.6] * 2, 1), ([1.6] * 3, 2)])
+@pytest.mark.parametrize(
+    ("places_m", "count"), [([1.6], 1), ([1.4, 1.8], 1), ([1.6] * 2, 1), ([1.6] * 3, 2)]
+)
 def test_stray_points_part_no_window_and_a_mullion_does(places_m, count):
     looked = look((1.0, 2.2), (0.85, 2.4))
     line = with_points(seen(looked), np.array(places_m))
-    assert len(windows.find(looked, line, *ENDS_M, SETTINGS.openings)) == count
+    assert len(windows.find_windows(looked, line, *ENDS_M, SETTINGS.openings)) == count
 
 
 def wall(looked, openings=()):
-    side = stretches.Stretch(seen(looked), 0.0, 4.0)
+    side = face_intervals.FaceInterval(seen(looked), 0.0, 4.0)
     # the other way round than its face, and begun elsewhere
     line = Line(np.array([4.0, -0.1]), np.array([0.0, -1.0]))
     return PlanWall(line, 0.0, 4.0, 0.2, [], [side], list(openings), [])
@@ -119,7 +136,7 @@ def wall(looked, openings=()):
 
 def test_windows_lie_along_the_wall_and_the_wall_goes_on_below_them():
     looked = look((1.0, 2.2), (0.85, 2.4))
-    (found,) = windows.added([wall(looked)], looked, SETTINGS.openings)
+    (found,) = windows.add_windows([wall(looked)], looked, SETTINGS.openings)
     (window,) = found.openings
     ends = found.line.at(np.array([window.low_m, window.high_m]))
     np.testing.assert_allclose(np.sort(ends[:, 0]), [1.0, 2.2], atol=0.03)
@@ -128,8 +145,8 @@ def test_windows_lie_along_the_wall_and_the_wall_goes_on_below_them():
 
 def test_an_opening_is_not_found_again():
     looked = look((1.0, 2.2), (0.85, 2.4))
-    known = Gap(2.0, 2.9, OPEN, 99, 0.0, np.nan, False)
-    (found,) = windows.added([wall(looked, [known])], looked, SETTINGS.openings)
+    known = Opening(2.0, 2.9, OPEN, 99, 0.0, np.nan, False)
+    (found,) = windows.add_windows([wall(looked, [known])], looked, SETTINGS.openings)
     assert found.openings == [known]
 
 
@@ -140,10 +157,19 @@ def test_where_the_other_side_is_whole_there_is_no_window(to_m, count):
     back = Line(np.array([0.0, -0.2]), np.array([0.0, -1.0]))
     place_m = np.sort(back.along_m(np.array([(x, -0.2) for x in np.arange(1.1, to_m, 0.04)])))
     nothing = np.empty(0)
-    other = Seen(back, place_m, 0 * place_m, 0 * place_m + 1.5, np.zeros(len(place_m), int), nothing, nothing, nothing)
+    other = FaceObservation(
+        back,
+        place_m,
+        0 * place_m,
+        0 * place_m + 1.5,
+        np.zeros(len(place_m), int),
+        nothing,
+        nothing,
+        nothing,
+    )
     this = wall(looked)
-    behind = stretches.Stretch(other, -4.0, 0.0)
-    (found,) = windows.added([replace(this, left=[behind])], looked, SETTINGS.openings)
+    behind = face_intervals.FaceInterval(other, -4.0, 0.0)
+    (found,) = windows.add_windows([replace(this, left=[behind])], looked, SETTINGS.openings)
     assert len(found.openings) == count
 
 
@@ -153,20 +179,22 @@ def test_one_or_two_points_below_show_no_sill(count):
     line = seen(looked)
     below = (line.hit_m > 1.1) & (line.hit_m < 1.4)
     below[np.searchsorted(line.hit_m, [1.12, 1.38][:count])] = False
-    few = replace(line, **{c: getattr(line, c)[~below] for c in ("hit_m", "hit_z_m", "hit_off_m", "hit_scan")})
-    assert windows.find(looked, few, *ENDS_M, SETTINGS.openings) == []
+    few = replace(
+        line, **{c: getattr(line, c)[~below] for c in ("hit_m", "hit_z_m", "hit_off_m", "hit_scan")}
+    )
+    assert windows.find_windows(looked, few, *ENDS_M, SETTINGS.openings) == []
 
 
 def test_a_plane_has_no_windows():
     looked = look((1.0, 2.2), (0.85, 2.4))
     flat = [wall(looked)]
-    assert windows.added(flat, replace(looked, planar=True), SETTINGS.openings) == flat
+    assert windows.add_windows(flat, replace(looked, planar=True), SETTINGS.openings) == flat
 
 
 def plan(ends):
     table = walls([face for _ in SENSORS for face in ROOM], scan_id=np.repeat(np.arange(4), 4))
     looked = look((1.0, 2.2), (0.85, 2.4), ends=ends)
-    return planning.make(table, looked, np.array(SENSORS)[:, :2], housemaking.T_NS, SETTINGS)
+    return planning.make_plan(table, looked, np.array(SENSORS)[:, :2], house_making.T_NS, SETTINGS)
 
 
 @pytest.mark.parametrize("ends", [LOST, BEYOND])
@@ -176,7 +204,9 @@ def test_no_free_floor_leads_through_the_windows_of_a_plan(ends):
     assert made.openings["width_m"][0] == pytest.approx(1.2, abs=0.05)
     floor = shapely.union_all(shapely.from_wkb(made.free["geometry"]))
     # the wall's ground, taken to be 0.1 m deep, is whole
-    assert floor.intersection(shapely.box(0.1, -0.08, 3.9, -0.02)).area == pytest.approx(0, abs=1e-3)
+    assert floor.intersection(shapely.box(0.1, -0.08, 3.9, -0.02)).area == pytest.approx(
+        0, abs=1e-3
+    )
 
 
 def test_faces_of_a_plan_go_on_below_windows():

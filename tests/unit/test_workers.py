@@ -3,8 +3,8 @@ import signal
 
 import pytest
 
-from scanplan import workers
 from scanplan.errors import StageError
+from scanplan.stage import workers
 
 _known = None
 
@@ -20,7 +20,7 @@ def use(factor):
 
 @pytest.mark.parametrize("threads", [1, 2])
 def test_every_process_is_set_up_before_its_first_job_and_results_keep_their_order(threads):
-    with workers.pool(threads, learn, 2, 3) as run:
+    with workers.open_pool(threads, learn, 2, 3) as run:
         results = list(run(use, ((i,) for i in range(20))))
     assert [result for result, _ in results] == [5 * i for i in range(20)]
     here = {pid for _, pid in results} == {os.getpid()}
@@ -28,7 +28,7 @@ def test_every_process_is_set_up_before_its_first_job_and_results_keep_their_ord
 
 
 def test_without_a_set_up():
-    with workers.pool(1) as run:
+    with workers.open_pool(1) as run:
         assert list(run(pow, [(2, 3), (3, 2)])) == [8, 9]
 
 
@@ -40,7 +40,7 @@ def touch_or_fail(path, name):
 
 def test_a_failed_job_leaves_the_waiting_ones_undone(tmp_path):
     jobs = ((tmp_path, str(i)) for i in range(100))
-    with pytest.raises(ValueError, match="the first job"), workers.pool(2) as run:
+    with pytest.raises(ValueError, match="the first job"), workers.open_pool(2) as run:
         list(run(touch_or_fail, jobs))
     assert len(list(tmp_path.iterdir())) < 20
 
@@ -50,7 +50,10 @@ def end_yourself(sent):
 
 
 def test_a_worker_that_is_killed_ends_the_stage_in_one_line():
-    with pytest.raises(StageError, match="ended from outside, perhaps for want of memory"), workers.pool(2) as run:
+    with (
+        pytest.raises(StageError, match="ended from outside, perhaps for want of memory"),
+        workers.open_pool(2) as run,
+    ):
         list(run(end_yourself, [(signal.SIGKILL,)]))
 
 
@@ -60,5 +63,5 @@ def refuse():
 
 @pytest.mark.parametrize("threads", [1, 2])
 def test_a_setup_that_fails_is_no_killed_worker(threads):
-    with pytest.raises(ValueError, match="no mesh"), workers.pool(threads, refuse) as run:
+    with pytest.raises(ValueError, match="no mesh"), workers.open_pool(threads, refuse) as run:
         list(run(abs, [(1,)]))

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-import bagmaking
-from projectcopy import Project
+from helpers import bag_making
+from helpers.project_copy import Project
 
 pytestmark = pytest.mark.workflow
 
@@ -46,7 +46,12 @@ def test_a_way_through_a_wall_names_the_file_and_its_key(project, tmp_path):
     (tmp_path / "walk.yaml").write_text(
         "simulate: {building: tiny_office, site: {waypoints_m: [[0.7, 0.9], [3.0, 1.7]]}}"
     )
-    said = "walk.yaml: simulate.site.waypoints_m: ", "tiny_office.geojson", "waypoint 1 (3, 1.7)", "move it"
+    said = (
+        "walk.yaml: simulate.site.waypoints_m: ",
+        "tiny_office.geojson",
+        "waypoint 1 (3, 1.7)",
+        "move it",
+    )
     ends_with_one_line(project, "walk.yaml", *said)
 
 
@@ -58,46 +63,64 @@ def test_a_setting_out_of_range_names_the_config_file(project, tmp_path):
 
 
 def test_results_of_another_dataset_of_the_name_are_kept(project, tmp_path):
-    entries = list(bagmaking.survey(bagmaking.Maker()))
+    entries = list(bag_making.survey(bag_making.Maker()))
     for place in ("a", "b"):
         (tmp_path / place).mkdir()
         written(tmp_path / place / "floor", entries)
     poses = "results/floor/poses.parquet"
     assert project.run(poses, "--config", "dataset=a/floor").returncode == 0
     ends_with_one_line(
-        project, "b/floor", "made of a/floor", "replace=floor", left=["motion.parquet", "poses.parquet", "source.txt"]
+        project,
+        "b/floor",
+        "made of a/floor",
+        "replace=floor",
+        left=["motion.parquet", "poses.parquet", "source.txt"],
     )
     other = project.run(poses, "--config", "dataset=b/floor", "replace=floor")
-    assert other.returncode == 0 and (tmp_path / "results/floor/source.txt").read_text().startswith("b/floor\n")
+    assert other.returncode == 0 and (tmp_path / "results/floor/source.txt").read_text().startswith(
+        "b/floor\n"
+    )
 
 
 def test_a_truth_that_is_not_used_is_told(project, tmp_path):
-    name = written(tmp_path / "half", list(bagmaking.survey(bagmaking.Maker())))
+    name = written(tmp_path / "half", list(bag_making.survey(bag_making.Maker())))
     (tmp_path / name / "truth.geojson").touch()
     result = project.run("--dry-run", "--quiet", "--config", f"dataset={name}")
     assert result.returncode == 0
-    assert "scanplan: half/truth.geojson: is not used, as truth_poses.tum is missing" in result.stderr
+    assert (
+        "scanplan: half/truth.geojson: is not used, as truth_poses.tum is missing" in result.stderr
+    )
 
 
 def written(folder, entries):
-    bagmaking.Maker().write(folder / "run", entries)
+    bag_making.Maker().write(folder / "run", entries)
     return folder.name
 
 
 def test_a_bag_without_clouds(project, tmp_path):
-    entries = [e for e in bagmaking.survey(bagmaking.Maker()) if e[0] == "/amcl_pose"]
-    ends_with_one_line(project, written(tmp_path / "poses_only", entries), "run.bag", "no cloud topic", "/amcl_pose")
+    entries = [e for e in bag_making.survey(bag_making.Maker()) if e[0] == "/amcl_pose"]
+    ends_with_one_line(
+        project,
+        written(tmp_path / "poses_only", entries),
+        "run.bag",
+        "no cloud topic",
+        "/amcl_pose",
+    )
 
 
 def test_a_bag_without_poses(project, tmp_path):
-    entries = [e for e in bagmaking.survey(bagmaking.Maker()) if e[0] == "/points"]
-    ends_with_one_line(project, written(tmp_path / "clouds_only", entries), "run.bag", "no pose", "/points")
+    entries = [e for e in bag_making.survey(bag_making.Maker()) if e[0] == "/points"]
+    ends_with_one_line(
+        project, written(tmp_path / "clouds_only", entries), "run.bag", "no pose", "/points"
+    )
 
 
 def test_evaluation_without_truth(project, tmp_path):
-    name = written(tmp_path / "untrue", list(bagmaking.survey(bagmaking.Maker())))
+    name = written(tmp_path / "untrue", list(bag_making.survey(bag_making.Maker())))
     for table in ("walls", "poses"):
-        result = project.run(f"results/untrue/evaluation/{table}.parquet", "--config", f"dataset={name}")
+        result = project.run(
+            f"results/untrue/evaluation/{table}.parquet", "--config", f"dataset={name}"
+        )
         output = result.stdout + result.stderr
         assert result.returncode != 0 and "Traceback" not in output
         (line,) = [line for line in output.splitlines() if line.startswith("scanplan: ")]
@@ -105,48 +128,68 @@ def test_evaluation_without_truth(project, tmp_path):
 
 
 def test_settings_that_unfit_the_thesiss_surveys_matter_to_them_alone(project, tmp_path):
-    name = written(tmp_path / "own", list(bagmaking.survey(bagmaking.Maker())))
+    name = written(tmp_path / "own", list(bag_making.survey(bag_making.Maker())))
     settings = ("--config", f"dataset={name}", "simulate={building: nowhere}")
     other = project.run("--dry-run", "all", *settings)
     assert other.returncode == 0, other.stderr
     result = project.run("--dry-run", "thesis", *settings)
-    assert result.returncode != 0 and "scanplan: simulate.building: nowhere is neither" in result.stderr
+    assert (
+        result.returncode != 0
+        and "scanplan: simulate.building: nowhere is neither" in result.stderr
+    )
 
 
 def test_two_cloud_topics(project, tmp_path):
-    entries = bagmaking.survey(bagmaking.Maker())
+    entries = bag_making.survey(bag_making.Maker())
     entries += [("/rear", e[1], e[2]) for e in entries if e[0] == "/points"]
     entries.sort(key=lambda entry: entry[1])
-    ends_with_one_line(project, written(tmp_path / "two", entries), "/points", "/rear", "input.cloud_topic")
+    ends_with_one_line(
+        project, written(tmp_path / "two", entries), "/points", "/rear", "input.cloud_topic"
+    )
 
 
 def test_poses_of_another_time(project, tmp_path):
-    maker = bagmaking.Maker()
-    entries = [e for e in bagmaking.survey(maker) if e[0] == "/points"]
-    entries += [e for e in bagmaking.survey(maker, start_ns=bagmaking.START_NS + 10**15) if e[0] == "/amcl_pose"]
-    ends_with_one_line(project, written(tmp_path / "elsewhen", entries), "run.bag", "check the clocks")
+    maker = bag_making.Maker()
+    entries = [e for e in bag_making.survey(maker) if e[0] == "/points"]
+    entries += [
+        e
+        for e in bag_making.survey(maker, start_ns=bag_making.START_NS + 10**15)
+        if e[0] == "/amcl_pose"
+    ]
+    ends_with_one_line(
+        project, written(tmp_path / "elsewhen", entries), "run.bag", "check the clocks"
+    )
 
 
 def test_clouds_of_nothing(project, tmp_path):
-    maker = bagmaking.Maker()
+    maker = bag_making.Maker()
     entries = [
-        (e[0], e[1], maker.cloud(e[1], np.full((4, 3), np.nan, np.float32)) if e[0] == "/points" else e[2])
-        for e in bagmaking.survey(maker)
+        (
+            e[0],
+            e[1],
+            maker.cloud(e[1], np.full((4, 3), np.nan, np.float32)) if e[0] == "/points" else e[2],
+        )
+        for e in bag_making.survey(maker)
     ]
     said = "run.bag", "too_few_points", "input.min_range_m"
     ends_with_one_line(
-        project, written(tmp_path / "blind", entries), *said, left=["motion.parquet", "poses.parquet", "source.txt"]
+        project,
+        written(tmp_path / "blind", entries),
+        *said,
+        left=["motion.parquet", "poses.parquet", "source.txt"],
     )
 
 
 def test_a_truncated_bag(project, tmp_path):
-    name = written(tmp_path / "cut", bagmaking.survey(bagmaking.Maker()))
+    name = written(tmp_path / "cut", bag_making.survey(bag_making.Maker()))
     bag = tmp_path / "cut/run.bag"
     bag.write_bytes(bag.read_bytes()[:-100])
     ends_with_one_line(project, name, "run.bag", "rosbag reindex")
 
 
 @pytest.mark.recordings
-@pytest.mark.parametrize(("name", "said"), [("amcl_mcap", "no cloud topic"), ("broken", "bad_index.bag")])
+@pytest.mark.parametrize(
+    ("name", "said"), [("amcl_mcap", "no cloud topic"), ("broken", "bad_index.bag")]
+)
 def test_recordings_that_cannot_be_used(project, recordings_dir, name, said):
     ends_with_one_line(project, recordings_dir / name, said)

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 import shapely
 
-from projectcopy import Project
-from scanplan import tables
+from helpers.project_copy import Project
+from scanplan.store import tables
 
 pytestmark = [pytest.mark.workflow, pytest.mark.recordings]
 
@@ -23,14 +23,24 @@ def project(project_root, recordings_dir, tmp_path_factory):
 
 
 def plan(project, name):
-    features = json.loads((project.folder / f"results/{name}/plan/plan.geojson").read_text())["features"]
-    return [shapely.LineString(f["geometry"]["coordinates"]) for f in features if f["properties"]["kind"] == "face"]
+    features = json.loads((project.folder / f"results/{name}/plan/plan.geojson").read_text())[
+        "features"
+    ]
+    return [
+        shapely.LineString(f["geometry"]["coordinates"])
+        for f in features
+        if f["properties"]["kind"] == "face"
+    ]
 
 
 def test_ros1_and_ros2_give_the_same_scans_and_the_same_plan(project):
     folders = [project.folder / f"results/jackal_ros{n}" for n in (1, 2)]
-    assert (folders[0] / "scans.parquet").read_bytes() == (folders[1] / "scans.parquet").read_bytes()
-    assert [w.wkt for w in plan(project, "jackal_ros1")] == [w.wkt for w in plan(project, "jackal_ros2")]
+    assert (folders[0] / "scans.parquet").read_bytes() == (
+        folders[1] / "scans.parquet"
+    ).read_bytes()
+    assert [w.wkt for w in plan(project, "jackal_ros1")] == [
+        w.wkt for w in plan(project, "jackal_ros2")
+    ]
 
 
 def test_the_arena_has_its_six_walls_once_each(project):
@@ -46,14 +56,19 @@ def test_the_arena_has_its_six_walls_once_each(project):
 
 def test_returns_lie_on_the_walls(project):
     folder = project.folder / "results/jackal_ros1"
-    points = np.concatenate([xyz_m for _, xyz_m in tables.ScanStore(folder / "scans.parquet").scans()])
-    distance_m = shapely.distance(shapely.points(points[:, :2]), shapely.union_all(plan(project, "jackal_ros1")))
+    points = np.concatenate(
+        [xyz_m for _, xyz_m in tables.ScanStore(folder / "scans.parquet").scans()]
+    )
+    distance_m = shapely.distance(
+        shapely.points(points[:, :2]), shapely.union_all(plan(project, "jackal_ros1"))
+    )
     assert np.median(distance_m) < 0.03
 
 
 # scenes7_room shows one furnished side of a room: next to nothing of its walls
 @pytest.mark.parametrize(
-    ("name", "least"), [("intel", 5), ("mac_first_floor", 5), ("scenes7_room", 1), ("vlp16_room", 5)]
+    ("name", "least"),
+    [("intel", 5), ("mac_first_floor", 5), ("scenes7_room", 1), ("vlp16_room", 5)],
 )
 def test_every_recording_ends_with_a_plan(project_root, recordings_dir, tmp_path, name, least):
     project = Project(project_root, tmp_path)

@@ -6,8 +6,8 @@ import sys
 
 import pytest
 
-from projectcopy import Project
-from scanplan.thesis.thesisshown import FIGURES
+from helpers.project_copy import Project
+from scanplan.lab.thesis.shown_figures import FIGURES
 
 pytestmark = pytest.mark.workflow
 TINY_THESIS = "tests/data/tiny_thesis.yaml"
@@ -54,7 +54,9 @@ with SnakemakeApi() as api:
 
 def test_it_is_parsed_where_jobs_go_elsewhere_and_no_cores_are_given(project):
     command = [sys.executable, "-c", WITHOUT_CORES]
-    result = subprocess.run(command, cwd=project.folder, env=project.env(), capture_output=True, text=True)
+    result = subprocess.run(
+        command, cwd=project.folder, env=project.env(), capture_output=True, text=True
+    )
     assert result.returncode == 0 and "parsed" in result.stdout, result.stderr
 
 
@@ -70,7 +72,9 @@ def test_the_page_has_every_figure(project):
     assert jobs(project, "thesis", "--configfile", TINY_THESIS) == {}
     # another seed is no reason to time or measure those again that there are
     settings = (project.folder / TINY_THESIS).read_text()
-    (project.folder / "more.yaml").write_text(re.sub(r"(?m)^  seeds: .*", "  seeds: [1, 2]", settings))
+    (project.folder / "more.yaml").write_text(
+        re.sub(r"(?m)^  seeds: .*", "  seeds: [1, 2]", settings)
+    )
     more = jobs(project, "thesis", "--configfile", "more.yaml")
     assert more["time_stages"] == more["measure_coverage"] == more["simulate_survey"] == 1
     assert more["measure_unevenness"] == 1

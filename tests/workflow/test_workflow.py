@@ -9,7 +9,7 @@ import time
 
 import pytest
 
-from projectcopy import TINY, Project
+from helpers.project_copy import TINY, Project
 
 pytestmark = pytest.mark.workflow
 
@@ -41,7 +41,10 @@ def test_every_result_is_there_and_the_user_is_told(project):
     ):
         assert f"results/demo/{name}" in made
     assert (project.folder / "results/demo/report.html").stat().st_size > 100_000
-    assert "results/demo/plan/plan.svg" in project.output and "results/demo/report.html" in project.output
+    assert (
+        "results/demo/plan/plan.svg" in project.output
+        and "results/demo/report.html" in project.output
+    )
     assert "register_scans:" in project.output and not [p for p in made if ".part" in p]
 
 
@@ -65,7 +68,10 @@ def test_a_touched_file_reruns_nothing(project):
         ("plan: {method: sequential}", PLANNED | {"draw_scans", "draw_evaluation"}),
         ("evaluation: {bitmap_cell_m: 0.1}", EVALUATED | {"evaluate_plan"}),
         ("selection: {wall_length: {cell_m: 0.5}}", {"observe_walls"} | AFTER_ORDERS),
-        ("selection: {visibility: {range_m: 9.0}}", {"build_visibility", "order_scans", "draw_area"} | EVALUATED),
+        (
+            "selection: {visibility: {range_m: 9.0}}",
+            {"build_visibility", "order_scans", "draw_area"} | EVALUATED,
+        ),
         ("selection: {min_overlap: 0.1}", AFTER_ORDERS),
         (
             "walls: {cluster_ransac: {min_length_m: 0.7}}",
@@ -100,11 +106,11 @@ def test_a_setting_of_one_order_reruns_no_other(project, change, methods):
     ("helper", "rules"),
     [
         ("selection/hulls", AFTER_HULLS),
-        ("exports/cad", {"export_plan"}),
-        ("evaluation/lengthmetrics", EVALUATED | {"evaluate_plan"}),
-        ("evaluation/poseerrors", {"evaluate_poses", "evaluate_plan"} | EVALUATED),
-        ("plan/faces", PLANNED),
-        ("report/reportplan", set()),
+        ("exports/dxf", {"export_plan"}),
+        ("lab/evaluation/length_metrics", EVALUATED | {"evaluate_plan"}),
+        ("lab/evaluation/pose_errors", {"evaluate_poses", "evaluate_plan"} | EVALUATED),
+        ("plan/segment_merging", PLANNED),
+        ("report/plan_svg", set()),
     ],
 )
 def test_an_edited_helper_reruns_exactly_the_stages_that_import_it(project, helper, rules):
@@ -135,9 +141,15 @@ def test_a_file_is_a_simulated_dataset_beside_recorded_ones(project):
     listed = project.run(
         "--dry-run", "--quiet", "reason", "--config", "dataset=[toy.yaml, recorded, other.yaml]"
     ).stdout
-    assert "output: results/toy/survey/survey.bag" in listed and "output: results/other/survey/survey.mcap" in listed
+    assert (
+        "output: results/toy/survey/survey.bag" in listed
+        and "output: results/other/survey/survey.mcap" in listed
+    )
     assert "results/recorded/plan/plan.svg" in listed and "results/recorded/survey" not in listed
-    assert "results/toy/evaluation/walls.parquet" in listed and "results/recorded/evaluation" not in listed
+    assert (
+        "results/toy/evaluation/walls.parquet" in listed
+        and "results/recorded/evaluation" not in listed
+    )
 
 
 def test_a_deleted_report_is_made_again(project):

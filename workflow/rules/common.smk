@@ -3,17 +3,32 @@ import re
 import sys
 
 sys.path.insert(0, f"{workflow.basedir}/scripts")
-from scanplan import configuration, inventory, madefrom, sources
-from scanplan.plan import parts
-from scanplan.selection import methods
-from scanplan.thesis import experiments
 from scanplan.errors import StageError
-
-SCHEMA = configuration.read_yaml(
-    f"{workflow.basedir}/workflow/schemas/config.schema.yaml"
+from scanplan.lab.thesis import experiments
+from scanplan.plan.plan_settings import select_plan_settings
+from scanplan.project.code_files import list_helpers
+from scanplan.project.dataset import (
+    RESERVED,
+    describe_dataset,
+    find_truth,
+    list_choices,
+    list_results,
+    name_datasets,
+    survey_files,
 )
-METHODS = inventory.choices(SCHEMA, "plan", "method")
-EXTRACTORS = inventory.choices(SCHEMA, "plan", "extractor")
+from scanplan.project.provenance import (
+    begin_results,
+    check_sources,
+    discard_lone_note,
+    end_results,
+)
+from scanplan.project.settings import COMMAND_LINE, Layer, locate_fault, settings_of_run
+from scanplan.project.yaml_file import read_yaml
+from scanplan.selection import methods
+
+SCHEMA = read_yaml(f"{workflow.basedir}/workflow/schemas/config.schema.yaml")
+METHODS = list_choices(SCHEMA, "plan", "method")
+EXTRACTORS = list_choices(SCHEMA, "plan", "extractor")
 
 
 def or_end(function, *arguments):
@@ -28,35 +43,31 @@ def or_end(function, *arguments):
 def given_settings():
     """What the command line says, file by file, and last what is not in a file."""
     files = map(os.path.relpath, workflow.config_settings.configfiles)
-    layers = [
-        configuration.Layer(file, configuration.read_yaml(file)) for file in files
-    ]
-    alone = configuration.Layer(
-        configuration.COMMAND_LINE, dict(workflow.config_settings.config)
-    )
+    layers = [Layer(file, read_yaml(file)) for file in files]
+    alone = Layer(COMMAND_LINE, dict(workflow.config_settings.config))
     return [*layers, alone]
 
 
 KNOWN = {
-    "defaults": configuration.read_yaml(f"{workflow.basedir}/config/config.yaml"),
+    "defaults": read_yaml(f"{workflow.basedir}/config/config.yaml"),
     "given": or_end(given_settings),
     "schema": SCHEMA,
 }
-RUN = or_end(configuration.of_a_run, *KNOWN.values())
+RUN = or_end(settings_of_run, *KNOWN.values())
 
 
 def given_datasets():
     """The datasets that the user gave, by name; the simulated demo where none is given."""
     drawings = f"{workflow.basedir}/config/buildings"
     return {
-        name: inventory.dataset(name, path, drawings=drawings, **KNOWN)
-        for name, path in inventory.named(RUN["dataset"]).items()
+        name: describe_dataset(name, path, drawings=drawings, **KNOWN)
+        for name, path in name_datasets(RUN["dataset"]).items()
     }
 
 
 def thesis_surveys():
     """The surveys of the thesis's experiments, by kind."""
-    return experiments.surveys(config=f"{workflow.basedir}/config", **KNOWN)
+    return experiments.list_surveys(config=f"{workflow.basedir}/config", **KNOWN)
 
 
 THESIS_RULES = (
@@ -70,7 +81,7 @@ THESIS_RULES = (
 
 def wanted_of_thesis(arguments):
     """Those of the command's arguments that ask for the thesis's experiments: rules or results of them."""
-    folder = f"results/{inventory.RESERVED}/"
+    folder = f"results/{RESERVED}/"
     return [a for a in arguments if a in THESIS_RULES or a.startswith(folder)]
 
 
@@ -91,7 +102,7 @@ if workflow.is_main_process:
     for note in (note for found in GIVEN.values() for note in found.notes):
         print(f"scanplan: {note}", file=sys.stderr)
     or_end(
-        madefrom.check,
+        check_sources,
         {name: found.source for name, found in GIVEN.items()},
         RUN["replace"] or [],
     )
@@ -115,7 +126,7 @@ def simulated_as(suffix):
 
 def code_of(script):
     """Helper files that a script imports: as inputs they make an edit rerun the stages that use them."""
-    files = sources.helpers_of(f"{workflow.basedir}/scripts/{script}.py")
+    files = list_helpers(f"{workflow.basedir}/scripts/{script}.py")
     return [os.path.relpath(file) for file in files]
 
 
@@ -176,7 +187,7 @@ def order_settings(wildcards):
 
 def plan_settings(wildcards):
     """Settings of the plan's own stage, part by part."""
-    return parts.of(DATASETS[wildcards.dataset].settings)
+    return select_plan_settings(DATASETS[wildcards.dataset].settings)
 
 
 def recordings(wildcards):
@@ -186,12 +197,12 @@ def recordings(wildcards):
 
 def true_faces(wildcards):
     """The true walls of a dataset."""
-    return or_end(inventory.truth_of, DATASETS[wildcards.dataset])[0]
+    return or_end(find_truth, DATASETS[wildcards.dataset])[0]
 
 
 def true_poses(wildcards):
     """The true sensor poses of a dataset."""
-    return or_end(inventory.truth_of, DATASETS[wildcards.dataset])[1]
+    return or_end(find_truth, DATASETS[wildcards.dataset])[1]
 
 
 def plan_selection(wildcards):
@@ -243,7 +254,7 @@ def all_settings(wildcards):
 
 def results_of(name):
     """Everything the workflow makes of one dataset."""
-    return inventory.results(DATASETS[name], METHODS, EXTRACTORS)
+    return list_results(DATASETS[name], METHODS, EXTRACTORS)
 
 
 def all_results():

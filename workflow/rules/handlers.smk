@@ -5,7 +5,7 @@ import sys
 import time
 from pathlib import Path
 
-from scanplan import stagelog
+from scanplan.stage.log import INTERRUPTED
 
 LOCK = ".snakemake/scanplan.lock"
 
@@ -33,7 +33,7 @@ def run_alone():
         note_signal(number)
     run_alone.lock = lock()
     for name, found in GIVEN.items():
-        madefrom.begin(name, found.source)
+        begin_results(name, found.source)
 
 
 def note_signal(number):
@@ -52,13 +52,13 @@ def note_signal(number):
 def tell_results():
     """After a whole run, say where each dataset's plan and report lie."""
     for name in GIVEN:
-        madefrom.discard_lone(name)
+        discard_lone_note(name)
     if "thesis" in workflow.dag_settings.targets:
         print("\nreport:  results/thesis/report.html", file=sys.stderr)
     if workflow.dag_settings.targets or workflow.dag_settings.until:
         return
     for name, found in GIVEN.items():
-        madefrom.end(name, found.source)
+        end_results(name, found.source)
         folder = f"results/{name}"
         print(
             f"\nplan:    {folder}/plan/plan.svg (also .pdf, .dxf, .ifc, .geojson and map.pgm)\n"
@@ -70,27 +70,27 @@ def tell_results():
 def tell_failure():
     """Leave no empty folders behind, and end with the line that says what went wrong."""
     for name in GIVEN:
-        madefrom.discard_lone(name)
-    for name in (*DATASETS, inventory.RESERVED):
+        discard_lone_note(name)
+    for name in (*DATASETS, RESERVED):
         for folder, _, _ in os.walk(f"results/{name}", topdown=False):
             if not os.listdir(folder):
                 os.rmdir(folder)
     if os.path.isdir("results") and not os.listdir("results"):
         os.rmdir("results")
     said = list(failures())
-    ended = [line for line in said if line.endswith(stagelog.INTERRUPTED)]
+    ended = [line for line in said if line.endswith(INTERRUPTED)]
     for line in said:
         if line not in ended:
             print(f"scanplan: {line}", file=sys.stderr)
     if ended or run_alone.interrupted:
-        print(f"scanplan: the run {stagelog.INTERRUPTED}", file=sys.stderr)
+        print(f"scanplan: the run {INTERRUPTED}", file=sys.stderr)
     # whatever Snakemake would add says less
     raise SystemExit(1)
 
 
 def failures():
     """What the stages that failed in this run said last."""
-    for name in (*DATASETS, inventory.RESERVED):
+    for name in (*DATASETS, RESERVED):
         for log in sorted(Path("logs", name).glob("*.log")):
             lines = log.read_text(errors="replace").splitlines()
             if (
@@ -105,7 +105,7 @@ def failures():
             if errors:
                 stage, _, fault = errors[-1].partition(": ")
                 layers = DATASETS[name].layers if name in DATASETS else ()
-                yield f"{stage}: {configuration.located(fault, layers)}"
+                yield f"{stage}: {locate_fault(fault, layers)}"
             elif not run_alone.interrupted:
                 yield f"{log.stem}: was ended from outside, perhaps for want of memory; its log is {log}"
 

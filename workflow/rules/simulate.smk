@@ -4,7 +4,7 @@ rule simulate_survey:
         building=building,
         code=code_of("simulate_survey"),
     output:
-        **inventory.survey_files("bag"),
+        **survey_files("bag"),
     log:
         "logs/{dataset}/simulate_survey.log",
     benchmark:
@@ -23,13 +23,13 @@ rule simulate_survey:
 
 use rule simulate_survey as simulate_survey_db3 with:
     output:
-        **inventory.survey_files("db3"),
+        **survey_files("db3"),
     wildcard_constraints:
         dataset=simulated_as("db3"),
 
 
 use rule simulate_survey as simulate_survey_mcap with:
     output:
-        **inventory.survey_files("mcap"),
+        **survey_files("mcap"),
     wildcard_constraints:
         dataset=simulated_as("mcap"),

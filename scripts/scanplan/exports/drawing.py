@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch, Rectangle
 from matplotlib.path import Path
 
-from scanplan.exports import drawingframe
-from scanplan.exports.drawingframe import FAINT, INK, POINTS_PER_MM
+from scanplan.exports import drawing_frame
+from scanplan.exports.drawing_frame import FAINT, INK, POINTS_PER_MM
 from scanplan.plan import floorplan
 
 # it tells of every table that it leaves out of a font
@@ -39,7 +39,7 @@ _OPENINGS = {
 }
 
 
-def svg(figure):
+def format_svg(figure):
     """Return a figure as SVG text that is the same for the same figure."""
     # the salt takes the place of random identifiers, paths that of the fonts of this computer
     with matplotlib.rc_context({"svg.hashsalt": "scanplan", "svg.fonttype": "path"}):
@@ -48,15 +48,19 @@ def svg(figure):
     return text.getvalue()
 
 
-def pdf(figure):
+def format_pdf(figure):
     """Return a figure as PDF bytes that are the same for the same figure."""
     with matplotlib.rc_context({"pdf.fonttype": 42}):
         page = io.BytesIO()
-        figure.savefig(page, format="pdf", metadata={"CreationDate": None, "Creator": "scanplan", "Producer": None})
+        figure.savefig(
+            page,
+            format="pdf",
+            metadata={"CreationDate": None, "Creator": "scanplan", "Producer": None},
+        )
     return page.getvalue()
 
 
-def plan(drawn):
+def draw_plan(drawn):
     """Draw a plan to scale: walls by state, openings, rooms with their areas, dimensions, scale bar and title.
 
     The page takes the size the drawing needs, at the largest scale of 1:10, 1:20, 1:50, ... at which it fits on A3.
@@ -70,23 +74,25 @@ def plan(drawn):
     matplotlib.figure.Figure
     """
     low_m, high_m = drawn.extent_m
-    scale = scale_for(high_m - low_m)
+    scale = choose_scale(high_m - low_m)
     axes, m_per_mm = _sheet(low_m, high_m, scale)
     for state in floorplan.STATES:
         _walls(axes, drawn, state)
     _openings(axes, drawn, m_per_mm)
     _low_walls(axes, drawn, m_per_mm)
     _rooms(axes, drawn, m_per_mm)
-    drawingframe.dimension(axes, low_m, np.array([high_m[0], low_m[1]]), m_per_mm)
-    drawingframe.dimension(axes, np.array([low_m[0], high_m[1]]), low_m, m_per_mm)
-    drawingframe.scale_bar(axes, low_m, high_m - low_m, m_per_mm)
-    drawingframe.map_axes(axes, low_m, m_per_mm)
+    drawing_frame.draw_dimension(axes, low_m, np.array([high_m[0], low_m[1]]), m_per_mm)
+    drawing_frame.draw_dimension(axes, np.array([low_m[0], high_m[1]]), low_m, m_per_mm)
+    drawing_frame.draw_scale_bar(axes, low_m, high_m - low_m, m_per_mm)
+    drawing_frame.draw_map_axes(axes, low_m, m_per_mm)
     _legend(axes, drawn, low_m, m_per_mm)
-    drawingframe.title(axes, low_m, m_per_mm, drawn.name, floorplan.summary(drawn), scale)
+    drawing_frame.draw_title(
+        axes, low_m, m_per_mm, drawn.name, floorplan.summarise_floorplan(drawn), scale
+    )
     return axes.figure
 
 
-def scale_for(extent_m):
+def choose_scale(extent_m):
     """Return the denominator of the largest usual scale at which a drawing of `extent_m` (2,) fits on A3."""
     needed = float((np.asarray(extent_m) * 1000 / _LARGEST_MM).max())
     return next((scale for scale in _SCALES if scale >= needed), math.ceil(needed))
@@ -111,7 +117,9 @@ def _walls(axes, drawn, state):
     """Fill what walls stand on and draw the surfaces that have nothing known behind them."""
     style = _STATES[state]
     for number, part in enumerate(_polygons(drawn.solid(state))):
-        axes.add_patch(PathPatch(_path(part), lw=0.35 * POINTS_PER_MM, gid=f"walls-{state}-{number}", **style))
+        axes.add_patch(
+            PathPatch(_path(part), lw=0.35 * POINTS_PER_MM, gid=f"walls-{state}-{number}", **style)
+        )
     dashes = {"ls": style["ls"]} if "ls" in style else {}
     for number, line in enumerate(drawn.single(state)):
         axes.plot(*shapely.get_coordinates(line).T, color=style["ec"], lw=0.4 * POINTS_PER_MM,
@@ -121,7 +129,9 @@ def _walls(axes, drawn, state):
 def _openings(axes, drawn, m_per_mm):
     """Draw a window with its panes, a door or passage with its thresholds; which way a door swings is not known."""
     columns = (drawn.openings[c] for c in ("opening", "type", "thickness_m"))
-    for number, kind, thick_m, line in zip(*columns, floorplan.lines_m(drawn.openings), strict=True):
+    for number, kind, thick_m, line in zip(
+        *columns, floorplan.centrelines_m(drawn.openings), strict=True
+    ):
         way = (line[1] - line[0]) / math.dist(*line)
         # in a wall of unknown thickness a door is one line, and a window as thick as can be told
         drawn_m = np.nan_to_num(thick_m, nan=_PANE_MM * m_per_mm if kind == "window" else 0.0)
@@ -129,19 +139,33 @@ def _openings(axes, drawn, m_per_mm):
         strokes = [line + side_m * np.array([-way[1], way[0]]) for side_m in sides_m]
         vertices = np.concatenate(strokes)
         path = Path(vertices, [Path.MOVETO, Path.LINETO] * len(strokes))
-        axes.add_patch(PathPatch(path, fc="none", lw=0.13 * POINTS_PER_MM, gid=f"{kind}-{number}", **_OPENINGS[kind]))
+        axes.add_patch(
+            PathPatch(
+                path, fc="none", lw=0.13 * POINTS_PER_MM, gid=f"{kind}-{number}", **_OPENINGS[kind]
+            )
+        )
         if math.dist(*line) > _LABELLED_MM * m_per_mm:
             thick_mm = np.nan_to_num(thick_m) / m_per_mm
             in_wall = thick_mm >= _ROOM_IN_WALL_MM and kind != "window"
-            _along(axes, line, f"{math.dist(*line):.2f}", 0.0 if in_wall else (thick_mm / 2 + _BESIDE_MM) * m_per_mm)
+            _along(
+                axes,
+                line,
+                f"{math.dist(*line):.2f}",
+                0.0 if in_wall else (thick_mm / 2 + _BESIDE_MM) * m_per_mm,
+            )
 
 
 def _low_walls(axes, drawn, m_per_mm):
     """Write how high walls are that end below the ceiling."""
     sides_m = np.maximum(*drawn.sides_m)
     for i in np.flatnonzero(drawn.low):
-        line = floorplan.lines_m(drawn.walls)[i]
-        _along(axes, line, f"{drawn.heights_m[i]:.2f} high", sides_m[i] * drawn.thick[i] + _BESIDE_MM * m_per_mm)
+        line = floorplan.centrelines_m(drawn.walls)[i]
+        _along(
+            axes,
+            line,
+            f"{drawn.heights_m[i]:.2f} high",
+            sides_m[i] * drawn.thick[i] + _BESIDE_MM * m_per_mm,
+        )
 
 
 def _along(axes, line, said, beside_m):
@@ -156,7 +180,9 @@ def _along(axes, line, said, beside_m):
 def _rooms(axes, drawn, m_per_mm):
     """Write each room's number and area, as large as there is room for."""
     for room, area_m2, closed, x_m, y_m, width_m in zip(
-        *(drawn.rooms[c] for c in ("room", "area_m2", "closed", "x_m", "y_m")), drawn.label_widths_m, strict=True
+        *(drawn.rooms[c] for c in ("room", "area_m2", "closed", "x_m", "y_m")),
+        drawn.label_widths_m,
+        strict=True,
     ):
         about = "" if closed else "about "
         size = np.clip(width_m / m_per_mm * POINTS_PER_MM / 8, 3.0, 8.0)
@@ -204,9 +230,17 @@ def _legend(axes, drawn, low_m, m_per_mm):
         if x_m + wide_m > axes.get_xlim()[1]:
             x_m, y_m = low_m[0], y_m - _LEGEND_ROW_MM * m_per_mm
         if "fc" not in style:
-            axes.plot([x_m, x_m + 7 * m_per_mm], [y_m, y_m], color=style["ec"], lw=0.6, ls=style.get("ls", "-"))
+            axes.plot(
+                [x_m, x_m + 7 * m_per_mm],
+                [y_m, y_m],
+                color=style["ec"],
+                lw=0.6,
+                ls=style.get("ls", "-"),
+            )
         else:
             high_m = (2.0 if style["fc"] != "none" else _PANE_MM) * m_per_mm
-            axes.add_patch(Rectangle((x_m, y_m - high_m / 2), 7 * m_per_mm, high_m, lw=0.6, **style))
+            axes.add_patch(
+                Rectangle((x_m, y_m - high_m / 2), 7 * m_per_mm, high_m, lw=0.6, **style)
+            )
         axes.text(x_m + 8.5 * m_per_mm, y_m, label, fontsize=7, va="center")
         x_m += wide_m

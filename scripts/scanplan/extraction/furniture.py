@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan.extraction import rays, sightlines
+from scanplan.rays import scan_view, sightlines
 
 _PARALLEL = np.cos(np.deg2rad(10))
 _LEVEL_M = 0.15  # tops that differ less are one
@@ -17,7 +17,7 @@ _ACROSS = np.cos(np.deg2rad(45))
 
 
 @dataclass(frozen=True, kw_only=True)
-class Limits:
+class FurnitureLimits:
     """What tells a wall from furniture.
 
     Attributes
@@ -64,14 +64,14 @@ class Limits:
     corner_m: float
 
 
-def walls_among(rows, scan, limits):
+def keep_walls(rows, scan, limits):
     """Keep the rows that are walls.
 
     Parameters
     ----------
     rows : list of tuple
-        As `walls.cut` gives them, relative to the sensor.
-    scan : rays.View, optional
+        As `segments.cut_line` gives them, relative to the sensor.
+    scan : scan_view.ScanView, optional
         Of all points of the scan. Without it, in the plane, only the scatter is judged: no ray passes over anything.
     limits : Limits
 
@@ -82,23 +82,32 @@ def walls_among(rows, scan, limits):
     if not rows:
         return rows
     values = np.array(rows, float)
-    sound = values[:, 7] <= limits.max_rmse_m if scan is None else _upright_walls(values, scan, limits)
+    sound = (
+        values[:, 7] <= limits.max_rmse_m if scan is None else _upright_walls(values, scan, limits)
+    )
     return [row for row, good in zip(rows, sound.tolist(), strict=True) if good]
 
 
 def _upright_walls(values, scan, limits):
     """Return which rows (n, 10) are walls, by what the rays of a 3-D scan tell."""
     start_m, end_m, normal = values[:, 0:2], values[:, 2:4], values[:, 4:6]
-    sights = [sightlines.look(scan, v[0:2], v[2:4], v[8], v[9]) for v in values]
-    top_m, over, through, missing = np.array([(s.top_m, s.over, s.through, s.missing) for s in sights]).T
+    sights = [sightlines.observe_face(scan, v[0:2], v[2:4], v[8], v[9]) for v in values]
+    top_m, over, through, missing = np.array(
+        [(s.top_m, s.over, s.through, s.missing) for s in sights]
+    ).T
     length_m, lowish = np.hypot(*(end_m - start_m).T), top_m < limits.furniture_height_m
     sound = (values[:, 7] <= limits.max_rmse_m) | ~lowish
     sound &= (through <= limits.through_share) & (missing <= limits.missing_share)
     hangs = values[:, 8] - scan.floor_m > limits.hang_height_m
     sound &= ~(lowish & (hangs | (over > limits.over_share)))
     small = lowish & (length_m <= limits.furniture_length_m)
-    sound &= ~(small & (in_front(start_m, end_m, normal, limits.furniture_depth_m) & sound).any(axis=1))
-    inner, outer = corners(start_m, end_m, normal, limits.corner_m)
+    sound &= ~(
+        small
+        & (find_faces_in_front(start_m, end_m, normal, limits.furniture_depth_m) & sound).any(
+            axis=1
+        )
+    )
+    inner, outer = find_corner_faces(start_m, end_m, normal, limits.corner_m)
     closed = (inner & sound).any(axis=2).all(axis=1)
     tall = top_m >= limits.wall_height_m
     plain = sound & ~outer.any(axis=(1, 2))
@@ -108,12 +117,14 @@ def _upright_walls(values, scan, limits):
         wall |= joined
     # what is seen higher than a piece of furniture is no side of it
     as_high = top_m[None, :] > top_m[:, None] - _LEVEL_M
-    side_of_furniture = (outer & (~sound & as_high)[:, None]).any(axis=(1, 2)) & (length_m <= limits.furniture_depth_m)
+    side_of_furniture = (outer & (~sound & as_high)[:, None]).any(axis=(1, 2)) & (
+        length_m <= limits.furniture_depth_m
+    )
     wall &= ~(side_of_furniture & lowish)
     stub = length_m < limits.stub_length_m
     wall &= ~(stub & lowish & ~closed)
     # beyond a door a wall goes on, however short what is seen of it there; if it is low, what is between must be a door
-    beyond = in_line(start_m, end_m, normal, limits) & (wall & ~stub)
+    beyond = find_collinear_faces(start_m, end_m, normal, limits) & (wall & ~stub)
     low = plain & ~tall & ~wall
     wall |= sound & tall & beyond.any(axis=1)
     for one, other in np.argwhere(beyond & low[:, None]):
@@ -131,10 +142,10 @@ def _door_between(one, other, scan, limits):
     if (end_m - start_m) @ (one[2:4] - one[0:2]) < 0:
         # side by side: one stands before the other
         return False
-    return sightlines.leads_on(scan, start_m, end_m, limits.furniture_depth_m)
+    return sightlines.gap_leads_on(scan, start_m, end_m, limits.furniture_depth_m)
 
 
-def corners(start_m, end_m, normal, reach_m):
+def find_corner_faces(start_m, end_m, normal, reach_m):
     """Tell which faces meet at the ends of others, across them.
 
     Parameters
@@ -167,17 +178,17 @@ def corners(start_m, end_m, normal, reach_m):
     return inner, outer
 
 
-def in_front(start_m, end_m, normal, depth_m):
+def find_faces_in_front(start_m, end_m, normal, depth_m):
     """Tell which faces stand before others: parallel, up to `depth_m` before and beside them; (n, n) bool."""
     forward_m, gap_m = _placed(start_m, end_m, normal)
     facing = normal @ normal.T > _PARALLEL
     return facing & (forward_m > sightlines.BEHIND_M) & (forward_m <= depth_m) & (gap_m <= depth_m)
 
 
-def in_line(start_m, end_m, normal, limits):
+def find_collinear_faces(start_m, end_m, normal, limits):
     """Tell which faces are on one line with others, no farther than a door's width apart; (n, n) bool."""
     forward_m, gap_m = _placed(start_m, end_m, normal)
-    same = (normal @ normal.T > _PARALLEL) & (np.abs(forward_m) <= rays.ON_M)
+    same = (normal @ normal.T > _PARALLEL) & (np.abs(forward_m) <= scan_view.ON_M)
     return same & (gap_m <= limits.door_width_m) & ~np.eye(len(normal), dtype=bool)
 
 
@@ -187,5 +198,7 @@ def _placed(start_m, end_m, normal):
     forward_m = middle_m @ normal.T - (middle_m * normal).sum(axis=1)
     starts_m, ends_m = start_m @ along.T, end_m @ along.T
     own_start_m, own_end_m = np.diag(starts_m), np.diag(ends_m)
-    gap_m = np.maximum(own_start_m - np.maximum(starts_m, ends_m), np.minimum(starts_m, ends_m) - own_end_m)
+    gap_m = np.maximum(
+        own_start_m - np.maximum(starts_m, ends_m), np.minimum(starts_m, ends_m) - own_end_m
+    )
     return forward_m, gap_m

@@ -4,12 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan.extraction import furniture, lines, walls
+from scanplan.extraction import furniture, segments
+from scanplan.geometry import line_fit
 
 
 @dataclass(frozen=True, kw_only=True)
-class Settings(walls.Limits):
-    """How walls are found, beside what a wall segment must be (`walls.Limits`).
+class IterativeRansacSettings(segments.SegmentLimits):
+    """How walls are found, beside what a wall segment must be (`segments.SegmentLimits`).
 
     Attributes
     ----------
@@ -26,7 +27,7 @@ class Settings(walls.Limits):
     max_planes: int
 
 
-def extract(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
+def extract_iteratively(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
     """Find the wall segments of one scan.
 
     Find the plane (planar scans: the line) most points lie on, remove them, and repeat until it holds too few. Upright
@@ -45,15 +46,15 @@ def extract(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
 
     Returns
     -------
-    walls.WallSegments
+    segments.WallSegments
 
     Raises
     ------
     ValueError
         If a coordinate is not finite.
     """
-    points = left = walls.around_sensor(xyz_m, sensor_xyz_m)
-    scan = walls.sights(points, planar=planar)
+    points = left = segments.centre_on_sensor(xyz_m, sensor_xyz_m)
+    scan = segments.view_scan(points, planar=planar)
     largest = _largest_line if planar else _largest_plane
     least = max(settings.least_points(planar), 3)
     rng = np.random.default_rng([settings.seed, scan_id])
@@ -66,12 +67,14 @@ def extract(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
             break
         found = left[inliers]
         if upright and np.hypot(*np.ptp(found[:, :2], axis=0)) >= settings.min_length_m:
-            rows += walls.cut(*lines.fit(found[:, :2]), found, settings, scan=scan)
+            rows += segments.cut_line(
+                *line_fit.fit_line_tls(found[:, :2]), found, settings, scan=scan
+            )
         left = left[~inliers]
-    return walls.assemble(furniture.walls_among(rows, scan, settings), sensor_xyz_m)
+    return segments.collect_segments(furniture.keep_walls(rows, scan, settings), sensor_xyz_m)
 
 
-def largest_plane(xyz_m, *, inlier_m, trials, seed):
+def find_largest_plane(xyz_m, *, inlier_m, trials, seed):
     """Find the plane most points lie on (thesis, algorithm 4).
 
     Parameters
@@ -99,11 +102,15 @@ def largest_plane(xyz_m, *, inlier_m, trials, seed):
 
 
 def _largest_line(xyz_m, settings, rng):
-    inliers = lines.ransac(xyz_m[:, :2], inlier_m=settings.inlier_m, trials=settings.trials, rng=rng)[2]
+    inliers = line_fit.fit_line_ransac(
+        xyz_m[:, :2], inlier_m=settings.inlier_m, trials=settings.trials, rng=rng
+    )[2]
     return True, inliers
 
 
 def _largest_plane(xyz_m, settings, rng):
     seed = int(rng.integers(2**31))
-    normal, inliers = largest_plane(xyz_m, inlier_m=settings.inlier_m, trials=settings.trials, seed=seed)
+    normal, inliers = find_largest_plane(
+        xyz_m, inlier_m=settings.inlier_m, trials=settings.trials, seed=seed
+    )
     return abs(normal[2]) <= np.sin(np.deg2rad(settings.max_tilt_deg)), inliers

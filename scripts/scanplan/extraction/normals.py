@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from scanplan.extraction import spread
+from scanplan.geometry.moments import FEWEST, group_moments, least_variance_direction
 
-_FEWEST = spread.FEWEST[2]
+_FEWEST = FEWEST[2]
 _MIN_RADIUS_2D_M = 0.08
 _NEAREST_2D = 5
 _NEAREST_REACH_2D = 3.0
@@ -23,7 +23,7 @@ _TABLE_SIZE = 2**23
 
 
 @dataclass(frozen=True)
-class Cells:
+class SurfaceCells:
     """Groups of neighbouring points that share a normal.
 
     Attributes
@@ -54,11 +54,15 @@ class Cells:
     def points_of(self, cells):
         """Return the indices of the points of the given cells, (k,) int."""
         count = self.count[cells]
-        skipped = self.first[cells] - np.concatenate([[0], np.cumsum(count)[:-1]]) if len(count) else count
+        skipped = (
+            self.first[cells] - np.concatenate([[0], np.cumsum(count)[:-1]])
+            if len(count)
+            else count
+        )
         return self.members[np.arange(count.sum()) + np.repeat(skipped, count)]
 
 
-def surface_cells(xyz_m, *, reach_deg):
+def cut_surface_cells(xyz_m, *, reach_deg):
     """Part a 3-D scan into cells of equal angle and find the normal of each.
 
     The points are binned in (azimuth, z / r, ln r), r the horizontal range: cells of equal angle, about cubic in space.
@@ -82,27 +86,27 @@ def surface_cells(xyz_m, *, reach_deg):
         return _as_cells(np.empty(0, np.int64), np.empty((0, 3)), np.empty((0, 3)), np.empty(0))
     step = np.deg2rad(reach_deg) / 1.5
     grid = _Grid(xyz_m, step)
-    moments = spread.moments(_within(xyz_m), grid.of_point, len(grid.key))
+    moments = group_moments(_within(xyz_m), grid.of_point, len(grid.key))
     mean_m = moments[1:4] / moments[0]
-    normal = spread.least_variance(grid.neighbourhood_sums(moments))
+    normal = least_variance_direction(grid.neighbourhood_sums(moments))
     radius_m = step * np.hypot(mean_m[0], mean_m[1])
     return _as_cells(grid.of_point, mean_m.T, _towards_sensor(normal, mean_m), radius_m)
 
 
-def surface_normals(xyz_m, *, reach_deg):
-    """Return the unit normals (n, 3) of a 3-D scan's surfaces, those of `surface_cells`; NaN where there is none."""
-    cells = surface_cells(xyz_m, reach_deg=reach_deg)
+def estimate_surface_normals(xyz_m, *, reach_deg):
+    """Return the unit normals (n, 3) of a 3-D scan's surfaces, those of `cut_surface_cells`; NaN where there is none."""
+    cells = cut_surface_cells(xyz_m, reach_deg=reach_deg)
     return cells.normal[cells.of_point]
 
 
-def line_cells(xy_m, *, reach_deg):
-    """Return the points of a planar scan as cells of one point each, see `line_normals`."""
+def cut_outline_cells(xy_m, *, reach_deg):
+    """Return the points of a planar scan as cells of one point each, see `estimate_outline_normals`."""
     xy_m = np.asarray(xy_m, float)
-    normal = line_normals(xy_m, reach_deg=reach_deg)
+    normal = estimate_outline_normals(xy_m, reach_deg=reach_deg)
     return _as_cells(np.arange(len(xy_m)), xy_m, normal, np.zeros(len(xy_m)))
 
 
-def line_normals(xy_m, *, reach_deg):
+def estimate_outline_normals(xy_m, *, reach_deg):
     """Return the unit normals of a planar scan's outlines, towards the sensor.
 
     A point's neighbours are those within `reach_deg` (at least 8 cm), or its five nearest where these are not more than
@@ -127,8 +131,8 @@ def line_normals(xy_m, *, reach_deg):
     radius = np.maximum(radius, np.minimum(nearest * (1 + 1e-9), _NEAREST_REACH_2D * radius))
     near = tree.query_ball_point(xy_m, radius, return_sorted=True)
     owner = np.repeat(np.arange(len(xy_m)), [len(n) for n in near])
-    moments = spread.moments(xy_m[np.concatenate(near).astype(int)], owner, len(xy_m))
-    return _towards_sensor(spread.least_variance(moments), xy_m.T)
+    moments = group_moments(xy_m[np.concatenate(near).astype(int)], owner, len(xy_m))
+    return _towards_sensor(least_variance_direction(moments), xy_m.T)
 
 
 class _Grid:
@@ -137,8 +141,12 @@ class _Grid:
     def __init__(self, xyz_m, step):
         horizontal = np.clip(np.hypot(xyz_m[:, 0], xyz_m[:, 1]), _NEAR_M, _FAR_M)
         self.turn = max(3, round(2 * np.pi / step))
-        azimuth = np.floor(np.arctan2(xyz_m[:, 1], xyz_m[:, 0]) * (self.turn / (2 * np.pi))).astype(np.int64)
-        height = np.floor(np.clip(xyz_m[:, 2] / horizontal, -_STEEPEST, _STEEPEST) / step).astype(np.int64)
+        azimuth = np.floor(np.arctan2(xyz_m[:, 1], xyz_m[:, 0]) * (self.turn / (2 * np.pi))).astype(
+            np.int64
+        )
+        height = np.floor(np.clip(xyz_m[:, 2] / horizontal, -_STEEPEST, _STEEPEST) / step).astype(
+            np.int64
+        )
         distance = np.floor(np.log(horizontal) / step).astype(np.int64)
         # a border of empty cells: the neighbours of one row are not in the next
         height, distance = height - height.min() + 1, distance - distance.min() + 1
@@ -168,7 +176,9 @@ class _Grid:
         for turn in (-1, 0, 1):
             start = (azimuth + turn) % self.turn * row_size + inside
             for rise in (-self.shells, 0, self.shells):
-                total += running[self.before(start + rise + 2)] - running[self.before(start + rise - 1)]
+                total += (
+                    running[self.before(start + rise + 2)] - running[self.before(start + rise - 1)]
+                )
         return total.T
 
 
@@ -187,7 +197,7 @@ def _as_cells(of_point, mean_m, normal, radius_m):
     members = np.argsort(sortable, kind="stable")
     count = np.bincount(of_point, minlength=n_cells)
     first = np.concatenate([[0], np.cumsum(count)]).astype(np.int64)
-    return Cells(of_point, members, first, count, mean_m, normal, radius_m)
+    return SurfaceCells(of_point, members, first, count, mean_m, normal, radius_m)
 
 
 def _towards_sensor(normal, at):

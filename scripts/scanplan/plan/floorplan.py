@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 import shapely
 
-from scanplan.plan import wallbodies
+from scanplan.plan import wall_footprints
 
 STATES = ("observed", "inferred")
 HEIGHTS = {"ceiling": "ceiling", "walls": "highest seen of all walls", "assumed": "assumed"}
@@ -17,7 +17,7 @@ _GRID_M = 1e-4
 _FLAT_M = 0.5
 
 
-def lines_m(columns):
+def centrelines_m(columns):
     """Return the lines (n, 2, 2) float64 of a table with the columns x0_m, y0_m, x1_m, y1_m."""
     return np.column_stack([columns[c] for c in _ENDS]).astype(float).reshape(-1, 2, 2)
 
@@ -71,12 +71,14 @@ class FloorPlan:
     @cached_property
     def bodies(self):
         """The ground that each wall stands on, (n,) Polygons, openings not cut out."""
-        return wallbodies.bodies(lines_m(self.walls), *self.sides_m)
+        return wall_footprints.draw_footprints(centrelines_m(self.walls), *self.sides_m)
 
     @cached_property
     def known(self):
         """Likewise of the walls of known thickness, none of them mitred with an assumed one."""
-        return wallbodies.bodies(lines_m(self.walls)[self.thick], *(side[self.thick] for side in self.sides_m))
+        return wall_footprints.draw_footprints(
+            centrelines_m(self.walls)[self.thick], *(side[self.thick] for side in self.sides_m)
+        )
 
     @cached_property
     def hosts(self):
@@ -90,7 +92,9 @@ class FloorPlan:
         deep_m = np.nan_to_num(self.openings["thickness_m"], nan=self.assumed_thickness_m) / 2
         # one more for the openings that are in no wall
         walls_m = np.append(np.maximum(*self.sides_m), 0.0)
-        return boxes(lines_m(self.openings), np.maximum(deep_m, walls_m[self.hosts]) + _CLEARANCE_M)
+        return buffer_lines(
+            centrelines_m(self.openings), np.maximum(deep_m, walls_m[self.hosts]) + _CLEARANCE_M
+        )
 
     def solid(self, state):
         """Return the ground of the walls of one state whose thickness is known, merged, openings cut out."""
@@ -103,7 +107,9 @@ class FloorPlan:
         # a face that is a side of a wall is drawn with it
         loose = (self.faces["wall"] < 0) & (self.faces["state"] == state)
         one_sided = ~self.thick & (self.walls["state"] == state)
-        lines = shapely.linestrings(np.concatenate([lines_m(self.walls)[one_sided], lines_m(self.faces)[loose]]))
+        lines = shapely.linestrings(
+            np.concatenate([centrelines_m(self.walls)[one_sided], centrelines_m(self.faces)[loose]])
+        )
         # they end at the surfaces of the walls that they meet
         hidden = shapely.union_all([*self.gaps, *shapely.buffer(self.known, _GRID_M)])
         parts = shapely.get_parts(shapely.difference(lines, hidden))
@@ -117,7 +123,11 @@ class FloorPlan:
         is where it is assumed, or higher if walls were seen higher: they do not end above it.
         """
         floor_m, seen_m = self._walls_z_m
-        heights_m = {"ceiling": self.ceiling_z_m - floor_m, "walls": seen_m, "assumed": self.assumed_height_m}
+        heights_m = {
+            "ceiling": self.ceiling_z_m - floor_m,
+            "walls": seen_m,
+            "assumed": self.assumed_height_m,
+        }
         return floor_m, float(heights_m[self.height_from])
 
     @cached_property
@@ -131,7 +141,11 @@ class FloorPlan:
     @cached_property
     def _walls_z_m(self):
         """Height of the floor in the map frame, and how high above it walls were seen."""
-        floor_m = self.floor_z_m if np.isfinite(self.floor_z_m) else _extreme(self.walls["z_min_m"], np.fmin)
+        floor_m = (
+            self.floor_z_m
+            if np.isfinite(self.floor_z_m)
+            else _extreme(self.walls["z_min_m"], np.fmin)
+        )
         return floor_m, _extreme(self.walls["z_max_m"], np.fmax) - floor_m
 
     @cached_property
@@ -150,13 +164,13 @@ class FloorPlan:
     @cached_property
     def bounds_m(self):
         """The least and the greatest x and y of all that is known, rooms with it, ((2,), (2,))."""
-        return _bounds([*shapely.linestrings(lines_m(self.faces)), *self.known, *self.areas])
+        return _bounds([*shapely.linestrings(centrelines_m(self.faces)), *self.known, *self.areas])
 
     @cached_property
     def extent_m(self):
         """Likewise of what is drawn of walls and openings: what a dimension line measures."""
         walls = [part for state in STATES for part in (self.solid(state), *self.single(state))]
-        drawn = [*walls, *shapely.linestrings(lines_m(self.openings))]
+        drawn = [*walls, *shapely.linestrings(centrelines_m(self.openings))]
         return _bounds(drawn) if any(not part.is_empty for part in drawn) else self.bounds_m
 
     @cached_property
@@ -171,7 +185,7 @@ class FloorPlan:
         return 2 * shapely.distance(places, shapely.boundary(self.areas))
 
 
-def summary(plan):
+def summarise_floorplan(plan):
     """Return what a plan holds, in words."""
     counts = [(len(plan.walls["wall"]), "wall"), (len(plan.faces["face"]), "wall face")]
     counts += [(int((plan.openings["type"] == kind).sum()), kind) for kind in OPENINGS]
@@ -179,9 +193,13 @@ def summary(plan):
     return ", ".join(f"{n} {what}{'s' if n != 1 else ''}" for n, what in counts if n)
 
 
-def boxes(lines, half_m):
+def buffer_lines(lines, half_m):
     """Return rectangles (n,) along lines (n, 2, 2), `half_m` (n,) to each side."""
-    return shapely.buffer(shapely.linestrings(lines), half_m, cap_style="flat") if len(lines) else np.array([], object)
+    return (
+        shapely.buffer(shapely.linestrings(lines), half_m, cap_style="flat")
+        if len(lines)
+        else np.array([], object)
+    )
 
 
 def _bounds(shapes):

@@ -5,26 +5,25 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan import schemas
 from scanplan.plan import (
     faces,
-    freespace,
-    fronts,
-    gaps,
-    glazing,
-    planfaces,
-    plantables,
-    planwalls,
-    profiles,
-    rangeerrors,
-    rightangles,
-    rooms,
-    tops,
-    wallevidence,
-    wallfaces,
-    wallpairs,
+    furniture_fronts,
+    glass,
+    half_height,
+    plan_tables,
+    range_bias,
+    segment_merging,
+    uncertainty,
+    wall_faces,
+    wall_pairs,
     windows,
 )
+from scanplan.plan.openings import OpeningSettings
+from scanplan.plan.right_angles import RightAnglePrior
+from scanplan.plan.rooms import find_rooms
+from scanplan.plan.walls import assemble_walls
+from scanplan.rays import face_profile, free_space
+from scanplan.store import schemas
 
 TABLES = {
     "faces": schemas.FACES,
@@ -57,15 +56,15 @@ class RoomSettings:
 class PlanSettings:
     """All that a plan is made with: each part as its own class says."""
 
-    merge: faces.MergeSettings
-    reading: profiles.Reading
-    ranges: rangeerrors.RangeSettings
-    square: rightangles.Prior
-    furniture: fronts.Limits
-    pairs: wallpairs.PairSettings
-    openings: gaps.GapSettings
+    merge: segment_merging.MergeSettings
+    reading: face_profile.RaySettings
+    ranges: range_bias.RangeBiasSettings
+    square: RightAnglePrior
+    furniture: furniture_fronts.FrontLimits
+    pairs: wall_pairs.PairSettings
+    openings: OpeningSettings
     rooms: RoomSettings
-    trust: wallevidence.Trust
+    trust: uncertainty.ReviewCriteria
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +77,7 @@ class Plan:
     n_lines, n_dropped : int
         Lines of faces, and those dropped.
     range_errors_m : (181,) float64
-        What ranges were shortened by, see `rangeerrors.estimate`.
+        What ranges were shortened by, see `range_bias.estimate_range_bias`.
     """
 
     faces: dict
@@ -92,7 +91,9 @@ class Plan:
     range_errors_m: np.ndarray
 
 
-def settings(*, merge, trace, ranges, right_angles, furniture, pair, openings, rooms, trust):
+def make_plan_settings(
+    *, merge, trace, ranges, right_angles, furniture, pair, openings, rooms, trust
+):
     """Return settings from keywords of each part.
 
     Raises
@@ -100,28 +101,30 @@ def settings(*, merge, trace, ranges, right_angles, furniture, pair, openings, r
     ValueError
         If one is out of its range.
     """
-    merging = faces.MergeSettings(**merge)
+    merging = segment_merging.MergeSettings(**merge)
     return PlanSettings(
         merge=merging,
-        reading=profiles.Reading(**trace),
-        ranges=rangeerrors.RangeSettings(**ranges),
-        square=rightangles.Prior(registration_sigma_m=merging.registration_sigma_m, **right_angles),
-        furniture=fronts.Limits(**furniture),
-        pairs=wallpairs.PairSettings(**pair, max_gap_m=openings["max_opening_m"]),
-        openings=gaps.GapSettings(**openings),
+        reading=face_profile.RaySettings(**trace),
+        ranges=range_bias.RangeBiasSettings(**ranges),
+        square=RightAnglePrior(registration_sigma_m=merging.registration_sigma_m, **right_angles),
+        furniture=furniture_fronts.FrontLimits(**furniture),
+        pairs=wall_pairs.PairSettings(**pair, max_gap_m=openings["max_opening_m"]),
+        openings=OpeningSettings(**openings),
         rooms=RoomSettings(**rooms),
-        trust=wallevidence.Trust(registration_sigma_m=merging.registration_sigma_m, **trust),
+        trust=uncertainty.ReviewCriteria(
+            registration_sigma_m=merging.registration_sigma_m, **trust
+        ),
     )
 
 
-def make(segments, rays, track_m, t_ns, settings, up=None):
+def make_plan(segments, rays, track_m, t_ns, settings, up=None):
     """Make a plan.
 
     Parameters
     ----------
     segments : dict of str to (n,) array
         The columns of `schemas.WALLS`, of the chosen scans.
-    rays : rays.Rays
+    rays : ray_set.RaySet
         Of the chosen scans.
     track_m : (k, 2) float64
         Where the sensor was, of all registered scans.
@@ -137,23 +140,27 @@ def make(segments, rays, track_m, t_ns, settings, up=None):
         Without any row of faces or walls where nothing is supported enough.
     """
     up = np.tile((0.0, 0.0, 1.0), (len(rays.scan_ids), 1)) if up is None else up
-    errors_m = rangeerrors.estimate(rays, segments, settings.ranges, settings.reading.band_m, up)
-    rays = rangeerrors.without(rays, errors_m, up)
-    pieces = faces.pieces(segments, settings.merge)
+    errors_m = range_bias.estimate_range_bias(
+        rays, segments, settings.ranges, settings.reading.band_m, up
+    )
+    rays = range_bias.remove_range_bias(rays, errors_m, up)
+    pieces = segment_merging.merge_segments(segments, settings.merge)
     parts = settings.merge, settings.reading, settings.square, settings.furniture
-    traced = planfaces.trace(pieces, rays, *parts)
-    found = planwalls.assemble(
+    traced = faces.trace_faces(pieces, rays, *parts)
+    found = assemble_walls(
         *(traced.stretches, settings.reading, settings.pairs, settings.openings),
         planar=rays.planar,
         corner_m=settings.merge.corner_m,
     )
-    found = windows.added(found, rays, settings.openings)
+    found = windows.add_windows(found, rays, settings.openings)
     found, tops_m = _without_low(found, settings.furniture.wall_height_m, rays.planar)
     unpaired_m = _usual_thickness_m(found)
-    stars = freespace.visible(rays)
-    floor = freespace.joined(stars)
-    panes = glazing.between(*(found, traced.panes), min_length_m=settings.openings.min_opening_m, unpaired_m=unpaired_m)
-    enclosed = rooms.find(
+    stars = free_space.free_polygons(rays)
+    floor = free_space.union_on_grid(stars)
+    panes = glass.find_glass_walls(
+        *(found, traced.panes), min_length_m=settings.openings.min_opening_m, unpaired_m=unpaired_m
+    )
+    enclosed = find_rooms(
         *([*found, *panes], stars, track_m),
         min_area_m2=settings.rooms.min_area_m2,
         min_walled=settings.rooms.min_walled,
@@ -162,16 +169,16 @@ def make(segments, rays, track_m, t_ns, settings, up=None):
         floor=floor,
     )
     floor_z_m = 0.0 if math.isnan(rays.floor_z_m) else rays.floor_z_m
-    drawn = wallfaces.of_walls(found, max_beyond_m=settings.openings.max_closed_m)
-    face_columns, face_rows = plantables.faces(drawn, floor_z_m)
-    known = wallevidence.weigh(found, settings.trust, tops_m)
+    drawn = wall_faces.cut_wall_faces(found, max_beyond_m=settings.openings.max_closed_m)
+    face_columns, face_rows = plan_tables.face_columns(drawn, floor_z_m)
+    known = uncertainty.estimate_evidence(found, settings.trust, tops_m)
     return Plan(
         faces=face_columns,
-        walls=plantables.walls(found, known, face_rows, drawn, floor_z_m, settings.trust),
-        openings=plantables.openings(found, enclosed, settings.openings),
-        rooms=plantables.rooms(enclosed),
-        evidence=plantables.evidence(known, rays.scan_ids, t_ns),
-        free=plantables.free(_free([*found, *panes], floor, unpaired_m)),
+        walls=plan_tables.wall_columns(found, known, face_rows, drawn, floor_z_m, settings.trust),
+        openings=plan_tables.opening_columns(found, enclosed, settings.openings),
+        rooms=plan_tables.room_columns(enclosed),
+        evidence=plan_tables.evidence_columns(known, rays.scan_ids, t_ns),
+        free=plan_tables.free_columns(_free([*found, *panes], floor, unpaired_m)),
         n_lines=traced.n_lines,
         n_dropped=traced.n_dropped,
         range_errors_m=errors_m,
@@ -180,7 +187,7 @@ def make(segments, rays, track_m, t_ns, settings, up=None):
 
 def _without_low(walls, wall_height_m, planar):
     """Return walls, less surfaces that were seen to end lower than a wall does, and the heights of their tops."""
-    tops_m = [math.nan if planar else tops.find(wall) for wall in walls]
+    tops_m = [math.nan if planar else half_height.estimate_wall_top_m(wall) for wall in walls]
     known = [(w, t) for w, t in zip(walls, tops_m, strict=True) if w.right or not t < wall_height_m]
     return [w for w, _ in known], [t for _, t in known]
 
@@ -192,7 +199,12 @@ def _usual_thickness_m(walls):
 
 def _free(walls, floor, unpaired_m):
     """Return the polygons of floor that rays went over, openings with it, walls without."""
-    strips = freespace.strips(walls, unpaired_m)
-    ways = [freespace.opening_ground(w, g, unpaired_m) for w in walls for g in w.openings if not g.is_above_wall]
-    solid = freespace.without(*map(freespace.joined, (strips, ways)))
-    return list(freespace.without(floor, solid).geoms)
+    strips = free_space.wall_strips(walls, unpaired_m)
+    ways = [
+        free_space.opening_polygon(w, g, unpaired_m)
+        for w in walls
+        for g in w.openings
+        if not g.is_above_wall
+    ]
+    solid = free_space.difference_on_grid(*map(free_space.union_on_grid, (strips, ways)))
+    return list(free_space.difference_on_grid(floor, solid).geoms)

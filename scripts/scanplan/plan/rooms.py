@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 from shapely.geometry import LineString, MultiPolygon, Polygon
 
-from scanplan.plan import freespace
+from scanplan.rays import free_space
 
 _NEAR_M = 0.2
 _BESIDE_M = 0.12
@@ -47,7 +47,9 @@ class Room:
         return self.walled >= _CLOSED_SHARE
 
 
-def find(walls, stars, track_m, *, min_area_m2, min_walled, min_width_m, unpaired_m, floor=None):
+def find_rooms(
+    walls, stars, track_m, *, min_area_m2, min_walled, min_width_m, unpaired_m, floor=None
+):
     """Find the rooms.
 
     The floor that was seen falls apart where walls and openings stand. Each part becomes the faces of the cells, in a
@@ -56,9 +58,9 @@ def find(walls, stars, track_m, *, min_area_m2, min_walled, min_width_m, unpaire
 
     Parameters
     ----------
-    walls : list of planwalls.PlanWall
+    walls : list of walls.PlanWall
     stars : list of shapely geometry
-        What each scan saw, `freespace.visible`.
+        What each scan saw, `free_space.free_polygons`.
     track_m : (n, 2) float64
         Where sensors were.
     min_area_m2 : float
@@ -69,33 +71,41 @@ def find(walls, stars, track_m, *, min_area_m2, min_walled, min_width_m, unpaire
     unpaired_m : float
         How thick a wall is taken for of which one side is known.
     floor : shapely geometry, optional
-        `freespace.joined` of the stars, where it is known already.
+        `free_space.union_on_grid` of the stars, where it is known already.
 
     Returns
     -------
     list of Room
         The largest first; they do not overlap.
     """
-    strips = freespace.strips(walls, unpaired_m)
-    solid = freespace.joined(strips)
-    seen = freespace.without(freespace.joined(stars) if floor is None else floor, solid)
-    parts = [p for p in freespace.wide(seen, _NECK_M) if p.area >= min_area_m2]
+    strips = free_space.wall_strips(walls, unpaired_m)
+    solid = free_space.union_on_grid(strips)
+    seen = free_space.difference_on_grid(
+        free_space.union_on_grid(stars) if floor is None else floor, solid
+    )
+    parts = [p for p in free_space.open_polygons(seen, _NECK_M) if p.area >= min_area_m2]
     track = shapely.points(track_m)
     found, taken = [], MultiPolygon()
     for part in sorted(parts, key=lambda p: (-p.area, *p.bounds)):
         near = [(w, s) for w, s in zip(walls, strips, strict=True) if s.distance(part) <= _NEAR_M]
-        outline = shapely.union_all([s for _, s in near]).buffer(_BESIDE_M) if near else MultiPolygon()
+        outline = (
+            shapely.union_all([s for _, s in near]).buffer(_BESIDE_M) if near else MultiPolygon()
+        )
         drawn = _drawn(part, [w for w, _ in near], solid, outline, unpaired_m)
-        polygon = _largest(freespace.without(drawn, freespace.joined([solid, taken])))
+        polygon = _largest(
+            free_space.difference_on_grid(drawn, free_space.union_on_grid([solid, taken]))
+        )
         if polygon is None or polygon.area < min_area_m2:
             continue
         walled = _walled(polygon, outline)
         shapely.prepare(polygon)
-        room = Room(polygon, walled, bool(shapely.contains(polygon, track).any()), _n_scans(polygon, stars))
+        room = Room(
+            polygon, walled, bool(shapely.contains(polygon, track).any()), _n_scans(polygon, stars)
+        )
         is_wide = not polygon.buffer(-min_width_m / 2).is_empty
         if room.entered or (walled >= min_walled and is_wide):
             found.append(room)
-            taken = freespace.joined([taken, polygon])
+            taken = free_space.union_on_grid([taken, polygon])
     return sorted(found, key=lambda r: (-r.polygon.area, *r.polygon.bounds))
 
 
@@ -106,7 +116,7 @@ def _n_scans(polygon, stars):
 
 
 def _largest(geometry):
-    return max(freespace.wide(geometry, _NECK_M), key=lambda p: p.area, default=None)
+    return max(free_space.open_polygons(geometry, _NECK_M), key=lambda p: p.area, default=None)
 
 
 def _drawn(part, walls, solid, outline, unpaired_m):
@@ -123,7 +133,7 @@ def _drawn(part, walls, solid, outline, unpaired_m):
     chosen = share > _CELL_SHARE
     for i in np.flatnonzero(~chosen & (share > _LEAST_CELL_SHARE)):
         chosen[i] = _walled(cells[i], outline) >= _CLOSED_SHARE
-    drawn = _largest(freespace.without(freespace.joined(cells[chosen]), solid))
+    drawn = _largest(free_space.difference_on_grid(free_space.union_on_grid(cells[chosen]), solid))
     if drawn is None:
         return rough
     both = shapely.intersection(drawn, rough).area / max(shapely.union(drawn, rough).area, 1e-9)
@@ -143,7 +153,7 @@ def _cells(part, walls, unpaired_m):
     reach_m = 2 * float(np.hypot(high_x - low_x, high_y - low_y))
     drawing = [shapely.box(low_x, low_y, high_x, high_y).exterior]
     drawing += [LineString([point - reach_m * way, point + reach_m * way]) for point, way in lines]
-    noded = shapely.union_all(np.array(drawing, object), grid_size=freespace.GRID_M)
+    noded = shapely.union_all(np.array(drawing, object), grid_size=free_space.GRID_M)
     cells = np.array(list(shapely.get_parts(shapely.polygonize(shapely.get_parts(noded)))), object)
     middles = shapely.point_on_surface(cells)
     inside = shapely.covers(shapely.box(low_x, low_y, high_x, high_y), middles)
@@ -156,16 +166,20 @@ def _lines(wall, part, unpaired_m):
     offsets = (off_m * wall.line.normal for off_m in (wall.half_m, -back_m))
     beside_m = wall.line.at(wall.line.along_m(np.array(part.centroid.coords[0])))
     lines = [(beside_m + offset, wall.line.direction) for offset in offsets]
-    return lines + [(end, wall.line.normal) for end in wall.ends if shapely.Point(end).distance(part) <= _NEAR_M]
+    return lines + [
+        (end, wall.line.normal) for end in wall.ends if shapely.Point(end).distance(part) <= _NEAR_M
+    ]
 
 
-def beside(rooms, line_m, half_m):
+def rooms_beside(rooms, line_m, half_m):
     """Return the rooms (indices, -1: none) on the left and on the right of the middle of a line (2, 2)."""
     middle, way = line_m.mean(axis=0), line_m[1] - line_m[0]
     normal = np.array([-way[1], way[0]]) / max(np.hypot(*way), 1e-9)
     found = []
     for sign in (1, -1):
-        points = shapely.points(middle + sign * np.outer(half_m + np.array([0.15, 0.3, 0.5]), normal))
+        points = shapely.points(
+            middle + sign * np.outer(half_m + np.array([0.15, 0.3, 0.5]), normal)
+        )
         hit = [i for p in points for i, room in enumerate(rooms) if room.polygon.covers(p)]
         found.append(hit[0] if hit else -1)
     return found

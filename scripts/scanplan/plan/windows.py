@@ -8,8 +8,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from scanplan.plan import gaps, sentrays
-from scanplan.plan.profiles import COLUMN_M, filled
+from scanplan.plan import openings
+from scanplan.rays import expected_returns
+from scanplan.rays.face_profile import COLUMN_M, filled_share
 
 _CHEST_M = (1.25, 1.7)  # sills are lower, lintels are higher
 _LEAST_SHOWN = 0.7  # the jambs' last columns may be hidden from most scans
@@ -18,19 +19,19 @@ _MOST_IN_IT = 0.5  # reveals and panes send some back, a niche all
 _SILL_SHARE = 0.3  # desks hide much of the wall below; in a doorway there is none
 
 
-def added(walls, rays, settings):
+def add_windows(walls, rays, settings):
     """Return walls with the windows that rays tell of.
 
     Parameters
     ----------
-    walls : list of planwalls.PlanWall
-    rays : rays.Rays
+    walls : list of walls.PlanWall
+    rays : ray_set.RaySet
         Of planar scans nothing is told.
-    settings : gaps.GapSettings
+    settings : openings.OpeningSettings
 
     Returns
     -------
-    list of planwalls.PlanWall
+    list of walls.PlanWall
     """
     return list(walls) if rays.planar else [_with_windows(wall, rays, settings) for wall in walls]
 
@@ -40,7 +41,7 @@ def _with_windows(wall, rays, settings):
     found = list(wall.openings)
     for seen in lines:
         span_m = np.sort(seen.line.along_m(wall.ends))
-        for window in find(rays, seen, *span_m, settings):
+        for window in find_windows(rays, seen, *span_m, settings):
             ends = seen.line.at(np.array([window.low_m, window.high_m]))
             low_m, high_m = np.sort(wall.line.along_m(ends)).tolist()
             is_known = any(low_m < gap.high_m and high_m > gap.low_m for gap in found)
@@ -54,14 +55,14 @@ def _is_wall(seen, ends):
     low_m, high_m = np.sort(seen.line.along_m(ends))
     points = seen.hits(low_m, high_m)
     at_chest = _at_chest(seen.hit_z_m[points])
-    return filled(seen.hit_m[points][at_chest], low_m, high_m) > _MOST_IN_IT
+    return filled_share(seen.hit_m[points][at_chest], low_m, high_m) > _MOST_IN_IT
 
 
 def _at_chest(z_m):
     return (z_m >= _CHEST_M[0]) & (z_m < _CHEST_M[1])
 
 
-def find(rays, seen, low_m, high_m, settings):
+def find_windows(rays, seen, low_m, high_m, settings):
     """Find the windows along a line: pauses of the points at the height of a chest, with wall beside and below them.
 
     Rays must have been sent to nearly all of a pause, nothing before it in their way, and hardly one may have ended in
@@ -69,16 +70,16 @@ def find(rays, seen, low_m, high_m, settings):
 
     Parameters
     ----------
-    rays : rays.Rays
+    rays : ray_set.RaySet
         Of scans in space.
-    seen : profiles.Seen
+    seen : face_profile.FaceObservation
     low_m, high_m : float
         The stretch of the line that is wall.
-    settings : gaps.GapSettings
+    settings : openings.OpeningSettings
 
     Returns
     -------
-    list of gaps.Gap
+    list of openings.Opening
         In order along the line.
     """
     points = seen.hits(low_m, high_m)
@@ -93,26 +94,33 @@ def find(rays, seen, low_m, high_m, settings):
 def _not_alone(place_m):
     """Return those of sorted places that are within a column of enough others: one or two points may be stray."""
     low, high = (
-        np.searchsorted(place_m, place_m + way * COLUMN_M / 2, side) for way, side in ((-1, "left"), (1, "right"))
+        np.searchsorted(place_m, place_m + way * COLUMN_M / 2, side)
+        for way, side in ((-1, "left"), (1, "right"))
     )
-    return place_m[high - low >= gaps.FEW_RAYS]
+    return place_m[high - low >= openings.FEW_RAYS]
 
 
 def _judged(rays, seen, low_m, high_m):
     """Return what is between two places of a line as a window, None if it is none."""
-    inner = seen.hits(low_m + gaps.REVEAL_M, high_m - gaps.REVEAL_M)
+    inner = seen.hits(low_m + openings.REVEAL_M, high_m - openings.REVEAL_M)
     below = seen.hit_z_m[inner] < _CHEST_M[0]
-    sill_share = filled(seen.hit_m[inner][below], low_m + gaps.REVEAL_M, high_m - gaps.REVEAL_M)
-    if below.sum() < gaps.FEW_RAYS or sill_share < _SILL_SHARE:
+    sill_share = filled_share(
+        seen.hit_m[inner][below], low_m + openings.REVEAL_M, high_m - openings.REVEAL_M
+    )
+    if below.sum() < openings.FEW_RAYS or sill_share < _SILL_SHARE:
         return None
     count = max(int((high_m - low_m) / COLUMN_M), 1)
-    reached, _, in_wall = sentrays.to_line(rays, seen.line, low_m, count, _CHEST_M).reached(least_scans=_LEAST_SCANS)
+    reached, _, in_wall = expected_returns.count_sent_rays(
+        rays, seen.line, low_m, count, _CHEST_M
+    ).reached(least_scans=_LEAST_SCANS)
     shown = np.isfinite(reached)
     if shown.mean() < _LEAST_SHOWN or in_wall[shown].sum() > _MOST_IN_IT * reached[shown].sum():
         return None
-    sill_m = gaps.highest_m(seen.hit_z_m[inner][below])
-    if sill_m <= gaps.AT_FLOOR_M:
+    sill_m = openings.robust_highest_m(seen.hit_z_m[inner][below])
+    if sill_m <= openings.AT_FLOOR_M:
         return None
     n_rays = int(reached[shown].sum() - in_wall[shown].sum())
-    lintel_m = gaps.lintel_m(seen, low_m, high_m, _CHEST_M[1], _CHEST_M[1])
-    return gaps.Gap(low_m, high_m, gaps.OPEN, n_rays, sill_m, lintel_m, bool(np.isfinite(lintel_m)))
+    lintel_m = openings.estimate_lintel_m(seen, low_m, high_m, _CHEST_M[1], _CHEST_M[1])
+    return openings.Opening(
+        low_m, high_m, openings.OPEN, n_rays, sill_m, lintel_m, bool(np.isfinite(lintel_m))
+    )

@@ -12,18 +12,25 @@ from rosbags import rosbag1, rosbag2
 from rosbags.interfaces import MessageDefinitionFormat
 from rosbags.rosbag1.reader import decompressors
 from rosbags.serde import SerdeError
-from rosbags.typesys import Stores, TypesysError, get_types_from_idl, get_types_from_msg, get_typestore
+from rosbags.typesys import (
+    Stores,
+    TypesysError,
+    get_types_from_idl,
+    get_types_from_msg,
+    get_typestore,
+)
 
-from scanplan import stagelog
 from scanplan.errors import StageError
-from scanplan.recordings import messages, plainbag1, topics
+from scanplan.recordings import rosbag1_messages, topics
+from scanplan.recordings.messages import read_header
+from scanplan.stage import log
 
 _URI_CHARACTERS = frozenset("#?%")
 _IDL_SEPARATOR = "=" * 80 + "\n"
 
 
 @contextmanager
-def opened(path, *, ros2_release="humble"):
+def open_bag(path, *, ros2_release="humble"):
     """Open one recording.
 
     Parameters
@@ -85,13 +92,17 @@ class Bag:
         connection
             With `topic` and `msgtype`; for `decode`.
         receive_ns : int
-        raw : bytes or plainbag1.Stored
+        raw : bytes or rosbag1_messages.StoredMessage
             For `header` and `decode`; what is given to neither may not even be read.
         """
         connections = [c for c in self._reader.connections if c.topic in names]
         if not connections:  # rosbags takes an empty choice for all
             return
-        source = self._plain_messages(connections) if self._is_plain() else self._reader.messages(connections)
+        source = (
+            self._plain_messages(connections)
+            if self._is_plain()
+            else self._reader.messages(connections)
+        )
         while True:
             with _told(self.path):
                 item = next(source, None)
@@ -102,29 +113,39 @@ class Bag:
     def header(self, connection, raw):
         """Return the header stamp and the frame of a message without decoding the rest."""
         with _told(self.path, connection.topic):
-            return messages.header(raw.head if isinstance(raw, plainbag1.Stored) else raw, ros2=self.ros2)
+            return read_header(
+                raw.head if isinstance(raw, rosbag1_messages.StoredMessage) else raw, ros2=self.ros2
+            )
 
     def decode(self, connection, raw):
         """Return a message as an object with the fields of its definition."""
         with _told(self.path, connection.topic):
             store = self._typestore(connection)
-            raw = raw.read() if isinstance(raw, plainbag1.Stored) else raw
-            return (store.deserialize_cdr if self.ros2 else store.deserialize_ros1)(raw, connection.msgtype)
+            raw = raw.read() if isinstance(raw, rosbag1_messages.StoredMessage) else raw
+            return (store.deserialize_cdr if self.ros2 else store.deserialize_ros1)(
+                raw, connection.msgtype
+            )
 
     def _is_plain(self):
-        return not self.ros2 and all(c.decompressor is decompressors["none"] for c in self._reader.chunks.values())
+        return not self.ros2 and all(
+            c.decompressor is decompressors["none"] for c in self._reader.chunks.values()
+        )
 
     def _plain_messages(self, connections):
         """What rosbags' own iterator gives, without reading the chunks around."""
         chunks = {position: (c.datapos, c.datasize) for position, c in self._reader.chunks.items()}
         indexes, by_id = self._reader.indexes, {c.id: c for c in connections}
-        found = plainbag1.messages(self._reader.bio.fileno(), chunks, [indexes[number] for number in by_id])
+        found = rosbag1_messages.iterate_messages(
+            self._reader.bio.fileno(), chunks, [indexes[number] for number in by_id]
+        )
         return ((by_id[number], time_ns, stored) for number, time_ns, stored in found)
 
     def _typestore(self, connection):
         key = (connection.msgtype, connection.msgdef)
         if key not in self._typestores:
-            self._typestores[key] = _own_store(connection, self.path) or _standard_store(self._default_store)
+            self._typestores[key] = _own_store(connection, self.path) or _standard_store(
+                self._default_store
+            )
         return self._typestores[key]
 
 
@@ -139,11 +160,15 @@ def _own_store(connection, path):
             store.register(get_types_from_msg(definition.data, connection.msgtype))
         else:
             for part in filter(None, definition.data.split(_IDL_SEPARATOR)):
-                store.register(get_types_from_idl(part.split("\n", 1)[1] if part.startswith("IDL: ") else part))
+                store.register(
+                    get_types_from_idl(part.split("\n", 1)[1] if part.startswith("IDL: ") else part)
+                )
         store.get_msgdef(connection.msgtype)
     except (TypesysError, KeyError, IndexError, SyntaxError) as error:
         reason = " ".join(str(error).split())[:80]
-        stagelog.say(f"{path}: definition of {connection.topic} unusable ({reason}), the standard one is taken")
+        log.log_line(
+            f"{path}: definition of {connection.topic} unusable ({reason}), the standard one is taken"
+        )
         return None
     return store
 
@@ -153,14 +178,18 @@ def _standard_store(store):
     typestore = get_typestore(store)
     for msgtype in topics.TRANSFORMS:
         if msgtype not in typestore.fielddefs:
-            typestore.register(get_types_from_msg("geometry_msgs/TransformStamped[] transforms", msgtype))
+            typestore.register(
+                get_types_from_msg("geometry_msgs/TransformStamped[] transforms", msgtype)
+            )
     return typestore
 
 
 def _release_store(release):
     known = [s.value.removeprefix("ros2_") for s in Stores if s.value.startswith("ros2_")]
     if release not in known:
-        raise StageError(f"input.ros2_release: {release} is unknown; choose one of {', '.join(known)}")
+        raise StageError(
+            f"input.ros2_release: {release} is unknown; choose one of {', '.join(known)}"
+        )
     return Stores(f"ros2_{release}")
 
 
@@ -168,10 +197,15 @@ def _openable(path, stack):
     """Return a name of the recording that SQLite, which is given an unescaped URI, can open."""
     inside = [file for file in path.iterdir() if ".db3" in file.name] if path.is_dir() else []
     if odd := [file for file in inside if _URI_CHARACTERS & set(file.name)]:
-        raise StageError(f"{odd[0]}: SQLite cannot open names with #, ? or %; rename it, in metadata.yaml too")
+        raise StageError(
+            f"{odd[0]}: SQLite cannot open names with #, ? or %; rename it, in metadata.yaml too"
+        )
     if not _URI_CHARACTERS & set(str(path)) or path.suffix in (".bag", ".mcap"):
         return path
-    link = Path(stack.enter_context(tempfile.TemporaryDirectory()), f"recording{path.suffix if path.is_file() else ''}")
+    link = Path(
+        stack.enter_context(tempfile.TemporaryDirectory()),
+        f"recording{path.suffix if path.is_file() else ''}",
+    )
     link.symlink_to(path.resolve())
     return link
 

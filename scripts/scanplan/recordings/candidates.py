@@ -2,12 +2,14 @@
 
 import numpy as np
 
-from scanplan import schemas, se3, stagelog
 from scanplan.errors import StageError
-from scanplan.recordings import jumps
+from scanplan.geometry import se3
+from scanplan.recordings import pose_jumps
+from scanplan.stage import log
+from scanplan.store import schemas
 
 
-def choose(world_from_sensor, *, keep_every, max_step_m, max_turn_deg):
+def choose_candidates(world_from_sensor, *, keep_every, max_step_m, max_turn_deg):
     """Retain every `keep_every`-th scan (thesis, algorithm 3, step 2), and more where the sensor moves fast.
 
     A scan between two of them is retained too once the sensor has moved more than `max_step_m` or turned more than
@@ -34,7 +36,11 @@ def choose(world_from_sensor, *, keep_every, max_step_m, max_turn_deg):
     max_difference = np.sqrt(8) * np.sin(np.radians(min(max_turn_deg, 180)) / 2)
     chosen, last = [], None
     for i in range(len(pose)):
-        moved = known[i] and last is not None and _moved(pose[last], pose[i], max_step_m, max_difference)
+        moved = (
+            known[i]
+            and last is not None
+            and _moved(pose[last], pose[i], max_step_m, max_difference)
+        )
         if i % keep_every == 0 or moved:
             chosen.append(i)
             last = i if known[i] else last
@@ -46,11 +52,17 @@ def _moved(before, now, max_step_m, max_difference):
     return step_m > max_step_m or np.linalg.norm(now[:3, :3] - before[:3, :3]) > max_difference
 
 
-def columns(chosen, t_ns, world_from_sensor, gap_s, covered):
+def pose_columns(chosen, t_ns, world_from_sensor, gap_s, covered):
     """Return the columns of `schemas.POSES` of the scans `chosen`, from what is known of all."""
-    xyz_m, quat = se3.position_quaternion(world_from_sensor[chosen])
+    xyz_m, quat = se3.split_pose(world_from_sensor[chosen])
     pose = dict(zip((*schemas.XYZ, *schemas.QUAT), np.hstack([xyz_m, quat]).T, strict=True))
-    return {"scan_id": chosen, "t_ns": t_ns[chosen], "gap_s": gap_s[chosen], "covered": covered[chosen], **pose}
+    return {
+        "scan_id": chosen,
+        "t_ns": t_ns[chosen],
+        "gap_s": gap_s[chosen],
+        "covered": covered[chosen],
+        **pose,
+    }
 
 
 def require_poses(chosen, t_ns, covered, edges, where, *, max_gap_s, max_speed_m_s):
@@ -63,7 +75,7 @@ def require_poses(chosen, t_ns, covered, edges, where, *, max_gap_s, max_speed_m
         Stamps of all scans.
     covered : (n,) bool
         Whether each has a pose.
-    edges : list of frames.Edge
+    edges : list of tf_tree.FrameEdge
         The poses.
     where : str
         The dataset, for the error.
@@ -76,9 +88,14 @@ def require_poses(chosen, t_ns, covered, edges, where, *, max_gap_s, max_speed_m
         If none has one.
     """
     moving = [edge for edge in edges if edge.t_ns is not None]
-    n_jumps = sum(int(jumps.steps(e.t_ns, e.xyz_m, max_speed_m_s=max_speed_m_s).sum()) for e in moving)
+    n_jumps = sum(
+        int(pose_jumps.find_jumps(e.t_ns, e.xyz_m, max_speed_m_s=max_speed_m_s).sum())
+        for e in moving
+    )
     if n_jumps:
-        stagelog.say(f"{where}: the poses jump {n_jumps} times by more than {jumps.LEAST_M} m: no pose in between")
+        log.log_line(
+            f"{where}: the poses jump {n_jumps} times by more than {pose_jumps.LEAST_M} m: no pose in between"
+        )
     if not covered[chosen].any():
         raise StageError(
             f"{where}: no scan has poses within {max_gap_s} s around it: clouds {_span(t_ns)}, poses"

@@ -8,7 +8,7 @@ _BACK_NS = 500_000_000
 _FEWEST_BACK = 3
 
 
-def oddities(t_ns, receive_ns):
+def count_stamp_faults(t_ns, receive_ns):
     """Count what is odd about the stamps of a topic.
 
     Parameters
@@ -25,11 +25,13 @@ def oddities(t_ns, receive_ns):
     return {
         "of a repeated stamp": int((step_ns == 0).sum()),
         "backwards in time": int((step_ns < 0).sum()),
-        f"jumping by more than {_STEP_S:g} s": int((np.abs(step_ns - elapsed_ns) > _STEP_S * 1e9).sum()),
+        f"jumping by more than {_STEP_S:g} s": int(
+            (np.abs(step_ns - elapsed_ns) > _STEP_S * 1e9).sum()
+        ),
     }
 
 
-def ahead_ns(t_ns, receive_ns, cloud_t_ns, cloud_receive_ns):
+def estimate_ahead_ns(t_ns, receive_ns, cloud_t_ns, cloud_receive_ns):
     """Return by how much stamps are ahead of their time, 0 if they are not.
 
     Nothing is received before it was measured. AMCL stamps map to odom ahead by its `transform_tolerance`,
@@ -45,11 +47,13 @@ def ahead_ns(t_ns, receive_ns, cloud_t_ns, cloud_receive_ns):
     -------
     int
     """
-    lead_ns = np.median(np.asarray(t_ns) - receive_ns) - max(np.median(np.asarray(cloud_t_ns) - cloud_receive_ns), 0.0)
+    lead_ns = np.median(np.asarray(t_ns) - receive_ns) - max(
+        np.median(np.asarray(cloud_t_ns) - cloud_receive_ns), 0.0
+    )
     return int(lead_ns) if _AHEAD_S * 1e9 < lead_ns < _CLOCKS_DIFFER_S * 1e9 else 0
 
 
-def told_twice(t_ns):
+def find_repeated_times(t_ns):
     """Tell which stamps lie in a time that went by twice, since the clock was set back.
 
     One message that comes late, or was kept since long ago, is no clock set back.

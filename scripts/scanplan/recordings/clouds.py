@@ -5,7 +5,7 @@ from itertools import islice
 
 import numpy as np
 
-from scanplan.recordings import sweeptimes
+from scanplan.recordings.motion import point_times
 
 _FLAT_M = 1e-3
 SCANS_TO_JUDGE = 5
@@ -36,14 +36,14 @@ class Scan:
     n_dropped: int
 
 
-def in_range(xyz_m, *, min_range_m, max_range_m):
+def is_in_range(xyz_m, *, min_range_m, max_range_m):
     """Tell which points (n, 3) are finite and within [min_range_m, max_range_m] of the sensor: (n,) bool."""
     squared = np.einsum("ij,ij->i", xyz_m, xyz_m, dtype=np.float64)
     # a comparison with NaN is false: this also drops what is not finite
     return (squared >= min_range_m**2) & (squared <= max_range_m**2)
 
 
-def within_range(scan_id, t_ns, xyz_m, time_raw, *, min_range_m, max_range_m, sweep_times=None):
+def keep_in_range(scan_id, t_ns, xyz_m, time_raw, *, min_range_m, max_range_m, sweep_times=None):
     """Keep the points that are finite and within [min_range_m, max_range_m] of the sensor, with their times.
 
     Parameters
@@ -54,24 +54,24 @@ def within_range(scan_id, t_ns, xyz_m, time_raw, *, min_range_m, max_range_m, sw
     time_raw : (n,) number or None
         As recorded.
     min_range_m, max_range_m : float
-    sweep_times : sweeptimes.Convention, optional
+    sweep_times : point_times.TimeConvention, optional
         How the times are written; without it there are none.
 
     Returns
     -------
     Scan
     """
-    kept = np.flatnonzero(in_range(xyz_m, min_range_m=min_range_m, max_range_m=max_range_m))
+    kept = np.flatnonzero(is_in_range(xyz_m, min_range_m=min_range_m, max_range_m=max_range_m))
     time_s = None
     if time_raw is not None and sweep_times is not None:
         time_s = sweep_times.seconds(time_raw, t_ns).take(kept)
-        time_s = time_s if sweeptimes.is_sweep(time_s) else None
+        time_s = time_s if point_times.is_one_sweep(time_s) else None
     # by number and not by mask: a third of the time
     xyz_kept_m = np.asarray(xyz_m).take(kept, axis=0).astype(np.float32, copy=False)
     return Scan(int(scan_id), int(t_ns), xyz_kept_m, time_s, len(xyz_m) - len(kept))
 
 
-def lie_in_sweep_plane(xyz_m):
+def is_sweep_plane(xyz_m):
     """Tell whether points (n, 3) can be those of a 2-D scanner; False for fewer than three.
 
     They lie within a millimetre of one plane, and the plane passes the frame's origin at less than a fifth of the
@@ -86,7 +86,7 @@ def lie_in_sweep_plane(xyz_m):
     return bool(flat and abs(centre @ normal) < 0.2 * np.linalg.norm(xyz_m, axis=1).max())
 
 
-def are_planar(scans_xyz_m):
+def are_scans_planar(scans_xyz_m):
     """Tell whether a sensor measures in one plane only, from its first scans taken together.
 
     Parameters
@@ -96,4 +96,4 @@ def are_planar(scans_xyz_m):
     """
     filled = (xyz_m for xyz_m in scans_xyz_m if len(xyz_m))
     first = list(islice(filled, SCANS_TO_JUDGE))
-    return bool(first) and lie_in_sweep_plane(np.concatenate(first))
+    return bool(first) and is_sweep_plane(np.concatenate(first))

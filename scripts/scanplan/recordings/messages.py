@@ -13,7 +13,7 @@ _POINT_FIELD_TYPES = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "
 _TIME_FIELDS = ("time", "t", "timestamp")
 
 
-def header(raw, *, ros2):
+def read_header(raw, *, ros2):
     """Read stamp and frame of a serialised message that starts with a std_msgs/Header, without the rest of it.
 
     Parameters
@@ -37,20 +37,22 @@ def header(raw, *, ros2):
     seconds, nanoseconds, length = struct.unpack_from(order + ("iII" if ros2 else "III"), raw, 4)
     if 16 + length > len(raw):
         raise struct.error(f"frame name of {length} bytes in a message of {len(raw)}")
-    return seconds * 10**9 + nanoseconds, frame_name(bytes(raw[16 : 16 + length]).rstrip(b"\0").decode())
+    return seconds * 10**9 + nanoseconds, clean_frame_name(
+        bytes(raw[16 : 16 + length]).rstrip(b"\0").decode()
+    )
 
 
-def frame_name(text):
+def clean_frame_name(text):
     """Return a frame id without the leading slash of early ROS 1."""
     return text.lstrip("/")
 
 
-def stamp_ns(stamp):
+def stamp_to_ns(stamp):
     """Return a builtin_interfaces/Time as nanoseconds."""
     return int(stamp.sec) * 10**9 + int(stamp.nanosec)
 
 
-def pose_row(pose):
+def pose_to_row(pose):
     """Return a geometry_msgs/Pose or Transform as [x, y, z, qx, qy, qz, qw]."""
     place, turn = getattr(pose, "position", None), getattr(pose, "orientation", None)
     if place is None:
@@ -58,7 +60,7 @@ def pose_row(pose):
     return [place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w]
 
 
-def point_cloud(message):
+def read_point_cloud(message):
     """Read the coordinates and per-point times of a sensor_msgs/PointCloud2.
 
     Parameters
@@ -88,7 +90,7 @@ def point_cloud(message):
     return xyz_m, records[times[0]].reshape(-1).copy() if times else None
 
 
-def laser_scan(message):
+def read_laser_scan(message):
     """Turn a sensor_msgs/LaserScan into points of the plane z = 0.
 
     Parameters
@@ -111,12 +113,16 @@ def laser_scan(message):
     beam = np.arange(len(range_m))
     angle_rad = message.angle_min + beam * message.angle_increment
     if len(range_m) > 1 and (message.angle_increment == 0 or not np.isfinite(angle_rad).all()):
-        raise StageError(f"angle_min {message.angle_min}, angle_increment {message.angle_increment} give no directions")
+        raise StageError(
+            f"angle_min {message.angle_min}, angle_increment {message.angle_increment} give no directions"
+        )
     # range_max itself is what many drivers report for "no return"
     limit_m = message.range_max if message.range_max > 0 else np.inf
     range_m = np.where((range_m >= message.range_min) & (range_m < limit_m), range_m, np.nan)
     xyz_m = np.column_stack([range_m * np.cos(angle_rad), range_m * np.sin(angle_rad), range_m * 0])
-    return xyz_m.astype(np.float32), beam * float(message.time_increment) if message.time_increment > 0 else None
+    return xyz_m.astype(np.float32), beam * float(
+        message.time_increment
+    ) if message.time_increment > 0 else None
 
 
 def _records(message):
@@ -124,10 +130,17 @@ def _records(message):
     width, height, step = int(message.width), int(message.height), int(message.point_step)
     row_step = int(message.row_step) if height > 1 else width * step
     if step == 0 or row_step < width * step:
-        raise StageError(f"point_step {step}, row_step {message.row_step} cannot hold {width} points a row")
-    needed, data = (height - 1) * row_step + width * step, np.ascontiguousarray(message.data).view(np.uint8)
+        raise StageError(
+            f"point_step {step}, row_step {message.row_step} cannot hold {width} points a row"
+        )
+    needed, data = (
+        (height - 1) * row_step + width * step,
+        np.ascontiguousarray(message.data).view(np.uint8),
+    )
     if len(data) < needed:
-        raise StageError(f"{width} x {height} points need {needed} bytes, but {len(data)} are there")
+        raise StageError(
+            f"{width} x {height} points need {needed} bytes, but {len(data)} are there"
+        )
     return np.ndarray((height, width), _point_type(message, step), data, strides=(row_step, step))
 
 
@@ -143,7 +156,9 @@ def _point_type(message, step):
     for field in wanted:
         size = int(_POINT_FIELD_TYPES.get(field.datatype, "x0")[1])
         if not size or field.offset + size > step:
-            raise StageError(f"field {field.name}: type {field.datatype} at {field.offset} in points of {step} bytes")
+            raise StageError(
+                f"field {field.name}: type {field.datatype} at {field.offset} in points of {step} bytes"
+            )
     return np.dtype(
         {
             "names": [field.name for field in wanted],

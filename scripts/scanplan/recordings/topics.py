@@ -26,7 +26,7 @@ class Topic:
         return f"{self.name} ({self.msgtype}, {self.count})"
 
 
-def merge(topics, where):
+def merge_topics(topics, where):
     """Add up the topics of several recordings.
 
     Parameters
@@ -57,7 +57,7 @@ def merge(topics, where):
     return [merged[name] for name in sorted(merged)]
 
 
-def choose_cloud(topics, wanted, where):
+def choose_cloud_topic(topics, wanted, where):
     """Choose the topic of the clouds.
 
     Parameters
@@ -87,21 +87,23 @@ def choose_cloud(topics, wanted, where):
             " record the laser scanner too"
         )
     if not filled:
-        raise StageError(f"{where}: zero messages on {_listed(candidates)}; record again with the sensor running")
+        raise StageError(
+            f"{where}: zero messages on {_listed(candidates)}; record again with the sensor running"
+        )
     return _only(filled, where, "input.cloud_topic")
 
 
-def choose_poses(topics, wanted, where):
+def choose_pose_topic(topics, wanted, where):
     """Choose the topic of the poses: the first type of `POSES` that occurs, else tf.
 
-    Parameters and errors are those of `choose_cloud`, with `input.pose_topic`.
+    Parameters and errors are those of `choose_cloud_topic`, with `input.pose_topic`.
 
     Returns
     -------
     Topic
         Of a type of `POSES`, or of `TRANSFORMS` if the poses come from tf.
     """
-    tf = [t for t in topics if t.msgtype in TRANSFORMS and not is_static(t)]
+    tf = [t for t in topics if t.msgtype in TRANSFORMS and not is_static_tf(t)]
     candidates = [t for t in topics if t.msgtype in POSES] + tf
     if wanted:
         return _named(candidates, wanted, where, "input.pose_topic")
@@ -116,7 +118,7 @@ def choose_poses(topics, wanted, where):
     )
 
 
-def is_static(topic):
+def is_static_tf(topic):
     """Tell whether a topic of transforms is /tf_static, in whatever namespace."""
     return topic.name.rsplit("/", 1)[-1] == "tf_static"
 

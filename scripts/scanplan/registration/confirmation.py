@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 
-def unconfirmed(verdicts, is_linked, apart_m):
+def find_unconfirmed(verdicts, is_linked, apart_m):
     """Find the anchors without a link where other scans are known to be in place.
 
     None are where nothing better is to be had: without a pose between them, a stretch in which no scan has a link is
@@ -14,7 +14,7 @@ def unconfirmed(verdicts, is_linked, apart_m):
 
     Parameters
     ----------
-    verdicts : sequence of sequential.Verdict
+    verdicts : sequence of sequential.ScanResult
         Of all candidates, in order.
     is_linked : (n,) bool
         Whether a candidate has a link that is believed.
@@ -38,6 +38,6 @@ def unconfirmed(verdicts, is_linked, apart_m):
     return lone & better
 
 
-def dropped(verdict, prior):
-    """Return the verdict (sequential.Verdict) on an anchor that is not confirmed, with the localiser's pose."""
+def drop_anchor(verdict, prior):
+    """Return the verdict (sequential.ScanResult) on an anchor that is not confirmed, with the localiser's pose."""
     return replace(verdict, kept=False, reason="unconfirmed", world_from_sensor=prior)

@@ -6,8 +6,8 @@ import numpy as np
 import small_gicp
 from scipy.spatial import cKDTree
 
-from scanplan import se3
-from scanplan.registration import planarfit, twists
+from scanplan.geometry import se3, twists
+from scanplan.registration import planar_icp
 
 METHODS = {"gicp": "GICP", "point_to_plane": "PLANE_ICP", "point_to_point": "ICP"}
 _COVARIANCE_NEIGHBOURS = 10
@@ -21,7 +21,7 @@ _STEP_DONE, _ROUGH_STEP_DONE = 1e-3, 2e-3
 
 
 @dataclass(frozen=True)
-class Cloud:
+class PreparedCloud:
     """A scan made ready for fitting, in its own frame.
 
     Attributes
@@ -45,7 +45,7 @@ class Cloud:
 
 
 @dataclass(frozen=True)
-class Fit:
+class IcpResult:
     """Outcome of an alignment.
 
     Attributes
@@ -66,7 +66,7 @@ class Fit:
     sound: bool
 
 
-def thin(xyz_m, *, planar, voxel_m):
+def thin_voxels(xyz_m, *, planar, voxel_m):
     """Return the mean of the points in every occupied cube of edge `voxel_m`, (m, 3) float32, in a fixed order.
 
     In the plane the points are put to height 0 first.
@@ -79,7 +79,7 @@ def thin(xyz_m, *, planar, voxel_m):
     return np.asarray(small_gicp.voxelgrid_sampling(points, voxel_m, 1).points()[:, :3], np.float32)
 
 
-def prepare(thinned_m, *, planar, reach_m=1.0):
+def prepare_cloud(thinned_m, *, planar, reach_m=1.0):
     """Compute what fitting needs of a thinned scan.
 
     Parameters
@@ -97,15 +97,17 @@ def prepare(thinned_m, *, planar, reach_m=1.0):
     points = np.ascontiguousarray(thinned_m, np.float64)
     if planar:
         tree = cKDTree(points[:, :2])
-        normal = planarfit.normals(points[:, :2], tree, reach_m=reach_m)
-        return Cloud(points, tree, True, _towards_origin(normal, points[:, :2]), None)
+        normal = planar_icp.planar_normals(points[:, :2], tree, reach_m=reach_m)
+        return PreparedCloud(points, tree, True, _towards_origin(normal, points[:, :2]), None)
     cloud = small_gicp.PointCloud(points)
-    small_gicp.estimate_normals_covariances(cloud, num_neighbors=_COVARIANCE_NEIGHBOURS, num_threads=1)
+    small_gicp.estimate_normals_covariances(
+        cloud, num_neighbors=_COVARIANCE_NEIGHBOURS, num_threads=1
+    )
     normal = _towards_origin(cloud.normals()[:, :3], points)
-    return Cloud(points, small_gicp.KdTree(cloud), False, normal, cloud)
+    return PreparedCloud(points, small_gicp.KdTree(cloud), False, normal, cloud)
 
 
-def overlap(source, target, target_from_source, *, distance_m, n_probes=None, facing=False):
+def measure_overlap(source, target, target_from_source, *, distance_m, n_probes=None, facing=False):
     """Return fitness, the share of source points with a target point within `distance_m` (thesis, 3.5), and rmse.
 
     Parameters
@@ -125,7 +127,7 @@ def overlap(source, target, target_from_source, *, distance_m, n_probes=None, fa
         Root mean square distance of those points to their neighbours; infinite if there are none.
     """
     step = 1 if n_probes is None else max(1, len(source.xyz_m) // n_probes)
-    moved = se3.transform(target_from_source, source.xyz_m[::step])
+    moved = se3.transform_points(target_from_source, source.xyz_m[::step])
     if target.planar:
         distance, index = target.tree.query(moved[:, :2], distance_upper_bound=distance_m)
     else:
@@ -135,11 +137,15 @@ def overlap(source, target, target_from_source, *, distance_m, n_probes=None, fa
     if facing:
         size = target.normal.shape[1]
         turned = source.normal[::step][near] @ target_from_source[:size, :size].T
-        near = near[np.einsum("ij,ij->i", turned, target.normal[index[near].astype(np.int64)]) > _FACING]
-    return len(near) / len(moved), float(np.sqrt(np.mean(distance[near] ** 2))) if len(near) else np.inf
+        near = near[
+            np.einsum("ij,ij->i", turned, target.normal[index[near].astype(np.int64)]) > _FACING
+        ]
+    return len(near) / len(moved), float(np.sqrt(np.mean(distance[near] ** 2))) if len(
+        near
+    ) else np.inf
 
 
-def align(source, target, target_from_source, *, method, distances_m, max_iterations):
+def align_clouds(source, target, target_from_source, *, method, distances_m, max_iterations):
     """Refine the motion from source to target by iterative closest point (thesis, 3.2.2 and 3.5).
 
     Directions that the pairs determine far worse than the others (along a corridor) keep the start's value.
@@ -160,16 +166,20 @@ def align(source, target, target_from_source, *, method, distances_m, max_iterat
     -------
     Fit
     """
-    step = planarfit.align if target.planar else _align_spatial
+    step = planar_icp.align_planar if target.planar else _align_spatial
     motion = target_from_source
     for distance_m in distances_m:
         if distance_m == distances_m[-1] and not target.planar:
             source = _one_sided(source, target, motion, distance_m)
         step_done = _STEP_DONE if distance_m == distances_m[-1] else _ROUGH_STEP_DONE
-        motion, information = step(source, target, motion, method, distance_m, max_iterations, step_done)
+        motion, information = step(
+            source, target, motion, method, distance_m, max_iterations, step_done
+        )
         if information is None:
-            return Fit(target_from_source, np.zeros((6, 6)), 6, False)
-    return _observable(target_from_source, motion, information, np.sqrt(np.mean(source.xyz_m**2) * 3))
+            return IcpResult(target_from_source, np.zeros((6, 6)), 6, False)
+    return _observable(
+        target_from_source, motion, information, np.sqrt(np.mean(source.xyz_m**2) * 3)
+    )
 
 
 def _one_sided(source, target, target_from_source, distance_m):
@@ -178,14 +188,18 @@ def _one_sided(source, target, target_from_source, distance_m):
     They show one side of a wall and the target the other. Taken for the same surface, they draw the scans of two rooms
     together, and what is between these comes out thinner than it is: a partition is thinner than points are apart.
     """
-    moved = se3.transform(target_from_source, source.xyz_m)
+    moved = se3.transform_points(target_from_source, source.xyz_m)
     index, squared = (found[:, 0] for found in target.tree.batch_knn_search(moved, 1))
-    facing = np.einsum("ij,ij->i", source.normal @ target_from_source[:3, :3].T, target.normal[index.astype(np.int64)])
+    facing = np.einsum(
+        "ij,ij->i",
+        source.normal @ target_from_source[:3, :3].T,
+        target.normal[index.astype(np.int64)],
+    )
     turned = (squared < distance_m**2) & (facing < -_FACING)
     # a few are badly known normals at edges
     if turned.mean() < _LEAST_TURNED or turned.all():
         return source
-    return prepare(source.xyz_m[~turned], planar=False)
+    return prepare_cloud(source.xyz_m[~turned], planar=False)
 
 
 def _align_spatial(source, target, start, method, distance_m, max_iterations, step_done):
@@ -204,7 +218,7 @@ def _align_spatial(source, target, start, method, distance_m, max_iterations, st
         return start, None
     # small_gicp puts the turn before the shift
     information = np.roll(np.roll(np.asarray(result.H), 3, axis=0), 3, axis=1)
-    motion = se3.rigid(np.asarray(result.T_target_source))
+    motion = se3.nearest_rigid(np.asarray(result.T_target_source))
     return motion, information if method == "gicp" else information / _PAIR_SIGMA_M**2
 
 
@@ -215,15 +229,17 @@ def _observable(start, motion, information, reach_m):
     free = np.diag(information) > 0
     value, vector = np.linalg.eigh(information * np.outer(scale, scale))
     if not value[-1] > 0:
-        return Fit(start, np.zeros((6, 6)), 6, False)
+        return IcpResult(start, np.zeros((6, 6)), 6, False)
     known = value > _LEAST_SHARE * value[-1]
     n_unobservable = int(free.sum() - known.sum())
     if n_unobservable == 0:
-        return Fit(motion, information, 0, True)
+        return IcpResult(motion, information, 0, True)
     onto_known = vector[:, known] @ vector[:, known].T
-    twist = scale * (onto_known @ (twists.of_motion(se3.inverse(start) @ motion) / scale))
-    information = (onto_known @ (information * np.outer(scale, scale)) @ onto_known) / np.outer(scale, scale)
-    return Fit(start @ twists.motion(twist), information, n_unobservable, True)
+    twist = scale * (onto_known @ (twists.motion_to_twist(se3.invert_pose(start) @ motion) / scale))
+    information = (onto_known @ (information * np.outer(scale, scale)) @ onto_known) / np.outer(
+        scale, scale
+    )
+    return IcpResult(start @ twists.twist_to_motion(twist), information, n_unobservable, True)
 
 
 def _towards_origin(normal, points):

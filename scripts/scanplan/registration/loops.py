@@ -5,7 +5,7 @@ from functools import lru_cache
 import numpy as np
 from scipy.spatial import cKDTree
 
-from scanplan.registration import icp, links
+from scanplan.registration import constraints, icp
 
 _PREPARED_AT_ONCE = 128
 # a camera that turned this far shows other things
@@ -14,7 +14,7 @@ _TURN = np.sqrt(8) * np.sin(np.radians(30.0) / 2)
 _LOOSE = 2
 
 
-def stations(world_from_scan, step_m):
+def choose_stations(world_from_scan, step_m):
     """Choose scans along the way: the first, and each that is `step_m` away or turned by 30 degrees from the last.
 
     What lies between two of them is tied to both more firmly than a link to another visit could tie it.
@@ -38,7 +38,7 @@ def stations(world_from_scan, step_m):
     return chosen
 
 
-def pairs(xy_m, is_station, *, radius_m, apart, most):
+def choose_loop_pairs(xy_m, is_station, *, radius_m, apart, most):
     """Choose which scans to link: stations with every earlier visit of their surroundings, at its nearest station.
 
     Parameters
@@ -46,7 +46,7 @@ def pairs(xy_m, is_station, *, radius_m, apart, most):
     xy_m : (n, 2) float
         Where the scans are, in the order of their recording.
     is_station : (n,) bool
-        See `stations`.
+        See `choose_stations`.
     radius_m : float
         Two scans farther apart are no pair.
     apart : int
@@ -68,14 +68,18 @@ def pairs(xy_m, is_station, *, radius_m, apart, most):
         if len(earlier) == 0:
             continue
         visits = np.split(earlier, np.flatnonzero(np.diff(earlier) > apart) + 1)
-        visits = [visit[is_station[visit]] if is_station[visit].any() else visit for visit in visits]
+        visits = [
+            visit[is_station[visit]] if is_station[visit].any() else visit for visit in visits
+        ]
         distance_m = [np.linalg.norm(xy_m[visit] - xy_m[source], axis=1) for visit in visits]
-        nearest = sorted((d.min(), int(visit[d.argmin()])) for d, visit in zip(distance_m, visits, strict=True))
+        nearest = sorted(
+            (d.min(), int(visit[d.argmin()])) for d, visit in zip(distance_m, visits, strict=True)
+        )
         found += [(int(source), target) for _, target in nearest[:most]]
     return sorted(found)
 
 
-def bridges(linked, xy_m, *, radius_m, apart):
+def choose_bridges(linked, xy_m, *, radius_m, apart):
     """Choose which scans to link to the ones before although they were not registered against them.
 
     These are the first of a batch and the first after an anchor.
@@ -103,12 +107,14 @@ def bridges(linked, xy_m, *, radius_m, apart):
     return found
 
 
-def link(part, rows, scan_ids, world_from_cloud, chosen, planar, settings, min_fitness, apart):
+def align_pairs(
+    part, rows, scan_ids, world_from_cloud, chosen, planar, settings, min_fitness, apart
+):
     """Align chosen pairs of scans.
 
     Parameters
     ----------
-    part : spool.Part
+    part : scan_cache.ScanCachePart
         Thinned points of the scans that occur in `chosen`.
     rows : list of int
         Their rows.
@@ -119,7 +125,7 @@ def link(part, rows, scan_ids, world_from_cloud, chosen, planar, settings, min_f
     chosen : list of (source, target)
         Rows.
     planar : bool
-    settings : sequential.Settings
+    settings : sequential.SequentialSettings
     min_fitness : float
         Pairs that overlap less after alignment are no link.
     apart : int
@@ -127,15 +133,19 @@ def link(part, rows, scan_ids, world_from_cloud, chosen, planar, settings, min_f
 
     Returns
     -------
-    list of links.Edge
+    list of constraints.PoseConstraint
     """
     thinned = dict(zip(rows, part, strict=True))
     place = {row: i for i, row in enumerate(rows)}
 
     @lru_cache(_PREPARED_AT_ONCE)
     def prepared(row):
-        cloud = icp.prepare(thinned[row], planar=planar, reach_m=links.reach_m(settings))
-        return links.Placed(int(scan_ids[place[row]]), cloud, world_from_cloud[place[row]])
+        cloud = icp.prepare_cloud(
+            thinned[row], planar=planar, reach_m=constraints.neighbour_reach_m(settings)
+        )
+        return constraints.PlacedScan(
+            int(scan_ids[place[row]]), cloud, world_from_cloud[place[row]]
+        )
 
     kinds = ("sequence" if s - t <= apart else "loop" for s, t in chosen)
     edges = (
@@ -148,7 +158,10 @@ def link(part, rows, scan_ids, world_from_cloud, chosen, planar, settings, min_f
 def _linked(source, target, kind, settings, min_fitness):
     # a neighbour is near its place already, and a wider search would take one side of a wall for the other
     fine_m = settings.icp_distances_m[-1]
-    if links.facing_overlap(source, target, _LOOSE * fine_m, settings)[0] < min_fitness:
+    if (
+        constraints.measure_facing_overlap(source, target, _LOOSE * fine_m, settings)[0]
+        < min_fitness
+    ):
         return None
-    edge = links.aligned(source, target, kind, [fine_m], settings)
+    edge = constraints.measure_constraint(source, target, kind, [fine_m], settings)
     return None if edge is None or edge.fitness < min_fitness else edge

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from scanplan import se3
-from scanplan.registration import icp, links, twists
+from scanplan.geometry import se3, twists
+from scanplan.registration import constraints, icp
 
 # the method that leaves a survey as it is: its poses are exact, its scans all sound
 GIVEN_POSES = "none"
@@ -16,7 +16,7 @@ _FEWEST_PLACES = 10
 
 
 @dataclass(frozen=True)
-class Settings:
+class SequentialSettings:
     """Limits of the registration; config/README.md explains each key of section `registration`."""
 
     voxel_m: float
@@ -46,11 +46,11 @@ class Settings:
     def localiser_information(self, priors):
         """Inverse covariances (..., 6, 6) of poses (..., 4, 4) that the localiser gave, as twists in their frames."""
         heading, tilt = np.radians([self.localiser_sigma_deg, self.localiser_sigma_tilt_deg])
-        return twists.information([self.localiser_sigma_m] * 3 + [tilt, tilt, heading], priors)
+        return twists.pose_information([self.localiser_sigma_m] * 3 + [tilt, tilt, heading], priors)
 
 
 @dataclass(frozen=True)
-class Verdict:
+class ScanResult:
     """What became of a candidate scan.
 
     Attributes
@@ -75,7 +75,7 @@ class Verdict:
 
 
 @dataclass
-class Registrar:
+class SequentialRegistrar:
     """Takes the candidate scans one after the other and says of each whether, and where, it is kept.
 
     Attributes
@@ -84,11 +84,11 @@ class Registrar:
     planar : bool
         Whether the sensor measures in one plane: then x, y and heading are refined, and height, roll and pitch stay
         the localiser's.
-    edges : list of links.Edge
+    edges : list of constraints.PoseConstraint
         Of the scans kept so far to their predecessors.
     """
 
-    settings: Settings
+    settings: SequentialSettings
     planar: bool
     edges: list = field(default_factory=list)
     _previous: deque = field(init=False)
@@ -116,23 +116,26 @@ class Registrar:
         -------
         Verdict
         thinned_m : (m, 3) float32
-            The points that fitting uses, in the cloud's frame: what `icp.prepare` takes.
+            The points that fitting uses, in the cloud's frame: what `icp.prepare_cloud` takes.
         """
         nothing = np.zeros((0, 3), np.float32)
         if not np.isfinite(prior).all():
             self._after_gap = True
-            return Verdict(False, "pose_gap", np.full((4, 4), np.nan)), nothing
+            return ScanResult(False, "pose_gap", np.full((4, 4), np.nan)), nothing
         if len(xyz_m) < self.settings.min_points:
-            return Verdict(False, "too_few_points", prior), nothing
+            return ScanResult(False, "too_few_points", prior), nothing
         if self.settings.icp_method == GIVEN_POSES:
-            return Verdict(True, "kept", prior), nothing
-        level_from_sensor = links.levelled(prior) if self.planar else _IDENTITY
-        thinned_m = links.thinned(xyz_m, level_from_sensor, self.planar, self.settings)
+            return ScanResult(True, "kept", prior), nothing
+        level_from_sensor = constraints.level_pose(prior) if self.planar else _IDENTITY
+        thinned_m = constraints.thin_scan(xyz_m, level_from_sensor, self.planar, self.settings)
         if len(thinned_m) < _FEWEST_PLACES:
-            return Verdict(False, "too_few_points", prior), thinned_m
-        cloud = icp.prepare(thinned_m, planar=self.planar, reach_m=links.reach_m(self.settings))
+            return ScanResult(False, "too_few_points", prior), thinned_m
+        cloud = icp.prepare_cloud(
+            thinned_m, planar=self.planar, reach_m=constraints.neighbour_reach_m(self.settings)
+        )
         verdict, edges = self._judge(
-            links.Placed(scan_id, cloud, prior @ se3.inverse(level_from_sensor)), level_from_sensor
+            constraints.PlacedScan(scan_id, cloud, prior @ se3.invert_pose(level_from_sensor)),
+            level_from_sensor,
         )
         self.edges += edges
         self._remember(scan_id, cloud, verdict, level_from_sensor)
@@ -141,7 +144,7 @@ class Registrar:
     def _judge(self, scan, level_from_sensor):
         prior = scan.world_from_cloud @ level_from_sensor
         if not self._previous:
-            return Verdict(True, "anchor", prior), []
+            return ScanResult(True, "anchor", prior), []
         verdict, edges = self._compared(scan, level_from_sensor, self._previous)
         if not verdict.kept and not self._confirmed and self._earlier:
             # the anchor may have been the scan that was out of place
@@ -156,17 +159,19 @@ class Registrar:
     def _compared(self, scan, level_from_sensor, previous):
         """Judge a scan by some that are in place."""
         prior, s = scan.world_from_cloud @ level_from_sensor, self.settings
-        judges = links.comparable(scan, previous, s)
+        judges = constraints.comparable_scans(scan, previous, s)
         before = self._mean_overlap(scan, judges)[0]
         if before < s.min_prior_fitness:
-            return Verdict(False, "low_prior_fitness", prior, before), []
-        refined, edges = links.refine(scan, list(previous)[: -s.icp_targets - 1 : -1], s)
+            return ScanResult(False, "low_prior_fitness", prior, before), []
+        refined, edges = constraints.refine_scan(scan, list(previous)[: -s.icp_targets - 1 : -1], s)
         if refined is None:
-            return Verdict(False, "icp_diverged", prior, before), []
+            return ScanResult(False, "icp_diverged", prior, before), []
         after, rmse_m = self._mean_overlap(refined, judges)
         if after < s.min_refined_fitness or not self._faces_any(edges):
-            return Verdict(False, "low_refined_fitness", prior, before, after, rmse_m), []
-        return Verdict(True, "kept", refined.world_from_cloud @ level_from_sensor, before, after, rmse_m), edges
+            return ScanResult(False, "low_refined_fitness", prior, before, after, rmse_m), []
+        return ScanResult(
+            True, "kept", refined.world_from_cloud @ level_from_sensor, before, after, rmse_m
+        ), edges
 
     def _faces_any(self, edges):
         """Whether the surfaces of a scan agree with those of another that it is aligned to.
@@ -174,7 +179,9 @@ class Registrar:
         A floor agrees with any floor, so this tells of scans that show little of it, as a few level beams do.
         """
         # in the plane a few beams on a wall often give no normal, and there is no floor
-        return self.planar or max(edge.fitness for edge in edges) >= self.settings.min_facing_fitness
+        return (
+            self.planar or max(edge.fitness for edge in edges) >= self.settings.min_facing_fitness
+        )
 
     def _starts_anew(self, scan):
         """Whether a scan that does not fit is believed to be where the localiser says.
@@ -186,7 +193,10 @@ class Registrar:
         return long_run or self._after_gap or self._is_far(scan)
 
     def _is_far(self, scan):
-        way_m = [np.linalg.norm((p.world_from_cloud - scan.world_from_cloud)[:3, 3]) for p in self._previous]
+        way_m = [
+            np.linalg.norm((p.world_from_cloud - scan.world_from_cloud)[:3, 3])
+            for p in self._previous
+        ]
         return min(way_m) > self.settings.anchor_apart_m
 
     def _remember(self, scan_id, cloud, verdict, level_from_sensor):
@@ -196,11 +206,13 @@ class Registrar:
             self._previous = self._no_scans()
         if verdict.kept:
             self._confirmed, self._after_gap = verdict.reason == "kept", False
-            world_from_cloud = verdict.world_from_sensor @ se3.inverse(level_from_sensor)
-            self._previous.append(links.Placed(scan_id, cloud, world_from_cloud))
+            world_from_cloud = verdict.world_from_sensor @ se3.invert_pose(level_from_sensor)
+            self._previous.append(constraints.PlacedScan(scan_id, cloud, world_from_cloud))
 
     def _mean_overlap(self, scan, previous):
-        found = [links.overlap(scan, target, self.settings) for target in previous]
+        found = [
+            constraints.measure_scan_overlap(scan, target, self.settings) for target in previous
+        ]
         return tuple(float(mean) for mean in np.mean(found, axis=0))
 
     def _no_scans(self):

@@ -8,7 +8,7 @@ from matplotlib.ticker import MaxNLocator, StrMethodFormatter
 from scipy.spatial import cKDTree
 
 from scanplan.errors import StageError
-from scanplan.report import topview
+from scanplan.report import top_view
 from scanplan.selection import stopping
 
 NEARBY_M = 1.0
@@ -34,7 +34,7 @@ _FULL_HULLS = "hull"
 _LOGARITHMIC_FROM = 100
 
 
-def positions(registration, scan_ids):
+def sensor_positions(registration, scan_ids):
     """Return where the sensor stood in scans, in the order asked for.
 
     Parameters
@@ -63,12 +63,12 @@ def positions(registration, scan_ids):
     return np.column_stack([registration["x_m"], registration["y_m"]])[rows]
 
 
-def nearby(xy_m, radius_m=NEARBY_M):
+def count_nearby(xy_m, radius_m=NEARBY_M):
     """Return how many other positions (n,) lie within `radius_m` of each of the positions (n, 2)."""
     return cKDTree(xy_m).query_ball_point(xy_m, radius_m, return_length=True) - 1
 
 
-def scans_figure(points_xy_m, path_xy_m, selected_xy_m):
+def draw_scans_figure(points_xy_m, path_xy_m, selected_xy_m):
     """Draw the registered scans from above, where each was taken and which are selected (thesis, figure 5.9).
 
     Parameters
@@ -83,8 +83,10 @@ def scans_figure(points_xy_m, path_xy_m, selected_xy_m):
     -------
     matplotlib.figure.Figure
     """
-    figure, axes = topview.draw(points_xy_m, np.concatenate([path_xy_m, selected_xy_m]), beside_in=0.75)
-    near = nearby(path_xy_m)
+    figure, axes = top_view.draw_top_view(
+        points_xy_m, np.concatenate([path_xy_m, selected_xy_m]), beside_in=0.75
+    )
+    near = count_nearby(path_xy_m)
     axes.plot(*path_xy_m.T, color="0.4", lw=0.4, zorder=2)
     blues = colors.LinearSegmentedColormap.from_list("scans", ["#9ecae1", "#4292c6", "#08306b"])
     order = np.argsort(near, kind="stable")
@@ -102,7 +104,7 @@ def scans_figure(points_xy_m, path_xy_m, selected_xy_m):
     return figure
 
 
-def walls_figure(points_xy_m, faces, selected_xy_m):
+def draw_walls_figure(points_xy_m, faces, selected_xy_m):
     """Draw the faces of the plan over the points of the selected scans (thesis, figure 5.11).
 
     Parameters
@@ -118,9 +120,15 @@ def walls_figure(points_xy_m, faces, selected_xy_m):
     """
     starts = np.column_stack([faces["x0_m"], faces["y0_m"]])
     ends = np.column_stack([faces["x1_m"], faces["y1_m"]])
-    figure, axes = topview.draw(points_xy_m, np.concatenate([starts, ends, selected_xy_m]))
+    figure, axes = top_view.draw_top_view(
+        points_xy_m, np.concatenate([starts, ends, selected_xy_m])
+    )
     lines = LineCollection(
-        np.stack([starts, ends], axis=1), colors="#0072b2", linewidths=1.0, capstyle="butt", zorder=3
+        np.stack([starts, ends], axis=1),
+        colors="#0072b2",
+        linewidths=1.0,
+        capstyle="butt",
+        zorder=3,
     )
     lines.set_label(f"wall face ({len(starts)})")
     axes.add_collection(lines, autolim=False)
@@ -132,7 +140,7 @@ def walls_figure(points_xy_m, faces, selected_xy_m):
     return figure
 
 
-def area_figure(orderings):
+def draw_area_figure(orderings):
     """Draw the covered area against the number of scans, for every ordering (thesis, figure 5.6).
 
     Parameters
@@ -151,9 +159,13 @@ def area_figure(orderings):
     highest = max(columns["covered_m2"].max() for columns in orderings.values())
     axes.set_ylim(0, highest * 1.06)
     _scan_axis(axes, max(len(columns["rank"]) for columns in orderings.values()))
-    axes.plot([], [], "o", ms=4.5, mfc="white", mec="black", label="99 % of what all its scans cover")
-    axes.plot([], [], ":", color="black", lw=1, label="most that any choice of\nas many scans can cover")
-    topview.plain(axes)
+    axes.plot(
+        [], [], "o", ms=4.5, mfc="white", mec="black", label="99 % of what all its scans cover"
+    )
+    axes.plot(
+        [], [], ":", color="black", lw=1, label="most that any choice of\nas many scans can cover"
+    )
+    top_view.strip_frame(axes)
     axes.set_ylabel("covered area (m²)", fontsize=8)
     figure.legend(loc="outside right upper", fontsize=7, frameon=False, title=_area_note(orderings), title_fontsize=7,
                   alignment="left")  # fmt: skip
@@ -168,13 +180,17 @@ def _draw_ordering(axes, method, columns):
     label, colour = STYLES.get(method, (method.replace("_", " "), "0.3"))
     dashes = "--" if method in DASHED else "-"
     covered = columns["covered_m2"]
-    at = stopping.n_scans({"covered_m2": covered}, area_share=0.99)[0] - 1
+    at = stopping.choose_n_scans({"covered_m2": covered}, area_share=0.99)[0] - 1
     label = f"{label}: 99 % with {columns['rank'][at]}"
-    axes.plot(columns["rank"], covered, dashes, color=colour, lw=1.4, label=label, gid=f"covered-{method}")
+    axes.plot(
+        columns["rank"], covered, dashes, color=colour, lw=1.4, label=label, gid=f"covered-{method}"
+    )
     if method in ("cluster_hull", _FULL_HULLS):
         bound = np.minimum(columns["bound_m2"], covered[-1])
         axes.plot(columns["rank"], bound, ":", color=colour, lw=1, gid=f"bound-{method}")
-    axes.plot(columns["rank"][at], covered[at], "o", ms=4.5, mfc="white", mec=colour, mew=1.2, zorder=4)
+    axes.plot(
+        columns["rank"][at], covered[at], "o", ms=4.5, mfc="white", mec=colour, mew=1.2, zorder=4
+    )
 
 
 def _scan_axis(axes, n_scans):

@@ -8,7 +8,7 @@ NEVER = -1
 _CELL_M = 0.05
 
 
-def stretches(faces, segments, rank, *, max_angle_deg, distance_m, min_scans):
+def cut_by_rank(faces, segments, rank, *, max_angle_deg, distance_m, min_scans):
     """Cut faces into stretches by the ranks at which scans show them.
 
     A segment shows the part of a face that lies beside it, if it has the same side, turns from it by less than an angle
@@ -34,11 +34,13 @@ def stretches(faces, segments, rank, *, max_angle_deg, distance_m, min_scans):
         `enough`, rank of the `min_scans`-th. `NEVER` where there is none (a stretch between two that were seen).
     """
     order = np.argsort(rank, kind="stable")
-    lines_m, rank = floorplan.lines_m(segments)[order], np.asarray(rank)[order]
+    lines_m, rank = floorplan.centrelines_m(segments)[order], np.asarray(rank)[order]
     normals = np.column_stack([segments["nx"], segments["ny"]])[order]
     found = []
     for row, (line_m, normal) in enumerate(
-        zip(floorplan.lines_m(faces), np.column_stack([faces["nx"], faces["ny"]]), strict=True)
+        zip(
+            floorplan.centrelines_m(faces), np.column_stack([faces["nx"], faces["ny"]]), strict=True
+        )
     ):
         near = _beside(line_m, normal, lines_m, normals, max_angle_deg, distance_m)
         found += [(row, *part) for part in _cut(line_m, lines_m[near], rank[near], min_scans)]

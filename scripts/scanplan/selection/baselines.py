@@ -3,17 +3,17 @@
 import numpy as np
 
 
-def random(n, seed):
+def order_randomly(n, seed):
     """Return a permutation of n scans drawn with a seed."""
     return np.random.default_rng(seed).permutation(n)
 
 
-def sequential(n):
+def order_sequentially(n):
     """Return n scans as recorded."""
     return np.arange(n)
 
 
-def every_nth(n):
+def order_every_nth(n):
     """Return n scans so that any first k of them are spread evenly over the recording.
 
     The first, the middle, the quarters, the eighths: the places that the base-2 van der Corput sequence, indices with
@@ -27,7 +27,7 @@ def every_nth(n):
     return place[np.sort(first)]
 
 
-def distance(xy_m):
+def order_by_distance(xy_m):
     """Return the order in which every next scan is the one taken farthest from all before it.
 
     The first comes first, of equals the lowest index (Gonzalez 1985, "Clustering to minimize the maximum intercluster

@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 from scipy.cluster import vq
 
-from scanplan import schemas
+from scanplan.store import schemas
 
 _LLOYD_ITERATIONS = 20
 _MOST_CLUSTERS = np.iinfo(np.int16).max
@@ -15,7 +15,7 @@ _MANY_POINTS = 50
 _INSIDE_M2 = 1e-6  # rounding is far less, also far from the map's origin
 
 
-def cluster_hulls(scan_id, xyz_m, *, n_clusters, sample_size, seed):
+def make_cluster_hulls(scan_id, xyz_m, *, n_clusters, sample_size, seed):
     """Cluster one scan's points in plan view and draw one convex hull round each cluster (thesis, algorithm 2).
 
     KMeans runs on a random sample of the points; then every point joins its nearest centre. The sample depends on
@@ -45,7 +45,9 @@ def cluster_hulls(scan_id, xyz_m, *, n_clusters, sample_size, seed):
     """
     xy_m = _plan_view(xyz_m)
     if not 1 <= n_clusters <= _MOST_CLUSTERS or sample_size < 1:
-        raise ValueError(f"n_clusters {n_clusters} must be 1 to {_MOST_CLUSTERS}, sample_size {sample_size} at least 1")
+        raise ValueError(
+            f"n_clusters {n_clusters} must be 1 to {_MOST_CLUSTERS}, sample_size {sample_size} at least 1"
+        )
     rng = np.random.default_rng([seed, scan_id])
     sample = xy_m[rng.choice(len(xy_m), min(sample_size, len(xy_m)), replace=False, shuffle=False)]
     # relative to the mean, squared distances keep their digits far from the map's origin
@@ -62,7 +64,7 @@ def cluster_hulls(scan_id, xyz_m, *, n_clusters, sample_size, seed):
     }
 
 
-def concatenated(parts):
+def concatenate_hulls(parts):
     """Join the rows of several scans, in their order, to the columns of one table of hulls."""
     return {name: np.concatenate([part[name] for part in parts]) for name in schemas.HULLS.columns}
 
@@ -82,7 +84,9 @@ def scan_polygons(columns):
         Empty for a scan of degenerate clusters only.
     """
     scan_ids, groups = _by_scan(columns)
-    return scan_ids, _array([shapely.union_all(g[shapely.get_dimensions(g) == 2]) for g in groups], shapely.Polygon())
+    return scan_ids, _array(
+        [shapely.union_all(g[shapely.get_dimensions(g) == 2]) for g in groups], shapely.Polygon()
+    )
 
 
 def scan_full_hulls(columns):
@@ -121,7 +125,9 @@ def _means(sample, centres):
         if before is not None and np.array_equal(nearest, before):
             break
         n_points = np.bincount(nearest, minlength=len(centres))
-        sums = np.column_stack([np.bincount(nearest, axis, minlength=len(centres)) for axis in sample.T])
+        sums = np.column_stack(
+            [np.bincount(nearest, axis, minlength=len(centres)) for axis in sample.T]
+        )
         centres = np.where(n_points[:, None] > 0, sums / np.maximum(n_points, 1)[:, None], centres)
     return centres
 
@@ -166,7 +172,9 @@ def _convex_hulls(xy_m, label, n_clusters):
     start = np.cumsum(np.bincount(label + 1, minlength=n_clusters + 1))
     clusters = [_outer(xy_m.take(by_label[a:b], axis=0)) for a, b in pairwise(start)]
     indices = np.repeat(np.arange(n_clusters), [len(points) for points in clusters])
-    return shapely.normalize(shapely.convex_hull(shapely.linestrings(np.concatenate(clusters), indices=indices)))
+    return shapely.normalize(
+        shapely.convex_hull(shapely.linestrings(np.concatenate(clusters), indices=indices))
+    )
 
 
 def _outer(xy_m):
@@ -185,7 +193,11 @@ def _outer(xy_m):
     for (x0_m, y0_m), (x1_m, y1_m) in zip(corners, corners[1:] + corners[:1], strict=True):
         if (x0_m, y0_m) != (x1_m, y1_m):
             # twice the area of a point's triangle with this edge: above 0 on the inner side
-            np.minimum(inside_m2, (x1_m - x0_m) * (y_m - y0_m) - (y1_m - y0_m) * (x_m - x0_m), out=inside_m2)
+            np.minimum(
+                inside_m2,
+                (x1_m - x0_m) * (y_m - y0_m) - (y1_m - y0_m) * (x_m - x0_m),
+                out=inside_m2,
+            )
     outer = inside_m2 <= _INSIDE_M2
     outer[0] = True
     return np.concatenate([xy_m[outer], xy_m[:1]])

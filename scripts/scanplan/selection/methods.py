@@ -42,4 +42,4 @@ WALL_LIMITS = (
     "min_points",
     "min_points_planar",
 )
-"""Settings of the wall extractor that tell what it could find, for `wallcells.Settings`."""
+"""Settings of the wall extractor that tell what it could find, for `wall_cells.WallCellSettings`."""

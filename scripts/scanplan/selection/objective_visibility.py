@@ -4,13 +4,13 @@ import numpy as np
 import shapely
 
 from scanplan.errors import StageError
-from scanplan.selection.areas import PolygonArea
+from scanplan.selection.polygon_area import PolygonArea
 
 UNIT = "m2"
 
 
 def objective(scan_ids, columns):
-    """Return the objective of a survey; see `orderings.order` for the columns.
+    """Return the objective of a survey; see `orderings.order_scans` for the columns.
 
     Raises
     ------

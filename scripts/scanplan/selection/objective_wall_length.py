@@ -6,14 +6,14 @@ This closes the loop between walls and selection (thesis, chapter 6) without ext
 import numpy as np
 
 from scanplan.errors import StageError
-from scanplan.selection import wallcells
-from scanplan.selection.coverage import CellCoverage
+from scanplan.selection import wall_cells
+from scanplan.selection.cell_coverage import CellCoverage
 
 UNIT = "m"
 
 
 def objective(scan_ids, columns):
-    """Return the objective of a survey; see `orderings.order` for the columns.
+    """Return the objective of a survey; see `orderings.order_scans` for the columns.
 
     Raises
     ------
@@ -27,4 +27,4 @@ def objective(scan_ids, columns):
             " delete the results of this dataset and run again"
         )
     row = np.searchsorted(scan_ids, seen["scan_id"])
-    return CellCoverage(row, wallcells.number(seen), seen["length_m"], len(scan_ids))
+    return CellCoverage(row, wall_cells.number_cells(seen), seen["length_m"], len(scan_ids))

@@ -1,7 +1,7 @@
 """The orders in which scans can be taken into the plan: by objectives, and those that look at no point (thesis, 5.2).
 
 An objective is a file `objective_<method>.py` with its `UNIT` and a function `objective(scan_ids, columns)`, which
-returns an object with `greedy(min_overlap)`, a `greedy.Order`, and `gains(order)`.
+returns an object with `greedy(min_overlap)`, a `area_greedy.AreaOrder`, and `gains(order)`.
 """
 
 import numpy as np
@@ -9,7 +9,7 @@ import numpy as np
 from scanplan.errors import StageError
 from scanplan.selection import (
     baselines,
-    certificate,
+    bounds,
     hulls,
     objective_cluster_hull,
     objective_hull,
@@ -23,23 +23,32 @@ from scanplan.selection.methods import METHODS
 _AREAS = {"cluster_hull": objective_cluster_hull, "hull": objective_hull}
 _OBJECTIVES = {"wall_length": objective_wall_length, "visibility": objective_visibility}
 _BASELINES = {
-    "every_nth": baselines.every_nth,
-    "distance": baselines.distance,
-    "random": baselines.random,
-    "sequential": baselines.sequential,
+    "every_nth": baselines.order_every_nth,
+    "distance": baselines.order_by_distance,
+    "random": baselines.order_randomly,
+    "sequential": baselines.order_sequentially,
 }
 _STREAMING = "streaming"
 _TOLD_SCANS = 15
 _TOLD_SHARE = 0.99
 
 
-def order(method, columns, *, seed=None, others=None, min_overlap=0.0, streaming_settings=None, budget=None):
+def order_scans(
+    method,
+    columns,
+    *,
+    seed=None,
+    others=None,
+    min_overlap=0.0,
+    streaming_settings=None,
+    budget=None,
+):
     """Put all scans of a table of hulls in the order of one method.
 
     Parameters
     ----------
     method : str
-        Greedy by an objective: `wall_length`, what the scans show of the walls; `visibility`, the free space they
+        Greedy by an objective: `wall_length`, what the scans show of the walls; `visible_faces`, the free space they
         looked through; `cluster_hull`, the area of the union of clusters' hulls; `hull`, that of one convex hull per
         scan; `streaming`, the area of `cluster_hull` again, but in one pass over the scans as they were recorded. By
         nothing measured: `every_nth`, evenly over the recording; `distance`, always the one taken farthest from those
@@ -51,12 +60,12 @@ def order(method, columns, *, seed=None, others=None, min_overlap=0.0, streaming
     others : dict of str to columns, optional
         The tables that `methods.TABLES` names for the method.
     min_overlap : float, 0 to 1
-        For objectives: what a scan must share with those before it, see `lazygreedy.order`.
+        For objectives: what a scan must share with those before it, see `lazy_greedy.order_greedily`.
     streaming_settings : dict, optional
-        For `streaming` only, keywords of `streaming.order`.
+        For `streaming` only, keywords of `streaming.order_streaming`.
     budget : int, optional
         Points that the first scans may have together. Orders by an objective then begin with the scans that
-        `knapsack.choose` takes for it; a `min_overlap` is not asked of them.
+        `budget.choose_in_budget` takes for it; a `min_overlap` is not asked of them.
 
     Returns
     -------
@@ -86,7 +95,9 @@ def order(method, columns, *, seed=None, others=None, min_overlap=0.0, streaming
     if method in _BASELINES:
         chosen = _baseline(method, scan_ids, survey, seed)
     elif method == _STREAMING:
-        chosen = streaming.order(hulls.scan_polygons(columns)[1], **(streaming_settings or {}))[0]
+        chosen = streaming.order_streaming(
+            hulls.scan_polygons(columns)[1], **(streaming_settings or {})
+        )[0]
     else:
         chosen = own.greedy(min_overlap).order if min_overlap > 0 else most.order
         chosen = chosen if budget is None else _within(own, _points(columns), budget, chosen)
@@ -100,14 +111,18 @@ def order(method, columns, *, seed=None, others=None, min_overlap=0.0, streaming
     }
 
 
-def summary(method, columns):
+def summarise_order(method, columns):
     """Say in a line what an order covers, how soon, and how good its beginning is at least."""
     n, covered = len(columns["rank"]), columns["covered"]
-    soon, _ = stopping.n_scans(columns, area_share=_TOLD_SHARE)
+    soon, _ = stopping.choose_n_scans(columns, area_share=_TOLD_SHARE)
     first = min(_TOLD_SCANS, n)
     bound = columns["bound"][first - 1]
     share = covered[first - 1] / bound if bound > 0 else 1.0
-    unit = _OBJECTIVES[method].UNIT if method in _OBJECTIVES else _AREAS.get(method, objective_cluster_hull).UNIT
+    unit = (
+        _OBJECTIVES[method].UNIT
+        if method in _OBJECTIVES
+        else _AREAS.get(method, objective_cluster_hull).UNIT
+    )
     return (
         f"{method}, {n} scans, {covered[-1]:.1f} {unit}; {_TOLD_SHARE:.0%} at {soon} scans;"
         f" first {first} cover at least {np.floor(100 * share):.0f} % of what any {first} could"
@@ -118,7 +133,11 @@ def _along(chosen, objective, best):
     """Return gain, covered and bound (n,) along an order, whatever order it is: the greedy order bounds them all."""
     gain = best.gain_m2 if chosen is best.order else objective.gains(chosen)
     covered = np.cumsum(gain)
-    return {"gain": gain, "covered": covered, "bound": np.maximum(certificate.upper_bound(best), covered)}
+    return {
+        "gain": gain,
+        "covered": covered,
+        "bound": np.maximum(bounds.bound_any_subset(best), covered),
+    }
 
 
 def _within(objective, n_points, budget, then):
@@ -138,15 +157,17 @@ def _points(columns):
 def _baseline(method, scan_ids, survey, seed):
     n = len(scan_ids)
     if method == "distance":
-        return baselines.distance(_positions(scan_ids, survey["registration"]))
-    return baselines.random(n, seed) if method == "random" else _BASELINES[method](n)
+        return baselines.order_by_distance(_positions(scan_ids, survey["registration"]))
+    return baselines.order_randomly(n, seed) if method == "random" else _BASELINES[method](n)
 
 
 def _positions(scan_ids, registered):
     """Return where (n, 2) the sensor was at scans."""
     row = {int(s): i for i, s in enumerate(registered["scan_id"])}
     unknown = [s for s in scan_ids.tolist() if s not in row]
-    xy_m = np.column_stack([registered["x_m"], registered["y_m"]])[[row[s] for s in scan_ids.tolist() if s in row]]
+    xy_m = np.column_stack([registered["x_m"], registered["y_m"]])[
+        [row[s] for s in scan_ids.tolist() if s in row]
+    ]
     if unknown or not np.isfinite(xy_m).all():
         raise StageError(
             f"registration: no position of {len(unknown) or 'some'} of the {len(scan_ids)} scans that have hulls;"

@@ -3,13 +3,15 @@
 import numpy as np
 
 from scanplan.errors import StageError
-from scanplan.selection import greedy
+from scanplan.selection import area_greedy
 
 BYTES_PER_POINT = 12
 """A point is three numbers of four bytes, as registered scans are stored before they are compressed."""
 
 
-def n_scans(columns, *, n_scans=None, area_share=None, min_gain_m2=None, max_points=None, max_bytes=None):
+def choose_n_scans(
+    columns, *, n_scans=None, area_share=None, min_gain_m2=None, max_points=None, max_bytes=None
+):
     """Return how many of the first scans to use, and why.
 
     Of several limits the one that needs fewest scans decides; with none all scans are used. One scan is always used.
@@ -22,7 +24,7 @@ def n_scans(columns, *, n_scans=None, area_share=None, min_gain_m2=None, max_poi
     n_scans : int, >= 1, optional
         Use so many scans, or all if there are fewer.
     area_share : float in (0, 1], optional
-        Use the fewest scans that cover this share of what all cover (within `greedy.TIE_M2`), measured by `covered`,
+        Use the fewest scans that cover this share of what all cover (within `area_greedy.TIE_M2`), measured by `covered`,
         the objective of the method itself, where it is given.
     min_gain_m2 : float, > 0, optional
         Use no scan after the last that adds this much area.
@@ -77,16 +79,20 @@ def _by_share(columns, share):
         raise ValueError(f"area_share is {share}, must be above 0 and at most 1")
     covered_m2 = columns["covered_m2"]
     covered = columns.get("covered", covered_m2)
-    k = int((covered >= share * covered[-1] - greedy.TIE_M2).argmax()) + 1
+    k = int((covered >= share * covered[-1] - area_greedy.TIE_M2).argmax()) + 1
     area = np.array_equal(covered, covered_m2)
-    whole = f"the {covered[-1]:.1f} m2 that all cover" if area else "what all show, by the method's own measure"
+    whole = (
+        f"the {covered[-1]:.1f} m2 that all cover"
+        if area
+        else "what all show, by the method's own measure"
+    )
     return k, f"{k} of {len(covered)} scans {'cover' if area else 'show'} {share:.4g} of {whole}"
 
 
 def _by_gain(gain_m2, least_m2):
     if not least_m2 > 0:
         raise ValueError(f"min_gain_m2 is {least_m2}, must be above 0")
-    adding = np.flatnonzero(gain_m2 >= least_m2 - greedy.TIE_M2)
+    adding = np.flatnonzero(gain_m2 >= least_m2 - area_greedy.TIE_M2)
     k = int(adding[-1]) + 1 if len(adding) else 1
     return k, f"{k} of {len(gain_m2)} scans: no later one adds {least_m2:.4g} m2"
 

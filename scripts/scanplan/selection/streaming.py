@@ -5,10 +5,11 @@ import math
 import numpy as np
 import shapely
 
-from scanplan.selection import greedy, overlays
+from scanplan.geometry.polygons import move_near_origin, subtract_polygons, unite_polygons
+from scanplan.selection import area_greedy
 
 
-class Sieves:
+class StreamingSieves:
     """Up to k polygons of a stream whose union covers much.
 
     Sieve-Streaming++ (Kazemi, Mitrovic, Zadimoghaddam, Lattanzi and Karbasi 2019, "Submodular Streaming in All its
@@ -38,7 +39,9 @@ class Sieves:
 
     def __init__(self, k, *, epsilon):
         if k < 1 or not 0 < epsilon < 0.5:
-            raise ValueError(f"k is {k}, must be at least 1; epsilon is {epsilon}, must be above 0 and below 0.5")
+            raise ValueError(
+                f"k is {k}, must be at least 1; epsilon is {epsilon}, must be above 0 and below 0.5"
+            )
         self._k, self._step = k, math.log1p(epsilon)
         self._largest_m2, self._covered_m2 = 0.0, 0.0
         self._sieves, self._held = {}, {}
@@ -53,7 +56,11 @@ class Sieves:
         self._raise_thresholds()
         for exponent, sieve in self._sieves.items():
             threshold_m2 = math.exp(self._step * exponent)
-            if area_m2 >= threshold_m2 and len(sieve.chosen) < self._k and sieve.take(index, polygon, threshold_m2):
+            if (
+                area_m2 >= threshold_m2
+                and len(sieve.chosen) < self._k
+                and sieve.take(index, polygon, threshold_m2)
+            ):
                 self._held[index] = polygon
                 self._covered_m2 = max(self._covered_m2, sieve.covered_m2)
         self._forget()
@@ -64,16 +71,22 @@ class Sieves:
         if not self._held:
             return []
         held = np.array(sorted(self._held))
-        by_greedy = greedy.greedy_order([self._held[i] for i in held])
+        by_greedy = area_greedy.order_by_area([self._held[i] for i in held])
         k = min(self._k, len(held))
         best = max(self._sieves.values(), key=lambda sieve: sieve.covered_m2)
         if by_greedy.covered_m2[k - 1] >= best.covered_m2:
             return held[by_greedy.order[:k]].tolist()
-        return [best.chosen[i] for i in greedy.greedy_order([self._held[i] for i in best.chosen]).order]
+        return [
+            best.chosen[i]
+            for i in area_greedy.order_by_area([self._held[i] for i in best.chosen]).order
+        ]
 
     def _raise_thresholds(self):
         lowest_m2 = max(self._covered_m2, self._largest_m2) / (2 * self._k)
-        first, last = math.ceil(math.log(lowest_m2) / self._step), math.floor(math.log(self._largest_m2) / self._step)
+        first, last = (
+            math.ceil(math.log(lowest_m2) / self._step),
+            math.floor(math.log(self._largest_m2) / self._step),
+        )
         self._sieves = {e: self._sieves.get(e) or _Sieve() for e in range(first, last + 1)}
 
     def _forget(self):
@@ -90,24 +103,24 @@ class _Sieve:
 
     def take(self, index, polygon, least_m2):
         """Take a polygon if it adds enough; return whether it did."""
-        added_m2 = overlays.difference([polygon], [self._union])[0].area
+        added_m2 = subtract_polygons([polygon], [self._union])[0].area
         if added_m2 < least_m2:
             return False
-        self._union = overlays.union([self._union, polygon])
+        self._union = unite_polygons([self._union, polygon])
         self.chosen.append(index)
         self.covered_m2 += added_m2
         return True
 
 
-def order(polygons, *, k=60, epsilon=0.1):
-    """Order polygons by one pass over them: first those that `Sieves` chooses, then the others as they came.
+def order_streaming(polygons, *, k=60, epsilon=0.1):
+    """Order polygons by one pass over them: first those that `StreamingSieves` chooses, then the others as they came.
 
     What is bounded is what the sieves hold; the polygons themselves are all here, to be moved near the origin.
 
     Parameters
     ----------
     polygons : (n,) sequence of shapely geometries
-        As for `greedy.greedy_order`.
+        As for `area_greedy.order_by_area`.
     k : int, >= 1
         Slots; with as many as there are polygons, all are held and the order is the greedy one.
     epsilon : float, above 0 and below 0.5
@@ -124,10 +137,10 @@ def order(polygons, *, k=60, epsilon=0.1):
     ValueError
         If a parameter is out of its range or the polygons are not usable.
     """
-    sieves = Sieves(k, epsilon=epsilon)
+    sieves = StreamingSieves(k, epsilon=epsilon)
     if k >= len(polygons):
-        return greedy.greedy_order(polygons).order, len(polygons)
-    for index, polygon in enumerate(overlays.near_origin(polygons)):
+        return area_greedy.order_by_area(polygons).order, len(polygons)
+    for index, polygon in enumerate(move_near_origin(polygons)):
         sieves.add(index, polygon)
     chosen = sieves.choose()
     rest = np.setdiff1d(np.arange(len(polygons)), chosen)

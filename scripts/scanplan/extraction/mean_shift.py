@@ -1,0 +1,132 @@
+"""Mean shift in two dimensions at a cost nearly linear in the number of points.
+
+K. Fukunaga, L. Hostetler: The estimation of the gradient of a density function, IEEE Trans. Inf. Theory 21 (1975).
+"""
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+_BINS_PER_BANDWIDTH = 8
+_SEEDS_PER_BANDWIDTH = 4
+_MAX_STEPS = 300
+_ROWS = np.arange(-_BINS_PER_BANDWIDTH, _BINS_PER_BANDWIDTH + 1)[:, None]
+_LEAST_WEIGHT = 1e-12
+_STILL = 1e-2  # a seed that moves less than this share of the bandwidth has arrived
+
+
+def mean_shift(xy_m, *, bandwidth_m, weight=None):
+    """Find the modes of a flat kernel's density, and each point's nearest mode.
+
+    The points are gathered in square bins of an eighth of the bandwidth, each a mean and a weight; one of every square
+    of a quarter is a seed. A seed moves to the mean of the bins around it by sums over rows of bins. Modes closer than
+    the bandwidth to a heavier one are dropped, as scikit-learn does.
+
+    Parameters
+    ----------
+    xy_m : (n, 2) float
+        All finite. Their order does not matter beyond rounding.
+    bandwidth_m : float
+    weight : (n,) float, optional
+        As how many points each counts.
+
+    Returns
+    -------
+    labels : (n,) int64
+        Index of the nearest mode; -1 where it is farther than the bandwidth.
+    modes_m : (k, 2) float64, heaviest first
+
+    Raises
+    ------
+    ValueError
+        If the bandwidth is not positive or a coordinate is not finite.
+    """
+    xy_m = np.asarray(xy_m, float).reshape(-1, 2)
+    if not bandwidth_m > 0 or not np.isfinite(xy_m).all():
+        raise ValueError(
+            f"mean shift of finite points with a positive bandwidth, not {bandwidth_m}"
+        )
+    if len(xy_m) == 0:
+        return np.empty(0, np.int64), np.empty((0, 2))
+    bins = _Bins(
+        xy_m, np.ones(len(xy_m)) if weight is None else np.asarray(weight, float), bandwidth_m
+    )
+    modes = _heaviest_apart(*_climb(bins), bandwidth_m)
+    distance, nearest = cKDTree(modes).query(bins.mean)
+    return np.where(distance <= bandwidth_m, nearest, -1)[bins.bin_of_point], modes
+
+
+class _Bins:
+    """Weighted bin means, sorted by row (y) and x within it, with running sums along that order."""
+
+    def __init__(self, xy_m, point_weight, bandwidth_m):
+        self.bandwidth, self.size = bandwidth_m, bandwidth_m / _BINS_PER_BANDWIDTH
+        self.origin = xy_m.min(axis=0)
+        column, row = np.floor((xy_m - self.origin) / self.size).astype(np.int64).T
+        _, self.bin_of_point = np.unique(row * (column.max() + 1) + column, return_inverse=True)
+        weight = np.bincount(self.bin_of_point, point_weight)
+        self.mean = np.column_stack(
+            [np.bincount(self.bin_of_point, c * point_weight) / weight for c in xy_m.T]
+        )
+        self.sums = np.vstack(
+            [np.zeros(3), np.cumsum(np.column_stack([weight, weight[:, None] * self.mean]), axis=0)]
+        )
+        self.span = self.mean[:, 0].max() - self.origin[0] + 4 * bandwidth_m
+        self.n_rows = row.max() + 1
+        self.key = self._key(
+            np.floor((self.mean[:, 1] - self.origin[1]) / self.size), self.mean[:, 0]
+        )
+
+    def _key(self, row, x):
+        return row * self.span + (x - self.origin[0])
+
+    def around(self, xy_m):
+        """Return the weight within the bandwidth around each position and the mean of what is there."""
+        row = np.floor((xy_m[:, 1] - self.origin[1]) / self.size) + _ROWS
+        rise = np.where(_ROWS == 0, 0.0, (row + 0.5) * self.size + self.origin[1] - xy_m[:, 1])
+        half = np.sqrt(np.maximum(self.bandwidth**2 - rise**2, 0))
+        ends = np.stack([self._key(row, xy_m[:, 0] - half), self._key(row, xy_m[:, 0] + half)])
+        first, last = (
+            np.searchsorted(self.key, ends[0], "left"),
+            np.searchsorted(self.key, ends[1], "right"),
+        )
+        last = np.where(half > 0, np.maximum(last, first), first)
+        total = (self.sums[last] - self.sums[first]).sum(axis=0)
+        return total[:, 0], total[:, 1:] / np.maximum(total[:, :1], _LEAST_WEIGHT)
+
+    def seeds(self):
+        """Return the mean of the first bin in every square of a quarter of the bandwidth."""
+        square = np.floor((self.mean - self.origin) / (self.bandwidth / _SEEDS_PER_BANDWIDTH))
+        return self.mean[_first_of_each(square)]
+
+
+def _climb(bins):
+    """Move every seed to its mode; return the positions reached and the weights there."""
+    arrived, grid = [], _STILL * bins.bandwidth
+    seeds = bins.seeds()
+    for _ in range(_MAX_STEPS):
+        _, moved = bins.around(seeds)
+        still = np.hypot(*(moved - seeds).T) < grid
+        arrived.append(moved[still])
+        # seeds that have met go on as one
+        moved = moved[~still]
+        seeds = moved[_first_of_each(np.round(moved / grid))]
+        if len(seeds) == 0:
+            break
+    modes = np.vstack([*arrived, seeds])
+    return modes, bins.around(modes)[0]
+
+
+def _first_of_each(whole):
+    """Return the index of the first of each distinct row of two whole numbers."""
+    column, row = (whole - whole.min(axis=0, initial=np.inf)).T if len(whole) else whole.T
+    return np.unique(row * (column.max(initial=0) + 1) + column, return_index=True)[1]
+
+
+def _heaviest_apart(modes, weight, bandwidth):
+    """Keep, from the heaviest on, the modes that are farther than the bandwidth from all kept ones."""
+    order = np.lexsort((modes[:, 1], modes[:, 0], -weight))
+    left, kept = modes[order], []
+    while len(left):
+        kept.append(left[0])
+        left = left[np.linalg.norm(left - left[0], axis=1) > bandwidth]
+    return np.array(kept)

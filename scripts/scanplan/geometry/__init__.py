@@ -1,0 +1,1 @@
+"""Lines, planes, rigid motions and polygons: geometry that knows nothing of scans."""

@@ -1,0 +1,159 @@
+"""The thesis's bitmap metrics (section 5.1): walls and truth as binary maps, and the shares of their difference."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from scanplan.errors import StageError
+
+_MOST_CELLS = 100_000_000
+_WHOLE = 1e-9  # cells: nearer than this to a grid line is on it
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Square cells; cell (row, column) spans from `low_m` + (column, row) * `cell_m` to one cell further.
+
+    Attributes
+    ----------
+    low_m : (2,) float64
+    cell_m : float
+    shape : (int, int)
+        Rows (y) and columns (x).
+    """
+
+    low_m: np.ndarray
+    cell_m: float
+    shape: tuple
+
+
+@dataclass(frozen=True)
+class Shares:
+    """Shares of all cells of an error map; they sum to 1."""
+
+    false_negative: float
+    correct_match: float
+    false_positive: float
+
+
+def fit_grid(lines_m, cell_m):
+    """Return the grid that just holds all lines (n, 2, 2), n >= 0: whole multiples of a cell from the map's origin.
+
+    Of no line at all it is one cell.
+
+    Raises
+    ------
+    StageError
+        If it would have more than a hundred million cells.
+    ValueError
+        If the cell is not above 0.
+    """
+    if cell_m <= 0:
+        raise ValueError(f"cell_m is {cell_m}, must be above 0")
+    xy_m = np.asarray(lines_m, float).reshape(-1, 2)
+    xy_m = xy_m if len(xy_m) else np.zeros((1, 2))
+    first = np.floor(xy_m.min(axis=0) / cell_m + _WHOLE)
+    last = np.maximum(np.ceil(xy_m.max(axis=0) / cell_m - _WHOLE), first + 1)
+    columns, rows = (last - first).tolist()
+    if rows * columns > _MOST_CELLS:
+        raise StageError(
+            f"truth and walls span {columns * cell_m:.6g} m x {rows * cell_m:.6g} m: a bitmap of {rows * columns:.3g}"
+            f" cells, at most {_MOST_CELLS:,};"
+            f" make evaluation.bitmap_cell_m ({cell_m:g} m) larger or mend truth.geojson"
+        )
+    return Grid(first * cell_m, float(cell_m), (int(rows), int(columns)))
+
+
+def trace_cells(lines_m, grid):
+    """Find the cells that lines pass through, each line without a gap: neighbours share an edge or a corner.
+
+    Parameters
+    ----------
+    lines_m : (n, 2, 2) float
+        What lies outside of the grid has no cells.
+    grid : Grid
+
+    Returns
+    -------
+    line : (p,) int
+    cell : (p,) int
+        Index into the flattened map, row by row. A line that runs along the edge of a cell belongs to the cell with
+        the larger coordinate, or the last one at the end of the grid.
+    """
+    ends = (np.asarray(lines_m, float).reshape(-1, 2, 2) - grid.low_m) / grid.cell_m
+    ends = np.where(np.abs(ends - np.round(ends)) < _WHOLE, np.round(ends), ends)
+    line, share = _crossings(ends)
+    same = line[1:] == line[:-1]
+    line, middle = line[:-1][same], (share[1:] + share[:-1])[same] / 2
+    place = ends[line, 0] + middle[:, None] * (ends[line, 1] - ends[line, 0])
+    place = np.where(np.abs(place - np.round(place)) < _WHOLE, np.round(place), place)
+    rows, columns = grid.shape
+    inside = ((place >= 0) & (place <= (columns, rows))).all(axis=1)
+    column, row = np.minimum(np.floor(place[inside]), (columns - 1, rows - 1)).astype(np.int64).T
+    return line[inside], row * columns + column
+
+
+def rasterise_lines(lines_m, grid):
+    """Return the binary map of lines: bool of the grid's shape, true where one or more pass through."""
+    bitmap = np.zeros(grid.shape, bool)
+    bitmap.flat[trace_cells(lines_m, grid)[1]] = True
+    return bitmap
+
+
+def subtract_bitmaps(result, truth):
+    """Return B_E = B_I - B_GT, int8: -1 missed, 0 match, 1 invented.
+
+    Raises
+    ------
+    ValueError
+        If the maps differ in size, are empty or not of bool.
+    """
+    if (
+        result.shape != truth.shape
+        or result.size == 0
+        or result.dtype != bool
+        or truth.dtype != bool
+    ):
+        raise ValueError(
+            f"two binary maps of one size are needed, not {result.dtype} {result.shape} and {truth.dtype} {truth.shape}"
+        )
+    return result.astype(np.int8) - truth.astype(np.int8)
+
+
+def error_shares(errors):
+    """Return the shares of -1, 0 and 1 among all cells of an error map."""
+    counts = [int(np.count_nonzero(errors == value)) for value in (-1, 0, 1)]
+    return Shares(*(count / errors.size for count in counts))
+
+
+def _crossings(ends):
+    """Return where each line starts, crosses grid lines and ends, as shares (0 to 1) of its way.
+
+    Returns
+    -------
+    line : (p,) int
+        In order.
+    share : (p,) float64
+        Increasing within a line; a crossing of two grid lines at once is there once.
+    """
+    line, share = [np.arange(len(ends))] * 2, [np.zeros(len(ends)), np.ones(len(ends))]
+    for axis in (0, 1):
+        low, high = ends[:, :, axis].min(axis=1), ends[:, :, axis].max(axis=1)
+        first = np.floor(low) + 1
+        count = np.maximum(np.ceil(high) - first, 0).astype(np.int64)
+        owner = np.repeat(np.arange(len(ends)), count)
+        step = np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
+        start, end = ends[owner, 0, axis], ends[owner, 1, axis]
+        line.append(owner)
+        share.append((first[owner] + step - start) / (end - start))
+    line, share = np.concatenate(line), np.concatenate(share)
+    order = np.lexsort((share, line))
+    line, share = line[order], share[order]
+    apart = (
+        np.r_[True, (np.diff(share) > _WHOLE) | (np.diff(line) > 0)]
+        if len(line)
+        else np.empty(0, bool)
+    )
+    # a line of no length keeps both its ends
+    point = (ends[line, 0] == ends[line, 1]).all(axis=1)
+    return line[apart | point], share[apart | point]

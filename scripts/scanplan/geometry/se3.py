@@ -1,0 +1,139 @@
+"""Rigid motions: quaternions (x, y, z, w), 4 x 4 matrices, interpolation between poses.
+
+`a_from_b` maps coordinates in frame b to coordinates in frame a.
+"""
+
+import numpy as np
+from scipy.spatial.transform import Rotation, Slerp
+
+
+def pose_matrix(xyz_m, quat_xyzw):
+    """Return the 4 x 4 matrices of poses.
+
+    Parameters
+    ----------
+    xyz_m : (..., 3) float
+    quat_xyzw : (..., 4) float
+        Normalised here; NaN gives NaN.
+
+    Returns
+    -------
+    (..., 4, 4) float64
+    """
+    xyz_m, quat_xyzw = np.asarray(xyz_m, float), np.asarray(quat_xyzw, float)
+    pose = np.full((*xyz_m.shape[:-1], 4, 4), np.nan)
+    pose[..., 3, :] = (0, 0, 0, 1)
+    known = np.isfinite(quat_xyzw).all(axis=-1) & np.isfinite(xyz_m).all(axis=-1)
+    if known.any():
+        pose[known, :3, :3] = Rotation.from_quat(quat_xyzw[known]).as_matrix()
+        pose[known, :3, 3] = xyz_m[known]
+    return pose
+
+
+def split_pose(pose):
+    """Return the positions (..., 3) and quaternions (..., 4), w >= 0, of 4 x 4 matrices; NaN stays NaN."""
+    pose = np.asarray(pose, float)
+    quat = np.full((*pose.shape[:-2], 4), np.nan)
+    known = np.isfinite(pose).all(axis=(-2, -1))
+    if known.any():
+        quat[known] = Rotation.from_matrix(pose[known, :3, :3]).as_quat(canonical=True)
+    return pose[..., :3, 3].copy(), quat
+
+
+def transform_points(a_from_b, xyz_b_m):
+    """Map points (n, 3) from frame b to frame a by one 4 x 4 matrix; float64."""
+    a_from_b = np.asarray(a_from_b, float)
+    return np.asarray(xyz_b_m, float) @ a_from_b[:3, :3].T + a_from_b[:3, 3]
+
+
+def invert_pose(a_from_b):
+    """Return b_from_a of one or many 4 x 4 rigid motions."""
+    a_from_b = np.asarray(a_from_b, float)
+    back = a_from_b.copy()
+    back[..., :3, :3] = np.swapaxes(a_from_b[..., :3, :3], -1, -2)
+    back[..., :3, 3] = -(back[..., :3, :3] @ a_from_b[..., :3, 3, None])[..., 0]
+    return back
+
+
+def nearest_rigid(pose):
+    """Return a 4 x 4 matrix with the nearest true rotation in it.
+
+    `invert_pose` takes a rotation's transpose for its inverse, so in a chain of products and inverses a rounding error
+    doubles with every link unless it is taken out.
+    """
+    left, _, right = np.linalg.svd(np.asarray(pose, float)[:3, :3])
+    cleaned = np.array(pose, float)
+    cleaned[:3, :3] = left @ np.diag([1, 1, np.linalg.det(left @ right)]) @ right
+    return cleaned
+
+
+def interpolate_pose(start, end, share):
+    """Return the pose a `share` (0 to 1) of the way between two 4 x 4 poses: linear in position, spherical in turn."""
+    turn = Rotation.from_matrix(start[:3, :3].T @ end[:3, :3]).as_rotvec()
+    pose = np.eye(4)
+    pose[:3, :3] = start[:3, :3] @ Rotation.from_rotvec(share * turn).as_matrix()
+    pose[:3, 3] = (1 - share) * start[:3, 3] + share * end[:3, 3]
+    return pose
+
+
+def pose_yaw_rad(pose):
+    """Return the heading of 4 x 4 matrices: the angle of the x axis about z, radians."""
+    pose = np.asarray(pose, float)
+    return np.arctan2(pose[..., 1, 0], pose[..., 0, 0])
+
+
+def interpolate_poses(t_ns, xyz_m, quat_xyzw, query_ns, *, max_gap_s):
+    """Interpolate poses: linear in position, spherical in rotation (thesis, algorithm 3, step 1).
+
+    Never extrapolates; a query that falls into a gap longer than `max_gap_s` is not covered. A query that equals a
+    stamp is covered whatever the gaps beside it.
+
+    Parameters
+    ----------
+    t_ns : (n,) int64, strictly increasing, n >= 1
+        Pose stamps, nanoseconds.
+    xyz_m : (n, 3) float
+    quat_xyzw : (n, 4) float
+        Unit quaternions; the sign of each is free.
+    query_ns : (m,) int64
+    max_gap_s : float
+
+    Returns
+    -------
+    xyz_m : (m, 3) float64, NaN where not covered
+    quat_xyzw : (m, 4) float64, NaN where not covered
+    gap_s : (m,) float64
+        Time between the two poses around the query; 0 on a stamp, infinite before the first and after the last.
+    covered : (m,) bool
+
+    Raises
+    ------
+    ValueError
+        If `t_ns` is empty or not strictly increasing.
+    """
+    t_ns, query_ns = np.asarray(t_ns, np.int64), np.asarray(query_ns, np.int64)
+    if len(t_ns) == 0 or (np.diff(t_ns) <= 0).any():
+        raise ValueError("pose stamps must be one or more and strictly increasing")
+    after = np.clip(np.searchsorted(t_ns, query_ns), 0, len(t_ns) - 1)
+    before = np.where(t_ns[after] == query_ns, after, np.maximum(after - 1, 0))
+    inside = (t_ns[before] <= query_ns) & (query_ns <= t_ns[after])
+    gap_s = np.where(inside, (t_ns[after] - t_ns[before]) / 1e9, np.inf)
+    covered = gap_s <= max_gap_s
+    xyz, quat = np.full((len(query_ns), 3), np.nan), np.full((len(query_ns), 4), np.nan)
+    if covered.any():
+        b, a = before[covered], after[covered]
+        # ASSUME spans below 2**53 ns (104 days) from the first stamp: exact in float64
+        share = (query_ns[covered] - t_ns[b]) / np.maximum(t_ns[a] - t_ns[b], 1)
+        xyz[covered] = (
+            np.asarray(xyz_m, float)[b] * (1 - share)[:, None]
+            + np.asarray(xyz_m, float)[a] * share[:, None]
+        )
+        quat[covered] = _slerp(np.asarray(quat_xyzw, float), b, a, share)
+    return xyz, quat, gap_s, covered
+
+
+def _slerp(quat_xyzw, before, after, share):
+    if len(quat_xyzw) == 1:
+        return Rotation.from_quat(quat_xyzw[before]).as_quat(canonical=True)
+    turns = Slerp(np.arange(len(quat_xyzw), dtype=float), Rotation.from_quat(quat_xyzw))
+    return turns(np.where(before == after, before, before + share)).as_quat(canonical=True)

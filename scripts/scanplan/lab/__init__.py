@@ -1,0 +1,1 @@
+"""The laboratory: simulated surveys, evaluation against the truth, and the thesis; nothing outside imports it."""

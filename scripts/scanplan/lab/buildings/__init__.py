@@ -1,0 +1,1 @@
+"""Buildings to simulate surveys in: drawings, meshes and models, and the ways through them."""

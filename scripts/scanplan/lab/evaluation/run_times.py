@@ -1,0 +1,22 @@
+"""Run times that Snakemake measured."""
+
+from pathlib import Path
+
+from scanplan.errors import StageError
+
+
+def read_job_seconds(path):
+    """Return the wall-clock seconds of the job that a benchmark file tells of.
+
+    Raises
+    ------
+    StageError
+        If the file is none of Snakemake's.
+    """
+    try:
+        heads, values = (line.split("\t") for line in Path(path).read_text().splitlines()[:2])
+        return float(values[heads.index("s")])
+    except (OSError, ValueError) as error:
+        raise StageError(
+            f"{path}: is no benchmark file ({error}); remove it and run again"
+        ) from None

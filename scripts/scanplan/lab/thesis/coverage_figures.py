@@ -1,0 +1,170 @@
+"""The thesis's figures of covered area and of the orders: 3.2, 5.4, 5.6 and 5.7."""
+
+import numpy as np
+import shapely
+from matplotlib.collections import PatchCollection
+from matplotlib.figure import Figure
+from matplotlib.patches import Polygon
+
+from scanplan.lab.thesis.claim_measures import FOUR, SUBSET, rows_of_method, scans_for_99
+from scanplan.report import top_view
+from scanplan.report.figures import STYLES
+
+_BITMAP = {
+    "correct_match": "Correct match",
+    "false_positive": "False positive",
+    "false_negative": "False negative",
+}
+_SHOWN_TO = 120
+_TRUTH, _HULL, _CLUSTERS = "#009e73", "#d55e00", "#0072b2"
+
+
+def draw_hulls_figure(points_xy_m, place_m, full, clusters, seen):
+    """Draw one scan's hull, its clusters' hulls and what it truly sees (figure 3.2).
+
+    Parameters
+    ----------
+    points_xy_m : (n, 2) float
+    place_m : (2,) float
+    full, seen : shapely Polygon or MultiPolygon
+    clusters : sequence of shapely Polygon
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure = Figure(figsize=(9.6, 3.6), layout="constrained")
+    union = shapely.union_all(clusters)
+    panels = (
+        ("a: one convex hull", [full], full, _HULL),
+        (f"b: hulls of {len(clusters)} clusters", list(clusters), union, _CLUSTERS),
+        ("c: what the scan truly sees", [seen], seen, _TRUTH),
+    )
+    for axes, (title, shapes, area, colour) in zip(
+        figure.subplots(1, 3, sharex=True, sharey=True), panels, strict=True
+    ):
+        axes.scatter(*points_xy_m.T, s=0.4, c="0.3", lw=0, rasterized=True, zorder=2)
+        parts = shapely.get_parts(shapes)
+        patches = [Polygon(np.array(p.exterior.coords)) for p in parts if p.geom_type == "Polygon"]
+        axes.add_collection(
+            PatchCollection(patches, facecolor=colour, edgecolor=colour, alpha=0.35, lw=0.8)
+        )
+        axes.plot(*place_m, "o", ms=4, mfc="white", mec="black", zorder=3)
+        axes.set_title(f"{title}: {area.area:.0f} m²", fontsize=9)
+        axes.set_aspect("equal")
+        top_view.strip_frame(axes)
+    figure.dpi = 200
+    return figure
+
+
+def draw_shares_figure(evaluated, extractor):
+    """Draw the shares of the error map against the number of scans for every order (figure 5.4).
+
+    Parameters
+    ----------
+    evaluated : sequence of dict
+        The columns of `schemas.EVALUATION`, one table per seed; drawn to as many scans as all have, linear between
+        the numbers evaluated.
+    extractor : str
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure = Figure(figsize=(9.6, 3.4), layout="constrained")
+    for axes, (column, title) in zip(figure.subplots(1, 3), _BITMAP.items(), strict=True):
+        for method in FOUR:
+            label, colour = STYLES[method]
+            rows = [rows_of_method(table, method, extractor) for table in evaluated]
+            k = _common(row["k"] for row in rows)
+            share = np.array([np.interp(k, row["k"], row[column]) for row in rows])
+            axes.fill_between(
+                k, share.min(axis=0), share.max(axis=0), color=colour, alpha=0.25, lw=0
+            )
+            axes.plot(k, share.mean(axis=0), color=colour, lw=1.4, label=label)
+        axes.set_title(title, fontsize=9)
+        axes.set_xlim(0, min(_SHOWN_TO, k.max()))
+        top_view.name_axes(axes, "number of scans", "share of all cells")
+    handles, labels = axes.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8, frameon=False)
+    return figure
+
+
+def _common(sizes):
+    """Return all numbers of scans that any of some tables has, as far as every one of them goes."""
+    sizes = list(sizes)
+    every = np.unique(np.concatenate(sizes))
+    return every[every <= min(k.max() for k in sizes)]
+
+
+def draw_convergence_figure(selections):
+    """Draw the share of the area covered against the number of scans, 99 % marked (figure 5.6).
+
+    Parameters
+    ----------
+    selections : dict of str to dict
+        `hull` and `cluster_hull` to the columns of `schemas.SELECTION`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure = Figure(figsize=(6.4, 3.8), layout="constrained")
+    axes = figure.add_subplot()
+    last = 1
+    for method, selection in selections.items():
+        label, colour = STYLES[method]
+        share, at = selection["covered_m2"] / selection["covered_m2"][-1], scans_for_99(selection)
+        label = f"{label}: 99 % at {at} scans of {selection['covered_m2'][-1]:,.0f} m²"
+        axes.plot(selection["rank"], share, color=colour, lw=1.4, label=label)
+        axes.plot([at, at], [0, share[at - 1]], ":", color=colour, lw=1)
+        axes.plot(at, share[at - 1], "o", ms=4.5, mfc="white", mec=colour, zorder=4)
+        last = max(last, at)
+    axes.axhline(0.99, color="0.5", lw=0.6)
+    axes.set(xlim=(0, min(2 * last, len(selection["rank"])) + 1), ylim=(0, 1.03))
+    top_view.name_axes(axes, "number of scans", "area covered, share of that of all scans")
+    axes.legend(fontsize=8, frameon=False, loc="lower right")
+    return figure
+
+
+def draw_clusters_figure(clusters):
+    """Draw covered area against the number of scans and against that of clusters (figure 5.7).
+
+    Parameters
+    ----------
+    clusters : dict of str to (n,) array
+        The columns of `schemas.CLUSTERS`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure = Figure(figsize=(9.6, 3.8), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    numbers = np.unique(clusters["n_clusters"])
+    shades = shades_of_blue(len(numbers))
+    covered = [clusters["covered_m2"][clusters["n_clusters"] == n] for n in numbers]
+    for number, colour, area in zip(numbers, shades, covered, strict=True):
+        label = f"{number} cluster{'s' if number > 1 else ''}"
+        left.plot(np.arange(1, len(area) + 1), area, color=colour, lw=1.3, label=label)
+    left.set_xlim(0, min(80, len(area)))
+    top_view.name_axes(left, "number of scans", "area covered (m²)")
+    left.legend(fontsize=8, frameon=False, loc="lower right")
+    at = min(SUBSET, len(area))
+    for label, colour, values in (
+        (f"first {at} scans", "0.55", [area[at - 1] for area in covered]),
+        ("all scans", "black", [area[-1] for area in covered]),
+    ):
+        right.plot(numbers, values, "o-", ms=3.5, lw=1.2, color=colour, label=label)
+    right.set_xscale("log")
+    right.set_xticks(numbers, [str(n) for n in numbers])
+    right.minorticks_off()
+    right.set_ylim(0, None)
+    top_view.name_axes(right, "number of clusters", "area covered (m²)")
+    right.legend(fontsize=8, frameon=False)
+    return figure
+
+
+def shades_of_blue(count):
+    """Return that many colours, from light to dark."""
+    return [(0.62 * (1 - t), 0.79 - 0.60 * t, 0.88 - 0.46 * t) for t in np.linspace(0, 1, count)]

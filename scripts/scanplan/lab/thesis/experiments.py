@@ -1,0 +1,65 @@
+"""The thesis's experiments (chapter 5) as datasets: its two surveys simulated, each with several seeds.
+
+No heavy imports: this runs while the workflow is being parsed.
+"""
+
+from dataclasses import replace
+from pathlib import Path
+
+from scanplan.project.dataset import RESERVED, describe_simulated
+from scanplan.project.settings import read_own_layers, settings_of_dataset
+
+ROOMS, DRIVE, LIMITS = "ring_rooms", "ring_hallways", "ring_hallways_limits"
+"""Registered scans of all rooms (5.2); a drive through the hallways (5.4); the same drive with the thesis's limits."""
+
+
+def list_surveys(*, defaults, given, schema, config):
+    """Gather the surveys of the thesis's experiments.
+
+    Parameters
+    ----------
+    defaults, schema : dict
+        See `settings.settings_of_dataset`.
+    given : sequence of settings.Layer
+        The command line's settings; section `thesis` says which seeds.
+    config : path-like
+        The folder that holds `list_surveys`, `drawn_floor` and `thesis.yaml`.
+
+    Returns
+    -------
+    dict of str to tuple of dataset.Dataset
+        `ROOMS`, `DRIVE` and `LIMITS`, each by seed. Of `LIMITS` the recordings are those of `DRIVE`.
+    """
+    config = Path(config)
+    chosen = settings_of_dataset(defaults, given, schema)["thesis"]
+    limits = read_own_layers(config / "thesis.yaml", may_lack=False)
+
+    def simulated(kind, seeds, over=(), survey=None):
+        own = read_own_layers(config / f"surveys/{survey or kind}.yaml", may_lack=False)
+        settings = settings_of_dataset(defaults, (*own, *over, *given), schema)
+        return tuple(
+            describe_simulated(
+                f"{RESERVED}/{kind}_{seed}", replace_seeds(settings, seed), config / "buildings"
+            )
+            for seed in seeds
+        )
+
+    drives = simulated(DRIVE, chosen["drive_seeds"])
+    strict = simulated(LIMITS, chosen["drive_seeds"], limits, survey=DRIVE)
+    return {
+        ROOMS: simulated(ROOMS, chosen["seeds"]),
+        DRIVE: drives,
+        LIMITS: tuple(
+            replace(dataset, recordings=drive.recordings, truth=drive.truth, building=None)
+            for dataset, drive in zip(strict, drives, strict=True)
+        ),
+    }
+
+
+def replace_seeds(settings, seed):
+    """Return settings with every seed replaced; the given ones are not changed."""
+    walls = {extractor: values | {"seed": seed} for extractor, values in settings["walls"].items()}
+    sections = {
+        name: settings[name] | {"seed": seed} for name in ("simulate", "hulls", "selection")
+    }
+    return settings | sections | {"walls": walls}

@@ -1,0 +1,29 @@
+"""What of the whole configuration the plan is made with."""
+
+_OTHERS = ("method", "extractor", "export")
+_FURNITURE = (
+    "wall_height_m",
+    "furniture_height_m",
+    "furniture_length_m",
+    "furniture_depth_m",
+    "door_width_m",
+)
+
+
+def select_plan_settings(settings):
+    """Return the keywords of `planning.make_plan_settings`.
+
+    Parameters
+    ----------
+    settings : dict
+        The whole configuration of a dataset. What is furniture in single scans, by the extractor of the plan's walls,
+        is furniture in the plan.
+
+    Returns
+    -------
+    dict of str to dict
+    """
+    plan = settings["plan"]
+    walls = settings["walls"][plan["extractor"]]
+    own = {name: part for name, part in plan.items() if name not in _OTHERS}
+    return own | {"furniture": {key: walls[key] for key in _FURNITURE}}

@@ -1,0 +1,234 @@
+"""What a sensor's ranges are wrong by, beam by beam, told by how bent flat walls look.
+
+A range that is too long by b puts a point of a wall behind it by b times the cosine of the angle of incidence: most
+where the ray meets the wall squarely, less to the sides. So a flat wall looks bent, and by how much tells b, wherever
+the scan was taken to be. Both sides of a wall err towards each other: walls come out thinner by 2 b.
+
+Source: self-calibration of lidars on planes, as of Glennie and Lichti (2010), Static calibration and analysis of the
+Velodyne HDL-64E S2 for high accuracy mobile scanning.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from scanplan.rays import ray_set
+
+_MOST_POINTS = 600_000
+_LEAST_OF_GROUP = 100
+_END_M = 0.1  # the last points before a corner may be of the wall around it
+_BINS, _MOST_BENT = 16, 3.0
+_BOW_M, _PASSES = 0.0005, 3  # no wall is flatter than that
+_TINY = 1e-9
+
+
+@dataclass(frozen=True)
+class RangeBiasSettings:
+    """How wrong ranges may be.
+
+    Attributes
+    ----------
+    sigma_m : float, >= 0
+        Standard deviation of the constant errors of a sensor's beams, before anything is seen; 0 takes ranges as
+        they are.
+    max_incidence_deg : float, above 0, below 90
+        Rays that meet a wall at a larger angle to its normal say nothing: their spots are long.
+    """
+
+    sigma_m: float
+    max_incidence_deg: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Hits:
+    """Points at walls; those of one scan at one wall are a group.
+
+    Attributes
+    ----------
+    group, beam : (n,) int64, from 0
+    cosine : (n,) float64
+        Of the angle of incidence.
+    along_m : (n,) float64
+        Where the ray meets the wall: told by its direction alone, as a point's own place depends on its range.
+    offset_m : (n,) float64
+        Of the point before the wall.
+    """
+
+    group: np.ndarray
+    beam: np.ndarray
+    cosine: np.ndarray
+    along_m: np.ndarray
+    offset_m: np.ndarray
+
+    def of(self, chosen):
+        """Return those that are chosen, (n,) bool, their groups renumbered."""
+        parts = (getattr(self, name)[chosen] for name in ("beam", "cosine", "along_m", "offset_m"))
+        return _Hits(np.unique(self.group[chosen], return_inverse=True)[1], *parts)
+
+    @property
+    def n_groups(self):
+        """How many groups there are."""
+        return int(self.group.max(initial=-1)) + 1
+
+    def summed(self, values):
+        """Return sums of values (n,) by group."""
+        return np.bincount(self.group, values, self.n_groups)
+
+    def level(self, values):
+        """Return values (n,) without the best line along the wall of each group."""
+        count = self.summed(np.ones(len(values)))
+        values = values - (self.summed(values) / count)[self.group]
+        along_m = self.along_m - (self.summed(self.along_m) / count)[self.group]
+        slope = self.summed(values * along_m) / np.maximum(self.summed(along_m**2), _TINY)
+        return values - slope[self.group] * along_m
+
+
+def estimate_range_bias(rays, segments, settings, band_m, up):
+    """Estimate the constant errors of ranges.
+
+    The offsets of a scan's points before a wall are a line along it, for where the wall is, less the error of the beam
+    times the cosine: linear least squares over all scans and walls, errors being about 0 within `sigma_m` beforehand.
+    It is made twice, the second time without the walls that are not flat: those that are bent otherwise than so.
+
+    Parameters
+    ----------
+    rays : ray_set.RaySet
+    segments : dict of str to (n,) array
+        The columns of `schemas.WALLS`; those of other scans than the rays' say nothing.
+    settings : RangeSettings
+    band_m : float
+        Points this near to a segment are of it.
+    up : (s, 3) float
+        The axis of each scan's sensor that its beams are inclined to, in the map frame.
+
+    Returns
+    -------
+    (181,) float64
+        Metres that ranges are too long by, by the beam's elevation in whole degrees from -90; 0 where not known.
+    """
+    error_m = np.zeros(181)
+    known = np.isin(segments["scan_id"], rays.scan_ids)
+    if settings.sigma_m == 0 or not known.any():
+        return error_m
+    segments = {name: values[known] for name, values in segments.items()}
+    hits = _hits(rays, segments, settings, band_m, up)
+    hits = hits.of(hits.summed(np.ones(len(hits.group)))[hits.group] >= _LEAST_OF_GROUP)
+    beams, beam = np.unique(hits.beam, return_inverse=True)
+    if len(beams):
+        hits = replace(hits, beam=beam)
+        hits = hits.of(_are_flat(hits, _solved(hits, len(beams), settings.sigma_m))[hits.group])
+        error_m[beams] = _solved(hits, len(beams), settings.sigma_m)
+    return error_m
+
+
+def remove_range_bias(rays, error_m, up):
+    """Return rays with ranges shorter by `error_m` (181,), as `estimate_range_bias` returns it."""
+    if not error_m.any():
+        return rays
+    moved, start = np.empty_like(rays.stacked.xyz_m), 0
+    for xyz_m, sensor_m, axis in zip(rays.xyz_m, rays.sensors_m, up, strict=True):
+        way = xyz_m - sensor_m
+        range_m = np.maximum(_length(way), _TINY)
+        way *= (error_m[_degrees(way @ axis / range_m)] / range_m)[:, None]
+        np.subtract(xyz_m, way, out=moved[start : start + len(way)])
+        start += len(way)
+    return rays.with_ranges(moved)
+
+
+def _hits(rays, segments, settings, band_m, up):
+    scan = np.searchsorted(rays.scan_ids, segments["scan_id"])
+    first, last = (
+        np.column_stack([segments[f"x{i}_m"], segments[f"y{i}_m"]]).astype(float) for i in (0, 1)
+    )
+    normal = np.column_stack([segments["nx"], segments["ny"]]).astype(float)
+    side_m = np.einsum("ij,ij->i", rays.sensors_m[scan, :2] - first, normal)
+    end = (last - first) * np.minimum(_END_M / np.maximum(np.hypot(*(last - first).T), _TINY), 0.5)[
+        :, None
+    ]
+    rows, group = ray_set.sample_rows_between(
+        rays, np.stack([first + end, last - end]), scan, _MOST_POINTS
+    )
+    xyz_m = rays.stacked.xyz_m.take(rows, axis=0)
+    offset_m = np.einsum("ij,ij->i", xyz_m[:, :2] - first[group], normal[group])
+    kept = np.abs(offset_m) <= band_m
+    if not rays.planar:
+        kept &= (xyz_m[:, 2] >= segments["z_min_m"][group]) & (
+            xyz_m[:, 2] <= segments["z_max_m"][group]
+        )
+    xyz_m, group, offset_m = xyz_m[kept], group[kept], offset_m[kept]
+    way = xyz_m - rays.sensors_m[scan[group]]
+    way /= np.maximum(_length(way), _TINY)[:, None]
+    cosine = -np.einsum("ij,ij->i", way[:, :2], normal[group])
+    along = way[:, 1] * normal[group, 0] - way[:, 0] * normal[group, 1]
+    beam = _degrees(np.einsum("ij,ij->i", way, up[scan[group]]))
+    found = _Hits(group, beam, cosine, side_m[group] * along / np.maximum(cosine, _TINY), offset_m)
+    return found.of(cosine >= np.cos(np.radians(settings.max_incidence_deg)))
+
+
+def _length(way):
+    return np.sqrt(np.einsum("ij,ij->i", way, way))
+
+
+def _degrees(sine):
+    """Return elevations in whole degrees from -90."""
+    return np.rint(np.degrees(np.arcsin(np.clip(sine, -1.0, 1.0)))).astype(np.int64) + 90
+
+
+def _solved(hits, n_beams, sigma_m):
+    """Return the errors (n_beams,) that explain offsets best; 0 without any.
+
+    Generalised least squares: a line along each wall is free, and each wall has a bow of its own that looks just like
+    an error that all beams have in common: of `_BOW_M` in the mean of squares, or of what is left of bows in the end.
+    """
+    if hits.n_groups == 0:
+        return np.zeros(n_beams)
+    offset_m, bow = hits.level(hits.offset_m), hits.level(hits.cosine)
+    count = hits.summed(np.ones(len(bow)))
+    noise_m2 = max(np.mean(offset_m**2), _TINY**2)
+    along_m = hits.along_m - (hits.summed(hits.along_m) / count)[hits.group]
+    along_m /= np.sqrt(np.maximum(hits.summed(along_m**2), _TINY))[hits.group]
+    bow /= np.sqrt(np.maximum(hits.summed(bow**2), _TINY))[hits.group]
+    cell = hits.group * n_beams + hits.beam
+    level, tilt, bowed = (
+        np.bincount(cell, hits.cosine * values, hits.n_groups * n_beams).reshape(-1, n_beams)
+        for values in (1 / np.sqrt(count)[hits.group], along_m, bow)
+    )
+    straight = (
+        np.diag(np.bincount(hits.beam, hits.cosine**2, n_beams)) - level.T @ level - tilt.T @ tilt
+    )
+    said, bow_m = (
+        -np.bincount(hits.beam, hits.cosine * offset_m, n_beams),
+        hits.summed(offset_m * bow),
+    )
+    prior, bow_m2 = np.eye(n_beams) * noise_m2 / sigma_m**2, _BOW_M**2
+    for _ in range(_PASSES):
+        own = 1 / (1 + noise_m2 / (bow_m2 * count))
+        normal, right = straight - (own[:, None] * bowed).T @ bowed, said + bowed.T @ (own * bow_m)
+        error_m = np.linalg.solve(normal + prior, right)
+        left_m = bow_m + bowed @ error_m
+        bow_m2 = max(_BOW_M**2, float(np.mean((left_m**2 - noise_m2) / count)))
+    return error_m
+
+
+def _are_flat(hits, error_m):
+    """Tell which groups look flat when the errors of the beams, and any that all have in common, are taken out.
+
+    The means of offsets in parts of such a wall differ from 0 by noise alone, in the mean of their squares.
+    """
+    offset_m, cosine = (
+        hits.level(hits.offset_m + error_m[hits.beam] * hits.cosine),
+        hits.level(hits.cosine),
+    )
+    common_m = hits.summed(offset_m * cosine) / np.maximum(hits.summed(cosine**2), _TINY)
+    offset_m -= common_m[hits.group] * cosine
+    noise_m2 = np.median(hits.summed(offset_m**2) / hits.summed(hits.cosine**2))
+    low_m, high_m = np.full(hits.n_groups, np.inf), np.full(hits.n_groups, -np.inf)
+    np.minimum.at(low_m, hits.group, hits.along_m)
+    np.maximum.at(high_m, hits.group, hits.along_m)
+    share = (hits.along_m - low_m[hits.group]) / np.maximum(high_m - low_m, _TINY)[hits.group]
+    cell = hits.group * _BINS + np.minimum((share * _BINS).astype(np.int64), _BINS - 1)
+    summed, spread = (
+        np.bincount(cell, v, hits.n_groups * _BINS) for v in (offset_m, noise_m2 * hits.cosine**2)
+    )
+    square = (summed**2 / np.maximum(spread, _TINY**2)).reshape(-1, _BINS).sum(axis=1)
+    return square <= _MOST_BENT * np.maximum((spread.reshape(-1, _BINS) > 0).sum(axis=1) - 3, 1)

@@ -1,0 +1,128 @@
+"""Walls seen in single scans, merged into the faces of the plan, each standing once."""
+
+import math
+from dataclasses import dataclass, fields
+
+from scanplan.geometry import lines
+from scanplan.plan import face_candidates, face_groups
+
+
+@dataclass(frozen=True)
+class MergeSettings:
+    """When segments are one face, and when a face is believed.
+
+    Attributes
+    ----------
+    max_angle_deg : float, above 0, below 90
+        Segments whose normals turn further from the face's are not of it.
+    tolerance_m : float, > 0
+        Both ends of every segment of a face lie this close to it: what registration may be wrong by.
+    merge_distance_m : float, >= tolerance_m
+        Of two faces of one side that run closer than this, the stronger is drawn.
+    ghost_distance_m : float, >= 0
+        Likewise up to this distance, if the weaker shows
+    ghost_share : float, 0 to 1
+        less than this share of the stronger one's points per metre.
+    max_gap_m : float, >= 0
+        A longer pause along a face stays open.
+    align_gap_m : float, >= 0
+        Faces on either side of a pause up to this length share one line where their segments allow (a door in a
+        wall). Up to `max_gap_m` it has no effect.
+    registration_sigma_m : float, > 0
+        Standard deviation of a registered scan's place, for the weights of the fit.
+    corner_m : float, >= 0
+        Ends this close to where two faces cross are moved there.
+    min_length_m : float, >= 0
+        Shorter faces are dropped,
+    min_points_per_m : float, >= 0
+        thinner ones too,
+    min_scans : int, >= 1
+        and those that fewer scans show (`faces`, by the points of all of them),
+    lone_length_m : float, >= 0
+        unless they are this long.
+    """
+
+    max_angle_deg: float
+    tolerance_m: float
+    merge_distance_m: float
+    ghost_distance_m: float
+    ghost_share: float
+    max_gap_m: float
+    align_gap_m: float
+    registration_sigma_m: float
+    corner_m: float
+    min_length_m: float
+    min_points_per_m: float
+    min_scans: int
+    lone_length_m: float
+
+    def __post_init__(self):
+        wrong = [f.name for f in fields(self) if not 0 <= getattr(self, f.name) < math.inf]
+        wrong += [
+            name
+            for name in ("max_angle_deg", "tolerance_m", "registration_sigma_m")
+            if not getattr(self, name)
+        ]
+        wrong += ["max_angle_deg"] * (self.max_angle_deg >= 90)
+        wrong += ["ghost_share"] * (self.ghost_share > 1)
+        wrong += ["merge_distance_m"] * (self.merge_distance_m < self.tolerance_m)
+        if wrong:
+            raise ValueError(f"merge settings out of range: {', '.join(dict.fromkeys(wrong))}")
+
+
+def merge_segments(walls, settings):
+    """Merge the wall segments of many scans into pieces of common lines.
+
+    Segments are grouped around common lines (`face_groups`); each group's line is cut at pauses, what too little
+    supports is dropped, and so is what weaker faces draw over stronger ones (`face_candidates`). The two sides of a wall
+    are different lines. Neither the order of the rows nor the place and turn of the map frame matters.
+
+    Parameters
+    ----------
+    walls : dict of str to (n,) array
+        The columns of `schemas.WALLS`.
+    settings : MergeSettings
+
+    Returns
+    -------
+    list of face_candidates.FaceCandidate
+        Those of one group share one line.
+
+    Raises
+    ------
+    ValueError
+        If a number of the walls is not finite.
+    """
+    segments = lines.observed_segments(walls, registration_sigma_m=settings.registration_sigma_m)
+    if len(segments.start) == 0:
+        return []
+    groups = face_groups.group_segments(
+        segments,
+        max_angle_rad=math.radians(settings.max_angle_deg),
+        tolerance_m=settings.tolerance_m,
+        reach_m=max(settings.max_gap_m, settings.align_gap_m),
+    )
+    cut = [
+        p
+        for members in groups
+        for p in face_candidates.cut_candidates(segments, members, max_gap_m=settings.max_gap_m)
+    ]
+    return _once(cut, settings)
+
+
+def _once(pieces, settings):
+    """Return the pieces that are supported, none beside a stronger one."""
+    pieces = face_candidates.remove_doubles(
+        [piece for piece in pieces if _is_supported(piece, settings)],
+        max_angle_rad=math.radians(settings.max_angle_deg),
+        distance_m=settings.merge_distance_m,
+        ghost_distance_m=settings.ghost_distance_m,
+        ghost_share=settings.ghost_share,
+    )
+    return [piece for piece in pieces if _is_supported(piece, settings)]
+
+
+def _is_supported(piece, settings):
+    """Tell whether a piece is worth being looked at: how many scans show it, all points tell better."""
+    is_dense = piece.n_points >= max(1, settings.min_points_per_m * piece.length_m)
+    return is_dense and piece.length_m >= settings.min_length_m

@@ -1,0 +1,1 @@
+"""What the workflow itself asks: settings, datasets, which code a stage depends on."""

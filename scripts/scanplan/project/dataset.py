@@ -1,0 +1,236 @@
+"""The datasets of a run: what each is called, where its files are, and what is made of it.
+
+No heavy imports: this runs while the workflow is being parsed.
+"""
+
+import os
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from scanplan.errors import StageError
+from scanplan.project import dataset_files, provenance
+from scanplan.project.settings import read_own_layers, settings_of_dataset
+
+DEMO = "demo"
+RESERVED = "thesis"
+"""Name under results/ that the thesis's experiments have to themselves."""
+
+_PLAN = tuple(f"plan/{t}" for t in ("faces", "walls", "openings", "rooms", "evidence", "free"))
+_TABLES = ("poses", "registration", "edges", "scans", "hulls", *_PLAN)
+_DRAWN = (
+    *(f"plan/plan.{suffix}" for suffix in ("geojson", "dxf", "svg", "pdf", "ifc")),
+    "plan/map.pgm",
+    "plan/map.yaml",
+    *(f"figures/{f}.svg" for f in ("registration", "scans", "area", "walls")),
+    "report.html",
+)
+_EVALUATION = ("walls", "walls_aligned", "oracle", "plan", "poses", "seconds")
+
+
+@dataclass(frozen=True)
+class Dataset:
+    """A survey that results are made of.
+
+    Attributes
+    ----------
+    name : str
+        Of its folder under results/.
+    settings : dict
+        Checked, of all sections.
+    recordings : tuple of str
+        Files that hold its clouds and poses.
+    truth : tuple of str or None
+        truth.geojson and truth_poses.tum, where the true walls and poses are known.
+    building : str or None
+        The file of the building that it is simulated in; None of a recorded survey.
+    layers : tuple of settings.Layer
+        Where its settings come from, beside the defaults.
+    source : str
+        What its results are made of, as `provenance` compares it.
+    notes : tuple of str
+        What the user should know of it before it is run.
+    """
+
+    name: str
+    settings: dict
+    recordings: tuple
+    truth: tuple | None = None
+    building: str | None = None
+    layers: tuple = ()
+    source: str = ""
+    notes: tuple = ()
+
+
+def list_choices(schema, *keys):
+    """Return what a setting may be, in the schema's order, as the workflow's list of it."""
+    for key in keys:
+        schema = schema["properties"][key]
+    return list(schema["enum"])
+
+
+def name_datasets(given):
+    """Name the datasets of a run.
+
+    Parameters
+    ----------
+    given : None, path-like or list of path-like
+        A folder, a recording or the file of a simulated survey, or several; the demo if None.
+
+    Returns
+    -------
+    dict of str to (str or None)
+        Name to path, in the order given; the demo has no path.
+
+    Raises
+    ------
+    StageError
+        If two would share a folder of results, or one would take that of the thesis's experiments.
+    """
+    if given is None:
+        return {DEMO: None}
+    paths = {}
+    for path in map(str, given if isinstance(given, list) else [given]):
+        name = dataset_files.dataset_name(path)
+        if name in paths and provenance.identify_source(path) == provenance.identify_source(
+            paths[name]
+        ):
+            raise StageError(f"{path}: is given twice, first as {paths[name]}; leave one out")
+        if name in paths:
+            raise StageError(
+                f"{path}: its results would be called {name} like those of {paths[name]}; rename one of them"
+            )
+        if name == RESERVED:
+            raise StageError(
+                f"{path}: results/{name} is the place of the thesis's experiments; rename the dataset"
+            )
+        paths[name] = path
+    return paths
+
+
+def describe_dataset(name, path, *, defaults, given, schema, drawings):
+    """Gather what is known of a dataset before anything is run.
+
+    Parameters
+    ----------
+    name : str
+    path : path-like or None
+        A folder, a recording or the file of a simulated survey; the demo if None.
+    defaults, schema : dict
+        See `settings.settings_of_dataset`.
+    given : sequence of settings.Layer
+        The command line's settings.
+    drawings : path-like
+        The folder of the drawings that settings may name.
+
+    Returns
+    -------
+    Dataset
+
+    Raises
+    ------
+    StageError
+        If files or settings are missing or wrong.
+    """
+    is_survey = path is None or dataset_files.is_survey_file(path)
+    if is_survey and path is not None and not Path(path).is_file():
+        raise StageError(
+            f"{path}: does not exist; give a YAML file with a section `simulate`, a folder or a recording"
+        )
+    if is_survey and path is not None and dataset_files.is_rosbag2_metadata(path):
+        raise StageError(
+            f"{path}: describes a rosbag2 recording; give its folder as the dataset, {Path(path).parent}"
+        )
+    own = read_own_layers(path if is_survey else Path(path, dataset_files.SETTINGS_FILE))
+    layers = (*own, *given)
+    known = {"layers": layers, "source": provenance.identify_source(path)}
+    settings = settings_of_dataset(defaults, layers, schema)
+    if is_survey:
+        if path is not None and not any("simulate" in layer.values for layer in own):
+            raise StageError(
+                f"{path}: has no section `simulate`, which says what is surveyed; to use it as settings of a dataset,"
+                " give it as CONFIG (--configfile)"
+            )
+        return replace(describe_simulated(name, settings, drawings), **known)
+    recordings = tuple(dataset_files.find_files(path))
+    truth = _truth_beside(Path(path))
+    return Dataset(
+        name, settings, recordings, truth, notes=tuple(dataset_files.list_overlooked(path)), **known
+    )
+
+
+def describe_simulated(name, settings, drawings):
+    """Return the dataset that a simulation leaves under results/.
+
+    Raises
+    ------
+    StageError
+        If there is no such building.
+    """
+    building = settings["simulate"]["building"]
+    drawing = Path(drawings, f"{building}.geojson")
+    if not drawing.is_file() and not Path(building).is_file():
+        ours = ", ".join(sorted(file.stem for file in Path(drawings).glob("*.geojson")))
+        raise StageError(
+            f"simulate.building: {building} is neither a file nor a drawing of ours ({ours})"
+        )
+    files = survey_files(settings["simulate"]["recording"], name)
+    return Dataset(
+        name,
+        settings,
+        (files["recording"],),
+        (files["truth"], files["true_poses"]),
+        os.path.relpath(drawing) if drawing.is_file() else building,
+    )
+
+
+def survey_files(suffix, name="{dataset}"):
+    """Return the files of a simulated survey by what they are, its recording with the given suffix."""
+    folder = f"results/{name}/survey"
+    return {
+        "recording": f"{folder}/survey.{suffix}",
+        "truth": f"{folder}/truth.geojson",
+        "true_poses": f"{folder}/truth_poses.tum",
+        "true_trajectory": f"{folder}/truth_trajectory.tum",
+    }
+
+
+def list_results(found, methods, extractors):
+    """List everything that the workflow makes of a dataset, but the recording of a simulated one.
+
+    Parameters
+    ----------
+    found : Dataset
+    methods, extractors : list of str
+
+    Returns
+    -------
+    list of str
+    """
+    files = [f"{table}.parquet" for table in _TABLES]
+    files += [f"selection/{method}.parquet" for method in methods]
+    files += [f"walls/{extractor}.parquet" for extractor in extractors]
+    files += _DRAWN
+    if found.truth:
+        files += [f"evaluation/{table}.parquet" for table in _EVALUATION]
+        files += ["figures/evaluation.svg", "figures/oracle_shares.svg"]
+    return [f"results/{found.name}/{file}" for file in files]
+
+
+def find_truth(found):
+    """Return truth.geojson and truth_poses.tum of a dataset.
+
+    Raises
+    ------
+    StageError
+        If its truth is not known.
+    """
+    if found.truth is None:
+        raise StageError(
+            f"{found.name}: has no truth to be evaluated against; put truth.geojson and truth_poses.tum into its folder"
+        )
+    return found.truth
+
+
+def _truth_beside(folder):
+    files = [folder / name for name in dataset_files.TRUTH_FILES]
+    return tuple(map(str, files)) if all(file.is_file() for file in files) else None

@@ -1,0 +1,164 @@
+"""Floor that rays went over: what each scan sees of it, and all of them together."""
+
+import numpy as np
+import shapely
+from shapely.geometry import MultiPolygon, Polygon
+
+_SECTOR_RAD = np.radians(0.5)
+_RAYS_A_SECTOR = 2.2
+_COLUMNS_A_SECTOR = 1.1
+# ASSUME wider gaps than this are the end of a sensor's field, or openings that nothing came back from
+_WIDEST_RAD = np.radians(10)
+_SIMPLIFY_M = 0.02
+_SPIKE_M = 0.04
+GRID_M = 1e-3
+"""Corners of grounds lie on this."""
+
+
+def free_polygons(rays):
+    """Return what each scan's rays went over, as polygons.
+
+    In every half degree (more where a sensor's rays are further apart) a ray of the longest tenth tells how far one
+    can see; where no ray came back from, nothing is known. The outline is true within 2 cm; spikes thinner than 8 cm
+    are taken off.
+
+    Parameters
+    ----------
+    rays : ray_set.RaySet
+
+    Returns
+    -------
+    list of shapely geometry
+        A polygon, polygons, or an empty one, per scan.
+    """
+    return [
+        _star(sensor_m[:2], azimuth, np.hypot(*(xyz_m[:, :2] - sensor_m[:2]).T))
+        for sensor_m, azimuth, xyz_m in zip(
+            rays.sensors_m, rays.azimuth_rad, rays.xyz_m, strict=True
+        )
+    ]
+
+
+def column_spacing_rad(azimuth_rad):
+    """Return the angle between a scan's columns of rays: half of the directions between rays lie in gaps up to this.
+
+    The median of the gaps themselves says nothing of a sensor with several beams, whose rays stand one above the
+    other: nearly all of them are next to none.
+
+    Parameters
+    ----------
+    azimuth_rad : (n,) float64, increasing
+
+    Returns
+    -------
+    float
+        0 where there are no two directions.
+    """
+    steps_rad = np.sort(np.diff(azimuth_rad))
+    steps_rad = steps_rad[steps_rad <= _WIDEST_RAD]
+    turned_rad = np.cumsum(steps_rad)
+    return (
+        float(steps_rad[np.searchsorted(turned_rad, turned_rad[-1] / 2)]) if len(steps_rad) else 0.0
+    )
+
+
+def _star(origin_m, azimuth_rad, range_m):
+    steps_rad = np.diff(azimuth_rad)
+    steps_rad = steps_rad[steps_rad > 0]
+    rays_rad = _RAYS_A_SECTOR * float(np.median(steps_rad)) if len(steps_rad) else 0.0
+    width_rad = max(_SECTOR_RAD, rays_rad, _COLUMNS_A_SECTOR * column_spacing_rad(azimuth_rad))
+    count = max(int(2 * np.pi / width_rad), 3)
+    width_rad = 2 * np.pi / count
+    sector = np.minimum(((azimuth_rad + np.pi) / width_rad).astype(np.int64), count - 1)
+    reach_m = np.zeros(count)
+    first = np.searchsorted(sector, np.arange(count + 1))
+    number = np.diff(first)
+    # a sector a row: much faster to sort than all rays at once
+    by_sector = np.full((count, number.max(initial=0)), np.inf)
+    by_sector[sector, np.arange(len(sector)) - first[sector]] = range_m
+    by_sector.sort(axis=1)
+    # not the longest of all: one stray point would open a way through a wall
+    seen = np.flatnonzero(number)
+    reach_m[seen] = by_sector[seen, (0.9 * (number[seen] - 1)).astype(np.int64)]
+    edge = -np.pi + width_rad * np.arange(count + 1)
+    begin, end = (
+        np.column_stack([np.cos(e), np.sin(e)]) * reach_m[:, None] for e in (edge[:-1], edge[1:])
+    )
+    corners = origin_m + np.stack([begin, end], axis=1).reshape(-1, 2)
+    star = shapely.make_valid(Polygon(corners)).simplify(_SIMPLIFY_M)
+    return union_on_grid(open_polygons(star, _SPIKE_M))
+
+
+def union_on_grid(polygons):
+    """Return the union of polygons, polygons whose corners are on a grid of a millimetre."""
+    return (
+        polygon_parts(shapely.union_all(polygons, grid_size=GRID_M))
+        if len(polygons)
+        else MultiPolygon()
+    )
+
+
+def difference_on_grid(ground, taken):
+    """Return what of ground is not taken, polygons whose corners are on a grid of a millimetre.
+
+    Without a grid GEOS 3.14 may return nothing where the ground just fills a hole of what is taken.
+    """
+    return polygon_parts(shapely.difference(polygon_parts(ground), taken, grid_size=GRID_M))
+
+
+def open_polygons(ground, half_m):
+    """Return the polygons of ground without what is narrower than twice a width, their corners sharp.
+
+    Each is grown by itself and within the ground: at a blunt, narrow end the mitre reaches on, maybe through a wall or
+    into what a neck leads to.
+
+    Returns
+    -------
+    list of shapely.Polygon
+    """
+    ground, found = polygon_parts(ground), []
+    for core in polygon_parts(ground.buffer(-half_m, join_style="mitre")).geoms:
+        grown = shapely.intersection(
+            core.buffer(half_m, join_style="mitre"), ground, grid_size=GRID_M
+        )
+        found += [p for p in polygon_parts(grown).geoms if p.intersects(core)]
+    return found
+
+
+def polygon_parts(geometry):
+    """Return what of a geometry has an area."""
+    parts = [p for p in shapely.get_parts(geometry) if p.geom_type == "Polygon" and p.area > 0]
+    parts += [
+        q
+        for p in shapely.get_parts(geometry)
+        if p.geom_type == "MultiPolygon"
+        for q in p.geoms
+        if q.area > 0
+    ]
+    return MultiPolygon(parts)
+
+
+def wall_strips(walls, unpaired_m):
+    """Return the ground that walls stand on, with their openings: a polygon per wall.
+
+    Parameters
+    ----------
+    walls : list of walls.PlanWall
+    unpaired_m : float
+        How thick a wall is taken for of which one side is known; it lies behind that.
+    """
+    return [_ground(wall, wall.low_m, wall.high_m, unpaired_m) for wall in walls]
+
+
+def opening_polygon(wall, gap, unpaired_m):
+    """Return the ground of an opening in a wall, a polygon a little deeper than the wall."""
+    return _ground(wall, gap.low_m, gap.high_m, unpaired_m).buffer(1e-3, join_style="mitre")
+
+
+def _ground(wall, low_m, high_m, unpaired_m):
+    left_m, right_m = (
+        (0.0, -unpaired_m) if np.isnan(wall.thickness_m) else (wall.half_m, -wall.half_m)
+    )
+    start, end = wall.line.at(np.array([low_m, high_m]))
+    across = np.array([right_m, left_m])[:, None] * wall.line.normal
+    return Polygon([start + across[0], end + across[0], end + across[1], start + across[1]])

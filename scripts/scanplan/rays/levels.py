@@ -1,0 +1,50 @@
+"""The heights of a storey's floor and ceiling, from the points of its scans."""
+
+import numpy as np
+
+_LAYER_M = 0.05
+_SEARCH_M = 0.5
+_LEAST_SHARE = 1e-4
+_LEAST_POINTS = 30
+_PROMINENT = 1.5
+
+
+def find_floor_and_ceiling(z_m):
+    """Return the heights of floor and ceiling, NaN where none was seen.
+
+    A floor or ceiling is the fullest layer of 5 cm within half a metre of the lowest or highest points, if it and the
+    fuller one beside it hold half as many again as two of the next 25 cm do: walls alone fill all layers alike.
+
+    Parameters
+    ----------
+    z_m : (n,) float
+        Heights of points of scans in space, map frame; a few may be wrong.
+
+    Returns
+    -------
+    floor_z_m, ceiling_z_m : float
+    """
+    z_m = np.asarray(z_m, float)
+    z_m = z_m[np.isfinite(z_m)]
+    floor_z_m, ceiling_z_m = _lowest_level(z_m), -_lowest_level(-z_m)
+    if ceiling_z_m - floor_z_m < 2 * _SEARCH_M:
+        return floor_z_m, np.nan
+    return floor_z_m, ceiling_z_m
+
+
+def _lowest_level(z_m):
+    if len(z_m) < _LEAST_POINTS:
+        return np.nan
+    low_m = z_m.min()
+    counts = np.bincount(np.floor((z_m - low_m) / _LAYER_M).astype(np.int64))
+    # stray points far below are no storey
+    first = int(np.argmax(counts >= max(_LEAST_POINTS, _LEAST_SHARE * len(z_m))))
+    n = round(_SEARCH_M / _LAYER_M)
+    at = first + int(counts[first : first + n].argmax())
+    # a level may lie across the border of two layers
+    level = counts[at] + max(counts[max(at - 1, 0) : at].sum(), counts[at + 1 : at + 2].sum())
+    beyond = counts[at + 2 : at + 2 + n // 2]
+    if len(beyond) and level < _PROMINENT * 2 * beyond.mean():
+        return np.nan
+    middle_m = low_m + (at + 0.5) * _LAYER_M
+    return float(np.median(z_m[np.abs(z_m - middle_m) <= 1.5 * _LAYER_M]))

@@ -1,0 +1,107 @@
+"""The free space around the sensor that one scan looked through: a star-shaped polygon that ends at the returns.
+
+What is behind a return is not seen, so the polygon does not leak through walls, as hulls do.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from scanplan.extraction import segments
+
+_FLOOR_PERCENTILE = 1
+_AT_SENSOR_M = (
+    0.01  # where nothing is known to be free; above 0, so that the outline never touches itself
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class VisibilitySettings:
+    """How far is looked, and at what.
+
+    Attributes
+    ----------
+    range_m : float
+        Nothing farther is looked at.
+    sector_deg : float
+        The turn is divided into sectors of this angle, or a little less; at least twice that between beams.
+    min_height_m, max_height_m : float
+        Above the scan's floor: what ends the view. The floor does not, and above a door is wall. For 3-D scans alone.
+    """
+
+    range_m: float
+    sector_deg: float
+    min_height_m: float
+    max_height_m: float
+
+
+def scan_free_space(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
+    """Return one scan's row of `schemas.VISIBILITY`.
+
+    A sector is free up to its nearest return, a corner between two sectors lies at the nearer one's: where a wall
+    crosses a sector both its ends there are on or beyond the outline, and so is all between. That leaves what lies
+    between two beams, such as the last centimetres of a wall that ends. A sector without any return is not known to be
+    free.
+
+    Parameters
+    ----------
+    scan_id : int
+    xyz_m : (n, 3) float
+        The scan's points, map frame; their order does not matter.
+    sensor_xyz_m : (3,) float
+        The sensor's position, map frame.
+    planar : bool
+        Whether all points are in one horizontal plane.
+    settings : Settings
+
+    Returns
+    -------
+    dict
+        `scan_id`, `area_m2` and `geometry` (WKB).
+
+    Raises
+    ------
+    ValueError
+        If a coordinate is not finite.
+    """
+    xy_m = _obstacles(segments.centre_on_sensor(xyz_m, sensor_xyz_m), planar, settings)
+    n_sectors = max(3, int(np.ceil(360 / settings.sector_deg - 1e-9)))
+    sector = (
+        np.floor(np.arctan2(xy_m[:, 1], xy_m[:, 0]) / (2 * np.pi) * n_sectors).astype(np.int64)
+        % n_sectors
+    )
+    free_m = np.full(n_sectors, np.inf)
+    np.minimum.at(free_m, sector, np.hypot(*xy_m.T))
+    free_m = np.where(
+        np.isfinite(free_m), np.clip(free_m, _AT_SENSOR_M, settings.range_m), _AT_SENSOR_M
+    )
+    # sector i is from corner i to corner i + 1
+    corner_m, angle_rad = (
+        np.minimum(free_m, np.roll(free_m, 1)),
+        np.arange(n_sectors) * (2 * np.pi / n_sectors),
+    )
+    outline_m = corner_m[:, None] * np.column_stack([np.cos(angle_rad), np.sin(angle_rad)])
+    polygon = shapely.polygons(outline_m + np.asarray(sensor_xyz_m, float)[:2])
+    return {
+        "scan_id": scan_id,
+        "area_m2": polygon.area,
+        "geometry": shapely.to_wkb(polygon, byte_order=1),
+    }
+
+
+def visibility_columns(rows):
+    """Return the columns of `schemas.VISIBILITY`, one row a scan."""
+    return {
+        "scan_id": np.array([row["scan_id"] for row in rows], np.int32),
+        "area_m2": np.array([row["area_m2"] for row in rows]),
+        "geometry": np.array([row["geometry"] for row in rows], object),
+    }
+
+
+def _obstacles(points, planar, settings):
+    """Return x and y of the returns that end the view."""
+    if planar or len(points) == 0:
+        return points[:, :2]
+    height_m = points[:, 2] - np.percentile(points[:, 2], _FLOOR_PERCENTILE)
+    return points[(settings.min_height_m <= height_m) & (height_m <= settings.max_height_m), :2]

@@ -1,0 +1,1 @@
+"""The motion of the sensor during and between its sweeps."""

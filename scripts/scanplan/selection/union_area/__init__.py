@@ -1,0 +1,1 @@
+"""The area of a growing union of polygons, brought up to date only where it must be."""

@@ -1,0 +1,86 @@
+"""Jobs on several cores whose results come back in order."""
+
+import multiprocessing
+from collections import deque
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+
+from scanplan.errors import StageError
+from scanplan.stage import log
+
+_WAITING_PER_CORE = 2
+_fault = None
+
+
+@contextmanager
+def open_pool(threads, setup=None, *state):
+    """Open a pool of worker processes; with one thread there is none, and the work is done here.
+
+    Parameters
+    ----------
+    threads : int
+    setup : callable, optional
+        `setup(*state)` is called once in every process that works, before its first job.
+
+    Yields
+    ------
+    callable
+        `run(function, jobs)`: iterates over `function(*job)` of all jobs, in their order. Jobs are taken from their
+        iterable as workers become free, so that few wait.
+
+    Raises
+    ------
+    StageError
+        If a worker is ended from outside.
+    """
+    if threads <= 1:
+        _begin(setup, state)
+        yield lambda function, jobs: (function(*job) for job in jobs)
+        return
+    # a forked child of a process with threads (Arrow, TBB) can hang, a spawned one cannot
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(threads, context, _begin_worker, (setup, state)) as executor:
+        try:
+            yield lambda function, jobs: _in_order(
+                executor, function, jobs, threads * _WAITING_PER_CORE
+            )
+        except BrokenProcessPool:
+            raise StageError(
+                "a worker process was ended from outside, perhaps for want of memory; the same command goes on from"
+                " here, with fewer --cores in less memory"
+            ) from None
+        except BaseException:
+            executor.shutdown(wait=False, cancel_futures=True)
+            raise
+
+
+def _begin(setup, state):
+    if setup is not None:
+        setup(*state)
+
+
+def _begin_worker(setup, state):
+    global _fault
+    log.end_with_parent()
+    try:
+        _begin(setup, state)
+    except Exception as error:
+        # raised here, it would look as if the process had been ended from outside
+        _fault = error
+
+
+def _work(function, job):
+    if _fault is not None:
+        raise _fault
+    return function(*job)
+
+
+def _in_order(executor, function, jobs, most_waiting):
+    waiting = deque()
+    for job in jobs:
+        waiting.append(executor.submit(_work, function, job))
+        while waiting and (waiting[0].done() or len(waiting) > most_waiting):
+            yield waiting.popleft().result()
+    while waiting:
+        yield waiting.popleft().result()

@@ -1,0 +1,396 @@
+"""The columns of the tables between the stages.
+
+Coordinates are metres in the map frame, z up; stamps nanoseconds; quaternions x, y, z, w. Units are in the names.
+"""
+
+from dataclasses import dataclass
+
+XYZ = ("x_m", "y_m", "z_m")
+QUAT = ("qx", "qy", "qz", "qw")
+_POSE = dict.fromkeys((*XYZ, *QUAT), "float64")
+_SEGMENT = dict.fromkeys(("x0_m", "y0_m", "x1_m", "y1_m", "nx", "ny"), "float64")
+
+
+@dataclass(frozen=True)
+class Schema:
+    """A table's name, version, columns (name to Arrow type, in order) and the columns its rows are sorted by."""
+
+    name: str
+    version: int
+    columns: dict
+    sorted_by: tuple
+    geometry: bool = False
+
+
+POSES = Schema(
+    "poses",
+    1,
+    {"scan_id": "int32", "t_ns": "int64", **_POSE, "gap_s": "float64", "covered": "bool"},
+    ("scan_id",),
+)
+MOTION = Schema(
+    "motion",
+    1,
+    {
+        "t_ns": "int64",
+        "piece": "int32",
+        **_POSE,
+        "time_scale": "float64",
+        "time_shift_s": "float64",
+    },
+    ("t_ns",),
+)
+REGISTRATION = Schema(
+    "registration",
+    1,
+    {
+        "scan_id": "int32",
+        "t_ns": "int64",
+        "prior_fitness": "float64",
+        "refined_fitness": "float64",
+        "rmse_m": "float64",
+        "kept": "bool",
+        "reason": "string",
+        **_POSE,
+    },
+    ("scan_id",),
+)
+EDGES = Schema(
+    "edges",
+    1,
+    {
+        "source": "int32",
+        "target": "int32",
+        "kind": "string",
+        "fitness": "float64",
+        "rmse_m": "float64",
+        **_POSE,
+        "unobservable": "int32",
+        "residual_m": "float64",
+        "residual_deg": "float64",
+        "weight": "float64",
+        "inlier": "bool",
+    },
+    ("source", "target"),
+)
+CRISPNESS = Schema(
+    "crispness",
+    1,
+    {
+        "poses": "string",
+        "sigma_m": "float64",
+        "quarter_below_m": "float64",
+        "quarter_above_m": "float64",
+        "n_places": "int32",
+    },
+    ("poses",),
+)
+SCANS = Schema(
+    "scans",
+    1,
+    {"scan_id": "int32", "x_m": "float32", "y_m": "float32", "z_m": "float32"},
+    ("scan_id",),
+)
+HULLS = Schema(
+    "hulls",
+    1,
+    {
+        "scan_id": "int32",
+        "cluster": "int32",
+        "n_points": "int32",
+        "area_m2": "float64",
+        "geometry": "binary",
+    },
+    ("scan_id", "cluster"),
+    geometry=True,
+)
+OBSERVATIONS = Schema(
+    "observations",
+    1,
+    {
+        "scan_id": "int32",
+        "facing": "int32",
+        "along": "int32",
+        "across": "int32",
+        "length_m": "float64",
+    },
+    ("scan_id", "facing", "along", "across"),
+)
+VISIBILITY = Schema(
+    "visibility",
+    1,
+    {"scan_id": "int32", "area_m2": "float64", "geometry": "binary"},
+    ("scan_id",),
+    geometry=True,
+)
+SELECTION = Schema(
+    "selection",
+    3,
+    {
+        "rank": "int32",
+        "scan_id": "int32",
+        "n_points": "int64",
+        **dict.fromkeys(
+            ("gain_m2", "covered_m2", "bound_m2", "gain", "covered", "bound"), "float64"
+        ),
+    },
+    ("rank",),
+)
+WALLS = Schema(
+    "walls",
+    1,
+    {
+        "scan_id": "int32",
+        "wall": "int32",
+        **_SEGMENT,
+        "n_points": "int32",
+        "rmse_m": "float64",
+        "z_min_m": "float64",
+        "z_max_m": "float64",
+    },
+    ("scan_id", "wall"),
+)
+FACES = Schema(
+    "faces",
+    2,
+    {
+        "face": "int32",
+        **_SEGMENT,
+        "n_points": "int64",
+        "n_scans": "int32",
+        "rmse_m": "float64",
+        "z_min_m": "float64",
+        "z_max_m": "float64",
+        "state": "string",
+        "wall": "int32",
+    },
+    ("face",),
+)
+"""Surfaces of the plan: `state` is observed or inferred, `wall` the wall it is a side of (-1: of none)."""
+_CENTRELINE = dict.fromkeys(("x0_m", "y0_m", "x1_m", "y1_m"), "float64")
+PLAN_WALLS = Schema(
+    "plan_walls",
+    2,
+    {
+        "wall": "int32",
+        **_CENTRELINE,
+        "thickness_m": "float64",
+        "face_left": "int32",
+        "face_right": "int32",
+        "state": "string",
+        **dict.fromkeys(
+            (
+                "z_min_m",
+                "z_max_m",
+                "top_m",
+                "rmse_m",
+                "sigma_offset_m",
+                "sigma_end0_m",
+                "sigma_end1_m",
+            ),
+            "float64",
+        ),
+        "n_points": "int64",
+        "n_scans": "int32",
+        "verify": "bool",
+    },
+    ("wall",),
+)
+"""Walls of the plan. One seen from a single side has no thickness (NaN), and its line is that of its face."""
+OPENINGS = Schema(
+    "openings",
+    1,
+    {
+        "opening": "int32",
+        "wall": "int32",
+        "type": "string",
+        **_CENTRELINE,
+        **dict.fromkeys(("width_m", "thickness_m", "sill_m", "lintel_m"), "float64"),
+        "room_a": "int32",
+        "room_b": "int32",
+        "n_rays": "int64",
+    },
+    ("opening",),
+)
+"""Doors, windows and passages that rays went through; heights above the floor, NaN where not known; -1: no such.
+
+Rays that never came back count, too, as many as ought to have reached a window above a sill.
+"""
+ROOMS = Schema(
+    "rooms",
+    1,
+    {
+        "room": "int32",
+        **dict.fromkeys(("area_m2", "perimeter_m", "x_m", "y_m"), "float64"),
+        "closed": "bool",
+        "n_scans": "int32",
+        "geometry": "binary",
+    },
+    ("room",),
+    geometry=True,
+)
+FREE = Schema("free", 1, {"part": "int32", "geometry": "binary"}, ("part",), geometry=True)
+"""The floor that rays went over: polygons that do not overlap."""
+EVIDENCE = Schema(
+    "evidence",
+    1,
+    {"wall": "int32", "scan_id": "int32", "t_ns": "int64", "n_points": "int32"},
+    ("wall", "scan_id"),
+)
+"""Which scans show a wall of the plan, when they were taken and with how many points."""
+_WITHIN = ("005m", "010m", "015m")
+_AGREEMENT = {
+    **dict.fromkeys(("false_negative", "correct_match", "false_positive"), "float64"),
+    **{
+        f"{truth}{measure}_{within}": "float64"
+        for truth in ("", "visible_")
+        for measure in ("completeness", "correctness", "f1")
+        for within in _WITHIN
+    },
+    "n_walls": "int32",
+    **dict.fromkeys(("walls_per_true_wall", "redundancy"), "float64"),
+}
+EVALUATION = Schema(
+    "evaluation",
+    3,
+    {
+        "method": "string",
+        "extractor": "string",
+        "k": "int32",
+        **_AGREEMENT,
+        **dict.fromkeys(
+            (
+                "walls_per_true_wall_of_a_scan",
+                "seen",
+                "missed_not_seen",
+                "missed_misregistered",
+                "missed_misextracted",
+                "oracle_share",
+            ),
+            "float64",
+        ),
+    },
+    ("method", "extractor", "k"),
+)
+SECONDS = Schema(
+    "seconds",
+    1,
+    {"method": "string", "extractor": "string", "k": "int32", "seconds": "float64"},
+    ("method", "extractor", "k"),
+)
+ORACLE = Schema(
+    "oracle",
+    2,
+    {
+        "extractor": "string",
+        "rank": "int32",
+        "scan_id": "int32",
+        "gain_m": "float64",
+        "found_m": "float64",
+    },
+    ("extractor", "rank"),
+)
+POSE_ERRORS = Schema(
+    "pose_errors",
+    1,
+    {
+        "scan_id": "int32",
+        "t_ns": "int64",
+        **dict.fromkeys(
+            (
+                f"{aligned}{stage}_error_{unit}"
+                for aligned in ("", "aligned_")
+                for stage in ("prior", "refined")
+                for unit in ("m", "deg")
+            ),
+            "float64",
+        ),
+    },
+    ("scan_id",),
+)
+CLUSTERS = Schema(
+    "clusters", 1, {"n_clusters": "int32", "rank": "int32", "scan_id": "int32", "covered_m2": "float64"},
+    ("n_clusters", "rank"),
+)  # fmt: skip
+AREAS = Schema(
+    "areas",
+    2,
+    {
+        "scan_id": "int32",
+        **dict.fromkeys(
+            ("full_hull_m2", "cluster_hull_m2", "seen_m2", "full_hull_iou", "cluster_hull_iou"),
+            "float64",
+        ),
+    },
+    ("scan_id",),
+)
+"""Areas of a scan's hulls and of what it truly sees; `iou` is intersection over union of a hull with the latter."""
+UNEVENNESS = Schema(
+    "unevenness",
+    1,
+    {"order": "string", "crowd": "int32", "repeats": "int32", "draw": "int32", "seen_m": "float64"},
+    ("order", "crowd", "repeats", "draw"),
+)
+"""True wall length that the first scans of an order see where those of a crowd were taken `repeats` times."""
+TIMES = Schema(
+    "times", 1, {"task": "string", "size": "int32", "item": "int32", "found": "int32", "seconds": "float64"},
+    ("task", "size", "item"),
+)  # fmt: skip
+STEPS = Schema(
+    "steps", 1, {"step": "int32", "name": "string", "seconds": "float64", "n_scans": "int32", "n_bytes": "int64"},
+    ("step",),
+)  # fmt: skip
+CLAIMS = Schema(
+    "claims",
+    2,
+    {
+        "claim": "string",
+        "survey": "string",
+        "quantity": "string",
+        "value": "float64",
+        "unit": "string",
+        "holds": "string",
+    },
+    ("claim", "survey", "quantity"),
+)
+PLAN_EVALUATION = Schema(
+    "plan_evaluation",
+    3,
+    {
+        "frame": "string",
+        "n_scans": "int32",
+        "length_m": "float64",
+        **_AGREEMENT,
+        **dict.fromkeys(
+            (
+                "seen_completeness_010m",
+                "observed_correctness_010m",
+                "observed_visible_completeness_010m",
+                "missed_not_seen",
+                "missed_misplaced",
+                "missed_misextracted",
+            ),
+            "float64",
+        ),
+        "n_plan_walls": "int32",
+        "plan_walls_per_true_wall": "float64",
+        "n_thickness": "int32",
+        "thickness_error_m": "float64",
+        **dict.fromkeys(("n_doors_true", "n_doors_found", "n_doors_drawn"), "int32"),
+        **dict.fromkeys(
+            ("door_recall", "door_precision", "door_width_error_m", "door_width_right"), "float64"
+        ),
+        **dict.fromkeys(("n_windows_true", "n_windows_found", "n_windows_drawn"), "int32"),
+        **dict.fromkeys(
+            ("window_recall", "window_precision", "window_width_error_m", "window_width_right"),
+            "float64",
+        ),
+        **dict.fromkeys(("n_rooms_true", "n_rooms_found", "n_rooms_false"), "int32"),
+        **dict.fromkeys(("room_iou", "least_room_iou"), "float64"),
+    },
+    ("frame",),
+)
+"""How good a plan is: where it is in the map, and after the rigid motion that fits the scans' poses to the true ones.
+
+The agreement and what begins with `n_walls` is of its faces; `plan_walls` are its paired and single walls.
+"""

@@ -1,0 +1,48 @@
+"""Poses as text in TUM's form: `t tx ty tz qx qy qz qw`, seconds and metres, a pose a line."""
+
+from decimal import Decimal, InvalidOperation
+from pathlib import Path
+
+import numpy as np
+
+from scanplan.errors import StageError
+
+
+def read_tum(path):
+    """Read poses; text after `#` is a comment, commas part numbers like spaces.
+
+    Parameters
+    ----------
+    path : path-like
+
+    Returns
+    -------
+    t_ns : (n,) int64
+        As written, to the nanosecond, in the order of the lines.
+    rows : (n, 7) float64
+        x, y, z in metres, then the quaternion x, y, z, w; not checked.
+
+    Raises
+    ------
+    StageError
+        If a line does not hold eight numbers.
+    """
+    stamps, rows = [], []
+    for number, line in enumerate(
+        Path(path).read_text(encoding="utf-8", errors="replace").splitlines(), 1
+    ):
+        values = line.split("#")[0].replace(",", " ").split()
+        if not values:
+            continue
+        try:
+            stamps.append(int(Decimal(values[0]) * 10**9))
+            rows.append([float(value) for value in values[1:]])
+        except (ValueError, OverflowError, InvalidOperation):
+            raise StageError(
+                f"{path}: line {number} is not `t tx ty tz qx qy qz qw`; mend it"
+            ) from None
+        if len(values) != 8 or abs(stamps[-1]) >= 2**63:
+            raise StageError(
+                f"{path}: line {number} has {len(values)} numbers instead of 8, or no stamp; mend it"
+            )
+    return np.array(stamps, np.int64), np.array(rows).reshape(-1, 7)

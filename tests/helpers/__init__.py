@@ -1,0 +1,1 @@
+"""Makers of toy inputs and other things that several tests share."""

@@ -1,0 +1,140 @@
+"""The tables of a survey of the hand-made plan: five candidates, four of them kept, three chosen."""
+
+from pathlib import Path
+
+import numpy as np
+
+from helpers import floorplan_making
+from helpers.wall_making import walls as wall_table
+from scanplan.store import schemas, tables
+
+PAGE = Path(__file__).resolve().parents[2] / "workflow/report/page"
+SETTINGS = {
+    "selection": {"stop": {"n_scans": 3, "area_share": None}},
+    "plan": {
+        "method": "wall_length",
+        "extractor": "cluster_ransac",
+        "merge": {"max_angle_deg": 10.0, "merge_distance_m": 0.1, "min_scans": 2},
+    },
+}
+SCAN_IDS = [0, 5, 9, 12, 20]
+PLACES_M = [(1.0, 1.0), (2.0, 1.5), (4.05, 1.4), (6.0, 1.0), (6.5, 2.0)]
+START_NS = 1_700_000_000_000_000_000
+# what each scan shows of the faces of the plan
+SEEN = [(9, 0), (9, 1), (9, 5), (5, 0), (5, 3), (5, 4), (12, 0), (12, 1), (0, 4)]
+BENCHMARK = "s\th:m:s\tmax_rss\tmax_vms\tmax_uss\tmax_pss\tio_in\tio_out\tmean_load\tcpu_time\n{}\n"
+
+
+def _poses():
+    n = len(SCAN_IDS)
+    pose = dict(zip(("x_m", "y_m"), np.array(PLACES_M).T.copy(), strict=True))
+    turn = {c: np.full(n, float(c == "qw")) for c in ("qx", "qy", "qz", "qw")}
+    stamps = {
+        "scan_id": np.array(SCAN_IDS, np.int32),
+        "t_ns": START_NS + np.array(SCAN_IDS) * 10**8,
+    }
+    return stamps, pose | {"z_m": np.full(n, 0.4)} | turn
+
+
+def poses():
+    stamps, pose = _poses()
+    return stamps | pose | {"gap_s": np.full(5, 0.1), "covered": np.ones(5, bool)}
+
+
+def registration():
+    stamps, pose = _poses()
+    pose["x_m"] = pose["x_m"] + 0.03
+    return stamps | pose | {
+        "prior_fitness": np.array([np.nan, 0.8, 0.7, 0.9, 0.2]),
+        "refined_fitness": np.array([np.nan, 0.9, 0.8, 0.95, np.nan]),
+        "rmse_m": np.array([np.nan, 0.05, 0.06, 0.04, np.nan]),
+        "kept": np.array([True, True, True, True, False]),
+        "reason": np.array(["anchor", "kept", "kept", "kept", "low_prior_fitness"], object),
+    }  # fmt: skip
+
+
+def selection():
+    covered_m2 = np.array([15.0, 20.0, 21.0, 21.0])
+    return {
+        "rank": np.arange(1, 5, dtype=np.int32),
+        "scan_id": np.array([9, 5, 12, 0], np.int32),
+        "n_points": np.full(4, 1000),
+        "gain_m2": np.diff(covered_m2, prepend=0.0),
+        "covered_m2": covered_m2,
+        "bound_m2": np.array([15.0, 20.5, 21.0, 21.0]),
+        # walls that the scans show
+        "gain": np.array([12.0, 6.0, 1.0, 1.0]),
+        "covered": np.array([12.0, 18.0, 19.0, 20.0]),
+        "bound": np.array([12.0, 18.5, 19.5, 20.0]),
+    }
+
+
+def segments():
+    rows = sorted(SEEN)
+    lines = [floorplan_making.FACES[face][:4] for _, face in rows]
+    table = wall_table(lines, scan_id=[scan for scan, _ in rows])
+    table["wall"] = np.array(
+        [sum(s == scan for s, _ in rows[:i]) for i, (scan, _) in enumerate(rows)], np.int32
+    )
+    return table
+
+
+def evaluation(methods=("random", "wall_length")):
+    k = [1, 2, 3, 4]
+    columns = {}
+    for name, kind in schemas.EVALUATION.columns.items():
+        columns[name] = (
+            np.tile(np.linspace(0.2, 0.9, 4), len(methods)) if kind == "float64" else None
+        )
+    columns["method"] = np.repeat(np.array(methods, object), 4)
+    columns["extractor"] = np.array(["cluster_ransac"] * 4 * len(methods), object)
+    columns["k"] = np.tile(np.array(k, np.int32), len(methods))
+    columns["n_walls"] = columns["k"] * 3
+    return columns
+
+
+def plan_evaluation():
+    columns = {
+        name: np.array([3, 3], np.int32) if kind == "int32" else np.array([0.97, 0.98])
+        for name, kind in schemas.PLAN_EVALUATION.columns.items()
+    }
+    return columns | {"frame": np.array(["aligned", "registered"], object)}
+
+
+def files(folder):
+    """Write everything that the report is made of into a folder, and return what `write_report` is given."""
+    made = {
+        "faces": (schemas.FACES, floorplan_making.faces()),
+        "walls": (schemas.PLAN_WALLS, floorplan_making.walls()),
+        "openings": (schemas.OPENINGS, floorplan_making.openings()),
+        "rooms": (schemas.ROOMS, floorplan_making.rooms()),
+        "free": (schemas.FREE, floorplan_making.free()),
+        "evidence": (schemas.EVIDENCE, floorplan_making.evidence()),
+        "selection": (schemas.SELECTION, selection()),
+        "segments": (schemas.WALLS, segments()),
+        "poses": (schemas.POSES, poses()),
+        "registration": (schemas.REGISTRATION, registration()),
+        "evaluation": (schemas.EVALUATION, evaluation()),
+        "plan_evaluation": (schemas.PLAN_EVALUATION, plan_evaluation()),
+    }
+    paths = {name: folder / f"{name}.parquet" for name in made}
+    for name, (schema, columns) in made.items():
+        tables.write_table(paths[name], schema, columns)
+    (folder / "scans.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><path d="M0 0"/></svg>'
+    )
+    (folder / "survey.bag").write_bytes(bytes(2_500_000))
+    (folder / "benchmarks").mkdir(exist_ok=True)
+    (folder / "benchmarks/build_hulls.tsv").write_text(
+        BENCHMARK.format("2.5\t0:00:02\t443.8\t1\t1\t1\t0\t0\t80\t3.4")
+    )
+    (folder / "benchmarks/draw_area.tsv").write_text(
+        BENCHMARK.format("0.1\t0:00:00\t-\t-\t-\t-\t-\t-\t-\t-")
+    )
+    return paths | {
+        "page": [PAGE / f"page.{suffix}" for suffix in ("html", "css", "js")],
+        "figures": [folder / "scans.svg"],
+        "evaluation": [paths["evaluation"], paths["plan_evaluation"]],
+        "recordings": [folder / "survey.bag"],
+        "results": [paths["faces"], paths["walls"]],
+    }

@@ -1,0 +1,34 @@
+"""Scans of the toy room as the stages read them: scans.parquet and registration.parquet."""
+
+import numpy as np
+
+from helpers import toy_rooms
+from scanplan.store import schemas, tables
+
+SENSORS = {0: (2.0, 1.6, 0.9), 5: (3.0, 2.0, 0.9), 15: (4.0, 2.4, 0.9)}
+
+
+def write_survey(folder, *, planar=False, registered=tuple(SENSORS)):
+    """Write three scans and the poses of those that are registered; return the two paths."""
+    scans, registration = folder / "scans.parquet", folder / "registration.parquet"
+    with tables.open_scan_writer(scans, planar=planar) as write:
+        for scan_id, sensor in SENSORS.items():
+            write(
+                scan_id,
+                (toy_rooms.laser if planar else toy_rooms.vlp16)(np.array(sensor), seed=scan_id),
+            )
+    n = len(registered)
+    columns = {
+        "scan_id": registered,
+        "t_ns": np.arange(n),
+        "kept": np.ones(n, bool),
+        "reason": ["kept"] * n,
+    }
+    columns |= dict.fromkeys(
+        ("prior_fitness", "refined_fitness", "rmse_m", "qx", "qy", "qz"), np.zeros(n)
+    )
+    columns |= dict(
+        zip(schemas.XYZ, np.array([SENSORS[s] for s in registered]).T.copy(), strict=True)
+    )
+    tables.write_table(registration, schemas.REGISTRATION, {**columns, "qw": np.ones(n)})
+    return scans, registration

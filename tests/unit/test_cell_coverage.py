@@ -1,0 +1,118 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from reference import greedy_coverage as literal
+from scanplan.selection import bounds
+from scanplan.selection.cell_coverage import TIE, CellCoverage
+
+# weights of eighths add up without rounding: ties are ties
+SCANS = st.lists(
+    st.dictionaries(st.integers(0, 9), st.integers(0, 16).map(lambda w: w / 8), max_size=6),
+    min_size=1,
+    max_size=7,
+)
+OFTEN = settings(max_examples=150, deadline=None)
+
+
+def coverage(scans):
+    rows = [(i, c, w) for i, cells in enumerate(scans) for c, w in cells.items()]
+    scan, cell, weight = np.array(rows).reshape(-1, 3).T
+    return CellCoverage(scan.astype(int), cell.astype(int), weight, len(scans))
+
+
+def test_on_paper():
+    # 3 + 3, then 2 of the last scan's 5 (its 3 is shown already), then the half metre that cell 0 is seen better
+    order = coverage([{0: 3.5}, {0: 3, 1: 3}, {1: 3, 2: 2}]).greedy()
+    assert order.order.tolist() == [1, 2, 0]
+    assert order.gain_m2.tolist() == [6, 2, 0.5]
+    assert order.covered_m2.tolist() == [6, 8, 8.5]
+
+
+@OFTEN
+@given(SCANS, st.sampled_from([0.0, 0.25, 0.5, 1.0]))
+def test_lazy_order_is_that_of_looking_at_every_scan(scans, min_overlap):
+    order = coverage(scans).greedy(min_overlap)
+    assert order.order.tolist() == literal.order(scans, TIE, min_overlap)
+    for k in range(1, len(scans) + 1):
+        assert order.covered_m2[k - 1] == pytest.approx(
+            literal.value(scans, order.order[:k].tolist())
+        )
+
+
+@OFTEN
+@given(SCANS, st.data())
+def test_monotone_and_submodular(scans, data):
+    shuffled = data.draw(st.permutations(range(len(scans))))
+    small = data.draw(st.integers(0, len(shuffled) - 1))
+    large = data.draw(st.integers(small, len(shuffled) - 1))
+    last = shuffled[-1]
+    after_few = coverage(scans).gains([*shuffled[:small], last])[-1]
+    after_more = coverage(scans).gains([*shuffled[:large], last])[-1]
+    assert after_few >= after_more - 1e-12 and after_more >= 0
+
+
+@OFTEN
+@given(SCANS)
+def test_bound_is_never_below_the_best_subset(scans):
+    order = coverage(scans).greedy()
+    bound = bounds.bound_any_subset(order)
+    assert (bound >= [literal.best(scans, k) - 1e-9 for k in range(1, len(scans) + 1)]).all()
+    assert (bound >= order.covered_m2).all()
+
+
+@OFTEN
+@given(SCANS, st.randoms(use_true_random=False))
+def test_numbers_of_cells_do_not_matter(scans, rng):
+    names = list(range(10))
+    rng.shuffle(names)
+    renamed = [{100 * names[c]: w for c, w in cells.items()} for cells in scans]
+    assert coverage(renamed).greedy().order.tolist() == coverage(scans).greedy().order.tolist()
+
+
+def test_overlap_keeps_the_order_connected_until_a_part_is_done():
+    # a chain 0-1-2 of scans that share a metre, and a far one that alone adds most
+    chain = [{0: 1, 1: 1}, {1: 1, 2: 1.5}, {2: 1.5, 3: 1}, {9: 5}]
+    assert coverage(chain).greedy().order.tolist() == [3, 1, 0, 2]
+    # with nothing that shares, the best of all; then what shares two fifths of its worth
+    assert coverage(chain).greedy(min_overlap=0.4).order.tolist() == [3, 1, 0, 2]
+    near = [*chain[:3], {0: 1, 9: 5}]
+    assert coverage(near).greedy(min_overlap=0.4).order.tolist() == [3, 0, 1, 2]
+
+
+def test_no_scan_one_scan_identical_scans_and_empty_ones():
+    assert coverage([]).greedy().order.tolist() == []
+    assert coverage([{}]).greedy().covered_m2.tolist() == [0]
+    assert coverage([{4: 2}] * 4).greedy().order.tolist() == [0, 1, 2, 3]
+    mixed = coverage([{}, {4: 2}, {}, {4: 2}]).greedy(min_overlap=1.0)
+    assert mixed.order.tolist() == [1, 0, 2, 3] and mixed.covered_m2.tolist() == [2, 2, 2, 2]
+
+
+@pytest.mark.parametrize(
+    ("scan", "cell", "weight", "n"),
+    [
+        ([1, 0], [0, 0], [1, 1], 2),
+        ([0, 2], [0, 0], [1, 1], 2),
+        ([-1], [0], [1], 2),
+        ([0], [0], [-1], 2),
+        ([0], [0], [np.nan], 2),
+        ([0], [0], [np.inf], 2),
+        ([0], [0, 1], [1, 1], 2),
+    ],
+)
+def test_wrong_calls_are_refused(scan, cell, weight, n):
+    with pytest.raises(ValueError, match="must be"):
+        CellCoverage(np.array(scan), np.array(cell), np.array(weight, float), n)
+
+
+@pytest.mark.parametrize("order", [[0, 0], [2], [-1]])
+def test_wrong_orders_are_refused(order):
+    with pytest.raises(ValueError, match="distinct indices below"):
+        coverage([{0: 1}, {1: 1}]).gains(order)
+
+
+@pytest.mark.parametrize("share", [-0.1, 1.1, np.nan])
+def test_wrong_overlaps_are_refused(share):
+    with pytest.raises(ValueError, match="min_overlap is"):
+        coverage([{0: 1}]).greedy(share)

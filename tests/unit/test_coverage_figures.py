@@ -1,0 +1,22 @@
+import numpy as np
+
+from helpers import claim_making as made
+from scanplan.lab.thesis import coverage_figures
+from scanplan.report.figures import STYLES
+
+
+def shorter(table, n):
+    """The evaluation as a survey of fewer scans has it: its last size another one."""
+    return table | {"k": np.where(table["k"] == 270, n, table["k"])}
+
+
+def test_seeds_of_different_numbers_of_scans_are_drawn_together():
+    table = made.evaluation()
+    figure = coverage_figures.draw_shares_figure([table, shorter(table, 100)], "cluster_ransac")
+    (line,) = [
+        line for line in figure.axes[2].get_lines() if line.get_label() == STYLES["sequential"][0]
+    ]
+    assert line.get_xdata().tolist() == [1, 15, 27, 40, 60, 80, 100]
+    # of 100 scans one seed misses nothing, the other what is left between 80 and 270
+    missed = (1 - 0.6) / 20 * (1 - 20 / 190)
+    np.testing.assert_allclose(line.get_ydata()[[0, -1]], [0.045, missed / 2])

@@ -1,0 +1,164 @@
+"""Which datasets a run has, and which files belong to each."""
+
+import pytest
+
+from scanplan.errors import StageError
+from scanplan.project import dataset, settings
+
+
+@pytest.fixture
+def known(project_root):
+    return {
+        "defaults": settings.read_yaml(project_root / "config/config.yaml"),
+        "given": [],
+        "schema": settings.read_yaml(project_root / "workflow/schemas/config.schema.yaml"),
+        "drawings": project_root / "config/buildings",
+    }
+
+
+def survey_file(folder, text="simulate: {building: tiny_office}"):
+    path = folder / "tiny.yaml"
+    path.write_text(text)
+    return path
+
+
+def test_names_come_in_the_order_given():
+    assert dataset.name_datasets(["b.bag", "x/a", "s/c.yaml"]) == {
+        "b": "b.bag",
+        "a": "x/a",
+        "c": "s/c.yaml",
+    }
+    assert dataset.name_datasets("x/a") == {"a": "x/a"}
+    assert dataset.name_datasets(None) == {"demo": None}
+
+
+def test_two_of_one_name_are_refused():
+    with pytest.raises(StageError, match=r"y/a\.bag: .* called a like those of x/a"):
+        dataset.name_datasets(["x/a", "y/a.bag"])
+
+
+def test_one_given_twice_is_told_so():
+    with pytest.raises(StageError, match=r"x/\./a: is given twice, first as x/a; leave one out"):
+        dataset.name_datasets(["x/a", "x/./a"])
+
+
+def test_the_place_of_the_thesis_is_taken():
+    with pytest.raises(StageError, match="thesis"):
+        dataset.name_datasets("surveys/thesis")
+
+
+def test_the_demo_is_simulated_with_the_defaults(known):
+    found = dataset.describe_dataset("demo", None, **known)
+    assert found.building.endswith("config/buildings/demo_office.geojson")
+    assert found.recordings == ("results/demo/survey/survey.bag",)
+    assert found.truth == (
+        "results/demo/survey/truth.geojson",
+        "results/demo/survey/truth_poses.tum",
+    )
+    assert found.settings["simulate"] == known["defaults"]["simulate"]
+
+
+def test_a_file_describes_a_simulated_survey(known, tmp_path):
+    path = survey_file(
+        tmp_path, "simulate: {building: tiny_office, recording: mcap}\nhulls: {n_clusters: 3}"
+    )
+    found = dataset.describe_dataset("tiny", path, **known)
+    assert found.recordings == ("results/tiny/survey/survey.mcap",)
+    assert found.building.endswith("tiny_office.geojson")
+    assert found.settings["hulls"]["n_clusters"] == 3
+    assert found.settings["simulate"]["seed"] == known["defaults"]["simulate"]["seed"]
+
+
+def test_the_command_line_wins_over_the_file(known, tmp_path):
+    known["given"] = [settings.Layer("--config", {"simulate": {"seed": 9}})]
+    assert (
+        dataset.describe_dataset("t", survey_file(tmp_path), **known).settings["simulate"]["seed"]
+        == 9
+    )
+
+
+def test_a_building_may_be_any_file(known, tmp_path):
+    model = tmp_path / "house.ifc"
+    model.touch()
+    path = survey_file(tmp_path, f"simulate: {{building: {model}}}")
+    assert dataset.describe_dataset("t", path, **known).building == str(model)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (
+            "simulate: {building: palace}",
+            "palace is neither a file nor a drawing of ours .*tiny_office",
+        ),
+        ("simulate: {speed: 1}", "unknown key speed"),
+        (
+            "rosbag2_bagfile_information: {version: 5}",
+            "describes a rosbag2 recording; give its folder",
+        ),
+    ],
+)
+def test_a_wrong_file_is_refused_in_one_line(known, tmp_path, text, said):
+    with pytest.raises(StageError, match=said) as caught:
+        dataset.describe_dataset("t", survey_file(tmp_path, text), **known)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_missing_file_is_refused(known, tmp_path):
+    with pytest.raises(StageError, match=r"none\.yaml: does not exist"):
+        dataset.describe_dataset("none", tmp_path / "none.yaml", **known)
+
+
+def test_a_folder_brings_its_settings_and_its_truth(known, tmp_path):
+    (tmp_path / "a.bag").write_text("x")
+    (tmp_path / "dataset.yaml").write_text("poses: {keep_every: 2}")
+    found = dataset.describe_dataset("a", tmp_path, **known)
+    assert (found.recordings, found.truth, found.building) == (
+        (str(tmp_path / "a.bag"),),
+        None,
+        None,
+    )
+    assert found.settings["poses"]["keep_every"] == 2
+    half = tmp_path / "truth.geojson"
+    half.touch()
+    found = dataset.describe_dataset("a", tmp_path, **known)
+    assert found.truth is None and f"{half}: is not used" in found.notes[0]
+    found = dataset.describe_dataset("a", tmp_path / "a.bag", **known)
+    assert (
+        found.settings["poses"]["keep_every"] == 5
+        and "dataset.yaml and truth.geojson are not used" in found.notes[0]
+    )
+    half.unlink()
+    for name in ("truth.geojson", "truth_poses.tum"):
+        (tmp_path / name).touch()
+    found = dataset.describe_dataset("a", tmp_path, **known)
+    assert found.notes == () and found.source == str(tmp_path)
+    assert found.truth == (str(tmp_path / "truth.geojson"), str(tmp_path / "truth_poses.tum"))
+
+
+def test_evaluation_is_a_result_where_there_is_a_truth():
+    plain = dataset.Dataset("a", {}, ("a.bag",))
+    known_truth = dataset.Dataset("a", {}, ("a.bag",), ("t", "p"))
+    files = dataset.list_results(plain, ["hull", "own"], ["ransac"])
+    assert {"results/a/selection/own.parquet", "results/a/walls/ransac.parquet"} <= set(files)
+    more = set(dataset.list_results(known_truth, ["hull", "own"], ["ransac"])) - set(files)
+    assert {file.split("/")[2] for file in more} == {"evaluation", "figures"}
+    assert {"results/a/evaluation/plan.parquet", "results/a/figures/oracle_shares.svg"} <= more
+
+
+@pytest.mark.parametrize("name", ["ring_rooms", "ring_hallways"])
+def test_the_surveys_that_are_shipped_fit_the_schema(known, project_root, name):
+    found = dataset.describe_dataset(name, project_root / f"config/surveys/{name}.yaml", **known)
+    assert found.settings["simulate"]["building"] == "ring_office"
+
+
+def test_choices_are_what_the_schema_allows(known):
+    assert dataset.list_choices(known["schema"], "plan", "extractor") == [
+        "cluster_ransac",
+        "iterative_ransac",
+    ]
+
+
+def test_settings_of_a_recording_are_no_survey(tmp_path, known):
+    with pytest.raises(StageError, match=r"tiny\.yaml: has no section `simulate`.*CONFIG"):
+        dataset.describe_dataset("t", survey_file(tmp_path, "poses: {keep_every: 1}"), **known)

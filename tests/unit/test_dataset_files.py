@@ -1,0 +1,195 @@
+import pytest
+
+from scanplan.errors import StageError
+from scanplan.project import dataset_files
+
+METADATA = "rosbag2_bagfile_information:\n  version: 5\n"
+
+
+def put(path, content="x"):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(content)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("given", "name"),
+    [
+        ("floor1", "floor1"),
+        ("my survey (2)/", "my_survey__2_"),
+        ("a/../b", "b"),
+        ("rec.bag", "rec"),
+        ("rec 1.db3", "rec_1"),
+        ("1.2.mcap", "1.2"),
+        ("not.a.recording", "not.a.recording"),
+        ("surveys/ring.yaml", "ring"),
+    ],
+)
+def test_name_of(given, name):
+    assert dataset_files.dataset_name(given) == name
+
+
+def test_name_of_a_folder_keeps_its_suffix(tmp_path):
+    (tmp_path / "run.bag").mkdir()
+    assert dataset_files.dataset_name(tmp_path / "run.bag") == "run.bag"
+
+
+@pytest.mark.parametrize("given", ["/", ".hidden", "###", "日本"])
+def test_name_of_refuses_what_leaves_no_name(given):
+    with pytest.raises(StageError, match="rename"):
+        dataset_files.dataset_name(given)
+
+
+def test_finds_all_kinds_and_groups_them_back(tmp_path):
+    wanted = [
+        put(tmp_path / "a.bag"),
+        put(tmp_path / "b.mcap"),
+        put(tmp_path / "c.db3"),
+        put(tmp_path / "run" / "metadata.yaml", METADATA),
+        put(tmp_path / "run" / "run_0.db3.zstd"),
+        put(tmp_path / "run" / "run_1.db3.zstd"),
+        put(tmp_path / "bare" / "bare_0.db3"),
+    ]
+    for ignored in ("truth.geojson", "dataset.yaml", "map.pgm", ".x.bag", "notes/readme.txt"):
+        put(tmp_path / ignored)
+    files = dataset_files.find_files(tmp_path)
+    assert files == sorted(map(str, wanted))
+    expected = [tmp_path / name for name in ("a.bag", "b.mcap", "bare/bare_0.db3", "c.db3", "run")]
+    assert dataset_files.group_recordings(files) == list(map(str, expected))
+    assert dataset_files.group_recordings(files[::-1]) == dataset_files.group_recordings(files)
+
+
+def test_a_rosbag2_folder_is_a_dataset_of_its_own(tmp_path):
+    put(tmp_path / "metadata.yaml", METADATA), put(tmp_path / "x_0.mcap")
+    files = dataset_files.find_files(tmp_path)
+    assert len(files) == 2
+    assert dataset_files.group_recordings(files) == [str(tmp_path)]
+
+
+def test_a_bag_beside_a_rosbag2_recording_stays_a_recording(tmp_path):
+    put(tmp_path / "metadata.yaml", METADATA), put(tmp_path / "x_0.mcap"), put(tmp_path / "y.bag")
+    assert dataset_files.group_recordings(dataset_files.find_files(tmp_path)) == [
+        str(tmp_path),
+        str(tmp_path / "y.bag"),
+    ]
+
+
+def test_a_single_recording(tmp_path):
+    bag = put(tmp_path / "a.bag")
+    put(tmp_path / "other.bag")
+    assert dataset_files.find_files(bag) == [str(bag)]
+
+
+def test_paths_stay_as_they_were_given(tmp_path, monkeypatch):
+    put(tmp_path / "d" / "a.bag")
+    monkeypatch.chdir(tmp_path)
+    assert dataset_files.find_files("d") == ["d/a.bag"]
+
+
+def test_a_scan_folder(tmp_path):
+    (
+        put(tmp_path / "poses.tum"),
+        put(tmp_path / "scans" / "2.PCD"),
+        put(tmp_path / "scans" / "1.ply"),
+    )
+    put(tmp_path / "scans" / "readme.txt")
+    files = dataset_files.find_files(tmp_path)
+    assert [f.removeprefix(str(tmp_path)) for f in files] == [
+        "/poses.tum",
+        "/scans/1.ply",
+        "/scans/2.PCD",
+    ]
+    assert dataset_files.is_scan_folder(files)
+    assert not dataset_files.is_scan_folder(["a.bag"])
+
+
+@pytest.mark.parametrize(
+    ("files", "told"),
+    [
+        ([], "accepted are .*bag"),
+        (["readme.txt"], "accepted are .*bag"),
+        (["a.bag.gz", "b.ZIP"], "unpack a.bag.gz, b.ZIP; accepted"),
+        (["a.bag", "scans/1.pcd", "poses.tum"], "both"),
+        (["scans/1.pcd"], "no poses"),
+        (["poses.tum"], "no clouds"),
+        (["x.bag.active", "y.bag"], "reindex"),
+        (["run/metadata.yaml"], "no .db3 or .mcap"),
+        (["run.db3", "run.db3-wal"], "wal_checkpoint"),
+    ],
+)
+def test_refuses_in_one_line(tmp_path, files, told):
+    for file in files:
+        put(tmp_path / file, METADATA if file.endswith("yaml") else "x")
+    with pytest.raises(StageError, match=told) as caught:
+        dataset_files.find_files(tmp_path)
+    assert str(tmp_path) in str(caught.value)
+
+
+def test_an_empty_wal_is_no_harm(tmp_path):
+    put(tmp_path / "run.db3"), put(tmp_path / "run.db3-wal", "")
+    assert len(dataset_files.find_files(tmp_path)) == 1
+
+
+@pytest.mark.parametrize("name", ["a.bag", "a.mcap", "a.db3"])
+def test_refuses_empty_files(tmp_path, name):
+    put(tmp_path / name, "")
+    with pytest.raises(StageError, match="0 bytes"):
+        dataset_files.find_files(tmp_path)
+
+
+def test_refuses_what_is_missing_or_no_recording(tmp_path):
+    with pytest.raises(StageError, match="does not exist"):
+        dataset_files.find_files(tmp_path / "nothing")
+    with pytest.raises(StageError, match="is no recording"):
+        dataset_files.find_files(put(tmp_path / "a.txt"))
+    with pytest.raises(StageError, match="did not close"):
+        dataset_files.find_files(put(tmp_path / "a.bag.active"))
+
+
+def test_nothing_of_a_whole_dataset_is_overlooked(tmp_path):
+    for name in ("a.bag", "dataset.yaml", "truth.geojson", "truth_poses.tum", "notes.yaml"):
+        put(tmp_path / name)
+    assert dataset_files.list_overlooked(tmp_path) == []
+    assert dataset_files.list_overlooked(put(tmp_path / "alone" / "a.bag")) == []
+
+
+def test_what_stands_beside_a_single_recording_is_told(tmp_path):
+    bag = put(tmp_path / "a.bag")
+    (
+        put(tmp_path / "truth.geojson"),
+        put(tmp_path / "truth_poses.tum"),
+        put(tmp_path / "dataset.yaml"),
+    )
+    (note,) = dataset_files.list_overlooked(bag)
+    assert "dataset.yaml, truth.geojson and truth_poses.tum are not used" in note
+    assert note.endswith(f"give the folder {tmp_path} as the dataset")
+    put(tmp_path / "run" / "metadata.yaml", METADATA), put(tmp_path / "run" / "x_0.mcap")
+    (note,) = dataset_files.list_overlooked(tmp_path / "run")
+    assert "the dataset is run alone" in note
+
+
+@pytest.mark.parametrize(("there", "missing"), [(0, 1), (1, 0)])
+def test_half_a_truth_is_told(tmp_path, there, missing):
+    put(tmp_path / "a.bag")
+    put(tmp_path / dataset_files.TRUTH_FILES[there])
+    (note,) = dataset_files.list_overlooked(tmp_path)
+    assert note.startswith(f"{tmp_path / dataset_files.TRUTH_FILES[there]}: is not used")
+    assert f"{dataset_files.TRUTH_FILES[missing]} is missing" in note
+
+
+@pytest.mark.parametrize(
+    "name", ["dataset.yml", "Dataset.yaml", "dataset.yaml.txt", "dataset.json"]
+)
+def test_settings_of_another_name_are_told(tmp_path, name):
+    put(tmp_path / "a.bag")
+    put(tmp_path / name)
+    (note,) = dataset_files.list_overlooked(tmp_path)
+    assert f"{name} is not used" in note and "dataset.yaml, rename" in note
+
+
+def test_a_survey_file_is_told_from_a_folder(tmp_path):
+    (tmp_path / "run.yaml").mkdir()
+    assert dataset_files.is_survey_file("a.yaml") and dataset_files.is_survey_file("a.yml")
+    assert not dataset_files.is_survey_file(
+        tmp_path / "run.yaml"
+    ) and not dataset_files.is_survey_file("a.bag")

@@ -1,0 +1,59 @@
+import numpy as np
+import pytest
+import shapely
+
+from scanplan.rays import free_space
+
+# the corners of a room of ring_office lie up to 1e-6 m off those of the hole that it fills among walls and neighbours
+ROOM = [
+    (25.386, 4.682),
+    (25.382, 0.18099999999999997),
+    (17.08, 0.18799999999999997),
+    (17.08399999914393, 4.689999036493659),
+]
+HOLE = [(17.084, 4.69), (17.08, 0.188), (25.382, 0.181), (25.386, 4.682)]
+AROUND = [
+    (16.887, 4.69),
+    (30.38599802557015, 8.079000186365468),
+    (30.38599802557015, -0.023765000763262482),
+    (16.883, 0.188),
+]
+
+
+def test_ground_that_fills_a_hole_of_what_is_taken_stays():
+    room, around = shapely.Polygon(ROOM), shapely.Polygon(AROUND, [HOLE])
+    assert free_space.difference_on_grid(room, around).area == pytest.approx(room.area, abs=1e-3)
+
+
+def test_ground_without_what_is_taken():
+    left = free_space.difference_on_grid(
+        shapely.box(0, 0, 4, 3),
+        free_space.union_on_grid([shapely.box(1, -1, 2, 4), shapely.box(2, 0, 3, 3)]),
+    )
+    assert sorted(p.bounds for p in shapely.get_parts(left)) == [(0, 0, 1, 3), (3, 0, 4, 3)]
+
+
+def test_nothing_joined_takes_nothing():
+    ground = shapely.box(0, 0, 4, 3)
+    assert free_space.difference_on_grid(ground, free_space.union_on_grid([])).equals(ground)
+    assert free_space.union_on_grid(np.array([ground, ground], object)).area == 12
+
+
+def test_what_is_narrow_goes_and_what_is_wide_keeps_its_corners():
+    dumb_bell = free_space.union_on_grid(
+        [shapely.box(0, 0, 2, 2), shapely.box(2, 1, 3, 1.15), shapely.box(3, 0, 5, 2)]
+    )
+    parts = free_space.open_polygons(dumb_bell, 0.1)
+    assert sorted(p.bounds for p in parts) == [(0, 0, 2, 2), (3, 0, 5, 2)]
+    assert [p.area for p in parts] == pytest.approx([4, 4])
+
+
+def test_a_blunt_wedge_reaches_through_no_wall():
+    """Its sides would meet 2.5 mm beyond a wall of 0.1 m, in the next room."""
+    wedge, beyond = (
+        shapely.Polygon([(0, 0), (4, 1.95), (4, 2.05), (0, 4)]),
+        shapely.box(4.1, 0, 8, 4),
+    )
+    parts = free_space.open_polygons(shapely.MultiPolygon([wedge, beyond]), 0.1)
+    assert len(parts) == 2
+    assert max(p.difference(wedge).difference(beyond).area for p in parts) < 1e-3

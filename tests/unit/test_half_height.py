@@ -1,0 +1,119 @@
+"""Where a wall ends below the ceiling: points at it below, rays through its line above."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from scanplan.geometry.lines import Line
+from scanplan.plan import half_height, planning
+from scanplan.rays.face_profile import FaceObservation
+
+LINE = Line(np.zeros(2), np.array([0.0, 1.0]))
+RNG = np.random.default_rng(3)
+
+
+def rows(count, low_z_m, high_z_m, *, from_m=0.0, to_m=4.0):
+    """Return places along the wall and heights, scattered evenly: (2, n)."""
+    return np.array([RNG.uniform(from_m, to_m, count), RNG.uniform(low_z_m, high_z_m, count)])
+
+
+def wall(hits, passes, openings=()):
+    """Return a wall of 4 m along x, of one face, with points and crossings (2, n) of its line."""
+    sign = LINE.direction[0]
+    hits, passes = (
+        rows_[:, np.argsort(sign * rows_[0], kind="stable")] for rows_ in (hits, passes)
+    )
+    n = hits.shape[1], passes.shape[1]
+    seen = FaceObservation(LINE, sign * hits[0], np.zeros(n[0]), hits[1], np.zeros(n[0], int), sign * passes[0], passes[1],
+                np.zeros(n[1], int))  # fmt: skip
+    low_m, high_m = sorted((0.0, 4.0 * sign))
+    gaps = [SimpleNamespace(low_m=min(sign * a, sign * b), high_m=max(sign * a, sign * b), width_m=b - a)
+            for a, b in openings]  # fmt: skip
+    members = [SimpleNamespace(seen=seen, line=LINE)]
+    return SimpleNamespace(
+        line=LINE, low_m=low_m, high_m=high_m, length_m=4.0, members=members, openings=gaps
+    )
+
+
+def test_a_partition_ends_between_its_points_and_the_rays_over_it():
+    assert half_height.estimate_wall_top_m(
+        wall(rows(2000, 0.1, 1.6), rows(100, 1.62, 1.8))
+    ) == pytest.approx(1.61, abs=0.02)
+
+
+def test_a_wall_that_nothing_passes_is_not_seen_to_end():
+    assert np.isnan(half_height.estimate_wall_top_m(wall(rows(2000, 0.1, 1.6), np.empty((2, 0)))))
+
+
+def test_rays_through_a_window_are_below_points():
+    pierced = np.hstack([rows(1500, 0.1, 0.9), rows(1500, 2.0, 2.6)])
+    assert np.isnan(half_height.estimate_wall_top_m(wall(pierced, rows(400, 0.9, 2.0))))
+
+
+def test_a_window_in_a_part_of_a_wall_is_no_top():
+    beside = np.hstack([rows(1000, 0.1, 0.9), rows(300, 0.1, 2.5, to_m=2.5)])
+    assert np.isnan(half_height.estimate_wall_top_m(wall(beside, rows(200, 0.95, 1.9, from_m=2.5))))
+
+
+def test_rays_over_a_small_part_alone_are_not_enough():
+    hits = rows(2000, 0.1, 1.6)
+    assert np.isnan(
+        half_height.estimate_wall_top_m(wall(hits, rows(100, 1.62, 1.8, from_m=1.0, to_m=1.5)))
+    )
+    assert np.isfinite(
+        half_height.estimate_wall_top_m(wall(hits, rows(100, 1.62, 1.8, from_m=1.0, to_m=2.5)))
+    )
+
+
+def test_what_happens_in_doors_does_not_count():
+    hits, over = rows(2000, 0.1, 1.2, to_m=2.9), rows(60, 1.25, 1.5, to_m=2.9)
+    passes = np.hstack([over, rows(500, 0.1, 1.5, from_m=3.0, to_m=3.9)])
+    assert np.isnan(half_height.estimate_wall_top_m(wall(hits, passes)))
+    assert half_height.estimate_wall_top_m(wall(hits, passes, [(2.95, 3.95)])) == pytest.approx(
+        1.22, abs=0.03
+    )
+
+
+def test_rays_far_above_what_was_seen_leave_it_open():
+    assert np.isnan(
+        half_height.estimate_wall_top_m(wall(rows(2000, 0.1, 1.0), rows(100, 2.0, 2.2)))
+    )
+
+
+def test_a_few_stray_points_above_do_not_raise_it():
+    hits = np.hstack([rows(2000, 0.1, 1.3), rows(3, 2.0, 2.4)])
+    assert half_height.estimate_wall_top_m(wall(hits, rows(100, 1.34, 1.7))) == pytest.approx(
+        1.32, abs=0.03
+    )
+
+
+@given(
+    st.lists(st.floats(0, 3), min_size=1, max_size=30),
+    st.lists(st.floats(0, 3), min_size=1, max_size=30),
+)
+def test_the_parting_height_is_the_best_of_all(hit_z_m, pass_z_m):
+    hit_z_m, pass_z_m = np.array(hit_z_m), np.array(pass_z_m)
+
+    def wrong(top_m):
+        return np.count_nonzero(hit_z_m > top_m) + np.count_nonzero(pass_z_m < top_m)
+
+    low_m, high_m = half_height._parted(hit_z_m, pass_z_m)
+    assert low_m in hit_z_m and low_m <= high_m
+    assert wrong(low_m) == min(wrong(top_m) for top_m in hit_z_m)
+
+
+def test_surfaces_that_end_lower_than_a_wall_are_left_out():
+    desk, partition = (
+        wall(rows(2000, 0.1, z_m), rows(100, z_m + 0.02, z_m + 0.3)) for z_m in (0.74, 1.6)
+    )
+    desk.right, partition.right = [], []
+    counter = wall(rows(2000, 0.1, 0.9), rows(100, 0.92, 1.2))
+    counter.right = counter.members
+    kept, tops_m = planning._without_low([desk, partition, counter], 1.0, False)
+    assert kept == [partition, counter]
+    assert tops_m == pytest.approx([1.61, 0.91], abs=0.02)
+    kept, tops_m = planning._without_low([desk], 1.0, True)
+    assert kept == [desk] and np.isnan(tops_m).all()

@@ -1,0 +1,60 @@
+"""What a stage says, and to whom; each case in a process of its own, because descriptors are redirected."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
+
+
+def run(tmp_path, body):
+    code = "import os, signal, sys, time\nfrom scanplan.stage import log\nfrom scanplan.errors import StageError\n"
+    code += f"with log.log_to_file('logs/stage.log'):\n    {body}\n"
+    result = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=tmp_path,
+        env={"PYTHONPATH": str(SCRIPTS)},
+        capture_output=True,
+        text=True,
+    )
+    return result, (tmp_path / "logs" / "stage.log").read_text()
+
+
+def test_everything_printed_goes_to_the_log(tmp_path):
+    result, log = run(tmp_path, "print('from python'); os.write(2, b'from a library\\n')")
+    assert result.returncode == 0 and result.stdout == result.stderr == ""
+    assert "from python" in log and "from a library" in log
+
+
+def test_bad_data_is_one_line_without_traceback(tmp_path):
+    result, log = run(tmp_path, "raise StageError('a.bag: truncated;\\n use rosbag reindex')")
+    assert result.returncode == 1
+    assert result.stderr == "stage: a.bag: truncated; use rosbag reindex\n"
+    assert "Traceback" not in log and "a.bag: truncated" in log
+
+
+def test_a_bug_is_one_line_and_its_traceback_in_the_log(tmp_path):
+    result, log = run(tmp_path, "1 / 0")
+    assert result.returncode == 1
+    assert (
+        result.stderr.count("\n") == 1
+        and "ZeroDivisionError" in result.stderr
+        and "logs/stage.log" in result.stderr
+    )
+    assert "Traceback" in log
+
+
+@pytest.mark.parametrize("sent", ["SIGINT", "SIGTERM"])
+def test_an_interrupted_stage_says_so_and_nothing_of_memory(tmp_path, sent):
+    # whoever runs the tests in the background may ignore SIGINT, and children inherit that
+    body = "signal.signal(signal.SIGINT, signal.default_int_handler); "
+    result, log = run(tmp_path, f"{body}os.kill(os.getpid(), signal.{sent}); time.sleep(9)")
+    assert result.returncode == 1 and "Traceback" not in log + result.stderr
+    assert "ERROR stage: was interrupted; the same command goes on from here" in log
+
+
+def test_progress_counts_and_is_seen(tmp_path):
+    result, log = run(tmp_path, "assert list(log.report_progress(range(3), 'stage')) == [0, 1, 2]")
+    assert "stage: 3/3 scans" in result.stderr and "stage: 3/3 scans" in log

@@ -1,0 +1,115 @@
+"""The page of the thesis's experiments: every figure and claim, one file, honest verdicts."""
+
+import re
+
+import numpy as np
+import pytest
+
+from helpers import claim_making as made
+from scanplan.lab.thesis import judging
+from scanplan.lab.thesis import page as page_module
+from scanplan.lab.thesis.shown_figures import FIGURES
+from scanplan.lab.thesis.stated_claims import CLAIMS
+from scanplan.store import schemas
+
+SVG = '<?xml version="1.0"?>\n<svg id="a"><defs><path id="b"/></defs><use href="#b" fill="url(#c)"/></svg>'
+
+
+def claims(**changes):
+    rows = judging.judge_claims(judging.ROOMS, "seed 1", made.rooms(**changes))
+    rows += judging.judge_claims(judging.ROOMS, "seed 2", made.rooms())
+    rows += judging.judge_claims(judging.DRIVE, "seed 1", made.drive())
+    return {name: np.array([row[name] for row in rows]) for name in schemas.CLAIMS.columns}
+
+
+def page(**changes):
+    drawn = {figure.file: SVG for figure in FIGURES}
+    strict, ours = made.steps(3600, 76, 76, 15), made.steps(3600, 700, 700, 15)
+    return page_module.thesis_page(drawn, SVG, claims(**changes), ours, strict)
+
+
+def test_every_figure_and_claim_is_there():
+    text = page()
+    numbers = ["3.2", *(f"5.{i}" for i in range(1, 13))]
+    assert [figure.number for figure in FIGURES] == numbers
+    for number in numbers:
+        assert f"<h3>Figure {number}</h3>" in text
+    for claim in CLAIMS:
+        assert page_module.escape(claim.states) in text
+    assert (
+        "4.83 GB" in text
+        and "4.00 GB" in text
+        and "6 min 29 s" in text
+        and "<td>Data collection</td>" in text
+    )
+
+
+def test_it_needs_no_other_file():
+    text = page()
+    assert (
+        not re.search(r'(src|href)="(?!#)', text) and "@import" not in text and "<?xml" not in text
+    )
+
+
+def test_identifiers_of_two_figures_do_not_meet():
+    found = re.findall(r'\bid="([^"]+)"', page())
+    assert len(found) == len(set(found))
+    text = page()
+    assert all(f'id="{target}"' in text for target in re.findall(r'href="#([^"]+)"', text))
+
+
+def test_a_verdict_is_of_all_seeds():
+    assert page_module.verdict_over_seeds(["yes", "yes"]) == ("holds", "yes")
+    assert page_module.verdict_over_seeds(["no"]) == ("does not hold", "no")
+    assert page_module.verdict_over_seeds(["yes", "no", "yes"]) == (
+        "holds for 2 of 3 seeds",
+        "some",
+    )
+    assert page_module.verdict_over_seeds([]) == ("", "")
+    assert "holds for 1 of 2 seeds" in page(rooms_hull=made.growing(40))
+
+
+def test_what_could_not_be_measured_is_counted_apart():
+    table = claims()
+    n = sum(bool(claim.criterion) for claim in CLAIMS)
+    assert "could not be measured" not in page()
+    unknown = np.isin(table["claim"], ["fewer_walls", "full_hull_99"])
+    table["holds"] = np.where(unknown, "", table["holds"])
+    score = page_module._score(table)
+    assert score.endswith(", 2 could not be measured.")
+    assert sum(map(int, re.findall(r"\d+", score))) == 2 * n
+    fewer = next(claim for claim in CLAIMS if claim.name == "fewer_walls")
+    assert "not measured" in page_module.claims_table(table, [fewer])
+
+
+@pytest.mark.parametrize(
+    ("values", "unit", "text"),
+    [
+        ([2, 2], "number", "2"),
+        ([0.5, 0.7], "s", "0.600 (0.500 to 0.700) s"),
+        ([1234.5, 1234.9], "m", "1,235 (1,234 to 1,235) m"),
+        ([0.001592, 0.001406, 0.001686], "%", "0.156 (0.141 to 0.169) %"),
+        ([-0.007, 0.007], "%", "0.000 (-0.700 to 0.700) %"),
+        ([0.66, 1.0], "%", "83 (66 to 100) %"),
+        ([0.661, 1.0], "%", "83 (66 to 100) %"),
+        ([5, 6, 6], "count", "6 (5 to 6)"),
+        ([0.0000123], "s", "0.0000123 s"),
+        ([np.nan], "m", "not measured"),
+    ],
+)
+def test_means_come_with_their_range(values, unit, text):
+    assert page_module.format_values(values, unit) == text
+
+
+def test_every_claim_belongs_to_figures_that_there_are():
+    names = {claim.name for claim in CLAIMS}
+    assert {name for figure in FIGURES for name in figure.claims} <= names
+
+
+def test_numbers_of_clusters_come_in_their_order():
+    assert sorted(["m, 10 c", "m, 2 c", "m, 1 c", "a"], key=page_module._by_number) == [
+        "a",
+        "m, 1 c",
+        "m, 2 c",
+        "m, 10 c",
+    ]

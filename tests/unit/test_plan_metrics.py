@@ -1,0 +1,125 @@
+import json
+
+import numpy as np
+import pytest
+import shapely
+
+from scanplan.errors import StageError
+from scanplan.lab.evaluation import length_metrics, plan_metrics, true_plan, visible_faces
+
+SQUARE = np.array([[(0, 0), (4, 0)], [(4, 0), (4, 4)], [(4, 4), (0, 4)], [(0, 4), (0, 0)]], float)
+
+
+def cells():
+    return visible_faces.cut_faces(SQUARE)
+
+
+def everything():
+    return np.ones(len(cells().face), bool)
+
+
+class TestFaces:
+    def measure(self, drawn, observed=None, seen=None):
+        drawn = np.array(drawn, float).reshape(-1, 2, 2)
+        observed = np.ones(len(drawn), bool) if observed is None else np.array(observed)
+        seen = everything() if seen is None else seen
+        return plan_metrics.measure_faces(drawn, observed, cells(), everything(), seen)
+
+    def test_the_truth_misses_nothing(self):
+        row = self.measure(SQUARE)
+        assert (row["seen_completeness_010m"], row["observed_correctness_010m"]) == (
+            pytest.approx(1),
+            pytest.approx(1),
+        )
+        assert row["missed_not_seen"] + row["missed_misplaced"] + row["missed_misextracted"] == 0
+
+    def test_what_is_missed_has_one_reason_each(self):
+        seen = cells().face != 1
+        # the first wall is right, the second was not seen, the third is drawn 0.2 m off, the fourth not at all
+        row = self.measure([SQUARE[0], SQUARE[2] - [0, 0.2]], seen=seen)
+        assert row["missed_not_seen"] == pytest.approx(0.25, abs=0.02)
+        # and 0.3 m of the ends of what is missed lie near to it and to the first
+        assert row["missed_misplaced"] == pytest.approx((4 + 0.5) / 16, abs=0.02)
+        assert row["missed_misextracted"] == pytest.approx((4 - 0.6) / 16, abs=0.02)
+
+    def test_inferred_faces_count_apart(self):
+        row = self.measure(SQUARE, observed=[True, False, False, False])
+        assert row["observed_visible_completeness_010m"] == pytest.approx(0.25, abs=0.03)
+
+
+class TestWalls:
+    def test_two_pieces_of_one_wall_are_two_walls_a_true_wall(self):
+        drawn = np.array([[(0, 0.1), (1, 0.1)], [(2, 0.1), (4, 0.1)], [(4.05, 0), (4.05, 4)]])
+        row = plan_metrics.measure_walls(
+            drawn, np.array([0.2, np.nan, 0.35]), SQUARE, np.array([0.21, 0.3, 1, 1])
+        )
+        assert row["plan_walls_per_true_wall"] == pytest.approx(3 / 2)
+        assert (row["n_plan_walls"], row["n_thickness"]) == (3, 2)
+        assert row["thickness_error_m"] == pytest.approx((0.01 + 0.05) / 2)
+
+    def test_a_wall_across_belongs_to_none(self):
+        row = plan_metrics.measure_walls(
+            np.array([[(2, -0.3), (2, 0.3)]]), np.array([0.2]), SQUARE, np.ones(4)
+        )
+        assert np.isnan(row["plan_walls_per_true_wall"])
+
+    def test_no_walls(self):
+        assert (
+            plan_metrics.measure_walls(np.empty((0, 2, 2)), np.empty(0), SQUARE, np.ones(4))[
+                "n_plan_walls"
+            ]
+            == 0
+        )
+
+
+class TestRooms:
+    TRUE = (shapely.box(0, 0, 4, 4), shapely.box(5, 0, 9, 4), shapely.box(20, 0, 24, 4))
+
+    def test_iou_by_the_best_room(self):
+        drawn = [shapely.box(0, 0, 4, 3), shapely.box(30, 0, 31, 1)]
+        row = plan_metrics.measure_rooms(drawn, self.TRUE, np.array([True, True, False]))
+        assert (row["n_rooms_true"], row["n_rooms_found"], row["n_rooms_false"]) == (2, 1, 1)
+        assert (row["room_iou"], row["least_room_iou"]) == (pytest.approx(0.375), 0)
+
+    def test_no_rooms(self):
+        row = plan_metrics.measure_rooms([], self.TRUE, np.array([True, True, False]))
+        assert (row["n_rooms_found"], row["n_rooms_false"], row["room_iou"]) == (0, 0, 0)
+
+
+class TestTruth:
+    def write(self, path, *features):
+        rows = [
+            {"type": "Feature", "properties": p, "geometry": shapely.geometry.mapping(g)}
+            for g, p in features
+        ]
+        path.write_text(json.dumps({"type": "FeatureCollection", "features": rows}))
+        return path
+
+    def test_rooms_that_no_wall_parts_are_one(self, tmp_path):
+        boxes = [
+            (shapely.box(0, 0, 2, 2), True),
+            (shapely.box(2, 0, 4, 2), False),
+            (shapely.box(4.2, 0, 6, 2), False),
+        ]
+        features = [(box, {"kind": "room", "name": "a", "visited": was}) for box, was in boxes]
+        true = true_plan.read_true_plan(self.write(tmp_path / "truth.geojson", *features))
+        assert [room.area for room in true.rooms] == [
+            pytest.approx(8, abs=0.01),
+            pytest.approx(3.6),
+        ]
+        assert true.visited.tolist() == [True, False]
+
+    def test_doors_and_passages_apart_from_windows(self, tmp_path):
+        widths_m = {"door": 0.9, "window": 1.4, "passage": 1.2}
+        lines = {t: shapely.LineString([(0, 0), (width_m, 0)]) for t, width_m in widths_m.items()}
+        features = [(line, {"kind": "opening", "type": t}) for t, line in lines.items()]
+        true = true_plan.read_true_plan(self.write(tmp_path / "truth.geojson", *features))
+        np.testing.assert_allclose(length_metrics.line_lengths_m(true.doors_m), [0.9, 1.2])
+        np.testing.assert_allclose(length_metrics.line_lengths_m(true.windows_m), [1.4])
+
+    def test_a_wall_without_thickness_is_told(self, tmp_path):
+        path = self.write(
+            tmp_path / "truth.geojson", (shapely.LineString([(0, 0), (1, 0)]), {"kind": "wall"})
+        )
+        with pytest.raises(StageError, match=r"truth\.geojson: feature 0 is no wall"):
+            true_plan.read_true_plan(path)

@@ -1,0 +1,89 @@
+"""Results keep the place of the dataset that they were made of."""
+
+from pathlib import Path
+
+import pytest
+
+from scanplan.errors import StageError
+from scanplan.project import provenance
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+def made(name, path):
+    """Results of a dataset."""
+    provenance.begin_results(name, provenance.identify_source(path))
+    Path("results", name, "poses.parquet").touch()
+
+
+def test_another_dataset_of_the_name_is_refused():
+    made("x", "a/x")
+    with pytest.raises(
+        StageError, match=r"results/x: was made of a/x, not of b/x; .*replace=x.*REPLACE=x"
+    ):
+        provenance.check_sources(
+            {"y": provenance.identify_source("b/y"), "x": provenance.identify_source("b/x")}
+        )
+    provenance.check_sources({"x": provenance.identify_source("./a/../a/x")})
+    provenance.check_sources({"x": provenance.identify_source("b/x")}, "x")
+    provenance.check_sources({"x": provenance.identify_source("b/x")}, ["x"])
+
+
+def test_the_demo_is_a_dataset_of_its_own():
+    made("demo", None)
+    provenance.check_sources({"demo": provenance.identify_source(None)})
+    with pytest.raises(StageError, match="the simulated demo, not of my/demo"):
+        provenance.check_sources({"demo": provenance.identify_source("my/demo")})
+
+
+def test_only_what_is_there_can_be_replaced():
+    with pytest.raises(StageError, match="replace: z is no dataset of this run; it has x, y"):
+        provenance.check_sources({"x": "a/x", "y": "a/y"}, "z")
+
+
+def test_results_of_nobody_knows_what_and_no_results_are_in_nobodys_way():
+    Path("results/old").mkdir(parents=True)
+    Path("results/old/poses.parquet").touch()
+    provenance.begin_results("begun", "a/begun")
+    provenance.check_sources({"old": "a/old", "begun": "b/begun", "new": "a/new"})
+
+
+def test_a_note_without_results_goes():
+    made("x", "a/x")
+    provenance.begin_results("begun", "a/begun")
+    Path("results/begun/plan/empty").mkdir(parents=True)
+    provenance.check_sources({"begun": "b/begun"})
+    for name in ("x", "begun", "never"):
+        provenance.discard_lone_note(name)
+    assert Path("results/x/source.txt").read_text() == "a/x\n"
+    assert not Path("results/begun").exists() and not Path("results/never").exists()
+
+
+def test_links_are_followed_and_a_moved_project_keeps_its_results(tmp_path):
+    outside = tmp_path / "elsewhere"
+    (tmp_path / "project/floor").mkdir(parents=True)
+    outside.mkdir()
+    (tmp_path / "project/link").symlink_to(outside)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(tmp_path / "project")
+        assert (
+            provenance.identify_source(tmp_path / "project/floor")
+            == provenance.identify_source("floor")
+            == "floor"
+        )
+        assert provenance.identify_source("link") == str(outside)
+
+
+def test_until_a_whole_run_has_ended_results_are_of_both():
+    made("x", "a/x")
+    made("x", "b/x")
+    assert Path("results/x/source.txt").read_text() == "b/x\na/x\n"
+    for known in ("a/x", "b/x"):
+        provenance.check_sources({"x": known})
+    provenance.end_results("x", "b/x")
+    provenance.check_sources({"x": "b/x"})
+    with pytest.raises(StageError, match="was made of b/x, not of a/x"):
+        provenance.check_sources({"x": "a/x"})

@@ -1,0 +1,18 @@
+import pytest
+
+from scanplan.errors import StageError
+from scanplan.lab.evaluation import run_times
+
+
+def test_seconds_are_the_column_s(tmp_path):
+    path = tmp_path / "job.tsv"
+    path.write_text("s\th:m:s\tmax_rss\n2.5\t0:00:02\t100\n")
+    assert run_times.read_job_seconds(path) == 2.5
+
+
+@pytest.mark.parametrize("text", ["", "s\n", "h:m:s\n0:01\n", "s\nfast\n"])
+def test_anything_else_is_refused(tmp_path, text):
+    path = tmp_path / "job.tsv"
+    path.write_text(text)
+    with pytest.raises(StageError, match=r"job\.tsv: is no benchmark file"):
+        run_times.read_job_seconds(path)

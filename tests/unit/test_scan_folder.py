@@ -1,0 +1,166 @@
+import numpy as np
+import pytest
+
+from helpers import bag_making
+from scanplan.errors import StageError
+from scanplan.recordings import scan_folder, tf_tree
+from scanplan.recordings.survey import open_survey
+
+LIMITS = {"min_range_m": 0.1, "max_range_m": 50.0}
+POINTS = bag_making.room_points(40)
+
+
+def write_pcd(path, xyz_m, extra=None):
+    """A binary PCD, fields x y z and optionally a float32 field `extra`: (name, values)."""
+    columns, names = [np.asarray(xyz_m, np.float32)], "x y z"
+    if extra:
+        columns.append(np.asarray(extra[1], np.float32)[:, None])
+        names += f" {extra[0]}"
+    n = names.count(" ") + 1
+    header = (
+        f"# .PCD v0.7\nVERSION 0.7\nFIELDS {names}\nSIZE{' 4' * n}\nTYPE{' F' * n}\nCOUNT{' 1' * n}\n"
+        f"WIDTH {len(xyz_m)}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {len(xyz_m)}\nDATA binary\n"
+    )
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(header.encode() + np.hstack(columns).tobytes())
+    return path
+
+
+def write_ply(path, xyz_m):
+    lines = "\n".join(" ".join(map(repr, row)) for row in np.asarray(xyz_m, np.float32).tolist())
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(
+        f"ply\nformat ascii 1.0\nelement vertex {len(xyz_m)}\nproperty float x\nproperty float y\nproperty float z\n"
+        f"end_header\n{lines}\n"
+    )
+    return path
+
+
+def folder(tmp_path, names, poses):
+    """A scan folder whose i-th named cloud is moved by i cm; returns its files."""
+    for i, name in enumerate(names):
+        write = write_ply if name.endswith("ply") else write_pcd
+        write(tmp_path / "scans" / name, POINTS + np.float32(i / 100))
+    (tmp_path / "poses.tum").write_text(poses)
+    return [str(tmp_path / "poses.tum"), *sorted(str(tmp_path / "scans" / name) for name in names)]
+
+
+TWO = "# t tx ty tz qx qy qz qw\n1700000000.000000001 0 0 0 0 0 0 1\n1700000001.000000001 1 2 0 0 0 0 -1  # end\n\n"
+
+
+def test_stamps_in_names_are_interpolated_to_the_nanosecond(tmp_path):
+    files = folder(tmp_path, ["1700000000.500000001.pcd", "1700000000.000000001.ply"], TWO)
+    with open_survey(files, **LIMITS) as survey:
+        assert survey.stamps().tolist() == [1_700_000_000_000_000_001, 1_700_000_000_500_000_001]
+        pose, _, covered = tf_tree.chain_poses(survey.pose_edges(), survey.stamps(), max_gap_s=1)
+        np.testing.assert_allclose(pose[:, :3, 3], [[0, 0, 0], [0.5, 1, 0]], atol=1e-9)
+        assert covered.all()
+        assert not survey.planar
+        scans = list(survey.scans([1, 0]))
+    assert [(s.scan_id, s.t_ns) for s in scans] == list(enumerate(survey.stamps()))
+    np.testing.assert_allclose(scans[0].xyz_m, POINTS + np.float32(0.01), atol=1e-6)
+    np.testing.assert_allclose(scans[1].xyz_m, POINTS, atol=1e-6)
+
+
+def test_stamps_in_nanoseconds(tmp_path):
+    files = folder(tmp_path, ["1700000000500000001.pcd"], TWO)
+    with open_survey(files, **LIMITS) as survey:
+        assert survey.stamps().tolist() == [1_700_000_000_500_000_001]
+
+
+def test_other_names_are_taken_in_natural_order(tmp_path):
+    names = ["s10.pcd", "s2.pcd", "s1.pcd"]
+    poses = "\n".join(f"{t} {t} 0 0 0 0 0 1" for t in (1, 2, 5.5))
+    with open_survey(folder(tmp_path, names, poses), **LIMITS) as survey:
+        assert survey.stamps().tolist() == [10**9, 2 * 10**9, 5_500_000_000]
+        shifts = [float((scan.xyz_m - POINTS)[0, 0]) for scan in survey.scans(range(3))]
+        pose, gap_s, _ = tf_tree.chain_poses(survey.pose_edges(), survey.stamps(), max_gap_s=0)
+    np.testing.assert_allclose(shifts, [0.02, 0.01, 0.0], atol=1e-6)
+    assert pose[:, 0, 3].tolist() == [1, 2, 5.5]
+    assert gap_s.tolist() == [0, 0, 0]
+
+
+def test_a_mount_and_bad_poses(tmp_path):
+    poses = TWO + "1700000002 0 0 0 0 0 0 0\n1700000003 nan 0 0 0 0 0 1\n"
+    files = folder(tmp_path, ["1700000000.000000001.pcd"], poses)
+    with open_survey(files, base_from_sensor=[1, 0, 0, 0, 0, 90], **LIMITS) as survey:
+        edges = survey.pose_edges()
+        pose, _, _ = tf_tree.chain_poses(edges, survey.stamps(), max_gap_s=1)
+    assert len(edges[0].t_ns) == 2
+    np.testing.assert_allclose(pose[0] @ [1, 0, 0, 1], [1, 1, 0, 1], atol=1e-12)
+
+
+def test_times_and_ranges(tmp_path):
+    points, times = [[1, 0, 0], [np.nan, 0, 0], [0, 99, 0], [0, 1, 0]], [0.1, 0.2, 30.0, 0.15]
+    path = write_pcd(tmp_path / "scans" / "1.0.pcd", points, ("time", times))
+    (tmp_path / "poses.tum").write_text("1 0 0 0 0 0 0 1\n")
+    with open_survey([str(tmp_path / "poses.tum"), str(path)], **LIMITS) as survey:
+        (scan,) = survey.scans([0])
+    assert (scan.xyz_m.tolist(), scan.n_dropped) == ([[1, 0, 0], [0, 1, 0]], 2)
+    np.testing.assert_allclose(scan.time_s, [0.1, 0.15], atol=1e-7)
+
+
+def test_flat_clouds_are_planar(tmp_path):
+    files = [
+        str(tmp_path / "poses.tum"),
+        str(write_pcd(tmp_path / "scans" / "1.pcd", POINTS * (1, 1, 0))),
+    ]
+    (tmp_path / "poses.tum").write_text("1 0 0 0 0 0 0 1\n")
+    with open_survey(files, **LIMITS) as survey:
+        assert survey.planar
+
+
+def test_an_empty_cloud_has_no_points(tmp_path):
+    files = [
+        str(tmp_path / "poses.tum"),
+        str(write_ply(tmp_path / "scans" / "1.ply", np.empty((0, 3)))),
+    ]
+    (tmp_path / "poses.tum").write_text("1 0 0 0 0 0 0 1\n")
+    with open_survey(files, **LIMITS) as survey:
+        assert [len(scan.xyz_m) for scan in survey.scans([0])] == [0]
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda p: p.write_bytes(p.read_bytes()[:-100]),
+        lambda p: p.write_bytes(p.read_bytes()[:60]),
+        lambda p: p.write_text("nothing of the kind"),
+        lambda p: p.write_bytes(p.read_bytes().replace(b"POINTS 40", b"POINTS 99999999")),
+    ],
+)
+def test_damaged_clouds(tmp_path, damage):
+    files = folder(tmp_path, ["1700000000.5.pcd"], TWO)
+    damage(tmp_path / "scans" / "1700000000.5.pcd")
+    with (
+        open_survey(files, **LIMITS) as survey,
+        pytest.raises(StageError, match=r"0.5.pcd: damaged"),
+    ):
+        list(survey.scans([0]))
+
+
+@pytest.mark.parametrize(
+    ("names", "poses", "told"),
+    [
+        (["a.pcd"], TWO, "2 poses for 1 clouds"),
+        (["a.pcd", "b.pcd"], "2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n", "do not increase"),
+        (["a.pcd"], "1 0 0 0 0 0 1\n", "line 1 has 7 numbers"),
+        (["a.pcd"], "# x\n1 0 0 zero 0 0 0 1\n", "line 2 is not"),
+        (["a.pcd"], "inf 0 0 0 0 0 0 1\n", "line 1"),
+        (["a.pcd"], "1e300 0 0 0 0 0 0 1\n", "line 1"),
+        (["a.pcd"], "# nothing\n", "no usable pose"),
+        (["a.pcd"], "1 0 0 0 0 0 0 0\n", "no usable pose"),
+    ],
+)
+def test_poses_that_do_not_fit(tmp_path, names, poses, told):
+    files = folder(tmp_path, names, poses)
+    with pytest.raises(StageError, match=told), open_survey(files, **LIMITS):
+        pass
+
+
+def test_asking_for_a_scan_that_is_not_there(tmp_path):
+    survey = scan_folder.ScanFolder(
+        folder(tmp_path, ["1.0.pcd"], TWO), base_from_sensor=None, **LIMITS
+    )
+    with pytest.raises(ValueError, match="asked for"):
+        list(survey.scans([1]))

@@ -1,0 +1,272 @@
+"""Settings are merged in order and every fault names itself."""
+
+import copy
+import subprocess
+import sys
+
+import pytest
+
+from scanplan.errors import StageError
+from scanplan.project import yaml_file
+from scanplan.project.settings import (
+    COMMAND_LINE,
+    Layer,
+    check_settings,
+    find_origin,
+    locate_fault,
+    merge_settings,
+    read_own_layers,
+    read_yaml,
+    settings_of_dataset,
+    settings_of_run,
+)
+
+
+@pytest.fixture
+def defaults(project_root):
+    return read_yaml(project_root / "config/config.yaml")
+
+
+@pytest.fixture
+def schema(project_root):
+    return read_yaml(project_root / "workflow/schemas/config.schema.yaml")
+
+
+def test_the_defaults_fit_the_schema(defaults, schema):
+    check_settings(defaults, schema, "config.yaml")
+
+
+def test_the_thesis_preset_fits_the_schema(defaults, schema, project_root):
+    preset = read_yaml(project_root / "config/thesis.yaml")
+    check_settings(merge_settings(defaults, preset), schema, "thesis.yaml")
+
+
+def test_every_key_is_required_described_and_closed(schema):
+    def walk(node, where):
+        assert node.get("description"), where
+        if node.get("type") == "object":
+            assert node["additionalProperties"] is False and set(node["required"]) == set(
+                node["properties"]
+            ), where
+            for key, child in node["properties"].items():
+                walk(child, f"{where}.{key}")
+
+    for key, child in schema["properties"].items():
+        walk(child, key)
+
+
+def test_every_key_is_in_the_manual(schema, project_root):
+    manual = (project_root / "config/README.md").read_text()
+
+    def keys(node):
+        for key, child in node.get("properties", {}).items():
+            yield key
+            yield from keys(child)
+
+    missing = [key for key in keys(schema) if f"`{key}`" not in manual]
+    assert missing == []
+
+
+def test_the_command_line_wins_over_the_dataset_over_the_defaults(defaults, schema, tmp_path):
+    own = tmp_path / "dataset.yaml"
+    own.write_text("poses: {keep_every: 2, max_gap_s: 9.0}\n")
+    before = copy.deepcopy(defaults)
+    layers = [*read_own_layers(own), Layer("other.yaml", {"poses": {"keep_every": 4}})]
+    layers += [Layer(COMMAND_LINE, {"poses": {"keep_every": 3}})]
+    settings = settings_of_dataset(defaults, layers, schema)
+    assert settings["poses"]["keep_every"] == 3 and settings["poses"]["max_gap_s"] == 9.0
+    assert settings["hulls"] == defaults["hulls"] and defaults == before
+
+
+def test_what_a_run_is_of_is_no_setting_of_its_results(defaults, schema):
+    layers = [
+        Layer("a.yaml", {"dataset": "a", "replace": "a"}),
+        Layer(COMMAND_LINE, {"dataset": ["a", "b"]}),
+    ]
+    assert not {"dataset", "replace"} & set(settings_of_dataset(defaults, layers, schema))
+    assert settings_of_run(defaults, layers, schema) == {"dataset": ["a", "b"], "replace": "a"}
+    assert settings_of_run(defaults, [], schema) == {"dataset": None, "replace": None}
+
+
+@pytest.mark.parametrize(
+    ("given", "said"), [([], r"is \[\], expected: Folder"), (12, "--config 'dataset=\"12\"'")]
+)
+def test_a_dataset_that_is_none(defaults, schema, given, said):
+    with pytest.raises(StageError, match=said):
+        settings_of_run(defaults, [Layer(COMMAND_LINE, {"dataset": given})], schema)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("poses: {keep_every: 0}", "poses.keep_every: 0 is less than the minimum of 1"),
+        ("poses: {keep_evry: 2}", "poses: unknown key keep_evry; known are keep_every"),
+        ("poses: {keep_every: two}", "poses.keep_every: 'two' is not of type 'integer'"),
+        ("poses: {max_gap_s: .nan}", "poses.max_gap_s: nan"),
+        ("pose: {}", "settings: unknown key pose"),
+        ("[1, 2]", "holds list"),
+        ("1: 2", "settings: unknown key 1"),
+        ("hulls: {n_clusters: 10.0}", "hulls.n_clusters: 10.0 is not of type 'integer'"),
+        (
+            "input: {min_range_m: 5.0, max_range_m: 2.0}",
+            "input.max_range_m: 2.0 must be above input.min_range_m (5.0)",
+        ),
+        (
+            "input: {max_range_m: 0.1}",
+            "input.max_range_m: 0.1 must be above input.min_range_m (0.1)",
+        ),
+        ("hulls: {sample_size: 9}", "hulls.sample_size: 9 must not be below hulls.n_clusters (10)"),
+        (
+            "plan: {merge: {tolerance_m: 0.5}}",
+            "plan.merge.merge_distance_m: 0.1 must not be below plan.merge.tolerance_m (0.5)",
+        ),
+        (
+            "walls: {iterative_ransac: {door_height_m: 0.9}}",
+            "walls.iterative_ransac.door_height_m: 0.9 must not be below walls.iterative_ransac.wall_height_m (1.0)",
+        ),
+        (
+            "registration: {icp_distances_m: [0.1, 0.3]}",
+            "registration.icp_distances_m: [0.1, 0.3] must not rise",
+        ),
+        ("a: [", "is not valid YAML (line 1, column 5: "),
+        ("poses:\n\tkeep_every: 1", "is not valid YAML (line 2, column 1: "),
+        (
+            "plan: {method: hull}\nplan: {}",
+            "is not valid YAML (line 2, column 1: `plan` is given twice",
+        ),
+        ("simulate: {seed: 2024-02-30}", "line 1, column 18: `2024-02-30` is no timestamp"),
+        ("poses: {keep_every: !!int two}", "line 1, column 21: `two` is no int"),
+        ("poses: !!map two", "is not valid YAML (line 1, column 8: expected a mapping"),
+        (f"poses: {'[' * 3000}", "is nested too deeply"),
+        (
+            "registration: {icp_distances_m: [.nan]}",
+            "registration.icp_distances_m: [nan] is no finite number",
+        ),
+        ("simulate: {site: {waypoints_m: [[0, .inf], [1, 1]]}}", "is no finite number"),
+        ("replace: other", "given on the command line"),
+        ("dataset: other", "given on the command line"),
+        ("plan: {method: best}", "plan.method: 'best' is not one of"),
+        ("hulls: !!python/object/apply:os.system ['true']", "is not valid YAML"),
+    ],
+)
+def test_a_fault_names_file_key_value_and_limit(defaults, schema, tmp_path, text, said):
+    own = tmp_path / "dataset.yaml"
+    own.write_text(text)
+    with pytest.raises(StageError) as caught:
+        settings_of_dataset(defaults, read_own_layers(own), schema)
+    assert (
+        said in str(caught.value)
+        and str(own) in str(caught.value)
+        and "\n" not in str(caught.value)
+    )
+
+
+def test_text_for_a_number_on_the_command_line_is_explained(defaults, schema):
+    with pytest.raises(StageError, match="--configfile"):
+        settings_of_dataset(defaults, [Layer(COMMAND_LINE, {"poses": {"keep_every": "2"}})], schema)
+
+
+def limits_in_pairs(node, where=""):
+    """Keys of the schema that are the least and the most of the same."""
+    for key, child in node.get("properties", {}).items():
+        yield from limits_in_pairs(child, f"{where}{key}.")
+        if key.startswith("min_") and f"max_{key[4:]}" in node["properties"]:
+            yield f"{where}{key}", f"{where}max_{key[4:]}"
+
+
+def with_value(key, value):
+    for part in reversed(key.split(".")):
+        value = {part: value}
+    return value
+
+
+def test_no_least_may_reach_its_most(defaults, schema):
+    pairs = list(limits_in_pairs(schema))
+    assert len(pairs) >= 5
+    for least, most in pairs:
+        both = merge_settings(with_value(least, 0.75), with_value(most, 0.75))
+        with pytest.raises(StageError) as caught:
+            settings_of_dataset(defaults, [Layer("a.yaml", both)], schema)
+        assert f"a.yaml: {most}: 0.75 must be above {least} (0.75)" in str(caught.value)
+
+
+def test_limits_may_cross_in_a_file_that_another_mends(defaults, schema):
+    layers = [
+        Layer("a.yaml", {"input": {"min_range_m": 5.0}}),
+        Layer("b.yaml", {"input": {"max_range_m": 2.0}}),
+    ]
+    with pytest.raises(StageError, match=r"b\.yaml: input\.max_range_m"):
+        settings_of_dataset(defaults, layers, schema)
+    layers.append(Layer("c.yaml", {"input": {"min_range_m": 1.0}}))
+    assert settings_of_dataset(defaults, layers, schema)["input"]["min_range_m"] == 1.0
+
+
+def test_a_fault_is_told_in_the_name_of_its_own_file(defaults, schema):
+    layers = [
+        Layer("a.yaml", {"poses": {"keep_every": 2}}),
+        Layer("b.yaml", {"poses": {"keep_every": 0}}),
+    ]
+    with pytest.raises(StageError, match=r"^b\.yaml: poses\.keep_every: 0"):
+        settings_of_dataset(defaults, layers, schema)
+
+
+def test_where_a_setting_comes_from():
+    layers = [
+        Layer("a.yaml", {"plan": {"method": "hull", "pair": {"offset_m": 0.1}}}),
+        Layer("b.yaml", {"poses": {}}),
+    ]
+    assert find_origin(layers, "plan.method") == "a.yaml"
+    assert find_origin(layers, "plan.pair") == find_origin(layers, "plan") == "a.yaml"
+    assert find_origin(layers, "plan.pair.offset_m", "poses.keep_every") == "a.yaml"
+    assert find_origin(layers, "plan.meth") is find_origin(layers, "poses.keep_every") is None
+
+
+def test_a_stages_fault_is_told_with_the_file_that_gives_its_setting():
+    layers = [
+        Layer("a.yaml", {"simulate": {"site": {"start_m": [1, 2]}, "errors": {"glass_pass": 1}}})
+    ]
+    assert (
+        locate_fault("simulate.site.start_m: off", layers) == "a.yaml: simulate.site.start_m: off"
+    )
+    assert locate_fault("simulate.errors: too much", layers) == "a.yaml: simulate.errors: too much"
+    for other in (
+        "simulate.site.clearance_m: wide",
+        "run.bag: no cloud topic",
+        "simulate",
+        "a fault",
+    ):
+        assert locate_fault(other, layers) == other
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (None, "does not exist"),
+        (b"# nothing yet", "holds no settings"),
+        (b"a: [", "is not valid YAML (line 1"),
+        (b"\xff\xfe\x00", "is not valid YAML"),
+        (b"only words", "holds str"),
+    ],
+)
+def test_a_file_for_the_command_line_is_checked_first(project_root, tmp_path, content, said):
+    path = tmp_path / "my.yaml"
+    if content is not None:
+        path.write_bytes(content)
+    command = [sys.executable, "-m", "scanplan.project.yaml_file", str(path)]
+    checked = subprocess.run(command, cwd=project_root / "scripts", capture_output=True, text=True)
+    assert checked.returncode != 0 and said in checked.stderr
+    assert checked.stderr.startswith(f"scanplan: {path}: ") and checked.stderr.count("\n") == 1
+    path.write_text("poses: {keep_every: 2}")
+    assert subprocess.run(command, cwd=project_root / "scripts", check=False).returncode == 0
+
+
+def test_settings_may_share_values_by_anchors(tmp_path):
+    path = tmp_path / "a.yaml"
+    path.write_text("walls:\n  one: &limits {a: 1, b: 2}\n  two: {<<: *limits, b: 3}\n")
+    assert yaml_file.read_yaml(path)["walls"]["two"] == {"a": 1, "b": 3}
+
+
+def test_a_file_of_settings_that_must_be_there_is_asked_for(tmp_path):
+    assert read_own_layers(tmp_path / "none.yaml") == []
+    with pytest.raises(StageError, match=r"none\.yaml"):
+        read_own_layers(tmp_path / "none.yaml", may_lack=False)

@@ -1,0 +1,173 @@
+import numpy as np
+import pytest
+
+from helpers.wall_making import observed
+from scanplan.lab.evaluation import length_metrics, visible_faces, wall_findings, wall_metrics
+from scanplan.lab.evaluation.truth_file import TrueFaces
+
+NO_FACES = np.empty((0, 2, 2))
+FACES = [(0, 0, 6, 0), (6, 0, 6, 4), (6, 4, 3, 4), (0, 4, 0, 0)]
+
+
+def survey():
+    """Three scans of a room, short of sight, that show parts of its walls; two are registered 0.2 m off."""
+    table = observed(FACES, np.random.default_rng(5), n_scans=3, sigma_m=0.03)
+    place = np.tile(np.eye(4), (3, 1, 1))
+    place[:, :2, 3] = [(1, 1), (3, 2), (5, 3)]
+    wrong = place.copy()
+    wrong[1:, 0, 3] += 0.2
+    drawn = wall_findings.place_segments(table, np.arange(3), wrong, place)
+    faces = TrueFaces(np.array(FACES, float).reshape(-1, 2, 2), NO_FACES)
+    return wall_findings.observe_truth(
+        faces, place, place, sight=visible_faces.SensorView(2.5)
+    ), drawn
+
+
+def only(table, method):
+    return {name: values[table["method"] == method] for name, values in table.items()}
+
+
+def truth_of(faces, n_scans=1):
+    """Faces that every scan could see all of."""
+    cells = visible_faces.cut_faces(np.array(faces, float).reshape(-1, 2, 2))
+    return wall_findings.VisibleTruth(
+        cells, np.ones((n_scans, len(cells.face)), bool), np.ones(len(cells.face), bool)
+    )
+
+
+def test_sizes_grow_and_end_with_all():
+    assert wall_metrics.evaluated_sizes(1) == [1]
+    assert wall_metrics.evaluated_sizes(9) == [1, 2, 3, 4, 5, 8, 9]
+    assert wall_metrics.evaluated_sizes(80)[-2:] == [60, 80]
+    assert wall_metrics.evaluated_sizes(300)[-4:] == [120, 160, 240, 300]
+    assert wall_metrics.evaluated_sizes(121)[-2:] == [
+        120,
+        121,
+    ] and 12 in wall_metrics.evaluated_sizes(121)
+
+
+def test_scans_out_of_an_order_have_no_rank():
+    np.testing.assert_array_equal(
+        wall_metrics.rank_of_rows(np.array([2, 0]), 4),
+        [2, wall_findings.NEVER, 1, wall_findings.NEVER],
+    )
+
+
+def test_all_at_once_agrees_with_every_subset_by_itself():
+    truth, drawn = survey()
+    order = np.array([2, 0, 1])
+    table = only(
+        wall_metrics.measure_orders(truth, {"some_order": order}, {"some": drawn}, 0.1)[0],
+        "some_order",
+    )
+    visible = visible_faces.join_cells(truth.cells, truth.visible)
+    for row, k in enumerate(table["k"]):
+        lines = drawn.lines_m[np.isin(drawn.scan, order[:k])]
+        for name, within_m in wall_findings.WITHIN_M.items():
+            for prefix, true_m in (("", truth.cells.faces_m), ("visible_", visible)):
+                alone = length_metrics.compare_lines(lines, true_m, within_m)
+                # cells tell completeness to half of 2 cm at each of at most 20 ends in 17 m
+                assert table[f"{prefix}completeness_{name}"][row] == pytest.approx(
+                    alone.completeness, abs=0.012
+                )
+                assert table[f"{prefix}correctness_{name}"][row] == pytest.approx(alone.correctness)
+        assert table["n_walls"][row] == len(lines)
+
+
+def test_misses_are_parted_without_rest():
+    truth, drawn = survey()
+    table = only(
+        wall_metrics.measure_orders(truth, {"some_order": np.array([2, 0])}, {"some": drawn}, 0.1)[
+            0
+        ],
+        "some_order",
+    )
+    reasons = [
+        table[name] for name in ("missed_not_seen", "missed_misregistered", "missed_misextracted")
+    ]
+    np.testing.assert_allclose(table["completeness_010m"] + sum(reasons), 1)
+    assert all(0 < reason[0] < 1 for reason in reasons)
+    np.testing.assert_array_equal(np.diff(table["completeness_010m"]) >= 0, True)
+
+
+def test_a_share_of_the_oracles_is_taken_at_the_same_size():
+    truth, drawn = survey()
+    table, _ = wall_metrics.measure_orders(
+        truth, {"other": np.array([2, 1, 0])}, {"some": drawn}, 0.1
+    )
+    best, other = (
+        only(table, method)["visible_completeness_010m"] for method in ("oracle", "other")
+    )
+    np.testing.assert_allclose(only(table, "other")["oracle_share"], other / best)
+    np.testing.assert_allclose(only(table, "oracle")["oracle_share"], 1)
+    (told,) = wall_metrics.summarise_wall_measures(table)
+    assert f"first 3 scans: oracle {best[-1]:.2f}; other {other[-1]:.2f}" in told
+
+
+def test_the_oracle_goes_by_what_is_found_and_not_by_what_is_in_sight():
+    faces = [(0, 0, 6, 0), (0, 4, 6, 4)]
+    truth = truth_of(faces, n_scans=3)
+    # the scans show 1 m, 4 m and, of the very wall that is found already, 5 m
+    lines = np.array([[(0, 4), (1, 4)], [(1, 0), (5, 0)], [(0.5, 0), (5.5, 0)]], float)
+    drawn = wall_findings.PlacedSegments(lines, lines, np.arange(3))
+    table, best = wall_metrics.measure_orders(
+        truth, {"as_seen": np.arange(3)}, {"some": drawn}, 0.1
+    )
+    np.testing.assert_array_equal(best["some"].order, [2, 0, 1])
+    np.testing.assert_allclose(best["some"].gain_m, [5.2, 1.1, 0], atol=0.03)
+    assert (only(table, "as_seen")["oracle_share"] <= 1).all()
+
+
+def test_what_scans_find_is_told_scan_by_scan():
+    found = wall_findings.cells_found_by_scan(
+        (np.array([0, 1, 1]), np.array([0, 2, 0]), np.array([1, 4, 1])), np.array([1, 0]), (3, 5)
+    )
+    np.testing.assert_array_equal(
+        found.astype(int), [[1, 0, 1, 1, 0], [1, 0, 0, 0, 0], [0, 0, 0, 0, 0]]
+    )
+
+
+def test_segments_are_moved_with_their_scan():
+    truth, drawn = survey()
+    np.testing.assert_allclose(drawn.true_lines_m[drawn.scan == 0], drawn.lines_m[drawn.scan == 0])
+    np.testing.assert_allclose((drawn.lines_m - drawn.true_lines_m)[drawn.scan > 0, :, 0], 0.2)
+    back = wall_findings.move_segments(
+        drawn, np.array([[1.0, 0, 0, -0.2], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+    )
+    np.testing.assert_allclose(back.lines_m[drawn.scan > 0], drawn.true_lines_m[drawn.scan > 0])
+    np.testing.assert_array_equal(back.true_lines_m, drawn.true_lines_m)
+    assert truth.visible.sum() < len(truth.visible)
+
+
+def test_a_segment_belongs_to_the_face_it_mostly_lies_on():
+    truth = truth_of([(0, 0, 4, 0), (4, 0, 4, 0.3)])
+    lines = np.array([[(3, 0), (3.98, 0)], [(4, 0.02), (4, 0.3)], [(9, 9), (9, 8)]], float)
+    drawn = wall_findings.PlacedSegments(lines, lines, np.zeros(3, int))
+    found = wall_findings.match_segments(drawn, truth, wall_metrics.bitmap.fit_grid(lines, 1.0))
+    np.testing.assert_array_equal(found.face, [0, 1, -1])
+
+
+def test_segments_of_a_wall_are_counted_scan_by_scan():
+    # scan 0 has two segments on one wall and one on the other, scan 1 one, and one on none
+    lines = [(0, 0, 2, 0), (3, 0, 5, 0), (0, 4, 6, 4), (0, 0, 5, 0), (0, 9, 1, 9)]
+    lines_m = np.array(lines, float).reshape(-1, 2, 2)
+    drawn = wall_findings.PlacedSegments(lines_m, lines_m, np.array([0, 0, 0, 1, 1]))
+    truth = truth_of([(0, 0, 6, 0), (0, 4, 6, 4)], n_scans=2)
+    table = only(
+        wall_metrics.measure_orders(truth, {"some_order": np.array([1, 0])}, {"some": drawn}, 0.1)[
+            0
+        ],
+        "some_order",
+    )
+    np.testing.assert_allclose(table["walls_per_true_wall_of_a_scan"], [1, 4 / 3])
+
+
+def test_a_plan_is_measured_as_one_subset():
+    truth = truth_of([(0, 0, 6, 0), (0, 4, 6, 4)])
+    lines = np.array([[(0, 0.04), (3, 0.04)], [(2.9, 0), (4.9, 0)], [(0, 9), (1, 9)]], float)
+    row = wall_metrics.measure_plan_lines(lines, truth, 0.1)
+    assert row["completeness_010m"] == pytest.approx(5.0 / 12, abs=0.01)
+    assert row["completeness_005m"] == pytest.approx(4.95 / 12, abs=0.01)
+    assert row["correctness_010m"] == pytest.approx(5 / 6)
+    assert (row["n_walls"], row["walls_per_true_wall"]) == (3, 2)
+    assert "missed_misregistered" not in row

@@ -1,0 +1,122 @@
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from scanplan.geometry.lines import Line
+from scanplan.plan import wall_pairs
+from scanplan.plan.face_intervals import FaceInterval
+from scanplan.rays.face_profile import FaceObservation, RaySettings
+
+SETTINGS = wall_pairs.PairSettings(
+    max_angle_deg=5.0, min_thickness_m=0.04, max_thickness_m=0.6, offset_m=0.05, max_gap_m=2.0
+)
+READING = RaySettings(band_m=0.06, reach_m=2.0, max_gap_m=0.5, door_height_m=1.8)
+NONE = (np.empty(0),) * 3 + (np.empty(0, int),) + (np.empty(0),) * 2 + (np.empty(0, int),)
+
+
+def stretch(x0, y0, x1, y1, of=None):
+    """Seen from the left of its way; `of` another one: on its line."""
+    start, end = np.array([x0, y0], float), np.array([x1, y1], float)
+    length = np.hypot(*(end - start))
+    along = (end - start) / length
+    seen = (
+        FaceObservation(Line(start, np.array([-along[1], along[0]])), *NONE)
+        if of is None
+        else of.seen
+    )
+    low, high = seen.line.along_m(np.array([start, end]))
+    return FaceInterval(seen, float(low), float(high))
+
+
+def pair(*drawn):
+    return wall_pairs.pair_faces(list(drawn), SETTINGS, READING, planar=True)
+
+
+def test_opposite_faces_are_a_wall_with_a_thickness():
+    (wall,) = pair(stretch(0, 0.2, 4, 0.2), stretch(4, 0, 0, 0))
+    assert wall.thickness_m == pytest.approx(0.2)
+    assert abs(wall.line.offset_m(np.array([1.0, 0.1]))) == pytest.approx(0)
+    assert (len(wall.left), len(wall.right)) == (1, 1)
+
+
+def test_faces_that_look_at_each_other_are_a_corridor():
+    walls = pair(stretch(0, 0, 4, 0), stretch(4, 0.4, 0, 0.4))
+    assert [math.isnan(w.thickness_m) for w in walls] == [True, True]
+
+
+@pytest.mark.parametrize("apart", [0.02, 0.7])
+def test_faces_too_near_or_too_far_are_no_wall(apart):
+    assert len(pair(stretch(0, apart, 4, apart), stretch(4, 0, 0, 0))) == 2
+
+
+def test_faces_beside_each_other_but_not_opposite_are_no_wall():
+    assert len(pair(stretch(0, 0.2, 4, 0.2), stretch(12, 0, 8, 0))) == 2
+
+
+def test_a_long_face_and_two_short_ones_behind_it_are_one_wall():
+    (wall,) = pair(stretch(0, 0.2, 10, 0.2), stretch(4, 0, 0, 0), stretch(10, 0.01, 6, 0.01))
+    assert wall.thickness_m == pytest.approx(0.195, abs=0.002)
+
+
+def test_a_single_face_goes_on_behind_a_pause():
+    (wall,) = pair(stretch(0, 0, 4, 0), stretch(5, 0.01, 9, 0.01))
+    assert math.isnan(wall.thickness_m)
+    assert len(wall.left) == 2
+
+
+def test_a_step_is_no_wall_of_one_line():
+    assert len(pair(stretch(0, 0, 4, 0), stretch(5, 0.2, 9, 0.2))) == 2
+
+
+def test_a_side_with_a_step_is_not_forced_on_one_line():
+    walls = pair(stretch(0, 0.2, 10, 0.2), stretch(5, 0, 0, 0), stretch(10, -0.2, 5, -0.2))
+    assert sorted(len(w.members) for w in walls) == [1, 2]
+
+
+def test_a_tilted_face_is_another_wall():
+    assert len(pair(stretch(0, 0.2, 4, 0.2), stretch(4, 0.05, 0, -0.6))) == 2
+
+
+def test_rays_through_the_unseen_part_of_a_side_part_it_from_the_other():
+    """The back of a cupboard of 0.5 m lies on the wall: its front is no second side of that."""
+    front, wall = stretch(1, 0.5, 2, 0.5), stretch(5, 0, 0, 0)
+    assert len(pair(front, wall)) == 1
+    crossed = np.sort(
+        np.repeat(
+            front.line.along_m(np.column_stack([np.arange(2.2, 4, 0.05), np.full(36, 0.5)])), 3
+        )
+    )
+    passed = replace(
+        front.seen,
+        pass_m=crossed,
+        pass_z_m=0 * crossed,
+        pass_scan=np.zeros(len(crossed), int),
+        profiles={},
+    )
+    assert len(pair(replace(front, seen=passed), wall)) == 2
+
+
+def test_nothing_is_no_wall():
+    assert pair() == []
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(0, 10**6))
+def test_every_stretch_is_in_one_wall_and_every_side_is_straight(seed):
+    rng = np.random.default_rng(seed)
+    y = rng.choice([0.0, 0.1, 0.25, 1.0], 12) + rng.normal(0, 0.02, 12)
+    x, length = rng.uniform(0, 8, 12), rng.uniform(0.3, 3, 12)
+    ways = rng.choice([-1, 1], 12)
+    drawn = [stretch(a, b, a + w * n, b) for a, b, w, n in zip(x, y, ways, length, strict=True)]
+    walls = wall_pairs.pair_faces(drawn, SETTINGS, READING, planar=True)
+    assert sorted(i for w in walls for i in w.members) == list(range(12))
+    for wall in walls:
+        for sign, side in ((1, wall.left), (-1, wall.right)):
+            for i in side:
+                off = wall.line.offset_m(drawn[i].ends) - sign * wall.half_m
+                assert np.abs(off).max() <= SETTINGS.offset_m + 1e-9
+        assert math.isnan(wall.thickness_m) or 0.04 <= wall.thickness_m <= 0.6
