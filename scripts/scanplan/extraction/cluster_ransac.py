@@ -6,7 +6,7 @@ import numpy as np
 
 from scanplan.extraction import furniture, mean_shift, normals, segments
 from scanplan.geometry import line_fit
-from scanplan.rays import scan_view
+from scanplan.rays.face_rays import SKIRTING_M
 
 _DUAL_SHIFT_M = 1.0
 _ALIKE = np.cos(np.deg2rad(20))  # a point's normal against its wall's
@@ -187,6 +187,6 @@ def _surfaces(points, scan, settings):
     upright = known & (np.abs(normal[:, 2]) <= np.sin(np.deg2rad(settings.max_tilt_deg)))
     facing = normal[:, :2] / np.maximum(np.hypot(*normal[:, :2].T), 1e-9)[:, None]
     # between these heights, a normal that points up is a shelf's or a sill's, or of a strip of wall too narrow for one
-    height_m = cells.mean_m[:, 2] - scan.floor_m
-    outside = (height_m < scan_view.SKIRTING_M) | (height_m > settings.door_height_m)
+    height_m = cells.mean_m[:, 2] - scan.floor_z_m
+    outside = (height_m < SKIRTING_M) | (height_m > settings.door_height_m)
     return _Surfaces(cells, facing, upright, outside & (np.abs(normal[:, 2]) >= _STEEP))

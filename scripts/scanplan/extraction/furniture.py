@@ -9,9 +9,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan.rays import scan_view, sightlines
+from scanplan.geometry.lines import Line
+from scanplan.rays.expected_returns import count_sent_rays
+from scanplan.rays.face_raster import SCAN_COLUMN_M, rasterise_rays
+from scanplan.rays.face_rays import ON_M, SKIRTING_M, cast_at_face
+from scanplan.rays.ray_set import RaySet
 
 _PARALLEL = np.cos(np.deg2rad(10))
+BEHIND_M = 0.15  # a return farther behind a face is not its own
+_EDGE_ON_M = 1e-3  # a face through the sensor is seen edge on
+_GOOD_SHARE = 0.15  # of rays: fewer may be stray
 _LEVEL_M = 0.15  # tops that differ less are one
 _ACROSS = np.cos(np.deg2rad(45))
 
@@ -71,7 +78,7 @@ def keep_walls(rows, scan, limits):
     ----------
     rows : list of tuple
         As `segments.cut_line` gives them, relative to the sensor.
-    scan : scan_view.ScanView, optional
+    scan : ray_set.RaySet, optional
         Of all points of the scan. Without it, in the plane, only the scatter is judged: no ray passes over anything.
     limits : Limits
 
@@ -88,17 +95,70 @@ def keep_walls(rows, scan, limits):
     return [row for row, good in zip(rows, sound.tolist(), strict=True) if good]
 
 
+@dataclass(frozen=True)
+class FaceEvidence:
+    """What rays say of a face.
+
+    Attributes
+    ----------
+    top_m : float
+        Height above the floor up to which it is seen over a good stretch.
+    over : float
+        How surely it ends at some height, see `face_raster.FaceRaster.over_share`.
+    through : float
+        Rays through it below its top, per ray that ends at it.
+    missing : float
+        Share of the returns expected within its outline that are nowhere.
+    """
+
+    top_m: float
+    over: float
+    through: float
+    missing: float
+
+
+def weigh_face(
+    rays: RaySet, line: Line, span_m: tuple[float, float], heights_m: tuple[float, float]
+) -> FaceEvidence:
+    """Return what one scan's rays say of a face.
+
+    Parameters
+    ----------
+    rays : ray_set.RaySet
+    line : lines.Line
+    span_m : (float, float)
+        The face along the line.
+    heights_m : (float, float)
+        Of its returns, above the floor.
+    """
+    face = cast_at_face(rays, line, *span_m, at_m=ON_M, least_side_m=_EDGE_ON_M)
+    is_on, is_beyond = face.is_occupied, face.is_free(BEHIND_M)
+    is_raised = face.height_m > SKIRTING_M
+    raster = rasterise_rays(
+        (face.along_m[is_on], face.height_m[is_on]),
+        (face.along_m[is_beyond], face.height_m[is_beyond]),
+        (np.empty(0), np.empty(0)),
+        span_m=span_m,
+        column_m=SCAN_COLUMN_M,
+    )
+    top_m = raster.seen_top_m()
+    n_through = (is_beyond & is_raised & (face.height_m < top_m)).sum()
+    sent = count_sent_rays(rays, face, span_m[0], len(raster), raster.column_m, heights_m)
+    through = n_through / max((is_on & is_raised).sum(), 1)
+    return FaceEvidence(top_m, raster.over_share(), through, sent.missing_share)
+
+
 def _upright_walls(values, scan, limits):
     """Return which rows (n, 10) are walls, by what the rays of a 3-D scan tell."""
     start_m, end_m, normal = values[:, 0:2], values[:, 2:4], values[:, 4:6]
-    sights = [sightlines.observe_face(scan, v[0:2], v[2:4], v[8], v[9]) for v in values]
+    evidence = [_weigh_row(scan, row) for row in values]
     top_m, over, through, missing = np.array(
-        [(s.top_m, s.over, s.through, s.missing) for s in sights]
+        [(e.top_m, e.over, e.through, e.missing) for e in evidence]
     ).T
     length_m, lowish = np.hypot(*(end_m - start_m).T), top_m < limits.furniture_height_m
     sound = (values[:, 7] <= limits.max_rmse_m) | ~lowish
     sound &= (through <= limits.through_share) & (missing <= limits.missing_share)
-    hangs = values[:, 8] - scan.floor_m > limits.hang_height_m
+    hangs = values[:, 8] - scan.floor_z_m > limits.hang_height_m
     sound &= ~(lowish & (hangs | (over > limits.over_share)))
     small = lowish & (length_m <= limits.furniture_length_m)
     sound &= ~(
@@ -132,6 +192,35 @@ def _upright_walls(values, scan, limits):
     return wall
 
 
+def _weigh_row(scan, row):
+    """Return the evidence of a row of `segments.cut_line`."""
+    line = Line((row[0:2] + row[2:4]) / 2, row[4:6])
+    span_m = np.sort(line.along_m(row[0:4].reshape(2, 2)))
+    return weigh_face(scan, line, tuple(span_m), tuple(row[8:10] - scan.floor_z_m))
+
+
+def gap_leads_on(rays: RaySet, line: Line, span_m: tuple[float, float], depth_m: float) -> bool:
+    """Return whether a gap in a wall leads on, as a door does, and not into a niche or between two cabinets.
+
+    Parameters
+    ----------
+    rays : ray_set.RaySet
+    line : lines.Line
+    span_m : (float, float)
+        The gap along the line.
+    depth_m : float
+        A niche is no deeper.
+
+    Returns
+    -------
+    bool
+        Whether a good part of the rays through it get deeper; true if there are none.
+    """
+    face = cast_at_face(rays, line, *span_m, at_m=ON_M, least_side_m=_EDGE_ON_M)
+    behind_m = face.behind_m[face.is_free(BEHIND_M) & (face.height_m > SKIRTING_M)]
+    return not len(behind_m) or bool(np.mean(behind_m > depth_m) > _GOOD_SHARE)
+
+
 def _door_between(one, other, scan, limits):
     """Tell whether what is between two faces on one line is a door, or nothing."""
     if (other[2:4] - one[0:2]) @ (one[2:4] - one[0:2]) > 0:
@@ -142,7 +231,9 @@ def _door_between(one, other, scan, limits):
     if (end_m - start_m) @ (one[2:4] - one[0:2]) < 0:
         # side by side: one stands before the other
         return False
-    return sightlines.gap_leads_on(scan, start_m, end_m, limits.furniture_depth_m)
+    line = Line(start_m, one[4:6])
+    span_m = np.sort(line.along_m(np.array([start_m, end_m])))
+    return gap_leads_on(scan, line, tuple(span_m), limits.furniture_depth_m)
 
 
 def find_corner_faces(start_m, end_m, normal, reach_m):
@@ -182,13 +273,13 @@ def find_faces_in_front(start_m, end_m, normal, depth_m):
     """Tell which faces stand before others: parallel, up to `depth_m` before and beside them; (n, n) bool."""
     forward_m, gap_m = _placed(start_m, end_m, normal)
     facing = normal @ normal.T > _PARALLEL
-    return facing & (forward_m > sightlines.BEHIND_M) & (forward_m <= depth_m) & (gap_m <= depth_m)
+    return facing & (forward_m > BEHIND_M) & (forward_m <= depth_m) & (gap_m <= depth_m)
 
 
 def find_collinear_faces(start_m, end_m, normal, limits):
     """Tell which faces are on one line with others, no farther than a door's width apart; (n, n) bool."""
     forward_m, gap_m = _placed(start_m, end_m, normal)
-    same = (normal @ normal.T > _PARALLEL) & (np.abs(forward_m) <= scan_view.ON_M)
+    same = (normal @ normal.T > _PARALLEL) & (np.abs(forward_m) <= ON_M)
     return same & (gap_m <= limits.door_width_m) & ~np.eye(len(normal), dtype=bool)
 
 

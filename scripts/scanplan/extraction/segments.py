@@ -9,9 +9,16 @@ import numpy as np
 
 from scanplan.errors import StageError
 from scanplan.extraction import furniture
-from scanplan.rays import line_columns, scan_view
+from scanplan.extraction.runs import extend_run_ends, find_runs, grow_runs
+from scanplan.geometry.lines import Line
+from scanplan.rays import levels
+from scanplan.rays.face_raster import SCAN_COLUMN_M, rasterise_rays
+from scanplan.rays.face_rays import ON_M, SKIRTING_M, cast_at_face
+from scanplan.rays.ray_set import RaySet, gather_rays
+from scanplan.types import FloatArray
 
 _HEIGHT_PERCENTILES = (2, 98)
+_LEAST_M = 1e-6
 _FIELDS = ("x0_m", "y0_m", "x1_m", "y1_m", "nx", "ny", "n_points", "rmse_m", "z_min_m", "z_max_m")
 
 
@@ -102,12 +109,14 @@ def door_top_m(xyz_m, limits, *, planar):
     """Return the height above which points bridge no gap, in the frame of the points (n, 3); infinite in the plane."""
     if planar or len(xyz_m) == 0:
         return np.inf
-    return scan_view.lowest_height(xyz_m) + limits.door_height_m
+    return levels.find_floor_z(xyz_m[:, 2]) + limits.door_height_m
 
 
-def view_scan(xyz_m, *, planar):
-    """Return what the rays of a scan's points (n, 3) show, for `cut_line`; None in the plane or where there is no point."""
-    return None if planar or len(xyz_m) == 0 else scan_view.sort_by_azimuth(xyz_m)
+def view_scan(xyz_m: FloatArray, *, planar: bool) -> RaySet | None:
+    """Return the rays of a scan's points (n, 3) relative to its sensor; None in the plane or without any point."""
+    if planar or len(xyz_m) == 0:
+        return None
+    return gather_rays([(0, xyz_m)], {0: np.zeros(3)}, planar=False)
 
 
 def cut_line(normal, offset_m, xyz_m, limits, *, scan=None, spare_xyz_m=None, reach_rad=0.0):
@@ -125,7 +134,7 @@ def cut_line(normal, offset_m, xyz_m, limits, *, scan=None, spare_xyz_m=None, re
     xyz_m : (n, 3) float
         Points on the line, relative to the sensor.
     limits : Limits
-    scan : scan_view.ScanView, optional
+    scan : ray_set.RaySet, optional
         Of all points of the scan; None in the plane.
     spare_xyz_m : (m, 3) float, optional
         Further points near the line, that make no segment: at a corner and in a narrow strip above furniture none has
@@ -144,12 +153,11 @@ def cut_line(normal, offset_m, xyz_m, limits, *, scan=None, spare_xyz_m=None, re
     every = xyz_m if spare_xyz_m is None else np.vstack([xyz_m, spare_xyz_m])
     where_m, n = every[:, :2] @ along, len(xyz_m)
     if scan is None:
-        found = line_columns.find_runs(where_m[:n], limits.max_gap_m, limits.min_points_planar)
-        found = [line_columns.extend_run_ends(*run, where_m, reach_rad, offset_m) for run in found]
+        found = find_runs(where_m[:n], limits.max_gap_m, limits.min_points_planar)
+        found = [extend_run_ends(*run, where_m, reach_rad, offset_m) for run in found]
     else:
-        found = _upright_runs(
-            scan, normal, offset_m, where_m, every[:, 2] - scan.floor_m, n, limits
-        )
+        line = Line(offset_m * normal, normal)
+        found = _upright_runs(scan, line, where_m, every[:, 2] - scan.floor_z_m, n, limits)
     rows = []
     for first, last in found:
         inside = every[(first <= where_m) & (where_m <= last)]
@@ -165,18 +173,33 @@ def cut_line(normal, offset_m, xyz_m, limits, *, scan=None, spare_xyz_m=None, re
     return rows
 
 
-def _upright_runs(scan, normal, offset_m, where_m, height_m, n_own, limits):
+def _upright_runs(scan, line, where_m, height_m, n_own, limits):
     """Return the first and last of each run of points on a line in space; the first `n_own` are its own."""
     if n_own == 0:
         return []
-    sizes = {"sill_m": limits.min_height_m, "door_m": limits.door_height_m}
-    columns = line_columns.classify_columns(scan, normal, offset_m, where_m, height_m, **sizes)
-    column = columns.of(where_m)
-    makes = (height_m <= limits.door_height_m) & ~columns.is_open[column]
-    found = line_columns.find_runs(
-        where_m[:n_own][makes[:n_own]], limits.max_gap_m, limits.min_points
+    raster = _raster(scan, line, where_m, height_m, limits)
+    column = raster.column_of(where_m)
+    is_open = raster.is_open(limits.min_height_m, low_m=SKIRTING_M, door_m=limits.door_height_m)
+    makes = (height_m <= limits.door_height_m) & ~is_open[column]
+    runs = find_runs(where_m[:n_own][makes[:n_own]], limits.max_gap_m, limits.min_points)
+    return grow_runs(runs, where_m[~is_open[column]], limits.corner_m, raster, is_open)
+
+
+def _raster(scan, line, where_m, height_m, limits):
+    """Return the raster of a line: its points are what is occupied; rays go on through the thinnest wall."""
+    span_m = where_m.min(), where_m.max()
+    face = cast_at_face(scan, line, *span_m, at_m=ON_M, least_side_m=_LEAST_M)
+    free, occluded = face.is_free(ON_M), face.is_occluded
+    slope = (face.along_m[free] - line.along_m(np.zeros(2))) / np.abs(line.offset_m(np.zeros(2)))
+    low = height_m <= limits.door_height_m
+    return rasterise_rays(
+        (where_m[low], height_m[low]),
+        (face.along_m[free], face.height_m[free]),
+        (face.along_m[occluded], face.height_m[occluded]),
+        span_m=span_m,
+        column_m=SCAN_COLUMN_M,
+        free_until_m=face.along_m[free] + slope * ON_M,
     )
-    return line_columns.grow_runs(found, where_m[columns.is_shut[column]], limits.corner_m, columns)
 
 
 def collect_segments(rows, sensor_xyz_m):

@@ -6,10 +6,17 @@ from functools import cached_property
 import numpy as np
 
 from scanplan.geometry.lines import Line, Span
-from scanplan.rays import missing_returns, ray_set
-from scanplan.rays.face_profile import COLUMN_M, FaceObservation
+from scanplan.rays.face_observation import (
+    LEAST_HEIGHT_M,
+    FaceObservation,
+    RaySettings,
+    observe_face,
+)
+from scanplan.rays.face_raster import CELL_M
+from scanplan.rays.face_rays import cast_at_face
+from scanplan.rays.ray_set import RaySet
+from scanplan.types import FloatArray
 
-_LEAST_HEIGHT_M = 0.1
 _OVERLOOKED_SHARE = 0.5
 _REFIT_M = 0.04
 _MOST_TURN_RAD = np.radians(3)
@@ -35,7 +42,7 @@ class FaceInterval(Span):
     @cached_property
     def points(self):
         """The slice of the points of `seen` that show it."""
-        return self.seen.hits(self.low_m, self.high_m)
+        return self.seen.occupied_between(self.low_m, self.high_m)
 
     @property
     def n_points(self):
@@ -45,7 +52,7 @@ class FaceInterval(Span):
     @property
     def n_scans(self):
         """How many scans show it."""
-        return len(np.unique(self.seen.hit_scan[self.points]))
+        return len(np.unique(self.seen.occupied_scan[self.points]))
 
 
 def observe_along(rays, line, low_m, high_m, reading):
@@ -57,17 +64,17 @@ def observe_along(rays, line, low_m, high_m, reading):
     line : lines.Line
     low_m, high_m : float
         What was extracted of it.
-    reading : face_profile.RaySettings
+    reading : face_observation.RaySettings
 
     Returns
     -------
-    face_profile.FaceObservation
+    face_observation.FaceObservation
     """
     reach_m = np.full(2, reading.reach_m)
     for _ in range(_MOST_LOOKS):
         seen, span = _look(rays, line, (low_m, high_m), reach_m, reading)
         goes_on = np.array(
-            [np.abs(seen.panes_m - end).min(initial=np.inf) < _END_M for end in span]
+            [np.abs(seen.glass_m - end).min(initial=np.inf) < _END_M for end in span]
         )
         if not goes_on.any():
             break
@@ -76,29 +83,36 @@ def observe_along(rays, line, low_m, high_m, reading):
     return seen
 
 
-def _look(rays, line, own_m, reach_m, reading):
-    """Return what is seen of a line, `reach_m` (2,) beyond what was extracted, and from where to where."""
-    span = own_m[0] - reach_m[0], own_m[1] + reach_m[1]
-    sight = ray_set.observe_line(rays, line, *span, band_m=reading.band_m)
-    own = (line.along_m(sight.hit_xy_m) >= own_m[0]) & (line.along_m(sight.hit_xy_m) <= own_m[1])
-    upright = np.full(len(sight.hit_z_m), True) if rays.planar else sight.hit_z_m > _LEAST_HEIGHT_M
-    seen = _seen(refit_to_points(line, sight.hit_xy_m[own & upright]), sight, upright, reading)
-    span = seen.line.along_m(line.at(np.array(span)))
-    return seen if rays.planar else replace(
-        seen, panes_m=missing_returns.find_missing_returns(rays, seen.line, *span)
-    ), span
+def _look(
+    rays: RaySet, line: Line, own_m: tuple[float, float], reach_m: FloatArray, reading: RaySettings
+) -> tuple[FaceObservation, FloatArray]:
+    """Return what is seen of a refitted line, `reach_m` (2,) beyond what was extracted, and from where to where."""
+    span_m = own_m[0] - reach_m[0], own_m[1] + reach_m[1]
+    near = cast_at_face(rays, line, *own_m, at_m=reading.band_m, occluded_within_m=0.0)
+    is_own = near.is_occupied & (near.along_m >= own_m[0]) & (near.along_m <= own_m[1])
+    if not rays.planar:
+        is_own &= near.height_m > LEAST_HEIGHT_M
+    refitted = refit_to_points(line, near.along_m[is_own], -near.behind_m[is_own])
+    span_m = refitted.along_m(line.at(np.array(span_m)))
+    return observe_face(rays, refitted, *span_m, band_m=reading.band_m), span_m
 
 
-def refit_to_points(line, xy_m):
-    """Fit a line to the points (n, 2) at it, each 5 cm of it counting about alike; a poor fit changes nothing."""
-    along, offset = line.along_m(xy_m), line.offset_m(xy_m)
+def refit_to_points(line: Line, along: FloatArray, offset: FloatArray) -> Line:
+    """Fit a line to points at it, each 5 cm of it counting about alike; a poor fit changes nothing.
+
+    Parameters
+    ----------
+    line : lines.Line
+    along, offset : (n,) float
+        Along the line, and before it, metres.
+    """
     for _ in range(2):
         near = np.abs(offset - np.median(offset)) <= _REFIT_M if len(offset) else np.zeros(0, bool)
         along, offset = along[near], offset[near]
-    if len(along) < 10 or np.ptp(along) < 4 * COLUMN_M:
+    if len(along) < 10 or np.ptp(along) < 4 * CELL_M:
         middle = np.median(offset) if len(offset) else 0.0
         return Line(line.centre + middle * line.normal, line.normal)
-    column = np.floor((along - along.min()) / COLUMN_M).astype(np.int64)
+    column = np.floor((along - along.min()) / CELL_M).astype(np.int64)
     count = np.bincount(column)
     weight = (np.minimum(count, _COLUMN_WEIGHT) / np.maximum(count, 1)).take(column)
     centre_m, off_m = np.average(along, weights=weight), np.average(offset, weights=weight)
@@ -108,33 +122,15 @@ def refit_to_points(line, xy_m):
     return Line(line.centre + centre_m * line.direction + off_m * line.normal, normal)
 
 
-def _seen(line, sight, upright, reading):
-    off_m = line.offset_m(sight.hit_xy_m)
-    hit_m = line.along_m(sight.hit_xy_m)
-    kept = np.flatnonzero(upright & (np.abs(off_m) <= reading.band_m))
-    kept = kept[np.argsort(hit_m[kept], kind="stable")]
-    pass_m = line.along_m(sight.pass_xy_m)
-    order = np.argsort(pass_m, kind="stable")
-    feet = np.flatnonzero(~upright & (np.abs(off_m) <= reading.band_m))
-    feet = feet[np.argsort(hit_m[feet], kind="stable")]
-    return FaceObservation(
-        line,
-        *(hit_m[kept], off_m[kept], sight.hit_z_m[kept], sight.hit_scan[kept]),
-        *(pass_m[order], sight.pass_z_m[order], sight.pass_scan[order]),
-        *(hit_m[feet], sight.hit_z_m[feet]),
-    )
-
-
-def find_face_intervals(seen, reading, *, planar, foreign_m=()):
+def find_face_intervals(seen, reading, *, foreign_m=()):
     """Find what is wall along a line: columns with points, joined over pauses that no ray went through.
 
     Panes are no wall; stretches that rays look over along most of their length are furniture, and left out.
 
     Parameters
     ----------
-    seen : face_profile.FaceObservation
-    reading : face_profile.RaySettings
-    planar : bool
+    seen : face_observation.FaceObservation
+    reading : face_observation.RaySettings
     foreign_m : sequence of (float, float)
         From where to where other faces cross the line: points there are theirs, so no stretch begins or ends there.
 
@@ -143,31 +139,28 @@ def find_face_intervals(seen, reading, *, planar, foreign_m=()):
     list of Stretch
         In order along the line.
     """
-    if len(seen.hit_m) == 0:
+    if len(seen.occupied_m) == 0:
         return []
-    columns = seen.columns(reading, planar=planar)
-    solid = columns.solid & ~_inside(columns, [*foreign_m, *seen.panes_m])
+    raster, door_m = seen.raster, reading.door_height_m
+    is_opened = raster.is_opened(door_m)
+    is_overlooked = raster.is_overlooked(door_m)
+    solid = raster.is_solid(door_m) & ~_inside(raster, [*foreign_m, *seen.glass_m])
     runs = []
     for column in np.flatnonzero(solid):
         if runs:
             pause = slice(runs[-1][1] + 1, column)
-            if (pause.stop - pause.start) * COLUMN_M <= reading.max_gap_m and columns.opened[
-                pause
-            ].sum() < 2:
+            is_short = (pause.stop - pause.start) * CELL_M <= reading.max_gap_m
+            if is_short and is_opened[pause].sum() < 2:
                 runs[-1][1] = column
                 continue
         runs.append([column, column])
-    walls = [
-        run
-        for run in runs
-        if columns.overlooked[slice(run[0], run[1] + 1)].mean() < _OVERLOOKED_SHARE
-    ]
-    places = (columns.first_m + COLUMN_M * np.array([a, b + 1]) for a, b in walls)
+    walls = [(a, b + 1) for a, b in runs if is_overlooked[a : b + 1].mean() < _OVERLOOKED_SHARE]
+    places = (raster.first_m + CELL_M * np.array(columns) for columns in walls)
     return [_trimmed(FaceInterval(seen, *map(float, place))) for place in places]
 
 
-def _inside(columns, intervals_m):
-    middle_m = columns.first_m + COLUMN_M * (np.arange(len(columns.solid)) + 0.5)
+def _inside(raster, intervals_m):
+    middle_m = raster.middle_m
     inside = np.zeros(len(middle_m), bool)
     for low_m, high_m in intervals_m:
         inside |= (middle_m >= low_m) & (middle_m <= high_m)
@@ -183,8 +176,8 @@ def _trimmed(stretch):
     """
     seen, round_m = stretch.seen, _ROUND_M
     # a point on the edge of a column is in it, whichever way the edge was rounded
-    points = seen.hits(stretch.low_m - round_m, stretch.high_m + round_m)
-    along_m, scan = seen.hit_m[points], seen.hit_scan[points]
+    points = seen.occupied_between(stretch.low_m - round_m, stretch.high_m + round_m)
+    along_m, scan = seen.occupied_m[points], seen.occupied_scan[points]
     low_m, high_m = -_usual_end_m(-along_m, scan), _usual_end_m(along_m, scan)
     if low_m >= high_m:
         low_m, high_m = along_m[0], along_m[-1]

@@ -90,7 +90,7 @@ def _without_tails(stretch, places_m, share):
 
 
 def _count(seen, low_m, high_m):
-    points = seen.hits(low_m, high_m)
+    points = seen.occupied_between(low_m, high_m)
     return points.stop - points.start
 
 
@@ -113,6 +113,6 @@ def _crossing_m(one, other):
 
 def _scatter_m(stretch, begin_m, end_m):
     """Return how far points scatter about a part of a stretch; without any, endlessly."""
-    points = stretch.seen.hits(min(begin_m, end_m), max(begin_m, end_m))
-    offset_m = stretch.seen.hit_off_m[points]
+    points = stretch.seen.occupied_between(min(begin_m, end_m), max(begin_m, end_m))
+    offset_m = stretch.seen.occupied_off_m[points]
     return float(np.sqrt(np.mean(offset_m**2))) if len(offset_m) else math.inf

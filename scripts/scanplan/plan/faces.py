@@ -11,7 +11,6 @@ from scanplan.plan import (
     face_intervals,
     face_trimming,
     furniture_fronts,
-    right_angles,
 )
 
 _STUB_M = 0.1
@@ -39,7 +38,7 @@ class TracedFaces:
     panes: list
 
 
-def trace_faces(pieces, rays, merging, reading, square, furniture):
+def trace_faces(pieces, rays, merging, reading, furniture):
     """Find the faces along the lines of pieces.
 
     Parameters
@@ -48,8 +47,7 @@ def trace_faces(pieces, rays, merging, reading, square, furniture):
         Those of one group share their line.
     rays : ray_set.RaySet
     merging : segment_merging.MergeSettings
-    reading : face_profile.RaySettings
-    square : right_angles.RightAnglePrior
+    reading : face_observation.RaySettings
     furniture : furniture_fronts.FrontLimits
 
     Returns
@@ -60,17 +58,12 @@ def trace_faces(pieces, rays, merging, reading, square, furniture):
     lines = {}
     for piece in pieces:
         lines.setdefault(id(piece.line), []).append(piece)
-    seen = right_angles.turn_lines(
-        [_seen(group, rays, reading) for group in lines.values()], square
-    )
-    found = _once(
-        [face_intervals.find_face_intervals(s, reading, planar=rays.planar) for s in seen], merging
-    )
+    seen = [_seen(group, rays, reading) for group in lines.values()]
+    found = _once([face_intervals.find_face_intervals(s, reading) for s in seen], merging)
     found = furniture_fronts.remove_furniture_fronts(found, furniture, planar=rays.planar)
     claimed = zip(seen, owned_intervals(seen, found), strict=True)
     runs = (
-        face_intervals.find_face_intervals(s, reading, planar=rays.planar, foreign_m=spans_m)
-        for s, spans_m in claimed
+        face_intervals.find_face_intervals(s, reading, foreign_m=spans_m) for s, spans_m in claimed
     )
     found = furniture_fronts.remove_furniture_fronts(
         _once(list(runs), merging), furniture, planar=rays.planar
@@ -130,7 +123,7 @@ def owned_intervals(lines, found):
 
     Parameters
     ----------
-    lines : list of face_profile.FaceObservation
+    lines : list of face_observation.FaceObservation
     found : list of face_intervals.FaceInterval
 
     Returns

@@ -70,7 +70,7 @@ def remove_furniture_fronts(stretches, limits, *, planar):
 
 
 def _top_m(stretch):
-    z_m = stretch.seen.hit_z_m[stretch.points]
+    z_m = stretch.seen.occupied_z_m[stretch.points]
     return np.percentile(z_m, _TOP_PERCENTILE) if len(z_m) else -math.inf
 
 

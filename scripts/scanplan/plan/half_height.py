@@ -24,7 +24,10 @@ def estimate_wall_top_m(wall):
     -------
     float
     """
-    columns = [_inner(wall, seen) for seen in {id(s.seen): s.seen for s in wall.members}.values()]
+    lines = list({id(s.seen): s.seen for s in wall.members}.values())
+    if lines[0].planar:
+        return np.nan
+    columns = [_inner(wall, seen) for seen in lines]
     hit_z_m, pass_z_m, pass_m = (np.concatenate(column) for column in zip(*columns, strict=True))
     if len(pass_z_m) < _LEAST_PASSES or len(hit_z_m) == 0:
         return np.nan
@@ -44,10 +47,10 @@ def estimate_wall_top_m(wall):
 def _inner(wall, seen):
     """Return heights of points and of crossings of a face's line, and where along it these are, away from its ends."""
     hit_m, pass_m = (
-        wall.line.along_m(seen.line.at(along_m)) for along_m in (seen.hit_m, seen.pass_m)
+        wall.line.along_m(seen.line.at(along_m)) for along_m in (seen.occupied_m, seen.free_m)
     )
     hit, crossing = (_is_inner(wall, along_m) for along_m in (hit_m, pass_m))
-    return seen.hit_z_m[hit], seen.pass_z_m[crossing], pass_m[crossing]
+    return seen.occupied_z_m[hit], seen.free_z_m[crossing], pass_m[crossing]
 
 
 def _is_inner(wall, along_m):

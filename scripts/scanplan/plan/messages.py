@@ -50,10 +50,16 @@ def sparse_rays_warning(rays, min_opening_m):
         Empty where most points are near enough.
     """
     spacing_rad = float(
-        np.median([free_space.column_spacing_rad(azimuth_rad) for azimuth_rad in rays.azimuth_rad])
+        np.median(
+            [
+                free_space.column_spacing_rad(azimuth_rad)
+                for azimuth_rad in (rays.azimuth_rad[rows] for rows in rays.rows)
+            ]
+        )
     )
     range_m = [
-        np.hypot(*(p[:, :2] - s[:2]).T) for p, s in zip(rays.xyz_m, rays.sensors_m, strict=True)
+        np.hypot(*(rays.xyz_m[rows, :2] - s[:2]).T)
+        for rows, s in zip(rays.rows, rays.sensors_m, strict=True)
     ]
     enough_m = min_opening_m / (2 * spacing_rad) if spacing_rad > 0 else np.inf
     far = float(np.mean(np.concatenate(range_m) > enough_m))

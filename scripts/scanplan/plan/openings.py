@@ -1,10 +1,15 @@
 """Pauses of a wall: openings where rays went through, closed where none could, or never seen."""
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan.rays import face_profile
+from scanplan.geometry.lines import Line
+from scanplan.rays.face_observation import FaceObservation, RaySettings
+from scanplan.rays.face_raster import CELL_M
+from scanplan.types import FloatArray
 
 OPEN, CLOSED, UNKNOWN = "open", "closed", "unknown"
 _OPEN_SHARE = 0.4
@@ -98,42 +103,51 @@ def find_gaps(intervals_m):
     return pauses[pauses[:, 1] > pauses[:, 0]]
 
 
-def classify_gap(wall_line, low_m, high_m, lines, reading, settings, *, planar, needs_lintel=False):
-    """Tell what a pause of a wall is.
+def classify_gap(
+    wall_line: Line,
+    low_m: float,
+    high_m: float,
+    faces: Sequence[FaceObservation],
+    reading: RaySettings,
+    settings: OpeningSettings,
+    *,
+    needs_lintel: bool = False,
+) -> Opening:
+    """Classify a pause of a wall as open, closed or unknown by what rays say of its faces there.
 
     Parameters
     ----------
     wall_line : lines.Line
     low_m, high_m : float
         The pause along it.
-    lines : list of face_profile.FaceObservation
-        The lines of the wall's faces.
-    reading : face_profile.RaySettings
-    settings : GapSettings
-    planar : bool
+    faces : list of face_observation.FaceObservation
+        Of the wall's sides.
+    reading : face_observation.RaySettings
+    settings : OpeningSettings
     needs_lintel : bool
         Whether only what has wall above it is an opening: where no wall follows, anything could be beside a wall.
 
     Returns
     -------
-    Gap
-        Of the line that most rays crossed there; what that does not tell of sill and lintel is taken from the others.
+    Opening
+        By the face that most rays go through there; what that does not show of sill and lintel is taken from the
+        others.
     """
     ends = wall_line.at(np.array([low_m, high_m]))
-    found = [_look(seen, np.sort(seen.line.along_m(ends)), reading, planar) for seen in lines]
-    found.sort(key=lambda f: f[:2], reverse=True)
-    (n_rays, open_share), (sill_m, lintel_m) = (
-        found[0][:2],
-        (_first_known(f[i] for f in found) for i in (2, 3)),
-    )
-    below_wall = any(f[4] for f in found)
+    spans_m = [np.sort(face.line.along_m(ends)) for face in faces]
+    looks = [_look(face, span_m, reading) for face, span_m in zip(faces, spans_m, strict=True)]
+    looks.sort(key=lambda look: (look.n_rays, look.open_share), reverse=True)
+    n_rays, open_share = looks[0].n_rays, looks[0].open_share
+    sill_m = _first_known(look.sill_m for look in looks)
+    below_wall = any(look.below_wall for look in looks)
     width_m = high_m - low_m
     is_wide = settings.min_opening_m <= width_m <= settings.max_opening_m
     least_share = _OPEN_SHARE_BELOW_LINTEL if below_wall else _OPEN_SHARE
     is_open = n_rays >= _LEAST_RAYS and open_share >= least_share
     # rays went in and did not come back: through glass, or out of the building
     is_open |= (
-        max(_lost_share(seen, np.sort(seen.line.along_m(ends))) for seen in lines) >= _OPEN_SHARE
+        max(_glass_share(face, span_m) for face, span_m in zip(faces, spans_m, strict=True))
+        >= _OPEN_SHARE
     )
     # wall above, some rays through a window, and what is below them hidden: no way through was seen
     behind_things = below_wall and np.isnan(sill_m)
@@ -147,46 +161,53 @@ def classify_gap(wall_line, low_m, high_m, lines, reading, settings, *, planar, 
         state = CLOSED
     else:
         state = UNKNOWN
+    lintel_m = _first_known(look.lintel_m for look in looks)
     return Opening(float(low_m), float(high_m), state, n_rays, sill_m, lintel_m, below_wall)
 
 
-def _lost_share(seen, span_m):
+def _glass_share(face: FaceObservation, span_m: FloatArray) -> float:
     """Return on what share of the width rays did not come back."""
-    inside_m = [min(high_m, span_m[1]) - max(low_m, span_m[0]) for low_m, high_m in seen.panes_m]
-    return sum(max(m, 0.0) for m in inside_m) / (span_m[1] - span_m[0])
+    inside_m = [min(high_m, span_m[1]) - max(low_m, span_m[0]) for low_m, high_m in face.glass_m]
+    return float(sum(max(m, 0.0) for m in inside_m) / (span_m[1] - span_m[0]))
 
 
 def _first_known(values_m):
     return next((value_m for value_m in values_m if np.isfinite(value_m)), np.nan)
 
 
-def _look(seen, span_m, reading, planar):
-    """Return how many rays crossed, on what share of the width, heights of sill and lintel, if there is wall above."""
+@dataclass(frozen=True, eq=False)
+class _Look:
+    """What a face shows of a pause: rays through it, on what share of the width, sill, lintel, if wall is above."""
+
+    n_rays: int = 0
+    open_share: float = 0.0
+    sill_m: float = math.nan
+    lintel_m: float = math.nan
+    below_wall: bool = False
+
+
+def _look(face: FaceObservation, span_m: FloatArray, reading: RaySettings) -> _Look:
     low_m, high_m = span_m[0] + _EDGE_M, span_m[1] - _EDGE_M
     if high_m <= low_m:
-        return 0, 0.0, np.nan, np.nan, False
-    passes = seen.passes(low_m, high_m)
-    columns = seen.columns(reading, planar=planar)
-    crossed = columns.crossed[columns.between(low_m, high_m)]
-    open_share = float(crossed.sum() / max(round((high_m - low_m) / face_profile.COLUMN_M), 1))
-    n_rays = passes.stop - passes.start
-    if planar or n_rays < _LEAST_RAYS:
-        return n_rays, min(open_share, 1.0), np.nan, np.nan, False
-    pass_z_m, hit_z_m = seen.pass_z_m[passes], seen.hit_z_m[seen.hits(low_m, high_m)]
-    sill_m = _sill_m(pass_z_m, hit_z_m)
-    step_m = _step_m(seen, low_m, high_m, float(np.percentile(pass_z_m, _LOW_PERCENTILE)))
+        return _Look()
+    free = face.free_between(low_m, high_m)
+    is_crossed = face.raster.is_crossed(reading.door_height_m)
+    n_crossed = is_crossed[face.raster.between(low_m, high_m)].sum()
+    open_share = min(float(n_crossed / max(round((high_m - low_m) / CELL_M), 1)), 1.0)
+    n_rays = free.stop - free.start
+    if face.planar or n_rays < _LEAST_RAYS:
+        return _Look(n_rays, open_share)
+    free_z_m = face.free_z_m[free]
+    occupied_z_m = face.occupied_z_m[face.occupied_between(low_m, high_m)]
+    sill_m = _sill_m(free_z_m, occupied_z_m)
+    step_m = _step_m(face, low_m, high_m, float(np.percentile(free_z_m, _LOW_PERCENTILE)))
     sill_m = float(np.fmax(sill_m, step_m)) if step_m > 0 else sill_m
-    free_m = robust_highest_m(pass_z_m)
-    least_m = max(free_m, reading.door_height_m)
-    if (hit_z_m > least_m).sum() < _LEAST_RAYS:
-        return n_rays, min(open_share, 1.0), sill_m, np.nan, False
-    return (
-        n_rays,
-        min(open_share, 1.0),
-        sill_m,
-        estimate_lintel_m(seen, low_m, high_m, free_m, least_m),
-        True,
-    )
+    free_top_m = robust_highest_m(free_z_m)
+    least_m = max(free_top_m, reading.door_height_m)
+    if (occupied_z_m > least_m).sum() < _LEAST_RAYS:
+        return _Look(n_rays, open_share, sill_m)
+    lintel_m = estimate_lintel_m(face, low_m, high_m, free_top_m, least_m)
+    return _Look(n_rays, open_share, sill_m, lintel_m, True)
 
 
 def _step_m(seen, low_m, high_m, lowest_m):
@@ -194,21 +215,21 @@ def _step_m(seen, low_m, high_m, lowest_m):
 
     In a doorway rays end on the floor; a sill's front ends them above that.
     """
-    feet = seen.feet(low_m, high_m)
-    raised = (seen.foot_z_m[feet] > _FLOOR_NOISE_M) & (seen.foot_z_m[feet] < lowest_m)
+    low = seen.low_between(low_m, high_m)
+    raised = (seen.low_z_m[low] > _FLOOR_NOISE_M) & (seen.low_z_m[low] < lowest_m)
     width = int((high_m - low_m) / _STEP_COLUMN_M)
-    column = ((seen.foot_m[feet][raised] - low_m) / _STEP_COLUMN_M).astype(np.int64)
+    column = ((seen.low_m[low][raised] - low_m) / _STEP_COLUMN_M).astype(np.int64)
     if len(column) < _LEAST_RAYS or len(np.unique(column)) < _STEP_SHARE * width:
         return 0.0
-    return (float(np.percentile(seen.foot_z_m[feet][raised], 95)) + lowest_m) / 2
+    return (float(np.percentile(seen.low_z_m[low][raised], 95)) + lowest_m) / 2
 
 
-def _sill_m(pass_z_m, hit_z_m):
+def _sill_m(free_z_m, occupied_z_m):
     """Return the sill: between the rays that went through and the wall seen below them."""
-    low_m = np.percentile(pass_z_m, _LOW_PERCENTILE)
+    low_m = np.percentile(free_z_m, _LOW_PERCENTILE)
     if low_m <= AT_FLOOR_M:
         return 0.0
-    below_m = hit_z_m[hit_z_m < low_m]
+    below_m = occupied_z_m[occupied_z_m < low_m]
     return (
         float((np.percentile(below_m, 95) + low_m) / 2) if len(below_m) >= _LEAST_RAYS else np.nan
     )
@@ -222,7 +243,7 @@ def estimate_lintel_m(seen, low_m, high_m, free_m, least_m):
 
     Parameters
     ----------
-    seen : face_profile.FaceObservation
+    seen : face_observation.FaceObservation
     low_m, high_m : float
         The opening along the line.
     free_m : float
@@ -231,10 +252,10 @@ def estimate_lintel_m(seen, low_m, high_m, free_m, least_m):
         Points lower than that are none of the wall above it.
     """
     # beside a jamb points are its reveal's
-    inner = seen.hits(low_m + REVEAL_M, high_m - REVEAL_M)
-    above = seen.hit_z_m[inner] > least_m
+    inner = seen.occupied_between(low_m + REVEAL_M, high_m - REVEAL_M)
+    above = seen.occupied_z_m[inner] > least_m
     above_m, off_m, scan = (
-        of[inner][above] for of in (seen.hit_z_m, seen.hit_off_m, seen.hit_scan)
+        of[inner][above] for of in (seen.occupied_z_m, seen.occupied_off_m, seen.occupied_scan)
     )
     if len(above_m) < FEW_RAYS:
         return np.nan

@@ -144,8 +144,8 @@ def _face(face, floor_z_m):
     if face.shown is not None:
         points = face.shown.points
         n_points, n_scans = face.shown.n_points, face.shown.n_scans
-        rmse_m = float(np.sqrt(np.mean(face.shown.seen.hit_off_m[points] ** 2)))
-        z_m = tuple(np.percentile(face.shown.seen.hit_z_m[points], (2, 98)) + floor_z_m)
+        rmse_m = float(np.sqrt(np.mean(face.shown.seen.occupied_off_m[points] ** 2)))
+        z_m = tuple(np.percentile(face.shown.seen.occupied_z_m[points], (2, 98)) + floor_z_m)
     return {
         **_ends(face.ends),
         "nx": face.line.normal[0],

@@ -19,10 +19,9 @@ from scanplan.plan import (
     windows,
 )
 from scanplan.plan.openings import OpeningSettings
-from scanplan.plan.right_angles import RightAnglePrior
 from scanplan.plan.rooms import find_rooms
 from scanplan.plan.walls import assemble_walls
-from scanplan.rays import face_profile, free_space
+from scanplan.rays import face_observation, free_space
 from scanplan.store import schemas
 
 TABLES = {
@@ -57,9 +56,8 @@ class PlanSettings:
     """All that a plan is made with: each part as its own class says."""
 
     merge: segment_merging.MergeSettings
-    reading: face_profile.RaySettings
+    reading: face_observation.RaySettings
     ranges: range_bias.RangeBiasSettings
-    square: RightAnglePrior
     furniture: furniture_fronts.FrontLimits
     pairs: wall_pairs.PairSettings
     openings: OpeningSettings
@@ -92,7 +90,7 @@ class Plan:
 
 
 def make_plan_settings(
-    *, merge, trace, ranges, right_angles, furniture, pair, openings, rooms, trust
+    *, merge, trace, ranges, furniture, pair, openings, rooms, trust, right_angles=None
 ):
     """Return settings from keywords of each part.
 
@@ -104,9 +102,8 @@ def make_plan_settings(
     merging = segment_merging.MergeSettings(**merge)
     return PlanSettings(
         merge=merging,
-        reading=face_profile.RaySettings(**trace),
+        reading=face_observation.RaySettings(**trace),
         ranges=range_bias.RangeBiasSettings(**ranges),
-        square=RightAnglePrior(registration_sigma_m=merging.registration_sigma_m, **right_angles),
         furniture=furniture_fronts.FrontLimits(**furniture),
         pairs=wall_pairs.PairSettings(**pair, max_gap_m=openings["max_opening_m"]),
         openings=OpeningSettings(**openings),
@@ -145,15 +142,14 @@ def make_plan(segments, rays, track_m, t_ns, settings, up=None):
     )
     rays = range_bias.remove_range_bias(rays, errors_m, up)
     pieces = segment_merging.merge_segments(segments, settings.merge)
-    parts = settings.merge, settings.reading, settings.square, settings.furniture
+    parts = settings.merge, settings.reading, settings.furniture
     traced = faces.trace_faces(pieces, rays, *parts)
     found = assemble_walls(
         *(traced.stretches, settings.reading, settings.pairs, settings.openings),
-        planar=rays.planar,
         corner_m=settings.merge.corner_m,
     )
     found = windows.add_windows(found, rays, settings.openings)
-    found, tops_m = _without_low(found, settings.furniture.wall_height_m, rays.planar)
+    found, tops_m = _without_low(found, settings.furniture.wall_height_m)
     unpaired_m = _usual_thickness_m(found)
     stars = free_space.free_polygons(rays)
     floor = free_space.union_on_grid(stars)
@@ -185,9 +181,9 @@ def make_plan(segments, rays, track_m, t_ns, settings, up=None):
     )
 
 
-def _without_low(walls, wall_height_m, planar):
+def _without_low(walls, wall_height_m):
     """Return walls, less surfaces that were seen to end lower than a wall does, and the heights of their tops."""
-    tops_m = [math.nan if planar else half_height.estimate_wall_top_m(wall) for wall in walls]
+    tops_m = [half_height.estimate_wall_top_m(wall) for wall in walls]
     known = [(w, t) for w, t in zip(walls, tops_m, strict=True) if w.right or not t < wall_height_m]
     return [w for w, _ in known], [t for _, t in known]
 

@@ -12,8 +12,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scanplan.rays import ray_set
-
 _MOST_POINTS = 600_000
 _LEAST_OF_GROUP = 100
 _END_M = 0.1  # the last points before a corner may be of the wall around it
@@ -125,14 +123,14 @@ def remove_range_bias(rays, error_m, up):
     """Return rays with ranges shorter by `error_m` (181,), as `estimate_range_bias` returns it."""
     if not error_m.any():
         return rays
-    moved, start = np.empty_like(rays.stacked.xyz_m), 0
-    for xyz_m, sensor_m, axis in zip(rays.xyz_m, rays.sensors_m, up, strict=True):
+    moved = np.empty_like(rays.xyz_m)
+    for rows, sensor_m, axis in zip(rays.rows, rays.sensors_m, up, strict=True):
+        xyz_m = rays.xyz_m[rows]
         way = xyz_m - sensor_m
         range_m = np.maximum(_length(way), _TINY)
         way *= (error_m[_degrees(way @ axis / range_m)] / range_m)[:, None]
-        np.subtract(xyz_m, way, out=moved[start : start + len(way)])
-        start += len(way)
-    return rays.with_ranges(moved)
+        np.subtract(xyz_m, way, out=moved[rows])
+    return rays.with_points(moved)
 
 
 def _hits(rays, segments, settings, band_m, up):
@@ -145,10 +143,8 @@ def _hits(rays, segments, settings, band_m, up):
     end = (last - first) * np.minimum(_END_M / np.maximum(np.hypot(*(last - first).T), _TINY), 0.5)[
         :, None
     ]
-    rows, group = ray_set.sample_rows_between(
-        rays, np.stack([first + end, last - end]), scan, _MOST_POINTS
-    )
-    xyz_m = rays.stacked.xyz_m.take(rows, axis=0)
+    rows, group = rays.sample_rows_between(np.stack([first + end, last - end]), scan, _MOST_POINTS)
+    xyz_m = rays.xyz_m.take(rows, axis=0)
     offset_m = np.einsum("ij,ij->i", xyz_m[:, :2] - first[group], normal[group])
     kept = np.abs(offset_m) <= band_m
     if not rays.planar:

@@ -125,7 +125,11 @@ def _weigh(wall, offset_m, top_m, stacked, offsets_m, trust):
 def _hits(stretches):
     """Return scan, offset and height of all points that show stretches."""
     columns = [
-        (s.seen.hit_scan[s.points], s.seen.hit_off_m[s.points], s.seen.hit_z_m[s.points])
+        (
+            s.seen.occupied_scan[s.points],
+            s.seen.occupied_off_m[s.points],
+            s.seen.occupied_z_m[s.points],
+        )
         for s in stretches
     ]
     return tuple(np.concatenate(column) for column in zip(*columns, strict=True))
@@ -159,10 +163,10 @@ def _end_sigma_m(wall, end, stacked, offsets_m, trust):
         return float((offsets_m[crossed.which] / crossed.sine)[at_it].min())
     n_scans, pitch_m = 0, math.inf
     for stretch in wall.members:
-        along_m = wall.line.along_m(stretch.line.at(stretch.seen.hit_m[stretch.points]))
+        along_m = wall.line.along_m(stretch.line.at(stretch.seen.occupied_m[stretch.points]))
         near = np.abs(along_m - (wall.low_m, wall.high_m)[end]) <= _NEAR_END_M
         if near.any():
-            n_scans += len(np.unique(stretch.seen.hit_scan[stretch.points][near]))
+            n_scans += len(np.unique(stretch.seen.occupied_scan[stretch.points][near]))
             pitch_m = min(pitch_m, _NEAR_END_M / near.sum())
     return math.hypot(
         trust.registration_sigma_m / math.sqrt(max(n_scans, 1)), min(pitch_m, _NEAR_END_M)

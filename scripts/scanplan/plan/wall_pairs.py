@@ -7,7 +7,7 @@ import numpy as np
 import shapely
 
 from scanplan.geometry.lines import Line
-from scanplan.rays import face_profile
+from scanplan.rays.face_raster import CELL_M
 
 _LEAST_OVERLAP_M = 0.2
 _LEAST_OPEN_M = 0.3
@@ -72,7 +72,7 @@ class FacePair(Sides):
     thickness_m: float
 
 
-def pair_faces(stretches, settings, reading, *, planar):
+def pair_faces(stretches, settings, reading):
     """Sort stretches into walls.
 
     Stretches of one line are joined first, then those opposite to each other, the longest overlap before others, then
@@ -83,8 +83,7 @@ def pair_faces(stretches, settings, reading, *, planar):
     ----------
     stretches : list of face_intervals.FaceInterval
     settings : PairSettings
-    reading : face_profile.RaySettings
-    planar : bool
+    reading : face_observation.RaySettings
 
     Returns
     -------
@@ -93,7 +92,7 @@ def pair_faces(stretches, settings, reading, *, planar):
     """
     group = list(range(len(stretches)))
     members = {i: [i] for i in group}
-    for one, other in _offers(stretches, settings, reading, planar):
+    for one, other in _offers(stretches, settings, reading):
         a, b = group[one], group[other]
         if a == b or _joined(stretches, members[a] + members[b], settings) is None:
             continue
@@ -103,7 +102,7 @@ def pair_faces(stretches, settings, reading, *, planar):
     return [_joined(stretches, of_wall, settings) for _, of_wall in sorted(members.items())]
 
 
-def _offers(stretches, settings, reading, planar):
+def _offers(stretches, settings, reading):
     """Return pairs that may be of one wall, the surest first."""
     ends = np.array([s.ends for s in stretches]).reshape(-1, 2, 2)
     lines = shapely.linestrings(ends)
@@ -123,7 +122,7 @@ def _offers(stretches, settings, reading, planar):
             if (
                 overlap_m >= _LEAST_OVERLAP_M
                 and is_thick
-                and not _contradict(stretches[i], stretches[j], reading, planar)
+                and not _contradict(stretches[i], stretches[j], reading)
             ):
                 offers.append((_OPPOSITE, -overlap_m, i, j))
         elif -overlap_m <= settings.max_gap_m and abs(behind_m) <= settings.offset_m:
@@ -140,20 +139,20 @@ def _beside(one, other):
     return float(overlap_m), -float(longer.line.offset_m(shorter.ends).mean())
 
 
-def _contradict(one, other, reading, planar):
+def _contradict(one, other, reading):
     """Tell whether rays went through the line of one side where the other side was seen and it was not."""
     for seen, unseen in ((one, other), (other, one)):
         span = np.sort(unseen.line.along_m(seen.ends))
         open_m = solid_m = 0.0
+        raster = unseen.seen.raster
+        is_opened = raster.is_opened(reading.door_height_m)
         for low_m, high_m in (
             (span[0], min(span[1], unseen.low_m)),
             (max(span[0], unseen.high_m), span[1]),
         ):
             if high_m > low_m:
-                columns = unseen.seen.columns(reading, planar=planar)
-                open_m += (
-                    face_profile.COLUMN_M * columns.opened[columns.between(low_m, high_m)].sum()
-                )
+                columns = raster.between(low_m, high_m)
+                open_m += CELL_M * is_opened[columns].sum()
                 solid_m += high_m - low_m
         if open_m > max(_LEAST_OPEN_M, _OPEN_SHARE * solid_m):
             return True

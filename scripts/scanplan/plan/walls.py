@@ -40,16 +40,15 @@ class PlanWall(Span, wall_pairs.Sides):
     closed: list
 
 
-def assemble_walls(found, reading, pairing, gapping, *, planar, corner_m):
+def assemble_walls(found, reading, pairing, gapping, *, corner_m):
     """Make walls of stretches.
 
     Parameters
     ----------
     found : list of face_intervals.FaceInterval
-    reading : face_profile.RaySettings
+    reading : face_observation.RaySettings
     pairing : wall_pairs.PairSettings
     gapping : openings.OpeningSettings
-    planar : bool
     corner_m : float
 
     Returns
@@ -58,16 +57,16 @@ def assemble_walls(found, reading, pairing, gapping, *, planar, corner_m):
         The longest first.
     """
     walls = []
-    for paired in wall_pairs.pair_faces(found, pairing, reading, planar=planar):
-        walls += _cut(paired, found, reading, gapping, planar)
+    for paired in wall_pairs.pair_faces(found, pairing, reading):
+        walls += _cut(paired, found, reading, gapping)
     stacked = intersections.stack_spans(walls)
     walls = [
-        _with_end_openings(w, _crossings(w, walls, stacked), reading, gapping, planar, corner_m)
+        _with_end_openings(w, _crossings(w, walls, stacked), reading, gapping, corner_m)
         for w in walls
     ]
     stacked = intersections.stack_spans(walls)
     walls = [
-        _with_closed_ends(w, _crossings(w, walls, stacked), reading, gapping, planar, corner_m)
+        _with_closed_ends(w, _crossings(w, walls, stacked), reading, gapping, corner_m)
         for w in walls
     ]
     stacked = intersections.stack_spans(walls)
@@ -77,15 +76,12 @@ def assemble_walls(found, reading, pairing, gapping, *, planar, corner_m):
     return sorted(walls, key=lambda w: (-w.length_m, *w.ends.ravel()))
 
 
-def _cut(paired, found, reading, gapping, planar):
+def _cut(paired, found, reading, gapping):
     """Return the walls that a paired wall falls into where it pauses for long and was seen neither open nor closed."""
     members = {i: np.sort(paired.line.along_m(found[i].ends)) for i in paired.members}
     pauses = find_gaps(np.array(list(members.values())))
     lines = list({id(found[i].seen): found[i].seen for i in paired.members}.values())
-    judged = [
-        classify_gap(paired.line, *pause, lines, reading, gapping, planar=planar)
-        for pause in pauses
-    ]
+    judged = [classify_gap(paired.line, *pause, lines, reading, gapping) for pause in pauses]
     breaks = [g for g in judged if g.state == UNKNOWN and g.width_m >= gapping.min_opening_m]
     breaks += _between_things(judged, np.array(list(members.values())))
     breaks.sort(key=lambda g: g.low_m)
@@ -131,7 +127,7 @@ def _between_sides(gap, spans_m):
     return replace(gap, low_m=float(low_m), high_m=float(high_m))
 
 
-def _with_end_openings(wall, crossed, reading, gapping, planar, corner_m):
+def _with_end_openings(wall, crossed, reading, gapping, corner_m):
     """Let a wall go on over an opening beside the wall that it ends at, where wall is seen above it."""
     lines = list({id(s.seen): s.seen for s in wall.members}.values())
     for name, sign in (("low_m", -1), ("high_m", 1)):
@@ -142,19 +138,17 @@ def _with_end_openings(wall, crossed, reading, gapping, planar, corner_m):
         ahead = [
             a for a in ahead if max(corner_m, gapping.min_opening_m) < a[0] <= gapping.max_door_m
         ]
-        if planar or not ahead:
+        if not ahead or lines[0].planar:
             continue
         low_m, high_m = sorted((end_m, min(ahead)[1]))
-        gap = classify_gap(
-            wall.line, low_m, high_m, lines, reading, gapping, planar=planar, needs_lintel=True
-        )
+        gap = classify_gap(wall.line, low_m, high_m, lines, reading, gapping, needs_lintel=True)
         if gap.state == OPEN:
             openings = sorted([*wall.openings, gap], key=lambda g: g.low_m)
             wall = replace(wall, **{name: float(min(ahead)[1])}, openings=openings)
     return wall
 
 
-def _with_closed_ends(wall, crossed, reading, gapping, planar, corner_m):
+def _with_closed_ends(wall, crossed, reading, gapping, corner_m):
     """Let a wall go on to the wall ahead of it through what no ray went through and nothing showed, if that is shorter.
 
     What stands on both sides hides it: a gap there would have let some ray pass, as in a pause of the wall.
@@ -169,9 +163,7 @@ def _with_closed_ends(wall, crossed, reading, gapping, planar, corner_m):
         if not ahead:
             continue
         _, side_m, middle_m = min(ahead)
-        gap = classify_gap(
-            wall.line, *sorted((end_m, side_m)), lines, reading, gapping, planar=planar
-        )
+        gap = classify_gap(wall.line, *sorted((end_m, side_m)), lines, reading, gapping)
         if gap.state == CLOSED and gap.n_rays == 0:
             closed = sorted([*wall.closed, gap], key=lambda g: g.low_m)
             wall = replace(wall, **{name: float(middle_m)}, closed=closed)

@@ -9,12 +9,14 @@ from dataclasses import replace
 import numpy as np
 
 from scanplan.plan import openings
-from scanplan.rays import expected_returns
-from scanplan.rays.face_profile import COLUMN_M, filled_share
+from scanplan.rays import face_observation
+from scanplan.rays.face_observation import filled_share
+from scanplan.rays.face_raster import CELL_M
 
 _CHEST_M = (1.25, 1.7)  # sills are lower, lintels are higher
 _LEAST_SHOWN = 0.7  # the jambs' last columns may be hidden from most scans
 _LEAST_SCANS = 2  # something may stand nearer to one scan than it can measure
+_AT_M = 0.06  # returns this near to the plane are at it
 _MOST_IN_IT = 0.5  # reveals and panes send some back, a niche all
 _SILL_SHARE = 0.3  # desks hide much of the wall below; in a doorway there is none
 
@@ -53,9 +55,9 @@ def _with_windows(wall, rays, settings):
 def _is_wall(seen, ends):
     """Tell whether a line shows wall between two ends, at the height of a chest: a screen or a mirror hangs there."""
     low_m, high_m = np.sort(seen.line.along_m(ends))
-    points = seen.hits(low_m, high_m)
-    at_chest = _at_chest(seen.hit_z_m[points])
-    return filled_share(seen.hit_m[points][at_chest], low_m, high_m) > _MOST_IN_IT
+    points = seen.occupied_between(low_m, high_m)
+    at_chest = _at_chest(seen.occupied_z_m[points])
+    return filled_share(seen.occupied_m[points][at_chest], low_m, high_m) > _MOST_IN_IT
 
 
 def _at_chest(z_m):
@@ -72,7 +74,7 @@ def find_windows(rays, seen, low_m, high_m, settings):
     ----------
     rays : ray_set.RaySet
         Of scans in space.
-    seen : face_profile.FaceObservation
+    seen : face_observation.FaceObservation
     low_m, high_m : float
         The stretch of the line that is wall.
     settings : openings.OpeningSettings
@@ -82,8 +84,8 @@ def find_windows(rays, seen, low_m, high_m, settings):
     list of openings.Opening
         In order along the line.
     """
-    points = seen.hits(low_m, high_m)
-    place_m, z_m = seen.hit_m[points], seen.hit_z_m[points]
+    points = seen.occupied_between(low_m, high_m)
+    place_m, z_m = seen.occupied_m[points], seen.occupied_z_m[points]
     beside_m = _not_alone(place_m[_at_chest(z_m)])
     spans_m = np.column_stack([beside_m[:-1], beside_m[1:]])
     spans_m = spans_m[np.diff(spans_m, axis=1)[:, 0] >= settings.min_opening_m]
@@ -94,7 +96,7 @@ def find_windows(rays, seen, low_m, high_m, settings):
 def _not_alone(place_m):
     """Return those of sorted places that are within a column of enough others: one or two points may be stray."""
     low, high = (
-        np.searchsorted(place_m, place_m + way * COLUMN_M / 2, side)
+        np.searchsorted(place_m, place_m + way * CELL_M / 2, side)
         for way, side in ((-1, "left"), (1, "right"))
     )
     return place_m[high - low >= openings.FEW_RAYS]
@@ -102,21 +104,21 @@ def _not_alone(place_m):
 
 def _judged(rays, seen, low_m, high_m):
     """Return what is between two places of a line as a window, None if it is none."""
-    inner = seen.hits(low_m + openings.REVEAL_M, high_m - openings.REVEAL_M)
-    below = seen.hit_z_m[inner] < _CHEST_M[0]
+    inner = seen.occupied_between(low_m + openings.REVEAL_M, high_m - openings.REVEAL_M)
+    below = seen.occupied_z_m[inner] < _CHEST_M[0]
     sill_share = filled_share(
-        seen.hit_m[inner][below], low_m + openings.REVEAL_M, high_m - openings.REVEAL_M
+        seen.occupied_m[inner][below], low_m + openings.REVEAL_M, high_m - openings.REVEAL_M
     )
     if below.sum() < openings.FEW_RAYS or sill_share < _SILL_SHARE:
         return None
-    count = max(int((high_m - low_m) / COLUMN_M), 1)
-    reached, _, in_wall = expected_returns.count_sent_rays(
-        rays, seen.line, low_m, count, _CHEST_M
+    count = max(int((high_m - low_m) / CELL_M), 1)
+    reached, _, in_wall = face_observation.count_sent(
+        rays, seen.line, low_m, count, _CHEST_M, _AT_M
     ).reached(least_scans=_LEAST_SCANS)
     shown = np.isfinite(reached)
     if shown.mean() < _LEAST_SHOWN or in_wall[shown].sum() > _MOST_IN_IT * reached[shown].sum():
         return None
-    sill_m = openings.robust_highest_m(seen.hit_z_m[inner][below])
+    sill_m = openings.robust_highest_m(seen.occupied_z_m[inner][below])
     if sill_m <= openings.AT_FLOOR_M:
         return None
     n_rays = int(reached[shown].sum() - in_wall[shown].sum())

@@ -1,11 +1,13 @@
-"""How far the rays of scans go, by direction: what need not be looked at, because no ray there comes near."""
+"""How far the rays of scans go, by azimuth sector: a bound that shows which rays cannot come near a line."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-_FANS = 180
-_ROUND_M = 1e-6
+from scanplan.types import FloatArray, IntArray
+
+_SECTORS = 180  # two degrees each: finer ones cost more than the rays that they spare
+_ROUND_M = 1e-6  # rounding of a length along a ray
 
 
 @dataclass(frozen=True, eq=False)
@@ -14,61 +16,59 @@ class AzimuthSectors:
 
     Attributes
     ----------
-    first : (n, 181) int64
-        Row that each begins at, and that the last ends before, where the scans' rays are stacked.
-    reach_m : (n, 180) float64
+    first : (s, 181) int64
+        Row that each sector begins at, and that the last ends before.
+    reach_m : (s, 180) float64
         Level length of the longest ray in each; 0 where there is none.
     """
 
-    first: np.ndarray
-    reach_m: np.ndarray
+    first: IntArray
+    reach_m: FloatArray
 
 
-def sort_into_sectors(azimuth_rad, xy_m, sensors_m):
-    """Sort rays into fans.
+def sort_into_sectors(
+    first: IntArray, azimuth_rad: FloatArray, way_m: FloatArray
+) -> AzimuthSectors:
+    """Sort rays into sectors.
 
     Parameters
     ----------
-    azimuth_rad : list of n (k,) float64, increasing, -pi to pi
-        Of each scan.
-    xy_m : (sum of k, 2) float64
-        Where the rays of all scans end, one scan after another.
-    sensors_m : (n, 2) float64
-
-    Returns
-    -------
-    Fans
+    first : (s + 1,) int64
+        Row that each scan's rays begin at.
+    azimuth_rad : (n,) float64
+        Increasing within a scan, -pi to pi.
+    way_m : (n, 2) float64
+        From the sensor to where each ray ends, level.
     """
-    n = len(azimuth_rad)
-    edges_rad = np.linspace(-np.pi, np.pi, _FANS + 1)[1:-1]
-    inner = np.reshape(
-        [np.searchsorted(of_scan, edges_rad) for of_scan in azimuth_rad], (n, _FANS - 1)
-    )
-    count = np.array([len(of_scan) for of_scan in azimuth_rad], np.int64)
-    first = (
-        np.column_stack([np.zeros(n, np.int64), inner, count]) + (np.cumsum(count) - count)[:, None]
-    )
-    ways_m = (
-        of_scan - at
-        for of_scan, at in zip(np.split(xy_m, np.cumsum(count)[:-1]), sensors_m, strict=True)
-    )
-    square_m2 = np.concatenate(
-        [np.empty(0), *(np.einsum("ij,ij->i", way_m, way_m) for way_m in ways_m)]
-    )
-    reach_m, filled = np.zeros((n, _FANS)), np.diff(first) > 0
+    edges_rad = np.linspace(-np.pi, np.pi, _SECTORS + 1)[1:-1]
+    scans = list(zip(first[:-1].tolist(), first[1:].tolist(), strict=True))
+    inner = [begin + np.searchsorted(azimuth_rad[begin:end], edges_rad) for begin, end in scans]
+    inner = np.reshape(inner, (len(scans), _SECTORS - 1))
+    rows = np.column_stack([first[:-1], inner, first[1:]]).astype(np.int64)
+    square_m2 = np.einsum("ij,ij->i", way_m, way_m)
+    reach_m = np.zeros((len(scans), _SECTORS))
+    filled = np.diff(rows) > 0
     if filled.any():
-        reach_m[filled] = np.sqrt(np.maximum.reduceat(square_m2, first[:, :-1][filled]))
-    return AzimuthSectors(first.astype(np.int64), reach_m)
+        reach_m[filled] = np.sqrt(np.maximum.reduceat(square_m2, rows[:, :-1][filled]))
+    return AzimuthSectors(rows, reach_m)
 
 
-def cull_spans(known, low, high, scans, side_m, normal, band_m):
-    """Cut spans of rows into those of the fans in which any ray may come as near to a line as a band.
+def cull_spans(
+    sectors: AzimuthSectors,
+    low: IntArray,
+    high: IntArray,
+    scans: IntArray,
+    side_m: FloatArray,
+    normal: FloatArray,
+    at_m: float,
+) -> tuple[IntArray, IntArray, IntArray]:
+    """Cut spans of rows into those of the sectors in which any ray may come near a line.
 
     Along a ray that turns by an angle from the way straight to the line, ``r cos(angle)`` of the distance is gone.
 
     Parameters
     ----------
-    known : Fans
+    sectors : AzimuthSectors
     low, high : (2, k) int
         Rows that the spans of each scan begin at and end before.
     scans : (k,) int
@@ -76,7 +76,8 @@ def cull_spans(known, low, high, scans, side_m, normal, band_m):
         How far their sensors lie from the line, positive on the side of its normal; not 0.
     normal : (2,) float
         The line's unit normal.
-    band_m : float
+    at_m : float
+        What is near.
 
     Returns
     -------
@@ -87,10 +88,10 @@ def cull_spans(known, low, high, scans, side_m, normal, band_m):
     """
     straight = -np.sign(side_m)[:, None] * normal
     straight_rad = np.arctan2(straight[:, 1], straight[:, 0])[:, None]
-    middle_rad = (np.arange(_FANS) + 0.5) * (2 * np.pi / _FANS) - np.pi
+    middle_rad = (np.arange(_SECTORS) + 0.5) * (2 * np.pi / _SECTORS) - np.pi
     apart_rad = np.abs((middle_rad - straight_rad + np.pi) % (2 * np.pi) - np.pi)
-    straightest = np.cos(np.maximum(apart_rad - np.pi / _FANS, 0))
-    gone_m = known.reach_m[scans] * np.maximum(straightest, 0)
-    row, fan = np.nonzero(gone_m >= np.abs(side_m)[:, None] - band_m - _ROUND_M)
-    first, stop = known.first[scans[row], fan], known.first[scans[row], fan + 1]
+    straightest = np.cos(np.maximum(apart_rad - np.pi / _SECTORS, 0))
+    gone_m = sectors.reach_m[scans] * np.maximum(straightest, 0)
+    row, sector = np.nonzero(gone_m >= np.abs(side_m)[:, None] - at_m - _ROUND_M)
+    first, stop = sectors.first[scans[row], sector], sectors.first[scans[row], sector + 1]
     return np.maximum(low[:, row], first), np.minimum(high[:, row], stop), row

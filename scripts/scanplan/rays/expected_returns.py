@@ -1,132 +1,172 @@
-"""How many rays scans sent to a line, told by those that come back elsewhere, and what became of them.
+"""How many returns a surface ought to give, by what the same scan gets back elsewhere: the missing-return test.
 
-Of the rays themselves nothing is known but their returns: how many a scan sends at an elevation is told by how many it
-usually gets back there.
+Of the rays themselves nothing is known but their returns. How many a scan sends at an elevation is estimated by how
+many it usually gets back there. Whatever is opaque returns the rays that reach it; glass lets most through, to where
+there may be nothing, and mirrors others away.
 """
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from scanplan.rays import ray_set, usual_returns
-from scanplan.rays.face_profile import COLUMN_M
+from scanplan.types import FloatArray
 
+if TYPE_CHECKING:
+    from scanplan.rays.face_rays import FaceRays
+    from scanplan.rays.ray_set import RaySet
+
+GRAZING_RAD = np.deg2rad(75)
+"""Angle between ray and surface normal from which on returns get lost."""
+NEAR_M = 10.0
+"""Farther sensors say nothing of missing returns: their rays are few, and much stands before the surface."""
+
+_ROWS_PER_DEG = 10  # of elevation: beams of a VLP-16 are 2 degrees apart, of dense sensors 0.2
+_SECTORS = 72  # of 5 degrees: wider than what is between two firings
 _LEAST_RAYS = 20.0  # half of so many are not lost by chance
-_LEAST_RAYS_A_SCAN = 3.0  # fewer and the count expected is mostly rounding
-_MOST_STOPPED = 0.15  # a frame or a plant may stop these; more and the line is hidden
-_BEFORE_M = 0.1  # returns farther before a line are of something else
+_LEAST_RAYS_A_SCAN = 3.0  # fewer, and the count expected is mostly rounding
+_MOST_OCCLUDED = 0.15  # a frame or a plant may stop these; more, and the surface is hidden
+_BEFORE_M = 0.1  # returns farther before a surface are of something else
 _DEEP_M = 0.6  # no wall is thicker
-_MOST_AWAY_M = 10.0  # further off rays are few and much stands before a line
-_WIDTH = 5  # columns that are judged together
+_WIDTH = 5  # columns that are judged together: single ones expect too few rays
+
+
+def count_returns_below(azimuth_rad: FloatArray, xyz_m: FloatArray) -> FloatArray:
+    """Count a scan's returns below elevations, per degree of azimuth around which there are any.
+
+    Parameters
+    ----------
+    azimuth_rad : (n,) float
+    xyz_m : (n, 3) float
+        Relative to the sensor.
+
+    Returns
+    -------
+    (1801,) float64
+        Below each elevation from -90 degrees on, in steps of 0.1 degrees.
+    """
+    sector = ((azimuth_rad + np.pi) / (2 * np.pi) * _SECTORS).astype(np.int64)
+    sector = np.minimum(sector, _SECTORS - 1)
+    seen_deg = max(np.count_nonzero(np.bincount(sector)), 1) * 360 / _SECTORS
+    elevation_deg = np.rad2deg(np.arctan2(xyz_m[:, 2], np.hypot(xyz_m[:, 0], xyz_m[:, 1])))
+    n_rows = 180 * _ROWS_PER_DEG
+    row = np.clip((elevation_deg + 90) * _ROWS_PER_DEG, 0, n_rows - 1).astype(np.int64)
+    return np.concatenate([[0.0], np.cumsum(np.bincount(row, minlength=n_rows))]) / seen_deg
 
 
 @dataclass(frozen=True, eq=False)
 class SentRays:
-    """Rays that scans sent to the columns of a line at some heights, (s, n) each.
+    """Rays that scans sent to the columns of a surface at some heights, (s, n) each.
 
     Attributes
     ----------
-    sent : array
-        How many there ought to be.
-    stopped : array
-        That ended before the line.
-    back : array
-        That ended at the line or beyond.
+    expected : array
+        How many returns there ought to be.
+    occluded : array
+        That ended before the surface.
+    returned : array
+        That ended at the surface or beyond.
     in_wall : array
-        Of these, at the line or no further behind it than a wall is thick.
+        Of these, at the surface or no further behind it than a wall is thick.
     """
 
-    sent: np.ndarray
-    stopped: np.ndarray
-    back: np.ndarray
-    in_wall: np.ndarray
+    expected: FloatArray
+    occluded: FloatArray
+    returned: FloatArray
+    in_wall: FloatArray
 
-    def reached(self, *, least_scans):
+    @property
+    def missing_share(self) -> float:
+        """Share of the expected returns of all columns that are nowhere, 0 where none is expected."""
+        expected = self.expected.sum()
+        returned = self.occluded.sum() + self.returned.sum()
+        return float(max(0.0, 1 - returned / expected)) if expected > 0 else 0.0
+
+    def reached(self, *, least_scans: int) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return how many rays reached the columns (n,) and those around each, came back, and ended in the wall.
 
         NaN where too few are to be expected for anything to be said, or fewer scans than `least_scans` sent any.
         """
-        sent, stopped, back, in_wall = map(
-            _together, (self.sent, self.stopped, self.back, self.in_wall)
-        )
-        # where things hide the line from a scan it tells nothing: rays along the tops of furniture get lost
-        clear = stopped < _MOST_STOPPED * sent
-        reached, back, in_wall = (
-            (rows * clear).sum(axis=0) for rows in (sent - stopped, back, in_wall)
-        )
-        scans = (clear & (sent >= _LEAST_RAYS_A_SCAN)).sum(axis=0)
-        enough = (scans >= least_scans) & (reached >= _LEAST_RAYS)
-        return tuple(np.where(enough, rows, np.nan) for rows in (reached, back, in_wall))
+        expected = _sum_neighbours(self.expected)
+        occluded = _sum_neighbours(self.occluded)
+        # where things hide the surface from a scan it says nothing: rays along the tops of furniture get lost
+        clear = occluded < _MOST_OCCLUDED * expected
+        reached = ((expected - occluded) * clear).sum(axis=0)
+        returned = (_sum_neighbours(self.returned) * clear).sum(axis=0)
+        in_wall = (_sum_neighbours(self.in_wall) * clear).sum(axis=0)
+        n_scans = (clear & (expected >= _LEAST_RAYS_A_SCAN)).sum(axis=0)
+        enough = (n_scans >= least_scans) & (reached >= _LEAST_RAYS)
+        return tuple(np.where(enough, rows, np.nan) for rows in (reached, returned, in_wall))
 
 
-def count_sent_rays(rays, line, low_m, count, heights_m):
-    """Return the rays that scans sent to the columns of a line.
+def count_sent_rays(
+    rays: "RaySet",
+    face: "FaceRays",
+    low_m: float,
+    count: int,
+    column_m: float,
+    heights_m: tuple[float, float],
+) -> SentRays:
+    """Return the rays that scans sent to the columns of a surface.
 
     Parameters
     ----------
     rays : ray_set.RaySet
         Of scans in space.
-    line : lines.Line
+    face : face_rays.FaceRays
+        Of these, with what is occluded within `NEAR_M`.
     low_m : float
-        Where along it the first column begins.
+        Where along the line the first column begins.
     count : int
-        Number of columns of 5 cm.
+        Number of columns.
+    column_m : float
     heights_m : (float, float)
         Above the floor.
 
     Returns
     -------
-    Sent
-        Of the scans near enough.
+    SentRays
+        Of the scans on the side of the line's normal and near enough.
     """
-    side_m, there_m = line.offset_m(rays.sensors_m[:, :2]), line.along_m(rays.sensors_m[:, :2])
-    beyond_m = np.maximum(np.maximum(low_m - there_m, there_m - (low_m + COLUMN_M * count)), 0)
-    most_m = np.tan(usual_returns.GRAZING_RAD) * side_m
-    near = (np.hypot(side_m, beyond_m) <= _MOST_AWAY_M) & (beyond_m <= most_m)
-    scans = np.flatnonzero((side_m >= ray_set.LEAST_SIDE_M) & near)
-    middle_m = low_m + COLUMN_M * (np.arange(count) + 0.5)
-    # scans in rows, columns of the line in columns
-    away_m = middle_m - there_m[scans, None]
+    side_m, there_m = face.side_m, face.line.along_m(rays.sensors_m[:, :2])
+    beyond_m = np.maximum(np.maximum(low_m - there_m, there_m - (low_m + column_m * count)), 0)
+    most_m = np.tan(GRAZING_RAD) * side_m
+    near = (np.hypot(side_m, beyond_m) <= NEAR_M) & (beyond_m <= most_m)
+    scans = np.flatnonzero((side_m >= face.least_side_m) & near)
+    # scans in rows, columns of the surface in columns
+    away_m = low_m + column_m * (np.arange(count) + 0.5) - there_m[scans, None]
     far_m = np.hypot(away_m, side_m[scans, None])
     looks = np.abs(away_m) < most_m[scans, None]
     up_m = np.array(heights_m) + rays.floor_z_m - rays.sensors_m[scans, 2, None]
     low, high = (_below(rays.usual[scans], np.arctan2(up_m[:, i, None], far_m)) for i in (0, 1))
-    width_deg = np.rad2deg(COLUMN_M * side_m[scans, None] / far_m**2)
-    sent = (high - low) * width_deg * looks
-    edges_m = there_m[scans] + np.array([[-1], [1]]) * most_m[scans]
-    xyz_m, scan = ray_set.points_between(
-        rays, line.at(np.clip(edges_m, low_m, low_m + COLUMN_M * count)), scans
+    width_deg = np.rad2deg(column_m * side_m[scans, None] / far_m**2)
+    expected = (high - low) * width_deg * looks
+    row = np.full(len(side_m), -1)
+    row[scans] = np.arange(len(scans))
+    inside = (face.height_m >= heights_m[0]) & (face.height_m < heights_m[1])
+    inside &= (row >= 0).take(face.scan)
+    chosen = np.flatnonzero(inside)
+    scan, along_m = face.scan.take(chosen), face.along_m.take(chosen)
+    behind_m = face.behind_m.take(chosen)
+    column = np.floor((along_m - low_m) / column_m).astype(np.int64)
+    counts = (np.abs(along_m - there_m[scan]) < most_m[scan]) & (column >= 0) & (column < count)
+    cell = row[scan] * count + column
+    returned = counts & (behind_m >= -_BEFORE_M)
+    kinds = (counts & (behind_m < -_BEFORE_M), returned, returned & (behind_m <= _DEEP_M))
+    occluded, returned, in_wall = (
+        np.bincount(cell[kind], minlength=expected.size).reshape(expected.shape) for kind in kinds
     )
-    before_m, of_scan_m, sensor_z_m = (
-        line.offset_m(xyz_m[:, :2]),
-        side_m.take(scan),
-        rays.sensors_m[:, 2].take(scan),
-    )
-    share = of_scan_m / np.maximum(of_scan_m - before_m, 1e-6)
-    z_m = sensor_z_m + share * (xyz_m[:, 2] - sensor_z_m) - rays.floor_z_m
-    inside = np.flatnonzero((z_m >= heights_m[0]) & (z_m < heights_m[1]))
-    scan, before_m = scan.take(inside), before_m.take(inside)
-    off_m = share.take(inside) * (line.along_m(xyz_m.take(inside, axis=0)[:, :2]) - there_m[scan])
-    counts = np.abs(off_m) < most_m[scan]
-    column = np.floor((there_m[scan] + off_m - low_m) / COLUMN_M).astype(np.int64)
-    counts &= (column >= 0) & (column < count)
-    cell = np.searchsorted(scans, scan) * count + column
-    stopped, back = before_m > _BEFORE_M, before_m <= _BEFORE_M
-    there = [counts & ended for ended in (stopped, back, back & (before_m >= -_DEEP_M))]
-    return SentRays(
-        sent, *(np.bincount(cell[t], minlength=sent.size).reshape(sent.shape) for t in there)
-    )
+    return SentRays(expected, occluded, returned, in_wall)
 
 
-def _below(usual, elevation_rad):
+def _below(usual: FloatArray, elevation_rad: FloatArray) -> FloatArray:
     """Return the running sums (s, n) at elevations (s, c), straight between the steps."""
-    per_deg = (usual.shape[1] - 1) / 180
-    at = np.clip((np.rad2deg(elevation_rad) + 90) * per_deg, 0, usual.shape[1] - 1.001)
+    at = np.clip((np.rad2deg(elevation_rad) + 90) * _ROWS_PER_DEG, 0, usual.shape[1] - 1.001)
     row, scan = at.astype(np.int64), np.arange(len(usual))[:, None]
     return usual[scan, row] + (at - row) * (usual[scan, row + 1] - usual[scan, row])
 
 
-def _together(rows):
+def _sum_neighbours(rows: FloatArray) -> FloatArray:
     """Return running sums over `_WIDTH` columns around each, of rows (s, n)."""
     sums = np.cumsum(np.pad(rows, ((0, 0), (_WIDTH // 2 + 1, _WIDTH // 2))), axis=1, dtype=float)
     return sums[:, _WIDTH:] - sums[:, :-_WIDTH]

@@ -32,10 +32,10 @@ def free_polygons(rays):
         A polygon, polygons, or an empty one, per scan.
     """
     return [
-        _star(sensor_m[:2], azimuth, np.hypot(*(xyz_m[:, :2] - sensor_m[:2]).T))
-        for sensor_m, azimuth, xyz_m in zip(
-            rays.sensors_m, rays.azimuth_rad, rays.xyz_m, strict=True
+        _star(
+            sensor_m[:2], rays.azimuth_rad[rows], np.hypot(*(rays.xyz_m[rows] - sensor_m)[:, :2].T)
         )
+        for rows, sensor_m in zip(rays.rows, rays.sensors_m, strict=True)
     ]
 
 

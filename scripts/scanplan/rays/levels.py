@@ -2,11 +2,35 @@
 
 import numpy as np
 
+from scanplan.types import FloatArray
+
+_LOWEST_PERCENTILE = 1  # fewer returns lie below the floor, by reflections
 _LAYER_M = 0.05
 _SEARCH_M = 0.5
 _LEAST_SHARE = 1e-4
 _LEAST_POINTS = 30
 _PROMINENT = 1.5
+
+
+def find_floor_z(z_m: FloatArray) -> float:
+    """Return the height of the floor: the fullest layer near the lowest points.
+
+    Parameters
+    ----------
+    z_m : (n,) float
+
+    Returns
+    -------
+    float
+        NaN without any points.
+    """
+    if len(z_m) == 0:
+        return np.nan
+    lowest_m = np.percentile(z_m, _LOWEST_PERCENTILE)
+    layer = np.floor((z_m - lowest_m) / _LAYER_M).astype(np.int64)
+    near = (layer >= -1) & (layer < _SEARCH_M / _LAYER_M)
+    fullest_m = lowest_m + (np.bincount(layer[near] + 1).argmax() - 0.5) * _LAYER_M
+    return float(np.median(z_m[np.abs(z_m - fullest_m) <= _LAYER_M]))
 
 
 def find_floor_and_ceiling(z_m):

@@ -1,0 +1,197 @@
+"""What all scans show of the surface of one line: returns, rays through it, glass, and the raster of these."""
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from scanplan.geometry.lines import Line
+from scanplan.rays import expected_returns, face_raster
+from scanplan.rays.expected_returns import SentRays
+from scanplan.rays.face_raster import CELL_M, FaceRaster
+from scanplan.rays.face_rays import FaceRays, cast_at_face
+from scanplan.rays.ray_set import RaySet
+from scanplan.types import FloatArray, IntArray
+
+LEAST_HEIGHT_M = 0.1  # lower returns may be of the floor, which noise and tilt lift
+_BEHIND_M = (
+    0.15  # what poses err by: a ray that ends nearer behind the surface may have ended at it
+)
+_GLASS_HEIGHTS_M = ((0.2, 0.7), (0.9, 1.6))  # skirting to sill; above sills, below low lintels
+_LEAST_GLASS_M = 0.3  # narrower panes are in doors and stairs
+_LEAST_GLASS_SCANS = 3  # two may share what stands too near to be measured
+_RETURNED_SHARE = 0.5  # of the rays; a dark or glossy wall still returns more
+_FRAMED_SHARE = 0.5  # of a pane's length: a line that merely goes on before a pane has no frame
+
+
+@dataclass(frozen=True)
+class RaySettings:
+    """How points and rays are read.
+
+    Attributes
+    ----------
+    band_m : float, > 0
+        Points this near to a line are at it.
+    reach_m : float, >= 0
+        How far beyond what was extracted of a line more of it is looked for.
+    max_gap_m : float, >= 0
+        Longest pause that is wall all the same where no ray went through.
+    door_height_m : float, > 0
+        Above the floor; what is higher says nothing about a way through.
+    """
+
+    band_m: float
+    reach_m: float
+    max_gap_m: float
+    door_height_m: float
+
+
+@dataclass(frozen=True, eq=False)
+class FaceObservation:
+    """A line with what rays say of its surface: places along it, increasing.
+
+    Attributes
+    ----------
+    line : lines.Line
+    occupied_m, occupied_off_m, occupied_z_m : (h,) float64
+        Returns at the surface: along the line, before it, above the floor.
+    occupied_scan : (h,) int64
+    free_m, free_z_m : (p,) float64
+        Where rays go through it.
+    free_scan : (p,) int64
+    low_m, low_z_m : (f,) float64
+        Returns at it that are too low for a wall: a sill, or clutter.
+    planar : bool
+    glass_m : (n, 2) float64
+        From where to where too few of the rays that reach it come back for what is opaque.
+    """
+
+    line: Line
+    occupied_m: FloatArray
+    occupied_off_m: FloatArray
+    occupied_z_m: FloatArray
+    occupied_scan: IntArray
+    free_m: FloatArray
+    free_z_m: FloatArray
+    free_scan: IntArray
+    low_m: FloatArray
+    low_z_m: FloatArray
+    planar: bool
+    glass_m: FloatArray = field(default_factory=lambda: np.empty((0, 2)))
+
+    @cached_property
+    def raster(self) -> FaceRaster:
+        """The surface in cells of 5 cm, from the first to the last place that anything is known of."""
+        places_m = np.concatenate([self.occupied_m, self.free_m])
+        return face_raster.rasterise_rays(
+            (self.occupied_m, self.occupied_z_m),
+            (self.free_m, self.free_z_m),
+            (np.empty(0), np.empty(0)),
+            span_m=(places_m.min(initial=0.0), places_m.max(initial=0.0)),
+            planar=self.planar,
+        )
+
+    @property
+    def framed_m(self) -> FloatArray:
+        """Of the glass the panes (k, 2) that returns of any height are at, along most of their length.
+
+        Glass has a frame, a sill or a lintel; a line that merely goes on before a pane has none.
+        """
+        returns_m = np.sort(np.concatenate([self.occupied_m, self.low_m]))
+        share = [filled_share(returns_m, *span_m) for span_m in self.glass_m]
+        return self.glass_m[np.array(share, float) >= _FRAMED_SHARE]
+
+    def occupied_between(self, low_m: float, high_m: float) -> slice:
+        """Return which returns lie between two places."""
+        return _between(self.occupied_m, low_m, high_m)
+
+    def free_between(self, low_m: float, high_m: float) -> slice:
+        """Return which rays go through between two places."""
+        return _between(self.free_m, low_m, high_m)
+
+    def low_between(self, low_m: float, high_m: float) -> slice:
+        """Return which returns too low for a wall lie between two places."""
+        return _between(self.low_m, low_m, high_m)
+
+
+def observe_face(
+    rays: RaySet, line: Line, low_m: float, high_m: float, *, band_m: float
+) -> FaceObservation:
+    """Gather what scans show of a stretch of a line.
+
+    Parameters
+    ----------
+    rays : ray_set.RaySet
+    line : lines.Line
+    low_m, high_m : float
+        The stretch along the line.
+    band_m : float, > 0
+        Returns this near to the line are at its surface; a ray goes through it that ends farther behind than that and
+        what poses err by.
+    """
+    within_m = 0.0 if rays.planar else expected_returns.NEAR_M
+    face = cast_at_face(rays, line, low_m, high_m, at_m=band_m, occluded_within_m=within_m)
+    order = np.argsort(face.along_m, kind="stable")
+    is_free = face.is_free(band_m + _BEHIND_M)[order]
+    is_occupied = face.is_occupied[order]
+    is_upright = np.full(len(order), True) if rays.planar else face.height_m[order] > LEAST_HEIGHT_M
+    occupied = order[is_occupied & is_upright]
+    free = order[is_free]
+    low = order[is_occupied & ~is_upright]
+    seen = FaceObservation(
+        line=line,
+        occupied_m=face.along_m[occupied],
+        occupied_off_m=-face.behind_m[occupied],
+        occupied_z_m=face.height_m[occupied],
+        occupied_scan=face.scan[occupied],
+        free_m=face.along_m[free],
+        free_z_m=face.height_m[free],
+        free_scan=face.scan[free],
+        low_m=face.along_m[low],
+        low_z_m=face.height_m[low],
+        planar=rays.planar,
+    )
+    return seen if rays.planar else replace(seen, glass_m=_find_glass(rays, face, low_m, high_m))
+
+
+def count_sent(
+    rays: RaySet, line: Line, low_m: float, count: int, heights_m: tuple[float, float], at_m: float
+) -> SentRays:
+    """Return the rays that scans sent to columns of 5 cm of a line from a place on; see `expected_returns`."""
+    face = cast_at_face(
+        *(rays, line, low_m, low_m + CELL_M * count),
+        at_m=at_m,
+        occluded_within_m=expected_returns.NEAR_M,
+    )
+    return expected_returns.count_sent_rays(rays, face, low_m, count, CELL_M, heights_m)
+
+
+def filled_share(places_m: FloatArray, low_m: float, high_m: float) -> float:
+    """Return the share of the columns of 5 cm between two places that hold any of sorted places."""
+    inside_m = places_m[np.searchsorted(places_m, low_m) : np.searchsorted(places_m, high_m)]
+    columns = max(round((high_m - low_m) / CELL_M), 1)
+    return len(np.unique(((inside_m - low_m) / CELL_M).astype(np.int64))) / columns
+
+
+def _find_glass(rays: RaySet, face: FaceRays, low_m: float, high_m: float) -> FloatArray:
+    """Return from where to where (n, 2) less than half of the rays return that reach a surface, low and chest-high.
+
+    A wall below a window is wall, and so is one above an oven: both bands of height have to show it. Where few returns
+    are to be expected nothing is said.
+    """
+    count = max(int(np.ceil((high_m - low_m) / CELL_M)), 1)
+    is_lost = np.full(count, True)
+    for heights_m in _GLASS_HEIGHTS_M:
+        if is_lost.any():
+            sent = expected_returns.count_sent_rays(rays, face, low_m, count, CELL_M, heights_m)
+            reached, returned, _ = sent.reached(least_scans=_LEAST_GLASS_SCANS)
+            is_lost &= returned < _RETURNED_SHARE * reached
+    steps = np.diff(np.concatenate([[False], is_lost, [False]]).astype(np.int8))
+    spans_m = (low_m + CELL_M * np.flatnonzero(steps)).reshape(-1, 2)
+    return spans_m[np.diff(spans_m, axis=1)[:, 0] >= _LEAST_GLASS_M]
+
+
+def _between(places_m: FloatArray, low_m: float, high_m: float) -> slice:
+    return slice(
+        int(np.searchsorted(places_m, low_m)), int(np.searchsorted(places_m, high_m, side="right"))
+    )
