@@ -13,11 +13,12 @@ _PROMINENT = 1.5
 
 
 def find_floor_z(z_m: FloatArray) -> float:
-    """Return the height of the floor: the fullest layer near the lowest points.
+    """Return the height of the floor, or of the lowest points where no floor was seen: the one estimate of it.
 
     Parameters
     ----------
     z_m : (n,) float
+        Heights of points of scans in space, finite.
 
     Returns
     -------
@@ -26,11 +27,8 @@ def find_floor_z(z_m: FloatArray) -> float:
     """
     if len(z_m) == 0:
         return np.nan
-    lowest_m = np.percentile(z_m, _LOWEST_PERCENTILE)
-    layer = np.floor((z_m - lowest_m) / _LAYER_M).astype(np.int64)
-    near = (layer >= -1) & (layer < _SEARCH_M / _LAYER_M)
-    fullest_m = lowest_m + (np.bincount(layer[near] + 1).argmax() - 0.5) * _LAYER_M
-    return float(np.median(z_m[np.abs(z_m - fullest_m) <= _LAYER_M]))
+    level_m = _lowest_level(z_m)
+    return float(np.percentile(z_m, _LOWEST_PERCENTILE)) if np.isnan(level_m) else level_m
 
 
 def find_floor_and_ceiling(z_m):

@@ -9,8 +9,8 @@ import numpy as np
 import shapely
 
 from scanplan.extraction import segments
+from scanplan.rays import levels
 
-_FLOOR_PERCENTILE = 1
 _AT_SENSOR_M = (
     0.01  # where nothing is known to be free; above 0, so that the outline never touches itself
 )
@@ -103,5 +103,5 @@ def _obstacles(points, planar, settings):
     """Return x and y of the returns that end the view."""
     if planar or len(points) == 0:
         return points[:, :2]
-    height_m = points[:, 2] - np.percentile(points[:, 2], _FLOOR_PERCENTILE)
+    height_m = points[:, 2] - levels.find_floor_z(points[:, 2])
     return points[(settings.min_height_m <= height_m) & (height_m <= settings.max_height_m), :2]
