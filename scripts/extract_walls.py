@@ -4,7 +4,8 @@ import time
 
 from scanplan.errors import StageError
 from scanplan.extraction import map_tilt, segments
-from scanplan.extraction.extractors import EXTRACTORS
+from scanplan.extraction.extractors import EXTRACTORS, find_wall_segments, select_settings
+from scanplan.extraction.furniture import FurnitureLimits
 from scanplan.stage import log
 from scanplan.stage.per_scan import map_scans
 from scanplan.store import schemas, tables
@@ -22,7 +23,7 @@ def extract_walls(scans, registration, output, *, extractor, settings, threads=1
     extractor : str
         A key of `EXTRACTORS`.
     settings : dict
-        Keywords of that extractor's `Settings`.
+        Of that extractor's class of settings, and of `furniture.FurnitureLimits`.
     threads : int
     """
     if extractor not in EXTRACTORS:
@@ -30,12 +31,17 @@ def extract_walls(scans, registration, output, *, extractor, settings, threads=1
             f"extractor {extractor}: is not known; choose one of {', '.join(EXTRACTORS)}"
         )
     method, store, started = EXTRACTORS[extractor], tables.ScanStore(scans), time.perf_counter()
-    every_scan = {"planar": store.planar, "settings": method.settings(**settings)}
+    every_scan = {
+        "planar": store.planar,
+        "extractor": method,
+        "settings": select_settings(method.settings, settings),
+        "limits": select_settings(FurnitureLimits, settings),
+    }
     per_scan = segments.sensor_keywords(
         tables.read_table(registration, schemas.REGISTRATION), store.scan_ids, registration
     )
     found = map_scans(
-        method.extract,
+        find_wall_segments,
         scans,
         label=f"extract_walls {extractor}",
         threads=threads,

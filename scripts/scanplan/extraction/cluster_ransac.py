@@ -4,9 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan.extraction import furniture, mean_shift, normals, segments
+from scanplan.extraction import mean_shift, normals, segments
+from scanplan.extraction.segments import Row
 from scanplan.geometry import line_fit
 from scanplan.rays.face_rays import SKIRTING_M
+from scanplan.rays.ray_set import RaySet
+from scanplan.types import FloatArray
 
 _DUAL_SHIFT_M = 1.0
 _ALIKE = np.cos(np.deg2rad(20))  # a point's normal against its wall's
@@ -38,7 +41,9 @@ class ClusterRansacSettings(segments.SegmentLimits):
     trials: int
 
 
-def extract_by_clusters(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
+def extract_by_clusters(
+    scan_id: int, points: FloatArray, scan: RaySet | None, settings: ClusterRansacSettings
+) -> list[Row]:
     """Find the wall segments of one scan.
 
     Points on vertical surfaces are projected along their normals, where the points of one wall meet; mean shift finds
@@ -48,25 +53,18 @@ def extract_by_clusters(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
     Parameters
     ----------
     scan_id : int
-    xyz_m : (n, 3) float
-        The scan's points, map frame; their order does not matter.
-    sensor_xyz_m : (3,) float
-        The sensor's position, map frame.
-    planar : bool
-        Whether all points are in one horizontal plane.
-    settings : Settings
+        Random draws depend on it.
+    points : (n, 3) float64
+        The scan's points relative to its sensor, as `geometry.points.centre_on_sensor` gives them.
+    scan : ray_set.RaySet, optional
+        Its rays; None in the plane.
+    settings : ClusterRansacSettings
 
     Returns
     -------
-    segments.WallSegments
-
-    Raises
-    ------
-    ValueError
-        If a coordinate is not finite.
+    list of tuple
+        As `segments.cut_line` gives them: walls and furniture alike.
     """
-    points = segments.centre_on_sensor(xyz_m, sensor_xyz_m)
-    scan = segments.view_scan(points, planar=planar)
     surfaces = _surfaces(points, scan, settings)
     cells, facing = surfaces.cells, surfaces.facing
     free = surfaces.upright.copy()
@@ -74,7 +72,7 @@ def extract_by_clusters(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
     rows = []
     for cluster in _clusters(surfaces, settings.bandwidth_m):
         own = cluster[free[cluster]]
-        if cells.count[own].sum() < settings.least_points(planar):
+        if cells.count[own].sum() < settings.least_points(scan is None):
             continue
         line = line_fit.fit_line_ransac(
             cells.mean_m[own, :2],
@@ -94,7 +92,7 @@ def extract_by_clusters(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
         alike = -facing @ normal > _ALIKE
         free &= ~(alike & _beside(cells.mean_m[:, :2], found, _WIDE * settings.inlier_m))
         rows += found
-    return segments.collect_segments(furniture.keep_walls(rows, scan, settings), sensor_xyz_m)
+    return rows
 
 
 def _clusters(surfaces, bandwidth_m):

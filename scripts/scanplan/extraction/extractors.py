@@ -1,10 +1,16 @@
-"""The wall extractors by name: one place to look one up, or to add one."""
+"""Wall segments of one scan: an extractor, and the classifier that tells walls from furniture, composed.
+
+The extractors by name stand here and nowhere else. The thesis's own are these with no classifier.
+"""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
-from scanplan.extraction import cluster_ransac, iterative_ransac
+from scanplan.extraction import cluster_ransac, furniture, iterative_ransac, segments
+from scanplan.extraction.segments import Row, SegmentLimits
+from scanplan.rays.ray_set import RaySet
+from scanplan.types import FloatArray, Settings
 
 
 @dataclass(frozen=True)
@@ -14,13 +20,13 @@ class Extractor:
     Attributes
     ----------
     settings : type
-        Made from the keywords of the configuration.
+        A class of settings, with those of `segments.SegmentLimits`.
     extract : callable
-        Called with `scan_id`, `xyz_m` and the keywords `sensor_xyz_m`, `planar` and `settings`.
+        Called with the scan's id, its points, its rays and the settings; returns rows of `segments.cut_line`.
     """
 
-    settings: Callable[..., Any]
-    extract: Callable[..., Any]
+    settings: type[SegmentLimits]
+    extract: Callable[[int, FloatArray, RaySet | None, Any], list[Row]]
 
 
 EXTRACTORS = {
@@ -31,3 +37,48 @@ EXTRACTORS = {
         iterative_ransac.IterativeRansacSettings, iterative_ransac.extract_iteratively
     ),
 }
+
+
+def select_settings(kind: type, settings: Settings) -> Any:
+    """Return a class of settings, a dataclass, made from those of more settings that it has."""
+    return kind(**{field.name: settings[field.name] for field in fields(kind)})
+
+
+def find_wall_segments(
+    scan_id: int,
+    xyz_m: FloatArray,
+    *,
+    sensor_xyz_m: FloatArray,
+    planar: bool,
+    extractor: Extractor,
+    settings: SegmentLimits,
+    limits: furniture.FurnitureLimits | None = None,
+) -> segments.WallSegments:
+    """Find the wall segments of one scan.
+
+    Parameters
+    ----------
+    scan_id : int
+    xyz_m : (n, 3) float
+        The scan's points, map frame; their order does not matter.
+    sensor_xyz_m : (3,) float
+        The sensor's position, map frame.
+    planar : bool
+        Whether all points are in one horizontal plane.
+    extractor : Extractor
+    settings : SegmentLimits
+        Of the extractor's class.
+    limits : furniture.FurnitureLimits, optional
+        What furniture is; without it, it stays among the segments.
+
+    Raises
+    ------
+    ValueError
+        If a coordinate is not finite.
+    """
+    points = segments.centre_on_sensor(xyz_m, sensor_xyz_m)
+    scan = segments.view_scan(points, planar=planar)
+    rows = extractor.extract(scan_id, points, scan, settings)
+    if limits is not None:
+        rows = furniture.keep_walls(rows, scan, limits)
+    return segments.collect_segments(rows, sensor_xyz_m)

@@ -4,8 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan.extraction import furniture, segments
+from scanplan.extraction import segments
+from scanplan.extraction.segments import Row
 from scanplan.geometry import line_fit
+from scanplan.rays.ray_set import RaySet
+from scanplan.types import FloatArray
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,7 +30,9 @@ class IterativeRansacSettings(segments.SegmentLimits):
     max_planes: int
 
 
-def extract_iteratively(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
+def extract_iteratively(
+    scan_id: int, points: FloatArray, scan: RaySet | None, settings: IterativeRansacSettings
+) -> list[Row]:
     """Find the wall segments of one scan.
 
     Find the plane (planar scans: the line) most points lie on, remove them, and repeat until it holds too few. Upright
@@ -36,25 +41,19 @@ def extract_iteratively(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
     Parameters
     ----------
     scan_id : int
-    xyz_m : (n, 3) float
-        The scan's points, map frame; their order does not matter.
-    sensor_xyz_m : (3,) float
-        The sensor's position, map frame.
-    planar : bool
-        Whether all points are in one horizontal plane.
-    settings : Settings
+        Random draws depend on it.
+    points : (n, 3) float64
+        The scan's points relative to its sensor, as `geometry.points.centre_on_sensor` gives them.
+    scan : ray_set.RaySet, optional
+        Its rays; None in the plane.
+    settings : IterativeRansacSettings
 
     Returns
     -------
-    segments.WallSegments
-
-    Raises
-    ------
-    ValueError
-        If a coordinate is not finite.
+    list of tuple
+        As `segments.cut_line` gives them: walls and furniture alike.
     """
-    points = left = segments.centre_on_sensor(xyz_m, sensor_xyz_m)
-    scan = segments.view_scan(points, planar=planar)
+    left, planar = points, scan is None
     largest = _largest_line if planar else _largest_plane
     least = max(settings.least_points(planar), 3)
     rng = np.random.default_rng([settings.seed, scan_id])
@@ -71,7 +70,7 @@ def extract_iteratively(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
                 *line_fit.fit_line_tls(found[:, :2]), found, settings, scan=scan
             )
         left = left[~inliers]
-    return segments.collect_segments(furniture.keep_walls(rows, scan, settings), sensor_xyz_m)
+    return rows
 
 
 def find_largest_plane(xyz_m, *, inlier_m, trials, seed):

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.errors import StageError
-from scanplan.extraction import furniture
 from scanplan.extraction.runs import extend_run_ends, find_runs, grow_runs
 from scanplan.geometry.lines import Line
 from scanplan.rays import levels
@@ -22,9 +21,13 @@ _LEAST_M = 1e-6
 _FIELDS = ("x0_m", "y0_m", "x1_m", "y1_m", "nx", "ny", "n_points", "rmse_m", "z_min_m", "z_max_m")
 
 
+Row = tuple[float, ...]
+"""A segment as `cut_line` gives it: the values of a row of the table of walls, relative to the sensor."""
+
+
 @dataclass(frozen=True, kw_only=True)
-class SegmentLimits(furniture.FurnitureLimits):
-    """What a wall segment must be, beside `furniture.FurnitureLimits`; the settings of both extractors begin with these.
+class SegmentLimits:
+    """What a wall segment must be; the settings of both extractors begin with these.
 
     Attributes
     ----------
@@ -37,6 +40,8 @@ class SegmentLimits(furniture.FurnitureLimits):
         Least vertical extent; for 3-D scans alone.
     door_height_m : float
         Above the scan's floor; higher points bridge no gap: they may be the wall above a door. For 3-D scans alone.
+    corner_m : float
+        Strips of wall above furniture pause for no longer.
     min_points : int
         Of a 3-D scan.
     min_points_planar : int
@@ -50,6 +55,7 @@ class SegmentLimits(furniture.FurnitureLimits):
     min_length_m: float
     min_height_m: float
     door_height_m: float
+    corner_m: float
     min_points: int
     min_points_planar: int
     seed: int

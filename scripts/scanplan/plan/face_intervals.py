@@ -49,6 +49,12 @@ class FaceInterval(Span):
         """How many points show it."""
         return self.points.stop - self.points.start
 
+    @cached_property
+    def top_m(self):
+        """Height above the floor up to which it is seen over a good stretch."""
+        raster = self.seen.raster
+        return raster.seen_top_m(raster.between(self.low_m, self.high_m))
+
     @property
     def n_scans(self):
         """How many scans show it."""

@@ -5,12 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from scanplan.extraction.face_arrangement import Faces
+from scanplan.extraction.furniture import find_furniture_fronts
 from scanplan.geometry import intersections
 from scanplan.plan import (
     face_candidates,
     face_intervals,
     face_trimming,
-    furniture_fronts,
 )
 
 _STUB_M = 0.1
@@ -48,7 +49,7 @@ def trace_faces(pieces, rays, merging, reading, furniture):
     rays : ray_set.RaySet
     merging : segment_merging.MergeSettings
     reading : face_observation.RaySettings
-    furniture : furniture_fronts.FrontLimits
+    furniture : furniture.FurnitureLimits
 
     Returns
     -------
@@ -60,14 +61,12 @@ def trace_faces(pieces, rays, merging, reading, furniture):
         lines.setdefault(id(piece.line), []).append(piece)
     seen = [_seen(group, rays, reading) for group in lines.values()]
     found = _once([face_intervals.find_face_intervals(s, reading) for s in seen], merging)
-    found = furniture_fronts.remove_furniture_fronts(found, furniture, planar=rays.planar)
+    found = _without_furniture(found, furniture)
     claimed = zip(seen, owned_intervals(seen, found), strict=True)
     runs = (
         face_intervals.find_face_intervals(s, reading, foreign_m=spans_m) for s, spans_m in claimed
     )
-    found = furniture_fronts.remove_furniture_fronts(
-        _once(list(runs), merging), furniture, planar=rays.planar
-    )
+    found = _without_furniture(_once(list(runs), merging), furniture)
     found = face_trimming.trim_tails(
         face_trimming.trim_overshoots(found), share=merging.ghost_share
     )
@@ -83,6 +82,25 @@ def trace_faces(pieces, rays, merging, reading, furniture):
 def _seen(group, rays, reading):
     low_m, high_m = min(piece.low_m for piece in group), max(piece.high_m for piece in group)
     return face_intervals.observe_along(rays, group[0].line, low_m, high_m, reading)
+
+
+def _without_furniture(found, limits):
+    """Return the intervals that are no fronts of furniture; all of a 2-D scanner, whose heights are unknown.
+
+    From where furniture hides the wall behind it, and no ray passes over it, it looks like a wall to a scan; all scans
+    together know better.
+    """
+    if not found or found[0].seen.planar:
+        return found
+    numbers = {number: index for index, number in enumerate({id(f.seen): None for f in found})}
+    faces = Faces(
+        ends_m=np.array([f.ends for f in found]),
+        normal=np.array([f.line.normal for f in found]),
+        top_m=np.array([f.top_m for f in found]),
+        line=np.array([numbers[id(f.seen)] for f in found]),
+    )
+    fronts = find_furniture_fronts(faces, limits)
+    return [f for f, is_front in zip(found, fronts.tolist(), strict=True) if not is_front]
 
 
 def _once(found, merging):

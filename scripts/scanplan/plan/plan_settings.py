@@ -2,11 +2,18 @@
 
 _OTHERS = ("method", "extractor", "export")
 _FURNITURE = (
+    "max_rmse_m",
     "wall_height_m",
     "furniture_height_m",
-    "furniture_length_m",
+    "hang_height_m",
+    "over_share",
+    "through_share",
+    "missing_share",
     "furniture_depth_m",
+    "furniture_length_m",
+    "stub_length_m",
     "door_width_m",
+    "corner_m",
 )
 
 

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from scanplan.extraction.furniture import FurnitureLimits
 from scanplan.plan import (
     faces,
-    furniture_fronts,
     glass,
     half_height,
     plan_tables,
@@ -58,7 +58,7 @@ class PlanSettings:
     merge: segment_merging.MergeSettings
     reading: face_observation.RaySettings
     ranges: range_bias.RangeBiasSettings
-    furniture: furniture_fronts.FrontLimits
+    furniture: FurnitureLimits
     pairs: wall_pairs.PairSettings
     openings: OpeningSettings
     rooms: RoomSettings
@@ -104,7 +104,7 @@ def make_plan_settings(
         merge=merging,
         reading=face_observation.RaySettings(**trace),
         ranges=range_bias.RangeBiasSettings(**ranges),
-        furniture=furniture_fronts.FrontLimits(**furniture),
+        furniture=FurnitureLimits(**furniture),
         pairs=wall_pairs.PairSettings(**pair, max_gap_m=openings["max_opening_m"]),
         openings=OpeningSettings(**openings),
         rooms=RoomSettings(**rooms),

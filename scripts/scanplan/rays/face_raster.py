@@ -107,12 +107,13 @@ class FaceRaster:
         is_low = (top_row + 1) * _ROW_M <= sill_m
         return is_low & (np.where(above, self.free, 0) > 0).any(axis=1)
 
-    def seen_top_m(self) -> float:
-        """Return up to which height the surface is seen over a good stretch of its length, and in two columns.
+    def seen_top_m(self, columns: slice = slice(None)) -> float:
+        """Return up to which height columns are seen over a good stretch of their length, and two of them at least.
 
         Of a surface so short that no stretch is as long, in any column; minus infinity where nothing is seen.
         """
-        tops_m = np.sort(self.top_m[np.isfinite(self.top_m)])[::-1]
+        top_m = self.top_m[columns]
+        tops_m = np.sort(top_m[np.isfinite(top_m)])[::-1]
         if len(tops_m) == 0:
             return -np.inf
         # the return of something else at an end may be all that a column has

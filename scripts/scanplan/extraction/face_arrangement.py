@@ -1,0 +1,195 @@
+"""How faces lie to each other: which stand before which, meet at corners, and go on from each other on one line."""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from scanplan.types import BoolArray, FloatArray, IntArray
+
+LEVEL_M = 0.15
+"""Faces closer than this are one, and so are tops: noise of ranges and poses."""
+
+_PARALLEL = math.cos(math.radians(10))  # what normals of faces of one wall differ by at most
+_ACROSS = math.cos(math.radians(45))  # faces that turn more stand across each other
+_ON_LINE_M = 0.08  # what faces of one line lie apart: noise of ranges
+_BESIDE_M = 0.3  # less of a wall beside furniture may be a trace of something else
+
+
+@dataclass(frozen=True, eq=False)
+class Faces:
+    """Straight faces, each seen from one side.
+
+    Attributes
+    ----------
+    ends_m : (n, 2, 2) float64
+        Start and end, the side it is seen from on the left of the way.
+    normal : (n, 2) float64
+        Unit, towards that side.
+    top_m : (n,) float64
+        Height above the floor up to which each is seen.
+    line : (n,) int64
+        Faces of one line share its number.
+    """
+
+    ends_m: FloatArray
+    normal: FloatArray
+    top_m: FloatArray
+    line: IntArray
+
+    def __len__(self) -> int:
+        """Return the number of faces."""
+        return len(self.line)
+
+    @cached_property
+    def length_m(self) -> FloatArray:
+        """Length of each face, (n,)."""
+        return np.hypot(*(self.ends_m[:, 1] - self.ends_m[:, 0]).T)
+
+    @cached_property
+    def middle_m(self) -> FloatArray:
+        """Middle of each face, (n, 2)."""
+        return self.ends_m.mean(axis=1)
+
+    @cached_property
+    def line_length_m(self) -> FloatArray:
+        """How long all faces of each one's line are together, (n,)."""
+        return np.bincount(self.line, self.length_m)[self.line]
+
+    @cached_property
+    def forward_m(self) -> FloatArray:
+        """How far each face's middle (rows) lies before each other's line (columns), (n, n)."""
+        return self.middle_m @ self.normal.T - (self.middle_m * self.normal).sum(axis=1)
+
+    @cached_property
+    def is_parallel(self) -> BoolArray:
+        """Which faces are seen from the same side of much the same direction, (n, n)."""
+        return self.normal @ self.normal.T > _PARALLEL
+
+    @cached_property
+    def apart_m(self) -> FloatArray:
+        """How far each face (rows) and each other (columns) are apart along the other's line, (n, n); negative: overlap."""
+        direction = np.column_stack([self.normal[:, 1], -self.normal[:, 0]])
+        starts_m = self.ends_m[:, 0] @ direction.T
+        stops_m = self.ends_m[:, 1] @ direction.T
+        before_m = np.diag(starts_m) - np.maximum(starts_m, stops_m)
+        behind_m = np.minimum(starts_m, stops_m) - np.diag(stops_m)
+        return np.maximum(before_m, behind_m)
+
+    def along_m(self, one: int, points_m: FloatArray) -> FloatArray:
+        """Return places of points (..., 2) along a face's line, from its middle."""
+        direction = np.array([self.normal[one, 1], -self.normal[one, 0]])
+        return (points_m - self.middle_m[one]) @ direction
+
+
+def stand_in_front(faces: Faces, depth_m: float) -> BoolArray:
+    """Return which faces stand before others, up to a depth before and beside them: (n, n) bool.
+
+    What one scan sees behind a face, it sees over it or beside it.
+    """
+    before = faces.is_parallel & (faces.forward_m > LEVEL_M) & (faces.forward_m <= depth_m)
+    return before & (faces.apart_m <= depth_m)
+
+
+def stand_before(faces: Faces, chosen: BoolArray, *, depth_m: float, door_m: float) -> BoolArray:
+    """Return which chosen faces stand before which others that are seen beside them in the same room.
+
+    Parameters
+    ----------
+    faces : Faces
+    chosen : (n,) bool
+    depth_m : float
+        How far before another, and how far beside it, a face stands at most.
+    door_m : float
+        Faces of one line no farther apart are one front: what is behind the pause is not beside it.
+
+    Returns
+    -------
+    (n, n) bool
+        Only the other of the longer line can be the wall.
+    """
+    before = faces.is_parallel & (faces.forward_m > LEVEL_M) & (faces.forward_m <= depth_m)
+    before &= faces.line_length_m[:, None] < faces.line_length_m
+    before &= chosen[:, None]
+    for one in np.flatnonzero(before.any(axis=1)):
+        others = np.flatnonzero(before[one])
+        spans_m = np.sort(faces.along_m(one, faces.ends_m[others]), axis=1)
+        spans_m = np.clip(spans_m, *_find_room(faces, one, door_m))
+        front_m = _find_front(faces, one, door_m)
+        before[one, others] = _is_beside(spans_m, front_m, depth_m)
+    return before
+
+
+def find_corner_faces(faces: Faces, reach_m: float) -> tuple[BoolArray, BoolArray]:
+    """Return which faces meet at the ends of others, across them.
+
+    Parameters
+    ----------
+    faces : Faces
+    reach_m : float
+        Largest distance of two ends that meet.
+
+    Returns
+    -------
+    inner, outer : (n, 2, n) bool
+        Whether at the start and the end of a face each other one makes an inner corner with it, in which either stands
+        before the other, or an outer one, at which both turn away.
+    """
+    ends_m, normal = faces.ends_m, faces.normal
+    inner = np.zeros((len(ends_m), 2, len(ends_m)), bool)
+    outer = inner.copy()
+    across = np.abs(normal @ normal.T) < _ACROSS
+    for own in (0, 1):
+        for other in (0, 1):
+            apart_m = ends_m[None, :, other] - ends_m[:, None, own]
+            meet = across & (np.hypot(apart_m[..., 0], apart_m[..., 1]) <= reach_m)
+            its_far_end = ends_m[None, :, 1 - other] - ends_m[:, None, own]
+            my_far_end = ends_m[:, None, 1 - own] - ends_m[None, :, other]
+            it_is_before = np.einsum("ijk,ik->ij", its_far_end, normal) > 0
+            i_am_before = np.einsum("ijk,jk->ij", my_far_end, normal) > 0
+            inner[:, own] |= meet & it_is_before & i_am_before
+            outer[:, own] |= meet & ~it_is_before & ~i_am_before
+    return inner, outer
+
+
+def find_collinear_faces(faces: Faces, gap_m: float) -> BoolArray:
+    """Return which faces are on one line with others, no farther than a gap apart: (n, n) bool."""
+    same_line = faces.is_parallel & (np.abs(faces.forward_m) <= _ON_LINE_M)
+    return same_line & (faces.apart_m <= gap_m) & ~np.eye(len(faces), dtype=bool)
+
+
+def _find_front(faces: Faces, one: int, door_m: float) -> tuple[float, float]:
+    """Return from where to where along its line a face goes on beyond gaps no wider than a door."""
+    same = np.flatnonzero(faces.line == faces.line[one])
+    spans_m = np.sort(faces.along_m(one, faces.ends_m[same]), axis=1).tolist()
+    low_m, high_m = np.sort(faces.along_m(one, faces.ends_m[one])).tolist()
+    for begin_m, end_m in sorted(spans_m):
+        if begin_m <= high_m + door_m:
+            high_m = max(high_m, end_m)
+    for begin_m, end_m in sorted(spans_m, reverse=True):
+        if end_m >= low_m - door_m:
+            low_m = min(low_m, begin_m)
+    return low_m, high_m
+
+
+def _find_room(faces: Faces, one: int, door_m: float) -> tuple[float, float]:
+    """Return from where to where along its line the room before a face goes: to what stands across and faces it."""
+    direction = np.array([faces.normal[one, 1], -faces.normal[one, 0]])
+    facing = faces.normal @ direction
+    before_m = np.sort((faces.ends_m - faces.middle_m[one]) @ faces.normal[one], axis=1)
+    # a door may be next to the corner
+    stands = (before_m[:, 0] <= door_m) & (before_m[:, 1] >= _BESIDE_M)
+    place_m = faces.along_m(one, faces.middle_m)
+    low = stands & (facing >= _PARALLEL) & (place_m < 0)
+    high = stands & (facing <= -_PARALLEL) & (place_m > 0)
+    return place_m[low].max(initial=-math.inf), place_m[high].min(initial=math.inf)
+
+
+def _is_beside(spans_m: FloatArray, front_m: tuple[float, float], depth_m: float) -> BoolArray:
+    """Return whether enough of what spans (n, 2) is seen beside a front, on either side, no farther than a depth."""
+    left_m = np.minimum(spans_m[:, 1], front_m[0]) - spans_m[:, 0]
+    right_m = spans_m[:, 1] - np.maximum(spans_m[:, 0], front_m[1])
+    is_left = (left_m >= _BESIDE_M) & (front_m[0] - spans_m[:, 1] <= depth_m)
+    is_right = (right_m >= _BESIDE_M) & (spans_m[:, 0] - front_m[1] <= depth_m)
+    return is_left | is_right
