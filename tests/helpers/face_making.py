@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from scanplan.plan import face_candidates, segment_merging
+from scanplan.plan.faces import candidates
+from scanplan.plan.faces.merging import MergeSettings, merge_segments
 from scanplan.store import schemas
 
 _MOST_ROUNDS = 10
@@ -12,18 +13,18 @@ _MOST_ROUNDS = 10
 
 def merge(table, settings):
     """Return what the segments of a table of walls make, ends met at corners: columns, the longest face first."""
-    merging = segment_merging.MergeSettings(**settings)
-    pieces = segment_merging.merge_segments(table, merging)
+    merging = MergeSettings(**settings)
+    pieces = merge_segments(table, merging)
     for _ in range(_MOST_ROUNDS):
         before = [(piece.low_m, piece.high_m) for piece in pieces]
-        pieces = _once(face_candidates.meet_at_corners(pieces, corner_m=merging.corner_m), merging)
+        pieces = _once(candidates.meet_at_corners(pieces, corner_m=merging.corner_m), merging)
         if before == [(piece.low_m, piece.high_m) for piece in pieces]:
             break
     return _columns([_row(piece) for piece in pieces])
 
 
 def _once(pieces, merging):
-    return face_candidates.remove_doubles(
+    return candidates.remove_doubles(
         [
             piece
             for piece in pieces

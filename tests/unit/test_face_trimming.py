@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
+from scanplan.rays.face_profile import FaceObservation
 
 from scanplan.geometry.lines import Line
-from scanplan.plan import face_trimming
-from scanplan.plan.face_intervals import FaceInterval
-from scanplan.rays.face_profile import FaceObservation
+from scanplan.plan.faces import trimming
+from scanplan.plan.faces.intervals import FaceInterval
 
 
 def stretch(x0, y0, x1, y1, places=None, offsets=None):
@@ -32,7 +32,7 @@ def test_chords_end_where_they_cross():
     other = stretch(
         2 - 0.5 * np.cos(0.2), -0.5 * np.sin(0.2), 2 + 2 * np.cos(0.2), 2 * np.sin(0.2), **back
     )
-    assert spans(face_trimming.trim_overshoots([one, other])) == [(0, 2), (0.5, 2.5)]
+    assert spans(trimming.trim_overshoots([one, other])) == [(0, 2), (0.5, 2.5)]
 
 
 def test_a_stretch_that_goes_on_further_than_the_other_stays():
@@ -40,35 +40,35 @@ def test_a_stretch_that_goes_on_further_than_the_other_stays():
     other = stretch(
         2 - 0.5 * np.cos(0.2), -0.5 * np.sin(0.2), 2 + 0.5 * np.cos(0.2), 0.5 * np.sin(0.2)
     )
-    assert spans(face_trimming.trim_overshoots([one, other]))[0] == (0, 4)
+    assert spans(trimming.trim_overshoots([one, other]))[0] == (0, 4)
 
 
 def test_steep_crossings_are_left_to_corners():
-    found = face_trimming.trim_overshoots([stretch(0, 0, 4, 0), stretch(2, -1, 2, 1)])
+    found = trimming.trim_overshoots([stretch(0, 0, 4, 0), stretch(2, -1, 2, 1)])
     assert spans(found) == [(0, 4), (0, 2)]
 
 
 def test_stray_points_behind_a_corner_are_cut_off():
     wall = stretch(3, 2, 3, -2)
     strays = [*np.arange(0, 3, 0.02), 3.5]
-    found = face_trimming.trim_tails([stretch(0, 0, 3.5, 0, strays), wall], share=0.2)
+    found = trimming.trim_tails([stretch(0, 0, 3.5, 0, strays), wall], share=0.2)
     assert spans(found) == [(0, 3), (0, 4)]
 
 
 def test_a_wall_that_goes_on_behind_another_stays():
     wall = stretch(3, 2, 3, -2)
-    found = face_trimming.trim_tails([stretch(0, 0, 3.5, 0), wall], share=0.2)
+    found = trimming.trim_tails([stretch(0, 0, 3.5, 0), wall], share=0.2)
     assert spans(found) == [(0, 3.5), (0, 4)]
 
 
 def test_a_pier_beside_a_door_stays():
     # the wall that crosses stands 0.9 m before the pier, not on it
     pier = stretch(0.9, 0, 1.04, 0)
-    assert spans(face_trimming.trim_tails([pier, stretch(0, 2, 0, -2)], share=0.2)) == [
+    assert spans(trimming.trim_tails([pier, stretch(0, 2, 0, -2)], share=0.2)) == [
         (0, 0.14),
         (0, 4),
     ]
 
 
 def test_nothing():
-    assert face_trimming.trim_overshoots([]) == face_trimming.trim_tails([], share=0.2) == []
+    assert trimming.trim_overshoots([]) == trimming.trim_tails([], share=0.2) == []

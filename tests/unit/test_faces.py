@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from scanplan.rays.face_profile import FaceObservation
 
 from scanplan.geometry.lines import Line
-from scanplan.plan import faces
-from scanplan.plan.face_intervals import FaceInterval
-from scanplan.rays.face_profile import FaceObservation
+from scanplan.plan.faces import tracing
+from scanplan.plan.faces.intervals import FaceInterval
 
 
 def stretch(x0, y0, x1, y1):
@@ -23,7 +23,7 @@ def stretch(x0, y0, x1, y1):
 
 
 def claims_on_first(*found):
-    return faces.owned_intervals([found[0].seen], list(found))[0]
+    return tracing.owned_intervals([found[0].seen], list(found))[0]
 
 
 def test_a_wall_that_crosses_claims_what_is_beside_it():

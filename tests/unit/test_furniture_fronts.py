@@ -4,11 +4,11 @@ import dataclasses
 
 import numpy as np
 import pytest
+from scanplan.rays.face_profile import FaceObservation
 
 from scanplan.geometry.lines import Line
 from scanplan.plan import furniture_fronts
-from scanplan.plan.face_intervals import FaceInterval
-from scanplan.rays.face_profile import FaceObservation
+from scanplan.plan.faces.intervals import FaceInterval
 
 LIMITS = furniture_fronts.FrontLimits(
     wall_height_m=1.0,

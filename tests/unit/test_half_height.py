@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scanplan.rays.face_profile import FaceObservation
 
 from scanplan.geometry.lines import Line
 from scanplan.plan import half_height, planning
-from scanplan.rays.face_profile import FaceObservation
 
 LINE = Line(np.zeros(2), np.array([0.0, 1.0]))
 RNG = np.random.default_rng(3)

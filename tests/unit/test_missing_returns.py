@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scanplan.rays.face_profile import FaceObservation
 
 from helpers import house_making
 from scanplan.geometry.lines import Line
@@ -9,7 +10,6 @@ from scanplan.plan import glass
 from scanplan.plan.openings import OPEN, Opening
 from scanplan.plan.walls import PlanWall
 from scanplan.rays import missing_returns, ray_set
-from scanplan.rays.face_profile import FaceObservation
 
 SENSORS = [(1, 2, 0.9), (2, 3, 0.9), (3, 2, 0.9), (2.5, 3.4, 0.9)]
 SOUTH = Line(np.array([0.0, 0.0]), np.array([0.0, 1.0]))

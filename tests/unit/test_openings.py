@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scanplan.rays.face_profile import FaceObservation, RaySettings
 
 from scanplan.geometry.lines import Line
 from scanplan.plan import openings
-from scanplan.rays.face_profile import FaceObservation, RaySettings
 
 READING = RaySettings(band_m=0.06, reach_m=2.0, max_gap_m=0.5, door_height_m=1.8)
 SETTINGS = openings.OpeningSettings(

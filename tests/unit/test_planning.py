@@ -7,17 +7,17 @@ import pytest
 import shapely
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from scanplan.rays.face_profile import FaceObservation
 
 from helpers import house_making
 from helpers.toy_rooms import laser
 from helpers.wall_making import moved, walls
 from scanplan.geometry.lines import Line
 from scanplan.plan import messages, planning, rooms, uncertainty, wall_faces
-from scanplan.plan.face_intervals import FaceInterval
+from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.openings import CLOSED, OPEN, Opening
 from scanplan.plan.walls import PlanWall
 from scanplan.rays import free_space, ray_set
-from scanplan.rays.face_profile import FaceObservation
 
 SETTINGS = planning.make_plan_settings(**house_making.PLAN)
 TRUST = SETTINGS.trust

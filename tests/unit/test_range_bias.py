@@ -7,8 +7,7 @@ import pytest
 
 from helpers import wall_making
 from helpers.toy_rooms import laser, vlp16
-from scanplan.plan import range_bias
-from scanplan.rays import ray_set
+from scanplan.rays import range_bias, ray_set
 
 # seen from the left of each way
 ROOM = [(0, 0, 6, 0), (6, 0, 6, 4), (6, 4, 0, 4), (0, 4, 0, 0)]

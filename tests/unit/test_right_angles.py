@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from scanplan.rays.face_profile import FaceObservation
 
 from scanplan.geometry.lines import Line
 from scanplan.plan import right_angles
-from scanplan.rays.face_profile import FaceObservation
 
 PRIOR = right_angles.RightAnglePrior(
     max_turn_deg=1.0, sigmas=2.0, min_share=0.25, registration_sigma_m=0.02

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from helpers import face_making
 from helpers.wall_making import BARE, SETTINGS, ends, lengths_m, moved, observed, walls
-from scanplan.plan import segment_merging
+from scanplan.plan.faces import merging
 
 ARENA = [
     (3.60, -4.05, 3.66, 0.75),
@@ -230,7 +230,7 @@ class TestSettings:
     )
     def test_values_out_of_range_are_refused(self, wrong):
         with pytest.raises(ValueError, match=next(iter(wrong))):
-            segment_merging.MergeSettings(**(SETTINGS | wrong))
+            merging.MergeSettings(**(SETTINGS | wrong))
 
     def test_numbers_that_are_not_finite_are_refused(self):
         with pytest.raises(ValueError, match="finite"):

@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scanplan.rays.face_profile import FaceObservation, RaySettings
 
 from scanplan.geometry.lines import Line
 from scanplan.plan import wall_pairs
-from scanplan.plan.face_intervals import FaceInterval
-from scanplan.rays.face_profile import FaceObservation, RaySettings
+from scanplan.plan.faces.intervals import FaceInterval
 
 SETTINGS = wall_pairs.PairSettings(
     max_angle_deg=5.0, min_thickness_m=0.04, max_thickness_m=0.6, offset_m=0.05, max_gap_m=2.0

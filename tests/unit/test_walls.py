@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
+from scanplan.rays.face_profile import FaceObservation
 
 from helpers import house_making
 from scanplan.geometry.lines import Line
 from scanplan.plan import planning
-from scanplan.plan.face_intervals import FaceInterval
+from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.walls import assemble_walls
-from scanplan.rays.face_profile import FaceObservation
 
 SETTINGS = planning.make_plan_settings(**house_making.PLAN)
 

@@ -5,15 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapely
+from scanplan.rays.face_profile import FaceObservation
 
 from helpers import house_making
 from helpers.wall_making import walls
 from scanplan.geometry.lines import Line
-from scanplan.plan import face_intervals, planning, windows
+from scanplan.plan import planning, windows
+from scanplan.plan.faces import intervals
 from scanplan.plan.openings import OPEN, Opening
 from scanplan.plan.walls import PlanWall
 from scanplan.rays import ray_set
-from scanplan.rays.face_profile import FaceObservation
 
 SENSORS = [(1, 2.5, 0.9), (2, 3, 0.9), (3, 2.5, 0.9), (2.5, 3.4, 0.9)]
 SOUTH = Line(np.array([0.0, 0.0]), np.array([0.0, 1.0]))
@@ -47,7 +48,7 @@ def look(x, z, ends=LOST, sensors=SENSORS):
 
 def seen(looked):
     """The line refitted, places along it counted from the origin again."""
-    line = face_intervals.observe_along(looked, SOUTH, 0.0, 4.0, SETTINGS.reading)
+    line = intervals.observe_along(looked, SOUTH, 0.0, 4.0, SETTINGS.reading)
     begin_m = float(line.line.along_m(np.zeros(2)))
     return replace(
         line, line=Line(line.line.at(begin_m), line.line.normal), hit_m=line.hit_m - begin_m
@@ -128,7 +129,7 @@ def test_stray_points_part_no_window_and_a_mullion_does(places_m, count):
 
 
 def wall(looked, openings=()):
-    side = face_intervals.FaceInterval(seen(looked), 0.0, 4.0)
+    side = intervals.FaceInterval(seen(looked), 0.0, 4.0)
     # the other way round than its face, and begun elsewhere
     line = Line(np.array([4.0, -0.1]), np.array([0.0, -1.0]))
     return PlanWall(line, 0.0, 4.0, 0.2, [], [side], list(openings), [])
@@ -168,7 +169,7 @@ def test_where_the_other_side_is_whole_there_is_no_window(to_m, count):
         nothing,
     )
     this = wall(looked)
-    behind = face_intervals.FaceInterval(other, -4.0, 0.0)
+    behind = intervals.FaceInterval(other, -4.0, 0.0)
     (found,) = windows.add_windows([replace(this, left=[behind])], looked, SETTINGS.openings)
     assert len(found.openings) == count
 

@@ -7,21 +7,20 @@ import numpy as np
 
 from scanplan.extraction.furniture import FurnitureLimits
 from scanplan.plan import (
-    faces,
     glass,
     half_height,
     plan_tables,
-    range_bias,
-    segment_merging,
     uncertainty,
     wall_faces,
     wall_pairs,
     windows,
 )
+from scanplan.plan.faces import tracing
+from scanplan.plan.faces.merging import MergeSettings, merge_segments
 from scanplan.plan.openings import OpeningSettings
 from scanplan.plan.rooms import find_rooms
 from scanplan.plan.walls import assemble_walls
-from scanplan.rays import face_observation, free_space
+from scanplan.rays import face_observation, free_space, range_bias
 from scanplan.store import schemas
 
 TABLES = {
@@ -55,7 +54,7 @@ class RoomSettings:
 class PlanSettings:
     """All that a plan is made with: each part as its own class says."""
 
-    merge: segment_merging.MergeSettings
+    merge: MergeSettings
     reading: face_observation.RaySettings
     ranges: range_bias.RangeBiasSettings
     furniture: FurnitureLimits
@@ -99,7 +98,7 @@ def make_plan_settings(
     ValueError
         If one is out of its range.
     """
-    merging = segment_merging.MergeSettings(**merge)
+    merging = MergeSettings(**merge)
     return PlanSettings(
         merge=merging,
         reading=face_observation.RaySettings(**trace),
@@ -141,9 +140,9 @@ def make_plan(segments, rays, track_m, t_ns, settings, up=None):
         rays, segments, settings.ranges, settings.reading.band_m, up
     )
     rays = range_bias.remove_range_bias(rays, errors_m, up)
-    pieces = segment_merging.merge_segments(segments, settings.merge)
+    pieces = merge_segments(segments, settings.merge)
     parts = settings.merge, settings.reading, settings.furniture
-    traced = faces.trace_faces(pieces, rays, *parts)
+    traced = tracing.trace_faces(pieces, rays, *parts)
     found = assemble_walls(
         *(traced.stretches, settings.reading, settings.pairs, settings.openings),
         corner_m=settings.merge.corner_m,

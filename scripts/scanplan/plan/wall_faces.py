@@ -7,7 +7,7 @@ import shapely
 from shapely.geometry import LineString, Polygon
 
 from scanplan.geometry.lines import Line, Span
-from scanplan.plan.face_intervals import FaceInterval
+from scanplan.plan.faces.intervals import FaceInterval
 
 OBSERVED, INFERRED = "observed", "inferred"
 _INSIDE_M = 0.01

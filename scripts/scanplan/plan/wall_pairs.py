@@ -81,7 +81,7 @@ def pair_faces(stretches, settings, reading):
 
     Parameters
     ----------
-    stretches : list of face_intervals.FaceInterval
+    stretches : list of intervals.FaceInterval
     settings : PairSettings
     reading : face_observation.RaySettings
 

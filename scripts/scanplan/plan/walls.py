@@ -24,7 +24,7 @@ class PlanWall(Span, wall_pairs.Sides):
     low_m, high_m : float
     thickness_m : float
         NaN where one side is known; then the line is that of the face, and the wall is behind it.
-    left, right : list of face_intervals.FaceInterval
+    left, right : list of intervals.FaceInterval
         Its faces on the side of the line's normal, and on the other.
     openings, closed : list of openings.Opening
         Ways through, and pauses taken for wall; in order along it.
@@ -45,7 +45,7 @@ def assemble_walls(found, reading, pairing, gapping, *, corner_m):
 
     Parameters
     ----------
-    found : list of face_intervals.FaceInterval
+    found : list of intervals.FaceInterval
     reading : face_observation.RaySettings
     pairing : wall_pairs.PairSettings
     gapping : openings.OpeningSettings

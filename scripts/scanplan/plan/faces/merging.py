@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass, fields
 
 from scanplan.geometry import lines
-from scanplan.plan import face_candidates, face_groups
+from scanplan.plan.faces import candidates, segment_groups
 
 
 @dataclass(frozen=True)
@@ -73,8 +73,8 @@ class MergeSettings:
 def merge_segments(walls, settings):
     """Merge the wall segments of many scans into pieces of common lines.
 
-    Segments are grouped around common lines (`face_groups`); each group's line is cut at pauses, what too little
-    supports is dropped, and so is what weaker faces draw over stronger ones (`face_candidates`). The two sides of a wall
+    Segments are grouped around common lines (`segment_groups`); each group's line is cut at pauses, what too little
+    supports is dropped, and so is what weaker faces draw over stronger ones (`candidates`). The two sides of a wall
     are different lines. Neither the order of the rows nor the place and turn of the map frame matters.
 
     Parameters
@@ -85,7 +85,7 @@ def merge_segments(walls, settings):
 
     Returns
     -------
-    list of face_candidates.FaceCandidate
+    list of candidates.FaceCandidate
         Those of one group share one line.
 
     Raises
@@ -96,7 +96,7 @@ def merge_segments(walls, settings):
     segments = lines.observed_segments(walls, registration_sigma_m=settings.registration_sigma_m)
     if len(segments.start) == 0:
         return []
-    groups = face_groups.group_segments(
+    groups = segment_groups.group_segments(
         segments,
         max_angle_rad=math.radians(settings.max_angle_deg),
         tolerance_m=settings.tolerance_m,
@@ -105,14 +105,14 @@ def merge_segments(walls, settings):
     cut = [
         p
         for members in groups
-        for p in face_candidates.cut_candidates(segments, members, max_gap_m=settings.max_gap_m)
+        for p in candidates.cut_candidates(segments, members, max_gap_m=settings.max_gap_m)
     ]
     return _once(cut, settings)
 
 
 def _once(pieces, settings):
     """Return the pieces that are supported, none beside a stronger one."""
-    pieces = face_candidates.remove_doubles(
+    pieces = candidates.remove_doubles(
         [piece for piece in pieces if _is_supported(piece, settings)],
         max_angle_rad=math.radians(settings.max_angle_deg),
         distance_m=settings.merge_distance_m,

@@ -23,11 +23,11 @@ def trim_overshoots(stretches):
 
     Parameters
     ----------
-    stretches : list of face_intervals.FaceInterval
+    stretches : list of intervals.FaceInterval
 
     Returns
     -------
-    list of face_intervals.FaceInterval
+    list of intervals.FaceInterval
         In the order given; some may have no length left.
     """
     low_m, high_m = ([float(getattr(s, name)) for s in stretches] for name in ("low_m", "high_m"))
@@ -55,13 +55,13 @@ def trim_tails(stretches, *, share):
 
     Parameters
     ----------
-    stretches : list of face_intervals.FaceInterval
+    stretches : list of intervals.FaceInterval
     share : float, 0 to 1
         Fewer points a metre than this share of the whole stretch's are too few; 0 cuts nothing.
 
     Returns
     -------
-    list of face_intervals.FaceInterval
+    list of intervals.FaceInterval
         In the order given.
     """
     stacked = intersections.stack_spans(stretches)

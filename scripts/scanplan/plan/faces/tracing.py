@@ -8,11 +8,7 @@ import numpy as np
 from scanplan.extraction.face_arrangement import Faces
 from scanplan.extraction.furniture import find_furniture_fronts
 from scanplan.geometry import intersections
-from scanplan.plan import (
-    face_candidates,
-    face_intervals,
-    face_trimming,
-)
+from scanplan.plan.faces import candidates, intervals, trimming
 
 _STUB_M = 0.1
 _FOREIGN_M = 0.08
@@ -25,7 +21,7 @@ class TracedFaces:
 
     Attributes
     ----------
-    stretches : list of face_intervals.FaceInterval
+    stretches : list of intervals.FaceInterval
     n_lines : int
     n_dropped : int
         Lines of which nothing is left: too little seen, furniture, or drawn by a stronger one.
@@ -44,10 +40,10 @@ def trace_faces(pieces, rays, merging, reading, furniture):
 
     Parameters
     ----------
-    pieces : list of face_candidates.FaceCandidate
+    pieces : list of candidates.FaceCandidate
         Those of one group share their line.
     rays : ray_set.RaySet
-    merging : segment_merging.MergeSettings
+    merging : merging.MergeSettings
     reading : face_observation.RaySettings
     furniture : furniture.FurnitureLimits
 
@@ -60,20 +56,16 @@ def trace_faces(pieces, rays, merging, reading, furniture):
     for piece in pieces:
         lines.setdefault(id(piece.line), []).append(piece)
     seen = [_seen(group, rays, reading) for group in lines.values()]
-    found = _once([face_intervals.find_face_intervals(s, reading) for s in seen], merging)
+    found = _once([intervals.find_face_intervals(s, reading) for s in seen], merging)
     found = _without_furniture(found, furniture)
     claimed = zip(seen, owned_intervals(seen, found), strict=True)
-    runs = (
-        face_intervals.find_face_intervals(s, reading, foreign_m=spans_m) for s, spans_m in claimed
-    )
+    runs = (intervals.find_face_intervals(s, reading, foreign_m=spans_m) for s, spans_m in claimed)
     found = _without_furniture(_once(list(runs), merging), furniture)
-    found = face_trimming.trim_tails(
-        face_trimming.trim_overshoots(found), share=merging.ghost_share
-    )
+    found = trimming.trim_tails(trimming.trim_overshoots(found), share=merging.ghost_share)
     found = [f for f in found if f.length_m >= _STUB_M]
-    met = face_candidates.meet_at_corners(found, corner_m=merging.corner_m)
+    met = candidates.meet_at_corners(found, corner_m=merging.corner_m)
     # some faces reach the line that they end at only now
-    met = face_trimming.trim_tails(met, share=merging.ghost_share)
+    met = trimming.trim_tails(met, share=merging.ghost_share)
     met = [f for f in _without_doubles(met, merging) if f.length_m >= _STUB_M]
     lost = [(s.line, *span_m) for s in seen for span_m in s.framed_m.tolist()]
     return TracedFaces(met, len(seen), len(seen) - len({id(f.seen) for f in met}), lost)
@@ -81,7 +73,7 @@ def trace_faces(pieces, rays, merging, reading, furniture):
 
 def _seen(group, rays, reading):
     low_m, high_m = min(piece.low_m for piece in group), max(piece.high_m for piece in group)
-    return face_intervals.observe_along(rays, group[0].line, low_m, high_m, reading)
+    return intervals.observe_along(rays, group[0].line, low_m, high_m, reading)
 
 
 def _without_furniture(found, limits):
@@ -109,7 +101,7 @@ def _once(found, merging):
 
 
 def _without_doubles(found, merging):
-    return face_candidates.remove_doubles(
+    return candidates.remove_doubles(
         found,
         max_angle_rad=math.radians(merging.max_angle_deg),
         distance_m=merging.merge_distance_m,
@@ -142,7 +134,7 @@ def owned_intervals(lines, found):
     Parameters
     ----------
     lines : list of face_observation.FaceObservation
-    found : list of face_intervals.FaceInterval
+    found : list of intervals.FaceInterval
 
     Returns
     -------
