@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 
 from scanplan.geometry import intersections
-from scanplan.plan.walls import PlanWall
+from scanplan.plan.wall_pairs import PlanWall
 from scanplan.rays import free_space
 
 _NEAR_M = 0.1  # what registration and a line's fit may be wrong by together, twice over

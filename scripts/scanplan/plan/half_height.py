@@ -24,7 +24,7 @@ def estimate_wall_top_m(wall):
     -------
     float
     """
-    lines = list({id(s.seen): s.seen for s in wall.members}.values())
+    lines = wall.lines
     if lines[0].planar:
         return np.nan
     columns = [_inner(wall, seen) for seen in lines]

@@ -1,13 +1,19 @@
 """Faces paired into walls: which stretches are sides of one wall, and where its middle and its thickness are."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
 
-from scanplan.geometry.lines import Line
+from scanplan.geometry.lines import Line, Span
+from scanplan.plan.faces.intervals import FaceInterval
+from scanplan.rays.face_observation import FaceObservation
 from scanplan.rays.face_raster import CELL_M
+
+if TYPE_CHECKING:
+    from scanplan.plan.openings import Opening
 
 _LEAST_OVERLAP_M = 0.2
 _LEAST_OPEN_M = 0.3
@@ -38,38 +44,47 @@ class PairSettings:
     max_gap_m: float
 
 
-class Sides:
-    """What has a `left` and a `right` side, lists, and a `thickness_m`, NaN where only one side is known."""
-
-    @property
-    def members(self):
-        """All of both sides."""
-        return self.left + self.right
-
-    @property
-    def half_m(self):
-        """From the middle to either face; 0 where the line is that of the face."""
-        return 0.0 if math.isnan(self.thickness_m) else self.thickness_m / 2
-
-
 @dataclass(frozen=True, eq=False)
-class FacePair(Sides):
-    """A straight wall of one or two sides.
+class PlanWall(Span):
+    """A straight wall of one or two sides, from `low_m` to `high_m` along its middle.
 
     Attributes
     ----------
     line : lines.Line
-        Its middle, or its face where it has one side; the normal is on the left of the way along it.
-    left, right : list of int
-        Stretches whose normals are the line's, and opposite to it; the right side is empty where only one is known.
+        Its middle, or its face where one side is known: then the wall is behind it. The normal is on the left of the
+        way along it.
+    low_m, high_m : float
     thickness_m : float
-        NaN where only one side is known.
+        NaN where one side is known.
+    left, right : list of intervals.FaceInterval
+        Its faces on the side of the line's normal, and on the other, which is empty where one side is known.
+    openings, closed : list of openings.Opening
+        Ways through, and pauses taken for wall; in order along it.
     """
 
     line: Line
-    left: list
-    right: list
+    low_m: float
+    high_m: float
     thickness_m: float
+    left: list[FaceInterval]
+    right: list[FaceInterval]
+    openings: list["Opening"] = field(default_factory=list)
+    closed: list["Opening"] = field(default_factory=list)
+
+    @property
+    def members(self) -> list[FaceInterval]:
+        """The faces of both sides."""
+        return self.left + self.right
+
+    @property
+    def lines(self) -> list[FaceObservation]:
+        """What was observed of the lines of its faces, each once."""
+        return list({id(face.seen): face.seen for face in self.members}.values())
+
+    @property
+    def half_m(self) -> float:
+        """From the middle to either face; 0 where the line is that of the face."""
+        return 0.0 if math.isnan(self.thickness_m) else self.thickness_m / 2
 
 
 def pair_faces(stretches, settings, reading):
@@ -87,8 +102,8 @@ def pair_faces(stretches, settings, reading):
 
     Returns
     -------
-    list of Wall
-        Every stretch is in exactly one.
+    list of PlanWall
+        Every interval is in exactly one.
     """
     group = list(range(len(stretches)))
     members = {i: [i] for i in group}
@@ -99,7 +114,8 @@ def pair_faces(stretches, settings, reading):
         members[a] = sorted(members[a] + members.pop(b))
         for i in members[a]:
             group[i] = a
-    return [_joined(stretches, of_wall, settings) for _, of_wall in sorted(members.items())]
+    pairs = (_joined(stretches, of_wall, settings) for _, of_wall in sorted(members.items()))
+    return [_wall_of(stretches, *pair) for pair in pairs if pair is not None]
 
 
 def _offers(stretches, settings, reading):
@@ -160,7 +176,7 @@ def _contradict(one, other, reading):
 
 
 def _joined(stretches, members, settings):
-    """Return the wall of some stretches; None where they are not straight sides of a wall of possible thickness."""
+    """Return line, members of both sides and thickness; None where no straight wall of possible thickness has them."""
     first = max(members, key=lambda i: stretches[i].length_m)
     normal = stretches[first].line.normal
     sides = [
@@ -175,17 +191,19 @@ def _joined(stretches, members, settings):
         ):
             return None
     if not sides[1]:
-        return FacePair(
-            Line(line.centre + offsets_m[0] * line.normal, line.normal), *sides, math.nan
-        )
+        return Line(line.centre + offsets_m[0] * line.normal, line.normal), *sides, math.nan
     thickness_m = offsets_m[0] - offsets_m[1]
     if not settings.min_thickness_m <= thickness_m <= settings.max_thickness_m:
         return None
-    return FacePair(
-        Line(line.centre + sum(offsets_m) / 2 * line.normal, line.normal),
-        *sides,
-        float(thickness_m),
-    )
+    middle = Line(line.centre + sum(offsets_m) / 2 * line.normal, line.normal)
+    return middle, *sides, float(thickness_m)
+
+
+def _wall_of(stretches, line, left, right, thickness_m):
+    along_m = [line.along_m(stretches[i].ends) for i in left + right]
+    low_m, high_m = float(np.min(along_m)), float(np.max(along_m))
+    sides = ([stretches[i] for i in side] for side in (left, right))
+    return PlanWall(line, low_m, high_m, thickness_m, *sides)
 
 
 def _fit(sides, normal):

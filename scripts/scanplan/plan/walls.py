@@ -2,42 +2,15 @@
 
 import itertools
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from scanplan.geometry import intersections
-from scanplan.geometry.lines import Line, Span
 from scanplan.plan import wall_pairs
 from scanplan.plan.openings import CLOSED, OPEN, UNKNOWN, classify_gap, find_gaps
 
 _JAMB_M = 0.1
-
-
-@dataclass(frozen=True, eq=False)
-class PlanWall(Span, wall_pairs.Sides):
-    """A wall from `low_m` to `high_m` along its middle.
-
-    Attributes
-    ----------
-    line : lines.Line
-    low_m, high_m : float
-    thickness_m : float
-        NaN where one side is known; then the line is that of the face, and the wall is behind it.
-    left, right : list of intervals.FaceInterval
-        Its faces on the side of the line's normal, and on the other.
-    openings, closed : list of openings.Opening
-        Ways through, and pauses taken for wall; in order along it.
-    """
-
-    line: Line
-    low_m: float
-    high_m: float
-    thickness_m: float
-    left: list
-    right: list
-    openings: list
-    closed: list
 
 
 def assemble_walls(found, reading, pairing, gapping, *, corner_m):
@@ -58,7 +31,7 @@ def assemble_walls(found, reading, pairing, gapping, *, corner_m):
     """
     walls = []
     for paired in wall_pairs.pair_faces(found, pairing, reading):
-        walls += _cut(paired, found, reading, gapping)
+        walls += _cut(paired, reading, gapping)
     stacked = intersections.stack_spans(walls)
     walls = [
         _with_end_openings(w, _crossings(w, walls, stacked), reading, gapping, corner_m)
@@ -76,33 +49,38 @@ def assemble_walls(found, reading, pairing, gapping, *, corner_m):
     return sorted(walls, key=lambda w: (-w.length_m, *w.ends.ravel()))
 
 
-def _cut(paired, found, reading, gapping):
-    """Return the walls that a paired wall falls into where it pauses for long and was seen neither open nor closed."""
-    members = {i: np.sort(paired.line.along_m(found[i].ends)) for i in paired.members}
-    pauses = find_gaps(np.array(list(members.values())))
-    lines = list({id(found[i].seen): found[i].seen for i in paired.members}.values())
-    judged = [classify_gap(paired.line, *pause, lines, reading, gapping) for pause in pauses]
-    breaks = [g for g in judged if g.state == UNKNOWN and g.width_m >= gapping.min_opening_m]
-    breaks += _between_things(judged, np.array(list(members.values())))
+def _cut(wall, reading, gapping):
+    """Return the walls that a wall falls into where it pauses for long and was seen neither open nor closed."""
+    spans_m = np.array([np.sort(wall.line.along_m(face.ends)) for face in wall.members])
+    gaps = [
+        classify_gap(wall.line, *gap, wall.lines, reading, gapping) for gap in find_gaps(spans_m)
+    ]
+    breaks = [g for g in gaps if g.state == UNKNOWN and g.width_m >= gapping.min_opening_m]
+    breaks += _between_things(gaps, spans_m)
     breaks.sort(key=lambda g: g.low_m)
     bounds = [-math.inf, *((g.low_m + g.high_m) / 2 for g in breaks), math.inf]
-    parts = []
-    for begin, end in itertools.pairwise(bounds):
-        inside = {i: m for i, m in members.items() if begin < m.mean() < end}
-        spans = np.array(list(inside.values()))
-        of_it = [
-            _between_sides(g, spans)
-            for g in judged
-            if begin < (g.low_m + g.high_m) / 2 < end and g not in breaks
-        ]
-        parts.append(
-            PlanWall(
-                *(paired.line, float(spans.min()), float(spans.max()), paired.thickness_m),
-                *([found[i] for i in side if i in inside] for side in (paired.left, paired.right)),
-                *([g for g in of_it if g.state == state] for state in (OPEN, CLOSED)),
-            )
-        )
-    return parts
+    return [
+        _part(wall, spans_m, [g for g in gaps if g not in breaks], begin_m, end_m)
+        for begin_m, end_m in itertools.pairwise(bounds)
+    ]
+
+
+def _part(wall, spans_m, gaps, begin_m, end_m):
+    """Return what of a wall lies between two places, with those of its gaps that do."""
+    middle_m = spans_m.mean(axis=1)
+    is_inside = (begin_m < middle_m) & (middle_m < end_m)
+    inside = {id(face) for face, chosen in zip(wall.members, is_inside, strict=True) if chosen}
+    of_part = spans_m[is_inside]
+    gaps = [_between_sides(g, of_part) for g in gaps if begin_m < (g.low_m + g.high_m) / 2 < end_m]
+    return replace(
+        wall,
+        low_m=float(of_part.min()),
+        high_m=float(of_part.max()),
+        left=[face for face in wall.left if id(face) in inside],
+        right=[face for face in wall.right if id(face) in inside],
+        openings=[g for g in gaps if g.state == OPEN],
+        closed=[g for g in gaps if g.state == CLOSED],
+    )
 
 
 def _between_things(judged, spans_m):
@@ -129,7 +107,7 @@ def _between_sides(gap, spans_m):
 
 def _with_end_openings(wall, crossed, reading, gapping, corner_m):
     """Let a wall go on over an opening beside the wall that it ends at, where wall is seen above it."""
-    lines = list({id(s.seen): s.seen for s in wall.members}.values())
+    lines = wall.lines
     for name, sign in (("low_m", -1), ("high_m", 1)):
         end_m = getattr(wall, name)
         ahead = [
@@ -153,7 +131,7 @@ def _with_closed_ends(wall, crossed, reading, gapping, corner_m):
 
     What stands on both sides hides it: a gap there would have let some ray pass, as in a pause of the wall.
     """
-    lines = list({id(s.seen): s.seen for s in wall.members}.values())
+    lines = wall.lines
     for name, sign in (("low_m", -1), ("high_m", 1)):
         end_m = getattr(wall, name)
         ahead = [

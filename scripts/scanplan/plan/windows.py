@@ -39,7 +39,7 @@ def add_windows(walls, rays, settings):
 
 
 def _with_windows(wall, rays, settings):
-    lines = list({id(s.seen): s.seen for s in wall.members}.values())
+    lines = wall.lines
     found = list(wall.openings)
     for seen in lines:
         span_m = np.sort(seen.line.along_m(wall.ends))
