@@ -1,4 +1,7 @@
-"""Make the floor plan from the first scans of an ordering: faces, walls, openings and rooms, each standing once."""
+"""Make the floor plan from the first scans of an ordering.
+
+Faces, walls, openings and rooms, each standing once.
+"""
 
 import numpy as np
 
@@ -15,7 +18,8 @@ def assemble_plan(walls, selection, scans, registration, outputs, *, settings, *
     Parameters
     ----------
     walls, selection, scans, registration : path-like
-        walls/<extractor>.parquet, selection/<method>.parquet, scans.parquet and registration.parquet.
+        walls/<extractor>.parquet, selection/<method>.parquet, scans.parquet and
+        registration.parquet.
     outputs : dict of str to path-like
         Files to write: plan/<name>.parquet for the names in `planning.TABLES`.
     settings : dict

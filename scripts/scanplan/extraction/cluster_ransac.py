@@ -1,4 +1,4 @@
-"""Wall extraction by clustering feet of perpendiculars, then one RANSAC line per cluster (thesis, section 3.4)."""
+"""Wall extraction by clusters of dual points, then one RANSAC line each (thesis, section 3.4)."""
 
 from dataclasses import dataclass
 
@@ -46,9 +46,9 @@ def extract_by_clusters(
 ) -> list[Row]:
     """Find the wall segments of one scan.
 
-    Points on vertical surfaces are projected along their normals, where the points of one wall meet; mean shift finds
-    the places. One RANSAC line per place, heaviest first, takes every point on it that faces its way; the stretches
-    where these do not pause are the walls.
+    Points on vertical surfaces are projected along their normals, where the points of one wall
+    meet; mean shift finds the places. One RANSAC line per place, heaviest first, takes every point
+    on it that faces its way; the stretches where these do not pause are the walls.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def _clusters(surfaces, bandwidth_m):
 
 
 def _gather(points, surfaces, free, line, inlier_m):
-    """Return the line fitted to all points on it that face its way, these points, and the others near it."""
+    """Return the line refitted to the points that face its way, these, and others near it."""
     cells, (normal, offset_m) = surfaces.cells, line
     near = np.abs(cells.mean_m[:, :2] @ normal - offset_m) <= inlier_m + cells.radius_m
     alike = free & (-surfaces.facing @ normal > _ALIKE)
@@ -128,11 +128,13 @@ def _gather(points, surfaces, free, line, inlier_m):
 
 
 def project_along_normals(xy_m, facing):
-    """Project points along their normals: the feet of the perpendiculars from the sensor onto their tangents.
+    """Project points along their normals.
 
-    The points of one wall have one foot. Walls that pass close to the sensor would all have theirs at the sensor, so
-    every foot is moved outward by 1 m: (distance + 1 m) away, in the direction of the wall; that keeps apart what
-    differs in direction, and the map from lines to feet one to one.
+    The feet of the perpendiculars from the sensor onto their tangents.
+
+    The points of one wall have one foot. Walls that pass close to the sensor would all have theirs
+    at the sensor, so every foot is moved outward by 1 m: (distance + 1 m) away, in the direction of
+    the wall; that keeps apart what differs in direction, and the map from lines to feet one to one.
 
     Parameters
     ----------
@@ -164,7 +166,7 @@ def _beside(xy_m, rows, width_m):
 
 @dataclass(frozen=True)
 class _Surfaces:
-    """A scan's cells, their horizontal unit normals (m, 2), which are upright, and which floor or ceiling (m,)."""
+    """A scan's cells, their level unit normals (m, 2), which are upright, which are level."""
 
     cells: normals.SurfaceCells
     facing: np.ndarray
@@ -184,7 +186,8 @@ def _surfaces(points, scan, settings):
     normal = np.where(known[:, None], cells.normal, 0)
     upright = known & (np.abs(normal[:, 2]) <= np.sin(np.deg2rad(settings.max_tilt_deg)))
     facing = normal[:, :2] / np.maximum(np.hypot(*normal[:, :2].T), 1e-9)[:, None]
-    # between these heights, a normal that points up is a shelf's or a sill's, or of a strip of wall too narrow for one
+    # between these heights, a normal that points up is a shelf's or a sill's, or of a strip of wall
+    # too narrow for one
     height_m = cells.mean_m[:, 2] - scan.floor_z_m
     outside = (height_m < SKIRTING_M) | (height_m > settings.door_height_m)
     return _Surfaces(cells, facing, upright, outside & (np.abs(normal[:, 2]) >= _STEEP))

@@ -1,4 +1,6 @@
-"""Wall segments of one scan: an extractor, and the classifier that tells walls from furniture, composed.
+"""Wall segments of one scan.
+
+An extractor, and the classifier that tells walls from furniture, composed.
 
 The extractors by name stand here and nowhere else. The thesis's own are these with no classifier.
 """
@@ -22,7 +24,8 @@ class Extractor:
     settings : type
         A class of settings, with those of `segments.SegmentLimits`.
     extract : callable
-        Called with the scan's id, its points, its rays and the settings; returns rows of `segments.cut_line`.
+        Called with the scan's id, its points, its rays and the settings; returns rows of
+        `segments.cut_line`.
     """
 
     settings: type[SegmentLimits]

@@ -1,4 +1,7 @@
-"""How faces lie to each other: which stand before which, meet at corners, and go on from each other on one line."""
+"""How faces lie to each other.
+
+Which stand before which, meet at corners, and go on from each other on one line.
+"""
 
 import math
 from dataclasses import dataclass
@@ -69,7 +72,7 @@ class Faces:
 
     @cached_property
     def apart_m(self) -> FloatArray:
-        """How far each face (rows) and each other (columns) are apart along the other's line, (n, n); negative: overlap."""
+        """How far each face (rows) and other (columns) are apart along the other's line, (n, n)."""
         direction = np.column_stack([self.normal[:, 1], -self.normal[:, 0]])
         starts_m = self.ends_m[:, 0] @ direction.T
         stops_m = self.ends_m[:, 1] @ direction.T
@@ -93,7 +96,7 @@ def stand_in_front(faces: Faces, depth_m: float) -> BoolArray:
 
 
 def stand_before(faces: Faces, chosen: BoolArray, *, depth_m: float, door_m: float) -> BoolArray:
-    """Return which chosen faces stand before which others that are seen beside them in the same room.
+    """Return which chosen faces stand before which others seen beside them in the room.
 
     Parameters
     ----------
@@ -133,8 +136,8 @@ def find_corner_faces(faces: Faces, reach_m: float) -> tuple[BoolArray, BoolArra
     Returns
     -------
     inner, outer : (n, 2, n) bool
-        Whether at the start and the end of a face each other one makes an inner corner with it, in which either stands
-        before the other, or an outer one, at which both turn away.
+        Whether at the start and the end of a face each other one makes an inner corner with it, in
+        which either stands before the other, or an outer one, at which both turn away.
     """
     ends_m, normal = faces.ends_m, faces.normal
     inner = np.zeros((len(ends_m), 2, len(ends_m)), bool)
@@ -174,7 +177,10 @@ def _find_front(faces: Faces, one: int, door_m: float) -> tuple[float, float]:
 
 
 def _find_room(faces: Faces, one: int, door_m: float) -> tuple[float, float]:
-    """Return from where to where along its line the room before a face goes: to what stands across and faces it."""
+    """Return from where to where along its line the room before a face goes.
+
+    To what stands across and faces it.
+    """
     direction = np.array([faces.normal[one, 1], -faces.normal[one, 0]])
     facing = faces.normal @ direction
     before_m = np.sort((faces.ends_m - faces.middle_m[one]) @ faces.normal[one], axis=1)
@@ -187,7 +193,7 @@ def _find_room(faces: Faces, one: int, door_m: float) -> tuple[float, float]:
 
 
 def _is_beside(spans_m: FloatArray, front_m: tuple[float, float], depth_m: float) -> BoolArray:
-    """Return whether enough of what spans (n, 2) is seen beside a front, on either side, no farther than a depth."""
+    """Return whether enough of spans (n, 2) is beside a front, no farther than a depth."""
     left_m = np.minimum(spans_m[:, 1], front_m[0]) - spans_m[:, 0]
     right_m = spans_m[:, 1] - np.maximum(spans_m[:, 0], front_m[1])
     is_left = (left_m >= _BESIDE_M) & (front_m[0] - spans_m[:, 1] <= depth_m)

@@ -1,4 +1,7 @@
-"""What the rays of one scan say of a face: how high it is, what passes over and through it, what it does not return."""
+"""What the rays of one scan say of a face.
+
+How high it is, what passes over and through it, what it does not return.
+"""
 
 from dataclasses import dataclass
 
@@ -69,7 +72,7 @@ def weigh_face(
 
 
 def gap_leads_on(rays: RaySet, line: Line, span_m: tuple[float, float], depth_m: float) -> bool:
-    """Return whether a gap in a wall leads on, as a door does, and not into a niche or between two cabinets.
+    """Return whether a gap in a wall leads on, as a door does and a niche does not.
 
     Parameters
     ----------

@@ -1,8 +1,11 @@
-"""Which faces are walls, and which are furniture, stairs or glass: the one classifier, for one scan or all together.
+"""Which faces are walls, and which are furniture, stairs or glass.
 
-A wall goes on upward as far as rays reach, lets none through, and has nothing like it close behind. Where no ray could
-show that it ends, a low face is judged by its corners: walls meet in the inner corners of a room, furniture shows its
-outer ones. Extraction goes without it: the thesis's own extractors know no furniture.
+The one classifier, for one scan or all together.
+
+A wall goes on upward as far as rays reach, lets none through, and has nothing like it close behind.
+Where no ray could show that it ends, a low face is judged by its corners: walls meet in the inner
+corners of a room, furniture shows its outer ones. Extraction goes without it: the thesis's own
+extractors know no furniture.
 """
 
 import math
@@ -32,27 +35,31 @@ class FurnitureLimits:
     Attributes
     ----------
     max_rmse_m : float
-        Points of a wall scatter less about its line: clutter that fills the band of inliers scatters more. In space
-        asked of what may be furniture.
+        Points of a wall scatter less about its line: clutter that fills the band of inliers
+        scatters more. In space asked of what may be furniture.
     wall_height_m : float
-        A face seen up to here above the floor, and not seen to end, is a wall; a lower one where its corners tell.
+        A face seen up to here above the floor, and not seen to end, is a wall; a lower one where
+        its corners tell.
     furniture_height_m : float
         A face seen higher is no furniture.
     hang_height_m : float
         A face that begins higher than this and ends below `furniture_height_m` hangs on a wall.
     over_share : float
-        A face ends at a height if rays pass over this share, by length, of what they cross above it.
+        A face ends at a height if rays pass over this share, by length, of what they cross above
+        it.
     through_share : float
-        Rays through a face per ray that meets it: above this it is a railing, stairs or the legs of a table.
+        Rays through a face per ray that meets it: above this it is a railing, stairs or the legs of
+        a table.
     missing_share : float
         Usual returns that a face does not give: above this share it is glass.
     furniture_depth_m : float
-        Furniture stands at most this far before the wall, which is seen at most this far beside it; its sides are no
-        longer.
+        Furniture stands at most this far before the wall, which is seen at most this far beside it;
+        its sides are no longer.
     furniture_length_m : float
         Longer faces are not taken for furniture because of a wall behind.
     stub_length_m : float
-        Shorter faces are walls only where they go on beyond a door or end in inner corners on both sides.
+        Shorter faces are walls only where they go on beyond a door or end in inner corners on both
+        sides.
     door_width_m : float
         Walls on one line no farther apart than this are pieces of one, if what is between leads on.
     corner_m : float
@@ -76,10 +83,13 @@ class FurnitureLimits:
 def find_furniture_fronts(
     faces: Faces, limits: FurnitureLimits, is_wall: BoolArray | None = None
 ) -> BoolArray:
-    """Return which faces (n,) are fronts of furniture: seen from a room, they stand before a wall beside them.
+    """Return which faces (n,) are fronts of furniture.
 
-    The wall is what is longer of the two lines: of a niche and the walls beside it these stay, as does the wall of a
-    room beside one that is deeper. A pilaster of which no more is seen than of a cabinet goes with those.
+    Seen from a room, they stand before a wall beside them.
+
+    The wall is what is longer of the two lines: of a niche and the walls beside it these stay, as
+    does the wall of a room beside one that is deeper. A pilaster of which no more is seen than of a
+    cabinet goes with those.
 
     Parameters
     ----------
@@ -111,7 +121,8 @@ def keep_walls(rows: list[Row], scan: RaySet | None, limits: FurnitureLimits) ->
     rows : list of tuple
         As `segments.cut_line` gives them, relative to the sensor.
     scan : ray_set.RaySet, optional
-        Of all points of the scan. Without it, in the plane, only the scatter is judged: no ray passes over anything.
+        Of all points of the scan. Without it, in the plane, only the scatter is judged: no ray
+        passes over anything.
     limits : FurnitureLimits
     """
     if not rows:
@@ -152,7 +163,8 @@ def _upright_walls(values: FloatArray, scan: RaySet, limits: FurnitureLimits) ->
     wall &= ~(beside_furniture & (faces.length_m <= limits.furniture_depth_m) & is_low)
     is_stub = faces.length_m < limits.stub_length_m
     wall &= ~(is_stub & is_low & ~closed)
-    # beyond a door a wall goes on, however short what is seen of it there; if it is low, what is between must be a door
+    # beyond a door a wall goes on, however short what is seen of it there; if it is low, what is
+    # between must be a door
     beyond = find_collinear_faces(faces, limits.door_width_m) & (wall & ~is_stub)
     unsure = plain & ~tall & ~wall
     wall |= sound & tall & beyond.any(axis=1)
@@ -168,7 +180,10 @@ def _is_sound(
     floor_z_m: float,
     limits: FurnitureLimits,
 ) -> BoolArray:
-    """Return which faces (n,) by themselves may be walls: none of clutter, railings, glass, and none that ends low."""
+    """Return which faces (n,) by themselves may be walls.
+
+    None of clutter, railings, glass, and none that ends low.
+    """
     is_pierced = np.array([e.through > limits.through_share for e in evidence])
     is_glass = np.array([e.missing > limits.missing_share for e in evidence])
     is_overlooked = np.array([e.over > limits.over_share for e in evidence])

@@ -35,8 +35,9 @@ def extract_iteratively(
 ) -> list[Row]:
     """Find the wall segments of one scan.
 
-    Find the plane (planar scans: the line) most points lie on, remove them, and repeat until it holds too few. Upright
-    planes are walls, where their points do not pause; floors and ceilings are removed alike.
+    Find the plane (planar scans: the line) most points lie on, remove them, and repeat until it
+    holds too few. Upright planes are walls, where their points do not pause; floors and ceilings
+    are removed alike.
 
     Parameters
     ----------

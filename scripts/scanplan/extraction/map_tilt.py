@@ -1,4 +1,7 @@
-"""Whether the z of a map is up: floors, ceilings and table tops are square to it, walls along it."""
+"""Whether the z of a map is up.
+
+Floors, ceilings and table tops are square to it, walls along it.
+"""
 
 import numpy as np
 

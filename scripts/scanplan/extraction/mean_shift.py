@@ -1,6 +1,7 @@
 """Mean shift in two dimensions at a cost nearly linear in the number of points.
 
-K. Fukunaga, L. Hostetler: The estimation of the gradient of a density function, IEEE Trans. Inf. Theory 21 (1975).
+K. Fukunaga, L. Hostetler: The estimation of the gradient of a density function, IEEE Trans. Inf.
+Theory 21 (1975).
 """
 
 import numpy as np
@@ -17,9 +18,10 @@ _STILL = 1e-2  # a seed that moves less than this share of the bandwidth has arr
 def mean_shift(xy_m, *, bandwidth_m, weight=None):
     """Find the modes of a flat kernel's density, and each point's nearest mode.
 
-    The points are gathered in square bins of an eighth of the bandwidth, each a mean and a weight; one of every square
-    of a quarter is a seed. A seed moves to the mean of the bins around it by sums over rows of bins. Modes closer than
-    the bandwidth to a heavier one are dropped, as scikit-learn does.
+    The points are gathered in square bins of an eighth of the bandwidth, each a mean and a weight;
+    one of every square of a quarter is a seed. A seed moves to the mean of the bins around it by
+    sums over rows of bins. Modes closer than the bandwidth to a heavier one are dropped, as
+    scikit-learn does.
 
     Parameters
     ----------
@@ -80,7 +82,7 @@ class _Bins:
         return row * self.span + (x - self.origin[0])
 
     def around(self, xy_m):
-        """Return the weight within the bandwidth around each position and the mean of what is there."""
+        """Return weight and mean of what is within the bandwidth around each position."""
         row = np.floor((xy_m[:, 1] - self.origin[1]) / self.size) + _ROWS
         rise = np.where(_ROWS == 0, 0.0, (row + 0.5) * self.size + self.origin[1] - xy_m[:, 1])
         half = np.sqrt(np.maximum(self.bandwidth**2 - rise**2, 0))
@@ -123,7 +125,7 @@ def _first_of_each(whole):
 
 
 def _heaviest_apart(modes, weight, bandwidth):
-    """Keep, from the heaviest on, the modes that are farther than the bandwidth from all kept ones."""
+    """Keep, heaviest first, the modes farther than the bandwidth from all kept ones."""
     order = np.lexsort((modes[:, 1], modes[:, 0], -weight))
     left, kept = modes[order], []
     while len(left):

@@ -1,9 +1,9 @@
 """Surface normals of one scan, from neighbourhoods that grow with the distance to the sensor.
 
-A spinning sensor's points are dense along a ring and sparse between rings: at 5 m and 2 degrees between beams, 0.02 m
-against 0.17 m. The k nearest neighbours of a point then lie on its own ring and their plane is arbitrary. Spacing grows
-with range in both directions, so a neighbourhood of constant angle, as seen from the sensor, spans the same few rings
-at any range.
+A spinning sensor's points are dense along a ring and sparse between rings: at 5 m and 2 degrees
+between beams, 0.02 m against 0.17 m. The k nearest neighbours of a point then lie on its own ring
+and their plane is arbitrary. Spacing grows with range in both directions, so a neighbourhood of
+constant angle, as seen from the sensor, spans the same few rings at any range.
 """
 
 from dataclasses import dataclass
@@ -65,16 +65,17 @@ class SurfaceCells:
 def cut_surface_cells(xyz_m, *, reach_deg):
     """Part a 3-D scan into cells of equal angle and find the normal of each.
 
-    The points are binned in (azimuth, z / r, ln r), r the horizontal range: cells of equal angle, about cubic in space.
-    A cell's normal is the direction of least variance of the points in it and its 26 neighbours.
+    The points are binned in (azimuth, z / r, ln r), r the horizontal range: cells of equal angle,
+    about cubic in space. A cell's normal is the direction of least variance of the points in it and
+    its 26 neighbours.
 
     Parameters
     ----------
     xyz_m : (n, 3) float
         Points relative to the sensor, axes of the map (z up).
     reach_deg : float
-        Half-width of a neighbourhood, as an angle seen from the sensor; at least one and a half times the angle
-        between beams.
+        Half-width of a neighbourhood, as an angle seen from the sensor; at least one and a half
+        times the angle between beams.
 
     Returns
     -------
@@ -94,13 +95,13 @@ def cut_surface_cells(xyz_m, *, reach_deg):
 
 
 def estimate_surface_normals(xyz_m, *, reach_deg):
-    """Return the unit normals (n, 3) of a 3-D scan's surfaces, those of `cut_surface_cells`; NaN where there is none."""
+    """Return unit normals (n, 3) of a 3-D scan's surfaces, see `cut_surface_cells`."""
     cells = cut_surface_cells(xyz_m, reach_deg=reach_deg)
     return cells.normal[cells.of_point]
 
 
 def cut_outline_cells(xy_m, *, reach_deg):
-    """Return the points of a planar scan as cells of one point each, see `estimate_outline_normals`."""
+    """Return a planar scan as cells of one point, see `estimate_outline_normals`."""
     xy_m = np.asarray(xy_m, float)
     normal = estimate_outline_normals(xy_m, reach_deg=reach_deg)
     return _as_cells(np.arange(len(xy_m)), xy_m, normal, np.zeros(len(xy_m)))
@@ -109,8 +110,9 @@ def cut_outline_cells(xy_m, *, reach_deg):
 def estimate_outline_normals(xy_m, *, reach_deg):
     """Return the unit normals of a planar scan's outlines, towards the sensor.
 
-    A point's neighbours are those within `reach_deg` (at least 8 cm), or its five nearest where these are not more than
-    three times as far: where the outline is seen at a grazing angle, beams lie far apart.
+    A point's neighbours are those within `reach_deg` (at least 8 cm), or its five nearest where
+    these are not more than three times as far: where the outline is seen at a grazing angle, beams
+    lie far apart.
 
     Parameters
     ----------
@@ -167,7 +169,10 @@ class _Grid:
         return np.searchsorted(self.key, key) if self.size > _TABLE_SIZE else self._before[key]
 
     def neighbourhood_sums(self, moments):
-        """Add to each cell's moments (k, m) those of its occupied neighbours; azimuth closes after a turn."""
+        """Add to each cell's moments (k, m) those of its occupied neighbours.
+
+        Azimuth closes after a turn.
+        """
         # three neighbours in ln r follow each other: their sum is a difference of running sums
         running = np.concatenate([np.zeros((1, len(moments))), np.cumsum(moments.T, axis=0)])
         row_size = self.rows * self.shells
@@ -183,7 +188,10 @@ class _Grid:
 
 
 def _within(xyz_m):
-    """Return the points, those farther than 1 km moved there: running sums must keep the digits of the near ones."""
+    """Return the points, those farther than 1 km moved there.
+
+    Running sums must keep the digits of the near ones.
+    """
     distance_m = np.sqrt(np.einsum("ij,ij->i", xyz_m, xyz_m))
     if distance_m.max() <= _FAR_M:
         return xyz_m
@@ -201,5 +209,5 @@ def _as_cells(of_point, mean_m, normal, radius_m):
 
 
 def _towards_sensor(normal, at):
-    """Return normals (d, m) as rows (m, d), turned towards the sensor from where they are (d, m)."""
+    """Return normals (d, m) at places (d, m) as rows (m, d), turned to the sensor."""
     return (normal * -np.where((normal * at).sum(axis=0) > 0, 1, -1)).T

@@ -6,7 +6,7 @@ _PAUSE_SHARE = 1 / 2  # of the reach: wider than beams apart at grazing angles, 
 
 
 def find_runs(where_m, max_gap_m, min_points):
-    """Return the first and last (k, 2) of each run of positions without a gap, of runs of enough points."""
+    """Return first and last (k, 2) of each run of enough positions without a gap."""
     where_m = np.sort(where_m)
     parts = np.split(where_m, np.flatnonzero(np.diff(where_m) > max_gap_m) + 1)
     return np.array([(p[0], p[-1]) for p in parts if len(p) >= max(min_points, 1)]).reshape(-1, 2)
@@ -52,14 +52,17 @@ def grow_runs(found, where_m, max_gap_m, raster, is_open):
 
 
 def _opens_between(where_m, raster, is_open):
-    """Return between which of consecutive positions (k,), rising, a column is open: (k - 1,) bool."""
+    """Return between which of consecutive positions (k,), rising, a column is open.
+
+    (k - 1,) bool.
+    """
     before = np.concatenate([[0], np.cumsum(is_open)])
     column = raster.column_of(where_m)
     return before[column[1:]] > before[np.minimum(column[:-1] + 1, column[1:])]
 
 
 def extend_run_ends(first, last, where_m, reach_rad, offset_m):
-    """Move a run's ends through positions that go on without a pause, within the reach of a neighbourhood."""
+    """Move a run's ends through positions that go on without a pause, within a reach."""
     ends = []
     for sign, end in ((-1, first), (1, last)):
         reach_m = reach_rad * np.hypot(end, offset_m)

@@ -22,7 +22,10 @@ _FIELDS = ("x0_m", "y0_m", "x1_m", "y1_m", "nx", "ny", "n_points", "rmse_m", "z_
 
 
 Row = tuple[float, ...]
-"""A segment as `cut_line` gives it: the values of a row of the table of walls, relative to the sensor."""
+"""A segment as `cut_line` gives it.
+
+The values of a row of the table of walls, relative to the sensor.
+"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,7 +42,8 @@ class SegmentLimits:
     min_height_m : float
         Least vertical extent; for 3-D scans alone.
     door_height_m : float
-        Above the scan's floor; higher points bridge no gap: they may be the wall above a door. For 3-D scans alone.
+        Above the scan's floor; higher points bridge no gap: they may be the wall above a door. For
+        3-D scans alone.
     corner_m : float
         Strips of wall above furniture pause for no longer.
     min_points : int
@@ -67,7 +71,9 @@ class SegmentLimits:
 
 @dataclass(frozen=True)
 class WallSegments:
-    """The wall segments of one scan; the wall lies to the right of the way from start to end, the sensor to the left.
+    """The wall segments of one scan.
+
+    The wall lies to the right of the way from start to end, the sensor to the left.
 
     Attributes
     ----------
@@ -94,7 +100,7 @@ class WallSegments:
 
 
 def centre_on_sensor(xyz_m, sensor_xyz_m):
-    """Return a scan's points relative to its sensor, axes of the map, in an order that depends on the points alone.
+    """Return points relative to their sensor, in an order that depends on them alone.
 
     Raises
     ------
@@ -112,14 +118,20 @@ def centre_on_sensor(xyz_m, sensor_xyz_m):
 
 
 def door_top_m(xyz_m, limits, *, planar):
-    """Return the height above which points bridge no gap, in the frame of the points (n, 3); infinite in the plane."""
+    """Return the height above which points bridge no gap, in the frame of the points (n, 3).
+
+    Infinite in the plane.
+    """
     if planar or len(xyz_m) == 0:
         return np.inf
     return levels.find_floor_z(xyz_m[:, 2]) + limits.door_height_m
 
 
 def view_scan(xyz_m: FloatArray, *, planar: bool) -> RaySet | None:
-    """Return the rays of a scan's points (n, 3) relative to its sensor; None in the plane or without any point."""
+    """Return the rays of a scan's points (n, 3) relative to its sensor.
+
+    None in the plane or without any point.
+    """
     if planar or len(xyz_m) == 0:
         return None
     return gather_rays([(0, xyz_m)], {0: np.zeros(3)}, planar=False)
@@ -128,9 +140,10 @@ def view_scan(xyz_m: FloatArray, *, planar: bool) -> RaySet | None:
 def cut_line(normal, offset_m, xyz_m, limits, *, scan=None, spare_xyz_m=None, reach_rad=0.0):
     """Cut a line into segments where its points pause, and drop those that are no walls.
 
-    In space, points higher than doors make no segment, nor do those of a sill lower than `min_height_m` that rays pass
-    over. The former, and spare points, prolong and join segments where rays end and none passes through, with pauses up
-    to `corner_m`: a strip of wall above furniture is as dense as its beam.
+    In space, points higher than doors make no segment, nor do those of a sill lower than
+    `min_height_m` that rays pass over. The former, and spare points, prolong and join segments
+    where rays end and none passes through, with pauses up to `corner_m`: a strip of wall above
+    furniture is as dense as its beam.
 
     Parameters
     ----------
@@ -143,8 +156,8 @@ def cut_line(normal, offset_m, xyz_m, limits, *, scan=None, spare_xyz_m=None, re
     scan : ray_set.RaySet, optional
         Of all points of the scan; None in the plane.
     spare_xyz_m : (m, 3) float, optional
-        Further points near the line, that make no segment: at a corner and in a narrow strip above furniture none has
-        a clear normal.
+        Further points near the line, that make no segment: at a corner and in a narrow strip above
+        furniture none has a clear normal.
     reach_rad : float
         In the plane: how far, as an angle seen from the sensor, spare points may prolong a segment.
 
@@ -180,7 +193,10 @@ def cut_line(normal, offset_m, xyz_m, limits, *, scan=None, spare_xyz_m=None, re
 
 
 def _upright_runs(scan, line, where_m, height_m, n_own, limits):
-    """Return the first and last of each run of points on a line in space; the first `n_own` are its own."""
+    """Return the first and last of each run of points on a line in space.
+
+    The first `n_own` are its own.
+    """
     if n_own == 0:
         return []
     raster = _raster(scan, line, where_m, height_m, limits)
@@ -192,7 +208,10 @@ def _upright_runs(scan, line, where_m, height_m, n_own, limits):
 
 
 def _raster(scan, line, where_m, height_m, limits):
-    """Return the raster of a line: its points are what is occupied; rays go on through the thinnest wall."""
+    """Return the raster of a line.
+
+    Its points are what is occupied; rays go on through the thinnest wall.
+    """
     span_m = where_m.min(), where_m.max()
     face = cast_at_face(scan, line, *span_m, at_m=ON_M, least_side_m=_LEAST_M)
     free, occluded = face.is_free(ON_M), face.is_occluded
@@ -209,7 +228,10 @@ def _raster(scan, line, where_m, height_m, limits):
 
 
 def collect_segments(rows, sensor_xyz_m):
-    """Make a scan's segments, most points first, of the rows that `cut_line` gave; coordinates of the map."""
+    """Make a scan's segments, most points first, of the rows that `cut_line` gave.
+
+    Coordinates of the map.
+    """
     rows = np.array(rows, float).reshape(-1, len(_FIELDS))
     rows = rows[np.lexsort([*rows.T[3::-1], -rows[:, 6]])]
     x_m, y_m, z_m = np.asarray(sensor_xyz_m, float)

@@ -15,9 +15,12 @@ _FRAME_M = 0.8  # frame, reveal and the part of a pane seen at grazing angles on
 
 
 def find_glass_walls(walls, spans, *, min_length_m, unpaired_m):
-    """Return panes as walls that nothing shows, drawn on to the walls beside them; openings of walls are none.
+    """Return panes as walls that nothing shows, drawn on to the walls beside them.
 
-    Rays that graze a frame or a deep reveal, or that furniture stops, leave the ends of a pane untold.
+    Openings of walls are none.
+
+    Rays that graze a frame or a deep reveal, or that furniture stops, leave the ends of a pane
+    untold.
 
     Parameters
     ----------
@@ -53,7 +56,7 @@ def find_glass_walls(walls, spans, *, min_length_m, unpaired_m):
 
 
 def _drawn_on(line, low_m, high_m, walls, stacked):
-    """Return a span with its ends moved to the nearest wall that crosses its line, or begins or ends on it."""
+    """Return a span with its ends moved to the nearest walls on or across its line."""
     places_m = [intersections.find_crossings(line, stacked, reach_m=_REACH_M).place_m]
     places_m += [
         line.along_m(w.ends)[np.abs(line.offset_m(w.ends)) <= w.half_m + _NEAR_M] for w in walls

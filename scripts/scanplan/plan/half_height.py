@@ -12,9 +12,10 @@ _UNSEEN_M = 0.5
 def estimate_wall_top_m(wall):
     """Return the height of a wall's top above the floor, NaN where it was not seen.
 
-    A top parts the points at the wall, below it, from where rays went through, above it: over a good part of the wall's
-    length, with little between the highest point and the lowest ray. What is pierced elsewhere, by a window or a door
-    that was not told, has points above the rays as well, and goes on.
+    A top parts the points at the wall, below it, from where rays went through, above it: over a
+    good part of the wall's length, with little between the highest point and the lowest ray. What
+    is pierced elsewhere, by a window or a door that was not told, has points above the rays as
+    well, and goes on.
 
     Parameters
     ----------
@@ -45,7 +46,7 @@ def estimate_wall_top_m(wall):
 
 
 def _inner(wall, seen):
-    """Return heights of points and of crossings of a face's line, and where along it these are, away from its ends."""
+    """Return heights of returns and of rays through a face away from its ends, and their places."""
     hit_m, pass_m = (
         wall.line.along_m(seen.line.at(along_m)) for along_m in (seen.occupied_m, seen.free_m)
     )
@@ -61,7 +62,7 @@ def _is_inner(wall, along_m):
 
 
 def _parted(hit_z_m, pass_z_m):
-    """Return the heights (low, high) of a point and of a crossing above it that part most of both."""
+    """Return the heights of a return and of a ray above it that part most of both."""
     heights_m = np.concatenate([hit_z_m, pass_z_m])
     is_hit = np.arange(len(heights_m)) < len(hit_z_m)
     order = np.lexsort((~is_hit, heights_m))

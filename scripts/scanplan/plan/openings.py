@@ -125,13 +125,14 @@ def classify_gap(
     reading : face_observation.RaySettings
     settings : OpeningSettings
     needs_lintel : bool
-        Whether only what has wall above it is an opening: where no wall follows, anything could be beside a wall.
+        Whether only what has wall above it is an opening: where no wall follows, anything could be
+        beside a wall.
 
     Returns
     -------
     Opening
-        By the face that most rays go through there; what that does not show of sill and lintel is taken from the
-        others.
+        By the face that most rays go through there; what that does not show of sill and lintel is
+        taken from the others.
     """
     ends = wall_line.at(np.array([low_m, high_m]))
     spans_m = [np.sort(face.line.along_m(ends)) for face in faces]
@@ -177,7 +178,10 @@ def _first_known(values_m):
 
 @dataclass(frozen=True, eq=False)
 class _Look:
-    """What a face shows of a pause: rays through it, on what share of the width, sill, lintel, if wall is above."""
+    """What a face shows of a pause.
+
+    Rays through it, on what share of the width, sill, lintel, if wall is above.
+    """
 
     n_rays: int = 0
     open_share: float = 0.0
@@ -211,7 +215,9 @@ def _look(face: FaceObservation, span_m: FloatArray, reading: RaySettings) -> _L
 
 
 def _step_m(seen, low_m, high_m, lowest_m):
-    """Return the height of what stands in the way near the floor all along, below the lowest ray through; 0 if nothing.
+    """Return the height of what stands all along near the floor below the lowest ray.
+
+    0 if nothing.
 
     In a doorway rays end on the floor; a sill's front ends them above that.
     """
@@ -238,8 +244,9 @@ def _sill_m(free_z_m, occupied_z_m):
 def estimate_lintel_m(seen, low_m, high_m, free_m, least_m):
     """Return the lintel, NaN where it could be anywhere between rays far apart.
 
-    It lies above the rays that went through and below the wall seen above them. Points at one height behind the face
-    are of its underside, and show it; those of a face are as high as the beams that met it.
+    It lies above the rays that went through and below the wall seen above them. Points at one
+    height behind the face are of its underside, and show it; those of a face are as high as the
+    beams that met it.
 
     Parameters
     ----------

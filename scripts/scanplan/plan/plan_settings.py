@@ -23,8 +23,8 @@ def select_plan_settings(settings):
     Parameters
     ----------
     settings : dict
-        The whole configuration of a dataset. What is furniture in single scans, by the extractor of the plan's walls,
-        is furniture in the plan.
+        The whole configuration of a dataset. What is furniture in single scans, by the extractor of
+        the plan's walls, is furniture in the plan.
 
     Returns
     -------

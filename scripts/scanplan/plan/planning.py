@@ -43,7 +43,8 @@ class RoomSettings:
     ----------
     min_area_m2 : float, > 0
     min_walled : float, 0 to 1
-        Least share of the outline of a room that no sensor was in, that runs along walls and openings.
+        Least share of the outline of a room that no sensor was in, that runs along walls and
+        openings.
     """
 
     min_area_m2: float
@@ -128,7 +129,8 @@ def make_plan(segments, rays, track_m, t_ns, settings, up=None):
         When each of the chosen scans was taken.
     settings : PlanSettings
     up : (s, 3) float, optional
-        The axis that the beams of each chosen scan's sensor are inclined to, in the map frame; plumb by default.
+        The axis that the beams of each chosen scan's sensor are inclined to, in the map frame;
+        plumb by default.
 
     Returns
     -------
@@ -181,7 +183,7 @@ def make_plan(segments, rays, track_m, t_ns, settings, up=None):
 
 
 def _without_low(walls, wall_height_m):
-    """Return walls, less surfaces that were seen to end lower than a wall does, and the heights of their tops."""
+    """Return walls without single surfaces that end lower than a wall, and their tops."""
     tops_m = [half_height.estimate_wall_top_m(wall) for wall in walls]
     known = [(w, t) for w, t in zip(walls, tops_m, strict=True) if w.right or not t < wall_height_m]
     return [w for w, _ in known], [t for _, t in known]

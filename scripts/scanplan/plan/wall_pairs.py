@@ -1,4 +1,7 @@
-"""Faces paired into walls: which stretches are sides of one wall, and where its middle and its thickness are."""
+"""Faces paired into walls.
+
+Which stretches are sides of one wall, and where its middle and its thickness are.
+"""
 
 import math
 from dataclasses import dataclass, field
@@ -51,13 +54,14 @@ class PlanWall(Span):
     Attributes
     ----------
     line : lines.Line
-        Its middle, or its face where one side is known: then the wall is behind it. The normal is on the left of the
-        way along it.
+        Its middle, or its face where one side is known: then the wall is behind it. The normal is
+        on the left of the way along it.
     low_m, high_m : float
     thickness_m : float
         NaN where one side is known.
     left, right : list of intervals.FaceInterval
-        Its faces on the side of the line's normal, and on the other, which is empty where one side is known.
+        Its faces on the side of the line's normal, and on the other, which is empty where one side
+        is known.
     openings, closed : list of openings.Opening
         Ways through, and pauses taken for wall; in order along it.
     """
@@ -90,9 +94,9 @@ class PlanWall(Span):
 def pair_faces(stretches, settings, reading):
     """Sort stretches into walls.
 
-    Stretches of one line are joined first, then those opposite to each other, the longest overlap before others, then
-    those that go on from each other; never so that a side would not be straight within `offset_m`, nor where rays went
-    through what would be one side while the other was seen.
+    Stretches of one line are joined first, then those opposite to each other, the longest overlap
+    before others, then those that go on from each other; never so that a side would not be straight
+    within `offset_m`, nor where rays went through what would be one side while the other was seen.
 
     Parameters
     ----------
@@ -148,7 +152,10 @@ def _offers(stretches, settings, reading):
 
 
 def _beside(one, other):
-    """Return how far two stretches overlap (negative: how far they are apart), and how far the other lies behind."""
+    """Return how far two stretches overlap (negative.
+
+    How far they are apart), and how far the other lies behind.
+    """
     longer, shorter = (one, other) if one.length_m >= other.length_m else (other, one)
     along = np.sort(longer.line.along_m(shorter.ends))
     overlap_m = min(along[1], longer.high_m) - max(along[0], longer.low_m)
@@ -156,7 +163,7 @@ def _beside(one, other):
 
 
 def _contradict(one, other, reading):
-    """Tell whether rays went through the line of one side where the other side was seen and it was not."""
+    """Return whether rays go through one side where the other was seen and it was not."""
     for seen, unseen in ((one, other), (other, one)):
         span = np.sort(unseen.line.along_m(seen.ends))
         open_m = solid_m = 0.0
@@ -176,7 +183,10 @@ def _contradict(one, other, reading):
 
 
 def _joined(stretches, members, settings):
-    """Return line, members of both sides and thickness; None where no straight wall of possible thickness has them."""
+    """Return line, members of both sides and thickness.
+
+    None where no straight wall of possible thickness has them.
+    """
     first = max(members, key=lambda i: stretches[i].length_m)
     normal = stretches[first].line.normal
     sides = [
@@ -207,7 +217,9 @@ def _wall_of(stretches, line, left, right, thickness_m):
 
 
 def _fit(sides, normal):
-    """Fit parallel lines to the two sides, a list of ends (2, 2) each: a common line, and each side's offset from it.
+    """Fit parallel lines to the two sides, a list of ends (2, 2) each.
+
+    A common line, and each side's offset from it.
 
     A stretch counts as a uniform row of points, by its length.
     """

@@ -1,4 +1,7 @@
-"""The walls of the plan: paired faces with their openings, cut where nothing was seen, met at corners."""
+"""The walls of the plan.
+
+Paired faces with their openings, cut where nothing was seen, met at corners.
+"""
 
 import itertools
 import math
@@ -50,7 +53,7 @@ def assemble_walls(found, reading, pairing, gapping, *, corner_m):
 
 
 def _cut(wall, reading, gapping):
-    """Return the walls that a wall falls into where it pauses for long and was seen neither open nor closed."""
+    """Return the parts of a wall between long pauses that are neither open nor closed."""
     spans_m = np.array([np.sort(wall.line.along_m(face.ends)) for face in wall.members])
     gaps = [
         classify_gap(wall.line, *gap, wall.lines, reading, gapping) for gap in find_gaps(spans_m)
@@ -84,7 +87,7 @@ def _part(wall, spans_m, gaps, begin_m, end_m):
 
 
 def _between_things(judged, spans_m):
-    """Return the openings of what is open for longer than it is wall, unless wall is seen above them.
+    """Return the openings of what is open for longer than it is wall.
 
     An opening is a gap of a wall; a wider one than all of the wall is the space between two things.
     """
@@ -96,7 +99,10 @@ def _between_things(judged, spans_m):
 
 
 def _between_sides(gap, spans_m):
-    """Return an opening with its jambs between where the faces of both sides end: each errs its own way."""
+    """Return an opening with its jambs between where the faces of both sides end.
+
+    Each errs its own way.
+    """
     if gap.state != OPEN:
         return gap
     ends_m, starts_m = spans_m[:, 1], spans_m[:, 0]
@@ -106,7 +112,7 @@ def _between_sides(gap, spans_m):
 
 
 def _with_end_openings(wall, crossed, reading, gapping, corner_m):
-    """Let a wall go on over an opening beside the wall that it ends at, where wall is seen above it."""
+    """Let a wall go on over an opening, under a lintel, to the wall that it ends at."""
     lines = wall.lines
     for name, sign in (("low_m", -1), ("high_m", 1)):
         end_m = getattr(wall, name)
@@ -127,9 +133,10 @@ def _with_end_openings(wall, crossed, reading, gapping, corner_m):
 
 
 def _with_closed_ends(wall, crossed, reading, gapping, corner_m):
-    """Let a wall go on to the wall ahead of it through what no ray went through and nothing showed, if that is shorter.
+    """Let a wall go on to the wall ahead through what no ray went through or showed.
 
-    What stands on both sides hides it: a gap there would have let some ray pass, as in a pause of the wall.
+    What stands on both sides hides it: a gap there would have let some ray pass, as in a pause of
+    the wall.
     """
     lines = wall.lines
     for name, sign in (("low_m", -1), ("high_m", 1)):
@@ -159,14 +166,17 @@ def _met(wall, crossed, corner_m):
 
 
 def _beside_walls(wall, crossed, gapping):
-    """Let openings begin beside the walls that cross there: a wall that ends at one goes on behind it with a way."""
+    """Let openings begin beside the walls that cross there.
+
+    A wall that ends at one goes on behind it with a way.
+    """
     bodies = [(place_m - other.half_m, place_m + other.half_m) for other, place_m in crossed]
     openings = [_less(gap, bodies) for gap in wall.openings]
     return replace(wall, openings=[gap for gap in openings if gap.width_m >= gapping.min_opening_m])
 
 
 def _less(gap, bodies_m):
-    """Return what of an opening is left between walls that cross it within `_JAMB_M` of its ends."""
+    """Return what of an opening is left between walls that cross it near its ends."""
     low_m, high_m = gap.low_m, gap.high_m
     for begin_m, end_m in bodies_m:
         if begin_m - _JAMB_M <= gap.low_m <= end_m:

@@ -1,7 +1,8 @@
 """Windows of walls: where rays went through above a sill that was seen.
 
-A lidar near the floor sees the wall below a window, so the window is no pause of the wall. Higher up no ray ends at it:
-rays go through, and come back from what is behind, or, out of the building, never.
+A lidar near the floor sees the wall below a window, so the window is no pause of the wall. Higher
+up no ray ends at it: rays go through, and come back from what is behind, or, out of the building,
+never.
 """
 
 from dataclasses import replace
@@ -53,7 +54,10 @@ def _with_windows(wall, rays, settings):
 
 
 def _is_wall(seen, ends):
-    """Tell whether a line shows wall between two ends, at the height of a chest: a screen or a mirror hangs there."""
+    """Tell whether a line shows wall between two ends, at the height of a chest.
+
+    A screen or a mirror hangs there.
+    """
     low_m, high_m = np.sort(seen.line.along_m(ends))
     points = seen.occupied_between(low_m, high_m)
     at_chest = _at_chest(seen.occupied_z_m[points])
@@ -65,10 +69,13 @@ def _at_chest(z_m):
 
 
 def find_windows(rays, seen, low_m, high_m, settings):
-    """Find the windows along a line: pauses of the points at the height of a chest, with wall beside and below them.
+    """Find the windows along a line.
 
-    Rays must have been sent to nearly all of a pause, nothing before it in their way, and hardly one may have ended in
-    it, as in a niche: where no ray is to be expected, or things hide the wall, nothing is known.
+    Pauses of the points at the height of a chest, with wall beside and below them.
+
+    Rays must have been sent to nearly all of a pause, nothing before it in their way, and hardly
+    one may have ended in it, as in a niche: where no ray is to be expected, or things hide the
+    wall, nothing is known.
 
     Parameters
     ----------
@@ -94,7 +101,10 @@ def find_windows(rays, seen, low_m, high_m, settings):
 
 
 def _not_alone(place_m):
-    """Return those of sorted places that are within a column of enough others: one or two points may be stray."""
+    """Return those of sorted places that are within a column of enough others.
+
+    One or two points may be stray.
+    """
     low, high = (
         np.searchsorted(place_m, place_m + way * CELL_M / 2, side)
         for way, side in ((-1, "left"), (1, "right"))

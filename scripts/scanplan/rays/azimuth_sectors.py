@@ -1,4 +1,7 @@
-"""How far the rays of scans go, by azimuth sector: a bound that shows which rays cannot come near a line."""
+"""How far the rays of scans go, by azimuth sector.
+
+A bound that shows which rays cannot come near a line.
+"""
 
 from dataclasses import dataclass
 
@@ -64,7 +67,8 @@ def cull_spans(
 ) -> tuple[IntArray, IntArray, IntArray]:
     """Cut spans of rows into those of the sectors in which any ray may come near a line.
 
-    Along a ray that turns by an angle from the way straight to the line, ``r cos(angle)`` of the distance is gone.
+    Along a ray that turns by an angle from the way straight to the line, ``r cos(angle)`` of the
+    distance is gone.
 
     Parameters
     ----------

@@ -1,8 +1,10 @@
-"""How many returns a surface ought to give, by what the same scan gets back elsewhere: the missing-return test.
+"""How many returns a surface ought to give, by what the same scan gets back elsewhere.
 
-Of the rays themselves nothing is known but their returns. How many a scan sends at an elevation is estimated by how
-many it usually gets back there. Whatever is opaque returns the rays that reach it; glass lets most through, to where
-there may be nothing, and mirrors others away.
+The missing-return test.
+
+Of the rays themselves nothing is known but their returns. How many a scan sends at an elevation is
+estimated by how many it usually gets back there. Whatever is opaque returns the rays that reach it;
+glass lets most through, to where there may be nothing, and mirrors others away.
 """
 
 from dataclasses import dataclass
@@ -19,7 +21,10 @@ if TYPE_CHECKING:
 GRAZING_RAD = np.deg2rad(75)
 """Angle between ray and surface normal from which on returns get lost."""
 NEAR_M = 10.0
-"""Farther sensors say nothing of missing returns: their rays are few, and much stands before the surface."""
+"""Farther sensors say nothing of missing returns.
+
+Their rays are few, and much stands before the surface.
+"""
 
 _ROWS_PER_DEG = 10  # of elevation: beams of a VLP-16 are 2 degrees apart, of dense sensors 0.2
 _SECTORS = 72  # of 5 degrees: wider than what is between two firings
@@ -77,19 +82,23 @@ class SentRays:
 
     @property
     def missing_share(self) -> float:
-        """Share of the expected returns of all columns that are nowhere, 0 where none is expected."""
+        """Share of the expected returns that are nowhere; 0 where none is expected."""
         expected = self.expected.sum()
         returned = self.occluded.sum() + self.returned.sum()
         return float(max(0.0, 1 - returned / expected)) if expected > 0 else 0.0
 
     def reached(self, *, least_scans: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return how many rays reached the columns (n,) and those around each, came back, and ended in the wall.
+        """Return how many rays reached the columns (n,) and those around each.
 
-        NaN where too few are to be expected for anything to be said, or fewer scans than `least_scans` sent any.
+        In all, of these those that came back, and those that ended in the wall.
+
+        NaN where too few are to be expected for anything to be said, or fewer scans than
+        `least_scans` sent any.
         """
         expected = _sum_neighbours(self.expected)
         occluded = _sum_neighbours(self.occluded)
-        # where things hide the surface from a scan it says nothing: rays along the tops of furniture get lost
+        # where things hide the surface from a scan it says nothing: rays along the tops of
+        # furniture get lost
         clear = occluded < _MOST_OCCLUDED * expected
         reached = ((expected - occluded) * clear).sum(axis=0)
         returned = (_sum_neighbours(self.returned) * clear).sum(axis=0)

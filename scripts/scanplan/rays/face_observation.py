@@ -1,4 +1,7 @@
-"""What all scans show of the surface of one line: returns, rays through it, glass, and the raster of these."""
+"""What all scans show of the surface of one line.
+
+Returns, rays through it, glass, and the raster of these.
+"""
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -81,7 +84,7 @@ class FaceObservation:
 
     @cached_property
     def raster(self) -> FaceRaster:
-        """The surface in cells of 5 cm, from the first to the last place that anything is known of."""
+        """The surface in cells of 5 cm, as far as anything is known of it."""
         places_m = np.concatenate([self.occupied_m, self.free_m])
         return face_raster.rasterise_rays(
             (self.occupied_m, self.occupied_z_m),
@@ -93,7 +96,7 @@ class FaceObservation:
 
     @property
     def framed_m(self) -> FloatArray:
-        """Of the glass the panes (k, 2) that returns of any height are at, along most of their length.
+        """The panes (k, 2) that returns of any height are at, along most of their length.
 
         Glass has a frame, a sill or a lintel; a line that merely goes on before a pane has none.
         """
@@ -126,8 +129,8 @@ def observe_face(
     low_m, high_m : float
         The stretch along the line.
     band_m : float, > 0
-        Returns this near to the line are at its surface; a ray goes through it that ends farther behind than that and
-        what poses err by.
+        Returns this near to the line are at its surface; a ray goes through it that ends farther
+        behind than that and what poses err by.
     """
     within_m = 0.0 if rays.planar else expected_returns.NEAR_M
     face = cast_at_face(rays, line, low_m, high_m, at_m=band_m, occluded_within_m=within_m)
@@ -157,7 +160,10 @@ def observe_face(
 def count_sent(
     rays: RaySet, line: Line, low_m: float, count: int, heights_m: tuple[float, float], at_m: float
 ) -> SentRays:
-    """Return the rays that scans sent to columns of 5 cm of a line from a place on; see `expected_returns`."""
+    """Return the rays that scans sent to columns of 5 cm of a line from a place on.
+
+    See `expected_returns`.
+    """
     face = cast_at_face(
         *(rays, line, low_m, low_m + CELL_M * count),
         at_m=at_m,
@@ -174,10 +180,10 @@ def filled_share(places_m: FloatArray, low_m: float, high_m: float) -> float:
 
 
 def _find_glass(rays: RaySet, face: FaceRays, low_m: float, high_m: float) -> FloatArray:
-    """Return from where to where (n, 2) less than half of the rays return that reach a surface, low and chest-high.
+    """Return the spans (n, 2) where less than half of the rays return that reach a surface.
 
-    A wall below a window is wall, and so is one above an oven: both bands of height have to show it. Where few returns
-    are to be expected nothing is said.
+    A wall below a window is wall, and so is one above an oven: both bands of height have to show
+    it. Where few returns are to be expected nothing is said.
     """
     count = max(int(np.ceil((high_m - low_m) / CELL_M)), 1)
     is_lost = np.full(count, True)

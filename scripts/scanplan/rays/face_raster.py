@@ -1,7 +1,8 @@
-"""A surface as a raster of cells along and up, each with how many rays found it occupied, free or occluded.
+"""A surface as a raster of cells, each with its counts of occupied, free and occluded rays.
 
-Columns run along the surface's line, rows up from the floor. What a wall, a way through it, a sill, the top of a
-partition or a railing is are questions to these counts: asked here, once, for one scan or many.
+Columns run along the surface's line, rows up from the floor. What a wall, a way through it, a sill,
+the top of a partition or a railing is are questions to these counts: asked here, once, for one scan
+or many.
 """
 
 from dataclasses import dataclass
@@ -12,9 +13,15 @@ import numpy as np
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 CELL_M = 0.05
-"""Edge of a cell of all scans together: a few times the noise of a range, a third of the least wall end."""
+"""Edge of a cell of all scans together.
+
+A few times the noise of a range, a third of the least wall end.
+"""
 SCAN_COLUMN_M = 0.1
-"""Width of a column of a single scan: wider than what is between its rays at the usual distances."""
+"""Width of a column of a single scan.
+
+Wider than what is between its rays at the usual distances.
+"""
 
 _ROW_M = 0.05  # height of a row
 _MOST_ROWS = 160  # up to 8 m: a storey
@@ -39,7 +46,8 @@ class FaceRaster:
     occupied, free, occluded : (c, r) int64
         Rays that ended in a cell, went through it, and ended before it.
     top_m, free_top_m : (c,) float64
-        Height of the highest return at the surface, and of the highest ray through; minus infinity without any.
+        Height of the highest return at the surface, and of the highest ray through; minus infinity
+        without any.
     planar : bool
         Whether all rays lie in one level plane: then there is one row.
     """
@@ -96,9 +104,10 @@ class FaceRaster:
         return over >= few
 
     def is_open(self, sill_m: float, *, low_m: float, door_m: float) -> BoolArray:
-        """Return in which columns (c,) a ray goes through between two heights, above what ends rays there.
+        """Return in which columns (c,) a ray goes through above what ends rays there.
 
-        A sill up to `sill_m` does not close a column; what is higher than a door says nothing of what is below.
+        A sill up to `sill_m` does not close a column; what is higher than a door says nothing of
+        what is below.
         """
         first, stop = round(low_m / _ROW_M), round(door_m / _ROW_M)
         rows = np.arange(self.free.shape[1])
@@ -108,9 +117,10 @@ class FaceRaster:
         return is_low & (np.where(above, self.free, 0) > 0).any(axis=1)
 
     def seen_top_m(self, columns: slice = slice(None)) -> float:
-        """Return up to which height columns are seen over a good stretch of their length, and two of them at least.
+        """Return up to which height a surface is seen over a good stretch of its length.
 
-        Of a surface so short that no stretch is as long, in any column; minus infinity where nothing is seen.
+        Of a surface so short that no stretch is as long, in any column; minus infinity where
+        nothing is seen.
         """
         top_m = self.top_m[columns]
         tops_m = np.sort(top_m[np.isfinite(top_m)])[::-1]
@@ -121,9 +131,12 @@ class FaceRaster:
         return float(tops_m[min(enough, len(tops_m) - 1)])
 
     def over_share(self) -> float:
-        """Return how surely the surface ends at some height: the share of what rays cross above it that is free.
+        """Return how surely the surface ends at some height.
 
-        Of all heights at which a good part of the surface is free, the one that divides best; 0 where none is.
+        The share of what rays cross above it that is free.
+
+        Of all heights at which a good part of the surface is free, the one that divides best; 0
+        where none is.
         """
         ends_m = np.arange(_ENDS_M[0], _ENDS_M[1], _ENDS_STEP_M)[:, None]
         met = self.top_m > ends_m
@@ -155,15 +168,15 @@ def rasterise_rays(
     Parameters
     ----------
     occupied_m, free_m, occluded_m : ((n,) float64, (n,) float64)
-        Places along the line, and heights above the floor, where rays end at the surface, go through it, and would
-        have met it.
+        Places along the line, and heights above the floor, where rays end at the surface, go
+        through it, and would have met it.
     span_m : (float, float)
         From where to where along the line; rays beyond count for the first and the last column.
     column_m : float
         Width of a column, more where there would be too many.
     free_until_m : (n,) float64, optional
-        Until where along the line each ray through is within the thinnest wall's thickness of the surface: columns up
-        to there are free, too.
+        Until where along the line each ray through is within the thinnest wall's thickness of the
+        surface: columns up to there are free, too.
     planar : bool
         Whether heights mean nothing: then there is one row.
     """

@@ -1,14 +1,17 @@
-"""The rays that scans sent at the surface of a line, and what became of each: the one place where rays are classified.
+"""The rays that scans sent at the surface of a line, and what became of each.
 
-A ray runs straight from the sensor to the return that it measured: something is there, and nothing before it. Seen from
-the surface, a ray therefore makes the place where it meets it
+The one place where rays are classified.
+
+A ray runs straight from the sensor to the return that it measured: something is there, and nothing
+before it. Seen from the surface, a ray therefore makes the place where it meets it
 
 - occupied, if it ended there,
 - free, if it ended well behind it,
 - occluded, if it ended before it and says nothing of it,
 
-as in the labelling of wall surfaces by ray casting of Adan and Huber (2011), 3D reconstruction of interior wall surfaces
-under occlusion and clutter. One function serves one scan or many, in the plane or in space.
+as in the labelling of wall surfaces by ray casting of Adan and Huber (2011), 3D reconstruction of
+interior wall surfaces under occlusion and clutter. One function serves one scan or many, in the
+plane or in space.
 """
 
 from dataclasses import dataclass
@@ -29,14 +32,14 @@ _AHEAD_M = 1e-6  # a ray that runs along the plane meets it nowhere
 
 @dataclass(frozen=True, eq=False)
 class FaceRays:
-    """Rays that meet the upright plane over a stretch of a line, whether they end before, at or behind it.
+    """Rays that meet the upright plane over a stretch of a line, wherever they end.
 
     Attributes
     ----------
     line : lines.Line
     along_m, height_m : (n,) float64
-        Where a ray meets the plane: along the line and above the floor. Of a ray that ends within `at_m` of the plane
-        where it ends.
+        Where a ray meets the plane: along the line and above the floor. Of a ray that ends within
+        `at_m` of the plane where it ends.
     behind_m : (n,) float64
         How far behind the plane, seen from its sensor, a ray ends; negative before it.
     scan : (n,) int64
@@ -69,7 +72,7 @@ class FaceRays:
         return (np.abs(self.behind_m) <= self.at_m) & self.is_facing
 
     def is_free(self, margin_m: float) -> BoolArray:
-        """Return which rays (n,) go through the surface, from either side, and end more than a margin behind it."""
+        """Return which rays (n,), from either side, end more than a margin behind the surface."""
         return self.behind_m >= margin_m
 
     @property
@@ -99,8 +102,9 @@ def cast_at_face(
     at_m : float
         A return this near to the plane is one of the surface.
     occluded_within_m : float
-        Rays that end before the surface are wanted from sensors no farther from the stretch; of farther ones those
-        that a bound on ranges shows to end before it are left out, which is many times as fast.
+        Rays that end before the surface are wanted from sensors no farther from the stretch; of
+        farther ones those that a bound on ranges shows to end before it are left out, which is many
+        times as fast.
     least_side_m : float, > 0
         Sensors nearer to the plane see it edge on, and their rays are left out.
     """

@@ -7,7 +7,8 @@ from shapely.geometry import MultiPolygon, Polygon
 _SECTOR_RAD = np.radians(0.5)
 _RAYS_A_SECTOR = 2.2
 _COLUMNS_A_SECTOR = 1.1
-# ASSUME wider gaps than this are the end of a sensor's field, or openings that nothing came back from
+# ASSUME wider gaps than this are the end of a sensor's field, or openings that nothing came back
+# from
 _WIDEST_RAD = np.radians(10)
 _SIMPLIFY_M = 0.02
 _SPIKE_M = 0.04
@@ -18,9 +19,9 @@ GRID_M = 1e-3
 def free_polygons(rays):
     """Return what each scan's rays went over, as polygons.
 
-    In every half degree (more where a sensor's rays are further apart) a ray of the longest tenth tells how far one
-    can see; where no ray came back from, nothing is known. The outline is true within 2 cm; spikes thinner than 8 cm
-    are taken off.
+    In every half degree (more where a sensor's rays are further apart) a ray of the longest tenth
+    tells how far one can see; where no ray came back from, nothing is known. The outline is true
+    within 2 cm; spikes thinner than 8 cm are taken off.
 
     Parameters
     ----------
@@ -40,10 +41,12 @@ def free_polygons(rays):
 
 
 def column_spacing_rad(azimuth_rad):
-    """Return the angle between a scan's columns of rays: half of the directions between rays lie in gaps up to this.
+    """Return the angle between a scan's columns of rays.
 
-    The median of the gaps themselves says nothing of a sensor with several beams, whose rays stand one above the
-    other: nearly all of them are next to none.
+    Half of the directions between rays lie in gaps up to this.
+
+    The median of the gaps themselves says nothing of a sensor with several beams, whose rays stand
+    one above the other: nearly all of them are next to none.
 
     Parameters
     ----------
@@ -107,10 +110,10 @@ def difference_on_grid(ground, taken):
 
 
 def open_polygons(ground, half_m):
-    """Return the polygons of ground without what is narrower than twice a width, their corners sharp.
+    """Return ground without what is narrower than twice a width, its corners sharp.
 
-    Each is grown by itself and within the ground: at a blunt, narrow end the mitre reaches on, maybe through a wall or
-    into what a neck leads to.
+    Each is grown by itself and within the ground: at a blunt, narrow end the mitre reaches on,
+    maybe through a wall or into what a neck leads to.
 
     Returns
     -------

@@ -13,7 +13,9 @@ _PROMINENT = 1.5
 
 
 def find_floor_z(z_m: FloatArray) -> float:
-    """Return the height of the floor, or of the lowest points where no floor was seen: the one estimate of it.
+    """Return the height of the floor, or of the lowest points where no floor was seen.
+
+    The one estimate of it.
 
     Parameters
     ----------
@@ -34,8 +36,9 @@ def find_floor_z(z_m: FloatArray) -> float:
 def find_floor_and_ceiling(z_m):
     """Return the heights of floor and ceiling, NaN where none was seen.
 
-    A floor or ceiling is the fullest layer of 5 cm within half a metre of the lowest or highest points, if it and the
-    fuller one beside it hold half as many again as two of the next 25 cm do: walls alone fill all layers alike.
+    A floor or ceiling is the fullest layer of 5 cm within half a metre of the lowest or highest
+    points, if it and the fuller one beside it hold half as many again as two of the next 25 cm do:
+    walls alone fill all layers alike.
 
     Parameters
     ----------

@@ -1,11 +1,12 @@
 """What a sensor's ranges are wrong by, beam by beam, told by how bent flat walls look.
 
-A range that is too long by b puts a point of a wall behind it by b times the cosine of the angle of incidence: most
-where the ray meets the wall squarely, less to the sides. So a flat wall looks bent, and by how much tells b, wherever
-the scan was taken to be. Both sides of a wall err towards each other: walls come out thinner by 2 b.
+A range that is too long by b puts a point of a wall behind it by b times the cosine of the angle of
+incidence: most where the ray meets the wall squarely, less to the sides. So a flat wall looks bent,
+and by how much tells b, wherever the scan was taken to be. Both sides of a wall err towards each
+other: walls come out thinner by 2 b.
 
-Source: self-calibration of lidars on planes, as of Glennie and Lichti (2010), Static calibration and analysis of the
-Velodyne HDL-64E S2 for high accuracy mobile scanning.
+Source: self-calibration of lidars on planes, as of Glennie and Lichti (2010), Static calibration
+and analysis of the Velodyne HDL-64E S2 for high accuracy mobile scanning.
 """
 
 from dataclasses import dataclass, replace
@@ -27,8 +28,8 @@ class RangeBiasSettings:
     Attributes
     ----------
     sigma_m : float, >= 0
-        Standard deviation of the constant errors of a sensor's beams, before anything is seen; 0 takes ranges as
-        they are.
+        Standard deviation of the constant errors of a sensor's beams, before anything is seen; 0
+        takes ranges as they are.
     max_incidence_deg : float, above 0, below 90
         Rays that meet a wall at a larger angle to its normal say nothing: their spots are long.
     """
@@ -47,7 +48,8 @@ class _Hits:
     cosine : (n,) float64
         Of the angle of incidence.
     along_m : (n,) float64
-        Where the ray meets the wall: told by its direction alone, as a point's own place depends on its range.
+        Where the ray meets the wall: told by its direction alone, as a point's own place depends on
+        its range.
     offset_m : (n,) float64
         Of the point before the wall.
     """
@@ -84,9 +86,10 @@ class _Hits:
 def estimate_range_bias(rays, segments, settings, band_m, up):
     """Estimate the constant errors of ranges.
 
-    The offsets of a scan's points before a wall are a line along it, for where the wall is, less the error of the beam
-    times the cosine: linear least squares over all scans and walls, errors being about 0 within `sigma_m` beforehand.
-    It is made twice, the second time without the walls that are not flat: those that are bent otherwise than so.
+    The offsets of a scan's points before a wall are a line along it, for where the wall is, less
+    the error of the beam times the cosine: linear least squares over all scans and walls, errors
+    being about 0 within `sigma_m` beforehand. It is made twice, the second time without the walls
+    that are not flat: those that are bent otherwise than so.
 
     Parameters
     ----------
@@ -102,7 +105,8 @@ def estimate_range_bias(rays, segments, settings, band_m, up):
     Returns
     -------
     (181,) float64
-        Metres that ranges are too long by, by the beam's elevation in whole degrees from -90; 0 where not known.
+        Metres that ranges are too long by, by the beam's elevation in whole degrees from -90; 0
+        where not known.
     """
     error_m = np.zeros(181)
     known = np.isin(segments["scan_id"], rays.scan_ids)
@@ -173,8 +177,9 @@ def _degrees(sine):
 def _solved(hits, n_beams, sigma_m):
     """Return the errors (n_beams,) that explain offsets best; 0 without any.
 
-    Generalised least squares: a line along each wall is free, and each wall has a bow of its own that looks just like
-    an error that all beams have in common: of `_BOW_M` in the mean of squares, or of what is left of bows in the end.
+    Generalised least squares: a line along each wall is free, and each wall has a bow of its own
+    that looks just like an error that all beams have in common: of `_BOW_M` in the mean of squares,
+    or of what is left of bows in the end.
     """
     if hits.n_groups == 0:
         return np.zeros(n_beams)
@@ -207,9 +212,10 @@ def _solved(hits, n_beams, sigma_m):
 
 
 def _are_flat(hits, error_m):
-    """Tell which groups look flat when the errors of the beams, and any that all have in common, are taken out.
+    """Return which groups look flat once errors of beams, and a common one, are taken out.
 
-    The means of offsets in parts of such a wall differ from 0 by noise alone, in the mean of their squares.
+    The means of offsets in parts of such a wall differ from 0 by noise alone, in the mean of their
+    squares.
     """
     offset_m, cosine = (
         hits.level(hits.offset_m + error_m[hits.beam] * hits.cosine),

@@ -1,7 +1,8 @@
 """The rays of one scan or many by azimuth, and those of them that go between two directions.
 
-A ray runs straight from the sensor to the return that it measured. Nothing else is known of a sensor but its place: a
-direction without any return is known by how many the others of its elevation have (`expected_returns`).
+A ray runs straight from the sensor to the return that it measured. Nothing else is known of a
+sensor but its place: a direction without any return is known by how many the others of its
+elevation have (`expected_returns`).
 """
 
 from collections.abc import Iterable, Mapping
@@ -62,7 +63,10 @@ class RaySet:
 
     @cached_property
     def usual(self) -> FloatArray:
-        """Returns that a degree of azimuth usually has below an elevation, (s, 1801); see `expected_returns`."""
+        """Returns that a degree of azimuth usually has below an elevation, (s, 1801).
+
+        See `expected_returns`.
+        """
         return np.array(
             [
                 expected_returns.count_returns_below(
@@ -93,7 +97,8 @@ class RaySet:
         Returns
         -------
         low, high : (2, k) int64
-            Rows that a scan's two spans begin at and end before: what lies beyond pi goes on from -pi.
+            Rows that a scan's two spans begin at and end before: what lies beyond pi goes on from
+            -pi.
         """
         way = ends - self.sensors_m[scans, :2]
         first, last = np.arctan2(way[..., 1], way[..., 0])
@@ -107,7 +112,10 @@ class RaySet:
     def gather_rows(
         self, low: IntArray, high: IntArray, scans: IntArray
     ) -> tuple[FloatArray, IntArray]:
-        """Return points and scans of spans (2, k) of rows, one after another; `scans` (k,) is that of each pair."""
+        """Return points and scans of spans (2, k) of rows, one after another.
+
+        `scans` (k,) is that of each pair.
+        """
         low, high, scan = low.ravel(), high.ravel(), np.tile(scans, len(low))
         filled = high > low
         low, high, scan = low[filled], high[filled], scan[filled]
@@ -121,7 +129,7 @@ class RaySet:
     def sample_rows_between(
         self, ends: FloatArray, scans: IntArray, most: int
     ) -> tuple[IntArray, IntArray]:
-        """Return rows of such rays, evenly thinned to `most` or fewer, and which pair of ends each is of."""
+        """Return rows of such rays, evenly thinned to `most` or fewer, and the pair of each."""
         low, high = self.rows_between(ends, scans)
         count = np.maximum(high - low, 0)
         every = count.sum() // most + 1

@@ -1,4 +1,6 @@
-"""The free space around the sensor that one scan looked through: a star-shaped polygon that ends at the returns.
+"""The free space around the sensor that one scan looked through.
+
+A star-shaped polygon that ends at the returns.
 
 What is behind a return is not seen, so the polygon does not leak through walls, as hulls do.
 """
@@ -25,9 +27,11 @@ class VisibilitySettings:
     range_m : float
         Nothing farther is looked at.
     sector_deg : float
-        The turn is divided into sectors of this angle, or a little less; at least twice that between beams.
+        The turn is divided into sectors of this angle, or a little less; at least twice that
+        between beams.
     min_height_m, max_height_m : float
-        Above the scan's floor: what ends the view. The floor does not, and above a door is wall. For 3-D scans alone.
+        Above the scan's floor: what ends the view. The floor does not, and above a door is wall.
+        For 3-D scans alone.
     """
 
     range_m: float
@@ -39,10 +43,10 @@ class VisibilitySettings:
 def scan_free_space(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
     """Return one scan's row of `schemas.VISIBILITY`.
 
-    A sector is free up to its nearest return, a corner between two sectors lies at the nearer one's: where a wall
-    crosses a sector both its ends there are on or beyond the outline, and so is all between. That leaves what lies
-    between two beams, such as the last centimetres of a wall that ends. A sector without any return is not known to be
-    free.
+    A sector is free up to its nearest return, a corner between two sectors lies at the nearer
+    one's: where a wall crosses a sector both its ends there are on or beyond the outline, and so is
+    all between. That leaves what lies between two beams, such as the last centimetres of a wall
+    that ends. A sector without any return is not known to be free.
 
     Parameters
     ----------

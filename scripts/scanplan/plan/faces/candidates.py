@@ -16,7 +16,10 @@ _SHORT_M = 0.15  # of what noise, a skirting or a frame may hide of a face befor
 
 @dataclass(frozen=True, eq=False)
 class FaceCandidate(Span):
-    """A stretch of a face's line: from `low_m` to `high_m` along it, and the segments (k,) that show its line."""
+    """A stretch of a face's line.
+
+    From `low_m` to `high_m` along it, and the segments (k,) that show its line.
+    """
 
     segments: ObservedSegments
     line: Line
@@ -66,8 +69,9 @@ def cut_candidates(segments, members, *, max_gap_m):
 def meet_at_corners(pieces, *, corner_m):
     """Move the ends of pieces to where their lines cross, if that is no further than `corner_m`.
 
-    A face ends at the corner of a room in front of the other face, at the edge of a pillar behind it; a face that
-    butts against the middle of another ends on it. Lines keep their place, only extents change.
+    A face ends at the corner of a room in front of the other face, at the edge of a pillar behind
+    it; a face that butts against the middle of another ends on it. Lines keep their place, only
+    extents change.
 
     Parameters
     ----------
@@ -86,7 +90,7 @@ def meet_at_corners(pieces, *, corner_m):
 
 
 def _crossings(pieces, corner_m):
-    """Return (piece, name of the end, where along it) for every end that may move to another piece's line."""
+    """Return (piece, name of the end, place) of ends that may move to another's line."""
     one, other = _near(pieces, 2 * corner_m)
     centre, normal, along, low, high = _stacked(pieces)
     turn = _dot(along[one], normal[other])
@@ -102,8 +106,8 @@ def _crossings(pieces, corner_m):
     other_at_low = np.abs(there - low[other]) <= np.abs(there - high[other])
     other_ends = np.abs(there - np.where(other_at_low, low[other], high[other])) <= corner_m
     other_behind = np.where(other_at_low, 1, -1) * _dot(along[other], normal[one]) < 0
-    # a face that is seen well before another one ends there only if that one is seen to begin there: one would look at
-    # the other's front from where the first is
+    # a face that is seen well before another one ends there only if that one is seen to begin
+    # there: one would look at the other's front from where the first is
     before_m = np.where(at_low, place - low[one], high[one] - place)
     other_before_m = np.where(other_at_low, there - low[other], high[other] - there)
     meets = (np.maximum(before_m, other_before_m) <= _BEFORE_M) | (
@@ -129,8 +133,9 @@ def _moved(piece, move):
 def remove_doubles(pieces, *, max_angle_rad, distance_m, ghost_distance_m, ghost_share):
     """Take away from every piece what a stronger one of the same side already draws.
 
-    That is what runs closer than `distance_m` beside it, and, further off, up to `ghost_distance_m`, what shows less
-    than `ghost_share` of its points per metre: the same wall once more from a scan that was placed badly.
+    That is what runs closer than `distance_m` beside it, and, further off, up to
+    `ghost_distance_m`, what shows less than `ghost_share` of its points per metre: the same wall
+    once more from a scan that was placed badly.
 
     Parameters
     ----------
@@ -182,7 +187,10 @@ def _less(piece, stronger, distance_m):
 
 
 def doubled_interval_m(piece, other, distance_m):
-    """Return from where to where along `piece` it runs closer than `distance_m` beside `other`; empty: high <= low."""
+    """Return where along `piece` it runs closer than `distance_m` beside `other`.
+
+    High <= low.
+    """
     low, high = piece.low_m, piece.high_m
     bands = (
         (
@@ -209,7 +217,10 @@ def doubled_interval_m(piece, other, distance_m):
 
 
 def _near(pieces, distance_m):
-    """Return the ordered pairs of different pieces within `distance_m` of each other: (k,), (k,), sorted."""
+    """Return the ordered pairs of different pieces within `distance_m` of each other.
+
+    (k,), (k,), sorted.
+    """
     strings = shapely.linestrings(np.array([piece.ends for piece in pieces]).reshape(-1, 2, 2))
     one, other = shapely.STRtree(strings).query(strings, predicate="dwithin", distance=distance_m)
     order = np.lexsort((other, one))
@@ -218,7 +229,7 @@ def _near(pieces, distance_m):
 
 
 def _stacked(pieces):
-    """Return centres, normals, directions (n, 2), and where the pieces begin and end, (n,), as arrays."""
+    """Return centres, normals, directions (n, 2), and begins and ends (n,), as arrays."""
     centre = np.array([piece.line.centre for piece in pieces]).reshape(-1, 2)
     normal = np.array([piece.line.normal for piece in pieces]).reshape(-1, 2)
     low, high = (

@@ -92,7 +92,7 @@ def observe_along(rays, line, low_m, high_m, reading):
 def _look(
     rays: RaySet, line: Line, own_m: tuple[float, float], reach_m: FloatArray, reading: RaySettings
 ) -> tuple[FaceObservation, FloatArray]:
-    """Return what is seen of a refitted line, `reach_m` (2,) beyond what was extracted, and from where to where."""
+    """Return what is seen of a refitted line up to `reach_m` (2,) beyond its own, and the span."""
     span_m = own_m[0] - reach_m[0], own_m[1] + reach_m[1]
     near = cast_at_face(rays, line, *own_m, at_m=reading.band_m, occluded_within_m=0.0)
     is_own = near.is_occupied & (near.along_m >= own_m[0]) & (near.along_m <= own_m[1])
@@ -129,16 +129,20 @@ def refit_to_points(line: Line, along: FloatArray, offset: FloatArray) -> Line:
 
 
 def find_face_intervals(seen, reading, *, foreign_m=()):
-    """Find what is wall along a line: columns with points, joined over pauses that no ray went through.
+    """Find what is wall along a line.
 
-    Panes are no wall; stretches that rays look over along most of their length are furniture, and left out.
+    Columns with points, joined over pauses that no ray went through.
+
+    Panes are no wall; stretches that rays look over along most of their length are furniture, and
+    left out.
 
     Parameters
     ----------
     seen : face_observation.FaceObservation
     reading : face_observation.RaySettings
     foreign_m : sequence of (float, float)
-        From where to where other faces cross the line: points there are theirs, so no stretch begins or ends there.
+        From where to where other faces cross the line: points there are theirs, so no stretch
+        begins or ends there.
 
     Returns
     -------
@@ -174,11 +178,11 @@ def _inside(raster, intervals_m):
 
 
 def _trimmed(stretch):
-    """Let a stretch end where scans see it end, half of the points near there being of scans that see no further.
+    """Let an interval end where the scans that see its end see it.
 
-    The outermost point of all scans lies beyond the true end: by the noise of a range, by what one scan or another is
-    misplaced, and by what that scan sees of a door's reveal. A scan that sees an end shows it to half the distance of
-    its points.
+    The outermost point of all scans lies beyond the true end: by the noise of a range, by what one
+    scan or another is misplaced, and by what that scan sees of a door's reveal. A scan that sees an
+    end shows it to half the distance of its points.
     """
     seen, round_m = stretch.seen, _ROUND_M
     # a point on the edge of a column is in it, whichever way the edge was rounded
@@ -191,7 +195,7 @@ def _trimmed(stretch):
 
 
 def _usual_end_m(along_m, scan):
-    """Return the weighted median of the last points (n,) of the scans that have any near the last of all."""
+    """Return the weighted median of the scans' last points near the last of all."""
     near = along_m >= along_m.max() - _END_M
     _, index, count = np.unique(scan[near], return_inverse=True, return_counts=True)
     last_m = np.full(len(count), -np.inf)

@@ -16,7 +16,8 @@ class MergeSettings:
     max_angle_deg : float, above 0, below 90
         Segments whose normals turn further from the face's are not of it.
     tolerance_m : float, > 0
-        Both ends of every segment of a face lie this close to it: what registration may be wrong by.
+        Both ends of every segment of a face lie this close to it: what registration may be wrong
+        by.
     merge_distance_m : float, >= tolerance_m
         Of two faces of one side that run closer than this, the stronger is drawn.
     ghost_distance_m : float, >= 0
@@ -26,8 +27,8 @@ class MergeSettings:
     max_gap_m : float, >= 0
         A longer pause along a face stays open.
     align_gap_m : float, >= 0
-        Faces on either side of a pause up to this length share one line where their segments allow (a door in a
-        wall). Up to `max_gap_m` it has no effect.
+        Faces on either side of a pause up to this length share one line where their segments allow
+        (a door in a wall). Up to `max_gap_m` it has no effect.
     registration_sigma_m : float, > 0
         Standard deviation of a registered scan's place, for the weights of the fit.
     corner_m : float, >= 0
@@ -73,9 +74,10 @@ class MergeSettings:
 def merge_segments(walls, settings):
     """Merge the wall segments of many scans into pieces of common lines.
 
-    Segments are grouped around common lines (`segment_groups`); each group's line is cut at pauses, what too little
-    supports is dropped, and so is what weaker faces draw over stronger ones (`candidates`). The two sides of a wall
-    are different lines. Neither the order of the rows nor the place and turn of the map frame matters.
+    Segments are grouped around common lines (`segment_groups`); each group's line is cut at pauses,
+    what too little supports is dropped, and so is what weaker faces draw over stronger ones
+    (`candidates`). The two sides of a wall are different lines. Neither the order of the rows nor
+    the place and turn of the map frame matters.
 
     Parameters
     ----------
@@ -123,6 +125,9 @@ def _once(pieces, settings):
 
 
 def _is_supported(piece, settings):
-    """Tell whether a piece is worth being looked at: how many scans show it, all points tell better."""
+    """Tell whether a piece is worth being looked at.
+
+    How many scans show it, all points tell better.
+    """
     is_dense = piece.n_points >= max(1, settings.min_points_per_m * piece.length_m)
     return is_dense and piece.length_m >= settings.min_length_m

@@ -13,10 +13,11 @@ _MOST_ROUNDS = 100
 def group_segments(segments, *, max_angle_rad, tolerance_m, reach_m):
     """Sort segments into groups, each around one line.
 
-    Of every group, all members look the same way as its line within `max_angle_rad`, and both ends of each lie within
-    `tolerance_m` of it: chords of a curve are not drawn straight, a step is not ramped. Groups grow from the segment
-    that tells most about its line along what lies within `reach_m`, and are refitted and re-sorted until nothing
-    changes (a mean shift over lines); then groups whose members fit one line after all are joined, the best first.
+    Of every group, all members look the same way as its line within `max_angle_rad`, and both ends
+    of each lie within `tolerance_m` of it: chords of a curve are not drawn straight, a step is not
+    ramped. Groups grow from the segment that tells most about its line along what lies within
+    `reach_m`, and are refitted and re-sorted until nothing changes (a mean shift over lines); then
+    groups whose members fit one line after all are joined, the best first.
 
     Parameters
     ----------
@@ -75,7 +76,10 @@ def _fits(line, segments, members, max_angle_rad, tolerance_m):
 
 
 def _pruned(segments, members, max_angle_rad, tolerance_m):
-    """Give back the worst member until all fit: of use only where settling went round in circles."""
+    """Give back the worst member until all fit.
+
+    Of use only where settling went round in circles.
+    """
     while len(members) > 1:
         line = fit_segments_line(segments, members)
         if _fits(line, segments, members, max_angle_rad, tolerance_m).all():
@@ -125,7 +129,10 @@ def _gap_m(line, segments, one, other):
 
 
 def _neighbours(segments, groups, max_angle_rad, tolerance_m, reach_m):
-    """Return for each group those that may share a line with it: within reach, much the same way, in a strip."""
+    """Return for each group those that may share a line with it.
+
+    Within reach, much the same way, in a strip.
+    """
     lines = [fit_segments_line(segments, members) for members in groups]
     extents = [
         extents_along_m(line, segments, members)
@@ -150,11 +157,13 @@ def _neighbours(segments, groups, max_angle_rad, tolerance_m, reach_m):
 
 
 def _in_a_strip(starts, ends, pairs, tolerance_m):
-    """Tell which pairs of lines any common line could serve, (k,) bool; some that none serves pass, too.
+    """Tell which pairs of lines any common line could serve, (k,) bool.
 
-    Where the members of both lie within t of a common line, the ends of either own line lie within 2 t of it. Over the
-    longer one's length L the two lines are then 2 t apart at most, at x beyond its end ``2 t (1 + 2 x / L)``, and the
-    shorter one's ends another 2 t.
+    Some that none serves pass, too.
+
+    Where the members of both lie within t of a common line, the ends of either own line lie within
+    2 t of it. Over the longer one's length L the two lines are then 2 t apart at most, at x beyond
+    its end ``2 t (1 + 2 x / L)``, and the shorter one's ends another 2 t.
     """
     length_m = np.hypot(*(ends - starts).T)
     swap = length_m[pairs[:, 0]] < length_m[pairs[:, 1]]

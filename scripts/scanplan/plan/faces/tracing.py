@@ -1,4 +1,7 @@
-"""The faces of the plan: lines that segments agree on, cut to what the points and rays of the chosen scans show."""
+"""The faces of the plan.
+
+Lines that segments agree on, cut to what the points and rays of the chosen scans show.
+"""
 
 import math
 from dataclasses import dataclass
@@ -77,10 +80,12 @@ def _seen(group, rays, reading):
 
 
 def _without_furniture(found, limits):
-    """Return the intervals that are no fronts of furniture; all of a 2-D scanner, whose heights are unknown.
+    """Return the intervals that are no fronts of furniture.
 
-    From where furniture hides the wall behind it, and no ray passes over it, it looks like a wall to a scan; all scans
-    together know better.
+    All of a 2-D scanner, whose heights are unknown.
+
+    From where furniture hides the wall behind it, and no ray passes over it, it looks like a wall
+    to a scan; all scans together know better.
     """
     if not found or found[0].seen.planar:
         return found
@@ -96,7 +101,7 @@ def _without_furniture(found, limits):
 
 
 def _once(found, merging):
-    """Return the stretches (those of a line in one list) that are supported, none beside a stronger one."""
+    """Return the intervals, listed by line, that are supported, none beside a stronger one."""
     return _without_doubles([s for of_line in found for s in _supported(of_line, merging)], merging)
 
 
@@ -111,7 +116,10 @@ def _without_doubles(found, merging):
 
 
 def _supported(of_line, merging):
-    """Return the stretches of one line that enough points show; where one is believed, short ones beside it are too."""
+    """Return the stretches of one line that enough points show.
+
+    Where one is believed, short ones beside it are too.
+    """
     dense = [s for s in of_line if s.n_points >= max(2, merging.min_points_per_m * s.length_m)]
     sure = [s for s in dense if s.length_m >= merging.min_length_m and _is_shown(s, merging)]
     return [s for s in dense if s.length_m >= _STUB_M] if sure else []
@@ -128,8 +136,8 @@ def _is_shown(stretch, merging):
 def owned_intervals(lines, found):
     """Return from where to where along lines others cross them: points there are theirs.
 
-    What others claim whole is the end of a wall that another line happens to lead through, as a shelf's beside a door's
-    jamb: it is no wall that crosses, and claims nothing.
+    What others claim whole is the end of a wall that another line happens to lead through, as a
+    shelf's beside a door's jamb: it is no wall that crosses, and claims nothing.
 
     Parameters
     ----------
@@ -158,7 +166,10 @@ def _left_m(stretch, claimed_m):
 
 
 def _crossed_m(seen, found, stacked):
-    """Return from where to where along a line stretches of other lines cross it: list of (low, high)."""
+    """Return from where to where along a line stretches of other lines cross it.
+
+    List of (low, high).
+    """
     crossed = intersections.find_crossings(seen.line, stacked, reach_m=_REACHES_M)
     spans = zip(crossed.which.tolist(), crossed.place_m, _FOREIGN_M / crossed.sine, strict=True)
     return [

@@ -1,4 +1,7 @@
-"""What stretches show too much: chords of a curve beyond each other, and stray points beyond a corner."""
+"""What stretches show too much.
+
+Chords of a curve beyond each other, and stray points beyond a corner.
+"""
 
 import math
 from dataclasses import replace
@@ -18,8 +21,8 @@ _TAIL_M = 1.0
 def trim_overshoots(stretches):
     """Cut stretches of one side where they cross others at a flat angle.
 
-    Beyond where two of them cross, both lie near the same wall, and the points lie nearer to one. The other one ends
-    at the crossing, unless it goes on further.
+    Beyond where two of them cross, both lie near the same wall, and the points lie nearer to one.
+    The other one ends at the crossing, unless it goes on further.
 
     Parameters
     ----------
@@ -51,7 +54,7 @@ def trim_overshoots(stretches):
 
 
 def trim_tails(stretches, *, share):
-    """Cut what goes on for up to a metre behind a stretch that crosses, with too few points a metre to be of one wall.
+    """Cut what goes on up to a metre behind a crossing face with too few points a metre.
 
     Parameters
     ----------
