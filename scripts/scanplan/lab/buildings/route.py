@@ -94,7 +94,6 @@ def plan_route(
         )
     asked, area_m = _asked_rooms(floor_m, rooms, kind, source)
     free = free_ground(area_m, obstacles_m, clearance_m)
-    # a random start is drawn when the ground is known
     start_xy_m = None if isinstance(start_m, str) else start_m
     part = _part_of(free, start_xy_m, clearance_m, asked, source)
     grid = roadmap.connected_grid(roadmap.make_grid(part, clearance_m, source), start_xy_m)
@@ -229,10 +228,7 @@ def _join_stops(
 def _straighten(
     grid: RoadmapGrid, leg: list[int], part: Polygon, obstacles_m: BaseGeometry
 ) -> FloatArray:
-    """Return the corners of a leg, its last left out, that keep the space its cells have.
-
-    Up to a limit; by Douglas and Peucker's division at the cell farthest from a chord.
-    """
+    """Return the corners of a leg, its last left out, that keep its cells' space up to a limit."""
     xy_m = grid.xy_m[leg]
     near_m = np.minimum(shapely.distance(shapely.points(xy_m), obstacles_m), _ROOMY_M)
     corners_m = []
