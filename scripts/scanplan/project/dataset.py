@@ -61,13 +61,6 @@ class Dataset:
     notes: tuple = ()
 
 
-def list_choices(schema, *keys):
-    """Return what a setting may be, in the schema's order, as the workflow's list of it."""
-    for key in keys:
-        schema = schema["properties"][key]
-    return list(schema["enum"])
-
-
 def name_datasets(given):
     """Name the datasets of a run.
 

@@ -3,13 +3,20 @@
 import math
 import os
 import re
+import sys
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from pathlib import Path
+from typing import Any
 
-from jsonschema import Draft202012Validator, validators
+from jsonschema import Draft202012Validator, ValidationError, validators
 
 from scanplan.errors import StageError
+from scanplan.project.renamed_keys import explain_old_keys
+from scanplan.project.settings_schema import Schema, default_settings, iterate_keys, read_schema
 from scanplan.project.yaml_file import read_yaml
+from scanplan.types import FilePath, Settings
 
 COMMAND_LINE = "--config"
 """Origin of the settings that were given one by one on the command line."""
@@ -21,29 +28,8 @@ OF_A_RUN = ("dataset", "replace")
 _WHOLE = Draft202012Validator.TYPE_CHECKER.redefine("integer", lambda _, value: type(value) is int)
 _Validator = validators.extend(Draft202012Validator, type_checker=_WHOLE)
 _DEFAULTS, _MANUAL = "config/config.yaml", "config/README.md explains every key"
-_EXTRACTORS = ("cluster_ransac", "iterative_ransac")
-# (key, another): the first must be above the second, as nothing lies between them otherwise
-_ABOVE = [
-    ("input.max_range_m", "input.min_range_m"),
-    ("selection.visibility.max_height_m", "selection.visibility.min_height_m"),
-    *((f"walls.{e}.furniture_height_m", f"walls.{e}.hang_height_m") for e in _EXTRACTORS),
-    ("plan.pair.max_thickness_m", "plan.pair.min_thickness_m"),
-    ("plan.openings.max_opening_m", "plan.openings.min_opening_m"),
-    ("simulate.sensor.max_range_m", "simulate.sensor.min_range_m"),
-]
-# (key, another): the first must not be below the second
-_NOT_BELOW = [
-    ("registration.n_previous", "registration.icp_targets"),
-    ("hulls.sample_size", "hulls.n_clusters"),
-    # of walls, only what is lower than doors is looked at
-    *(
-        (f"walls.{e}.door_height_m", f"walls.{e}.{low}_height_m")
-        for e in _EXTRACTORS
-        for low in ("min", "wall")
-    ),
-    ("plan.merge.merge_distance_m", "plan.merge.tolerance_m"),
-    ("plan.openings.max_door_m", "plan.openings.min_opening_m"),
-]
+_ROOT = Path(__file__).parents[3]
+_CODE_KEY = "__use_yte__"
 
 
 @dataclass(frozen=True)
@@ -58,10 +44,10 @@ class Layer:
     """
 
     origin: str
-    values: dict
+    values: dict[str, Any]
 
 
-def merge_settings(base, over):
+def merge_settings(base: Settings, over: Settings) -> dict[str, Any]:
     """Return `base` with the values of `over` laid over it, section by section; neither is changed."""
     result = dict(base)
     for key, value in over.items():
@@ -70,7 +56,20 @@ def merge_settings(base, over):
     return result
 
 
-def check_settings(settings, schema, origin):
+def read_defaults(path: FilePath, schema: Schema) -> dict[str, Any]:
+    """Return the schema's defaults with the values of config/config.yaml laid over them, checked.
+
+    Raises
+    ------
+    StageError
+        See `check_settings`.
+    """
+    settings = merge_settings(default_settings(schema), read_yaml(path))
+    check_settings(settings, schema, _DEFAULTS)
+    return settings
+
+
+def check_settings(settings: Settings, schema: Schema, origin: str) -> None:
     """Check settings against the JSON schema.
 
     Parameters
@@ -85,6 +84,13 @@ def check_settings(settings, schema, origin):
     StageError
         Naming the key, the value, what is allowed and the remedy, for the first fault in order of the keys.
     """
+    if _CODE_KEY in settings:
+        raise StageError(
+            f"{origin}: {_CODE_KEY}: has Snakemake execute what the file says; settings are data, drop it"
+        )
+    given = [key for key, _ in iterate_leaves(settings)]
+    if old := explain_old_keys(given, [key for key, _ in iterate_keys(schema)]):
+        raise StageError(f"{origin}: {old}; {_MANUAL}")
     faults = sorted(
         _Validator(schema).iter_errors(settings), key=lambda e: (str(e.path), e.message)
     )
@@ -95,19 +101,21 @@ def check_settings(settings, schema, origin):
             raise StageError(f"{origin}: {key}: {value} is no finite number; {_MANUAL}")
 
 
-def _is_finite(value):
+def _is_finite(value: Any) -> bool:
     if isinstance(value, list):
         return all(map(_is_finite, value))
     return not isinstance(value, float) or math.isfinite(value)
 
 
-def settings_of_dataset(defaults, layers, schema):
+def settings_of_dataset(
+    defaults: Settings, layers: Sequence[Layer], schema: Schema
+) -> dict[str, Any]:
     """Return the checked settings of one dataset.
 
     Parameters
     ----------
     defaults : dict
-        config/config.yaml.
+        See `read_defaults`.
     layers : sequence of Layer
         The dataset's own settings and the command line's; the later win.
     schema : dict
@@ -122,26 +130,25 @@ def settings_of_dataset(defaults, layers, schema):
     StageError
         Naming where the fault lies, the key, its value, what is allowed and the remedy.
     """
-    settings = defaults
+    settings = dict(defaults)
     for layer in layers:
         settings = merge_settings(settings, layer.values)
         check_settings(settings, schema, layer.origin)
-    _check_order(settings, layers)
+    _check_order(settings, layers, schema)
     return {key: value for key, value in settings.items() if key not in OF_A_RUN}
 
 
-def settings_of_run(defaults, layers, schema):
-    """Return what the command line says of the run itself: a dict of `OF_A_RUN`, checked like `settings_of_dataset`."""
-    settings = defaults
+def settings_of_run(defaults: Settings, layers: Sequence[Layer], schema: Schema) -> dict[str, Any]:
+    """Return what the command line says of the run itself: `OF_A_RUN`, checked like `settings_of_dataset`."""
+    settings = dict(defaults)
     for layer in layers:
-        settings = merge_settings(
-            settings, {key: layer.values[key] for key in OF_A_RUN if key in layer.values}
-        )
+        of_run = {key: layer.values[key] for key in OF_A_RUN if key in layer.values}
+        settings = merge_settings(settings, of_run)
         check_settings(settings, schema, layer.origin)
     return {key: settings[key] for key in OF_A_RUN}
 
 
-def read_own_layers(path, *, may_lack=True):
+def read_own_layers(path: FilePath | None, *, may_lack: bool = True) -> list[Layer]:
     """Return the layers of a dataset's own file: none where it has none, if it may.
 
     Raises
@@ -149,7 +156,7 @@ def read_own_layers(path, *, may_lack=True):
     StageError
         If it says what is for the command line alone, or cannot be read.
     """
-    if may_lack and (path is None or not os.path.lexists(path)):
+    if path is None or (may_lack and not os.path.lexists(path)):
         return []
     values = read_yaml(path)
     for key in OF_A_RUN:
@@ -160,7 +167,7 @@ def read_own_layers(path, *, may_lack=True):
     return [Layer(str(path), values)]
 
 
-def find_origin(layers, *keys):
+def find_origin(layers: Sequence[Layer], *keys: str) -> str | None:
     """Return where one of some keys, or one below them, was set last; None where all are as by default.
 
     Parameters
@@ -176,7 +183,7 @@ def find_origin(layers, *keys):
     return None
 
 
-def locate_fault(fault, layers):
+def locate_fault(fault: str, layers: Sequence[Layer]) -> str:
     """Put the file that gives a setting before a fault that begins with the setting's key.
 
     Parameters
@@ -191,32 +198,28 @@ def locate_fault(fault, layers):
     return f"{origin}: {fault}" if origin else fault
 
 
-def _check_order(settings, layers):
+def _check_order(settings: Settings, layers: Sequence[Layer], schema: Schema) -> None:
     """Refuse limits that cross, in the name of what set one of them last."""
-    rules = [(*pair, True) for pair in _ABOVE] + [(*pair, False) for pair in _NOT_BELOW]
-    for high, low, apart in rules:
-        most, least = _value(settings, high), _value(settings, low)
-        if most < least or (apart and most == least):
-            origin = find_origin(layers, high, low) or _DEFAULTS
-            limit = "must be above" if apart else "must not be below"
+    values = dict(iterate_leaves(settings))
+    for key, node in iterate_keys(schema):
+        value = values[key]
+        for other in [*node.get("x-above", []), *node.get("x-at-least", [])]:
+            must_differ = other in node.get("x-above", [])
+            least = values[other]
+            if value < least or (must_differ and value == least):
+                origin = find_origin(layers, key, other) or _DEFAULTS
+                limit = "must be above" if must_differ else "must not be below"
+                raise StageError(
+                    f"{origin}: {key}: {value} {limit} {other} ({least}); change one of them, {_MANUAL}"
+                )
+        if node.get("x-falling") and any(rough < fine for rough, fine in pairwise(value)):
+            origin = find_origin(layers, key) or _DEFAULTS
             raise StageError(
-                f"{origin}: {high}: {most} {limit} {low} ({least}); change one of them, {_MANUAL}"
+                f"{origin}: {key}: {value} must not rise, from rough to fine; {_MANUAL}"
             )
-    key = "registration.icp_distances_m"
-    if any(rough < fine for rough, fine in pairwise(_value(settings, key))):
-        origin = find_origin(layers, key) or _DEFAULTS
-        raise StageError(
-            f"{origin}: {key}: {_value(settings, key)} must not rise, from rough to fine; {_MANUAL}"
-        )
 
 
-def _value(settings, key):
-    for part in key.split("."):
-        settings = settings[part]
-    return settings
-
-
-def iterate_leaves(settings, prefix=""):
+def iterate_leaves(settings: Settings, prefix: str = "") -> Iterator[tuple[str, Any]]:
     """Yield the values of nested settings with their keys, joined by dots: `("plan.method", "hull")`."""
     for key, value in settings.items():
         if isinstance(value, dict):
@@ -225,24 +228,39 @@ def iterate_leaves(settings, prefix=""):
             yield f"{prefix}{key}", value
 
 
-def _explain(fault, origin):
+def _explain(fault: ValidationError, origin: str) -> str:
     key = ".".join(map(str, fault.path)) or "settings"
+    node: Any = fault.schema
+    value: Any = fault.instance
     if fault.validator == "additionalProperties":
-        known = ", ".join(fault.schema["properties"])
-        extra = ", ".join(
-            sorted(str(key) for key in set(fault.instance) - set(fault.schema["properties"]))
-        )
+        known = ", ".join(node["properties"])
+        extra = ", ".join(sorted(str(key) for key in set(value) - set(node["properties"])))
         return f"{key}: unknown key {extra}; known are {known}"
     if fault.validator == "type" and fault.validator_value == "object":
-        return f"{key}: is {fault.instance!r}, expected keys with values below it; leave the section out if there are none"
-    if origin == COMMAND_LINE and isinstance(fault.instance, str) and fault.validator == "type":
+        return f"{key}: is {value!r}, expected keys with values below it; leave the section out if there are none"
+    if origin == COMMAND_LINE and isinstance(value, str) and fault.validator == "type":
         return f"{key}: {fault.message} (nested values of --config arrive as text: put them into a file for --configfile)"
     if fault.validator in ("anyOf", "oneOf"):
-        numeral = origin == COMMAND_LINE and isinstance(fault.instance, (int, float))
-        quoted = (
-            f" (a name of digits wants quotes: --config '{key}=\"{fault.instance}\"')"
-            if numeral
-            else ""
-        )
-        return f"{key}: is {fault.instance!r}{quoted}, expected: {fault.schema['description'].rstrip('.')}"
+        numeral = origin == COMMAND_LINE and isinstance(value, (int, float))
+        hint = f" (a name of digits wants quotes: --config '{key}=\"{value}\"')" if numeral else ""
+        return f"{key}: is {value!r}{hint}, expected: {node['description']}"
     return f"{key}: {fault.message}"
+
+
+def _check_files(paths: Sequence[str]) -> None:
+    """Say of every file whether it can be given as settings of a run, before Snakemake itself reads it."""
+    schema = read_schema(_ROOT / "workflow/schemas/config.schema.yaml")
+    for path in paths:
+        values = read_yaml(path)
+        if not values:
+            raise StageError(
+                f"{path}: holds no settings; write `section: {{key: value}}`, or leave CONFIG out"
+            )
+        check_settings(merge_settings(default_settings(schema), values), schema, path)
+
+
+if __name__ == "__main__":
+    try:
+        _check_files(sys.argv[1:])
+    except StageError as error:
+        raise SystemExit(f"scanplan: {error}") from None

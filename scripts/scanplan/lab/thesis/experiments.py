@@ -57,9 +57,5 @@ def list_surveys(*, defaults, given, schema, config):
 
 
 def replace_seeds(settings, seed):
-    """Return settings with every seed replaced; the given ones are not changed."""
-    walls = {extractor: values | {"seed": seed} for extractor, values in settings["walls"].items()}
-    sections = {
-        name: settings[name] | {"seed": seed} for name in ("simulate", "hulls", "selection")
-    }
-    return settings | sections | {"walls": walls}
+    """Return settings with both seeds replaced, the simulation's with it; the given ones are not changed."""
+    return settings | {"seed": seed, "simulate": settings["simulate"] | {"seed": seed}}
