@@ -22,12 +22,12 @@ from scanplan.project.provenance import (
     end_results,
 )
 from scanplan.project.settings import (
-    COMMAND_LINE,
     Layer,
     locate_fault,
     read_defaults,
     settings_of_run,
 )
+from scanplan.project.settings_check import COMMAND_LINE
 from scanplan.project.settings_schema import list_choices, read_schema
 from scanplan.project.yaml_file import read_yaml
 from scanplan.selection import methods

@@ -1,4 +1,4 @@
-"""The lists of settings in config/ and the tables of the manual, written from the schema: `make settings`."""
+"""The lists of settings in config/ and the manual's tables, written from the schema."""
 
 import json
 import re
@@ -14,14 +14,23 @@ _MANUAL = "config/README.md"
 _WIDTH = 100
 _LABORATORY = ("simulate", "evaluation", "thesis")
 _HEADS = {
-    "config.yaml": """What a user may want to set, with its unit, range and meaning; the manual, README.md, has more.
-Change values here for all datasets; those of one belong into a file dataset.yaml in its folder, those of a run into a
-file for CONFIG= (--configfile). advanced.yaml and simulate.yaml list all other keys.""",
-    "advanced.yaml": """Tuned keys that few surveys want otherwise, with their defaults. This file is not read: copy what you change, with the
-sections around it, into config.yaml, a dataset.yaml or a file for CONFIG=.""",
-    "simulate.yaml": """What surveys are simulated with and measured by, with its defaults. This file is not read: copy what you change, with
-the sections around it, into the file of a simulated survey (see surveys/) or a file for CONFIG=.""",
+    "config.yaml": """\
+What a user may want to set, each key with its meaning [unit, range]; README.md beside has more.
+Values here hold for all datasets; those of one belong into a file dataset.yaml in its folder, those
+of a run into a file for CONFIG= (--configfile). advanced.yaml and simulate.yaml list all others.
+""",
+    "advanced.yaml": """\
+Tuned keys that few surveys want otherwise, each with its meaning [unit, range].
+This file is not read: copy what you change, with the sections around it, into config.yaml, a
+dataset.yaml or a file for CONFIG=.
+""",
+    "simulate.yaml": """\
+What surveys are simulated with and measured by, each key with its meaning [unit, range].
+This file is not read: copy what you change, with the sections around it, into the file of a
+simulated survey (see surveys/) or a file for CONFIG=.
+""",
 }
+_WRITTEN = "`make settings` writes it anew, from workflow/schemas/config.schema.yaml."
 _MARKED = re.compile(r"(?ms)^<!-- settings (\S+) -->\n.*?^<!-- end -->$")
 _TABLE_HEAD = "| key | default | unit, range | meaning |\n|---|---|---|---|\n"
 
@@ -41,7 +50,7 @@ def _sections_of(schema: Schema, name: str) -> Schema:
 
 
 def _format_file(head: str, sections: Schema) -> str:
-    lines = [f"# {line}" for line in [*head.splitlines(), "Written by `make settings`."]]
+    lines = [f"# {line}" for line in [*head.splitlines(), _WRITTEN]]
     for key, node in sections.items():
         lines += ["", *_format_node(key, node, "")]
     return "\n".join(lines) + "\n"
@@ -69,8 +78,8 @@ def fill_manual(manual: str, schema: Schema) -> str:
     Parameters
     ----------
     manual : str
-        Where it says `<!-- settings poses -->`, a table of that section stands up to `<!-- end -->`; `general` is for
-        what is in no section.
+        Where it says `<!-- settings poses -->`, a table of that section stands up to
+        `<!-- end -->`; `general` is for what is in no section.
     schema : dict
     """
 

@@ -3,13 +3,17 @@
 No heavy imports: this runs whenever the workflow is parsed.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import yaml
 
-from scanplan.types import FilePath, Settings
+if TYPE_CHECKING:
+    from scanplan.types import FilePath
+
 
 ADVANCED = "advanced"
 """The section of the tuned keys, each in a section of its own name below it."""
@@ -17,7 +21,7 @@ ADVANCED = "advanced"
 Schema = dict[str, Any]
 """A JSON schema, or the part of it that describes a key or a section."""
 
-# a tenth of the time that Python takes; the schema is ours, so that no message need say where a fault lies
+# a tenth of the time that Python takes; no message need say where in the schema a fault lies
 _Loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
@@ -27,7 +31,8 @@ def read_schema(path: FilePath) -> Schema:
     Returns
     -------
     dict
-        With the `$defs` put in where a key refers to one, and every section closed to keys that it does not name.
+        With the `$defs` put in where a key refers to one, and every section closed to keys that it
+        does not name.
     """
     schema = yaml.load(Path(path).read_text(encoding="utf-8"), _Loader)
     return _complete(schema, schema.pop("$defs", {}))

@@ -1,22 +1,26 @@
 """What each stage receives of a dataset's settings, as keywords.
 
-The same height, width or gap has one key and goes to every stage that asks for it, under the name that the stage
-knows it by. No heavy imports: this runs while the workflow is being parsed.
+The same height, width or gap has one key and goes to every stage that asks for it, under the name
+that the stage knows it by. No heavy imports: this runs while the workflow is being parsed.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from scanplan.project.settings import merge_settings
 from scanplan.project.settings_schema import ADVANCED
-from scanplan.types import Settings
+
+if TYPE_CHECKING:
+    from scanplan.types import Settings
 
 Keywords = dict[str, Any]
 
-# single scans and the plan were tuned apart, at 1.9 and 1.8 m: higher, walls above doors close ways through in the
-# plan; lower, rays over furniture count as going through a wall
+# single scans and the plan were tuned apart, at 1.9 and 1.8 m: higher, walls above doors close ways
+# through in the plan; lower, rays over furniture count as going through a wall
 _PLAN_BELOW_DOOR_M = 0.1
-# wider pairs faces that merely lie side by side, narrower parts the sides of walls that are short or thinly seen
+# wider pairs faces that merely lie side by side, narrower parts the sides of short walls
 _PAIR_MAX_ANGLE_DEG = 5.0
 _FURNITURE = ("wall_height_m", "furniture_height_m", "furniture_length_m", "furniture_depth_m")
 _POINTS_ONLY = ("min_range_m", "max_range_m", "deskew")
@@ -64,14 +68,14 @@ def select_visibility(settings: Settings) -> Keywords:
 
 
 def select_wall_cells(settings: Settings, limits: Iterable[str]) -> Keywords:
-    """Return what makes returns a wall: some limits of the thesis's extractor, and the size of the cells."""
+    """Return what makes returns a wall: limits of the thesis's extractor, and the cells' size."""
     extractor = select_extractor(settings, "cluster_ransac")
     own = select_section(settings, "selection", "wall_length")
     return {name: extractor[name] for name in limits} | own
 
 
 def select_order(settings: Settings, names: Iterable[str]) -> Keywords:
-    """Return the settings that an ordering depends on, by the names of `selection.methods.SETTINGS`."""
+    """Return the settings that an ordering depends on, see `selection.methods.SETTINGS`."""
     selection = select_section(settings, "selection")
     budget = {name: selection["stop"][name] for name in ("max_points", "max_bytes")}
     known = selection | {"budget": budget, "seed": settings["seed"]}
@@ -79,7 +83,7 @@ def select_order(settings: Settings, names: Iterable[str]) -> Keywords:
 
 
 def select_extractor(settings: Settings, extractor: str) -> Keywords:
-    """Return the keywords of an extractor's settings: what both share, the building's measures, and its own."""
+    """Return the keywords of an extractor's settings: shared ones, the building's, its own."""
     walls, building = select_section(settings, "walls"), settings["building"]
     shared = {key: value for key, value in walls.items() if not isinstance(value, dict)}
     measures = {

@@ -1,23 +1,27 @@
 """Files of settings: plain data, read without executing anything.
 
-PyYAML reads YAML 1.1, as Snakemake itself does with a file for --configfile; by YAML 1.2, as ruamel.yaml reads it,
-`yes`, `010` and `1:30` would say something else to scanplan than to Snakemake.
+PyYAML reads YAML 1.1, as Snakemake itself does with a file for --configfile; by YAML 1.2, as
+ruamel.yaml reads it, `yes`, `010` and `1:30` would mean something else here than to Snakemake.
 """
 
+from __future__ import annotations
+
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import yaml
 
 from scanplan.errors import StageError
-from scanplan.types import FilePath
+
+if TYPE_CHECKING:
+    from scanplan.types import FilePath
 
 
 class _Loader(yaml.SafeLoader):
     """Plain data, every value written once.
 
-    A duplicate key is refused, as its first values would be lost without a word; so are aliases and merge keys, as a
-    few lines of them stand for more values than any memory holds.
+    A duplicate key is refused, as its first values would be lost without a word; so are aliases and
+    merge keys, as a few lines of them stand for more values than any memory holds.
     """
 
     def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
@@ -55,7 +59,7 @@ def read_yaml(path: FilePath) -> dict[Any, Any]:
     Raises
     ------
     StageError
-        If it is no YAML or no mapping, has a duplicate key, or lets values stand for others (aliases, merge keys).
+        If it is no YAML or no mapping, has a duplicate key, an alias or a merge key.
     """
     try:
         values = yaml.load(Path(path).read_text(encoding="utf-8"), _Loader) or {}
