@@ -112,7 +112,8 @@ def _format_rows(nodes: Schema, prefix: str = "") -> list[str]:
             rows += _format_rows(node["properties"], f"{name}.")
         else:
             default, limits = _format_value(node["default"]), _format_limits(node)
-            rows.append(f"| `{name}` | {default} | {limits} | {node['description']} |\n")
+            row = f"| `{name}` | {default} | {limits} | {node['description']} |\n"
+            rows.append(row.replace("|  |", "| |"))
     return rows
 
 
