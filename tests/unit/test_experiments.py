@@ -1,4 +1,4 @@
-"""The surveys of the thesis's experiments: names, seeds, settings, and whose recordings they share."""
+"""The surveys of the thesis's experiments: names, seeds, settings, shared recordings."""
 
 import pytest
 

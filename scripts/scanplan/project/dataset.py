@@ -96,15 +96,11 @@ def name_datasets(given: FilePath | list[FilePath] | None) -> dict[str, str | No
         if other and provenance.identify_source(path) == provenance.identify_source(other):
             raise StageError(f"{path}: is given twice, first as {other}; leave one out")
         if other:
-            raise StageError(
-                f"{path}: its results would be called {name} like those of {other};"
-                " rename one of them"
-            )
+            fault = f"its results would be called {name} like those of {other}"
+            raise StageError(f"{path}: {fault}; rename one of them")
         if name == RESERVED:
-            raise StageError(
-                f"{path}: results/{name} is the place of the thesis's experiments;"
-                " rename the dataset"
-            )
+            fault = f"results/{name} is the place of the thesis's experiments"
+            raise StageError(f"{path}: {fault}; rename the dataset")
         paths[name] = path
     return paths
 
@@ -149,13 +145,9 @@ def describe_dataset(
         _check_survey(path, own)
         found = describe_simulated(name, settings, drawings)
     else:
-        found = Dataset(
-            name,
-            settings,
-            tuple(dataset_files.find_files(path)),
-            _truth_beside(Path(path)),
-            notes=tuple(dataset_files.list_overlooked(path)),
-        )
+        recordings = tuple(dataset_files.find_files(path))
+        notes = tuple(dataset_files.list_overlooked(path))
+        found = Dataset(name, settings, recordings, _truth_beside(Path(path)), notes=notes)
     return replace(found, layers=layers, source=source)
 
 
@@ -165,24 +157,19 @@ def _read_own_settings(path: FilePath | None) -> list[Layer]:
     if not dataset_files.is_survey_file(path):
         return read_own_layers(Path(path, dataset_files.SETTINGS_FILE))
     if not Path(path).is_file():
-        raise StageError(
-            f"{path}: does not exist; give a YAML file with a section `simulate`, a folder or a"
-            " recording"
-        )
+        remedy = "give a YAML file with a section `simulate`, a folder or a recording"
+        raise StageError(f"{path}: does not exist; {remedy}")
     if dataset_files.is_rosbag2_metadata(path):
-        raise StageError(
-            f"{path}: describes a rosbag2 recording; give its folder as the dataset,"
-            f" {Path(path).parent}"
-        )
+        remedy = f"give its folder as the dataset, {Path(path).parent}"
+        raise StageError(f"{path}: describes a rosbag2 recording; {remedy}")
     return read_own_layers(path)
 
 
 def _check_survey(path: FilePath | None, own: Sequence[Layer]) -> None:
     if path is not None and not any("simulate" in layer.values for layer in own):
-        raise StageError(
-            f"{path}: has no section `simulate`, which says what is surveyed; to use it as"
-            " settings of a dataset, give it as CONFIG (--configfile)"
-        )
+        fault = "has no section `simulate`, which says what is surveyed"
+        remedy = "to use it as settings of a dataset, give it as CONFIG (--configfile)"
+        raise StageError(f"{path}: {fault}; {remedy}")
 
 
 def describe_simulated(name: str, settings: dict[str, Any], drawings: FilePath) -> Dataset:
@@ -252,10 +239,8 @@ def find_truth(found: Dataset) -> tuple[str, str]:
         If its truth is not known.
     """
     if found.truth is None:
-        raise StageError(
-            f"{found.name}: has no truth to be evaluated against; put truth.geojson and"
-            " truth_poses.tum into its folder"
-        )
+        remedy = "put truth.geojson and truth_poses.tum into its folder"
+        raise StageError(f"{found.name}: has no truth to be evaluated against; {remedy}")
     return found.truth
 
 

@@ -78,12 +78,12 @@ def explain_old_keys(given: Iterable[str], known: Iterable[str]) -> str | None:
         Keys that may be set.
     """
     known = set(known)
-    found = [_what_became(key, known) for key in given if key not in known]
-    told = [what for what in found if what]
-    if not told:
+    explained = [_what_became(key, known) for key in given if key not in known]
+    changes = [change for change in explained if change]
+    if not changes:
         return None
-    more = f", and {len(told) - _MOST_NAMED} more" if len(told) > _MOST_NAMED else ""
-    return "old keys: " + ", ".join(told[:_MOST_NAMED]) + more
+    more = f", and {len(changes) - _MOST_NAMED} more" if len(changes) > _MOST_NAMED else ""
+    return "old keys: " + ", ".join(changes[:_MOST_NAMED]) + more
 
 
 def _what_became(key: str, known: set[str]) -> str | None:

@@ -11,7 +11,7 @@ from scanplan.project.settings_schema import ADVANCED, Schema, is_section, read_
 _ROOT = Path(__file__).parents[3]
 _SCHEMA = "workflow/schemas/config.schema.yaml"
 _MANUAL = "config/README.md"
-_WIDTH = 100
+_WIDTH = 100  # columns, as of the code
 _LABORATORY = ("simulate", "evaluation", "thesis")
 _HEADS = {
     "config.yaml": """\
@@ -57,12 +57,10 @@ def _format_file(head: str, sections: Schema) -> str:
 
 
 def _format_node(key: str, node: Schema, indent: str) -> list[str]:
-    said = _first_sentence(node["description"])
-    if not is_section(node):
-        limits = _format_limits(node)
-        said = f"{said} [{limits}]" if limits else said
+    limits = "" if is_section(node) else _format_limits(node)
+    meaning = _first_sentence(node["description"]) + (f" [{limits}]" if limits else "")
     comment = textwrap.wrap(
-        said, _WIDTH, initial_indent=f"{indent}# ", subsequent_indent=f"{indent}# "
+        meaning, _WIDTH, initial_indent=f"{indent}# ", subsequent_indent=f"{indent}# "
     )
     if not is_section(node):
         return [*comment, f"{indent}{key}: {_format_value(node['default'])}"]

@@ -17,11 +17,8 @@ if TYPE_CHECKING:
 
 Keywords = dict[str, Any]
 
-# single scans and the plan were tuned apart, at 1.9 and 1.8 m: higher, walls above doors close ways
-# through in the plan; lower, rays over furniture count as going through a wall
-_PLAN_BELOW_DOOR_M = 0.1
-# wider pairs faces that merely lie side by side, narrower parts the sides of short walls
-_PAIR_MAX_ANGLE_DEG = 5.0
+_PLAN_BELOW_DOOR_M = 0.1  # less: walls above doors close ways through; more: low openings are lost
+_PAIR_MAX_ANGLE_DEG = 5.0  # more pairs what merely lies side by side, less parts short walls' sides
 _FURNITURE = ("wall_height_m", "furniture_height_m", "furniture_length_m", "furniture_depth_m")
 _POINTS_ONLY = ("min_range_m", "max_range_m", "deskew")
 _OF_THE_WORKFLOW = ("building", "recording")
