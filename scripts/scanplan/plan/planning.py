@@ -89,9 +89,7 @@ class Plan:
     range_errors_m: np.ndarray
 
 
-def make_plan_settings(
-    *, merge, trace, ranges, furniture, pair, openings, rooms, trust, right_angles=None
-):
+def make_plan_settings(*, merge, trace, ranges, furniture, pair, openings, rooms, trust):
     """Return settings from keywords of each part.
 
     Raises
