@@ -89,7 +89,7 @@ def scan_free_space(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
     polygon = shapely.polygons(outline_m + np.asarray(sensor_xyz_m, float)[:2])
     return {
         "scan_id": scan_id,
-        "area_m2": polygon.area,
+        "area_m2": float(shapely.area(polygon)),
         "geometry": shapely.to_wkb(polygon, byte_order=1),
     }
 
