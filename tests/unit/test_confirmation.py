@@ -1,6 +1,6 @@
 import numpy as np
 
-from scanplan.registration import confirmation, sequential
+from scanplan.registration import mapping, sequential
 
 
 def verdicts(places):
@@ -16,9 +16,7 @@ def verdicts(places):
 
 def unconfirmed(places, linked, apart_m=5.0):
     return np.flatnonzero(
-        confirmation.find_unconfirmed(
-            verdicts(places), np.isin(range(len(places)), linked), apart_m
-        )
+        mapping.find_unconfirmed(verdicts(places), np.isin(range(len(places)), linked), apart_m)
     )
 
 
@@ -43,5 +41,5 @@ def test_scans_that_are_far_apart_need_not_confirm_each_other():
 
 
 def test_a_dropped_anchor_has_its_reason_and_the_localisers_pose():
-    found = confirmation.drop_anchor(verdicts([1.0])[0], np.eye(4))
+    found = mapping.drop_anchor(verdicts([1.0])[0], np.eye(4))
     assert not found.kept and found.reason == "unconfirmed" and found.world_from_sensor[0, 3] == 0

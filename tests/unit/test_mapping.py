@@ -10,7 +10,8 @@ from scipy.spatial.transform import Rotation
 from scanplan.geometry import se3
 from scanplan.lab.evaluation import pose_errors
 from scanplan.project.settings import read_yaml
-from scanplan.registration import constraint_table, mapping
+from scanplan.registration import mapping, results
+from scanplan.registration.registration_settings import registration_settings
 from scanplan.stage import workers
 from scanplan.store import scan_cache, schemas, tables
 
@@ -70,9 +71,7 @@ def register(drive, folder, threads=1, **changes):
     scans, priors, _ = drive
     section = read_yaml(ROOT / "config/config.yaml")["registration"]
     graph = section["graph"] | changes.pop("graph", {})
-    settings = mapping.registration_settings(
-        section | {"batch_size": 20} | changes | {"graph": graph}
-    )
+    settings = registration_settings(section | {"batch_size": 20} | changes | {"graph": graph})
     found = (SimpleNamespace(xyz_m=xyz_m) for xyz_m in scans)
     survey = mapping.CandidateScans(np.arange(N) * 5, priors, planar=False)
     with (
@@ -121,7 +120,7 @@ def test_cores_change_nothing(drive, mapped, tmp_path):
 def test_links_make_a_table(drive, mapped, tmp_path):
     result = mapped[1]
     tables.write_table(
-        tmp_path / "edges.parquet", schemas.EDGES, constraint_table.constraint_columns(result)
+        tmp_path / "edges.parquet", schemas.EDGES, results.constraint_columns(result)
     )
     edges = tables.read_table(tmp_path / "edges.parquet", schemas.EDGES)
     assert set(edges["kind"]) == {"sequence", "loop"} and edges["inlier"].all()
@@ -132,14 +131,14 @@ def test_links_make_a_table(drive, mapped, tmp_path):
     )
     truth = se3.invert_pose(true[edges["target"] // 5]) @ true[edges["source"] // 5]
     assert np.median(np.linalg.norm((motion - truth)[:, :3, 3], axis=1)) < 0.01
-    assert "sequence (0 outliers)" in constraint_table.summarise_constraints(result)
+    assert "sequence (0 outliers)" in results.summarise_constraints(result)
 
 
 def test_no_links_make_an_empty_table(tmp_path):
     tables.write_table(
         tmp_path / "edges.parquet",
         schemas.EDGES,
-        constraint_table.constraint_columns(None),
+        results.constraint_columns(None),
         allow_empty=True,
     )
     assert (
@@ -148,7 +147,7 @@ def test_no_links_make_an_empty_table(tmp_path):
         )
         == 0
     )
-    assert constraint_table.summarise_constraints(None) == "no links: poses as given"
+    assert results.summarise_constraints(None) == "no constraints: poses as given"
 
 
 def test_a_jump_of_the_localiser_by_two_metres_loses_no_region(drive, mapped, tmp_path):
