@@ -123,7 +123,7 @@ def test_thinning_keeps_the_mean_of_each_cube():
 
 
 def corridor(length_m, *, planar, seed):
-    """Two walls 2 m apart, with a floor in space, of which the sensor sees the same at every place along it."""
+    """Two walls 2 m apart, with a floor in space: the same is seen at every place along it."""
     rng = np.random.default_rng(seed)
     x, side = rng.uniform(-length_m, length_m, 20_000), rng.integers(0, 2 if planar else 3, 20_000)
     y = np.choose(side, [-1.0 + 0 * x, 1.0 + 0 * x, rng.uniform(-1, 1, len(x))])
@@ -153,7 +153,7 @@ def test_what_a_corridor_does_not_tell_is_left_to_the_start(planar):
 
 
 def test_the_information_is_that_of_the_errors():
-    """Repeated with new noise, the squared error in units of the stated covariance is no more than its size."""
+    """With new noise, the squared error in units of the stated covariance is at most its size."""
     rng, squared = np.random.default_rng(4), []
     for _ in range(12):
         source, target = (
@@ -218,7 +218,7 @@ def test_the_two_sides_of_a_partition_are_not_drawn_together():
         return rng.uniform(low, high, (n, 3))
 
     def seen_from(sensor_x_m, face_x_m):
-        """Side walls, floor and end walls of two rooms, and one side of what is between them beside a wide door."""
+        """Two rooms, and one side of the partition between them beside a wide door."""
         shared = [
             *(plane(1500, (-4, y, 0), (4, y, 2.5)) for y in (-1.5, 1.5)),
             plane(1500, (-4, -1.5, 0), (4, 1.5, 0)),

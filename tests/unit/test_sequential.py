@@ -247,7 +247,7 @@ def test_the_literal_algorithm_keeps_the_same_scans_at_the_same_places():
 
 
 def test_the_preset_judges_as_the_thesis_does(project_root):
-    """Scans of a part of the hall each, so that fitness falls below 0.96 for some and not for others."""
+    """Scans of a part of the hall each, so that fitness falls below 0.96 for some of them."""
     defaults, preset = (
         settings.read_yaml(project_root / f"config/{n}.yaml") for n in ("config", "thesis")
     )
@@ -303,7 +303,7 @@ def test_scans_are_judged_by_those_that_may_show_the_same():
     ("wall_of_second", "reason"), [("east", "kept"), ("north", "low_refined_fitness")]
 )
 def test_what_faces_elsewhere_is_no_fit(wall_of_second, reason):
-    """Two scans with a bit of floor in common: of the same wall, or of two that face differently."""
+    """Two scans with some floor in common: of the same wall, or of two that face differently."""
     rng = np.random.default_rng(3)
     floor = np.column_stack([rng.uniform(-4, 4, (300, 2)), np.full(300, -0.4)])
     along, up = rng.uniform(-3, 3, 2000), rng.uniform(0, 1, 2000)

@@ -19,7 +19,7 @@ FACE_MM = 0.4  # a surface alone: wider than an outline, as its wall has no seco
 OPENING_MM = 0.13  # openings lie below the cut or in it: narrow
 DIMENSION_MM = 0.15  # dimension and extension lines: narrow (ISO 129-1)
 TICK_MM = 0.3  # oblique strokes at the ends of dimension lines (ISO 129-1), wider than these
-PANE_MM = 0.8  # thickness of a window in a wall of unknown thickness: three lines can be told apart
+PANE_MM = 0.8  # thickness of a window in a wall of unknown thickness: its three lines stay apart
 
 DASHED = (0, (4, 2))  # in line widths: ISO 128's dashed line, for what is not seen
 DOOR_DASHED = (0, (3, 2))  # shorter: an opening is short

@@ -1,14 +1,14 @@
 """The plan as a building model: IFC4, one storey."""
 
-import math
 from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 import shapely
 from ifcopenshell import entity_instance
 from shapely.geometry import Polygon
 
-from scanplan.exports.ifc_model import IfcModel
+from scanplan.exports.ifc_model import Frame, IfcModel
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.types import FloatArray
@@ -54,28 +54,10 @@ def format_ifc(plan: FloorPlan) -> str:
     return model.text()
 
 
-class _Frame:
-    """The frame of a line (2, 2): x along it from its start, y to its left."""
-
-    def __init__(self, line: FloatArray) -> None:
-        self.length_m = math.dist(*line)
-        self.along = (line[1] - line[0]) / self.length_m
-        self._start = line[0]
-
-    def move_here(self, polygon: Polygon) -> Polygon:
-        """Return a polygon of the map in this frame."""
-        turn = np.array([self.along, (-self.along[1], self.along[0])])
-        return shapely.transform(polygon, lambda xy_m: (xy_m - self._start) @ turn.T)
-
-    def placement(self, model: IfcModel) -> entity_instance:
-        """Return the placement of a product in this frame, on the storey's floor."""
-        return model.placement((*self._start, 0), self.along, model.storey.ObjectPlacement)
-
-
 def _add_wall(model: IfcModel, plan: FloorPlan, row: int) -> entity_instance:
     line = floorplan.centrelines_m(plan.walls)[row]
     height_m = float(plan.heights_m[row])
-    frame = _Frame(line)
+    frame = Frame(line)
     number = str(plan.walls["wall"][row])
     wall = model.root(
         "IfcWall",
@@ -129,53 +111,69 @@ def _add_opening(
     model: IfcModel, plan: FloorPlan, row: int, walls: list[entity_instance]
 ) -> entity_instance | None:
     """Add an opening to its wall, and return the door or window in it; None of a passage."""
-    columns = plan.openings
-    line = floorplan.centrelines_m(columns)[row]
-    frame = _Frame(line)
-    kind = columns["type"][row]
-    name = f"{kind.capitalize()} {columns['opening'][row]}"
-    low_m, high_m = _vertical_extent_m(plan, row)
-    # made before the opening: entities are numbered in their order
-    placement = frame.placement(model)
-    opening = None
+    line = floorplan.centrelines_m(plan.openings)[row]
+    frame = Frame(line)
+    kind = plan.openings["type"][row]
+    extent_m = _vertical_extent_m(plan, row)
+    attributes = {
+        "Name": f"{kind.capitalize()} {plan.openings['opening'][row]}",
+        "ObjectPlacement": frame.placement(model),
+    }
+    void = None
     host = plan.hosts[row]
     if host >= 0 and plan.gaps[row].intersects(plan.bodies[host]):
-        opening = model.root(
-            "IfcOpeningElement",
-            _id_words(line),
-            Name=name,
-            ObjectPlacement=placement,
-            PredefinedType="OPENING",
-        )
-        void = model.prism(frame.move_here(plan.gaps[row]), low_m, high_m)
-        opening.Representation = model.shape([void])
-        model.root(
-            "IfcRelVoidsElement",
-            _id_words(line),
-            RelatingBuildingElement=walls[host],
-            RelatedOpeningElement=opening,
-        )
+        gap = frame.move_here(plan.gaps[row])
+        void = _add_void(model, walls[host], line, gap, extent_m, attributes)
     if kind not in _FILLED_BY:
         return None
-    filling = model.root(
-        _FILLED_BY[kind],
-        _id_words(line),
-        Name=name,
-        ObjectPlacement=placement,
-        OverallHeight=high_m - low_m,
-        OverallWidth=frame.length_m,
-        PredefinedType=kind.upper(),
-    )
-    leaf = shapely.box(0, -_LEAF_M / 2, frame.length_m, _LEAF_M / 2)
-    filling.Representation = model.shape([model.prism(leaf, low_m, high_m)])
-    if opening is not None:
+    filling = _add_filling(model, kind, line, frame.length_m, extent_m, attributes)
+    if void is not None:
         model.root(
             "IfcRelFillsElement",
             _id_words(line),
-            RelatingOpeningElement=opening,
+            RelatingOpeningElement=void,
             RelatedBuildingElement=filling,
         )
     _describe_filling(model, plan, row, filling)
+    return filling
+
+
+def _add_void(
+    model: IfcModel,
+    wall: entity_instance,
+    line: FloatArray,
+    gap: Polygon,
+    extent_m: tuple[float, float],
+    attributes: dict[str, Any],
+) -> entity_instance:
+    """Cut an opening, `gap` in its own frame, out of a wall."""
+    key = _id_words(line)
+    void = model.root("IfcOpeningElement", key, PredefinedType="OPENING", **attributes)
+    void.Representation = model.shape([model.prism(gap, *extent_m)])
+    model.root("IfcRelVoidsElement", key, RelatingBuildingElement=wall, RelatedOpeningElement=void)
+    return void
+
+
+def _add_filling(
+    model: IfcModel,
+    kind: str,
+    line: FloatArray,
+    width_m: float,
+    extent_m: tuple[float, float],
+    attributes: dict[str, Any],
+) -> entity_instance:
+    """Add a door or window."""
+    low_m, high_m = extent_m
+    filling = model.root(
+        _FILLED_BY[kind],
+        _id_words(line),
+        OverallHeight=high_m - low_m,
+        OverallWidth=width_m,
+        PredefinedType=kind.upper(),
+        **attributes,
+    )
+    leaf = shapely.box(0, -_LEAF_M / 2, width_m, _LEAF_M / 2)
+    filling.Representation = model.shape([model.prism(leaf, low_m, high_m)])
     return filling
 
 

@@ -1,11 +1,13 @@
 """Building an IFC4 file: the tree of a building, solids, properties, identifiers that stay."""
 
+import math
 import uuid
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import ifcopenshell
 import ifcopenshell.guid
+import numpy as np
 import shapely
 from ifcopenshell import entity_instance
 from shapely.geometry import Polygon
@@ -213,6 +215,24 @@ class IfcModel:
             RelatedObjects=[product],
             RelatingPropertyDefinition=definition,
         )
+
+
+class Frame:
+    """The frame of a line (2, 2): x along it from its start, y to its left."""
+
+    def __init__(self, line: FloatArray) -> None:
+        self.length_m = math.dist(*line)
+        self.along = (line[1] - line[0]) / self.length_m
+        self._start = line[0]
+
+    def move_here(self, polygon: Polygon) -> Polygon:
+        """Return a polygon of the map in this frame."""
+        turn = np.array([self.along, (-self.along[1], self.along[0])])
+        return shapely.transform(polygon, lambda xy_m: (xy_m - self._start) @ turn.T)
+
+    def placement(self, model: IfcModel) -> entity_instance:
+        """Return the placement of a product in this frame, on the storey's floor."""
+        return model.placement((*self._start, 0), self.along, model.storey.ObjectPlacement)
 
 
 def _compress(key: str) -> str:
