@@ -2,7 +2,8 @@
 
 from scanplan.recordings.motion import trajectory
 from scanplan.recordings.survey import open_survey
-from scanplan.registration import constraint_table, mapping, results
+from scanplan.registration import mapping, results
+from scanplan.registration.registration_settings import registration_settings
 from scanplan.stage import log, workers
 from scanplan.store import scan_cache, schemas, tables
 
@@ -48,7 +49,7 @@ def register_scans(
             )
             counted = (dropped.append(scan.n_dropped) or scan for scan in found)
             judged, links = mapping.register_scans(
-                survey, counted, raw, thinned, run, mapping.registration_settings(settings)
+                survey, counted, raw, thinned, run, registration_settings(settings)
             )
         results.check_any_kept(judged, sum(dropped), recordings[0])
         rows = [row for row, verdict in enumerate(judged) if verdict.kept]
@@ -59,11 +60,10 @@ def register_scans(
                     scan_id, results.move_to_map(scan_id, xyz_m, judged[row].world_from_sensor)
                 )
     log.log_line(
-        f"register_scans: {results.summarise_registration(judged, sum(dropped))}; {constraint_table.summarise_constraints(links)}"
+        f"register_scans: {results.summarise_registration(judged, sum(dropped))};"
+        f" {results.summarise_constraints(links)}"
     )
-    tables.write_table(
-        edges, schemas.EDGES, constraint_table.constraint_columns(links), allow_empty=True
-    )
+    tables.write_table(edges, schemas.EDGES, results.constraint_columns(links), allow_empty=True)
     tables.write_table(
         registered,
         schemas.REGISTRATION,
