@@ -8,8 +8,8 @@ import shapely
 
 from scanplan.geometry import intersections
 from scanplan.geometry.lines import Line
+from scanplan.plan import wall_ground
 from scanplan.plan.wall_pairs import PlanWall
-from scanplan.rays import free_space
 
 _NEAR_M = 0.1  # what registration and a line's fit may be wrong by together, twice over
 _REACH_M = 0.3  # a wall that ends this near before a pane's line meets it: half of a thick wall
@@ -39,7 +39,7 @@ def find_glass_walls(
         How thick a wall is taken for of which one side is known.
     """
     ways = [(wall, opening) for wall in walls for opening in wall.openings]
-    grounds = [free_space.opening_polygon(*way, unpaired_m).buffer(_NEAR_M) for way in ways]
+    grounds = [wall_ground.opening_polygon(*way, unpaired_m).buffer(_NEAR_M) for way in ways]
     open_m2 = shapely.union_all(grounds)
     shapely.prepare(open_m2)
     stacked = intersections.stack_spans(walls)

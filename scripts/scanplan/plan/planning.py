@@ -7,7 +7,15 @@ import numpy as np
 import shapely
 
 from scanplan.extraction.furniture import FurnitureLimits
-from scanplan.plan import glass, half_height, plan_tables, uncertainty, wall_faces, windows
+from scanplan.plan import (
+    glass,
+    half_height,
+    plan_tables,
+    uncertainty,
+    wall_faces,
+    wall_ground,
+    windows,
+)
 from scanplan.plan.faces.merging import MergeSettings, merge_segments
 from scanplan.plan.faces.tracing import TracedFaces, trace_faces
 from scanplan.plan.openings import OpeningSettings
@@ -227,9 +235,9 @@ def _find_free_floor(
     walls: list[PlanWall], floor: shapely.MultiPolygon, unpaired_m: float
 ) -> list[shapely.Polygon]:
     """Return the polygons of floor that rays went over, openings with it, walls without."""
-    strips = free_space.wall_strips(walls, unpaired_m)
+    strips = wall_ground.wall_strips(walls, unpaired_m)
     ways = [
-        free_space.opening_polygon(wall, opening, unpaired_m)
+        wall_ground.opening_polygon(wall, opening, unpaired_m)
         for wall in walls
         for opening in wall.openings
         if not opening.is_above_wall

@@ -8,6 +8,7 @@ import shapely
 from shapely.geometry import LineString, MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.plan import wall_ground
 from scanplan.plan.wall_pairs import PlanWall
 from scanplan.rays import free_space
 from scanplan.types import Array, FloatArray
@@ -99,7 +100,7 @@ def find_rooms(
     list of Room
         The largest first; they do not overlap.
     """
-    strips = free_space.wall_strips(walls, unpaired_m)
+    strips = wall_ground.wall_strips(walls, unpaired_m)
     solid = free_space.union_on_grid(strips)
     whole = free_space.union_on_grid(stars) if floor is None else floor
     seen = free_space.difference_on_grid(whole, solid)

@@ -5,13 +5,16 @@ A star-shaped polygon that ends at the returns.
 What is behind a return is not seen, so the polygon does not leak through walls, as hulls do.
 """
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import shapely
 
 from scanplan.extraction import segments
 from scanplan.rays import levels
+from scanplan.types import Array, FloatArray
 
 _AT_SENSOR_M = (
     0.01  # where nothing is known to be free; above 0, so that the outline never touches itself
@@ -40,7 +43,14 @@ class VisibilitySettings:
     max_height_m: float
 
 
-def scan_free_space(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
+def scan_free_space(
+    scan_id: int,
+    xyz_m: FloatArray,
+    *,
+    sensor_xyz_m: FloatArray,
+    planar: bool,
+    settings: VisibilitySettings,
+) -> dict[str, Any]:
     """Return one scan's row of `schemas.VISIBILITY`.
 
     A sector is free up to its nearest return, a corner between two sectors lies at the nearer
@@ -94,7 +104,7 @@ def scan_free_space(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
     }
 
 
-def visibility_columns(rows):
+def visibility_columns(rows: Sequence[Mapping[str, Any]]) -> dict[str, Array]:
     """Return the columns of `schemas.VISIBILITY`, one row a scan."""
     return {
         "scan_id": np.array([row["scan_id"] for row in rows], np.int32),
@@ -103,7 +113,7 @@ def visibility_columns(rows):
     }
 
 
-def _obstacles(points, planar, settings):
+def _obstacles(points: FloatArray, planar: bool, settings: VisibilitySettings) -> FloatArray:
     """Return x and y of the returns that end the view."""
     if planar or len(points) == 0:
         return points[:, :2]
