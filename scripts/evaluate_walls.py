@@ -71,7 +71,7 @@ def evaluate_walls(
         for line in wall_metrics.summarise_wall_measures(measured):
             log.log_line(f"evaluate_walls: {Path(path).stem}, {line}")
     tables.write_table(
-        best, schemas.ORACLE, registered_scans.oracle_columns(ceilings[output], scans)
+        best, schemas.ORACLE, oracle.oracle_columns(ceilings[output], scans)
     )
 
 

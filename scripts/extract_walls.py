@@ -5,6 +5,7 @@ import time
 from scanplan.errors import StageError
 from scanplan.extraction import cluster_ransac, iterative_ransac, map_tilt, segments
 from scanplan.stage import log
+from scanplan.stage.per_registered_scan import sensor_keywords
 from scanplan.stage.per_scan import map_scans
 from scanplan.store import schemas, tables
 
@@ -32,9 +33,7 @@ def extract_walls(scans, registration, output, *, extractor, settings, threads=1
         )
     method, store, started = EXTRACTORS[extractor], tables.ScanStore(scans), time.perf_counter()
     every_scan = {"planar": store.planar, "settings": method.Settings(**settings)}
-    per_scan = segments.sensor_keywords(
-        tables.read_table(registration, schemas.REGISTRATION), store.scan_ids, registration
-    )
+    per_scan = sensor_keywords(store.scan_ids, scans, registration)
     found = map_scans(
         method.extract,
         scans,

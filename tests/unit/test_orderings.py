@@ -41,8 +41,11 @@ def others(scan_ids):
         },
         "registration": {
             "scan_id": np.array(scan_ids),
+            "t_ns": np.arange(n),
+            "kept": np.ones(n, bool),
             "x_m": np.arange(n) ** 2.0,
-            "y_m": np.zeros(n),
+            **dict.fromkeys(("y_m", "z_m", "qx", "qy", "qz"), np.zeros(n)),
+            "qw": np.ones(n),
         },
     }
 
@@ -140,7 +143,7 @@ def test_an_overlap_changes_the_order_and_no_bound(method):
 
 @pytest.mark.parametrize("method", ["wall_length", "visibility", "distance"])
 def test_tables_of_other_scans_are_refused(method):
-    with pytest.raises(StageError, match="that have hulls; delete the results"):
+    with pytest.raises(StageError, match="hulls.*; delete the results"):
         orderings.order_scans(method, columns(), seed=0, others=others([3, 8, 20, 22]))
 
 

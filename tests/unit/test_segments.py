@@ -2,7 +2,6 @@ import numpy as np
 import pytest
 
 from helpers import toy_rooms
-from scanplan.errors import StageError
 from scanplan.extraction import segments
 from scanplan.store import schemas, tables
 
@@ -191,17 +190,3 @@ def test_table_without_any_wall(tmp_path):
         segments.summarise_segments(columns, 1, 12.0)
         == "1 scans, 0 walls, no wall at all, 12 ms a scan"
     )
-
-
-def test_every_scan_needs_a_pose():
-    registered = {
-        "scan_id": np.array([0, 5]),
-        **{c: np.array([1.0, np.nan]) for c in ("x_m", "y_m", "z_m")},
-    }
-    assert segments.sensor_keywords(registered, [0], "r.parquet")[0]["sensor_xyz_m"].tolist() == [
-        1,
-        1,
-        1,
-    ]
-    with pytest.raises(StageError, match=r"r\.parquet.*first scan 5"):
-        segments.sensor_keywords(registered, [0, 5], "r.parquet")

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan.errors import StageError
 from scanplan.extraction import furniture
 from scanplan.rays import line_columns, scan_view
 
@@ -215,33 +214,6 @@ def segment_columns(scan_ids, segments):
         "wall": walls.astype(np.int32),
         **values,
     }
-
-
-def sensor_keywords(registered, scan_ids, origin):
-    """Return each scan's `sensor_xyz_m` keyword, for `per_scan.map_scans`.
-
-    Parameters
-    ----------
-    registered : dict
-        Columns of the table of registration.
-    scan_ids : (n,) int
-    origin : path-like
-        Where the table comes from, for the message.
-
-    Raises
-    ------
-    StageError
-        If a scan has no row or no finite position there.
-    """
-    positions = np.column_stack([registered[c] for c in ("x_m", "y_m", "z_m")])
-    known = np.isfinite(positions).all(axis=1)
-    sensors = dict(zip(registered["scan_id"][known].tolist(), positions[known], strict=True))
-    missing = [s for s in np.asarray(scan_ids).tolist() if s not in sensors]
-    if missing:
-        raise StageError(
-            f"{origin}: no pose of {len(missing)} scans, first scan {missing[0]}; delete it and run again"
-        )
-    return {s: {"sensor_xyz_m": sensors[s]} for s in np.asarray(scan_ids).tolist()}
 
 
 def summarise_segments(columns, n_scans, took_ms):

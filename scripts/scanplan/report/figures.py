@@ -7,9 +7,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, StrMethodFormatter
 from scipy.spatial import cKDTree
 
-from scanplan.errors import StageError
 from scanplan.report import top_view
 from scanplan.selection import stopping
+from scanplan.store import registered_scans
 
 NEARBY_M = 1.0
 _WIDTH_IN = 7.0
@@ -40,7 +40,7 @@ def sensor_positions(registration, scan_ids):
     Parameters
     ----------
     registration : dict of str to (n,) array
-        `scan_id`, `kept`, `x_m`, `y_m` of a table of registration.
+        Of a table of registration.
     scan_ids : (k,) int
 
     Returns
@@ -52,15 +52,8 @@ def sensor_positions(registration, scan_ids):
     StageError
         If a scan was not kept: the tables are of different runs.
     """
-    row = {int(s): i for i, s in enumerate(registration["scan_id"]) if registration["kept"][i]}
-    unknown = sorted({int(s) for s in scan_ids} - set(row))
-    if unknown:
-        raise StageError(
-            f"registration: keeps {len(row)} scans, scan {unknown[0]} of the selection not among them;"
-            " delete the results of this dataset and run again"
-        )
-    rows = [row[int(s)] for s in scan_ids]
-    return np.column_stack([registration["x_m"], registration["y_m"]])[rows]
+    scans = registered_scans.select_kept_scans(registration, "registration")
+    return registered_scans.sensor_positions(scan_ids, scans, "selection", "registration")[:, :2]
 
 
 def count_nearby(xy_m, radius_m=NEARBY_M):

@@ -6,7 +6,6 @@ returns an object with `greedy(min_overlap)`, a `area_greedy.AreaOrder`, and `ga
 
 import numpy as np
 
-from scanplan.errors import StageError
 from scanplan.selection import (
     baselines,
     bounds,
@@ -19,6 +18,7 @@ from scanplan.selection import (
     streaming,
 )
 from scanplan.selection.methods import METHODS
+from scanplan.store import registered_scans
 
 _AREAS = {"cluster_hull": objective_cluster_hull, "hull": objective_hull}
 _OBJECTIVES = {"wall_length": objective_wall_length, "visibility": objective_visibility}
@@ -163,14 +163,5 @@ def _baseline(method, scan_ids, survey, seed):
 
 def _positions(scan_ids, registered):
     """Return where (n, 2) the sensor was at scans."""
-    row = {int(s): i for i, s in enumerate(registered["scan_id"])}
-    unknown = [s for s in scan_ids.tolist() if s not in row]
-    xy_m = np.column_stack([registered["x_m"], registered["y_m"]])[
-        [row[s] for s in scan_ids.tolist() if s in row]
-    ]
-    if unknown or not np.isfinite(xy_m).all():
-        raise StageError(
-            f"registration: no position of {len(unknown) or 'some'} of the {len(scan_ids)} scans that have hulls;"
-            " delete the results of this dataset and run again"
-        )
-    return xy_m
+    scans = registered_scans.select_kept_scans(registered, "registration")
+    return registered_scans.sensor_positions(scan_ids, scans, "hulls", "registration")[:, :2]

@@ -55,6 +55,26 @@ def order_by_truth(seen, length_m):
     return OracleOrder(np.array(order, int), np.array(gains_m))
 
 
+def oracle_columns(best, scans):
+    """Return the columns of `schemas.ORACLE`.
+
+    Parameters
+    ----------
+    best : dict of str to OracleOrder
+        By extractor.
+    scans : registered_scans.RegisteredScans
+    """
+    n = len(scans.scan_ids)
+    orders = [best[extractor] for extractor in sorted(best)]
+    return {
+        "extractor": np.repeat(sorted(best), n),
+        "rank": np.tile(np.arange(1, n + 1), len(best)),
+        "scan_id": np.concatenate([scans.scan_ids[order.order] for order in orders]),
+        "gain_m": np.concatenate([order.gain_m for order in orders]),
+        "found_m": np.concatenate([np.cumsum(order.gain_m) for order in orders]),
+    }
+
+
 def _once(seen, left_m, rows):
     """Take of the rows, greedily, those that add something to the others; all of them if none does."""
     heap = [(-float(left_m[seen[i]].sum()), i) for i in rows]
