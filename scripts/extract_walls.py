@@ -3,13 +3,12 @@
 import time
 
 from scanplan.errors import StageError
-from scanplan.extraction import cluster_ransac, iterative_ransac, map_tilt, segments
+from scanplan.extraction import map_tilt, segments
+from scanplan.extraction.extractors import EXTRACTORS
 from scanplan.stage import log
 from scanplan.stage.per_registered_scan import sensor_keywords
 from scanplan.stage.per_scan import map_scans
 from scanplan.store import schemas, tables
-
-EXTRACTORS = {"cluster_ransac": cluster_ransac, "iterative_ransac": iterative_ransac}
 
 
 def extract_walls(scans, registration, output, *, extractor, settings, threads=1):
@@ -32,7 +31,7 @@ def extract_walls(scans, registration, output, *, extractor, settings, threads=1
             f"extractor {extractor}: is not known; choose one of {', '.join(EXTRACTORS)}"
         )
     method, store, started = EXTRACTORS[extractor], tables.ScanStore(scans), time.perf_counter()
-    every_scan = {"planar": store.planar, "settings": method.Settings(**settings)}
+    every_scan = {"planar": store.planar, "settings": method.settings(**settings)}
     per_scan = sensor_keywords(store.scan_ids, scans, registration)
     found = map_scans(
         method.extract,

@@ -28,12 +28,11 @@ def time_extractor(task, method, store, scan_ids, settings, registration, *, par
     ----------
     task : str
         Its name in the table.
-    method : module
-        With `extract` and `Settings`.
+    method : extractors.Extractor
     store : tables.ScanStore
     scan_ids : (n,) int
     settings : dict
-        Keywords of the method's `Settings`.
+        Keywords of the method's settings.
     registration : path-like
         registration.parquet.
     part : int
@@ -46,7 +45,7 @@ def time_extractor(task, method, store, scan_ids, settings, registration, *, par
     """
     sensors, chosen = (
         per_registered_scan.sensor_keywords(scan_ids, store.path, registration),
-        method.Settings(**settings),
+        method.settings(**settings),
     )
     for number, (scan_id, xyz_m) in enumerate(store.scans(scan_ids)):
         xyz_m = thin_points(xyz_m, part, scan_id)
