@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from scanplan.recordings import candidates, tf_tree
+from scanplan.recordings import candidates, frame_edges
 from scanplan.recordings.motion import time_check, trajectory
 from scanplan.recordings.survey import open_survey
 from scanplan.stage import log
@@ -46,7 +46,7 @@ def interpolate_poses(
     limits = {"max_gap_s": max_gap_s, "max_speed_m_s": max_speed_m_s}
     with open_survey(files, **reading) as survey:
         t_ns, edges = survey.stamps(), survey.pose_edges()
-        known = tf_tree.chain_poses(edges, t_ns, **limits)
+        known = frame_edges.chain_poses(edges, t_ns, **limits)
         chosen = candidates.choose_candidates(
             known[0], keep_every=keep_every, max_step_m=max_step_m, max_turn_deg=max_turn_deg
         )

@@ -5,7 +5,7 @@ import pytest
 
 from reference import hull_selection
 from scanplan.project import dataset_files
-from scanplan.recordings import tf_tree
+from scanplan.recordings import frame_edges
 from scanplan.recordings.survey import open_survey
 from scanplan.registration import results
 from scanplan.selection import area_greedy, bounds, hulls, streaming
@@ -21,7 +21,7 @@ def polygons(recordings_dir, request):
     with open_survey(
         dataset_files.find_files(str(recordings_dir / request.param)), min_range_m=0.1
     ) as survey:
-        pose, _, covered = tf_tree.chain_poses(survey.pose_edges(), survey.stamps(), max_gap_s=2.0)
+        pose, _, covered = frame_edges.chain_poses(survey.pose_edges(), survey.stamps(), max_gap_s=2.0)
         placed = np.flatnonzero(covered)
         chosen = placed[np.linspace(0, len(placed) - 1, N_SCANS).astype(int)].tolist()
         scans = [

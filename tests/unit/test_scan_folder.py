@@ -3,7 +3,7 @@ import pytest
 
 from helpers import bag_making
 from scanplan.errors import StageError
-from scanplan.recordings import scan_folder, tf_tree
+from scanplan.recordings import frame_edges, scan_folder
 from scanplan.recordings.survey import open_survey
 
 LIMITS = {"min_range_m": 0.1, "max_range_m": 50.0}
@@ -52,7 +52,9 @@ def test_stamps_in_names_are_interpolated_to_the_nanosecond(tmp_path):
     files = folder(tmp_path, ["1700000000.500000001.pcd", "1700000000.000000001.ply"], TWO)
     with open_survey(files, **LIMITS) as survey:
         assert survey.stamps().tolist() == [1_700_000_000_000_000_001, 1_700_000_000_500_000_001]
-        pose, _, covered = tf_tree.chain_poses(survey.pose_edges(), survey.stamps(), max_gap_s=1)
+        pose, _, covered = frame_edges.chain_poses(
+            survey.pose_edges(), survey.stamps(), max_gap_s=1
+        )
         np.testing.assert_allclose(pose[:, :3, 3], [[0, 0, 0], [0.5, 1, 0]], atol=1e-9)
         assert covered.all()
         assert not survey.planar
@@ -74,7 +76,7 @@ def test_other_names_are_taken_in_natural_order(tmp_path):
     with open_survey(folder(tmp_path, names, poses), **LIMITS) as survey:
         assert survey.stamps().tolist() == [10**9, 2 * 10**9, 5_500_000_000]
         shifts = [float((scan.xyz_m - POINTS)[0, 0]) for scan in survey.scans(range(3))]
-        pose, gap_s, _ = tf_tree.chain_poses(survey.pose_edges(), survey.stamps(), max_gap_s=0)
+        pose, gap_s, _ = frame_edges.chain_poses(survey.pose_edges(), survey.stamps(), max_gap_s=0)
     np.testing.assert_allclose(shifts, [0.02, 0.01, 0.0], atol=1e-6)
     assert pose[:, 0, 3].tolist() == [1, 2, 5.5]
     assert gap_s.tolist() == [0, 0, 0]
@@ -85,7 +87,7 @@ def test_a_mount_and_bad_poses(tmp_path):
     files = folder(tmp_path, ["1700000000.000000001.pcd"], poses)
     with open_survey(files, base_from_sensor=[1, 0, 0, 0, 0, 90], **LIMITS) as survey:
         edges = survey.pose_edges()
-        pose, _, _ = tf_tree.chain_poses(edges, survey.stamps(), max_gap_s=1)
+        pose, _, _ = frame_edges.chain_poses(edges, survey.stamps(), max_gap_s=1)
     assert len(edges[0].t_ns) == 2
     np.testing.assert_allclose(pose[0] @ [1, 0, 0, 1], [1, 1, 0, 1], atol=1e-12)
 
