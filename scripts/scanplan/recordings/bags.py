@@ -148,6 +148,8 @@ def _iterate_uncompressed(
     reader: rosbag1.Reader, connections: list[Connection]
 ) -> Iterator[BagMessage]:
     """Iterate like rosbags' own reader, without reading the chunks around the messages."""
+    if reader.bio is None:
+        raise ValueError(f"{reader.path}: is not open")
     chunks = {position: (c.datapos, c.datasize) for position, c in reader.chunks.items()}
     by_id = {connection.id: connection for connection in connections}
     indexes = [reader.indexes[number] for number in by_id]

@@ -16,7 +16,7 @@ from scanplan.types import Array, BoolArray, FloatArray, IntArray
 def choose_candidates(
     world_from_sensor: FloatArray, *, keep_every: int, max_step_m: float, max_turn_deg: float
 ) -> IntArray:
-    """Retain every `keep_every`-th scan (thesis, algorithm 3, step 2), more where the rover is fast.
+    """Retain every `keep_every`-th scan (thesis, algorithm 3, step 2), more if the rover is fast.
 
     A scan between two of them is retained too once the sensor has moved more than `max_step_m` or
     turned more than `max_turn_deg` since the last retained scan with a pose, so that neighbours
@@ -38,7 +38,7 @@ def choose_candidates(
     if keep_every < 1:
         raise ValueError(f"keep_every is {keep_every}")
     pose = np.asarray(world_from_sensor, float)
-    has_pose = np.isfinite(pose).all(axis=(1, 2)).tolist()
+    has_pose = [bool(np.isfinite(matrix).all()) for matrix in pose]
     # |R - S| in the Frobenius norm is sqrt(8) sin(angle / 2)
     max_difference = float(np.sqrt(8) * np.sin(np.radians(min(max_turn_deg, 180)) / 2))
     chosen: list[int] = []

@@ -76,16 +76,24 @@ class BagSurvey:
         )
         self._limits = {"min_range_m": min_range_m, "max_range_m": max_range_m}
 
-    @cached_property
+    @property
     def planar(self) -> bool:
         """Whether the sensor measures in one plane only: a LaserScan, or flat clouds throughout."""
+        return self._planar
+
+    @cached_property
+    def _planar(self) -> bool:
         if self._cloud.msgtype == topics.LASER_SCAN:
             return True
         return clouds.are_scans_planar(self._keep_in_range(scan).xyz_m for scan in self._first)
 
-    @cached_property
+    @property
     def sweep_times(self) -> point_times.TimeConvention | None:
         """How the driver writes the time of a point, or None if it does not."""
+        return self._sweep_times
+
+    @cached_property
+    def _sweep_times(self) -> point_times.TimeConvention | None:
         is_laser = self._cloud.msgtype == topics.LASER_SCAN
         return point_times.find_sweep_times(
             ((self._times_in_range(scan), scan.t_ns) for scan in self._first),

@@ -66,15 +66,23 @@ class ScanFolder:
             [path for path in paths if path != self._poses_path], pose_ns, self._poses_path
         )
 
-    @cached_property
+    @property
     def planar(self) -> bool:
         """Whether the clouds are flat throughout."""
+        return self._planar
+
+    @cached_property
+    def _planar(self) -> bool:
         scans = map(self._read_scan, range(len(self._clouds)))
         return clouds.are_scans_planar(scan.xyz_m for scan in scans)
 
-    @cached_property
+    @property
     def sweep_times(self) -> point_times.TimeConvention | None:
         """How the clouds' writer gives the time of a point, or None if it does not."""
+        return self._sweep_times
+
+    @cached_property
+    def _sweep_times(self) -> point_times.TimeConvention | None:
         first = range(min(len(self._clouds), clouds.SCANS_TO_JUDGE))
         return point_times.find_sweep_times(
             ((self._times_in_range(i), self._stamps_ns[i]) for i in first),
@@ -188,7 +196,7 @@ def _read_fields(path: Path) -> dict[str, Array]:
     import open3d
 
     try:
-        cloud = open3d.t.io.read_point_cloud(str(path))
+        cloud = open3d.t.io.read_point_cloud(path)
         names = [name for name in ("positions", *TIME_FIELDS) if name in cloud.point]
         return {name: cloud.point[name].numpy() for name in names}
     except Exception as error:
