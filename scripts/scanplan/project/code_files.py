@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
-from scanplan.types import FilePath
+from scanplan.plain_types import FilePath
 
 _PACKAGE = Path(__file__).parents[1]
 
@@ -57,10 +57,12 @@ def _imports(path: Path) -> frozenset[Path]:
     return frozenset(filter(Path.exists, helpers))
 
 
-def _walk(node: ast.AST) -> Iterator[ast.AST]:
-    """Iterate over a node and all below it, but for what is there for type checkers alone."""
-    yield node
-    is_for_types = isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
-    if not is_for_types:
-        for child in ast.iter_child_nodes(node):
-            yield from _walk(child)
+def _walk(tree: ast.AST) -> Iterator[ast.AST]:
+    """Iterate over all nodes of a tree but those that are there for type checkers alone."""
+    waiting = [tree]
+    while waiting:
+        node = waiting.pop()
+        yield node
+        is_for_types = isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
+        if not is_for_types:
+            waiting.extend(ast.iter_child_nodes(node))

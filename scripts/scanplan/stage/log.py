@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import TextIO, TypeVar
 
 from scanplan.errors import StageError
+from scanplan.plain_types import FilePath
 from scanplan.stage import orphans
-from scanplan.types import FilePath
 
 INTERRUPTED = "was interrupted; the same command goes on from here"
 """Last words of a stage that Ctrl-C or a signal to end has ended."""

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import psutil
 
-from scanplan.types import FilePath
+from scanplan.plain_types import FilePath
 
 _unfinished: set[Path] = set()
 _refusals: list[Callable[[], bool]] = []
