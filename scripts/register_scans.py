@@ -7,6 +7,7 @@ from scanplan.recordings.clouds import Scan
 from scanplan.recordings.motion import trajectory
 from scanplan.recordings.survey import open_survey
 from scanplan.registration import constraint_table, mapping, results
+from scanplan.registration.sequential import ScanResult
 from scanplan.stage import log, workers
 from scanplan.store import scan_cache, schemas, tables
 from scanplan.types import FilePath
@@ -47,14 +48,6 @@ def register_scans(
     candidates = tables.read_table(poses, schemas.POSES)
     priors = results.pose_matrices(candidates)
     motion = None if moved is None else _read_motion(moved)
-    n_dropped = 0
-
-    def count_dropped(found: Iterable[Scan]) -> Iterator[Scan]:
-        nonlocal n_dropped
-        for scan in found:
-            n_dropped += scan.n_dropped
-            yield scan
-
     with (
         scan_cache.open_scan_cache(scans) as raw,
         scan_cache.open_scan_cache(registered) as thinned,
@@ -62,32 +55,50 @@ def register_scans(
     ):
         with open_survey(recordings, **reading, motion=motion) as opened:
             survey = mapping.CandidateScans(candidates["scan_id"], priors, opened.planar)
-            read = log.report_progress(
-                opened.scans(survey.scan_ids), "register_scans", total=len(priors)
-            )
+            counted = _CountedScans(opened.scans(survey.scan_ids))
+            progress = log.report_progress(counted, "register_scans", total=len(priors))
+            limits = mapping.registration_settings(settings)
             verdicts, constraints = mapping.register_scans(
-                survey,
-                count_dropped(read),
-                raw,
-                thinned,
-                run,
-                mapping.registration_settings(settings),
+                survey, progress, raw, thinned, run, limits
             )
-        results.check_any_kept(verdicts, n_dropped, recordings[0])
-        kept = [row for row, verdict in enumerate(verdicts) if verdict.kept]
-        with tables.open_scan_writer(scans, planar=survey.planar) as write_scan:
-            for row, xyz_m in zip(kept, raw.part(kept), strict=True):
-                scan_id = survey.scan_ids[row]
-                pose = verdicts[row].world_from_sensor
-                write_scan(scan_id, results.move_to_map(scan_id, xyz_m, pose))
+        results.check_any_kept(verdicts, counted.n_dropped, recordings[0])
+        _write_kept_scans(scans, survey, verdicts, raw)
     log.log_line(
-        f"register_scans: {results.summarise_registration(verdicts, n_dropped)};"
+        f"register_scans: {results.summarise_registration(verdicts, counted.n_dropped)};"
         f" {constraint_table.summarise_constraints(constraints)}"
     )
     columns = constraint_table.constraint_columns(constraints)
     tables.write_table(edges, schemas.EDGES, columns, allow_empty=True)
     columns = results.registration_columns(survey.scan_ids, candidates["t_ns"], verdicts)
     tables.write_table(registered, schemas.REGISTRATION, columns)
+
+
+class _CountedScans:
+    """Scans to iterate over once, and how many points were dropped from them so far."""
+
+    def __init__(self, scans: Iterable[Scan]) -> None:
+        self._scans = scans
+        self.n_dropped = 0
+
+    def __iter__(self) -> Iterator[Scan]:
+        for scan in self._scans:
+            self.n_dropped += scan.n_dropped
+            yield scan
+
+
+def _write_kept_scans(
+    path: FilePath,
+    survey: mapping.CandidateScans,
+    verdicts: Sequence[ScanResult],
+    raw: scan_cache.ScanCache,
+) -> None:
+    """Write the scans that registration kept, in the map frame."""
+    rows = [row for row, verdict in enumerate(verdicts) if verdict.kept]
+    with tables.open_scan_writer(path, planar=survey.planar) as write_scan:
+        for row, xyz_m in zip(rows, raw.part(rows), strict=True):
+            scan_id = survey.scan_ids[row]
+            pose = verdicts[row].world_from_sensor
+            write_scan(scan_id, results.move_to_map(scan_id, xyz_m, pose))
 
 
 def _read_motion(moved: FilePath) -> trajectory.SensorMotion:

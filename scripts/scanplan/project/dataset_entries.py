@@ -34,7 +34,8 @@ def list_recordings(folder: Path) -> list[Path]:
         If a rosbag2 folder has no storage.
     """
     subfolders = [e for e in visible(folder) if e.is_dir() and e.name != SCANS_FOLDER]
-    bags, rosbag2_files = [], []
+    bags = []
+    rosbag2_files = []
     for place in (folder, *subfolders):
         bags += [e for e in visible(place) if e.suffix == ".bag" and e.is_file()]
         rosbag2_files += _list_rosbag2_files(place)

@@ -169,11 +169,7 @@ def _point_type(message: Any, step: int) -> np.dtype[np.void]:
                 f"field {field.name}: type {field.datatype} at {field.offset}"
                 f" in points of {step} bytes"
             )
-    return np.dtype(
-        {
-            "names": [field.name for field in wanted],
-            "formats": [order + _POINT_FIELD_TYPES[field.datatype] for field in wanted],
-            "offsets": [field.offset for field in wanted],
-            "itemsize": step,
-        }
-    )
+    names = [field.name for field in wanted]
+    formats = [order + _POINT_FIELD_TYPES[field.datatype] for field in wanted]
+    offsets = [field.offset for field in wanted]
+    return np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": step})

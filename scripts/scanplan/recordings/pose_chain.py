@@ -95,9 +95,7 @@ class PoseChains:
                 chains.append((str(source), self._chain_of_track(source)))
             except StageError as error:
                 log.log_line(f"{error} (as odometry: not used)")
-        return [
-            (name, edges) for name, edges in chains if any(edge.t_ns is not None for edge in edges)
-        ]
+        return [(name, edges) for name, edges in chains if _is_moving(edges)]
 
     def _chains_from_odometry_frames(self) -> list[NamedChain]:
         frames = [frame for frame in self._tree.frames if frame.rsplit("/", 1)[-1] == _ODOM]
@@ -115,8 +113,8 @@ class PoseChains:
         """Return the frame of tf that the sensor hangs on, and the edges from there."""
         if self._extrinsics is None:
             return self._index.sensor_frame, []
-        known = [frame for frame in _BASE_FRAMES if frame in self._tree.frames]
-        return self._base_frame or (known[0] if known else None), self._extrinsics
+        bases = [frame for frame in _BASE_FRAMES if frame in self._tree.frames]
+        return self._base_frame or (bases[0] if bases else None), self._extrinsics
 
     def _chain_of_track(self, source: topics.Topic) -> list[frame_edges.FrameEdge]:
         track = self._track(source)
@@ -142,8 +140,7 @@ class PoseChains:
         track, counts = frame_edges.make_track_edge(
             parents[0] if parents else "",
             self._base_frame or (children[0] if children else ""),
-            np.array([sample.t_ns for sample in samples], np.int64),
-            np.array([sample.receive_ns for sample in samples], np.int64),
+            *_stamps_of(samples),
             [sample.row for sample in samples],
         )
         faults = clocks.summarise_faults(counts)
@@ -177,8 +174,7 @@ class PoseChains:
 
     def _compare_clocks(self, poses: Sequence[PoseSample]) -> None:
         """Clouds and poses stamped by different clocks give wrong poses that look right."""
-        t_ns = np.array([sample.t_ns for sample in poses], np.int64)
-        receive_ns = np.array([sample.receive_ns for sample in poses], np.int64)
+        t_ns, receive_ns = _stamps_of(poses)
         if not t_ns.any():
             return
         poses_s = _median_delay_s(t_ns, receive_ns)
@@ -188,6 +184,17 @@ class PoseChains:
                 f"{self._where}: poses arrive {poses_s:.3f} s after their stamps, clouds"
                 f" {clouds_s:.3f} s: their clocks may differ"
             )
+
+
+def _is_moving(edges: Sequence[frame_edges.FrameEdge]) -> bool:
+    return any(edge.t_ns is not None for edge in edges)
+
+
+def _stamps_of(samples: Sequence[PoseSample]) -> tuple[IntArray, IntArray]:
+    """Return the stamps and the times of receipt, (n,) int64."""
+    t_ns = [sample.t_ns for sample in samples]
+    receive_ns = [sample.receive_ns for sample in samples]
+    return np.array(t_ns, np.int64), np.array(receive_ns, np.int64)
 
 
 def _median_delay_s(t_ns: IntArray, receive_ns: IntArray) -> float:

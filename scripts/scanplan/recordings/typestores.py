@@ -62,9 +62,9 @@ def release_store(release: str) -> Stores:
     StageError
         If there is no such release.
     """
-    known = [s.value.removeprefix("ros2_") for s in Stores if s.value.startswith("ros2_")]
-    if release not in known:
+    releases = [s.value.removeprefix("ros2_") for s in Stores if s.value.startswith("ros2_")]
+    if release not in releases:
         raise StageError(
-            f"input.ros2_release: {release} is unknown; choose one of {', '.join(known)}"
+            f"input.ros2_release: {release} is unknown; choose one of {', '.join(releases)}"
         )
     return Stores(f"ros2_{release}")

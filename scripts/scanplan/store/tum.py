@@ -28,7 +28,8 @@ def read_tum(path: FilePath) -> tuple[IntArray, FloatArray]:
     StageError
         If a line does not hold eight numbers.
     """
-    stamps, rows = [], []
+    stamps = []
+    rows = []
     text = Path(path).read_text(encoding="utf-8", errors="replace")
     for number, line in enumerate(text.splitlines(), 1):
         values = line.split("#")[0].replace(",", " ").split()
