@@ -54,7 +54,10 @@ def hall(n=4000, seed=0):
 
 
 def survey(n_scans=5, empty=(), moved=()):
-    """Clouds of a sensor that goes 0.1 m a scan through the hall, some empty; true poses, some moved by 4 cm."""
+    """Clouds of a sensor that goes 0.1 m a scan through the hall, some empty.
+
+    Its poses are true, some moved by 4 cm.
+    """
     maker, entries = bag_making.Maker(), []
     for i in range(n_scans):
         t_ns, place = bag_making.START_NS + i * STEP_NS, np.array([1 + 0.1 * i, 2, 0.5])

@@ -8,7 +8,7 @@ from scanplan.recordings import bags, rosbag1_messages
 
 @pytest.fixture
 def recording(tmp_path):
-    """Clouds larger and poses smaller than a head, a connection that comes late, more than one chunk."""
+    """Clouds larger and poses smaller than a head, a late connection, more than one chunk."""
     maker = bag_making.Maker()
     entries = bag_making.survey(maker, n_scans=30)
     entries += [

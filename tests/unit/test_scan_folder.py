@@ -18,7 +18,8 @@ def write_pcd(path, xyz_m, extra=None):
         names += f" {extra[0]}"
     n = names.count(" ") + 1
     header = (
-        f"# .PCD v0.7\nVERSION 0.7\nFIELDS {names}\nSIZE{' 4' * n}\nTYPE{' F' * n}\nCOUNT{' 1' * n}\n"
+        f"# .PCD v0.7\nVERSION 0.7\nFIELDS {names}\n"
+        f"SIZE{' 4' * n}\nTYPE{' F' * n}\nCOUNT{' 1' * n}\n"
         f"WIDTH {len(xyz_m)}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {len(xyz_m)}\nDATA binary\n"
     )
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -30,7 +31,8 @@ def write_ply(path, xyz_m):
     lines = "\n".join(" ".join(map(repr, row)) for row in np.asarray(xyz_m, np.float32).tolist())
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(
-        f"ply\nformat ascii 1.0\nelement vertex {len(xyz_m)}\nproperty float x\nproperty float y\nproperty float z\n"
+        f"ply\nformat ascii 1.0\nelement vertex {len(xyz_m)}\n"
+        "property float x\nproperty float y\nproperty float z\n"
         f"end_header\n{lines}\n"
     )
     return path
@@ -45,7 +47,10 @@ def folder(tmp_path, names, poses):
     return [str(tmp_path / "poses.tum"), *sorted(str(tmp_path / "scans" / name) for name in names)]
 
 
-TWO = "# t tx ty tz qx qy qz qw\n1700000000.000000001 0 0 0 0 0 0 1\n1700000001.000000001 1 2 0 0 0 0 -1  # end\n\n"
+TWO = (
+    "# t tx ty tz qx qy qz qw\n1700000000.000000001 0 0 0 0 0 0 1\n"
+    "1700000001.000000001 1 2 0 0 0 0 -1  # end\n\n"
+)
 
 
 def test_stamps_in_names_are_interpolated_to_the_nanosecond(tmp_path):

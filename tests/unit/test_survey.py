@@ -300,7 +300,7 @@ def test_odometry_names_the_base(tmp_path, maker):
 
 
 def tf_chain(maker):
-    """Clouds and tf only: map -> odom fixed at y = 2 but moving in stamps, odom -> base_link along x, static mount."""
+    """Clouds and tf: map -> odom at y = 2 in every stamp, base_link along x, static extrinsics."""
     entries = without(with_tf(maker, ("base_link", "lidar", (0, 0, 1), QUARTER)), "/amcl_pose")
     for i in range(-1, 12):
         t = START + i * STEP
@@ -384,7 +384,7 @@ def test_a_covariance_that_is_no_number_is_counted_and_its_pose_used(tmp_path, m
 
 
 def test_transforms_stamped_ahead_are_taken_back(tmp_path, maker, caplog):
-    """The localiser corrects the pose by 1 m half way; its transform is stamped a second ahead, as AMCL's is."""
+    """The localiser corrects the pose by 1 m half way, stamped a second ahead, as AMCL does."""
     entries = without(with_tf(maker, ("base_link", "lidar", (0, 0, 1))), "/amcl_pose")
     for i in range(-1, 12):
         t = START + i * STEP
@@ -416,8 +416,8 @@ def test_odd_stamps_of_clouds_are_said(tmp_path, maker, caplog):
         known = frame_edges.chain_poses(survey.pose_edges(), survey.stamps(), max_gap_s=1)[2]
     assert known.tolist() == [True, True, True, False]
     assert (
-        "1 of a repeated stamp, 1 jumping by more than 1 s; each scan keeps the pose of its own stamp"
-        in caplog.text
+        "1 of a repeated stamp, 1 jumping by more than 1 s;"
+        " each scan keeps the pose of its own stamp" in caplog.text
     )
 
 
@@ -485,6 +485,9 @@ def test_the_turned_lidar_of_mac_first_floor(recordings_dir):
 
 @pytest.mark.recordings
 def test_a_recording_without_clouds(recordings_dir):
-    told = r"no cloud topic.*/amcl_pose \(.*PoseWithCovarianceStamped, 135\), /odom \(.*2639\), /tf \(.*5422\)"
+    told = (
+        r"no cloud topic.*/amcl_pose \(.*PoseWithCovarianceStamped, 135\),"
+        r" /odom \(.*2639\), /tf \(.*5422\)"
+    )
     with pytest.raises(StageError, match=told), opened(recordings_dir / "amcl_mcap"):
         pass

@@ -129,7 +129,7 @@ def test_odometry_never_known_is_no_candidate():
 
 
 def test_a_jump_of_one_of_two_moving_links_is_no_motion():
-    """The localiser's correction jumps by 2 m from 5.0 s to 5.1 s; the wheels are known twenty times a second."""
+    """The localiser jumps by 2 m from 5.0 s to 5.1 s; the wheels are known at 20 Hz."""
     corrections = edge([4.9, 5.0, 5.1, 5.2], [0, 0, 2, 2], parent="map")
     way = trajectory.motion_along(
         [corrections, line(4.9, 5.2, 0.02)], SCANS, max_gap_s=1.0, max_speed_m_s=3.0
