@@ -6,7 +6,8 @@ from typing import Any
 from scanplan.recordings.clouds import Scan
 from scanplan.recordings.motion import trajectory
 from scanplan.recordings.survey import open_survey
-from scanplan.registration import constraint_table, mapping, results
+from scanplan.registration import mapping, results
+from scanplan.registration.registration_settings import registration_settings
 from scanplan.registration.sequential import ScanResult
 from scanplan.stage import log, workers
 from scanplan.store import scan_cache, schemas, tables
@@ -57,7 +58,7 @@ def register_scans(
             survey = mapping.CandidateScans(candidates["scan_id"], priors, opened.planar)
             counted = _CountedScans(opened.scans(survey.scan_ids))
             progress = log.report_progress(counted, "register_scans", total=len(priors))
-            limits = mapping.registration_settings(settings)
+            limits = registration_settings(settings)
             verdicts, constraints = mapping.register_scans(
                 survey, progress, raw, thinned, run, limits
             )
@@ -65,9 +66,9 @@ def register_scans(
         _write_kept_scans(scans, survey, verdicts, raw)
     log.log_line(
         f"register_scans: {results.summarise_registration(verdicts, counted.n_dropped)};"
-        f" {constraint_table.summarise_constraints(constraints)}"
+        f" {results.summarise_constraints(constraints)}"
     )
-    columns = constraint_table.constraint_columns(constraints)
+    columns = results.constraint_columns(constraints)
     tables.write_table(edges, schemas.EDGES, columns, allow_empty=True)
     columns = results.registration_columns(survey.scan_ids, candidates["t_ns"], verdicts)
     tables.write_table(registered, schemas.REGISTRATION, columns)

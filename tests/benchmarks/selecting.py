@@ -8,6 +8,7 @@ import shapely
 from sklearn.cluster import KMeans
 
 from reference import hull_selection
+from scanplan.project.stage_settings import select_hulls
 from scanplan.selection import area_greedy, bounds, hulls, streaming
 
 N_SCANS = 1200
@@ -28,11 +29,11 @@ def run(building, settings, say):
         Takes a line of the result.
     """
     scans = drivescans.scans(building, settings["simulate"], N_SCANS, route="rooms")
-    built(scans[::100], settings["hulls"], say)
-    polygons = drivescans.polygons(scans, settings["hulls"])
+    built(scans[::100], select_hulls(settings), say)
+    polygons = drivescans.polygons(scans, select_hulls(settings))
     ordered(polygons, say)
     streamed(polygons[:: N_SCANS // STREAMED], say)
-    scaled(scans[:COPIED], settings["hulls"], say)
+    scaled(scans[:COPIED], select_hulls(settings), say)
 
 
 def built(scans, settings, say):

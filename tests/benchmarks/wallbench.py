@@ -9,6 +9,7 @@ import wallscans
 from reference import cluster_ransac as literal_clusters
 from scanplan.extraction import normals, segments
 from scanplan.extraction.extractors import EXTRACTORS
+from scanplan.project.stage_settings import select_extractors
 
 METHODS = EXTRACTORS
 _ROUTES = {"demo_office": ("given", 0.4), "ring_office": ("rooms", 1.2)}
@@ -24,12 +25,11 @@ def speed(root, settings, n_scans=20):
         path = root / f"config/buildings/{building}.geojson"
         survey = wallscans.standing(path, settings["simulate"], route=route, step_m=step_m, every=8)
         scans = survey.scans[:n_scans]
-        took_ms = _best_of_turns(survey, scans, settings["walls"])
-        _tell_speed(building, survey, scans, took_ms, settings["walls"])
+        walls = select_extractors(settings, METHODS)
+        took_ms = _best_of_turns(survey, scans, walls)
+        _tell_speed(building, survey, scans, took_ms, walls)
         if building == "demo_office":
-            _tell_literal(
-                survey, scans[0], took_ms["cluster_ransac"][0], settings["walls"]["cluster_ransac"]
-            )
+            _tell_literal(survey, scans[0], took_ms["cluster_ransac"][0], walls["cluster_ransac"])
 
 
 def _best_of_turns(survey, scans, settings, turns=3):
@@ -79,12 +79,13 @@ def _tell_literal(survey, scan, ours_ms, settings):
 
 def quality(root, settings, every=3):
     """Compare the walls that both extractors and a line detector show with the truth."""
+    walls = select_extractors(settings, METHODS)
     for building, (route, step_m) in _ROUTES.items():
         path = root / f"config/buildings/{building}.geojson"
         survey = wallscans.standing(
             path, settings["simulate"], route=route, step_m=step_m, every=every
         )
-        found = {name: _lines(survey, name, settings["walls"]) for name in METHODS}
+        found = {name: _lines(survey, name, walls) for name in METHODS}
         if importlib.util.find_spec("cv2"):
             found["raster and LSD"] = raster_lines(survey), np.zeros(0, int)
         else:
