@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.extraction import furniture, mean_shift, normals, segments
-from scanplan.geometry import line_fit
+from scanplan.geometry import ransac
 from scanplan.rays import scan_view
 
 _DUAL_SHIFT_M = 1.0
@@ -76,7 +76,7 @@ def extract_by_clusters(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
         own = cluster[free[cluster]]
         if cells.count[own].sum() < settings.least_points(planar):
             continue
-        line = line_fit.fit_line_ransac(
+        line = ransac.fit_line_ransac(
             cells.mean_m[own, :2],
             inlier_m=settings.inlier_m,
             trials=settings.trials,
@@ -118,7 +118,7 @@ def _gather(points, surfaces, free, line, inlier_m):
     other = points[cells.points_of(np.flatnonzero(near & ~alike & ~surfaces.level))]
     on_wall = np.abs(facing[:, :2] @ normal - offset_m) <= inlier_m
     if on_wall.sum() >= _LEAST_REFIT:
-        normal, offset_m, on_wall = line_fit.refit_line(
+        normal, offset_m, on_wall = ransac.refit_line(
             facing[:, :2], normal, offset_m, inlier_m=inlier_m
         )
     return (

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan.geometry import intersections
+from scanplan.geometry import intersections, intervals
 
 _NEAR_END_M = 0.25
 _MET_M = 1e-6
@@ -173,7 +173,6 @@ def _observed(wall):
     """Return the share of a wall's length, openings aside, that points of either side show."""
     spans = np.sort([wall.line.along_m(s.ends) for s in wall.members], axis=1)
     spans = spans[np.argsort(spans[:, 0], kind="stable")]
-    reached = np.maximum.accumulate(np.concatenate([[-np.inf], spans[:, 1]]))[:-1]
-    shown_m = np.maximum(spans[:, 1] - np.maximum(spans[:, 0], reached), 0).sum()
+    shown_m = intervals.added_lengths_m(*spans.T).sum()
     whole_m = wall.length_m - sum(g.width_m for g in wall.openings if not g.is_above_wall)
     return min(float(shown_m / whole_m), 1.0) if whole_m > 0 else 1.0

@@ -6,6 +6,7 @@ import numpy as np
 import shapely
 from shapely.geometry import LineString, Polygon
 
+from scanplan.geometry.intervals import find_gaps
 from scanplan.geometry.lines import Line, Span
 from scanplan.plan.face_intervals import FaceInterval
 
@@ -99,24 +100,12 @@ def _missing(wall, max_beyond_m):
             outer = span[1] if span[1] - seen.max() <= max_beyond_m else seen.max()
             yield from (
                 (line, low, high, is_left)
-                for low, high in _gaps(np.sort(known, axis=1), inner, outer)
+                for low, high in find_gaps(np.sort(known, axis=1), inner, outer).tolist()
             )
         else:
             for gap in wall.closed:
                 span = np.sort(line.along_m(wall.line.at(np.array([gap.low_m, gap.high_m]))))
                 yield (line, *map(float, span), is_left)
-
-
-def _gaps(known, low_m, high_m):
-    """Return what of low to high is in none of the known spans (n, 2)."""
-    known = known[np.argsort(known[:, 0], kind="stable")]
-    reached = np.maximum.accumulate(np.concatenate([[low_m], known[:, 1]]))
-    until = np.concatenate([known[:, 0], [high_m]])
-    return [
-        (float(a), float(min(b, high_m)))
-        for a, b in zip(reached, until, strict=True)
-        if min(b, high_m) > a
-    ]
 
 
 def _block(wall):

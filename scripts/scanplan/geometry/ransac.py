@@ -1,12 +1,15 @@
-"""Straight lines through points in the plane. A line is its unit normal n and offset d: all p with n . p = d."""
+"""Lines through points in the plane, also among outliers. A line is its unit normal n and offset d: n . p = d."""
 
 import numpy as np
 
-_REFITS = 3
-_MAX_SCORED = 1000
+from scanplan.geometry.lines import least_scatter_normal
+from scanplan.types import BoolArray, FloatArray, IntArray
+
+_REFITS = 3  # each brings fewer new points near than the last
+_MAX_SCORED = 1000  # a thousand points rank the drawn lines as all would, in a time that does not grow
 
 
-def fit_line_tls(xy_m, weight=None):
+def fit_line_tls(xy_m: FloatArray, weight: FloatArray | None = None) -> tuple[FloatArray, float]:
     """Fit a line by total least squares: the least squared distances perpendicular to it.
 
     Parameters
@@ -27,17 +30,22 @@ def fit_line_tls(xy_m, weight=None):
         If fewer than two distinct points are given.
     """
     xy_m = np.asarray(xy_m, float)
-    if not _distinct(xy_m):
+    if not _has_distinct(xy_m):
         raise ValueError("a line needs two distinct points")
     weight = np.ones(len(xy_m)) if weight is None else np.asarray(weight, float)
-    centre = weight @ xy_m / weight.sum()
-    (xx, xy), (_, yy) = (weight[:, None] * (xy_m - centre)).T @ (xy_m - centre)
-    # the direction of largest variance of a 2 x 2 covariance, in closed form
-    direction_rad = 0.5 * np.arctan2(2 * xy, xx - yy)
-    return _outward(np.array([-np.sin(direction_rad), np.cos(direction_rad)]), centre)
+    centre_m = weight @ xy_m / weight.sum()
+    (xx, xy), (_, yy) = (weight[:, None] * (xy_m - centre_m)).T @ (xy_m - centre_m)
+    return _face_outward(least_scatter_normal(xx, xy, yy), centre_m)
 
 
-def fit_line_ransac(xy_m, *, inlier_m, trials, rng, weight=None):
+def fit_line_ransac(
+    xy_m: FloatArray,
+    *,
+    inlier_m: float,
+    trials: int,
+    rng: np.random.Generator,
+    weight: FloatArray | None = None,
+) -> tuple[FloatArray, float, BoolArray]:
     """Find the line most points lie on (thesis, algorithm 4), then fit it to these by least squares.
 
     All pairs are drawn beforehand, so that the result depends on the points and the generator's state alone; ties go to
@@ -61,25 +69,24 @@ def fit_line_ransac(xy_m, *, inlier_m, trials, rng, weight=None):
         None of them where there are no two distinct points; `normal` and `offset_m` are then NaN.
     """
     xy_m = np.asarray(xy_m, float).reshape(-1, 2)
-    pairs = _pairs(len(xy_m), trials, rng)
+    pairs = _draw_pairs(len(xy_m), trials, rng)
     weight = np.ones(len(xy_m)) if weight is None else np.asarray(weight, float)
-    chosen = (
-        slice(None)
-        if len(xy_m) <= _MAX_SCORED
-        else rng.choice(len(xy_m), _MAX_SCORED, replace=False)
-    )
-    start, step = xy_m[pairs[:, 0]], xy_m[pairs[:, 1]] - xy_m[pairs[:, 0]]
-    length = np.linalg.norm(step, axis=1)
-    start, step, length = start[length > 0], step[length > 0], length[length > 0]
-    if len(length) == 0:
+    scored = _draw_scored(len(xy_m), rng)
+    start_m = xy_m[pairs[:, 0]]
+    step_m = xy_m[pairs[:, 1]] - start_m
+    length_m = np.linalg.norm(step_m, axis=1)
+    apart = length_m > 0
+    if not apart.any():
         return np.full(2, np.nan), np.nan, np.zeros(len(xy_m), bool)
-    normals = np.column_stack([-step[:, 1], step[:, 0]]) / length[:, None]
-    distance = np.abs(normals @ xy_m[chosen].T - (normals * start).sum(axis=1)[:, None])
-    best = np.argmax((distance <= inlier_m) @ weight[chosen])
-    return refit_line(xy_m, *_outward(normals[best], start[best]), inlier_m=inlier_m, weight=weight)
+    start_m, step_m, length_m = start_m[apart], step_m[apart], length_m[apart]
+    normals = np.column_stack([-step_m[:, 1], step_m[:, 0]]) / length_m[:, None]
+    distance_m = np.abs(normals @ xy_m[scored].T - (normals * start_m).sum(axis=1)[:, None])
+    best = np.argmax((distance_m <= inlier_m) @ weight[scored])
+    line = _face_outward(normals[best], start_m[best])
+    return refit_line(xy_m, *line, inlier_m=inlier_m, weight=weight)
 
 
-def _pairs(n, trials, rng):
+def _draw_pairs(n: int, trials: int, rng: np.random.Generator) -> IntArray:
     """Draw `trials` pairs of different indices below n; none if n < 2."""
     if n < 2:
         return np.empty((0, 2), np.int64)
@@ -87,7 +94,19 @@ def _pairs(n, trials, rng):
     return np.column_stack([first, (first + rng.integers(1, n, trials)) % n])
 
 
-def refit_line(xy_m, normal, offset_m, *, inlier_m, weight=None):
+def _draw_scored(n: int, rng: np.random.Generator) -> IntArray | slice:
+    """Draw the points that lines are scored on: all, or a thousand where there are more."""
+    return slice(None) if n <= _MAX_SCORED else rng.choice(n, _MAX_SCORED, replace=False)
+
+
+def refit_line(
+    xy_m: FloatArray,
+    normal: FloatArray,
+    offset_m: float,
+    *,
+    inlier_m: float,
+    weight: FloatArray | None = None,
+) -> tuple[FloatArray, float, BoolArray]:
     """Fit a line to the points near it, as long as that brings more points near.
 
     Parameters
@@ -105,7 +124,7 @@ def refit_line(xy_m, normal, offset_m, *, inlier_m, weight=None):
     weight = np.ones(len(xy_m)) if weight is None else weight
     inliers = np.abs(xy_m @ normal - offset_m) <= inlier_m
     for _ in range(_REFITS):
-        if not _distinct(xy_m[inliers]):
+        if not _has_distinct(xy_m[inliers]):
             break
         normal, offset_m = fit_line_tls(xy_m[inliers], weight[inliers])
         again = np.abs(xy_m @ normal - offset_m) <= inlier_m
@@ -115,11 +134,12 @@ def refit_line(xy_m, normal, offset_m, *, inlier_m, weight=None):
     return normal, offset_m, inliers
 
 
-def _distinct(xy_m):
-    """Whether points (n, 2) are not all the same."""
+def _has_distinct(xy_m: FloatArray) -> bool:
+    """Return whether points (n, 2) are not all the same."""
     return len(xy_m) > 1 and bool((xy_m != xy_m[0]).any())
 
 
-def _outward(normal, point):
-    offset_m = float(normal @ point)
+def _face_outward(normal: FloatArray, point_m: FloatArray) -> tuple[FloatArray, float]:
+    """Return the normal and the offset of a line through a point, the offset not negative."""
+    offset_m = float(normal @ point_m)
     return (-normal, -offset_m) if offset_m < 0 else (normal, offset_m)
