@@ -172,7 +172,7 @@ def observation_settings(wildcards):
 
 def order_tables(wildcards):
     """The tables that the job's method needs, by name, beside that of the hulls."""
-    tables = methods.TABLES[wildcards.method]
+    tables = methods.METHODS[wildcards.method].tables
     return {table: f"results/{wildcards.dataset}/{table}.parquet" for table in tables}
 
 
@@ -182,7 +182,7 @@ def order_settings(wildcards):
     stop = selection["stop"]
     budget = {name: stop[name] for name in ("max_points", "max_bytes")}
     settings = selection | {"budget": budget}
-    return {name: settings[name] for name in methods.SETTINGS[wildcards.method]}
+    return {name: settings[name] for name in methods.METHODS[wildcards.method].settings}
 
 
 def plan_settings(wildcards):

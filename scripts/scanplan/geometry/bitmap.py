@@ -77,8 +77,8 @@ def trace_cells(lines_m, grid):
     -------
     line : (p,) int
     cell : (p,) int
-        Index into the flattened map, row by row. A line that runs along the edge of a cell belongs to the cell with
-        the larger coordinate, or the last one at the end of the grid.
+        Index into the flattened map, row by row. A line that runs along the edge of a cell belongs
+        to the cell with the larger coordinate, or the last one at the end of the grid.
     """
     ends = (np.asarray(lines_m, float).reshape(-1, 2, 2) - grid.low_m) / grid.cell_m
     ends = np.where(np.abs(ends - np.round(ends)) < _WHOLE, np.round(ends), ends)

@@ -1,6 +1,7 @@
 """Intervals on a line: what they cover, the gaps between them, and where a linear function is in range.
 
-Intervals are (n, 2) arrays of begin and end, or two arrays (n,) of begins and ends, metres; they may overlap.
+Intervals are (n, 2) arrays of begin and end, or two arrays (n,) of begins and ends, metres; they
+may overlap.
 """
 
 import numpy as np
@@ -54,7 +55,8 @@ def solve_range(
 ) -> tuple[FloatArray, FloatArray]:
     """Return the interval of s with least <= start + slope * s <= most: low (p,), high (p,).
 
-    All of the line where the slope is 0 and the start is in range; low > high where nothing solves it.
+    All of the line where the slope is 0 and the start is in range; low > high where nothing solves
+    it.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         one, other = np.divide(least - start, slope), np.divide(most - start, slope)

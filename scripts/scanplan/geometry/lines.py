@@ -1,7 +1,7 @@
 """Lines in the plan: a line with a side, spans along it, total least squares, and observed wall segments.
 
-A face is seen from one side. Its normal points to where the sensor stood, and its direction has the normal on its left,
-so the side alone decides which end of a face is its start.
+A face is seen from one side. Its normal points to where the sensor stood, and its direction has the
+normal on its left, so the side alone decides which end of a face is its start.
 """
 
 import math
@@ -31,7 +31,8 @@ class Line:
 
     def along_m(self, xy_m: FloatArray) -> FloatArray:
         """Return positions (...,) of points (..., 2) along the line, from its centre."""
-        # nothing of the size of the points but the result: many times as fast as to subtract the centre first
+        # nothing of the size of the points but the result: many times as fast as to subtract the
+        # centre first
         return xy_m @ self.direction - self.centre @ self.direction
 
     def offset_m(self, xy_m: FloatArray) -> FloatArray:
@@ -102,9 +103,9 @@ class ObservedSegments:
 def observed_segments(walls: Columns, *, registration_sigma_m: float) -> ObservedSegments:
     """Make segments of the rows of a table of walls.
 
-    A point's variance about the true wall is that about its own segment plus that of the scan's place, so a segment
-    weighs ``n_points / (rmse_m**2 + registration_sigma_m**2)``. Segments below a millimetre have no direction and
-    are left out.
+    A point's variance about the true wall is that about its own segment plus that of the scan's
+    place, so a segment weighs ``n_points / (rmse_m**2 + registration_sigma_m**2)``. Segments below
+    a millimetre have no direction and are left out.
 
     Parameters
     ----------
@@ -180,8 +181,8 @@ def rows_scatter(
 ) -> tuple[FloatArray, FloatArray]:
     """Return the centre (2,) and the scatter (3,), xx, xy and yy, of uniform rows of points.
 
-    A row from a to b with weight w adds ``w (m m' + h h' / 3)`` to the scatter, m its middle from the common centre and
-    h half its extent.
+    A row from a to b with weight w adds ``w (m m' + h h' / 3)`` to the scatter, m its middle from
+    the common centre and h half its extent.
 
     Parameters
     ----------

@@ -75,7 +75,8 @@ def _spread_3d(c: _Covariances) -> _Spread:
     determinant = xx * (yy * zz - yz**2) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)
     angle = np.arccos(np.clip(determinant / scale**3 / 2, -1, 1)) / 3
     largest, least = 2 * scale * np.cos(angle), 2 * scale * np.cos(angle + 2 * np.pi / 3)
-    # the axis is perpendicular to every row of the matrix less its eigenvalue; the longest product is the safest
+    # the axis is perpendicular to every row of the matrix less its eigenvalue; the longest product
+    # is the safest
     rows = [(xx - least, xy, xz), (xy, yy - least, yz), (xz, yz, zz - least)]
     crosses = np.stack(
         [_cross(rows[0], rows[1]), _cross(rows[0], rows[2]), _cross(rows[1], rows[2])]

@@ -1,12 +1,14 @@
 """How thick the walls of a merged map are: what is left of registration errors where nobody knows the truth.
 
-A surface that several scans saw should be one surface. In neighbourhoods of the map that hold points of several scans
-the spread across the surface is the root of the least eigenvalue of the points' covariance: the range noise, where the
-scans lie on each other, and more, where they do not. The median over places all over the map is the crispness. Corners
-and clutter have large spreads whatever the poses, which the median bears as long as surfaces are the larger part.
+A surface that several scans saw should be one surface. In neighbourhoods of the map that hold
+points of several scans the spread across the surface is the root of the least eigenvalue of the
+points' covariance: the range noise, where the scans lie on each other, and more, where they do not.
+The median over places all over the map is the crispness. Corners and clutter have large spreads
+whatever the poses, which the median bears as long as surfaces are the larger part.
 
-Droeschel and Behnke, "Efficient continuous-time SLAM for 3D lidar-based online mapping", ICRA 2018, call the mean of it
-mean plane variance; Razlaw et al., "Evaluation of registration methods for sparse 3D laser scans", ECMR 2015.
+Droeschel and Behnke, "Efficient continuous-time SLAM for 3D lidar-based online mapping", ICRA 2018,
+call the mean of it mean plane variance; Razlaw et al., "Evaluation of registration methods for
+sparse 3D laser scans", ECMR 2015.
 """
 
 from dataclasses import dataclass
@@ -27,8 +29,8 @@ class SurfaceScatter:
     xyz_m : (n, 3) float64
         A point of the map in the middle of each.
     sigma_m : (n,) float64
-        Standard deviation of its points across the surface; NaN where fewer than 10 points, or points of fewer than 3
-        scans, are there.
+        Standard deviation of its points across the surface; NaN where fewer than 10 points, or
+        points of fewer than 3 scans, are there.
     """
 
     xyz_m: np.ndarray

@@ -39,7 +39,8 @@ def move_near_origin(polygons):
 def subtract_polygons(polygons, others, threads=None):
     """Subtract (n,) others from (n,) polygons, each from its own, on the threads of an executor if one is given.
 
-    Where rounding makes an overlay inconsistent it is done again with all corners on a grid of a micrometre.
+    Where rounding makes an overlay inconsistent it is done again with all corners on a grid of a
+    micrometre.
     """
     if threads is None or len(polygons) < _WORTH_THREADS:
         return _each(shapely.difference, polygons, others)

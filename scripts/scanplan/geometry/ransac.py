@@ -48,8 +48,9 @@ def fit_line_ransac(
 ) -> tuple[FloatArray, float, BoolArray]:
     """Find the line most points lie on (thesis, algorithm 4), then fit it to these by least squares.
 
-    All pairs are drawn beforehand, so that the result depends on the points and the generator's state alone; ties go to
-    the pair drawn first. Clouds of more than 1,000 points are scored on 1,000 of them.
+    All pairs are drawn beforehand, so that the result depends on the points and the generator's
+    state alone; ties go to the pair drawn first. Clouds of more than 1,000 points are scored on
+    1,000 of them.
 
     Parameters
     ----------

@@ -58,8 +58,8 @@ def invert_pose(a_from_b):
 def nearest_rigid(pose):
     """Return a 4 x 4 matrix with the nearest true rotation in it.
 
-    `invert_pose` takes a rotation's transpose for its inverse, so in a chain of products and inverses a rounding error
-    doubles with every link unless it is taken out.
+    `invert_pose` takes a rotation's transpose for its inverse, so in a chain of products and
+    inverses a rounding error doubles with every link unless it is taken out.
     """
     left, _, right = np.linalg.svd(np.asarray(pose, float)[:3, :3])
     cleaned = np.array(pose, float)
@@ -85,8 +85,8 @@ def pose_yaw_rad(pose):
 def interpolate_poses(t_ns, xyz_m, quat_xyzw, query_ns, *, max_gap_s):
     """Interpolate poses: linear in position, spherical in rotation (thesis, algorithm 3, step 1).
 
-    Never extrapolates; a query that falls into a gap longer than `max_gap_s` is not covered. A query that equals a
-    stamp is covered whatever the gaps beside it.
+    Never extrapolates; a query that falls into a gap longer than `max_gap_s` is not covered. A
+    query that equals a stamp is covered whatever the gaps beside it.
 
     Parameters
     ----------
@@ -103,7 +103,8 @@ def interpolate_poses(t_ns, xyz_m, quat_xyzw, query_ns, *, max_gap_s):
     xyz_m : (m, 3) float64, NaN where not covered
     quat_xyzw : (m, 4) float64, NaN where not covered
     gap_s : (m,) float64
-        Time between the two poses around the query; 0 on a stamp, infinite before the first and after the last.
+        Time between the two poses around the query; 0 on a stamp, infinite before the first and
+        after the last.
     covered : (m,) bool
 
     Raises

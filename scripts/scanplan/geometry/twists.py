@@ -1,7 +1,7 @@
 """Small rigid motions as six numbers: a shift in metres, then a turn as a rotation vector in radians.
 
-They are taken in the frame of what moves: `pose @ motion(twist)`. Shift and turn stay apart (no screw motion), which
-makes the six numbers those that errors are stated in.
+They are taken in the frame of what moves: `pose @ motion(twist)`. Shift and turn stay apart (no
+screw motion), which makes the six numbers those that errors are stated in.
 """
 
 import numpy as np
@@ -26,7 +26,8 @@ def motion_to_twist(a_from_b):
     """Return the six numbers of rigid motions, (..., 4, 4) to (..., 6); the inverse of `twist_to_motion`."""
     a_from_b = np.asarray(a_from_b, float)
     turn = a_from_b[..., :3, :3]
-    # sin and cos of the angle, times the axis: a tenth of the time of scipy's way through quaternions
+    # sin and cos of the angle, times the axis: a tenth of the time of scipy's way through
+    # quaternions
     axis = (
         np.stack([turn[..., i, j] - turn[..., j, i] for i, j in ((2, 1), (0, 2), (1, 0))], axis=-1)
         / 2

@@ -32,18 +32,18 @@ def bound_any_subset(order):
     n = len(order.order)
     if n == 0:
         return np.zeros(0)
-    bound_m2 = np.full(n, order.covered_m2[-1])
-    covered_m2 = np.concatenate([[0.0], order.covered_m2])
+    bound_m2 = np.full(n, order.covered[-1])
+    covered_m2 = np.concatenate([[0.0], order.covered])
     position = np.argsort(order.order)
     for j in _steps(n):
         gain_m2 = order.checkpoints[max(start for start in order.checkpoints if start <= j)]
-        remaining_m2 = np.minimum(gain_m2[position >= j], order.gain_m2[j] + area_greedy.TIE_M2)
+        remaining_m2 = np.minimum(gain_m2[position >= j], order.gain[j] + area_greedy.TIE_M2)
         reached_m2 = covered_m2[j] + np.cumsum(np.sort(remaining_m2)[::-1])
         # fewer than n are left: with more than that nothing more is reached
         bound_m2[: n - j] = np.minimum(bound_m2[: n - j], reached_m2)
         bound_m2[n - j :] = np.minimum(bound_m2[n - j :], reached_m2[-1])
     # equal where greedy is optimal, but for rounding
-    return np.maximum(bound_m2, order.covered_m2)
+    return np.maximum(bound_m2, order.covered)
 
 
 def _steps(n):

@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 
 from scanplan.geometry.polygons import move_near_origin, subtract_polygons, unite_polygons
-from scanplan.selection import area_greedy
+from scanplan.selection import area_greedy, hulls
 
 
 class StreamingSieves:
@@ -74,7 +74,7 @@ class StreamingSieves:
         by_greedy = area_greedy.order_by_area([self._held[i] for i in held])
         k = min(self._k, len(held))
         best = max(self._sieves.values(), key=lambda sieve: sieve.covered_m2)
-        if by_greedy.covered_m2[k - 1] >= best.covered_m2:
+        if by_greedy.covered[k - 1] >= best.covered_m2:
             return held[by_greedy.order[:k]].tolist()
         return [
             best.chosen[i]
@@ -110,6 +110,12 @@ class _Sieve:
         self.chosen.append(index)
         self.covered_m2 += added_m2
         return True
+
+
+def order_in_one_pass(scans):
+    """Return scans (n,) by one pass over the hulls of their clusters, with their settings for it."""
+    polygons = hulls.scan_polygons(scans.tables["hulls"])[1]
+    return order_streaming(polygons, **scans.streaming)[0]
 
 
 def order_streaming(polygons, *, k=60, epsilon=0.1):

@@ -27,10 +27,10 @@ class Uncovered:
 
     Attributes
     ----------
-    gain_m2 : (n,) float64
+    gain : (n,) float64
         Upper bound of what each polygon would add to the chosen ones, 0 for the chosen ones themselves.
     exact : (n,) bool
-        Whether `gain_m2` is what it would add.
+        Whether `gain` is what it would add.
     remaining : (n,) bool
         Whether it has not been chosen.
     """
@@ -57,22 +57,22 @@ class Uncovered:
         )
         self.remaining = np.ones(len(polygons), bool)
         self.exact = self.remaining.copy()
-        self.gain_m2 = np.bincount(self._owner, self._area_m2, minlength=len(polygons))
+        self.gain = np.bincount(self._owner, self._area_m2, minlength=len(polygons))
 
-    def refresh(self, some, floor_m2=-np.inf):
+    def refresh(self, some, floor=-np.inf):
         """Bring the gains of some polygons up to date, each until it is exact or known to be below a floor.
 
         Parameters
         ----------
         some : (m,) int
             Distinct indices.
-        floor_m2 : float
+        floor : float
         """
         parts = self._stale_parts(some)
-        if floor_m2 > 0:
+        if floor > 0:
             self._bound(parts[~self._measured[parts]])
             self._add_up(some)
-            parts = self._stale_parts(some[self.gain_m2[some] >= floor_m2])
+            parts = self._stale_parts(some[self.gain[some] >= floor])
         self._measure(parts)
         self._add_up(some)
 
@@ -80,7 +80,7 @@ class Uncovered:
         """Cover a remaining polygon; return what it added."""
         if not self.exact[i]:
             self.refresh(np.array([i]))
-        gain_m2, parts = self.gain_m2[i], np.arange(self._first[i], self._first[i + 1])
+        gain, parts = self.gain[i], np.arange(self._first[i], self._first[i + 1])
         parts = parts[self._area_m2[parts] > 0]
         self.remaining[i] = False
         if len(parts) == 0:
@@ -91,11 +91,11 @@ class Uncovered:
         # whole parts, not what is left of them: their few straight edges leave no slivers
         self._regions.cover(self._whole[parts], self._left[parts])
         self._cells.cover(new)
-        self.gain_m2[i] = self._area_m2[parts] = 0.0
+        self.gain[i] = self._area_m2[parts] = 0.0
         self._make_stale(shapely.bounds(new).reshape(-1, 4), parts[of])
-        return gain_m2
+        return gain
 
-    def drop_covered(self):
+    def tighten(self):
         """Bring all gains nearer to what they are, by what is far quicker than overlays.
 
         Worth its cost each time the number of chosen polygons has doubled.
@@ -127,7 +127,7 @@ class Uncovered:
 
     def _add_up(self, some):
         place, parts = cell_bounds.list_members(self._first, some)
-        self.gain_m2[some] = np.bincount(place, self._area_m2[parts], minlength=len(some))
+        self.gain[some] = np.bincount(place, self._area_m2[parts], minlength=len(some))
         self.exact[some] = np.bincount(place, self._n_new[parts], minlength=len(some)) == 0
 
     def _bound(self, parts):
