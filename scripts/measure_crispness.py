@@ -19,7 +19,8 @@ def measure_crispness(
     output : path-like
         crispness.parquet, to write.
     radius_m, most_points, most_places, seed
-        See `plane_scatter.measure_scatter`, `plane_scatter.thin_randomly` and `plane_scatter.choose_places`.
+        See `plane_scatter.measure_scatter`, `plane_scatter.thin_randomly` and
+        `plane_scatter.choose_places`.
     """
     store, kept = tables.ScanStore(scans), registered_scans.read_registered_scans(registration)
     to_localiser = registered_scans.read_prior_poses(poses, kept, registration) @ se3.invert_pose(

@@ -26,8 +26,8 @@ def order_scans(
     method : str
         One of `methods.METHODS`.
     seed, min_overlap, streaming, budget
-        Those of them that `methods.SETTINGS` names for the method, see `orderings.order_scans`; `budget` are keywords of
-        `stopping.points_budget`.
+        Those of them that `methods.SETTINGS` names for the method, see `orderings.order_scans`;
+        `budget` are keywords of `stopping.points_budget`.
     others : dict of str to path-like, optional
         The tables that `methods.TABLES` names for the method.
     """

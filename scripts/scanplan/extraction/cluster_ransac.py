@@ -6,7 +6,7 @@ import numpy as np
 
 from scanplan.extraction import furniture, mean_shift, normals, segments
 from scanplan.geometry import ransac
-from scanplan.rays import scan_view
+from scanplan.rays import scan_view, sensor_frame
 
 _DUAL_SHIFT_M = 1.0
 _ALIKE = np.cos(np.deg2rad(20))  # a point's normal against its wall's
@@ -65,7 +65,7 @@ def extract_by_clusters(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
     ValueError
         If a coordinate is not finite.
     """
-    points = segments.centre_on_sensor(xyz_m, sensor_xyz_m)
+    points = sensor_frame.centre_on_sensor(xyz_m, sensor_xyz_m)
     scan = segments.view_scan(points, planar=planar)
     surfaces = _surfaces(points, scan, settings)
     cells, facing = surfaces.cells, surfaces.facing

@@ -6,6 +6,7 @@ import numpy as np
 
 from scanplan.extraction import furniture, segments
 from scanplan.geometry import ransac
+from scanplan.rays import sensor_frame
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,7 +54,7 @@ def extract_iteratively(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
     ValueError
         If a coordinate is not finite.
     """
-    points = left = segments.centre_on_sensor(xyz_m, sensor_xyz_m)
+    points = left = sensor_frame.centre_on_sensor(xyz_m, sensor_xyz_m)
     scan = segments.view_scan(points, planar=planar)
     largest = _largest_line if planar else _largest_plane
     least = max(settings.least_points(planar), 3)

@@ -8,17 +8,18 @@ from scanplan.selection import area_greedy
 def bound_any_subset(order):
     """Bound the area that any k polygons can cover, for every k.
 
-    Whatever j polygons are chosen first, k others add no more to them than the sum of the k largest gains that remain,
-    because the area of a union is monotone and submodular:
+    Whatever j polygons are chosen first, k others add no more to them than the sum of the k largest
+    gains that remain, because the area of a union is monotone and submodular:
 
         best_k <= min over j of (covered_j + sum of the k largest gains given the first j)
 
-    (Nemhauser, Wolsey and Fisher 1978, "An analysis of approximations for maximizing submodular set functions I",
-    proposition 2.1; as a bound for one instance: Leskovec et al. 2007, "Cost-effective outbreak detection in networks",
-    theorem 4). The gains given the first j are those of the last checkpoint before j, which can only have shrunk since
-    and, as the order is greedy, none exceeds the gain of the polygon chosen next. Nor can any subset cover more than
-    all polygons do. Any j gives a bound: all small ones are tried, and of larger ones each a thirty-second above the
-    last, so that the time grows hardly faster than n.
+    (Nemhauser, Wolsey and Fisher 1978, "An analysis of approximations for maximizing submodular set
+    functions I", proposition 2.1; as a bound for one instance: Leskovec et al. 2007,
+    "Cost-effective outbreak detection in networks", theorem 4). The gains given the first j are
+    those of the last checkpoint before j, which can only have shrunk since and, as the order is
+    greedy, none exceeds the gain of the polygon chosen next. Nor can any subset cover more than all
+    polygons do. Any j gives a bound: all small ones are tried, and of larger ones each a
+    thirty-second above the last, so that the time grows hardly faster than n.
 
     Parameters
     ----------
@@ -27,7 +28,8 @@ def bound_any_subset(order):
     Returns
     -------
     (n,) float64
-        At k - 1 the bound for k polygons, square metres; never below what the first k of the order cover.
+        At k - 1 the bound for k polygons, square metres; never below what the first k of the order
+        cover.
     """
     n = len(order.order)
     if n == 0:

@@ -18,9 +18,10 @@ _INSIDE_M2 = 1e-6  # rounding is far less, also far from the map's origin
 def make_cluster_hulls(scan_id, xyz_m, *, n_clusters, sample_size, seed):
     """Cluster one scan's points in plan view and draw one convex hull round each cluster (thesis, algorithm 2).
 
-    KMeans runs on a random sample of the points; then every point joins its nearest centre. The sample depends on
-    `seed` and `scan_id` alone. A cluster of fewer than three points, or of points on one line, stays as the Point or
-    LineString it is, with area 0: the convex hull of all rows is exactly that of all points.
+    KMeans runs on a random sample of the points; then every point joins its nearest centre. The
+    sample depends on `seed` and `scan_id` alone. A cluster of fewer than three points, or of points
+    on one line, stays as the Point or LineString it is, with area 0: the convex hull of all rows is
+    exactly that of all points.
 
     Parameters
     ----------
@@ -41,7 +42,8 @@ def make_cluster_hulls(scan_id, xyz_m, *, n_clusters, sample_size, seed):
     Raises
     ------
     ValueError
-        If there are no points, a coordinate is not finite, or a number of clusters or points is out of its range.
+        If there are no points, a coordinate is not finite, or a number of clusters or points is out
+        of its range.
     """
     xy_m = _plan_view(xyz_m)
     if not 1 <= n_clusters <= _MOST_CLUSTERS or sample_size < 1:
@@ -135,8 +137,9 @@ def _means(sample, centres):
 def _spread_centres(sample, n_clusters, rng):
     """Draw first centres far from each other: k-means++ with several candidates a step.
 
-    Each centre is drawn with probability proportional to the squared distance to those already drawn; of a few such
-    candidates the one that leaves the least distance is taken (Arthur and Vassilvitskii 2007, sections 2.2 and 7).
+    Each centre is drawn with probability proportional to the squared distance to those already
+    drawn; of a few such candidates the one that leaves the least distance is taken (Arthur and
+    Vassilvitskii 2007, sections 2.2 and 7).
     """
     n_candidates = 2 + int(np.log(n_clusters))
     chosen = [int(rng.integers(len(sample)))]
@@ -180,8 +183,8 @@ def _convex_hulls(xy_m, label, n_clusters):
 def _outer(xy_m):
     """Return the points (n, 2) but for those well inside the quadrilateral of their diagonal extremes, at least 2.
 
-    None of these is a corner of the convex hull (Akl and Toussaint 1978, "A fast convex hull algorithm"); of walls seen
-    from a room few others are left.
+    None of these is a corner of the convex hull (Akl and Toussaint 1978, "A fast convex hull
+    algorithm"); of walls seen from a room few others are left.
     """
     if len(xy_m) < _MANY_POINTS:
         # a line needs two points

@@ -14,18 +14,19 @@ def choose_n_scans(
 ):
     """Return how many of the first scans to use, and why.
 
-    Of several limits the one that needs fewest scans decides; with none all scans are used. One scan is always used.
+    Of several limits the one that needs fewest scans decides; with none all scans are used. One
+    scan is always used.
 
     Parameters
     ----------
     columns : dict of str to (n,) numpy.ndarray, n >= 1
-        `covered_m2`, or both it and `covered`, of a table of an ordering, by rank; `gain_m2` for `min_gain_m2`,
-        `n_points` for a budget.
+        `covered_m2`, or both it and `covered`, of a table of an ordering, by rank; `gain_m2` for
+        `min_gain_m2`, `n_points` for a budget.
     n_scans : int, >= 1, optional
         Use so many scans, or all if there are fewer.
     area_share : float in (0, 1], optional
-        Use the fewest scans that cover this share of what all cover (within `area_greedy.TIE_M2`), measured by `covered`,
-        the objective of the method itself, where it is given.
+        Use the fewest scans that cover this share of what all cover (within `area_greedy.TIE_M2`),
+        measured by `covered`, the objective of the method itself, where it is given.
     min_gain_m2 : float, > 0, optional
         Use no scan after the last that adds this much area.
     max_points, max_bytes : int, >= 1, optional

@@ -12,14 +12,15 @@ from scanplan.selection import area_greedy, hulls
 class StreamingSieves:
     """Up to k polygons of a stream whose union covers much.
 
-    Sieve-Streaming++ (Kazemi, Mitrovic, Zadimoghaddam, Lattanzi and Karbasi 2019, "Submodular Streaming in All its
-    Glory"). For each of a ladder of thresholds, (1 + epsilon) apart, a sieve takes every polygon that adds at least
-    the threshold to those it holds, until it holds k. Thresholds below a 2k-th of what the best sieve covers are
-    given up, those above the largest polygon so far not yet needed. The best sieve covers at least 1/2 - epsilon of
-    what any k polygons of the stream cover, and no more than O(k / epsilon) polygons are held at any time.
+    Sieve-Streaming++ (Kazemi, Mitrovic, Zadimoghaddam, Lattanzi and Karbasi 2019, "Submodular
+    Streaming in All its Glory"). For each of a ladder of thresholds, (1 + epsilon) apart, a sieve
+    takes every polygon that adds at least the threshold to those it holds, until it holds k.
+    Thresholds below a 2k-th of what the best sieve covers are given up, those above the largest
+    polygon so far not yet needed. The best sieve covers at least 1/2 - epsilon of what any k
+    polygons of the stream cover, and no more than O(k / epsilon) polygons are held at any time.
 
-    At the end greedy chooses k of all that is held, and the better of its choice and the best sieve is taken: the
-    guarantee stays, and far more is covered in practice.
+    At the end greedy chooses k of all that is held, and the better of its choice and the best sieve
+    is taken: the guarantee stays, and far more is covered in practice.
 
     Parameters
     ----------
@@ -121,7 +122,8 @@ def order_in_one_pass(scans):
 def order_streaming(polygons, *, k=60, epsilon=0.1):
     """Order polygons by one pass over them: first those that `StreamingSieves` chooses, then the others as they came.
 
-    What is bounded is what the sieves hold; the polygons themselves are all here, to be moved near the origin.
+    What is bounded is what the sieves hold; the polygons themselves are all here, to be moved near
+    the origin.
 
     Parameters
     ----------

@@ -1,12 +1,14 @@
 r"""Upper bounds of what is uncovered of many polygons, from how much of every cell of a grid is covered.
 
-Nothing of a polygon P is uncovered in a cell but what lies in the polygon and outside the covered region U there:
+Nothing of a polygon P is uncovered in a cell but what lies in the polygon and outside the covered
+region U there:
 
     area(P \ U) <= sum over cells of min(area of P in the cell, area of the cell outside U)
 
-Equal where a cell is full or empty of either, so only cells that the edges of both cross make the bound loose. An area
-in a cell is exact: the edges are cut at the lines of the grid, and what every piece adds to its own cell and to all
-those to the right of it is summed up, as outlines of letters are drawn with soft edges.
+Equal where a cell is full or empty of either, so only cells that the edges of both cross make the
+bound loose. An area in a cell is exact: the edges are cut at the lines of the grid, and what every
+piece adds to its own cell and to all those to the right of it is summed up, as outlines of letters
+are drawn with soft edges.
 """
 
 import numpy as np

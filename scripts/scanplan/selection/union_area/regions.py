@@ -12,10 +12,10 @@ _SMALLEST = 0.5  # of the largest polygon: windows that are smaller yet cost mor
 class Regions:
     """What is covered round each of many polygons.
 
-    The plane is divided into squares, for polygons of every order of size, at least as large as those. A polygon
-    belongs to the square that the lower left corner of its box lies in, and is therefore inside a window of two by two
-    squares. Each window unites all that reaches into it when it is next asked: the union of many hulls has few corners,
-    and is quickly subtracted.
+    The plane is divided into squares, for polygons of every order of size, at least as large as
+    those. A polygon belongs to the square that the lower left corner of its box lies in, and is
+    therefore inside a window of two by two squares. Each window unites all that reaches into it
+    when it is next asked: the union of many hulls has few corners, and is quickly subtracted.
 
     Parameters
     ----------

@@ -14,9 +14,10 @@ _FEW_OF_WHOLE = 1  # and from a part that nothing was subtracted from yet
 class Uncovered:
     """What the chosen polygons leave of every polygon.
 
-    A polygon is kept as its parts (a scan's separate hulls): each is small, and its difference to the union of all that
-    is chosen is one cheap overlay. What is left of a part shrinks, so an area measured earlier is too large, never too
-    small; it is still exact unless something was chosen whose new area meets the box of what was left.
+    A polygon is kept as its parts (a scan's separate hulls): each is small, and its difference to
+    the union of all that is chosen is one cheap overlay. What is left of a part shrinks, so an area
+    measured earlier is too large, never too small; it is still exact unless something was chosen
+    whose new area meets the box of what was left.
 
     Parameters
     ----------
@@ -28,7 +29,8 @@ class Uncovered:
     Attributes
     ----------
     gain : (n,) float64
-        Upper bound of what each polygon would add to the chosen ones, 0 for the chosen ones themselves.
+        Upper bound of what each polygon would add to the chosen ones, 0 for the chosen ones
+        themselves.
     exact : (n,) bool
         Whether `gain` is what it would add.
     remaining : (n,) bool
