@@ -82,7 +82,7 @@ def scan_free_space(
     corner_m = np.minimum(free_m, np.roll(free_m, 1))
     angle_rad = np.arange(len(free_m)) * (2 * np.pi / len(free_m))
     outline_m = corner_m[:, None] * np.column_stack([np.cos(angle_rad), np.sin(angle_rad)])
-    polygon = shapely.polygons(outline_m + np.asarray(sensor_xyz_m, float)[:2])
+    polygon = shapely.Polygon(outline_m + np.asarray(sensor_xyz_m, float)[:2])
     return {
         "scan_id": scan_id,
         "area_m2": polygon.area,

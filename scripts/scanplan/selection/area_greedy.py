@@ -10,7 +10,7 @@ from itertools import islice
 
 import numpy as np
 import shapely
-from shapely import Geometry
+from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry.polygons import (
     intersect_polygons,
@@ -28,7 +28,7 @@ area only."""
 
 _TILE_PER_POLYGON = 2.0  # so that few polygons are cut, and few lie in a tile
 
-Polygons = Sequence[Geometry] | Array
+Polygons = Sequence[BaseGeometry] | Array
 
 
 def order_by_area(polygons: Polygons, *, min_overlap: float = 0.0, threads: int = 1) -> GreedyOrder:

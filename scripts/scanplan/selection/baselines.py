@@ -35,7 +35,9 @@ def order_every_nth(scans: SurveyScans) -> IntArray:
     n = len(scans)
     bits = max(1, int(n - 1).bit_length()) if n else 1
     index = np.arange(2**bits) if n else np.arange(0)
-    reversed_bits = sum(((index >> bit) & 1) << (bits - 1 - bit) for bit in range(bits))
+    reversed_bits = np.zeros_like(index)
+    for bit in range(bits):
+        reversed_bits += ((index >> bit) & 1) << (bits - 1 - bit)
     place = reversed_bits * n >> bits
     _, first = np.unique(place, return_index=True)
     return place[np.sort(first)]

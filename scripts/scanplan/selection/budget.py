@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 import numpy as np
+import numpy.typing as npt
 
 from scanplan.selection.lazy_greedy import Cover, choose_greedily
 from scanplan.types import BoolArray, FloatArray, IntArray
@@ -11,7 +12,7 @@ _SAME_RATIO = 1e-9  # of the largest gain per cost: sums and quotients agree far
 
 
 def choose_in_budget(
-    new_cover: Callable[[], Cover], cost: FloatArray | IntArray, budget: float, *, tie: float
+    new_cover: Callable[[], Cover], cost: npt.ArrayLike, budget: float, *, tie: float
 ) -> list[int]:
     """Choose within a budget: by gain per cost, by gain alone, or one alone, whichever covers most.
 
@@ -43,7 +44,7 @@ def choose_in_budget(
     ValueError
         If there is not one cost above 0 for each choice.
     """
-    cost = np.asarray(cost, float)
+    cost = np.array(cost, float)
     alone = new_cover().gain.copy()
     if cost.shape != alone.shape or not (cost > 0).all():
         raise ValueError(f"{len(alone)} choices need as many costs above 0")
@@ -65,7 +66,14 @@ def choose_in_budget(
 def _choose_by_worth(
     cover: Cover, cost: FloatArray, budget: float, weight: FloatArray, tie: float
 ) -> tuple[list[int], float]:
-    """Take the largest weight times gain that fits, again and again; return it and what it covers."""
+    """Choose the largest weight times gain that fits, again and again.
+
+    Returns
+    -------
+    list of int
+    float
+        What they cover.
+    """
     chosen, covered = [], 0.0
     affordable = _Affordable(cover, cost, budget, weight, tie)
     for i, gain in choose_greedily(affordable, tie=0.0, relative_tie=_SAME_RATIO):

@@ -113,7 +113,7 @@ def order_greedily(cover: Cover, *, tie: float, min_overlap: float = 0.0) -> Gre
 def choose_greedily(
     cover: Cover, *, tie: float, relative_tie: float = 0.0, most: FloatArray | None = None
 ) -> Iterator[tuple[int, float]]:
-    """Choose what adds most, the lowest index of equals, as long as anything may add more than a tie.
+    """Choose what adds most, the lowest index of equals, as long as anything may add something.
 
     Parameters
     ----------
@@ -192,7 +192,7 @@ class SingleGains:
 
 
 def _find_best(cover: Cover, tie: float, relative_tie: float, most: FloatArray | None) -> int:
-    """Return the remaining choice of the largest gain, the lowest of equals; few others are looked at."""
+    """Return the remaining choice of the largest gain, the lowest of equals."""
     batch = 1
     while True:
         allowed = cover.remaining & cover.exact

@@ -126,4 +126,4 @@ WALL_LIMITS = (
     "min_points",
     "min_points_planar",
 )
-"""Settings of the wall extractor that decide what it could find, for `wall_cells.WallCellSettings`."""
+"""Settings of the wall extractor that decide what it could find; `wall_cells` takes them too."""

@@ -3,6 +3,7 @@
 Each `cover_*` function makes the objective of a survey that `methods.METHODS` names.
 """
 
+from itertools import pairwise
 from typing import Protocol
 
 import numpy as np
@@ -64,7 +65,7 @@ def cover_free_space(scans: SurveyScans) -> Objective:
 
 
 def cover_wall_length(scans: SurveyScans) -> Objective:
-    """Length of wall that scans show well enough to be found, each cell as the best of them shows it.
+    """Length of wall that scans show well enough to be found, each cell at its best.
 
     This closes the loop between walls and selection (thesis, chapter 6) without extracting the
     walls of any scan.
@@ -164,7 +165,7 @@ class _BestWeights(lazy_greedy.SingleGains):
     """The largest weight so far of every cell, and what each scan would add to their sum."""
 
     def __init__(self, first: IntArray, cell: IntArray, weight: FloatArray) -> None:
-        self._own = [slice(a, b) for a, b in zip(first[:-1], first[1:], strict=True)]
+        self._own = [slice(a, b) for a, b in pairwise(first)]
         self._cell, self._weight = cell, weight
         self._best = np.zeros(cell.max(initial=-1) + 1)
         super().__init__(len(self._own))

@@ -1,4 +1,7 @@
-"""The orders in which scans can be taken into the plan (thesis, 5.2): those of `methods.METHODS`."""
+"""The orders in which scans can be taken into the plan: those of `methods.METHODS`.
+
+Thesis, section 5.2.
+"""
 
 from collections.abc import Mapping
 from typing import Any

@@ -213,7 +213,7 @@ def _measure_facing(
 
 
 class _Grid:
-    """Cells of the plane, (along, across): points lie in one cell along and are shared by two across.
+    """Cells of the plane: points lie in one cell along and are shared by two across.
 
     Parameters
     ----------
@@ -235,14 +235,15 @@ class _Grid:
         n_cells = int(np.prod(self.shape))
         lower = np.bincount(self._lower, weight * (1 - self._upper_share), minlength=n_cells)
         upper = np.bincount(self._lower + 1, weight * self._upper_share, minlength=n_cells)
-        return (lower + upper).reshape(self.shape)
+        return np.asarray(lower + upper, float).reshape(self.shape)
 
     def top(self, value: FloatArray, window: tuple[int, int]) -> FloatArray:
-        """Return the largest value of the points in a window around every cell; -inf without any."""
+        """Return the largest value of points in a window round every cell; -inf without any."""
         largest = np.full(self.shape, -np.inf)
         for cells in (self._lower, self._lower + 1):
             np.maximum.at(largest.reshape(-1), cells, value)
-        return ndimage.maximum_filter(largest, window, mode="constant", cval=-np.inf)
+        widened = ndimage.maximum_filter(largest, window, mode="constant", cval=-np.inf)
+        return np.asarray(widened, float)
 
 
 def _ratio(part: FloatArray, whole: FloatArray) -> FloatArray:

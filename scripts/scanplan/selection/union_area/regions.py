@@ -1,12 +1,13 @@
-"""The union of a growing choice of polygons, in windows, so that nobody has to look at all of it."""
+"""The union of a growing choice of polygons, in windows, so that nobody needs all of it."""
 
 import numpy as np
 import shapely
 
 from scanplan.geometry.polygons import unite_polygons
+from scanplan.types import Array, IntArray
 
 _LEVEL = 2.0  # the squares of one size are so many times those of the next smaller one
-_SMALLEST = 0.5  # of the largest polygon: windows that are smaller yet cost more unions than they save corners
+_SMALLEST = 0.5  # of the largest polygon: smaller windows cost more unions than they save corners
 
 
 class Regions:
@@ -23,7 +24,7 @@ class Regions:
         With area.
     """
 
-    def __init__(self, polygons):
+    def __init__(self, polygons: Array) -> None:
         boxes = shapely.bounds(polygons).reshape(-1, 4)
         side_m = (boxes[:, 2:] - boxes[:, :2]).max(axis=1)
         side_m = np.maximum(
@@ -37,14 +38,17 @@ class Regions:
         self._union = np.full(len(squares), shapely.Polygon(), object)
         self._pending = [[] for _ in squares]
 
-    def cover(self, polygons, new):
+    def cover(self, polygons: Array, new: Array) -> None:
         """Cover (m,) more polygons, each of which adds (m,) something new to what is covered."""
         which, window = self._tree.query(new)
         for i, one in zip(window.tolist(), polygons[which], strict=True):
             self._pending[i].append(one)
 
-    def around(self, some):
-        """Return the covered region (m,) near each of some polygons (m,) int: the same inside its box, prepared."""
+    def around(self, some: IntArray) -> Array:
+        """Return the covered region (m,), prepared, near each of some polygons (m,) int.
+
+        Inside a polygon's box it is all that is covered.
+        """
         window = self._window[some]
         for i in np.unique(window):
             if self._pending[i]:
