@@ -230,5 +230,5 @@ def test_leaving_out_inner_points_leaves_the_hull(shape, shift_m):
 
 def test_iterations_end_where_nothing_changes_and_keep_an_empty_centre():
     sample = np.array([(0, 0), (0, 2), (10, 0), (10, 2)], float)
-    found = hulls._means(sample, np.array([(0, 0), (9, 9), (99, 99)], float))
+    found = hulls._move_to_means(sample, np.array([(0, 0), (9, 9), (99, 99)], float))
     assert found.tolist() == [[0, 1], [10, 1], [99, 99]]
