@@ -1,4 +1,4 @@
-"""Intervals on a line: what they cover, the gaps between them, and where a linear function is in range.
+"""Intervals on a line: what they cover, their gaps, and where a linear function is in range.
 
 Intervals are (n, 2) arrays of begin and end, or two arrays (n,) of begins and ends, metres; they
 may overlap.
@@ -17,16 +17,16 @@ def find_gaps(
     Without places, the gaps between the first begin and the last end.
     """
     begin_m, end_m = intervals_m[np.argsort(intervals_m[:, 0], kind="stable")].T
-    low_m = begin_m[0] if low_m is None else low_m
-    high_m = end_m.max() if high_m is None else high_m
-    gap_begin_m = np.maximum.accumulate(np.concatenate([[low_m], end_m]))
-    gap_end_m = np.minimum(np.concatenate([begin_m, [high_m]]), high_m)
+    first_m = begin_m[0] if low_m is None else low_m
+    last_m = end_m.max() if high_m is None else high_m
+    gap_begin_m = np.maximum.accumulate(np.concatenate([[first_m], end_m]))
+    gap_end_m = np.minimum(np.concatenate([begin_m, [last_m]]), last_m)
     gaps_m = np.column_stack([gap_begin_m, gap_end_m])
     return gaps_m[gap_end_m > gap_begin_m]
 
 
 def find_run_starts(begin_m: FloatArray, end_m: FloatArray, max_gap_m: float) -> IntArray:
-    """Return which intervals begin a new run, but the first: those after a gap of more than `max_gap_m`.
+    """Return which intervals, but the first, begin a new run: those after more than `max_gap_m`.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Lines in the plan: a line with a side, spans along it, total least squares, and observed wall segments.
+"""Lines with a side, spans along them, total least squares, and observed wall segments.
 
 A face is seen from one side. Its normal points to where the sensor stood, and its direction has the
 normal on its left, so the side alone decides which end of a face is its start.
@@ -36,7 +36,7 @@ class Line:
         return xy_m @ self.direction - self.centre @ self.direction
 
     def offset_m(self, xy_m: FloatArray) -> FloatArray:
-        """Return signed distances (...,) of points (..., 2) from the line, positive on the sensor's side."""
+        """Return signed distances (...,) of points (..., 2), positive on the sensor's side."""
         return xy_m @ self.normal - self.centre @ self.normal
 
     def at(self, along_m: FloatArray | float) -> FloatArray:
@@ -71,7 +71,7 @@ class Span:
 
 @dataclass(frozen=True, eq=False)
 class ObservedSegments:
-    """Observed wall segments, sorted by scan and number, so that the order of the input does not matter.
+    """Observed wall segments, by scan and number, so that the order of the input does not matter.
 
     Attributes
     ----------
@@ -101,7 +101,7 @@ class ObservedSegments:
 
 
 def observed_segments(walls: Columns, *, registration_sigma_m: float) -> ObservedSegments:
-    """Make segments of the rows of a table of walls.
+    """Make observed segments of the rows of a table of walls.
 
     A point's variance about the true wall is that about its own segment plus that of the scan's
     place, so a segment weighs ``n_points / (rmse_m**2 + registration_sigma_m**2)``. Segments below
@@ -162,7 +162,9 @@ def least_scatter_normal(
     *,
     arctan2: Callable[[Any, Any], Any] = np.arctan2,
 ) -> FloatArray:
-    """Return the unit normal (2, ...) of the line of total least squares: the axis along which points scatter least.
+    """Return the unit normal (2, ...) of the line of total least squares.
+
+    That is the axis along which points scatter least.
 
     Parameters
     ----------
@@ -198,9 +200,10 @@ def rows_scatter(
 
 
 def fit_segments_line(segments: ObservedSegments, members: IntArray) -> Line:
-    """Fit a line to some segments (k,), k >= 1, by weighted total least squares, each a uniform row of points.
+    """Fit a line to some segments (k,), k >= 1, by weighted total least squares.
 
-    Its normal is on the side of the members' weighted mean normal.
+    Each counts as a uniform row of points. The line's normal is on the side of the members'
+    weighted mean normal.
     """
     weight = segments.weight[members]
     weight = weight / weight.sum()

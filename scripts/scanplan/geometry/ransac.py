@@ -1,4 +1,7 @@
-"""Lines through points in the plane, also among outliers. A line is its unit normal n and offset d: n . p = d."""
+"""Lines through points in the plane, also among outliers.
+
+A line is its unit normal n and offset d: all p with n . p = d.
+"""
 
 import numpy as np
 
@@ -6,7 +9,7 @@ from scanplan.geometry.lines import least_scatter_normal
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 _REFITS = 3  # each brings fewer new points near than the last
-_MAX_SCORED = 1000  # a thousand points rank the drawn lines as all would, in a time that does not grow
+_MAX_SCORED = 1000  # points that rank the drawn lines nearly as all would, in a bounded time
 
 
 def fit_line_tls(xy_m: FloatArray, weight: FloatArray | None = None) -> tuple[FloatArray, float]:
@@ -46,11 +49,11 @@ def fit_line_ransac(
     rng: np.random.Generator,
     weight: FloatArray | None = None,
 ) -> tuple[FloatArray, float, BoolArray]:
-    """Find the line most points lie on (thesis, algorithm 4), then fit it to these by least squares.
+    """Find the line most points lie on, then fit it to these by least squares.
 
-    All pairs are drawn beforehand, so that the result depends on the points and the generator's
-    state alone; ties go to the pair drawn first. Clouds of more than 1,000 points are scored on
-    1,000 of them.
+    Thesis, algorithm 4. All pairs are drawn beforehand, so that the result depends on the points
+    and the generator's state alone; ties go to the pair drawn first. Clouds of more than 1,000
+    points are scored on 1,000 of them.
 
     Parameters
     ----------

@@ -4,15 +4,14 @@ The area of a union is monotone submodular, so `lazy_greedy` gives the very orde
 every scan in every step gives; what is left of each scan is `union_area.uncovered`.
 """
 
-from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from itertools import islice
 
 import numpy as np
 import shapely
-from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry.polygons import (
+    Polygons,
     intersect_polygons,
     move_near_origin,
     subtract_polygons,
@@ -27,8 +26,6 @@ TIE_M2 = 1e-6
 area only."""
 
 _TILE_PER_POLYGON = 2.0  # so that few polygons are cut, and few lie in a tile
-
-Polygons = Sequence[BaseGeometry] | Array
 
 
 def order_by_area(polygons: Polygons, *, min_overlap: float = 0.0, threads: int = 1) -> GreedyOrder:

@@ -10,6 +10,7 @@ import numpy as np
 import shapely
 
 from scanplan.errors import StageError
+from scanplan.geometry.polygons import Polygons
 from scanplan.selection import area_greedy, hulls, lazy_greedy, wall_cells
 from scanplan.selection.budget import choose_in_budget
 from scanplan.selection.lazy_greedy import GreedyOrder
@@ -94,7 +95,7 @@ class PolygonArea:
         As for `area_greedy.order_by_area`.
     """
 
-    def __init__(self, polygons: area_greedy.Polygons) -> None:
+    def __init__(self, polygons: Polygons) -> None:
         self._polygons = polygons
 
     def greedy(self, min_overlap: float = 0.0) -> GreedyOrder:

@@ -9,7 +9,12 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from scanplan.geometry.polygons import move_near_origin, subtract_polygons, unite_polygons
+from scanplan.geometry.polygons import (
+    Polygons,
+    move_near_origin,
+    subtract_polygons,
+    unite_polygons,
+)
 from scanplan.selection import area_greedy, hulls
 from scanplan.selection.survey_scans import SurveyScans
 from scanplan.types import IntArray
@@ -126,7 +131,7 @@ def order_in_one_pass(scans: SurveyScans) -> IntArray:
 
 
 def order_streaming(
-    polygons: area_greedy.Polygons, *, k: int = 60, epsilon: float = 0.1
+    polygons: Polygons, *, k: int = 60, epsilon: float = 0.1
 ) -> tuple[IntArray, int]:
     """Order polygons in one pass: first those that `StreamingSieves` chooses, then the others.
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import shapely
+from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry.polygons import unite_polygons
 from scanplan.types import Array, IntArray
@@ -36,7 +37,7 @@ class Regions:
         low_m, side_m = squares[:, :2] * squares[:, 2:], squares[:, 2:]
         self._tree = shapely.STRtree(shapely.box(*low_m.T, *(low_m + 2 * side_m).T))
         self._union = np.full(len(squares), shapely.Polygon(), object)
-        self._pending = [[] for _ in squares]
+        self._pending: list[list[BaseGeometry]] = [[] for _ in squares]
 
     def cover(self, polygons: Array, new: Array) -> None:
         """Cover (m,) more polygons, each of which adds (m,) something new to what is covered."""
@@ -52,7 +53,7 @@ class Regions:
         window = self._window[some]
         for i in np.unique(window):
             if self._pending[i]:
-                self._union[i] = unite_polygons([self._union[i], *self._pending[i]])
+                self._union[i] = unite_polygons(np.array([self._union[i], *self._pending[i]]))
                 shapely.prepare(self._union[i])
                 self._pending[i] = []
         return self._union[window]

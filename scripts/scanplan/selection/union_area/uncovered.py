@@ -1,13 +1,11 @@
 """What a growing choice of polygons leaves uncovered of every polygon, measured where asked."""
 
-from collections.abc import Sequence
 from concurrent.futures import Executor
 
 import numpy as np
 import shapely
-from shapely.geometry.base import BaseGeometry
 
-from scanplan.geometry.polygons import move_near_origin, subtract_polygons
+from scanplan.geometry.polygons import Polygons, move_near_origin, subtract_polygons
 from scanplan.selection.union_area.cell_bounds import CellBounds, list_members
 from scanplan.selection.union_area.regions import Regions
 from scanplan.types import Array, FloatArray, IntArray
@@ -43,9 +41,7 @@ class Uncovered:
         Whether it has not been chosen.
     """
 
-    def __init__(
-        self, polygons: Sequence[BaseGeometry] | Array, threads: Executor | None = None
-    ) -> None:
+    def __init__(self, polygons: Polygons, threads: Executor | None = None) -> None:
         self._threads = threads
         polygons = move_near_origin(polygons)
         parts, owner = shapely.get_parts(polygons, return_index=True)
