@@ -14,7 +14,15 @@ def names(script):
 def test_direct_and_indirect_imports_are_found(tmp_path):
     script = tmp_path / "stage.py"
     script.write_text("from scanplan.registration import sequential\nimport numpy\n")
-    assert names(script) == {"sequential", "icp", "constraints", "planar_icp", "se3", "twists", "types"}
+    assert names(script) == {
+        "sequential",
+        "icp",
+        "constraints",
+        "planar_icp",
+        "se3",
+        "twists",
+        "types",
+    }
 
 
 def test_a_stage_does_not_depend_on_what_it_does_not_import():

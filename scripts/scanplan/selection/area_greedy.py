@@ -123,13 +123,15 @@ def _cut(polygons: Array) -> tuple[Array, IntArray, IntArray]:
     tiles = _tiles(boxes)
     row, tile = shapely.STRtree(tiles).query(polygons[with_area])
     by_tile = np.lexsort((row, tile))
-    row, tile = with_area[row[by_tile]], tile[by_tile]
+    row = with_area[row[by_tile]]
+    tile = tile[by_tile]
     return intersect_polygons(polygons[row], tiles[tile]), row, tile
 
 
 def _tiles(boxes_m: FloatArray) -> Array:
     """Return square tiles (t,), shapely Polygons, over boxes (n, 4), no more than boxes."""
-    low_m, high_m = boxes_m[:, :2].min(axis=0), boxes_m[:, 2:].max(axis=0)
+    low_m = boxes_m[:, :2].min(axis=0)
+    high_m = boxes_m[:, 2:].max(axis=0)
     polygon_m = np.median((boxes_m[:, 2:] - boxes_m[:, :2]).max(axis=1))
     # no more tiles than polygons, however far apart they are
     least_m = (high_m - low_m).max() / np.sqrt(len(boxes_m))
@@ -142,7 +144,8 @@ def _tiles(boxes_m: FloatArray) -> Array:
 
 def _gains(polygons: Array) -> FloatArray:
     """Return the area (m,) that each polygon adds to the union of those before it."""
-    gain_m2, union = np.zeros(len(polygons)), shapely.Polygon()
+    gain_m2 = np.zeros(len(polygons))
+    union = shapely.Polygon()
     for i, polygon in enumerate(polygons):
         gain_m2[i] = subtract_polygons([polygon], [union])[0].area
         if gain_m2[i] > 0:

@@ -66,7 +66,8 @@ def order_farthest_first(xy_m: FloatArray) -> IntArray:
     xy_m : (n, 2) float, finite
     """
     xy_m = np.asarray(xy_m, float)
-    nearest_m, order = np.full(len(xy_m), np.inf), []
+    order = []
+    nearest_m = np.full(len(xy_m), np.inf)
     for _ in range(len(xy_m)):
         order.append(int(np.argmax(nearest_m)))
         nearest_m = np.minimum(nearest_m, np.hypot(*(xy_m - xy_m[order[-1]]).T))

@@ -74,7 +74,8 @@ def _choose_by_worth(
     float
         What they cover.
     """
-    chosen, covered = [], 0.0
+    chosen = []
+    covered = 0.0
     affordable = _Affordable(cover, cost, budget, weight, tie)
     for i, gain in choose_greedily(affordable, tie=0.0, relative_tie=_SAME_RATIO):
         if gain > tie:
@@ -89,8 +90,11 @@ class _Affordable:
     def __init__(
         self, cover: Cover, cost: FloatArray, budget: float, weight: FloatArray, tie: float
     ) -> None:
-        self._cover, self._cost, self._weight = cover, cost, weight
-        self._left, self._tie = budget, tie
+        self._cover = cover
+        self._cost = cost
+        self._left = budget
+        self._weight = weight
+        self._tie = tie
 
     @property
     def gain(self) -> FloatArray:

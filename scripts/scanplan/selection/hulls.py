@@ -202,8 +202,9 @@ def _outer(xy_m: FloatArray) -> FloatArray:
     if len(xy_m) < _MANY_POINTS:
         # a line needs two points
         return np.concatenate([xy_m, xy_m[:1]])
-    x_m, y_m = xy_m[:, 0].copy(), xy_m[:, 1].copy()
-    rising_m, falling_m = x_m + y_m, y_m - x_m
+    x_m, y_m = np.ascontiguousarray(xy_m.T)
+    rising_m = x_m + y_m
+    falling_m = y_m - x_m
     extremes = [rising_m.argmax(), falling_m.argmax(), rising_m.argmin(), falling_m.argmin()]
     corners = xy_m[extremes].tolist()
     inside_m2 = np.full(len(xy_m), np.inf)

@@ -97,7 +97,8 @@ def order_greedily(cover: Cover, *, tie: float, min_overlap: float = 0.0) -> Gre
         raise ValueError(f"min_overlap is {min_overlap}, must be 0 to 1")
     alone = cover.gain.copy()
     most = alone * (1 - min_overlap + _ROUNDING) if min_overlap > 0 else None
-    checkpoints, order, gains = {0: alone}, [], []
+    checkpoints = {0: alone}
+    order, gains = [], []
     for i, gain in choose_greedily(cover, tie=tie, most=most):
         order.append(i)
         gains.append(gain)

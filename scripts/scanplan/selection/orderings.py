@@ -80,10 +80,11 @@ def order_scans(
     n_points = _count_points(columns)
     area = _make_objective(chosen_method if chosen_method.is_area else METHODS[AREA_METHOD], scans)
     most_area = area.greedy()
-    own, most = area, most_area
     if chosen_method.objective and not chosen_method.is_area:
         own = _make_objective(chosen_method, scans)
         most = own.greedy()
+    else:
+        own, most = area, most_area
     if chosen_method.order:
         order = _order_directly(chosen_method.order, scans)
     else:
@@ -101,7 +102,8 @@ def order_scans(
 
 def summarise_order(method: str, columns: Columns) -> str:
     """Return in a line what an order covers, how soon, and how good its beginning is at least."""
-    n, covered = len(columns["rank"]), columns["covered"]
+    n = len(columns["rank"])
+    covered = columns["covered"]
     n_for_share, _ = stopping.choose_n_scans(columns, area_share=_LOGGED_SHARE)
     first = min(_LOGGED_SCANS, n)
     bound = columns["bound"][first - 1]

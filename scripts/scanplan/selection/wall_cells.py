@@ -137,8 +137,8 @@ def number_cells(columns: Mapping[str, Array]) -> IntArray:
     cell = np.zeros(len(columns["facing"]), np.int64)
     for name in _KEYS:
         values = columns[name].astype(np.int64)
-        low, high = values.min(initial=0), values.max(initial=0)
-        cell = cell * (high - low + 1) + values - low
+        low = values.min(initial=0)
+        cell = cell * (values.max(initial=0) - low + 1) + values - low
     return cell
 
 
@@ -184,7 +184,8 @@ def _measure_facing(
 
     Heights are z and `_rate_tallness` of each point, (n,) each, or None of a planar scan.
     """
-    axis, sign = which // 2, 2 * (which % 2) - 1
+    axis = which // 2
+    sign = 2 * (which % 2) - 1
     there = facing[:, axis] * sign > _SAME_SIDE
     if not there.any():
         return np.empty(0, np.int32), np.empty(0, np.int32), np.empty(0)
@@ -213,14 +214,7 @@ def _measure_facing(
 
 
 class _Grid:
-    """Cells of the plane: points lie in one cell along and are shared by two across.
-
-    Parameters
-    ----------
-    at_m : (n, 2) float
-        Along and across.
-    cell_m : float
-    """
+    """Cells of the plane: points (n, 2) lie in one cell along and are shared by two across."""
 
     def __init__(self, at_m: FloatArray, cell_m: float) -> None:
         at = at_m / cell_m - (0.0, 0.5)

@@ -21,7 +21,7 @@ _MOST_CELLS = 10**6  # of the plane, where parts are few: 8 MB
 _MOST_CELLS_PER_PART = 400  # of the plane, where parts are many
 _AT_A_TIME = 4096  # polygons filled together: bounds the memory
 _ROUNDING = 1e-6  # of a cell, added to its areas: sums differ by less, and so do 32-bit numbers
-_NOISE = 1e-9  # of a cell: less is not told from nothing, and not listed
+_NOISE = 1e-9  # of a cell: less may be rounding, and is not listed
 
 
 class CellBounds:

@@ -34,7 +34,8 @@ class Regions:
         home = np.column_stack([np.floor(boxes[:, :2] / side_m[:, None]), side_m])
         squares, window = np.unique(home, axis=0, return_inverse=True)
         self._window = window.reshape(-1)
-        low_m, side_m = squares[:, :2] * squares[:, 2:], squares[:, 2:]
+        side_m = squares[:, 2:]
+        low_m = squares[:, :2] * side_m
         self._tree = shapely.STRtree(shapely.box(*low_m.T, *(low_m + 2 * side_m).T))
         self._union = np.full(len(squares), shapely.Polygon(), object)
         self._pending: list[list[BaseGeometry]] = [[] for _ in squares]

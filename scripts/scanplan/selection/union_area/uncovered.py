@@ -118,7 +118,8 @@ class Uncovered:
     def _make_stale(self, boxes: FloatArray, parts: IntArray) -> None:
         """Note that what is left may have become less in boxes (m, 4), by chosen parts (m,)."""
         box, part = self._tree.query(shapely.box(*boxes.T))
-        new, left = boxes[box], self._left_box[part]
+        new = boxes[box]
+        left = self._left_box[part]
         overlap = ((left[:, :2] < new[:, 2:]) & (left[:, 2:] > new[:, :2])).all(axis=1)
         close = overlap & (self._area_m2[part] > 0)
         pairs = np.unique(part[close] * len(self._whole) + parts[box[close]])
