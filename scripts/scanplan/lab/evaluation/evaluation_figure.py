@@ -97,7 +97,8 @@ def _curves(axes, table, column):
     for method in sort_methods(table["method"]):
         label, colour = method_style(method)
         of_it = _of(table, method=method)
-        dashes, width = ("--", 0.8) if method in METHODS and METHODS[method].is_baseline else ("-", 1.2)
+        is_baseline = method in METHODS and METHODS[method].is_baseline
+        dashes, width = ("--", 0.8) if is_baseline else ("-", 1.2)
         axes.plot(
             of_it["k"], of_it[column], dashes, color=colour, lw=width, marker="o", ms=1.6,
             label=label, gid=f"{column}-{method}",
