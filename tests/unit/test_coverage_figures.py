@@ -14,7 +14,9 @@ def test_seeds_of_different_numbers_of_scans_are_drawn_together():
     table = made.evaluation()
     figure = coverage_figures.draw_shares_figure([table, shorter(table, 100)], "cluster_ransac")
     (line,) = [
-        line for line in figure.axes[2].get_lines() if line.get_label() == METHODS["sequential"].label
+        line
+        for line in figure.axes[2].get_lines()
+        if line.get_label() == METHODS["sequential"].label
     ]
     assert line.get_xdata().tolist() == [1, 15, 27, 40, 60, 80, 100]
     # of 100 scans one seed misses nothing, the other what is left between 80 and 270

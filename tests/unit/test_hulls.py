@@ -137,7 +137,8 @@ def test_every_point_is_in_its_hull_and_the_whole_is_the_hull_of_all(xy_m, n_clu
 
 
 def test_far_from_the_origin_the_clusters_are_the_same():
-    # a power of two and a grid that float64 holds at both places, so that only the method could differ
+    # a power of two and a grid that float64 holds at both places, so that only the method could
+    # differ
     snapped = np.round(room() * 1024) / 1024
     near = hulls.make_cluster_hulls(0, snapped, **SETTINGS)
     far = hulls.make_cluster_hulls(0, snapped + 2.0**20, **SETTINGS)

@@ -25,7 +25,8 @@ def coverage(scans):
 
 
 def test_on_paper():
-    # 3 + 3, then 2 of the last scan's 5 (its 3 is shown already), then the half metre that cell 0 is seen better
+    # 3 + 3, then 2 of the last scan's 5 (its 3 is shown already), then the half metre that cell 0
+    # is seen better
     order = coverage([{0: 3.5}, {0: 3, 1: 3}, {1: 3, 2: 2}]).greedy()
     assert order.order.tolist() == [1, 2, 0]
     assert order.gain.tolist() == [6, 2, 0.5]

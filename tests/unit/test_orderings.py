@@ -50,7 +50,11 @@ def others(scan_ids):
 def order(method, columns, *, seed=0, **options):
     known = others(np.unique(columns["scan_id"]).tolist())
     return orderings.order_scans(
-        method, columns, seed=seed, others={t: known[t] for t in methods.METHODS[method].tables}, **options
+        method,
+        columns,
+        seed=seed,
+        others={t: known[t] for t in methods.METHODS[method].tables},
+        **options,
     )
 
 
