@@ -53,7 +53,11 @@ def others(scan_ids):
 def order(method, columns, *, seed=0, **options):
     known = others(np.unique(columns["scan_id"]).tolist())
     return orderings.order_scans(
-        method, columns, seed=seed, others={t: known[t] for t in methods.TABLES[method]}, **options
+        method,
+        columns,
+        seed=seed,
+        others={t: known[t] for t in methods.METHODS[method].tables},
+        **options,
     )
 
 
@@ -220,7 +224,7 @@ def test_an_order_depends_on_the_settings_that_the_workflow_gives_it_and_on_no_o
     depends = {
         method for method in methods.METHODS if len({tuple(o) for o in varied(method, name)}) > 1
     }
-    named = {method for method in methods.METHODS if name in methods.SETTINGS[method]}
+    named = {method for method in methods.METHODS if name in methods.METHODS[method].settings}
     assert depends <= named and depends
 
 

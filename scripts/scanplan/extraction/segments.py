@@ -79,31 +79,6 @@ class WallSegments:
         return len(self.n_points)
 
 
-def centre_on_sensor(xyz_m, sensor_xyz_m):
-    """Return a scan's points relative to its sensor, axes of the map, in an order that depends on the points alone.
-
-    Raises
-    ------
-    ValueError
-        If a coordinate is not finite or the shapes are not (n, 3) and (3,).
-    """
-    xyz_m, sensor_xyz_m = np.asarray(xyz_m, float), np.asarray(sensor_xyz_m, float)
-    if xyz_m.ndim != 2 or xyz_m.shape[1] != 3 or sensor_xyz_m.shape != (3,):
-        raise ValueError(
-            f"points (n, 3) and a position (3,), not {xyz_m.shape} and {sensor_xyz_m.shape}"
-        )
-    if not (np.isfinite(xyz_m).all() and np.isfinite(sensor_xyz_m).all()):
-        raise ValueError("points and sensor position must be finite")
-    return xyz_m[_order(xyz_m)] - sensor_xyz_m
-
-
-def door_top_m(xyz_m, limits, *, planar):
-    """Return the height above which points bridge no gap, in the frame of the points (n, 3); infinite in the plane."""
-    if planar or len(xyz_m) == 0:
-        return np.inf
-    return scan_view.lowest_height(xyz_m) + limits.door_height_m
-
-
 def view_scan(xyz_m, *, planar):
     """Return what the rays of a scan's points (n, 3) show, for `cut_line`; None in the plane or where there is no point."""
     return None if planar or len(xyz_m) == 0 else scan_view.sort_by_azimuth(xyz_m)
@@ -223,12 +198,3 @@ def summarise_segments(columns, n_scans, took_ms):
         f"{np.median(points):.0f} points in the median wall" if len(points) else "no wall at all"
     )
     return f"{n_scans:,} scans, {len(points):,} walls, {typical}, {took_ms / n_scans:.0f} ms a scan"
-
-
-def _order(xyz_m):
-    """Return an order of points that depends on them alone."""
-    mixed = xyz_m @ (1.0, np.sqrt(2), np.sqrt(3))
-    order = np.argsort(mixed)
-    tied = mixed[order][1:] == mixed[order][:-1]
-    # one number a point sorts faster than three, and seldom do different points share it
-    return order if not tied.any() else np.lexsort([*xyz_m.T, mixed])
