@@ -7,6 +7,7 @@ from scanplan.extraction import map_tilt, segments
 from scanplan.extraction.extractors import EXTRACTORS, find_wall_segments, select_settings
 from scanplan.extraction.furniture import FurnitureLimits
 from scanplan.stage import log
+from scanplan.stage.per_registered_scan import sensor_keywords
 from scanplan.stage.per_scan import map_scans
 from scanplan.store import schemas, tables
 
@@ -37,9 +38,7 @@ def extract_walls(scans, registration, output, *, extractor, settings, threads=1
         "settings": select_settings(method.settings, settings),
         "limits": select_settings(FurnitureLimits, settings),
     }
-    per_scan = segments.sensor_keywords(
-        tables.read_table(registration, schemas.REGISTRATION), store.scan_ids, registration
-    )
+    per_scan = sensor_keywords(store.scan_ids, scans, registration)
     found = map_scans(
         find_wall_segments,
         scans,

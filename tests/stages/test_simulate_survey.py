@@ -17,7 +17,7 @@ from helpers.exact_sensor import EXACT
 from scanplan.errors import StageError
 from scanplan.geometry import se3
 from scanplan.lab.buildings import drawing_file, extrusion
-from scanplan.recordings import tf_tree
+from scanplan.recordings import frame_edges
 from scanplan.recordings.survey import open_survey
 from simulate_survey import simulate_survey
 
@@ -305,7 +305,7 @@ def test_stages_read_the_survey_whatever_it_is_written_as(tmp_path, building, na
             t_ns, xyz_m, _ = track(poses)
             np.testing.assert_array_equal(opened.stamps(), t_ns)
             chain, edges = t_ns[10:-10], opened.pose_edges()
-            placed, _, covered = tf_tree.chain_poses(edges, chain, max_gap_s=5.0)
+            placed, _, covered = frame_edges.chain_poses(edges, chain, max_gap_s=5.0)
             assert covered.all()
             assert np.median(np.linalg.norm(placed[:, :3, 3] - xyz_m[10:-10], axis=1)) < 0.01
             scan = next(iter(opened.scans([5])))

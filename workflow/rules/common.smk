@@ -164,14 +164,15 @@ def extractor_settings(wildcards):
 
 def order_tables(wildcards):
     """The tables that the job's method needs, by name, beside that of the hulls."""
-    tables = methods.TABLES[wildcards.method]
+    tables = methods.METHODS[wildcards.method].tables
     return {table: f"results/{wildcards.dataset}/{table}.parquet" for table in tables}
 
 
 def order_settings(wildcards):
     """Settings of the job's ordering, by name: a change of one reruns the orderings that depend on it."""
     return stage_settings.select_order(
-        DATASETS[wildcards.dataset].settings, methods.SETTINGS[wildcards.method]
+        DATASETS[wildcards.dataset].settings,
+        methods.METHODS[wildcards.method].settings,
     )
 
 

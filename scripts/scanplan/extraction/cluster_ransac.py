@@ -6,7 +6,7 @@ import numpy as np
 
 from scanplan.extraction import mean_shift, normals, segments
 from scanplan.extraction.segments import Row
-from scanplan.geometry import line_fit
+from scanplan.geometry import ransac
 from scanplan.rays.face_rays import SKIRTING_M
 from scanplan.rays.ray_set import RaySet
 from scanplan.types import FloatArray
@@ -74,7 +74,7 @@ def extract_by_clusters(
         own = cluster[free[cluster]]
         if cells.count[own].sum() < settings.least_points(scan is None):
             continue
-        line = line_fit.fit_line_ransac(
+        line = ransac.fit_line_ransac(
             cells.mean_m[own, :2],
             inlier_m=settings.inlier_m,
             trials=settings.trials,
@@ -116,7 +116,7 @@ def _gather(points, surfaces, free, line, inlier_m):
     other = points[cells.points_of(np.flatnonzero(near & ~alike & ~surfaces.level))]
     on_wall = np.abs(facing[:, :2] @ normal - offset_m) <= inlier_m
     if on_wall.sum() >= _LEAST_REFIT:
-        normal, offset_m, on_wall = line_fit.refit_line(
+        normal, offset_m, on_wall = ransac.refit_line(
             facing[:, :2], normal, offset_m, inlier_m=inlier_m
         )
     return (

@@ -6,7 +6,7 @@ import numpy as np
 
 from scanplan.extraction import segments
 from scanplan.extraction.segments import Row
-from scanplan.geometry import line_fit
+from scanplan.geometry import ransac
 from scanplan.rays.ray_set import RaySet
 from scanplan.types import FloatArray
 
@@ -68,7 +68,7 @@ def extract_iteratively(
         found = left[inliers]
         if upright and np.hypot(*np.ptp(found[:, :2], axis=0)) >= settings.min_length_m:
             rows += segments.cut_line(
-                *line_fit.fit_line_tls(found[:, :2]), found, settings, scan=scan
+                *ransac.fit_line_tls(found[:, :2]), found, settings, scan=scan
             )
         left = left[~inliers]
     return rows
@@ -102,7 +102,7 @@ def find_largest_plane(xyz_m, *, inlier_m, trials, seed):
 
 
 def _largest_line(xyz_m, settings, rng):
-    inliers = line_fit.fit_line_ransac(
+    inliers = ransac.fit_line_ransac(
         xyz_m[:, :2], inlier_m=settings.inlier_m, trials=settings.trials, rng=rng
     )[2]
     return True, inliers

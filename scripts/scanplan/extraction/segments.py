@@ -7,10 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan.errors import StageError
 from scanplan.extraction.runs import extend_run_ends, find_runs, grow_runs
 from scanplan.geometry.lines import Line
-from scanplan.rays import levels
 from scanplan.rays.face_raster import SCAN_COLUMN_M, rasterise_rays
 from scanplan.rays.face_rays import ON_M, SKIRTING_M, cast_at_face
 from scanplan.rays.ray_set import RaySet, gather_rays
@@ -97,34 +95,6 @@ class WallSegments:
     def __len__(self):
         """Return the number of segments."""
         return len(self.n_points)
-
-
-def centre_on_sensor(xyz_m, sensor_xyz_m):
-    """Return points relative to their sensor, in an order that depends on them alone.
-
-    Raises
-    ------
-    ValueError
-        If a coordinate is not finite or the shapes are not (n, 3) and (3,).
-    """
-    xyz_m, sensor_xyz_m = np.asarray(xyz_m, float), np.asarray(sensor_xyz_m, float)
-    if xyz_m.ndim != 2 or xyz_m.shape[1] != 3 or sensor_xyz_m.shape != (3,):
-        raise ValueError(
-            f"points (n, 3) and a position (3,), not {xyz_m.shape} and {sensor_xyz_m.shape}"
-        )
-    if not (np.isfinite(xyz_m).all() and np.isfinite(sensor_xyz_m).all()):
-        raise ValueError("points and sensor position must be finite")
-    return xyz_m[_order(xyz_m)] - sensor_xyz_m
-
-
-def door_top_m(xyz_m, limits, *, planar):
-    """Return the height above which points bridge no gap, in the frame of the points (n, 3).
-
-    Infinite in the plane.
-    """
-    if planar or len(xyz_m) == 0:
-        return np.inf
-    return levels.find_floor_z(xyz_m[:, 2]) + limits.door_height_m
 
 
 def view_scan(xyz_m: FloatArray, *, planar: bool) -> RaySet | None:
@@ -268,33 +238,6 @@ def segment_columns(scan_ids, segments):
     }
 
 
-def sensor_keywords(registered, scan_ids, origin):
-    """Return each scan's `sensor_xyz_m` keyword, for `per_scan.map_scans`.
-
-    Parameters
-    ----------
-    registered : dict
-        Columns of the table of registration.
-    scan_ids : (n,) int
-    origin : path-like
-        Where the table comes from, for the message.
-
-    Raises
-    ------
-    StageError
-        If a scan has no row or no finite position there.
-    """
-    positions = np.column_stack([registered[c] for c in ("x_m", "y_m", "z_m")])
-    known = np.isfinite(positions).all(axis=1)
-    sensors = dict(zip(registered["scan_id"][known].tolist(), positions[known], strict=True))
-    missing = [s for s in np.asarray(scan_ids).tolist() if s not in sensors]
-    if missing:
-        raise StageError(
-            f"{origin}: no pose of {len(missing)} scans, first scan {missing[0]}; delete it and run again"
-        )
-    return {s: {"sensor_xyz_m": sensors[s]} for s in np.asarray(scan_ids).tolist()}
-
-
 def summarise_segments(columns, n_scans, took_ms):
     """Return what was found in a line: scans, walls, points per wall, time per scan."""
     points = columns["n_points"]
@@ -302,12 +245,3 @@ def summarise_segments(columns, n_scans, took_ms):
         f"{np.median(points):.0f} points in the median wall" if len(points) else "no wall at all"
     )
     return f"{n_scans:,} scans, {len(points):,} walls, {typical}, {took_ms / n_scans:.0f} ms a scan"
-
-
-def _order(xyz_m):
-    """Return an order of points that depends on them alone."""
-    mixed = xyz_m @ (1.0, np.sqrt(2), np.sqrt(3))
-    order = np.argsort(mixed)
-    tied = mixed[order][1:] == mixed[order][:-1]
-    # one number a point sorts faster than three, and seldom do different points share it
-    return order if not tied.any() else np.lexsort([*xyz_m.T, mixed])

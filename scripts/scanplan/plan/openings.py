@@ -95,15 +95,6 @@ class Opening:
         return "door" if self.width_m <= settings.max_door_m else "passage"
 
 
-def find_gaps(intervals_m: FloatArray) -> FloatArray:
-    """Return the gaps (m, 2) between intervals (n, 2), n >= 1, that may overlap."""
-    order = np.argsort(intervals_m[:, 0], kind="stable")
-    low_m = intervals_m[order, 0]
-    high_m = np.maximum.accumulate(intervals_m[order, 1])
-    gaps = np.column_stack([high_m[:-1], low_m[1:]])
-    return gaps[gaps[:, 1] > gaps[:, 0]]
-
-
 def classify_gap(
     wall_line: Line,
     low_m: float,

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.geometry import intersections
+from scanplan.geometry.intervals import added_lengths_m
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.wall_pairs import PlanWall
 from scanplan.types import FloatArray, IntArray
@@ -209,10 +210,7 @@ def _observed_share(wall: PlanWall) -> float:
     """Return the share of a wall's length, openings aside, that points of either side show."""
     spans_m = np.sort([wall.line.along_m(interval.ends) for interval in wall.members], axis=1)
     spans_m = spans_m[np.argsort(spans_m[:, 0], kind="stable")]
-    starts_m = spans_m[:, 0]
-    ends_m = spans_m[:, 1]
-    reached_m = np.maximum.accumulate(np.concatenate([[-np.inf], ends_m]))[:-1]
-    shown_m = np.maximum(ends_m - np.maximum(starts_m, reached_m), 0).sum()
+    shown_m = added_lengths_m(*spans_m.T).sum()
     ways_m = sum(opening.width_m for opening in wall.openings if not opening.is_above_wall)
     whole_m = wall.length_m - ways_m
     return min(float(shown_m / whole_m), 1.0) if whole_m > 0 else 1.0

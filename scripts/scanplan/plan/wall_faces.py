@@ -7,10 +7,10 @@ import numpy as np
 import shapely
 from shapely.geometry import LineString, Polygon
 
+from scanplan.geometry.intervals import find_gaps
 from scanplan.geometry.lines import Line, Span
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.wall_pairs import PlanWall
-from scanplan.types import FloatArray
 
 OBSERVED = "observed"
 INFERRED = "inferred"
@@ -151,19 +151,10 @@ def _between_intervals(
     low_m = begin_m if first_m - begin_m <= max_beyond_m else first_m
     high_m = end_m if end_m - last_m <= max_beyond_m else last_m
     occupied_m = np.concatenate([intervals_m, np.array(ways_m).reshape(-1, 2)])
-    return _complement(occupied_m, low_m, high_m)
+    return [(begin_m, end_m) for begin_m, end_m in find_gaps(occupied_m, low_m, high_m).tolist()]
 
 
 def _extent_m(line: Line, wall: PlanWall, low_m: float, high_m: float) -> Extent:
     """Return an extent along a wall's line as one along another line beside it."""
     begin_m, end_m = np.sort(line.along_m(wall.line.at(np.array([low_m, high_m]))))
     return float(begin_m), float(end_m)
-
-
-def _complement(extents_m: FloatArray, low_m: float, high_m: float) -> list[Extent]:
-    """Return what of low to high is in none of the extents (n, 2)."""
-    ordered_m = extents_m[np.argsort(extents_m[:, 0], kind="stable")]
-    reached_m = np.maximum.accumulate(np.concatenate([[low_m], ordered_m[:, 1]]))
-    until_m = np.minimum(np.concatenate([ordered_m[:, 0], [high_m]]), high_m)
-    gaps_m = zip(reached_m.tolist(), until_m.tolist(), strict=True)
-    return [(begin_m, end_m) for begin_m, end_m in gaps_m if end_m > begin_m]

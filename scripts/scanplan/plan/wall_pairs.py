@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
-from scanplan.geometry.lines import Line, Span
+from scanplan.geometry.lines import Line, Span, least_scatter_normal, rows_scatter
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.rays.face_observation import FaceObservation, RaySettings
 from scanplan.rays.face_raster import CELL_M
@@ -228,7 +228,7 @@ def _fit_sides(
 
     A face counts as a uniform row of points, by its length.
     """
-    xx = yy = xy = 0.0
+    scatter = np.zeros(3)
     centres = []
     for side in sides:
         if not side:
@@ -236,18 +236,12 @@ def _fit_sides(
             continue
         ends = np.array([face.ends for face in side])
         half = (ends[:, 1] - ends[:, 0]) / 2
-        weight = np.hypot(*half.T)
-        total = weight.sum()
-        weight = weight / max(total, _SHORTEST_M)
-        centre = weight @ ends.mean(axis=1)
-        middle = ends.mean(axis=1) - centre
-        dx, dy = total * (weight @ (middle**2 + half**2 / 3))
-        xx += dx
-        yy += dy
-        xy += total * (weight @ (middle[:, 0] * middle[:, 1] + half[:, 0] * half[:, 1] / 3))
+        length = np.hypot(*half.T)
+        weight = length / max(length.sum(), _SHORTEST_M)
+        centre, of_side = rows_scatter(ends.mean(axis=1), half, weight)
+        scatter += length.sum() * of_side
         centres.append(centre)
-    angle_rad = math.atan2(2 * xy, xx - yy) / 2
-    fitted = np.array([-math.sin(angle_rad), math.cos(angle_rad)])
+    fitted = least_scatter_normal(*scatter, arctan2=math.atan2)
     fitted = fitted if fitted @ normal >= 0 else -fitted
     line = Line(next(centre for centre in centres if centre is not None), fitted)
     offsets_m = [0.0 if centre is None else float(line.offset_m(centre)) for centre in centres]

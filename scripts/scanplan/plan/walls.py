@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from scanplan.geometry import intersections
+from scanplan.geometry.intervals import find_gaps
 from scanplan.plan import wall_pairs
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.openings import (
@@ -17,7 +18,6 @@ from scanplan.plan.openings import (
     Opening,
     OpeningSettings,
     classify_gap,
-    find_gaps,
 )
 from scanplan.plan.wall_pairs import PairSettings, PlanWall
 from scanplan.rays.face_observation import RaySettings
