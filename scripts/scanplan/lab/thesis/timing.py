@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from scanplan.extraction import segments
+from scanplan.extraction import extractors, segments
 from scanplan.lab.thesis.claim_measures import BUILDING, CHOOSING, ORDERING, SUBSET, THINNED
 from scanplan.selection import area_greedy, hulls
 
@@ -22,7 +22,7 @@ def spread_rows(rows, count):
 
 
 def time_extractor(task, method, store, registered, scan_ids, settings, origin, *, part=1):
-    """Time a wall extractor scan by scan: of each the quickest of three calls.
+    """Time a wall extractor, without the furniture classifier, scan by scan: of each the quickest of three calls.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def time_extractor(task, method, store, registered, scan_ids, settings, origin, 
         Columns of the table of registration.
     scan_ids : (n,) int
     settings : dict
-        Keywords of the method's settings.
+        Those of the method among them.
     origin : path-like
         Of the table of registration, for messages.
     part : int
@@ -45,14 +45,18 @@ def time_extractor(task, method, store, registered, scan_ids, settings, origin, 
     dict
         A row of `schemas.TIMES`: `size` is the scan's number of points, `item` its scan_id, `found` its walls.
     """
-    sensors, chosen = (
-        segments.sensor_keywords(registered, scan_ids, origin),
-        method.settings(**settings),
-    )
+    sensors = segments.sensor_keywords(registered, scan_ids, origin)
+    chosen = extractors.select_settings(method.settings, settings)
     for number, (scan_id, xyz_m) in enumerate(store.scans(scan_ids)):
         xyz_m = thin_points(xyz_m, part, scan_id)
         call = partial(
-            method.extract, scan_id, xyz_m, planar=store.planar, settings=chosen, **sensors[scan_id]
+            extractors.find_wall_segments,
+            scan_id,
+            xyz_m,
+            planar=store.planar,
+            extractor=method,
+            settings=chosen,
+            **sensors[scan_id],
         )
         if number == 0:
             # the first call loads and compiles what all others use
