@@ -44,12 +44,6 @@ def stretch(x0, y0, x1, y1, occupied=(), **seen):
     return FaceInterval(known, 0.0, float(np.hypot(x1 - x0, y1 - y0)))
 
 
-def points_along(low_m, high_m, z_m=1.0, step_m=0.02):
-    """Return rows (n, 2) of places from one to another, both included where steps end there, and of a height."""
-    along_m = np.arange(low_m, high_m + 1e-9, step_m)
-    return np.column_stack([along_m, np.full(len(along_m), z_m)])
-
-
 def _columns(rows, width):
     rows = np.array(list(rows), float)
     rows = rows.reshape(len(rows), -1) if len(rows) else np.empty((0, width))

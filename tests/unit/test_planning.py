@@ -7,9 +7,9 @@ import pytest
 import shapely
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from scanplan.rays.face_profile import FaceObservation
 
 from helpers import house_making
+from helpers.observation_making import observation
 from helpers.toy_rooms import laser
 from helpers.wall_making import moved, walls
 from scanplan.geometry.lines import Line
@@ -164,7 +164,7 @@ class TestPlan:
 
 def _first(looked, count):
     """Rays of the first scans alone."""
-    points = zip(looked.scan_ids[:count].tolist(), looked.xyz_m[:count], strict=True)
+    points = [(i, looked.xyz_m[looked.rows[i]]) for i in looked.scan_ids[:count].tolist()]
     return ray_set.gather_rays(points, dict(enumerate(looked.sensors_m)), planar=False)
 
 
@@ -263,7 +263,7 @@ class TestFreeSpace:
         assert free_space.free_polygons(gathered)[0].intersection(
             shapely.box(0, 0, 4, 4)
         ).area == pytest.approx(16, rel=0.06)
-        assert np.degrees(free_space.column_spacing_rad(gathered.azimuth_rad[0])) == pytest.approx(
+        assert np.degrees(free_space.column_spacing_rad(gathered.azimuth_rad)) == pytest.approx(
             360 / columns, abs=0.02
         )
 
@@ -345,9 +345,8 @@ def _stretch(of, offset_m, span):
     sign = 1 if offset_m >= 0 else -1
     line = Line(of.line.centre + offset_m * of.line.normal, sign * of.line.normal)
     low, high = np.sort(sign * np.array(span, float))
-    place = np.linspace(low, high, 100)
-    nothing = (0 * place, 0 * place, np.zeros(100, int), np.empty(0), np.empty(0), np.empty(0, int))
-    return FaceInterval(FaceObservation(line, place, *nothing), float(low), float(high))
+    seen = observation(line, [(along_m, 0) for along_m in np.linspace(low, high, 100)])
+    return FaceInterval(seen, float(low), float(high))
 
 
 class TestEvidence:

@@ -75,8 +75,10 @@ def test_ranges_are_shortened_by_it():
     error_m = np.zeros(181)
     error_m[BEAMS + 90] = ERRORS_M
     shortened = range_bias.remove_range_bias(found, error_m, PLUMB)
-    for after, before, sensor_m in zip(shortened.xyz_m, found.xyz_m, SENSORS, strict=True):
-        assert lengthened(after, sensor_m, ERRORS_M) == pytest.approx(before, abs=1e-9)
+    for rows, sensor_m in zip(found.rows, SENSORS, strict=True):
+        assert lengthened(shortened.xyz_m[rows], sensor_m, ERRORS_M) == pytest.approx(
+            found.xyz_m[rows], abs=1e-9
+        )
     assert range_bias.remove_range_bias(found, np.zeros(181), PLUMB) is found
 
 
@@ -85,12 +87,13 @@ def test_beams_are_told_in_the_sensors_own_frame():
     tilted = np.tile((np.sin(0.1), 0.0, np.cos(0.1)), (len(SENSORS), 1))
     error_m = np.zeros(181)
     error_m[90] = 0.1
-    moved = [np.abs(a - b).max(axis=1) > 0.01 for a, b in zip(
-        range_bias.remove_range_bias(found, error_m, tilted).xyz_m, found.xyz_m, strict=True)]  # fmt: skip
-    for xyz_m, sensor_m, axis, was in zip(found.xyz_m, SENSORS, tilted, moved, strict=True):
-        way = (xyz_m - sensor_m) / np.linalg.norm(xyz_m - sensor_m, axis=1, keepdims=True)
-        assert was.any()
-        assert np.array_equal(was, np.abs(np.degrees(np.arcsin(way @ axis))) <= 0.5)
+    shortened = range_bias.remove_range_bias(found, error_m, tilted)
+    moved = np.abs(shortened.xyz_m - found.xyz_m).max(axis=1) > 0.01
+    for rows, sensor_m, axis in zip(found.rows, SENSORS, tilted, strict=True):
+        way = found.xyz_m[rows] - sensor_m
+        way /= np.linalg.norm(way, axis=1, keepdims=True)
+        assert moved[rows].any()
+        assert np.array_equal(moved[rows], np.abs(np.degrees(np.arcsin(way @ axis))) <= 0.5)
 
 
 def test_a_wall_with_a_step_tells_nothing():
