@@ -8,10 +8,13 @@ from hypothesis import strategies as st
 from helpers import toy_rooms, upright
 from reference import cluster_ransac as literal
 from scanplan.extraction import cluster_ransac
+from scanplan.extraction.extractors import EXTRACTORS, find_wall_segments
+from scanplan.extraction.furniture import FurnitureLimits
 
 SETTINGS = cluster_ransac.ClusterRansacSettings(
     **toy_rooms.LIMITS, reach_deg=3.5, max_tilt_deg=15.0, bandwidth_m=0.3, trials=64
 )
+LIMITS = FurnitureLimits(**toy_rooms.FURNITURE)
 # start and end of every face the sensor of the toy room sees, the sensor to the left of the way
 FACES = np.array(
     [
@@ -26,9 +29,15 @@ FACES = np.array(
 QUICK = settings(max_examples=8, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 
 
-def extract(xyz_m, sensor_xyz_m=toy_rooms.SENSOR, *, planar=False, scan_id=3, settings=SETTINGS):
-    return cluster_ransac.extract_by_clusters(
-        scan_id, xyz_m, sensor_xyz_m=sensor_xyz_m, planar=planar, settings=settings
+def extract(xyz_m, sensor_xyz_m=toy_rooms.SENSOR, *, planar=False, scan_id=3, limits=LIMITS):
+    return find_wall_segments(
+        scan_id,
+        xyz_m,
+        sensor_xyz_m=np.asarray(sensor_xyz_m, float),
+        planar=planar,
+        extractor=EXTRACTORS["cluster_ransac"],
+        settings=SETTINGS,
+        limits=limits,
     )
 
 
@@ -226,9 +235,9 @@ def test_one_wall_in_99_percent_of_outliers():
     dust = draw.uniform(-20, 20, (39_600, 3)) * (1, 1, 0.1)
     points = np.vstack([wall, dust])
     lenient = replace(
-        SETTINGS, over_share=1.0, through_share=np.inf, missing_share=1.0, wall_height_m=0.0
+        LIMITS, over_share=1.0, through_share=np.inf, missing_share=1.0, wall_height_m=0.0
     )
-    found = extract(points, (0, 0, 0), settings=lenient)
+    found = extract(points, (0, 0, 0), limits=lenient)
     assert len(found) >= 1
     assert found.start_m[0, 0] == pytest.approx(3, abs=0.02)
     assert found.normal[0] == pytest.approx([-1, 0], abs=0.02)

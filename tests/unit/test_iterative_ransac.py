@@ -1,9 +1,13 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from helpers import toy_rooms
 from reference import ransac as literal
 from scanplan.extraction import iterative_ransac
+from scanplan.extraction.extractors import EXTRACTORS, find_wall_segments
+from scanplan.extraction.furniture import FurnitureLimits
 
 SETTINGS = iterative_ransac.IterativeRansacSettings(
     **toy_rooms.LIMITS, max_tilt_deg=15.0, trials=200, max_planes=20
@@ -13,8 +17,14 @@ FACES = [((0, 1), 0), ((0, -1), -4), ((1, 0), 0), ((-1, 0), -6), ((-1, 0), -6), 
 
 
 def extract(xyz_m, sensor_xyz_m=toy_rooms.SENSOR, *, planar=False, settings=SETTINGS, scan_id=3):
-    return iterative_ransac.extract_iteratively(
-        scan_id, xyz_m, sensor_xyz_m=sensor_xyz_m, planar=planar, settings=settings
+    return find_wall_segments(
+        scan_id,
+        xyz_m,
+        sensor_xyz_m=np.asarray(sensor_xyz_m, float),
+        planar=planar,
+        extractor=EXTRACTORS["iterative_ransac"],
+        settings=settings,
+        limits=FurnitureLimits(**toy_rooms.FURNITURE),
     )
 
 
@@ -120,9 +130,7 @@ def test_a_map_far_from_its_origin(planar):
 
 
 def test_rounds_are_limited():
-    few = iterative_ransac.IterativeRansacSettings(
-        **toy_rooms.LIMITS, max_tilt_deg=15.0, trials=200, max_planes=1
-    )
+    few = replace(SETTINGS, max_planes=1)
     assert len(extract(toy_rooms.laser(), planar=True, settings=few)) == 1
 
 
