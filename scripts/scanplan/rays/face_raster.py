@@ -107,6 +107,12 @@ class FaceRaster:
         is_low = (top_row + 1) * _ROW_M <= sill_m
         return is_low & (np.where(above, self.free, 0) > 0).any(axis=1)
 
+    def is_closed(self, sill_m: float, *, low_m: float, door_m: float) -> BoolArray:
+        """Return in which columns (c,) that are not open rays end lower than a door, at the surface or before it."""
+        first, stop = round(low_m / _ROW_M), round(door_m / _ROW_M)
+        ends = self.occupied[:, :stop].any(axis=1) | self.occluded[:, first:stop].any(axis=1)
+        return ends & ~self.is_open(sill_m, low_m=low_m, door_m=door_m)
+
     def seen_top_m(self, columns: slice = slice(None)) -> float:
         """Return up to which height columns are seen over a good stretch of their length, and two of them at least.
 
