@@ -57,3 +57,14 @@ def test_a_blunt_wedge_reaches_through_no_wall():
     parts = free_space.open_polygons(shapely.MultiPolygon([wedge, beyond]), 0.1)
     assert len(parts) == 2
     assert max(p.difference(wedge).difference(beyond).area for p in parts) < 1e-3
+
+
+def test_ground_whose_mitres_nest_is_opened_all_the_same():
+    """GEOS 3.14 makes a polygon with nested shells of it, and then no overlay takes that."""
+    corners = [(603, 50), (614, 12), (570, -61), (613, -85), (586, -204), (351, -60), (296, 73)]
+    corners += [(384, 285), (596, 373), (808, 285), (865, 147), (854, 122), (813, 141), (747, 106)]
+    corners += [(609, 141), (599, 84), (848, -43), (836, -71)]
+    ground = shapely.Polygon(np.array(corners) / 1000)
+    opened = free_space.open_polygons(ground, 0.04)
+    assert opened and all(part.is_valid for part in opened)
+    assert shapely.union_all(opened).difference(ground.buffer(1e-3)).area == 0

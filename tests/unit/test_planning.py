@@ -13,7 +13,7 @@ from helpers.observation_making import observation
 from helpers.toy_rooms import laser
 from helpers.wall_making import moved, walls
 from scanplan.geometry.lines import Line
-from scanplan.plan import messages, planning, rooms, uncertainty, wall_faces
+from scanplan.plan import messages, planning, rooms, uncertainty, wall_faces, wall_ground
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.openings import CLOSED, OPEN, Opening
 from scanplan.plan.walls import PlanWall
@@ -297,7 +297,7 @@ class TestFreeSpace:
         assert free_space.free_polygons(empty)[0].is_empty
 
     def test_an_unpaired_wall_stands_behind_its_face(self):
-        (ground,) = free_space.wall_strips([wall(0, 0, 4, 0, np.nan)], 0.1)
+        (ground,) = wall_ground.wall_strips([wall(0, 0, 4, 0, np.nan)], 0.1)
         assert ground.bounds == (0, -0.1, 4, 0)
 
 

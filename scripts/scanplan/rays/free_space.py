@@ -124,13 +124,15 @@ def open_polygons(ground: BaseGeometry, half_m: float) -> list[Polygon]:
     -------
     list of shapely.Polygon
     """
-    ground, found = polygon_parts(ground), []
+    ground = polygon_parts(ground)
+    opened = []
     for core in polygon_parts(ground.buffer(-half_m, join_style="mitre")).geoms:
-        grown = shapely.intersection(
-            core.buffer(half_m, join_style="mitre"), ground, grid_size=GRID_M
-        )
-        found += [p for p in polygon_parts(grown).geoms if p.intersects(core)]
-    return found
+        grown = core.buffer(half_m, join_style="mitre")
+        # GEOS 3.14 makes nested shells of some mitres, which no overlay takes
+        grown = grown if grown.is_valid else shapely.make_valid(grown)
+        grown = shapely.intersection(grown, ground, grid_size=GRID_M)
+        opened += [part for part in polygon_parts(grown).geoms if part.intersects(core)]
+    return opened
 
 
 def polygon_parts(geometry: BaseGeometry) -> MultiPolygon:
