@@ -8,7 +8,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from scanplan.extraction import normals, segments
-from scanplan.types import BoolArray, FloatArray
+from scanplan.types import Array, BoolArray, FloatArray
 
 _NEAR_RAD = np.deg2rad(5)  # what normals of good surfaces scatter by
 _STEEPEST = np.cos(np.deg2rad(45))  # a map that is tilted more is no case of this
@@ -38,8 +38,8 @@ def tilt_warning(scans: Iterable[tuple[FloatArray, FloatArray]]) -> str:
     str
         Empty if z is up, or too little is seen.
     """
-    normal = [np.empty((0, 3))]
-    weight = [np.empty(0)]
+    normal: list[FloatArray] = [np.empty((0, 3))]
+    weight: list[Array] = [np.empty(0)]
     for xyz_m, sensor_xyz_m in scans:
         points = segments.centre_on_sensor(xyz_m, sensor_xyz_m)
         cells = normals.cut_surface_cells(points, reach_deg=_REACH_DEG)

@@ -11,7 +11,7 @@ from scanplan.types import FloatArray, IntArray
 
 _BINS_PER_BANDWIDTH = 8  # means of bins move a mode by far less than the bandwidth
 _SEEDS_PER_BANDWIDTH = 4  # no mode is farther from a seed than what draws it in
-_MAX_STEPS = 300  # seeds arrive within tens; a bound for those that creep
+_MAX_STEPS = 300  # bounds the time of seeds that creep
 _ROWS = np.arange(-_BINS_PER_BANDWIDTH, _BINS_PER_BANDWIDTH + 1)[:, None]
 _LEAST_WEIGHT = 1e-12  # where nothing is near: no division by 0
 _STILL = 1e-2  # a seed that moves less than this share of the bandwidth has arrived

@@ -126,7 +126,7 @@ def estimate_outline_normals(xy_m: FloatArray, *, reach_deg: float) -> FloatArra
         return np.full((len(xy_m), 2), np.nan)
     tree = KDTree(xy_m)
     radius = np.maximum(_MIN_RADIUS_2D_M, np.deg2rad(reach_deg) * np.linalg.norm(xy_m, axis=1))
-    nearest = tree.query(xy_m, k=[min(_NEAREST_2D + 1, len(xy_m))])[0][:, 0]
+    nearest = tree.query(xy_m, k=min(_NEAREST_2D + 1, len(xy_m)))[0][:, -1]
     radius = np.maximum(radius, np.minimum(nearest * (1 + 1e-9), _NEAREST_REACH_2D * radius))
     near = tree.query_ball_point(xy_m, radius, return_sorted=True)
     owner = np.repeat(np.arange(len(xy_m)), [len(n) for n in near])
