@@ -40,7 +40,6 @@ def assemble_plan(
     **stop
         How many scans to use, see `stopping.choose_n_scans`.
     """
-    store = tables.ScanStore(scans)
     observed = tables.read_table(walls, schemas.WALLS, allow_empty=True)
     ordering = tables.read_table(selection, schemas.SELECTION)
     count, reason = stopping.choose_n_scans(ordering, **stop)
@@ -51,6 +50,7 @@ def assemble_plan(
     registered = registered_scans.read_registered_scans(registration)
     rows = registered_scans.rows_of_scans(scan_ids, registered, selection, registration)
     poses = registered.map_from_sensor
+    store = tables.ScanStore(scans)
     sensors_m = dict(zip(scan_ids.tolist(), poses[rows, :3, 3], strict=True))
     rays = ray_set.gather_rays(store.scans(scan_ids), sensors_m, planar=store.planar)
     plan = planning.make_plan(
