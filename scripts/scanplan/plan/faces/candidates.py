@@ -162,7 +162,7 @@ def remove_doubles(
     return [face for number in order for face in rests[number]]
 
 
-def doubled_interval_m(face: Span, other: Span, distance_m: float) -> tuple[float, float]:
+def doubled_interval_m(face: _Face, other: _Face, distance_m: float) -> tuple[float, float]:
     """Return where along a face it runs closer than `distance_m` beside another.
 
     The end is no less than the begin, and equal to it where the face does so nowhere.
@@ -247,14 +247,14 @@ def _move_ends(face: _Face, places_m: dict[str, list[float]]) -> _Face:
     """Return a face with each end at the nearest of its places, unless little were left of it."""
     if not places_m:
         return face
-    nearest_m = {}
-    for end, ends_m in places_m.items():
-        own_m = getattr(face, end)
-        nearest_m[end] = min(
-            ends_m, key=lambda place_m, own_m=own_m: (abs(place_m - own_m), place_m)
-        )
+    nearest_m = {end: _nearest(ends_m, getattr(face, end)) for end, ends_m in places_m.items()}
     moved = replace(face, **nearest_m)
     return moved if moved.length_m >= face.length_m / 2 else face
+
+
+def _nearest(places_m: list[float], own_m: float) -> float:
+    """Return the place nearest to an own one, the lower one of two as near."""
+    return min(places_m, key=lambda place_m: (abs(place_m - own_m), place_m))
 
 
 def _subtract(face: _Face, stronger: _Face, distance_m: float) -> list[_Face]:
