@@ -9,18 +9,15 @@ from functools import cached_property
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
-import shapely
 
-from scanplan.geometry import intersections, lines
+from scanplan.geometry import lines
 from scanplan.geometry.lines import Line, ObservedSegments, Span
-from scanplan.types import BoolArray, FloatArray, IntArray
+from scanplan.plan.faces import face_pairs
+from scanplan.types import FloatArray, IntArray
 
 if TYPE_CHECKING:
     from scanplan.plan.faces.intervals import FaceInterval
 
-_LEAST_CORNER_RAD = np.radians(30)  # at a flatter angle, noise moves a crossing along both lines
-_BEFORE_M = 0.08  # as far as points of a face lie from the line of another all the same
-_SHORT_M = 0.15  # of what noise, a skirting or a frame may hide of a face before a corner
 _PARALLEL = 1e-12  # sine of lines that never cross, beyond rounding
 
 _Face = TypeVar("_Face", "FaceCandidate", "FaceInterval")
@@ -107,7 +104,7 @@ def meet_at_corners(faces: Sequence[_Face], *, corner_m: float) -> list[_Face]:
     list of the same, in the order given
     """
     places_m: list[dict[str, list[float]]] = [{} for _ in faces]
-    for number, end, place_m in _find_corner_moves(faces, corner_m):
+    for number, end, place_m in face_pairs.find_corner_moves(faces, corner_m):
         places_m[number].setdefault(end, []).append(place_m)
     return [_move_ends(face, moves) for face, moves in zip(faces, places_m, strict=True)]
 
@@ -144,7 +141,7 @@ def remove_doubles(
     points = np.array([face.n_points for face in faces])
     length_m = np.array([face.length_m for face in faces])
     widest_m = max(distance_m, ghost_distance_m)
-    one, other = _pair_same_side(faces, max_angle_rad, widest_m)
+    one, other = face_pairs.pair_same_side(faces, max_angle_rad, widest_m)
     is_ghost = points[one] * length_m[other] < ghost_share * points[other] * length_m[one]
     beside: list[list[tuple[int, float]]] = [[] for _ in faces]
     for weaker, stronger, width_m in zip(
@@ -168,14 +165,14 @@ def doubled_interval_m(face: _Face, other: _Face, distance_m: float) -> tuple[fl
     The end is no less than the begin, and equal to it where the face does so nowhere.
     """
     along = (
-        other.line.along_m(face.line.centre),
-        face.line.direction @ other.line.direction,
+        float(other.line.along_m(face.line.centre)),
+        float(face.line.direction @ other.line.direction),
         other.low_m,
         other.high_m,
     )
     across = (
-        other.line.offset_m(face.line.centre),
-        face.line.direction @ other.line.normal,
+        float(other.line.offset_m(face.line.centre)),
+        float(face.line.direction @ other.line.normal),
         -distance_m,
         distance_m,
     )
@@ -190,57 +187,6 @@ def doubled_interval_m(face: _Face, other: _Face, distance_m: float) -> tuple[fl
         low_m = max(low_m, begin_m)
         high_m = min(high_m, end_m)
     return low_m, max(low_m, high_m)
-
-
-def _find_corner_moves(faces: Sequence[_Face], corner_m: float) -> list[tuple[int, str, float]]:
-    """Return (face, name of the end, place) of ends that may move to another's line."""
-    one, other = _pair_near(faces, 2 * corner_m)
-    spans = intersections.stack_spans(faces)
-    along = np.column_stack([spans.normal[:, 1], -spans.normal[:, 0]])
-    turn = _dot(along[one], spans.normal[other])
-    steep = np.abs(turn) >= np.sin(_LEAST_CORNER_RAD)
-    one = one[steep]
-    other = other[steep]
-    turn = turn[steep]
-    between_m = spans.centre[one] - spans.centre[other]
-    place_m = -_dot(between_m, spans.normal[other]) / turn
-    there_m = _dot(
-        spans.centre[one] + place_m[:, None] * along[one] - spans.centre[other], along[other]
-    )
-    at_low, end_m = _nearest_end(place_m, spans.low_m[one], spans.high_m[one])
-    beyond_m = np.maximum(spans.low_m[other] - there_m, there_m - spans.high_m[other])
-    in_front = np.where(at_low, turn, -turn) > 0
-    # an edge seen from outside: the other face, too, ends here and lies behind this one
-    other_at_low, other_end_m = _nearest_end(there_m, spans.low_m[other], spans.high_m[other])
-    other_ends = np.abs(there_m - other_end_m) <= corner_m
-    other_behind = np.where(other_at_low, 1, -1) * _dot(along[other], spans.normal[one]) < 0
-    before_m = np.where(at_low, place_m - end_m, end_m - place_m)
-    other_before_m = np.where(other_at_low, there_m - other_end_m, other_end_m - there_m)
-    is_edge = other_ends & other_behind & _do_meet(before_m, other_before_m)
-    is_near = (np.abs(place_m - end_m) <= corner_m) & (np.maximum(beyond_m, 0) <= corner_m)
-    moves = is_near & (in_front | is_edge)
-    names = np.where(at_low, "low_m", "high_m")
-    return list(
-        zip(one[moves].tolist(), names[moves].tolist(), place_m[moves].tolist(), strict=True)
-    )
-
-
-def _nearest_end(
-    place_m: FloatArray, low_m: FloatArray, high_m: FloatArray
-) -> tuple[BoolArray, FloatArray]:
-    """Return whether the low end is the nearer one of each place (k,), and the nearer end (k,)."""
-    at_low = np.abs(place_m - low_m) <= np.abs(place_m - high_m)
-    return at_low, np.where(at_low, low_m, high_m)
-
-
-def _do_meet(before_m: FloatArray, other_before_m: FloatArray) -> BoolArray:
-    """Return which pairs (k,) end at their crossing, by how far before it each is seen to begin.
-
-    A face that is seen well before another one ends there only if that one is seen to begin there:
-    one would look at the other's front from where the first is.
-    """
-    are_close = np.maximum(before_m, other_before_m) <= _BEFORE_M
-    return are_close | (np.minimum(before_m, other_before_m) >= -_SHORT_M)
 
 
 def _move_ends(face: _Face, places_m: dict[str, list[float]]) -> _Face:
@@ -264,27 +210,3 @@ def _subtract(face: _Face, stronger: _Face, distance_m: float) -> list[_Face]:
         return [face]
     parts = [replace(face, high_m=low_m), replace(face, low_m=high_m)]
     return [part for part in parts if part.length_m > 0]
-
-
-def _pair_same_side(
-    faces: Sequence[_Face], max_angle_rad: float, distance_m: float
-) -> tuple[IntArray, IntArray]:
-    """Return the pairs of `_pair_near` that are seen from the same side."""
-    one, other = _pair_near(faces, distance_m)
-    normal = intersections.stack_spans(faces).normal
-    same_side = _dot(normal[one], normal[other]) >= np.cos(max_angle_rad)
-    return one[same_side], other[same_side]
-
-
-def _pair_near(faces: Sequence[_Face], distance_m: float) -> tuple[IntArray, IntArray]:
-    """Return the ordered pairs (k,), (k,), sorted, of different faces within a distance."""
-    ends_m = np.array([face.ends for face in faces]).reshape(-1, 2, 2)
-    strings = np.asarray(shapely.linestrings(ends_m), object)
-    one, other = shapely.STRtree(strings).query(strings, predicate="dwithin", distance=distance_m)
-    order = np.lexsort((other, one))
-    order = order[one[order] != other[order]]
-    return one[order], other[order]
-
-
-def _dot(one: FloatArray, other: FloatArray) -> FloatArray:
-    return np.einsum("ij,ij->i", one, other)

@@ -18,6 +18,9 @@ from scanplan.rays.face_rays import cast_at_face
 from scanplan.rays.ray_set import RaySet
 from scanplan.types import BoolArray, FloatArray, IntArray
 
+STUB_M = 0.1
+"""Shorter intervals are noise: less than the thickness of a wall."""
+
 _OVERLOOKED_SHARE = 0.5  # of an interval's length: more, and it is furniture rather than wall
 _REFIT_M = 0.04  # from the median: what points of one face scatter by; others do not pull the line
 _LEAST_REFIT_POINTS = 10  # fewer do not turn a line, nor do points on less than
@@ -32,7 +35,7 @@ _COLUMN_WEIGHT = 10  # points of a column that count: a near scan's are not a hu
 
 @dataclass(frozen=True, eq=False)
 class FaceInterval(Span):
-    """An interval of wall surface: from `low_m` to `high_m` along the line of observation `seen`."""
+    """An interval of wall surface: from `low_m` to `high_m` along the line of `seen`."""
 
     seen: FaceObservation
     low_m: float
@@ -176,7 +179,7 @@ def find_face_intervals(
 def _join_columns(
     is_solid: BoolArray, is_opened: BoolArray, max_gap_m: float
 ) -> list[tuple[int, int]]:
-    """Return the first and last of solid columns (c,), joined over short pauses that no ray opens."""
+    """Return first and last of solid columns (c,), joined over short pauses that no ray opens."""
     runs: list[tuple[int, int]] = []
     for column in np.flatnonzero(is_solid).tolist():
         if runs:
@@ -213,9 +216,9 @@ def _trim_ends(interval: FaceInterval) -> FaceInterval:
     low_m = -_usual_end_m(-along_m, scan)
     high_m = _usual_end_m(along_m, scan)
     if low_m >= high_m:
-        low_m = along_m[0]
-        high_m = along_m[-1]
-    return replace(interval, low_m=float(low_m), high_m=float(high_m))
+        low_m = float(along_m[0])
+        high_m = float(along_m[-1])
+    return replace(interval, low_m=low_m, high_m=high_m)
 
 
 def _usual_end_m(along_m: FloatArray, scan: IntArray) -> float:
@@ -225,4 +228,4 @@ def _usual_end_m(along_m: FloatArray, scan: IntArray) -> float:
     last_m = np.full(len(count), -np.inf)
     np.maximum.at(last_m, index, along_m[near])
     order = np.argsort(last_m, kind="stable")
-    return last_m[order][np.searchsorted(np.cumsum(count[order]), near.sum() / 2)]
+    return float(last_m[order][np.searchsorted(np.cumsum(count[order]), near.sum() / 2)])

@@ -11,19 +11,15 @@ import numpy as np
 
 from scanplan.extraction.face_arrangement import Faces
 from scanplan.extraction.furniture import FurnitureLimits, find_furniture_fronts
-from scanplan.geometry import intersections
-from scanplan.geometry.intersections import SpanArrays
 from scanplan.geometry.lines import Line
 from scanplan.plan.faces import candidates, intervals, trimming
 from scanplan.plan.faces.candidates import FaceCandidate
-from scanplan.plan.faces.intervals import FaceInterval
+from scanplan.plan.faces.intervals import STUB_M, FaceInterval
 from scanplan.plan.faces.merging import MergeSettings
+from scanplan.plan.faces.owned_points import OWNED_M, owned_intervals
 from scanplan.rays.face_observation import FaceObservation, RaySettings
 from scanplan.rays.ray_set import RaySet
 
-_STUB_M = 0.1  # shorter intervals are noise: less than the thickness of a wall
-_FOREIGN_M = 0.08  # before and behind a crossing face: as far as its points lie from its line
-_REACHES_M = 0.15  # an interval that ends this near before a line crosses it, too
 _LEAST_POINTS = 2  # of an interval: one point has no extent
 
 
@@ -62,9 +58,9 @@ def trace_faces(
     1. Observe (`_observe_lines`): each common line is refitted to the points at it, once; every
        later pass reads this observation.
     2. First intervals (`_select_walls`): the solid intervals of each line, whatever crosses it.
-       Those too little supported go first, so that they cannot outdo others; then doubles, so that
-       a wall drawn twice is no wall with furniture before it; then fronts of furniture. All that
-       stays is a wall for sure, and only such a face may own points of another line.
+       Those too little supported go first, so that none of them takes away from others; then
+       doubles, since a ghost of a wall behind it could make a front of the wall; then fronts of
+       furniture. Only what stays may own points of another line.
     3. Owned points (`owned_intervals`): where those faces cross other lines, the points at a
        crossing are theirs.
     4. Second intervals (`_select_walls` again): the observations are cut anew, without the owned
@@ -76,7 +72,7 @@ def trace_faces(
     6. Meet (`_meet_at_corners`): ends are moved to where lines cross. Some faces reach the line
        that they end at only now, so tails are trimmed a second time; extents and points per metre
        have changed, so doubles are removed a third time, which also leaves the strongest face
-       first. Fronts are not asked again: no new face has come up. Stubs that are left go last.
+       first. Fronts are not asked again: corners bring no new face. Stubs that are left go last.
 
     Parameters
     ----------
@@ -113,34 +109,6 @@ def trace_faces(
             for low_m, high_m in seen.framed_m.tolist()
         ],
     )
-
-
-def owned_intervals(
-    lines: Sequence[FaceObservation], found: Sequence[FaceInterval]
-) -> list[list[tuple[float, float]]]:
-    """Return from where to where along lines others cross them: points there are theirs.
-
-    What others own whole is the end of a wall that another line happens to lead through, as a
-    shelf's beside a door's jamb: it is no wall that crosses, and owns nothing.
-
-    Parameters
-    ----------
-    lines : list of face_observation.FaceObservation
-    found : list of intervals.FaceInterval
-
-    Returns
-    -------
-    list of list of (float, float)
-        Per line.
-    """
-    stacked = intersections.stack_spans(found)
-    owners = [
-        interval
-        for interval in found
-        if _unowned_m(interval, _crossed_m(interval.seen, found, stacked)) >= _STUB_M
-    ]
-    stacked = intersections.stack_spans(owners)
-    return [_crossed_m(seen, owners, stacked) for seen in lines]
 
 
 def _observe_lines(
@@ -220,7 +188,7 @@ def _without_doubles(found: Sequence[FaceInterval], merging: MergeSettings) -> l
 
 
 def _without_stubs(found: Iterable[FaceInterval]) -> list[FaceInterval]:
-    return [interval for interval in found if interval.length_m >= _STUB_M]
+    return [interval for interval in found if interval.length_m >= STUB_M]
 
 
 def _supported(of_line: Iterable[FaceInterval], merging: MergeSettings) -> list[FaceInterval]:
@@ -243,31 +211,5 @@ def _supported(of_line: Iterable[FaceInterval], merging: MergeSettings) -> list[
 def _is_shown(interval: FaceInterval, merging: MergeSettings) -> bool:
     """Return whether an interval is long, or enough scans show it."""
     # its ends may have been left to faces that cross it there
-    is_long = interval.length_m + 2 * _FOREIGN_M >= merging.lone_length_m
+    is_long = interval.length_m + 2 * OWNED_M >= merging.lone_length_m
     return is_long or interval.n_scans >= merging.min_scans
-
-
-def _unowned_m(interval: FaceInterval, owned_m: list[tuple[float, float]]) -> float:
-    """Return how much of an interval is in none of some spans along its line."""
-    spans_m = np.clip(np.array(owned_m).reshape(-1, 2), interval.low_m, interval.high_m)
-    reached_m = interval.low_m
-    unowned_m = 0.0
-    for low_m, high_m in sorted(spans_m.tolist()):
-        unowned_m += max(low_m - reached_m, 0.0)
-        reached_m = max(reached_m, high_m)
-    return unowned_m + interval.high_m - reached_m
-
-
-def _crossed_m(
-    seen: FaceObservation, found: Sequence[FaceInterval], stacked: SpanArrays
-) -> list[tuple[float, float]]:
-    """Return from where to where along a line intervals of other lines cross it: (low, high)."""
-    crossings = intersections.find_crossings(seen.line, stacked, reach_m=_REACHES_M)
-    half_m = _FOREIGN_M / crossings.sine
-    return [
-        (place_m - width_m, place_m + width_m)
-        for number, place_m, width_m in zip(
-            crossings.which.tolist(), crossings.place_m, half_m, strict=True
-        )
-        if found[number].seen is not seen
-    ]
