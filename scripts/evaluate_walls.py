@@ -70,9 +70,7 @@ def evaluate_walls(
         tables.write_table(path, schemas.EVALUATION, measured)
         for line in wall_metrics.summarise_wall_measures(measured):
             log.log_line(f"evaluate_walls: {Path(path).stem}, {line}")
-    tables.write_table(
-        best, schemas.ORACLE, registered_scans.oracle_columns(ceilings[output], scans)
-    )
+    tables.write_table(best, schemas.ORACLE, oracle.oracle_columns(ceilings[output], scans))
 
 
 if __name__ == "__main__":

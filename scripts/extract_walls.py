@@ -8,6 +8,7 @@ from scanplan.extraction import map_tilt, segments
 from scanplan.extraction.extractors import EXTRACTORS, find_wall_segments, select_settings
 from scanplan.extraction.furniture import FurnitureLimits
 from scanplan.stage import log
+from scanplan.stage.per_registered_scan import sensor_keywords
 from scanplan.stage.per_scan import map_scans
 from scanplan.store import schemas, tables
 from scanplan.types import FilePath, FloatArray, Settings
@@ -43,8 +44,7 @@ def extract_walls(
         )
     method = EXTRACTORS[extractor]
     store = tables.ScanStore(scans)
-    registered = tables.read_table(registration, schemas.REGISTRATION)
-    sensors = segments.sensor_keywords(registered, store.scan_ids, registration)
+    sensors = sensor_keywords(store.scan_ids, scans, registration)
     wall_segments = map_scans(
         find_wall_segments,
         scans,

@@ -31,7 +31,7 @@ def time_stages(scans, registration, built, output, *, walls, hulls, n_clusters,
     timed_scans : int
         On how many scans, spread over the survey; clusters and thinned scans on a part of these.
     """
-    store, placed = tables.ScanStore(scans), tables.read_table(registration, schemas.REGISTRATION)
+    store = tables.ScanStore(scans)
     columns = tables.read_table(built, schemas.HULLS)
     chosen, n = timing.spread_rows(store.scan_ids, timed_scans), len(store.scan_ids)
     sizes = [size for size in _SELECTION_SIZES if size < n] + [n]
@@ -44,9 +44,9 @@ def time_stages(scans, registration, built, output, *, walls, hulls, n_clusters,
     ]
     for name, (method, settings) in _EXTRACTORS.items():
         how = walls[settings] | plain_ransac.LIFTED, registration
-        timed = timing.time_extractor(name, method, store, placed, chosen, *how)
+        timed = timing.time_extractor(name, method, store, chosen, *how)
         rows += log.report_progress(timed, f"time_stages {name}", total=len(chosen))
-        rows += timing.time_by_points(name, method, store, placed, few, *how)
+        rows += timing.time_by_points(name, method, store, few, *how)
     rows.sort(key=lambda row: (row["task"], row["size"], row["item"]))
     tables.write_table(
         output, schemas.TIMES, {name: [row[name] for row in rows] for name in schemas.TIMES.columns}

@@ -1,6 +1,6 @@
 import os
 
-from scanplan.thesis import claims, thesisshown
+from scanplan.lab.thesis import claim_measures, shown_figures
 
 # what the claims are measured on: table of the results by the name that the measures know it by
 ROOMS_TABLES = {
@@ -38,12 +38,6 @@ def evidence():
     return files | {"limits_steps": of_kind(experiments.LIMITS, "thesis/steps")}
 
 
-def hull_sampling(wildcards):
-    """Settings of the hulls but for the number of clusters."""
-    made = DATASETS[wildcards.dataset].settings["hulls"]
-    return {name: made[name] for name in ("sample_size", "seed")}
-
-
 def seeds_of(kind):
     """The seeds that the surveys of a kind are simulated with."""
     return [survey.settings["simulate"]["seed"] for survey in THESIS[kind]]
@@ -59,7 +53,7 @@ def figures_of(*numbers):
     """Our figures of these numbers."""
     return [
         f"results/thesis/figures/{figure.file}"
-        for figure in thesisshown.FIGURES
+        for figure in shown_figures.FIGURES
         if figure.number in numbers
     ]
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from scanplan.extraction import mean_shift, normals, segments
 from scanplan.extraction.segment_limits import Row, SegmentLimits
-from scanplan.geometry import line_fit
+from scanplan.geometry import ransac
 from scanplan.rays.face_rays import SKIRTING_M
 from scanplan.rays.ray_set import RaySet
 from scanplan.types import BoolArray, FloatArray, IntArray
@@ -85,7 +85,7 @@ def extract_by_clusters(
     scan_id : int
         Random draws depend on it.
     points : (n, 3) float64
-        The scan's points relative to its sensor, as `segments.centre_on_sensor` returns them.
+        The scan's points relative to its sensor, as `sensor_frame.centre_on_sensor` returns them.
     scan : ray_set.RaySet, optional
         Its rays; None in the plane.
     settings : ClusterRansacSettings
@@ -196,12 +196,12 @@ def _fit_wall(
     """Fit a line to a cluster's cells, then to the points of all free cells that face its way."""
     cells = surfaces.cells
     inlier_m = settings.inlier_m
-    normal, offset_m, _ = line_fit.fit_line_ransac(
+    normal, offset_m, _ = ransac.fit_line_ransac(
         cells.mean_m[own, :2],
         inlier_m=inlier_m,
         trials=settings.trials,
         rng=rng,
-        weight=cells.count[own],
+        weight=cells.count[own].astype(float),
     )
     is_near = np.abs(cells.mean_m[:, :2] @ normal - offset_m) <= inlier_m + cells.radius_m
     is_own = free & _is_alike(surfaces, normal)
@@ -209,7 +209,7 @@ def _fit_wall(
     other = points[cells.points_of(np.flatnonzero(is_near & ~is_own & ~surfaces.level))]
     on_wall = np.abs(facing[:, :2] @ normal - offset_m) <= inlier_m
     if on_wall.sum() >= _LEAST_REFIT:
-        normal, offset_m, on_wall = line_fit.refit_line(
+        normal, offset_m, on_wall = ransac.refit_line(
             facing[:, :2], normal, offset_m, inlier_m=inlier_m
         )
     is_spare = np.abs(other[:, :2] @ normal - offset_m) <= inlier_m

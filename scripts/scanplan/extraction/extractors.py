@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from scanplan.extraction import cluster_ransac, furniture, iterative_ransac, segments
 from scanplan.extraction.segment_limits import Row, SegmentLimits
 from scanplan.rays.ray_set import RaySet
+from scanplan.rays.sensor_frame import centre_on_sensor
 from scanplan.types import FloatArray, Settings
 
 if TYPE_CHECKING:
@@ -83,7 +84,7 @@ def find_wall_segments(
     ValueError
         If a coordinate is not finite.
     """
-    points = segments.centre_on_sensor(xyz_m, sensor_xyz_m)
+    points = centre_on_sensor(xyz_m, sensor_xyz_m)
     scan = segments.view_scan(points, planar=planar)
     rows = extractor.extract(scan_id, points, scan, settings)
     if limits is not None:

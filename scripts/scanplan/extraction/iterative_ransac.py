@@ -6,7 +6,7 @@ import numpy as np
 
 from scanplan.extraction import segments
 from scanplan.extraction.segment_limits import Row, SegmentLimits
-from scanplan.geometry import line_fit
+from scanplan.geometry import ransac
 from scanplan.rays.ray_set import RaySet
 from scanplan.types import BoolArray, FloatArray
 
@@ -46,7 +46,7 @@ def extract_iteratively(
     scan_id : int
         Random draws depend on it.
     points : (n, 3) float64
-        The scan's points relative to its sensor, as `segments.centre_on_sensor` returns them.
+        The scan's points relative to its sensor, as `sensor_frame.centre_on_sensor` returns them.
     scan : ray_set.RaySet, optional
         Its rays; None in the plane.
     settings : IterativeRansacSettings
@@ -71,7 +71,7 @@ def extract_iteratively(
         on_plane = rest[inliers]
         extent_m = np.hypot(*np.ptp(on_plane[:, :2], axis=0))
         if upright and extent_m >= settings.min_length_m:
-            normal, offset_m = line_fit.fit_line_tls(on_plane[:, :2])
+            normal, offset_m = ransac.fit_line_tls(on_plane[:, :2])
             rows += segments.cut_line(normal, offset_m, on_plane, settings, scan=scan)
         rest = rest[~inliers]
     return rows
@@ -110,7 +110,7 @@ def _fit_largest_line(
     xyz_m: FloatArray, settings: IterativeRansacSettings, rng: np.random.Generator
 ) -> tuple[bool, BoolArray]:
     """Return true, a planar scan's lines being upright, and the points (n,) of the largest."""
-    _, _, inliers = line_fit.fit_line_ransac(
+    _, _, inliers = ransac.fit_line_ransac(
         xyz_m[:, :2], inlier_m=settings.inlier_m, trials=settings.trials, rng=rng
     )
     return True, inliers

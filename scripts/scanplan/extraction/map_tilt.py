@@ -7,7 +7,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from scanplan.extraction import normals, segments
+from scanplan.extraction import normals
+from scanplan.rays import sensor_frame
 from scanplan.types import Array, BoolArray, FloatArray
 
 _NEAR_RAD = np.deg2rad(5)  # what normals of good surfaces scatter by
@@ -41,7 +42,7 @@ def tilt_warning(scans: Iterable[tuple[FloatArray, FloatArray]]) -> str:
     normal: list[FloatArray] = [np.empty((0, 3))]
     weight: list[Array] = [np.empty(0)]
     for xyz_m, sensor_xyz_m in scans:
-        points = segments.centre_on_sensor(xyz_m, sensor_xyz_m)
+        points = sensor_frame.centre_on_sensor(xyz_m, sensor_xyz_m)
         cells = normals.cut_surface_cells(points, reach_deg=_REACH_DEG)
         has_normal = np.isfinite(cells.normal[:, 0])
         normal.append(cells.normal[has_normal])

@@ -1,7 +1,6 @@
 """What a wall segment of one scan must be, and how an extractor returns it."""
 
 from dataclasses import dataclass
-from typing import Protocol
 
 Row = tuple[float, ...]
 """A segment as `segments.cut_line` returns it.
@@ -49,12 +48,3 @@ class SegmentLimits:
     def least_points(self, planar: bool) -> int:
         """Return the fewest points of a segment."""
         return self.min_points_planar if planar else self.min_points
-
-
-class HasDoorHeight(Protocol):
-    """Settings of any stage that know how high doors are."""
-
-    @property
-    def door_height_m(self) -> float:
-        """Above the floor."""
-        ...

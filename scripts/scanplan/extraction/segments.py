@@ -8,13 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan.errors import StageError
 from scanplan.extraction.runs import extend_run_ends, find_runs, find_upright_runs
-from scanplan.extraction.segment_limits import HasDoorHeight, Row, SegmentLimits
+from scanplan.extraction.segment_limits import Row, SegmentLimits
 from scanplan.geometry.lines import Line
-from scanplan.rays import levels
 from scanplan.rays.ray_set import RaySet, gather_rays
-from scanplan.types import Array, Columns, FilePath, FloatArray, IntArray
+from scanplan.types import Array, Columns, FloatArray, IntArray
 
 _HEIGHT_PERCENTILES = (2, 98)  # of a segment's points: stray ones do not make it taller
 _FIELDS = ("x0_m", "y0_m", "x1_m", "y1_m", "nx", "ny", "n_points", "rmse_m", "z_min_m", "z_max_m")
@@ -48,32 +46,6 @@ class WallSegments:
     def __len__(self) -> int:
         """Return the number of segments."""
         return len(self.n_points)
-
-
-def centre_on_sensor(xyz_m: FloatArray, sensor_xyz_m: FloatArray) -> FloatArray:
-    """Return points relative to their sensor, in an order that depends on them alone.
-
-    Raises
-    ------
-    ValueError
-        If a coordinate is not finite or the shapes are not (n, 3) and (3,).
-    """
-    xyz_m = np.asarray(xyz_m, float)
-    sensor_xyz_m = np.asarray(sensor_xyz_m, float)
-    if xyz_m.ndim != 2 or xyz_m.shape[1] != 3 or sensor_xyz_m.shape != (3,):
-        raise ValueError(
-            f"points (n, 3) and a position (3,), not {xyz_m.shape} and {sensor_xyz_m.shape}"
-        )
-    if not (np.isfinite(xyz_m).all() and np.isfinite(sensor_xyz_m).all()):
-        raise ValueError("points and sensor position must be finite")
-    return xyz_m[_order(xyz_m)] - sensor_xyz_m
-
-
-def door_top_m(xyz_m: FloatArray, limits: HasDoorHeight, *, planar: bool) -> float:
-    """Return the z of points (n, 3) above which they bridge no gap; infinite in the plane."""
-    if planar or len(xyz_m) == 0:
-        return np.inf
-    return levels.find_floor_z(xyz_m[:, 2]) + limits.door_height_m
 
 
 def view_scan(xyz_m: FloatArray, *, planar: bool) -> RaySet | None:
@@ -197,38 +169,6 @@ def segment_columns(
     }
 
 
-def sensor_keywords(
-    registered: Columns, scan_ids: IntArray | Sequence[int], origin: FilePath
-) -> dict[int, dict[str, FloatArray]]:
-    """Return each scan's `sensor_xyz_m` keyword, for `per_scan.map_scans`.
-
-    Parameters
-    ----------
-    registered : dict
-        Columns of the table of registration.
-    scan_ids : (n,) int
-    origin : path-like
-        Where the table comes from, for the message.
-
-    Raises
-    ------
-    StageError
-        If a scan has no row or no finite position there.
-    """
-    positions_m = np.column_stack([registered[c] for c in ("x_m", "y_m", "z_m")])
-    is_finite = np.isfinite(positions_m).all(axis=1)
-    finite_ids = registered["scan_id"][is_finite].tolist()
-    sensors_m = dict(zip(finite_ids, positions_m[is_finite], strict=True))
-    ids = np.asarray(scan_ids).tolist()
-    missing = [scan_id for scan_id in ids if scan_id not in sensors_m]
-    if missing:
-        raise StageError(
-            f"{origin}: no pose of {len(missing)} scans, first scan {missing[0]}; delete it and run"
-            " again"
-        )
-    return {scan_id: {"sensor_xyz_m": sensors_m[scan_id]} for scan_id in ids}
-
-
 def summarise_segments(columns: Columns, n_scans: int, took_ms: float) -> str:
     """Return what was extracted in a line: scans, walls, points per wall, time per scan."""
     points = columns["n_points"]
@@ -236,12 +176,3 @@ def summarise_segments(columns: Columns, n_scans: int, took_ms: float) -> str:
         f"{np.median(points):.0f} points in the median wall" if len(points) else "no wall at all"
     )
     return f"{n_scans:,} scans, {len(points):,} walls, {typical}, {took_ms / n_scans:.0f} ms a scan"
-
-
-def _order(xyz_m: FloatArray) -> IntArray:
-    """Return an order of points that depends on them alone."""
-    mixed = xyz_m @ (1.0, np.sqrt(2), np.sqrt(3))
-    order = np.argsort(mixed)
-    tied = mixed[order][1:] == mixed[order][:-1]
-    # one number a point sorts faster than three, and seldom do different points share it
-    return order if not tied.any() else np.lexsort([*xyz_m.T, mixed])

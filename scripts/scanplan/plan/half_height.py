@@ -2,73 +2,74 @@
 
 import numpy as np
 
-_COLUMN_M = 0.1
-_LEAST_SHARE = 0.25
-_LEAST_PASSES = 10
-_WRONG_SHARE = 0.1
-_UNSEEN_M = 0.5
+from scanplan.plan.wall_pairs import PlanWall
+from scanplan.rays.face_observation import FaceObservation
+from scanplan.types import BoolArray, FloatArray
+
+_COLUMN_M = 0.1  # along the wall: wider than what is between rays
+_LEAST_SHARE = 0.25  # of the wall's length: what passes over less is a window
+_LEAST_RAYS = 10  # fewer say nothing of a height
+_WRONG_SHARE = 0.1  # of the rays over it: stray returns and noise of poses
+_UNSEEN_M = 0.5  # half of it is what the top may be wrong by
 
 
-def estimate_wall_top_m(wall):
+def estimate_wall_top_m(wall: PlanWall) -> float:
     """Return the height of a wall's top above the floor, NaN where it was not seen.
 
     A top parts the points at the wall, below it, from where rays went through, above it: over a
     good part of the wall's length, with little between the highest point and the lowest ray. What
-    is pierced elsewhere, by a window or a door that was not told, has points above the rays as
+    is pierced elsewhere, by a window or a door that was not found, has points above the rays as
     well, and goes on.
 
     Parameters
     ----------
-    wall : walls.PlanWall
-
-    Returns
-    -------
-    float
+    wall : wall_pairs.PlanWall
     """
     lines = wall.lines
     if lines[0].planar:
         return np.nan
     columns = [_inner(wall, seen) for seen in lines]
-    hit_z_m, pass_z_m, pass_m = (np.concatenate(column) for column in zip(*columns, strict=True))
-    if len(pass_z_m) < _LEAST_PASSES or len(hit_z_m) == 0:
+    occupied_z_m, free_z_m, free_m = (
+        np.concatenate(column) for column in zip(*columns, strict=True)
+    )
+    if len(free_z_m) < _LEAST_RAYS or len(occupied_z_m) == 0:
         return np.nan
-    low_m, high_m = _parted(hit_z_m, pass_z_m)
-    over = pass_z_m >= high_m
-    wrong = np.count_nonzero(~over) + np.count_nonzero(hit_z_m > low_m)
+    low_m, high_m = _part(occupied_z_m, free_z_m)
+    over = free_z_m >= high_m
+    wrong = np.count_nonzero(~over) + np.count_nonzero(occupied_z_m > low_m)
     solid_m = wall.length_m - 2 * _COLUMN_M - sum(gap.width_m for gap in wall.openings)
-    shown_m = _COLUMN_M * len(np.unique(np.floor(pass_m[over] / _COLUMN_M)))
+    shown_m = _COLUMN_M * len(np.unique(np.floor(free_m[over] / _COLUMN_M)))
     is_top = (
-        over.sum() >= _LEAST_PASSES
+        over.sum() >= _LEAST_RAYS
         and wrong <= _WRONG_SHARE * over.sum()
         and high_m - low_m <= _UNSEEN_M
     )
     return float((low_m + high_m) / 2) if is_top and shown_m >= _LEAST_SHARE * solid_m else np.nan
 
 
-def _inner(wall, seen):
+def _inner(wall: PlanWall, seen: FaceObservation) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return heights of returns and of rays through a face away from its ends, and their places."""
-    hit_m, pass_m = (
-        wall.line.along_m(seen.line.at(along_m)) for along_m in (seen.occupied_m, seen.free_m)
-    )
-    hit, crossing = (_is_inner(wall, along_m) for along_m in (hit_m, pass_m))
-    return seen.occupied_z_m[hit], seen.free_z_m[crossing], pass_m[crossing]
+    free_m = wall.line.along_m(seen.line.at(seen.free_m))
+    occupied = _is_inner(wall, wall.line.along_m(seen.line.at(seen.occupied_m)))
+    free = _is_inner(wall, free_m)
+    return seen.occupied_z_m[occupied], seen.free_z_m[free], free_m[free]
 
 
-def _is_inner(wall, along_m):
+def _is_inner(wall: PlanWall, along_m: FloatArray) -> BoolArray:
     inside = (along_m > wall.low_m + _COLUMN_M) & (along_m < wall.high_m - _COLUMN_M)
     for gap in wall.openings:
         inside &= (along_m < gap.low_m - _COLUMN_M) | (along_m > gap.high_m + _COLUMN_M)
     return inside
 
 
-def _parted(hit_z_m, pass_z_m):
+def _part(occupied_z_m: FloatArray, free_z_m: FloatArray) -> tuple[float, float]:
     """Return the heights of a return and of a ray above it that part most of both."""
-    heights_m = np.concatenate([hit_z_m, pass_z_m])
-    is_hit = np.arange(len(heights_m)) < len(hit_z_m)
-    order = np.lexsort((~is_hit, heights_m))
-    heights_m, is_hit = heights_m[order], is_hit[order]
+    heights_m = np.concatenate([occupied_z_m, free_z_m])
+    is_occupied = np.arange(len(heights_m)) < len(occupied_z_m)
+    order = np.lexsort((~is_occupied, heights_m))
+    heights_m, is_occupied = heights_m[order], is_occupied[order]
     # after each of them, in order: crossings up to it are too low, points beyond it too high
-    wrong = np.cumsum(~is_hit) + is_hit.sum() - np.cumsum(is_hit)
-    best = int(np.argmin(np.where(is_hit, wrong, len(heights_m))))
-    above = heights_m[best + 1 :][~is_hit[best + 1 :]]
+    wrong = np.cumsum(~is_occupied) + is_occupied.sum() - np.cumsum(is_occupied)
+    best = int(np.argmin(np.where(is_occupied, wrong, len(heights_m))))
+    above = heights_m[best + 1 :][~is_occupied[best + 1 :]]
     return heights_m[best], above[0] if len(above) else np.inf

@@ -1,7 +1,7 @@
 """Pauses of a wall: openings where rays went through, closed where none could, or never seen."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,25 +12,25 @@ from scanplan.rays.face_raster import CELL_M
 from scanplan.types import FloatArray
 
 OPEN, CLOSED, UNKNOWN = "open", "closed", "unknown"
-_OPEN_SHARE = 0.4
-_OPEN_SHARE_BELOW_LINTEL = 0.2
-_CLOSED_SHARE = 0.1
-_LEAST_RAYS = 10
-_EDGE_M = 0.03
-REVEAL_M = 0.1  # jambs are drawn this well
-_LOW_PERCENTILE = 1
-AT_FLOOR_M = 0.3  # lower, points may be of a step or of what lies there
-_FLOOR_NOISE_M = 0.04
-_STEP_COLUMN_M = 0.1
-_STEP_SHARE = 0.7
-_DOORSTEP_M = 0.06
+REVEAL_M = 0.1  # how near to their place jambs come out
+AT_FLOOR_M = 0.3  # lower returns may be of a step or of what lies there
 FEW_RAYS = 3  # one or two may be stray
+_OPEN_SHARE = 0.4  # of the width: furniture hides the rest of a way that is used
+_OPEN_SHARE_BELOW_LINTEL = 0.2  # a lintel says that there is a way: half as much is enough
+_CLOSED_SHARE = 0.1  # of the width: less is noise at the jambs
+_LEAST_RAYS = 10  # fewer say nothing of a height or of a way
+_EDGE_M = 0.03  # what a jamb's place errs by
+_LOW_PERCENTILE = 1  # of the rays through: fewer are stray
+_FLOOR_NOISE_M = 0.04  # what noise lifts returns of the floor by
+_STEP_COLUMN_M = 0.1  # wider than what is between rays, narrower than what lies about
+_STEP_SHARE = 0.7  # of the columns: a step goes on all along, what lies about does not
+_DOORSTEP_M = 0.06  # one steps over less
 _LEVEL_M = 0.03  # noise of a range seen along 15 degrees, of poses and of beams
 _LEVEL_SCANS = 2  # one scan's beam meets a whole wall at one height
 _BEHIND_M = 0.02  # noise of a range
 _BEHIND_SHARE = 0.2  # noise leaves fewer so far behind a face, an underside most
 _MOST_DOUBT_M = 0.2  # half of it is what a height may be wrong by
-_ROUND_M = 1e-9
+_ROUND_M = 1e-9  # rounding of a difference of heights
 
 
 @dataclass(frozen=True)
@@ -79,28 +79,20 @@ class Opening:
     below_wall: bool
 
     @property
-    def is_above_wall(self):
-        """Whether it is so far above the floor that the wall goes on below it."""
+    def is_above_wall(self) -> bool:
+        """Whether the wall goes on below it: its sill is well above the floor."""
         return self.sill_m > AT_FLOOR_M
 
     @property
-    def width_m(self):
+    def width_m(self) -> float:
         """Width of the pause."""
         return self.high_m - self.low_m
 
-    def kind(self, settings):
-        """Return what kind of opening it is."""
+    def kind(self, settings: OpeningSettings) -> str:
+        """Return `window`, `door` or `passage`: by its sill, then by its width."""
         if self.sill_m > _DOORSTEP_M:
             return "window"
         return "door" if self.width_m <= settings.max_door_m else "passage"
-
-
-def find_gaps(intervals_m):
-    """Return the pauses (m, 2) between intervals (n, 2), n >= 1, that may overlap."""
-    order = np.argsort(intervals_m[:, 0], kind="stable")
-    low_m, high_m = intervals_m[order, 0], np.maximum.accumulate(intervals_m[order, 1])
-    pauses = np.column_stack([high_m[:-1], low_m[1:]])
-    return pauses[pauses[:, 1] > pauses[:, 0]]
 
 
 def classify_gap(
@@ -172,7 +164,7 @@ def _glass_share(face: FaceObservation, span_m: FloatArray) -> float:
     return float(sum(max(m, 0.0) for m in inside_m) / (span_m[1] - span_m[0]))
 
 
-def _first_known(values_m):
+def _first_known(values_m: Iterable[float]) -> float:
     return next((value_m for value_m in values_m if np.isfinite(value_m)), np.nan)
 
 
@@ -214,7 +206,7 @@ def _look(face: FaceObservation, span_m: FloatArray, reading: RaySettings) -> _L
     return _Look(n_rays, open_share, sill_m, lintel_m, True)
 
 
-def _step_m(seen, low_m, high_m, lowest_m):
+def _step_m(seen: FaceObservation, low_m: float, high_m: float, lowest_m: float) -> float:
     """Return the height of what stands all along near the floor below the lowest ray.
 
     0 if nothing.
@@ -230,7 +222,7 @@ def _step_m(seen, low_m, high_m, lowest_m):
     return (float(np.percentile(seen.low_z_m[low][raised], 95)) + lowest_m) / 2
 
 
-def _sill_m(free_z_m, occupied_z_m):
+def _sill_m(free_z_m: FloatArray, occupied_z_m: FloatArray) -> float:
     """Return the sill: between the rays that went through and the wall seen below them."""
     low_m = np.percentile(free_z_m, _LOW_PERCENTILE)
     if low_m <= AT_FLOOR_M:
@@ -241,7 +233,9 @@ def _sill_m(free_z_m, occupied_z_m):
     )
 
 
-def estimate_lintel_m(seen, low_m, high_m, free_m, least_m):
+def estimate_lintel_m(
+    seen: FaceObservation, low_m: float, high_m: float, free_m: float, least_m: float
+) -> float:
     """Return the lintel, NaN where it could be anywhere between rays far apart.
 
     It lies above the rays that went through and below the wall seen above them. Points at one
@@ -277,6 +271,6 @@ def estimate_lintel_m(seen, low_m, high_m, free_m, least_m):
     )
 
 
-def robust_highest_m(z_m):
+def robust_highest_m(z_m: FloatArray) -> float:
     """Return the height that not just one or two of heights (n,), n >= 3, reach."""
     return float(np.partition(z_m, -FEW_RAYS)[-FEW_RAYS])

@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
 
 from scanplan.extraction.furniture import FurnitureLimits
 from scanplan.plan import (
@@ -12,16 +13,21 @@ from scanplan.plan import (
     plan_tables,
     uncertainty,
     wall_faces,
-    wall_pairs,
+    wall_ground,
     windows,
 )
-from scanplan.plan.faces import tracing
 from scanplan.plan.faces.merging import MergeSettings, merge_segments
+from scanplan.plan.faces.tracing import TracedFaces, trace_faces
 from scanplan.plan.openings import OpeningSettings
 from scanplan.plan.rooms import find_rooms
+from scanplan.plan.uncertainty import ReviewCriteria
+from scanplan.plan.wall_pairs import PairSettings, PlanWall
 from scanplan.plan.walls import assemble_walls
-from scanplan.rays import face_observation, free_space, range_bias
+from scanplan.rays import free_space, range_bias
+from scanplan.rays.face_observation import RaySettings
+from scanplan.rays.ray_set import RaySet
 from scanplan.store import schemas
+from scanplan.types import Array, Columns, FloatArray, IntArray, Settings
 
 TABLES = {
     "faces": schemas.FACES,
@@ -32,7 +38,7 @@ TABLES = {
     "free": schemas.FREE,
 }
 """The tables of a plan by the names of their files."""
-_THICKNESS_M = 0.1
+_THICKNESS_M = 0.1  # of a partition, where no wall shows both sides
 
 
 @dataclass(frozen=True)
@@ -56,13 +62,13 @@ class PlanSettings:
     """All that a plan is made with: each part as its own class says."""
 
     merge: MergeSettings
-    reading: face_observation.RaySettings
+    reading: RaySettings
     ranges: range_bias.RangeBiasSettings
     furniture: FurnitureLimits
-    pairs: wall_pairs.PairSettings
+    pairs: PairSettings
     openings: OpeningSettings
     rooms: RoomSettings
-    trust: uncertainty.ReviewCriteria
+    trust: ReviewCriteria
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,20 +84,28 @@ class Plan:
         What ranges were shortened by, see `range_bias.estimate_range_bias`.
     """
 
-    faces: dict
-    walls: dict
-    openings: dict
-    rooms: dict
-    evidence: dict
-    free: dict
+    faces: dict[str, Array]
+    walls: dict[str, Array]
+    openings: dict[str, Array]
+    rooms: dict[str, Array]
+    evidence: dict[str, Array]
+    free: dict[str, Array]
     n_lines: int
     n_dropped: int
-    range_errors_m: np.ndarray
+    range_errors_m: FloatArray
 
 
 def make_plan_settings(
-    *, merge, trace, ranges, furniture, pair, openings, rooms, trust, right_angles=None
-):
+    *,
+    merge: Settings,
+    trace: Settings,
+    ranges: Settings,
+    furniture: Settings,
+    pair: Settings,
+    openings: Settings,
+    rooms: Settings,
+    trust: Settings,
+) -> PlanSettings:
     """Return settings from keywords of each part.
 
     Raises
@@ -102,19 +116,24 @@ def make_plan_settings(
     merging = MergeSettings(**merge)
     return PlanSettings(
         merge=merging,
-        reading=face_observation.RaySettings(**trace),
+        reading=RaySettings(**trace),
         ranges=range_bias.RangeBiasSettings(**ranges),
         furniture=FurnitureLimits(**furniture),
-        pairs=wall_pairs.PairSettings(**pair, max_gap_m=openings["max_opening_m"]),
+        pairs=PairSettings(**pair, max_gap_m=openings["max_opening_m"]),
         openings=OpeningSettings(**openings),
         rooms=RoomSettings(**rooms),
-        trust=uncertainty.ReviewCriteria(
-            registration_sigma_m=merging.registration_sigma_m, **trust
-        ),
+        trust=ReviewCriteria(registration_sigma_m=merging.registration_sigma_m, **trust),
     )
 
 
-def make_plan(segments, rays, track_m, t_ns, settings, up=None):
+def make_plan(
+    segments: Columns,
+    rays: RaySet,
+    track_m: FloatArray,
+    t_ns: IntArray,
+    settings: PlanSettings,
+    up: FloatArray | None = None,
+) -> Plan:
     """Make a plan.
 
     Parameters
@@ -138,27 +157,26 @@ def make_plan(segments, rays, track_m, t_ns, settings, up=None):
         Without any row of faces or walls where nothing is supported enough.
     """
     up = np.tile((0.0, 0.0, 1.0), (len(rays.scan_ids), 1)) if up is None else up
-    errors_m = range_bias.estimate_range_bias(
-        rays, segments, settings.ranges, settings.reading.band_m, up
-    )
+    band_m = settings.reading.band_m
+    errors_m = range_bias.estimate_range_bias(rays, segments, settings.ranges, band_m, up)
     rays = range_bias.remove_range_bias(rays, errors_m, up)
-    pieces = merge_segments(segments, settings.merge)
-    parts = settings.merge, settings.reading, settings.furniture
-    traced = tracing.trace_faces(pieces, rays, *parts)
-    found = assemble_walls(
-        *(traced.stretches, settings.reading, settings.pairs, settings.openings),
-        corner_m=settings.merge.corner_m,
+    candidates = merge_segments(segments, settings.merge)
+    traced = trace_faces(candidates, rays, settings.merge, settings.reading, settings.furniture)
+    walls, tops_m = _make_walls(traced, rays, settings)
+    unpaired_m = _usual_thickness_m(walls)
+    views = free_space.free_polygons(rays)
+    floor = free_space.union_on_grid(views)
+    glass_walls = glass.find_glass_walls(
+        walls,
+        traced.panes,
+        min_length_m=settings.openings.min_opening_m,
+        unpaired_m=unpaired_m,
     )
-    found = windows.add_windows(found, rays, settings.openings)
-    found, tops_m = _without_low(found, settings.furniture.wall_height_m)
-    unpaired_m = _usual_thickness_m(found)
-    stars = free_space.free_polygons(rays)
-    floor = free_space.union_on_grid(stars)
-    panes = glass.find_glass_walls(
-        *(found, traced.panes), min_length_m=settings.openings.min_opening_m, unpaired_m=unpaired_m
-    )
-    enclosed = find_rooms(
-        *([*found, *panes], stars, track_m),
+    bounds = [*walls, *glass_walls]
+    rooms = find_rooms(
+        bounds,
+        views,
+        track_m,
         min_area_m2=settings.rooms.min_area_m2,
         min_walled=settings.rooms.min_walled,
         min_width_m=settings.pairs.max_thickness_m,
@@ -166,42 +184,65 @@ def make_plan(segments, rays, track_m, t_ns, settings, up=None):
         floor=floor,
     )
     floor_z_m = 0.0 if math.isnan(rays.floor_z_m) else rays.floor_z_m
-    drawn = wall_faces.cut_wall_faces(found, max_beyond_m=settings.openings.max_closed_m)
-    face_columns, face_rows = plan_tables.face_columns(drawn, floor_z_m)
-    known = uncertainty.estimate_evidence(found, settings.trust, tops_m)
+    faces = wall_faces.cut_wall_faces(walls, max_beyond_m=settings.openings.max_closed_m)
+    face_columns, face_rows = plan_tables.face_columns(faces, floor_z_m)
+    evidence = uncertainty.estimate_evidence(walls, settings.trust, tops_m)
     return Plan(
         faces=face_columns,
-        walls=plan_tables.wall_columns(found, known, face_rows, drawn, floor_z_m, settings.trust),
-        openings=plan_tables.opening_columns(found, enclosed, settings.openings),
-        rooms=plan_tables.room_columns(enclosed),
-        evidence=plan_tables.evidence_columns(known, rays.scan_ids, t_ns),
-        free=plan_tables.free_columns(_free([*found, *panes], floor, unpaired_m)),
+        walls=plan_tables.wall_columns(
+            walls, evidence, face_rows, faces, floor_z_m, settings.trust
+        ),
+        openings=plan_tables.opening_columns(walls, rooms, settings.openings),
+        rooms=plan_tables.room_columns(rooms),
+        evidence=plan_tables.evidence_columns(evidence, rays.scan_ids, t_ns),
+        free=plan_tables.free_columns(_find_free_floor(bounds, floor, unpaired_m)),
         n_lines=traced.n_lines,
         n_dropped=traced.n_dropped,
         range_errors_m=errors_m,
     )
 
 
-def _without_low(walls, wall_height_m):
-    """Return walls without single surfaces that end lower than a wall, and their tops."""
+def _make_walls(
+    traced: TracedFaces, rays: RaySet, settings: PlanSettings
+) -> tuple[list[PlanWall], list[float]]:
+    """Return the walls of faces with their openings, and the heights of their tops.
+
+    A single surface that ends lower than a wall is none.
+    """
+    walls = assemble_walls(
+        traced.stretches,
+        settings.reading,
+        settings.pairs,
+        settings.openings,
+        corner_m=settings.merge.corner_m,
+    )
+    walls = windows.add_windows(walls, rays, settings.openings)
     tops_m = [half_height.estimate_wall_top_m(wall) for wall in walls]
-    known = [(w, t) for w, t in zip(walls, tops_m, strict=True) if w.right or not t < wall_height_m]
-    return [w for w, _ in known], [t for _, t in known]
-
-
-def _usual_thickness_m(walls):
-    known = [w.thickness_m for w in walls if not math.isnan(w.thickness_m)]
-    return float(np.median(known)) if known else _THICKNESS_M
-
-
-def _free(walls, floor, unpaired_m):
-    """Return the polygons of floor that rays went over, openings with it, walls without."""
-    strips = free_space.wall_strips(walls, unpaired_m)
-    ways = [
-        free_space.opening_polygon(w, g, unpaired_m)
-        for w in walls
-        for g in w.openings
-        if not g.is_above_wall
+    rows = [
+        (wall, top_m)
+        for wall, top_m in zip(walls, tops_m, strict=True)
+        if wall.right or not top_m < settings.furniture.wall_height_m
     ]
-    solid = free_space.difference_on_grid(*map(free_space.union_on_grid, (strips, ways)))
+    return [wall for wall, _ in rows], [top_m for _, top_m in rows]
+
+
+def _usual_thickness_m(walls: list[PlanWall]) -> float:
+    known_m = [wall.thickness_m for wall in walls if not math.isnan(wall.thickness_m)]
+    return float(np.median(known_m)) if known_m else _THICKNESS_M
+
+
+def _find_free_floor(
+    walls: list[PlanWall], floor: shapely.MultiPolygon, unpaired_m: float
+) -> list[shapely.Polygon]:
+    """Return the polygons of floor that rays went over, openings with it, walls without."""
+    strips = wall_ground.wall_strips(walls, unpaired_m)
+    ways = [
+        wall_ground.opening_polygon(wall, opening, unpaired_m)
+        for wall in walls
+        for opening in wall.openings
+        if not opening.is_above_wall
+    ]
+    solid = free_space.difference_on_grid(
+        free_space.union_on_grid(strips), free_space.union_on_grid(ways)
+    )
     return list(free_space.difference_on_grid(floor, solid).geoms)

@@ -1,29 +1,28 @@
-"""Faces paired into walls.
-
-Which stretches are sides of one wall, and where its middle and its thickness are.
-"""
+"""Faces paired into walls: which are sides of one wall, where its middle is and how thick it is."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
 
-from scanplan.geometry.lines import Line, Span
+from scanplan.geometry.lines import Line, Span, least_scatter_normal, rows_scatter
 from scanplan.plan.faces.intervals import FaceInterval
-from scanplan.rays.face_observation import FaceObservation
+from scanplan.rays.face_observation import FaceObservation, RaySettings
 from scanplan.rays.face_raster import CELL_M
+from scanplan.types import FloatArray
 
 if TYPE_CHECKING:
     from scanplan.plan.openings import Opening
 
-_LEAST_OVERLAP_M = 0.2
-_LEAST_OPEN_M = 0.3
-_OPEN_SHARE = 0.3
-CORNER_M = 0.3
-_SHORTEST_M = 1e-9
-_SAME_LINE, _OPPOSITE, _ONWARD = range(3)
+CORNER_M = 0.3  # a wall that ends this near before another meets it: half of a thick wall
+_LEAST_OVERLAP_M = 0.2  # faces opposite each other for less may be of two walls that meet
+_LEAST_OPEN_M = 0.3  # less that rays go through is noise of poses at an end
+_OPEN_SHARE = 0.3  # of one side's length: more that is free while the other is seen contradicts
+_SHORTEST_M = 1e-9  # no face is shorter; keeps weights finite
+_SAME_LINE, _OPPOSITE, _ONWARD = range(3)  # order in which pairs are joined: the surest first
 
 
 @dataclass(frozen=True)
@@ -63,7 +62,7 @@ class PlanWall(Span):
         Its faces on the side of the line's normal, and on the other, which is empty where one side
         is known.
     openings, closed : list of openings.Opening
-        Ways through, and pauses taken for wall; in order along it.
+        Ways through, and gaps taken for wall; in order along it.
     """
 
     line: Line
@@ -91,157 +90,159 @@ class PlanWall(Span):
         return 0.0 if math.isnan(self.thickness_m) else self.thickness_m / 2
 
 
-def pair_faces(stretches, settings, reading):
-    """Sort stretches into walls.
+def pair_faces(
+    faces: Sequence[FaceInterval], settings: PairSettings, reading: RaySettings
+) -> list[PlanWall]:
+    """Sort faces into walls.
 
-    Stretches of one line are joined first, then those opposite to each other, the longest overlap
+    Faces of one line are joined first, then those opposite to each other, the longest overlap
     before others, then those that go on from each other; never so that a side would not be straight
     within `offset_m`, nor where rays went through what would be one side while the other was seen.
 
     Parameters
     ----------
-    stretches : list of intervals.FaceInterval
+    faces : list of intervals.FaceInterval
     settings : PairSettings
     reading : face_observation.RaySettings
 
     Returns
     -------
     list of PlanWall
-        Every interval is in exactly one.
+        Every face is in exactly one; openings are not looked for yet.
     """
-    group = list(range(len(stretches)))
-    members = {i: [i] for i in group}
-    for one, other in _offers(stretches, settings, reading):
-        a, b = group[one], group[other]
-        if a == b or _joined(stretches, members[a] + members[b], settings) is None:
+    walls = {index: _Sides([index], settings, faces) for index in range(len(faces))}
+    wall_of = list(range(len(faces)))
+    for one, other in _offer_pairs(faces, settings, reading):
+        first, second = wall_of[one], wall_of[other]
+        if first == second:
             continue
-        members[a] = sorted(members[a] + members.pop(b))
-        for i in members[a]:
-            group[i] = a
-    pairs = (_joined(stretches, of_wall, settings) for _, of_wall in sorted(members.items()))
-    return [_wall_of(stretches, *pair) for pair in pairs if pair is not None]
+        joined = _Sides(walls[first].members + walls[second].members, settings, faces)
+        if joined.is_possible:
+            walls[first] = joined
+            del walls[second]
+            for index in joined.members:
+                wall_of[index] = first
+    return [wall.make() for _, wall in sorted(walls.items())]
 
 
-def _offers(stretches, settings, reading):
+def _offer_pairs(
+    faces: Sequence[FaceInterval], settings: PairSettings, reading: RaySettings
+) -> list[tuple[int, int]]:
     """Return pairs that may be of one wall, the surest first."""
-    ends = np.array([s.ends for s in stretches]).reshape(-1, 2, 2)
-    lines = shapely.linestrings(ends)
+    ends = np.array([face.ends for face in faces]).reshape(-1, 2, 2)
+    lines = np.asarray(shapely.linestrings(ends))
     reach_m = max(settings.max_gap_m, settings.max_thickness_m)
-    pairs = np.stack(
-        shapely.STRtree(lines).query(lines, predicate="dwithin", distance=reach_m), axis=1
-    )
-    pairs = pairs[pairs[:, 0] < pairs[:, 1]]
-    normal = np.array([s.line.normal for s in stretches]).reshape(-1, 2)
-    alike = np.einsum("ij,ij->i", normal[pairs[:, 0]], normal[pairs[:, 1]])
-    steep = math.cos(math.radians(settings.max_angle_deg))
+    one, other = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=reach_m)
+    pairs = np.column_stack([one, other])[one < other]
+    normal = np.array([face.line.normal for face in faces]).reshape(-1, 2)
+    cosine = np.einsum("ij,ij->i", normal[pairs[:, 0]], normal[pairs[:, 1]])
+    is_parallel = np.abs(cosine) >= math.cos(math.radians(settings.max_angle_deg))
     offers = []
-    for i, j in pairs[np.abs(alike) >= steep].tolist():
-        overlap_m, behind_m = _beside(stretches[i], stretches[j])
-        if stretches[i].line.normal @ stretches[j].line.normal < 0:
+    for i, j in pairs[is_parallel].tolist():
+        overlap_m, behind_m = _overlap(faces[i], faces[j])
+        if faces[i].line.normal @ faces[j].line.normal < 0:
             is_thick = settings.min_thickness_m <= behind_m <= settings.max_thickness_m
-            if (
-                overlap_m >= _LEAST_OVERLAP_M
-                and is_thick
-                and not _contradict(stretches[i], stretches[j], reading)
-            ):
+            is_opposite = is_thick and overlap_m >= _LEAST_OVERLAP_M
+            if is_opposite and not _contradict(faces[i], faces[j], reading):
                 offers.append((_OPPOSITE, -overlap_m, i, j))
         elif -overlap_m <= settings.max_gap_m and abs(behind_m) <= settings.offset_m:
-            kind = _SAME_LINE if stretches[i].seen is stretches[j].seen else _ONWARD
+            kind = _SAME_LINE if faces[i].seen is faces[j].seen else _ONWARD
             offers.append((kind, abs(behind_m), i, j))
-    return [offer[2:] for offer in sorted(offers)]
+    return [(i, j) for _, _, i, j in sorted(offers)]
 
 
-def _beside(one, other):
-    """Return how far two stretches overlap (negative.
-
-    How far they are apart), and how far the other lies behind.
-    """
+def _overlap(one: FaceInterval, other: FaceInterval) -> tuple[float, float]:
+    """Return by how much two faces overlap (negative: are apart), how far the other is behind."""
     longer, shorter = (one, other) if one.length_m >= other.length_m else (other, one)
-    along = np.sort(longer.line.along_m(shorter.ends))
-    overlap_m = min(along[1], longer.high_m) - max(along[0], longer.low_m)
+    along_m = np.sort(longer.line.along_m(shorter.ends))
+    overlap_m = min(along_m[1], longer.high_m) - max(along_m[0], longer.low_m)
     return float(overlap_m), -float(longer.line.offset_m(shorter.ends).mean())
 
 
-def _contradict(one, other, reading):
+def _contradict(one: FaceInterval, other: FaceInterval, reading: RaySettings) -> bool:
     """Return whether rays go through one side where the other was seen and it was not."""
-    for seen, unseen in ((one, other), (other, one)):
-        span = np.sort(unseen.line.along_m(seen.ends))
-        open_m = solid_m = 0.0
+    for shown, unseen in ((one, other), (other, one)):
         raster = unseen.seen.raster
         is_opened = raster.is_opened(reading.door_height_m)
-        for low_m, high_m in (
-            (span[0], min(span[1], unseen.low_m)),
-            (max(span[0], unseen.high_m), span[1]),
-        ):
+        first_m, last_m = np.sort(unseen.line.along_m(shown.ends)).tolist()
+        beside_m = ((first_m, min(last_m, unseen.low_m)), (max(first_m, unseen.high_m), last_m))
+        open_m = unseen_m = 0.0
+        for low_m, high_m in beside_m:
             if high_m > low_m:
-                columns = raster.between(low_m, high_m)
-                open_m += CELL_M * is_opened[columns].sum()
-                solid_m += high_m - low_m
-        if open_m > max(_LEAST_OPEN_M, _OPEN_SHARE * solid_m):
+                open_m += CELL_M * is_opened[raster.between(low_m, high_m)].sum()
+                unseen_m += high_m - low_m
+        if open_m > max(_LEAST_OPEN_M, _OPEN_SHARE * unseen_m):
             return True
     return False
 
 
-def _joined(stretches, members, settings):
-    """Return line, members of both sides and thickness.
+class _Sides:
+    """Faces, by their indices, as the two sides of one wall."""
 
-    None where no straight wall of possible thickness has them.
+    def __init__(self, members: list[int], settings: PairSettings, faces: Sequence[FaceInterval]):
+        self.members = sorted(members)
+        self._settings = settings
+        longest = max(self.members, key=lambda i: faces[i].length_m)
+        normal = faces[longest].line.normal
+        chosen = [faces[i] for i in self.members]
+        self.left = [face for face in chosen if face.line.normal @ normal > 0]
+        self.right = [face for face in chosen if not face.line.normal @ normal > 0]
+        self._line, self._offsets_m = _fit_sides([self.left, self.right], normal)
+
+    @property
+    def is_possible(self) -> bool:
+        """Whether the sides are straight, and the wall as thick as walls are."""
+        for side, offset_m in zip((self.left, self.right), self._offsets_m, strict=True):
+            for face in side:
+                bend_m = np.abs(self._line.offset_m(face.ends) - offset_m).max()
+                if bend_m > self._settings.offset_m:
+                    return False
+        settings = self._settings
+        if not self.right:
+            return True
+        return settings.min_thickness_m <= self._thickness_m <= settings.max_thickness_m
+
+    @property
+    def _thickness_m(self) -> float:
+        return self._offsets_m[0] - self._offsets_m[1]
+
+    def make(self) -> PlanWall:
+        """Return the wall, as long as its faces."""
+        middle_m = sum(self._offsets_m) / 2 if self.right else self._offsets_m[0]
+        line = Line(self._line.centre + middle_m * self._line.normal, self._line.normal)
+        along_m = [line.along_m(face.ends) for face in self.left + self.right]
+        return PlanWall(
+            line=line,
+            low_m=float(np.min(along_m)),
+            high_m=float(np.max(along_m)),
+            thickness_m=float(self._thickness_m) if self.right else math.nan,
+            left=self.left,
+            right=self.right,
+        )
+
+
+def _fit_sides(
+    sides: Sequence[Sequence[FaceInterval]], normal: FloatArray
+) -> tuple[Line, list[float]]:
+    """Fit parallel lines to the two sides: a common line, and each side's offset from it.
+
+    A face counts as a uniform row of points, by its length.
     """
-    first = max(members, key=lambda i: stretches[i].length_m)
-    normal = stretches[first].line.normal
-    sides = [
-        [i for i in members if (stretches[i].line.normal @ normal > 0) == left]
-        for left in (True, False)
-    ]
-    line, offsets_m = _fit([[stretches[i].ends for i in side] for side in sides], normal)
-    for side, offset_m in zip(sides, offsets_m, strict=True):
-        if any(
-            np.abs(line.offset_m(stretches[i].ends) - offset_m).max() > settings.offset_m
-            for i in side
-        ):
-            return None
-    if not sides[1]:
-        return Line(line.centre + offsets_m[0] * line.normal, line.normal), *sides, math.nan
-    thickness_m = offsets_m[0] - offsets_m[1]
-    if not settings.min_thickness_m <= thickness_m <= settings.max_thickness_m:
-        return None
-    middle = Line(line.centre + sum(offsets_m) / 2 * line.normal, line.normal)
-    return middle, *sides, float(thickness_m)
-
-
-def _wall_of(stretches, line, left, right, thickness_m):
-    along_m = [line.along_m(stretches[i].ends) for i in left + right]
-    low_m, high_m = float(np.min(along_m)), float(np.max(along_m))
-    sides = ([stretches[i] for i in side] for side in (left, right))
-    return PlanWall(line, low_m, high_m, thickness_m, *sides)
-
-
-def _fit(sides, normal):
-    """Fit parallel lines to the two sides, a list of ends (2, 2) each.
-
-    A common line, and each side's offset from it.
-
-    A stretch counts as a uniform row of points, by its length.
-    """
-    xx = yy = xy = 0.0
+    scatter = np.zeros(3)
     centres = []
-    for ends in sides:
-        if not ends:
+    for side in sides:
+        if not side:
             centres.append(None)
             continue
-        ends = np.array(ends)
-        middle, half = ends.mean(axis=1), (ends[:, 1] - ends[:, 0]) / 2
-        weight = np.hypot(*half.T)
-        weight = weight / max(weight.sum(), _SHORTEST_M)
-        centre = weight @ middle
-        total = np.hypot(*half.T).sum()
-        middle = middle - centre
-        dx, dy = total * (weight @ (middle**2 + half**2 / 3))
-        xx, yy = xx + dx, yy + dy
-        xy += total * (weight @ (middle[:, 0] * middle[:, 1] + half[:, 0] * half[:, 1] / 3))
+        ends = np.array([face.ends for face in side])
+        half = (ends[:, 1] - ends[:, 0]) / 2
+        length = np.hypot(*half.T)
+        weight = length / max(length.sum(), _SHORTEST_M)
+        centre, of_side = rows_scatter(ends.mean(axis=1), half, weight)
+        scatter += length.sum() * of_side
         centres.append(centre)
-    angle = math.atan2(2 * xy, xx - yy) / 2
-    fitted = np.array([-math.sin(angle), math.cos(angle)])
+    fitted = least_scatter_normal(*scatter, arctan2=math.atan2)
     fitted = fitted if fitted @ normal >= 0 else -fitted
-    line = Line(next(c for c in centres if c is not None), fitted)
-    return line, [0.0 if c is None else float(line.offset_m(c)) for c in centres]
+    line = Line(next(centre for centre in centres if centre is not None), fitted)
+    offsets_m = [0.0 if centre is None else float(line.offset_m(centre)) for centre in centres]
+    return line, offsets_m

@@ -1,197 +1,243 @@
-"""The walls of the plan.
-
-Paired faces with their openings, cut where nothing was seen, met at corners.
-"""
+"""The walls of the plan: paired faces with openings, cut where nothing was seen, met at corners."""
 
 import itertools
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from scanplan.geometry import intersections
+from scanplan.geometry.intervals import find_gaps
 from scanplan.plan import wall_pairs
-from scanplan.plan.openings import CLOSED, OPEN, UNKNOWN, classify_gap, find_gaps
+from scanplan.plan.faces.intervals import FaceInterval
+from scanplan.plan.openings import (
+    CLOSED,
+    OPEN,
+    UNKNOWN,
+    Opening,
+    OpeningSettings,
+    classify_gap,
+)
+from scanplan.plan.wall_pairs import PairSettings, PlanWall
+from scanplan.rays.face_observation import RaySettings
+from scanplan.types import FloatArray
 
-_JAMB_M = 0.1
+_JAMB_M = 0.1  # what the places of a jamb on both sides of a wall differ by
+
+Crossing = tuple[PlanWall, float]
+"""Another wall, and where along this one its middle crosses."""
 
 
-def assemble_walls(found, reading, pairing, gapping, *, corner_m):
-    """Make walls of stretches.
+def assemble_walls(
+    faces: Sequence[FaceInterval],
+    reading: RaySettings,
+    pairing: PairSettings,
+    gapping: OpeningSettings,
+    *,
+    corner_m: float,
+) -> list[PlanWall]:
+    """Make walls of faces.
+
+    1. Faces are paired, and a wall is cut where it pauses and nothing was seen.
+    2. A wall goes on over an opening beside the wall that it ends at, and then
+    3. through what is hidden there; both before ends move, as they need the gap between.
+    4. Ends move to the middles of the walls that they meet.
+    5. Openings end beside the walls that cross there, which step 4 has brought into place.
 
     Parameters
     ----------
-    found : list of intervals.FaceInterval
+    faces : list of intervals.FaceInterval
     reading : face_observation.RaySettings
     pairing : wall_pairs.PairSettings
     gapping : openings.OpeningSettings
     corner_m : float
+        Ends no farther from a wall meet it.
 
     Returns
     -------
-    list of PlanWall
+    list of wall_pairs.PlanWall
         The longest first.
     """
-    walls = []
-    for paired in wall_pairs.pair_faces(found, pairing, reading):
-        walls += _cut(paired, reading, gapping)
-    stacked = intersections.stack_spans(walls)
     walls = [
-        _with_end_openings(w, _crossings(w, walls, stacked), reading, gapping, corner_m)
-        for w in walls
+        part
+        for wall in wall_pairs.pair_faces(faces, pairing, reading)
+        for part in _cut(wall, reading, gapping)
     ]
-    stacked = intersections.stack_spans(walls)
-    walls = [
-        _with_closed_ends(w, _crossings(w, walls, stacked), reading, gapping, corner_m)
-        for w in walls
-    ]
-    stacked = intersections.stack_spans(walls)
-    walls = [_met(wall, _crossings(wall, walls, stacked), corner_m) for wall in walls]
-    stacked = intersections.stack_spans(walls)
-    walls = [_beside_walls(wall, _crossings(wall, walls, stacked), gapping) for wall in walls]
+    walls = _each(walls, lambda w, c: _extend_over_openings(w, c, reading, gapping, corner_m))
+    walls = _each(walls, lambda w, c: _extend_through_hidden(w, c, reading, gapping, corner_m))
+    walls = _each(walls, lambda w, c: _meet_walls(w, c, corner_m))
+    walls = _each(walls, lambda w, c: _trim_openings(w, c, gapping))
     return sorted(walls, key=lambda w: (-w.length_m, *w.ends.ravel()))
 
 
-def _cut(wall, reading, gapping):
-    """Return the parts of a wall between long pauses that are neither open nor closed."""
+def _each(
+    walls: Sequence[PlanWall], change: Callable[[PlanWall, list[Crossing]], PlanWall]
+) -> list[PlanWall]:
+    """Return every wall changed, given those that cross it as all are before any is changed."""
+    stacked = intersections.stack_spans(walls)
+    return [change(wall, _find_crossings(wall, walls, stacked)) for wall in walls]
+
+
+def _cut(wall: PlanWall, reading: RaySettings, gapping: OpeningSettings) -> list[PlanWall]:
+    """Return the parts of a wall between long gaps that are neither open nor closed."""
     spans_m = np.array([np.sort(wall.line.along_m(face.ends)) for face in wall.members])
     gaps = [
-        classify_gap(wall.line, *gap, wall.lines, reading, gapping) for gap in find_gaps(spans_m)
+        classify_gap(wall.line, low_m, high_m, wall.lines, reading, gapping)
+        for low_m, high_m in find_gaps(spans_m)
     ]
     breaks = [g for g in gaps if g.state == UNKNOWN and g.width_m >= gapping.min_opening_m]
-    breaks += _between_things(gaps, spans_m)
-    breaks.sort(key=lambda g: g.low_m)
-    bounds = [-math.inf, *((g.low_m + g.high_m) / 2 for g in breaks), math.inf]
-    return [
-        _part(wall, spans_m, [g for g in gaps if g not in breaks], begin_m, end_m)
-        for begin_m, end_m in itertools.pairwise(bounds)
-    ]
+    breaks += _ways_between_things(gaps, spans_m)
+    places_m = sorted((g.low_m + g.high_m) / 2 for g in breaks)
+    rest = [g for g in gaps if g not in breaks]
+    bounds = itertools.pairwise([-math.inf, *places_m, math.inf])
+    return [_part(wall, spans_m, rest, begin_m, end_m) for begin_m, end_m in bounds]
 
 
-def _part(wall, spans_m, gaps, begin_m, end_m):
+def _part(
+    wall: PlanWall, spans_m: FloatArray, gaps: Sequence[Opening], begin_m: float, end_m: float
+) -> PlanWall:
     """Return what of a wall lies between two places, with those of its gaps that do."""
     middle_m = spans_m.mean(axis=1)
     is_inside = (begin_m < middle_m) & (middle_m < end_m)
-    inside = {id(face) for face, chosen in zip(wall.members, is_inside, strict=True) if chosen}
-    of_part = spans_m[is_inside]
-    gaps = [_between_sides(g, of_part) for g in gaps if begin_m < (g.low_m + g.high_m) / 2 < end_m]
+    faces = {id(face) for face, inside in zip(wall.members, is_inside, strict=True) if inside}
+    of_part = [g for g in gaps if begin_m < (g.low_m + g.high_m) / 2 < end_m]
+    of_part = [_between_sides(g, spans_m[is_inside]) for g in of_part]
     return replace(
         wall,
-        low_m=float(of_part.min()),
-        high_m=float(of_part.max()),
-        left=[face for face in wall.left if id(face) in inside],
-        right=[face for face in wall.right if id(face) in inside],
-        openings=[g for g in gaps if g.state == OPEN],
-        closed=[g for g in gaps if g.state == CLOSED],
+        low_m=float(spans_m[is_inside].min()),
+        high_m=float(spans_m[is_inside].max()),
+        left=[face for face in wall.left if id(face) in faces],
+        right=[face for face in wall.right if id(face) in faces],
+        openings=[g for g in of_part if g.state == OPEN],
+        closed=[g for g in of_part if g.state == CLOSED],
     )
 
 
-def _between_things(judged, spans_m):
+def _ways_between_things(gaps: Sequence[Opening], spans_m: FloatArray) -> list[Opening]:
     """Return the openings of what is open for longer than it is wall.
 
-    An opening is a gap of a wall; a wider one than all of the wall is the space between two things.
+    An opening is a gap of a wall; a wider one than all of the wall is the space between two things,
+    unless wall is seen above it.
     """
-    ways = [g for g in judged if g.state == OPEN]
-    unknown_m = sum(g.width_m for g in judged if g.state == UNKNOWN)
+    ways = [g for g in gaps if g.state == OPEN]
+    unknown_m = sum(g.width_m for g in gaps if g.state == UNKNOWN)
     open_m = sum(g.width_m for g in ways)
     solid_m = np.ptp(spans_m) - unknown_m - open_m
     return [g for g in ways if not g.below_wall] if open_m > solid_m else []
 
 
-def _between_sides(gap, spans_m):
-    """Return an opening with its jambs between where the faces of both sides end.
-
-    Each errs its own way.
-    """
+def _between_sides(gap: Opening, spans_m: FloatArray) -> Opening:
+    """Return an opening with its jambs between where the faces of both sides end."""
     if gap.state != OPEN:
         return gap
-    ends_m, starts_m = spans_m[:, 1], spans_m[:, 0]
+    starts_m, ends_m = spans_m.T
     low_m = ends_m[(ends_m <= gap.low_m) & (ends_m >= gap.low_m - _JAMB_M)].mean()
     high_m = starts_m[(starts_m >= gap.high_m) & (starts_m <= gap.high_m + _JAMB_M)].mean()
     return replace(gap, low_m=float(low_m), high_m=float(high_m))
 
 
-def _with_end_openings(wall, crossed, reading, gapping, corner_m):
+def _extend_over_openings(
+    wall: PlanWall,
+    crossings: Sequence[Crossing],
+    reading: RaySettings,
+    gapping: OpeningSettings,
+    corner_m: float,
+) -> PlanWall:
     """Let a wall go on over an opening, under a lintel, to the wall that it ends at."""
     lines = wall.lines
+    if lines[0].planar:
+        return wall
+    least_m = max(corner_m, gapping.min_opening_m)
     for name, sign in (("low_m", -1), ("high_m", 1)):
         end_m = getattr(wall, name)
         ahead = [
-            (sign * (c - end_m) - other.half_m, c - sign * other.half_m) for other, c in crossed
+            side_m
+            for gap_m, side_m, _ in _ahead(crossings, end_m, sign)
+            if least_m < gap_m <= gapping.max_door_m
         ]
-        ahead = [
-            a for a in ahead if max(corner_m, gapping.min_opening_m) < a[0] <= gapping.max_door_m
-        ]
-        if not ahead or lines[0].planar:
+        if not ahead:
             continue
-        low_m, high_m = sorted((end_m, min(ahead)[1]))
+        low_m, high_m = sorted((end_m, ahead[0]))
         gap = classify_gap(wall.line, low_m, high_m, lines, reading, gapping, needs_lintel=True)
         if gap.state == OPEN:
             openings = sorted([*wall.openings, gap], key=lambda g: g.low_m)
-            wall = replace(wall, **{name: float(min(ahead)[1])}, openings=openings)
+            wall = replace(wall, **{name: float(ahead[0]), "openings": openings})
     return wall
 
 
-def _with_closed_ends(wall, crossed, reading, gapping, corner_m):
+def _extend_through_hidden(
+    wall: PlanWall,
+    crossings: Sequence[Crossing],
+    reading: RaySettings,
+    gapping: OpeningSettings,
+    corner_m: float,
+) -> PlanWall:
     """Let a wall go on to the wall ahead through what no ray went through or showed.
 
-    What stands on both sides hides it: a gap there would have let some ray pass, as in a pause of
-    the wall.
+    What stands on both sides hides it: a gap there would have let some ray pass, as in a gap of the
+    wall. It goes on no farther than it is long.
     """
     lines = wall.lines
     for name, sign in (("low_m", -1), ("high_m", 1)):
         end_m = getattr(wall, name)
-        ahead = [
-            (sign * (c - end_m) - other.half_m, c - sign * other.half_m, c) for other, c in crossed
-        ]
-        ahead = [a for a in ahead if corner_m < a[0] <= min(gapping.max_closed_m, wall.length_m)]
+        most_m = min(gapping.max_closed_m, wall.length_m)
+        ahead = [a for a in _ahead(crossings, end_m, sign) if corner_m < a[0] <= most_m]
         if not ahead:
             continue
-        _, side_m, middle_m = min(ahead)
-        gap = classify_gap(wall.line, *sorted((end_m, side_m)), lines, reading, gapping)
+        _, side_m, middle_m = ahead[0]
+        low_m, high_m = sorted((end_m, side_m))
+        gap = classify_gap(wall.line, low_m, high_m, lines, reading, gapping)
         if gap.state == CLOSED and gap.n_rays == 0:
             closed = sorted([*wall.closed, gap], key=lambda g: g.low_m)
-            wall = replace(wall, **{name: float(middle_m)}, closed=closed)
+            wall = replace(wall, **{name: float(middle_m), "closed": closed})
     return wall
 
 
-def _met(wall, crossed, corner_m):
+def _ahead(
+    crossings: Sequence[Crossing], end_m: float, sign: int
+) -> list[tuple[float, float, float]]:
+    """Return gap, near side and middle of the walls that cross beyond an end, the nearest first."""
+    return sorted(
+        (sign * (place_m - end_m) - other.half_m, place_m - sign * other.half_m, place_m)
+        for other, place_m in crossings
+    )
+
+
+def _meet_walls(wall: PlanWall, crossings: Sequence[Crossing], corner_m: float) -> PlanWall:
     """Move the ends of a wall to the middles of walls that it meets there."""
     moved = {}
     for name in ("low_m", "high_m"):
         end_m = getattr(wall, name)
-        near = [c for other, c in crossed if abs(c - end_m) <= corner_m + other.half_m]
-        moved[name] = min(near, key=lambda c: (abs(c - end_m), c), default=end_m)
-    return replace(wall, **moved) if moved["high_m"] - moved["low_m"] > wall.length_m / 2 else wall
+        near = [m for other, m in crossings if abs(m - end_m) <= corner_m + other.half_m]
+        moved[name] = min(near, key=lambda m: (abs(m - end_m), m), default=end_m)
+    is_long = moved["high_m"] - moved["low_m"] > wall.length_m / 2
+    return replace(wall, **moved) if is_long else wall
 
 
-def _beside_walls(wall, crossed, gapping):
-    """Let openings begin beside the walls that cross there.
+def _trim_openings(
+    wall: PlanWall, crossings: Sequence[Crossing], gapping: OpeningSettings
+) -> PlanWall:
+    """Let openings begin beside the walls that cross there."""
+    bodies_m = [(place_m - other.half_m, place_m + other.half_m) for other, place_m in crossings]
+    openings = [_trim(opening, bodies_m) for opening in wall.openings]
+    return replace(wall, openings=[g for g in openings if g.width_m >= gapping.min_opening_m])
 
-    A wall that ends at one goes on behind it with a way.
-    """
-    bodies = [(place_m - other.half_m, place_m + other.half_m) for other, place_m in crossed]
-    openings = [_less(gap, bodies) for gap in wall.openings]
-    return replace(wall, openings=[gap for gap in openings if gap.width_m >= gapping.min_opening_m])
 
-
-def _less(gap, bodies_m):
+def _trim(opening: Opening, bodies_m: Sequence[tuple[float, float]]) -> Opening:
     """Return what of an opening is left between walls that cross it near its ends."""
-    low_m, high_m = gap.low_m, gap.high_m
+    low_m, high_m = opening.low_m, opening.high_m
     for begin_m, end_m in bodies_m:
-        if begin_m - _JAMB_M <= gap.low_m <= end_m:
+        if begin_m - _JAMB_M <= opening.low_m <= end_m:
             low_m = max(low_m, end_m)
-        if begin_m <= gap.high_m <= end_m + _JAMB_M:
+        if begin_m <= opening.high_m <= end_m + _JAMB_M:
             high_m = min(high_m, begin_m)
-    return replace(gap, low_m=float(low_m), high_m=float(high_m))
+    return replace(opening, low_m=float(low_m), high_m=float(high_m))
 
 
-def _crossings(wall, walls, stacked):
-    """Return (other wall, where along this one its middle crosses) of walls that are there."""
-    found = intersections.find_crossings(
-        wall.line, stacked, reach_m=wall.half_m + wall_pairs.CORNER_M
-    )
-    return [
-        (walls[i], place_m)
-        for i, place_m in zip(found.which.tolist(), found.place_m.tolist(), strict=True)
-    ]
+def _find_crossings(
+    wall: PlanWall, walls: Sequence[PlanWall], stacked: intersections.SpanArrays
+) -> list[Crossing]:
+    reach_m = wall.half_m + wall_pairs.CORNER_M
+    found = intersections.find_crossings(wall.line, stacked, reach_m=reach_m)
+    return [(walls[i], place_m) for i, place_m in zip(found.which, found.place_m, strict=True)]

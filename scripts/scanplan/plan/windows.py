@@ -10,9 +10,12 @@ from dataclasses import replace
 import numpy as np
 
 from scanplan.plan import openings
-from scanplan.rays import face_observation
-from scanplan.rays.face_observation import filled_share
+from scanplan.plan.openings import Opening, OpeningSettings
+from scanplan.plan.wall_pairs import PlanWall
+from scanplan.rays.face_observation import FaceObservation, count_sent, filled_share
 from scanplan.rays.face_raster import CELL_M
+from scanplan.rays.ray_set import RaySet
+from scanplan.types import BoolArray, FloatArray
 
 _CHEST_M = (1.25, 1.7)  # sills are lower, lintels are higher
 _LEAST_SHOWN = 0.7  # the jambs' last columns may be hidden from most scans
@@ -22,29 +25,29 @@ _MOST_IN_IT = 0.5  # reveals and panes send some back, a niche all
 _SILL_SHARE = 0.3  # desks hide much of the wall below; in a doorway there is none
 
 
-def add_windows(walls, rays, settings):
-    """Return walls with the windows that rays tell of.
+def add_windows(walls: list[PlanWall], rays: RaySet, settings: OpeningSettings) -> list[PlanWall]:
+    """Return walls with their windows.
 
     Parameters
     ----------
-    walls : list of walls.PlanWall
+    walls : list of wall_pairs.PlanWall
     rays : ray_set.RaySet
-        Of planar scans nothing is told.
+        Planar scans show no windows.
     settings : openings.OpeningSettings
 
     Returns
     -------
-    list of walls.PlanWall
+    list of wall_pairs.PlanWall
     """
     return list(walls) if rays.planar else [_with_windows(wall, rays, settings) for wall in walls]
 
 
-def _with_windows(wall, rays, settings):
+def _with_windows(wall: PlanWall, rays: RaySet, settings: OpeningSettings) -> PlanWall:
     lines = wall.lines
     found = list(wall.openings)
     for seen in lines:
-        span_m = np.sort(seen.line.along_m(wall.ends))
-        for window in find_windows(rays, seen, *span_m, settings):
+        first_m, last_m = np.sort(seen.line.along_m(wall.ends)).tolist()
+        for window in find_windows(rays, seen, first_m, last_m, settings):
             ends = seen.line.at(np.array([window.low_m, window.high_m]))
             low_m, high_m = np.sort(wall.line.along_m(ends)).tolist()
             is_known = any(low_m < gap.high_m and high_m > gap.low_m for gap in found)
@@ -53,22 +56,21 @@ def _with_windows(wall, rays, settings):
     return replace(wall, openings=sorted(found, key=lambda gap: gap.low_m))
 
 
-def _is_wall(seen, ends):
-    """Tell whether a line shows wall between two ends, at the height of a chest.
-
-    A screen or a mirror hangs there.
-    """
+def _is_wall(seen: FaceObservation, ends: FloatArray) -> bool:
+    """Return whether a line shows wall between two ends chest-high: a screen or a mirror there."""
     low_m, high_m = np.sort(seen.line.along_m(ends))
     points = seen.occupied_between(low_m, high_m)
     at_chest = _at_chest(seen.occupied_z_m[points])
     return filled_share(seen.occupied_m[points][at_chest], low_m, high_m) > _MOST_IN_IT
 
 
-def _at_chest(z_m):
+def _at_chest(z_m: FloatArray) -> BoolArray:
     return (z_m >= _CHEST_M[0]) & (z_m < _CHEST_M[1])
 
 
-def find_windows(rays, seen, low_m, high_m, settings):
+def find_windows(
+    rays: RaySet, seen: FaceObservation, low_m: float, high_m: float, settings: OpeningSettings
+) -> list[Opening]:
     """Find the windows along a line.
 
     Pauses of the points at the height of a chest, with wall beside and below them.
@@ -96,23 +98,20 @@ def find_windows(rays, seen, low_m, high_m, settings):
     beside_m = _not_alone(place_m[_at_chest(z_m)])
     spans_m = np.column_stack([beside_m[:-1], beside_m[1:]])
     spans_m = spans_m[np.diff(spans_m, axis=1)[:, 0] >= settings.min_opening_m]
-    judged = [_judged(rays, seen, *span_m) for span_m in spans_m.tolist()]
-    return [window for window in judged if window is not None]
+    windows = (_classify_pause(rays, seen, low, high) for low, high in spans_m.tolist())
+    return [window for window in windows if window is not None]
 
 
-def _not_alone(place_m):
-    """Return those of sorted places that are within a column of enough others.
-
-    One or two points may be stray.
-    """
-    low, high = (
-        np.searchsorted(place_m, place_m + way * CELL_M / 2, side)
-        for way, side in ((-1, "left"), (1, "right"))
-    )
+def _not_alone(place_m: FloatArray) -> FloatArray:
+    """Return those of sorted places within a column of enough others: one or two are stray."""
+    low = np.searchsorted(place_m, place_m - CELL_M / 2, "left")
+    high = np.searchsorted(place_m, place_m + CELL_M / 2, "right")
     return place_m[high - low >= openings.FEW_RAYS]
 
 
-def _judged(rays, seen, low_m, high_m):
+def _classify_pause(
+    rays: RaySet, seen: FaceObservation, low_m: float, high_m: float
+) -> Opening | None:
     """Return what is between two places of a line as a window, None if it is none."""
     inner = seen.occupied_between(low_m + openings.REVEAL_M, high_m - openings.REVEAL_M)
     below = seen.occupied_z_m[inner] < _CHEST_M[0]
@@ -122,9 +121,8 @@ def _judged(rays, seen, low_m, high_m):
     if below.sum() < openings.FEW_RAYS or sill_share < _SILL_SHARE:
         return None
     count = max(int((high_m - low_m) / CELL_M), 1)
-    reached, _, in_wall = face_observation.count_sent(
-        rays, seen.line, low_m, count, _CHEST_M, _AT_M
-    ).reached(least_scans=_LEAST_SCANS)
+    sent = count_sent(rays, seen.line, low_m, count, _CHEST_M, _AT_M)
+    reached, _, in_wall = sent.reached(least_scans=_LEAST_SCANS)
     shown = np.isfinite(reached)
     if shown.mean() < _LEAST_SHOWN or in_wall[shown].sum() > _MOST_IN_IT * reached[shown].sum():
         return None

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from scanplan.types import FloatArray
+from scanplan.types import Array, FloatArray, IntArray
 
 if TYPE_CHECKING:
     from scanplan.rays.face_rays import FaceRays
@@ -76,9 +76,9 @@ class SentRays:
     """
 
     expected: FloatArray
-    occluded: FloatArray
-    returned: FloatArray
-    in_wall: FloatArray
+    occluded: IntArray
+    returned: IntArray
+    in_wall: IntArray
 
     @property
     def missing_share(self) -> float:
@@ -105,7 +105,8 @@ class SentRays:
         in_wall = (_sum_neighbours(self.in_wall) * clear).sum(axis=0)
         n_scans = (clear & (expected >= _LEAST_RAYS_A_SCAN)).sum(axis=0)
         enough = (n_scans >= least_scans) & (reached >= _LEAST_RAYS)
-        return tuple(np.where(enough, rows, np.nan) for rows in (reached, returned, in_wall))
+        known = [np.where(enough, rows, np.nan) for rows in (reached, returned, in_wall)]
+        return known[0], known[1], known[2]
 
 
 def count_sent_rays(
@@ -175,7 +176,7 @@ def _below(usual: FloatArray, elevation_rad: FloatArray) -> FloatArray:
     return usual[scan, row] + (at - row) * (usual[scan, row + 1] - usual[scan, row])
 
 
-def _sum_neighbours(rows: FloatArray) -> FloatArray:
+def _sum_neighbours(rows: Array) -> FloatArray:
     """Return running sums over `_WIDTH` columns around each, of rows (s, n)."""
     sums = np.cumsum(np.pad(rows, ((0, 0), (_WIDTH // 2 + 1, _WIDTH // 2))), axis=1, dtype=float)
     return sums[:, _WIDTH:] - sums[:, :-_WIDTH]

@@ -199,13 +199,17 @@ def rasterise_rays(
         np.maximum.at(top_m, column_of(along_m), height_m)
         return top_m
 
-    free = count(*free_m) if free_until_m is None else None
-    if free is None:
-        begin, end = np.sort([column_of(free_m[0]), column_of(free_until_m)], axis=0)
-        change = np.zeros((shape[0] + 1, shape[1]), np.int64)
-        np.add.at(change, (begin, row_of(free_m[1])), 1)
-        np.add.at(change, (end + 1, row_of(free_m[1])), -1)
-        free = np.cumsum(change, axis=0)[:-1]
+    def count_along(along_m: FloatArray, until_m: FloatArray, height_m: FloatArray) -> IntArray:
+        begin, end = np.sort([column_of(along_m), column_of(until_m)], axis=0)
+        row, size = row_of(height_m), (shape[0] + 1) * shape[1]
+        entering = np.bincount(begin * shape[1] + row, minlength=size)
+        leaving = np.bincount((end + 1) * shape[1] + row, minlength=size)
+        return np.cumsum((entering - leaving).reshape(-1, shape[1]), axis=0)[:-1]
+
+    if free_until_m is None:
+        free = count(*free_m)
+    else:
+        free = count_along(free_m[0], free_until_m, free_m[1])
     return FaceRaster(
         first_m=low_m,
         column_m=column_m,

@@ -1,22 +1,27 @@
 """Floor that rays went over: what each scan sees of it, and all of them together."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import shapely
 from shapely.geometry import MultiPolygon, Polygon
+from shapely.geometry.base import BaseGeometry
+
+from scanplan.rays.ray_set import RaySet
+from scanplan.types import FloatArray
 
 _SECTOR_RAD = np.radians(0.5)
-_RAYS_A_SECTOR = 2.2
-_COLUMNS_A_SECTOR = 1.1
+_RAYS_A_SECTOR = 2.2  # at least two, however rays fall
+_COLUMNS_A_SECTOR = 1.1  # at least one column of beams
 # ASSUME wider gaps than this are the end of a sensor's field, or openings that nothing came back
 # from
 _WIDEST_RAD = np.radians(10)
-_SIMPLIFY_M = 0.02
-_SPIKE_M = 0.04
-GRID_M = 1e-3
-"""Corners of grounds lie on this."""
+_SIMPLIFY_M = 0.02  # what an outline may err by
+_SPIKE_M = 0.04  # half the width of what is no floor that anyone sees
+GRID_M = 1e-3  # corners of grounds lie on this: GEOS needs one, and nothing is surveyed as well
 
 
-def free_polygons(rays):
+def free_polygons(rays: RaySet) -> list[MultiPolygon]:
     """Return what each scan's rays went over, as polygons.
 
     In every half degree (more where a sensor's rays are further apart) a ray of the longest tenth
@@ -40,7 +45,7 @@ def free_polygons(rays):
     ]
 
 
-def column_spacing_rad(azimuth_rad):
+def column_spacing_rad(azimuth_rad: FloatArray) -> float:
     """Return the angle between a scan's columns of rays.
 
     Half of the directions between rays lie in gaps up to this.
@@ -65,7 +70,7 @@ def column_spacing_rad(azimuth_rad):
     )
 
 
-def _star(origin_m, azimuth_rad, range_m):
+def _star(origin_m: FloatArray, azimuth_rad: FloatArray, range_m: FloatArray) -> MultiPolygon:
     steps_rad = np.diff(azimuth_rad)
     steps_rad = steps_rad[steps_rad > 0]
     rays_rad = _RAYS_A_SECTOR * float(np.median(steps_rad)) if len(steps_rad) else 0.0
@@ -92,7 +97,7 @@ def _star(origin_m, azimuth_rad, range_m):
     return union_on_grid(open_polygons(star, _SPIKE_M))
 
 
-def union_on_grid(polygons):
+def union_on_grid(polygons: Sequence[BaseGeometry]) -> MultiPolygon:
     """Return the union of polygons, polygons whose corners are on a grid of a millimetre."""
     return (
         polygon_parts(shapely.union_all(polygons, grid_size=GRID_M))
@@ -101,7 +106,7 @@ def union_on_grid(polygons):
     )
 
 
-def difference_on_grid(ground, taken):
+def difference_on_grid(ground: BaseGeometry, taken: BaseGeometry) -> MultiPolygon:
     """Return what of ground is not taken, polygons whose corners are on a grid of a millimetre.
 
     Without a grid GEOS 3.14 may return nothing where the ground just fills a hole of what is taken.
@@ -109,7 +114,7 @@ def difference_on_grid(ground, taken):
     return polygon_parts(shapely.difference(polygon_parts(ground), taken, grid_size=GRID_M))
 
 
-def open_polygons(ground, half_m):
+def open_polygons(ground: BaseGeometry, half_m: float) -> list[Polygon]:
     """Return ground without what is narrower than twice a width, its corners sharp.
 
     Each is grown by itself and within the ground: at a blunt, narrow end the mitre reaches on,
@@ -128,7 +133,7 @@ def open_polygons(ground, half_m):
     return found
 
 
-def polygon_parts(geometry):
+def polygon_parts(geometry: BaseGeometry) -> MultiPolygon:
     """Return what of a geometry has an area."""
     parts = [p for p in shapely.get_parts(geometry) if p.geom_type == "Polygon" and p.area > 0]
     parts += [
@@ -139,29 +144,3 @@ def polygon_parts(geometry):
         if q.area > 0
     ]
     return MultiPolygon(parts)
-
-
-def wall_strips(walls, unpaired_m):
-    """Return the ground that walls stand on, with their openings: a polygon per wall.
-
-    Parameters
-    ----------
-    walls : list of walls.PlanWall
-    unpaired_m : float
-        How thick a wall is taken for of which one side is known; it lies behind that.
-    """
-    return [_ground(wall, wall.low_m, wall.high_m, unpaired_m) for wall in walls]
-
-
-def opening_polygon(wall, gap, unpaired_m):
-    """Return the ground of an opening in a wall, a polygon a little deeper than the wall."""
-    return _ground(wall, gap.low_m, gap.high_m, unpaired_m).buffer(1e-3, join_style="mitre")
-
-
-def _ground(wall, low_m, high_m, unpaired_m):
-    left_m, right_m = (
-        (0.0, -unpaired_m) if np.isnan(wall.thickness_m) else (wall.half_m, -wall.half_m)
-    )
-    start, end = wall.line.at(np.array([low_m, high_m]))
-    across = np.array([right_m, left_m])[:, None] * wall.line.normal
-    return Polygon([start + across[0], end + across[0], end + across[1], start + across[1]])

@@ -5,11 +5,11 @@ import numpy as np
 from scanplan.types import FloatArray
 
 _LOWEST_PERCENTILE = 1  # fewer returns lie below the floor, by reflections
-_LAYER_M = 0.05
-_SEARCH_M = 0.5
-_LEAST_SHARE = 1e-4
-_LEAST_POINTS = 30
-_PROMINENT = 1.5
+_LAYER_M = 0.05  # a few times the noise of heights
+_SEARCH_M = 0.5  # above the lowest points: less than furniture is high
+_LEAST_SHARE = 1e-4  # of all points: stray returns below a floor are fewer
+_LEAST_POINTS = 30  # fewer show no level
+_PROMINENT = 1.5  # times what walls alone leave in layers that hold no level
 
 
 def find_floor_z(z_m: FloatArray) -> float:
@@ -33,7 +33,7 @@ def find_floor_z(z_m: FloatArray) -> float:
     return float(np.percentile(z_m, _LOWEST_PERCENTILE)) if np.isnan(level_m) else level_m
 
 
-def find_floor_and_ceiling(z_m):
+def find_floor_and_ceiling(z_m: FloatArray) -> tuple[float, float]:
     """Return the heights of floor and ceiling, NaN where none was seen.
 
     A floor or ceiling is the fullest layer of 5 cm within half a metre of the lowest or highest
@@ -57,7 +57,7 @@ def find_floor_and_ceiling(z_m):
     return floor_z_m, ceiling_z_m
 
 
-def _lowest_level(z_m):
+def _lowest_level(z_m: FloatArray) -> float:
     if len(z_m) < _LEAST_POINTS:
         return np.nan
     low_m = z_m.min()

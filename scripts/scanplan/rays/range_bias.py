@@ -13,12 +13,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-_MOST_POINTS = 600_000
-_LEAST_OF_GROUP = 100
+from scanplan.rays.ray_set import RaySet
+from scanplan.types import BoolArray, Columns, FloatArray, IntArray
+
+_MOST_POINTS = 600_000  # more cost time, and make no estimate better
+_LEAST_OF_GROUP = 100  # points of one scan at one wall: fewer show no bend
 _END_M = 0.1  # the last points before a corner may be of the wall around it
-_BINS, _MOST_BENT = 16, 3.0
-_BOW_M, _PASSES = 0.0005, 3  # no wall is flatter than that
-_TINY = 1e-9
+_BINS = 16  # parts of a wall whose means show whether it is flat
+_MOST_BENT = 3.0  # mean square of these means by noise alone is 1
+_BOW_M = 0.0005  # no wall is flatter than that
+_PASSES = 3  # what is left of bows hardly changes after two
+_TINY = 1e-9  # keeps divisions finite
 
 
 @dataclass(frozen=True)
@@ -60,21 +65,21 @@ class _Hits:
     along_m: np.ndarray
     offset_m: np.ndarray
 
-    def of(self, chosen):
+    def of(self, chosen: BoolArray) -> "_Hits":
         """Return those that are chosen, (n,) bool, their groups renumbered."""
         parts = (getattr(self, name)[chosen] for name in ("beam", "cosine", "along_m", "offset_m"))
         return _Hits(np.unique(self.group[chosen], return_inverse=True)[1], *parts)
 
     @property
-    def n_groups(self):
+    def n_groups(self) -> int:
         """How many groups there are."""
         return int(self.group.max(initial=-1)) + 1
 
-    def summed(self, values):
+    def summed(self, values: FloatArray) -> FloatArray:
         """Return sums of values (n,) by group."""
         return np.bincount(self.group, values, self.n_groups)
 
-    def level(self, values):
+    def level(self, values: FloatArray) -> FloatArray:
         """Return values (n,) without the best line along the wall of each group."""
         count = self.summed(np.ones(len(values)))
         values = values - (self.summed(values) / count)[self.group]
@@ -83,7 +88,9 @@ class _Hits:
         return values - slope[self.group] * along_m
 
 
-def estimate_range_bias(rays, segments, settings, band_m, up):
+def estimate_range_bias(
+    rays: RaySet, segments: Columns, settings: RangeBiasSettings, band_m: float, up: FloatArray
+) -> FloatArray:
     """Estimate the constant errors of ranges.
 
     The offsets of a scan's points before a wall are a line along it, for where the wall is, less
@@ -118,12 +125,12 @@ def estimate_range_bias(rays, segments, settings, band_m, up):
     beams, beam = np.unique(hits.beam, return_inverse=True)
     if len(beams):
         hits = replace(hits, beam=beam)
-        hits = hits.of(_are_flat(hits, _solved(hits, len(beams), settings.sigma_m))[hits.group])
-        error_m[beams] = _solved(hits, len(beams), settings.sigma_m)
+        hits = hits.of(_are_flat(hits, _solve(hits, len(beams), settings.sigma_m))[hits.group])
+        error_m[beams] = _solve(hits, len(beams), settings.sigma_m)
     return error_m
 
 
-def remove_range_bias(rays, error_m, up):
+def remove_range_bias(rays: RaySet, error_m: FloatArray, up: FloatArray) -> RaySet:
     """Return rays with ranges shorter by `error_m` (181,), as `estimate_range_bias` returns it."""
     if not error_m.any():
         return rays
@@ -137,7 +144,9 @@ def remove_range_bias(rays, error_m, up):
     return rays.with_points(moved)
 
 
-def _hits(rays, segments, settings, band_m, up):
+def _hits(
+    rays: RaySet, segments: Columns, settings: RangeBiasSettings, band_m: float, up: FloatArray
+) -> _Hits:
     scan = np.searchsorted(rays.scan_ids, segments["scan_id"])
     first, last = (
         np.column_stack([segments[f"x{i}_m"], segments[f"y{i}_m"]]).astype(float) for i in (0, 1)
@@ -165,16 +174,16 @@ def _hits(rays, segments, settings, band_m, up):
     return found.of(cosine >= np.cos(np.radians(settings.max_incidence_deg)))
 
 
-def _length(way):
+def _length(way: FloatArray) -> FloatArray:
     return np.sqrt(np.einsum("ij,ij->i", way, way))
 
 
-def _degrees(sine):
+def _degrees(sine: FloatArray) -> IntArray:
     """Return elevations in whole degrees from -90."""
     return np.rint(np.degrees(np.arcsin(np.clip(sine, -1.0, 1.0)))).astype(np.int64) + 90
 
 
-def _solved(hits, n_beams, sigma_m):
+def _solve(hits: _Hits, n_beams: int, sigma_m: float) -> FloatArray:
     """Return the errors (n_beams,) that explain offsets best; 0 without any.
 
     Generalised least squares: a line along each wall is free, and each wall has a bow of its own
@@ -197,21 +206,22 @@ def _solved(hits, n_beams, sigma_m):
     straight = (
         np.diag(np.bincount(hits.beam, hits.cosine**2, n_beams)) - level.T @ level - tilt.T @ tilt
     )
-    said, bow_m = (
-        -np.bincount(hits.beam, hits.cosine * offset_m, n_beams),
-        hits.summed(offset_m * bow),
-    )
-    prior, bow_m2 = np.eye(n_beams) * noise_m2 / sigma_m**2, _BOW_M**2
+    observed_m = -np.bincount(hits.beam, hits.cosine * offset_m, n_beams)
+    bow_m = hits.summed(offset_m * bow)
+    prior = np.eye(n_beams) * noise_m2 / sigma_m**2
+    bow_m2 = _BOW_M**2
+    error_m = np.zeros(n_beams)
     for _ in range(_PASSES):
         own = 1 / (1 + noise_m2 / (bow_m2 * count))
-        normal, right = straight - (own[:, None] * bowed).T @ bowed, said + bowed.T @ (own * bow_m)
+        normal = straight - (own[:, None] * bowed).T @ bowed
+        right = observed_m + bowed.T @ (own * bow_m)
         error_m = np.linalg.solve(normal + prior, right)
         left_m = bow_m + bowed @ error_m
         bow_m2 = max(_BOW_M**2, float(np.mean((left_m**2 - noise_m2) / count)))
     return error_m
 
 
-def _are_flat(hits, error_m):
+def _are_flat(hits: _Hits, error_m: FloatArray) -> BoolArray:
     """Return which groups look flat once errors of beams, and a common one, are taken out.
 
     The means of offsets in parts of such a wall differ from 0 by noise alone, in the mean of their

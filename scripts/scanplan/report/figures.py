@@ -7,29 +7,14 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, StrMethodFormatter
 from scipy.spatial import cKDTree
 
-from scanplan.errors import StageError
 from scanplan.report import top_view
 from scanplan.selection import stopping
+from scanplan.selection.methods import METHODS, Method
+from scanplan.store import registered_scans
 
 NEARBY_M = 1.0
 _WIDTH_IN = 7.0
 _SELECTED = "#d55e00"
-STYLES = {
-    "wall_length": ("greedy by wall length", "#0072b2"),
-    "visibility": ("greedy by free space", "#009e73"),
-    "cluster_hull": ("greedy by cluster hulls", "#d55e00"),
-    "hull": ("greedy by one hull per scan", "#e69f00"),
-    "streaming": ("in one pass by cluster hulls", "#000000"),
-    "every_nth": ("every n-th", "#cc79a7"),
-    "distance": ("farthest next", "#56b4e9"),
-    "random": ("random", "#8c6d4f"),
-    "sequential": ("as recorded", "#999999"),
-}
-"""Method to label and colour, in the order of legends."""
-
-DASHED = {"every_nth", "distance", "random", "sequential"}
-"""Methods that look at nothing measured."""
-
 _FULL_HULLS = "hull"
 _LOGARITHMIC_FROM = 100
 
@@ -40,7 +25,7 @@ def sensor_positions(registration, scan_ids):
     Parameters
     ----------
     registration : dict of str to (n,) array
-        `scan_id`, `kept`, `x_m`, `y_m` of a table of registration.
+        Of a table of registration.
     scan_ids : (k,) int
 
     Returns
@@ -52,15 +37,8 @@ def sensor_positions(registration, scan_ids):
     StageError
         If a scan was not kept: the tables are of different runs.
     """
-    row = {int(s): i for i, s in enumerate(registration["scan_id"]) if registration["kept"][i]}
-    unknown = sorted({int(s) for s in scan_ids} - set(row))
-    if unknown:
-        raise StageError(
-            f"registration: keeps {len(row)} scans, scan {unknown[0]} of the selection not among them;"
-            " delete the results of this dataset and run again"
-        )
-    rows = [row[int(s)] for s in scan_ids]
-    return np.column_stack([registration["x_m"], registration["y_m"]])[rows]
+    scans = registered_scans.select_kept_scans(registration, "registration")
+    return registered_scans.sensor_positions(scan_ids, scans, "selection", "registration")[:, :2]
 
 
 def count_nearby(xy_m, radius_m=NEARBY_M):
@@ -173,23 +151,36 @@ def draw_area_figure(orderings):
 
 
 def _place(method):
-    return (list(STYLES).index(method) if method in STYLES else len(STYLES)), method
+    return (list(METHODS).index(method) if method in METHODS else len(METHODS)), method
 
 
 def _draw_ordering(axes, method, columns):
-    label, colour = STYLES.get(method, (method.replace("_", " "), "0.3"))
-    dashes = "--" if method in DASHED else "-"
+    drawn = METHODS.get(method, Method(label=method.replace("_", " "), colour="0.3"))
+    dashes = "--" if drawn.is_baseline else "-"
     covered = columns["covered_m2"]
     at = stopping.choose_n_scans({"covered_m2": covered}, area_share=0.99)[0] - 1
-    label = f"{label}: 99 % with {columns['rank'][at]}"
+    label = f"{drawn.label}: 99 % with {columns['rank'][at]}"
     axes.plot(
-        columns["rank"], covered, dashes, color=colour, lw=1.4, label=label, gid=f"covered-{method}"
+        columns["rank"],
+        covered,
+        dashes,
+        color=drawn.colour,
+        lw=1.4,
+        label=label,
+        gid=f"covered-{method}",
     )
-    if method in ("cluster_hull", _FULL_HULLS):
+    if drawn.is_area:
         bound = np.minimum(columns["bound_m2"], covered[-1])
-        axes.plot(columns["rank"], bound, ":", color=colour, lw=1, gid=f"bound-{method}")
+        axes.plot(columns["rank"], bound, ":", color=drawn.colour, lw=1, gid=f"bound-{method}")
     axes.plot(
-        columns["rank"][at], covered[at], "o", ms=4.5, mfc="white", mec=colour, mew=1.2, zorder=4
+        columns["rank"][at],
+        covered[at],
+        "o",
+        ms=4.5,
+        mfc="white",
+        mec=drawn.colour,
+        mew=1.2,
+        zorder=4,
     )
 
 

@@ -5,13 +5,13 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter, StrMethodFormatter
 
 from scanplan.report import top_view
-from scanplan.report.figures import DASHED, STYLES
+from scanplan.selection.methods import METHODS
 
 _SIZE_IN = (7.0, 8.6)
 _STYLES = {
     "oracle": ("oracle: knows the truth", "black"),
     "sight": ("oracle by sight alone", "0.55"),
-    **STYLES,
+    **{name: (method.label, method.colour) for name, method in METHODS.items()},
 }
 _OTHER = ("#e69f00", "#56b4e9", "#f0e442", "#8c510a", "#762a83", "#5ab4ac")
 _FOUND = "visible_completeness_010m"
@@ -97,7 +97,8 @@ def _curves(axes, table, column):
     for method in sort_methods(table["method"]):
         label, colour = method_style(method)
         of_it = _of(table, method=method)
-        dashes, width = ("--", 0.8) if method in DASHED else ("-", 1.2)
+        is_baseline = method in METHODS and METHODS[method].is_baseline
+        dashes, width = ("--", 0.8) if is_baseline else ("-", 1.2)
         axes.plot(
             of_it["k"], of_it[column], dashes, color=colour, lw=width, marker="o", ms=1.6,
             label=label, gid=f"{column}-{method}",

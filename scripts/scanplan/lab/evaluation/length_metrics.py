@@ -10,6 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
+from scanplan.geometry import intervals
+
 
 @dataclass(frozen=True)
 class NearIntervals:
@@ -78,8 +80,7 @@ def union_length_m(stretches, n_lines):
     line, low_m, high_m = stretches.line[order], stretches.low_m[order], stretches.high_m[order]
     # all lines laid end to end, far enough apart: one running maximum serves for all of them
     shift = line * (2 * high_m.max(initial=0.0) + 1)
-    reached = np.maximum.accumulate(np.concatenate([[-np.inf], high_m + shift]))[:-1]
-    fresh_m = np.maximum(high_m + shift - np.maximum(low_m + shift, reached), 0)
+    fresh_m = intervals.added_lengths_m(low_m + shift, high_m + shift)
     return np.bincount(line, fresh_m, minlength=n_lines)
 
 
@@ -145,20 +146,9 @@ def _interval(line_m, other_m, distance_m):
 def _in_rectangle(offset, along, across, width_m, distance_m):
     forward = _dot(offset, across), _dot(along, across)
     sideways = _cross(offset, across), _cross(along, across)
-    low_0, high_0 = _slab(*forward, 0.0, width_m)
-    low_1, high_1 = _slab(*sideways, -distance_m, distance_m)
+    low_0, high_0 = intervals.solve_range(*forward, 0.0, width_m)
+    low_1, high_1 = intervals.solve_range(*sideways, -distance_m, distance_m)
     return np.maximum(low_0, low_1), np.minimum(high_0, high_1)
-
-
-def _slab(start, slope, least, most):
-    """Return for which s (p,) least <= start + slope * s <= most."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        a, b = (least - start) / slope, (most - start) / slope
-    level = slope == 0
-    inside = level & (least <= start) & (start <= most)
-    low = np.where(level, np.where(inside, -np.inf, np.inf), np.minimum(a, b))
-    high = np.where(level, np.where(inside, np.inf, -np.inf), np.maximum(a, b))
-    return low, high
 
 
 def _in_disc(offset, along, radius_m):

@@ -43,5 +43,5 @@ def _growth(scans_path, n_clusters, threads, **sampling):
     )
     scan_ids, polygons = hulls.scan_polygons(hulls.concatenate_hulls(parts))
     order, rank = area_greedy.order_by_area(polygons), np.arange(1, len(scan_ids) + 1)
-    covered = {"scan_id": scan_ids[order.order], "covered_m2": order.covered_m2}
+    covered = {"scan_id": scan_ids[order.order], "covered_m2": order.covered}
     return {"n_clusters": np.full(len(rank), n_clusters), "rank": rank, **covered}

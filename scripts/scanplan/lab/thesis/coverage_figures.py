@@ -8,7 +8,7 @@ from matplotlib.patches import Polygon
 
 from scanplan.lab.thesis.claim_measures import FOUR, SUBSET, rows_of_method, scans_for_99
 from scanplan.report import top_view
-from scanplan.report.figures import STYLES
+from scanplan.selection.methods import METHODS
 
 _BITMAP = {
     "correct_match": "Correct match",
@@ -74,7 +74,7 @@ def draw_shares_figure(evaluated, extractor):
     figure = Figure(figsize=(9.6, 3.4), layout="constrained")
     for axes, (column, title) in zip(figure.subplots(1, 3), _BITMAP.items(), strict=True):
         for method in FOUR:
-            label, colour = STYLES[method]
+            label, colour = METHODS[method].label, METHODS[method].colour
             rows = [rows_of_method(table, method, extractor) for table in evaluated]
             k = _common(row["k"] for row in rows)
             share = np.array([np.interp(k, row["k"], row[column]) for row in rows])
@@ -113,7 +113,7 @@ def draw_convergence_figure(selections):
     axes = figure.add_subplot()
     last = 1
     for method, selection in selections.items():
-        label, colour = STYLES[method]
+        label, colour = METHODS[method].label, METHODS[method].colour
         share, at = selection["covered_m2"] / selection["covered_m2"][-1], scans_for_99(selection)
         label = f"{label}: 99 % at {at} scans of {selection['covered_m2'][-1]:,.0f} m²"
         axes.plot(selection["rank"], share, color=colour, lw=1.4, label=label)

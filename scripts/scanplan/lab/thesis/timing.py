@@ -8,9 +8,9 @@ from functools import partial
 
 import numpy as np
 
-from scanplan.extraction import segments
 from scanplan.lab.thesis.claim_measures import BUILDING, CHOOSING, ORDERING, SUBSET, THINNED
 from scanplan.selection import area_greedy, hulls
+from scanplan.stage import per_registered_scan
 
 _REPEATS, _PARTS = 3, (1, 2, 4, 8)
 
@@ -21,7 +21,7 @@ def spread_rows(rows, count):
     return rows[np.unique(np.linspace(0, len(rows) - 1, min(count, len(rows))).round().astype(int))]
 
 
-def time_extractor(task, method, store, registered, scan_ids, settings, origin, *, part=1):
+def time_extractor(task, method, store, scan_ids, settings, registration, *, part=1):
     """Time a wall extractor scan by scan: of each the quickest of three calls.
 
     Parameters
@@ -30,13 +30,11 @@ def time_extractor(task, method, store, registered, scan_ids, settings, origin, 
         Its name in the table.
     method : extractors.Extractor
     store : tables.ScanStore
-    registered : dict
-        Columns of the table of registration.
     scan_ids : (n,) int
     settings : dict
         Keywords of the method's settings.
-    origin : path-like
-        Of the table of registration, for messages.
+    registration : path-like
+        registration.parquet.
     part : int
         So many points per point that is kept, those drawn at random.
 
@@ -46,7 +44,7 @@ def time_extractor(task, method, store, registered, scan_ids, settings, origin, 
         A row of `schemas.TIMES`: `size` is the scan's number of points, `item` its scan_id, `found` its walls.
     """
     sensors, chosen = (
-        segments.sensor_keywords(registered, scan_ids, origin),
+        per_registered_scan.sensor_keywords(scan_ids, store.path, registration),
         method.settings(**settings),
     )
     for number, (scan_id, xyz_m) in enumerate(store.scans(scan_ids)):

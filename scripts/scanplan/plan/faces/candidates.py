@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
-from scanplan.geometry import lines
+from scanplan.geometry import intervals, lines
 from scanplan.geometry.lines import Line, ObservedSegments, Span
 from scanplan.plan.faces import face_pairs
 from scanplan.types import FloatArray, IntArray
@@ -76,7 +76,7 @@ def cut_candidates(
     order = np.argsort(low_m, kind="stable")
     low_m = low_m[order]
     high_m = np.maximum.accumulate(high_m[order])
-    breaks = np.flatnonzero(low_m[1:] - high_m[:-1] > max_gap_m) + 1
+    breaks = intervals.find_run_starts(low_m, high_m, max_gap_m)
     begins_m = low_m[np.r_[0, breaks]]
     ends_m = high_m[np.r_[breaks, len(low_m)] - 1]
     shares = np.split(np.asarray(members)[order], breaks)
@@ -179,13 +179,10 @@ def doubled_interval_m(face: _Face, other: _Face, distance_m: float) -> tuple[fl
     low_m = face.low_m
     high_m = face.high_m
     for value, slope, least, most in (along, across):
-        if abs(slope) < _PARALLEL:
-            if not least <= value <= most:
-                return low_m, low_m
-            continue
-        begin_m, end_m = sorted(((least - value) / slope, (most - value) / slope))
-        low_m = max(low_m, begin_m)
-        high_m = min(high_m, end_m)
+        turn = slope if abs(slope) >= _PARALLEL else 0.0
+        begin_m, end_m = intervals.solve_range(value, turn, least, most)
+        low_m = max(low_m, float(begin_m))
+        high_m = min(high_m, float(end_m))
     return low_m, max(low_m, high_m)
 
 
