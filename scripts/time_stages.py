@@ -24,7 +24,7 @@ def time_stages(scans, registration, built, output, *, walls, hulls, n_clusters,
     output : path-like
         thesis/times.parquet, to write.
     walls : dict of str to dict
-        Extractor to the keywords of its settings.
+        Extractor to its settings, among others.
     hulls : dict
         `sample_size` and `seed` of `hulls.make_cluster_hulls`.
     n_clusters : sequence of int

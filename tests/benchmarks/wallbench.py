@@ -8,7 +8,8 @@ import wallscans
 
 from reference import cluster_ransac as literal_clusters
 from scanplan.extraction import normals
-from scanplan.extraction.extractors import EXTRACTORS
+from scanplan.extraction.extractors import EXTRACTORS, find_wall_segments, select_settings
+from scanplan.extraction.furniture import FurnitureLimits
 from scanplan.project.stage_settings import select_extractors
 from scanplan.rays import sensor_frame
 
@@ -114,13 +115,10 @@ def raster_lines(survey):
 
 
 def _lines(survey, name, settings):
-    method = METHODS[name]
-    limits = method.settings(**settings[name])
+    keywords = _keywords(name, settings)
     lines, scan = [np.empty((0, 2, 2))], [np.empty(0, int)]
     for i, xyz_m in survey.scans:
-        found = method.extract(
-            i, xyz_m, sensor_xyz_m=survey.sensors[i], planar=False, settings=limits
-        )
+        found = find_wall_segments(i, xyz_m, sensor_xyz_m=survey.sensors[i], **keywords)
         lines.append(np.stack([found.start_m, found.end_m], axis=1))
         scan.append(np.full(len(found), i))
     return np.concatenate(lines), np.concatenate(scan)
@@ -130,13 +128,22 @@ def _extract(survey, scans, settings):
     """Return each method's time (ms) of each scan."""
     took_ms = {name: [] for name in METHODS}
     for i, xyz_m in scans:
-        for name, method in METHODS.items():
-            keywords = {"sensor_xyz_m": survey.sensors[i], "planar": False}
-            keywords["settings"] = method.settings(**settings[name])
+        for name in METHODS:
+            keywords = _keywords(name, settings) | {"sensor_xyz_m": survey.sensors[i]}
             took_ms[name].append(
-                _milliseconds(lambda m=method, s=i, p=xyz_m, k=keywords: m.extract(s, p, **k))
+                _milliseconds(lambda s=i, p=xyz_m, k=keywords: find_wall_segments(s, p, **k))
             )
     return took_ms
+
+
+def _keywords(name, settings):
+    """Return what an extractor is called with beside a scan, as by the stage, furniture left out."""
+    return {
+        "planar": False,
+        "extractor": METHODS[name],
+        "settings": select_settings(METHODS[name].settings, settings[name]),
+        "limits": select_settings(FurnitureLimits, settings[name]),
+    }
 
 
 def _milliseconds(function):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from helpers.toy_rooms import vlp16
+from helpers import toy_rooms
 from helpers.wall_making import SETTINGS, walls
 from scanplan.plan import planning
 from scanplan.rays import ray_set
@@ -19,13 +19,7 @@ PLAN = {
     "merge": SETTINGS,
     "trace": {"band_m": 0.06, "reach_m": 2.0, "max_gap_m": 0.5, "door_height_m": 1.8},
     "ranges": {"sigma_m": 0.01, "max_incidence_deg": 60.0},
-    "furniture": {
-        "wall_height_m": 1.0,
-        "furniture_height_m": 2.1,
-        "furniture_length_m": 2.6,
-        "furniture_depth_m": 1.0,
-        "door_width_m": 1.5,
-    },
+    "furniture": toy_rooms.FURNITURE,
     "pair": {
         "max_angle_deg": 5.0,
         "min_thickness_m": 0.04,
@@ -48,7 +42,7 @@ def scans(segments=HOUSE, sensors=SENSORS, *, columns=900):
     """Return (scan_id, points) of scans from the sensors, numbered from 0."""
     drawn = np.array(segments, float)
     return [
-        (i, vlp16(np.array(s, float), drawn, columns=columns, seed=i))
+        (i, toy_rooms.vlp16(np.array(s, float), drawn, columns=columns, seed=i))
         for i, s in enumerate(sensors)
     ]
 

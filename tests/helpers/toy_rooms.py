@@ -1,4 +1,4 @@
-"""A room whose walls are known on paper, what a sensor sees in it, and the limits its walls are found with."""
+"""A room whose walls are known on paper, what a sensor sees in it, and the limits of walls and of furniture."""
 
 import numpy as np
 
@@ -22,6 +22,12 @@ LIMITS = {
     "min_length_m": 0.4,
     "min_height_m": 0.5,
     "door_height_m": 1.9,
+    "corner_m": 0.25,
+    "min_points": 30,
+    "min_points_planar": 6,
+    "seed": 1,
+}
+FURNITURE = {
     "max_rmse_m": 0.025,
     "wall_height_m": 1.0,
     "furniture_height_m": 2.1,
@@ -34,9 +40,6 @@ LIMITS = {
     "stub_length_m": 0.7,
     "door_width_m": 1.5,
     "corner_m": 0.25,
-    "min_points": 30,
-    "min_points_planar": 6,
-    "seed": 1,
 }
 
 

@@ -9,12 +9,19 @@ from scanplan.store import schemas, tables
 SETTINGS = {
     "cluster_ransac": {
         **toy_rooms.LIMITS,
+        **toy_rooms.FURNITURE,
         "reach_deg": 3.5,
         "max_tilt_deg": 15.0,
         "bandwidth_m": 0.3,
         "trials": 64,
     },
-    "iterative_ransac": {**toy_rooms.LIMITS, "max_tilt_deg": 15.0, "trials": 100, "max_planes": 12},
+    "iterative_ransac": {
+        **toy_rooms.LIMITS,
+        **toy_rooms.FURNITURE,
+        "max_tilt_deg": 15.0,
+        "trials": 100,
+        "max_planes": 12,
+    },
 }
 SENSORS = {0: (2.0, 1.6, 0.9), 5: (3.0, 2.0, 0.9), 15: (4.0, 2.4, 0.9)}
 

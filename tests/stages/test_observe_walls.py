@@ -9,9 +9,8 @@ from scanplan.errors import StageError
 from scanplan.selection import methods
 from scanplan.store import schemas, tables
 
-SETTINGS = {
-    name: toy_rooms.LIMITS[name] for name in methods.WALL_LIMITS if name in toy_rooms.LIMITS
-}
+KNOWN = {**toy_rooms.LIMITS, **toy_rooms.FURNITURE}
+SETTINGS = {name: KNOWN[name] for name in methods.WALL_LIMITS if name in KNOWN}
 SETTINGS |= {"cell_m": 0.25, "reach_deg": 3.5, "max_tilt_deg": 15.0}
 
 

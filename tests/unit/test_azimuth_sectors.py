@@ -1,49 +1,62 @@
-"""Leaving out directions in which no ray comes near a line must change nothing."""
+"""Sectors of two degrees, and the spans of rows that a bound on ranges leaves of them.
+
+That leaving out sectors changes no ray that reaches a line is tested in `test_face_rays`.
+"""
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
-from scanplan.geometry.lines import Line
-from scanplan.rays import ray_set
+from helpers.ray_making import rays
+from scanplan.rays import azimuth_sectors
 
-BAND_M = 0.06
+DEGREES = np.arange(-179, 180, 2.0)
 
 
-def seen(seed, n_scans=4):
-    """Random rays of some scans, and a last scan without any."""
-    rng = np.random.default_rng(seed)
-    sensors = {i: rng.uniform(-3, 3, 3) for i in range(n_scans + 1)}
-    scans = [(i, sensors[i] + rng.normal(0, 3, (300, 3))) for i in range(n_scans)]
-    return ray_set.gather_rays([*scans, (n_scans, np.empty((0, 3)))], sensors, planar=False)
+def ring(range_m):
+    """Return a scan of one ray in the middle of each sector, ending so far away."""
+    angle_rad = np.radians(DEGREES)
+    points = [range_m * np.cos(angle_rad), range_m * np.sin(angle_rad), 0 * angle_rad]
+    return (0, 0, 0), np.column_stack(points)
 
 
-@given(st.integers(0, 10_000), st.floats(-np.pi, np.pi), st.floats(-4, 4))
-@settings(max_examples=60, deadline=None)
-def test_a_line_is_seen_by_the_rays_that_reach_it_and_by_no_others(seed, angle_rad, away_m):
-    found = seen(seed)
-    normal = np.array([np.cos(angle_rad), np.sin(angle_rad)])
-    line = Line(away_m * normal, normal)
-    sight = ray_set.observe_line(found, line, -100.0, 100.0, band_m=BAND_M)
-    xyz_m, scan = found.stacked.xyz_m, found.stacked.scan
-    side_m, off_m = line.offset_m(found.sensors_m[scan, :2]), line.offset_m(xyz_m[:, :2])
-    # a ray just outside the angle between the ends of a stretch of 200 m is no concern of this test
-    inside = (np.abs(side_m) >= ray_set.LEAST_SIDE_M) & (np.abs(line.along_m(xyz_m[:, :2])) < 50)
-    hit = inside & (np.abs(off_m) <= BAND_M) & (side_m > 0)
-    assert sorted(sight.hit_xy_m.tolist()) == sorted(xyz_m[hit, :2].tolist())
-    beyond = inside & (off_m * np.sign(side_m) <= -(BAND_M + 0.15))
-    assert len(sight.pass_z_m) == beyond.sum()
+def test_each_sector_reaches_as_far_as_its_longest_ray():
+    found = rays(ring(np.where(np.abs(DEGREES) < 30, 5.0, 1.0)), planar=True).sectors
+    assert found.first.tolist() == [list(range(181))]
+    assert found.reach_m[0] == pytest.approx(np.where(np.abs(DEGREES) < 30, 5.0, 1.0))
 
 
-def test_far_reaching_fans_alone_are_kept():
-    sensor = {0: np.zeros(3)}
-    angle_rad = np.radians(np.arange(-179, 180, 2.0))
-    range_m = np.where(np.abs(angle_rad) < np.radians(30), 5.0, 1.0)
-    points = np.column_stack(
-        [range_m * np.cos(angle_rad), range_m * np.sin(angle_rad), 0 * angle_rad]
+def test_a_sector_without_a_ray_reaches_nowhere():
+    found = rays(((0, 0, 0), [(1, 0.01, 0)]), ((0, 0, 0), [])).sectors
+    assert found.first.shape == (2, 181)
+    assert np.flatnonzero(found.reach_m[0]).tolist() == [90]
+    assert not found.reach_m[1].any()
+
+
+def cut(range_m, side_m, at_m=0.1):
+    """Return the rows that are left of a ring's whole turn, before the line x = side_m."""
+    looked = rays(ring(range_m), planar=True)
+    low, high, row = azimuth_sectors.cull_spans(
+        looked.sectors,
+        np.array([[0], [0]]),
+        np.array([[180], [0]]),
+        np.array([0]),
+        np.array([side_m]),
+        np.array([-1.0, 0.0]),
+        at_m,
     )
-    found = ray_set.gather_rays([(0, points)], sensor, planar=True)
-    assert found.fans.reach_m.max(axis=1) == pytest.approx(5.0)
-    assert (found.fans.reach_m > 2).sum() == 30
-    assert found.fans.first[0, [0, -1]].tolist() == [0, 180]
+    assert (row == 0).all()
+    return [int(i) for a, b in zip(low[0], high[0], strict=True) for i in range(a, b)]
+
+
+def test_only_sectors_that_may_come_near_the_line_are_left():
+    # 2 m long, 1 m off: of those that turn by at most 60 degrees a part comes nearer than 0 m
+    left = DEGREES[cut(np.full(180, 2.0), 1.0, at_m=0.0)]
+    assert left.tolist() == np.arange(-61, 62, 2.0).tolist()
+    # 0.5 m before it everything ends
+    assert cut(np.full(180, 0.5), 1.0) == []
+    assert len(cut(np.full(180, 0.5), 1.0, at_m=0.5)) > 0
+
+
+def test_one_long_ray_is_enough_for_its_sector():
+    far = np.where(DEGREES == 45, 9.0, 0.2)
+    assert DEGREES[cut(far, 1.0)].tolist() == [45]

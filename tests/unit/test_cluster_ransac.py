@@ -1,17 +1,15 @@
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from helpers import toy_rooms, upright
+from helpers import extracting, toy_rooms, upright
 from reference import cluster_ransac as literal
 from scanplan.extraction import cluster_ransac
 
-SETTINGS = cluster_ransac.ClusterRansacSettings(
-    **toy_rooms.LIMITS, reach_deg=3.5, max_tilt_deg=15.0, bandwidth_m=0.3, trials=64
-)
 # start and end of every face the sensor of the toy room sees, the sensor to the left of the way
 FACES = np.array(
     [
@@ -26,16 +24,7 @@ FACES = np.array(
 QUICK = settings(max_examples=8, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 
 
-def extract(xyz_m, sensor_xyz_m=toy_rooms.SENSOR, *, planar=False, scan_id=3, settings=SETTINGS):
-    return cluster_ransac.extract_by_clusters(
-        scan_id, xyz_m, sensor_xyz_m=sensor_xyz_m, planar=planar, settings=settings
-    )
-
-
-def values(found):
-    return np.column_stack(
-        [found.start_m, found.end_m, found.normal, found.n_points, found.rmse_m, found.z_range_m]
-    )
+extract = partial(extracting.extract, "cluster_ransac")
 
 
 def check_toy_room(found, *, turn_rad=0.005):
@@ -104,15 +93,6 @@ def test_walls_move_with_room_and_sensor(angle_rad, x, y):
     )
 
 
-@pytest.mark.parametrize("planar", [False, True])
-def test_order_of_points_does_not_matter(planar):
-    points = toy_rooms.laser() if planar else toy_rooms.vlp16()
-    shuffled = np.random.default_rng(0).permutation(points)
-    assert (
-        values(extract(points, planar=planar)) == values(extract(shuffled, planar=planar))
-    ).all()
-
-
 def test_a_wall_close_to_the_sensor_and_one_in_its_direction():
     segments = np.array([(-5, 0.25, 5, 0.25), (-5, -0.25, 5, -0.25), (4, -0.25, 4, 0.25)], float)
     sensor = np.array([0, 0, 0.9])
@@ -136,7 +116,7 @@ def test_noise_leaves_no_second_wall_beside_the_first():
 
 
 def test_a_wall_goes_on_between_a_counter_and_the_cabinets_above_it():
-    """One beam alone passes over the counter and under the cabinets: what it meets has no normal."""
+    """One beam passes over the counter and under the cabinets: what it meets has no normal."""
     wall, counter, cabinets = (
         (4, -3, 4, 3, 0, 2.6),
         (3.4, -0.6, 3.4, 0.9, 0, 0.9),
@@ -178,38 +158,6 @@ def test_a_round_wall_becomes_chords():
         assert np.linalg.norm(ends, axis=1) == pytest.approx(np.full(len(found), 5), abs=0.08)
 
 
-@pytest.mark.parametrize("planar", [False, True])
-@pytest.mark.parametrize(
-    "points",
-    [
-        np.empty((0, 3)),
-        [(1, 2, 3)],
-        [(1, 2, 3), (2, 2, 3)],
-        [(1, 2, 3)] * 500,
-        [(0, 0, 0)] * 50,
-        np.random.default_rng(1).uniform(1, 6, (2, 3)),
-    ],
-)
-def test_no_wall_in_next_to_nothing(points, planar):
-    assert len(extract(points, (0, 0, 0), planar=planar)) == 0
-
-
-def test_a_line_of_points_is_a_wall_in_the_plane_alone():
-    line = np.column_stack([np.linspace(-2, 2, 400), np.full(400, 2.0), np.full(400, 0.7)])
-    assert len(extract(line, (0, 0, 0.5), planar=False)) == 0
-    found = extract(line, (0, 0, 0.5), planar=True)
-    assert found.start_m == pytest.approx(np.array([(2, 2)]))
-    assert found.end_m == pytest.approx(np.array([(-2, 2)]))
-
-
-def test_a_floor_is_no_wall():
-    x, y = np.meshgrid(np.arange(-4, 4, 0.05), np.arange(-4, 4, 0.05))
-    floor = np.column_stack(
-        [x.ravel(), y.ravel(), np.random.default_rng(1).normal(0, 0.01, x.size)]
-    )
-    assert len(extract(floor, (0, 0, 0.8))) == 0
-
-
 def test_a_few_returns_from_far_away_are_no_wall():
     far = np.random.default_rng(1).normal(0, 0.02, (12, 3)) + np.column_stack(
         [np.full(12, 40.0), np.tile([0, 0.15, 0.3, 0.45], 3), np.repeat([0, 1.4, 2.8], 4)]
@@ -226,21 +174,18 @@ def test_one_wall_in_99_percent_of_outliers():
     dust = draw.uniform(-20, 20, (39_600, 3)) * (1, 1, 0.1)
     points = np.vstack([wall, dust])
     lenient = replace(
-        SETTINGS, over_share=1.0, through_share=np.inf, missing_share=1.0, wall_height_m=0.0
+        extracting.LIMITS,
+        over_share=1.0,
+        through_share=np.inf,
+        missing_share=1.0,
+        wall_height_m=0.0,
     )
-    found = extract(points, (0, 0, 0), settings=lenient)
+    found = extract(points, (0, 0, 0), limits=lenient)
     assert len(found) >= 1
     assert found.start_m[0, 0] == pytest.approx(3, abs=0.02)
     assert found.normal[0] == pytest.approx([-1, 0], abs=0.02)
     # most rays pass through it: what is behind it was met
     assert len(extract(points, (0, 0, 0))) == 0
-
-
-def test_points_must_be_finite():
-    points = toy_rooms.vlp16()
-    points[17, 1] = np.nan
-    with pytest.raises(ValueError, match="finite"):
-        extract(points)
 
 
 def test_feet_of_a_wall_coincide_and_near_walls_stay_apart():
@@ -277,35 +222,9 @@ def test_the_same_walls_as_the_literal_method():
     assert len(lines) >= 3
 
 
-@pytest.mark.parametrize("planar", [False, True])
-def test_a_map_far_from_its_origin(planar):
-    points = toy_rooms.laser() if planar else toy_rooms.vlp16()
-    shift = np.array([1e6, -1e6, 0])
-    near, far = (
-        extract(points, planar=planar),
-        extract(points + shift, toy_rooms.SENSOR + shift, planar=planar),
-    )
-    assert len(near) == len(far)
-    for found, expected in (
-        (far.start_m - shift[:2], near.start_m),
-        (far.end_m - shift[:2], near.end_m),
-    ):
-        assert found == pytest.approx(expected, abs=1e-3)
-
-
 def test_one_return_from_a_thousand_kilometres_spoils_nothing():
     found = extract(np.vstack([toy_rooms.vlp16(), [(1e6, 3e5, 2e5)]]))
     check_toy_room(found)
-
-
-def test_one_beam_in_space_shows_no_upright_surface():
-    points = toy_rooms.laser(beams=1800)
-    assert len(extract(points)) == 0
-
-
-def test_duplicate_points_are_more_points():
-    points = toy_rooms.vlp16()
-    check_toy_room(extract(np.repeat(points, 2, axis=0)))
 
 
 @given(st.integers(0, 2**32 - 1), st.booleans())

@@ -2,24 +2,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scanplan.rays.face_profile import FaceObservation, RaySettings
 
 from helpers import house_making
+from helpers.observation_making import observation
 from scanplan.geometry.lines import Line
 from scanplan.plan.faces import intervals
+from scanplan.rays.face_observation import RaySettings
 
 READING = RaySettings(band_m=0.06, reach_m=1.0, max_gap_m=0.5, door_height_m=1.8)
 AXIS = Line(np.zeros(2), np.array([0.0, 1.0]))
-
-
-def seen(hits, passes=()):
-    """Of (along, z) of points and of crossings."""
-    hits, passes = (np.array(sorted(rows), float).reshape(-1, 2) for rows in (hits, passes))
-    return FaceObservation(
-        AXIS,
-        *(hits[:, 0], np.zeros(len(hits)), hits[:, 1], np.zeros(len(hits), int)),
-        *(passes[:, 0], passes[:, 1], np.zeros(len(passes), int)),
-    )
 
 
 def row(low, high, z=1.0, step=0.02):
@@ -29,7 +20,9 @@ def row(low, high, z=1.0, step=0.02):
 def found(hits, passes=(), planar=False, **more):
     return [
         (s.low_m, s.high_m)
-        for s in intervals.find_face_intervals(seen(hits, passes), READING, planar=planar, **more)
+        for s in intervals.find_face_intervals(
+            observation(AXIS, hits, passes, planar=planar), READING, **more
+        )
     ]
 
 
@@ -86,19 +79,17 @@ def test_a_stretch_ends_where_most_of_what_is_near_is_seen_to_end():
     places = [
         (x, scan) for scan, end in enumerate((1.99, 2.0, 2.01)) for x in np.arange(end, 0, -0.02)
     ]
-    places = np.array(sorted([*places, *((2.05 - 0.03 * i, 3) for i in range(3))]))
-    nothing = (np.empty(0), np.empty(0), np.empty(0, int))
-    along, scan = places.T
-    wall = FaceObservation(AXIS, along, 0 * along, 0 * along + 1, scan.astype(int), *nothing)
-    (stretch,) = intervals.find_face_intervals(wall, READING, planar=False)
+    places += [(2.05 - 0.03 * i, 3) for i in range(3)]
+    wall = observation(AXIS, [(along_m, 1, 0, scan) for along_m, scan in places])
+    (stretch,) = intervals.find_face_intervals(wall, READING)
     assert stretch.high_m == pytest.approx(2.0, abs=0.011)
 
 
 def test_a_pane_is_no_wall():
-    pane = replace(seen(row(0, 3)), panes_m=np.array([(1.0, 2.0)]))
+    pane = observation(AXIS, row(0, 3), glass=[(1.0, 2.0)])
     spans = [
         (s.low_m, s.high_m)
-        for s in intervals.find_face_intervals(pane, replace(READING, max_gap_m=0.0), planar=False)
+        for s in intervals.find_face_intervals(pane, replace(READING, max_gap_m=0.0))
     ]
     np.testing.assert_allclose(spans, [(0, 1), (2, 3)], atol=0.03)
 
@@ -110,7 +101,7 @@ def test_nothing_seen_is_no_stretch():
 class TestRefit:
     def test_a_tilted_line_turns_to_its_points(self):
         x = np.linspace(0, 4, 200)
-        fitted = intervals.refit_to_points(AXIS, np.column_stack([x, 0.01 + 0.005 * x]))
+        fitted = intervals.refit_to_points(AXIS, x, 0.01 + 0.005 * x)
         np.testing.assert_allclose(fitted.offset_m(np.array([(0, 0.01), (4, 0.03)])), 0, atol=1e-9)
 
     def test_what_lies_before_the_line_does_not_pull_it(self):
@@ -118,23 +109,23 @@ class TestRefit:
         points = np.concatenate(
             [np.column_stack([x, 0 * x]), np.column_stack([x[:40], 0 * x[:40] + 0.055])]
         )
-        assert intervals.refit_to_points(AXIS, points).offset_m(np.zeros(2)) == pytest.approx(
+        assert intervals.refit_to_points(AXIS, *points.T).offset_m(np.zeros(2)) == pytest.approx(
             0, abs=0.002
         )
 
     def test_a_near_scan_does_not_outweigh_a_far_one(self):
         near = np.column_stack([np.linspace(0, 1, 2000), np.full(2000, 0.02)])
         far = np.column_stack([np.linspace(1, 2, 200), np.full(200, -0.02)])
-        fitted = intervals.refit_to_points(AXIS, np.concatenate([near, far]))
+        fitted = intervals.refit_to_points(AXIS, *np.concatenate([near, far]).T)
         assert fitted.offset_m(np.array([1.0, 0.0])) == pytest.approx(0, abs=0.005)
 
     def test_too_few_points_turn_nothing(self):
-        fitted = intervals.refit_to_points(AXIS, np.array([(0, 0.01), (1, 0.03)]))
+        fitted = intervals.refit_to_points(AXIS, np.array([0.0, 1.0]), np.array([0.01, 0.03]))
         np.testing.assert_allclose(fitted.normal, AXIS.normal)
 
     def test_no_points_leave_the_line(self):
         np.testing.assert_allclose(
-            intervals.refit_to_points(AXIS, np.empty((0, 2))).centre, AXIS.centre
+            intervals.refit_to_points(AXIS, np.empty(0), np.empty(0)).centre, AXIS.centre
         )
 
 
@@ -142,6 +133,6 @@ def test_a_face_of_the_house_ends_at_its_door():
     line = Line(np.array([4.0, 0.0]), np.array([-1.0, 0.0]))
     seen = intervals.observe_along(house_making.looked(), line, 0.2, 1.2, READING)
     low, high = next(
-        s for s in intervals.find_face_intervals(seen, READING, planar=False) if s.length_m > 0.5
+        s for s in intervals.find_face_intervals(seen, READING) if s.length_m > 0.5
     ).ends[:, 1]
     assert (low, high) == (pytest.approx(0, abs=0.1), pytest.approx(1.5, abs=0.06))

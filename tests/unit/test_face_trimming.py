@@ -1,23 +1,16 @@
 import numpy as np
 import pytest
-from scanplan.rays.face_profile import FaceObservation
 
-from scanplan.geometry.lines import Line
+from helpers import observation_making
 from scanplan.plan.faces import trimming
-from scanplan.plan.faces.intervals import FaceInterval
 
 
 def stretch(x0, y0, x1, y1, places=None, offsets=None):
     """Seen from the left of its way; with points at places along it, every 2 cm by default."""
-    start, end = np.array([x0, y0], float), np.array([x1, y1], float)
-    length = np.hypot(*(end - start))
-    along = (end - start) / length
-    places = np.arange(0, length, 0.02) if places is None else np.array(places, float)
+    places = np.arange(0, np.hypot(x1 - x0, y1 - y0), 0.02) if places is None else np.array(places)
     offsets = 0 * places if offsets is None else offsets(places)
-    nothing = (np.empty(0), np.empty(0), np.empty(0, int))
-    line = Line(start, np.array([-along[1], along[0]]))
-    seen = FaceObservation(line, places, offsets, 0 * places, np.zeros(len(places), int), *nothing)
-    return FaceInterval(seen, 0.0, float(length))
+    points = np.column_stack([places, 0 * places, offsets])
+    return observation_making.stretch(x0, y0, x1, y1, points)
 
 
 def spans(found):

@@ -6,9 +6,12 @@ from hypothesis import strategies as st
 from helpers import toy_rooms
 from helpers.upright import SENSOR_M, returns
 from scanplan.extraction import furniture, segments
-from scanplan.rays import scan_view, sightlines
 
-LIMITS = segments.SegmentLimits(**toy_rooms.LIMITS)
+LIMITS = furniture.FurnitureLimits(**toy_rooms.FURNITURE)
+
+
+def view(points):
+    return segments.view_scan(points, planar=False)
 
 
 def row(x0, y0, x1, y1, low, high, rmse_m=0.01):
@@ -20,9 +23,7 @@ def row(x0, y0, x1, y1, low, high, rmse_m=0.01):
 def kept(faces, others=(), **seen):
     """Return which faces count as walls, in a scan of them and others."""
     rows = [row(*face, **seen) for face in faces]
-    walls_found = furniture.keep_walls(
-        rows, scan_view.sort_by_azimuth(returns([*faces, *others])), LIMITS
-    )
+    walls_found = furniture.keep_walls(rows, view(returns([*faces, *others])), LIMITS)
     return [r in walls_found for r in rows]
 
 
@@ -57,7 +58,7 @@ def test_an_outer_corner_shows_that_a_low_face_is_furniture():
     faces = [(1.5, -0.5, 1.5, 0.5, 0, 0.8), (1.5, 0.5, 2.5, 0.5, 0, 0.8)]
     # the second is seen edge-on from the origin's side; its normal is up
     rows = [row(*faces[0]), row(2.5, 0.5, 1.5, 0.5, 0, 0.8)]
-    assert furniture.keep_walls(rows, scan_view.sort_by_azimuth(returns(faces)), LIMITS) == []
+    assert furniture.keep_walls(rows, view(returns(faces)), LIMITS) == []
 
 
 def test_what_is_seen_higher_than_furniture_is_no_side_of_it():
@@ -66,25 +67,14 @@ def test_what_is_seen_higher_than_furniture_is_no_side_of_it():
     assert kept([wall, unit], [(9, -6, 9, 6, 0, 2.6)]) == [True, False]
     clutter = (3, 0.4, 5, 0.9, 0, 2.0)
     rows = [row(*wall), row(*clutter, rmse_m=0.03)]
-    assert (
-        furniture.keep_walls(rows, scan_view.sort_by_azimuth(returns([wall, clutter])), LIMITS)
-        == []
-    )
+    assert furniture.keep_walls(rows, view(returns([wall, clutter])), LIMITS) == []
 
 
 def test_stairs_let_rays_through():
     treads = [(4, -1 + 0.1 * i, 4, -0.95 + 0.1 * i, 0, 2.6) for i in range(20)]
     rows = [row(4, -1, 4, 1, 0, 2.6)]
-    assert (
-        furniture.keep_walls(rows, scan_view.sort_by_azimuth(returns([*treads, WALL])), LIMITS)
-        == []
-    )
-    assert (
-        furniture.keep_walls(
-            rows, scan_view.sort_by_azimuth(returns([(4, -1, 4, 1, 0, 2.6), WALL])), LIMITS
-        )
-        == rows
-    )
+    assert furniture.keep_walls(rows, view(returns([*treads, WALL])), LIMITS) == []
+    assert furniture.keep_walls(rows, view(returns([(4, -1, 4, 1, 0, 2.6), WALL])), LIMITS) == rows
 
 
 def test_glass_gives_few_returns():
@@ -92,7 +82,7 @@ def test_glass_gives_few_returns():
     pane = np.abs(points[:, 0] - 4) < 1e-6
     few = points[~pane | (np.arange(len(points)) % 10 == 0)]
     rows = [row(4, -1, 4, 1, 0, 1.4), row(-4, 1, -4, -1, 0, 1.4)]
-    assert furniture.keep_walls(rows, scan_view.sort_by_azimuth(few), LIMITS) == rows[1:]
+    assert furniture.keep_walls(rows, view(few), LIMITS) == rows[1:]
 
 
 def test_what_stands_close_before_a_wall_is_furniture():
@@ -123,7 +113,7 @@ def test_a_low_face_is_a_wall_beyond_a_door_but_not_beyond_a_niche():
     assert kept([low, wall], [(1.9, -0.2, 1.9, 0.7, 0, 2.6)]) == [False, True]
     # nor where it shows an outer corner, as the end of a table does
     rows = [row(*low), row(*wall), row(1.3, -0.2, 2.3, -0.2, 0, 1)]
-    found = furniture.keep_walls(rows, scan_view.sort_by_azimuth(returns([low, wall, far])), LIMITS)
+    found = furniture.keep_walls(rows, view(returns([low, wall, far])), LIMITS)
     assert rows[0] not in found and rows[1] in found
 
 
@@ -135,35 +125,12 @@ def test_faces_side_by_side_have_no_door_between_them():
     assert kept([low, wall], [far]) == [False, True]
 
 
-def test_at_grazing_incidence_what_is_behind_the_end_of_a_face_is_not_its_height():
-    """A unit of 0.8 m height seen along from 0.4 m before it; beyond its end the side of a wall, square to it."""
-    unit, side = (-3, 0.4, -1, 0.4, 0, 0.8), (-3, 0.4, -3, 1.4, 0, 2.6)
-    seen = sightlines.observe_face(
-        scan_view.sort_by_azimuth(returns([unit, side])),
-        np.array([-1, 0.4]),
-        np.array([-3, 0.4]),
-        -0.4,
-        0.4,
-    )
-    assert seen.top_m < 0.85
-
-
 @pytest.mark.parametrize("planar", [False, True])
 def test_clutter_scatters(planar):
-    scan = None if planar else scan_view.sort_by_azimuth(returns([LOW_WALL]))
+    scan = None if planar else view(returns([LOW_WALL]))
     rows = [row(*LOW_WALL, rmse_m=0.028), row(*LOW_WALL, rmse_m=0.02)]
     assert furniture.keep_walls(rows, scan, LIMITS) == rows[1:]
     assert furniture.keep_walls([], scan, LIMITS) == []
-
-
-def test_corners_on_paper():
-    # an inner corner at (2, 2) and an outer one at (2, -1)
-    start = np.array([(2.0, -1), (2, 2), (5, -1)])
-    end = np.array([(2.0, 2), (-1, 2), (2, -1)])
-    normal = np.array([(-1.0, 0), (0, -1), (0, -1)])
-    inner, outer = furniture.find_corner_faces(start, end, normal, 0.1)
-    assert np.argwhere(inner).tolist() == [[0, 1, 1], [1, 0, 0]]
-    assert np.argwhere(outer).tolist() == [[0, 0, 2], [2, 1, 0]]
 
 
 @given(st.floats(-3.1, 3.1))
@@ -180,5 +147,5 @@ def test_a_turn_of_the_room_changes_nothing(angle_rad):
     points = returns([cabinet, *wall])
     turned = [(*turn @ r[0:2], *turn @ r[2:4], *turn @ r[4:6], *r[6:]) for r in rows]
     points = np.column_stack([points[:, :2] @ turn.T, points[:, 2]])
-    found = furniture.keep_walls(turned, scan_view.sort_by_azimuth(points), LIMITS)
+    found = furniture.keep_walls(turned, view(points), LIMITS)
     assert [r in found for r in turned] == [False, True, True]

@@ -4,47 +4,41 @@ import dataclasses
 
 import numpy as np
 import pytest
-from scanplan.rays.face_profile import FaceObservation
 
-from scanplan.geometry.lines import Line
-from scanplan.plan import furniture_fronts
-from scanplan.plan.faces.intervals import FaceInterval
+from helpers import toy_rooms
+from helpers.observation_making import stretch
+from scanplan.extraction.face_arrangement import Faces
+from scanplan.extraction.furniture import FurnitureLimits, find_furniture_fronts
+from scanplan.plan.faces import tracing
 
-LIMITS = furniture_fronts.FrontLimits(
-    wall_height_m=1.0,
-    furniture_height_m=2.1,
-    furniture_length_m=2.6,
-    furniture_depth_m=1.0,
-    door_width_m=1.5,
-)
+LIMITS = FurnitureLimits(**toy_rooms.FURNITURE)
 NORTH = np.array([0.0, 1.0])
 
 
-def stretches(y_m, *spans_m, top_m=1.5, normal=NORTH):
-    """Return stretches of one line, seen from its normal's side up to a height, over the given spans of x."""
-    line = Line(np.array([0.0, y_m]), normal)
-    places = (
-        np.concatenate([np.linspace(low, high, 50) for low, high in spans_m]) * line.direction[0]
-    )
-    places = np.sort(places)
-    nothing = [np.empty(0)] * 2 + [np.empty(0, int)]
-    heights = np.full(len(places), top_m)
-    seen = FaceObservation(line, places, 0 * places, heights, np.zeros(len(places), int), *nothing)
-    return [FaceInterval(seen, *sorted(x * line.direction[0] for x in span)) for span in spans_m]
+def pieces(y_m, *spans_m, top_m=1.5, normal=NORTH):
+    """Return faces of one line, seen from its normal's side up to a height, over spans of x."""
+    ends = [[(x_m, y_m) for x_m in span[:: int(normal[1])]] for span in spans_m]
+    return [(end, normal, top_m) for end in ends]
 
 
-def kept(*groups, planar=False, limits=LIMITS):
-    """Return which stretches stay, by their place in the groups."""
-    every = [s for group in groups for s in group]
-    left = furniture_fronts.remove_furniture_fronts(every, limits, planar=planar)
-    return [any(s is other for other in left) for s in every]
+def across(x_m, y_m, normal_x):
+    """Return the face of a wall along x = x_m, over a span of y."""
+    return [([(x_m, y) for y in y_m[:: -int(normal_x)]], np.array([normal_x, 0.0]), 1.5)]
 
 
-WALL = stretches(0.0, (0.0, 2.0), (4.0, 6.0))
+def kept(*lines, limits=LIMITS, **more):
+    """Return which faces stay, by their place in the lines."""
+    ends, normal, top_m = zip(*(face for line in lines for face in line), strict=True)
+    number = np.repeat(np.arange(len(lines)), [len(line) for line in lines])
+    faces = Faces(np.array(ends, float), np.array(normal), np.array(top_m), number)
+    return (~find_furniture_fronts(faces, limits, **more)).tolist()
+
+
+WALL = pieces(0.0, (0.0, 2.0), (4.0, 6.0))
 
 
 def test_a_cabinet_before_a_wall_that_goes_on_beside_it_goes():
-    assert kept(WALL, stretches(0.5, (2.0, 4.0))) == [True, True, False]
+    assert kept(WALL, pieces(0.5, (2.0, 4.0))) == [True, True, False]
 
 
 @pytest.mark.parametrize(
@@ -59,39 +53,30 @@ def test_a_cabinet_before_a_wall_that_goes_on_beside_it_goes():
     ],
 )
 def test_what_is_no_front_stays(change, why):
-    told = {"y_m": 0.5, "spans": (2.0, 4.0), **change}
-    thing = stretches(told.pop("y_m"), told.pop("spans"), **told)
+    thing = {"y_m": 0.5, "spans": (2.0, 4.0), **change}
+    thing = pieces(thing.pop("y_m"), thing.pop("spans"), **thing)
     assert kept(WALL, thing) == [True, True, True], why
 
 
 def test_a_wall_too_far_beside_says_nothing():
-    assert kept(stretches(0.0, (5.1, 8.0)), stretches(0.5, (2.0, 4.0))) == [True, True]
-    assert kept(stretches(0.0, (4.9, 8.0)), stretches(0.5, (2.0, 4.0))) == [True, False]
+    assert kept(pieces(0.0, (5.1, 8.0)), pieces(0.5, (2.0, 4.0))) == [True, True]
+    assert kept(pieces(0.0, (4.9, 8.0)), pieces(0.5, (2.0, 4.0))) == [True, False]
 
 
 def test_a_trace_of_wall_beside_says_nothing():
-    assert kept(stretches(0.0, (2.0, 4.2)), stretches(0.5, (2.0, 4.0))) == [True, True]
+    assert kept(pieces(0.0, (2.0, 4.2)), pieces(0.5, (2.0, 4.0))) == [True, True]
 
 
 def test_the_front_of_a_closet_stays_for_the_wall_in_it_is_behind_its_door():
-    front = stretches(0.5, (1.0, 2.0), (2.9, 4.0))
-    assert kept(stretches(0.0, (1.1, 3.9)), front) == [True, True, True]
+    front = pieces(0.5, (1.0, 2.0), (2.9, 4.0))
+    assert kept(pieces(0.0, (1.1, 3.9)), front) == [True, True, True]
     # without the second half there is no door, and the wall goes on beside
-    assert kept(stretches(0.0, (1.1, 3.9)), front[:1]) == [True, False]
+    assert kept(pieces(0.0, (1.1, 3.9)), front[:1]) == [True, False]
 
 
 def test_the_walls_beside_a_niche_stay_for_they_are_longer():
-    niche, beside = stretches(0.0, (2.0, 5.0)), stretches(0.5, (0.0, 2.0), (5.0, 7.0))
+    niche, beside = pieces(0.0, (2.0, 5.0)), pieces(0.5, (0.0, 2.0), (5.0, 7.0))
     assert kept(niche, beside) == [True, True, True]
-
-
-def across(x_m, y_m, normal_x):
-    """Return the stretch of a wall along x = x_m, over a span of y."""
-    line = Line(np.array([x_m, 0.0]), np.array([normal_x, 0.0]))
-    places = np.sort(np.linspace(*y_m, 50) * line.direction[1])
-    nothing = [np.empty(0)] * 2 + [np.empty(0, int)]
-    seen = FaceObservation(line, places, 0 * places, 0 * places + 1.5, np.zeros(50, int), *nothing)
-    return [FaceInterval(seen, float(places[0]), float(places[-1]))]
 
 
 @pytest.mark.parametrize("mirrored", [1, -1])
@@ -100,22 +85,22 @@ def test_the_wall_of_a_room_beside_a_deeper_one_stays(mirrored, begin_m):
     # it is drawn into the wall between the rooms, which has a door next to the corner, or none
     deeper, shallow = (sorted((mirrored * a, mirrored * b)) for a, b in ((2.2, 6.2), (0.0, 2.1)))
     parting = across(2.0 * mirrored, (begin_m, 4.0), -mirrored)
-    assert kept(stretches(0.0, deeper), stretches(0.5, shallow), parting) == [True, True, True]
+    assert kept(pieces(0.0, deeper), pieces(0.5, shallow), parting) == [True, True, True]
     # what faces the other room, or ends this one elsewhere, parts nothing
     for other in (
         across(2.2 * mirrored, (0.0, 4.0), mirrored),
         across(6.2 * mirrored, (0.0, 4.0), -mirrored),
     ):
-        assert kept(stretches(0.0, deeper), stretches(0.5, shallow), other) == [True, False, True]
+        assert kept(pieces(0.0, deeper), pieces(0.5, shallow), other) == [True, False, True]
 
 
 def test_the_side_of_a_cabinet_is_no_end_of_the_room():
-    deep, side = stretches(0.7, (4.2, 5.2)), across(4.2, (0.0, 0.7), -1.0)
-    assert kept(WALL, stretches(0.5, (2.0, 4.0)), deep, side) == [True, True, False, False, True]
+    deep, side = pieces(0.7, (4.2, 5.2)), across(4.2, (0.0, 0.7), -1.0)
+    assert kept(WALL, pieces(0.5, (2.0, 4.0)), deep, side) == [True, True, False, False, True]
 
 
 def test_a_shelf_before_a_cabinet_goes_with_it():
-    assert kept(WALL, stretches(0.5, (2.0, 4.0)), stretches(0.8, (2.0, 3.0))) == [
+    assert kept(WALL, pieces(0.5, (2.0, 4.0)), pieces(0.8, (2.0, 3.0))) == [
         True,
         True,
         False,
@@ -124,21 +109,34 @@ def test_a_shelf_before_a_cabinet_goes_with_it():
 
 
 def test_what_stands_before_low_things_alone_stays():
-    bench = stretches(0.0, (0.0, 2.0), top_m=0.5)
-    assert kept(bench, stretches(0.5, (2.0, 4.0))) == [True, True]
+    bench = pieces(0.0, (0.0, 2.0), top_m=0.5)
+    assert kept(bench, pieces(0.5, (2.0, 4.0))) == [True, True]
+
+
+def test_only_what_may_be_a_wall_hides_furniture():
+    cabinet = pieces(0.5, (2.0, 4.0))
+    assert kept(WALL, cabinet, is_wall=np.array([False, False, True])) == [True] * 3
+    assert kept(WALL, cabinet, is_wall=np.array([True, False, True])) == [True, True, False]
 
 
 def test_of_a_planar_survey_all_stays():
-    assert kept(WALL, stretches(0.5, (2.0, 4.0)), planar=True) == [True, True, True]
-    assert furniture_fronts.remove_furniture_fronts([], LIMITS, planar=False) == []
+    def seen(planar):
+        drawn = [(-1, 0, 2, 0), (2, 0.5, 4, 0.5)]
+        points = [(x_m, 1.5) for x_m in np.linspace(0, 2, 50)]
+        return [stretch(*ends, points, planar=planar) for ends in drawn]
+
+    (wall,) = tracing._without_furniture(seen(planar=False), LIMITS)
+    assert wall.length_m == 3
+    assert len(tracing._without_furniture(seen(planar=True), LIMITS)) == 2
+    assert tracing._without_furniture([], LIMITS) == []
 
 
 def test_the_same_holds_from_the_other_side():
     south = -NORTH
-    wall = stretches(0.0, (0.0, 2.0), (4.0, 6.0), normal=south)
-    assert kept(wall, stretches(-0.5, (2.0, 4.0), normal=south)) == [True, True, False]
+    wall = pieces(0.0, (0.0, 2.0), (4.0, 6.0), normal=south)
+    assert kept(wall, pieces(-0.5, (2.0, 4.0), normal=south)) == [True, True, False]
 
 
 def test_limits_matter():
     short = dataclasses.replace(LIMITS, furniture_length_m=1.9)
-    assert kept(WALL, stretches(0.5, (2.0, 4.0)), limits=short) == [True, True, True]
+    assert kept(WALL, pieces(0.5, (2.0, 4.0)), limits=short) == [True, True, True]

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scanplan.rays.face_profile import FaceObservation
 
+from helpers.observation_making import observation
 from scanplan.geometry.lines import Line
 from scanplan.plan import half_height, planning
 
@@ -20,15 +20,10 @@ def rows(count, low_z_m, high_z_m, *, from_m=0.0, to_m=4.0):
     return np.array([RNG.uniform(from_m, to_m, count), RNG.uniform(low_z_m, high_z_m, count)])
 
 
-def wall(hits, passes, openings=()):
+def wall(hits, passes, openings=(), planar=False):
     """Return a wall of 4 m along x, of one face, with points and crossings (2, n) of its line."""
     sign = LINE.direction[0]
-    hits, passes = (
-        rows_[:, np.argsort(sign * rows_[0], kind="stable")] for rows_ in (hits, passes)
-    )
-    n = hits.shape[1], passes.shape[1]
-    seen = FaceObservation(LINE, sign * hits[0], np.zeros(n[0]), hits[1], np.zeros(n[0], int), sign * passes[0], passes[1],
-                np.zeros(n[1], int))  # fmt: skip
+    seen = observation(LINE, *(rows_.T * (sign, 1) for rows_ in (hits, passes)), planar=planar)
     low_m, high_m = sorted((0.0, 4.0 * sign))
     gaps = [SimpleNamespace(low_m=min(sign * a, sign * b), high_m=max(sign * a, sign * b), width_m=b - a)
             for a, b in openings]  # fmt: skip
@@ -112,8 +107,10 @@ def test_surfaces_that_end_lower_than_a_wall_are_left_out():
     desk.right, partition.right = [], []
     counter = wall(rows(2000, 0.1, 0.9), rows(100, 0.92, 1.2))
     counter.right = counter.members
-    kept, tops_m = planning._without_low([desk, partition, counter], 1.0, False)
+    kept, tops_m = planning._without_low([desk, partition, counter], 1.0)
     assert kept == [partition, counter]
     assert tops_m == pytest.approx([1.61, 0.91], abs=0.02)
-    kept, tops_m = planning._without_low([desk], 1.0, True)
+    desk = wall(rows(2000, 0.1, 0.74), rows(100, 0.76, 1.04), planar=True)
+    desk.right = []
+    kept, tops_m = planning._without_low([desk], 1.0)
     assert kept == [desk] and np.isnan(tops_m).all()

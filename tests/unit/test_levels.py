@@ -1,5 +1,7 @@
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from scanplan.rays import levels
 
@@ -44,3 +46,34 @@ def test_walls_alone_have_neither():
 @pytest.mark.parametrize("z_m", [[], [1.0], np.full(500, 0.3), [np.nan] * 50])
 def test_a_plane_or_nothing_has_no_ceiling(z_m):
     assert np.isnan(levels.find_floor_and_ceiling(np.array(z_m, float))[1])
+
+
+class TestFloor:
+    @pytest.mark.parametrize("low_m", [0.0, -0.42, 13.03])
+    def test_the_floor_is_the_median_of_its_layer(self, low_m):
+        z_m = room(np.random.default_rng(1), low_m=low_m, high_m=low_m + 2.7)
+        assert levels.find_floor_z(z_m) == pytest.approx(low_m, abs=0.005)
+
+    def test_it_is_that_of_floor_and_ceiling(self):
+        z_m = room(np.random.default_rng(2))
+        assert levels.find_floor_z(z_m) == levels.find_floor_and_ceiling(z_m)[0]
+
+    def test_stray_points_below_are_no_floor(self):
+        z_m = np.concatenate([[-9.0, -8.0], np.full(150, -1.0), np.linspace(0, 2, 50)])
+        assert levels.find_floor_z(z_m) == -1
+
+    def test_without_a_floor_it_is_the_height_of_the_lowest_but_a_few(self):
+        walls_m = np.linspace(0.3, 2.3, 2001)
+        assert levels.find_floor_z(walls_m) == pytest.approx(0.32)
+        assert levels.find_floor_z(np.array([1.0, 2.0])) == pytest.approx(1.01)
+
+    def test_without_any_point_there_is_none(self):
+        assert np.isnan(levels.find_floor_z(np.empty(0)))
+
+    @given(st.floats(-50, 50), st.randoms())
+    def test_it_moves_with_the_points_in_any_order(self, up_m, random):
+        z_m = room(np.random.default_rng(3), floor=200, ceiling=200, walls=400).tolist()
+        moved = np.array(random.sample(z_m, len(z_m))) + up_m
+        assert levels.find_floor_z(moved) - up_m == pytest.approx(
+            levels.find_floor_z(np.array(z_m)), abs=1e-9
+        )

@@ -1,10 +1,10 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
+from helpers.observation_making import observation
 from scanplan.geometry.lines import Line
 from scanplan.plan import openings
+from scanplan.rays.face_observation import RaySettings
 
 READING = RaySettings(band_m=0.06, reach_m=2.0, max_gap_m=0.5, door_height_m=1.8)
 SETTINGS = openings.OpeningSettings(
@@ -13,13 +13,9 @@ SETTINGS = openings.OpeningSettings(
 AXIS = Line(np.zeros(2), np.array([0.0, 1.0]))
 
 
-def seen(hits, passes, n_scans=1, behind_m=0.0):
-    hits, passes = (np.array(sorted(rows), float).reshape(-1, 2) for rows in (hits, passes))
-    return FaceObservation(
-        AXIS,
-        *(hits[:, 0], np.full(len(hits), -behind_m), hits[:, 1], np.arange(len(hits)) % n_scans),
-        *(passes[:, 0], passes[:, 1], np.zeros(len(passes), int)),
-    )
+def seen(hits, passes, n_scans=1, behind_m=0.0, **more):
+    hits = [(*hit, -behind_m, number % n_scans) for number, hit in enumerate(sorted(hits))]
+    return observation(AXIS, hits, passes, **more)
 
 
 def grid(low, high, *heights):
@@ -28,9 +24,7 @@ def grid(low, high, *heights):
 
 def judge(hits, passes, low=1.0, high=1.9, n_scans=1, behind_m=0.0, **more):
     line = seen(hits, passes, n_scans, behind_m)
-    return openings.classify_gap(
-        AXIS, low, high, [line], READING, SETTINGS, **({"planar": False} | more)
-    )
+    return openings.classify_gap(AXIS, low, high, [line], READING, SETTINGS, **more)
 
 
 def test_a_door():
@@ -46,16 +40,13 @@ def test_a_window():
     assert gap.sill_m == pytest.approx(0.9, abs=0.11)
 
 
-def with_feet(feet):
-    x, z = np.array(sorted(feet), float).T
-    passing = seen(grid(1, 1.9, 2.2), grid(1, 1.9, 0.13, 1.0, 2.0))
-    return replace(passing, foot_m=x, foot_z_m=z)
+def judge_with_low(low, hits, lowest_m):
+    line = seen(hits, grid(1, 1.9, lowest_m, 1.0, 2.0), low=low)
+    return openings.classify_gap(AXIS, 1.0, 1.9, [line], READING, SETTINGS)
 
 
 def test_a_low_sill_all_along_makes_a_window():
-    gap = openings.classify_gap(
-        AXIS, 1.0, 1.9, [with_feet(grid(1, 1.9, 0.02, 0.07, 0.09))], READING, SETTINGS, planar=False
-    )
+    gap = judge_with_low(grid(1, 1.9, 0.02, 0.07, 0.09), grid(1, 1.9, 2.2), 0.13)
     assert (gap.kind(SETTINGS), gap.sill_m) == ("window", pytest.approx(0.11, abs=0.03))
 
 
@@ -64,26 +55,21 @@ def test_a_low_sill_all_along_makes_a_window():
 )
 def test_a_step_makes_a_window_whether_or_not_wall_is_seen_below_it(below, sill_m):
     """No ray went through below 0.35 m: wall up to 0.2 m says more of the sill than a step up to 0.09 m does."""
-    x, z = np.array(sorted(grid(1, 1.9, 0.05, 0.09))).T
-    lowest_m = 0.35 if below else 0.13
-    line = replace(
-        seen([*below, *grid(1, 1.9, 2.2)], grid(1, 1.9, lowest_m, 1.0, 2.0)), foot_m=x, foot_z_m=z
+    gap = judge_with_low(
+        grid(1, 1.9, 0.05, 0.09), [*below, *grid(1, 1.9, 2.2)], 0.35 if below else 0.13
     )
-    gap = openings.classify_gap(AXIS, 1.0, 1.9, [line], READING, SETTINGS, planar=False)
     assert (gap.kind(SETTINGS), gap.sill_m) == ("window", pytest.approx(sill_m))
 
 
 def test_a_step_tells_of_a_sill_that_no_point_is_below():
     """Rays went through above 0.4 m alone, and no wall is seen below: the step is all that is known of the sill."""
-    x, z = np.array(sorted(grid(1, 1.9, 0.05, 0.09))).T
-    line = replace(seen(grid(1, 1.9, 2.2), grid(1, 1.9, 0.4, 1.0, 2.0)), foot_m=x, foot_z_m=z)
-    gap = openings.classify_gap(AXIS, 1.0, 1.9, [line], READING, SETTINGS, planar=False)
+    gap = judge_with_low(grid(1, 1.9, 0.05, 0.09), grid(1, 1.9, 2.2), 0.4)
     assert gap.sill_m == pytest.approx((0.09 + 0.4) / 2)
 
 
-@pytest.mark.parametrize("feet", [grid(1, 1.9, 0.0, 0.02, 0.03), grid(1, 1.3, 0.05, 0.07, 0.09)])
-def test_a_floor_or_what_stands_on_it_is_no_sill(feet):
-    gap = openings.classify_gap(AXIS, 1.0, 1.9, [with_feet(feet)], READING, SETTINGS, planar=False)
+@pytest.mark.parametrize("low", [grid(1, 1.9, 0.0, 0.02, 0.03), grid(1, 1.3, 0.05, 0.07, 0.09)])
+def test_a_floor_or_what_stands_on_it_is_no_sill(low):
+    gap = judge_with_low(low, grid(1, 1.9, 2.2), 0.13)
     assert (gap.kind(SETTINGS), gap.sill_m) == ("door", 0)
 
 
@@ -91,11 +77,8 @@ def test_a_floor_or_what_stands_on_it_is_no_sill(feet):
     ("lost", "state"), [((1.05, 1.6), openings.OPEN), ((1.05, 1.3), openings.CLOSED)]
 )
 def test_where_rays_go_and_do_not_come_back_there_is_an_opening(lost, state):
-    line = replace(seen([], []), panes_m=np.array([lost]))
-    assert (
-        openings.classify_gap(AXIS, 1.0, 1.9, [line], READING, SETTINGS, planar=False).state
-        == state
-    )
+    line = seen([], [], glass=[lost])
+    assert openings.classify_gap(AXIS, 1.0, 1.9, [line], READING, SETTINGS).state == state
 
 
 def test_a_wide_opening_is_a_passage():
@@ -128,10 +111,7 @@ def test_a_slit_is_no_opening():
 
 def test_the_side_that_more_rays_crossed_decides():
     sides = [seen([], []), seen([], grid(1, 1.9, 0.1, 1.0))]
-    assert (
-        openings.classify_gap(AXIS, 1.0, 1.9, sides, READING, SETTINGS, planar=False).state
-        == openings.OPEN
-    )
+    assert openings.classify_gap(AXIS, 1.0, 1.9, sides, READING, SETTINGS).state == openings.OPEN
 
 
 def test_a_lintel_that_one_side_shows_is_known():
@@ -139,7 +119,7 @@ def test_a_lintel_that_one_side_shows_is_known():
         seen([], grid(1, 1.3, 0.1, 1.0)),
         seen(grid(1, 1.9, 2.2), grid(1, 1.25, 0.1, 1.0), 2, behind_m=0.03),
     ]
-    gap = openings.classify_gap(AXIS, 1.0, 1.9, sides, READING, SETTINGS, planar=False)
+    gap = openings.classify_gap(AXIS, 1.0, 1.9, sides, READING, SETTINGS)
     assert (gap.state, gap.lintel_m) == (openings.OPEN, pytest.approx(2.2))
 
 
@@ -183,6 +163,7 @@ def test_beside_the_end_of_a_wall_only_a_lintel_makes_an_opening():
 
 
 def test_heights_are_not_told_of_a_plane():
-    gap = judge([], grid(1, 1.9, 0.0, 0.0), planar=True)
+    flat = seen([], grid(1, 1.9, 0.0, 0.0), planar=True)
+    gap = openings.classify_gap(AXIS, 1.0, 1.9, [flat], READING, SETTINGS)
     assert (gap.state, gap.kind(SETTINGS)) == (openings.OPEN, "door")
     assert np.isnan([gap.sill_m, gap.lintel_m]).all()

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from helpers.default_settings import SETTINGS
-from scanplan.extraction import cluster_ransac, segments
+from scanplan.extraction import segments
+from scanplan.extraction.extractors import EXTRACTORS, find_wall_segments, select_settings
 from scanplan.lab.thesis import plain_ransac
 from scanplan.project.stage_settings import select_extractor
 
@@ -14,7 +15,7 @@ from scanplan.project.stage_settings import select_extractor
 @pytest.fixture
 def settings():
     given = select_extractor(SETTINGS, "iterative_ransac")
-    return plain_ransac.PlainRansacSettings(**given | {"trials": 300})
+    return select_settings(plain_ransac.PlainRansacSettings, given | {"trials": 300})
 
 
 def wall(rng, n, *, x=None, y=None, z=None, pause=False):
@@ -33,22 +34,22 @@ def wall(rng, n, *, x=None, y=None, z=None, pause=False):
 def test_every_upright_plane_is_one_wall_and_the_floor_none(settings):
     rng = np.random.default_rng(1)
     points = np.concatenate([wall(rng, 500, x=0.0), wall(rng, 400, y=-1.0), wall(rng, 600, z=-0.5)])
-    found = plain_ransac.extract_plain(
-        3, points, settings=settings, planar=False, sensor_xyz_m=np.zeros(3)
+    found = segments.collect_segments(
+        plain_ransac.extract_plain(3, points, None, settings), np.zeros(3)
     )
-    assert len(found) == 2
-    np.testing.assert_allclose(np.abs(found), [(1, 0), (0, 1)], atol=0.03)
+    assert found.n_points.tolist() == pytest.approx([500, 400], abs=30)
+    np.testing.assert_allclose(np.abs(found.normal), [(1, 0), (0, 1)], atol=0.03)
 
 
 def test_a_wall_that_pauses_is_one(settings):
     points = wall(np.random.default_rng(1), 500, x=0.0, pause=True)
-    assert len(plain_ransac.extract_plain(3, points, settings=settings)) == 1
+    assert len(plain_ransac.extract_plain(3, points, None, settings)) == 1
 
 
 def test_too_few_points_are_no_wall(settings):
     points = wall(np.random.default_rng(1), settings.min_points - 1, x=0.0)
-    assert plain_ransac.extract_plain(3, points, settings=settings) == []
-    assert plain_ransac.extract_plain(3, points[:0], settings=settings) == []
+    assert plain_ransac.extract_plain(3, points, None, settings) == []
+    assert plain_ransac.extract_plain(3, points[:0], None, settings) == []
 
 
 def test_clusters_are_one_wall_each_however_they_pause():
@@ -56,13 +57,16 @@ def test_clusters_are_one_wall_each_however_they_pause():
     points = wall(np.random.default_rng(1), 4000, x=2.0, pause=True)
     count = {}
     for name, over in (("ours", {}), ("lifted", plain_ransac.LIFTED)):
-        settings = cluster_ransac.ClusterRansacSettings(**given | over)
-        sensor_m = np.array([0.0, 2.0, 1.0])
-        count[name] = len(
-            cluster_ransac.extract_by_clusters(
-                3, points, sensor_xyz_m=sensor_m, planar=False, settings=settings
-            )
+        method = EXTRACTORS["cluster_ransac"]
+        found = find_wall_segments(
+            3,
+            points,
+            sensor_xyz_m=np.array([0.0, 2.0, 1.0]),
+            planar=False,
+            extractor=method,
+            settings=select_settings(method.settings, given | over),
         )
+        count[name] = len(found)
     assert count["lifted"] == 1 and count["ours"] != 1
 
 

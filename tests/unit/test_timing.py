@@ -2,6 +2,9 @@ import time
 
 import numpy as np
 
+from helpers import toy_rooms
+from scanplan.extraction.extractors import Extractor
+from scanplan.extraction.segments import SegmentLimits
 from scanplan.lab.thesis import timing
 from scanplan.selection import hulls
 from scanplan.store import tables
@@ -46,28 +49,29 @@ def test_a_part_of_the_points_is_kept_in_their_order():
 
 
 class Busy:
-    """An extractor whose every other call is disturbed."""
-
-    settings = dict
+    """Finds one wall; every other call is disturbed."""
 
     def __init__(self):
         self.calls = 0
 
-    def extract(self, scan_id, xyz_m, **_):
+    def extract(self, scan_id, points, scan, settings):
         self.calls += 1
         until = time.process_time() + (0.05 if self.calls % 2 else 0.001)
         while time.process_time() < until:
             pass
-        return [scan_id]
+        return [(1, 0, 2, 0, 0, 1, len(points), 0, 0, 1)]
 
 
 def test_a_disturbed_call_does_not_count(tmp_path, monkeypatch):
     with tables.open_scan_writer(tmp_path / "scans.parquet", planar=False) as write:
         for scan_id in (0, 3):
             write(scan_id, np.ones((5, 3)))
-    monkeypatch.setattr(timing.per_registered_scan, "sensor_keywords", lambda *_: {0: {}, 3: {}})
+    at = {"sensor_xyz_m": np.zeros(3)}
+    monkeypatch.setattr(timing.per_registered_scan, "sensor_keywords", lambda *_: {0: at, 3: at})
     store = tables.ScanStore(tmp_path / "scans.parquet")
-    rows = list(timing.time_extractor("busy", Busy(), store, [0, 3], {}, "registration.parquet"))
+    busy = Extractor(SegmentLimits, Busy().extract)
+    given = {**toy_rooms.LIMITS, **toy_rooms.FURNITURE}
+    rows = list(timing.time_extractor("busy", busy, store, [0, 3], given, "registration.parquet"))
     assert [(row["item"], row["size"], row["found"]) for row in rows] == [(0, 5, 1), (3, 5, 1)]
     assert all(0.001 <= row["seconds"] < 0.04 for row in rows)
 

@@ -7,7 +7,8 @@ from helpers import toy_rooms
 from scanplan.selection import methods, wall_cells
 from scanplan.selection.objectives import CellCoverage
 
-LIMITS = {name: toy_rooms.LIMITS[name] for name in methods.WALL_LIMITS if name in toy_rooms.LIMITS}
+KNOWN = {**toy_rooms.LIMITS, **toy_rooms.FURNITURE}
+LIMITS = {name: KNOWN[name] for name in methods.WALL_LIMITS if name in KNOWN}
 SETTINGS = wall_cells.WallCellSettings(cell_m=0.25, reach_deg=3.5, max_tilt_deg=15.0, **LIMITS)
 # what the toy sensor sees of its room's walls, and 1.5 m of the wall behind the doorway
 SEEN_M = 6 + 6 + 4 + 1.5 + 1.6 + 1.5

@@ -1,39 +1,26 @@
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scanplan.rays.face_profile import FaceObservation, RaySettings
 
-from scanplan.geometry.lines import Line
+from helpers import observation_making
 from scanplan.plan import wall_pairs
-from scanplan.plan.faces.intervals import FaceInterval
+from scanplan.rays.face_observation import RaySettings
 
 SETTINGS = wall_pairs.PairSettings(
     max_angle_deg=5.0, min_thickness_m=0.04, max_thickness_m=0.6, offset_m=0.05, max_gap_m=2.0
 )
 READING = RaySettings(band_m=0.06, reach_m=2.0, max_gap_m=0.5, door_height_m=1.8)
-NONE = (np.empty(0),) * 3 + (np.empty(0, int),) + (np.empty(0),) * 2 + (np.empty(0, int),)
 
 
-def stretch(x0, y0, x1, y1, of=None):
-    """Seen from the left of its way; `of` another one: on its line."""
-    start, end = np.array([x0, y0], float), np.array([x1, y1], float)
-    length = np.hypot(*(end - start))
-    along = (end - start) / length
-    seen = (
-        FaceObservation(Line(start, np.array([-along[1], along[0]])), *NONE)
-        if of is None
-        else of.seen
-    )
-    low, high = seen.line.along_m(np.array([start, end]))
-    return FaceInterval(seen, float(low), float(high))
+def stretch(*ends, free=()):
+    return observation_making.stretch(*ends, free=free, planar=True)
 
 
 def pair(*drawn):
-    return wall_pairs.pair_faces(list(drawn), SETTINGS, READING, planar=True)
+    return wall_pairs.pair_faces(list(drawn), SETTINGS, READING)
 
 
 def test_opposite_faces_are_a_wall_with_a_thickness():
@@ -85,19 +72,8 @@ def test_rays_through_the_unseen_part_of_a_side_part_it_from_the_other():
     """The back of a cupboard of 0.5 m lies on the wall: its front is no second side of that."""
     front, wall = stretch(1, 0.5, 2, 0.5), stretch(5, 0, 0, 0)
     assert len(pair(front, wall)) == 1
-    crossed = np.sort(
-        np.repeat(
-            front.line.along_m(np.column_stack([np.arange(2.2, 4, 0.05), np.full(36, 0.5)])), 3
-        )
-    )
-    passed = replace(
-        front.seen,
-        pass_m=crossed,
-        pass_z_m=0 * crossed,
-        pass_scan=np.zeros(len(crossed), int),
-        profiles={},
-    )
-    assert len(pair(replace(front, seen=passed), wall)) == 2
+    crossed = 3 * [(along_m, 0.0) for along_m in np.arange(1.2, 3, 0.05)]
+    assert len(pair(stretch(1, 0.5, 2, 0.5, free=crossed), wall)) == 2
 
 
 def test_nothing_is_no_wall():
@@ -112,7 +88,7 @@ def test_every_stretch_is_in_one_wall_and_every_side_is_straight(seed):
     x, length = rng.uniform(0, 8, 12), rng.uniform(0.3, 3, 12)
     ways = rng.choice([-1, 1], 12)
     drawn = [stretch(a, b, a + w * n, b) for a, b, w, n in zip(x, y, ways, length, strict=True)]
-    walls = wall_pairs.pair_faces(drawn, SETTINGS, READING, planar=True)
+    walls = wall_pairs.pair_faces(drawn, SETTINGS, READING)
     assert sorted(i for w in walls for i in w.members) == list(range(12))
     for wall in walls:
         for sign, side in ((1, wall.left), (-1, wall.right)):

@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
-from scanplan.rays.face_profile import FaceObservation
 
 from helpers import house_making
-from scanplan.geometry.lines import Line
+from helpers.observation_making import line_through, observation
 from scanplan.plan import planning
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.walls import assemble_walls
@@ -15,16 +14,10 @@ SETTINGS = planning.make_plan_settings(**house_making.PLAN)
 
 def stretches(x0, y0, x1, y1, solid, crossed=(), lintel=()):
     """Stretches of a line, seen from the left of its way: points, rays through it, and points above a door."""
-    start, end = np.array([x0, y0], float), np.array([x1, y1], float)
-    along = (end - start) / np.hypot(*(end - start))
     hits = [(x, 1.0) for span in solid for x in np.arange(*span, 0.02)]
     hits += [(x, 2.3) for span in lintel for x in np.arange(*span, 0.02)]
-    x, z = np.array(sorted(hits)).T
-    passes = np.array([p for span in crossed for p in np.arange(*span, 0.01)])
-    line = Line(start, np.array([-along[1], along[0]]))
-    seen = FaceObservation(
-        line, x, 0 * x, z, np.zeros(len(x), int), passes, 0 * passes + 1, np.zeros(len(passes), int)
-    )
+    passes = [(x, 1.0) for span in crossed for x in np.arange(*span, 0.01)]
+    seen = observation(line_through(x0, y0, x1, y1), hits, passes)
     return [FaceInterval(seen, float(low), float(high)) for low, high in solid]
 
 
@@ -36,7 +29,6 @@ def openings(*found):
             SETTINGS.pairs,
             SETTINGS.openings,
         ),
-        planar=False,
         corner_m=0.25,
     )
     return [
@@ -69,7 +61,6 @@ def ends(*found):
             SETTINGS.pairs,
             SETTINGS.openings,
         ),
-        planar=False,
         corner_m=0.25,
     )
     return [np.sort(w.ends[:, 0]) for w in walls if abs(w.line.normal[1]) > 0.9]

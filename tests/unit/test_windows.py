@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapely
-from scanplan.rays.face_profile import FaceObservation
 
 from helpers import house_making
+from helpers.observation_making import observation
 from helpers.wall_making import walls
 from scanplan.geometry.lines import Line
 from scanplan.plan import planning, windows
@@ -51,7 +51,9 @@ def seen(looked):
     line = intervals.observe_along(looked, SOUTH, 0.0, 4.0, SETTINGS.reading)
     begin_m = float(line.line.along_m(np.zeros(2)))
     return replace(
-        line, line=Line(line.line.at(begin_m), line.line.normal), hit_m=line.hit_m - begin_m
+        line,
+        line=Line(line.line.at(begin_m), line.line.normal),
+        occupied_m=line.occupied_m - begin_m,
     )
 
 
@@ -59,14 +61,18 @@ def with_points(line, places_m):
     """More points at the height of a chest."""
     line = replace(
         line,
-        hit_m=np.concatenate([line.hit_m, places_m]),
-        hit_z_m=np.concatenate([line.hit_z_m, 0 * places_m + 1.5]),
-        hit_off_m=np.concatenate([line.hit_off_m, 0 * places_m]),
-        hit_scan=np.concatenate([line.hit_scan, np.zeros(len(places_m), int)]),
+        occupied_m=np.concatenate([line.occupied_m, places_m]),
+        occupied_z_m=np.concatenate([line.occupied_z_m, 0 * places_m + 1.5]),
+        occupied_off_m=np.concatenate([line.occupied_off_m, 0 * places_m]),
+        occupied_scan=np.concatenate([line.occupied_scan, np.zeros(len(places_m), int)]),
     )
-    order = np.argsort(line.hit_m, kind="stable")
+    order = np.argsort(line.occupied_m, kind="stable")
     return replace(
-        line, **{c: getattr(line, c)[order] for c in ("hit_m", "hit_z_m", "hit_off_m", "hit_scan")}
+        line,
+        **{
+            c: getattr(line, c)[order]
+            for c in ("occupied_m", "occupied_z_m", "occupied_off_m", "occupied_scan")
+        },
     )
 
 
@@ -156,18 +162,8 @@ def test_where_the_other_side_is_whole_there_is_no_window(to_m, count):
     """A screen or a mirror; a frame seen from the other side is not enough."""
     looked = look((1.0, 2.2), (0.85, 2.4))
     back = Line(np.array([0.0, -0.2]), np.array([0.0, -1.0]))
-    place_m = np.sort(back.along_m(np.array([(x, -0.2) for x in np.arange(1.1, to_m, 0.04)])))
-    nothing = np.empty(0)
-    other = FaceObservation(
-        back,
-        place_m,
-        0 * place_m,
-        0 * place_m + 1.5,
-        np.zeros(len(place_m), int),
-        nothing,
-        nothing,
-        nothing,
-    )
+    place_m = back.along_m(np.array([(x, -0.2) for x in np.arange(1.1, to_m, 0.04)]))
+    other = observation(back, [(along_m, 1.5) for along_m in place_m])
     this = wall(looked)
     behind = intervals.FaceInterval(other, -4.0, 0.0)
     (found,) = windows.add_windows([replace(this, left=[behind])], looked, SETTINGS.openings)
@@ -178,10 +174,14 @@ def test_where_the_other_side_is_whole_there_is_no_window(to_m, count):
 def test_one_or_two_points_below_show_no_sill(count):
     looked = look((1.0, 1.5), (0.85, 2.4))
     line = seen(looked)
-    below = (line.hit_m > 1.1) & (line.hit_m < 1.4)
-    below[np.searchsorted(line.hit_m, [1.12, 1.38][:count])] = False
+    below = (line.occupied_m > 1.1) & (line.occupied_m < 1.4)
+    below[np.searchsorted(line.occupied_m, [1.12, 1.38][:count])] = False
     few = replace(
-        line, **{c: getattr(line, c)[~below] for c in ("hit_m", "hit_z_m", "hit_off_m", "hit_scan")}
+        line,
+        **{
+            c: getattr(line, c)[~below]
+            for c in ("occupied_m", "occupied_z_m", "occupied_off_m", "occupied_scan")
+        },
     )
     assert windows.find_windows(looked, few, *ENDS_M, SETTINGS.openings) == []
 

@@ -47,10 +47,12 @@ def find_upright_runs(
         return np.empty((0, 2))
     raster = _rasterise_scan(scan, line, where_m, height_m, limits.door_height_m)
     column = raster.column_of(where_m)
-    is_open = raster.is_open(limits.min_height_m, low_m=SKIRTING_M, door_m=limits.door_height_m)
+    heights_m = {"low_m": SKIRTING_M, "door_m": limits.door_height_m}
+    is_open = raster.is_open(limits.min_height_m, **heights_m)
+    is_closed = raster.is_stopped(**heights_m) & ~is_open
     makes = (height_m <= limits.door_height_m) & ~is_open[column]
     runs = find_runs(where_m[:n_own][makes[:n_own]], limits.max_gap_m, limits.min_points)
-    return grow_runs(runs, where_m[~is_open[column]], limits.corner_m, raster, is_open)
+    return grow_runs(runs, where_m[is_closed[column]], limits.corner_m, raster, is_open)
 
 
 def grow_runs(

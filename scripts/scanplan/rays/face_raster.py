@@ -110,11 +110,17 @@ class FaceRaster:
         what is below.
         """
         first, stop = round(low_m / _ROW_M), round(door_m / _ROW_M)
-        rows = np.arange(self.free.shape[1])
-        top_row = np.where(self.occupied[:, :stop] > 0, rows[:stop], -1).max(axis=1, initial=-1)
-        above = (rows >= first) & (rows < stop) & (rows > top_row[:, None])
+        rows = np.arange(self.free.shape[1])[:stop]
+        top_row = np.where(self.occupied[:, :stop] > 0, rows, -1).max(axis=1, initial=-1)
+        is_above = (rows >= first) & (rows > top_row[:, None])
         is_low = (top_row + 1) * _ROW_M <= sill_m
-        return is_low & (np.where(above, self.free, 0) > 0).any(axis=1)
+        return is_low & (is_above & (self.free[:, :stop] > 0)).any(axis=1)
+
+    def is_stopped(self, *, low_m: float, door_m: float) -> BoolArray:
+        """Return in which columns (c,) rays end lower than a door: at it, or before it above the skirting."""
+        first, stop = round(low_m / _ROW_M), round(door_m / _ROW_M)
+        n_before = self.occluded[:, first:stop].sum(axis=1)
+        return (self.count_below(self.occupied, door_m) > 0) | (n_before > 0)
 
     def seen_top_m(self, columns: slice = slice(None)) -> float:
         """Return up to which height a surface is seen over a good stretch of its length.

@@ -1,57 +1,53 @@
-"""Both extractors as the thesis describes them (3.4, 5.3), with nothing of ours: no furniture, no gaps, no lengths.
+"""Iterative RANSAC as the thesis describes it (5.3), and the limits to lift for cluster RANSAC as it does (3.4).
 
-The extractors of the workflow cut what these find where its points pause, and drop much of it: they cannot tell about
-claims on numbers and times of walls.
+The extractors of the workflow cut what these find where its points pause, and the furniture classifier drops much of
+it: they cannot tell about claims on numbers and times of walls.
 """
+
+from dataclasses import replace
 
 import numpy as np
 
-from scanplan.extraction import iterative_ransac
+from scanplan.extraction import iterative_ransac, segments
+from scanplan.rays.ray_set import RaySet
+from scanplan.types import FloatArray
 
 PlainRansacSettings = iterative_ransac.IterativeRansacSettings
 
-_ANY = (
-    "max_gap_m",
-    "door_height_m",
-    "max_rmse_m",
-    "hang_height_m",
-    "over_share",
-    "through_share",
-    "missing_share",
-)
-_SMALL = (
-    "min_length_m",
-    "min_height_m",
-    "furniture_depth_m",
-    "furniture_length_m",
-    "stub_length_m",
-)
 LIFTED = {
-    **dict.fromkeys(_ANY, np.inf),
-    **dict.fromkeys(("wall_height_m", "furniture_height_m"), -np.inf),
-    **dict.fromkeys((*_SMALL, "door_width_m", "corner_m"), 0.0),
+    "max_gap_m": np.inf,
+    "min_length_m": 0.0,
+    "min_height_m": 0.0,
+    "door_height_m": 100.0,  # no storey is as high
+    "corner_m": 0.0,
 }
 """Limits of ours that drop nothing and cut nothing: with them `cluster_ransac` finds one wall a cluster."""
 
 
-def extract_plain(scan_id, xyz_m, *, settings, **_):
+def extract_plain(
+    scan_id: int, points: FloatArray, scan: RaySet | None, settings: PlainRansacSettings
+) -> list[segments.Row]:
     """Find the upright planes of a 3-D scan: that of most points, whose points are removed, until too few are left.
 
     Parameters
     ----------
     scan_id : int
-    xyz_m : (n, 3) float
-    settings : Settings
+    points : (n, 3) float64
+        Relative to the sensor.
+    scan : ray_set.RaySet, optional
+        Not used: the thesis asks no ray.
+    settings : PlainRansacSettings
         Only `inlier_m`, `trials`, `min_points`, `max_planes`, `max_tilt_deg` and `seed` matter. The thesis looks for
         lines and says nothing of floors: planes that are not upright are removed and are no walls.
 
     Returns
     -------
-    list of (2,) float64
-        Direction of each plane across the floor: the horizontal part of its normal.
+    list of tuple
+        One for each plane, as `segments.cut_line` gives them.
     """
     rng = np.random.default_rng([settings.seed, scan_id])
-    left, least, found = np.asarray(xyz_m, float), max(settings.min_points, 3), []
+    whole = replace(settings, **LIFTED, min_points_planar=1)
+    left, least, rows = points, max(settings.min_points, 3), []
     for _ in range(settings.max_planes):
         if len(left) < least:
             break
@@ -62,6 +58,7 @@ def extract_plain(scan_id, xyz_m, *, settings, **_):
         if inliers.sum() < least:
             break
         if abs(normal[2]) <= np.sin(np.deg2rad(settings.max_tilt_deg)):
-            found.append(normal[:2])
+            plane, across = left[inliers], normal[:2] / np.hypot(*normal[:2])
+            rows += segments.cut_line(across, (plane[:, :2] @ across).mean(), plane, whole)
         left = left[~inliers]
-    return found
+    return rows

@@ -8,6 +8,7 @@ from functools import partial
 
 import numpy as np
 
+from scanplan.extraction import extractors
 from scanplan.lab.thesis.claim_measures import BUILDING, CHOOSING, ORDERING, SUBSET, THINNED
 from scanplan.selection import area_greedy, hulls
 from scanplan.stage import per_registered_scan
@@ -22,7 +23,7 @@ def spread_rows(rows, count):
 
 
 def time_extractor(task, method, store, scan_ids, settings, registration, *, part=1):
-    """Time a wall extractor scan by scan: of each the quickest of three calls.
+    """Time a wall extractor, without the furniture classifier, scan by scan: the quickest of three calls.
 
     Parameters
     ----------
@@ -32,7 +33,7 @@ def time_extractor(task, method, store, scan_ids, settings, registration, *, par
     store : tables.ScanStore
     scan_ids : (n,) int
     settings : dict
-        Keywords of the method's settings.
+        Those of the method among them.
     registration : path-like
         registration.parquet.
     part : int
@@ -43,14 +44,18 @@ def time_extractor(task, method, store, scan_ids, settings, registration, *, par
     dict
         A row of `schemas.TIMES`: `size` is the scan's number of points, `item` its scan_id, `found` its walls.
     """
-    sensors, chosen = (
-        per_registered_scan.sensor_keywords(scan_ids, store.path, registration),
-        method.settings(**settings),
-    )
+    sensors = per_registered_scan.sensor_keywords(scan_ids, store.path, registration)
+    chosen = extractors.select_settings(method.settings, settings)
     for number, (scan_id, xyz_m) in enumerate(store.scans(scan_ids)):
         xyz_m = thin_points(xyz_m, part, scan_id)
         call = partial(
-            method.extract, scan_id, xyz_m, planar=store.planar, settings=chosen, **sensors[scan_id]
+            extractors.find_wall_segments,
+            scan_id,
+            xyz_m,
+            planar=store.planar,
+            extractor=method,
+            settings=chosen,
+            **sensors[scan_id],
         )
         if number == 0:
             # the first call loads and compiles what all others use

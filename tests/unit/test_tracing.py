@@ -1,25 +1,9 @@
 """Which faces claim the points where they cross a line, of stretches known on paper."""
 
-import numpy as np
 import pytest
-from scanplan.rays.face_profile import FaceObservation
 
-from scanplan.geometry.lines import Line
+from helpers.observation_making import stretch
 from scanplan.plan.faces import tracing
-from scanplan.plan.faces.intervals import FaceInterval
-
-
-def stretch(x0, y0, x1, y1):
-    """Return a stretch seen from the left of its way, without any point."""
-    start, way = np.array([x0, y0], float), np.array([x1 - x0, y1 - y0], float)
-    length_m = float(np.hypot(*way))
-    line = Line(start, np.array([-way[1], way[0]]) / length_m)
-    nothing = (np.empty(0),) * 3
-    return FaceInterval(
-        FaceObservation(line, *nothing, np.empty(0, int), *nothing[:2], np.empty(0, int)),
-        0.0,
-        length_m,
-    )
 
 
 def claims_on_first(*found):

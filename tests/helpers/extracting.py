@@ -1,0 +1,35 @@
+"""Wall segments as a stage finds them, with settings that suit the toy room."""
+
+import numpy as np
+
+from helpers import toy_rooms
+from scanplan.extraction.extractors import EXTRACTORS, find_wall_segments, select_settings
+from scanplan.extraction.furniture import FurnitureLimits
+
+SETTINGS = {
+    "cluster_ransac": toy_rooms.LIMITS
+    | {"reach_deg": 3.5, "max_tilt_deg": 15.0, "bandwidth_m": 0.3, "trials": 64},
+    "iterative_ransac": toy_rooms.LIMITS | {"max_tilt_deg": 15.0, "trials": 200, "max_planes": 20},
+}
+LIMITS = FurnitureLimits(**toy_rooms.FURNITURE)
+
+
+def extract(name, xyz_m, sensor_xyz_m=toy_rooms.SENSOR, *, planar=False, limits=LIMITS, **more):
+    """Return the wall segments of a scan; `more` are further settings."""
+    method = EXTRACTORS[name]
+    return find_wall_segments(
+        3,
+        xyz_m,
+        sensor_xyz_m=np.asarray(sensor_xyz_m, float),
+        planar=planar,
+        extractor=method,
+        settings=select_settings(method.settings, SETTINGS[name] | more),
+        limits=limits,
+    )
+
+
+def values(found):
+    """Return what is known of wall segments as columns."""
+    return np.column_stack(
+        [found.start_m, found.end_m, found.normal, found.n_points, found.rmse_m, found.z_range_m]
+    )

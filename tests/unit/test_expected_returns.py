@@ -1,0 +1,174 @@
+"""A sensor 2 m before a wall, one ray a degree of azimuth and elevation: counts known on paper."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from helpers.ray_making import NORTH, rays
+from scanplan.rays.expected_returns import SentRays, count_returns_below, count_sent_rays
+from scanplan.rays.face_rays import cast_at_face
+
+AZIMUTH_RAD = np.radians(np.arange(-179.5, 180))
+ELEVATIONS_DEG = np.arange(-4.5, 5, 1.0)  # ten beams
+
+
+def below_deg(counts, elevation_deg):
+    return counts[round((elevation_deg + 90) * 10)]
+
+
+class TestUsualReturns:
+    def test_a_beam_has_one_return_a_degree_above_its_elevation(self):
+        points = np.column_stack([np.cos(AZIMUTH_RAD), np.sin(AZIMUTH_RAD), 0 * AZIMUTH_RAD + 0.1])
+        counts = count_returns_below(AZIMUTH_RAD, points)
+        assert len(counts) == 1801
+        # atan(0.1) is 5.7 degrees
+        assert (below_deg(counts, 5.7), below_deg(counts, 5.8)) == (0, 1)
+        assert (counts[0], counts[-1]) == (0, 1)
+
+    def test_directions_without_any_return_do_not_count(self):
+        chosen = (AZIMUTH_RAD > 0) & (np.pi / 2 > AZIMUTH_RAD)
+        azimuth_rad = AZIMUTH_RAD[chosen]
+        points = np.column_stack([np.cos(azimuth_rad), np.sin(azimuth_rad), 0 * azimuth_rad])
+        assert count_returns_below(azimuth_rad, points)[-1] == 1
+
+    def test_no_returns(self):
+        assert not count_returns_below(np.empty(0), np.empty((0, 3))).any()
+
+
+def points_of(range_m):
+    """Return where rays end: `range_m(azimuth_deg, slope)` away, level."""
+    azimuth_rad, slope = np.meshgrid(AZIMUTH_RAD, np.tan(np.radians(ELEVATIONS_DEG)))
+    azimuth_rad, slope = azimuth_rad.ravel(), slope.ravel()
+    reach_m = range_m(np.degrees(azimuth_rad), slope)
+    points = np.array([np.cos(azimuth_rad), np.sin(azimuth_rad), slope]).T * reach_m[:, None]
+    return points[np.isfinite(reach_m)] + (0, 2, 1)
+
+
+def wall_or(beyond_m):
+    """Return the range to the wall y = 0, 2 m away to the south; elsewhere rays end 8 m away.
+
+    Those to 1 m of the wall on either side, 27 degrees each, end at `beyond_m` square to it.
+    """
+
+    def range_m(azimuth_deg, _):
+        turn_deg = azimuth_deg + 90
+        with np.errstate(invalid="ignore", divide="ignore"):
+            to_wall_m = 2 / np.cos(np.radians(turn_deg))
+        south = np.abs(turn_deg) < 70
+        pane = np.abs(turn_deg) < np.degrees(np.arctan(0.5))
+        return np.where(pane, to_wall_m * beyond_m / 2, np.where(south, to_wall_m, 8.0))
+
+    return range_m
+
+
+def sent(range_m, low_m=-1.0, count=40, scans=1, heights_m=(0.0, 2.5)):
+    """Return the rays sent to columns of 5 cm of the wall, of scans that see the same."""
+    looked = rays(*[((0, 2, 1), points_of(range_m))] * scans)
+    face = cast_at_face(looked, NORTH, low_m, low_m + 0.05 * count, at_m=0.08)
+    return count_sent_rays(looked, face, low_m, count, 0.05, heights_m)
+
+
+# 2 m of the wall, 1 m to each side, are seen under 53.1 degrees: so many rays of each of ten beams
+EXPECTED = 10 * 2 * np.degrees(np.arctan(0.5))
+
+
+def test_as_many_rays_are_expected_as_fit_into_the_angle_of_a_wall():
+    found = sent(wall_or(2.0))
+    assert found.expected.shape == (1, 40)
+    assert found.expected.sum() == pytest.approx(EXPECTED, rel=0.01)
+    assert found.returned.sum() == found.in_wall.sum() == pytest.approx(EXPECTED, rel=0.03)
+    assert found.occluded.sum() == 0
+    assert found.missing_share == pytest.approx(0, abs=0.03)
+    # square to the wall a column is wider
+    assert found.expected[0, 20] == pytest.approx(10 * np.degrees(0.05 / 2), rel=0.01)
+
+
+def test_of_glass_little_comes_back():
+    found = sent(wall_or(np.nan))
+    # the pane's own directions are empty, and so count for nothing where rays are expected
+    assert found.returned.sum() == 0
+    assert found.missing_share == 1
+    reached, returned, in_wall = found.reached(least_scans=1)
+    assert np.isfinite(reached).all() and (returned == 0).all() and (in_wall == 0).all()
+
+
+def test_rays_that_go_through_and_come_back_are_returned_but_not_in_the_wall():
+    found = sent(wall_or(4.0))
+    assert found.returned.sum() == pytest.approx(EXPECTED, rel=0.03)
+    assert found.in_wall.sum() == 0
+    # 0.4 m behind it they are in the wall
+    niche = sent(wall_or(2.4))
+    assert niche.in_wall.sum() == niche.returned.sum() > 0
+
+
+def test_what_stands_before_a_wall_hides_it():
+    found = sent(wall_or(1.0))
+    assert found.occluded.sum() == pytest.approx(EXPECTED, rel=0.03)
+    assert found.returned.sum() == 0 and found.missing_share == pytest.approx(0, abs=0.03)
+    assert all(np.isnan(rows).all() for rows in found.reached(least_scans=1))
+
+
+def test_only_beams_between_two_heights_are_expected():
+    # of ten beams from 1 m above the floor five rise
+    assert sent(wall_or(2.0), heights_m=(1.0, 2.5)).expected.sum() == pytest.approx(
+        EXPECTED / 2, rel=0.05
+    )
+
+
+def test_at_grazing_angles_and_from_behind_nothing_is_expected():
+    # 75 degrees beside the sensor is 7.46 m along
+    beside = sent(wall_or(2.0), low_m=7.5)
+    assert beside.expected.sum() == 0 and beside.missing_share == 0
+    looked = rays(((0, -2, 1), points_of(wall_or(2.0)) - (0, 4, 0)))
+    face = cast_at_face(looked, NORTH, -1, 1, at_m=0.08)
+    assert count_sent_rays(looked, face, -1.0, 40, 0.05, (0.0, 2.5)).expected.shape == (0, 40)
+
+
+def test_few_scans_are_not_enough_where_more_are_asked_for():
+    assert np.isnan(sent(wall_or(np.nan), scans=2).reached(least_scans=3)[0]).all()
+    assert np.isfinite(sent(wall_or(np.nan), scans=3).reached(least_scans=3)[0]).all()
+
+
+def rows(*of_scans):
+    return np.array(of_scans, float)
+
+
+def test_five_columns_are_judged_together():
+    """Each expects 5 rays: the outermost, with two neighbours, 15, and the middle ones 25."""
+    every = rows([5.0] * 7)
+    found = SentRays(expected=every, occluded=0 * every, returned=every - 1, in_wall=0 * every)
+    reached, returned, in_wall = found.reached(least_scans=1)
+    assert reached.tolist()[2:5] == [25] * 3 and returned.tolist()[2:5] == [20] * 3
+    assert in_wall.tolist()[2:5] == [0] * 3
+    # fewer than 20 rays could be lost by chance: of the first column with its neighbours 15
+    assert np.isnan(reached[[0, 6]]).all() and np.isfinite(reached[[1, 5]]).all()
+    assert found.missing_share == pytest.approx(1 / 5)
+
+
+def test_a_scan_that_something_hides_the_surface_from_says_nothing():
+    expected = rows([20.0] * 5, [20.0] * 5)
+    occluded = rows([4.0] * 5, [2.0] * 5)
+    found = SentRays(expected, occluded, expected - occluded, 0 * expected)
+    # 20 in a hundred of the first scan's are too many, 10 of the second's are not
+    reached, returned, _ = found.reached(least_scans=1)
+    assert (reached[2], returned[2]) == (90, 90)
+    assert np.isnan(found.reached(least_scans=2)[0]).all()
+
+
+@given(st.integers(0, 1000))
+def test_more_scans_reach_a_surface_as_each_does(seed):
+    rng = np.random.default_rng(seed)
+    expected = rng.uniform(5, 20, (3, 8))
+    returned = np.floor(rng.uniform(0, 1, (3, 8)) * expected)
+    every = SentRays(expected, 0 * expected, returned, returned)
+    apart = [
+        SentRays(*(of[i : i + 1] for of in (expected, 0 * expected, returned, returned)))
+        for i in range(3)
+    ]
+    summed = [np.nansum([each.reached(least_scans=1)[k] for each in apart], axis=0) for k in (0, 1)]
+    together = every.reached(least_scans=1)
+    inner = slice(2, 6)
+    np.testing.assert_allclose(together[0][inner], summed[0][inner])
+    np.testing.assert_allclose(together[1][inner], summed[1][inner])
+    assert 0 <= every.missing_share <= 1
