@@ -1,7 +1,10 @@
 """Make the floor plan from the first scans of an ordering.
 
-Faces, walls, openings and rooms, each standing once.
+Faces, walls, openings and rooms, each drawn once.
 """
+
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -10,9 +13,19 @@ from scanplan.rays import ray_set
 from scanplan.selection import stopping
 from scanplan.stage import log
 from scanplan.store import registered_scans, schemas, tables
+from scanplan.types import FilePath, Settings
 
 
-def assemble_plan(walls, selection, scans, registration, outputs, *, settings, **stop):
+def assemble_plan(
+    walls: FilePath,
+    selection: FilePath,
+    scans: FilePath,
+    registration: FilePath,
+    outputs: Mapping[str, FilePath],
+    *,
+    settings: Settings,
+    **stop: Any,
+) -> None:
     """Write the tables of the plan.
 
     Parameters
@@ -27,29 +40,35 @@ def assemble_plan(walls, selection, scans, registration, outputs, *, settings, *
     **stop
         How many scans to use, see `stopping.choose_n_scans`.
     """
-    seen = tables.read_table(walls, schemas.WALLS, allow_empty=True)
+    observed = tables.read_table(walls, schemas.WALLS, allow_empty=True)
     ordering = tables.read_table(selection, schemas.SELECTION)
     count, reason = stopping.choose_n_scans(ordering, **stop)
-    chosen = np.sort(ordering["scan_id"][:count])
-    used = np.isin(seen["scan_id"], chosen)
-    messages.check_segments(walls, seen, used, count)
-    kept, store = registered_scans.read_registered_scans(registration), tables.ScanStore(scans)
-    rows = registered_scans.rows_of_scans(chosen, kept, selection, registration)
-    positions = dict(zip(chosen.tolist(), kept.map_from_sensor[rows, :3, 3], strict=True))
-    looked = ray_set.gather_rays(store.scans(chosen), positions, planar=store.planar)
-    track_m = kept.map_from_sensor[:, :2, 3]
-    segments = {column: values[used] for column, values in seen.items()}
-    up = kept.map_from_sensor[rows, :3, 2]
+    scan_ids = np.sort(ordering["scan_id"][:count])
+    is_used = np.isin(observed["scan_id"], scan_ids)
+    messages.check_segments(walls, observed, is_used, count)
+    segments = {column: values[is_used] for column, values in observed.items()}
+    registered = registered_scans.read_registered_scans(registration)
+    rows = registered_scans.rows_of_scans(scan_ids, registered, selection, registration)
+    poses = registered.map_from_sensor
+    store = tables.ScanStore(scans)
+    sensors_m = dict(zip(scan_ids.tolist(), poses[rows, :3, 3], strict=True))
+    rays = ray_set.gather_rays(store.scans(scan_ids), sensors_m, planar=store.planar)
     plan = planning.make_plan(
-        segments, looked, track_m, kept.t_ns[rows], planning.make_plan_settings(**settings), up
+        segments,
+        rays,
+        poses[:, :2, 3],
+        registered.t_ns[rows],
+        planning.make_plan_settings(**settings),
+        poses[rows, :3, 2],
     )
-    messages.check_plan(walls, plan, used.sum(), count)
+    messages.check_plan(walls, plan, is_used.sum(), count)
     for name, schema in planning.TABLES.items():
         tables.write_table(outputs[name], schema, getattr(plan, name), allow_empty=True)
-    if warning := messages.sparse_rays_warning(looked, settings["openings"]["min_opening_m"]):
+    if warning := messages.sparse_rays_warning(rays, settings["openings"]["min_opening_m"]):
         log.log_line(f"assemble_plan: {warning}")
     log.log_line(
-        f"assemble_plan: {used.sum():,} segments of {count} scans ({reason}) make {messages.summarise_plan(plan)}"
+        f"assemble_plan: {is_used.sum():,} segments of {count} scans ({reason})"
+        f" make {messages.summarise_plan(plan)}"
     )
 
 

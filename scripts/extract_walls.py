@@ -1,6 +1,7 @@
-"""Find the wall segments that each scan shows (thesis, sections 3.4 and 5.3)."""
+"""Extract the wall segments that each scan shows (thesis, sections 3.4 and 5.3)."""
 
 import time
+from collections.abc import Mapping
 
 from scanplan.errors import StageError
 from scanplan.extraction import map_tilt, segments
@@ -10,9 +11,18 @@ from scanplan.stage import log
 from scanplan.stage.per_registered_scan import sensor_keywords
 from scanplan.stage.per_scan import map_scans
 from scanplan.store import schemas, tables
+from scanplan.types import FilePath, FloatArray, Settings
 
 
-def extract_walls(scans, registration, output, *, extractor, settings, threads=1):
+def extract_walls(
+    scans: FilePath,
+    registration: FilePath,
+    output: FilePath,
+    *,
+    extractor: str,
+    settings: Settings,
+    threads: int = 1,
+) -> None:
     """Write the walls of every registered scan.
 
     Parameters
@@ -27,38 +37,40 @@ def extract_walls(scans, registration, output, *, extractor, settings, threads=1
         Of that extractor's class of settings, and of `furniture.FurnitureLimits`.
     threads : int
     """
+    started = time.perf_counter()
     if extractor not in EXTRACTORS:
         raise StageError(
             f"extractor {extractor}: is not known; choose one of {', '.join(EXTRACTORS)}"
         )
-    method, store, started = EXTRACTORS[extractor], tables.ScanStore(scans), time.perf_counter()
-    every_scan = {
-        "planar": store.planar,
-        "extractor": method,
-        "settings": select_settings(method.settings, settings),
-        "limits": select_settings(FurnitureLimits, settings),
-    }
-    per_scan = sensor_keywords(store.scan_ids, scans, registration)
-    found = map_scans(
+    method = EXTRACTORS[extractor]
+    store = tables.ScanStore(scans)
+    sensors = sensor_keywords(store.scan_ids, scans, registration)
+    wall_segments = map_scans(
         find_wall_segments,
         scans,
         label=f"extract_walls {extractor}",
         threads=threads,
-        per_scan=per_scan,
-        **every_scan,
+        per_scan=sensors,
+        planar=store.planar,
+        extractor=method,
+        settings=select_settings(method.settings, settings),
+        limits=select_settings(FurnitureLimits, settings),
     )
-    looked_at = (
-        (store.read(i), per_scan[i]["sensor_xyz_m"])
-        for i in map_tilt.sample_scan_ids(store.scan_ids.tolist())
-    )
-    if not store.planar and (tilted := map_tilt.tilt_warning(looked_at)):
-        log.log_line(f"extract_walls: {tilted}")
-    columns = segments.segment_columns(store.scan_ids, found)
+    if not store.planar:
+        _warn_of_tilt(store, sensors)
+    columns = segments.segment_columns(store.scan_ids, wall_segments)
     tables.write_table(output, schemas.WALLS, columns, allow_empty=True)
     took_ms = 1e3 * (time.perf_counter() - started)
-    log.log_line(
-        f"extract_walls: {extractor}, {segments.summarise_segments(columns, len(store.scan_ids), took_ms)}"
-    )
+    summary = segments.summarise_segments(columns, len(store.scan_ids), took_ms)
+    log.log_line(f"extract_walls: {extractor}, {summary}")
+
+
+def _warn_of_tilt(store: tables.ScanStore, sensors: Mapping[int, Mapping[str, FloatArray]]) -> None:
+    """Log a warning if the map is tilted."""
+    sample_ids = map_tilt.sample_scan_ids(store.scan_ids.tolist())
+    sample = ((store.read(i), sensors[i]["sensor_xyz_m"]) for i in sample_ids)
+    if warning := map_tilt.tilt_warning(sample):
+        log.log_line(f"extract_walls: {warning}")
 
 
 if __name__ == "__main__":

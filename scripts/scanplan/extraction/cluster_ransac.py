@@ -5,23 +5,24 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.extraction import mean_shift, normals, segments
-from scanplan.extraction.segments import Row
+from scanplan.extraction.segment_limits import Row, SegmentLimits
 from scanplan.geometry import ransac
 from scanplan.rays.face_rays import SKIRTING_M
 from scanplan.rays.ray_set import RaySet
-from scanplan.types import FloatArray
+from scanplan.types import BoolArray, FloatArray, IntArray
 
-_DUAL_SHIFT_M = 1.0
+_DUAL_SHIFT_M = 1.0  # several bandwidths: keeps dual points apart that differ in direction
 _ALIKE = np.cos(np.deg2rad(20))  # a point's normal against its wall's
 _CORNER_REACH = 1.5  # how far a corner smears normals, in reaches
-_WIDE = 2.0
-_LEAST_REFIT = 3
-_STEEP = np.cos(np.deg2rad(45))
+_WIDE = 2.0  # inlier distances: noise within leaves no second wall beside the first
+_LEAST_REFIT = 3  # points: any two fit a line
+_STEEP = np.cos(np.deg2rad(45))  # a normal more upright points up rather than out
+_LEAST_LEVEL = 1e-9  # length of a normal's level part, where it is plumb: no division by 0
 
 
 @dataclass(frozen=True, kw_only=True)
-class ClusterRansacSettings(segments.SegmentLimits):
-    """How walls are found, beside what a wall segment must be (`segments.SegmentLimits`).
+class ClusterRansacSettings(SegmentLimits):
+    """How walls are extracted, beside what a wall segment must be (`SegmentLimits`).
 
     Attributes
     ----------
@@ -41,21 +42,50 @@ class ClusterRansacSettings(segments.SegmentLimits):
     trials: int
 
 
+@dataclass(frozen=True)
+class _Surfaces:
+    """A scan's cells, and which of them may be of walls.
+
+    Attributes
+    ----------
+    cells : normals.SurfaceCells
+    facing : (m, 2) float64
+        Level unit normals.
+    upright, level : (m,) bool
+        Whether a cell's normal is about horizontal, as a wall's, or points up.
+    """
+
+    cells: normals.SurfaceCells
+    facing: FloatArray
+    upright: BoolArray
+    level: BoolArray
+
+
+@dataclass(frozen=True)
+class _WallPoints:
+    """A line, the points (n, 3) on it that face its way, and others (k, 3) near it."""
+
+    normal: FloatArray
+    offset_m: float
+    facing_xyz_m: FloatArray
+    spare_xyz_m: FloatArray
+
+
 def extract_by_clusters(
     scan_id: int, points: FloatArray, scan: RaySet | None, settings: ClusterRansacSettings
 ) -> list[Row]:
-    """Find the wall segments of one scan.
+    """Extract the wall segments of one scan.
 
-    Points on vertical surfaces are projected along their normals, where the points of one wall
-    meet; mean shift finds the places. One RANSAC line per place, heaviest first, takes every point
-    on it that faces its way; the stretches where these do not pause are the walls.
+    Points on vertical surfaces are projected along their normals to dual points: those of one wall
+    coincide, and mean shift clusters them. One RANSAC line per cluster, heaviest first, takes every
+    point on it that faces its way; the runs in which these do not pause are the walls.
 
     Parameters
     ----------
     scan_id : int
         Random draws depend on it.
     points : (n, 3) float64
-        The scan's points relative to its sensor, as `geometry.points.centre_on_sensor` gives them.
+        The scan's points relative to its sensor, as `sensor_frame.centre_on_sensor` returns them.
     scan : ray_set.RaySet, optional
         Its rays; None in the plane.
     settings : ClusterRansacSettings
@@ -63,78 +93,44 @@ def extract_by_clusters(
     Returns
     -------
     list of tuple
-        As `segments.cut_line` gives them: walls and furniture alike.
+        As `segments.cut_line` returns them: walls and furniture alike.
     """
-    surfaces = _surfaces(points, scan, settings)
-    cells, facing = surfaces.cells, surfaces.facing
+    surfaces = _find_surfaces(points, scan, settings)
     free = surfaces.upright.copy()
     rng = np.random.default_rng([settings.seed, scan_id])
-    rows = []
-    for cluster in _clusters(surfaces, settings.bandwidth_m):
+    reach_rad = _CORNER_REACH * np.deg2rad(settings.reach_deg)
+    least = settings.least_points(scan is None)
+    rows: list[Row] = []
+    for cluster in _cluster_cells(surfaces, settings.bandwidth_m):
         own = cluster[free[cluster]]
-        if cells.count[own].sum() < settings.least_points(scan is None):
+        if surfaces.cells.count[own].sum() < least:
             continue
-        line = ransac.fit_line_ransac(
-            cells.mean_m[own, :2],
-            inlier_m=settings.inlier_m,
-            trials=settings.trials,
-            rng=rng,
-            weight=cells.count[own],
-        )
-        normal, offset_m, on_wall, spare = _gather(
-            points, surfaces, free, line[:2], settings.inlier_m
-        )
-        reach_rad = _CORNER_REACH * np.deg2rad(settings.reach_deg)
-        found = segments.cut_line(
-            normal, offset_m, on_wall, settings, scan=scan, spare_xyz_m=spare, reach_rad=reach_rad
+        wall = _fit_wall(points, surfaces, own, free, settings, rng)
+        wall_rows = segments.cut_line(
+            wall.normal,
+            wall.offset_m,
+            wall.facing_xyz_m,
+            settings,
+            scan=scan,
+            spare_xyz_m=wall.spare_xyz_m,
+            reach_rad=reach_rad,
         )
         # twice as wide as what belongs to them, else noise leaves a second wall beside the first
-        alike = -facing @ normal > _ALIKE
-        free &= ~(alike & _beside(cells.mean_m[:, :2], found, _WIDE * settings.inlier_m))
-        rows += found
+        is_beside = _is_beside(surfaces.cells.mean_m[:, :2], wall_rows, _WIDE * settings.inlier_m)
+        free &= ~(_is_alike(surfaces, wall.normal) & is_beside)
+        rows += wall_rows
     return rows
 
 
-def _clusters(surfaces, bandwidth_m):
-    """Return the upright cells of each cluster of feet, by the heaviest cluster."""
-    (upright,) = np.nonzero(surfaces.upright)
-    mean_m, weight = surfaces.cells.mean_m[upright, :2], surfaces.cells.count[upright]
-    label, places = mean_shift.mean_shift(
-        project_along_normals(mean_m, surfaces.facing[upright]),
-        bandwidth_m=bandwidth_m,
-        weight=weight,
-    )
-    return [upright[label == cluster] for cluster in range(len(places))]
+def project_along_normals(xy_m: FloatArray, facing: FloatArray) -> FloatArray:
+    """Project points along their normals to dual points.
 
+    A dual point is the foot of the perpendicular from the sensor onto the tangent at a point.
 
-def _gather(points, surfaces, free, line, inlier_m):
-    """Return the line refitted to the points that face its way, these, and others near it."""
-    cells, (normal, offset_m) = surfaces.cells, line
-    near = np.abs(cells.mean_m[:, :2] @ normal - offset_m) <= inlier_m + cells.radius_m
-    alike = free & (-surfaces.facing @ normal > _ALIKE)
-    facing = points[cells.points_of(np.flatnonzero(near & alike))]
-    other = points[cells.points_of(np.flatnonzero(near & ~alike & ~surfaces.level))]
-    on_wall = np.abs(facing[:, :2] @ normal - offset_m) <= inlier_m
-    if on_wall.sum() >= _LEAST_REFIT:
-        normal, offset_m, on_wall = ransac.refit_line(
-            facing[:, :2], normal, offset_m, inlier_m=inlier_m
-        )
-    return (
-        normal,
-        offset_m,
-        facing[on_wall],
-        other[np.abs(other[:, :2] @ normal - offset_m) <= inlier_m],
-    )
-
-
-def project_along_normals(xy_m, facing):
-    """Project points along their normals.
-
-    The feet of the perpendiculars from the sensor onto their tangents.
-
-    The points of one wall have one foot. Walls that pass close to the sensor would all have theirs
-    at the sensor, so every foot is moved outward by 1 m: (distance + 1 m) away, in the direction of
-    the wall; that keeps apart what differs in direction, and the map from lines to feet one to one.
+    The points of one wall have one dual point. Walls that pass close to the sensor would all have
+    theirs at the sensor, so each is moved outward by 1 m: (distance + 1 m) away, in the direction
+    of the wall; that keeps apart what differs in direction, and the map from lines to dual points
+    one to one.
 
     Parameters
     ----------
@@ -151,43 +147,88 @@ def project_along_normals(xy_m, facing):
     return -(distance_m + _DUAL_SHIFT_M)[:, None] * facing
 
 
-def _beside(xy_m, rows, width_m):
-    """Tell which points are within a width of any of the segments that `segments.cut_line` gave."""
-    beside = np.zeros(len(xy_m), bool)
-    for x0, y0, x1, y1, nx, ny, *_ in rows:
-        from_start = xy_m - (x0, y0)
-        length_m = np.hypot(x1 - x0, y1 - y0)
-        along_m = from_start @ (x1 - x0, y1 - y0) / length_m
-        beside |= (
-            (along_m >= 0) & (along_m <= length_m) & (np.abs(from_start @ (nx, ny)) <= width_m)
-        )
-    return beside
-
-
-@dataclass(frozen=True)
-class _Surfaces:
-    """A scan's cells, their level unit normals (m, 2), which are upright, which are level."""
-
-    cells: normals.SurfaceCells
-    facing: np.ndarray
-    upright: np.ndarray
-    level: np.ndarray
-
-
-def _surfaces(points, scan, settings):
+def _find_surfaces(
+    points: FloatArray, scan: RaySet | None, settings: ClusterRansacSettings
+) -> _Surfaces:
+    """Return the cells of a scan's points (n, 3); without rays, those of its outlines."""
     if scan is None:
-        cells = normals.cut_outline_cells(points[:, :2], reach_deg=settings.reach_deg)
-        known = np.isfinite(cells.normal[:, 0])
-        return _Surfaces(
-            cells, np.where(known[:, None], cells.normal, 0), known, np.zeros(len(points), bool)
-        )
+        return _find_outlines(points, settings)
     cells = normals.cut_surface_cells(points, reach_deg=settings.reach_deg)
-    known = np.isfinite(cells.normal[:, 0])
-    normal = np.where(known[:, None], cells.normal, 0)
-    upright = known & (np.abs(normal[:, 2]) <= np.sin(np.deg2rad(settings.max_tilt_deg)))
-    facing = normal[:, :2] / np.maximum(np.hypot(*normal[:, :2].T), 1e-9)[:, None]
+    has_normal = np.isfinite(cells.normal[:, 0])
+    normal = np.where(has_normal[:, None], cells.normal, 0)
+    upright = has_normal & (np.abs(normal[:, 2]) <= np.sin(np.deg2rad(settings.max_tilt_deg)))
+    facing = normal[:, :2] / np.maximum(np.hypot(*normal[:, :2].T), _LEAST_LEVEL)[:, None]
     # between these heights, a normal that points up is a shelf's or a sill's, or of a strip of wall
     # too narrow for one
     height_m = cells.mean_m[:, 2] - scan.floor_z_m
     outside = (height_m < SKIRTING_M) | (height_m > settings.door_height_m)
     return _Surfaces(cells, facing, upright, outside & (np.abs(normal[:, 2]) >= _STEEP))
+
+
+def _find_outlines(points: FloatArray, settings: ClusterRansacSettings) -> _Surfaces:
+    """Return the cells of a planar scan: one a point, none of them level."""
+    cells = normals.cut_outline_cells(points[:, :2], reach_deg=settings.reach_deg)
+    has_normal = np.isfinite(cells.normal[:, 0])
+    facing = np.where(has_normal[:, None], cells.normal, 0)
+    return _Surfaces(cells, facing, has_normal, np.zeros(len(points), bool))
+
+
+def _cluster_cells(surfaces: _Surfaces, bandwidth_m: float) -> list[IntArray]:
+    """Return the upright cells of each cluster of dual points, by the heaviest cluster."""
+    (upright,) = np.nonzero(surfaces.upright)
+    mean_m = surfaces.cells.mean_m[upright, :2]
+    label, modes_m = mean_shift.mean_shift(
+        project_along_normals(mean_m, surfaces.facing[upright]),
+        bandwidth_m=bandwidth_m,
+        weight=surfaces.cells.count[upright],
+    )
+    return [upright[label == cluster] for cluster in range(len(modes_m))]
+
+
+def _fit_wall(
+    points: FloatArray,
+    surfaces: _Surfaces,
+    own: IntArray,
+    free: BoolArray,
+    settings: ClusterRansacSettings,
+    rng: np.random.Generator,
+) -> _WallPoints:
+    """Fit a line to a cluster's cells, then to the points of all free cells that face its way."""
+    cells = surfaces.cells
+    inlier_m = settings.inlier_m
+    normal, offset_m, _ = ransac.fit_line_ransac(
+        cells.mean_m[own, :2],
+        inlier_m=inlier_m,
+        trials=settings.trials,
+        rng=rng,
+        weight=cells.count[own].astype(float),
+    )
+    is_near = np.abs(cells.mean_m[:, :2] @ normal - offset_m) <= inlier_m + cells.radius_m
+    is_own = free & _is_alike(surfaces, normal)
+    facing = points[cells.points_of(np.flatnonzero(is_near & is_own))]
+    other = points[cells.points_of(np.flatnonzero(is_near & ~is_own & ~surfaces.level))]
+    on_wall = np.abs(facing[:, :2] @ normal - offset_m) <= inlier_m
+    if on_wall.sum() >= _LEAST_REFIT:
+        normal, offset_m, on_wall = ransac.refit_line(
+            facing[:, :2], normal, offset_m, inlier_m=inlier_m
+        )
+    is_spare = np.abs(other[:, :2] @ normal - offset_m) <= inlier_m
+    return _WallPoints(normal, float(offset_m), facing[on_wall], other[is_spare])
+
+
+def _is_alike(surfaces: _Surfaces, normal: FloatArray) -> BoolArray:
+    """Return which cells (m,) face the way of a line whose normal points away from the sensor."""
+    return -surfaces.facing @ normal > _ALIKE
+
+
+def _is_beside(xy_m: FloatArray, rows: list[Row], width_m: float) -> BoolArray:
+    """Return which points (n,) are within a width of any segment of `segments.cut_line`."""
+    is_beside = np.zeros(len(xy_m), bool)
+    for x0_m, y0_m, x1_m, y1_m, nx, ny, *_ in rows:
+        from_start_m = xy_m - (x0_m, y0_m)
+        step_m = (x1_m - x0_m, y1_m - y0_m)
+        length_m = np.hypot(*step_m)
+        along_m = from_start_m @ step_m / length_m
+        is_along = (along_m >= 0) & (along_m <= length_m)
+        is_beside |= is_along & (np.abs(from_start_m @ (nx, ny)) <= width_m)
+    return is_beside

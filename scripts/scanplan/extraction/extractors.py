@@ -1,39 +1,43 @@
-"""Wall segments of one scan.
-
-An extractor, and the classifier that tells walls from furniture, composed.
+"""Wall segments of one scan: an extractor and the classifier of furniture, composed.
 
 The extractors by name stand here and nowhere else. The thesis's own are these with no classifier.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from scanplan.extraction import cluster_ransac, furniture, iterative_ransac, segments
-from scanplan.extraction.segments import Row, SegmentLimits
+from scanplan.extraction.segment_limits import Row, SegmentLimits
 from scanplan.rays.ray_set import RaySet
 from scanplan.rays.sensor_frame import centre_on_sensor
 from scanplan.types import FloatArray, Settings
 
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+_Class = TypeVar("_Class", bound="DataclassInstance")
+
 
 @dataclass(frozen=True)
 class Extractor:
-    """A way to find the wall segments of one scan.
+    """A way to extract the wall segments of one scan.
 
     Attributes
     ----------
     settings : type
-        A class of settings, with those of `segments.SegmentLimits`.
+        A class of settings, with those of `SegmentLimits`.
     extract : callable
         Called with the scan's id, its points, its rays and the settings; returns rows of
         `segments.cut_line`.
     """
 
     settings: type[SegmentLimits]
+    # the class of the last argument is that of `settings`
     extract: Callable[[int, FloatArray, RaySet | None, Any], list[Row]]
 
 
-EXTRACTORS = {
+EXTRACTORS: dict[str, Extractor] = {
     "cluster_ransac": Extractor(
         cluster_ransac.ClusterRansacSettings, cluster_ransac.extract_by_clusters
     ),
@@ -43,8 +47,8 @@ EXTRACTORS = {
 }
 
 
-def select_settings(kind: type, settings: Settings) -> Any:
-    """Return a class of settings, a dataclass, made from those of more settings that it has."""
+def select_settings(kind: type[_Class], settings: Settings) -> _Class:
+    """Make a dataclass of settings from the values it has fields for, among more of them."""
     return kind(**{field.name: settings[field.name] for field in fields(kind)})
 
 
@@ -58,7 +62,7 @@ def find_wall_segments(
     settings: SegmentLimits,
     limits: furniture.FurnitureLimits | None = None,
 ) -> segments.WallSegments:
-    """Find the wall segments of one scan.
+    """Extract the wall segments of one scan, without furniture.
 
     Parameters
     ----------
@@ -73,7 +77,7 @@ def find_wall_segments(
     settings : SegmentLimits
         Of the extractor's class.
     limits : furniture.FurnitureLimits, optional
-        What furniture is; without it, it stays among the segments.
+        What furniture is; without them, it stays among the segments.
 
     Raises
     ------

@@ -1,7 +1,4 @@
-"""How faces lie to each other.
-
-Which stand before which, meet at corners, and go on from each other on one line.
-"""
+"""How faces lie to each other: in front, across at a corner, or on one line."""
 
 import math
 from dataclasses import dataclass
@@ -48,7 +45,8 @@ class Faces:
     @cached_property
     def length_m(self) -> FloatArray:
         """Length of each face, (n,)."""
-        return np.hypot(*(self.ends_m[:, 1] - self.ends_m[:, 0]).T)
+        step_m = self.ends_m[:, 1] - self.ends_m[:, 0]
+        return np.hypot(step_m[:, 0], step_m[:, 1])
 
     @cached_property
     def middle_m(self) -> FloatArray:
@@ -58,7 +56,7 @@ class Faces:
     @cached_property
     def line_length_m(self) -> FloatArray:
         """How long all faces of each one's line are together, (n,)."""
-        return np.bincount(self.line, self.length_m)[self.line]
+        return np.bincount(self.line, self.length_m).astype(float)[self.line]
 
     @cached_property
     def forward_m(self) -> FloatArray:
@@ -115,7 +113,7 @@ def stand_before(faces: Faces, chosen: BoolArray, *, depth_m: float, door_m: flo
     before = faces.is_parallel & (faces.forward_m > LEVEL_M) & (faces.forward_m <= depth_m)
     before &= faces.line_length_m[:, None] < faces.line_length_m
     before &= chosen[:, None]
-    for one in np.flatnonzero(before.any(axis=1)):
+    for one in np.flatnonzero(before.any(axis=1)).tolist():
         others = np.flatnonzero(before[one])
         spans_m = np.sort(faces.along_m(one, faces.ends_m[others]), axis=1)
         spans_m = np.clip(spans_m, *_find_room(faces, one, door_m))
@@ -139,7 +137,8 @@ def find_corner_faces(faces: Faces, reach_m: float) -> tuple[BoolArray, BoolArra
         Whether at the start and the end of a face each other one makes an inner corner with it, in
         which either stands before the other, or an outer one, at which both turn away.
     """
-    ends_m, normal = faces.ends_m, faces.normal
+    ends_m = faces.ends_m
+    normal = faces.normal
     inner = np.zeros((len(ends_m), 2, len(ends_m)), bool)
     outer = inner.copy()
     across = np.abs(normal @ normal.T) < _ACROSS
@@ -163,9 +162,9 @@ def find_collinear_faces(faces: Faces, gap_m: float) -> BoolArray:
 
 
 def _find_front(faces: Faces, one: int, door_m: float) -> tuple[float, float]:
-    """Return from where to where along its line a face goes on beyond gaps no wider than a door."""
-    same = np.flatnonzero(faces.line == faces.line[one])
-    spans_m = np.sort(faces.along_m(one, faces.ends_m[same]), axis=1).tolist()
+    """Return the extent of a face along its line, gaps no wider than a door included."""
+    own_line = np.flatnonzero(faces.line == faces.line[one])
+    spans_m = np.sort(faces.along_m(one, faces.ends_m[own_line]), axis=1).tolist()
     low_m, high_m = np.sort(faces.along_m(one, faces.ends_m[one])).tolist()
     for begin_m, end_m in sorted(spans_m):
         if begin_m <= high_m + door_m:
@@ -177,10 +176,7 @@ def _find_front(faces: Faces, one: int, door_m: float) -> tuple[float, float]:
 
 
 def _find_room(faces: Faces, one: int, door_m: float) -> tuple[float, float]:
-    """Return from where to where along its line the room before a face goes.
-
-    To what stands across and faces it.
-    """
+    """Return the extent along its line of the room before a face, between what stands across."""
     direction = np.array([faces.normal[one, 1], -faces.normal[one, 0]])
     facing = faces.normal @ direction
     before_m = np.sort((faces.ends_m - faces.middle_m[one]) @ faces.normal[one], axis=1)

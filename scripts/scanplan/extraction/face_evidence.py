@@ -1,6 +1,6 @@
-"""What the rays of one scan say of a face.
+"""What the rays of one scan show of a face.
 
-How high it is, what passes over and through it, what it does not return.
+How high it is, what passes over and through it, which expected returns are missing.
 """
 
 from dataclasses import dataclass
@@ -13,19 +13,19 @@ from scanplan.rays.face_raster import SCAN_COLUMN_M, rasterise_rays
 from scanplan.rays.face_rays import ON_M, SKIRTING_M, cast_at_face
 from scanplan.rays.ray_set import RaySet
 
-BEHIND_M = 0.15  # a return farther behind a face is not its own
-_EDGE_ON_M = 1e-3  # a face through the sensor is seen edge on
+BEHIND_M = 0.15  # a return farther behind a face is not its own: noise of ranges
+_EDGE_ON_M = 1e-3  # a face nearer to the sensor is seen edge on
 _GOOD_SHARE = 0.15  # of rays: fewer may be stray
 
 
 @dataclass(frozen=True)
 class FaceEvidence:
-    """What rays say of a face.
+    """What rays show of a face.
 
     Attributes
     ----------
     top_m : float
-        Height above the floor up to which it is seen over a good stretch.
+        Height above the floor up to which it is seen over a good part of its length.
     over : float
         How surely it ends at some height, see `face_raster.FaceRaster.over_share`.
     through : float
@@ -43,7 +43,7 @@ class FaceEvidence:
 def weigh_face(
     rays: RaySet, line: Line, span_m: tuple[float, float], heights_m: tuple[float, float]
 ) -> FaceEvidence:
-    """Return what one scan's rays say of a face.
+    """Return what one scan's rays show of a face.
 
     Parameters
     ----------
@@ -55,7 +55,8 @@ def weigh_face(
         Of its returns, above the floor.
     """
     face = cast_at_face(rays, line, *span_m, at_m=ON_M, least_side_m=_EDGE_ON_M)
-    is_on, is_beyond = face.is_occupied, face.is_free(BEHIND_M)
+    is_on = face.is_occupied
+    is_beyond = face.is_free(BEHIND_M)
     is_raised = face.height_m > SKIRTING_M
     raster = rasterise_rays(
         (face.along_m[is_on], face.height_m[is_on]),

@@ -1,6 +1,6 @@
 """Which faces are walls, and which are furniture, stairs or glass.
 
-The one classifier, for one scan or all together.
+One classifier, for one scan or all together.
 
 A wall goes on upward as far as rays reach, lets none through, and has nothing like it close behind.
 Where no ray could show that it ends, a low face is judged by its corners: walls meet in the inner
@@ -22,7 +22,7 @@ from scanplan.extraction.face_arrangement import (
     stand_before,
     stand_in_front,
 )
-from scanplan.extraction.segments import Row
+from scanplan.extraction.segment_limits import Row
 from scanplan.geometry.lines import Line
 from scanplan.rays.ray_set import RaySet
 from scanplan.types import BoolArray, FloatArray
@@ -30,7 +30,7 @@ from scanplan.types import BoolArray, FloatArray
 
 @dataclass(frozen=True, kw_only=True)
 class FurnitureLimits:
-    """What tells a wall from furniture.
+    """What distinguishes a wall from furniture.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class FurnitureLimits:
         scatters more. In space asked of what may be furniture.
     wall_height_m : float
         A face seen up to here above the floor, and not seen to end, is a wall; a lower one where
-        its corners tell.
+        its corners decide.
     furniture_height_m : float
         A face seen higher is no furniture.
     hang_height_m : float
@@ -61,7 +61,7 @@ class FurnitureLimits:
         Shorter faces are walls only where they go on beyond a door or end in inner corners on both
         sides.
     door_width_m : float
-        Walls on one line no farther apart than this are pieces of one, if what is between leads on.
+        Walls on one line no farther apart than this are parts of one, if what is between leads on.
     corner_m : float
         Ends no farther apart than this meet, and what prolongs a face pauses for no longer.
     """
@@ -83,9 +83,7 @@ class FurnitureLimits:
 def find_furniture_fronts(
     faces: Faces, limits: FurnitureLimits, is_wall: BoolArray | None = None
 ) -> BoolArray:
-    """Return which faces (n,) are fronts of furniture.
-
-    Seen from a room, they stand before a wall beside them.
+    """Return which faces (n,) are fronts of furniture: before a wall seen beside them.
 
     The wall is what is longer of the two lines: of a niche and the walls beside it these stay, as
     does the wall of a room beside one that is deeper. A pilaster of which no more is seen than of a
@@ -114,14 +112,14 @@ def find_furniture_fronts(
 
 
 def keep_walls(rows: list[Row], scan: RaySet | None, limits: FurnitureLimits) -> list[Row]:
-    """Keep the segments of one scan that are walls.
+    """Return the segments of one scan that are walls.
 
     Parameters
     ----------
     rows : list of tuple
-        As `segments.cut_line` gives them, relative to the sensor.
+        As `segments.cut_line` returns them, relative to the sensor.
     scan : ray_set.RaySet, optional
-        Of all points of the scan. Without it, in the plane, only the scatter is judged: no ray
+        Of all points of the scan. Without it, in the plane, only the scatter decides: no ray
         passes over anything.
     limits : FurnitureLimits
     """
@@ -132,45 +130,71 @@ def keep_walls(rows: list[Row], scan: RaySet | None, limits: FurnitureLimits) ->
         is_wall = values[:, 7] <= limits.max_rmse_m
     else:
         is_wall = _upright_walls(values, scan, limits)
-    return [row for row, good in zip(rows, is_wall.tolist(), strict=True) if good]
+    return [row for row, is_kept in zip(rows, is_wall.tolist(), strict=True) if is_kept]
 
 
 def _upright_walls(values: FloatArray, scan: RaySet, limits: FurnitureLimits) -> BoolArray:
-    """Return which rows (n, 10) are walls, by what the rays of a 3-D scan say."""
+    """Return which rows (n, 10) are walls, by what the rays of a 3-D scan show."""
     evidence = [_weigh_row(scan, row) for row in values]
-    top_m = np.array([e.top_m for e in evidence])
     faces = Faces(
         ends_m=values[:, 0:4].reshape(-1, 2, 2),
         normal=values[:, 4:6],
-        top_m=top_m,
+        top_m=np.array([e.top_m for e in evidence]),
         line=np.arange(len(values)),
     )
-    is_low = top_m < limits.furniture_height_m
+    is_low = faces.top_m < limits.furniture_height_m
     sound = _is_sound(values, evidence, is_low, scan.floor_z_m, limits)
     is_small = is_low & (faces.length_m <= limits.furniture_length_m)
     sound &= ~(is_small & (stand_in_front(faces, limits.furniture_depth_m) & sound).any(axis=1))
     inner, outer = find_corner_faces(faces, limits.corner_m)
-    closed = (inner & sound).any(axis=2).all(axis=1)
-    tall = top_m >= limits.wall_height_m
+    wall = _are_walls_by_corners(faces, sound, inner, outer, limits)
     plain = sound & ~outer.any(axis=(1, 2))
-    wall = sound & (tall | closed)
+    return wall | _go_on_beyond_doors(values, faces, wall, sound, plain, scan, limits)
+
+
+def _are_walls_by_corners(
+    faces: Faces, sound: BoolArray, inner: BoolArray, outer: BoolArray, limits: FurnitureLimits
+) -> BoolArray:
+    """Return which sound faces (n,) are tall, or walls by their inner corners.
+
+    Without the sides of furniture and low stubs.
+    """
+    is_low = faces.top_m < limits.furniture_height_m
+    closed = np.all((inner & sound).any(axis=2), axis=1)
+    plain = sound & ~outer.any(axis=(1, 2))
+    wall = sound & ((faces.top_m >= limits.wall_height_m) | closed)
     # what meets a wall in an inner corner is one, too, and so on
     while (joined := plain & ~wall & (inner & wall).any(axis=(1, 2))).any():
         wall |= joined
     # what is seen higher than a piece of furniture is no side of it
-    as_high = top_m[None, :] > top_m[:, None] - LEVEL_M
+    as_high = faces.top_m[None, :] > faces.top_m[:, None] - LEVEL_M
     beside_furniture = (outer & (~sound & as_high)[:, None]).any(axis=(1, 2))
     wall &= ~(beside_furniture & (faces.length_m <= limits.furniture_depth_m) & is_low)
     is_stub = faces.length_m < limits.stub_length_m
-    wall &= ~(is_stub & is_low & ~closed)
-    # beyond a door a wall goes on, however short what is seen of it there; if it is low, what is
-    # between must be a door
+    return wall & ~(is_stub & is_low & ~closed)
+
+
+def _go_on_beyond_doors(
+    values: FloatArray,
+    faces: Faces,
+    wall: BoolArray,
+    sound: BoolArray,
+    plain: BoolArray,
+    scan: RaySet,
+    limits: FurnitureLimits,
+) -> BoolArray:
+    """Return which faces (n,) go on from a wall beyond a door, however short they are.
+
+    Of a low one, what is between must be a door.
+    """
+    tall = faces.top_m >= limits.wall_height_m
+    is_stub = faces.length_m < limits.stub_length_m
     beyond = find_collinear_faces(faces, limits.door_width_m) & (wall & ~is_stub)
+    goes_on = sound & tall & beyond.any(axis=1)
     unsure = plain & ~tall & ~wall
-    wall |= sound & tall & beyond.any(axis=1)
     for one, other in np.argwhere(beyond & unsure[:, None]):
-        wall[one] |= _is_door_between(values[one], values[other], scan, limits)
-    return wall
+        goes_on[one] |= _is_door_between(values[one], values[other], scan, limits)
+    return goes_on
 
 
 def _is_sound(
@@ -180,10 +204,7 @@ def _is_sound(
     floor_z_m: float,
     limits: FurnitureLimits,
 ) -> BoolArray:
-    """Return which faces (n,) by themselves may be walls.
-
-    None of clutter, railings, glass, and none that ends low.
-    """
+    """Return which faces (n,) may be walls: no clutter, railing or glass, none that ends low."""
     is_pierced = np.array([e.through > limits.through_share for e in evidence])
     is_glass = np.array([e.missing > limits.missing_share for e in evidence])
     is_overlooked = np.array([e.over > limits.over_share for e in evidence])
@@ -193,6 +214,7 @@ def _is_sound(
 
 
 def _weigh_row(scan: RaySet, row: FloatArray) -> face_evidence.FaceEvidence:
+    """Return what a scan's rays show of the face of a row (10,)."""
     line = Line((row[0:2] + row[2:4]) / 2, row[4:6])
     low_m, high_m = np.sort(line.along_m(row[0:4].reshape(2, 2)))
     heights_m = float(row[8] - scan.floor_z_m), float(row[9] - scan.floor_z_m)
@@ -203,14 +225,15 @@ def _is_door_between(
     one: FloatArray, other: FloatArray, scan: RaySet, limits: FurnitureLimits
 ) -> bool:
     """Return whether what is between two rows on one line is a door, or nothing."""
-    if (other[2:4] - one[0:2]) @ (one[2:4] - one[0:2]) > 0:
-        one, other = other, one
-    start_m, end_m = other[2:4], one[0:2]
+    is_after = (other[2:4] - one[0:2]) @ (one[2:4] - one[0:2]) > 0
+    first, second = (one, other) if is_after else (other, one)
+    start_m = first[2:4]
+    end_m = second[0:2]
     if math.hypot(*(end_m - start_m)) <= limits.corner_m:
         return True
-    if (end_m - start_m) @ (one[2:4] - one[0:2]) < 0:
+    if (end_m - start_m) @ (second[2:4] - second[0:2]) < 0:
         # side by side: one stands before the other
         return False
-    line = Line(start_m, one[4:6])
+    line = Line(start_m, second[4:6])
     low_m, high_m = np.sort(line.along_m(np.array([start_m, end_m])))
     return face_evidence.gap_leads_on(scan, line, (low_m, high_m), limits.furniture_depth_m)

@@ -5,15 +5,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.extraction import segments
-from scanplan.extraction.segments import Row
+from scanplan.extraction.segment_limits import Row, SegmentLimits
 from scanplan.geometry import ransac
 from scanplan.rays.ray_set import RaySet
-from scanplan.types import FloatArray
+from scanplan.types import BoolArray, FloatArray
+
+_LEAST_POINTS = 3  # make a plane
 
 
 @dataclass(frozen=True, kw_only=True)
-class IterativeRansacSettings(segments.SegmentLimits):
-    """How walls are found, beside what a wall segment must be (`segments.SegmentLimits`).
+class IterativeRansacSettings(SegmentLimits):
+    """How walls are extracted, beside what a wall segment must be (`SegmentLimits`).
 
     Attributes
     ----------
@@ -33,7 +35,7 @@ class IterativeRansacSettings(segments.SegmentLimits):
 def extract_iteratively(
     scan_id: int, points: FloatArray, scan: RaySet | None, settings: IterativeRansacSettings
 ) -> list[Row]:
-    """Find the wall segments of one scan.
+    """Extract the wall segments of one scan.
 
     Find the plane (planar scans: the line) most points lie on, remove them, and repeat until it
     holds too few. Upright planes are walls, where their points do not pause; floors and ceilings
@@ -44,7 +46,7 @@ def extract_iteratively(
     scan_id : int
         Random draws depend on it.
     points : (n, 3) float64
-        The scan's points relative to its sensor, as `geometry.points.centre_on_sensor` gives them.
+        The scan's points relative to its sensor, as `sensor_frame.centre_on_sensor` returns them.
     scan : ray_set.RaySet, optional
         Its rays; None in the plane.
     settings : IterativeRansacSettings
@@ -52,29 +54,32 @@ def extract_iteratively(
     Returns
     -------
     list of tuple
-        As `segments.cut_line` gives them: walls and furniture alike.
+        As `segments.cut_line` returns them: walls and furniture alike.
     """
-    left, planar = points, scan is None
-    largest = _largest_line if planar else _largest_plane
-    least = max(settings.least_points(planar), 3)
+    planar = scan is None
+    fit_largest = _fit_largest_line if planar else _fit_largest_plane
+    least = max(settings.least_points(planar), _LEAST_POINTS)
     rng = np.random.default_rng([settings.seed, scan_id])
-    rows = []
+    rest = points
+    rows: list[Row] = []
     for _ in range(settings.max_planes):
-        if len(left) < least:
+        if len(rest) < least:
             break
-        upright, inliers = largest(left, settings, rng)
+        upright, inliers = fit_largest(rest, settings, rng)
         if inliers.sum() < least:
             break
-        found = left[inliers]
-        if upright and np.hypot(*np.ptp(found[:, :2], axis=0)) >= settings.min_length_m:
-            rows += segments.cut_line(
-                *ransac.fit_line_tls(found[:, :2]), found, settings, scan=scan
-            )
-        left = left[~inliers]
+        on_plane = rest[inliers]
+        extent_m = np.hypot(*np.ptp(on_plane[:, :2], axis=0))
+        if upright and extent_m >= settings.min_length_m:
+            normal, offset_m = ransac.fit_line_tls(on_plane[:, :2])
+            rows += segments.cut_line(normal, offset_m, on_plane, settings, scan=scan)
+        rest = rest[~inliers]
     return rows
 
 
-def find_largest_plane(xyz_m, *, inlier_m, trials, seed):
+def find_largest_plane(
+    xyz_m: FloatArray, *, inlier_m: float, trials: int, seed: int
+) -> tuple[FloatArray, BoolArray]:
     """Find the plane most points lie on (thesis, algorithm 4).
 
     Parameters
@@ -101,16 +106,22 @@ def find_largest_plane(xyz_m, *, inlier_m, trials, seed):
     return plane[:3], inliers
 
 
-def _largest_line(xyz_m, settings, rng):
-    inliers = ransac.fit_line_ransac(
+def _fit_largest_line(
+    xyz_m: FloatArray, settings: IterativeRansacSettings, rng: np.random.Generator
+) -> tuple[bool, BoolArray]:
+    """Return true, a planar scan's lines being upright, and the points (n,) of the largest."""
+    _, _, inliers = ransac.fit_line_ransac(
         xyz_m[:, :2], inlier_m=settings.inlier_m, trials=settings.trials, rng=rng
-    )[2]
+    )
     return True, inliers
 
 
-def _largest_plane(xyz_m, settings, rng):
+def _fit_largest_plane(
+    xyz_m: FloatArray, settings: IterativeRansacSettings, rng: np.random.Generator
+) -> tuple[bool, BoolArray]:
+    """Return whether the largest plane is upright, and its points (n,)."""
     seed = int(rng.integers(2**31))
     normal, inliers = find_largest_plane(
         xyz_m, inlier_m=settings.inlier_m, trials=settings.trials, seed=seed
     )
-    return abs(normal[2]) <= np.sin(np.deg2rad(settings.max_tilt_deg)), inliers
+    return bool(abs(normal[2]) <= np.sin(np.deg2rad(settings.max_tilt_deg))), inliers

@@ -3,10 +3,13 @@
 Floors, ceilings and table tops are square to it, walls along it.
 """
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from scanplan.extraction import normals
 from scanplan.rays import sensor_frame
+from scanplan.types import Array, BoolArray, FloatArray
 
 _NEAR_RAD = np.deg2rad(5)  # what normals of good surfaces scatter by
 _STEEPEST = np.cos(np.deg2rad(45))  # a map that is tilted more is no case of this
@@ -17,16 +20,14 @@ _SCANS = 10  # enough to see a floor somewhere
 _REACH_DEG = 3.5  # as between the beams of a coarse sensor, one and a half times
 
 
-def sample_scan_ids(scan_ids):
+def sample_scan_ids(scan_ids: list[int]) -> list[int]:
     """Return up to 10 of the scans' ids, spread evenly."""
-    return [
-        scan_ids[i]
-        for i in np.unique(np.linspace(0, len(scan_ids) - 1, _SCANS).round().astype(int))
-    ]
+    places = np.linspace(0, len(scan_ids) - 1, _SCANS).round().astype(int)
+    return [scan_ids[i] for i in np.unique(places)]
 
 
-def tilt_warning(scans):
-    """Say that a map is tilted, if its surfaces tell so.
+def tilt_warning(scans: Iterable[tuple[FloatArray, FloatArray]]) -> str:
+    """Return a warning that a map is tilted, if its surfaces show it.
 
     Parameters
     ----------
@@ -36,28 +37,29 @@ def tilt_warning(scans):
     Returns
     -------
     str
-        Empty if z is up, or nothing tells.
+        Empty if z is up, or too little is seen.
     """
-    found, weight = [np.empty((0, 3))], [np.empty(0)]
+    normal: list[FloatArray] = [np.empty((0, 3))]
+    weight: list[Array] = [np.empty(0)]
     for xyz_m, sensor_xyz_m in scans:
-        cells = normals.cut_surface_cells(
-            sensor_frame.centre_on_sensor(xyz_m, sensor_xyz_m), reach_deg=_REACH_DEG
-        )
-        known = np.isfinite(cells.normal[:, 0])
-        found.append(cells.normal[known])
-        weight.append(cells.count[known])
-    up = estimate_up_direction(np.concatenate(found), np.concatenate(weight))
+        points = sensor_frame.centre_on_sensor(xyz_m, sensor_xyz_m)
+        cells = normals.cut_surface_cells(points, reach_deg=_REACH_DEG)
+        has_normal = np.isfinite(cells.normal[:, 0])
+        normal.append(cells.normal[has_normal])
+        weight.append(cells.count[has_normal])
+    up = estimate_up_direction(np.concatenate(normal), np.concatenate(weight))
     tilt_deg = np.rad2deg(np.arccos(min(up[2], 1.0)))
     if tilt_deg < _LEAST_TILT_DEG:
         return ""
     return (
-        f"surfaces stand {tilt_deg:.0f} degrees off the map's z (up is {up[0]:.2f}, {up[1]:.2f}, {up[2]:.2f}), so that"
-        " walls are missed; give poses in a map whose z is up"
+        f"surfaces stand {tilt_deg:.0f} degrees off the map's z"
+        f" (up is {up[0]:.2f}, {up[1]:.2f}, {up[2]:.2f}), so that walls are missed;"
+        " give poses in a map whose z is up"
     )
 
 
-def estimate_up_direction(normal, weight):
-    """Find the direction that most surfaces are square to or along.
+def estimate_up_direction(normal: FloatArray, weight: FloatArray) -> FloatArray:
+    """Return the direction that most surfaces are square to or along.
 
     Parameters
     ----------
@@ -76,12 +78,16 @@ def estimate_up_direction(normal, weight):
         return z
     chosen = levels[:: max(1, len(levels) // _CANDIDATES)]
     candidates = normal[chosen] * np.sign(normal[chosen, 2:])
-    aligned = np.abs(candidates @ normal.T)
-    support = ((aligned > np.cos(_NEAR_RAD)) | (aligned < np.sin(_NEAR_RAD))) @ weight
+    support = _is_square_or_along(np.abs(candidates @ normal.T)) @ weight
+    upright = _is_square_or_along(np.abs(normal[:, 2]))
+    if not support.max() > _SURER * weight[upright].sum():
+        return z
     best = candidates[np.argmax(support)]
     level = np.abs(normal @ best) > np.cos(_NEAR_RAD)
-    best = (normal[level] * np.sign(normal[level] @ best)[:, None]).T @ weight[level]
-    upright = (np.abs(normal[:, 2]) > np.cos(_NEAR_RAD)) | (
-        np.abs(normal[:, 2]) < np.sin(_NEAR_RAD)
-    )
-    return best / np.linalg.norm(best) if support.max() > _SURER * weight[upright].sum() else z
+    mean = (normal[level] * np.sign(normal[level] @ best)[:, None]).T @ weight[level]
+    return mean / np.linalg.norm(mean)
+
+
+def _is_square_or_along(cosine: FloatArray) -> BoolArray:
+    """Return which surfaces are square to a direction or along it, by normals' cosines with it."""
+    return (cosine > np.cos(_NEAR_RAD)) | (cosine < np.sin(_NEAR_RAD))

@@ -9,17 +9,18 @@ constant angle, as seen from the sensor, spans the same few rings at any range.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from scanplan.geometry.moments import FEWEST, group_moments, least_variance_direction
+from scanplan.types import FloatArray, IntArray
 
-_FEWEST = FEWEST[2]
-_MIN_RADIUS_2D_M = 0.08
-_NEAREST_2D = 5
-_NEAREST_REACH_2D = 3.0
-_NEAR_M, _FAR_M = 0.05, 1000.0  # ranges beyond count as these: no surface of a building is there
+_MIN_RADIUS_2D_M = 0.08  # several times the noise of a range: a shorter outline has any direction
+_NEAREST_2D = 5  # neighbours, where beams lie apart: enough that noise does not turn the line
+_NEAREST_REACH_2D = 3.0  # reaches: what is farther apart may be of different walls
+_NEAR_M = 0.05  # ranges below count as this: a sensor's own housing is there
+_FAR_M = 1000.0  # ranges above count as this: no surface of a building is there
 _STEEPEST = 4.0  # of z / r, likewise: right above or below the sensor is no wall
-_TABLE_SIZE = 2**23
+_TABLE_SIZE = 2**23  # cells: up to here a table, 40 MB, is faster than a search in the sorted keys
 
 
 @dataclass(frozen=True)
@@ -43,26 +44,22 @@ class SurfaceCells:
         About how far a cell's points are from their mean.
     """
 
-    of_point: np.ndarray
-    members: np.ndarray
-    first: np.ndarray
-    count: np.ndarray
-    mean_m: np.ndarray
-    normal: np.ndarray
-    radius_m: np.ndarray
+    of_point: IntArray
+    members: IntArray
+    first: IntArray
+    count: IntArray
+    mean_m: FloatArray
+    normal: FloatArray
+    radius_m: FloatArray
 
-    def points_of(self, cells):
+    def points_of(self, cells: IntArray) -> IntArray:
         """Return the indices of the points of the given cells, (k,) int."""
         count = self.count[cells]
-        skipped = (
-            self.first[cells] - np.concatenate([[0], np.cumsum(count)[:-1]])
-            if len(count)
-            else count
-        )
+        skipped = self.first[cells] - (np.cumsum(count) - count)
         return self.members[np.arange(count.sum()) + np.repeat(skipped, count)]
 
 
-def cut_surface_cells(xyz_m, *, reach_deg):
+def cut_surface_cells(xyz_m: FloatArray, *, reach_deg: float) -> SurfaceCells:
     """Part a 3-D scan into cells of equal angle and find the normal of each.
 
     The points are binned in (azimuth, z / r, ln r), r the horizontal range: cells of equal angle,
@@ -79,7 +76,7 @@ def cut_surface_cells(xyz_m, *, reach_deg):
 
     Returns
     -------
-    Cells
+    SurfaceCells
         No normal where there are too few points, one ring alone, an edge or clutter.
     """
     xyz_m = np.asarray(xyz_m, float).reshape(-1, 3)
@@ -94,20 +91,20 @@ def cut_surface_cells(xyz_m, *, reach_deg):
     return _as_cells(grid.of_point, mean_m.T, _towards_sensor(normal, mean_m), radius_m)
 
 
-def estimate_surface_normals(xyz_m, *, reach_deg):
+def estimate_surface_normals(xyz_m: FloatArray, *, reach_deg: float) -> FloatArray:
     """Return unit normals (n, 3) of a 3-D scan's surfaces, see `cut_surface_cells`."""
     cells = cut_surface_cells(xyz_m, reach_deg=reach_deg)
     return cells.normal[cells.of_point]
 
 
-def cut_outline_cells(xy_m, *, reach_deg):
+def cut_outline_cells(xy_m: FloatArray, *, reach_deg: float) -> SurfaceCells:
     """Return a planar scan as cells of one point, see `estimate_outline_normals`."""
     xy_m = np.asarray(xy_m, float)
     normal = estimate_outline_normals(xy_m, reach_deg=reach_deg)
     return _as_cells(np.arange(len(xy_m)), xy_m, normal, np.zeros(len(xy_m)))
 
 
-def estimate_outline_normals(xy_m, *, reach_deg):
+def estimate_outline_normals(xy_m: FloatArray, *, reach_deg: float) -> FloatArray:
     """Return the unit normals of a planar scan's outlines, towards the sensor.
 
     A point's neighbours are those within `reach_deg` (at least 8 cm), or its five nearest where
@@ -125,11 +122,11 @@ def estimate_outline_normals(xy_m, *, reach_deg):
     (n, 2) float64, NaN where the surroundings are no line
     """
     xy_m = np.asarray(xy_m, float)
-    if len(xy_m) < _FEWEST:
+    if len(xy_m) < FEWEST[2]:
         return np.full((len(xy_m), 2), np.nan)
-    tree = cKDTree(xy_m)
+    tree = KDTree(xy_m)
     radius = np.maximum(_MIN_RADIUS_2D_M, np.deg2rad(reach_deg) * np.linalg.norm(xy_m, axis=1))
-    nearest = tree.query(xy_m, k=[min(_NEAREST_2D + 1, len(xy_m))])[0][:, 0]
+    nearest = tree.query(xy_m, k=min(_NEAREST_2D + 1, len(xy_m)))[0][:, -1]
     radius = np.maximum(radius, np.minimum(nearest * (1 + 1e-9), _NEAREST_REACH_2D * radius))
     near = tree.query_ball_point(xy_m, radius, return_sorted=True)
     owner = np.repeat(np.arange(len(xy_m)), [len(n) for n in near])
@@ -140,19 +137,19 @@ def estimate_outline_normals(xy_m, *, reach_deg):
 class _Grid:
     """The occupied cells of a scan, sorted by (azimuth, z / r, ln r)."""
 
-    def __init__(self, xyz_m, step):
+    def __init__(self, xyz_m: FloatArray, step: float) -> None:
         horizontal = np.clip(np.hypot(xyz_m[:, 0], xyz_m[:, 1]), _NEAR_M, _FAR_M)
         self.turn = max(3, round(2 * np.pi / step))
-        azimuth = np.floor(np.arctan2(xyz_m[:, 1], xyz_m[:, 0]) * (self.turn / (2 * np.pi))).astype(
-            np.int64
-        )
-        height = np.floor(np.clip(xyz_m[:, 2] / horizontal, -_STEEPEST, _STEEPEST) / step).astype(
-            np.int64
-        )
+        azimuth_rad = np.arctan2(xyz_m[:, 1], xyz_m[:, 0])
+        rise = np.clip(xyz_m[:, 2] / horizontal, -_STEEPEST, _STEEPEST)
+        azimuth = np.floor(azimuth_rad * (self.turn / (2 * np.pi))).astype(np.int64)
+        height = np.floor(rise / step).astype(np.int64)
         distance = np.floor(np.log(horizontal) / step).astype(np.int64)
         # a border of empty cells: the neighbours of one row are not in the next
-        height, distance = height - height.min() + 1, distance - distance.min() + 1
-        self.rows, self.shells = int(height.max()) + 2, int(distance.max()) + 2
+        height = height - height.min() + 1
+        distance = distance - distance.min() + 1
+        self.rows = int(height.max()) + 2
+        self.shells = int(distance.max()) + 2
         key = ((azimuth % self.turn) * self.rows + height) * self.shells + distance
         self.size = self.turn * self.rows * self.shells
         if self.size > _TABLE_SIZE:
@@ -164,12 +161,12 @@ class _Grid:
         self._before = np.concatenate([[0], np.cumsum(occupied, dtype=np.int32)])
         self.of_point = self._before[key].astype(np.int64)
 
-    def before(self, key):
+    def before(self, key: IntArray) -> IntArray:
         """Return the number of occupied cells before each key."""
         return np.searchsorted(self.key, key) if self.size > _TABLE_SIZE else self._before[key]
 
-    def neighbourhood_sums(self, moments):
-        """Add to each cell's moments (k, m) those of its occupied neighbours.
+    def neighbourhood_sums(self, moments: FloatArray) -> FloatArray:
+        """Return each cell's moments (k, m) with those of its occupied neighbours added.
 
         Azimuth closes after a turn.
         """
@@ -181,13 +178,12 @@ class _Grid:
         for turn in (-1, 0, 1):
             start = (azimuth + turn) % self.turn * row_size + inside
             for rise in (-self.shells, 0, self.shells):
-                total += (
-                    running[self.before(start + rise + 2)] - running[self.before(start + rise - 1)]
-                )
+                stop = self.before(start + rise + 2)
+                total += running[stop] - running[self.before(start + rise - 1)]
         return total.T
 
 
-def _within(xyz_m):
+def _within(xyz_m: FloatArray) -> FloatArray:
     """Return the points, those farther than 1 km moved there.
 
     Running sums must keep the digits of the near ones.
@@ -198,7 +194,10 @@ def _within(xyz_m):
     return xyz_m * np.minimum(1, _FAR_M / np.maximum(distance_m, _NEAR_M))[:, None]
 
 
-def _as_cells(of_point, mean_m, normal, radius_m):
+def _as_cells(
+    of_point: IntArray, mean_m: FloatArray, normal: FloatArray, radius_m: FloatArray
+) -> SurfaceCells:
+    """Return cells (m,) with the points of each, given the cell of each point (n,)."""
     n_cells = len(mean_m)
     # a radix sort, for numbers of two bytes
     sortable = of_point.astype(np.uint16) if n_cells <= 2**16 else of_point
@@ -208,6 +207,6 @@ def _as_cells(of_point, mean_m, normal, radius_m):
     return SurfaceCells(of_point, members, first, count, mean_m, normal, radius_m)
 
 
-def _towards_sensor(normal, at):
+def _towards_sensor(normal: FloatArray, at: FloatArray) -> FloatArray:
     """Return normals (d, m) at places (d, m) as rows (m, d), turned to the sensor."""
     return (normal * -np.where((normal * at).sum(axis=0) > 0, 1, -1)).T

@@ -1,70 +1,21 @@
 """Wall segments of one scan: what both extractors share.
 
-A wall segment is a stretch of a vertical plane, seen from one side, as a line in the floor plan.
+A wall segment is a part of a vertical plane, seen from one side, as a line in the floor plan.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan.extraction.runs import extend_run_ends, find_runs, grow_runs
+from scanplan.extraction.runs import extend_run_ends, find_runs, find_upright_runs
+from scanplan.extraction.segment_limits import Row, SegmentLimits
 from scanplan.geometry.lines import Line
-from scanplan.rays.face_raster import SCAN_COLUMN_M, rasterise_rays
-from scanplan.rays.face_rays import ON_M, SKIRTING_M, cast_at_face
 from scanplan.rays.ray_set import RaySet, gather_rays
-from scanplan.types import FloatArray
+from scanplan.types import Array, Columns, FloatArray, IntArray
 
-_HEIGHT_PERCENTILES = (2, 98)
-_LEAST_M = 1e-6
+_HEIGHT_PERCENTILES = (2, 98)  # of a segment's points: stray ones do not make it taller
 _FIELDS = ("x0_m", "y0_m", "x1_m", "y1_m", "nx", "ny", "n_points", "rmse_m", "z_min_m", "z_max_m")
-
-
-Row = tuple[float, ...]
-"""A segment as `cut_line` gives it.
-
-The values of a row of the table of walls, relative to the sensor.
-"""
-
-
-@dataclass(frozen=True, kw_only=True)
-class SegmentLimits:
-    """What a wall segment must be; the settings of both extractors begin with these.
-
-    Attributes
-    ----------
-    inlier_m : float
-        Largest distance of a wall's point from its line.
-    max_gap_m : float
-        A longer stretch of the line without points ends the segment.
-    min_length_m : float
-    min_height_m : float
-        Least vertical extent; for 3-D scans alone.
-    door_height_m : float
-        Above the scan's floor; higher points bridge no gap: they may be the wall above a door. For
-        3-D scans alone.
-    corner_m : float
-        Strips of wall above furniture pause for no longer.
-    min_points : int
-        Of a 3-D scan.
-    min_points_planar : int
-        Of a scan of a 2-D laser scanner.
-    seed : int
-        For the random draws; a scan's draws depend on it and on the `scan_id` alone.
-    """
-
-    inlier_m: float
-    max_gap_m: float
-    min_length_m: float
-    min_height_m: float
-    door_height_m: float
-    corner_m: float
-    min_points: int
-    min_points_planar: int
-    seed: int
-
-    def least_points(self, planar):
-        """Return the fewest points of a segment."""
-        return self.min_points_planar if planar else self.min_points
 
 
 @dataclass(frozen=True)
@@ -85,29 +36,35 @@ class WallSegments:
         2nd and 98th percentile of the points' heights.
     """
 
-    start_m: np.ndarray
-    end_m: np.ndarray
-    normal: np.ndarray
-    n_points: np.ndarray
-    rmse_m: np.ndarray
-    z_range_m: np.ndarray
+    start_m: FloatArray
+    end_m: FloatArray
+    normal: FloatArray
+    n_points: IntArray
+    rmse_m: FloatArray
+    z_range_m: FloatArray
 
-    def __len__(self):
+    def __len__(self) -> int:
         """Return the number of segments."""
         return len(self.n_points)
 
 
 def view_scan(xyz_m: FloatArray, *, planar: bool) -> RaySet | None:
-    """Return the rays of a scan's points (n, 3) relative to its sensor.
-
-    None in the plane or without any point.
-    """
+    """Return the rays of points (n, 3) relative to their sensor; None in the plane or of none."""
     if planar or len(xyz_m) == 0:
         return None
     return gather_rays([(0, xyz_m)], {0: np.zeros(3)}, planar=False)
 
 
-def cut_line(normal, offset_m, xyz_m, limits, *, scan=None, spare_xyz_m=None, reach_rad=0.0):
+def cut_line(
+    normal: FloatArray,
+    offset_m: float,
+    xyz_m: FloatArray,
+    limits: SegmentLimits,
+    *,
+    scan: RaySet | None = None,
+    spare_xyz_m: FloatArray | None = None,
+    reach_rad: float = 0.0,
+) -> list[Row]:
     """Cut a line into segments where its points pause, and drop those that are no walls.
 
     In space, points higher than doors make no segment, nor do those of a sill lower than
@@ -122,7 +79,7 @@ def cut_line(normal, offset_m, xyz_m, limits, *, scan=None, spare_xyz_m=None, re
         The line: normal . xy = offset, relative to the sensor.
     xyz_m : (n, 3) float
         Points on the line, relative to the sensor.
-    limits : Limits
+    limits : SegmentLimits
     scan : ray_set.RaySet, optional
         Of all points of the scan; None in the plane.
     spare_xyz_m : (m, 3) float, optional
@@ -137,87 +94,58 @@ def cut_line(normal, offset_m, xyz_m, limits, *, scan=None, spare_xyz_m=None, re
         Per segment the values of a row of the table, in its order, relative to the sensor.
     """
     sign = -1.0 if offset_m > 0 else 1.0  # towards the sensor, which is the origin
-    normal, offset_m = sign * normal, sign * offset_m
-    along = np.array([normal[1], -normal[0]])
+    line = Line(offset_m * normal, sign * normal)
     every = xyz_m if spare_xyz_m is None else np.vstack([xyz_m, spare_xyz_m])
-    where_m, n = every[:, :2] @ along, len(xyz_m)
+    where_m = every[:, :2] @ line.direction
+    n_own = len(xyz_m)
     if scan is None:
-        found = find_runs(where_m[:n], limits.max_gap_m, limits.min_points_planar)
-        found = [extend_run_ends(*run, where_m, reach_rad, offset_m) for run in found]
+        runs = find_runs(where_m[:n_own], limits.max_gap_m, limits.min_points_planar)
+        distance_m = sign * offset_m
+        runs = [extend_run_ends(*run, where_m, reach_rad, distance_m) for run in runs]
     else:
-        line = Line(offset_m * normal, normal)
-        found = _upright_runs(scan, line, where_m, every[:, 2] - scan.floor_z_m, n, limits)
+        height_m = every[:, 2] - scan.floor_z_m
+        runs = find_upright_runs(scan, line, where_m, height_m, n_own, limits)
     rows = []
-    for first, last in found:
-        inside = every[(first <= where_m) & (where_m <= last)]
-        heights = np.sort(inside[:, 2])
-        low, high = (heights[round(p / 100 * (len(heights) - 1))] for p in _HEIGHT_PERCENTILES)
-        if last - first < limits.min_length_m or (
-            scan is not None and high - low < limits.min_height_m
-        ):
-            continue
-        ends = [*(offset_m * normal + first * along), *(offset_m * normal + last * along)]
-        rmse_m = np.sqrt(np.mean((inside[:, :2] @ normal - offset_m) ** 2))
-        rows.append((*ends, *normal, len(inside), rmse_m, low, high))
+    for first_m, last_m in runs:
+        inside = every[(first_m <= where_m) & (where_m <= last_m)]
+        row = _describe_run(line, sign * offset_m, (first_m, last_m), inside)
+        is_long = last_m - first_m >= limits.min_length_m
+        if is_long and (scan is None or row[9] - row[8] >= limits.min_height_m):
+            rows.append(row)
     return rows
 
 
-def _upright_runs(scan, line, where_m, height_m, n_own, limits):
-    """Return the first and last of each run of points on a line in space.
-
-    The first `n_own` are its own.
-    """
-    if n_own == 0:
-        return []
-    raster = _raster(scan, line, where_m, height_m, limits)
-    column = raster.column_of(where_m)
-    heights_m = {"low_m": SKIRTING_M, "door_m": limits.door_height_m}
-    is_open = raster.is_open(limits.min_height_m, **heights_m)
-    is_closed = raster.is_stopped(**heights_m) & ~is_open
-    makes = (height_m <= limits.door_height_m) & ~is_open[column]
-    runs = find_runs(where_m[:n_own][makes[:n_own]], limits.max_gap_m, limits.min_points)
-    return grow_runs(runs, where_m[is_closed[column]], limits.corner_m, raster, is_open)
+def _describe_run(
+    line: Line, offset_m: float, run_m: tuple[float, float], inside: FloatArray
+) -> Row:
+    """Return the row of a run, and of the points (n, 3) within it."""
+    heights_m = np.sort(inside[:, 2])
+    most = len(heights_m) - 1
+    z_min_m, z_max_m = (heights_m[round(p / 100 * most)] for p in _HEIGHT_PERCENTILES)
+    foot_m = offset_m * line.normal
+    start_m, end_m = (foot_m + along_m * line.direction for along_m in run_m)
+    rmse_m = np.sqrt(np.mean((inside[:, :2] @ line.normal - offset_m) ** 2))
+    return (*start_m, *end_m, *line.normal, len(inside), rmse_m, z_min_m, z_max_m)
 
 
-def _raster(scan, line, where_m, height_m, limits):
-    """Return the raster of a line.
-
-    Its points are what is occupied; rays go on through the thinnest wall.
-    """
-    span_m = where_m.min(), where_m.max()
-    face = cast_at_face(scan, line, *span_m, at_m=ON_M, least_side_m=_LEAST_M)
-    free, occluded = face.is_free(ON_M), face.is_occluded
-    slope = (face.along_m[free] - line.along_m(np.zeros(2))) / np.abs(line.offset_m(np.zeros(2)))
-    low = height_m <= limits.door_height_m
-    return rasterise_rays(
-        (where_m[low], height_m[low]),
-        (face.along_m[free], face.height_m[free]),
-        (face.along_m[occluded], face.height_m[occluded]),
-        span_m=span_m,
-        column_m=SCAN_COLUMN_M,
-        free_until_m=face.along_m[free] + slope * ON_M,
-    )
-
-
-def collect_segments(rows, sensor_xyz_m):
-    """Make a scan's segments, most points first, of the rows that `cut_line` gave.
-
-    Coordinates of the map.
-    """
-    rows = np.array(rows, float).reshape(-1, len(_FIELDS))
-    rows = rows[np.lexsort([*rows.T[3::-1], -rows[:, 6]])]
+def collect_segments(rows: Sequence[Row], sensor_xyz_m: FloatArray) -> WallSegments:
+    """Make a scan's segments, map frame, most points first, of the rows of `cut_line`."""
+    values = np.array(rows, float).reshape(-1, len(_FIELDS))
+    values = values[np.lexsort([*values.T[3::-1], -values[:, 6]])]
     x_m, y_m, z_m = np.asarray(sensor_xyz_m, float)
     return WallSegments(
-        start_m=rows[:, 0:2] + (x_m, y_m),
-        end_m=rows[:, 2:4] + (x_m, y_m),
-        normal=rows[:, 4:6],
-        n_points=rows[:, 6].astype(np.int64),
-        rmse_m=rows[:, 7],
-        z_range_m=rows[:, 8:10] + z_m,
+        start_m=values[:, 0:2] + (x_m, y_m),
+        end_m=values[:, 2:4] + (x_m, y_m),
+        normal=values[:, 4:6],
+        n_points=values[:, 6].astype(np.int64),
+        rmse_m=values[:, 7],
+        z_range_m=values[:, 8:10] + z_m,
     )
 
 
-def segment_columns(scan_ids, segments):
+def segment_columns(
+    scan_ids: IntArray | Sequence[int], segments: Sequence[WallSegments]
+) -> dict[str, Array]:
     """Return the columns of the table of walls.
 
     Parameters
@@ -230,18 +158,19 @@ def segment_columns(scan_ids, segments):
         np.column_stack([s.start_m, s.end_m, s.normal, s.n_points, s.rmse_m, s.z_range_m])
         for s in segments
     ]
-    values = dict(zip(_FIELDS, np.vstack([np.empty((0, len(_FIELDS))), *parts]).T, strict=True))
-    values["n_points"] = values["n_points"].astype(np.int32)
-    walls = np.concatenate([np.empty(0, np.int32), *(np.arange(c, dtype=np.int32) for c in counts)])
+    stacked = np.vstack([np.empty((0, len(_FIELDS))), *parts])
+    values = dict(zip(_FIELDS, stacked.T, strict=True))
+    numbers = [np.arange(count, dtype=np.int32) for count in counts]
     return {
         "scan_id": np.repeat(np.asarray(scan_ids, np.int32), counts),
-        "wall": walls.astype(np.int32),
+        "wall": np.concatenate([np.empty(0, np.int32), *numbers]),
         **values,
+        "n_points": values["n_points"].astype(np.int32),
     }
 
 
-def summarise_segments(columns, n_scans, took_ms):
-    """Return what was found in a line: scans, walls, points per wall, time per scan."""
+def summarise_segments(columns: Columns, n_scans: int, took_ms: float) -> str:
+    """Return what was extracted in a line: scans, walls, points per wall, time per scan."""
     points = columns["n_points"]
     typical = (
         f"{np.median(points):.0f} points in the median wall" if len(points) else "no wall at all"

@@ -1,74 +1,93 @@
-"""Pieces of face lines: cut at pauses, met at corners, never two over each other."""
+"""Candidates of faces: cut from common lines at pauses; and what holds for intervals, too.
 
+Ends meet at corners, and no face is drawn over another.
+"""
+
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
-import shapely
 
 from scanplan.geometry import intervals, lines
 from scanplan.geometry.lines import Line, ObservedSegments, Span
+from scanplan.plan.faces import face_pairs
+from scanplan.types import FloatArray, IntArray
 
-_LEAST_CORNER_RAD = np.radians(30)
-_BEFORE_M = 0.08  # as far as points of a face lie from the line of another all the same
-_LEVEL = 1e-12  # sine of an angle below which lines are parallel: rounding
-_SHORT_M = 0.15  # of what noise, a skirting or a frame may hide of a face before a corner
+if TYPE_CHECKING:
+    from scanplan.plan.faces.intervals import FaceInterval
+
+_PARALLEL = 1e-12  # sine of lines that never cross, beyond rounding
+
+_Face = TypeVar("_Face", "FaceCandidate", "FaceInterval")
 
 
 @dataclass(frozen=True, eq=False)
 class FaceCandidate(Span):
-    """A stretch of a face's line.
+    """A part of a line that segments agree on, where they may show a face.
 
-    From `low_m` to `high_m` along it, and the segments (k,) that show its line.
+    From `low_m` to `high_m` along the line, and the segments (k,) that show it.
     """
 
     segments: ObservedSegments
     line: Line
     low_m: float
     high_m: float
-    members: np.ndarray
+    members: IntArray
 
     @cached_property
-    def points(self):
-        """How many points of each member lie on the stretch, (k,) float64."""
-        low, high = lines.extents_along_m(self.line, self.segments, self.members)
-        inside = np.clip(np.minimum(high, self.high_m) - np.maximum(low, self.low_m), 0, None)
-        return self.segments.n_points[self.members] * inside / (high - low)
+    def points(self) -> FloatArray:
+        """How many points of each member lie on the candidate, (k,) float64."""
+        low_m, high_m = lines.extents_along_m(self.line, self.segments, self.members)
+        inside_m = np.minimum(high_m, self.high_m) - np.maximum(low_m, self.low_m)
+        share = np.clip(inside_m, 0, None)
+        return self.segments.n_points[self.members] * share / (high_m - low_m)
 
     @cached_property
-    def n_points(self):
-        """How many points lie on the stretch, float."""
+    def n_points(self) -> float:
+        """How many points lie on the candidate."""
         return float(self.points.sum())
 
     @cached_property
-    def n_scans(self):
-        """How many scans show the stretch."""
+    def n_scans(self) -> int:
+        """How many scans show the candidate."""
         return len(np.unique(self.segments.scan_id[self.members[self.points > 0]]))
 
 
-def cut_candidates(segments, members, *, max_gap_m):
+def cut_candidates(
+    segments: ObservedSegments, members: IntArray, *, max_gap_m: float
+) -> list[FaceCandidate]:
     """Cut a group's line where none of its members shows the face for more than `max_gap_m`.
+
+    Parameters
+    ----------
+    segments : lines.ObservedSegments
+    members : (k,) int64
+    max_gap_m : float
 
     Returns
     -------
-    list of Piece
+    list of FaceCandidate
         All on the group's common line, in order along it.
     """
     line = lines.fit_segments_line(segments, members)
-    low, high = lines.extents_along_m(line, segments, members)
-    order = np.argsort(low, kind="stable")
-    breaks = intervals.find_run_starts(low[order], high[order], max_gap_m)
-    low, high = low[order], np.maximum.accumulate(high[order])
-    first, last = np.r_[0, breaks], np.r_[breaks, len(low)] - 1
+    low_m, high_m = lines.extents_along_m(line, segments, members)
+    order = np.argsort(low_m, kind="stable")
+    low_m = low_m[order]
+    high_m = np.maximum.accumulate(high_m[order])
+    breaks = intervals.find_run_starts(low_m, high_m, max_gap_m)
+    begins_m = low_m[np.r_[0, breaks]]
+    ends_m = high_m[np.r_[breaks, len(low_m)] - 1]
     shares = np.split(np.asarray(members)[order], breaks)
     return [
-        FaceCandidate(segments, line, float(low[a]), float(high[b]), np.sort(share))
-        for a, b, share in zip(first, last, shares, strict=True)
+        FaceCandidate(segments, line, float(begin_m), float(end_m), np.sort(share))
+        for begin_m, end_m, share in zip(begins_m, ends_m, shares, strict=True)
     ]
 
 
-def meet_at_corners(pieces, *, corner_m):
-    """Move the ends of pieces to where their lines cross, if that is no further than `corner_m`.
+def meet_at_corners(faces: Sequence[_Face], *, corner_m: float) -> list[_Face]:
+    """Move the ends of faces to where their lines cross, if that is no further than `corner_m`.
 
     A face ends at the corner of a room in front of the other face, at the edge of a pillar behind
     it; a face that butts against the middle of another ends on it. Lines keep their place, only
@@ -76,63 +95,29 @@ def meet_at_corners(pieces, *, corner_m):
 
     Parameters
     ----------
-    pieces : list of Piece
+    faces : list of FaceCandidate, or of intervals.FaceInterval
     corner_m : float
         0 moves nothing.
 
     Returns
     -------
-    list of Piece, in the order given
+    list of the same, in the order given
     """
-    moves = [{} for _ in pieces]
-    for piece, end, along_m in _crossings(pieces, corner_m):
-        moves[piece].setdefault(end, []).append(along_m)
-    return [_moved(piece, move) for piece, move in zip(pieces, moves, strict=True)]
+    places_m: list[dict[str, list[float]]] = [{} for _ in faces]
+    for number, end, place_m in face_pairs.find_corner_moves(faces, corner_m):
+        places_m[number].setdefault(end, []).append(place_m)
+    return [_move_ends(face, moves) for face, moves in zip(faces, places_m, strict=True)]
 
 
-def _crossings(pieces, corner_m):
-    """Return (piece, name of the end, place) of ends that may move to another's line."""
-    one, other = _near(pieces, 2 * corner_m)
-    centre, normal, along, low, high = _stacked(pieces)
-    turn = _dot(along[one], normal[other])
-    steep = np.abs(turn) >= np.sin(_LEAST_CORNER_RAD)
-    one, other, turn = one[steep], other[steep], turn[steep]
-    place = -_dot(centre[one] - centre[other], normal[other]) / turn
-    there = _dot(centre[one] + place[:, None] * along[one] - centre[other], along[other])
-    at_low = np.abs(place - low[one]) <= np.abs(place - high[one])
-    moves_m = np.abs(place - np.where(at_low, low[one], high[one]))
-    beyond_m = np.maximum(np.maximum(low[other] - there, there - high[other]), 0)
-    in_front = np.where(at_low, turn, -turn) > 0
-    # an edge seen from outside: the other face, too, ends here and lies behind this one
-    other_at_low = np.abs(there - low[other]) <= np.abs(there - high[other])
-    other_ends = np.abs(there - np.where(other_at_low, low[other], high[other])) <= corner_m
-    other_behind = np.where(other_at_low, 1, -1) * _dot(along[other], normal[one]) < 0
-    # a face that is seen well before another one ends there only if that one is seen to begin
-    # there: one would look at the other's front from where the first is
-    before_m = np.where(at_low, place - low[one], high[one] - place)
-    other_before_m = np.where(other_at_low, there - low[other], high[other] - there)
-    meets = (np.maximum(before_m, other_before_m) <= _BEFORE_M) | (
-        np.minimum(before_m, other_before_m) >= -_SHORT_M
-    )
-    is_edge = other_ends & other_behind & meets
-    taken = (moves_m <= corner_m) & (beyond_m <= corner_m) & (in_front | is_edge)
-    names = np.where(at_low, "low_m", "high_m")
-    return list(zip(one[taken].tolist(), names[taken].tolist(), place[taken].tolist(), strict=True))
-
-
-def _moved(piece, move):
-    if not move:
-        return piece
-    nearest = {
-        end: min(places, key=lambda p: (abs(p - getattr(piece, end)), p))
-        for end, places in move.items()
-    }
-    moved = replace(piece, **nearest)
-    return moved if moved.length_m >= piece.length_m / 2 else piece
-
-
-def remove_doubles(pieces, *, max_angle_rad, distance_m, ghost_distance_m, ghost_share):
-    """Take away from every piece what a stronger one of the same side already draws.
+def remove_doubles(
+    faces: Sequence[_Face],
+    *,
+    max_angle_rad: float,
+    distance_m: float,
+    ghost_distance_m: float,
+    ghost_share: float,
+) -> list[_Face]:
+    """Take away from every face what a stronger one of the same side already draws.
 
     That is what runs closer than `distance_m` beside it, and, further off, up to
     `ghost_distance_m`, what shows less than `ghost_share` of its points per metre: the same wall
@@ -140,7 +125,7 @@ def remove_doubles(pieces, *, max_angle_rad, distance_m, ghost_distance_m, ghost
 
     Parameters
     ----------
-    pieces : list of Piece
+    faces : list of FaceCandidate, or of intervals.FaceInterval
     max_angle_rad : float
         Faces that turn further from each other are different faces, however close.
     distance_m : float
@@ -150,90 +135,75 @@ def remove_doubles(pieces, *, max_angle_rad, distance_m, ghost_distance_m, ghost
 
     Returns
     -------
-    list of Piece
-        The strongest (longest seen by most points) first; a piece may have become several or none.
+    list of the same
+        The strongest (longest seen by most points) first; a face may have become several or none.
     """
-    points, length = (
-        np.array([getattr(piece, name) for piece in pieces]) for name in ("n_points", "length_m")
-    )
+    points = np.array([face.n_points for face in faces])
+    length_m = np.array([face.length_m for face in faces])
     widest_m = max(distance_m, ghost_distance_m)
-    one, other = _near(pieces, widest_m)
-    normal = _stacked(pieces)[1]
-    same_side = _dot(normal[one], normal[other]) >= np.cos(max_angle_rad)
-    one, other = one[same_side], other[same_side]
-    ghost = points[one] * length[other] < ghost_share * points[other] * length[one]
-    beside = [[] for _ in pieces]
+    one, other = face_pairs.pair_same_side(faces, max_angle_rad, widest_m)
+    is_ghost = points[one] * length_m[other] < ghost_share * points[other] * length_m[one]
+    beside: list[list[tuple[int, float]]] = [[] for _ in faces]
     for weaker, stronger, width_m in zip(
-        one, other, np.where(ghost, widest_m, distance_m), strict=True
+        one.tolist(), other.tolist(), np.where(is_ghost, widest_m, distance_m), strict=True
     ):
         beside[weaker].append((stronger, width_m))
-    order = np.argsort(-points * length, kind="stable")
-    kept = {}
+    order = np.argsort(-points * length_m, kind="stable").tolist()
+    rests: dict[int, list[_Face]] = {}
     for number in order:
-        remains = [pieces[number]]
-        for stronger, width_m in (
-            (p, width) for other, width in beside[number] for p in kept.get(other, ())
-        ):
-            remains = [rest for piece in remains for rest in _less(piece, stronger, width_m)]
-        kept[number] = remains
-    return [piece for number in order for piece in kept[number]]
+        rest = [faces[number]]
+        for stronger, width_m in beside[number]:
+            for drawn in rests.get(stronger, ()):
+                rest = [part for face in rest for part in _subtract(face, drawn, width_m)]
+        rests[number] = rest
+    return [face for number in order for face in rests[number]]
 
 
-def _less(piece, stronger, distance_m):
-    low, high = doubled_interval_m(piece, stronger, distance_m)
-    if high <= low:
-        return [piece]
-    rests = replace(piece, high_m=low), replace(piece, low_m=high)
-    return [rest for rest in rests if rest.length_m > 0]
+def doubled_interval_m(face: _Face, other: _Face, distance_m: float) -> tuple[float, float]:
+    """Return where along a face it runs closer than `distance_m` beside another.
 
-
-def doubled_interval_m(piece, other, distance_m):
-    """Return where along `piece` it runs closer than `distance_m` beside `other`.
-
-    High <= low.
+    The end is no less than the begin, and equal to it where the face does so nowhere.
     """
-    low, high = piece.low_m, piece.high_m
-    bands = (
-        (
-            other.line.along_m(piece.line.centre),
-            piece.line.direction @ other.line.direction,
-            other.low_m,
-            other.high_m,
-        ),
-        (
-            other.line.offset_m(piece.line.centre),
-            piece.line.direction @ other.line.normal,
-            -distance_m,
-            distance_m,
-        ),
+    along = (
+        float(other.line.along_m(face.line.centre)),
+        float(face.line.direction @ other.line.direction),
+        other.low_m,
+        other.high_m,
     )
-    for value, slope, least, most in bands:
-        inside = intervals.solve_range(value, slope if abs(slope) >= _LEVEL else 0.0, least, most)
-        low, high = max(low, float(inside[0])), min(high, float(inside[1]))
-    return low, max(low, high)
-
-
-def _near(pieces, distance_m):
-    """Return the ordered pairs of different pieces within `distance_m` of each other.
-
-    (k,), (k,), sorted.
-    """
-    strings = shapely.linestrings(np.array([piece.ends for piece in pieces]).reshape(-1, 2, 2))
-    one, other = shapely.STRtree(strings).query(strings, predicate="dwithin", distance=distance_m)
-    order = np.lexsort((other, one))
-    order = order[one[order] != other[order]]
-    return one[order], other[order]
-
-
-def _stacked(pieces):
-    """Return centres, normals, directions (n, 2), and begins and ends (n,), as arrays."""
-    centre = np.array([piece.line.centre for piece in pieces]).reshape(-1, 2)
-    normal = np.array([piece.line.normal for piece in pieces]).reshape(-1, 2)
-    low, high = (
-        np.array([getattr(piece, name) for piece in pieces]) for name in ("low_m", "high_m")
+    across = (
+        float(other.line.offset_m(face.line.centre)),
+        float(face.line.direction @ other.line.normal),
+        -distance_m,
+        distance_m,
     )
-    return centre, normal, np.column_stack([normal[:, 1], -normal[:, 0]]), low, high
+    low_m = face.low_m
+    high_m = face.high_m
+    for value, slope, least, most in (along, across):
+        turn = slope if abs(slope) >= _PARALLEL else 0.0
+        begin_m, end_m = intervals.solve_range(value, turn, least, most)
+        low_m = max(low_m, float(begin_m))
+        high_m = min(high_m, float(end_m))
+    return low_m, max(low_m, high_m)
 
 
-def _dot(one, other):
-    return np.einsum("ij,ij->i", one, other)
+def _move_ends(face: _Face, places_m: dict[str, list[float]]) -> _Face:
+    """Return a face with each end at the nearest of its places, unless little were left of it."""
+    if not places_m:
+        return face
+    nearest_m = {end: _nearest(ends_m, getattr(face, end)) for end, ends_m in places_m.items()}
+    moved = replace(face, **nearest_m)
+    return moved if moved.length_m >= face.length_m / 2 else face
+
+
+def _nearest(places_m: list[float], own_m: float) -> float:
+    """Return the place nearest to an own one, the lower one of two as near."""
+    return min(places_m, key=lambda place_m: (abs(place_m - own_m), place_m))
+
+
+def _subtract(face: _Face, stronger: _Face, distance_m: float) -> list[_Face]:
+    """Return what is left of a face, one part or two, without what a stronger one draws."""
+    low_m, high_m = doubled_interval_m(face, stronger, distance_m)
+    if high_m <= low_m:
+        return [face]
+    parts = [replace(face, high_m=low_m), replace(face, low_m=high_m)]
+    return [part for part in parts if part.length_m > 0]

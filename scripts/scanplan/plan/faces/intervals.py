@@ -1,5 +1,6 @@
-"""Where along a line there is wall: told by the points at it and the rays through it."""
+"""Where along a line there is wall, by the points at it and the rays through it."""
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -12,57 +13,65 @@ from scanplan.rays.face_observation import (
     RaySettings,
     observe_face,
 )
-from scanplan.rays.face_raster import CELL_M
+from scanplan.rays.face_raster import CELL_M, FaceRaster
 from scanplan.rays.face_rays import cast_at_face
 from scanplan.rays.ray_set import RaySet
-from scanplan.types import FloatArray
+from scanplan.types import BoolArray, FloatArray, IntArray
 
-_OVERLOOKED_SHARE = 0.5
-_REFIT_M = 0.04
-_MOST_TURN_RAD = np.radians(3)
-_ROUND_M = 1e-9
-_END_M = 0.1
-_MOST_LOOKS = 4
+STUB_M = 0.1
+"""Shorter intervals are noise: less than the thickness of a wall."""
+
+_OVERLOOKED_SHARE = 0.5  # of an interval's length: more, and it is furniture rather than wall
+_REFIT_M = 0.04  # from the median: what points of one face scatter by; others do not pull the line
+_LEAST_REFIT_POINTS = 10  # fewer do not turn a line, nor do points on less than
+_LEAST_REFIT_M = 4 * CELL_M  # this length: noise of ranges across it would
+_MOST_TURN_RAD = np.radians(3)  # a line of segments turns by noise alone; more is another face
+_ROUND_M = 1e-9  # what rounding moves the edge of a column by
+_END_M = 0.1  # what poses and noise of ranges move an end by from scan to scan
+_MOST_LOOKS = 4  # doublings of the reach beyond an end: panes are shorter than that
+_LEAST_OPENED = 2  # columns: one alone may be opened by what points at its edges leave out
 _COLUMN_WEIGHT = 10  # points of a column that count: a near scan's are not a hundred times as true
 
 
 @dataclass(frozen=True, eq=False)
 class FaceInterval(Span):
-    """A stretch of wall surface: from `low_m` to `high_m` along the line of `seen`."""
+    """An interval of wall surface: from `low_m` to `high_m` along the line of `seen`."""
 
     seen: FaceObservation
     low_m: float
     high_m: float
 
     @property
-    def line(self):
+    def line(self) -> Line:
         """The line it lies on."""
         return self.seen.line
 
     @cached_property
-    def points(self):
+    def points(self) -> slice:
         """The slice of the points of `seen` that show it."""
         return self.seen.occupied_between(self.low_m, self.high_m)
 
     @property
-    def n_points(self):
+    def n_points(self) -> int:
         """How many points show it."""
         return self.points.stop - self.points.start
 
     @cached_property
-    def top_m(self):
-        """Height above the floor up to which it is seen over a good stretch."""
+    def top_m(self) -> float:
+        """Height above the floor up to which it is seen over a good part of its length."""
         raster = self.seen.raster
         return raster.seen_top_m(raster.between(self.low_m, self.high_m))
 
     @property
-    def n_scans(self):
+    def n_scans(self) -> int:
         """How many scans show it."""
         return len(np.unique(self.seen.occupied_scan[self.points]))
 
 
-def observe_along(rays, line, low_m, high_m, reading):
-    """Refit a line to the points at it, and gather what rays tell about it and beyond its ends.
+def observe_along(
+    rays: RaySet, line: Line, low_m: float, high_m: float, reading: RaySettings
+) -> FaceObservation:
+    """Refit a line to the points at it, and observe it and what is beyond its ends.
 
     Parameters
     ----------
@@ -71,25 +80,22 @@ def observe_along(rays, line, low_m, high_m, reading):
     low_m, high_m : float
         What was extracted of it.
     reading : face_observation.RaySettings
-
-    Returns
-    -------
-    face_observation.FaceObservation
     """
+    own_m = (low_m, high_m)
     reach_m = np.full(2, reading.reach_m)
-    for _ in range(_MOST_LOOKS):
-        seen, span = _look(rays, line, (low_m, high_m), reach_m, reading)
-        goes_on = np.array(
-            [np.abs(seen.glass_m - end).min(initial=np.inf) < _END_M for end in span]
-        )
-        if not goes_on.any():
+    observation, span_m = _observe_refitted(rays, line, own_m, reach_m, reading)
+    for _ in range(_MOST_LOOKS - 1):
+        nearest_m = [np.abs(observation.glass_m - end_m).min(initial=np.inf) for end_m in span_m]
+        is_in_glass = np.array(nearest_m) < _END_M
+        if not is_in_glass.any():
             break
-        # a pane is looked at as a whole
-        reach_m = np.where(goes_on, 2 * reach_m, reach_m)
-    return seen
+        # a pane is observed as a whole
+        reach_m = np.where(is_in_glass, 2 * reach_m, reach_m)
+        observation, span_m = _observe_refitted(rays, line, own_m, reach_m, reading)
+    return observation
 
 
-def _look(
+def _observe_refitted(
     rays: RaySet, line: Line, own_m: tuple[float, float], reach_m: FloatArray, reading: RaySettings
 ) -> tuple[FaceObservation, FloatArray]:
     """Return what is seen of a refitted line up to `reach_m` (2,) beyond its own, and the span."""
@@ -99,8 +105,8 @@ def _look(
     if not rays.planar:
         is_own &= near.height_m > LEAST_HEIGHT_M
     refitted = refit_to_points(line, near.along_m[is_own], -near.behind_m[is_own])
-    span_m = refitted.along_m(line.at(np.array(span_m)))
-    return observe_face(rays, refitted, *span_m, band_m=reading.band_m), span_m
+    refitted_m = refitted.along_m(line.at(np.array(span_m)))
+    return observe_face(rays, refitted, *refitted_m, band_m=reading.band_m), refitted_m
 
 
 def refit_to_points(line: Line, along: FloatArray, offset: FloatArray) -> Line:
@@ -113,27 +119,32 @@ def refit_to_points(line: Line, along: FloatArray, offset: FloatArray) -> Line:
         Along the line, and before it, metres.
     """
     for _ in range(2):
-        near = np.abs(offset - np.median(offset)) <= _REFIT_M if len(offset) else np.zeros(0, bool)
-        along, offset = along[near], offset[near]
-    if len(along) < 10 or np.ptp(along) < 4 * CELL_M:
+        if len(offset):
+            is_near = np.abs(offset - np.median(offset)) <= _REFIT_M
+            along = along[is_near]
+            offset = offset[is_near]
+    if len(along) < _LEAST_REFIT_POINTS or np.ptp(along) < _LEAST_REFIT_M:
         middle = np.median(offset) if len(offset) else 0.0
         return Line(line.centre + middle * line.normal, line.normal)
     column = np.floor((along - along.min()) / CELL_M).astype(np.int64)
     count = np.bincount(column)
     weight = (np.minimum(count, _COLUMN_WEIGHT) / np.maximum(count, 1)).take(column)
-    centre_m, off_m = np.average(along, weights=weight), np.average(offset, weights=weight)
+    centre_m = np.average(along, weights=weight)
+    off_m = np.average(offset, weights=weight)
     slope = (weight * (along - centre_m)) @ (offset - off_m) / (weight @ (along - centre_m) ** 2)
     turn = np.clip(np.arctan(slope), -_MOST_TURN_RAD, _MOST_TURN_RAD)
     normal = np.cos(turn) * line.normal - np.sin(turn) * line.direction
     return Line(line.centre + centre_m * line.direction + off_m * line.normal, normal)
 
 
-def find_face_intervals(seen, reading, *, foreign_m=()):
+def find_face_intervals(
+    seen: FaceObservation, reading: RaySettings, *, foreign_m: Sequence[tuple[float, float]] = ()
+) -> list[FaceInterval]:
     """Find what is wall along a line.
 
     Columns with points, joined over pauses that no ray went through.
 
-    Panes are no wall; stretches that rays look over along most of their length are furniture, and
+    Glass is no wall; intervals that rays pass over along most of their length are furniture, and
     left out.
 
     Parameters
@@ -141,64 +152,80 @@ def find_face_intervals(seen, reading, *, foreign_m=()):
     seen : face_observation.FaceObservation
     reading : face_observation.RaySettings
     foreign_m : sequence of (float, float)
-        From where to where other faces cross the line: points there are theirs, so no stretch
-        begins or ends there.
+        From where to where other faces cross the line: points there are owned by these, so no
+        interval begins or ends there.
 
     Returns
     -------
-    list of Stretch
+    list of FaceInterval
         In order along the line.
     """
     if len(seen.occupied_m) == 0:
         return []
-    raster, door_m = seen.raster, reading.door_height_m
-    is_opened = raster.is_opened(door_m)
-    is_overlooked = raster.is_overlooked(door_m)
-    solid = raster.is_solid(door_m) & ~_inside(raster, [*foreign_m, *seen.glass_m])
-    runs = []
-    for column in np.flatnonzero(solid):
+    raster = seen.raster
+    is_foreign = _is_within(raster, [*foreign_m, *seen.glass_m])
+    is_solid = raster.is_solid(reading.door_height_m) & ~is_foreign
+    is_overlooked = raster.is_overlooked(reading.door_height_m)
+    is_opened = raster.is_opened(reading.door_height_m)
+    intervals = []
+    for first, last in _join_columns(is_solid, is_opened, reading.max_gap_m):
+        if is_overlooked[first : last + 1].mean() < _OVERLOOKED_SHARE:
+            low_m = raster.first_m + CELL_M * first
+            high_m = raster.first_m + CELL_M * (last + 1)
+            intervals.append(_trim_ends(FaceInterval(seen, float(low_m), float(high_m))))
+    return intervals
+
+
+def _join_columns(
+    is_solid: BoolArray, is_opened: BoolArray, max_gap_m: float
+) -> list[tuple[int, int]]:
+    """Return first and last of solid columns (c,), joined over short pauses that no ray opens."""
+    runs: list[tuple[int, int]] = []
+    for column in np.flatnonzero(is_solid).tolist():
         if runs:
-            pause = slice(runs[-1][1] + 1, column)
-            is_short = (pause.stop - pause.start) * CELL_M <= reading.max_gap_m
-            if is_short and is_opened[pause].sum() < 2:
-                runs[-1][1] = column
+            first, last = runs[-1]
+            is_short = (column - last - 1) * CELL_M <= max_gap_m
+            if is_short and is_opened[last + 1 : column].sum() < _LEAST_OPENED:
+                runs[-1] = (first, column)
                 continue
-        runs.append([column, column])
-    walls = [(a, b + 1) for a, b in runs if is_overlooked[a : b + 1].mean() < _OVERLOOKED_SHARE]
-    places = (raster.first_m + CELL_M * np.array(columns) for columns in walls)
-    return [_trimmed(FaceInterval(seen, *map(float, place))) for place in places]
+        runs.append((column, column))
+    return runs
 
 
-def _inside(raster, intervals_m):
+def _is_within(raster: FaceRaster, spans_m: Iterable[Sequence[float] | FloatArray]) -> BoolArray:
+    """Return which columns (c,) have their middle within any of some spans."""
     middle_m = raster.middle_m
-    inside = np.zeros(len(middle_m), bool)
-    for low_m, high_m in intervals_m:
-        inside |= (middle_m >= low_m) & (middle_m <= high_m)
-    return inside
+    is_within = np.zeros(len(middle_m), bool)
+    for low_m, high_m in spans_m:
+        is_within |= (middle_m >= low_m) & (middle_m <= high_m)
+    return is_within
 
 
-def _trimmed(stretch):
+def _trim_ends(interval: FaceInterval) -> FaceInterval:
     """Let an interval end where the scans that see its end see it.
 
     The outermost point of all scans lies beyond the true end: by the noise of a range, by what one
     scan or another is misplaced, and by what that scan sees of a door's reveal. A scan that sees an
     end shows it to half the distance of its points.
     """
-    seen, round_m = stretch.seen, _ROUND_M
+    observation = interval.seen
     # a point on the edge of a column is in it, whichever way the edge was rounded
-    points = seen.occupied_between(stretch.low_m - round_m, stretch.high_m + round_m)
-    along_m, scan = seen.occupied_m[points], seen.occupied_scan[points]
-    low_m, high_m = -_usual_end_m(-along_m, scan), _usual_end_m(along_m, scan)
+    points = observation.occupied_between(interval.low_m - _ROUND_M, interval.high_m + _ROUND_M)
+    along_m = observation.occupied_m[points]
+    scan = observation.occupied_scan[points]
+    low_m = -_usual_end_m(-along_m, scan)
+    high_m = _usual_end_m(along_m, scan)
     if low_m >= high_m:
-        low_m, high_m = along_m[0], along_m[-1]
-    return replace(stretch, low_m=float(low_m), high_m=float(high_m))
+        low_m = float(along_m[0])
+        high_m = float(along_m[-1])
+    return replace(interval, low_m=low_m, high_m=high_m)
 
 
-def _usual_end_m(along_m, scan):
+def _usual_end_m(along_m: FloatArray, scan: IntArray) -> float:
     """Return the weighted median of the scans' last points near the last of all."""
     near = along_m >= along_m.max() - _END_M
     _, index, count = np.unique(scan[near], return_inverse=True, return_counts=True)
     last_m = np.full(len(count), -np.inf)
     np.maximum.at(last_m, index, along_m[near])
     order = np.argsort(last_m, kind="stable")
-    return last_m[order][np.searchsorted(np.cumsum(count[order]), near.sum() / 2)]
+    return float(last_m[order][np.searchsorted(np.cumsum(count[order]), near.sum() / 2)])

@@ -1,10 +1,15 @@
-"""Walls seen in single scans, merged into the faces of the plan, each standing once."""
+"""Walls seen in single scans, merged into candidates of the plan's faces, each drawn once."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 from scanplan.geometry import lines
 from scanplan.plan.faces import candidates, segment_groups
+from scanplan.plan.faces.candidates import FaceCandidate
+from scanplan.types import Columns
+
+_RIGHT_DEG = 90.0  # normals that turn further are of the other side
 
 
 @dataclass(frozen=True)
@@ -57,22 +62,22 @@ class MergeSettings:
     min_scans: int
     lone_length_m: float
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         wrong = [f.name for f in fields(self) if not 0 <= getattr(self, f.name) < math.inf]
         wrong += [
             name
             for name in ("max_angle_deg", "tolerance_m", "registration_sigma_m")
             if not getattr(self, name)
         ]
-        wrong += ["max_angle_deg"] * (self.max_angle_deg >= 90)
+        wrong += ["max_angle_deg"] * (self.max_angle_deg >= _RIGHT_DEG)
         wrong += ["ghost_share"] * (self.ghost_share > 1)
         wrong += ["merge_distance_m"] * (self.merge_distance_m < self.tolerance_m)
         if wrong:
             raise ValueError(f"merge settings out of range: {', '.join(dict.fromkeys(wrong))}")
 
 
-def merge_segments(walls, settings):
-    """Merge the wall segments of many scans into pieces of common lines.
+def merge_segments(walls: Columns, settings: MergeSettings) -> list[FaceCandidate]:
+    """Merge the wall segments of many scans into candidates of faces on common lines.
 
     Segments are grouped around common lines (`segment_groups`); each group's line is cut at pauses,
     what too little supports is dropped, and so is what weaker faces draw over stronger ones
@@ -87,7 +92,7 @@ def merge_segments(walls, settings):
 
     Returns
     -------
-    list of candidates.FaceCandidate
+    list of FaceCandidate
         Those of one group share one line.
 
     Raises
@@ -105,29 +110,31 @@ def merge_segments(walls, settings):
         reach_m=max(settings.max_gap_m, settings.align_gap_m),
     )
     cut = [
-        p
+        candidate
         for members in groups
-        for p in candidates.cut_candidates(segments, members, max_gap_m=settings.max_gap_m)
+        for candidate in candidates.cut_candidates(segments, members, max_gap_m=settings.max_gap_m)
     ]
-    return _once(cut, settings)
+    return _select_candidates(cut, settings)
 
 
-def _once(pieces, settings):
-    """Return the pieces that are supported, none beside a stronger one."""
-    pieces = candidates.remove_doubles(
-        [piece for piece in pieces if _is_supported(piece, settings)],
+def _select_candidates(
+    face_candidates: Sequence[FaceCandidate], settings: MergeSettings
+) -> list[FaceCandidate]:
+    """Return the candidates that are supported, none beside a stronger one."""
+    single = candidates.remove_doubles(
+        [candidate for candidate in face_candidates if _is_supported(candidate, settings)],
         max_angle_rad=math.radians(settings.max_angle_deg),
         distance_m=settings.merge_distance_m,
         ghost_distance_m=settings.ghost_distance_m,
         ghost_share=settings.ghost_share,
     )
-    return [piece for piece in pieces if _is_supported(piece, settings)]
+    return [candidate for candidate in single if _is_supported(candidate, settings)]
 
 
-def _is_supported(piece, settings):
-    """Tell whether a piece is worth being looked at.
+def _is_supported(candidate: FaceCandidate, settings: MergeSettings) -> bool:
+    """Return whether a candidate is long and dense enough to be observed.
 
-    How many scans show it, all points tell better.
+    How many scans show it is better known from all their points (`tracing`).
     """
-    is_dense = piece.n_points >= max(1, settings.min_points_per_m * piece.length_m)
-    return is_dense and piece.length_m >= settings.min_length_m
+    least = max(1, settings.min_points_per_m * candidate.length_m)
+    return candidate.n_points >= least and candidate.length_m >= settings.min_length_m

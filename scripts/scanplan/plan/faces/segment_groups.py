@@ -5,17 +5,27 @@ import heapq
 import numpy as np
 import shapely
 
-from scanplan.geometry.lines import end_deviation_m, extents_along_m, fit_segments_line
+from scanplan.geometry.lines import (
+    Line,
+    ObservedSegments,
+    end_deviation_m,
+    extents_along_m,
+    fit_segments_line,
+)
+from scanplan.types import Array, BoolArray, FloatArray, IntArray
 
-_MOST_ROUNDS = 100
+_MOST_ROUNDS = 100  # bounds the time of groups that settle in circles
+_STRIP_SPARE = 1.1  # covers that distances are taken square to slightly different lines
 
 
-def group_segments(segments, *, max_angle_rad, tolerance_m, reach_m):
+def group_segments(
+    segments: ObservedSegments, *, max_angle_rad: float, tolerance_m: float, reach_m: float
+) -> list[IntArray]:
     """Sort segments into groups, each around one line.
 
     Of every group, all members look the same way as its line within `max_angle_rad`, and both ends
     of each lie within `tolerance_m` of it: chords of a curve are not drawn straight, a step is not
-    ramped. Groups grow from the segment that tells most about its line along what lies within
+    ramped. Groups grow from the segment that fixes its line best along what lies within
     `reach_m`, and are refitted and re-sorted until nothing changes (a mean shift over lines); then
     groups whose members fit one line after all are joined, the best first.
 
@@ -36,11 +46,14 @@ def group_segments(segments, *, max_angle_rad, tolerance_m, reach_m):
     return _join(segments, _grow(segments, **limits), **limits)
 
 
-def _grow(segments, *, max_angle_rad, tolerance_m, reach_m):
-    tree = shapely.STRtree(_strings(segments.start, segments.end))
+def _grow(
+    segments: ObservedSegments, *, max_angle_rad: float, tolerance_m: float, reach_m: float
+) -> list[IntArray]:
+    """Return groups that settle around the heaviest segments in none yet."""
+    tree = shapely.STRtree(_linestrings(segments.start, segments.end))
     free = np.ones(len(segments.start), bool)
     groups = []
-    for seed in np.argsort(-segments.weight * segments.length_m**2, kind="stable"):
+    for seed in np.argsort(-segments.weight * segments.length_m**2, kind="stable").tolist():
         while free[seed]:
             members = _settle(segments, tree, free, seed, max_angle_rad, tolerance_m, reach_m)
             free[members] = False
@@ -48,35 +61,53 @@ def _grow(segments, *, max_angle_rad, tolerance_m, reach_m):
     return groups
 
 
-def _settle(segments, tree, free, seed, max_angle_rad, tolerance_m, reach_m):
-    """Let a group around `seed` take up and give back members until it stays as it is."""
+def _settle(
+    segments: ObservedSegments,
+    tree: shapely.STRtree,
+    free: BoolArray,
+    seed: int,
+    max_angle_rad: float,
+    tolerance_m: float,
+    reach_m: float,
+) -> IntArray:
+    """Return the free segments of a group around `seed` that stay it, once it takes them up."""
     members = np.array([seed])
     for _ in range(_MOST_ROUNDS):
         line = fit_segments_line(segments, members)
-        low, high = extents_along_m(line, segments, members)
-        ends = line.at(np.array([low.min(), high.max()]))
-        box = shapely.box(*(ends.min(axis=0) - reach_m), *(ends.max(axis=0) + reach_m))
+        low_m, high_m = extents_along_m(line, segments, members)
+        ends_m = line.at(np.array([low_m.min(), high_m.max()]))
+        box = shapely.box(*(ends_m.min(axis=0) - reach_m), *(ends_m.max(axis=0) + reach_m))
         near = np.sort(tree.query(box))
         near = near[free[near]]
-        near_low, near_high = extents_along_m(line, segments, near)
-        taken = near[
+        near_low_m, near_high_m = extents_along_m(line, segments, near)
+        is_member = (
             _fits(line, segments, near, max_angle_rad, tolerance_m)
-            & (near_low <= high.max() + reach_m)
-            & (near_high >= low.min() - reach_m)
-        ]
-        if len(taken) == 0 or np.array_equal(taken, members):
+            & (near_low_m <= high_m.max() + reach_m)
+            & (near_high_m >= low_m.min() - reach_m)
+        )
+        refitted = near[is_member]
+        if len(refitted) == 0 or np.array_equal(refitted, members):
             break
-        members = taken
-    return _pruned(segments, members, max_angle_rad, tolerance_m)
+        members = refitted
+    return _prune(segments, members, max_angle_rad, tolerance_m)
 
 
-def _fits(line, segments, members, max_angle_rad, tolerance_m):
+def _fits(
+    line: Line,
+    segments: ObservedSegments,
+    members: IntArray,
+    max_angle_rad: float,
+    tolerance_m: float,
+) -> BoolArray:
+    """Return which members (k,) look the line's way, with both ends near it."""
     same_way = segments.normal[members] @ line.normal >= np.cos(max_angle_rad)
     return same_way & (end_deviation_m(line, segments, members) <= tolerance_m)
 
 
-def _pruned(segments, members, max_angle_rad, tolerance_m):
-    """Give back the worst member until all fit.
+def _prune(
+    segments: ObservedSegments, members: IntArray, max_angle_rad: float, tolerance_m: float
+) -> IntArray:
+    """Return the members without the worst ones, given back one by one until all fit.
 
     Of use only where settling went round in circles.
     """
@@ -88,26 +119,27 @@ def _pruned(segments, members, max_angle_rad, tolerance_m):
     return members
 
 
-def _join(segments, groups, *, max_angle_rad, tolerance_m, reach_m):
+def _join(
+    segments: ObservedSegments,
+    groups: list[IntArray],
+    *,
+    max_angle_rad: float,
+    tolerance_m: float,
+    reach_m: float,
+) -> list[IntArray]:
     """Join pairs of groups that fit one line, the closest fit first, until no pair does."""
+    limits = (max_angle_rad, tolerance_m, reach_m)
+    alive = dict(enumerate(groups))
+    offers: list[tuple[float, int, int]] = []
 
-    def cost(one, other):
-        members = np.sort(np.concatenate([alive[one], alive[other]]))
-        line = fit_segments_line(segments, members)
-        if not _fits(line, segments, members, max_angle_rad, tolerance_m).all():
-            return None
-        gap = _gap_m(line, segments, alive[one], alive[other])
-        return end_deviation_m(line, segments, members).max() if gap <= reach_m else None
+    def offer(one: int, other: int) -> None:
+        worst_m = _joint_deviation_m(segments, alive[one], alive[other], *limits)
+        if worst_m is not None:
+            heapq.heappush(offers, (worst_m, one, other))
 
-    def offer(one, other):
-        worst = cost(one, other)
-        if worst is not None:
-            heapq.heappush(offers, (worst, one, other))
-
-    alive, offers = dict(enumerate(groups)), []
-    beside = _neighbours(segments, groups, max_angle_rad, tolerance_m, reach_m)
+    beside = _find_neighbours(segments, groups, *limits)
     for one in range(len(groups)):
-        for other in sorted(o for o in beside[one] if o > one):
+        for other in sorted(number for number in beside[one] if number > one):
             offer(one, other)
     while offers:
         _, one, other = heapq.heappop(offers)
@@ -115,49 +147,75 @@ def _join(segments, groups, *, max_angle_rad, tolerance_m, reach_m):
             continue
         joined = len(beside)
         alive[joined] = np.sort(np.concatenate([alive.pop(one), alive.pop(other)]))
-        beside[joined] = {o for o in beside[one] | beside[other] if o in alive}
+        beside[joined] = {number for number in beside[one] | beside[other] if number in alive}
         for third in sorted(beside[joined]):
             beside[third].add(joined)
             offer(third, joined)
-    return [alive[key] for key in sorted(alive)]
+    return [alive[number] for number in sorted(alive)]
 
 
-def _gap_m(line, segments, one, other):
-    one_low, one_high = extents_along_m(line, segments, one)
-    other_low, other_high = extents_along_m(line, segments, other)
-    return max(other_low.min() - one_high.max(), one_low.min() - other_high.max())
+def _joint_deviation_m(
+    segments: ObservedSegments,
+    one: IntArray,
+    other: IntArray,
+    max_angle_rad: float,
+    tolerance_m: float,
+    reach_m: float,
+) -> float | None:
+    """Return the largest distance of two groups' ends from their line; None if they fit none."""
+    members = np.sort(np.concatenate([one, other]))
+    line = fit_segments_line(segments, members)
+    if not _fits(line, segments, members, max_angle_rad, tolerance_m).all():
+        return None
+    if _gap_m(line, segments, one, other) > reach_m:
+        return None
+    return end_deviation_m(line, segments, members).max()
 
 
-def _neighbours(segments, groups, max_angle_rad, tolerance_m, reach_m):
+def _gap_m(line: Line, segments: ObservedSegments, one: IntArray, other: IntArray) -> float:
+    """Return how far two groups are apart along a line; negative where they overlap."""
+    one_low_m, one_high_m = extents_along_m(line, segments, one)
+    other_low_m, other_high_m = extents_along_m(line, segments, other)
+    return max(other_low_m.min() - one_high_m.max(), one_low_m.min() - other_high_m.max())
+
+
+def _find_neighbours(
+    segments: ObservedSegments,
+    groups: list[IntArray],
+    max_angle_rad: float,
+    tolerance_m: float,
+    reach_m: float,
+) -> dict[int, set[int]]:
     """Return for each group those that may share a line with it.
 
     Within reach, much the same way, in a strip.
     """
     lines = [fit_segments_line(segments, members) for members in groups]
-    extents = [
-        extents_along_m(line, segments, members)
-        for line, members in zip(lines, groups, strict=True)
-    ]
-    starts = np.array([line.at(low.min()) for line, (low, _) in zip(lines, extents, strict=True)])
-    ends = np.array([line.at(high.max()) for line, (_, high) in zip(lines, extents, strict=True)])
     normals = np.array([line.normal for line in lines])
-    strings = _strings(starts, ends)
-    pairs = np.stack(
-        shapely.STRtree(strings).query(strings, predicate="dwithin", distance=reach_m), axis=1
-    )
-    alike = np.einsum("ij,ij->i", normals[pairs[:, 0]], normals[pairs[:, 1]]) >= np.cos(
-        2 * max_angle_rad
-    )
-    pairs = pairs[alike & (pairs[:, 0] < pairs[:, 1])]
-    pairs = pairs[_in_a_strip(starts, ends, pairs, tolerance_m)]
-    beside = {number: set() for number in range(len(groups))}
+    starts = []
+    ends = []
+    for line, members in zip(lines, groups, strict=True):
+        low_m, high_m = extents_along_m(line, segments, members)
+        starts.append(line.at(low_m.min()))
+        ends.append(line.at(high_m.max()))
+    starts_m = np.array(starts)
+    ends_m = np.array(ends)
+    strings = _linestrings(starts_m, ends_m)
+    near = shapely.STRtree(strings).query(strings, predicate="dwithin", distance=reach_m)
+    cosine = np.einsum("ij,ij->i", normals[near[0]], normals[near[1]])
+    pairs = near.T[(cosine >= np.cos(2 * max_angle_rad)) & (near[0] < near[1])]
+    pairs = pairs[_in_a_strip(starts_m, ends_m, pairs, tolerance_m)]
+    beside: dict[int, set[int]] = {number: set() for number in range(len(groups))}
     for one, other in pairs.tolist():
-        beside[one].add(other), beside[other].add(one)
+        beside[one].add(other)
+        beside[other].add(one)
     return beside
 
 
-def _in_a_strip(starts, ends, pairs, tolerance_m):
-    """Tell which pairs of lines any common line could serve, (k,) bool.
+def _in_a_strip(
+    starts_m: FloatArray, ends_m: FloatArray, pairs: IntArray, tolerance_m: float
+) -> BoolArray:
+    """Return which pairs of lines a common line could serve, (k,) bool.
 
     Some that none serves pass, too.
 
@@ -165,19 +223,19 @@ def _in_a_strip(starts, ends, pairs, tolerance_m):
     2 t of it. Over the longer one's length L the two lines are then 2 t apart at most, at x beyond
     its end ``2 t (1 + 2 x / L)``, and the shorter one's ends another 2 t.
     """
-    length_m = np.hypot(*(ends - starts).T)
+    length_m = np.hypot(*(ends_m - starts_m).T)
     swap = length_m[pairs[:, 0]] < length_m[pairs[:, 1]]
     longer, shorter = np.where(swap[:, None], pairs[:, ::-1], pairs).T
-    along = (ends[longer] - starts[longer]) / length_m[longer][:, None]
+    along = (ends_m[longer] - starts_m[longer]) / length_m[longer][:, None]
     passes = np.ones(len(pairs), bool)
-    for point in (starts[shorter] - starts[longer], ends[shorter] - starts[longer]):
-        place = np.einsum("ij,ij->i", point, along)
-        beyond = np.maximum(0, np.maximum(-place, place - length_m[longer]))
-        offset = np.abs(along[:, 0] * point[:, 1] - along[:, 1] * point[:, 0])
-        # the tenth covers that distances are taken square to slightly different lines
-        passes &= offset <= 1.1 * 4 * tolerance_m * (1 + beyond / length_m[longer])
+    for shorter_m in (starts_m[shorter], ends_m[shorter]):
+        point_m = shorter_m - starts_m[longer]
+        place_m = np.einsum("ij,ij->i", point_m, along)
+        beyond_m = np.maximum(0, np.maximum(-place_m, place_m - length_m[longer]))
+        offset_m = np.abs(along[:, 0] * point_m[:, 1] - along[:, 1] * point_m[:, 0])
+        passes &= offset_m <= _STRIP_SPARE * 4 * tolerance_m * (1 + beyond_m / length_m[longer])
     return passes
 
 
-def _strings(start, end):
-    return shapely.linestrings(np.stack([start, end], axis=1))
+def _linestrings(start_m: FloatArray, end_m: FloatArray) -> Array:
+    return np.asarray(shapely.linestrings(np.stack([start_m, end_m], axis=1)), object)

@@ -4,27 +4,33 @@ Lines that segments agree on, cut to what the points and rays of the chosen scan
 """
 
 import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from scanplan.extraction.face_arrangement import Faces
-from scanplan.extraction.furniture import find_furniture_fronts
-from scanplan.geometry import intersections
+from scanplan.extraction.furniture import FurnitureLimits, find_furniture_fronts
+from scanplan.geometry.lines import Line
 from scanplan.plan.faces import candidates, intervals, trimming
+from scanplan.plan.faces.candidates import FaceCandidate
+from scanplan.plan.faces.intervals import STUB_M, FaceInterval
+from scanplan.plan.faces.merging import MergeSettings
+from scanplan.plan.faces.owned_points import OWNED_M, owned_intervals
+from scanplan.rays.face_observation import FaceObservation, RaySettings
+from scanplan.rays.ray_set import RaySet
 
-_STUB_M = 0.1
-_FOREIGN_M = 0.08
-_REACHES_M = 0.15
+_LEAST_POINTS = 2  # of an interval: one point has no extent
 
 
 @dataclass(frozen=True, eq=False)
 class TracedFaces:
-    """Faces found, and how much was dropped.
+    """Faces traced, and how many lines were dropped.
 
     Attributes
     ----------
     stretches : list of intervals.FaceInterval
+        The faces.
     n_lines : int
     n_dropped : int
         Lines of which nothing is left: too little seen, furniture, or drawn by a stronger one.
@@ -32,18 +38,45 @@ class TracedFaces:
         From where to where along a line there is glass.
     """
 
-    stretches: list
+    stretches: list[FaceInterval]
     n_lines: int
     n_dropped: int
-    panes: list
+    panes: list[tuple[Line, float, float]]
 
 
-def trace_faces(pieces, rays, merging, reading, furniture):
-    """Find the faces along the lines of pieces.
+def trace_faces(
+    face_candidates: Sequence[FaceCandidate],
+    rays: RaySet,
+    merging: MergeSettings,
+    reading: RaySettings,
+    furniture: FurnitureLimits,
+) -> TracedFaces:
+    """Trace the faces along the lines of candidates.
+
+    The passes, and why they are in this order:
+
+    1. Observe (`_observe_lines`): each common line is refitted to the points at it, once; every
+       later pass reads this observation.
+    2. First intervals (`_select_walls`): the solid intervals of each line, whatever crosses it.
+       Those too little supported go first, so that none of them takes away from others; then
+       doubles, since a ghost of a wall behind it could make a front of the wall; then fronts of
+       furniture. Only what stays may own points of another line.
+    3. Owned points (`owned_intervals`): where those faces cross other lines, the points at a
+       crossing are theirs.
+    4. Second intervals (`_select_walls` again): the observations are cut anew, without the owned
+       points. So what pass 2 removed is back, and intervals begin and end elsewhere: support,
+       doubles and fronts are asked of these once more.
+    5. Trim (`_trim`): chords of a curve where they overshoot each other, then tails of stray points
+       behind crossing faces, then stubs that are left. Before corners, since an end moves no
+       farther than `corner_m`: it must first be where the face ends.
+    6. Meet (`_meet_at_corners`): ends are moved to where lines cross. Some faces reach the line
+       that they end at only now, so tails are trimmed a second time; extents and points per metre
+       have changed, so doubles are removed a third time, which also leaves the strongest face
+       first. Fronts are not asked again: corners bring no new face. Stubs that are left go last.
 
     Parameters
     ----------
-    pieces : list of candidates.FaceCandidate
+    face_candidates : list of candidates.FaceCandidate
         Those of one group share their line.
     rays : ray_set.RaySet
     merging : merging.MergeSettings
@@ -52,60 +85,99 @@ def trace_faces(pieces, rays, merging, reading, furniture):
 
     Returns
     -------
-    Traced
-        Its stretches meet at corners, none beside a stronger one.
+    TracedFaces
+        Its faces meet at corners, none beside a stronger one.
     """
-    lines = {}
-    for piece in pieces:
-        lines.setdefault(id(piece.line), []).append(piece)
-    seen = [_seen(group, rays, reading) for group in lines.values()]
-    found = _once([intervals.find_face_intervals(s, reading) for s in seen], merging)
-    found = _without_furniture(found, furniture)
-    claimed = zip(seen, owned_intervals(seen, found), strict=True)
-    runs = (intervals.find_face_intervals(s, reading, foreign_m=spans_m) for s, spans_m in claimed)
-    found = _without_furniture(_once(list(runs), merging), furniture)
-    found = trimming.trim_tails(trimming.trim_overshoots(found), share=merging.ghost_share)
-    found = [f for f in found if f.length_m >= _STUB_M]
-    met = candidates.meet_at_corners(found, corner_m=merging.corner_m)
+    observations = _observe_lines(face_candidates, rays, reading)
+    of_lines = [intervals.find_face_intervals(seen, reading) for seen in observations]
+    owners = _select_walls(of_lines, merging, furniture)
+    owned_m = owned_intervals(observations, owners)
+    of_lines = [
+        intervals.find_face_intervals(seen, reading, foreign_m=spans_m)
+        for seen, spans_m in zip(observations, owned_m, strict=True)
+    ]
+    walls = _select_walls(of_lines, merging, furniture)
+    faces = _meet_at_corners(_trim(walls, merging), merging)
+    n_traced = len({id(face.seen) for face in faces})
+    return TracedFaces(
+        stretches=faces,
+        n_lines=len(observations),
+        n_dropped=len(observations) - n_traced,
+        panes=[
+            (seen.line, low_m, high_m)
+            for seen in observations
+            for low_m, high_m in seen.framed_m.tolist()
+        ],
+    )
+
+
+def _observe_lines(
+    face_candidates: Iterable[FaceCandidate], rays: RaySet, reading: RaySettings
+) -> list[FaceObservation]:
+    """Return the observation of each line that candidates share, from the first to the last."""
+    of_line: dict[int, list[FaceCandidate]] = {}
+    for candidate in face_candidates:
+        of_line.setdefault(id(candidate.line), []).append(candidate)
+    observations = []
+    for group in of_line.values():
+        low_m = min(candidate.low_m for candidate in group)
+        high_m = max(candidate.high_m for candidate in group)
+        line = group[0].line
+        observations.append(intervals.observe_along(rays, line, low_m, high_m, reading))
+    return observations
+
+
+def _select_walls(
+    of_lines: Iterable[Sequence[FaceInterval]], merging: MergeSettings, furniture: FurnitureLimits
+) -> list[FaceInterval]:
+    """Return the intervals, listed by line, that are walls.
+
+    Supported, none beside a stronger one, none a front of furniture.
+    """
+    supported = [interval for of_line in of_lines for interval in _supported(of_line, merging)]
+    return _without_furniture(_without_doubles(supported, merging), furniture)
+
+
+def _trim(walls: Sequence[FaceInterval], merging: MergeSettings) -> list[FaceInterval]:
+    """Return intervals without overshoots, tails and stubs."""
+    trimmed = trimming.trim_tails(trimming.trim_overshoots(walls), share=merging.ghost_share)
+    return _without_stubs(trimmed)
+
+
+def _meet_at_corners(walls: Sequence[FaceInterval], merging: MergeSettings) -> list[FaceInterval]:
+    """Return intervals that end at corners, the strongest first, without what that leaves over."""
+    met = candidates.meet_at_corners(walls, corner_m=merging.corner_m)
     # some faces reach the line that they end at only now
     met = trimming.trim_tails(met, share=merging.ghost_share)
-    met = [f for f in _without_doubles(met, merging) if f.length_m >= _STUB_M]
-    lost = [(s.line, *span_m) for s in seen for span_m in s.framed_m.tolist()]
-    return TracedFaces(met, len(seen), len(seen) - len({id(f.seen) for f in met}), lost)
+    return _without_stubs(_without_doubles(met, merging))
 
 
-def _seen(group, rays, reading):
-    low_m, high_m = min(piece.low_m for piece in group), max(piece.high_m for piece in group)
-    return intervals.observe_along(rays, group[0].line, low_m, high_m, reading)
-
-
-def _without_furniture(found, limits):
+def _without_furniture(
+    found: Sequence[FaceInterval], limits: FurnitureLimits
+) -> list[FaceInterval]:
     """Return the intervals that are no fronts of furniture.
 
     All of a 2-D scanner, whose heights are unknown.
 
     From where furniture hides the wall behind it, and no ray passes over it, it looks like a wall
-    to a scan; all scans together know better.
+    to a scan; all scans together show the wall behind.
     """
     if not found or found[0].seen.planar:
-        return found
-    numbers = {number: index for index, number in enumerate({id(f.seen): None for f in found})}
+        return list(found)
+    observations = {id(interval.seen): None for interval in found}
+    numbers = {key: number for number, key in enumerate(observations)}
     faces = Faces(
-        ends_m=np.array([f.ends for f in found]),
-        normal=np.array([f.line.normal for f in found]),
-        top_m=np.array([f.top_m for f in found]),
-        line=np.array([numbers[id(f.seen)] for f in found]),
+        ends_m=np.array([interval.ends for interval in found]),
+        normal=np.array([interval.line.normal for interval in found]),
+        top_m=np.array([interval.top_m for interval in found]),
+        line=np.array([numbers[id(interval.seen)] for interval in found]),
     )
-    fronts = find_furniture_fronts(faces, limits)
-    return [f for f, is_front in zip(found, fronts.tolist(), strict=True) if not is_front]
+    fronts = find_furniture_fronts(faces, limits).tolist()
+    return [interval for interval, is_front in zip(found, fronts, strict=True) if not is_front]
 
 
-def _once(found, merging):
-    """Return the intervals, listed by line, that are supported, none beside a stronger one."""
-    return _without_doubles([s for of_line in found for s in _supported(of_line, merging)], merging)
-
-
-def _without_doubles(found, merging):
+def _without_doubles(found: Sequence[FaceInterval], merging: MergeSettings) -> list[FaceInterval]:
+    """Return the intervals, the strongest first, without what runs beside a stronger one."""
     return candidates.remove_doubles(
         found,
         max_angle_rad=math.radians(merging.max_angle_deg),
@@ -115,65 +187,29 @@ def _without_doubles(found, merging):
     )
 
 
-def _supported(of_line, merging):
-    """Return the stretches of one line that enough points show.
+def _without_stubs(found: Iterable[FaceInterval]) -> list[FaceInterval]:
+    return [interval for interval in found if interval.length_m >= STUB_M]
 
-    Where one is believed, short ones beside it are too.
+
+def _supported(of_line: Iterable[FaceInterval], merging: MergeSettings) -> list[FaceInterval]:
+    """Return the intervals of one line that enough points show.
+
+    Where one is sure, short ones beside it stay, too.
     """
-    dense = [s for s in of_line if s.n_points >= max(2, merging.min_points_per_m * s.length_m)]
-    sure = [s for s in dense if s.length_m >= merging.min_length_m and _is_shown(s, merging)]
-    return [s for s in dense if s.length_m >= _STUB_M] if sure else []
-
-
-def _is_shown(stretch, merging):
-    # its ends may have been left to faces that cross it there
-    return (
-        stretch.length_m + 2 * _FOREIGN_M >= merging.lone_length_m
-        or stretch.n_scans >= merging.min_scans
-    )
-
-
-def owned_intervals(lines, found):
-    """Return from where to where along lines others cross them: points there are theirs.
-
-    What others claim whole is the end of a wall that another line happens to lead through, as a
-    shelf's beside a door's jamb: it is no wall that crosses, and claims nothing.
-
-    Parameters
-    ----------
-    lines : list of face_observation.FaceObservation
-    found : list of intervals.FaceInterval
-
-    Returns
-    -------
-    list of list of (float, float)
-        Per line.
-    """
-    stacked = intersections.stack_spans(found)
-    standing = [f for f in found if _left_m(f, _crossed_m(f.seen, found, stacked)) >= _STUB_M]
-    stacked = intersections.stack_spans(standing)
-    return [_crossed_m(seen, standing, stacked) for seen in lines]
-
-
-def _left_m(stretch, claimed_m):
-    """Return how much of a stretch is in none of some spans along its line."""
-    spans = np.clip(np.array(claimed_m).reshape(-1, 2), stretch.low_m, stretch.high_m)
-    reached_m, left_m = stretch.low_m, 0.0
-    for low_m, high_m in sorted(spans.tolist()):
-        left_m += max(low_m - reached_m, 0.0)
-        reached_m = max(reached_m, high_m)
-    return left_m + stretch.high_m - reached_m
-
-
-def _crossed_m(seen, found, stacked):
-    """Return from where to where along a line stretches of other lines cross it.
-
-    List of (low, high).
-    """
-    crossed = intersections.find_crossings(seen.line, stacked, reach_m=_REACHES_M)
-    spans = zip(crossed.which.tolist(), crossed.place_m, _FOREIGN_M / crossed.sine, strict=True)
-    return [
-        (place_m - half_m, place_m + half_m)
-        for i, place_m, half_m in spans
-        if found[i].seen is not seen
+    dense = [
+        interval
+        for interval in of_line
+        if interval.n_points >= max(_LEAST_POINTS, merging.min_points_per_m * interval.length_m)
     ]
+    is_sure = any(
+        interval.length_m >= merging.min_length_m and _is_shown(interval, merging)
+        for interval in dense
+    )
+    return _without_stubs(dense) if is_sure else []
+
+
+def _is_shown(interval: FaceInterval, merging: MergeSettings) -> bool:
+    """Return whether an interval is long, or enough scans show it."""
+    # its ends may have been left to faces that cross it there
+    is_long = interval.length_m + 2 * OWNED_M >= merging.lone_length_m
+    return is_long or interval.n_scans >= merging.min_scans
