@@ -16,6 +16,7 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from pathlib import Path
+from typing import TypeGuard
 
 import yaml
 
@@ -186,7 +187,7 @@ def find_public_functions(module: Module) -> Iterator[Function]:
             yield node
 
 
-def _is_public_function(node: ast.stmt) -> bool:
+def _is_public_function(node: ast.stmt) -> TypeGuard[Function]:
     return isinstance(node, Function) and not node.name.startswith("_")
 
 
