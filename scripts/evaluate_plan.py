@@ -20,7 +20,7 @@ def evaluate_plan(plan, registration, truth, true_poses, output, *, max_range_m,
     Parameters
     ----------
     plan : dict of str to path-like
-        plan/<name>.parquet by the names `faces`, `walls`, `opening_metrics`, `rooms` and `evidence`.
+        plan/<name>.parquet by the names `faces`, `walls`, `openings`, `rooms` and `evidence`.
     registration, truth, true_poses, output : path-like
         registration.parquet, truth.geojson and truth_poses.tum; evaluation/plan.parquet, to write.
     max_range_m, bitmap_cell_m : float

@@ -24,7 +24,7 @@ def export_plan(plan, scans, outputs, *, name, settings):
     Parameters
     ----------
     plan : dict of str to path-like
-        `faces`, `walls`, `opening_metrics`, `rooms`, `free` and `evidence` of plan/.
+        `faces`, `walls`, `openings`, `rooms`, `free` and `evidence` of plan/.
     scans : path-like
         scans.parquet; those that show the plan's walls tell the heights of floor and ceiling.
     outputs : dict of str to path-like

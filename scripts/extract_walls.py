@@ -3,12 +3,11 @@
 import time
 
 from scanplan.errors import StageError
-from scanplan.extraction import cluster_ransac, iterative_ransac, map_tilt, segments
+from scanplan.extraction import map_tilt, segments
+from scanplan.extraction.extractors import EXTRACTORS
 from scanplan.stage import log
 from scanplan.stage.per_scan import map_scans
 from scanplan.store import schemas, tables
-
-EXTRACTORS = {"cluster_ransac": cluster_ransac, "iterative_ransac": iterative_ransac}
 
 
 def extract_walls(scans, registration, output, *, extractor, settings, threads=1):
@@ -31,7 +30,7 @@ def extract_walls(scans, registration, output, *, extractor, settings, threads=1
             f"extractor {extractor}: is not known; choose one of {', '.join(EXTRACTORS)}"
         )
     method, store, started = EXTRACTORS[extractor], tables.ScanStore(scans), time.perf_counter()
-    every_scan = {"planar": store.planar, "settings": method.Settings(**settings)}
+    every_scan = {"planar": store.planar, "settings": method.settings(**settings)}
     per_scan = segments.sensor_keywords(
         tables.read_table(registration, schemas.REGISTRATION), store.scan_ids, registration
     )

@@ -1,12 +1,13 @@
 """Time the extractors scan by scan and the selection by number of scans (thesis, figures 5.8 and 5.10)."""
 
-from scanplan.extraction import cluster_ransac
+from scanplan.extraction.extractors import EXTRACTORS, Extractor
 from scanplan.lab.thesis import plain_ransac, timing
 from scanplan.lab.thesis.claim_measures import ITERATIVE, OURS, PLAIN, PLAIN_CLUSTERS
 from scanplan.stage import log
 from scanplan.store import schemas, tables
 
-_EXTRACTORS = {PLAIN_CLUSTERS: (cluster_ransac, OURS), PLAIN: (plain_ransac, ITERATIVE)}
+_PLAIN = Extractor(plain_ransac.PlainRansacSettings, plain_ransac.extract_plain)
+_EXTRACTORS = {PLAIN_CLUSTERS: (EXTRACTORS[OURS], OURS), PLAIN: (_PLAIN, ITERATIVE)}
 _CLUSTERED, _THINNED = 3, 8  # a call for every number of clusters, or of points, is long
 _SELECTION_SIZES = (10, 20, 30, 45, 60, 90, 130, 180, 270, 400, 600, 900, 1300)
 
@@ -23,7 +24,7 @@ def time_stages(scans, registration, built, output, *, walls, hulls, n_clusters,
     output : path-like
         thesis/times.parquet, to write.
     walls : dict of str to dict
-        Extractor to the keywords of its `Settings`.
+        Extractor to the keywords of its settings.
     hulls : dict
         `sample_size` and `seed` of `hulls.make_cluster_hulls`.
     n_clusters : sequence of int

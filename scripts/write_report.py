@@ -30,7 +30,7 @@ def write_report(files, output, *, name, settings, benchmarks):
     Parameters
     ----------
     files : dict of str to path-like, or list of path-like
-        `faces`, `walls`, `opening_metrics`, `rooms`, `free`, `evidence` of plan/; `selection`, `segments` (walls/), `poses`,
+        `faces`, `walls`, `openings`, `rooms`, `free`, `evidence` of plan/; `selection`, `segments` (walls/), `poses`,
         `registration`; `page` (HTML, CSS, JavaScript); `figures`; `evaluation` (none, or of walls and of plan);
         `recordings`; `results`.
     output : path-like

@@ -7,9 +7,10 @@ import numpy as np
 import wallscans
 
 from reference import cluster_ransac as literal_clusters
-from scanplan.extraction import cluster_ransac, iterative_ransac, normals, segments
+from scanplan.extraction import normals, segments
+from scanplan.extraction.extractors import EXTRACTORS
 
-METHODS = {"cluster_ransac": cluster_ransac, "iterative_ransac": iterative_ransac}
+METHODS = EXTRACTORS
 _ROUTES = {"demo_office": ("given", 0.4), "ring_office": ("rooms", 1.2)}
 _LITERAL_EVERY = 4  # points: the literal method's time grows with their square
 _LITERAL_KEYS = ("reach_deg", "max_tilt_deg", "bandwidth_m", "inlier_m", "min_points")
@@ -112,7 +113,7 @@ def raster_lines(survey):
 
 def _lines(survey, name, settings):
     method = METHODS[name]
-    limits = method.Settings(**settings[name])
+    limits = method.settings(**settings[name])
     lines, scan = [np.empty((0, 2, 2))], [np.empty(0, int)]
     for i, xyz_m in survey.scans:
         found = method.extract(
@@ -129,7 +130,7 @@ def _extract(survey, scans, settings):
     for i, xyz_m in scans:
         for name, method in METHODS.items():
             keywords = {"sensor_xyz_m": survey.sensors[i], "planar": False}
-            keywords["settings"] = method.Settings(**settings[name])
+            keywords["settings"] = method.settings(**settings[name])
             took_ms[name].append(
                 _milliseconds(lambda m=method, s=i, p=xyz_m, k=keywords: m.extract(s, p, **k))
             )

@@ -48,7 +48,7 @@ def order_scans(
     Parameters
     ----------
     method : str
-        Greedy by an objective: `wall_length`, what the scans show of the walls; `visible_faces`, the free space they
+        Greedy by an objective: `wall_length`, what the scans show of the walls; `visibility`, the free space they
         looked through; `cluster_hull`, the area of the union of clusters' hulls; `hull`, that of one convex hull per
         scan; `streaming`, the area of `cluster_hull` again, but in one pass over the scans as they were recorded. By
         nothing measured: `every_nth`, evenly over the recording; `distance`, always the one taken farthest from those

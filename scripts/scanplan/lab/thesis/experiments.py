@@ -23,7 +23,7 @@ def list_surveys(*, defaults, given, schema, config):
     given : sequence of settings.Layer
         The command line's settings; section `thesis` says which seeds.
     config : path-like
-        The folder that holds `list_surveys`, `drawn_floor` and `thesis.yaml`.
+        The folder that holds `surveys`, `buildings` and `thesis.yaml`.
 
     Returns
     -------

@@ -28,14 +28,13 @@ def time_extractor(task, method, store, registered, scan_ids, settings, origin, 
     ----------
     task : str
         Its name in the table.
-    method : module
-        With `extract` and `Settings`.
+    method : extractors.Extractor
     store : tables.ScanStore
     registered : dict
         Columns of the table of registration.
     scan_ids : (n,) int
     settings : dict
-        Keywords of the method's `Settings`.
+        Keywords of the method's settings.
     origin : path-like
         Of the table of registration, for messages.
     part : int
@@ -48,7 +47,7 @@ def time_extractor(task, method, store, registered, scan_ids, settings, origin, 
     """
     sensors, chosen = (
         segments.sensor_keywords(registered, scan_ids, origin),
-        method.Settings(**settings),
+        method.settings(**settings),
     )
     for number, (scan_id, xyz_m) in enumerate(store.scans(scan_ids)):
         xyz_m = thin_points(xyz_m, part, scan_id)
