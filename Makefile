@@ -15,7 +15,7 @@ GIVEN := $(foreach name,$(.VARIABLES),$(if $(findstring command line,$(origin $(
 UNKNOWN := $(filter-out $(KNOWN),$(GIVEN))
 $(if $(UNKNOWN),$(error $(UNKNOWN): no such variable; there are $(KNOWN)))
 
-.PHONY: help run quick test lint style bench figures environment clean
+.PHONY: help run quick test lint style bench figures settings environment clean
 .DEFAULT_GOAL := run
 
 help: ## this list
@@ -54,6 +54,9 @@ bench: environment ## the stages against the algorithms of the thesis written li
 
 figures: environment ## the house in figures; ARGS='OTHER_CHECKOUT .' compares, ARGS=--types counts type errors
 	@$(BIN)/python tests/house_figures.py $(ARGS)
+
+settings: environment ## write the lists in config/ and the manual's tables from the schema
+	@PYTHONPATH=scripts $(BIN)/python -m scanplan.project.settings_files
 
 environment: $(VENV)/.ready ## set up .venv from environment.lock (run, test and the others do it)
 
