@@ -11,7 +11,8 @@ import pytest
 
 from helpers.project_copy import TINY, Project
 
-pytestmark = pytest.mark.workflow
+# the tests share one run, which each leaves as it was
+pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("workflow")]
 
 
 @pytest.fixture(scope="module")
