@@ -34,14 +34,14 @@ run: environment ## the demo: simulate an office, make its plan
 
 quick: environment style ## lint and the tests of what changed since main, under 90 seconds
 	@changed=$$($(BIN)/python tests/changed_tests.py python); \
-	    test -z "$$changed" || $(BIN)/basedpyright $$changed
+	    test -z "$$changed" || $(BIN)/basedpyright --project . $$changed
 	@$(PYTEST) -m "not workflow and not recordings" $$($(BIN)/python tests/changed_tests.py tests) $(ARGS)
 
 test: environment lint ## lint and all tests, about ten minutes
 	@$(PYTEST) $(ARGS)
 
 lint: environment style ## style, types and the workflow's own checks
-	@$(BIN)/basedpyright
+	@$(BIN)/basedpyright --project .
 
 style: environment
 	@$(BIN)/ruff check .
