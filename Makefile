@@ -41,7 +41,7 @@ test: environment lint ## lint and all tests, about ten minutes
 	@$(PYTEST) $(ARGS)
 
 lint: environment style ## style, types and the workflow's own checks
-	@$(BIN)/basedpyright --project .
+	@$(BIN)/basedpyright --threads $(CORES) --project .
 
 style: environment
 	@$(BIN)/ruff check .
