@@ -12,7 +12,8 @@ import walls_bench
 
 from helpers import ifc_volumes
 from scanplan.lab.evaluation import plan_metrics, true_plan, truth_file, wall_findings, wall_metrics
-from scanplan.plan import plan_settings, planning
+from scanplan.plan import planning
+from scanplan.project import stage_settings
 from scanplan.rays import ray_set
 from scanplan.selection import stopping
 from scanplan.store import registered_scans, schemas, tables
@@ -151,7 +152,7 @@ def _make_plan(found: Results, rows: IntArray, scan_ids: IntArray, settings: Set
         rays,
         poses[:, :2, 3],
         found.registered.t_ns[rows],
-        planning.make_plan_settings(**plan_settings.select_plan_settings(settings)),
+        planning.make_plan_settings(**stage_settings.select_plan(settings)),
         poses[rows, :3, 2],
     )
     return Plan(plan, rays.floor_z_m)

@@ -13,6 +13,7 @@ import register_scans
 import simulate_survey
 from reference import registration as literal
 from scanplan.lab.evaluation import pose_errors, truth_file
+from scanplan.project import stage_settings
 from scanplan.recordings.motion import trajectory
 from scanplan.recordings.survey import open_survey
 from scanplan.registration import results
@@ -51,8 +52,7 @@ def simulate_drive(root: Path, settings: Settings) -> Path:
         files = [folder / name for name in names]
         building = root / "config/buildings/ring_office.geojson"
         simulate_survey.simulate_survey(building, *files, **rig, threads=_THREADS)
-        of_points = ("min_range_m", "max_range_m", "deskew")
-        reading = {key: v for key, v in settings["input"].items() if key not in of_points}
+        reading = stage_settings.select_topics(settings)
         outputs = {"output": folder / "poses.parquet", "moved": folder / "motion.parquet"}
         interpolate_poses.interpolate_poses(
             [str(folder / "survey.bag")], **outputs, **settings["poses"], **reading
@@ -89,7 +89,7 @@ def _register(folder: Path, bag: Path, settings: Settings) -> None:
     outputs = (folder / f"{name}.parquet" for name in _TABLES)
     keywords = {
         "reading": settings["input"],
-        "settings": settings["registration"],
+        "settings": stage_settings.select_section(settings, "registration"),
         "moved": folder / "motion.parquet",
     }
     register_scans.register_scans(

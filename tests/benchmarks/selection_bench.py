@@ -11,6 +11,7 @@ import shapely
 from sklearn.cluster import KMeans
 
 from reference import hull_selection
+from scanplan.project.stage_settings import select_hulls
 from scanplan.selection import area_greedy, bounds, hulls, streaming
 from scanplan.types import Array, FilePath, FloatArray, Settings
 
@@ -42,11 +43,12 @@ def compare_all(building: FilePath, settings: Settings, say: Say) -> None:
         Takes a line of the result.
     """
     scans = drive_scans.simulate_scans(building, settings["simulate"], N_SCANS, route="rooms")
-    compare_hulls(scans[::100], settings["hulls"], say)
-    polygons = drive_scans.scan_polygons(scans, settings["hulls"])
+    hull_settings = select_hulls(settings)
+    compare_hulls(scans[::100], hull_settings, say)
+    polygons = drive_scans.scan_polygons(scans, hull_settings)
     compare_orders(polygons, say)
     compare_streaming(polygons[:: N_SCANS // STREAMED], say)
-    compare_sizes(scans[:COPIED], settings["hulls"], say)
+    compare_sizes(scans[:COPIED], hull_settings, say)
 
 
 def compare_hulls(scans: list[FloatArray], settings: Settings, say: Say) -> None:

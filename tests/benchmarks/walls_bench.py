@@ -11,6 +11,7 @@ import wall_scans
 from reference import cluster_ransac as literal_clusters
 from scanplan.extraction import normals, segments
 from scanplan.extraction.extractors import EXTRACTORS
+from scanplan.project.stage_settings import select_extractors
 from scanplan.types import FloatArray, IntArray, Settings
 
 Scans = list[tuple[int, FloatArray]]
@@ -30,6 +31,7 @@ _WARM_UP = 2  # scans for imports and caches
 
 def bench_speed(root: Path, settings: Settings) -> None:
     """Time both extractors on the same scans of two buildings, turn by turn, each on one core."""
+    walls = select_extractors(settings, EXTRACTORS)
     for building, (route, step_m) in _ROUTES.items():
         survey = wall_scans.prepare_standing(
             root / f"config/buildings/{building}.geojson",
@@ -39,11 +41,11 @@ def bench_speed(root: Path, settings: Settings) -> None:
             every=8,
         )
         scans = survey.scans[:_SPEED_SCANS]
-        took_ms = _best_of_turns(survey, scans, settings["walls"])
-        _print_speed(building, survey, scans, took_ms, settings["walls"])
+        took_ms = _best_of_turns(survey, scans, walls)
+        _print_speed(building, survey, scans, took_ms, walls)
         if building == "demo_office":
-            cluster_settings = settings["walls"]["cluster_ransac"]
-            _print_literal(survey, scans[0], took_ms["cluster_ransac"][0], cluster_settings)
+            ours_ms = took_ms["cluster_ransac"][0]
+            _print_literal(survey, scans[0], ours_ms, walls["cluster_ransac"])
 
 
 def _best_of_turns(
@@ -110,6 +112,7 @@ def _print_literal(
 
 def bench_quality(root: Path, settings: Settings, every: int = 3) -> None:
     """Compare the walls that both extractors and a line detector show with the truth."""
+    walls = select_extractors(settings, EXTRACTORS)
     for building, (route, step_m) in _ROUTES.items():
         survey = wall_scans.prepare_standing(
             root / f"config/buildings/{building}.geojson",
@@ -118,7 +121,7 @@ def bench_quality(root: Path, settings: Settings, every: int = 3) -> None:
             step_m=step_m,
             every=every,
         )
-        found = {name: _extract_lines(survey, name, settings["walls"]) for name in EXTRACTORS}
+        found = {name: _extract_lines(survey, name, walls) for name in EXTRACTORS}
         if importlib.util.find_spec("cv2"):
             lines_m = raster_lines(survey.scans)
             found["raster and LSD"] = lines_m, np.zeros(len(lines_m), int)

@@ -1,20 +1,19 @@
 """A drive round a block of rooms: candidates to one map, and what links them."""
 
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from helpers.default_settings import SETTINGS
 from scanplan.geometry import se3
 from scanplan.lab.evaluation import pose_errors
-from scanplan.project.settings import read_yaml
+from scanplan.project.stage_settings import select_section
 from scanplan.registration import constraint_table, mapping
 from scanplan.stage import workers
 from scanplan.store import scan_cache, schemas, tables
 
-ROOT = Path(__file__).resolve().parents[2]
 N = 60
 
 
@@ -68,7 +67,7 @@ def drive():
 
 def register(drive, folder, threads=1, **changes):
     scans, priors, _ = drive
-    section = read_yaml(ROOT / "config/config.yaml")["registration"]
+    section = select_section(SETTINGS, "registration")
     graph = section["graph"] | changes.pop("graph", {})
     settings = mapping.registration_settings(
         section | {"batch_size": 20} | changes | {"graph": graph}

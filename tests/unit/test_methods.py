@@ -1,16 +1,14 @@
 from dataclasses import fields
 
-from scanplan.project import dataset
-from scanplan.project.settings import read_yaml
+from helpers.default_settings import SCHEMA, SETTINGS
+from scanplan.project.settings_schema import list_choices
+from scanplan.project.stage_settings import select_wall_cells
 from scanplan.selection import methods, orderings, wall_cells
 
 
-def test_the_schema_allows_the_methods_there_are(project_root):
-    schema = read_yaml(project_root / "workflow/schemas/config.schema.yaml")
+def test_the_schema_allows_the_methods_there_are():
     assert (
-        dataset.list_choices(schema, "plan", "method")
-        == list(methods.METHODS)
-        == list(orderings.METHODS)
+        list_choices(SCHEMA, "plan", "method") == list(methods.METHODS) == list(orderings.METHODS)
     )
 
 
@@ -24,8 +22,6 @@ def test_every_method_is_in_the_manual(project_root):
     assert [m for m in methods.METHODS if f"\n| `{m}` |" not in manual] == []
 
 
-def test_the_limits_of_walls_are_the_extractors_and_all_that_cells_need(project_root):
-    settings = read_yaml(project_root / "config/config.yaml")
+def test_cells_need_the_limits_of_walls_and_their_own():
     needed = {field.name for field in fields(wall_cells.WallCellSettings)}
-    assert needed == {*methods.WALL_LIMITS, *settings["selection"]["wall_length"]}
-    assert set(methods.WALL_LIMITS) <= set(settings["walls"]["cluster_ransac"])
+    assert needed == set(select_wall_cells(SETTINGS, methods.WALL_LIMITS))

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from helpers import default_settings
 from reference import registration as literal
 from scanplan.geometry import se3
-from scanplan.project import settings
+from scanplan.project import settings, stage_settings
 from scanplan.registration import constraints, mapping, sequential
 
 SETTINGS = sequential.SequentialSettings(
@@ -244,10 +245,9 @@ def test_the_literal_algorithm_keeps_the_same_scans_at_the_same_places():
 
 def test_the_preset_judges_as_the_thesis_does(project_root):
     """Scans of a part of the hall each, so that fitness falls below 0.96 for some and not for others."""
-    defaults, preset = (
-        settings.read_yaml(project_root / f"config/{n}.yaml") for n in ("config", "thesis")
-    )
-    section = settings.merge_settings(defaults, preset)["registration"]
+    preset = settings.read_yaml(project_root / "config/thesis.yaml")
+    merged = settings.merge_settings(default_settings.SETTINGS, preset)
+    section = stage_settings.select_section(merged, "registration")
     limits = mapping.registration_settings(section).limits
     scans, priors, _ = drive(8, planar=False, noise_m=0.02, noise_deg=0.5)
     scans = [

@@ -1,19 +1,32 @@
-"""The thesis's experiments (chapter 5) as datasets: its two surveys simulated, each with several seeds.
+"""The thesis's experiments (chapter 5) as datasets: its surveys simulated, with several seeds.
 
 No heavy imports: this runs while the workflow is being parsed.
 """
 
+from __future__ import annotations
+
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from scanplan.project.dataset import RESERVED, describe_simulated
 from scanplan.project.settings import read_own_layers, settings_of_dataset
 
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from scanplan.project.dataset import Dataset
+    from scanplan.project.settings import Layer
+    from scanplan.project.settings_schema import Schema
+    from scanplan.types import FilePath, Settings
+
 ROOMS, DRIVE, LIMITS = "ring_rooms", "ring_hallways", "ring_hallways_limits"
-"""Registered scans of all rooms (5.2); a drive through the hallways (5.4); the same drive with the thesis's limits."""
+"""Scans of all rooms (5.2); a drive through the hallways (5.4); it with the thesis's limits."""
 
 
-def list_surveys(*, defaults, given, schema, config):
+def list_surveys(
+    *, defaults: Settings, given: Sequence[Layer], schema: Schema, config: FilePath
+) -> dict[str, tuple[Dataset, ...]]:
     """Gather the surveys of the thesis's experiments.
 
     Parameters
@@ -28,13 +41,15 @@ def list_surveys(*, defaults, given, schema, config):
     Returns
     -------
     dict of str to tuple of dataset.Dataset
-        `ROOMS`, `DRIVE` and `LIMITS`, each by seed. Of `LIMITS` the recordings are those of `DRIVE`.
+        `ROOMS`, `DRIVE` and `LIMITS`, each by seed. The recordings of `LIMITS` are of `DRIVE`.
     """
     config = Path(config)
     chosen = settings_of_dataset(defaults, given, schema)["thesis"]
     limits = read_own_layers(config / "thesis.yaml", may_lack=False)
 
-    def simulated(kind, seeds, over=(), survey=None):
+    def simulated(
+        kind: str, seeds: Sequence[int], over: Sequence[Layer] = (), survey: str | None = None
+    ) -> tuple[Dataset, ...]:
         own = read_own_layers(config / f"surveys/{survey or kind}.yaml", may_lack=False)
         settings = settings_of_dataset(defaults, (*own, *over, *given), schema)
         return tuple(
@@ -56,10 +71,6 @@ def list_surveys(*, defaults, given, schema, config):
     }
 
 
-def replace_seeds(settings, seed):
-    """Return settings with every seed replaced; the given ones are not changed."""
-    walls = {extractor: values | {"seed": seed} for extractor, values in settings["walls"].items()}
-    sections = {
-        name: settings[name] | {"seed": seed} for name in ("simulate", "hulls", "selection")
-    }
-    return settings | sections | {"walls": walls}
+def replace_seeds(settings: dict[str, Any], seed: int) -> dict[str, Any]:
+    """Return settings with their seed and the simulation's replaced; the given stay as they are."""
+    return settings | {"seed": seed, "simulate": settings["simulate"] | {"seed": seed}}
