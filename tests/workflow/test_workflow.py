@@ -201,11 +201,11 @@ def started(project, *targets):
 
 
 # later stages see of a resumed one only its files, so one way to be killed has them all run
-HULLS = ("results/demo/hulls.parquet",)
+SCANS = ("results/demo/scans.parquet",)
 
 
 @pytest.mark.parametrize(
-    ("sent", "targets"), [(signal.SIGKILL, ()), (signal.SIGINT, HULLS), (signal.SIGTERM, HULLS)]
+    ("sent", "targets"), [(signal.SIGKILL, ()), (signal.SIGINT, SCANS), (signal.SIGTERM, SCANS)]
 )
 def test_a_killed_run_resumes_with_the_same_command(project, sent, targets):
     before = project.digests()
