@@ -1,10 +1,4 @@
-# make run                      the demo: simulate an office, make its plan
-# make run DATASET=PATH         the plan of a folder with recordings
-# make run DATASET=PATH CONFIG=FILE   with settings from a file
-# make run DATASET=PATH REPLACE=NAME  in the place of results/NAME, made of another source
-# make test                     lint and all tests
-# make bench                    the stages against the literal algorithms
-# make settings                 write the lists in config/ and the manual's tables from the schema
+# make help says what there is; CONTRIBUTING.md what to run before a commit
 
 CORES ?= 2
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
@@ -12,6 +6,8 @@ VENV := .venv
 BIN := $(VENV)/bin
 LIBRARIES := libusb-1.0-0 libgl1 libgomp1 libx11-6
 SNAKEMAKE = PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --cores $(CORES)
+# tests of one group stay together: a group shares a run of the workflow
+PYTEST = $(BIN)/pytest --numprocesses $(CORES) --dist loadgroup
 
 # a misspelt variable would make the demo instead of what was meant
 KNOWN := CORES PYTHON DATASET CONFIG REPLACE ARGS
@@ -19,31 +15,50 @@ GIVEN := $(foreach name,$(.VARIABLES),$(if $(findstring command line,$(origin $(
 UNKNOWN := $(filter-out $(KNOWN),$(GIVEN))
 $(if $(UNKNOWN),$(error $(UNKNOWN): no such variable; there are $(KNOWN)))
 
-.PHONY: run test lint bench settings environment clean
+.PHONY: help run quick test lint style bench figures settings environment clean
 .DEFAULT_GOAL := run
 
-run: environment
+help: ## this list
+	@awk -F ':.*## ' '/^[a-z]+:.*## /{printf "make %-12s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))
+	@echo
+	@echo "make run DATASET=PATH                the plan of a folder with recordings"
+	@echo "make run DATASET=PATH CONFIG=FILE    with settings from a file"
+	@echo "make run DATASET=PATH REPLACE=NAME   in the place of results/NAME, made of another source"
+	@echo "CORES=N for run, quick and test (2); PYTHON=PATH for the set-up; ARGS='...' is handed on"
+
+run: environment ## the demo: simulate an office, make its plan
 	@test -z "$(CONFIG)" || PYTHONPATH=scripts $(BIN)/python -m scanplan.project.settings "$(CONFIG)"
 	@$(SNAKEMAKE) $(if $(CONFIG),--configfile "$(CONFIG)") \
 	    $(if $(DATASET)$(REPLACE),--config $(if $(DATASET),'dataset="$(DATASET)"') $(if $(REPLACE),'replace="$(REPLACE)"')) \
 	    $(ARGS)
 
-test: environment lint
-	@$(BIN)/pytest $(ARGS)
+quick: environment style ## lint and the tests of what changed since main, under 90 seconds
+	@changed=$$($(BIN)/python tests/changed_tests.py python); \
+	    test -z "$$changed" || $(BIN)/basedpyright --project . $$changed
+	@$(PYTEST) -m "not workflow and not recordings" $$($(BIN)/python tests/changed_tests.py tests) $(ARGS)
 
-lint: environment
+test: environment lint ## lint and all tests, about ten minutes
+	@$(PYTEST) $(ARGS)
+
+lint: environment style ## style, types and the workflow's own checks
+	@$(BIN)/basedpyright --threads $(CORES) --project .
+
+style: environment
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check .
 	@$(BIN)/snakefmt --check Snakefile workflow/rules
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --lint
 
-bench: environment
+bench: environment ## the stages against the algorithms of the thesis written literally
 	@$(BIN)/python tests/benchmarks/run.py $(ARGS)
 
-settings: environment
+figures: environment ## the house in figures; ARGS='OTHER_CHECKOUT .' compares, ARGS=--types counts type errors
+	@$(BIN)/python tests/house_figures.py $(ARGS)
+
+settings: environment ## write the lists in config/ and the manual's tables from the schema
 	@PYTHONPATH=scripts $(BIN)/python -m scanplan.project.settings_files
 
-environment: $(VENV)/.ready
+environment: $(VENV)/.ready ## set up .venv from environment.lock (run, test and the others do it)
 
 $(VENV)/.ready: environment.lock
 	@"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
@@ -61,5 +76,5 @@ $(VENV)/.ready: environment.lock
 	    { echo "Open3D lacks system libraries; install them with: apt-get install $(LIBRARIES)"; exit 1; }; }
 	@touch $@
 
-clean:
+clean: ## remove .venv and everything that was made
 	rm -rf $(VENV) results logs benchmarks .snakemake

@@ -21,7 +21,7 @@ def project_root():
 
 @pytest.fixture(scope="session")
 def recordings_dir():
-    """Real recordings, kept beside the project; the tests that use them are skipped where they are absent."""
+    """Return the folder of the real recordings beside the project; skip where there is none."""
     folder = ROOT.parent / "shared" / "data"
     if not folder.is_dir():
         pytest.skip("no real recordings beside the project (../shared/data)")

@@ -1,20 +1,23 @@
-"""Plans of the same surveys by any commit, kept so that a change of the code shows what it does to them.
+"""Plans of the same surveys by any commit, so that a change of the code shows what it does to them.
 
-The surveys are drives through four buildings with three seeds each, made from one recipe, and the real recordings that lie
-beside the project. A drive is recorded with what a VLP-16 and a localiser on a real rover show: the sweep of the moving
-sensor, constant errors of its beams, and poses that drift and jump.
+The surveys are drives through four buildings with three seeds each, made from one recipe, and the
+real recordings that lie beside the project. A drive is recorded with what a VLP-16 and a localiser
+on a real rover show: the sweep of the moving sensor, constant errors of its beams, and poses that
+drift and jump.
 """
 
 import json
 import os
 import subprocess
 import sys
+from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
 import pyarrow.parquet as pq
 import yaml
 
-BUILDINGS = {
+BUILDINGS: dict[str, dict[str, Any]] = {
     "demo": {"building": "demo_office"},
     "ring": {
         "building": "ring_office",
@@ -24,7 +27,7 @@ BUILDINGS = {
     "duplex": {"building": "duplex.ifc", "site": {"route": "rooms", "storey": "Level 1"}},
     "fzk": {"building": "AC20-FZK-Haus.ifc", "site": {"route": "rooms", "storey": "Erdgeschoss"}},
 }
-"""Settings of `simulate` by the name of a drive; a building with a suffix is a file among the recordings."""
+"""Drive to its settings of `simulate`; a building with a suffix is a file among the recordings."""
 LOCALISER = {"noise_m": 0.05, "noise_deg": 1.0, "jumps_per_min": 1.0}
 SEEDS = (1, 2, 3)
 RECORDINGS = (
@@ -35,8 +38,9 @@ RECORDINGS = (
     "scenes7_room",
     "vlp16_room",
 )
-MOST_DROP = 0.005
-"""A share that a change lowers by more than this is told."""
+MAX_DROP = 0.005  # half a point: less is rounding of openings by a column
+"""A measure that falls by more is reported."""
+_EQUAL = 1e-9  # sums in another order
 
 _MORE_IS_BETTER = (
     "completeness",
@@ -50,7 +54,9 @@ _MORE_IS_BETTER = (
 _LESS_IS_BETTER = ("thickness_error_m", "width_error_m", "n_rooms_false")
 
 
-def record(project, revision, folder, recordings, names=()):
+def record(
+    project: Path, revision: str, folder: Path, recordings: Path, names: Sequence[str] = ()
+) -> None:
     """Make the plans of the guard's surveys with the code of a commit.
 
     Parameters
@@ -95,7 +101,7 @@ def record(project, revision, folder, recordings, names=()):
     subprocess.run([*command, "--", *targets], cwd=code, env=environment, check=True)
 
 
-def _checked_out(project, revision, folder):
+def _checked_out(project: Path, revision: str, folder: Path) -> Path:
     code = folder / "code"
     commit = _git(project, "rev-parse", f"{revision}^{{commit}}")
     if not code.is_dir():
@@ -105,14 +111,14 @@ def _checked_out(project, revision, folder):
     return code
 
 
-def _git(folder, *words):
+def _git(folder: Path, *words: str) -> str:
     done = subprocess.run(
         ["git", "-C", str(folder), *words], check=True, stdout=subprocess.PIPE, text=True
     )
     return done.stdout.strip()
 
 
-def _surveys(folder, recordings):
+def _surveys(folder: Path, recordings: Path) -> dict[str, Path]:
     surveys = folder / "surveys"
     surveys.mkdir(exist_ok=True)
     paths = {}
@@ -129,16 +135,13 @@ def _surveys(folder, recordings):
     return paths | {name: recordings / name for name in RECORDINGS}
 
 
-def _wanted(name):
+def _wanted(name: str) -> tuple[str, ...]:
     drawn = ("plan/plan.svg", "plan/plan.geojson")
-    return (
-        drawn
-        if name in RECORDINGS
-        else (*drawn, "evaluation/plan.parquet", "evaluation/walls.parquet")
-    )
+    measured = ("evaluation/plan.parquet", "evaluation/walls.parquet")
+    return drawn if name in RECORDINGS else drawn + measured
 
 
-def compare(before, after):
+def compare(before: Path, after: Path) -> int:
     """Print what changed between two folders of the guard, survey by survey.
 
     Parameters
@@ -149,44 +152,39 @@ def compare(before, after):
     Returns
     -------
     int
-        How many measures fell by more than `MOST_DROP`.
+        How many measures fell by more than `MAX_DROP`.
     """
-    fallen = 0
-    for name in [f"{building}_{seed}" for building in BUILDINGS for seed in SEEDS] + list(
-        RECORDINGS
-    ):
-        folders = [folder / "code/results" / name for folder in (before, after)]
-        if not all((folder / "plan/plan.geojson").exists() for folder in folders):
-            print(f"{name}: not in both")
-            continue
-        changed = _changed_files(*folders)
-        print(
-            f"{name}: {'all tables equal byte for byte' if not changed else 'differ: ' + ', '.join(changed)}"
-        )
-        if name not in RECORDINGS:
-            rows = list(_changed_measures(*folders))
-            fallen += sum(falls for *_, falls in rows)
-            for measure, old, new, falls in rows:
-                print(f"  {'FELL ' if falls else '     '}{measure}: {old:.4f} -> {new:.4f}")
-    print(f"guard: {fallen} measures fell by more than {MOST_DROP:g}")
+    drives = [f"{building}_{seed}" for building in BUILDINGS for seed in SEEDS]
+    fallen = sum(_compare_survey(name, before, after) for name in (*drives, *RECORDINGS))
+    print(f"guard: {fallen} measures fell by more than {MAX_DROP:g}")
     return fallen
 
 
-def _changed_files(before, after):
+def _compare_survey(name: str, before: Path, after: Path) -> int:
+    """Print what changed of one survey, and return how many measures fell."""
+    folders = [folder / "code/results" / name for folder in (before, after)]
+    if not all((folder / "plan/plan.geojson").exists() for folder in folders):
+        print(f"{name}: not in both")
+        return 0
+    changed = _changed_files(*folders)
+    print(f"{name}: {'differ: ' + ', '.join(changed) if changed else 'all tables equal in bytes'}")
+    if name in RECORDINGS:
+        return 0
+    rows = list(_changed_measures(*folders))
+    for measure, old, new, falls in rows:
+        print(f"  {'FELL ' if falls else '     '}{measure}: {old:.4f} -> {new:.4f}")
+    return sum(falls for *_, falls in rows)
+
+
+def _changed_files(before: Path, after: Path) -> list[str]:
     """Return the tables that differ; run times and drawings with their stamps are no tables."""
-    tables = sorted(
-        file.relative_to(before)
-        for file in before.rglob("*.parquet")
-        if file.name != "seconds.parquet"
-    )
-    return [
-        str(t)
-        for t in tables
-        if (after / t).exists() and (before / t).read_bytes() != (after / t).read_bytes()
-    ]
+    files = sorted(file.relative_to(before) for file in before.rglob("*.parquet"))
+    tables = [file for file in files if file.name != "seconds.parquet"]
+    both = [file for file in tables if (after / file).exists()]
+    return [str(f) for f in both if (before / f).read_bytes() != (after / f).read_bytes()]
 
 
-def _changed_measures(before, after):
+def _changed_measures(before: Path, after: Path) -> Iterator[tuple[str, float, float, bool]]:
     """Yield measures that changed: name, value before and after, whether it fell."""
     old, new = (_measures(folder) for folder in (before, after))
     for name, value in old.items():
@@ -194,27 +192,24 @@ def _changed_measures(before, after):
         if name.rsplit(" ", 1)[-1].endswith(_LESS_IS_BETTER):
             drop = -drop
         # what became NaN fell, too
-        if abs(drop) > 1e-9 or drop != drop:
-            yield name, value, new.get(name, float("nan")), not drop <= MOST_DROP
+        if abs(drop) > _EQUAL or drop != drop:
+            yield name, value, new.get(name, float("nan")), not drop <= MAX_DROP
 
 
-def _measures(folder):
-    """Return the guard's measures by name: of the plan in each frame, and means over every k of the walls."""
+def _measures(folder: Path) -> dict[str, float]:
+    """Return the guard's measures by name: of the plan by frame, and means of the walls over k."""
     plan = pq.read_table(folder / "evaluation/plan.parquet").to_pandas().set_index("frame")
     walls = pq.read_table(folder / "evaluation/walls.parquet").to_pandas()
     by_kind = walls.groupby(["method", "extractor"]).mean(numeric_only=True)
     measures = {}
     for table, frame in (("plan", plan), ("walls", by_kind)):
-        names = [
-            c
-            for c in frame.columns
-            if any(s in c for s in _MORE_IS_BETTER) or c.endswith(_LESS_IS_BETTER)
-        ]
-        for index, row in frame[names].iterrows():
+        names = [column for column in frame.columns if _is_measure(column)]
+        for index, row in frame[names].dropna(axis=1, how="all").iterrows():
             label = index if isinstance(index, str) else " ".join(index)
-            measures |= {
-                f"{table} {label} {name}": float(row[name])
-                for name in names
-                if row[name] == row[name]
-            }
+            known = row.dropna()
+            measures |= {f"{table} {label} {name}": float(known[name]) for name in known.index}
     return measures
+
+
+def _is_measure(column: str) -> bool:
+    return any(name in column for name in _MORE_IS_BETTER) or column.endswith(_LESS_IS_BETTER)

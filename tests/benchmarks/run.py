@@ -1,20 +1,23 @@
-"""The stages against the algorithms written literally, on simulated surveys, each pair timed in this one process.
+"""The stages against the algorithms written literally, each pair timed in this one process.
 
 Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [plans] [FOLDER ...]
        run.py guard REVISION FOLDER [SURVEY ...]
        run.py compare FOLDER FOLDER
 
-Without a name all of them but wall_quality, which takes minutes, and plans, which measures the surveys that the
-workflow has finished under results/; a FOLDER holds the dataset folders with the truths of those it did not simulate.
+Without a name all of them but wall_quality, which takes minutes, and plans, which measures the
+surveys that the workflow has finished under results/; a FOLDER holds the dataset folders with the
+truths of those it did not simulate.
 
-`guard` makes the plans of twelve simulated drives and six real recordings with the code of a commit, in a folder of its
-own; `compare` prints what changed between two such folders, and fails where a measure fell.
+`guard` makes the plans of twelve simulated drives and six real recordings with the code of a
+commit, in a folder of its own; `compare` prints what changed between two such folders, and fails
+where a measure fell.
 """
 
 import sys
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
-# each benchmark imports its own: a stage's workers import this file anew, and would wait for all of them
+# each benchmark imports its own: a stage's workers import this file anew, and would wait for all
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "tests")]
 
@@ -22,86 +25,87 @@ sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "tests")]
 from helpers.default_settings import SETTINGS  # noqa: E402
 
 
-def bench_simulation():
+def bench_simulation() -> None:
     """Ten minutes of a 10 Hz VLP-16: rays a second, cast and written, and memory."""
-    import simulating
+    import simulation_bench
 
-    simulating.bench(ROOT, SETTINGS)
-
-
-def bench_registration():
-    """Algorithm 3: the whole stage, from bag to registered scans, against Open3D on full clouds, point to point."""
-    import registrationbench
-
-    registrationbench.bench(ROOT, SETTINGS)
+    simulation_bench.bench(ROOT, SETTINGS)
 
 
-def bench_selection():
+def bench_registration() -> None:
+    """Algorithm 3: the whole stage against Open3D on full clouds, point to point."""
+    import registration_bench
+
+    registration_bench.bench(ROOT, SETTINGS)
+
+
+def bench_selection() -> None:
     """Algorithms 1 and 2 on a drive through a large office."""
-    import selecting
+    import selection_bench
 
-    selecting.run(
-        ROOT / "config/buildings/ring_office.geojson",
-        SETTINGS,
-        lambda line: print(line, flush=True),
-    )
+    selection_bench.bench(ROOT, SETTINGS)
 
 
-def bench_walls():
-    """Cluster RANSAC against iterative RANSAC, and against itself written literally with sklearn's MeanShift."""
-    import wallbench
+def bench_walls() -> None:
+    """Cluster RANSAC against iterative RANSAC, and against itself written literally."""
+    import walls_bench
 
-    wallbench.speed(ROOT, SETTINGS)
+    walls_bench.bench_speed(ROOT, SETTINGS)
 
 
-def bench_wall_quality():
+def bench_wall_quality() -> None:
     """What both extractors and a line detector on a raster of all points find of the truth."""
-    import wallbench
+    import walls_bench
 
-    wallbench.quality(ROOT, SETTINGS)
-
-
-def bench_plans(folders=()):
-    """Plans of finished surveys: from the chosen scans, from all scans, and lines on a raster of all points."""
-    import plansbench
-
-    plansbench.bench(ROOT / "results", folders, SETTINGS)
+    walls_bench.bench_quality(ROOT, SETTINGS)
 
 
-def record_guard(revision, folder, *names):
+def bench_plans(folders: Sequence[Path] = ()) -> None:
+    """Plans of finished surveys: of the chosen scans, of all, and lines on a raster."""
+    import plans_bench
+
+    plans_bench.bench(ROOT / "results", folders, SETTINGS)
+
+
+def record_guard(revision: str, folder: str, *names: str) -> None:
     """Make the guard's plans with the code of a commit."""
     import guard
 
-    guard.record(
-        ROOT, revision, Path(folder).resolve(), (ROOT.parent / "shared/data").resolve(), names
-    )
+    recordings = (ROOT.parent / "shared/data").resolve()
+    guard.record(ROOT, revision, Path(folder).resolve(), recordings, names)
 
 
-def compare_guards(before, after):
+def compare_guards(before: str, after: str) -> None:
     """Compare two folders of the guard."""
     import guard
 
     sys.exit(guard.compare(Path(before), Path(after)) > 0)
 
 
-if __name__ == "__main__":
-    commands = {"guard": record_guard, "compare": compare_guards}
-    if sys.argv[1:] and sys.argv[1] in commands:
-        commands[sys.argv[1]](*sys.argv[2:])
-        sys.exit()
-    benches = {
-        "simulation": bench_simulation,
-        "registration": bench_registration,
-        "selection": bench_selection,
-        "walls": bench_walls,
-    }
-    folders = [Path(name) for name in sys.argv[1:] if Path(name).is_dir()]
-    names = [name for name in sys.argv[1:] if Path(name) not in folders]
+GUARDS: dict[str, Callable[..., None]] = {"guard": record_guard, "compare": compare_guards}
+BENCHES: dict[str, Callable[[], None]] = {
+    "simulation": bench_simulation,
+    "registration": bench_registration,
+    "selection": bench_selection,
+    "walls": bench_walls,
+}
+
+
+def run_benches(words: Sequence[str]) -> None:
+    """Run the benchmarks that are named, or those that take no minutes."""
+    folders = [Path(word) for word in words if Path(word).is_dir()]
+    names = [word for word in words if Path(word) not in folders]
     more = {"wall_quality": bench_wall_quality, "plans": lambda: bench_plans(folders)}
-    unknown = set(names) - set(benches | more)
+    known = BENCHES | more
+    unknown = sorted(set(names) - set(known))
     if unknown:
-        sys.exit(
-            f"no benchmark {', '.join(sorted(unknown))}; there are {', '.join(benches | more)}"
-        )
-    for name in names or benches:
-        (benches | more)[name]()
+        sys.exit(f"no benchmark {', '.join(unknown)}; there are {', '.join(known)}")
+    for name in names or BENCHES:
+        known[name]()
+
+
+if __name__ == "__main__":
+    if sys.argv[1:] and sys.argv[1] in GUARDS:
+        GUARDS[sys.argv[1]](*sys.argv[2:])
+    else:
+        run_benches(sys.argv[1:])

@@ -41,13 +41,11 @@ class Project:
         return {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
 
     def would_run(self, *arguments):
-        """Rules, with their number of jobs, that a run would execute."""
-        result = self.run("--dry-run", "--quiet", "all", *arguments)
-        listing = self.run("--dry-run", "--quiet", "reason", *arguments).stdout
+        """Rules that a run would execute."""
+        result = self.run("--dry-run", "--quiet", "reason", *arguments)
         assert result.returncode == 0, result.stderr
-        return {
-            line.split()[1].rstrip(":") for line in listing.splitlines() if line.startswith("rule ")
-        } - {"all"}
+        lines = [line for line in result.stdout.splitlines() if line.startswith("rule ")]
+        return {line.split()[1].rstrip(":") for line in lines} - {"all"}
 
     def digests(self):
         # these tell run times

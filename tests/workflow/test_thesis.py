@@ -1,4 +1,4 @@
-"""The thesis's experiments as a target: what it would run, and on two small rooms the page that comes out."""
+"""The thesis's experiments as a target: what it would run, and the page of two small rooms."""
 
 import re
 import subprocess
@@ -9,7 +9,7 @@ import pytest
 from helpers.project_copy import Project
 from scanplan.lab.thesis.shown_figures import FIGURES
 
-pytestmark = pytest.mark.workflow
+pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("thesis")]
 TINY_THESIS = "tests/data/tiny_thesis.yaml"
 
 
@@ -28,7 +28,7 @@ def jobs(project, *arguments):
 
 def test_it_runs_every_survey_with_every_seed_and_nothing_of_the_demo(project):
     found = jobs(project, "thesis", "--configfile", "config/config.yaml")
-    # 3 surveys of the rooms and 3 drives, each of these registered with our limits and with the thesis's
+    # 3 surveys of the rooms and 3 drives, each of these registered with our limits and the thesis's
     assert found["simulate_survey"] == 6 and found["register_scans"] == 9
     assert found["evaluate_walls"] == found["time_stages"] == 6 and found["measure_coverage"] == 3
     assert found["measure_unevenness"] == 3
@@ -47,7 +47,8 @@ from snakemake.settings.types import ConfigSettings, ResourceSettings
 
 with SnakemakeApi() as api:
     given = ConfigSettings(configfiles=[Path("tests/data/tiny.yaml")])
-    run = api.workflow(ResourceSettings(nodes=2), config_settings=given, snakefile=Path("Snakefile"))
+    nodes = ResourceSettings(nodes=2)
+    run = api.workflow(nodes, config_settings=given, snakefile=Path("Snakefile"))
     print("parsed", len(list(run._workflow.rules)))
 """
 

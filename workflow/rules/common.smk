@@ -132,8 +132,13 @@ def simulated_as(suffix):
 
 def code_of(script):
     """Helper files that a script imports: as inputs they make an edit rerun the stages that use them."""
-    files = list_helpers(f"{workflow.basedir}/scripts/{script}.py")
-    return [os.path.relpath(file) for file in files]
+
+    def helpers(wildcards):
+        # looked up for the jobs of a run alone: every job parses the whole workflow anew
+        files = list_helpers(f"{workflow.basedir}/scripts/{script}.py")
+        return [os.path.relpath(file) for file in files]
+
+    return helpers
 
 
 def all_cores(wildcards):

@@ -1,0 +1,207 @@
+"""Plans of finished surveys against the truth: of chosen scans, of all, and a line detector's."""
+
+import importlib.util
+import time
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import ifcopenshell
+import numpy as np
+import walls_bench
+
+from helpers import ifc_volumes
+from scanplan.lab.evaluation import plan_metrics, true_plan, truth_file, wall_findings, wall_metrics
+from scanplan.plan import planning
+from scanplan.project import stage_settings
+from scanplan.rays import ray_set
+from scanplan.selection import stopping
+from scanplan.store import registered_scans, schemas, tables
+from scanplan.types import Columns, FloatArray, IntArray, Settings
+
+_FIGURES = {
+    "correctness_010m": "right",
+    "visible_completeness_010m": "of visible",
+    "redundancy": "redundancy",
+    "plan_walls_per_true_wall": "walls/true",
+    "thickness_error_m": "thickness m",
+    "door_recall": "door recall",
+    "door_precision": "precision",
+    "door_width_error_m": "width m",
+    "window_recall": "window recall",
+    "window_precision": "precision",
+    "n_rooms_found": "rooms",
+    "n_rooms_false": "false",
+    "room_iou": "IoU",
+    "missed_not_seen": "not seen",
+    "missed_misplaced": "misplaced",
+    "missed_misextracted": "not extracted",
+}
+"""Measure to what it is printed as."""
+
+_CELL_M = 0.05  # that of the evaluation's bitmap
+
+
+class Results(NamedTuple):
+    """What the workflow made of a survey."""
+
+    folder: Path
+    walls: Columns
+    ordering: Columns
+    registered: registered_scans.RegisteredScans
+    store: tables.ScanStore
+
+
+class Plan(NamedTuple):
+    """A plan, and the floor's height in the map."""
+
+    plan: Any
+    floor_z_m: float
+
+
+def bench(results: Path, surveys: Sequence[Path], settings: Settings) -> None:
+    """Print a table for every finished survey that has a truth, there or in one of `surveys`.
+
+    Parameters
+    ----------
+    results : Path
+        With a folder for each dataset, as the workflow makes them.
+    surveys : list of Path
+        Folders of dataset folders.
+    settings : dict
+        The whole configuration.
+    """
+    folders = sorted(path.parent for path in results.glob("*/walls"))
+    truths = {folder: _find_truth(folder, surveys) for folder in folders}
+    finished = {folder: truth for folder, truth in truths.items() if truth is not None}
+    if not finished:
+        print(
+            f"plans: no survey with walls and a truth under {results}; run the workflow first",
+            flush=True,
+        )
+    for folder, truth in finished.items():
+        _bench_survey(_read_results(folder, settings), truth, settings)
+
+
+def _find_truth(folder: Path, surveys: Sequence[Path]) -> Path | None:
+    places = [folder / "survey", *(survey / folder.name for survey in surveys)]
+    names = ("truth.geojson", "truth_poses.tum")
+    complete = (place for place in places if all((place / name).exists() for name in names))
+    return next(complete, None)
+
+
+def _read_results(folder: Path, settings: Settings) -> Results:
+    method, extractor = settings["plan"]["method"], settings["plan"]["extractor"]
+    return Results(
+        folder,
+        tables.read_table(folder / f"walls/{extractor}.parquet", schemas.WALLS, allow_empty=True),
+        tables.read_table(folder / f"selection/{method}.parquet", schemas.SELECTION),
+        registered_scans.read_registered_scans(folder / "registration.parquet"),
+        tables.ScanStore(folder / "scans.parquet"),
+    )
+
+
+def _bench_survey(found: Results, truth: Path, settings: Settings) -> None:
+    count, _ = stopping.choose_n_scans(found.ordering, **settings["selection"]["stop"])
+    all_ids = np.sort(found.ordering["scan_id"])
+    share = count / len(all_ids)
+    print(
+        f"plans, {found.folder.name}: {count} of {len(all_ids)} scans chosen ({share:.0%})",
+        flush=True,
+    )
+    chosen_ids = np.sort(found.ordering["scan_id"][:count])
+    _bench_plan("plan of chosen scans", found, chosen_ids, truth, settings)
+    plan, floor = _bench_plan("plan of all scans", found, all_ids, truth, settings)
+    _print_volumes(found.folder, truth)
+    _bench_raster(found, all_ids, plan, floor)
+
+
+def _bench_plan(
+    name: str, found: Results, scan_ids: IntArray, truth: Path, settings: Settings
+) -> tuple[Plan, wall_findings.VisibleTruth]:
+    rows = registered_scans.rows_of_scans(scan_ids, found.registered, found.folder, found.folder)
+    floor = _visible_truth(truth, found.registered.t_ns, rows, settings)
+    started = time.process_time()
+    plan = _make_plan(found, rows, scan_ids, settings)
+    took_s = time.process_time() - started
+    true = true_plan.read_true_plan(truth / "truth.geojson")
+    _print_row(name, _measure_plan(plan, true, floor), took_s)
+    return plan, floor
+
+
+def _visible_truth(
+    truth: Path, t_ns: IntArray, rows: IntArray, settings: Settings
+) -> wall_findings.VisibleTruth:
+    poses = truth_file.read_true_poses(truth / "truth_poses.tum")
+    placed = truth_file.interpolate_true_poses(poses, t_ns, truth)
+    survey = truth_file.true_pose_matrices(poses)
+    faces = truth_file.read_true_faces(truth / "truth.geojson")
+    view = truth_file.read_sensor_view(
+        truth / "truth.geojson", max_range_m=settings["input"]["max_range_m"]
+    )
+    return wall_findings.observe_truth(faces, placed[rows], survey, sight=view)
+
+
+def _make_plan(found: Results, rows: IntArray, scan_ids: IntArray, settings: Settings) -> Plan:
+    poses = found.registered.map_from_sensor
+    positions = dict(zip(scan_ids.tolist(), poses[rows, :3, 3], strict=True))
+    rays = ray_set.gather_rays(found.store.scans(scan_ids), positions, planar=found.store.planar)
+    used = np.isin(found.walls["scan_id"], scan_ids)
+    plan = planning.make_plan(
+        {column: values[used] for column, values in found.walls.items()},
+        rays,
+        poses[:, :2, 3],
+        found.registered.t_ns[rows],
+        planning.make_plan_settings(**stage_settings.select_plan(settings)),
+        poses[rows, :3, 2],
+    )
+    return Plan(plan, rays.floor_z_m)
+
+
+def _measure_plan(
+    made: Plan, true: true_plan.TruePlan, floor: wall_findings.VisibleTruth
+) -> dict[str, float]:
+    drawn = {
+        table: {name: np.asarray(values) for name, values in getattr(made.plan, table).items()}
+        for table in ("faces", "walls", "openings", "rooms")
+    }
+    lines_m = plan_metrics.moved_faces_m(drawn, np.eye(4))
+    return _measure_lines(lines_m, floor) | plan_metrics.measure_plan(drawn, np.eye(4), true, floor)
+
+
+def _measure_lines(lines_m: FloatArray, floor: wall_findings.VisibleTruth) -> dict[str, float]:
+    observed = np.ones(len(lines_m), bool)
+    faces = plan_metrics.measure_faces(
+        lines_m, observed, floor.cells, floor.visible, floor.seen.any(axis=0)
+    )
+    return wall_metrics.measure_plan_lines(lines_m, floor, _CELL_M) | faces
+
+
+def _print_volumes(folder: Path, truth: Path) -> None:
+    file = folder / "plan/plan.ifc"
+    if file.exists():
+        text = (truth / "truth.geojson").read_text()
+        count, found_m3, true_m3 = ifc_volumes.compared(ifcopenshell.open(file), text)
+        print(
+            f"  plan.ifc: {count} walls measured, {found_m3:.2f} m3 of {true_m3:.2f}"
+            f" ({found_m3 / true_m3 - 1:+.1%})"
+        )
+
+
+def _bench_raster(
+    found: Results, scan_ids: IntArray, plan: Plan, floor: wall_findings.VisibleTruth
+) -> None:
+    if not importlib.util.find_spec("cv2"):
+        print("  raster and LSD: no OpenCV (cv2) here, so without its line detector", flush=True)
+        return
+    up_m = np.array([0, 0, np.nan_to_num(plan.floor_z_m)])
+    scans = [(i, np.asarray(xyz_m, float) - up_m) for i, xyz_m in found.store.scans(scan_ids)]
+    started = time.process_time()
+    lines_m = walls_bench.raster_lines(scans)
+    took_s = time.process_time() - started
+    _print_row("raster and LSD, all scans", _measure_lines(lines_m, floor), took_s)
+
+
+def _print_row(name: str, row: Mapping[str, float], took_s: float) -> None:
+    figures = [f"{label} {row[key]:.3g}" for key, label in _FIGURES.items() if key in row]
+    print(f"  {name}: {', '.join(figures)}; {took_s:.1f} s of one core", flush=True)
