@@ -132,7 +132,7 @@ def files(folder):
         BENCHMARK.format("0.1\t0:00:00\t-\t-\t-\t-\t-\t-\t-\t-")
     )
     return paths | {
-        "page": [PAGE / f"page.{suffix}" for suffix in ("html", "css", "js")],
+        "page": [PAGE / name for name in ("page.html.j2", "tables.html.j2", "page.css", "page.js")],
         "figures": [folder / "scans.svg"],
         "evaluation": [paths["evaluation"], paths["plan_evaluation"]],
         "recordings": [folder / "survey.bag"],

@@ -1,6 +1,6 @@
 import os
 
-from scanplan.thesis import claims, thesisshown
+from scanplan.lab.thesis import claim_measures, shown_figures
 
 # what the claims are measured on: table of the results by the name that the measures know it by
 ROOMS_TABLES = {
@@ -59,7 +59,7 @@ def figures_of(*numbers):
     """Our figures of these numbers."""
     return [
         f"results/thesis/figures/{figure.file}"
-        for figure in thesisshown.FIGURES
+        for figure in shown_figures.FIGURES
         if figure.number in numbers
     ]
 
