@@ -1,9 +1,13 @@
 """Tables of made-up results, for the thesis's claims to be judged by."""
 
+from pathlib import Path
+
 import numpy as np
 
 from scanplan.store import schemas
 
+_FOLDER = Path(__file__).resolve().parents[2] / "workflow/report/page"
+PAGE = [_FOLDER / "thesis.html.j2", _FOLDER / "thesis.css"]
 SIZES = (1, 15, 27, 40, 60, 80, 270)
 # what the first 1, 15, 27, ... scans of every order find, false negatives being the rest
 FOUND = {

@@ -251,8 +251,9 @@ def test_claims_are_judged_seed_by_seed_and_written_to_the_page(tmp_path):
     for path in figures:
         path.write_text("<svg></svg>")
     steps = files["drive_steps"][0], files["limits_steps"][0]
-    write_thesis(figures, figures[0], tmp_path / "claims.parquet", *steps, tmp_path / "report.html")
-    page = (tmp_path / "report.html").read_text()
+    output = tmp_path / "report.html"
+    write_thesis(figures, figures[0], tmp_path / "claims.parquet", *steps, made.PAGE, output)
+    page = output.read_text()
     assert (
         "does not hold" in page
         and "<h3>Figure 5.12</h3>" in page
