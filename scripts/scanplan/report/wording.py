@@ -40,7 +40,7 @@ def head_figures(plan: floorplan.FloorPlan, survey: SurveyFacts) -> list[tuple[s
 
 
 def method_objective(method: str) -> tuple[str, str]:
-    """Return what a method of selection looks for, and its unit; the area if it measures nothing."""
+    """Return what a method of selection looks for, and its unit; of any other the area."""
     return _OBJECTIVES.get(method, ("area covered", "m²"))
 
 
