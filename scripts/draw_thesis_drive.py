@@ -8,7 +8,7 @@ import numpy as np
 from scanplan.exports import drawing
 from scanplan.lab.thesis import drive_figures
 from scanplan.lab.thesis.claim_measures import ITERATIVE, OURS, SUBSET
-from scanplan.plan import floorplan
+from scanplan.lab.evaluation import length_metrics
 from scanplan.report import figures, top_view
 from scanplan.stage import log
 from scanplan.store import atomic, schemas, tables
@@ -47,7 +47,7 @@ def draw_thesis_drive(
     lines_m, subset_lines_m = {}, {}
     for extractor, path in walls.items():
         columns = tables.read_table(path, schemas.WALLS, allow_empty=True)
-        lines_m[extractor] = floorplan.centrelines_m(columns)
+        lines_m[extractor] = length_metrics.table_lines_m(columns)
         in_subset = np.isin(columns["scan_id"], subset_ids)
         subset_lines_m[extractor] = lines_m[extractor][in_subset]
     drawn = {

@@ -126,10 +126,10 @@ def quality(lines_m, scan, truth):
 
 
 def _found(lines_m, truth, distance_m):
-    from scanplan.lab.evaluation import visible_faces
+    from scanplan.lab.evaluation import face_cells
 
     near = length_metrics.find_near_intervals(truth.cells.faces_m, lines_m, distance_m)
-    begin, end = visible_faces.cells_in_intervals(truth.cells, near.line, near.low_m, near.high_m)
+    begin, end = face_cells.cells_in_intervals(truth.cells, near.line, near.low_m, near.high_m)
     change = np.zeros(len(truth.cells.face) + 1, int)
     np.add.at(change, begin, 1)
     np.add.at(change, end, -1)

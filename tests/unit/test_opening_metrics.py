@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import shapely
 
-from scanplan.lab.evaluation import opening_metrics, visible_faces
+from scanplan.lab.evaluation import face_cells, opening_metrics
 
 
 class TestDoors:
@@ -41,7 +41,7 @@ class TestWindows:
     TRUE = np.array([[(1, 0), (2.4, 0)], [(6, 0), (7.4, 0)]])
 
     def measure(self, drawn, seen_m=(0, 10), faces=FACES):
-        cells = visible_faces.cut_faces(faces)
+        cells = face_cells.cut_faces(faces)
         visible = (
             (cells.face != len(faces) - 1)
             & (cells.middle_m[:, 0] > seen_m[0])

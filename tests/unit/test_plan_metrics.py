@@ -5,13 +5,13 @@ import pytest
 import shapely
 
 from scanplan.errors import StageError
-from scanplan.lab.evaluation import length_metrics, plan_metrics, true_plan, visible_faces
+from scanplan.lab.evaluation import face_cells, length_metrics, plan_metrics, true_plan
 
 SQUARE = np.array([[(0, 0), (4, 0)], [(4, 0), (4, 4)], [(4, 4), (0, 4)], [(0, 4), (0, 0)]], float)
 
 
 def cells():
-    return visible_faces.cut_faces(SQUARE)
+    return face_cells.cut_faces(SQUARE)
 
 
 def everything():

@@ -4,7 +4,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scanplan.lab.evaluation import visible_faces
+from scanplan.lab.evaluation import face_cells, visible_faces
 from scanplan.lab.evaluation.truth_file import TrueFaces
 from scanplan.lab.thesis import seen_area
 
@@ -44,7 +44,7 @@ def test_behind_a_pillar_nothing_is_seen():
 @given(st.floats(0.1, 2.4), st.floats(0.1, 3.9))
 def test_a_place_in_it_is_in_sight_of_its_middle(x, y):
     faces = np.concatenate([BOX, PILLAR.reshape(-1, 2, 2)])
-    outline, cells = seen(faces, (x, y)), visible_faces.cut_faces(faces)
+    outline, cells = seen(faces, (x, y)), face_cells.cut_faces(faces)
     in_sight = visible_faces.visible_cells(cells, NOTHING, np.array([x, y]), max_range_m=100.0)
     reached = shapely.dwithin(outline.boundary, shapely.points(cells.middle_m), 1e-6)
     # a face seen edge-on is a matter of rounding, and one of the pillar is a 24th of all

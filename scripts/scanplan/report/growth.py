@@ -63,9 +63,7 @@ def cut_by_rank(
     return whole | {name: columns[name] for name in _ENDS}
 
 
-def _cut_face(
-    face_m: FloatArray, lines_m: FloatArray, rank: IntArray, min_scans: int
-) -> Array:
+def _cut_face(face_m: FloatArray, lines_m: FloatArray, rank: IntArray, min_scans: int) -> Array:
     """Return x0, y0, x1, y1, first, enough (m, 6) of the stretches of one face.
 
     The segments come in the order of their ranks.

@@ -9,7 +9,7 @@ from shapely import LineString
 
 from scanplan.geometry import se3
 from scanplan.lab.buildings import drawn_floor, ground, slicing
-from scanplan.lab.evaluation import visible_faces
+from scanplan.lab.evaluation import face_cells, visible_faces
 
 _DECIMALS = 6
 _ON_WALL_M, _PARALLEL = 0.01, 0.1
@@ -100,7 +100,7 @@ def mark_visible(drawn, survey, sight):
         kind: np.array([drawn[i][0].coords for i in rows]).reshape(-1, 2, 2)
         for kind, rows in of.items()
     }
-    cells = visible_faces.cut_faces(ends_m["inner"])
+    cells = face_cells.cut_faces(ends_m["inner"])
     length_m = np.where(
         visible_faces.cells_seen_by_any(cells, ends_m["outer"], survey, sight), cells.length_m, 0.0
     )

@@ -1,7 +1,8 @@
-"""The order of scans that shows most true wall soonest: the ceiling for every method that does not know the truth.
+"""The order of scans that shows most true wall soonest: the ceiling for methods without the truth.
 
-It is asked of what scans could see of the walls, and of what an extractor finds of them in each scan. Either length is
-monotone submodular like covered area, so lazy evaluation gives the greedy order (Minoux 1978).
+It is asked of what scans could see of the walls, and of what an extractor finds of them in each
+scan. Either length is monotone submodular like covered area, so lazy evaluation gives the greedy
+order (Minoux 1978).
 """
 
 import heapq
@@ -9,7 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-_TIE_M = 1e-9
+from scanplan.types import BoolArray, FloatArray, IntArray
+
+_TIE_M = 1e-9  # gains nearer than this are equal: sums of lengths in another order differ by less
 
 
 @dataclass(frozen=True)
@@ -24,15 +27,15 @@ class OracleOrder:
         True wall length that each adds to what those before it show.
     """
 
-    order: np.ndarray
-    gain_m: np.ndarray
+    order: IntArray
+    gain_m: FloatArray
 
 
-def order_by_truth(seen, length_m):
+def order_by_truth(seen: BoolArray, length_m: FloatArray) -> OracleOrder:
     """Order scans so that each adds the most length, the first row of equals.
 
-    Once no scan adds anything, the rest is ordered in the same way as if nothing had been shown yet: all walls are
-    shown a second time as soon as can be, then a third.
+    Once no scan adds anything, the rest is ordered in the same way as if nothing had been shown
+    yet: all walls are shown a second time as soon as can be, then a third.
 
     Parameters
     ----------
@@ -43,20 +46,28 @@ def order_by_truth(seen, length_m):
 
     Returns
     -------
-    Order
+    OracleOrder
     """
     seen = np.asarray(seen, bool)
-    order, rest, gains_m = [], list(range(len(seen))), []
+    order: list[int] = []
+    gains_m: list[float] = []
+    rest = list(range(len(seen)))
     while rest:
-        taken, round_m = _once(seen, np.array(length_m, float), rest)
-        gains_m += round_m if not order else [0.0] * len(taken)
-        order += taken
-        rest = sorted(set(rest) - set(taken))
+        rows, added_m = _order_once(seen, np.array(length_m, float), rest)
+        gains_m += [0.0] * len(rows) if order else added_m
+        order += rows
+        rest = sorted(set(rest) - set(rows))
     return OracleOrder(np.array(order, int), np.array(gains_m))
 
 
-def _once(seen, left_m, rows):
-    """Take of the rows, greedily, those that add something to the others; all of them if none does."""
+def _order_once(
+    seen: BoolArray, left_m: FloatArray, rows: list[int]
+) -> tuple[list[int], list[float]]:
+    """Return, greedily, the rows that add something to those before them, and what they add.
+
+    All rows if none adds anything. `left_m`, the length of each cell that is not shown yet, is
+    changed.
+    """
     heap = [(-float(left_m[seen[i]].sum()), i) for i in rows]
     heapq.heapify(heap)
     order, gains_m = [], []
@@ -70,9 +81,10 @@ def _once(seen, left_m, rows):
     return (order, gains_m) if order else (rows, [0.0] * len(rows))
 
 
-def _pop_best(heap, seen, left_m):
+def _pop_best(heap: list[tuple[float, int]], seen: BoolArray, left_m: FloatArray) -> int:
     """Take the scan of the largest gain, the first row of equals, off the heap of old gains."""
-    fresh, best_m = {}, 0.0
+    fresh: dict[int, float] = {}
+    best_m = 0.0
     while heap and -heap[0][0] >= best_m - _TIE_M:
         _, i = heapq.heappop(heap)
         fresh[i] = float(left_m[seen[i]].sum())

@@ -7,7 +7,7 @@ are drawn anew, so that no two are the same to the order.
 
 import numpy as np
 
-from scanplan.lab.evaluation import visible_faces
+from scanplan.lab.evaluation import face_cells, visible_faces
 from scanplan.selection import area_greedy, hulls
 
 REPEATS = (1, 5, 20)
@@ -34,7 +34,7 @@ def copy_hulls(scan_id, xyz_m, *, n_copies, seed, **sampling):
 
 def view_cells(faces, placed, sight):
     """Return which cells of the true faces each pose (n, 4, 4) sees, (n, c) bool, and their lengths (c,), metres."""
-    cells = visible_faces.cut_faces(faces.inner_m)
+    cells = face_cells.cut_faces(faces.inner_m)
     return visible_faces.cells_seen_by_each(cells, faces.outer_m, placed, sight), cells.length_m
 
 
