@@ -19,7 +19,7 @@ FACES = [(0, 0, 6, 0), (6, 0, 6, 4), (6, 4, 3, 4), (0, 4, 0, 0)]
 
 
 def survey():
-    """Three scans of a room, short of sight, that show parts of it; two are registered 0.2 m off."""
+    """Three scans of a room, short of sight, showing parts of it; two are registered 0.2 m off."""
     table = observed(FACES, np.random.default_rng(5), n_scans=3, sigma_m=0.03)
     place = np.tile(np.eye(4), (3, 1, 1))
     place[:, :2, 3] = [(1, 1), (3, 2), (5, 3)]

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from scanplan.lab.evaluation import face_cells, visible_faces
 from scanplan.lab.evaluation.truth_file import TrueFaces
-from scanplan.lab.thesis import seen_area
+from scanplan.lab.thesis import coverage
 
 BOX = np.array([(0, 0, 6, 0), (6, 0, 6, 4), (6, 4, 0, 4), (0, 4, 0, 0)], float).reshape(-1, 2, 2)
 # a pillar in the middle of the box
@@ -17,7 +17,7 @@ NOTHING = np.empty((0, 2, 2))
 
 
 def seen(inner, place, max_range_m=100.0, outer=NOTHING):
-    return seen_area.seen_polygons(
+    return coverage.seen_polygons(
         TrueFaces(inner, outer), np.array([place], float), max_range_m=max_range_m
     )[0]
 
