@@ -1,4 +1,4 @@
-"""Draw the registered scans, where they were taken, and which were selected (thesis, figure 5.9)."""
+"""Draw the registered scans, where they were taken, which were selected (thesis, figure 5.9)."""
 
 from typing import Any
 

@@ -48,7 +48,7 @@ def test_a_part_of_the_points_is_kept_in_their_order():
 class Busy:
     """An extractor whose every other call is disturbed."""
 
-    Settings = dict
+    settings = dict
 
     def __init__(self):
         self.calls = 0

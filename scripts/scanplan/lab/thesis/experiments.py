@@ -1,19 +1,32 @@
-"""The thesis's experiments (chapter 5) as datasets: its two surveys simulated, each with several seeds.
+"""The thesis's experiments (chapter 5) as datasets: its two surveys, each with several seeds.
 
 No heavy imports: this runs while the workflow is being parsed.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
-from scanplan.project.dataset import RESERVED, describe_simulated
-from scanplan.project.settings import read_own_layers, settings_of_dataset
+from scanplan.project.dataset import RESERVED, Dataset, describe_simulated
+from scanplan.project.settings import Layer, read_own_layers, settings_of_dataset
+from scanplan.types import FilePath
 
-ROOMS, DRIVE, LIMITS = "ring_rooms", "ring_hallways", "ring_hallways_limits"
-"""Registered scans of all rooms (5.2); a drive through the hallways (5.4); the same drive with the thesis's limits."""
+ROOMS = "ring_rooms"
+"""Registered scans of all rooms (5.2)."""
+DRIVE = "ring_hallways"
+"""A drive through the hallways (5.4)."""
+LIMITS = "ring_hallways_limits"
+"""The same drive with the thesis's limits of registration."""
 
 
-def list_surveys(*, defaults, given, schema, config):
+def list_surveys(
+    *,
+    defaults: dict[str, Any],
+    given: Sequence[Layer],
+    schema: dict[str, Any],
+    config: FilePath,
+) -> dict[str, tuple[Dataset, ...]]:
     """Gather the surveys of the thesis's experiments.
 
     Parameters
@@ -28,13 +41,16 @@ def list_surveys(*, defaults, given, schema, config):
     Returns
     -------
     dict of str to tuple of dataset.Dataset
-        `ROOMS`, `DRIVE` and `LIMITS`, each by seed. Of `LIMITS` the recordings are those of `DRIVE`.
+        `ROOMS`, `DRIVE` and `LIMITS`, each by seed. Of `LIMITS` the recordings are those of
+        `DRIVE`.
     """
     config = Path(config)
     chosen = settings_of_dataset(defaults, given, schema)["thesis"]
     limits = read_own_layers(config / "thesis.yaml", may_lack=False)
 
-    def simulated(kind, seeds, over=(), survey=None):
+    def simulated(
+        kind: str, seeds: Sequence[int], over: Sequence[Layer] = (), survey: str | None = None
+    ) -> tuple[Dataset, ...]:
         own = read_own_layers(config / f"surveys/{survey or kind}.yaml", may_lack=False)
         settings = settings_of_dataset(defaults, (*own, *over, *given), schema)
         return tuple(
@@ -56,7 +72,7 @@ def list_surveys(*, defaults, given, schema, config):
     }
 
 
-def replace_seeds(settings, seed):
+def replace_seeds(settings: dict[str, Any], seed: int) -> dict[str, Any]:
     """Return settings with every seed replaced; the given ones are not changed."""
     walls = {extractor: values | {"seed": seed} for extractor, values in settings["walls"].items()}
     sections = {

@@ -6,13 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from markupsafe import Markup
-from numpy.typing import ArrayLike
 
 from scanplan.lab.thesis.claim_measures import COUNT, NUMBER, SHARE
 from scanplan.lab.thesis.shown_figures import FIGURES, STEPS, Figure
 from scanplan.lab.thesis.stated_claims import CLAIMS, Claim
 from scanplan.report import templates
-from scanplan.types import Columns
+from scanplan.types import Columns, FloatArray
 
 _UNKNOWN = "not measured"
 
@@ -48,7 +47,19 @@ class ClaimRow:
 
 @dataclass(frozen=True)
 class ShownFigure:
-    """A figure as the page shows it: where links lead to, its number, its SVG, what it shows, its claims."""
+    """A figure as the page shows it.
+
+    Attributes
+    ----------
+    anchor : str
+        Where links lead to.
+    number : str
+    svg : Markup
+    caption, ours : str
+        The thesis's own caption, and what ours shows.
+    claims : list of ClaimRow
+        Those that it is about.
+    """
 
     anchor: str
     number: str
@@ -124,7 +135,7 @@ def summarise_verdicts(claims: Columns) -> str:
     return f"Of {len(kinds)} claims {n_yes} hold, {n_no} do not{some}{unknown}."
 
 
-def format_values(values: ArrayLike, unit: str = NUMBER) -> str:
+def format_values(values: Sequence[float] | FloatArray, unit: str = NUMBER) -> str:
     """Return the mean of values, and their range where they differ, as suits their unit.
 
     Shares are per cent, counts whole, and the largest number has three figures at most; see

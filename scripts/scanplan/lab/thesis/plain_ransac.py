@@ -1,12 +1,15 @@
-"""Both extractors as the thesis describes them (3.4, 5.3), with nothing of ours: no furniture, no gaps, no lengths.
+"""Both extractors as the thesis describes them (3.4, 5.3): no furniture, no gaps, no lengths.
 
-The extractors of the workflow cut what these find where its points pause, and drop much of it: they cannot tell about
-claims on numbers and times of walls.
+The extractors of the workflow cut what these find where its points pause, and drop much of it:
+claims on numbers and times of walls cannot be judged by them.
 """
+
+from typing import Any
 
 import numpy as np
 
 from scanplan.extraction import iterative_ransac
+from scanplan.types import FloatArray
 
 PlainRansacSettings = iterative_ransac.IterativeRansacSettings
 
@@ -31,19 +34,24 @@ LIFTED = {
     **dict.fromkeys(("wall_height_m", "furniture_height_m"), -np.inf),
     **dict.fromkeys((*_SMALL, "door_width_m", "corner_m"), 0.0),
 }
-"""Limits of ours that drop nothing and cut nothing: with them `cluster_ransac` finds one wall a cluster."""
+"""Limits that drop and cut nothing: with them `cluster_ransac` finds one wall a cluster."""
 
 
-def extract_plain(scan_id, xyz_m, *, settings, **_):
-    """Find the upright planes of a 3-D scan: that of most points, whose points are removed, until too few are left.
+def extract_plain(
+    scan_id: int, xyz_m: FloatArray, *, settings: PlainRansacSettings, **_unused: Any
+) -> list[FloatArray]:
+    """Find the upright planes of a 3-D scan.
+
+    The plane of most points is found and its points are removed, until too few are left.
 
     Parameters
     ----------
     scan_id : int
     xyz_m : (n, 3) float
-    settings : Settings
-        Only `inlier_m`, `trials`, `min_points`, `max_planes`, `max_tilt_deg` and `seed` matter. The thesis looks for
-        lines and says nothing of floors: planes that are not upright are removed and are no walls.
+    settings : PlainRansacSettings
+        Only `inlier_m`, `trials`, `min_points`, `max_planes`, `max_tilt_deg` and `seed` matter. The
+        thesis looks for lines and says nothing of floors: planes that are not upright are removed
+        and are no walls.
 
     Returns
     -------
@@ -51,17 +59,19 @@ def extract_plain(scan_id, xyz_m, *, settings, **_):
         Direction of each plane across the floor: the horizontal part of its normal.
     """
     rng = np.random.default_rng([settings.seed, scan_id])
-    left, least, found = np.asarray(xyz_m, float), max(settings.min_points, 3), []
+    left_m = np.asarray(xyz_m, float)
+    least = max(settings.min_points, 3)
+    directions = []
     for _ in range(settings.max_planes):
-        if len(left) < least:
+        if len(left_m) < least:
             break
         seed = int(rng.integers(2**31))
         normal, inliers = iterative_ransac.find_largest_plane(
-            left, inlier_m=settings.inlier_m, trials=settings.trials, seed=seed
+            left_m, inlier_m=settings.inlier_m, trials=settings.trials, seed=seed
         )
         if inliers.sum() < least:
             break
         if abs(normal[2]) <= np.sin(np.deg2rad(settings.max_tilt_deg)):
-            found.append(normal[:2])
-        left = left[~inliers]
-    return found
+            directions.append(normal[:2])
+        left_m = left_m[~inliers]
+    return directions
