@@ -4,6 +4,7 @@
 # make run DATASET=PATH REPLACE=NAME  in the place of results/NAME, made of another source
 # make test                     lint and all tests
 # make bench                    the stages against the literal algorithms
+# make settings                 write the lists in config/ and the manual's tables from the schema
 
 CORES ?= 2
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
@@ -18,11 +19,11 @@ GIVEN := $(foreach name,$(.VARIABLES),$(if $(findstring command line,$(origin $(
 UNKNOWN := $(filter-out $(KNOWN),$(GIVEN))
 $(if $(UNKNOWN),$(error $(UNKNOWN): no such variable; there are $(KNOWN)))
 
-.PHONY: run test lint bench environment clean
+.PHONY: run test lint bench settings environment clean
 .DEFAULT_GOAL := run
 
 run: environment
-	@test -z "$(CONFIG)" || PYTHONPATH=scripts $(BIN)/python -m scanplan.project.yaml_file "$(CONFIG)"
+	@test -z "$(CONFIG)" || PYTHONPATH=scripts $(BIN)/python -m scanplan.project.settings "$(CONFIG)"
 	@$(SNAKEMAKE) $(if $(CONFIG),--configfile "$(CONFIG)") \
 	    $(if $(DATASET)$(REPLACE),--config $(if $(DATASET),'dataset="$(DATASET)"') $(if $(REPLACE),'replace="$(REPLACE)"')) \
 	    $(ARGS)
@@ -38,6 +39,9 @@ lint: environment
 
 bench: environment
 	@$(BIN)/python tests/benchmarks/run.py $(ARGS)
+
+settings: environment
+	@PYTHONPATH=scripts $(BIN)/python -m scanplan.project.settings_files
 
 environment: $(VENV)/.ready
 

@@ -5,9 +5,18 @@ import numpy as np
 from scanplan.selection import hulls
 from scanplan.stage import log, per_scan
 from scanplan.store import schemas, tables
+from scanplan.types import FilePath
 
 
-def build_hulls(scans, output, *, n_clusters, sample_size, seed, threads):
+def build_hulls(
+    scans: FilePath,
+    output: FilePath,
+    *,
+    n_clusters: int,
+    sample_size: int,
+    seed: int,
+    threads: int,
+) -> None:
     """Write the table of hulls of a table of scans."""
     parts = per_scan.map_scans(
         hulls.make_cluster_hulls,
@@ -23,8 +32,8 @@ def build_hulls(scans, output, *, n_clusters, sample_size, seed, threads):
     n_degenerate = np.count_nonzero(columns["area_m2"] == 0)
     mean_m2 = columns["area_m2"].sum() / len(parts)
     log.log_line(
-        f"build_hulls: {len(parts):,} scans, {len(columns['cluster']):,} hulls, {n_degenerate:,} degenerate,"
-        f" {mean_m2:.1f} m2 a scan"
+        f"build_hulls: {len(parts):,} scans, {len(columns['cluster']):,} hulls,"
+        f" {n_degenerate:,} degenerate, {mean_m2:.1f} m2 a scan"
     )
 
 

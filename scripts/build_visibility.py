@@ -1,12 +1,23 @@
-"""Draw the free space that every scan looked through."""
+"""Build the visibility polygon of every scan: the free space that it looked through."""
 
-from scanplan.extraction import segments
+from collections.abc import Mapping
+from typing import Any
+
 from scanplan.rays import visibility_polygon
-from scanplan.stage import log, per_scan
+from scanplan.stage import log
+from scanplan.stage.per_registered_scan import map_registered_scans
 from scanplan.store import schemas, tables
+from scanplan.types import FilePath
 
 
-def build_visibility(scans, registration, output, *, settings, threads=1):
+def build_visibility(
+    scans: FilePath,
+    registration: FilePath,
+    output: FilePath,
+    *,
+    settings: Mapping[str, Any],
+    threads: int = 1,
+) -> None:
     """Write the table of visibility polygons of a table of scans.
 
     Parameters
@@ -19,22 +30,19 @@ def build_visibility(scans, registration, output, *, settings, threads=1):
         Keywords of `visibility_polygon.VisibilitySettings`.
     threads : int
     """
-    store = tables.ScanStore(scans)
-    rows = per_scan.map_scans(
+    _, polygons = map_registered_scans(
         visibility_polygon.scan_free_space,
         scans,
+        registration,
         label="build_visibility",
         threads=threads,
-        per_scan=segments.sensor_keywords(
-            tables.read_table(registration, schemas.REGISTRATION), store.scan_ids, registration
-        ),
-        planar=store.planar,
         settings=visibility_polygon.VisibilitySettings(**settings),
     )
-    columns = visibility_polygon.visibility_columns(rows)
+    columns = visibility_polygon.visibility_columns(polygons)
     tables.write_table(output, schemas.VISIBILITY, columns)
+    mean_m2 = columns["area_m2"].mean()
     log.log_line(
-        f"build_visibility: {len(rows):,} scans, {columns['area_m2'].mean():.1f} m2 of free space a scan"
+        f"build_visibility: {len(polygons):,} scans, {mean_m2:.1f} m2 of free space a scan"
     )
 
 

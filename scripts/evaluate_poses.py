@@ -5,7 +5,7 @@ import numpy as np
 from scanplan.lab.evaluation import pose_errors, truth_file
 from scanplan.stage import log
 from scanplan.store import registered_scans, schemas, tables
-from scanplan.types import FilePath, FloatArray
+from scanplan.types import Array, FilePath, FloatArray
 
 
 def evaluate_poses(
@@ -27,7 +27,7 @@ def evaluate_poses(
         truth_file.read_true_poses(true_poses), scans.t_ns, true_poses
     )
     prior = registered_scans.read_prior_poses(poses, scans, registration)
-    columns = {"scan_id": scans.scan_ids, "t_ns": scans.t_ns}
+    columns: dict[str, Array] = {"scan_id": scans.scan_ids, "t_ns": scans.t_ns}
     for stage, estimate in (("prior", prior), ("refined", scans.map_from_sensor)):
         motion = pose_errors.fit_alignment(estimate[:, :3, 3], truth[:, :3, 3])
         for name, placed in ((stage, estimate), (f"aligned_{stage}", motion @ estimate)):

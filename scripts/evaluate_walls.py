@@ -70,7 +70,7 @@ def evaluate_walls(
         tables.write_table(path, schemas.EVALUATION, table)
         for line in order_metrics.summarise_wall_measures(table):
             log.log_line(f"evaluate_walls: {Path(path).stem}, {line}")
-    tables.write_table(best, schemas.ORACLE, registered_scans.oracle_columns(best_orders, scans))
+    tables.write_table(best, schemas.ORACLE, oracle.oracle_columns(best_orders, scans))
 
 
 if __name__ == "__main__":

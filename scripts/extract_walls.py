@@ -6,6 +6,7 @@ from scanplan.errors import StageError
 from scanplan.extraction import map_tilt, segments
 from scanplan.extraction.extractors import EXTRACTORS
 from scanplan.stage import log
+from scanplan.stage.per_registered_scan import sensor_keywords
 from scanplan.stage.per_scan import map_scans
 from scanplan.store import schemas, tables
 
@@ -31,9 +32,7 @@ def extract_walls(scans, registration, output, *, extractor, settings, threads=1
         )
     method, store, started = EXTRACTORS[extractor], tables.ScanStore(scans), time.perf_counter()
     every_scan = {"planar": store.planar, "settings": method.settings(**settings)}
-    per_scan = segments.sensor_keywords(
-        tables.read_table(registration, schemas.REGISTRATION), store.scan_ids, registration
-    )
+    per_scan = sensor_keywords(store.scan_ids, scans, registration)
     found = map_scans(
         method.extract,
         scans,

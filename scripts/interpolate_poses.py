@@ -1,27 +1,31 @@
 """Give every candidate scan the pose its sensor had at that moment."""
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 
-from scanplan.recordings import candidates, tf_tree
+from scanplan.recordings import candidates, frame_edges
 from scanplan.recordings.motion import time_check, trajectory
 from scanplan.recordings.survey import open_survey
 from scanplan.stage import log
 from scanplan.store import schemas, tables
+from scanplan.types import FilePath
 
 
 def interpolate_poses(
-    files,
-    output,
+    files: Sequence[str],
+    output: FilePath,
     *,
-    keep_every,
-    max_step_m,
-    max_turn_deg,
-    max_gap_s,
-    max_speed_m_s=np.inf,
-    moved=None,
-    **reading,
-):
-    """Write the candidates for registration with their interpolated poses, and how the sensor moved.
+    keep_every: int,
+    max_step_m: float,
+    max_turn_deg: float,
+    max_gap_s: float,
+    max_speed_m_s: float = np.inf,
+    moved: FilePath | None = None,
+    **reading: Any,
+) -> None:
+    """Write the candidates for registration with interpolated poses, and the sensor's motion.
 
     Parameters
     ----------
@@ -45,19 +49,20 @@ def interpolate_poses(
     """
     limits = {"max_gap_s": max_gap_s, "max_speed_m_s": max_speed_m_s}
     with open_survey(files, **reading) as survey:
-        t_ns, edges = survey.stamps(), survey.pose_edges()
-        known = tf_tree.chain_poses(edges, t_ns, **limits)
+        t_ns = survey.stamps()
+        edges = survey.pose_edges()
+        pose, gap_s, covered = frame_edges.chain_poses(edges, t_ns, **limits)
         chosen = candidates.choose_candidates(
-            known[0], keep_every=keep_every, max_step_m=max_step_m, max_turn_deg=max_turn_deg
+            pose, keep_every=keep_every, max_step_m=max_step_m, max_turn_deg=max_turn_deg
         )
-        candidates.require_poses(chosen, t_ns, known[2], edges, files[0], **limits)
+        candidates.require_poses(chosen, t_ns, covered, edges, files[0], **limits)
         if moved is not None:
-            way = trajectory.choose_motion(survey.motion_chains(), t_ns, **limits)
-            tables.write_table(
-                moved, schemas.MOTION, time_check.check_point_times(survey, way).columns()
-            )
-    tables.write_table(output, schemas.POSES, candidates.pose_columns(chosen, t_ns, *known))
-    n_covered = int(known[2][chosen].sum())
+            motion = trajectory.choose_motion(survey.motion_chains(), t_ns, **limits)
+            motion = time_check.check_point_times(survey, motion)
+            tables.write_table(moved, schemas.MOTION, motion.columns())
+    columns = candidates.pose_columns(chosen, t_ns, pose, gap_s, covered)
+    tables.write_table(output, schemas.POSES, columns)
+    n_covered = int(covered[chosen].sum())
     log.log_line(
         f"interpolate_poses: {len(t_ns):,} scans, {len(chosen):,} candidates,"
         f" {n_covered:,} with poses, {len(chosen) - n_covered:,} without"

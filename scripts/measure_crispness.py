@@ -1,16 +1,25 @@
-"""Measure how thick the walls of the merged map are, by the localiser's poses and by the registered ones."""
+"""Measure how thick the merged map's walls are, by the localiser's and by registered poses."""
 
 import numpy as np
 
 from scanplan.geometry import plane_scatter, se3
 from scanplan.stage import log
 from scanplan.store import registered_scans, schemas, tables
+from scanplan.types import FilePath
 
 
 def measure_crispness(
-    scans, registration, poses, output, *, radius_m, most_points, most_places, seed
-):
-    """Write the crispness of the map of the kept scans.
+    scans: FilePath,
+    registration: FilePath,
+    poses: FilePath,
+    output: FilePath,
+    *,
+    radius_m: float,
+    most_points: int,
+    most_places: int,
+    seed: int,
+) -> None:
+    """Write how thick the map of the kept scans is.
 
     Parameters
     ----------
@@ -19,17 +28,18 @@ def measure_crispness(
     output : path-like
         crispness.parquet, to write.
     radius_m, most_points, most_places, seed
-        See `plane_scatter.measure_scatter`, `plane_scatter.thin_randomly` and `plane_scatter.choose_places`.
+        See `plane_scatter.measure_scatter`, `plane_scatter.thin_randomly` and
+        `plane_scatter.choose_places`.
     """
-    store, kept = tables.ScanStore(scans), registered_scans.read_registered_scans(registration)
-    to_localiser = registered_scans.read_prior_poses(poses, kept, registration) @ se3.invert_pose(
-        kept.map_from_sensor
-    )
-    found = log.report_progress(store.scans(), "measure_crispness", total=len(store.scan_ids))
+    store = tables.ScanStore(scans)
+    kept = registered_scans.read_registered_scans(registration)
+    prior = registered_scans.read_prior_poses(poses, kept, registration)
+    prior_from_registered = prior @ se3.invert_pose(kept.map_from_sensor)
+    progress = log.report_progress(store.scans(), "measure_crispness", total=len(store.scan_ids))
     xyz_m, scan_ids = plane_scatter.thin_randomly(
-        found, most_points=most_points, n_scans=len(store.scan_ids), seed=seed
+        progress, most_points=most_points, n_scans=len(store.scan_ids), seed=seed
     )
-    motion = to_localiser[np.searchsorted(kept.scan_ids, scan_ids)]
+    motion = prior_from_registered[np.searchsorted(kept.scan_ids, scan_ids)]
     maps = {
         "localiser": np.einsum("nij,nj->ni", motion[:, :3, :3], xyz_m) + motion[:, :3, 3],
         "registered": xyz_m,
@@ -46,9 +56,10 @@ def measure_crispness(
         for name, points_m in maps.items()
     }
     tables.write_table(output, schemas.CRISPNESS, plane_scatter.scatter_columns(measured))
-    told = ", ".join(f"{name} {1000 * places.median_m:.1f} mm" for name, places in measured.items())
+    medians = [f"{name} {1000 * scatter.median_m:.1f} mm" for name, scatter in measured.items()]
     log.log_line(
-        f"measure_crispness: walls are thick by {told} (median of the places with scans on each other)"
+        f"measure_crispness: walls are thick by {', '.join(medians)}"
+        " (median of the places with scans on each other)"
     )
 
 

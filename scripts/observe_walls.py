@@ -1,12 +1,23 @@
 """Measure how much wall every scan shows, and where, without extracting walls."""
 
-from scanplan.extraction import segments
+from collections.abc import Mapping
+from typing import Any
+
 from scanplan.selection import wall_cells
-from scanplan.stage import log, per_scan
+from scanplan.stage import log
+from scanplan.stage.per_registered_scan import map_registered_scans
 from scanplan.store import schemas, tables
+from scanplan.types import FilePath
 
 
-def observe_walls(scans, registration, output, *, settings, threads=1):
+def observe_walls(
+    scans: FilePath,
+    registration: FilePath,
+    output: FilePath,
+    *,
+    settings: Mapping[str, Any],
+    threads: int = 1,
+) -> None:
     """Write the table of observed wall of a table of scans.
 
     Parameters
@@ -19,24 +30,21 @@ def observe_walls(scans, registration, output, *, settings, threads=1):
         Keywords of `wall_cells.WallCellSettings`.
     threads : int
     """
-    store = tables.ScanStore(scans)
-    observed = per_scan.map_scans(
+    scan_ids, observations = map_registered_scans(
         wall_cells.observe_wall_cells,
         scans,
+        registration,
         label="observe_walls",
         threads=threads,
-        per_scan=segments.sensor_keywords(
-            tables.read_table(registration, schemas.REGISTRATION), store.scan_ids, registration
-        ),
-        planar=store.planar,
         settings=wall_cells.WallCellSettings(**settings),
     )
-    columns = wall_cells.observation_columns(store.scan_ids, observed)
+    columns = wall_cells.observation_columns(scan_ids, observations)
     tables.write_table(output, schemas.OBSERVATIONS, columns, allow_empty=True)
-    mean_m = columns["length_m"].sum() / len(observed)
-    blind = sum(len(part["length_m"]) == 0 for part in observed)
+    mean_m = columns["length_m"].sum() / len(observations)
+    n_blind = sum(len(observation["length_m"]) == 0 for observation in observations)
     log.log_line(
-        f"observe_walls: {len(observed):,} scans, {mean_m:.1f} m of wall a scan, {blind:,} show none"
+        f"observe_walls: {len(observations):,} scans, {mean_m:.1f} m of wall a scan,"
+        f" {n_blind:,} show none"
     )
 
 

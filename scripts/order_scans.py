@@ -1,9 +1,13 @@
 """Put the scans in the order in which they are worth most for the plan."""
 
+from collections.abc import Mapping
+from typing import Any
+
 from scanplan.errors import StageError
 from scanplan.selection import orderings, stopping
 from scanplan.stage import log
 from scanplan.store import schemas, tables
+from scanplan.types import FilePath
 
 _SCHEMAS = {
     "observations": schemas.OBSERVATIONS,
@@ -13,8 +17,16 @@ _SCHEMAS = {
 
 
 def order_scans(
-    hulls, output, *, method, seed=None, min_overlap=0.0, streaming=None, budget=None, others=None
-):
+    hulls: FilePath,
+    output: FilePath,
+    *,
+    method: str,
+    seed: int | None = None,
+    min_overlap: float = 0.0,
+    streaming: Mapping[str, Any] | None = None,
+    budget: Mapping[str, int | None] | None = None,
+    others: Mapping[str, FilePath] | None = None,
+) -> None:
     """Write the table of one method's ordering.
 
     Parameters
@@ -26,30 +38,32 @@ def order_scans(
     method : str
         One of `methods.METHODS`.
     seed, min_overlap, streaming, budget
-        Those of them that `methods.SETTINGS` names for the method, see `orderings.order_scans`; `budget` are keywords of
-        `stopping.points_budget`.
+        Those of them that `methods.METHODS` names for the method, see `orderings.order_scans`;
+        `budget` are keywords of `stopping.points_budget`.
     others : dict of str to path-like, optional
-        The tables that `methods.TABLES` names for the method.
+        The tables that `methods.METHODS` names for the method.
     """
     columns = tables.read_table(
         hulls, schemas.HULLS, ["scan_id", "cluster", "n_points", "geometry"]
     )
-    read = {
+    other_tables = {
         name: tables.read_table(path, _SCHEMAS[name], allow_empty=True)
         for name, path in (others or {}).items()
     }
-    limit = stopping.points_budget(**(budget or {}))
-    settings = {
-        "seed": seed,
-        "min_overlap": min_overlap,
-        "streaming_settings": streaming,
-        "budget": limit,
-    }
-    selection = orderings.order_scans(method, columns, others=read, **settings)
+    selection = orderings.order_scans(
+        method,
+        columns,
+        others=other_tables,
+        seed=seed,
+        min_overlap=min_overlap,
+        streaming_settings=streaming,
+        budget=stopping.points_budget(**(budget or {})),
+    )
     if selection["covered_m2"][-1] == 0:
         raise StageError(
-            f"{hulls}: {len(selection['rank'])} scans cover 0 m2, more is needed to order them; every cluster of their"
-            " points lies on one line: use fewer clusters (n_clusters) or check the recording"
+            f"{hulls}: {len(selection['rank'])} scans cover 0 m2, more is needed to order them;"
+            " every cluster of their points lies on one line: use fewer clusters (n_clusters) or"
+            " check the recording"
         )
     tables.write_table(output, schemas.SELECTION, selection)
     log.log_line(f"order_scans: {orderings.summarise_order(method, selection)}")

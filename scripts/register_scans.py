@@ -1,25 +1,42 @@
 """Select continuous scans and register them in the map frame (thesis, algorithm 3)."""
 
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+from scanplan.recordings.clouds import Scan
 from scanplan.recordings.motion import trajectory
 from scanplan.recordings.survey import open_survey
-from scanplan.registration import constraint_table, mapping, results
+from scanplan.registration import mapping, results
+from scanplan.registration.registration_settings import registration_settings
+from scanplan.registration.sequential import ScanResult
 from scanplan.stage import log, workers
 from scanplan.store import scan_cache, schemas, tables
+from scanplan.types import FilePath
 
 
 def register_scans(
-    recordings, poses, scans, registered, edges, *, reading, settings, moved=None, threads=1
-):
-    """Write the retained scans in the map frame, what became of every candidate, and what links the retained ones.
+    recordings: Sequence[str],
+    poses: FilePath,
+    scans: FilePath,
+    registered: FilePath,
+    edges: FilePath,
+    *,
+    reading: Mapping[str, Any],
+    settings: Mapping[str, Any],
+    moved: FilePath | None = None,
+    threads: int = 1,
+) -> None:
+    """Write the retained scans in the map frame, every candidate's result, and the constraints.
 
     Parameters
     ----------
-    recordings : list of path-like
+    recordings : list of str
         The dataset's files.
     poses : path-like
         poses.parquet: the candidates and their poses.
     scans, registered, edges : path-like
-        scans.parquet, registration.parquet and edges.parquet, to write.
+        scans.parquet, registration.parquet and edges.parquet (the pose-graph constraints between
+        retained scans), to write.
     reading : dict
         Keywords of `survey.open_survey`.
     settings : dict
@@ -30,45 +47,63 @@ def register_scans(
         Cores to use; the result does not depend on it.
     """
     candidates = tables.read_table(poses, schemas.POSES)
-    priors, dropped = results.pose_matrices(candidates), []
-    way = (
-        None
-        if moved is None
-        else trajectory.motion_from_columns(tables.read_table(moved, schemas.MOTION))
-    )
+    priors = results.pose_matrices(candidates)
+    motion = None if moved is None else _read_motion(moved)
     with (
         scan_cache.open_scan_cache(scans) as raw,
         scan_cache.open_scan_cache(registered) as thinned,
         workers.open_pool(threads) as run,
     ):
-        with open_survey(recordings, **reading, motion=way) as opened:
+        with open_survey(recordings, **reading, motion=motion) as opened:
             survey = mapping.CandidateScans(candidates["scan_id"], priors, opened.planar)
-            found = log.report_progress(
-                opened.scans(survey.scan_ids), "register_scans", total=len(priors)
+            counted = _CountedScans(opened.scans(survey.scan_ids))
+            progress = log.report_progress(counted, "register_scans", total=len(priors))
+            limits = registration_settings(settings)
+            verdicts, constraints = mapping.register_scans(
+                survey, progress, raw, thinned, run, limits
             )
-            counted = (dropped.append(scan.n_dropped) or scan for scan in found)
-            judged, links = mapping.register_scans(
-                survey, counted, raw, thinned, run, mapping.registration_settings(settings)
-            )
-        results.check_any_kept(judged, sum(dropped), recordings[0])
-        rows = [row for row, verdict in enumerate(judged) if verdict.kept]
-        with tables.open_scan_writer(scans, planar=survey.planar) as write_scan:
-            for row, xyz_m in zip(rows, raw.part(rows), strict=True):
-                scan_id = survey.scan_ids[row]
-                write_scan(
-                    scan_id, results.move_to_map(scan_id, xyz_m, judged[row].world_from_sensor)
-                )
+        results.check_any_kept(verdicts, counted.n_dropped, recordings[0])
+        _write_kept_scans(scans, survey, verdicts, raw)
     log.log_line(
-        f"register_scans: {results.summarise_registration(judged, sum(dropped))}; {constraint_table.summarise_constraints(links)}"
+        f"register_scans: {results.summarise_registration(verdicts, counted.n_dropped)};"
+        f" {results.summarise_constraints(constraints)}"
     )
-    tables.write_table(
-        edges, schemas.EDGES, constraint_table.constraint_columns(links), allow_empty=True
-    )
-    tables.write_table(
-        registered,
-        schemas.REGISTRATION,
-        results.registration_columns(survey.scan_ids, candidates["t_ns"], judged),
-    )
+    columns = results.constraint_columns(constraints)
+    tables.write_table(edges, schemas.EDGES, columns, allow_empty=True)
+    columns = results.registration_columns(survey.scan_ids, candidates["t_ns"], verdicts)
+    tables.write_table(registered, schemas.REGISTRATION, columns)
+
+
+class _CountedScans:
+    """Scans to iterate over once, and how many points were dropped from them so far."""
+
+    def __init__(self, scans: Iterable[Scan]) -> None:
+        self._scans = scans
+        self.n_dropped = 0
+
+    def __iter__(self) -> Iterator[Scan]:
+        for scan in self._scans:
+            self.n_dropped += scan.n_dropped
+            yield scan
+
+
+def _write_kept_scans(
+    path: FilePath,
+    survey: mapping.CandidateScans,
+    verdicts: Sequence[ScanResult],
+    raw: scan_cache.ScanCache,
+) -> None:
+    """Write the scans that registration kept, in the map frame."""
+    rows = [row for row, verdict in enumerate(verdicts) if verdict.kept]
+    with tables.open_scan_writer(path, planar=survey.planar) as write_scan:
+        for row, xyz_m in zip(rows, raw.part(rows), strict=True):
+            scan_id = survey.scan_ids[row]
+            pose = verdicts[row].world_from_sensor
+            write_scan(scan_id, results.move_to_map(scan_id, xyz_m, pose))
+
+
+def _read_motion(moved: FilePath) -> trajectory.SensorMotion:
+    return trajectory.motion_from_columns(tables.read_table(moved, schemas.MOTION))
 
 
 if __name__ == "__main__":

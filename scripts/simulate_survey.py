@@ -2,41 +2,47 @@
 
 from pathlib import Path
 
-from scanplan.lab.buildings.truth import format_features, format_tum
+from scanplan.lab.buildings.truth import format_features
 from scanplan.lab.simulation import scan_messages, survey_bag, survey_messages, survey_setup, sweeps
+from scanplan.lab.simulation.survey_truth import format_tum
 from scanplan.stage import log
 from scanplan.store import atomic
+from scanplan.types import FilePath, Settings
 
 
 def simulate_survey(
-    building,
-    recording,
-    truth,
-    true_poses,
-    true_trajectory,
+    building: FilePath,
+    recording: FilePath,
+    truth: FilePath,
+    true_poses: FilePath,
+    true_trajectory: FilePath,
     *,
-    seed,
-    site,
-    mount,
-    sensor,
-    errors,
-    drive,
-    localiser,
-    people,
-    threads=1,
-):
-    """Write a drive's recording (.bag, .db3 or .mcap), the floor's truth, the poses at the stamps and the whole way."""
-    found = survey_setup.prepare_site(
-        Path(building).read_bytes(), Path(building), mount, seed=seed, **site
-    )
-    for note in found.notes:
+    seed: int,
+    site: Settings,
+    mount: Settings,
+    sensor: Settings,
+    errors: Settings,
+    drive: Settings,
+    localiser: Settings,
+    people: Settings,
+    threads: int = 1,
+) -> None:
+    """Write a drive's recording (.bag, .db3 or .mcap), the floor's truth, and the true poses.
+
+    The poses at the scans' stamps, and those of the whole way.
+    """
+    data = Path(building).read_bytes()
+    place = survey_setup.prepare_site(data, Path(building), mount, seed=seed, **site)
+    for note in place.notes:
         log.log_line(f"simulate_survey: {note}")
-    rig = {"mount": mount, "sensor": sensor, "errors": errors, "drive": drive, "people": people}
-    survey = survey_setup.prepare_survey(found, seed=seed, **rig)
-    start_ns = survey_bag.EPOCH_NS
+    survey = survey_setup.prepare_survey(
+        place, seed=seed, mount=mount, sensor=sensor, errors=errors, drive=drive, people=people
+    )
     belief = survey_setup.survey_belief(survey, **localiser)
-    taken = sweeps.simulate_scans(survey, threads=threads)
-    scans = log.report_progress(taken, "simulate_survey", total=len(survey.t_ns))
+    start_ns = survey_bag.EPOCH_NS
+    scans = log.report_progress(
+        sweeps.simulate_scans(survey, threads=threads), "simulate_survey", total=len(survey.t_ns)
+    )
     survey_bag.write_survey_bag(
         recording,
         survey_messages.encode_mounting(
@@ -47,23 +53,22 @@ def simulate_survey(
         scan_messages.encode_scans(start_ns + survey.t_ns, survey.sensor, scans),
         *survey_messages.encode_belief(start_ns, belief),
     )
-    features, sensor = survey_setup.survey_truth(found, survey)
-    atomic.write_text(truth, format_features(features, sensor=sensor))
-    for path, (t_ns, pose) in (
-        (true_poses, survey_setup.true_poses(survey)),
-        (true_trajectory, survey_setup.true_trajectory(survey)),
-    ):
-        atomic.write_text(path, format_tum(start_ns + t_ns, pose))
+    features, view = survey_setup.survey_truth(place, survey)
+    atomic.write_text(truth, format_features(features, sensor=view))
+    t_ns, poses = survey_setup.true_poses(survey)
+    atomic.write_text(true_poses, format_tum(start_ns + t_ns, poses))
+    t_ns, poses = survey_setup.true_trajectory(survey)
+    atomic.write_text(true_trajectory, format_tum(start_ns + t_ns, poses))
 
 
 if __name__ == "__main__":
     with log.log_to_file(snakemake.log[0]):
         simulate_survey(
             snakemake.input.building,
-            *(
-                snakemake.output[name]
-                for name in ("recording", "truth", "true_poses", "true_trajectory")
-            ),
+            snakemake.output.recording,
+            snakemake.output.truth,
+            snakemake.output.true_poses,
+            snakemake.output.true_trajectory,
             **snakemake.params.settings,
             threads=snakemake.threads,
         )

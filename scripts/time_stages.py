@@ -46,7 +46,6 @@ def time_stages(
         On how many scans, spread over the survey; clusters and thinned scans on a part of these.
     """
     store = tables.ScanStore(scans)
-    registered = tables.read_table(registration, schemas.REGISTRATION)
     columns = tables.read_table(built, schemas.HULLS)
     n_scans = len(store.scan_ids)
     sizes = [*(size for size in _SELECTION_SIZES if size < n_scans), n_scans]
@@ -59,13 +58,9 @@ def time_stages(
     ]
     for task, (extractor, name) in _EXTRACTORS.items():
         settings = {**walls[name], **plain_ransac.LIFTED}
-        times = timing.time_extractor(
-            task, extractor, store, registered, timed_ids, settings, registration
-        )
+        times = timing.time_extractor(task, extractor, store, timed_ids, settings, registration)
         rows += log.report_progress(times, f"time_stages {task}", total=len(timed_ids))
-        rows += timing.time_by_points(
-            task, extractor, store, registered, thinned_ids, settings, registration
-        )
+        rows += timing.time_by_points(task, extractor, store, thinned_ids, settings, registration)
     rows.sort(key=lambda row: (row["task"], row["size"], row["item"]))
     times_columns = {name: [row[name] for row in rows] for name in schemas.TIMES.columns}
     tables.write_table(output, schemas.TIMES, times_columns)

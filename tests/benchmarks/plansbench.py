@@ -10,7 +10,8 @@ import wallbench
 
 from helpers import ifc_volumes
 from scanplan.lab.evaluation import plan_metrics, true_plan, truth_file, wall_findings, wall_metrics
-from scanplan.plan import plan_settings, planning
+from scanplan.plan import planning
+from scanplan.project import stage_settings
 from scanplan.rays import ray_set
 from scanplan.selection import stopping
 from scanplan.store import registered_scans, schemas, tables
@@ -135,7 +136,7 @@ def _plan(seen, store, kept, rows, chosen, settings):
         looked,
         track_m,
         kept.t_ns[rows],
-        planning.make_plan_settings(**plan_settings.select_plan_settings(settings)),
+        planning.make_plan_settings(**stage_settings.select_plan(settings)),
         up,
     )
     return SimpleNamespace(plan=plan, floor_z_m=looked.floor_z_m)

@@ -12,6 +12,7 @@ import register_scans
 import simulate_survey
 from reference import registration as literal
 from scanplan.lab.evaluation import pose_errors, truth_file
+from scanplan.project import stage_settings
 from scanplan.recordings.motion import trajectory
 from scanplan.recordings.survey import open_survey
 from scanplan.registration import results
@@ -45,8 +46,7 @@ def drive(root, settings):
         simulate_survey.simulate_survey(
             building, folder / "survey.bag", *truths, **rig, threads=_THREADS
         )
-        unread = ("min_range_m", "max_range_m", "deskew")
-        reading = {key: value for key, value in settings["input"].items() if key not in unread}
+        reading = stage_settings.select_topics(settings)
         outputs = {"output": folder / "poses.parquet", "moved": folder / "motion.parquet"}
         interpolate_poses.interpolate_poses(
             [str(folder / "survey.bag")], **outputs, **settings["poses"], **reading
@@ -80,7 +80,7 @@ def _register(folder, bag, settings):
     outputs = (folder / f"{name}.parquet" for name in _TABLES)
     keywords = {
         "reading": settings["input"],
-        "settings": settings["registration"],
+        "settings": stage_settings.select_section(settings, "registration"),
         "moved": folder / "motion.parquet",
     }
     register_scans.register_scans(

@@ -19,9 +19,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "tests")]
 
 
-from scanplan.project import yaml_file  # noqa: E402
-
-SETTINGS = yaml_file.read_yaml(ROOT / "config/config.yaml")
+from helpers.default_settings import SETTINGS  # noqa: E402
 
 
 def bench_simulation():

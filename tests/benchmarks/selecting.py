@@ -8,6 +8,7 @@ import shapely
 from sklearn.cluster import KMeans
 
 from reference import hull_selection
+from scanplan.project.stage_settings import select_hulls
 from scanplan.selection import area_greedy, bounds, hulls, streaming
 
 N_SCANS = 1200
@@ -28,11 +29,11 @@ def run(building, settings, say):
         Takes a line of the result.
     """
     scans = drivescans.scans(building, settings["simulate"], N_SCANS, route="rooms")
-    built(scans[::100], settings["hulls"], say)
-    polygons = drivescans.polygons(scans, settings["hulls"])
+    built(scans[::100], select_hulls(settings), say)
+    polygons = drivescans.polygons(scans, select_hulls(settings))
     ordered(polygons, say)
     streamed(polygons[:: N_SCANS // STREAMED], say)
-    scaled(scans[:COPIED], settings["hulls"], say)
+    scaled(scans[:COPIED], select_hulls(settings), say)
 
 
 def built(scans, settings, say):
@@ -75,7 +76,7 @@ def ordered(polygons, say):
         f" {whole_s / ours_s:.0f} times faster"
     )
     told = ", ".join(
-        f"{order.covered_m2[k - 1] / bound_m2[k - 1]:.0%} at {k}" for k in (5, 10, 20, 40, 80)
+        f"{order.covered[k - 1] / bound_m2[k - 1]:.0%} at {k}" for k in (5, 10, 20, 40, 80)
     )
     say(f"certificate: in {bound_s:.2f} s, at least {told} scans of what any choice covers")
 
@@ -95,7 +96,7 @@ def streamed(polygons, say):
     best = area_greedy.order_by_area(polygons)
     for k in SLOTS:
         (order, most_held), taken_s = timed(lambda k=k: streaming.order_streaming(polygons, k=k))
-        share = area_greedy.area_gains(polygons, order[:k]).sum() / best.covered_m2[k - 1]
+        share = area_greedy.area_gains(polygons, order[:k]).sum() / best.covered[k - 1]
         say(
             f"streaming: {k} of {len(polygons)} scans cover {share:.1%} of what greedy's do, {most_held} held at most,"
             f" {1e3 * taken_s / len(polygons):.1f} ms a scan"

@@ -7,8 +7,10 @@ import numpy as np
 import wallscans
 
 from reference import cluster_ransac as literal_clusters
-from scanplan.extraction import normals, segments
+from scanplan.extraction import normals
 from scanplan.extraction.extractors import EXTRACTORS
+from scanplan.project.stage_settings import select_extractors
+from scanplan.rays import sensor_frame
 
 METHODS = EXTRACTORS
 _ROUTES = {"demo_office": ("given", 0.4), "ring_office": ("rooms", 1.2)}
@@ -24,12 +26,11 @@ def speed(root, settings, n_scans=20):
         path = root / f"config/buildings/{building}.geojson"
         survey = wallscans.standing(path, settings["simulate"], route=route, step_m=step_m, every=8)
         scans = survey.scans[:n_scans]
-        took_ms = _best_of_turns(survey, scans, settings["walls"])
-        _tell_speed(building, survey, scans, took_ms, settings["walls"])
+        walls = select_extractors(settings, METHODS)
+        took_ms = _best_of_turns(survey, scans, walls)
+        _tell_speed(building, survey, scans, took_ms, walls)
         if building == "demo_office":
-            _tell_literal(
-                survey, scans[0], took_ms["cluster_ransac"][0], settings["walls"]["cluster_ransac"]
-            )
+            _tell_literal(survey, scans[0], took_ms["cluster_ransac"][0], walls["cluster_ransac"])
 
 
 def _best_of_turns(survey, scans, settings, turns=3):
@@ -51,7 +52,7 @@ def _tell_speed(building, survey, scans, took_ms, settings):
     reach_deg = settings["cluster_ransac"]["reach_deg"]
     normals_ms = []
     for i, xyz_m in scans:
-        around_m = segments.centre_on_sensor(xyz_m, survey.sensors[i])
+        around_m = sensor_frame.centre_on_sensor(xyz_m, survey.sensors[i])
         normals_ms.append(
             _milliseconds(lambda p=around_m: normals.cut_surface_cells(p, reach_deg=reach_deg))
         )
@@ -65,7 +66,7 @@ def _tell_speed(building, survey, scans, took_ms, settings):
 
 
 def _tell_literal(survey, scan, ours_ms, settings):
-    few_m = segments.centre_on_sensor(scan[1], survey.sensors[scan[0]])[::_LITERAL_EVERY]
+    few_m = sensor_frame.centre_on_sensor(scan[1], survey.sensors[scan[0]])[::_LITERAL_EVERY]
     limits = {key: settings[key] for key in _LITERAL_KEYS} | {"max_trials": settings["trials"]}
     literal_ms = _milliseconds(
         lambda: literal_clusters.lines(few_m, **limits, rng=np.random.default_rng(1))
@@ -79,12 +80,13 @@ def _tell_literal(survey, scan, ours_ms, settings):
 
 def quality(root, settings, every=3):
     """Compare the walls that both extractors and a line detector show with the truth."""
+    walls = select_extractors(settings, METHODS)
     for building, (route, step_m) in _ROUTES.items():
         path = root / f"config/buildings/{building}.geojson"
         survey = wallscans.standing(
             path, settings["simulate"], route=route, step_m=step_m, every=every
         )
-        found = {name: _lines(survey, name, settings["walls"]) for name in METHODS}
+        found = {name: _lines(survey, name, walls) for name in METHODS}
         if importlib.util.find_spec("cv2"):
             found["raster and LSD"] = raster_lines(survey), np.zeros(0, int)
         else:

@@ -11,7 +11,7 @@ def box(x0, y0, z0, x1, y1, z1):
 
 
 def room(height_m=2.5, door=(1.5, 2.5)):
-    """Walls of 0.2 m round 4 m x 3 m clear, a door through the south wall, floor and ceiling slabs: (t, 3, 3)."""
+    """Walls of 0.2 m round 4 m x 3 m clear with a door in the south, floor, ceiling: (t, 3, 3)."""
     a, b = door
     walls = [
         box(-0.2, -0.2, 0, a, 0, height_m),

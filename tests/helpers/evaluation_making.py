@@ -6,8 +6,8 @@ import numpy as np
 
 from helpers.wall_making import walls
 from scanplan.geometry import se3
-from scanplan.lab.buildings import truth
 from scanplan.lab.simulation import rover
+from scanplan.lab.simulation.survey_truth import format_tum
 from scanplan.store import schemas, tables
 
 FACES = [(0, 0, 6, 0), (6, 0, 6, 4), (6, 4, 0, 4), (0, 4, 0, 0)]
@@ -30,7 +30,7 @@ def write_truth(folder, faces=FACES, positions=POSITIONS):
         json.dumps({"type": "FeatureCollection", "features": features})
     )
     (folder / "truth_poses.tum").write_text(
-        truth.format_tum(T_NS, rover.planar_poses(positions, [0.0] * 3, 0.4))
+        format_tum(T_NS, rover.planar_poses(positions, [0.0] * 3, 0.4))
     )
 
 

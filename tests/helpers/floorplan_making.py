@@ -1,7 +1,8 @@
 """A plan of two rooms drawn by hand, solvable on paper.
 
-Clear rooms of 4 m x 3 m and 3 m x 3 m, 0.1 m apart; outer walls of 0.2 m, the east one seen from inside only; the north
-wall of the small room is inferred. An entrance in the west, a door between the rooms, a window in the south.
+Clear rooms of 4 m x 3 m and 3 m x 3 m, 0.1 m apart; outer walls of 0.2 m, the east one seen from
+inside only; the north wall of the small room is inferred. An entrance in the west, a door between
+the rooms, a window in the south.
 """
 
 import numpy as np

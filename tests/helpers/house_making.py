@@ -19,7 +19,6 @@ PLAN = {
     "merge": SETTINGS,
     "trace": {"band_m": 0.06, "reach_m": 2.0, "max_gap_m": 0.5, "door_height_m": 1.8},
     "ranges": {"sigma_m": 0.01, "max_incidence_deg": 60.0},
-    "right_angles": {"max_turn_deg": 1.0, "sigmas": 2.0, "min_share": 0.25},
     "furniture": {
         "wall_height_m": 1.0,
         "furniture_height_m": 2.1,

@@ -1,4 +1,4 @@
-"""A building model of one storey or two, each a room of 4 m x 3 m clear with a door and a window in its south wall."""
+"""A building model of rooms of 4 m x 3 m clear, with a door and a window in the south wall."""
 
 import ifcopenshell.api.aggregate
 import ifcopenshell.api.context

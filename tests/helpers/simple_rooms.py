@@ -1,4 +1,4 @@
-"""Drawn floors whose every distance is known: a box of 4 m by 3 m clear, and what may be added to it."""
+"""Drawn floors whose every distance is known: a box of 4 m by 3 m clear, and additions."""
 
 import json
 

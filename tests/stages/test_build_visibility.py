@@ -37,5 +37,5 @@ def test_same_bytes_for_one_and_two_processes(tmp_path):
 
 def test_a_scan_without_pose_is_refused(tmp_path):
     survey = write_survey(tmp_path, registered=(0, 15))
-    with pytest.raises(StageError, match="no pose of 1 scans, first scan 5"):
+    with pytest.raises(StageError, match=r"no pose of scan 5 of .*1 such"):
         build_visibility.build_visibility(*survey, tmp_path / "v.parquet", settings=SETTINGS)

@@ -6,11 +6,12 @@ import numpy as np
 import open3d as o3d
 import pytest
 
+from helpers.default_settings import SETTINGS
 from helpers.exact_sensor import EXACT
 from interpolate_poses import interpolate_poses
 from scanplan.geometry import se3
 from scanplan.lab.buildings import drawing_file, extrusion
-from scanplan.project.settings import read_yaml
+from scanplan.project import stage_settings
 from scanplan.recordings.motion import trajectory
 from scanplan.recordings.survey import open_survey
 from scanplan.store import schemas, tables, tum
@@ -21,8 +22,8 @@ LASER = {"model": "laser", "n_azimuth": 270, "sweep": True}
 
 
 @pytest.fixture(scope="module")
-def settings(project_root):
-    return read_yaml(project_root / "config/config.yaml")
+def settings():
+    return SETTINGS
 
 
 @pytest.fixture(scope="module")
@@ -34,8 +35,7 @@ def building(project_root):
 def survey(request, tmp_path_factory, settings, building):
     """A survey without noise of a moving sensor, and the stage's idea of how it moved."""
     folder = tmp_path_factory.mktemp("moving")
-    simulate = copy.deepcopy(settings["simulate"])
-    simulate = {k: v for k, v in simulate.items() if k not in ("building", "recording")}
+    simulate = copy.deepcopy(stage_settings.select_simulation(settings))
     simulate["sensor"] |= request.param
     simulate["errors"] |= EXACT
     files = [
@@ -43,11 +43,7 @@ def survey(request, tmp_path_factory, settings, building):
         for f in ("survey.bag", "truth.geojson", "truth_poses.tum", "truth_trajectory.tum")
     ]
     simulate_survey(building, *files, **simulate)
-    reading = {
-        k: v
-        for k, v in settings["input"].items()
-        if k not in ("min_range_m", "max_range_m", "deskew")
-    }
+    reading = stage_settings.select_topics(settings)
     interpolate_poses(
         [str(files[0])],
         folder / "poses.parquet",

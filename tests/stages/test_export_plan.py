@@ -27,7 +27,8 @@ TABLES = {
     "evidence": (schemas.EVIDENCE, floorplan_making.evidence),
 }
 NAMES = {
-    "geojson": "plan.geojson", "dxf": "plan.dxf", "svg": "plan.svg", "pdf": "plan.pdf", "ifc": "plan.ifc",
+    "geojson": "plan.geojson", "dxf": "plan.dxf", "svg": "plan.svg", "pdf": "plan.pdf",
+    "ifc": "plan.ifc",
     "pgm": "map.pgm", "yaml": "map.yaml",
 }  # fmt: skip
 
@@ -121,7 +122,7 @@ def test_a_plan_of_nothing_is_told(plan, tmp_path):
 
 
 def true_house():
-    """The wall between the two rooms of the house, as truth.geojson tells of it; the scans show no lintel: 2 m."""
+    """The wall between the house's two rooms as in truth.geojson; scans show no lintel: 2 m."""
     wall = {"kind": "wall", "thickness_m": 0.2, "height_m": HEIGHT_M}
     door = {"kind": "opening", "type": "door", "width_m": 0.9, "sill_m": 0.0, "lintel_m": 2.0}
     drawn = [(wall, [[4.1, 0.0], [4.1, 4.0]]), (door, [[4.1, 1.5], [4.1, 2.4]])]
@@ -170,7 +171,7 @@ def test_true_walls_that_meet_are_built_once(plan, tmp_path):
     ]
     drawn = [{"properties": thick, "geometry": {"coordinates": line}} for line in lines]
     count, _, true_m3 = ifc_volumes.compared(model, json.dumps({"features": drawn}))
-    # each of the two corners and of the two junctions is in both its lines by a square, or a half, of the wall
+    # each corner and each junction is in both its lines by a square, or a half, of the wall
     whole_m3 = (7.2 + 3.2 + 7.2 + 3.2) * 0.2 * 2.5
     assert count == 5
     assert true_m3 == pytest.approx(whole_m3 - (2 * 0.1**2 + 2 * 0.1 * 0.2) * 2.5)

@@ -2,13 +2,13 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from helpers import default_settings
 from helpers.evaluation_making import SCAN_IDS, shift, write_registration
 from interpolate_poses import interpolate_poses
 from measure_crispness import measure_crispness
 from register_scans import register_scans
 from scanplan.geometry import se3
-from scanplan.project import dataset_files
-from scanplan.project.settings import read_yaml
+from scanplan.project import dataset_files, stage_settings
 from scanplan.recordings.survey import open_survey
 from scanplan.registration import results
 from scanplan.store import schemas, tables
@@ -86,17 +86,18 @@ def of_kept(folder, poses_file):
     ("name", "of_recorded"), [("jackal_ros1", 0.8), ("scenes7_room", 1.05), ("intel", 1.02)]
 )
 def test_registration_makes_disturbed_recordings_crisper(
-    recordings_dir, project_root, tmp_path, name, of_recorded
+    recordings_dir, tmp_path, name, of_recorded
 ):
     """Far crisper than the poses it starts from; the recorded ones of the last two are a SLAM's, and no crisper."""
-    settings = read_yaml(project_root / "config/config.yaml")
+    settings = default_settings.SETTINGS
     # no localiser tilts by 2 degrees, the defaults do not expect it
-    settings["registration"]["localiser_sigma_tilt_deg"] = 2.0
+    limits = stage_settings.select_section(settings, "registration")
+    limits["localiser_sigma_tilt_deg"] = 2.0
     files, reading = dataset_files.find_files(recordings_dir / name), settings["input"]
     given, poses_file, moved = (
         tmp_path / f for f in ("recorded.parquet", "poses.parquet", "motion.parquet")
     )
-    topics = {k: v for k, v in reading.items() if k not in ("min_range_m", "max_range_m", "deskew")}
+    topics = stage_settings.select_topics(settings)
     interpolate_poses(files, given, moved=moved, **settings["poses"], **topics)
     with open_survey(files, **reading) as survey:
         tables.write_table(
@@ -105,9 +106,7 @@ def test_registration_makes_disturbed_recordings_crisper(
             disturbed(tables.read_table(given, schemas.POSES), survey.planar),
         )
     outputs = [tmp_path / f for f in ("scans.parquet", "registration.parquet", "edges.parquet")]
-    register_scans(
-        files, poses_file, *outputs, reading=reading, settings=settings["registration"], moved=moved
-    )
+    register_scans(files, poses_file, *outputs, reading=reading, settings=limits, moved=moved)
     start, recorded = of_kept(tmp_path, poses_file.name), of_kept(tmp_path, given.name)
     assert start["registered"] < 0.7 * start["localiser"]
     assert recorded["registered"] <= of_recorded * recorded["localiser"]

@@ -50,6 +50,6 @@ def test_a_survey_without_walls_is_an_answer(tmp_path):
 
 def test_a_scan_without_pose_is_refused(tmp_path):
     survey = write_survey(tmp_path, registered=(0, 15))
-    with pytest.raises(StageError, match="no pose of 1 scans, first scan 5"):
+    with pytest.raises(StageError, match=r"no pose of scan 5 of .*1 such"):
         observe_walls.observe_walls(*survey, tmp_path / "o.parquet", settings=SETTINGS)
     assert not (tmp_path / "o.parquet").exists()

@@ -56,7 +56,7 @@ def write_others(folder, method, n):
             | {"qw": zeros + 1, "x_m": ids.astype(float)},
         ),
     }
-    written = {table: folder / f"{table}.parquet" for table in methods.TABLES[method]}
+    written = {table: folder / f"{table}.parquet" for table in methods.METHODS[method].tables}
     for table, path in written.items():
         schema, values = columns[table]
         tables.write_table(path, schema, {"scan_id": ids, **values})

@@ -1,4 +1,6 @@
-"""Published building models, every storey: what they are known to hold, and truth that lies on what rays hit."""
+"""Published building models, every storey: their parts, and truth that lies on what rays hit."""
+
+import functools
 
 import numpy as np
 import open3d as o3d
@@ -6,11 +8,11 @@ import pytest
 import shapely
 
 from scanplan.errors import StageError
-from scanplan.lab.buildings import building, ifc_file
+from scanplan.lab.buildings import building, building_route, ifc_file
 
 pytestmark = pytest.mark.recordings
 SLICE_M = 0.4
-# walls at the slice, doors, windows, rooms; a way's clear rooms (None: no floor to drive on, as in a foundation)
+# walls at the slice, doors, windows, rooms; the rooms that a way enters, None without a floor
 FZK = {"Erdgeschoss": (9, 5, 9, 6, 6), "Dachgeschoss": (4, 0, 2, 1, 1)}
 DUPLEX = {
     "T/FDN": (7, 0, 0, 2, None),
@@ -27,6 +29,18 @@ def models(recordings_dir):
         key: ifc_file.parse_ifc((recordings_dir / "buildings" / name).read_bytes(), name)
         for key, name in names.items()
     }
+
+
+@pytest.fixture(scope="module")
+def storey_of(models):
+    """Give a storey of a model, cut once for all tests."""
+
+    @functools.cache
+    def cut(name, storey):
+        index = ifc_file.find_storey(models[name], storey, name)
+        return building.building_of_model(models[name], index, SLICE_M, name)
+
+    return cut
 
 
 def off_the_mesh(found):
@@ -49,10 +63,9 @@ def off_the_mesh(found):
         *(("duplex", *known) for known in DUPLEX.items()),
     ],
 )
-def test_a_storey_has_its_parts_and_its_truth(models, name, storey, expected):
+def test_a_storey_has_its_parts_and_its_truth(storey_of, name, storey, expected):
     n_walls, n_doors, n_windows, n_rooms, n_reached = expected
-    index = ifc_file.find_storey(models[name], storey, name)
-    found = building.building_of_model(models[name], index, SLICE_M, name)
+    found = storey_of(name, storey)
     kinds = [values["kind"] for _, values in found.truth]
     types = [values["type"] for _, values in found.truth if values["kind"] == "opening"]
     assert (types.count("door"), types.count("window"), kinds.count("room")) == (
@@ -64,9 +77,9 @@ def test_a_storey_has_its_parts_and_its_truth(models, name, storey, expected):
     assert off_the_mesh(found) < 1e-3
     if n_reached is None:
         with pytest.raises(StageError, match="can be entered"):
-            building.plan_building_route(found, name, route="rooms", clearance_m=0.25)
+            building_route.plan_building_route(found, name, route="rooms", clearance_m=0.25)
         return
-    driven = building.plan_building_route(found, name, route="rooms", clearance_m=0.25)
+    driven = building_route.plan_building_route(found, name, route="rooms", clearance_m=0.25)
     assert (
         sum(values["visited"] for _, values in driven.truth if values["kind"] == "room")
         >= n_reached
@@ -74,8 +87,8 @@ def test_a_storey_has_its_parts_and_its_truth(models, name, storey, expected):
     assert shapely.LineString(driven.waypoints_m).distance(found.obstacles_m) >= 0.25
 
 
-def test_walls_are_as_thick_as_their_layers(models):
-    found = building.building_of_model(models["fzk"], 0, SLICE_M, "fzk")
+def test_walls_are_as_thick_as_their_layers(storey_of):
+    found = storey_of("fzk", "Erdgeschoss")
     walls = [
         (g.length, values["thickness_m"]) for g, values in found.truth if values["kind"] == "wall"
     ]

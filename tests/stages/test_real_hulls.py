@@ -5,7 +5,7 @@ import pytest
 
 from reference import hull_selection
 from scanplan.project import dataset_files
-from scanplan.recordings import tf_tree
+from scanplan.recordings import frame_edges
 from scanplan.recordings.survey import open_survey
 from scanplan.registration import results
 from scanplan.selection import area_greedy, bounds, hulls, streaming
@@ -21,7 +21,9 @@ def polygons(recordings_dir, request):
     with open_survey(
         dataset_files.find_files(str(recordings_dir / request.param)), min_range_m=0.1
     ) as survey:
-        pose, _, covered = tf_tree.chain_poses(survey.pose_edges(), survey.stamps(), max_gap_s=2.0)
+        pose, _, covered = frame_edges.chain_poses(
+            survey.pose_edges(), survey.stamps(), max_gap_s=2.0
+        )
         placed = np.flatnonzero(covered)
         chosen = placed[np.linspace(0, len(placed) - 1, N_SCANS).astype(int)].tolist()
         scans = [
@@ -39,8 +41,8 @@ def test_same_order_as_algorithm_1(polygons):
     order, covered_m2 = hull_selection.hull_selection(list(polygons))
     found = area_greedy.order_by_area(polygons)
     assert found.order.tolist() == order
-    assert found.covered_m2 == pytest.approx(covered_m2, abs=1e-8)
-    assert area_greedy.area_gains(polygons, order) == pytest.approx(found.gain_m2, abs=1e-8)
+    assert found.covered == pytest.approx(covered_m2, abs=1e-8)
+    assert area_greedy.area_gains(polygons, order) == pytest.approx(found.gain, abs=1e-8)
 
 
 def test_the_bound_is_above_every_order(polygons):
@@ -53,5 +55,5 @@ def test_the_bound_is_above_every_order(polygons):
 def test_one_pass_covers_much_of_what_greedy_does(polygons):
     order, most_held = streaming.order_streaming(polygons, k=8)
     covered_m2 = area_greedy.area_gains(polygons, order)[:8].sum()
-    assert covered_m2 >= 0.8 * area_greedy.order_by_area(polygons).covered_m2[7]
+    assert covered_m2 >= 0.8 * area_greedy.order_by_area(polygons).covered[7]
     assert most_held < len(polygons)

@@ -2,29 +2,28 @@ import numpy as np
 import pytest
 
 from helpers import bag_making
+from helpers.default_settings import SETTINGS
 from interpolate_poses import interpolate_poses
 from register_scans import register_scans
 from scanplan.errors import StageError
 from scanplan.project import dataset_files
-from scanplan.project.settings import read_yaml
+from scanplan.project.stage_settings import select_section
 from scanplan.store import schemas, tables
 
 STEP_NS = 100_000_000
 
 
 @pytest.fixture
-def run(tmp_path, project_root):
-    settings = read_yaml(project_root / "config/config.yaml")
-
+def run(tmp_path):
     def run_on(entries, name="a", threads=1, **changes):
         folder = tmp_path / name
         bag_making.Maker().write(folder / "run", entries)
         files = dataset_files.find_files(folder)
-        reading = settings["input"] | changes.pop("reading", {})
+        reading = SETTINGS["input"] | changes.pop("reading", {})
         interpolate_poses(
-            files, folder / "poses.parquet", **settings["poses"] | {"keep_every": 1}, **reading
+            files, folder / "poses.parquet", **SETTINGS["poses"] | {"keep_every": 1}, **reading
         )
-        limits = settings["registration"] | changes
+        limits = select_section(SETTINGS, "registration") | changes
         outputs = (
             folder / "scans.parquet",
             folder / "registration.parquet",
@@ -54,7 +53,7 @@ def hall(n=4000, seed=0):
 
 
 def survey(n_scans=5, empty=(), moved=()):
-    """Clouds of a sensor that goes 0.1 m a scan through the hall, some empty; true poses, some moved by 4 cm."""
+    """Clouds of a drive through the hall, 0.1 m a scan, some empty; poses, some off by 4 cm."""
     maker, entries = bag_making.Maker(), []
     for i in range(n_scans):
         t_ns, place = bag_making.START_NS + i * STEP_NS, np.array([1 + 0.1 * i, 2, 0.5])

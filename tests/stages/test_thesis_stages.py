@@ -8,6 +8,7 @@ from draw_thesis_drive import draw_thesis_drive
 from draw_thesis_rooms import draw_thesis_rooms
 from evaluate_walls import evaluate_walls
 from helpers import claim_making as made
+from helpers.default_settings import SETTINGS
 from helpers.evaluation_making import (
     FACES,
     SCAN_IDS,
@@ -21,7 +22,7 @@ from measure_coverage import measure_coverage
 from measure_unevenness import measure_unevenness
 from scanplan.lab.thesis import drive_figures
 from scanplan.lab.thesis.shown_figures import FIGURES
-from scanplan.project import settings
+from scanplan.project import stage_settings
 from scanplan.store import schemas, tables
 from tabulate_steps import tabulate_steps
 from time_stages import time_stages
@@ -125,8 +126,8 @@ def test_of_a_room_that_every_scan_sees_nothing_is_lost(survey, tmp_path):
     np.testing.assert_allclose(columns["seen_m"], 20.0)
 
 
-def test_every_task_is_timed(survey, tmp_path, project_root):
-    walls = settings.read_yaml(project_root / "config/config.yaml")["walls"]
+def test_every_task_is_timed(survey, tmp_path):
+    walls = stage_settings.select_extractors(SETTINGS, ("cluster_ransac", "iterative_ransac"))
     inputs = [survey / name for name in ("scans.parquet", "registration.parquet", "hulls.parquet")]
     time_stages(
         *inputs,

@@ -124,7 +124,7 @@ def test_a_selection_of_another_run_is_told(tmp_path):
     files = report_making.files(tmp_path)
     selection = report_making.selection() | {"scan_id": np.array([9, 7, 12, 0], np.int32)}
     tables.write_table(files["selection"], schemas.SELECTION, selection)
-    with pytest.raises(StageError, match="scan 7 of the selection"):
+    with pytest.raises(StageError, match="no pose of scan 7 of selection"):
         written(tmp_path, files)
 
 

@@ -50,12 +50,10 @@ def test_a_writer_that_waits_to_be_reaped_is_no_writer(tmp_path):
     ended.wait()
 
 
-def test_an_orphan_writes_nothing(tmp_path, monkeypatch):
-    class Ended(psutil.Process):
-        def is_running(self):
-            return False
-
-    monkeypatch.setattr(atomic, "_SUPERVISOR", Ended())
+def test_a_refusal_leaves_the_old_file(tmp_path, monkeypatch):
+    monkeypatch.setattr(atomic, "_refusals", [])
+    atomic.write_text(tmp_path / "plan.svg", "old")
+    atomic.refuse_to_write_when(lambda: True)
     with pytest.raises(SystemExit, match="has ended"):
-        atomic.write_text(tmp_path / "plan.svg", "x")
-    assert list(tmp_path.iterdir()) == []
+        atomic.write_text(tmp_path / "plan.svg", "new")
+    assert [file.read_text() for file in tmp_path.iterdir()] == ["old"]

@@ -14,12 +14,12 @@ TRAP = [box(2, 0, 8, 1), box(0, 0, 5, 1), box(5, 0, 10, 1)]
 
 def test_of_disjoint_polygons_greedy_is_certified_best():
     order = area_greedy.order_by_area([box(3 * i, 0, 3 * i + 2, 1 + i % 3) for i in range(7)])
-    assert bounds.bound_any_subset(order) == pytest.approx(order.covered_m2)
+    assert bounds.bound_any_subset(order) == pytest.approx(order.covered)
 
 
 def test_on_paper():
     order = area_greedy.order_by_area(TRAP)
-    assert order.covered_m2.tolist() == pytest.approx([6, 8, 10])
+    assert order.covered.tolist() == pytest.approx([6, 8, 10])
     # at k = 2: 6 + 5 with nothing chosen, 6 + (2 + 2) = 10 with the middle chosen, 10 in all
     assert bounds.bound_any_subset(order) == pytest.approx([6, 10, 10], abs=1e-5)
 
@@ -46,7 +46,7 @@ def test_never_below_the_best_subset(polygons):
     order = area_greedy.order_by_area(polygons)
     bound_m2 = bounds.bound_any_subset(order)
     assert (bound_m2 >= np.array(best_by_trying_all(polygons)) - 1e-9).all()
-    assert (bound_m2 >= order.covered_m2).all()
+    assert (bound_m2 >= order.covered).all()
 
 
 @settings(max_examples=100, deadline=None)
@@ -56,10 +56,10 @@ def test_as_tight_as_theory_promises(polygons):
     bound_m2 = bounds.bound_any_subset(order)
     k = np.arange(1, len(polygons) + 1)
     guarantee = 1 - (1 - 1 / k) ** k
-    assert (order.covered_m2 >= guarantee * bound_m2 - 1e-5 * k).all()
+    assert (order.covered >= guarantee * bound_m2 - 1e-5 * k).all()
     assert (np.diff(bound_m2) >= -1e-9).all()
-    assert (bound_m2 <= order.covered_m2[-1] + 1e-9).all()
-    assert bound_m2[0] == pytest.approx(order.covered_m2[0], abs=1e-5)
+    assert (bound_m2 <= order.covered[-1] + 1e-9).all()
+    assert bound_m2[0] == pytest.approx(order.covered[0], abs=1e-5)
 
 
 def test_steps_between_the_checkpoints_tighten_the_bound():

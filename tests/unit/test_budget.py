@@ -7,8 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import box
 
-from scanplan.selection.cell_coverage import CellCoverage
-from scanplan.selection.polygon_area import PolygonArea
+from scanplan.selection.objectives import CellCoverage, PolygonArea
 
 
 def area(polygons, chosen):

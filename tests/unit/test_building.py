@@ -133,86 +133,6 @@ def test_the_upper_storey_is_moved_to_zero():
     assert len(of_kind(upper, "opening")) == 2 and len(upper.rooms) == 1
 
 
-def test_a_planned_way_marks_what_it_visits():
-    found = building.plan_building_route(model_of(), "room.ifc", route="rooms", clearance_m=0.3)
-    assert [values["visited"] for _, values in of_kind(found, "room")] == [True]
-    assert shapely.LineString(found.waypoints_m).distance(found.obstacles_m) >= 0.3
-    assert "planned a way through 1 of 1 rooms" in found.notes[-1]
-
-
-def test_a_given_way_is_kept_unless_another_is_asked_for():
-    drawing = building.load_building(
-        drawn.text(drawn.WALLS, drawn.WAY).encode(), Path("a.geojson"), slice_height_m=0.4
-    )
-    kept = building.plan_building_route(drawing, "a", route="given", clearance_m=0.3)
-    np.testing.assert_array_equal(kept.waypoints_m, [[1, 1], [3, 1], [3, 2]])
-    assert (
-        len(building.plan_building_route(drawing, "a", route="rooms", clearance_m=0.3).waypoints_m)
-        >= 2
-    )
-    with pytest.raises(StageError, match="no hallway among its 1 rooms"):
-        building.plan_building_route(drawing, "a", route="hallways", clearance_m=0.3)
-
-
-def test_waypoints_of_the_settings_come_before_the_files():
-    drawing = building.load_building(
-        drawn.text(drawn.WALLS, drawn.WAY).encode(), Path("a.geojson"), slice_height_m=0.4
-    )
-    mine = [[1.0, 2.0], [3.0, 2.0]]
-    given = building.plan_building_route(
-        drawing, "a", route="given", waypoints_m=mine, clearance_m=0.3
-    )
-    np.testing.assert_array_equal(given.waypoints_m, mine)
-    with pytest.raises(
-        StageError,
-        match=r"^simulate\.site\.waypoints_m: in a: waypoint 1 .* outside the outer walls",
-    ):
-        building.plan_building_route(
-            drawing, "a", route="given", waypoints_m=[[1.0, 2.0], [9.0, 2.0]], clearance_m=0.3
-        )
-    for values in ({"route": "rooms"}, {"route": "given", "start_m": [1.0, 1.0]}):
-        with pytest.raises(StageError, match=r"simulate\.site\.waypoints_m: they are given"):
-            building.plan_building_route(drawing, "a", **values, waypoints_m=mine, clearance_m=0.3)
-
-
-def test_a_planned_way_begins_where_asked_or_by_the_seed():
-    found = model_of()
-    here = building.plan_building_route(
-        found, "room.ifc", route="rooms", clearance_m=0.3, start_m=[3.0, 1.0]
-    )
-    np.testing.assert_allclose(here.waypoints_m[0], [3.0, 1.0], atol=0.05)
-    starts = [
-        building.plan_building_route(
-            found, "room.ifc", route="rooms", clearance_m=0.3, start_m="random", seed=seed
-        ).waypoints_m[0]
-        for seed in (1, 1, 2)
-    ]
-    np.testing.assert_array_equal(starts[0], starts[1])
-    assert np.linalg.norm(starts[0] - starts[2]) > 0.05
-    with pytest.raises(StageError, match="lies within"):
-        building.plan_building_route(
-            found, "room.ifc", route="rooms", clearance_m=0.3, start_m=[0.05, 0.05]
-        )
-
-
-def test_a_start_of_a_given_way_is_refused():
-    drawing = building.load_building(
-        drawn.text(drawn.WALLS, drawn.WAY).encode(), Path("a.geojson"), slice_height_m=0.4
-    )
-    with pytest.raises(
-        StageError, match=r"simulate\.site\.start_m: random is where a planned way begins"
-    ):
-        building.plan_building_route(drawing, "a", route="given", start_m="random", clearance_m=0.3)
-    assert (
-        len(
-            building.plan_building_route(
-                model_of(), "m", route="given", start_m="random", clearance_m=0.3
-            ).waypoints_m
-        )
-        >= 2
-    )
-
-
 def test_a_sensor_above_its_storey_is_refused():
     model = ifc_file.parse_ifc(ifc_making.model(("Ground", "Upper")), "made.ifc")
     with pytest.raises(
@@ -226,7 +146,7 @@ def test_a_sensor_above_its_storey_is_refused():
     [
         (
             {"floor_z_m": 5.0},
-            r"neither its floor at 0 nor the sensor at 0\.4 m may be outside; set simulate\.site\.floor_z_m",
+            r"neither its floor at 0 nor the sensor at 0\.4 m may be outside; set simulate",
         ),
         ({"floor_z_m": 2.4}, "simulate.site.floor_z_m"),
     ],
@@ -241,5 +161,3 @@ def test_other_files_and_choices_are_refused():
         building.load_building(b"x", Path("room.dwg"), slice_height_m=0.4)
     with pytest.raises(ValueError, match="ajar"):
         model_of(doors="ajar")
-    with pytest.raises(ValueError, match="by heart"):
-        building.plan_building_route(mesh_of(ROOM), "r", route="by heart", clearance_m=0.3)

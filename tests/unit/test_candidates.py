@@ -39,7 +39,7 @@ def test_scans_a_metre_apart_are_all_kept():
 
 
 def test_the_step_counts_from_the_last_candidate():
-    # 0.2 m a scan, limit 0.5 m: every third (0.6 m), and 10 by its number, from where the count goes on
+    # 0.2 m a scan, limit 0.5 m: every third (0.6 m), and 10 by its number, where the count goes on
     chosen = candidates.choose_candidates(
         poses(np.arange(15) * 0.2), keep_every=10, max_step_m=0.5, max_turn_deg=30
     )

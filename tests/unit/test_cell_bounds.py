@@ -73,7 +73,7 @@ def test_never_less_than_is_uncovered(geometries, n_chosen):
 def test_areas_of_cells_are_those_of_intersections(shift_m):
     star = shapely.Polygon([(0, 0), (5, 1), (9, -2), (6, 3), (8, 8), (4, 4.5), (-1, 7), (2, 3)])
     star = shapely.transform(star, lambda xy: xy + shift_m)
-    row, at, share = cell_bounds._filled(np.array([star, box(0, 0, 1, 1)]), 0.7)
+    row, at, share = cell_bounds._fill_cells(np.array([star, box(0, 0, 1, 1)]), 0.7)
     of_star = row == 0
     cells = shapely.box(*(0.7 * at[of_star]).T, *(0.7 * (at[of_star] + 1)).T)
     assert 0.49 * share[of_star] == pytest.approx(

@@ -14,7 +14,23 @@ def names(script):
 def test_direct_and_indirect_imports_are_found(tmp_path):
     script = tmp_path / "stage.py"
     script.write_text("from scanplan.registration import sequential\nimport numpy\n")
-    assert names(script) == {"sequential", "icp", "constraints", "planar_icp", "se3", "twists"}
+    helpers = {"sequential", "icp", "constraints", "planar_icp", "se3", "twists"}
+    assert helpers <= names(script) and not {"hulls", "walls", "bags"} & names(script)
+
+
+def test_what_is_imported_for_types_alone_is_no_helper(tmp_path):
+    script = tmp_path / "stage.py"
+    script.write_text(
+        "from typing import TYPE_CHECKING\nfrom scanplan import errors\n"
+        "if TYPE_CHECKING:\n    from scanplan.geometry import se3\n"
+    )
+    assert names(script) == {"errors"}
+
+
+def test_an_import_within_a_function_counts(tmp_path):
+    script = tmp_path / "stage.py"
+    script.write_text("def stage():\n    from scanplan.store.tum import read_tum\n")
+    assert {"tum", "errors"} <= names(script)
 
 
 def test_a_stage_does_not_depend_on_what_it_does_not_import():

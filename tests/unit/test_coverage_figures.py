@@ -2,7 +2,7 @@ import numpy as np
 
 from helpers import claim_making as made
 from scanplan.lab.thesis import coverage_figures
-from scanplan.report.figures import STYLES
+from scanplan.selection.methods import METHODS
 
 
 def shorter(table, n):
@@ -14,7 +14,9 @@ def test_seeds_of_different_numbers_of_scans_are_drawn_together():
     table = made.evaluation()
     figure = coverage_figures.draw_shares_figure([table, shorter(table, 100)], "cluster_ransac")
     (line,) = [
-        line for line in figure.axes[2].get_lines() if line.get_label() == STYLES["sequential"][0]
+        line
+        for line in figure.axes[2].get_lines()
+        if line.get_label() == METHODS["sequential"].label
     ]
     assert line.get_xdata().tolist() == [1, 15, 27, 40, 60, 80, 100]
     # of 100 scans one seed misses nothing, the other what is left between 80 and 270

@@ -2,16 +2,18 @@
 
 import pytest
 
+from helpers.default_settings import SCHEMA, SETTINGS
 from scanplan.errors import StageError
 from scanplan.project import dataset, settings
+from scanplan.project.settings_schema import list_choices
 
 
 @pytest.fixture
 def known(project_root):
     return {
-        "defaults": settings.read_yaml(project_root / "config/config.yaml"),
+        "defaults": SETTINGS,
         "given": [],
-        "schema": settings.read_yaml(project_root / "workflow/schemas/config.schema.yaml"),
+        "schema": SCHEMA,
         "drawings": project_root / "config/buildings",
     }
 
@@ -152,11 +154,8 @@ def test_the_surveys_that_are_shipped_fit_the_schema(known, project_root, name):
     assert found.settings["simulate"]["building"] == "ring_office"
 
 
-def test_choices_are_what_the_schema_allows(known):
-    assert dataset.list_choices(known["schema"], "plan", "extractor") == [
-        "cluster_ransac",
-        "iterative_ransac",
-    ]
+def test_choices_are_what_the_schema_allows():
+    assert list_choices(SCHEMA, "plan", "extractor") == ["cluster_ransac", "iterative_ransac"]
 
 
 def test_settings_of_a_recording_are_no_survey(tmp_path, known):

@@ -65,7 +65,7 @@ def test_points_come_to_where_the_stamps_pose_sees_them(first, last):
 
 @given(st.integers(0, 2**32 - 1))
 def test_blended_motions_agree_with_a_pose_for_every_point(seed):
-    """Against the definition itself: invert the stamp's pose, multiply by the pose of the point's own moment."""
+    """By the definition: the stamp's pose inverted, times the pose of the point's own moment."""
     rng = np.random.default_rng(seed)
     time_s, xyz_m = rng.uniform(-0.1, 0, 50), rng.uniform(-20, 20, (50, 3)).astype(np.float32)
     literal = se3.invert_pose(way().at([T_NS]))[0] @ way().at(

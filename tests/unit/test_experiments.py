@@ -1,7 +1,8 @@
-"""The surveys of the thesis's experiments: names, seeds, settings, and whose recordings they share."""
+"""The surveys of the thesis's experiments: names, seeds, settings, shared recordings."""
 
 import pytest
 
+from helpers.default_settings import SCHEMA, SETTINGS
 from scanplan.lab.thesis import experiments
 from scanplan.project import settings
 
@@ -9,9 +10,9 @@ from scanplan.project import settings
 @pytest.fixture
 def known(project_root):
     return {
-        "defaults": settings.read_yaml(project_root / "config/config.yaml"),
+        "defaults": SETTINGS,
         "given": [settings.Layer("a.yaml", {"thesis": {"seeds": [4, 7], "drive_seeds": [7]}})],
-        "schema": settings.read_yaml(project_root / "workflow/schemas/config.schema.yaml"),
+        "schema": SCHEMA,
         "config": project_root / "config",
     }
 
@@ -23,9 +24,7 @@ def test_every_survey_has_its_seed_and_its_place(known):
         "thesis/ring_rooms_7",
     ]
     for survey, seed in zip(found[experiments.ROOMS], (4, 7), strict=True):
-        sections = [survey.settings[name] for name in ("simulate", "hulls", "selection")]
-        sections += survey.settings["walls"].values()
-        assert {section["seed"] for section in sections} == {seed}
+        assert survey.settings["seed"] == survey.settings["simulate"]["seed"] == seed
         assert survey.settings["registration"]["icp_method"] == "none"
 
 
@@ -51,15 +50,9 @@ def test_the_command_line_wins(known):
     assert found[experiments.LIMITS][0].settings["registration"]["min_refined_fitness"] == 0.5
 
 
-def test_settings_are_not_changed_by_a_seed(known):
-    walls = {"ransac": {"seed": 1, "inlier_m": 0.1}}
-    given = {
-        "simulate": {"seed": 1},
-        "hulls": {"seed": 1},
-        "selection": {"seed": 1, "stop": 3},
-        "walls": walls,
-    }
+def test_settings_are_not_changed_by_a_seed():
+    given = {"seed": 1, "simulate": {"seed": 1, "building": "a"}, "hulls": {"n_clusters": 3}}
     seeded = experiments.replace_seeds(given, 5)
-    assert seeded["selection"] == {"seed": 5, "stop": 3}
-    assert seeded["walls"]["ransac"] == {"seed": 5, "inlier_m": 0.1}
-    assert given["selection"]["seed"] == given["walls"]["ransac"]["seed"] == 1
+    assert seeded["seed"] == seeded["simulate"]["seed"] == 5
+    assert seeded["simulate"]["building"] == "a" and seeded["hulls"] == {"n_clusters": 3}
+    assert given["seed"] == given["simulate"]["seed"] == 1

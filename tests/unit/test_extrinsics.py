@@ -7,7 +7,8 @@ from scanplan.recordings import extrinsics
 
 
 def test_roll_comes_before_yaw_about_fixed_axes():
-    # roll by 90 degrees lifts y to z, where the yaw by 90 degrees leaves it; x goes to y by the yaw alone
+    # roll by 90 degrees lifts y to z, where the yaw by 90 degrees leaves it;
+    # x goes to y by the yaw alone
     (edge,) = extrinsics.configured_extrinsics([1, 2, 3, 90, 0, 90])
     pose = se3.pose_matrix(edge.xyz_m[0], edge.quat_xyzw[0])
     np.testing.assert_allclose(

@@ -56,6 +56,10 @@ class TestPositions:
         "kept": np.array([True, False, True]),
         "x_m": np.array([1.0, 2, 3]),
         "y_m": np.array([4.0, 5, 6]),
+        "t_ns": np.array([1, 2, 3]),
+        "z_m": np.zeros(3),
+        **dict.fromkeys(("qx", "qy", "qz"), np.zeros(3)),
+        "qw": np.ones(3),
     }
 
     def test_they_come_in_the_order_asked_for(self):

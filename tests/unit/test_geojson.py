@@ -18,7 +18,8 @@ def test_every_face_is_a_line_with_its_figures():
     first = features(bare(), "face")[0]
     assert first["geometry"] == {"type": "LineString", "coordinates": [[0.0, 0.0], [4.0, 3.0]]}
     assert first["properties"] == {
-        "kind": "face", "face": 0, "length_m": 5.0, "nx": -0.6, "ny": 0.8, "n_points": 100, "n_scans": 3,
+        "kind": "face", "face": 0, "length_m": 5.0, "nx": -0.6, "ny": 0.8,
+        "n_points": 100, "n_scans": 3,
         "rmse_m": 0.01, "z_min_m": 0.0, "z_max_m": 2.5, "state": "observed", "wall": -1,
     }  # fmt: skip
 

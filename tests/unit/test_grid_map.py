@@ -12,7 +12,7 @@ from scanplan.exports import grid_map
 
 
 def as_nav2_reads(grid):
-    """A map as nav2's map_server loads it (map_io.cpp, trinary): a function of (x, y) to 0, 100 or -1."""
+    """A map as nav2's map_server loads it (map_io.cpp, trinary): (x, y) to 0, 100 or -1."""
     about = yaml.safe_load(grid_map.format_map_yaml(grid, "map.pgm"))
     image = np.asarray(Image.open(io.BytesIO(grid_map.format_pgm(grid))).convert("L"), float)
     assert about["mode"] == "trinary" and 0 < about["free_thresh"] < about["occupied_thresh"] < 1
@@ -51,7 +51,7 @@ def test_a_map_server_sees_what_is_there(place, value):
 
 def test_walls_have_no_hole_that_a_planner_could_leak_through():
     cells = grid_map.draw_grid_map(plan(openings=floorplan_making.openings([])), 0.05).cells[::-1]
-    # from a cell of the room, through cells that share an edge, nothing outside of both rooms is reached
+    # from a cell of the room, by cells that share an edge, nothing outside of both is reached
     reached = np.zeros(cells.shape, bool)
     reached[int((1 + 0.7) / 0.05), int((1 + 0.7) / 0.05)] = True
     while True:
@@ -96,7 +96,7 @@ def test_a_plan_of_one_face_has_a_map():
 
 
 def test_a_window_in_a_wall_of_one_known_side_is_no_thicker_than_that():
-    """The east face is at 7.1 m, a cell's edge; the room before it is free, and behind it nothing is known."""
+    """The east face is at 7.1 m, a cell's edge; the room before it is free, behind is unknown."""
     openings = floorplan_making.openings([((7.1, 0.5, 7.1, 1.7), 1, "window", 0.9, 2.1, 1, -1)])
     openings["thickness_m"][:] = np.nan
     at = as_nav2_reads(grid_map.draw_grid_map(plan(openings=openings), 0.05))

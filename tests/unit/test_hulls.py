@@ -137,7 +137,8 @@ def test_every_point_is_in_its_hull_and_the_whole_is_the_hull_of_all(xy_m, n_clu
 
 
 def test_far_from_the_origin_the_clusters_are_the_same():
-    # a power of two and a grid that float64 holds at both places, so that only the method could differ
+    # a power of two and a grid that float64 holds at both places, so that only the method could
+    # differ
     snapped = np.round(room() * 1024) / 1024
     near = hulls.make_cluster_hulls(0, snapped, **SETTINGS)
     far = hulls.make_cluster_hulls(0, snapped + 2.0**20, **SETTINGS)
@@ -230,5 +231,5 @@ def test_leaving_out_inner_points_leaves_the_hull(shape, shift_m):
 
 def test_iterations_end_where_nothing_changes_and_keep_an_empty_centre():
     sample = np.array([(0, 0), (0, 2), (10, 0), (10, 2)], float)
-    found = hulls._means(sample, np.array([(0, 0), (9, 9), (99, 99)], float))
+    found = hulls._move_to_means(sample, np.array([(0, 0), (9, 9), (99, 99)], float))
     assert found.tolist() == [[0, 1], [10, 1], [99, 99]]

@@ -166,8 +166,13 @@ def test_identifiers_are_unique_and_the_same_for_the_same_plan(model):
 def test_a_wall_keeps_its_identifier_when_another_goes():
     fewer = {name: values[2:] for name, values in floorplan_making.walls().items()}
     openings = floorplan_making.openings([])
-    before, after = ({w.GlobalId for w in opened(plan(walls=w, openings=openings)).by_type("IfcWall")}
-                     for w in (floorplan_making.walls(), fewer))  # fmt: skip
+
+    def identifiers(walls):
+        model = opened(plan(walls=walls, openings=openings))
+        return {wall.GlobalId for wall in model.by_type("IfcWall")}
+
+    before = identifiers(floorplan_making.walls())
+    after = identifiers(fewer)
     assert len(before) == 6 and len(after) == 4 and after < before
 
 

@@ -1,4 +1,4 @@
-"""A localiser whose errors have the statistics asked for, on drives that can be followed on paper."""
+"""A localiser whose errors have the statistics asked for, on drives followed on paper."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""What a stage says, and to whom; each case in a process of its own, because descriptors are redirected."""
+"""The output of a stage; each case in a process of its own, as descriptors are redirected."""
 
 import subprocess
 import sys
@@ -10,7 +10,8 @@ SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 
 
 def run(tmp_path, body):
-    code = "import os, signal, sys, time\nfrom scanplan.stage import log\nfrom scanplan.errors import StageError\n"
+    code = "import os, signal, sys, time\nfrom scanplan.stage import log\n"
+    code += "from scanplan.errors import StageError\n"
     code += f"with log.log_to_file('logs/stage.log'):\n    {body}\n"
     result = subprocess.run(
         [sys.executable, "-c", code],

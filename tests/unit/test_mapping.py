@@ -1,20 +1,20 @@
 """A drive round a block of rooms: candidates to one map, and what links them."""
 
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from helpers.default_settings import SETTINGS
 from scanplan.geometry import se3
 from scanplan.lab.evaluation import pose_errors
-from scanplan.project.settings import read_yaml
-from scanplan.registration import constraint_table, mapping
+from scanplan.project.stage_settings import select_section
+from scanplan.registration import mapping, results, sequential
+from scanplan.registration.registration_settings import registration_settings
 from scanplan.stage import workers
 from scanplan.store import scan_cache, schemas, tables
 
-ROOT = Path(__file__).resolve().parents[2]
 N = 60
 
 
@@ -23,7 +23,7 @@ def pose(x, y, yaw_deg):
 
 
 def block(rng, n=9000):
-    """Points on floor and walls of a ring of corridors around a block, with niches that tell the places apart."""
+    """Points on floor and walls of corridors around a block, with niches that differ by place."""
     walls = [((-6, -5), (6, -5)), ((6, -5), (6, 5)), ((6, 5), (-6, 5)), ((-6, 5), (-6, -5))]
     walls += [((-4, -3), (4, -3)), ((4, -3), (4, 3)), ((4, 3), (-4, 3)), ((-4, 3), (-4, -3))]
     for x, y in rng.permutation(
@@ -48,7 +48,7 @@ def block(rng, n=9000):
 
 @pytest.fixture(scope="module")
 def drive():
-    """Scans of what lies within 5 m on the near side of the block; poses of a localiser; true poses."""
+    """Scans of what is within 5 m, this side of the block; a localiser's poses; true poses."""
     rng = np.random.default_rng(2)
     along = np.linspace(0, 1.25, N) % 1 * 4
     corners = np.array([(-5, -4), (5, -4), (5, 4), (-5, 4), (-5, -4)])
@@ -68,11 +68,9 @@ def drive():
 
 def register(drive, folder, threads=1, **changes):
     scans, priors, _ = drive
-    section = read_yaml(ROOT / "config/config.yaml")["registration"]
+    section = select_section(SETTINGS, "registration")
     graph = section["graph"] | changes.pop("graph", {})
-    settings = mapping.registration_settings(
-        section | {"batch_size": 20} | changes | {"graph": graph}
-    )
+    settings = registration_settings(section | {"batch_size": 20} | changes | {"graph": graph})
     found = (SimpleNamespace(xyz_m=xyz_m) for xyz_m in scans)
     survey = mapping.CandidateScans(np.arange(N) * 5, priors, planar=False)
     with (
@@ -121,7 +119,7 @@ def test_cores_change_nothing(drive, mapped, tmp_path):
 def test_links_make_a_table(drive, mapped, tmp_path):
     result = mapped[1]
     tables.write_table(
-        tmp_path / "edges.parquet", schemas.EDGES, constraint_table.constraint_columns(result)
+        tmp_path / "edges.parquet", schemas.EDGES, results.constraint_columns(result)
     )
     edges = tables.read_table(tmp_path / "edges.parquet", schemas.EDGES)
     assert set(edges["kind"]) == {"sequence", "loop"} and edges["inlier"].all()
@@ -132,14 +130,14 @@ def test_links_make_a_table(drive, mapped, tmp_path):
     )
     truth = se3.invert_pose(true[edges["target"] // 5]) @ true[edges["source"] // 5]
     assert np.median(np.linalg.norm((motion - truth)[:, :3, 3], axis=1)) < 0.01
-    assert "sequence (0 outliers)" in constraint_table.summarise_constraints(result)
+    assert "sequence (0 outliers)" in results.summarise_constraints(result)
 
 
 def test_no_links_make_an_empty_table(tmp_path):
     tables.write_table(
         tmp_path / "edges.parquet",
         schemas.EDGES,
-        constraint_table.constraint_columns(None),
+        results.constraint_columns(None),
         allow_empty=True,
     )
     assert (
@@ -148,11 +146,11 @@ def test_no_links_make_an_empty_table(tmp_path):
         )
         == 0
     )
-    assert constraint_table.summarise_constraints(None) == "no links: poses as given"
+    assert results.summarise_constraints(None) == "no constraints: poses as given"
 
 
 def test_a_jump_of_the_localiser_by_two_metres_loses_no_region(drive, mapped, tmp_path):
-    """It stays away for a third of the drive: scans are rejected there until it is believed anew, and again after."""
+    """It stays away for a third of the drive: scans are rejected until an anchor, then again."""
     scans, priors, true = drive
     jumped = np.array(priors)
     jumped[25:45] = pose(1.6, 1.2, 0) @ jumped[25:45]
@@ -214,3 +212,48 @@ def test_poses_taken_as_given_are_not_moved(drive, tmp_path):
     judged, result = register(drive, tmp_path, icp_method="none")
     assert result is None
     np.testing.assert_array_equal([verdict.world_from_sensor for verdict in judged], drive[1])
+
+
+def anchors(places):
+    """Anchors along x, `None` where there is no pose."""
+    results_of_places = []
+    for x in places:
+        pose = np.eye(4)
+        pose[0, 3] = np.nan if x is None else x
+        reason = "pose_gap" if x is None else "anchor"
+        results_of_places.append(sequential.ScanResult(x is not None, reason, pose))
+    return results_of_places
+
+
+def unconfirmed(places, constrained_rows, apart_m=5.0):
+    return np.flatnonzero(
+        mapping.find_unconfirmed(
+            anchors(places), np.isin(range(len(places)), constrained_rows), apart_m
+        )
+    )
+
+
+def test_an_anchor_among_linked_scans_is_unconfirmed_wherever_it_is():
+    assert unconfirmed([0, 1, 2, 50, 3, 4], [0, 1, 2, 4, 5]).tolist() == [3]
+
+
+def test_a_stretch_of_its_own_is_kept_where_nothing_else_is_near():
+    assert unconfirmed([0, 1, 2, None, 50, None, 3, 4], [0, 1, 2, 6, 7]).tolist() == []
+    assert unconfirmed([0, 1, 2, None, 4, None, 3, 4], [0, 1, 2, 6, 7]).tolist() == [4]
+
+
+def test_without_any_link_all_are_kept():
+    assert unconfirmed([0, 1, None, 2], []).tolist() == []
+    assert unconfirmed([0], []).tolist() == []
+    assert unconfirmed([], []).tolist() == []
+
+
+def test_scans_that_are_far_apart_need_not_confirm_each_other():
+    assert unconfirmed([0, 8, 16, 24], [0, 1]).tolist() == []
+    assert unconfirmed([0, 8, 16, 24], [0, 1], apart_m=10.0).tolist() == [2, 3]
+
+
+def test_a_dropped_anchor_has_its_reason_and_the_localisers_pose():
+    dropped = mapping.drop_anchor(anchors([1.0])[0], np.eye(4))
+    assert not dropped.kept and dropped.reason == "unconfirmed"
+    assert dropped.world_from_sensor[0, 3] == 0

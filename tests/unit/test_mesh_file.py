@@ -76,7 +76,7 @@ def test_holes_are_allowed_and_told():
         (
             STL[:-20],
             ".stl",
-            r"has 664 bytes, its header announces 12 faces \(684 bytes\); the binary STL is cut off",
+            r"has 664 bytes, its header announces 12 faces \(684 bytes\); the binary STL is cut",
         ),
         (STL[:30], ".stl", "cut off or no STL"),
         (box_making.written(BOX, "stl_ascii")[:-200], ".stl", "has no `endsolid`"),

@@ -2,8 +2,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from scanplan.geometry.lines import Line
 from scanplan.plan import openings
@@ -189,19 +187,3 @@ def test_heights_are_not_told_of_a_plane():
     gap = judge([], grid(1, 1.9, 0.0, 0.0), planar=True)
     assert (gap.state, gap.kind(SETTINGS)) == (openings.OPEN, "door")
     assert np.isnan([gap.sill_m, gap.lintel_m]).all()
-
-
-def test_pauses_between_spans_that_overlap():
-    np.testing.assert_allclose(
-        openings.find_gaps(np.array([(4.0, 6), (0, 3), (1, 2), (5, 7), (9, 9.5)])), [(3, 4), (7, 9)]
-    )
-
-
-@given(st.lists(st.tuples(st.floats(-9, 9), st.floats(0.01, 4)), min_size=1, max_size=8))
-def test_pauses_and_spans_are_the_whole(spans):
-    spans = np.array([(low, low + length) for low, length in spans])
-    pauses = openings.find_gaps(spans)
-    places = np.linspace(spans.min(), spans.max(), 301)
-    in_span = ((places[:, None] >= spans[:, 0]) & (places[:, None] <= spans[:, 1])).any(axis=1)
-    in_pause = ((places[:, None] > pauses[:, 0]) & (places[:, None] < pauses[:, 1])).any(axis=1)
-    np.testing.assert_array_equal(in_span, ~in_pause)

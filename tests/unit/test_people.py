@@ -18,7 +18,7 @@ def meet(people, direction, t_s=0.0, origin=(0.0, 0.0, 0.4)):
 
 
 def test_ranges_and_angles_on_paper():
-    # ahead; past the edge; 0.1 m aside; backwards; steeply up over the head; down to the floor before the feet
+    # ahead; past the edge; 0.1 m aside; backwards; up over the head; down before the feet
     aside = [np.sqrt(9 - 0.01), 0.1, 0]
     hits = meet([STANDING], [[1, 0, 0], [1, 0.07, 0], aside, [-1, 0, 0], [1, 0, 0.6], [1, 0, -0.2]])
     near_m = np.sqrt(9 - 0.01) - np.sqrt(0.04 - 0.01)
@@ -35,9 +35,8 @@ def test_a_slanted_ray_is_longer_and_meets_less_squarely():
 
 
 def test_a_walker_is_met_where_he_is_at_that_moment():
-    assert [np.isfinite(meet([WALKING], [[1, 0, 0]], t).range_m[0]) for t in (0.0, 0.7, 1.0, 1.15, 1.5)] == [
-        False, False, True, True, False,
-    ]  # fmt: skip
+    met = [np.isfinite(meet([WALKING], [[1, 0, 0]], t).range_m[0]) for t in (0, 0.7, 1, 1.15, 1.5)]
+    assert met == [False, False, True, True, False]
 
 
 def test_every_column_has_its_own_moment_and_origin():

@@ -37,7 +37,8 @@ def test_workers_end_with_their_stage(scans, tmp_path):
         "import sys, time\n"
         "from scanplan.stage import per_scan\n"
         "def slow(scan_id, xyz_m):\n    time.sleep(60)\n"
-        f"if __name__ == '__main__':\n    per_scan.map_scans(slow, {str(scans)!r}, label='test', threads=2)\n"
+        "if __name__ == '__main__':\n"
+        f"    per_scan.map_scans(slow, {str(scans)!r}, label='test', threads=2)\n"
     )
     scripts = Path(__file__).resolve().parents[2] / "scripts"
     stage = psutil.Popen(

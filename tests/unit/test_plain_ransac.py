@@ -5,14 +5,15 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
+from helpers.default_settings import SETTINGS
 from scanplan.extraction import cluster_ransac, segments
 from scanplan.lab.thesis import plain_ransac
-from scanplan.project.settings import read_yaml
+from scanplan.project.stage_settings import select_extractor
 
 
 @pytest.fixture
-def settings(project_root):
-    given = read_yaml(project_root / "config/config.yaml")["walls"]["iterative_ransac"]
+def settings():
+    given = select_extractor(SETTINGS, "iterative_ransac")
     return plain_ransac.PlainRansacSettings(**given | {"trials": 300})
 
 
@@ -50,8 +51,8 @@ def test_too_few_points_are_no_wall(settings):
     assert plain_ransac.extract_plain(3, points[:0], settings=settings) == []
 
 
-def test_clusters_are_one_wall_each_however_they_pause(project_root):
-    given = read_yaml(project_root / "config/config.yaml")["walls"]["cluster_ransac"]
+def test_clusters_are_one_wall_each_however_they_pause():
+    given = select_extractor(SETTINGS, "cluster_ransac")
     points = wall(np.random.default_rng(1), 4000, x=2.0, pause=True)
     count = {}
     for name, over in (("ours", {}), ("lifted", plain_ransac.LIFTED)):

@@ -56,7 +56,10 @@ def test_exact_measurements_give_the_true_poses(planar):
 
 
 def test_two_measurements_are_weighed_by_their_information():
-    """A link of sigma 0.1 says 1.0 m, a prior of sigma 0.2 says 1.1 m: (100 * 1.0 + 25 * 1.1) / 125 = 1.02."""
+    """A link of sigma 0.1 at 1.0 m and a prior of sigma 0.2 at 1.1 m.
+
+    (100 * 1.0 + 25 * 1.1) / 125 = 1.02.
+    """
     links = pose_graph.MotionConstraints(
         np.array([1]), np.array([0]), pose(1.0, 0, 0)[None], np.diag([100.0] * 6)[None]
     )

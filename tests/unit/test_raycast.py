@@ -19,14 +19,14 @@ DIRECTION = sensors.make_vlp16(
 
 
 def cast(mesh, xyz_m, yaw_rad=0.0, direction=DIRECTION):
-    """Cast all columns from one place, turned by a heading: opaque hits, panes, and the rays in the map."""
+    """Cast all columns from one place, turned by a heading: opaque hits, panes, rays in the map."""
     turned = direction @ rover.planar_poses([[0, 0]], [yaw_rad])[0, :3, :3].T.astype(np.float32)
     opaque, pane = raycast.RayScene(mesh).first_hits(np.tile(xyz_m, (len(turned), 1)), turned)
     return opaque, pane, turned.reshape(-1, 3).astype(float)
 
 
 def box_range_m(origin_m, direction):
-    """Distance to the walls, floor or ceiling of the box: the nearest of the planes that a ray runs towards."""
+    """Distance to walls, floor or ceiling of the box: all planes that a ray runs towards."""
     gap_m = np.where(direction > 0, SIZE_M - origin_m, origin_m)
     speed = np.abs(direction)
     return np.divide(gap_m, speed, out=np.full_like(speed, np.inf), where=speed > 1e-12)
@@ -53,7 +53,7 @@ def test_cosine_is_that_of_the_surface_hit():
 def test_an_open_door_lets_rays_out_and_only_there():
     opened = extrusion.make_building_mesh(drawn.plan(drawn.door(2, -0.1)))
     hits, _, ray = cast(opened, [2.0, 1.0, 0.4])
-    # out through the reveal, which ends 1.2 m away: |x| < 0.5 there; sill and lintel are out of the beams' reach
+    # out through the reveal, which ends 1.2 m away: |x| < 0.5 there; no beam reaches sill or lintel
     x, y, _ = ray.T
     out = (y < 0) & (np.abs(x) < -y * 0.5 / 1.2 - 1e-6)
     edge = (y < 0) & ~out & (np.abs(x) < -y * 0.5 / 1.2 + 1e-6)

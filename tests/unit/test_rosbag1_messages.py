@@ -8,7 +8,7 @@ from scanplan.recordings import bags, rosbag1_messages
 
 @pytest.fixture
 def recording(tmp_path):
-    """Clouds larger and poses smaller than a head, a connection that comes late, more than one chunk."""
+    """Clouds larger and poses smaller than a head, a late connection, more than one chunk."""
     maker = bag_making.Maker()
     entries = bag_making.survey(maker, n_scans=30)
     entries += [
@@ -24,7 +24,7 @@ def recording(tmp_path):
 
 def plain(path, names):
     with bags.open_bag(path) as bag:
-        assert bag._is_plain()
+        assert bags.is_uncompressed(bag._reader)
         return [
             (c.topic, t_ns, stored.head, stored.read()) for c, t_ns, stored in bag.messages(names)
         ]
@@ -49,7 +49,7 @@ def test_a_head_is_the_beginning(recording):
 def test_compressed_bags_are_left_to_rosbags(tmp_path):
     maker = bag_making.Maker("ros1_lz4")
     with bags.open_bag(maker.write(tmp_path / "run", bag_making.survey(maker))) as bag:
-        assert not bag._is_plain()
+        assert not bags.is_uncompressed(bag._reader)
 
 
 def test_an_index_that_leads_astray(recording):

@@ -10,7 +10,7 @@ import shapely
 
 from helpers import simple_rooms as drawn
 from scanplan.errors import StageError
-from scanplan.lab.buildings import building, route
+from scanplan.lab.buildings import building, hallways, route
 
 WIDE = [[-0.1, -0.1], [12.1, -0.1], [12.1, 6.1], [-0.1, 6.1], [-0.1, -0.1]]
 
@@ -30,7 +30,7 @@ def planned(found, kind="rooms", clearance_m=0.3, **values):
 
 
 def corridor_floor(**values):
-    """A corridor of 12 m x 1.8 m, two rooms on it: the west one with a door of 0.9 m, the east one as asked."""
+    """A corridor of 12 m x 1.8 m, two rooms on it: west with a door of 0.9 m, east as asked."""
     walls = [drawn.wall(*WIDE), drawn.wall((0, 1.9), (12, 1.9)), drawn.wall((6, 1.9), (6, 6))]
     names = [
         drawn.feature("room", "Point", p, name=n)
@@ -65,7 +65,7 @@ def test_a_room_behind_a_narrow_door_or_a_step_is_missed(values):
 
 def test_hallways_are_driven_there_and_back_and_rooms_left_alone():
     found = corridor_floor()
-    assert [name for name, _ in route.find_hallways(found.rooms)] == ["hall"]
+    assert [name for name, _ in hallways.find_hallways(found.rooms)] == ["hall"]
     way = planned(found, "hallways")
     check(found, way.waypoints_m, 0.3)
     np.testing.assert_array_equal(way.waypoints_m[0], way.waypoints_m[-1])
@@ -85,7 +85,7 @@ def test_hallways_are_driven_there_and_back_and_rooms_left_alone():
     ],
 )
 def test_a_hallway_is_long_and_narrow(room, is_hall):
-    assert bool(route.find_hallways([("", room)])) == is_hall
+    assert bool(hallways.find_hallways([("", room)])) == is_hall
 
 
 def test_furniture_is_driven_round():
@@ -119,7 +119,7 @@ def test_a_floor_too_tight_for_the_rover_is_refused():
 def test_the_ring_office_is_like_the_thesis_and_all_of_it_is_reached(project_root):
     path = project_root / "config/buildings/ring_office.geojson"
     found = building.load_building(path.read_bytes(), path, slice_height_m=0.4)
-    halls = route.find_hallways(found.rooms)
+    halls = hallways.find_hallways(found.rooms)
     assert [name for name, _ in halls] == ["hallway"] and 330 <= halls[0][1].area <= 370
     assert len(found.rooms) == 25 and all(name for name, _ in found.rooms)
     assert shapely.union_all([found.floor_m]).bounds == pytest.approx((0, 0, 45, 35), abs=1e-6)
@@ -149,7 +149,7 @@ def test_the_ring_office_is_what_its_script_draws(project_root):
     [(None, "east"), ([1.0, 1.0], "west"), (np.array([1.0, 1.0]), "west"), ("random", "east")],
 )
 def test_ground_with_a_neck_too_narrow_for_the_grid_is_driven_in_part(start_m, reached):
-    """Two rooms joined by a neck 0.63 m wide; with 0.3 m to either side a strip of 3 cm is left of it."""
+    """Two rooms joined by a neck 0.63 m wide: with 0.3 m to either side 3 cm are left of it."""
     rooms = [("west", shapely.box(0, 0, 4, 4)), ("east", shapely.box(6, 0, 12, 4))]
     floor = shapely.union_all([shapely.box(4, 1.7, 6, 2.33), *(room for _, room in rooms)])
     here = (floor, shapely.Polygon(), rooms, "a")

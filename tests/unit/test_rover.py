@@ -2,9 +2,7 @@
 
 import numpy as np
 import pytest
-import shapely
 
-from scanplan.errors import StageError
 from scanplan.geometry import se3
 from scanplan.lab.simulation import rover
 
@@ -69,29 +67,6 @@ def test_scans_run_from_start_to_end_and_ticks_around_them():
     np.testing.assert_array_equal(scans, np.arange(81) * 100_000_000)
     assert ticks[0] < scans[0] and ticks[-1] >= scans[-1]
     assert not np.isin(scans, ticks).any()
-
-
-FLOOR = shapely.box(0, 0, 6, 4)
-PILLAR = shapely.box(2, 1, 3, 2)
-
-
-def test_a_free_way_passes():
-    rover.check_way([[1, 0.5], [5, 0.5], [5, 3]], FLOOR, PILLAR, "plan")
-
-
-@pytest.mark.parametrize(
-    ("way", "reach_m", "message"),
-    [
-        ([[2.5, 1.5], [5, 0.5]], 0.0, r"plan: waypoint 0 \(2.5, 1.5\) lies inside a wall"),
-        ([[1, 0.5], [7, 0.5]], 0.0, r"waypoint 1 \(7, 0.5\) lies outside"),
-        ([[1, 1.5], [5, 1.5]], 0.0, r"from waypoint 0 to 1 passes a wall or furniture at 0.00 m"),
-        ([[1, 0.8], [5, 0.8]], 0.0, r"at 0.20 m near .* the rover needs 0.23 m"),
-        ([[1, 0.5], [5, 0.5]], 0.6, r"at 0.50 m near .* the rover needs 0.60 m"),
-    ],
-)
-def test_a_blocked_way_is_refused(way, reach_m, message):
-    with pytest.raises(StageError, match=message):
-        rover.check_way(way, FLOOR, PILLAR, "plan", reach_m=reach_m)
 
 
 def test_mount_is_level_ahead_and_turned():

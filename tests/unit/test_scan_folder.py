@@ -3,7 +3,7 @@ import pytest
 
 from helpers import bag_making
 from scanplan.errors import StageError
-from scanplan.recordings import scan_folder, tf_tree
+from scanplan.recordings import frame_edges, scan_folder
 from scanplan.recordings.survey import open_survey
 
 LIMITS = {"min_range_m": 0.1, "max_range_m": 50.0}
@@ -18,7 +18,8 @@ def write_pcd(path, xyz_m, extra=None):
         names += f" {extra[0]}"
     n = names.count(" ") + 1
     header = (
-        f"# .PCD v0.7\nVERSION 0.7\nFIELDS {names}\nSIZE{' 4' * n}\nTYPE{' F' * n}\nCOUNT{' 1' * n}\n"
+        f"# .PCD v0.7\nVERSION 0.7\nFIELDS {names}\n"
+        f"SIZE{' 4' * n}\nTYPE{' F' * n}\nCOUNT{' 1' * n}\n"
         f"WIDTH {len(xyz_m)}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {len(xyz_m)}\nDATA binary\n"
     )
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -30,7 +31,8 @@ def write_ply(path, xyz_m):
     lines = "\n".join(" ".join(map(repr, row)) for row in np.asarray(xyz_m, np.float32).tolist())
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(
-        f"ply\nformat ascii 1.0\nelement vertex {len(xyz_m)}\nproperty float x\nproperty float y\nproperty float z\n"
+        f"ply\nformat ascii 1.0\nelement vertex {len(xyz_m)}\n"
+        "property float x\nproperty float y\nproperty float z\n"
         f"end_header\n{lines}\n"
     )
     return path
@@ -45,14 +47,19 @@ def folder(tmp_path, names, poses):
     return [str(tmp_path / "poses.tum"), *sorted(str(tmp_path / "scans" / name) for name in names)]
 
 
-TWO = "# t tx ty tz qx qy qz qw\n1700000000.000000001 0 0 0 0 0 0 1\n1700000001.000000001 1 2 0 0 0 0 -1  # end\n\n"
+TWO = (
+    "# t tx ty tz qx qy qz qw\n1700000000.000000001 0 0 0 0 0 0 1\n"
+    "1700000001.000000001 1 2 0 0 0 0 -1  # end\n\n"
+)
 
 
 def test_stamps_in_names_are_interpolated_to_the_nanosecond(tmp_path):
     files = folder(tmp_path, ["1700000000.500000001.pcd", "1700000000.000000001.ply"], TWO)
     with open_survey(files, **LIMITS) as survey:
         assert survey.stamps().tolist() == [1_700_000_000_000_000_001, 1_700_000_000_500_000_001]
-        pose, _, covered = tf_tree.chain_poses(survey.pose_edges(), survey.stamps(), max_gap_s=1)
+        pose, _, covered = frame_edges.chain_poses(
+            survey.pose_edges(), survey.stamps(), max_gap_s=1
+        )
         np.testing.assert_allclose(pose[:, :3, 3], [[0, 0, 0], [0.5, 1, 0]], atol=1e-9)
         assert covered.all()
         assert not survey.planar
@@ -74,7 +81,7 @@ def test_other_names_are_taken_in_natural_order(tmp_path):
     with open_survey(folder(tmp_path, names, poses), **LIMITS) as survey:
         assert survey.stamps().tolist() == [10**9, 2 * 10**9, 5_500_000_000]
         shifts = [float((scan.xyz_m - POINTS)[0, 0]) for scan in survey.scans(range(3))]
-        pose, gap_s, _ = tf_tree.chain_poses(survey.pose_edges(), survey.stamps(), max_gap_s=0)
+        pose, gap_s, _ = frame_edges.chain_poses(survey.pose_edges(), survey.stamps(), max_gap_s=0)
     np.testing.assert_allclose(shifts, [0.02, 0.01, 0.0], atol=1e-6)
     assert pose[:, 0, 3].tolist() == [1, 2, 5.5]
     assert gap_s.tolist() == [0, 0, 0]
@@ -85,7 +92,7 @@ def test_a_mount_and_bad_poses(tmp_path):
     files = folder(tmp_path, ["1700000000.000000001.pcd"], poses)
     with open_survey(files, base_from_sensor=[1, 0, 0, 0, 0, 90], **LIMITS) as survey:
         edges = survey.pose_edges()
-        pose, _, _ = tf_tree.chain_poses(edges, survey.stamps(), max_gap_s=1)
+        pose, _, _ = frame_edges.chain_poses(edges, survey.stamps(), max_gap_s=1)
     assert len(edges[0].t_ns) == 2
     np.testing.assert_allclose(pose[0] @ [1, 0, 0, 1], [1, 1, 0, 1], atol=1e-12)
 

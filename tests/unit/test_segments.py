@@ -2,7 +2,6 @@ import numpy as np
 import pytest
 
 from helpers import toy_rooms
-from scanplan.errors import StageError
 from scanplan.extraction import segments
 from scanplan.store import schemas, tables
 
@@ -77,13 +76,6 @@ def test_a_low_sill_makes_no_wall_where_rays_pass_over_it():
     assert ends(cut(np.vstack([JAMBS, high]), others=over)) == [(0, 3)]
 
 
-def test_the_top_of_doors_is_measured_from_the_floor():
-    floor = np.column_stack([np.zeros((300, 2)), np.full(300, -0.4)])
-    points = np.vstack([floor, upright(np.arange(0, 3, 0.1), z=(0, 1, 2))])
-    assert segments.door_top_m(points, LIMITS, planar=False) == pytest.approx(1.5)
-    assert segments.door_top_m(points, LIMITS, planar=True) == np.inf
-
-
 def test_a_gap_of_just_the_limit_is_none():
     assert len(cut(upright([0, 0.5, 1.0, 1.5]))) == 1
 
@@ -132,13 +124,7 @@ def test_in_space_spare_points_prolong_up_to_a_pause_and_to_an_opening():
     assert cut(upright([0]), spare=spare) == []
 
 
-def test_order_of_segments_and_of_points_depend_on_the_points_alone():
-    points = np.random.default_rng(1).normal(size=(50, 3)).round(1)
-    shuffled = np.random.default_rng(2).permutation(points)
-    assert (
-        segments.centre_on_sensor(points, (1, 2, 3))
-        == segments.centre_on_sensor(shuffled, (1, 2, 3))
-    ).all()
+def test_order_of_segments_depends_on_the_segments_alone():
     rows = [
         (5, 0, 6, 0, 0, 1, 9, 0, 0, 1),
         (1, 0, 2, 0, 0, 1, 9, 0, 0, 1),
@@ -146,21 +132,6 @@ def test_order_of_segments_and_of_points_depend_on_the_points_alone():
     ]
     assert segments.collect_segments(rows, (0, 0, 0)).start_m[:, 0].tolist() == [7, 1, 5]
     assert segments.collect_segments(rows[::-1], (0, 0, 0)).start_m[:, 0].tolist() == [7, 1, 5]
-
-
-@pytest.mark.parametrize(
-    ("xyz_m", "sensor"),
-    [
-        ([(0, 0, np.nan)], (0, 0, 0)),
-        ([(0, np.inf, 0)], (0, 0, 0)),
-        ([(0, 0, 0)], (0, np.nan, 0)),
-        ([(0, 0)], (0, 0, 0)),
-        ([(0, 0, 0)], (0, 0)),
-    ],
-)
-def test_points_must_be_finite_and_in_space(xyz_m, sensor):
-    with pytest.raises(ValueError, match=r"finite|points"):
-        segments.centre_on_sensor(xyz_m, sensor)
 
 
 def test_table_of_scans_with_and_without_walls(tmp_path):
@@ -191,17 +162,3 @@ def test_table_without_any_wall(tmp_path):
         segments.summarise_segments(columns, 1, 12.0)
         == "1 scans, 0 walls, no wall at all, 12 ms a scan"
     )
-
-
-def test_every_scan_needs_a_pose():
-    registered = {
-        "scan_id": np.array([0, 5]),
-        **{c: np.array([1.0, np.nan]) for c in ("x_m", "y_m", "z_m")},
-    }
-    assert segments.sensor_keywords(registered, [0], "r.parquet")[0]["sensor_xyz_m"].tolist() == [
-        1,
-        1,
-        1,
-    ]
-    with pytest.raises(StageError, match=r"r\.parquet.*first scan 5"):
-        segments.sensor_keywords(registered, [0, 5], "r.parquet")

@@ -9,7 +9,7 @@ from shapely import box
 
 from helpers.hull_making import best_by_trying_all, hull_sets, scattered
 from reference import hull_selection
-from scanplan.selection import area_greedy, bounds, orderings, polygon_area, stopping
+from scanplan.selection import area_greedy, bounds, objectives, orderings, stopping
 
 BOWTIE = shapely.Polygon([(0, 0), (2, 2), (2, 0), (0, 2)])
 SURVEYS = {
@@ -53,25 +53,25 @@ def literal_order(polygons):
 def test_order_gains_and_bound(name):
     polygons = SURVEYS[name]
     order, covered_m2 = literal_order(polygons)
-    objective = polygon_area.PolygonArea(polygons)
+    objective = objectives.PolygonArea(polygons)
     found = objective.greedy()
     assert found.order.tolist() == order
-    assert found.covered_m2 == pytest.approx(covered_m2, abs=1e-6)
-    assert objective.gains(np.array(order, int)) == pytest.approx(found.gain_m2, abs=1e-6)
+    assert found.covered == pytest.approx(covered_m2, abs=1e-6)
+    assert objective.gains(np.array(order, int)) == pytest.approx(found.gain, abs=1e-6)
     bound_m2 = bounds.bound_any_subset(found)
-    assert bound_m2.shape == (len(polygons),) and (bound_m2 >= found.covered_m2).all()
+    assert bound_m2.shape == (len(polygons),) and (bound_m2 >= found.covered).all()
 
 
 @pytest.mark.parametrize("name", SURVEYS)
 def test_one_at_a_time_and_within_a_budget(name):
     polygons = SURVEYS[name]
-    objective = polygon_area.PolygonArea(polygons)
+    objective = objectives.PolygonArea(polygons)
     # an overlap that all have changes nothing, but goes the other way through the code
     assert objective.greedy(1e-12).order.tolist() == objective.greedy().order.tolist()
     assert sorted(objective.greedy(0.5).order) == list(range(len(polygons)))
     cost = np.full(len(polygons), 10)
     assert objective.within(cost, 5) == []
-    adding = int((objective.greedy().gain_m2 > area_greedy.TIE_M2).sum())
+    adding = int((objective.greedy().gain > area_greedy.TIE_M2).sum())
     assert objective.within(cost, 10 * len(polygons)) == objective.greedy().order[:adding].tolist()
 
 

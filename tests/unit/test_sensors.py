@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from helpers.exact_sensor import EXACT
 from scanplan.errors import StageError
 from scanplan.lab.simulation import sensors
 
@@ -57,21 +56,6 @@ def test_a_whole_turn_has_no_beam_twice():
         sensor.direction[[0, 180, 359], 0], [[-1, 0, 0], [1, 0, 0], _left(179, 0)], atol=1e-5
     )
     assert sensor.time_s[-1] == pytest.approx(0.1 * 359 / 360)
-
-
-def test_biases_belong_to_the_beam_and_to_the_specimen():
-    sensor = sensors.make_vlp16(8, **COMMON)
-    first, again, other = (
-        sensors.draw_sensor_errors(sensor, **{**EXACT, "bias_m": 0.005}, seed=s).bias_m
-        for s in (1, 1, 2)
-    )
-    np.testing.assert_array_equal(first, again)
-    assert not np.array_equal(first, other) and len(np.unique(first)) == 16
-    many = [
-        sensors.draw_sensor_errors(sensor, **{**EXACT, "bias_m": 0.005}, seed=s).bias_m
-        for s in range(200)
-    ]
-    assert np.std(many) == pytest.approx(0.005, rel=0.05)
 
 
 @pytest.mark.parametrize(

@@ -4,12 +4,17 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from helpers import default_settings
 from reference import registration as literal
 from scanplan.geometry import se3
-from scanplan.project import settings
-from scanplan.registration import constraints, mapping, sequential
+from scanplan.project import settings, stage_settings
+from scanplan.registration import constraints, sequential
+from scanplan.registration.registration_settings import (
+    SequentialSettings,
+    registration_settings,
+)
 
-SETTINGS = sequential.SequentialSettings(
+SETTINGS = SequentialSettings(
     voxel_m=0.1,
     voxel_planar_m=0.1,
     voxels=1,
@@ -74,7 +79,7 @@ def drive(n, *, planar, noise_m=0.04, noise_deg=1.0, seed=0):
 
 def register(scans, priors, planar, **changes):
     registrar = sequential.SequentialRegistrar(
-        sequential.SequentialSettings(**{**vars(SETTINGS), **changes}), planar
+        SequentialSettings(**{**vars(SETTINGS), **changes}), planar
     )
     return [
         registrar.add(i, scan, prior)[0]
@@ -142,7 +147,7 @@ def test_kept_scans_are_linked_to_the_ones_before():
     scans, priors, true = drive(6, planar=False)
     priors[3] = pose(4.0, 2.0, 77)
     registrar = sequential.SequentialRegistrar(
-        sequential.SequentialSettings(**{**vars(SETTINGS), "icp_targets": 2}), False
+        SequentialSettings(**{**vars(SETTINGS), "icp_targets": 2}), False
     )
     for i, (scan, prior) in enumerate(zip(scans, priors, strict=True)):
         registrar.add(10 * i, scan, prior)
@@ -243,12 +248,11 @@ def test_the_literal_algorithm_keeps_the_same_scans_at_the_same_places():
 
 
 def test_the_preset_judges_as_the_thesis_does(project_root):
-    """Scans of a part of the hall each, so that fitness falls below 0.96 for some and not for others."""
-    defaults, preset = (
-        settings.read_yaml(project_root / f"config/{n}.yaml") for n in ("config", "thesis")
-    )
-    section = settings.merge_settings(defaults, preset)["registration"]
-    limits = mapping.registration_settings(section).limits
+    """Scans of a part of the hall each, so that fitness falls below 0.96 for some of them."""
+    preset = settings.read_yaml(project_root / "config/thesis.yaml")
+    merged = settings.merge_settings(default_settings.SETTINGS, preset)
+    section = stage_settings.select_section(merged, "registration")
+    limits = registration_settings(section).limits
     scans, priors, _ = drive(8, planar=False, noise_m=0.02, noise_deg=0.5)
     scans = [
         scan[scan[:, 0] < reach_m]
@@ -279,7 +283,7 @@ def test_the_preset_judges_as_the_thesis_does(project_root):
 
 def test_scans_are_judged_by_those_that_may_show_the_same():
     """Near and facing the same way; and by the last one in any case."""
-    limits = sequential.SequentialSettings(
+    limits = SequentialSettings(
         **{**vars(SETTINGS), "previous_apart_m": 2.0, "previous_turn_deg": 60.0}
     )
     places = [pose(0, 0, 0), pose(3.1, 0, 0), pose(1, 0, 70), pose(1, 0, 50), pose(9, 0, 180)]
@@ -299,7 +303,7 @@ def test_scans_are_judged_by_those_that_may_show_the_same():
     ("wall_of_second", "reason"), [("east", "kept"), ("north", "low_refined_fitness")]
 )
 def test_what_faces_elsewhere_is_no_fit(wall_of_second, reason):
-    """Two scans with a bit of floor in common: of the same wall, or of two that face differently."""
+    """Two scans with some floor in common: of the same wall, or of two that face differently."""
     rng = np.random.default_rng(3)
     floor = np.column_stack([rng.uniform(-4, 4, (300, 2)), np.full(300, -0.4)])
     along, up = rng.uniform(-3, 3, 2000), rng.uniform(0, 1, 2000)

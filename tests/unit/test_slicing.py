@@ -13,26 +13,30 @@ metres = st.integers(0, 60).map(lambda dm: dm / 10)
 WALL = box_making.box(0, 0, 0, 4, 0.2, 2.5)
 
 
+def cut_section(triangles_m, z_m, **limits):
+    return slicing.cut_section(slicing.split_bodies(triangles_m), z_m, **limits)
+
+
 def same(found, expected):
     return found.symmetric_difference(expected).area == pytest.approx(0, abs=1e-6)
 
 
 @pytest.mark.parametrize("z_m", [0.0 + 1e-9, 1.0, 2.5])
 def test_a_wall_is_cut_to_its_rectangle(z_m):
-    solid, sheets = slicing.cut_section(WALL, z_m)
+    solid, sheets = cut_section(WALL, z_m)
     assert same(solid, shapely.box(0, 0, 4, 0.2)) and sheets.is_empty
 
 
 @pytest.mark.parametrize("z_m", [-0.1, 0.0, 2.6])
 def test_beside_it_is_nothing(z_m):
-    solid, sheets = slicing.cut_section(WALL, z_m)
+    solid, sheets = cut_section(WALL, z_m)
     assert solid.is_empty and sheets.is_empty
 
 
 def test_turned_triangles_change_nothing():
     turned = WALL.copy()
     turned[::2] = turned[::2, ::-1]
-    assert same(slicing.cut_section(turned, 1.0)[0], shapely.box(0, 0, 4, 0.2))
+    assert same(cut_section(turned, 1.0)[0], shapely.box(0, 0, 4, 0.2))
 
 
 def test_touching_and_overlapping_bodies_are_one():
@@ -40,7 +44,7 @@ def test_touching_and_overlapping_bodies_are_one():
         box_making.box(4, 0, 0, 4.2, 3, 2.5),
         box_making.box(1, -1, 0, 1.2, 1, 2.5),
     )
-    solid, sheets = slicing.cut_section(np.concatenate([WALL, touching, overlapping]), 1.0)
+    solid, sheets = cut_section(np.concatenate([WALL, touching, overlapping]), 1.0)
     expected = shapely.union_all(
         [shapely.box(0, 0, 4, 0.2), shapely.box(4, 0, 4.2, 3), shapely.box(1, -1, 1.2, 1)]
     )
@@ -48,15 +52,15 @@ def test_touching_and_overlapping_bodies_are_one():
 
 
 def test_a_wide_shell_is_a_room_of_sheets():
-    solid, sheets = slicing.cut_section(box_making.box(0, 0, 0, 4, 3, 2.5), 1.0)
+    solid, sheets = cut_section(box_making.box(0, 0, 0, 4, 3, 2.5), 1.0)
     assert solid.is_empty and sheets.length == pytest.approx(14)
-    solid, _ = slicing.cut_section(box_making.box(0, 0, 0, 4, 3, 2.5), 1.0, max_solid_m=10)
+    solid, _ = cut_section(box_making.box(0, 0, 0, 4, 3, 2.5), 1.0, max_solid_m=10)
     assert solid.area == pytest.approx(12)
 
 
 def test_a_wall_with_a_hole_keeps_its_lines():
     open_wall = WALL[np.ptp(WALL[..., 0], axis=1) > 0]  # both ends missing
-    solid, sheets = slicing.cut_section(open_wall, 1.0)
+    solid, sheets = cut_section(open_wall, 1.0)
     assert solid.is_empty and sheets.length == pytest.approx(8)
 
 
@@ -67,7 +71,7 @@ def test_a_wall_with_a_hole_keeps_its_lines():
 def test_any_walls_are_cut_to_their_union(drawn):
     boxes = [(x, y, x + t, y + 0.5 + length) for x, y, t, length in drawn]
     soups = [box_making.box(*b[:2], 0, *b[2:], 2.0) for b in boxes]
-    parts = [slicing.cut_section(soup, 1.0)[0] for soup in soups]
+    parts = [cut_section(soup, 1.0)[0] for soup in soups]
     assert same(shapely.union_all(parts), shapely.union_all([shapely.box(*b) for b in boxes]))
 
 

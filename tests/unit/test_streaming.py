@@ -44,8 +44,7 @@ def test_nearly_as_much_as_greedy_and_few_held_however_long_the_stream():
         polygons = scattered(n)
         order, most_held = streaming.order_streaming(polygons, k=12, epsilon=0.2)
         assert (
-            covered(polygons, order[:12])
-            >= 0.85 * area_greedy.order_by_area(polygons).covered_m2[11]
+            covered(polygons, order[:12]) >= 0.85 * area_greedy.order_by_area(polygons).covered[11]
         )
         held.append(most_held)
     assert held[1] <= min(1.3 * held[0], 80)

@@ -5,7 +5,7 @@ from helpers import bag_making
 from scanplan.errors import StageError
 from scanplan.geometry import se3
 from scanplan.project import dataset_files
-from scanplan.recordings import tf_tree
+from scanplan.recordings import frame_edges
 from scanplan.recordings.survey import open_survey
 
 LIMITS = {"min_range_m": 0.1, "max_range_m": 100.0}
@@ -23,7 +23,7 @@ def recorded(tmp_path, entries, maker=None, name="run"):
 
 
 def positions(survey, max_gap_s=1.0):
-    return tf_tree.chain_poses(survey.pose_edges(), survey.stamps(), max_gap_s=max_gap_s)[0][
+    return frame_edges.chain_poses(survey.pose_edges(), survey.stamps(), max_gap_s=max_gap_s)[0][
         :, :3, 3
     ]
 
@@ -210,7 +210,7 @@ def with_tf(maker, *static, moving=(), pose=None):
 def test_the_mount_comes_from_tf_static(tmp_path, maker):
     static = [("/base_link", "shell", (0.2, 0, 0.1)), ("shell", "/lidar", (0, 0, 0), QUARTER)]
     with opened(recorded(tmp_path, with_tf(maker, *static))) as survey:
-        pose, _, _ = tf_tree.chain_poses(survey.pose_edges(), survey.stamps()[:1], max_gap_s=1)
+        pose, _, _ = frame_edges.chain_poses(survey.pose_edges(), survey.stamps()[:1], max_gap_s=1)
     np.testing.assert_allclose(
         se3.transform_points(pose[0], [[1, 0, 0]]), [[0.2, 1, 0.1]], atol=1e-6
     )
@@ -219,7 +219,7 @@ def test_the_mount_comes_from_tf_static(tmp_path, maker):
 def test_the_configured_mount_wins(tmp_path, maker):
     path = recorded(tmp_path, with_tf(maker, ("base_link", "lidar", (0.2, 0, 0))))
     with opened(path, base_from_sensor=[0, 0, 1, 0, 0, 90]) as survey:
-        pose, _, _ = tf_tree.chain_poses(survey.pose_edges(), survey.stamps()[:1], max_gap_s=1)
+        pose, _, _ = frame_edges.chain_poses(survey.pose_edges(), survey.stamps()[:1], max_gap_s=1)
     np.testing.assert_allclose(se3.transform_points(pose[0], [[1, 0, 0]]), [[0, 1, 1]], atol=1e-6)
 
 
@@ -300,7 +300,7 @@ def test_odometry_names_the_base(tmp_path, maker):
 
 
 def tf_chain(maker):
-    """Clouds and tf only: map -> odom fixed at y = 2 but moving in stamps, odom -> base_link along x, static mount."""
+    """Clouds and tf: map -> odom at y = 2 in every stamp, base_link along x, static extrinsics."""
     entries = without(with_tf(maker, ("base_link", "lidar", (0, 0, 1), QUARTER)), "/amcl_pose")
     for i in range(-1, 12):
         t = START + i * STEP
@@ -369,7 +369,7 @@ def test_the_sign_of_a_quaternion_is_free(tmp_path, maker):
         recorded(tmp_path, bag_making.survey(maker, n_scans=4, pose_of=flipping))
     ) as survey:
         between = survey.stamps()[:3] + STEP // 4
-        pose = tf_tree.chain_poses(survey.pose_edges(), between, max_gap_s=1)[0]
+        pose = frame_edges.chain_poses(survey.pose_edges(), between, max_gap_s=1)[0]
     np.testing.assert_allclose(np.degrees(se3.pose_yaw_rad(pose)), 90)
 
 
@@ -384,7 +384,7 @@ def test_a_covariance_that_is_no_number_is_counted_and_its_pose_used(tmp_path, m
 
 
 def test_transforms_stamped_ahead_are_taken_back(tmp_path, maker, caplog):
-    """The localiser corrects the pose by 1 m half way; its transform is stamped a second ahead, as AMCL's is."""
+    """The localiser corrects the pose by 1 m half way, stamped a second ahead, as AMCL does."""
     entries = without(with_tf(maker, ("base_link", "lidar", (0, 0, 1))), "/amcl_pose")
     for i in range(-1, 12):
         t = START + i * STEP
@@ -413,11 +413,11 @@ def test_odd_stamps_of_clouds_are_said(tmp_path, maker, caplog):
             maker.cloud(t_ns, bag_making.room_points() + np.float32(i)),
         )
     with caplog.at_level("INFO"), opened(recorded(tmp_path, entries)) as survey:
-        known = tf_tree.chain_poses(survey.pose_edges(), survey.stamps(), max_gap_s=1)[2]
+        known = frame_edges.chain_poses(survey.pose_edges(), survey.stamps(), max_gap_s=1)[2]
     assert known.tolist() == [True, True, True, False]
     assert (
-        "1 of a repeated stamp, 1 jumping by more than 1 s; each scan keeps the pose of its own stamp"
-        in caplog.text
+        "1 of a repeated stamp, 1 jumping by more than 1 s;"
+        " each scan keeps the pose of its own stamp" in caplog.text
     )
 
 
@@ -430,12 +430,14 @@ def test_a_clock_set_back_leaves_no_pose_where_nobody_knows_which(tmp_path, make
     ):
         entries.append((topic, receive_ns - START - 10 * STEP + last_ns + STEP, message))
     with caplog.at_level("INFO"), opened(recorded(tmp_path, entries)) as survey:
-        pose, _, known = tf_tree.chain_poses(survey.pose_edges(), survey.stamps(), max_gap_s=0.5)
+        pose, _, known = frame_edges.chain_poses(
+            survey.pose_edges(), survey.stamps(), max_gap_s=0.5
+        )
     assert known.tolist() == [True] * 10 + [False] * 20 + [True] * 10
     np.testing.assert_allclose(
         pose[known, 0, 3], np.concatenate([np.arange(10), np.arange(60, 70)]) / 10, atol=0.01
     )
-    assert "in a time that the clock told twice (dropped)" in caplog.text
+    assert "in a time that went by twice (dropped)" in caplog.text
 
 
 @pytest.mark.recordings
@@ -465,7 +467,7 @@ def test_ros1_and_ros2_of_one_run_agree(recordings_dir):
 def test_real_recordings(recordings_dir, name, n_scans, planar):
     with opened(recordings_dir / name) as survey:
         assert (len(survey.stamps()), survey.planar) == (n_scans, planar)
-        covered = tf_tree.chain_poses(survey.pose_edges(), survey.stamps(), max_gap_s=2)[2]
+        covered = frame_edges.chain_poses(survey.pose_edges(), survey.stamps(), max_gap_s=2)[2]
         assert covered.sum() >= n_scans - 3
         (scan,) = survey.scans([n_scans - 1])
     assert len(scan.xyz_m) > 100
@@ -483,6 +485,9 @@ def test_the_turned_lidar_of_mac_first_floor(recordings_dir):
 
 @pytest.mark.recordings
 def test_a_recording_without_clouds(recordings_dir):
-    told = r"no cloud topic.*/amcl_pose \(.*PoseWithCovarianceStamped, 135\), /odom \(.*2639\), /tf \(.*5422\)"
+    told = (
+        r"no cloud topic.*/amcl_pose \(.*PoseWithCovarianceStamped, 135\),"
+        r" /odom \(.*2639\), /tf \(.*5422\)"
+    )
     with pytest.raises(StageError, match=told), opened(recordings_dir / "amcl_mcap"):
         pass

@@ -7,12 +7,11 @@ import pytest
 
 from helpers import simple_rooms as drawn
 from scanplan.lab.buildings import extrusion
-from scanplan.lab.simulation import raycast, rover, sensors, sweeps
+from scanplan.lab.simulation import raycast, rover, sensor_errors, sensors, sweeps
 from scanplan.lab.simulation.people import Person
-from scanplan.lab.simulation.raycast import RayHits
 
 MESH = extrusion.make_building_mesh(drawn.plan())
-EXACT = sensors.SensorErrors(0.0, np.zeros(16, np.float32), 0.0, np.pi / 2, 1.0, 0.0)
+EXACT = sensor_errors.SensorErrors(0.0, np.zeros(16, np.float32), 0.0, np.pi / 2, 1.0, 0.0)
 # along y = 1 at 1 m/s, facing +x, then a quarter turn at 90 deg/s
 DRIVE = rover.plan_drive([[1, 1], [3, 1], [3, 2]], speed_m_s=1.0, turn_rate_deg_s=90.0)
 MOUNT = rover.mount_sensor(height_m=0.4, forward_m=0.1, yaw_deg=0.0)
@@ -98,52 +97,11 @@ def test_ranges_are_multiples_of_the_quantum():
     np.testing.assert_allclose(steps, np.rint(steps), atol=1e-3)
 
 
-def flat_hits(angle_deg, n=40_000):
-    cosine = np.full(n, np.cos(np.radians(angle_deg)), np.float32)
-    return RayHits(np.ones(n, np.float32), cosine, cosine)
-
-
-@pytest.mark.parametrize(
-    ("angle_deg", "share"), [(0, 0), (69.9, 0), (75, 0.25), (80, 0.5), (85, 0.75), (89.99, 1)]
-)
-def test_the_flatter_the_more_is_lost(angle_deg, share):
-    errors = dataclasses.replace(EXACT, grazing_from_rad=np.radians(70))
-    lost = np.isnan(sweeps.drop_grazing(flat_hits(angle_deg), errors, np.random.default_rng(1)))
-    assert lost.mean() == pytest.approx(share, abs=0.01)
-
-
-def test_nothing_is_lost_where_loss_starts_at_ninety():
-    assert np.isfinite(sweeps.drop_grazing(flat_hits(90), EXACT, np.random.default_rng(1))).all()
-
-
 def test_grazing_returns_are_missing_from_a_scan():
     true = only()
     kept = only(errors=dataclasses.replace(EXACT, grazing_from_rad=np.radians(60))).range_m
     assert np.array_equal(kept[np.isfinite(kept)], true.range_m[np.isfinite(kept)])
     assert 0.01 < np.isnan(kept).mean() < 0.5
-
-
-def test_glass_passes_drops_and_returns_in_their_shares():
-    n = 60_000
-    opaque, pane = (
-        RayHits(*np.tile(np.array([[r], [1], [i]], np.float32), n))
-        for r, i in ((5.0, 80.0), (2.0, 10.0))
-    )
-    errors = dataclasses.replace(EXACT, glass_pass=0.7, glass_drop=0.2)
-    seen = sweeps.pass_glass(opaque, pane, errors, np.random.default_rng(1))
-    shares = [(seen.range_m == r).mean() for r in (5.0, np.inf, 2.0)]
-    np.testing.assert_allclose(shares, [0.7, 0.2, 0.1], atol=0.01)
-    assert (seen.reflectivity[seen.range_m == 2] == 10).all() and (
-        seen.reflectivity[seen.range_m == 5] == 80
-    ).all()
-
-
-def test_a_pane_behind_a_wall_does_nothing():
-    opaque, pane = (
-        RayHits(*np.tile(np.array([[r], [1], [80]], np.float32), 100)) for r in (2.0, 5.0)
-    )
-    errors = dataclasses.replace(EXACT, glass_pass=0.0, glass_drop=1.0)
-    assert (sweeps.pass_glass(opaque, pane, errors, np.random.default_rng(1)).range_m == 2).all()
 
 
 def test_a_glazed_room_is_seen_through_its_pane(monkeypatch):

@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from scanplan.errors import StageError
 from scanplan.geometry import se3
-from scanplan.recordings import tf_tree
+from scanplan.recordings import frame_edges, tf_tree
 
 QUARTER = [0, 0, np.sqrt(0.5), np.sqrt(0.5)]
 NONE = [0, 0, 0, 1]
@@ -14,12 +14,12 @@ SECOND = 10**9
 
 
 def still(parent, child, xyz=(0, 0, 0), quat=NONE):
-    return tf_tree.FrameEdge(parent, child, np.array([xyz], float), np.array([quat], float))
+    return frame_edges.FrameEdge(parent, child, np.array([xyz], float), np.array([quat], float))
 
 
 def moving(parent, child, t_s=(0, 1), x=(0, 1), quat=NONE):
     xyz = [[value, 0, 0] for value in x]
-    return tf_tree.FrameEdge(
+    return frame_edges.FrameEdge(
         parent,
         child,
         np.array(xyz, float),
@@ -33,7 +33,7 @@ def rows(*xs, quat=NONE):
 
 
 def test_track_sorts_keeps_the_later_of_two_and_counts():
-    edge, found = tf_tree.make_track_edge(
+    edge, found = frame_edges.make_track_edge(
         "map", "base", [30, 10, 20, 20], [1, 2, 3, 4], rows(3, 1, 2, 2.5)
     )
     assert edge.t_ns.tolist() == [10, 20, 30]
@@ -47,21 +47,21 @@ def test_track_sorts_keeps_the_later_of_two_and_counts():
 def test_track_drops_what_is_no_pose():
     poses = [*rows(0), *rows(1, quat=[0, 0, 0, 0]), *rows(np.nan), *rows(3, quat=[0, 0, 0, 1.01])]
     poses += [*rows(4, quat=[0, 0, 0, 1.0005]), *rows(5, quat=[0, np.inf, 0, 1])]
-    edge, found = tf_tree.make_track_edge("map", "base", range(1, 7), range(6), poses)
+    edge, found = frame_edges.make_track_edge("map", "base", range(1, 7), range(6), poses)
     assert edge.t_ns.tolist() == [1, 5]
     np.testing.assert_allclose(np.linalg.norm(edge.quat_xyzw, axis=1), 1, atol=1e-12)
     assert (found["not finite"], found["without unit quaternion"]) == (2, 2)
 
 
 def test_track_without_stamps_takes_receive_times():
-    edge, found = tf_tree.make_track_edge("map", "base", [0, 0], [7, 9], rows(1, 2))
+    edge, found = frame_edges.make_track_edge("map", "base", [0, 0], [7, 9], rows(1, 2))
     assert edge.t_ns.tolist() == [7, 9]
     assert found["without stamp (receive time taken)"] == 2
 
 
 def test_track_of_nothing_usable():
-    assert tf_tree.make_track_edge("map", "base", [], [], [])[0] is None
-    edge, found = tf_tree.make_track_edge("map", "base", [1], [1], rows(np.nan))
+    assert frame_edges.make_track_edge("map", "base", [], [], [])[0] is None
+    edge, found = frame_edges.make_track_edge("map", "base", [1], [1], rows(np.nan))
     assert edge is None
     assert found["not finite"] == 1
 
@@ -69,7 +69,7 @@ def test_track_of_nothing_usable():
 def test_product_of_a_chain_on_paper():
     # at t = 0.5 s the base is at x = 0.5; the sensor sits 0.2 m ahead, turned by 90 degrees
     edges = [moving("map", "base"), still("base", "lidar", (0.2, 0, 0), QUARTER)]
-    pose, gap_s, covered = tf_tree.chain_poses(edges, [SECOND // 2, 0, 2 * SECOND], max_gap_s=1)
+    pose, gap_s, covered = frame_edges.chain_poses(edges, [SECOND // 2, 0, 2 * SECOND], max_gap_s=1)
     np.testing.assert_allclose(
         se3.transform_points(pose[0], [[1, 0, 0]]), [[0.7, 1, 0]], atol=1e-12
     )
@@ -84,26 +84,30 @@ def test_every_edge_must_cover_and_the_longest_gap_counts():
         moving("odom", "base", (0, 1, 2, 3), (0, 1, 2, 3)),
     ]
     query = np.array([1.5, 3.5]) * SECOND
-    _, gap_s, covered = tf_tree.chain_poses(edges, query.astype(np.int64), max_gap_s=5)
+    _, gap_s, covered = frame_edges.chain_poses(edges, query.astype(np.int64), max_gap_s=5)
     assert gap_s.tolist() == [4, np.inf]
     assert covered.tolist() == [True, False]
-    assert not tf_tree.chain_poses(edges, query.astype(np.int64), max_gap_s=3)[2].any()
+    assert not frame_edges.chain_poses(edges, query.astype(np.int64), max_gap_s=3)[2].any()
 
 
 def test_constant_chain_is_always_covered():
-    pose, gap_s, covered = tf_tree.chain_poses([still("map", "lidar", (1, 2, 3))], [5], max_gap_s=0)
+    pose, gap_s, covered = frame_edges.chain_poses(
+        [still("map", "lidar", (1, 2, 3))], [5], max_gap_s=0
+    )
     np.testing.assert_allclose(pose[0, :3, 3], [1, 2, 3])
     assert (gap_s[0], covered[0]) == (0, True)
-    assert tf_tree.chain_poses([], [5], max_gap_s=0)[0].tolist() == [np.eye(4).tolist()]
+    assert frame_edges.chain_poses([], [5], max_gap_s=0)[0].tolist() == [np.eye(4).tolist()]
 
 
 @given(st.lists(st.floats(-3, 3), min_size=12, max_size=12))
 def test_inverse_undoes_an_edge(values):
     quat = Rotation.from_rotvec(np.reshape(values[6:], (2, 3))).as_quat()
-    edge = tf_tree.FrameEdge("a", "b", np.reshape(values[:6], (2, 3)), quat, np.array([0, SECOND]))
+    edge = frame_edges.FrameEdge(
+        "a", "b", np.reshape(values[:6], (2, 3)), quat, np.array([0, SECOND])
+    )
     back = edge.inverse()
     assert (back.parent, back.child) == ("b", "a")
-    product, _, _ = tf_tree.chain_poses([edge, back], edge.t_ns, max_gap_s=1)
+    product, _, _ = frame_edges.chain_poses([edge, back], edge.t_ns, max_gap_s=1)
     np.testing.assert_allclose(product, np.tile(np.eye(4), (2, 1, 1)), atol=1e-9)
 
 

@@ -28,7 +28,7 @@ def motion_of(swing_rad):
 
 
 def scan(scan_id, read, swing_rad, noise_m):
-    """What the sensor sees of the walls of a room of 6 m by 4 m if its times are truly those that `read` makes."""
+    """What the sensor sees of a room of 6 m by 4 m if `read` makes the true times."""
     stamp_s = scan_id * PERIOD_S
     towards = BEAM_RAD + heading_rad(stamp_s + read(STATED_S), swing_rad)
     with np.errstate(divide="ignore"):
@@ -77,7 +77,7 @@ def test_a_sensor_that_does_not_turn_tells_nothing(caplog):
 
 
 def test_of_a_small_difference_the_statement_is_believed():
-    """The sensor hardly turns and its ranges are rough: the readings differ by less than the noise."""
+    """The sensor hardly turns and its ranges are rough: readings differ by less than noise."""
     way = motion_of(0.1)
     assert (
         time_check.check_point_times(survey(WAYS["not at all"], 0.1, noise_m=0.04), way).time_scale

@@ -65,11 +65,9 @@ def test_a_disturbed_call_does_not_count(tmp_path, monkeypatch):
     with tables.open_scan_writer(tmp_path / "scans.parquet", planar=False) as write:
         for scan_id in (0, 3):
             write(scan_id, np.ones((5, 3)))
-    monkeypatch.setattr(timing.segments, "sensor_keywords", lambda *_: {0: {}, 3: {}})
+    monkeypatch.setattr(timing.per_registered_scan, "sensor_keywords", lambda *_: {0: {}, 3: {}})
     store = tables.ScanStore(tmp_path / "scans.parquet")
-    rows = list(
-        timing.time_extractor("busy", Busy(), store, {}, [0, 3], {}, "registration.parquet")
-    )
+    rows = list(timing.time_extractor("busy", Busy(), store, [0, 3], {}, "registration.parquet"))
     assert [(row["item"], row["size"], row["found"]) for row in rows] == [(0, 5, 1), (3, 5, 1)]
     assert all(0.001 <= row["seconds"] < 0.04 for row in rows)
 

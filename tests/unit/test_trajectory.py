@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from scanplan.errors import StageError
-from scanplan.recordings import tf_tree
+from scanplan.recordings import frame_edges
 from scanplan.recordings.motion import trajectory
 
 S = 10**9
@@ -13,7 +13,7 @@ S = 10**9
 def edge(t_s, x_m, parent="odom"):
     t_s = np.asarray(t_s, float)
     xyz_m = np.column_stack([np.broadcast_to(np.asarray(x_m, float), t_s.shape), 0 * t_s, 0 * t_s])
-    return tf_tree.FrameEdge(
+    return frame_edges.FrameEdge(
         parent,
         "base",
         xyz_m,
@@ -34,7 +34,7 @@ def test_along_a_chain_with_a_mount():
     turn = np.eye(4)
     turn[:3, 3] = (0, 0.5, 0)
     way = trajectory.motion_along(
-        [line(), tf_tree.make_static_edge("base", "sensor", turn)], SCANS, max_gap_s=1.0
+        [line(), frame_edges.make_static_edge("base", "sensor", turn)], SCANS, max_gap_s=1.0
     )
     np.testing.assert_allclose(
         way.at([S, S + S // 20])[:, :3, 3], [[1, 0.5, 0], [1.05, 0.5, 0]], atol=1e-9
@@ -49,7 +49,7 @@ def test_two_moving_links_are_known_where_both_are():
 
 def test_a_chain_that_never_moves():
     way = trajectory.motion_along(
-        [tf_tree.make_static_edge("map", "sensor", np.eye(4))], SCANS, max_gap_s=1.0
+        [frame_edges.make_static_edge("map", "sensor", np.eye(4))], SCANS, max_gap_s=1.0
     )
     assert way.covered(SCANS).all()
     np.testing.assert_array_equal(way.at(SCANS)[4], np.eye(4))
@@ -100,7 +100,7 @@ def test_odometry_that_knows_less_is_left_out(caplog):
     with caplog.at_level("INFO"):
         way = chosen(("odometry", [line(0, 3)]), POSES)
     assert len(way.t_ns) == 21
-    assert "odometry tells the motion at 33% of the scans only" in caplog.text
+    assert "odometry covers 33% of the scans only" in caplog.text
 
 
 @pytest.mark.parametrize(
@@ -110,7 +110,7 @@ def test_odometry_that_tells_of_another_way_is_left_out(speed, used, caplog):
     with caplog.at_level("INFO"):
         way = chosen(("odometry", [line(speed=speed)]), POSES)
     assert (len(way.t_ns) == 101) == used
-    assert used or f"odometry tells of {abs(speed):.2f} times the way" in caplog.text
+    assert used or f"odometry moves {abs(speed):.2f} times the way" in caplog.text
 
 
 def test_of_a_survey_that_stands_nothing_can_be_held_against_its_odometry():
@@ -129,7 +129,7 @@ def test_odometry_never_known_is_no_candidate():
 
 
 def test_a_jump_of_one_of_two_moving_links_is_no_motion():
-    """The localiser's correction jumps by 2 m from 5.0 s to 5.1 s; the wheels are known twenty times a second."""
+    """The localiser jumps by 2 m from 5.0 s to 5.1 s; the wheels are known at 20 Hz."""
     corrections = edge([4.9, 5.0, 5.1, 5.2], [0, 0, 2, 2], parent="map")
     way = trajectory.motion_along(
         [corrections, line(4.9, 5.2, 0.02)], SCANS, max_gap_s=1.0, max_speed_m_s=3.0

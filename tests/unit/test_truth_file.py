@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from scanplan.errors import StageError
-from scanplan.lab.buildings import truth
 from scanplan.lab.evaluation import truth_file, visible_faces
 from scanplan.lab.simulation import rover
+from scanplan.lab.simulation.survey_truth import format_tum
 
 
 def geojson(path, *features):
@@ -77,7 +77,7 @@ class TestPoses:
 
     def test_what_the_simulation_writes_is_read_back(self, tmp_path):
         poses = rover.planar_poses([[1, 2], [3, 4]], [0.1, 0.2], 0.4)
-        (tmp_path / "p.tum").write_text(truth.format_tum(self.T_NS, poses))
+        (tmp_path / "p.tum").write_text(format_tum(self.T_NS, poses))
         read = truth_file.read_true_poses(tmp_path / "p.tum")
         np.testing.assert_array_equal(read.t_ns, self.T_NS)
         np.testing.assert_allclose(

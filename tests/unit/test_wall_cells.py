@@ -5,7 +5,7 @@ import pytest
 
 from helpers import toy_rooms
 from scanplan.selection import methods, wall_cells
-from scanplan.selection.cell_coverage import CellCoverage
+from scanplan.selection.objectives import CellCoverage
 
 LIMITS = {name: toy_rooms.LIMITS[name] for name in methods.WALL_LIMITS if name in toy_rooms.LIMITS}
 SETTINGS = wall_cells.WallCellSettings(cell_m=0.25, reach_deg=3.5, max_tilt_deg=15.0, **LIMITS)
@@ -31,7 +31,7 @@ def shown_m(*observed):
     cells = CellCoverage(
         columns["scan_id"], wall_cells.number_cells(columns), columns["length_m"], len(observed)
     )
-    return cells.greedy().covered_m2[-1]
+    return cells.greedy().covered[-1]
 
 
 @pytest.mark.parametrize("planar", [False, True])

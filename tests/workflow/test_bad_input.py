@@ -42,6 +42,13 @@ def test_a_wrong_key_in_dataset_yaml(project, tmp_path):
     ends_with_one_line(project, "survey", "dataset.yaml", "keep_evry")
 
 
+def test_an_old_name_is_refused_with_the_new_one(project, tmp_path):
+    (tmp_path / "survey").mkdir()
+    (tmp_path / "survey/dataset.yaml").write_text("walls: {cluster_ransac: {min_height_m: 1.0}}")
+    said = "walls.cluster_ransac.min_height_m is now walls.min_height_m"
+    ends_with_one_line(project, "survey", "survey/dataset.yaml: ", said)
+
+
 def test_a_way_through_a_wall_names_the_file_and_its_key(project, tmp_path):
     (tmp_path / "walk.yaml").write_text(
         "simulate: {building: tiny_office, site: {waypoints_m: [[0.7, 0.9], [3.0, 1.7]]}}"

@@ -67,14 +67,17 @@ def test_a_touched_file_reruns_nothing(project):
         ("plan: {merge: {tolerance_m: 0.08}}", PLANNED),
         ("plan: {method: sequential}", PLANNED | {"draw_scans", "draw_evaluation"}),
         ("evaluation: {bitmap_cell_m: 0.1}", EVALUATED | {"evaluate_plan"}),
-        ("selection: {wall_length: {cell_m: 0.5}}", {"observe_walls"} | AFTER_ORDERS),
         (
-            "selection: {visibility: {range_m: 9.0}}",
+            "advanced: {selection: {wall_length: {cell_m: 0.5}}}",
+            {"observe_walls"} | AFTER_ORDERS,
+        ),
+        (
+            "advanced: {selection: {visibility: {range_m: 9.0}}}",
             {"build_visibility", "order_scans", "draw_area"} | EVALUATED,
         ),
         ("selection: {min_overlap: 0.1}", AFTER_ORDERS),
         (
-            "walls: {cluster_ransac: {min_length_m: 0.7}}",
+            "walls: {min_length_m: 0.7}",
             {"extract_walls"} | PLANNED | EVALUATED,
         ),
     ],
@@ -89,8 +92,7 @@ def test_a_changed_parameter_reruns_exactly_its_stages(project, change, rules):
 @pytest.mark.parametrize(
     ("change", "methods"),
     [
-        ("selection: {seed: 5}", {"random"}),
-        ("selection: {streaming: {k: 7}}", {"streaming"}),
+        ("advanced: {selection: {streaming: {k: 7}}}", {"streaming"}),
         ("selection: {min_overlap: 0.1}", {"wall_length", "visibility", "cluster_hull", "hull"}),
     ],
 )

@@ -16,7 +16,7 @@ rule measure_crispness:
         mem_mb=1500,
         runtime=30,
     params:
-        settings=setting("crispness"),
+        settings=setting(stage_settings.select_crispness),
     script:
         "../../scripts/measure_crispness.py"
 

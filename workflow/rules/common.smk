@@ -5,13 +5,12 @@ import sys
 sys.path.insert(0, f"{workflow.basedir}/scripts")
 from scanplan.errors import StageError
 from scanplan.lab.thesis import experiments
-from scanplan.plan.plan_settings import select_plan_settings
+from scanplan.project import stage_settings
 from scanplan.project.code_files import list_helpers
 from scanplan.project.dataset import (
     RESERVED,
     describe_dataset,
     find_truth,
-    list_choices,
     list_results,
     name_datasets,
     survey_files,
@@ -22,11 +21,18 @@ from scanplan.project.provenance import (
     discard_lone_note,
     end_results,
 )
-from scanplan.project.settings import COMMAND_LINE, Layer, locate_fault, settings_of_run
+from scanplan.project.settings import (
+    Layer,
+    locate_fault,
+    read_defaults,
+    settings_of_run,
+)
+from scanplan.project.settings_check import COMMAND_LINE
+from scanplan.project.settings_schema import list_choices, read_schema
 from scanplan.project.yaml_file import read_yaml
 from scanplan.selection import methods
 
-SCHEMA = read_yaml(f"{workflow.basedir}/workflow/schemas/config.schema.yaml")
+SCHEMA = read_schema(f"{workflow.basedir}/workflow/schemas/config.schema.yaml")
 METHODS = list_choices(SCHEMA, "plan", "method")
 EXTRACTORS = list_choices(SCHEMA, "plan", "extractor")
 
@@ -49,7 +55,7 @@ def given_settings():
 
 
 KNOWN = {
-    "defaults": read_yaml(f"{workflow.basedir}/config/config.yaml"),
+    "defaults": or_end(read_defaults, f"{workflow.basedir}/config/config.yaml", SCHEMA),
     "given": or_end(given_settings),
     "schema": SCHEMA,
 }
@@ -135,59 +141,39 @@ def all_cores(wildcards):
     return workflow.resource_settings.cores or 2
 
 
-def setting(section, *keys):
-    """A param function that looks a section, or one key of it, up in the settings of the job's dataset."""
+def setting(select, *arguments):
+    """A param function: what one of `stage_settings` selects from the settings of the job's dataset."""
 
     def look_up(wildcards):
-        value = DATASETS[wildcards.dataset].settings[section]
-        for key in keys:
-            value = value[key]
-        return value
+        return select(DATASETS[wildcards.dataset].settings, *arguments)
 
     return look_up
 
 
-def topics_and_frames(wildcards):
-    """Settings of the input that poses depend on: all but what is done to the points."""
-    reading = DATASETS[wildcards.dataset].settings["input"]
-    return {
-        key: value
-        for key, value in reading.items()
-        if key not in ("min_range_m", "max_range_m", "deskew")
-    }
+def section(*keys):
+    """A param function that looks a section up, or one key of it, in the settings of the job's dataset."""
+    return setting(stage_settings.select_section, *keys)
 
 
 def extractor_settings(wildcards):
     """Settings of the job's wall extractor."""
-    return DATASETS[wildcards.dataset].settings["walls"][wildcards.extractor]
-
-
-def observation_settings(wildcards):
-    """What makes returns a wall: settings of the thesis's extractor that a scan can be judged by, and of the cells."""
-    settings = DATASETS[wildcards.dataset].settings
-    limits = settings["walls"]["cluster_ransac"]
-    own = settings["selection"]["wall_length"]
-    return {name: limits[name] for name in methods.WALL_LIMITS} | own
+    return stage_settings.select_extractor(
+        DATASETS[wildcards.dataset].settings, wildcards.extractor
+    )
 
 
 def order_tables(wildcards):
     """The tables that the job's method needs, by name, beside that of the hulls."""
-    tables = methods.TABLES[wildcards.method]
+    tables = methods.METHODS[wildcards.method].tables
     return {table: f"results/{wildcards.dataset}/{table}.parquet" for table in tables}
 
 
 def order_settings(wildcards):
     """Settings of the job's ordering, by name: a change of one reruns the orderings that depend on it."""
-    selection = DATASETS[wildcards.dataset].settings["selection"]
-    stop = selection["stop"]
-    budget = {name: stop[name] for name in ("max_points", "max_bytes")}
-    settings = selection | {"budget": budget}
-    return {name: settings[name] for name in methods.SETTINGS[wildcards.method]}
-
-
-def plan_settings(wildcards):
-    """Settings of the plan's own stage, part by part."""
-    return select_plan_settings(DATASETS[wildcards.dataset].settings)
+    return stage_settings.select_order(
+        DATASETS[wildcards.dataset].settings,
+        methods.METHODS[wildcards.method].settings,
+    )
 
 
 def recordings(wildcards):
@@ -235,16 +221,6 @@ def all_walls(wildcards):
 def building(wildcards):
     """The file of the building that a dataset is simulated in."""
     return DATASETS[wildcards.dataset].building
-
-
-def simulated_survey(wildcards):
-    """Settings of the simulated rover."""
-    survey = DATASETS[wildcards.dataset].settings["simulate"]
-    return {
-        key: value
-        for key, value in survey.items()
-        if key not in ("building", "recording")
-    }
 
 
 def all_settings(wildcards):

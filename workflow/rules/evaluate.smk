@@ -20,8 +20,8 @@ rule evaluate_walls:
         mem_mb=2000,
         runtime=30,
     params:
-        max_range_m=setting("input", "max_range_m"),
-        settings=setting("evaluation"),
+        max_range_m=section("input", "max_range_m"),
+        settings=section("evaluation"),
     script:
         "../../scripts/evaluate_walls.py"
 
@@ -75,8 +75,8 @@ rule evaluate_plan:
         mem_mb=1000,
         runtime=10,
     params:
-        max_range_m=setting("input", "max_range_m"),
-        settings=setting("evaluation"),
+        max_range_m=section("input", "max_range_m"),
+        settings=section("evaluation"),
     script:
         "../../scripts/evaluate_plan.py"
 
@@ -130,7 +130,7 @@ rule draw_evaluation:
         mem_mb=1000,
         runtime=10,
     params:
-        method=setting("plan", "method"),
-        extractor=setting("plan", "extractor"),
+        method=section("plan", "method"),
+        extractor=section("plan", "extractor"),
     script:
         "../../scripts/draw_evaluation.py"

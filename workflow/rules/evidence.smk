@@ -38,12 +38,6 @@ def evidence():
     return files | {"limits_steps": of_kind(experiments.LIMITS, "thesis/steps")}
 
 
-def hull_sampling(wildcards):
-    """Settings of the hulls but for the number of clusters."""
-    made = DATASETS[wildcards.dataset].settings["hulls"]
-    return {name: made[name] for name in ("sample_size", "seed")}
-
-
 def seeds_of(kind):
     """The seeds that the surveys of a kind are simulated with."""
     return [survey.settings["simulate"]["seed"] for survey in THESIS[kind]]

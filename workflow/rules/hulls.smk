@@ -14,6 +14,6 @@ rule build_hulls:
         mem_mb=1500,
         runtime=30,
     params:
-        settings=setting("hulls"),
+        settings=setting(stage_settings.select_hulls),
     script:
         "../../scripts/build_hulls.py"

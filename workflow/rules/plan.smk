@@ -22,8 +22,8 @@ rule assemble_plan:
         mem_mb=2000,
         runtime=20,
     params:
-        stop=setting("selection", "stop"),
-        settings=plan_settings,
+        stop=section("selection", "stop"),
+        settings=setting(stage_settings.select_plan),
     script:
         "../../scripts/assemble_plan.py"
 
@@ -61,6 +61,6 @@ rule export_plan:
         mem_mb=1500,
         runtime=10,
     params:
-        settings=setting("plan", "export"),
+        settings=section("plan", "export"),
     script:
         "../../scripts/export_plan.py"

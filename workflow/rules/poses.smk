@@ -15,7 +15,7 @@ rule interpolate_poses:
         mem_mb=1500,
         runtime=60,
     params:
-        reading=topics_and_frames,
-        settings=setting("poses"),
+        reading=setting(stage_settings.select_topics),
+        settings=section("poses"),
     script:
         "../../scripts/interpolate_poses.py"

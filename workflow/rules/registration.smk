@@ -18,7 +18,7 @@ rule register_scans:
         mem_mb=1500,
         runtime=120,
     params:
-        reading=setting("input"),
-        settings=setting("registration"),
+        reading=section("input"),
+        settings=section("registration"),
     script:
         "../../scripts/register_scans.py"

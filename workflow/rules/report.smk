@@ -21,7 +21,7 @@ rule draw_scans:
         mem_mb=1500,
         runtime=10,
     params:
-        stop=setting("selection", "stop"),
+        stop=section("selection", "stop"),
     script:
         "../../scripts/draw_scans.py"
 
@@ -74,7 +74,7 @@ rule draw_walls:
         mem_mb=1500,
         runtime=10,
     params:
-        stop=setting("selection", "stop"),
+        stop=section("selection", "stop"),
     script:
         "../../scripts/draw_walls.py"
 

@@ -15,7 +15,7 @@ rule observe_walls:
         mem_mb=2000,
         runtime=30,
     params:
-        settings=observation_settings,
+        settings=setting(stage_settings.select_wall_cells, methods.WALL_LIMITS),
     script:
         "../../scripts/observe_walls.py"
 
@@ -37,7 +37,7 @@ rule build_visibility:
         mem_mb=1500,
         runtime=30,
     params:
-        settings=setting("selection", "visibility"),
+        settings=setting(stage_settings.select_visibility),
     script:
         "../../scripts/build_visibility.py"
 

@@ -16,7 +16,7 @@ rule simulate_survey:
         mem_mb=1000,
         runtime=30,
     params:
-        settings=simulated_survey,
+        settings=setting(stage_settings.select_simulation),
     script:
         "../../scripts/simulate_survey.py"
 

@@ -25,9 +25,9 @@ rule measure_coverage:
         mem_mb=1500,
         runtime=30,
     params:
-        n_clusters=setting("thesis", "n_clusters"),
-        hulls=hull_sampling,
-        max_range_m=setting("input", "max_range_m"),
+        n_clusters=section("thesis", "n_clusters"),
+        hulls=setting(stage_settings.select_hull_sampling),
+        max_range_m=section("input", "max_range_m"),
     script:
         "../../scripts/measure_coverage.py"
 
@@ -52,8 +52,8 @@ rule measure_unevenness:
         mem_mb=1500,
         runtime=30,
     params:
-        hulls=setting("hulls"),
-        max_range_m=setting("input", "max_range_m"),
+        hulls=setting(stage_settings.select_hulls),
+        max_range_m=section("input", "max_range_m"),
         n_selected=claim_measures.SUBSET,
     script:
         "../../scripts/measure_unevenness.py"
@@ -77,10 +77,10 @@ rule time_stages:
         mem_mb=1500,
         runtime=30,
     params:
-        walls=setting("walls"),
-        hulls=hull_sampling,
-        n_clusters=setting("thesis", "n_clusters"),
-        timed_scans=setting("thesis", "timed_scans"),
+        walls=setting(stage_settings.select_extractors, EXTRACTORS),
+        hulls=setting(stage_settings.select_hull_sampling),
+        n_clusters=section("thesis", "n_clusters"),
+        timed_scans=section("thesis", "timed_scans"),
     script:
         "../../scripts/time_stages.py"
 

@@ -1,36 +1,63 @@
 """The plan as DXF, for CAD programs."""
 
 import io
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 import ezdxf
 import numpy as np
 import shapely
-from ezdxf import units, zoom
-from ezdxf.enums import TextEntityAlignment
+from ezdxf import zoom
+from ezdxf.document import Drawing
+from ezdxf.enums import InsertUnits, TextEntityAlignment
+from ezdxf.filemanagement import new
+from ezdxf.layouts.layout import Modelspace
+from shapely.geometry.base import BaseGeometry
 
 from scanplan.plan import floorplan
+from scanplan.plan.floorplan import FloorPlan
+from scanplan.types import Array, FloatArray
 
-WALLS, INFERRED, OPENINGS, ROOMS, TEXT = "WALLS", "WALLS_INFERRED", "OPENINGS", "ROOMS", "TEXT"
-# line weights in hundredths of a millimetre, colours of the AutoCAD index
+# layers, and their likes in the AIA CAD layer guidelines (US National CAD Standard)
+WALLS = "WALLS"  # A-WALL
+INFERRED = "WALLS_INFERRED"  # A-WALL, too: apart, so that it can be switched off
+OPENINGS = "OPENINGS"  # A-DOOR and A-GLAZ: which of them an opening is, rays do not always show
+ROOMS = "ROOMS"  # A-AREA
+TEXT = "TEXT"  # A-ANNO-TEXT
+_VERSION = "R2010"  # AC1024, which all current CAD programs read
+_LINE_TYPE = "DASHED"  # ISO 128-2's dashed line, by the name that AutoCAD has for it
+_DASH_PATTERN_M = (0.15, 0.1, -0.05)  # length, dash, gap of half a dash: short beside any wall
+# line weights in hundredths of a millimetre, of the series of ISO 128-2: cut walls wide, the rest
+# in steps down to narrow
+_CUT_WEIGHT = 35
+_INFERRED_WEIGHT = 25
+_OPENING_WEIGHT = 18
+_NARROW_WEIGHT = 13
+# colours of the AutoCAD colour index
+_INK = 7  # black on paper, white on a black screen
+_GREY = 8
+_BLUE = 5
+_GREEN = 3
 _LAYERS = {
-    WALLS: {"lineweight": 35, "color": 7},
-    INFERRED: {"lineweight": 25, "color": 8, "linetype": "DASHED"},
-    OPENINGS: {"lineweight": 18, "color": 5},
-    ROOMS: {"lineweight": 13, "color": 3},
-    TEXT: {"lineweight": 13, "color": 7},
+    WALLS: {"lineweight": _CUT_WEIGHT, "color": _INK},
+    INFERRED: {"lineweight": _INFERRED_WEIGHT, "color": _GREY, "linetype": _LINE_TYPE},
+    OPENINGS: {"lineweight": _OPENING_WEIGHT, "color": _BLUE},
+    ROOMS: {"lineweight": _NARROW_WEIGHT, "color": _GREEN},
+    TEXT: {"lineweight": _NARROW_WEIGHT, "color": _INK},
 }
-_DASH_M = (0.15, 0.1, -0.05)
-_TEXT_M = 0.2
-_SMALL_TEXT_M = 0.12
+_TEXT_M = 0.2  # 2 mm at 1:100, between the 1.8 and 2.5 mm of ISO 3098
+_SMALL_TEXT_M = 0.12  # fits beside a door
+_LINE_SPACING = 1.5  # of a text's height, and of its middle from a line: about ISO 3098's
+_UPRIGHT = 1e-6  # of a direction's x: less is rounding
 
 
-def format_dxf(plan):
+def format_dxf(plan: FloorPlan) -> str:
     """Return a plan as the text of a DXF R2010 file, in metres.
 
-    Walls of known thickness are closed outlines (double lines) with their openings cut out, surfaces with nothing known
-    behind them single lines; what is inferred lies on a layer of its own. Every opening is a line as long as it is
-    wide, with two more along the surfaces for a window in a wall of known thickness; every room is a closed outline.
+    Walls of known thickness are closed outlines (double lines) with their openings cut out,
+    surfaces with nothing known behind them single lines; what is inferred lies on a layer of its
+    own. Every opening is a line as long as it is wide, with two more along the surfaces for a
+    window in a wall of known thickness; every room is a closed outline.
 
     Parameters
     ----------
@@ -47,23 +74,13 @@ def format_dxf(plan):
         If the drawing does not pass the audit of ezdxf.
     """
     with _fixed_metadata():
-        document = ezdxf.new("R2010", units=units.M)
-        document.linetypes.add(
-            "DASHED", pattern=[_DASH_M[0], *_DASH_M[1:]], description="Dashed __ __ __"
-        )
-        for name, properties in _LAYERS.items():
-            document.layers.add(name, **properties)
+        document = _new_document()
         modelspace = document.modelspace()
-        for state, layer in zip(floorplan.STATES, (WALLS, INFERRED), strict=True):
-            _outlines(modelspace, shapely.get_parts(plan.solid(state)), layer)
-            for line in plan.single(state):
-                modelspace.add_line(
-                    *shapely.get_coordinates(line).tolist(), dxfattribs={"layer": layer}
-                )
+        _add_walls(modelspace, plan)
         _add_openings(modelspace, plan)
         _add_rooms(modelspace, plan)
         zoom.extents(modelspace)
-        _audit(document)
+        _check_document(document)
         # ezdxf would register these in the order of a set, which differs from run to run
         for name in sorted(document.entitydb.dxf_types_in_use()):
             document.classes.add_class(name)
@@ -72,62 +89,98 @@ def format_dxf(plan):
     return text.getvalue()
 
 
-def _outlines(modelspace, polygons, layer):
-    for ring in shapely.get_rings(np.asarray(polygons, object)) if len(polygons) else ():
-        modelspace.add_lwpolyline(
-            shapely.get_coordinates(ring)[:-1].tolist(), close=True, dxfattribs={"layer": layer}
-        )
+def _new_document() -> Drawing:
+    document = new(_VERSION, units=InsertUnits.Meters)
+    document.linetypes.add(_LINE_TYPE, pattern=list(_DASH_PATTERN_M), description="Dashed __ __ __")
+    for name, properties in _LAYERS.items():
+        document.layers.add(name, **properties)
+    return document
 
 
-def _add_openings(modelspace, plan):
-    columns = (plan.openings[c].tolist() for c in ("type", "width_m", "thickness_m"))
-    for kind, width_m, thick_m, line in zip(
-        *columns, floorplan.centrelines_m(plan.openings), strict=True
-    ):
+def _add_walls(modelspace: Modelspace, plan: FloorPlan) -> None:
+    for state, layer in zip(floorplan.STATES, (WALLS, INFERRED), strict=True):
+        _add_outlines(modelspace, shapely.get_parts(plan.solid(state)), layer)
+        for line in plan.single(state):
+            _add_line(modelspace, shapely.get_coordinates(line), layer)
+
+
+def _add_outlines(
+    modelspace: Modelspace, polygons: Array | Sequence[BaseGeometry], layer: str
+) -> None:
+    if len(polygons) == 0:
+        return
+    for ring in shapely.get_rings(np.asarray(polygons, object)):
+        corners_m = shapely.get_coordinates(ring)[:-1].tolist()
+        modelspace.add_lwpolyline(corners_m, close=True, dxfattribs={"layer": layer})
+
+
+def _add_line(modelspace: Modelspace, ends_m: FloatArray, layer: str) -> None:
+    start_m, end_m = ends_m.tolist()
+    modelspace.add_line(start_m, end_m, dxfattribs={"layer": layer})
+
+
+def _add_openings(modelspace: Modelspace, plan: FloorPlan) -> None:
+    columns = plan.openings
+    for row, line in enumerate(floorplan.centrelines_m(columns)):
         modelspace.add_lwpolyline(line.tolist(), dxfattribs={"layer": OPENINGS})
         along = (line[1] - line[0]) / np.hypot(*(line[1] - line[0]))
         left = np.array([-along[1], along[0]])
-        if kind == "window" and np.isfinite(thick_m):
-            for side_m in (-thick_m / 2, thick_m / 2):
-                modelspace.add_line(
-                    *(line + side_m * left).tolist(), dxfattribs={"layer": OPENINGS}
-                )
-        _add_width(modelspace, line.mean(axis=0), along, width_m)
+        half_m = columns["thickness_m"][row] / 2
+        if columns["type"][row] == "window" and np.isfinite(half_m):
+            for side_m in (-half_m, half_m):
+                _add_line(modelspace, line + side_m * left, OPENINGS)
+        _add_width(modelspace, line.mean(axis=0), along, columns["width_m"][row])
 
 
-def _add_width(modelspace, place_m, along, width_m):
+def _add_width(
+    modelspace: Modelspace, place_m: FloatArray, along: FloatArray, width_m: float
+) -> None:
     """Write an opening's width beside it, along it, to be read from below or from the right."""
-    if along[0] < -1e-6 or (along[0] <= 1e-6 and along[1] < 0):
+    is_leftward = along[0] < -_UPRIGHT
+    is_downward = along[0] <= _UPRIGHT and along[1] < 0
+    if is_leftward or is_downward:
         along = -along
-    beside_m = place_m + 1.5 * _SMALL_TEXT_M * np.array([-along[1], along[0]])
-    text = modelspace.add_text(f"{width_m:.2f}", height=_SMALL_TEXT_M, dxfattribs={"layer": TEXT})
-    text.dxf.rotation = np.degrees(np.arctan2(along[1], along[0]))
-    text.set_placement(beside_m.tolist(), align=TextEntityAlignment.MIDDLE_CENTER)
+    beside_m = place_m + _LINE_SPACING * _SMALL_TEXT_M * np.array([-along[1], along[0]])
+    turn_deg = np.degrees(np.arctan2(along[1], along[0]))
+    _add_text(modelspace, f"{width_m:.2f}", beside_m.tolist(), _SMALL_TEXT_M, turn_deg)
 
 
-def _add_rooms(modelspace, plan):
-    _outlines(modelspace, plan.areas, ROOMS)
-    for room, area_m2, x_m, y_m in zip(
-        *(plan.rooms[c].tolist() for c in ("room", "area_m2", "x_m", "y_m")), strict=True
-    ):
-        for row, said in enumerate((f"Room {room}", f"{area_m2:.1f} m2")):
-            text = modelspace.add_text(said, height=_TEXT_M, dxfattribs={"layer": TEXT})
-            text.set_placement(
-                (x_m, y_m - 1.5 * row * _TEXT_M), align=TextEntityAlignment.MIDDLE_CENTER
-            )
+def _add_rooms(modelspace: Modelspace, plan: FloorPlan) -> None:
+    _add_outlines(modelspace, plan.areas, ROOMS)
+    names = ("room", "area_m2", "x_m", "y_m")
+    columns = [plan.rooms[name].tolist() for name in names]
+    for room, area_m2, x_m, y_m in zip(*columns, strict=True):
+        _add_text(modelspace, f"Room {room}", (x_m, y_m), _TEXT_M)
+        below_m = y_m - _LINE_SPACING * _TEXT_M
+        _add_text(modelspace, f"{area_m2:.1f} m2", (x_m, below_m), _TEXT_M)
 
 
-def _audit(document):
+def _add_text(
+    modelspace: Modelspace,
+    words: str,
+    middle_m: Sequence[float],
+    height_m: float,
+    turn_deg: float | None = None,
+) -> None:
+    text = modelspace.add_text(words, height=height_m, dxfattribs={"layer": TEXT})
+    if turn_deg is not None:
+        text.dxf.rotation = turn_deg
+    text.set_placement(middle_m, align=TextEntityAlignment.MIDDLE_CENTER)
+
+
+def _check_document(document: Drawing) -> None:
     faults = document.audit().errors
     if faults:
         raise ValueError(f"the drawing has {len(faults)} faults, the first: {faults[0].message}")
 
 
 @contextmanager
-def _fixed_metadata():
-    kept = ezdxf.options.write_fixed_meta_data_for_testing
-    ezdxf.options.write_fixed_meta_data_for_testing = True
+def _fixed_metadata() -> Iterator[None]:
+    # ezdxf documents its options under this name, but does not declare it
+    options = ezdxf.options  # pyright: ignore[reportPrivateImportUsage]
+    before = options.write_fixed_meta_data_for_testing
+    options.write_fixed_meta_data_for_testing = True
     try:
         yield
     finally:
-        ezdxf.options.write_fixed_meta_data_for_testing = kept
+        options.write_fixed_meta_data_for_testing = before

@@ -1,39 +1,51 @@
 """The plan as GeoJSON, in the local metres of the survey."""
 
 import json
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import shapely
+
+from scanplan.plan.floorplan import FloorPlan
+from scanplan.types import Columns
 
 NOTE = (
     "Coordinates are metres in the survey's local map frame, not longitude and latitude: "
     "x and y are those of the localiser's map, north is unknown."
 )
-# RFC 7946 knows longitude and latitude only; readers that still look at the older member `crs` (GDAL, QGIS) are told
+# RFC 7946 knows longitude and latitude only; GDAL and QGIS still read the older member `crs`
 CRS = (
     'ENGCRS["local metres of the survey",EDATUM["map frame of the localiser"],CS[Cartesian,2],'
     'AXIS["x",unspecified],AXIS["y",unspecified],LENGTHUNIT["metre",1]]'
 )
 _ENDS = ("x0_m", "y0_m", "x1_m", "y1_m")
-_DIGITS = {"nx": 6, "ny": 6}
+_DIGITS = 4  # of lengths: 0.1 mm
+_NORMAL_DIGITS = 6  # of unit normals: 0.1 mm at the end of a wall of 100 m
+_NORMALS = ("nx", "ny")
 _LEFT_OUT = {*_ENDS, "geometry", "x_m", "y_m"}
 
+Feature = dict[str, Any]
+"""A GeoJSON feature."""
 
-def format_geojson(plan, evidence=None):
+
+def format_geojson(plan: FloorPlan, evidence: Columns | None = None) -> str:
     """Return a plan as the text of a GeoJSON FeatureCollection, one feature a line.
 
     Parameters
     ----------
     plan : floorplan.FloorPlan
     evidence : dict of str to (n,) array, optional
-        The columns of `schemas.EVIDENCE`: a wall's feature lists the scans that show it, and when they were taken.
+        The columns of `schemas.EVIDENCE`: a wall's feature lists the scans that show it, and when
+        they were taken.
 
     Returns
     -------
     str
-        Coordinates in metres rounded to 0.1 mm. Features are of `kind` face and wall (LineString; a wall's is its
-        centreline, or its only face), opening (LineString from one side of it to the other) and room (Polygon). Their
-        properties are the columns of the tables, null where not known.
+        Coordinates in metres rounded to 0.1 mm. Features are of `kind` face and wall (LineString; a
+        wall's is its centreline, or its only face), opening (LineString from one side of it to the
+        other) and room (Polygon). Their properties are the columns of the tables, null where not
+        known.
     """
     collection = {
         "type": "FeatureCollection",
@@ -42,75 +54,72 @@ def format_geojson(plan, evidence=None):
         "note": NOTE,
         "units": "m",
     }
-    seen = {} if evidence is None else _by_wall(evidence)
+    walls = list(_line_features("wall", plan.walls))
+    if evidence is not None and len(evidence["wall"]):
+        _add_scans(walls, evidence)
     features = [
-        *_lines("face", plan.faces),
-        *(_with(feature, seen) for feature in _lines("wall", plan.walls)),
-        *_lines("opening", plan.openings),
-        *_polygons("room", plan.rooms),
+        *_line_features("face", plan.faces),
+        *walls,
+        *_line_features("opening", plan.openings),
+        *_polygon_features("room", plan.rooms),
     ]
     head = json.dumps(collection, ensure_ascii=False)
     lines = ",\n".join(json.dumps(feature, allow_nan=False) for feature in features)
     return f'{head[:-1]}, "features": [\n{lines}\n]}}\n'
 
 
-def _lines(kind, columns):
-    for i in range(len(columns[kind])):
-        x0_m, y0_m, x1_m, y1_m = (_rounded(columns[c][i]) for c in _ENDS)
+def _line_features(kind: str, columns: Columns) -> Iterator[Feature]:
+    for row in range(len(columns[kind])):
+        x0_m, y0_m, x1_m, y1_m = (_round(columns[name][row]) for name in _ENDS)
         geometry = {"type": "LineString", "coordinates": [[x0_m, y0_m], [x1_m, y1_m]]}
-        yield _feature(
-            kind, columns, i, geometry, {"length_m": _rounded(np.hypot(x1_m - x0_m, y1_m - y0_m))}
-        )
+        length_m = _round(np.hypot(x1_m - x0_m, y1_m - y0_m))
+        yield _feature(kind, columns, row, geometry, {"length_m": length_m})
 
 
-def _polygons(kind, columns):
-    for i, polygon in enumerate(shapely.from_wkb(np.asarray(columns["geometry"], object))):
+def _polygon_features(kind: str, columns: Columns) -> Iterator[Feature]:
+    polygons = shapely.from_wkb(np.asarray(columns["geometry"], object))
+    for row, polygon in enumerate(polygons):
         # the right-hand rule of RFC 7946: the outline counter-clockwise
         rings = shapely.get_rings(shapely.orient_polygons(polygon))
-        drawn = [
-            [[_rounded(x), _rounded(y)] for x, y in shapely.get_coordinates(ring)] for ring in rings
+        coordinates = [
+            [[_round(x), _round(y)] for x, y in shapely.get_coordinates(ring)] for ring in rings
         ]
-        yield _feature(kind, columns, i, {"type": "Polygon", "coordinates": drawn}, {})
+        geometry = {"type": "Polygon", "coordinates": coordinates}
+        yield _feature(kind, columns, row, geometry, {})
 
 
-def _feature(kind, columns, i, geometry, more):
-    stated = {
-        c: _plain(values[i], _DIGITS.get(c, 4))
-        for c, values in columns.items()
-        if c not in _LEFT_OUT
+def _feature(
+    kind: str, columns: Columns, row: int, geometry: dict[str, Any], derived: dict[str, Any]
+) -> Feature:
+    properties = {
+        name: _to_json(values[row], _NORMAL_DIGITS if name in _NORMALS else _DIGITS)
+        for name, values in columns.items()
+        if name not in _LEFT_OUT
     }
     return {
         "type": "Feature",
-        "id": f"{kind}-{stated[kind]}",
-        "properties": {"kind": kind, **stated, **more},
+        "id": f"{kind}-{properties[kind]}",
+        "properties": {"kind": kind, **properties, **derived},
         "geometry": geometry,
     }
 
 
-def _by_wall(evidence):
-    seen = {}
-    for wall, scan_id, t_ns in zip(
-        *(evidence[c].tolist() for c in ("wall", "scan_id", "t_ns")), strict=True
-    ):
-        scans, times = seen.setdefault(wall, ([], []))
-        scans.append(scan_id)
-        times.append(t_ns)
-    return {wall: {"scan_ids": scans, "t_ns": times} for wall, (scans, times) in seen.items()}
+def _add_scans(walls: list[Feature], evidence: Columns) -> None:
+    """Add the scans that show each wall to the properties of its feature."""
+    for feature in walls:
+        is_of_wall = evidence["wall"] == feature["properties"]["wall"]
+        feature["properties"]["scan_ids"] = evidence["scan_id"][is_of_wall].tolist()
+        feature["properties"]["t_ns"] = evidence["t_ns"][is_of_wall].tolist()
 
 
-def _with(feature, seen):
-    nothing = {"scan_ids": [], "t_ns": []} if seen else {}
-    feature["properties"] |= seen.get(feature["properties"]["wall"], nothing)
-    return feature
+def _to_json(value: Any, digits: int) -> Any:
+    """Return a table's value as JSON has it: null for NaN, floats rounded."""
+    plain = value.item() if isinstance(value, np.generic) else value
+    if not isinstance(plain, float):
+        return plain
+    return None if np.isnan(plain) else _round(plain, digits)
 
 
-def _plain(value, digits):
-    value = value.item() if isinstance(value, np.generic) else value
-    if not isinstance(value, float):
-        return value
-    return None if np.isnan(value) else _rounded(value, digits)
-
-
-def _rounded(value, digits=4):
+def _round(value: float, digits: int = _DIGITS) -> float:
     # + 0.0 turns a negative zero into zero
     return round(float(value), digits) + 0.0

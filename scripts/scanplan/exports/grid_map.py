@@ -6,15 +6,23 @@ from itertools import pairwise
 
 import numpy as np
 import shapely
+from shapely.geometry import Polygon
 
 from scanplan.geometry import bitmap
 from scanplan.plan import floorplan
+from scanplan.plan.floorplan import FloorPlan
+from scanplan.types import Array, BoolArray, FloatArray, IntArray
 
-FREE, OCCUPIED, UNKNOWN = 254, 0, 205
-_MARGIN_M = 0.5
-_MOST_CELLS = 64_000_000
-# the usual grey of the unknown, 205, is an occupancy of 0.196: nav2's own limit of 0.25 would take it for free
-_FREE_BELOW, _OCCUPIED_ABOVE = 0.1, 0.65
+# grey values of ROS map_server
+FREE = 254
+OCCUPIED = 0
+UNKNOWN = 205
+_MARGIN_M = 0.5  # around all that is known: room for a planner's inflation of obstacles
+_MOST_CELLS = 64_000_000  # a robot's memory: 64 MB, 400 m x 400 m at 5 cm
+_WHITE = 255  # of a PGM image
+# thresholds on the occupancy, (255 - grey) / 255; that of `UNKNOWN` is 0.196
+_FREE_BELOW = 0.1  # nav2's own default of 0.25 would take the unknown for free
+_OCCUPIED_ABOVE = 0.65  # nav2's default
 
 
 @dataclass(frozen=True)
@@ -24,97 +32,122 @@ class GridMap:
     Attributes
     ----------
     cells : (rows, columns) uint8
-        `FREE`, `OCCUPIED` or `UNKNOWN`; the first row is the northernmost (greatest y), as in an image.
+        `FREE`, `OCCUPIED` or `UNKNOWN`; the first row is that of the greatest y, as in an image.
     resolution_m : float
         Edge of a cell.
     origin_m : (float, float)
         Place of the lower left corner of the lower left cell in the map frame.
     """
 
-    cells: np.ndarray
+    cells: IntArray
     resolution_m: float
-    origin_m: tuple
+    origin_m: tuple[float, float]
 
 
-def draw_grid_map(plan, resolution_m):
+def draw_grid_map(plan: FloorPlan, resolution_m: float) -> GridMap:
     """Draw where a robot can drive.
 
-    Occupied is every cell that a wall's surface passes through or whose middle lies in a wall; doors and passages are
-    no wall, windows are. Free is a cell whose middle lies on floor that rays went over. Nothing is known of the rest.
+    Occupied is every cell that a wall's surface passes through or whose middle lies in a wall;
+    doors and passages are no wall, windows are. Free is a cell whose middle lies on floor that rays
+    went over. The rest is unknown.
 
     Parameters
     ----------
     plan : floorplan.FloorPlan
     resolution_m : float, > 0
         Doubled until the grid has at most 64 million cells.
-
-    Returns
-    -------
-    GridMap
     """
-    low_m, high_m = plan.bounds_m
     floor = shapely.from_wkb(np.asarray(plan.free["geometry"], object))
-    if len(floor):
-        x0, y0, x1, y1 = shapely.total_bounds(floor)
-        low_m, high_m = np.minimum(low_m, (x0, y0)), np.maximum(high_m, (x1, y1))
-    while np.prod(np.ceil((high_m - low_m + 2 * _MARGIN_M) / resolution_m)) > _MOST_CELLS:
+    grid = _fit_grid(*_extent_m(plan, floor), resolution_m)
+    cells = np.full(grid.shape, UNKNOWN, np.uint8)
+    cells[_find_inside(floor, grid)] = FREE
+    solid, lines_m = _obstacles(plan)
+    cells[_find_inside(solid, grid)] = OCCUPIED
+    cells[bitmap.rasterise_lines(lines_m, grid)] = OCCUPIED
+    x_m, y_m = (round(float(value), 6) + 0.0 for value in grid.low_m)
+    return GridMap(np.ascontiguousarray(cells[::-1]), grid.cell_m, (x_m, y_m))
+
+
+def format_pgm(grid: GridMap) -> bytes:
+    """Return the grid's cells as the bytes of a binary PGM image."""
+    rows, columns = grid.cells.shape
+    return b"P5\n%d %d\n%d\n" % (columns, rows, _WHITE) + grid.cells.tobytes()
+
+
+def format_map_yaml(grid: GridMap, image: str) -> str:
+    """Return the text of the YAML file by which nav2's map server reads the image of that name."""
+    x_m, y_m = grid.origin_m
+    lines = [
+        f"image: {image}",
+        "mode: trinary",
+        f"resolution: {grid.resolution_m:g}",
+        f"origin: [{x_m:g}, {y_m:g}, 0]",
+        "negate: 0",
+        f"occupied_thresh: {_OCCUPIED_ABOVE}",
+        f"free_thresh: {_FREE_BELOW}",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _extent_m(plan: FloorPlan, floor: Array) -> tuple[FloatArray, FloatArray]:
+    """Return the least and the greatest x and y of a plan and its free floor."""
+    low_m, high_m = plan.bounds_m
+    if len(floor) == 0:
+        return low_m, high_m
+    x0_m, y0_m, x1_m, y1_m = shapely.total_bounds(floor)
+    return np.minimum(low_m, (x0_m, y0_m)), np.maximum(high_m, (x1_m, y1_m))
+
+
+def _fit_grid(low_m: FloatArray, high_m: FloatArray, resolution_m: float) -> bitmap.Grid:
+    size_m = high_m - low_m + 2 * _MARGIN_M
+    while np.prod(np.ceil(size_m / resolution_m)) > _MOST_CELLS:
         resolution_m *= 2
     # a round origin: the cells of plans of one building at one resolution fall on each other
     origin_m = np.floor((low_m - _MARGIN_M) / resolution_m) * resolution_m
-    shape = tuple(np.ceil((high_m + _MARGIN_M - origin_m) / resolution_m).astype(int)[::-1])
-    cells = np.full(shape, UNKNOWN, np.uint8)
-    cells[_inside(floor, origin_m, resolution_m, shape)] = FREE
-    solid, lines = _obstacles(plan)
-    cells[_inside(solid, origin_m, resolution_m, shape)] = OCCUPIED
-    cells[bitmap.rasterise_lines(lines, bitmap.Grid(origin_m, resolution_m, shape))] = OCCUPIED
-    origin = tuple(round(float(v), 6) + 0.0 for v in origin_m)
-    return GridMap(np.ascontiguousarray(cells[::-1]), resolution_m, origin)
+    columns, rows = np.ceil((high_m + _MARGIN_M - origin_m) / resolution_m).astype(int).tolist()
+    return bitmap.Grid(origin_m, resolution_m, (rows, columns))
 
 
-def format_pgm(grid):
-    """Return the grid's cells as the bytes of a binary PGM image."""
-    rows, columns = grid.cells.shape
-    return b"P5\n%d %d\n255\n" % (columns, rows) + grid.cells.tobytes()
+def _obstacles(plan: FloorPlan) -> tuple[Array, FloatArray]:
+    """Return polygons, and lines (n, 2, 2) of surfaces, that are in the way.
+
+    A window is no way through. In a wall of which one side is known only that side is in the way.
+    """
+    is_window = plan.openings["type"] == "window"
+    panes_m = floorplan.centrelines_m(plan.openings)[is_window]
+    thickness_m = plan.openings["thickness_m"][is_window]
+    is_thick = np.isfinite(thickness_m)
+    polygons = []
+    lines = []
+    for state in floorplan.STATES:
+        polygons += [*shapely.get_parts(plan.solid(state))]
+        lines += [*plan.single(state)]
+    polygons += [*floorplan.buffer_lines(panes_m[is_thick], thickness_m[is_thick] / 2)]
+    lines += [*floorplan.line_shapes(panes_m[~is_thick])]
+    solid = np.array(polygons, object)
+    outlines = shapely.get_rings(solid) if len(solid) else []
+    segments_m = [_segments_m(shape) for shape in (*outlines, *lines)]
+    return solid, np.concatenate([np.zeros((0, 2, 2)), *segments_m])
 
 
-def format_map_yaml(grid, image):
-    """Return the text of the YAML file that tells nav2's map server how to read the image of that name."""
-    x_m, y_m = grid.origin_m
-    return (
-        f"image: {image}\nmode: trinary\nresolution: {grid.resolution_m:g}\norigin: [{x_m:g}, {y_m:g}, 0]\n"
-        f"negate: 0\noccupied_thresh: {_OCCUPIED_ABOVE}\nfree_thresh: {_FREE_BELOW}\n"
-    )
+def _segments_m(line: shapely.LineString) -> FloatArray:
+    """Return the segments (n, 2, 2) of a line or ring."""
+    corners_m = shapely.get_coordinates(line)
+    return np.stack([corners_m[:-1], corners_m[1:]], axis=1)
 
 
-def _obstacles(plan):
-    """Return polygons, and lines (n, 2, 2) of surfaces, that are in the way; a window is no way through."""
-    windows = plan.openings["type"] == "window"
-    solid = [part for state in floorplan.STATES for part in shapely.get_parts(plan.solid(state))]
-    lines = [line for state in floorplan.STATES for line in plan.single(state)]
-    # of a window in a wall of which one side is known nothing but that side is in the way
-    panes_m, thick_m = (
-        floorplan.centrelines_m(plan.openings)[windows],
-        plan.openings["thickness_m"][windows],
-    )
-    known = np.isfinite(thick_m)
-    solid += list(floorplan.buffer_lines(panes_m[known], thick_m[known] / 2))
-    lines += list(shapely.linestrings(panes_m[~known]))
-    outlines = list(shapely.get_rings(np.array(solid, object))) if solid else []
-    pairs = [
-        np.stack([xy[:-1], xy[1:]], axis=1) for xy in map(shapely.get_coordinates, outlines + lines)
-    ]
-    return np.array(solid, object), np.concatenate(pairs) if pairs else np.zeros((0, 2, 2))
+def _find_inside(polygons: Array, grid: bitmap.Grid) -> BoolArray:
+    """Return which cells (rows, columns) have their middle in any of the polygons.
 
-
-def _inside(polygons, origin_m, resolution_m, shape):
-    """Tell which cells (rows, columns) have their middle in any of the polygons: left of an odd number of edges."""
-    odd = np.zeros(shape, np.uint8)
-    merged = shapely.union_all(polygons) if len(polygons) else shapely.Polygon()
+    Such a cell has an odd number of edges on its left.
+    """
+    is_odd = np.zeros(grid.shape, np.uint8)
+    merged = shapely.union_all(polygons) if len(polygons) else Polygon()
     for ring in shapely.get_rings(shapely.get_parts(merged)):
-        xy = (shapely.get_coordinates(ring) - origin_m) / resolution_m - 0.5
-        for (x0, y0), (x1, y1) in pairwise(xy):
+        corners = (shapely.get_coordinates(ring) - grid.low_m) / grid.cell_m - 0.5
+        for (x0, y0), (x1, y1) in pairwise(corners):
             rows = np.arange(math.ceil(min(y0, y1)), math.ceil(max(y0, y1)))
             if len(rows):
                 columns = np.ceil(x0 + (rows - y0) * (x1 - x0) / (y1 - y0)).astype(int)
-                odd[rows, columns] ^= 1
-    return np.bitwise_xor.accumulate(odd, axis=1).astype(bool)
+                is_odd[rows, columns] ^= 1
+    return np.bitwise_xor.accumulate(is_odd, axis=1).astype(bool)

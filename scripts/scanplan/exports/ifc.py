@@ -1,25 +1,36 @@
 """The plan as a building model: IFC4, one storey."""
 
-import math
+from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 import shapely
+from ifcopenshell import entity_instance
+from shapely.geometry import Polygon
 
-from scanplan.exports import ifc_model
+from scanplan.exports.ifc_model import Frame, IfcModel
 from scanplan.plan import floorplan
+from scanplan.plan.floorplan import FloorPlan
+from scanplan.types import FloatArray
 
-_LEAF_M = 0.04
-# ASSUME where the scans show no sill or lintel, metres above the floor
-_DOOR_M, _SILL_M = 2.0, 0.9
+_LEAF_M = 0.04  # thickness of a door leaf and a window, usual; nothing thinner is drawn
+# ASSUME where the scans show no lintel or sill, metres above the floor
+_DOOR_M = 2.0  # a usual door's clear height
+_SILL_M = 0.9  # a usual balustrade's height
+_ID_DIGITS = 3  # of coordinates in identifiers: a millimetre, below any plan's precision
 _FILLED_BY = {"door": "IfcDoor", "window": "IfcWindow"}
+_EVIDENCE = "Scanplan_Evidence"  # property set: IFC keeps the prefix Pset_ for its own
+_WALL_QUANTITIES = "Qto_WallBaseQuantities"  # IFC4's own
+_SPACE_QUANTITIES = "Qto_SpaceBaseQuantities"
 
 
-def format_ifc(plan):
+def format_ifc(plan: FloorPlan) -> str:
     """Return a plan as the text of an IFC4 file in metres.
 
-    Project, site, building and storey; an IfcWall of every wall, as high as the storey or up to where it was seen to
-    end below the ceiling, with what is known of it as properties; an IfcOpeningElement with IfcDoor or IfcWindow in its
-    wall; an IfcSpace of every room. Where on earth the site lies and where north is are not known and left out.
+    Project, site, building and storey; an IfcWall of every wall, as high as the storey or up to
+    where it was seen to end below the ceiling, with what is known of it as properties; an
+    IfcOpeningElement with IfcDoor or IfcWindow in its wall; an IfcSpace of every room. Where on
+    earth the site lies and where north is are not known and left out.
 
     Parameters
     ----------
@@ -28,161 +39,208 @@ def format_ifc(plan):
     Returns
     -------
     str
-        The same for the same plan. The GlobalId of a wall, opening or room follows from the plan's name and its
-        place, and stays while these do.
+        The same for the same plan. The GlobalId of a wall, opening or room follows from the plan's
+        name and its place, and stays while these do.
     """
-    floor_m, height_m = plan.storey_m
-    model = ifc_model.IfcModel(plan.name, floor_m)
-    walls = [_add_wall(model, plan, i) for i in range(len(plan.walls["wall"]))]
-    leaves = [
-        _add_opening(model, plan, i, height_m, walls) for i in range(len(plan.openings["opening"]))
+    floor_m, _ = plan.storey_m
+    model = IfcModel(plan.name, floor_m)
+    walls = [_add_wall(model, plan, row) for row in range(len(plan.walls["wall"]))]
+    fillings = [
+        _add_opening(model, plan, row, walls) for row in range(len(plan.openings["opening"]))
     ]
-    model.contain([*walls, *filter(None, leaves)])
-    model.aggregate(
-        model.storey, [_add_space(model, plan, i, height_m) for i in range(len(plan.rooms["room"]))]
-    )
+    model.contain([*walls, *(filling for filling in fillings if filling is not None)])
+    spaces = [_add_space(model, plan, row) for row in range(len(plan.rooms["room"]))]
+    model.aggregate(model.storey, spaces)
     return model.text()
 
 
-def _frame(line):
-    """Return the length of a line (2, 2), its way, and a function that moves a shape into its frame."""
-    length_m = math.dist(*line)
-    along = (line[1] - line[0]) / length_m
-    turn = np.array([along, (-along[1], along[0])])
-    return (
-        length_m,
-        along,
-        lambda shape: shapely.transform(shape, lambda xy: (xy - line[0]) @ turn.T),
-    )
-
-
-def _add_wall(model, plan, i):
-    line, columns, height_m = (
-        floorplan.centrelines_m(plan.walls)[i],
-        plan.walls,
-        float(plan.heights_m[i]),
-    )
-    length_m, along, local = _frame(line)
+def _add_wall(model: IfcModel, plan: FloorPlan, row: int) -> entity_instance:
+    line = floorplan.centrelines_m(plan.walls)[row]
+    height_m = float(plan.heights_m[row])
+    frame = Frame(line)
+    number = str(plan.walls["wall"][row])
     wall = model.root(
-        "IfcWall", _place(line), Name=f"Wall {columns['wall'][i]}", Tag=str(columns["wall"][i]),
-        ObjectPlacement=model.placement((*line[0], 0), along, model.storey.ObjectPlacement),
+        "IfcWall",
+        _id_words(line),
+        Name=f"Wall {number}",
+        Tag=number,
+        ObjectPlacement=frame.placement(model),
         PredefinedType="NOTDEFINED",
-    )  # fmt: skip
-    wall.Representation = model.shape(
-        [model.prism(local(plan.bodies[i]), 0.0, height_m)], [(0, 0), (length_m, 0)]
     )
-    floor_m = plan.storey_m[0]
-    number = {
-        c: _known(columns[c][i])
-        for c in ("sigma_offset_m", "sigma_end0_m", "sigma_end1_m", "rmse_m")
-    }
-    model.describe(wall, "Scanplan_Evidence", {
-        "State": ("IfcLabel", str(columns["state"][i])),
-        "VerifyOnSite": ("IfcBoolean", bool(columns["verify"][i])),
-        "ThicknessMeasured": ("IfcBoolean", bool(plan.thick[i])),
-        "OffsetStandardDeviation": ("IfcLengthMeasure", number["sigma_offset_m"]),
-        "StartStandardDeviation": ("IfcLengthMeasure", number["sigma_end0_m"]),
-        "EndStandardDeviation": ("IfcLengthMeasure", number["sigma_end1_m"]),
-        "Residual": ("IfcLengthMeasure", number["rmse_m"]),
-        "HeightMeasured": ("IfcBoolean", bool(plan.low[i]) or plan.height_from == "ceiling"),
-        "HeightFrom": ("IfcLabel", "top of the wall" if plan.low[i] else floorplan.HEIGHTS[plan.height_from]),
-        "SeenFromHeight": ("IfcLengthMeasure", _known(columns["z_min_m"][i] - floor_m)),
-        "SeenToHeight": ("IfcLengthMeasure", _known(columns["z_max_m"][i] - floor_m)),
-        "Points": ("IfcInteger", int(columns["n_points"][i])),
-        "Scans": ("IfcInteger", int(columns["n_scans"][i])),
-    })  # fmt: skip
-    model.measure(wall, "Qto_WallBaseQuantities", {
-        "Length": ("IfcQuantityLength", length_m),
-        "Width": ("IfcQuantityLength", float(sum(side[i] for side in plan.sides_m))),
+    body = model.prism(frame.move_here(plan.bodies[row]), 0.0, height_m)
+    wall.Representation = model.shape([body], np.array([(0, 0), (frame.length_m, 0)]))
+    _describe_wall(model, plan, row, wall)
+    left_m, right_m = plan.sides_m
+    quantities = {
+        "Length": ("IfcQuantityLength", frame.length_m),
+        "Width": ("IfcQuantityLength", float(left_m[row] + right_m[row])),
         "Height": ("IfcQuantityLength", height_m),
-    })  # fmt: skip
+    }
+    model.measure(wall, _WALL_QUANTITIES, quantities)
     return wall
 
 
-def _add_opening(model, plan, i, height_m, walls):
-    """Add an opening to its wall, and return the door or window in it; None of a passage or where it is in no wall."""
-    line, columns = floorplan.centrelines_m(plan.openings)[i], plan.openings
-    kind, host = columns["type"][i], plan.hosts[i]
-    height_m = float(plan.heights_m[host]) if host >= 0 else height_m
-    low_m, high_m = _heights(kind, columns["sill_m"][i], columns["lintel_m"][i], height_m)
-    name, (length_m, along, local) = f"{kind.capitalize()} {columns['opening'][i]}", _frame(line)
-    where = model.placement((*line[0], 0), along, model.storey.ObjectPlacement)
-    hole = None
-    if host >= 0 and plan.gaps[i].intersects(plan.bodies[host]):
-        hole = model.root(
-            "IfcOpeningElement",
-            _place(line),
-            Name=name,
-            ObjectPlacement=where,
-            PredefinedType="OPENING",
-        )
-        hole.Representation = model.shape([model.prism(local(plan.gaps[i]), low_m, high_m)])
-        model.root(
-            "IfcRelVoidsElement",
-            _place(line),
-            RelatingBuildingElement=walls[host],
-            RelatedOpeningElement=hole,
-        )
+def _describe_wall(model: IfcModel, plan: FloorPlan, row: int, wall: entity_instance) -> None:
+    floor_m, _ = plan.storey_m
+    columns = plan.walls
+    is_low = bool(plan.low[row])
+    height_from = "top of the wall" if is_low else floorplan.HEIGHTS[plan.height_from]
+
+    def known_m(name: str, above_m: float = 0.0) -> tuple[str, float | None]:
+        return "IfcLengthMeasure", _known(columns[name][row] - above_m)
+
+    properties = {
+        "State": ("IfcLabel", str(columns["state"][row])),
+        "VerifyOnSite": ("IfcBoolean", bool(columns["verify"][row])),
+        "ThicknessMeasured": ("IfcBoolean", bool(plan.thick[row])),
+        "OffsetStandardDeviation": known_m("sigma_offset_m"),
+        "StartStandardDeviation": known_m("sigma_end0_m"),
+        "EndStandardDeviation": known_m("sigma_end1_m"),
+        "Residual": known_m("rmse_m"),
+        "HeightMeasured": ("IfcBoolean", is_low or plan.height_from == "ceiling"),
+        "HeightFrom": ("IfcLabel", height_from),
+        "SeenFromHeight": known_m("z_min_m", floor_m),
+        "SeenToHeight": known_m("z_max_m", floor_m),
+        "Points": ("IfcInteger", int(columns["n_points"][row])),
+        "Scans": ("IfcInteger", int(columns["n_scans"][row])),
+    }
+    model.describe(wall, _EVIDENCE, properties)
+
+
+def _add_opening(
+    model: IfcModel, plan: FloorPlan, row: int, walls: list[entity_instance]
+) -> entity_instance | None:
+    """Add an opening to its wall, and return the door or window in it; None of a passage."""
+    line = floorplan.centrelines_m(plan.openings)[row]
+    frame = Frame(line)
+    kind = plan.openings["type"][row]
+    extent_m = _vertical_extent_m(plan, row)
+    attributes = {
+        "Name": f"{kind.capitalize()} {plan.openings['opening'][row]}",
+        "ObjectPlacement": frame.placement(model),
+    }
+    void = None
+    host = plan.hosts[row]
+    if host >= 0 and plan.gaps[row].intersects(plan.bodies[host]):
+        gap = frame.move_here(plan.gaps[row])
+        void = _add_void(model, walls[host], line, gap, extent_m, attributes)
     if kind not in _FILLED_BY:
         return None
-    leaf = model.root(
-        _FILLED_BY[kind], _place(line), Name=name, ObjectPlacement=where,
-        OverallHeight=high_m - low_m, OverallWidth=length_m, PredefinedType=kind.upper(),
-    )  # fmt: skip
-    leaf.Representation = model.shape(
-        [model.prism(shapely.box(0, -_LEAF_M / 2, length_m, _LEAF_M / 2), low_m, high_m)]
-    )
-    if hole is not None:
+    filling = _add_filling(model, kind, line, frame.length_m, extent_m, attributes)
+    if void is not None:
         model.root(
             "IfcRelFillsElement",
-            _place(line),
-            RelatingOpeningElement=hole,
-            RelatedBuildingElement=leaf,
+            _id_words(line),
+            RelatingOpeningElement=void,
+            RelatedBuildingElement=filling,
         )
-    model.describe(leaf, "Scanplan_Evidence", {
-        "SillMeasured": ("IfcBoolean", _known(columns["sill_m"][i]) is not None),
-        "LintelMeasured": ("IfcBoolean", _known(columns["lintel_m"][i]) is not None),
-        "Rays": ("IfcInteger", int(columns["n_rays"][i])),
-        "JoinsRooms": ("IfcLabel", f"{columns['room_a'][i]} and {columns['room_b'][i]}"),
-    })  # fmt: skip
-    return leaf
+    _describe_filling(model, plan, row, filling)
+    return filling
 
 
-def _heights(kind, sill_m, lintel_m, height_m):
-    """Return from where to where above the floor an opening reaches, where not known as is usual."""
-    low_m = sill_m if np.isfinite(sill_m) else (_SILL_M if kind == "window" else 0.0)
-    usual_m = height_m if kind == "passage" else _DOOR_M
-    high_m = min(lintel_m if np.isfinite(lintel_m) else usual_m, height_m)
-    low_m = max(low_m, 0.0)
-    return (float(low_m), float(high_m)) if high_m > low_m + _LEAF_M else (0.0, float(height_m))
+def _add_void(
+    model: IfcModel,
+    wall: entity_instance,
+    line: FloatArray,
+    gap: Polygon,
+    extent_m: tuple[float, float],
+    attributes: dict[str, Any],
+) -> entity_instance:
+    """Cut an opening, `gap` in its own frame, out of a wall."""
+    key = _id_words(line)
+    void = model.root("IfcOpeningElement", key, PredefinedType="OPENING", **attributes)
+    void.Representation = model.shape([model.prism(gap, *extent_m)])
+    model.root("IfcRelVoidsElement", key, RelatingBuildingElement=wall, RelatedOpeningElement=void)
+    return void
 
 
-def _add_space(model, plan, i, height_m):
-    area, columns = plan.areas[i], plan.rooms
-    space = model.root(
-        "IfcSpace", _place(shapely.get_coordinates(area)),
-        Name=str(columns["room"][i]), LongName=f"Room {columns['room'][i]}",
-        ObjectPlacement=model.placement((0, 0, 0), (1, 0), model.storey.ObjectPlacement),
-        CompositionType="ELEMENT", PredefinedType="INTERNAL",
-    )  # fmt: skip
-    space.Representation = model.shape(
-        [model.prism(part, 0.0, height_m) for part in shapely.get_parts(area)]
+def _add_filling(
+    model: IfcModel,
+    kind: str,
+    line: FloatArray,
+    width_m: float,
+    extent_m: tuple[float, float],
+    attributes: dict[str, Any],
+) -> entity_instance:
+    """Add a door or window."""
+    low_m, high_m = extent_m
+    filling = model.root(
+        _FILLED_BY[kind],
+        _id_words(line),
+        OverallHeight=high_m - low_m,
+        OverallWidth=width_m,
+        PredefinedType=kind.upper(),
+        **attributes,
     )
-    model.describe(space, "Scanplan_Evidence", {
-        "Closed": ("IfcBoolean", bool(columns["closed"][i])), "Scans": ("IfcInteger", int(columns["n_scans"][i])),
-    })  # fmt: skip
-    model.measure(space, "Qto_SpaceBaseQuantities", {
-        "NetFloorArea": ("IfcQuantityArea", float(columns["area_m2"][i])),
-        "NetPerimeter": ("IfcQuantityLength", float(columns["perimeter_m"][i])),
+    leaf = shapely.box(0, -_LEAF_M / 2, width_m, _LEAF_M / 2)
+    filling.Representation = model.shape([model.prism(leaf, low_m, high_m)])
+    return filling
+
+
+def _describe_filling(model: IfcModel, plan: FloorPlan, row: int, filling: entity_instance) -> None:
+    columns = plan.openings
+    properties = {
+        "SillMeasured": ("IfcBoolean", bool(np.isfinite(columns["sill_m"][row]))),
+        "LintelMeasured": ("IfcBoolean", bool(np.isfinite(columns["lintel_m"][row]))),
+        "Rays": ("IfcInteger", int(columns["n_rays"][row])),
+        "JoinsRooms": ("IfcLabel", f"{columns['room_a'][row]} and {columns['room_b'][row]}"),
+    }
+    model.describe(filling, _EVIDENCE, properties)
+
+
+def _vertical_extent_m(plan: FloorPlan, row: int) -> tuple[float, float]:
+    """Return from where to where above the floor an opening reaches, as usual where not known."""
+    columns = plan.openings
+    kind = columns["type"][row]
+    sill_m = columns["sill_m"][row]
+    lintel_m = columns["lintel_m"][row]
+    host = plan.hosts[row]
+    _, storey_m = plan.storey_m
+    wall_m = float(plan.heights_m[host]) if host >= 0 else storey_m
+    usual_low_m = _SILL_M if kind == "window" else 0.0
+    usual_high_m = wall_m if kind == "passage" else _DOOR_M
+    low_m = max(sill_m if np.isfinite(sill_m) else usual_low_m, 0.0)
+    high_m = min(lintel_m if np.isfinite(lintel_m) else usual_high_m, wall_m)
+    if high_m > low_m + _LEAF_M:
+        return float(low_m), float(high_m)
+    return 0.0, float(wall_m)
+
+
+def _add_space(model: IfcModel, plan: FloorPlan, row: int) -> entity_instance:
+    _, height_m = plan.storey_m
+    columns = plan.rooms
+    area = plan.areas[row]
+    number = str(columns["room"][row])
+    space = model.root(
+        "IfcSpace",
+        _id_words(shapely.get_coordinates(area)),
+        Name=number,
+        LongName=f"Room {number}",
+        ObjectPlacement=model.placement((0, 0, 0), (1, 0), model.storey.ObjectPlacement),
+        CompositionType="ELEMENT",
+        PredefinedType="INTERNAL",
+    )
+    solids = [model.prism(part, 0.0, height_m) for part in shapely.get_parts(area)]
+    space.Representation = model.shape(solids)
+    properties = {
+        "Closed": ("IfcBoolean", bool(columns["closed"][row])),
+        "Scans": ("IfcInteger", int(columns["n_scans"][row])),
+    }
+    model.describe(space, _EVIDENCE, properties)
+    quantities = {
+        "NetFloorArea": ("IfcQuantityArea", float(columns["area_m2"][row])),
+        "NetPerimeter": ("IfcQuantityLength", float(columns["perimeter_m"][row])),
         "Height": ("IfcQuantityLength", height_m),
-    })  # fmt: skip
+    }
+    model.measure(space, _SPACE_QUANTITIES, quantities)
     return space
 
 
-def _place(coordinates):
+def _id_words(coordinates: FloatArray) -> Iterable[float]:
     """Return the words that an identifier follows from: coordinates to a millimetre."""
-    return (np.round(np.asarray(coordinates, float).ravel(), 3) + 0.0).tolist()
+    # + 0.0 turns a negative zero into zero
+    return (np.round(np.asarray(coordinates, float).ravel(), _ID_DIGITS) + 0.0).tolist()
 
 
-def _known(value):
+def _known(value: float) -> float | None:
     return float(value) if np.isfinite(value) else None

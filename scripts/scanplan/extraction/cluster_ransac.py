@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.extraction import furniture, mean_shift, normals, segments
-from scanplan.geometry import line_fit
-from scanplan.rays import scan_view
+from scanplan.geometry import ransac
+from scanplan.rays import scan_view, sensor_frame
 
 _DUAL_SHIFT_M = 1.0
 _ALIKE = np.cos(np.deg2rad(20))  # a point's normal against its wall's
@@ -65,7 +65,7 @@ def extract_by_clusters(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
     ValueError
         If a coordinate is not finite.
     """
-    points = segments.centre_on_sensor(xyz_m, sensor_xyz_m)
+    points = sensor_frame.centre_on_sensor(xyz_m, sensor_xyz_m)
     scan = segments.view_scan(points, planar=planar)
     surfaces = _surfaces(points, scan, settings)
     cells, facing = surfaces.cells, surfaces.facing
@@ -76,7 +76,7 @@ def extract_by_clusters(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
         own = cluster[free[cluster]]
         if cells.count[own].sum() < settings.least_points(planar):
             continue
-        line = line_fit.fit_line_ransac(
+        line = ransac.fit_line_ransac(
             cells.mean_m[own, :2],
             inlier_m=settings.inlier_m,
             trials=settings.trials,
@@ -118,7 +118,7 @@ def _gather(points, surfaces, free, line, inlier_m):
     other = points[cells.points_of(np.flatnonzero(near & ~alike & ~surfaces.level))]
     on_wall = np.abs(facing[:, :2] @ normal - offset_m) <= inlier_m
     if on_wall.sum() >= _LEAST_REFIT:
-        normal, offset_m, on_wall = line_fit.refit_line(
+        normal, offset_m, on_wall = ransac.refit_line(
             facing[:, :2], normal, offset_m, inlier_m=inlier_m
         )
     return (

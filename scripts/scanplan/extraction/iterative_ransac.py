@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.extraction import furniture, segments
-from scanplan.geometry import line_fit
+from scanplan.geometry import ransac
+from scanplan.rays import sensor_frame
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,7 +54,7 @@ def extract_iteratively(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
     ValueError
         If a coordinate is not finite.
     """
-    points = left = segments.centre_on_sensor(xyz_m, sensor_xyz_m)
+    points = left = sensor_frame.centre_on_sensor(xyz_m, sensor_xyz_m)
     scan = segments.view_scan(points, planar=planar)
     largest = _largest_line if planar else _largest_plane
     least = max(settings.least_points(planar), 3)
@@ -68,7 +69,7 @@ def extract_iteratively(scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
         found = left[inliers]
         if upright and np.hypot(*np.ptp(found[:, :2], axis=0)) >= settings.min_length_m:
             rows += segments.cut_line(
-                *line_fit.fit_line_tls(found[:, :2]), found, settings, scan=scan
+                *ransac.fit_line_tls(found[:, :2]), found, settings, scan=scan
             )
         left = left[~inliers]
     return segments.collect_segments(furniture.keep_walls(rows, scan, settings), sensor_xyz_m)
@@ -102,7 +103,7 @@ def find_largest_plane(xyz_m, *, inlier_m, trials, seed):
 
 
 def _largest_line(xyz_m, settings, rng):
-    inliers = line_fit.fit_line_ransac(
+    inliers = ransac.fit_line_ransac(
         xyz_m[:, :2], inlier_m=settings.inlier_m, trials=settings.trials, rng=rng
     )[2]
     return True, inliers

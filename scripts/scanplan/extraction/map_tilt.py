@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from scanplan.extraction import normals, segments
+from scanplan.extraction import normals
+from scanplan.rays import sensor_frame
 
 _NEAR_RAD = np.deg2rad(5)  # what normals of good surfaces scatter by
 _STEEPEST = np.cos(np.deg2rad(45))  # a map that is tilted more is no case of this
@@ -37,7 +38,7 @@ def tilt_warning(scans):
     found, weight = [np.empty((0, 3))], [np.empty(0)]
     for xyz_m, sensor_xyz_m in scans:
         cells = normals.cut_surface_cells(
-            segments.centre_on_sensor(xyz_m, sensor_xyz_m), reach_deg=_REACH_DEG
+            sensor_frame.centre_on_sensor(xyz_m, sensor_xyz_m), reach_deg=_REACH_DEG
         )
         known = np.isfinite(cells.normal[:, 0])
         found.append(cells.normal[known])

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan.errors import StageError
 from scanplan.extraction import furniture
 from scanplan.rays import line_columns, scan_view
 
@@ -78,31 +77,6 @@ class WallSegments:
     def __len__(self):
         """Return the number of segments."""
         return len(self.n_points)
-
-
-def centre_on_sensor(xyz_m, sensor_xyz_m):
-    """Return a scan's points relative to its sensor, axes of the map, in an order that depends on the points alone.
-
-    Raises
-    ------
-    ValueError
-        If a coordinate is not finite or the shapes are not (n, 3) and (3,).
-    """
-    xyz_m, sensor_xyz_m = np.asarray(xyz_m, float), np.asarray(sensor_xyz_m, float)
-    if xyz_m.ndim != 2 or xyz_m.shape[1] != 3 or sensor_xyz_m.shape != (3,):
-        raise ValueError(
-            f"points (n, 3) and a position (3,), not {xyz_m.shape} and {sensor_xyz_m.shape}"
-        )
-    if not (np.isfinite(xyz_m).all() and np.isfinite(sensor_xyz_m).all()):
-        raise ValueError("points and sensor position must be finite")
-    return xyz_m[_order(xyz_m)] - sensor_xyz_m
-
-
-def door_top_m(xyz_m, limits, *, planar):
-    """Return the height above which points bridge no gap, in the frame of the points (n, 3); infinite in the plane."""
-    if planar or len(xyz_m) == 0:
-        return np.inf
-    return scan_view.lowest_height(xyz_m) + limits.door_height_m
 
 
 def view_scan(xyz_m, *, planar):
@@ -217,33 +191,6 @@ def segment_columns(scan_ids, segments):
     }
 
 
-def sensor_keywords(registered, scan_ids, origin):
-    """Return each scan's `sensor_xyz_m` keyword, for `per_scan.map_scans`.
-
-    Parameters
-    ----------
-    registered : dict
-        Columns of the table of registration.
-    scan_ids : (n,) int
-    origin : path-like
-        Where the table comes from, for the message.
-
-    Raises
-    ------
-    StageError
-        If a scan has no row or no finite position there.
-    """
-    positions = np.column_stack([registered[c] for c in ("x_m", "y_m", "z_m")])
-    known = np.isfinite(positions).all(axis=1)
-    sensors = dict(zip(registered["scan_id"][known].tolist(), positions[known], strict=True))
-    missing = [s for s in np.asarray(scan_ids).tolist() if s not in sensors]
-    if missing:
-        raise StageError(
-            f"{origin}: no pose of {len(missing)} scans, first scan {missing[0]}; delete it and run again"
-        )
-    return {s: {"sensor_xyz_m": sensors[s]} for s in np.asarray(scan_ids).tolist()}
-
-
 def summarise_segments(columns, n_scans, took_ms):
     """Return what was found in a line: scans, walls, points per wall, time per scan."""
     points = columns["n_points"]
@@ -251,12 +198,3 @@ def summarise_segments(columns, n_scans, took_ms):
         f"{np.median(points):.0f} points in the median wall" if len(points) else "no wall at all"
     )
     return f"{n_scans:,} scans, {len(points):,} walls, {typical}, {took_ms / n_scans:.0f} ms a scan"
-
-
-def _order(xyz_m):
-    """Return an order of points that depends on them alone."""
-    mixed = xyz_m @ (1.0, np.sqrt(2), np.sqrt(3))
-    order = np.argsort(mixed)
-    tied = mixed[order][1:] == mixed[order][:-1]
-    # one number a point sorts faster than three, and seldom do different points share it
-    return order if not tied.any() else np.lexsort([*xyz_m.T, mixed])

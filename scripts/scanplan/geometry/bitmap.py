@@ -1,18 +1,23 @@
-"""The thesis's bitmap metrics (section 5.1): walls and truth as binary maps, and the shares of their difference."""
+"""Bitmap metrics: walls and truth as binary maps, and the shares of their difference.
+
+Thesis, section 5.1.
+"""
 
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from scanplan.errors import StageError
+from scanplan.types import Array, BoolArray, FloatArray, IntArray
 
-_MOST_CELLS = 100_000_000
+_MOST_CELLS = 100_000_000  # 100 MB a bitmap
 _WHOLE = 1e-9  # cells: nearer than this to a grid line is on it
 
 
 @dataclass(frozen=True)
 class Grid:
-    """Square cells; cell (row, column) spans from `low_m` + (column, row) * `cell_m` to one cell further.
+    """Square cells: (row, column) begins at `low_m` + (column, row) * `cell_m`.
 
     Attributes
     ----------
@@ -22,9 +27,9 @@ class Grid:
         Rows (y) and columns (x).
     """
 
-    low_m: np.ndarray
+    low_m: FloatArray
     cell_m: float
-    shape: tuple
+    shape: tuple[int, int]
 
 
 @dataclass(frozen=True)
@@ -36,10 +41,10 @@ class Shares:
     false_positive: float
 
 
-def fit_grid(lines_m, cell_m):
-    """Return the grid that just holds all lines (n, 2, 2), n >= 0: whole multiples of a cell from the map's origin.
+def fit_grid(lines_m: npt.ArrayLike, cell_m: float) -> Grid:
+    """Return the grid that just holds all lines (n, 2, 2), n >= 0.
 
-    Of no line at all it is one cell.
+    It begins whole cells from the map's origin. Of no line at all it is one cell.
 
     Raises
     ------
@@ -57,15 +62,17 @@ def fit_grid(lines_m, cell_m):
     columns, rows = (last - first).tolist()
     if rows * columns > _MOST_CELLS:
         raise StageError(
-            f"truth and walls span {columns * cell_m:.6g} m x {rows * cell_m:.6g} m: a bitmap of {rows * columns:.3g}"
-            f" cells, at most {_MOST_CELLS:,};"
+            f"truth and walls span {columns * cell_m:.6g} m x {rows * cell_m:.6g} m: a bitmap of"
+            f" {rows * columns:.3g} cells, at most {_MOST_CELLS:,};"
             f" make evaluation.bitmap_cell_m ({cell_m:g} m) larger or mend truth.geojson"
         )
     return Grid(first * cell_m, float(cell_m), (int(rows), int(columns)))
 
 
-def trace_cells(lines_m, grid):
-    """Find the cells that lines pass through, each line without a gap: neighbours share an edge or a corner.
+def trace_cells(lines_m: npt.ArrayLike, grid: Grid) -> tuple[IntArray, IntArray]:
+    """Find the cells that lines pass through, each line without a gap.
+
+    Neighbours share an edge or a corner.
 
     Parameters
     ----------
@@ -77,14 +84,15 @@ def trace_cells(lines_m, grid):
     -------
     line : (p,) int
     cell : (p,) int
-        Index into the flattened map, row by row. A line that runs along the edge of a cell belongs to the cell with
-        the larger coordinate, or the last one at the end of the grid.
+        Index into the flattened map, row by row. A line that runs along the edge of a cell belongs
+        to the cell with the larger coordinate, or the last one at the end of the grid.
     """
     ends = (np.asarray(lines_m, float).reshape(-1, 2, 2) - grid.low_m) / grid.cell_m
     ends = np.where(np.abs(ends - np.round(ends)) < _WHOLE, np.round(ends), ends)
     line, share = _crossings(ends)
     same = line[1:] == line[:-1]
-    line, middle = line[:-1][same], (share[1:] + share[:-1])[same] / 2
+    line = line[:-1][same]
+    middle = (share[1:] + share[:-1])[same] / 2
     place = ends[line, 0] + middle[:, None] * (ends[line, 1] - ends[line, 0])
     place = np.where(np.abs(place - np.round(place)) < _WHOLE, np.round(place), place)
     rows, columns = grid.shape
@@ -93,14 +101,14 @@ def trace_cells(lines_m, grid):
     return line[inside], row * columns + column
 
 
-def rasterise_lines(lines_m, grid):
-    """Return the binary map of lines: bool of the grid's shape, true where one or more pass through."""
+def rasterise_lines(lines_m: npt.ArrayLike, grid: Grid) -> BoolArray:
+    """Return the binary map of lines: bool of the grid's shape, true where any pass through."""
     bitmap = np.zeros(grid.shape, bool)
     bitmap.flat[trace_cells(lines_m, grid)[1]] = True
     return bitmap
 
 
-def subtract_bitmaps(result, truth):
+def subtract_bitmaps(result: Array, truth: Array) -> IntArray:
     """Return B_E = B_I - B_GT, int8: -1 missed, 0 match, 1 invented.
 
     Raises
@@ -115,18 +123,19 @@ def subtract_bitmaps(result, truth):
         or truth.dtype != bool
     ):
         raise ValueError(
-            f"two binary maps of one size are needed, not {result.dtype} {result.shape} and {truth.dtype} {truth.shape}"
+            f"two binary maps of one size are needed, not {result.dtype} {result.shape}"
+            f" and {truth.dtype} {truth.shape}"
         )
     return result.astype(np.int8) - truth.astype(np.int8)
 
 
-def error_shares(errors):
+def error_shares(errors: IntArray) -> Shares:
     """Return the shares of -1, 0 and 1 among all cells of an error map."""
     counts = [int(np.count_nonzero(errors == value)) for value in (-1, 0, 1)]
     return Shares(*(count / errors.size for count in counts))
 
 
-def _crossings(ends):
+def _crossings(ends: FloatArray) -> tuple[IntArray, FloatArray]:
     """Return where each line starts, crosses grid lines and ends, as shares (0 to 1) of its way.
 
     Returns
@@ -136,24 +145,23 @@ def _crossings(ends):
     share : (p,) float64
         Increasing within a line; a crossing of two grid lines at once is there once.
     """
-    line, share = [np.arange(len(ends))] * 2, [np.zeros(len(ends)), np.ones(len(ends))]
+    lines = [np.arange(len(ends))] * 2
+    shares = [np.zeros(len(ends)), np.ones(len(ends))]
     for axis in (0, 1):
-        low, high = ends[:, :, axis].min(axis=1), ends[:, :, axis].max(axis=1)
+        low = ends[:, :, axis].min(axis=1)
+        high = ends[:, :, axis].max(axis=1)
         first = np.floor(low) + 1
         count = np.maximum(np.ceil(high) - first, 0).astype(np.int64)
         owner = np.repeat(np.arange(len(ends)), count)
         step = np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
-        start, end = ends[owner, 0, axis], ends[owner, 1, axis]
-        line.append(owner)
-        share.append((first[owner] + step - start) / (end - start))
-    line, share = np.concatenate(line), np.concatenate(share)
+        start, end = ends[owner, :, axis].T
+        lines.append(owner)
+        shares.append((first[owner] + step - start) / (end - start))
+    line, share = np.concatenate(lines), np.concatenate(shares)
     order = np.lexsort((share, line))
     line, share = line[order], share[order]
-    apart = (
-        np.r_[True, (np.diff(share) > _WHOLE) | (np.diff(line) > 0)]
-        if len(line)
-        else np.empty(0, bool)
-    )
+    apart = np.ones(len(line), bool)
+    apart[1:] = (np.diff(share) > _WHOLE) | (np.diff(line) > 0)
     # a line of no length keeps both its ends
     point = (ends[line, 0] == ends[line, 1]).all(axis=1)
     return line[apart | point], share[apart | point]

@@ -1,16 +1,20 @@
-"""Where straight stretches cross a line."""
+"""Where spans cross a line."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-_LEAST_RAD = math.radians(30)
+from scanplan.geometry.lines import Line, SpanLike
+from scanplan.types import FloatArray, IntArray
+
+_LEAST_RAD = math.radians(30)  # flatter crossings lie too far along both lines for their noise
 
 
 @dataclass(frozen=True, eq=False)
 class SpanArrays:
-    """Straight stretches as arrays: a point and the unit normal of each one's line, and its extent along that.
+    """Spans as arrays: a point and the unit normal of each one's line, and its extent along it.
 
     Attributes
     ----------
@@ -18,15 +22,15 @@ class SpanArrays:
     low_m, high_m : (n,) float64
     """
 
-    centre: np.ndarray
-    normal: np.ndarray
-    low_m: np.ndarray
-    high_m: np.ndarray
+    centre: FloatArray
+    normal: FloatArray
+    low_m: FloatArray
+    high_m: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
 class Crossings:
-    """The stretches that cross a line.
+    """The spans that cross a line.
 
     Attributes
     ----------
@@ -37,30 +41,30 @@ class Crossings:
         Of the angle between them.
     """
 
-    which: np.ndarray
-    place_m: np.ndarray
-    sine: np.ndarray
+    which: IntArray
+    place_m: FloatArray
+    sine: FloatArray
 
 
-def stack_spans(pieces):
-    """Return pieces (anything with a `line`, `low_m` and `high_m`) as `SpanArrays`."""
+def stack_spans(spans: Sequence[SpanLike]) -> SpanArrays:
+    """Return spans as arrays."""
     return SpanArrays(
-        np.array([p.line.centre for p in pieces]).reshape(-1, 2),
-        np.array([p.line.normal for p in pieces]).reshape(-1, 2),
-        np.array([p.low_m for p in pieces], float),
-        np.array([p.high_m for p in pieces], float),
+        np.array([span.line.centre for span in spans]).reshape(-1, 2),
+        np.array([span.line.normal for span in spans]).reshape(-1, 2),
+        np.array([span.low_m for span in spans], float),
+        np.array([span.high_m for span in spans], float),
     )
 
 
-def find_crossings(line, others, *, reach_m):
-    """Find the stretches that cross a line steeply.
+def find_crossings(line: Line, others: SpanArrays, *, reach_m: float) -> Crossings:
+    """Find the spans that cross a line steeply.
 
     Parameters
     ----------
     line : lines.Line
-    others : Stretches
+    others : SpanArrays
     reach_m : float
-        A stretch that ends this near before the line crosses it, too.
+        A span that ends this near before the line crosses it, too.
 
     Returns
     -------
@@ -69,7 +73,8 @@ def find_crossings(line, others, *, reach_m):
     """
     turn = others.normal @ line.direction
     steep = np.flatnonzero(np.abs(turn) >= math.sin(_LEAST_RAD))
-    centre, normal, turn = others.centre[steep], others.normal[steep], turn[steep]
+    centre, normal = others.centre[steep], others.normal[steep]
+    turn = turn[steep]
     place_m = -np.einsum("ij,ij->i", line.centre - centre, normal) / turn
     along = np.column_stack([normal[:, 1], -normal[:, 0]])
     there_m = np.einsum("ij,ij->i", line.at(place_m) - centre, along)

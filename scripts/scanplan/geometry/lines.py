@@ -1,35 +1,77 @@
-"""Wall segments as observations of straight lines: weighted fit, offsets and extents.
+"""Lines with a side, spans along them, total least squares, and observed wall segments.
 
-A face is seen from one side. Its normal points to where the sensor stood, and its direction has the normal on its left,
-so that a face's start and end are told apart by its side alone.
+A face is seen from one side. Its normal points to where the sensor stood, and its direction has the
+normal on its left, so the side alone decides which end of a face is its start.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any, Protocol
 
 import numpy as np
 
-_SHORTEST_M = 1e-3
+from scanplan.types import Columns, FloatArray, IntArray
+
+_SHORTEST_M = 1e-3  # a segment below the millimetre of its coordinates has no direction
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """A straight line with a side: a point on it (2,) and its unit normal (2,)."""
+
+    centre: FloatArray
+    normal: FloatArray
+
+    @cached_property
+    def direction(self) -> FloatArray:
+        """Unit direction (2,), the normal on its left."""
+        return np.array([self.normal[1], -self.normal[0]])
+
+    def along_m(self, xy_m: FloatArray) -> FloatArray:
+        """Return positions (...,) of points (..., 2) along the line, from its centre."""
+        # nothing of the size of the points but the result: many times as fast as to subtract the
+        # centre first
+        return xy_m @ self.direction - self.centre @ self.direction
+
+    def offset_m(self, xy_m: FloatArray) -> FloatArray:
+        """Return signed distances (...,) of points (..., 2), positive on the sensor's side."""
+        return xy_m @ self.normal - self.centre @ self.normal
+
+    def at(self, along_m: FloatArray | float) -> FloatArray:
+        """Return the points (..., 2) at positions (...,) along the line."""
+        return self.centre + np.multiply.outer(along_m, self.direction)
+
+
+class SpanLike(Protocol):
+    """What has a line, and reaches along it from `low_m` to `high_m`."""
+
+    @property
+    def line(self) -> Line: ...  # noqa: D102
+    @property
+    def low_m(self) -> float: ...  # noqa: D102
+    @property
+    def high_m(self) -> float: ...  # noqa: D102
 
 
 class Span:
-    """What has a `line`, and reaches along it from `low_m` to `high_m`."""
+    """What a `SpanLike` class inherits."""
 
     @property
-    def length_m(self):
+    def length_m(self: SpanLike) -> float:
         """Length along the line."""
         return self.high_m - self.low_m
 
     @cached_property
-    def ends(self):
+    def ends(self: SpanLike) -> FloatArray:
         """Start and end, (2, 2) metres."""
         return self.line.at(np.array([self.low_m, self.high_m]))
 
 
 @dataclass(frozen=True, eq=False)
 class ObservedSegments:
-    """Observed wall segments, sorted by scan and number, so that the order of the input does not matter.
+    """Observed wall segments, by scan and number, so that the order of the input does not matter.
 
     Attributes
     ----------
@@ -42,54 +84,28 @@ class ObservedSegments:
     z_min_m, z_max_m : (n,) float64
     """
 
-    start: np.ndarray
-    end: np.ndarray
-    normal: np.ndarray
-    weight: np.ndarray
-    n_points: np.ndarray
-    rmse_m: np.ndarray
-    scan_id: np.ndarray
-    z_min_m: np.ndarray
-    z_max_m: np.ndarray
+    start: FloatArray
+    end: FloatArray
+    normal: FloatArray
+    weight: FloatArray
+    n_points: FloatArray
+    rmse_m: FloatArray
+    scan_id: IntArray
+    z_min_m: FloatArray
+    z_max_m: FloatArray
 
     @property
-    def length_m(self):
+    def length_m(self) -> FloatArray:
         """(n,) float64."""
         return np.hypot(*(self.end - self.start).T)
 
 
-@dataclass(frozen=True, eq=False)
-class Line:
-    """A straight line with a side: a point on it (2,) and its unit normal (2,)."""
+def observed_segments(walls: Columns, *, registration_sigma_m: float) -> ObservedSegments:
+    """Make observed segments of the rows of a table of walls.
 
-    centre: np.ndarray
-    normal: np.ndarray
-
-    @cached_property
-    def direction(self):
-        """Unit direction (2,), the normal on its left."""
-        return np.array([self.normal[1], -self.normal[0]])
-
-    def along_m(self, xy_m):
-        """Return positions (...,) of points (..., 2) along the line, from its centre."""
-        # nothing of the size of the points but the result: many times as fast as to subtract the centre first
-        return xy_m @ self.direction - self.centre @ self.direction
-
-    def offset_m(self, xy_m):
-        """Return signed distances (...,) of points (..., 2) from the line, positive on the sensor's side."""
-        return xy_m @ self.normal - self.centre @ self.normal
-
-    def at(self, along_m):
-        """Return the points (..., 2) at positions (...,) along the line."""
-        return self.centre + np.multiply.outer(along_m, self.direction)
-
-
-def observed_segments(walls, *, registration_sigma_m):
-    """Make segments of the rows of a table of walls.
-
-    A point's variance about the true wall is that about its own segment plus that of the scan's place, so a segment
-    weighs ``n_points / (rmse_m**2 + registration_sigma_m**2)``. Segments below a millimetre have no direction and
-    are left out.
+    A point's variance about the true wall is that about its own segment plus that of the scan's
+    place, so a segment weighs ``n_points / (rmse_m**2 + registration_sigma_m**2)``. Segments below
+    a millimetre have no direction and are left out.
 
     Parameters
     ----------
@@ -97,10 +113,6 @@ def observed_segments(walls, *, registration_sigma_m):
         The columns of `schemas.WALLS`, in any order of rows.
     registration_sigma_m : float, > 0
         Standard deviation of a registered scan's place.
-
-    Returns
-    -------
-    Segments
 
     Raises
     ------
@@ -132,7 +144,9 @@ def observed_segments(walls, *, registration_sigma_m):
     )
 
 
-def _with_normal_on_left(start, end, towards):
+def _with_normal_on_left(
+    start: FloatArray, end: FloatArray, towards: FloatArray
+) -> tuple[FloatArray, FloatArray]:
     along = end - start
     side = along[:, 0] * towards[:, 1] - along[:, 1] * towards[:, 0]
     if (side == 0).any():
@@ -141,42 +155,74 @@ def _with_normal_on_left(start, end, towards):
     return np.where(swap, end, start), np.where(swap, start, end)
 
 
-def fit_segments_line(segments, members):
-    """Fit a line to segments by weighted total least squares, each a uniform row of points.
+def least_scatter_normal(
+    xx: FloatArray,
+    xy: FloatArray,
+    yy: FloatArray,
+    *,
+    arctan2: Callable[[Any, Any], Any] = np.arctan2,
+) -> FloatArray:
+    """Return the unit normal (2, ...) of the line of total least squares.
 
-    A segment from a to b with weight w adds ``w (m m' + h h' / 3)`` to the scatter, m its middle from the common centre
-    and h half its extent; the line runs along the scatter's larger axis.
+    That is the axis along which points scatter least.
 
     Parameters
     ----------
-    segments : Segments
-    members : (k,) int, k >= 1
+    xx, xy, yy : (...,) float
+        The scatter (or covariance) of points about their centre, on any common scale.
+    arctan2 : callable
+        `math.atan2` where the last digit of `math` is wanted: it is not always that of `numpy`.
+    """
+    # the direction of largest variance of a symmetric 2 x 2 matrix, in closed form
+    angle_rad = arctan2(2 * xy, xx - yy) / 2
+    return np.array([-np.sin(angle_rad), np.cos(angle_rad)])
 
-    Returns
-    -------
-    Line
-        Its normal on the side of the members' weighted mean normal.
+
+def rows_scatter(
+    middle_m: FloatArray, half_m: FloatArray, weight: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the centre (2,) and the scatter (3,), xx, xy and yy, of uniform rows of points.
+
+    A row from a to b with weight w adds ``w (m m' + h h' / 3)`` to the scatter, m its middle from
+    the common centre and h half its extent.
+
+    Parameters
+    ----------
+    middle_m, half_m : (n, 2) float
+    weight : (n,) float
+        Of the rows; their sum is 1.
+    """
+    centre_m = weight @ middle_m
+    middle_m = middle_m - centre_m
+    xx, yy = weight @ (middle_m**2 + half_m**2 / 3)
+    xy = weight @ (middle_m[:, 0] * middle_m[:, 1] + half_m[:, 0] * half_m[:, 1] / 3)
+    return centre_m, np.array([xx, xy, yy])
+
+
+def fit_segments_line(segments: ObservedSegments, members: IntArray) -> Line:
+    """Fit a line to some segments (k,), k >= 1, by weighted total least squares.
+
+    Each counts as a uniform row of points. The line's normal is on the side of the members'
+    weighted mean normal.
     """
     weight = segments.weight[members]
     weight = weight / weight.sum()
-    middle = (segments.start[members] + segments.end[members]) / 2
-    half = (segments.end[members] - segments.start[members]) / 2
-    centre = weight @ middle
-    middle = middle - centre
-    xx, yy = weight @ (middle**2 + half**2 / 3)
-    xy = weight @ (middle[:, 0] * middle[:, 1] + half[:, 0] * half[:, 1] / 3)
-    angle = math.atan2(2 * xy, xx - yy) / 2
-    normal = np.array([-math.sin(angle), math.cos(angle)])
+    middle_m = (segments.start[members] + segments.end[members]) / 2
+    half_m = (segments.end[members] - segments.start[members]) / 2
+    centre, scatter = rows_scatter(middle_m, half_m, weight)
+    normal = least_scatter_normal(*scatter, arctan2=math.atan2)
     return Line(centre, normal if normal @ (weight @ segments.normal[members]) >= 0 else -normal)
 
 
-def end_deviation_m(line, segments, members):
+def end_deviation_m(line: Line, segments: ObservedSegments, members: IntArray) -> FloatArray:
     """Return the larger distance (k,) of each member's two ends from the line."""
     ends = np.stack([segments.start[members], segments.end[members]])
     return np.abs(line.offset_m(ends)).max(axis=0)
 
 
-def extents_along_m(line, segments, members):
+def extents_along_m(
+    line: Line, segments: ObservedSegments, members: IntArray
+) -> tuple[FloatArray, FloatArray]:
     """Return where each member begins and ends along the line: (k,), (k,)."""
     along = np.stack([line.along_m(segments.start[members]), line.along_m(segments.end[members])])
     return along.min(axis=0), along.max(axis=0)

@@ -1,21 +1,27 @@
-"""How thick the walls of a merged map are: what is left of registration errors where nobody knows the truth.
+"""Map thickness (plane scatter): what is left of registration errors without any truth.
 
-A surface that several scans saw should be one surface. In neighbourhoods of the map that hold points of several scans
-the spread across the surface is the root of the least eigenvalue of the points' covariance: the range noise, where the
-scans lie on each other, and more, where they do not. The median over places all over the map is the crispness. Corners
-and clutter have large spreads whatever the poses, which the median bears as long as surfaces are the larger part.
+A surface that several scans saw should be one surface. In neighbourhoods of the map that hold
+points of several scans the spread across the surface is the root of the least eigenvalue of the
+points' covariance: the range noise, where the scans lie on each other, and more, where they do not.
+The median over places all over the map is the crispness. Corners and clutter have large spreads
+whatever the poses, which the median bears as long as surfaces are the larger part.
 
-Droeschel and Behnke, "Efficient continuous-time SLAM for 3D lidar-based online mapping", ICRA 2018, call the mean of it
-mean plane variance; Razlaw et al., "Evaluation of registration methods for sparse 3D laser scans", ECMR 2015.
+Droeschel and Behnke, "Efficient continuous-time SLAM for 3D lidar-based online mapping", ICRA 2018,
+call the mean of it mean plane variance; Razlaw et al., "Evaluation of registration methods for
+sparse 3D laser scans", ECMR 2015.
 """
 
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from scipy.spatial import cKDTree
+from scipy.spatial import cKDTree  # pyright: ignore[reportAttributeAccessIssue]  # compiled
 
-_FEWEST_POINTS = 10
-_FEWEST_SCANS = 3
+from scanplan.types import FloatArray, IntArray
+
+_FEWEST_POINTS = 10  # a covariance of fewer says little
+_FEWEST_SCANS = 3  # two may be off together
 
 
 @dataclass(frozen=True)
@@ -27,21 +33,23 @@ class SurfaceScatter:
     xyz_m : (n, 3) float64
         A point of the map in the middle of each.
     sigma_m : (n,) float64
-        Standard deviation of its points across the surface; NaN where fewer than 10 points, or points of fewer than 3
-        scans, are there.
+        Standard deviation of its points across the surface; NaN where fewer than 10 points, or
+        points of fewer than 3 scans, are there.
     """
 
-    xyz_m: np.ndarray
-    sigma_m: np.ndarray
+    xyz_m: FloatArray
+    sigma_m: FloatArray
 
     @property
-    def median_m(self):
-        """The crispness of the map, NaN if there is no place to tell it by."""
+    def median_m(self) -> float:
+        """The thickness of the map, NaN if there is no place to measure it at."""
         known = self.sigma_m[np.isfinite(self.sigma_m)]
         return float(np.median(known)) if len(known) else np.nan
 
 
-def thin_randomly(scans, *, most_points, n_scans, seed):
+def thin_randomly(
+    scans: Iterable[tuple[int, FloatArray]], *, most_points: int, n_scans: int, seed: int
+) -> tuple[FloatArray, IntArray]:
     """Take a random share of every scan.
 
     Parameters
@@ -60,26 +68,29 @@ def thin_randomly(scans, *, most_points, n_scans, seed):
     scan_ids : (m,) int64
         Which scan each point is of.
     """
-    share, points, owners = max(1, most_points // n_scans), [], []
+    share = max(1, most_points // n_scans)
+    points, owners = [], []
     for scan_id, xyz_m in scans:
         chosen = np.arange(len(xyz_m))
         if len(xyz_m) > share:
-            chosen = np.sort(
-                np.random.default_rng([seed, scan_id]).choice(len(xyz_m), share, replace=False)
-            )
+            rng = np.random.default_rng([seed, scan_id])
+            chosen = np.sort(rng.choice(len(xyz_m), share, replace=False))
         points.append(np.asarray(xyz_m, float)[chosen])
         owners.append(np.full(len(chosen), scan_id))
     return np.concatenate(points), np.concatenate(owners)
 
 
-def choose_places(xyz_m, *, planar, radius_m, most_places, seed):
-    """Choose places evenly over a map: a point of every occupied cube (square, in the plane) of edge `radius_m`.
+def choose_places(
+    xyz_m: FloatArray, *, planar: bool, radius_m: float, most_places: int, seed: int
+) -> FloatArray:
+    """Choose places evenly over a map: a point of every occupied cube (square, in the plane).
 
     Parameters
     ----------
     xyz_m : (n, 3) float64, n >= 1
     planar : bool
     radius_m : float
+        Edge of a cube.
     most_places : int
         A random choice of as many is made where there are more.
     seed : int
@@ -97,7 +108,14 @@ def choose_places(xyz_m, *, planar, radius_m, most_places, seed):
     return xyz_m[order[np.sort(first)]]
 
 
-def measure_scatter(xyz_m, scan_ids, centres_m, *, planar, radius_m):
+def measure_scatter(
+    xyz_m: FloatArray,
+    scan_ids: IntArray,
+    centres_m: FloatArray,
+    *,
+    planar: bool,
+    radius_m: float,
+) -> SurfaceScatter:
     """Measure the spread across the surface around some places.
 
     Parameters
@@ -113,40 +131,50 @@ def measure_scatter(xyz_m, scan_ids, centres_m, *, planar, radius_m):
 
     Returns
     -------
-    Places
+    SurfaceScatter
     """
     axes = slice(2) if planar else slice(3)
     near = cKDTree(xyz_m[:, axes]).query_ball_point(centres_m[:, axes], radius_m)
-    sigma_m = [_sigma(xyz_m[found, axes], scan_ids[found]) for found in near]
+    sigma_m = [_sigma_m(xyz_m[points, axes], scan_ids[points]) for points in near]
     return SurfaceScatter(np.asarray(centres_m, float), np.array(sigma_m, float))
 
 
-def measure_map_scatter(xyz_m, scan_ids, *, planar, radius_m, most_places, seed):
-    """Choose places (`choose_places`) in a map and measure the spread around them (`measure_scatter`)."""
+def measure_map_scatter(
+    xyz_m: FloatArray,
+    scan_ids: IntArray,
+    *,
+    planar: bool,
+    radius_m: float,
+    most_places: int,
+    seed: int,
+) -> SurfaceScatter:
+    """Measure the spread (`measure_scatter`) around places of a map (`choose_places`)."""
     centres_m = choose_places(
         xyz_m, planar=planar, radius_m=radius_m, most_places=most_places, seed=seed
     )
     return measure_scatter(xyz_m, scan_ids, centres_m, planar=planar, radius_m=radius_m)
 
 
-def scatter_columns(measured):
-    """Return the columns of `schemas.CRISPNESS` from Places by the name of the poses that made the map."""
+def scatter_columns(measured: Mapping[str, SurfaceScatter]) -> dict[str, Any]:
+    """Return the columns of `schemas.CRISPNESS` of scatters by the name of the map's poses."""
     names = sorted(measured)
-    known = [measured[name].sigma_m[np.isfinite(measured[name].sigma_m)] for name in names]
-    shares = [
-        np.percentile(sigma_m, (25, 50, 75)) if len(sigma_m) else [np.nan] * 3 for sigma_m in known
-    ]
-    quarter, median, three_quarters = np.transpose(shares)
+    all_sigma_m = [measured[name].sigma_m for name in names]
+    finite_m = [sigma_m[np.isfinite(sigma_m)] for sigma_m in all_sigma_m]
+    quarter, median, three_quarters = np.transpose([_quartiles(sigma_m) for sigma_m in finite_m])
     return {
         "poses": names,
         "sigma_m": median,
         "quarter_below_m": quarter,
         "quarter_above_m": three_quarters,
-        "n_places": [len(sigma_m) for sigma_m in known],
+        "n_places": [len(sigma_m) for sigma_m in finite_m],
     }
 
 
-def _sigma(points_m, scan_ids):
+def _quartiles(values: FloatArray) -> FloatArray:
+    return np.percentile(values, (25, 50, 75)) if len(values) else np.full(3, np.nan)
+
+
+def _sigma_m(points_m: FloatArray, scan_ids: IntArray) -> float:
     if len(points_m) < _FEWEST_POINTS or len(np.unique(scan_ids)) < _FEWEST_SCANS:
         return np.nan
     centred = points_m - points_m.mean(axis=0)

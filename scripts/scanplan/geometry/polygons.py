@@ -1,15 +1,25 @@
 """Polygons made fit for overlays, and overlays that rounding cannot stop."""
 
-import numpy as np
-import shapely
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
+from typing import Any
 
-_GRID_M = 1e-6
-_DUST_M = 1e-15
-_WORTH_THREADS = 32
+import numpy as np
+import numpy.typing as npt
+import shapely
+from shapely.geometry.base import BaseGeometry
+
+from scanplan.types import Array
+
+Polygons = Sequence[BaseGeometry] | Array
+
+_GRID_M = 1e-6  # coarse enough to make overlays consistent, far below any noise
+_DUST_M = 1e-15  # squares of smaller numbers underflow in products of overlays
+_WORTH_THREADS = 32  # overlays that take longer than to hand them to threads
 _POLYGON, _MULTIPOLYGON = 3, 6  # shapely's type numbers
 
 
-def move_near_origin(polygons):
+def move_near_origin(polygons: Polygons) -> Array:
     """Check and repair polygons, and move them near the origin: far from it, areas lose digits.
 
     Parameters
@@ -36,25 +46,30 @@ def move_near_origin(polygons):
     return _polygonal(shapely.transform(array, lambda xy: _without_dust(xy - centre)))
 
 
-def subtract_polygons(polygons, others, threads=None):
-    """Subtract (n,) others from (n,) polygons, each from its own, on the threads of an executor if one is given.
+def subtract_polygons(
+    polygons: Polygons, others: Polygons, threads: Executor | None = None
+) -> Array:
+    """Subtract (n,) others from (n,) polygons, each from its own, on threads if any are given.
 
-    Where rounding makes an overlay inconsistent it is done again with all corners on a grid of a micrometre.
+    Where rounding makes an overlay inconsistent it is done again with all corners on a grid of a
+    micrometre.
     """
     if threads is None or len(polygons) < _WORTH_THREADS:
         return _each(shapely.difference, polygons, others)
-    shares = [
-        np.array_split(side, len(polygons) // (_WORTH_THREADS // 2)) for side in (polygons, others)
-    ]
-    return np.concatenate(list(threads.map(_each, [shapely.difference] * len(shares[0]), *shares)))
+    n_shares = len(polygons) // (_WORTH_THREADS // 2)
+    shares = [np.array_split(np.asarray(side), n_shares) for side in (polygons, others)]
+    return np.concatenate(list(threads.map(_each, [shapely.difference] * n_shares, *shares)))
 
 
-def intersect_polygons(polygons, others):
-    """Intersect (n,) polygons with (n,) others, without points and lines where they only touch; see `subtract_polygons`."""
+def intersect_polygons(polygons: Polygons, others: Polygons) -> Array:
+    """Intersect (n,) polygons with (n,) others; see `subtract_polygons`.
+
+    Without points and lines where they only touch.
+    """
     return _polygonal(_each(shapely.intersection, polygons, others))
 
 
-def unite_polygons(polygons):
+def unite_polygons(polygons: Polygons) -> BaseGeometry:
     """Unite (n,) polygons; see `subtract_polygons`."""
     try:
         return shapely.union_all(polygons)
@@ -62,37 +77,37 @@ def unite_polygons(polygons):
         return shapely.union_all(shapely.make_valid(polygons), grid_size=_GRID_M)
 
 
-def _each(function, polygons, others):
+def _each(function: Callable[..., Any], polygons: Polygons, others: Polygons) -> Array:
     try:
         return function(polygons, others)
     except shapely.GEOSException:
-        return np.array(
-            [_one(function, *pair) for pair in zip(polygons, others, strict=True)], object
-        )
+        pairs = zip(polygons, others, strict=True)
+        return np.array([_one(function, *pair) for pair in pairs], object)
 
 
-def _one(function, polygon, other):
+def _one(
+    function: Callable[..., BaseGeometry], polygon: BaseGeometry, other: BaseGeometry
+) -> BaseGeometry:
     try:
         return function(polygon, other)
     except shapely.GEOSException:
         return function(shapely.make_valid(polygon), shapely.make_valid(other), grid_size=_GRID_M)
 
 
-def _without_dust(xy_m):
-    """Set numbers near 0 to 0: products of the very smallest underflow, and overlays and predicates go wrong."""
+def _without_dust(xy_m: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Set numbers near 0 to 0: products of the smallest underflow, and overlays go wrong."""
     return np.where(np.abs(xy_m) < _DUST_M, 0.0, xy_m)
 
 
-def _polygonal(geometries):
+def _polygonal(geometries: Array) -> Array:
     """Reduce geometries (n,) to valid Polygons or MultiPolygons of the same area."""
     geometries = geometries.copy()
-    fit = np.isin(shapely.get_type_id(geometries), (_POLYGON, _MULTIPOLYGON)) & shapely.is_valid(
-        geometries
-    )
+    is_polygon = np.isin(shapely.get_type_id(geometries), (_POLYGON, _MULTIPOLYGON))
+    fit = is_polygon & shapely.is_valid(geometries)
     geometries[~fit] = [_areas_of(geometry) for geometry in geometries[~fit]]
     return geometries
 
 
-def _areas_of(geometry):
+def _areas_of(geometry: BaseGeometry) -> BaseGeometry:
     members = shapely.get_parts(shapely.get_parts(shapely.make_valid(geometry)))
     return shapely.union_all(members[shapely.get_dimensions(members) == 2])

@@ -4,10 +4,13 @@
 """
 
 import numpy as np
+import numpy.typing as npt
 from scipy.spatial.transform import Rotation, Slerp
 
+from scanplan.types import BoolArray, FloatArray, IntArray
 
-def pose_matrix(xyz_m, quat_xyzw):
+
+def pose_matrix(xyz_m: npt.ArrayLike, quat_xyzw: npt.ArrayLike) -> FloatArray:
     """Return the 4 x 4 matrices of poses.
 
     Parameters
@@ -20,7 +23,8 @@ def pose_matrix(xyz_m, quat_xyzw):
     -------
     (..., 4, 4) float64
     """
-    xyz_m, quat_xyzw = np.asarray(xyz_m, float), np.asarray(quat_xyzw, float)
+    xyz_m = np.asarray(xyz_m, float)
+    quat_xyzw = np.asarray(quat_xyzw, float)
     pose = np.full((*xyz_m.shape[:-1], 4, 4), np.nan)
     pose[..., 3, :] = (0, 0, 0, 1)
     known = np.isfinite(quat_xyzw).all(axis=-1) & np.isfinite(xyz_m).all(axis=-1)
@@ -30,8 +34,11 @@ def pose_matrix(xyz_m, quat_xyzw):
     return pose
 
 
-def split_pose(pose):
-    """Return the positions (..., 3) and quaternions (..., 4), w >= 0, of 4 x 4 matrices; NaN stays NaN."""
+def split_pose(pose: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
+    """Return positions (..., 3) and quaternions (..., 4), w >= 0, of 4 x 4 matrices.
+
+    NaN stays NaN.
+    """
     pose = np.asarray(pose, float)
     quat = np.full((*pose.shape[:-2], 4), np.nan)
     known = np.isfinite(pose).all(axis=(-2, -1))
@@ -40,13 +47,13 @@ def split_pose(pose):
     return pose[..., :3, 3].copy(), quat
 
 
-def transform_points(a_from_b, xyz_b_m):
+def transform_points(a_from_b: npt.ArrayLike, xyz_b_m: npt.ArrayLike) -> FloatArray:
     """Map points (n, 3) from frame b to frame a by one 4 x 4 matrix; float64."""
     a_from_b = np.asarray(a_from_b, float)
     return np.asarray(xyz_b_m, float) @ a_from_b[:3, :3].T + a_from_b[:3, 3]
 
 
-def invert_pose(a_from_b):
+def invert_pose(a_from_b: npt.ArrayLike) -> FloatArray:
     """Return b_from_a of one or many 4 x 4 rigid motions."""
     a_from_b = np.asarray(a_from_b, float)
     back = a_from_b.copy()
@@ -55,11 +62,11 @@ def invert_pose(a_from_b):
     return back
 
 
-def nearest_rigid(pose):
+def nearest_rigid(pose: npt.ArrayLike) -> FloatArray:
     """Return a 4 x 4 matrix with the nearest true rotation in it.
 
-    `invert_pose` takes a rotation's transpose for its inverse, so in a chain of products and inverses a rounding error
-    doubles with every link unless it is taken out.
+    `invert_pose` takes a rotation's transpose for its inverse, so in a chain of products and
+    inverses a rounding error doubles with every link unless it is taken out.
     """
     left, _, right = np.linalg.svd(np.asarray(pose, float)[:3, :3])
     cleaned = np.array(pose, float)
@@ -67,8 +74,11 @@ def nearest_rigid(pose):
     return cleaned
 
 
-def interpolate_pose(start, end, share):
-    """Return the pose a `share` (0 to 1) of the way between two 4 x 4 poses: linear in position, spherical in turn."""
+def interpolate_pose(start: FloatArray, end: FloatArray, share: float) -> FloatArray:
+    """Return the pose a `share` (0 to 1) of the way between two 4 x 4 poses.
+
+    Linear in position, spherical in rotation.
+    """
     turn = Rotation.from_matrix(start[:3, :3].T @ end[:3, :3]).as_rotvec()
     pose = np.eye(4)
     pose[:3, :3] = start[:3, :3] @ Rotation.from_rotvec(share * turn).as_matrix()
@@ -76,17 +86,24 @@ def interpolate_pose(start, end, share):
     return pose
 
 
-def pose_yaw_rad(pose):
+def pose_yaw_rad(pose: npt.ArrayLike) -> FloatArray:
     """Return the heading of 4 x 4 matrices: the angle of the x axis about z, radians."""
     pose = np.asarray(pose, float)
     return np.arctan2(pose[..., 1, 0], pose[..., 0, 0])
 
 
-def interpolate_poses(t_ns, xyz_m, quat_xyzw, query_ns, *, max_gap_s):
+def interpolate_poses(
+    t_ns: npt.ArrayLike,
+    xyz_m: npt.ArrayLike,
+    quat_xyzw: npt.ArrayLike,
+    query_ns: npt.ArrayLike,
+    *,
+    max_gap_s: float,
+) -> tuple[FloatArray, FloatArray, FloatArray, BoolArray]:
     """Interpolate poses: linear in position, spherical in rotation (thesis, algorithm 3, step 1).
 
-    Never extrapolates; a query that falls into a gap longer than `max_gap_s` is not covered. A query that equals a
-    stamp is covered whatever the gaps beside it.
+    Never extrapolates; a query that falls into a gap longer than `max_gap_s` is not covered. A
+    query that equals a stamp is covered whatever the gaps beside it.
 
     Parameters
     ----------
@@ -103,7 +120,8 @@ def interpolate_poses(t_ns, xyz_m, quat_xyzw, query_ns, *, max_gap_s):
     xyz_m : (m, 3) float64, NaN where not covered
     quat_xyzw : (m, 4) float64, NaN where not covered
     gap_s : (m,) float64
-        Time between the two poses around the query; 0 on a stamp, infinite before the first and after the last.
+        Time between the two poses around the query; 0 on a stamp, infinite before the first and
+        after the last.
     covered : (m,) bool
 
     Raises
@@ -111,7 +129,10 @@ def interpolate_poses(t_ns, xyz_m, quat_xyzw, query_ns, *, max_gap_s):
     ValueError
         If `t_ns` is empty or not strictly increasing.
     """
-    t_ns, query_ns = np.asarray(t_ns, np.int64), np.asarray(query_ns, np.int64)
+    t_ns = np.asarray(t_ns, np.int64)
+    query_ns = np.asarray(query_ns, np.int64)
+    xyz_m = np.asarray(xyz_m, float)
+    quat_xyzw = np.asarray(quat_xyzw, float)
     if len(t_ns) == 0 or (np.diff(t_ns) <= 0).any():
         raise ValueError("pose stamps must be one or more and strictly increasing")
     after = np.clip(np.searchsorted(t_ns, query_ns), 0, len(t_ns) - 1)
@@ -119,20 +140,20 @@ def interpolate_poses(t_ns, xyz_m, quat_xyzw, query_ns, *, max_gap_s):
     inside = (t_ns[before] <= query_ns) & (query_ns <= t_ns[after])
     gap_s = np.where(inside, (t_ns[after] - t_ns[before]) / 1e9, np.inf)
     covered = gap_s <= max_gap_s
-    xyz, quat = np.full((len(query_ns), 3), np.nan), np.full((len(query_ns), 4), np.nan)
+    xyz = np.full((len(query_ns), 3), np.nan)
+    quat = np.full((len(query_ns), 4), np.nan)
     if covered.any():
         b, a = before[covered], after[covered]
         # ASSUME spans below 2**53 ns (104 days) from the first stamp: exact in float64
         share = (query_ns[covered] - t_ns[b]) / np.maximum(t_ns[a] - t_ns[b], 1)
-        xyz[covered] = (
-            np.asarray(xyz_m, float)[b] * (1 - share)[:, None]
-            + np.asarray(xyz_m, float)[a] * share[:, None]
-        )
-        quat[covered] = _slerp(np.asarray(quat_xyzw, float), b, a, share)
+        xyz[covered] = xyz_m[b] * (1 - share)[:, None] + xyz_m[a] * share[:, None]
+        quat[covered] = _slerp(quat_xyzw, b, a, share)
     return xyz, quat, gap_s, covered
 
 
-def _slerp(quat_xyzw, before, after, share):
+def _slerp(
+    quat_xyzw: FloatArray, before: IntArray, after: IntArray, share: FloatArray
+) -> FloatArray:
     if len(quat_xyzw) == 1:
         return Rotation.from_quat(quat_xyzw[before]).as_quat(canonical=True)
     turns = Slerp(np.arange(len(quat_xyzw), dtype=float), Rotation.from_quat(quat_xyzw))

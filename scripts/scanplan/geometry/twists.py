@@ -1,37 +1,43 @@
-"""Small rigid motions as six numbers: a shift in metres, then a turn as a rotation vector in radians.
+"""Small rigid motions as six numbers: a shift, metres, then a rotation vector, radians.
 
-They are taken in the frame of what moves: `pose @ motion(twist)`. Shift and turn stay apart (no screw motion), which
-makes the six numbers those that errors are stated in.
+They are taken in the frame of what moves: `pose @ motion(twist)`. Shift and turn stay apart (no
+screw motion), which makes the six numbers those that errors are stated in.
 """
 
 import numpy as np
+import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
-_TINY = 1e-12
-# near half a turn the sine says nothing of the axis
-_NEARLY_REVERSED = -0.99
+from scanplan.types import FloatArray
+
+_TINY = 1e-12  # sine of an angle that is its own sine to the last digit
+_NEARLY_REVERSED = -0.99  # cosine: near half a turn rounding leaves nothing of the axis
 
 
-def twist_to_motion(twist):
+def twist_to_motion(twist: npt.ArrayLike) -> FloatArray:
     """Return the 4 x 4 matrices of six numbers each, (..., 6) to (..., 4, 4)."""
     twist = np.asarray(twist, float)
     result = np.zeros((*twist.shape[:-1], 4, 4))
     turns = Rotation.from_rotvec(twist[..., 3:].reshape(-1, 3)).as_matrix()
     result[..., :3, :3] = turns.reshape(*twist.shape[:-1], 3, 3)
-    result[..., :3, 3], result[..., 3, 3] = twist[..., :3], 1
+    result[..., :3, 3] = twist[..., :3]
+    result[..., 3, 3] = 1
     return result
 
 
-def motion_to_twist(a_from_b):
-    """Return the six numbers of rigid motions, (..., 4, 4) to (..., 6); the inverse of `twist_to_motion`."""
+def motion_to_twist(a_from_b: npt.ArrayLike) -> FloatArray:
+    """Return the six numbers of rigid motions, (..., 4, 4) to (..., 6).
+
+    The inverse of `twist_to_motion`.
+    """
     a_from_b = np.asarray(a_from_b, float)
     turn = a_from_b[..., :3, :3]
-    # sin and cos of the angle, times the axis: a tenth of the time of scipy's way through quaternions
-    axis = (
-        np.stack([turn[..., i, j] - turn[..., j, i] for i, j in ((2, 1), (0, 2), (1, 0))], axis=-1)
-        / 2
-    )
-    sine, cosine = np.linalg.norm(axis, axis=-1), (np.trace(turn, axis1=-2, axis2=-1) - 1) / 2
+    # sin and cos of the angle, times the axis: a tenth of the time of scipy's way through
+    # quaternions
+    skew = [turn[..., i, j] - turn[..., j, i] for i, j in ((2, 1), (0, 2), (1, 0))]
+    axis = np.stack(skew, axis=-1) / 2
+    sine = np.linalg.norm(axis, axis=-1)
+    cosine = (np.trace(turn, axis1=-2, axis2=-1) - 1) / 2
     scale = np.where(sine > _TINY, np.arctan2(sine, cosine) / np.maximum(sine, _TINY), 1.0)
     vector = axis * scale[..., None]
     reversed_turn = (cosine < _NEARLY_REVERSED) & np.isfinite(cosine)
@@ -40,15 +46,15 @@ def motion_to_twist(a_from_b):
     return np.concatenate([a_from_b[..., :3, 3], vector], axis=-1)
 
 
-def cross_matrix(vector):
+def cross_matrix(vector: npt.ArrayLike) -> FloatArray:
     """Return [v]x with [v]x w = v x w, (..., 3) to (..., 3, 3)."""
     x, y, z = np.moveaxis(np.asarray(vector, float), -1, 0)
     zero = np.zeros_like(x)
     return np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=-1).reshape(*x.shape, 3, 3)
 
 
-def twist_adjoint(a_from_b):
-    """Return the (..., 6, 6) matrices that take a small twist in frame b to the same motion's twist in frame a."""
+def twist_adjoint(a_from_b: npt.ArrayLike) -> FloatArray:
+    """Return (..., 6, 6): a small twist in frame b to the same motion's twist in frame a."""
     a_from_b = np.asarray(a_from_b, float)
     turn = a_from_b[..., :3, :3]
     result = np.zeros((*a_from_b.shape[:-2], 6, 6))
@@ -57,8 +63,8 @@ def twist_adjoint(a_from_b):
     return result
 
 
-def pose_information(sigma, world_from_scan):
-    """Return the inverse covariances (..., 6, 6) of poses (..., 4, 4), as twists in their own frames.
+def pose_information(sigma: npt.ArrayLike, world_from_scan: npt.ArrayLike) -> FloatArray:
+    """Return the inverse covariances (..., 6, 6) of poses, as twists in their own frames.
 
     Parameters
     ----------

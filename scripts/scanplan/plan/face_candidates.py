@@ -6,11 +6,12 @@ from functools import cached_property
 import numpy as np
 import shapely
 
-from scanplan.geometry import lines
+from scanplan.geometry import intervals, lines
 from scanplan.geometry.lines import Line, ObservedSegments, Span
 
 _LEAST_CORNER_RAD = np.radians(30)
 _BEFORE_M = 0.08  # as far as points of a face lie from the line of another all the same
+_LEVEL = 1e-12  # sine of an angle below which lines are parallel: rounding
 _SHORT_M = 0.15  # of what noise, a skirting or a frame may hide of a face before a corner
 
 
@@ -53,8 +54,8 @@ def cut_candidates(segments, members, *, max_gap_m):
     line = lines.fit_segments_line(segments, members)
     low, high = lines.extents_along_m(line, segments, members)
     order = np.argsort(low, kind="stable")
+    breaks = intervals.find_run_starts(low[order], high[order], max_gap_m)
     low, high = low[order], np.maximum.accumulate(high[order])
-    breaks = np.flatnonzero(low[1:] - high[:-1] > max_gap_m) + 1
     first, last = np.r_[0, breaks], np.r_[breaks, len(low)] - 1
     shares = np.split(np.asarray(members)[order], breaks)
     return [
@@ -199,12 +200,8 @@ def doubled_interval_m(piece, other, distance_m):
         ),
     )
     for value, slope, least, most in bands:
-        if abs(slope) < 1e-12:
-            if not least <= value <= most:
-                return low, low
-            continue
-        bounds = sorted(((least - value) / slope, (most - value) / slope))
-        low, high = max(low, bounds[0]), min(high, bounds[1])
+        inside = intervals.solve_range(value, slope if abs(slope) >= _LEVEL else 0.0, least, most)
+        low, high = max(low, float(inside[0])), min(high, float(inside[1]))
     return low, max(low, high)
 
 

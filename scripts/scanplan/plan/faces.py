@@ -11,7 +11,6 @@ from scanplan.plan import (
     face_intervals,
     face_trimming,
     furniture_fronts,
-    right_angles,
 )
 
 _STUB_M = 0.1
@@ -39,7 +38,7 @@ class TracedFaces:
     panes: list
 
 
-def trace_faces(pieces, rays, merging, reading, square, furniture):
+def trace_faces(pieces, rays, merging, reading, furniture):
     """Find the faces along the lines of pieces.
 
     Parameters
@@ -49,7 +48,6 @@ def trace_faces(pieces, rays, merging, reading, square, furniture):
     rays : ray_set.RaySet
     merging : segment_merging.MergeSettings
     reading : face_profile.RaySettings
-    square : right_angles.RightAnglePrior
     furniture : furniture_fronts.FrontLimits
 
     Returns
@@ -60,9 +58,7 @@ def trace_faces(pieces, rays, merging, reading, square, furniture):
     lines = {}
     for piece in pieces:
         lines.setdefault(id(piece.line), []).append(piece)
-    seen = right_angles.turn_lines(
-        [_seen(group, rays, reading) for group in lines.values()], square
-    )
+    seen = [_seen(group, rays, reading) for group in lines.values()]
     found = _once(
         [face_intervals.find_face_intervals(s, reading, planar=rays.planar) for s in seen], merging
     )

@@ -1,25 +1,32 @@
 """A floor plan as one thing: its tables, and the shapes that drawings and models make of them."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 import shapely
+from shapely.geometry.base import BaseGeometry
 
 from scanplan.plan import wall_footprints
+from scanplan.types import Array, BoolArray, Columns, FloatArray, IntArray
 
 STATES = ("observed", "inferred")
+"""Of faces and walls."""
 HEIGHTS = {"ceiling": "ceiling", "walls": "highest seen of all walls", "assumed": "assumed"}
+"""What the height of a storey follows from, and its wording."""
 OPENINGS = ("door", "window", "passage")
+"""Types of openings."""
 _ENDS = ("x0_m", "y0_m", "x1_m", "y1_m")
-_CLEARANCE_M = 0.02
-_GRID_M = 1e-4
-_FLAT_M = 0.5
+_CLEARANCE_M = 0.02  # an opening is cut this much deeper than its wall, so that no skin is left
+_GRID_M = 1e-4  # of corners: a tenth of a millimetre, what drawings are rounded to
+_FLAT_M = 0.5  # a ceiling this near to the floor is none: half of the least storey of `levels`
 
 
-def centrelines_m(columns):
+def centrelines_m(columns: Columns) -> FloatArray:
     """Return the lines (n, 2, 2) float64 of a table with the columns x0_m, y0_m, x1_m, y1_m."""
-    return np.column_stack([columns[c] for c in _ENDS]).astype(float).reshape(-1, 2, 2)
+    ends = np.column_stack([columns[name] for name in _ENDS])
+    return ends.astype(float).reshape(-1, 2, 2)
 
 
 @dataclass(frozen=True)
@@ -31,7 +38,8 @@ class FloorPlan:
     name : str
         The dataset's name.
     faces, walls, openings, rooms, free : dict of str to (n,) array
-        The columns of `schemas.FACES`, `PLAN_WALLS`, `OPENINGS`, `ROOMS` and `FREE`; all but `faces` may have no rows.
+        The columns of `schemas.FACES`, `PLAN_WALLS`, `OPENINGS`, `ROOMS` and `FREE`; all but
+        `faces` may have no rows.
     assumed_thickness_m : float, > 0
         ASSUME of a wall that was seen from one side only, behind its face.
     assumed_height_m : float, > 0
@@ -41,173 +49,187 @@ class FloorPlan:
     """
 
     name: str
-    faces: dict = field(repr=False)
-    walls: dict = field(repr=False)
-    openings: dict = field(repr=False)
-    rooms: dict = field(repr=False)
-    free: dict = field(repr=False)
+    faces: Columns = field(repr=False)
+    walls: Columns = field(repr=False)
+    openings: Columns = field(repr=False)
+    rooms: Columns = field(repr=False)
+    free: Columns = field(repr=False)
     assumed_thickness_m: float = 0.1
     assumed_height_m: float = 2.5
     floor_z_m: float = np.nan
     ceiling_z_m: float = np.nan
 
     @cached_property
-    def thick(self):
+    def thick(self) -> BoolArray:
         """Which walls (n,) have a known thickness."""
         return np.isfinite(self.walls["thickness_m"])
 
     @cached_property
-    def sides_m(self):
+    def sides_m(self) -> tuple[FloatArray, FloatArray]:
         """How far the surfaces of each wall lie from its line, (left (n,), right (n,)), metres.
 
         What is assumed behind a single face lies on the side that it was not seen from.
         """
         half_m = self.walls["thickness_m"] / 2
-        seen_from_left = np.where(self.walls["face_left"] >= 0, True, self.walls["face_right"] < 0)
         behind_m = self.assumed_thickness_m
-        left_m = np.where(self.thick, half_m, np.where(seen_from_left, 0.0, behind_m))
-        return left_m, np.where(self.thick, half_m, np.where(seen_from_left, behind_m, 0.0))
+        has_left = self.walls["face_left"] >= 0
+        has_right = self.walls["face_right"] >= 0
+        is_seen_from_left = has_left | ~has_right
+        left_m = np.where(is_seen_from_left, 0.0, behind_m)
+        right_m = np.where(is_seen_from_left, behind_m, 0.0)
+        return np.where(self.thick, half_m, left_m), np.where(self.thick, half_m, right_m)
 
     @cached_property
-    def bodies(self):
-        """The ground that each wall stands on, (n,) Polygons, openings not cut out."""
+    def bodies(self) -> Array:
+        """The footprint of each wall, (n,) Polygons, openings not cut out."""
         return wall_footprints.draw_footprints(centrelines_m(self.walls), *self.sides_m)
 
     @cached_property
-    def known(self):
+    def known_bodies(self) -> Array:
         """Likewise of the walls of known thickness, none of them mitred with an assumed one."""
-        return wall_footprints.draw_footprints(
-            centrelines_m(self.walls)[self.thick], *(side[self.thick] for side in self.sides_m)
-        )
+        left_m, right_m = self.sides_m
+        lines_m = centrelines_m(self.walls)[self.thick]
+        return wall_footprints.draw_footprints(lines_m, left_m[self.thick], right_m[self.thick])
 
     @cached_property
-    def hosts(self):
+    def hosts(self) -> IntArray:
         """The row of the wall that each opening is in, (m,); -1 if it is in none."""
-        row = {wall: i for i, wall in enumerate(self.walls["wall"].tolist())}
-        return np.array([row.get(wall, -1) for wall in self.openings["wall"].tolist()], np.int64)
+        row_of_wall = {wall: row for row, wall in enumerate(self.walls["wall"].tolist())}
+        rows = [row_of_wall.get(wall, -1) for wall in self.openings["wall"].tolist()]
+        return np.array(rows, np.int64)
 
     @cached_property
-    def gaps(self):
+    def gaps(self) -> Array:
         """What each opening cuts out of the walls, (m,) Polygons a little deeper than its wall."""
-        deep_m = np.nan_to_num(self.openings["thickness_m"], nan=self.assumed_thickness_m) / 2
+        thickness_m = np.nan_to_num(self.openings["thickness_m"], nan=self.assumed_thickness_m)
         # one more for the openings that are in no wall
         walls_m = np.append(np.maximum(*self.sides_m), 0.0)
-        return buffer_lines(
-            centrelines_m(self.openings), np.maximum(deep_m, walls_m[self.hosts]) + _CLEARANCE_M
-        )
+        half_m = np.maximum(thickness_m / 2, walls_m[self.hosts]) + _CLEARANCE_M
+        return buffer_lines(centrelines_m(self.openings), half_m)
 
-    def solid(self, state):
-        """Return the ground of the walls of one state whose thickness is known, merged, openings cut out."""
-        chosen = self.known[self.walls["state"][self.thick] == state]
-        merged = shapely.union_all(chosen, grid_size=_GRID_M)
+    def solid(self, state: str) -> BaseGeometry:
+        """Return the footprint of the walls of one state and known thickness, less openings."""
+        bodies = self.known_bodies[self.walls["state"][self.thick] == state]
+        merged = shapely.union_all(bodies, grid_size=_GRID_M)
         return shapely.difference(merged, shapely.union_all(self.gaps), grid_size=_GRID_M)
 
-    def single(self, state):
-        """Return the surfaces of one state with nothing known behind them, (k,) lines, openings cut out."""
+    def single(self, state: str) -> Array:
+        """Return the surfaces of one state with nothing known behind them, less openings.
+
+        Returns
+        -------
+        (k,) object
+            LineStrings.
+        """
         # a face that is a side of a wall is drawn with it
-        loose = (self.faces["wall"] < 0) & (self.faces["state"] == state)
-        one_sided = ~self.thick & (self.walls["state"] == state)
-        lines = shapely.linestrings(
-            np.concatenate([centrelines_m(self.walls)[one_sided], centrelines_m(self.faces)[loose]])
-        )
+        is_loose = (self.faces["wall"] < 0) & (self.faces["state"] == state)
+        is_one_sided = ~self.thick & (self.walls["state"] == state)
+        wall_lines_m = centrelines_m(self.walls)[is_one_sided]
+        face_lines_m = centrelines_m(self.faces)[is_loose]
+        lines = line_shapes(np.concatenate([wall_lines_m, face_lines_m]))
         # they end at the surfaces of the walls that they meet
-        hidden = shapely.union_all([*self.gaps, *shapely.buffer(self.known, _GRID_M)])
+        hidden = shapely.union_all([*self.gaps, *shapely.buffer(self.known_bodies, _GRID_M)])
         parts = shapely.get_parts(shapely.difference(lines, hidden))
         return parts[shapely.length(parts) > 0]
 
     @cached_property
-    def storey_m(self):
+    def storey_m(self) -> tuple[float, float]:
         """Height of the floor in the map frame and of the ceiling above it, metres.
 
-        Where the floor was not seen, the lowest that was seen of the walls stands for it; a ceiling that was not seen
-        is where it is assumed, or higher if walls were seen higher: they do not end above it.
+        Where the floor was not seen, the lowest that was seen of the walls stands for it; a ceiling
+        that was not seen is where it is assumed, or higher if walls were seen higher: they do not
+        end above it.
         """
-        floor_m, seen_m = self._walls_z_m
+        floor_m, highest_m = self._walls_z_m
         heights_m = {
             "ceiling": self.ceiling_z_m - floor_m,
-            "walls": seen_m,
+            "walls": highest_m,
             "assumed": self.assumed_height_m,
         }
         return floor_m, float(heights_m[self.height_from])
 
     @cached_property
-    def height_from(self):
-        """What tells the height of the storey: its `ceiling`, its highest `walls`, or neither: `assumed`."""
-        floor_m, seen_m = self._walls_z_m
+    def height_from(self) -> str:
+        """What the height of the storey follows from: a key of `HEIGHTS`."""
+        floor_m, highest_m = self._walls_z_m
         if self.ceiling_z_m - floor_m > _FLAT_M:
             return "ceiling"
-        return "walls" if seen_m > self.assumed_height_m else "assumed"
+        return "walls" if highest_m > self.assumed_height_m else "assumed"
 
     @cached_property
-    def _walls_z_m(self):
+    def _walls_z_m(self) -> tuple[float, float]:
         """Height of the floor in the map frame, and how high above it walls were seen."""
-        floor_m = (
-            self.floor_z_m
-            if np.isfinite(self.floor_z_m)
-            else _extreme(self.walls["z_min_m"], np.fmin)
-        )
+        is_seen = np.isfinite(self.floor_z_m)
+        floor_m = self.floor_z_m if is_seen else _extreme(self.walls["z_min_m"], np.fmin)
         return floor_m, _extreme(self.walls["z_max_m"], np.fmax) - floor_m
 
     @cached_property
-    def low(self):
+    def low(self) -> BoolArray:
         """Which walls (n,) were seen to end below the ceiling."""
         floor_m, height_m = self.storey_m
         top_m = self.walls["top_m"] - floor_m
         return (top_m > 0) & (top_m < height_m)
 
     @cached_property
-    def heights_m(self):
-        """How high each wall is above the floor (n,): up to the ceiling, or to where it was seen to end below it."""
+    def heights_m(self) -> FloatArray:
+        """How high each wall is above the floor (n,): to the ceiling, or to its top below it."""
         floor_m, height_m = self.storey_m
         return np.where(self.low, self.walls["top_m"] - floor_m, height_m)
 
     @cached_property
-    def bounds_m(self):
-        """The least and the greatest x and y of all that is known, rooms with it, ((2,), (2,))."""
-        return _bounds([*shapely.linestrings(centrelines_m(self.faces)), *self.known, *self.areas])
+    def bounds_m(self) -> tuple[FloatArray, FloatArray]:
+        """The least and the greatest x and y of all shapes, rooms with them, ((2,), (2,))."""
+        faces = line_shapes(centrelines_m(self.faces))
+        return _bounds(np.concatenate([faces, self.known_bodies, self.areas]))
 
     @cached_property
-    def extent_m(self):
-        """Likewise of what is drawn of walls and openings: what a dimension line measures."""
-        walls = [part for state in STATES for part in (self.solid(state), *self.single(state))]
-        drawn = [*walls, *shapely.linestrings(centrelines_m(self.openings))]
-        return _bounds(drawn) if any(not part.is_empty for part in drawn) else self.bounds_m
+    def extent_m(self) -> tuple[FloatArray, FloatArray]:
+        """Likewise of walls and openings as drawn: what a dimension line measures."""
+        shapes: list[BaseGeometry] = [*line_shapes(centrelines_m(self.openings))]
+        for state in STATES:
+            shapes += [self.solid(state), *self.single(state)]
+        is_anything_drawn = any(not shape.is_empty for shape in shapes)
+        return _bounds(shapes) if is_anything_drawn else self.bounds_m
 
     @cached_property
-    def areas(self):
+    def areas(self) -> Array:
         """The rooms' polygons, (r,)."""
         return shapely.from_wkb(np.asarray(self.rooms["geometry"], object))
 
     @cached_property
-    def label_widths_m(self):
-        """How wide a label may be where each room's label goes, (r,): across the circle that has room there."""
+    def label_widths_m(self) -> FloatArray:
+        """How wide each room's label may be, (r,): across the circle that has room around it."""
         places = shapely.points(self.rooms["x_m"], self.rooms["y_m"])
         return 2 * shapely.distance(places, shapely.boundary(self.areas))
 
 
-def summarise_floorplan(plan):
-    """Return what a plan holds, in words."""
-    counts = [(len(plan.walls["wall"]), "wall"), (len(plan.faces["face"]), "wall face")]
-    counts += [(int((plan.openings["type"] == kind).sum()), kind) for kind in OPENINGS]
-    counts += [(len(plan.rooms["room"]), "room")]
-    return ", ".join(f"{n} {what}{'s' if n != 1 else ''}" for n, what in counts if n)
+def summarise_floorplan(plan: FloorPlan) -> str:
+    """Return how many walls, faces, openings of each type and rooms a plan has, in words."""
+    counts = {"wall": len(plan.walls["wall"]), "wall face": len(plan.faces["face"])}
+    for kind in OPENINGS:
+        counts[kind] = int((plan.openings["type"] == kind).sum())
+    counts["room"] = len(plan.rooms["room"])
+    return ", ".join(f"{n} {noun}{'s' if n != 1 else ''}" for noun, n in counts.items() if n)
 
 
-def buffer_lines(lines, half_m):
+def line_shapes(lines_m: FloatArray) -> Array:
+    """Return LineStrings (n,) of lines (n, 2, 2)."""
+    return np.asarray(shapely.linestrings(lines_m), object)
+
+
+def buffer_lines(lines: FloatArray, half_m: FloatArray) -> Array:
     """Return rectangles (n,) along lines (n, 2, 2), `half_m` (n,) to each side."""
-    return (
-        shapely.buffer(shapely.linestrings(lines), half_m, cap_style="flat")
-        if len(lines)
-        else np.array([], object)
-    )
+    if len(lines) == 0:
+        return np.array([], object)
+    return shapely.buffer(line_shapes(lines), half_m, cap_style="flat")
 
 
-def _bounds(shapes):
-    x0, y0, x1, y1 = shapely.total_bounds(np.array(shapes, object))
+def _bounds(shapes: Iterable[BaseGeometry]) -> tuple[FloatArray, FloatArray]:
+    x0, y0, x1, y1 = shapely.total_bounds(np.array(list(shapes), object))
     return np.array([x0, y0]), np.array([x1, y1])
 
 
-def _extreme(values, choose):
+def _extreme(values: FloatArray, choose: np.ufunc) -> float:
     """Return the least or greatest of values, NaN left out; 0 of none."""
-    found = choose.reduce(values, initial=np.nan)
-    return float(found) if np.isfinite(found) else 0.0
+    extreme = choose.reduce(values, initial=np.nan)
+    return float(extreme) if np.isfinite(extreme) else 0.0

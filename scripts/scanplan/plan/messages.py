@@ -1,43 +1,57 @@
-"""What is told about a plan, and when there is none."""
+"""Log lines about a plan, and errors where there is none."""
 
 import numpy as np
 
 from scanplan.errors import StageError
+from scanplan.plan.planning import Plan
 from scanplan.rays import free_space
+from scanplan.rays.ray_set import RaySet
+from scanplan.types import BoolArray, Columns, FilePath, FloatArray
 
-_FAR_SHARE = (
-    0.5  # of the points: fewer of them too far away still leave most doors met by two columns
-)
+_FAR_SHARE = 0.5  # of the points: with fewer far ones most doors are met by two columns
+_COLUMNS_NEEDED = 2  # a single column may pass beside an opening
 
 
-def check_segments(path, segments, used, n_scans):
-    """Raise StageError if the table of walls at `path` has no wall of the used rows (n,) bool, or wrong numbers."""
+def check_segments(path: FilePath, segments: Columns, used: BoolArray, n_scans: int) -> None:
+    """Raise StageError if a table of wall segments has none to use, or wrong numbers.
+
+    Parameters
+    ----------
+    path : path-like
+        The table's.
+    segments : dict of str to (n,) array
+        The columns of `schemas.WALLS`.
+    used : (n,) bool
+        Rows of the chosen scans.
+    n_scans : int
+        Number of the chosen scans.
+    """
     if not used.any():
         raise StageError(
-            f"{path}: no wall in the first {n_scans} scans ({len(used)} in all scans), at least 1 needed;"
-            " take more scans (selection.stop) or loosen the wall extractor (walls)"
+            f"{path}: no wall in the first {n_scans} scans ({len(used)} in all scans), at least 1"
+            " needed; take more scans (selection.stop) or loosen the wall extractor (walls)"
         )
-    wrong = sum(int((~np.isfinite(values[used])).sum()) for values in segments.values())
-    if wrong:
+    n_wrong = sum(int((~np.isfinite(values[used])).sum()) for values in segments.values())
+    if n_wrong:
         raise StageError(
-            f"{path}: {wrong} numbers are not finite, 0 allowed; delete it and run again"
+            f"{path}: {n_wrong} numbers are not finite, 0 allowed; delete it and run again"
         )
 
 
-def check_plan(path, plan, n_segments, n_scans):
+def check_plan(path: FilePath, plan: Plan, n_segments: int, n_scans: int) -> None:
     """Raise StageError if a plan has no wall."""
     if len(plan.walls["wall"]) == 0:
         raise StageError(
-            f"{path}: none of {n_segments} wall segments of {n_scans} scans is supported enough to be drawn;"
-            " lower plan.merge min_length_m, min_points_per_m, min_scans or lone_length_m"
+            f"{path}: none of {n_segments} wall segments of {n_scans} scans is supported enough to"
+            " be drawn; lower plan.merge min_length_m, min_points_per_m, min_scans or lone_length_m"
         )
 
 
-def sparse_rays_warning(rays, min_opening_m):
-    """Say that rays lie too far apart for the narrowest opening; nothing where they do not.
+def sparse_rays_warning(rays: RaySet, min_opening_m: float) -> str:
+    """Return a warning that rays lie too far apart for the narrowest opening.
 
-    An opening is told by rays through it. At a distance r it is met by ``width / (r * spacing)`` columns of rays; two
-    are needed, as one alone may pass beside it.
+    An opening is detected by rays through it. At a distance r it is met by ``width / (r *
+    spacing)`` columns of rays; two are needed, as one alone may pass beside it.
 
     Parameters
     ----------
@@ -49,40 +63,55 @@ def sparse_rays_warning(rays, min_opening_m):
     str
         Empty where most points are near enough.
     """
-    spacing_rad = float(
-        np.median([free_space.column_spacing_rad(azimuth_rad) for azimuth_rad in rays.azimuth_rad])
-    )
-    range_m = [
-        np.hypot(*(p[:, :2] - s[:2]).T) for p, s in zip(rays.xyz_m, rays.sensors_m, strict=True)
-    ]
-    enough_m = min_opening_m / (2 * spacing_rad) if spacing_rad > 0 else np.inf
-    far = float(np.mean(np.concatenate(range_m) > enough_m))
+    spacings_rad = [free_space.column_spacing_rad(azimuth_rad) for azimuth_rad in rays.azimuth_rad]
+    spacing_rad = float(np.median(spacings_rad))
+    if spacing_rad <= 0:
+        return ""
+    enough_m = min_opening_m / (_COLUMNS_NEEDED * spacing_rad)
+    far = float(np.mean(_ranges_m(rays) > enough_m))
     if far <= _FAR_SHARE:
         return ""
     return (
-        f"columns of rays lie {np.degrees(spacing_rad):.1f} deg apart: two meet an opening of {min_opening_m:g} m"
-        f" (plan.openings.min_opening_m) up to {enough_m:.1f} m away only, and {far:.0%} of the points are farther;"
-        " doors may be missed and rooms not be parted; record more directions a turn (simulate.sensor.n_azimuth)"
+        f"columns of rays lie {np.degrees(spacing_rad):.1f} deg apart: two meet an opening of"
+        f" {min_opening_m:g} m (plan.openings.min_opening_m) up to {enough_m:.1f} m away only, and"
+        f" {far:.0%} of the points are farther; doors may be missed and rooms not be parted; record"
+        " more directions a turn (simulate.sensor.n_azimuth)"
     )
 
 
-def summarise_plan(plan):
-    """Say in a few words what a plan holds, and what was left out."""
-    walls, faces, rooms = plan.walls, plan.faces, plan.rooms
+def summarise_plan(plan: Plan) -> str:
+    """Return how much of each kind a plan has, and what was left out."""
+    walls = plan.walls
+    faces = plan.faces
+    rooms = plan.rooms
     length_m = np.hypot(walls["x1_m"] - walls["x0_m"], walls["y1_m"] - walls["y0_m"]).sum()
-    paired = int(np.isfinite(walls["thickness_m"]).sum())
-    inferred = int((faces["state"] == "inferred").sum())
-    closed, doubtful = int(rooms["closed"].sum()), int(walls["verify"].sum())
-    return (
-        f"{len(walls['wall'])} walls ({paired} with thickness, {doubtful} to verify), {length_m:,.1f} m;"
-        f" {len(faces['face'])} faces, {inferred} of them inferred; {len(plan.openings['opening'])} openings;"
-        f" {len(rooms['room'])} rooms, {closed} closed, {rooms['area_m2'].sum():,.1f} m2;"
-        f" {plan.n_dropped} of {plan.n_lines} lines of faces dropped; {_errors(plan.range_errors_m)}"
-    )
+    n_paired = int(np.isfinite(walls["thickness_m"]).sum())
+    n_doubtful = int(walls["verify"].sum())
+    n_inferred = int((faces["state"] == "inferred").sum())
+    n_closed = int(rooms["closed"].sum())
+    parts = [
+        f"{len(walls['wall'])} walls ({n_paired} with thickness, {n_doubtful} to verify),"
+        f" {length_m:,.1f} m",
+        f"{len(faces['face'])} faces, {n_inferred} of them inferred",
+        f"{len(plan.openings['opening'])} openings",
+        f"{len(rooms['room'])} rooms, {n_closed} closed, {rooms['area_m2'].sum():,.1f} m2",
+        f"{plan.n_dropped} of {plan.n_lines} lines of faces dropped",
+        _summarise_range_bias(plan.range_errors_m),
+    ]
+    return "; ".join(parts)
 
 
-def _errors(range_errors_m):
-    known_mm = 1000 * range_errors_m[range_errors_m != 0]
-    if len(known_mm) == 0:
+def _summarise_range_bias(range_errors_m: FloatArray) -> str:
+    errors_mm = 1000 * range_errors_m[range_errors_m != 0]
+    if len(errors_mm) == 0:
         return "ranges taken as they are"
-    return f"ranges too long by {known_mm.min():.1f} to {known_mm.max():.1f} mm, corrected"
+    return f"ranges too long by {errors_mm.min():.1f} to {errors_mm.max():.1f} mm, corrected"
+
+
+def _ranges_m(rays: RaySet) -> FloatArray:
+    """Return the level distances of all points from their sensors."""
+    ranges_m = [
+        np.hypot(*(xyz_m[:, :2] - sensor_m[:2]).T)
+        for xyz_m, sensor_m in zip(rays.xyz_m, rays.sensors_m, strict=True)
+    ]
+    return np.concatenate(ranges_m)

@@ -90,14 +90,6 @@ class Opening:
         return "door" if self.width_m <= settings.max_door_m else "passage"
 
 
-def find_gaps(intervals_m):
-    """Return the pauses (m, 2) between intervals (n, 2), n >= 1, that may overlap."""
-    order = np.argsort(intervals_m[:, 0], kind="stable")
-    low_m, high_m = intervals_m[order, 0], np.maximum.accumulate(intervals_m[order, 1])
-    pauses = np.column_stack([high_m[:-1], low_m[1:]])
-    return pauses[pauses[:, 1] > pauses[:, 0]]
-
-
 def classify_gap(wall_line, low_m, high_m, lines, reading, settings, *, planar, needs_lintel=False):
     """Tell what a pause of a wall is.
 

@@ -1,14 +1,22 @@
 """The tables of a plan: faces, walls, openings, rooms, evidence and free floor, as columns."""
 
 import math
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 import numpy as np
 import shapely
+from shapely.geometry import Polygon
 
-from scanplan.plan.rooms import rooms_beside
+from scanplan.plan.openings import OpeningSettings
+from scanplan.plan.rooms import Room, rooms_beside
+from scanplan.plan.uncertainty import ReviewCriteria, WallEvidence
+from scanplan.plan.wall_faces import OBSERVED, WallFace
+from scanplan.plan.walls import PlanWall
 from scanplan.store import schemas
+from scanplan.types import Array, FloatArray, IntArray
 
-_TYPES = {
+_TYPES: dict[str, type] = {
     "int32": np.int32,
     "int64": np.int64,
     "float64": np.float64,
@@ -16,168 +24,209 @@ _TYPES = {
     "string": object,
     "binary": object,
 }
+_Z_PERCENTILES = (2, 98)  # of a face's points: stray ones above or below do not count
+_MOSTLY_OBSERVED = 0.5  # share of a wall's length
+_LABEL_M = 0.05  # precision of a room's label place
+
+Row = dict[str, Any]
+"""Values of a table's row by column."""
 
 
-def face_columns(found, floor_z_m):
-    """Return the rows of `schemas.FACES`, and the row of each face: those observed first, the longest first.
+def face_columns(faces: Sequence[WallFace], floor_z_m: float) -> tuple[dict[str, Array], list[int]]:
+    """Return the rows of `schemas.FACES`: observed faces first, the longest first.
 
     Parameters
     ----------
-    found : list of wall_faces.WallFace
+    faces : sequence of wall_faces.WallFace
     floor_z_m : float
 
     Returns
     -------
     dict of str to (n,) array
     list of int
+        The row of each face.
     """
-    order = sorted(range(len(found)), key=lambda i: _rank(found[i]))
-    row_of = {number: row for row, number in enumerate(order)}
-    rows = [{"face": row, **_face(found[number], floor_z_m)} for row, number in enumerate(order)]
-    return _columns(rows, schemas.FACES), [row_of[i] for i in range(len(found))]
+    order = sorted(range(len(faces)), key=lambda i: _rank(faces[i]))
+    rows = [{"face": row, **_face_row(faces[i], floor_z_m)} for row, i in enumerate(order)]
+    row_of_face = {i: row for row, i in enumerate(order)}
+    return _columns(rows, schemas.FACES), [row_of_face[i] for i in range(len(faces))]
 
 
-def wall_columns(found, evidence, face_rows, of_walls, floor_z_m, trust):
+def wall_columns(
+    walls: Sequence[PlanWall],
+    evidence: Sequence[WallEvidence],
+    face_rows: Sequence[int],
+    faces: Sequence[WallFace],
+    floor_z_m: float,
+    criteria: ReviewCriteria,
+) -> dict[str, Array]:
     """Return the rows of `schemas.PLAN_WALLS`.
 
     Parameters
     ----------
-    found : list of walls.PlanWall
-    evidence : list of uncertainty.WallEvidence
-    face_rows : list of int
-        Row of each face of `of_walls`.
-    of_walls : list of wall_faces.WallFace
+    walls : sequence of walls.PlanWall
+    evidence : sequence of uncertainty.WallEvidence
+        One per wall.
+    face_rows : sequence of int
+        Row of each of `faces` in the table of faces.
+    faces : sequence of wall_faces.WallFace
     floor_z_m : float
-    trust : uncertainty.ReviewCriteria
+    criteria : uncertainty.ReviewCriteria
     """
-    rows, sides = [], _main_faces(face_rows, of_walls)
-    for number, (wall, known) in enumerate(zip(found, evidence, strict=True)):
-        rows.append(
-            {
-                "wall": number,
-                **_ends(wall.ends),
-                "thickness_m": wall.thickness_m,
-                "face_left": sides.get((number, True), -1),
-                "face_right": sides.get((number, False), -1),
-                "state": "observed" if known.observed >= 0.5 else "inferred",
-                "z_min_m": known.z_m[0] + floor_z_m,
-                "z_max_m": known.z_m[1] + floor_z_m,
-                "top_m": known.top_m + floor_z_m,
-                "rmse_m": known.rmse_m,
-                "sigma_offset_m": known.sigma_offset_m,
-                "sigma_end0_m": known.sigma_end_m[0],
-                "sigma_end1_m": known.sigma_end_m[1],
-                "n_points": known.n_points,
-                "n_scans": len(known.scans),
-                "verify": bool(known.needs_a_visit(trust)),
-            }
-        )
+    main_rows = _main_face_rows(face_rows, faces)
+    rows: list[Row] = []
+    for number, (wall, known) in enumerate(zip(walls, evidence, strict=True)):
+        low_m, high_m = known.z_m
+        sigma_start_m, sigma_end_m = known.sigma_end_m
+        row = {
+            "wall": number,
+            **_end_columns(wall.ends),
+            "thickness_m": wall.thickness_m,
+            "face_left": main_rows.get((number, True), -1),
+            "face_right": main_rows.get((number, False), -1),
+            "state": "observed" if known.observed >= _MOSTLY_OBSERVED else "inferred",
+            "z_min_m": low_m + floor_z_m,
+            "z_max_m": high_m + floor_z_m,
+            "top_m": known.top_m + floor_z_m,
+            "rmse_m": known.rmse_m,
+            "sigma_offset_m": known.sigma_offset_m,
+            "sigma_end0_m": sigma_start_m,
+            "sigma_end1_m": sigma_end_m,
+            "n_points": known.n_points,
+            "n_scans": len(known.scans),
+            "verify": known.needs_a_visit(criteria),
+        }
+        rows.append(row)
     return _columns(rows, schemas.PLAN_WALLS)
 
 
-def opening_columns(found, rooms, gapping):
+def opening_columns(
+    walls: Sequence[PlanWall], rooms: Sequence[Room], settings: OpeningSettings
+) -> dict[str, Array]:
     """Return the rows of `schemas.OPENINGS`: those of each wall in order along it."""
-    rows = []
-    for number, wall in enumerate(found):
-        for gap in wall.openings:
-            ends = wall.line.at(np.array([gap.low_m, gap.high_m]))
-            left, right = rooms_beside(rooms, ends, wall.half_m)
-            rows.append(
-                {
-                    "opening": len(rows),
-                    "wall": number,
-                    "type": gap.kind(gapping),
-                    **_ends(ends),
-                    "width_m": gap.width_m,
-                    "thickness_m": wall.thickness_m,
-                    "sill_m": gap.sill_m,
-                    "lintel_m": gap.lintel_m,
-                    "room_a": left,
-                    "room_b": right,
-                    "n_rays": gap.n_rays,
-                }
-            )
+    rows: list[Row] = []
+    for number, wall in enumerate(walls):
+        for opening in wall.openings:
+            ends_m = wall.line.at(np.array([opening.low_m, opening.high_m]))
+            room_left, room_right = rooms_beside(rooms, ends_m, wall.half_m)
+            row = {
+                "opening": len(rows),
+                "wall": number,
+                "type": opening.kind(settings),
+                **_end_columns(ends_m),
+                "width_m": opening.width_m,
+                "thickness_m": wall.thickness_m,
+                "sill_m": opening.sill_m,
+                "lintel_m": opening.lintel_m,
+                "room_a": room_left,
+                "room_b": room_right,
+                "n_rays": opening.n_rays,
+            }
+            rows.append(row)
     return _columns(rows, schemas.OPENINGS)
 
 
-def room_columns(found):
-    """Return the rows of `schemas.ROOMS`; the label's point is the middle of the largest circle in the room."""
-    rows = []
-    for number, room in enumerate(found):
-        circle = shapely.maximum_inscribed_circle(room.polygon, tolerance=0.05)
+def room_columns(rooms: Sequence[Room]) -> dict[str, Array]:
+    """Return the rows of `schemas.ROOMS`.
+
+    The label's point is the middle of the largest circle in the room.
+    """
+    rows: list[Row] = []
+    for number, room in enumerate(rooms):
+        circle = shapely.maximum_inscribed_circle(room.polygon, tolerance=_LABEL_M)
         x_m, y_m = shapely.get_coordinates(circle)[0].tolist()
-        rows.append(
-            {
-                "room": number,
-                "area_m2": room.polygon.area,
-                "perimeter_m": room.polygon.length,
-                "x_m": x_m,
-                "y_m": y_m,
-                "closed": room.closed,
-                "n_scans": room.n_scans,
-                "geometry": shapely.to_wkb(room.polygon),
-            }
-        )
+        row = {
+            "room": number,
+            "area_m2": room.polygon.area,
+            "perimeter_m": room.polygon.length,
+            "x_m": x_m,
+            "y_m": y_m,
+            "closed": room.closed,
+            "n_scans": room.n_scans,
+            "geometry": shapely.to_wkb(room.polygon),
+        }
+        rows.append(row)
     return _columns(rows, schemas.ROOMS)
 
 
-def evidence_columns(known, scan_ids, t_ns):
-    """Return the rows of `schemas.EVIDENCE`; `scan_ids` and `t_ns` (n,) are those of the chosen scans."""
-    rows = [
-        {"wall": wall, "scan_id": scan_ids[scan], "t_ns": t_ns[scan], "n_points": count}
-        for wall, of_wall in enumerate(known)
-        for scan, count in zip(of_wall.scans, of_wall.points, strict=True)
-    ]
+def evidence_columns(
+    evidence: Sequence[WallEvidence], scan_ids: IntArray, t_ns: IntArray
+) -> dict[str, Array]:
+    """Return the rows of `schemas.EVIDENCE`.
+
+    Parameters
+    ----------
+    evidence : sequence of uncertainty.WallEvidence
+        One per wall.
+    scan_ids, t_ns : (n,) int
+        Of the chosen scans.
+    """
+    rows: list[Row] = []
+    for wall, known in enumerate(evidence):
+        for scan, n_points in zip(known.scans, known.points, strict=True):
+            scan_row = {"scan_id": scan_ids[scan], "t_ns": t_ns[scan]}
+            rows.append({"wall": wall, **scan_row, "n_points": n_points})
     return _columns(rows, schemas.EVIDENCE)
 
 
-def free_columns(parts):
+def free_columns(polygons: Iterable[Polygon]) -> dict[str, Array]:
     """Return the rows of `schemas.FREE` of polygons, the largest first."""
-    parts = sorted(parts, key=lambda p: (-p.area, *p.bounds))
-    return _columns(
-        [{"part": i, "geometry": shapely.to_wkb(p)} for i, p in enumerate(parts)], schemas.FREE
-    )
+    parts = sorted(polygons, key=lambda polygon: (-polygon.area, *polygon.bounds))
+    rows = [{"part": i, "geometry": shapely.to_wkb(part)} for i, part in enumerate(parts)]
+    return _columns(rows, schemas.FREE)
 
 
-def _face(face, floor_z_m):
-    n_points, n_scans, rmse_m, z_m = 0, 0, math.nan, (math.nan, math.nan)
-    if face.shown is not None:
-        points = face.shown.points
-        n_points, n_scans = face.shown.n_points, face.shown.n_scans
-        rmse_m = float(np.sqrt(np.mean(face.shown.seen.hit_off_m[points] ** 2)))
-        z_m = tuple(np.percentile(face.shown.seen.hit_z_m[points], (2, 98)) + floor_z_m)
+def _face_row(face: WallFace, floor_z_m: float) -> Row:
     return {
-        **_ends(face.ends),
+        **_end_columns(face.ends),
         "nx": face.line.normal[0],
         "ny": face.line.normal[1],
-        "n_points": n_points,
-        "n_scans": n_scans,
-        "rmse_m": rmse_m,
-        "z_min_m": z_m[0],
-        "z_max_m": z_m[1],
+        **_points_of_face(face, floor_z_m),
         "state": face.state,
         "wall": face.wall,
     }
 
 
-def _rank(face):
-    return face.shown is None, face.low_m - face.high_m, *face.ends.ravel().tolist()
+def _points_of_face(face: WallFace, floor_z_m: float) -> Row:
+    """Return what the points say that show a face; none show an inferred one."""
+    interval = face.shown
+    if interval is None:
+        unknown = dict.fromkeys(("rmse_m", "z_min_m", "z_max_m"), math.nan)
+        return {"n_points": 0, "n_scans": 0, **unknown}
+    offset_m = interval.seen.hit_off_m[interval.points]
+    height_m = interval.seen.hit_z_m[interval.points]
+    z_min_m, z_max_m = np.percentile(height_m, _Z_PERCENTILES) + floor_z_m
+    return {
+        "n_points": interval.n_points,
+        "n_scans": interval.n_scans,
+        "rmse_m": float(np.sqrt(np.mean(offset_m**2))),
+        "z_min_m": z_min_m,
+        "z_max_m": z_max_m,
+    }
 
 
-def _main_faces(face_rows, of_walls):
+def _rank(face: WallFace) -> tuple[Any, ...]:
+    return face.state != OBSERVED, face.low_m - face.high_m, *face.ends.ravel().tolist()
+
+
+def _main_face_rows(
+    face_rows: Sequence[int], faces: Sequence[WallFace]
+) -> dict[tuple[int, bool], int]:
     """Return the row of the longest observed face of each side, by (wall, left)."""
-    rows = {}
-    for row, face in sorted(zip(face_rows, of_walls, strict=True), key=lambda known: -known[0]):
-        if face.shown is not None:
-            rows[face.wall, face.left] = row
+    rows: dict[tuple[int, bool], int] = {}
+    # rows are in order of length
+    for row, face in sorted(zip(face_rows, faces, strict=True), key=lambda pair: pair[0]):
+        if face.state == OBSERVED:
+            rows.setdefault((face.wall, face.left), row)
     return rows
 
 
-def _ends(ends):
-    return dict(zip(("x0_m", "y0_m", "x1_m", "y1_m"), ends.ravel().tolist(), strict=True))
+def _end_columns(ends_m: FloatArray) -> Row:
+    names = ("x0_m", "y0_m", "x1_m", "y1_m")
+    return dict(zip(names, ends_m.ravel().tolist(), strict=True))
 
 
-def _columns(rows, schema):
+def _columns(rows: Sequence[Row], schema: schemas.Schema) -> dict[str, Array]:
     return {
         name: np.array([row[name] for row in rows], _TYPES[kind])
         for name, kind in schema.columns.items()

@@ -19,7 +19,6 @@ from scanplan.plan import (
     windows,
 )
 from scanplan.plan.openings import OpeningSettings
-from scanplan.plan.right_angles import RightAnglePrior
 from scanplan.plan.rooms import find_rooms
 from scanplan.plan.walls import assemble_walls
 from scanplan.rays import face_profile, free_space
@@ -59,7 +58,6 @@ class PlanSettings:
     merge: segment_merging.MergeSettings
     reading: face_profile.RaySettings
     ranges: range_bias.RangeBiasSettings
-    square: RightAnglePrior
     furniture: furniture_fronts.FrontLimits
     pairs: wall_pairs.PairSettings
     openings: OpeningSettings
@@ -91,9 +89,7 @@ class Plan:
     range_errors_m: np.ndarray
 
 
-def make_plan_settings(
-    *, merge, trace, ranges, right_angles, furniture, pair, openings, rooms, trust
-):
+def make_plan_settings(*, merge, trace, ranges, furniture, pair, openings, rooms, trust):
     """Return settings from keywords of each part.
 
     Raises
@@ -106,7 +102,6 @@ def make_plan_settings(
         merge=merging,
         reading=face_profile.RaySettings(**trace),
         ranges=range_bias.RangeBiasSettings(**ranges),
-        square=RightAnglePrior(registration_sigma_m=merging.registration_sigma_m, **right_angles),
         furniture=furniture_fronts.FrontLimits(**furniture),
         pairs=wall_pairs.PairSettings(**pair, max_gap_m=openings["max_opening_m"]),
         openings=OpeningSettings(**openings),
@@ -145,7 +140,7 @@ def make_plan(segments, rays, track_m, t_ns, settings, up=None):
     )
     rays = range_bias.remove_range_bias(rays, errors_m, up)
     pieces = segment_merging.merge_segments(segments, settings.merge)
-    parts = settings.merge, settings.reading, settings.square, settings.furniture
+    parts = settings.merge, settings.reading, settings.furniture
     traced = faces.trace_faces(pieces, rays, *parts)
     found = assemble_walls(
         *(traced.stretches, settings.reading, settings.pairs, settings.openings),

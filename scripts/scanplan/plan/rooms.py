@@ -1,24 +1,36 @@
 """Rooms: floor that walls and openings enclose."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import shapely
 from shapely.geometry import LineString, MultiPolygon, Polygon
+from shapely.geometry.base import BaseGeometry
 
+from scanplan.plan.walls import PlanWall
 from scanplan.rays import free_space
+from scanplan.types import Array, FloatArray
 
-_NEAR_M = 0.2
-_BESIDE_M = 0.12
+_NEAR_M = 0.2  # walls and ends this near to a part of the floor bound it
+_BESIDE_M = 0.12  # an outline this near to a wall's ground runs along it
 _NECK_M = 0.1  # half of what is too narrow to join two parts of a floor
-_MARGIN_M = 0.5
-_CELL_SHARE = 0.5
-_LEAST_CELL_SHARE = 0.25
-_LEAST_CELL_M2 = 1e-6
-_LEAST_AGREEMENT = 0.75
-_CLOSED_SHARE = 0.9
-_SIMPLIFY_M = 0.05
-_STEP_M = 0.25
+_MARGIN_M = 0.5  # of the drawing of lines around a part of the floor: the cells beside it, too
+_CELL_SHARE = 0.5  # a cell seen for more than this is floor
+_LEAST_CELL_SHARE = 0.25  # so is one that walls enclose: what hides the rest is in the room
+_LEAST_CELL_M2 = 1e-6  # smaller cells are rounding
+_LEAST_AGREEMENT = 0.75  # of cells and floor, intersection over union: else lines are missing
+_LEAST_UNION_M2 = 1e-9  # keeps that agreement finite
+_CLOSED_SHARE = 0.9  # of an outline along walls: corners and short gaps leave a tenth
+_SIMPLIFY_M = 0.05  # of the floor's outline: below what furniture makes of it
+_STEP_M = 0.25  # edge of the least square of floor that a scan must see of a room
+_BESIDE_WALL_M = np.array(
+    [0.15, 0.3, 0.5]
+)  # from a wall: what stands at it may hide the nearest floor
+_SHORTEST_M = 1e-9  # keeps the direction of an opening of no width finite
+
+Ray = tuple[FloatArray, FloatArray]
+"""A line without ends: a point (2,) and its unit direction (2,)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,34 +54,43 @@ class Room:
     n_scans: int
 
     @property
-    def closed(self):
+    def closed(self) -> bool:
         """Whether walls and openings enclose it, all but a tenth of its outline."""
         return self.walled >= _CLOSED_SHARE
 
 
 def find_rooms(
-    walls, stars, track_m, *, min_area_m2, min_walled, min_width_m, unpaired_m, floor=None
-):
+    walls: Sequence[PlanWall],
+    stars: Sequence[BaseGeometry],
+    track_m: FloatArray,
+    *,
+    min_area_m2: float,
+    min_walled: float,
+    min_width_m: float,
+    unpaired_m: float,
+    floor: BaseGeometry | None = None,
+) -> list[Room]:
     """Find the rooms.
 
-    The floor that was seen falls apart where walls and openings stand. Each part becomes the faces of the cells, in a
-    drawing of all its walls' lines, that were seen for the greater part: corners are sharp, and what furniture hid is
-    filled in.
+    The floor that was seen falls apart where walls and openings stand. Each part becomes the faces
+    of the cells, in a drawing of all its walls' lines, that were seen for the greater part: corners
+    are sharp, and what furniture occluded is filled in.
 
     Parameters
     ----------
-    walls : list of walls.PlanWall
-    stars : list of shapely geometry
+    walls : sequence of walls.PlanWall
+    stars : sequence of shapely geometry
         What each scan saw, `free_space.free_polygons`.
     track_m : (n, 2) float64
         Where sensors were.
     min_area_m2 : float
     min_walled : float, 0 to 1
-        A part that no sensor was in is a room only if so much of its outline runs along walls and openings,
+        A part that no sensor was in is a room only if so much of its outline runs along walls and
+        openings,
     min_width_m : float
         and if it is wider than this somewhere: a wall may be as thick.
     unpaired_m : float
-        How thick a wall is taken for of which one side is known.
+        Thickness assumed of a wall of which one side is known.
     floor : shapely geometry, optional
         `free_space.union_on_grid` of the stars, where it is known already.
 
@@ -80,49 +101,95 @@ def find_rooms(
     """
     strips = free_space.wall_strips(walls, unpaired_m)
     solid = free_space.union_on_grid(strips)
-    seen = free_space.difference_on_grid(
-        free_space.union_on_grid(stars) if floor is None else floor, solid
-    )
-    parts = [p for p in free_space.open_polygons(seen, _NECK_M) if p.area >= min_area_m2]
+    whole = free_space.union_on_grid(stars) if floor is None else floor
+    seen = free_space.difference_on_grid(whole, solid)
     track = shapely.points(track_m)
-    found, taken = [], MultiPolygon()
-    for part in sorted(parts, key=lambda p: (-p.area, *p.bounds)):
-        near = [(w, s) for w, s in zip(walls, strips, strict=True) if s.distance(part) <= _NEAR_M]
-        outline = (
-            shapely.union_all([s for _, s in near]).buffer(_BESIDE_M) if near else MultiPolygon()
-        )
-        drawn = _drawn(part, [w for w, _ in near], solid, outline, unpaired_m)
-        polygon = _largest(
-            free_space.difference_on_grid(drawn, free_space.union_on_grid([solid, taken]))
-        )
+    rooms: list[Room] = []
+    occupied: BaseGeometry = MultiPolygon()
+    for part in _large_parts(seen, min_area_m2):
+        polygon, outline = _draw_room(part, walls, strips, solid, occupied, unpaired_m)
         if polygon is None or polygon.area < min_area_m2:
             continue
-        walled = _walled(polygon, outline)
+        walled = _walled_share(polygon, outline)
         shapely.prepare(polygon)
-        room = Room(
-            polygon, walled, bool(shapely.contains(polygon, track).any()), _n_scans(polygon, stars)
-        )
+        is_entered = bool(shapely.contains(polygon, track).any())
         is_wide = not polygon.buffer(-min_width_m / 2).is_empty
-        if room.entered or (walled >= min_walled and is_wide):
-            found.append(room)
-            taken = free_space.union_on_grid([taken, polygon])
-    return sorted(found, key=lambda r: (-r.polygon.area, *r.polygon.bounds))
+        if is_entered or (walled >= min_walled and is_wide):
+            rooms.append(Room(polygon, walled, is_entered, _count_scans(polygon, stars)))
+            occupied = free_space.union_on_grid([occupied, polygon])
+    return sorted(rooms, key=lambda room: _largest_first(room.polygon))
 
 
-def _n_scans(polygon, stars):
-    shapely.prepare(polygon)
-    near = np.array(stars, object)[shapely.intersects(polygon, stars)]
-    return int((shapely.area(shapely.intersection(polygon, near)) >= _STEP_M**2).sum())
+def rooms_beside(rooms: Sequence[Room], line_m: FloatArray, half_m: float) -> tuple[int, int]:
+    """Return the rooms (indices, -1: none) on the left and right of the middle of a line (2, 2)."""
+    middle = line_m.mean(axis=0)
+    way = line_m[1] - line_m[0]
+    normal = np.array([-way[1], way[0]]) / max(np.hypot(*way), _SHORTEST_M)
+    away = np.outer(half_m + _BESIDE_WALL_M, normal)
+    return _first_room(rooms, middle + away), _first_room(rooms, middle - away)
 
 
-def _largest(geometry):
-    return max(free_space.open_polygons(geometry, _NECK_M), key=lambda p: p.area, default=None)
+def _first_room(rooms: Sequence[Room], places_m: FloatArray) -> int:
+    """Return the room that the first of places (n, 2) in any room is in; -1 for none."""
+    for place in np.asarray(shapely.points(places_m), object):
+        for number, room in enumerate(rooms):
+            if room.polygon.covers(place):
+                return number
+    return -1
 
 
-def _drawn(part, walls, solid, outline, unpaired_m):
-    """Return the cells between the lines of the walls that were seen for the greater part; the part if they fail it.
+def _largest_first(polygon: Polygon) -> tuple[float, ...]:
+    return (-polygon.area, *polygon.bounds)
 
-    A cell that walls enclose was seen well enough at a quarter: what hides the rest is in the room.
+
+def _large_parts(floor: BaseGeometry, min_area_m2: float) -> list[Polygon]:
+    """Return the parts that a floor falls into at its necks, the largest first."""
+    parts = free_space.open_polygons(floor, _NECK_M)
+    return sorted((part for part in parts if part.area >= min_area_m2), key=_largest_first)
+
+
+def _largest(geometry: BaseGeometry) -> Polygon | None:
+    parts = free_space.open_polygons(geometry, _NECK_M)
+    return max(parts, key=lambda part: part.area, default=None)
+
+
+def _count_scans(polygon: Polygon, stars: Sequence[BaseGeometry]) -> int:
+    """Return how many scans saw a part of a polygon, which is prepared."""
+    all_stars = np.array(stars, object)
+    near = all_stars[shapely.intersects(polygon, all_stars)]
+    seen_m2 = shapely.area(shapely.intersection(polygon, near))
+    return int((seen_m2 >= _STEP_M**2).sum())
+
+
+def _draw_room(
+    part: Polygon,
+    walls: Sequence[PlanWall],
+    strips: Sequence[Polygon],
+    solid: BaseGeometry,
+    occupied: BaseGeometry,
+    unpaired_m: float,
+) -> tuple[Polygon | None, BaseGeometry]:
+    """Return the polygon of a part of the floor, and the ground along its walls."""
+    rows = [row for row, strip in enumerate(strips) if strip.distance(part) <= _NEAR_M]
+    outline: BaseGeometry = MultiPolygon()
+    if rows:
+        outline = shapely.union_all([strips[row] for row in rows]).buffer(_BESIDE_M)
+    drawn = _fill_cells(part, [walls[row] for row in rows], solid, outline, unpaired_m)
+    others = free_space.union_on_grid([solid, occupied])
+    return _largest(free_space.difference_on_grid(drawn, others)), outline
+
+
+def _fill_cells(
+    part: Polygon,
+    walls: Sequence[PlanWall],
+    solid: BaseGeometry,
+    outline: BaseGeometry,
+    unpaired_m: float,
+) -> BaseGeometry:
+    """Return the cells between the lines of walls that were seen for the greater part.
+
+    It is the part of the floor itself where they do not agree with it. A cell that walls enclose
+    was seen well enough at a quarter: what hides the rest is in the room.
     """
     rough = part.simplify(_SIMPLIFY_M)
     cells = _cells(rough, walls, unpaired_m)
@@ -130,56 +197,51 @@ def _drawn(part, walls, solid, outline, unpaired_m):
         return rough
     shapely.prepare(rough)
     share = shapely.area(shapely.intersection(cells, rough)) / shapely.area(cells)
-    chosen = share > _CELL_SHARE
-    for i in np.flatnonzero(~chosen & (share > _LEAST_CELL_SHARE)):
-        chosen[i] = _walled(cells[i], outline) >= _CLOSED_SHARE
-    drawn = _largest(free_space.difference_on_grid(free_space.union_on_grid(cells[chosen]), solid))
+    is_floor = share > _CELL_SHARE
+    for row in np.flatnonzero(~is_floor & (share > _LEAST_CELL_SHARE)):
+        is_floor[row] = _walled_share(cells[row], outline) >= _CLOSED_SHARE
+    ground = free_space.union_on_grid(cells[is_floor])
+    drawn = _largest(free_space.difference_on_grid(ground, solid))
     if drawn is None:
         return rough
-    both = shapely.intersection(drawn, rough).area / max(shapely.union(drawn, rough).area, 1e-9)
-    return drawn if both >= _LEAST_AGREEMENT or _walled(drawn, outline) >= _CLOSED_SHARE else rough
+    common_m2 = shapely.intersection(drawn, rough).area
+    agreement = common_m2 / max(shapely.union(drawn, rough).area, _LEAST_UNION_M2)
+    is_closed = _walled_share(drawn, outline) >= _CLOSED_SHARE
+    return drawn if agreement >= _LEAST_AGREEMENT or is_closed else rough
 
 
-def _walled(polygon, outline):
+def _walled_share(polygon: Polygon, outline: BaseGeometry) -> float:
+    """Return the share of a polygon's outline that runs along walls."""
     return float(polygon.exterior.intersection(outline).length / polygon.exterior.length)
 
 
-def _cells(part, walls, unpaired_m):
-    """Return the cells (n,) that the lines of the walls' faces and ends make of the part's surroundings."""
-    lines = [line for wall in walls for line in _lines(wall, part, unpaired_m)]
-    if len(lines) < 3:
+def _cells(part: BaseGeometry, walls: Sequence[PlanWall], unpaired_m: float) -> Array:
+    """Return the cells (n,) that the lines of walls' faces and ends make around a part."""
+    rays = [ray for wall in walls for ray in _bounding_rays(wall, part, unpaired_m)]
+    if len(rays) < 3:
         return np.empty(0, object)
     low_x, low_y, high_x, high_y = part.buffer(_MARGIN_M).bounds
+    frame = shapely.box(low_x, low_y, high_x, high_y)
     reach_m = 2 * float(np.hypot(high_x - low_x, high_y - low_y))
-    drawing = [shapely.box(low_x, low_y, high_x, high_y).exterior]
-    drawing += [LineString([point - reach_m * way, point + reach_m * way]) for point, way in lines]
+    drawing: list[BaseGeometry] = [frame.exterior]
+    for point, way in rays:
+        drawing.append(LineString([point - reach_m * way, point + reach_m * way]))
     noded = shapely.union_all(np.array(drawing, object), grid_size=free_space.GRID_M)
-    cells = np.array(list(shapely.get_parts(shapely.polygonize(shapely.get_parts(noded)))), object)
-    middles = shapely.point_on_surface(cells)
-    inside = shapely.covers(shapely.box(low_x, low_y, high_x, high_y), middles)
-    return cells[inside & (shapely.area(cells) > _LEAST_CELL_M2)]
+    polygons = shapely.get_parts(shapely.polygonize(shapely.get_parts(noded)))
+    cells = np.array(list(polygons), object)
+    is_inside = shapely.covers(frame, shapely.point_on_surface(cells))
+    return cells[is_inside & (shapely.area(cells) > _LEAST_CELL_M2)]
 
 
-def _lines(wall, part, unpaired_m):
-    """Return (point, way) of what of a wall may bound the part: its faces, and its ends near to it."""
+def _bounding_rays(wall: PlanWall, part: BaseGeometry, unpaired_m: float) -> list[Ray]:
+    """Return the lines of a wall that may bound a part: its faces, and its ends near to it."""
     back_m = unpaired_m if np.isnan(wall.thickness_m) else wall.half_m
-    offsets = (off_m * wall.line.normal for off_m in (wall.half_m, -back_m))
-    beside_m = wall.line.at(wall.line.along_m(np.array(part.centroid.coords[0])))
-    lines = [(beside_m + offset, wall.line.direction) for offset in offsets]
-    return lines + [
-        (end, wall.line.normal) for end in wall.ends if shapely.Point(end).distance(part) <= _NEAR_M
-    ]
-
-
-def rooms_beside(rooms, line_m, half_m):
-    """Return the rooms (indices, -1: none) on the left and on the right of the middle of a line (2, 2)."""
-    middle, way = line_m.mean(axis=0), line_m[1] - line_m[0]
-    normal = np.array([-way[1], way[0]]) / max(np.hypot(*way), 1e-9)
-    found = []
-    for sign in (1, -1):
-        points = shapely.points(
-            middle + sign * np.outer(half_m + np.array([0.15, 0.3, 0.5]), normal)
-        )
-        hit = [i for p in points for i, room in enumerate(rooms) if room.polygon.covers(p)]
-        found.append(hit[0] if hit else -1)
-    return found
+    centroid = np.array(part.centroid.coords[0])
+    beside_m = wall.line.at(wall.line.along_m(centroid))
+    normal = wall.line.normal
+    way = wall.line.direction
+    rays: list[Ray] = [(beside_m + wall.half_m * normal, way), (beside_m - back_m * normal, way)]
+    for end in wall.ends:
+        if shapely.Point(end).distance(part) <= _NEAR_M:
+            rays.append((end, normal))
+    return rays

@@ -1,22 +1,27 @@
-"""What a wall of the plan rests on: how sure its place and its ends are, and which scans show it."""
+"""Uncertainty of the plan's walls: their offset and ends, the scans that show them, and review."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from scanplan.geometry import intersections
+from scanplan.geometry.intervals import added_lengths_m
+from scanplan.plan.face_intervals import FaceInterval
+from scanplan.plan.walls import PlanWall
+from scanplan.types import FloatArray, IntArray
 
-_NEAR_END_M = 0.25
-_MET_M = 1e-6
-_REACH_M = 0.5
-_LOWEST_PERCENTILE = 2
-_POINTS_ABOVE = 10
+_NEAR_END_M = 0.25  # points this near to an end show it: several columns of a scan at 10 m
+_MET_M = 1e-6  # an end is put on the line of the wall that it meets: rounding only
+_REACH_M = 0.5  # an end is this near to the wall it meets: half the widest, and a corner's gap
+_LOWEST_PERCENTILE = 2  # of a wall's points: stray ones below the floor do not count
+_POINTS_ABOVE = 10  # the highest points of a wall that may be stray
 
 
 @dataclass(frozen=True)
 class ReviewCriteria:
-    """How sure a wall must be not to be flagged.
+    """How certain a wall must be not to be flagged for review on site.
 
     Attributes
     ----------
@@ -37,23 +42,23 @@ class ReviewCriteria:
 
 @dataclass(frozen=True, eq=False)
 class WallEvidence:
-    """What a wall rests on.
+    """Points and scans that show a wall, and how certain it is by them.
 
     Attributes
     ----------
     rmse_m : float
         Of its points about the lines of its faces.
     sigma_offset_m : float
-        Standard deviation of where its middle is, across.
+        Standard deviation of its middle, across.
     sigma_end_m : tuple of two float
         Likewise of its ends, along.
     n_points : int
     scans : (k,) int64
         Indices of the scans that show it, increasing.
     points : (k,) int64
-        With how many points each.
+        Number of points of each.
     z_m : tuple of two float
-        From where to where its points reach, above the floor.
+        Lowest and highest of its points, above the floor.
     top_m : float
         Where it ends below the ceiling, above the floor; NaN where it was not seen to.
     observed : float
@@ -62,118 +67,150 @@ class WallEvidence:
 
     rmse_m: float
     sigma_offset_m: float
-    sigma_end_m: tuple
+    sigma_end_m: tuple[float, float]
     n_points: int
-    scans: np.ndarray
-    points: np.ndarray
-    z_m: tuple
+    scans: IntArray
+    points: IntArray
+    z_m: tuple[float, float]
     top_m: float
     observed: float
 
-    def needs_a_visit(self, trust):
-        """Tell whether someone should verify the wall on site."""
+    def needs_a_visit(self, criteria: ReviewCriteria) -> bool:
+        """Return whether someone should verify the wall on site."""
         sigma_m = max(self.sigma_offset_m, *self.sigma_end_m)
         return (
-            sigma_m > trust.max_sigma_m
-            or len(self.scans) < trust.min_scans
-            or self.observed < trust.min_observed
+            sigma_m > criteria.max_sigma_m
+            or len(self.scans) < criteria.min_scans
+            or self.observed < criteria.min_observed
         )
 
 
-def estimate_evidence(walls, trust, tops_m):
+def estimate_evidence(
+    walls: Sequence[PlanWall], criteria: ReviewCriteria, tops_m: Sequence[float]
+) -> list[WallEvidence]:
     """Return the evidence of every wall.
 
     Parameters
     ----------
-    walls : list of walls.PlanWall
-    trust : Trust
-    tops_m : list of float
+    walls : sequence of walls.PlanWall
+    criteria : ReviewCriteria
+    tops_m : sequence of float
         Where each ends below the ceiling, above the floor; NaN where it was not seen to.
-
-    Returns
-    -------
-    list of Evidence
     """
-    sides = [
-        [_side_sigma_m(side, trust) for side in (wall.left, wall.right) if side] for wall in walls
+    offset_sigmas_m = np.array([_offset_sigma_m(wall, criteria) for wall in walls])
+    spans = intersections.stack_spans(walls)
+    return [
+        _estimate_wall(wall, row, top_m, spans, offset_sigmas_m, criteria)
+        for row, (wall, top_m) in enumerate(zip(walls, tops_m, strict=True))
     ]
-    offsets_m = np.array(
-        [math.sqrt(sum(s**2 for s in of_wall)) / len(of_wall) for of_wall in sides]
-    )
-    stacked = intersections.stack_spans(walls)
-    rows = zip(walls, offsets_m, tops_m, strict=True)
-    return [_weigh(wall, off_m, top_m, stacked, offsets_m, trust) for wall, off_m, top_m in rows]
 
 
-def _weigh(wall, offset_m, top_m, stacked, offsets_m, trust):
+def _estimate_wall(
+    wall: PlanWall,
+    row: int,
+    top_m: float,
+    spans: intersections.SpanArrays,
+    offset_sigmas_m: FloatArray,
+    criteria: ReviewCriteria,
+) -> WallEvidence:
     scan, residual_m, z_m = _hits(wall.members)
     scans, points = np.unique(scan, return_counts=True)
-    ends = tuple(_end_sigma_m(wall, end, stacked, offsets_m, trust) for end in (0, 1))
+    start_sigma_m = _end_sigma_m(wall, wall.low_m, spans, offset_sigmas_m, criteria)
+    end_sigma_m = _end_sigma_m(wall, wall.high_m, spans, offset_sigmas_m, criteria)
     return WallEvidence(
         rmse_m=float(np.sqrt(np.mean(residual_m**2))),
-        sigma_offset_m=float(offset_m),
-        sigma_end_m=ends,
+        sigma_offset_m=float(offset_sigmas_m[row]),
+        sigma_end_m=(start_sigma_m, end_sigma_m),
         n_points=len(scan),
         scans=scans,
         points=points,
         z_m=(float(np.percentile(z_m, _LOWEST_PERCENTILE)), _highest_m(z_m)),
         top_m=top_m,
-        observed=_observed(wall),
+        observed=_observed_share(wall),
     )
 
 
-def _hits(stretches):
-    """Return scan, offset and height of all points that show stretches."""
-    columns = [
-        (s.seen.hit_scan[s.points], s.seen.hit_off_m[s.points], s.seen.hit_z_m[s.points])
-        for s in stretches
-    ]
-    return tuple(np.concatenate(column) for column in zip(*columns, strict=True))
+def _hits(intervals: Sequence[FaceInterval]) -> tuple[IntArray, FloatArray, FloatArray]:
+    """Return scan, offset and height of all points that show face intervals."""
+    scan = np.concatenate([i.seen.hit_scan[i.points] for i in intervals])
+    offset_m = np.concatenate([i.seen.hit_off_m[i.points] for i in intervals])
+    z_m = np.concatenate([i.seen.hit_z_m[i.points] for i in intervals])
+    return scan, offset_m, z_m
 
 
-def _highest_m(z_m):
-    """Return the height that all but ten points stay below: a share of them would, too, where few rays look up."""
+def _highest_m(z_m: FloatArray) -> float:
+    """Return the height that all but ten points stay below.
+
+    A percentile would leave out too many where few rays look up.
+    """
     return float(np.sort(z_m)[max(len(z_m) - 1 - _POINTS_ABOVE, len(z_m) // 2)])
 
 
-def _side_sigma_m(stretches, trust):
-    """Return the standard deviation of a side's offset: scans err independently, a scan's points together.
+def _offset_sigma_m(wall: PlanWall, criteria: ReviewCriteria) -> float:
+    """Return the standard deviation of a wall's middle: the mean of its sides."""
+    sides = [side for side in (wall.left, wall.right) if side]
+    variances = [_side_sigma_m(side, criteria) ** 2 for side in sides]
+    return math.sqrt(sum(variances)) / len(sides)
 
-    The spread of the scans' means is taken where it is wider than registration is said to be.
+
+def _side_sigma_m(intervals: Sequence[FaceInterval], criteria: ReviewCriteria) -> float:
+    """Return the standard deviation of a side's offset.
+
+    Scans err independently, a scan's points together. The spread of the scans' means is taken where
+    it is wider than registration is said to be.
     """
-    scan, offset_m, _ = _hits(stretches)
+    scan, offset_m, _ = _hits(intervals)
     _, index, count = np.unique(scan, return_inverse=True, return_counts=True)
     mean_m = np.bincount(index, offset_m) / count
-    spread_m = np.sqrt(np.average((mean_m - np.average(mean_m, weights=count)) ** 2, weights=count))
-    return math.hypot(
-        max(spread_m, trust.registration_sigma_m) / math.sqrt(len(count)),
-        offset_m.std() / len(scan) ** 0.5,
-    )
+    deviation_m = mean_m - np.average(mean_m, weights=count)
+    spread_m = np.sqrt(np.average(deviation_m**2, weights=count))
+    of_scans_m = max(spread_m, criteria.registration_sigma_m) / math.sqrt(len(count))
+    of_points_m = offset_m.std() / len(scan) ** 0.5
+    return math.hypot(of_scans_m, of_points_m)
 
 
-def _end_sigma_m(wall, end, stacked, offsets_m, trust):
-    """Return the standard deviation of an end: of the wall it meets there, or of where its points cease."""
-    crossed = intersections.find_crossings(wall.line, stacked, reach_m=_REACH_M)
-    at_it = np.abs(crossed.place_m - (wall.low_m, wall.high_m)[end]) < _MET_M
-    if at_it.any():
-        return float((offsets_m[crossed.which] / crossed.sine)[at_it].min())
-    n_scans, pitch_m = 0, math.inf
-    for stretch in wall.members:
-        along_m = wall.line.along_m(stretch.line.at(stretch.seen.hit_m[stretch.points]))
-        near = np.abs(along_m - (wall.low_m, wall.high_m)[end]) <= _NEAR_END_M
-        if near.any():
-            n_scans += len(np.unique(stretch.seen.hit_scan[stretch.points][near]))
-            pitch_m = min(pitch_m, _NEAR_END_M / near.sum())
-    return math.hypot(
-        trust.registration_sigma_m / math.sqrt(max(n_scans, 1)), min(pitch_m, _NEAR_END_M)
-    )
+def _end_sigma_m(
+    wall: PlanWall,
+    end_m: float,
+    spans: intersections.SpanArrays,
+    offset_sigmas_m: FloatArray,
+    criteria: ReviewCriteria,
+) -> float:
+    """Return the standard deviation of an end: of the wall it meets there, or by its last points.
+
+    Parameters
+    ----------
+    wall : walls.PlanWall
+    end_m : float
+        Where the end is along the wall.
+    spans : intersections.SpanArrays
+        All walls.
+    offset_sigmas_m : (n,) float64
+        Of all walls.
+    criteria : ReviewCriteria
+    """
+    crossings = intersections.find_crossings(wall.line, spans, reach_m=_REACH_M)
+    is_at_end = np.abs(crossings.place_m - end_m) < _MET_M
+    if is_at_end.any():
+        return float((offset_sigmas_m[crossings.which] / crossings.sine)[is_at_end].min())
+    n_scans = 0
+    pitch_m = math.inf
+    for interval in wall.members:
+        seen = interval.seen
+        along_m = wall.line.along_m(interval.line.at(seen.hit_m[interval.points]))
+        is_near = np.abs(along_m - end_m) <= _NEAR_END_M
+        if is_near.any():
+            n_scans += len(np.unique(seen.hit_scan[interval.points][is_near]))
+            pitch_m = min(pitch_m, _NEAR_END_M / is_near.sum())
+    of_scans_m = criteria.registration_sigma_m / math.sqrt(max(n_scans, 1))
+    return math.hypot(of_scans_m, min(pitch_m, _NEAR_END_M))
 
 
-def _observed(wall):
+def _observed_share(wall: PlanWall) -> float:
     """Return the share of a wall's length, openings aside, that points of either side show."""
-    spans = np.sort([wall.line.along_m(s.ends) for s in wall.members], axis=1)
-    spans = spans[np.argsort(spans[:, 0], kind="stable")]
-    reached = np.maximum.accumulate(np.concatenate([[-np.inf], spans[:, 1]]))[:-1]
-    shown_m = np.maximum(spans[:, 1] - np.maximum(spans[:, 0], reached), 0).sum()
-    whole_m = wall.length_m - sum(g.width_m for g in wall.openings if not g.is_above_wall)
+    spans_m = np.sort([wall.line.along_m(interval.ends) for interval in wall.members], axis=1)
+    spans_m = spans_m[np.argsort(spans_m[:, 0], kind="stable")]
+    shown_m = added_lengths_m(*spans_m.T).sum()
+    ways_m = sum(opening.width_m for opening in wall.openings if not opening.is_above_wall)
+    whole_m = wall.length_m - ways_m
     return min(float(shown_m / whole_m), 1.0) if whole_m > 0 else 1.0

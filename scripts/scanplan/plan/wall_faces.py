@@ -1,29 +1,37 @@
-"""The faces of the plan's walls: what was observed of them, and what follows from it."""
+"""The faces of the plan's walls: observed ones, and those inferred from them."""
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
 from shapely.geometry import LineString, Polygon
 
+from scanplan.geometry.intervals import find_gaps
 from scanplan.geometry.lines import Line, Span
 from scanplan.plan.face_intervals import FaceInterval
+from scanplan.plan.walls import PlanWall
 
-OBSERVED, INFERRED = "observed", "inferred"
-_INSIDE_M = 0.01
-_BUTT_M = 0.05
-_SHORTEST_M = 0.1
+OBSERVED = "observed"
+INFERRED = "inferred"
+_INSIDE_M = 0.01  # a face this near to a wall's surface is not in it: rounding of places and angles
+_BUTT_M = 0.05  # a wall reaches this far beyond its end: faces that butt there are cut, too
+_SHORTEST_M = 0.1  # of an inferred face: less lies between two observed ones by their own errors
+
+Extent = tuple[float, float]
+"""From where to where along a line, metres."""
 
 
 @dataclass(frozen=True, eq=False)
 class WallFace(Span):
-    """A face of a wall: a stretch of its line, and the points that show it (none where it is inferred).
+    """A face of a wall: an interval of its line, and the points that show it.
 
     Attributes
     ----------
     line : lines.Line
     low_m, high_m : float
-    shown : Stretch or None
+    shown : face_intervals.FaceInterval or None
+        None where it is inferred.
     wall : int
     left : bool
         Whether it is the wall's left side.
@@ -37,108 +45,116 @@ class WallFace(Span):
     left: bool
 
     @property
-    def state(self):
+    def state(self) -> str:
         """`OBSERVED` or `INFERRED`."""
         return INFERRED if self.shown is None else OBSERVED
 
 
-def cut_wall_faces(walls, *, max_beyond_m):
+def cut_wall_faces(walls: Sequence[PlanWall], *, max_beyond_m: float) -> list[WallFace]:
     """Return the faces of walls, cut where other walls butt against them.
 
-    Where one side of a wall was seen and the other was not, the other is inferred between pieces of it that were seen,
-    and a little beyond; so is what lies in a pause that no ray went through; never an opening.
+    Where one side of a wall was seen and the other was not, the other is inferred between observed
+    intervals of it, and a little beyond; so is a pause that no ray went through; never an opening.
 
     Parameters
     ----------
-    walls : list of walls.PlanWall
+    walls : sequence of walls.PlanWall
     max_beyond_m : float
         How far a side may go on to the wall's end beyond where it was seen.
 
     Returns
     -------
-    list of Face
+    list of WallFace
         By wall.
     """
-    blocks = [_block(wall) for wall in walls]
-    tree = shapely.STRtree(blocks)
-    faces = []
+    ground = _Ground(walls)
+    faces: list[WallFace] = []
     for number, wall in enumerate(walls):
-        shown = [
-            (s, is_left) for side, is_left in ((wall.left, True), (wall.right, False)) for s in side
-        ]
-        for stretch, is_left in shown:
-            for low_m, high_m in _outside(
-                stretch.line, stretch.low_m, stretch.high_m, number, blocks, tree
+        for interval, is_left in _observed_intervals(wall):
+            for low_m, high_m in ground.cut(
+                interval.line, (interval.low_m, interval.high_m), number
             ):
-                part = replace(stretch, low_m=low_m, high_m=high_m)
+                part = replace(interval, low_m=low_m, high_m=high_m)
                 if part.n_points:
                     faces.append(WallFace(part.line, low_m, high_m, part, number, is_left))
-        for line, low_m, high_m, is_left in _missing(wall, max_beyond_m):
-            for begin_m, end_m in _outside(line, low_m, high_m, number, blocks, tree):
-                if end_m - begin_m >= _SHORTEST_M:
-                    faces.append(WallFace(line, begin_m, end_m, None, number, is_left))
+        for line, extent_m, is_left in _inferred_extents(wall, max_beyond_m):
+            for low_m, high_m in ground.cut(line, extent_m, number):
+                if high_m - low_m >= _SHORTEST_M:
+                    faces.append(WallFace(line, low_m, high_m, None, number, is_left))
     return faces
 
 
-def _missing(wall, max_beyond_m):
-    """Return (line, from, to, left) of what was not seen of the sides of a wall and is there all the same."""
-    for is_left, side in ((True, wall.left), (False, wall.right)):
+class _Ground:
+    """The ground that walls stand on."""
+
+    def __init__(self, walls: Sequence[PlanWall]) -> None:
+        self._blocks = [_block(wall) for wall in walls]
+        self._tree = shapely.STRtree(self._blocks)
+
+    def cut(self, line: Line, extent_m: Extent, own: int) -> list[Extent]:
+        """Return what of an extent of a line lies in no wall but its own."""
+        interval = LineString(line.at(np.array(extent_m)))
+        near = sorted(self._tree.query(interval, predicate="intersects").tolist())
+        others = [self._blocks[wall] for wall in near if wall != own]
+        if not others:
+            low_m, high_m = extent_m
+            return [(float(low_m), float(high_m))]
+        rest = shapely.get_parts(shapely.difference(interval, shapely.union_all(others)))
+        parts_m = [line.along_m(shapely.get_coordinates(part)) for part in rest if part.length > 0]
+        return sorted((float(part_m.min()), float(part_m.max())) for part_m in parts_m)
+
+
+def _block(wall: PlanWall) -> Polygon:
+    """Return the ground of a wall of known thickness, a little longer and slimmer; else nothing."""
+    if np.isnan(wall.thickness_m) or wall.half_m <= _INSIDE_M:
+        return Polygon()
+    start, end = wall.line.at(np.array([wall.low_m - _BUTT_M, wall.high_m + _BUTT_M]))
+    across = (wall.half_m - _INSIDE_M) * wall.line.normal
+    return Polygon([start - across, end - across, end + across, start + across])
+
+
+def _observed_intervals(wall: PlanWall) -> list[tuple[FaceInterval, bool]]:
+    """Return the observed intervals of both sides, and whether each is of the left one."""
+    left = [(interval, True) for interval in wall.left]
+    return left + [(interval, False) for interval in wall.right]
+
+
+def _inferred_extents(wall: PlanWall, max_beyond_m: float) -> Iterator[tuple[Line, Extent, bool]]:
+    """Yield line, extent and side (left) of the faces to infer of a wall."""
+    for side, is_left in ((wall.left, True), (wall.right, False)):
         if not side:
             continue
         sign = 1 if is_left else -1
-        line = Line(
-            wall.line.centre + sign * wall.half_m * wall.line.normal, sign * wall.line.normal
-        )
-        known = [line.along_m(s.ends) for s in side]
+        centre = wall.line.centre + sign * wall.half_m * wall.line.normal
+        line = Line(centre, sign * wall.line.normal)
         if wall.right:
-            ways = [g for g in wall.openings if not g.is_above_wall]
-            known += [line.along_m(wall.line.at(np.array([g.low_m, g.high_m]))) for g in ways]
-            span = np.sort(line.along_m(wall.ends))
-            seen = np.sort(known[: len(side)], axis=1)
-            inner = span[0] if seen.min() - span[0] <= max_beyond_m else seen.min()
-            outer = span[1] if span[1] - seen.max() <= max_beyond_m else seen.max()
-            yield from (
-                (line, low, high, is_left)
-                for low, high in _gaps(np.sort(known, axis=1), inner, outer)
-            )
+            extents_m = _between_intervals(wall, side, line, max_beyond_m)
         else:
-            for gap in wall.closed:
-                span = np.sort(line.along_m(wall.line.at(np.array([gap.low_m, gap.high_m]))))
-                yield (line, *map(float, span), is_left)
+            extents_m = [_extent_m(line, wall, pause.low_m, pause.high_m) for pause in wall.closed]
+        for extent_m in extents_m:
+            yield line, extent_m, is_left
 
 
-def _gaps(known, low_m, high_m):
-    """Return what of low to high is in none of the known spans (n, 2)."""
-    known = known[np.argsort(known[:, 0], kind="stable")]
-    reached = np.maximum.accumulate(np.concatenate([[low_m], known[:, 1]]))
-    until = np.concatenate([known[:, 0], [high_m]])
-    return [
-        (float(a), float(min(b, high_m)))
-        for a, b in zip(reached, until, strict=True)
-        if min(b, high_m) > a
+def _between_intervals(
+    wall: PlanWall, side: Sequence[FaceInterval], line: Line, max_beyond_m: float
+) -> list[Extent]:
+    """Return the extents of a side, along its line, in no observed interval and no opening."""
+    intervals_m = np.sort([line.along_m(interval.ends) for interval in side], axis=1)
+    ways_m = [
+        _extent_m(line, wall, opening.low_m, opening.high_m)
+        for opening in wall.openings
+        if not opening.is_above_wall
     ]
+    first_m = intervals_m.min()
+    last_m = intervals_m.max()
+    begin_m, end_m = np.sort(line.along_m(wall.ends))
+    low_m = begin_m if first_m - begin_m <= max_beyond_m else first_m
+    high_m = end_m if end_m - last_m <= max_beyond_m else last_m
+    occupied_m = np.concatenate([intervals_m, np.array(ways_m).reshape(-1, 2)])
+    return [(begin_m, end_m) for begin_m, end_m in find_gaps(occupied_m, low_m, high_m).tolist()]
 
 
-def _block(wall):
-    """Return the ground of a wall of known thickness, a little longer than it and slimmer; else nothing."""
-    if np.isnan(wall.thickness_m) or wall.half_m <= _INSIDE_M:
-        return Polygon()
-    ends = wall.line.at(np.array([wall.low_m - _BUTT_M, wall.high_m + _BUTT_M]))
-    across = (wall.half_m - _INSIDE_M) * wall.line.normal
-    return Polygon([ends[0] - across, ends[1] - across, ends[1] + across, ends[0] + across])
-
-
-def _outside(line, low_m, high_m, own, blocks, tree):
-    """Return the spans (low, high) of a stretch that lie in no other wall."""
-    ends = line.at(np.array([low_m, high_m]))
-    stretch = LineString(ends)
-    others = [
-        blocks[i] for i in sorted(tree.query(stretch, predicate="intersects").tolist()) if i != own
-    ]
-    if not others:
-        return [(float(low_m), float(high_m))]
-    rest = shapely.get_parts(shapely.difference(stretch, shapely.union_all(others)))
-    spans = [
-        np.sort(line.along_m(shapely.get_coordinates(part))) for part in rest if part.length > 0
-    ]
-    return sorted((float(span[0]), float(span[-1])) for span in spans)
+def _extent_m(line: Line, wall: PlanWall, low_m: float, high_m: float) -> Extent:
+    """Return an extent along a wall's line as one along another line beside it."""
+    begin_m, end_m = np.sort(line.along_m(wall.line.at(np.array([low_m, high_m]))))
+    return float(begin_m), float(end_m)

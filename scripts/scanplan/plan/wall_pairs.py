@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from scanplan.geometry.lines import Line
+from scanplan.geometry.lines import Line, least_scatter_normal, rows_scatter
 from scanplan.rays import face_profile
 
 _LEAST_OVERLAP_M = 0.2
@@ -194,7 +194,7 @@ def _fit(sides, normal):
 
     A stretch counts as a uniform row of points, by its length.
     """
-    xx = yy = xy = 0.0
+    scatter = np.zeros(3)
     centres = []
     for ends in sides:
         if not ends:
@@ -204,15 +204,10 @@ def _fit(sides, normal):
         middle, half = ends.mean(axis=1), (ends[:, 1] - ends[:, 0]) / 2
         weight = np.hypot(*half.T)
         weight = weight / max(weight.sum(), _SHORTEST_M)
-        centre = weight @ middle
-        total = np.hypot(*half.T).sum()
-        middle = middle - centre
-        dx, dy = total * (weight @ (middle**2 + half**2 / 3))
-        xx, yy = xx + dx, yy + dy
-        xy += total * (weight @ (middle[:, 0] * middle[:, 1] + half[:, 0] * half[:, 1] / 3))
+        centre, of_side = rows_scatter(middle, half, weight)
+        scatter += np.hypot(*half.T).sum() * of_side
         centres.append(centre)
-    angle = math.atan2(2 * xy, xx - yy) / 2
-    fitted = np.array([-math.sin(angle), math.cos(angle)])
+    fitted = least_scatter_normal(*scatter, arctan2=math.atan2)
     fitted = fitted if fitted @ normal >= 0 else -fitted
     line = Line(next(c for c in centres if c is not None), fitted)
     return line, [0.0 if c is None else float(line.offset_m(c)) for c in centres]

@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scanplan.geometry import intersections
+from scanplan.geometry import intersections, intervals
 from scanplan.geometry.lines import Line, Span
 from scanplan.plan import wall_pairs
-from scanplan.plan.openings import CLOSED, OPEN, UNKNOWN, classify_gap, find_gaps
+from scanplan.plan.openings import CLOSED, OPEN, UNKNOWN, classify_gap
 
 _JAMB_M = 0.1
 
@@ -80,7 +80,7 @@ def assemble_walls(found, reading, pairing, gapping, *, planar, corner_m):
 def _cut(paired, found, reading, gapping, planar):
     """Return the walls that a paired wall falls into where it pauses for long and was seen neither open nor closed."""
     members = {i: np.sort(paired.line.along_m(found[i].ends)) for i in paired.members}
-    pauses = find_gaps(np.array(list(members.values())))
+    pauses = intervals.find_gaps(np.array(list(members.values())))
     lines = list({id(found[i].seen): found[i].seen for i in paired.members}.values())
     judged = [
         classify_gap(paired.line, *pause, lines, reading, gapping, planar=planar)

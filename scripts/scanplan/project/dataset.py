@@ -3,13 +3,21 @@
 No heavy imports: this runs while the workflow is being parsed.
 """
 
+from __future__ import annotations
+
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from scanplan.errors import StageError
 from scanplan.project import dataset_files, provenance
-from scanplan.project.settings import read_own_layers, settings_of_dataset
+from scanplan.project.settings import Layer, read_own_layers, settings_of_dataset
+from scanplan.project.settings_schema import Schema
+
+if TYPE_CHECKING:
+    from scanplan.types import FilePath, Settings
 
 DEMO = "demo"
 RESERVED = "thesis"
@@ -52,23 +60,16 @@ class Dataset:
     """
 
     name: str
-    settings: dict
-    recordings: tuple
-    truth: tuple | None = None
+    settings: dict[str, Any]
+    recordings: tuple[str, ...]
+    truth: tuple[str, str] | None = None
     building: str | None = None
-    layers: tuple = ()
+    layers: tuple[Layer, ...] = ()
     source: str = ""
-    notes: tuple = ()
+    notes: tuple[str, ...] = ()
 
 
-def list_choices(schema, *keys):
-    """Return what a setting may be, in the schema's order, as the workflow's list of it."""
-    for key in keys:
-        schema = schema["properties"][key]
-    return list(schema["enum"])
-
-
-def name_datasets(given):
+def name_datasets(given: FilePath | list[FilePath] | None) -> dict[str, str | None]:
     """Name the datasets of a run.
 
     Parameters
@@ -88,26 +89,31 @@ def name_datasets(given):
     """
     if given is None:
         return {DEMO: None}
-    paths = {}
+    paths: dict[str, str | None] = {}
     for path in map(str, given if isinstance(given, list) else [given]):
         name = dataset_files.dataset_name(path)
-        if name in paths and provenance.identify_source(path) == provenance.identify_source(
-            paths[name]
-        ):
-            raise StageError(f"{path}: is given twice, first as {paths[name]}; leave one out")
-        if name in paths:
-            raise StageError(
-                f"{path}: its results would be called {name} like those of {paths[name]}; rename one of them"
-            )
+        other = paths.get(name)
+        if other and provenance.identify_source(path) == provenance.identify_source(other):
+            raise StageError(f"{path}: is given twice, first as {other}; leave one out")
+        if other:
+            fault = f"its results would be called {name} like those of {other}"
+            raise StageError(f"{path}: {fault}; rename one of them")
         if name == RESERVED:
-            raise StageError(
-                f"{path}: results/{name} is the place of the thesis's experiments; rename the dataset"
-            )
+            fault = f"results/{name} is the place of the thesis's experiments"
+            raise StageError(f"{path}: {fault}; rename the dataset")
         paths[name] = path
     return paths
 
 
-def describe_dataset(name, path, *, defaults, given, schema, drawings):
+def describe_dataset(
+    name: str,
+    path: FilePath | None,
+    *,
+    defaults: Settings,
+    given: Sequence[Layer],
+    schema: Schema,
+    drawings: FilePath,
+) -> Dataset:
     """Gather what is known of a dataset before anything is run.
 
     Parameters
@@ -131,34 +137,42 @@ def describe_dataset(name, path, *, defaults, given, schema, drawings):
     StageError
         If files or settings are missing or wrong.
     """
-    is_survey = path is None or dataset_files.is_survey_file(path)
-    if is_survey and path is not None and not Path(path).is_file():
-        raise StageError(
-            f"{path}: does not exist; give a YAML file with a section `simulate`, a folder or a recording"
-        )
-    if is_survey and path is not None and dataset_files.is_rosbag2_metadata(path):
-        raise StageError(
-            f"{path}: describes a rosbag2 recording; give its folder as the dataset, {Path(path).parent}"
-        )
-    own = read_own_layers(path if is_survey else Path(path, dataset_files.SETTINGS_FILE))
+    own = _read_own_settings(path)
     layers = (*own, *given)
-    known = {"layers": layers, "source": provenance.identify_source(path)}
+    source = provenance.identify_source(path)
     settings = settings_of_dataset(defaults, layers, schema)
-    if is_survey:
-        if path is not None and not any("simulate" in layer.values for layer in own):
-            raise StageError(
-                f"{path}: has no section `simulate`, which says what is surveyed; to use it as settings of a dataset,"
-                " give it as CONFIG (--configfile)"
-            )
-        return replace(describe_simulated(name, settings, drawings), **known)
-    recordings = tuple(dataset_files.find_files(path))
-    truth = _truth_beside(Path(path))
-    return Dataset(
-        name, settings, recordings, truth, notes=tuple(dataset_files.list_overlooked(path)), **known
-    )
+    if path is None or dataset_files.is_survey_file(path):
+        _check_survey(path, own)
+        found = describe_simulated(name, settings, drawings)
+    else:
+        recordings = tuple(dataset_files.find_files(path))
+        notes = tuple(dataset_files.list_overlooked(path))
+        found = Dataset(name, settings, recordings, _truth_beside(Path(path)), notes=notes)
+    return replace(found, layers=layers, source=source)
 
 
-def describe_simulated(name, settings, drawings):
+def _read_own_settings(path: FilePath | None) -> list[Layer]:
+    if path is None:
+        return []
+    if not dataset_files.is_survey_file(path):
+        return read_own_layers(Path(path, dataset_files.SETTINGS_FILE))
+    if not Path(path).is_file():
+        remedy = "give a YAML file with a section `simulate`, a folder or a recording"
+        raise StageError(f"{path}: does not exist; {remedy}")
+    if dataset_files.is_rosbag2_metadata(path):
+        remedy = f"give its folder as the dataset, {Path(path).parent}"
+        raise StageError(f"{path}: describes a rosbag2 recording; {remedy}")
+    return read_own_layers(path)
+
+
+def _check_survey(path: FilePath | None, own: Sequence[Layer]) -> None:
+    if path is not None and not any("simulate" in layer.values for layer in own):
+        fault = "has no section `simulate`, which says what is surveyed"
+        remedy = "to use it as settings of a dataset, give it as CONFIG (--configfile)"
+        raise StageError(f"{path}: {fault}; {remedy}")
+
+
+def describe_simulated(name: str, settings: dict[str, Any], drawings: FilePath) -> Dataset:
     """Return the dataset that a simulation leaves under results/.
 
     Raises
@@ -183,8 +197,8 @@ def describe_simulated(name, settings, drawings):
     )
 
 
-def survey_files(suffix, name="{dataset}"):
-    """Return the files of a simulated survey by what they are, its recording with the given suffix."""
+def survey_files(suffix: str, name: str = "{dataset}") -> dict[str, str]:
+    """Return the files of a simulated survey by what they are, its recording with a suffix."""
     folder = f"results/{name}/survey"
     return {
         "recording": f"{folder}/survey.{suffix}",
@@ -194,7 +208,7 @@ def survey_files(suffix, name="{dataset}"):
     }
 
 
-def list_results(found, methods, extractors):
+def list_results(found: Dataset, methods: Sequence[str], extractors: Sequence[str]) -> list[str]:
     """List everything that the workflow makes of a dataset, but the recording of a simulated one.
 
     Parameters
@@ -216,7 +230,7 @@ def list_results(found, methods, extractors):
     return [f"results/{found.name}/{file}" for file in files]
 
 
-def find_truth(found):
+def find_truth(found: Dataset) -> tuple[str, str]:
     """Return truth.geojson and truth_poses.tum of a dataset.
 
     Raises
@@ -225,12 +239,11 @@ def find_truth(found):
         If its truth is not known.
     """
     if found.truth is None:
-        raise StageError(
-            f"{found.name}: has no truth to be evaluated against; put truth.geojson and truth_poses.tum into its folder"
-        )
+        remedy = "put truth.geojson and truth_poses.tum into its folder"
+        raise StageError(f"{found.name}: has no truth to be evaluated against; {remedy}")
     return found.truth
 
 
-def _truth_beside(folder):
-    files = [folder / name for name in dataset_files.TRUTH_FILES]
-    return tuple(map(str, files)) if all(file.is_file() for file in files) else None
+def _truth_beside(folder: Path) -> tuple[str, str] | None:
+    faces, poses = (folder / name for name in dataset_files.TRUTH_FILES)
+    return (str(faces), str(poses)) if faces.is_file() and poses.is_file() else None

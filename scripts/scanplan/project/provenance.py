@@ -1,19 +1,25 @@
-"""What the results under results/<name>/ were made of, so that no dataset takes the place of another of its name."""
+"""Provenance: what the results under results/<name>/ were made of.
+
+So no dataset takes the place of another of its name.
+"""
 
 import os
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from scanplan.errors import StageError
+from scanplan.plain_types import FilePath
 from scanplan.store import atomic
 
 DEMO = "the simulated demo"
 _RECORD = "source.txt"
 
 
-def identify_source(path):
-    """Return what identifies a dataset: its place, links followed; relative to here where it lies below.
+def identify_source(path: FilePath | None) -> str:
+    """Return what identifies a dataset: its place, links followed.
 
-    So a project that is moved with its datasets keeps its results.
+    The place is relative to here where it lies below, so that a project that is moved with its
+    datasets keeps its results.
 
     Parameters
     ----------
@@ -22,16 +28,17 @@ def identify_source(path):
     """
     if path is None:
         return DEMO
-    place, here = os.path.realpath(path), os.path.realpath(".")
+    place = os.path.realpath(path)
+    here = os.path.realpath(".")
     return os.path.relpath(place, here) if os.path.commonpath([place, here]) == here else place
 
 
-def check_sources(found, replaced=()):
+def check_sources(sources: Mapping[str, str], replaced: str | Sequence[str] = ()) -> None:
     """Refuse to make results of one dataset in the place of those of another.
 
     Parameters
     ----------
-    found : dict of str to str
+    sources : dict of str to str
         The datasets of a run: name and `identify_source`.
     replaced : str or sequence of str
         Names of those whose results may be replaced.
@@ -39,63 +46,66 @@ def check_sources(found, replaced=()):
     Raises
     ------
     StageError
+        If the results of a dataset were made of another one, or `replaced` names none of the run.
     """
     replaced = [replaced] if isinstance(replaced, str) else list(replaced)
     for name in replaced:
-        if name not in found:
+        if name not in sources:
             raise StageError(
-                f"replace: {name} is no dataset of this run; it has {', '.join(found)}"
+                f"replace: {name} is no dataset of this run; it has {', '.join(sources)}"
             )
-    for name, new in found.items():
-        old = _recorded(name)
+    for name, new in sources.items():
+        old = _recorded_sources(name)
         if old and new not in old and name not in replaced:
             raise StageError(
-                f"results/{name}: was made of {old[0]}, not of {new}; rename {new}, move results/{name} away, or have"
-                f" it replaced by `--config replace={name}` (make run: REPLACE={name})"
+                f"results/{name}: was made of {old[0]}, not of {new}; rename {new}, move"
+                f" results/{name} away, or have it replaced by `--config replace={name}`"
+                f" (make run: REPLACE={name})"
             )
 
 
-def begin_results(name, source):
+def begin_results(name: str, source: str) -> None:
     """Note what the results of a dataset are to be made of, before any is.
 
-    What they were made of so far stays beneath: until a whole run has ended, some of them still are.
+    What they were made of so far stays beneath: until a whole run has ended, some of them still
+    are.
     """
-    _note(name, [source, *(old for old in _recorded(name) if old != source)])
+    older = [old for old in _recorded_sources(name) if old != source]
+    _write_note(name, [source, *older])
 
 
-def end_results(name, source):
+def end_results(name: str, source: str) -> None:
     """Note that all results of a dataset are made of one source."""
-    _note(name, [source])
+    _write_note(name, [source])
 
 
-def _note(name, sources):
-    atomic.write_text(_place(name), "".join(f"{source}\n" for source in sources))
+def _write_note(name: str, sources: Sequence[str]) -> None:
+    atomic.write_text(_note_of(name), "".join(f"{source}\n" for source in sources))
 
 
-def discard_lone_note(name):
+def discard_lone_note(name: str) -> None:
     """Remove the note, and the folder, where there are no results that it would be of."""
-    if _is_lone(_place(name)):
-        _place(name).unlink()
-        for folder, _, _ in os.walk(_place(name).parent, topdown=False):
+    note = _note_of(name)
+    if _is_lone(note):
+        note.unlink()
+        for folder, _, _ in os.walk(note.parent, topdown=False):
             Path(folder).rmdir()
 
 
-def _place(name):
+def _note_of(name: str) -> Path:
     return Path("results", name, _RECORD)
 
 
-def _recorded(name):
-    """What results were made of, the newest first; nothing where there are none, or nobody noted it."""
-    place = _place(name)
-    return (
-        place.read_text(encoding="utf-8").splitlines()
-        if place.is_file() and not _is_lone(place)
-        else []
-    )
+def _recorded_sources(name: str) -> list[str]:
+    """Return what results were made of, the newest first; nothing where no note says so."""
+    note = _note_of(name)
+    if not note.is_file() or _is_lone(note):
+        return []
+    return note.read_text(encoding="utf-8").splitlines()
 
 
-def _is_lone(place):
-    """Tell whether there is a note and nothing else, but for folders that a killed run left empty."""
-    return place.is_file() and all(
-        entry == place or entry.is_dir() for entry in place.parent.rglob("*")
-    )
+def _is_lone(note: Path) -> bool:
+    """Return whether there is a note and nothing else but folders that a killed run left empty."""
+    if not note.is_file():
+        return False
+    return all(entry == note or entry.is_dir() for entry in note.parent.rglob("*"))

@@ -1,49 +1,36 @@
-"""The settings of a dataset: defaults, the dataset's own, the command line's; checked against the schema."""
+"""The settings of a dataset: defaults, the dataset's own, the command line's; the later win.
 
-import math
+No heavy imports: this runs whenever the workflow is parsed.
+"""
+
+from __future__ import annotations
+
 import os
 import re
+import sys
+from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
-
-from jsonschema import Draft202012Validator, validators
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from scanplan.errors import StageError
+from scanplan.project.settings_check import (
+    MANUAL,
+    check_settings,
+    find_crossed_limits,
+    iterate_leaves,
+)
+from scanplan.project.settings_schema import Schema, default_settings, read_schema
 from scanplan.project.yaml_file import read_yaml
 
-COMMAND_LINE = "--config"
-"""Origin of the settings that were given one by one on the command line."""
+if TYPE_CHECKING:
+    from scanplan.types import FilePath, Settings
 
 OF_A_RUN = ("dataset", "replace")
 """Keys that say what a run is of, and nothing of how its results are made."""
 
-# JSON knows no whole numbers and takes 5.0 for one; range() and a schema's reader do not
-_WHOLE = Draft202012Validator.TYPE_CHECKER.redefine("integer", lambda _, value: type(value) is int)
-_Validator = validators.extend(Draft202012Validator, type_checker=_WHOLE)
-_DEFAULTS, _MANUAL = "config/config.yaml", "config/README.md explains every key"
-_EXTRACTORS = ("cluster_ransac", "iterative_ransac")
-# (key, another): the first must be above the second, as nothing lies between them otherwise
-_ABOVE = [
-    ("input.max_range_m", "input.min_range_m"),
-    ("selection.visibility.max_height_m", "selection.visibility.min_height_m"),
-    *((f"walls.{e}.furniture_height_m", f"walls.{e}.hang_height_m") for e in _EXTRACTORS),
-    ("plan.pair.max_thickness_m", "plan.pair.min_thickness_m"),
-    ("plan.openings.max_opening_m", "plan.openings.min_opening_m"),
-    ("simulate.sensor.max_range_m", "simulate.sensor.min_range_m"),
-]
-# (key, another): the first must not be below the second
-_NOT_BELOW = [
-    ("registration.n_previous", "registration.icp_targets"),
-    ("hulls.sample_size", "hulls.n_clusters"),
-    # of walls, only what is lower than doors is looked at
-    *(
-        (f"walls.{e}.door_height_m", f"walls.{e}.{low}_height_m")
-        for e in _EXTRACTORS
-        for low in ("min", "wall")
-    ),
-    ("plan.merge.merge_distance_m", "plan.merge.tolerance_m"),
-    ("plan.openings.max_door_m", "plan.openings.min_opening_m"),
-]
+_DEFAULTS = "config/config.yaml"
+_ROOT = Path(__file__).parents[3]
 
 
 @dataclass(frozen=True)
@@ -53,16 +40,16 @@ class Layer:
     Attributes
     ----------
     origin : str
-        A file, or `COMMAND_LINE`.
+        A file, or `settings_check.COMMAND_LINE`.
     values : dict
     """
 
     origin: str
-    values: dict
+    values: dict[str, Any]
 
 
-def merge_settings(base, over):
-    """Return `base` with the values of `over` laid over it, section by section; neither is changed."""
+def merge_settings(base: Settings, over: Settings) -> dict[str, Any]:
+    """Return `base` with the values of `over` laid over it, section by section, both unchanged."""
     result = dict(base)
     for key, value in over.items():
         both = isinstance(value, dict) and isinstance(result.get(key), dict)
@@ -70,44 +57,28 @@ def merge_settings(base, over):
     return result
 
 
-def check_settings(settings, schema, origin):
-    """Check settings against the JSON schema.
-
-    Parameters
-    ----------
-    settings : dict
-    schema : dict
-    origin : str
-        Where the settings come from, for the message.
+def read_defaults(path: FilePath, schema: Schema) -> dict[str, Any]:
+    """Return the schema's defaults with the values of config/config.yaml laid over them, checked.
 
     Raises
     ------
     StageError
-        Naming the key, the value, what is allowed and the remedy, for the first fault in order of the keys.
+        See `check_settings`.
     """
-    faults = sorted(
-        _Validator(schema).iter_errors(settings), key=lambda e: (str(e.path), e.message)
-    )
-    if faults:
-        raise StageError(f"{origin}: {_explain(faults[0], origin)}; {_MANUAL}")
-    for key, value in iterate_leaves(settings):
-        if not _is_finite(value):
-            raise StageError(f"{origin}: {key}: {value} is no finite number; {_MANUAL}")
+    settings = merge_settings(default_settings(schema), read_yaml(path))
+    check_settings(settings, schema, _DEFAULTS)
+    return settings
 
 
-def _is_finite(value):
-    if isinstance(value, list):
-        return all(map(_is_finite, value))
-    return not isinstance(value, float) or math.isfinite(value)
-
-
-def settings_of_dataset(defaults, layers, schema):
+def settings_of_dataset(
+    defaults: Settings, layers: Sequence[Layer], schema: Schema
+) -> dict[str, Any]:
     """Return the checked settings of one dataset.
 
     Parameters
     ----------
     defaults : dict
-        config/config.yaml.
+        See `read_defaults`.
     layers : sequence of Layer
         The dataset's own settings and the command line's; the later win.
     schema : dict
@@ -122,26 +93,27 @@ def settings_of_dataset(defaults, layers, schema):
     StageError
         Naming where the fault lies, the key, its value, what is allowed and the remedy.
     """
-    settings = defaults
+    settings = dict(defaults)
     for layer in layers:
         settings = merge_settings(settings, layer.values)
         check_settings(settings, schema, layer.origin)
-    _check_order(settings, layers)
+    if crossed := find_crossed_limits(settings, schema):
+        keys, fault = crossed
+        raise StageError(f"{find_origin(layers, *keys) or _DEFAULTS}: {fault}; {MANUAL}")
     return {key: value for key, value in settings.items() if key not in OF_A_RUN}
 
 
-def settings_of_run(defaults, layers, schema):
-    """Return what the command line says of the run itself: a dict of `OF_A_RUN`, checked like `settings_of_dataset`."""
-    settings = defaults
+def settings_of_run(defaults: Settings, layers: Sequence[Layer], schema: Schema) -> dict[str, Any]:
+    """Return what the command line says of the run, `OF_A_RUN`, checked like other settings."""
+    settings = dict(defaults)
     for layer in layers:
-        settings = merge_settings(
-            settings, {key: layer.values[key] for key in OF_A_RUN if key in layer.values}
-        )
+        of_run = {key: layer.values[key] for key in OF_A_RUN if key in layer.values}
+        settings = merge_settings(settings, of_run)
         check_settings(settings, schema, layer.origin)
     return {key: settings[key] for key in OF_A_RUN}
 
 
-def read_own_layers(path, *, may_lack=True):
+def read_own_layers(path: FilePath | None, *, may_lack: bool = True) -> list[Layer]:
     """Return the layers of a dataset's own file: none where it has none, if it may.
 
     Raises
@@ -149,19 +121,20 @@ def read_own_layers(path, *, may_lack=True):
     StageError
         If it says what is for the command line alone, or cannot be read.
     """
-    if may_lack and (path is None or not os.path.lexists(path)):
+    if path is None or (may_lack and not os.path.lexists(path)):
         return []
     values = read_yaml(path)
     for key in OF_A_RUN:
         if key in values:
             raise StageError(
-                f"{path}: `{key}` is given on the command line, not in the dataset's own settings; drop it"
+                f"{path}: `{key}` is given on the command line, not in the dataset's own settings;"
+                " drop it"
             )
     return [Layer(str(path), values)]
 
 
-def find_origin(layers, *keys):
-    """Return where one of some keys, or one below them, was set last; None where all are as by default.
+def find_origin(layers: Sequence[Layer], *keys: str) -> str | None:
+    """Return where one of some keys, or one below them, was set last; None where none was.
 
     Parameters
     ----------
@@ -176,13 +149,14 @@ def find_origin(layers, *keys):
     return None
 
 
-def locate_fault(fault, layers):
+def locate_fault(fault: str, layers: Sequence[Layer]) -> str:
     """Put the file that gives a setting before a fault that begins with the setting's key.
 
     Parameters
     ----------
     fault : str
-        What a stage said: `simulate.site.start_m: ...`, or anything else, which is returned as it is.
+        What a stage said: `simulate.site.start_m: ...`, or anything else, which is returned as it
+        is.
     layers : sequence of Layer
         The settings of the dataset.
     """
@@ -191,58 +165,20 @@ def locate_fault(fault, layers):
     return f"{origin}: {fault}" if origin else fault
 
 
-def _check_order(settings, layers):
-    """Refuse limits that cross, in the name of what set one of them last."""
-    rules = [(*pair, True) for pair in _ABOVE] + [(*pair, False) for pair in _NOT_BELOW]
-    for high, low, apart in rules:
-        most, least = _value(settings, high), _value(settings, low)
-        if most < least or (apart and most == least):
-            origin = find_origin(layers, high, low) or _DEFAULTS
-            limit = "must be above" if apart else "must not be below"
+def _check_files(paths: Sequence[str]) -> None:
+    """Refuse files that cannot be settings of a run, before Snakemake itself reads them."""
+    schema = read_schema(_ROOT / "workflow/schemas/config.schema.yaml")
+    for path in paths:
+        values = read_yaml(path)
+        if not values:
             raise StageError(
-                f"{origin}: {high}: {most} {limit} {low} ({least}); change one of them, {_MANUAL}"
+                f"{path}: holds no settings; write `section: {{key: value}}`, or leave CONFIG out"
             )
-    key = "registration.icp_distances_m"
-    if any(rough < fine for rough, fine in pairwise(_value(settings, key))):
-        origin = find_origin(layers, key) or _DEFAULTS
-        raise StageError(
-            f"{origin}: {key}: {_value(settings, key)} must not rise, from rough to fine; {_MANUAL}"
-        )
+        check_settings(merge_settings(default_settings(schema), values), schema, path)
 
 
-def _value(settings, key):
-    for part in key.split("."):
-        settings = settings[part]
-    return settings
-
-
-def iterate_leaves(settings, prefix=""):
-    """Yield the values of nested settings with their keys, joined by dots: `("plan.method", "hull")`."""
-    for key, value in settings.items():
-        if isinstance(value, dict):
-            yield from iterate_leaves(value, f"{prefix}{key}.")
-        else:
-            yield f"{prefix}{key}", value
-
-
-def _explain(fault, origin):
-    key = ".".join(map(str, fault.path)) or "settings"
-    if fault.validator == "additionalProperties":
-        known = ", ".join(fault.schema["properties"])
-        extra = ", ".join(
-            sorted(str(key) for key in set(fault.instance) - set(fault.schema["properties"]))
-        )
-        return f"{key}: unknown key {extra}; known are {known}"
-    if fault.validator == "type" and fault.validator_value == "object":
-        return f"{key}: is {fault.instance!r}, expected keys with values below it; leave the section out if there are none"
-    if origin == COMMAND_LINE and isinstance(fault.instance, str) and fault.validator == "type":
-        return f"{key}: {fault.message} (nested values of --config arrive as text: put them into a file for --configfile)"
-    if fault.validator in ("anyOf", "oneOf"):
-        numeral = origin == COMMAND_LINE and isinstance(fault.instance, (int, float))
-        quoted = (
-            f" (a name of digits wants quotes: --config '{key}=\"{fault.instance}\"')"
-            if numeral
-            else ""
-        )
-        return f"{key}: is {fault.instance!r}{quoted}, expected: {fault.schema['description'].rstrip('.')}"
-    return f"{key}: {fault.message}"
+if __name__ == "__main__":
+    try:
+        _check_files(sys.argv[1:])
+    except StageError as error:
+        raise SystemExit(f"scanplan: {error}") from None

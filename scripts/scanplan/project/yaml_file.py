@@ -1,55 +1,73 @@
-"""Files of settings: plain data, read without executing anything."""
+"""Files of settings: plain data, read without executing anything.
 
-import sys
+PyYAML reads YAML 1.1, as Snakemake itself does with a file for --configfile; by YAML 1.2, as
+ruamel.yaml reads it, `yes`, `010` and `1:30` would mean something else here than to Snakemake.
+"""
+
+from __future__ import annotations
+
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import yaml
 
 from scanplan.errors import StageError
 
+if TYPE_CHECKING:
+    from scanplan.types import FilePath
+
 
 class _Loader(yaml.SafeLoader):
-    """Plain data only; a key that is given twice is refused, as its first values would be lost without a word."""
+    """Plain data, every value written once.
 
-    def construct_mapping(self, node, deep=False):
+    A duplicate key is refused, as its first values would be lost without a word; so are aliases and
+    merge keys, as a few lines of them stand for more values than any memory holds.
+    """
+
+    def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
+        if self.check_event(yaml.AliasEvent):
+            raise _fault("an alias stands for other values, write them out", self.peek_event())
+        return super().compose_node(parent, index)
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
         pairs = node.value if isinstance(node, yaml.MappingNode) else ()
-        keys = [key for key, _ in pairs if isinstance(key, yaml.ScalarNode)]
-        values = [key.value for key in keys]
-        for i, key in enumerate(keys):
-            if key.value in values[:i]:
-                raise yaml.constructor.ConstructorError(
-                    problem=f"`{key.value}` is given twice, keep one of the two",
-                    problem_mark=key.start_mark,
-                )
+        seen = set()
+        for key in (key for key, _ in pairs if isinstance(key, yaml.ScalarNode)):
+            if key.tag == "tag:yaml.org,2002:merge":
+                raise _fault("`<<` stands for other values, write them out", key)
+            if key.value in seen:
+                raise _fault(f"duplicate key `{key.value}`, keep one of the two", key)
+            seen.add(key.value)
         return super().construct_mapping(node, deep)
 
-    def construct_object(self, node, deep=False):
+    def construct_object(self, node: yaml.Node, deep: bool = False) -> Any:
         try:
             return super().construct_object(node, deep)
         except (ValueError, LookupError, AttributeError):
             # what looks like a date or is tagged as a number, and is none
-            raise yaml.constructor.ConstructorError(
-                problem=f"`{node.value}` is no {node.tag.rpartition(':')[2]}",
-                problem_mark=node.start_mark,
-            ) from None
+            kind = node.tag.rpartition(":")[2]
+            raise _fault(f"`{node.value}` is no {kind}", node) from None
 
 
-def read_yaml(path):
+def _fault(problem: str, place: Any) -> yaml.MarkedYAMLError:
+    return yaml.MarkedYAMLError(problem=problem, problem_mark=place.start_mark)
+
+
+def read_yaml(path: FilePath) -> dict[Any, Any]:
     """Read a YAML file of settings; plain data only, nothing in it is executed.
 
     Raises
     ------
     StageError
-        If it is no YAML or no mapping, or a key stands in it twice.
+        If it is no YAML or no mapping, has a duplicate key, an alias or a merge key.
     """
     try:
         values = yaml.load(Path(path).read_text(encoding="utf-8"), _Loader) or {}
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         place = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
-        raise StageError(
-            f"{path}: is not valid YAML ({place}{error.problem or error.context}); mend it"
-        ) from None
+        fault = f"{place}{error.problem or error.context}"
+        raise StageError(f"{path}: is not valid YAML ({fault}); mend it") from None
     except RecursionError:
         raise StageError(f"{path}: is nested too deeply for settings; mend it") from None
     except (yaml.YAMLError, UnicodeDecodeError) as error:
@@ -67,19 +85,3 @@ def read_yaml(path):
             f"{path}: holds {type(values).__name__}, expected `section: {{key: value}}`"
         )
     return values
-
-
-def _main(paths):
-    """Say of every file whether it can be given as settings of a run; the workflow then checks what it says."""
-    for path in paths:
-        if not read_yaml(path):
-            raise StageError(
-                f"{path}: holds no settings; write `section: {{key: value}}`, or leave CONFIG out"
-            )
-
-
-if __name__ == "__main__":
-    try:
-        _main(sys.argv[1:])
-    except StageError as error:
-        raise SystemExit(f"scanplan: {error}") from None

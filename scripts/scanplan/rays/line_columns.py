@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from scanplan.geometry import intervals
 from scanplan.rays import scan_view
 
 _COLUMN_M = 0.1
@@ -86,7 +87,7 @@ def classify_columns(scan, normal, offset_m, where_m, height_m, *, sill_m, door_
 def find_runs(where_m, max_gap_m, min_points):
     """Return the first and last (k, 2) of each run of positions without a gap, of runs of enough points."""
     where_m = np.sort(where_m)
-    parts = np.split(where_m, np.flatnonzero(np.diff(where_m) > max_gap_m) + 1)
+    parts = np.split(where_m, intervals.find_run_starts(where_m, where_m, max_gap_m))
     return np.array([(p[0], p[-1]) for p in parts if len(p) >= max(min_points, 1)]).reshape(-1, 2)
 
 

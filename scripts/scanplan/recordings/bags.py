@@ -1,36 +1,37 @@
-"""ROS 1 and ROS 2 bags through rosbags: the messages of chosen topics, every failure told in one line.
+"""ROS 1 and ROS 2 bags through rosbags: messages of chosen topics, every failure in one line.
 
-Each connection is decoded by the definition it carries itself, so that a bad definition on another topic does not
-matter; without one, by the standard definitions of the ROS release.
+Each connection is decoded by the definition it carries itself, so that a bad definition on another
+topic does not matter; without one, by the standard definitions of the ROS release.
 """
 
 import tempfile
+from collections.abc import Collection, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from typing import Any
 
 from rosbags import rosbag1, rosbag2
-from rosbags.interfaces import MessageDefinitionFormat
+from rosbags.interfaces import Connection
 from rosbags.rosbag1.reader import decompressors
 from rosbags.serde import SerdeError
-from rosbags.typesys import (
-    Stores,
-    TypesysError,
-    get_types_from_idl,
-    get_types_from_msg,
-    get_typestore,
-)
+from rosbags.typesys import Stores
+from rosbags.typesys.store import Typestore
 
 from scanplan.errors import StageError
-from scanplan.recordings import rosbag1_messages, topics
+from scanplan.recordings import topics, typestores
 from scanplan.recordings.messages import read_header
-from scanplan.stage import log
+from scanplan.recordings.rosbag1_messages import StoredMessage, iterate_messages
+from scanplan.types import FilePath
+
+RawMessage = bytes | StoredMessage
+BagMessage = tuple[Connection, int, RawMessage]
+"""A message's connection, its time of receipt in nanoseconds, and its content, not decoded."""
 
 _URI_CHARACTERS = frozenset("#?%")
-_IDL_SEPARATOR = "=" * 80 + "\n"
 
 
 @contextmanager
-def open_bag(path, *, ros2_release="humble"):
+def open_bag(path: FilePath, *, ros2_release: str = "humble") -> Iterator["Bag"]:
     """Open one recording.
 
     Parameters
@@ -49,13 +50,15 @@ def open_bag(path, *, ros2_release="humble"):
     StageError
         If the recording is damaged or of another kind, or the release is unknown.
     """
-    path, store = Path(path), _release_store(ros2_release)
+    path = Path(path)
+    store = typestores.release_store(ros2_release)
+    is_ros2 = path.suffix != ".bag" or path.is_dir()
     with ExitStack() as stack:
-        with _told(path):
-            ros2 = path.suffix != ".bag" or path.is_dir()
-            reader = (rosbag2 if ros2 else rosbag1).Reader(_openable(path, stack))
+        with _explain_faults(path):
+            place = _openable_name(path, stack)
+            reader = rosbag2.Reader(place) if is_ros2 else rosbag1.Reader(place)
             stack.enter_context(reader)
-        yield Bag(path, reader, ros2, store if ros2 else Stores.ROS1_NOETIC)
+        yield Bag(path, reader, store if is_ros2 else Stores.ROS1_NOETIC)
 
 
 class Bag:
@@ -71,16 +74,18 @@ class Bag:
         One entry per connection.
     """
 
-    def __init__(self, path, reader, ros2, default_store):
+    def __init__(
+        self, path: Path, reader: rosbag1.Reader | rosbag2.Reader, default_store: Stores
+    ) -> None:
         self.path = path
-        self.ros2 = ros2
+        self.ros2 = isinstance(reader, rosbag2.Reader)
         self.start_ns = reader.start_time
         self.topics = [topics.Topic(c.topic, c.msgtype, c.msgcount) for c in reader.connections]
         self._reader = reader
         self._default_store = default_store
-        self._typestores = {}
+        self._typestores: dict[tuple[str, Any], Typestore] = {}
 
-    def messages(self, names):
+    def messages(self, names: Collection[str]) -> Iterator[BagMessage]:
         """Iterate over the messages of some topics in the order of recording.
 
         Parameters
@@ -98,121 +103,79 @@ class Bag:
         connections = [c for c in self._reader.connections if c.topic in names]
         if not connections:  # rosbags takes an empty choice for all
             return
-        source = (
-            self._plain_messages(connections)
-            if self._is_plain()
-            else self._reader.messages(connections)
-        )
+        source = self._iterate(connections)
         while True:
-            with _told(self.path):
+            with _explain_faults(self.path):
                 item = next(source, None)
             if item is None:
                 return
             yield item
 
-    def header(self, connection, raw):
+    def header(self, connection: Connection, raw: RawMessage) -> tuple[int, str]:
         """Return the header stamp and the frame of a message without decoding the rest."""
-        with _told(self.path, connection.topic):
-            return read_header(
-                raw.head if isinstance(raw, rosbag1_messages.StoredMessage) else raw, ros2=self.ros2
-            )
+        with _explain_faults(self.path, connection.topic):
+            head = raw.head if isinstance(raw, StoredMessage) else raw
+            return read_header(head, ros2=self.ros2)
 
-    def decode(self, connection, raw):
+    def decode(self, connection: Connection, raw: RawMessage) -> Any:
         """Return a message as an object with the fields of its definition."""
-        with _told(self.path, connection.topic):
+        with _explain_faults(self.path, connection.topic):
             store = self._typestore(connection)
-            raw = raw.read() if isinstance(raw, rosbag1_messages.StoredMessage) else raw
-            return (store.deserialize_cdr if self.ros2 else store.deserialize_ros1)(
-                raw, connection.msgtype
-            )
+            data = raw.read() if isinstance(raw, StoredMessage) else raw
+            deserialize = store.deserialize_cdr if self.ros2 else store.deserialize_ros1
+            return deserialize(data, connection.msgtype)
 
-    def _is_plain(self):
-        return not self.ros2 and all(
-            c.decompressor is decompressors["none"] for c in self._reader.chunks.values()
-        )
+    def _iterate(self, connections: list[Connection]) -> Iterator[BagMessage]:
+        reader = self._reader
+        if isinstance(reader, rosbag1.Reader) and is_uncompressed(reader):
+            return _iterate_uncompressed(reader, connections)
+        return reader.messages(connections)
 
-    def _plain_messages(self, connections):
-        """What rosbags' own iterator gives, without reading the chunks around."""
-        chunks = {position: (c.datapos, c.datasize) for position, c in self._reader.chunks.items()}
-        indexes, by_id = self._reader.indexes, {c.id: c for c in connections}
-        found = rosbag1_messages.iterate_messages(
-            self._reader.bio.fileno(), chunks, [indexes[number] for number in by_id]
-        )
-        return ((by_id[number], time_ns, stored) for number, time_ns, stored in found)
-
-    def _typestore(self, connection):
+    def _typestore(self, connection: Connection) -> Typestore:
         key = (connection.msgtype, connection.msgdef)
         if key not in self._typestores:
-            self._typestores[key] = _own_store(connection, self.path) or _standard_store(
-                self._default_store
-            )
+            own = typestores.own_store(connection, self.path)
+            self._typestores[key] = own or typestores.standard_store(self._default_store)
         return self._typestores[key]
 
 
-def _own_store(connection, path):
-    """Return a type store of the connection's own definition, or None where it has none that can be used."""
-    definition = connection.msgdef
-    if definition.format == MessageDefinitionFormat.NONE or not definition.data.strip():
-        return None
-    try:
-        store = get_typestore(Stores.EMPTY)
-        if definition.format == MessageDefinitionFormat.MSG:
-            store.register(get_types_from_msg(definition.data, connection.msgtype))
-        else:
-            for part in filter(None, definition.data.split(_IDL_SEPARATOR)):
-                store.register(
-                    get_types_from_idl(part.split("\n", 1)[1] if part.startswith("IDL: ") else part)
-                )
-        store.get_msgdef(connection.msgtype)
-    except (TypesysError, KeyError, IndexError, SyntaxError) as error:
-        reason = " ".join(str(error).split())[:80]
-        log.log_line(
-            f"{path}: definition of {connection.topic} unusable ({reason}), the standard one is taken"
-        )
-        return None
-    return store
+def is_uncompressed(reader: rosbag1.Reader) -> bool:
+    """Return whether the messages of a ROS 1 bag can be read one by one from its file."""
+    return all(c.decompressor is decompressors["none"] for c in reader.chunks.values())
 
 
-def _standard_store(store):
-    """Return the type store of a release, with the transforms that the one of ROS 1 lacks."""
-    typestore = get_typestore(store)
-    for msgtype in topics.TRANSFORMS:
-        if msgtype not in typestore.fielddefs:
-            typestore.register(
-                get_types_from_msg("geometry_msgs/TransformStamped[] transforms", msgtype)
-            )
-    return typestore
+def _iterate_uncompressed(
+    reader: rosbag1.Reader, connections: list[Connection]
+) -> Iterator[BagMessage]:
+    """Iterate like rosbags' own reader, without reading the chunks around the messages."""
+    if reader.bio is None:
+        raise ValueError(f"{reader.path}: is not open")
+    chunks = {position: (c.datapos, c.datasize) for position, c in reader.chunks.items()}
+    by_id = {connection.id: connection for connection in connections}
+    indexes = [reader.indexes[number] for number in by_id]
+    messages = iterate_messages(reader.bio.fileno(), chunks, indexes)
+    return ((by_id[number], time_ns, stored) for number, time_ns, stored in messages)
 
 
-def _release_store(release):
-    known = [s.value.removeprefix("ros2_") for s in Stores if s.value.startswith("ros2_")]
-    if release not in known:
-        raise StageError(
-            f"input.ros2_release: {release} is unknown; choose one of {', '.join(known)}"
-        )
-    return Stores(f"ros2_{release}")
-
-
-def _openable(path, stack):
+def _openable_name(path: Path, stack: ExitStack) -> Path:
     """Return a name of the recording that SQLite, which is given an unescaped URI, can open."""
-    inside = [file for file in path.iterdir() if ".db3" in file.name] if path.is_dir() else []
-    if odd := [file for file in inside if _URI_CHARACTERS & set(file.name)]:
-        raise StageError(
-            f"{odd[0]}: SQLite cannot open names with #, ? or %; rename it, in metadata.yaml too"
-        )
+    databases = [file for file in path.iterdir() if ".db3" in file.name] if path.is_dir() else []
+    for file in databases:
+        if _URI_CHARACTERS & set(file.name):
+            raise StageError(
+                f"{file}: SQLite cannot open names with #, ? or %; rename it, in metadata.yaml too"
+            )
     if not _URI_CHARACTERS & set(str(path)) or path.suffix in (".bag", ".mcap"):
         return path
-    link = Path(
-        stack.enter_context(tempfile.TemporaryDirectory()),
-        f"recording{path.suffix if path.is_file() else ''}",
-    )
+    folder = stack.enter_context(tempfile.TemporaryDirectory())
+    link = Path(folder, f"recording{path.suffix if path.is_file() else ''}")
     link.symlink_to(path.resolve())
     return link
 
 
 @contextmanager
-def _told(path, topic=None):
-    """Turn whatever rosbags, SQLite or a decompressor raises on bad data into one line with a remedy."""
+def _explain_faults(path: Path, topic: str | None = None) -> Iterator[None]:
+    """Turn whatever rosbags, SQLite or a decompressor raises on bad data into one line."""
     try:
         yield
     except StageError:
@@ -223,16 +186,24 @@ def _told(path, topic=None):
         raise StageError(f"{where}: cannot be read ({reason}); {_remedy(path, error)}") from error
 
 
-def _remedy(path, error):
-    reason = str(error)
+def _remedy(path: Path, error: Exception) -> str:
     if isinstance(error, SerdeError):
-        return "the message is damaged, or (ROS 2) set input.ros2_release to the release that recorded it"
+        return (
+            "the message is damaged, or (ROS 2) set input.ros2_release to the release that"
+            " recorded it"
+        )
     if isinstance(error, KeyError):
-        return "it describes a topic in a way that is not known; copy the clouds, poses and tf to a bag of their own"
-    if "rofile is not" in reason:
+        return (
+            "it describes a topic in a way that is not known;"
+            " copy the clouds, poses and tf to a bag of their own"
+        )
+    if "rofile is not" in str(error):
         return "only mcap files of the profile ros2 are read; convert it to a ROS 2 or ROS 1 bag"
     if path.suffix == ".bag":
         return "try `rosbag reindex` on a copy, or copy it again from the robot"
     if path.suffix == ".mcap":
         return "try `mcap recover` on it, or copy it again from the robot"
-    return "try `ros2 bag reindex` on the folder or `sqlite3 FILE .recover`, or copy it again from the robot"
+    return (
+        "try `ros2 bag reindex` on the folder or `sqlite3 FILE .recover`,"
+        " or copy it again from the robot"
+    )

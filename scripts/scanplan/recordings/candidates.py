@@ -1,20 +1,27 @@
-"""Which scans go on to registration."""
+"""Keyframes: which scans go on to registration as its candidates."""
+
+from collections.abc import Sequence
 
 import numpy as np
 
 from scanplan.errors import StageError
 from scanplan.geometry import se3
 from scanplan.recordings import pose_jumps
+from scanplan.recordings.frame_edges import FrameEdge
 from scanplan.stage import log
-from scanplan.store import schemas
+from scanplan.store import pose_columns as poses_in_tables
+from scanplan.types import Array, BoolArray, FloatArray, IntArray
 
 
-def choose_candidates(world_from_sensor, *, keep_every, max_step_m, max_turn_deg):
-    """Retain every `keep_every`-th scan (thesis, algorithm 3, step 2), and more where the sensor moves fast.
+def choose_candidates(
+    world_from_sensor: FloatArray, *, keep_every: int, max_step_m: float, max_turn_deg: float
+) -> IntArray:
+    """Retain every `keep_every`-th scan (thesis, algorithm 3, step 2), more if the rover is fast.
 
-    A scan between two of them is retained too once the sensor has moved more than `max_step_m` or turned more than
-    `max_turn_deg` since the last retained scan with a pose, so that neighbours keep overlapping however slow the
-    recorder was. Motion is known only where there are poses; the scans without go by their number alone.
+    A scan between two of them is retained too once the sensor has moved more than `max_step_m` or
+    turned more than `max_turn_deg` since the last retained scan with a pose, so that neighbours
+    keep overlapping however slow the recorder was. Motion is known only where there are poses; the
+    scans without go by their number alone.
 
     Parameters
     ----------
@@ -31,42 +38,59 @@ def choose_candidates(world_from_sensor, *, keep_every, max_step_m, max_turn_deg
     if keep_every < 1:
         raise ValueError(f"keep_every is {keep_every}")
     pose = np.asarray(world_from_sensor, float)
-    known = np.isfinite(pose).all(axis=(1, 2))
+    has_pose = [bool(np.isfinite(matrix).all()) for matrix in pose]
     # |R - S| in the Frobenius norm is sqrt(8) sin(angle / 2)
-    max_difference = np.sqrt(8) * np.sin(np.radians(min(max_turn_deg, 180)) / 2)
-    chosen, last = [], None
+    max_difference = float(np.sqrt(8) * np.sin(np.radians(min(max_turn_deg, 180)) / 2))
+    chosen: list[int] = []
+    last: int | None = None
     for i in range(len(pose)):
-        moved = (
-            known[i]
+        has_moved = (
+            has_pose[i]
             and last is not None
-            and _moved(pose[last], pose[i], max_step_m, max_difference)
+            and _has_moved(pose[last], pose[i], max_step_m, max_difference)
         )
-        if i % keep_every == 0 or moved:
+        if i % keep_every == 0 or has_moved:
             chosen.append(i)
-            last = i if known[i] else last
+            last = i if has_pose[i] else last
     return np.array(chosen, np.int64)
 
 
-def _moved(before, now, max_step_m, max_difference):
+def _has_moved(
+    before: FloatArray, now: FloatArray, max_step_m: float, max_difference: float
+) -> bool:
     step_m = np.linalg.norm(now[:3, 3] - before[:3, 3])
-    return step_m > max_step_m or np.linalg.norm(now[:3, :3] - before[:3, :3]) > max_difference
+    difference = np.linalg.norm(now[:3, :3] - before[:3, :3])
+    return bool(step_m > max_step_m or difference > max_difference)
 
 
-def pose_columns(chosen, t_ns, world_from_sensor, gap_s, covered):
+def pose_columns(
+    chosen: IntArray,
+    t_ns: IntArray,
+    world_from_sensor: FloatArray,
+    gap_s: FloatArray,
+    covered: BoolArray,
+) -> dict[str, Array]:
     """Return the columns of `schemas.POSES` of the scans `chosen`, from what is known of all."""
-    xyz_m, quat = se3.split_pose(world_from_sensor[chosen])
-    pose = dict(zip((*schemas.XYZ, *schemas.QUAT), np.hstack([xyz_m, quat]).T, strict=True))
     return {
         "scan_id": chosen,
         "t_ns": t_ns[chosen],
         "gap_s": gap_s[chosen],
         "covered": covered[chosen],
-        **pose,
+        **poses_in_tables.pose_columns(*se3.split_pose(world_from_sensor[chosen])),
     }
 
 
-def require_poses(chosen, t_ns, covered, edges, where, *, max_gap_s, max_speed_m_s):
-    """Say how often the poses jump, and refuse scans of which none that is chosen has a pose.
+def require_poses(
+    chosen: IntArray,
+    t_ns: IntArray,
+    covered: BoolArray,
+    edges: Sequence[FrameEdge],
+    where: str,
+    *,
+    max_gap_s: float,
+    max_speed_m_s: float,
+) -> None:
+    """Log how often the poses jump, and refuse scans of which no chosen one has a pose.
 
     Parameters
     ----------
@@ -75,7 +99,7 @@ def require_poses(chosen, t_ns, covered, edges, where, *, max_gap_s, max_speed_m
         Stamps of all scans.
     covered : (n,) bool
         Whether each has a pose.
-    edges : list of tf_tree.FrameEdge
+    edges : list of frame_edges.FrameEdge
         The poses.
     where : str
         The dataset, for the error.
@@ -87,21 +111,24 @@ def require_poses(chosen, t_ns, covered, edges, where, *, max_gap_s, max_speed_m
     StageError
         If none has one.
     """
-    moving = [edge for edge in edges if edge.t_ns is not None]
-    n_jumps = sum(
-        int(pose_jumps.find_jumps(e.t_ns, e.xyz_m, max_speed_m_s=max_speed_m_s).sum())
-        for e in moving
-    )
+    n_jumps = 0
+    spans = []
+    for edge in edges:
+        if edge.t_ns is not None:
+            jumping = pose_jumps.find_jumps(edge.t_ns, edge.xyz_m, max_speed_m_s=max_speed_m_s)
+            n_jumps += int(jumping.sum())
+            spans.append(_format_span(edge.t_ns))
     if n_jumps:
         log.log_line(
-            f"{where}: the poses jump {n_jumps} times by more than {pose_jumps.LEAST_M} m: no pose in between"
+            f"{where}: the poses jump {n_jumps} times by more than {pose_jumps.LEAST_M} m:"
+            " no pose in between"
         )
     if not covered[chosen].any():
         raise StageError(
-            f"{where}: no scan has poses within {max_gap_s} s around it: clouds {_span(t_ns)}, poses"
-            f" {', '.join(_span(edge.t_ns) for edge in moving)}; check the clocks or raise max_gap_s"
+            f"{where}: no scan has poses within {max_gap_s} s around it: clouds"
+            f" {_format_span(t_ns)}, poses {', '.join(spans)}; check the clocks or raise max_gap_s"
         )
 
 
-def _span(t_ns):
+def _format_span(t_ns: IntArray) -> str:
     return f"{np.min(t_ns) / 1e9:.3f} to {np.max(t_ns) / 1e9:.3f} s"

@@ -1,14 +1,19 @@
-"""Stamps that cannot be true, found by comparing them with each other and with the times of receipt."""
+"""Stamps that cannot be true, judged by one another and by the times of receipt."""
+
+from collections.abc import Mapping
 
 import numpy as np
 
-_STEP_S = 1.0
-_AHEAD_S, _CLOCKS_DIFFER_S = 0.02, 5.0
-_BACK_NS = 500_000_000
-_FEWEST_BACK = 3
+from scanplan.types import BoolArray, IntArray
+
+_STEP_S = 1.0  # far more than receipt is ever delayed by, far less than a clock that is set jumps
+_AHEAD_S = 0.02  # below it a lead is jitter of the receipt
+_CLOCKS_DIFFER_S = 5.0  # no localiser stamps so far ahead: beyond it two clocks differ
+_BACK_NS = 500_000_000  # messages overtake one another by less
+_FEWEST_BACK = 3  # fewer messages are late ones, not a clock set back
 
 
-def count_stamp_faults(t_ns, receive_ns):
+def count_stamp_faults(t_ns: IntArray, receive_ns: IntArray) -> dict[str, int]:
     """Count what is odd about the stamps of a topic.
 
     Parameters
@@ -19,23 +24,31 @@ def count_stamp_faults(t_ns, receive_ns):
     Returns
     -------
     dict of str to int
-        How many repeat the stamp before, go back behind it, or step by a second more or less than the recorder's clock.
+        How many repeat the stamp before, go back behind it, or step by a second more or less than
+        the recorder's clock.
     """
-    step_ns, elapsed_ns = np.diff(t_ns), np.diff(receive_ns)
+    step_ns = np.diff(t_ns)
+    difference_ns = np.abs(step_ns - np.diff(receive_ns))
     return {
         "of a repeated stamp": int((step_ns == 0).sum()),
         "backwards in time": int((step_ns < 0).sum()),
-        f"jumping by more than {_STEP_S:g} s": int(
-            (np.abs(step_ns - elapsed_ns) > _STEP_S * 1e9).sum()
-        ),
+        f"jumping by more than {_STEP_S:g} s": int((difference_ns > _STEP_S * 1e9).sum()),
     }
 
 
-def estimate_ahead_ns(t_ns, receive_ns, cloud_t_ns, cloud_receive_ns):
-    """Return by how much stamps are ahead of their time, 0 if they are not.
+def summarise_faults(counts: Mapping[str, int]) -> str:
+    """Return the counts that are not zero as one phrase, empty if all are."""
+    return ", ".join(f"{count} {kind}" for kind, count in counts.items() if count)
 
-    Nothing is received before it was measured. AMCL stamps map to odom ahead by its `transform_tolerance`,
-    robot_localization by its `transform_time_offset`; what holds for the clouds too is the recorder's clock.
+
+def estimate_ahead_ns(
+    t_ns: IntArray, receive_ns: IntArray, cloud_t_ns: IntArray, cloud_receive_ns: IntArray
+) -> int:
+    """Estimate by how much stamps are ahead of their time, 0 if they are not.
+
+    Nothing is received before it was measured. AMCL stamps map to odom ahead by its
+    `transform_tolerance`, robot_localization by its `transform_time_offset`; a lead that the clouds
+    have too is the recorder's clock.
 
     Parameters
     ----------
@@ -47,14 +60,14 @@ def estimate_ahead_ns(t_ns, receive_ns, cloud_t_ns, cloud_receive_ns):
     -------
     int
     """
-    lead_ns = np.median(np.asarray(t_ns) - receive_ns) - max(
-        np.median(np.asarray(cloud_t_ns) - cloud_receive_ns), 0.0
-    )
+    ahead_ns = np.median(np.asarray(t_ns) - receive_ns)
+    cloud_ahead_ns = max(np.median(np.asarray(cloud_t_ns) - cloud_receive_ns), 0.0)
+    lead_ns = ahead_ns - cloud_ahead_ns
     return int(lead_ns) if _AHEAD_S * 1e9 < lead_ns < _CLOCKS_DIFFER_S * 1e9 else 0
 
 
-def find_repeated_times(t_ns):
-    """Tell which stamps lie in a time that went by twice, since the clock was set back.
+def find_repeated_times(t_ns: IntArray) -> BoolArray:
+    """Return which stamps lie in a time that went by twice, since the clock was set back.
 
     One message that comes late, or was kept since long ago, is no clock set back.
 
@@ -69,7 +82,8 @@ def find_repeated_times(t_ns):
     """
     twice = np.zeros(len(t_ns), bool)
     for i in np.flatnonzero(np.diff(t_ns) < -_BACK_NS) + 1:
-        begin, end = t_ns[i], t_ns[:i].max()
+        begin = t_ns[i]
+        end = t_ns[:i].max()
         if (t_ns[i:] < end).sum() >= _FEWEST_BACK:
             twice |= (t_ns >= begin) & (t_ns <= end)
     return twice

@@ -1,14 +1,17 @@
-"""Points of one scan, whatever they were read from: range limits, times within the sweep, planarity."""
+"""Points of one scan, whatever they were read from: range limits, sweep times, planarity."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import islice
 
 import numpy as np
 
 from scanplan.recordings.motion import point_times
+from scanplan.types import Array, BoolArray, FloatArray
 
-_FLAT_M = 1e-3
-SCANS_TO_JUDGE = 5
+_FLAT_M = 1e-3  # a laser scanner's plane is exact but for rounding, a wall is rougher
+_CENTRAL_SHARE = 0.2  # a plane that passes the origin nearer, of the farthest range, is a sweep's
+SCANS_TO_JUDGE = 5  # a rover that tilts on a ramp shows in so many; all are decoded beforehand
 
 
 @dataclass(frozen=True)
@@ -24,27 +27,37 @@ class Scan:
     xyz_m : (n, 3) float32
         Finite and within the range limits.
     time_s : (n,) float64 or None
-        When each point was measured, relative to `t_ns`; None where the sensor does not tell, or tells of no sweep.
+        When each point was measured, relative to `t_ns`; None where the driver does not state it,
+        or states times that are not those of a sweep.
     n_dropped : int
         Points that were not finite or out of range.
     """
 
     scan_id: int
     t_ns: int
-    xyz_m: np.ndarray
-    time_s: np.ndarray | None
+    xyz_m: FloatArray
+    time_s: FloatArray | None
     n_dropped: int
 
 
-def is_in_range(xyz_m, *, min_range_m, max_range_m):
-    """Tell which points (n, 3) are finite and within [min_range_m, max_range_m] of the sensor: (n,) bool."""
+def is_in_range(xyz_m: FloatArray, *, min_range_m: float, max_range_m: float) -> BoolArray:
+    """Return which points (n, 3) are finite and within the sensor's range limits: (n,) bool."""
     squared = np.einsum("ij,ij->i", xyz_m, xyz_m, dtype=np.float64)
     # a comparison with NaN is false: this also drops what is not finite
     return (squared >= min_range_m**2) & (squared <= max_range_m**2)
 
 
-def keep_in_range(scan_id, t_ns, xyz_m, time_raw, *, min_range_m, max_range_m, sweep_times=None):
-    """Keep the points that are finite and within [min_range_m, max_range_m] of the sensor, with their times.
+def keep_in_range(
+    scan_id: int,
+    t_ns: int,
+    xyz_m: FloatArray,
+    time_raw: Array | None,
+    *,
+    min_range_m: float,
+    max_range_m: float,
+    sweep_times: point_times.TimeConvention | None = None,
+) -> Scan:
+    """Keep the points that are finite and within the range limits of the sensor, with their times.
 
     Parameters
     ----------
@@ -61,33 +74,36 @@ def keep_in_range(scan_id, t_ns, xyz_m, time_raw, *, min_range_m, max_range_m, s
     -------
     Scan
     """
-    kept = np.flatnonzero(is_in_range(xyz_m, min_range_m=min_range_m, max_range_m=max_range_m))
+    in_range = is_in_range(xyz_m, min_range_m=min_range_m, max_range_m=max_range_m)
+    rows = np.flatnonzero(in_range)
     time_s = None
     if time_raw is not None and sweep_times is not None:
-        time_s = sweep_times.seconds(time_raw, t_ns).take(kept)
+        time_s = sweep_times.seconds(time_raw, t_ns).take(rows)
         time_s = time_s if point_times.is_one_sweep(time_s) else None
     # by number and not by mask: a third of the time
-    xyz_kept_m = np.asarray(xyz_m).take(kept, axis=0).astype(np.float32, copy=False)
-    return Scan(int(scan_id), int(t_ns), xyz_kept_m, time_s, len(xyz_m) - len(kept))
+    xyz_kept_m = np.asarray(xyz_m).take(rows, axis=0).astype(np.float32, copy=False)
+    return Scan(int(scan_id), int(t_ns), xyz_kept_m, time_s, len(xyz_m) - len(rows))
 
 
-def is_sweep_plane(xyz_m):
-    """Tell whether points (n, 3) can be those of a 2-D scanner; False for fewer than three.
+def is_sweep_plane(xyz_m: FloatArray) -> bool:
+    """Return whether points (n, 3) can be those of a 2-D scanner; False for fewer than three.
 
-    They lie within a millimetre of one plane, and the plane passes the frame's origin at less than a fifth of the
-    farthest point's distance: the wall that fills a depth camera's picture is a plane, too, but far before it.
+    They lie within a millimetre of one plane, and the plane passes the frame's origin at less than
+    a fifth of the farthest point's distance: the wall that fills a depth camera's picture is a
+    plane, too, but far before it.
     """
     if len(xyz_m) < 3:
         return False
     xyz_m = np.asarray(xyz_m, np.float64)
     centre = xyz_m.mean(axis=0)
     normal = np.linalg.eigh((xyz_m - centre).T @ (xyz_m - centre))[1][:, 0]
-    flat = np.abs((xyz_m - centre) @ normal).max() <= _FLAT_M
-    return bool(flat and abs(centre @ normal) < 0.2 * np.linalg.norm(xyz_m, axis=1).max())
+    is_flat = np.abs((xyz_m - centre) @ normal).max() <= _FLAT_M
+    farthest_m = np.linalg.norm(xyz_m, axis=1).max()
+    return bool(is_flat and abs(centre @ normal) < _CENTRAL_SHARE * farthest_m)
 
 
-def are_scans_planar(scans_xyz_m):
-    """Tell whether a sensor measures in one plane only, from its first scans taken together.
+def are_scans_planar(scans_xyz_m: Iterable[FloatArray]) -> bool:
+    """Return whether a sensor measures in one plane only, from its first scans taken together.
 
     Parameters
     ----------

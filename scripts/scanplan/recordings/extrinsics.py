@@ -1,15 +1,19 @@
-"""Where the sensor sits on what the poses are of: from the config, from tf, or nowhere told."""
+"""The sensor's extrinsics, base_from_sensor: from the config, from tf, or the identity."""
+
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from scanplan.errors import StageError
-from scanplan.recordings import clocks, tf_tree, topics
+from scanplan.recordings import clocks, frame_edges, tf_tree, topics
+from scanplan.recordings.small_messages import TransformKey, TransformSample
 from scanplan.stage import log
+from scanplan.types import IntArray
 
 
-def configured_extrinsics(base_from_sensor):
-    """Return the config's mount as a chain of one edge.
+def configured_extrinsics(base_from_sensor: Sequence[float]) -> list[frame_edges.FrameEdge]:
+    """Return the config's extrinsics as a chain of one edge.
 
     Parameters
     ----------
@@ -18,7 +22,7 @@ def configured_extrinsics(base_from_sensor):
 
     Returns
     -------
-    list of tf_tree.FrameEdge
+    list of frame_edges.FrameEdge
 
     Raises
     ------
@@ -28,66 +32,93 @@ def configured_extrinsics(base_from_sensor):
     values = np.asarray(base_from_sensor, float)
     if values.shape != (6,) or not np.isfinite(values).all():
         raise StageError(
-            f"input.base_from_sensor: {base_from_sensor} is not [x_m, y_m, z_m, roll_deg, pitch_deg, yaw_deg];"
-            " give six numbers"
+            f"input.base_from_sensor: {base_from_sensor} is not"
+            " [x_m, y_m, z_m, roll_deg, pitch_deg, yaw_deg]; give six numbers"
         )
     pose = np.eye(4)
     pose[:3, :3] = Rotation.from_euler("xyz", values[3:], degrees=True).as_matrix()
     pose[:3, 3] = values[:3]
-    return [tf_tree.make_static_edge("", "", pose)]
+    return [frame_edges.make_static_edge("", "", pose)]
 
 
-def make_transform_edges(samples, cloud_t_ns, cloud_receive_ns):
+def make_transform_edges(
+    samples: Mapping[TransformKey, Sequence[TransformSample]],
+    cloud_t_ns: IntArray,
+    cloud_receive_ns: IntArray,
+) -> list[frame_edges.FrameEdge]:
     """Make edges of recorded transforms; those stamped ahead of their time are taken back to it.
 
     Parameters
     ----------
-    samples : dict of (static, parent, child) to list of (t_ns, receive_ns, row)
+    samples : dict of TransformKey to list of TransformSample
         In the order of recording.
     cloud_t_ns, cloud_receive_ns : (m,) int64, m >= 1
         Stamps and times of receipt of the clouds, for `clocks.estimate_ahead_ns`.
 
     Returns
     -------
-    list of tf_tree.FrameEdge
-        The constant ones last; of each constant transform the one recorded last, whatever its stamp.
+    list of frame_edges.FrameEdge
+        The constant ones last; of each constant transform the one recorded last, whatever its
+        stamp.
     """
-    edges, dropped, unclear = [], 0, 0
+    edges = []
+    n_invalid = 0
+    n_ambiguous = 0
     for (static, parent, child), recorded in sorted(samples.items(), key=lambda item: item[0]):
-        t_ns, receive_ns, rows = zip(*recorded, strict=True)
-        order = range(1, len(rows) + 1)
-        ahead_ns = (
-            0
-            if static
-            else clocks.estimate_ahead_ns(t_ns, receive_ns, cloud_t_ns, cloud_receive_ns)
-        )
-        if ahead_ns:
-            log.log_line(
-                f"tf {parent} -> {child} is stamped {ahead_ns / 1e9:.3f} s ahead of its receipt: taken back"
-            )
-            t_ns = np.asarray(t_ns, np.int64) - ahead_ns
-        edge, found = tf_tree.make_track_edge(
-            parent, child, order if static else t_ns, order if static else receive_ns, rows
-        )
-        unclear += sum(count for kind, count in found.items() if "clock told twice" in kind)
-        dropped += found["not finite"] + found["without unit quaternion"]
+        if static:
+            edge, faults = _make_static_edge(parent, child, recorded)
+        else:
+            edge, faults = _make_moving_edge(parent, child, recorded, cloud_t_ns, cloud_receive_ns)
+        n_ambiguous += faults[frame_edges.AMBIGUOUS]
+        n_invalid += faults["not finite"] + faults["without unit quaternion"]
         if edge is not None:
-            edges.append(edge.frozen() if static else edge)
-    if dropped:
-        log.log_line(f"tf: {dropped} transforms dropped: not finite or without unit quaternion")
-    if unclear:
-        log.log_line(f"tf: {unclear} transforms dropped: in a time that the clock told twice")
+            edges.append(edge)
+    if n_invalid:
+        log.log_line(f"tf: {n_invalid} transforms dropped: not finite or without unit quaternion")
+    if n_ambiguous:
+        log.log_line(f"tf: {n_ambiguous} transforms dropped: in a time that went by twice")
     return edges
 
 
-def find_extrinsics(tree, base, sensor, world, where):
-    """Return the chain base_from_sensor that tf knows.
+def _make_static_edge(
+    parent: str, child: str, recorded: Sequence[TransformSample]
+) -> tuple[frame_edges.FrameEdge | None, dict[str, int]]:
+    """Make an edge of the last valid transform: their order stands in for their stamps."""
+    order = np.arange(1, len(recorded) + 1)
+    rows = [sample.row for sample in recorded]
+    edge, faults = frame_edges.make_track_edge(parent, child, order, order, rows)
+    return edge if edge is None else edge.frozen(), faults
+
+
+def _make_moving_edge(
+    parent: str,
+    child: str,
+    recorded: Sequence[TransformSample],
+    cloud_t_ns: IntArray,
+    cloud_receive_ns: IntArray,
+) -> tuple[frame_edges.FrameEdge | None, dict[str, int]]:
+    t_ns = np.array([sample.t_ns for sample in recorded], np.int64)
+    receive_ns = np.array([sample.receive_ns for sample in recorded], np.int64)
+    rows = [sample.row for sample in recorded]
+    ahead_ns = clocks.estimate_ahead_ns(t_ns, receive_ns, cloud_t_ns, cloud_receive_ns)
+    if ahead_ns:
+        log.log_line(
+            f"tf {parent} -> {child} is stamped {ahead_ns / 1e9:.3f} s ahead of its receipt:"
+            " taken back"
+        )
+    return frame_edges.make_track_edge(parent, child, t_ns - ahead_ns, receive_ns, rows)
+
+
+def find_extrinsics(
+    tree: tf_tree.FrameTree, base: str, sensor: str, world: str, where: str
+) -> list[frame_edges.FrameEdge]:
+    """Return the chain base_from_sensor that tf holds.
 
     Parameters
     ----------
     tree : tf_tree.FrameTree
     base : str
-        The frame that the poses are of; empty if nobody says.
+        The frame that the poses are of; empty if it is not stated.
     sensor : str
         The frame of the clouds.
     world : str
@@ -97,7 +128,7 @@ def find_extrinsics(tree, base, sensor, world, where):
 
     Returns
     -------
-    list of tf_tree.FrameEdge
+    list of frame_edges.FrameEdge
         Empty where the two are one frame.
 
     Raises
@@ -107,26 +138,28 @@ def find_extrinsics(tree, base, sensor, world, where):
     """
     if not tree.frames:
         log.log_line(
-            f"{where}: no tf, so the poses are taken for the sensor's own; else set input.base_from_sensor"
+            f"{where}: no tf, so the poses are taken for the sensor's own;"
+            " else set input.base_from_sensor"
         )
         return []
-    known = sensor in tree.frames
-    if not base and not known:
+    if not base and sensor not in tree.frames:
         log.log_line(
-            f"{where}: tf does not know the clouds' frame {sensor}, the poses are taken for the sensor's own"
+            f"{where}: tf does not know the clouds' frame {sensor},"
+            " the poses are taken for the sensor's own"
         )
         return []
     base = base or tree.mount_root(sensor, world)
     path = tree.path(base, sensor)
     if path is None:
         raise StageError(
-            f"{where}: tf does not connect base frame {base} to the clouds' frame {sensor}; its frames are"
-            f" {', '.join(tree.frames)}; set input.base_frame or input.base_from_sensor"
+            f"{where}: tf does not connect base frame {base} to the clouds' frame {sensor};"
+            f" its frames are {', '.join(tree.frames)};"
+            " set input.base_frame or input.base_from_sensor"
         )
     return path
 
 
-def better_poses_hint(tree, source, world):
+def better_poses_hint(tree: tf_tree.FrameTree, source: topics.Topic, world: str) -> str | None:
     """Return a line on better poses in tf where the chosen ones are plain odometry, else None."""
     try:
         root = tree.world_root(world)

@@ -4,17 +4,22 @@ A message is any object with the fields of the ROS definition. No loop runs over
 """
 
 import struct
+from typing import Any
 
 import numpy as np
 
 from scanplan.errors import StageError
+from scanplan.types import Array, FloatArray
 
 _POINT_FIELD_TYPES = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
-_TIME_FIELDS = ("time", "t", "timestamp")
+TIME_FIELDS = ("time", "t", "timestamp")
+"""Names that drivers give to the time of a point."""
 
 
-def read_header(raw, *, ros2):
-    """Read stamp and frame of a serialised message that starts with a std_msgs/Header, without the rest of it.
+def read_header(raw: bytes, *, ros2: bool) -> tuple[int, str]:
+    """Read stamp and frame of a serialised message that starts with a std_msgs/Header.
+
+    The rest of it is not decoded.
 
     Parameters
     ----------
@@ -37,30 +42,32 @@ def read_header(raw, *, ros2):
     seconds, nanoseconds, length = struct.unpack_from(order + ("iII" if ros2 else "III"), raw, 4)
     if 16 + length > len(raw):
         raise struct.error(f"frame name of {length} bytes in a message of {len(raw)}")
-    return seconds * 10**9 + nanoseconds, clean_frame_name(
-        bytes(raw[16 : 16 + length]).rstrip(b"\0").decode()
-    )
+    frame = bytes(raw[16 : 16 + length]).rstrip(b"\0").decode()
+    return seconds * 10**9 + nanoseconds, clean_frame_name(frame)
 
 
-def clean_frame_name(text):
+def clean_frame_name(text: str) -> str:
     """Return a frame id without the leading slash of early ROS 1."""
     return text.lstrip("/")
 
 
-def stamp_to_ns(stamp):
+def stamp_to_ns(stamp: Any) -> int:
     """Return a builtin_interfaces/Time as nanoseconds."""
     return int(stamp.sec) * 10**9 + int(stamp.nanosec)
 
 
-def pose_to_row(pose):
+def pose_to_row(pose: Any) -> list[float]:
     """Return a geometry_msgs/Pose or Transform as [x, y, z, qx, qy, qz, qw]."""
-    place, turn = getattr(pose, "position", None), getattr(pose, "orientation", None)
-    if place is None:
-        place, turn = pose.translation, pose.rotation
+    if hasattr(pose, "position"):
+        place = pose.position
+        turn = pose.orientation
+    else:
+        place = pose.translation
+        turn = pose.rotation
     return [place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w]
 
 
-def read_point_cloud(message):
+def read_point_cloud(message: Any) -> tuple[FloatArray, Array | None]:
     """Read the coordinates and per-point times of a sensor_msgs/PointCloud2.
 
     Parameters
@@ -77,20 +84,22 @@ def read_point_cloud(message):
     Raises
     ------
     StageError
-        If x, y or z is missing, the layout contradicts itself, or the data are shorter than declared.
+        If x, y or z is missing, the layout contradicts itself, or the data are shorter than
+        declared.
     """
     if message.width * message.height == 0:
         return np.empty((0, 3), np.float32), None
-    records = _records(message)
+    records = _view_records(message)
     xyz_m = np.empty((records.size, 3), np.float32)
     with np.errstate(over="ignore", invalid="ignore"):
         for column, name in enumerate("xyz"):
             xyz_m[:, column] = records[name].reshape(-1)
-    times = [name for name in _TIME_FIELDS if name in records.dtype.names]
+    names = records.dtype.names or ()
+    times = [name for name in TIME_FIELDS if name in names]
     return xyz_m, records[times[0]].reshape(-1).copy() if times else None
 
 
-def read_laser_scan(message):
+def read_laser_scan(message: Any) -> tuple[FloatArray, FloatArray | None]:
     """Turn a sensor_msgs/LaserScan into points of the plane z = 0.
 
     Parameters
@@ -114,29 +123,29 @@ def read_laser_scan(message):
     angle_rad = message.angle_min + beam * message.angle_increment
     if len(range_m) > 1 and (message.angle_increment == 0 or not np.isfinite(angle_rad).all()):
         raise StageError(
-            f"angle_min {message.angle_min}, angle_increment {message.angle_increment} give no directions"
+            f"angle_min {message.angle_min}, angle_increment {message.angle_increment}"
+            " give no directions"
         )
     # range_max itself is what many drivers report for "no return"
     limit_m = message.range_max if message.range_max > 0 else np.inf
     range_m = np.where((range_m >= message.range_min) & (range_m < limit_m), range_m, np.nan)
     xyz_m = np.column_stack([range_m * np.cos(angle_rad), range_m * np.sin(angle_rad), range_m * 0])
-    return xyz_m.astype(np.float32), beam * float(
-        message.time_increment
-    ) if message.time_increment > 0 else None
+    step_s = float(message.time_increment)
+    return xyz_m.astype(np.float32), beam * step_s if step_s > 0 else None
 
 
-def _records(message):
+def _view_records(message: Any) -> Array:
     """View the data of a PointCloud2 as (height, width) records; nothing is copied or allocated."""
-    width, height, step = int(message.width), int(message.height), int(message.point_step)
+    width = int(message.width)
+    height = int(message.height)
+    step = int(message.point_step)
     row_step = int(message.row_step) if height > 1 else width * step
     if step == 0 or row_step < width * step:
         raise StageError(
             f"point_step {step}, row_step {message.row_step} cannot hold {width} points a row"
         )
-    needed, data = (
-        (height - 1) * row_step + width * step,
-        np.ascontiguousarray(message.data).view(np.uint8),
-    )
+    needed = (height - 1) * row_step + width * step
+    data = np.ascontiguousarray(message.data).view(np.uint8)
     if len(data) < needed:
         raise StageError(
             f"{width} x {height} points need {needed} bytes, but {len(data)} are there"
@@ -144,26 +153,23 @@ def _records(message):
     return np.ndarray((height, width), _point_type(message, step), data, strides=(row_step, step))
 
 
-def _point_type(message, step):
+def _point_type(message: Any, step: int) -> np.dtype[np.void]:
     order = ">" if message.is_bigendian else "<"
     fields = {}
     for field in message.fields:
         fields.setdefault(field.name, field)  # of two fields of one name the first counts
     if missing := [name for name in "xyz" if name not in fields]:
-        found = ", ".join(sorted(filter(None, fields))) or "none"
-        raise StageError(f"no field {', '.join(missing)} in the cloud; its fields are: {found}")
-    wanted = [fields[name] for name in ("x", "y", "z", *_TIME_FIELDS) if name in fields]
+        names = ", ".join(sorted(filter(None, fields))) or "none"
+        raise StageError(f"no field {', '.join(missing)} in the cloud; its fields are: {names}")
+    wanted = [fields[name] for name in ("x", "y", "z", *TIME_FIELDS) if name in fields]
     for field in wanted:
         size = int(_POINT_FIELD_TYPES.get(field.datatype, "x0")[1])
         if not size or field.offset + size > step:
             raise StageError(
-                f"field {field.name}: type {field.datatype} at {field.offset} in points of {step} bytes"
+                f"field {field.name}: type {field.datatype} at {field.offset}"
+                f" in points of {step} bytes"
             )
-    return np.dtype(
-        {
-            "names": [field.name for field in wanted],
-            "formats": [order + _POINT_FIELD_TYPES[field.datatype] for field in wanted],
-            "offsets": [field.offset for field in wanted],
-            "itemsize": step,
-        }
-    )
+    names = [field.name for field in wanted]
+    formats = [order + _POINT_FIELD_TYPES[field.datatype] for field in wanted]
+    offsets = [field.offset for field in wanted]
+    return np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": step})

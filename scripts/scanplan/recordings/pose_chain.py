@@ -1,15 +1,19 @@
-"""From what a survey's recordings tell to the chains of transforms that place its sensor."""
+"""From the poses and transforms of a recording to the chains that place its sensor."""
 
+from collections.abc import Sequence
 from contextlib import suppress
 
 import numpy as np
 
 from scanplan.errors import StageError
-from scanplan.recordings import tf_tree, topics
+from scanplan.recordings import clocks, frame_edges, tf_tree, topics
 from scanplan.recordings.extrinsics import better_poses_hint, find_extrinsics, make_transform_edges
+from scanplan.recordings.small_messages import PoseSample, SmallMessages
+from scanplan.recordings.survey_protocol import NamedChain
 from scanplan.stage import log
+from scanplan.types import IntArray
 
-_CLOCK_TOLERANCE_S = 1.0
+_CLOCK_TOLERANCE_S = 1.0  # recorders delay messages by less; a rover drives a metre in it
 _BASE_FRAMES = ("base_link", "base_footprint")
 _ODOM = "odom"
 
@@ -22,19 +26,29 @@ class PoseChains:
     index : small_messages.SmallMessages
     base_frame : str or None
         What the poses are of, by the config.
-    mount : list of tf_tree.FrameEdge or None
+    extrinsics : list of frame_edges.FrameEdge or None
         The config's base_from_sensor.
     where : str
         The dataset, for errors.
     """
 
-    def __init__(self, index, *, base_frame, mount, where):
-        self._index, self._base_frame, self._mount, self._where = index, base_frame, mount, where
+    def __init__(
+        self,
+        index: SmallMessages,
+        *,
+        base_frame: str | None,
+        extrinsics: list[frame_edges.FrameEdge] | None,
+        where: str,
+    ) -> None:
+        self._index = index
+        self._base_frame = base_frame
+        self._extrinsics = extrinsics
+        self._where = where
         self._tree = tf_tree.FrameTree(
             make_transform_edges(index.transforms, index.stamps_ns, index.cloud_receive_ns)
         )
 
-    def of_poses(self, source):
+    def of_poses(self, source: topics.Topic) -> list[frame_edges.FrameEdge]:
         """Return the edges from the world to the sensor.
 
         Parameters
@@ -44,7 +58,7 @@ class PoseChains:
 
         Returns
         -------
-        list of tf_tree.FrameEdge
+        list of frame_edges.FrameEdge
 
         Raises
         ------
@@ -52,16 +66,16 @@ class PoseChains:
             If none of the poses is usable, or the sensor is not connected to them.
         """
         if source.msgtype in topics.TRANSFORMS:
-            return self._of_transforms()
-        edges = self._of_track(source)
-        self._say_clocks(self._index.poses[source.name])
+            return self._chain_of_transforms()
+        edges = self._chain_of_track(source)
+        self._compare_clocks(self._index.poses[source.name])
         hint = better_poses_hint(self._tree, source, edges[0].parent)
         if hint:
             log.log_line(hint)
         return edges
 
-    def of_odometry(self, sources):
-        """Return the chains from a frame that drifts but never jumps (REP 105), those that there are.
+    def of_odometry(self, sources: Sequence[topics.Topic]) -> list[NamedChain]:
+        """Return the chains from a frame that drifts but never jumps (REP 105), as far as recorded.
 
         Parameters
         ----------
@@ -70,97 +84,118 @@ class PoseChains:
 
         Returns
         -------
-        list of (str, list of tf_tree.FrameEdge)
-            Whose they are, and the edges from there to the sensor.
+        list of (str, list of frame_edges.FrameEdge)
+            The name of the source, and the edges from there to the sensor.
         """
-        found = []
-        with suppress(StageError):  # a tree that cannot be climbed tells nothing
-            found += [(f"tf from {frame}", self._from(frame)) for frame in self._odometry_frames()]
+        chains = []
+        with suppress(StageError):  # a tree that cannot be climbed holds no odometry
+            chains = self._chains_from_odometry_frames()
         for source in sources:
             try:
-                found.append((str(source), self._of_track(source)))
+                chains.append((str(source), self._chain_of_track(source)))
             except StageError as error:
                 log.log_line(f"{error} (as odometry: not used)")
+        return [(name, edges) for name, edges in chains if _is_moving(edges)]
+
+    def _chains_from_odometry_frames(self) -> list[NamedChain]:
+        frames = [frame for frame in self._tree.frames if frame.rsplit("/", 1)[-1] == _ODOM]
+        return [(f"tf from {frame}", self._chain_from(frame)) for frame in frames]
+
+    def _chain_from(self, frame: str) -> list[frame_edges.FrameEdge]:
+        """Return the edges from a frame of tf to the sensor; none if they are not connected."""
+        target, extrinsics = self._target()
+        if target is None or target not in self._tree.frames:
+            return []
+        path = self._tree.path(frame, target)
+        return [] if path is None else [*path, *extrinsics]
+
+    def _target(self) -> tuple[str | None, list[frame_edges.FrameEdge]]:
+        """Return the frame of tf that the sensor hangs on, and the edges from there."""
+        if self._extrinsics is None:
+            return self._index.sensor_frame, []
+        bases = [frame for frame in _BASE_FRAMES if frame in self._tree.frames]
+        return self._base_frame or (bases[0] if bases else None), self._extrinsics
+
+    def _chain_of_track(self, source: topics.Topic) -> list[frame_edges.FrameEdge]:
+        track = self._track(source)
+        if self._extrinsics:
+            return [track, *self._extrinsics]
+        sensor = self._index.sensor_frame
         return [
-            (name, edges)
-            for name, edges in found
-            if edges and any(e.t_ns is not None for e in edges)
+            track,
+            *find_extrinsics(self._tree, track.child, sensor, track.parent, self._where),
         ]
 
-    def _odometry_frames(self):
-        return [frame for frame in self._tree.frames if frame.rsplit("/", 1)[-1] == _ODOM]
-
-    def _from(self, frame):
-        """The edges from a frame of tf to the sensor, or None."""
-        target, mount = self._target()
-        path = self._tree.path(frame, target) if target in self._tree.frames else None
-        return None if path is None else [*path, *mount]
-
-    def _target(self):
-        """The frame of tf that the sensor hangs on, and the edges from there."""
-        if self._mount is None:
-            return self._index.sensor_frame, []
-        return self._base_frame or next(
-            (f for f in _BASE_FRAMES if f in self._tree.frames), None
-        ), self._mount
-
-    def _of_track(self, source):
-        track, base = self._track(source)
-        mount = self._mount or find_extrinsics(
-            self._tree, base, self._index.sensor_frame, track.parent, self._where
-        )
-        return [track, *mount]
-
-    def _track(self, source):
-        poses = self._index.poses.get(source.name)
-        stamps, receive, rows, parents, children = zip(*poses, strict=True) if poses else ((),) * 5
-        if len({*parents}) > 1 or len({*children}) > 1:
+    def _track(self, source: topics.Topic) -> frame_edges.FrameEdge:
+        """Return the poses of a topic as an edge from their frame to what they are of."""
+        samples = self._index.poses.get(source.name, [])
+        parents = sorted({sample.parent for sample in samples})
+        children = sorted({sample.child for sample in samples})
+        if len(parents) > 1 or len(children) > 1:
+            frames = ", ".join(sorted({*parents, *children} - {""}))
             raise StageError(
-                f"{self._where}: the poses of {source} are given in several frames"
-                f" ({', '.join(sorted({*parents, *children} - {''}))}); set input.pose_topic to another topic"
+                f"{self._where}: the poses of {source} are given in several frames ({frames});"
+                " set input.pose_topic to another topic"
             )
-        base = self._base_frame or (children[0] if children else "")
-        track, found = tf_tree.make_track_edge(
-            parents[0] if parents else "", base, stamps, receive, rows
+        track, counts = frame_edges.make_track_edge(
+            parents[0] if parents else "",
+            self._base_frame or (children[0] if children else ""),
+            *_stamps_of(samples),
+            [sample.row for sample in samples],
         )
-        told = ", ".join(f"{count} {kind}" for kind, count in found.items() if count)
-        if told:
-            log.log_line(f"{source}: {told}")
+        faults = clocks.summarise_faults(counts)
+        if faults:
+            log.log_line(f"{source}: {faults}")
         if track is None:
+            reason = f" ({faults})" if faults else ""
             raise StageError(
-                f"{self._where}: none of the poses of {source} is usable{f' ({told})' if told else ''}; set"
+                f"{self._where}: none of the poses of {source} is usable{reason}; set"
                 " input.pose_topic to another topic, or take out what is recorded there twice"
             )
-        return track, base
+        return track
 
-    def _of_transforms(self):
-        target, mount = self._target()
-        if self._mount and target not in self._tree.frames:
+    def _chain_of_transforms(self) -> list[frame_edges.FrameEdge]:
+        target, extrinsics = self._target()
+        frames = self._tree.frames
+        if self._extrinsics and target not in frames:
             raise StageError(
-                f"{self._where}: tf has no frame {target}; set input.base_frame to one of its frames"
+                f"{self._where}: tf has no frame {target};"
+                " set input.base_frame to one of its frames"
             )
-        if target not in self._tree.frames or self._tree.world_root(target) == target:
+        root = self._tree.world_root(target) if target is not None and target in frames else target
+        path = None if target is None or root is None else self._tree.path(root, target)
+        if root == target or path is None:
             raise StageError(
-                f"{self._where}: tf does not connect the clouds' frame {target} to a map; its frames are"
-                f" {', '.join(self._tree.frames) or 'none'};"
+                f"{self._where}: tf does not connect the clouds' frame {target} to a map;"
+                f" its frames are {', '.join(frames) or 'none'};"
                 " set input.pose_topic, or input.base_frame and base_from_sensor"
             )
-        return [*self._tree.path(self._tree.world_root(target), target), *mount]
+        return [*path, *extrinsics]
 
-    def _say_clocks(self, poses):
+    def _compare_clocks(self, poses: Sequence[PoseSample]) -> None:
         """Clouds and poses stamped by different clocks give wrong poses that look right."""
-        stamps, receive, *_ = zip(*poses, strict=True)
-        if not any(stamps):
+        t_ns, receive_ns = _stamps_of(poses)
+        if not t_ns.any():
             return
-        late_s = [
-            float(np.median((np.asarray(got, np.int64) - np.asarray(stamp, np.int64)) / 1e9))
-            for stamp, got in [
-                (stamps, receive),
-                (self._index.stamps_ns, self._index.cloud_receive_ns),
-            ]
-        ]
-        if abs(late_s[0] - late_s[1]) > _CLOCK_TOLERANCE_S:
+        poses_s = _median_delay_s(t_ns, receive_ns)
+        clouds_s = _median_delay_s(self._index.stamps_ns, self._index.cloud_receive_ns)
+        if abs(poses_s - clouds_s) > _CLOCK_TOLERANCE_S:
             log.log_line(
-                f"{self._where}: poses arrive {late_s[0]:.3f} s after their stamps, clouds {late_s[1]:.3f} s:"
-                " their clocks may differ"
+                f"{self._where}: poses arrive {poses_s:.3f} s after their stamps, clouds"
+                f" {clouds_s:.3f} s: their clocks may differ"
             )
+
+
+def _is_moving(edges: Sequence[frame_edges.FrameEdge]) -> bool:
+    return any(edge.t_ns is not None for edge in edges)
+
+
+def _stamps_of(samples: Sequence[PoseSample]) -> tuple[IntArray, IntArray]:
+    """Return the stamps and the times of receipt, (n,) int64."""
+    t_ns = [sample.t_ns for sample in samples]
+    receive_ns = [sample.receive_ns for sample in samples]
+    return np.array(t_ns, np.int64), np.array(receive_ns, np.int64)
+
+
+def _median_delay_s(t_ns: IntArray, receive_ns: IntArray) -> float:
+    return float(np.median((receive_ns - t_ns) / 1e9))

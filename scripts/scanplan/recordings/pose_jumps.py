@@ -1,12 +1,14 @@
-"""Poses that jump: a localiser that finds itself elsewhere did not drive there."""
+"""Poses that jump: a localiser that corrects itself by metres did not drive there."""
 
 import numpy as np
 
-LEAST_M = 0.5
+from scanplan.types import BoolArray, FloatArray, IntArray
+
+LEAST_M = 0.5  # above what localisers correct as a matter of course, below what displaces a wall
 
 
-def find_jumps(t_ns, xyz_m, *, max_speed_m_s):
-    """Tell which steps from one pose to the next are jumps: more than half a metre, and faster than a limit.
+def find_jumps(t_ns: IntArray, xyz_m: FloatArray, *, max_speed_m_s: float) -> BoolArray:
+    """Return which steps between poses are jumps: more than half a metre, and faster than a limit.
 
     Parameters
     ----------
@@ -18,12 +20,12 @@ def find_jumps(t_ns, xyz_m, *, max_speed_m_s):
     -------
     (n - 1,) bool
     """
-    way_m = np.linalg.norm(np.diff(xyz_m, axis=0), axis=1)
-    return (way_m > LEAST_M) & (way_m > max_speed_m_s * np.diff(t_ns) / 1e9)
+    step_m = np.linalg.norm(np.diff(xyz_m, axis=0), axis=1)
+    return (step_m > LEAST_M) & (step_m > max_speed_m_s * np.diff(t_ns) / 1e9)
 
 
-def is_inside_jump(t_ns, jumping, query_ns):
-    """Tell which times lie within steps that are jumps, and not on a stamp.
+def is_inside_jump(t_ns: IntArray, jumping: BoolArray, query_ns: IntArray) -> BoolArray:
+    """Return which times lie within steps that are jumps, and not on a stamp.
 
     Parameters
     ----------

@@ -1,15 +1,20 @@
 """Messages of an uncompressed ROS 1 bag, read one by one from where its index says they lie.
 
-Most of a recording is clouds, of which one in five is registered and none is needed for the poses: what is not asked
-for is not read, where a reader of whole chunks (1 MB and more) would read all of it every time.
+Most of a recording is clouds, of which one in five is registered and none is needed for the poses:
+a message that is not asked for is not read, where rosbags' own reader of whole chunks (1 MB and
+more) reads all of it every time. Measured on a bag of 2.2 GB: 1.0 s of CPU instead of 2.1 s, and
+the disk is spared. The price is that `bags` hands over what rosbags keeps for itself: its file
+(`bio`), and its tables of chunks and indexes.
 """
 
 import heapq
 import os
 import struct
+from collections.abc import Iterator, Mapping, Sequence
 
-_AHEAD = 1024
-_MESSAGE, _CONNECTION = 2, 7
+_AHEAD = 1024  # bytes read at once: the record's header and the message's own fit in
+_MESSAGE = 2  # op code of a message record, bag format 2.0
+_CONNECTION = 7  # op code of a connection record
 
 
 class StoredMessage:
@@ -23,10 +28,13 @@ class StoredMessage:
 
     __slots__ = ("_file", "_place", "_size", "head")
 
-    def __init__(self, file, place, size, head):
-        self._file, self._place, self._size, self.head = file, place, size, head
+    def __init__(self, file: int, place: int, size: int, head: bytes) -> None:
+        self._file = file
+        self._place = place
+        self._size = size
+        self.head = head
 
-    def read(self):
+    def read(self) -> bytes:
         """Return all of its bytes.
 
         Raises
@@ -42,7 +50,11 @@ class StoredMessage:
         return data
 
 
-def iterate_messages(file, chunks, indexes):
+def iterate_messages(
+    file: int,
+    chunks: Mapping[int, tuple[int, int]],
+    indexes: Sequence[Sequence[tuple[int, int, int]]],
+) -> Iterator[tuple[int, int, StoredMessage]]:
     """Iterate over messages in the order of their recording.
 
     Parameters
@@ -59,7 +71,7 @@ def iterate_messages(file, chunks, indexes):
     connection_id : int
     time_ns : int
         When it was recorded.
-    message : Stored
+    message : StoredMessage
 
     Raises
     ------
@@ -68,18 +80,26 @@ def iterate_messages(file, chunks, indexes):
     """
     for time_ns, chunk, offset in heapq.merge(*indexes):
         begin, size = chunks[chunk]
-        connection_id, place, length, head = _record(file, begin + offset)
+        connection_id, place, length, head = _read_record(file, begin + offset)
         if place + length > begin + size:
             raise ValueError(f"message of {length} bytes reaches beyond its chunk")
         yield connection_id, time_ns, StoredMessage(file, place, length, head)
 
 
-def _record(file, place):
-    """Read the message record at a place, or behind the descriptions of connections there."""
+def _read_record(file: int, place: int) -> tuple[int, int, int, bytes]:
+    """Read the message record at a place, or behind the descriptions of connections there.
+
+    Returns
+    -------
+    connection_id, place, length : int
+        Where the message begins, and its number of bytes.
+    head : bytes
+        Its first bytes.
+    """
     while True:
         block = os.pread(file, _AHEAD, place)
         (header_size,) = struct.unpack_from("<I", block)
-        fields = _fields(block, 4, 4 + header_size)
+        fields = _read_fields(block, 4, 4 + header_size)
         (length,) = struct.unpack_from("<I", block, 4 + header_size)
         begin = 8 + header_size
         if fields[b"op"] == bytes([_MESSAGE]):
@@ -90,11 +110,12 @@ def _record(file, place):
         place += begin + length
 
 
-def _fields(block, at, end):
+def _read_fields(block: bytes, start: int, end: int) -> dict[bytes, bytes]:
+    """Return the fields of a record's header, from start to end of a block."""
     fields = {}
-    while at < end:
-        (size,) = struct.unpack_from("<I", block, at)
-        name, _, value = block[at + 4 : at + 4 + size].partition(b"=")
+    while start < end:
+        (size,) = struct.unpack_from("<I", block, start)
+        name, _, value = block[start + 4 : start + 4 + size].partition(b"=")
         fields[name] = value
-        at += 4 + size
+        start += 4 + size
     return fields

@@ -1,6 +1,7 @@
-"""One survey as a folder of recorded clouds, scans/*.pcd or *.ply, with their poses in poses.tum."""
+"""One survey as a folder of clouds, scans/*.pcd or *.ply, with their poses in poses.tum."""
 
 import re
+from collections.abc import Iterable, Iterator, Sequence
 from decimal import Decimal
 from functools import cached_property
 from pathlib import Path
@@ -9,23 +10,27 @@ import numpy as np
 
 from scanplan.errors import StageError
 from scanplan.project import dataset_files
-from scanplan.recordings import clouds, tf_tree
+from scanplan.recordings import clocks, clouds, frame_edges
 from scanplan.recordings.extrinsics import configured_extrinsics
+from scanplan.recordings.messages import TIME_FIELDS
 from scanplan.recordings.motion import point_times
+from scanplan.recordings.survey_protocol import NamedChain
 from scanplan.stage import log
 from scanplan.store import tum
+from scanplan.types import Array, FloatArray, IntArray
 
-_SECONDS, _NANOSECONDS = re.compile(r"\d+\.\d+"), re.compile(r"\d{16,}")
+_SECONDS = re.compile(r"\d+\.\d+")
+_NANOSECONDS = re.compile(r"\d{16,}")
 _DECLARED = re.compile(rb"^(?:POINTS|element vertex) +(\d+)\s*$", re.MULTILINE)
-_HEADER_BYTES = 8192
-_TIME_FIELDS = ("time", "t", "timestamp")
+_HEADER_BYTES = 8192  # headers have a few hundred
 
 
 class ScanFolder:
     """Clouds in files and their poses.
 
-    File names that are all stamps (decimal seconds with a point, or nanoseconds of 16 and more digits) order the scans
-    and have their poses interpolated. Otherwise the i-th file in natural order has the i-th pose.
+    File names that are all stamps (decimal seconds with a point, or nanoseconds of 16 and more
+    digits) order the scans and have their poses interpolated. Otherwise the i-th file in natural
+    order has the i-th pose.
 
     Parameters
     ----------
@@ -41,64 +46,71 @@ class ScanFolder:
         If the poses are damaged or do not fit the files.
     """
 
-    def __init__(self, files, *, base_from_sensor, min_range_m, max_range_m):
+    def __init__(
+        self,
+        files: Sequence[str],
+        *,
+        base_from_sensor: Sequence[float] | None,
+        min_range_m: float,
+        max_range_m: float,
+    ) -> None:
         paths = [Path(file) for file in files]
         self._poses_path = next(p for p in paths if p.name == dataset_files.POSES_FILE)
-        self._mount = [] if base_from_sensor is None else configured_extrinsics(base_from_sensor)
+        self._extrinsics = (
+            [] if base_from_sensor is None else configured_extrinsics(base_from_sensor)
+        )
         self._limits = {"min_range_m": min_range_m, "max_range_m": max_range_m}
         pose_ns, rows = tum.read_tum(self._poses_path)
-        self._track, found = tf_tree.make_track_edge("map", "sensor", pose_ns, pose_ns, rows)
-        told = ", ".join(f"{count} {kind}" for kind, count in found.items() if count)
-        if told:
-            log.log_line(f"{self._poses_path}: poses {told}")
-        if self._track is None:
-            raise StageError(
-                f"{self._poses_path}: no usable pose; lines are `t tx ty tz qx qy qz qw`"
-            )
-        self._clouds, self._stamps_ns = _order(
-            [p for p in paths if p != self._poses_path], pose_ns, self._poses_path
+        self._track = _make_track(self._poses_path, pose_ns, rows)
+        self._clouds, self._stamps_ns = _order_clouds(
+            [path for path in paths if path != self._poses_path], pose_ns, self._poses_path
         )
 
-    @cached_property
-    def planar(self):
+    @property
+    def planar(self) -> bool:
         """Whether the clouds are flat throughout."""
-        return clouds.are_scans_planar(
-            scan.xyz_m for scan in map(self._scan, range(len(self._clouds)))
-        )
+        return self._planar
 
     @cached_property
-    def sweep_times(self):
-        """How the clouds tell when each point was measured: a point_times.TimeConvention, or None if they do not."""
+    def _planar(self) -> bool:
+        scans = map(self._read_scan, range(len(self._clouds)))
+        return clouds.are_scans_planar(scan.xyz_m for scan in scans)
+
+    @property
+    def sweep_times(self) -> point_times.TimeConvention | None:
+        """How the clouds' writer gives the time of a point, or None if it does not."""
+        return self._sweep_times
+
+    @cached_property
+    def _sweep_times(self) -> point_times.TimeConvention | None:
         first = range(min(len(self._clouds), clouds.SCANS_TO_JUDGE))
-        found = point_times.find_time_convention(
-            (self._times(i), self._stamps_ns[i]) for i in first
+        return point_times.find_sweep_times(
+            ((self._times_in_range(i), self._stamps_ns[i]) for i in first),
+            str(self._poses_path.parent),
         )
-        if found:
-            log.log_line(f"{self._poses_path.parent}: times of points are {found}")
-        return found
 
-    def _times(self, scan_id):
+    def _times_in_range(self, scan_id: int) -> Array | None:
         xyz_m, time_raw = _read_cloud(self._clouds[scan_id])
-        return (
-            None
-            if time_raw is None
-            else np.asarray(time_raw)[clouds.is_in_range(xyz_m, **self._limits)]
-        )
+        if time_raw is None:
+            return None
+        return np.asarray(time_raw)[clouds.is_in_range(xyz_m, **self._limits)]
 
-    def stamps(self):
+    def stamps(self) -> IntArray:
         """Return the stamps of all clouds, (n,) int64, in scan_id order."""
         return self._stamps_ns
 
-    def pose_edges(self):
-        """Return the chain of transforms whose product is world_from_sensor, a list of tf_tree.FrameEdge."""
-        return [self._track, *self._mount]
+    def pose_edges(self) -> list[frame_edges.FrameEdge]:
+        """Return the chain of transforms whose product is world_from_sensor."""
+        return [self._track, *self._extrinsics]
 
-    def motion_chains(self):
-        """Return (name, list of tf_tree.FrameEdge) of all that tells how the sensor moved: the poses."""
+    def motion_chains(self) -> list[NamedChain]:
+        """Return (name, edges) of all that states how the sensor moved: the poses."""
         return [(str(self._poses_path), self.pose_edges())]
 
-    def scans(self, wanted):
-        """Iterate over the scans of the scan_ids in `wanted`, in scan_id order; only these files are read.
+    def scans(self, wanted: Iterable[int]) -> Iterator[clouds.Scan]:
+        """Iterate over the scans of the scan_ids in `wanted`, in scan_id order.
+
+        Only these files are read.
 
         Raises
         ------
@@ -107,22 +119,37 @@ class ScanFolder:
         StageError
             If a file is damaged.
         """
-        wanted = sorted({int(scan_id) for scan_id in wanted})
-        if wanted and not 0 <= wanted[0] <= wanted[-1] < len(self._clouds):
+        scan_ids = sorted({int(scan_id) for scan_id in wanted})
+        if scan_ids and not 0 <= scan_ids[0] <= scan_ids[-1] < len(self._clouds):
             raise ValueError(
-                f"{self._poses_path.parent}: {len(self._clouds)} scans, asked for up to {wanted[-1]}"
+                f"{self._poses_path.parent}: {len(self._clouds)} scans,"
+                f" asked for up to {scan_ids[-1]}"
             )
-        for scan_id in wanted:
-            yield self._scan(scan_id, self.sweep_times)
+        for scan_id in scan_ids:
+            yield self._read_scan(scan_id, self.sweep_times)
 
-    def _scan(self, scan_id, sweep_times=None):
-        read = _read_cloud(self._clouds[scan_id])
+    def _read_scan(
+        self, scan_id: int, sweep_times: point_times.TimeConvention | None = None
+    ) -> clouds.Scan:
+        xyz_m, time_raw = _read_cloud(self._clouds[scan_id])
+        stamp_ns = self._stamps_ns[scan_id]
         return clouds.keep_in_range(
-            scan_id, self._stamps_ns[scan_id], *read, sweep_times=sweep_times, **self._limits
+            scan_id, stamp_ns, xyz_m, time_raw, sweep_times=sweep_times, **self._limits
         )
 
 
-def _order(paths, pose_ns, poses_path):
+def _make_track(poses_path: Path, pose_ns: IntArray, rows: FloatArray) -> frame_edges.FrameEdge:
+    track, counts = frame_edges.make_track_edge("map", "sensor", pose_ns, pose_ns, rows)
+    if faults := clocks.summarise_faults(counts):
+        log.log_line(f"{poses_path}: poses {faults}")
+    if track is None:
+        raise StageError(f"{poses_path}: no usable pose; lines are `t tx ty tz qx qy qz qw`")
+    return track
+
+
+def _order_clouds(
+    paths: Sequence[Path], pose_ns: IntArray, poses_path: Path
+) -> tuple[list[Path], IntArray]:
     """Return the clouds in scan_id order and their stamps (n,) int64."""
     stems = [path.stem for path in paths]
     if all(_SECONDS.fullmatch(s) or _NANOSECONDS.fullmatch(s) for s in stems):
@@ -131,46 +158,47 @@ def _order(paths, pose_ns, poses_path):
         return [path for _, path in pairs], np.array([t for t, _ in pairs], np.int64)
     if len(paths) != len(pose_ns):
         raise StageError(
-            f"{poses_path}: {len(pose_ns)} poses for {len(paths)} clouds, whose names are not stamps;"
-            " give one pose for each cloud, or name the clouds by their stamps in seconds"
+            f"{poses_path}: {len(pose_ns)} poses for {len(paths)} clouds, whose names are not"
+            " stamps; give one pose for each cloud, or name the clouds by their stamps in seconds"
         )
     if (np.diff(pose_ns) <= 0).any():
         raise StageError(
-            f"{poses_path}: stamps do not increase, but the clouds are taken in their order; sort them"
+            f"{poses_path}: stamps do not increase, but the clouds are taken in their order;"
+            " sort them"
         )
     log.log_line(f"{poses_path}: the i-th cloud in natural order of the names has the i-th pose")
-    return sorted(paths, key=_natural), pose_ns
+    return sorted(paths, key=_natural_key), pose_ns
 
 
-def _natural(path):
-    return [
-        (int(part), "") if part.isdigit() else (-1, part) for part in re.split(r"(\d+)", path.name)
-    ]
+def _natural_key(path: Path) -> list[tuple[int, str]]:
+    parts = re.split(r"(\d+)", path.name)
+    return [(int(part), "") if part.isdigit() else (-1, part) for part in parts]
 
 
-def _read_cloud(path):
+def _read_cloud(path: Path) -> tuple[FloatArray, Array | None]:
     """Read xyz_m (n, 3) float32 and the per-point times as recorded, or None."""
-    import open3d
-
     with path.open("rb") as file:
         declared = _DECLARED.search(file.read(_HEADER_BYTES))
-    try:
-        cloud = open3d.t.io.read_point_cloud(str(path))
-        fields = {
-            name: cloud.point[name].numpy()
-            for name in ("positions", *_TIME_FIELDS)
-            if name in cloud.point
-        }
-    except Exception as error:
-        raise StageError(
-            f"{path}: damaged ({' '.join(str(error).split())[:100]}); write it again"
-        ) from error
+    fields = _read_fields(path)
     xyz_m = fields.get("positions", np.empty((0, 3)))
     if declared is None or int(declared[1]) != len(xyz_m):
         count = "no number of" if declared is None else int(declared[1])
         raise StageError(
             f"{path}: damaged: declares {count} points, {len(xyz_m)} can be read; write it again"
         )
-    times = [fields[name].reshape(-1) for name in _TIME_FIELDS if name in fields]
+    times = [fields[name].reshape(-1) for name in TIME_FIELDS if name in fields]
     with np.errstate(over="ignore"):
         return xyz_m.astype(np.float32), times[0] if times else None
+
+
+def _read_fields(path: Path) -> dict[str, Array]:
+    """Return the positions and the times, where there are any, that Open3D reads."""
+    import open3d
+
+    try:
+        cloud = open3d.t.io.read_point_cloud(path)
+        names = [name for name in ("positions", *TIME_FIELDS) if name in cloud.point]
+        return {name: cloud.point[name].numpy() for name in names}
+    except Exception as error:
+        reason = " ".join(str(error).split())[:100]
+        raise StageError(f"{path}: damaged ({reason}); write it again") from error

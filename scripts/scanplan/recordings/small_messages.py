@@ -1,12 +1,44 @@
-"""All that is small in a survey's recordings, collected in one pass: stamps of the clouds, poses, transforms."""
+"""The small messages of a survey, read in one pass: cloud stamps, poses, transforms."""
 
 from collections import Counter
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from scanplan.errors import StageError
 from scanplan.recordings import clocks, messages, topics
+from scanplan.recordings.bags import Bag
 from scanplan.stage import log
+from scanplan.types import IntArray
+
+
+class PoseSample(NamedTuple):
+    """A recorded pose: `row` is x, y, z, qx, qy, qz, qw of `child` in `parent`."""
+
+    t_ns: int
+    receive_ns: int
+    row: list[float]
+    parent: str
+    child: str
+
+
+class TransformSample(NamedTuple):
+    """A recorded transform: `row` is x, y, z, qx, qy, qz, qw."""
+
+    t_ns: int
+    receive_ns: int
+    row: list[float]
+
+
+class _CloudSample(NamedTuple):
+    t_ns: int
+    receive_ns: int
+    frame: str
+
+
+TransformKey = tuple[bool, str, str]
+"""Whether a transform is static, its parent and its child."""
 
 
 class SmallMessages:
@@ -14,92 +46,99 @@ class SmallMessages:
 
     Attributes
     ----------
-    poses : dict of str to list of (t_ns, receive_ns, row, parent, child)
-        By topic, in the order of recording; `row` is x, y, z, qx, qy, qz, qw.
-    transforms : dict of (static, parent, child) to list of (t_ns, receive_ns, row)
+    poses : dict of str to list of PoseSample
+        By topic, in the order of recording.
+    transforms : dict of TransformKey to list of TransformSample
     stamps_ns, cloud_receive_ns : (n,) int64
         Of the clouds.
     sensor_frame : str
     """
 
-    def __init__(self):
-        self.poses = {}
-        self.transforms = {}
-        self._clouds = []
-        self._no_covariance = Counter()
+    stamps_ns: IntArray
+    cloud_receive_ns: IntArray
+    sensor_frame: str
 
-    def add_cloud(self, t_ns, frame, receive_ns):
-        """Note a cloud."""
-        self._clouds.append((t_ns, receive_ns, frame))
+    def __init__(self) -> None:
+        self.poses: dict[str, list[PoseSample]] = {}
+        self.transforms: dict[TransformKey, list[TransformSample]] = {}
+        self._clouds: list[_CloudSample] = []
+        self._n_odd_covariances: Counter[str] = Counter()
 
-    def add_pose(self, topic, message, receive_ns):
-        """Note a pose: any of the messages that hold one."""
+    def add_cloud(self, t_ns: int, frame: str, receive_ns: int) -> None:
+        """Add the stamp of a cloud."""
+        self._clouds.append(_CloudSample(t_ns, receive_ns, frame))
+
+    def add_pose(self, topic: str, message: Any, receive_ns: int) -> None:
+        """Add a pose: any of the messages that hold one."""
         pose = message.pose.pose if hasattr(message.pose, "pose") else message.pose
-        child = messages.clean_frame_name(getattr(message, "child_frame_id", ""))
-        parent = messages.clean_frame_name(message.header.frame_id)
-        sample = (
+        sample = PoseSample(
             messages.stamp_to_ns(message.header.stamp),
             receive_ns,
             messages.pose_to_row(pose),
-            parent,
-            child,
+            messages.clean_frame_name(message.header.frame_id),
+            messages.clean_frame_name(getattr(message, "child_frame_id", "")),
         )
         if not np.isfinite(getattr(message.pose, "covariance", 0)).all():
-            self._no_covariance[topic] += 1
+            self._n_odd_covariances[topic] += 1
         self.poses.setdefault(topic, []).append(sample)
 
-    def add_transforms(self, message, receive_ns, static):
-        """Note the transforms of a TFMessage."""
+    def add_transforms(self, message: Any, receive_ns: int, static: bool) -> None:
+        """Add the transforms of a TFMessage."""
         for item in message.transforms:
-            key = (
-                static,
-                messages.clean_frame_name(item.header.frame_id),
-                messages.clean_frame_name(item.child_frame_id),
-            )
-            sample = (
-                messages.stamp_to_ns(item.header.stamp),
-                receive_ns,
-                messages.pose_to_row(item.transform),
-            )
-            self.transforms.setdefault(key, []).append(sample)
+            parent = messages.clean_frame_name(item.header.frame_id)
+            child = messages.clean_frame_name(item.child_frame_id)
+            t_ns = messages.stamp_to_ns(item.header.stamp)
+            sample = TransformSample(t_ns, receive_ns, messages.pose_to_row(item.transform))
+            self.transforms.setdefault((static, parent, child), []).append(sample)
 
-    def finish(self, where, cloud):
-        """Make arrays of what was noted of the clouds.
+    def finish(self, where: str, cloud: topics.Topic) -> None:
+        """Make arrays of the clouds' stamps, and log what is odd.
 
         Raises
         ------
         StageError
-            If there is none, or they come from several sensors.
+            If there is no cloud, or they come from several sensors.
         """
         if not self._clouds:
             raise StageError(
-                f"{where}: no message of {cloud} can be found; the recording's index is wrong, reindex it"
+                f"{where}: no message of {cloud} can be found; the recording's index is wrong,"
+                " reindex it"
             )
-        stamps, receive, names = zip(*self._clouds, strict=True)
-        if len(set(names)) > 1:
+        frames = sorted({sample.frame for sample in self._clouds})
+        if len(frames) > 1:
             raise StageError(
-                f"{where}: clouds of {cloud} come from several sensors ({', '.join(sorted(set(names)))});"
+                f"{where}: clouds of {cloud} come from several sensors ({', '.join(frames)});"
                 " record each on a topic of its own"
             )
-        self.sensor_frame = names[0]
-        self.cloud_receive_ns = np.array(receive, np.int64)
-        self.stamps_ns = np.array(stamps, np.int64)
+        self.sensor_frame = frames[0]
+        self.cloud_receive_ns = np.array([c.receive_ns for c in self._clouds], np.int64)
+        self.stamps_ns = np.array([c.t_ns for c in self._clouds], np.int64)
+        self._log_oddities(where, cloud)
+
+    def _log_oddities(self, where: str, cloud: topics.Topic) -> None:
         if not self.stamps_ns.any():
             log.log_line(
                 f"{where}: clouds of {cloud} have no stamps, the times of their receipt are taken"
             )
             self.stamps_ns = self.cloud_receive_ns
-        odd = clocks.count_stamp_faults(self.stamps_ns, self.cloud_receive_ns)
-        if told := ", ".join(f"{count} {kind}" for kind, count in odd.items() if count):
-            log.log_line(f"{cloud}: {told}; each scan keeps the pose of its own stamp")
-        for topic, count in self._no_covariance.items():
+        counts = clocks.count_stamp_faults(self.stamps_ns, self.cloud_receive_ns)
+        if faults := clocks.summarise_faults(counts):
+            log.log_line(f"{cloud}: {faults}; each scan keeps the pose of its own stamp")
+        for topic, count in self._n_odd_covariances.items():
             log.log_line(
-                f"{topic}: {count} poses with a covariance that is no number; the poses themselves are used"
+                f"{topic}: {count} poses with a covariance that is no number;"
+                " the poses themselves are used"
             )
 
 
-def read_small_messages(bags, cloud, needed, optional, where):
-    """Collect everything small, in one pass over the recordings: compressed ones are unpacked once for it.
+def read_small_messages(
+    bags: Sequence[Bag],
+    cloud: topics.Topic,
+    needed: Sequence[topics.Topic],
+    optional: Sequence[topics.Topic],
+    where: str,
+) -> SmallMessages:
+    """Collect all small messages, in one pass: compressed recordings are unpacked once for it.
 
     Parameters
     ----------
@@ -114,38 +153,37 @@ def read_small_messages(bags, cloud, needed, optional, where):
 
     Returns
     -------
-    Index
+    SmallMessages
 
     Raises
     ------
     StageError
-        If a message that is needed is damaged, there are no clouds, or they come from several sensors.
+        If a message that is needed is damaged, there are no clouds, or they come from several
+        sensors.
     """
-    index, wanted, spoiled = (
-        SmallMessages(),
-        {t.name: t for t in (cloud, *needed, *optional)},
-        set(),
-    )
-    items = ((bag, *item) for bag in bags for item in bag.messages(wanted))
-    total = sum(t.count for t in wanted.values())
-    for bag, connection, receive_ns, raw in log.report_progress(
-        items, "read_recordings", total, "messages"
-    ):
+    index = SmallMessages()
+    wanted = {topic.name: topic for topic in (cloud, *needed, *optional)}
+    damaged: set[topics.Topic] = set()
+    items = ((bag, message) for bag in bags for message in bag.messages(wanted))
+    total = sum(topic.count for topic in wanted.values())
+    for bag, message in log.report_progress(items, "read_recordings", total, "messages"):
+        connection, receive_ns, raw = message
         topic = wanted[connection.topic]
         if topic == cloud:
-            index.add_cloud(*bag.header(connection, raw), receive_ns)
+            t_ns, frame = bag.header(connection, raw)
+            index.add_cloud(t_ns, frame, receive_ns)
         elif topic.msgtype in topics.TRANSFORMS:
             index.add_transforms(
                 bag.decode(connection, raw), receive_ns, topics.is_static_tf(topic)
             )
-        elif topic not in spoiled:
+        elif topic not in damaged:
             try:
                 index.add_pose(topic.name, bag.decode(connection, raw), receive_ns)
             except StageError as error:
                 if topic not in optional:
                     raise
                 log.log_line(f"{error}; {topic} is left out")
-                spoiled.add(topic)
+                damaged.add(topic)
                 index.poses.pop(topic.name, None)
     index.finish(where, cloud)
     return index

@@ -1,26 +1,30 @@
-"""A survey as the stages see it: clouds with stamps and the poses of their sensor, from bags or from a scan folder."""
+"""A survey as the stages see it: clouds and poses, from bags or from a folder of scans."""
 
 import math
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
+from typing import Any
 
 from scanplan.project import dataset_files
 from scanplan.recordings.motion.deskew import DeskewedSurvey
+from scanplan.recordings.motion.trajectory import SensorMotion
+from scanplan.recordings.survey_protocol import Survey
 
 
 @contextmanager
 def open_survey(
-    files,
+    files: Sequence[str],
     *,
-    cloud_topic=None,
-    pose_topic=None,
-    base_frame=None,
-    base_from_sensor=None,
-    ros2_release="humble",
-    min_range_m=0.0,
-    max_range_m=math.inf,
-    deskew=True,
-    motion=None,
-):
+    cloud_topic: str | None = None,
+    pose_topic: str | None = None,
+    base_frame: str | None = None,
+    base_from_sensor: Sequence[float] | None = None,
+    ros2_release: str = "humble",
+    min_range_m: float = 0.0,
+    max_range_m: float = math.inf,
+    deskew: bool = True,
+    motion: SensorMotion | None = None,
+) -> Iterator[Survey]:
     """Open all recordings of a dataset as one survey.
 
     Parameters
@@ -32,45 +36,49 @@ def open_survey(
     base_frame : str, optional
         The frame that the poses are of.
     base_from_sensor : (6,) float, optional
-        Where the sensor sits on it: x, y, z in metres, roll, pitch, yaw in degrees. By default tf tells.
+        The sensor's extrinsics: x, y, z in metres, roll, pitch, yaw in degrees. By default tf has
+        them.
     ros2_release : str
         Whose message definitions hold where a ROS 2 bag carries none.
     min_range_m, max_range_m : float
         Points outside are dropped.
     deskew : bool
-        Whether to move points to where they would have been seen at their scan's stamp, given a `motion`.
+        Whether to move points to where they would have been seen at their scan's stamp, given a
+        `motion`.
     motion : trajectory.SensorMotion, optional
         How the sensor moved.
 
     Yields
     ------
-    object
-        `planar` (bool), `sweep_times` (point_times.TimeConvention or None), `stamps()` -> (n,) int64 nanoseconds in scan_id
-        order, `pose_edges()` -> list of tf_tree.FrameEdge from the world to the sensor, `motion_chains()` -> list of (name,
-        list of tf_tree.FrameEdge), the smoothest motion first and the poses last, `scans(wanted)` -> iterator of clouds.Scan
-        in scan_id order.
+    survey_protocol.Survey
 
     Raises
     ------
     StageError
-        If a recording is damaged or does not tell what to use.
+        If a recording is damaged or leaves open what to use.
     """
+    topics_and_frame = {
+        "cloud_topic": cloud_topic,
+        "pose_topic": pose_topic,
+        "base_frame": base_frame,
+    }
+    common = {
+        "base_from_sensor": base_from_sensor,
+        "min_range_m": min_range_m,
+        "max_range_m": max_range_m,
+    }
     with ExitStack() as stack:
-        survey = _opened(
-            files,
-            stack,
-            ros2_release,
-            {"cloud_topic": cloud_topic, "pose_topic": pose_topic, "base_frame": base_frame},
-            {
-                "base_from_sensor": base_from_sensor,
-                "min_range_m": min_range_m,
-                "max_range_m": max_range_m,
-            },
-        )
+        survey = _open_recordings(files, stack, ros2_release, topics_and_frame, common)
         yield DeskewedSurvey(survey, motion) if deskew and motion is not None else survey
 
 
-def _opened(files, stack, ros2_release, chosen, common):
+def _open_recordings(
+    files: Sequence[str],
+    stack: ExitStack,
+    ros2_release: str,
+    topics_and_frame: Mapping[str, str | None],
+    common: Mapping[str, Any],
+) -> Survey:
     # rosbags and Open3D cost a second each to import: only the one that is needed
     if dataset_files.is_scan_folder(files):
         from scanplan.recordings import scan_folder
@@ -82,4 +90,4 @@ def _opened(files, stack, ros2_release, chosen, common):
         stack.enter_context(bags.open_bag(path, ros2_release=ros2_release))
         for path in dataset_files.group_recordings(files)
     ]
-    return recorded_survey.BagSurvey(opened, **chosen, **common)
+    return recorded_survey.BagSurvey(opened, **topics_and_frame, **common)

@@ -1,5 +1,6 @@
-"""Which topics of a recording carry the clouds and the poses: found by type, chosen by the config in case of doubt."""
+"""Which topics of a recording carry the clouds and the poses: by type, in doubt by the config."""
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from scanplan.errors import StageError
@@ -22,11 +23,11 @@ class Topic:
     msgtype: str
     count: int
 
-    def __str__(self):
+    def __str__(self) -> str:
         return f"{self.name} ({self.msgtype}, {self.count})"
 
 
-def merge_topics(topics, where):
+def merge_topics(topics: Iterable[Topic], where: str) -> list[Topic]:
     """Add up the topics of several recordings.
 
     Parameters
@@ -45,10 +46,11 @@ def merge_topics(topics, where):
     StageError
         If one that could be needed has two types.
     """
-    merged = {}
+    merged: dict[str, Topic] = {}
     for topic in topics:
         before = merged.get(topic.name, Topic(topic.name, topic.msgtype, 0))
-        if before.msgtype != topic.msgtype and {before.msgtype, topic.msgtype} & {*CLOUDS, *POSES}:
+        msgtypes = {before.msgtype, topic.msgtype}
+        if len(msgtypes) > 1 and msgtypes & {*CLOUDS, *POSES}:
             raise StageError(
                 f"{where}: topic {topic.name} is {before.msgtype} here and {topic.msgtype} there;"
                 " split the dataset into one folder each"
@@ -57,7 +59,7 @@ def merge_topics(topics, where):
     return [merged[name] for name in sorted(merged)]
 
 
-def choose_cloud_topic(topics, wanted, where):
+def choose_cloud_topic(topics: Sequence[Topic], wanted: str | None, where: str) -> Topic:
     """Choose the topic of the clouds.
 
     Parameters
@@ -83,17 +85,17 @@ def choose_cloud_topic(topics, wanted, where):
     filled = [t for t in candidates if t.count]
     if not candidates:
         raise StageError(
-            f"{where}: no cloud topic (PointCloud2 or LaserScan) to make a plan of; topics: {_listed(topics)};"
-            " record the laser scanner too"
+            f"{where}: no cloud topic (PointCloud2 or LaserScan) to make a plan of;"
+            f" topics: {_list(topics)}; record the laser scanner too"
         )
     if not filled:
         raise StageError(
-            f"{where}: zero messages on {_listed(candidates)}; record again with the sensor running"
+            f"{where}: zero messages on {_list(candidates)}; record again with the sensor running"
         )
     return _only(filled, where, "input.cloud_topic")
 
 
-def choose_pose_topic(topics, wanted, where):
+def choose_pose_topic(topics: Sequence[Topic], wanted: str | None, where: str) -> Topic:
     """Choose the topic of the poses: the first type of `POSES` that occurs, else tf.
 
     Parameters and errors are those of `choose_cloud_topic`, with `input.pose_topic`.
@@ -107,38 +109,43 @@ def choose_pose_topic(topics, wanted, where):
     candidates = [t for t in topics if t.msgtype in POSES] + tf
     if wanted:
         return _named(candidates, wanted, where, "input.pose_topic")
-    filled = [t for t in candidates if t.count and t.name.rsplit("/", 1)[-1] not in _COMMANDS]
-    for msgtypes in [(p,) for p in POSES] + [TRANSFORMS]:
+    filled = [t for t in candidates if t.count and _last_part(t) not in _COMMANDS]
+    for msgtypes in (*((pose,) for pose in POSES), TRANSFORMS):
         of_type = [t for t in filled if t.msgtype in msgtypes]
         if of_type:
             return _only(of_type, where, "input.pose_topic")
     raise StageError(
-        f"{where}: no pose topic with messages (PoseWithCovarianceStamped, PoseStamped, Odometry or /tf);"
-        f" topics: {_listed(topics)}; record the localiser's poses too"
+        f"{where}: no pose topic with messages (PoseWithCovarianceStamped, PoseStamped, Odometry"
+        f" or /tf); topics: {_list(topics)}; record the localiser's poses too"
     )
 
 
-def is_static_tf(topic):
-    """Tell whether a topic of transforms is /tf_static, in whatever namespace."""
-    return topic.name.rsplit("/", 1)[-1] == "tf_static"
+def is_static_tf(topic: Topic) -> bool:
+    """Return whether a topic of transforms is /tf_static, in whatever namespace."""
+    return _last_part(topic) == "tf_static"
 
 
-def _named(candidates, wanted, where, key):
+def _last_part(topic: Topic) -> str:
+    return topic.name.rsplit("/", 1)[-1]
+
+
+def _named(candidates: Sequence[Topic], wanted: str, where: str, key: str) -> Topic:
     for topic in candidates:
         if topic.name.lstrip("/") == wanted.lstrip("/"):
             if topic.count == 0:
                 raise StageError(f"{where}: zero messages on {topic}; set {key} to another topic")
             return topic
-    raise StageError(f"{where}: no topic {wanted}; set {key} to one of: {_listed(candidates)}")
+    raise StageError(f"{where}: no topic {wanted}; set {key} to one of: {_list(candidates)}")
 
 
-def _only(candidates, where, key):
+def _only(candidates: Sequence[Topic], where: str, key: str) -> Topic:
     if len(candidates) > 1:
         raise StageError(
-            f"{where}: {len(candidates)} topics come into question: {_listed(candidates)}; choose by {key}"
+            f"{where}: {len(candidates)} topics come into question: {_list(candidates)};"
+            f" choose by {key}"
         )
     return candidates[0]
 
 
-def _listed(topics):
+def _list(topics: Sequence[Topic]) -> str:
     return ", ".join(map(str, topics)) or "none"

@@ -1,23 +1,47 @@
-"""Registration in batches: runs of candidates that are registered on their own, on any core."""
+"""Batches: runs of candidates that are registered one after the other, each batch on any core."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from scanplan.registration import sequential
+from scanplan.recordings.clouds import Scan
+from scanplan.registration.constraints import PoseConstraint
+from scanplan.registration.registration_settings import SequentialSettings
+from scanplan.registration.sequential import ScanResult, SequentialRegistrar
+from scanplan.store.scan_cache import ScanCache, ScanCachePart
+from scanplan.types import FloatArray, IntArray
 
 
-def cut_batches(n_candidates, batch_size, n_early):
+@dataclass(frozen=True)
+class CandidateScans:
+    """The candidates of a survey.
+
+    Attributes
+    ----------
+    scan_ids : (n,) int, increasing
+    priors : (n, 4, 4) float64
+        The localiser's world_from_sensor; NaN where it has none.
+    planar : bool
+        Whether the sensor measures in one plane.
+    """
+
+    scan_ids: IntArray
+    priors: FloatArray
+    planar: bool
+
+
+def cut_batches(n_candidates: int, batch_size: int, n_early: int) -> list[tuple[int, int, int]]:
     """Cut the candidates into batches.
 
-    Each begins early: so its first scans are judged against predecessors, and linked to them, like all others.
-
-    Parameters
-    ----------
-    n_candidates, batch_size, n_early : int
+    Each begins early: so its first scans are compared with predecessors, and constrained to them,
+    like all others.
 
     Returns
     -------
     list of (first, begin, end)
-        Candidates `first` to `end` (exclusive) are registered; the verdicts count from `begin` on.
+        Candidates `first` to `end` (exclusive) are registered; results count from `begin` on.
     """
     begins = range(0, n_candidates, batch_size)
     return [
@@ -25,64 +49,68 @@ def cut_batches(n_candidates, batch_size, n_early):
     ]
 
 
-def register_batch(part, scan_ids, priors, n_early, planar, settings):
+def batch_jobs(
+    scans: Iterable[Scan],
+    raw: ScanCache,
+    survey: CandidateScans,
+    limits: SequentialSettings,
+    batch_size: int,
+) -> Iterator[tuple[Any, ...]]:
+    """Cache scans as they come; yield the arguments of `register_batch` of each complete batch.
+
+    Parameters
+    ----------
+    scans : iterable of clouds.Scan
+        The candidates, in order.
+    raw : scan_cache.ScanCache
+        Empty.
+    survey : CandidateScans
+    limits : registration_settings.SequentialSettings
+    batch_size : int
+    """
+    # a batch's first candidate is an anchor, perhaps out of place: that is found out `anchor_after`
+    # scans later, and the scans after that need predecessors
+    n_early = limits.n_previous + min(limits.anchor_after, batch_size)
+    pending = cut_batches(len(survey.scan_ids), batch_size, n_early)
+    for scan in scans:
+        raw.add(scan.xyz_m)
+        while pending and len(raw) == pending[0][2]:
+            first, begin, end = pending.pop(0)
+            rows = np.arange(first, end)
+            batch = CandidateScans(survey.scan_ids[rows], survey.priors[rows], survey.planar)
+            yield raw.part(rows), batch, begin - first, limits
+
+
+def register_batch(
+    part: ScanCachePart, batch: CandidateScans, n_early: int, limits: SequentialSettings
+) -> tuple[list[ScanResult], list[FloatArray], list[PoseConstraint]]:
     """Register one batch.
 
     Parameters
     ----------
     part : scan_cache.ScanCachePart
         The candidates' points, sensor frame.
-    scan_ids : (n,) int
-    priors : (n, 4, 4) float64
+    batch : CandidateScans
     n_early : int
         So many candidates at the start belong to the batch before.
-    planar : bool
-    settings : sequential.SequentialSettings
+    limits : registration_settings.SequentialSettings
 
     Returns
     -------
-    verdicts : list of sequential.ScanResult
+    results : list of sequential.ScanResult
         Of the batch's own candidates.
     thinned_m : list of (m, 3) float32
         Of those of them that are kept.
     edges : list of constraints.PoseConstraint
         From its own kept scans to predecessors.
     """
-    registrar = sequential.SequentialRegistrar(settings, planar)
-    judged = [
-        registrar.add(int(i), xyz_m, prior)
-        for i, xyz_m, prior in zip(scan_ids, part, priors, strict=True)
+    registrar = SequentialRegistrar(limits, batch.planar)
+    registered = [
+        registrar.add(int(scan_id), xyz_m, prior)
+        for scan_id, xyz_m, prior in zip(batch.scan_ids, part, batch.priors, strict=True)
     ]
-    own = judged[n_early:]
-    first_own = scan_ids[n_early]
-    return (
-        [verdict for verdict, _ in own],
-        [thinned_m for verdict, thinned_m in own if verdict.kept],
-        [edge for edge in registrar.edges if edge.source >= first_own],
-    )
-
-
-def batch_jobs(scans, spool, scan_ids, priors, planar, settings, batch_size):
-    """Put scans aside as they come, and yield the arguments of `register_batch` for every batch once it is complete.
-
-    Parameters
-    ----------
-    scans : iterable of clouds.Scan
-        The candidates, in order.
-    spool : scan_cache.ScanCache
-        Empty.
-    scan_ids : (n,) int
-    priors : (n, 4, 4) float64
-    planar : bool
-    settings : sequential.SequentialSettings
-    batch_size : int
-    """
-    # the first candidate is an anchor even where it is out of place: time to find that out, and then to look back on
-    n_early = settings.n_previous + min(settings.anchor_after, batch_size)
-    pending = cut_batches(len(scan_ids), batch_size, n_early)
-    for scan in scans:
-        spool.add(scan.xyz_m)
-        while pending and len(spool) == pending[0][2]:
-            first, begin, end = pending.pop(0)
-            rows = np.arange(first, end)
-            yield spool.part(rows), scan_ids[rows], priors[rows], begin - first, planar, settings
+    own = registered[n_early:]
+    own_results = [result for result, _ in own]
+    thinned_m = [points_m for result, points_m in own if result.kept]
+    edges = [edge for edge in registrar.edges if edge.source >= batch.scan_ids[n_early]]
+    return own_results, thinned_m, edges

@@ -1,29 +1,33 @@
-"""Scans aligned to others that are in place, and what that says of the motion between them."""
+"""Pose-graph constraints: the motion between two scans, measured by aligning one to the other."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from scanplan.geometry import se3, twists
-from scanplan.registration import icp
+from scanplan.registration import icp, prepared_clouds
+from scanplan.registration.registration_settings import SequentialSettings
+from scanplan.types import FloatArray
 
-_SMALLEST_SHARE = 0.1
+_SMALLEST_VOXEL_SHARE = 0.1  # of the usual edge: smaller voxels hold single points and show noise
+_LINE_REACH_VOXELS = 10  # neighbours on a wall seen from the side are this many voxels apart
 
 
 @dataclass(frozen=True)
 class PlacedScan:
-    """A prepared scan and where it is.
+    """A prepared scan and its pose.
 
     Attributes
     ----------
     scan_id : int
-    cloud : icp.PreparedCloud
+    cloud : prepared_clouds.PreparedCloud
     world_from_cloud : (4, 4) float64
     """
 
     scan_id: int
-    cloud: icp.PreparedCloud
-    world_from_cloud: np.ndarray
+    cloud: prepared_clouds.PreparedCloud
+    world_from_cloud: FloatArray
 
 
 @dataclass(frozen=True)
@@ -37,7 +41,8 @@ class PoseConstraint:
     kind : str
         `sequence` (a scan and one of its predecessors) or `loop`.
     fitness, rmse_m : float
-        Share of the source's points that lie on a surface of the target facing the same way, and how far from it.
+        Share of the source's points that lie on a surface of the target facing the same way, and
+        their root mean square distance from it.
     fit : icp.IcpResult
         Between their clouds' frames: the sensors', in a planar survey the levelled ones.
     """
@@ -50,88 +55,96 @@ class PoseConstraint:
     fit: icp.IcpResult
 
 
-def refine_scan(scan, targets, settings):
-    """Align a scan to others that are in place and weigh the outcomes, and the localiser's pose, by their information.
+def refine_scan(
+    scan: PlacedScan, targets: Sequence[PlacedScan], settings: SequentialSettings
+) -> tuple[PlacedScan | None, list[PoseConstraint]]:
+    """Align a scan to placed ones; fuse the results and the localiser's pose by their information.
 
     Parameters
     ----------
-    scan : Placed
-        Where the localiser says.
-    targets : sequence of Placed
+    scan : PlacedScan
+        At the localiser's pose.
+    targets : sequence of PlacedScan
         The best first.
-    settings : sequential.SequentialSettings
+    settings : registration_settings.SequentialSettings
 
     Returns
     -------
-    Placed or None
-        None if it fits none of them, or only far from where it was.
-    list of Edge
+    PlacedScan or None
+        None if it aligns to none of them, or only far from where it was.
+    list of PoseConstraint
     """
-    estimate, edges = scan.world_from_cloud, []
+    estimate = scan.world_from_cloud
     information = settings.localiser_information(scan.world_from_cloud)
+    constraints: list[PoseConstraint] = []
     for target in targets:
         # the first alignment leaves little for the others to do
-        distances_m = settings.icp_distances_m[-1:] if edges else settings.icp_distances_m
-        edge = measure_constraint(
-            PlacedScan(scan.scan_id, scan.cloud, estimate),
-            target,
-            "sequence",
-            distances_m,
-            settings,
-        )
-        if edge is None:
+        distances_m = settings.icp_distances_m[-1:] if constraints else settings.icp_distances_m
+        moved = PlacedScan(scan.scan_id, scan.cloud, estimate)
+        constraint = measure_constraint(moved, target, "sequence", distances_m, settings)
+        if constraint is None:
             continue
-        measured = target.world_from_cloud @ edge.fit.target_from_source
-        twist = twists.motion_to_twist(se3.invert_pose(estimate) @ measured)
-        information = information + edge.fit.information
-        estimate = se3.nearest_rigid(
-            estimate
-            @ twists.twist_to_motion(np.linalg.solve(information, edge.fit.information @ twist))
-        )
-        edges.append(edge)
-    shift_m, turn_deg = _size(se3.invert_pose(scan.world_from_cloud) @ estimate)
-    if not edges or shift_m > settings.max_correction_m or turn_deg > settings.max_correction_deg:
+        information = information + constraint.fit.information
+        estimate = _fuse(estimate, target, constraint.fit, information)
+        constraints.append(constraint)
+    correction = se3.invert_pose(scan.world_from_cloud) @ estimate
+    if not constraints or _is_large(correction, settings):
         return None, []
-    return PlacedScan(scan.scan_id, scan.cloud, estimate), edges
+    return PlacedScan(scan.scan_id, scan.cloud, estimate), constraints
 
 
-def comparable_scans(scan, previous, settings):
-    """Return those of the previous scans that can be expected to show what a scan shows: near, and not turned away.
+def _fuse(
+    estimate: FloatArray, target: PlacedScan, fit: icp.IcpResult, information: FloatArray
+) -> FloatArray:
+    """Return an estimated pose moved towards a measured one; `information` is that of both."""
+    measured = target.world_from_cloud @ fit.target_from_source
+    twist = twists.motion_to_twist(se3.invert_pose(estimate) @ measured)
+    step = np.linalg.solve(information, fit.information @ twist)
+    return se3.nearest_rigid(estimate @ twists.twist_to_motion(step))
 
-    The last one always is among them.
+
+def comparable_scans(
+    scan: PlacedScan, previous: Sequence[PlacedScan], settings: SequentialSettings
+) -> list[PlacedScan]:
+    """Return the previous scans that may show what a scan shows: near, and not turned away.
+
+    The last one is always among them.
 
     Parameters
     ----------
-    scan : Placed
-        Where the localiser says.
-    previous : sequence of Placed
+    scan : PlacedScan
+        At the localiser's pose.
+    previous : sequence of PlacedScan, at least one
         Their order is kept.
-    settings : sequential.SequentialSettings
-
-    Returns
-    -------
-    list of Placed
+    settings : registration_settings.SequentialSettings
     """
-    sizes = [
-        _size(se3.invert_pose(other.world_from_cloud) @ scan.world_from_cloud) for other in previous
-    ]
-    near = [
-        m <= settings.previous_apart_m and deg <= settings.previous_turn_deg for m, deg in sizes
-    ]
-    near[-1] = True
-    return [other for other, is_near in zip(previous, near, strict=True) if is_near]
+
+    def is_near(other: PlacedScan) -> bool:
+        apart = se3.invert_pose(other.world_from_cloud) @ scan.world_from_cloud
+        distance_m, turn_deg = _size(apart)
+        return distance_m <= settings.previous_apart_m and turn_deg <= settings.previous_turn_deg
+
+    *others, last = previous
+    return [*filter(is_near, others), last]
 
 
-def measure_constraint(source, target, kind, distances_m, settings):
-    """Measure the motion between two scans that are about in place: Edge, or None without a sound alignment.
+def measure_constraint(
+    source: PlacedScan,
+    target: PlacedScan,
+    kind: str,
+    distances_m: Sequence[float],
+    settings: SequentialSettings,
+) -> PoseConstraint | None:
+    """Measure the motion between two scans that are about in place; None without a sound alignment.
 
     Parameters
     ----------
-    source, target : Placed
+    source, target : PlacedScan
     kind : str
+        See `PoseConstraint`.
     distances_m : sequence of float
         See `icp.align_clouds`.
-    settings : sequential.SequentialSettings
+    settings : registration_settings.SequentialSettings
     """
     start = se3.invert_pose(target.world_from_cloud) @ source.world_from_cloud
     fit = icp.align_clouds(
@@ -142,65 +155,91 @@ def measure_constraint(source, target, kind, distances_m, settings):
         distances_m=distances_m,
         max_iterations=settings.icp_max_iterations,
     )
-    shift_m, turn_deg = _size(se3.invert_pose(start) @ fit.target_from_source)
-    if (
-        not fit.sound
-        or shift_m > settings.max_correction_m
-        or turn_deg > settings.max_correction_deg
-    ):
+    correction = se3.invert_pose(start) @ fit.target_from_source
+    if not fit.sound or _is_large(correction, settings):
         return None
-    place = PlacedScan(
-        source.scan_id, source.cloud, target.world_from_cloud @ fit.target_from_source
+    world_from_source = target.world_from_cloud @ fit.target_from_source
+    aligned = PlacedScan(source.scan_id, source.cloud, world_from_source)
+    fitness, rmse_m = measure_facing_overlap(aligned, target, distances_m[-1], settings)
+    return PoseConstraint(source.scan_id, target.scan_id, kind, fitness, rmse_m, fit)
+
+
+def measure_facing_overlap(
+    source: PlacedScan, target: PlacedScan, distance_m: float, settings: SequentialSettings
+) -> tuple[float, float]:
+    """Return fitness and rmse of a scan on another, of surfaces that face the same way."""
+    return prepared_clouds.measure_overlap(
+        source.cloud,
+        target.cloud,
+        _target_from_source(source, target),
+        distance_m=distance_m,
+        n_probes=settings.fitness_points,
+        facing=True,
     )
-    found = measure_facing_overlap(place, target, distances_m[-1], settings)
-    return PoseConstraint(source.scan_id, target.scan_id, kind, *found, fit)
 
 
-def measure_facing_overlap(source, target, distance_m, settings):
-    """Return fitness and rmse of a scan on another where only surfaces that face the same way are the same."""
-    motion = se3.invert_pose(target.world_from_cloud) @ source.world_from_cloud
-    limits = {"distance_m": distance_m, "n_probes": settings.fitness_points}
-    return icp.measure_overlap(source.cloud, target.cloud, motion, **limits, facing=True)
+def measure_scan_overlap(
+    source: PlacedScan, target: PlacedScan, settings: SequentialSettings
+) -> tuple[float, float]:
+    """Return fitness and rmse of a scan on another, both at their poses (thesis, 3.5)."""
+    return prepared_clouds.measure_overlap(
+        source.cloud,
+        target.cloud,
+        _target_from_source(source, target),
+        distance_m=settings.fitness_distance_m,
+        n_probes=settings.fitness_points,
+    )
 
 
-def thin_scan(xyz_m, level_from_sensor, planar, settings):
-    """Return the points (m, 3) float32 of a scan that fitting uses, in the cloud's frame.
+def thin_scan(
+    xyz_m: FloatArray, level_from_sensor: FloatArray, planar: bool, settings: SequentialSettings
+) -> FloatArray:
+    """Return the points (m, 3) float32 of a scan that registration uses, in the cloud's frame.
 
-    In a small room, or in a camera's narrow view, the usual cubes are too few: then smaller ones are taken.
+    In a small room, or in a camera's narrow view, the usual voxels are too few: then they are
+    smaller.
     """
-    moved = se3.transform_points(level_from_sensor, xyz_m) if planar else xyz_m
-    voxel_m = settings.voxel_planar_m if planar else settings.voxel_m
-    found = icp.thin_voxels(moved, planar=planar, voxel_m=voxel_m)
-    if planar or len(found) >= settings.voxels:
-        return found
-    # on surfaces the number of cubes goes with the inverse square of their edge
-    share = max(np.sqrt(len(found) / settings.voxels), _SMALLEST_SHARE)
-    return icp.thin_voxels(moved, planar=False, voxel_m=share * voxel_m)
+    if planar:
+        levelled_m = se3.transform_points(level_from_sensor, xyz_m)
+        return prepared_clouds.thin_voxels(levelled_m, planar=True, voxel_m=settings.voxel_planar_m)
+    thinned_m = prepared_clouds.thin_voxels(xyz_m, planar=False, voxel_m=settings.voxel_m)
+    if len(thinned_m) >= settings.voxels:
+        return thinned_m
+    # on surfaces the number of voxels goes with the inverse square of their edge
+    share = max(np.sqrt(len(thinned_m) / settings.voxels), _SMALLEST_VOXEL_SHARE)
+    return prepared_clouds.thin_voxels(xyz_m, planar=False, voxel_m=share * settings.voxel_m)
 
 
-def neighbour_reach_m(settings):
-    """Return how far apart the neighbours on one line may be, in a planar survey."""
-    return 10 * settings.voxel_planar_m
+def neighbour_reach_m(settings: SequentialSettings) -> float:
+    """Return how far apart neighbours on one line may be in a planar survey, metres."""
+    return _LINE_REACH_VOXELS * settings.voxel_planar_m
 
 
-def level_pose(world_from_sensor):
-    """Return level_from_sensor: a pose without its place and heading, which a planar survey's scans are levelled by."""
+def level_pose(world_from_sensor: FloatArray) -> FloatArray:
+    """Return level_from_sensor: a pose (4, 4) without its position x, y and its heading.
+
+    It levels the scans of a planar survey.
+    """
     heading = se3.pose_yaw_rad(world_from_sensor)
-    cos, sin = np.cos(heading), np.sin(heading)
+    cos = np.cos(heading)
+    sin = np.sin(heading)
     world_from_level = np.eye(4)
     world_from_level[:2, :2] = [[cos, -sin], [sin, cos]]
     world_from_level[:2, 3] = world_from_sensor[:2, 3]
     return se3.invert_pose(world_from_level) @ world_from_sensor
 
 
-def measure_scan_overlap(source, target, settings):
-    """Return fitness and rmse of a scan on another, both where they are put (thesis, 3.5)."""
-    motion = se3.invert_pose(target.world_from_cloud) @ source.world_from_cloud
-    limits = {"distance_m": settings.fitness_distance_m, "n_probes": settings.fitness_points}
-    return icp.measure_overlap(source.cloud, target.cloud, motion, **limits)
+def _target_from_source(source: PlacedScan, target: PlacedScan) -> FloatArray:
+    return se3.invert_pose(target.world_from_cloud) @ source.world_from_cloud
 
 
-def _size(motion):
-    """Length in metres and angle in degrees of a 4 x 4 motion."""
+def _is_large(correction: FloatArray, settings: SequentialSettings) -> bool:
+    """Return whether a motion is larger than an alignment may correct."""
+    shift_m, turn_deg = _size(correction)
+    return shift_m > settings.max_correction_m or turn_deg > settings.max_correction_deg
+
+
+def _size(motion: FloatArray) -> tuple[float, float]:
+    """Return length in metres and angle in degrees of a 4 x 4 motion."""
     twist = twists.motion_to_twist(motion)
     return float(np.linalg.norm(twist[:3])), float(np.degrees(np.linalg.norm(twist[3:])))

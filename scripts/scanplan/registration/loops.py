@@ -1,23 +1,31 @@
-"""Links between scans that lie near each other and were not registered against each other."""
+"""Loop constraints: between scans that are near each other but not registered to each other."""
 
+from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
-from scanplan.registration import constraints, icp
+from scanplan.registration import constraints, prepared_clouds
+from scanplan.registration.constraints import PlacedScan, PoseConstraint
+from scanplan.registration.registration_settings import SequentialSettings
+from scanplan.store.scan_cache import ScanCachePart
+from scanplan.types import BoolArray, FloatArray, IntArray
 
-_PREPARED_AT_ONCE = 128
-# a camera that turned this far shows other things
-_TURN = np.sqrt(8) * np.sin(np.radians(30.0) / 2)
-# what overlaps after alignment overlaps this many times less narrowly before
-_LOOSE = 2
+RowPair = tuple[int, int]
+"""Rows (source, target) of two scans."""
+_PREPARED_AT_ONCE = 128  # bounds memory; pairs come sorted, so that near ones share clouds
+_STATION_TURN_DEG = 30.0  # a camera that turned this far shows other things
+# |R - S| in the Frobenius norm is sqrt(8) sin(angle / 2)
+_STATION_TURN_NORM = np.sqrt(8) * np.sin(np.radians(_STATION_TURN_DEG) / 2)
+_LOOSE = 2  # what overlaps after alignment overlaps within this many times the distance before
 
 
-def choose_stations(world_from_scan, step_m):
-    """Choose scans along the way: the first, and each that is `step_m` away or turned by 30 degrees from the last.
+def choose_stations(world_from_scan: FloatArray, step_m: float) -> BoolArray:
+    """Choose keyframes along the way, `step_m` apart or turned by 30 degrees.
 
-    What lies between two of them is tied to both more firmly than a link to another visit could tie it.
+    What lies between two of them is tied to both more firmly than a constraint to another visit
+    could tie it.
 
     Parameters
     ----------
@@ -28,18 +36,29 @@ def choose_stations(world_from_scan, step_m):
     Returns
     -------
     (n,) bool
+        True for the first.
     """
-    chosen, last = np.zeros(len(world_from_scan), bool), None
+    is_station = np.zeros(len(world_from_scan), bool)
+    last = None
     for row, pose in enumerate(world_from_scan):
-        # |R - S| in the Frobenius norm is sqrt(8) sin(angle / 2)
-        away = last is None or np.linalg.norm(pose[:3, 3] - last[:3, 3]) >= step_m
-        if away or np.linalg.norm(pose[:3, :3] - last[:3, :3]) >= _TURN:
-            chosen[row], last = True, pose
-    return chosen
+        if last is None or _is_step(last, pose, step_m):
+            is_station[row] = True
+            last = pose
+    return is_station
 
 
-def choose_loop_pairs(xy_m, is_station, *, radius_m, apart, most):
-    """Choose which scans to link: stations with every earlier visit of their surroundings, at its nearest station.
+def _is_step(last: FloatArray, pose: FloatArray, step_m: float) -> bool:
+    if np.linalg.norm(pose[:3, 3] - last[:3, 3]) >= step_m:
+        return True
+    return bool(np.linalg.norm(pose[:3, :3] - last[:3, :3]) >= _STATION_TURN_NORM)
+
+
+def choose_loop_pairs(
+    xy_m: FloatArray, is_station: BoolArray, *, radius_m: float, apart: int, most: int
+) -> list[RowPair]:
+    """Choose loop candidates: stations and every earlier visit of their surroundings.
+
+    A visit is a run of scans near a station; the pair is with its nearest station.
 
     Parameters
     ----------
@@ -52,42 +71,49 @@ def choose_loop_pairs(xy_m, is_station, *, radius_m, apart, most):
     apart : int
         Nor are two with fewer scans than this between them, nor do such belong to different visits.
     most : int
-        A station is linked back to this many visits, the nearest ones.
+        A station is paired with this many visits, the nearest ones.
 
     Returns
     -------
     list of (source, target)
         Rows, source > target, sorted.
     """
-    tree = cKDTree(xy_m)
-    found = []
-    for source in np.flatnonzero(is_station):
+    tree = KDTree(xy_m)
+    pairs: list[RowPair] = []
+    for source in np.flatnonzero(is_station).tolist():
         # one at a time: of a sensor that stands still all are near all
         near = np.array(tree.query_ball_point(xy_m[source], radius_m, return_sorted=True), np.int64)
         earlier = near[near < source - apart]
         if len(earlier) == 0:
             continue
-        visits = np.split(earlier, np.flatnonzero(np.diff(earlier) > apart) + 1)
-        visits = [
-            visit[is_station[visit]] if is_station[visit].any() else visit for visit in visits
-        ]
-        distance_m = [np.linalg.norm(xy_m[visit] - xy_m[source], axis=1) for visit in visits]
         nearest = sorted(
-            (d.min(), int(visit[d.argmin()])) for d, visit in zip(distance_m, visits, strict=True)
+            _nearest_of_visit(visit, xy_m, source, is_station)
+            for visit in np.split(earlier, np.flatnonzero(np.diff(earlier) > apart) + 1)
         )
-        found += [(int(source), target) for _, target in nearest[:most]]
-    return sorted(found)
+        pairs += [(source, target) for _, target in nearest[:most]]
+    return sorted(pairs)
 
 
-def choose_bridges(linked, xy_m, *, radius_m, apart):
-    """Choose which scans to link to the ones before although they were not registered against them.
+def _nearest_of_visit(
+    visit: IntArray, xy_m: FloatArray, source: int, is_station: BoolArray
+) -> tuple[float, int]:
+    """Return distance and row of the scan nearest to `source`, a station where a visit has any."""
+    rows = visit[is_station[visit]] if is_station[visit].any() else visit
+    distance_m = np.linalg.norm(xy_m[rows] - xy_m[source], axis=1)
+    return float(distance_m.min()), int(rows[distance_m.argmin()])
 
-    These are the first of a batch and the first after an anchor.
+
+def choose_bridges(
+    is_constrained: BoolArray, xy_m: FloatArray, *, radius_m: float, apart: int
+) -> list[RowPair]:
+    """Choose pairs of scans without a constraint and those right before.
+
+    Such scans are the first of a batch and the first after an anchor.
 
     Parameters
     ----------
-    linked : (n,) bool
-        Whether a scan has a link to one before.
+    is_constrained : (n,) bool
+        Whether a scan has a constraint to one before.
     xy_m : (n, 2) float
     radius_m : float
         Two scans farther apart are no pair.
@@ -99,69 +125,80 @@ def choose_bridges(linked, xy_m, *, radius_m, apart):
     list of (source, target)
         Rows, source > target, sorted.
     """
-    found = []
-    for source in np.flatnonzero(~np.asarray(linked, bool)):
+    pairs: list[RowPair] = []
+    for source in np.flatnonzero(~np.asarray(is_constrained, bool)).tolist():
         before = np.arange(max(0, source - apart), source)
-        near = np.linalg.norm(xy_m[before] - xy_m[source], axis=1) <= radius_m
-        found += [(int(source), int(target)) for target in before[near]]
-    return found
+        is_near = np.linalg.norm(xy_m[before] - xy_m[source], axis=1) <= radius_m
+        pairs += [(source, target) for target in before[is_near].tolist()]
+    return pairs
 
 
 def align_pairs(
-    part, rows, scan_ids, world_from_cloud, chosen, planar, settings, min_fitness, apart
-):
-    """Align chosen pairs of scans.
+    part: ScanCachePart,
+    rows: Sequence[int],
+    scan_ids: IntArray,
+    world_from_cloud: FloatArray,
+    pairs: Sequence[RowPair],
+    planar: bool,
+    settings: SequentialSettings,
+    min_fitness: float,
+    apart: int,
+) -> list[PoseConstraint]:
+    """Align pairs of scans.
 
     Parameters
     ----------
     part : scan_cache.ScanCachePart
-        Thinned points of the scans that occur in `chosen`.
-    rows : list of int
+        Thinned points of the scans that occur in `pairs`.
+    rows : sequence of int
         Their rows.
-    scan_ids : list of int
-        Their scan_ids.
+    scan_ids : (len(rows),) int
     world_from_cloud : (len(rows), 4, 4) float64
-        About where they are.
-    chosen : list of (source, target)
+        Their approximate poses.
+    pairs : sequence of (source, target)
         Rows.
     planar : bool
-    settings : sequential.SequentialSettings
+    settings : registration_settings.SequentialSettings
     min_fitness : float
-        Pairs that overlap less after alignment are no link.
+        Pairs that overlap less after alignment get no constraint.
     apart : int
-        Pairs with no more rows than this between them are of the kind `sequence`, the others of the kind `loop`.
+        Pairs with no more rows than this between them are of the kind `sequence`, the others of the
+        kind `loop`.
 
     Returns
     -------
     list of constraints.PoseConstraint
     """
-    thinned = dict(zip(rows, part, strict=True))
-    place = {row: i for i, row in enumerate(rows)}
+    thinned_m = dict(zip(rows, part, strict=True))
+    place_of_row = {row: place for place, row in enumerate(rows)}
+    reach_m = constraints.neighbour_reach_m(settings)
 
     @lru_cache(_PREPARED_AT_ONCE)
-    def prepared(row):
-        cloud = icp.prepare_cloud(
-            thinned[row], planar=planar, reach_m=constraints.neighbour_reach_m(settings)
-        )
-        return constraints.PlacedScan(
-            int(scan_ids[place[row]]), cloud, world_from_cloud[place[row]]
-        )
+    def prepare_scan(row: int) -> PlacedScan:
+        cloud = prepared_clouds.prepare_cloud(thinned_m[row], planar=planar, reach_m=reach_m)
+        place = place_of_row[row]
+        return PlacedScan(int(scan_ids[place]), cloud, world_from_cloud[place])
 
-    kinds = ("sequence" if s - t <= apart else "loop" for s, t in chosen)
-    edges = (
-        _linked(prepared(s), prepared(t), kind, settings, min_fitness)
-        for (s, t), kind in zip(chosen, kinds, strict=True)
-    )
-    return [edge for edge in edges if edge is not None]
+    edges: list[PoseConstraint] = []
+    for source, target in pairs:
+        kind = "sequence" if source - target <= apart else "loop"
+        edge = _constrain(prepare_scan(source), prepare_scan(target), kind, settings, min_fitness)
+        if edge is not None:
+            edges.append(edge)
+    return edges
 
 
-def _linked(source, target, kind, settings, min_fitness):
-    # a neighbour is near its place already, and a wider search would take one side of a wall for the other
+def _constrain(
+    source: PlacedScan,
+    target: PlacedScan,
+    kind: str,
+    settings: SequentialSettings,
+    min_fitness: float,
+) -> PoseConstraint | None:
+    # the poses are good already: a wider search would take one side of a wall for the other
     fine_m = settings.icp_distances_m[-1]
-    if (
-        constraints.measure_facing_overlap(source, target, _LOOSE * fine_m, settings)[0]
-        < min_fitness
-    ):
+    overlap, _ = constraints.measure_facing_overlap(source, target, _LOOSE * fine_m, settings)
+    if overlap < min_fitness:
         return None
     edge = constraints.measure_constraint(source, target, kind, [fine_m], settings)
     return None if edge is None or edge.fitness < min_fitness else edge

@@ -1,71 +1,47 @@
-"""From candidate scans to verdicts, and to the poses of one common map."""
+"""From candidate scans to the poses of one map: sequential registration in batches, then a graph.
 
-from dataclasses import dataclass, replace
+Batches of candidates are registered on their own, on any core; then all retained scans are
+optimised together.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from scanplan.geometry import se3
-from scanplan.registration import (
-    batches,
-    confirmation,
-    constraint_table,
-    constraints,
-    multiway,
-    sequential,
-)
+from scanplan.recordings.clouds import Scan
+from scanplan.registration import batches, constraints, multiway, results, sequential
+from scanplan.registration.batches import CandidateScans
+from scanplan.registration.constraints import PoseConstraint
+from scanplan.registration.registration_settings import RegistrationSettings
+from scanplan.registration.sequential import ScanResult
 from scanplan.stage import log
+from scanplan.store.scan_cache import ScanCache
+from scanplan.types import BoolArray, FloatArray
 
 
-@dataclass(frozen=True)
-class CandidateScans:
-    """The candidates of a survey.
-
-    Attributes
-    ----------
-    scan_ids : (n,) int, increasing
-    priors : (n, 4, 4) float64
-        The localiser's world_from_sensor; NaN where it has none.
-    planar : bool
-        Whether the sensor measures in one plane.
-    """
-
-    scan_ids: np.ndarray
-    priors: np.ndarray
-    planar: bool
-
-
-@dataclass(frozen=True)
-class RegistrationSettings:
-    """Section `registration` of the settings."""
-
-    batch_size: int
-    limits: sequential.SequentialSettings
-    graph: multiway.PoseGraphSettings
-
-
-def registration_settings(section):
-    """Return the Settings that a section `registration` holds."""
-    limits = {key: value for key, value in section.items() if key not in ("batch_size", "graph")}
-    return RegistrationSettings(
-        section["batch_size"],
-        sequential.SequentialSettings(**limits),
-        multiway.PoseGraphSettings(**section["graph"]),
-    )
-
-
-def register_scans(survey, scans, raw, thinned, run, settings):
-    """Judge all candidates, and bring those that are kept into one map.
+def register_scans(
+    survey: CandidateScans,
+    scans: Iterable[Scan],
+    raw: ScanCache,
+    thinned: ScanCache,
+    run: Callable[..., Iterator[Any]],
+    settings: RegistrationSettings,
+) -> tuple[list[ScanResult], multiway.OptimisedMap | None]:
+    """Register all candidates, and bring those that are kept into one map.
 
     Parameters
     ----------
-    survey : Survey
+    survey : CandidateScans
     scans : iterable of clouds.Scan
         The candidates' points, in order.
     raw, thinned : scan_cache.ScanCache
-        Empty; left with the points of all candidates, and with what fitting used of the kept ones.
+        Empty; left with the points of all candidates, and with the thinned points of the kept ones.
     run : callable
         As `workers.open_pool` gives it.
-    settings : Settings
+    settings : registration_settings.RegistrationSettings
 
     Returns
     -------
@@ -75,33 +51,90 @@ def register_scans(survey, scans, raw, thinned, run, settings):
         None where no scan was registered.
     """
     limits = settings.limits
-    jobs = batches.batch_jobs(
-        scans, raw, survey.scan_ids, survey.priors, survey.planar, limits, settings.batch_size
-    )
-    judged, edges = [], []
-    for verdicts, clouds, found in run(batches.register_batch, jobs):
-        judged, edges = judged + verdicts, edges + found
-        for xyz_m in clouds:
+    jobs = batches.batch_jobs(scans, raw, survey, limits, settings.batch_size)
+    scan_results: list[ScanResult] = []
+    edges: list[PoseConstraint] = []
+    for batch_results, batch_thinned_m, batch_edges in run(batches.register_batch, jobs):
+        scan_results += batch_results
+        edges += batch_edges
+        for xyz_m in batch_thinned_m:
             thinned.add(xyz_m)
-        share = sum(verdict.kept for verdict in judged) / len(judged)
-        log.log_line(
-            f"register_scans: {len(judged)}/{len(survey.scan_ids)} scans registered, {share:.0%} kept"
-        )
-    if limits.icp_method == sequential.GIVEN_POSES or not any(verdict.kept for verdict in judged):
-        return judged, None
-    result = _in_one_map(survey, judged, edges, thinned, run, settings)
-    return _confirmed(survey, judged, result, limits.anchor_apart_m)
+        _log_progress(scan_results, len(survey.scan_ids))
+    is_any_kept = any(result.kept for result in scan_results)
+    if limits.icp_method == sequential.GIVEN_POSES or not is_any_kept:
+        return scan_results, None
+    optimised = _optimise(survey, scan_results, edges, thinned, run, settings)
+    return _drop_unconfirmed(survey, scan_results, optimised, limits.anchor_apart_m)
 
 
-def _in_one_map(survey, judged, edges, thinned, run, settings):
-    """Give the kept scans in `judged` the poses of one map."""
-    kept = np.flatnonzero([verdict.kept for verdict in judged])
+def find_unconfirmed(
+    scan_results: Sequence[ScanResult], is_constrained: BoolArray, apart_m: float
+) -> BoolArray:
+    """Find anchors without a constraint where other scans are known to be in place.
+
+    They were put where a lost localiser said and would smear the map. An anchor stays where
+    nothing better is to be had: in a stretch between two pose gaps without any constraint, unless
+    it lies within `apart_m` of a scan that has one; and where even constrained scans are mostly
+    farther apart than that, as none of them shows what another does.
+
+    Parameters
+    ----------
+    scan_results : sequence of sequential.ScanResult
+        Of all candidates, in order.
+    is_constrained : (n,) bool
+        Whether a candidate has a constraint that is an inlier.
+    apart_m : float
+
+    Returns
+    -------
+    (n,) bool
+    """
+    is_constrained = np.asarray(is_constrained, bool)
+    positions = [result.world_from_sensor[:3, 3] for result in scan_results]
+    xyz_m = np.array(positions).reshape(-1, 3)
+    is_anchor = np.array([result.reason == "anchor" for result in scan_results], bool)
+    is_lone = is_anchor & ~is_constrained
+    step_m = np.linalg.norm(np.diff(xyz_m[is_constrained], axis=0), axis=1)
+    if not is_lone.any() or not is_constrained.any() or np.median(step_m) > apart_m:
+        return np.zeros(len(is_lone), bool)
+    stretch = np.cumsum(~np.isfinite(xyz_m).all(axis=1))
+    is_replaceable = np.isin(stretch, stretch[is_constrained])
+    for row in np.flatnonzero(is_lone & ~is_replaceable):
+        distance_m = np.linalg.norm(xyz_m[is_constrained] - xyz_m[row], axis=1)
+        is_replaceable[row] = distance_m.min() <= apart_m
+    return is_lone & is_replaceable
+
+
+def drop_anchor(result: ScanResult, prior: FloatArray) -> ScanResult:
+    """Return the result of an unconfirmed anchor, at the localiser's pose."""
+    return replace(result, kept=False, reason="unconfirmed", world_from_sensor=prior)
+
+
+def _log_progress(scan_results: list[ScanResult], n_candidates: int) -> None:
+    n_registered = len(scan_results)
+    share = sum(result.kept for result in scan_results) / n_registered
+    log.log_line(
+        f"register_scans: {n_registered}/{n_candidates} scans registered, {share:.0%} kept"
+    )
+
+
+def _optimise(
+    survey: CandidateScans,
+    scan_results: list[ScanResult],
+    edges: list[PoseConstraint],
+    thinned: ScanCache,
+    run: Callable[..., Iterator[Any]],
+    settings: RegistrationSettings,
+) -> multiway.OptimisedMap:
+    """Optimise the kept scans together, and write their poses into `scan_results`."""
+    kept = np.flatnonzero([result.kept for result in scan_results]).tolist()
     level_from_sensor = np.array([_level_from_sensor(survey, row) for row in kept])
     sensor_from_level = se3.invert_pose(level_from_sensor)
-    start = np.array([judged[row].world_from_sensor for row in kept]) @ sensor_from_level
+    world_from_sensor = np.array([scan_results[row].world_from_sensor for row in kept])
+    start = world_from_sensor @ sensor_from_level
     if not settings.graph.optimise:
         return multiway.keep_sequential(survey.scan_ids[kept], start, edges)
-    result = multiway.optimise_poses(
+    optimised = multiway.optimise_poses(
         survey.scan_ids[kept],
         start,
         survey.priors[kept] @ sensor_from_level,
@@ -112,29 +145,32 @@ def _in_one_map(survey, judged, edges, thinned, run, settings):
         limits=settings.limits,
         settings=settings.graph,
     )
-    for row, pose in zip(kept, result.world_from_cloud @ level_from_sensor, strict=True):
-        judged[row] = replace(judged[row], world_from_sensor=pose)
-    return result
+    poses = optimised.world_from_cloud @ level_from_sensor
+    for row, pose in zip(kept, poses, strict=True):
+        scan_results[row] = replace(scan_results[row], world_from_sensor=pose)
+    return optimised
 
 
-def _confirmed(survey, judged, result, apart_m):
-    """Drop the anchors that nothing confirms, and their links."""
-    believed = [
-        e
-        for e, weight in zip(result.edges, result.weight, strict=True)
-        if weight >= constraint_table.INLIER_WEIGHT
+def _drop_unconfirmed(
+    survey: CandidateScans,
+    scan_results: list[ScanResult],
+    optimised: multiway.OptimisedMap,
+    apart_m: float,
+) -> tuple[list[ScanResult], multiway.OptimisedMap]:
+    """Drop the anchors that no other scan confirms, and their constraints."""
+    is_inlier = optimised.weight >= results.INLIER_WEIGHT
+    inliers = [edge for edge, inlier in zip(optimised.edges, is_inlier, strict=True) if inlier]
+    constrained_ids = [scan_id for edge in inliers for scan_id in (edge.source, edge.target)]
+    is_constrained = np.isin(survey.scan_ids, constrained_ids)
+    is_unconfirmed = find_unconfirmed(scan_results, is_constrained, apart_m)
+    confirmed = [
+        drop_anchor(result, prior) if unconfirmed else result
+        for result, prior, unconfirmed in zip(
+            scan_results, survey.priors, is_unconfirmed, strict=True
+        )
     ]
-    is_linked = np.isin(
-        survey.scan_ids, [end for edge in believed for end in (edge.source, edge.target)]
-    )
-    lone = confirmation.find_unconfirmed(judged, is_linked, apart_m)
-    cases = zip(judged, survey.priors, lone, strict=True)
-    judged = [
-        confirmation.drop_anchor(verdict, prior) if drop else verdict
-        for verdict, prior, drop in cases
-    ]
-    return judged, result.without(survey.scan_ids[lone])
+    return confirmed, optimised.without(survey.scan_ids[is_unconfirmed])
 
 
-def _level_from_sensor(survey, row):
+def _level_from_sensor(survey: CandidateScans, row: int) -> FloatArray:
     return constraints.level_pose(survey.priors[row]) if survey.planar else np.eye(4)

@@ -1,32 +1,23 @@
-"""All retained scans together: links between them, the localiser's poses, and the one map that agrees with both.
+"""The poses of all retained scans at once: multiway registration (Choi, Zhou and Koltun 2015).
 
-Multiway registration (Choi, Zhou and Koltun 2015) with a localiser's poses as further measurements.
+The localiser's poses are further measurements beside the constraints between scans.
 """
 
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from scanplan.geometry import se3, twists
 from scanplan.registration import loops, pose_graph
+from scanplan.registration.constraints import PoseConstraint
+from scanplan.registration.loops import RowPair
+from scanplan.registration.registration_settings import PoseGraphSettings, SequentialSettings
+from scanplan.store.scan_cache import ScanCache
+from scanplan.types import FloatArray, IntArray
 
-_PAIRS_PER_JOB = 100
-
-
-@dataclass(frozen=True)
-class PoseGraphSettings:
-    """How retained scans are optimised together; config/README.md explains each key of `registration.graph`."""
-
-    optimise: bool
-    loop_radius_m: float
-    loop_apart: int
-    loop_step_m: float
-    loop_step_planar_m: float
-    loops_per_scan: int
-    loop_min_fitness: float
-    edge_sigma_m: float
-    edge_sigma_deg: float
-    kernel_sigmas: float
+_PAIRS_PER_JOB = 100  # fewer reload clouds more often, more leave cores idle at the end
 
 
 @dataclass(frozen=True)
@@ -37,7 +28,7 @@ class OptimisedMap:
     ----------
     world_from_cloud : (n, 4, 4) float64
     edges : list of constraints.PoseConstraint
-        All links, sorted by source and target.
+        All constraints, sorted by source and target.
     residual : (m, 6) float64
         Shift and turn by which each is off.
     weight : (m,) float64
@@ -46,40 +37,56 @@ class OptimisedMap:
         The same of the localiser's poses.
     """
 
-    world_from_cloud: np.ndarray
-    edges: list
-    residual: np.ndarray
-    weight: np.ndarray
-    prior_weight: np.ndarray
+    world_from_cloud: FloatArray
+    edges: list[PoseConstraint]
+    residual: FloatArray
+    weight: FloatArray
+    prior_weight: FloatArray
 
-    def without(self, scan_ids):
-        """Return the result without the links of some scans."""
-        ends = np.array([(edge.source, edge.target) for edge in self.edges], np.int64).reshape(
-            -1, 2
+    def without(self, scan_ids: IntArray) -> "OptimisedMap":
+        """Return the map without the constraints of some scans."""
+        ends = np.array([_ends(edge) for edge in self.edges], np.int64).reshape(-1, 2)
+        rows = np.flatnonzero(~np.isin(ends, scan_ids).any(axis=1))
+        return replace(
+            self,
+            edges=[self.edges[row] for row in rows],
+            residual=self.residual[rows],
+            weight=self.weight[rows],
         )
-        left = ~np.isin(ends, scan_ids).any(axis=1)
-        edges = [edge for edge, stays in zip(self.edges, left, strict=True) if stays]
-        return replace(self, edges=edges, residual=self.residual[left], weight=self.weight[left])
 
 
-def keep_sequential(scan_ids, start, edges):
-    """Return the Result of scans that stay as they were registered one after the other: all links count in full.
+def keep_sequential(
+    scan_ids: IntArray, start: FloatArray, edges: Sequence[PoseConstraint]
+) -> OptimisedMap:
+    """Return the map of scans as registered one after the other: all constraints count in full.
 
     Parameters
     ----------
     scan_ids, start, edges
         As of `optimise_poses`.
     """
-    row = {int(scan_id): i for i, scan_id in enumerate(scan_ids)}
-    edges = sorted((e for e in edges if e.source in row and e.target in row), key=_ends)
-    rows = np.array([[row[end] for end in _ends(edge)] for edge in edges], np.int64).reshape(-1, 2)
-    source, target = start[rows[:, 0]], start[rows[:, 1]]
-    measured = np.array([edge.fit.target_from_source for edge in edges]).reshape(-1, 4, 4)
-    residual = twists.motion_to_twist(se3.invert_pose(measured) @ se3.invert_pose(target) @ source)
-    return OptimisedMap(start, edges, residual, np.ones(len(edges)), np.ones(len(start)))
+    row_of_scan = _rows(scan_ids)
+    kept = sorted(_between(edges, row_of_scan), key=_ends)
+    motions = _motions(kept, row_of_scan)
+    source_from_target = se3.invert_pose(motions.target_from_source)
+    target_from_world = se3.invert_pose(start[motions.target])
+    error = source_from_target @ target_from_world @ start[motions.source]
+    residual = twists.motion_to_twist(error)
+    return OptimisedMap(start, kept, residual, np.ones(len(kept)), np.ones(len(start)))
 
 
-def optimise_poses(scan_ids, start, priors, edges, thinned, run, *, planar, limits, settings):
+def optimise_poses(
+    scan_ids: IntArray,
+    start: FloatArray,
+    priors: FloatArray,
+    edges: Sequence[PoseConstraint],
+    thinned: ScanCache,
+    run: Callable[..., Iterator[Any]],
+    *,
+    planar: bool,
+    limits: SequentialSettings,
+    settings: PoseGraphSettings,
+) -> OptimisedMap:
     """Find the poses of all retained scans at once.
 
     Parameters
@@ -87,93 +94,132 @@ def optimise_poses(scan_ids, start, priors, edges, thinned, run, *, planar, limi
     scan_ids : (n,) int, increasing
         Of the retained scans.
     start, priors : (n, 4, 4) float64
-        Their world_from_cloud as registered one after the other, and as the localiser says.
-    edges : list of constraints.PoseConstraint
+        Their world_from_cloud as registered one after the other, and by the localiser.
+    edges : sequence of constraints.PoseConstraint
         Between successive scans; those with an end that is not retained are left out.
     thinned : scan_cache.ScanCache
-        The points that `icp.prepare_cloud` takes, one cloud per retained scan.
+        The points that `prepared_clouds.prepare_cloud` takes, one cloud per retained scan.
     run : callable
         As `workers.open_pool` gives it.
     planar : bool
-    limits : sequential.SequentialSettings
-    settings : Settings
-
-    Returns
-    -------
-    Result
+    limits : registration_settings.SequentialSettings
+    settings : registration_settings.PoseGraphSettings
     """
-    row = {int(scan_id): i for i, scan_id in enumerate(scan_ids)}
-    edges = [edge for edge in edges if edge.source in row and edge.target in row]
+    row_of_scan = _rows(scan_ids)
+    prior_information = limits.localiser_information(priors)
 
-    def solve(begin):
+    def solve(
+        begin: FloatArray, constraints: Sequence[PoseConstraint]
+    ) -> pose_graph.PoseGraphSolution:
         return pose_graph.solve_pose_graph(
             begin,
-            _links(edges, row, settings),
+            _with_least_covariance(_motions(constraints, row_of_scan), settings),
             priors,
-            limits.localiser_information(priors),
+            prior_information,
             planar=planar,
             kernel=settings.kernel_sigmas,
         )
 
-    solution = solve(start)
-    linked = {(row[edge.source], row[edge.target]) for edge in edges}
-    # a line of points says less of where it is than a cloud does, and costs less to align
+    sequence = _between(edges, row_of_scan)
+    poses = solve(start, sequence).world_from_scan
+    constrained = {(row_of_scan[edge.source], row_of_scan[edge.target]) for edge in sequence}
+    # a planar scan constrains less than a spatial one, and costs less to align
     step_m = settings.loop_step_planar_m if planar else settings.loop_step_m
-    chosen = _chosen(solution.world_from_scan, linked, step_m, settings)
-    jobs = _link_jobs(chosen, scan_ids, solution.world_from_scan, thinned, planar, limits, settings)
-    edges += [edge for found in run(loops.align_pairs, jobs) for edge in found]
-    edges.sort(key=_ends)
-    solution = solve(solution.world_from_scan)
+    pairs = _chosen(poses, constrained, step_m, settings)
+    jobs = _alignment_jobs(pairs, scan_ids, poses, thinned, planar, limits, settings)
+    loop_edges = [edge for of_job in run(loops.align_pairs, jobs) for edge in of_job]
+    all_edges = sorted([*sequence, *loop_edges], key=_ends)
+    solution = solve(poses, all_edges)
     return OptimisedMap(
-        solution.world_from_scan, edges, solution.residual, solution.weight, solution.prior_weight
+        solution.world_from_scan,
+        all_edges,
+        solution.residual,
+        solution.weight,
+        solution.prior_weight,
     )
 
 
-def _ends(edge):
-    return edge.source, edge.target
-
-
-def _chosen(world_from_scan, linked, step_m, settings):
-    """Pairs of rows to link besides those that are: across anchors a scan may be linked far back already."""
-    xy_m, is_station = world_from_scan[:, :2, 3], loops.choose_stations(world_from_scan, step_m)
-    near = {"radius_m": settings.loop_radius_m, "apart": settings.loop_apart}
-    is_linked = np.isin(np.arange(len(xy_m)), [source for source, _ in linked])
-    visits = loops.choose_loop_pairs(xy_m, is_station, **near, most=settings.loops_per_scan)
-    return sorted(set(visits + loops.choose_bridges(is_linked, xy_m, **near)) - linked)
-
-
-def _links(edges, row, settings):
-    floor = np.diag(
-        np.repeat([settings.edge_sigma_m**2, np.radians(settings.edge_sigma_deg) ** 2], 3)
-    )
-    return pose_graph.MotionConstraints(
-        np.array([row[edge.source] for edge in edges], np.int64),
-        np.array([row[edge.target] for edge in edges], np.int64),
-        np.array([edge.fit.target_from_source for edge in edges]).reshape(-1, 4, 4),
-        add_covariance(np.array([edge.fit.information for edge in edges]).reshape(-1, 6, 6), floor),
-    )
-
-
-def add_covariance(information, covariance):
-    """Add a covariance (6, 6) to measurements of which the inverse covariances (m, 6, 6) are known.
+def add_covariance(information: FloatArray, covariance: FloatArray) -> FloatArray:
+    """Add a covariance (6, 6) to those whose inverses (m, 6, 6) are given; return the inverses.
 
     Directions without information stay without: (A^-1 + C)^-1 = A - A (A + C^-1)^-1 A.
     """
-    return information - information @ np.linalg.solve(
-        information + np.linalg.inv(covariance), information
+    total = information + np.linalg.inv(covariance)
+    return information - information @ np.linalg.solve(total, information)
+
+
+def _rows(scan_ids: IntArray) -> dict[int, int]:
+    return {int(scan_id): row for row, scan_id in enumerate(scan_ids)}
+
+
+def _ends(edge: PoseConstraint) -> tuple[int, int]:
+    return edge.source, edge.target
+
+
+def _between(edges: Sequence[PoseConstraint], row_of_scan: dict[int, int]) -> list[PoseConstraint]:
+    """Return the constraints between retained scans."""
+    return [edge for edge in edges if edge.source in row_of_scan and edge.target in row_of_scan]
+
+
+def _motions(
+    edges: Sequence[PoseConstraint], row_of_scan: dict[int, int]
+) -> pose_graph.MotionConstraints:
+    """Return constraints as arrays."""
+    return pose_graph.MotionConstraints(
+        np.array([row_of_scan[edge.source] for edge in edges], np.int64),
+        np.array([row_of_scan[edge.target] for edge in edges], np.int64),
+        np.array([edge.fit.target_from_source for edge in edges]).reshape(-1, 4, 4),
+        np.array([edge.fit.information for edge in edges]).reshape(-1, 6, 6),
     )
 
 
-def _link_jobs(chosen, scan_ids, world_from_cloud, thinned, planar, limits, settings):
-    for begin in range(0, len(chosen), _PAIRS_PER_JOB):
-        pairs = chosen[begin : begin + _PAIRS_PER_JOB]
-        rows = sorted({row for pair in pairs for row in pair})
-        own = scan_ids[rows], world_from_cloud[rows]
+def _with_least_covariance(
+    motions: pose_graph.MotionConstraints, settings: PoseGraphSettings
+) -> pose_graph.MotionConstraints:
+    """Return constraints with the sensor's systematic errors added, which pairs do not show."""
+    variance = np.array([settings.edge_sigma_m**2, np.radians(settings.edge_sigma_deg) ** 2])
+    least = np.diag(np.repeat(variance, 3))
+    return replace(motions, information=add_covariance(motions.information, least))
+
+
+def _chosen(
+    world_from_scan: FloatArray,
+    constrained: set[RowPair],
+    step_m: float,
+    settings: PoseGraphSettings,
+) -> list[RowPair]:
+    """Return the pairs of rows to align, but for those that are constrained already."""
+    xy_m = world_from_scan[:, :2, 3]
+    radius_m = settings.loop_radius_m
+    apart = settings.loop_apart
+    is_station = loops.choose_stations(world_from_scan, step_m)
+    visits = loops.choose_loop_pairs(
+        xy_m, is_station, radius_m=radius_m, apart=apart, most=settings.loops_per_scan
+    )
+    is_constrained = np.isin(np.arange(len(xy_m)), [source for source, _ in constrained])
+    bridges = loops.choose_bridges(is_constrained, xy_m, radius_m=radius_m, apart=apart)
+    return sorted(set(visits + bridges) - constrained)
+
+
+def _alignment_jobs(
+    pairs: Sequence[RowPair],
+    scan_ids: IntArray,
+    world_from_cloud: FloatArray,
+    thinned: ScanCache,
+    planar: bool,
+    limits: SequentialSettings,
+    settings: PoseGraphSettings,
+) -> Iterator[tuple[Any, ...]]:
+    """Yield the arguments of `loops.align_pairs` of some pairs at a time."""
+    for begin in range(0, len(pairs), _PAIRS_PER_JOB):
+        of_job = pairs[begin : begin + _PAIRS_PER_JOB]
+        rows = sorted({row for pair in of_job for row in pair})
         yield (
             thinned.part(rows),
             rows,
-            *own,
-            pairs,
+            scan_ids[rows],
+            world_from_cloud[rows],
+            of_job,
             planar,
             limits,
             settings.loop_min_fitness,

@@ -1,28 +1,56 @@
-"""Iterative closest point in the plane: point to line (Chen and Medioni 1992 in 2-D) with a robust (Cauchy) weight."""
+"""Point-to-line ICP in the plane (Chen and Medioni 1992 in 2-D) with a robust (Cauchy) weight."""
 
 import numpy as np
 
-_NEIGHBOURS = 6
-_PAIR_SIGMA_M = 0.045
-_LEAST_SHARE = 1e-3
-_PLANAR = np.array([0, 1, 5])
+from scanplan.registration.prepared_clouds import PreparedCloud
+from scanplan.types import FloatArray
+
+# GICP weighs a pair as if it were off by this much along the normal: 1e-3 from each side in its
+# covariances; the information of other methods, the planar one's too, is stated alike
+PAIR_SIGMA_M = 0.045
+LEAST_REACH_M = 1e-3  # of a cloud: keeps the scale of its turn finite where all points are one
+_LEAST_SHARE = 1e-3  # of the largest eigenvalue: a direction with less is not observable
+_LEAST_PAIRS = 3  # x, y and the turn are three unknowns
+_MAD_TO_SIGMA = 1.4826  # of a normal distribution
+_LEAST_SCALE_PART = 10  # the robust scale is at least this part of the pairs' largest distance
+_PLANAR_DIMENSIONS = np.array([0, 1, 5])  # of a twist: x, y and the turn about z
 
 
-def align_planar(source, target, start, _method, distance_m, max_iterations, step_done):
+def align_planar(
+    source: PreparedCloud,
+    target: PreparedCloud,
+    start: FloatArray,
+    distance_m: float,
+    max_iterations: int,
+    step_done: float,
+) -> tuple[FloatArray, FloatArray] | None:
     """Refine a motion in the plane; see `icp.align_clouds`.
+
+    Parameters
+    ----------
+    source, target : PreparedCloud
+    start : (4, 4) float64
+        target_from_source.
+    distance_m : float
+        Points farther apart are no pair.
+    max_iterations : int
+    step_done : float
+        A smaller step, metres and radians, is the last.
 
     Returns
     -------
     motion : (4, 4) float64
-    information : (6, 6) float64 or None
-        Of x, y and the turn about z, zero elsewhere; None without pairs.
+    information : (6, 6) float64
+        Of x, y and the turn about z, zero elsewhere.
+    None instead of both without pairs.
     """
-    motion, information = np.array(start, float), None
-    reach_m = np.sqrt(2 * np.mean(source.xyz_m[:, :2] ** 2))
+    motion = np.array(start, float)
+    information = np.zeros((3, 3))
+    reach_m = float(np.sqrt(2 * np.mean(source.xyz_m[:, :2] ** 2)))
     for _ in range(max_iterations):
         equations = _normal_equations(source.xyz_m[:, :2], target, motion, distance_m)
         if equations is None:
-            return start, None
+            return None
         information, gradient = equations
         step = _solve(information, gradient, reach_m)
         motion = motion @ _motion(step)
@@ -31,62 +59,53 @@ def align_planar(source, target, start, _method, distance_m, max_iterations, ste
     return motion, _in_space(information)
 
 
-def planar_normals(xy_m, tree, *, reach_m):
-    """Return unit normals (n, 2) from the nearest neighbours; NaN where they are too few, too far or form no line.
+def _normal_equations(
+    source_xy_m: FloatArray, target: PreparedCloud, motion: FloatArray, distance_m: float
+) -> tuple[FloatArray, FloatArray] | None:
+    """Return information (3, 3) and gradient (3,) of the point-to-line error; None without pairs.
 
-    Parameters
-    ----------
-    xy_m : (n, 2) float
-    tree : scipy.spatial.cKDTree
-        Over them.
-    reach_m : float
-        A point whose neighbours lie farther away has no normal.
+    They are those of a step (dx, dy, turn) in the source's frame.
     """
-    neighbours = min(_NEIGHBOURS, len(xy_m))
-    if neighbours < 3:
-        return np.full((len(xy_m), 2), np.nan)
-    distance, index = tree.query(xy_m, k=neighbours)
-    offset = xy_m[index] - xy_m[index].mean(axis=1, keepdims=True)
-    value, vector = np.linalg.eigh(np.einsum("nki,nkj->nij", offset, offset))
-    line = (distance[:, -1] < reach_m) & (value[:, 0] < 0.1 * value[:, 1])
-    return np.where(line[:, None], vector[:, :, 0], np.nan)
-
-
-def _normal_equations(source_xy, target, motion, distance_m):
-    """Information and gradient of the point-to-line error for a step (dx, dy, turn) in the source's frame."""
-    moved = source_xy @ motion[:2, :2].T + motion[:2, 3]
-    distance, nearest = target.tree.query(moved, distance_upper_bound=distance_m)
-    pairs = np.flatnonzero(np.isfinite(distance))
+    moved_m = source_xy_m @ motion[:2, :2].T + motion[:2, 3]
+    apart_m, nearest = target.tree.query(moved_m, distance_upper_bound=distance_m)
+    pairs = np.flatnonzero(np.isfinite(apart_m))
     pairs = pairs[np.isfinite(target.normal[nearest[pairs], 0])]
-    if len(pairs) < 3:
+    if len(pairs) < _LEAST_PAIRS:
         return None
-    normal, point = target.normal[nearest[pairs]], source_xy[pairs]
-    residual = np.einsum("ij,ij->i", normal, moved[pairs] - target.xyz_m[nearest[pairs], :2])
-    seen = normal @ motion[:2, :2]
-    jacobian = np.column_stack([seen, seen[:, 1] * point[:, 0] - seen[:, 0] * point[:, 1]])
-    # a scale taken from the residuals alone would trust the wall that fits best and let all others slide
-    scale = max(1.4826 * np.median(np.abs(residual)), distance_m / 10)
-    weighted = jacobian.T / (1 + (residual / scale) ** 2)
-    return weighted @ jacobian, weighted @ residual
+    normal = target.normal[nearest[pairs]]
+    point_m = source_xy_m[pairs]
+    residual_m = np.einsum("ij,ij->i", normal, moved_m[pairs] - target.xyz_m[nearest[pairs], :2])
+    source_normal = normal @ motion[:2, :2]
+    by_turn = source_normal[:, 1] * point_m[:, 0] - source_normal[:, 0] * point_m[:, 1]
+    jacobian = np.column_stack([source_normal, by_turn])
+    # a scale from the residuals alone would trust the wall that fits best and let others slide
+    sigma_m = _MAD_TO_SIGMA * np.median(np.abs(residual_m))
+    scale_m = max(sigma_m, distance_m / _LEAST_SCALE_PART)
+    weighted = jacobian.T / (1 + (residual_m / scale_m) ** 2)
+    return weighted @ jacobian, weighted @ residual_m
 
 
-def _solve(information, gradient, reach_m):
-    """Solve for the step; directions that the pairs say next to nothing about stay as they are."""
-    scale = np.array([1, 1, 1 / max(reach_m, 1e-3)])
+def _solve(information: FloatArray, gradient: FloatArray, reach_m: float) -> FloatArray:
+    """Return the step (3,): zero in directions that the pairs hardly determine."""
+    scale = np.array([1, 1, 1 / max(reach_m, LEAST_REACH_M)])
     value, vector = np.linalg.eigh(information * np.outer(scale, scale))
-    known = value > _LEAST_SHARE * value[-1]
-    return -scale * (vector[:, known] @ ((vector[:, known].T @ (scale * gradient)) / value[known]))
+    is_observable = value > _LEAST_SHARE * value[-1]
+    directions = vector[:, is_observable]
+    return -scale * (directions @ ((directions.T @ (scale * gradient)) / value[is_observable]))
 
 
-def _motion(step):
-    cos, sin = np.cos(step[2]), np.sin(step[2])
+def _motion(step: FloatArray) -> FloatArray:
+    x_m, y_m, turn_rad = step
+    cos = np.cos(turn_rad)
+    sin = np.sin(turn_rad)
     motion = np.eye(4)
     motion[:2, :2] = [[cos, -sin], [sin, cos]]
-    motion[:2, 3] = step[:2]
+    motion[:2, 3] = x_m, y_m
     return motion
 
 
-def _in_space(information):
+def _in_space(information: FloatArray) -> FloatArray:
     result = np.zeros((6, 6))
-    result[np.ix_(_PLANAR, _PLANAR)] = information / _PAIR_SIGMA_M**2
+    rows = np.ix_(_PLANAR_DIMENSIONS, _PLANAR_DIMENSIONS)
+    result[rows] = information / PAIR_SIGMA_M**2
     return result

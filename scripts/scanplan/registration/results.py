@@ -1,80 +1,147 @@
-"""The table and the summary of what registration said of every candidate scan."""
+"""Tables and summaries of the registration: results of the candidate scans, and constraints."""
 
 from collections import Counter
+from collections.abc import Sequence
 
 import numpy as np
 
 from scanplan.errors import StageError
 from scanplan.geometry import se3
+from scanplan.registration.multiway import OptimisedMap
+from scanplan.registration.sequential import ScanResult
 from scanplan.store import schemas
+from scanplan.types import Array, Columns, FilePath, FloatArray, IntArray
 
-_FARTHEST_M = 10_000.0
-_FIELDS = ("prior_fitness", "refined_fitness", "rmse_m", "kept", "reason")
+INLIER_WEIGHT = 0.25  # a measurement `kernel_sigmas` off counts as much: beyond it is an outlier
+_FARTHEST_M = 10_000.0  # single precision resolves 0.5 mm there (24 bits)
+_REGULARISATION = 1e-7  # of an information's trace: only directions without information feel it
 
 
-def move_to_map(scan_id, xyz_m, world_from_sensor):
+def move_to_map(scan_id: int, xyz_m: FloatArray, world_from_sensor: FloatArray) -> FloatArray:
     """Move a scan's points (n, 3) into the map frame.
 
     Raises
     ------
     StageError
-        If they lie so far from the map's origin that the table's single precision would lose millimetres.
+        If they lie so far from the map's origin that the table's single precision would lose
+        millimetres.
     """
-    moved = se3.transform_points(world_from_sensor, xyz_m)
-    farthest_m = np.abs(moved).max()
+    moved_m = se3.transform_points(world_from_sensor, xyz_m)
+    farthest_m = np.abs(moved_m).max()
     if farthest_m > _FARTHEST_M:
         raise StageError(
-            f"scan {scan_id}: lies {farthest_m:.0f} m from the map's origin, where single precision loses millimetres;"
-            f" the limit is {_FARTHEST_M:.0f} m, so give the poses in a local map frame"
+            f"scan {scan_id}: lies {farthest_m:.0f} m from the map's origin, where single precision"
+            f" loses millimetres; the limit is {_FARTHEST_M:.0f} m, so give the poses in a local"
+            " map frame"
         )
-    return moved
+    return moved_m
 
 
-def registration_columns(scan_ids, t_ns, verdicts):
-    """Return the columns of schemas.REGISTRATION from one `sequential.ScanResult` per candidate."""
-    xyz_m, quat_xyzw = se3.split_pose(np.array([v.world_from_sensor for v in verdicts]))
-    result = {"scan_id": scan_ids, "t_ns": t_ns} | {
-        f: [getattr(v, f) for v in verdicts] for f in _FIELDS
+def registration_columns(
+    scan_ids: IntArray, t_ns: IntArray, results: Sequence[ScanResult]
+) -> dict[str, Array]:
+    """Return the columns of schemas.REGISTRATION, one result per candidate."""
+    poses = np.array([result.world_from_sensor for result in results])
+    return {
+        "scan_id": scan_ids,
+        "t_ns": t_ns,
+        "prior_fitness": np.array([result.prior_fitness for result in results]),
+        "refined_fitness": np.array([result.refined_fitness for result in results]),
+        "rmse_m": np.array([result.rmse_m for result in results]),
+        "kept": np.array([result.kept for result in results]),
+        "reason": np.array([result.reason for result in results], object),
+        **_pose_columns(poses),
     }
-    return (
-        result
-        | dict(zip(schemas.XYZ, xyz_m.T, strict=True))
-        | dict(zip(schemas.QUAT, quat_xyzw.T, strict=True))
-    )
 
 
-def summarise_registration(verdicts, n_dropped):
-    """Return how many candidates were kept or dropped, by reason, and how many points were dropped, as one phrase."""
-    reasons = Counter(verdict.reason for verdict in verdicts)
+def summarise_registration(results: Sequence[ScanResult], n_dropped: int) -> str:
+    """Return how many candidates were kept or dropped, by reason, and how many points dropped."""
+    reasons = Counter(result.reason for result in results)
     counts = ", ".join(f"{n} {reason}" for reason, n in sorted(reasons.items()))
+    n_kept = sum(result.kept for result in results)
     return (
-        f"{sum(v.kept for v in verdicts)} of {len(verdicts)} candidates retained ({counts});"
+        f"{n_kept} of {len(results)} candidates retained ({counts});"
         f" {n_dropped:,} points out of range or not finite"
     )
 
 
-def check_any_kept(verdicts, n_dropped, where):
+def check_any_kept(results: Sequence[ScanResult], n_dropped: int, where: FilePath) -> None:
     """Raise StageError if no candidate was kept.
 
     Parameters
     ----------
-    verdicts : list of sequential.ScanResult
+    results : sequence of sequential.ScanResult
     n_dropped : int
         Points that were dropped on reading.
     where : path-like
         The recording.
     """
-    if not any(verdict.kept for verdict in verdicts):
+    if not any(result.kept for result in results):
         raise StageError(
-            f"{where}: {summarise_registration(verdicts, n_dropped)}; at least one scan is needed: check input.min_range_m,"
-            " input.max_range_m and registration.min_points, and whether the clouds hold returns at all"
+            f"{where}: {summarise_registration(results, n_dropped)}; at least one scan is needed:"
+            " check input.min_range_m, input.max_range_m and registration.min_points, and whether"
+            " the clouds hold returns at all"
         )
 
 
-def pose_matrices(columns_of_poses):
+def pose_matrices(columns: Columns) -> FloatArray:
     """Return (n, 4, 4) matrices, NaN where unknown, of a table with the columns of a pose."""
-    xyz_m, quat_xyzw = (
-        np.column_stack([columns_of_poses[c] for c in names])
-        for names in (schemas.XYZ, schemas.QUAT)
-    )
+    xyz_m = np.column_stack([columns[name] for name in schemas.XYZ])
+    quat_xyzw = np.column_stack([columns[name] for name in schemas.QUAT])
     return se3.pose_matrix(xyz_m, quat_xyzw)
+
+
+def constraint_columns(optimised: OptimisedMap | None) -> dict[str, Array]:
+    """Return the columns of schemas.EDGES of a map; no rows from None."""
+    edges = [] if optimised is None else optimised.edges
+    residual = np.zeros((0, 6)) if optimised is None else _observable_residual(optimised)
+    weight = np.zeros(0) if optimised is None else optimised.weight
+    motions = np.array([edge.fit.target_from_source for edge in edges]).reshape(-1, 4, 4)
+    return {
+        "source": np.array([edge.source for edge in edges], np.int64),
+        "target": np.array([edge.target for edge in edges], np.int64),
+        "kind": np.array([edge.kind for edge in edges], object),
+        "fitness": np.array([edge.fitness for edge in edges], np.float64),
+        "rmse_m": np.array([edge.rmse_m for edge in edges], np.float64),
+        **_pose_columns(motions),
+        "unobservable": np.array([edge.fit.n_unobservable for edge in edges], np.int64),
+        "residual_m": np.linalg.norm(residual[:, :3], axis=1),
+        "residual_deg": np.degrees(np.linalg.norm(residual[:, 3:], axis=1)),
+        "weight": weight,
+        "inlier": weight >= INLIER_WEIGHT,
+    }
+
+
+def summarise_constraints(optimised: OptimisedMap | None) -> str:
+    """Return how many constraints there are by kind, and how many are outliers."""
+    if optimised is None:
+        return "no constraints: poses as given"
+    kinds = np.array([edge.kind for edge in optimised.edges])
+    is_outlier = optimised.weight < INLIER_WEIGHT
+    counts = []
+    for kind in sorted(set(kinds)):
+        of_kind = kinds == kind
+        n_outliers = (is_outlier & of_kind).sum()
+        counts.append(f"{of_kind.sum():,} {kind} ({n_outliers:,} outliers)")
+    n_jumps = int((optimised.prior_weight < INLIER_WEIGHT).sum())
+    return (
+        f"constraints: {', '.join(counts) or 'none'};"
+        f" {n_jumps:,} of the localiser's poses are outliers"
+    )
+
+
+def _pose_columns(poses: FloatArray) -> dict[str, FloatArray]:
+    """Return positions and quaternions of poses (n, 4, 4) as columns."""
+    xyz_m, quat_xyzw = se3.split_pose(poses)
+    names = (*schemas.XYZ, *schemas.QUAT)
+    values = np.column_stack([xyz_m, quat_xyzw])
+    return dict(zip(names, values.T, strict=True))
+
+
+def _observable_residual(optimised: OptimisedMap) -> FloatArray:
+    """Return the residuals (m, 6) in the directions that each constraint determines."""
+    information = np.array([edge.fit.information for edge in optimised.edges]).reshape(-1, 6, 6)
+    trace = np.trace(information, axis1=1, axis2=2)
+    regularised = information + _REGULARISATION * trace[:, None, None] * np.eye(6)
+    weighted = information @ optimised.residual[:, :, None]
+    return np.linalg.solve(regularised, weighted)[:, :, 0]

@@ -5,70 +5,38 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from scanplan.geometry import se3, twists
-from scanplan.registration import constraints, icp
+from scanplan.geometry import se3
+from scanplan.registration import constraints, prepared_clouds
+from scanplan.registration.constraints import PlacedScan, PoseConstraint
+from scanplan.registration.registration_settings import SequentialSettings
+from scanplan.types import FloatArray
 
-# the method that leaves a survey as it is: its poses are exact, its scans all sound
 GIVEN_POSES = "none"
-_IDENTITY = np.eye(4)
-# fewer occupied cubes fix no pose, however many points are in them
-_FEWEST_PLACES = 10
-
-
-@dataclass(frozen=True)
-class SequentialSettings:
-    """Limits of the registration; config/README.md explains each key of section `registration`."""
-
-    voxel_m: float
-    voxel_planar_m: float
-    voxels: int
-    n_previous: int
-    previous_apart_m: float
-    previous_turn_deg: float
-    fitness_distance_m: float
-    fitness_points: int
-    min_prior_fitness: float
-    min_refined_fitness: float
-    min_facing_fitness: float
-    icp_method: str
-    icp_targets: int
-    icp_distances_m: tuple
-    icp_max_iterations: int
-    max_correction_m: float
-    max_correction_deg: float
-    localiser_sigma_m: float
-    localiser_sigma_deg: float
-    localiser_sigma_tilt_deg: float
-    anchor_after: int
-    anchor_apart_m: float
-    min_points: int
-
-    def localiser_information(self, priors):
-        """Inverse covariances (..., 6, 6) of poses (..., 4, 4) that the localiser gave, as twists in their frames."""
-        heading, tilt = np.radians([self.localiser_sigma_deg, self.localiser_sigma_tilt_deg])
-        return twists.pose_information([self.localiser_sigma_m] * 3 + [tilt, tilt, heading], priors)
+"""The method that leaves a survey as it is: its poses are exact, its scans all sound."""
+_FEWEST_POINTS = 10  # after thinning: fewer fix no pose, however many were thinned to them
 
 
 @dataclass(frozen=True)
 class ScanResult:
-    """What became of a candidate scan.
+    """Outcome of the registration of a candidate scan.
 
     Attributes
     ----------
     kept : bool
     reason : str
-        `kept`, `anchor` (kept at the localiser's pose), `pose_gap`, `too_few_points`, `low_prior_fitness`,
-        `icp_diverged`, `low_refined_fitness`, or `unconfirmed` (see `confirmation`).
+        `kept`, `anchor` (kept at the localiser's pose), `pose_gap`, `too_few_points`,
+        `low_prior_fitness`, `icp_diverged`, `low_refined_fitness`, or `unconfirmed` (see
+        `mapping.find_unconfirmed`).
     world_from_sensor : (4, 4) float64
         After refinement where the scan is kept, the localiser's otherwise; NaN without a pose.
     prior_fitness, refined_fitness, rmse_m : float
-        Mean fitness against the previous retained scans before and after refinement, residual of the refinement; NaN
-        where it did not come to that.
+        Mean fitness against the previous retained scans before and after refinement, residual of
+        the refinement; NaN where it did not come to that.
     """
 
     kept: bool
     reason: str
-    world_from_sensor: np.ndarray
+    world_from_sensor: FloatArray
     prior_fitness: float = np.nan
     refined_fitness: float = np.nan
     rmse_m: float = np.nan
@@ -76,33 +44,36 @@ class ScanResult:
 
 @dataclass
 class SequentialRegistrar:
-    """Takes the candidate scans one after the other and says of each whether, and where, it is kept.
+    """Registers the candidate scans one after the other.
 
     Attributes
     ----------
-    settings : Settings
+    settings : registration_settings.SequentialSettings
     planar : bool
-        Whether the sensor measures in one plane: then x, y and heading are refined, and height, roll and pitch stay
-        the localiser's.
+        Whether the sensor measures in one plane: then x, y and heading are refined, and height,
+        roll and pitch stay the localiser's.
     edges : list of constraints.PoseConstraint
-        Of the scans kept so far to their predecessors.
+        From the scans kept so far to their predecessors.
     """
 
     settings: SequentialSettings
     planar: bool
-    edges: list = field(default_factory=list)
-    _previous: deque = field(init=False)
-    # what was looked back on before an anchor that no scan has confirmed yet
-    _earlier: deque = field(init=False)
+    edges: list[PoseConstraint] = field(default_factory=list)
+    _previous: deque[PlacedScan] = field(init=False)
+    # the scans compared with before an anchor that no scan has confirmed yet
+    _earlier: deque[PlacedScan] = field(init=False)
     _confirmed: bool = False
     _after_gap: bool = False
     _rejected_in_a_row: int = 0
 
-    def __post_init__(self):
-        self._previous, self._earlier = self._no_scans(), self._no_scans()
+    def __post_init__(self) -> None:
+        self._previous = self._no_scans()
+        self._earlier = self._no_scans()
 
-    def add(self, scan_id, xyz_m, prior):
-        """Judge the next scan.
+    def add(
+        self, scan_id: int, xyz_m: FloatArray, prior: FloatArray
+    ) -> tuple[ScanResult, FloatArray]:
+        """Register the next scan.
 
         Parameters
         ----------
@@ -114,106 +85,115 @@ class SequentialRegistrar:
 
         Returns
         -------
-        Verdict
+        ScanResult
         thinned_m : (m, 3) float32
-            The points that fitting uses, in the cloud's frame: what `icp.prepare_cloud` takes.
+            The points used, in the cloud's frame, as `prepared_clouds.prepare_cloud` takes them.
         """
-        nothing = np.zeros((0, 3), np.float32)
+        no_points = np.zeros((0, 3), np.float32)
         if not np.isfinite(prior).all():
             self._after_gap = True
-            return ScanResult(False, "pose_gap", np.full((4, 4), np.nan)), nothing
+            return ScanResult(False, "pose_gap", np.full((4, 4), np.nan)), no_points
         if len(xyz_m) < self.settings.min_points:
-            return ScanResult(False, "too_few_points", prior), nothing
+            return ScanResult(False, "too_few_points", prior), no_points
         if self.settings.icp_method == GIVEN_POSES:
-            return ScanResult(True, "kept", prior), nothing
-        level_from_sensor = constraints.level_pose(prior) if self.planar else _IDENTITY
+            return ScanResult(True, "kept", prior), no_points
+        level_from_sensor = constraints.level_pose(prior) if self.planar else np.eye(4)
         thinned_m = constraints.thin_scan(xyz_m, level_from_sensor, self.planar, self.settings)
-        if len(thinned_m) < _FEWEST_PLACES:
+        if len(thinned_m) < _FEWEST_POINTS:
             return ScanResult(False, "too_few_points", prior), thinned_m
-        cloud = icp.prepare_cloud(
-            thinned_m, planar=self.planar, reach_m=constraints.neighbour_reach_m(self.settings)
-        )
-        verdict, edges = self._judge(
-            constraints.PlacedScan(scan_id, cloud, prior @ se3.invert_pose(level_from_sensor)),
-            level_from_sensor,
-        )
+        reach_m = constraints.neighbour_reach_m(self.settings)
+        cloud = prepared_clouds.prepare_cloud(thinned_m, planar=self.planar, reach_m=reach_m)
+        scan = PlacedScan(scan_id, cloud, prior @ se3.invert_pose(level_from_sensor))
+        result, edges = self._register(scan, level_from_sensor)
         self.edges += edges
-        self._remember(scan_id, cloud, verdict, level_from_sensor)
-        return verdict, thinned_m
+        self._remember(scan, result, level_from_sensor)
+        return result, thinned_m
 
-    def _judge(self, scan, level_from_sensor):
-        prior = scan.world_from_cloud @ level_from_sensor
+    def _register(
+        self, scan: PlacedScan, level_from_sensor: FloatArray
+    ) -> tuple[ScanResult, list[PoseConstraint]]:
         if not self._previous:
-            return ScanResult(True, "anchor", prior), []
-        verdict, edges = self._compared(scan, level_from_sensor, self._previous)
-        if not verdict.kept and not self._confirmed and self._earlier:
+            return ScanResult(True, "anchor", scan.world_from_cloud @ level_from_sensor), []
+        result, edges = self._compare(scan, level_from_sensor, self._previous)
+        if not result.kept and not self._confirmed and self._earlier:
             # the anchor may have been the scan that was out of place
-            back, edges_back = self._compared(scan, level_from_sensor, self._earlier)
-            if back.kept:
+            earlier_result, earlier_edges = self._compare(scan, level_from_sensor, self._earlier)
+            if earlier_result.kept:
                 self._previous = self._earlier
-                return back, edges_back
-        if not verdict.kept and self._starts_anew(scan):
-            verdict = replace(verdict, kept=True, reason="anchor")
-        return verdict, edges
+                return earlier_result, earlier_edges
+        if not result.kept and self._is_anchor(scan):
+            result = replace(result, kept=True, reason="anchor")
+        return result, edges
 
-    def _compared(self, scan, level_from_sensor, previous):
-        """Judge a scan by some that are in place."""
-        prior, s = scan.world_from_cloud @ level_from_sensor, self.settings
-        judges = constraints.comparable_scans(scan, previous, s)
-        before = self._mean_overlap(scan, judges)[0]
-        if before < s.min_prior_fitness:
-            return ScanResult(False, "low_prior_fitness", prior, before), []
-        refined, edges = constraints.refine_scan(scan, list(previous)[: -s.icp_targets - 1 : -1], s)
+    def _compare(
+        self, scan: PlacedScan, level_from_sensor: FloatArray, previous: deque[PlacedScan]
+    ) -> tuple[ScanResult, list[PoseConstraint]]:
+        """Register a scan against previous ones and gate the result."""
+        settings = self.settings
+        prior = scan.world_from_cloud @ level_from_sensor
+        comparable = constraints.comparable_scans(scan, previous, settings)
+        prior_fitness, _ = self._mean_overlap(scan, comparable)
+        if prior_fitness < settings.min_prior_fitness:
+            return ScanResult(False, "low_prior_fitness", prior, prior_fitness), []
+        targets = list(previous)[: -settings.icp_targets - 1 : -1]
+        refined, edges = constraints.refine_scan(scan, targets, settings)
         if refined is None:
-            return ScanResult(False, "icp_diverged", prior, before), []
-        after, rmse_m = self._mean_overlap(refined, judges)
-        if after < s.min_refined_fitness or not self._faces_any(edges):
-            return ScanResult(False, "low_refined_fitness", prior, before, after, rmse_m), []
+            return ScanResult(False, "icp_diverged", prior, prior_fitness), []
+        fitness, rmse_m = self._mean_overlap(refined, comparable)
+        figures = (prior_fitness, fitness, rmse_m)
+        if fitness < settings.min_refined_fitness or not self._faces_any(edges):
+            return ScanResult(False, "low_refined_fitness", prior, *figures), []
         return ScanResult(
-            True, "kept", refined.world_from_cloud @ level_from_sensor, before, after, rmse_m
+            True, "kept", refined.world_from_cloud @ level_from_sensor, *figures
         ), edges
 
-    def _faces_any(self, edges):
-        """Whether the surfaces of a scan agree with those of another that it is aligned to.
+    def _faces_any(self, edges: list[PoseConstraint]) -> bool:
+        """Return whether a scan's surfaces agree with those of any scan that it is aligned to.
 
-        A floor agrees with any floor, so this tells of scans that show little of it, as a few level beams do.
+        A floor agrees with any floor: this gates scans that show little else, as of a few level
+        beams.
         """
         # in the plane a few beams on a wall often give no normal, and there is no floor
-        return (
-            self.planar or max(edge.fitness for edge in edges) >= self.settings.min_facing_fitness
-        )
+        if self.planar:
+            return True
+        return max(edge.fitness for edge in edges) >= self.settings.min_facing_fitness
 
-    def _starts_anew(self, scan):
-        """Whether a scan that does not fit is believed to be where the localiser says.
+    def _is_anchor(self, scan: PlacedScan) -> bool:
+        """Return whether a scan that does not fit is kept at the localiser's pose.
 
-        A lost region is worse than a seam: it is after a run of rejections, and at once where the scans before cannot
-        be expected to show the same place.
+        A lost region is worse than a seam: it is after a run of rejections, and at once where the
+        scans before cannot be expected to show the same place.
         """
-        long_run = self._rejected_in_a_row + 1 >= self.settings.anchor_after
-        return long_run or self._after_gap or self._is_far(scan)
+        is_long_run = self._rejected_in_a_row + 1 >= self.settings.anchor_after
+        return is_long_run or self._after_gap or self._is_far(scan)
 
-    def _is_far(self, scan):
-        way_m = [
-            np.linalg.norm((p.world_from_cloud - scan.world_from_cloud)[:3, 3])
-            for p in self._previous
+    def _is_far(self, scan: PlacedScan) -> bool:
+        distances_m = [
+            float(np.linalg.norm((other.world_from_cloud - scan.world_from_cloud)[:3, 3]))
+            for other in self._previous
         ]
-        return min(way_m) > self.settings.anchor_apart_m
+        return min(distances_m) > self.settings.anchor_apart_m
 
-    def _remember(self, scan_id, cloud, verdict, level_from_sensor):
-        self._rejected_in_a_row = 0 if verdict.kept else self._rejected_in_a_row + 1
-        if verdict.reason == "anchor":
+    def _remember(
+        self, scan: PlacedScan, result: ScanResult, level_from_sensor: FloatArray
+    ) -> None:
+        self._rejected_in_a_row = 0 if result.kept else self._rejected_in_a_row + 1
+        if result.reason == "anchor":
             self._earlier = self._previous if self._confirmed else self._earlier
             self._previous = self._no_scans()
-        if verdict.kept:
-            self._confirmed, self._after_gap = verdict.reason == "kept", False
-            world_from_cloud = verdict.world_from_sensor @ se3.invert_pose(level_from_sensor)
-            self._previous.append(constraints.PlacedScan(scan_id, cloud, world_from_cloud))
+        if result.kept:
+            self._confirmed = result.reason == "kept"
+            self._after_gap = False
+            world_from_cloud = result.world_from_sensor @ se3.invert_pose(level_from_sensor)
+            self._previous.append(replace(scan, world_from_cloud=world_from_cloud))
 
-    def _mean_overlap(self, scan, previous):
-        found = [
-            constraints.measure_scan_overlap(scan, target, self.settings) for target in previous
+    def _mean_overlap(self, scan: PlacedScan, previous: list[PlacedScan]) -> tuple[float, float]:
+        """Return the mean fitness and rmse of a scan on others."""
+        overlaps = [
+            constraints.measure_scan_overlap(scan, other, self.settings) for other in previous
         ]
-        return tuple(float(mean) for mean in np.mean(found, axis=0))
+        fitness, rmse_m = np.mean(overlaps, axis=0)
+        return float(fitness), float(rmse_m)
 
-    def _no_scans(self):
+    def _no_scans(self) -> deque[PlacedScan]:
         return deque(maxlen=self.settings.n_previous)

@@ -10,30 +10,15 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, StrMethodFormatter
 from scipy.spatial import KDTree
 
-from scanplan.errors import StageError
 from scanplan.report import top_view
 from scanplan.selection import stopping
+from scanplan.selection.methods import METHODS, Method
+from scanplan.store import registered_scans
 from scanplan.types import Columns, FloatArray, IntArray
 
 NEARBY_M = 1.0  # scans this near show much the same: "crowded" in the figure means that
 _WIDTH_IN = 7.0  # text width of an A4 page
 _SELECTED = "#d55e00"
-STYLES = {
-    "wall_length": ("greedy by wall length", "#0072b2"),
-    "visibility": ("greedy by free space", "#009e73"),
-    "cluster_hull": ("greedy by cluster hulls", "#d55e00"),
-    "hull": ("greedy by one hull per scan", "#e69f00"),
-    "streaming": ("in one pass by cluster hulls", "#000000"),
-    "every_nth": ("every n-th", "#cc79a7"),
-    "distance": ("farthest next", "#56b4e9"),
-    "random": ("random", "#8c6d4f"),
-    "sequential": ("as recorded", "#999999"),
-}
-"""Method to label and colour, in the order of legends."""
-
-DASHED = {"every_nth", "distance", "random", "sequential"}
-"""Methods that look at nothing measured."""
-
 _FULL_HULLS = "hull"
 _LOGARITHMIC_FROM = 100  # scans: from here on the first few would crowd on a linear axis
 
@@ -44,7 +29,7 @@ def sensor_positions(registration: Columns, scan_ids: IntArray) -> FloatArray:
     Parameters
     ----------
     registration : dict of str to (n,) array
-        `scan_id`, `kept`, `x_m`, `y_m` of a table of registration.
+        Of a table of registration.
     scan_ids : (k,) int
 
     Returns
@@ -56,16 +41,8 @@ def sensor_positions(registration: Columns, scan_ids: IntArray) -> FloatArray:
     StageError
         If a scan was not kept: the tables are of different runs.
     """
-    kept_rows = np.flatnonzero(registration["kept"])
-    row_of = {int(registration["scan_id"][i]): i for i in kept_rows}
-    unknown = sorted({int(scan) for scan in scan_ids} - set(row_of))
-    if unknown:
-        raise StageError(
-            f"registration: keeps {len(row_of)} scans, scan {unknown[0]} of the selection not among"
-            " them; delete the results of this dataset and run again"
-        )
-    rows = [row_of[int(scan)] for scan in scan_ids]
-    return np.column_stack([registration["x_m"], registration["y_m"]])[rows]
+    scans = registered_scans.select_kept_scans(registration, "registration")
+    return registered_scans.sensor_positions(scan_ids, scans, "selection", "registration")[:, :2]
 
 
 def count_nearby(xy_m: FloatArray, radius_m: float = NEARBY_M) -> IntArray:
@@ -195,18 +172,19 @@ def draw_area_figure(orderings: Mapping[str, Columns]) -> Figure:
 
 
 def _legend_rank(method: str) -> tuple[int, str]:
-    return (list(STYLES).index(method) if method in STYLES else len(STYLES)), method
+    return (list(METHODS).index(method) if method in METHODS else len(METHODS)), method
 
 
 def _draw_ordering(axes: Axes, method: str, columns: Columns) -> None:
-    name, colour = STYLES.get(method, (method.replace("_", " "), "0.3"))
-    dashes = "--" if method in DASHED else "-"
+    style = METHODS.get(method, Method(label=method.replace("_", " "), colour="0.3"))
+    colour = style.colour
+    dashes = "--" if style.is_baseline else "-"
     rank, covered_m2 = columns["rank"], columns["covered_m2"]
     n_scans, _ = stopping.choose_n_scans({"covered_m2": covered_m2}, area_share=0.99)
     at = n_scans - 1
-    label = f"{name}: 99 % with {rank[at]}"
+    label = f"{style.label}: 99 % with {rank[at]}"
     axes.plot(rank, covered_m2, dashes, color=colour, lw=1.4, label=label, gid=f"covered-{method}")
-    if method in ("cluster_hull", _FULL_HULLS):
+    if style.is_area:
         bound_m2 = np.minimum(columns["bound_m2"], covered_m2[-1])
         axes.plot(rank, bound_m2, ":", color=colour, lw=1, gid=f"bound-{method}")
     axes.plot(rank[at], covered_m2[at], "o", ms=4.5, mfc="white", mec=colour, mew=1.2, zorder=4)

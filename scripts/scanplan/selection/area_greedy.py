@@ -1,83 +1,65 @@
-"""The order of scans that covers most area soonest (thesis, algorithm 1), by lazy evaluation.
+"""The order of scans that covers most area soonest (thesis, algorithm 1).
 
-The area of a union is monotone submodular: what a scan adds can only shrink while others are chosen. A gain computed
-earlier is therefore an upper bound of today's, and a scan whose old gain is below the best new one need not be looked
-at (Minoux 1978, "Accelerated greedy algorithms for maximizing submodular set functions"). The order is the very one
-that looking at every scan in every step gives.
+The area of a union is monotone submodular, so `lazy_greedy` gives the very order that looking at
+every scan in every step gives; what is left of each scan is `union_area.uncovered`.
 """
 
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 import shapely
 
 from scanplan.geometry.polygons import (
+    Polygons,
     intersect_polygons,
     move_near_origin,
     subtract_polygons,
     unite_polygons,
 )
-from scanplan.selection.union_area import uncovered
+from scanplan.selection.lazy_greedy import GreedyOrder, choose_greedily, order_greedily
+from scanplan.selection.union_area.uncovered import Uncovered
+from scanplan.types import Array, FloatArray, IntArray
 
 TIE_M2 = 1e-6
-"""Gains this close to the largest are equal to it: overlays agree to about 1e-12 of the covered area only."""
+"""Gains this close to the largest are equal to it: overlays agree to about 1e-12 of the covered
+area only."""
 
-_LARGEST_BATCH = 64
-_BATCH_GROWTH = 4
-_TILE_PER_POLYGON = 2.0
-
-
-@dataclass(frozen=True, eq=False)
-class AreaOrder:
-    """A complete order of polygons by greedy choice.
-
-    Attributes
-    ----------
-    order : (n,) int
-        Indices of the polygons.
-    gain_m2 : (n,) float64
-        Area that each adds to the union of those before it.
-    covered_m2 : (n,) float64
-        Area of the union up to and including each.
-    checkpoints : dict of int to (n,) float64
-        For some numbers of chosen polygons, an upper bound of what each polygon (by index) would have added then; 0 for
-        the chosen ones.
-    """
-
-    order: np.ndarray
-    gain_m2: np.ndarray
-    covered_m2: np.ndarray
-    checkpoints: dict
+_TILE_PER_POLYGON = 2.0  # so that few polygons are cut, and few lie in a tile
 
 
-def order_by_area(polygons, *, threads=1):
-    """Order polygons so that each adds the most area to the union of those before it (thesis, algorithm 1).
+def order_by_area(polygons: Polygons, *, min_overlap: float = 0.0, threads: int = 1) -> GreedyOrder:
+    """Order polygons so that each adds the most area to the union of those before it.
 
-    Where several gains are within `TIE_M2` of the largest, the lowest index comes first; those that add nothing more
-    are therefore last, by index. After 0, 1, 2, 4, 8, ... choices the gains of all are kept, for bounds.
+    Where several gains are within `TIE_M2` of the largest, the lowest index comes first; those that
+    add nothing more are therefore last, by index (thesis, algorithm 1).
 
     Parameters
     ----------
     polygons : (n,) sequence of shapely geometries, n >= 0
-        Finite coordinates, metres. Empty ones, points and lines cover nothing; invalid ones are repaired.
+        Finite coordinates, metres. Empty ones, points and lines cover nothing; invalid ones are
+        repaired.
+    min_overlap : float, 0 to 1
+        What a polygon must share with those before it, see `lazy_greedy.order_greedily`.
     threads : int, >= 1
         The order is the same, to the last digit, with any number of them.
 
     Returns
     -------
-    Order
+    GreedyOrder
+        In square metres.
 
     Raises
     ------
     ValueError
-        If a geometry is missing or a coordinate is not finite.
+        If a geometry is missing, a coordinate is not finite or `min_overlap` is out of its range.
     """
     with ThreadPoolExecutor(threads) as executor:
-        return _greedy_order(uncovered.Uncovered(polygons, executor if threads > 1 else None))
+        left = Uncovered(polygons, executor if threads > 1 else None)
+        return order_greedily(left, tie=TIE_M2, min_overlap=min_overlap)
 
 
-def choose_first(polygons, count):
+def choose_first(polygons: Polygons, count: int) -> IntArray:
     """Return the first indices of `order_by_area`, without ordering what is left.
 
     Parameters
@@ -90,21 +72,17 @@ def choose_first(polygons, count):
     -------
     (min(n, `count`),) int
     """
-    left, chosen = uncovered.Uncovered(polygons, None), []
-    while len(chosen) < count and left.gain_m2.max(initial=0.0) > TIE_M2:
-        chosen.append(_best(left))
-        left.choose(chosen[-1])
-        if len(chosen).bit_count() == 1:
-            left.drop_covered()
+    left = Uncovered(polygons)
+    chosen = [i for i, _ in islice(choose_greedily(left, tie=TIE_M2), count)]
     rest = np.flatnonzero(left.remaining)[: count - len(chosen)]
     return np.concatenate([np.array(chosen, int), rest])
 
 
-def area_gains(polygons, order):
-    """Return the area (m,) that each polygon of a given order adds to the union of those before it, square metres.
+def area_gains(polygons: Polygons, order: IntArray) -> FloatArray:
+    """Return the area (m,) that each polygon of an order adds to those before it, square metres.
 
-    The plane is cut into tiles and every tile done by itself, so that what a polygon is compared with does not grow
-    with the building.
+    The plane is cut into tiles and every tile done by itself, so that what a polygon is compared
+    with does not grow with the building.
 
     Parameters
     ----------
@@ -119,10 +97,9 @@ def area_gains(polygons, order):
         If an index occurs twice or is out of range, or the polygons are not usable.
     """
     order = np.asarray(order, int)
-    if len(np.unique(order)) != len(order) or not np.isin(order, np.arange(len(polygons))).all():
-        raise ValueError(
-            f"an order of {len(polygons)} polygons must hold distinct indices below that"
-        )
+    n = len(polygons)
+    if len(np.unique(order)) != len(order) or not np.isin(order, np.arange(n)).all():
+        raise ValueError(f"an order of {n} polygons must hold distinct indices below that")
     pieces, rank, tile = _cut(move_near_origin(polygons)[order])
     gain_m2 = np.zeros(len(order))
     for same in np.split(np.arange(len(tile)), np.flatnonzero(np.diff(tile)) + 1):
@@ -130,37 +107,7 @@ def area_gains(polygons, order):
     return gain_m2
 
 
-def _greedy_order(left):
-    checkpoints, order, gain_m2 = {0: left.gain_m2.copy()}, [], []
-    while left.gain_m2.max(initial=0.0) > TIE_M2:
-        order.append(_best(left))
-        gain_m2.append(left.choose(order[-1]))
-        if len(order).bit_count() == 1:
-            left.drop_covered()
-            checkpoints[len(order)] = left.gain_m2.copy()
-    if order:
-        left.drop_covered()
-    rest = np.flatnonzero(left.remaining).tolist()
-    gain_m2 = np.array(gain_m2 + [left.choose(i) for i in rest])
-    return AreaOrder(np.array(order + rest, int), gain_m2, np.cumsum(gain_m2), checkpoints)
-
-
-def _best(left):
-    """Index of the remaining polygon of the largest gain, the lowest of equals; few others are looked at."""
-    batch = 1
-    while True:
-        largest_m2 = left.gain_m2[left.remaining & left.exact].max(initial=0.0)
-        doubtful = np.flatnonzero(
-            left.remaining & ~left.exact & (left.gain_m2 >= largest_m2 - TIE_M2)
-        )
-        if len(doubtful) == 0:
-            return int(np.flatnonzero(left.remaining & (left.gain_m2 >= largest_m2 - TIE_M2))[0])
-        by_gain = doubtful[np.argsort(-left.gain_m2[doubtful], kind="stable")]
-        left.refresh(by_gain[:batch], largest_m2 - TIE_M2)
-        batch = min(batch * _BATCH_GROWTH, _LARGEST_BATCH)
-
-
-def _cut(polygons):
+def _cut(polygons: Array) -> tuple[Array, IntArray, IntArray]:
     """Cut polygons at a grid of tiles, most polygons smaller than a tile.
 
     Returns
@@ -173,24 +120,32 @@ def _cut(polygons):
     boxes = shapely.bounds(polygons[with_area]).reshape(-1, 4)
     if len(boxes) == 0:
         return polygons[:0], with_area, with_area
-    low, high = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
-    polygon_m = np.median((boxes[:, 2:] - boxes[:, :2]).max(axis=1))
-    # no more tiles than polygons, however far apart they are
-    edge_m = max(_TILE_PER_POLYGON * polygon_m, (high - low).max() / np.sqrt(len(boxes)))
-    x_m, y_m = (
-        axis.ravel()
-        for axis in np.meshgrid(*(np.arange(a, b, edge_m) for a, b in zip(low, high, strict=True)))
-    )
-    tiles = shapely.box(x_m, y_m, x_m + edge_m, y_m + edge_m)
+    tiles = _tiles(boxes)
     row, tile = shapely.STRtree(tiles).query(polygons[with_area])
     by_tile = np.lexsort((row, tile))
-    row, tile = with_area[row[by_tile]], tile[by_tile]
+    row = with_area[row[by_tile]]
+    tile = tile[by_tile]
     return intersect_polygons(polygons[row], tiles[tile]), row, tile
 
 
-def _gains(polygons):
-    """Area that each polygon adds to the union of those before it."""
-    gain_m2, union = np.zeros(len(polygons)), shapely.Polygon()
+def _tiles(boxes_m: FloatArray) -> Array:
+    """Return square tiles (t,), shapely Polygons, over boxes (n, 4), no more than boxes."""
+    low_m = boxes_m[:, :2].min(axis=0)
+    high_m = boxes_m[:, 2:].max(axis=0)
+    polygon_m = np.median((boxes_m[:, 2:] - boxes_m[:, :2]).max(axis=1))
+    # no more tiles than polygons, however far apart they are
+    least_m = (high_m - low_m).max() / np.sqrt(len(boxes_m))
+    edge_m = max(_TILE_PER_POLYGON * polygon_m, least_m)
+    x_m = np.arange(low_m[0], high_m[0], edge_m)
+    y_m = np.arange(low_m[1], high_m[1], edge_m)
+    x_m, y_m = (axis.ravel() for axis in np.meshgrid(x_m, y_m))
+    return shapely.box(x_m, y_m, x_m + edge_m, y_m + edge_m)
+
+
+def _gains(polygons: Array) -> FloatArray:
+    """Return the area (m,) that each polygon adds to the union of those before it."""
+    gain_m2 = np.zeros(len(polygons))
+    union = shapely.Polygon()
     for i, polygon in enumerate(polygons):
         gain_m2[i] = subtract_polygons([polygon], [union])[0].area
         if gain_m2[i] > 0:

@@ -2,50 +2,90 @@
 
 import numpy as np
 
-
-def order_randomly(n, seed):
-    """Return a permutation of n scans drawn with a seed."""
-    return np.random.default_rng(seed).permutation(n)
-
-
-def order_sequentially(n):
-    """Return n scans as recorded."""
-    return np.arange(n)
+from scanplan.errors import StageError
+from scanplan.selection.survey_scans import SurveyScans
+from scanplan.types import FloatArray, IntArray
 
 
-def order_every_nth(n):
-    """Return n scans so that any first k of them are spread evenly over the recording.
+def order_randomly(scans: SurveyScans) -> IntArray:
+    """Return a permutation (n,) of scans drawn with their seed.
 
-    The first, the middle, the quarters, the eighths: the places that the base-2 van der Corput sequence, indices with
-    their bits read backwards, names in the recording (van der Corput 1935, "Verteilungsfunktionen").
+    Raises
+    ------
+    ValueError
+        If there is no seed.
     """
+    if scans.seed is None:
+        raise ValueError("a random order needs a seed")
+    return np.random.default_rng(scans.seed).permutation(len(scans))
+
+
+def order_sequentially(scans: SurveyScans) -> IntArray:
+    """Return scans (n,) as recorded."""
+    return np.arange(len(scans))
+
+
+def order_every_nth(scans: SurveyScans) -> IntArray:
+    """Return scans (n,) so that any first k of them are spread evenly over the recording.
+
+    The first, the middle, the quarters, the eighths: the places that the base-2 van der Corput
+    sequence, indices with their bits read backwards, names in the recording (van der Corput 1935,
+    "Verteilungsfunktionen").
+    """
+    n = len(scans)
     bits = max(1, int(n - 1).bit_length()) if n else 1
     index = np.arange(2**bits) if n else np.arange(0)
-    reversed_bits = sum(((index >> bit) & 1) << (bits - 1 - bit) for bit in range(bits))
+    reversed_bits = np.zeros_like(index)
+    for bit in range(bits):
+        reversed_bits += ((index >> bit) & 1) << (bits - 1 - bit)
     place = reversed_bits * n >> bits
     _, first = np.unique(place, return_index=True)
     return place[np.sort(first)]
 
 
-def order_by_distance(xy_m):
-    """Return the order in which every next scan is the one taken farthest from all before it.
+def order_by_distance(scans: SurveyScans) -> IntArray:
+    """Return scans (n,) so that every next one was taken farthest from all before it.
 
-    The first comes first, of equals the lowest index (Gonzalez 1985, "Clustering to minimize the maximum intercluster
-    distance": any first k leave no scan farther from them than twice what the best k could).
+    Raises
+    ------
+    StageError
+        If the table of registration has no position of a scan.
+    """
+    return order_farthest_first(_positions(scans))
+
+
+def order_farthest_first(xy_m: FloatArray) -> IntArray:
+    """Return an order (n,) of places in which every next one is the farthest from all before it.
+
+    The first comes first, of equals the lowest index (Gonzalez 1985, "Clustering to minimize the
+    maximum intercluster distance": any first k leave none farther from them than twice what the
+    best k could).
 
     Parameters
     ----------
     xy_m : (n, 2) float, finite
-        Where the scans were taken.
-
-    Returns
-    -------
-    (n,) int
     """
     xy_m = np.asarray(xy_m, float)
-    nearest_m, order = np.full(len(xy_m), np.inf), []
+    order = []
+    nearest_m = np.full(len(xy_m), np.inf)
     for _ in range(len(xy_m)):
         order.append(int(np.argmax(nearest_m)))
         nearest_m = np.minimum(nearest_m, np.hypot(*(xy_m - xy_m[order[-1]]).T))
         nearest_m[order[-1]] = -1.0
     return np.array(order, int)
+
+
+def _positions(scans: SurveyScans) -> FloatArray:
+    """Return where (n, 2) the sensor was at scans."""
+    registered = scans.tables["registration"]
+    row = {int(scan_id): i for i, scan_id in enumerate(registered["scan_id"])}
+    scan_ids = scans.scan_ids.tolist()
+    rows = [row[scan_id] for scan_id in scan_ids if scan_id in row]
+    xy_m = np.column_stack([registered["x_m"], registered["y_m"]])[rows]
+    n_unknown = len(scan_ids) - len(rows)
+    if n_unknown or not np.isfinite(xy_m).all():
+        raise StageError(
+            f"registration: no position of {n_unknown or 'some'} of the {len(scans)} scans that"
+            " have hulls; delete the results of this dataset and run again"
+        )
+    return xy_m

@@ -1,28 +1,38 @@
 """Choices that cover much and together cost no more than a budget."""
 
-import heapq
+from collections.abc import Callable
 
 import numpy as np
+import numpy.typing as npt
+
+from scanplan.selection.lazy_greedy import Cover, choose_greedily
+from scanplan.types import BoolArray, FloatArray, IntArray
+
+_SAME_RATIO = 1e-9  # of the largest gain per cost: sums and quotients agree far better
 
 
-def choose_in_budget(new_cover, cost, budget, *, tie):
+def choose_in_budget(
+    new_cover: Callable[[], Cover], cost: npt.ArrayLike, budget: float, *, tie: float
+) -> list[int]:
     """Choose within a budget: by gain per cost, by gain alone, or one alone, whichever covers most.
 
-    Greedy by the ratio of gain to cost can be arbitrarily bad (one cheap choice in front of a good one that then no
-    longer fits), and so can greedy by gain; the best of the three covers at least (1 - 1/e) / 2 of the best set within
-    the budget (Khuller, Moss and Naor 1999, "The budgeted maximum coverage problem"; for any monotone submodular
-    function Leskovec et al. 2007, "Cost-effective outbreak detection in networks", theorem 3). Choices that no longer
-    fit are passed over, so the budget is used as far as something fits and adds.
+    Greedy by the ratio of gain to cost can be arbitrarily bad (one cheap choice in front of a good
+    one that then no longer fits), and so can greedy by gain; the best of the three covers at least
+    (1 - 1/e) / 2 of the best set within the budget (Khuller, Moss and Naor 1999, "The budgeted
+    maximum coverage problem"; for any monotone submodular function Leskovec et al. 2007,
+    "Cost-effective outbreak detection in networks", theorem 3). Choices that no longer fit are
+    passed over, so the budget is used as far as something fits and adds.
 
     Parameters
     ----------
     new_cover : callable
-        Returns a cover with nothing chosen; see `lazy_greedy`.
+        Returns a cover with nothing chosen.
     cost : (n,) float, > 0
     budget : float
         In the unit of the costs.
     tie : float
-        Gains no larger than this add nothing; ratios equal to 1e-9 of the largest are equal: the lowest index first.
+        Gains no larger than this add nothing; ratios equal to 1e-9 of the largest are equal: the
+        lowest index first.
 
     Returns
     -------
@@ -34,43 +44,77 @@ def choose_in_budget(new_cover, cost, budget, *, tie):
     ValueError
         If there is not one cost above 0 for each choice.
     """
-    cost = np.asarray(cost, float)
-    alone = np.array(new_cover().gain, float)
+    cost = np.array(cost, float)
+    alone = new_cover().gain.copy()
     if cost.shape != alone.shape or not (cost > 0).all():
         raise ValueError(f"{len(alone)} choices need as many costs above 0")
     fits = np.flatnonzero(cost <= budget)
     if len(fits) == 0:
         return []
     single = int(fits[alone[fits].argmax()])
-    # by gain first: of choices that cover the same it has the best beginnings, and sums differ by rounding
-    best = _greedy(new_cover(), cost, budget, np.ones(len(cost)), tie)
-    for other in (_greedy(new_cover(), cost, budget, 1 / cost, tie), ([single], alone[single])):
-        best = other if other[1] > best[1] + len(cost) * tie else best
-    return best[0]
+    # by gain first: of choices that cover the same it has the best beginnings
+    by_gain = _choose_by_worth(new_cover(), cost, budget, np.ones(len(cost)), tie)
+    by_ratio = _choose_by_worth(new_cover(), cost, budget, 1 / cost, tie)
+    best, covered = by_gain
+    for choices, also_covered in (by_ratio, ([single], float(alone[single]))):
+        # sums differ by rounding
+        if also_covered > covered + len(cost) * tie:
+            best, covered = choices, also_covered
+    return best
 
 
-def _greedy(cover, cost, budget, weight, tie):
-    """Take the largest weight times gain that still fits, again and again; return the choices and what they cover."""
-    heap = [
-        (-gain * weight[i], i)
-        for i, gain in enumerate(cover.gain)
-        if gain > tie and cost[i] <= budget
-    ]
-    heapq.heapify(heap)
-    chosen, covered, left = [], 0.0, budget
-    while heap:
-        fresh, best = {}, 0.0
-        while heap and -heap[0][0] >= best * (1 - 1e-9):
-            _, i = heapq.heappop(heap)
-            # what does not fit now never will, what adds nothing now never will
-            if cost[i] <= left and cover.refresh(i) > tie:
-                fresh[i] = cover.gain[i] * weight[i]
-                best = max(best, fresh[i])
-        if fresh:
-            taken = min(i for i, worth in fresh.items() if worth >= best * (1 - 1e-9))
-            covered += cover.choose(taken)
-            left -= cost[taken]
-            chosen.append(taken)
-            for i in fresh.keys() - {taken}:
-                heapq.heappush(heap, (-fresh[i], i))
+def _choose_by_worth(
+    cover: Cover, cost: FloatArray, budget: float, weight: FloatArray, tie: float
+) -> tuple[list[int], float]:
+    """Choose the largest weight times gain that fits, again and again.
+
+    Returns
+    -------
+    list of int
+    float
+        What they cover.
+    """
+    chosen = []
+    covered = 0.0
+    affordable = _Affordable(cover, cost, budget, weight, tie)
+    for i, gain in choose_greedily(affordable, tie=0.0, relative_tie=_SAME_RATIO):
+        if gain > tie:
+            chosen.append(i)
+            covered += gain
     return chosen, covered
+
+
+class _Affordable:
+    """A cover whose gains count by a weight, and of which only what still fits a budget remains."""
+
+    def __init__(
+        self, cover: Cover, cost: FloatArray, budget: float, weight: FloatArray, tie: float
+    ) -> None:
+        self._cover = cover
+        self._cost = cost
+        self._left = budget
+        self._weight = weight
+        self._tie = tie
+
+    @property
+    def gain(self) -> FloatArray:
+        return np.where(self._cover.gain > self._tie, self._cover.gain * self._weight, 0.0)
+
+    @property
+    def exact(self) -> BoolArray:
+        return self._cover.exact
+
+    @property
+    def remaining(self) -> BoolArray:
+        return self._cover.remaining & (self._cost <= self._left)
+
+    def refresh(self, some: IntArray, floor: float) -> None:
+        # a floor of weighted gains is none of gains
+        self._cover.refresh(some, -np.inf)
+
+    def choose(self, i: int) -> float:
+        self._left -= self._cost[i]
+        return self._cover.choose(i)
+
+    def tighten(self) -> None:
+        self._cover.tighten()

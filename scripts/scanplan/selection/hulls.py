@@ -1,5 +1,9 @@
-"""What a scan covers on the floor plan: one convex hull per cluster of its points (thesis 3.3.2, algorithm 2)."""
+"""What a scan covers on the floor plan: one convex hull per cluster of its points.
 
+Thesis 3.3.2, algorithm 2.
+"""
+
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -7,20 +11,24 @@ import shapely
 from scipy.cluster import vq
 
 from scanplan.store import schemas
+from scanplan.types import Array, Columns, FloatArray, IntArray
 
-_LLOYD_ITERATIONS = 20
-_MOST_CLUSTERS = np.iinfo(np.int16).max
-_SAME_POINT_DECIMALS = 6
-_MANY_POINTS = 50
+_LLOYD_ITERATIONS = 20  # centres move by less than the sample's noise after that
+_MOST_CLUSTERS = np.iinfo(np.int16).max  # labels are sorted as 16-bit numbers
+_SAME_POINT_DECIMALS = 6  # micrometres: no sensor resolves them
+_MANY_POINTS = 50  # with fewer, dropping inner points takes longer than the hull of all
 _INSIDE_M2 = 1e-6  # rounding is far less, also far from the map's origin
 
 
-def make_cluster_hulls(scan_id, xyz_m, *, n_clusters, sample_size, seed):
-    """Cluster one scan's points in plan view and draw one convex hull round each cluster (thesis, algorithm 2).
+def make_cluster_hulls(
+    scan_id: int, xyz_m: Array, *, n_clusters: int, sample_size: int, seed: int
+) -> dict[str, Array]:
+    """Cluster one scan's points in plan view and draw one convex hull round each cluster.
 
-    KMeans runs on a random sample of the points; then every point joins its nearest centre. The sample depends on
-    `seed` and `scan_id` alone. A cluster of fewer than three points, or of points on one line, stays as the Point or
-    LineString it is, with area 0: the convex hull of all rows is exactly that of all points.
+    Thesis, algorithm 2. KMeans runs on a random sample of the points; then every point joins its
+    nearest centre. The sample depends on `seed` and `scan_id` alone. A cluster of fewer than three
+    points, or of points on one line, stays as the Point or LineString it is, with area 0: the
+    convex hull of all rows is exactly that of all points.
 
     Parameters
     ----------
@@ -41,19 +49,22 @@ def make_cluster_hulls(scan_id, xyz_m, *, n_clusters, sample_size, seed):
     Raises
     ------
     ValueError
-        If there are no points, a coordinate is not finite, or a number of clusters or points is out of its range.
+        If there are no points, a coordinate is not finite, or a number of clusters or points is out
+        of its range.
     """
     xy_m = _plan_view(xyz_m)
     if not 1 <= n_clusters <= _MOST_CLUSTERS or sample_size < 1:
         raise ValueError(
-            f"n_clusters {n_clusters} must be 1 to {_MOST_CLUSTERS}, sample_size {sample_size} at least 1"
+            f"n_clusters {n_clusters} must be 1 to {_MOST_CLUSTERS}, sample_size {sample_size} at"
+            " least 1"
         )
     rng = np.random.default_rng([seed, scan_id])
-    sample = xy_m[rng.choice(len(xy_m), min(sample_size, len(xy_m)), replace=False, shuffle=False)]
+    n_sampled = min(sample_size, len(xy_m))
+    sample = xy_m[rng.choice(len(xy_m), n_sampled, replace=False, shuffle=False)]
     # relative to the mean, squared distances keep their digits far from the map's origin
     middle_m = sample.mean(axis=0)
-    centred, sample = xy_m - middle_m, sample - middle_m
-    label, n_points = _clusters(centred, _centres(sample, n_clusters, rng))
+    centres = _find_centres(sample - middle_m, n_clusters, rng)
+    label, n_points = _assign_clusters(xy_m - middle_m, centres)
     hulls = _convex_hulls(xy_m, label, len(n_points))
     return {
         "scan_id": np.full(len(hulls), scan_id, np.int32),
@@ -64,12 +75,12 @@ def make_cluster_hulls(scan_id, xyz_m, *, n_clusters, sample_size, seed):
     }
 
 
-def concatenate_hulls(parts):
+def concatenate_hulls(parts: Sequence[Columns]) -> dict[str, Array]:
     """Join the rows of several scans, in their order, to the columns of one table of hulls."""
     return {name: np.concatenate([part[name] for part in parts]) for name in schemas.HULLS.columns}
 
 
-def scan_polygons(columns):
+def scan_polygons(columns: Columns) -> tuple[IntArray, Array]:
     """Return each scan's polygon: the union of the hulls of its clusters.
 
     Parameters
@@ -83,20 +94,23 @@ def scan_polygons(columns):
     polygons : (m,) numpy.ndarray of shapely Polygon or MultiPolygon
         Empty for a scan of degenerate clusters only.
     """
-    scan_ids, groups = _by_scan(columns)
-    return scan_ids, _array(
-        [shapely.union_all(g[shapely.get_dimensions(g) == 2]) for g in groups], shapely.Polygon()
-    )
+    scan_ids, groups = _split_by_scan(columns)
+    unions = [shapely.union_all(hulls[shapely.get_dimensions(hulls) == 2]) for hulls in groups]
+    with_area = [union if union.area > 0 else shapely.Polygon() for union in unions]
+    return scan_ids, np.array(with_area, object)
 
 
-def scan_full_hulls(columns):
+def scan_full_hulls(columns: Columns) -> tuple[IntArray, Array]:
     """Return each scan's one convex hull, the thesis's baseline; see `scan_polygons`."""
-    scan_ids, groups = _by_scan(columns)
-    hulls = shapely.convex_hull(np.array([shapely.geometrycollections(g) for g in groups], object))
-    return scan_ids, np.where(shapely.get_dimensions(hulls) == 2, hulls, shapely.Polygon())
+    scan_ids, groups = _split_by_scan(columns)
+    hulls = shapely.convex_hull(
+        np.array([shapely.geometrycollections(hulls) for hulls in groups], object)
+    )
+    hulls[shapely.get_dimensions(hulls) != 2] = shapely.Polygon()
+    return scan_ids, hulls
 
 
-def _plan_view(xyz_m):
+def _plan_view(xyz_m: Array) -> FloatArray:
     xyz_m = np.asarray(xyz_m)
     if xyz_m.ndim != 2 or xyz_m.shape[0] < 1 or xyz_m.shape[1] not in (2, 3):
         raise ValueError(f"a scan must be (n, 2) or (n, 3) with n >= 1, not {xyz_m.shape}")
@@ -106,22 +120,23 @@ def _plan_view(xyz_m):
     return xy_m
 
 
-def _centres(sample, n_clusters, rng):
-    """KMeans of the sample (k, 2); its distinct points where they are no more than `n_clusters`."""
+def _find_centres(sample: FloatArray, n_clusters: int, rng: np.random.Generator) -> FloatArray:
+    """Return the centres of KMeans of the sample (k, 2); its distinct points if these suffice."""
     rounded = sample.round(_SAME_POINT_DECIMALS)
-    # to tell points apart by x is quick, and nearly always enough
+    # to compare points by x is quick, and nearly always enough
     if len(np.unique(rounded[:, 0])) <= n_clusters:
         distinct = np.unique(rounded, axis=0)
         if len(distinct) <= n_clusters:
             return distinct
-    return _means(sample, _spread_centres(sample, n_clusters, rng))
+    return _move_to_means(sample, _spread_centres(sample, n_clusters, rng))
 
 
-def _means(sample, centres):
-    """Lloyd's iterations from first centres, until nothing changes; a centre that loses all its points stays."""
+def _move_to_means(sample: FloatArray, centres: FloatArray) -> FloatArray:
+    """Iterate after Lloyd until nothing changes; a centre that loses all its points stays."""
     nearest = None
     for _ in range(_LLOYD_ITERATIONS):
-        before, (nearest, _) = nearest, vq.vq(sample, centres, check_finite=False)
+        before = nearest
+        nearest, _ = vq.vq(sample, centres, check_finite=False)
         if before is not None and np.array_equal(nearest, before):
             break
         n_points = np.bincount(nearest, minlength=len(centres))
@@ -132,11 +147,12 @@ def _means(sample, centres):
     return centres
 
 
-def _spread_centres(sample, n_clusters, rng):
+def _spread_centres(sample: FloatArray, n_clusters: int, rng: np.random.Generator) -> FloatArray:
     """Draw first centres far from each other: k-means++ with several candidates a step.
 
-    Each centre is drawn with probability proportional to the squared distance to those already drawn; of a few such
-    candidates the one that leaves the least distance is taken (Arthur and Vassilvitskii 2007, sections 2.2 and 7).
+    Each centre is drawn with probability proportional to the squared distance to those already
+    drawn; of a few such candidates the one that leaves the least distance is taken (Arthur and
+    Vassilvitskii 2007, sections 2.2 and 7).
     """
     n_candidates = 2 + int(np.log(n_clusters))
     chosen = [int(rng.integers(len(sample)))]
@@ -152,62 +168,57 @@ def _spread_centres(sample, n_clusters, rng):
     return sample[chosen]
 
 
-def _squared_distance(xy_m, to_m):
-    """Squared distances (m, n) of points (n, 2) to points (m, 2)."""
+def _squared_distance(xy_m: FloatArray, to_m: FloatArray) -> FloatArray:
+    """Return squared distances (m, n) of points (n, 2) to points (m, 2)."""
     return (xy_m[:, 0] - to_m[:, :1]) ** 2 + (xy_m[:, 1] - to_m[:, 1:]) ** 2
 
 
-def _clusters(xy_m, centres):
-    """Nearest centre of every point (the first of equals), numbered without gaps, and the points of each."""
+def _assign_clusters(xy_m: FloatArray, centres: FloatArray) -> tuple[IntArray, IntArray]:
+    """Return each point's nearest centre, numbered without gaps, and how many points each has."""
     # neither a matrix product nor threads: the same labels for any core count
     nearest, _ = vq.vq(xy_m, centres, check_finite=False)
     n_points = np.bincount(nearest, minlength=len(centres))
     return (np.cumsum(n_points > 0) - 1)[nearest], n_points[n_points > 0]
 
 
-def _convex_hulls(xy_m, label, n_clusters):
-    """One convex hull per label, of the line through its outer points: much faster made than a MultiPoint."""
-    # sorting 16-bit numbers is linear
+def _convex_hulls(xy_m: FloatArray, label: IntArray, n_clusters: int) -> Array:
+    """Return one convex hull per label, of the line through its outer points."""
+    # sorting 16-bit numbers is linear; a line is much faster made than a MultiPoint
     by_label = np.argsort(label.astype(np.int16), kind="stable")
     start = np.cumsum(np.bincount(label + 1, minlength=n_clusters + 1))
     clusters = [_outer(xy_m.take(by_label[a:b], axis=0)) for a, b in pairwise(start)]
     indices = np.repeat(np.arange(n_clusters), [len(points) for points in clusters])
-    return shapely.normalize(
-        shapely.convex_hull(shapely.linestrings(np.concatenate(clusters), indices=indices))
-    )
+    lines = shapely.linestrings(np.concatenate(clusters), indices=indices)
+    return np.asarray(shapely.normalize(shapely.convex_hull(lines)))
 
 
-def _outer(xy_m):
-    """Return the points (n, 2) but for those well inside the quadrilateral of their diagonal extremes, at least 2.
+def _outer(xy_m: FloatArray) -> FloatArray:
+    """Return the points (n, 2) that may be corners of their convex hull, at least 2.
 
-    None of these is a corner of the convex hull (Akl and Toussaint 1978, "A fast convex hull algorithm"); of walls seen
-    from a room few others are left.
+    Those well inside the quadrilateral of the diagonal extremes are left out: none of these is a
+    corner of the convex hull (Akl and Toussaint 1978, "A fast convex hull algorithm"); of walls
+    seen from a room few others are left.
     """
     if len(xy_m) < _MANY_POINTS:
         # a line needs two points
         return np.concatenate([xy_m, xy_m[:1]])
-    x_m, y_m = xy_m[:, 0].copy(), xy_m[:, 1].copy()
-    along = (x_m + y_m, y_m - x_m)
-    corners = xy_m[[*(a.argmax() for a in along), *(a.argmin() for a in along)]].tolist()
+    x_m, y_m = np.ascontiguousarray(xy_m.T)
+    rising_m = x_m + y_m
+    falling_m = y_m - x_m
+    extremes = [rising_m.argmax(), falling_m.argmax(), rising_m.argmin(), falling_m.argmin()]
+    corners = xy_m[extremes].tolist()
     inside_m2 = np.full(len(xy_m), np.inf)
     for (x0_m, y0_m), (x1_m, y1_m) in zip(corners, corners[1:] + corners[:1], strict=True):
         if (x0_m, y0_m) != (x1_m, y1_m):
             # twice the area of a point's triangle with this edge: above 0 on the inner side
-            np.minimum(
-                inside_m2,
-                (x1_m - x0_m) * (y_m - y0_m) - (y1_m - y0_m) * (x_m - x0_m),
-                out=inside_m2,
-            )
+            edge_m2 = (x1_m - x0_m) * (y_m - y0_m) - (y1_m - y0_m) * (x_m - x0_m)
+            np.minimum(inside_m2, edge_m2, out=inside_m2)
     outer = inside_m2 <= _INSIDE_M2
     outer[0] = True
     return np.concatenate([xy_m[outer], xy_m[:1]])
 
 
-def _by_scan(columns):
+def _split_by_scan(columns: Columns) -> tuple[IntArray, list[Array]]:
+    """Return the scans (m,) and the geometries of each."""
     scan_ids, start = np.unique(columns["scan_id"], return_index=True)
     return scan_ids, np.split(shapely.from_wkb(columns["geometry"]), start)[1:]
-
-
-def _array(geometries, empty):
-    """Object array of geometries, `empty` for those without area."""
-    return np.array([g if g.area > 0 else empty for g in geometries], object)

@@ -3,29 +3,37 @@
 import numpy as np
 
 from scanplan.errors import StageError
-from scanplan.selection import area_greedy
+from scanplan.selection.area_greedy import TIE_M2
+from scanplan.types import Columns, FloatArray, IntArray
 
 BYTES_PER_POINT = 12
-"""A point is three numbers of four bytes, as registered scans are stored before they are compressed."""
+"""Three numbers of four bytes, as registered scans are stored before they are compressed."""
 
 
 def choose_n_scans(
-    columns, *, n_scans=None, area_share=None, min_gain_m2=None, max_points=None, max_bytes=None
-):
+    columns: Columns,
+    *,
+    n_scans: int | None = None,
+    area_share: float | None = None,
+    min_gain_m2: float | None = None,
+    max_points: int | None = None,
+    max_bytes: int | None = None,
+) -> tuple[int, str]:
     """Return how many of the first scans to use, and why.
 
-    Of several limits the one that needs fewest scans decides; with none all scans are used. One scan is always used.
+    Of several limits the one that needs fewest scans decides; with none all scans are used. One
+    scan is always used.
 
     Parameters
     ----------
     columns : dict of str to (n,) numpy.ndarray, n >= 1
-        `covered_m2`, or both it and `covered`, of a table of an ordering, by rank; `gain_m2` for `min_gain_m2`,
-        `n_points` for a budget.
+        `covered_m2`, or both it and `covered`, of a table of an ordering, by rank; `gain_m2` for
+        `min_gain_m2`, `n_points` for a budget.
     n_scans : int, >= 1, optional
         Use so many scans, or all if there are fewer.
     area_share : float in (0, 1], optional
-        Use the fewest scans that cover this share of what all cover (within `area_greedy.TIE_M2`), measured by `covered`,
-        the objective of the method itself, where it is given.
+        Use the fewest scans that cover this share of what all cover (within `area_greedy.TIE_M2`),
+        measured by `covered`, the objective of the method itself, where it is given.
     min_gain_m2 : float, > 0, optional
         Use no scan after the last that adds this much area.
     max_points, max_bytes : int, >= 1, optional
@@ -60,13 +68,13 @@ def choose_n_scans(
     return min(reversed(limits), key=lambda limit: limit[0])
 
 
-def points_budget(*, max_points=None, max_bytes=None):
+def points_budget(*, max_points: int | None = None, max_bytes: int | None = None) -> int | None:
     """Return how many points two limits leave together; None where neither is given."""
     limits = [max_points, None if max_bytes is None else max_bytes // BYTES_PER_POINT]
     return min((limit for limit in limits if limit is not None), default=None)
 
 
-def _by_number(n, wanted):
+def _by_number(n: int, wanted: int) -> tuple[int, str]:
     if wanted < 1:
         raise ValueError(f"n_scans is {wanted}: a plan needs at least one scan")
     if wanted > n:
@@ -74,36 +82,33 @@ def _by_number(n, wanted):
     return int(wanted), f"{wanted} of {n} scans, as asked for"
 
 
-def _by_share(columns, share):
+def _by_share(columns: Columns, share: float) -> tuple[int, str]:
     if not 0 < share <= 1:
         raise ValueError(f"area_share is {share}, must be above 0 and at most 1")
-    covered_m2 = columns["covered_m2"]
-    covered = columns.get("covered", covered_m2)
-    k = int((covered >= share * covered[-1] - area_greedy.TIE_M2).argmax()) + 1
-    area = np.array_equal(covered, covered_m2)
-    whole = (
-        f"the {covered[-1]:.1f} m2 that all cover"
-        if area
-        else "what all show, by the method's own measure"
-    )
-    return k, f"{k} of {len(covered)} scans {'cover' if area else 'show'} {share:.4g} of {whole}"
+    covered = columns.get("covered", columns["covered_m2"])
+    k = int((covered >= share * covered[-1] - TIE_M2).argmax()) + 1
+    chosen = f"{k} of {len(covered)} scans"
+    if np.array_equal(covered, columns["covered_m2"]):
+        return k, f"{chosen} cover {share:.4g} of the {covered[-1]:.1f} m2 that all cover"
+    return k, f"{chosen} show {share:.4g} of what all show, by the method's own measure"
 
 
-def _by_gain(gain_m2, least_m2):
+def _by_gain(gain_m2: FloatArray, least_m2: float) -> tuple[int, str]:
     if not least_m2 > 0:
         raise ValueError(f"min_gain_m2 is {least_m2}, must be above 0")
-    adding = np.flatnonzero(gain_m2 >= least_m2 - area_greedy.TIE_M2)
+    adding = np.flatnonzero(gain_m2 >= least_m2 - TIE_M2)
     k = int(adding[-1]) + 1 if len(adding) else 1
     return k, f"{k} of {len(gain_m2)} scans: no later one adds {least_m2:.4g} m2"
 
 
-def _by_budget(n_points, limit, unit, size):
+def _by_budget(n_points: IntArray, limit: int, unit: str, size: int) -> tuple[int, str]:
     if limit < 1:
         raise ValueError(f"max_{unit} is {limit}, must be at least 1")
     used = size * np.cumsum(n_points, dtype=np.int64)
     k = int(np.searchsorted(used, limit, side="right"))
     if k == 0:
         raise StageError(
-            f"selection.stop.max_{unit}: the first scan has {used[0]:,} {unit}, the budget is {limit:,}; raise it"
+            f"selection.stop.max_{unit}: the first scan has {used[0]:,} {unit},"
+            f" the budget is {limit:,}; raise it"
         )
     return k, f"{k} of {len(used)} scans: {used[k - 1]:,} of at most {limit:,} {unit}"

@@ -1,25 +1,37 @@
-"""Choose scans while they are recorded: one pass, bounded memory (thesis, chapter 6: selection in real time)."""
+"""Choose scans while they are recorded: one pass, bounded memory.
+
+Thesis, chapter 6: selection in real time.
+"""
 
 import math
 
 import numpy as np
 import shapely
+from shapely.geometry.base import BaseGeometry
 
-from scanplan.geometry.polygons import move_near_origin, subtract_polygons, unite_polygons
-from scanplan.selection import area_greedy
+from scanplan.geometry.polygons import (
+    Polygons,
+    move_near_origin,
+    subtract_polygons,
+    unite_polygons,
+)
+from scanplan.selection import area_greedy, hulls
+from scanplan.selection.survey_scans import SurveyScans
+from scanplan.types import IntArray
 
 
 class StreamingSieves:
     """Up to k polygons of a stream whose union covers much.
 
-    Sieve-Streaming++ (Kazemi, Mitrovic, Zadimoghaddam, Lattanzi and Karbasi 2019, "Submodular Streaming in All its
-    Glory"). For each of a ladder of thresholds, (1 + epsilon) apart, a sieve takes every polygon that adds at least
-    the threshold to those it holds, until it holds k. Thresholds below a 2k-th of what the best sieve covers are
-    given up, those above the largest polygon so far not yet needed. The best sieve covers at least 1/2 - epsilon of
-    what any k polygons of the stream cover, and no more than O(k / epsilon) polygons are held at any time.
+    Sieve-Streaming++ (Kazemi, Mitrovic, Zadimoghaddam, Lattanzi and Karbasi 2019, "Submodular
+    Streaming in All its Glory"). For each of a ladder of thresholds, (1 + epsilon) apart, a sieve
+    takes every polygon that adds at least the threshold to those it holds, until it holds k.
+    Thresholds below a 2k-th of what the best sieve covers are given up, those above the largest
+    polygon so far not yet needed. The best sieve covers at least 1/2 - epsilon of what any k
+    polygons of the stream cover, and no more than O(k / epsilon) polygons are held at any time.
 
-    At the end greedy chooses k of all that is held, and the better of its choice and the best sieve is taken: the
-    guarantee stays, and far more is covered in practice.
+    At the end greedy chooses k of all that is held, and the better of its choice and the best sieve
+    is taken: the guarantee stays, and far more is covered in practice.
 
     Parameters
     ----------
@@ -37,17 +49,20 @@ class StreamingSieves:
         If a parameter is out of its range.
     """
 
-    def __init__(self, k, *, epsilon):
+    def __init__(self, k: int, *, epsilon: float) -> None:
         if k < 1 or not 0 < epsilon < 0.5:
             raise ValueError(
                 f"k is {k}, must be at least 1; epsilon is {epsilon}, must be above 0 and below 0.5"
             )
-        self._k, self._step = k, math.log1p(epsilon)
-        self._largest_m2, self._covered_m2 = 0.0, 0.0
-        self._sieves, self._held = {}, {}
+        self._k = k
+        self._step = math.log1p(epsilon)
+        self._largest_m2 = 0.0
+        self._covered_m2 = 0.0
+        self._sieves: dict[int, _Sieve] = {}
+        self._held: dict[int, BaseGeometry] = {}
         self.most_held = 0
 
-    def add(self, index, polygon):
+    def add(self, index: int, polygon: BaseGeometry) -> None:
         """Show the next polygon of the stream: valid, square metres, with an index of its own."""
         area_m2 = polygon.area
         if area_m2 <= 0:
@@ -66,7 +81,7 @@ class StreamingSieves:
         self._forget()
         self.most_held = max(self.most_held, len(self._held))
 
-    def choose(self):
+    def choose(self) -> list[int]:
         """Return the indices, at most k, of the polygons to take, in greedy order."""
         if not self._held:
             return []
@@ -74,22 +89,18 @@ class StreamingSieves:
         by_greedy = area_greedy.order_by_area([self._held[i] for i in held])
         k = min(self._k, len(held))
         best = max(self._sieves.values(), key=lambda sieve: sieve.covered_m2)
-        if by_greedy.covered_m2[k - 1] >= best.covered_m2:
+        if by_greedy.covered[k - 1] >= best.covered_m2:
             return held[by_greedy.order[:k]].tolist()
-        return [
-            best.chosen[i]
-            for i in area_greedy.order_by_area([self._held[i] for i in best.chosen]).order
-        ]
+        order = area_greedy.order_by_area([self._held[i] for i in best.chosen]).order
+        return [best.chosen[i] for i in order]
 
-    def _raise_thresholds(self):
+    def _raise_thresholds(self) -> None:
         lowest_m2 = max(self._covered_m2, self._largest_m2) / (2 * self._k)
-        first, last = (
-            math.ceil(math.log(lowest_m2) / self._step),
-            math.floor(math.log(self._largest_m2) / self._step),
-        )
+        first = math.ceil(math.log(lowest_m2) / self._step)
+        last = math.floor(math.log(self._largest_m2) / self._step)
         self._sieves = {e: self._sieves.get(e) or _Sieve() for e in range(first, last + 1)}
 
-    def _forget(self):
+    def _forget(self) -> None:
         used = {i for sieve in self._sieves.values() for i in sieve.chosen}
         self._held = {i: polygon for i, polygon in self._held.items() if i in used}
 
@@ -97,11 +108,12 @@ class StreamingSieves:
 class _Sieve:
     """What one threshold has let through."""
 
-    def __init__(self):
-        self.chosen, self.covered_m2 = [], 0.0
+    def __init__(self) -> None:
+        self.chosen: list[int] = []
+        self.covered_m2 = 0.0
         self._union = shapely.Polygon()
 
-    def take(self, index, polygon, least_m2):
+    def take(self, index: int, polygon: BaseGeometry, least_m2: float) -> bool:
         """Take a polygon if it adds enough; return whether it did."""
         added_m2 = subtract_polygons([polygon], [self._union])[0].area
         if added_m2 < least_m2:
@@ -112,10 +124,19 @@ class _Sieve:
         return True
 
 
-def order_streaming(polygons, *, k=60, epsilon=0.1):
-    """Order polygons by one pass over them: first those that `StreamingSieves` chooses, then the others as they came.
+def order_in_one_pass(scans: SurveyScans) -> IntArray:
+    """Return scans (n,) by one pass over the hulls of their clusters, with their settings."""
+    polygons = hulls.scan_polygons(scans.tables["hulls"])[1]
+    return order_streaming(polygons, **scans.streaming)[0]
 
-    What is bounded is what the sieves hold; the polygons themselves are all here, to be moved near the origin.
+
+def order_streaming(
+    polygons: Polygons, *, k: int = 60, epsilon: float = 0.1
+) -> tuple[IntArray, int]:
+    """Order polygons in one pass: first those that `StreamingSieves` chooses, then the others.
+
+    The others stay as they came. What is bounded is what the sieves hold; the polygons themselves
+    are all here, to be moved near the origin.
 
     Parameters
     ----------

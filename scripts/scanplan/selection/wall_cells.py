@@ -1,28 +1,33 @@
-"""How much wall a scan shows, and where, from its returns alone: what an extractor could find, without running it.
+"""How much wall a scan shows, and where: what an extractor could find, without running it.
 
-The floor plan is divided into square cells, once for each of the four ways a surface can face (-x, +x, -y, +y). A
-return on an upright surface with horizontal unit normal n belongs to facing x with share nx^2 and to facing y with
-share ny^2; across its wall it is shared between the two nearest rows of cells, in proportion. Along the wall every
-cell stands for its edge, times |nx| or |ny|. So a wall of any direction counts its own length, L nx^2 + L ny^2, and
-as much in whichever row it lies; a wall that two scans place a little apart is counted little more than once.
+The floor plan is divided into square cells, once for each of the four ways a surface can face (-x,
++x, -y, +y). A return on an upright surface with horizontal unit normal n belongs to facing x with
+share nx^2 and to facing y with share ny^2; across its wall it is shared between the two nearest
+rows of cells, in proportion. Along the wall every cell stands for its edge, times |nx| or |ny|. So
+a wall of any direction counts its own length, L nx^2 + L ny^2, and as much in whichever row it
+lies; a wall that two scans place a little apart is counted little more than once.
 """
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy import ndimage
 
-from scanplan.extraction import normals, segments
+from scanplan.extraction import normals
+from scanplan.rays import scan_view, sensor_frame
+from scanplan.types import Array, BoolArray, Columns, FloatArray, IntArray
 
-FACINGS = 4
-# beams that are 0.1 degrees apart leave a cell of 0.25 m with one return or none; cells fill the square around all
-_FARTHEST_M = 150.0
-_LEAST_M = 1e-3
+FACINGS = 4  # -x, +x, -y and +y
+_FARTHEST_M = 150.0  # beams 0.1 degrees apart leave a cell of 0.25 m with one return or none there
+_LEAST_M = 1e-3  # of wall in a cell; shorter is noise, and not worth a row
 _ROWS = 3  # a wall's returns are in two rows of cells, noise puts some into a third
-_SAME_SIDE = 1e-3
-_MAYBE = 0.5
-_SURE = 2  # times the fewest returns
+_SAME_SIDE = 1e-3  # cosine; a wall that is square to a facing faces it by rounding alone
+_HALF_SURE = 0.5  # what may be a wall or furniture counts half
+_SURE = 2  # times the fewest returns: an extractor may split fewer otherwise
 _KEYS = ("facing", "along", "across")
+
+_Cells = tuple[IntArray, IntArray, FloatArray]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,14 +47,15 @@ class WallCellSettings:
     min_height_m : float
         Least vertical extent of what belongs together; for 3-D scans alone.
     wall_height_m : float
-        Above the scan's floor: what has a return from here up is a wall. What is seen up to as high as the sensor looks
-        at that distance, but not up to here, may be one and counts half; what ends below is furniture and does not.
-        For 3-D scans alone.
+        Above the scan's floor: what has a return from here up is a wall. What is seen up to as high
+        as the sensor looks at that distance, but not up to here, may be one and counts half; what
+        ends below is furniture and does not. For 3-D scans alone.
     door_height_m : float
-        Above the scan's floor; higher returns are left out: they may be the wall above a door. For 3-D scans alone.
+        Above the scan's floor; higher returns are left out: they may be the wall above a door. For
+        3-D scans alone.
     min_points, min_points_planar : int
-        The fewest returns of a wall; twice as many are one for sure, fewer count in proportion: an extractor may part
-        them otherwise. Of a 3-D scan, of a planar one.
+        The fewest returns of a wall; twice as many are one for sure, fewer count in proportion: an
+        extractor may part them otherwise. Of a 3-D scan, of a planar one.
     """
 
     cell_m: float
@@ -63,11 +69,19 @@ class WallCellSettings:
     min_points_planar: int
 
 
-def observe_wall_cells(_scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
+def observe_wall_cells(
+    _scan_id: int,
+    xyz_m: FloatArray,
+    *,
+    sensor_xyz_m: FloatArray,
+    planar: bool,
+    settings: WallCellSettings,
+) -> dict[str, Array]:
     """Measure the length of wall that one scan shows in every cell.
 
     Returns thin out with the square of the range and with the angle of incidence; where fewer than
-    `settings.min_points` are together, or lower than `settings.min_height_m`, an extractor finds no wall.
+    `settings.min_points` are together, or lower than `settings.min_height_m`, an extractor finds no
+    wall.
 
     Parameters
     ----------
@@ -77,105 +91,119 @@ def observe_wall_cells(_scan_id, xyz_m, *, sensor_xyz_m, planar, settings):
         The sensor's position, map frame.
     planar : bool
         Whether all points are in one horizontal plane.
-    settings : Settings
+    settings : WallCellSettings
 
     Returns
     -------
     dict of str to (m,) numpy.ndarray
-        The scan's rows of `schemas.OBSERVATIONS`, without `scan_id`; none where there is no upright surface.
+        The scan's rows of `schemas.OBSERVATIONS`, without `scan_id`; none where there is no upright
+        surface.
 
     Raises
     ------
     ValueError
         If a coordinate is not finite.
     """
-    points = segments.centre_on_sensor(xyz_m, sensor_xyz_m)
-    points = points[np.hypot(*points[:, :2].T) <= _FARTHEST_M]
-    top_m = segments.door_top_m(points, settings, planar=planar)
-    tall = _tall(
-        points,
-        top_m - settings.door_height_m + settings.wall_height_m,
-        np.deg2rad(settings.reach_deg),
-    )
-    low = points[:, 2] <= top_m
-    points, tall = points[low], tall[low]
-    upright, facing = _upright(points, planar, settings)
-    xy_m = points[upright, :2] + np.asarray(sensor_xyz_m, float)[:2]
-    seen = xy_m, facing, None if planar else (points[upright, 2], tall[upright])
-    parts = [_one_facing(which, *seen, settings) for which in range(FACINGS)]
+    points_m = sensor_frame.centre_on_sensor(xyz_m, sensor_xyz_m)
+    points_m = points_m[np.hypot(*points_m[:, :2].T) <= _FARTHEST_M]
+    door_top_m = _door_top_m(points_m, settings, planar)
+    wall_top_m = door_top_m - settings.door_height_m + settings.wall_height_m
+    tallness = _rate_tallness(points_m, wall_top_m, np.deg2rad(settings.reach_deg))
+    low = points_m[:, 2] <= door_top_m
+    points_m, tallness = points_m[low], tallness[low]
+    upright, facing = _find_upright(points_m, planar, settings)
+    xy_m = points_m[upright, :2] + np.asarray(sensor_xyz_m, float)[:2]
+    heights = None if planar else (points_m[upright, 2], tallness[upright])
+    parts = [_measure_facing(which, xy_m, facing, heights, settings) for which in range(FACINGS)]
     along, across, length_m = (np.concatenate(column) for column in zip(*parts, strict=True))
     facings = np.repeat(np.arange(FACINGS), [len(part[0]) for part in parts])
     return {"facing": facings, "along": along, "across": across, "length_m": length_m}
 
 
-def observation_columns(scan_ids, observed):
+def observation_columns(
+    scan_ids: Sequence[int] | IntArray, observed: Sequence[Columns]
+) -> dict[str, Array]:
     """Return the columns of `schemas.OBSERVATIONS` of several scans, in their order."""
-    scan_id = np.repeat(
-        np.asarray(scan_ids, np.int32), [len(part["length_m"]) for part in observed]
-    )
-    return {
-        "scan_id": scan_id,
-        **{name: np.concatenate([p[name] for p in observed]) for name in (*_KEYS, "length_m")},
+    counts = [len(part["length_m"]) for part in observed]
+    scan_id = np.repeat(np.asarray(scan_ids, np.int32), counts)
+    values = {
+        name: np.concatenate([part[name] for part in observed]) for name in (*_KEYS, "length_m")
     }
+    return {"scan_id": scan_id, **values}
 
 
-def number_cells(columns):
+def number_cells(columns: Mapping[str, Array]) -> IntArray:
     """Return a number (m,), 0 or above, for each row's cell: the same for the same cell."""
     cell = np.zeros(len(columns["facing"]), np.int64)
     for name in _KEYS:
         values = columns[name].astype(np.int64)
-        low, high = values.min(initial=0), values.max(initial=0)
-        cell = cell * (high - low + 1) + values - low
+        low = values.min(initial=0)
+        cell = cell * (values.max(initial=0) - low + 1) + values - low
     return cell
 
 
-def _upright(points, planar, settings):
-    """Return which points (n,) bool are on upright surfaces, and the horizontal unit normals (m, 2) of these."""
+def _door_top_m(points_m: FloatArray, settings: WallCellSettings, planar: bool) -> float:
+    """Return the height above which returns may be the wall above a door; infinite in the plane."""
+    if planar or len(points_m) == 0:
+        return np.inf
+    return scan_view.lowest_height(points_m) + settings.door_height_m
+
+
+def _find_upright(
+    points_m: FloatArray, planar: bool, settings: WallCellSettings
+) -> tuple[BoolArray, FloatArray]:
+    """Return which points (n,) are on upright surfaces, and the horizontal normals (m, 2) there."""
     if planar:
-        facing = normals.estimate_outline_normals(points[:, :2], reach_deg=settings.reach_deg)
+        facing = normals.estimate_outline_normals(points_m[:, :2], reach_deg=settings.reach_deg)
         upright = np.isfinite(facing[:, 0])
         return upright, facing[upright]
-    facing = normals.estimate_surface_normals(points, reach_deg=settings.reach_deg)
+    facing = normals.estimate_surface_normals(points_m, reach_deg=settings.reach_deg)
     upright = np.abs(facing[:, 2]) <= np.sin(np.deg2rad(settings.max_tilt_deg))
     facing = facing[upright, :2]
     return upright, facing / np.hypot(*facing.T)[:, None]
 
 
-def _tall(points, height_m, reach_rad):
-    """Return 1 for points above a height, `_MAYBE` for those about as high as the scan looks there, 0 for others."""
-    elevation = np.arctan2(points[:, 2], np.hypot(points[:, 0], points[:, 1]))
-    as_high = elevation >= elevation.max(initial=-np.inf) - reach_rad
-    return np.where(points[:, 2] >= height_m, 1.0, np.where(as_high, _MAYBE, 0.0))
+def _rate_tallness(points_m: FloatArray, height_m: float, reach_rad: float) -> FloatArray:
+    """Return how surely each point (n,) shows something as tall as a wall, 0 to 1.
 
-
-def _one_facing(which, xy_m, facing, heights, settings):
-    """Return the cells along and across (m,) int32 that face one way, and the length (m,) of wall in each.
-
-    Heights are z and what `_tall` says of each point, (n,) each, or None of a planar scan.
+    1 above a height, half for those about as high as the scan looks there, 0 for others.
     """
-    axis, sign = which // 2, 2 * (which % 2) - 1
+    elevation = np.arctan2(points_m[:, 2], np.hypot(points_m[:, 0], points_m[:, 1]))
+    as_high = elevation >= elevation.max(initial=-np.inf) - reach_rad
+    return np.where(points_m[:, 2] >= height_m, 1.0, np.where(as_high, _HALF_SURE, 0.0))
+
+
+def _measure_facing(
+    which: int,
+    xy_m: FloatArray,
+    facing: FloatArray,
+    heights: tuple[FloatArray, FloatArray] | None,
+    settings: WallCellSettings,
+) -> _Cells:
+    """Return the cells along and across (m,) int32 that face one way, and the wall's length there.
+
+    Heights are z and `_rate_tallness` of each point, (n,) each, or None of a planar scan.
+    """
+    axis = which // 2
+    sign = 2 * (which % 2) - 1
     there = facing[:, axis] * sign > _SAME_SIDE
     if not there.any():
         return np.empty(0, np.int32), np.empty(0, np.int32), np.empty(0)
-    cosine, grid = (
-        np.abs(facing[there, axis]),
-        _Grid(xy_m[there][:, [1 - axis, axis]], settings.cell_m),
-    )
+    cosine = np.abs(facing[there, axis])
+    grid = _Grid(xy_m[there][:, [1 - axis, axis]], settings.cell_m)
     n_points = grid.sums(cosine**2)
     mean_cosine = _ratio(grid.sums(cosine**3), n_points)
     n_beside = ndimage.convolve1d(n_points, np.ones(_ROWS), axis=1, mode="constant")
     window = 2 * round(settings.max_gap_m / settings.cell_m) + 1
     wanted = settings.min_points_planar if heights is None else settings.min_points
     n_together = ndimage.convolve1d(n_beside, np.ones(window), axis=0, mode="constant")
-    found = np.minimum(n_together / (_SURE * wanted), 1.0)
+    findable = np.minimum(n_together / (_SURE * wanted), 1.0)
     if heights is not None:
-        z_m, tall = (values[there] for values in heights)
-        found = found * (
-            grid.top(z_m, (window, _ROWS)) + grid.top(-z_m, (window, _ROWS))
-            >= settings.min_height_m
-        )
-        found = found * np.maximum(grid.top(tall, (window, _ROWS)), 0.0)
-    length_m = settings.cell_m * mean_cosine * _ratio(n_points, n_beside) * found
+        z_m, tallness = (values[there] for values in heights)
+        extent_m = grid.top(z_m, (window, _ROWS)) + grid.top(-z_m, (window, _ROWS))
+        findable = findable * (extent_m >= settings.min_height_m)
+        findable = findable * np.maximum(grid.top(tallness, (window, _ROWS)), 0.0)
+    length_m = settings.cell_m * mean_cosine * _ratio(n_points, n_beside) * findable
     along, across = np.nonzero(length_m >= _LEAST_M)
     origin = grid.origin.astype(np.int32)
     return (
@@ -186,32 +214,31 @@ def _one_facing(which, xy_m, facing, heights, settings):
 
 
 class _Grid:
-    """Cells of the plane, (along, across): points lie in one cell along and are shared by two across."""
+    """Cells of the plane: points (n, 2) lie in one cell along and are shared by two across."""
 
-    def __init__(self, at_m, cell_m):
+    def __init__(self, at_m: FloatArray, cell_m: float) -> None:
         at = at_m / cell_m - (0.0, 0.5)
         whole = np.floor(at).astype(np.int64)
         self.origin = whole.min(axis=0)
         self.shape = tuple(whole.max(axis=0) - self.origin + (1, 2))
-        self._lower = np.ravel_multi_index((whole - self.origin).T, self.shape)
+        self._lower = np.ravel_multi_index(tuple((whole - self.origin).T), self.shape)
         self._upper_share = at[:, 1] - whole[:, 1]
 
-    def sums(self, weight):
-        """Add up a weight of the points in every cell."""
-        flat = np.bincount(
-            self._lower, weight * (1 - self._upper_share), minlength=np.prod(self.shape)
-        )
-        return (
-            flat + np.bincount(self._lower + 1, weight * self._upper_share, minlength=len(flat))
-        ).reshape(self.shape)
+    def sums(self, weight: FloatArray) -> FloatArray:
+        """Add up a weight (n,) of the points in every cell."""
+        n_cells = int(np.prod(self.shape))
+        lower = np.bincount(self._lower, weight * (1 - self._upper_share), minlength=n_cells)
+        upper = np.bincount(self._lower + 1, weight * self._upper_share, minlength=n_cells)
+        return np.asarray(lower + upper, float).reshape(self.shape)
 
-    def top(self, value, window):
-        """Return the largest value of the points in a window around every cell; -inf without any."""
+    def top(self, value: FloatArray, window: tuple[int, int]) -> FloatArray:
+        """Return the largest value of points in a window round every cell; -inf without any."""
         largest = np.full(self.shape, -np.inf)
         for cells in (self._lower, self._lower + 1):
             np.maximum.at(largest.reshape(-1), cells, value)
-        return ndimage.maximum_filter(largest, window, mode="constant", cval=-np.inf)
+        widened = ndimage.maximum_filter(largest, window, mode="constant", cval=-np.inf)
+        return np.asarray(widened, float)
 
 
-def _ratio(part, whole):
+def _ratio(part: FloatArray, whole: FloatArray) -> FloatArray:
     return np.divide(part, whole, out=np.zeros_like(part), where=whole > 0)

@@ -1,61 +1,99 @@
-"""What a stage says: everything to its log file, progress and errors to the user's screen."""
+"""The output of a stage: everything to its log file, progress and errors to the user's screen."""
 
 import faulthandler
 import logging
 import os
 import signal
 import sys
-import threading
 import time
+from collections.abc import Iterable, Iterator, Sized
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TextIO, TypeVar
 
 from scanplan.errors import StageError
-from scanplan.store import atomic
+from scanplan.plain_types import FilePath
+from scanplan.stage import orphans
 
 INTERRUPTED = "was interrupted; the same command goes on from here"
-"""What a stage says last that was ended by Ctrl-C or a signal to end."""
+"""Last words of a stage that Ctrl-C or a signal to end has ended."""
 
-_SCREEN_INTERVAL_S = 2.0
-_WATCH_INTERVAL_S = 1.0
+_SCREEN_INTERVAL_S = 2.0  # between lines of progress: often enough to read a rate, seldom enough
 _log = logging.getLogger("scanplan")
-_screen = None
+_screen: TextIO | None = None
+
+Item = TypeVar("Item")
 
 
 @contextmanager
-def log_to_file(path):
-    """Send all output of this process, native libraries' too, to a log file for the time of a stage.
+def log_to_file(path: FilePath) -> Iterator[None]:
+    """Send all output of this process, native libraries' too, to a file for the time of a stage.
 
-    A `StageError` ends the process with status 1 and its one line on the screen; any other exception likewise, its
-    traceback in the log; so do Ctrl-C and SIGTERM, with `INTERRUPTED`. Should the workflow run that started the stage
-    be killed, the stage ends itself.
+    A `StageError` ends the process with status 1 and its one line on the screen; any other
+    exception likewise, its traceback in the log; so do Ctrl-C and SIGTERM, with `INTERRUPTED`.
+    Should the workflow run that started the stage be killed, the stage ends itself.
 
     Parameters
     ----------
     path : path-like
         The log file; overwritten, its folder made where missing.
     """
-    global _screen
     Path(path).parent.mkdir(parents=True, exist_ok=True)
-    sys.stdout.flush(), sys.stderr.flush()
-    kept = os.dup(1), os.dup(2)
+    with _redirect_output(path):
+        logging.basicConfig(
+            level=logging.INFO, format="%(asctime)s %(levelname)s %(message)s", force=True
+        )
+        faulthandler.enable()
+        orphans.end_with_supervisor()
+        outcome = "failed"
+        handler = signal.signal(signal.SIGTERM, signal.default_int_handler)
+        try:
+            with _end_in_one_line(path):
+                yield
+            outcome = "done"
+        finally:
+            signal.signal(signal.SIGTERM, handler)
+            _log.info("stage %s", outcome)
+
+
+@contextmanager
+def _redirect_output(path: FilePath) -> Iterator[None]:
+    """Point descriptors 1 and 2 to a file; what was the error output becomes the screen."""
+    global _screen
+    _flush()
+    output = os.dup(1)
+    errors = os.dup(2)
     target = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o644)
-    os.dup2(target, 1), os.dup2(target, 2), os.close(target)
-    _screen = os.fdopen(os.dup(kept[1]), "w", buffering=1)
-    logging.basicConfig(
-        level=logging.INFO, format="%(asctime)s %(levelname)s %(message)s", force=True
-    )
-    faulthandler.enable()
-    end_with_parent()
-    stage = Path(path).stem
-    outcome = "failed"
-    handler = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    os.dup2(target, 1)
+    os.dup2(target, 2)
+    os.close(target)
+    _screen = os.fdopen(os.dup(errors), "w", buffering=1)
     try:
         yield
-        outcome = "done"
+    finally:
+        _flush()
+        os.dup2(output, 1)
+        os.dup2(errors, 2)
+        os.close(output)
+        os.close(errors)
+        _screen.close()
+        _screen = None
+
+
+def _flush() -> None:
+    sys.stdout.flush()
+    sys.stderr.flush()
+
+
+@contextmanager
+def _end_in_one_line(path: FilePath) -> Iterator[None]:
+    """Turn every exception into a line on the screen and in the log, and status 1."""
+    stage = Path(path).stem
+    try:
+        yield
     except StageError as error:
         _log.error("%s: %s", stage, error)
-        _screen.write(f"{stage}: {error}\n")
+        _show(f"{stage}: {error}")
         raise SystemExit(1) from None
     except KeyboardInterrupt:
         _log.error("%s: %s", stage, INTERRUPTED)
@@ -65,25 +103,24 @@ def log_to_file(path):
         reason = " ".join(f"{type(error).__name__}: {error}".split())
         line = f"{stage}: unexpected failure, {reason}; the details are in {path}"
         _log.error("%s", line)
-        _screen.write(f"{line}\n")
+        _show(line)
         raise SystemExit(1) from None
-    finally:
-        signal.signal(signal.SIGTERM, handler)
-        _log.info("stage %s", outcome)
-        sys.stdout.flush(), sys.stderr.flush()
-        os.dup2(kept[0], 1), os.dup2(kept[1], 2)
-        os.close(kept[0]), os.close(kept[1]), _screen.close()
-        _screen = None
 
 
-def log_line(text):
+def log_line(text: str) -> None:
     """Write one line to the log and, inside a stage, to the screen."""
     _log.info("%s", text)
+    _show(text)
+
+
+def _show(line: str) -> None:
     if _screen is not None:
-        _screen.write(f"{text}\n")
+        _screen.write(f"{line}\n")
 
 
-def report_progress(items, label, total=None, unit="scans"):
+def report_progress(
+    items: Iterable[Item], label: str, total: int | None = None, unit: str = "scans"
+) -> Iterator[Item]:
     """Iterate over `items` and report how many are done, of how many, and the rate.
 
     Parameters
@@ -92,34 +129,24 @@ def report_progress(items, label, total=None, unit="scans"):
     label : str
         The stage's name.
     total : int, optional
-        Number of items, if it is known and `items` has no length.
+        Number of items, where it is known and `items` has no length.
     unit : str
-        What is counted.
+        The name of the items.
     """
-    total = len(items) if total is None and hasattr(items, "__len__") else total
-    started = told = time.monotonic()
+    if total is None and isinstance(items, Sized):
+        total = len(items)
+    started = time.monotonic()
+    reported = started
     done = 0
     for done, item in enumerate(items, 1):
         yield item
         now = time.monotonic()
-        if now - told > _SCREEN_INTERVAL_S:
-            told = now
-            log_line(_line(label, done, total, unit, now - started))
-    log_line(_line(label, done, total, unit, time.monotonic() - started))
+        if now - reported > _SCREEN_INTERVAL_S:
+            reported = now
+            log_line(_progress_line(label, done, total, unit, now - started))
+    log_line(_progress_line(label, done, total, unit, time.monotonic() - started))
 
 
-def _line(label, done, total, unit, elapsed_s):
-    of_all = f"/{total}" if total is not None else ""
+def _progress_line(label: str, done: int, total: int | None, unit: str, elapsed_s: float) -> str:
+    of_all = "" if total is None else f"/{total}"
     return f"{label}: {done}{of_all} {unit}, {done / max(elapsed_s, 1e-3):.0f} per s"
-
-
-def end_with_parent():
-    """Make this process end itself soon after the one that started it: a run's stage, or a stage's worker."""
-    threading.Thread(target=_watch, daemon=True).start()
-
-
-def _watch():
-    while not atomic.is_orphaned():
-        time.sleep(_WATCH_INTERVAL_S)
-    atomic.discard_unfinished()
-    os._exit(1)

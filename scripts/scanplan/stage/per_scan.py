@@ -1,30 +1,46 @@
 """Work that treats scans one by one, spread over contiguous ranges of scans and over cores."""
 
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar
+
 import numpy as np
 
 from scanplan.stage import log, workers
 from scanplan.store import tables
+from scanplan.types import FilePath, IntArray
 
-_CHUNKS_PER_CORE = 8
+_CHUNKS_PER_CORE = 8  # more balance scans that take long, fewer open the table less often
+
+Result = TypeVar("Result")
+Keywords = Mapping[str, Any]
 
 
-def map_scans(function, scans_path, *, label, threads=1, **settings):
-    """Call `function(scan_id, xyz_m, **settings)` for every scan of a table of scans, on several cores.
+def map_scans(
+    function: Callable[..., Result],
+    scans_path: FilePath,
+    *,
+    label: str,
+    threads: int = 1,
+    per_scan: Mapping[int, Keywords] | None = None,
+    **settings: Any,
+) -> list[Result]:
+    """Call `function(scan_id, xyz_m, **settings)` for every scan of a table, on several cores.
 
     Parameters
     ----------
     function : callable
-        Defined at the top level of a helper module; its result must depend on its arguments alone, so that the
-        result is the same for any number of cores.
+        Defined at the top level of a helper module; its result must depend on its arguments alone,
+        so that the result is the same for any number of cores.
     scans_path : path-like
         A scans.parquet.
     label : str
         The stage's name, for the progress line.
     threads : int
         Number of processes.
+    per_scan : dict of int to dict, optional
+        Further keywords of the call of a scan alone, by scan_id.
     **settings
-        Passed to every call. A dict value under `per_scan` is looked up by scan_id and its value, itself a dict of
-        keywords, is passed to that scan's call alone.
+        Keywords of every call.
 
     Returns
     -------
@@ -32,24 +48,29 @@ def map_scans(function, scans_path, *, label, threads=1, **settings):
         One result per scan, in the order of the scans.
     """
     scan_ids = tables.ScanStore(scans_path).scan_ids
-    per_scan = settings.pop("per_scan", {})
-    parts = [p for p in np.array_split(scan_ids, max(1, threads) * _CHUNKS_PER_CORE) if len(p)]
+    keywords = per_scan or {}
+    parts = np.array_split(scan_ids, max(1, threads) * _CHUNKS_PER_CORE)
     jobs = [
-        (
-            function,
-            str(scans_path),
-            part,
-            {int(s): per_scan.get(int(s), {}) for s in part},
-            settings,
-        )
+        (function, str(scans_path), part, _keywords_of(part, keywords), settings)
         for part in parts
+        if len(part)
     ]
     with workers.open_pool(min(threads, len(jobs))) as run:
-        done = (result for part in run(_work, jobs) for result in part)
-        return list(log.report_progress(done, label, total=len(scan_ids)))
+        results = (result for part in run(_map_part, jobs) for result in part)
+        return list(log.report_progress(results, label, total=len(scan_ids)))
 
 
-def _work(function, scans_path, scan_ids, per_scan, settings):
+def _keywords_of(scan_ids: IntArray, keywords: Mapping[int, Keywords]) -> dict[int, Keywords]:
+    return {scan_id: keywords.get(scan_id, {}) for scan_id in scan_ids.tolist()}
+
+
+def _map_part(
+    function: Callable[..., Result],
+    scans_path: str,
+    scan_ids: IntArray,
+    per_scan: Mapping[int, Keywords],
+    settings: Keywords,
+) -> list[Result]:
     store = tables.ScanStore(scans_path)
     return [
         function(scan_id, xyz_m, **per_scan[scan_id], **settings)

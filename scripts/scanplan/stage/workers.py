@@ -2,19 +2,26 @@
 
 import multiprocessing
 from collections import deque
-from concurrent.futures import ProcessPoolExecutor
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
+from typing import Any
 
 from scanplan.errors import StageError
-from scanplan.stage import log
+from scanplan.stage import orphans
 
-_WAITING_PER_CORE = 2
-_fault = None
+RunJobs = Callable[[Callable[..., Any], Iterable[tuple[Any, ...]]], Iterator[Any]]
+"""`run(function, jobs)`: iterates over `function(*job)` of all jobs, in their order."""
+
+_WAITING_PER_CORE = 2  # one at work and one to follow it at once; more only fill memory
+_setup_fault: Exception | None = None
 
 
 @contextmanager
-def open_pool(threads, setup=None, *state):
+def open_pool(
+    threads: int, setup: Callable[..., None] | None = None, *state: Any
+) -> Iterator[RunJobs]:
     """Open a pool of worker processes; with one thread there is none, and the work is done here.
 
     Parameters
@@ -26,8 +33,8 @@ def open_pool(threads, setup=None, *state):
     Yields
     ------
     callable
-        `run(function, jobs)`: iterates over `function(*job)` of all jobs, in their order. Jobs are taken from their
-        iterable as workers become free, so that few wait.
+        `run(function, jobs)`: iterates over `function(*job)` of all jobs, in their order. Jobs are
+        taken from their iterable as workers become free, so that few wait.
 
     Raises
     ------
@@ -35,49 +42,54 @@ def open_pool(threads, setup=None, *state):
         If a worker is ended from outside.
     """
     if threads <= 1:
-        _begin(setup, state)
+        _set_up(setup, state)
         yield lambda function, jobs: (function(*job) for job in jobs)
         return
     # a forked child of a process with threads (Arrow, TBB) can hang, a spawned one cannot
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(threads, context, _begin_worker, (setup, state)) as executor:
         try:
-            yield lambda function, jobs: _in_order(
+            yield lambda function, jobs: _run_in_order(
                 executor, function, jobs, threads * _WAITING_PER_CORE
             )
         except BrokenProcessPool:
             raise StageError(
-                "a worker process was ended from outside, perhaps for want of memory; the same command goes on from"
-                " here, with fewer --cores in less memory"
+                "a worker process was ended from outside, perhaps for want of memory; the same"
+                " command goes on from here, with fewer --cores in less memory"
             ) from None
         except BaseException:
             executor.shutdown(wait=False, cancel_futures=True)
             raise
 
 
-def _begin(setup, state):
+def _set_up(setup: Callable[..., None] | None, state: tuple[Any, ...]) -> None:
     if setup is not None:
         setup(*state)
 
 
-def _begin_worker(setup, state):
-    global _fault
-    log.end_with_parent()
+def _begin_worker(setup: Callable[..., None] | None, state: tuple[Any, ...]) -> None:
+    global _setup_fault
+    orphans.end_with_supervisor()
     try:
-        _begin(setup, state)
+        _set_up(setup, state)
     except Exception as error:
         # raised here, it would look as if the process had been ended from outside
-        _fault = error
+        _setup_fault = error
 
 
-def _work(function, job):
-    if _fault is not None:
-        raise _fault
+def _work(function: Callable[..., Any], job: tuple[Any, ...]) -> Any:
+    if _setup_fault is not None:
+        raise _setup_fault
     return function(*job)
 
 
-def _in_order(executor, function, jobs, most_waiting):
-    waiting = deque()
+def _run_in_order(
+    executor: ProcessPoolExecutor,
+    function: Callable[..., Any],
+    jobs: Iterable[tuple[Any, ...]],
+    most_waiting: int,
+) -> Iterator[Any]:
+    waiting: deque[Future[Any]] = deque()
     for job in jobs:
         waiting.append(executor.submit(_work, function, job))
         while waiting and (waiting[0].done() or len(waiting) > most_waiting):

@@ -2,37 +2,29 @@
 
 import glob
 import os
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 import psutil
 
-_UNFINISHED = set()
-_SHELLS = {"sh", "bash", "dash", "zsh"}
+from scanplan.plain_types import FilePath
+
+_unfinished: set[Path] = set()
+_refusals: list[Callable[[], bool]] = []
 
 
-def _supervisor():
-    """Nearest ancestor process that is no shell: the workflow run that started this stage, or None."""
-    try:
-        return next((p for p in psutil.Process().parents() if p.name() not in _SHELLS), None)
-    except psutil.Error:
-        return None
+def refuse_to_write_when(is_over: Callable[[], bool]) -> None:
+    """Make `replace_file` ask `is_over()` before it replaces a file, and leave the old one if so.
 
-
-_SUPERVISOR = _supervisor()
-
-
-def is_orphaned():
-    """Tell whether the workflow run that started this process has ended.
-
-    A stage that survives its killed run must not write over what a newer run made.
+    The processes of a stage register here whether the run that asked for their files has ended.
     """
-    return _SUPERVISOR is not None and not (_SUPERVISOR.is_running() and _at_work(_SUPERVISOR.pid))
+    _refusals.append(is_over)
 
 
 @contextmanager
-def replace_file(path):
-    """Give a path to write to; on success it becomes `path` (fsync, rename), otherwise nothing is left of it.
+def replace_file(path: FilePath) -> Iterator[Path]:
+    """Give a path to write to; on success it becomes `path` (fsync, rename), else it is removed.
 
     Parameters
     ----------
@@ -52,14 +44,14 @@ def replace_file(path):
     with scratch_file(path) as temporary:
         yield temporary
         _sync(temporary)
-        if is_orphaned():
+        if any(is_over() for is_over in _refusals):
             raise SystemExit(f"{path}: not written, the run that asked for it has ended")
         temporary.replace(path)
 
 
 @contextmanager
-def scratch_file(path):
-    """Give a path beside `path` for a file that is needed meanwhile; nothing is left of it afterwards.
+def scratch_file(path: FilePath) -> Iterator[Path]:
+    """Give a path beside `path` for a temporary file; it is removed afterwards.
 
     Parameters
     ----------
@@ -75,48 +67,49 @@ def scratch_file(path):
     path.parent.mkdir(parents=True, exist_ok=True)
     _remove_leftovers(path)
     temporary = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
-    _UNFINISHED.add(temporary)
+    _unfinished.add(temporary)
     try:
         yield temporary
     finally:
         temporary.unlink(missing_ok=True)
-        _UNFINISHED.discard(temporary)
+        _unfinished.discard(temporary)
 
 
-def write_text(path, text):
+def write_text(path: FilePath, text: str) -> None:
     """Write `text` (UTF-8, newlines as given) to `path`, whole or not at all."""
     write_bytes(path, text.encode())
 
 
-def write_bytes(path, content):
+def write_bytes(path: FilePath, content: bytes) -> None:
     """Write bytes to `path`, whole or not at all."""
     with replace_file(path) as temporary:
         temporary.write_bytes(content)
 
 
-def _remove_leftovers(path):
-    """Remove what processes that were killed while they wrote `path` left beside it."""
-    for leftover in path.parent.glob(f".{glob.escape(path.stem)}.*.part{path.suffix}"):
-        writer = leftover.name.split(".")[-3] if path.suffix else leftover.name.split(".")[-2]
-        if writer.isdigit() and not _at_work(int(writer)):
-            leftover.unlink(missing_ok=True)
-
-
-def discard_unfinished():
-    """Remove what this process has begun to write and not finished: for one that is about to end itself."""
-    for temporary in list(_UNFINISHED):
+def discard_unfinished() -> None:
+    """Remove the temporary files of this process; for one that is about to end itself."""
+    for temporary in list(_unfinished):
         temporary.unlink(missing_ok=True)
 
 
-def _at_work(pid):
-    """Tell whether a process is there and not just waiting to be reaped."""
+def is_process_alive(pid: int) -> bool:
+    """Return whether a process exists and is not just waiting to be reaped."""
     try:
         return psutil.Process(pid).status() != psutil.STATUS_ZOMBIE
     except psutil.Error:
         return False
 
 
-def _sync(path):
+def _remove_leftovers(path: Path) -> None:
+    """Remove the temporary files of `path` whose writers were killed."""
+    for leftover in path.parent.glob(f".{glob.escape(path.stem)}.*.part{path.suffix}"):
+        parts = leftover.name.split(".")
+        writer = parts[-3] if path.suffix else parts[-2]
+        if writer.isdigit() and not is_process_alive(int(writer)):
+            leftover.unlink(missing_ok=True)
+
+
+def _sync(path: Path) -> None:
     descriptor = os.open(path, os.O_RDONLY)
     try:
         os.fsync(descriptor)

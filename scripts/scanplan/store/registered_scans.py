@@ -1,12 +1,13 @@
-"""The registered scans of a dataset as the evaluation needs them: rows in the order of their scan_ids."""
+"""The registered scans of a dataset: ids, stamps, poses, and the rows of other tables' scans."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from scanplan.errors import StageError
-from scanplan.geometry import se3
 from scanplan.store import schemas, tables
+from scanplan.store.pose_columns import pose_matrices
+from scanplan.types import Array, Columns, FilePath, FloatArray, IntArray
 
 _RERUN = "delete the results of this dataset and run again"
 
@@ -23,12 +24,12 @@ class RegisteredScans:
         As registered.
     """
 
-    scan_ids: np.ndarray
-    t_ns: np.ndarray
-    map_from_sensor: np.ndarray
+    scan_ids: IntArray
+    t_ns: IntArray
+    map_from_sensor: FloatArray
 
 
-def read_registered_scans(path):
+def read_registered_scans(path: FilePath) -> RegisteredScans:
     """Read the kept scans of a registration.parquet.
 
     Raises
@@ -36,18 +37,28 @@ def read_registered_scans(path):
     StageError
         If there is none, or one has no pose.
     """
-    columns = tables.read_table(path, schemas.REGISTRATION)
-    columns = {name: values[columns["kept"]] for name, values in columns.items()}
-    pose = _matrices(columns)
-    lost = np.count_nonzero(~np.isfinite(pose).all(axis=(1, 2)))
-    if len(pose) == 0 or lost:
+    return select_kept_scans(tables.read_table(path, schemas.REGISTRATION), path)
+
+
+def select_kept_scans(columns: Columns, path: FilePath) -> RegisteredScans:
+    """Return the kept scans of a table of registration that was read from `path`.
+
+    Raises
+    ------
+    StageError
+        If there is none, or one has no pose.
+    """
+    kept = _select_rows(columns, columns["kept"])
+    pose = pose_matrices(kept)
+    n_unknown = np.count_nonzero(~np.isfinite(pose).all(axis=(1, 2)))
+    if len(pose) == 0 or n_unknown:
         raise StageError(
-            f"{path}: {len(pose)} scans are kept, {lost} of them without a pose; {_RERUN}"
+            f"{path}: {len(pose)} scans are kept, {n_unknown} of them without a pose; {_RERUN}"
         )
-    return RegisteredScans(columns["scan_id"], columns["t_ns"], pose)
+    return RegisteredScans(kept["scan_id"], kept["t_ns"], pose)
 
 
-def read_prior_poses(path, scans, origin):
+def read_prior_poses(path: FilePath, scans: RegisteredScans, origin: FilePath) -> FloatArray:
     """Return map_from_sensor (n, 4, 4) of the scans as the localiser gave it, from a poses.parquet.
 
     Raises
@@ -56,63 +67,69 @@ def read_prior_poses(path, scans, origin):
         If a scan has no pose there: the tables at `path` and `origin` are of different runs.
     """
     columns = tables.read_table(path, schemas.POSES)
-    columns = {name: values[columns["covered"]] for name, values in columns.items()}
-    row = np.searchsorted(columns["scan_id"], scans.scan_ids)
-    known = np.isin(scans.scan_ids, columns["scan_id"])
-    if not known.all():
-        raise StageError(
-            f"{path}: no pose of scan {scans.scan_ids[~known][0]}, which {origin} keeps; {_RERUN}"
-        )
-    return _matrices(columns)[row]
+    known = _select_rows(columns, columns["covered"])
+    return pose_matrices(known)[_join(scans.scan_ids, known["scan_id"], origin, path)]
 
 
-def rows_of_scans(scan_ids, scans, path, origin):
+def rows_of_scans(
+    scan_ids: IntArray, scans: RegisteredScans, path: FilePath, origin: FilePath
+) -> IntArray:
     """Return the rows of scans by their scan_ids.
+
+    Parameters
+    ----------
+    scan_ids : (k,) int
+    scans : RegisteredScans
+    path, origin : path-like
+        Where the scan_ids and the registered scans come from, for the message.
+
+    Returns
+    -------
+    (k,) int64
 
     Raises
     ------
     StageError
         If one is not kept: the tables at `path` and `origin` are of different runs.
     """
-    unknown = np.setdiff1d(scan_ids, scans.scan_ids)
-    if len(unknown):
-        raise StageError(
-            f"{path}: scan {unknown[0]} is none of the {len(scans.scan_ids)} kept in {origin}; {_RERUN}"
-        )
-    return np.searchsorted(scans.scan_ids, scan_ids)
+    return _join(scan_ids, scans.scan_ids, path, origin)
 
 
-def read_order_rows(path, scans, origin):
+def sensor_positions(
+    scan_ids: IntArray, scans: RegisteredScans, path: FilePath, origin: FilePath
+) -> FloatArray:
+    """Return where the sensor was, (k, 3) in the map frame, at the scans of `rows_of_scans`."""
+    return scans.map_from_sensor[rows_of_scans(scan_ids, scans, path, origin), :3, 3]
+
+
+def read_order_rows(path: FilePath, scans: RegisteredScans, origin: FilePath) -> IntArray:
     """Return the rows of the scans in the order of a selection/<method>.parquet."""
-    return rows_of_scans(
-        tables.read_table(path, schemas.SELECTION, ["rank", "scan_id"])["scan_id"],
-        scans,
-        path,
-        origin,
-    )
+    ordering = tables.read_table(path, schemas.SELECTION, ["rank", "scan_id"])
+    return rows_of_scans(ordering["scan_id"], scans, path, origin)
 
 
-def read_wall_segments(path, scans, origin):
-    """Return the columns of a walls/<extractor>.parquet, of kept scans alone; there may be no row."""
+def read_wall_segments(
+    path: FilePath, scans: RegisteredScans, origin: FilePath
+) -> dict[str, Array]:
+    """Return the columns of a walls/<extractor>.parquet, of kept scans alone.
+
+    There may be no row.
+    """
     columns = tables.read_table(path, schemas.WALLS, allow_empty=True)
     rows_of_scans(columns["scan_id"], scans, path, origin)
     return columns
 
 
-def oracle_columns(best, scans):
-    """Return the `oracle.OracleOrder` of every extractor as the columns of `schemas.ORACLE`."""
-    n = len(scans.scan_ids)
-    orders = [best[extractor] for extractor in sorted(best)]
-    return {
-        "extractor": np.repeat(sorted(best), n),
-        "rank": np.tile(np.arange(1, n + 1), len(best)),
-        "scan_id": np.concatenate([scans.scan_ids[order.order] for order in orders]),
-        "gain_m": np.concatenate([order.gain_m for order in orders]),
-        "found_m": np.concatenate([np.cumsum(order.gain_m) for order in orders]),
-    }
+def _select_rows(columns: Columns, rows: Array) -> dict[str, Array]:
+    return {name: values[rows] for name, values in columns.items()}
 
 
-def _matrices(columns):
-    return se3.pose_matrix(
-        *(np.column_stack([columns[c] for c in names]) for names in (schemas.XYZ, schemas.QUAT))
-    )
+def _join(scan_ids: IntArray, known_ids: IntArray, path: FilePath, origin: FilePath) -> IntArray:
+    """Return the rows (k,) of scans of `path` in the increasing ids with a pose in `origin`."""
+    unknown = np.setdiff1d(scan_ids, known_ids)
+    if len(unknown):
+        raise StageError(
+            f"{origin}: no pose of scan {unknown[0]} of {path} ({len(unknown)} such scans);"
+            f" {_RERUN}"
+        )
+    return np.searchsorted(known_ids, scan_ids)

@@ -1,17 +1,20 @@
-"""Clouds put aside in a temporary file, so that a recording is read once and memory does not grow with its length."""
+"""Temporary files of clouds: recordings are read once, memory does not grow with their length."""
 
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 
 from scanplan.store import atomic
+from scanplan.types import FilePath, FloatArray
 
 _POINT = np.dtype((np.float32, 3))
 
 
 class ScanCache:
-    """Clouds in the order in which they are added, and read back by their number from 0.
+    """Clouds that are read back by their number, from 0 in the order in which they were added.
 
     Parameters
     ----------
@@ -19,38 +22,47 @@ class ScanCache:
     file : binary file, open for writing
     """
 
-    def __init__(self, path, file):
+    def __init__(self, path: Path, file: BinaryIO) -> None:
         self.path = path
         self._file = file
         self._end = [0]
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self._end) - 1
 
-    def add(self, xyz_m):
-        """Put the points (n, 3) of one more cloud aside, as float32."""
-        self._file.write(np.ascontiguousarray(xyz_m, np.float32))
+    def add(self, xyz_m: FloatArray) -> None:
+        """Append the points (n, 3) of one more cloud, as float32."""
+        self._file.write(np.ascontiguousarray(xyz_m, np.float32).data)
         self._end.append(self._end[-1] + len(xyz_m))
 
-    def part(self, numbers):
-        """Return what another process needs to read the clouds of these numbers: an iterable Part.
+    def part(self, numbers: Iterable[int]) -> "ScanCachePart":
+        """Return an iterable over the clouds of these numbers, which other processes can read too.
 
         Everything added so far is on disk then.
         """
         self._file.flush()
-        return ScanCachePart(str(self.path), [(self._end[i], self._end[i + 1]) for i in numbers])
+        ranges = [(self._end[i], self._end[i + 1]) for i in numbers]
+        return ScanCachePart(str(self.path), ranges)
 
 
 class ScanCachePart:
-    """Some clouds of a spool: iterating reads them from its file one at a time, (n, 3) float32."""
+    """Some clouds of a cache: iterating reads them from its file one at a time, (n, 3) float32.
 
-    def __init__(self, path, ranges):
-        self._path, self._ranges = path, ranges
+    Parameters
+    ----------
+    path : str
+    ranges : list of (int, int)
+        First point of each cloud, and the one behind its last.
+    """
 
-    def __len__(self):
+    def __init__(self, path: str, ranges: list[tuple[int, int]]) -> None:
+        self._path = path
+        self._ranges = ranges
+
+    def __len__(self) -> int:
         return len(self._ranges)
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[FloatArray]:
         with Path(self._path).open("rb") as file:
             for start, end in self._ranges:
                 file.seek(start * _POINT.itemsize)
@@ -58,8 +70,8 @@ class ScanCachePart:
 
 
 @contextmanager
-def open_scan_cache(path):
-    """Open a Spool in a temporary file beside `path`; it is gone afterwards."""
+def open_scan_cache(path: FilePath) -> Iterator[ScanCache]:
+    """Open a ScanCache in a temporary file beside `path`; it is removed afterwards."""
     with (
         atomic.scratch_file(Path(path).with_suffix(".spool")) as temporary,
         temporary.open("wb") as file,

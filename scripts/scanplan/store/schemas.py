@@ -1,6 +1,7 @@
 """The columns of the tables between the stages.
 
-Coordinates are metres in the map frame, z up; stamps nanoseconds; quaternions x, y, z, w. Units are in the names.
+Coordinates are metres in the map frame, z up; stamps nanoseconds; quaternions x, y, z, w. Units are
+in the names.
 """
 
 from dataclasses import dataclass
@@ -13,12 +14,25 @@ _SEGMENT = dict.fromkeys(("x0_m", "y0_m", "x1_m", "y1_m", "nx", "ny"), "float64"
 
 @dataclass(frozen=True)
 class Schema:
-    """A table's name, version, columns (name to Arrow type, in order) and the columns its rows are sorted by."""
+    """The form of a table.
+
+    Attributes
+    ----------
+    name : str
+    version : int
+        Raised whenever the columns or their meaning change.
+    columns : dict of str to str
+        Name to Arrow type, in order.
+    sorted_by : tuple of str
+        The columns that the rows are strictly sorted by.
+    geometry : bool
+        Whether the column `geometry` holds WKB: the file is GeoParquet then.
+    """
 
     name: str
     version: int
-    columns: dict
-    sorted_by: tuple
+    columns: dict[str, str]
+    sorted_by: tuple[str, ...]
     geometry: bool = False
 
 
@@ -166,7 +180,10 @@ FACES = Schema(
     },
     ("face",),
 )
-"""Surfaces of the plan: `state` is observed or inferred, `wall` the wall it is a side of (-1: of none)."""
+"""Surfaces of the plan.
+
+`state` is observed or inferred, `wall` the wall that the face is a side of (-1: of none).
+"""
 _CENTRELINE = dict.fromkeys(("x0_m", "y0_m", "x1_m", "y1_m"), "float64")
 PLAN_WALLS = Schema(
     "plan_walls",
@@ -196,7 +213,10 @@ PLAN_WALLS = Schema(
     },
     ("wall",),
 )
-"""Walls of the plan. One seen from a single side has no thickness (NaN), and its line is that of its face."""
+"""Walls of the plan.
+
+One seen from a single side has no thickness (NaN), and its line is that of its face.
+"""
 OPENINGS = Schema(
     "openings",
     1,
@@ -212,9 +232,10 @@ OPENINGS = Schema(
     },
     ("opening",),
 )
-"""Doors, windows and passages that rays went through; heights above the floor, NaN where not known; -1: no such.
+"""Doors, windows and passages that rays went through.
 
-Rays that never came back count, too, as many as ought to have reached a window above a sill.
+Heights are above the floor, NaN where not known; -1 stands for no wall or no room. Missing returns
+count as rays, too: as many as were expected through a window above its sill.
 """
 ROOMS = Schema(
     "rooms",
@@ -309,9 +330,11 @@ POSE_ERRORS = Schema(
     ("scan_id",),
 )
 CLUSTERS = Schema(
-    "clusters", 1, {"n_clusters": "int32", "rank": "int32", "scan_id": "int32", "covered_m2": "float64"},
+    "clusters",
+    1,
+    {"n_clusters": "int32", "rank": "int32", "scan_id": "int32", "covered_m2": "float64"},
     ("n_clusters", "rank"),
-)  # fmt: skip
+)
 AREAS = Schema(
     "areas",
     2,
@@ -324,22 +347,41 @@ AREAS = Schema(
     },
     ("scan_id",),
 )
-"""Areas of a scan's hulls and of what it truly sees; `iou` is intersection over union of a hull with the latter."""
+"""Areas of a scan's hulls and of what it truly sees.
+
+`iou` is intersection over union of a hull with the latter.
+"""
 UNEVENNESS = Schema(
     "unevenness",
     1,
     {"order": "string", "crowd": "int32", "repeats": "int32", "draw": "int32", "seen_m": "float64"},
     ("order", "crowd", "repeats", "draw"),
 )
-"""True wall length that the first scans of an order see where those of a crowd were taken `repeats` times."""
+"""True wall length seen by the first scans of an order, those of a crowd taken `repeats` times."""
 TIMES = Schema(
-    "times", 1, {"task": "string", "size": "int32", "item": "int32", "found": "int32", "seconds": "float64"},
+    "times",
+    1,
+    {
+        "task": "string",
+        "size": "int32",
+        "item": "int32",
+        "found": "int32",
+        "seconds": "float64",
+    },
     ("task", "size", "item"),
-)  # fmt: skip
+)
 STEPS = Schema(
-    "steps", 1, {"step": "int32", "name": "string", "seconds": "float64", "n_scans": "int32", "n_bytes": "int64"},
+    "steps",
+    1,
+    {
+        "step": "int32",
+        "name": "string",
+        "seconds": "float64",
+        "n_scans": "int32",
+        "n_bytes": "int64",
+    },
     ("step",),
-)  # fmt: skip
+)
 CLAIMS = Schema(
     "claims",
     2,
@@ -390,7 +432,9 @@ PLAN_EVALUATION = Schema(
     },
     ("frame",),
 )
-"""How good a plan is: where it is in the map, and after the rigid motion that fits the scans' poses to the true ones.
+"""How good a plan is, in the frame of the map and after alignment by the true poses.
 
-The agreement and what begins with `n_walls` is of its faces; `plan_walls` are its paired and single walls.
+`frame` names which: the alignment is the rigid motion that fits the scans' poses to the true ones.
+The agreement and what begins with `n_walls` is of its faces; `plan_walls` are its paired and single
+walls.
 """

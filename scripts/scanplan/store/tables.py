@@ -1,21 +1,28 @@
 """Reading and writing the tables between the stages, as Parquet.
 
-Every file carries the name and version of its schema and page checksums, and is checked against the schema on write
-and on read. `schemas` lists the columns.
+Every file carries the name and version of its schema and page checksums, and is checked against the
+schema on write and on read. `schemas` lists the columns.
 """
 
 import json
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.parquet as pq
 
 from scanplan.errors import StageError
-from scanplan.store import atomic, schemas
+from scanplan.store import parquet, schemas
+from scanplan.types import Array, FilePath, FloatArray
 
 
-def write_table(path, schema, columns, *, allow_empty=False):
+def write_table(
+    path: FilePath,
+    schema: schemas.Schema,
+    columns: Mapping[str, Array | Sequence[object]],
+    *,
+    allow_empty: bool = False,
+) -> None:
     """Write a table, whole or not at all.
 
     Parameters
@@ -38,15 +45,20 @@ def write_table(path, schema, columns, *, allow_empty=False):
         raise ValueError(
             f"{schema.name}: columns {sorted(columns)} instead of {sorted(schema.columns)}"
         )
-    table = pa.table(
-        {n: pa.array(columns[n], type=_arrow(schema).field(n).type) for n in schema.columns}
-    )
-    _check_rows(table, schema, path, allow_empty, ValueError)
-    with _writer(path, schema) as writer:
-        writer.write_table(table.cast(_arrow(schema)))
+    form = parquet.arrow_schema(schema)
+    table = pa.table({n: pa.array(columns[n], type=form.field(n).type) for n in schema.columns})
+    parquet.check_rows(table, schema, path, allow_empty, ValueError)
+    with parquet.open_writer(path, schema) as writer:
+        writer.write_table(table.cast(form))
 
 
-def read_table(path, schema, columns=None, *, allow_empty=False):
+def read_table(
+    path: FilePath,
+    schema: schemas.Schema,
+    columns: Sequence[str] | None = None,
+    *,
+    allow_empty: bool = False,
+) -> dict[str, Array]:
     """Read a table that another stage wrote.
 
     Parameters
@@ -65,23 +77,27 @@ def read_table(path, schema, columns=None, *, allow_empty=False):
     Raises
     ------
     StageError
-        If the file is missing, damaged, of another schema or version, unsorted or (unless allowed) empty.
+        If the file is missing, damaged, of another schema or version, unsorted or (unless allowed)
+        empty.
     """
-    with _opened(path, schema) as file:
+    with parquet.open_file(path, schema) as file:
         table = file.read(columns=None if columns is None else list(columns))
-    _check_rows(table, schema, path, allow_empty, StageError)
+    parquet.check_rows(table, schema, path, allow_empty, StageError)
     return {name: table[name].to_numpy() for name in table.column_names}
 
 
 @contextmanager
-def open_scan_writer(path, *, planar):
+def open_scan_writer(
+    path: FilePath, *, planar: bool
+) -> Iterator[Callable[[int, FloatArray], None]]:
     """Write the registered scans one by one, each a row group of its own.
 
     Parameters
     ----------
     path : path-like
     planar : bool
-        Whether the sensor measures in one plane only (a 2-D laser scanner); kept in the file for later stages.
+        Whether the sensor measures in one plane only (a 2-D laser scanner); kept in the file for
+        later stages.
 
     Yields
     ------
@@ -93,19 +109,18 @@ def open_scan_writer(path, *, planar):
     StageError
         If no scan was written: the file does not appear.
     """
-    last = None
-    with _writer(path, schemas.SCANS, {"planar": json.dumps(bool(planar))}) as writer:
+    last: int | None = None
+    with parquet.open_writer(path, schemas.SCANS, {"planar": json.dumps(bool(planar))}) as writer:
 
-        def write_scan(scan_id, xyz_m):
+        def write_scan(scan_id: int, xyz_m: FloatArray) -> None:
             nonlocal last
             if len(xyz_m) == 0 or (last is not None and scan_id <= last):
                 raise ValueError(f"scan {scan_id} after {last} with {len(xyz_m)} points")
             last = scan_id
             xyz_m = np.asarray(xyz_m, np.float32)
             columns = [np.full(len(xyz_m), scan_id, np.int32), *xyz_m.T.copy()]
-            rows = pa.Table.from_arrays(
-                [pa.array(c) for c in columns], schema=_arrow(schemas.SCANS)
-            )
+            arrays = [pa.array(column) for column in columns]
+            rows = pa.Table.from_arrays(arrays, schema=parquet.arrow_schema(schemas.SCANS))
             writer.write_table(rows, row_group_size=len(rows))
 
         yield write_scan
@@ -125,28 +140,33 @@ class ScanStore:
         Whether the sensor measures in one plane only.
     """
 
-    def __init__(self, path):
+    def __init__(self, path: FilePath) -> None:
         self.path = path
-        with _opened(path, schemas.SCANS) as file:
+        with parquet.open_file(path, schemas.SCANS) as file:
             metadata = file.metadata
-            groups = [
+            ids = [
                 metadata.row_group(i).column(0).statistics for i in range(metadata.num_row_groups)
             ]
             self.planar = bool(json.loads(metadata.metadata[b"planar"]))
-        self.scan_ids = np.array([g.min for g in groups], np.int32)
+        self.scan_ids = np.array([group.min for group in ids], np.int32)
         if len(self.scan_ids) == 0:
-            raise StageError(f"{path}: holds no scan; delete it and run again")
-        if (np.diff(self.scan_ids) <= 0).any() or any(g.min != g.max for g in groups):
+            raise StageError(f"{path}: holds no scan; {parquet.RERUN}")
+        if (np.diff(self.scan_ids) <= 0).any() or any(group.min != group.max for group in ids):
             raise StageError(
-                f"{path}: does not hold its scans one by one in order; delete it and run again"
+                f"{path}: does not hold its scans one by one in order; {parquet.RERUN}"
             )
 
-    def read(self, scan_id):
+    def read(self, scan_id: int) -> FloatArray:
         """Return one scan's points, (n, 3) float32, map frame."""
         return next(self.scans([scan_id]))[1]
 
-    def scans(self, scan_ids=None):
-        """Iterate over (scan_id, xyz_m (n, 3) float32) of all scans or of those asked for, in the order asked for.
+    def scans(self, scan_ids: Iterable[int] | None = None) -> Iterator[tuple[int, FloatArray]]:
+        """Iterate over (scan_id, xyz_m) of all scans or of those asked for, in the order asked for.
+
+        Yields
+        ------
+        scan_id : int
+        xyz_m : (n, 3) float32
 
         Raises
         ------
@@ -154,86 +174,10 @@ class ScanStore:
             If a scan is asked for that is not there.
         """
         group = {int(s): i for i, s in enumerate(self.scan_ids)}
-        with _opened(self.path, schemas.SCANS) as file:
-            for scan_id in self.scan_ids.tolist() if scan_ids is None else map(int, scan_ids):
+        wanted = self.scan_ids.tolist() if scan_ids is None else map(int, scan_ids)
+        with parquet.open_file(self.path, schemas.SCANS) as file:
+            for scan_id in wanted:
                 if scan_id not in group:
                     raise ValueError(f"{self.path}: no scan {scan_id}")
                 table = file.read_row_group(group[scan_id])
-                yield scan_id, np.column_stack([table[c].to_numpy() for c in ("x_m", "y_m", "z_m")])
-
-
-def _arrow(schema):
-    return pa.schema(
-        [pa.field(n, pa.type_for_alias(t), nullable=False) for n, t in schema.columns.items()]
-    )
-
-
-@contextmanager
-def _writer(path, schema, extra=None):
-    metadata = {
-        "scanplan": json.dumps({"table": schema.name, "version": schema.version}),
-        **(extra or {}),
-    }
-    if schema.geometry:
-        metadata["geo"] = json.dumps(
-            {
-                "version": "1.1.0",
-                "primary_column": "geometry",
-                "columns": {"geometry": {"encoding": "WKB", "geometry_types": [], "crs": None}},
-            }
-        )
-    floats = [n for n, t in schema.columns.items() if t.startswith("float")]
-    options = {
-        "compression": "zstd",
-        "write_page_checksum": True,
-        "use_dictionary": False,
-        "column_encoding": dict.fromkeys(floats, "BYTE_STREAM_SPLIT"),
-    }
-    schema_arrow = _arrow(schema).with_metadata(metadata)
-    with (
-        atomic.replace_file(path) as temporary,
-        pq.ParquetWriter(temporary, schema_arrow, **options) as writer,
-    ):
-        yield writer
-
-
-@contextmanager
-def _opened(path, schema):
-    remedy = "delete it and run again"
-    try:
-        with pq.ParquetFile(path, page_checksum_verification=True) as file:
-            stated = json.loads((file.metadata.metadata or {}).get(b"scanplan", b"{}"))
-            if stated != {"table": schema.name, "version": schema.version}:
-                raise StageError(
-                    f"{path}: is {stated or 'no table of scanplan'}, expected {schema.name}"
-                    f" version {schema.version}; {remedy}"
-                )
-            if not file.schema_arrow.equals(_arrow(schema)):
-                raise StageError(
-                    f"{path}: columns {file.schema_arrow.names} are not those of {schema.name}; {remedy}"
-                )
-            yield file
-    except FileNotFoundError:
-        raise StageError(f"{path}: does not exist; run the stage that makes it") from None
-    except (pa.ArrowException, OSError) as error:
-        raise StageError(f"{path}: damaged ({error}); {remedy}") from None
-
-
-def _check_rows(table, schema, path, allow_empty, error):
-    if table.num_rows == 0 and not allow_empty:
-        raise StageError(f"{path}: no rows to work on; see the log of the stage that makes it")
-    if any(column.null_count for column in table.columns):
-        raise error(f"{path}: empty cells in a table of {schema.name}")
-    keys = [table[c].to_numpy() for c in schema.sorted_by if c in table.column_names]
-    if len(keys) == len(schema.sorted_by) and not _strictly_sorted(keys):
-        raise error(
-            f"{path}: rows of {schema.name} are not sorted by {', '.join(schema.sorted_by)}"
-        )
-
-
-def _strictly_sorted(keys):
-    order = np.lexsort(keys[::-1])
-    same = (
-        np.all([k[1:] == k[:-1] for k in keys], axis=0) if len(keys[0]) > 1 else np.array([False])
-    )
-    return bool(np.all(order == np.arange(len(order))) and not same.any())
+                yield scan_id, np.column_stack([table[name].to_numpy() for name in schemas.XYZ])

@@ -6,9 +6,10 @@ from pathlib import Path
 import numpy as np
 
 from scanplan.errors import StageError
+from scanplan.types import FilePath, FloatArray, IntArray
 
 
-def read_tum(path):
+def read_tum(path: FilePath) -> tuple[IntArray, FloatArray]:
     """Read poses; text after `#` is a comment, commas part numbers like spaces.
 
     Parameters
@@ -27,10 +28,10 @@ def read_tum(path):
     StageError
         If a line does not hold eight numbers.
     """
-    stamps, rows = [], []
-    for number, line in enumerate(
-        Path(path).read_text(encoding="utf-8", errors="replace").splitlines(), 1
-    ):
+    stamps = []
+    rows = []
+    text = Path(path).read_text(encoding="utf-8", errors="replace")
+    for number, line in enumerate(text.splitlines(), 1):
         values = line.split("#")[0].replace(",", " ").split()
         if not values:
             continue
@@ -43,6 +44,7 @@ def read_tum(path):
             ) from None
         if len(values) != 8 or abs(stamps[-1]) >= 2**63:
             raise StageError(
-                f"{path}: line {number} has {len(values)} numbers instead of 8, or no stamp; mend it"
+                f"{path}: line {number} has {len(values)} numbers instead of 8, or no stamp;"
+                " mend it"
             )
     return np.array(stamps, np.int64), np.array(rows).reshape(-1, 7)

@@ -5,12 +5,15 @@ from itertools import combinations, pairwise
 
 import numpy as np
 import shapely
-from shapely import LineString, Polygon
+from shapely import LineString, Point, Polygon
+from shapely.geometry.base import BaseGeometry
 
 from scanplan.errors import StageError
+from scanplan.types import FloatArray
 
-GRID_M = 1e-6
-ON_WALL_M = 0.001
+GRID_M = 1e-6  # shapely's snapping grid: drawings are exact, so this closes rounding alone
+ON_WALL_M = 0.001  # how exactly an opening is drawn on its wall
+_MITRE_LIMIT = 5.0  # shapely's own: corners sharper than 23 degrees are cut off
 
 
 @dataclass(frozen=True)
@@ -24,7 +27,7 @@ class DrawnWall:
 
 @dataclass(frozen=True)
 class DrawnOpening:
-    """A hole through a wall: its stretch of the wall's centreline and its lower and upper edge above the floor."""
+    """A hole through a wall: its stretch of the centreline, its edges above the floor."""
 
     line_m: LineString
     thickness_m: float
@@ -43,14 +46,14 @@ class DrawnFurniture:
 
 @dataclass(frozen=True)
 class DrawnFloor:
-    """One floor of a building in the map frame; the floor is at z = 0, the ceiling at `height_m`.
+    """One floor of a building in the map frame, from z = 0 to the ceiling at `height_m`.
 
     Attributes
     ----------
     height_m : float
-    walls : tuple of Wall
-    openings : tuple of Opening
-    furniture : tuple of Furniture
+    walls : tuple of DrawnWall
+    openings : tuple of DrawnOpening
+    furniture : tuple of DrawnFurniture
     room_names : tuple of (str, Point)
         A name and a point inside the room that bears it.
     waypoints_m : (n, 2) float64, n >= 2, or None
@@ -58,26 +61,24 @@ class DrawnFloor:
     """
 
     height_m: float
-    walls: tuple
-    openings: tuple
-    furniture: tuple
-    room_names: tuple
-    waypoints_m: np.ndarray | None
+    walls: tuple[DrawnWall, ...]
+    openings: tuple[DrawnOpening, ...]
+    furniture: tuple[DrawnFurniture, ...]
+    room_names: tuple[tuple[str, Point], ...]
+    waypoints_m: FloatArray | None
 
 
-def cut_walls(plan, z_m):
-    """Return the ground that walls stand on when cut at a height, openings left out: (Multi)Polygon, map frame."""
+def cut_walls(plan: DrawnFloor, z_m: float) -> BaseGeometry:
+    """Return the section of the walls at a height, openings left out: (Multi)Polygon, map frame."""
     bodies = [body for body, height_m in _bodies(plan) if z_m < height_m]
-    holes = [
-        o.line_m.buffer(o.thickness_m / 2 + ON_WALL_M, cap_style="flat")
-        for o in plan.openings
-        if o.sill_m < z_m < o.lintel_m
-    ]
+    open_here = [o for o in plan.openings if o.sill_m < z_m < o.lintel_m]
+    holes = [o.line_m.buffer(o.thickness_m / 2 + ON_WALL_M, cap_style="flat") for o in open_here]
     solid = shapely.union_all(bodies, grid_size=GRID_M)
-    return shapely.difference(solid, shapely.union_all(holes), grid_size=GRID_M).normalize()
+    hole = shapely.union_all(holes, grid_size=GRID_M)
+    return shapely.difference(solid, hole, grid_size=GRID_M).normalize()
 
 
-def cut_wall_bands(plan):
+def cut_wall_bands(plan: DrawnFloor) -> list[tuple[float, float, BaseGeometry]]:
     """Cut the walls into slabs of constant section.
 
     Returns
@@ -85,21 +86,23 @@ def cut_wall_bands(plan):
     list of (float, float, Polygon or MultiPolygon)
         Lower and upper edge of each slab, metres above the floor, and its section.
     """
-    edges = {0.0, plan.height_m, *(w.height_m for w in plan.walls)}
-    edges.update(edge for o in plan.openings for edge in (o.sill_m, o.lintel_m))
-    edges = sorted(edges)
-    return [(low, high, cut_walls(plan, (low + high) / 2)) for low, high in pairwise(edges)]
+    edges = {0.0, plan.height_m}
+    edges.update(wall.height_m for wall in plan.walls)
+    for opening in plan.openings:
+        edges.update((opening.sill_m, opening.lintel_m))
+    return [
+        (low_m, high_m, cut_walls(plan, (low_m + high_m) / 2))
+        for low_m, high_m in pairwise(sorted(edges))
+    ]
 
 
-def floor_footprint(plan):
+def floor_footprint(plan: DrawnFloor) -> BaseGeometry:
     """Return the whole floor with the walls on it: all that the outer faces enclose."""
-    solid = shapely.union_all([body for body, _ in _bodies(plan)], grid_size=GRID_M)
-    return shapely.union_all(
-        [Polygon(part.exterior) for part in shapely.get_parts(solid)], grid_size=GRID_M
-    )
+    filled = [Polygon(part.exterior) for part in shapely.get_parts(_footprint_of_walls(plan))]
+    return shapely.union_all(filled, grid_size=GRID_M)
 
 
-def floor_rooms(plan):
+def floor_rooms(plan: DrawnFloor) -> list[tuple[str, Polygon]]:
     """Return the rooms: the free floor between the walls with every opening closed.
 
     Returns
@@ -107,16 +110,13 @@ def floor_rooms(plan):
     list of (str, Polygon)
         Name ("" where none is drawn) and floor, in a fixed order.
     """
-    solid = shapely.union_all([body for body, _ in _bodies(plan)], grid_size=GRID_M)
-    free = shapely.difference(floor_footprint(plan), solid, grid_size=GRID_M).normalize()
-    named = []
-    for room in (part for part in shapely.get_parts(free) if not part.is_empty):
-        names = [name for name, point in plan.room_names if room.contains(point)]
-        named.append((names[0] if names else "", room))
-    return named
+    walls = _footprint_of_walls(plan)
+    free = shapely.difference(floor_footprint(plan), walls, grid_size=GRID_M).normalize()
+    rooms = [room for room in shapely.get_parts(free) if not room.is_empty]
+    return [(_name_of_room(plan, room), room) for room in rooms]
 
 
-def floor_obstacles(plan, height_m):
+def floor_obstacles(plan: DrawnFloor, height_m: float) -> BaseGeometry:
     """Return the ground that a vehicle of a height cannot stand on: walls, parapets, furniture.
 
     Raises
@@ -126,34 +126,42 @@ def floor_obstacles(plan, height_m):
     """
     if not 0 < height_m < plan.height_m:
         raise StageError(
-            f"the sensor is {height_m:g} m above the floor and the ceiling {plan.height_m:g} m; lower it"
+            f"the sensor is {height_m:g} m above the floor and the ceiling {plan.height_m:g} m;"
+            " lower it"
         )
-    sections = [section for low, _, section in cut_wall_bands(plan) if low < height_m]
+    sections = [section for low_m, _, section in cut_wall_bands(plan) if low_m < height_m]
     return shapely.union_all([*sections, *(f.footprint_m for f in plan.furniture)])
 
 
-def _bodies(plan):
-    """Footprint and height of every wall, openings not cut, and of the corners where walls' ends meet."""
-    whole = [(_thick(w.line_m, w.thickness_m), w.height_m) for w in plan.walls]
-    ends = [
-        (tuple(np.round(end, 3)), run, wall)
-        for wall in plan.walls
-        for end, run in _ends(wall.line_m)
-    ]
-    for (node_a, run_a, a), (node_b, run_b, b) in combinations(ends, 2):
-        if node_a == node_b:
-            corner = LineString([*run_a, *run_b[-2::-1]])
-            whole.append(
-                (_thick(corner, min(a.thickness_m, b.thickness_m)), min(a.height_m, b.height_m))
-            )
-    return whole
+def _footprint_of_walls(plan: DrawnFloor) -> BaseGeometry:
+    return shapely.union_all([body for body, _ in _bodies(plan)], grid_size=GRID_M)
 
 
-def _ends(line_m):
-    """Each end of a line with the straight run that leads to it."""
+def _name_of_room(plan: DrawnFloor, room: Polygon) -> str:
+    return next((name for name, point in plan.room_names if room.contains(point)), "")
+
+
+def _bodies(plan: DrawnFloor) -> list[tuple[BaseGeometry, float]]:
+    """Return footprint and height of walls, openings not cut, and of corners where ends meet."""
+    bodies = [(_thick(w.line_m, w.thickness_m), w.height_m) for w in plan.walls]
+    ends = [(wall, *end) for wall in plan.walls for end in _ends(wall.line_m)]
+    for (a, place_a, run_a), (b, place_b, run_b) in combinations(ends, 2):
+        if place_a == place_b:
+            corner = _thick(LineString([*run_a, *run_b[-2::-1]]), min(a.thickness_m, b.thickness_m))
+            bodies.append((corner, min(a.height_m, b.height_m)))
+    return bodies
+
+
+def _ends(line_m: LineString) -> list[tuple[tuple[float, ...], FloatArray]]:
+    """Return the place of each end of a line, to the millimetre, and the run that leads to it."""
+    if line_m.is_closed:
+        return []
     xy = shapely.get_coordinates(line_m)
-    return [] if line_m.is_closed else [(xy[0], xy[1::-1]), (xy[-1], xy[-2:])]
+    runs = (xy[1::-1], xy[-2:])
+    return [(tuple(np.round(run[-1], 3)), run) for run in runs]
 
 
-def _thick(line_m, thickness_m):
-    return line_m.buffer(thickness_m / 2, cap_style="flat", join_style="mitre", mitre_limit=5.0)
+def _thick(line_m: LineString, thickness_m: float) -> BaseGeometry:
+    return line_m.buffer(
+        thickness_m / 2, cap_style="flat", join_style="mitre", mitre_limit=_MITRE_LIMIT
+    )

@@ -1,13 +1,20 @@
 """From a drawn floor to the triangles that rays hit."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import shapely
+from shapely import Polygon
+from shapely.geometry.base import BaseGeometry
 
 from scanplan.lab.buildings import drawn_floor
+from scanplan.types import FloatArray, IntArray
 
 SURFACES = ("wall", "floor", "ceiling", "furniture", "glass", "door", "other")
+
+Band = tuple[float, float, BaseGeometry]
+"""Lower edge, upper edge and section of a slab."""
 
 
 @dataclass(frozen=True)
@@ -23,16 +30,16 @@ class Mesh:
         Index in `SURFACES`.
     """
 
-    vertices_m: np.ndarray
-    triangles: np.ndarray
-    surface: np.ndarray
+    vertices_m: FloatArray
+    triangles: IntArray
+    surface: IntArray
 
 
-def make_building_mesh(plan):
-    """Return the mesh of a floor: closed walls with their openings and closed furniture between floor and ceiling.
+def make_building_mesh(plan: drawn_floor.DrawnFloor) -> Mesh:
+    """Return the mesh of a floor: closed walls and furniture between floor and ceiling.
 
-    Floor and ceiling run through under and above the walls, so that no gap opens where they meet. Windows and doors
-    are empty space (thesis, section 4.1).
+    Floor and ceiling run through under and above the walls, so that no gap opens where they meet.
+    Windows and doors are empty space (thesis, section 4.1).
 
     Parameters
     ----------
@@ -42,17 +49,18 @@ def make_building_mesh(plan):
     -------
     Mesh
     """
-    ground = drawn_floor.floor_footprint(plan)
+    footprint = drawn_floor.floor_footprint(plan)
     soups = [
         ("wall", extrude_bands(drawn_floor.cut_wall_bands(plan))),
-        ("floor", _slab(ground, 0.0, up=True)),
-        ("ceiling", _slab(ground, plan.height_m, up=False)),
-        *(("furniture", extrude_bands([(0.0, f.height_m, f.footprint_m)])) for f in plan.furniture),
+        ("floor", _triangulate(footprint, 0.0, up=True)),
+        ("ceiling", _triangulate(footprint, plan.height_m, up=False)),
     ]
+    for box in plan.furniture:
+        soups.append(("furniture", extrude_bands([(0.0, box.height_m, box.footprint_m)])))
     return join_meshes(soups)
 
 
-def join_meshes(soups):
+def join_meshes(soups: Sequence[tuple[str, FloatArray]]) -> Mesh:
     """Return one mesh of triangles given by the kind of their surface.
 
     Parameters
@@ -67,13 +75,12 @@ def join_meshes(soups):
     """
     corners = np.concatenate([np.empty((0, 3, 3)), *(soup for _, soup in soups)]).reshape(-1, 3)
     vertices, inverse = np.unique(corners, axis=0, return_inverse=True)
-    surface = np.repeat(
-        [SURFACES.index(name) for name, _ in soups], [len(soup) for _, soup in soups]
-    )
+    kinds = [SURFACES.index(name) for name, _ in soups]
+    surface = np.repeat(kinds, [len(soup) for _, soup in soups])
     return Mesh(vertices, inverse.reshape(-1, 3).astype(np.int32), surface.astype(np.uint8))
 
 
-def extrude_bands(bands):
+def extrude_bands(bands: Sequence[Band]) -> FloatArray:
     """Return the closed surface of slabs stacked without gaps.
 
     Parameters
@@ -86,42 +93,41 @@ def extrude_bands(bands):
     (t, 3, 3) float64
         Corners of the triangles, normals outwards.
     """
-    sides = [_sides(section, low, high) for low, high, section in bands]
-    nothing = shapely.Polygon()
-    below = [nothing, *(section for _, _, section in bands)]
-    above = [*(section for _, _, section in bands), nothing]
-    levels = [bands[0][0], *(high for _, high, _ in bands)]
-    for z_m, under, over in zip(levels, below, above, strict=True):
-        sides.append(
-            _slab(shapely.difference(under, over, grid_size=drawn_floor.GRID_M), z_m, up=True)
-        )
-        sides.append(
-            _slab(shapely.difference(over, under, grid_size=drawn_floor.GRID_M), z_m, up=False)
-        )
-    return np.concatenate(sides)
+    surfaces = [_sides(section, low_m, high_m) for low_m, high_m, section in bands]
+    sections = [section for _, _, section in bands]
+    levels_m = [bands[0][0], *(high_m for _, high_m, _ in bands)]
+    below = [Polygon(), *sections]
+    above = [*sections, Polygon()]
+    for z_m, under, over in zip(levels_m, below, above, strict=True):
+        tops = shapely.difference(under, over, grid_size=drawn_floor.GRID_M)
+        undersides = shapely.difference(over, under, grid_size=drawn_floor.GRID_M)
+        surfaces.append(_triangulate(tops, z_m, up=True))
+        surfaces.append(_triangulate(undersides, z_m, up=False))
+    return np.concatenate(surfaces)
 
 
-def _sides(section, low_m, high_m):
-    """Two triangles for every edge of a section."""
+def _sides(section: BaseGeometry, low_m: float, high_m: float) -> FloatArray:
+    """Return two triangles for every edge of a section."""
     rings = shapely.get_rings(shapely.get_parts(shapely.orient_polygons(section)))
     edges = [np.hstack([xy[:-1], xy[1:]]) for xy in map(shapely.get_coordinates, rings)]
     a, b = np.split(np.concatenate([np.empty((0, 4)), *edges]), 2, axis=1)
-    a_low, b_low, b_high, a_high = (
-        _raised(xy, z) for xy, z in ((a, low_m), (b, low_m), (b, high_m), (a, high_m))
-    )
+    a_low = _raise_to(a, low_m)
+    b_low = _raise_to(b, low_m)
+    b_high = _raise_to(b, high_m)
+    a_high = _raise_to(a, high_m)
     return np.concatenate(
         [np.stack([a_low, b_low, b_high], 1), np.stack([a_low, b_high, a_high], 1)]
     )
 
 
-def _slab(polygons, z_m, *, up):
-    """Triangles of a level surface; lines and points that an overlay left are no surface."""
+def _triangulate(polygons: BaseGeometry, z_m: float, *, up: bool) -> FloatArray:
+    """Return triangles of a level surface; lines and points that an overlay left are no surface."""
     parts = [p for p in shapely.get_parts(polygons) if p.geom_type == "Polygon" and not p.is_empty]
     pieces = shapely.get_parts(shapely.constrained_delaunay_triangles(parts)) if parts else []
     pieces = shapely.orient_polygons(pieces, exterior_cw=not up)
     corners = shapely.get_coordinates(pieces).reshape(-1, 4, 2)[:, :3]
-    return _raised(corners.reshape(-1, 2), z_m).reshape(-1, 3, 3)
+    return _raise_to(corners.reshape(-1, 2), z_m).reshape(-1, 3, 3)
 
 
-def _raised(xy_m, z_m):
+def _raise_to(xy_m: FloatArray, z_m: float) -> FloatArray:
     return np.column_stack([xy_m, np.full(len(xy_m), z_m)])

@@ -1,44 +1,54 @@
-"""What level cuts of a storey show: faces, walls, rooms, floor, and what stands on it."""
+"""What level cuts of a storey show: faces, walls, rooms, floor, and the obstacles on it."""
 
 from dataclasses import dataclass
 
 import numpy as np
 import shapely
+from shapely import LineString, MultiLineString, Polygon
+from shapely.geometry.base import BaseGeometry
 
 from scanplan.errors import StageError
 from scanplan.lab.buildings import slicing, storeys
+from scanplan.types import FilePath, FloatArray
 
-# ASSUME no storey's walls need be looked at higher than this to tell the outer from the inner
-_LOOKED_AT_M = 3.0
-# ASSUME what is lower than a standing person hides no wall: the sensor's upper beams pass over it
-SCREEN_M = 1.5
-_FLOOR_WITHIN_M = 0.1
-_STEP_M, _HEADROOM_M, _SPACING_M = 0.06, 0.15, 0.12
-# ASSUME gaps in the outer walls up to twice this are openings as high as the wall, and seams in the floor thresholds
-_CLOSED_GAP_M, _SEAM_M = 0.6, 0.3
-_MIN_ROOM_M = 0.6
-_SOME_FLOOR = 0.05
-_SAME_M = 0.01
+SCREEN_M = 1.5  # ASSUME lower things occlude no wall: the sensor's upper beams pass over them
+_SHADOW_FROM_M = 0.1  # above thresholds
+_SHADOW_TO_M = 3.0  # ASSUME no walls need be looked at higher to part outer from inner ones
+_SHADOW_STEP_M = 0.25  # between cuts, to meet what is over a door at least once
+_BELOW_CEILING_M = 0.05  # the highest cut, clear of the ceiling's surface
+_LINE_M = 0.001  # half the width that lines without area get, to count as matter
+_COARSE_GRID_M = 1e-4  # snapping of unions of many cuts: their seams differ by float32's rounding
+_FLOOR_WITHIN_M = 0.1  # of z = 0: thresholds and worn floors, below any step of a stair
+_STEP_M = 0.06  # ASSUME the rover climbs thresholds up to this
+_HEADROOM_M = 0.15  # above the sensor: its housing, and what would hang into its view
+_OBSTACLE_STEP_M = 0.12  # between cuts; what lies wholly between two counts by its triangles
+_OBSTACLE_GRID_M = 1e-3  # their outlines are many, and no clearance is as small
+_CLOSED_GAP_M = 0.6  # ASSUME gaps in outer walls up to twice this are openings as high as the wall
+_SEAM_M = 0.3  # ASSUME gaps in the floor up to twice this are thresholds
+_MIN_ROOM_M = 0.6  # width of the smallest room; narrower ones are shafts between walls
+_MIN_FLOOR_SHARE = 0.05  # of the outline; less is a stray surface of a building without floor
+_SAME_THICKNESS_M = 0.01  # strips of one straight wall agree this well, with the meshing's error
+_ANY_SIZE_M = 1e4  # a space is no matter, and of any width
 
 
 @dataclass(frozen=True)
 class Ground:
     """What cuts of a storey show; see `building.Building`.
 
-    `solid` is the matter of walls at the slice, `screens` are lines of what hides them there.
+    `solid` is the matter of walls at the slice, `screens` are lines that occlude walls there.
     """
 
-    solid: object
-    faces: list
-    screens: list
-    rooms: list
-    floor_m: object
-    obstacles_m: object
+    solid: BaseGeometry
+    faces: list[tuple[LineString, str]]
+    screens: list[LineString]
+    rooms: list[tuple[str, Polygon]]
+    floor_m: BaseGeometry
+    obstacles_m: BaseGeometry
     height_m: float
-    notes: tuple
+    notes: tuple[str, ...]
 
 
-def cut_storey(storey, slice_height_m, source):
+def cut_storey(storey: storeys.Storey, slice_height_m: float, source: FilePath) -> Ground:
     """Cut a storey.
 
     Returns
@@ -50,20 +60,22 @@ def cut_storey(storey, slice_height_m, source):
     StageError
         If no wall is as high as the slice.
     """
-    walls = [b.triangles_m for b in storey.bodies if b.is_wall]
+    walls = [slicing.split_bodies(body.triangles_m) for body in storey.bodies if body.is_wall]
     solid, sheets = _section(walls, slice_height_m)
     if solid.is_empty and sheets.is_empty:
         raise StageError(
-            f"{source}: no wall is cut at {slice_height_m:g} m above the floor; lower or raise the sensor"
+            f"{source}: no wall is cut at {slice_height_m:g} m above the floor; lower or raise the"
+            " sensor"
         )
-    shadow = _shadow([b.triangles_m for b in storey.bodies if b.encloses], storey.height_m)
+    enclosing = [body.triangles_m for body in storey.bodies if body.encloses]
+    shadow = _shadow(list(map(slicing.split_bodies, enclosing)), storey.height_m)
     outline = _filled(shadow)
     floor, notes = _floor(storey, outline, solid, source)
     return Ground(
         solid=solid,
         faces=slicing.section_faces(solid, sheets, outline),
-        screens=slicing.find_screens(_tall(storey, slice_height_m), solid),
-        rooms=_spaces(storey, slice_height_m) or _enclosed(outline, shadow),
+        screens=slicing.find_screens(_tall_outlines(storey, slice_height_m), solid),
+        rooms=_space_rooms(storey, slice_height_m) or _enclosed_rooms(outline, shadow),
         floor_m=floor,
         obstacles_m=_obstacles(storey, solid, slice_height_m),
         height_m=storey.height_m,
@@ -71,107 +83,134 @@ def cut_storey(storey, slice_height_m, source):
     )
 
 
-def find_storey_walls(storey, ground, slice_height_m):
-    """Return (centreline, thickness) of the walls at the slice: their own axes where known, else strips of matter."""
-    if not any(b.along is not None for b in storey.bodies if b.is_wall):
+def find_storey_walls(
+    storey: storeys.Storey, ground: Ground, slice_height_m: float
+) -> list[tuple[LineString, float]]:
+    """Return (centreline, thickness) of the walls at the slice.
+
+    Their own axes where known, else the strips of matter.
+    """
+    walls = [body for body in storey.bodies if body.is_wall]
+    if not any(body.along is not None for body in walls):
         return slicing.section_centrelines(ground.solid)
-    found = []
-    for body in (b for b in storey.bodies if b.is_wall):
-        solid, _ = slicing.cut_section(body.triangles_m, slice_height_m)
-        strips = slicing.section_centrelines(solid) if not solid.is_empty else []
-        # a straight wall is as thick at every strip between its openings as it is wide in all
-        line, thick = storeys.middle_axis(body.along, body.triangles_m)
-        straight = strips and all(abs(thick - t) < _SAME_M for _, t in strips)
-        found += [(line, thick)] if straight else strips
-    return found
+    return [wall for body in walls for wall in _body_walls(body, slice_height_m)]
 
 
-def _tall(storey, slice_height_m):
-    """Outlines at the slice of the bodies that are no walls, stand below it and reach above a person's head."""
-    others = (b for b in storey.bodies if not b.is_wall)
-    opaque = [
-        t for b in others for kind, t in b.surfaces if kind not in ("glass", "floor", "ceiling")
-    ]
+def _body_walls(body: storeys.Body, slice_height_m: float) -> list[tuple[LineString, float]]:
+    """Return a straight wall by its own axis, another as the strips of its matter."""
+    solid, _ = slicing.cut_section(slicing.split_bodies(body.triangles_m), slice_height_m)
+    strips = slicing.section_centrelines(solid) if not solid.is_empty else []
+    if not strips or body.along is None:
+        return strips
+    # a straight wall is as thick at every strip between its openings as it is wide in all
+    line, width_m = storeys.middle_axis(body.along, body.triangles_m)
+    is_straight = all(abs(width_m - thickness_m) < _SAME_THICKNESS_M for _, thickness_m in strips)
+    return [(line, width_m)] if is_straight else strips
+
+
+def _tall_outlines(storey: storeys.Storey, slice_height_m: float) -> list[BaseGeometry]:
+    """Return outlines at the slice of opaque surfaces that stand below it and reach above a head.
+
+    Those of walls are left out.
+    """
+    others = [surface for body in storey.bodies if not body.is_wall for surface in body.surfaces]
+    opaque = [t for kind, t in others if kind not in ("glass", "floor", "ceiling")]
     tall = [t for t in opaque if t[..., 2].min() < slice_height_m and t[..., 2].max() >= SCREEN_M]
-    return [
-        shapely.multilinestrings(slicing.cut_triangles(triangles_m, slice_height_m))
-        for triangles_m in tall
-    ]
+    cuts = (slicing.cut_triangles(triangles_m, slice_height_m) for triangles_m in tall)
+    return [MultiLineString(list(cut)) for cut in cuts]
 
 
-def _section(soups, z_m, **limits):
-    parts = [slicing.cut_section(soup, z_m, **limits) for soup in soups]
-    solid = shapely.union_all([s for s, _ in parts], grid_size=slicing.GRID_M)
-    sheets = shapely.union_all([s for _, s in parts], grid_size=slicing.GRID_M)
+def _section(soups: list[list[FloatArray]], z_m: float) -> tuple[BaseGeometry, BaseGeometry]:
+    """Return matter and sheets of surfaces, each split into its bodies."""
+    sections = [slicing.cut_section(bodies_m, z_m) for bodies_m in soups]
+    solid = shapely.union_all([s for s, _ in sections], grid_size=slicing.GRID_M)
+    sheets = shapely.union_all([s for _, s in sections], grid_size=slicing.GRID_M)
     return solid, sheets.difference(solid.buffer(2 * slicing.GRID_M))
 
 
-def _shadow(soups, height_m):
-    """The ground under walls wherever a wall is above it: doors are closed by what is over them."""
-    top_m = min(height_m, _LOOKED_AT_M) - 0.05
-    cuts = [_section(soups, z_m) for z_m in np.linspace(0.1, top_m, max(2, int(top_m / 0.25)))]
-    return shapely.union_all(
-        [g for solid, sheets in cuts for g in (solid, sheets.buffer(0.001))], grid_size=1e-4
-    )
+def _shadow(soups: list[list[FloatArray]], height_m: float) -> BaseGeometry:
+    """Return the ground under walls at any height: doors are closed by what is over them."""
+    top_m = min(height_m, _SHADOW_TO_M) - _BELOW_CEILING_M
+    n_cuts = max(2, int(top_m / _SHADOW_STEP_M))
+    pieces = []
+    for z_m in np.linspace(_SHADOW_FROM_M, top_m, n_cuts):
+        solid, sheets = _section(soups, z_m)
+        pieces += [solid, sheets.buffer(_LINE_M)]
+    return shapely.union_all(pieces, grid_size=_COARSE_GRID_M)
 
 
-def _filled(shadow):
-    """All that outer walls enclose, gaps closed."""
-    closed = shadow.buffer(_CLOSED_GAP_M, join_style="mitre").buffer(
-        -_CLOSED_GAP_M + 0.001, join_style="mitre"
-    )
-    parts = [
-        shapely.Polygon(part.exterior)
-        for part in shapely.get_parts(closed)
-        if part.geom_type == "Polygon"
-    ]
-    return shapely.union_all([*parts, shadow], grid_size=1e-4)
+def _filled(shadow: BaseGeometry) -> BaseGeometry:
+    """Return all that outer walls enclose, gaps closed."""
+    wide = shadow.buffer(_CLOSED_GAP_M, join_style="mitre")
+    closed = wide.buffer(-_CLOSED_GAP_M + _LINE_M, join_style="mitre")
+    filled = [Polygon(part.exterior) for part in _polygons(closed)]
+    return shapely.union_all([*filled, shadow], grid_size=_COARSE_GRID_M)
 
 
-def _floor(storey, outline, solid, source):
-    levels = [t for body in storey.bodies for _, t in body.surfaces]
-    flat = [_level(t[(np.abs(t[..., 2]) <= _FLOOR_WITHIN_M).all(axis=1)]) for t in levels]
-    floor = shapely.union_all(shapely.polygons(np.concatenate(flat)), grid_size=1e-4)
-    if floor.difference(solid).area < _SOME_FLOOR * outline.area:
-        return outline, (
-            f"{source}: has no floor at z = 0; the rover drives on all that the outer walls enclose",
+def _floor(
+    storey: storeys.Storey, outline: BaseGeometry, solid: BaseGeometry, source: FilePath
+) -> tuple[BaseGeometry, tuple[str, ...]]:
+    """Return the level surfaces at z = 0, or the outline with a note where there are none."""
+    level = []
+    for body in storey.bodies:
+        for _, triangles_m in body.surfaces:
+            is_low = (np.abs(triangles_m[..., 2]) <= _FLOOR_WITHIN_M).all(axis=1)
+            level.append(_level_outlines(triangles_m[is_low]))
+    floor = shapely.union_all(shapely.polygons(np.concatenate(level)), grid_size=_COARSE_GRID_M)
+    if floor.difference(solid).area < _MIN_FLOOR_SHARE * outline.area:
+        note = (
+            f"{source}: has no floor at z = 0; the rover drives on all that the outer walls enclose"
         )
+        return outline, (note,)
     closed = floor.buffer(_SEAM_M, join_style="mitre").buffer(-_SEAM_M, join_style="mitre")
-    return closed.intersection(outline, grid_size=1e-4), ()
+    return closed.intersection(outline, grid_size=_COARSE_GRID_M), ()
 
 
-def _level(triangles_m):
-    """Those that are level, as seen from above: (t, 3, 2)."""
+def _level_outlines(triangles_m: FloatArray) -> FloatArray:
+    """Return the level ones of some triangles as seen from above: (t, 3, 2)."""
     normal = np.cross(triangles_m[:, 1] - triangles_m[:, 0], triangles_m[:, 2] - triangles_m[:, 0])
     length = np.linalg.norm(normal, axis=1)
-    return triangles_m[(np.abs(normal[:, 2]) > storeys.LEVEL * length) & (length > 1e-9)][..., :2]
+    is_level = (np.abs(normal[:, 2]) > storeys.LEVEL_COSINE * length) & (length > 1e-9)
+    return triangles_m[is_level][..., :2]
 
 
-def _obstacles(storey, solid, slice_height_m):
-    """What stands, lies or hangs between a step and the sensor's head, as lines and pieces of ground."""
-    triangles_m = np.concatenate([b.triangles_m for b in storey.bodies])
+def _obstacles(storey: storeys.Storey, solid: BaseGeometry, slice_height_m: float) -> BaseGeometry:
+    """Return the ground under what stands, lies or hangs between a step and the sensor's head."""
+    triangles_m = np.concatenate([body.triangles_m for body in storey.bodies])
+    z_m = triangles_m[..., 2]
     top_m = slice_height_m + _HEADROOM_M
-    within = ((triangles_m[..., 2] > _STEP_M) & (triangles_m[..., 2] < top_m)).all(axis=1)
-    heights = np.linspace(_STEP_M, top_m, int(np.ceil((top_m - _STEP_M) / _SPACING_M)) + 1)
-    cuts = [slicing.cut_triangles(triangles_m[~within], z_m) for z_m in heights]
-    edges = triangles_m[within][:, [[0, 1], [1, 2], [2, 0]], :2].reshape(-1, 2, 2)
-    ends = np.round(np.concatenate([*cuts, edges]), 3).reshape(-1, 4)
-    lines = shapely.buffer(
-        shapely.linestrings(np.unique(ends, axis=0).reshape(-1, 2, 2)), 0.001, quad_segs=1
-    )
-    tops = shapely.polygons(_level(triangles_m[within]))
-    return shapely.union_all([*lines, *tops, solid], grid_size=1e-3)
+    is_within = ((z_m > _STEP_M) & (z_m < top_m)).all(axis=1)
+    n_cuts = int(np.ceil((top_m - _STEP_M) / _OBSTACLE_STEP_M)) + 1
+    heights_m = np.linspace(_STEP_M, top_m, n_cuts)
+    cuts = [slicing.cut_triangles(triangles_m[~is_within], height_m) for height_m in heights_m]
+    # a triangle wholly in between may lie between two cuts: all of it counts
+    within = triangles_m[is_within]
+    edges = within[:, [[0, 1], [1, 2], [2, 0]], :2].reshape(-1, 2, 2)
+    ends = np.unique(np.round(np.concatenate([*cuts, edges]), 3).reshape(-1, 4), axis=0)
+    lines = shapely.buffer(shapely.linestrings(ends.reshape(-1, 2, 2)), _LINE_M, quad_segs=1)
+    tops = shapely.get_parts(shapely.polygons(_level_outlines(within)))
+    pieces = [*shapely.get_parts(lines), *tops, solid]
+    return shapely.union_all(pieces, grid_size=_OBSTACLE_GRID_M)
 
 
-def _spaces(storey, slice_height_m):
+def _space_rooms(storey: storeys.Storey, slice_height_m: float) -> list[tuple[str, Polygon]]:
+    """Return the rooms that the model states."""
     rooms = []
     for name, triangles_m in storey.spaces:
-        area, _ = slicing.cut_section(triangles_m, slice_height_m, max_solid_m=1e4)
-        rooms += [(name, part) for part in shapely.get_parts(area) if part.area > _MIN_ROOM_M**2]
+        bodies_m = slicing.split_bodies(triangles_m)
+        area, _ = slicing.cut_section(bodies_m, slice_height_m, max_solid_m=_ANY_SIZE_M)
+        parts = [part for part in _polygons(area) if part.area > _MIN_ROOM_M**2]
+        rooms += [(name, part) for part in parts]
     return rooms
 
 
-def _enclosed(outline, shadow):
-    free = shapely.get_parts(outline.difference(shadow, grid_size=1e-4).normalize())
-    wide = [p for p in free if p.geom_type == "Polygon" and not p.buffer(-_MIN_ROOM_M / 2).is_empty]
-    return [("", room.simplify(slicing.STRAIGHT_M)) for room in wide]
+def _enclosed_rooms(outline: BaseGeometry, shadow: BaseGeometry) -> list[tuple[str, Polygon]]:
+    """Return the rooms between the walls, without names."""
+    free = outline.difference(shadow, grid_size=_COARSE_GRID_M).normalize()
+    wide = [part for part in _polygons(free) if not part.buffer(-_MIN_ROOM_M / 2).is_empty]
+    return [("", shapely.simplify(room, slicing.STRAIGHT_M)) for room in wide]
+
+
+def _polygons(geometry: BaseGeometry) -> list[Polygon]:
+    """Return the polygons of a geometry; lines and points that an overlay left are none."""
+    return [part for part in shapely.get_parts(geometry) if part.geom_type == "Polygon"]

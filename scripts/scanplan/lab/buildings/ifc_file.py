@@ -1,6 +1,8 @@
 """Reading a building model: the parts of an IFC file as triangles in metres, and its storeys."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import ifcopenshell
 import ifcopenshell.geom
@@ -10,6 +12,7 @@ import ifcopenshell.util.unit
 import numpy as np
 
 from scanplan.errors import StageError
+from scanplan.types import BoolArray, FilePath, FloatArray
 
 # the first that fits; what none fits is "other"
 _KINDS = (
@@ -30,7 +33,7 @@ _LEFT_OUT = (
     "IfcSpatialStructureElement",
     "IfcPort",
 )
-_MIN_TRANSPARENCY = 0.3
+_MIN_TRANSPARENCY = 0.3  # lower makes tinted frames glass, higher makes tinted glass opaque
 
 
 @dataclass(frozen=True)
@@ -48,7 +51,8 @@ class IfcPart:
         Of an opening: the GlobalId of what it goes through.
     guid : str
     along : (2,) float64
-        Unit vector of its own x axis seen from above: by IFC's convention the direction a wall runs in.
+        Unit vector of its own x axis seen from above: by IFC's convention the direction that a
+        wall runs in.
     triangles_m : (t, 3, 3) float64
         World frame.
     transparent : (t,) bool
@@ -59,21 +63,31 @@ class IfcPart:
     fills: str
     host: str
     guid: str
-    along: np.ndarray
-    triangles_m: np.ndarray
-    transparent: np.ndarray
+    along: FloatArray
+    triangles_m: FloatArray
+    transparent: BoolArray
 
 
 @dataclass(frozen=True)
 class IfcBuilding:
-    """A building model: its storeys from below (name, height of the floor, metres), its parts in the file's order."""
+    """A building model.
 
-    storeys: tuple
-    parts: tuple
-    notes: tuple
+    Attributes
+    ----------
+    storeys : tuple of (str, float)
+        From below: name, height of the floor in metres.
+    parts : tuple of IfcPart
+        In the file's order.
+    notes : tuple of str
+        What is odd and used all the same.
+    """
+
+    storeys: tuple[tuple[str, float], ...]
+    parts: tuple[IfcPart, ...]
+    notes: tuple[str, ...]
 
 
-def parse_ifc(data, source):
+def parse_ifc(data: bytes, source: FilePath) -> IfcBuilding:
     """Read an IFC file.
 
     Parameters
@@ -84,7 +98,7 @@ def parse_ifc(data, source):
 
     Returns
     -------
-    Model
+    IfcBuilding
 
     Raises
     ------
@@ -93,11 +107,9 @@ def parse_ifc(data, source):
     """
     text = data.decode("utf-8", errors="replace")
     if not text.lstrip().startswith("ISO-10303-21;") or "END-ISO-10303-21;" not in text[-200:]:
-        state = (
-            "is empty (0 bytes)"
-            if not data
-            else "does not run from ISO-10303-21 to END-ISO-10303-21"
-        )
+        state = "does not run from ISO-10303-21 to END-ISO-10303-21"
+        if not data:
+            state = "is empty (0 bytes)"
         raise StageError(
             f"{source}: {state}; it is cut off or no IFC file, export or copy it again"
         )
@@ -113,16 +125,14 @@ def parse_ifc(data, source):
         raise StageError(
             f"{source}: {len(storeys)} storeys and no walls with a shape; export storeys and walls"
         )
-    notes = (
-        (f"{source}: {failed} products have a shape that could not be made; left out",)
-        if failed
-        else ()
-    )
-    return IfcBuilding(storeys, tuple(parts), notes)
+    note = f"{source}: {failed} products have a shape that could not be made; left out"
+    return IfcBuilding(storeys, tuple(parts), (note,) if failed else ())
 
 
-def find_storey(model, chosen, source):
-    """Return the index of a storey by its name or its index from below; None stands for the only one.
+def find_storey(model: IfcBuilding, chosen: str | int | None, source: FilePath) -> int:
+    """Return the index of a storey by its name or its index from below.
+
+    None stands for the only one.
 
     Raises
     ------
@@ -130,99 +140,108 @@ def find_storey(model, chosen, source):
         Listing the storeys, if none or several are meant.
     """
     names = [name for name, _ in model.storeys]
-    listed = ", ".join(
-        f"{i} {name!r} at {z_m:.2f} m" for i, (name, z_m) in enumerate(model.storeys)
-    )
     if chosen is None and len(names) == 1:
         return 0
     if isinstance(chosen, int) and 0 <= chosen < len(names):
         return chosen
     if isinstance(chosen, str) and names.count(chosen) == 1:
         return names.index(chosen)
-    wanted = (
-        "no storey is chosen"
-        if chosen is None
-        else f"storey {chosen!r} is none or several of its storeys"
+    fault = f"storey {chosen!r} is none or several of its storeys"
+    if chosen is None:
+        fault = "no storey is chosen"
+    listed = ", ".join(
+        f"{i} {name!r} at {z_m:.2f} m" for i, (name, z_m) in enumerate(model.storeys)
     )
-    raise StageError(
-        f"{source}: {wanted}; set simulate.site.storey to a name or index of: {listed}"
-    )
+    raise StageError(f"{source}: {fault}; set simulate.site.storey to a name or index of: {listed}")
 
 
-def _storeys(model):
+# ifcopenshell makes its classes while it runs: what it returns has no type that could be stated
+
+
+def _storeys(model: Any) -> tuple[tuple[str, float], ...]:
     scale_m = ifcopenshell.util.unit.calculate_unit_scale(model)
-    found = model.by_type("IfcBuildingStorey")
-    placed = [
-        ifcopenshell.util.placement.get_local_placement(s.ObjectPlacement)[2, 3] for s in found
-    ]
+    storeys = model.by_type("IfcBuildingStorey")
+    heights = [_placement(storey)[2, 3] for storey in storeys]
     # some writers leave every storey at the same place and state only the elevation
-    heights = (
-        placed if len(set(placed)) > 1 or len(found) < 2 else [s.Elevation or 0.0 for s in found]
-    )
+    if len(storeys) > 1 and len(set(heights)) == 1:
+        heights = [storey.Elevation or 0.0 for storey in storeys]
     named = [
-        (s.Name or s.GlobalId, float(z) * scale_m) for s, z in zip(found, heights, strict=True)
+        (storey.Name or storey.GlobalId, float(z) * scale_m)
+        for storey, z in zip(storeys, heights, strict=True)
     ]
     return tuple(sorted(named, key=lambda storey: storey[1]))
 
 
-def _parts(model):
+def _parts(model: Any) -> tuple[list[IfcPart], int]:
+    """Return the parts in the file's order, and how many products have no usable shape."""
     products = [p for p in model.by_type("IfcProduct") if p.Representation and _kind(p)]
-    settings = ifcopenshell.geom.settings()
-    settings.set("use-world-coords", True)
-    shapes = ifcopenshell.geom.iterator(settings, model, 1, include=products) if products else None
     parts = {}
-    more = shapes is not None and shapes.initialize()
-    while more:
-        shape = shapes.get()
+    for shape in _shapes(model, products):
         if len(shape.geometry.faces):
             parts[shape.id] = _part(model.by_id(shape.id), shape.geometry)
-        more = shapes.next()
     return [parts[i] for i in sorted(parts)], len(products) - len(parts)
 
 
-def _kind(product):
-    if any(product.is_a(name) for name in _LEFT_OUT) and not product.is_a("IfcSpace"):
+def _shapes(model: Any, products: list[Any]) -> Iterator[Any]:
+    if not products:
+        return
+    settings = ifcopenshell.geom.settings()
+    settings.set("use-world-coords", True)
+    shapes = ifcopenshell.geom.iterator(settings, model, 1, include=products)
+    is_more = shapes.initialize()
+    while is_more:
+        yield shapes.get()
+        is_more = shapes.next()
+
+
+def _kind(product: Any) -> str:
+    """Return what kind of part a product is, empty if it is none."""
+    if any(map(product.is_a, _LEFT_OUT)) and not product.is_a("IfcSpace"):
         return ""
-    return next(
-        (kind for kind, names in _KINDS if any(product.is_a(name) for name in names)), "other"
-    )
+    kinds = (kind for kind, names in _KINDS if any(map(product.is_a, names)))
+    return next(kinds, "other")
 
 
-def _part(product, geometry):
-    corners = np.array(geometry.verts, float).reshape(-1, 3)
-    triangles = corners[np.array(geometry.faces, int).reshape(-1, 3)]
-    clear = [
+def _part(product: Any, geometry: Any) -> IfcPart:
+    corners_m = np.array(geometry.verts, float).reshape(-1, 3)
+    faces = np.array(geometry.faces, int).reshape(-1, 3)
+    is_clear = [
         bool(m.has_transparency and m.transparency >= _MIN_TRANSPARENCY) for m in geometry.materials
     ]
+    # a face without material has the index -1
     material = np.array(geometry.material_ids, int)
-    along = ifcopenshell.util.placement.get_local_placement(product.ObjectPlacement)[:2, 0]
+    x_axis = _placement(product)[:2, 0]
+    length = np.hypot(*x_axis)
     return IfcPart(
         kind=_kind(product),
         name=_name(product),
         fills=_filling(product),
         host=_host(product),
         guid=product.GlobalId,
-        along=along / np.hypot(*along) if np.hypot(*along) > 0 else np.array([1.0, 0.0]),
-        triangles_m=triangles,
-        transparent=np.array([*clear, False])[material],
+        along=x_axis / length if length > 0 else np.array([1.0, 0.0]),
+        triangles_m=corners_m[faces],
+        transparent=np.array([*is_clear, False])[material],
     )
 
 
-def _name(product):
-    names = [product.Name, getattr(product, "LongName", None) if product.is_a("IfcSpace") else None]
-    return " ".join(name for name in names if name)
+def _placement(product: Any) -> FloatArray:
+    return ifcopenshell.util.placement.get_local_placement(product.ObjectPlacement)
 
 
-def _filling(product):
-    fillings = [f.RelatedBuildingElement for f in getattr(product, "HasFillings", None) or ()]
-    kinds = {
-        "door" if f.is_a("IfcDoor") else "window"
-        for f in fillings
-        if f.is_a("IfcDoor") or f.is_a("IfcWindow")
-    }
-    return min(kinds, default="")
+def _name(product: Any) -> str:
+    long_name = getattr(product, "LongName", None) if product.is_a("IfcSpace") else None
+    return " ".join(name for name in (product.Name, long_name) if name)
 
 
-def _host(product):
+def _filling(product: Any) -> str:
+    """Return what is in an opening: `door`, `window` or nothing."""
+    elements = [f.RelatedBuildingElement for f in getattr(product, "HasFillings", None) or ()]
+    if any(element.is_a("IfcDoor") for element in elements):
+        return "door"
+    return "window" if any(element.is_a("IfcWindow") for element in elements) else ""
+
+
+def _host(product: Any) -> str:
+    """Return the GlobalId of what an opening goes through, empty if it is none."""
     voided = getattr(product, "VoidsElements", None) or ()
     return voided[0].RelatingBuildingElement.GlobalId if voided else ""

@@ -1,4 +1,4 @@
-"""Reading the triangles of a building: STL, OBJ and PLY, told in metres."""
+"""Reading the triangles of a building, in metres: STL, OBJ and PLY."""
 
 import io
 
@@ -6,36 +6,40 @@ import numpy as np
 import trimesh
 
 from scanplan.errors import StageError
+from scanplan.types import FilePath, FloatArray
 
-SUFFIXES = (".stl", ".obj", ".ply")
-METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
-MIN_EXTENT_M, MAX_EXTENT_M, MAX_HEIGHT_M = 1.5, 2000.0, 60.0
-# what one storey may measure, to guess a unit by
-_LOW_M, _HIGH_M, _WIDE_M = 2.0, 12.0, 3.0
-# below this a triangle's area is that of two corners 0.1 mm apart on an edge of 1 mm
-_MIN_AREA_M2 = 1e-7
-_STL_HEADER, _STL_RECORD = 84, 50
+METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}  # by definition
+MIN_EXTENT_M = 1.5  # a smaller floor has no room for a rover
+MAX_EXTENT_M = 2000.0  # a larger one is in another unit, or a town
+MAX_HEIGHT_M = 60.0  # a higher one is in another unit, or a tower to cut a floor out of
+_STOREY_HEIGHTS_M = (2.0, 12.0)  # of one storey, halls among them, to guess a unit by
+_STOREY_WIDTH_M = 3.0  # of the smallest storey, to guess a unit by
+_MIN_AREA_M2 = 1e-7  # that of two corners 0.1 mm apart on an edge of 1 mm
+_STL_HEADER = 84  # bytes of a binary STL before its faces, their number the last four
+_STL_RECORD = 50  # bytes of one face
 
 
-def parse_mesh(data, suffix, source, *, unit="m"):
+def parse_mesh(
+    data: bytes, suffix: str, source: FilePath, *, unit: str = "m"
+) -> tuple[FloatArray, tuple[str, ...]]:
     """Read a mesh.
 
     Parameters
     ----------
     data : bytes
     suffix : str
-        One of `SUFFIXES`; it tells the format.
+        `.stl`, `.obj` or `.ply`: the format.
     source : path-like
         What errors name as their origin.
     unit : str
-        What one step of the file's coordinates is, one of `METRES`; none of the formats says it.
+        Of the file's coordinates, one of `METRES`; none of the formats states it.
 
     Returns
     -------
     triangles_m : (t, 3, 3) float64
         None of zero area.
     notes : tuple of str
-        What was found odd and is used all the same: faces dropped, holes.
+        What is odd and used all the same: faces dropped, holes.
 
     Raises
     ------
@@ -52,112 +56,110 @@ def parse_mesh(data, suffix, source, *, unit="m"):
     finite = np.isfinite(triangles).all(axis=(1, 2))
     _check_size(triangles[finite], unit, source)
     triangles_m = triangles[finite] * METRES[unit]
-    flat = _area(triangles_m) <= _MIN_AREA_M2
-    kept = triangles_m[~flat]
-    if not len(kept):
+    is_flat = _areas(triangles_m) <= _MIN_AREA_M2
+    n_flat = np.count_nonzero(is_flat)
+    n_infinite = np.count_nonzero(~finite)
+    triangles_m = triangles_m[~is_flat]
+    if not len(triangles_m):
         raise StageError(
-            f"{source}: holds {len(triangles)} faces, none with an area; export the building's surfaces"
+            f"{source}: holds {len(triangles)} faces, none with an area; export the building's"
+            " surfaces"
         )
-    dropped = [
-        (np.count_nonzero(flat), "of zero area"),
-        (np.count_nonzero(~finite), "with coordinates not finite"),
-    ]
     notes = [
-        f"{source}: {count} of {len(triangles)} faces {what} dropped"
-        for count, what in dropped
+        f"{source}: {count} of {len(triangles)} faces {fault} dropped"
+        for count, fault in ((n_flat, "of zero area"), (n_infinite, "with coordinates not finite"))
         if count
     ]
-    return kept, (*notes, *_holes(kept, source))
+    return triangles_m, (*notes, *_describe_holes(triangles_m, source))
 
 
-def _triangles(data, suffix, source):
+def _triangles(data: bytes, suffix: str, source: FilePath) -> FloatArray:
+    file_type = suffix[1:]
     try:
         # process=False keeps the corners as they are; no resolver, so that no other file is read
-        loaded = trimesh.load_mesh(io.BytesIO(data), file_type=suffix[1:], process=False)
-        triangles = np.array(loaded.triangles, float).reshape(-1, 3, 3)
+        mesh = trimesh.load_mesh(io.BytesIO(data), file_type=file_type, process=False)
+        triangles = np.array(mesh.triangles, float).reshape(-1, 3, 3)
     # trimesh's readers raise whatever their parsing meets
     except Exception as error:
-        told = str(error).splitlines()[0][:120] if str(error) else type(error).__name__
+        reason = str(error).splitlines()[0][:120] if str(error) else type(error).__name__
         raise StageError(
-            f"{source}: cannot be read as {suffix[1:].upper()} ({told}); it is cut off or of another format,"
-            " export it again"
+            f"{source}: cannot be read as {file_type.upper()} ({reason}); it is cut off or of"
+            " another format, export it again"
         ) from None
     if not len(triangles):
         raise StageError(
-            f"{source}: holds no faces; export the building's surfaces as {suffix[1:].upper()}"
+            f"{source}: holds no faces; export the building's surfaces as {file_type.upper()}"
         )
     return triangles
 
 
-def _check_stl(data, source):
+def _check_stl(data: bytes, source: FilePath) -> None:
     """Refuse an STL that was cut off, which its readers pass over."""
+    is_ascii = data.lstrip()[:5].lower() == b"solid"
     count = int.from_bytes(data[80:_STL_HEADER], "little") if len(data) >= _STL_HEADER else 0
-    if len(data) == _STL_HEADER + count * _STL_RECORD and len(data) >= _STL_HEADER:
+    size = _STL_HEADER + count * _STL_RECORD
+    if len(data) == size:
         return
-    if data.lstrip()[:5].lower() == b"solid" and b"facet" in data[:2000]:
+    if is_ascii and b"facet" in data[:2000]:
         if b"endsolid" not in data[-2000:]:
             raise StageError(
                 f"{source}: has no `endsolid`, the ASCII STL is cut off; export or copy it again"
             )
         return
-    if data.lstrip()[:5].lower() == b"solid" and b"endsolid" in data:
+    if is_ascii and b"endsolid" in data:
         raise StageError(f"{source}: holds no faces; export the building's surfaces as STL")
     raise StageError(
-        f"{source}: has {len(data)} bytes, its header announces {count} faces ({_STL_HEADER + count * _STL_RECORD}"
-        " bytes); the binary STL is cut off or no STL, export or copy it again"
+        f"{source}: has {len(data)} bytes, its header announces {count} faces ({size} bytes); the"
+        " binary STL is cut off or no STL, export or copy it again"
     )
 
 
-def _check_size(triangles, unit, source):
+def _check_size(triangles: FloatArray, unit: str, source: FilePath) -> None:
     if not len(triangles):
         raise StageError(f"{source}: no coordinate is finite; export it again")
     corners = triangles.reshape(-1, 3)
     extent_m = np.ptp(corners, axis=0) * METRES[unit]
+    spanned = " x ".join(f"{side_m:g}" for side_m in np.round(extent_m, 3))
     if extent_m[:2].max() > MAX_EXTENT_M or extent_m[2] > MAX_HEIGHT_M:
-        guess = _likely(corners)
-        remedy = (
-            f"set simulate.site.unit: {guess}"
-            if guess
-            else "set simulate.site.unit, or cut out a floor"
-        )
+        guess = _likely_unit(corners)
+        remedy = f"set simulate.site.unit: {guess}"
+        if guess is None:
+            remedy = "set simulate.site.unit, or cut out a floor"
         raise StageError(
-            f"{source}: spans {_by(extent_m)} m in {unit}, the limits are {MAX_EXTENT_M:g} m and {MAX_HEIGHT_M:g} m of"
-            f" height; {remedy}"
+            f"{source}: spans {spanned} m in {unit}, the limits are {MAX_EXTENT_M:g} m and"
+            f" {MAX_HEIGHT_M:g} m of height; {remedy}"
         )
     if extent_m[:2].max() < MIN_EXTENT_M:
         raise StageError(
-            f"{source}: spans {_by(extent_m)} m, no room for a rover (at least {MIN_EXTENT_M:g} m);"
+            f"{source}: spans {spanned} m, no room for a rover (at least {MIN_EXTENT_M:g} m);"
             f" its coordinates are not in {unit}, set simulate.site.unit"
         )
 
 
-def _likely(corners):
-    """The unit in which both width and height are those of one storey; None if there is no such unit."""
-    width, height = np.ptp(corners[:, :2], axis=0).max(), np.ptp(corners[:, 2])
-    fits = (
-        u for u, m in METRES.items() if _LOW_M <= height * m <= _HIGH_M and width * m >= _WIDE_M
-    )
-    return next(fits, None)
+def _likely_unit(corners: FloatArray) -> str | None:
+    """Return the unit in which both width and height are those of one storey, None if none is."""
+    width = np.ptp(corners[:, :2], axis=0).max()
+    height = np.ptp(corners[:, 2])
+    low_m, high_m = _STOREY_HEIGHTS_M
+    for unit, metres in METRES.items():
+        if low_m <= height * metres <= high_m and width * metres >= _STOREY_WIDTH_M:
+            return unit
+    return None
 
 
-def _by(extent_m):
-    return " x ".join(f"{side:g}" for side in np.round(extent_m, 3))
-
-
-def _area(triangles):
+def _areas(triangles: FloatArray) -> FloatArray:
     a, b, c = np.moveaxis(triangles, 1, 0)
     return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
 
 
-def _holes(triangles_m, source):
-    """Tell of edges that only one face has: rays pass there, and walls with such edges are cut as sheets."""
+def _describe_holes(triangles_m: FloatArray, source: FilePath) -> tuple[str, ...]:
+    """Return a note of edges that only one face has.
+
+    Rays pass there, and walls with such edges are cut as sheets.
+    """
     _, corner = np.unique(np.round(triangles_m.reshape(-1, 3), 6), axis=0, return_inverse=True)
     a, b, c = corner.reshape(-1, 3).T
     edges = np.sort(np.concatenate([np.c_[a, b], np.c_[b, c], np.c_[c, a]]), axis=1)
     _, uses = np.unique(edges, axis=0, return_counts=True)
-    open_edges = int(np.count_nonzero(uses % 2))
-    return (
-        (f"{source}: has holes ({open_edges} open edges); rays pass through them",)
-        if open_edges
-        else ()
-    )
+    n_open = int(np.count_nonzero(uses % 2))
+    return (f"{source}: has holes ({n_open} open edges); rays pass through them",) if n_open else ()

@@ -1,36 +1,55 @@
-"""A grid over free ground: where the rover's middle can be, and what going from cell to cell costs."""
+"""A grid over free ground: where the rover's middle can be, and the costs of its steps."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import shapely
 from scipy.ndimage import distance_transform_edt, maximum_filter
-from scipy.sparse import coo_array
+from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import connected_components, dijkstra
+from shapely import Polygon
+from shapely.geometry.base import BaseGeometry
 
 from scanplan.errors import StageError
+from scanplan.types import BoolArray, FilePath, FloatArray, IntArray
 
-# what the planning keeps beyond the stated clearance, so that steps between cells keep the clearance itself
-_MARGIN_M = 0.02
-_FINE_M, _COARSE_M, _COARSE_ABOVE_M2 = 0.05, 0.1, 300.0
-_MOST_CELLS = 20e6
-# within this of an obstacle a step costs up to (1 + _NARROW) times its length: the way keeps to the middle
-_PREFERRED_M, _NARROW = 0.6, 3.0
-# the middle is where nothing near has more space about it, and all that has plenty
-_RIDGE_M, _PLENTY_M = 0.6, 1.5
+_MARGIN_M = 0.02  # beyond the stated clearance, so that steps between cells keep the clearance
+_FINE_M = 0.05  # cells of a floor that is not large: doorways hardly wider than the rover are met
+_COARSE_M = 0.1  # cells of a large floor: a quarter as many
+_COARSE_ABOVE_M2 = 300.0  # of floor, 120,000 fine cells: seconds for every stop's ways
+_MAX_CELLS = 20e6  # rasters of 160 MB each
+_PREFERRED_M = (
+    0.6  # from an obstacle: the way keeps to the middle of doors, with no detour in rooms
+)
+_NARROW = 3.0  # a step at an obstacle costs 1 + this times its length, falling to 1 at _PREFERRED_M
+_RIDGE_M = 0.6  # the middle of a room is where nothing within this has more space about it
+_PLENTY_M = 1.5  # and all that has this much
 
 
 @dataclass(frozen=True)
 class RoadmapGrid:
-    """Cells that the rover's middle can be in: place, free space about it, if in the middle; costs of steps."""
+    """Cells that the rover's middle can be in.
 
-    xy_m: np.ndarray
-    near_m: np.ndarray
-    middle: np.ndarray
-    steps: coo_array
+    Attributes
+    ----------
+    xy_m : (n, 2) float64
+        Their places.
+    near_m : (n,) float64
+        Free space about each.
+    middle : (n,) bool
+        Whether it is in the middle of a room or hallway.
+    steps : (n, n) sparse
+        Costs of steps between neighbours.
+    """
+
+    xy_m: FloatArray
+    near_m: FloatArray
+    middle: BoolArray
+    steps: csr_array
 
 
-def make_grid(part, clearance_m, source):
+def make_grid(part: Polygon, clearance_m: float, source: FilePath) -> RoadmapGrid:
     """Return the grid over connected free ground that keeps a clearance already.
 
     Raises
@@ -39,73 +58,94 @@ def make_grid(part, clearance_m, source):
         If that would take too many cells.
     """
     if part.is_empty:
-        return RoadmapGrid(np.empty((0, 2)), np.empty(0), np.empty(0, bool), coo_array((0, 0)))
+        return RoadmapGrid(np.empty((0, 2)), np.empty(0), np.empty(0, bool), csr_array((0, 0)))
     cell_m = _FINE_M if part.area < _COARSE_ABOVE_M2 else _COARSE_M
+    _check_size(part, cell_m, source)
     x0, y0, x1, y1 = part.bounds
-    if (x1 - x0) * (y1 - y0) > _MOST_CELLS * cell_m**2:
-        raise StageError(
-            f"{source}: its floor of {x1 - x0:.0f} x {y1 - y0:.0f} m is too large to plan a way over (limit"
-            f" {_MOST_CELLS * cell_m**2:,.0f} m2); check simulate.site.unit, or give simulate.site.waypoints_m"
-        )
-    x, y = (
-        np.arange(low - cell_m, high + 2 * cell_m, cell_m) for low, high in ((x0, x1), (y0, y1))
-    )
+    x = np.arange(x0 - cell_m, x1 + 2 * cell_m, cell_m)
+    y = np.arange(y0 - cell_m, y1 + 2 * cell_m, cell_m)
     inner = part.buffer(-_MARGIN_M)
     shapely.prepare(inner)
     inside = shapely.contains_xy(inner, *np.meshgrid(x, y))
-    near_m = distance_transform_edt(inside) * cell_m + clearance_m
-    number = np.full(inside.shape, -1)
-    number[inside] = np.arange(np.count_nonzero(inside))
-    row, column = np.nonzero(inside)
-    ridge_m = maximum_filter(near_m, 1 + 2 * round(_RIDGE_M / 2 / cell_m))
-    middle = (near_m >= np.minimum(ridge_m - cell_m / 2, _PLENTY_M))[inside]
+    near_m = np.asarray(distance_transform_edt(inside)) * cell_m + clearance_m
+    middle = _is_middle(near_m, cell_m)[inside]
     near_m = near_m[inside]
     cost = 1 + _NARROW * np.clip(1 - (near_m - clearance_m) / _PREFERRED_M, 0, 1)
-    steps = [_steps(number, cost, dy, dx, cell_m) for dy, dx in ((0, 1), (1, 0), (1, 1), (1, -1))]
-    a, b, metres = (np.concatenate(column) for column in zip(*steps, strict=True))
-    costs = coo_array((metres, (a, b)), shape=(len(row),) * 2).tocsr()
-    return RoadmapGrid(np.column_stack([x[column], y[row]]), near_m, middle, costs)
+    row, column = np.nonzero(inside)
+    xy_m = np.column_stack([x[column], y[row]])
+    return RoadmapGrid(xy_m, near_m, middle, _costs_of_steps(inside, cost, cell_m))
 
 
-def connected_grid(grid, start_m=None):
-    """Return the part of a grid that hangs together: that of the cell nearest a start, else the largest.
+def connected_grid(grid: RoadmapGrid, start_m: Sequence[float] | None = None) -> RoadmapGrid:
+    """Return the connected part of a grid: that of the cell nearest a start, else the largest.
 
     Ground that is connected by a neck hardly wider than the rover makes a grid in parts.
     """
     if len(grid.xy_m) == 0:
         return grid
     _, label = connected_components(grid.steps, directed=False)
-    kept = label == (
-        np.bincount(label).argmax() if start_m is None else label[nearest_cell(grid, start_m)]
-    )
-    return RoadmapGrid(
-        grid.xy_m[kept], grid.near_m[kept], grid.middle[kept], grid.steps.tocsr()[kept][:, kept]
-    )
+    largest = np.bincount(label).argmax()
+    inside = label == (largest if start_m is None else label[nearest_cell(grid, start_m)])
+    steps = grid.steps[inside][:, inside]
+    return RoadmapGrid(grid.xy_m[inside], grid.near_m[inside], grid.middle[inside], steps)
 
 
-def _steps(number, cost, dy, dx, cell_m):
-    """Pairs of neighbouring cells in one direction, and what going from one to the other costs."""
-    rows, columns = number.shape
-    here = number[: rows - dy, max(-dx, 0) : columns - max(dx, 0)].ravel()
-    there = number[dy:, max(dx, 0) : columns + min(dx, 0)].ravel()
-    both = (here >= 0) & (there >= 0)
-    a, b = here[both], there[both]
-    return a, b, cell_m * np.hypot(dx, dy) * (cost[a] + cost[b]) / 2
-
-
-def cheapest_ways(grid, stop):
-    """Return what going to a cell costs from every cell, and the cell before each on the way there."""
+def cheapest_ways(grid: RoadmapGrid, stop: int) -> tuple[FloatArray, IntArray]:
+    """Return the costs of going to a cell from every cell, and the cell before each on the way."""
     return dijkstra(grid.steps, directed=False, indices=stop, return_predecessors=True)
 
 
-def room_cells(grid, room):
-    """The cells of a room, first that with most space about it, of equals the one nearest the room's middle."""
+def room_cells(grid: RoadmapGrid, room: BaseGeometry) -> IntArray:
+    """Return the cells of a room, first that with most space about it.
+
+    Of equals first the one nearest the room's middle.
+    """
     shapely.prepare(room)
     within = np.flatnonzero(shapely.contains_xy(room, *grid.xy_m.T))
     off_m = np.hypot(*(grid.xy_m[within] - shapely.get_coordinates(room.centroid)[0]).T)
     return within[np.lexsort((off_m, -np.round(grid.near_m[within], 3)))]
 
 
-def nearest_cell(grid, xy_m):
+def nearest_cell(grid: RoadmapGrid, xy_m: Sequence[float]) -> int:
     """Return the cell nearest a place."""
     return int(np.argmin(np.hypot(*(grid.xy_m - np.asarray(xy_m)).T)))
+
+
+def _check_size(part: Polygon, cell_m: float, source: FilePath) -> None:
+    x0, y0, x1, y1 = part.bounds
+    limit_m2 = _MAX_CELLS * cell_m**2
+    if (x1 - x0) * (y1 - y0) > limit_m2:
+        raise StageError(
+            f"{source}: its floor of {x1 - x0:.0f} x {y1 - y0:.0f} m is too large to plan a way"
+            f" over (limit {limit_m2:,.0f} m2); check simulate.site.unit, or give"
+            " simulate.site.waypoints_m"
+        )
+
+
+def _is_middle(near_m: FloatArray, cell_m: float) -> BoolArray:
+    """Return which cells of a raster have as much space as any near them, or plenty."""
+    ridge_m = maximum_filter(near_m, 1 + 2 * round(_RIDGE_M / 2 / cell_m))
+    return near_m >= np.minimum(ridge_m - cell_m / 2, _PLENTY_M)
+
+
+def _costs_of_steps(inside: BoolArray, cost: FloatArray, cell_m: float) -> csr_array:
+    """Return the costs (n, n) of steps between neighbours, diagonal ones among them."""
+    n = np.count_nonzero(inside)
+    number = np.full(inside.shape, -1)
+    number[inside] = np.arange(n)
+    steps = [_steps(number, cost, dy, dx, cell_m) for dy, dx in ((0, 1), (1, 0), (1, 1), (1, -1))]
+    a, b, costs = (np.concatenate(column) for column in zip(*steps, strict=True))
+    return coo_array((costs, (a, b)), shape=(n, n)).tocsr()
+
+
+def _steps(
+    number: IntArray, cost: FloatArray, dy: int, dx: int, cell_m: float
+) -> tuple[IntArray, IntArray, FloatArray]:
+    """Return pairs of neighbouring cells in one direction, and what the step costs."""
+    rows, columns = number.shape
+    here = number[: rows - dy, max(-dx, 0) : columns - max(dx, 0)].ravel()
+    there = number[dy:, max(dx, 0) : columns + min(dx, 0)].ravel()
+    both = (here >= 0) & (there >= 0)
+    a = here[both]
+    b = there[both]
+    return a, b, cell_m * np.hypot(dx, dy) * (cost[a] + cost[b]) / 2

@@ -1,26 +1,33 @@
-"""Horizontal cuts through triangles: which ground is matter, which lines are wall surface, which side they face."""
+"""Horizontal cuts through triangles: which ground is matter, which lines are wall surface."""
 
+from collections.abc import Iterable, Sequence
 from itertools import combinations, pairwise
 
 import numpy as np
 import shapely
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
-from shapely import LineString
+from shapely import LineString, MultiLineString
+from shapely.geometry.base import BaseGeometry
 
-GRID_M = 1e-5
-STRAIGHT_M = 2e-4
-# ASSUME matter is nowhere thicker: what a closed surface encloses over a greater width is a room drawn by its surface
-MAX_SOLID_M = 2.0
-_PROBE_M = 0.03
-_PARALLEL = np.cos(np.radians(1.0))
+from scanplan.types import BoolArray, FloatArray, IntArray
+
+GRID_M = 1e-5  # shapely's snapping grid: above float32's rounding of a mesh, below any detail
+STRAIGHT_M = 2e-4  # a corner nearer the line between its neighbours is the meshing's, no corner
+MAX_SOLID_M = 2.0  # ASSUME matter is nowhere thicker: a wider closed surface is a room's
+_PROBE_M = 0.03  # in front of a surface, to see on which side it is: past gaps, below any room
+_PARALLEL_COSINE = np.cos(np.radians(1.0))  # opposite faces of one wall are parallel by drawing
+_MIN_THICKNESS_M = 0.01  # of a wall; thinner strips are cracks between parts
+_MAX_THICKNESS_M = 1.0  # of a wall; wider strips of matter are blocks
 
 
-def cut_triangles(triangles_m, z_m):
+def cut_triangles(triangles_m: FloatArray, z_m: float) -> FloatArray:
     """Cut triangles by a level plane.
 
-    A corner in the plane counts as above it, so that neighbours agree and a closed surface gives closed rings;
-    triangles that lie in the plane give nothing. The direction of a triangle's normal does not matter.
+    A corner in the plane counts as above it, so that neighbours agree and a closed surface gives
+    closed rings; triangles that lie in the plane give nothing. The direction of a triangle's normal
+    does not matter. (`trimesh.section` leaves rings open: it reckons an edge from either end, and
+    decides corners in the plane by a tolerance.)
 
     Parameters
     ----------
@@ -34,32 +41,44 @@ def cut_triangles(triangles_m, z_m):
     """
     above = triangles_m[..., 2] >= z_m
     cut = above.any(axis=1) & ~above.all(axis=1)
-    corner, above = triangles_m[cut], above[cut]
+    corners_m = triangles_m[cut]
+    above = above[cut]
     # the corner alone on its side is joined to the two others
     lone = np.where(above.sum(axis=1) == 1, above.argmax(axis=1), (~above).argmax(axis=1))
-    rows = np.arange(len(corner))
-    apex, flip = corner[rows, lone], above[rows, lone]
-    ends = [_crossing(apex, corner[rows, (lone + k) % 3], flip, z_m) for k in (1, 2)]
-    return np.stack(ends, axis=1)
+    rows = np.arange(len(corners_m))
+    apex_m = corners_m[rows, lone]
+    is_above = above[rows, lone]
+    others_m = (corners_m[rows, (lone + k) % 3] for k in (1, 2))
+    ends_m = [_crossing(apex_m, other_m, is_above, z_m) for other_m in others_m]
+    return np.stack(ends_m, axis=1)
 
 
-def find_bodies(triangles_m):
-    """Tell which triangles hang together by shared corners: (t,) int, numbered from 0."""
+def find_bodies(triangles_m: FloatArray) -> IntArray:
+    """Return which body each triangle is of, joined by shared corners: (t,) int, from 0."""
     if not len(triangles_m):
         return np.empty(0, int)
-    _, corner = np.unique(np.round(triangles_m.reshape(-1, 3), 6), axis=0, return_inverse=True)
+    corners_m = np.round(triangles_m.reshape(-1, 3), 6)
+    _, corner = np.unique(corners_m, axis=0, return_inverse=True)
     a, b, c = corner.reshape(-1, 3).T
-    edges = coo_array(
-        (np.ones(2 * len(a), bool), (np.r_[a, b], np.r_[b, c])), shape=(corner.max() + 1,) * 2
-    )
-    return connected_components(edges, directed=False)[1][a]
+    size = corner.max() + 1
+    edges = coo_array((np.ones(2 * len(a), bool), (np.r_[a, b], np.r_[b, c])), shape=(size, size))
+    _, label = connected_components(edges, directed=False)
+    return label[a]
 
 
-def cut_section(triangles_m, z_m, *, max_solid_m=MAX_SOLID_M):
-    """Return what a level cut shows of one or many surfaces.
+def split_bodies(triangles_m: FloatArray) -> list[FloatArray]:
+    """Return the triangles of each body of `find_bodies`."""
+    body = find_bodies(triangles_m)
+    return [triangles_m[body == i] for i in range(body.max(initial=-1) + 1)]
 
-    Each body (`find_bodies`) is matter where a line out of it crosses its surface an odd number of times, unless that is
-    wider than `max_solid_m`; which way the triangles face does not matter.
+
+def cut_section(
+    bodies_m: Iterable[FloatArray], z_m: float, *, max_solid_m: float = MAX_SOLID_M
+) -> tuple[BaseGeometry, MultiLineString]:
+    """Return the level section of one or many bodies.
+
+    Each of `split_bodies` is matter where a line out of it crosses its surface an odd number of
+    times, unless that is wider than `max_solid_m`; which way the triangles face does not matter.
 
     Returns
     -------
@@ -68,15 +87,16 @@ def cut_section(triangles_m, z_m, *, max_solid_m=MAX_SOLID_M):
     sheets : MultiLineString
         Surface that encloses no matter: of meshes with holes, of walls drawn without thickness.
     """
-    body = find_bodies(triangles_m)
-    cuts = [cut_triangles(triangles_m[body == i], z_m) for i in range(body.max(initial=-1) + 1)]
-    parts = [_body_section(ends_m, max_solid_m) for ends_m in cuts if len(ends_m)]
-    solid = shapely.union_all([s for s, _ in parts], grid_size=GRID_M)
-    sheets = shapely.union_all([s for _, s in parts], grid_size=GRID_M)
-    return solid, _lines(shapely.difference(sheets, solid.buffer(2 * GRID_M)))
+    cuts = [cut_triangles(body_m, z_m) for body_m in bodies_m]
+    sections = [_body_section(ends_m, max_solid_m) for ends_m in cuts if len(ends_m)]
+    solid = shapely.union_all([s for s, _ in sections], grid_size=GRID_M)
+    sheets = shapely.union_all([s for _, s in sections], grid_size=GRID_M)
+    return solid, _only_lines(shapely.difference(sheets, solid.buffer(2 * GRID_M)))
 
 
-def section_faces(solid, sheets, footprint):
+def section_faces(
+    solid: BaseGeometry, sheets: BaseGeometry, footprint: BaseGeometry
+) -> list[tuple[LineString, str]]:
     """Return the straight wall surfaces of a section.
 
     Parameters
@@ -89,130 +109,145 @@ def section_faces(solid, sheets, footprint):
     Returns
     -------
     list of (LineString, str)
-        `outside` where a surface can only be seen from outside the footprint, else `inside`; in a fixed order. Matter
-        is on the left of the lines that bound any.
+        `outside` where a surface can only be seen from outside the footprint, else `inside`; in a
+        fixed order. Matter is on the left of the lines that bound any.
     """
-    solid = shapely.orient_polygons(solid.simplify(STRAIGHT_M)).normalize()
-    rings = shapely.get_rings(shapely.get_parts(shapely.orient_polygons(solid)))
-    lines = [
-        LineString(run) for ring in rings for run in pairwise(start_at_corner(ring, STRAIGHT_M))
-    ]
-    found = [
-        (line, _side(line, footprint, (-_PROBE_M,))) for line in lines if line.length > STRAIGHT_M
-    ]
+    oriented = shapely.orient_polygons(solid.simplify(STRAIGHT_M)).normalize()
+    runs = straight_runs(shapely.orient_polygons(oriented), STRAIGHT_M)
+    bounds = [LineString(run) for run in runs]
     loose = shapely.get_parts(shapely.line_merge(sheets).simplify(STRAIGHT_M).normalize())
-    runs = [LineString(run) for line in loose for run in pairwise(line.coords)]
-    return found + [
-        (line, _side(line, footprint, (_PROBE_M, -_PROBE_M)))
-        for line in runs
+    screens = [LineString(run) for line in loose for run in pairwise(line.coords)]
+    sided = [(line, (-_PROBE_M,)) for line in bounds]
+    sided += [(line, (_PROBE_M, -_PROBE_M)) for line in screens]
+    return [
+        (line, _side(line, footprint, offsets_m))
+        for line, offsets_m in sided
         if line.length > STRAIGHT_M
     ]
 
 
-def section_centrelines(solid, max_thickness_m=1.0):
-    """Return the walls that can be told from a section: the strips between two faces back to back.
+def section_centrelines(solid: BaseGeometry) -> list[tuple[LineString, float]]:
+    """Return the walls of a section: the strips between two faces back to back.
 
     Returns
     -------
     list of (LineString, float)
         Centreline and thickness of every strip that is matter throughout and longer than thick.
     """
-    rings = shapely.get_rings(
-        shapely.get_parts(shapely.orient_polygons(solid.simplify(STRAIGHT_M)))
-    )
-    runs = [np.array(run) for ring in rings for run in pairwise(start_at_corner(ring, STRAIGHT_M))]
-    found = [strip for a, b in combinations(runs, 2) if (strip := _strip(a, b, max_thickness_m))]
+    runs = straight_runs(shapely.orient_polygons(solid.simplify(STRAIGHT_M)), STRAIGHT_M)
+    strips = (_strip(a, b) for a, b in combinations(runs, 2))
     matter = solid.buffer(2 * STRAIGHT_M)
     return [
-        (line, thick)
-        for line, thick in found
-        if matter.covers(line.buffer(thick / 2, cap_style="flat"))
+        (line, thickness_m)
+        for line, thickness_m in filter(None, strips)
+        if matter.covers(line.buffer(thickness_m / 2, cap_style="flat"))
     ]
 
 
-def find_screens(outlines, walls):
-    """Return what hides walls and is none, without what runs along or inside them: list of straight LineString.
+def find_screens(outlines: Iterable[BaseGeometry], walls: BaseGeometry) -> list[LineString]:
+    """Return what occludes walls and is none, without what runs along or inside them.
 
     Parameters
     ----------
-    outlines : sequence of LineString or MultiLineString
-        Of level cuts of what hides.
+    outlines : iterable of LineString or MultiLineString
+        Of level cuts of what occludes.
     walls : shapely geometry
         Level cut of the walls.
+
+    Returns
+    -------
+    list of LineString, each straight
     """
-    free = shapely.difference(
-        shapely.union_all(list(outlines), grid_size=GRID_M), walls.buffer(2 * GRID_M)
-    )
-    lines = shapely.line_merge(_lines(free)).simplify(STRAIGHT_M).normalize()
+    union = shapely.union_all(list(outlines), grid_size=GRID_M)
+    free = _only_lines(shapely.difference(union, walls.buffer(2 * GRID_M)))
+    lines = shapely.line_merge(free).simplify(STRAIGHT_M).normalize()
     return [LineString(run) for line in shapely.get_parts(lines) for run in pairwise(line.coords)]
 
 
-def start_at_corner(ring, straight_m):
-    """Coordinates of a closed ring begun where it bends; `simplify` never removes a ring's first vertex."""
+def straight_runs(section: BaseGeometry, straight_m: float) -> list[FloatArray]:
+    """Return the edges (2, 2) of polygons, each ring begun where it bends.
+
+    `simplify` never removes a ring's first vertex; one in the middle of an edge is left out here.
+    """
+    rings = shapely.get_rings(shapely.get_parts(section))
+    starts = (_start_at_corner(ring, straight_m) for ring in rings)
+    return [np.array(run) for xy in starts for run in pairwise(xy)]
+
+
+def _start_at_corner(ring: BaseGeometry, straight_m: float) -> FloatArray:
+    """Return the coordinates of a closed ring begun where it bends."""
     xy = shapely.get_coordinates(ring)[:-1]
-    before, after = xy[0] - xy[-1], xy[1] - xy[0]
-    straight = abs(before[0] * after[1] - before[1] * after[0]) < straight_m * np.hypot(*after)
-    xy = xy[1:] if straight else xy
+    before = xy[0] - xy[-1]
+    after = xy[1] - xy[0]
+    off_line = abs(before[0] * after[1] - before[1] * after[0])
+    xy = xy[1:] if off_line < straight_m * np.hypot(*after) else xy
     return np.vstack([xy, xy[:1]])
 
 
-def _crossing(apex, other, apex_above, z_m):
-    """Where edges meet the plane, always reckoned from the lower end so that neighbours get the same bits."""
-    low, high = (
-        np.where(apex_above[:, None], other, apex),
-        np.where(apex_above[:, None], apex, other),
-    )
-    share = (z_m - low[:, 2]) / (high[:, 2] - low[:, 2])
-    return low[:, :2] + share[:, None] * (high[:, :2] - low[:, :2])
+def _crossing(
+    apex_m: FloatArray, other_m: FloatArray, is_apex_above: BoolArray, z_m: float
+) -> FloatArray:
+    """Return where edges meet the plane, reckoned from the lower end.
+
+    So neighbours, which share the edge, get the same bits.
+    """
+    low_m = np.where(is_apex_above[:, None], other_m, apex_m)
+    high_m = np.where(is_apex_above[:, None], apex_m, other_m)
+    share = (z_m - low_m[:, 2]) / (high_m[:, 2] - low_m[:, 2])
+    return low_m[:, :2] + share[:, None] * (high_m[:, :2] - low_m[:, :2])
 
 
-def _body_section(ends_m, max_solid_m):
+def _body_section(ends_m: FloatArray, max_solid_m: float) -> tuple[BaseGeometry, MultiLineString]:
     noded = shapely.union_all(shapely.linestrings(ends_m), grid_size=GRID_M)
     cells = shapely.get_parts(shapely.polygonize([noded]))
-    odd = [c for c in cells if _crossings(c.representative_point(), ends_m) % 2]
-    odd = [c for c in odd if c.buffer(-max_solid_m / 2).is_empty]
-    solid = shapely.union_all(odd, grid_size=GRID_M)
-    return solid, _lines(shapely.difference(noded, solid, grid_size=GRID_M))
+    matter = [c for c in cells if _crossing_count(c.representative_point(), ends_m) % 2]
+    matter = [c for c in matter if c.buffer(-max_solid_m / 2).is_empty]
+    solid = shapely.union_all(matter, grid_size=GRID_M)
+    return solid, _only_lines(shapely.difference(noded, solid, grid_size=GRID_M))
 
 
-def _crossings(point, ends_m):
-    """How many segments a line from a point in the direction of x crosses."""
-    (x0, y0), (x1, y1) = ends_m[:, 0].T, ends_m[:, 1].T
+def _crossing_count(point: shapely.Point, ends_m: FloatArray) -> int:
+    """Return how many segments a line from a point in the direction of x crosses."""
+    x0, y0 = ends_m[:, 0].T
+    x1, y1 = ends_m[:, 1].T
     met = (y0 > point.y) != (y1 > point.y)
     x = x0[met] + (point.y - y0[met]) / (y1[met] - y0[met]) * (x1[met] - x0[met])
     return int(np.count_nonzero(x > point.x))
 
 
-def _lines(geometry):
-    parts = shapely.get_parts(geometry)
-    kept = [
-        p
-        for p in np.atleast_1d(parts)
-        if p.geom_type in ("LineString", "LinearRing") and not p.is_empty
-    ]
-    return shapely.multilinestrings(kept) if kept else shapely.MultiLineString()
+def _only_lines(geometry: BaseGeometry) -> MultiLineString:
+    parts = np.atleast_1d(shapely.get_parts(geometry))
+    lines = [p for p in parts if p.geom_type in ("LineString", "LinearRing") and not p.is_empty]
+    return shapely.multilinestrings(lines) if lines else MultiLineString()
 
 
-def _side(line, footprint, offsets_m):
-    """Inside if the footprint is in front of the line, on any of its stated sides."""
+def _side(line: LineString, footprint: BaseGeometry, offsets_m: Sequence[float]) -> str:
+    """Return `inside` if the footprint is beside the line, at any of the offsets to its left."""
     (x0, y0), (x1, y1) = line.coords
     left = np.array([y0 - y1, x1 - x0]) / line.length
     middle = np.array([(x0 + x1) / 2, (y0 + y1) / 2])
-    inside = any(footprint.contains(shapely.Point(middle + offset * left)) for offset in offsets_m)
-    return "inside" if inside else "outside"
+    probes = (shapely.Point(middle + offset_m * left) for offset_m in offsets_m)
+    return "inside" if any(map(footprint.contains, probes)) else "outside"
 
 
-def _strip(a, b, max_thickness_m):
-    """Centreline and thickness between two faces, matter on the left of both; None where they are not back to back."""
-    along, other = a[1] - a[0], b[1] - b[0]
+def _strip(a: FloatArray, b: FloatArray) -> tuple[LineString, float] | None:
+    """Return centreline and thickness between two faces, None where they are not back to back.
+
+    Matter is on the left of both.
+    """
+    along = a[1] - a[0]
+    other = b[1] - b[0]
     length_m = np.hypot(*along)
-    along, other = along / length_m, other / np.hypot(*other)
-    if along @ other > -_PARALLEL:
+    along = along / length_m
+    other = other / np.hypot(*other)
+    if along @ other > -_PARALLEL_COSINE:
         return None
     left = np.array([-along[1], along[0]])
     thickness_m = float((b.mean(axis=0) - a[0]) @ left)
-    start, end = max(0.0, (b[1] - a[0]) @ along), min(length_m, (b[0] - a[0]) @ along)
-    if not 0.01 < thickness_m <= max_thickness_m or end - start <= thickness_m:
+    start_m = max(0.0, (b[1] - a[0]) @ along)
+    end_m = min(length_m, (b[0] - a[0]) @ along)
+    is_wall = _MIN_THICKNESS_M < thickness_m <= _MAX_THICKNESS_M
+    if not is_wall or end_m - start_m <= thickness_m:
         return None
     middle = a[0] + left * thickness_m / 2
-    return LineString([middle + start * along, middle + end * along]), thickness_m
+    return LineString([middle + start_m * along, middle + end_m * along]), thickness_m

@@ -1,28 +1,55 @@
 """One storey of a mesh or a building model: its bodies, openings and spaces, the floor at z = 0."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
 from shapely import LineString
 
 from scanplan.errors import StageError
+from scanplan.types import FilePath, FloatArray
 
-LEVEL = 0.95
-_BELOW_M, _ABOVE_M = 0.6, 0.6
+if TYPE_CHECKING:
+    from scanplan.lab.buildings.ifc_file import IfcBuilding, IfcPart
+
+Opening = tuple[LineString, str, float, float]
+"""Stretch of the wall's middle line, type, lower and upper edge."""
+Surface = tuple[str, FloatArray]
+"""Kind of surface and its triangles (t, 3, 3)."""
+
+LEVEL_COSINE = 0.95  # of a slope of 18 degrees: a ramp is floor, what is steeper is wall
+_BELOW_M = 0.6  # under the floor: its slab belongs to the storey, what ends deeper does not
+_ABOVE_M = 0.6  # over the next floor: what begins higher belongs to the next storey
+_MIN_STOREY_M = 1.0  # to the next floor; a level nearer is a split one of the same storey
+_SPACE_BELOW_M = 0.5  # under the floor: a space that begins deeper is the storey below's
+_OPENING_BELOW_M = 0.1  # under the floor: an opening with its middle deeper is not this storey's
+_DOOR_SILL_M = 0.1  # an opening with nothing in it and a higher sill is no passage
+_LOW_SLAB_M = 1.0  # a slab below is the storey's floor, one above its ceiling
+_DECIMALS = 6  # of sills and lintels in metres
 
 
 @dataclass(frozen=True)
 class Body:
-    """What a ray can hit, floor at z = 0: whether it is wall, the direction it runs in (or None), its surfaces."""
+    """Surfaces that a ray can hit, floor at z = 0.
+
+    Attributes
+    ----------
+    is_wall : bool
+    encloses : bool
+        Whether it closes rooms: a wall, a window or a door.
+    along : (2,) float64 or None
+        The direction that a wall runs in, where known.
+    surfaces : tuple of (str, (t, 3, 3) float64)
+    """
 
     is_wall: bool
     encloses: bool
-    along: np.ndarray | None
-    surfaces: tuple
+    along: FloatArray | None
+    surfaces: tuple[Surface, ...]
 
     @property
-    def triangles_m(self):
+    def triangles_m(self) -> FloatArray:
         """All its triangles: (t, 3, 3)."""
         return np.concatenate([triangles for _, triangles in self.surfaces])
 
@@ -37,116 +64,133 @@ class Storey:
     openings : tuple of (LineString, str, float, float)
         Stretch of the wall's middle line, type, lower and upper edge.
     spaces : tuple of (str, (t, 3, 3) float64)
-        Name and surface of every room that the model tells.
+        Name and surface of every room that the model states.
     height_m : float
         Up to the next storey's floor.
     """
 
-    bodies: tuple
-    openings: tuple
-    spaces: tuple
+    bodies: tuple[Body, ...]
+    openings: tuple[Opening, ...]
+    spaces: tuple[Surface, ...]
     height_m: float
 
 
-def storey_of_mesh(triangles_m, slice_height_m, source):
+def storey_of_mesh(triangles_m: FloatArray, slice_height_m: float, source: FilePath) -> Storey:
     """Return the storey that a mesh is, floor at z = 0.
 
-    Nothing in a mesh tells a wall from a cupboard, so all that is not level is wall.
+    Nothing in a mesh parts a wall from a cupboard, so all that is not level is wall.
 
     Raises
     ------
     StageError
         If nothing of the mesh is at the height of the slice.
     """
-    low, high = triangles_m[..., 2].min(), triangles_m[..., 2].max()
-    if not low - 1e-3 <= 0.0 < slice_height_m < high:
+    low_m = triangles_m[..., 2].min()
+    high_m = triangles_m[..., 2].max()
+    if not low_m - 1e-3 <= 0.0 < slice_height_m < high_m:
         raise StageError(
-            f"{source}: spans z from {low:g} to {high:g} m, neither its floor at 0 nor the sensor at"
-            f" {slice_height_m:g} m may be outside; set simulate.site.floor_z_m to the height of its floor"
+            f"{source}: spans z from {low_m:g} to {high_m:g} m, neither its floor at 0 nor the"
+            f" sensor at {slice_height_m:g} m may be outside; set simulate.site.floor_z_m to the"
+            " height of its floor"
         )
     normal = np.cross(triangles_m[:, 1] - triangles_m[:, 0], triangles_m[:, 2] - triangles_m[:, 0])
-    level = np.abs(normal[:, 2]) > LEVEL * np.linalg.norm(normal, axis=1)
-    under = triangles_m[..., 2].max(axis=1) < slice_height_m
-    kinds = (("wall", ~level), ("floor", level & under), ("ceiling", level & ~under))
-    body = Body(True, True, None, tuple((kind, triangles_m[chosen]) for kind, chosen in kinds))
-    return Storey((body,), (), (), float(high))
+    is_level = np.abs(normal[:, 2]) > LEVEL_COSINE * np.linalg.norm(normal, axis=1)
+    is_under = triangles_m[..., 2].max(axis=1) < slice_height_m
+    surfaces = (
+        ("wall", triangles_m[~is_level]),
+        ("floor", triangles_m[is_level & is_under]),
+        ("ceiling", triangles_m[is_level & ~is_under]),
+    )
+    body = Body(is_wall=True, encloses=True, along=None, surfaces=surfaces)
+    return Storey((body,), (), (), float(high_m))
 
 
-def storey_of_model(model, index, *, doors, windows):
-    """Return one storey of an ifc_file.IfcBuilding: all that stands between its floor and the next, and a bit more."""
+def storey_of_model(model: "IfcBuilding", index: int, *, doors: str, windows: str) -> Storey:
+    """Return one storey of a building model.
+
+    It has all that stands between its floor and the next, and a bit more.
+    """
     floor_m = model.storeys[index][1]
-    above = [z_m for _, z_m in model.storeys if z_m > floor_m + 1.0]
-    parts = [(p, p.triangles_m - [0.0, 0.0, floor_m]) for p in model.parts]
-    top_m = min([a - floor_m for a in above], default=max(float(t[..., 2].max()) for _, t in parts))
-    near = [
-        (p, t)
-        for p, t in parts
-        if t[..., 2].max() > -_BELOW_M and t[..., 2].min() < top_m + _ABOVE_M
-    ]
-    hidden = {
-        "space",
-        "opening",
-        *(["door"] if doors == "open" else []),
-        *(["glass"] if windows == "empty" else []),
-    }
-    hosts = {p.guid: p for p in model.parts if p.kind == "wall"}
-    openings = [
-        _opening(p, t, hosts[p.host])
-        for p, t in near
-        if p.kind == "opening" and p.host in hosts and _is_of(t, top_m)
-    ]
+    parts = [(part, part.triangles_m - [0.0, 0.0, floor_m]) for part in model.parts]
+    floors_m = [z_m - floor_m for _, z_m in model.storeys if z_m > floor_m + _MIN_STOREY_M]
+    top_m = min(floors_m, default=max(float(t[..., 2].max()) for _, t in parts))
+    near = [(part, t) for part, t in parts if _is_near(t, top_m)]
+    left_out = {"space", "opening"}
+    if doors == "open":
+        left_out.add("door")
+    if windows == "empty":
+        left_out.add("glass")
+    spaces = [(part, t) for part, t in near if part.kind == "space"]
     return Storey(
-        bodies=tuple(_body(p, t) for p, t in near if p.kind not in hidden),
-        openings=tuple(openings),
-        spaces=tuple((p.name, t) for p, t in near if p.kind == "space" and t[..., 2].min() > -0.5),
+        bodies=tuple(_body(part, t) for part, t in near if part.kind not in left_out),
+        openings=_openings(model, near, top_m),
+        spaces=tuple((p.name, t) for p, t in spaces if t[..., 2].min() > -_SPACE_BELOW_M),
         height_m=float(top_m),
     )
 
 
-def middle_axis(along, triangles_m):
-    """Middle line along a direction through all the triangles, seen from above, and how wide they are across it."""
+def middle_axis(along: FloatArray, triangles_m: FloatArray) -> tuple[LineString, float]:
+    """Return the middle line of triangles seen from above in a direction, and their width."""
     across = np.array([-along[1], along[0]])
     xy = triangles_m[..., :2].reshape(-1, 2)
-    (a, b), (c, d) = ((np.min(xy @ axis), np.max(xy @ axis)) for axis in (along, across))
-    return LineString([end * along + (c + d) / 2 * across for end in (a, b)]), float(d - c)
+    along_m = xy @ along
+    across_m = xy @ across
+    low_m = np.min(across_m)
+    high_m = np.max(across_m)
+    ends = [
+        end_m * along + (low_m + high_m) / 2 * across
+        for end_m in (np.min(along_m), np.max(along_m))
+    ]
+    return LineString(ends), float(high_m - low_m)
 
 
-def _is_of(triangles_m, top_m):
-    return -0.1 <= (triangles_m[..., 2].min() + triangles_m[..., 2].max()) / 2 < top_m
+def _is_near(triangles_m: FloatArray, top_m: float) -> bool:
+    z_m = triangles_m[..., 2]
+    return bool(z_m.max() > -_BELOW_M and z_m.min() < top_m + _ABOVE_M)
 
 
-def _opening(part, triangles_m, host):
-    """An opening as its stretch of its wall's middle line, and its edges above the floor."""
+def _openings(
+    model: "IfcBuilding", parts: list[tuple["IfcPart", FloatArray]], top_m: float
+) -> tuple[Opening, ...]:
+    hosts = {part.guid: part for part in model.parts if part.kind == "wall"}
+    openings = []
+    for part, triangles_m in parts:
+        if part.kind != "opening" or part.host not in hosts:
+            continue
+        z_m = triangles_m[..., 2]
+        if -_OPENING_BELOW_M <= (z_m.min() + z_m.max()) / 2 < top_m:
+            openings.append(_opening(part, triangles_m, hosts[part.host]))
+    return tuple(openings)
+
+
+def _opening(part: "IfcPart", triangles_m: FloatArray, host: "IfcPart") -> Opening:
+    """Return an opening as its stretch of its wall's middle line, and its edges."""
     line, _ = middle_axis(host.along, triangles_m)
     middle, _ = middle_axis(host.along, host.triangles_m)
     ends = [middle.interpolate(middle.project(shapely.Point(xy))) for xy in line.coords]
-    sill_m, lintel_m = (
-        round(float(z), 6) for z in (triangles_m[..., 2].min(), triangles_m[..., 2].max())
-    )
-    return (
-        LineString(ends),
-        part.fills or ("passage" if sill_m < 0.1 else "window"),
-        sill_m,
-        lintel_m,
-    )
+    sill_m = round(float(triangles_m[..., 2].min()), _DECIMALS)
+    lintel_m = round(float(triangles_m[..., 2].max()), _DECIMALS)
+    empty = "passage" if sill_m < _DOOR_SILL_M else "window"
+    return LineString(ends), part.fills or empty, sill_m, lintel_m
 
 
-def _body(part, triangles_m):
+def _body(part: "IfcPart", triangles_m: FloatArray) -> Body:
     is_wall = part.kind == "wall"
-    along = part.along if is_wall else None
-    surfaces = _surfaces(part, triangles_m)
-    return Body(is_wall, part.kind in ("wall", "glass", "door"), along, surfaces)
-
-
-def _surfaces(part, triangles_m):
-    if part.kind == "slab":
-        return (("floor" if triangles_m[..., 2].max() < 1.0 else "ceiling", triangles_m),)
-    clear = part.transparent
-    if part.kind == "glass" and not clear.any():
-        clear = np.ones(len(triangles_m), bool)
-    rest = "other" if part.kind == "glass" else part.kind
-    return tuple(
-        (kind, triangles_m[chosen])
-        for kind, chosen in ((rest, ~clear), ("glass", clear))
-        if chosen.any()
+    return Body(
+        is_wall=is_wall,
+        encloses=part.kind in ("wall", "glass", "door"),
+        along=part.along if is_wall else None,
+        surfaces=_surfaces(part, triangles_m),
     )
+
+
+def _surfaces(part: "IfcPart", triangles_m: FloatArray) -> tuple[Surface, ...]:
+    if part.kind == "slab":
+        is_floor = triangles_m[..., 2].max() < _LOW_SLAB_M
+        return (("floor" if is_floor else "ceiling", triangles_m),)
+    is_glass = part.transparent
+    if part.kind == "glass" and not is_glass.any():
+        is_glass = np.ones(len(triangles_m), bool)
+    rest = "other" if part.kind == "glass" else part.kind
+    surfaces = ((rest, triangles_m[~is_glass]), ("glass", triangles_m[is_glass]))
+    return tuple((kind, triangles) for kind, triangles in surfaces if len(triangles))

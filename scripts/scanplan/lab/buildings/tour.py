@@ -1,14 +1,18 @@
 """Short tours through places whose distances are known."""
 
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-_GAIN = 1e-9
+from scanplan.types import FloatArray
+
+_MIN_GAIN = 1e-9  # rounding: a turn that saves less may save nothing, and never ends
 
 
-def shortest_tour(metres, *, closed, first=None):
-    """Return a short tour: from every place by nearest neighbours, improved by 2-opt, the shortest of all.
+def shortest_tour(metres: ArrayLike, *, closed: bool, first: int | None = None) -> list[int]:
+    """Return a short tour: nearest neighbours from every place, improved by 2-opt, the shortest.
 
     Parameters
     ----------
@@ -25,49 +29,52 @@ def shortest_tour(metres, *, closed, first=None):
         Every place once; equal tours are decided by the lowest first place.
     """
     metres = np.asarray(metres, float)
-    if (
-        metres.ndim != 2
-        or metres.shape[0] != metres.shape[1]
-        or not len(metres)
-        or not np.isfinite(metres).all()
-    ):
+    is_square = metres.ndim == 2 and metres.shape[0] == metres.shape[1]
+    if not is_square or not len(metres) or not np.isfinite(metres).all():
         raise ValueError(f"distances {metres.shape} are no square of finite values")
     starts = range(len(metres)) if first is None else [first]
-    tours = [_improved(_nearest(metres, start), metres, closed) for start in starts]
+    tours = [_improve(_nearest_neighbours(metres, start), metres, closed) for start in starts]
     return min(tours, key=lambda tour: round(tour_length(tour, metres, closed=closed), 6))
 
 
-def tour_length(tour, metres, *, closed):
-    """Return how long a tour is."""
-    legs = sum(metres[a, b] for a, b in pairwise(tour))
-    return float(legs + (metres[tour[-1], tour[0]] if closed else 0.0))
+def tour_length(tour: Sequence[int], metres: FloatArray, *, closed: bool) -> float:
+    """Return the length of a tour."""
+    legs_m = sum(metres[a, b] for a, b in pairwise(tour))
+    return float(legs_m + (metres[tour[-1], tour[0]] if closed else 0.0))
 
 
-def _nearest(metres, start):
-    tour, left = [start], sorted(set(range(len(metres))) - {start})
+def _nearest_neighbours(metres: FloatArray, start: int) -> list[int]:
+    tour = [start]
+    left = sorted(set(range(len(metres))) - {start})
     while left:
-        tour.append(min(left, key=lambda place: metres[tour[-1], place]))
-        left.remove(tour[-1])
+        here = tour[-1]
+        nearest = min(left, key=lambda place: metres[here, place])
+        tour.append(nearest)
+        left.remove(nearest)
     return tour
 
 
-def _improved(tour, metres, closed):
+def _improve(tour: list[int], metres: FloatArray, closed: bool) -> list[int]:
     """Turn stretches round while that shortens the tour; the first place stays."""
-    tour, better = list(tour), True
-    while better:
-        better = False
+    tour = list(tour)
+    is_better = True
+    while is_better:
+        is_better = False
         for i in range(1, len(tour) - 1):
             for j in range(i + 1, len(tour)):
-                if _gain(tour, metres, i, j, closed) > _GAIN:
+                if _gain(tour, metres, i, j, closed) > _MIN_GAIN:
                     tour[i : j + 1] = tour[i : j + 1][::-1]
-                    better = True
+                    is_better = True
     return tour
 
 
-def _gain(tour, metres, i, j, closed):
-    """What turning the stretch i..j round saves."""
-    before, after = tour[i - 1], tour[(j + 1) % len(tour)] if closed or j + 1 < len(tour) else None
-    old, new = metres[before, tour[i]], metres[before, tour[j]]
-    if after is not None:
-        old, new = old + metres[tour[j], after], new + metres[tour[i], after]
+def _gain(tour: list[int], metres: FloatArray, i: int, j: int, closed: bool) -> float:
+    """Return what turning the stretch i..j round saves."""
+    before = tour[i - 1]
+    old = metres[before, tour[i]]
+    new = metres[before, tour[j]]
+    if closed or j + 1 < len(tour):
+        after = tour[(j + 1) % len(tour)]
+        old = old + metres[tour[j], after]
+        new = new + metres[tour[i], after]
     return old - new

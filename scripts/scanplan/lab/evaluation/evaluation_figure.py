@@ -8,14 +8,14 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter, StrMethodFormatter
 
 from scanplan.report import top_view
-from scanplan.report.figures import DASHED, STYLES
+from scanplan.selection.methods import METHODS
 from scanplan.types import Columns, IntArray
 
 _SIZE_IN = (7.0, 8.6)  # a page of A4 but for the caption
 _STYLES = {
     "oracle": ("oracle: knows the truth", "black"),
     "sight": ("oracle by sight alone", "0.55"),
-    **STYLES,
+    **{name: (method.label, method.colour) for name, method in METHODS.items()},
 }
 _OTHER = ("#e69f00", "#56b4e9", "#f0e442", "#8c510a", "#762a83", "#5ab4ac")
 _FOUND = "visible_completeness_010m"
@@ -104,7 +104,8 @@ def _draw_curves(axes: Axes, table: Columns, column: str) -> None:
     for method in sort_methods(table["method"]):
         label, colour = method_style(method)
         rows = _select(table, method=method)
-        dashes, width = ("--", 0.8) if method in DASHED else ("-", 1.2)
+        is_baseline = method in METHODS and METHODS[method].is_baseline
+        dashes, width = ("--", 0.8) if is_baseline else ("-", 1.2)
         axes.plot(
             rows["k"],
             rows[column],

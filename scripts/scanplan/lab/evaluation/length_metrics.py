@@ -12,6 +12,7 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike
 
+from scanplan.geometry import intervals
 from scanplan.types import Columns, FloatArray, IntArray
 
 _ENDS = ("x0_m", "y0_m", "x1_m", "y1_m")
@@ -87,16 +88,14 @@ def find_near_intervals(
     return NearIntervals(line[kept], other[kept], low_m[kept], high_m[kept])
 
 
-def union_length_m(intervals: NearIntervals, n_lines: int) -> FloatArray:
+def union_length_m(near: NearIntervals, n_lines: int) -> FloatArray:
     """Return how much (n_lines,) of each line lies in the union of its intervals."""
-    order = np.lexsort((intervals.low_m, intervals.line))
-    line = intervals.line[order]
-    low_m, high_m = intervals.low_m[order], intervals.high_m[order]
+    order = np.lexsort((near.low_m, near.line))
+    line, low_m, high_m = near.line[order], near.low_m[order], near.high_m[order]
     # all lines laid end to end, far enough apart: one running maximum serves for all of them
     shift = line * (2 * high_m.max(initial=0.0) + 1)
-    reached = np.maximum.accumulate(np.concatenate([[-np.inf], high_m + shift]))[:-1]
-    fresh_m = np.maximum(high_m + shift - np.maximum(low_m + shift, reached), 0)
-    return np.bincount(line, fresh_m, minlength=n_lines).astype(float)
+    added_m = intervals.added_lengths_m(low_m + shift, high_m + shift)
+    return np.bincount(line, added_m, minlength=n_lines).astype(float)
 
 
 def safe_share(part: float, whole: float) -> float:
@@ -170,23 +169,11 @@ def _in_rectangle(
     width_m: FloatArray,
     distance_m: float,
 ) -> tuple[FloatArray, FloatArray]:
-    forward = _slab(_dot(offset, across), _dot(along, across), 0.0, width_m)
-    sideways = _slab(_cross(offset, across), _cross(along, across), -distance_m, distance_m)
+    forward = intervals.solve_range(_dot(offset, across), _dot(along, across), 0.0, width_m)
+    sideways = intervals.solve_range(
+        _cross(offset, across), _cross(along, across), -distance_m, distance_m
+    )
     return np.maximum(forward[0], sideways[0]), np.minimum(forward[1], sideways[1])
-
-
-def _slab(
-    start: FloatArray, slope: FloatArray, least: float, most: float | FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Return for which s (p,) least <= start + slope * s <= most."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        a = (least - start) / slope
-        b = (most - start) / slope
-    level = slope == 0
-    inside = level & (least <= start) & (start <= most)
-    low = np.where(level, np.where(inside, -np.inf, np.inf), np.minimum(a, b))
-    high = np.where(level, np.where(inside, np.inf, -np.inf), np.maximum(a, b))
-    return low, high
 
 
 def _in_disc(

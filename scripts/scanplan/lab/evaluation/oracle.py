@@ -1,18 +1,19 @@
 """The order of scans that shows most true wall soonest: the ceiling for methods without the truth.
 
 It is asked of what scans could see of the walls, and of what an extractor finds of them in each
-scan. Either length is monotone submodular like covered area, so lazy evaluation gives the greedy
-order (Minoux 1978).
+scan. Either length is monotone submodular like covered area, so `lazy_greedy` orders by it.
 """
 
-import heapq
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan.types import BoolArray, FloatArray, IntArray
+from scanplan.selection import lazy_greedy
+from scanplan.store.registered_scans import RegisteredScans
+from scanplan.types import BoolArray, Columns, FloatArray, IntArray
 
-_TIE_M = 1e-9  # gains nearer than this are equal: sums of lengths in another order differ by less
+_TIE_M = 1e-9  # sums of the lengths of cells agree far better
 
 
 @dataclass(frozen=True)
@@ -43,54 +44,62 @@ def order_by_truth(seen: BoolArray, length_m: FloatArray) -> OracleOrder:
         Which cells of the true faces each scan shows: could see, or has a wall at.
     length_m : (c,) float
         Length of each cell.
-
-    Returns
-    -------
-    OracleOrder
     """
     seen = np.asarray(seen, bool)
-    order: list[int] = []
-    gains_m: list[float] = []
-    rest = list(range(len(seen)))
-    while rest:
-        rows, added_m = _order_once(seen, np.array(length_m, float), rest)
-        gains_m += [0.0] * len(rows) if order else added_m
-        order += rows
-        rest = sorted(set(rest) - set(rows))
+    order, gains_m = [], []
+    rest = np.arange(len(seen))
+    while len(rest):
+        places, round_m = _choose_round(seen[rest], length_m)
+        gains_m += [0.0] * len(places) if order else round_m
+        order += rest[places].tolist()
+        rest = np.delete(rest, places)
     return OracleOrder(np.array(order, int), np.array(gains_m))
 
 
-def _order_once(
-    seen: BoolArray, left_m: FloatArray, rows: list[int]
-) -> tuple[list[int], list[float]]:
-    """Return, greedily, the rows that add something to those before them, and what they add.
+def oracle_columns(best: Mapping[str, OracleOrder], scans: RegisteredScans) -> Columns:
+    """Return the columns of `schemas.ORACLE`.
 
-    All rows if none adds anything. `left_m`, the length of each cell that is not shown yet, is
-    changed.
+    Parameters
+    ----------
+    best : dict of str to OracleOrder
+        By extractor.
+    scans : registered_scans.RegisteredScans
     """
-    heap = [(-float(left_m[seen[i]].sum()), i) for i in rows]
-    heapq.heapify(heap)
-    order, gains_m = [], []
-    while heap and -heap[0][0] > _TIE_M:
-        best = _pop_best(heap, seen, left_m)
-        gain_m = float(left_m[seen[best]].sum())
-        left_m[seen[best]] = 0.0
-        if gain_m > _TIE_M:
-            order.append(best)
-            gains_m.append(gain_m)
-    return (order, gains_m) if order else (rows, [0.0] * len(rows))
+    n = len(scans.scan_ids)
+    orders = [best[extractor] for extractor in sorted(best)]
+    return {
+        "extractor": np.repeat(sorted(best), n),
+        "rank": np.tile(np.arange(1, n + 1), len(best)),
+        "scan_id": np.concatenate([scans.scan_ids[order.order] for order in orders]),
+        "gain_m": np.concatenate([order.gain_m for order in orders]),
+        "found_m": np.concatenate([np.cumsum(order.gain_m) for order in orders]),
+    }
 
 
-def _pop_best(heap: list[tuple[float, int]], seen: BoolArray, left_m: FloatArray) -> int:
-    """Take the scan of the largest gain, the first row of equals, off the heap of old gains."""
-    fresh: dict[int, float] = {}
-    best_m = 0.0
-    while heap and -heap[0][0] >= best_m - _TIE_M:
-        _, i = heapq.heappop(heap)
-        fresh[i] = float(left_m[seen[i]].sum())
-        best_m = max(best_m, fresh[i])
-    best = min(i for i, gain_m in fresh.items() if gain_m >= best_m - _TIE_M)
-    for i, gain_m in fresh.items():
-        if i != best:
-            heapq.heappush(heap, (-gain_m, i))
-    return best
+def _choose_round(seen: BoolArray, length_m: FloatArray) -> tuple[list[int], list[float]]:
+    """Choose greedily the scans that add something to the others; all of them if none does."""
+    unseen = _UnseenLength(seen, length_m)
+    adding = [
+        (i, gain_m)
+        for i, gain_m in lazy_greedy.choose_greedily(unseen, tie=_TIE_M)
+        if gain_m > _TIE_M
+    ]
+    if not adding:
+        return list(range(len(seen))), [0.0] * len(seen)
+    return [i for i, _ in adding], [gain_m for _, gain_m in adding]
+
+
+class _UnseenLength(lazy_greedy.SingleGains):
+    """The length of the cells that no chosen scan shows."""
+
+    def __init__(self, seen: BoolArray, length_m: FloatArray) -> None:
+        self._seen, self._left_m = seen, np.array(length_m, float)
+        super().__init__(len(seen))
+
+    def measure_gain(self, i: int) -> float:
+        """Return the length that a scan would show anew."""
+        return float(self._left_m[self._seen[i]].sum())
+
+    def cover(self, i: int) -> None:
+        """Leave nothing of the cells that a scan shows."""
+        self._left_m[self._seen[i]] = 0.0

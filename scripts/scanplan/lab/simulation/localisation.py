@@ -1,24 +1,23 @@
-"""Where the rover believes itself to be: a particle filter's poses, and the motion that its wheels sum up."""
+"""What the rover estimates of its own pose: a particle filter's poses, and wheel odometry."""
 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from scanplan.geometry import se3
+from scanplan.lab.random_streams import RandomStream, open_stream
 from scanplan.lab.simulation import rover
+from scanplan.types import FloatArray, IntArray
 
 # ASSUME wheels and gyro of a small rover: 1 % scale error each, constant over a drive
 _ODOMETRY_SCALE_ERROR = 0.01
-_WHITE_STREAM, _ODOMETRY_STREAM, _DRIFT_STREAM, _JUMP_STREAM = 1, 2, 7, 8
-
-
-# laser scans are rarer than wheel ticks, and AMCL sends its transform with each of them
-_TICKS_PER_TRANSFORM = 5
+_TICKS_PER_TRANSFORM = 5  # ASSUME laser scans at 10 Hz; AMCL sends its transform with each
 
 
 @dataclass(frozen=True)
 class Belief:
-    """What wheels and localiser say over a drive.
+    """What wheels and localiser estimate over a drive.
 
     Attributes
     ----------
@@ -27,41 +26,41 @@ class Belief:
     odom_from_base : (n, 4, 4) float64
         At every tick.
     update : (m,) int64
-        The ticks at which the localiser speaks.
+        The ticks at which the localiser sends a pose.
     map_from_base : (m, 4, 4) float64
-        What it says then.
+        That pose.
     deviation_m, deviation_rad : float
         What it states as its standard deviations: of all but the jumps.
     transform : (k,) int64
         The ticks at which it sends its transform.
     map_from_odom : (k, 4, 4) float64
-        The transform: what followed from its latest update.
+        The transform, which follows from its latest pose.
     ahead_ns : int
         How far ahead of its sending the transform is stamped.
     """
 
-    t_ns: np.ndarray
-    odom_from_base: np.ndarray
-    update: np.ndarray
-    map_from_base: np.ndarray
+    t_ns: IntArray
+    odom_from_base: FloatArray
+    update: IntArray
+    map_from_base: FloatArray
     deviation_m: float
     deviation_rad: float
-    transform: np.ndarray
-    map_from_odom: np.ndarray
+    transform: IntArray
+    map_from_odom: FloatArray
     ahead_ns: int
 
 
 def simulate_belief(
-    t_ns,
-    world_from_base,
+    t_ns: IntArray,
+    world_from_base: FloatArray,
     *,
-    update_distance_m,
-    update_angle_deg,
-    transform_tolerance_s,
-    seed,
-    **erring,
-):
-    """Return what wheels and localiser make of a drive.
+    update_distance_m: float,
+    update_angle_deg: float,
+    transform_tolerance_s: float,
+    seed: int,
+    **error_settings: float,
+) -> Belief:
+    """Return what wheels and localiser estimate over a drive.
 
     Parameters
     ----------
@@ -73,7 +72,7 @@ def simulate_belief(
     transform_tolerance_s : float
         AMCL's parameter of that name.
     seed : int
-    **erring
+    **error_settings
         As for `draw_pose_errors`.
 
     Returns
@@ -83,28 +82,28 @@ def simulate_belief(
     update = choose_updates(
         world_from_base, distance_m=update_distance_m, angle_rad=np.radians(update_angle_deg)
     )
-    map_from_base = add_pose_errors(
-        world_from_base[update], draw_pose_errors(t_ns[update] / 1e9, **erring, seed=seed)
-    )
-    odom_from_base, transform = (
-        integrate_odometry(world_from_base, seed=seed),
-        np.arange(0, len(t_ns), _TICKS_PER_TRANSFORM),
-    )
+    errors = draw_pose_errors(t_ns[update] / 1e9, **error_settings, seed=seed)
+    map_from_base = add_pose_errors(world_from_base[update], errors)
+    odom_from_base = integrate_odometry(world_from_base, seed=seed)
+    transform = np.arange(0, len(t_ns), _TICKS_PER_TRANSFORM)
+    deviation_deg = np.hypot(error_settings["noise_deg"], error_settings["drift_deg"])
     return Belief(
         t_ns=t_ns,
         odom_from_base=odom_from_base,
         update=update,
         map_from_base=map_from_base,
-        deviation_m=float(np.hypot(erring["noise_m"], erring["drift_m"])),
-        deviation_rad=float(np.radians(np.hypot(erring["noise_deg"], erring["drift_deg"]))),
+        deviation_m=float(np.hypot(error_settings["noise_m"], error_settings["drift_m"])),
+        deviation_rad=float(np.radians(deviation_deg)),
         transform=transform,
         map_from_odom=correction_at(update, map_from_base, odom_from_base, transform),
         ahead_ns=round(transform_tolerance_s * 1e9),
     )
 
 
-def choose_updates(world_from_base, *, distance_m, angle_rad):
-    """Return the ticks at which a localiser speaks: the first, the last, and those after enough motion, as AMCL does.
+def choose_updates(world_from_base: FloatArray, *, distance_m: float, angle_rad: float) -> IntArray:
+    """Return the ticks at which a localiser sends a pose, as AMCL does after enough motion.
+
+    The first and the last tick are always among them.
 
     Parameters
     ----------
@@ -117,26 +116,35 @@ def choose_updates(world_from_base, *, distance_m, angle_rad):
     -------
     (m,) int64
     """
-    xy_m, yaw = (
-        world_from_base[:, :2, 3].tolist(),
-        np.unwrap(se3.pose_yaw_rad(world_from_base)).tolist(),
-    )
+    xy_m = world_from_base[:, :2, 3].tolist()
+    yaw_rad = np.unwrap(se3.pose_yaw_rad(world_from_base)).tolist()
     ticks = [0]
-    for i in range(1, len(yaw)):
-        (x_m, y_m), last = xy_m[ticks[-1]], yaw[ticks[-1]]
-        moved_m = np.hypot(xy_m[i][0] - x_m, xy_m[i][1] - y_m)
-        if moved_m >= distance_m or abs(yaw[i] - last) >= angle_rad or i == len(yaw) - 1:
+    for i in range(1, len(yaw_rad)):
+        last = ticks[-1]
+        moved_m = np.hypot(xy_m[i][0] - xy_m[last][0], xy_m[i][1] - xy_m[last][1])
+        has_turned = abs(yaw_rad[i] - yaw_rad[last]) >= angle_rad
+        if moved_m >= distance_m or has_turned or i == len(yaw_rad) - 1:
             ticks.append(i)
     return np.array(ticks)
 
 
 def draw_pose_errors(
-    t_s, *, noise_m, noise_deg, drift_m, drift_deg, drift_time_s, jumps_per_min, max_jump_m, seed
-):
-    """Return how a particle filter errs: white noise, a slow drift, and jumps that the drift's pull takes back.
+    t_s: ArrayLike,
+    *,
+    noise_m: float,
+    noise_deg: float,
+    drift_m: float,
+    drift_deg: float,
+    drift_time_s: float,
+    jumps_per_min: float,
+    max_jump_m: float,
+    seed: int,
+) -> FloatArray:
+    """Return a particle filter's errors: white noise, a slow drift, and jumps that decay with it.
 
-    The drift of x, y and heading is an Ornstein-Uhlenbeck process each, sampled exactly. ASSUME all three are
-    independent and the same in all directions, and at most one jump falls between two updates.
+    The drift of x, y and heading is an Ornstein-Uhlenbeck process each, sampled exactly. ASSUME all
+    three are independent and the same in all directions, and at most one jump falls between two
+    updates.
 
     Parameters
     ----------
@@ -160,60 +168,68 @@ def draw_pose_errors(
         Error of x, y (metres) and heading (radians).
     """
     t_s = np.asarray(t_s, float)
-    white, drift, jump = (
-        np.random.default_rng([seed, s]) for s in (_WHITE_STREAM, _DRIFT_STREAM, _JUMP_STREAM)
-    )
-    scale = np.array([drift_m, drift_m, np.radians(drift_deg)])
-    step = draw_jumps(np.diff(t_s, prepend=t_s[0]), jumps_per_min, max_jump_m, jump)
-    kept = np.exp(-np.diff(t_s) / drift_time_s)
+    white = open_stream(seed, RandomStream.LOCALISER_NOISE)
+    drift = open_stream(seed, RandomStream.LOCALISER_DRIFT)
+    jump = open_stream(seed, RandomStream.LOCALISER_JUMPS)
+    drift_scale = np.array([drift_m, drift_m, np.radians(drift_deg)])
+    jumps = draw_jumps(np.diff(t_s, prepend=t_s[0]), jumps_per_min, max_jump_m, jump)
+    decay = np.exp(-np.diff(t_s) / drift_time_s)
     state = np.empty((len(t_s), 3))
-    state[0] = scale * drift.standard_normal(3)
-    push = scale * drift.standard_normal((len(kept), 3)) * np.sqrt(1 - kept**2)[:, None]
-    for i, share in enumerate(kept, 1):
-        state[i] = share * state[i - 1] + push[i - 1] + step[i]
-    return state + np.array([noise_m, noise_m, np.radians(noise_deg)]) * white.standard_normal(
-        (len(t_s), 3)
-    )
+    state[0] = drift_scale * drift.standard_normal(3)
+    push = drift_scale * drift.standard_normal((len(decay), 3)) * np.sqrt(1 - decay**2)[:, None]
+    for i, share in enumerate(decay, 1):
+        state[i] = share * state[i - 1] + push[i - 1] + jumps[i]
+    noise_scale = np.array([noise_m, noise_m, np.radians(noise_deg)])
+    return state + noise_scale * white.standard_normal((len(t_s), 3))
 
 
-def draw_jumps(gap_s, per_min, max_jump_m, generator):
-    """Return the jump (n, 3) at the end of each gap (n,), zero where none falls into it; the heading never jumps."""
-    there = generator.random(len(gap_s)) < -np.expm1(-gap_s * per_min / 60)
-    length_m = there * generator.uniform(0, max_jump_m, len(gap_s))
+def draw_jumps(
+    gap_s: FloatArray, per_min: float, max_jump_m: float, generator: np.random.Generator
+) -> FloatArray:
+    """Return the jump (n, 3) at the end of each gap (n,), zero where none falls into it.
+
+    The heading never jumps.
+    """
+    is_jump = generator.random(len(gap_s)) < -np.expm1(-gap_s * per_min / 60)
+    length_m = is_jump * generator.uniform(0, max_jump_m, len(gap_s))
     towards = generator.uniform(0, 2 * np.pi, len(gap_s))
     return np.column_stack([length_m * np.cos(towards), length_m * np.sin(towards), 0 * length_m])
 
 
-def add_pose_errors(world_from_base, error):
+def add_pose_errors(world_from_base: FloatArray, error: FloatArray) -> FloatArray:
     """Return planar poses (m, 4, 4) with errors (m, 3) of x, y and heading added."""
     xy_m = world_from_base[:, :2, 3] + error[:, :2]
     return rover.planar_poses(xy_m, se3.pose_yaw_rad(world_from_base) + error[:, 2])
 
 
-def integrate_odometry(world_from_base, *, seed):
-    """Return odom_from_base (n, 4, 4): the motion summed up from its start with a small scale error, so it drifts."""
-    scale = 1 + _ODOMETRY_SCALE_ERROR * np.random.default_rng(
-        [seed, _ODOMETRY_STREAM]
-    ).standard_normal(2)
-    yaw = np.unwrap(se3.pose_yaw_rad(world_from_base))
+def integrate_odometry(world_from_base: FloatArray, *, seed: int) -> FloatArray:
+    """Return odom_from_base (n, 4, 4): the motion summed up from its start with a scale error.
+
+    The small errors of turns and steps are constant over the drive, so the odometry drifts.
+    """
+    generator = open_stream(seed, RandomStream.ODOMETRY)
+    turn_scale, step_scale = 1 + _ODOMETRY_SCALE_ERROR * generator.standard_normal(2)
+    yaw_rad = np.unwrap(se3.pose_yaw_rad(world_from_base))
     step_m = np.diff(world_from_base[:, :2, 3], axis=0)
-    believed_yaw = scale[0] * (yaw - yaw[0])
-    # a step is known in the base's frame, and is added in the direction the base is believed to face
-    error = believed_yaw[:-1] - yaw[:-1]
-    step_m = scale[1] * (step_m[:, 0] + 1j * step_m[:, 1]) * np.exp(1j * error)
-    path_m = np.concatenate([[0], np.cumsum(step_m)])
-    return rover.planar_poses(np.column_stack([path_m.real, path_m.imag]), believed_yaw)
+    odometry_yaw_rad = turn_scale * (yaw_rad - yaw_rad[0])
+    # a step is measured in the base's frame, and added in the direction the base seems to face
+    error_rad = odometry_yaw_rad[:-1] - yaw_rad[:-1]
+    step = step_scale * (step_m[:, 0] + 1j * step_m[:, 1]) * np.exp(1j * error_rad)
+    path = np.concatenate([[0], np.cumsum(step)])
+    return rover.planar_poses(np.column_stack([np.real(path), np.imag(path)]), odometry_yaw_rad)
 
 
-def correction_at(update, map_from_base, odom_from_base, tick):
-    """Return the correction that holds at some ticks: the latest update's.
+def correction_at(
+    update: IntArray, map_from_base: FloatArray, odom_from_base: FloatArray, tick: IntArray
+) -> FloatArray:
+    """Return the correction of the odometry that holds at some ticks: the latest update's.
 
     Parameters
     ----------
     update : (m,) int64, increasing
         Ticks of the updates.
     map_from_base : (m, 4, 4) float64
-        What the localiser said then.
+        The localiser's poses then.
     odom_from_base : (n, 4, 4) float64
         At every tick.
     tick : (k,) int64
@@ -221,7 +237,7 @@ def correction_at(update, map_from_base, odom_from_base, tick):
 
     Returns
     -------
-    (k, 4, 4) float64
+    map_from_odom : (k, 4, 4) float64
     """
     correction = map_from_base @ se3.invert_pose(odom_from_base[update])
     return correction[np.searchsorted(update, tick, side="right") - 1]

@@ -1,21 +1,23 @@
 """People who walk through a survey."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import shapely
 from shapely import LineString, Point
+from shapely.geometry.base import BaseGeometry
 
+from scanplan.lab.random_streams import RandomStream, open_stream
 from scanplan.lab.simulation import raycast
+from scanplan.types import FloatArray
 
-RADIUS_M = 0.2
-HEIGHT_M = 1.75
-# a person keeps this far from walls, and steps out of the way of a sensor nearer than it
-_CLEARANCE_M = RADIUS_M + 0.1
-_REFLECTIVITY = 40.0
-_STREAM = 6
-_TRIES = 30
-_REST_S = 2.0
+RADIUS_M = 0.2  # ASSUME an adult seen from above is a disc of 40 cm
+HEIGHT_M = 1.75  # ASSUME an adult
+_CLEARANCE_M = RADIUS_M + 0.1  # to walls, and to the sensor, of which they step out of the way
+_REFLECTIVITY = 40.0  # ASSUME clothes; it fills the intensity, which no stage reads
+_GOAL_TRIES = 30  # places drawn for one in sight: few rests against the time of a simulation
+_REST_S = 2.0  # where no place is in sight; then all is drawn anew
 
 
 @dataclass(frozen=True)
@@ -30,12 +32,16 @@ class Person:
         Map frame.
     """
 
-    t_s: np.ndarray
-    xy_m: np.ndarray
+    t_s: FloatArray
+    xy_m: FloatArray
 
 
-def simulate_walkers(free, count, *, speed_m_s, until_s, seed):
-    """Let people wander: straight ways between random places, each in sight of the last, with a rest where none is.
+def simulate_walkers(
+    free: BaseGeometry, count: int, *, speed_m_s: float, until_s: float, seed: int
+) -> tuple[Person, ...]:
+    """Let people wander straight between random places, each in sight of the last.
+
+    Where no place is in sight they rest.
 
     Parameters
     ----------
@@ -56,14 +62,14 @@ def simulate_walkers(free, count, *, speed_m_s, until_s, seed):
     if room.is_empty:
         return ()
     shapely.prepare(room)
-    return tuple(
-        _walk(room, speed_m_s, until_s, np.random.default_rng([seed, _STREAM, i]))
-        for i in range(count)
-    )
+    generators = (open_stream(seed, RandomStream.PEOPLE, i) for i in range(count))
+    return tuple(_walk(room, speed_m_s, until_s, generator) for generator in generators)
 
 
-def find_person_hits(people, t_s, origin_m, direction):
-    """Find which rays meet a person: an upright cylinder on the floor.
+def find_person_hits(
+    people: Sequence[Person], t_s: FloatArray, origin_m: FloatArray, direction: FloatArray
+) -> raycast.RayHits:
+    """Find the first person that each ray meets: an upright cylinder on the floor.
 
     ASSUME nobody is seen from above: the top of a cylinder is open.
 
@@ -83,61 +89,82 @@ def find_person_hits(people, t_s, origin_m, direction):
         Of all rays, flat (c * b,).
     """
     n_beams = direction.shape[1]
-    ray = direction.reshape(-1, 3)
-    range_m = np.full(len(ray), np.inf, np.float32)
-    cosine = np.zeros(len(ray), np.float32)
+    rays = direction.reshape(-1, 3)
+    range_m = np.full(len(rays), np.inf, np.float32)
+    cosine = np.zeros(len(rays), np.float32)
     for person in people:
-        ahead_m = (
-            np.column_stack([np.interp(t_s, person.t_s, axis) for axis in person.xy_m.T])
-            - origin_m[:, :2]
-        )
+        place_m = np.column_stack([np.interp(t_s, person.t_s, axis) for axis in person.xy_m.T])
+        ahead_m = place_m - origin_m[:, :2]
         if np.hypot(*ahead_m.T).min() < _CLEARANCE_M:
             continue
-        x, y = np.repeat(ahead_m, n_beams, axis=0).T.astype(np.float32)
-        aside = ray[:, 0] * y - ray[:, 1] * x
-        level = ray[:, 0] ** 2 + ray[:, 1] ** 2
-        (near,) = np.nonzero((aside**2 < RADIUS_M**2 * level) & (ray[:, 0] * x + ray[:, 1] * y > 0))
-        middle = ray[near, 0] * x[near] + ray[near, 1] * y[near]
-        half = np.sqrt(level[near] * RADIUS_M**2 - aside[near] ** 2)
-        met_m = (middle - half) / level[near]
-        z_m = origin_m[near // n_beams, 2] + met_m * ray[near, 2]
-        first = (z_m >= 0) & (z_m <= HEIGHT_M) & (met_m < range_m[near])
-        range_m[near[first]] = met_m[first]
-        # the normal points from the axis to the hit: its product with the ray is -half / radius
-        cosine[near[first]] = half[first] / RADIUS_M
-    return raycast.RayHits(range_m, cosine, np.full(len(ray), _REFLECTIVITY, np.float32))
+        met, met_m, met_cosine = _meet_cylinder(rays, np.repeat(ahead_m, n_beams, axis=0))
+        z_m = origin_m[met // n_beams, 2] + met_m * rays[met, 2]
+        first = (z_m >= 0) & (z_m <= HEIGHT_M) & (met_m < range_m[met])
+        range_m[met[first]] = met_m[first]
+        cosine[met[first]] = met_cosine[first]
+    return raycast.RayHits(range_m, cosine, np.full(len(rays), _REFLECTIVITY, np.float32))
 
 
-def merge_hits(building, people):
-    """Return of two sets of raycast.RayHits on the same rays what comes first."""
-    person = people.range_m < building.range_m
+def merge_hits(building: raycast.RayHits, people: raycast.RayHits) -> raycast.RayHits:
+    """Return the nearer of two hits of the same rays."""
+    is_person = people.range_m < building.range_m
     return raycast.RayHits(
-        np.where(person, people.range_m, building.range_m),
-        np.where(person, people.cosine, building.cosine),
-        np.where(person, people.reflectivity, building.reflectivity),
+        np.where(is_person, people.range_m, building.range_m),
+        np.where(is_person, people.cosine, building.cosine),
+        np.where(is_person, people.reflectivity, building.reflectivity),
     )
 
 
-def _walk(room, speed_m_s, until_s, generator):
-    at = _place(room, generator)
-    t_s, xy_m = [0.0], [at]
+def _meet_cylinder(
+    rays: FloatArray, ahead_m: FloatArray
+) -> tuple[np.ndarray, FloatArray, FloatArray]:
+    """Return the rays that meet an endless upright cylinder, how far away, and the cosines there.
+
+    `ahead_m` (n, 2) leads from the start of each ray to the cylinder's axis.
+    """
+    x, y = ahead_m.T.astype(np.float32)
+    aside = rays[:, 0] * y - rays[:, 1] * x
+    level = rays[:, 0] ** 2 + rays[:, 1] ** 2
+    is_towards = rays[:, 0] * x + rays[:, 1] * y > 0
+    (met,) = np.nonzero((aside**2 < RADIUS_M**2 * level) & is_towards)
+    middle = rays[met, 0] * x[met] + rays[met, 1] * y[met]
+    half_chord = np.sqrt(level[met] * RADIUS_M**2 - aside[met] ** 2)
+    # the normal points from the axis to the hit: its product with the ray is -half_chord / radius
+    return met, (middle - half_chord) / level[met], half_chord / RADIUS_M
+
+
+def _walk(
+    room: BaseGeometry, speed_m_s: float, until_s: float, generator: np.random.Generator
+) -> Person:
+    t_s = [0.0]
+    xy_m = [_draw_place(room, generator)]
     while t_s[-1] < until_s:
-        onward = (_place(room, generator) for _ in range(_TRIES))
-        goal = next((xy for xy in onward if xy != at and room.contains(LineString([at, xy]))), None)
-        seconds = (
-            _REST_S
-            if goal is None
-            else float(np.hypot(goal[0] - at[0], goal[1] - at[1])) / speed_m_s
-        )
-        at = goal or at
-        t_s, xy_m = [*t_s, t_s[-1] + seconds], [*xy_m, at]
+        here = xy_m[-1]
+        goal = _draw_goal(room, here, generator)
+        if goal is None:
+            t_s.append(t_s[-1] + _REST_S)
+            xy_m.append(here)
+        else:
+            t_s.append(t_s[-1] + float(np.hypot(goal[0] - here[0], goal[1] - here[1])) / speed_m_s)
+            xy_m.append(goal)
     return Person(np.array(t_s), np.array(xy_m))
 
 
-def _place(room, generator):
+def _draw_goal(
+    room: BaseGeometry, here: tuple[float, float], generator: np.random.Generator
+) -> tuple[float, float] | None:
+    """Return a random place in sight, None if none of some tries is."""
+    for _ in range(_GOAL_TRIES):
+        goal = _draw_place(room, generator)
+        if goal != here and room.contains(LineString([here, goal])):
+            return goal
+    return None
+
+
+def _draw_place(room: BaseGeometry, generator: np.random.Generator) -> tuple[float, float]:
     """Return a point (x, y) inside, evenly distributed."""
     low, high = np.array(room.bounds).reshape(2, 2)
     while True:
-        xy = tuple(generator.uniform(low, high).tolist())
-        if room.contains(Point(xy)):
-            return xy
+        x, y = generator.uniform(low, high).tolist()
+        if room.contains(Point(x, y)):
+            return x, y

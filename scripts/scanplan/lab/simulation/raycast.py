@@ -5,8 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 import open3d as o3d
 
-from scanplan.lab.buildings.extrusion import SURFACES
+from scanplan.lab.buildings.extrusion import SURFACES, Mesh
+from scanplan.types import FloatArray, IntArray
 
+# ASSUME paint, flooring, fabric and glass, on Velodyne's scale of 0 to 100 for diffuse surfaces;
+# it fills the intensity of the recorded points, which no stage reads
 _REFLECTIVITY = {
     "wall": 80.0,
     "floor": 30.0,
@@ -14,13 +17,13 @@ _REFLECTIVITY = {
     "furniture": 50.0,
     "glass": 10.0,
     "door": 60.0,
+    "other": 50.0,
 }
-_UNKNOWN_REFLECTIVITY = 50.0
 
 
 @dataclass(frozen=True)
 class RayHits:
-    """What rays meet first; infinite range where it is nothing.
+    """The first surface that each ray meets; infinite range where there is none.
 
     Attributes
     ----------
@@ -31,13 +34,13 @@ class RayHits:
         As Velodyne calibrates it, 0 to 100 for diffuse surfaces; undefined where nothing is hit.
     """
 
-    range_m: np.ndarray
-    cosine: np.ndarray
-    reflectivity: np.ndarray
+    range_m: FloatArray
+    cosine: FloatArray
+    reflectivity: FloatArray
 
 
 class RayScene:
-    """A mesh, ready to be hit; its panes of glass apart from what is opaque.
+    """A mesh ready for ray casting, its panes of glass apart from its opaque surfaces.
 
     Parameters
     ----------
@@ -45,23 +48,21 @@ class RayScene:
         Triangles whose surface is called `glass` are panes.
     """
 
-    def __init__(self, mesh):
-        # Embree works in float32: near its own origin the mesh keeps micrometres wherever the map's origin is
+    def __init__(self, mesh: Mesh):
+        # Embree works in float32: near its own origin the mesh keeps micrometres wherever it stands
         self._centre_m = mesh.vertices_m.mean(axis=0)
         vertices_m = np.ascontiguousarray(mesh.vertices_m - self._centre_m, np.float32)
         is_glass = (np.array(SURFACES) == "glass")[mesh.surface]
-        reflectivity = np.array(
-            [_REFLECTIVITY.get(name, _UNKNOWN_REFLECTIVITY) for name in SURFACES], np.float32
-        )
-        self._opaque, self._glass = (
-            _Layer(vertices_m, mesh.triangles[chosen], reflectivity[mesh.surface[chosen]])
-            if chosen.any()
-            else None
-            for chosen in (~is_glass, is_glass)
-        )
+        of_surface = np.array([_REFLECTIVITY[name] for name in SURFACES], np.float32)
+        reflectivity = of_surface[mesh.surface]
+        opaque = ~is_glass
+        self._opaque = _make_layer(vertices_m, mesh.triangles[opaque], reflectivity[opaque])
+        self._glass = _make_layer(vertices_m, mesh.triangles[is_glass], reflectivity[is_glass])
 
-    def first_hits(self, origin_m, direction):
-        """Find what rays meet first, and which panes they come to before that.
+    def first_hits(
+        self, origin_m: FloatArray, direction: FloatArray
+    ) -> tuple[RayHits, RayHits | None]:
+        """Find the first opaque surface and the first pane that each ray meets.
 
         Parameters
         ----------
@@ -72,37 +73,43 @@ class RayScene:
 
         Returns
         -------
-        opaque : Hits
+        opaque : RayHits
             The first surface that is no glass, for all rays, flat (c * b,).
-        pane : Hits or None
-            The first pane, wherever it is; None if the mesh has none.
+        pane : RayHits or None
+            The first pane, before or behind that surface; None if the mesh has none.
         """
         rays = np.empty((*direction.shape[:2], 6), np.float32)
-        rays[..., :3] = (np.asarray(origin_m) - self._centre_m)[:, None]
+        rays[..., :3] = (origin_m - self._centre_m)[:, None]
         rays[..., 3:] = direction
         rays = rays.reshape(-1, 6)
-        opaque = (
-            self._opaque.hits(rays)
-            if self._opaque
-            else RayHits(*np.full((3, len(rays)), np.inf, np.float32))
-        )
+        if self._opaque:
+            opaque = self._opaque.hits(rays)
+        else:
+            opaque = RayHits(*np.full((3, len(rays)), np.inf, np.float32))
         return opaque, self._glass.hits(rays) if self._glass else None
 
 
 class _Layer:
     """Triangles with the reflectivity of each."""
 
-    def __init__(self, vertices_m, triangles, reflectivity):
+    def __init__(self, vertices_m: FloatArray, triangles: IntArray, reflectivity: FloatArray):
         self._reflectivity = reflectivity
         self._scene = o3d.t.geometry.RaycastingScene(nthreads=1)
-        triangles = np.ascontiguousarray(triangles, np.uint32)
+        rows = np.ascontiguousarray(triangles, np.uint32)
         self._scene.add_triangles(
-            o3d.core.Tensor.from_numpy(vertices_m), o3d.core.Tensor.from_numpy(triangles)
+            o3d.core.Tensor.from_numpy(vertices_m), o3d.core.Tensor.from_numpy(rows)
         )
 
-    def hits(self, rays):
-        found = self._scene.cast_rays(o3d.core.Tensor.from_numpy(rays), nthreads=1)
-        cosine = np.abs(np.einsum("ij,ij->i", found["primitive_normals"].numpy(), rays[:, 3:]))
+    def hits(self, rays: FloatArray) -> RayHits:
+        cast = self._scene.cast_rays(o3d.core.Tensor.from_numpy(rays), nthreads=1)
+        cosine = np.abs(np.einsum("ij,ij->i", cast["primitive_normals"].numpy(), rays[:, 3:]))
         # the row that Open3D gives a miss is no row
-        row = np.minimum(found["primitive_ids"].numpy(), len(self._reflectivity) - 1)
-        return RayHits(found["t_hit"].numpy(), cosine, self._reflectivity[row])
+        row = np.minimum(cast["primitive_ids"].numpy(), len(self._reflectivity) - 1)
+        return RayHits(cast["t_hit"].numpy(), cosine, self._reflectivity[row])
+
+
+def _make_layer(
+    vertices_m: FloatArray, triangles: IntArray, reflectivity: FloatArray
+) -> _Layer | None:
+    """Return the layer of some triangles, None where there are none."""
+    return _Layer(vertices_m, triangles, reflectivity) if len(triangles) else None

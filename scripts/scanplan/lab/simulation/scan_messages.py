@@ -1,54 +1,78 @@
 """The ROS messages of a laser sensor's driver."""
 
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
+
 import numpy as np
 
+from scanplan.lab.simulation.sensors import Sensor
 from scanplan.lab.simulation.survey_messages import TYPE, RosMessage, make_header
+from scanplan.lab.simulation.sweeps import SimulatedScan
+from scanplan.types import Array, IntArray
 
-_CLOUD_TOPIC, _LASER_TOPIC = "/velodyne_points", "/scan"
-_CLOUD_FRAME, _LASER_FRAME = "velodyne", "laser"
-# the layout of velodyne_pointcloud's PointXYZIRT; the numbers are sensor_msgs/PointField's datatypes
-_POINT = {"x": ("<f4", 0, 7), "y": ("<f4", 4, 7), "z": ("<f4", 8, 7), "intensity": ("<f4", 12, 7)}
-_POINT |= {"ring": ("<u2", 16, 4), "time": ("<f4", 18, 7)}
+if TYPE_CHECKING:
+    from rosbags.typesys.store import Msg
+
+_CLOUD_TOPIC = "/velodyne_points"
+_LASER_TOPIC = "/scan"
+_CLOUD_FRAME = "velodyne"
+_LASER_FRAME = "laser"
+# velodyne_pointcloud's PointXYZIRT: form, offset in bytes, datatype of sensor_msgs/PointField
+_POINT = {
+    "x": ("<f4", 0, 7),
+    "y": ("<f4", 4, 7),
+    "z": ("<f4", 8, 7),
+    "intensity": ("<f4", 12, 7),
+    "ring": ("<u2", 16, 4),
+    "time": ("<f4", 18, 7),
+}
 _POINT_DTYPE = np.dtype(
     {
         "names": list(_POINT),
         "formats": [form for form, _, _ in _POINT.values()],
         "offsets": [offset for _, offset, _ in _POINT.values()],
-        "itemsize": 22,
+        "itemsize": 22,  # bytes of a PointXYZIRT
     }
 )
 
 
-def encode_scans(t_ns, sensor, taken):
-    """Give the scans of a survey as their sensor's driver does.
+def encode_scans(
+    t_ns: IntArray, sensor: Sensor, scans: Iterable[SimulatedScan]
+) -> Iterator[RosMessage]:
+    """Encode the scans of a survey as their sensor's driver does.
 
     Parameters
     ----------
     t_ns : (n,) int64
     sensor : sensors.Sensor
-    taken : iterable of sweeps.SimulatedScan
+    scans : iterable of sweeps.SimulatedScan
 
     Yields
     ------
-    Message
+    RosMessage
         `sensor_msgs/PointCloud2`, or `sensor_msgs/LaserScan` from a 2-D scanner.
     """
-    give = _clouds if sensor.increment_rad is None else _laser_scans
-    yield from give(np.asarray(t_ns).tolist(), sensor, taken)
+    stamps_ns = np.asarray(t_ns).tolist()
+    if sensor.increment_rad is None:
+        yield from _encode_clouds(stamps_ns, sensor, scans)
+    else:
+        yield from _encode_laser_scans(stamps_ns, sensor, sensor.increment_rad, scans)
 
 
-def sensor_frame(sensor):
+def sensor_frame(sensor: Sensor) -> str:
     """Return the name of the frame that a sensor's scans are in."""
     return _CLOUD_FRAME if sensor.increment_rad is None else _LASER_FRAME
 
 
-def _clouds(t_ns, sensor, taken):
-    """Dense unordered clouds, the Velodyne driver's; the stamp is the last firing's and `time` runs up to 0."""
+def _encode_clouds(
+    t_ns: list[int], sensor: Sensor, scans: Iterable[SimulatedScan]
+) -> Iterator[RosMessage]:
+    """Yield dense unordered clouds, stamped with their last firing; `time` runs up to 0."""
     form = TYPE["sensor_msgs/msg/PointField"]
-    fields = [
+    fields: list[Msg] = [
         form(name=name, offset=at, datatype=code, count=1) for name, (_, at, code) in _POINT.items()
     ]
-    for seq, (stamp_ns, scan) in enumerate(zip(t_ns, taken, strict=True)):
+    for seq, (stamp_ns, scan) in enumerate(zip(t_ns, scans, strict=True)):
         points = _points(sensor, scan)
         content = TYPE["sensor_msgs/msg/PointCloud2"](
             header=make_header(seq, stamp_ns, sensor_frame(sensor)),
@@ -64,29 +88,33 @@ def _clouds(t_ns, sensor, taken):
         yield RosMessage(stamp_ns, _CLOUD_TOPIC, content)
 
 
-def _points(sensor, scan):
-    """The returns of a scan as records, in the order fired."""
+def _points(sensor: Sensor, scan: SimulatedScan) -> Array:
+    """Return the returns of a scan as records, in the order fired."""
     ray = np.flatnonzero(np.isfinite(scan.range_m))
     column, beam = np.divmod(ray, len(sensor.ring))
     points = np.empty(len(ray), _POINT_DTYPE)
     xyz_m = sensor.direction.reshape(-1, 3).take(ray, axis=0) * scan.range_m.take(ray)[:, None]
     points["x"], points["y"], points["z"] = xyz_m.T
-    points["intensity"], points["ring"] = scan.intensity.take(ray), sensor.ring[beam]
+    points["intensity"] = scan.intensity.take(ray)
+    points["ring"] = sensor.ring[beam]
     points["time"] = sensor.time_s[column]
     return points
 
 
-def _laser_scans(t_ns, sensor, taken):
-    """Scans of a plane; the stamp is the first beam's, a beam that does not come back is infinite (REP 117)."""
-    first = float(np.arctan2(sensor.direction[0, 0, 1], sensor.direction[0, 0, 0]))
-    first = first if first <= 0 else -np.pi
-    for seq, (stamp_ns, scan) in enumerate(zip(t_ns, taken, strict=True)):
+def _encode_laser_scans(
+    t_ns: list[int], sensor: Sensor, increment_rad: float, scans: Iterable[SimulatedScan]
+) -> Iterator[RosMessage]:
+    """Yield scans of a plane, stamped with their first beam; a lost beam is infinite (REP 117)."""
+    first_rad = float(np.arctan2(sensor.direction[0, 0, 1], sensor.direction[0, 0, 0]))
+    # a whole turn begins at 180 degrees, which is -180
+    first_rad = first_rad if first_rad <= 0 else -np.pi
+    for seq, (stamp_ns, scan) in enumerate(zip(t_ns, scans, strict=True)):
         range_m = scan.range_m[:, 0]
         content = TYPE["sensor_msgs/msg/LaserScan"](
             header=make_header(seq, stamp_ns, sensor_frame(sensor)),
-            angle_min=first,
-            angle_max=first + (len(range_m) - 1) * sensor.increment_rad,
-            angle_increment=sensor.increment_rad,
+            angle_min=first_rad,
+            angle_max=first_rad + (len(range_m) - 1) * increment_rad,
+            angle_increment=increment_rad,
             time_increment=float(sensor.time_s[1] - sensor.time_s[0]),
             scan_time=sensor.period_s,
             range_min=sensor.min_range_m,

@@ -1,15 +1,31 @@
-"""A simulated survey put together from its settings, and what is true of it."""
+"""A simulated survey put together from its settings."""
+
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from scanplan.lab.buildings import building
-from scanplan.lab.buildings.truth import mark_visible
+from scanplan.lab.buildings import building, building_route
+from scanplan.lab.buildings.truth import Feature
 from scanplan.lab.evaluation import visible_faces
-from scanplan.lab.simulation import localisation, rover, sensors, sweeps
+from scanplan.lab.simulation import localisation, rover, sensor_errors, sensors, sweeps
 from scanplan.lab.simulation.people import simulate_walkers
+from scanplan.lab.simulation.survey_truth import mark_visible
+from scanplan.types import FloatArray, IntArray, Settings
 
 
-def prepare_site(data, source, mount, *, seed, route, waypoints_m, start_m, clearance_m, **reading):
+def prepare_site(
+    data: bytes,
+    source: Path,
+    mount: Settings,
+    *,
+    seed: int,
+    route: str,
+    waypoints_m: Any,
+    start_m: Any,
+    clearance_m: float,
+    **reading: Any,
+) -> building.Building:
     """Read a building and find the rover's way through it.
 
     Parameters
@@ -20,7 +36,7 @@ def prepare_site(data, source, mount, *, seed, route, waypoints_m, start_m, clea
     mount : dict
         Settings of `rover.mount_sensor`.
     seed, route, waypoints_m, start_m, clearance_m
-        See `building.plan_building_route`.
+        See `building_route.plan_building_route`.
     **reading
         Settings of `building.load_building`.
 
@@ -29,14 +45,29 @@ def prepare_site(data, source, mount, *, seed, route, waypoints_m, start_m, clea
     building.Building
         With a way.
     """
-    found = building.load_building(data, source, slice_height_m=mount["height_m"], **reading)
-    way = {"route": route, "waypoints_m": waypoints_m, "start_m": start_m, "seed": seed}
-    return building.plan_building_route(
-        found, source, **way, clearance_m=clearance_m, reach_m=abs(mount["forward_m"])
+    site = building.load_building(data, source, slice_height_m=mount["height_m"], **reading)
+    return building_route.plan_building_route(
+        site,
+        source,
+        route=route,
+        waypoints_m=waypoints_m,
+        start_m=start_m,
+        seed=seed,
+        clearance_m=clearance_m,
+        reach_m=abs(mount["forward_m"]),
     )
 
 
-def prepare_survey(site, *, seed, mount, sensor, errors, drive, people):
+def prepare_survey(
+    site: building.Building,
+    *,
+    seed: int,
+    mount: Settings,
+    sensor: Settings,
+    errors: Settings,
+    drive: Settings,
+    people: Settings,
+) -> sweeps.SimulatedSurvey:
     """Put a rover with a sensor on its way through a floor.
 
     Parameters
@@ -45,7 +76,8 @@ def prepare_survey(site, *, seed, mount, sensor, errors, drive, people):
         With a way.
     seed : int
     mount, sensor, errors, drive, people : dict
-        Settings of `rover.mount_sensor`, `sensors.make_sensor`, `sensors.draw_sensor_errors`, `rover.plan_drive` and `people.simulate_walkers`.
+        Settings of `rover.mount_sensor`, `sensors.make_sensor`,
+        `sensor_errors.draw_sensor_errors`, `rover.plan_drive` and `people.simulate_walkers`.
 
     Returns
     -------
@@ -55,24 +87,28 @@ def prepare_survey(site, *, seed, mount, sensor, errors, drive, people):
     ------
     StageError
         If settings contradict each other.
+    ValueError
+        If the building has no way.
     """
-    device, way = sensors.make_sensor(**sensor), rover.plan_drive(site.waypoints_m, **drive)
+    if site.waypoints_m is None:
+        raise ValueError("a survey needs a building with a way through it")
+    lidar = sensors.make_sensor(**sensor)
+    way = rover.plan_drive(site.waypoints_m, **drive)
+    free = site.floor_m.difference(site.obstacles_m)
     return sweeps.SimulatedSurvey(
         mesh=site.mesh,
-        sensor=device,
-        errors=sensors.draw_sensor_errors(device, **errors, seed=seed),
+        sensor=lidar,
+        errors=sensor_errors.draw_sensor_errors(lidar, **errors, seed=seed),
         drive=way,
         base_from_sensor=rover.mount_sensor(**mount),
-        people=simulate_walkers(
-            site.floor_m.difference(site.obstacles_m), until_s=way.t_s[-1], **people, seed=seed
-        ),
+        people=simulate_walkers(free, until_s=way.t_s[-1], **people, seed=seed),
         t_ns=rover.scan_stamps(way, sensor["rate_hz"]),
         seed=seed,
     )
 
 
-def survey_belief(survey, **localiser):
-    """Return what wheels and localiser say over a survey, a turn of the sensor beyond either end: localisation.Belief.
+def survey_belief(survey: sweeps.SimulatedSurvey, **localiser: Any) -> localisation.Belief:
+    """Return what wheels and localiser estimate, a turn of the sensor beyond either end.
 
     Parameters
     ----------
@@ -81,17 +117,24 @@ def survey_belief(survey, **localiser):
         Settings of `localisation.simulate_belief`.
     """
     tick_ns = rover.tick_stamps(survey.drive, _turn_ns(survey))
-    return localisation.simulate_belief(
-        tick_ns, rover.drive_poses(survey.drive, tick_ns), **localiser, seed=survey.seed
-    )
+    world_from_base = rover.drive_poses(survey.drive, tick_ns)
+    return localisation.simulate_belief(tick_ns, world_from_base, **localiser, seed=survey.seed)
 
 
-def true_poses(survey):
-    """Return each scan's stamp (m,) int64 from the start of the drive and world_from_sensor (m, 4, 4) at it."""
+def true_poses(survey: sweeps.SimulatedSurvey) -> tuple[IntArray, FloatArray]:
+    """Return each scan's stamp (m,) from the drive's start, and world_from_sensor (m, 4, 4)."""
     return survey.t_ns, rover.drive_poses(survey.drive, survey.t_ns) @ survey.base_from_sensor
 
 
-def survey_truth(site, survey):
+def true_trajectory(survey: sweeps.SimulatedSurvey) -> tuple[IntArray, FloatArray]:
+    """Return stamps and poses dense enough to interpolate exactly (`rover.trace_stamps`)."""
+    t_ns = rover.trace_stamps(survey.drive, _turn_ns(survey))
+    return t_ns, rover.drive_poses(survey.drive, t_ns) @ survey.base_from_sensor
+
+
+def survey_truth(
+    site: building.Building, survey: sweeps.SimulatedSurvey
+) -> tuple[list[Feature], dict[str, float]]:
     """Return what is true of a survey.
 
     Returns
@@ -101,19 +144,12 @@ def survey_truth(site, survey):
     sensor : dict
         How far, and how far around, each scan sees: `max_range_m`, `field_deg`.
     """
-    sight = visible_faces.SensorView(survey.sensor.max_range_m, survey.sensor.field_rad)
-    features = mark_visible(site.truth, true_poses(survey)[1], sight)
-    return features, {
-        "max_range_m": sight.max_range_m,
-        "field_deg": round(float(np.degrees(sight.field_rad)), 3),
-    }
+    view = visible_faces.SensorView(survey.sensor.max_range_m, survey.sensor.field_rad)
+    _, poses = true_poses(survey)
+    field_deg = round(float(np.degrees(view.field_rad)), 3)
+    sensor = {"max_range_m": view.max_range_m, "field_deg": field_deg}
+    return mark_visible(site.truth, poses, view), sensor
 
 
-def true_trajectory(survey):
-    """Return stamps and poses like `true_poses`, dense enough to interpolate exactly (`rover.trace_stamps`)."""
-    t_ns = rover.trace_stamps(survey.drive, _turn_ns(survey))
-    return t_ns, rover.drive_poses(survey.drive, t_ns) @ survey.base_from_sensor
-
-
-def _turn_ns(survey):
+def _turn_ns(survey: sweeps.SimulatedSurvey) -> int:
     return int(np.ceil(survey.sensor.period_s * 1e9))

@@ -62,7 +62,7 @@ def _growth_columns(columns: Columns, n_clusters: int) -> Columns:
         "n_clusters": np.full(len(scan_ids), n_clusters),
         "rank": np.arange(1, len(scan_ids) + 1),
         "scan_id": scan_ids[order.order],
-        "covered_m2": order.covered_m2,
+        "covered_m2": order.covered,
     }
 
 

@@ -11,7 +11,7 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.lab.thesis.claim_measures import FOUR, SUBSET, rows_of_method, scans_for_99
 from scanplan.report import top_view
-from scanplan.report.figures import STYLES
+from scanplan.selection.methods import METHODS
 from scanplan.types import Array, Columns, FloatArray, IntArray
 
 _BITMAP = {
@@ -85,7 +85,7 @@ def draw_shares_figure(evaluated: Sequence[Columns], extractor: str) -> Figure:
     for axes, (column, title) in zip(frames, _BITMAP.items(), strict=True):
         n_scans = 1
         for method in FOUR:
-            label, colour = STYLES[method]
+            label, colour = METHODS[method].label, METHODS[method].colour
             rows = [rows_of_method(table, method, extractor) for table in evaluated]
             k = _common_sizes([row["k"] for row in rows])
             share = np.array([np.interp(k, row["k"], row[column]) for row in rows])
@@ -124,7 +124,7 @@ def draw_convergence_figure(selections: Mapping[str, Columns]) -> Figure:
     axes = figure.add_subplot()
     latest, n_scans = 1, 1
     for method, selection in selections.items():
-        name, colour = STYLES[method]
+        name, colour = METHODS[method].label, METHODS[method].colour
         covered_m2, at = selection["covered_m2"], scans_for_99(selection)
         share = covered_m2 / covered_m2[-1]
         label = f"{name}: 99 % at {at} scans of {covered_m2[-1]:,.0f} m²"

@@ -1,31 +1,31 @@
-"""The thesis's experiments (chapter 5) as datasets: its two surveys, each with several seeds.
+"""The thesis's experiments (chapter 5) as datasets: its surveys simulated, with several seeds.
 
 No heavy imports: this runs while the workflow is being parsed.
 """
 
-from collections.abc import Sequence
+from __future__ import annotations
+
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from scanplan.project.dataset import RESERVED, Dataset, describe_simulated
-from scanplan.project.settings import Layer, read_own_layers, settings_of_dataset
-from scanplan.types import FilePath
+from scanplan.project.dataset import RESERVED, describe_simulated
+from scanplan.project.settings import read_own_layers, settings_of_dataset
 
-ROOMS = "ring_rooms"
-"""Registered scans of all rooms (5.2)."""
-DRIVE = "ring_hallways"
-"""A drive through the hallways (5.4)."""
-LIMITS = "ring_hallways_limits"
-"""The same drive with the thesis's limits of registration."""
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from scanplan.project.dataset import Dataset
+    from scanplan.project.settings import Layer
+    from scanplan.project.settings_schema import Schema
+    from scanplan.types import FilePath, Settings
+
+ROOMS, DRIVE, LIMITS = "ring_rooms", "ring_hallways", "ring_hallways_limits"
+"""Scans of all rooms (5.2); a drive through the hallways (5.4); it with the thesis's limits."""
 
 
 def list_surveys(
-    *,
-    defaults: dict[str, Any],
-    given: Sequence[Layer],
-    schema: dict[str, Any],
-    config: FilePath,
+    *, defaults: Settings, given: Sequence[Layer], schema: Schema, config: FilePath
 ) -> dict[str, tuple[Dataset, ...]]:
     """Gather the surveys of the thesis's experiments.
 
@@ -41,8 +41,7 @@ def list_surveys(
     Returns
     -------
     dict of str to tuple of dataset.Dataset
-        `ROOMS`, `DRIVE` and `LIMITS`, each by seed. Of `LIMITS` the recordings are those of
-        `DRIVE`.
+        `ROOMS`, `DRIVE` and `LIMITS`, each by seed. The recordings of `LIMITS` are of `DRIVE`.
     """
     config = Path(config)
     chosen = settings_of_dataset(defaults, given, schema)["thesis"]
@@ -73,9 +72,5 @@ def list_surveys(
 
 
 def replace_seeds(settings: dict[str, Any], seed: int) -> dict[str, Any]:
-    """Return settings with every seed replaced; the given ones are not changed."""
-    walls = {extractor: values | {"seed": seed} for extractor, values in settings["walls"].items()}
-    sections = {
-        name: settings[name] | {"seed": seed} for name in ("simulate", "hulls", "selection")
-    }
-    return settings | sections | {"walls": walls}
+    """Return settings with their seed and the simulation's replaced; the given stay as they are."""
+    return settings | {"seed": seed, "simulate": settings["simulate"] | {"seed": seed}}

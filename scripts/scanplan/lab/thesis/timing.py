@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from scanplan.extraction import segments
 from scanplan.extraction.extractors import Extractor
 from scanplan.lab.thesis.claim_measures import BUILDING, CHOOSING, ORDERING, SUBSET, THINNED
 from scanplan.selection import area_greedy, hulls
+from scanplan.stage import per_registered_scan
 from scanplan.store import tables
 from scanplan.types import Array, Columns, FilePath, IntArray, Settings
 
@@ -36,10 +36,9 @@ def time_extractor(
     task: str,
     method: Extractor,
     store: tables.ScanStore,
-    registered: Columns,
-    scan_ids: IntArray | Sequence[int],
+    scan_ids: IntArray,
     settings: Settings,
-    origin: FilePath,
+    registration: FilePath,
     *,
     part: int = 1,
 ) -> Iterator[TimedRow]:
@@ -51,13 +50,11 @@ def time_extractor(
         Its name in the table.
     method : extractors.Extractor
     store : tables.ScanStore
-    registered : dict
-        Columns of the table of registration.
     scan_ids : (n,) int
     settings : dict
         Keywords of the method's settings.
-    origin : path-like
-        Of the table of registration, for messages.
+    registration : path-like
+        registration.parquet.
     part : int
         So many points per point that is kept, those drawn at random.
 
@@ -66,7 +63,7 @@ def time_extractor(
     TimedRow
         `size` is the scan's number of points, `item` its scan_id, `found` its walls.
     """
-    sensors = segments.sensor_keywords(registered, scan_ids, origin)
+    sensors = per_registered_scan.sensor_keywords(scan_ids, store.path, registration)
     keywords = {"planar": store.planar, "settings": method.settings(**settings)}
     for number, (scan_id, xyz_m) in enumerate(store.scans(scan_ids)):
         xyz_m = thin_points(xyz_m, part, scan_id)

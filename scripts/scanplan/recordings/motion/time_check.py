@@ -1,40 +1,57 @@
-"""Holding what points' times say of a sweep against the points themselves.
+"""Checking the stated times of a sweep's points against the points themselves.
 
-Whether a driver lists the beams in the order it fired them, and stamps the scan with its first or its last, nobody
-states, and some drivers do otherwise than their message type demands. The scans tell: where the sensor's turning
-changes, neighbouring scans lie on each other only if each is freed of its motion in the right way.
+Whether a driver lists the beams in the order it fired them, and stamps the scan with its first or
+its last, nobody states, and some drivers do otherwise than their message type demands. The scans
+show it: where the sensor's turning changes, neighbouring scans lie on each other only if each is
+deskewed in the right way.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from scanplan.geometry import plane_scatter, se3
+from scanplan.recordings.clouds import Scan
 from scanplan.recordings.motion import deskew
+from scanplan.recordings.motion.trajectory import SensorMotion
+from scanplan.recordings.survey_protocol import Survey
 from scanplan.stage import log
+from scanplan.types import FloatArray, IntArray
 
-_WINDOW_S = 3.0
-_MOST_WINDOWS, _SCANS_A_WINDOW, _POINTS_A_SCAN = 8, 10, 3000
-_NEAREST_M, _FARTHEST_M = 0.3, 30.0
-_RADIUS_M, _PLACES_A_WINDOW, _SEED = 0.2, 200, 1
-# what the change of turning must move a point 5 m away by, for a scan to tell
-_REACH_M, _LEAST_EFFECT_M = 5.0, 0.02
-# another reading than the stated one must make surfaces this much crisper
-_CLEARLY = 0.9
-_FEWEST_PLACES = 100
+_WINDOW_S = 3.0  # a turn begins and ends within it, and the rover stays in a room
+_MOST_WINDOWS = 8  # more decode more scans and seldom change the answer
+_SCANS_A_WINDOW = 10
+_POINTS_A_SCAN = 3000  # some on every wall of a room
+_NEAREST_M = 0.3  # nearer points are the rover's own
+_FARTHEST_M = 30.0  # farther ones a small error of the turn moves too much
+_RADIUS_M = 0.2  # of a place: less than the distance of two walls
+_PLACES_A_WINDOW = 200
+_SEED = 1
+_REACH_M = 5.0  # typical distance of a wall
+_LEAST_EFFECT_M = 0.02  # the change of turning must move a point at it by so much: a range's noise
+_CLEARLY = 0.9  # share of the scatter as stated that another reading must fall below
+_FEWEST_PLACES = 100  # of fewer the median scatters by more than that
 
 
 @dataclass(frozen=True)
 class TimeReading:
-    """A way to read points' times: seconds after the stamp are `scale` times those stated, plus `shift_s`."""
+    """A way to read points' times: seconds after the stamp are `scale` * stated + `shift_s`."""
 
     name: str
     scale: float
     shift_s: float
 
+    def apply_to(self, motion: SensorMotion) -> SensorMotion:
+        """Return the motion with this reading of points' times."""
+        return replace(motion, time_scale=self.scale, time_shift_s=self.shift_s)
 
-def list_time_readings(first_s, last_s):
-    """Return the ways to read times that the driver states to run from `first_s` to `last_s`; as stated comes first."""
+
+def list_time_readings(first_s: float, last_s: float) -> list[TimeReading]:
+    """Return the ways to read times that run, as stated, from `first_s` to `last_s`.
+
+    The way as stated comes first.
+    """
     other_end_s = (first_s - last_s) if abs(first_s) < abs(last_s) else (last_s - first_s)
     return [
         TimeReading("as stated", 1.0, 0.0),
@@ -45,38 +62,43 @@ def list_time_readings(first_s, last_s):
     ]
 
 
-def check_point_times(survey, motion):
-    """Return the motion with the reading of points' times that makes the survey's surfaces clearly crisper.
+def check_point_times(survey: Survey, motion: SensorMotion) -> SensorMotion:
+    """Return the motion with the reading of points' times that makes the surfaces thinnest.
 
     Parameters
     ----------
-    survey : object
-        As `survey.open_survey` yields it.
+    survey : survey_protocol.Survey
     motion : trajectory.SensorMotion
 
     Returns
     -------
     trajectory.SensorMotion
-        As given where the times are read best as stated, or nothing can be told.
+        As given where no reading is clearly better than the stated one, or the scans do not show
+        it.
     """
     if survey.sweep_times is None:
         return motion
-    chosen = choose_turning_windows(survey.stamps(), motion)
-    wanted = np.concatenate(chosen) if chosen else []
-    scans = {
-        scan.scan_id: _thinned(scan) for scan in survey.scans(wanted) if scan.time_s is not None
-    }
-    groups = [[scans[i] for i in window if i in scans and len(scans[i].xyz_m)] for window in chosen]
-    groups = [group for group in groups if len(group) > 2]
+    windows = choose_turning_windows(survey.stamps(), motion)
+    groups = [group for group in _read_windows(survey, windows) if len(group) > 2]
     if not groups:
         log.log_line("times of points: the sensor's turning changes too little to check them")
         return motion
-    best, told = choose_reading(groups, motion, planar=survey.planar)
-    log.log_line(f"times of points are read {best.name}; surfaces by each reading: {told}")
-    return replace(motion, time_scale=best.scale, time_shift_s=best.shift_s)
+    best, scatters = choose_reading(groups, motion, planar=survey.planar)
+    log.log_line(f"times of points are read {best.name}; surfaces by each reading: {scatters}")
+    return best.apply_to(motion)
 
 
-def choose_turning_windows(t_ns, motion):
+def _read_windows(survey: Survey, windows: Sequence[IntArray]) -> list[list[Scan]]:
+    """Return the scans of each window that have points and times, thinned."""
+    wanted = np.concatenate(windows).tolist() if windows else []
+    scans = {
+        scan.scan_id: _thin_scan(scan) for scan in survey.scans(wanted) if scan.time_s is not None
+    }
+    filled = {scan_id: scan for scan_id, scan in scans.items() if len(scan.xyz_m)}
+    return [[filled[i] for i in window.tolist() if i in filled] for window in windows]
+
+
+def choose_turning_windows(t_ns: IntArray, motion: SensorMotion) -> list[IntArray]:
     """Choose where the sensor's turning changes most.
 
     Parameters
@@ -88,39 +110,58 @@ def choose_turning_windows(t_ns, motion):
     Returns
     -------
     list of (k,) int64
-        Indices of the scans of each window, at most `_SCANS_A_WINDOW`, which are within one piece of the motion.
+        Indices of the scans of each window, at most `_SCANS_A_WINDOW`, which are within one piece
+        of the motion.
     """
-    found, ends = [], np.searchsorted(t_ns, t_ns + int(_WINDOW_S * 1e9))
+    ends = np.searchsorted(t_ns, t_ns + int(_WINDOW_S * 1e9))
     step = max(1, int(np.median(ends - np.arange(len(t_ns)))) // 2)
+    windows = []
     for start in range(0, len(t_ns), step):
         window = np.arange(start, ends[start])
-        pose = motion.at(t_ns[window]) if len(window) > 3 else None
-        if pose is None or (np.diff(t_ns[window]) <= 0).any():
-            continue
-        gap_s = np.diff(t_ns[window]) / 1e9
-        turn = se3.invert_pose(pose[:-1])[:, :3, :3] @ pose[1:, :3, :3]
-        # the skew part of a small turn is its rotation vector
-        rate = np.stack(
-            [
-                turn[:, 2, 1] - turn[:, 1, 2],
-                turn[:, 0, 2] - turn[:, 2, 0],
-                turn[:, 1, 0] - turn[:, 0, 1],
-            ],
-            1,
-        )
-        rate = rate / 2 / gap_s[:, None]
-        effect_m = np.linalg.norm(rate.std(axis=0)) * np.median(gap_s) * _REACH_M
+        effect_m = _turning_effect_m(t_ns[window], motion)
         if effect_m >= _LEAST_EFFECT_M:
-            found.append((effect_m, window))
-    best = sorted(found, key=lambda item: -item[0])
-    apart = [w for i, (_, w) in enumerate(best) if not any(_overlap(w, v) for _, v in best[:i])][
-        :_MOST_WINDOWS
-    ]
-    return [w[np.linspace(0, len(w) - 1, min(len(w), _SCANS_A_WINDOW)).astype(int)] for w in apart]
+            windows.append((effect_m, window))
+    windows.sort(key=lambda item: -item[0])
+    apart: list[IntArray] = []
+    for rank, (_, window) in enumerate(windows):
+        if not any(_overlap(window, better) for _, better in windows[:rank]):
+            apart.append(window)
+    return [_spread_scans(window) for window in apart[:_MOST_WINDOWS]]
 
 
-def choose_reading(groups, motion, *, planar):
-    """Tell which reading of points' times makes surfaces crispest.
+def _turning_effect_m(t_ns: IntArray, motion: SensorMotion) -> float:
+    """Return by how much changes of turning (n,) move a wall; 0 where they are not known."""
+    pose = motion.at(t_ns) if len(t_ns) > 3 else None
+    gap_s = np.diff(t_ns) / 1e9
+    if pose is None or (gap_s <= 0).any():
+        return 0.0
+    turn = se3.invert_pose(pose[:-1])[:, :3, :3] @ pose[1:, :3, :3]
+    # the skew part of a small turn is its rotation vector
+    skew = np.stack(
+        [
+            turn[:, 2, 1] - turn[:, 1, 2],
+            turn[:, 0, 2] - turn[:, 2, 0],
+            turn[:, 1, 0] - turn[:, 0, 1],
+        ],
+        axis=1,
+    )
+    rate = skew / 2 / gap_s[:, None]
+    return float(np.linalg.norm(rate.std(axis=0)) * np.median(gap_s) * _REACH_M)
+
+
+def _overlap(one: IntArray, other: IntArray) -> bool:
+    return bool(one[0] <= other[-1] and other[0] <= one[-1])
+
+
+def _spread_scans(window: IntArray) -> IntArray:
+    n = min(len(window), _SCANS_A_WINDOW)
+    return window[np.linspace(0, len(window) - 1, n).astype(int)]
+
+
+def choose_reading(
+    groups: Sequence[Sequence[Scan]], motion: SensorMotion, *, planar: bool
+) -> tuple[TimeReading, str]:
+    """Return the reading of points' times that makes surfaces thinnest.
 
     Parameters
     ----------
@@ -131,62 +172,68 @@ def choose_reading(groups, motion, *, planar):
 
     Returns
     -------
-    Reading
+    reading : TimeReading
         The one as stated, unless another is clearly better.
-    told : str
-        The crispness by each of them.
+    scatters : str
+        The median scatter across surfaces by each of them.
     """
-    first_s = float(np.median([scan.time_s.min() for group in groups for scan in group]))
-    last_s = float(np.median([scan.time_s.max() for group in groups for scan in group]))
-    ways = list_time_readings(first_s, last_s)
-    sigma_m = np.concatenate([_sigmas(group, ways, motion, planar) for group in groups], axis=1)
+    times_s = [scan.time_s for group in groups for scan in group if scan.time_s is not None]
+    first_s = float(np.median([time_s.min() for time_s in times_s]))
+    last_s = float(np.median([time_s.max() for time_s in times_s]))
+    readings = list_time_readings(first_s, last_s)
+    sigma_m = np.concatenate(
+        [_measure_scatters(group, readings, motion, planar) for group in groups], axis=1
+    )
     sigma_m = sigma_m[:, np.isfinite(sigma_m).all(axis=0)]
-    if sigma_m.shape[1] < _FEWEST_PLACES:
-        return ways[0], f"only {sigma_m.shape[1]} places tell, too few"
+    n_places = sigma_m.shape[1]
+    if n_places < _FEWEST_PLACES:
+        return readings[0], f"only {n_places} places to compare, too few"
     median_m = np.median(sigma_m, axis=1)
     best = int(np.argmin(median_m))
-    told = ", ".join(f"{way.name} {1000 * m:.1f} mm" for way, m in zip(ways, median_m, strict=True))
-    return ways[best if median_m[best] < _CLEARLY * median_m[0] else 0], told
+    scatters = ", ".join(
+        f"{reading.name} {1000 * m:.1f} mm" for reading, m in zip(readings, median_m, strict=True)
+    )
+    return readings[best if median_m[best] < _CLEARLY * median_m[0] else 0], scatters
 
 
-def _sigmas(group, ways, motion, planar):
-    """The spread across surfaces at the same places, by each of the readings: (ways, places)."""
-    maps = [
-        _merged(group, replace(motion, time_scale=w.scale, time_shift_s=w.shift_s)) for w in ways
-    ]
-    if any(m is None for m in maps):
-        return np.empty((len(ways), 0))
+def _measure_scatters(
+    group: Sequence[Scan], readings: Sequence[TimeReading], motion: SensorMotion, planar: bool
+) -> FloatArray:
+    """Return the scatter across surfaces at the same places by each reading: (readings, places)."""
+    maps = []
+    for reading in readings:
+        merged = _merge_scans(group, reading.apply_to(motion))
+        if merged is None:
+            return np.empty((len(readings), 0))
+        maps.append(merged)
     owners = np.concatenate([np.full(len(scan.xyz_m), scan.scan_id) for scan in group])
-    chosen = {"planar": planar, "radius_m": _RADIUS_M}
     centres_m = plane_scatter.choose_places(
-        maps[0], **chosen, most_places=_PLACES_A_WINDOW, seed=_SEED
+        maps[0], planar=planar, radius_m=_RADIUS_M, most_places=_PLACES_A_WINDOW, seed=_SEED
     )
-    return np.array(
-        [
-            plane_scatter.measure_scatter(xyz_m, owners, centres_m, **chosen).sigma_m
-            for xyz_m in maps
-        ]
-    )
+    scatters = [
+        plane_scatter.measure_scatter(xyz_m, owners, centres_m, planar=planar, radius_m=_RADIUS_M)
+        for xyz_m in maps
+    ]
+    return np.array([scatter.sigma_m for scatter in scatters])
 
 
-def _merged(group, motion):
+def _merge_scans(group: Sequence[Scan], motion: SensorMotion) -> FloatArray | None:
+    """Return the deskewed points of all scans in one frame, or None where the motion has gaps."""
     parts = []
     for scan in group:
-        moved, pose = deskew.deskew_scan(scan, motion), motion.at([scan.t_ns])
-        if moved is None or pose is None:
+        deskewed = deskew.deskew_scan(scan, motion)
+        pose = motion.at([scan.t_ns])
+        if deskewed is None or pose is None:
             return None
-        parts.append(se3.transform_points(pose[0], moved))
+        parts.append(se3.transform_points(pose[0], deskewed))
     return np.concatenate(parts)
 
 
-def _thinned(scan):
-    """The scan with a random share of its points, neither the rover's own nor far ones, which turns move too much."""
+def _thin_scan(scan: Scan) -> Scan:
+    """Return the scan with a random share of its points, neither the rover's own nor far ones."""
     range_m = np.linalg.norm(scan.xyz_m, axis=1)
     (near,) = np.nonzero((range_m > _NEAREST_M) & (range_m < _FARTHEST_M))
     rng = np.random.default_rng([_SEED, scan.scan_id])
-    taken = np.sort(rng.choice(near, min(len(near), _POINTS_A_SCAN), replace=False))
-    return replace(scan, xyz_m=scan.xyz_m[taken], time_s=scan.time_s[taken])
-
-
-def _overlap(one, other):
-    return one[0] <= other[-1] and other[0] <= one[-1]
+    rows = np.sort(rng.choice(near, min(len(near), _POINTS_A_SCAN), replace=False))
+    time_s = None if scan.time_s is None else scan.time_s[rows]
+    return replace(scan, xyz_m=scan.xyz_m[rows], time_s=time_s)

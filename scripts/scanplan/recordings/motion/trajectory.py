@@ -1,23 +1,27 @@
 """How the sensor moved between and during its scans, from the smoothest source that was recorded.
 
-A localiser corrects its poses in jumps of centimetres; odometry drifts but does not jump (REP 105). Where points have
-to be moved by what happened within a tenth of a second the second is the better witness.
+A localiser corrects its poses in jumps of centimetres; odometry drifts but does not jump (REP 105).
+Where points have to be moved by what happened within a tenth of a second odometry is the better
+witness.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from scanplan.errors import StageError
 from scanplan.geometry import se3
-from scanplan.recordings import pose_jumps, tf_tree
+from scanplan.recordings import frame_edges, pose_jumps
+from scanplan.recordings.survey_protocol import NamedChain
 from scanplan.stage import log
-from scanplan.store import schemas
+from scanplan.store.pose_columns import pose_columns, split_pose_columns
+from scanplan.types import Array, BoolArray, Columns, FloatArray, IntArray
 
-_ENOUGH = 0.95
-_STEP_M = 0.5
-_FEWEST_STEPS = 3
-_AGREEMENT = 1.25
+_ENOUGH = 0.95  # of the most covered scans: a smoother source may lack a few at the ends
+_STEP_M = 0.5  # so long that a localiser's corrections of centimetres do not count
+_FEWEST_STEPS = 3  # of fewer the median ratio says nothing
+_AGREEMENT = 1.25  # wheels slip by less; a disconnected or misscaled source differs by more
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,29 +36,28 @@ class SensorMotion:
     piece : (n,) int32, not decreasing
         Between poses of two pieces too much time passed to say what happened.
     time_scale, time_shift_s : float
-        How the times of points are to be read: seconds after the stamp are `time_scale` times those stated plus
-        `time_shift_s`; not at all if the scale is 0. See `time_check`.
+        How the times of points are to be read: seconds after the stamp are `time_scale` times those
+        stated plus `time_shift_s`; not at all if the scale is 0. See `time_check`.
     """
 
-    t_ns: np.ndarray
-    xyz_m: np.ndarray
-    quat_xyzw: np.ndarray
-    piece: np.ndarray
+    t_ns: IntArray
+    xyz_m: FloatArray
+    quat_xyzw: FloatArray
+    piece: IntArray
     time_scale: float = 1.0
     time_shift_s: float = 0.0
 
-    def columns(self):
+    def columns(self) -> dict[str, Array]:
         """Return the columns of `schemas.MOTION`."""
-        values = np.hstack([self.xyz_m, self.quat_xyzw]).T
         return {
             "t_ns": self.t_ns,
             "piece": self.piece,
-            **dict(zip((*schemas.XYZ, *schemas.QUAT), values, strict=True)),
+            **pose_columns(self.xyz_m, self.quat_xyzw),
             "time_scale": np.full(len(self.t_ns), self.time_scale),
             "time_shift_s": np.full(len(self.t_ns), self.time_shift_s),
         }
 
-    def at(self, query_ns):
+    def at(self, query_ns: IntArray | Sequence[int]) -> FloatArray | None:
         """Return the poses at some times.
 
         Parameters
@@ -68,9 +71,8 @@ class SensorMotion:
             None if they are not all within one piece.
         """
         query_ns = np.asarray(query_ns, np.int64)
-        first, last = query_ns.min(), query_ns.max()
-        start = int(np.searchsorted(self.t_ns, first, side="right")) - 1
-        end = int(np.searchsorted(self.t_ns, last))
+        start = int(np.searchsorted(self.t_ns, query_ns.min(), side="right")) - 1
+        end = int(np.searchsorted(self.t_ns, query_ns.max()))
         if start < 0 or end >= len(self.t_ns) or self.piece[start] != self.piece[end]:
             return None
         near = slice(start, end + 1)
@@ -79,29 +81,39 @@ class SensorMotion:
         )
         return se3.pose_matrix(xyz_m, quat)
 
-    def covered(self, query_ns):
-        """Tell for each time (m,) whether the pose at it is known."""
+    def covered(self, query_ns: IntArray) -> BoolArray:
+        """Return for each time (m,) whether the pose at it is known."""
         before = np.searchsorted(self.t_ns, query_ns, side="right") - 1
         after = np.searchsorted(self.t_ns, query_ns)
         inside = (before >= 0) & (after < len(self.t_ns))
         return inside & (self.piece[before] == self.piece[np.minimum(after, len(self.t_ns) - 1)])
 
 
-def motion_from_columns(columns):
-    """Return the Motion whose `columns` these are."""
-    xyz_m, quat = (
-        np.column_stack([columns[c] for c in names]) for names in (schemas.XYZ, schemas.QUAT)
+def motion_from_columns(columns: Columns) -> SensorMotion:
+    """Return the motion whose `columns` these are."""
+    xyz_m, quat_xyzw = split_pose_columns(columns)
+    return SensorMotion(
+        columns["t_ns"],
+        xyz_m,
+        quat_xyzw,
+        columns["piece"],
+        time_scale=float(columns["time_scale"][0]),
+        time_shift_s=float(columns["time_shift_s"][0]),
     )
-    reading = float(columns["time_scale"][0]), float(columns["time_shift_s"][0])
-    return SensorMotion(columns["t_ns"], xyz_m, quat, columns["piece"], *reading)
 
 
-def motion_along(edges, t_ns, *, max_gap_s, max_speed_m_s=np.inf):
+def motion_along(
+    edges: Sequence[frame_edges.FrameEdge],
+    t_ns: IntArray,
+    *,
+    max_gap_s: float,
+    max_speed_m_s: float = np.inf,
+) -> SensorMotion | None:
     """Return the motion along a chain of transforms.
 
     Parameters
     ----------
-    edges : sequence of tf_tree.FrameEdge
+    edges : sequence of frame_edges.FrameEdge
         From a fixed frame to the sensor.
     t_ns : (m,) int64, m >= 1
         Stamps of the scans: a chain without time holds over all of them.
@@ -112,97 +124,118 @@ def motion_along(edges, t_ns, *, max_gap_s, max_speed_m_s=np.inf):
 
     Returns
     -------
-    Motion or None
+    SensorMotion or None
         None if parts of the chain were never known at the same time.
     """
     stamps = [edge.t_ns for edge in edges if edge.t_ns is not None]
     if not stamps:
-        pose, _, _ = tf_tree.chain_poses(edges, [0], max_gap_s=max_gap_s)
-        both_ns = np.array([np.min(t_ns) - 10**9, np.max(t_ns) + 10**9])
-        return SensorMotion(
-            both_ns, *se3.split_pose(np.repeat(pose, 2, axis=0)), np.zeros(2, np.int32)
-        )
+        pose, _, _ = frame_edges.chain_poses(edges, [0], max_gap_s=max_gap_s)
+        ends_ns = np.array([np.min(t_ns) - 10**9, np.max(t_ns) + 10**9])
+        xyz_m, quat = se3.split_pose(np.repeat(pose, 2, axis=0))
+        return SensorMotion(ends_ns, xyz_m, quat, np.zeros(2, np.int32))
     known_ns = np.unique(np.concatenate(stamps))
-    pose, _, covered = tf_tree.chain_poses(edges, known_ns, max_gap_s=max_gap_s)
+    pose, _, covered = frame_edges.chain_poses(edges, known_ns, max_gap_s=max_gap_s)
     if not covered.any():
         return None
-    known_ns, pose = known_ns[covered], pose[covered]
-    breaks = (np.diff(known_ns) > max_gap_s * 1e9) | _jumping(edges, known_ns, max_speed_m_s)
+    known_ns = known_ns[covered]
+    is_gap = np.diff(known_ns) > max_gap_s * 1e9
+    breaks = is_gap | _are_jumped(edges, known_ns, max_speed_m_s)
     piece = np.concatenate([[0], np.cumsum(breaks)]).astype(np.int32)
-    return SensorMotion(known_ns, *se3.split_pose(pose), piece)
+    return SensorMotion(known_ns, *se3.split_pose(pose[covered]), piece)
 
 
-def _jumping(edges, known_ns, max_speed_m_s):
-    """Tell for each step between times (n,) whether a jump of one of the edges lies in it or reaches into it."""
-    found = np.zeros(len(known_ns) - 1, bool)
+def _are_jumped(
+    edges: Sequence[frame_edges.FrameEdge], known_ns: IntArray, max_speed_m_s: float
+) -> BoolArray:
+    """Return for each step between times (n,) whether an edge jumps in it or reaches into it."""
+    jumped = np.zeros(len(known_ns) - 1, bool)
     for edge in edges:
         if edge.t_ns is None:
             continue
         jumping = pose_jumps.find_jumps(edge.t_ns, edge.xyz_m, max_speed_m_s=max_speed_m_s)
         for start_ns, end_ns in zip(edge.t_ns[:-1][jumping], edge.t_ns[1:][jumping], strict=True):
-            found |= (known_ns[:-1] < end_ns) & (known_ns[1:] > start_ns)
-    return found
+            jumped |= (known_ns[:-1] < end_ns) & (known_ns[1:] > start_ns)
+    return jumped
 
 
-def choose_motion(chains, t_ns, **limits):
-    """Choose by which of several chains the sensor's motion is told.
+def choose_motion(
+    chains: Sequence[NamedChain],
+    t_ns: IntArray,
+    *,
+    max_gap_s: float,
+    max_speed_m_s: float = np.inf,
+) -> SensorMotion:
+    """Choose the chain that the sensor's motion is taken from.
 
-    The first one that knows it at nearly as many scans as any does. One that tells of quite another way than the last,
-    the poses themselves, is left out: wheels that were not connected, or a clock of its own.
+    The first one that knows it at nearly as many scans as any does. One whose way differs much from
+    that of the last, the poses themselves, is left out: wheels that were not connected, or a clock
+    of its own.
 
     Parameters
     ----------
-    chains : list of (str, list of tf_tree.FrameEdge)
+    chains : list of (str, list of frame_edges.FrameEdge)
         Names and transforms; the smoothest first, the poses themselves last.
     t_ns : (m,) int64
         Stamps of the scans.
-    **limits
-        Of `motion_along`.
+    max_gap_s, max_speed_m_s : float
+        See `motion_along`.
 
     Returns
     -------
-    Motion
+    SensorMotion
 
     Raises
     ------
     StageError
         If not even the poses are ever known.
     """
-    found = [(name, motion_along(edges, t_ns, **limits)) for name, edges in chains]
-    found = [(name, motion) for name, motion in found if motion is not None]
-    if not found:
+    motions: list[tuple[str, SensorMotion]] = []
+    for name, edges in chains:
+        motion = motion_along(edges, t_ns, max_gap_s=max_gap_s, max_speed_m_s=max_speed_m_s)
+        if motion is not None:
+            motions.append((name, motion))
+    if not motions:
         raise StageError(
-            f"{chains[-1][0]}: parts of the chain to the sensor are never known together; check its stamps"
+            f"{chains[-1][0]}: parts of the chain to the sensor are never known together;"
+            " check its stamps"
         )
-    poses = found[-1][1]
-    shares = [float(motion.covered(t_ns).mean()) for _, motion in found]
-    for (name, motion), share in zip(found, shares, strict=True):
-        ratio = 1.0 if motion is poses else _way_ratio(motion, poses)
-        if share < _ENOUGH * max(shares):
-            log.log_line(
-                f"{name} tells the motion at {share:.0%} of the scans only: not used within sweeps"
-            )
-        elif not 1 / _AGREEMENT <= ratio <= _AGREEMENT:
-            log.log_line(
-                f"{name} tells of {ratio:.2f} times the way that the poses tell of: not used within sweeps"
-            )
-        else:
-            break
+    name, motion = _first_that_agrees(motions, t_ns)
     log.log_line(f"motion within sweeps from {name}: {len(motion.t_ns):,} poses")
     return motion
 
 
-def _way_ratio(motion, poses):
-    """How much longer steps of the poses' half metre are in a motion: the median; 1 where there are too few to tell."""
+def _first_that_agrees(
+    motions: Sequence[tuple[str, SensorMotion]], t_ns: IntArray
+) -> tuple[str, SensorMotion]:
+    """Return the first that covers enough scans and agrees with the last; else the last."""
+    _, poses = motions[-1]
+    shares = [float(motion.covered(t_ns).mean()) for _, motion in motions]
+    for (name, motion), share in zip(motions, shares, strict=True):
+        ratio = 1.0 if motion is poses else _way_ratio(motion, poses)
+        if share < _ENOUGH * max(shares):
+            log.log_line(f"{name} covers {share:.0%} of the scans only: not used within sweeps")
+        elif not 1 / _AGREEMENT <= ratio <= _AGREEMENT:
+            log.log_line(
+                f"{name} moves {ratio:.2f} times the way of the poses: not used within sweeps"
+            )
+        else:
+            return name, motion
+    return motions[-1]
+
+
+def _way_ratio(motion: SensorMotion, poses: SensorMotion) -> float:
+    """Return the median ratio of a motion's steps to the poses' of half a metre; 1 of too few."""
     ends = [0]
     for i in range(1, len(poses.t_ns)):
         if np.linalg.norm(poses.xyz_m[i] - poses.xyz_m[ends[-1]]) >= _STEP_M:
             ends.append(i)
-    ends = np.array([i for i in ends if motion.covered(poses.t_ns[i : i + 1])[0]], int)
+    ends = np.array(ends, int)
+    ends = ends[motion.covered(poses.t_ns[ends])]
     if len(ends) <= _FEWEST_STEPS:
         return 1.0
-    there, _, _, _ = se3.interpolate_poses(
+    xyz_m, _, _, _ = se3.interpolate_poses(
         motion.t_ns, motion.xyz_m, motion.quat_xyzw, poses.t_ns[ends], max_gap_s=np.inf
     )
-    step_m = np.linalg.norm(np.diff(poses.xyz_m[ends], axis=0), axis=1)
-    return float(np.median(np.linalg.norm(np.diff(there, axis=0), axis=1) / step_m))
+    step_m = np.linalg.norm(np.diff(xyz_m, axis=0), axis=1)
+    pose_step_m = np.linalg.norm(np.diff(poses.xyz_m[ends], axis=0), axis=1)
+    return float(np.median(step_m / pose_step_m))

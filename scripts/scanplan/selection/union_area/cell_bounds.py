@@ -1,22 +1,27 @@
-r"""Upper bounds of what is uncovered of many polygons, from how much of every cell of a grid is covered.
+r"""Upper bounds of what is uncovered of many polygons, from how full cells of a grid are.
 
-Nothing of a polygon P is uncovered in a cell but what lies in the polygon and outside the covered region U there:
+Nothing of a polygon P is uncovered in a cell but what lies in the polygon and outside the covered
+region U there:
 
     area(P \ U) <= sum over cells of min(area of P in the cell, area of the cell outside U)
 
-Equal where a cell is full or empty of either, so only cells that the edges of both cross make the bound loose. An area
-in a cell is exact: the edges are cut at the lines of the grid, and what every piece adds to its own cell and to all
-those to the right of it is summed up, as outlines of letters are drawn with soft edges.
+Equal where a cell is full or empty of either, so only cells that the edges of both cross make the
+bound loose. An area in a cell is exact: the edges are cut at the lines of the grid, and what every
+piece adds to its own cell and to all those to the right of it is summed up, as outlines of letters
+are drawn with soft edges.
 """
 
 import numpy as np
 import shapely
 
+from scanplan.types import Array, FloatArray, IntArray
+
 _CELLS_PER_SIDE = 8  # of a part of common size; more are tighter, and slower to fill
-_MOST_CELLS, _MOST_CELLS_PER_PART = 10**6, 400
-_AT_A_TIME = 4096
+_MOST_CELLS = 10**6  # of the plane, where parts are few: 8 MB
+_MOST_CELLS_PER_PART = 400  # of the plane, where parts are many
+_AT_A_TIME = 4096  # polygons filled together: bounds the memory
 _ROUNDING = 1e-6  # of a cell, added to its areas: sums differ by less, and so do 32-bit numbers
-_NOISE = 1e-9  # of a cell: less is not told from nothing, and not listed
+_NOISE = 1e-9  # of a cell: less may be rounding, and is not listed
 
 
 class CellBounds:
@@ -28,11 +33,11 @@ class CellBounds:
         Valid, with area, near the origin.
     """
 
-    def __init__(self, polygons):
+    def __init__(self, polygons: Array) -> None:
         boxes = shapely.bounds(polygons).reshape(-1, 4)
-        self._edge_m = _cell_edge(boxes)
+        self._edge_m = _cell_edge_m(boxes)
         filled = [
-            _filled(polygons[start : start + _AT_A_TIME], self._edge_m)
+            _fill_cells(polygons[start : start + _AT_A_TIME], self._edge_m)
             for start in range(0, len(polygons), _AT_A_TIME)
         ]
         # one cell more on every side: rounding puts corners of what is left just outside
@@ -53,37 +58,35 @@ class CellBounds:
         n_unlisted = _grid(boxes, self._edge_m)[1].prod(axis=1) - np.diff(self._first)
         self._unlisted_m2 = _NOISE * self._edge_m**2 * n_unlisted
         self._free = np.full(self._shape.prod(), 1 + _ROUNDING)
-        self._pending = []
+        self._pending: list[Array] = []
 
-    def cover(self, polygons):
-        """Cover (m,) more valid Polygons, within those given, which must not overlap what is covered."""
+    def cover(self, polygons: Array) -> None:
+        """Cover (m,) more valid Polygons, within those given and outside what is covered."""
         self._pending.append(polygons)
 
-    def area_m2(self, some):
-        """Return the area (m,) that may be uncovered of some polygons (m,) int, never less than is."""
+    def area_m2(self, some: IntArray) -> FloatArray:
+        """Return the area (m,) that may be uncovered of polygons (m,) int, never too little."""
         if len(some) == 0:
             return np.zeros(0)
         self._bring_up_to_date()
         row, entry = list_members(self._first, some)
         uncovered = np.minimum(self._share[entry], self._free[self._cell[entry]])
-        return (
-            np.bincount(row, uncovered, minlength=len(some)) * self._edge_m**2
-            + self._unlisted_m2[some]
-        )
+        listed_m2 = np.bincount(row, uncovered, minlength=len(some)) * self._edge_m**2
+        return listed_m2 + self._unlisted_m2[some]
 
-    def _bring_up_to_date(self):
+    def _bring_up_to_date(self) -> None:
         if self._pending:
-            _, at, share = _filled(np.concatenate(self._pending), self._edge_m)
+            _, at, share = _fill_cells(np.concatenate(self._pending), self._edge_m)
             np.subtract.at(self._free, self._number(at), share)
             self._pending = []
 
-    def _number(self, at):
+    def _number(self, at: IntArray) -> IntArray:
         x, y = (at - self._origin).T
         return y * self._shape[0] + x
 
 
-def list_members(first, some):
-    """List the members of some groups (m,) int, where those of group i are first[i] to first[i + 1] - 1.
+def list_members(first: IntArray, some: IntArray) -> tuple[IntArray, IntArray]:
+    """List the members of some groups (m,) int: those of group i are first[i] to first[i + 1] - 1.
 
     Returns
     -------
@@ -96,27 +99,25 @@ def list_members(first, some):
     return place, np.arange(len(place)) + (first[some] - np.cumsum(n_members) + n_members)[place]
 
 
-def _extent(boxes):
+def _extent(boxes: FloatArray) -> tuple[FloatArray, FloatArray]:
     if len(boxes) == 0:
         return np.zeros(2), np.zeros(2)
     return boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
 
 
-def _cell_edge(boxes):
-    """Edge of a cell: a fraction of a polygon's size, and such that neither polygons nor the plane take too many."""
+def _cell_edge_m(boxes: FloatArray) -> float:
+    """Return the edge of a cell: a share of a polygon's size, unless the plane takes too many."""
     if len(boxes) == 0:
         return 1.0
     sides_m = boxes[:, 2:] - boxes[:, :2]
     usual_m = np.sqrt(np.mean(sides_m.sum(axis=1) ** 2)) / 2
     low_m, high_m = _extent(boxes)
     plane_m2 = np.prod(high_m - low_m)
-    return max(
-        usual_m / _CELLS_PER_SIDE,
-        np.sqrt(plane_m2 / max(_MOST_CELLS, _MOST_CELLS_PER_PART * len(boxes))),
-    )
+    least_m = np.sqrt(plane_m2 / max(_MOST_CELLS, _MOST_CELLS_PER_PART * len(boxes)))
+    return float(max(usual_m / _CELLS_PER_SIDE, least_m))
 
 
-def _filled(polygons, edge_m):
+def _fill_cells(polygons: Array, edge_m: float) -> tuple[IntArray, IntArray, FloatArray]:
     """Fill cells with polygons (n,).
 
     Returns
@@ -133,33 +134,39 @@ def _filled(polygons, edge_m):
     first = np.cumsum(np.concatenate([[0], width * height]))
     start, end, row = _edges(polygons, edge_m, low)
     start, end, row = _cut(*_cut(start, end, row, axis=1), axis=0)
-    middle, down = (start + end) / 2, start[:, 1] - end[:, 1]
+    middle = (start + end) / 2
+    down = start[:, 1] - end[:, 1]
     x, y = np.floor(middle).astype(np.int64).T
     # rounding puts pieces without length just outside
-    x, y = np.clip(x, 0, width[row] - 2), np.clip(y, 0, height[row] - 1)
+    x = np.clip(x, 0, width[row] - 2)
+    y = np.clip(y, 0, height[row] - 1)
     own = first[row] + y * width[row] + x
     in_own = down * (1 + x - middle[:, 0])
-    added = np.bincount(own, in_own, minlength=first[-1]) + np.bincount(
-        own + 1, down - in_own, minlength=first[-1]
-    )
-    share = np.cumsum(added)
-    taken = np.flatnonzero(share > _NOISE)
-    row = np.repeat(np.arange(len(polygons)), width * height)[taken]
-    y, x = np.divmod(taken - first[row], width[row])
-    return row, np.column_stack([x, y]) + low[row], share[taken]
+    n_cells = int(first[-1])
+    added = np.bincount(own, in_own, minlength=n_cells)
+    added = added + np.bincount(own + 1, down - in_own, minlength=n_cells)
+    share = np.cumsum(added, dtype=float)
+    listed = np.flatnonzero(share > _NOISE)
+    row = np.repeat(np.arange(len(polygons)), width * height)[listed]
+    y, x = np.divmod(listed - first[row], width[row])
+    return row, np.column_stack([x, y]) + low[row], share[listed]
 
 
-def _grid(boxes, edge_m):
-    """Return the first cell (n, 2) of the grid about each box, and the grid's numbers of columns and rows (n, 2)."""
-    low, high = (
-        np.floor(boxes[:, side] / edge_m).astype(np.int64) for side in (slice(0, 2), slice(2, 4))
-    )
+def _grid(boxes: FloatArray, edge_m: float) -> tuple[IntArray, IntArray]:
+    """Return the first cell (n, 2) of the grid about each box, and its columns and rows (n, 2)."""
+    low = np.floor(boxes[:, :2] / edge_m).astype(np.int64)
+    high = np.floor(boxes[:, 2:] / edge_m).astype(np.int64)
     # one more column: what lies to the right of a piece of an edge is nothing beyond the last
     return low, high - low + [2, 1]
 
 
-def _edges(polygons, edge_m, low):
-    """Return the edges of polygons, counter-clockwise, in cells from each one's own first cell: start, end, polygon."""
+def _edges(
+    polygons: Array, edge_m: float, low: IntArray
+) -> tuple[FloatArray, FloatArray, IntArray]:
+    """Return the edges of polygons, counter-clockwise: start, end, polygon.
+
+    In cells from each one's own first cell.
+    """
     rings, of = shapely.get_rings(shapely.orient_polygons(polygons), return_index=True)
     xy, ring = shapely.get_coordinates(rings, return_index=True)
     xy = xy / edge_m - low[of[ring]]
@@ -167,12 +174,12 @@ def _edges(polygons, edge_m, low):
     return xy[:-1][follows], xy[1:][follows], of[ring[:-1][follows]]
 
 
-def _cut(start, end, row, axis):
+def _cut(
+    start: FloatArray, end: FloatArray, row: IntArray, axis: int
+) -> tuple[FloatArray, FloatArray, IntArray]:
     """Cut edges at the lines of the grid across one axis."""
-    low, high = (
-        np.floor(np.minimum(start[:, axis], end[:, axis])),
-        np.floor(np.maximum(start[:, axis], end[:, axis])),
-    )
+    low = np.floor(np.minimum(start[:, axis], end[:, axis]))
+    high = np.floor(np.maximum(start[:, axis], end[:, axis]))
     long = np.flatnonzero(low < high)
     n_pieces = (high - low)[long].astype(np.int64) + 1
     edge = np.repeat(long, n_pieces)

@@ -1,21 +1,23 @@
-"""The union of a growing choice of polygons, in windows, so that nobody has to look at all of it."""
+"""The union of a growing choice of polygons, in windows, so that nobody needs all of it."""
 
 import numpy as np
 import shapely
+from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry.polygons import unite_polygons
+from scanplan.types import Array, IntArray
 
 _LEVEL = 2.0  # the squares of one size are so many times those of the next smaller one
-_SMALLEST = 0.5  # of the largest polygon: windows that are smaller yet cost more unions than they save corners
+_SMALLEST = 0.5  # of the largest polygon: smaller windows cost more unions than they save corners
 
 
 class Regions:
     """What is covered round each of many polygons.
 
-    The plane is divided into squares, for polygons of every order of size, at least as large as those. A polygon
-    belongs to the square that the lower left corner of its box lies in, and is therefore inside a window of two by two
-    squares. Each window unites all that reaches into it when it is next asked: the union of many hulls has few corners,
-    and is quickly subtracted.
+    The plane is divided into squares, for polygons of every order of size, at least as large as
+    those. A polygon belongs to the square that the lower left corner of its box lies in, and is
+    therefore inside a window of two by two squares. Each window unites all that reaches into it
+    when it is next asked: the union of many hulls has few corners, and is quickly subtracted.
 
     Parameters
     ----------
@@ -23,7 +25,7 @@ class Regions:
         With area.
     """
 
-    def __init__(self, polygons):
+    def __init__(self, polygons: Array) -> None:
         boxes = shapely.bounds(polygons).reshape(-1, 4)
         side_m = (boxes[:, 2:] - boxes[:, :2]).max(axis=1)
         side_m = np.maximum(
@@ -32,23 +34,27 @@ class Regions:
         home = np.column_stack([np.floor(boxes[:, :2] / side_m[:, None]), side_m])
         squares, window = np.unique(home, axis=0, return_inverse=True)
         self._window = window.reshape(-1)
-        low_m, side_m = squares[:, :2] * squares[:, 2:], squares[:, 2:]
+        side_m = squares[:, 2:]
+        low_m = squares[:, :2] * side_m
         self._tree = shapely.STRtree(shapely.box(*low_m.T, *(low_m + 2 * side_m).T))
         self._union = np.full(len(squares), shapely.Polygon(), object)
-        self._pending = [[] for _ in squares]
+        self._pending: list[list[BaseGeometry]] = [[] for _ in squares]
 
-    def cover(self, polygons, new):
+    def cover(self, polygons: Array, new: Array) -> None:
         """Cover (m,) more polygons, each of which adds (m,) something new to what is covered."""
         which, window = self._tree.query(new)
         for i, one in zip(window.tolist(), polygons[which], strict=True):
             self._pending[i].append(one)
 
-    def around(self, some):
-        """Return the covered region (m,) near each of some polygons (m,) int: the same inside its box, prepared."""
+    def around(self, some: IntArray) -> Array:
+        """Return the covered region (m,), prepared, near each of some polygons (m,) int.
+
+        Inside a polygon's box it is all that is covered.
+        """
         window = self._window[some]
         for i in np.unique(window):
             if self._pending[i]:
-                self._union[i] = unite_polygons([self._union[i], *self._pending[i]])
+                self._union[i] = unite_polygons(np.array([self._union[i], *self._pending[i]]))
                 shapely.prepare(self._union[i])
                 self._pending[i] = []
         return self._union[window]

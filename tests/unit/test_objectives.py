@@ -1,11 +1,13 @@
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from shapely import box
 
 from reference import greedy_coverage as literal
-from scanplan.selection import bounds
-from scanplan.selection.cell_coverage import TIE, CellCoverage
+from scanplan.selection import area_greedy, bounds
+from scanplan.selection.objectives import TIE, CellCoverage, PolygonArea
 
 # weights of eighths add up without rounding: ties are ties
 SCANS = st.lists(
@@ -23,11 +25,12 @@ def coverage(scans):
 
 
 def test_on_paper():
-    # 3 + 3, then 2 of the last scan's 5 (its 3 is shown already), then the half metre that cell 0 is seen better
+    # 3 + 3, then 2 of the last scan's 5 (its 3 is shown already), then the half metre that cell 0
+    # is seen better
     order = coverage([{0: 3.5}, {0: 3, 1: 3}, {1: 3, 2: 2}]).greedy()
     assert order.order.tolist() == [1, 2, 0]
-    assert order.gain_m2.tolist() == [6, 2, 0.5]
-    assert order.covered_m2.tolist() == [6, 8, 8.5]
+    assert order.gain.tolist() == [6, 2, 0.5]
+    assert order.covered.tolist() == [6, 8, 8.5]
 
 
 @OFTEN
@@ -36,9 +39,7 @@ def test_lazy_order_is_that_of_looking_at_every_scan(scans, min_overlap):
     order = coverage(scans).greedy(min_overlap)
     assert order.order.tolist() == literal.order(scans, TIE, min_overlap)
     for k in range(1, len(scans) + 1):
-        assert order.covered_m2[k - 1] == pytest.approx(
-            literal.value(scans, order.order[:k].tolist())
-        )
+        assert order.covered[k - 1] == pytest.approx(literal.value(scans, order.order[:k].tolist()))
 
 
 @OFTEN
@@ -59,7 +60,7 @@ def test_bound_is_never_below_the_best_subset(scans):
     order = coverage(scans).greedy()
     bound = bounds.bound_any_subset(order)
     assert (bound >= [literal.best(scans, k) - 1e-9 for k in range(1, len(scans) + 1)]).all()
-    assert (bound >= order.covered_m2).all()
+    assert (bound >= order.covered).all()
 
 
 @OFTEN
@@ -83,10 +84,10 @@ def test_overlap_keeps_the_order_connected_until_a_part_is_done():
 
 def test_no_scan_one_scan_identical_scans_and_empty_ones():
     assert coverage([]).greedy().order.tolist() == []
-    assert coverage([{}]).greedy().covered_m2.tolist() == [0]
+    assert coverage([{}]).greedy().covered.tolist() == [0]
     assert coverage([{4: 2}] * 4).greedy().order.tolist() == [0, 1, 2, 3]
     mixed = coverage([{}, {4: 2}, {}, {4: 2}]).greedy(min_overlap=1.0)
-    assert mixed.order.tolist() == [1, 0, 2, 3] and mixed.covered_m2.tolist() == [2, 2, 2, 2]
+    assert mixed.order.tolist() == [1, 0, 2, 3] and mixed.covered.tolist() == [2, 2, 2, 2]
 
 
 @pytest.mark.parametrize(
@@ -116,3 +117,53 @@ def test_wrong_orders_are_refused(order):
 def test_wrong_overlaps_are_refused(share):
     with pytest.raises(ValueError, match="min_overlap is"):
         coverage([{0: 1}]).greedy(share)
+
+
+BOXES = st.lists(
+    st.tuples(*[st.integers(0, 6)] * 2, *[st.integers(0, 4)] * 2).map(
+        lambda b: box(b[0], b[1], b[0] + b[2], b[1] + b[3])
+    ),
+    min_size=1,
+    max_size=7,
+)
+
+
+def look_at_all(polygons, min_overlap):
+    """Look at every polygon in every step."""
+    order, union = [], shapely.Polygon()
+    while len(order) < len(polygons):
+        gains = {
+            i: polygons[i].difference(union).area for i in range(len(polygons)) if i not in order
+        }
+        shared = {
+            i: g
+            for i, g in gains.items()
+            if g > area_greedy.TIE_M2 and 1 - g / polygons[i].area >= min_overlap - 1e-9
+        }
+        gains = shared if order and shared else gains
+        order.append(
+            min(i for i, g in gains.items() if g >= max(gains.values()) - area_greedy.TIE_M2)
+        )
+        union = union | polygons[order[-1]]
+    return order, union.area
+
+
+@settings(max_examples=100, deadline=None)
+@given(BOXES, st.sampled_from([0.0, 0.3, 0.8]))
+def test_order_is_that_of_looking_at_every_polygon(polygons, min_overlap):
+    found = PolygonArea(polygons).greedy(min_overlap)
+    order, area_m2 = look_at_all(polygons, min_overlap)
+    assert found.order.tolist() == order
+    assert found.covered[-1] == pytest.approx(area_m2)
+    assert PolygonArea(polygons).gains(found.order) == pytest.approx(found.gain)
+
+
+def test_an_overlap_keeps_the_choice_beside_what_is_chosen():
+    row = [box(0, 0, 4, 1), box(3, 0, 6, 1), box(5, 0, 7, 1), box(20, 0, 23, 1)]
+    assert PolygonArea(row).greedy().order.tolist() == [0, 3, 1, 2]
+    assert PolygonArea(row).greedy(0.3).order.tolist() == [0, 1, 2, 3]
+
+
+def test_invalid_polygons_are_repaired():
+    bow = shapely.Polygon([(0, 0), (2, 2), (2, 0), (0, 2)])
+    assert PolygonArea([bow, box(0, 0, 2, 2)]).greedy(0.1).covered.tolist() == pytest.approx([4, 4])

@@ -1,0 +1,89 @@
+"""What is true of a survey: the walls that its scans could see, and the sensor's poses."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import shapely
+from numpy.typing import ArrayLike
+from shapely.geometry.base import BaseGeometry
+
+from scanplan.geometry import se3
+from scanplan.lab.buildings.truth import Feature
+from scanplan.lab.evaluation import face_cells, visible_faces
+from scanplan.types import BoolArray, FloatArray
+
+_BESIDE_WALL_M = 0.01  # tolerance across a wall's half thickness, well below any wall's
+_PARALLEL_SINE = 0.1  # of the angle of a face to its wall, 6 degrees: its jambs stand across
+
+
+def mark_visible(
+    features: Sequence[Feature], poses: FloatArray, sensor: visible_faces.SensorView
+) -> list[Feature]:
+    """Return features with the length of inner faces and walls that a scan could see: `visible_m`.
+
+    Parameters
+    ----------
+    features : sequence of (geometry, dict)
+        `truth.truth_features` of a floor.
+    poses : (m, 4, 4) float
+        The sensor's at all scans, world_from_sensor.
+    sensor : visible_faces.SensorView
+
+    Returns
+    -------
+    list of (geometry, dict)
+        As given, nothing is changed; of a wall both its faces count.
+    """
+    inner = [i for i, (_, values) in enumerate(features) if values.get("side") == "inside"]
+    outer = [i for i, (_, values) in enumerate(features) if _only_occludes(values)]
+    cells = face_cells.cut_faces(_ends_m(features, inner))
+    is_seen = visible_faces.cells_seen_by_any(cells, _ends_m(features, outer), poses, sensor)
+    length_m = np.where(is_seen, cells.length_m, 0.0)
+    by_face_m = np.bincount(cells.face, length_m, len(inner))
+    visible_m = dict(zip(inner, by_face_m.tolist(), strict=True))
+    for i, (geometry, values) in enumerate(features):
+        if values["kind"] == "wall":
+            on_wall = _on_wall(geometry, values["thickness_m"], cells)
+            visible_m[i] = float(length_m[on_wall].sum())
+    return [
+        (g, {**values, "visible_m": round(visible_m[i], 3)} if i in visible_m else values)
+        for i, (g, values) in enumerate(features)
+    ]
+
+
+def format_tum(t_ns: ArrayLike, world_from_sensor: FloatArray) -> str:
+    """Return poses as text in TUM's form, nine decimals, a pose a line.
+
+    A line is the stamp in seconds, then x, y, z, qx, qy, qz, qw.
+    """
+    xyz_m, quat = se3.split_pose(world_from_sensor)
+    rows = zip(np.asarray(t_ns).tolist(), np.column_stack([xyz_m, quat]).tolist(), strict=True)
+    # whole nanoseconds do not fit a float's 53 bits, so the stamp is put together from integers
+    lines = (
+        f"{t // 10**9}.{t % 10**9:09d} {' '.join(f'{v:.9f}' for v in pose)}\n" for t, pose in rows
+    )
+    return "".join(lines)
+
+
+def _only_occludes(values: dict) -> bool:
+    return values["kind"] == "screen" or values.get("side") == "outside"
+
+
+def _ends_m(features: Sequence[Feature], rows: list[int]) -> FloatArray:
+    """Return the ends (n, 2, 2) of some straight lines."""
+    return np.array([features[i][0].coords for i in rows]).reshape(-1, 2, 2)
+
+
+def _on_wall(line: BaseGeometry, thickness_m: float, cells: face_cells.FaceCells) -> BoolArray:
+    """Return which cells (c,) are of the faces of a straight wall."""
+    is_beside = shapely.dwithin(
+        shapely.points(cells.middle_m), line, thickness_m / 2 + _BESIDE_WALL_M
+    )
+    face = np.diff(cells.faces_m, axis=1)[:, 0]
+    wall = np.diff(line.coords, axis=0)[0]
+    sine = (
+        np.abs(face[:, 0] * wall[1] - face[:, 1] * wall[0])
+        / np.linalg.norm(face, axis=1)
+        / np.linalg.norm(wall)
+    )
+    return is_beside & (sine < _PARALLEL_SINE)[cells.face]

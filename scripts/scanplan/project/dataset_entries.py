@@ -1,0 +1,112 @@
+"""The entries of a dataset's folders: recordings, clouds with poses, and what is wrong with them.
+
+Standard library only: this runs while the workflow is being parsed.
+"""
+
+import os
+from pathlib import Path
+
+from scanplan.errors import StageError
+from scanplan.plain_types import FilePath
+
+POSES_FILE = "poses.tum"
+SCANS_FOLDER = "scans"
+ROSBAG2_SUFFIXES = (".db3", ".mcap", ".db3.zstd", ".mcap.zstd")
+_CLOUD_SUFFIXES = (".pcd", ".ply")
+
+
+def is_rosbag2_metadata(file: FilePath) -> bool:
+    """Return whether a file is the description that stands in every rosbag2 folder."""
+    return os.access(file, os.R_OK) and b"rosbag2_bagfile_information" in Path(file).read_bytes()
+
+
+def visible(folder: Path) -> list[Path]:
+    """Return the entries of a folder that are not hidden, sorted."""
+    return sorted(entry for entry in folder.iterdir() if not entry.name.startswith("."))
+
+
+def list_recordings(folder: Path) -> list[Path]:
+    """Return the files of all recordings in a folder and one level below.
+
+    Raises
+    ------
+    StageError
+        If a rosbag2 folder has no storage.
+    """
+    subfolders = [e for e in visible(folder) if e.is_dir() and e.name != SCANS_FOLDER]
+    bags = []
+    rosbag2_files = []
+    for place in (folder, *subfolders):
+        bags += [e for e in visible(place) if e.suffix == ".bag" and e.is_file()]
+        rosbag2_files += _list_rosbag2_files(place)
+    return bags + rosbag2_files
+
+
+def _list_rosbag2_files(folder: Path) -> list[Path]:
+    """Return the files of a rosbag2 folder; without metadata.yaml those that stand alone."""
+    entries = [e for e in visible(folder) if e.is_file()]
+    metadata = folder / "metadata.yaml"
+    if metadata not in entries or not is_rosbag2_metadata(metadata):
+        return [e for e in entries if e.name.endswith((".db3", ".mcap"))]
+    storage = [e for e in entries if e.name.endswith(ROSBAG2_SUFFIXES)]
+    if not storage:
+        raise StageError(
+            f"{metadata}: describes a rosbag2 recording,"
+            " but no .db3 or .mcap stands beside it; add it"
+        )
+    return [metadata, *storage]
+
+
+def list_scans(folder: Path) -> list[Path]:
+    """Return the clouds and the poses of a folder of scans; nothing where there is neither.
+
+    Raises
+    ------
+    StageError
+        If there is only one of the two.
+    """
+    scans = folder / SCANS_FOLDER
+    poses = folder / POSES_FILE
+    entries = visible(scans) if scans.is_dir() else []
+    clouds = [entry for entry in entries if entry.suffix.lower() in _CLOUD_SUFFIXES]
+    if poses.is_file() and not clouds:
+        raise StageError(f"{poses}: has no clouds beside it; put *.pcd or *.ply files into {scans}")
+    if clouds and not poses.is_file():
+        raise StageError(
+            f"{scans}: has no poses; write {poses} with lines `t tx ty tz qx qy qz qw`"
+        )
+    return [*clouds, poses] if clouds else []
+
+
+def check_unfinished(path: Path) -> None:
+    """Refuse a dataset with a bag that its recorder did not close.
+
+    Raises
+    ------
+    StageError
+    """
+    entries = [path] if path.is_file() else visible(path)
+    for entry in entries:
+        if entry.name.endswith(".bag.active"):
+            raise StageError(
+                f"{entry}: the recorder did not close it;"
+                " `rosbag reindex` it and rename it to *.bag"
+            )
+
+
+def check_file(file: Path) -> None:
+    """Refuse a file that is empty, or a database that its recorder did not close.
+
+    Raises
+    ------
+    StageError
+    """
+    if file.stat().st_size == 0:
+        raise StageError(f"{file}: is empty (0 bytes); remove it or copy it again")
+    wal = file.with_name(file.name + "-wal")
+    if file.suffix == ".db3" and wal.exists() and wal.stat().st_size:
+        raise StageError(
+            f"{wal}: the recorder did not close the recording, messages are still in it;"
+            f" merge them by `sqlite3 {file.name} 'PRAGMA wal_checkpoint(TRUNCATE)'`"
+            " in a copy of the folder"
+        )

@@ -1,0 +1,96 @@
+"""Keys of earlier versions: what each is called now, or why there is none any more."""
+
+from collections.abc import Iterable
+
+_EXTRACTORS = ("cluster_ransac", "iterative_ransac")
+_OF_BOTH_EXTRACTORS = {
+    **{
+        key: f"walls.{key}"
+        for key in (
+            "inlier_m",
+            "max_gap_m",
+            "min_length_m",
+            "min_height_m",
+            "min_points",
+            "min_points_planar",
+            "max_tilt_deg",
+        )
+    },
+    **{
+        key: f"advanced.walls.{key}"
+        for key in (
+            "max_rmse_m",
+            "hang_height_m",
+            "over_share",
+            "through_share",
+            "missing_share",
+            "furniture_depth_m",
+            "furniture_length_m",
+            "stub_length_m",
+            "corner_m",
+        )
+    },
+    "door_height_m": "building.door_height_m",
+    "wall_height_m": "building.wall_height_m",
+    "furniture_height_m": "building.furniture_height_m",
+    "door_width_m": "building.max_door_m",
+    "seed": "seed",
+}
+
+RENAMED = {
+    **{
+        f"walls.{extractor}.{old}": new
+        for extractor in _EXTRACTORS
+        for old, new in _OF_BOTH_EXTRACTORS.items()
+    },
+    "crispness.seed": "seed",
+    "hulls.seed": "seed",
+    "selection.seed": "seed",
+    "selection.visibility.max_height_m": "building.door_height_m",
+    "plan.merge.max_gap_m": "walls.max_gap_m",
+    "plan.merge.corner_m": "advanced.walls.corner_m",
+    "plan.trace.max_gap_m": "walls.max_gap_m",
+    "plan.trace.door_height_m": "building.door_height_m",
+    "plan.pair.min_thickness_m": "building.min_thickness_m",
+    "plan.pair.max_thickness_m": "building.max_thickness_m",
+    "plan.openings.max_door_m": "building.max_door_m",
+    "plan.trust.min_scans": "plan.merge.min_scans",
+}
+"""Old key to the new one; beside these, a key that is known below `advanced` has moved there."""
+
+DROPPED = {
+    "plan.right_angles": "faces are drawn as turned as their points are",
+    "plan.pair.max_angle_deg": "it is always 5 degrees",
+}
+"""Key or section that is gone, and why."""
+
+_MOST_NAMED = 8  # a whole old file would make a line that nobody reads
+
+
+def explain_old_keys(given: Iterable[str], known: Iterable[str]) -> str | None:
+    """Return what became of keys of earlier versions, in one line; None where none of them is one.
+
+    Parameters
+    ----------
+    given : iterable of str
+        Keys that are set, joined by dots.
+    known : iterable of str
+        Keys that may be set.
+    """
+    known = set(known)
+    explained = [_what_became(key, known) for key in given if key not in known]
+    changes = [change for change in explained if change]
+    if not changes:
+        return None
+    more = f", and {len(changes) - _MOST_NAMED} more" if len(changes) > _MOST_NAMED else ""
+    return "old keys: " + ", ".join(changes[:_MOST_NAMED]) + more
+
+
+def _what_became(key: str, known: set[str]) -> str | None:
+    moved = f"advanced.{key}"
+    new = RENAMED.get(key) or (moved if moved in known else None)
+    if new:
+        return f"{key} is now {new}"
+    reasons = (why for old, why in DROPPED.items() if f"{key}.".startswith(f"{old}."))
+    why = next(reasons, None)
+    return f"{key} is gone ({why})" if why else None

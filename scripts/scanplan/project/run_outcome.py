@@ -1,0 +1,66 @@
+"""The lines that end a run, for the user: where the results lie, or what went wrong."""
+
+import os
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+
+from scanplan.project.run_lock import FolderRun
+from scanplan.project.settings import Layer, locate_fault
+from scanplan.stage.log import INTERRUPTED
+
+_DONE = " stage done"
+
+
+def describe_results(name: str) -> str:
+    """Return the lines that say where a dataset's plan and report lie."""
+    folder = f"results/{name}"
+    return (
+        f"\nplan:    {folder}/plan/plan.svg (also .pdf, .dxf, .ifc, .geojson and map.pgm)\n"
+        f"report:  {folder}/report.html"
+    )
+
+
+def describe_failure(run: FolderRun, layers: Mapping[str, Sequence[Layer]]) -> list[str]:
+    """Return the lines that say why a run failed: a line a stage, and one if it was interrupted.
+
+    Parameters
+    ----------
+    run : run_lock.FolderRun
+    layers : dict of str to list of settings.Layer
+        By name, the settings of all datasets whose stages could have run.
+    """
+    lines = [line for name in layers for line in _list_faults(name, run, layers[name])]
+    faults = [line for line in lines if not line.endswith(INTERRUPTED)]
+    if run.interrupted or len(faults) < len(lines):
+        return [*faults, f"the run {INTERRUPTED}"]
+    return faults
+
+
+def _list_faults(name: str, run: FolderRun, layers: Sequence[Layer]) -> Iterator[str]:
+    """Iterate over the last errors of a dataset's stages that failed in this run."""
+    for log in sorted(Path("logs", name).glob("*.log")):
+        lines = log.read_text(errors="replace").splitlines()
+        is_of_this_run = log.stat().st_mtime_ns >= run.started_ns
+        if not is_of_this_run or (lines and lines[-1].endswith(_DONE)):
+            continue
+        errors = [line.split(" ERROR ", 1)[1] for line in lines if " ERROR " in line]
+        if errors:
+            stage, _, fault = errors[-1].partition(": ")
+            yield f"{stage}: {locate_fault(fault, layers)}"
+        elif not run.interrupted:
+            yield (
+                f"{log.stem}: was ended from outside, perhaps for want of memory; its log is {log}"
+            )
+
+
+def remove_empty_folders(names: Iterable[str]) -> None:
+    """Remove the empty folders of datasets below results, and results itself where it is empty."""
+    for name in names:
+        for folder, _, _ in os.walk(f"results/{name}", topdown=False):
+            _remove_if_empty(Path(folder))
+    _remove_if_empty(Path("results"))
+
+
+def _remove_if_empty(folder: Path) -> None:
+    if folder.is_dir() and not any(folder.iterdir()):
+        folder.rmdir()

@@ -1,0 +1,133 @@
+"""Settings checked against the schema: the first fault, its key, what is allowed, the remedy."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from jsonschema import Draft202012Validator, ValidationError, validators
+
+from scanplan.errors import StageError
+from scanplan.project.renamed_keys import explain_old_keys
+from scanplan.project.settings_schema import Schema, iterate_keys
+
+if TYPE_CHECKING:
+    from scanplan.types import Settings
+
+COMMAND_LINE = "--config"
+"""Origin of the settings that were given one by one on the command line."""
+
+MANUAL = "config/README.md explains every key"
+"""What a message about a key ends with."""
+
+# JSON knows no whole numbers and takes 5.0 for one; range() and a schema's reader do not
+_WHOLE = Draft202012Validator.TYPE_CHECKER.redefine("integer", lambda _, value: type(value) is int)
+_Validator = validators.extend(Draft202012Validator, type_checker=_WHOLE)
+_CODE_KEY = "__use_yte__"
+
+
+def check_settings(settings: Settings, schema: Schema, origin: str) -> None:
+    """Check settings against the JSON schema.
+
+    Parameters
+    ----------
+    settings : dict
+    schema : dict
+    origin : str
+        Where the settings come from, for the message.
+
+    Raises
+    ------
+    StageError
+        Naming the key, the value, what is allowed and the remedy, for the first fault in order of
+        the keys. Keys of earlier versions are named first, with what they are called now.
+    """
+    if _CODE_KEY in settings:
+        raise StageError(
+            f"{origin}: {_CODE_KEY}: has Snakemake execute what the file says; settings are data,"
+            " drop it"
+        )
+    given = [key for key, _ in iterate_leaves(settings)]
+    if old := explain_old_keys(given, [key for key, _ in iterate_keys(schema)]):
+        raise StageError(f"{origin}: {old}; {MANUAL}")
+    faults = sorted(
+        _Validator(schema).iter_errors(settings), key=lambda e: (str(e.path), e.message)
+    )
+    if faults:
+        raise StageError(f"{origin}: {_explain(faults[0], origin)}; {MANUAL}")
+    for key, value in iterate_leaves(settings):
+        if not _is_finite(value):
+            raise StageError(f"{origin}: {key}: {value} is no finite number; {MANUAL}")
+
+
+def _is_finite(value: Any) -> bool:
+    if isinstance(value, list):
+        return all(map(_is_finite, value))
+    return not isinstance(value, float) or math.isfinite(value)
+
+
+def find_crossed_limits(settings: Settings, schema: Schema) -> tuple[tuple[str, ...], str] | None:
+    """Return the first keys whose values contradict one another, and the fault.
+
+    The schema says which limits lie above others (`x-above`), or not below them (`x-at-least`), and
+    which lists do not rise (`x-falling`).
+
+    Parameters
+    ----------
+    settings : dict
+        Checked by `check_settings`.
+    schema : dict
+
+    Returns
+    -------
+    (tuple of str, str) or None
+        None where nothing contradicts.
+    """
+    values = dict(iterate_leaves(settings))
+    for key, node in iterate_keys(schema):
+        value = values[key]
+        for other in node.get("x-above", []):
+            if value <= values[other]:
+                return (key, other), _crossing(key, value, "be above", other, values[other])
+        for other in node.get("x-at-least", []):
+            if value < values[other]:
+                return (key, other), _crossing(key, value, "not be below", other, values[other])
+        if node.get("x-falling") and value != sorted(value, reverse=True):
+            return (key,), f"{key}: {value} must not rise, from rough to fine"
+    return None
+
+
+def _crossing(key: str, value: Any, relation: str, other: str, limit: Any) -> str:
+    return f"{key}: {value} must {relation} {other} ({limit}); change one of them"
+
+
+def iterate_leaves(settings: Settings, prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield the values of nested settings with their keys joined by dots: `plan.method`, `hull`."""
+    for key, value in settings.items():
+        if isinstance(value, dict):
+            yield from iterate_leaves(value, f"{prefix}{key}.")
+        else:
+            yield f"{prefix}{key}", value
+
+
+def _explain(fault: ValidationError, origin: str) -> str:
+    key = ".".join(map(str, fault.path)) or "settings"
+    node: Any = fault.schema
+    value: Any = fault.instance
+    if fault.validator == "additionalProperties":
+        known = ", ".join(node["properties"])
+        extra = ", ".join(sorted(map(str, set(value) - set(node["properties"]))))
+        return f"{key}: unknown key {extra}; known are {known}"
+    if fault.validator == "type" and fault.validator_value == "object":
+        remedy = "leave the section out if there are none"
+        return f"{key}: is {value!r}, expected keys with values below it; {remedy}"
+    if origin == COMMAND_LINE and isinstance(value, str) and fault.validator == "type":
+        remedy = "nested values of --config arrive as text: put them into a file for --configfile"
+        return f"{key}: {fault.message} ({remedy})"
+    if fault.validator in ("anyOf", "oneOf"):
+        numeral = origin == COMMAND_LINE and isinstance(value, (int, float))
+        remedy = f" (a name of digits wants quotes: --config '{key}=\"{value}\"')"
+        hint = remedy if numeral else ""
+        return f"{key}: is {value!r}{hint}, expected: {node['description']}"
+    return f"{key}: {fault.message}"

@@ -1,0 +1,78 @@
+"""The schema of the settings: the one place of every key's default, range, unit and meaning.
+
+No heavy imports: this runs whenever the workflow is parsed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import yaml
+
+if TYPE_CHECKING:
+    from scanplan.types import FilePath
+
+
+ADVANCED = "advanced"
+"""The section of the tuned keys, each in a section of its own name below it."""
+
+Schema = dict[str, Any]
+"""A JSON schema, or the part of it that describes a key or a section."""
+
+# a tenth of the time that Python takes; no message need say where in the schema a fault lies
+_Loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+
+
+def read_schema(path: FilePath) -> Schema:
+    """Read the schema of the settings.
+
+    Returns
+    -------
+    dict
+        With the `$defs` put in where a key refers to one, and every section closed to keys that it
+        does not name.
+    """
+    schema = yaml.load(Path(path).read_text(encoding="utf-8"), _Loader)
+    return _complete(schema, schema.pop("$defs", {}))
+
+
+def default_settings(schema: Schema) -> dict[str, Any]:
+    """Return the default of every key, nested as the schema is."""
+    return {
+        key: default_settings(node) if is_section(node) else node["default"]
+        for key, node in schema["properties"].items()
+    }
+
+
+def is_section(node: Schema) -> bool:
+    """Return whether a part of the schema describes keys below it, not a value."""
+    return "properties" in node
+
+
+def iterate_keys(schema: Schema, prefix: str = "") -> Iterator[tuple[str, Schema]]:
+    """Yield every key that has a value, joined by dots, and what the schema says of it."""
+    for key, node in schema["properties"].items():
+        if is_section(node):
+            yield from iterate_keys(node, f"{prefix}{key}.")
+        else:
+            yield f"{prefix}{key}", node
+
+
+def list_choices(schema: Schema, *keys: str) -> list[str]:
+    """Return what a setting may be, in the schema's order, as the workflow's list of it."""
+    for key in keys:
+        schema = schema["properties"][key]
+    return list(schema["enum"])
+
+
+def _complete(node: Schema, definitions: dict[str, Schema]) -> Schema:
+    if "$ref" in node:
+        own = {key: value for key, value in node.items() if key != "$ref"}
+        return definitions[node["$ref"].removeprefix("#/$defs/")] | own
+    if not is_section(node):
+        return node
+    properties = {key: _complete(child, definitions) for key, child in node["properties"].items()}
+    closed = {"type": "object", "additionalProperties": False, "properties": properties}
+    return node | closed

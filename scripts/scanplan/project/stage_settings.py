@@ -1,0 +1,136 @@
+"""What each stage receives of a dataset's settings, as keywords.
+
+The same height, width or gap has one key and goes to every stage that asks for it, under the name
+that the stage knows it by. No heavy imports: this runs while the workflow is being parsed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from scanplan.project.settings import merge_settings
+from scanplan.project.settings_schema import ADVANCED
+
+if TYPE_CHECKING:
+    from scanplan.types import Settings
+
+Keywords = dict[str, Any]
+
+_PLAN_BELOW_DOOR_M = 0.1  # less: walls above doors close ways through; more: low openings are lost
+_PAIR_MAX_ANGLE_DEG = 5.0  # more pairs what merely lies side by side, less parts short walls' sides
+_FURNITURE = ("wall_height_m", "furniture_height_m", "furniture_length_m", "furniture_depth_m")
+_POINTS_ONLY = ("min_range_m", "max_range_m", "deskew")
+_OF_THE_WORKFLOW = ("building", "recording")
+
+
+def select_section(settings: Settings, *keys: str) -> Any:
+    """Return a section with what `advanced` has of it, or the value of a key.
+
+    Raises
+    ------
+    KeyError
+        If there is no such section.
+    """
+    usual, tuned = _look_up(settings, keys), _look_up(settings[ADVANCED], keys)
+    if usual == tuned == {}:
+        raise KeyError(".".join(keys))
+    return merge_settings(usual, tuned) if isinstance(usual, dict) else usual
+
+
+def select_topics(settings: Settings) -> Keywords:
+    """Return what poses depend on of the input: all but what is done to the points."""
+    return _without(settings["input"], _POINTS_ONLY)
+
+
+def select_crispness(settings: Settings) -> Keywords:
+    """Return the keywords of `measure_crispness`."""
+    return select_section(settings, "crispness") | {"seed": settings["seed"]}
+
+
+def select_hulls(settings: Settings) -> Keywords:
+    """Return the keywords of `build_hulls`."""
+    return select_section(settings, "hulls") | {"seed": settings["seed"]}
+
+
+def select_hull_sampling(settings: Settings) -> Keywords:
+    """Return settings of the hulls but for the number of clusters."""
+    return _without(select_hulls(settings), ("n_clusters",))
+
+
+def select_visibility(settings: Settings) -> Keywords:
+    """Return the keywords of `visibility_polygon`: views end below the wall above a door."""
+    seen = select_section(settings, "selection", "visibility")
+    return seen | {"max_height_m": settings["building"]["door_height_m"]}
+
+
+def select_wall_cells(settings: Settings, limits: Iterable[str]) -> Keywords:
+    """Return what makes returns a wall: limits of the thesis's extractor, and the cells' size."""
+    extractor = select_extractor(settings, "cluster_ransac")
+    own = select_section(settings, "selection", "wall_length")
+    return {name: extractor[name] for name in limits} | own
+
+
+def select_order(settings: Settings, names: Iterable[str]) -> Keywords:
+    """Return the settings that an ordering depends on, see `selection.methods.SETTINGS`."""
+    selection = select_section(settings, "selection")
+    budget = {name: selection["stop"][name] for name in ("max_points", "max_bytes")}
+    known = selection | {"budget": budget, "seed": settings["seed"]}
+    return {name: known[name] for name in names}
+
+
+def select_extractor(settings: Settings, extractor: str) -> Keywords:
+    """Return the keywords of an extractor's settings: shared ones, the building's, its own."""
+    walls, building = select_section(settings, "walls"), settings["building"]
+    shared = {key: value for key, value in walls.items() if not isinstance(value, dict)}
+    measures = {
+        "door_height_m": building["door_height_m"],
+        "door_width_m": building["max_door_m"],
+        "wall_height_m": building["wall_height_m"],
+        "furniture_height_m": building["furniture_height_m"],
+        "seed": settings["seed"],
+    }
+    return shared | measures | walls[extractor]
+
+
+def select_extractors(settings: Settings, extractors: Iterable[str]) -> dict[str, Keywords]:
+    """Return the keywords of each extractor's settings, by its name."""
+    return {extractor: select_extractor(settings, extractor) for extractor in extractors}
+
+
+def select_plan(settings: Settings) -> Keywords:
+    """Return the keywords of `planning.make_plan_settings`, part by part.
+
+    What is furniture in single scans is furniture in the plan.
+    """
+    plan, building = select_section(settings, "plan"), settings["building"]
+    walls = select_section(settings, "walls")
+    gap = {"max_gap_m": walls["max_gap_m"]}
+    low = {"door_height_m": round(building["door_height_m"] - _PLAN_BELOW_DOOR_M, 6)}
+    thickness = {key: building[key] for key in ("min_thickness_m", "max_thickness_m")}
+    furniture = {key: (walls | building)[key] for key in _FURNITURE}
+    return {
+        "merge": plan["merge"] | gap | {"corner_m": walls["corner_m"]},
+        "trace": plan["trace"] | gap | low,
+        "ranges": plan["ranges"],
+        "furniture": furniture | {"door_width_m": building["max_door_m"]},
+        "pair": plan["pair"] | thickness | {"max_angle_deg": _PAIR_MAX_ANGLE_DEG},
+        "openings": plan["openings"] | {"max_door_m": building["max_door_m"]},
+        "rooms": plan["rooms"],
+        "trust": plan["trust"] | {"min_scans": plan["merge"]["min_scans"]},
+    }
+
+
+def select_simulation(settings: Settings) -> Keywords:
+    """Return the keywords of `simulate_survey`."""
+    return _without(settings["simulate"], _OF_THE_WORKFLOW)
+
+
+def _without(section: Settings, names: Iterable[str]) -> Keywords:
+    return {key: value for key, value in section.items() if key not in names}
+
+
+def _look_up(settings: Settings, keys: Iterable[str]) -> Any:
+    for key in keys:
+        settings = settings.get(key, {})
+    return settings

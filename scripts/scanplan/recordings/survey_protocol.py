@@ -1,0 +1,42 @@
+"""What every kind of survey offers to the stages, whatever it was read from."""
+
+from collections.abc import Iterable, Iterator
+from typing import Protocol
+
+from scanplan.recordings.clouds import Scan
+from scanplan.recordings.frame_edges import FrameEdge
+from scanplan.recordings.motion.point_times import TimeConvention
+from scanplan.types import IntArray
+
+NamedChain = tuple[str, list[FrameEdge]]
+"""A chain of transforms from some fixed frame to the sensor, and the name of its source."""
+
+
+class Survey(Protocol):
+    """Clouds with stamps, and the poses of their sensor."""
+
+    @property
+    def planar(self) -> bool:
+        """Whether the sensor measures in one plane only."""
+        ...
+
+    @property
+    def sweep_times(self) -> TimeConvention | None:
+        """How the driver writes the time of a point, or None if it does not."""
+        ...
+
+    def stamps(self) -> IntArray:
+        """Return the stamps of all clouds, (n,) int64 nanoseconds, in scan_id order."""
+        ...
+
+    def pose_edges(self) -> list[FrameEdge]:
+        """Return the chain of transforms whose product is world_from_sensor."""
+        ...
+
+    def motion_chains(self) -> list[NamedChain]:
+        """Return all that states how the sensor moved, the smoothest first and the poses last."""
+        ...
+
+    def scans(self, wanted: Iterable[int]) -> Iterator[Scan]:
+        """Iterate over the scans of the scan_ids in `wanted`, in scan_id order."""
+        ...

@@ -1,0 +1,171 @@
+"""Scans prepared for registration: voxel means, normals, a search tree; and how far two overlap."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import small_gicp
+from scipy.spatial import KDTree
+
+from scanplan.geometry import se3
+from scanplan.types import FloatArray, IntArray
+
+FACING = 0.5  # cosine: surfaces turned by less than 60 degrees face the same way
+_COVARIANCE_NEIGHBOURS = 10  # of a spatial normal: few see noise, many smooth edges away
+_LINE_NEIGHBOURS = 6  # of a planar normal; fewer, as a line needs fewer than a surface
+_LEAST_LINE_NEIGHBOURS = 3  # any two points are on a line
+_MOST_LINE_SPREAD = 0.1  # across to along, squared: 18 degrees, rounder neighbourhoods are corners
+
+
+@dataclass(frozen=True)
+class PreparedCloud:
+    """A scan prepared for registration, in its own frame.
+
+    Attributes
+    ----------
+    xyz_m : (n, 3) float64
+        Thinned points; z is 0 in the plane.
+    tree : small_gicp.KdTree or scipy.spatial.KDTree
+        Over x, y, z; in the plane over x, y.
+    planar : bool
+    normal : (n, 3) or (n, 2) float64
+        Unit normals towards the frame's origin, which is where the sensor is; NaN where neighbours
+        form no surface.
+    features : small_gicp.PointCloud or None
+        The points with covariances; None in the plane.
+    """
+
+    xyz_m: FloatArray
+    tree: small_gicp.KdTree | KDTree
+    planar: bool
+    normal: FloatArray
+    features: small_gicp.PointCloud | None
+
+    def nearest_points(self, xyz_m: FloatArray) -> tuple[IntArray, FloatArray]:
+        """Return the rows (k,) of the nearest points to those of (k, 3), and the squared distances.
+
+        In space only.
+        """
+        index, squared_m2 = self.tree.batch_knn_search(xyz_m, 1)
+        return index[:, 0].astype(np.int64), squared_m2[:, 0]
+
+
+def thin_voxels(xyz_m: FloatArray, *, planar: bool, voxel_m: float) -> FloatArray:
+    """Return the mean (m, 3) float32 of the points in every occupied voxel, in a fixed order.
+
+    In the plane the points are put to height 0 first.
+
+    Parameters
+    ----------
+    xyz_m : (n, 3) float
+    planar : bool
+    voxel_m : float
+        Edge of a voxel, metres.
+    """
+    points = np.array(xyz_m, np.float64)
+    if planar:
+        points[:, 2] = 0
+    if len(points) == 0:
+        return np.zeros((0, 3), np.float32)
+    means = small_gicp.voxelgrid_sampling(points, voxel_m, 1).points()
+    return np.asarray(means[:, :3], np.float32)
+
+
+def prepare_cloud(thinned_m: FloatArray, *, planar: bool, reach_m: float = 1.0) -> PreparedCloud:
+    """Compute normals and the search tree of a thinned scan.
+
+    Parameters
+    ----------
+    thinned_m : (n, 3) float, n >= 1
+    planar : bool
+        Whether to register in the plane: x, y and the turn about z.
+    reach_m : float
+        Neighbours farther apart than this, metres, form no line (planar only).
+    """
+    points = np.ascontiguousarray(thinned_m, np.float64)
+    if planar:
+        xy_m = points[:, :2]
+        tree = KDTree(xy_m)
+        normal = _towards_origin(estimate_planar_normals(xy_m, tree, reach_m=reach_m), xy_m)
+        return PreparedCloud(points, tree, True, normal, None)
+    cloud = small_gicp.PointCloud(points)
+    small_gicp.estimate_normals_covariances(
+        cloud, num_neighbors=_COVARIANCE_NEIGHBOURS, num_threads=1
+    )
+    normal = _towards_origin(cloud.normals()[:, :3], points)
+    return PreparedCloud(points, small_gicp.KdTree(cloud), False, normal, cloud)
+
+
+def estimate_planar_normals(xy_m: FloatArray, tree: KDTree, *, reach_m: float) -> FloatArray:
+    """Return unit normals (n, 2) from the nearest neighbours.
+
+    They are NaN where neighbours are too few or too far, or form no line.
+
+    Parameters
+    ----------
+    xy_m : (n, 2) float
+    tree : scipy.spatial.KDTree
+        Over them.
+    reach_m : float
+        A point whose neighbours lie farther away, metres, has no normal.
+    """
+    n_neighbours = min(_LINE_NEIGHBOURS, len(xy_m))
+    if n_neighbours < _LEAST_LINE_NEIGHBOURS:
+        return np.full((len(xy_m), 2), np.nan)
+    distance_m, index = tree.query(xy_m, k=n_neighbours)
+    offset = xy_m[index] - xy_m[index].mean(axis=1, keepdims=True)
+    value, vector = np.linalg.eigh(np.einsum("nki,nkj->nij", offset, offset))
+    is_near = distance_m[:, -1] < reach_m
+    is_line = is_near & (value[:, 0] < _MOST_LINE_SPREAD * value[:, 1])
+    return np.where(is_line[:, None], vector[:, :, 0], np.nan)
+
+
+def measure_overlap(
+    source: PreparedCloud,
+    target: PreparedCloud,
+    target_from_source: FloatArray,
+    *,
+    distance_m: float,
+    n_probes: int | None = None,
+    facing: bool = False,
+) -> tuple[float, float]:
+    """Measure how far two scans overlap (thesis, 3.5).
+
+    Parameters
+    ----------
+    source, target : PreparedCloud
+    target_from_source : (4, 4) float64
+    distance_m : float
+        Metres. A source point with a target point nearer than this has a neighbour.
+    n_probes : int, optional
+        About so many of the source's points are looked at, evenly chosen; all of them by default.
+    facing : bool
+        Whether a neighbour counts only if its surface faces the same way: the two sides of a wall
+        are not one.
+
+    Returns
+    -------
+    fitness : float
+        Share of the source's points with a neighbour.
+    rmse_m : float
+        Root mean square distance of those points to their neighbours; infinite if there are none.
+    """
+    step = 1 if n_probes is None else max(1, len(source.xyz_m) // n_probes)
+    moved_m = se3.transform_points(target_from_source, source.xyz_m[::step])
+    if target.planar:
+        apart_m, index = target.tree.query(moved_m[:, :2], distance_upper_bound=distance_m)
+    else:
+        index, squared_m2 = target.nearest_points(moved_m)
+        apart_m = np.sqrt(squared_m2)
+    near = np.flatnonzero(apart_m < distance_m)
+    if facing:
+        size = target.normal.shape[1]
+        turned = source.normal[::step][near] @ target_from_source[:size, :size].T
+        cosine = np.einsum("ij,ij->i", turned, target.normal[index[near]])
+        near = near[cosine > FACING]
+    rmse_m = float(np.sqrt(np.mean(apart_m[near] ** 2))) if len(near) else np.inf
+    return len(near) / len(moved_m), rmse_m
+
+
+def _towards_origin(normal: FloatArray, points: FloatArray) -> FloatArray:
+    outward = np.einsum("ij,ij->i", normal, points) > 0
+    return np.where(outward[:, None], -normal, normal)

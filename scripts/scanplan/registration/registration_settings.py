@@ -1,0 +1,151 @@
+"""The settings of the registration: section `registration` of the configuration, typed."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from scanplan.geometry import twists
+from scanplan.types import FloatArray, Settings
+
+
+@dataclass(frozen=True)
+class SequentialSettings:
+    """Limits of the sequential registration (thesis, algorithm 3) and of single alignments.
+
+    Attributes
+    ----------
+    voxel_m, voxel_planar_m : float
+        Metres. Edge of the voxels that a scan is thinned to for fitting, in space and in the plane.
+    voxels : int
+        A scan in space that occupies fewer voxels is thinned to smaller ones.
+    n_previous : int
+        Fitness is the mean over at most this many of the last retained scans.
+    previous_apart_m : float
+        Metres. Retained scans farther away show other rooms and do not count.
+    previous_turn_deg : float
+        Degrees. Nor do retained scans that are turned away by more.
+    fitness_distance_m : float
+        Metres. A point has a neighbour if one is nearer than this.
+    fitness_points : int
+        Fitness is measured on about this many points of a thinned scan.
+    min_prior_fitness, min_refined_fitness : float
+        Share, 0 to 1. Thresholds on the fitness at the localiser's pose and after alignment.
+    min_facing_fitness : float
+        Share, 0 to 1. Threshold on the overlap of surfaces that face the same way, in space.
+    icp_method : str
+        A key of `icp.METHODS`, or `sequential.GIVEN_POSES`.
+    icp_targets : int
+        A scan is aligned to this many of the last retained scans.
+    icp_distances_m : sequence of float
+        Metres. Largest distance of corresponding points: in the rough, then in the fine alignment.
+    icp_max_iterations : int
+        Of each of these.
+    max_correction_m, max_correction_deg : float
+        Metres and degrees. An alignment that moves a scan farther has failed.
+    localiser_sigma_m, localiser_sigma_deg, localiser_sigma_tilt_deg : float
+        Metres and degrees. Standard deviations of the localiser's position, of its heading, and of
+        its roll and pitch.
+    anchor_after : int
+        The n-th rejected scan in a row is kept at the localiser's pose: an anchor.
+    anchor_apart_m : float
+        Metres. So is a rejected scan at once that is farther from all those before it.
+    min_points : int
+        Scans with fewer points are dropped.
+    """
+
+    voxel_m: float
+    voxel_planar_m: float
+    voxels: int
+    n_previous: int
+    previous_apart_m: float
+    previous_turn_deg: float
+    fitness_distance_m: float
+    fitness_points: int
+    min_prior_fitness: float
+    min_refined_fitness: float
+    min_facing_fitness: float
+    icp_method: str
+    icp_targets: int
+    icp_distances_m: Sequence[float]
+    icp_max_iterations: int
+    max_correction_m: float
+    max_correction_deg: float
+    localiser_sigma_m: float
+    localiser_sigma_deg: float
+    localiser_sigma_tilt_deg: float
+    anchor_after: int
+    anchor_apart_m: float
+    min_points: int
+
+    def localiser_information(self, priors: FloatArray) -> FloatArray:
+        """Return the inverse covariances (..., 6, 6) of the localiser's poses (..., 4, 4).
+
+        They are those of the poses' errors as twists in their own frames.
+        """
+        heading, tilt = np.radians([self.localiser_sigma_deg, self.localiser_sigma_tilt_deg])
+        sigma = np.array([self.localiser_sigma_m] * 3 + [tilt, tilt, heading])
+        return twists.pose_information(sigma, priors)
+
+
+@dataclass(frozen=True)
+class PoseGraphSettings:
+    """How all retained scans are optimised together.
+
+    Attributes
+    ----------
+    optimise : bool
+        Whether they are; otherwise they stay as registered one after the other.
+    loop_radius_m : float
+        Metres. Scans farther apart get no constraint.
+    loop_apart : int
+        Nor do scans with fewer retained scans than this between them (loops).
+    loop_step_m, loop_step_planar_m : float
+        Metres. Scans this far apart along the way get loop constraints, in space and in the plane.
+    loops_per_scan : int
+        Such a scan is aligned to this many earlier visits of its surroundings.
+    loop_min_fitness : float
+        Share, 0 to 1. Pairs whose surfaces that face the same way overlap less get no constraint.
+    edge_sigma_m, edge_sigma_deg : float
+        Metres and degrees. Least standard deviation of a constraint's shift and turn.
+    kernel_sigmas : float
+        A measurement this many standard deviations off counts a quarter.
+    """
+
+    optimise: bool
+    loop_radius_m: float
+    loop_apart: int
+    loop_step_m: float
+    loop_step_planar_m: float
+    loops_per_scan: int
+    loop_min_fitness: float
+    edge_sigma_m: float
+    edge_sigma_deg: float
+    kernel_sigmas: float
+
+
+@dataclass(frozen=True)
+class RegistrationSettings:
+    """Section `registration` of the configuration.
+
+    Attributes
+    ----------
+    batch_size : int
+        So many candidates are registered one after the other on one core.
+    limits : SequentialSettings
+    graph : PoseGraphSettings
+    """
+
+    batch_size: int
+    limits: SequentialSettings
+    graph: PoseGraphSettings
+
+
+def registration_settings(section: Settings) -> RegistrationSettings:
+    """Return the `RegistrationSettings` of a section `registration`."""
+    limits = {key: value for key, value in section.items() if key not in ("batch_size", "graph")}
+    return RegistrationSettings(
+        batch_size=section["batch_size"],
+        limits=SequentialSettings(**limits),
+        graph=PoseGraphSettings(**section["graph"]),
+    )

@@ -1,0 +1,120 @@
+"""Parquet files of a schema: opened, written and checked."""
+
+import json
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from scanplan.errors import StageError
+from scanplan.store import atomic
+from scanplan.store.schemas import Schema
+from scanplan.types import Array, FilePath
+
+RERUN = "delete it and run again"
+
+
+def arrow_schema(schema: Schema) -> pa.Schema:
+    """Return the schema as Arrow's; no cell may be empty."""
+    return pa.schema(
+        [pa.field(n, pa.type_for_alias(t), nullable=False) for n, t in schema.columns.items()]
+    )
+
+
+@contextmanager
+def open_writer(
+    path: FilePath, schema: Schema, extra: Mapping[str, str] | None = None
+) -> Iterator[pq.ParquetWriter]:
+    """Write a file of a schema, whole or not at all, with further metadata."""
+    form = arrow_schema(schema).with_metadata(_file_metadata(schema) | dict(extra or {}))
+    floats = [n for n, t in schema.columns.items() if t.startswith("float")]
+    with (
+        atomic.replace_file(path) as temporary,
+        pq.ParquetWriter(
+            temporary,
+            form,
+            compression="zstd",
+            write_page_checksum=True,
+            use_dictionary=False,
+            column_encoding=dict.fromkeys(floats, "BYTE_STREAM_SPLIT"),
+        ) as writer,
+    ):
+        yield writer
+
+
+def _file_metadata(schema: Schema) -> dict[str, str]:
+    """Return the file's own metadata: our schema, and the description that GeoParquet asks for."""
+    metadata = {"scanplan": json.dumps({"table": schema.name, "version": schema.version})}
+    if schema.geometry:
+        column = {"encoding": "WKB", "geometry_types": [], "crs": None}
+        metadata["geo"] = json.dumps(
+            {"version": "1.1.0", "primary_column": "geometry", "columns": {"geometry": column}}
+        )
+    return metadata
+
+
+@contextmanager
+def open_file(path: FilePath, schema: Schema) -> Iterator[pq.ParquetFile]:
+    """Open a file of a schema to read it.
+
+    Raises
+    ------
+    StageError
+        If it is missing, damaged or of another schema or version.
+    """
+    try:
+        with pq.ParquetFile(path, page_checksum_verification=True) as file:
+            _check_schema(file, schema, path)
+            yield file
+    except FileNotFoundError:
+        raise StageError(f"{path}: does not exist; run the stage that makes it") from None
+    except (pa.ArrowException, OSError) as error:
+        raise StageError(f"{path}: damaged ({error}); {RERUN}") from None
+
+
+def _check_schema(file: pq.ParquetFile, schema: Schema, path: FilePath) -> None:
+    stated = json.loads((file.metadata.metadata or {}).get(b"scanplan", b"{}"))
+    if stated != {"table": schema.name, "version": schema.version}:
+        raise StageError(
+            f"{path}: is {stated or 'no table of scanplan'}, expected {schema.name}"
+            f" version {schema.version}; {RERUN}"
+        )
+    if not file.schema_arrow.equals(arrow_schema(schema)):
+        raise StageError(
+            f"{path}: columns {file.schema_arrow.names} are not those of {schema.name}; {RERUN}"
+        )
+
+
+def check_rows(
+    table: pa.Table,
+    schema: Schema,
+    path: FilePath,
+    allow_empty: bool,
+    error: type[Exception],
+) -> None:
+    """Raise `error` if the rows of a table are not sorted as its schema says or have empty cells.
+
+    Raises
+    ------
+    StageError
+        If there are no rows and that is not allowed.
+    """
+    if table.num_rows == 0 and not allow_empty:
+        raise StageError(f"{path}: no rows to work on; see the log of the stage that makes it")
+    if any(column.null_count for column in table.columns):
+        raise error(f"{path}: empty cells in a table of {schema.name}")
+    keys = [table[c].to_numpy() for c in schema.sorted_by if c in table.column_names]
+    if len(keys) == len(schema.sorted_by) and not _strictly_sorted(keys):
+        raise error(
+            f"{path}: rows of {schema.name} are not sorted by {', '.join(schema.sorted_by)}"
+        )
+
+
+def _strictly_sorted(keys: list[Array]) -> bool:
+    if len(keys[0]) < 2:
+        return True
+    order = np.lexsort(keys[::-1])
+    same = np.all([key[1:] == key[:-1] for key in keys], axis=0)
+    return bool(np.all(order == np.arange(len(order))) and not same.any())

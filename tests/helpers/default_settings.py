@@ -1,0 +1,9 @@
+"""The settings as they are by default, for tests that run stages with them."""
+
+from pathlib import Path
+
+from scanplan.project.settings_schema import default_settings, read_schema
+
+ROOT = Path(__file__).resolve().parents[2]
+SCHEMA = read_schema(ROOT / "workflow/schemas/config.schema.yaml")
+SETTINGS = default_settings(SCHEMA)

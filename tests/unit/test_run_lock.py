@@ -1,0 +1,76 @@
+"""One run at a time in a folder, and a note of the signals that reach it."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from scanplan.errors import StageError
+from scanplan.project import run_lock
+
+SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+def test_a_second_run_is_refused_until_the_first_has_ended(tmp_path):
+    lock = run_lock.lock_folder()
+    with pytest.raises(StageError) as refused:
+        run_lock.lock_folder()
+    assert str(refused.value) == (
+        f"{tmp_path}: another run is at work in this folder; wait for it or stop it"
+    )
+    lock.close()
+    run_lock.lock_folder().close()
+
+
+def test_the_lock_dies_with_its_process():
+    body = "from scanplan.project import run_lock; import time; lock = run_lock.lock_folder()"
+    holder = subprocess.Popen(
+        [sys.executable, "-c", f"{body}; open('locked', 'w').close(); time.sleep(60)"],
+        env={"PYTHONPATH": str(SCRIPTS)},
+    )
+    deadline = time.monotonic() + 60
+    while not Path("locked").exists():
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+    with pytest.raises(StageError):
+        run_lock.lock_folder()
+    holder.kill()
+    holder.wait()
+    run_lock.lock_folder().close()
+
+
+@pytest.fixture
+def handlers():
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    yield
+    for number, handler in before.items():
+        signal.signal(number, handler)
+
+
+def test_a_signal_is_noted_and_does_what_it_did(handlers):
+    received = []
+    signal.signal(signal.SIGTERM, lambda number, _: received.append(number))
+    run = run_lock.FolderRun()
+    run.begin()
+    assert not run.interrupted and run.started_ns > 0
+    os.kill(os.getpid(), signal.SIGTERM)
+    assert run.interrupted and received == [signal.SIGTERM]
+    run.end()
+
+
+def test_an_ignored_signal_stays_ignored(handlers):
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    run = run_lock.FolderRun()
+    run.begin()
+    os.kill(os.getpid(), signal.SIGINT)
+    assert not run.interrupted and signal.getsignal(signal.SIGINT) == signal.SIG_IGN
+    run.end()

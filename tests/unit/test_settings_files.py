@@ -1,0 +1,138 @@
+"""The lists of settings and the manual's tables say what the schema says."""
+
+import pytest
+
+from helpers.default_settings import SCHEMA, SETTINGS
+from scanplan.project import settings_files
+from scanplan.project.settings import merge_settings
+from scanplan.project.settings_check import check_settings, iterate_leaves
+from scanplan.project.settings_schema import is_section, iterate_keys
+from scanplan.project.yaml_file import read_yaml
+
+REMEDY = "is out of step with the schema; run `make settings`"
+FILES = ("config.yaml", "advanced.yaml", "simulate.yaml")
+TOY = {
+    "properties": {
+        "a": {"default": None, "type": ["string", "null"], "description": "a name. Or none"},
+        "b": {
+            "description": "a section",
+            "properties": {
+                "c_m": {
+                    "default": 0.5,
+                    "type": "number",
+                    "exclusiveMinimum": 0,
+                    "maximum": 2,
+                    "x-unit": "m",
+                    "description": "a length",
+                },
+                "d": {"default": "x", "enum": ["x", "y"], "description": "a choice"},
+            },
+        },
+    }
+}
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_the_lists_are_in_step_with_the_schema(project_root, name):
+    expected = settings_files.format_settings_files(SCHEMA)[name]
+    assert (project_root / "config" / name).read_text() == expected, f"config/{name} {REMEDY}"
+
+
+def test_the_manual_is_in_step_with_the_schema(project_root):
+    manual = (project_root / "config/README.md").read_text()
+    assert settings_files.fill_manual(manual, SCHEMA) == manual, f"config/README.md {REMEDY}"
+
+
+def test_the_manual_has_a_table_of_every_section(project_root):
+    sections = [key for key, node in SCHEMA["properties"].items() if is_section(node)]
+    tuned = [f"advanced.{key}" for key in SCHEMA["properties"]["advanced"]["properties"]]
+    sections.remove("advanced")
+    tables = settings_files.list_tables((project_root / "config/README.md").read_text())
+    assert sorted(tables) == sorted(["general", *sections, *tuned])
+
+
+def test_the_lists_have_every_key_once_with_its_default(project_root):
+    listed = [dict(iterate_leaves(read_yaml(project_root / "config" / name))) for name in FILES]
+    together = {key: value for values in listed for key, value in values.items()}
+    assert sum(map(len, listed)) == len(together)
+    assert together == dict(iterate_leaves(SETTINGS))
+
+
+def test_a_user_sees_no_more_than_sixty_keys(project_root):
+    visible = list(iterate_leaves(read_yaml(project_root / "config/config.yaml")))
+    assert 40 <= len(visible) <= 60
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_every_list_can_be_given_as_settings(project_root, name):
+    values = read_yaml(project_root / "config" / name)
+    check_settings(merge_settings(SETTINGS, values), SCHEMA, name)
+
+
+def test_a_key_is_listed_with_its_meaning_unit_and_range():
+    lines = settings_files._format_file("A head.", TOY["properties"]).splitlines()
+    assert lines[0] == "# A head."
+    assert lines[2:] == [
+        "",
+        "# a name",
+        "a: null",
+        "",
+        "# a section",
+        "b:",
+        "  # a length [m, above 0, to 2]",
+        "  c_m: 0.5",
+        "  # a choice [x, y]",
+        "  d: x",
+    ]
+
+
+def test_a_table_is_written_between_its_marks_and_nothing_else_changes():
+    manual = "before\n<!-- settings b -->\nold\n<!-- end -->\nafter\n"
+    lines = settings_files.fill_manual(manual, TOY).splitlines()
+    assert lines[:2] == ["before", "<!-- settings b -->"] and lines[-2:] == [
+        "<!-- end -->",
+        "after",
+    ]
+    assert lines[4:-2] == [
+        "| `c_m` | 0.5 | m, above 0, to 2 | a length |",
+        "| `d` | x | x, y | a choice |",
+    ]
+
+
+def test_writing_again_changes_nothing(project_root, tmp_path):
+    (tmp_path / "config").mkdir()
+    schema = "workflow/schemas/config.schema.yaml"
+    (tmp_path / schema).parent.mkdir(parents=True)
+    for name in (schema, "config/README.md"):
+        (tmp_path / name).write_text((project_root / name).read_text())
+    settings_files.write_settings_files(tmp_path)
+    for name in ("README.md", *FILES):
+        assert (tmp_path / "config" / name).read_text() == (
+            project_root / "config" / name
+        ).read_text()
+
+
+def test_every_key_has_a_default_that_fits_and_a_meaning():
+    check_settings(SETTINGS, SCHEMA, "defaults")
+    for key, node in iterate_keys(SCHEMA):
+        assert node["description"] and "|" not in node["description"], key
+        assert not node["description"].endswith("."), key
+
+
+def test_every_unit_is_that_of_the_keys_name():
+    units = {
+        "_m": "m",
+        "_deg": "deg",
+        "_s": "s",
+        "_m2": "m2",
+        "_hz": "Hz",
+        "_m_s": "m/s",
+        "_deg_s": "deg/s",
+        "_per_m": "per m",
+        "_per_min": "per minute",
+    }
+    for key, node in iterate_keys(SCHEMA):
+        fitting = [unit for ending, unit in units.items() if key.endswith(ending)]
+        if fitting and not key.endswith("timed_scans"):
+            # the longest ending says it
+            assert node.get("x-unit") == max(fitting, key=len), key
