@@ -36,7 +36,8 @@ def test_range_ends_the_view():
 
 def test_behind_a_pillar_nothing_is_seen():
     found = seen(np.concatenate([BOX, PILLAR.reshape(-1, 2, 2)]), (0.5, 2.0))
-    # the pillar's near face, 1 m wide at 2 m, casts a shadow 0.5 + 3.5 * 0.25 wide at the far wall, each side
+    # the pillar's near face, 1 m wide at 2 m, casts a shadow 0.5 + 3.5 * 0.25 wide at the far wall,
+    # each side
     shadow = (1 + 2.75) / 2 * 3.5
     assert found.area == pytest.approx(24 - shadow)
 

@@ -35,7 +35,7 @@ class TestDoors:
 
 
 class TestWindows:
-    """A wall along y = 0, 0.2 m thick: its inner face at 0.1, its outer one at -0.1; windows are on its middle."""
+    """A wall along y = 0, 0.2 m thick: inner face at 0.1, outer at -0.1, windows on its middle."""
 
     FACES = np.array([[(0, 0.1), (10, 0.1)], [(10, -0.1), (0, -0.1)]])
     TRUE = np.array([[(1, 0), (2.4, 0)], [(6, 0), (7.4, 0)]])

@@ -14,7 +14,10 @@ from scanplan.lab.thesis.shown_figures import FIGURES
 from scanplan.lab.thesis.stated_claims import CLAIMS
 from scanplan.store import schemas
 
-SVG = '<?xml version="1.0"?>\n<svg id="a"><defs><path id="b"/></defs><use href="#b" fill="url(#c)"/></svg>'
+SVG = (
+    '<?xml version="1.0"?>\n<svg id="a"><defs><path id="b"/></defs>'
+    '<use href="#b" fill="url(#c)"/></svg>'
+)
 
 
 def claims(**changes):

@@ -35,7 +35,8 @@ class TestFaces:
 
     def test_what_is_missed_has_one_reason_each(self):
         seen = cells().face != 1
-        # the first wall is right, the second was not seen, the third is drawn 0.2 m off, the fourth not at all
+        # the first wall is right, the second was not seen, the third is drawn 0.2 m off, the fourth
+        # not at all
         row = self.measure([SQUARE[0], SQUARE[2] - [0, 0.2]], seen=seen)
         assert row["missed_not_seen"] == pytest.approx(0.25, abs=0.02)
         # and 0.3 m of the ends of what is missed lie near to it and to the first

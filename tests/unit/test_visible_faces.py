@@ -33,7 +33,8 @@ def seen_m(faces, position, max_range_m=100.0, outer=NO_FACES):
 
 class TestSeen:
     def test_a_room_and_what_its_door_shows(self):
-        # from 2 m before the door, the jambs edge-on through 1 m at 2.2 m: 6 / 2.2 m on the far wall at 6 m
+        # from 2 m before the door, the jambs edge-on through 1 m at 2.2 m: 6 / 2.2 m on the far
+        # wall at 6 m
         found = seen_m(ROOM, (2, 2))
         np.testing.assert_allclose(found[:5], [4, 4, 4, 1.5, 1.5], atol=0.021)
         np.testing.assert_allclose(found[5:9], [0.2, 0.2, 0, 0], atol=1e-9)
@@ -136,7 +137,8 @@ def test_the_view_is_the_room_and_what_the_door_shows():
     outline = shapely.Polygon(
         visible_faces.visible_polygon(ROOM, np.array([2.0, 2.0]), open_m=100.0)
     )
-    # the room, all of the door, and a fan whose edges pass its outer corners, 0.5 m off the middle at 2.2 m
+    # the room, all of the door, and a fan whose edges pass its outer corners, 0.5 m off the middle
+    # at 2.2 m
     fan = (0.5 + 6 * 0.5 / 2.2) * 3.8
     assert outline.area == pytest.approx(16 + 0.2 + fan)
 

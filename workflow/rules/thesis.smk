@@ -54,7 +54,7 @@ rule measure_unevenness:
     params:
         hulls=setting(stage_settings.select_hulls),
         max_range_m=section("input", "max_range_m"),
-        n_selected=claim_measures.SUBSET,
+        n_selected=stated_claims.SUBSET,
     script:
         "../../scripts/measure_unevenness.py"
 
@@ -111,7 +111,7 @@ rule tabulate_steps:
         mem_mb=1000,
         runtime=10,
     params:
-        n_selected=claim_measures.SUBSET,
+        n_selected=stated_claims.SUBSET,
     script:
         "../../scripts/tabulate_steps.py"
 

@@ -21,8 +21,6 @@ OURS, ITERATIVE = "cluster_ransac", "iterative_ransac"
 PLAIN, PLAIN_CLUSTERS = "plain_ransac", "plain_clusters"
 """Iterative and cluster RANSAC as the thesis describes them, see `plain_ransac`."""
 FOUND, CORRECT = "visible_completeness_010m", "visible_correctness_010m"
-SUBSET, MANY = 15, 60
-"""Sizes of the subsets that the thesis shows walls of."""
 CHOOSING, ORDERING, BUILDING = "choose_scans", "order_scans", "build_hulls"
 """Tasks that are timed, beside the extractors."""
 THINNED = "thinned_"

@@ -9,7 +9,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from shapely.geometry.base import BaseGeometry
 
-from scanplan.lab.thesis.claim_measures import FOUR, SUBSET, rows_of_method, scans_for_99
+from scanplan.lab.thesis.claim_measures import FOUR, rows_of_method, scans_for_99
+from scanplan.lab.thesis.stated_claims import SUBSET
 from scanplan.report import top_view
 from scanplan.selection.methods import METHODS
 from scanplan.types import Array, Columns, FloatArray, IntArray

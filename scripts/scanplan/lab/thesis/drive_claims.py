@@ -20,7 +20,6 @@ from scanplan.lab.thesis.claim_measures import (
     PLAIN_CLUSTERS,
     SECONDS,
     SHARE,
-    SUBSET,
     THINNED,
     ClaimMeasure,
     Quantities,
@@ -31,7 +30,7 @@ from scanplan.lab.thesis.claim_measures import (
     measure_at,
     of_unit,
 )
-from scanplan.lab.thesis.stated_claims import GROWS, SEVERAL, STEADY, stated_number
+from scanplan.lab.thesis.stated_claims import GROWS, SEVERAL, STEADY, SUBSET, stated_number
 from scanplan.types import Array, Columns, FloatArray, IntArray
 
 _THESIS_SCANS = 90  # what the thesis chose its subset from (table 5.1)

@@ -14,8 +14,8 @@ from scanplan.lab.thesis.claim_measures import (
     OURS,
     PLAIN,
     PLAIN_CLUSTERS,
-    SUBSET,
 )
+from scanplan.lab.thesis.stated_claims import SUBSET
 from scanplan.report import figures, top_view
 from scanplan.types import Columns, FloatArray
 

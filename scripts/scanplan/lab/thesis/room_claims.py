@@ -13,13 +13,11 @@ from scanplan.lab.thesis.claim_measures import (
     COUNT,
     FOUND,
     FOUR,
-    MANY,
     METRES,
     NUMBER,
     OURS,
     SECONDS,
     SHARE,
-    SUBSET,
     ClaimMeasure,
     Quantities,
     Tables,
@@ -32,7 +30,14 @@ from scanplan.lab.thesis.claim_measures import (
     of_unit,
     scans_for_99,
 )
-from scanplan.lab.thesis.stated_claims import COMPLETE, HARM, MUCH, stated_number
+from scanplan.lab.thesis.stated_claims import (
+    COMPLETE,
+    HARM,
+    MANY,
+    MUCH,
+    SUBSET,
+    stated_number,
+)
 from scanplan.types import Columns
 
 _LATER = 40  # scans: of the evaluated sizes the one at which both orders have long converged

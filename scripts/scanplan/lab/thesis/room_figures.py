@@ -14,7 +14,8 @@ from scanplan.geometry import bitmap
 from scanplan.lab.evaluation import length_metrics
 from scanplan.lab.evaluation.truth_file import TrueFaces
 from scanplan.lab.thesis import coverage, coverage_figures
-from scanplan.lab.thesis.claim_measures import MANY, OURS, SUBSET
+from scanplan.lab.thesis.claim_measures import OURS
+from scanplan.lab.thesis.stated_claims import MANY, SUBSET
 from scanplan.report import top_view
 from scanplan.selection import hulls
 from scanplan.store import tables

@@ -1,4 +1,4 @@
-"""What the thesis claims: text and numbers alone, nothing of ours.
+"""What the thesis claims: text and numbers alone, nothing of ours and nothing heavy to import.
 
 Sections, figures and numbers are those of "Pointcloud scan selection for indoor floor plan
 generation". A claim that states a number has it under `stated`; the criterion says in words when
@@ -8,6 +8,8 @@ ours counts as the same (`room_claims` and `drive_claims` apply it).
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+SUBSET, MANY = 15, 60
+"""Sizes, in scans, of the subsets that the thesis shows walls of."""
 ABOUT = 0.25  # a number "about" as stated differs from it by no more than this share of it
 ALMOST = 0.9  # "similar", "little loss": at least this share of every measure compared with
 SEVERAL = 1.5  # segments per wall on average, every wall shown having one at least

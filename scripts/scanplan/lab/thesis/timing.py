@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from scanplan.extraction.extractors import Extractor
-from scanplan.lab.thesis.claim_measures import BUILDING, CHOOSING, ORDERING, SUBSET, THINNED
+from scanplan.lab.thesis.claim_measures import BUILDING, CHOOSING, ORDERING, THINNED
+from scanplan.lab.thesis.stated_claims import SUBSET
 from scanplan.selection import area_greedy, hulls
 from scanplan.stage import per_registered_scan
 from scanplan.store import tables
