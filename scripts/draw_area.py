@@ -1,20 +1,22 @@
 """Draw the covered area against the number of scans, for every ordering (thesis, figure 5.6)."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from scanplan.exports import drawing
 from scanplan.report import figures
 from scanplan.stage import log
 from scanplan.store import atomic, schemas, tables
+from scanplan.types import FilePath
 
 
-def draw_area(selections, output):
+def draw_area(selections: Sequence[FilePath], output: FilePath) -> None:
     """Write the figure as SVG.
 
     Parameters
     ----------
     selections : list of path-like
-        selection/<method>.parquet; the name tells the method.
+        selection/<method>.parquet, named after the method.
     output : path-like
         figures/area.svg, to write.
     """

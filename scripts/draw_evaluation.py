@@ -4,9 +4,18 @@ from scanplan.exports import drawing
 from scanplan.lab.evaluation import evaluation_figure, oracle_figure
 from scanplan.stage import log
 from scanplan.store import atomic, schemas, tables
+from scanplan.types import FilePath
 
 
-def draw_evaluation(walls, aligned, output, shares, *, method, extractor):
+def draw_evaluation(
+    walls: FilePath,
+    aligned: FilePath,
+    output: FilePath,
+    shares: FilePath,
+    *,
+    method: str,
+    extractor: str,
+) -> None:
     """Write the figures as SVG.
 
     Parameters
@@ -18,17 +27,14 @@ def draw_evaluation(walls, aligned, output, shares, *, method, extractor):
     method, extractor : str
         The plan's: whose misses and whose bitmap metrics are drawn.
     """
-    measured, moved = (tables.read_table(path, schemas.EVALUATION) for path in (walls, aligned))
-    atomic.write_text(
-        output,
-        drawing.format_svg(
-            evaluation_figure.draw_evaluation_figure(
-                measured, moved, method=method, extractor=extractor
-            )
-        ),
+    measures = tables.read_table(walls, schemas.EVALUATION)
+    aligned_measures = tables.read_table(aligned, schemas.EVALUATION)
+    figure = evaluation_figure.draw_evaluation_figure(
+        measures, aligned_measures, method=method, extractor=extractor
     )
-    atomic.write_text(shares, drawing.format_svg(oracle_figure.draw_oracle_figure(measured)))
-    log.log_line(f"draw_evaluation: {len(measured['k'])} subsets")
+    atomic.write_text(output, drawing.format_svg(figure))
+    atomic.write_text(shares, drawing.format_svg(oracle_figure.draw_oracle_figure(measures)))
+    log.log_line(f"draw_evaluation: {len(measures['k'])} subsets")
 
 
 if __name__ == "__main__":

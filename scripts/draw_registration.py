@@ -1,14 +1,17 @@
-"""Draw the audit of the registration: the way, what became of every scan, and how well neighbours fit."""
+"""Draw the audit of the registration: the track, every scan's verdict, how well neighbours fit."""
 
 from scanplan.exports import drawing
 from scanplan.report import registration_figure, top_view
 from scanplan.stage import log
 from scanplan.store import atomic, schemas, tables
+from scanplan.types import FilePath
 
 _LINKS = ["source", "target", "kind", "residual_m"]
 
 
-def draw_registration(scans, registration, edges, crispness, output):
+def draw_registration(
+    scans: FilePath, registration: FilePath, edges: FilePath, crispness: FilePath, output: FilePath
+) -> None:
     """Write the figure as SVG.
 
     Parameters
@@ -21,13 +24,14 @@ def draw_registration(scans, registration, edges, crispness, output):
     store = tables.ScanStore(scans)
     verdicts = tables.read_table(registration, schemas.REGISTRATION)
     links = tables.read_table(edges, schemas.EDGES, _LINKS, allow_empty=True)
-    measured = tables.read_table(crispness, schemas.CRISPNESS, ["poses", "sigma_m"])
-    found = log.report_progress(store.scans(), "draw_registration", total=len(store.scan_ids))
+    thickness = tables.read_table(crispness, schemas.CRISPNESS, ["poses", "sigma_m"])
+    n_scans = len(store.scan_ids)
+    clouds = log.report_progress(store.scans(), "draw_registration", total=n_scans)
     figure = registration_figure.draw_registration_figure(
-        top_view.sample_points(found, len(store.scan_ids)),
+        top_view.sample_points(clouds, n_scans),
         verdicts,
         links,
-        dict(zip(measured["poses"].tolist(), measured["sigma_m"].tolist(), strict=True)),
+        dict(zip(thickness["poses"].tolist(), thickness["sigma_m"].tolist(), strict=True)),
     )
     atomic.write_text(output, drawing.format_svg(figure))
     log.log_line(

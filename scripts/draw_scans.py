@@ -1,13 +1,18 @@
-"""Draw the registered scans, where they were taken, and which were selected (thesis, figure 5.9)."""
+"""Draw the registered scans, where they were taken, which were selected (thesis, figure 5.9)."""
+
+from typing import Any
 
 from scanplan.exports import drawing
 from scanplan.report import figures, top_view
 from scanplan.selection import stopping
 from scanplan.stage import log
 from scanplan.store import atomic, schemas, tables
+from scanplan.types import FilePath
 
 
-def draw_scans(scans, registration, selection, output, **stop):
+def draw_scans(
+    scans: FilePath, registration: FilePath, selection: FilePath, output: FilePath, **stop: Any
+) -> None:
     """Write the figure as SVG.
 
     Parameters
@@ -23,14 +28,15 @@ def draw_scans(scans, registration, selection, output, **stop):
     ordering = tables.read_table(selection, schemas.SELECTION)
     count, reason = stopping.choose_n_scans(ordering, **stop)
     poses = tables.read_table(registration, schemas.REGISTRATION)
-    found = log.report_progress(store.scans(), "draw_scans", total=len(store.scan_ids))
+    n_scans = len(store.scan_ids)
+    clouds = log.report_progress(store.scans(), "draw_scans", total=n_scans)
     figure = figures.draw_scans_figure(
-        top_view.sample_points(found, len(store.scan_ids)),
+        top_view.sample_points(clouds, n_scans),
         figures.sensor_positions(poses, store.scan_ids),
         figures.sensor_positions(poses, ordering["scan_id"][:count]),
     )
     atomic.write_text(output, drawing.format_svg(figure))
-    log.log_line(f"draw_scans: {len(store.scan_ids)} scans, {count} selected ({reason})")
+    log.log_line(f"draw_scans: {n_scans} scans, {count} selected ({reason})")
 
 
 if __name__ == "__main__":

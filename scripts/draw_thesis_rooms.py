@@ -1,19 +1,35 @@
-"""Draw the thesis's figures 3.2 and 5.1 to 5.7, and all orders beside them, from the survey of the rooms."""
+"""Draw the thesis's figures 3.2 and 5.1 to 5.7, and all orders, from the survey of the rooms."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 from scanplan.exports import drawing
-from scanplan.lab.evaluation import oracle_figure
-from scanplan.lab.thesis import room_survey
+from scanplan.lab.evaluation import oracle_figure, truth_file
+from scanplan.lab.thesis import room_figures
+from scanplan.lab.thesis.claim_measures import OURS
 from scanplan.stage import log
-from scanplan.store import atomic
+from scanplan.store import atomic, registered_scans, schemas, tables
+from scanplan.types import FilePath
+
+_METHODS = ("hull", "cluster_hull", "sequential")
 
 
-def draw_thesis_rooms(files, evaluated, outputs, orders, *, bitmap_cell_m, max_range_m):
+def draw_thesis_rooms(
+    files: Mapping[str, FilePath],
+    evaluated: Sequence[FilePath],
+    outputs: Sequence[FilePath],
+    orders: FilePath,
+    *,
+    bitmap_cell_m: float,
+    max_range_m: float,
+) -> None:
     """Write the figures as SVG.
 
     Parameters
     ----------
     files : dict of str to path-like
-        Tables of one survey, its truth.geojson and truth_poses.tum; see `room_survey.RoomSurvey`.
+        Tables of one survey by their stems (`scans`, `registration`, `hulls`, `clusters`, the
+        methods, the extractor), and `truth` and `true_poses`.
     evaluated : list of path-like
         evaluation/walls.parquet of every seed.
     outputs : list of path-like
@@ -25,25 +41,35 @@ def draw_thesis_rooms(files, evaluated, outputs, orders, *, bitmap_cell_m, max_r
     max_range_m : float
         How far a scan can see.
     """
-    survey = room_survey.read_room_survey(files, evaluated, max_range_m=max_range_m)
-    for path in outputs:
-        atomic.write_text(
-            path, drawing.format_svg(room_survey.draw_room_figure(survey, path, bitmap_cell_m))
-        )
-    atomic.write_text(
-        orders, drawing.format_svg(oracle_figure.draw_oracle_figure(*survey.evaluated))
+    scans = registered_scans.read_registered_scans(files["registration"])
+    poses = truth_file.interpolate_true_poses(
+        truth_file.read_true_poses(files["true_poses"]), scans.t_ns, files["true_poses"]
     )
+    survey = room_figures.RoomSurvey(
+        store=tables.ScanStore(files["scans"]),
+        scan_ids=scans.scan_ids,
+        places_m=poses[:, :2, 3],
+        faces=truth_file.read_true_faces(files["truth"]),
+        hulls=tables.read_table(files["hulls"], schemas.HULLS),
+        walls=tables.read_table(files[OURS], schemas.WALLS, allow_empty=True),
+        clusters=tables.read_table(files["clusters"], schemas.CLUSTERS),
+        selections={m: tables.read_table(files[m], schemas.SELECTION) for m in _METHODS},
+        evaluated=[tables.read_table(path, schemas.EVALUATION) for path in evaluated],
+        max_range_m=max_range_m,
+    )
+    for path in outputs:
+        figure = room_figures.draw_room_figure(survey, Path(path).stem, bitmap_cell_m)
+        atomic.write_text(path, drawing.format_svg(figure))
+    orders_figure = oracle_figure.draw_oracle_figure(*survey.evaluated)
+    atomic.write_text(orders, drawing.format_svg(orders_figure))
     log.log_line(f"draw_thesis_rooms: {len(outputs)} figures")
 
 
 if __name__ == "__main__":
     with log.log_to_file(snakemake.log[0]):
+        others = ("code", "evaluated")
         draw_thesis_rooms(
-            {
-                name: path
-                for name, path in snakemake.input.items()
-                if name not in ("code", "evaluated")
-            },
+            {name: path for name, path in snakemake.input.items() if name not in others},
             list(snakemake.input.evaluated),
             snakemake.output.figures,
             snakemake.output.orders,

@@ -1,13 +1,23 @@
 """Draw the walls of the plan over the points of the selected scans (thesis, figure 5.11)."""
 
+from typing import Any
+
 from scanplan.exports import drawing
 from scanplan.report import figures, top_view
 from scanplan.selection import stopping
 from scanplan.stage import log
 from scanplan.store import atomic, schemas, tables
+from scanplan.types import FilePath
 
 
-def draw_walls(scans, faces, registration, selection, output, **stop):
+def draw_walls(
+    scans: FilePath,
+    faces: FilePath,
+    registration: FilePath,
+    selection: FilePath,
+    output: FilePath,
+    **stop: Any,
+) -> None:
     """Write the figure as SVG.
 
     Parameters
@@ -22,16 +32,16 @@ def draw_walls(scans, faces, registration, selection, output, **stop):
     store = tables.ScanStore(scans)
     ordering = tables.read_table(selection, schemas.SELECTION)
     count, reason = stopping.choose_n_scans(ordering, **stop)
-    selected = ordering["scan_id"][:count]
+    selected_ids = ordering["scan_id"][:count]
     poses = tables.read_table(registration, schemas.REGISTRATION)
-    merged = tables.read_table(faces, schemas.FACES)
+    plan_faces = tables.read_table(faces, schemas.FACES)
     figure = figures.draw_walls_figure(
-        top_view.sample_points(store.scans(selected), count),
-        merged,
-        figures.sensor_positions(poses, selected),
+        top_view.sample_points(store.scans(selected_ids), count),
+        plan_faces,
+        figures.sensor_positions(poses, selected_ids),
     )
     atomic.write_text(output, drawing.format_svg(figure))
-    log.log_line(f"draw_walls: {len(merged['face'])} faces over {count} scans ({reason})")
+    log.log_line(f"draw_walls: {len(plan_faces['face'])} faces over {count} scans ({reason})")
 
 
 if __name__ == "__main__":

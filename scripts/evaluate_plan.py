@@ -1,4 +1,6 @@
-"""Measure the plan against the true one (thesis, section 5.1, and what it does not measure: openings and rooms)."""
+"""Measure the plan against the true one (thesis, section 5.1, and also openings and rooms)."""
+
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -12,9 +14,19 @@ from scanplan.lab.evaluation import (
 )
 from scanplan.stage import log
 from scanplan.store import registered_scans, schemas, tables
+from scanplan.types import FilePath
 
 
-def evaluate_plan(plan, registration, truth, true_poses, output, *, max_range_m, bitmap_cell_m):
+def evaluate_plan(
+    plan: Mapping[str, FilePath],
+    registration: FilePath,
+    truth: FilePath,
+    true_poses: FilePath,
+    output: FilePath,
+    *,
+    max_range_m: float,
+    bitmap_cell_m: float,
+) -> None:
     """Write how good the plan is, where it is in the map and after one rigid motion.
 
     Parameters
@@ -26,44 +38,43 @@ def evaluate_plan(plan, registration, truth, true_poses, output, *, max_range_m,
     max_range_m, bitmap_cell_m : float
         How far a scan can see; edge of a bitmap's cell.
     """
-    scans, poses = (
-        registered_scans.read_registered_scans(registration),
-        truth_file.read_true_poses(true_poses),
-    )
+    scans = registered_scans.read_registered_scans(registration)
+    poses = truth_file.read_true_poses(true_poses)
     placed = truth_file.interpolate_true_poses(poses, scans.t_ns, true_poses)
-    drawn, chosen = (
-        plan_metrics.read_plan_tables(plan),
-        plan_metrics.evidence_scan_ids(plan["evidence"]),
-    )
-    used = registered_scans.rows_of_scans(chosen, scans, plan["evidence"], registration)
-    sight = truth_file.read_sensor_view(truth, max_range_m=max_range_m)
+    drawn = plan_metrics.read_plan_tables(plan)
+    plan_scan_ids = plan_metrics.evidence_scan_ids(plan["evidence"])
+    rows = registered_scans.rows_of_scans(plan_scan_ids, scans, plan["evidence"], registration)
     floor = wall_findings.observe_truth(
         truth_file.read_true_faces(truth),
-        placed[used],
+        placed[rows],
         truth_file.true_pose_matrices(poses),
-        sight=sight,
+        sight=truth_file.read_sensor_view(truth, max_range_m=max_range_m),
     )
     true = true_plan.read_true_plan(truth)
-    rows = []
     motion = pose_errors.fit_alignment(scans.map_from_sensor[:, :3, 3], placed[:, :3, 3])
+    measures = []
     for frame, moved in (("aligned", motion), ("registered", np.eye(4))):
-        measured = plan_metrics.measure_plan(drawn, moved, true, floor)
-        bitmaps = wall_metrics.measure_plan_lines(
-            plan_metrics.moved_faces_m(drawn, moved), floor, bitmap_cell_m
-        )
-        rows.append({"frame": frame, "n_scans": len(chosen), **bitmaps, **measured})
-        log.log_line(f"evaluate_plan: {frame}, {plan_metrics.summarise_plan_measures(rows[-1])}")
-    tables.write_table(output, schemas.PLAN_EVALUATION, plan_metrics.plan_evaluation_columns(rows))
+        faces_m = plan_metrics.moved_faces_m(drawn, moved)
+        row = {
+            "frame": frame,
+            "n_scans": len(plan_scan_ids),
+            **wall_metrics.measure_plan_lines(faces_m, floor, bitmap_cell_m),
+            **plan_metrics.measure_plan(drawn, moved, true, floor),
+        }
+        log.log_line(f"evaluate_plan: {frame}, {plan_metrics.summarise_plan_measures(row)}")
+        measures.append(row)
+    columns = plan_metrics.plan_evaluation_columns(measures)
+    tables.write_table(output, schemas.PLAN_EVALUATION, columns)
 
 
 if __name__ == "__main__":
     with log.log_to_file(snakemake.log[0]):
+        names = ("faces", "walls", "openings", "rooms", "evidence")
         evaluate_plan(
-            {
-                name: snakemake.input[name]
-                for name in ("faces", "walls", "openings", "rooms", "evidence")
-            },
-            *(snakemake.input[name] for name in ("registration", "truth", "true_poses")),
+            {name: snakemake.input[name] for name in names},
+            snakemake.input.registration,
+            snakemake.input.truth,
+            snakemake.input.true_poses,
             snakemake.output.plan,
             max_range_m=snakemake.params.max_range_m,
             **snakemake.params.settings,

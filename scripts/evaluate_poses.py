@@ -1,14 +1,19 @@
-"""Measure where every registered scan was put against where it truly was, before and after refinement."""
+"""Measure where every registered scan was put against where it truly was."""
 
 import numpy as np
 
 from scanplan.lab.evaluation import pose_errors, truth_file
 from scanplan.stage import log
 from scanplan.store import registered_scans, schemas, tables
+from scanplan.types import Array, FilePath, FloatArray
 
 
-def evaluate_poses(poses, registration, true_poses, output):
-    """Write the errors of the kept scans: as they are, and after the rigid motion that fits all of them best.
+def evaluate_poses(
+    poses: FilePath, registration: FilePath, true_poses: FilePath, output: FilePath
+) -> None:
+    """Write the errors of the kept scans, before refinement and after it.
+
+    They are measured as the scans are, and after the rigid motion that fits all of them best.
 
     Parameters
     ----------
@@ -21,32 +26,27 @@ def evaluate_poses(poses, registration, true_poses, output):
     truth = truth_file.interpolate_true_poses(
         truth_file.read_true_poses(true_poses), scans.t_ns, true_poses
     )
-    columns = {"scan_id": scans.scan_ids, "t_ns": scans.t_ns}
-    for stage, estimate in (
-        ("prior", registered_scans.read_prior_poses(poses, scans, registration)),
-        ("refined", scans.map_from_sensor),
-    ):
+    prior = registered_scans.read_prior_poses(poses, scans, registration)
+    columns: dict[str, Array] = {"scan_id": scans.scan_ids, "t_ns": scans.t_ns}
+    for stage, estimate in (("prior", prior), ("refined", scans.map_from_sensor)):
         motion = pose_errors.fit_alignment(estimate[:, :3, 3], truth[:, :3, 3])
-        for prefix, placed in (("", estimate), ("aligned_", motion @ estimate)):
+        for name, placed in ((stage, estimate), (f"aligned_{stage}", motion @ estimate)):
             distance_m, angle_deg = pose_errors.pose_errors(placed, truth)
-            columns[f"{prefix}{stage}_error_m"], columns[f"{prefix}{stage}_error_deg"] = (
-                distance_m,
-                angle_deg,
-            )
-            log.log_line(
-                f"evaluate_poses: {len(placed)} scans, {prefix}{stage}: {_told(distance_m, angle_deg)}"
-            )
+            columns[f"{name}_error_m"] = distance_m
+            columns[f"{name}_error_deg"] = angle_deg
+            errors = _summarise_errors(distance_m, angle_deg)
+            log.log_line(f"evaluate_poses: {len(placed)} scans, {name}: {errors}")
     tables.write_table(output, schemas.POSE_ERRORS, columns)
 
 
-def _told(distance_m, angle_deg):
-    (middle_m, high_m), (middle_deg, high_deg) = (
-        np.percentile(e, (50, 95)) for e in (distance_m, angle_deg)
-    )
+def _summarise_errors(distance_m: FloatArray, angle_deg: FloatArray) -> str:
+    middle_m, high_m = np.percentile(distance_m, (50, 95))
+    middle_deg, high_deg = np.percentile(angle_deg, (50, 95))
     rms_m = np.sqrt(np.mean(distance_m**2))
     return (
-        f"median {middle_m:.3f} m, rms {rms_m:.3f} m, 95 % below {high_m:.3f} m, largest {distance_m.max():.3f} m;"
-        f" median {middle_deg:.2f} deg, 95 % below {high_deg:.2f} deg, largest {angle_deg.max():.2f} deg"
+        f"median {middle_m:.3f} m, rms {rms_m:.3f} m, 95 % below {high_m:.3f} m,"
+        f" largest {distance_m.max():.3f} m; median {middle_deg:.2f} deg,"
+        f" 95 % below {high_deg:.2f} deg, largest {angle_deg.max():.2f} deg"
     )
 
 

@@ -1,8 +1,11 @@
 """Measure every claim of the thesis on every seed."""
 
+from collections.abc import Mapping, Sequence
+
 from scanplan.lab.thesis import judging
 from scanplan.stage import log
 from scanplan.store import schemas, tables
+from scanplan.types import Columns, FilePath
 
 _SCHEMAS = {
     "walls": schemas.EVALUATION,
@@ -17,8 +20,14 @@ _SCHEMAS = {
 }
 
 
-def judge_claims(files, output, *, rooms_seeds, drive_seeds):
-    """Write what was measured for every claim, quantity by quantity, and whether the claim holds by it.
+def judge_claims(
+    files: Mapping[str, Sequence[FilePath]],
+    output: FilePath,
+    *,
+    rooms_seeds: Sequence[int],
+    drive_seeds: Sequence[int],
+) -> None:
+    """Write what was measured for every claim by quantity, and whether the claim holds by it.
 
     Parameters
     ----------
@@ -29,35 +38,28 @@ def judge_claims(files, output, *, rooms_seeds, drive_seeds):
     rooms_seeds, drive_seeds : list of int
         Of the files that begin with `rooms_`, and of the others.
     """
-    rooms = _by_seed(files, rooms_seeds, ["rooms"])
-    drive = _by_seed(files, drive_seeds, ["drive", "limits"])
+    rooms = {name: paths for name, paths in files.items() if name.startswith("rooms_")}
+    drives = {name: paths for name, paths in files.items() if not name.startswith("rooms_")}
     rows = []
-    for kind, found in ((judging.ROOMS, rooms), (judging.DRIVE, drive)):
-        rows += [
-            row
-            for seed, known in found.items()
-            for row in judging.judge_claims(kind, f"seed {seed}", known)
-        ]
+    for kind, of_kind, seeds in (
+        (judging.ROOMS, rooms, rooms_seeds),
+        (judging.DRIVE, drives, drive_seeds),
+    ):
+        for i, seed in enumerate(seeds):
+            rows += judging.judge_claims(kind, f"seed {seed}", _read_tables(of_kind, i))
     rows.sort(key=lambda row: (row["claim"], row["survey"], row["quantity"]))
-    tables.write_table(
-        output,
-        schemas.CLAIMS,
-        {name: [row[name] for row in rows] for name in schemas.CLAIMS.columns},
-    )
+    columns = {name: [row[name] for row in rows] for name in schemas.CLAIMS.columns}
+    tables.write_table(output, schemas.CLAIMS, columns)
     judged = {(row["claim"], row["survey"]): row["holds"] for row in rows if row["holds"]}
-    log.log_line(
-        f"judge_claims: {len(judged)} judgements, {list(judged.values()).count('yes')} of them yes"
-    )
+    n_yes = list(judged.values()).count("yes")
+    log.log_line(f"judge_claims: {len(judged)} judgements, {n_yes} of them yes")
 
 
-def _by_seed(files, seeds, kinds):
+def _read_tables(files: Mapping[str, Sequence[FilePath]], i: int) -> dict[str, Columns]:
+    """Read the tables of the i-th seed."""
     return {
-        seed: {
-            key: tables.read_table(paths[i], _SCHEMAS[key.split("_", 1)[1]])
-            for key, paths in files.items()
-            if key.split("_")[0] in kinds
-        }
-        for i, seed in enumerate(seeds)
+        name: tables.read_table(paths[i], _SCHEMAS[name.split("_", 1)[1]])
+        for name, paths in files.items()
     }
 
 

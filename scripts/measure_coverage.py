@@ -1,20 +1,36 @@
-"""Measure what hulls cover: by number of clusters, and against what a scan truly sees (thesis, 3.3.2 and 5.2)."""
+"""Measure what hulls cover, by number of clusters and against what scans truly see."""
+
+from collections.abc import Sequence
 
 import numpy as np
 import shapely
 
 from scanplan.lab.evaluation import truth_file
-from scanplan.lab.thesis import cluster_growth, seen_area
+from scanplan.lab.thesis import coverage
 from scanplan.selection import hulls
 from scanplan.stage import log
 from scanplan.store import registered_scans, schemas, tables
+from scanplan.types import FilePath
 
 
 def measure_coverage(
-    scans, built, registration, truth, true_poses, clusters, areas,
-    *, n_clusters, sample_size, seed, max_range_m, threads=1,
-):  # fmt: skip
-    """Write how the covered area grows with every number of clusters, and each scan's areas.
+    scans: FilePath,
+    built: FilePath,
+    registration: FilePath,
+    truth: FilePath,
+    true_poses: FilePath,
+    clusters: FilePath,
+    areas: FilePath,
+    *,
+    n_clusters: Sequence[int],
+    sample_size: int,
+    seed: int,
+    max_range_m: float,
+    threads: int = 1,
+) -> None:
+    """Write how covered area grows with every number of clusters, and each scan's areas.
+
+    These are the thesis's claims of 3.3.2 and 5.2.
 
     Parameters
     ----------
@@ -29,42 +45,38 @@ def measure_coverage(
         How far a scan can see.
     threads : int
     """
-    grown = cluster_growth.cluster_growth_columns(
+    growth = coverage.cluster_growth_columns(
         scans, n_clusters, sample_size=sample_size, seed=seed, threads=threads
     )
-    tables.write_table(clusters, schemas.CLUSTERS, grown)
-    poses, found = (
-        truth_file.read_true_poses(true_poses),
-        registered_scans.read_registered_scans(registration),
-    )
-    places_m = truth_file.interpolate_true_poses(poses, found.t_ns, true_poses)[:, :2, 3]
-    seen = seen_area.seen_polygons(
-        truth_file.read_true_faces(truth), places_m, max_range_m=max_range_m
-    )
+    tables.write_table(clusters, schemas.CLUSTERS, growth)
+    registered = registered_scans.read_registered_scans(registration)
+    poses = truth_file.read_true_poses(true_poses)
+    places_m = truth_file.interpolate_true_poses(poses, registered.t_ns, true_poses)[:, :2, 3]
+    faces = truth_file.read_true_faces(truth)
+    seen = coverage.seen_polygons(faces, places_m, max_range_m=max_range_m)
     columns = tables.read_table(built, schemas.HULLS)
-    kinds = {
-        "full_hull": hulls.scan_full_hulls(columns)[1],
-        "cluster_hull": hulls.scan_polygons(columns)[1],
+    _, full_hulls = hulls.scan_full_hulls(columns)
+    _, cluster_hulls = hulls.scan_polygons(columns)
+    measures = {
+        "seen_m2": shapely.area(seen),
+        "full_hull_m2": shapely.area(full_hulls),
+        "cluster_hull_m2": shapely.area(cluster_hulls),
+        "full_hull_iou": coverage.polygon_iou(full_hulls, seen),
+        "cluster_hull_iou": coverage.polygon_iou(cluster_hulls, seen),
     }
-    measured = {"scan_id": found.scan_ids, "seen_m2": shapely.area(seen)}
-    measured |= {f"{kind}_m2": shapely.area(polygons) for kind, polygons in kinds.items()}
-    measured |= {
-        f"{kind}_iou": seen_area.polygon_iou(polygons, seen) for kind, polygons in kinds.items()
-    }
-    tables.write_table(areas, schemas.AREAS, measured)
-    median = [
-        f"{np.median(values):.2f} {name}" for name, values in measured.items() if name != "scan_id"
-    ]
-    log.log_line(f"measure_coverage: {len(found.scan_ids)} scans, median {', '.join(median)}")
+    tables.write_table(areas, schemas.AREAS, {"scan_id": registered.scan_ids, **measures})
+    medians = ", ".join(f"{np.median(values):.2f} {name}" for name, values in measures.items())
+    log.log_line(f"measure_coverage: {len(registered.scan_ids)} scans, median {medians}")
 
 
 if __name__ == "__main__":
     with log.log_to_file(snakemake.log[0]):
         measure_coverage(
-            *(
-                snakemake.input[name]
-                for name in ("scans", "hulls", "registration", "truth", "true_poses")
-            ),
+            snakemake.input.scans,
+            snakemake.input.hulls,
+            snakemake.input.registration,
+            snakemake.input.truth,
+            snakemake.input.true_poses,
             snakemake.output.clusters,
             snakemake.output.areas,
             n_clusters=snakemake.params.n_clusters,

@@ -1,16 +1,26 @@
-"""Measure what a survey that was sampled unevenly does to a random order and to the area-based one (thesis, 5.2)."""
+"""Measure what uneven sampling does to a random order and to the area-based one (thesis, 5.2)."""
 
 from scanplan.lab.evaluation import truth_file
 from scanplan.lab.thesis import unevenness
 from scanplan.selection import hulls
 from scanplan.stage import log
 from scanplan.store import registered_scans, schemas, tables
+from scanplan.types import FilePath, Settings
 
 
 def measure_unevenness(
-    scans, built, registration, truth, true_poses, output, *, sampling, max_range_m, n_selected
-):
-    """Write how much true wall the first scans see when those of a crowd were taken once, 5 and 20 times.
+    scans: FilePath,
+    built: FilePath,
+    registration: FilePath,
+    truth: FilePath,
+    true_poses: FilePath,
+    output: FilePath,
+    *,
+    sampling: Settings,
+    max_range_m: float,
+    n_selected: int,
+) -> None:
+    """Write how much true wall the first scans see when a crowd's were taken 1, 5 and 20 times.
 
     Parameters
     ----------
@@ -25,46 +35,46 @@ def measure_unevenness(
     n_selected : int
         Size of the subsets.
     """
-    store, found = tables.ScanStore(scans), registered_scans.read_registered_scans(registration)
-    placed = truth_file.interpolate_true_poses(
-        truth_file.read_true_poses(true_poses), found.t_ns, true_poses
-    )
+    store = tables.ScanStore(scans)
+    registered = registered_scans.read_registered_scans(registration)
+    poses = truth_file.read_true_poses(true_poses)
+    placed = truth_file.interpolate_true_poses(poses, registered.t_ns, true_poses)
     sight = truth_file.read_sensor_view(truth, max_range_m=max_range_m)
     seen, length_m = unevenness.view_cells(truth_file.read_true_faces(truth), placed, sight)
     crowds = unevenness.draw_crowds(placed[:, :2, 3], sampling["seed"])
-    repeated, chosen = {}, sorted({row for crowd in crowds for row in crowd.tolist()})
-    taken = log.report_progress(
-        store.scans(found.scan_ids[chosen]), "measure_unevenness", total=len(chosen)
+    rows = sorted({row for crowd in crowds for row in crowd.tolist()})
+    clouds = log.report_progress(
+        store.scans(registered.scan_ids[rows]), "measure_unevenness", total=len(rows)
     )
-    for row, (scan_id, xyz_m) in zip(chosen, taken, strict=True):
-        repeated[row] = unevenness.copy_hulls(
-            scan_id, xyz_m, n_copies=max(unevenness.REPEATS) - 1, **sampling
-        )
-    polygons = hulls.scan_polygons(tables.read_table(built, schemas.HULLS))[1]
+    n_copies = max(unevenness.REPEATS) - 1
+    repeated = {
+        row: unevenness.copy_hulls(scan_id, xyz_m, n_copies=n_copies, **sampling)
+        for row, (scan_id, xyz_m) in zip(rows, clouds, strict=True)
+    }
+    _, polygons = hulls.scan_polygons(tables.read_table(built, schemas.HULLS))
     columns = unevenness.unevenness_columns(
         seen, length_m, polygons, repeated, crowds, n_selected=n_selected, seed=sampling["seed"]
     )
     tables.write_table(output, schemas.UNEVENNESS, columns)
-    random, area = (
-        unevenness.lost_shares(columns, order)[1][-1]
-        for order in (unevenness.RANDOM, unevenness.AREA)
-    )
+    _, lost_at_random = unevenness.lost_shares(columns, unevenness.RANDOM)
+    _, lost_by_area = unevenness.lost_shares(columns, unevenness.AREA)
     log.log_line(
-        f"measure_unevenness: {len(chosen)} scans repeated, lost {random:.1%} at random, {area:.1%} by area"
+        f"measure_unevenness: {len(rows)} scans repeated, lost {lost_at_random[-1]:.1%} at random,"
+        f" {lost_by_area[-1]:.1%} by area"
     )
 
 
 if __name__ == "__main__":
     with log.log_to_file(snakemake.log[0]):
+        names = ("n_clusters", "sample_size", "seed")
         measure_unevenness(
-            *(
-                snakemake.input[name]
-                for name in ("scans", "hulls", "registration", "truth", "true_poses")
-            ),
+            snakemake.input.scans,
+            snakemake.input.hulls,
+            snakemake.input.registration,
+            snakemake.input.truth,
+            snakemake.input.true_poses,
             snakemake.output.unevenness,
-            sampling={
-                name: snakemake.params.hulls[name] for name in ("n_clusters", "sample_size", "seed")
-            },
+            sampling={name: snakemake.params.hulls[name] for name in names},
             max_range_m=snakemake.params.max_range_m,
             n_selected=snakemake.params.n_selected,
         )

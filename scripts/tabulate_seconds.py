@@ -1,5 +1,6 @@
 """Tabulate how long ordering the scans and extracting the walls of the first ones takes."""
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -7,13 +8,20 @@ import numpy as np
 from scanplan.lab.evaluation import run_times
 from scanplan.stage import log
 from scanplan.store import schemas, tables
+from scanplan.types import FilePath
 
 
-def tabulate_seconds(evaluated, ordering, extraction, output):
-    """Write the seconds of every method, extractor and number of scans; they differ from run to run.
+def tabulate_seconds(
+    evaluated: FilePath,
+    ordering: Mapping[str, FilePath],
+    extraction: Mapping[str, FilePath],
+    output: FilePath,
+) -> None:
+    """Write the seconds of every method, extractor and number of scans.
 
-    ASSUME extraction takes every scan as long as the next: the first k of n scans take k / n of the time of all. The
-    orders that know the truth are no methods and have no time.
+    They differ from run to run. ASSUME extraction takes every scan as long as the next: the first k
+    of n scans take k / n of the time of all. The orders that know the truth are no methods and have
+    no time.
 
     Parameters
     ----------
@@ -24,32 +32,30 @@ def tabulate_seconds(evaluated, ordering, extraction, output):
     output : path-like
         evaluation/seconds.parquet, to write.
     """
-    found = tables.read_table(evaluated, schemas.EVALUATION, ["method", "extractor", "k"])
-    order_s, extract_s = (
-        {name: run_times.read_job_seconds(path) for name, path in of.items()}
-        for of in (ordering, extraction)
-    )
-    timed = np.isin(found["method"], list(order_s))
-    rows = {name: values[timed] for name, values in found.items()}
+    order_s = {name: run_times.read_job_seconds(path) for name, path in ordering.items()}
+    extract_s = {name: run_times.read_job_seconds(path) for name, path in extraction.items()}
+    subsets = tables.read_table(evaluated, schemas.EVALUATION, ["method", "extractor", "k"])
+    is_timed = np.isin(subsets["method"], list(order_s))
+    rows = {name: values[is_timed] for name, values in subsets.items()}
     share = rows["k"] / rows["k"].max()
-    of_order = np.array([order_s[method] for method in rows["method"]])
-    of_walls = np.array([extract_s[extractor] for extractor in rows["extractor"]])
-    tables.write_table(output, schemas.SECONDS, {**rows, "seconds": of_order + share * of_walls})
-    slowest = max(order_s, key=order_s.get)
+    of_order_s = np.array([order_s[method] for method in rows["method"]])
+    of_walls_s = np.array([extract_s[extractor] for extractor in rows["extractor"]])
+    seconds = of_order_s + share * of_walls_s
+    tables.write_table(output, schemas.SECONDS, {**rows, "seconds": seconds})
+    slowest = max(order_s, key=lambda method: order_s[method])
     log.log_line(f"tabulate_seconds: ordering takes at most {order_s[slowest]:.1f} s ({slowest})")
+
+
+def _name_by_job(paths: Sequence[FilePath], job: str) -> dict[str, FilePath]:
+    """Return the benchmark files of a job by what follows its name in theirs."""
+    return {Path(path).stem.removeprefix(f"{job}_"): path for path in paths}
 
 
 if __name__ == "__main__":
     with log.log_to_file(snakemake.log[0]):
         tabulate_seconds(
             snakemake.input.walls,
-            {
-                Path(path).stem.removeprefix("order_scans_"): path
-                for path in snakemake.input.ordering
-            },
-            {
-                Path(path).stem.removeprefix("extract_walls_"): path
-                for path in snakemake.input.extraction
-            },
+            _name_by_job(snakemake.input.ordering, "order_scans"),
+            _name_by_job(snakemake.input.extraction, "extract_walls"),
             snakemake.output.seconds,
         )

@@ -1,5 +1,6 @@
 """Tabulate time, scans and data after each step from recording to subset (thesis, table 5.1)."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -7,9 +8,27 @@ import numpy as np
 from scanplan.lab.evaluation import run_times
 from scanplan.stage import log
 from scanplan.store import schemas, tables, tum
+from scanplan.types import FilePath
+
+_STEPS = [
+    "Data collection",
+    "Selecting and registering scans",
+    "Hull creation",
+    "Cluster subset selection",
+]
 
 
-def tabulate_steps(recordings, true_poses, scans, built, selection, times, output, *, n_selected):
+def tabulate_steps(
+    recordings: Sequence[FilePath],
+    true_poses: FilePath,
+    scans: FilePath,
+    built: FilePath,
+    selection: FilePath,
+    times: Sequence[Sequence[FilePath]],
+    output: FilePath,
+    *,
+    n_selected: int,
+) -> None:
     """Write the table; its run times differ from run to run.
 
     Parameters
@@ -26,50 +45,40 @@ def tabulate_steps(recordings, true_poses, scans, built, selection, times, outpu
     """
     t_ns, _ = tum.read_tum(true_poses)
     hulls = tables.read_table(built, schemas.HULLS, ["scan_id", "cluster", "n_points"])
-    chosen = tables.read_table(selection, schemas.SELECTION, ["rank", "scan_id"])["scan_id"][
-        :n_selected
-    ]
+    order = tables.read_table(selection, schemas.SELECTION, ["rank", "scan_id"])["scan_id"]
+    subset_ids = order[:n_selected]
+    n_kept = len(np.unique(hulls["scan_id"]))
+    in_subset = np.isin(hulls["scan_id"], subset_ids)
     # points take the same room wherever they are in the table
-    share = hulls["n_points"][np.isin(hulls["scan_id"], chosen)].sum() / hulls["n_points"].sum()
-    kept = len(np.unique(hulls["scan_id"]))
-    n_bytes = [
-        sum(Path(file).stat().st_size for file in recordings),
-        _size(scans),
-        _size(built),
-        share * _size(scans),
-    ]
+    share = hulls["n_points"][in_subset].sum() / hulls["n_points"].sum()
+    n_bytes = [sum(map(_size, recordings)), _size(scans), _size(built), share * _size(scans)]
+    drive_s = (t_ns[-1] - t_ns[0]) / 1e9
+    jobs_s = [sum(map(run_times.read_job_seconds, files)) for files in times]
     rows = {
         "step": np.arange(1, 5),
-        "name": [
-            "Data collection",
-            "Selecting and registering scans",
-            "Hull creation",
-            "Cluster subset selection",
-        ],
-        "seconds": np.array(
-            [
-                (t_ns[-1] - t_ns[0]) / 1e9,
-                *(sum(map(run_times.read_job_seconds, files)) for files in times),
-            ]
-        ),
-        "n_scans": np.array([len(t_ns), kept, kept, len(chosen)]),
+        "name": _STEPS,
+        "seconds": np.array([drive_s, *jobs_s]),
+        "n_scans": np.array([len(t_ns), n_kept, n_kept, len(subset_ids)]),
         "n_bytes": np.array(n_bytes).astype(np.int64),
     }
     tables.write_table(output, schemas.STEPS, rows)
-    log.log_line(f"tabulate_steps: {len(t_ns):,} scans, {kept} registered, {len(chosen)} selected")
+    log.log_line(
+        f"tabulate_steps: {len(t_ns):,} scans, {n_kept} registered, {len(subset_ids)} selected"
+    )
 
 
-def _size(path):
+def _size(path: FilePath) -> int:
     return Path(path).stat().st_size
 
 
 if __name__ == "__main__":
     with log.log_to_file(snakemake.log[0]):
         tabulate_steps(
-            *(
-                snakemake.input[name]
-                for name in ("recordings", "true_poses", "scans", "hulls", "selection")
-            ),
+            snakemake.input.recordings,
+            snakemake.input.true_poses,
+            snakemake.input.scans,
+            snakemake.input.hulls,
+            snakemake.input.selection,
             [snakemake.input[name] for name in ("registering", "hulling", "ordering")],
             snakemake.output.steps,
             n_selected=snakemake.params.n_selected,

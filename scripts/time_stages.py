@@ -1,18 +1,32 @@
-"""Time the extractors scan by scan and the selection by number of scans (thesis, figures 5.8 and 5.10)."""
+"""Time the extractors by scan and the selection by number of scans (thesis, figures 5.8, 5.10)."""
+
+from collections.abc import Mapping, Sequence
 
 from scanplan.extraction.extractors import EXTRACTORS, Extractor
 from scanplan.lab.thesis import plain_ransac, timing
 from scanplan.lab.thesis.claim_measures import ITERATIVE, OURS, PLAIN, PLAIN_CLUSTERS
 from scanplan.stage import log
 from scanplan.store import schemas, tables
+from scanplan.types import FilePath, Settings
 
 _PLAIN = Extractor(plain_ransac.PlainRansacSettings, plain_ransac.extract_plain)
 _EXTRACTORS = {PLAIN_CLUSTERS: (EXTRACTORS[OURS], OURS), PLAIN: (_PLAIN, ITERATIVE)}
+"""Task to its extractor, and whose settings it has."""
 _CLUSTERED, _THINNED = 3, 8  # a call for every number of clusters, or of points, is long
 _SELECTION_SIZES = (10, 20, 30, 45, 60, 90, 130, 180, 270, 400, 600, 900, 1300)
 
 
-def time_stages(scans, registration, built, output, *, walls, hulls, n_clusters, timed_scans):
+def time_stages(
+    scans: FilePath,
+    registration: FilePath,
+    built: FilePath,
+    output: FilePath,
+    *,
+    walls: Mapping[str, Settings],
+    hulls: Settings,
+    n_clusters: Sequence[int],
+    timed_scans: int,
+) -> None:
     """Write run times of cluster and iterative RANSAC as in the thesis, and of hulls and orders.
 
     They differ from run to run.
@@ -33,27 +47,25 @@ def time_stages(scans, registration, built, output, *, walls, hulls, n_clusters,
     """
     store = tables.ScanStore(scans)
     columns = tables.read_table(built, schemas.HULLS)
-    chosen, n = timing.spread_rows(store.scan_ids, timed_scans), len(store.scan_ids)
-    sizes = [size for size in _SELECTION_SIZES if size < n] + [n]
-    some, few = (
-        timing.spread_rows(chosen, max(timed_scans // part, 2)) for part in (_CLUSTERED, _THINNED)
-    )
+    n_scans = len(store.scan_ids)
+    sizes = [*(size for size in _SELECTION_SIZES if size < n_scans), n_scans]
+    timed_ids = timing.spread_rows(store.scan_ids, timed_scans)
+    clustered_ids = timing.spread_rows(timed_ids, max(timed_scans // _CLUSTERED, 2))
+    thinned_ids = timing.spread_rows(timed_ids, max(timed_scans // _THINNED, 2))
     rows = [
         *timing.time_selection(columns, sizes),
-        *timing.time_clusters(store, some, sorted(n_clusters), **hulls),
+        *timing.time_clusters(store, clustered_ids, sorted(n_clusters), **hulls),
     ]
-    for name, (method, settings) in _EXTRACTORS.items():
-        how = walls[settings] | plain_ransac.LIFTED, registration
-        timed = timing.time_extractor(name, method, store, chosen, *how)
-        rows += log.report_progress(timed, f"time_stages {name}", total=len(chosen))
-        rows += timing.time_by_points(name, method, store, few, *how)
+    for task, (extractor, name) in _EXTRACTORS.items():
+        settings = {**walls[name], **plain_ransac.LIFTED}
+        times = timing.time_extractor(task, extractor, store, timed_ids, settings, registration)
+        rows += log.report_progress(times, f"time_stages {task}", total=len(timed_ids))
+        rows += timing.time_by_points(task, extractor, store, thinned_ids, settings, registration)
     rows.sort(key=lambda row: (row["task"], row["size"], row["item"]))
-    tables.write_table(
-        output, schemas.TIMES, {name: [row[name] for row in rows] for name in schemas.TIMES.columns}
-    )
-    log.log_line(
-        f"time_stages: {len(rows)} times, {sum(row['seconds'] for row in rows):.0f} s in all"
-    )
+    times_columns = {name: [row[name] for row in rows] for name in schemas.TIMES.columns}
+    tables.write_table(output, schemas.TIMES, times_columns)
+    total_s = sum(row["seconds"] for row in rows)
+    log.log_line(f"time_stages: {len(rows)} times, {total_s:.0f} s in all")
 
 
 if __name__ == "__main__":

@@ -1,38 +1,36 @@
 """Write the report of a dataset: one page that opens offline."""
 
 import os
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
 from scanplan.plan import floorplan
 from scanplan.project import code_files
-from scanplan.report.page import RunFacts, SurveyFacts, report_page
+from scanplan.report.facts import RunFacts, SurveyFacts
+from scanplan.report.page import report_page
 from scanplan.selection import stopping
 from scanplan.stage import log
 from scanplan.store import atomic, schemas, tables
-
-_PLAN = {
-    "walls": schemas.PLAN_WALLS,
-    "openings": schemas.OPENINGS,
-    "rooms": schemas.ROOMS,
-    "free": schemas.FREE,
-}
-_SURVEY = {
-    "selection": schemas.SELECTION,
-    "registration": schemas.REGISTRATION,
-    "poses": schemas.POSES,
-}
-_SEEN = {"segments": schemas.WALLS, "evidence": schemas.EVIDENCE}
+from scanplan.types import FilePath, Settings
 
 
-def write_report(files, output, *, name, settings, benchmarks):
+def write_report(
+    files: Mapping[str, Any],
+    output: FilePath,
+    *,
+    name: str,
+    settings: Settings,
+    benchmarks: FilePath,
+) -> None:
     """Write the report.
 
     Parameters
     ----------
     files : dict of str to path-like, or list of path-like
-        `faces`, `walls`, `openings`, `rooms`, `free`, `evidence` of plan/; `selection`, `segments` (walls/), `poses`,
-        `registration`; `page` (HTML, CSS, JavaScript); `figures`; `evaluation` (none, or of walls and of plan);
-        `recordings`; `results`.
+        `faces`, `walls`, `openings`, `rooms`, `free`, `evidence` of plan/; `selection`, `segments`
+        (walls/), `poses`, `registration`; `page` (templates, CSS, JavaScript); `figures`;
+        `evaluation` (none, or of walls and of plan); `recordings`; `results`.
     output : path-like
         report.html, to write.
     name : str
@@ -41,45 +39,54 @@ def write_report(files, output, *, name, settings, benchmarks):
     benchmarks : path-like
         Folder of the stages' run times, as far as they are there.
     """
-    parts = {
-        part: tables.read_table(files[part], schema, allow_empty=True)
-        for part, schema in _PLAN.items()
-    }
     plan = floorplan.FloorPlan(
-        name=name, faces=tables.read_table(files["faces"], schemas.FACES), **parts
+        name=name,
+        faces=tables.read_table(files["faces"], schemas.FACES),
+        walls=tables.read_table(files["walls"], schemas.PLAN_WALLS, allow_empty=True),
+        openings=tables.read_table(files["openings"], schemas.OPENINGS, allow_empty=True),
+        rooms=tables.read_table(files["rooms"], schemas.ROOMS, allow_empty=True),
+        free=tables.read_table(files["free"], schemas.FREE, allow_empty=True),
     )
-    made = {part: tables.read_table(files[part], schema) for part, schema in _SURVEY.items()}
-    made |= {
-        part: tables.read_table(files[part], schema, allow_empty=True)
-        for part, schema in _SEEN.items()
-    }
-    chosen, _ = stopping.choose_n_scans(made["selection"], **settings["selection"]["stop"])
-    kinds = (schemas.EVALUATION, schemas.PLAN_EVALUATION)
-    measured = [
-        tables.read_table(path, kind)
-        for path, kind in zip(files["evaluation"], kinds, strict=False)
-    ]
-    survey = SurveyFacts(**made, chosen=chosen, evaluation=tuple(measured))
+    survey = _read_survey(files, settings["selection"]["stop"])
+    recorded = [("recording", Path(path).name, _size(path)) for path in files["recordings"]]
+    folder = Path(output).parent
+    made = [("result", os.path.relpath(path, folder), _size(path)) for path in files["results"]]
     run = RunFacts(
         settings=settings,
-        figures={
-            Path(figure).stem: Path(figure).read_text(encoding="utf-8")
-            for figure in files["figures"]
-        },
-        benchmarks={file.stem: file.read_text() for file in sorted(Path(benchmarks).glob("*.tsv"))},
-        sizes=[("recording", Path(p).name, Path(p).stat().st_size) for p in files["recordings"]]
-        + [
-            ("result", os.path.relpath(p, Path(output).parent), Path(p).stat().st_size)
-            for p in files["results"]
-        ],
+        figures={Path(path).stem: text for path, text in _read_texts(files["figures"])},
+        benchmarks={path.stem: path.read_text() for path in sorted(Path(benchmarks).glob("*.tsv"))},
+        sizes=[*recorded, *made],
         version=f"Made by scanplan, code {code_files.digest_code()}.",
     )
-    page = [Path(part).read_text(encoding="utf-8") for part in files["page"]]
-    text = report_page(*page, plan, survey, run)
+    sources = {Path(path).name: text for path, text in _read_texts(files["page"])}
+    text = report_page(sources, plan, survey, run)
     atomic.write_text(output, text)
-    log.log_line(
-        f"write_report: {len(text) / 1e6:.1f} MB, {chosen} scans, {floorplan.summarise_floorplan(plan)}"
+    summary = floorplan.summarise_floorplan(plan)
+    log.log_line(f"write_report: {len(text) / 1e6:.1f} MB, {survey.chosen} scans, {summary}")
+
+
+def _read_survey(files: Mapping[str, Any], stop: Settings) -> SurveyFacts:
+    selection = tables.read_table(files["selection"], schemas.SELECTION)
+    kinds = (schemas.EVALUATION, schemas.PLAN_EVALUATION)
+    # without a truth there is no table of the evaluation
+    evaluation = zip(files["evaluation"], kinds, strict=False)
+    return SurveyFacts(
+        selection=selection,
+        registration=tables.read_table(files["registration"], schemas.REGISTRATION),
+        poses=tables.read_table(files["poses"], schemas.POSES),
+        segments=tables.read_table(files["segments"], schemas.WALLS, allow_empty=True),
+        evidence=tables.read_table(files["evidence"], schemas.EVIDENCE, allow_empty=True),
+        chosen=stopping.choose_n_scans(selection, **stop)[0],
+        evaluation=tuple(tables.read_table(path, kind) for path, kind in evaluation),
     )
+
+
+def _read_texts(paths: Iterable[FilePath]) -> list[tuple[FilePath, str]]:
+    return [(path, Path(path).read_text(encoding="utf-8")) for path in paths]
+
+
+def _size(path: FilePath) -> int:
+    return Path(path).stat().st_size
 
 
 if __name__ == "__main__":

@@ -1,13 +1,23 @@
 """Write the report of the thesis's experiments."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from scanplan.lab.thesis.page import thesis_page
 from scanplan.stage import log
 from scanplan.store import atomic, schemas, tables
+from scanplan.types import FilePath
 
 
-def write_thesis(figures, orders, claims, steps, limited, output):
+def write_thesis(
+    figures: Sequence[FilePath],
+    orders: FilePath,
+    claims: FilePath,
+    steps: FilePath,
+    limited: FilePath,
+    page: Sequence[FilePath],
+    output: FilePath,
+) -> None:
     """Write one HTML page with figures, table and claims, which needs no other file.
 
     Parameters
@@ -18,17 +28,26 @@ def write_thesis(figures, orders, claims, steps, limited, output):
         orders.svg.
     claims, steps, limited : path-like
         claims.parquet, and thesis/steps.parquet of the drive with our limits and with the thesis's.
+    page : list of path-like
+        Template and style.
     output : path-like
         report.html, to write.
     """
-    drawn = {Path(path).name: Path(path).read_text(encoding="utf-8") for path in figures}
-    beyond = Path(orders).read_text(encoding="utf-8")
-    drive, drive_limited = (tables.read_table(path, schemas.STEPS) for path in (steps, limited))
-    page = thesis_page(
-        drawn, beyond, tables.read_table(claims, schemas.CLAIMS), drive, drive_limited
+    figure_texts = _read_texts(figures)
+    text = thesis_page(
+        _read_texts(page),
+        figure_texts,
+        Path(orders).read_text(encoding="utf-8"),
+        tables.read_table(claims, schemas.CLAIMS),
+        tables.read_table(steps, schemas.STEPS),
+        tables.read_table(limited, schemas.STEPS),
     )
-    atomic.write_text(output, page)
-    log.log_line(f"write_thesis: {len(drawn)} figures, {len(page) / 1e6:.1f} MB")
+    atomic.write_text(output, text)
+    log.log_line(f"write_thesis: {len(figure_texts)} figures, {len(text) / 1e6:.1f} MB")
+
+
+def _read_texts(paths: Sequence[FilePath]) -> dict[str, str]:
+    return {Path(path).name: Path(path).read_text(encoding="utf-8") for path in paths}
 
 
 if __name__ == "__main__":
@@ -39,5 +58,6 @@ if __name__ == "__main__":
             snakemake.input.claims,
             snakemake.input.steps[0],
             snakemake.input.limited[0],
+            list(snakemake.input.page),
             snakemake.output.page,
         )

@@ -90,7 +90,7 @@ def compare_orders(polygons: Array, say: Say) -> None:
         f" {literal_s:.0f} s for the first {LITERAL_RANKS}, the same scans, so {whole_s:.0f} s for"
         f" all (by the number of unions): {whole_s / ours_s:.0f} times faster"
     )
-    share = order.covered_m2 / bound_m2
+    share = order.covered / bound_m2
     shares = ", ".join(f"{share[k - 1]:.0%} at {k}" for k in _TOLD_RANKS)
     say(f"certificate: in {bound_s:.2f} s, at least {shares} scans of what any choice covers")
 

@@ -156,7 +156,7 @@ def _found_cells(
     lines_m: FloatArray, truth: wall_findings.VisibleTruth, distance_m: float
 ) -> BoolArray:
     near = length_metrics.find_near_intervals(truth.cells.faces_m, lines_m, distance_m)
-    begin, end = visible_faces.cells_in_intervals(truth.cells, near.line, near.low_m, near.high_m)
+    begin, end = face_cells.cells_in_intervals(truth.cells, near.line, near.low_m, near.high_m)
     change = np.zeros(len(truth.cells.face) + 1, int)
     np.add.at(change, begin, 1)
     np.add.at(change, end, -1)

@@ -1,4 +1,4 @@
-"""A headless Chromium, driven over its DevTools pipe: pages as a person sees them, without any package."""
+"""A headless Chromium, driven over its DevTools pipe: pages as a person sees them."""
 
 import base64
 import json
@@ -19,7 +19,7 @@ _PATIENCE_S = 30
 
 
 def find():
-    """The browser's program: that of the variable CHROMIUM, or the first known name on the path; None without one."""
+    """The browser's program: that of CHROMIUM, or the first known name on the path; else None."""
     return os.environ.get("CHROMIUM") or next(filter(None, map(shutil.which, _NAMES)), None)
 
 
@@ -29,7 +29,8 @@ class Page:
     Attributes
     ----------
     complaints : list of str
-        What the console got at the levels warning and error, exceptions, and requests that left the page.
+        What the console got at the levels warning and error, exceptions, and requests that left
+        the page.
     """
 
     def __init__(self, folder):
@@ -38,12 +39,13 @@ class Page:
         self._read, to_write = os.pipe()
         self._process = subprocess.Popen(
             [
-                find(), "--headless=new", "--remote-debugging-pipe", "--no-sandbox", "--disable-gpu", "--no-first-run",
-                "--disable-dev-shm-usage", "--disable-background-networking", f"--user-data-dir={folder}",
+                find(), "--headless=new", "--remote-debugging-pipe", "--no-sandbox",
+                "--disable-gpu", "--no-first-run", "--disable-dev-shm-usage",
+                "--disable-background-networking", f"--user-data-dir={folder}",
                 "about:blank",
             ],
-            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, pass_fds=(3, 4),
-            preexec_fn=lambda: _place(to_read, to_write), start_new_session=True,
+            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+            pass_fds=(3, 4), preexec_fn=lambda: _place(to_read, to_write), start_new_session=True,
         )  # fmt: skip
         os.close(to_read), os.close(to_write)
         targets = self._ask("Target.getTargets")["targetInfos"]

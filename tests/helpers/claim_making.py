@@ -1,9 +1,13 @@
 """Tables of made-up results, for the thesis's claims to be judged by."""
 
+from pathlib import Path
+
 import numpy as np
 
 from scanplan.store import schemas
 
+_FOLDER = Path(__file__).resolve().parents[2] / "workflow/report/page"
+PAGE = [_FOLDER / "thesis.html.j2", _FOLDER / "thesis.css"]
 SIZES = (1, 15, 27, 40, 60, 80, 270)
 # what the first 1, 15, 27, ... scans of every order find, false negatives being the rest
 FOUND = {
@@ -53,7 +57,10 @@ def clusters(areas):
 
 
 def unevenness(**seen_m):
-    """Columns of uneven sampling: order to the wall seen with 1, 5 and 20 repeats, of two crowds a metre apart."""
+    """Columns of uneven sampling: order to the wall seen with 1, 5 and 20 repeats.
+
+    There are two crowds, a metre apart.
+    """
     rows = [
         (order, crowd, times, 0, value + crowd - 0.5)
         for order, values in seen_m.items()
@@ -66,8 +73,9 @@ def unevenness(**seen_m):
 
 
 def times(found=5, **seconds):
-    """Columns of run times: task to (sizes, seconds); `found` walls of each, twice as many by the thesis's RANSAC.
+    """Columns of run times: task to (sizes, seconds); `found` walls of each.
 
+    The thesis's RANSAC finds twice as many.
     The sizes of a task are those of one item, but of an extractor those of scans of their own.
     """
     rows = [
@@ -106,9 +114,12 @@ def rooms(**changes):
         "rooms_areas": {
             "scan_id": np.arange(3), "full_hull_m2": np.array([20.0, 30, 40]),
             "cluster_hull_m2": np.array([11.0, 12, 13]), "seen_m2": np.array([10.0, 10, 10]),
-            "full_hull_iou": np.array([0.5, 0.4, 0.3]), "cluster_hull_iou": np.array([0.9, 0.8, 0.7]),
+            "full_hull_iou": np.array([0.5, 0.4, 0.3]),
+            "cluster_hull_iou": np.array([0.9, 0.8, 0.7]),
         },
-        "rooms_unevenness": unevenness(random=(100.0, 90.0, 70.0), cluster_hull=(120.0, 120.0, 116.0)),
+        "rooms_unevenness": unevenness(
+            random=(100.0, 90.0, 70.0), cluster_hull=(120.0, 120.0, 116.0)
+        ),
         "rooms_times": times(build_hulls=((1, 10), (0.1, 0.3))),
     } | changes  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""A made-up survey with its truth: a room of 6 m x 4 m, scans that see it, and the tables of their walls."""
+"""A made-up survey with its truth: a room of 6 m x 4 m, scans that see it, and their walls."""
 
 import json
 
@@ -35,7 +35,10 @@ def write_truth(folder, faces=FACES, positions=POSITIONS):
 
 
 def write_registration(folder, map_from_true=None, positions=POSITIONS):
-    """Write poses.parquet (exact) and registration.parquet (moved by `map_from_true`), with a scan that was dropped."""
+    """Write poses.parquet (exact) and registration.parquet (moved by `map_from_true`).
+
+    One scan was dropped.
+    """
     exact = rover.planar_poses(positions, [0.0] * 3, 0.4)
     moved = exact if map_from_true is None else map_from_true @ exact
     scan_id, t_ns = np.array([0, *SCAN_IDS]), np.array([0, *T_NS])

@@ -1,4 +1,4 @@
-"""The tables of a survey of the hand-made plan: five candidates, four of them kept, three chosen."""
+"""The tables of a survey of the hand-made plan: five candidates, four kept, three chosen."""
 
 from pathlib import Path
 
@@ -102,7 +102,7 @@ def plan_evaluation():
 
 
 def files(folder):
-    """Write everything that the report is made of into a folder, and return what `write_report` is given."""
+    """Write everything that the report is made of into a folder; return its inputs."""
     made = {
         "faces": (schemas.FACES, floorplan_making.faces()),
         "walls": (schemas.PLAN_WALLS, floorplan_making.walls()),
@@ -132,7 +132,7 @@ def files(folder):
         BENCHMARK.format("0.1\t0:00:00\t-\t-\t-\t-\t-\t-\t-\t-")
     )
     return paths | {
-        "page": [PAGE / f"page.{suffix}" for suffix in ("html", "css", "js")],
+        "page": [PAGE / name for name in ("page.html.j2", "tables.html.j2", "page.css", "page.js")],
         "figures": [folder / "scans.svg"],
         "evaluation": [paths["evaluation"], paths["plan_evaluation"]],
         "recordings": [folder / "survey.bag"],

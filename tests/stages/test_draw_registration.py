@@ -13,7 +13,7 @@ KEPT = [r in ("anchor", "kept") for r in REASONS]
 
 @pytest.fixture
 def results(tmp_path):
-    """Eight candidates along x, a metre apart; one without a place, one of a reason nobody knows."""
+    """Eight candidates along x, a metre apart; one has no place, one a reason nobody knows."""
     rng = np.random.default_rng(1)
     scan_ids = np.arange(0, 40, 5)
     with tables.open_scan_writer(tmp_path / "scans.parquet", planar=True) as write:

@@ -61,8 +61,10 @@ def test_tables_state_what_the_stages_found(report):
     assert found["rooms"][1] == ["0", "12.00", "14.00", "yes", "2"]
     assert found["registration"][1] == ["kept", "yes", "3", "60.0", "0.800", "0.900", "50", "30"]
     assert found["stages"][1:] == [
-        ["build_hulls", "2.5", "3.4", "444"], ["draw_area", "0.1", "–", "–"], ["all", "2.6", "3.4", ""],
-    ]  # fmt: skip
+        ["build_hulls", "2.5", "3.4", "444"],
+        ["draw_area", "0.1", "–", "–"],
+        ["all", "2.6", "3.4", ""],
+    ]
     is_true = "share of the drawn faces' length that is true, within 0.10 m"
     assert ["correctness 010m", "0.970", "0.980", is_true] in found["truth"]
     assert found["sizes"][1] == ["recording", "survey.bag", "2.500"]
@@ -124,7 +126,7 @@ def test_a_selection_of_another_run_is_told(tmp_path):
     files = report_making.files(tmp_path)
     selection = report_making.selection() | {"scan_id": np.array([9, 7, 12, 0], np.int32)}
     tables.write_table(files["selection"], schemas.SELECTION, selection)
-    with pytest.raises(StageError, match="scan 7 of the selection"):
+    with pytest.raises(StageError, match="no pose of scan 7 of selection"):
         written(tmp_path, files)
 
 
@@ -156,7 +158,8 @@ def in_sight(page, selector):
 
 def slide(page, k):
     page.run(
-        f"slider = document.getElementById('k'), slider.value = {k}, slider.dispatchEvent(new Event('input'))"
+        f"slider = document.getElementById('k'), slider.value = {k},"
+        " slider.dispatchEvent(new Event('input'))"
     )
 
 
@@ -171,7 +174,7 @@ def test_the_slider_moves_the_plan(page):
         and page.run("document.getElementById('plan').classList.contains('growing')") is False
     )
     slide(page, 1)
-    # the first scan shows three faces, none of them by two scans; the second adds two more, and one is sure
+    # the first scan shows three faces, none of them by two; the second adds two, and one is sure
     assert state() == [1, 3, 0, 1]
     assert page.screenshot() != whole
     slide(page, 2)
@@ -220,8 +223,8 @@ def test_wheel_drag_and_keys_zoom_and_move(page):
 @needs_browser
 def test_what_lies_under_the_pointer_stays_there_when_the_wheel_turns(page):
     def under():
-        place = "new DOMPoint(500, 480).matrixTransform(document.getElementById('plan').getScreenCTM().inverse())"
-        return page.run(f"(p => [p.x, p.y])({place})")
+        to_plan = "document.getElementById('plan').getScreenCTM().inverse()"
+        return page.run(f"(p => [p.x, p.y])(new DOMPoint(500, 480).matrixTransform({to_plan}))")
 
     before = under()
     page.mouse("mouseWheel", 500, 480, deltaX=0, deltaY=-240)
@@ -232,7 +235,8 @@ def test_what_lies_under_the_pointer_stays_there_when_the_wheel_turns(page):
 def test_a_table_is_sorted_by_any_column_and_a_row_shows_its_wall(page):
     def column(number):
         return page.run(
-            f"[...document.querySelectorAll('#walls tbody tr')].map(r => r.cells[{number}].textContent)"
+            "[...document.querySelectorAll('#walls tbody tr')]"
+            f".map(r => r.cells[{number}].textContent)"
         )
 
     page.run("document.querySelectorAll('#walls th button')[3].click()")
@@ -264,9 +268,13 @@ def test_a_click_on_a_wall_marks_its_row(page):
 @needs_browser
 def test_play_grows_the_plan_to_its_end(page):
     page.run("document.getElementById('play').click()")
-    page.run("new Promise(done => setTimeout(done, 2500))")
-    assert page.run("document.getElementById('k').value") == "3"
+    assert page.run("document.getElementById('play').textContent") == "Stop"
+    page.run(
+        "new Promise(done => new MutationObserver(done)"
+        ".observe(document.getElementById('play'), {childList: true}))"
+    )
     assert page.run("document.getElementById('play').textContent") == "Play"
+    assert page.run("document.getElementById('k').value") == "3"
 
 
 @needs_browser

@@ -5,12 +5,15 @@ from helpers.wall_making import walls
 from scanplan.report import growth
 from scanplan.report.growth import NEVER
 
+SETTINGS = {"max_angle_deg": 10.0, "distance_m": 0.1}
+
 
 def grown(lines, rank, *, face=(0, 0, 4, 0, -1), min_scans=2):
-    settings = {"max_angle_deg": 10.0, "distance_m": 0.1, "min_scans": min_scans}
-    found = growth.cut_by_rank(faces([face]), walls(lines), np.array(rank, int), **settings)
-    return [(round(x0, 3), round(x1, 3), f, e) for x0, x1, f, e in
-            zip(found["x0_m"], found["x1_m"], found["first"], found["enough"], strict=True)]  # fmt: skip
+    found = growth.cut_by_rank(
+        faces([face]), walls(lines), np.array(rank, int), min_scans=min_scans, **SETTINGS
+    )
+    ends_m = found["x0_m"].round(3).tolist(), found["x1_m"].round(3).tolist()
+    return list(zip(*ends_m, found["first"], found["enough"], strict=True))
 
 
 def test_a_stretch_appears_with_the_first_scan_and_is_sure_with_enough():
@@ -49,8 +52,10 @@ def test_the_other_side_a_parallel_wall_and_a_turned_one_are_not_of_it():
 
 def test_no_segments_and_no_faces():
     assert grown([], []) == [(0, 4, NEVER, NEVER)]
-    assert len(growth.cut_by_rank(faces([]), walls([(0, 0, 1, 0)]), np.array([1]), max_angle_deg=10, distance_m=0.1,
-                                min_scans=1)["face"]) == 0  # fmt: skip
+    none = growth.cut_by_rank(
+        faces([]), walls([(0, 0, 1, 0)]), np.array([1]), min_scans=1, **SETTINGS
+    )
+    assert len(none["face"]) == 0
 
 
 def test_a_short_face_is_one_stretch():

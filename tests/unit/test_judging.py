@@ -154,10 +154,12 @@ def test_extraction():
     assert values["several_per_wall", "iterative RANSAC"] == pytest.approx(14 / 9)
     assert verdicts["fifteen_like_all"] == "no"
     swapped = made.times(
-        plain_ransac=((100, 200, 300), (0.03, 0.03, 0.031)), plain_clusters=((100, 200, 300), (0.05, 0.1, 0.15)),
-        thinned_plain_ransac=((1, 2), (0.03, 0.03)), thinned_plain_clusters=((1, 2), (0.05, 0.1)),
+        plain_ransac=((100, 200, 300), (0.03, 0.03, 0.031)),
+        plain_clusters=((100, 200, 300), (0.05, 0.1, 0.15)),
+        thinned_plain_ransac=((1, 2), (0.03, 0.03)),
+        thinned_plain_clusters=((1, 2), (0.05, 0.1)),
         order_scans=((10, 90), (0.01, 0.09)),
-    )  # fmt: skip
+    )
     verdicts, _ = drive(drive_times=swapped)
     assert verdicts["steadier_times"] == verdicts["time_by_size"] == "no"
 

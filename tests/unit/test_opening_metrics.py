@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import shapely
 
-from scanplan.lab.evaluation import opening_metrics, visible_faces
+from scanplan.lab.evaluation import face_cells, opening_metrics
 
 
 class TestDoors:
@@ -35,13 +35,13 @@ class TestDoors:
 
 
 class TestWindows:
-    """A wall along y = 0, 0.2 m thick: its inner face at 0.1, its outer one at -0.1; windows are on its middle."""
+    """A wall along y = 0, 0.2 m thick: inner face at 0.1, outer at -0.1, windows on its middle."""
 
     FACES = np.array([[(0, 0.1), (10, 0.1)], [(10, -0.1), (0, -0.1)]])
     TRUE = np.array([[(1, 0), (2.4, 0)], [(6, 0), (7.4, 0)]])
 
     def measure(self, drawn, seen_m=(0, 10), faces=FACES):
-        cells = visible_faces.cut_faces(faces)
+        cells = face_cells.cut_faces(faces)
         visible = (
             (cells.face != len(faces) - 1)
             & (cells.middle_m[:, 0] > seen_m[0])

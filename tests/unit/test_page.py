@@ -4,15 +4,20 @@ import re
 
 import numpy as np
 import pytest
+from markupsafe import escape
 
 from helpers import claim_making as made
 from scanplan.lab.thesis import judging
 from scanplan.lab.thesis import page as page_module
+from scanplan.lab.thesis.page import Verdict
 from scanplan.lab.thesis.shown_figures import FIGURES
 from scanplan.lab.thesis.stated_claims import CLAIMS
 from scanplan.store import schemas
 
-SVG = '<?xml version="1.0"?>\n<svg id="a"><defs><path id="b"/></defs><use href="#b" fill="url(#c)"/></svg>'
+SVG = (
+    '<?xml version="1.0"?>\n<svg id="a"><defs><path id="b"/></defs>'
+    '<use href="#b" fill="url(#c)"/></svg>'
+)
 
 
 def claims(**changes):
@@ -25,7 +30,8 @@ def claims(**changes):
 def page(**changes):
     drawn = {figure.file: SVG for figure in FIGURES}
     strict, ours = made.steps(3600, 76, 76, 15), made.steps(3600, 700, 700, 15)
-    return page_module.thesis_page(drawn, SVG, claims(**changes), ours, strict)
+    sources = {path.name: path.read_text() for path in made.PAGE}
+    return page_module.thesis_page(sources, drawn, SVG, claims(**changes), ours, strict)
 
 
 def test_every_figure_and_claim_is_there():
@@ -35,7 +41,7 @@ def test_every_figure_and_claim_is_there():
     for number in numbers:
         assert f"<h3>Figure {number}</h3>" in text
     for claim in CLAIMS:
-        assert page_module.escape(claim.states) in text
+        assert escape(claim.states) in text
     assert (
         "4.83 GB" in text
         and "4.00 GB" in text
@@ -59,13 +65,11 @@ def test_identifiers_of_two_figures_do_not_meet():
 
 
 def test_a_verdict_is_of_all_seeds():
-    assert page_module.verdict_over_seeds(["yes", "yes"]) == ("holds", "yes")
-    assert page_module.verdict_over_seeds(["no"]) == ("does not hold", "no")
-    assert page_module.verdict_over_seeds(["yes", "no", "yes"]) == (
-        "holds for 2 of 3 seeds",
-        "some",
-    )
-    assert page_module.verdict_over_seeds([]) == ("", "")
+    assert page_module.verdict_over_seeds(["yes", "yes"]) == Verdict("holds", "yes")
+    assert page_module.verdict_over_seeds(["no"]) == Verdict("does not hold", "no")
+    some = page_module.verdict_over_seeds(["yes", "no", "yes"])
+    assert some == Verdict("holds for 2 of 3 seeds", "some")
+    assert page_module.verdict_over_seeds([]) == Verdict("", "")
     assert "holds for 1 of 2 seeds" in page(rooms_hull=made.growing(40))
 
 
@@ -75,11 +79,11 @@ def test_what_could_not_be_measured_is_counted_apart():
     assert "could not be measured" not in page()
     unknown = np.isin(table["claim"], ["fewer_walls", "full_hull_99"])
     table["holds"] = np.where(unknown, "", table["holds"])
-    score = page_module._score(table)
+    score = page_module.summarise_verdicts(table)
     assert score.endswith(", 2 could not be measured.")
     assert sum(map(int, re.findall(r"\d+", score))) == 2 * n
     fewer = next(claim for claim in CLAIMS if claim.name == "fewer_walls")
-    assert "not measured" in page_module.claims_table(table, [fewer])
+    assert page_module.claim_rows(table, [fewer])[0].verdict.text == "not measured"
 
 
 @pytest.mark.parametrize(
@@ -107,9 +111,5 @@ def test_every_claim_belongs_to_figures_that_there_are():
 
 
 def test_numbers_of_clusters_come_in_their_order():
-    assert sorted(["m, 10 c", "m, 2 c", "m, 1 c", "a"], key=page_module._by_number) == [
-        "a",
-        "m, 1 c",
-        "m, 2 c",
-        "m, 10 c",
-    ]
+    ordered = ["a", "m, 1 c", "m, 2 c", "m, 10 c"]
+    assert page_module.sort_quantities(["m, 10 c", "m, 2 c", "m, 1 c", "a"]) == ordered

@@ -5,13 +5,13 @@ import pytest
 import shapely
 
 from scanplan.errors import StageError
-from scanplan.lab.evaluation import length_metrics, plan_metrics, true_plan, visible_faces
+from scanplan.lab.evaluation import face_cells, length_metrics, plan_metrics, true_plan
 
 SQUARE = np.array([[(0, 0), (4, 0)], [(4, 0), (4, 4)], [(4, 4), (0, 4)], [(0, 4), (0, 0)]], float)
 
 
 def cells():
-    return visible_faces.cut_faces(SQUARE)
+    return face_cells.cut_faces(SQUARE)
 
 
 def everything():
@@ -35,7 +35,8 @@ class TestFaces:
 
     def test_what_is_missed_has_one_reason_each(self):
         seen = cells().face != 1
-        # the first wall is right, the second was not seen, the third is drawn 0.2 m off, the fourth not at all
+        # the first wall is right, the second was not seen, the third is drawn 0.2 m off, the fourth
+        # not at all
         row = self.measure([SQUARE[0], SQUARE[2] - [0, 0.2]], seen=seen)
         assert row["missed_not_seen"] == pytest.approx(0.25, abs=0.02)
         # and 0.3 m of the ends of what is missed lie near to it and to the first

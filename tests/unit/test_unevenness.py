@@ -7,7 +7,8 @@ from scanplan.lab.evaluation import visible_faces
 from scanplan.lab.evaluation.truth_file import TrueFaces
 from scanplan.lab.thesis import unevenness
 
-# ten scans in the first room, one in each of the others; cells are the rooms' walls, of 10 m, 20 m and 30 m
+# ten scans in the first room, one in each of the others; cells are the rooms' walls, of 10 m, 20 m
+# and 30 m
 ROOM = np.array([0] * 10 + [1, 2])
 SEEN = ROOM[:, None] == np.arange(3)
 LENGTH_M = np.array([10.0, 20.0, 30.0])
@@ -35,7 +36,8 @@ def test_the_order_by_area_takes_the_largest_rooms_however_often_the_others_were
 def test_a_random_order_sees_what_chance_says():
     columns = measured(range(10))
     even_m, lost = unevenness.lost_shares(columns, "random")
-    # two of 10 + 2 scans: in the first room with one of 45/66, both others 1/66, one of them 10/66 each
+    # two of 10 + 2 scans: in the first room with one of 45/66, both others 1/66, one of them 10/66
+    # each
     np.testing.assert_allclose(even_m, (45 * 10 + 10 * 30 + 10 * 40 + 50) / 66, rtol=0.1)
     # of 200 + 2 scans both nearly always lie in the first room
     assert 0 < lost[1] < lost[2] and abs(even_m * (1 - lost[2]) - 10) < 1.5

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 import shapely
 
-from scanplan.lab.evaluation import length_metrics, visible_faces
+from scanplan.lab.evaluation import face_cells, length_metrics, visible_faces
 
 NO_FACES = np.empty((0, 2, 2))
 # a room of 4 m x 4 m whose east wall, 0.2 m thick, has a door of 1 m, and a larger room behind it
@@ -24,7 +24,7 @@ ROOM = np.array(
 
 
 def seen_m(faces, position, max_range_m=100.0, outer=NO_FACES):
-    cells = visible_faces.cut_faces(faces)
+    cells = face_cells.cut_faces(faces)
     seen = visible_faces.visible_cells(
         cells, outer, np.array(position, float), max_range_m=max_range_m
     )
@@ -33,7 +33,8 @@ def seen_m(faces, position, max_range_m=100.0, outer=NO_FACES):
 
 class TestSeen:
     def test_a_room_and_what_its_door_shows(self):
-        # from 2 m before the door, the jambs edge-on through 1 m at 2.2 m: 6 / 2.2 m on the far wall at 6 m
+        # from 2 m before the door, the jambs edge-on through 1 m at 2.2 m: 6 / 2.2 m on the far
+        # wall at 6 m
         found = seen_m(ROOM, (2, 2))
         np.testing.assert_allclose(found[:5], [4, 4, 4, 1.5, 1.5], atol=0.021)
         np.testing.assert_allclose(found[5:9], [0.2, 0.2, 0, 0], atol=1e-9)
@@ -64,7 +65,7 @@ class TestSeen:
         crossing = shapely.STRtree(lines).query(lines, predicate="intersects")
         faces = np.delete(faces, np.unique(crossing[0][crossing[0] != crossing[1]]), axis=0)
         assert len(faces) > 15
-        cells = visible_faces.cut_faces(faces)
+        cells = face_cells.cut_faces(faces)
         rays = shapely.linestrings(
             np.stack([np.zeros_like(cells.middle_m), cells.middle_m * (1 - 1e-6)], axis=1)
         )
@@ -76,7 +77,7 @@ class TestSeen:
         np.testing.assert_array_equal(found, free)
 
     def test_of_several_places_each_has_a_row(self):
-        cells = visible_faces.cut_faces(ROOM)
+        cells = face_cells.cut_faces(ROOM)
         poses = np.tile(np.eye(4), (2, 1, 1))
         poses[:, :2, 3] = [(2.0, 2.0), (6.0, 2.0)]
         both = visible_faces.cells_seen_by_each(
@@ -90,7 +91,7 @@ class TestSeen:
 
 
 class TestCells:
-    CELLS = visible_faces.cut_faces(np.array([[(0, 0), (0.05, 0)], [(1, 1), (1, 1.04)]], float))
+    CELLS = face_cells.cut_faces(np.array([[(0, 0), (0.05, 0)], [(1, 1), (1, 1.04)]], float))
 
     def test_faces_are_cut_evenly(self):
         np.testing.assert_array_equal(self.CELLS.face, [0, 0, 0, 1, 1])
@@ -99,25 +100,25 @@ class TestCells:
         assert self.CELLS.length_m.sum() == pytest.approx(0.09)
 
     def test_a_stretch_has_the_cells_whose_middles_it_holds(self):
-        begin, end = visible_faces.cells_in_intervals(
+        begin, end = face_cells.cells_in_intervals(
             self.CELLS, np.array([0, 1, 1, 0]), [0.0, 0.015, 0.04, 0.0], [0.03, 1, 1, 0.001]
         )
         np.testing.assert_array_equal(begin, [0, 4, 5, 0])
         np.testing.assert_array_equal(end, [2, 5, 5, 0])
 
     def test_neighbouring_cells_of_a_face_are_joined(self):
-        joined = visible_faces.join_cells(self.CELLS, np.array([0, 1, 1, 1, 0], bool))
+        joined = face_cells.join_cells(self.CELLS, np.array([0, 1, 1, 1, 0], bool))
         np.testing.assert_allclose(joined[0], [(0.05 / 3, 0), (0.05, 0)])
         np.testing.assert_allclose(joined[1], [(1, 1), (1, 1.02)])
-        assert len(visible_faces.join_cells(self.CELLS, np.zeros(5, bool))) == 0
+        assert len(face_cells.join_cells(self.CELLS, np.zeros(5, bool))) == 0
 
     def test_joining_all_gives_the_faces(self):
-        everything = visible_faces.join_cells(self.CELLS, np.ones(5, bool))
+        everything = face_cells.join_cells(self.CELLS, np.ones(5, bool))
         np.testing.assert_allclose(length_metrics.line_lengths_m(everything), [0.05, 0.04])
 
 
 def test_a_field_lies_to_either_side_of_forward():
-    cells = visible_faces.cut_faces(np.array([[(-1, 1), (1, 1)], [(-1, -1), (1, -1)]], float))
+    cells = face_cells.cut_faces(np.array([[(-1, 1), (1, 1)], [(-1, -1), (1, -1)]], float))
     forward_is_y = np.array([[0, -1, 0, 0], [1, 0, 0, 0], [0, 0, 1, 5], [0, 0, 0, 1]], float)
     right, whole = (
         visible_faces.cells_in_field(cells, forward_is_y, np.pi / 2),
@@ -136,7 +137,8 @@ def test_the_view_is_the_room_and_what_the_door_shows():
     outline = shapely.Polygon(
         visible_faces.visible_polygon(ROOM, np.array([2.0, 2.0]), open_m=100.0)
     )
-    # the room, all of the door, and a fan whose edges pass its outer corners, 0.5 m off the middle at 2.2 m
+    # the room, all of the door, and a fan whose edges pass its outer corners, 0.5 m off the middle
+    # at 2.2 m
     fan = (0.5 + 6 * 0.5 / 2.2) * 3.8
     assert outline.area == pytest.approx(16 + 0.2 + fan)
 

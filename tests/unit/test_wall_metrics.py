@@ -2,7 +2,16 @@ import numpy as np
 import pytest
 
 from helpers.wall_making import observed
-from scanplan.lab.evaluation import length_metrics, visible_faces, wall_findings, wall_metrics
+from scanplan.geometry import bitmap
+from scanplan.lab.evaluation import (
+    face_cells,
+    first_ranks,
+    length_metrics,
+    order_metrics,
+    visible_faces,
+    wall_findings,
+    wall_metrics,
+)
 from scanplan.lab.evaluation.truth_file import TrueFaces
 
 NO_FACES = np.empty((0, 2, 2))
@@ -10,7 +19,7 @@ FACES = [(0, 0, 6, 0), (6, 0, 6, 4), (6, 4, 3, 4), (0, 4, 0, 0)]
 
 
 def survey():
-    """Three scans of a room, short of sight, that show parts of its walls; two are registered 0.2 m off."""
+    """Three scans of a room, short of sight, showing parts of it; two are registered 0.2 m off."""
     table = observed(FACES, np.random.default_rng(5), n_scans=3, sigma_m=0.03)
     place = np.tile(np.eye(4), (3, 1, 1))
     place[:, :2, 3] = [(1, 1), (3, 2), (5, 3)]
@@ -29,27 +38,27 @@ def only(table, method):
 
 def truth_of(faces, n_scans=1):
     """Faces that every scan could see all of."""
-    cells = visible_faces.cut_faces(np.array(faces, float).reshape(-1, 2, 2))
+    cells = face_cells.cut_faces(np.array(faces, float).reshape(-1, 2, 2))
     return wall_findings.VisibleTruth(
         cells, np.ones((n_scans, len(cells.face)), bool), np.ones(len(cells.face), bool)
     )
 
 
 def test_sizes_grow_and_end_with_all():
-    assert wall_metrics.evaluated_sizes(1) == [1]
-    assert wall_metrics.evaluated_sizes(9) == [1, 2, 3, 4, 5, 8, 9]
-    assert wall_metrics.evaluated_sizes(80)[-2:] == [60, 80]
-    assert wall_metrics.evaluated_sizes(300)[-4:] == [120, 160, 240, 300]
-    assert wall_metrics.evaluated_sizes(121)[-2:] == [
+    assert order_metrics.evaluated_sizes(1) == [1]
+    assert order_metrics.evaluated_sizes(9) == [1, 2, 3, 4, 5, 8, 9]
+    assert order_metrics.evaluated_sizes(80)[-2:] == [60, 80]
+    assert order_metrics.evaluated_sizes(300)[-4:] == [120, 160, 240, 300]
+    assert order_metrics.evaluated_sizes(121)[-2:] == [
         120,
         121,
-    ] and 12 in wall_metrics.evaluated_sizes(121)
+    ] and 12 in order_metrics.evaluated_sizes(121)
 
 
 def test_scans_out_of_an_order_have_no_rank():
     np.testing.assert_array_equal(
-        wall_metrics.rank_of_rows(np.array([2, 0]), 4),
-        [2, wall_findings.NEVER, 1, wall_findings.NEVER],
+        first_ranks.rank_of_rows(np.array([2, 0]), 4),
+        [2, first_ranks.NEVER, 1, first_ranks.NEVER],
     )
 
 
@@ -57,10 +66,10 @@ def test_all_at_once_agrees_with_every_subset_by_itself():
     truth, drawn = survey()
     order = np.array([2, 0, 1])
     table = only(
-        wall_metrics.measure_orders(truth, {"some_order": order}, {"some": drawn}, 0.1)[0],
+        order_metrics.measure_orders(truth, {"some_order": order}, {"some": drawn}, 0.1)[0],
         "some_order",
     )
-    visible = visible_faces.join_cells(truth.cells, truth.visible)
+    visible = face_cells.join_cells(truth.cells, truth.visible)
     for row, k in enumerate(table["k"]):
         lines = drawn.lines_m[np.isin(drawn.scan, order[:k])]
         for name, within_m in wall_findings.WITHIN_M.items():
@@ -77,7 +86,7 @@ def test_all_at_once_agrees_with_every_subset_by_itself():
 def test_misses_are_parted_without_rest():
     truth, drawn = survey()
     table = only(
-        wall_metrics.measure_orders(truth, {"some_order": np.array([2, 0])}, {"some": drawn}, 0.1)[
+        order_metrics.measure_orders(truth, {"some_order": np.array([2, 0])}, {"some": drawn}, 0.1)[
             0
         ],
         "some_order",
@@ -92,7 +101,7 @@ def test_misses_are_parted_without_rest():
 
 def test_a_share_of_the_oracles_is_taken_at_the_same_size():
     truth, drawn = survey()
-    table, _ = wall_metrics.measure_orders(
+    table, _ = order_metrics.measure_orders(
         truth, {"other": np.array([2, 1, 0])}, {"some": drawn}, 0.1
     )
     best, other = (
@@ -100,7 +109,7 @@ def test_a_share_of_the_oracles_is_taken_at_the_same_size():
     )
     np.testing.assert_allclose(only(table, "other")["oracle_share"], other / best)
     np.testing.assert_allclose(only(table, "oracle")["oracle_share"], 1)
-    (told,) = wall_metrics.summarise_wall_measures(table)
+    (told,) = order_metrics.summarise_wall_measures(table)
     assert f"first 3 scans: oracle {best[-1]:.2f}; other {other[-1]:.2f}" in told
 
 
@@ -110,7 +119,7 @@ def test_the_oracle_goes_by_what_is_found_and_not_by_what_is_in_sight():
     # the scans show 1 m, 4 m and, of the very wall that is found already, 5 m
     lines = np.array([[(0, 4), (1, 4)], [(1, 0), (5, 0)], [(0.5, 0), (5.5, 0)]], float)
     drawn = wall_findings.PlacedSegments(lines, lines, np.arange(3))
-    table, best = wall_metrics.measure_orders(
+    table, best = order_metrics.measure_orders(
         truth, {"as_seen": np.arange(3)}, {"some": drawn}, 0.1
     )
     np.testing.assert_array_equal(best["some"].order, [2, 0, 1])
@@ -143,7 +152,7 @@ def test_a_segment_belongs_to_the_face_it_mostly_lies_on():
     truth = truth_of([(0, 0, 4, 0), (4, 0, 4, 0.3)])
     lines = np.array([[(3, 0), (3.98, 0)], [(4, 0.02), (4, 0.3)], [(9, 9), (9, 8)]], float)
     drawn = wall_findings.PlacedSegments(lines, lines, np.zeros(3, int))
-    found = wall_findings.match_segments(drawn, truth, wall_metrics.bitmap.fit_grid(lines, 1.0))
+    found = wall_findings.match_segments(drawn, truth, bitmap.fit_grid(lines, 1.0))
     np.testing.assert_array_equal(found.face, [0, 1, -1])
 
 
@@ -154,7 +163,7 @@ def test_segments_of_a_wall_are_counted_scan_by_scan():
     drawn = wall_findings.PlacedSegments(lines_m, lines_m, np.array([0, 0, 0, 1, 1]))
     truth = truth_of([(0, 0, 6, 0), (0, 4, 6, 4)], n_scans=2)
     table = only(
-        wall_metrics.measure_orders(truth, {"some_order": np.array([1, 0])}, {"some": drawn}, 0.1)[
+        order_metrics.measure_orders(truth, {"some_order": np.array([1, 0])}, {"some": drawn}, 0.1)[
             0
         ],
         "some_order",

@@ -1,6 +1,6 @@
 import os
 
-from scanplan.lab.thesis import claim_measures, shown_figures
+from scanplan.lab.thesis import shown_figures, stated_claims
 
 # what the claims are measured on: table of the results by the name that the measures know it by
 ROOMS_TABLES = {

@@ -96,7 +96,7 @@ rule write_report:
         evaluation=report_evaluation,
         recordings=recordings,
         results=report_results,
-        page=report_page,
+        page=REPORT_PAGE,
         code=code_of("write_report"),
     output:
         page="results/{dataset}/report.html",

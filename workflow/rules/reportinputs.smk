@@ -17,12 +17,14 @@ def report_evaluation(wildcards):
     ]
 
 
-def report_page(wildcards):
-    """HTML, style and script that the report is made from."""
-    return [
-        os.path.relpath(f"{workflow.basedir}/workflow/report/page/page.{suffix}")
-        for suffix in ("html", "css", "js")
-    ]
+def page_files(*names):
+    """Files that a page is made from: templates, style and script."""
+    folder = f"{workflow.basedir}/workflow/report/page"
+    return [os.path.relpath(f"{folder}/{name}") for name in names]
+
+
+REPORT_PAGE = page_files("page.html.j2", "tables.html.j2", "page.css", "page.js")
+THESIS_PAGE = page_files("thesis.html.j2", "thesis.css")
 
 
 def report_results(wildcards):

@@ -54,7 +54,7 @@ rule measure_unevenness:
     params:
         hulls=setting(stage_settings.select_hulls),
         max_range_m=section("input", "max_range_m"),
-        n_selected=claim_measures.SUBSET,
+        n_selected=stated_claims.SUBSET,
     script:
         "../../scripts/measure_unevenness.py"
 
@@ -111,7 +111,7 @@ rule tabulate_steps:
         mem_mb=1000,
         runtime=10,
     params:
-        n_selected=claim_measures.SUBSET,
+        n_selected=stated_claims.SUBSET,
     script:
         "../../scripts/tabulate_steps.py"
 
@@ -211,6 +211,7 @@ rule write_thesis:
         claims="results/thesis/claims.parquet",
         steps=of_kind(experiments.DRIVE, "thesis/steps")[:1],
         limited=of_kind(experiments.LIMITS, "thesis/steps")[:1],
+        page=THESIS_PAGE,
         code=code_of("write_thesis"),
     output:
         page="results/thesis/report.html",

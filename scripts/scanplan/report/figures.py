@@ -1,25 +1,29 @@
 """The figures of the report: scans and selection, covered area, walls over points."""
 
+from collections.abc import Mapping
+
 import numpy as np
 from matplotlib import colors
+from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, StrMethodFormatter
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from scanplan.report import top_view
 from scanplan.selection import stopping
 from scanplan.selection.methods import METHODS, Method
 from scanplan.store import registered_scans
+from scanplan.types import Columns, FloatArray, IntArray
 
-NEARBY_M = 1.0
-_WIDTH_IN = 7.0
+NEARBY_M = 1.0  # scans this near show much the same: "crowded" in the figure means that
+_WIDTH_IN = 7.0  # text width of an A4 page
 _SELECTED = "#d55e00"
 _FULL_HULLS = "hull"
-_LOGARITHMIC_FROM = 100
+_LOGARITHMIC_FROM = 100  # scans: from here on the first few would crowd on a linear axis
 
 
-def sensor_positions(registration, scan_ids):
+def sensor_positions(registration: Columns, scan_ids: IntArray) -> FloatArray:
     """Return where the sensor stood in scans, in the order asked for.
 
     Parameters
@@ -41,13 +45,15 @@ def sensor_positions(registration, scan_ids):
     return registered_scans.sensor_positions(scan_ids, scans, "selection", "registration")[:, :2]
 
 
-def count_nearby(xy_m, radius_m=NEARBY_M):
-    """Return how many other positions (n,) lie within `radius_m` of each of the positions (n, 2)."""
-    return cKDTree(xy_m).query_ball_point(xy_m, radius_m, return_length=True) - 1
+def count_nearby(xy_m: FloatArray, radius_m: float = NEARBY_M) -> IntArray:
+    """Return how many other positions (n,) lie within `radius_m` of each position (n, 2)."""
+    return KDTree(xy_m).query_ball_point(xy_m, radius_m, return_length=True) - 1
 
 
-def draw_scans_figure(points_xy_m, path_xy_m, selected_xy_m):
-    """Draw the registered scans from above, where each was taken and which are selected (thesis, figure 5.9).
+def draw_scans_figure(
+    points_xy_m: FloatArray, path_xy_m: FloatArray, selected_xy_m: FloatArray
+) -> Figure:
+    """Draw the registered scans, where each was taken and which are selected (thesis, figure 5.9).
 
     Parameters
     ----------
@@ -60,30 +66,35 @@ def draw_scans_figure(points_xy_m, path_xy_m, selected_xy_m):
     Returns
     -------
     matplotlib.figure.Figure
+        The scans from above.
     """
-    figure, axes = top_view.draw_top_view(
-        points_xy_m, np.concatenate([path_xy_m, selected_xy_m]), beside_in=0.75
-    )
-    near = count_nearby(path_xy_m)
+    places_m = np.concatenate([path_xy_m, selected_xy_m])
+    figure, axes = top_view.draw_top_view(points_xy_m, places_m, beside_in=0.75)
     axes.plot(*path_xy_m.T, color="0.4", lw=0.4, zorder=2)
-    blues = colors.LinearSegmentedColormap.from_list("scans", ["#9ecae1", "#4292c6", "#08306b"])
-    order = np.argsort(near, kind="stable")
+    n_near = count_nearby(path_xy_m)
+    # the crowded ones on top
+    order = np.argsort(n_near, kind="stable")
     dots = axes.scatter(
-        *path_xy_m[order].T, c=near[order], cmap=blues, s=7, lw=0, zorder=3, vmin=0, vmax=max(1, near.max()),
+        *path_xy_m[order].T,
+        c=n_near[order],
+        cmap=colors.LinearSegmentedColormap.from_list("scans", ["#9ecae1", "#4292c6", "#08306b"]),
+        s=7,
+        lw=0,
+        zorder=3,
+        vmin=0,
+        vmax=max(1, n_near.max()),
         label=f"position of a scan ({len(path_xy_m)})",
-    )  # fmt: skip
+    )
     _mark_selected(axes, selected_xy_m)
     bar = figure.colorbar(dots, ax=axes, shrink=0.5, aspect=30, pad=0.02)
     bar.locator = MaxNLocator(nbins=6, integer=True)
-    bar.set_label(f"other scans within {NEARBY_M:g} m", fontsize=8)
-    bar.ax.tick_params(labelsize=7)
-    bar.outline.set_linewidth(0.4)
-    _legend_below(axes)
+    top_view.label_colour_bar(bar, f"other scans within {NEARBY_M:g} m")
+    _legend_below(figure)
     return figure
 
 
-def draw_walls_figure(points_xy_m, faces, selected_xy_m):
-    """Draw the faces of the plan over the points of the selected scans (thesis, figure 5.11).
+def draw_walls_figure(points_xy_m: FloatArray, faces: Columns, selected_xy_m: FloatArray) -> Figure:
+    """Draw the plan's faces over the points of the selected scans (thesis, figure 5.11).
 
     Parameters
     ----------
@@ -96,29 +107,35 @@ def draw_walls_figure(points_xy_m, faces, selected_xy_m):
     -------
     matplotlib.figure.Figure
     """
-    starts = np.column_stack([faces["x0_m"], faces["y0_m"]])
-    ends = np.column_stack([faces["x1_m"], faces["y1_m"]])
+    starts_m = np.column_stack([faces["x0_m"], faces["y0_m"]])
+    ends_m = np.column_stack([faces["x1_m"], faces["y1_m"]])
     figure, axes = top_view.draw_top_view(
-        points_xy_m, np.concatenate([starts, ends, selected_xy_m])
+        points_xy_m, np.concatenate([starts_m, ends_m, selected_xy_m])
     )
     lines = LineCollection(
-        np.stack([starts, ends], axis=1),
+        list(np.stack([starts_m, ends_m], axis=1)),
         colors="#0072b2",
         linewidths=1.0,
         capstyle="butt",
         zorder=3,
     )
-    lines.set_label(f"wall face ({len(starts)})")
+    lines.set_label(f"wall face ({len(starts_m)})")
     axes.add_collection(lines, autolim=False)
     axes.plot(
-        *selected_xy_m.T, "o", ms=3, mfc="white", mec=_SELECTED, mew=0.8, zorder=4,
+        *selected_xy_m.T,
+        "o",
+        ms=3,
+        mfc="white",
+        mec=_SELECTED,
+        mew=0.8,
+        zorder=4,
         label=f"position of a selected scan ({len(selected_xy_m)})",
-    )  # fmt: skip
-    _legend_below(axes)
+    )
+    _legend_below(figure)
     return figure
 
 
-def draw_area_figure(orderings):
+def draw_area_figure(orderings: Mapping[str, Columns]) -> Figure:
     """Draw the covered area against the number of scans, for every ordering (thesis, figure 5.6).
 
     Parameters
@@ -132,59 +149,48 @@ def draw_area_figure(orderings):
     """
     figure = Figure(figsize=(_WIDTH_IN, 4.2), layout="constrained")
     axes = figure.add_subplot()
-    for method in sorted(orderings, key=lambda m: (m == _FULL_HULLS, *_place(m))):
+    for method in sorted(orderings, key=lambda m: (m == _FULL_HULLS, *_legend_rank(m))):
         _draw_ordering(axes, method, orderings[method])
-    highest = max(columns["covered_m2"].max() for columns in orderings.values())
-    axes.set_ylim(0, highest * 1.06)
-    _scan_axis(axes, max(len(columns["rank"]) for columns in orderings.values()))
-    axes.plot(
-        [], [], "o", ms=4.5, mfc="white", mec="black", label="99 % of what all its scans cover"
-    )
-    axes.plot(
-        [], [], ":", color="black", lw=1, label="most that any choice of\nas many scans can cover"
-    )
+    highest_m2 = max(columns["covered_m2"].max() for columns in orderings.values())
+    axes.set_ylim(0, highest_m2 * 1.06)
+    _scale_scan_axis(axes, max(len(columns["rank"]) for columns in orderings.values()))
+    mark = "99 % of what all its scans cover"
+    axes.plot([], [], "o", ms=4.5, mfc="white", mec="black", label=mark)
+    bound = "most that any choice of\nas many scans can cover"
+    axes.plot([], [], ":", color="black", lw=1, label=bound)
     top_view.strip_frame(axes)
     axes.set_ylabel("covered area (m²)", fontsize=8)
-    figure.legend(loc="outside right upper", fontsize=7, frameon=False, title=_area_note(orderings), title_fontsize=7,
-                  alignment="left")  # fmt: skip
+    figure.legend(
+        loc="outside right upper",
+        fontsize=7,
+        frameon=False,
+        title=_area_note(orderings),
+        title_fontsize=7,
+        alignment="left",
+    )
     return figure
 
 
-def _place(method):
+def _legend_rank(method: str) -> tuple[int, str]:
     return (list(METHODS).index(method) if method in METHODS else len(METHODS)), method
 
 
-def _draw_ordering(axes, method, columns):
-    drawn = METHODS.get(method, Method(label=method.replace("_", " "), colour="0.3"))
-    dashes = "--" if drawn.is_baseline else "-"
-    covered = columns["covered_m2"]
-    at = stopping.choose_n_scans({"covered_m2": covered}, area_share=0.99)[0] - 1
-    label = f"{drawn.label}: 99 % with {columns['rank'][at]}"
-    axes.plot(
-        columns["rank"],
-        covered,
-        dashes,
-        color=drawn.colour,
-        lw=1.4,
-        label=label,
-        gid=f"covered-{method}",
-    )
-    if drawn.is_area:
-        bound = np.minimum(columns["bound_m2"], covered[-1])
-        axes.plot(columns["rank"], bound, ":", color=drawn.colour, lw=1, gid=f"bound-{method}")
-    axes.plot(
-        columns["rank"][at],
-        covered[at],
-        "o",
-        ms=4.5,
-        mfc="white",
-        mec=drawn.colour,
-        mew=1.2,
-        zorder=4,
-    )
+def _draw_ordering(axes: Axes, method: str, columns: Columns) -> None:
+    style = METHODS.get(method, Method(label=method.replace("_", " "), colour="0.3"))
+    colour = style.colour
+    dashes = "--" if style.is_baseline else "-"
+    rank, covered_m2 = columns["rank"], columns["covered_m2"]
+    n_scans, _ = stopping.choose_n_scans({"covered_m2": covered_m2}, area_share=0.99)
+    at = n_scans - 1
+    label = f"{style.label}: 99 % with {rank[at]}"
+    axes.plot(rank, covered_m2, dashes, color=colour, lw=1.4, label=label, gid=f"covered-{method}")
+    if style.is_area:
+        bound_m2 = np.minimum(columns["bound_m2"], covered_m2[-1])
+        axes.plot(rank, bound_m2, ":", color=colour, lw=1, gid=f"bound-{method}")
+    axes.plot(rank[at], covered_m2[at], "o", ms=4.5, mfc="white", mec=colour, mew=1.2, zorder=4)
 
 
-def _scan_axis(axes, n_scans):
+def _scale_scan_axis(axes: Axes, n_scans: int) -> None:
     axes.set_xlabel("number of scans", fontsize=8)
     axes.set_xlim(0, n_scans * 1.02 + 0.5)
     if n_scans >= _LOGARITHMIC_FROM:
@@ -194,7 +200,7 @@ def _scan_axis(axes, n_scans):
         axes.set_xlabel("number of scans (logarithmic)", fontsize=8)
 
 
-def _area_note(orderings):
+def _area_note(orderings: Mapping[str, Columns]) -> str | None:
     if len(orderings) < 2 or _FULL_HULLS not in orderings:
         return None
     return (
@@ -203,15 +209,19 @@ def _area_note(orderings):
     )
 
 
-def _mark_selected(axes, selected_xy_m):
+def _mark_selected(axes: Axes, selected_xy_m: FloatArray) -> None:
     """Mark and number the selected scans; where they crowd, the lower rank lies on top."""
-    for rank in range(len(selected_xy_m), 0, -1):
-        place, level = selected_xy_m[rank - 1], 5 - rank / len(selected_xy_m)
-        axes.plot(*place, "o", ms=8.5, mfc="white", mec=_SELECTED, mew=0.9, zorder=level)
-        axes.text(*place, str(rank), fontsize=5.5, ha="center", va="center_baseline", zorder=level)
-    label = f"selected scan, numbered by rank ({len(selected_xy_m)})"
+    n_selected = len(selected_xy_m)
+    for rank in range(n_selected, 0, -1):
+        x_m, y_m = selected_xy_m[rank - 1]
+        layer = 5 - rank / n_selected
+        axes.plot(x_m, y_m, "o", ms=8.5, mfc="white", mec=_SELECTED, mew=0.9, zorder=layer)
+        axes.text(
+            x_m, y_m, str(rank), fontsize=5.5, ha="center", va="center_baseline", zorder=layer
+        )
+    label = f"selected scan, numbered by rank ({n_selected})"
     axes.plot([], [], "o", ms=8.5, mfc="white", mec=_SELECTED, mew=0.9, label=label)
 
 
-def _legend_below(axes):
-    axes.figure.legend(loc="outside lower center", ncols=3, fontsize=8, frameon=False)
+def _legend_below(figure: Figure) -> None:
+    figure.legend(loc="outside lower center", ncols=3, fontsize=8, frameon=False)

@@ -1,18 +1,28 @@
-"""How a plan grows scan by scan: which stretch of a face is seen by which scan of an ordering first."""
+"""How a plan grows scan by scan: which scan of an ordering shows each part of a face first."""
 
 import numpy as np
 
 from scanplan.plan import floorplan
+from scanplan.types import Array, Columns, FloatArray, IntArray
 
 NEVER = -1
-_CELL_M = 0.05
+_CELL_M = 0.05  # a face is cut at multiples of this: finer than ends of segments are known
+_ENDS = ("x0_m", "y0_m", "x1_m", "y1_m")
 
 
-def cut_by_rank(faces, segments, rank, *, max_angle_deg, distance_m, min_scans):
+def cut_by_rank(
+    faces: Columns,
+    segments: Columns,
+    rank: IntArray,
+    *,
+    max_angle_deg: float,
+    distance_m: float,
+    min_scans: int,
+) -> Columns:
     """Cut faces into stretches by the ranks at which scans show them.
 
-    A segment shows the part of a face that lies beside it, if it has the same side, turns from it by less than an angle
-    and both its ends are near.
+    A segment shows the part of a face that lies beside it, if it has the same side, turns from it
+    by less than an angle and both its ends are near.
 
     Parameters
     ----------
@@ -30,49 +40,62 @@ def cut_by_rank(faces, segments, rank, *, max_angle_deg, distance_m, min_scans):
     Returns
     -------
     dict of str to (m,) array
-        `face`, the row in `faces`; `x0_m` ... `y1_m`; `first`, rank of the first scan that shows the stretch;
-        `enough`, rank of the `min_scans`-th. `NEVER` where there is none (a stretch between two that were seen).
+        `face`, the row in `faces`; `x0_m` ... `y1_m`; `first`, rank of the first scan that shows
+        the stretch; `enough`, rank of the `min_scans`-th. `NEVER` where there is none (a stretch
+        between two that were seen).
     """
     order = np.argsort(rank, kind="stable")
-    lines_m, rank = floorplan.centrelines_m(segments)[order], np.asarray(rank)[order]
+    lines_m = floorplan.centrelines_m(segments)[order]
     normals = np.column_stack([segments["nx"], segments["ny"]])[order]
-    found = []
-    for row, (line_m, normal) in enumerate(
-        zip(
-            floorplan.centrelines_m(faces), np.column_stack([faces["nx"], faces["ny"]]), strict=True
-        )
-    ):
-        near = _beside(line_m, normal, lines_m, normals, max_angle_deg, distance_m)
-        found += [(row, *part) for part in _cut(line_m, lines_m[near], rank[near], min_scans)]
-    columns = np.array(found).reshape(-1, 7).T
-    whole = dict(zip(("face", "first", "enough"), columns[[0, 5, 6]].astype(np.int64), strict=True))
-    return whole | dict(zip(("x0_m", "y0_m", "x1_m", "y1_m"), columns[1:5], strict=True))
+    rank = np.asarray(rank)[order]
+    faces_m = floorplan.centrelines_m(faces)
+    face_normals = np.column_stack([faces["nx"], faces["ny"]])
+    cosine = np.cos(np.radians(max_angle_deg))
+    parts = [np.empty((0, 7))]
+    for face, (face_m, normal) in enumerate(zip(faces_m, face_normals, strict=True)):
+        off_m = np.abs((lines_m - face_m[0]) @ normal).max(axis=1, initial=0)
+        beside = (off_m <= distance_m) & (normals @ normal >= cosine)
+        stretches = _cut_face(face_m, lines_m[beside], rank[beside], min_scans)
+        parts.append(np.column_stack([np.full(len(stretches), face), stretches]))
+    names = ("face", *_ENDS, "first", "enough")
+    columns = dict(zip(names, np.concatenate(parts).T, strict=True))
+    whole = {name: columns[name].astype(np.int64) for name in ("face", "first", "enough")}
+    return whole | {name: columns[name] for name in _ENDS}
 
 
-def _beside(line_m, normal, lines_m, normals, max_angle_deg, distance_m):
-    """Tell which segments (s, 2, 2) belong to a face."""
-    off_m = np.abs((lines_m - line_m[0]) @ normal).max(axis=1, initial=0)
-    return (off_m <= distance_m) & (normals @ normal >= np.cos(np.radians(max_angle_deg)))
+def _cut_face(face_m: FloatArray, lines_m: FloatArray, rank: IntArray, min_scans: int) -> Array:
+    """Return x0, y0, x1, y1, first, enough (m, 6) of the stretches of one face.
 
-
-def _cut(line_m, lines_m, rank, min_scans):
-    """Return x0, y0, x1, y1, first, enough of the stretches of one face, from segments in the order of their ranks."""
-    length_m = np.hypot(*(line_m[1] - line_m[0]))
-    n = max(1, round(length_m / _CELL_M))
-    along_m = (lines_m - line_m[0]) @ (line_m[1] - line_m[0]) / length_m
-    cells = np.clip(np.round(np.sort(along_m, axis=1) / length_m * n), 0, n).astype(int)
-    last, count, first, enough = (np.full(n, value) for value in (NEVER, 0, NEVER, NEVER))
-    for (begin, end), seen_by in zip(cells, rank, strict=True):
-        part = np.s_[begin:end]
-        new = last[part] != seen_by
-        count[part] += new
-        last[part] = seen_by
-        first[part][new & (count[part] == 1)] = seen_by
-        enough[part][new & (count[part] == min_scans)] = seen_by
+    The segments come in the order of their ranks.
+    """
+    length_m = np.hypot(*(face_m[1] - face_m[0]))
+    n_cells = max(1, round(length_m / _CELL_M))
+    along_m = (lines_m - face_m[0]) @ (face_m[1] - face_m[0]) / length_m
+    cells = np.clip(np.round(np.sort(along_m, axis=1) / length_m * n_cells), 0, n_cells)
+    first, enough = _first_and_enough(cells.astype(int), rank, n_cells, min_scans)
     changes = np.flatnonzero((np.diff(first) != 0) | (np.diff(enough) != 0)) + 1
-    edges = np.concatenate([[0], changes, [n]])
-    places_m = line_m[0] + edges[:, None] / n * (line_m[1] - line_m[0])
-    return [
-        (*places_m[i], *places_m[i + 1], first[edges[i]], enough[edges[i]])
-        for i in range(len(edges) - 1)
-    ]  # fmt: skip
+    edges = np.concatenate([[0], changes, [n_cells]])
+    places_m = face_m[0] + edges[:, None] / n_cells * (face_m[1] - face_m[0])
+    begins = edges[:-1]
+    return np.column_stack([places_m[:-1], places_m[1:], first[begins], enough[begins]])
+
+
+def _first_and_enough(
+    cells: IntArray, rank: IntArray, n_cells: int, min_scans: int
+) -> tuple[IntArray, IntArray]:
+    """Return the ranks (n_cells,) of the first and of the `min_scans`-th scan that shows each cell.
+
+    Segments show the cells from `cells[:, 0]` to before `cells[:, 1]`.
+    """
+    last = np.full(n_cells, NEVER)
+    count = np.zeros(n_cells, int)
+    first = np.full(n_cells, NEVER)
+    enough = np.full(n_cells, NEVER)
+    for (begin, end), scan_rank in zip(cells, rank, strict=True):
+        part = np.s_[begin:end]
+        is_new = last[part] != scan_rank
+        count[part] += is_new
+        last[part] = scan_rank
+        first[part][is_new & (count[part] == 1)] = scan_rank
+        enough[part][is_new & (count[part] == min_scans)] = scan_rank
+    return first, enough

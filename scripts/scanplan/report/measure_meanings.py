@@ -12,12 +12,16 @@ _WORDS = {
     "completeness": "share of the true faces' length that is drawn",
     "correctness": "share of the drawn faces' length that is true",
     "f1": "harmonic mean of completeness and correctness",
-    "visible_completeness": "share of the length drawn, of the true faces that any scan of the survey could see",
-    "visible_correctness": "share of the drawn faces' length that is at true faces that any scan could see",
+    "visible_completeness": "share of the length drawn, of the true faces that any scan of the"
+    " survey could see",
+    "visible_correctness": "share of the drawn faces' length that is at true faces that any scan"
+    " could see",
     "visible_f1": "harmonic mean of the two for what could be seen",
-    "seen_completeness": "share of the length drawn, of the true faces that the chosen scans could see",
+    "seen_completeness": "share of the length drawn, of the true faces that the chosen scans could"
+    " see",
     "observed_correctness": "correctness of what was observed, without what is inferred",
-    "observed_visible_completeness": "visible completeness by what was observed, without what is inferred",
+    "observed_visible_completeness": "visible completeness by what was observed, without what is"
+    " inferred",
     "n_walls": "faces of the plan",
     "walls_per_true_wall": "faces of the plan per true face that has any: 1 is best",
     "redundancy": "drawn length per true length found: 1 is best",
@@ -50,7 +54,7 @@ _WORDS = {
 }
 
 
-def measure_meaning(column):
+def measure_meaning(column: str) -> str:
     """Return what a column of `schemas.PLAN_EVALUATION` means; nothing of one that is not known.
 
     Parameters
@@ -61,6 +65,6 @@ def measure_meaning(column):
     -------
     str
     """
-    at = _AT.search(column)
-    said = _WORDS.get(_AT.sub("", column), "")
-    return f"{said}, within 0.{at[1]} m" if at and said else said
+    tolerance = _AT.search(column)
+    meaning = _WORDS.get(_AT.sub("", column), "")
+    return f"{meaning}, within 0.{tolerance[1]} m" if tolerance and meaning else meaning

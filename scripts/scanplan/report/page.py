@@ -1,230 +1,198 @@
 """The report of a dataset: one page of HTML that needs nothing beside it."""
 
 import base64
-import json
 import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from html import escape
-from string import Template
 
 import numpy as np
+from markupsafe import Markup
 
 from scanplan.plan import floorplan
-from scanplan.report import chart, figures, growth, html_tables, plan_svg, wording
+from scanplan.report import chart, figures, growth, page_tables, plan_svg, templates, wording
+from scanplan.report.facts import RunFacts, SurveyFacts
+from scanplan.types import FloatArray, Settings
 
 _STAGES = (
-    "simulate", "interpolate", "register", "measure", "build", "observe", "order", "extract", "assemble", "export",
-    "evaluate", "draw",
+    "simulate", "interpolate", "register", "measure", "build", "observe", "order", "extract",
+    "assemble", "export", "evaluate", "draw",
 )  # fmt: skip
 _FOUND, _RIGHT = "visible_completeness_010m", "correctness_010m"
 _CAPTIONS = {
-    "scans": "Points of the registered scans from above, where each was taken, and the selected scans by rank.",
-    "registration": "The sensor's way, kept and dropped scans by reason, links between scans by what is left of their"
-    " disagreement, and the thickness of walls by the localiser's poses and the registered ones.",
-    "area": "Covered area against the number of scans for every ordering, and the most any choice could cover.",
+    "scans": "Points of the registered scans from above, where each was taken, and the selected"
+    " scans by rank.",
+    "registration": "The sensor's way, kept and dropped scans by reason, links between scans by"
+    " what is left of their disagreement, and the thickness of walls by the localiser's poses and"
+    " the registered ones.",
+    "area": "Covered area against the number of scans for every ordering, and the most any choice"
+    " could cover.",
     "walls": "Wall faces of the plan over the points of the selected scans.",
-    "oracle_shares": "What the first scans of every ordering find, as a share of what the oracle's do.",
-    "evaluation": "What the first scans of every ordering find of the true walls, and why walls are missed.",
+    "oracle_shares": "What the first scans of every ordering find, as a share of what the oracle's"
+    " do.",
+    "evaluation": "What the first scans of every ordering find of the true walls, and why walls"
+    " are missed.",
 }
 
 
 @dataclass(frozen=True)
-class SurveyFacts:
-    """What a plan was made of.
+class PageFigure:
+    """A figure of the page: an SVG file in base64, whose identifiers and styles stay its own."""
 
-    Attributes
-    ----------
-    selection, registration, poses, segments, evidence : dict of str to (n,) array
-        The columns of `schemas.SELECTION` (the plan's method), `REGISTRATION`, `POSES`, `WALLS` (the plan's extractor)
-        and `EVIDENCE`.
-    chosen : int
-        How many scans of the selection make the plan.
-    evaluation : tuple of dict of str to (n,) array
-        The columns of `schemas.EVALUATION` and of `schemas.PLAN_EVALUATION`, where the truth is known.
-    """
-
-    selection: dict
-    registration: dict
-    poses: dict
-    segments: dict
-    evidence: dict
-    chosen: int
-    evaluation: tuple
+    name: str
+    caption: str
+    base64: str
 
 
-@dataclass(frozen=True)
-class RunFacts:
-    """How it was made.
-
-    Attributes
-    ----------
-    settings : dict
-        All settings of the dataset.
-    figures : dict of str to str
-        Name to the text of an SVG file.
-    benchmarks : dict of str to str
-        Stage to the text of Snakemake's benchmark file; what is missing or damaged is left out.
-    sizes : list of (str, str, int)
-        What, file name, bytes.
-    version : str
-    """
-
-    settings: dict
-    figures: dict
-    benchmarks: dict
-    sizes: list
-    version: str
-
-
-def report_page(template, style, script, plan, survey, run):
+def report_page(
+    sources: Mapping[str, str], plan: floorplan.FloorPlan, survey: SurveyFacts, run: RunFacts
+) -> str:
     """Return the page.
 
     Parameters
     ----------
-    template : str
-        HTML with the places that `string.Template` fills.
-    style, script : str
-        CSS and JavaScript to put in.
+    sources : dict of str to str
+        File name to text of `page.html.j2` and of all that it asks for.
     plan : floorplan.FloorPlan
-    survey : Survey
-    run : Run
+    survey : SurveyFacts
+    run : RunFacts
 
     Returns
     -------
     str
         The same for the same input.
     """
-    ranked = survey.selection["scan_id"][: survey.chosen]
-    curves = _curves(survey, run.settings["plan"])
-    return Template(template).substitute(
-        name=escape(plan.name),
-        style=style,
-        script=script,
+    of_plan = run.settings["plan"]
+    objective, _ = wording.method_objective(of_plan["method"])
+    curves = _curves(survey, of_plan, objective)
+    n_scans = len(survey.selection["rank"])
+    return templates.render_template(
+        sources,
+        "page.html.j2",
+        name=plan.name,
         summary=wording.plan_sentence(plan, survey),
         facts=wording.head_figures(plan, survey),
-        plan=_plan(plan, survey, ranked, run.settings["plan"]["merge"]),
+        plan=Markup(_plan_svg(plan, survey, of_plan["merge"])),
         chosen=survey.chosen,
-        min_scans=run.settings["plan"]["merge"]["min_scans"],
-        chart=chart.chart_svg(curves, len(survey.selection["rank"]), survey.chosen),
-        legend=_legend(curves),
-        certificate=wording.coverage_note(survey, run.settings["plan"]["method"]),
-        against_truth=html_tables.truth_table(survey.evaluation[1]) if survey.evaluation else "",
-        verify_note=wording.review_note(plan),
-        walls=html_tables.wall_table(plan, survey.evidence),
-        openings=html_tables.opening_table(plan),
-        rooms=html_tables.room_table(plan),
+        min_scans=of_plan["merge"]["min_scans"],
+        chart=Markup(chart.chart_svg(curves, n_scans, survey.chosen)),
+        curves=[(css, curve.name) for css, curve in curves.items()],
+        certificate=wording.coverage_note(survey, of_plan["method"]),
+        truth=page_tables.truth_table(survey.evaluation[1]) if survey.evaluation else None,
+        review=wording.review_note(plan),
+        walls=page_tables.wall_table(plan, survey.evidence),
+        openings=page_tables.opening_table(plan),
+        rooms=page_tables.room_table(plan),
         registration_note=wording.registration_note(survey),
-        registration=html_tables.registration_table(survey.registration, _shift_m(survey)),
-        figures="\n".join(_figure(name, text) for name, text in run.figures.items()),
-        stages=html_tables.stage_table(_stage_times(run.benchmarks)),
-        sizes=html_tables.size_table(run.sizes),
-        settings=html_tables.settings_table(run.settings),
-        version=escape(run.version),
-        data=_data(survey, wording.method_objective(run.settings["plan"]["method"])[0]),
+        registration=page_tables.registration_table(survey.registration, _shift_m(survey)),
+        figures=[_page_figure(name, svg) for name, svg in run.figures.items()],
+        stages=page_tables.stage_table(_stage_times(run.benchmarks)),
+        sizes=page_tables.size_table(run.sizes),
+        settings=page_tables.settings_table(run.settings),
+        version=run.version,
+        data=_script_data(survey, objective),
     )
 
 
-def _stage_times(benchmarks):
-    """Return stage, seconds, processor seconds and peak memory in MB of each benchmark, in the workflow's order."""
+def _stage_times(benchmarks: Mapping[str, str]) -> list[tuple[str, float, float, float]]:
+    """Return stage, seconds, processor seconds and peak memory in MB, in the workflow's order."""
     rows = []
-    for stage, text in sorted(benchmarks.items(), key=lambda item: (_place(item[0]), item[0])):
-        head, *lines = [line.split("\t") for line in text.splitlines()] or [[]]
+    for stage in sorted(benchmarks, key=lambda stage: (_stage_rank(stage), stage)):
+        head, *lines = [line.split("\t") for line in benchmarks[stage].splitlines()] or [[]]
         if not lines or not {"s", "cpu_time", "max_rss"} <= set(head):
             continue
-        measured = [dict(zip(head, line, strict=False)) for line in lines]
-        values = [[_float(row.get(c)) for row in measured] for c in ("s", "cpu_time", "max_rss")]
-        rows.append((stage, *(float(np.mean(v)) for v in values)))
+        runs = [dict(zip(head, line, strict=False)) for line in lines]
+        seconds, cpu_s, memory_mb = (_mean(runs, c) for c in ("s", "cpu_time", "max_rss"))
+        rows.append((stage, seconds, cpu_s, memory_mb))
     return rows
 
 
-def _place(stage):
+def _stage_rank(stage: str) -> int:
     return next((i for i, name in enumerate(_STAGES) if stage.startswith(name)), len(_STAGES))
 
 
-def _float(text):
+def _mean(runs: Sequence[Mapping[str, str]], column: str) -> float:
+    return float(np.mean([_float(run.get(column)) for run in runs]))
+
+
+def _float(text: str | None) -> float:
     try:
-        return float(text)
-    except (TypeError, ValueError):
+        return float(text or "")
+    except ValueError:
         return np.nan
 
 
-def _plan(plan, survey, ranked, merging):
+def _plan_svg(plan: floorplan.FloorPlan, survey: SurveyFacts, merging: Settings) -> str:
     """Draw the plan, its growth, and what each chosen scan shows."""
-    rank_of = {scan: rank for rank, scan in enumerate(ranked.tolist(), 1)}
-    rank = np.array(
-        [rank_of.get(scan, 0) for scan in survey.segments["scan_id"].tolist()], np.int64
-    )
-    used = {name: values[rank > 0] for name, values in survey.segments.items()}
+    selected_ids = survey.selection["scan_id"][: survey.chosen]
+    rank_of = {scan: rank for rank, scan in enumerate(selected_ids.tolist(), 1)}
+    scan_ids = survey.segments["scan_id"].tolist()
+    rank = np.array([rank_of.get(scan, 0) for scan in scan_ids], np.int64)
+    segments = {name: values[rank > 0] for name, values in survey.segments.items()}
     rank = rank[rank > 0]
-    grown = growth.cut_by_rank(
-        plan.faces, used, rank, max_angle_deg=merging["max_angle_deg"], distance_m=merging["merge_distance_m"],
+    stretches = growth.cut_by_rank(
+        plan.faces,
+        segments,
+        rank,
+        max_angle_deg=merging["max_angle_deg"],
+        distance_m=merging["merge_distance_m"],
         min_scans=merging["min_scans"],
-    )  # fmt: skip
-    lines_m = floorplan.centrelines_m(used)
+    )
+    lines_m = floorplan.centrelines_m(segments)
     shown_m = [lines_m[rank == k] for k in range(1, survey.chosen + 1)]
-    return plan_svg.growing_plan_svg(
-        plan, grown, figures.sensor_positions(survey.registration, ranked), shown_m
-    )
+    positions_m = figures.sensor_positions(survey.registration, selected_ids)
+    return plan_svg.growing_plan_svg(plan, stretches, positions_m, shown_m)
 
 
-def _curves(survey, of_plan):
-    """Return the curves of the chart: the certificate and, where the truth is known, what is found of it."""
-    k, covered = survey.selection["rank"], survey.selection["covered"]
-    what, _ = wording.method_objective(of_plan["method"])
-    share, bound = (
-        _of_all(survey.selection[column], covered[-1]) for column in ("covered", "bound")
-    )
+def _curves(survey: SurveyFacts, of_plan: Settings, objective: str) -> dict[str, chart.Curve]:
+    """Return the curves of the chart by CSS class.
+
+    They are the certificate and, where the truth is known, what is found of it.
+    """
+    rank, covered = survey.selection["rank"], survey.selection["covered"]
+    share = _of_all(covered, covered[-1])
+    bound = _of_all(survey.selection["bound"], covered[-1])
     curves = {
-        "covered": (f"{what}, of what all scans give", k, share),
-        "bound": ("most that any choice of as many scans can give", k, bound),
+        "covered": chart.Curve(f"{objective}, of what all scans give", rank, share),
+        "bound": chart.Curve("most that any choice of as many scans can give", rank, bound),
     }
     if survey.evaluation:
-        measured = survey.evaluation[0]
-        own = np.all([measured[part] == of_plan[part] for part in ("method", "extractor")], axis=0)
-        at, found, right = (measured[column][own] for column in ("k", _FOUND, _RIGHT))
-        curves["found"] = ("visible true walls found, within 0.10 m", at, found)
-        curves["right"] = ("wall segments that are right, within 0.10 m", at, right)
+        measures = survey.evaluation[0]
+        rows = (measures["method"] == of_plan["method"]) & (
+            measures["extractor"] == of_plan["extractor"]
+        )
+        n_scans, found, right = (measures[column][rows] for column in ("k", _FOUND, _RIGHT))
+        curves["found"] = chart.Curve("visible true walls found, within 0.10 m", n_scans, found)
+        curves["right"] = chart.Curve("wall segments that are right, within 0.10 m", n_scans, right)
     return curves
 
 
-def _legend(curves):
-    keys = (
-        f'<li><svg class="mark {css}" viewBox="0 0 30 8" aria-hidden="true"><path d="M0 4H30"/></svg>{name}</li>'
-        for css, (name, _, _) in curves.items()
-    )
-    return f'<ul class="curves">{"".join(keys)}</ul>'
+def _shift_m(survey: SurveyFacts) -> FloatArray:
+    """Return how far each scan of the registration lies from its interpolated pose; NaN without."""
+    row_of = {scan: i for i, scan in enumerate(survey.poses["scan_id"].tolist())}
+    scan_ids = survey.registration["scan_id"].tolist()
+    rows = np.array([row_of.get(scan, -1) for scan in scan_ids], np.int64)
+    apart_m = [survey.registration[c] - survey.poses[c][rows] for c in ("x_m", "y_m")]
+    return np.where(rows >= 0, np.hypot(*apart_m), np.nan)
 
 
-def _shift_m(survey):
-    """Return how far each scan of the registration lies from its interpolated pose, NaN where it has none."""
-    row = {scan: i for i, scan in enumerate(survey.poses["scan_id"].tolist())}
-    at = np.array([row.get(scan, -1) for scan in survey.registration["scan_id"].tolist()], np.int64)
-    apart = [survey.registration[c] - survey.poses[c][at] for c in ("x_m", "y_m")]
-    return np.where(at >= 0, np.hypot(*apart), np.nan)
-
-
-def _figure(name, svg):
+def _page_figure(name: str, svg: str) -> PageFigure:
     caption = _CAPTIONS.get(name, name.replace("_", " ").capitalize() + ".")
-    # as an image of its own: its identifiers and styles stay its own
     text = re.sub(r"<!--.*?-->", "", svg, flags=re.DOTALL)
-    source = base64.b64encode(text.encode()).decode()
-    return (
-        f'<figure id="figure-{escape(name)}"><img src="data:image/svg+xml;base64,{source}" alt="{escape(caption)}">'
-        f"<figcaption>{escape(caption)}</figcaption></figure>"
-    )
+    return PageFigure(name, caption, base64.b64encode(text.encode()).decode())
 
 
-def _data(survey, what):
+def _script_data(survey: SurveyFacts, objective: str) -> dict[str, object]:
+    """Return what the page's script needs to know."""
     selection = survey.selection
-    values = {
+    covered = _of_all(selection["covered"], selection["covered"][-1])
+    return {
         "chosen": survey.chosen,
         "scan_ids": selection["scan_id"][: survey.chosen].tolist(),
-        "covered": _of_all(selection["covered"], selection["covered"][-1]).round(5).tolist(),
-        "objective": what,
+        "covered": covered.round(5).tolist(),
+        "objective": objective,
     }
-    return json.dumps(values, allow_nan=False)
 
 
-def _of_all(values, whole):
+def _of_all(values: FloatArray, whole: float) -> FloatArray:
     """Return values as shares of what all scans give; of nothing everything is there."""
     return np.minimum(values / whole, 1) if whole > 0 else np.ones(len(values))

@@ -1,19 +1,24 @@
 """Points seen from above: the ground of the figures that lie in the map."""
 
+from collections.abc import Iterable
+
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colorbar import Colorbar
 from matplotlib.figure import Figure
 
-MOST_POINTS = 200_000
-_WIDTH_IN = 7.0
-_BESIDE_IN = 0.6
-_BELOW_IN = 0.85
-_LEAST_IN, _MOST_IN = 2.5, 8.5
-_CELLS = 900
-_MARGIN_M = 0.5
-_TRUST_PERCENT = 0.5
+from scanplan.types import Array, FloatArray
+
+MOST_POINTS = 200_000  # more than a figure has pixels to show; bounds memory and time
+_WIDTH_IN = 7.0  # text width of an A4 page
+_BESIDE_IN, _BELOW_IN = 0.6, 0.85  # what labels of the axes and a legend take
+_LEAST_IN, _MOST_IN = 2.5, 8.5  # height of the drawing: readable, and within a page
+_CELLS = 900  # along the longer side: about a pixel each at the size that figures are shown in
+_MARGIN_M = 0.5  # around what must be shown, so that marks at the edge are whole
+_OUTLIER_PERCENT = 0.5  # of the points at either end: the few returns from far outside
 
 
-def sample_points(scans, n_scans):
+def sample_points(scans: Iterable[tuple[int, Array]], n_scans: int) -> FloatArray:
     """Collect the x, y of at most about `MOST_POINTS` points of scans, every nth of each.
 
     Parameters
@@ -27,20 +32,25 @@ def sample_points(scans, n_scans):
     -------
     (m, 2) float64, m < MOST_POINTS + n_scans
     """
-    share = max(1, MOST_POINTS // n_scans)
-    return np.concatenate([xyz_m[:: -(-len(xyz_m) // share), :2] for _, xyz_m in scans]).astype(
-        float
-    )
+    of_each = max(1, MOST_POINTS // n_scans)
+    sampled = []
+    for _, xyz_m in scans:
+        step = -(-len(xyz_m) // of_each)
+        sampled.append(xyz_m[::step, :2])
+    return np.concatenate(sampled).astype(float)
 
 
-def draw_top_view(points_xy_m, must_show_xy_m, *, beside_in=0.0):
+def draw_top_view(
+    points_xy_m: FloatArray, must_show_xy_m: FloatArray, *, beside_in: float = 0.0
+) -> tuple[Figure, Axes]:
     """Return a figure and axes in metres with the points as an image of their density.
 
     Parameters
     ----------
     points_xy_m : (n, 2) float, n >= 1
     must_show_xy_m : (m, 2) float
-        Places that the view takes in in any case; of the points it leaves out the few returns from far outside.
+        Places that the view takes in in any case; of the points it leaves out the few returns from
+        far outside.
     beside_in : float
         Width to leave on the right, inches.
 
@@ -49,69 +59,79 @@ def draw_top_view(points_xy_m, must_show_xy_m, *, beside_in=0.0):
     figure : matplotlib.figure.Figure
     axes : matplotlib.axes.Axes
     """
-    low, high = _view(points_xy_m, must_show_xy_m)
-    extent = high - low
-    drawn_in = np.clip(
-        (_WIDTH_IN - _BESIDE_IN - beside_in) * extent[1] / extent[0], _LEAST_IN, _MOST_IN
-    )
-    figure = Figure(figsize=(_WIDTH_IN, float(drawn_in) + _BELOW_IN), layout="constrained")
+    low_m, high_m = _view(points_xy_m, must_show_xy_m)
+    extent_m = high_m - low_m
+    width_in = _WIDTH_IN - _BESIDE_IN - beside_in
+    height_in = float(np.clip(width_in * extent_m[1] / extent_m[0], _LEAST_IN, _MOST_IN))
+    figure = Figure(figsize=(_WIDTH_IN, height_in + _BELOW_IN), layout="constrained")
     axes = figure.add_subplot()
-    _shade(axes, points_xy_m, low, high)
+    _shade(axes, points_xy_m, low_m, high_m)
     axes.set_xlabel("x in the map frame (m)", fontsize=8)
     axes.set_ylabel("y in the map frame (m)", fontsize=8)
     return figure, axes
 
 
-def draw_points_on(axes, points_xy_m, must_show_xy_m):
+def draw_points_on(axes: Axes, points_xy_m: FloatArray, must_show_xy_m: FloatArray) -> None:
     """Draw the points on axes of another figure, in metres; see `draw_top_view`."""
     _shade(axes, points_xy_m, *_view(points_xy_m, must_show_xy_m))
 
 
-def _shade(axes, points_xy_m, low, high):
-    grey, edges = _density(points_xy_m, low, high - low)
-    axes.imshow(
-        grey,
-        cmap="Greys",
-        vmin=0,
-        vmax=1,
-        origin="lower",
-        extent=edges.ravel(),
-        interpolation="none",
-        zorder=1,
-    )
-    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
-    strip_frame(axes)
-
-
-def strip_frame(axes):
+def strip_frame(axes: Axes) -> None:
     """Leave of an axes' frame what is needed to read it."""
     axes.tick_params(which="both", labelsize=7, width=0.5)
     axes.spines[["top", "right"]].set_visible(False)
     axes.spines[["left", "bottom"]].set_linewidth(0.5)
 
 
-def name_axes(axes, x, y):
+def name_axes(axes: Axes, x: str, y: str) -> None:
     """Name the axes of a chart, in the frame of `strip_frame`."""
     axes.set_xlabel(x, fontsize=8)
     axes.set_ylabel(y, fontsize=8)
     strip_frame(axes)
 
 
-def _density(points_xy_m, low, extent):
-    """Return shades (rows, columns) from 0 to 1 and the edges ((x0, x1), (y0, y1)) of their image."""
-    cell_m = extent.max() / _CELLS
-    shape = np.maximum(1, np.ceil(extent / cell_m)).astype(int)
-    edges = np.array([low, low + shape * cell_m]).T
-    counts = np.histogram2d(*points_xy_m.T, bins=shape, range=edges)[0].T
+def label_colour_bar(bar: Colorbar, label: str) -> None:
+    """Name what a colour bar shows, in letters and lines as thin as those of the axes."""
+    bar.set_label(label, fontsize=8)
+    bar.ax.tick_params(labelsize=7)
+    bar.outline.set_linewidth(0.4)
+
+
+def _shade(axes: Axes, points_xy_m: FloatArray, low_m: FloatArray, high_m: FloatArray) -> None:
+    grey, edges_m = _density(points_xy_m, low_m, high_m - low_m)
+    axes.imshow(
+        grey,
+        cmap="Greys",
+        vmin=0,
+        vmax=1,
+        origin="lower",
+        extent=(edges_m[0, 0], edges_m[0, 1], edges_m[1, 0], edges_m[1, 1]),
+        interpolation="none",
+        zorder=1,
+    )
+    axes.set(xlim=(low_m[0], high_m[0]), ylim=(low_m[1], high_m[1]), aspect="equal")
+    strip_frame(axes)
+
+
+def _density(
+    points_xy_m: FloatArray, low_m: FloatArray, extent_m: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return shades (rows, columns) from 0 to 1 and their image's edges ((x0, x1), (y0, y1))."""
+    cell_m = extent_m.max() / _CELLS
+    shape = np.maximum(1, np.ceil(extent_m / cell_m)).astype(int)
+    edges_m = np.array([low_m, low_m + shape * cell_m]).T
+    counts = np.histogram2d(*points_xy_m.T, bins=shape, range=edges_m)[0].T
     if not counts.any():
-        return counts, edges
+        return counts, edges_m
     # a wall, many points above each other, stands out; a single point is still seen
     depth = np.log1p(counts)
     depth = np.clip(depth / np.percentile(depth[counts > 0], 99), 0, 1)
-    return np.where(counts > 0, 0.3 + 0.4 * depth, 0), edges
+    return np.where(counts > 0, 0.3 + 0.4 * depth, 0), edges_m
 
 
-def _view(points_xy_m, must_show_xy_m):
-    bulk = np.percentile(points_xy_m, [_TRUST_PERCENT, 100 - _TRUST_PERCENT], axis=0)
-    corners = np.concatenate([bulk, must_show_xy_m])
-    return corners.min(axis=0) - _MARGIN_M, corners.max(axis=0) + _MARGIN_M
+def _view(points_xy_m: FloatArray, must_show_xy_m: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the least and the greatest x, y that are shown."""
+    percents = [_OUTLIER_PERCENT, 100 - _OUTLIER_PERCENT]
+    bulk_m = np.percentile(points_xy_m, percents, axis=0)
+    corners_m = np.concatenate([bulk_m, must_show_xy_m])
+    return corners_m.min(axis=0) - _MARGIN_M, corners_m.max(axis=0) + _MARGIN_M

@@ -1,13 +1,17 @@
 """The figure of the evaluation: what the first scans of every ordering find of the true walls."""
 
+from collections.abc import Iterable
+
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter, StrMethodFormatter
 
 from scanplan.report import top_view
 from scanplan.selection.methods import METHODS
+from scanplan.types import Columns, IntArray
 
-_SIZE_IN = (7.0, 8.6)
+_SIZE_IN = (7.0, 8.6)  # a page of A4 but for the caption
 _STYLES = {
     "oracle": ("oracle: knows the truth", "black"),
     "sight": ("oracle by sight alone", "0.55"),
@@ -27,12 +31,16 @@ _REASONS = {
 }
 
 
-def draw_evaluation_figure(measured, aligned, *, method, extractor):
-    """Draw completeness by every method and extractor, bitmap metrics (thesis, figure 5.4) and reasons of misses.
+def draw_evaluation_figure(
+    measures: Columns, aligned: Columns, *, method: str, extractor: str
+) -> Figure:
+    """Draw completeness by every method and extractor, bitmap metrics and reasons of misses.
+
+    The bitmap metrics are those of the thesis's figure 5.4.
 
     Parameters
     ----------
-    measured, aligned : dict of str to (n,) array
+    measures, aligned : dict of str to (n,) array
         The columns of `schemas.EVALUATION`, as registered and after the best rigid motion.
     method, extractor : str
         Whose misses, and whose bitmap metrics are drawn.
@@ -42,25 +50,19 @@ def draw_evaluation_figure(measured, aligned, *, method, extractor):
     matplotlib.figure.Figure
     """
     figure = Figure(figsize=_SIZE_IN, layout="constrained")
-    names = sorted(set(measured["extractor"].tolist()), key=lambda name: name != extractor)
-    layout = "".join(
-        f"{2 * row}{2 * row}{2 * row}{2 * row + 1}{2 * row + 1}{2 * row + 1};"
-        for row in range(len(names))
-    )
-    axes = figure.subplot_mosaic(f"{layout}aabbcc;mmmooo")
+    names = sorted(set(measures["extractor"].tolist()), key=lambda name: name != extractor)
+    axes = figure.subplot_mosaic(_mosaic(len(names)))
     for row, name in enumerate(names):
-        for column, (table, frame) in enumerate(
-            ((measured, "as registered"), (aligned, "after a rigid motion"))
-        ):
-            _completeness(
-                axes[str(2 * row + column)], _of(table, extractor=name), f"{name}, {frame}"
-            )
+        left, right = axes[str(2 * row)], axes[str(2 * row + 1)]
+        _draw_completeness(left, _select(measures, extractor=name), f"{name}, as registered")
+        _draw_completeness(right, _select(aligned, extractor=name), f"{name}, after a rigid motion")
+    of_extractor = _select(measures, extractor=extractor)
     for key, (share, title) in zip("abc", _BITMAP.items(), strict=True):
-        _curves(axes[key], _of(measured, extractor=extractor), share)
+        _draw_curves(axes[key], of_extractor, share)
         axes[key].set_title(f"{title}, {extractor}", fontsize=7)
         axes[key].set_ylabel("share of all cells", fontsize=7)
     for key, name in (("m", method), ("o", "oracle")):
-        _missed(axes[key], _of(measured, extractor=extractor, method=name))
+        _draw_missed(axes[key], _select(of_extractor, method=name))
         axes[key].set_title(f"missed, {name}, {extractor}, as registered", fontsize=7)
     handles, labels = axes["0"].get_legend_handles_labels()
     figure.legend(
@@ -71,53 +73,63 @@ def draw_evaluation_figure(measured, aligned, *, method, extractor):
     return figure
 
 
-def sort_methods(methods):
+def _mosaic(n_extractors: int) -> str:
+    """Return the layout: two panels for every extractor, three bitmap metrics, two of misses."""
+    rows = [f"{2 * row}" * 3 + f"{2 * row + 1}" * 3 for row in range(n_extractors)]
+    return ";".join([*rows, "aabbcc", "mmmooo"])
+
+
+def sort_methods(methods: Iterable[str]) -> list[str]:
     """Return the methods in the order to draw them in: the known ones last, the oracle on top."""
-    known = list(_STYLES)
-    return sorted(
-        set(np.asarray(methods).tolist()), key=lambda m: (-known.index(m) if m in known else -99, m)
-    )
+    layer = {method: -place for place, method in enumerate(_STYLES)}
+    unique = set(np.asarray(methods).tolist())
+    return sorted(unique, key=lambda method: (layer.get(method, -len(_STYLES)), method))
 
 
-def method_style(method):
+def method_style(method: str) -> tuple[str, str]:
     """Return how a method is called in a legend, and its colour."""
     return _STYLES.get(
         method, (method.replace("_", " "), _OTHER[sum(map(ord, method)) % len(_OTHER)])
     )
 
 
-def _completeness(axes, table, title):
-    _curves(axes, table, _FOUND)
+def _draw_completeness(axes: Axes, table: Columns, title: str) -> None:
+    _draw_curves(axes, table, _FOUND)
     axes.set_ylim(0, 1.02)
     axes.set_title(title, fontsize=7)
     axes.set_ylabel("visible walls found", fontsize=7)
 
 
-def _curves(axes, table, column):
+def _draw_curves(axes: Axes, table: Columns, column: str) -> None:
     for method in sort_methods(table["method"]):
         label, colour = method_style(method)
-        of_it = _of(table, method=method)
+        rows = _select(table, method=method)
         is_baseline = method in METHODS and METHODS[method].is_baseline
         dashes, width = ("--", 0.8) if is_baseline else ("-", 1.2)
         axes.plot(
-            of_it["k"], of_it[column], dashes, color=colour, lw=width, marker="o", ms=1.6,
-            label=label, gid=f"{column}-{method}",
-        )  # fmt: skip
-    _scan_axis(axes, table["k"])
+            rows["k"],
+            rows[column],
+            dashes,
+            color=colour,
+            lw=width,
+            marker="o",
+            ms=1.6,
+            label=label,
+            gid=f"{column}-{method}",
+        )
+    _scale_scan_axis(axes, table["k"])
 
 
-def _missed(axes, table):
-    colours = [colour for _, colour in _REASONS.values()]
-    axes.stackplot(
-        table["k"], *(table[reason] for reason in _REASONS), colors=colours, lw=0,
-        labels=[label for label, _ in _REASONS.values()],
-    )  # fmt: skip
+def _draw_missed(axes: Axes, table: Columns) -> None:
+    labels, colours = zip(*_REASONS.values(), strict=True)
+    shares = [table[reason] for reason in _REASONS]
+    axes.stackplot(table["k"], *shares, colors=colours, lw=0, labels=labels)
     axes.set_ylim(0, 1.02)
     axes.set_ylabel("share of all true walls", fontsize=7)
-    _scan_axis(axes, table["k"])
+    _scale_scan_axis(axes, table["k"])
 
 
-def _scan_axis(axes, sizes):
+def _scale_scan_axis(axes: Axes, sizes: IntArray) -> None:
     axes.set_xscale("log")
     axes.set_xlim(1, max(2, sizes.max()) * 1.05)
     axes.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
@@ -127,6 +139,7 @@ def _scan_axis(axes, sizes):
     axes.tick_params(labelsize=6)
 
 
-def _of(table, **wanted):
-    chosen = np.all([table[name] == value for name, value in wanted.items()], axis=0)
-    return {name: values[chosen] for name, values in table.items()}
+def _select(table: Columns, **wanted: str) -> Columns:
+    """Return the rows of a table whose columns have the wanted values."""
+    rows = np.all([table[name] == value for name, value in wanted.items()], axis=0)
+    return {name: values[rows] for name, values in table.items()}

@@ -1,19 +1,27 @@
 """How good the openings of a plan are: doors, passages and windows against the true ones."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import shapely
+from shapely.geometry.base import BaseGeometry
 
 from scanplan.lab.evaluation import length_metrics
+from scanplan.lab.evaluation.face_cells import FaceCells
+from scanplan.types import BoolArray, FloatArray
 
-PARALLEL = np.cos(np.radians(10))
+PARALLEL = np.cos(np.radians(10))  # as far as a short line may be turned by noise at its ends
 WALL_M = 0.35  # a wall and what its place may be wrong by: both of its faces are nearer than this
 _NEAR_M = 0.35  # likewise, and less than half of a door's width: never the next door
 _WIDTH_M = 0.10  # as for faces
-_BESIDE_M = 0.5  # a jamb's worth of wall has to be seen for a window to be told
-_VISIBLE_SHARE = 0.5
+_BESIDE_M = 0.5  # a jamb's worth of wall has to be seen for a window to be found
+_NO_LENGTH_M = 1e-9  # below what coordinates are rounded to: keeps a division by 0 away
+_VISIBLE_SHARE = 0.5  # of what can be seen of a window's wall: less does not bound the window
 
 
-def measure_doors(drawn_m, true_m, rooms, visited):
+def measure_doors(
+    drawn_m: FloatArray, true_m: FloatArray, rooms: Sequence[BaseGeometry], visited: BoolArray
+) -> dict[str, float]:
     """Measure doors and passages; to be found are those of rooms that the survey went into.
 
     Parameters
@@ -27,18 +35,20 @@ def measure_doors(drawn_m, true_m, rooms, visited):
     dict of str to float
         Precision counts all true doors. Without doors to find or drawn, recall or precision is 1.
     """
-    entered = shapely.union_all([room for room, was in zip(rooms, visited, strict=True) if was])
-    wanted = shapely.distance(shapely.linestrings(true_m), entered) <= _NEAR_M
-    return _measured("door", drawn_m, true_m, wanted)
+    entered = [room for room, was_entered in zip(rooms, visited, strict=True) if was_entered]
+    apart_m = shapely.distance(shapely.linestrings(true_m), shapely.union_all(entered))
+    return _measure_openings("door", drawn_m, true_m, np.asarray(apart_m <= _NEAR_M))
 
 
-def measure_windows(drawn_m, true_m, cells, visible):
+def measure_windows(
+    drawn_m: FloatArray, true_m: FloatArray, cells: FaceCells, visible: BoolArray
+) -> dict[str, float]:
     """Measure windows; to be found are those whose wall the survey could see.
 
     Parameters
     ----------
     drawn_m, true_m : (n, 2, 2), (m, 2, 2) float
-    cells : visible_faces.FaceCells
+    cells : FaceCells
         Of the true faces.
     visible : (c,) bool
         Whether the survey could see a cell.
@@ -49,37 +59,38 @@ def measure_windows(drawn_m, true_m, cells, visible):
         As `measure_doors` has them.
     """
     wanted = np.array([_is_visible(line_m, cells, visible) for line_m in true_m], bool)
-    return _measured("window", drawn_m, true_m, wanted)
+    return _measure_openings("window", drawn_m, true_m, wanted)
 
 
-def _is_visible(line_m, cells, visible):
-    """Tell whether half of the wall below a window and half a metre beside it could be seen from one of its sides.
+def _is_visible(line_m: FloatArray, cells: FaceCells, visible: BoolArray) -> bool:
+    """Return whether half of a window's wall could be seen from one of its sides.
 
-    Where the opening reaches down to the height of the sensor there is no face below it, only beside it.
+    That is the wall below it and half a metre beside it. Where the opening reaches down to the
+    height of the sensor there is no face below it, only beside it.
     """
-    middle_m, way = line_m.mean(axis=0), unit_directions(line_m[None])[0]
-    across, off_m = np.array([-way[1], way[0]]), cells.middle_m - middle_m
+    way = unit_directions(line_m[None])[0]
+    across = np.array([-way[1], way[0]])
+    offset_m = cells.middle_m - line_m.mean(axis=0)
     reach_m = length_metrics.line_lengths_m(line_m[None])[0] / 2 + _BESIDE_M
-    alike = np.abs(unit_directions(cells.faces_m) @ way) >= PARALLEL
-    beside = (
-        (np.abs(off_m @ way) <= reach_m) & (np.abs(off_m @ across) <= WALL_M) & alike[cells.face]
-    )
-    sides = [
-        beside & (unit_directions(cells.faces_m)[cells.face] @ way * sign > 0) for sign in (1, -1)
-    ]
-    return any(
-        cells.length_m[side & visible].sum() >= _VISIBLE_SHARE * cells.length_m[side].sum()
-        for side in sides
-        if side.any()
-    )
+    along = (unit_directions(cells.faces_m) @ way)[cells.face]
+    is_near = (np.abs(offset_m @ way) <= reach_m) & (np.abs(offset_m @ across) <= WALL_M)
+    beside = is_near & (np.abs(along) >= PARALLEL)
+    for side in (beside & (along > 0), beside & (along < 0)):
+        visible_m = cells.length_m[side & visible].sum()
+        if side.any() and visible_m >= _VISIBLE_SHARE * cells.length_m[side].sum():
+            return True
+    return False
 
 
-def _measured(kind, drawn_m, true_m, wanted):
-    """Return the measures of a kind of openings, of which those wanted (m,) bool are to be found."""
+def _measure_openings(
+    kind: str, drawn_m: FloatArray, true_m: FloatArray, wanted: BoolArray
+) -> dict[str, float]:
+    """Return the measures of a kind of openings, of which those wanted (m,) are to be found."""
     pairs = _nearest_pairs(drawn_m, true_m)
-    found = [(d, t) for d, t in pairs if wanted[t]]
-    width_m = [length_metrics.line_lengths_m(m) for m in (drawn_m, true_m)]
-    error_m = np.array([abs(width_m[0][d] - width_m[1][t]) for d, t in found])
+    found = [(drawn, true) for drawn, true in pairs if wanted[true]]
+    drawn_width_m = length_metrics.line_lengths_m(drawn_m)
+    true_width_m = length_metrics.line_lengths_m(true_m)
+    error_m = np.array([abs(drawn_width_m[drawn] - true_width_m[true]) for drawn, true in found])
     return {
         f"n_{kind}s_true": int(wanted.sum()),
         f"n_{kind}s_found": len(found),
@@ -91,22 +102,27 @@ def _measured(kind, drawn_m, true_m, wanted):
     }
 
 
-def _nearest_pairs(drawn_m, true_m):
-    """Return pairs (drawn, true), each once, the nearest first: middles within 0.35 m, much the same way."""
-    apart_m = np.hypot(
-        *np.moveaxis(drawn_m.mean(axis=1)[:, None] - true_m.mean(axis=1)[None], -1, 0)
-    )
+def _nearest_pairs(drawn_m: FloatArray, true_m: FloatArray) -> list[tuple[int, int]]:
+    """Return pairs (drawn, true), each once, the nearest first.
+
+    Their middles lie within 0.35 m, and they run much the same way.
+    """
+    offset_m = drawn_m.mean(axis=1)[:, None] - true_m.mean(axis=1)[None]
+    apart_m = np.hypot(*np.moveaxis(offset_m, -1, 0))
     alike = np.abs(unit_directions(drawn_m) @ unit_directions(true_m).T) >= PARALLEL
-    i, j = np.nonzero((apart_m <= _NEAR_M) & alike)
-    pairs, used = [], (set(), set())
-    for k in np.lexsort((j, i, apart_m[i, j])):
-        if i[k] not in used[0] and j[k] not in used[1]:
-            pairs.append((int(i[k]), int(j[k])))
-            used[0].add(i[k]), used[1].add(j[k])
+    drawn, true = np.nonzero((apart_m <= _NEAR_M) & alike)
+    order = np.lexsort((true, drawn, apart_m[drawn, true]))
+    pairs = []
+    paired_drawn, paired_true = set(), set()
+    for i, j in zip(drawn[order].tolist(), true[order].tolist(), strict=True):
+        if i not in paired_drawn and j not in paired_true:
+            pairs.append((i, j))
+            paired_drawn.add(i)
+            paired_true.add(j)
     return pairs
 
 
-def unit_directions(lines_m):
+def unit_directions(lines_m: FloatArray) -> FloatArray:
     """Return the unit directions (n, 2) of lines (n, 2, 2); those of no length have none."""
-    way = lines_m[:, 1] - lines_m[:, 0]
-    return way / np.maximum(np.hypot(*way.T), 1e-9)[:, None]
+    way_m = lines_m[:, 1] - lines_m[:, 0]
+    return way_m / np.maximum(np.hypot(*way_m.T), _NO_LENGTH_M)[:, None]

@@ -4,12 +4,14 @@ It is asked of what scans could see of the walls, and of what an extractor finds
 scan. Either length is monotone submodular like covered area, so `lazy_greedy` orders by it.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from scanplan.selection import lazy_greedy
-from scanplan.types import BoolArray, FloatArray, IntArray
+from scanplan.store.registered_scans import RegisteredScans
+from scanplan.types import BoolArray, Columns, FloatArray, IntArray
 
 _TIE_M = 1e-9  # sums of the lengths of cells agree far better
 
@@ -54,7 +56,7 @@ def order_by_truth(seen: BoolArray, length_m: FloatArray) -> OracleOrder:
     return OracleOrder(np.array(order, int), np.array(gains_m))
 
 
-def oracle_columns(best, scans):
+def oracle_columns(best: Mapping[str, OracleOrder], scans: RegisteredScans) -> Columns:
     """Return the columns of `schemas.ORACLE`.
 
     Parameters

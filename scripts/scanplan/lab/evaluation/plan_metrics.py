@@ -1,14 +1,22 @@
 """How good a plan is: its faces, walls, openings and rooms against the true ones."""
 
+from collections.abc import Mapping, Sequence
+from typing import Any
+
 import numpy as np
 import shapely
+from shapely.geometry.base import BaseGeometry
 
-from scanplan.lab.evaluation import length_metrics, opening_metrics, visible_faces
+from scanplan.lab.evaluation import face_cells, length_metrics, opening_metrics
+from scanplan.lab.evaluation.face_cells import FaceCells
+from scanplan.lab.evaluation.true_plan import TruePlan
+from scanplan.lab.evaluation.wall_findings import VisibleTruth
 from scanplan.store import schemas, tables
+from scanplan.types import BoolArray, Columns, FilePath, FloatArray, IntArray
 
-WITHIN_M = 0.10
-_MISPLACED_M = 0.30
-_SAME_ROOM_IOU = 0.5
+WITHIN_M = 0.10  # as for the walls of single scans, see `wall_findings.JUDGED`
+_MISPLACED_M = 0.30  # farther off a face is another one: twice a thin wall's thickness
+_SAME_ROOM_IOU = 0.5  # above it no two drawn rooms can match one true room
 _DOORS = ("door", "passage")
 _TABLES = {
     "faces": schemas.FACES,
@@ -18,7 +26,7 @@ _TABLES = {
 }
 
 
-def read_plan_tables(plan):
+def read_plan_tables(plan: Mapping[str, FilePath]) -> dict[str, Columns]:
     """Read the tables of a plan that are measured, columns by name, from paths by name."""
     return {
         name: tables.read_table(plan[name], schema, allow_empty=True)
@@ -26,12 +34,14 @@ def read_plan_tables(plan):
     }
 
 
-def evidence_scan_ids(evidence):
+def evidence_scan_ids(evidence: FilePath) -> IntArray:
     """Return the scan_ids (n,) that a table of evidence at a path names, increasing."""
     return np.unique(tables.read_table(evidence, schemas.EVIDENCE, ["wall", "scan_id"])["scan_id"])
 
 
-def measure_plan(drawn, motion, true, floor):
+def measure_plan(
+    drawn: Mapping[str, Columns], motion: FloatArray, true: TruePlan, floor: VisibleTruth
+) -> dict[str, float]:
     """Measure a plan.
 
     Parameters
@@ -49,42 +59,39 @@ def measure_plan(drawn, motion, true, floor):
     dict of str to float
         Columns of `schemas.PLAN_EVALUATION`.
     """
-    walls_m, openings_m = (_moved(_lines_m(drawn[name]), motion) for name in ("walls", "openings"))
-    drawn_m, seen = moved_faces_m(drawn, motion), floor.seen.any(axis=0)
+    faces_m = moved_faces_m(drawn, motion)
+    observed = drawn["faces"]["state"] == "observed"
+    seen = np.asarray(floor.seen.any(axis=0))
+    walls_m = _moved(length_metrics.table_lines_m(drawn["walls"]), motion)
+    openings_m = _moved(length_metrics.table_lines_m(drawn["openings"]), motion)
     kinds = drawn["openings"]["type"]
-    outlines = shapely.transform(
-        shapely.from_wkb(drawn["rooms"]["geometry"]), lambda xy_m: _moved(xy_m, motion)
+    doors_m, windows_m = openings_m[np.isin(kinds, _DOORS)], openings_m[kinds == "window"]
+    rooms = shapely.transform(
+        shapely.from_wkb(drawn["rooms"]["geometry"]),
+        lambda xy_m: np.asarray(_moved(xy_m, motion), np.float64),
     )
     return {
-        "length_m": float(length_metrics.line_lengths_m(drawn_m).sum()),
-        **measure_faces(
-            drawn_m, drawn["faces"]["state"] == "observed", floor.cells, floor.visible, seen
-        ),
+        "length_m": float(length_metrics.line_lengths_m(faces_m).sum()),
+        **measure_faces(faces_m, observed, floor.cells, floor.visible, seen),
         **measure_walls(walls_m, drawn["walls"]["thickness_m"], true.walls_m, true.thickness_m),
-        **opening_metrics.measure_doors(
-            openings_m[np.isin(kinds, _DOORS)], true.doors_m, true.rooms, true.visited
-        ),
-        **opening_metrics.measure_windows(
-            openings_m[kinds == "window"], true.windows_m, floor.cells, floor.visible
-        ),
-        **measure_rooms(list(outlines), true.rooms, true.visited),
+        **opening_metrics.measure_doors(doors_m, true.doors_m, true.rooms, true.visited),
+        **opening_metrics.measure_windows(windows_m, true.windows_m, floor.cells, floor.visible),
+        **measure_rooms(list(rooms), true.rooms, true.visited),
     }
 
 
-def moved_faces_m(drawn, motion):
+def moved_faces_m(drawn: Mapping[str, Columns], motion: FloatArray) -> FloatArray:
     """Return the faces (n, 2, 2) of a plan after a rigid motion (4, 4)."""
-    return _moved(_lines_m(drawn["faces"]), motion)
+    return _moved(length_metrics.table_lines_m(drawn["faces"]), motion)
 
 
-def _lines_m(columns):
-    return np.column_stack([columns[c] for c in ("x0_m", "y0_m", "x1_m", "y1_m")]).reshape(-1, 2, 2)
-
-
-def _moved(xy_m, motion):
+def _moved(xy_m: FloatArray, motion: FloatArray) -> FloatArray:
     return xy_m @ motion[:2, :2].T + motion[:2, 3]
 
 
-def measure_faces(drawn_m, observed, cells, visible, seen):
+def measure_faces(
+    drawn_m: FloatArray, observed: BoolArray, cells: FaceCells, visible: BoolArray, seen: BoolArray
+) -> dict[str, float]:
     """Measure faces.
 
     Parameters
@@ -92,7 +99,7 @@ def measure_faces(drawn_m, observed, cells, visible, seen):
     drawn_m : (n, 2, 2) float
     observed : (n,) bool
         Whether a face was observed, not inferred.
-    cells : visible_faces.FaceCells
+    cells : face_cells.FaceCells
         Of the true faces.
     visible, seen : (c,) bool
         Whether the survey, and the chosen scans, could see a cell.
@@ -100,44 +107,50 @@ def measure_faces(drawn_m, observed, cells, visible, seen):
     Returns
     -------
     dict of str to float
-        Shares of length at 0.10 m. What is missed of the visible is parted into what the chosen scans could not see,
-        what is drawn within 0.30 m, and the rest.
+        Shares of length at 0.10 m. What is missed of the visible is parted into what the chosen
+        scans could not see, what is drawn within 0.30 m, and the rest.
     """
-    length_m, true_m = cells.length_m, cells.faces_m
-    found, nearly = (_found(cells, drawn_m, m) for m in (WITHIN_M, _MISPLACED_M))
-    found_observed = _found(cells, drawn_m[observed], WITHIN_M)
+    length_m = cells.length_m
+    found = _found_cells(cells, drawn_m, WITHIN_M)
+    found_nearby = _found_cells(cells, drawn_m, _MISPLACED_M)
+    found_observed = _found_cells(cells, drawn_m[observed], WITHIN_M)
     missed = visible & ~found
-    whole_m = length_m[visible].sum()
+    visible_m = length_m[visible].sum()
+    observed_agreement = length_metrics.compare_lines(drawn_m[observed], cells.faces_m, WITHIN_M)
     return {
         "seen_completeness_010m": length_metrics.safe_share(
             length_m[seen & found].sum(), length_m[seen].sum()
         ),
-        "observed_correctness_010m": length_metrics.compare_lines(
-            drawn_m[observed], true_m, WITHIN_M
-        ).correctness,
+        "observed_correctness_010m": observed_agreement.correctness,
         "observed_visible_completeness_010m": length_metrics.safe_share(
-            length_m[visible & found_observed].sum(), whole_m
+            length_m[visible & found_observed].sum(), visible_m
         ),
-        "missed_not_seen": _part(length_m, missed & ~seen, whole_m),
-        "missed_misplaced": _part(length_m, missed & seen & nearly, whole_m),
-        "missed_misextracted": _part(length_m, missed & seen & ~nearly, whole_m),
+        "missed_not_seen": _part(length_m, missed & ~seen, visible_m),
+        "missed_misplaced": _part(length_m, missed & seen & found_nearby, visible_m),
+        "missed_misextracted": _part(length_m, missed & seen & ~found_nearby, visible_m),
     }
 
 
-def _part(length_m, chosen, whole_m):
+def _part(length_m: FloatArray, chosen: BoolArray, whole_m: float) -> float:
     return float(length_m[chosen].sum() / whole_m) if whole_m > 0 else 0.0
 
 
-def _found(cells, drawn_m, within_m):
-    found = np.zeros(len(cells.face), bool)
+def _found_cells(cells: FaceCells, drawn_m: FloatArray, within_m: float) -> BoolArray:
+    """Return which cells (c,) have a drawn line within a distance of their middles."""
     near = length_metrics.find_near_intervals(cells.faces_m, drawn_m, within_m)
-    begin, end = visible_faces.cells_in_intervals(cells, near.line, near.low_m, near.high_m)
-    for b, e in zip(begin.tolist(), end.tolist(), strict=True):
-        found[b:e] = True
+    begins, ends = face_cells.cells_in_intervals(cells, near.line, near.low_m, near.high_m)
+    found = np.zeros(len(cells.face), bool)
+    for begin, end in zip(begins.tolist(), ends.tolist(), strict=True):
+        found[begin:end] = True
     return found
 
 
-def measure_walls(drawn_m, thickness_m, true_m, true_thickness_m):
+def measure_walls(
+    drawn_m: FloatArray,
+    thickness_m: FloatArray,
+    true_m: FloatArray,
+    true_thickness_m: FloatArray,
+) -> dict[str, float]:
     """Measure walls: each drawn one belongs to the true one that it runs beside for longest.
 
     Parameters
@@ -153,35 +166,38 @@ def measure_walls(drawn_m, thickness_m, true_m, true_thickness_m):
     dict of str to float
         Walls that belong to no true one count in `n_plan_walls` alone.
     """
-    near = length_metrics.find_near_intervals(drawn_m, true_m, opening_metrics.WALL_M)
-    alike = (
-        np.abs(
-            np.einsum(
-                "ij,ij->i",
-                opening_metrics.unit_directions(drawn_m)[near.line],
-                opening_metrics.unit_directions(true_m)[near.other],
-            )
-        )
-        >= opening_metrics.PARALLEL
-    )
-    line, other, length_m = near.line[alike], near.other[alike], (near.high_m - near.low_m)[alike]
-    order = np.lexsort((-other, length_m, line))
-    belongs = np.full(len(drawn_m), -1)
-    belongs[line[order]] = other[order]
-    matched = belongs >= 0
-    known = matched & np.isfinite(thickness_m)
-    error_m = np.abs(thickness_m[known] - true_thickness_m[belongs[known]])
+    true_wall = _match_walls(drawn_m, true_m)
+    is_matched = true_wall >= 0
+    n_matched_true = len(np.unique(true_wall[is_matched]))
+    is_known = is_matched & np.isfinite(thickness_m)
+    error_m = np.abs(thickness_m[is_known] - true_thickness_m[true_wall[is_known]])
     return {
         "n_plan_walls": len(drawn_m),
-        "plan_walls_per_true_wall": matched.sum() / len(np.unique(belongs[matched]))
-        if matched.any()
+        "plan_walls_per_true_wall": is_matched.sum() / n_matched_true
+        if is_matched.any()
         else np.nan,
-        "n_thickness": int(known.sum()),
-        "thickness_error_m": float(np.median(error_m)) if known.any() else np.nan,
+        "n_thickness": int(is_known.sum()),
+        "thickness_error_m": float(np.median(error_m)) if is_known.any() else np.nan,
     }
 
 
-def measure_rooms(drawn, true, visited):
+def _match_walls(drawn_m: FloatArray, true_m: FloatArray) -> IntArray:
+    """Return the true wall (n,) that each drawn one runs beside for longest; -1 without any."""
+    near = length_metrics.find_near_intervals(drawn_m, true_m, opening_metrics.WALL_M)
+    way = opening_metrics.unit_directions(drawn_m)[near.line]
+    true_way = opening_metrics.unit_directions(true_m)[near.other]
+    alike = np.abs(np.einsum("ij,ij->i", way, true_way)) >= opening_metrics.PARALLEL
+    line, other = near.line[alike], near.other[alike]
+    # the longest last, and of equals the first
+    order = np.lexsort((-other, (near.high_m - near.low_m)[alike], line))
+    true_wall = np.full(len(drawn_m), -1)
+    true_wall[line[order]] = other[order]
+    return true_wall
+
+
+def measure_rooms(
+    drawn: Sequence[BaseGeometry], true: Sequence[BaseGeometry], visited: BoolArray
+) -> dict[str, float]:
     """Measure rooms by intersection over union; to be found are those that the survey went into.
 
     Parameters
@@ -192,13 +208,14 @@ def measure_rooms(drawn, true, visited):
     Returns
     -------
     dict of str to float
-        A room is found where its IoU is above one half; drawn rooms that overlap no true room so are false. The mean
-        counts a room that is not found with what it has.
+        A room is found where its IoU is above one half; drawn rooms that overlap no true room so
+        are false. The mean counts a room that is not found with what it has.
     """
+    shapes = np.array(drawn, object)
     iou = np.zeros((len(true), len(drawn)))
-    for i, room in enumerate(true):
-        area_m2 = shapely.area(shapely.intersection(room, np.array(drawn, object)))
-        iou[i] = area_m2 / (room.area + shapely.area(np.array(drawn, object)) - area_m2)
+    for row, room in zip(iou, true, strict=True):
+        shared_m2 = shapely.area(shapely.intersection(room, shapes))
+        row[:] = shared_m2 / (room.area + shapely.area(shapes) - shared_m2)
     best = iou.max(axis=1, initial=0.0)[visited]
     return {
         "n_rooms_true": int(visited.sum()),
@@ -209,22 +226,20 @@ def measure_rooms(drawn, true, visited):
     }
 
 
-def plan_evaluation_columns(rows):
+def plan_evaluation_columns(rows: Sequence[Mapping[str, Any]]) -> dict[str, list[Any]]:
     """Return rows, by frame, as the columns of `schemas.PLAN_EVALUATION`."""
     return {name: [row[name] for row in rows] for name in schemas.PLAN_EVALUATION.columns}
 
 
-def summarise_plan_measures(row):
-    """Say in a line what a plan is worth."""
-    per_wall = row["plan_walls_per_true_wall"]
-    told = {
-        name: value if isinstance(value, str) else f"{value:.3f}" for name, value in row.items()
-    }
+def summarise_plan_measures(row: Mapping[str, Any]) -> str:
+    """Return in a line what a plan is worth."""
     return (
-        f"faces right {told['correctness_010m']}, of the visible found {told['visible_completeness_010m']} (of what the"
-        f" {row['n_scans']} scans see {told['seen_completeness_010m']}); {per_wall:.2f} walls a true wall,"
-        f" {row['n_thickness']} thicknesses off by {told['thickness_error_m']} m; doors found {row['n_doors_found']}"
-        f" of {row['n_doors_true']}, right {told['door_precision']}, width right {told['door_width_right']}; windows"
-        f" found {row['n_windows_found']} of {row['n_windows_true']}, right {told['window_precision']}; rooms"
-        f" {row['n_rooms_found']} of {row['n_rooms_true']}, {row['n_rooms_false']} false, IoU {told['room_iou']}"
-    )
+        "faces right {correctness_010m:.3f}, of the visible found"
+        " {visible_completeness_010m:.3f} (of what the {n_scans} scans see"
+        " {seen_completeness_010m:.3f}); {plan_walls_per_true_wall:.2f} walls a true wall,"
+        " {n_thickness} thicknesses off by {thickness_error_m:.3f} m; doors found"
+        " {n_doors_found} of {n_doors_true}, right {door_precision:.3f}, width right"
+        " {door_width_right:.3f}; windows found {n_windows_found} of {n_windows_true}, right"
+        " {window_precision:.3f}; rooms {n_rooms_found} of {n_rooms_true}, {n_rooms_false} false,"
+        " IoU {room_iou:.3f}"
+    ).format_map(row)

@@ -3,10 +3,11 @@
 from pathlib import Path
 
 from scanplan.errors import StageError
+from scanplan.types import FilePath
 
 
-def read_job_seconds(path):
-    """Return the wall-clock seconds of the job that a benchmark file tells of.
+def read_job_seconds(path: FilePath) -> float:
+    """Return the wall-clock seconds of the job that a benchmark file is of.
 
     Raises
     ------

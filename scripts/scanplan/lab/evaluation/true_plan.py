@@ -1,16 +1,20 @@
 """The true plan of a floor: walls with their thickness, openings and rooms (GeoJSON)."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import shapely
 from shapely.geometry import MultiPolygon, shape
+from shapely.geometry.base import BaseGeometry
 
 from scanplan.errors import StageError
 from scanplan.lab.evaluation import truth_file
+from scanplan.types import BoolArray, FilePath, FloatArray
 
-_TOUCH_M = 0.01
-_SHARED_M = 0.1
+_TOUCH_M = 0.01  # spaces of a model that touch may be drawn this far apart
+_SHARED_M = 0.1  # longer than corners meet, shorter than any passage is wide
 _OPENINGS = {"door": "door", "passage": "door", "window": "window"}
 _REMEDY = "simulate the survey again, or mend it"
 
@@ -28,20 +32,20 @@ class TruePlan:
         Middles of doors and passages.
     windows_m : (w, 2, 2) float64
     rooms : list of shapely geometry
-        Those that walls part: spaces that touch each other are one.
+        Those that walls part: spaces that touch are one.
     visited : (r,) bool
         Whether the survey went into a room.
     """
 
-    walls_m: np.ndarray
-    thickness_m: np.ndarray
-    doors_m: np.ndarray
-    windows_m: np.ndarray
-    rooms: list
-    visited: np.ndarray
+    walls_m: FloatArray
+    thickness_m: FloatArray
+    doors_m: FloatArray
+    windows_m: FloatArray
+    rooms: list[BaseGeometry]
+    visited: BoolArray
 
 
-def read_true_plan(path):
+def read_true_plan(path: FilePath) -> TruePlan:
     """Read the features of kind `wall`, `opening` and `room` of a truth.geojson.
 
     Raises
@@ -49,17 +53,18 @@ def read_true_plan(path):
     StageError
         If it is no GeoJSON, or one of these features is not what it should be.
     """
-    walls, thickness, rooms, visited = [], [], [], []
-    openings = {"door": [], "window": []}
+    walls_m, thickness_m = [], []
+    openings_m: dict[str, list[FloatArray]] = {"door": [], "window": []}
+    rooms, visited = [], []
     for number, feature in enumerate(truth_file.parse_features(path)):
         properties = truth_file.feature_member(feature, "properties")
         kind = properties.get("kind")
         try:
             if kind == "wall":
-                walls.append(_line(feature))
-                thickness.append(float(properties["thickness_m"]))
+                walls_m.append(_line(feature))
+                thickness_m.append(float(properties["thickness_m"]))
             elif kind == "opening" and properties["type"] in _OPENINGS:
-                openings[_OPENINGS[properties["type"]]].append(_line(feature))
+                openings_m[_OPENINGS[properties["type"]]].append(_line(feature))
             elif kind == "room":
                 rooms.append(shapely.make_valid(shape(feature["geometry"])))
                 visited.append(bool(properties["visited"]))
@@ -67,38 +72,46 @@ def read_true_plan(path):
             raise StageError(
                 f"{path}: feature {number} is no {kind} ({error!r}); {_REMEDY}"
             ) from None
-    spaces, entered = _joined(rooms, visited)
+    rooms, visited = _join_touching(rooms, visited)
     return TruePlan(
-        np.array(walls, float).reshape(-1, 2, 2),
-        np.array(thickness),
-        *(np.array(openings[name]).reshape(-1, 2, 2) for name in ("door", "window")),
-        spaces,
-        entered,
+        walls_m=np.array(walls_m, float).reshape(-1, 2, 2),
+        thickness_m=np.array(thickness_m),
+        doors_m=np.array(openings_m["door"]).reshape(-1, 2, 2),
+        windows_m=np.array(openings_m["window"]).reshape(-1, 2, 2),
+        rooms=rooms,
+        visited=np.array(visited, bool),
     )
 
 
-def _line(feature):
+def _line(feature: Any) -> FloatArray:
     xy_m = np.array([point[:2] for point in feature["geometry"]["coordinates"]], float)
     if len(xy_m) != 2 or not np.isfinite(xy_m).all():
         raise ValueError(f"{len(xy_m)} points instead of 2 finite ones")
     return xy_m
 
 
-def _joined(rooms, visited):
+def _join_touching(
+    rooms: Sequence[BaseGeometry], visited: Sequence[bool]
+) -> tuple[list[BaseGeometry], list[bool]]:
     """Join rooms that share an edge: a model may part a space in two where no wall stands."""
     grown = [shapely.buffer(room, _TOUCH_M) for room in rooms]
-    group = list(range(len(rooms)))
-    for one in range(len(rooms)):
+    joined_rooms, joined_visited = [], []
+    for rows in _touching_groups(grown):
+        if len(rows) == 1:
+            joined_rooms.append(rooms[rows[0]])
+        else:
+            space = shapely.union_all([grown[row] for row in rows]).buffer(-_TOUCH_M)
+            joined_rooms.append(MultiPolygon(shapely.get_parts(space).tolist()))
+        joined_visited.append(any(visited[row] for row in rows))
+    return joined_rooms, joined_visited
+
+
+def _touching_groups(grown: Sequence[BaseGeometry]) -> list[list[int]]:
+    """Return the rows of each group of grown rooms that overlap along an edge."""
+    group = list(range(len(grown)))
+    for one in range(len(grown)):
         for other in range(one):
             if shapely.intersection(grown[one], grown[other]).area > 2 * _TOUCH_M * _SHARED_M:
                 old, new = group[one], group[other]
                 group = [new if g == old else g for g in group]
-    spaces, entered = [], []
-    for name in dict.fromkeys(group):
-        of_it = [i for i, g in enumerate(group) if g == name]
-        space = shapely.union_all([grown[i] for i in of_it]).buffer(-_TOUCH_M)
-        spaces.append(
-            rooms[of_it[0]] if len(of_it) == 1 else MultiPolygon(shapely.get_parts(space).tolist())
-        )
-        entered.append(any(visited[i] for i in of_it))
-    return spaces, np.array(entered, bool)
+    return [[row for row, g in enumerate(group) if g == name] for name in dict.fromkeys(group)]

@@ -9,7 +9,7 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import se3
 from scanplan.lab.buildings.truth import Feature
-from scanplan.lab.evaluation import visible_faces
+from scanplan.lab.evaluation import face_cells, visible_faces
 from scanplan.types import BoolArray, FloatArray
 
 _BESIDE_WALL_M = 0.01  # tolerance across a wall's half thickness, well below any wall's
@@ -36,7 +36,7 @@ def mark_visible(
     """
     inner = [i for i, (_, values) in enumerate(features) if values.get("side") == "inside"]
     outer = [i for i, (_, values) in enumerate(features) if _only_occludes(values)]
-    cells = visible_faces.cut_faces(_ends_m(features, inner))
+    cells = face_cells.cut_faces(_ends_m(features, inner))
     is_seen = visible_faces.cells_seen_by_any(cells, _ends_m(features, outer), poses, sensor)
     length_m = np.where(is_seen, cells.length_m, 0.0)
     by_face_m = np.bincount(cells.face, length_m, len(inner))
@@ -74,7 +74,7 @@ def _ends_m(features: Sequence[Feature], rows: list[int]) -> FloatArray:
     return np.array([features[i][0].coords for i in rows]).reshape(-1, 2, 2)
 
 
-def _on_wall(line: BaseGeometry, thickness_m: float, cells: visible_faces.FaceCells) -> BoolArray:
+def _on_wall(line: BaseGeometry, thickness_m: float, cells: face_cells.FaceCells) -> BoolArray:
     """Return which cells (c,) are of the faces of a straight wall."""
     is_beside = shapely.dwithin(
         shapely.points(cells.middle_m), line, thickness_m / 2 + _BESIDE_WALL_M

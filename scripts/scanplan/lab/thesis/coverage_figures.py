@@ -1,25 +1,37 @@
 """The thesis's figures of covered area and of the orders: 3.2, 5.4, 5.6 and 5.7."""
 
+from collections.abc import Mapping, Sequence
+
 import numpy as np
 import shapely
 from matplotlib.collections import PatchCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
+from shapely.geometry.base import BaseGeometry
 
-from scanplan.lab.thesis.claim_measures import FOUR, SUBSET, rows_of_method, scans_for_99
+from scanplan.lab.thesis.claim_measures import FOUR, rows_of_method, scans_for_99
+from scanplan.lab.thesis.stated_claims import SUBSET
 from scanplan.report import top_view
 from scanplan.selection.methods import METHODS
+from scanplan.types import Array, Columns, FloatArray, IntArray
 
 _BITMAP = {
     "correct_match": "Correct match",
     "false_positive": "False positive",
     "false_negative": "False negative",
 }
-_SHOWN_TO = 120
+_SHOWN_TO = 120  # scans: beyond it the shares hardly change
+_CLUSTERS_SHOWN_TO = 80  # scans: the areas of the thesis's figure 5.7 have settled by then
 _TRUTH, _HULL, _CLUSTERS = "#009e73", "#d55e00", "#0072b2"
 
 
-def draw_hulls_figure(points_xy_m, place_m, full, clusters, seen):
+def draw_hulls_figure(
+    points_xy_m: FloatArray,
+    place_m: FloatArray,
+    full: BaseGeometry,
+    clusters: Sequence[BaseGeometry] | Array,
+    seen: BaseGeometry,
+) -> Figure:
     """Draw one scan's hull, its clusters' hulls and what it truly sees (figure 3.2).
 
     Parameters
@@ -34,15 +46,13 @@ def draw_hulls_figure(points_xy_m, place_m, full, clusters, seen):
     matplotlib.figure.Figure
     """
     figure = Figure(figsize=(9.6, 3.6), layout="constrained")
-    union = shapely.union_all(clusters)
     panels = (
-        ("a: one convex hull", [full], full, _HULL),
-        (f"b: hulls of {len(clusters)} clusters", list(clusters), union, _CLUSTERS),
-        ("c: what the scan truly sees", [seen], seen, _TRUTH),
+        ("a: one convex hull", [full], _HULL),
+        (f"b: hulls of {len(clusters)} clusters", list(clusters), _CLUSTERS),
+        ("c: what the scan truly sees", [seen], _TRUTH),
     )
-    for axes, (title, shapes, area, colour) in zip(
-        figure.subplots(1, 3, sharex=True, sharey=True), panels, strict=True
-    ):
+    frames = figure.subplots(1, 3, sharex=True, sharey=True)
+    for axes, (title, shapes, colour) in zip(frames, panels, strict=True):
         axes.scatter(*points_xy_m.T, s=0.4, c="0.3", lw=0, rasterized=True, zorder=2)
         parts = shapely.get_parts(shapes)
         patches = [Polygon(np.array(p.exterior.coords)) for p in parts if p.geom_type == "Polygon"]
@@ -50,21 +60,21 @@ def draw_hulls_figure(points_xy_m, place_m, full, clusters, seen):
             PatchCollection(patches, facecolor=colour, edgecolor=colour, alpha=0.35, lw=0.8)
         )
         axes.plot(*place_m, "o", ms=4, mfc="white", mec="black", zorder=3)
-        axes.set_title(f"{title}: {area.area:.0f} m²", fontsize=9)
+        axes.set_title(f"{title}: {shapely.union_all(shapes).area:.0f} m²", fontsize=9)
         axes.set_aspect("equal")
         top_view.strip_frame(axes)
     figure.dpi = 200
     return figure
 
 
-def draw_shares_figure(evaluated, extractor):
-    """Draw the shares of the error map against the number of scans for every order (figure 5.4).
+def draw_shares_figure(evaluated: Sequence[Columns], extractor: str) -> Figure:
+    """Draw the shares of the error map against the number of scans, by order (figure 5.4).
 
     Parameters
     ----------
     evaluated : sequence of dict
-        The columns of `schemas.EVALUATION`, one table per seed; drawn to as many scans as all have, linear between
-        the numbers evaluated.
+        The columns of `schemas.EVALUATION`, one table per seed; drawn to as many scans as all have,
+        linear between the numbers evaluated.
     extractor : str
 
     Returns
@@ -72,32 +82,34 @@ def draw_shares_figure(evaluated, extractor):
     matplotlib.figure.Figure
     """
     figure = Figure(figsize=(9.6, 3.4), layout="constrained")
-    for axes, (column, title) in zip(figure.subplots(1, 3), _BITMAP.items(), strict=True):
+    frames = figure.subplots(1, 3)
+    for axes, (column, title) in zip(frames, _BITMAP.items(), strict=True):
+        n_scans = 1
         for method in FOUR:
             label, colour = METHODS[method].label, METHODS[method].colour
             rows = [rows_of_method(table, method, extractor) for table in evaluated]
-            k = _common(row["k"] for row in rows)
+            k = _common_sizes([row["k"] for row in rows])
             share = np.array([np.interp(k, row["k"], row[column]) for row in rows])
             axes.fill_between(
                 k, share.min(axis=0), share.max(axis=0), color=colour, alpha=0.25, lw=0
             )
             axes.plot(k, share.mean(axis=0), color=colour, lw=1.4, label=label)
+            n_scans = k.max()
         axes.set_title(title, fontsize=9)
-        axes.set_xlim(0, min(_SHOWN_TO, k.max()))
+        axes.set_xlim(0, min(_SHOWN_TO, n_scans))
         top_view.name_axes(axes, "number of scans", "share of all cells")
-    handles, labels = axes.get_legend_handles_labels()
+    handles, labels = frames[-1].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8, frameon=False)
     return figure
 
 
-def _common(sizes):
-    """Return all numbers of scans that any of some tables has, as far as every one of them goes."""
-    sizes = list(sizes)
+def _common_sizes(sizes: Sequence[IntArray]) -> IntArray:
+    """Return all numbers of scans that any table has, as far as every one of them goes."""
     every = np.unique(np.concatenate(sizes))
     return every[every <= min(k.max() for k in sizes)]
 
 
-def draw_convergence_figure(selections):
+def draw_convergence_figure(selections: Mapping[str, Columns]) -> Figure:
     """Draw the share of the area covered against the number of scans, 99 % marked (figure 5.6).
 
     Parameters
@@ -111,23 +123,24 @@ def draw_convergence_figure(selections):
     """
     figure = Figure(figsize=(6.4, 3.8), layout="constrained")
     axes = figure.add_subplot()
-    last = 1
+    latest, n_scans = 1, 1
     for method, selection in selections.items():
-        label, colour = METHODS[method].label, METHODS[method].colour
-        share, at = selection["covered_m2"] / selection["covered_m2"][-1], scans_for_99(selection)
-        label = f"{label}: 99 % at {at} scans of {selection['covered_m2'][-1]:,.0f} m²"
+        name, colour = METHODS[method].label, METHODS[method].colour
+        covered_m2, at = selection["covered_m2"], scans_for_99(selection)
+        share = covered_m2 / covered_m2[-1]
+        label = f"{name}: 99 % at {at} scans of {covered_m2[-1]:,.0f} m²"
         axes.plot(selection["rank"], share, color=colour, lw=1.4, label=label)
         axes.plot([at, at], [0, share[at - 1]], ":", color=colour, lw=1)
         axes.plot(at, share[at - 1], "o", ms=4.5, mfc="white", mec=colour, zorder=4)
-        last = max(last, at)
+        latest, n_scans = max(latest, at), len(covered_m2)
     axes.axhline(0.99, color="0.5", lw=0.6)
-    axes.set(xlim=(0, min(2 * last, len(selection["rank"])) + 1), ylim=(0, 1.03))
+    axes.set(xlim=(0, min(2 * latest, n_scans) + 1), ylim=(0, 1.03))
     top_view.name_axes(axes, "number of scans", "area covered, share of that of all scans")
     axes.legend(fontsize=8, frameon=False, loc="lower right")
     return figure
 
 
-def draw_clusters_figure(clusters):
+def draw_clusters_figure(clusters: Columns) -> Figure:
     """Draw covered area against the number of scans and against that of clusters (figure 5.7).
 
     Parameters
@@ -143,19 +156,18 @@ def draw_clusters_figure(clusters):
     left, right = figure.subplots(1, 2)
     numbers = np.unique(clusters["n_clusters"])
     shades = shades_of_blue(len(numbers))
-    covered = [clusters["covered_m2"][clusters["n_clusters"] == n] for n in numbers]
-    for number, colour, area in zip(numbers, shades, covered, strict=True):
+    covered_m2 = [clusters["covered_m2"][clusters["n_clusters"] == n] for n in numbers]
+    n_scans = len(covered_m2[-1])
+    for number, colour, area_m2 in zip(numbers, shades, covered_m2, strict=True):
         label = f"{number} cluster{'s' if number > 1 else ''}"
-        left.plot(np.arange(1, len(area) + 1), area, color=colour, lw=1.3, label=label)
-    left.set_xlim(0, min(80, len(area)))
+        left.plot(np.arange(1, len(area_m2) + 1), area_m2, color=colour, lw=1.3, label=label)
+    left.set_xlim(0, min(_CLUSTERS_SHOWN_TO, n_scans))
     top_view.name_axes(left, "number of scans", "area covered (m²)")
     left.legend(fontsize=8, frameon=False, loc="lower right")
-    at = min(SUBSET, len(area))
-    for label, colour, values in (
-        (f"first {at} scans", "0.55", [area[at - 1] for area in covered]),
-        ("all scans", "black", [area[-1] for area in covered]),
-    ):
-        right.plot(numbers, values, "o-", ms=3.5, lw=1.2, color=colour, label=label)
+    at = min(SUBSET, n_scans)
+    for label, colour, rank in ((f"first {at} scans", "0.55", at), ("all scans", "black", 0)):
+        areas_m2 = [area_m2[rank - 1] for area_m2 in covered_m2]
+        right.plot(numbers, areas_m2, "o-", ms=3.5, lw=1.2, color=colour, label=label)
     right.set_xscale("log")
     right.set_xticks(numbers, [str(n) for n in numbers])
     right.minorticks_off()
@@ -165,6 +177,9 @@ def draw_clusters_figure(clusters):
     return figure
 
 
-def shades_of_blue(count):
+def shades_of_blue(count: int) -> list[tuple[float, float, float]]:
     """Return that many colours, from light to dark."""
-    return [(0.62 * (1 - t), 0.79 - 0.60 * t, 0.88 - 0.46 * t) for t in np.linspace(0, 1, count)]
+    return [
+        (0.62 * (1 - t), 0.79 - 0.60 * t, 0.88 - 0.46 * t)
+        for t in np.linspace(0, 1, count).tolist()
+    ]

@@ -1,5 +1,7 @@
 """The thesis's figures of its real survey: 5.8 to 5.12."""
 
+from collections.abc import Mapping
+
 import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
@@ -12,19 +14,21 @@ from scanplan.lab.thesis.claim_measures import (
     OURS,
     PLAIN,
     PLAIN_CLUSTERS,
-    SUBSET,
 )
+from scanplan.lab.thesis.stated_claims import SUBSET
 from scanplan.report import figures, top_view
+from scanplan.types import Columns, FloatArray
 
-_COLOURS = {OURS: "#0072b2", ITERATIVE: "#d55e00", PLAIN_CLUSTERS: "#0072b2", PLAIN: "#d55e00"}
-_NAMES = dict.fromkeys((OURS, PLAIN_CLUSTERS), "cluster RANSAC") | dict.fromkeys(
-    (ITERATIVE, PLAIN), "iterative RANSAC"
-)
-_CIRCLE_M, _CROWDED = 2.0, 0.75
+_CLUSTERS = ("cluster RANSAC", "#0072b2")
+_ITERATIVE = ("iterative RANSAC", "#d55e00")
+_STYLES = {OURS: _CLUSTERS, PLAIN_CLUSTERS: _CLUSTERS, ITERATIVE: _ITERATIVE, PLAIN: _ITERATIVE}
+"""Extractor to name and colour."""
+_CIRCLE_M = 2.0  # radius: marks a room's worth of floor, as the thesis's circles do
+_CROWDED = 0.75  # of the densest place's neighbours: the few densest alone are circled
 
 
-def draw_selection_times(times):
-    """Draw the times of choosing the subset and of the whole greedy order against the number of scans (figure 5.8).
+def draw_selection_times(times: Columns) -> Figure:
+    """Draw the times of choosing the subset and of ordering all scans, by number (figure 5.8).
 
     Parameters
     ----------
@@ -38,72 +42,76 @@ def draw_selection_times(times):
     figure = Figure(figsize=(6.4, 3.4), layout="constrained")
     axes = figure.add_subplot()
     for task, label, colour in (
-        (CHOOSING, f"to choose {SUBSET}", _COLOURS[OURS]),
+        (CHOOSING, f"to choose {SUBSET}", _CLUSTERS[1]),
         (ORDERING, "to order all", "0.55"),
     ):
-        of_it = times["task"] == task
-        axes.plot(
-            times["size"][of_it],
-            times["seconds"][of_it],
-            "o-",
-            ms=3.5,
-            lw=1.2,
-            color=colour,
-            label=label,
-        )
+        of_task = times["task"] == task
+        n_scans, seconds = times["size"][of_task], times["seconds"][of_task]
+        axes.plot(n_scans, seconds, "o-", ms=3.5, lw=1.2, color=colour, label=label)
     axes.set(xlim=(0, None), ylim=(0, None))
     top_view.name_axes(axes, "number of scans", "processor time (s)")
     axes.legend(fontsize=8, frameon=False)
     return figure
 
 
-def draw_places_figure(points_xy_m, path_xy_m, selected_xy_m):
-    """Draw the registered scans and their places, crowded ones circled (figure 5.9); see `figures.draw_scans_figure`."""
+def draw_places_figure(
+    points_xy_m: FloatArray, path_xy_m: FloatArray, selected_xy_m: FloatArray
+) -> Figure:
+    """Draw the registered scans and their places, crowded ones circled (figure 5.9).
+
+    See `figures.draw_scans_figure`.
+    """
     figure = figures.draw_scans_figure(points_xy_m, path_xy_m, selected_xy_m)
-    for place_m in find_crowded_places(path_xy_m):
-        figure.axes[0].add_patch(
-            Circle(place_m, _CIRCLE_M, fill=False, ec="#d62728", lw=1.2, zorder=6)
-        )
+    for x_m, y_m in find_crowded_places(path_xy_m):
+        circle = Circle((x_m, y_m), _CIRCLE_M, fill=False, ec="#d62728", lw=1.2, zorder=6)
+        figure.axes[0].add_patch(circle)
     return figure
 
 
-def find_crowded_places(path_xy_m):
-    """Return the places, densest first and no two within a circle, with most of the densest one's neighbours."""
-    near = figures.count_nearby(path_xy_m)
-    left, found = near >= max(_CROWDED * near.max(), 1), []
+def find_crowded_places(path_xy_m: FloatArray) -> list[FloatArray]:
+    """Return the places with most of the densest one's neighbours, no two within a circle.
+
+    The densest comes first.
+    """
+    n_near = figures.count_nearby(path_xy_m)
+    left = n_near >= max(_CROWDED * n_near.max(), 1)
+    places_m = []
     while left.any():
-        row = int(np.argmax(np.where(left, near, -1)))
-        found.append(path_xy_m[row])
+        row = int(np.argmax(np.where(left, n_near, -1)))
+        places_m.append(path_xy_m[row])
         left &= np.hypot(*(path_xy_m - path_xy_m[row]).T) > 2 * _CIRCLE_M
-    return found
+    return places_m
 
 
-def draw_times_figure(times):
-    """Draw time and cumulative walls of both extractors, scan by scan (figure 5.10); `times` as above."""
+def draw_times_figure(times: Columns) -> Figure:
+    """Draw time and cumulative walls of both extractors, scan by scan (figure 5.10).
+
+    `times` is as in `draw_selection_times`.
+    """
     figure = Figure(figsize=(9.6, 3.4), layout="constrained")
-    frames = figure.subplots(1, 2)
+    left, right = figure.subplots(1, 2)
     for extractor in (PLAIN_CLUSTERS, PLAIN):
-        colour = _COLOURS[extractor]
-        of_it = np.flatnonzero(times["task"] == extractor)
-        of_it = of_it[np.argsort(times["item"][of_it])]
-        number, milliseconds = np.arange(1, len(of_it) + 1), 1e3 * times["seconds"][of_it]
-        label = f"{_NAMES[extractor]}: {milliseconds.mean():.0f} ± {milliseconds.std():.0f} ms"
-        frames[0].plot(number, milliseconds, color=colour, lw=1.0, label=label)
-        walls = np.cumsum(times["found"][of_it])
-        frames[1].plot(
-            number, walls, color=colour, lw=1.4, label=f"{_NAMES[extractor]}: {walls[-1]:,}"
-        )
-    for axes, name in zip(
-        frames, ("processor time of a scan (ms)", "walls, cumulative"), strict=True
-    ):
+        name, colour = _STYLES[extractor]
+        rows = np.flatnonzero(times["task"] == extractor)
+        rows = rows[np.argsort(times["item"][rows])]
+        number = np.arange(1, len(rows) + 1)
+        time_ms = 1e3 * times["seconds"][rows]
+        label = f"{name}: {time_ms.mean():.0f} ± {time_ms.std():.0f} ms"
+        left.plot(number, time_ms, color=colour, lw=1.0, label=label)
+        n_walls = np.cumsum(times["found"][rows])
+        right.plot(number, n_walls, color=colour, lw=1.4, label=f"{name}: {n_walls[-1]:,}")
+    titles = ("processor time of a scan (ms)", "walls, cumulative")
+    for axes, title in zip((left, right), titles, strict=True):
         axes.set(xlim=(0, None), ylim=(0, None))
-        top_view.name_axes(axes, "scan", name)
+        top_view.name_axes(axes, "scan", title)
         axes.legend(fontsize=8, frameon=False)
     return figure
 
 
-def draw_drive_walls(points_xy_m, walls, places_m):
-    """Draw the walls of a subset by both extractors over the registered points (figures 5.11 and 5.12).
+def draw_drive_walls(
+    points_xy_m: FloatArray, walls: Mapping[str, FloatArray], places_m: FloatArray
+) -> Figure:
+    """Draw a subset's walls by both extractors over the registered points (figures 5.11, 5.12).
 
     Parameters
     ----------
@@ -118,17 +126,15 @@ def draw_drive_walls(points_xy_m, walls, places_m):
     matplotlib.figure.Figure
     """
     figure = Figure(figsize=(9.6, 4.4), layout="constrained", dpi=200)
-    for axes, (extractor, lines_m) in zip(
-        figure.subplots(1, len(walls)), walls.items(), strict=True
-    ):
+    frames = figure.subplots(1, len(walls), squeeze=False)[0]
+    for axes, (extractor, lines_m) in zip(frames, walls.items(), strict=True):
+        name, colour = _STYLES[extractor]
         top_view.draw_points_on(axes, points_xy_m, places_m)
-        drawn = LineCollection(
-            lines_m, colors=_COLOURS[extractor], linewidths=0.9, zorder=3, rasterized=True
+        lines = LineCollection(
+            list(lines_m), colors=colour, linewidths=0.9, zorder=3, rasterized=True
         )
-        axes.add_collection(drawn, autolim=False)
+        axes.add_collection(lines, autolim=False)
         axes.plot(*places_m.T, "o", ms=1.8, mfc="#e6b800", mec="0.3", mew=0.2, zorder=4)
-        axes.set_title(
-            f"{_NAMES[extractor]}: {len(lines_m):,} walls of {len(places_m)} scans", fontsize=9
-        )
+        axes.set_title(f"{name}: {len(lines_m):,} walls of {len(places_m)} scans", fontsize=9)
         axes.set_xlabel("x in the map frame (m)", fontsize=8)
     return figure

@@ -1,17 +1,21 @@
 """Every claim of the thesis (`stated_claims`) held against our measurement of it.
 
-A measure takes the tables of one seed, by name, and returns what was measured and whether the claim's criterion holds
-(None where it has none). No number is written in it but the criterion's.
+A measure takes the tables of one seed, by name, and returns what was measured and whether the
+claim's criterion holds (None where it has none). No number is written in it but the criterion's.
 """
 
+from collections.abc import Callable
+from typing import Any
+
 from scanplan.lab.thesis import drive_claims, room_claims
-from scanplan.lab.thesis.stated_claims import CLAIMS
+from scanplan.lab.thesis.claim_measures import ClaimMeasure, Tables
+from scanplan.lab.thesis.stated_claims import CLAIMS, Claim
 
 ROOMS, DRIVE = "rooms", "drive"
 
 
-def judge_claims(kind, survey, tables):
-    """Measure all claims that a kind of survey can tell about.
+def judge_claims(kind: str, survey: str, tables: Tables) -> list[dict[str, Any]]:
+    """Measure all claims that a kind of survey is about.
 
     Parameters
     ----------
@@ -19,8 +23,8 @@ def judge_claims(kind, survey, tables):
     survey : str
         The survey's name, for the table.
     tables : dict of str to dict
-        Columns by the tables' names; those of the rooms begin with `rooms_`, those of the drive with `drive_`, those of
-        the drive with the thesis's limits with `limits_`.
+        Columns by the tables' names; those of the rooms begin with `rooms_`, those of the drive
+        with `drive_`, those of the drive with the thesis's limits with `limits_`.
 
     Returns
     -------
@@ -32,26 +36,29 @@ def judge_claims(kind, survey, tables):
         measure = _measure_of(claim)
         if _kind(measure) != kind:
             continue
-        found = measure(tables)
-        holds = "" if found.holds is None else ("yes" if found.holds else "no")
-        rows += [
-            {
+        measured = measure(tables)
+        for quantity, (value, unit) in measured.values.items():
+            rows.append({
                 "claim": claim.name,
                 "survey": survey,
                 "quantity": quantity,
                 "value": float(value),
                 "unit": unit,
-            }
-            | {"holds": holds}
-            for quantity, (value, unit) in found.values.items()
-        ]
+                "holds": _verdict(measured.holds),
+            })  # fmt: skip
     return rows
 
 
-def _kind(measure):
+def _verdict(holds: bool | None) -> str:
+    if holds is None:
+        return ""
+    return "yes" if holds else "no"
+
+
+def _kind(measure: Callable[[Tables], ClaimMeasure]) -> str:
     return ROOMS if measure.__module__ == room_claims.__name__ else DRIVE
 
 
-def _measure_of(claim):
-    """The function that is called like the claim."""
+def _measure_of(claim: Claim) -> Callable[[Tables], ClaimMeasure]:
+    """Return the function that is called like the claim."""
     return getattr(room_claims, claim.name, None) or getattr(drive_claims, claim.name)

@@ -1,7 +1,7 @@
-"""Iterative RANSAC as the thesis describes it (5.3), and the limits to lift for cluster RANSAC as it does (3.4).
+"""Iterative RANSAC as the thesis describes it (5.3), and the limits to lift for cluster RANSAC (3.4).
 
-The extractors of the workflow cut what these find where its points pause, and the furniture classifier drops much of
-it: they cannot tell about claims on numbers and times of walls.
+The extractors of the workflow cut what these find where its points pause, and the furniture
+classifier drops much of it: claims on numbers and times of walls cannot be judged by them.
 """
 
 from dataclasses import replace
@@ -21,13 +21,15 @@ LIFTED = {
     "door_height_m": 100.0,  # no storey is as high
     "corner_m": 0.0,
 }
-"""Limits of ours that drop nothing and cut nothing: with them `cluster_ransac` finds one wall a cluster."""
+"""Limits that drop and cut nothing: with them `cluster_ransac` finds one wall a cluster."""
 
 
 def extract_plain(
     scan_id: int, points: FloatArray, scan: RaySet | None, settings: PlainRansacSettings
 ) -> list[segments.Row]:
-    """Find the upright planes of a 3-D scan: that of most points, whose points are removed, until too few are left.
+    """Find the upright planes of a 3-D scan.
+
+    The plane of most points is found and its points are removed, until too few are left.
 
     Parameters
     ----------
@@ -37,8 +39,9 @@ def extract_plain(
     scan : ray_set.RaySet, optional
         Not used: the thesis asks no ray.
     settings : PlainRansacSettings
-        Only `inlier_m`, `trials`, `min_points`, `max_planes`, `max_tilt_deg` and `seed` matter. The thesis looks for
-        lines and says nothing of floors: planes that are not upright are removed and are no walls.
+        Only `inlier_m`, `trials`, `min_points`, `max_planes`, `max_tilt_deg` and `seed` matter. The
+        thesis looks for lines and says nothing of floors: planes that are not upright are removed
+        and are no walls.
 
     Returns
     -------
@@ -47,18 +50,22 @@ def extract_plain(
     """
     rng = np.random.default_rng([settings.seed, scan_id])
     whole = replace(settings, **LIFTED, min_points_planar=1)
-    left, least, rows = points, max(settings.min_points, 3), []
+    left_m = points
+    least = max(settings.min_points, 3)
+    rows = []
     for _ in range(settings.max_planes):
-        if len(left) < least:
+        if len(left_m) < least:
             break
         seed = int(rng.integers(2**31))
         normal, inliers = iterative_ransac.find_largest_plane(
-            left, inlier_m=settings.inlier_m, trials=settings.trials, seed=seed
+            left_m, inlier_m=settings.inlier_m, trials=settings.trials, seed=seed
         )
         if inliers.sum() < least:
             break
         if abs(normal[2]) <= np.sin(np.deg2rad(settings.max_tilt_deg)):
-            plane, across = left[inliers], normal[:2] / np.hypot(*normal[:2])
-            rows += segments.cut_line(across, (plane[:, :2] @ across).mean(), plane, whole)
-        left = left[~inliers]
+            plane_m = left_m[inliers]
+            across = normal[:2] / np.hypot(*normal[:2])
+            offset_m = (plane_m[:, :2] @ across).mean()
+            rows += segments.cut_line(across, offset_m, plane_m, whole)
+        left_m = left_m[~inliers]
     return rows

@@ -1,4 +1,4 @@
-"""What the thesis shows: the captions of its figures and its table 5.1, with the claims that each is about."""
+"""What the thesis shows: captions of its figures, the claims each is about, and table 5.1."""
 
 from dataclasses import dataclass
 
@@ -21,10 +21,10 @@ class Figure:
     number: str
     caption: str
     ours: str
-    claims: tuple = ()
+    claims: tuple[str, ...] = ()
 
     @property
-    def file(self):
+    def file(self) -> str:
         """Name of our figure's file."""
         return f"figure_{self.number.replace('.', '_')}.svg"
 
@@ -39,15 +39,18 @@ FIGURES = (
     Figure(
         "5.1",
         "Overlay of the inferred bitmap and the ground truth bitmap",
-        "Bitmaps of the walls by cluster RANSAC in the first 60 scans and of the truth: missed blue, found purple,"
+        "Bitmaps of the walls by cluster RANSAC in the first 60 scans and of the truth: missed"
+        " blue, found purple,"
         " invented red.",
         ("first_sixty",),
     ),
     Figure(
         "5.2",
-        "Ground Truth floor plan with the location of the scans indicated by yellow markers. The endpoints of planes,"
+        "Ground Truth floor plan with the location of the scans indicated by yellow markers. The"
+        " endpoints of planes,"
         " such as doors and windows are shown by red markers",
-        "The true wall faces of ring_office at the height of the sensor, their ends, and the places of the scans.",
+        "The true wall faces of ring_office at the height of the sensor, their ends, and the places"
+        " of the scans.",
         ("survey_of_rooms",),
     ),
     Figure(
@@ -59,12 +62,14 @@ FIGURES = (
     Figure(
         "5.4",
         "Correct match, False positive and False negative",
-        "The three shares against the number of scans for every order; mean and range over the seeds.",
+        "The three shares against the number of scans for every order; mean and range over the"
+        " seeds.",
         ("sequential_poorest", "sequential_poorest_match", "others_similar", "slower_is_better"),
     ),
     Figure(
         "5.5",
-        "Floor plan extracted with the first 15 scans if analyzed in the order they were collected, and the order"
+        "Floor plan extracted with the first 15 scans if analyzed in the order they were collected,"
+        " and the order"
         " suggested by our algorithm",
         "Walls by cluster RANSAC in the first 15 scans of both orders.",
         ("fifteen_almost_complete", "tenth_little_loss"),
@@ -72,38 +77,45 @@ FIGURES = (
     Figure(
         "5.6",
         "Convergence of area covered. 99% area covered indicated in the plot.",
-        "Covered area as a share of what all scans cover, by one hull per scan and by cluster hulls.",
+        "Covered area as a share of what all scans cover, by one hull per scan and by cluster"
+        " hulls.",
         ("full_hull_99", "cluster_hull_99", "full_hull_sooner"),
     ),
     Figure(
         "5.7",
         "Relationship between area cover and number of clusters",
-        "Covered area against the number of scans for several numbers of clusters, and against that number.",
+        "Covered area against the number of scans for several numbers of clusters, and against that"
+        " number.",
         ("more_clusters_less_area", "more_clusters_more_time"),
     ),
     Figure(
         "5.8",
         "Time required to compute the subset selection for different number of scans.",
-        "Time to choose 15 scans by cluster hulls, and to order all, against the number of scans of the drive.",
+        "Time to choose 15 scans by cluster hulls, and to order all, against the number of scans of"
+        " the drive.",
         ("selection_time",),
     ),
     Figure(
         "5.9",
-        "Registered scans along with the location of each scan. Darker blue indicates more scans at that location."
+        "Registered scans along with the location of each scan. Darker blue indicates more scans at"
+        " that location."
         " Areas with many scans are circled.",
-        "The registered scans of the drive and their places, darker where there are more within a metre.",
+        "The registered scans of the drive and their places, darker where there are more within a"
+        " metre.",
         ("uneven_harms_random", "two_percent_survive", "own_limits", "localiser"),
     ),
     Figure(
         "5.10",
         "Time comparison and Cumulative number of walls extracted",
-        "Time and walls of both extractors as in the thesis (3.4, 5.3), scan by scan of the drive, one process.",
+        "Time and walls of both extractors as in the thesis (3.4, 5.3), scan by scan of the drive,"
+        " one process.",
         ("fewer_walls", "steadier_times", "time_by_size", "several_per_wall"),
     ),
     Figure(
         "5.11",
         "Walls extracted superimposed on real data, by selecting a subset of 15 scans",
-        "Walls of the first 15 scans by cluster hulls over the registered points of the drive, by both extractors of"
+        "Walls of the first 15 scans by cluster hulls over the registered points of the drive, by"
+        " both extractors of"
         " ours.",
         ("fifteen_like_all",),
     ),

@@ -1,29 +1,50 @@
-"""How long stages take: processor time of single calls in one process, which other work on the machine disturbs least.
+"""How long stages take: processor time of single calls, which other work disturbs least.
 
 Times differ from run to run; a table of them is no result to compare byte by byte.
 """
 
 import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from scanplan.extraction import extractors
-from scanplan.lab.thesis.claim_measures import BUILDING, CHOOSING, ORDERING, SUBSET, THINNED
+from scanplan.extraction.extractors import Extractor
+from scanplan.lab.thesis.claim_measures import BUILDING, CHOOSING, ORDERING, THINNED
+from scanplan.lab.thesis.stated_claims import SUBSET
 from scanplan.selection import area_greedy, hulls
 from scanplan.stage import per_registered_scan
+from scanplan.store import tables
+from scanplan.types import Array, Columns, FilePath, IntArray, Settings
 
-_REPEATS, _PARTS = 3, (1, 2, 4, 8)
+_REPEATS = 3  # calls, of which the quickest counts: one is seldom disturbed three times
+_PARTS = (1, 2, 4, 8)  # the claim is on growth with size: three doublings show an exponent
+
+TimedRow = dict[str, Any]
+"""A row of `schemas.TIMES`: task, size, item, found, seconds."""
 
 
-def spread_rows(rows, count):
+def spread_rows(rows: ArrayLike, count: int) -> IntArray:
     """Return at most `count` of the rows (n,), evenly spread from the first to the last."""
     rows = np.asarray(rows)
-    return rows[np.unique(np.linspace(0, len(rows) - 1, min(count, len(rows))).round().astype(int))]
+    places = np.linspace(0, len(rows) - 1, min(count, len(rows)))
+    return rows[np.unique(places.round().astype(int))]
 
 
-def time_extractor(task, method, store, scan_ids, settings, registration, *, part=1):
-    """Time a wall extractor, without the furniture classifier, scan by scan: the quickest of three calls.
+def time_extractor(
+    task: str,
+    method: Extractor,
+    store: tables.ScanStore,
+    scan_ids: IntArray,
+    settings: Settings,
+    registration: FilePath,
+    *,
+    part: int = 1,
+) -> Iterator[TimedRow]:
+    """Time an extractor, without the furniture classifier: of each scan the quickest of three calls.
 
     Parameters
     ----------
@@ -41,49 +62,44 @@ def time_extractor(task, method, store, scan_ids, settings, registration, *, par
 
     Yields
     ------
-    dict
-        A row of `schemas.TIMES`: `size` is the scan's number of points, `item` its scan_id, `found` its walls.
+    TimedRow
+        `size` is the scan's number of points, `item` its scan_id, `found` its walls.
     """
     sensors = per_registered_scan.sensor_keywords(scan_ids, store.path, registration)
-    chosen = extractors.select_settings(method.settings, settings)
+    keywords = {
+        "planar": store.planar,
+        "extractor": method,
+        "settings": extractors.select_settings(method.settings, settings),
+    }
     for number, (scan_id, xyz_m) in enumerate(store.scans(scan_ids)):
         xyz_m = thin_points(xyz_m, part, scan_id)
         call = partial(
-            extractors.find_wall_segments,
-            scan_id,
-            xyz_m,
-            planar=store.planar,
-            extractor=method,
-            settings=chosen,
-            **sensors[scan_id],
+            extractors.find_wall_segments, scan_id, xyz_m, **keywords, **sensors[scan_id]
         )
         if number == 0:
             # the first call loads and compiles what all others use
             call()
-        seconds, found = _quickest(call)
-        yield {
-            "task": task,
-            "size": len(xyz_m),
-            "item": scan_id,
-            "found": len(found),
-            "seconds": seconds,
-        }
+        seconds, walls = _time_quickest(call)
+        yield _row(task, len(xyz_m), len(walls), seconds, item=scan_id)
 
 
-def time_by_points(task, *arguments):
-    """Time an extractor on whole scans and on half, a quarter and an eighth of their points; see `time_extractor`."""
+def time_by_points(task: str, *arguments: Any) -> Iterator[TimedRow]:
+    """Time an extractor on whole scans and on half, a quarter and an eighth of their points.
+
+    See `time_extractor` for the arguments.
+    """
     for part in _PARTS:
         yield from time_extractor(THINNED + task, *arguments, part=part)
 
 
-def thin_points(xyz_m, part, seed):
+def thin_points(xyz_m: Array, part: int, seed: int) -> Array:
     """Return one of `part` points (n, 3), in their order, drawn at random but for the seed."""
     n = max(1, len(xyz_m) // part)
     return xyz_m[np.sort(np.random.default_rng(seed).choice(len(xyz_m), n, replace=False))]
 
 
-def time_selection(columns, sizes):
-    """Time choosing the thesis's subset of 1, 2, ... scans, spread over the survey, and ordering all of them.
+def time_selection(columns: Columns, sizes: Iterable[int]) -> Iterator[TimedRow]:
+    """Time choosing the thesis's subset of some scans, spread over the survey, and ordering them.
 
     Parameters
     ----------
@@ -94,64 +110,71 @@ def time_selection(columns, sizes):
 
     Yields
     ------
-    dict
-        A row of `schemas.TIMES`: `size` is the number of scans, `found` those ordered.
+    TimedRow
+        `size` is the number of scans, `found` those ordered.
     """
     _, polygons = hulls.scan_polygons(columns)
+    # the first call loads what all others use
     area_greedy.order_by_area(polygons[:2])
     for size in sizes:
-        chosen = polygons[spread_rows(np.arange(len(polygons)), size)]
-        seconds, order = _timed(area_greedy.order_by_area, chosen)
-        yield {
-            "task": ORDERING,
-            "size": size,
-            "item": 0,
-            "found": len(order.order),
-            "seconds": seconds,
-        }
+        shapes = polygons[spread_rows(np.arange(len(polygons)), size)]
+        seconds, order = _time_call(partial(area_greedy.order_by_area, shapes))
+        yield _row(ORDERING, size, len(order.order), seconds)
         if size > SUBSET:
-            seconds, subset = _quickest(partial(area_greedy.choose_first, chosen, SUBSET))
-            yield {
-                "task": CHOOSING,
-                "size": size,
-                "item": 0,
-                "found": len(subset),
-                "seconds": seconds,
-            }
+            call = partial(area_greedy.choose_first, shapes, SUBSET)
+            seconds, subset = _time_quickest(call)
+            yield _row(CHOOSING, size, len(subset), seconds)
 
 
-def time_clusters(store, scan_ids, numbers, **sampling):
-    """Time making the hulls of scans and ordering them, for several numbers of clusters: the quickest of three calls.
+def time_clusters(
+    store: tables.ScanStore,
+    scan_ids: IntArray | Sequence[int],
+    numbers: Iterable[int],
+    **sampling: Any,
+) -> Iterator[TimedRow]:
+    """Time making the hulls of scans and ordering them: of each the quickest of three calls.
+
+    Parameters
+    ----------
+    store : tables.ScanStore
+    scan_ids : (n,) int
+    numbers : iterable of int
+        Of clusters.
+    **sampling
+        See `hulls.make_cluster_hulls`.
 
     Yields
     ------
-    dict
-        A row of `schemas.TIMES`: `size` is the number of clusters, `found` the scans.
+    TimedRow
+        `size` is the number of clusters, `found` the scans.
     """
-    points = [(scan_id, xyz_m) for scan_id, xyz_m in store.scans(scan_ids)]
-    _hulls_and_order(points[:1], n_clusters=2, **sampling)
+    scans = list(store.scans(scan_ids))
+    _order_hulls(scans[:1], n_clusters=2, **sampling)
     for number in numbers:
-        seconds, order = _quickest(partial(_hulls_and_order, points, n_clusters=number, **sampling))
-        yield {
-            "task": BUILDING,
-            "size": number,
-            "item": 0,
-            "found": len(order.order),
-            "seconds": seconds,
-        }
+        call = partial(_order_hulls, scans, n_clusters=number, **sampling)
+        seconds, order = _time_quickest(call)
+        yield _row(BUILDING, number, len(order), seconds)
 
 
-def _hulls_and_order(points, **settings):
-    parts = [hulls.make_cluster_hulls(scan_id, xyz_m, **settings) for scan_id, xyz_m in points]
-    return area_greedy.order_by_area(hulls.scan_polygons(hulls.concatenate_hulls(parts))[1])
+def _row(task: str, size: int, found: int, seconds: float, item: int = 0) -> TimedRow:
+    return {"task": task, "size": size, "item": item, "found": found, "seconds": seconds}
 
 
-def _quickest(call):
-    """Return the least processor time of some calls and a result: what disturbs a call can only lengthen it."""
-    return min((_timed(call) for _ in range(_REPEATS)), key=lambda timed: timed[0])
+def _order_hulls(scans: Iterable[tuple[int, Array]], **settings: Any) -> IntArray:
+    parts = [hulls.make_cluster_hulls(scan_id, xyz_m, **settings) for scan_id, xyz_m in scans]
+    _, polygons = hulls.scan_polygons(hulls.concatenate_hulls(parts))
+    return area_greedy.order_by_area(polygons).order
 
 
-def _timed(function, *arguments):
+def _time_quickest(call: Callable[[], Any]) -> tuple[float, Any]:
+    """Return the least processor time of some calls, and its result.
+
+    What disturbs a call can only lengthen it.
+    """
+    return min((_time_call(call) for _ in range(_REPEATS)), key=lambda timed: timed[0])
+
+
+def _time_call(call: Callable[[], Any]) -> tuple[float, Any]:
     started = time.process_time()
-    result = function(*arguments)
+    result = call()
     return time.process_time() - started, result

@@ -1,44 +1,78 @@
-"""What uneven sampling does to orders of scans: a survey in which the scans of a crowd were taken many times.
+"""What uneven sampling does to orders of scans: the scans of a crowd were taken many times.
 
-A rover that goes round an obstacle or waits at a door takes many scans at one place (thesis, 5.2). Here the tenth of a
-survey's scans nearest to a place are taken 1, 5 or 20 times, and all others once. Each time the clusters of its hulls
-are drawn anew, so that no two are the same to the order.
+A rover that goes round an obstacle or waits at a door takes many scans at one place (thesis, 5.2).
+Here the tenth of a survey's scans nearest to a place are taken 1, 5 or 20 times, and all others
+once. Each time the clusters of its hulls are drawn anew, so that no two are the same to the order.
 """
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
-from scanplan.lab.evaluation import visible_faces
+from scanplan.lab.evaluation import face_cells, visible_faces
+from scanplan.lab.evaluation.truth_file import TrueFaces
+from scanplan.lab.evaluation.visible_faces import SensorView
 from scanplan.selection import area_greedy, hulls
+from scanplan.types import Array, BoolArray, Columns, FloatArray, IntArray
 
-REPEATS = (1, 5, 20)
-CROWD_SHARE, N_CROWDS, N_DRAWS = 0.1, 3, 200
+REPEATS = (1, 5, 20)  # from even sampling to a rover that stands still for some seconds
+CROWD_SHARE = 0.1  # of all scans: a place, not half of the survey
+N_CROWDS = 3  # places: one alone may be where nothing is to be seen
+N_DRAWS = 200  # random orders: their mean is right to a tenth of their spread
 RANDOM, AREA = "random", "cluster_hull"
 
 
-def draw_crowds(places_m, seed):
-    """Return the rows of the scans of each crowd: those nearest to a few of the places (n, 2), drawn at random."""
-    centres = np.random.default_rng(seed).choice(
-        len(places_m), min(N_CROWDS, len(places_m)), replace=False
-    )
-    size = max(1, round(CROWD_SHARE * len(places_m)))
+def draw_crowds(places_m: FloatArray, seed: int) -> list[IntArray]:
+    """Return the rows of the scans of each crowd.
+
+    They are those nearest to a few of the places (n, 2), drawn at random.
+    """
+    n_scans = len(places_m)
+    rng = np.random.default_rng(seed)
+    centres = rng.choice(n_scans, min(N_CROWDS, n_scans), replace=False)
+    size = max(1, round(CROWD_SHARE * n_scans))
     apart_m = np.hypot(*(places_m[centres][:, None] - places_m).transpose(2, 0, 1))
     return [np.sort(row) for row in np.argsort(apart_m, axis=1, kind="stable")[:, :size]]
 
 
-def copy_hulls(scan_id, xyz_m, *, n_copies, seed, **sampling):
-    """Return so many polygons of a scan, each of clusters of its own; see `hulls.make_cluster_hulls`."""
-    seeds = np.random.default_rng([seed, scan_id]).integers(2**31, size=n_copies).tolist()
-    made = [hulls.make_cluster_hulls(scan_id, xyz_m, seed=own, **sampling) for own in seeds]
-    return np.concatenate([hulls.scan_polygons(columns)[1] for columns in made])
+def copy_hulls(scan_id: int, xyz_m: Array, *, n_copies: int, seed: int, **sampling: Any) -> Array:
+    """Return so many polygons of a scan, each of clusters of its own.
+
+    See `hulls.make_cluster_hulls`.
+    """
+    seeds = np.random.default_rng([seed, scan_id]).integers(2**31, size=n_copies)
+    polygons = []
+    for own_seed in seeds.tolist():
+        columns = hulls.make_cluster_hulls(scan_id, xyz_m, seed=own_seed, **sampling)
+        polygons.append(hulls.scan_polygons(columns)[1])
+    return np.concatenate(polygons)
 
 
-def view_cells(faces, placed, sight):
-    """Return which cells of the true faces each pose (n, 4, 4) sees, (n, c) bool, and their lengths (c,), metres."""
-    cells = visible_faces.cut_faces(faces.inner_m)
+def view_cells(
+    faces: TrueFaces, placed: FloatArray, sight: SensorView
+) -> tuple[BoolArray, FloatArray]:
+    """Return which cells of the true faces each pose (n, 4, 4) sees, and the cells' lengths.
+
+    Returns
+    -------
+    seen : (n, c) bool
+    length_m : (c,) float64
+    """
+    cells = face_cells.cut_faces(faces.inner_m)
     return visible_faces.cells_seen_by_each(cells, faces.outer_m, placed, sight), cells.length_m
 
 
-def unevenness_columns(seen, length_m, polygons, repeated, crowd_rows, *, n_selected, seed):
+def unevenness_columns(
+    seen: BoolArray,
+    length_m: FloatArray,
+    polygons: Array,
+    repeated: Mapping[int, Array],
+    crowd_rows: Sequence[IntArray],
+    *,
+    n_selected: int,
+    seed: int,
+) -> Columns:
     """Measure how much true wall the first scans see, by a random order and by cluster hulls.
 
     Parameters
@@ -48,7 +82,8 @@ def unevenness_columns(seen, length_m, polygons, repeated, crowd_rows, *, n_sele
     polygons : (n,) numpy.ndarray of shapely geometries
         Of every scan.
     repeated : dict of int to (m,) numpy.ndarray of shapely geometries
-        Of the further times that a scan of a crowd was taken, by row; as many as the most repeats less one.
+        Of the further times that a scan of a crowd was taken, by row; as many as the most repeats
+        less one.
     crowd_rows : sequence of (k,) int
     n_selected : int
     seed : int
@@ -59,33 +94,48 @@ def unevenness_columns(seen, length_m, polygons, repeated, crowd_rows, *, n_sele
         The columns of `schemas.UNEVENNESS`; by cluster hulls there is one draw.
     """
     rows = []
-    for crowd, of_it in enumerate(crowd_rows):
-        for times in REPEATS:
-            taken = np.concatenate([np.arange(len(seen)), np.repeat(of_it, times - 1)])
-            shapes = np.concatenate([polygons, *(repeated[row][: times - 1] for row in of_it)])
-            drawn = _draws(taken, n_selected, [seed, crowd, times])
-            by_area = [taken[area_greedy.choose_first(shapes, n_selected)]]
-            for order, chosen in ((AREA, by_area), (RANDOM, drawn)):
-                seen_m = [_seen_m(seen, length_m, some) for some in chosen]
-                rows += [(order, crowd, times, draw, value) for draw, value in enumerate(seen_m)]
-    order, crowd, times, draw, seen_m = map(np.array, zip(*sorted(rows), strict=True))
-    return {"order": order, "crowd": crowd, "repeats": times, "draw": draw, "seen_m": seen_m}
+    for crowd, members in enumerate(crowd_rows):
+        for repeats in REPEATS:
+            scans = np.concatenate([np.arange(len(seen)), np.repeat(members, repeats - 1)])
+            further = [repeated[row][: repeats - 1] for row in members]
+            shapes = np.concatenate([polygons, *further])
+            by_area = [scans[area_greedy.choose_first(shapes, n_selected)]]
+            at_random = _random_subsets(scans, n_selected, [seed, crowd, repeats])
+            for order, subsets in ((AREA, by_area), (RANDOM, at_random)):
+                lengths_m = _seen_lengths_m(seen, length_m, subsets)
+                rows += [(order, crowd, repeats, draw, m) for draw, m in enumerate(lengths_m)]
+    names = ("order", "crowd", "repeats", "draw", "seen_m")
+    return dict(zip(names, map(np.array, zip(*sorted(rows), strict=True)), strict=True))
 
 
-def lost_shares(columns, order):
-    """Return the mean length seen with every scan taken once, metres, and the shares lost with each of the repeats."""
-    of_it = columns["order"] == order
-    mean_m = np.array(
-        [columns["seen_m"][of_it & (columns["repeats"] == times)].mean() for times in REPEATS]
-    )
-    return mean_m[0], 1 - mean_m / mean_m[0] if mean_m[0] > 0 else np.full(len(REPEATS), np.nan)
+def lost_shares(columns: Columns, order: str) -> tuple[float, FloatArray]:
+    """Return the mean length seen with every scan taken once, and the shares lost with repeats.
+
+    Returns
+    -------
+    even_m : float
+    lost : (r,) float64
+        With each of `REPEATS`; NaN where nothing is seen.
+    """
+    seen_m = []
+    for repeats in REPEATS:
+        rows = (columns["order"] == order) & (columns["repeats"] == repeats)
+        seen_m.append(columns["seen_m"][rows].mean())
+    even_m = seen_m[0]
+    if even_m <= 0:
+        return even_m, np.full(len(REPEATS), np.nan)
+    return even_m, 1 - np.array(seen_m) / even_m
 
 
-def _draws(taken, n_selected, seed):
+def _random_subsets(scans: IntArray, n_selected: int, seed: Sequence[int]) -> list[IntArray]:
     """Return the first scans of random orders of all that was taken."""
     rng = np.random.default_rng(seed)
-    return [rng.choice(taken, min(n_selected, len(taken)), replace=False) for _ in range(N_DRAWS)]
+    size = min(n_selected, len(scans))
+    return [rng.choice(scans, size, replace=False) for _ in range(N_DRAWS)]
 
 
-def _seen_m(seen, length_m, rows):
-    return float(length_m[seen[rows].any(axis=0)].sum())
+def _seen_lengths_m(
+    seen: BoolArray, length_m: FloatArray, subsets: Iterable[IntArray]
+) -> list[float]:
+    """Return the true length that each subset of scans sees."""
+    return [float(length_m[seen[rows].any(axis=0)].sum()) for rows in subsets]

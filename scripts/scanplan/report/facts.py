@@ -1,0 +1,55 @@
+"""What the report states: facts of the survey behind a plan, and of the run that made it."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from scanplan.types import Columns, Settings
+
+
+@dataclass(frozen=True)
+class SurveyFacts:
+    """What a plan was made of.
+
+    Attributes
+    ----------
+    selection, registration, poses, segments, evidence : dict of str to (n,) array
+        The columns of `schemas.SELECTION` (the plan's method), `REGISTRATION`, `POSES`, `WALLS`
+        (the plan's extractor) and `EVIDENCE`.
+    chosen : int
+        How many scans of the selection make the plan.
+    evaluation : tuple of dict of str to (n,) array
+        The columns of `schemas.EVALUATION` and of `schemas.PLAN_EVALUATION`, where the truth is
+        known.
+    """
+
+    selection: Columns
+    registration: Columns
+    poses: Columns
+    segments: Columns
+    evidence: Columns
+    chosen: int
+    evaluation: tuple[Columns, ...]
+
+
+@dataclass(frozen=True)
+class RunFacts:
+    """How it was made.
+
+    Attributes
+    ----------
+    settings : dict
+        All settings of the dataset.
+    figures : dict of str to str
+        Name to the text of an SVG file.
+    benchmarks : dict of str to str
+        Stage to the text of Snakemake's benchmark file; what is missing or damaged is left out.
+    sizes : list of (str, str, int)
+        What, file name, bytes.
+    version : str
+    """
+
+    settings: Settings
+    figures: Mapping[str, str]
+    benchmarks: Mapping[str, str]
+    sizes: Sequence[tuple[str, str, int]]
+    version: str

@@ -1,0 +1,250 @@
+"""The tables of the report's page, as rows of cells that its template shows."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from typing import Any
+
+import numpy as np
+
+from scanplan.plan import floorplan
+from scanplan.project.settings import iterate_leaves
+from scanplan.report import measure_meanings
+from scanplan.types import Columns, FloatArray, Settings
+
+_NOT_KNOWN = "–"
+_DEVIATIONS = ("sigma_offset_m", "sigma_end0_m", "sigma_end1_m", "rmse_m")
+
+
+@dataclass(frozen=True)
+class Head:
+    """What stands over a column, and whether that is one of numbers."""
+
+    text: str
+    is_number: bool
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A cell: what is read, its CSS classes, and the number that sorts it (None: it has none)."""
+
+    text: str
+    css: str = ""
+    sorts_as: float | None = None
+
+
+@dataclass(frozen=True)
+class Row:
+    """Cells of a row; `wall` is the wall of the plan that choosing the row shows."""
+
+    cells: list[Cell]
+    wall: int | None = None
+
+
+@dataclass(frozen=True)
+class PageTable:
+    """A table by the name that is its id; `sortable` where a click on a head sorts it."""
+
+    name: str
+    heads: list[Head]
+    rows: list[Row]
+    sortable: bool = False
+
+
+def wall_lengths_m(plan: floorplan.FloorPlan) -> FloatArray:
+    """Return the lengths (n,) of the walls of a plan."""
+    return np.hypot(*np.diff(floorplan.centrelines_m(plan.walls), axis=1)[:, 0].T)
+
+
+def wall_table(plan: floorplan.FloorPlan, evidence: Columns) -> PageTable:
+    """Return the table of walls with their evidence, those to verify on site marked."""
+    length_m = wall_lengths_m(plan)
+    moments = _first_and_last(evidence)
+    rows = []
+    for i, wall in enumerate(plan.walls["wall"].tolist()):
+        at = {name: values[i] for name, values in plan.walls.items()}
+        first_ns, last_ns = moments.get(wall, (None, None))
+        cells = [
+            _number(wall, 0),
+            Cell("verify", "flag") if at["verify"] else Cell(""),
+            Cell(str(at["state"])),
+            _number(length_m[i], 2),
+            _number(1000 * at["thickness_m"], 0),
+            _number(plan.heights_m[i], 2) if plan.low[i] else _blank_number(),
+            *(_number(1000 * at[name], 1) for name in _DEVIATIONS),
+            _number(at["n_points"], 0),
+            _number(at["n_scans"], 0),
+            _moment(first_ns),
+            _moment(last_ns),
+        ]
+        rows.append(Row(cells, wall))
+    heads = _heads(
+        "#wall", "on site", "state", "#length (m)", "#thickness (mm)", "#ends at height (m)",
+        "#σ offset (mm)", "#σ start (mm)", "#σ end (mm)", "#residual (mm)", "#points", "#scans",
+        "#first seen", "#last seen",
+    )  # fmt: skip
+    return PageTable("walls", heads, rows, sortable=True)
+
+
+def opening_table(plan: floorplan.FloorPlan) -> PageTable:
+    """Return the table of openings and of the rooms that each joins."""
+    rows = [
+        Row([
+            _number(at["opening"], 0),
+            Cell(at["type"]),
+            _number(at["width_m"], 2),
+            _number(at["sill_m"], 2),
+            _number(at["lintel_m"], 2),
+            Cell(f"{_room_name(at['room_a'])} – {_room_name(at['room_b'])}"),
+            _number(at["n_rays"], 0),
+        ])
+        for at in _records(plan.openings)
+    ]  # fmt: skip
+    heads = _heads(
+        "#opening", "type", "#width (m)", "#sill (m)", "#lintel (m)", "joins", "#rays through"
+    )
+    return PageTable("openings", heads, rows, sortable=True)
+
+
+def room_table(plan: floorplan.FloorPlan) -> PageTable:
+    """Return the table of rooms."""
+    rows = [
+        Row([
+            _number(at["room"], 0),
+            _number(at["area_m2"], 2),
+            _number(at["perimeter_m"], 2),
+            Cell("yes" if at["closed"] else "no"),
+            _number(at["n_scans"], 0),
+        ])
+        for at in _records(plan.rooms)
+    ]  # fmt: skip
+    heads = _heads("#room", "#area (m²)", "#perimeter (m)", "closed", "#scans that see it")
+    return PageTable("rooms", heads, rows, sortable=True)
+
+
+def registration_table(verdicts: Columns, shift_m: FloatArray) -> PageTable:
+    """Return the table of verdicts on the candidate scans, the most frequent first.
+
+    Parameters
+    ----------
+    verdicts : dict of str to (n,) array
+        The columns of `schemas.REGISTRATION`.
+    shift_m : (n,) float
+        How far each scan was moved from the localiser's pose; NaN where not known.
+    """
+    reasons = verdicts["reason"].astype(str)
+    rows = []
+    for reason in sorted(set(reasons), key=lambda r: (-np.sum(reasons == r), r)):
+        of_reason = reasons == reason
+        cells = [
+            Cell(reason),
+            Cell(_all_or_some(verdicts["kept"][of_reason])),
+            _number(of_reason.sum(), 0),
+            _number(of_reason.mean() * 100, 1),
+            _number(_median(verdicts["prior_fitness"][of_reason]), 3),
+            _number(_median(verdicts["refined_fitness"][of_reason]), 3),
+            _number(1000 * _median(verdicts["rmse_m"][of_reason]), 0),
+            _number(1000 * _median(shift_m[of_reason]), 0),
+        ]
+        rows.append(Row(cells))
+    heads = _heads(
+        "verdict", "kept", "#scans", "#share (%)", "#fitness at the localiser's pose",
+        "#fitness after alignment", "#residual (mm)", "#shift (mm)",
+    )  # fmt: skip
+    return PageTable("registration", heads, rows)
+
+
+def truth_table(measures: Columns) -> PageTable:
+    """Return the table of the plan against the truth, from `schemas.PLAN_EVALUATION`'s columns."""
+    rows = []
+    for name, values in measures.items():
+        if name == "frame":
+            continue
+        numbers = [_number(value, 0 if name.startswith("n_") else 3) for value in values.tolist()]
+        meaning = Cell(measure_meanings.measure_meaning(name))
+        rows.append(Row([Cell(name.replace("_", " ")), *numbers, meaning]))
+    heads = _heads("measure", *(f"#{frame}" for frame in measures["frame"]), "meaning")
+    return PageTable("truth", heads, rows)
+
+
+def stage_table(run_times: Sequence[tuple[str, float, float, float]]) -> PageTable:
+    """Return the table of run times: stage, seconds, processor seconds, peak memory in MB each."""
+    rows = [
+        Row([Cell(stage), _number(seconds, 1), _number(cpu_s, 1), _number(memory_mb, 0)])
+        for stage, seconds, cpu_s, memory_mb in run_times
+    ]
+    if rows:
+        seconds = np.nansum([row[1] for row in run_times])
+        cpu_s = np.nansum([row[2] for row in run_times])
+        total = [Cell("all", "total"), _number(seconds, 1), _number(cpu_s, 1), _blank_number()]
+        rows.append(Row(total))
+    heads = _heads("stage", "#time (s)", "#processor (s)", "#peak memory (MB)")
+    return PageTable("stages", heads, rows)
+
+
+def size_table(files: Iterable[tuple[str, str, int]]) -> PageTable:
+    """Return the table of data sizes: rows of what, file, bytes."""
+    rows = [Row([Cell(what), Cell(file), _number(n / 1e6, 3)]) for what, file, n in files]
+    return PageTable("sizes", _heads("what", "file", "#size (MB)"), rows)
+
+
+def settings_table(values: Settings) -> PageTable:
+    """Return the table of settings, nested keys joined by dots."""
+    rows = [
+        Row([Cell(key), Cell("null" if value is None else str(value))])
+        for key, value in iterate_leaves(values)
+    ]
+    return PageTable("settings", _heads("key", "value"), rows)
+
+
+def _heads(*texts: str) -> list[Head]:
+    """Return heads; one that begins with `#` stands over numbers."""
+    return [Head(text.removeprefix("#"), text.startswith("#")) for text in texts]
+
+
+def _number(value: float, digits: int) -> Cell:
+    """Return a cell of a number, NaN where it is not known."""
+    if not np.isfinite(value):
+        return Cell(_NOT_KNOWN, "number")
+    return Cell(f"{value:,.{digits}f}", "number", float(value))
+
+
+def _blank_number() -> Cell:
+    """Return a cell in a column of numbers where none is asked for."""
+    return Cell("", "number")
+
+
+def _moment(t_ns: int | None) -> Cell:
+    if t_ns is None:
+        return Cell(_NOT_KNOWN, "number")
+    return Cell(datetime.fromtimestamp(t_ns / 1e9, UTC).strftime("%H:%M:%S"), "number", t_ns)
+
+
+def _records(columns: Columns) -> list[dict[str, Any]]:
+    """Return the rows of a table, each by its columns' names."""
+    rows = zip(*(values.tolist() for values in columns.values()), strict=True)
+    return [dict(zip(columns, row, strict=True)) for row in rows]
+
+
+def _first_and_last(evidence: Columns) -> dict[int, tuple[int, int]]:
+    """Return the first and the last moment (ns) at which each wall was seen."""
+    moments: dict[int, tuple[int, int]] = {}
+    for wall, t_ns in zip(evidence["wall"].tolist(), evidence["t_ns"].tolist(), strict=True):
+        first_ns, last_ns = moments.get(wall, (t_ns, t_ns))
+        moments[wall] = (min(first_ns, t_ns), max(last_ns, t_ns))
+    return moments
+
+
+def _room_name(room: int) -> str:
+    return "outside or not known" if room < 0 else f"room {room}"
+
+
+def _all_or_some(kept: np.ndarray) -> str:
+    if kept.all():
+        return "yes"
+    return "some" if kept.any() else "no"
+
+
+def _median(values: np.ndarray) -> float:
+    values = values[np.isfinite(values)]
+    return float(np.median(values)) if len(values) else np.nan
