@@ -172,7 +172,7 @@ def _measure_plan(
 def _measure_lines(lines_m: FloatArray, floor: wall_findings.VisibleTruth) -> dict[str, float]:
     observed = np.ones(len(lines_m), bool)
     faces = plan_metrics.measure_faces(
-        lines_m, observed, floor.cells, floor.visible, floor.seen.any(axis=0)
+        lines_m, observed, floor.cells, floor.visible, np.asarray(floor.seen.any(axis=0))
     )
     return wall_metrics.measure_plan_lines(lines_m, floor, _CELL_M) | faces
 

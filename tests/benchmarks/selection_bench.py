@@ -12,7 +12,7 @@ from sklearn.cluster import KMeans
 
 from reference import hull_selection
 from scanplan.project.stage_settings import select_hulls
-from scanplan.selection import area_greedy, bounds, hulls, streaming
+from scanplan.selection import area_greedy, bounds, hulls, lazy_greedy, streaming
 from scanplan.types import Array, FilePath, FloatArray, Settings
 
 N_SCANS = 1200  # two minutes at 10 Hz, through all rooms
@@ -120,7 +120,7 @@ def compare_streaming(polygons: Array, say: Say) -> None:
         )
 
 
-def order_and_bound(polygons: Array) -> tuple[area_greedy.AreaOrder, FloatArray]:
+def order_and_bound(polygons: Array) -> tuple[lazy_greedy.GreedyOrder, FloatArray]:
     """Return the order and the bound of every rank."""
     order = area_greedy.order_by_area(polygons)
     return order, bounds.bound_any_subset(order)

@@ -9,7 +9,13 @@ from typing import Any
 import numpy as np
 
 from scanplan.lab.buildings import building as buildings
-from scanplan.lab.evaluation import length_metrics, truth_file, visible_faces, wall_findings
+from scanplan.lab.evaluation import (
+    face_cells,
+    length_metrics,
+    truth_file,
+    visible_faces,
+    wall_findings,
+)
 from scanplan.lab.simulation import raycast, survey_setup, sweeps
 from scanplan.types import BoolArray, FilePath, FloatArray, IntArray, Settings
 

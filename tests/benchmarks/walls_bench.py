@@ -3,6 +3,7 @@
 import importlib.util
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -157,7 +158,8 @@ def _extract_lines(
     survey: wall_scans.Survey, name: str, settings: Settings
 ) -> tuple[FloatArray, IntArray]:
     keywords = _keywords(name, settings)
-    lines, scan = [np.empty((0, 2, 2))], [np.empty(0, int)]
+    lines: list[FloatArray] = [np.empty((0, 2, 2))]
+    scan = [np.empty(0, int)]
     for i, xyz_m in survey.scans:
         walls = find_wall_segments(i, xyz_m, sensor_xyz_m=survey.sensors[i], **keywords)
         lines.append(np.stack([walls.start_m, walls.end_m], axis=1))
@@ -172,10 +174,14 @@ def _extraction_times(
     took_ms: dict[str, list[float]] = {name: [] for name in EXTRACTORS}
     for i, xyz_m in scans:
         for name in EXTRACTORS:
-            keywords = _keywords(name, settings) | {"sensor_xyz_m": survey.sensors[i]}
-            took_ms[name].append(
-                _milliseconds(lambda s=i, p=xyz_m, k=keywords: find_wall_segments(s, p, **k))
+            call = partial(
+                find_wall_segments,
+                i,
+                xyz_m,
+                sensor_xyz_m=survey.sensors[i],
+                **_keywords(name, settings),
             )
+            took_ms[name].append(_milliseconds(call))
     return took_ms
 
 

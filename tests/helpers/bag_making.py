@@ -26,8 +26,9 @@ NUMPY_TYPES = {"i1": 1, "u1": 2, "i2": 3, "u2": 4, "i4": 5, "u4": 6, "f4": 7, "f
 class Maker:
     """Messages and bags of one kind.
 
-    `ros1`, `ros1_bz2`, `ros1_lz4` are .bag files; the others rosbag2 folders: `sqlite3_bare` carries no message
-    definitions, `_message` and `_file` are compressed by message or by file, `mcap_zstd` in chunks.
+    `ros1`, `ros1_bz2`, `ros1_lz4` are .bag files; the others rosbag2 folders: `sqlite3_bare`
+    carries no message definitions, `_message` and `_file` are compressed by message or by file,
+    `mcap_zstd` in chunks.
     """
 
     def __init__(self, kind="ros1"):
@@ -115,7 +116,10 @@ class Maker:
         return self.make("std_msgs/msg/String", data=text)
 
     def write(self, path, entries):
-        """Write (topic, receive_ns, message) entries; `path` without suffix. Returns the recording's path."""
+        """Write (topic, receive_ns, message) entries.
+
+        `path` without suffix. Returns the recording's path.
+        """
         path = Path(path)
         path.parent.mkdir(parents=True, exist_ok=True)
         return (self._write2 if self.ros2 else self._write1)(path, entries)
@@ -177,7 +181,7 @@ class Maker:
 
 
 def point_cloud2(xyz_m, **overrides):
-    """The fields of a PointCloud2, without header, of (n, 3) float32 points or of a structured array (n,) or (h, w)."""
+    """The fields of a PointCloud2 of (n, 3) float32 points, or of a structured array."""
     if xyz_m.dtype.names is None:
         points = np.zeros(len(xyz_m), [("x", "<f4"), ("y", "<f4"), ("z", "<f4")])
         points["x"], points["y"], points["z"] = xyz_m.reshape(-1, 3).T
@@ -237,7 +241,7 @@ def room_points(n=60):
 
 
 def survey(maker, *, n_scans=10, start_ns=START_NS, first=0, pose_of=None):
-    """Entries of a survey: clouds on /points at 10 Hz, poses on /amcl_pose at 20 Hz, 0.1 m a scan along x.
+    """Entries of a survey: clouds at 10 Hz, poses of AMCL at 20 Hz, 0.1 m a scan along x.
 
     The poses begin 0.05 s before the first cloud and end 0.05 s after the last.
     """

@@ -1,4 +1,4 @@
-"""Faces merged from segments alone, as columns, for tests of how segments are grouped, cut and met."""
+"""Faces merged from segments alone, as columns: how these are grouped, cut and met."""
 
 import math
 
@@ -12,7 +12,10 @@ _MOST_ROUNDS = 10
 
 
 def merge(table, settings):
-    """Return what the segments of a table of walls make, ends met at corners: columns, the longest face first."""
+    """Return what the segments of a table of walls make, ends met at corners.
+
+    Columns, the longest face first.
+    """
     merging = MergeSettings(**settings)
     pieces = merge_segments(table, merging)
     for _ in range(_MOST_ROUNDS):

@@ -1,4 +1,4 @@
-"""A house of two rooms whose plan is known on paper, what scans see in it, and settings to plan it with."""
+"""A house of two rooms known on paper, what scans see in it, and settings to plan it."""
 
 import numpy as np
 
@@ -8,7 +8,8 @@ from scanplan.plan import planning
 from scanplan.rays import ray_set
 from scanplan.store import schemas, tables
 
-# seen from the left of each way: room A is 4 m x 4 m, room B 3.8 m x 4 m, the wall between them 0.2 m with a door
+# seen from the left of each way: room A is 4 m x 4 m, room B 3.8 m x 4 m, the wall between them 0.2
+# m with a door
 ROOM_A = [(0, 0, 4, 0), (4, 0, 4, 1.5), (4, 2.4, 4, 4), (4, 4, 0, 4), (0, 4, 0, 0)]
 ROOM_B = [(4.2, 0, 8, 0), (8, 0, 8, 4), (8, 4, 4.2, 4), (4.2, 4, 4.2, 2.4), (4.2, 1.5, 4.2, 0)]
 REVEALS = [(4, 1.5, 4.2, 1.5), (4.2, 2.4, 4, 2.4)]
@@ -66,7 +67,10 @@ def moved(xyz_m, yaw_rad, shift_m):
 
 
 def write(folder, table, sensors=SENSORS):
-    """Write walls, selection, scans and registration of the house as stages do; return the paths in that order."""
+    """Write walls, selection, scans and registration of the house as stages do.
+
+    Return the paths in that order.
+    """
     paths = [folder / f"{name}.parquet" for name in ("walls", "selection", "scans", "registration")]
     tables.write_table(paths[0], schemas.WALLS, table, allow_empty=True)
     tables.write_table(paths[1], schemas.SELECTION, ordering([2, 0, 1, 3]))

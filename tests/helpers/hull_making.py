@@ -11,7 +11,10 @@ from shapely import box
 
 @composite
 def hull_sets(draw, max_size=9):
-    """Sets of polygons of every awkward kind: boxes on a grid, convex, several parts, again, nested, empty."""
+    """Sets of polygons of every awkward kind.
+
+    Boxes on a grid, convex, several parts, again, nested, empty.
+    """
     chosen = []
     for kind in draw(st.lists(st.sampled_from("bbbcccmrns0"), min_size=1, max_size=max_size)):
         if kind == "b":

@@ -32,7 +32,7 @@ def axis_m(wall):
 
 
 def true_walls(text):
-    """Return (ends (2, 2), thickness, height, volume) of each wall of a truth.geojson, its openings cut."""
+    """Return (ends (2, 2), thickness, height, volume) of each true wall, openings cut."""
     parts = [
         (f["properties"], np.array(f["geometry"]["coordinates"]))
         for f in json.loads(text)["features"]
@@ -54,10 +54,10 @@ def true_walls(text):
 
 
 def compared(model, text, *, within_m=0.15):
-    """Return how many walls of a model have a measured thickness, their volume, and that of the true ones they are.
+    """Return how many walls have a measured thickness, their volume and their true one.
 
-    The walls of a drawing overlap where they meet; what is built is there once, and of a wall of unknown thickness it
-    is that wall's.
+    The walls of a drawing overlap where they meet; what is built is there once, and of a wall of
+    unknown thickness it is that wall's.
     """
     known = true_walls(text)
     measured = [
@@ -79,7 +79,10 @@ def compared(model, text, *, within_m=0.15):
 
 
 def _beside(wall, known, within_m):
-    """Return which of `true_walls` an IfcWall is: those that it runs beside for half of them or more."""
+    """Return which of `true_walls` an IfcWall is.
+
+    Those that it runs beside for half of them or more.
+    """
     axis = axis_m(wall)
     along, found = frame(axis)[0], set()
     for i, (line, *_) in enumerate(known):

@@ -1,4 +1,7 @@
-"""What rays show of a line, given place by place: observations and stretches whose every return is known."""
+"""What rays show of a line, given place by place.
+
+Observations and stretches whose every return is known.
+"""
 
 import numpy as np
 
@@ -8,7 +11,7 @@ from scanplan.rays.face_observation import FaceObservation
 
 
 def line_through(x0, y0, x1, y1):
-    """Return the line from one point to another, seen from the left of the way and counted from its start."""
+    """Return the line from one point to another, seen from the left, from its start."""
     start, way = np.array([x0, y0], float), np.array([x1 - x0, y1 - y0], float)
     return Line(start, np.array([-way[1], way[0]]) / np.hypot(*way))
 
@@ -16,8 +19,8 @@ def line_through(x0, y0, x1, y1):
 def observation(line, occupied=(), free=(), low=(), *, glass=(), planar=False):
     """Return what is seen of a line.
 
-    Rows of `occupied` are along, height, and, if given, offset before the line and scan; rows of `free` and `low` are
-    along, height. They need no order.
+    Rows of `occupied` are along, height, and, if given, offset before the line and scan; rows of
+    `free` and `low` are along, height. They need no order.
     """
     along, z, off, scan = _columns(occupied, 4)
     free_m, free_z_m = _columns(free, 2)
@@ -39,7 +42,10 @@ def observation(line, occupied=(), free=(), low=(), *, glass=(), planar=False):
 
 
 def stretch(x0, y0, x1, y1, occupied=(), **seen):
-    """Return a stretch from one point to another, seen from the left of the way; see `observation`."""
+    """Return a stretch from one point to another, seen from the left of the way.
+
+    See `observation`.
+    """
     known = observation(line_through(x0, y0, x1, y1), occupied, **seen)
     return FaceInterval(known, 0.0, float(np.hypot(x1 - x0, y1 - y0)))
 

@@ -1,4 +1,7 @@
-"""Plans made up for tests: their tables, columns by name, as the stage that assembles a plan writes them."""
+"""Plans made up for tests.
+
+Their tables, columns by name, as the stage that assembles a plan writes them.
+"""
 
 import numpy as np
 import shapely

@@ -1,8 +1,9 @@
-"""A room whose walls are known on paper, what a sensor sees in it, and the limits of walls and of furniture."""
+"""A room known on paper, what a sensor sees in it, limits of walls and of furniture."""
 
 import numpy as np
 
-# x0, y0, x1, y1: a room of 6 m x 4 m, a doorway of 0.9 m in its right wall, and the wall of the next room behind it
+# x0, y0, x1, y1: a room of 6 m x 4 m, a doorway of 0.9 m in its right wall, and the wall of the
+# next room behind it
 ROOM = np.array(
     [
         (0, 0, 6, 0),
@@ -44,7 +45,10 @@ FURNITURE = {
 
 
 def vlp16(sensor_xyz_m=SENSOR, segments=ROOM, *, columns=450, noise_m=0.01, seed=1):
-    """Return a scan of 16 beams, 2 degrees apart, in rooms with floor and ceiling: (n, 3) in the frame of the room."""
+    """Return a scan of 16 beams, 2 degrees apart, in rooms with floor and ceiling.
+
+    (n, 3) in the frame of the room.
+    """
     elevation, azimuth = np.meshgrid(
         np.deg2rad(np.arange(-15, 16, 2)), np.arange(columns) / columns * 2 * np.pi
     )

@@ -6,7 +6,7 @@ SENSOR_M = 0.4
 
 
 def returns(faces, *, elevations_deg=range(-15, 16, 2), columns=720):
-    """Return what 16 beams from 0.4 m above the floor see of upright faces (x0, y0, x1, y1, low, high above the floor).
+    """Return what 16 beams from 0.4 m see of upright faces (x0, y0, x1, y1, low, high).
 
     Relative to the sensor; the floor is seen where nothing else is.
     """

@@ -29,7 +29,10 @@ BARE = SETTINGS | {
 
 
 def walls(segments, *, scan_id=None, n_points=100, rmse_m=0.01):
-    """Return a table of walls: `segments` is (n, 4) x0, y0, x1, y1, each seen from the left of its way."""
+    """Return a table of walls.
+
+    `segments` is (n, 4) x0, y0, x1, y1, each seen from the left of its way.
+    """
     segments = np.asarray(segments, float).reshape(-1, 4)
     count = len(segments)
     along = segments[:, 2:] - segments[:, :2]
@@ -48,7 +51,10 @@ def walls(segments, *, scan_id=None, n_points=100, rmse_m=0.01):
 
 
 def observed(true, rng, *, n_scans, sigma_m=0.015, least_share=0.5):
-    """Return walls as `n_scans` scans see them: each scan a part of each wall, its ends displaced sideways."""
+    """Return walls as `n_scans` scans see them.
+
+    Each scan a part of each wall, its ends displaced sideways.
+    """
     segments, scans = [], []
     for scan in range(n_scans):
         for wall in np.asarray(true, float).reshape(-1, 4):

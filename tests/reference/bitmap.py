@@ -2,7 +2,7 @@
 
 
 def shares(inferred, truth):
-    """Return false negative, correct match and false positive of two equally large maps of 0 and 1."""
+    """Return false negative, correct match and false positive of two maps of 0 and 1."""
     errors = [
         i - t
         for row_i, row_t in zip(inferred, truth, strict=True)

@@ -1,4 +1,7 @@
-"""Section 3.4 of the thesis, literally: normals, projection along them, mean shift, one RANSAC per cluster."""
+"""Section 3.4 of the thesis, literally.
+
+Normals, projection along them, mean shift, one RANSAC per cluster.
+"""
 
 import numpy as np
 from sklearn.cluster import MeanShift
@@ -7,7 +10,10 @@ from reference.ransac import ransac
 
 
 def lines(xyz, *, reach_deg, max_tilt_deg, bandwidth_m, inlier_m, min_points, rng, max_trials):
-    """Return the (normal, offset) in the floor plan of one line per cluster; points relative to the sensor."""
+    """Return the (normal, offset) in the floor plan of one line per cluster.
+
+    Points relative to the sensor.
+    """
     on_wall, projected = [], []
     for p in xyz:
         normal = surface_normal(p, xyz, reach_deg)
@@ -28,7 +34,7 @@ def lines(xyz, *, reach_deg, max_tilt_deg, bandwidth_m, inlier_m, min_points, rn
 
 
 def surface_normal(point, xyz, reach_deg):
-    """Return the direction of least variance around a point, None where the surroundings are no surface."""
+    """Return the direction of least variance around a point, None if that is no surface."""
     radius = np.deg2rad(reach_deg) * np.linalg.norm(point)
     near = xyz[np.linalg.norm(xyz - point, axis=1) <= radius]
     if len(near) < 6:

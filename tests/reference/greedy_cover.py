@@ -2,7 +2,10 @@
 
 
 def order(seen, length_m):
-    """Return the scans (rows of booleans) by what each adds; when none adds anything, as if nothing had been seen."""
+    """Return the scans (rows of booleans) by what each adds.
+
+    When none adds anything, as if nothing had been seen.
+    """
     left, rest, chosen = list(length_m), list(range(len(seen))), []
     while rest:
         gains = [sum(m for m, s in zip(left, seen[i], strict=True) if s) for i in rest]

@@ -1,10 +1,13 @@
-"""Greedy choice for sums of best weights: every scan looked at in every step, and the best subset by trying all."""
+"""Greedy choice for sums of best weights.
+
+Every scan looked at in every step, and the best subset by trying all.
+"""
 
 from itertools import combinations
 
 
 def value(weights, chosen):
-    """Sum over cells of the largest weight that any chosen scan (a dict of cell to weight) gives."""
+    """Sum over cells of the largest weight of any chosen scan (cell to weight)."""
     return (
         sum(max(weights[i].get(c, 0) for i in chosen) for c in set().union(*weights))
         if chosen
@@ -13,7 +16,7 @@ def value(weights, chosen):
 
 
 def order(weights, tie, min_overlap=0.0):
-    """Take the scan that adds most, the first of equals, of those that share enough with what is taken."""
+    """Take the scan that adds most of those that share enough with what is taken."""
     chosen = []
     while len(chosen) < len(weights):
         before = value(weights, chosen)

@@ -1,4 +1,7 @@
-"""The thesis's algorithms 1 and 2, written as they are printed: slow, and easy to check against the page."""
+"""The thesis's algorithms 1 and 2, written as they are printed.
+
+Slow, and easy to check against the page.
+"""
 
 import shapely
 from sklearn.cluster import KMeans
@@ -21,10 +24,13 @@ def cluster_and_hull(scans, n_clusters, seed=0):
 
 
 def hull_selection(polygons, k=None):
-    """Algorithm 1: order polygons, each the one whose union with those before it is largest; all, or the first k.
+    """Algorithm 1: order polygons, each the one whose union with those before it is largest.
 
-    The page leaves ties to the order of its loop and to rounding. Here those whose union is within `TIE_M2` of the
-    largest are equal, and the first of them is taken. The first polygon is no special case: the union is empty then.
+    All, or the first k.
+
+    The page leaves ties to the order of its loop and to rounding. Here those whose union is within
+    `TIE_M2` of the largest are equal, and the first of them is taken. The first polygon is no
+    special case: the union is empty then.
     """
     order, covered_m2 = [], []
     union = shapely.Polygon()

@@ -1,10 +1,10 @@
-"""Algorithm 4 of the thesis (RANSAC), literally, and its repetition with removal of inliers (section 5.3)."""
+"""Algorithm 4 of the thesis (RANSAC), literally, and repeated without inliers (5.3)."""
 
 import numpy as np
 
 
 def ransac(points, *, inlier_m, min_consensus, rng, max_trials):
-    """Return (normal, offset, inliers) of a line (points in the plane) or a plane (in space), or None."""
+    """Return (normal, offset, inliers) of a line or, in space, of a plane, or None."""
     best = None
     for _ in range(max_trials):
         # 1. a subset of the samples: the hypothetical inliers

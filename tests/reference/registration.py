@@ -1,4 +1,7 @@
-"""The thesis's algorithm 3, written literally with Open3D: the oracle in tests and the denominator in benchmarks."""
+"""The thesis's algorithm 3, written literally with Open3D.
+
+The oracle in tests and the denominator in benchmarks.
+"""
 
 import numpy as np
 import open3d as o3d
@@ -16,7 +19,7 @@ def interpolate_linearly(pose_t_ns, pose_xyz_m, scan_t_ns):
 def register(
     scans, poses, *, keep_every, distance_m, min_prior_fitness, min_refined_fitness, n_previous=5
 ):
-    """Steps 2 to 6: full clouds, `evaluate_registration` against the previous scans, point-to-point ICP.
+    """Steps 2 to 6: full clouds, fitness against the previous scans, point-to-point ICP.
 
     Parameters
     ----------

@@ -57,7 +57,10 @@ def test_what_registration_moves_is_put_back_for_the_localisers_map(tmp_path):
 
 
 def disturbed(poses, planar):
-    """The poses with errors of 10 cm and 2 degrees: along x and y and in heading alone of a planar sensor."""
+    """The poses with errors of 10 cm and 2 degrees.
+
+    Along x and y and in heading alone of a planar sensor.
+    """
     world_from_sensor = results.pose_matrices(poses)
     errors = np.random.default_rng(1).normal(size=(len(world_from_sensor), 6))
     if planar:
@@ -88,7 +91,10 @@ def of_kept(folder, poses_file):
 def test_registration_makes_disturbed_recordings_crisper(
     recordings_dir, tmp_path, name, of_recorded
 ):
-    """Far crisper than the poses it starts from; the recorded ones of the last two are a SLAM's, and no crisper."""
+    """Far crisper than the poses it starts from.
+
+    The recorded ones of the last two are a SLAM's, and no crisper.
+    """
     settings = default_settings.SETTINGS
     # no localiser tilts by 2 degrees, the defaults do not expect it
     limits = stage_settings.select_section(settings, "registration")

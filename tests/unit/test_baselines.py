@@ -29,7 +29,8 @@ def test_any_first_of_every_nth_leave_no_wide_gap(n, k):
 
 
 def test_distance_on_paper():
-    # from the first: 10 is farthest, then 4 (4 from both), then 1 (of 1 and 2: the nearer to one is later)
+    # from the first: 10 is farthest, then 4 (4 from both), then 1 (of 1 and 2: the nearer to one is
+    # later)
     assert baselines.order_farthest_first([(0, 0), (1, 0), (4, 0), (10, 0), (2, 0)]).tolist() == [
         0,
         3,

@@ -24,7 +24,10 @@ def cells(line, grid=FIVE):
 
 
 class TestThesis:
-    """Truth: the second row and the last column of 5 x 5; result: the second row but its last two, and the first."""
+    """Truth: the second row and the last column of 5 x 5.
+
+    Result: the second row but its last two, and the first.
+    """
 
     TRUTH = np.zeros((5, 5), bool)
     TRUTH[1, :] = TRUTH[:, 4] = True

@@ -66,7 +66,8 @@ def test_steps_between_the_checkpoints_tighten_the_bound():
     large = [box(2 * i, 0, 2 * i + 1, 1) for i in range(6) for _ in range(7)]
     small = [box(2 * i, 5, 2 * i + 1, 5.1) for i in range(20)]
     bound_m2 = bounds.bound_any_subset(area_greedy.order_by_area(large + small))
-    # at k = 7: 7 with nothing chosen, 4 + 7 with 4, 6.2 + 0.7 with 8; with the six large chosen 6 + 7 * 0.1
+    # at k = 7: 7 with nothing chosen, 4 + 7 with 4, 6.2 + 0.7 with 8; with the six large chosen 6 +
+    # 7 * 0.1
     assert bound_m2[6] == pytest.approx(6.7, abs=1e-4)
 
 

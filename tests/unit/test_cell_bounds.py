@@ -42,7 +42,7 @@ def test_a_hole_is_not_covered():
 
 @pytest.mark.parametrize(("side_m", "size_m"), [(1e4, 0.1), (300.0, 0.01)])
 def test_small_parts_among_large_ones_keep_their_areas(side_m, size_m):
-    """A cell is as large as the large part wants it, and a small one fills next to nothing of it."""
+    """A cell suits the large part, and a small one fills next to nothing of it."""
     large = shapely.Polygon([(0, 0), (side_m, 0), (0, side_m)])
     corners_m = 0.9 * side_m + np.arange(4) * 10 * size_m
     small = shapely.box(

@@ -133,7 +133,10 @@ def test_a_wall_goes_on_between_a_counter_and_the_cabinets_above_it():
 
 
 def test_a_shelf_on_the_line_of_a_wall_joins_its_pieces_and_the_floor_does_not():
-    """The sensor is 1.5 m above the floor; between y = -0.6 and 0.6 it sees a shelf of 1 m height, or the floor."""
+    """The sensor is 1.5 m above the floor.
+
+    Between y = -0.6 and 0.6 it sees a shelf of 1 m height, or the floor.
+    """
     fine = np.arange(0, 1, 0.025)
     along, up = np.meshgrid(np.r_[-3 + 2.4 * fine, 0.6 + 2.4 * fine], -1.5 + 2.4 * fine)
     pieces = np.column_stack([np.full(along.size, 4.0), along.ravel(), up.ravel()])
@@ -229,7 +232,7 @@ def test_one_return_from_a_thousand_kilometres_spoils_nothing():
 
 @given(st.integers(0, 2**32 - 1), st.booleans())
 def test_poles_and_repeated_returns_are_handled(seed, planar):
-    """Cells in which all returns are at one x, y, such as a thin pole or a beam that returns thrice, end no run."""
+    """Cells with all returns at one x, y, as of a thin pole, end no run."""
     rng = np.random.default_rng(seed)
     places = rng.uniform(-4, 4, (rng.integers(1, 40), 3)) * ([1, 1, 0] if planar else [1, 1, 0.3])
     points = np.repeat(places, rng.integers(1, 40, len(places)), axis=0)

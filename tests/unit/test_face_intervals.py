@@ -75,7 +75,8 @@ def test_heights_mean_nothing_in_a_plane():
 
 
 def test_a_stretch_ends_where_most_of_what_is_near_is_seen_to_end():
-    # three scans show it up to 1.99, 2.0 and 2.01 m, a fourth, misplaced, with a few points up to 2.05 m
+    # three scans show it up to 1.99, 2.0 and 2.01 m, a fourth, misplaced, with a few points up to
+    # 2.05 m
     places = [
         (x, scan) for scan, end in enumerate((1.99, 2.0, 2.01)) for x in np.arange(end, 0, -0.02)
     ]

@@ -4,7 +4,8 @@ import shapely
 
 from scanplan.rays import free_space
 
-# the corners of a room of ring_office lie up to 1e-6 m off those of the hole that it fills among walls and neighbours
+# the corners of a room of ring_office lie up to 1e-6 m off those of the hole that it fills among
+# walls and neighbours
 ROOM = [
     (25.386, 4.682),
     (25.382, 0.18099999999999997),

@@ -62,7 +62,10 @@ def test_an_outer_corner_shows_that_a_low_face_is_furniture():
 
 
 def test_what_is_seen_higher_than_furniture_is_no_side_of_it():
-    """A wall of 0.9 m, at whose end stands a unit of 0.9 m height; and the side of clutter as high as itself."""
+    """A wall of 0.9 m, at whose end stands a unit of 0.9 m height.
+
+    And the side of clutter as high as itself.
+    """
     wall, unit = (3, -0.5, 3, 0.4, 0, 2.6), (3, 0.4, 5, 0.9, 0, 0.9)
     assert kept([wall, unit], [(9, -6, 9, 6, 0, 2.6)]) == [True, False]
     clutter = (3, 0.4, 5, 0.9, 0, 2.0)
@@ -107,7 +110,10 @@ def test_a_short_face_is_a_wall_where_it_goes_on_beyond_a_door():
 
 
 def test_a_low_face_is_a_wall_beyond_a_door_but_not_beyond_a_niche():
-    """At 1.3 m no beam rises above 0.9 m; the wall goes on beyond a door of 0.9 m, or beyond one of two units."""
+    """At 1.3 m no beam rises above 0.9 m.
+
+    The wall goes on beyond a door of 0.9 m, or beyond one of two units.
+    """
     low, wall, far = (1.3, -1.2, 1.3, -0.2, 0, 1), (1.3, 0.7, 1.3, 5, 0, 2.6), (4, -9, 4, 9, 0, 2.6)
     assert kept([low, wall], [far]) == [True, True]
     assert kept([low, wall], [(1.9, -0.2, 1.9, 0.7, 0, 2.6)]) == [False, True]
@@ -118,7 +124,10 @@ def test_a_low_face_is_a_wall_beyond_a_door_but_not_beyond_a_niche():
 
 
 def test_faces_side_by_side_have_no_door_between_them():
-    """A low unit before a tall wall on much the same line: nothing lies between their ends, and no door does."""
+    """A low unit before a tall wall on much the same line.
+
+    Nothing lies between their ends, and no door does.
+    """
     wall, far = (1.3, -0.7, 1.3, 5, 0, 2.6), (4, -9, 4, 9, 0, 2.6)
     low = (1.25, -1.2, 1.25, -0.2, 0, 1)
     # from 0.05 m before its end on, the unit hides what a door would show: rays that lead on

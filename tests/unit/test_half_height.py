@@ -25,8 +25,8 @@ def wall(hits, passes, openings=(), planar=False):
     sign = LINE.direction[0]
     seen = observation(LINE, *(rows_.T * (sign, 1) for rows_ in (hits, passes)), planar=planar)
     low_m, high_m = sorted((0.0, 4.0 * sign))
-    gaps = [SimpleNamespace(low_m=min(sign * a, sign * b), high_m=max(sign * a, sign * b), width_m=b - a)
-            for a, b in openings]  # fmt: skip
+    spans_m = [sorted((sign * a, sign * b)) for a, b in openings]
+    gaps = [SimpleNamespace(low_m=a, high_m=b, width_m=b - a) for a, b in spans_m]
     members = [SimpleNamespace(seen=seen, line=LINE)]
     return SimpleNamespace(
         line=LINE, low_m=low_m, high_m=high_m, length_m=4.0, members=members, openings=gaps

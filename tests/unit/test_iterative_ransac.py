@@ -48,7 +48,10 @@ def test_an_upright_pole_is_no_wall():
 
 
 def test_in_99_percent_of_outliers_there_is_no_wall():
-    """A pair of the wall's points is one in 10,000: no number of trials that is worth its time finds it."""
+    """A pair of the wall's points is one in 10,000.
+
+    No number of trials that is worth its time finds it.
+    """
     draw = np.random.default_rng(1)
     wall = np.column_stack(
         [np.full(400, 3.0), draw.uniform(-1.5, 1.5, 400), draw.uniform(-0.8, 0.8, 400)]

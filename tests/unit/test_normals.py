@@ -8,7 +8,7 @@ from scanplan.extraction import normals
 
 
 def wall_ahead(distance_m, noise_m=0.0):
-    """Return what 16 beams, 2 degrees apart, see of a wall across the x axis, relative to the sensor."""
+    """Return what 16 beams, 2 degrees apart, see of a wall across the x axis."""
     elevation, azimuth = np.deg2rad(np.meshgrid(np.arange(-15, 16, 2), np.arange(-30, 30, 0.2)))
     y, z = np.tan(azimuth.ravel()), np.tan(elevation.ravel()) / np.cos(azimuth.ravel())
     ways = np.column_stack([np.ones(y.size), y, z])

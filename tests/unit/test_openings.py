@@ -54,7 +54,10 @@ def test_a_low_sill_all_along_makes_a_window():
     ("below", "sill_m"), [([], 0.11), (grid(1, 1.9, 0.15, 0.2), (0.2 + 0.35) / 2)]
 )
 def test_a_step_makes_a_window_whether_or_not_wall_is_seen_below_it(below, sill_m):
-    """No ray went through below 0.35 m: wall up to 0.2 m says more of the sill than a step up to 0.09 m does."""
+    """No ray went through below 0.35 m.
+
+    Wall up to 0.2 m says more of the sill than a step up to 0.09 m does.
+    """
     gap = judge_with_low(
         grid(1, 1.9, 0.05, 0.09), [*below, *grid(1, 1.9, 2.2)], 0.35 if below else 0.13
     )
@@ -62,7 +65,10 @@ def test_a_step_makes_a_window_whether_or_not_wall_is_seen_below_it(below, sill_
 
 
 def test_a_step_tells_of_a_sill_that_no_point_is_below():
-    """Rays went through above 0.4 m alone, and no wall is seen below: the step is all that is known of the sill."""
+    """Rays went through above 0.4 m alone, and no wall is seen below.
+
+    The step is all that is known of the sill.
+    """
     gap = judge_with_low(grid(1, 1.9, 0.05, 0.09), grid(1, 1.9, 2.2), 0.4)
     assert gap.sill_m == pytest.approx((0.09 + 0.4) / 2)
 
@@ -134,7 +140,10 @@ def test_a_lintel_is_between_rays_close_to_each_other():
 def test_between_rays_far_apart_a_lintel_is_known_by_its_underside_alone(
     n_scans, behind_m, lintel_m
 ):
-    """Beams on the wall's face may be well above the lintel; what lies behind it, for two scans, is its underside."""
+    """Beams on the wall's face may be well above the lintel.
+
+    What lies behind it, for two scans, is its underside.
+    """
     gap = judge(
         grid(1, 1.9, 2.05, 2.5, 2.6), grid(1, 1.9, 0.1, 1.6), n_scans=n_scans, behind_m=behind_m
     )

@@ -7,7 +7,8 @@ from scanplan.errors import StageError
 from scanplan.selection import methods, orderings
 from scanplan.store import schemas
 
-# scan 3 covers two far boxes (its one hull is 12), scan 8 one box, scan 20 that box and a strip, scan 21 nothing
+# scan 3 covers two far boxes (its one hull is 12), scan 8 one box, scan 20 that box and a strip,
+# scan 21 nothing
 SCANS = {
     3: [box(0, 0, 1, 1), box(11, 0, 12, 1)],
     8: [box(0, 5, 4, 6)],
@@ -26,7 +27,10 @@ def columns(scans=SCANS):
 
 
 def others(scan_ids):
-    """Free space of 1, 2, 3, ... m2; scan i shows cells i and i + 1, the later the longer; ever longer steps."""
+    """Free space of 1, 2, 3, ... m2.
+
+    Scan i shows cells i and i + 1, the later the longer; ever longer steps.
+    """
     n = len(scan_ids)
     free = shapely.box(np.arange(n) * 10, 0, np.arange(n) * 10 + np.arange(1, n + 1), 1)
     cells = np.arange(n)[:, None] + [0, 1]
@@ -116,7 +120,8 @@ def test_one_scan_and_no_area(method):
 def test_summary():
     found = orderings.order_scans("sequential", columns(), seed=0)
     assert orderings.summarise_order("sequential", found) == (
-        "sequential, 4 scans, 7.0 m2; 99% at 3 scans; first 4 cover at least 100 % of what any 4 could"
+        "sequential, 4 scans, 7.0 m2; 99% at 3 scans;"
+        " first 4 cover at least 100 % of what any 4 could"
     )
     assert orderings.summarise_order("wall_length", order("wall_length", columns())).startswith(
         "wall_length, 4 scans, 14.0 m;"
@@ -205,7 +210,7 @@ def test_a_budget_changes_no_order_without_an_objective(method):
 
 
 def varied(method, name):
-    """Orders of 30 overlapping scans by two values of one setting, under the name of the workflow's settings."""
+    """Orders of 30 overlapping scans by two values of one of the workflow's settings."""
     scans = {
         i: [box(i % 7, i // 7, i % 7 + 1 + (i % 5) / 2, i // 7 + 1 + (i % 3) / 2)]
         for i in range(30)

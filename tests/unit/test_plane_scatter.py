@@ -7,7 +7,7 @@ OF_MAP = {"radius_m": 0.2, "most_places": 200, "seed": 1}
 
 
 def walls(shift_m, noise_m=0.005, n=3000, planar=False, seed=0):
-    """Two walls, 8 m long and at right angles, as 4 scans see them, each moved by another multiple of `shift_m`."""
+    """Two walls at right angles as 4 scans see them, each moved by a multiple of `shift_m`."""
     points, owners = [], []
     for scan_id in range(4):
         rng = np.random.default_rng([seed, scan_id])
@@ -43,7 +43,10 @@ def test_scans_beside_each_other_make_walls_thick_by_their_spread(planar):
 
 
 def test_a_place_by_hand():
-    """Four scans, three points each, at z of 0, 1, 2, 3 cm: the sample deviation of three of each."""
+    """Four scans, three points each, at z of 0, 1, 2, 3 cm.
+
+    The sample deviation of three of each.
+    """
     grid = np.array([[0, 0], [0.1, 0], [0, 0.1]])
     xyz_m = np.concatenate([np.column_stack([grid, np.full(3, 0.01 * i)]) for i in range(4)])
     places = plane_scatter.measure_scatter(

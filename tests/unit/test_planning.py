@@ -268,7 +268,10 @@ class TestFreeSpace:
         )
 
     def test_rays_too_far_apart_for_an_opening_are_told(self):
-        """In a room of 4 m most walls are some 2 to 3 m away: 0.5 m of them hold two rays that are 5 degrees apart."""
+        """In a room of 4 m most walls are some 2 to 3 m away.
+
+        0.5 m of them hold two rays that are 5 degrees apart.
+        """
         told = {}
         for beams in (360, 90, 45):
             flat = laser(SENSORS[0], np.array(house_making.HOUSE, float), beams=beams)

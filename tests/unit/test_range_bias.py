@@ -21,7 +21,7 @@ ERRORS_M = np.random.default_rng(7).normal(0.003, 0.005, len(BEAMS))
 
 
 def lengthened(xyz_m, sensor_m, errors_m):
-    """Return points at ranges that are too long by the error of their beam, the nearest to their elevation."""
+    """Return points at ranges that are too long by the error of their beam."""
     way = xyz_m - sensor_m
     range_m = np.linalg.norm(way, axis=1, keepdims=True)
     elevation_deg = np.degrees(np.arcsin(way[:, 2:] / range_m))

@@ -26,7 +26,10 @@ def merge(table, **changes):
 
 
 def doubled_m(merged, distance_m, max_angle_deg):
-    """Longest stretch of a face that runs beside another one of the same side: measured with buffers, pair by pair."""
+    """Longest stretch of a face that runs beside another one of the same side.
+
+    Measured with buffers, pair by pair.
+    """
     lines = shapely.linestrings(ends(merged).reshape(-1, 2, 2))
     normals = np.column_stack([merged["nx"], merged["ny"]])
     worst = 0.0
@@ -194,7 +197,8 @@ class TestWhole:
         turn, length = rng.uniform(0, 2 * math.pi, 6), rng.uniform(1.5, 6, 6)
         true = np.hstack([start, start + (length * [np.cos(turn), np.sin(turn)]).T])
         merged = merge(observed(true, rng, n_scans=8, sigma_m=sigma_m), **SETTINGS)
-        # a cut is square to the stronger face, so one turned from it may reach over the end by distance times sine
+        # a cut is square to the stronger face, so one turned from it may reach over the end by
+        # distance times sine
         skew_m = SETTINGS["merge_distance_m"] * math.sin(math.radians(SETTINGS["max_angle_deg"]))
         assert (
             doubled_m(merged, SETTINGS["merge_distance_m"] - 1e-3, SETTINGS["max_angle_deg"] - 0.01)

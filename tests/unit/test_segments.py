@@ -25,7 +25,8 @@ def cut(points, *, spare=None, others=(), normal=(1.0, 0.0), offset_m=2.0):
 def test_segments_end_where_points_pause():
     points = upright(np.r_[np.arange(0, 1.01, 0.25), np.arange(1.9, 3.0, 0.25)])
     found = segments.collect_segments(cut(points), (10, 20, 30))
-    # the sensor is to the left of the way from start to end: the wall x = 2 is walked along with rising y
+    # the sensor is to the left of the way from start to end: the wall x = 2 is walked along with
+    # rising y
     assert found.start_m == pytest.approx(np.array([(12, 20), (12, 21.9)]))
     assert found.end_m == pytest.approx(np.array([(12, 21), (12, 22.9)]))
     assert found.normal == pytest.approx(np.array([(-1, 0), (-1, 0)]))
@@ -61,7 +62,10 @@ def test_where_no_ray_goes_the_wall_above_tells_nothing():
 
 
 def test_the_reveal_of_a_door_seen_along_shows_that_it_is_open():
-    """Rays along the wall meet the far reveal 0.1 m behind it, at y = 2: they cross it at y = 1.9."""
+    """Rays along the wall meet the far reveal 0.1 m behind it, at y = 2.
+
+    They cross it at y = 1.9.
+    """
     cabinet = np.array([(1.0, y / 2, 0.4) for y in np.arange(1.05, 2, 0.1)])
     reveal = np.array([(2.1, 1.99, 0.6)] * 3)
     assert ends(cut(np.vstack([JAMBS, LINTEL]), others=np.vstack([cabinet, reveal])))[-1] == (2, 3)
@@ -111,7 +115,8 @@ def test_in_the_plane_spare_points_prolong_within_reach_and_no_farther():
     rows = segments.cut_line(
         np.array([1.0, 0]), 2.0, points, LIMITS, spare_xyz_m=spare, reach_rad=0.05
     )
-    # reach at the end: 0.05 hypot(2, 1) = 0.112 m; at the start 0.1 m, but the first step there is more than half
+    # reach at the end: 0.05 hypot(2, 1) = 0.112 m; at the start 0.1 m, but the first step there is
+    # more than half
     assert rows[0][:4] == pytest.approx((2, 0, 2, 1.09))
     assert rows[0][6] == 12
 

@@ -44,7 +44,10 @@ def test_the_adjoint_takes_a_twist_to_the_other_frame(pose, twist):
 
 
 def test_information_is_stated_along_the_worlds_axes():
-    """A scan that looks along the world's y: what is sure along the world's x is sure along the scan's -y."""
+    """A scan that looks along the world's y.
+
+    What is sure along the world's x is sure along the scan's -y.
+    """
     world_from_scan = se3.pose_matrix(
         [3, 4, 5], Rotation.from_euler("z", 90, degrees=True).as_quat()
     )

@@ -13,7 +13,10 @@ SETTINGS = planning.make_plan_settings(**house_making.PLAN)
 
 
 def stretches(x0, y0, x1, y1, solid, crossed=(), lintel=()):
-    """Stretches of a line, seen from the left of its way: points, rays through it, and points above a door."""
+    """Stretches of a line, seen from the left of its way.
+
+    Points, rays through it, and points above a door.
+    """
     hits = [(x, 1.0) for span in solid for x in np.arange(*span, 0.02)]
     hits += [(x, 2.3) for span in lintel for x in np.arange(*span, 0.02)]
     passes = [(x, 1.0) for span in crossed for x in np.arange(*span, 0.01)]

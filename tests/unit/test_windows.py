@@ -25,7 +25,7 @@ LOST, NICHE, BEYOND, BEFORE = None, "niche", 1.5, 0.7
 
 
 def look(x, z, ends=LOST, sensors=SENSORS):
-    """Rays of scans; those to a part of the south wall are lost, end after a share of their way, or just behind it."""
+    """Rays of scans; those to a part of the south wall are lost or end elsewhere."""
     scans = []
     for i, xyz_m in house_making.scans(ROOM, sensors, columns=1800):
         there = (np.abs(xyz_m[:, 1]) < 0.1) & (xyz_m[:, 0] > x[0]) & (xyz_m[:, 0] < x[1])
@@ -119,7 +119,10 @@ def test_one_scan_is_not_enough():
 
 
 def test_where_no_ray_is_sent_nothing_is_known():
-    """From 1 m away the highest beam meets the wall at 1.17 m; of the wall beside more is seen from further off."""
+    """From 1 m away the highest beam meets the wall at 1.17 m.
+
+    Of the wall beside more is seen from further off.
+    """
     looked = look((1.0, 2.2), (0.85, 2.4), sensors=[(1.6, 1, 0.9), (1.4, 0.9, 0.9)])
     line = with_points(seen(looked), np.repeat([0.2, 0.5, 0.9, 2.3, 2.6, 3.0], 3))
     assert windows.find_windows(looked, line, *ENDS_M, SETTINGS.openings) == []

@@ -201,7 +201,7 @@ def _fill_cells(
     is_floor = share > _CELL_SHARE
     for row in np.flatnonzero(~is_floor & (share > _LEAST_CELL_SHARE)):
         is_floor[row] = _walled_share(cells[row], outline) >= _CLOSED_SHARE
-    ground = free_space.union_on_grid(cells[is_floor])
+    ground = free_space.union_on_grid(list(cells[is_floor]))
     drawn = _largest(free_space.difference_on_grid(ground, solid))
     if drawn is None:
         return rough

@@ -117,7 +117,10 @@ class FaceRaster:
         return is_low & (is_above & (self.free[:, :stop] > 0)).any(axis=1)
 
     def is_stopped(self, *, low_m: float, door_m: float) -> BoolArray:
-        """Return in which columns (c,) rays end lower than a door: at it, or before it above the skirting."""
+        """Return in which columns (c,) rays end lower than a door.
+
+        At it, or before it above the skirting.
+        """
         first, stop = round(low_m / _ROW_M), round(door_m / _ROW_M)
         n_before = self.occluded[:, first:stop].sum(axis=1)
         return (self.count_below(self.occupied, door_m) > 0) | (n_before > 0)

@@ -77,7 +77,7 @@ class _Hits:
 
     def summed(self, values: FloatArray) -> FloatArray:
         """Return sums of values (n,) by group."""
-        return np.bincount(self.group, values, self.n_groups)
+        return np.bincount(self.group, values, self.n_groups).astype(float)
 
     def level(self, values: FloatArray) -> FloatArray:
         """Return values (n,) without the best line along the wall of each group."""

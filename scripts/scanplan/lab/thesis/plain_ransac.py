@@ -1,4 +1,4 @@
-"""Iterative RANSAC as the thesis describes it (5.3), and the limits to lift for cluster RANSAC (3.4).
+"""Iterative RANSAC as in the thesis (5.3), and limits to lift for cluster RANSAC (3.4).
 
 The extractors of the workflow cut what these find where its points pause, and the furniture
 classifier drops much of it: claims on numbers and times of walls cannot be judged by them.

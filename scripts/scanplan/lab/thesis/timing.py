@@ -44,7 +44,9 @@ def time_extractor(
     *,
     part: int = 1,
 ) -> Iterator[TimedRow]:
-    """Time an extractor, without the furniture classifier: of each scan the quickest of three calls.
+    """Time an extractor, without the furniture classifier.
+
+    Of each scan the quickest of three calls.
 
     Parameters
     ----------
