@@ -11,6 +11,7 @@ _WIDTH, _HEIGHT = 640, 300  # SVG units: fills the page's text column at about o
 _LEFT, _RIGHT, _TOP, _BOTTOM = 46, 12, 12, 38  # margins: room for "100%" and for two lines of text
 _LOGARITHMIC_FROM = 60  # scans: from here on the first few would crowd on a linear axis
 _MOST_TICKS = 8  # as many numbers as fit side by side on a linear axis
+# round numbers, up to more scans than a drive of some hours has
 _TICKS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10_000, 20_000, 50_000)
 
 

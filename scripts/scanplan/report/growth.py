@@ -5,7 +5,7 @@ import numpy as np
 from scanplan.plan import floorplan
 from scanplan.types import Array, Columns, FloatArray, IntArray
 
-NEVER = -1
+NEVER = -1  # no rank: they begin at 1
 _CELL_M = 0.05  # a face is cut at multiples of this: finer than ends of segments are known
 _ENDS = ("x0_m", "y0_m", "x1_m", "y1_m")
 

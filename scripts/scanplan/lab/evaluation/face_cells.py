@@ -1,4 +1,4 @@
-"""True wall faces cut into short cells: what is seen or found of a face is told cell by cell."""
+"""True wall faces cut into short cells: what is seen or found of a face is so by cells."""
 
 from dataclasses import dataclass
 

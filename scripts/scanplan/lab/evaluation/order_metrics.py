@@ -22,6 +22,7 @@ from scanplan.types import Columns, IntArray
 ORACLE = "oracle"
 COMPARED_SIZES = (5, 10, 20, 40, 80)
 """Numbers of scans at which orderings are compared."""
+# denser the smaller: what one more scan adds falls with their number
 _FIRST_SIZES = (1, 2, 3, 4, 5, 8, 10, 15, 20, 30, 40, 60, 80)
 _FOUND = f"visible_completeness_{JUDGED}"
 
