@@ -156,9 +156,9 @@ def _with_normal_on_left(
 
 
 def least_scatter_normal(
-    xx: FloatArray,
-    xy: FloatArray,
-    yy: FloatArray,
+    xx: FloatArray | float,
+    xy: FloatArray | float,
+    yy: FloatArray | float,
     *,
     arctan2: Callable[[Any, Any], Any] = np.arctan2,
 ) -> FloatArray:

@@ -228,7 +228,7 @@ def _fit_sides(
 
     A face counts as a uniform row of points, by its length.
     """
-    scatter: FloatArray = np.zeros(3)
+    scatter = np.zeros(3)
     centres = []
     for side in sides:
         if not side:
