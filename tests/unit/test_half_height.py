@@ -1,5 +1,6 @@
 """Where a wall ends below the ceiling: points at it below, rays through its line above."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,7 +10,9 @@ from hypothesis import strategies as st
 
 from helpers.observation_making import observation
 from scanplan.geometry.lines import Line
-from scanplan.plan import half_height, planning
+from scanplan.plan import half_height
+from scanplan.plan.faces.intervals import FaceInterval
+from scanplan.plan.wall_pairs import PlanWall
 
 LINE = Line(np.zeros(2), np.array([0.0, 1.0]))
 RNG = np.random.default_rng(3)
@@ -27,10 +30,7 @@ def wall(hits, passes, openings=(), planar=False):
     low_m, high_m = sorted((0.0, 4.0 * sign))
     spans_m = [sorted((sign * a, sign * b)) for a, b in openings]
     gaps = [SimpleNamespace(low_m=a, high_m=b, width_m=b - a) for a, b in spans_m]
-    members = [SimpleNamespace(seen=seen, line=LINE)]
-    return SimpleNamespace(
-        line=LINE, low_m=low_m, high_m=high_m, length_m=4.0, members=members, openings=gaps
-    )
+    return PlanWall(LINE, low_m, high_m, np.nan, [FaceInterval(seen, low_m, high_m)], [], gaps)
 
 
 def test_a_partition_ends_between_its_points_and_the_rays_over_it():
@@ -95,22 +95,22 @@ def test_the_parting_height_is_the_best_of_all(hit_z_m, pass_z_m):
     def wrong(top_m):
         return np.count_nonzero(hit_z_m > top_m) + np.count_nonzero(pass_z_m < top_m)
 
-    low_m, high_m = half_height._parted(hit_z_m, pass_z_m)
+    low_m, high_m = half_height._part(hit_z_m, pass_z_m)
     assert low_m in hit_z_m and low_m <= high_m
     assert wrong(low_m) == min(wrong(top_m) for top_m in hit_z_m)
 
 
-def test_surfaces_that_end_lower_than_a_wall_are_left_out():
-    desk, partition = (
-        wall(rows(2000, 0.1, z_m), rows(100, z_m + 0.02, z_m + 0.3)) for z_m in (0.74, 1.6)
-    )
-    desk.right, partition.right = [], []
+def test_single_surfaces_that_end_lower_than_a_wall_are_left_out():
+    desk = wall(rows(2000, 0.1, 0.74), rows(100, 0.76, 1.04))
+    partition = wall(rows(2000, 0.1, 1.6), rows(100, 1.62, 1.9))
     counter = wall(rows(2000, 0.1, 0.9), rows(100, 0.92, 1.2))
-    counter.right = counter.members
-    kept, tops_m = planning._without_low([desk, partition, counter], 1.0)
-    assert kept == [partition, counter]
+    counter = replace(counter, right=counter.left)
+    walls, tops_m = half_height.drop_low_surfaces([desk, partition, counter], 1.0)
+    assert walls == [partition, counter]
     assert tops_m == pytest.approx([1.61, 0.91], abs=0.02)
+
+
+def test_a_plane_shows_no_height():
     desk = wall(rows(2000, 0.1, 0.74), rows(100, 0.76, 1.04), planar=True)
-    desk.right = []
-    kept, tops_m = planning._without_low([desk], 1.0)
-    assert kept == [desk] and np.isnan(tops_m).all()
+    walls, tops_m = half_height.drop_low_surfaces([desk], 1.0)
+    assert walls == [desk] and np.isnan(tops_m).all()

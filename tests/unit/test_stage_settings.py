@@ -14,10 +14,11 @@ from interpolate_poses import interpolate_poses
 from measure_crispness import measure_crispness
 from order_scans import order_scans
 from scanplan.extraction.extractors import EXTRACTORS
+from scanplan.extraction.furniture import FurnitureLimits
 from scanplan.plan import planning
 from scanplan.project import stage_settings
 from scanplan.project.settings_schema import iterate_keys, list_choices
-from scanplan.registration import mapping
+from scanplan.registration.registration_settings import registration_settings
 from scanplan.selection import methods, wall_cells
 from simulate_survey import simulate_survey
 
@@ -48,7 +49,7 @@ def received(settings):
         "visibility": select.select_visibility(settings),
         "cells": select.select_wall_cells(settings, methods.WALL_LIMITS),
         "orders": {
-            method: select.select_order(settings, methods.SETTINGS[method])
+            method: select.select_order(settings, methods.METHODS[method].settings)
             for method in methods.METHODS
         },
         "walls": select.select_extractors(settings, names),
@@ -91,11 +92,14 @@ def test_nothing_given_is_changed():
 
 def test_the_settings_classes_take_what_is_selected():
     for name, extractor in EXTRACTORS.items():
-        extractor.settings(**stage_settings.select_extractor(SETTINGS, name))
+        selected = stage_settings.select_extractor(SETTINGS, name)
+        limits = {field.name for field in fields(FurnitureLimits)}
+        own = {field.name for field in fields(extractor.settings)}
+        assert set(selected) == limits | own
     cells = stage_settings.select_wall_cells(SETTINGS, methods.WALL_LIMITS)
     wall_cells.WallCellSettings(**cells)
     planning.make_plan_settings(**stage_settings.select_plan(SETTINGS))
-    mapping.registration_settings(stage_settings.select_section(SETTINGS, "registration"))
+    registration_settings(stage_settings.select_section(SETTINGS, "registration"))
 
 
 def keywords(stage):
@@ -119,7 +123,7 @@ def test_the_stages_take_what_is_selected(stage, selected, others):
 
 @pytest.mark.parametrize("method", methods.METHODS)
 def test_an_ordering_takes_what_is_selected(method):
-    selected = stage_settings.select_order(SETTINGS, methods.SETTINGS[method])
+    selected = stage_settings.select_order(SETTINGS, methods.METHODS[method].settings)
     assert set(selected) <= keywords(order_scans)
 
 
@@ -171,7 +175,7 @@ def test_a_section_comes_with_its_tuned_keys():
     registration = stage_settings.select_section(SETTINGS, "registration")
     assert registration["icp_method"] == "gicp" and registration["voxel_m"] == 0.25
     assert registration["graph"]["optimise"] and registration["graph"]["loop_radius_m"] == 5.0
-    names = {field.name for field in fields(mapping.registration_settings(registration).limits)}
+    names = {field.name for field in fields(registration_settings(registration).limits)}
     assert "min_points" in names
 
 

@@ -47,6 +47,19 @@ def estimate_wall_top_m(wall: PlanWall) -> float:
     return float((low_m + high_m) / 2) if is_top and shown_m >= _LEAST_SHARE * solid_m else np.nan
 
 
+def drop_low_surfaces(
+    walls: list[PlanWall], wall_height_m: float
+) -> tuple[list[PlanWall], list[float]]:
+    """Return walls and the heights of their tops, without single surfaces lower than a wall."""
+    tops_m = [estimate_wall_top_m(wall) for wall in walls]
+    rows = [
+        (wall, top_m)
+        for wall, top_m in zip(walls, tops_m, strict=True)
+        if wall.right or not top_m < wall_height_m
+    ]
+    return [wall for wall, _ in rows], [top_m for _, top_m in rows]
+
+
 def _inner(wall: PlanWall, seen: FaceObservation) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return heights of returns and of rays through a face away from its ends, and their places."""
     free_m = wall.line.along_m(seen.line.at(seen.free_m))

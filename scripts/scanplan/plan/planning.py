@@ -205,10 +205,7 @@ def make_plan(
 def _make_walls(
     traced: TracedFaces, rays: RaySet, settings: PlanSettings
 ) -> tuple[list[PlanWall], list[float]]:
-    """Return the walls of faces with their openings, and the heights of their tops.
-
-    A single surface that ends lower than a wall is none.
-    """
+    """Return the walls of faces with their openings, and the heights of their tops."""
     walls = assemble_walls(
         traced.stretches,
         settings.reading,
@@ -217,13 +214,7 @@ def _make_walls(
         corner_m=settings.merge.corner_m,
     )
     walls = windows.add_windows(walls, rays, settings.openings)
-    tops_m = [half_height.estimate_wall_top_m(wall) for wall in walls]
-    rows = [
-        (wall, top_m)
-        for wall, top_m in zip(walls, tops_m, strict=True)
-        if wall.right or not top_m < settings.furniture.wall_height_m
-    ]
-    return [wall for wall, _ in rows], [top_m for _, top_m in rows]
+    return half_height.drop_low_surfaces(walls, settings.furniture.wall_height_m)
 
 
 def _usual_thickness_m(walls: list[PlanWall]) -> float:
