@@ -19,11 +19,7 @@ import yaml
 
 BUILDINGS: dict[str, dict[str, Any]] = {
     "demo": {"building": "demo_office"},
-    "ring": {
-        "building": "ring_office",
-        "site": {"route": "rooms", "start_m": "random"},
-        "sensor": {"rate_hz": 5.0},
-    },
+    "ring": {"building": "ring_office", "site": {"route": "rooms", "start_m": "random"}},
     "duplex": {"building": "duplex.ifc", "site": {"route": "rooms", "storey": "Level 1"}},
     "fzk": {"building": "AC20-FZK-Haus.ifc", "site": {"route": "rooms", "storey": "Erdgeschoss"}},
 }
