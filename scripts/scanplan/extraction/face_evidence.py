@@ -9,7 +9,7 @@ import numpy as np
 
 from scanplan.geometry.lines import Line
 from scanplan.rays.expected_returns import count_sent_rays
-from scanplan.rays.face_raster import SCAN_COLUMN_M, rasterise_rays
+from scanplan.rays.face_raster import BELOW_CEILING_M, SCAN_COLUMN_M, rasterise_rays
 from scanplan.rays.face_rays import ON_M, SKIRTING_M, cast_at_face
 from scanplan.rays.ray_set import RaySet
 
@@ -64,6 +64,7 @@ def weigh_face(
         (np.empty(0), np.empty(0)),
         span_m=span_m,
         column_m=SCAN_COLUMN_M,
+        high_m=BELOW_CEILING_M,
     )
     top_m = raster.seen_top_m()
     n_through = (is_beyond & is_raised & (face.height_m < top_m)).sum()

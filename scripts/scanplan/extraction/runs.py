@@ -6,7 +6,7 @@ import numpy as np
 
 from scanplan.extraction.segment_limits import SegmentLimits
 from scanplan.geometry.lines import Line
-from scanplan.rays.face_raster import SCAN_COLUMN_M, FaceRaster, rasterise_rays
+from scanplan.rays.face_raster import BELOW_CEILING_M, SCAN_COLUMN_M, FaceRaster, rasterise_rays
 from scanplan.rays.face_rays import ON_M, SKIRTING_M, cast_at_face
 from scanplan.rays.ray_set import RaySet
 from scanplan.types import BoolArray, FloatArray
@@ -152,5 +152,6 @@ def _rasterise_scan(
         (face.along_m[occluded], face.height_m[occluded]),
         span_m=span_m,
         column_m=SCAN_COLUMN_M,
+        high_m=max(BELOW_CEILING_M, door_height_m),
         free_until_m=face.along_m[free] + slope * ON_M,
     )

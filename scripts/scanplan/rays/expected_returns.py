@@ -138,35 +138,60 @@ def count_sent_rays(
     SentRays
         Of the scans on the side of the line's normal and near enough.
     """
-    side_m, there_m = face.side_m, face.line.along_m(rays.sensors_m[:, :2])
-    beyond_m = np.maximum(np.maximum(low_m - there_m, there_m - (low_m + column_m * count)), 0)
-    most_m = np.tan(GRAZING_RAD) * side_m
-    near = (np.hypot(side_m, beyond_m) <= NEAR_M) & (beyond_m <= most_m)
-    scans = np.flatnonzero((side_m >= face.least_side_m) & near)
-    # scans in rows, columns of the surface in columns
-    away_m = low_m + column_m * (np.arange(count) + 0.5) - there_m[scans, None]
-    far_m = np.hypot(away_m, side_m[scans, None])
-    looks = np.abs(away_m) < most_m[scans, None]
-    up_m = np.array(heights_m) + rays.floor_z_m - rays.sensors_m[scans, 2, None]
-    low, high = (_below(rays.usual[scans], np.arctan2(up_m[:, i, None], far_m)) for i in (0, 1))
-    width_deg = np.rad2deg(column_m * side_m[scans, None] / far_m**2)
-    expected = (high - low) * width_deg * looks
-    row = np.full(len(side_m), -1)
+    sensor_m = face.line.along_m(rays.sensors_m[:, :2])
+    high_m = low_m + column_m * count
+    beyond_m = np.maximum(np.maximum(low_m - sensor_m, sensor_m - high_m), 0)
+    grazing_m = np.tan(GRAZING_RAD) * face.side_m  # along the line, from where the sensor stands
+    is_near = (np.hypot(face.side_m, beyond_m) <= NEAR_M) & (beyond_m <= grazing_m)
+    scans = np.flatnonzero((face.side_m >= face.least_side_m) & is_near)
+    middle_m = low_m + column_m * (np.arange(count) + 0.5)
+    away_m = middle_m - sensor_m[scans, None]
+    expected = _expect_returns(rays, scans, face.side_m[scans, None], away_m, column_m, heights_m)
+    expected *= np.abs(away_m) < grazing_m[scans, None]
+    row = np.full(len(sensor_m), -1)
     row[scans] = np.arange(len(scans))
-    inside = (face.height_m >= heights_m[0]) & (face.height_m < heights_m[1])
-    inside &= (row >= 0).take(face.scan)
-    chosen = np.flatnonzero(inside)
-    scan, along_m = face.scan.take(chosen), face.along_m.take(chosen)
-    behind_m = face.behind_m.take(chosen)
-    column = np.floor((along_m - low_m) / column_m).astype(np.int64)
-    counts = (np.abs(along_m - there_m[scan]) < most_m[scan]) & (column >= 0) & (column < count)
-    cell = row[scan] * count + column
-    returned = counts & (behind_m >= -_BEFORE_M)
-    kinds = (counts & (behind_m < -_BEFORE_M), returned, returned & (behind_m <= _DEEP_M))
+    is_inside = (face.height_m >= heights_m[0]) & (face.height_m < heights_m[1])
+    is_inside &= (row >= 0).take(face.scan) & (face.along_m >= low_m) & (face.along_m < high_m)
+    is_inside &= np.abs(face.along_m - sensor_m.take(face.scan)) < grazing_m.take(face.scan)
+    rows = np.flatnonzero(is_inside)
+    behind_m = face.behind_m.take(rows)
+    column = ((face.along_m.take(rows) - low_m) / column_m).astype(np.int64)
+    cell = row.take(face.scan.take(rows)) * count + np.minimum(column, count - 1)
+    is_returned = behind_m >= -_BEFORE_M
+    kinds = (~is_returned, is_returned, is_returned & (behind_m <= _DEEP_M))
     occluded, returned, in_wall = (
         np.bincount(cell[kind], minlength=expected.size).reshape(expected.shape) for kind in kinds
     )
     return SentRays(expected, occluded, returned, in_wall)
+
+
+def _expect_returns(
+    rays: "RaySet",
+    scans: IntArray,
+    side_m: FloatArray,
+    away_m: FloatArray,
+    column_m: float,
+    heights_m: tuple[float, float],
+) -> FloatArray:
+    """Return how many returns scans (s,) usually have in the direction of columns (s, n).
+
+    Parameters
+    ----------
+    side_m : (s, 1) float64
+        How far the sensors lie from the line.
+    away_m : (s, n) float64
+        How far the columns lie from there, along the line.
+    """
+    distance_m = np.hypot(away_m, side_m)
+    usual = rays.usual[scans]
+    low, high = (
+        _below(
+            usual,
+            np.arctan2(height_m + rays.floor_z_m - rays.sensors_m[scans, 2, None], distance_m),
+        )
+        for height_m in heights_m
+    )
+    return (high - low) * np.rad2deg(column_m * side_m / distance_m**2)
 
 
 def _below(usual: FloatArray, elevation_rad: FloatArray) -> FloatArray:

@@ -12,19 +12,12 @@ import numpy as np
 
 from scanplan.types import BoolArray, FloatArray, IntArray
 
-CELL_M = 0.05
-"""Edge of a cell of all scans together.
-
-A few times the noise of a range, a third of the least wall end.
-"""
-SCAN_COLUMN_M = 0.1
-"""Width of a column of a single scan.
-
-Wider than what is between its rays at the usual distances.
-"""
+CELL_M = 0.05  # edge of a cell of all scans together: a few times the noise of a range
+SCAN_COLUMN_M = 0.1  # column of a single scan: wider than what is between its rays
+STOREY_M = 8.0  # height of a raster: no room is as high
+BELOW_CEILING_M = 2.5  # its height where only furniture and ways through are asked for
 
 _ROW_M = 0.05  # height of a row
-_MOST_ROWS = 160  # up to 8 m: a storey
 _MOST_COLUMNS = 10_000  # farther than 500 m is no building
 _CLEAR_M = 0.03  # above a surface's edge: the noise of a height
 _LEAST_STRETCH_M = 0.3  # of a surface's length: less may be a return of something else
@@ -35,35 +28,75 @@ _FEW_RAYS = 3  # one or two may be stray, of any number of scans
 _OVER_SHARE = 0.15  # of what ends at a column: fewer over it are noise of heights and poses
 
 
+Places = tuple[FloatArray, FloatArray]
+"""Where rays are at a surface, (n,) float64 each: along its line, and above the floor."""
+
+
 @dataclass(frozen=True, eq=False)
 class FaceRaster:
-    """What rays say of a surface, in cells; columns first.
+    """What rays say of a surface, in cells; columns first. Each count is made once it is asked for.
 
     Attributes
     ----------
     first_m, column_m : float
         Where the first column begins along the line, and how wide each is.
-    occupied, free, occluded : (c, r) int64
-        Rays that ended in a cell, went through it, and ended before it.
-    top_m, free_top_m : (c,) float64
-        Height of the highest return at the surface, and of the highest ray through; minus infinity
-        without any.
-    planar : bool
-        Whether all rays lie in one level plane: then there is one row.
+    n_columns, n_rows : int
+    occupied_places, free_places, occluded_places : Places
+        Where rays end at the surface, go through it, and would have met it.
+    free_until_m : (n,) float64, optional
+        Until where along the line columns are free, too, by each ray through.
     """
 
     first_m: float
     column_m: float
-    occupied: IntArray
-    free: IntArray
-    occluded: IntArray
-    top_m: FloatArray
-    free_top_m: FloatArray
-    planar: bool
+    n_columns: int
+    n_rows: int
+    occupied_places: Places
+    free_places: Places
+    occluded_places: Places
+    free_until_m: FloatArray | None = None
 
     def __len__(self) -> int:
         """Return the number of columns."""
-        return len(self.top_m)
+        return self.n_columns
+
+    @property
+    def planar(self) -> bool:
+        """Whether all rays lie in one level plane: then there is one row."""
+        return self.n_rows == 1
+
+    @cached_property
+    def occupied(self) -> IntArray:
+        """Rays that ended in each cell, (c, r)."""
+        return self._count(self.occupied_places)
+
+    @cached_property
+    def free(self) -> IntArray:
+        """Rays that went through each cell, (c, r)."""
+        if self.free_until_m is None:
+            return self._count(self.free_places)
+        along_m, height_m = self.free_places
+        begin, end = np.sort([self._clip(along_m), self._clip(self.free_until_m)], axis=0)
+        row = self._row_of(height_m)
+        size = (self.n_columns + 1) * self.n_rows
+        entering = np.bincount(begin * self.n_rows + row, minlength=size)
+        leaving = np.bincount((end + 1) * self.n_rows + row, minlength=size)
+        return np.cumsum((entering - leaving).reshape(-1, self.n_rows), axis=0)[:-1]
+
+    @cached_property
+    def occluded(self) -> IntArray:
+        """Rays that ended before each cell, (c, r)."""
+        return self._count(self.occluded_places)
+
+    @cached_property
+    def top_m(self) -> FloatArray:
+        """Height of the highest return of each column, (c,); minus infinity without any."""
+        return self._highest(self.occupied_places)
+
+    @cached_property
+    def free_top_m(self) -> FloatArray:
+        """Height of the highest ray through each column, (c,); minus infinity without any."""
+        return self._highest(self.free_places)
 
     @property
     def middle_m(self) -> FloatArray:
@@ -161,14 +194,34 @@ class FaceRaster:
         above = np.arange(self.free.shape[1]) > top_row[:, None]
         return np.where(above, self.free, 0).sum(axis=1)
 
+    def _clip(self, along_m: FloatArray) -> IntArray:
+        """Return the columns of places, the first or the last for those beyond."""
+        return np.clip(self.column_of(along_m), 0, self.n_columns - 1)
+
+    def _row_of(self, height_m: FloatArray) -> IntArray:
+        return np.clip(height_m / _ROW_M, 0, self.n_rows - 1).astype(np.int64)
+
+    def _count(self, places: Places) -> IntArray:
+        along_m, height_m = places
+        cell = self._clip(along_m) * self.n_rows + self._row_of(height_m)
+        counts = np.bincount(cell, minlength=self.n_columns * self.n_rows)
+        return counts.reshape(self.n_columns, self.n_rows)
+
+    def _highest(self, places: Places) -> FloatArray:
+        along_m, height_m = places
+        top_m = np.full(self.n_columns, -np.inf)
+        np.maximum.at(top_m, self._clip(along_m), height_m)
+        return top_m
+
 
 def rasterise_rays(
-    occupied_m: tuple[FloatArray, FloatArray],
-    free_m: tuple[FloatArray, FloatArray],
-    occluded_m: tuple[FloatArray, FloatArray],
+    occupied_m: Places,
+    free_m: Places,
+    occluded_m: Places,
     *,
     span_m: tuple[float, float],
     column_m: float = CELL_M,
+    high_m: float = STOREY_M,
     free_until_m: FloatArray | None = None,
     planar: bool = False,
 ) -> FaceRaster:
@@ -176,56 +229,29 @@ def rasterise_rays(
 
     Parameters
     ----------
-    occupied_m, free_m, occluded_m : ((n,) float64, (n,) float64)
-        Places along the line, and heights above the floor, where rays end at the surface, go
-        through it, and would have met it.
+    occupied_m, free_m, occluded_m : Places
+        Where rays end at the surface, go through it, and would have met it.
     span_m : (float, float)
         From where to where along the line; rays beyond count for the first and the last column.
     column_m : float
         Width of a column, more where there would be too many.
+    high_m : float
+        Above the floor: rays that are higher count for the last row.
     free_until_m : (n,) float64, optional
         Until where along the line each ray through is within the thinnest wall's thickness of the
         surface: columns up to there are free, too.
     planar : bool
         Whether heights mean nothing: then there is one row.
     """
-    low_m, high_m = span_m
-    column_m = max(column_m, (high_m - low_m) / _MOST_COLUMNS)
-    shape = (int((high_m - low_m) / column_m) + 1, 1 if planar else _MOST_ROWS)
-
-    def column_of(along_m: FloatArray) -> IntArray:
-        return np.clip((along_m - low_m) / column_m, 0, shape[0] - 1).astype(np.int64)
-
-    def row_of(height_m: FloatArray) -> IntArray:
-        return np.clip(height_m / _ROW_M, 0, shape[1] - 1).astype(np.int64)
-
-    def count(along_m: FloatArray, height_m: FloatArray) -> IntArray:
-        cell = column_of(along_m) * shape[1] + row_of(height_m)
-        return np.bincount(cell, minlength=shape[0] * shape[1]).reshape(shape)
-
-    def highest(along_m: FloatArray, height_m: FloatArray) -> FloatArray:
-        top_m = np.full(shape[0], -np.inf)
-        np.maximum.at(top_m, column_of(along_m), height_m)
-        return top_m
-
-    def count_along(along_m: FloatArray, until_m: FloatArray, height_m: FloatArray) -> IntArray:
-        begin, end = np.sort([column_of(along_m), column_of(until_m)], axis=0)
-        row, size = row_of(height_m), (shape[0] + 1) * shape[1]
-        entering = np.bincount(begin * shape[1] + row, minlength=size)
-        leaving = np.bincount((end + 1) * shape[1] + row, minlength=size)
-        return np.cumsum((entering - leaving).reshape(-1, shape[1]), axis=0)[:-1]
-
-    if free_until_m is None:
-        free = count(*free_m)
-    else:
-        free = count_along(free_m[0], free_until_m, free_m[1])
+    low_m, end_m = span_m
+    column_m = max(column_m, (end_m - low_m) / _MOST_COLUMNS)
     return FaceRaster(
         first_m=low_m,
         column_m=column_m,
-        occupied=count(*occupied_m),
-        free=free,
-        occluded=count(*occluded_m),
-        top_m=highest(*occupied_m),
-        free_top_m=highest(*free_m),
-        planar=planar,
+        n_columns=int((end_m - low_m) / column_m) + 1,
+        n_rows=1 if planar else round(high_m / _ROW_M),
+        occupied_places=occupied_m,
+        free_places=free_m,
+        occluded_places=occluded_m,
+        free_until_m=free_until_m,
     )

@@ -5,6 +5,7 @@ sensor but its place: a direction without any return is known by how many the ot
 elevation have (`expected_returns`).
 """
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -100,6 +101,8 @@ class RaySet:
             Rows that a scan's two spans begin at and end before: what lies beyond pi goes on from
             -pi.
         """
+        if len(scans) == 1:
+            return self._rows_of_one(ends[:, 0], int(scans[0]))
         way = ends - self.sensors_m[scans, :2]
         first, last = np.arctan2(way[..., 1], way[..., 0])
         turn = (last - first + np.pi) % (2 * np.pi) - np.pi
@@ -108,6 +111,19 @@ class RaySet:
         low = np.stack([begin, np.full(len(scans), -np.pi)]) + _TURN * scans
         high = np.stack([np.minimum(stop, np.pi), stop - 2 * np.pi]) + _TURN * scans
         return np.searchsorted(self._key, low), np.searchsorted(self._key, high, side="right")
+
+    def _rows_of_one(self, ends: FloatArray, scan: int) -> tuple[IntArray, IntArray]:
+        """Return `rows_between` of one scan: numbers take a third of the time of arrays of one."""
+        x_m, y_m = self.sensors_m[scan, :2].tolist()
+        (x0_m, y0_m), (x1_m, y1_m) = ends.tolist()
+        first = math.atan2(y0_m - y_m, x0_m - x_m)
+        last = math.atan2(y1_m - y_m, x1_m - x_m)
+        turn = (last - first + math.pi) % (2 * math.pi) - math.pi
+        begin = first if turn > 0 else last
+        stop = begin + abs(turn)
+        low = np.array([[begin], [-math.pi]]) + _TURN * scan
+        high = np.array([[min(stop, math.pi)], [stop - 2 * math.pi]]) + _TURN * scan
+        return self._key.searchsorted(low), self._key.searchsorted(high, side="right")
 
     def gather_rows(
         self, low: IntArray, high: IntArray, scans: IntArray
@@ -122,6 +138,8 @@ class RaySet:
         # spans that follow each other are copied as one
         begins = np.flatnonzero(np.concatenate([[True], low[1:] != high[:-1]])[: len(low)])
         stops = np.concatenate([begins[1:] - 1, [len(low) - 1]])[: len(begins)]
+        if len(begins) == 1:
+            return self.xyz_m[low[0] : high[-1]], np.repeat(scan, high - low)
         runs = zip(low[begins].tolist(), high[stops].tolist(), strict=True)
         points = [self.xyz_m[begin:stop] for begin, stop in runs]
         return np.concatenate([np.empty((0, 3)), *points]), np.repeat(scan, high - low)
