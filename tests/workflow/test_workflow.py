@@ -112,7 +112,7 @@ def test_a_setting_of_one_order_reruns_no_other(project, change, methods):
         ("exports/dxf", {"export_plan"}),
         ("lab/evaluation/length_metrics", EVALUATED | {"evaluate_plan"}),
         ("lab/evaluation/pose_errors", {"evaluate_poses", "evaluate_plan"} | EVALUATED),
-        ("plan/segment_merging", PLANNED),
+        ("plan/faces/merging", PLANNED),
         ("report/plan_svg", set()),
     ],
 )
