@@ -90,7 +90,7 @@ def test_every_recording_ends_with_a_plan(project_root, recordings_dir, tmp_path
 
 
 def test_a_long_survey_ends_with_a_plan(project_root, recordings_dir, tmp_path):
-    """What only compares orderings is made of the other recordings: of this one it takes minutes."""
+    """What only compares orderings is made of the other recordings: here it takes minutes."""
     project = Project(project_root, tmp_path)
     wanted = [f"results/intel/plan/plan.{suffix}" for suffix in ("geojson", "ifc", "svg")]
     result = project.run(*wanted, "--config", f"dataset={recordings_dir / 'intel'}")
