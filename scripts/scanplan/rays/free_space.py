@@ -25,7 +25,7 @@ def free_polygons(rays: RaySet) -> list[MultiPolygon]:
     """Return what each scan's rays went over, as polygons.
 
     In every half degree (more where a sensor's rays are further apart) a ray of the longest tenth
-    tells how far one can see; where no ray came back from, nothing is known. The outline is true
+    shows how far one can see; where no ray came back from, nothing is known. The outline is true
     within 2 cm; spikes thinner than 8 cm are taken off.
 
     Parameters

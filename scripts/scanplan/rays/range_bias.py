@@ -1,8 +1,8 @@
-"""What a sensor's ranges are wrong by, beam by beam, told by how bent flat walls look.
+"""Calibration of a sensor's range bias, beam by beam, by how bent flat walls look.
 
 A range that is too long by b puts a point of a wall behind it by b times the cosine of the angle of
 incidence: most where the ray meets the wall squarely, less to the sides. So a flat wall looks bent,
-and by how much tells b, wherever the scan was taken to be. Both sides of a wall err towards each
+and by how much shows b, wherever the scan was taken to be. Both sides of a wall err towards each
 other: walls come out thinner by 2 b.
 
 Source: self-calibration of lidars on planes, as of Glennie and Lichti (2010), Static calibration
@@ -53,7 +53,7 @@ class _Hits:
     cosine : (n,) float64
         Of the angle of incidence.
     along_m : (n,) float64
-        Where the ray meets the wall: told by its direction alone, as a point's own place depends on
+        Where the ray meets the wall: by its direction alone, as a point's own place depends on
         its range.
     offset_m : (n,) float64
         Of the point before the wall.
