@@ -1,8 +1,8 @@
 """A surface as a raster of cells, each with its counts of occupied, free and occluded rays.
 
-Columns run along the surface's line, rows up from the floor. What a wall, a way through it, a sill,
-the top of a partition or a railing is are questions to these counts: asked here, once, for one scan
-or many.
+Columns run along the surface's line, rows up from the floor. Which of them are wall, open, crossed
+or overlooked, and how high a surface is seen, are questions to these counts: asked here, for one
+scan or many.
 """
 
 from dataclasses import dataclass
