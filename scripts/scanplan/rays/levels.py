@@ -13,9 +13,10 @@ _PROMINENT = 1.5  # times what walls alone leave in layers that hold no level
 
 
 def find_floor_z(z_m: FloatArray) -> float:
-    """Return the height of the floor, or of the lowest points where no floor was seen.
+    """Return the height of the floor, of one scan or many: the median of the lowest points' layer.
 
-    The one estimate of it.
+    Of one scan the fullest layer near the lowest points may be that of the beams that look level,
+    at the height of the sensor: only the lowest one is asked for.
 
     Parameters
     ----------
@@ -29,8 +30,8 @@ def find_floor_z(z_m: FloatArray) -> float:
     """
     if len(z_m) == 0:
         return np.nan
-    level_m = _lowest_level(z_m)
-    return float(np.percentile(z_m, _LOWEST_PERCENTILE)) if np.isnan(level_m) else level_m
+    lowest_m = np.percentile(z_m, _LOWEST_PERCENTILE)
+    return float(np.median(z_m[np.abs(z_m - lowest_m) <= _LAYER_M]))
 
 
 def find_floor_and_ceiling(z_m: FloatArray) -> tuple[float, float]:
