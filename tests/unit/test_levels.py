@@ -75,6 +75,10 @@ class TestFloor:
         assert levels.find_floor_z(walls_m) == pytest.approx(0.335, abs=0.001)
         assert levels.find_floor_z(np.array([1.0, 2.0])) == 1.0
 
+    @given(st.lists(st.floats(-50, 50), min_size=1, max_size=30))
+    def test_it_is_within_the_points_however_few(self, z_m):
+        assert min(z_m) <= levels.find_floor_z(np.array(z_m)) <= max(z_m)
+
     def test_without_any_point_there_is_none(self):
         assert np.isnan(levels.find_floor_z(np.empty(0)))
 

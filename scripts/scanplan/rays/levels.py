@@ -30,7 +30,7 @@ def find_floor_z(z_m: FloatArray) -> float:
     """
     if len(z_m) == 0:
         return np.nan
-    lowest_m = np.percentile(z_m, _LOWEST_PERCENTILE)
+    lowest_m = np.percentile(z_m, _LOWEST_PERCENTILE, method="lower")  # one of the points
     return float(np.median(z_m[np.abs(z_m - lowest_m) <= _LAYER_M]))
 
 
