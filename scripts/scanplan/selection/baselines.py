@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from scanplan.errors import StageError
 from scanplan.selection.survey_scans import SurveyScans
+from scanplan.store import registered_scans
 from scanplan.types import FloatArray, IntArray
 
 
@@ -77,15 +77,8 @@ def order_farthest_first(xy_m: FloatArray) -> IntArray:
 
 def _positions(scans: SurveyScans) -> FloatArray:
     """Return where (n, 2) the sensor was at scans."""
-    registered = scans.tables["registration"]
-    row = {int(scan_id): i for i, scan_id in enumerate(registered["scan_id"])}
-    scan_ids = scans.scan_ids.tolist()
-    rows = [row[scan_id] for scan_id in scan_ids if scan_id in row]
-    xy_m = np.column_stack([registered["x_m"], registered["y_m"]])[rows]
-    n_unknown = len(scan_ids) - len(rows)
-    if n_unknown or not np.isfinite(xy_m).all():
-        raise StageError(
-            f"registration: no position of {n_unknown or 'some'} of the {len(scans)} scans that"
-            " have hulls; delete the results of this dataset and run again"
-        )
-    return xy_m
+    registered = registered_scans.select_kept_scans(scans.tables["registration"], "registration")
+    positions_m = registered_scans.sensor_positions(
+        scans.scan_ids, registered, "hulls", "registration"
+    )
+    return positions_m[:, :2]
