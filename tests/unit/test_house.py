@@ -20,7 +20,12 @@ DRAWN = (ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8")
 HABITS = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 
 HOMES = {
-    "rosbags": ("recordings/bags.py", "recordings/typestores.py", "lab/simulation/"),
+    "rosbags": (
+        "recordings/bags.py",
+        "recordings/rosbag1_messages.py",
+        "recordings/typestores.py",
+        "lab/simulation/",
+    ),
     "pyarrow": ("store/tables.py", "store/parquet.py"),
     "open3d": (
         "extraction/iterative_ransac.py",

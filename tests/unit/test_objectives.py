@@ -6,8 +6,9 @@ from hypothesis import strategies as st
 from shapely import box
 
 from reference import greedy_coverage as literal
-from scanplan.selection import area_greedy, bounds
-from scanplan.selection.objectives import TIE, CellCoverage, PolygonArea
+from scanplan.geometry.tolerances import ROUNDING, SMALLEST_M2
+from scanplan.selection import bounds
+from scanplan.selection.objectives import CellCoverage, PolygonArea
 
 # weights of eighths add up without rounding: ties are ties
 SCANS = st.lists(
@@ -37,7 +38,7 @@ def test_on_paper():
 @given(SCANS, st.sampled_from([0.0, 0.25, 0.5, 1.0]))
 def test_lazy_order_is_that_of_looking_at_every_scan(scans, min_overlap):
     order = coverage(scans).greedy(min_overlap)
-    assert order.order.tolist() == literal.order(scans, TIE, min_overlap)
+    assert order.order.tolist() == literal.order(scans, ROUNDING, min_overlap)
     for k in range(1, len(scans) + 1):
         assert order.covered[k - 1] == pytest.approx(literal.value(scans, order.order[:k].tolist()))
 
@@ -138,12 +139,10 @@ def look_at_all(polygons, min_overlap):
         shared = {
             i: g
             for i, g in gains.items()
-            if g > area_greedy.TIE_M2 and 1 - g / polygons[i].area >= min_overlap - 1e-9
+            if g > SMALLEST_M2 and 1 - g / polygons[i].area >= min_overlap - 1e-9
         }
         gains = shared if order and shared else gains
-        order.append(
-            min(i for i, g in gains.items() if g >= max(gains.values()) - area_greedy.TIE_M2)
-        )
+        order.append(min(i for i, g in gains.items() if g >= max(gains.values()) - SMALLEST_M2))
         union = union | polygons[order[-1]]
     return order, union.area
 

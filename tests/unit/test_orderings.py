@@ -114,14 +114,13 @@ def test_one_scan_and_no_area(method):
     assert [one[n].tolist() for n in one] == [[1], [5], [4], [4.0], [4.0], [4.0], own, own, own]
     nothing = order(method, columns({2: SCANS[21]}))
     assert nothing["covered_m2"].tolist() == nothing["bound_m2"].tolist() == [0.0]
-    assert "first 1 cover at least 100 %" in orderings.summarise_order(method, nothing)
+    assert "at least 100 % of what any 1 could cover" in orderings.summarise_order(method, nothing)
 
 
 def test_summary():
     found = orderings.order_scans("sequential", columns(), seed=0)
     assert orderings.summarise_order("sequential", found) == (
-        "sequential, 4 scans, 7.0 m2; 99% at 3 scans;"
-        " first 4 cover at least 100 % of what any 4 could"
+        "sequential, 4 scans, 7.0 m2; 99% at 3 scans, at least 100 % of what any 3 could cover"
     )
     assert orderings.summarise_order("wall_length", order("wall_length", columns())).startswith(
         "wall_length, 4 scans, 14.0 m;"

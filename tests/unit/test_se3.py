@@ -73,14 +73,12 @@ def test_a_motion_and_its_inverse_cancel(xyz, turn):
     np.testing.assert_allclose(se3.transform_points(pose, [[0, 0, 0]]), [xyz], atol=1e-12)
 
 
-def test_between_is_a_share_of_way_and_turn():
-    start, end = (
-        se3.pose_matrix([x, 0, 0], Rotation.from_euler("z", a, degrees=True).as_quat())
-        for x, a in ((0, 10), (4, 50))
-    )
-    pose = se3.interpolate_pose(start, end, 0.25)
-    np.testing.assert_allclose(pose[:3, 3], [1, 0, 0])
-    np.testing.assert_allclose(np.degrees(se3.pose_yaw_rad(pose)), 20)
+@pytest.mark.parametrize("angle_deg", [0.0, 30.0, 170.0, 180.0])
+def test_the_turn_between_poses_is_the_angle_of_one_seen_from_the_other(angle_deg):
+    one = se3.pose_matrix([1, 2, 3], Rotation.from_euler("x", 40, degrees=True).as_quat())
+    turn = Rotation.from_euler("z", angle_deg, degrees=True).as_quat()
+    other = one @ se3.pose_matrix([7, 0, 0], turn)
+    assert np.degrees(se3.turn_between_rad(one, other)) == pytest.approx(angle_deg, abs=1e-5)
 
 
 def test_a_nearly_rigid_matrix_becomes_rigid():

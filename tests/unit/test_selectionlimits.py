@@ -9,6 +9,7 @@ from shapely import box
 
 from helpers.hull_making import best_by_trying_all, hull_sets, scattered
 from reference import hull_selection
+from scanplan.geometry.tolerances import SMALLEST_M2
 from scanplan.selection import area_greedy, bounds, objectives, orderings, stopping
 
 BOWTIE = shapely.Polygon([(0, 0), (2, 2), (2, 0), (0, 2)])
@@ -71,7 +72,7 @@ def test_one_at_a_time_and_within_a_budget(name):
     assert sorted(objective.greedy(0.5).order) == list(range(len(polygons)))
     cost = np.full(len(polygons), 10)
     assert objective.within(cost, 5) == []
-    adding = int((objective.greedy().gain > area_greedy.TIE_M2).sum())
+    adding = int((objective.greedy().gain > SMALLEST_M2).sum())
     assert objective.within(cost, 10 * len(polygons)) == objective.greedy().order[:adding].tolist()
 
 

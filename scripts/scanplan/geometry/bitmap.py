@@ -9,10 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from scanplan.errors import StageError
+from scanplan.geometry.tolerances import ROUNDING
 from scanplan.types import Array, BoolArray, FloatArray, IntArray
 
 _MOST_CELLS = 100_000_000  # 100 MB a bitmap
-_WHOLE = 1e-9  # cells: nearer than this to a grid line is on it
 
 
 @dataclass(frozen=True)
@@ -57,8 +57,8 @@ def fit_grid(lines_m: npt.ArrayLike, cell_m: float) -> Grid:
         raise ValueError(f"cell_m is {cell_m}, must be above 0")
     xy_m = np.asarray(lines_m, float).reshape(-1, 2)
     xy_m = xy_m if len(xy_m) else np.zeros((1, 2))
-    first = np.floor(xy_m.min(axis=0) / cell_m + _WHOLE)
-    last = np.maximum(np.ceil(xy_m.max(axis=0) / cell_m - _WHOLE), first + 1)
+    first = np.floor(xy_m.min(axis=0) / cell_m + ROUNDING)
+    last = np.maximum(np.ceil(xy_m.max(axis=0) / cell_m - ROUNDING), first + 1)
     columns, rows = (last - first).tolist()
     if rows * columns > _MOST_CELLS:
         raise StageError(
@@ -88,13 +88,13 @@ def trace_cells(lines_m: npt.ArrayLike, grid: Grid) -> tuple[IntArray, IntArray]
         to the cell with the larger coordinate, or the last one at the end of the grid.
     """
     ends = (np.asarray(lines_m, float).reshape(-1, 2, 2) - grid.low_m) / grid.cell_m
-    ends = np.where(np.abs(ends - np.round(ends)) < _WHOLE, np.round(ends), ends)
+    ends = np.where(np.abs(ends - np.round(ends)) < ROUNDING, np.round(ends), ends)
     line, share = _crossings(ends)
     same = line[1:] == line[:-1]
     line = line[:-1][same]
     middle = (share[1:] + share[:-1])[same] / 2
     place = ends[line, 0] + middle[:, None] * (ends[line, 1] - ends[line, 0])
-    place = np.where(np.abs(place - np.round(place)) < _WHOLE, np.round(place), place)
+    place = np.where(np.abs(place - np.round(place)) < ROUNDING, np.round(place), place)
     rows, columns = grid.shape
     inside = ((place >= 0) & (place <= (columns, rows))).all(axis=1)
     column, row = np.minimum(np.floor(place[inside]), (columns - 1, rows - 1)).astype(np.int64).T
@@ -161,7 +161,7 @@ def _crossings(ends: FloatArray) -> tuple[IntArray, FloatArray]:
     order = np.lexsort((share, line))
     line, share = line[order], share[order]
     apart = np.ones(len(line), bool)
-    apart[1:] = (np.diff(share) > _WHOLE) | (np.diff(line) > 0)
+    apart[1:] = (np.diff(share) > ROUNDING) | (np.diff(line) > 0)
     # a line of no length keeps both its ends
     point = (ends[line, 0] == ends[line, 1]).all(axis=1)
     return line[apart | point], share[apart | point]

@@ -12,9 +12,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from scanplan.geometry.tolerances import SHORTEST_M
 from scanplan.types import Columns, FloatArray, IntArray
-
-_SHORTEST_M = 1e-3  # a segment below the millimetre of its coordinates has no direction
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,7 +126,7 @@ def observed_segments(walls: Columns, *, registration_sigma_m: float) -> Observe
     numbers = np.column_stack([start, end, towards, column["n_points"], column["rmse_m"]])
     if not np.isfinite(numbers).all():
         raise ValueError("walls hold numbers that are not finite")
-    long_enough = np.hypot(*(end - start).T) >= _SHORTEST_M
+    long_enough = np.hypot(*(end - start).T) >= SHORTEST_M
     column = {name: values[long_enough] for name, values in column.items()}
     start, end = _with_normal_on_left(start[long_enough], end[long_enough], towards[long_enough])
     along = (end - start) / np.hypot(*(end - start).T)[:, None]

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from scanplan.geometry.lines import least_scatter_normal
+from scanplan.geometry.tolerances import ROUNDING
 from scanplan.types import FloatArray, IntArray
 
 FEWEST = {2: 4, 3: 6}
@@ -12,8 +13,6 @@ FEWEST = {2: 4, 3: 6}
 
 # smallest over middle variance above which a group is no surface; a 90 degree edge has 0.25
 _ROUGH = 0.2
-_THREAD = 1e-9  # middle over largest variance below which a group is a line, and has no normal
-_LEAST_SCALE = 1e-30  # keeps points at one place from a division by 0
 
 _Covariances = Mapping[tuple[int, int], FloatArray]
 _Spread = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
@@ -51,7 +50,8 @@ def least_variance_direction(sums: FloatArray) -> FloatArray:
     }
     least, middle, largest, axis = (_spread_2d if d == 2 else _spread_3d)(covariance)
     enough = sums[0] >= FEWEST[d]
-    clear = enough & (least < _ROUGH * middle) & (middle > _THREAD * largest)
+    # a group whose points are on a line has no normal
+    clear = enough & (least < _ROUGH * middle) & (middle > ROUNDING * largest)
     return np.where(clear, axis, np.nan)
 
 
@@ -73,7 +73,8 @@ def _spread_3d(c: _Covariances) -> _Spread:
     centre = (c[0, 0] + c[1, 1] + c[2, 2]) / 3
     xx, yy, zz = c[0, 0] - centre, c[1, 1] - centre, c[2, 2] - centre
     scale = np.sqrt((xx**2 + yy**2 + zz**2 + 2 * (xy**2 + xz**2 + yz**2)) / 6)
-    scale = np.maximum(scale, _LEAST_SCALE)
+    # points at one place have no scale
+    scale = np.maximum(scale, np.finfo(float).eps)
     determinant = xx * (yy * zz - yz**2) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)
     angle = np.arccos(np.clip(determinant / scale**3 / 2, -1, 1)) / 3
     largest, least = 2 * scale * np.cos(angle), 2 * scale * np.cos(angle + 2 * np.pi / 3)

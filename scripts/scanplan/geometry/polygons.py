@@ -1,7 +1,6 @@
 """Polygons made fit for overlays, and overlays that rounding cannot stop."""
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import Executor
 from typing import Any
 
 import numpy as np
@@ -9,14 +8,12 @@ import numpy.typing as npt
 import shapely
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry.tolerances import ROUNDING, SAME_M
 from scanplan.types import Array
 
 Polygons = Sequence[BaseGeometry] | Array
 
-_GRID_M = 1e-6  # coarse enough to make overlays consistent, far below any noise
-_DUST_M = 1e-15  # squares of smaller numbers underflow in products of overlays
-_WORTH_THREADS = 32  # overlays that take longer than to hand them to threads
-_POLYGON, _MULTIPOLYGON = 3, 6  # shapely's type numbers
+_POLYGONAL = (shapely.GeometryType.POLYGON, shapely.GeometryType.MULTIPOLYGON)
 
 
 def move_near_origin(polygons: Polygons) -> Array:
@@ -46,19 +43,13 @@ def move_near_origin(polygons: Polygons) -> Array:
     return _polygonal(shapely.transform(array, lambda xy: _without_dust(xy - centre)))
 
 
-def subtract_polygons(
-    polygons: Polygons, others: Polygons, threads: Executor | None = None
-) -> Array:
-    """Subtract (n,) others from (n,) polygons, each from its own, on threads if any are given.
+def subtract_polygons(polygons: Polygons, others: Polygons) -> Array:
+    """Subtract (n,) others from (n,) polygons, each from its own.
 
     Where rounding makes an overlay inconsistent it is done again with all corners on a grid of a
     micrometre.
     """
-    if threads is None or len(polygons) < _WORTH_THREADS:
-        return _each(shapely.difference, polygons, others)
-    n_shares = len(polygons) // (_WORTH_THREADS // 2)
-    shares = [np.array_split(np.asarray(side), n_shares) for side in (polygons, others)]
-    return np.concatenate(list(threads.map(_each, [shapely.difference] * n_shares, *shares)))
+    return _each(shapely.difference, polygons, others)
 
 
 def intersect_polygons(polygons: Polygons, others: Polygons) -> Array:
@@ -74,7 +65,7 @@ def unite_polygons(polygons: Polygons) -> BaseGeometry:
     try:
         return shapely.union_all(polygons)
     except shapely.GEOSException:
-        return shapely.union_all(shapely.make_valid(polygons), grid_size=_GRID_M)
+        return shapely.union_all(shapely.make_valid(polygons), grid_size=SAME_M)
 
 
 def _each(function: Callable[..., Any], polygons: Polygons, others: Polygons) -> Array:
@@ -91,18 +82,18 @@ def _one(
     try:
         return function(polygon, other)
     except shapely.GEOSException:
-        return function(shapely.make_valid(polygon), shapely.make_valid(other), grid_size=_GRID_M)
+        return function(shapely.make_valid(polygon), shapely.make_valid(other), grid_size=SAME_M)
 
 
 def _without_dust(xy_m: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     """Set numbers near 0 to 0: products of the smallest underflow, and overlays go wrong."""
-    return np.where(np.abs(xy_m) < _DUST_M, 0.0, xy_m)
+    return np.where(np.abs(xy_m) < ROUNDING, 0.0, xy_m)
 
 
 def _polygonal(geometries: Array) -> Array:
     """Reduce geometries (n,) to valid Polygons or MultiPolygons of the same area."""
     geometries = geometries.copy()
-    is_polygon = np.isin(shapely.get_type_id(geometries), (_POLYGON, _MULTIPOLYGON))
+    is_polygon = np.isin(shapely.get_type_id(geometries), _POLYGONAL)
     fit = is_polygon & shapely.is_valid(geometries)
     geometries[~fit] = [_areas_of(geometry) for geometry in geometries[~fit]]
     return geometries

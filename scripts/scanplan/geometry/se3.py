@@ -74,16 +74,11 @@ def nearest_rigid(pose: npt.ArrayLike) -> FloatArray:
     return cleaned
 
 
-def interpolate_pose(start: FloatArray, end: FloatArray, share: float) -> FloatArray:
-    """Return the pose a `share` (0 to 1) of the way between two 4 x 4 poses.
-
-    Linear in position, spherical in rotation.
-    """
-    turn = Rotation.from_matrix(start[:3, :3].T @ end[:3, :3]).as_rotvec()
-    pose = np.eye(4)
-    pose[:3, :3] = start[:3, :3] @ Rotation.from_rotvec(share * turn).as_matrix()
-    pose[:3, 3] = (1 - share) * start[:3, 3] + share * end[:3, 3]
-    return pose
+def turn_between_rad(one: FloatArray, other: FloatArray) -> float:
+    """Return by what angle two 4 x 4 poses are turned from one another, 0 to pi."""
+    # |R - S| in the Frobenius norm is sqrt(8) sin(angle / 2)
+    half_sine = np.linalg.norm(one[:3, :3] - other[:3, :3]) / np.sqrt(8)
+    return 2 * float(np.arcsin(min(half_sine, 1.0)))
 
 
 def pose_yaw_rad(pose: npt.ArrayLike) -> FloatArray:

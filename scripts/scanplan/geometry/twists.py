@@ -8,10 +8,11 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
+from scanplan.geometry.tolerances import ROUNDING
 from scanplan.types import FloatArray
 
-_TINY = 1e-12  # sine of an angle that is its own sine to the last digit
-_NEARLY_REVERSED = -0.99  # cosine: near half a turn rounding leaves nothing of the axis
+PLANAR_DIMENSIONS = (0, 1, 5)
+"""Of the six numbers: x, y and the turn about z."""
 
 
 def twist_to_motion(twist: npt.ArrayLike) -> FloatArray:
@@ -38,9 +39,11 @@ def motion_to_twist(a_from_b: npt.ArrayLike) -> FloatArray:
     axis = np.stack(skew, axis=-1) / 2
     sine = np.linalg.norm(axis, axis=-1)
     cosine = (np.trace(turn, axis1=-2, axis2=-1) - 1) / 2
-    scale = np.where(sine > _TINY, np.arctan2(sine, cosine) / np.maximum(sine, _TINY), 1.0)
+    # a small angle is its own sine
+    scale = np.where(sine > ROUNDING, np.arctan2(sine, cosine) / np.maximum(sine, ROUNDING), 1.0)
     vector = axis * scale[..., None]
-    reversed_turn = (cosine < _NEARLY_REVERSED) & np.isfinite(cosine)
+    # near half a turn rounding leaves nothing of the axis
+    reversed_turn = (cosine < 0) & np.isfinite(cosine)
     if np.any(reversed_turn):
         vector[reversed_turn] = Rotation.from_matrix(turn[reversed_turn]).as_rotvec()
     return np.concatenate([a_from_b[..., :3, 3], vector], axis=-1)

@@ -3,6 +3,7 @@
 import json
 import re
 import textwrap
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,8 @@ from scanplan.project.settings_schema import ADVANCED, Schema, is_section, read_
 _ROOT = Path(__file__).parents[3]
 _SCHEMA = "workflow/schemas/config.schema.yaml"
 _MANUAL = "config/README.md"
-_WIDTH = 100  # columns, as of the code
+_WIDTH = tomllib.loads((_ROOT / "pyproject.toml").read_text())["tool"]["ruff"]["line-length"]
+"""Columns, as of the code."""
 _LABORATORY = ("simulate", "evaluation", "thesis")
 _HEADS = {
     "config.yaml": """\
@@ -86,11 +88,6 @@ def fill_manual(manual: str, schema: Schema) -> str:
         return f"<!-- settings {found[1]} -->\n{table}<!-- end -->"
 
     return _MARKED.sub(write, manual)
-
-
-def list_tables(manual: str) -> list[str]:
-    """Return the sections that the manual has tables of."""
-    return _MARKED.findall(manual)
 
 
 def _find_section(schema: Schema, name: str) -> Schema:

@@ -39,15 +39,13 @@ def choose_candidates(
         raise ValueError(f"keep_every is {keep_every}")
     pose = np.asarray(world_from_sensor, float)
     has_pose = [bool(np.isfinite(matrix).all()) for matrix in pose]
-    # |R - S| in the Frobenius norm is sqrt(8) sin(angle / 2)
-    max_difference = float(np.sqrt(8) * np.sin(np.radians(min(max_turn_deg, 180)) / 2))
     chosen: list[int] = []
     last: int | None = None
     for i in range(len(pose)):
         has_moved = (
             has_pose[i]
             and last is not None
-            and _has_moved(pose[last], pose[i], max_step_m, max_difference)
+            and _has_moved(pose[last], pose[i], max_step_m, max_turn_deg)
         )
         if i % keep_every == 0 or has_moved:
             chosen.append(i)
@@ -55,12 +53,10 @@ def choose_candidates(
     return np.array(chosen, np.int64)
 
 
-def _has_moved(
-    before: FloatArray, now: FloatArray, max_step_m: float, max_difference: float
-) -> bool:
+def _has_moved(before: FloatArray, now: FloatArray, max_step_m: float, max_turn_deg: float) -> bool:
     step_m = np.linalg.norm(now[:3, 3] - before[:3, 3])
-    difference = np.linalg.norm(now[:3, :3] - before[:3, :3])
-    return bool(step_m > max_step_m or difference > max_difference)
+    turn_deg = np.degrees(se3.turn_between_rad(before, now))
+    return bool(step_m > max_step_m or turn_deg > max_turn_deg)
 
 
 def pose_columns(

@@ -6,10 +6,12 @@ import numpy as np
 
 from scanplan.types import BoolArray, IntArray
 
-_STEP_S = 1.0  # far more than receipt is ever delayed by, far less than a clock that is set jumps
+OF_ANOTHER_CLOCK_S = 1.0
+"""Stamps off by more are of a clock that was set, or another one: recorders delay messages by less,
+and a rover drives a metre in it."""
+
 _AHEAD_S = 0.02  # below it a lead is jitter of the receipt
-_CLOCKS_DIFFER_S = 5.0  # no localiser stamps so far ahead: beyond it two clocks differ
-_BACK_NS = 500_000_000  # messages overtake one another by less
+_MOST_AHEAD_S = 5.0  # no localiser stamps so far ahead: beyond it two clocks differ
 _FEWEST_BACK = 3  # fewer messages are late ones, not a clock set back
 
 
@@ -32,7 +34,9 @@ def count_stamp_faults(t_ns: IntArray, receive_ns: IntArray) -> dict[str, int]:
     return {
         "of a repeated stamp": int((step_ns == 0).sum()),
         "backwards in time": int((step_ns < 0).sum()),
-        f"jumping by more than {_STEP_S:g} s": int((difference_ns > _STEP_S * 1e9).sum()),
+        f"jumping by more than {OF_ANOTHER_CLOCK_S:g} s": int(
+            (difference_ns > OF_ANOTHER_CLOCK_S * 1e9).sum()
+        ),
     }
 
 
@@ -63,7 +67,7 @@ def estimate_ahead_ns(
     ahead_ns = np.median(np.asarray(t_ns) - receive_ns)
     cloud_ahead_ns = max(np.median(np.asarray(cloud_t_ns) - cloud_receive_ns), 0.0)
     lead_ns = ahead_ns - cloud_ahead_ns
-    return int(lead_ns) if _AHEAD_S * 1e9 < lead_ns < _CLOCKS_DIFFER_S * 1e9 else 0
+    return int(lead_ns) if _AHEAD_S * 1e9 < lead_ns < _MOST_AHEAD_S * 1e9 else 0
 
 
 def find_repeated_times(t_ns: IntArray) -> BoolArray:
@@ -81,7 +85,7 @@ def find_repeated_times(t_ns: IntArray) -> BoolArray:
     (n,) bool
     """
     twice = np.zeros(len(t_ns), bool)
-    for i in np.flatnonzero(np.diff(t_ns) < -_BACK_NS) + 1:
+    for i in np.flatnonzero(np.diff(t_ns) < -OF_ANOTHER_CLOCK_S * 1e9) + 1:
         begin = t_ns[i]
         end = t_ns[:i].max()
         if (t_ns[i:] < end).sum() >= _FEWEST_BACK:

@@ -6,10 +6,10 @@ from itertools import islice
 
 import numpy as np
 
+from scanplan.geometry.tolerances import SHORTEST_M
 from scanplan.recordings.motion import point_times
 from scanplan.types import Array, BoolArray, FloatArray
 
-_FLAT_M = 1e-3  # a laser scanner's plane is exact but for rounding, a wall is rougher
 _CENTRAL_SHARE = 0.2  # a plane that passes the origin nearer, of the farthest range, is a sweep's
 SCANS_TO_JUDGE = 5  # a rover that tilts on a ramp shows in so many; all are decoded beforehand
 
@@ -97,7 +97,8 @@ def is_sweep_plane(xyz_m: FloatArray) -> bool:
     xyz_m = np.asarray(xyz_m, np.float64)
     centre = xyz_m.mean(axis=0)
     normal = np.linalg.eigh((xyz_m - centre).T @ (xyz_m - centre))[1][:, 0]
-    is_flat = np.abs((xyz_m - centre) @ normal).max() <= _FLAT_M
+    # a laser scanner's plane is exact but for rounding, a wall is rougher
+    is_flat = np.abs((xyz_m - centre) @ normal).max() <= SHORTEST_M
     farthest_m = np.linalg.norm(xyz_m, axis=1).max()
     return bool(is_flat and abs(centre @ normal) < _CENTRAL_SHARE * farthest_m)
 

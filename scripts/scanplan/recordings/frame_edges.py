@@ -10,12 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.geometry import se3
+from scanplan.geometry.tolerances import SAME_M
 from scanplan.recordings import clocks, pose_jumps
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 AMBIGUOUS = "in a time that went by twice (dropped)"
 _NORM_TOLERANCE = 1e-3  # single precision and a few digits of text stay within it
-_STILL = 1e-6  # metres and radians: a publisher's rounding, below any motion
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,9 +47,9 @@ class FrameEdge:
         return FrameEdge(self.parent, self.child, self.xyz_m[-1:], self.quat_xyzw[-1:])
 
     def is_still(self) -> bool:
-        """Return whether all samples are the same."""
-        same_turn = np.abs(self.quat_xyzw @ self.quat_xyzw[0]) >= 1 - _STILL**2
-        same_place = np.abs(self.xyz_m - self.xyz_m[0]) <= _STILL
+        """Return whether all samples are the same, to a micrometre and a microradian."""
+        same_turn = np.abs(self.quat_xyzw @ self.quat_xyzw[0]) >= 1 - SAME_M**2
+        same_place = np.abs(self.xyz_m - self.xyz_m[0]) <= SAME_M
         return bool(same_turn.all() and same_place.all())
 
 

@@ -13,7 +13,6 @@ from scanplan.recordings.survey_protocol import NamedChain
 from scanplan.stage import log
 from scanplan.types import IntArray
 
-_CLOCK_TOLERANCE_S = 1.0  # recorders delay messages by less; a rover drives a metre in it
 _BASE_FRAMES = ("base_link", "base_footprint")
 _ODOM = "odom"
 
@@ -179,7 +178,7 @@ class PoseChains:
             return
         poses_s = _median_delay_s(t_ns, receive_ns)
         clouds_s = _median_delay_s(self._index.stamps_ns, self._index.cloud_receive_ns)
-        if abs(poses_s - clouds_s) > _CLOCK_TOLERANCE_S:
+        if abs(poses_s - clouds_s) > clocks.OF_ANOTHER_CLOCK_S:
             log.log_line(
                 f"{self._where}: poses arrive {poses_s:.3f} s after their stamps, clouds"
                 f" {clouds_s:.3f} s: their clocks may differ"

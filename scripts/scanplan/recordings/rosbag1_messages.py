@@ -8,13 +8,12 @@ the disk is spared. The price is that `bags` hands over what rosbags keeps for i
 """
 
 import heapq
+import io
 import os
 import struct
 from collections.abc import Iterator, Mapping, Sequence
 
-_AHEAD = 1024  # bytes read at once: the record's header and the message's own fit in
-_MESSAGE = 2  # op code of a message record, bag format 2.0
-_CONNECTION = 7  # op code of a connection record
+from rosbags.rosbag1.reader import RecordType
 
 
 class StoredMessage:
@@ -23,7 +22,7 @@ class StoredMessage:
     Attributes
     ----------
     head : bytes
-        Its first bytes, a kilobyte or so, or all of it if it has fewer.
+        Its first bytes, some kilobytes, or all of it if it has fewer.
     """
 
     __slots__ = ("_file", "_place", "_size", "head")
@@ -97,15 +96,16 @@ def _read_record(file: int, place: int) -> tuple[int, int, int, bytes]:
         Its first bytes.
     """
     while True:
-        block = os.pread(file, _AHEAD, place)
+        # the record's header and the message's own fit in
+        block = os.pread(file, io.DEFAULT_BUFFER_SIZE, place)
         (header_size,) = struct.unpack_from("<I", block)
         fields = _read_fields(block, 4, 4 + header_size)
         (length,) = struct.unpack_from("<I", block, 4 + header_size)
         begin = 8 + header_size
-        if fields[b"op"] == bytes([_MESSAGE]):
+        if fields[b"op"] == bytes([RecordType.MSGDATA]):
             (connection_id,) = struct.unpack("<I", fields[b"conn"])
             return connection_id, place + begin, length, block[begin : begin + length]
-        if fields[b"op"] != bytes([_CONNECTION]):
+        if fields[b"op"] != bytes([RecordType.CONNECTION]):
             raise ValueError("the index leads to no message")
         place += begin + length
 

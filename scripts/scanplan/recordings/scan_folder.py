@@ -1,5 +1,6 @@
 """One survey as a folder of clouds, scans/*.pcd or *.ply, with their poses in poses.tum."""
 
+import io
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from decimal import Decimal
@@ -22,7 +23,6 @@ from scanplan.types import Array, FloatArray, IntArray
 _SECONDS = re.compile(r"\d+\.\d+")
 _NANOSECONDS = re.compile(r"\d{16,}")
 _DECLARED = re.compile(rb"^(?:POINTS|element vertex) +(\d+)\s*$", re.MULTILINE)
-_HEADER_BYTES = 8192  # headers have a few hundred
 
 
 class ScanFolder:
@@ -178,7 +178,7 @@ def _natural_key(path: Path) -> list[tuple[int, str]]:
 def _read_cloud(path: Path) -> tuple[FloatArray, Array | None]:
     """Read xyz_m (n, 3) float32 and the per-point times as recorded, or None."""
     with path.open("rb") as file:
-        declared = _DECLARED.search(file.read(_HEADER_BYTES))
+        declared = _DECLARED.search(file.read(io.DEFAULT_BUFFER_SIZE))
     fields = _read_fields(path)
     xyz_m = fields.get("positions", np.empty((0, 3)))
     if declared is None or int(declared[1]) != len(xyz_m):

@@ -1,5 +1,6 @@
 """Definitions of ROS messages: a recording's own, else those of a ROS release."""
 
+import re
 from pathlib import Path
 
 from rosbags.interfaces import Connection, MessageDefinitionFormat
@@ -16,7 +17,7 @@ from scanplan.errors import StageError
 from scanplan.recordings import topics
 from scanplan.stage import log
 
-_IDL_SEPARATOR = "=" * 80 + "\n"
+_IDL_SEPARATOR = re.compile(r"={80}\n")
 
 
 def own_store(connection: Connection, path: Path) -> Typestore | None:
@@ -29,7 +30,7 @@ def own_store(connection: Connection, path: Path) -> Typestore | None:
         if definition.format == MessageDefinitionFormat.MSG:
             store.register(get_types_from_msg(definition.data, connection.msgtype))
         else:
-            for part in filter(None, definition.data.split(_IDL_SEPARATOR)):
+            for part in filter(None, _IDL_SEPARATOR.split(definition.data)):
                 text = part.split("\n", 1)[1] if part.startswith("IDL: ") else part
                 store.register(get_types_from_idl(text))
         store.get_msgdef(connection.msgtype)

@@ -10,7 +10,6 @@ from scanplan.registration import icp, prepared_clouds
 from scanplan.registration.registration_settings import SequentialSettings
 from scanplan.types import FloatArray
 
-_SMALLEST_VOXEL_SHARE = 0.1  # of the usual edge: smaller voxels hold single points and show noise
 _LINE_REACH_VOXELS = 10  # neighbours on a wall seen from the side are this many voxels apart
 
 
@@ -206,7 +205,7 @@ def thin_scan(
     if len(thinned_m) >= settings.voxels:
         return thinned_m
     # on surfaces the number of voxels goes with the inverse square of their edge
-    share = max(np.sqrt(len(thinned_m) / settings.voxels), _SMALLEST_VOXEL_SHARE)
+    share = np.sqrt(len(thinned_m) / settings.voxels)
     return prepared_clouds.thin_voxels(xyz_m, planar=False, voxel_m=share * settings.voxel_m)
 
 

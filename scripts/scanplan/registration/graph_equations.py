@@ -8,9 +8,6 @@ from scipy import sparse
 from scanplan.geometry import se3, twists
 from scanplan.types import FloatArray, IntArray
 
-_PLANAR_DIMENSIONS = (0, 1, 5)  # of a twist: x, y and the turn about z
-_SPATIAL_DIMENSIONS = (0, 1, 2, 3, 4, 5)
-
 Block = tuple[IntArray, IntArray, FloatArray]
 """Block rows (m,), block columns (m,) and square blocks (m, d, d) of a sparse matrix."""
 
@@ -71,7 +68,8 @@ class GraphEquations:
     ) -> None:
         self._source = constraints.source
         self._target = constraints.target
-        self._dimensions = np.array(_PLANAR_DIMENSIONS if planar else _SPATIAL_DIMENSIONS)
+        every = range(prior_information.shape[-1])
+        self._dimensions = np.array(twists.PLANAR_DIMENSIONS if planar else every)
         self._squared_kernel = kernel**2
         self._source_from_target = se3.invert_pose(constraints.target_from_source)
         self._scan_from_world = se3.invert_pose(priors)

@@ -7,6 +7,7 @@ import numpy as np
 import small_gicp
 
 from scanplan.geometry import se3, twists
+from scanplan.geometry.tolerances import SHORTEST_M
 from scanplan.registration import planar_icp, prepared_clouds
 from scanplan.registration.prepared_clouds import PreparedCloud
 from scanplan.types import FloatArray
@@ -145,7 +146,7 @@ def _keep_unobservable(
 ) -> IcpResult:
     """Undo the motion in directions that the pairs do not determine, and drop their information."""
     # a turn counts by the way that the points make in it
-    scale = np.repeat([1, 1 / max(reach_m, planar_icp.LEAST_REACH_M)], 3)
+    scale = np.repeat([1, 1 / max(reach_m, SHORTEST_M)], 3)
     scales = np.outer(scale, scale)
     value, vector = np.linalg.eigh(information * scales)
     if not value[-1] > 0:

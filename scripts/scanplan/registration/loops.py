@@ -1,11 +1,12 @@
 """Loop constraints: between scans that are near each other but not registered to each other."""
 
 from collections.abc import Sequence
-from functools import lru_cache
+from functools import cache
 
 import numpy as np
 from scipy.spatial import KDTree
 
+from scanplan.geometry import se3
 from scanplan.registration import constraints, prepared_clouds
 from scanplan.registration.constraints import PlacedScan, PoseConstraint
 from scanplan.registration.registration_settings import SequentialSettings
@@ -14,10 +15,7 @@ from scanplan.types import BoolArray, FloatArray, IntArray
 
 RowPair = tuple[int, int]
 """Rows (source, target) of two scans."""
-_PREPARED_AT_ONCE = 128  # bounds memory; pairs come sorted, so that near ones share clouds
 _STATION_TURN_DEG = 30.0  # a camera that turned this far shows other things
-# |R - S| in the Frobenius norm is sqrt(8) sin(angle / 2)
-_STATION_TURN_NORM = np.sqrt(8) * np.sin(np.radians(_STATION_TURN_DEG) / 2)
 _LOOSE = 2  # what overlaps after alignment overlaps within this many times the distance before
 
 
@@ -50,7 +48,7 @@ def choose_stations(world_from_scan: FloatArray, step_m: float) -> BoolArray:
 def _is_step(last: FloatArray, pose: FloatArray, step_m: float) -> bool:
     if np.linalg.norm(pose[:3, 3] - last[:3, 3]) >= step_m:
         return True
-    return bool(np.linalg.norm(pose[:3, :3] - last[:3, :3]) >= _STATION_TURN_NORM)
+    return bool(np.degrees(se3.turn_between_rad(last, pose)) >= _STATION_TURN_DEG)
 
 
 def choose_loop_pairs(
@@ -173,7 +171,7 @@ def align_pairs(
     place_of_row = {row: place for place, row in enumerate(rows)}
     reach_m = constraints.neighbour_reach_m(settings)
 
-    @lru_cache(_PREPARED_AT_ONCE)
+    @cache
     def prepare_scan(row: int) -> PlacedScan:
         cloud = prepared_clouds.prepare_cloud(thinned_m[row], planar=planar, reach_m=reach_m)
         place = place_of_row[row]

@@ -2,18 +2,17 @@
 
 import numpy as np
 
+from scanplan.geometry.tolerances import SHORTEST_M
+from scanplan.geometry.twists import PLANAR_DIMENSIONS
 from scanplan.registration.prepared_clouds import PreparedCloud
 from scanplan.types import FloatArray
 
 # GICP weighs a pair as if it were off by this much along the normal: 1e-3 from each side in its
 # covariances; the information of other methods, the planar one's too, is stated alike
 PAIR_SIGMA_M = 0.045
-LEAST_REACH_M = 1e-3  # of a cloud: keeps the scale of its turn finite where all points are one
 _LEAST_SHARE = 1e-3  # of the largest eigenvalue: a direction with less is not observable
-_LEAST_PAIRS = 3  # x, y and the turn are three unknowns
 _MAD_TO_SIGMA = 1.4826  # of a normal distribution
 _LEAST_SCALE_PART = 10  # the robust scale is at least this part of the pairs' largest distance
-_PLANAR_DIMENSIONS = np.array([0, 1, 5])  # of a twist: x, y and the turn about z
 
 
 def align_planar(
@@ -70,7 +69,7 @@ def _normal_equations(
     apart_m, nearest = target.tree.query(moved_m, distance_upper_bound=distance_m)
     pairs = np.flatnonzero(np.isfinite(apart_m))
     pairs = pairs[np.isfinite(target.normal[nearest[pairs], 0])]
-    if len(pairs) < _LEAST_PAIRS:
+    if len(pairs) < len(PLANAR_DIMENSIONS):
         return None
     normal = target.normal[nearest[pairs]]
     point_m = source_xy_m[pairs]
@@ -87,7 +86,7 @@ def _normal_equations(
 
 def _solve(information: FloatArray, gradient: FloatArray, reach_m: float) -> FloatArray:
     """Return the step (3,): zero in directions that the pairs hardly determine."""
-    scale = np.array([1, 1, 1 / max(reach_m, LEAST_REACH_M)])
+    scale = np.array([1, 1, 1 / max(reach_m, SHORTEST_M)])
     value, vector = np.linalg.eigh(information * np.outer(scale, scale))
     is_observable = value > _LEAST_SHARE * value[-1]
     directions = vector[:, is_observable]
@@ -106,6 +105,6 @@ def _motion(step: FloatArray) -> FloatArray:
 
 def _in_space(information: FloatArray) -> FloatArray:
     result = np.zeros((6, 6))
-    rows = np.ix_(_PLANAR_DIMENSIONS, _PLANAR_DIMENSIONS)
+    rows = np.ix_(PLANAR_DIMENSIONS, PLANAR_DIMENSIONS)
     result[rows] = information / PAIR_SIGMA_M**2
     return result

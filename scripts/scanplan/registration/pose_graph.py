@@ -10,17 +10,12 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
+from scanplan.geometry.tolerances import ROUNDING
 from scanplan.registration.graph_equations import GraphEquations, GraphState, MotionConstraints
 from scanplan.types import FloatArray
 
 _WIDE_KERNELS = (1000.0, 30.0, 3.0)  # times the kernel: at first all measurements count in full
 _STEP_DONE = 1e-5  # metres and radians: far below what measurements are off by
-_ROUGHEST = 30.0  # a wide kernel's solution is a start only: its last step may be this much longer
-_FIRST_DAMPING = 1e-6  # near Gauss and Newton's step, as the start is good
-_LEAST_DAMPING = 1e-9  # keeps the matrix regular
-_MOST_DAMPING = 1e6  # steps are next to nothing then: no better pose is to be had
-_DAMPING_FACTOR = 10  # Marquardt's
-_REGULARISATION = 1e-12  # for dimensions without any information
 
 
 @dataclass(frozen=True)
@@ -52,7 +47,7 @@ def solve_pose_graph(
     kernel: float = 5.0,
     max_iterations: int = 50,
 ) -> PoseGraphSolution:
-    """Find the poses of the least robust squared error (Levenberg and Marquardt, reweighted).
+    """Find the poses of the least robust squared error (Gauss and Newton, reweighted).
 
     The kernel begins so wide that all measurements count and closes in steps (graduated
     non-convexity, Yang et al. 2020): where the start is poor, good measurements look false at
@@ -79,8 +74,7 @@ def solve_pose_graph(
         equations = GraphEquations(
             constraints, priors, prior_information, planar=planar, kernel=kernel * width
         )
-        step_done = _STEP_DONE * min(width, _ROUGHEST)
-        return _minimise(equations, pose, max_iterations, step_done)
+        return _minimise(equations, pose, max_iterations)
 
     pose = np.array(start, float)
     for width in _WIDE_KERNELS:
@@ -90,32 +84,36 @@ def solve_pose_graph(
 
 
 def _minimise(
-    equations: GraphEquations, pose: FloatArray, max_iterations: int, step_done: float
+    equations: GraphEquations, pose: FloatArray, max_iterations: int
 ) -> tuple[FloatArray, GraphState]:
-    damping = _FIRST_DAMPING
+    """Step to the least squares of the reweighted equations, again and again.
+
+    Their squares touch the robust error from above (weights are its slope), so that each step
+    lowers it but for the curvature of turns: where it would not, half of the step is tried.
+    """
     state = equations.evaluate(pose)
+    step = _least_squares_step(equations, state)
     for _ in range(max_iterations):
-        hessian, gradient = equations.normal_equations(state)
-        step = _damped_step(hessian, gradient, damping)
         moved = equations.move(pose, step)
         moved_state = equations.evaluate(moved)
+        is_done = np.abs(step).max() < _STEP_DONE
         if moved_state.cost <= state.cost:
             pose = moved
             state = moved_state
-            damping = max(damping / _DAMPING_FACTOR, _LEAST_DAMPING)
-        elif damping >= _MOST_DAMPING:
-            break
+            step = _least_squares_step(equations, state)
         else:
-            damping *= _DAMPING_FACTOR
-        if np.abs(step).max() < step_done:
+            step = step / 2
+        if is_done:
             break
     return pose, state
 
 
-def _damped_step(hessian: sparse.csc_array, gradient: FloatArray, damping: float) -> FloatArray:
-    damped = hessian + sparse.diags_array(damping * hessian.diagonal() + _REGULARISATION)
+def _least_squares_step(equations: GraphEquations, state: GraphState) -> FloatArray:
+    hessian, gradient = equations.normal_equations(state)
+    # regular where measurements next to nothing weigh in
+    regular = hessian + sparse.diags_array(ROUNDING * hessian.diagonal())
     factors = splu(
-        damped.tocsc(),
+        regular.tocsc(),
         permc_spec="MMD_AT_PLUS_A",
         diag_pivot_thresh=0.0,
         options={"SymmetricMode": True},

@@ -10,9 +10,8 @@ from scanplan.geometry import se3
 from scanplan.types import FloatArray, IntArray
 
 FACING = 0.5  # cosine: surfaces turned by less than 60 degrees face the same way
-_COVARIANCE_NEIGHBOURS = 10  # of a spatial normal: few see noise, many smooth edges away
+NEIGHBOURS = 10  # of a spatial normal: few see noise, many smooth edges away
 _LINE_NEIGHBOURS = 6  # of a planar normal; fewer, as a line needs fewer than a surface
-_LEAST_LINE_NEIGHBOURS = 3  # any two points are on a line
 _MOST_LINE_SPREAD = 0.1  # across to along, squared: 18 degrees, rounder neighbourhoods are corners
 
 
@@ -88,9 +87,7 @@ def prepare_cloud(thinned_m: FloatArray, *, planar: bool, reach_m: float = 1.0) 
         normal = _towards_origin(estimate_planar_normals(xy_m, tree, reach_m=reach_m), xy_m)
         return PreparedCloud(points, tree, True, normal, None)
     cloud = small_gicp.PointCloud(points)
-    small_gicp.estimate_normals_covariances(
-        cloud, num_neighbors=_COVARIANCE_NEIGHBOURS, num_threads=1
-    )
+    small_gicp.estimate_normals_covariances(cloud, num_neighbors=NEIGHBOURS, num_threads=1)
     normal = _towards_origin(cloud.normals()[:, :3], points)
     return PreparedCloud(points, small_gicp.KdTree(cloud), False, normal, cloud)
 
@@ -108,10 +105,9 @@ def estimate_planar_normals(xy_m: FloatArray, tree: KDTree, *, reach_m: float) -
     reach_m : float
         A point whose neighbours lie farther away, metres, has no normal.
     """
-    n_neighbours = min(_LINE_NEIGHBOURS, len(xy_m))
-    if n_neighbours < _LEAST_LINE_NEIGHBOURS:
+    if len(xy_m) < _LINE_NEIGHBOURS:
         return np.full((len(xy_m), 2), np.nan)
-    distance_m, index = tree.query(xy_m, k=n_neighbours)
+    distance_m, index = tree.query(xy_m, k=_LINE_NEIGHBOURS)
     offset = xy_m[index] - xy_m[index].mean(axis=1, keepdims=True)
     value, vector = np.linalg.eigh(np.einsum("nki,nkj->nij", offset, offset))
     is_near = distance_m[:, -1] < reach_m

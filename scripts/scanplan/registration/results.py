@@ -7,14 +7,14 @@ import numpy as np
 
 from scanplan.errors import StageError
 from scanplan.geometry import se3
+from scanplan.geometry.tolerances import ROUNDING, SHORTEST_M
 from scanplan.registration.multiway import OptimisedMap
 from scanplan.registration.sequential import ScanResult
 from scanplan.store import schemas
 from scanplan.types import Array, Columns, FilePath, FloatArray, IntArray
 
 INLIER_WEIGHT = 0.25  # a measurement `kernel_sigmas` off counts as much: beyond it is an outlier
-_FARTHEST_M = 10_000.0  # single precision resolves 0.5 mm there (24 bits)
-_REGULARISATION = 1e-7  # of an information's trace: only directions without information feel it
+_FARTHEST_M = SHORTEST_M / np.finfo(np.float32).eps  # single precision resolves no more there
 
 
 def move_to_map(scan_id: int, xyz_m: FloatArray, world_from_sensor: FloatArray) -> FloatArray:
@@ -142,6 +142,7 @@ def _observable_residual(optimised: OptimisedMap) -> FloatArray:
     """Return the residuals (m, 6) in the directions that each constraint determines."""
     information = np.array([edge.fit.information for edge in optimised.edges]).reshape(-1, 6, 6)
     trace = np.trace(information, axis1=1, axis2=2)
-    regularised = information + _REGULARISATION * trace[:, None, None] * np.eye(6)
+    # only directions without information feel it
+    regularised = information + ROUNDING * trace[:, None, None] * np.eye(6)
     weighted = information @ optimised.residual[:, :, None]
     return np.linalg.solve(regularised, weighted)[:, :, 0]

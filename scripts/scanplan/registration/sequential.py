@@ -13,7 +13,6 @@ from scanplan.types import FloatArray
 
 GIVEN_POSES = "none"
 """The method that leaves a survey as it is: its poses are exact, its scans all sound."""
-_FEWEST_POINTS = 10  # after thinning: fewer fix no pose, however many were thinned to them
 
 
 @dataclass(frozen=True)
@@ -99,7 +98,8 @@ class SequentialRegistrar:
             return ScanResult(True, "kept", prior), no_points
         level_from_sensor = constraints.level_pose(prior) if self.planar else np.eye(4)
         thinned_m = constraints.thin_scan(xyz_m, level_from_sensor, self.planar, self.settings)
-        if len(thinned_m) < _FEWEST_POINTS:
+        # too few for normals fix no pose, however many were thinned to them
+        if len(thinned_m) < prepared_clouds.NEIGHBOURS:
             return ScanResult(False, "too_few_points", prior), thinned_m
         reach_m = constraints.neighbour_reach_m(self.settings)
         cloud = prepared_clouds.prepare_cloud(thinned_m, planar=self.planar, reach_m=reach_m)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from scanplan.selection.area_greedy import TIE_M2
+from scanplan.geometry.tolerances import SMALLEST_M2
 from scanplan.selection.lazy_greedy import GreedyOrder
 from scanplan.types import FloatArray
 
@@ -41,7 +41,7 @@ def bound_any_subset(order: GreedyOrder) -> FloatArray:
     position = np.argsort(order.order)
     for j in _steps(n):
         gain = order.checkpoints[max(start for start in order.checkpoints if start <= j)]
-        remaining = np.minimum(gain[position >= j], order.gain[j] + TIE_M2)
+        remaining = np.minimum(gain[position >= j], order.gain[j] + SMALLEST_M2)
         reached = covered[j] + np.cumsum(np.sort(remaining)[::-1])
         # fewer than n are left: with more than that nothing more is reached
         bound[: n - j] = np.minimum(bound[: n - j], reached)

@@ -5,10 +5,9 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
+from scanplan.geometry.tolerances import ROUNDING
 from scanplan.selection.lazy_greedy import Cover, choose_greedily
 from scanplan.types import BoolArray, FloatArray, IntArray
-
-_SAME_RATIO = 1e-9  # of the largest gain per cost: sums and quotients agree far better
 
 
 def choose_in_budget(
@@ -77,7 +76,7 @@ def _choose_by_worth(
     chosen = []
     covered = 0.0
     affordable = _Affordable(cover, cost, budget, weight, tie)
-    for i, gain in choose_greedily(affordable, tie=0.0, relative_tie=_SAME_RATIO):
+    for i, gain in choose_greedily(affordable, tie=0.0, relative_tie=ROUNDING):
         if gain > tie:
             chosen.append(i)
             covered += gain

@@ -10,14 +10,13 @@ import numpy as np
 import shapely
 from scipy.cluster import vq
 
+from scanplan.geometry.tolerances import SAME_M, SMALLEST_M2
 from scanplan.store import schemas
 from scanplan.types import Array, Columns, FloatArray, IntArray
 
 _LLOYD_ITERATIONS = 20  # centres move by less than the sample's noise after that
 _MOST_CLUSTERS = np.iinfo(np.int16).max  # labels are sorted as 16-bit numbers
-_SAME_POINT_DECIMALS = 6  # micrometres: no sensor resolves them
 _MANY_POINTS = 50  # with fewer, dropping inner points takes longer than the hull of all
-_INSIDE_M2 = 1e-6  # rounding is far less, also far from the map's origin
 
 
 def make_cluster_hulls(
@@ -122,7 +121,7 @@ def _plan_view(xyz_m: Array) -> FloatArray:
 
 def _find_centres(sample: FloatArray, n_clusters: int, rng: np.random.Generator) -> FloatArray:
     """Return the centres of KMeans of the sample (k, 2); its distinct points if these suffice."""
-    rounded = sample.round(_SAME_POINT_DECIMALS)
+    rounded = SAME_M * np.round(sample / SAME_M)
     # to compare points by x is quick, and nearly always enough
     if len(np.unique(rounded[:, 0])) <= n_clusters:
         distinct = np.unique(rounded, axis=0)
@@ -213,7 +212,7 @@ def _outer(xy_m: FloatArray) -> FloatArray:
             # twice the area of a point's triangle with this edge: above 0 on the inner side
             edge_m2 = (x1_m - x0_m) * (y_m - y0_m) - (y1_m - y0_m) * (x_m - x0_m)
             np.minimum(inside_m2, edge_m2, out=inside_m2)
-    outer = inside_m2 <= _INSIDE_M2
+    outer = inside_m2 <= SMALLEST_M2
     outer[0] = True
     return np.concatenate([xy_m[outer], xy_m[:1]])
 

@@ -12,10 +12,9 @@ from typing import Protocol
 
 import numpy as np
 
+from scanplan.geometry.tolerances import ROUNDING
 from scanplan.types import BoolArray, FloatArray, IntArray
 
-_ROUNDING = 1e-9  # of a choice's worth alone: sums of cells and areas agree far better
-_LARGEST_BATCH = 64  # gains brought up to date together; more are mostly not needed
 _BATCH_GROWTH = 4  # few looks suffice for most choices, and those that need many take few batches
 
 
@@ -96,7 +95,7 @@ def order_greedily(cover: Cover, *, tie: float, min_overlap: float = 0.0) -> Gre
     if not 0 <= min_overlap <= 1:
         raise ValueError(f"min_overlap is {min_overlap}, must be 0 to 1")
     alone = cover.gain.copy()
-    most = alone * (1 - min_overlap + _ROUNDING) if min_overlap > 0 else None
+    most = alone * (1 - min_overlap + ROUNDING) if min_overlap > 0 else None
     checkpoints = {0: alone}
     order, gains = [], []
     for i, gain in choose_greedily(cover, tie=tie, most=most):
@@ -205,7 +204,7 @@ def _find_best(cover: Cover, tie: float, relative_tie: float, most: FloatArray |
             break
         by_gain = doubtful[np.argsort(-cover.gain[doubtful], kind="stable")]
         cover.refresh(by_gain[:batch], least)
-        batch = min(batch * _BATCH_GROWTH, _LARGEST_BATCH)
+        batch *= _BATCH_GROWTH
     if not allowed.any():
         allowed = cover.remaining
         least = _least_equal(cover.gain[allowed], tie, relative_tie)

@@ -11,15 +11,13 @@ import shapely
 
 from scanplan.errors import StageError
 from scanplan.geometry.polygons import Polygons
+from scanplan.geometry.tolerances import ROUNDING, SMALLEST_M2
 from scanplan.selection import area_greedy, hulls, lazy_greedy, wall_cells
 from scanplan.selection.budget import choose_in_budget
 from scanplan.selection.lazy_greedy import GreedyOrder
 from scanplan.selection.survey_scans import SurveyScans
 from scanplan.selection.union_area.uncovered import Uncovered
 from scanplan.types import FloatArray, IntArray
-
-TIE = 1e-9
-"""Sums of a scan's cells agree far better than this, metres."""
 
 
 class Objective(Protocol):
@@ -104,9 +102,7 @@ class PolygonArea:
 
     def within(self, cost: IntArray, budget: float) -> list[int]:
         """Return the indices to take for a budget; see `budget.choose_in_budget`."""
-        return choose_in_budget(
-            lambda: Uncovered(self._polygons), cost, budget, tie=area_greedy.TIE_M2
-        )
+        return choose_in_budget(lambda: Uncovered(self._polygons), cost, budget, tie=SMALLEST_M2)
 
     def gains(self, order: IntArray) -> FloatArray:
         """Return the area (m,) that each polygon of a given order adds to those before it."""
@@ -148,11 +144,11 @@ class CellCoverage:
 
     def greedy(self, min_overlap: float = 0.0) -> GreedyOrder:
         """Return the greedy order; see `lazy_greedy.order_greedily`."""
-        return lazy_greedy.order_greedily(self._nothing(), tie=TIE, min_overlap=min_overlap)
+        return lazy_greedy.order_greedily(self._nothing(), tie=ROUNDING, min_overlap=min_overlap)
 
     def within(self, cost: IntArray, budget: float) -> list[int]:
         """Return the indices to take for a budget; see `budget.choose_in_budget`."""
-        return choose_in_budget(self._nothing, cost, budget, tie=TIE)
+        return choose_in_budget(self._nothing, cost, budget, tie=ROUNDING)
 
     def gains(self, order: IntArray) -> FloatArray:
         """Return what (m,) each scan of a given order adds to those before it."""

@@ -16,7 +16,6 @@ from scanplan.selection.survey_scans import SurveyScans
 from scanplan.types import Array, Columns, IntArray
 
 _MODULES = {"baselines": baselines, "streaming": streaming}
-_LOGGED_SCANS = 15  # as many as the thesis's plans are made of
 _LOGGED_SHARE = 0.99  # of what all scans cover: the thesis's measure of how soon
 
 
@@ -102,16 +101,14 @@ def order_scans(
 
 def summarise_order(method: str, columns: Columns) -> str:
     """Return in a line what an order covers, how soon, and how good its beginning is at least."""
-    n = len(columns["rank"])
     covered = columns["covered"]
-    n_for_share, _ = stopping.choose_n_scans(columns, area_share=_LOGGED_SHARE)
-    first = min(_LOGGED_SCANS, n)
+    first, _ = stopping.choose_n_scans(columns, area_share=_LOGGED_SHARE)
     bound = columns["bound"][first - 1]
     share = covered[first - 1] / bound if bound > 0 else 1.0
     return (
-        f"{method}, {n} scans, {covered[-1]:.1f} {METHODS[method].unit};"
-        f" {_LOGGED_SHARE:.0%} at {n_for_share} scans;"
-        f" first {first} cover at least {np.floor(100 * share):.0f} % of what any {first} could"
+        f"{method}, {len(covered)} scans, {covered[-1]:.1f} {METHODS[method].unit};"
+        f" {_LOGGED_SHARE:.0%} at {first} scans,"
+        f" at least {np.floor(100 * share):.0f} % of what any {first} could cover"
     )
 
 

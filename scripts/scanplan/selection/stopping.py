@@ -3,11 +3,12 @@
 import numpy as np
 
 from scanplan.errors import StageError
-from scanplan.selection.area_greedy import TIE_M2
+from scanplan.geometry.tolerances import SMALLEST_M2
+from scanplan.store import scan_cache
 from scanplan.types import Columns, FloatArray, IntArray
 
-BYTES_PER_POINT = 12
-"""Three numbers of four bytes, as registered scans are stored before they are compressed."""
+BYTES_PER_POINT = scan_cache.POINT.itemsize
+"""As registered scans are stored before they are compressed."""
 
 
 def choose_n_scans(
@@ -32,8 +33,8 @@ def choose_n_scans(
     n_scans : int, >= 1, optional
         Use so many scans, or all if there are fewer.
     area_share : float in (0, 1], optional
-        Use the fewest scans that cover this share of what all cover (within `area_greedy.TIE_M2`),
-        measured by `covered`, the objective of the method itself, where it is given.
+        Use the fewest scans that cover this share of what all cover (within `SMALLEST_M2`), measured by
+        `covered`, the objective of the method itself, where it is given.
     min_gain_m2 : float, > 0, optional
         Use no scan after the last that adds this much area.
     max_points, max_bytes : int, >= 1, optional
@@ -86,7 +87,7 @@ def _by_share(columns: Columns, share: float) -> tuple[int, str]:
     if not 0 < share <= 1:
         raise ValueError(f"area_share is {share}, must be above 0 and at most 1")
     covered = columns.get("covered", columns["covered_m2"])
-    k = int((covered >= share * covered[-1] - TIE_M2).argmax()) + 1
+    k = int((covered >= share * covered[-1] - SMALLEST_M2).argmax()) + 1
     chosen = f"{k} of {len(covered)} scans"
     if np.array_equal(covered, columns["covered_m2"]):
         return k, f"{chosen} cover {share:.4g} of the {covered[-1]:.1f} m2 that all cover"
@@ -96,7 +97,7 @@ def _by_share(columns: Columns, share: float) -> tuple[int, str]:
 def _by_gain(gain_m2: FloatArray, least_m2: float) -> tuple[int, str]:
     if not least_m2 > 0:
         raise ValueError(f"min_gain_m2 is {least_m2}, must be above 0")
-    adding = np.flatnonzero(gain_m2 >= least_m2 - TIE_M2)
+    adding = np.flatnonzero(gain_m2 >= least_m2 - SMALLEST_M2)
     k = int(adding[-1]) + 1 if len(adding) else 1
     return k, f"{k} of {len(gain_m2)} scans: no later one adds {least_m2:.4g} m2"
 

@@ -15,12 +15,12 @@ import numpy as np
 from scipy import ndimage
 
 from scanplan.extraction import normals
+from scanplan.geometry.tolerances import SHORTEST_M
 from scanplan.rays import levels, sensor_frame
 from scanplan.types import Array, BoolArray, Columns, FloatArray, IntArray
 
-FACINGS = 4  # -x, +x, -y and +y
+FACINGS = ("-x", "+x", "-y", "+y")
 _FARTHEST_M = 150.0  # beams 0.1 degrees apart leave a cell of 0.25 m with one return or none there
-_LEAST_M = 1e-3  # of wall in a cell; shorter is noise, and not worth a row
 _ROWS = 3  # a wall's returns are in two rows of cells, noise puts some into a third
 _SAME_SIDE = 1e-3  # cosine; a wall that is square to a facing faces it by rounding alone
 _HALF_SURE = 0.5  # what may be a wall or furniture counts half
@@ -114,9 +114,11 @@ def observe_wall_cells(
     upright, facing = _find_upright(points_m, planar, settings)
     xy_m = points_m[upright, :2] + np.asarray(sensor_xyz_m, float)[:2]
     heights = None if planar else (points_m[upright, 2], tallness[upright])
-    parts = [_measure_facing(which, xy_m, facing, heights, settings) for which in range(FACINGS)]
+    parts = [
+        _measure_facing(which, xy_m, facing, heights, settings) for which in range(len(FACINGS))
+    ]
     along, across, length_m = (np.concatenate(column) for column in zip(*parts, strict=True))
-    facings = np.repeat(np.arange(FACINGS), [len(part[0]) for part in parts])
+    facings = np.repeat(np.arange(len(FACINGS)), [len(part[0]) for part in parts])
     return {"facing": facings, "along": along, "across": across, "length_m": length_m}
 
 
@@ -204,7 +206,7 @@ def _measure_facing(
         findable = findable * (extent_m >= settings.min_height_m)
         findable = findable * np.maximum(grid.top(tallness, (window, _ROWS)), 0.0)
     length_m = settings.cell_m * mean_cosine * _ratio(n_points, n_beside) * findable
-    along, across = np.nonzero(length_m >= _LEAST_M)
+    along, across = np.nonzero(length_m >= SHORTEST_M)
     origin = grid.origin.astype(np.int32)
     return (
         (along + origin[0]).astype(np.int32),

@@ -18,7 +18,6 @@ from scanplan.stage import orphans
 INTERRUPTED = "was interrupted; the same command goes on from here"
 """Last words of a stage that Ctrl-C or a signal to end has ended."""
 
-_SCREEN_INTERVAL_S = 2.0  # between lines of progress: often enough to read a rate, seldom enough
 _log = logging.getLogger("scanplan")
 _screen: TextIO | None = None
 
@@ -141,7 +140,7 @@ def report_progress(
     for done, item in enumerate(items, 1):
         yield item
         now = time.monotonic()
-        if now - reported > _SCREEN_INTERVAL_S:
+        if now - reported > orphans.INTERVAL_S:
             reported = now
             log_line(_progress_line(label, done, total, unit, now - started))
     log_line(_progress_line(label, done, total, unit, time.monotonic() - started))

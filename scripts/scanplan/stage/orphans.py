@@ -13,7 +13,8 @@ import psutil
 
 from scanplan.store import atomic
 
-_WATCH_INTERVAL_S = 1.0  # an orphan lives on for so long; asking costs a fraction of a millisecond
+INTERVAL_S = 2.0
+"""How often a stage looks up from its work: whether it is an orphan, and to report its progress."""
 _SHELLS = {"sh", "bash", "dash", "zsh"}
 
 
@@ -45,6 +46,6 @@ def end_with_supervisor() -> None:
 
 def _watch() -> None:
     while not is_orphaned():
-        time.sleep(_WATCH_INTERVAL_S)
+        time.sleep(INTERVAL_S)
     atomic.discard_unfinished()
     os._exit(1)

@@ -9,8 +9,6 @@ from scanplan.stage import log, workers
 from scanplan.store import tables
 from scanplan.types import FilePath, IntArray
 
-_CHUNKS_PER_CORE = 8  # more balance scans that take long, fewer open the table less often
-
 Result = TypeVar("Result")
 Keywords = Mapping[str, Any]
 
@@ -49,7 +47,7 @@ def map_scans(
     """
     scan_ids = tables.ScanStore(scans_path).scan_ids
     keywords = per_scan or {}
-    parts = np.array_split(scan_ids, max(1, threads) * _CHUNKS_PER_CORE)
+    parts = np.array_split(scan_ids, max(1, threads) * workers.JOBS_PER_CORE)
     jobs = [
         (function, str(scans_path), part, _keywords_of(part, keywords), settings)
         for part in parts

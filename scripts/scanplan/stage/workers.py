@@ -14,7 +14,9 @@ from scanplan.stage import orphans
 RunJobs = Callable[[Callable[..., Any], Iterable[tuple[Any, ...]]], Iterator[Any]]
 """`run(function, jobs)`: iterates over `function(*job)` of all jobs, in their order."""
 
-_WAITING_PER_CORE = 2  # one at work and one to follow it at once; more only fill memory
+JOBS_PER_CORE = 8
+"""More balance jobs that take long, fewer begin less often and fill less memory."""
+
 _setup_fault: Exception | None = None
 
 
@@ -50,7 +52,7 @@ def open_pool(
     with ProcessPoolExecutor(threads, context, _begin_worker, (setup, state)) as executor:
         try:
             yield lambda function, jobs: _run_in_order(
-                executor, function, jobs, threads * _WAITING_PER_CORE
+                executor, function, jobs, threads * JOBS_PER_CORE
             )
         except BrokenProcessPool:
             raise StageError(

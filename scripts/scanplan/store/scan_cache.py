@@ -10,7 +10,7 @@ import numpy as np
 from scanplan.store import atomic
 from scanplan.types import FilePath, FloatArray
 
-_POINT = np.dtype((np.float32, 3))
+POINT = np.dtype((np.float32, 3))
 
 
 class ScanCache:
@@ -65,7 +65,7 @@ class ScanCachePart:
     def __iter__(self) -> Iterator[FloatArray]:
         with Path(self._path).open("rb") as file:
             for start, end in self._ranges:
-                file.seek(start * _POINT.itemsize)
+                file.seek(start * POINT.itemsize)
                 yield np.fromfile(file, np.float32, 3 * (end - start)).reshape(-1, 3)
 
 

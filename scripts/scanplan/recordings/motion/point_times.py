@@ -11,18 +11,15 @@ from typing import NamedTuple
 
 import numpy as np
 
+from scanplan.recordings import clocks
 from scanplan.stage import log
 from scanplan.types import Array, FloatArray
 
 SHORTEST_SWEEP_S = 5e-3  # 200 Hz, faster than any scanner turns
 LONGEST_SWEEP_S = 0.5  # 2 Hz, slower than any turns; a hundredfold range parts units of 1,000
-_FARTHEST_FROM_STAMP_S = 1.0  # a stamp farther off is of another clock
-_PERCENTILES = (5, 95)  # a sweep is judged between them, as a few times may be bad
-_SHARE_BETWEEN = 0.9  # of a sweep, between these percentiles
-_SHARE_BEYOND = 0.25  # of their distance; a point that lies farther beyond is a bad one
+_QUANTILES = (0.05, 0.95)  # a sweep is judged between them, as a few times may be bad
 _LEAST_AGREEING = 0.75  # share of the scans that a unit must make sweeps of
-_UNIT_NS = {"s": 10**9, "ms": 10**6, "us": 10**3, "ns": 1}
-UNITS = tuple(_UNIT_NS)
+UNITS = ("s", "ms", "us", "ns")
 
 
 @dataclass(frozen=True)
@@ -57,7 +54,7 @@ class TimeConvention:
             Seconds; NaN where `time_raw` is no finite number.
         """
         values = np.asarray(time_raw)
-        unit_ns = _UNIT_NS[self.unit]
+        unit_ns = _unit_ns(self.unit)
         stamp_ns = t_ns if self.zero == "epoch" else 0
         if values.dtype.kind in "iu":
             values = values.astype(np.int64)
@@ -151,29 +148,34 @@ def is_one_sweep(time_s: FloatArray) -> bool:
     first_s = time_s.min()
     last_s = time_s.max()
     # a comparison with NaN is false
-    is_near = max(-first_s, last_s) <= _FARTHEST_FROM_STAMP_S
+    is_near = max(-first_s, last_s) <= clocks.OF_ANOTHER_CLOCK_S
     return bool(is_near and last_s - first_s <= LONGEST_SWEEP_S)
 
 
+def _unit_ns(unit: str) -> int:
+    return int(np.timedelta64(1, unit) // np.timedelta64(1, "ns"))
+
+
 def _lasts_a_sweep(span: float, unit: str) -> bool:
-    return SHORTEST_SWEEP_S <= span * _UNIT_NS[unit] / 1e9 <= LONGEST_SWEEP_S
+    return SHORTEST_SWEEP_S <= span * _unit_ns(unit) / 1e9 <= LONGEST_SWEEP_S
 
 
 def _span(values: FloatArray) -> float:
     """Return how long a sweep (n,) of evenly spread times lasts, in spite of a few bad ones."""
     if len(values) == 0:
         return 0.0
-    low, high = np.percentile(values, _PERCENTILES)
-    return float(high - low) / _SHARE_BETWEEN
+    low, high = np.quantile(values, _QUANTILES)
+    return float((high - low) / np.ptp(_QUANTILES))
 
 
 def _without_outliers(values: Array) -> Array:
     """Return the times of (n,) finite ones that are not far from the others."""
     if len(values) == 0:
         return values
-    low, high = np.percentile(values, _PERCENTILES)
-    margin = _SHARE_BEYOND * (high - low)
-    return values[(values >= low - margin) & (values <= high + margin)]
+    low, high = np.quantile(values, _QUANTILES)
+    # bad ones are farther from most others than these from one another
+    reach = high - low
+    return values[(values >= low - reach) & (values <= high + reach)]
 
 
 def _earliest(values: Array) -> float | int:

@@ -20,17 +20,13 @@ from scanplan.stage import log
 from scanplan.types import FloatArray, IntArray
 
 _WINDOW_S = 3.0  # a turn begins and ends within it, and the rover stays in a room
-_MOST_WINDOWS = 8  # more decode more scans and seldom change the answer
-_SCANS_A_WINDOW = 10
+_MOST = 10  # windows, and scans of each: more are long decoded and seldom change the answer
 _POINTS_A_SCAN = 3000  # some on every wall of a room
-_NEAREST_M = 0.3  # nearer points are the rover's own
-_FARTHEST_M = 30.0  # farther ones a small error of the turn moves too much
 _RADIUS_M = 0.2  # of a place: less than the distance of two walls
-_PLACES_A_WINDOW = 200
-_SEED = 1
-_REACH_M = 5.0  # typical distance of a wall
-_LEAST_EFFECT_M = 0.02  # the change of turning must move a point at it by so much: a range's noise
+_LEAST_EFFECT_RAD = 0.004  # the change of turning within a sweep: at 5 m the noise of a range
 _CLEARLY = 0.9  # share of the scatter as stated that another reading must fall below
+_PLACES_A_WINDOW = 200
+_SEED = 1  # of the choice of points and places
 _FEWEST_PLACES = 100  # of fewer the median scatters by more than that
 
 
@@ -110,7 +106,7 @@ def choose_turning_windows(t_ns: IntArray, motion: SensorMotion) -> list[IntArra
     Returns
     -------
     list of (k,) int64
-        Indices of the scans of each window, at most `_SCANS_A_WINDOW`, which are within one piece
+        Indices of the scans of each window, at most `_MOST`, which are within one piece
         of the motion.
     """
     ends = np.searchsorted(t_ns, t_ns + int(_WINDOW_S * 1e9))
@@ -118,19 +114,19 @@ def choose_turning_windows(t_ns: IntArray, motion: SensorMotion) -> list[IntArra
     windows = []
     for start in range(0, len(t_ns), step):
         window = np.arange(start, ends[start])
-        effect_m = _turning_effect_m(t_ns[window], motion)
-        if effect_m >= _LEAST_EFFECT_M:
-            windows.append((effect_m, window))
+        effect_rad = _turning_effect_rad(t_ns[window], motion)
+        if effect_rad >= _LEAST_EFFECT_RAD:
+            windows.append((effect_rad, window))
     windows.sort(key=lambda item: -item[0])
     apart: list[IntArray] = []
     for rank, (_, window) in enumerate(windows):
         if not any(_overlap(window, better) for _, better in windows[:rank]):
             apart.append(window)
-    return [_spread_scans(window) for window in apart[:_MOST_WINDOWS]]
+    return [_spread_scans(window) for window in apart[:_MOST]]
 
 
-def _turning_effect_m(t_ns: IntArray, motion: SensorMotion) -> float:
-    """Return by how much changes of turning (n,) move a wall; 0 where they are not known."""
+def _turning_effect_rad(t_ns: IntArray, motion: SensorMotion) -> float:
+    """Return by how much turning between scans (n,) changes; 0 where it is not known."""
     pose = motion.at(t_ns) if len(t_ns) > 3 else None
     gap_s = np.diff(t_ns) / 1e9
     if pose is None or (gap_s <= 0).any():
@@ -146,7 +142,7 @@ def _turning_effect_m(t_ns: IntArray, motion: SensorMotion) -> float:
         axis=1,
     )
     rate = skew / 2 / gap_s[:, None]
-    return float(np.linalg.norm(rate.std(axis=0)) * np.median(gap_s) * _REACH_M)
+    return float(np.linalg.norm(rate.std(axis=0)) * np.median(gap_s))
 
 
 def _overlap(one: IntArray, other: IntArray) -> bool:
@@ -154,7 +150,7 @@ def _overlap(one: IntArray, other: IntArray) -> bool:
 
 
 def _spread_scans(window: IntArray) -> IntArray:
-    n = min(len(window), _SCANS_A_WINDOW)
+    n = min(len(window), _MOST)
     return window[np.linspace(0, len(window) - 1, n).astype(int)]
 
 
@@ -208,7 +204,11 @@ def _measure_scatters(
         maps.append(merged)
     owners = np.concatenate([np.full(len(scan.xyz_m), scan.scan_id) for scan in group])
     centres_m = plane_scatter.choose_places(
-        maps[0], planar=planar, radius_m=_RADIUS_M, most_places=_PLACES_A_WINDOW, seed=_SEED
+        maps[0],
+        planar=planar,
+        radius_m=_RADIUS_M,
+        most_places=_PLACES_A_WINDOW,
+        seed=_SEED,
     )
     scatters = [
         plane_scatter.measure_scatter(xyz_m, owners, centres_m, planar=planar, radius_m=_RADIUS_M)
@@ -230,10 +230,9 @@ def _merge_scans(group: Sequence[Scan], motion: SensorMotion) -> FloatArray | No
 
 
 def _thin_scan(scan: Scan) -> Scan:
-    """Return the scan with a random share of its points, neither the rover's own nor far ones."""
-    range_m = np.linalg.norm(scan.xyz_m, axis=1)
-    (near,) = np.nonzero((range_m > _NEAREST_M) & (range_m < _FARTHEST_M))
+    """Return the scan with a random share of its points."""
     rng = np.random.default_rng([_SEED, scan.scan_id])
-    rows = np.sort(rng.choice(near, min(len(near), _POINTS_A_SCAN), replace=False))
+    n_points = len(scan.xyz_m)
+    rows = np.sort(rng.choice(n_points, min(n_points, _POINTS_A_SCAN), replace=False))
     time_s = None if scan.time_s is None else scan.time_s[rows]
     return replace(scan, xyz_m=scan.xyz_m[rows], time_s=time_s)

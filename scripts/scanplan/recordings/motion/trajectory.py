@@ -19,7 +19,6 @@ from scanplan.store.pose_columns import pose_columns, split_pose_columns
 from scanplan.types import Array, BoolArray, Columns, FloatArray, IntArray
 
 _ENOUGH = 0.95  # of the most covered scans: a smoother source may lack a few at the ends
-_STEP_M = 0.5  # so long that a localiser's corrections of centimetres do not count
 _FEWEST_STEPS = 3  # of fewer the median ratio says nothing
 _AGREEMENT = 1.25  # wheels slip by less; a disconnected or misscaled source differs by more
 
@@ -227,7 +226,7 @@ def _way_ratio(motion: SensorMotion, poses: SensorMotion) -> float:
     """Return the median ratio of a motion's steps to the poses' of half a metre; 1 of too few."""
     ends = [0]
     for i in range(1, len(poses.t_ns)):
-        if np.linalg.norm(poses.xyz_m[i] - poses.xyz_m[ends[-1]]) >= _STEP_M:
+        if np.linalg.norm(poses.xyz_m[i] - poses.xyz_m[ends[-1]]) >= pose_jumps.LEAST_M:
             ends.append(i)
     ends = np.array(ends, int)
     ends = ends[motion.covered(poses.t_ns[ends])]

@@ -14,14 +14,13 @@ are drawn with soft edges.
 import numpy as np
 import shapely
 
+from scanplan.geometry.tolerances import ROUNDING
 from scanplan.types import Array, FloatArray, IntArray
 
 _CELLS_PER_SIDE = 8  # of a part of common size; more are tighter, and slower to fill
-_MOST_CELLS = 10**6  # of the plane, where parts are few: 8 MB
-_MOST_CELLS_PER_PART = 400  # of the plane, where parts are many
+_MOST_CELLS = 10**7  # of the plane: 80 MB
 _AT_A_TIME = 4096  # polygons filled together: bounds the memory
-_ROUNDING = 1e-6  # of a cell, added to its areas: sums differ by less, and so do 32-bit numbers
-_NOISE = 1e-9  # of a cell: less may be rounding, and is not listed
+_ROUNDING = np.finfo(np.float32).eps  # of a cell, added to its areas, which are kept so
 
 
 class CellBounds:
@@ -56,7 +55,7 @@ class CellBounds:
             [(share + _ROUNDING).astype(np.float32) for *_, share in filled] + [no_share]
         )
         n_unlisted = _grid(boxes, self._edge_m)[1].prod(axis=1) - np.diff(self._first)
-        self._unlisted_m2 = _NOISE * self._edge_m**2 * n_unlisted
+        self._unlisted_m2 = ROUNDING * self._edge_m**2 * n_unlisted
         self._free = np.full(self._shape.prod(), 1 + _ROUNDING)
         self._pending: list[Array] = []
 
@@ -113,7 +112,7 @@ def _cell_edge_m(boxes: FloatArray) -> float:
     usual_m = np.sqrt(np.mean(sides_m.sum(axis=1) ** 2)) / 2
     low_m, high_m = _extent(boxes)
     plane_m2 = np.prod(high_m - low_m)
-    least_m = np.sqrt(plane_m2 / max(_MOST_CELLS, _MOST_CELLS_PER_PART * len(boxes)))
+    least_m = np.sqrt(plane_m2 / _MOST_CELLS)
     return float(max(usual_m / _CELLS_PER_SIDE, least_m))
 
 
@@ -146,7 +145,7 @@ def _fill_cells(polygons: Array, edge_m: float) -> tuple[IntArray, IntArray, Flo
     added = np.bincount(own, in_own, minlength=n_cells)
     added = added + np.bincount(own + 1, down - in_own, minlength=n_cells)
     share = np.cumsum(added, dtype=float)
-    listed = np.flatnonzero(share > _NOISE)
+    listed = np.flatnonzero(share > ROUNDING)
     row = np.repeat(np.arange(len(polygons)), width * height)[listed]
     y, x = np.divmod(listed - first[row], width[row])
     return row, np.column_stack([x, y]) + low[row], share[listed]

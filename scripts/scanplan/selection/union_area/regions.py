@@ -7,16 +7,13 @@ from shapely.geometry.base import BaseGeometry
 from scanplan.geometry.polygons import unite_polygons
 from scanplan.types import Array, IntArray
 
-_LEVEL = 2.0  # the squares of one size are so many times those of the next smaller one
-_SMALLEST = 0.5  # of the largest polygon: smaller windows cost more unions than they save corners
-
 
 class Regions:
     """What is covered round each of many polygons.
 
-    The plane is divided into squares, for polygons of every order of size, at least as large as
-    those. A polygon belongs to the square that the lower left corner of its box lies in, and is
-    therefore inside a window of two by two squares. Each window unites all that reaches into it
+    The plane is divided into squares as large as the largest polygon. A polygon belongs to the
+    square that the lower left corner of its box lies in, and is therefore inside a window of two by
+    two squares. Each window unites all that reaches into it
     when it is next asked: the union of many hulls has few corners, and is quickly subtracted.
 
     Parameters
@@ -27,15 +24,10 @@ class Regions:
 
     def __init__(self, polygons: Array) -> None:
         boxes = shapely.bounds(polygons).reshape(-1, 4)
-        side_m = (boxes[:, 2:] - boxes[:, :2]).max(axis=1)
-        side_m = np.maximum(
-            _LEVEL ** np.ceil(np.log(side_m) / np.log(_LEVEL)), _SMALLEST * side_m.max(initial=0.0)
-        )
-        home = np.column_stack([np.floor(boxes[:, :2] / side_m[:, None]), side_m])
-        squares, window = np.unique(home, axis=0, return_inverse=True)
+        side_m = (boxes[:, 2:] - boxes[:, :2]).max(initial=0.0)
+        squares, window = np.unique(np.floor(boxes[:, :2] / side_m), axis=0, return_inverse=True)
         self._window = window.reshape(-1)
-        side_m = squares[:, 2:]
-        low_m = squares[:, :2] * side_m
+        low_m = squares * side_m
         self._tree = shapely.STRtree(shapely.box(*low_m.T, *(low_m + 2 * side_m).T))
         self._union = np.full(len(squares), shapely.Polygon(), object)
         self._pending: list[list[BaseGeometry]] = [[] for _ in squares]

@@ -1,18 +1,15 @@
 """What a growing choice of polygons leaves uncovered of every polygon, measured where asked."""
 
-from concurrent.futures import Executor
-
 import numpy as np
 import shapely
 
 from scanplan.geometry.polygons import Polygons, move_near_origin, subtract_polygons
+from scanplan.geometry.tolerances import ROUNDING
 from scanplan.selection.union_area.cell_bounds import CellBounds, list_members
 from scanplan.selection.union_area.regions import Regions
 from scanplan.types import Array, FloatArray, IntArray
 
-_NO_AREA_M2 = 1e-12  # overlays of parts of a few metres are no more exact
-_FEW = 6  # chosen parts subtracted one by one from the small rest of a part; more by their union
-_FEW_OF_WHOLE = 1  # and from a part that nothing was subtracted from yet
+_FEW = 6  # chosen parts subtracted from a part one by one; more by their union
 
 
 class Uncovered:
@@ -27,8 +24,6 @@ class Uncovered:
     ----------
     polygons : (n,) sequence of shapely geometries, n >= 0
         As for `polygons.move_near_origin`.
-    threads : concurrent.futures.Executor, optional
-        Threads to overlay on; the results are the same with any number of them.
 
     Attributes
     ----------
@@ -41,8 +36,7 @@ class Uncovered:
         Whether it has not been chosen.
     """
 
-    def __init__(self, polygons: Polygons, threads: Executor | None = None) -> None:
-        self._threads = threads
+    def __init__(self, polygons: Polygons) -> None:
         polygons = move_near_origin(polygons)
         parts, owner = shapely.get_parts(polygons, return_index=True)
         has_area = shapely.area(parts) > 0
@@ -150,7 +144,7 @@ class Uncovered:
 
     def _measure(self, parts: IntArray) -> None:
         """Subtract what is covered of stale parts."""
-        few = self._n_new[parts] <= np.where(self._measured[parts], _FEW, _FEW_OF_WHOLE)
+        few = self._n_new[parts] <= _FEW
         for i in range(self._n_new[parts[few]].max(initial=0)):
             some = parts[few][self._n_new[parts[few]] > i]
             self._subtract(some, self._whole[self._new[some, i]])
@@ -162,11 +156,11 @@ class Uncovered:
     def _subtract(self, parts: IntArray, others: Array) -> None:
         if len(parts) == 0:
             return
-        left = subtract_polygons(self._left[parts], others, self._threads)
+        left = subtract_polygons(self._left[parts], others)
         self._left[parts] = left
         self._left_box[parts] = shapely.bounds(left).reshape(-1, 4)
         self._measured[parts] = True
 
     def _finish(self, parts: IntArray, area_m2: FloatArray) -> None:
-        self._area_m2[parts] = np.where(area_m2 > _NO_AREA_M2, area_m2, 0.0)
+        self._area_m2[parts] = np.where(area_m2 > ROUNDING, area_m2, 0.0)
         self._n_new[parts] = 0
