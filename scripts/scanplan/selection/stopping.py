@@ -33,7 +33,7 @@ def choose_n_scans(
     n_scans : int, >= 1, optional
         Use so many scans, or all if there are fewer.
     area_share : float in (0, 1], optional
-        Use the fewest scans that cover this share of what all cover (within `SMALLEST_M2`), measured by
+        Use the fewest scans that cover this share of what all cover (within a square millimetre),
         `covered`, the objective of the method itself, where it is given.
     min_gain_m2 : float, > 0, optional
         Use no scan after the last that adds this much area.
