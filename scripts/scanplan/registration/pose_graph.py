@@ -4,6 +4,7 @@ Lu and Milios 1997, "Globally consistent range scan alignment for environment ma
 weights are those of Geman and McClure, by which a false loop ends with next to no weight.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -74,7 +75,8 @@ def solve_pose_graph(
         equations = GraphEquations(
             constraints, priors, prior_information, planar=planar, kernel=kernel * width
         )
-        return _minimise(equations, pose, max_iterations)
+        # a wide kernel's solution is a start only
+        return _minimise(equations, pose, max_iterations, _STEP_DONE * math.sqrt(width))
 
     pose = np.array(start, float)
     for width in _WIDE_KERNELS:
@@ -84,7 +86,7 @@ def solve_pose_graph(
 
 
 def _minimise(
-    equations: GraphEquations, pose: FloatArray, max_iterations: int
+    equations: GraphEquations, pose: FloatArray, max_iterations: int, step_done: float
 ) -> tuple[FloatArray, GraphState]:
     """Step to the least squares of the reweighted equations, again and again.
 
@@ -96,7 +98,7 @@ def _minimise(
     for _ in range(max_iterations):
         moved = equations.move(pose, step)
         moved_state = equations.evaluate(moved)
-        is_done = np.abs(step).max() < _STEP_DONE
+        is_done = np.abs(step).max() < step_done
         if moved_state.cost <= state.cost:
             pose = moved
             state = moved_state
@@ -110,8 +112,8 @@ def _minimise(
 
 def _least_squares_step(equations: GraphEquations, state: GraphState) -> FloatArray:
     hessian, gradient = equations.normal_equations(state)
-    # regular where measurements next to nothing weigh in
-    regular = hessian + sparse.diags_array(ROUNDING * hessian.diagonal())
+    # regular even where no measurement says anything
+    regular = hessian + sparse.diags_array(ROUNDING * (hessian.diagonal() + 1.0))
     factors = splu(
         regular.tocsc(),
         permc_spec="MMD_AT_PLUS_A",
