@@ -8,7 +8,7 @@ import numpy as np
 from scanplan.exports import drawing, dxf, geojson, grid_map, ifc
 from scanplan.plan import floorplan
 from scanplan.rays import levels
-from scanplan.stage import log
+from scanplan.stage import figure_files, log
 from scanplan.store import atomic, schemas, tables
 from scanplan.types import Columns, FilePath, IntArray, Settings
 
@@ -55,8 +55,8 @@ def export_plan(
     grid = grid_map.draw_grid_map(drawn, settings["map_cell_m"])
     atomic.write_text(outputs["geojson"], geojson.format_geojson(drawn, evidence))
     atomic.write_text(outputs["dxf"], dxf.format_dxf(drawn))
-    atomic.write_text(outputs["svg"], drawing.format_svg(sheet))
-    atomic.write_bytes(outputs["pdf"], drawing.format_pdf(sheet))
+    atomic.write_text(outputs["svg"], figure_files.format_svg(sheet))
+    atomic.write_bytes(outputs["pdf"], figure_files.format_pdf(sheet))
     atomic.write_text(outputs["ifc"], ifc.format_ifc(drawn))
     atomic.write_bytes(outputs["pgm"], grid_map.format_pgm(grid))
     atomic.write_text(outputs["yaml"], grid_map.format_map_yaml(grid, Path(outputs["pgm"]).name))
