@@ -19,8 +19,8 @@ OCCUPIED = 0
 UNKNOWN = 205
 _MARGIN_M = 0.5  # around all that is known: room for a planner's inflation of obstacles
 _MOST_CELLS = 64_000_000  # a robot's memory: 64 MB, 400 m x 400 m at 5 cm
-# occupancy is (255 - grey) / 255, that of `UNKNOWN` 0.196: nav2's own free_thresh of 0.25 would take
-# the unknown for free
+# occupancy is (255 - grey) / 255, that of `UNKNOWN` 0.196: nav2's own free_thresh of 0.25 would
+# take the unknown for free
 _MAP_YAML = """\
 image: {image}
 mode: trinary
