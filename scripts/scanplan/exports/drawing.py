@@ -37,7 +37,7 @@ def draw_plan(plan: FloorPlan) -> Figure:
     low_m, high_m = plan.extent_m
     scale = choose_scale(high_m - low_m)
     with matplotlib.rc_context({"font.size": LETTER_POINTS}):
-        axes = drawing_frame.open_page(low_m, high_m, scale)
+        figure, axes = drawing_frame.open_page(low_m, high_m, scale)
         for state in floorplan.STATES:
             _draw_walls(axes, plan, state)
         _draw_openings(axes, plan, scale * constants.point)
@@ -47,7 +47,8 @@ def draw_plan(plan: FloorPlan) -> Figure:
         drawing_frame.draw_dimension(axes, np.array([low_m[0], high_m[1]]), low_m, scale)
         contents = floorplan.summarise_floorplan(plan)
         drawing_frame.draw_title_block(axes, plan.name, contents, scale, _legend_samples(plan))
-        return drawing_frame.close_page(axes)
+        drawing_frame.close_page(figure)
+    return figure
 
 
 def choose_scale(extent_m: FloatArray) -> int:

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.offsetbox import AnchoredOffsetbox, DrawingArea, HPacker, TextArea, VPacker
 from matplotlib.patches import FancyArrowPatch, Rectangle
 from matplotlib.text import Text
+from matplotlib.transforms import BboxTransformFrom
 from scipy import constants
 
 from scanplan.exports.drawing_style import FAINT, INK, LAYERS, LETTER_POINTS, POINTS_PER_MM, STROKES
@@ -23,8 +24,8 @@ _BAR_MM = 100.0  # of paper: a scale bar of this length is round at every usual 
 _LONGEST_NAME = 60  # letters; more of a title is cut off
 
 
-def open_page(low_m: FloatArray, high_m: FloatArray, scale: int) -> Axes:
-    """Return axes in metres at a scale, over a drawing and its dimensions, on a page of their own.
+def open_page(low_m: FloatArray, high_m: FloatArray, scale: int) -> tuple[Figure, Axes]:
+    """Return a page with axes in metres at a scale, over a drawing and its dimensions.
 
     Parameters
     ----------
@@ -41,18 +42,17 @@ def open_page(low_m: FloatArray, high_m: FloatArray, scale: int) -> Axes:
     axes.set_axis_off()
     axes.set_xlim(begin_m[0], end_m[0])
     axes.set_ylim(begin_m[1], end_m[1])
-    return axes
+    return figure, axes
 
 
-def close_page(axes: Axes) -> Figure:
-    """Return the figure of a page, as large as what is drawn on it with a border around."""
-    figure = axes.get_figure(root=True)
+def close_page(figure: Figure) -> None:
+    """Make a page as large as what is drawn on it, with a border around."""
+    (axes,) = figure.axes
     page = figure.get_tightbbox().padded(_BORDER_MM * constants.milli / constants.inch)
     drawing = axes.get_window_extent().transformed(figure.dpi_scale_trans.inverted())
-    left, bottom = (drawing.p0 - page.p0) / page.size
-    axes.set_position((left, bottom, *(drawing.size / page.size)))
-    figure.set_size_inches(page.size)
-    return figure
+    place = drawing.transformed(BboxTransformFrom(page))
+    axes.set_position(place)
+    figure.set_size_inches(page.width, page.height)
 
 
 def letter_m(scale: int) -> float:
@@ -82,8 +82,10 @@ def draw_dimension(axes: Axes, start_m: FloatArray, end_m: FloatArray, scale: in
     for corner_m, end_m in zip(corners_m, ends_m, strict=True):
         extension_m = np.stack([corner_m + away_m, end_m + away_m / 2])
         axes.plot(*extension_m.T, **stroke.line)
+    x_m, y_m = ends_m.mean(axis=0) + above_m / 2
     axes.text(
-        *(ends_m.mean(axis=0) + above_m / 2),
+        x_m,
+        y_m,
         f"{math.dist(*corners_m):.2f}",
         rotation=turn_deg,
         rotation_mode="anchor",
@@ -180,6 +182,6 @@ def _map_axes() -> DrawingArea:
                 shrinkB=0,
             )
         )
-        place = 2.5 * letter * way
-        area.add_artist(Text(*place, label, style="italic", ha="center", va="center"))
+        x, y = 2.5 * letter * way
+        area.add_artist(Text(x, y, label, style="italic", ha="center", va="center"))
     return area

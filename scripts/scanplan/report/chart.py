@@ -81,7 +81,7 @@ class _ScanAxis:
             locator = LogLocator(subs=(1, 2, 5), numticks=self.n_scans)
         else:
             locator = MaxNLocator(steps=[1, 2, 5, 10], integer=True)
-        ticks = {1, *locator.tick_values(1, self.n_scans).astype(int).tolist()}
+        ticks = {1, *map(int, locator.tick_values(1, self.n_scans))}
         return sorted(tick for tick in ticks if 1 <= tick <= self.n_scans)
 
 

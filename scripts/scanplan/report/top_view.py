@@ -97,9 +97,9 @@ def label_colour_bar(bar: Colorbar, label: str) -> None:
 
 
 def _shade(axes: Axes, points_xy_m: FloatArray, low_m: FloatArray, high_m: FloatArray) -> None:
-    grey, edges_m = _density(
-        points_xy_m, low_m, high_m - low_m, axes.get_figure(root=True).bbox.width
-    )
+    # at the size that figures are shown in, on a screen of double density, about a pixel each
+    n_cells = 2 * max(axes.bbox.width, axes.bbox.height)
+    grey, edges_m = _density(points_xy_m, low_m, high_m - low_m, n_cells)
     axes.imshow(
         grey,
         cmap="Greys",
