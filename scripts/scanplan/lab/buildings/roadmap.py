@@ -15,7 +15,7 @@ from scanplan.errors import StageError
 from scanplan.types import BoolArray, FilePath, FloatArray, IntArray
 
 _MARGIN_M = 0.02  # beyond the stated clearance, so that steps between cells keep the clearance
-_CELLS_M = (0.05, 0.1)  # doors hardly wider than the rover are met; of a large floor, a quarter
+_CELLS_M = (0.05, 0.1)  # doors hardly wider than the rover are met, and those of large floors
 _LARGE_M2 = 300.0  # of floor, 120,000 fine cells: seconds for every stop's ways
 _MAX_CELLS = 20e6  # rasters of 160 MB each
 ROOMY_M = 0.6  # from an obstacle: the way keeps the middle of doors, with no detour in rooms
