@@ -3,9 +3,8 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from scanplan.exports import drawing
 from scanplan.report import figures
-from scanplan.stage import log
+from scanplan.stage import figure_files, log
 from scanplan.store import atomic, schemas, tables
 from scanplan.types import FilePath
 
@@ -21,7 +20,7 @@ def draw_area(selections: Sequence[FilePath], output: FilePath) -> None:
         figures/area.svg, to write.
     """
     orderings = {Path(path).stem: tables.read_table(path, schemas.SELECTION) for path in selections}
-    atomic.write_text(output, drawing.format_svg(figures.draw_area_figure(orderings)))
+    atomic.write_text(output, figure_files.format_svg(figures.draw_area_figure(orderings)))
     log.log_line(f"draw_area: {len(orderings)} orderings")
 
 

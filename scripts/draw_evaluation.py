@@ -1,8 +1,7 @@
 """Draw how well every ordering's first scans show the true walls (thesis, figure 5.4)."""
 
-from scanplan.exports import drawing
 from scanplan.lab.evaluation import evaluation_figure, oracle_figure
-from scanplan.stage import log
+from scanplan.stage import figure_files, log
 from scanplan.store import atomic, schemas, tables
 from scanplan.types import FilePath
 
@@ -32,8 +31,8 @@ def draw_evaluation(
     figure = evaluation_figure.draw_evaluation_figure(
         measures, aligned_measures, method=method, extractor=extractor
     )
-    atomic.write_text(output, drawing.format_svg(figure))
-    atomic.write_text(shares, drawing.format_svg(oracle_figure.draw_oracle_figure(measures)))
+    atomic.write_text(output, figure_files.format_svg(figure))
+    atomic.write_text(shares, figure_files.format_svg(oracle_figure.draw_oracle_figure(measures)))
     log.log_line(f"draw_evaluation: {len(measures['k'])} subsets")
 
 

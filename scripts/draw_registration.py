@@ -1,8 +1,7 @@
 """Draw the audit of the registration: the track, every scan's verdict, how well neighbours fit."""
 
-from scanplan.exports import drawing
 from scanplan.report import registration_figure, top_view
-from scanplan.stage import log
+from scanplan.stage import figure_files, log
 from scanplan.store import atomic, schemas, tables
 from scanplan.types import FilePath
 
@@ -33,7 +32,7 @@ def draw_registration(
         links,
         dict(zip(thickness["poses"].tolist(), thickness["sigma_m"].tolist(), strict=True)),
     )
-    atomic.write_text(output, drawing.format_svg(figure))
+    atomic.write_text(output, figure_files.format_svg(figure))
     log.log_line(
         f"draw_registration: {len(verdicts['scan_id'])} candidates, {len(links['source'])} links"
     )

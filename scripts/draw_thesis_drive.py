@@ -5,13 +5,12 @@ from pathlib import Path
 
 import numpy as np
 
-from scanplan.exports import drawing
 from scanplan.lab.evaluation import length_metrics
 from scanplan.lab.thesis import drive_figures
 from scanplan.lab.thesis.claim_measures import ITERATIVE, OURS
 from scanplan.lab.thesis.stated_claims import SUBSET
 from scanplan.report import figures, top_view
-from scanplan.stage import log
+from scanplan.stage import figure_files, log
 from scanplan.store import atomic, schemas, tables
 from scanplan.types import FilePath
 
@@ -59,7 +58,7 @@ def draw_thesis_drive(
         "figure_5_12": drive_figures.draw_drive_walls(points_m, lines_m, places_m),
     }
     for path in outputs:
-        atomic.write_text(path, drawing.format_svg(drawn[Path(path).stem]))
+        atomic.write_text(path, figure_files.format_svg(drawn[Path(path).stem]))
     log.log_line(f"draw_thesis_drive: {len(outputs)} figures")
 
 

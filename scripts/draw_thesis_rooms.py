@@ -3,11 +3,10 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from scanplan.exports import drawing
 from scanplan.lab.evaluation import oracle_figure, truth_file
 from scanplan.lab.thesis import room_figures
 from scanplan.lab.thesis.claim_measures import OURS
-from scanplan.stage import log
+from scanplan.stage import figure_files, log
 from scanplan.store import atomic, registered_scans, schemas, tables
 from scanplan.types import FilePath
 
@@ -59,9 +58,9 @@ def draw_thesis_rooms(
     )
     for path in outputs:
         figure = room_figures.draw_room_figure(survey, Path(path).stem, bitmap_cell_m)
-        atomic.write_text(path, drawing.format_svg(figure))
+        atomic.write_text(path, figure_files.format_svg(figure))
     orders_figure = oracle_figure.draw_oracle_figure(*survey.evaluated)
-    atomic.write_text(orders, drawing.format_svg(orders_figure))
+    atomic.write_text(orders, figure_files.format_svg(orders_figure))
     log.log_line(f"draw_thesis_rooms: {len(outputs)} figures")
 
 

@@ -2,10 +2,9 @@
 
 from typing import Any
 
-from scanplan.exports import drawing
 from scanplan.report import figures, top_view
 from scanplan.selection import stopping
-from scanplan.stage import log
+from scanplan.stage import figure_files, log
 from scanplan.store import atomic, schemas, tables
 from scanplan.types import FilePath
 
@@ -40,7 +39,7 @@ def draw_walls(
         plan_faces,
         figures.sensor_positions(poses, selected_ids),
     )
-    atomic.write_text(output, drawing.format_svg(figure))
+    atomic.write_text(output, figure_files.format_svg(figure))
     log.log_line(f"draw_walls: {len(plan_faces['face'])} faces over {count} scans ({reason})")
 
 

@@ -2,6 +2,8 @@
 
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
 from scanplan.extraction.extractors import EXTRACTORS, Extractor
 from scanplan.lab.thesis import plain_ransac, timing
 from scanplan.lab.thesis.claim_measures import ITERATIVE, OURS, PLAIN, PLAIN_CLUSTERS
@@ -12,9 +14,7 @@ from scanplan.types import FilePath, Settings
 _PLAIN = Extractor(plain_ransac.PlainRansacSettings, plain_ransac.extract_plain)
 _EXTRACTORS = {PLAIN_CLUSTERS: (EXTRACTORS[OURS], OURS), PLAIN: (_PLAIN, ITERATIVE)}
 """Task to its extractor, and whose settings it has."""
-_CLUSTERED, _THINNED = 3, 8  # a call for every number of clusters, or of points, is long
-# a factor of about 1.4 apart: even steps of a power law
-_SELECTION_SIZES = (10, 20, 30, 45, 60, 90, 130, 180, 270, 400, 600, 900, 1300)
+_FEWER = 5  # times as few scans, where a call for every number of clusters or points is long
 
 
 def time_stages(
@@ -49,19 +49,19 @@ def time_stages(
     store = tables.ScanStore(scans)
     columns = tables.read_table(built, schemas.HULLS)
     n_scans = len(store.scan_ids)
-    sizes = [*(size for size in _SELECTION_SIZES if size < n_scans), n_scans]
+    # even steps of a power law
+    sizes = np.unique(np.geomspace(min(10, n_scans), n_scans, 14).round().astype(int)).tolist()
     timed_ids = timing.spread_rows(store.scan_ids, timed_scans)
-    clustered_ids = timing.spread_rows(timed_ids, max(timed_scans // _CLUSTERED, 2))
-    thinned_ids = timing.spread_rows(timed_ids, max(timed_scans // _THINNED, 2))
+    few_ids = timing.spread_rows(timed_ids, max(timed_scans // _FEWER, 2))
     rows = [
         *timing.time_selection(columns, sizes),
-        *timing.time_clusters(store, clustered_ids, sorted(n_clusters), **hulls),
+        *timing.time_clusters(store, few_ids, sorted(n_clusters), **hulls),
     ]
     for task, (extractor, name) in _EXTRACTORS.items():
         settings = {**walls[name], **plain_ransac.LIFTED}
         times = timing.time_extractor(task, extractor, store, timed_ids, settings, registration)
         rows += log.report_progress(times, f"time_stages {task}", total=len(timed_ids))
-        rows += timing.time_by_points(task, extractor, store, thinned_ids, settings, registration)
+        rows += timing.time_by_points(task, extractor, store, few_ids, settings, registration)
     rows.sort(key=lambda row: (row["task"], row["size"], row["item"]))
     times_columns = {name: [row[name] for row in rows] for name in schemas.TIMES.columns}
     tables.write_table(output, schemas.TIMES, times_columns)

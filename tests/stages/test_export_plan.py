@@ -37,26 +37,14 @@ NAMES = {
 def plan(tmp_path):
     paths = {name: tmp_path / f"{name}.parquet" for name in TABLES}
     for name, (schema, made) in TABLES.items():
-        tables.write_table(paths[name], schema, made())
-    rng = np.random.default_rng(1)
-    with tables.open_scan_writer(tmp_path / "scans.parquet", planar=False) as write:
-        for scan_id in (5, 9):
-            z_m = np.concatenate(
-                [
-                    np.zeros(500),
-                    np.full(500, floorplan_making.HEIGHT_M + 0.1),
-                    rng.uniform(0, 2.6, 500),
-                ]
-            )
-            write(scan_id, np.column_stack([rng.uniform(0, 7, (1500, 2)), z_m]))
+        numbers = {"floor_z_m": 0.0, "ceiling_z_m": floorplan_making.HEIGHT_M + 0.1}
+        tables.write_table(paths[name], schema, made(), numbers=numbers)
     return paths
 
 
 def exported(plan, folder):
     outputs = {kind: folder / name for kind, name in NAMES.items()}
-    export_plan(
-        plan, plan["faces"].parent / "scans.parquet", outputs, name="office", settings=SETTINGS
-    )
+    export_plan(plan, outputs, name="office", settings=SETTINGS)
     return outputs
 
 
@@ -105,8 +93,7 @@ def test_faces_alone_are_enough(plan, tmp_path):
 
 
 def test_a_planar_survey_has_the_assumed_height(plan, tmp_path):
-    with tables.open_scan_writer(tmp_path / "scans.parquet", planar=True) as write:
-        write(5, np.zeros((3, 3)))
+    tables.write_table(plan["free"], schemas.FREE, floorplan_making.free())
     flat = floorplan_making.walls() | {"z_min_m": np.full(6, np.nan), "z_max_m": np.full(6, np.nan)}
     tables.write_table(plan["walls"], schemas.PLAN_WALLS, flat)
     model = ifcopenshell.open(exported(plan, tmp_path / "plan")["ifc"])
@@ -139,12 +126,10 @@ def test_walls_that_scans_show_from_both_sides_have_their_true_volume(tmp_path):
     assemble_plan(*inputs, made, settings=house_making.PLAN, n_scans=None, area_share=None)
     outputs = {kind: tmp_path / name for kind, name in NAMES.items()}
     # beams of 15 degrees hardly reach floor and ceiling of rooms of 4 m; another sensor's do
-    level = np.random.default_rng(1).uniform(0, 4, (3000, 2))
-    wider = [np.column_stack([level, np.full(3000, z_m)]) for z_m in (0.0, HEIGHT_M)]
-    with tables.open_scan_writer(tmp_path / "wider.parquet", planar=False) as write:
-        for scan_id, xyz_m in house_making.scans():
-            write(scan_id, np.concatenate([xyz_m, *wider]))
-    export_plan(made, tmp_path / "wider.parquet", outputs, name="house", settings=SETTINGS)
+    free = tables.read_table(made["free"], schemas.FREE)
+    heights = {"floor_z_m": 0.0, "ceiling_z_m": HEIGHT_M}
+    tables.write_table(made["free"], schemas.FREE, free, numbers=heights)
+    export_plan(made, outputs, name="house", settings=SETTINGS)
     model = ifcopenshell.open(outputs["ifc"])
     measured = [
         w

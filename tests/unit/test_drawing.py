@@ -6,10 +6,12 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.text import Text
 
 from helpers import floorplan_making
 from helpers.floorplan_making import bare
-from scanplan.exports import drawing, drawing_frame
+from scanplan.exports import drawing
+from scanplan.stage import figure_files
 
 _POINTS_PER_MM = 72 / 25.4
 
@@ -37,24 +39,24 @@ def path_length_mm(element):
 
 
 def test_faces_are_drawn_at_the_scale_that_is_stated(plan):
-    text = drawing.format_svg(drawing.draw_plan(plan))
+    text = figure_files.format_svg(drawing.draw_plan(plan))
     assert any("scale 1:50" in said for said in texts(text))
     assert path_length_mm(groups(text)["single-observed-0"]) == pytest.approx(12_000 / 50, abs=0.01)
 
 
 def test_scale_bar_is_drawn_at_the_scale_that_is_stated(plan):
-    text = drawing.format_svg(drawing.draw_plan(plan))
-    assert "2 m" in texts(text)
+    text = figure_files.format_svg(drawing.draw_plan(plan))
+    assert "5 m" in texts(text)
     low, high = groups(text)["scale-bar-0"], groups(text)["scale-bar-3"]
     starts = [
         float(re.search(r"M (-?[\d.]+)", e.find("{http://www.w3.org/2000/svg}path").get("d"))[1])
         for e in (low, high)
     ]
-    assert (starts[1] - starts[0]) / _POINTS_PER_MM == pytest.approx(2000 / 50 * 3 / 4, abs=0.01)
+    assert (starts[1] - starts[0]) / _POINTS_PER_MM == pytest.approx(5000 / 50 * 3 / 4, abs=0.01)
 
 
 def test_it_says_what_it_shows(plan):
-    said = texts(drawing.format_svg(drawing.draw_plan(plan)))
+    said = texts(figure_files.format_svg(drawing.draw_plan(plan)))
     assert "office" in said
     assert any("3 wall faces" in line for line in said)
     assert any("north unknown" in line for line in said)
@@ -62,14 +64,14 @@ def test_it_says_what_it_shows(plan):
 
 
 def test_the_same_plan_give_the_same_bytes(plan):
-    assert drawing.format_svg(drawing.draw_plan(plan)) == drawing.format_svg(
+    assert figure_files.format_svg(drawing.draw_plan(plan)) == figure_files.format_svg(
         drawing.draw_plan(plan)
     )
-    assert "<dc:date>" not in drawing.format_svg(drawing.draw_plan(plan))
+    assert "<dc:date>" not in figure_files.format_svg(drawing.draw_plan(plan))
 
 
 def test_walls_openings_and_rooms_are_drawn():
-    text = drawing.format_svg(drawing.draw_plan(floorplan_making.plan()))
+    text = figure_files.format_svg(drawing.draw_plan(floorplan_making.plan()))
     drawn = set(groups(text))
     assert {
         "walls-observed-0",
@@ -88,16 +90,18 @@ def test_walls_openings_and_rooms_are_drawn():
 def test_an_area_of_an_open_room_is_told_as_such():
     rooms = floorplan_making.rooms() | {"closed": np.array([True, False])}
     assert "about 9.0 m²" in "\n".join(
-        texts(drawing.format_svg(drawing.draw_plan(floorplan_making.plan(rooms=rooms))))
+        texts(figure_files.format_svg(drawing.draw_plan(floorplan_making.plan(rooms=rooms))))
     )
 
 
 def test_pdf_is_one_page_of_the_same_bytes_and_size():
-    made = drawing.format_pdf(drawing.draw_plan(floorplan_making.plan()))
-    assert made == drawing.format_pdf(drawing.draw_plan(floorplan_making.plan()))
+    made = figure_files.format_pdf(drawing.draw_plan(floorplan_making.plan()))
+    assert made == figure_files.format_pdf(drawing.draw_plan(floorplan_making.plan()))
     assert made.startswith(b"%PDF") and b"CreationDate" not in made
     (box,) = re.findall(rb"/MediaBox \[ 0 0 ([\d.]+) ([\d.]+) \]", made)
-    svg = ElementTree.fromstring(drawing.format_svg(drawing.draw_plan(floorplan_making.plan())))
+    svg = ElementTree.fromstring(
+        figure_files.format_svg(drawing.draw_plan(floorplan_making.plan()))
+    )
     size = [float(svg.get(side).removesuffix("pt")) for side in ("width", "height")]
     assert np.array(box, float) == pytest.approx(size, abs=0.01)
 
@@ -105,8 +109,11 @@ def test_pdf_is_one_page_of_the_same_bytes_and_size():
 @pytest.mark.parametrize("segment", [(0, 0, 0.3, 0), (0, 0, 900, 400), (3, 0, 3, 40)])
 def test_everything_lies_on_the_page_and_no_text_on_another(segment):
     figure = drawing.draw_plan(replace(bare([(*segment, -1)]), name="W" * 100))
-    renderer = FigureCanvasAgg(figure).get_renderer()
-    boxes = [text.get_window_extent(renderer) for text in figure.axes[0].texts if text.get_text()]
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    renderer = canvas.get_renderer()
+    written = [text for text in figure.findobj(Text) if text.get_text()]
+    boxes = [text.get_window_extent(renderer) for text in written]
     page = figure.bbox
     for box in boxes:
         assert page.x0 <= box.x0 <= box.x1 <= page.x1
@@ -117,7 +124,9 @@ def test_everything_lies_on_the_page_and_no_text_on_another(segment):
 @pytest.mark.parametrize("segment", [(0, 0, 0.3, 0), (5, 5, 5, 9), (0, 0, 900, 400)])
 def test_one_face_of_any_size_can_be_drawn(segment):
     ElementTree.fromstring(
-        drawing.format_svg(drawing.draw_plan(replace(bare([(*segment, -1)]), name="$one_face^")))
+        figure_files.format_svg(
+            drawing.draw_plan(replace(bare([(*segment, -1)]), name="$one_face^"))
+        )
     )
 
 
@@ -126,10 +135,3 @@ def test_one_face_of_any_size_can_be_drawn(segment):
 )
 def test_scale_is_the_largest_usual_one_that_fits(extent_m, scale):
     assert drawing.choose_scale(np.array(extent_m)) == scale
-
-
-@pytest.mark.parametrize(
-    ("extent_m", "length_m"), [(12, 2), (12.5, 5), (30, 10), (0.6, 0.2), (5, 2)]
-)
-def test_scale_bar_has_a_round_length(extent_m, length_m):
-    assert drawing_frame.round_bar_length_m(extent_m) == pytest.approx(length_m)

@@ -7,8 +7,8 @@ import pytest
 from helpers import face_making
 from helpers.wall_making import BARE, walls
 from scanplan.errors import StageError
-from scanplan.exports import drawing
 from scanplan.report import figures, top_view
+from scanplan.stage import figure_files
 
 
 def ordering(covered_m2):
@@ -97,7 +97,7 @@ class TestScansFigure:
 
     def test_one_scan_is_enough(self, points, path):
         ElementTree.fromstring(
-            drawing.format_svg(figures.draw_scans_figure(points, path[:1], path[:1]))
+            figure_files.format_svg(figures.draw_scans_figure(points, path[:1], path[:1]))
         )
 
 
@@ -149,7 +149,7 @@ class TestAreaFigure:
 
 def test_figures_are_the_same_bytes_each_time_and_small(points, path):
     first, second = (
-        drawing.format_svg(figures.draw_scans_figure(points, path, path[:4])) for _ in range(2)
+        figure_files.format_svg(figures.draw_scans_figure(points, path, path[:4])) for _ in range(2)
     )
     assert first == second
     assert len(first) < 2e6

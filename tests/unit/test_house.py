@@ -39,7 +39,7 @@ HOMES = {
     "ifcopenshell": ("exports/", "lab/buildings/"),
     "trimesh": ("lab/buildings/",),
     "jinja2": ("report/", "lab/thesis/"),
-    "matplotlib": ("exports/", "report/", "lab/"),
+    "matplotlib": ("exports/", "report/", "lab/", "stage/figure_files.py"),
     "snakemake": (),
     "pandas": (),
     "sklearn": (),

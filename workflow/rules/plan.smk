@@ -37,7 +37,6 @@ rule export_plan:
         rooms="results/{dataset}/plan/rooms.parquet",
         evidence="results/{dataset}/plan/evidence.parquet",
         free="results/{dataset}/plan/free.parquet",
-        scans="results/{dataset}/scans.parquet",
         code=code_of("export_plan"),
     output:
         geojson="results/{dataset}/plan/plan.geojson",

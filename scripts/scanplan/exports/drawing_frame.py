@@ -1,225 +1,187 @@
-"""What stands around a drawing to scale: dimensions, scale bar, map axes, legend and title."""
+"""What stands around a drawing to scale: its page, dimensions, scale bar, axes, title and legend.
+
+The drawing has its place in the axes to scale; matplotlib lays out the rest around it, and the page
+becomes as large as all of it.
+"""
 
 import math
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.font_manager import FontProperties
-from matplotlib.patches import Rectangle
-from matplotlib.textpath import TextPath
+from matplotlib.figure import Figure
+from matplotlib.offsetbox import AnchoredOffsetbox, DrawingArea, HPacker, TextArea, VPacker
+from matplotlib.patches import FancyArrowPatch, Rectangle
+from matplotlib.text import Text
+from matplotlib.transforms import BboxTransformFrom
+from scipy import constants
 
-from scanplan.exports.drawing_style import (
-    DIMENSION_MM,
-    FAINT,
-    INK,
-    LABEL_POINTS,
-    NOTE_POINTS,
-    PANE_MM,
-    POINTS_PER_MM,
-    TICK_MM,
-    TITLE_POINTS,
-    Style,
-)
+from scanplan.exports.drawing_style import FAINT, INK, LAYERS, LETTER_POINTS, POINTS_PER_MM, STROKES
 from scanplan.types import FloatArray
 
-# places below the drawing, millimetres of paper from its lower edge
-_SCALE_BAR_MM = 22
-_MAP_AXES_MM = 18
-_TITLE_MM = 34
-_CONTENTS_MM = 6  # below the title
-_LEGEND_MM = 44
-
-# dimensions, millimetres of paper
-_DIMENSION_AWAY_MM = 9  # of the dimension line from the drawing
-_EXTENSION_GAP_MM = 3  # between the drawing and the extension line
-_EXTENSION_BEYOND_MM = (
-    1.5  # of the extension line beyond the dimension line: ISO 129-1 has 8 widths
-)
-_TICK_HALF_MM = 1.2  # of an oblique stroke, to both sides
-_DIMENSION_TEXT_MM = 1.2  # of the number from the dimension line
-_SHORTEST_M = 1e-9  # keeps the direction of a dimension of no length finite
-
-_BAR_SHARE = 0.4  # of the drawing's width: longest scale bar
-_BAR_WIDTH_MM = 60  # a narrower drawing has the scale bar of one so wide
-_BAR_HEIGHT_MM = 1.6
-_BAR_PARTS = 4  # black and white in turn
-_BAR_TEXT_MM = 1.2  # of the numbers from the bar
-_BAR_LINE_POINTS = 0.5  # 0.18 mm, narrow
-_ROUND = 1e-9  # of a length: 0.4 times 5 m allows 2 m
-
-_AXIS_MM = 5  # length of an arrow
-_AXIS_RIGHT_MM = 26  # of their corner from the page's right edge
-_AXIS_TEXT_MM = 6.5  # of the letters from the corner
-_AXIS_NOTE_MM = 2  # of the note below the corner
-_AXIS_LINE_POINTS = 0.8  # 0.28 mm
-
+_BORDER_MM = 10.0  # of the page, around all that is drawn (ISO 5457)
+_BAR_MM = 100.0  # of paper: a scale bar of this length is round at every usual scale
 _LONGEST_NAME = 60  # letters; more of a title is cut off
-_TITLE_MARGIN_POINTS = 10  # of a title from the page's right edge
-
-_SAMPLE_MM = 7  # length of a legend's sample
-_SAMPLE_FILLED_MM = 2.0  # height of a filled one
-_SAMPLE_TEXT_MM = 8.5  # of the words from the sample's left end
-_ENTRY_MM = 13  # a legend's entry without words
-_LETTER_MM = 1.5  # a letter's width, of the widest words
-_LEGEND_ROW_MM = 4.0
-_SAMPLE_LINE_POINTS = 0.6  # 0.21 mm
 
 
-def round_bar_length_m(extent_m: float) -> float:
-    """Return a round length (1, 2 or 5 times a power of ten) for a scale bar.
+def open_page(low_m: FloatArray, high_m: FloatArray, scale: int) -> tuple[Figure, Axes]:
+    """Return a page with axes in metres at a scale, over a drawing and its dimensions.
 
-    It is at most 2/5 of `extent_m`.
+    Parameters
+    ----------
+    low_m, high_m : (2,) float
+        Least and greatest x and y of what is to be drawn.
+    scale : int
+        Its denominator.
     """
-    longest_m = _BAR_SHARE * extent_m
-    power = 10.0 ** math.floor(math.log10(longest_m))
-    return next(m * power for m in (5, 2, 1) if m * power <= longest_m * (1 + _ROUND))
+    # left and below dimensions take most of this
+    begin_m = low_m - 4 * letter_m(scale)
+    end_m = high_m + letter_m(scale)
+    figure = Figure(figsize=tuple((end_m - begin_m) / scale / constants.inch))
+    axes = figure.add_axes((0, 0, 1, 1))
+    axes.set_axis_off()
+    axes.set_xlim(begin_m[0], end_m[0])
+    axes.set_ylim(begin_m[1], end_m[1])
+    return figure, axes
 
 
-def draw_dimension(axes: Axes, start_m: FloatArray, end_m: FloatArray, m_per_mm: float) -> None:
-    """Draw a dimension line on the right of the way from start to end (ISO 129-1).
+def close_page(figure: Figure) -> None:
+    """Make a page as large as what is drawn on it, with a border around."""
+    (axes,) = figure.axes
+    page = figure.get_tightbbox().padded(_BORDER_MM * constants.milli / constants.inch)
+    drawing = axes.get_window_extent().transformed(figure.dpi_scale_trans.inverted())
+    place = drawing.transformed(BboxTransformFrom(page))
+    axes.set_position(place)
+    figure.set_size_inches(page.width, page.height)
+
+
+def letter_m(scale: int) -> float:
+    """Return what the size of letters on paper stands for at a scale, metres."""
+    return LETTER_POINTS * constants.point * scale
+
+
+def draw_dimension(axes: Axes, start_m: FloatArray, end_m: FloatArray, scale: int) -> None:
+    """Draw a dimension line below a level way or on the left of an upright one (ISO 129-1).
 
     It has extension lines, oblique strokes and its length.
     """
-    length_m = math.dist(start_m, end_m)
-    along = (end_m - start_m) / max(length_m, _SHORTEST_M)
-    out = np.array([along[1], -along[0]]) * m_per_mm
-    ends = np.array([start_m, end_m]) + _DIMENSION_AWAY_MM * out
-    axes.plot(*ends.T, color=FAINT, lw=DIMENSION_MM * POINTS_PER_MM)
-    for corner_m, end in zip((start_m, end_m), ends, strict=True):
-        extension = np.array([corner_m + _EXTENSION_GAP_MM * out, end + _EXTENSION_BEYOND_MM * out])
-        axes.plot(*extension.T, color=FAINT, lw=DIMENSION_MM * POINTS_PER_MM)
-        half_tick = (along * m_per_mm - out) * _TICK_HALF_MM
-        tick = np.array([end - half_tick, end + half_tick])
-        axes.plot(*tick.T, color=INK, lw=TICK_MM * POINTS_PER_MM)
-    is_level = along[0] >= abs(along[1])
-    text_mm = -_DIMENSION_TEXT_MM if is_level else _DIMENSION_TEXT_MM
-    x_m, y_m = ends.mean(axis=0) + text_mm * out
+    is_level = start_m[1] == end_m[1]
+    away_m, above_m = letter_m(scale) * np.array([[0, -1], [0, 1]] if is_level else [[-1, 0]] * 2)
+    turn_deg = 0 if is_level else 90
+    stroke = STROKES["dimension"]
+    corners_m = np.stack([start_m, end_m])
+    ends_m = corners_m + 3 * away_m
+    axes.plot(
+        *ends_m.T,
+        **stroke.line,
+        marker=(2, 2, turn_deg - 45),  # two rays from the middle, turned
+        ms=LETTER_POINTS,
+        mec=INK,
+        mew=LAYERS["WALLS"].width_points,
+    )
+    for corner_m, end_m in zip(corners_m, ends_m, strict=True):
+        extension_m = np.stack([corner_m + away_m, end_m + away_m / 2])
+        axes.plot(*extension_m.T, **stroke.line)
+    x_m, y_m = ends_m.mean(axis=0) + above_m / 2
     axes.text(
         x_m,
         y_m,
-        f"{length_m:.2f}",
-        rotation=0 if is_level else 90,
-        fontsize=LABEL_POINTS,
-        color=INK,
-        ha="center" if is_level else "right",
-        va="bottom" if is_level else "center",
-    )
-
-
-def draw_scale_bar(axes: Axes, low_m: FloatArray, extent_m: FloatArray, m_per_mm: float) -> None:
-    """Draw a scale bar of a round length below a drawing.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-    low_m : (2,) float
-        Where the drawing begins.
-    extent_m : (2,) float
-        How large it is.
-    m_per_mm : float
-        Metres that a millimetre of paper stands for.
-    """
-    length_m = round_bar_length_m(max(extent_m[0], _BAR_WIDTH_MM * m_per_mm))
-    x_m = low_m[0]
-    y_m = low_m[1] - _SCALE_BAR_MM * m_per_mm
-    for part in range(_BAR_PARTS):
-        rectangle = Rectangle(
-            (x_m + part * length_m / _BAR_PARTS, y_m),
-            length_m / _BAR_PARTS,
-            _BAR_HEIGHT_MM * m_per_mm,
-            ec=INK,
-            lw=_BAR_LINE_POINTS,
-            fc=INK if part % 2 == 0 else "white",
-            gid=f"scale-bar-{part}",
-        )
-        axes.add_patch(rectangle)
-    for share, unit in ((0, ""), (0.5, ""), (1, " m")):
-        axes.text(
-            x_m + share * length_m,
-            y_m - _BAR_TEXT_MM * m_per_mm,
-            f"{share * length_m:g}{unit}",
-            fontsize=LABEL_POINTS,
-            ha="center",
-            va="top",
-        )
-
-
-def draw_map_axes(axes: Axes, low_m: FloatArray, m_per_mm: float) -> None:
-    """Draw the directions of the map frame's axes: where north is, is not known."""
-    right_m = axes.get_xlim()[1]
-    corner = np.array([right_m - _AXIS_RIGHT_MM * m_per_mm, low_m[1] - _MAP_AXES_MM * m_per_mm])
-    for label, way in (("x", np.array([1, 0])), ("y", np.array([0, 1]))):
-        tip = corner + _AXIS_MM * way * m_per_mm
-        arrow = {"arrowstyle": "-|>", "lw": _AXIS_LINE_POINTS, "color": INK, "shrinkA": 0}
-        axes.annotate("", tuple(tip), tuple(corner), arrowprops=arrow)
-        x_m, y_m = corner + _AXIS_TEXT_MM * way * m_per_mm
-        axes.text(x_m, y_m, label, fontsize=LABEL_POINTS, ha="center", va="center", style="italic")
-    axes.text(
-        corner[0],
-        corner[1] - _AXIS_NOTE_MM * m_per_mm,
-        "axes of the map frame,\nnorth unknown",
-        fontsize=NOTE_POINTS,
+        f"{math.dist(*corners_m):.2f}",
+        rotation=turn_deg,
+        rotation_mode="anchor",
         ha="center",
-        va="top",
-        color=FAINT,
+        va="bottom",
     )
 
 
-def draw_legend(
-    axes: Axes, entries: list[tuple[str, Style]], low_m: FloatArray, m_per_mm: float
+def draw_title_block(
+    axes: Axes, name: str, contents: str, scale: int, samples: list[Artist]
 ) -> None:
-    """Explain the strokes of a drawing: a sample and words each, in rows.
+    """Draw scale bar, axes of the map, name, contents, scale and legend below a drawing.
 
     Parameters
     ----------
     axes : matplotlib.axes.Axes
-    entries : list of (words, style)
-        A style without a fill (`fc`) is that of a line.
-    low_m : (2,) float
-    m_per_mm : float
+    name, contents : str
+        What the drawing is of, and how much of it there is.
+    scale : int
+    samples : list of matplotlib.artist.Artist
+        Strokes, labelled with their meaning.
     """
-    x_m = low_m[0]
-    y_m = low_m[1] - _LEGEND_MM * m_per_mm
-    for words, style in entries:
-        width_m = (_ENTRY_MM + _LETTER_MM * len(words)) * m_per_mm
-        if x_m + width_m > axes.get_xlim()[1]:
-            x_m = low_m[0]
-            y_m -= _LEGEND_ROW_MM * m_per_mm
-        _draw_sample(axes, style, x_m, y_m, m_per_mm)
-        text_m = x_m + _SAMPLE_TEXT_MM * m_per_mm
-        axes.text(text_m, y_m, words, fontsize=NOTE_POINTS, va="center")
-        x_m += width_m
-
-
-def _draw_sample(axes: Axes, style: Style, x_m: float, y_m: float, m_per_mm: float) -> None:
-    length_m = _SAMPLE_MM * m_per_mm
-    if "fc" not in style:
-        dashes = style.get("ls", "-")
-        ends_m = [x_m, x_m + length_m]
-        axes.plot(ends_m, [y_m, y_m], color=style["ec"], lw=_SAMPLE_LINE_POINTS, ls=dashes)
-        return
-    height_m = (_SAMPLE_FILLED_MM if style["fc"] != "none" else PANE_MM) * m_per_mm
-    corner = (x_m, y_m - height_m / 2)
-    axes.add_patch(Rectangle(corner, length_m, height_m, lw=_SAMPLE_LINE_POINTS, **style))
-
-
-def draw_title(
-    axes: Axes, low_m: FloatArray, m_per_mm: float, name: str, contents: str, scale: int
-) -> None:
-    """Write a drawing's name, as large as the page has room for, its contents and its scale."""
-    x_m = low_m[0]
-    y_m = low_m[1] - _TITLE_MM * m_per_mm
     shown = name if len(name) <= _LONGEST_NAME else f"{name[: _LONGEST_NAME - 1]}…"
-    room_points = (axes.get_xlim()[1] - x_m) / m_per_mm * POINTS_PER_MM - _TITLE_MARGIN_POINTS
-    bold = FontProperties(weight="bold")
-    outline = TextPath((0, 0), shown.replace("$", r"\$"), size=TITLE_POINTS, prop=bold)
-    width_points = outline.get_extents().width
-    size = min(TITLE_POINTS, TITLE_POINTS * room_points / width_points)
-    axes.text(x_m, y_m, shown, fontsize=size, weight="bold", va="center", parse_math=False)
-    axes.text(
-        x_m,
-        y_m - _CONTENTS_MM * m_per_mm,
-        f"{contents}   ·   scale 1:{scale}   ·   metres",
-        fontsize=LABEL_POINTS,
-        va="center",
+    title = {"size": "x-large", "weight": "bold", "parse_math": False}
+    note = TextArea(
+        "axes of the map frame,\nnorth unknown", textprops={"size": "small", "color": FAINT}
     )
+    frame = HPacker(children=[_map_axes(), note], sep=LETTER_POINTS, align="bottom")
+    rows = [
+        HPacker(children=[_scale_bar(scale), frame], sep=4 * LETTER_POINTS, align="bottom"),
+        TextArea(shown, textprops=title),
+        TextArea(f"{contents}   ·   scale 1:{scale}   ·   metres"),
+    ]
+    block = AnchoredOffsetbox(
+        "upper left",
+        child=VPacker(children=rows, sep=LETTER_POINTS),
+        pad=0,
+        borderpad=1,
+        frameon=False,
+        bbox_to_anchor=(0, 0),
+        bbox_transform=axes.transAxes,
+    )
+    axes.add_artist(block)
+    below = block.get_window_extent().transformed(axes.transAxes.inverted()).y0
+    axes.legend(
+        handles=samples,
+        loc="upper left",
+        bbox_to_anchor=(0, below),
+        ncols=3,
+        borderpad=0,
+        borderaxespad=1,
+        frameon=False,
+    )
+
+
+def _scale_bar(scale: int) -> DrawingArea:
+    """Return a scale bar in four parts, black and white in turn, and the lengths beside them."""
+    letter = LETTER_POINTS
+    part = _BAR_MM * POINTS_PER_MM / 4
+    area = DrawingArea(4 * part, 2 * letter)
+    for number in range(4):
+        area.add_artist(
+            Rectangle(
+                (number * part, 1.5 * letter),
+                part,
+                letter / 2,
+                ec=INK,
+                lw=STROKES["dimension"].width_points,
+                fc="white" if number % 2 else INK,
+                gid=f"scale-bar-{number}",
+            )
+        )
+    whole_m = _BAR_MM * constants.milli * scale
+    for share, unit in ((0, ""), (0.5, ""), (1, " m")):
+        words = f"{share * whole_m:g}{unit}"
+        area.add_artist(Text(4 * part * share, 1.25 * letter, words, ha="center", va="top"))
+    return area
+
+
+def _map_axes() -> DrawingArea:
+    """Return the directions of the map frame's axes: where north is, is not known."""
+    letter = LETTER_POINTS
+    area = DrawingArea(3 * letter, 3 * letter)
+    for label, way in (("x", np.array([1, 0])), ("y", np.array([0, 1]))):
+        area.add_artist(
+            FancyArrowPatch(
+                (0, 0),
+                tuple(2 * letter * way),
+                arrowstyle="-|>",
+                mutation_scale=letter,
+                lw=LAYERS["WALLS"].width_points,
+                color=INK,
+                shrinkA=0,
+                shrinkB=0,
+            )
+        )
+        x, y = 2.5 * letter * way
+        area.add_artist(Text(x, y, label, style="italic", ha="center", va="center"))
+    return area

@@ -1,46 +1,113 @@
-"""Lines, letters and fills of a drawing to scale, after the ISO standards of technical drawings.
+"""How a plan is drawn, on paper and in CAD: layers, strokes and letters, by one table each.
 
-As in ISO 128-2 narrow lines are half as wide as wide ones, or less. Letters are stated in points of
-the font, whose capitals are 0.26 mm a point high: 7 points make 1.8 mm, the least of ISO 3098.
+Lines have the widths of ISO 128-2, letters are near the heights of ISO 3098. All else on paper is
+spaced by the size of its letters.
 """
 
+from dataclasses import dataclass
 from typing import Any
 
-MM_PER_INCH = 25.4
-POINTS_PER_MM = 72 / MM_PER_INCH
+import numpy as np
+from scipy import constants
+
+from scanplan.types import FloatArray
+
+POINTS_PER_MM = constants.milli / constants.point
+LETTER_POINTS = 8  # size of letters: capitals 2.1 mm high, between the 1.8 and 2.5 of ISO 3098
+_READ_ALONG = np.array([1.0, 0.1])  # an almost upright line is read from the right
 
 INK = "black"
-FAINT = "0.35"  # grey of dimensions and of what is inferred: steps back behind the walls
-CUT_FILL = "0.55"  # grey of a cut wall (ISO 128-3 fills cut areas); letters on it can be read
-INFERRED_FILL = "0.92"  # as good as paper
+FAINT = "0.35"  # grey of what steps back behind the walls: dimensions, and what is inferred
 
-CUT_MM = 0.35  # outlines of cut walls: wide
-FACE_MM = 0.4  # a surface alone: wider than an outline, as its wall has no second one
-OPENING_MM = 0.13  # openings lie below the cut or in it: narrow
-DIMENSION_MM = 0.15  # dimension and extension lines: narrow (ISO 129-1)
-TICK_MM = 0.3  # oblique strokes at the ends of dimension lines (ISO 129-1), wider than these
-PANE_MM = 0.8  # thickness of a window in a wall of unknown thickness: its three lines stay apart
 
-DASHED = (0, (4, 2))  # in line widths: ISO 128's dashed line, for what is not seen
-DOOR_DASHED = (0, (3, 2))  # shorter: an opening is short
-DOTTED = (0, (1, 2))  # ISO 128's dotted line, for a boundary without a thing
+@dataclass(frozen=True)
+class Layer:
+    """A layer of CAD programs: lines of one width, and a colour on the screen.
 
-TITLE_POINTS = 12
-LABEL_POINTS = 8  # capitals 2.1 mm
-NOTE_POINTS = 7  # capitals 1.8 mm
-SMALL_POINTS = 5.5  # below ISO 3098, but fits into a wall at 1:100
-LEAST_ROOM_POINTS = 3.0  # smaller cannot be read on paper, but is when the drawing is enlarged
+    Attributes
+    ----------
+    width_mm : float
+        On paper.
+    colour : int
+        Of the AutoCAD colour index: 7 is black on paper and white on a black screen.
+    """
 
-Style = dict[str, Any]
-"""Keywords of a matplotlib patch."""
-WALL_STYLES: dict[str, Style] = {
-    "observed": {"ec": INK, "fc": CUT_FILL, "joinstyle": "miter"},
-    "inferred": {"ec": FAINT, "fc": INFERRED_FILL, "ls": DASHED, "joinstyle": "miter"},
+    width_mm: float
+    colour: int
+
+    @property
+    def width_points(self) -> float:
+        """Width of lines in points."""
+        return self.width_mm * POINTS_PER_MM
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """How an element of the plan is drawn.
+
+    Attributes
+    ----------
+    layer : str
+        Of `LAYERS`; the stroke is as wide as its lines.
+    ink : str
+        Colour on paper.
+    fill : str
+        Of what the stroke encloses: grey where a wall is cut (ISO 128-3), light enough for letters.
+    dashes : tuple of float
+        Dash and gap in widths of the line; none for a continuous line.
+    """
+
+    layer: str
+    ink: str = INK
+    fill: str = "none"
+    dashes: tuple[float, ...] = ()
+
+    @property
+    def width_points(self) -> float:
+        """Width of the line in points."""
+        return LAYERS[self.layer].width_points
+
+    @property
+    def line(self) -> dict[str, Any]:
+        """Keywords of matplotlib for a line."""
+        dashes = (0, self.dashes) if self.dashes else "-"
+        return {"color": self.ink, "lw": self.width_points, "ls": dashes}
+
+    @property
+    def patch(self) -> dict[str, Any]:
+        """Keywords of matplotlib for an area and its outline."""
+        return {
+            "ec": self.ink,
+            "fc": self.fill,
+            "lw": self.width_points,
+            "ls": self.line["ls"],
+            "joinstyle": "miter",
+        }
+
+
+# by their names in CAD programs; beside them their likes in the AIA CAD layer guidelines
+LAYERS = {
+    "WALLS": Layer(width_mm=0.35, colour=7),  # A-WALL: what is cut has the widest lines
+    "WALLS_INFERRED": Layer(width_mm=0.25, colour=8),  # A-WALL: apart, to be switched off
+    "OPENINGS": Layer(width_mm=0.18, colour=5),  # A-DOOR and A-GLAZ: rays cannot always tell them
+    "ROOMS": Layer(width_mm=0.13, colour=3),  # A-AREA
+    "TEXT": Layer(width_mm=0.13, colour=7),  # A-ANNO-TEXT
 }
-"""By state, see `floorplan.STATES`."""
-OPENING_STYLES: dict[str, Style] = {
-    "door": {"ec": INK, "ls": DOOR_DASHED},
-    "window": {"ec": INK},
-    "passage": {"ec": FAINT, "ls": DOTTED},
+STROKES = {
+    "observed": Stroke("WALLS", fill="0.55"),
+    "inferred": Stroke("WALLS_INFERRED", ink=FAINT, fill="0.92", dashes=(4, 2)),
+    "door": Stroke("OPENINGS", dashes=(3, 2)),
+    "window": Stroke("OPENINGS"),
+    "passage": Stroke("OPENINGS", ink=FAINT, dashes=(1, 2)),  # a boundary without a thing
+    "dimension": Stroke("TEXT", ink=FAINT),
 }
-"""By type, see `floorplan.OPENINGS`."""
+"""By the state of a wall (`floorplan.STATES`), the type of an opening (`floorplan.OPENINGS`)."""
+
+
+def read_along(line: FloatArray) -> FloatArray:
+    """Return the direction (2,) to write in along a line (2, 2).
+
+    So that it is read from below or from the right (ISO 129-1).
+    """
+    way = (line[1] - line[0]) / np.hypot(*(line[1] - line[0]))
+    return way if way @ _READ_ALONG > 0 else -way

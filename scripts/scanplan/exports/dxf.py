@@ -12,43 +12,20 @@ from ezdxf.document import Drawing
 from ezdxf.enums import InsertUnits, TextEntityAlignment
 from ezdxf.filemanagement import new
 from ezdxf.layouts.layout import Modelspace
+from scipy import constants
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.exports.drawing_style import LAYERS, STROKES, read_along
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.types import Array, FloatArray
 
-# layers, and their likes in the AIA CAD layer guidelines (US National CAD Standard)
-WALLS = "WALLS"  # A-WALL
-INFERRED = "WALLS_INFERRED"  # A-WALL, too: apart, so that it can be switched off
-OPENINGS = "OPENINGS"  # A-DOOR and A-GLAZ: which of them an opening is, rays do not always show
-ROOMS = "ROOMS"  # A-AREA
-TEXT = "TEXT"  # A-ANNO-TEXT
+WALLS, INFERRED, OPENINGS, ROOMS, TEXT = LAYERS
 _VERSION = "R2010"  # AC1024, which all current CAD programs read
 _LINE_TYPE = "DASHED"  # ISO 128-2's dashed line, by the name that AutoCAD has for it
-_DASH_PATTERN_M = (0.15, 0.1, -0.05)  # length, dash, gap of half a dash: short beside any wall
-# line weights in hundredths of a millimetre, of the series of ISO 128-2: cut walls wide, the rest
-# in steps down to narrow
-_CUT_WEIGHT = 35
-_INFERRED_WEIGHT = 25
-_OPENING_WEIGHT = 18
-_NARROW_WEIGHT = 13
-# colours of the AutoCAD colour index
-_INK = 7  # black on paper, white on a black screen
-_GREY = 8
-_BLUE = 5
-_GREEN = 3
-_LAYERS = {
-    WALLS: {"lineweight": _CUT_WEIGHT, "color": _INK},
-    INFERRED: {"lineweight": _INFERRED_WEIGHT, "color": _GREY, "linetype": _LINE_TYPE},
-    OPENINGS: {"lineweight": _OPENING_WEIGHT, "color": _BLUE},
-    ROOMS: {"lineweight": _NARROW_WEIGHT, "color": _GREEN},
-    TEXT: {"lineweight": _NARROW_WEIGHT, "color": _INK},
-}
-_TEXT_M = 0.2  # 2 mm at 1:100, between the 1.8 and 2.5 mm of ISO 3098
-_SMALL_TEXT_M = 0.12  # fits beside a door
+_SCALE = 100  # on paper at this scale dashes are as in the drawing
+_TEXT_M = 0.2  # and letters
 _LINE_SPACING = 1.5  # of a text's height, and of its middle from a line: about ISO 3098's
-_UPRIGHT = 1e-6  # of a direction's x: less is rounding
 
 
 def format_dxf(plan: FloorPlan) -> str:
@@ -91,9 +68,16 @@ def format_dxf(plan: FloorPlan) -> str:
 
 def _new_document() -> Drawing:
     document = new(_VERSION, units=InsertUnits.Meters)
-    document.linetypes.add(_LINE_TYPE, pattern=list(_DASH_PATTERN_M), description="Dashed __ __ __")
-    for name, properties in _LAYERS.items():
-        document.layers.add(name, **properties)
+    inferred = STROKES["inferred"]
+    width_m = LAYERS[inferred.layer].width_mm * constants.milli * _SCALE
+    dash_m, gap_m = (width_m * part for part in inferred.dashes)
+    pattern = [dash_m + gap_m, dash_m, -gap_m]
+    document.linetypes.add(_LINE_TYPE, pattern=pattern, description="Dashed __ __ __")
+    for name, layer in LAYERS.items():
+        # line weights are hundredths of a millimetre
+        made = document.layers.add(name, lineweight=round(layer.width_mm * 100), color=layer.colour)
+        if name == inferred.layer:
+            made.dxf.linetype = _LINE_TYPE
     return document
 
 
@@ -123,26 +107,15 @@ def _add_openings(modelspace: Modelspace, plan: FloorPlan) -> None:
     columns = plan.openings
     for row, line in enumerate(floorplan.centrelines_m(columns)):
         modelspace.add_lwpolyline(line.tolist(), dxfattribs={"layer": OPENINGS})
-        along = (line[1] - line[0]) / np.hypot(*(line[1] - line[0]))
+        along = read_along(line)
         left = np.array([-along[1], along[0]])
         half_m = columns["thickness_m"][row] / 2
         if columns["type"][row] == "window" and np.isfinite(half_m):
             for side_m in (-half_m, half_m):
                 _add_line(modelspace, line + side_m * left, OPENINGS)
-        _add_width(modelspace, line.mean(axis=0), along, columns["width_m"][row])
-
-
-def _add_width(
-    modelspace: Modelspace, place_m: FloatArray, along: FloatArray, width_m: float
-) -> None:
-    """Write an opening's width beside it, along it, to be read from below or from the right."""
-    is_leftward = along[0] < -_UPRIGHT
-    is_downward = along[0] <= _UPRIGHT and along[1] < 0
-    if is_leftward or is_downward:
-        along = -along
-    beside_m = place_m + _LINE_SPACING * _SMALL_TEXT_M * np.array([-along[1], along[0]])
-    turn_deg = np.degrees(np.arctan2(along[1], along[0]))
-    _add_text(modelspace, f"{width_m:.2f}", beside_m.tolist(), _SMALL_TEXT_M, turn_deg)
+        beside_m = line.mean(axis=0) + _LINE_SPACING * _TEXT_M * left
+        turn_deg = np.degrees(np.arctan2(along[1], along[0]))
+        _add_text(modelspace, f"{columns['width_m'][row]:.2f}", beside_m.tolist(), turn_deg)
 
 
 def _add_rooms(modelspace: Modelspace, plan: FloorPlan) -> None:
@@ -150,19 +123,18 @@ def _add_rooms(modelspace: Modelspace, plan: FloorPlan) -> None:
     names = ("room", "area_m2", "x_m", "y_m")
     columns = [plan.rooms[name].tolist() for name in names]
     for room, area_m2, x_m, y_m in zip(*columns, strict=True):
-        _add_text(modelspace, f"Room {room}", (x_m, y_m), _TEXT_M)
+        _add_text(modelspace, f"Room {room}", (x_m, y_m))
         below_m = y_m - _LINE_SPACING * _TEXT_M
-        _add_text(modelspace, f"{area_m2:.1f} m2", (x_m, below_m), _TEXT_M)
+        _add_text(modelspace, f"{area_m2:.1f} m2", (x_m, below_m))
 
 
 def _add_text(
     modelspace: Modelspace,
     words: str,
     middle_m: Sequence[float],
-    height_m: float,
     turn_deg: float | None = None,
 ) -> None:
-    text = modelspace.add_text(words, height=height_m, dxfattribs={"layer": TEXT})
+    text = modelspace.add_text(words, height=_TEXT_M, dxfattribs={"layer": TEXT})
     if turn_deg is not None:
         text.dxf.rotation = turn_deg
     text.set_placement(middle_m, align=TextEntityAlignment.MIDDLE_CENTER)

@@ -19,10 +19,17 @@ OCCUPIED = 0
 UNKNOWN = 205
 _MARGIN_M = 0.5  # around all that is known: room for a planner's inflation of obstacles
 _MOST_CELLS = 64_000_000  # a robot's memory: 64 MB, 400 m x 400 m at 5 cm
-_WHITE = 255  # of a PGM image
-# thresholds on the occupancy, (255 - grey) / 255; that of `UNKNOWN` is 0.196
-_FREE_BELOW = 0.1  # nav2's own default of 0.25 would take the unknown for free
-_OCCUPIED_ABOVE = 0.65  # nav2's default
+# occupancy is (255 - grey) / 255, that of `UNKNOWN` 0.196: nav2's own free_thresh of 0.25 would
+# take the unknown for free
+_MAP_YAML = """\
+image: {image}
+mode: trinary
+resolution: {resolution_m:g}
+origin: [{x_m:g}, {y_m:g}, 0]
+negate: 0
+occupied_thresh: 0.65
+free_thresh: 0.1
+"""
 
 
 @dataclass(frozen=True)
@@ -71,22 +78,13 @@ def draw_grid_map(plan: FloorPlan, resolution_m: float) -> GridMap:
 def format_pgm(grid: GridMap) -> bytes:
     """Return the grid's cells as the bytes of a binary PGM image."""
     rows, columns = grid.cells.shape
-    return b"P5\n%d %d\n%d\n" % (columns, rows, _WHITE) + grid.cells.tobytes()
+    return b"P5\n%d %d\n255\n" % (columns, rows) + grid.cells.tobytes()
 
 
 def format_map_yaml(grid: GridMap, image: str) -> str:
     """Return the text of the YAML file by which nav2's map server reads the image of that name."""
     x_m, y_m = grid.origin_m
-    lines = [
-        f"image: {image}",
-        "mode: trinary",
-        f"resolution: {grid.resolution_m:g}",
-        f"origin: [{x_m:g}, {y_m:g}, 0]",
-        "negate: 0",
-        f"occupied_thresh: {_OCCUPIED_ABOVE}",
-        f"free_thresh: {_FREE_BELOW}",
-    ]
-    return "\n".join(lines) + "\n"
+    return _MAP_YAML.format(image=image, resolution_m=grid.resolution_m, x_m=x_m, y_m=y_m)
 
 
 def _extent_m(plan: FloorPlan, floor: Array) -> tuple[FloatArray, FloatArray]:

@@ -4,15 +4,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from matplotlib.ticker import LogLocator, MaxNLocator
 
 from scanplan.types import FloatArray, IntArray
 
-_WIDTH, _HEIGHT = 640, 300  # SVG units: fills the page's text column at about one a pixel
-_LEFT, _RIGHT, _TOP, _BOTTOM = 46, 12, 12, 38  # margins: room for "100%" and for two lines of text
-_LOGARITHMIC_FROM = 60  # scans: from here on the first few would crowd on a linear axis
-_MOST_TICKS = 8  # as many numbers as fit side by side on a linear axis
-# round numbers, up to more scans than a drive of some hours has
-_TICKS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10_000, 20_000, 50_000)
+_WIDTH, _HEIGHT = 580, 250  # SVG units of the plot without its labels: about one a pixel
+LOGARITHMIC_FROM = 100  # scans: from here on the first few would crowd on a linear axis
 
 
 @dataclass(frozen=True)
@@ -48,19 +45,20 @@ def chart_svg(curves: Mapping[str, Curve], n_scans: int, n_chosen: int) -> str:
         With a line `#chart-k` for the script to move; `data-` attributes of the element say how
         to place it.
     """
-    axis = _ScanAxis(n_scans, n_scans >= _LOGARITHMIC_FROM)
+    axis = _ScanAxis(n_scans, n_scans >= LOGARITHMIC_FROM)
     chosen_x = axis.x(n_chosen)
     return "\n".join([
-        f'<svg id="chart" viewBox="0 0 {_WIDTH} {_HEIGHT}" role="img"'
+        # beside the plot there is room for "100 %" and for two lines of text
+        f'<svg id="chart" viewBox="-48 -12 {_WIDTH + 60} {_HEIGHT + 50}" role="img"'
         ' aria-label="Shares against the number of scans"'
-        f' data-left="{_LEFT}" data-width="{_WIDTH - _LEFT - _RIGHT}" data-scans="{n_scans}"'
+        f' data-width="{_WIDTH}" data-scans="{n_scans}"'
         f' data-logarithmic="{int(axis.logarithmic)}">',
         *_share_grid(),
         *_scan_ticks(axis),
         *(_polyline(css, curve, axis) for css, curve in curves.items()),
-        f'<path class="chosen" d="M{chosen_x:.1f} {_TOP}V{_HEIGHT - _BOTTOM}">'
+        f'<path class="chosen" d="M{chosen_x:.1f} 0V{_HEIGHT}">'
         "<title>scans of the plan</title></path>",
-        f'<path id="chart-k" d="M0 {_TOP}V{_HEIGHT - _BOTTOM}"/></svg>',
+        f'<path id="chart-k" d="M0 0V{_HEIGHT}"/></svg>',
     ])  # fmt: skip
 
 
@@ -76,30 +74,31 @@ class _ScanAxis:
             share = np.log(k) / np.log(self.n_scans)
         else:
             share = (k - 1) / max(self.n_scans - 1, 1)
-        return _LEFT + share * (_WIDTH - _LEFT - _RIGHT)
+        return share * _WIDTH
 
     def ticks(self) -> list[int]:
         if self.logarithmic:
-            return [tick for tick in _TICKS if tick <= self.n_scans]
-        step = next(tick for tick in _TICKS if self.n_scans / tick <= _MOST_TICKS)
-        return sorted({1, *range(step, self.n_scans + 1, step)})
+            locator = LogLocator(subs=(1, 2, 5), numticks=self.n_scans)
+        else:
+            locator = MaxNLocator(steps=[1, 2, 5, 10], integer=True)
+        ticks = {1, *map(int, locator.tick_values(1, self.n_scans))}
+        return sorted(tick for tick in ticks if 1 <= tick <= self.n_scans)
 
 
 def _share_grid() -> list[str]:
     parts = []
     for share in np.linspace(0, 1, 6):
         y = _y(share)
-        parts.append(f'<path class="grid" d="M{_LEFT} {y:.1f}H{_WIDTH - _RIGHT}"/>')
-        parts.append(_text(f"{_LEFT - 6}", f"{y + 4:.1f}", "end", f"{share:.0%}"))
+        parts.append(f'<path class="grid" d="M0 {y:.1f}H{_WIDTH}"/>')
+        parts.append(_text("-6", f"{y + 4:.1f}", "end", f"{share:.0%}"))
     return parts
 
 
 def _scan_ticks(axis: _ScanAxis) -> list[str]:
     scale = " (logarithmic)" if axis.logarithmic else ""
-    middle = (_LEFT + _WIDTH - _RIGHT) / 2
     return [
-        *(_text(f"{axis.x(t):.1f}", f"{_HEIGHT - 20}", "middle", f"{t:,}") for t in axis.ticks()),
-        _text(f"{middle}", f"{_HEIGHT - 4}", "middle", f"number of scans{scale}"),
+        *(_text(f"{axis.x(t):.1f}", f"{_HEIGHT + 18}", "middle", f"{t:,}") for t in axis.ticks()),
+        _text(f"{_WIDTH / 2:g}", f"{_HEIGHT + 34}", "middle", f"number of scans{scale}"),
     ]
 
 
@@ -115,4 +114,4 @@ def _polyline(css: str, curve: Curve, axis: _ScanAxis) -> str:
 
 
 def _y(share: float) -> float:
-    return _TOP + (1 - share) * (_HEIGHT - _TOP - _BOTTOM)
+    return (1 - share) * _HEIGHT

@@ -11,16 +11,15 @@ from matplotlib.ticker import MaxNLocator, StrMethodFormatter
 from scipy.spatial import KDTree
 
 from scanplan.report import top_view
+from scanplan.report.chart import LOGARITHMIC_FROM
 from scanplan.selection import stopping
 from scanplan.selection.methods import METHODS, Method
 from scanplan.store import registered_scans
 from scanplan.types import Columns, FloatArray, IntArray
 
 NEARBY_M = 1.0  # scans this near show much the same: "crowded" in the figure means that
-_WIDTH_IN = 7.0  # text width of an A4 page
 _SELECTED = "#d55e00"
 _FULL_HULLS = "hull"
-_LOGARITHMIC_FROM = 100  # scans: from here on the first few would crowd on a linear axis
 
 
 def sensor_positions(registration: Columns, scan_ids: IntArray) -> FloatArray:
@@ -147,7 +146,7 @@ def draw_area_figure(orderings: Mapping[str, Columns]) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    figure = Figure(figsize=(_WIDTH_IN, 4.2), layout="constrained")
+    figure = Figure(figsize=(top_view.WIDTH_IN, 4.2), layout="constrained")
     axes = figure.add_subplot()
     for method in sorted(orderings, key=lambda m: (m == _FULL_HULLS, *_legend_rank(m))):
         _draw_ordering(axes, method, orderings[method])
@@ -193,7 +192,7 @@ def _draw_ordering(axes: Axes, method: str, columns: Columns) -> None:
 def _scale_scan_axis(axes: Axes, n_scans: int) -> None:
     axes.set_xlabel("number of scans", fontsize=8)
     axes.set_xlim(0, n_scans * 1.02 + 0.5)
-    if n_scans >= _LOGARITHMIC_FROM:
+    if n_scans >= LOGARITHMIC_FROM:
         axes.set_xscale("log")
         axes.set_xlim(1, n_scans * 1.1)
         axes.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))

@@ -8,10 +8,9 @@ import shapely
 
 from scanplan.plan import floorplan
 from scanplan.report import growth
+from scanplan.report.top_view import MARGIN_M
 from scanplan.types import Columns, FloatArray
 
-_MARGIN_M = 0.8  # around the plan: room for the number of a scan that stands at a wall
-_LABEL_MIN_M = 0.1  # smaller letters are read by zooming in only
 _ROOM_LABEL_LETTERS = 8  # of this many heights is a label wide: it stays within its room
 _LABELS_ALONG = 60  # letters are at most this part of the plan high, however large the room
 _TITLES = {
@@ -61,8 +60,8 @@ def growing_plan_svg(
 
 def _view_box(plan: floorplan.FloorPlan, positions_m: FloatArray) -> str:
     places_m = np.concatenate([np.stack(plan.bounds_m), positions_m])
-    low_m = places_m.min(axis=0) - _MARGIN_M
-    high_m = places_m.max(axis=0) + _MARGIN_M
+    low_m = places_m.min(axis=0) - MARGIN_M
+    high_m = places_m.max(axis=0) + MARGIN_M
     return " ".join(_number(value) for value in (low_m[0], -high_m[1], *(high_m - low_m)))
 
 
@@ -98,12 +97,12 @@ def _rooms(plan: floorplan.FloorPlan) -> Iterator[str]:
 
 def _labels(plan: floorplan.FloorPlan) -> Iterator[str]:
     extent_m = float(np.max(plan.bounds_m[1] - plan.bounds_m[0]))
-    largest_m = max(extent_m / _LABELS_ALONG, _LABEL_MIN_M)
+    largest_m = extent_m / _LABELS_ALONG
     rooms = (plan.rooms[c].tolist() for c in ("room", "area_m2", "closed", "x_m", "y_m"))
     for room, area_m2, closed, x_m, y_m, width_m in zip(
         *rooms, plan.label_widths_m.tolist(), strict=True
     ):
-        size_m = min(max(width_m / _ROOM_LABEL_LETTERS, _LABEL_MIN_M), largest_m)
+        size_m = min(width_m / _ROOM_LABEL_LETTERS, largest_m)
         place = f'x="{_number(x_m)}" font-size="{size_m:.2f}"'
         area = f"{'' if closed else 'about '}{area_m2:.1f} m²"
         yield (

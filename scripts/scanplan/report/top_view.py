@@ -10,11 +10,10 @@ from matplotlib.figure import Figure
 from scanplan.types import Array, FloatArray
 
 MOST_POINTS = 200_000  # more than a figure has pixels to show; bounds memory and time
-_WIDTH_IN = 7.0  # text width of an A4 page
-_BESIDE_IN, _BELOW_IN = 0.6, 0.85  # what labels of the axes and a legend take
-_LEAST_IN, _MOST_IN = 2.5, 8.5  # height of the drawing: readable, and within a page
-_CELLS = 900  # along the longer side: about a pixel each at the size that figures are shown in
-_MARGIN_M = 0.5  # around what must be shown, so that marks at the edge are whole
+WIDTH_IN = 7.0  # text width of an A4 page
+MARGIN_M = 0.5  # around what must be shown, so that marks at the edge are whole
+_AROUND_IN = np.array([0.6, 0.85])  # what labels of the axes take beside, and a legend below
+_HEIGHTS_IN = (2.5, 8.5)  # of the drawing: readable, and within a page
 _OUTLIER_PERCENT = 0.5  # of the points at either end: the few returns from far outside
 
 
@@ -61,9 +60,9 @@ def draw_top_view(
     """
     low_m, high_m = _view(points_xy_m, must_show_xy_m)
     extent_m = high_m - low_m
-    width_in = _WIDTH_IN - _BESIDE_IN - beside_in
-    height_in = float(np.clip(width_in * extent_m[1] / extent_m[0], _LEAST_IN, _MOST_IN))
-    figure = Figure(figsize=(_WIDTH_IN, height_in + _BELOW_IN), layout="constrained")
+    width_in = WIDTH_IN - _AROUND_IN[0] - beside_in
+    height_in = float(np.clip(width_in * extent_m[1] / extent_m[0], *_HEIGHTS_IN))
+    figure = Figure(figsize=(WIDTH_IN, height_in + _AROUND_IN[1]), layout="constrained")
     axes = figure.add_subplot()
     _shade(axes, points_xy_m, low_m, high_m)
     axes.set_xlabel("x in the map frame (m)", fontsize=8)
@@ -98,7 +97,9 @@ def label_colour_bar(bar: Colorbar, label: str) -> None:
 
 
 def _shade(axes: Axes, points_xy_m: FloatArray, low_m: FloatArray, high_m: FloatArray) -> None:
-    grey, edges_m = _density(points_xy_m, low_m, high_m - low_m)
+    # at the size that figures are shown in, on a screen of double density, about a pixel each
+    n_cells = 2 * max(axes.bbox.width, axes.bbox.height)
+    grey, edges_m = _density(points_xy_m, low_m, high_m - low_m, n_cells)
     axes.imshow(
         grey,
         cmap="Greys",
@@ -114,10 +115,13 @@ def _shade(axes: Axes, points_xy_m: FloatArray, low_m: FloatArray, high_m: Float
 
 
 def _density(
-    points_xy_m: FloatArray, low_m: FloatArray, extent_m: FloatArray
+    points_xy_m: FloatArray, low_m: FloatArray, extent_m: FloatArray, n_cells: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Return shades (rows, columns) from 0 to 1 and their image's edges ((x0, x1), (y0, y1))."""
-    cell_m = extent_m.max() / _CELLS
+    """Return shades (rows, columns) from 0 to 1 and their image's edges ((x0, x1), (y0, y1)).
+
+    The longer side has `n_cells`.
+    """
+    cell_m = extent_m.max() / n_cells
     shape = np.maximum(1, np.ceil(extent_m / cell_m)).astype(int)
     edges_m = np.array([low_m, low_m + shape * cell_m]).T
     counts = np.histogram2d(*points_xy_m.T, bins=shape, range=edges_m)[0].T
@@ -134,4 +138,4 @@ def _view(points_xy_m: FloatArray, must_show_xy_m: FloatArray) -> tuple[FloatArr
     percents = [_OUTLIER_PERCENT, 100 - _OUTLIER_PERCENT]
     bulk_m = np.percentile(points_xy_m, percents, axis=0)
     corners_m = np.concatenate([bulk_m, must_show_xy_m])
-    return corners_m.min(axis=0) - _MARGIN_M, corners_m.max(axis=0) + _MARGIN_M
+    return corners_m.min(axis=0) - MARGIN_M, corners_m.max(axis=0) + MARGIN_M

@@ -22,6 +22,7 @@ def write_table(
     columns: Mapping[str, Array | Sequence[object]],
     *,
     allow_empty: bool = False,
+    numbers: Mapping[str, float] | None = None,
 ) -> None:
     """Write a table, whole or not at all.
 
@@ -33,6 +34,8 @@ def write_table(
         Exactly the schema's columns.
     allow_empty : bool
         Whether zero rows are an answer (no wall found) and not a mistake.
+    numbers : dict of str to float, optional
+        What is true of the table as a whole; kept in the file for `read_numbers`.
 
     Raises
     ------
@@ -48,7 +51,8 @@ def write_table(
     form = parquet.arrow_schema(schema)
     table = pa.table({n: pa.array(columns[n], type=form.field(n).type) for n in schema.columns})
     parquet.check_rows(table, schema, path, allow_empty, ValueError)
-    with parquet.open_writer(path, schema) as writer:
+    extra = {"numbers": json.dumps(numbers)} if numbers else None
+    with parquet.open_writer(path, schema, extra) as writer:
         writer.write_table(table.cast(form))
 
 
@@ -84,6 +88,12 @@ def read_table(
         table = file.read(columns=None if columns is None else list(columns))
     parquet.check_rows(table, schema, path, allow_empty, StageError)
     return {name: table[name].to_numpy() for name in table.column_names}
+
+
+def read_numbers(path: FilePath, schema: schemas.Schema) -> dict[str, float]:
+    """Return what was written of a table as a whole, by name."""
+    with parquet.open_file(path, schema) as file:
+        return json.loads(file.metadata.metadata.get(b"numbers", b"{}"))
 
 
 @contextmanager

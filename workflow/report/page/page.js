@@ -34,9 +34,9 @@
 
   const chart = document.getElementById("chart");
   function mark(k) {
-    const { left, width, scans: n, logarithmic } = chart.dataset;
+    const { width, scans: n, logarithmic } = chart.dataset;
     const share = Number(logarithmic) ? Math.log(k) / Math.log(n) : (k - 1) / Math.max(n - 1, 1);
-    document.getElementById("chart-k").setAttribute("transform", `translate(${Number(left) + share * width} 0)`);
+    document.getElementById("chart-k").setAttribute("transform", `translate(${share * width} 0)`);
   }
 
   slider.addEventListener("input", () => grow(Number(slider.value)));

@@ -9,6 +9,7 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.errors import StageError
 from scanplan.lab.buildings import drawing_file, drawn_floor, extrusion, ground, storeys, truth
+from scanplan.lab.buildings.tolerances import DECIMALS
 from scanplan.types import FilePath, FloatArray
 
 if TYPE_CHECKING:
@@ -171,9 +172,9 @@ def _building_of_storey(
     walls = ground.find_storey_walls(storey, cut, slice_height_m)
     features = [truth.face_feature(line, side) for line, side in cut.faces]
     features += [truth.screen_feature(line) for line in cut.screens]
-    height_m = round(cut.height_m, truth.DECIMALS)
+    height_m = round(cut.height_m, DECIMALS)
     for line, thickness_m in walls:
-        features.append(truth.wall_feature(line, round(thickness_m, truth.DECIMALS), height_m))
+        features.append(truth.wall_feature(line, round(thickness_m, DECIMALS), height_m))
     features += [truth.opening_feature(*opening) for opening in storey.openings]
     surfaces = [surface for body in storey.bodies for surface in body.surfaces]
     return Building(

@@ -16,16 +16,15 @@ from shapely.geometry.base import BaseGeometry
 from scanplan.errors import StageError
 from scanplan.lab.buildings import drawn_floor
 from scanplan.lab.buildings.drawn_floor import (
-    ON_WALL_M,
     DrawnFloor,
     DrawnFurniture,
     DrawnOpening,
     DrawnWall,
 )
+from scanplan.lab.buildings.tolerances import DRAWN_M, MAX_EXTENT_M
 from scanplan.types import FilePath
 
 OPENING_TYPES = ("door", "window", "passage")
-_MAX_EXTENT_M = 2000.0  # a larger floor is drawn in millimetres or on a globe
 _GEOMETRIES = {
     "wall": ("LineString",),
     "opening": ("Point", "LineString"),
@@ -142,9 +141,9 @@ def _parse_feature(feature: Any, where: str) -> _DrawnPart:
 def _check_extent(geometries: Sequence[BaseGeometry], source: FilePath) -> None:
     bounds = shapely.total_bounds(geometries) if geometries else np.zeros(4)
     extent_m = float(np.max(bounds[2:] - bounds[:2]))
-    if not extent_m <= _MAX_EXTENT_M:
+    if not extent_m <= MAX_EXTENT_M:
         raise StageError(
-            f"{source}: spans {extent_m:g} m, the limit is {_MAX_EXTENT_M:g} m;"
+            f"{source}: spans {extent_m:g} m, the limit is {MAX_EXTENT_M:g} m;"
             " coordinates must be metres (divide millimetres by 1000)"
         )
 
@@ -210,12 +209,12 @@ def _place_on_wall(part: _DrawnPart, walls: Sequence[DrawnWall]) -> tuple[DrawnW
     ends = [run.interpolate(max(along_m + side * width_m / 2, 0.0)) for side in (-1, 1)]
     off_m = max(Point(xy).distance(run) for xy in geometry_m.coords)
     at = f"at ({middle.x:g}, {middle.y:g})"
-    if off_m > wall.thickness_m / 2 + ON_WALL_M:
+    if off_m > wall.thickness_m / 2 + DRAWN_M:
         raise StageError(
             f"{part.where}: {at}, {off_m:.3f} m off the nearest wall's centreline; draw it on a"
             " wall"
         )
-    if not math.isclose(ends[0].distance(ends[1]), width_m, abs_tol=ON_WALL_M):
+    if not math.isclose(ends[0].distance(ends[1]), width_m, abs_tol=DRAWN_M):
         raise StageError(
             f"{part.where}: {at}, {width_m:g} m wide, reaches beyond its wall's straight run;"
             " narrow or move it"

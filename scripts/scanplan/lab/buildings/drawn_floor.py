@@ -9,11 +9,8 @@ from shapely import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.errors import StageError
+from scanplan.lab.buildings.tolerances import DRAWN_M, GRID_M
 from scanplan.types import FloatArray
-
-GRID_M = 1e-6  # shapely's snapping grid: drawings are exact, so this closes rounding alone
-ON_WALL_M = 0.001  # how exactly an opening is drawn on its wall
-_MITRE_LIMIT = 5.0  # shapely's own: corners sharper than 23 degrees are cut off
 
 
 @dataclass(frozen=True)
@@ -72,7 +69,7 @@ def cut_walls(plan: DrawnFloor, z_m: float) -> BaseGeometry:
     """Return the section of the walls at a height, openings left out: (Multi)Polygon, map frame."""
     bodies = [body for body, height_m in _bodies(plan) if z_m < height_m]
     open_here = [o for o in plan.openings if o.sill_m < z_m < o.lintel_m]
-    holes = [o.line_m.buffer(o.thickness_m / 2 + ON_WALL_M, cap_style="flat") for o in open_here]
+    holes = [o.line_m.buffer(o.thickness_m / 2 + DRAWN_M, cap_style="flat") for o in open_here]
     solid = shapely.union_all(bodies, grid_size=GRID_M)
     hole = shapely.union_all(holes, grid_size=GRID_M)
     return shapely.difference(solid, hole, grid_size=GRID_M).normalize()
@@ -162,6 +159,4 @@ def _ends(line_m: LineString) -> list[tuple[tuple[float, ...], FloatArray]]:
 
 
 def _thick(line_m: LineString, thickness_m: float) -> BaseGeometry:
-    return line_m.buffer(
-        thickness_m / 2, cap_style="flat", join_style="mitre", mitre_limit=_MITRE_LIMIT
-    )
+    return line_m.buffer(thickness_m / 2, cap_style="flat", join_style="mitre")

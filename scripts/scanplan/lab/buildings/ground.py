@@ -9,26 +9,20 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.errors import StageError
 from scanplan.lab.buildings import slicing, storeys
+from scanplan.lab.buildings.tolerances import (
+    CRACK_M,
+    DRAWN_M,
+    GRID_M,
+    MESHING_M,
+    ROOM_M,
+    THRESHOLD_M,
+)
 from scanplan.types import FilePath, FloatArray
 
 SCREEN_M = 1.5  # ASSUME lower things occlude no wall: the sensor's upper beams pass over them
-_SHADOW_FROM_M = 0.1  # above thresholds
-_SHADOW_TO_M = 3.0  # ASSUME no walls need be looked at higher to part outer from inner ones
-_SHADOW_STEP_M = 0.25  # between cuts, to meet what is over a door at least once
-_BELOW_CEILING_M = 0.05  # the highest cut, clear of the ceiling's surface
-_LINE_M = 0.001  # half the width that lines without area get, to count as matter
-_COARSE_GRID_M = 1e-4  # snapping of unions of many cuts: their seams differ by float32's rounding
-_FLOOR_WITHIN_M = 0.1  # of z = 0: thresholds and worn floors, below any step of a stair
-_STEP_M = 0.06  # ASSUME the rover climbs thresholds up to this
+_CUT_STEP_M = 0.12  # between cuts: they meet what is over a door, and the slopes of obstacles
 _HEADROOM_M = 0.15  # above the sensor: its housing, and what would hang into its view
-_OBSTACLE_STEP_M = 0.12  # between cuts; what lies wholly between two counts by its triangles
-_OBSTACLE_GRID_M = 1e-3  # their outlines are many, and no clearance is as small
-_CLOSED_GAP_M = 0.6  # ASSUME gaps in outer walls up to twice this are openings as high as the wall
-_SEAM_M = 0.3  # ASSUME gaps in the floor up to twice this are thresholds
-_MIN_ROOM_M = 0.6  # width of the smallest room; narrower ones are shafts between walls
 _MIN_FLOOR_SHARE = 0.05  # of the outline; less is a stray surface of a building without floor
-_SAME_THICKNESS_M = 0.01  # strips of one straight wall agree this well, with the meshing's error
-_ANY_SIZE_M = 1e4  # a space is no matter, and of any width
 
 
 @dataclass(frozen=True)
@@ -104,7 +98,7 @@ def _body_walls(body: storeys.Body, slice_height_m: float) -> list[tuple[LineStr
         return strips
     # a straight wall is as thick at every strip between its openings as it is wide in all
     line, width_m = storeys.middle_axis(body.along, body.triangles_m)
-    is_straight = all(abs(width_m - thickness_m) < _SAME_THICKNESS_M for _, thickness_m in strips)
+    is_straight = all(abs(width_m - thickness_m) < CRACK_M for _, thickness_m in strips)
     return [(line, width_m)] if is_straight else strips
 
 
@@ -123,28 +117,28 @@ def _tall_outlines(storey: storeys.Storey, slice_height_m: float) -> list[BaseGe
 def _section(soups: list[list[FloatArray]], z_m: float) -> tuple[BaseGeometry, BaseGeometry]:
     """Return matter and sheets of surfaces, each split into its bodies."""
     sections = [slicing.cut_section(bodies_m, z_m) for bodies_m in soups]
-    solid = shapely.union_all([s for s, _ in sections], grid_size=slicing.GRID_M)
-    sheets = shapely.union_all([s for _, s in sections], grid_size=slicing.GRID_M)
-    return solid, sheets.difference(solid.buffer(2 * slicing.GRID_M))
+    solid = shapely.union_all([s for s, _ in sections], grid_size=GRID_M)
+    sheets = shapely.union_all([s for _, s in sections], grid_size=GRID_M)
+    return solid, sheets.difference(solid.buffer(2 * GRID_M))
 
 
 def _shadow(soups: list[list[FloatArray]], height_m: float) -> BaseGeometry:
     """Return the ground under walls at any height: doors are closed by what is over them."""
-    top_m = min(height_m, _SHADOW_TO_M) - _BELOW_CEILING_M
-    n_cuts = max(2, int(top_m / _SHADOW_STEP_M))
+    top_m = height_m - THRESHOLD_M
+    n_cuts = max(2, int(top_m / _CUT_STEP_M))
     pieces = []
-    for z_m in np.linspace(_SHADOW_FROM_M, top_m, n_cuts):
+    for z_m in np.linspace(THRESHOLD_M, top_m, n_cuts):
         solid, sheets = _section(soups, z_m)
-        pieces += [solid, sheets.buffer(_LINE_M)]
-    return shapely.union_all(pieces, grid_size=_COARSE_GRID_M)
+        pieces += [solid, sheets.buffer(DRAWN_M)]
+    return shapely.union_all(pieces, grid_size=MESHING_M)
 
 
 def _filled(shadow: BaseGeometry) -> BaseGeometry:
     """Return all that outer walls enclose, gaps closed."""
-    wide = shadow.buffer(_CLOSED_GAP_M, join_style="mitre")
-    closed = wide.buffer(-_CLOSED_GAP_M + _LINE_M, join_style="mitre")
+    wide = shadow.buffer(ROOM_M, join_style="mitre")
+    closed = wide.buffer(-ROOM_M + DRAWN_M, join_style="mitre")
     filled = [Polygon(part.exterior) for part in _polygons(closed)]
-    return shapely.union_all([*filled, shadow], grid_size=_COARSE_GRID_M)
+    return shapely.union_all([*filled, shadow], grid_size=MESHING_M)
 
 
 def _floor(
@@ -154,16 +148,16 @@ def _floor(
     level = []
     for body in storey.bodies:
         for _, triangles_m in body.surfaces:
-            is_low = (np.abs(triangles_m[..., 2]) <= _FLOOR_WITHIN_M).all(axis=1)
+            is_low = (np.abs(triangles_m[..., 2]) <= THRESHOLD_M).all(axis=1)
             level.append(_level_outlines(triangles_m[is_low]))
-    floor = shapely.union_all(shapely.polygons(np.concatenate(level)), grid_size=_COARSE_GRID_M)
+    floor = shapely.union_all(shapely.polygons(np.concatenate(level)), grid_size=MESHING_M)
     if floor.difference(solid).area < _MIN_FLOOR_SHARE * outline.area:
         note = (
             f"{source}: has no floor at z = 0; the rover drives on all that the outer walls enclose"
         )
         return outline, (note,)
-    closed = floor.buffer(_SEAM_M, join_style="mitre").buffer(-_SEAM_M, join_style="mitre")
-    return closed.intersection(outline, grid_size=_COARSE_GRID_M), ()
+    closed = floor.buffer(ROOM_M / 2, join_style="mitre").buffer(-ROOM_M / 2, join_style="mitre")
+    return closed.intersection(outline, grid_size=MESHING_M), ()
 
 
 def _level_outlines(triangles_m: FloatArray) -> FloatArray:
@@ -179,18 +173,18 @@ def _obstacles(storey: storeys.Storey, solid: BaseGeometry, slice_height_m: floa
     triangles_m = np.concatenate([body.triangles_m for body in storey.bodies])
     z_m = triangles_m[..., 2]
     top_m = slice_height_m + _HEADROOM_M
-    is_within = ((z_m > _STEP_M) & (z_m < top_m)).all(axis=1)
-    n_cuts = int(np.ceil((top_m - _STEP_M) / _OBSTACLE_STEP_M)) + 1
-    heights_m = np.linspace(_STEP_M, top_m, n_cuts)
+    is_within = ((z_m > THRESHOLD_M) & (z_m < top_m)).all(axis=1)
+    n_cuts = int(np.ceil((top_m - THRESHOLD_M) / _CUT_STEP_M)) + 1
+    heights_m = np.linspace(THRESHOLD_M, top_m, n_cuts)
     cuts = [slicing.cut_triangles(triangles_m[~is_within], height_m) for height_m in heights_m]
     # a triangle wholly in between may lie between two cuts: all of it counts
     within = triangles_m[is_within]
     edges = within[:, [[0, 1], [1, 2], [2, 0]], :2].reshape(-1, 2, 2)
     ends = np.unique(np.round(np.concatenate([*cuts, edges]), 3).reshape(-1, 4), axis=0)
-    lines = shapely.buffer(shapely.linestrings(ends.reshape(-1, 2, 2)), _LINE_M, quad_segs=1)
+    lines = shapely.buffer(shapely.linestrings(ends.reshape(-1, 2, 2)), DRAWN_M, quad_segs=1)
     tops = shapely.get_parts(shapely.polygons(_level_outlines(within)))
     pieces = [*shapely.get_parts(lines), *tops, solid]
-    return shapely.union_all(pieces, grid_size=_OBSTACLE_GRID_M)
+    return shapely.union_all(pieces, grid_size=DRAWN_M)
 
 
 def _space_rooms(storey: storeys.Storey, slice_height_m: float) -> list[tuple[str, Polygon]]:
@@ -198,17 +192,17 @@ def _space_rooms(storey: storeys.Storey, slice_height_m: float) -> list[tuple[st
     rooms = []
     for name, triangles_m in storey.spaces:
         bodies_m = slicing.split_bodies(triangles_m)
-        area, _ = slicing.cut_section(bodies_m, slice_height_m, max_solid_m=_ANY_SIZE_M)
-        parts = [part for part in _polygons(area) if part.area > _MIN_ROOM_M**2]
+        area, _ = slicing.cut_section(bodies_m, slice_height_m, max_solid_m=np.inf)
+        parts = [part for part in _polygons(area) if part.area > ROOM_M**2]
         rooms += [(name, part) for part in parts]
     return rooms
 
 
 def _enclosed_rooms(outline: BaseGeometry, shadow: BaseGeometry) -> list[tuple[str, Polygon]]:
     """Return the rooms between the walls, without names."""
-    free = outline.difference(shadow, grid_size=_COARSE_GRID_M).normalize()
-    wide = [part for part in _polygons(free) if not part.buffer(-_MIN_ROOM_M / 2).is_empty]
-    return [("", shapely.simplify(room, slicing.STRAIGHT_M)) for room in wide]
+    free = outline.difference(shadow, grid_size=MESHING_M).normalize()
+    wide = [part for part in _polygons(free) if not part.buffer(-ROOM_M / 2).is_empty]
+    return [("", shapely.simplify(room, 2 * MESHING_M)) for room in wide]
 
 
 def _polygons(geometry: BaseGeometry) -> list[Polygon]:

@@ -7,9 +7,10 @@ import shapely
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.lab.buildings.tolerances import ROOM_M
+
 _HALL_WIDTH_M = 3.5  # ASSUME a hallway is no wider; those of ring_office have 3.2 m
 _HALL_ASPECT = 4.0  # ASSUME a hallway is this many times as long as wide
-_HALL_JOINT_M = 0.5  # ASSUME a passage between two hallways is no deeper than twice this
 
 Rooms = Sequence[tuple[str, Polygon]]
 """Name and floor of each."""
@@ -23,7 +24,7 @@ def find_hallways(rooms: Rooms) -> list[tuple[str, Polygon]]:
 def join_hallways(halls: Rooms) -> BaseGeometry:
     """Return the largest area of hallways that meet; what lies between two joins them."""
     union = shapely.union_all([hall for _, hall in halls])
-    joined = union.buffer(_HALL_JOINT_M, join_style="mitre")
+    joined = union.buffer(ROOM_M, join_style="mitre")
     return max(shapely.get_parts(joined), key=lambda part: part.area, default=Polygon())
 
 

@@ -4,19 +4,25 @@ import io
 
 import numpy as np
 import trimesh
+from scipy import constants
 
 from scanplan.errors import StageError
+from scanplan.lab.buildings.tolerances import DRAWN_M, MAX_EXTENT_M, MESHING_M
 from scanplan.types import FilePath, FloatArray
 
-METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}  # by definition
+METRES = {
+    "m": 1.0,
+    "cm": constants.centi,
+    "mm": constants.milli,
+    "in": constants.inch,
+    "ft": constants.foot,
+}
 MIN_EXTENT_M = 1.5  # a smaller floor has no room for a rover
-MAX_EXTENT_M = 2000.0  # a larger one is in another unit, or a town
 MAX_HEIGHT_M = 60.0  # a higher one is in another unit, or a tower to cut a floor out of
 _STOREY_HEIGHTS_M = (2.0, 12.0)  # of one storey, halls among them, to guess a unit by
-_STOREY_WIDTH_M = 3.0  # of the smallest storey, to guess a unit by
-_MIN_AREA_M2 = 1e-7  # that of two corners 0.1 mm apart on an edge of 1 mm
-_STL_HEADER = 84  # bytes of a binary STL before its faces, their number the last four
-_STL_RECORD = 50  # bytes of one face
+
+_STL_HEADER = np.dtype([("text", "S80"), ("count", "<u4")])  # of a binary STL
+_STL_FACE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
 def parse_mesh(
@@ -56,7 +62,7 @@ def parse_mesh(
     finite = np.isfinite(triangles).all(axis=(1, 2))
     _check_size(triangles[finite], unit, source)
     triangles_m = triangles[finite] * METRES[unit]
-    is_flat = _areas(triangles_m) <= _MIN_AREA_M2
+    is_flat = _areas(triangles_m) <= MESHING_M * DRAWN_M
     n_flat = np.count_nonzero(is_flat)
     n_infinite = np.count_nonzero(~finite)
     triangles_m = triangles_m[~is_flat]
@@ -96,8 +102,10 @@ def _triangles(data: bytes, suffix: str, source: FilePath) -> FloatArray:
 def _check_stl(data: bytes, source: FilePath) -> None:
     """Refuse an STL that was cut off, which its readers pass over."""
     is_ascii = data.lstrip()[:5].lower() == b"solid"
-    count = int.from_bytes(data[80:_STL_HEADER], "little") if len(data) >= _STL_HEADER else 0
-    size = _STL_HEADER + count * _STL_RECORD
+    n_header = _STL_HEADER.itemsize
+    header = np.frombuffer(data[:n_header].ljust(n_header, b"\0"), _STL_HEADER)
+    count = int(header["count"][0])
+    size = n_header + count * _STL_FACE.itemsize
     if len(data) == size:
         return
     if is_ascii and b"facet" in data[:2000]:
@@ -142,7 +150,7 @@ def _likely_unit(corners: FloatArray) -> str | None:
     height = np.ptp(corners[:, 2])
     low_m, high_m = _STOREY_HEIGHTS_M
     for unit, metres in METRES.items():
-        if low_m <= height * metres <= high_m and width * metres >= _STOREY_WIDTH_M:
+        if low_m <= height * metres <= high_m and width * metres >= MIN_EXTENT_M:
             return unit
     return None
 

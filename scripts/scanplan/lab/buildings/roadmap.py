@@ -15,16 +15,12 @@ from scanplan.errors import StageError
 from scanplan.types import BoolArray, FilePath, FloatArray, IntArray
 
 _MARGIN_M = 0.02  # beyond the stated clearance, so that steps between cells keep the clearance
-_FINE_M = 0.05  # cells of a floor that is not large: doorways hardly wider than the rover are met
-_COARSE_M = 0.1  # cells of a large floor: a quarter as many
-_COARSE_ABOVE_M2 = 300.0  # of floor, 120,000 fine cells: seconds for every stop's ways
+_CELLS_M = (0.05, 0.1)  # doors hardly wider than the rover are met, and those of large floors
+_LARGE_M2 = 300.0  # of floor, 120,000 fine cells: seconds for every stop's ways
 _MAX_CELLS = 20e6  # rasters of 160 MB each
-_PREFERRED_M = (
-    0.6  # from an obstacle: the way keeps to the middle of doors, with no detour in rooms
-)
-_NARROW = 3.0  # a step at an obstacle costs 1 + this times its length, falling to 1 at _PREFERRED_M
-_RIDGE_M = 0.6  # the middle of a room is where nothing within this has more space about it
-_PLENTY_M = 1.5  # and all that has this much
+ROOMY_M = 0.6  # from an obstacle: the way keeps the middle of doors, with no detour in rooms
+_NARROW = 3.0  # a step at an obstacle costs 1 + this times its length, falling to 1 at ROOMY_M
+_PLENTY_M = 1.5  # free space about a place that makes it the middle of a room
 
 
 @dataclass(frozen=True)
@@ -59,7 +55,7 @@ def make_grid(part: Polygon, clearance_m: float, source: FilePath) -> RoadmapGri
     """
     if part.is_empty:
         return RoadmapGrid(np.empty((0, 2)), np.empty(0), np.empty(0, bool), csr_array((0, 0)))
-    cell_m = _FINE_M if part.area < _COARSE_ABOVE_M2 else _COARSE_M
+    cell_m = _CELLS_M[part.area >= _LARGE_M2]
     _check_size(part, cell_m, source)
     x0, y0, x1, y1 = part.bounds
     x = np.arange(x0 - cell_m, x1 + 2 * cell_m, cell_m)
@@ -70,7 +66,7 @@ def make_grid(part: Polygon, clearance_m: float, source: FilePath) -> RoadmapGri
     near_m = np.asarray(distance_transform_edt(inside)) * cell_m + clearance_m
     middle = _is_middle(near_m, cell_m)[inside]
     near_m = near_m[inside]
-    cost = 1 + _NARROW * np.clip(1 - (near_m - clearance_m) / _PREFERRED_M, 0, 1)
+    cost = 1 + _NARROW * np.clip(1 - (near_m - clearance_m) / ROOMY_M, 0, 1)
     row, column = np.nonzero(inside)
     xy_m = np.column_stack([x[column], y[row]])
     return RoadmapGrid(xy_m, near_m, middle, _costs_of_steps(inside, cost, cell_m))
@@ -124,7 +120,7 @@ def _check_size(part: Polygon, cell_m: float, source: FilePath) -> None:
 
 def _is_middle(near_m: FloatArray, cell_m: float) -> BoolArray:
     """Return which cells of a raster have as much space as any near them, or plenty."""
-    ridge_m = maximum_filter(near_m, 1 + 2 * round(_RIDGE_M / 2 / cell_m))
+    ridge_m = maximum_filter(near_m, 1 + 2 * round(ROOMY_M / 2 / cell_m))
     return near_m >= np.minimum(ridge_m - cell_m / 2, _PLENTY_M)
 
 

@@ -17,7 +17,6 @@ from scanplan.lab.random_streams import RandomStream, open_stream
 from scanplan.types import FilePath, FloatArray, IntArray
 
 KINDS = ("given", "rooms", "hallways")
-_ROOMY_M = 0.6  # space about a way that it need not keep more of when it is straightened
 _YIELD_M = 0.1  # less space than its cells have that a straightened way may keep: corners for space
 _SPACING_M = 6.0  # by cost, from a stop to the middle of what is visited: hallways get several
 
@@ -230,7 +229,7 @@ def _straighten(
 ) -> FloatArray:
     """Return the corners of a leg, its last left out, that keep its cells' space up to a limit."""
     xy_m = grid.xy_m[leg]
-    near_m = np.minimum(shapely.distance(shapely.points(xy_m), obstacles_m), _ROOMY_M)
+    near_m = np.minimum(shapely.distance(shapely.points(xy_m), obstacles_m), roadmap.ROOMY_M)
     corners_m = []
     waiting = [(0, len(xy_m) - 1)]
     while waiting:

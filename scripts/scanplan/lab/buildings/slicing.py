@@ -10,15 +10,12 @@ from scipy.sparse.csgraph import connected_components
 from shapely import LineString, MultiLineString
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.lab.buildings.tolerances import CRACK_M, GRID_M, MESHING_M
 from scanplan.types import BoolArray, FloatArray, IntArray
 
-GRID_M = 1e-5  # shapely's snapping grid: above float32's rounding of a mesh, below any detail
-STRAIGHT_M = 2e-4  # a corner nearer the line between its neighbours is the meshing's, no corner
 MAX_SOLID_M = 2.0  # ASSUME matter is nowhere thicker: a wider closed surface is a room's
-_PROBE_M = 0.03  # in front of a surface, to see on which side it is: past gaps, below any room
-_PARALLEL_COSINE = np.cos(np.radians(1.0))  # opposite faces of one wall are parallel by drawing
-_MIN_THICKNESS_M = 0.01  # of a wall; thinner strips are cracks between parts
 _MAX_THICKNESS_M = 1.0  # of a wall; wider strips of matter are blocks
+_PARALLEL_COSINE = np.cos(np.radians(1.0))  # opposite faces of one wall are parallel by drawing
 
 
 def cut_triangles(triangles_m: FloatArray, z_m: float) -> FloatArray:
@@ -112,17 +109,17 @@ def section_faces(
         `outside` where a surface can only be seen from outside the footprint, else `inside`; in a
         fixed order. Matter is on the left of the lines that bound any.
     """
-    oriented = shapely.orient_polygons(solid.simplify(STRAIGHT_M)).normalize()
-    runs = straight_runs(shapely.orient_polygons(oriented), STRAIGHT_M)
+    oriented = shapely.orient_polygons(solid.simplify(2 * MESHING_M)).normalize()
+    runs = straight_runs(shapely.orient_polygons(oriented), 2 * MESHING_M)
     bounds = [LineString(run) for run in runs]
-    loose = shapely.get_parts(shapely.line_merge(sheets).simplify(STRAIGHT_M).normalize())
+    loose = shapely.get_parts(shapely.line_merge(sheets).simplify(2 * MESHING_M).normalize())
     screens = [LineString(run) for line in loose for run in pairwise(line.coords)]
-    sided = [(line, (-_PROBE_M,)) for line in bounds]
-    sided += [(line, (_PROBE_M, -_PROBE_M)) for line in screens]
+    sided = [(line, (-CRACK_M,)) for line in bounds]
+    sided += [(line, (CRACK_M, -CRACK_M)) for line in screens]
     return [
         (line, _side(line, footprint, offsets_m))
         for line, offsets_m in sided
-        if line.length > STRAIGHT_M
+        if line.length > 2 * MESHING_M
     ]
 
 
@@ -134,9 +131,9 @@ def section_centrelines(solid: BaseGeometry) -> list[tuple[LineString, float]]:
     list of (LineString, float)
         Centreline and thickness of every strip that is matter throughout and longer than thick.
     """
-    runs = straight_runs(shapely.orient_polygons(solid.simplify(STRAIGHT_M)), STRAIGHT_M)
+    runs = straight_runs(shapely.orient_polygons(solid.simplify(2 * MESHING_M)), 2 * MESHING_M)
     strips = (_strip(a, b) for a, b in combinations(runs, 2))
-    matter = solid.buffer(2 * STRAIGHT_M)
+    matter = solid.buffer(4 * MESHING_M)
     return [
         (line, thickness_m)
         for line, thickness_m in filter(None, strips)
@@ -160,7 +157,7 @@ def find_screens(outlines: Iterable[BaseGeometry], walls: BaseGeometry) -> list[
     """
     union = shapely.union_all(list(outlines), grid_size=GRID_M)
     free = _only_lines(shapely.difference(union, walls.buffer(2 * GRID_M)))
-    lines = shapely.line_merge(free).simplify(STRAIGHT_M).normalize()
+    lines = shapely.line_merge(free).simplify(2 * MESHING_M).normalize()
     return [LineString(run) for line in shapely.get_parts(lines) for run in pairwise(line.coords)]
 
 
@@ -201,7 +198,8 @@ def _body_section(ends_m: FloatArray, max_solid_m: float) -> tuple[BaseGeometry,
     noded = shapely.union_all(shapely.linestrings(ends_m), grid_size=GRID_M)
     cells = shapely.get_parts(shapely.polygonize([noded]))
     matter = [c for c in cells if _crossing_count(c.representative_point(), ends_m) % 2]
-    matter = [c for c in matter if c.buffer(-max_solid_m / 2).is_empty]
+    if np.isfinite(max_solid_m):
+        matter = [c for c in matter if c.buffer(-max_solid_m / 2).is_empty]
     solid = shapely.union_all(matter, grid_size=GRID_M)
     return solid, _only_lines(shapely.difference(noded, solid, grid_size=GRID_M))
 
@@ -246,7 +244,7 @@ def _strip(a: FloatArray, b: FloatArray) -> tuple[LineString, float] | None:
     thickness_m = float((b.mean(axis=0) - a[0]) @ left)
     start_m = max(0.0, (b[1] - a[0]) @ along)
     end_m = min(length_m, (b[0] - a[0]) @ along)
-    is_wall = _MIN_THICKNESS_M < thickness_m <= _MAX_THICKNESS_M
+    is_wall = CRACK_M < thickness_m <= _MAX_THICKNESS_M
     if not is_wall or end_m - start_m <= thickness_m:
         return None
     middle = a[0] + left * thickness_m / 2

@@ -8,6 +8,7 @@ import shapely
 from shapely import LineString
 
 from scanplan.errors import StageError
+from scanplan.lab.buildings.tolerances import DECIMALS, THRESHOLD_M
 from scanplan.types import FilePath, FloatArray
 
 if TYPE_CHECKING:
@@ -19,14 +20,8 @@ Surface = tuple[str, FloatArray]
 """Kind of surface and its triangles (t, 3, 3)."""
 
 LEVEL_COSINE = 0.95  # of a slope of 18 degrees: a ramp is floor, what is steeper is wall
-_BELOW_M = 0.6  # under the floor: its slab belongs to the storey, what ends deeper does not
-_ABOVE_M = 0.6  # over the next floor: what begins higher belongs to the next storey
-_MIN_STOREY_M = 1.0  # to the next floor; a level nearer is a split one of the same storey
-_SPACE_BELOW_M = 0.5  # under the floor: a space that begins deeper is the storey below's
-_OPENING_BELOW_M = 0.1  # under the floor: an opening with its middle deeper is not this storey's
-_DOOR_SILL_M = 0.1  # an opening with nothing in it and a higher sill is no passage
-_LOW_SLAB_M = 1.0  # a slab below is the storey's floor, one above its ceiling
-_DECIMALS = 6  # of sills and lintels in metres
+_SLAB_M = 0.6  # under a floor: what ends or begins deeper belongs to the storey below
+_MIN_STOREY_M = 1.0  # to the next floor; a level or slab nearer is one of the same storey
 
 
 @dataclass(frozen=True)
@@ -124,7 +119,7 @@ def storey_of_model(model: "IfcBuilding", index: int, *, doors: str, windows: st
     return Storey(
         bodies=tuple(_body(part, t) for part, t in near if part.kind not in left_out),
         openings=_openings(model, near, top_m),
-        spaces=tuple((p.name, t) for p, t in spaces if t[..., 2].min() > -_SPACE_BELOW_M),
+        spaces=tuple((p.name, t) for p, t in spaces if t[..., 2].min() > -_SLAB_M),
         height_m=float(top_m),
     )
 
@@ -146,7 +141,7 @@ def middle_axis(along: FloatArray, triangles_m: FloatArray) -> tuple[LineString,
 
 def _is_near(triangles_m: FloatArray, top_m: float) -> bool:
     z_m = triangles_m[..., 2]
-    return bool(z_m.max() > -_BELOW_M and z_m.min() < top_m + _ABOVE_M)
+    return bool(z_m.max() > -_SLAB_M and z_m.min() < top_m + _SLAB_M)
 
 
 def _openings(
@@ -158,7 +153,7 @@ def _openings(
         if part.kind != "opening" or part.host not in hosts:
             continue
         z_m = triangles_m[..., 2]
-        if -_OPENING_BELOW_M <= (z_m.min() + z_m.max()) / 2 < top_m:
+        if -THRESHOLD_M <= (z_m.min() + z_m.max()) / 2 < top_m:
             openings.append(_opening(part, triangles_m, hosts[part.host]))
     return tuple(openings)
 
@@ -168,9 +163,9 @@ def _opening(part: "IfcPart", triangles_m: FloatArray, host: "IfcPart") -> Openi
     line, _ = middle_axis(host.along, triangles_m)
     middle, _ = middle_axis(host.along, host.triangles_m)
     ends = [middle.interpolate(middle.project(shapely.Point(xy))) for xy in line.coords]
-    sill_m = round(float(triangles_m[..., 2].min()), _DECIMALS)
-    lintel_m = round(float(triangles_m[..., 2].max()), _DECIMALS)
-    empty = "passage" if sill_m < _DOOR_SILL_M else "window"
+    sill_m = round(float(triangles_m[..., 2].min()), DECIMALS)
+    lintel_m = round(float(triangles_m[..., 2].max()), DECIMALS)
+    empty = "passage" if sill_m < THRESHOLD_M else "window"
     return LineString(ends), part.fills or empty, sill_m, lintel_m
 
 
@@ -186,7 +181,7 @@ def _body(part: "IfcPart", triangles_m: FloatArray) -> Body:
 
 def _surfaces(part: "IfcPart", triangles_m: FloatArray) -> tuple[Surface, ...]:
     if part.kind == "slab":
-        is_floor = triangles_m[..., 2].max() < _LOW_SLAB_M
+        is_floor = triangles_m[..., 2].max() < _MIN_STOREY_M
         return (("floor" if is_floor else "ceiling", triangles_m),)
     is_glass = part.transparent
     if part.kind == "glass" and not is_glass.any():

@@ -6,9 +6,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike
 
+from scanplan.lab.buildings.tolerances import GRID_M
 from scanplan.types import FloatArray
-
-_MIN_GAIN = 1e-9  # rounding: a turn that saves less may save nothing, and never ends
 
 
 def shortest_tour(metres: ArrayLike, *, closed: bool, first: int | None = None) -> list[int]:
@@ -62,7 +61,8 @@ def _improve(tour: list[int], metres: FloatArray, closed: bool) -> list[int]:
         is_better = False
         for i in range(1, len(tour) - 1):
             for j in range(i + 1, len(tour)):
-                if _gain(tour, metres, i, j, closed) > _MIN_GAIN:
+                # what saves less may save nothing but rounding, and never end
+                if _gain(tour, metres, i, j, closed) > GRID_M:
                     tour[i : j + 1] = tour[i : j + 1][::-1]
                     is_better = True
     return tour

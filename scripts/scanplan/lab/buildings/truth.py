@@ -12,11 +12,10 @@ from shapely import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.lab.buildings import drawn_floor, ground, slicing
+from scanplan.lab.buildings.tolerances import DECIMALS, GRID_M
 
 Feature = tuple[BaseGeometry, dict[str, Any]]
 """A geometry in the map frame, metres, and its properties."""
-
-DECIMALS = 6  # of coordinates and lengths in metres: the grid that drawings are snapped to
 
 
 def truth_features(plan: drawn_floor.DrawnFloor, slice_height_m: float) -> list[Feature]:
@@ -62,9 +61,9 @@ def true_wall_faces(
     """
     section = shapely.orient_polygons(drawn_floor.cut_walls(plan, slice_height_m))
     # a vertex in the middle of a straight wall is where another wall ended in the drawing
-    section = section.simplify(drawn_floor.GRID_M)
-    skin = shapely.boundary(drawn_floor.floor_footprint(plan)).buffer(10 * drawn_floor.GRID_M)
-    runs = slicing.straight_runs(section, drawn_floor.GRID_M)
+    section = section.simplify(GRID_M)
+    skin = shapely.boundary(drawn_floor.floor_footprint(plan)).buffer(10 * GRID_M)
+    runs = slicing.straight_runs(section, GRID_M)
     lines = [LineString(run) for run in runs]
     return [(line, "outside" if skin.covers(line) else "inside") for line in lines]
 

@@ -10,8 +10,7 @@ from scanplan.lab.random_streams import RandomStream, open_stream
 from scanplan.lab.simulation import rover
 from scanplan.types import FloatArray, IntArray
 
-# ASSUME wheels and gyro of a small rover: 1 % scale error each, constant over a drive
-_ODOMETRY_SCALE_ERROR = 0.01
+_ODOMETRY_SCALE_ERROR = 0.01  # ASSUME of wheels and gyro of a small rover, constant over a drive
 _TICKS_PER_TRANSFORM = 5  # ASSUME laser scans at 10 Hz; AMCL sends its transform with each
 
 

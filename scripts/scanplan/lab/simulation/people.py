@@ -15,7 +15,6 @@ from scanplan.types import FloatArray
 RADIUS_M = 0.2  # ASSUME an adult seen from above is a disc of 40 cm
 HEIGHT_M = 1.75  # ASSUME an adult
 _CLEARANCE_M = RADIUS_M + 0.1  # to walls, and to the sensor, of which they step out of the way
-_REFLECTIVITY = 40.0  # ASSUME clothes; it fills the intensity, which no stage reads
 _GOAL_TRIES = 30  # places drawn for one in sight: few rests against the time of a simulation
 _REST_S = 2.0  # where no place is in sight; then all is drawn anew
 
@@ -102,7 +101,8 @@ def find_person_hits(
         first = (z_m >= 0) & (z_m <= HEIGHT_M) & (met_m < range_m[met])
         range_m[met[first]] = met_m[first]
         cosine[met[first]] = met_cosine[first]
-    return raycast.RayHits(range_m, cosine, np.full(len(rays), _REFLECTIVITY, np.float32))
+    clothes = np.full(len(rays), raycast.REFLECTIVITY["person"], np.float32)
+    return raycast.RayHits(range_m, cosine, clothes)
 
 
 def merge_hits(building: raycast.RayHits, people: raycast.RayHits) -> raycast.RayHits:

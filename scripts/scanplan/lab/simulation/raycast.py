@@ -8,9 +8,9 @@ import open3d as o3d
 from scanplan.lab.buildings.extrusion import SURFACES, Mesh
 from scanplan.types import FloatArray, IntArray
 
-# ASSUME paint, flooring, fabric and glass, on Velodyne's scale of 0 to 100 for diffuse surfaces;
+# ASSUME paint, flooring, fabric, clothes, glass, on Velodyne's scale of 0 to 100 for diffuse ones;
 # it fills the intensity of the recorded points, which no stage reads
-_REFLECTIVITY = {
+REFLECTIVITY = {
     "wall": 80.0,
     "floor": 30.0,
     "ceiling": 90.0,
@@ -18,6 +18,7 @@ _REFLECTIVITY = {
     "glass": 10.0,
     "door": 60.0,
     "other": 50.0,
+    "person": 40.0,
 }
 
 
@@ -53,7 +54,7 @@ class RayScene:
         self._centre_m = mesh.vertices_m.mean(axis=0)
         vertices_m = np.ascontiguousarray(mesh.vertices_m - self._centre_m, np.float32)
         is_glass = (np.array(SURFACES) == "glass")[mesh.surface]
-        of_surface = np.array([_REFLECTIVITY[name] for name in SURFACES], np.float32)
+        of_surface = np.array([REFLECTIVITY[name] for name in SURFACES], np.float32)
         reflectivity = of_surface[mesh.surface]
         opaque = ~is_glass
         self._opaque = _make_layer(vertices_m, mesh.triangles[opaque], reflectivity[opaque])

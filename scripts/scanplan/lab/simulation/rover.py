@@ -8,7 +8,6 @@ from numpy.typing import ArrayLike
 from scanplan.types import FloatArray, IntArray
 
 TICK_NS = 20_000_000  # ASSUME odometry at 50 Hz, usual of small rovers' bases
-_TRACE_NS = 10_000_000  # between true poses: straight chords then err by a few micrometres
 
 
 @dataclass(frozen=True)
@@ -97,7 +96,8 @@ def trace_stamps(drive: Drive, margin_ns: int) -> IntArray:
     linearly (positions) and spherically (rotations), the poses then are those of a sensor on the
     rover to a few micrometres. They reach `margin_ns` beyond both ends.
     """
-    grid = np.arange(-margin_ns, _end_ns(drive) + margin_ns + _TRACE_NS, _TRACE_NS, dtype=np.int64)
+    step_ns = TICK_NS // 2
+    grid = np.arange(-margin_ns, _end_ns(drive) + margin_ns + step_ns, step_ns, dtype=np.int64)
     return np.union1d(grid, np.round(drive.t_s * 1e9).astype(np.int64))
 
 

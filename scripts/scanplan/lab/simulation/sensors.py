@@ -11,7 +11,8 @@ from scanplan.types import FloatArray, IntArray
 
 # Velodyne VLP-16 user manual: elevations of its beams, and the beams in the order of firing
 _VLP16_ELEVATIONS_DEG = tuple(range(-15, 16, 2))
-_VLP16_FIRING_ORDER = (0, 8, 1, 9, 2, 10, 3, 11, 4, 12, 5, 13, 6, 14, 7, 15)
+# of which each of the lower half is followed by its like of the upper half
+_VLP16_FIRING_ORDER = tuple(np.arange(16).reshape(2, 8).T.ravel().tolist())
 
 
 @dataclass(frozen=True)

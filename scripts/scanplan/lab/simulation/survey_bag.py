@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from rosbags import rosbag1, rosbag2
 from rosbags.interfaces import (
     Qos,
@@ -31,11 +32,10 @@ if TYPE_CHECKING:
     from rosbags.interfaces import Connection
     from rosbags.typesys.store import Typestore
 
-# 2024-01-01 00:00:00 UTC: a recording starts then, so that the same seed gives the same bytes
-EPOCH_NS = 1_704_067_200 * 10**9
+# a recording starts then, so that the same seed gives the same bytes
+EPOCH_NS = int(np.datetime64("2024-01-01", "ns").astype(np.int64))
 _LATCHED = (POSE_TOPIC, STATIC_TOPIC)
 _ROS2_STORAGE = {".db3": rosbag2.StoragePlugin.SQLITE3, ".mcap": rosbag2.StoragePlugin.MCAP}
-_ROS2_VERSION = 9  # of the bag's metadata, the newest that rosbags writes
 _QUEUE_DEPTH = 10  # ASSUME the depth that ROS 2 publishers take by default
 _FOREVER = QosTime(2147483647, 4294967295)  # rmw's infinite duration
 
@@ -75,7 +75,8 @@ def _open_recorder(path: Path) -> Iterator["_Recorder"]:
         # the writer makes a folder; the file in it is complete without the rest
         with tempfile.TemporaryDirectory(dir=path.parent, prefix=".recording") as folder:
             bag = Path(folder, "survey")
-            with rosbag2.Writer(bag, version=_ROS2_VERSION, storage_plugin=storage) as writer:
+            newest = rosbag2.Writer.VERSION_LATEST
+            with rosbag2.Writer(bag, version=newest, storage_plugin=storage) as writer:
                 yield _Recorder(writer, store, store.serialize_cdr, _ros2_options)
             (bag / f"survey{path.suffix}").replace(path)
     else:

@@ -8,11 +8,11 @@ from numpy.typing import ArrayLike
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import se3
+from scanplan.lab.buildings.tolerances import CRACK_M
 from scanplan.lab.buildings.truth import Feature
 from scanplan.lab.evaluation import face_cells, visible_faces
 from scanplan.types import BoolArray, FloatArray
 
-_BESIDE_WALL_M = 0.01  # tolerance across a wall's half thickness, well below any wall's
 _PARALLEL_SINE = 0.1  # of the angle of a face to its wall, 6 degrees: its jambs stand across
 
 
@@ -76,9 +76,7 @@ def _ends_m(features: Sequence[Feature], rows: list[int]) -> FloatArray:
 
 def _on_wall(line: BaseGeometry, thickness_m: float, cells: face_cells.FaceCells) -> BoolArray:
     """Return which cells (c,) are of the faces of a straight wall."""
-    is_beside = shapely.dwithin(
-        shapely.points(cells.middle_m), line, thickness_m / 2 + _BESIDE_WALL_M
-    )
+    is_beside = shapely.dwithin(shapely.points(cells.middle_m), line, thickness_m / 2 + CRACK_M)
     face = np.diff(cells.faces_m, axis=1)[:, 0]
     wall = np.diff(line.coords, axis=0)[0]
     sine = (
