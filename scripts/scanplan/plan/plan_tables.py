@@ -8,11 +8,10 @@ import numpy as np
 import shapely
 from shapely.geometry import Polygon
 
-from scanplan.plan.openings import OpeningSettings
+from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.rooms import Room, rooms_beside
-from scanplan.plan.uncertainty import ReviewCriteria, WallEvidence
-from scanplan.plan.wall_faces import OBSERVED, WallFace
-from scanplan.plan.wall_pairs import PlanWall
+from scanplan.plan.uncertainty import WallEvidence
+from scanplan.plan.wall_pairs import InferredFace, PlanWall
 from scanplan.store import schemas
 from scanplan.types import Array, FloatArray, IntArray
 
@@ -32,33 +31,44 @@ Row = dict[str, Any]
 """Values of a table's row by column."""
 
 
-def face_columns(faces: Sequence[WallFace], floor_z_m: float) -> tuple[dict[str, Array], list[int]]:
+def face_columns(
+    walls: Sequence[PlanWall], floor_z_m: float
+) -> tuple[dict[str, Array], dict[tuple[int, bool], int]]:
     """Return the rows of `schemas.FACES`: observed faces first, the longest first.
 
     Parameters
     ----------
-    faces : sequence of wall_faces.WallFace
+    walls : sequence of wall_pairs.PlanWall
+        Their faces cut, see `wall_faces.cut_wall_faces`.
     floor_z_m : float
 
     Returns
     -------
     dict of str to (n,) array
-    list of int
-        The row of each face.
+    dict of (int, bool) to int
+        The row of the longest observed face of each side: by wall, and whether it is the left one.
     """
-    order = sorted(range(len(faces)), key=lambda i: _rank(faces[i]))
-    rows = [{"face": row, **_face_row(faces[i], floor_z_m)} for row, i in enumerate(order)]
-    row_of_face = {i: row for row, i in enumerate(order)}
-    return _columns(rows, schemas.FACES), [row_of_face[i] for i in range(len(faces))]
+    faces: list[tuple[int, bool, FaceInterval | InferredFace]] = []
+    for number, wall in enumerate(walls):
+        faces += [(number, True, face) for face in wall.left]
+        faces += [(number, False, face) for face in wall.right]
+        faces += [(number, face.is_left, face) for face in wall.inferred]
+    faces.sort(key=lambda numbered: _rank(numbered[2]))
+    rows: list[Row] = []
+    main_rows: dict[tuple[int, bool], int] = {}
+    for row, (number, is_left, face) in enumerate(faces):
+        rows.append({"face": row, **_face_row(face, floor_z_m), "wall": number})
+        if isinstance(face, FaceInterval):
+            main_rows.setdefault((number, is_left), row)
+    return _columns(rows, schemas.FACES), main_rows
 
 
 def wall_columns(
     walls: Sequence[PlanWall],
     evidence: Sequence[WallEvidence],
-    face_rows: Sequence[int],
-    faces: Sequence[WallFace],
+    main_rows: dict[tuple[int, bool], int],
+    doubtful: Sequence[bool],
     floor_z_m: float,
-    criteria: ReviewCriteria,
 ) -> dict[str, Array]:
     """Return the rows of `schemas.PLAN_WALLS`.
 
@@ -67,13 +77,12 @@ def wall_columns(
     walls : sequence of wall_pairs.PlanWall
     evidence : sequence of uncertainty.WallEvidence
         One per wall.
-    face_rows : sequence of int
-        Row of each of `faces` in the table of faces.
-    faces : sequence of wall_faces.WallFace
+    main_rows : dict of (int, bool) to int
+        See `face_columns`.
+    doubtful : sequence of bool
+        Which walls should be verified on site.
     floor_z_m : float
-    criteria : uncertainty.ReviewCriteria
     """
-    main_rows = _main_face_rows(face_rows, faces)
     rows: list[Row] = []
     for number, (wall, known) in enumerate(zip(walls, evidence, strict=True)):
         low_m, high_m = known.z_m
@@ -94,14 +103,14 @@ def wall_columns(
             "sigma_end1_m": sigma_end_m,
             "n_points": known.n_points,
             "n_scans": len(known.scans),
-            "verify": known.needs_a_visit(criteria),
+            "verify": doubtful[number],
         }
         rows.append(row)
     return _columns(rows, schemas.PLAN_WALLS)
 
 
 def opening_columns(
-    walls: Sequence[PlanWall], rooms: Sequence[Room], settings: OpeningSettings
+    walls: Sequence[PlanWall], rooms: Sequence[Room], max_door_m: float
 ) -> dict[str, Array]:
     """Return the rows of `schemas.OPENINGS`: those of each wall in order along it."""
     rows: list[Row] = []
@@ -112,7 +121,7 @@ def opening_columns(
             row = {
                 "opening": len(rows),
                 "wall": number,
-                "type": opening.kind(settings),
+                "type": opening.kind(max_door_m),
                 **_end_columns(ends_m),
                 "width_m": opening.width_m,
                 "thickness_m": wall.thickness_m,
@@ -176,49 +185,37 @@ def free_columns(polygons: Iterable[Polygon]) -> dict[str, Array]:
     return _columns(rows, schemas.FREE)
 
 
-def _face_row(face: WallFace, floor_z_m: float) -> Row:
+def _face_row(face: FaceInterval | InferredFace, floor_z_m: float) -> Row:
     return {
         **_end_columns(face.ends),
         "nx": face.line.normal[0],
         "ny": face.line.normal[1],
         **_points_of_face(face, floor_z_m),
-        "state": face.state,
-        "wall": face.wall,
     }
 
 
-def _points_of_face(face: WallFace, floor_z_m: float) -> Row:
+def _points_of_face(face: FaceInterval | InferredFace, floor_z_m: float) -> Row:
     """Return what the points say that show a face; none show an inferred one."""
-    interval = face.shown
-    if interval is None:
+    if isinstance(face, InferredFace):
         unknown = dict.fromkeys(("rmse_m", "z_min_m", "z_max_m"), math.nan)
-        return {"n_points": 0, "n_scans": 0, **unknown}
-    offset_m = interval.seen.occupied_off_m[interval.points]
-    height_m = interval.seen.occupied_z_m[interval.points]
+        return {"state": "inferred", "n_points": 0, "n_scans": 0, **unknown}
+    offset_m = face.seen.occupied_off_m[face.points]
+    height_m = face.seen.occupied_z_m[face.points]
     z_min_m, z_max_m = np.percentile(height_m, _Z_PERCENTILES) + floor_z_m
     return {
-        "n_points": interval.n_points,
-        "n_scans": interval.n_scans,
+        "state": "observed",
+        "n_points": face.n_points,
+        "n_scans": face.n_scans,
         "rmse_m": float(np.sqrt(np.mean(offset_m**2))),
         "z_min_m": z_min_m,
         "z_max_m": z_max_m,
     }
 
 
-def _rank(face: WallFace) -> tuple[Any, ...]:
-    return face.state != OBSERVED, face.low_m - face.high_m, *face.ends.ravel().tolist()
-
-
-def _main_face_rows(
-    face_rows: Sequence[int], faces: Sequence[WallFace]
-) -> dict[tuple[int, bool], int]:
-    """Return the row of the longest observed face of each side, by (wall, left)."""
-    rows: dict[tuple[int, bool], int] = {}
-    # rows are in order of length
-    for row, face in sorted(zip(face_rows, faces, strict=True), key=lambda pair: pair[0]):
-        if face.state == OBSERVED:
-            rows.setdefault((face.wall, face.left), row)
-    return rows
+def _rank(face: FaceInterval | InferredFace) -> tuple[Any, ...]:
+    """Return a key to sort faces by."""
+    is_inferred = isinstance(face, InferredFace)
+    return is_inferred, face.low_m - face.high_m, *face.ends.ravel().tolist()
 
 
 def _end_columns(ends_m: FloatArray) -> Row:

@@ -25,8 +25,6 @@ class ReviewCriteria:
 
     Attributes
     ----------
-    registration_sigma_m : float, > 0
-        Standard deviation of a registered scan's place.
     max_sigma_m : float, > 0
         Of a wall's offset or of one of its ends.
     min_scans : int, >= 1
@@ -34,7 +32,6 @@ class ReviewCriteria:
         Share of a wall's length, openings aside, that points show.
     """
 
-    registration_sigma_m: float
     max_sigma_m: float
     min_scans: int
     min_observed: float
@@ -86,21 +83,22 @@ class WallEvidence:
 
 
 def estimate_evidence(
-    walls: Sequence[PlanWall], criteria: ReviewCriteria, tops_m: Sequence[float]
+    walls: Sequence[PlanWall], tops_m: Sequence[float], *, registration_sigma_m: float
 ) -> list[WallEvidence]:
     """Return the evidence of every wall.
 
     Parameters
     ----------
     walls : sequence of wall_pairs.PlanWall
-    criteria : ReviewCriteria
     tops_m : sequence of float
         Where each ends below the ceiling, above the floor; NaN where it was not seen to.
+    registration_sigma_m : float, > 0
+        Standard deviation of a registered scan's place.
     """
-    offset_sigmas_m = np.array([_offset_sigma_m(wall, criteria) for wall in walls])
+    offset_sigmas_m = np.array([_offset_sigma_m(wall, registration_sigma_m) for wall in walls])
     spans = intersections.stack_spans(walls)
     return [
-        _estimate_wall(wall, row, top_m, spans, offset_sigmas_m, criteria)
+        _estimate_wall(wall, row, top_m, spans, offset_sigmas_m, registration_sigma_m)
         for row, (wall, top_m) in enumerate(zip(walls, tops_m, strict=True))
     ]
 
@@ -111,12 +109,12 @@ def _estimate_wall(
     top_m: float,
     spans: intersections.SpanArrays,
     offset_sigmas_m: FloatArray,
-    criteria: ReviewCriteria,
+    registration_sigma_m: float,
 ) -> WallEvidence:
     scan, residual_m, z_m = _hits(wall.members)
     scans, points = np.unique(scan, return_counts=True)
-    start_sigma_m = _end_sigma_m(wall, wall.low_m, spans, offset_sigmas_m, criteria)
-    end_sigma_m = _end_sigma_m(wall, wall.high_m, spans, offset_sigmas_m, criteria)
+    start_sigma_m = _end_sigma_m(wall, wall.low_m, spans, offset_sigmas_m, registration_sigma_m)
+    end_sigma_m = _end_sigma_m(wall, wall.high_m, spans, offset_sigmas_m, registration_sigma_m)
     return WallEvidence(
         rmse_m=float(np.sqrt(np.mean(residual_m**2))),
         sigma_offset_m=float(offset_sigmas_m[row]),
@@ -146,14 +144,14 @@ def _highest_m(z_m: FloatArray) -> float:
     return float(np.sort(z_m)[max(len(z_m) - 1 - _POINTS_ABOVE, len(z_m) // 2)])
 
 
-def _offset_sigma_m(wall: PlanWall, criteria: ReviewCriteria) -> float:
+def _offset_sigma_m(wall: PlanWall, registration_sigma_m: float) -> float:
     """Return the standard deviation of a wall's middle: the mean of its sides."""
     sides = [side for side in (wall.left, wall.right) if side]
-    variances = [_side_sigma_m(side, criteria) ** 2 for side in sides]
+    variances = [_side_sigma_m(side, registration_sigma_m) ** 2 for side in sides]
     return math.sqrt(sum(variances)) / len(sides)
 
 
-def _side_sigma_m(intervals: Sequence[FaceInterval], criteria: ReviewCriteria) -> float:
+def _side_sigma_m(intervals: Sequence[FaceInterval], registration_sigma_m: float) -> float:
     """Return the standard deviation of a side's offset.
 
     Scans err independently, a scan's points together. The spread of the scans' means is taken where
@@ -164,7 +162,7 @@ def _side_sigma_m(intervals: Sequence[FaceInterval], criteria: ReviewCriteria) -
     mean_m = np.bincount(index, offset_m) / count
     deviation_m = mean_m - np.average(mean_m, weights=count)
     spread_m = np.sqrt(np.average(deviation_m**2, weights=count))
-    of_scans_m = max(spread_m, criteria.registration_sigma_m) / math.sqrt(len(count))
+    of_scans_m = max(spread_m, registration_sigma_m) / math.sqrt(len(count))
     of_points_m = offset_m.std() / len(scan) ** 0.5
     return math.hypot(of_scans_m, of_points_m)
 
@@ -174,7 +172,7 @@ def _end_sigma_m(
     end_m: float,
     spans: intersections.SpanArrays,
     offset_sigmas_m: FloatArray,
-    criteria: ReviewCriteria,
+    registration_sigma_m: float,
 ) -> float:
     """Return the standard deviation of an end: of the wall it meets there, or by its last points.
 
@@ -187,7 +185,7 @@ def _end_sigma_m(
         All walls.
     offset_sigmas_m : (n,) float64
         Of all walls.
-    criteria : ReviewCriteria
+    registration_sigma_m : float
     """
     crossings = intersections.find_crossings(wall.line, spans, reach_m=_REACH_M)
     is_at_end = np.abs(crossings.place_m - end_m) < _MET_M
@@ -202,7 +200,7 @@ def _end_sigma_m(
         if is_near.any():
             n_scans += len(np.unique(seen.occupied_scan[interval.points][is_near]))
             pitch_m = min(pitch_m, _NEAR_END_M / is_near.sum())
-    of_scans_m = criteria.registration_sigma_m / math.sqrt(max(n_scans, 1))
+    of_scans_m = registration_sigma_m / math.sqrt(max(n_scans, 1))
     return math.hypot(of_scans_m, min(pitch_m, _NEAR_END_M))
 
 

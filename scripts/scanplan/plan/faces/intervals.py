@@ -10,7 +10,6 @@ from scanplan.geometry.lines import Line, Span
 from scanplan.rays.face_observation import (
     LEAST_HEIGHT_M,
     FaceObservation,
-    RaySettings,
     observe_face,
 )
 from scanplan.rays.face_raster import CELL_M, FaceRaster
@@ -69,7 +68,7 @@ class FaceInterval(Span):
 
 
 def observe_along(
-    rays: RaySet, line: Line, low_m: float, high_m: float, reading: RaySettings
+    rays: RaySet, line: Line, low_m: float, high_m: float, *, band_m: float, reach_m: float
 ) -> FaceObservation:
     """Refit a line to the points at it, and observe it and what is beyond its ends.
 
@@ -79,34 +78,37 @@ def observe_along(
     line : lines.Line
     low_m, high_m : float
         What was extracted of it.
-    reading : face_observation.RaySettings
+    band_m : float, > 0
+        Points this near to it are at it.
+    reach_m : float, >= 0
+        How far beyond its ends more of it is looked for.
     """
     own_m = (low_m, high_m)
-    reach_m = np.full(2, reading.reach_m)
-    observation, span_m = _observe_refitted(rays, line, own_m, reach_m, reading)
+    beyond_m = np.full(2, reach_m)
+    observation, span_m = _observe_refitted(rays, line, own_m, beyond_m, band_m)
     for _ in range(_MOST_LOOKS - 1):
         nearest_m = [np.abs(observation.glass_m - end_m).min(initial=np.inf) for end_m in span_m]
         is_in_glass = np.array(nearest_m) < _END_M
         if not is_in_glass.any():
             break
         # a pane is observed as a whole
-        reach_m = np.where(is_in_glass, 2 * reach_m, reach_m)
-        observation, span_m = _observe_refitted(rays, line, own_m, reach_m, reading)
+        beyond_m = np.where(is_in_glass, 2 * beyond_m, beyond_m)
+        observation, span_m = _observe_refitted(rays, line, own_m, beyond_m, band_m)
     return observation
 
 
 def _observe_refitted(
-    rays: RaySet, line: Line, own_m: tuple[float, float], reach_m: FloatArray, reading: RaySettings
+    rays: RaySet, line: Line, own_m: tuple[float, float], beyond_m: FloatArray, band_m: float
 ) -> tuple[FaceObservation, FloatArray]:
-    """Return what is seen of a refitted line up to `reach_m` (2,) beyond its own, and the span."""
-    span_m = own_m[0] - reach_m[0], own_m[1] + reach_m[1]
-    near = cast_at_face(rays, line, *own_m, at_m=reading.band_m, occluded_within_m=0.0)
+    """Return what is seen of a refitted line up to `beyond_m` (2,) beyond its own, and the span."""
+    span_m = own_m[0] - beyond_m[0], own_m[1] + beyond_m[1]
+    near = cast_at_face(rays, line, *own_m, at_m=band_m, occluded_within_m=0.0)
     is_own = near.is_occupied & (near.along_m >= own_m[0]) & (near.along_m <= own_m[1])
     if not rays.planar:
         is_own &= near.height_m > LEAST_HEIGHT_M
     refitted = refit_to_points(line, near.along_m[is_own], -near.behind_m[is_own])
     refitted_m = refitted.along_m(line.at(np.array(span_m)))
-    return observe_face(rays, refitted, *refitted_m, band_m=reading.band_m), refitted_m
+    return observe_face(rays, refitted, *refitted_m, band_m=band_m), refitted_m
 
 
 def refit_to_points(line: Line, along: FloatArray, offset: FloatArray) -> Line:
@@ -138,11 +140,15 @@ def refit_to_points(line: Line, along: FloatArray, offset: FloatArray) -> Line:
 
 
 def find_face_intervals(
-    seen: FaceObservation, reading: RaySettings, *, foreign_m: Sequence[tuple[float, float]] = ()
+    seen: FaceObservation,
+    *,
+    door_height_m: float,
+    max_gap_m: float,
+    foreign_m: Sequence[tuple[float, float]] = (),
 ) -> list[FaceInterval]:
     """Find what is wall along a line.
 
-    Columns with points, joined over pauses that no ray went through.
+    Columns with points, joined over gaps that no ray went through.
 
     Glass is no wall; intervals that rays pass over along most of their length are furniture, and
     left out.
@@ -150,7 +156,10 @@ def find_face_intervals(
     Parameters
     ----------
     seen : face_observation.FaceObservation
-    reading : face_observation.RaySettings
+    door_height_m : float, > 0
+        What is higher says nothing about a way through.
+    max_gap_m : float, >= 0
+        Longest gap that is wall all the same where no ray went through.
     foreign_m : sequence of (float, float)
         From where to where other faces cross the line: points there are owned by these, so no
         interval begins or ends there.
@@ -164,11 +173,11 @@ def find_face_intervals(
         return []
     raster = seen.raster
     is_foreign = _is_within(raster, [*foreign_m, *seen.glass_m])
-    is_solid = raster.is_solid(reading.door_height_m) & ~is_foreign
-    is_overlooked = raster.is_overlooked(reading.door_height_m)
-    is_opened = raster.is_opened(reading.door_height_m)
+    is_solid = raster.is_solid(door_height_m) & ~is_foreign
+    is_overlooked = raster.is_overlooked(door_height_m)
+    is_opened = raster.is_opened(door_height_m)
     intervals = []
-    for first, last in _join_columns(is_solid, is_opened, reading.max_gap_m):
+    for first, last in _join_columns(is_solid, is_opened, max_gap_m):
         if is_overlooked[first : last + 1].mean() < _OVERLOOKED_SHARE:
             low_m = raster.first_m + CELL_M * first
             high_m = raster.first_m + CELL_M * (last + 1)
@@ -179,7 +188,7 @@ def find_face_intervals(
 def _join_columns(
     is_solid: BoolArray, is_opened: BoolArray, max_gap_m: float
 ) -> list[tuple[int, int]]:
-    """Return first and last of solid columns (c,), joined over short pauses that no ray opens."""
+    """Return first and last of solid columns (c,), joined over short gaps that no ray opens."""
     runs: list[tuple[int, int]] = []
     for column in np.flatnonzero(is_solid).tolist():
         if runs:
