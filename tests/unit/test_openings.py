@@ -69,13 +69,11 @@ def test_a_step_makes_a_window_whether_or_not_wall_is_seen_below_it(below, sill_
     assert (gap.kind(SETTINGS.max_door_m), gap.sill_m) == ("window", pytest.approx(sill_m))
 
 
-def test_a_step_tells_of_a_sill_that_no_point_is_below():
-    """Rays went through above 0.4 m alone, and no wall is seen below.
-
-    The step is all that is known of the sill.
-    """
-    gap = judge_with_low(grid(1, 1.9, 0.05, 0.09), grid(1, 1.9, 2.2), 0.4)
-    assert gap.sill_m == pytest.approx((0.09 + 0.4) / 2)
+@pytest.mark.parametrize(("lowest_m", "sill_m"), [(0.28, (0.09 + 0.28) / 2), (0.4, 0.09)])
+def test_a_step_shows_a_sill_that_no_wall_is_below(lowest_m, sill_m):
+    """Far below the lowest rays through, the step is all that is known of the sill."""
+    gap = judge_with_low(grid(1, 1.9, 0.05, 0.09), grid(1, 1.9, 2.2), lowest_m)
+    assert gap.sill_m == pytest.approx(sill_m)
 
 
 @pytest.mark.parametrize("low", [grid(1, 1.9, 0.0, 0.02, 0.03), grid(1, 1.3, 0.05, 0.07, 0.09)])

@@ -191,7 +191,7 @@ class TestRooms:
         star = shapely.box(0, 0, 4, 4)
         found = rooms.find_rooms(walls_, [star], np.array([(1.0, 1.0)]), **ROOMS)
         np.testing.assert_allclose([r.polygon.area for r in found], [7.6, 7.6], rtol=0.01)
-        left, right = rooms.rooms_beside(found, np.array([(2.0, 1.0), (2.0, 1.9)]), 0.1)
+        left, right = rooms.rooms_beside(found, np.array([2.0, 1.45]), walls_[-1])
         assert {left, right} == {0, 1}
         assert found[left].polygon.centroid.x < found[right].polygon.centroid.x
 

@@ -2,59 +2,62 @@
 
 import numpy as np
 
-from scanplan.rays.face_observation import FaceObservation
+from scanplan.plan.tolerances import (
+    ALONG_SHARE,
+    END_M,
+    ENOUGH_RAYS,
+    FEW_RAYS,
+    LEAST_SCANS,
+    LOW_PERCENT,
+    NOISE_M,
+    ROUND_M,
+)
+from scanplan.rays.face_observation import FaceObservation, filled_share
 from scanplan.types import FloatArray
 
-REVEAL_M = 0.1  # how near to their place jambs come out
 AT_FLOOR_M = 0.3  # lower returns may be of a step or of what lies there
-FEW_RAYS = 3  # one or two may be stray
-_LOW_PERCENTILE = 1  # of the rays through: fewer are stray
-_FLOOR_NOISE_M = 0.04  # what noise lifts returns of the floor by
-_STEP_COLUMN_M = 0.1  # wider than what is between rays, narrower than what lies about
-_STEP_SHARE = 0.7  # of the columns: a step goes on all along, what lies about does not
-_LEVEL_M = 0.03  # noise of a range seen along 15 degrees, of poses and of beams
-_LEVEL_SCANS = 2  # one scan's beam meets a whole wall at one height
-_BEHIND_M = 0.02  # noise of a range
 _BEHIND_SHARE = 0.2  # noise leaves fewer so far behind a face, an underside most
 _MOST_DOUBT_M = 0.2  # half of it is what a height may be wrong by
-_ROUND_M = 1e-9  # rounding of a difference of heights
-_LEAST_RAYS = 10  # fewer say nothing of a height
 
 
-def estimate_gap_sill_m(seen: FaceObservation, low_m: float, high_m: float) -> float:
-    """Return the sill of a gap, NaN if it is not known."""
-    free_z_m = seen.free_z_m[seen.free_between(low_m, high_m)]
-    occupied_z_m = seen.occupied_z_m[seen.occupied_between(low_m, high_m)]
-    sill_m = _sill_m(free_z_m, occupied_z_m)
-    step_m = _step_m(seen, low_m, high_m, float(np.percentile(free_z_m, _LOW_PERCENTILE)))
-    return float(np.fmax(sill_m, step_m)) if step_m > 0 else sill_m
+def estimate_sill_m(
+    seen: FaceObservation, low_m: float, high_m: float, *, below_m: float = np.inf
+) -> float:
+    """Return the sill of an opening, 0 where it reaches to the floor, NaN where it is not known.
 
+    It lies between the highest returns of what stands below the opening and the lowest rays through
+    it: in the middle where these are near, else, as where hardly a ray came back from behind glass,
+    where the returns end. What stands below is wall, or a step that goes on all along: in a doorway
+    rays end on the floor, the front of a step ends them above that.
 
-def _step_m(seen: FaceObservation, low_m: float, high_m: float, lowest_m: float) -> float:
-    """Return the height of what stands all along near the floor below the lowest ray.
-
-    0 if nothing.
-
-    In a doorway rays end on the floor; a sill's front ends them above that.
+    Parameters
+    ----------
+    seen : face_observation.FaceObservation
+    low_m, high_m : float
+        The opening along the line.
+    below_m : float
+        Returns that are higher are none of what stands below.
     """
+    free_z_m = seen.free_z_m[seen.free_between(low_m, high_m)]
+    is_crossed = len(free_z_m) >= ENOUGH_RAYS
+    lowest_m = float(np.percentile(free_z_m, LOW_PERCENT)) if is_crossed else np.inf
+    below_z_m = _step_z_m(seen, low_m, high_m, lowest_m)
+    is_at_floor = lowest_m <= AT_FLOOR_M
+    if not is_at_floor:
+        wall_z_m = seen.occupied_z_m[seen.occupied_between(low_m, high_m)]
+        below_z_m = np.concatenate([below_z_m, wall_z_m[wall_z_m < min(lowest_m, below_m)]])
+    if len(below_z_m) < ENOUGH_RAYS:
+        return 0.0 if is_at_floor else np.nan
+    top_m = robust_highest_m(below_z_m)
+    return (top_m + lowest_m) / 2 if lowest_m - top_m <= _MOST_DOUBT_M + ROUND_M else top_m
+
+
+def _step_z_m(seen: FaceObservation, low_m: float, high_m: float, lowest_m: float) -> FloatArray:
+    """Return the heights of what stands near the floor below the lowest ray, if all along."""
     low = seen.low_between(low_m, high_m)
-    raised = (seen.low_z_m[low] > _FLOOR_NOISE_M) & (seen.low_z_m[low] < lowest_m)
-    width = int((high_m - low_m) / _STEP_COLUMN_M)
-    column = ((seen.low_m[low][raised] - low_m) / _STEP_COLUMN_M).astype(np.int64)
-    if len(column) < _LEAST_RAYS or len(np.unique(column)) < _STEP_SHARE * width:
-        return 0.0
-    return (float(np.percentile(seen.low_z_m[low][raised], 95)) + lowest_m) / 2
-
-
-def _sill_m(free_z_m: FloatArray, occupied_z_m: FloatArray) -> float:
-    """Return the sill: between the rays that went through and the wall seen below them."""
-    low_m = np.percentile(free_z_m, _LOW_PERCENTILE)
-    if low_m <= AT_FLOOR_M:
-        return 0.0
-    below_m = occupied_z_m[occupied_z_m < low_m]
-    return (
-        float((np.percentile(below_m, 95) + low_m) / 2) if len(below_m) >= _LEAST_RAYS else np.nan
-    )
+    raised = (seen.low_z_m[low] > NOISE_M) & (seen.low_z_m[low] < lowest_m)
+    share = filled_share(seen.low_m[low][raised], low_m, high_m)
+    return seen.low_z_m[low][raised] if share >= ALONG_SHARE else np.empty(0)
 
 
 def estimate_lintel_m(
@@ -77,7 +80,7 @@ def estimate_lintel_m(
         Points lower than that are none of the wall above it.
     """
     # beside a jamb points are its reveal's
-    inner = seen.occupied_between(low_m + REVEAL_M, high_m - REVEAL_M)
+    inner = seen.occupied_between(low_m + END_M, high_m - END_M)
     above = seen.occupied_z_m[inner] > least_m
     above_m, off_m, scan = (
         of[inner][above] for of in (seen.occupied_z_m, seen.occupied_off_m, seen.occupied_scan)
@@ -85,13 +88,13 @@ def estimate_lintel_m(
     if len(above_m) < FEW_RAYS:
         return np.nan
     lowest_m = np.percentile(above_m, 5)
-    level = np.abs(above_m - lowest_m) <= _LEVEL_M
-    behind = level & (off_m < -_BEHIND_M)
+    level = np.abs(above_m - lowest_m) <= NOISE_M
+    behind = level & (off_m <= -NOISE_M)
     enough = max(FEW_RAYS, _BEHIND_SHARE * level.sum())
-    if behind.sum() >= enough and len(np.unique(scan[behind])) >= _LEVEL_SCANS:
+    if behind.sum() >= enough and len(np.unique(scan[behind])) >= LEAST_SCANS:
         return float(np.median(above_m[level]))
     return (
-        float((free_m + lowest_m) / 2) if lowest_m - free_m <= _MOST_DOUBT_M + _ROUND_M else np.nan
+        float((free_m + lowest_m) / 2) if lowest_m - free_m <= _MOST_DOUBT_M + ROUND_M else np.nan
     )
 
 

@@ -9,20 +9,18 @@ import numpy as np
 from scanplan.geometry.lines import Line
 from scanplan.plan.opening_heights import (
     AT_FLOOR_M,
-    estimate_gap_sill_m,
     estimate_lintel_m,
+    estimate_sill_m,
     robust_highest_m,
 )
+from scanplan.plan.tolerances import ENOUGH_RAYS, NOISE_M
 from scanplan.rays.face_observation import FaceObservation
 from scanplan.rays.face_raster import CELL_M
 from scanplan.types import FloatArray
 
 OPEN, CLOSED, UNKNOWN = "open", "closed", "unknown"
-_OPEN_SHARE = 0.4  # of the width: furniture hides the rest of a way that is used
-_OPEN_SHARE_BELOW_LINTEL = 0.2  # a lintel says that there is a way: half as much is enough
+_OPEN_SHARE = 0.4  # of the width: furniture hides the rest of a way; half as much below a lintel
 _CLOSED_SHARE = 0.1  # of the width: less is noise at the jambs
-_LEAST_RAYS = 10  # fewer say nothing of a height or of a way
-_EDGE_M = 0.03  # what a jamb's place errs by
 _DOORSTEP_M = 0.06  # one steps over less
 
 
@@ -132,8 +130,8 @@ def classify_gap(
     below_wall = any(side.below_wall for side in shown)
     width_m = high_m - low_m
     is_wide = settings.min_opening_m <= width_m <= settings.max_opening_m
-    least_share = _OPEN_SHARE_BELOW_LINTEL if below_wall else _OPEN_SHARE
-    is_open = n_rays >= _LEAST_RAYS and open_share >= least_share
+    least_share = _OPEN_SHARE / 2 if below_wall else _OPEN_SHARE
+    is_open = n_rays >= ENOUGH_RAYS and open_share >= least_share
     # rays went in and did not come back: through glass, or out of the building
     is_open |= max(side.glass_share for side in shown) >= _OPEN_SHARE
     # wall above, some rays through a window, and what is below them hidden: no way through was seen
@@ -176,7 +174,7 @@ class _GapEvidence:
 
 def _observe_gap(face: FaceObservation, span_m: FloatArray, door_height_m: float) -> _GapEvidence:
     glass_share = _glass_share(face, span_m)
-    low_m, high_m = span_m[0] + _EDGE_M, span_m[1] - _EDGE_M
+    low_m, high_m = span_m[0] + NOISE_M, span_m[1] - NOISE_M
     if high_m <= low_m:
         return _GapEvidence(glass_share=glass_share)
     free = face.free_between(low_m, high_m)
@@ -184,14 +182,14 @@ def _observe_gap(face: FaceObservation, span_m: FloatArray, door_height_m: float
     n_crossed = is_crossed[face.raster.between(low_m, high_m)].sum()
     open_share = min(float(n_crossed / max(round((high_m - low_m) / CELL_M), 1)), 1.0)
     evidence = _GapEvidence(free.stop - free.start, open_share, glass_share)
-    if face.planar or evidence.n_rays < _LEAST_RAYS:
+    if face.planar or evidence.n_rays < ENOUGH_RAYS:
         return evidence
     free_z_m = face.free_z_m[free]
     occupied_z_m = face.occupied_z_m[face.occupied_between(low_m, high_m)]
-    sill_m = estimate_gap_sill_m(face, low_m, high_m)
+    sill_m = estimate_sill_m(face, low_m, high_m)
     free_top_m = robust_highest_m(free_z_m)
     least_m = max(free_top_m, door_height_m)
-    if (occupied_z_m > least_m).sum() < _LEAST_RAYS:
+    if (occupied_z_m > least_m).sum() < ENOUGH_RAYS:
         return replace(evidence, sill_m=sill_m)
     lintel_m = estimate_lintel_m(face, low_m, high_m, free_top_m, least_m)
     return replace(evidence, sill_m=sill_m, lintel_m=lintel_m, below_wall=True)

@@ -10,8 +10,10 @@ from shapely.geometry import Polygon
 
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.rooms import Room, rooms_beside
+from scanplan.plan.tolerances import LOW_PERCENT
 from scanplan.plan.uncertainty import WallEvidence
 from scanplan.plan.wall_pairs import InferredFace, PlanWall
+from scanplan.rays.face_raster import CELL_M
 from scanplan.store import schemas
 from scanplan.types import Array, FloatArray, IntArray
 
@@ -23,9 +25,6 @@ _TYPES: dict[str, type] = {
     "string": object,
     "binary": object,
 }
-_Z_PERCENTILES = (2, 98)  # of a face's points: stray ones above or below do not count
-_MOSTLY_OBSERVED = 0.5  # share of a wall's length
-_LABEL_M = 0.05  # precision of a room's label place
 
 Row = dict[str, Any]
 """Values of a table's row by column."""
@@ -93,7 +92,7 @@ def wall_columns(
             "thickness_m": wall.thickness_m,
             "face_left": main_rows.get((number, True), -1),
             "face_right": main_rows.get((number, False), -1),
-            "state": "observed" if known.observed >= _MOSTLY_OBSERVED else "inferred",
+            "state": "observed" if known.observed >= 1 - known.observed else "inferred",
             "z_min_m": low_m + floor_z_m,
             "z_max_m": high_m + floor_z_m,
             "top_m": known.top_m + floor_z_m,
@@ -117,7 +116,7 @@ def opening_columns(
     for number, wall in enumerate(walls):
         for opening in wall.openings:
             ends_m = wall.line.at(np.array([opening.low_m, opening.high_m]))
-            room_left, room_right = rooms_beside(rooms, ends_m, wall.half_m)
+            room_left, room_right = rooms_beside(rooms, ends_m.mean(axis=0), wall)
             row = {
                 "opening": len(rows),
                 "wall": number,
@@ -142,7 +141,7 @@ def room_columns(rooms: Sequence[Room]) -> dict[str, Array]:
     """
     rows: list[Row] = []
     for number, room in enumerate(rooms):
-        circle = shapely.maximum_inscribed_circle(room.polygon, tolerance=_LABEL_M)
+        circle = shapely.maximum_inscribed_circle(room.polygon, tolerance=CELL_M)
         x_m, y_m = shapely.get_coordinates(circle)[0].tolist()
         row = {
             "room": number,
@@ -201,7 +200,7 @@ def _points_of_face(face: FaceInterval | InferredFace, floor_z_m: float) -> Row:
         return {"state": "inferred", "n_points": 0, "n_scans": 0, **unknown}
     offset_m = face.seen.occupied_off_m[face.points]
     height_m = face.seen.occupied_z_m[face.points]
-    z_min_m, z_max_m = np.percentile(height_m, _Z_PERCENTILES) + floor_z_m
+    z_min_m, z_max_m = np.percentile(height_m, (LOW_PERCENT, 100 - LOW_PERCENT)) + floor_z_m
     return {
         "state": "observed",
         "n_points": face.n_points,

@@ -168,7 +168,9 @@ def make_plan(
         corner_m=settings.merge.corner_m,
         door_height_m=settings.reading.door_height_m,
     )
-    walls = windows.add_windows(walls, rays, min_width_m=settings.openings.min_opening_m)
+    walls = windows.add_windows(
+        walls, rays, min_width_m=settings.openings.min_opening_m, band_m=band_m
+    )
     walls, tops_m = half_height.drop_low_surfaces(walls, settings.furniture.wall_height_m)
     unpaired_m = _usual_thickness_m(walls)
     views = free_space.free_polygons(rays)

@@ -9,14 +9,11 @@ import numpy as np
 from scanplan.geometry import intersections
 from scanplan.geometry.intervals import added_lengths_m
 from scanplan.plan.faces.intervals import FaceInterval
-from scanplan.plan.wall_pairs import PlanWall
+from scanplan.plan.tolerances import ENOUGH_RAYS, LOW_PERCENT, ROUND_M
+from scanplan.plan.wall_pairs import CORNER_M, PlanWall
 from scanplan.types import FloatArray, IntArray
 
 _NEAR_END_M = 0.25  # points this near to an end show it: several columns of a scan at 10 m
-_MET_M = 1e-6  # an end is put on the line of the wall that it meets: rounding only
-_REACH_M = 0.5  # an end is this near to the wall it meets: half the widest, and a corner's gap
-_LOWEST_PERCENTILE = 2  # of a wall's points: stray ones below the floor do not count
-_POINTS_ABOVE = 10  # the highest points of a wall that may be stray
 
 
 @dataclass(frozen=True)
@@ -122,7 +119,7 @@ def _estimate_wall(
         n_points=len(scan),
         scans=scans,
         points=points,
-        z_m=(float(np.percentile(z_m, _LOWEST_PERCENTILE)), _highest_m(z_m)),
+        z_m=(float(np.percentile(z_m, LOW_PERCENT)), _highest_m(z_m)),
         top_m=top_m,
         observed=_observed_share(wall),
     )
@@ -141,7 +138,7 @@ def _highest_m(z_m: FloatArray) -> float:
 
     A percentile would leave out too many where few rays look up.
     """
-    return float(np.sort(z_m)[max(len(z_m) - 1 - _POINTS_ABOVE, len(z_m) // 2)])
+    return float(np.sort(z_m)[max(len(z_m) - 1 - ENOUGH_RAYS, len(z_m) // 2)])
 
 
 def _offset_sigma_m(wall: PlanWall, registration_sigma_m: float) -> float:
@@ -187,8 +184,8 @@ def _end_sigma_m(
         Of all walls.
     registration_sigma_m : float
     """
-    crossings = intersections.find_crossings(wall.line, spans, reach_m=_REACH_M)
-    is_at_end = np.abs(crossings.place_m - end_m) < _MET_M
+    crossings = intersections.find_crossings(wall.line, spans, reach_m=wall.half_m + CORNER_M)
+    is_at_end = np.abs(crossings.place_m - end_m) < ROUND_M
     if is_at_end.any():
         return float((offset_sigmas_m[crossings.which] / crossings.sine)[is_at_end].min())
     n_scans = 0

@@ -10,11 +10,11 @@ from shapely.geometry import LineString, Polygon
 from scanplan.geometry.intervals import find_gaps
 from scanplan.geometry.lines import Line
 from scanplan.plan.faces.intervals import FaceInterval
+from scanplan.plan.tolerances import END_M
 from scanplan.plan.wall_pairs import InferredFace, PlanWall
+from scanplan.rays.face_raster import CELL_M
 
 _INSIDE_M = 0.01  # a face this near to a wall's surface is not in it: rounding of places and angles
-_BUTT_M = 0.05  # a wall reaches this far beyond its end: faces that butt there are cut, too
-_SHORTEST_M = 0.1  # of an inferred face: less lies between two observed ones by their own errors
 
 Extent = tuple[float, float]
 """From where to where along a line, metres."""
@@ -50,7 +50,7 @@ def cut_wall_faces(walls: Sequence[PlanWall], *, max_beyond_m: float) -> list[Pl
             InferredFace(line, low_m, high_m, is_left)
             for line, extent_m, is_left in _inferred_extents(wall, max_beyond_m)
             for low_m, high_m in ground.cut(line, extent_m, number)
-            if high_m - low_m >= _SHORTEST_M
+            if high_m - low_m >= END_M
         ]
         cut.append(replace(wall, left=left, right=right, inferred=inferred))
     return cut
@@ -80,7 +80,7 @@ def _block(wall: PlanWall) -> Polygon:
     """Return the ground of a wall of known thickness, a little longer and slimmer; else nothing."""
     if np.isnan(wall.thickness_m) or wall.half_m <= _INSIDE_M:
         return Polygon()
-    start, end = wall.line.at(np.array([wall.low_m - _BUTT_M, wall.high_m + _BUTT_M]))
+    start, end = wall.line.at(np.array([wall.low_m - CELL_M, wall.high_m + CELL_M]))
     across = (wall.half_m - _INSIDE_M) * wall.line.normal
     return Polygon([start - across, end - across, end + across, start + across])
 

@@ -10,6 +10,7 @@ import shapely
 
 from scanplan.geometry.lines import Line, Span, least_scatter_normal, rows_scatter
 from scanplan.plan.faces.intervals import FaceInterval
+from scanplan.plan.tolerances import END_M, ROUND_M
 from scanplan.rays.face_observation import FaceObservation
 from scanplan.rays.face_raster import CELL_M
 from scanplan.types import FloatArray
@@ -18,10 +19,8 @@ if TYPE_CHECKING:
     from scanplan.plan.openings import Opening
 
 CORNER_M = 0.3  # a wall that ends this near before another meets it: half of a thick wall
-_LEAST_OVERLAP_M = 0.2  # faces opposite each other for less may be of two walls that meet
 _LEAST_OPEN_M = 0.3  # less that rays go through is noise of poses at an end
 _OPEN_SHARE = 0.3  # of one side's length: more that is free while the other is seen contradicts
-_SHORTEST_M = 1e-9  # no face is shorter; keeps weights finite
 _SAME_LINE, _OPPOSITE, _ONWARD = range(3)  # order in which pairs are joined: the surest first
 
 
@@ -163,7 +162,7 @@ def _offer_pairs(
     for i, j in pairs[is_parallel].tolist():
         overlap_m, behind_m = _overlap(faces[i], faces[j])
         if faces[i].line.normal @ faces[j].line.normal < 0:
-            is_opposite = settings.is_thick(behind_m) and overlap_m >= _LEAST_OVERLAP_M
+            is_opposite = settings.is_thick(behind_m) and overlap_m >= 2 * END_M
             if is_opposite and not _contradict(faces[i], faces[j], door_height_m):
                 offers.append((_OPPOSITE, -overlap_m, i, j))
         elif -overlap_m <= settings.max_gap_m and abs(behind_m) <= settings.offset_m:
@@ -254,7 +253,7 @@ def _fit_sides(
         ends = np.array([face.ends for face in side])
         half = (ends[:, 1] - ends[:, 0]) / 2
         length = np.hypot(*half.T)
-        weight = length / max(length.sum(), _SHORTEST_M)
+        weight = length / max(length.sum(), ROUND_M)
         centre, of_side = rows_scatter(ends.mean(axis=1), half, weight)
         scatter += length.sum() * of_side
         centres.append(centre)

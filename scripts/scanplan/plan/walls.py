@@ -19,10 +19,9 @@ from scanplan.plan.openings import (
     OpeningSettings,
     classify_gap,
 )
+from scanplan.plan.tolerances import END_M
 from scanplan.plan.wall_pairs import PairSettings, PlanWall
 from scanplan.types import FloatArray
-
-_JAMB_M = 0.1  # what the places of a jamb on both sides of a wall differ by
 
 Crossing = tuple[PlanWall, float]
 """Another wall, and where along this one its middle crosses."""
@@ -200,8 +199,8 @@ def _between_sides(gap: Opening, spans_m: FloatArray) -> Opening:
     if gap.state != OPEN:
         return gap
     starts_m, ends_m = spans_m.T
-    low_m = ends_m[(ends_m <= gap.low_m) & (ends_m >= gap.low_m - _JAMB_M)].mean()
-    high_m = starts_m[(starts_m >= gap.high_m) & (starts_m <= gap.high_m + _JAMB_M)].mean()
+    low_m = ends_m[(ends_m <= gap.low_m) & (ends_m >= gap.low_m - END_M)].mean()
+    high_m = starts_m[(starts_m >= gap.high_m) & (starts_m <= gap.high_m + END_M)].mean()
     return replace(gap, low_m=float(low_m), high_m=float(high_m))
 
 
@@ -219,9 +218,9 @@ def _trim(opening: Opening, bodies_m: Sequence[tuple[float, float]]) -> Opening:
     """Return what of an opening is left between walls that cross it near its ends."""
     low_m, high_m = opening.low_m, opening.high_m
     for begin_m, end_m in bodies_m:
-        if begin_m - _JAMB_M <= opening.low_m <= end_m:
+        if begin_m - END_M <= opening.low_m <= end_m:
             low_m = max(low_m, end_m)
-        if begin_m <= opening.high_m <= end_m + _JAMB_M:
+        if begin_m <= opening.high_m <= end_m + END_M:
             high_m = min(high_m, begin_m)
     return replace(opening, low_m=float(low_m), high_m=float(high_m))
 

@@ -9,14 +9,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from scanplan.plan.opening_heights import (
-    AT_FLOOR_M,
-    FEW_RAYS,
-    REVEAL_M,
-    estimate_lintel_m,
-    robust_highest_m,
-)
+from scanplan.plan.opening_heights import AT_FLOOR_M, estimate_lintel_m, estimate_sill_m
 from scanplan.plan.openings import OPEN, Opening
+from scanplan.plan.tolerances import ALONG_SHARE, END_M, FEW_RAYS, LEAST_SCANS
 from scanplan.plan.wall_pairs import PlanWall
 from scanplan.rays.face_observation import FaceObservation, count_sent, filled_share
 from scanplan.rays.face_raster import CELL_M
@@ -24,14 +19,12 @@ from scanplan.rays.ray_set import RaySet
 from scanplan.types import BoolArray, FloatArray
 
 _CHEST_M = (1.25, 1.7)  # sills are lower, lintels are higher
-_LEAST_SHOWN = 0.7  # the jambs' last columns may be hidden from most scans
-_LEAST_SCANS = 2  # something may stand nearer to one scan than it can measure
-_AT_M = 0.06  # returns this near to the plane are at it
-_MOST_IN_IT = 0.5  # reveals and panes send some back, a niche all
 _SILL_SHARE = 0.3  # desks hide much of the wall below; in a doorway there is none
 
 
-def add_windows(walls: list[PlanWall], rays: RaySet, *, min_width_m: float) -> list[PlanWall]:
+def add_windows(
+    walls: list[PlanWall], rays: RaySet, *, min_width_m: float, band_m: float
+) -> list[PlanWall]:
     """Return walls with their windows.
 
     Parameters
@@ -40,22 +33,26 @@ def add_windows(walls: list[PlanWall], rays: RaySet, *, min_width_m: float) -> l
     rays : ray_set.RaySet
         Planar scans show no windows.
     min_width_m : float
+    band_m : float, > 0
+        Returns this near to a face are at it.
 
     Returns
     -------
     list of wall_pairs.PlanWall
     """
-    return (
-        list(walls) if rays.planar else [_with_windows(wall, rays, min_width_m) for wall in walls]
-    )
+    if rays.planar:
+        return list(walls)
+    return [_with_windows(wall, rays, min_width_m, band_m) for wall in walls]
 
 
-def _with_windows(wall: PlanWall, rays: RaySet, min_width_m: float) -> PlanWall:
+def _with_windows(wall: PlanWall, rays: RaySet, min_width_m: float, band_m: float) -> PlanWall:
     lines = wall.lines
     found = list(wall.openings)
     for seen in lines:
         first_m, last_m = np.sort(seen.line.along_m(wall.ends)).tolist()
-        for window in find_windows(rays, seen, first_m, last_m, min_width_m):
+        for window in find_windows(
+            rays, seen, first_m, last_m, min_width_m=min_width_m, band_m=band_m
+        ):
             ends = seen.line.at(np.array([window.low_m, window.high_m]))
             low_m, high_m = np.sort(wall.line.along_m(ends)).tolist()
             is_known = any(low_m < gap.high_m and high_m > gap.low_m for gap in found)
@@ -69,7 +66,8 @@ def _is_wall(seen: FaceObservation, ends: FloatArray) -> bool:
     low_m, high_m = np.sort(seen.line.along_m(ends))
     points = seen.occupied_between(low_m, high_m)
     at_chest = _at_chest(seen.occupied_z_m[points])
-    return filled_share(seen.occupied_m[points][at_chest], low_m, high_m) > _MOST_IN_IT
+    share = filled_share(seen.occupied_m[points][at_chest], low_m, high_m)
+    return share > 1 - share
 
 
 def _at_chest(z_m: FloatArray) -> BoolArray:
@@ -77,7 +75,12 @@ def _at_chest(z_m: FloatArray) -> BoolArray:
 
 
 def find_windows(
-    rays: RaySet, seen: FaceObservation, low_m: float, high_m: float, min_width_m: float
+    rays: RaySet,
+    seen: FaceObservation,
+    low_m: float,
+    high_m: float,
+    min_width_m: float,
+    band_m: float,
 ) -> list[Opening]:
     """Find the windows along a line.
 
@@ -95,6 +98,8 @@ def find_windows(
     low_m, high_m : float
         The stretch of the line that is wall.
     min_width_m : float
+    band_m : float, > 0
+        Returns this near to a face are at it.
 
     Returns
     -------
@@ -106,7 +111,7 @@ def find_windows(
     beside_m = _not_alone(place_m[_at_chest(z_m)])
     spans_m = np.column_stack([beside_m[:-1], beside_m[1:]])
     spans_m = spans_m[np.diff(spans_m, axis=1)[:, 0] >= min_width_m]
-    windows = (_classify_gap(rays, seen, low, high) for low, high in spans_m.tolist())
+    windows = (_classify_gap(rays, seen, low, high, band_m) for low, high in spans_m.tolist())
     return [window for window in windows if window is not None]
 
 
@@ -118,23 +123,25 @@ def _not_alone(place_m: FloatArray) -> FloatArray:
 
 
 def _classify_gap(
-    rays: RaySet, seen: FaceObservation, low_m: float, high_m: float
+    rays: RaySet, seen: FaceObservation, low_m: float, high_m: float, band_m: float
 ) -> Opening | None:
     """Return what is between two places of a line as a window, None if it is none."""
-    inner = seen.occupied_between(low_m + REVEAL_M, high_m - REVEAL_M)
-    below = seen.occupied_z_m[inner] < _CHEST_M[0]
-    sill_share = filled_share(seen.occupied_m[inner][below], low_m + REVEAL_M, high_m - REVEAL_M)
-    if below.sum() < FEW_RAYS or sill_share < _SILL_SHARE:
+    inner_m = low_m + END_M, high_m - END_M
+    inner = seen.occupied_between(*inner_m)
+    is_below = seen.occupied_z_m[inner] < _CHEST_M[0]
+    if filled_share(seen.occupied_m[inner][is_below], *inner_m) < _SILL_SHARE:
+        return None
+    sill_m = estimate_sill_m(seen, *inner_m, below_m=_CHEST_M[0])
+    if not sill_m > AT_FLOOR_M:
         return None
     count = max(int((high_m - low_m) / CELL_M), 1)
-    sent = count_sent(rays, seen.line, low_m, count, _CHEST_M, _AT_M)
-    reached, _, in_wall = sent.reached(least_scans=_LEAST_SCANS)
+    sent = count_sent(rays, seen.line, low_m, count, _CHEST_M, band_m)
+    reached, _, in_wall = sent.reached(least_scans=LEAST_SCANS)
     shown = np.isfinite(reached)
-    if shown.mean() < _LEAST_SHOWN or in_wall[shown].sum() > _MOST_IN_IT * reached[shown].sum():
+    n_reached, n_in_wall = reached[shown].sum(), in_wall[shown].sum()
+    # reveals and panes send some back, a niche all
+    if shown.mean() < ALONG_SHARE or n_in_wall > n_reached - n_in_wall:
         return None
-    sill_m = robust_highest_m(seen.occupied_z_m[inner][below])
-    if sill_m <= AT_FLOOR_M:
-        return None
-    n_rays = int(reached[shown].sum() - in_wall[shown].sum())
+    n_rays = int(n_reached - n_in_wall)
     lintel_m = estimate_lintel_m(seen, low_m, high_m, _CHEST_M[1], _CHEST_M[1])
     return Opening(low_m, high_m, OPEN, n_rays, sill_m, lintel_m, bool(np.isfinite(lintel_m)))

@@ -18,7 +18,6 @@ from scanplan.types import FloatArray, IntArray
 if TYPE_CHECKING:
     from scanplan.plan.faces.intervals import FaceInterval
 
-_PARALLEL = 1e-12  # sine of lines that never cross, beyond rounding
 
 FaceT = TypeVar("FaceT", "FaceCandidate", "FaceInterval")
 """A face of either form."""
@@ -180,8 +179,7 @@ def doubled_interval_m(face: FaceT, other: FaceT, distance_m: float) -> tuple[fl
     low_m = face.low_m
     high_m = face.high_m
     for value, slope, least, most in (along, across):
-        turn = slope if abs(slope) >= _PARALLEL else 0.0
-        begin_m, end_m = intervals.solve_range(value, turn, least, most)
+        begin_m, end_m = intervals.solve_range(value, slope, least, most)
         low_m = max(low_m, float(begin_m))
         high_m = min(high_m, float(end_m))
     return low_m, max(low_m, high_m)

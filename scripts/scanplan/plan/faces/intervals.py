@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from scanplan.geometry.lines import Line, Span
+from scanplan.plan.tolerances import END_M, ENOUGH_RAYS, ROUND_M
 from scanplan.rays.face_observation import (
     LEAST_HEIGHT_M,
     FaceObservation,
@@ -17,19 +18,12 @@ from scanplan.rays.face_rays import cast_at_face
 from scanplan.rays.ray_set import RaySet
 from scanplan.types import BoolArray, FloatArray, IntArray
 
-STUB_M = 0.1
-"""Shorter intervals are noise: less than the thickness of a wall."""
-
-_OVERLOOKED_SHARE = 0.5  # of an interval's length: more, and it is furniture rather than wall
 _REFIT_M = 0.04  # from the median: what points of one face scatter by; others do not pull the line
-_LEAST_REFIT_POINTS = 10  # fewer do not turn a line, nor do points on less than
-_LEAST_REFIT_M = 4 * CELL_M  # this length: noise of ranges across it would
+LEAST_OPEN_COLUMNS = 2
+"""A single column may be opened by what points at its edges leave out, or pass beside a way."""
+
 _MOST_TURN_RAD = np.radians(3)  # a line of segments turns by noise alone; more is another face
-_ROUND_M = 1e-9  # what rounding moves the edge of a column by
-_END_M = 0.1  # what poses and noise of ranges move an end by from scan to scan
 _MOST_LOOKS = 4  # doublings of the reach beyond an end: panes are shorter than that
-_LEAST_OPENED = 2  # columns: one alone may be opened by what points at its edges leave out
-_COLUMN_WEIGHT = 10  # points of a column that count: a near scan's are not a hundred times as true
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +82,7 @@ def observe_along(
     observation, span_m = _observe_refitted(rays, line, own_m, beyond_m, band_m)
     for _ in range(_MOST_LOOKS - 1):
         nearest_m = [np.abs(observation.glass_m - end_m).min(initial=np.inf) for end_m in span_m]
-        is_in_glass = np.array(nearest_m) < _END_M
+        is_in_glass = np.array(nearest_m) < END_M
         if not is_in_glass.any():
             break
         # a pane is observed as a whole
@@ -125,12 +119,12 @@ def refit_to_points(line: Line, along: FloatArray, offset: FloatArray) -> Line:
             is_near = np.abs(offset - np.median(offset)) <= _REFIT_M
             along = along[is_near]
             offset = offset[is_near]
-    if len(along) < _LEAST_REFIT_POINTS or np.ptp(along) < _LEAST_REFIT_M:
+    if len(along) < ENOUGH_RAYS or np.ptp(along) < 2 * END_M:
         middle = np.median(offset) if len(offset) else 0.0
         return Line(line.centre + middle * line.normal, line.normal)
     column = np.floor((along - along.min()) / CELL_M).astype(np.int64)
     count = np.bincount(column)
-    weight = (np.minimum(count, _COLUMN_WEIGHT) / np.maximum(count, 1)).take(column)
+    weight = (np.minimum(count, ENOUGH_RAYS) / np.maximum(count, 1)).take(column)
     centre_m = np.average(along, weights=weight)
     off_m = np.average(offset, weights=weight)
     slope = (weight * (along - centre_m)) @ (offset - off_m) / (weight @ (along - centre_m) ** 2)
@@ -178,7 +172,8 @@ def find_face_intervals(
     is_opened = raster.is_opened(door_height_m)
     intervals = []
     for first, last in _join_columns(is_solid, is_opened, max_gap_m):
-        if is_overlooked[first : last + 1].mean() < _OVERLOOKED_SHARE:
+        overlooked = is_overlooked[first : last + 1]
+        if overlooked.sum() < (~overlooked).sum():
             low_m = raster.first_m + CELL_M * first
             high_m = raster.first_m + CELL_M * (last + 1)
             intervals.append(_trim_ends(FaceInterval(seen, float(low_m), float(high_m))))
@@ -194,7 +189,7 @@ def _join_columns(
         if runs:
             first, last = runs[-1]
             is_short = (column - last - 1) * CELL_M <= max_gap_m
-            if is_short and is_opened[last + 1 : column].sum() < _LEAST_OPENED:
+            if is_short and is_opened[last + 1 : column].sum() < LEAST_OPEN_COLUMNS:
                 runs[-1] = (first, column)
                 continue
         runs.append((column, column))
@@ -219,7 +214,7 @@ def _trim_ends(interval: FaceInterval) -> FaceInterval:
     """
     observation = interval.seen
     # a point on the edge of a column is in it, whichever way the edge was rounded
-    points = observation.occupied_between(interval.low_m - _ROUND_M, interval.high_m + _ROUND_M)
+    points = observation.occupied_between(interval.low_m - ROUND_M, interval.high_m + ROUND_M)
     along_m = observation.occupied_m[points]
     scan = observation.occupied_scan[points]
     low_m = -_usual_end_m(-along_m, scan)
@@ -232,7 +227,7 @@ def _trim_ends(interval: FaceInterval) -> FaceInterval:
 
 def _usual_end_m(along_m: FloatArray, scan: IntArray) -> float:
     """Return the weighted median of the scans' last points near the last of all."""
-    near = along_m >= along_m.max() - _END_M
+    near = along_m >= along_m.max() - END_M
     _, index, count = np.unique(scan[near], return_inverse=True, return_counts=True)
     last_m = np.full(len(count), -np.inf)
     np.maximum.at(last_m, index, along_m[near])

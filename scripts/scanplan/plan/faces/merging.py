@@ -7,9 +7,8 @@ from dataclasses import dataclass, fields
 from scanplan.geometry import lines
 from scanplan.plan.faces import candidates, segment_groups
 from scanplan.plan.faces.candidates import FaceCandidate, FaceT
+from scanplan.plan.tolerances import ROUND_M
 from scanplan.types import Columns
-
-_RIGHT_DEG = 90.0  # normals that turn further are of the other side
 
 
 @dataclass(frozen=True)
@@ -69,7 +68,7 @@ class MergeSettings:
             for name in ("max_angle_deg", "tolerance_m", "registration_sigma_m")
             if not getattr(self, name)
         ]
-        wrong += ["max_angle_deg"] * (self.max_angle_deg >= _RIGHT_DEG)
+        wrong += ["max_angle_deg"] * (math.cos(math.radians(self.max_angle_deg)) < ROUND_M)
         wrong += ["ghost_share"] * (self.ghost_share > 1)
         wrong += ["merge_distance_m"] * (self.merge_distance_m < self.tolerance_m)
         if wrong:

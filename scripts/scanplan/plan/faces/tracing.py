@@ -14,13 +14,12 @@ from scanplan.extraction.furniture import FurnitureLimits, find_furniture_fronts
 from scanplan.geometry.lines import Line
 from scanplan.plan.faces import candidates, intervals, trimming
 from scanplan.plan.faces.candidates import FaceCandidate
-from scanplan.plan.faces.intervals import STUB_M, FaceInterval
+from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.faces.merging import MergeSettings
-from scanplan.plan.faces.owned_points import OWNED_M, owned_intervals
+from scanplan.plan.faces.owned_points import owned_intervals
+from scanplan.plan.tolerances import END_M, FACE_M
 from scanplan.rays.face_observation import FaceObservation, RaySettings
 from scanplan.rays.ray_set import RaySet
-
-_LEAST_POINTS = 2  # of an interval: one point has no extent
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,7 +170,7 @@ class _FaceSelection:
         dense = [
             interval
             for interval in of_line
-            if interval.n_points >= max(_LEAST_POINTS, merging.min_points_per_m * interval.length_m)
+            if interval.n_points >= merging.min_points_per_m * interval.length_m
         ]
         is_sure = any(
             interval.length_m >= merging.min_length_m and self._is_shown(interval)
@@ -182,7 +181,7 @@ class _FaceSelection:
     def _is_shown(self, interval: FaceInterval) -> bool:
         """Return whether an interval is long, or enough scans show it."""
         # its ends may have been left to faces that cross it there
-        is_long = interval.length_m + 2 * OWNED_M >= self.merging.lone_length_m
+        is_long = interval.length_m + 2 * FACE_M >= self.merging.lone_length_m
         return is_long or interval.n_scans >= self.merging.min_scans
 
 
@@ -211,4 +210,4 @@ def _without_furniture(
 
 
 def _without_stubs(found: Iterable[FaceInterval]) -> list[FaceInterval]:
-    return [interval for interval in found if interval.length_m >= STUB_M]
+    return [interval for interval in found if interval.length_m >= END_M]
