@@ -16,7 +16,7 @@ from scanplan.geometry.lines import Line
 from scanplan.plan import messages, planning, rooms, uncertainty, wall_faces, wall_ground
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.openings import CLOSED, OPEN, Opening
-from scanplan.plan.walls import PlanWall
+from scanplan.plan.plan_wall import PlanWall
 from scanplan.rays import free_space, ray_set
 
 SETTINGS = planning.make_plan_settings(**house_making.PLAN)

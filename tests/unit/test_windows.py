@@ -13,7 +13,7 @@ from scanplan.geometry.lines import Line
 from scanplan.plan import planning, windows
 from scanplan.plan.faces import intervals
 from scanplan.plan.openings import OPEN, Opening
-from scanplan.plan.walls import PlanWall
+from scanplan.plan.plan_wall import PlanWall
 from scanplan.rays import ray_set
 
 SENSORS = [(1, 2.5, 0.9), (2, 3, 0.9), (3, 2.5, 0.9), (2.5, 3.4, 0.9)]

@@ -9,8 +9,8 @@ import shapely
 from scanplan.geometry import intersections
 from scanplan.geometry.lines import Line
 from scanplan.plan import wall_ground
-from scanplan.plan.tolerances import END_M
-from scanplan.plan.wall_pairs import CORNER_M, PlanWall
+from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.tolerances import CORNER_M, END_M
 
 _FRAME_M = 0.8  # frame, reveal and the part of a pane seen at grazing angles only
 
@@ -29,7 +29,7 @@ def find_glass_walls(
 
     Parameters
     ----------
-    walls : list of wall_pairs.PlanWall
+    walls : list of plan_wall.PlanWall
     spans : list of (lines.Line, float, float)
         From where to where along a line there is glass.
     min_length_m : float

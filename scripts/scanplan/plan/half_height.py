@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.tolerances import ENOUGH_RAYS
-from scanplan.plan.wall_pairs import PlanWall
 from scanplan.rays.face_observation import FaceObservation
 from scanplan.rays.face_raster import SCAN_COLUMN_M
 from scanplan.types import BoolArray, FloatArray
@@ -23,7 +23,7 @@ def estimate_wall_top_m(wall: PlanWall) -> float:
 
     Parameters
     ----------
-    wall : wall_pairs.PlanWall
+    wall : plan_wall.PlanWall
     """
     lines = wall.lines
     if lines[0].planar:

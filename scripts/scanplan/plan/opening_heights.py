@@ -16,6 +16,7 @@ from scanplan.rays.face_observation import FaceObservation, filled_share
 from scanplan.types import FloatArray
 
 AT_FLOOR_M = 0.3  # lower returns may be of a step or of what lies there
+_BEHIND_M = 0.02  # noise of a range
 _BEHIND_SHARE = 0.2  # noise leaves fewer so far behind a face, an underside most
 _MOST_DOUBT_M = 0.2  # half of it is what a height may be wrong by
 
@@ -25,10 +26,10 @@ def estimate_sill_m(
 ) -> float:
     """Return the sill of an opening, 0 where it reaches to the floor, NaN where it is not known.
 
-    It lies between the highest returns of what stands below the opening and the lowest rays through
-    it: in the middle where these are near, else, as where hardly a ray came back from behind glass,
-    where the returns end. What stands below is wall, or a step that goes on all along: in a doorway
-    rays end on the floor, the front of a step ends them above that.
+    It is as high as what stands below the opening was seen, lower than rays went through. That is
+    wall, or a step that goes on all along: in a doorway rays end on the floor, the front of a step
+    ends them above that. How far above the sill the lowest rays went through says nothing more:
+    behind glass hardly any comes back.
 
     Parameters
     ----------
@@ -48,8 +49,7 @@ def estimate_sill_m(
         below_z_m = np.concatenate([below_z_m, wall_z_m[wall_z_m < min(lowest_m, below_m)]])
     if len(below_z_m) < ENOUGH_RAYS:
         return 0.0 if is_at_floor else np.nan
-    top_m = robust_highest_m(below_z_m)
-    return (top_m + lowest_m) / 2 if lowest_m - top_m <= _MOST_DOUBT_M + ROUND_M else top_m
+    return robust_highest_m(below_z_m)
 
 
 def _step_z_m(seen: FaceObservation, low_m: float, high_m: float, lowest_m: float) -> FloatArray:
@@ -89,7 +89,7 @@ def estimate_lintel_m(
         return np.nan
     lowest_m = np.percentile(above_m, 5)
     level = np.abs(above_m - lowest_m) <= NOISE_M
-    behind = level & (off_m <= -NOISE_M)
+    behind = level & (off_m < -_BEHIND_M)
     enough = max(FEW_RAYS, _BEHIND_SHARE * level.sum())
     if behind.sum() >= enough and len(np.unique(scan[behind])) >= LEAST_SCANS:
         return float(np.median(above_m[level]))

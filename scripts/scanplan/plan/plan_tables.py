@@ -9,10 +9,10 @@ import shapely
 from shapely.geometry import Polygon
 
 from scanplan.plan.faces.intervals import FaceInterval
+from scanplan.plan.plan_wall import InferredFace, PlanWall
 from scanplan.plan.rooms import Room, rooms_beside
 from scanplan.plan.tolerances import LOW_PERCENT
 from scanplan.plan.uncertainty import WallEvidence
-from scanplan.plan.wall_pairs import InferredFace, PlanWall
 from scanplan.rays.face_raster import CELL_M
 from scanplan.store import schemas
 from scanplan.types import Array, FloatArray, IntArray
@@ -37,7 +37,7 @@ def face_columns(
 
     Parameters
     ----------
-    walls : sequence of wall_pairs.PlanWall
+    walls : sequence of plan_wall.PlanWall
         Their faces cut, see `wall_faces.cut_wall_faces`.
     floor_z_m : float
 
@@ -73,7 +73,7 @@ def wall_columns(
 
     Parameters
     ----------
-    walls : sequence of wall_pairs.PlanWall
+    walls : sequence of plan_wall.PlanWall
     evidence : sequence of uncertainty.WallEvidence
         One per wall.
     main_rows : dict of (int, bool) to int

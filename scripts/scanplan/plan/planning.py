@@ -19,9 +19,10 @@ from scanplan.plan import (
 from scanplan.plan.faces.merging import MergeSettings, merge_segments
 from scanplan.plan.faces.tracing import trace_faces
 from scanplan.plan.openings import OpeningSettings
+from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.rooms import find_rooms
 from scanplan.plan.uncertainty import ReviewCriteria
-from scanplan.plan.wall_pairs import PairSettings, PlanWall
+from scanplan.plan.wall_pairs import PairSettings
 from scanplan.plan.walls import assemble_walls
 from scanplan.rays import free_space, range_bias
 from scanplan.rays.face_observation import RaySettings

@@ -9,8 +9,8 @@ from shapely.geometry import LineString, MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.plan import wall_ground
+from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.tolerances import END_M
-from scanplan.plan.wall_pairs import PlanWall
 from scanplan.rays import free_space
 from scanplan.rays.face_raster import CELL_M
 from scanplan.types import Array, FloatArray
@@ -73,7 +73,7 @@ def find_rooms(
 
     Parameters
     ----------
-    walls : sequence of wall_pairs.PlanWall
+    walls : sequence of plan_wall.PlanWall
     views : sequence of shapely geometry
         What each scan saw, `free_space.free_polygons`.
     track_m : (n, 2) float64

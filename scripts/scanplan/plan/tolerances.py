@@ -3,6 +3,7 @@
 import math
 
 END_M = 0.1  # how far ends err: poses, noise of ranges, and what a scan sees of a reveal
+CORNER_M = 0.3  # a wall that ends this near before another meets it: half of a thick wall
 FACE_M = 0.08  # as far as points of a face scatter before and behind its line
 NOISE_M = 0.03  # of a range or a height: a range seen along 15 degrees, poses, beams
 ROUND_M = 1e-9  # what rounding moves a place by; keeps what is divided by a length finite

@@ -9,8 +9,8 @@ import numpy as np
 from scanplan.geometry import intersections
 from scanplan.geometry.intervals import added_lengths_m
 from scanplan.plan.faces.intervals import FaceInterval
-from scanplan.plan.tolerances import ENOUGH_RAYS, LOW_PERCENT, ROUND_M
-from scanplan.plan.wall_pairs import CORNER_M, PlanWall
+from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.tolerances import CORNER_M, ENOUGH_RAYS, LOW_PERCENT, ROUND_M
 from scanplan.types import FloatArray, IntArray
 
 _NEAR_END_M = 0.25  # points this near to an end show it: several columns of a scan at 10 m
@@ -86,7 +86,7 @@ def estimate_evidence(
 
     Parameters
     ----------
-    walls : sequence of wall_pairs.PlanWall
+    walls : sequence of plan_wall.PlanWall
     tops_m : sequence of float
         Where each ends below the ceiling, above the floor; NaN where it was not seen to.
     registration_sigma_m : float, > 0
@@ -175,7 +175,7 @@ def _end_sigma_m(
 
     Parameters
     ----------
-    wall : wall_pairs.PlanWall
+    wall : plan_wall.PlanWall
     end_m : float
         Where the end is along the wall.
     spans : intersections.SpanArrays

@@ -10,8 +10,8 @@ from shapely.geometry import LineString, Polygon
 from scanplan.geometry.intervals import find_gaps
 from scanplan.geometry.lines import Line
 from scanplan.plan.faces.intervals import FaceInterval
+from scanplan.plan.plan_wall import InferredFace, PlanWall
 from scanplan.plan.tolerances import END_M
-from scanplan.plan.wall_pairs import InferredFace, PlanWall
 from scanplan.rays.face_raster import CELL_M
 
 _INSIDE_M = 0.01  # a face this near to a wall's surface is not in it: rounding of places and angles
@@ -28,7 +28,7 @@ def cut_wall_faces(walls: Sequence[PlanWall], *, max_beyond_m: float) -> list[Pl
 
     Parameters
     ----------
-    walls : sequence of wall_pairs.PlanWall
+    walls : sequence of plan_wall.PlanWall
     max_beyond_m : float
         How far a side may go on to the wall's end beyond where it was seen.
     """

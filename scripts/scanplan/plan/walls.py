@@ -19,8 +19,9 @@ from scanplan.plan.openings import (
     OpeningSettings,
     classify_gap,
 )
-from scanplan.plan.tolerances import END_M
-from scanplan.plan.wall_pairs import PairSettings, PlanWall
+from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.tolerances import CORNER_M, END_M
+from scanplan.plan.wall_pairs import PairSettings
 from scanplan.types import FloatArray
 
 Crossing = tuple[PlanWall, float]
@@ -55,7 +56,7 @@ def assemble_walls(
 
     Returns
     -------
-    list of wall_pairs.PlanWall
+    list of plan_wall.PlanWall
         The longest first.
     """
     paired = wall_pairs.pair_faces(faces, pairing, door_height_m=door_height_m)
@@ -228,6 +229,6 @@ def _trim(opening: Opening, bodies_m: Sequence[tuple[float, float]]) -> Opening:
 def _find_crossings(
     wall: PlanWall, walls: Sequence[PlanWall], stacked: intersections.SpanArrays
 ) -> list[Crossing]:
-    reach_m = wall.half_m + wall_pairs.CORNER_M
+    reach_m = wall.half_m + CORNER_M
     found = intersections.find_crossings(wall.line, stacked, reach_m=reach_m)
     return [(walls[i], place_m) for i, place_m in zip(found.which, found.place_m, strict=True)]

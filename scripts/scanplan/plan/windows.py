@@ -11,8 +11,8 @@ import numpy as np
 
 from scanplan.plan.opening_heights import AT_FLOOR_M, estimate_lintel_m, estimate_sill_m
 from scanplan.plan.openings import OPEN, Opening
+from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.tolerances import ALONG_SHARE, END_M, FEW_RAYS, LEAST_SCANS
-from scanplan.plan.wall_pairs import PlanWall
 from scanplan.rays.face_observation import FaceObservation, count_sent, filled_share
 from scanplan.rays.face_raster import CELL_M
 from scanplan.rays.ray_set import RaySet
@@ -29,7 +29,7 @@ def add_windows(
 
     Parameters
     ----------
-    walls : list of wall_pairs.PlanWall
+    walls : list of plan_wall.PlanWall
     rays : ray_set.RaySet
         Planar scans show no windows.
     min_width_m : float
@@ -38,7 +38,7 @@ def add_windows(
 
     Returns
     -------
-    list of wall_pairs.PlanWall
+    list of plan_wall.PlanWall
     """
     if rays.planar:
         return list(walls)

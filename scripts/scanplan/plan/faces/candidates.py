@@ -1,4 +1,4 @@
-"""Candidates of faces: cut from common lines at pauses; and what holds for intervals, too.
+"""Candidates of faces: cut from common lines at gaps; and what holds for intervals, too.
 
 Ends meet at corners, and no face is drawn over another.
 """

@@ -29,9 +29,9 @@ class MergeSettings:
     ghost_share : float, 0 to 1
         less than this share of the stronger one's points per metre.
     max_gap_m : float, >= 0
-        A longer pause along a face stays open.
+        A longer gap along a face stays open.
     align_gap_m : float, >= 0
-        Faces on either side of a pause up to this length share one line where their segments allow
+        Faces on either side of a gap up to this length share one line where their segments allow
         (a door in a wall). Up to `max_gap_m` it has no effect.
     registration_sigma_m : float, > 0
         Standard deviation of a registered scan's place, for the weights of the fit.
@@ -96,7 +96,7 @@ class MergeSettings:
 def merge_segments(walls: Columns, settings: MergeSettings) -> list[FaceCandidate]:
     """Merge the wall segments of many scans into candidates of faces on common lines.
 
-    Segments are grouped around common lines (`segment_groups`); each group's line is cut at pauses,
+    Segments are grouped around common lines (`segment_groups`); each group's line is cut at gaps,
     what too little supports is dropped, and so is what weaker faces draw over stronger ones
     (`candidates`). The two sides of a wall are different lines. Neither the order of the rows nor
     the place and turn of the map frame matters.

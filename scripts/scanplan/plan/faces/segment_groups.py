@@ -34,7 +34,7 @@ def group_segments(
     max_angle_rad : float
     tolerance_m : float
     reach_m : float
-        Longest pause along the line that a group may bridge.
+        Longest gap along the line that a group may bridge.
 
     Returns
     -------
