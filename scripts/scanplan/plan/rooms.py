@@ -16,7 +16,7 @@ from scanplan.rays.face_raster import CELL_M
 from scanplan.types import Array, FloatArray
 
 _MARGIN_M = 0.5  # of the drawing of lines around a part of the floor: the cells beside it, too
-_LEAST_CELL_SHARE = 0.25  # so is one that walls enclose: what hides the rest is in the room
+_LEAST_CELL_SHARE = 0.25  # seen of a cell that walls enclose: what hides the rest is in the room
 _LEAST_AGREEMENT = 0.75  # of cells and floor, intersection over union: else lines are missing
 _CLOSED_SHARE = 0.9  # of an outline along walls: corners and short gaps leave a tenth
 _STEP_M = 0.25  # edge of the least square of floor that a scan must see of a room

@@ -18,7 +18,7 @@ from scanplan.rays.face_raster import CELL_M
 from scanplan.rays.ray_set import RaySet
 from scanplan.types import BoolArray, FloatArray
 
-_CHEST_M = (1.25, 1.7)  # sills are lower, lintels are higher
+_WINDOW_BAND_M = (1.25, 1.7)  # sills are lower, lintels are higher
 _SILL_SHARE = 0.3  # desks hide much of the wall below; in a doorway there is none
 
 
@@ -62,16 +62,16 @@ def _with_windows(wall: PlanWall, rays: RaySet, min_width_m: float, band_m: floa
 
 
 def _is_wall(seen: FaceObservation, ends: FloatArray) -> bool:
-    """Return whether a line shows wall between two ends chest-high: a screen or a mirror there."""
+    """Return whether a line shows wall above a sill between two ends: a screen or a mirror."""
     low_m, high_m = np.sort(seen.line.along_m(ends))
     points = seen.occupied_between(low_m, high_m)
-    at_chest = _at_chest(seen.occupied_z_m[points])
-    share = filled_share(seen.occupied_m[points][at_chest], low_m, high_m)
+    is_in_band = _is_in_window_band(seen.occupied_z_m[points])
+    share = filled_share(seen.occupied_m[points][is_in_band], low_m, high_m)
     return share > 1 - share
 
 
-def _at_chest(z_m: FloatArray) -> BoolArray:
-    return (z_m >= _CHEST_M[0]) & (z_m < _CHEST_M[1])
+def _is_in_window_band(z_m: FloatArray) -> BoolArray:
+    return (z_m >= _WINDOW_BAND_M[0]) & (z_m < _WINDOW_BAND_M[1])
 
 
 def find_windows(
@@ -84,7 +84,7 @@ def find_windows(
 ) -> list[Opening]:
     """Find the windows along a line.
 
-    Gaps between the points at the height of a chest, with wall beside and below them.
+    Gaps between the points in the window band, with wall beside and below them.
 
     Rays must have been sent to nearly all of a gap, nothing before it in their way, and hardly
     one may have ended in it, as in a niche: where no ray is to be expected, or things hide the
@@ -108,7 +108,7 @@ def find_windows(
     """
     points = seen.occupied_between(low_m, high_m)
     place_m, z_m = seen.occupied_m[points], seen.occupied_z_m[points]
-    beside_m = _not_alone(place_m[_at_chest(z_m)])
+    beside_m = _not_alone(place_m[_is_in_window_band(z_m)])
     spans_m = np.column_stack([beside_m[:-1], beside_m[1:]])
     spans_m = spans_m[np.diff(spans_m, axis=1)[:, 0] >= min_width_m]
     windows = (_classify_gap(rays, seen, low, high, band_m) for low, high in spans_m.tolist())
@@ -128,14 +128,14 @@ def _classify_gap(
     """Return what is between two places of a line as a window, None if it is none."""
     inner_m = low_m + END_M, high_m - END_M
     inner = seen.occupied_between(*inner_m)
-    is_below = seen.occupied_z_m[inner] < _CHEST_M[0]
+    is_below = seen.occupied_z_m[inner] < _WINDOW_BAND_M[0]
     if filled_share(seen.occupied_m[inner][is_below], *inner_m) < _SILL_SHARE:
         return None
-    sill_m = estimate_sill_m(seen, *inner_m, below_m=_CHEST_M[0])
+    sill_m = estimate_sill_m(seen, *inner_m, below_m=_WINDOW_BAND_M[0])
     if not sill_m > AT_FLOOR_M:
         return None
     count = max(int((high_m - low_m) / CELL_M), 1)
-    sent = count_sent(rays, seen.line, low_m, count, _CHEST_M, band_m)
+    sent = count_sent(rays, seen.line, low_m, count, _WINDOW_BAND_M, band_m)
     reached, _, in_wall = sent.reached(least_scans=LEAST_SCANS)
     shown = np.isfinite(reached)
     n_reached, n_in_wall = reached[shown].sum(), in_wall[shown].sum()
@@ -143,5 +143,5 @@ def _classify_gap(
     if shown.mean() < ALONG_SHARE or n_in_wall > n_reached - n_in_wall:
         return None
     n_rays = int(n_reached - n_in_wall)
-    lintel_m = estimate_lintel_m(seen, low_m, high_m, _CHEST_M[1], _CHEST_M[1])
+    lintel_m = estimate_lintel_m(seen, low_m, high_m, _WINDOW_BAND_M[1], _WINDOW_BAND_M[1])
     return Opening(low_m, high_m, OPEN, n_rays, sill_m, lintel_m, bool(np.isfinite(lintel_m)))

@@ -23,7 +23,7 @@ LEAST_OPEN_COLUMNS = 2
 """A single column may be opened by what points at its edges leave out, or pass beside a way."""
 
 _MOST_TURN_RAD = np.radians(3)  # a line of segments turns by noise alone; more is another face
-_MOST_LOOKS = 4  # doublings of the reach beyond an end: panes are shorter than that
+_MOST_DOUBLINGS = 3  # of the reach beyond an end: panes are shorter than that
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +80,7 @@ def observe_along(
     own_m = (low_m, high_m)
     beyond_m = np.full(2, reach_m)
     observation, span_m = _observe_refitted(rays, line, own_m, beyond_m, band_m)
-    for _ in range(_MOST_LOOKS - 1):
+    for _ in range(_MOST_DOUBLINGS):
         nearest_m = [np.abs(observation.glass_m - end_m).min(initial=np.inf) for end_m in span_m]
         is_in_glass = np.array(nearest_m) < END_M
         if not is_in_glass.any():
