@@ -27,16 +27,12 @@ def merge(table, settings):
 
 
 def _once(pieces, merging):
-    return candidates.remove_doubles(
+    return merging.remove_doubles(
         [
             piece
             for piece in pieces
             if piece.length_m >= merging.min_length_m and piece.n_points >= 1
-        ],
-        max_angle_rad=math.radians(merging.max_angle_deg),
-        distance_m=merging.merge_distance_m,
-        ghost_distance_m=merging.ghost_distance_m,
-        ghost_share=merging.ghost_share,
+        ]
     )
 
 

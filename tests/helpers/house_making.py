@@ -4,7 +4,6 @@ import numpy as np
 
 from helpers import toy_rooms
 from helpers.wall_making import SETTINGS, walls
-from scanplan.plan import planning
 from scanplan.rays import ray_set
 from scanplan.store import schemas, tables
 
@@ -36,7 +35,6 @@ PLAN = {
     "rooms": {"min_area_m2": 1.0, "min_walled": 0.7},
     "trust": {"max_sigma_m": 0.05, "min_scans": 2, "min_observed": 0.5},
 }
-READING = planning.make_plan_settings(**PLAN).reading
 
 
 def scans(segments=HOUSE, sensors=SENSORS, *, columns=900):

@@ -1,5 +1,3 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -7,9 +5,9 @@ from helpers import house_making
 from helpers.observation_making import observation
 from scanplan.geometry.lines import Line
 from scanplan.plan.faces import intervals
-from scanplan.rays.face_observation import RaySettings
 
-READING = RaySettings(band_m=0.06, reach_m=1.0, max_gap_m=0.5, door_height_m=1.8)
+BAND_M = 0.06
+LIMITS = {"door_height_m": 1.8, "max_gap_m": 0.5}
 AXIS = Line(np.zeros(2), np.array([0.0, 1.0]))
 
 
@@ -21,7 +19,7 @@ def found(hits, passes=(), planar=False, **more):
     return [
         (s.low_m, s.high_m)
         for s in intervals.find_face_intervals(
-            observation(AXIS, hits, passes, planar=planar), READING, **more
+            observation(AXIS, hits, passes, planar=planar), **LIMITS, **more
         )
     ]
 
@@ -82,7 +80,7 @@ def test_a_stretch_ends_where_most_of_what_is_near_is_seen_to_end():
     ]
     places += [(2.05 - 0.03 * i, 3) for i in range(3)]
     wall = observation(AXIS, [(along_m, 1, 0, scan) for along_m, scan in places])
-    (stretch,) = intervals.find_face_intervals(wall, READING)
+    (stretch,) = intervals.find_face_intervals(wall, **LIMITS)
     assert stretch.high_m == pytest.approx(2.0, abs=0.011)
 
 
@@ -90,7 +88,7 @@ def test_a_pane_is_no_wall():
     pane = observation(AXIS, row(0, 3), glass=[(1.0, 2.0)])
     spans = [
         (s.low_m, s.high_m)
-        for s in intervals.find_face_intervals(pane, replace(READING, max_gap_m=0.0))
+        for s in intervals.find_face_intervals(pane, **(LIMITS | {"max_gap_m": 0.0}))
     ]
     np.testing.assert_allclose(spans, [(0, 1), (2, 3)], atol=0.03)
 
@@ -132,8 +130,10 @@ class TestRefit:
 
 def test_a_face_of_the_house_ends_at_its_door():
     line = Line(np.array([4.0, 0.0]), np.array([-1.0, 0.0]))
-    seen = intervals.observe_along(house_making.looked(), line, 0.2, 1.2, READING)
+    seen = intervals.observe_along(
+        house_making.looked(), line, 0.2, 1.2, band_m=BAND_M, reach_m=1.0
+    )
     low, high = next(
-        s for s in intervals.find_face_intervals(seen, READING) if s.length_m > 0.5
+        s for s in intervals.find_face_intervals(seen, **LIMITS) if s.length_m > 0.5
     ).ends[:, 1]
     assert (low, high) == (pytest.approx(0, abs=0.1), pytest.approx(1.5, abs=0.06))

@@ -6,7 +6,7 @@ from helpers.observation_making import line_through
 from scanplan.geometry.lines import Line
 from scanplan.plan import glass
 from scanplan.plan.openings import OPEN, Opening
-from scanplan.plan.walls import PlanWall
+from scanplan.plan.plan_wall import PlanWall
 
 SOUTH = Line(np.array([0.0, 0.0]), np.array([0.0, 1.0]))
 

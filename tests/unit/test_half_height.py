@@ -12,7 +12,7 @@ from helpers.observation_making import observation
 from scanplan.geometry.lines import Line
 from scanplan.plan import half_height
 from scanplan.plan.faces.intervals import FaceInterval
-from scanplan.plan.wall_pairs import PlanWall
+from scanplan.plan.plan_wall import PlanWall
 
 LINE = Line(np.zeros(2), np.array([0.0, 1.0]))
 RNG = np.random.default_rng(3)

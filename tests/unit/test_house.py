@@ -228,3 +228,25 @@ def test_lines_are_short():
 
 def test_public_functions_have_names_of_their_own():
     assert len(house_figures.find_duplicate_names(house_figures.read_modules(SCRIPTS))) <= 60
+
+
+def takes_settings(function: ast.FunctionDef) -> bool:
+    """Return whether a parameter holds settings: by its name, or by the class that it is of."""
+    arguments = function.args
+    named = [*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs]
+    types = " ".join(ast.unparse(part.annotation) for part in named if part.annotation)
+    is_named = any(part.arg in ("settings", "limits", "criteria") for part in named)
+    return is_named or bool(re.search(r"(Settings|Limits|Criteria)\b", types))
+
+
+def test_few_functions_of_the_plan_take_settings():
+    """The others take the one or two values that they need, or ask the object that owns them."""
+    taking = [
+        f"{path.stem}.{node.name}"
+        for name, path in modules().items()
+        if floor(name) == "plan"
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.FunctionDef) and takes_settings(node)
+    ]
+    assert "planning.make_plan" in taking
+    assert len(taking) <= 12, taking

@@ -16,7 +16,7 @@ from scanplan.geometry.lines import Line
 from scanplan.plan import messages, planning, rooms, uncertainty, wall_faces, wall_ground
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.openings import CLOSED, OPEN, Opening
-from scanplan.plan.walls import PlanWall
+from scanplan.plan.plan_wall import PlanWall
 from scanplan.rays import free_space, ray_set
 
 SETTINGS = planning.make_plan_settings(**house_making.PLAN)
@@ -191,7 +191,7 @@ class TestRooms:
         star = shapely.box(0, 0, 4, 4)
         found = rooms.find_rooms(walls_, [star], np.array([(1.0, 1.0)]), **ROOMS)
         np.testing.assert_allclose([r.polygon.area for r in found], [7.6, 7.6], rtol=0.01)
-        left, right = rooms.rooms_beside(found, np.array([(2.0, 1.0), (2.0, 1.9)]), 0.1)
+        left, right = rooms.rooms_beside(found, np.array([2.0, 1.45]), walls_[-1])
         assert {left, right} == {0, 1}
         assert found[left].polygon.centroid.x < found[right].polygon.centroid.x
 
@@ -307,15 +307,13 @@ class TestFreeSpace:
 class TestFaces:
     def test_a_face_is_cut_where_a_wall_butts_against_it(self):
         long = _shown(wall(0, 0, 8, 0, np.nan, closed=[(6, 7)]), (0, 6), (7, 8))
-        faces = wall_faces.cut_wall_faces(
+        cut = wall_faces.cut_wall_faces(
             [long, wall(4, 3, 4, 0, 0.2), wall(6.5, 3, 6.5, 0, 0.2)], max_beyond_m=1
         )
-        spans = {
-            state: sorted(f.ends[:, 0].tolist() for f in faces if f.state == state)
-            for state in _STATES
-        }
-        np.testing.assert_allclose(spans["observed"], [(0, 3.91), (4.09, 6), (7, 8)], atol=0.001)
-        np.testing.assert_allclose(spans["inferred"], [(6, 6.41), (6.59, 7)], atol=0.001)
+        observed = sorted(face.ends[:, 0].tolist() for one in cut for face in one.members)
+        inferred = sorted(face.ends[:, 0].tolist() for one in cut for face in one.inferred)
+        np.testing.assert_allclose(observed, [(0, 3.91), (4.09, 6), (7, 8)], atol=0.001)
+        np.testing.assert_allclose(inferred, [(6, 6.41), (6.59, 7)], atol=0.001)
 
     def test_the_unseen_side_of_a_seen_wall_is_inferred_but_not_in_openings(self):
         one = wall(0, 0, 8, 0, 0.2, openings=[(3, 4)])
@@ -323,20 +321,13 @@ class TestFaces:
             _shown(one, (0, 3), (4, 8)),
             right=[_stretch(one, -0.1, (0, 1)), _stretch(one, -0.1, (6, 6.5))],
         )
-        faces = [
-            f for f in wall_faces.cut_wall_faces([one], max_beyond_m=2) if f.state == "inferred"
-        ]
-        spans = sorted(np.sort(f.ends[:, 0]).tolist() for f in faces if not f.left)
+        (cut,) = wall_faces.cut_wall_faces([one], max_beyond_m=2)
+        spans = sorted(np.sort(face.ends[:, 0]).tolist() for face in cut.inferred)
         np.testing.assert_allclose(spans, [(1, 3), (4, 6), (6.5, 8)], atol=0.001)
-        np.testing.assert_allclose([f.ends[:, 1] for f in faces], -0.1)
-        assert [f for f in faces if f.left] == []
-        faces = [
-            f for f in wall_faces.cut_wall_faces([one], max_beyond_m=1) if f.state == "inferred"
-        ]
-        assert max(f.ends[:, 0].max() for f in faces) == pytest.approx(6)
-
-
-_STATES = ("observed", "inferred")
+        np.testing.assert_allclose([face.ends[:, 1] for face in cut.inferred], -0.1)
+        assert not any(face.is_left for face in cut.inferred)
+        (cut,) = wall_faces.cut_wall_faces([one], max_beyond_m=1)
+        assert max(face.ends[:, 0].max() for face in cut.inferred) == pytest.approx(6)
 
 
 def _shown(of, *spans):

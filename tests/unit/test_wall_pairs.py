@@ -7,12 +7,11 @@ from hypothesis import strategies as st
 
 from helpers import observation_making
 from scanplan.plan import wall_pairs
-from scanplan.rays.face_observation import RaySettings
 
 SETTINGS = wall_pairs.PairSettings(
     max_angle_deg=5.0, min_thickness_m=0.04, max_thickness_m=0.6, offset_m=0.05, max_gap_m=2.0
 )
-READING = RaySettings(band_m=0.06, reach_m=2.0, max_gap_m=0.5, door_height_m=1.8)
+DOOR_HEIGHT_M = 1.8
 
 
 def stretch(*ends, free=()):
@@ -20,7 +19,7 @@ def stretch(*ends, free=()):
 
 
 def pair(*drawn):
-    return wall_pairs.pair_faces(list(drawn), SETTINGS, READING)
+    return wall_pairs.pair_faces(list(drawn), SETTINGS, door_height_m=DOOR_HEIGHT_M)
 
 
 def test_opposite_faces_are_a_wall_with_a_thickness():
@@ -88,7 +87,7 @@ def test_every_stretch_is_in_one_wall_and_every_side_is_straight(seed):
     x, length = rng.uniform(0, 8, 12), rng.uniform(0.3, 3, 12)
     ways = rng.choice([-1, 1], 12)
     drawn = [stretch(a, b, a + w * n, b) for a, b, w, n in zip(x, y, ways, length, strict=True)]
-    walls = wall_pairs.pair_faces(drawn, SETTINGS, READING)
+    walls = wall_pairs.pair_faces(drawn, SETTINGS, door_height_m=DOOR_HEIGHT_M)
     assert sorted(id(face) for w in walls for face in w.members) == sorted(map(id, drawn))
     for wall in walls:
         for sign, side in ((1, wall.left), (-1, wall.right)):

@@ -28,11 +28,11 @@ def openings(*found):
     walls = assemble_walls(
         *(
             [s for of_line in found for s in of_line],
-            SETTINGS.reading,
             SETTINGS.pairs,
             SETTINGS.openings,
         ),
         corner_m=0.25,
+        door_height_m=SETTINGS.reading.door_height_m,
     )
     return [
         np.sort(w.line.at(np.array([g.low_m, g.high_m]))[:, 0]) for w in walls for g in w.openings
@@ -60,11 +60,11 @@ def ends(*found):
     walls = assemble_walls(
         *(
             [s for of_line in found for s in of_line],
-            SETTINGS.reading,
             SETTINGS.pairs,
             SETTINGS.openings,
         ),
         corner_m=0.25,
+        door_height_m=SETTINGS.reading.door_height_m,
     )
     return [np.sort(w.ends[:, 0]) for w in walls if abs(w.line.normal[1]) > 0.9]
 

@@ -13,13 +13,17 @@ from scanplan.geometry.lines import Line
 from scanplan.plan import planning, windows
 from scanplan.plan.faces import intervals
 from scanplan.plan.openings import OPEN, Opening
-from scanplan.plan.walls import PlanWall
+from scanplan.plan.plan_wall import PlanWall
 from scanplan.rays import ray_set
 
 SENSORS = [(1, 2.5, 0.9), (2, 3, 0.9), (3, 2.5, 0.9), (2.5, 3.4, 0.9)]
 SOUTH = Line(np.array([0.0, 0.0]), np.array([0.0, 1.0]))
 ROOM = [(0, 0, 4, 0), (4, 0, 4, 4), (4, 4, 0, 4), (0, 4, 0, 0)]
 SETTINGS = planning.make_plan_settings(**house_making.PLAN)
+LIMITS = {
+    "min_width_m": SETTINGS.openings.min_opening_m,
+    "band_m": SETTINGS.reading.band_m,
+}
 ENDS_M = (0.0, 4.0)
 LOST, NICHE, BEYOND, BEFORE = None, "niche", 1.5, 0.7
 
@@ -48,7 +52,9 @@ def look(x, z, ends=LOST, sensors=SENSORS):
 
 def seen(looked):
     """The line refitted, places along it counted from the origin again."""
-    line = intervals.observe_along(looked, SOUTH, 0.0, 4.0, SETTINGS.reading)
+    line = intervals.observe_along(
+        *(looked, SOUTH, 0.0, 4.0), band_m=SETTINGS.reading.band_m, reach_m=SETTINGS.reading.reach_m
+    )
     begin_m = float(line.line.along_m(np.zeros(2)))
     return replace(
         line,
@@ -78,7 +84,7 @@ def with_points(line, places_m):
 
 def find(*part, **more):
     looked = look(*part, **more)
-    return windows.find_windows(looked, seen(looked), *ENDS_M, SETTINGS.openings)
+    return windows.find_windows(looked, seen(looked), *ENDS_M, **LIMITS)
 
 
 @pytest.mark.parametrize("ends", [LOST, BEYOND])
@@ -89,7 +95,7 @@ def test_rays_that_go_through_above_a_wall_show_a_window(ends):
         pytest.approx(2.2, abs=0.03),
     )
     assert window.sill_m == pytest.approx(0.85, abs=0.04)
-    assert (window.state, window.kind(SETTINGS.openings)) == (OPEN, "window")
+    assert (window.state, window.kind(SETTINGS.openings.max_door_m)) == (OPEN, "window")
 
 
 def test_a_window_may_be_wider_than_a_door():
@@ -125,7 +131,7 @@ def test_where_no_ray_is_sent_nothing_is_known():
     """
     looked = look((1.0, 2.2), (0.85, 2.4), sensors=[(1.6, 1, 0.9), (1.4, 0.9, 0.9)])
     line = with_points(seen(looked), np.repeat([0.2, 0.5, 0.9, 2.3, 2.6, 3.0], 3))
-    assert windows.find_windows(looked, line, *ENDS_M, SETTINGS.openings) == []
+    assert windows.find_windows(looked, line, *ENDS_M, **LIMITS) == []
 
 
 @pytest.mark.parametrize(
@@ -134,7 +140,7 @@ def test_where_no_ray_is_sent_nothing_is_known():
 def test_stray_points_part_no_window_and_a_mullion_does(places_m, count):
     looked = look((1.0, 2.2), (0.85, 2.4))
     line = with_points(seen(looked), np.array(places_m))
-    assert len(windows.find_windows(looked, line, *ENDS_M, SETTINGS.openings)) == count
+    assert len(windows.find_windows(looked, line, *ENDS_M, **LIMITS)) == count
 
 
 def wall(looked, openings=()):
@@ -146,7 +152,7 @@ def wall(looked, openings=()):
 
 def test_windows_lie_along_the_wall_and_the_wall_goes_on_below_them():
     looked = look((1.0, 2.2), (0.85, 2.4))
-    (found,) = windows.add_windows([wall(looked)], looked, SETTINGS.openings)
+    (found,) = windows.add_windows([wall(looked)], looked, **LIMITS)
     (window,) = found.openings
     ends = found.line.at(np.array([window.low_m, window.high_m]))
     np.testing.assert_allclose(np.sort(ends[:, 0]), [1.0, 2.2], atol=0.03)
@@ -156,7 +162,7 @@ def test_windows_lie_along_the_wall_and_the_wall_goes_on_below_them():
 def test_an_opening_is_not_found_again():
     looked = look((1.0, 2.2), (0.85, 2.4))
     known = Opening(2.0, 2.9, OPEN, 99, 0.0, np.nan, False)
-    (found,) = windows.add_windows([wall(looked, [known])], looked, SETTINGS.openings)
+    (found,) = windows.add_windows([wall(looked, [known])], looked, **LIMITS)
     assert found.openings == [known]
 
 
@@ -169,7 +175,7 @@ def test_where_the_other_side_is_whole_there_is_no_window(to_m, count):
     other = observation(back, [(along_m, 1.5) for along_m in place_m])
     this = wall(looked)
     behind = intervals.FaceInterval(other, -4.0, 0.0)
-    (found,) = windows.add_windows([replace(this, left=[behind])], looked, SETTINGS.openings)
+    (found,) = windows.add_windows([replace(this, left=[behind])], looked, **LIMITS)
     assert len(found.openings) == count
 
 
@@ -186,13 +192,13 @@ def test_one_or_two_points_below_show_no_sill(count):
             for c in ("occupied_m", "occupied_z_m", "occupied_off_m", "occupied_scan")
         },
     )
-    assert windows.find_windows(looked, few, *ENDS_M, SETTINGS.openings) == []
+    assert windows.find_windows(looked, few, *ENDS_M, **LIMITS) == []
 
 
 def test_a_plane_has_no_windows():
     looked = look((1.0, 2.2), (0.85, 2.4))
     flat = [wall(looked)]
-    assert windows.add_windows(flat, replace(looked, planar=True), SETTINGS.openings) == flat
+    assert windows.add_windows(flat, replace(looked, planar=True), **LIMITS) == flat
 
 
 def plan(ends):

@@ -9,10 +9,9 @@ import shapely
 from scanplan.geometry import intersections
 from scanplan.geometry.lines import Line
 from scanplan.plan import wall_ground
-from scanplan.plan.wall_pairs import PlanWall
+from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.tolerances import CORNER_M, END_M
 
-_NEAR_M = 0.1  # what registration and a line's fit may be wrong by together, twice over
-_REACH_M = 0.3  # a wall that ends this near before a pane's line meets it: half of a thick wall
 _FRAME_M = 0.8  # frame, reveal and the part of a pane seen at grazing angles only
 
 
@@ -30,7 +29,7 @@ def find_glass_walls(
 
     Parameters
     ----------
-    walls : list of wall_pairs.PlanWall
+    walls : list of plan_wall.PlanWall
     spans : list of (lines.Line, float, float)
         From where to where along a line there is glass.
     min_length_m : float
@@ -39,7 +38,7 @@ def find_glass_walls(
         How thick a wall is taken for of which one side is known.
     """
     ways = [(wall, opening) for wall in walls for opening in wall.openings]
-    grounds = [wall_ground.opening_polygon(*way, unpaired_m).buffer(_NEAR_M) for way in ways]
+    grounds = [wall_ground.opening_polygon(*way, unpaired_m).buffer(END_M) for way in ways]
     open_m2 = shapely.union_all(grounds)
     shapely.prepare(open_m2)
     stacked = intersections.stack_spans(walls)
@@ -61,9 +60,9 @@ def _extend(
     stacked: intersections.SpanArrays,
 ) -> tuple[Line, float, float]:
     """Return a span with its ends moved to the nearest walls on or across its line."""
-    places_m = [intersections.find_crossings(line, stacked, reach_m=_REACH_M).place_m]
+    places_m = [intersections.find_crossings(line, stacked, reach_m=CORNER_M).place_m]
     for wall in walls:
-        is_on = np.abs(line.offset_m(wall.ends)) <= wall.half_m + _NEAR_M
+        is_on = np.abs(line.offset_m(wall.ends)) <= wall.half_m + END_M
         places_m.append(line.along_m(wall.ends)[is_on])
     place_m = np.concatenate(places_m)
     before_m = place_m[(place_m <= low_m) & (place_m >= low_m - _FRAME_M)]

@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from scanplan.plan.wall_pairs import PlanWall
+from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.tolerances import ENOUGH_RAYS
 from scanplan.rays.face_observation import FaceObservation
+from scanplan.rays.face_raster import SCAN_COLUMN_M
 from scanplan.types import BoolArray, FloatArray
 
-_COLUMN_M = 0.1  # along the wall: wider than what is between rays
 _LEAST_SHARE = 0.25  # of the wall's length: what passes over less is a window
-_LEAST_RAYS = 10  # fewer say nothing of a height
 _WRONG_SHARE = 0.1  # of the rays over it: stray returns and noise of poses
 _UNSEEN_M = 0.5  # half of it is what the top may be wrong by
 
@@ -23,7 +23,7 @@ def estimate_wall_top_m(wall: PlanWall) -> float:
 
     Parameters
     ----------
-    wall : wall_pairs.PlanWall
+    wall : plan_wall.PlanWall
     """
     lines = wall.lines
     if lines[0].planar:
@@ -32,15 +32,15 @@ def estimate_wall_top_m(wall: PlanWall) -> float:
     occupied_z_m, free_z_m, free_m = (
         np.concatenate(column) for column in zip(*columns, strict=True)
     )
-    if len(free_z_m) < _LEAST_RAYS or len(occupied_z_m) == 0:
+    if len(free_z_m) < ENOUGH_RAYS or len(occupied_z_m) == 0:
         return np.nan
     low_m, high_m = _part(occupied_z_m, free_z_m)
     over = free_z_m >= high_m
     wrong = np.count_nonzero(~over) + np.count_nonzero(occupied_z_m > low_m)
-    solid_m = wall.length_m - 2 * _COLUMN_M - sum(gap.width_m for gap in wall.openings)
-    shown_m = _COLUMN_M * len(np.unique(np.floor(free_m[over] / _COLUMN_M)))
+    solid_m = wall.length_m - 2 * SCAN_COLUMN_M - sum(gap.width_m for gap in wall.openings)
+    shown_m = SCAN_COLUMN_M * len(np.unique(np.floor(free_m[over] / SCAN_COLUMN_M)))
     is_top = (
-        over.sum() >= _LEAST_RAYS
+        over.sum() >= ENOUGH_RAYS
         and wrong <= _WRONG_SHARE * over.sum()
         and high_m - low_m <= _UNSEEN_M
     )
@@ -69,9 +69,9 @@ def _inner(wall: PlanWall, seen: FaceObservation) -> tuple[FloatArray, FloatArra
 
 
 def _is_inner(wall: PlanWall, along_m: FloatArray) -> BoolArray:
-    inside = (along_m > wall.low_m + _COLUMN_M) & (along_m < wall.high_m - _COLUMN_M)
+    inside = (along_m > wall.low_m + SCAN_COLUMN_M) & (along_m < wall.high_m - SCAN_COLUMN_M)
     for gap in wall.openings:
-        inside &= (along_m < gap.low_m - _COLUMN_M) | (along_m > gap.high_m + _COLUMN_M)
+        inside &= (along_m < gap.low_m - SCAN_COLUMN_M) | (along_m > gap.high_m + SCAN_COLUMN_M)
     return inside
 
 

@@ -3,13 +3,11 @@
 import numpy as np
 
 from scanplan.errors import StageError
+from scanplan.plan.faces.intervals import LEAST_OPEN_COLUMNS
 from scanplan.plan.planning import Plan
 from scanplan.rays import free_space
 from scanplan.rays.ray_set import RaySet
 from scanplan.types import BoolArray, Columns, FilePath, FloatArray
-
-_FAR_SHARE = 0.5  # of the points: with fewer far ones most doors are met by two columns
-_COLUMNS_NEEDED = 2  # a single column may pass beside an opening
 
 
 def check_segments(path: FilePath, segments: Columns, used: BoolArray, n_scans: int) -> None:
@@ -67,15 +65,15 @@ def sparse_rays_warning(rays: RaySet, min_opening_m: float) -> str:
     spacing_rad = float(np.median(spacings_rad))
     if spacing_rad <= 0:
         return ""
-    enough_m = min_opening_m / (_COLUMNS_NEEDED * spacing_rad)
-    far = float(np.mean(_ranges_m(rays) > enough_m))
-    if far <= _FAR_SHARE:
+    enough_m = min_opening_m / (LEAST_OPEN_COLUMNS * spacing_rad)
+    is_far = _ranges_m(rays) > enough_m
+    if is_far.sum() <= (~is_far).sum():
         return ""
     return (
         f"columns of rays lie {np.degrees(spacing_rad):.1f} deg apart: two meet an opening of"
         f" {min_opening_m:g} m (plan.openings.min_opening_m) up to {enough_m:.1f} m away only, and"
-        f" {far:.0%} of the points are farther; doors may be missed and rooms not be parted; record"
-        " more directions a turn (simulate.sensor.n_azimuth)"
+        f" {is_far.mean():.0%} of the points are farther; doors may be missed and rooms not be"
+        " parted; record more directions a turn (simulate.sensor.n_azimuth)"
     )
 
 

@@ -1,48 +1,39 @@
-"""Pauses of a wall: openings where rays went through, closed where none could, or never seen."""
+"""Gaps of a wall: openings where rays went through, closed where none could, or never seen."""
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from scanplan.geometry.lines import Line
-from scanplan.rays.face_observation import FaceObservation, RaySettings
+from scanplan.plan.opening_heights import (
+    AT_FLOOR_M,
+    estimate_lintel_m,
+    estimate_sill_m,
+    robust_highest_m,
+)
+from scanplan.plan.tolerances import ENOUGH_RAYS, NOISE_M
+from scanplan.rays.face_observation import FaceObservation
 from scanplan.rays.face_raster import CELL_M
 from scanplan.types import FloatArray
 
 OPEN, CLOSED, UNKNOWN = "open", "closed", "unknown"
-REVEAL_M = 0.1  # how near to their place jambs come out
-AT_FLOOR_M = 0.3  # lower returns may be of a step or of what lies there
-FEW_RAYS = 3  # one or two may be stray
-_OPEN_SHARE = 0.4  # of the width: furniture hides the rest of a way that is used
-_OPEN_SHARE_BELOW_LINTEL = 0.2  # a lintel says that there is a way: half as much is enough
+_OPEN_SHARE = 0.4  # of the width: furniture hides the rest of a way; half as much below a lintel
 _CLOSED_SHARE = 0.1  # of the width: less is noise at the jambs
-_LEAST_RAYS = 10  # fewer say nothing of a height or of a way
-_EDGE_M = 0.03  # what a jamb's place errs by
-_LOW_PERCENTILE = 1  # of the rays through: fewer are stray
-_FLOOR_NOISE_M = 0.04  # what noise lifts returns of the floor by
-_STEP_COLUMN_M = 0.1  # wider than what is between rays, narrower than what lies about
-_STEP_SHARE = 0.7  # of the columns: a step goes on all along, what lies about does not
 _DOORSTEP_M = 0.06  # one steps over less
-_LEVEL_M = 0.03  # noise of a range seen along 15 degrees, of poses and of beams
-_LEVEL_SCANS = 2  # one scan's beam meets a whole wall at one height
-_BEHIND_M = 0.02  # noise of a range
-_BEHIND_SHARE = 0.2  # noise leaves fewer so far behind a face, an underside most
-_MOST_DOUBT_M = 0.2  # half of it is what a height may be wrong by
-_ROUND_M = 1e-9  # rounding of a difference of heights
 
 
 @dataclass(frozen=True)
 class OpeningSettings:
-    """What a pause of a wall is.
+    """What a gap of a wall is.
 
     Attributes
     ----------
     min_opening_m, max_opening_m : float
         Widths of an opening.
     max_closed_m : float
-        A pause up to this length that no ray went through is wall, too.
+        A gap up to this length that no ray went through is wall, too.
     max_door_m : float
         A wider opening is a passage.
     """
@@ -55,7 +46,7 @@ class OpeningSettings:
 
 @dataclass(frozen=True, eq=False)
 class Opening:
-    """A pause of a wall, from `low_m` to `high_m` along it.
+    """A gap of a wall, from `low_m` to `high_m` along it.
 
     Attributes
     ----------
@@ -85,14 +76,14 @@ class Opening:
 
     @property
     def width_m(self) -> float:
-        """Width of the pause."""
+        """Width of the gap."""
         return self.high_m - self.low_m
 
-    def kind(self, settings: OpeningSettings) -> str:
-        """Return `window`, `door` or `passage`: by its sill, then by its width."""
+    def kind(self, max_door_m: float) -> str:
+        """Return `window`, `door` or, wider than a door, `passage`: by its sill, then its width."""
         if self.sill_m > _DOORSTEP_M:
             return "window"
-        return "door" if self.width_m <= settings.max_door_m else "passage"
+        return "door" if self.width_m <= max_door_m else "passage"
 
 
 def classify_gap(
@@ -100,22 +91,23 @@ def classify_gap(
     low_m: float,
     high_m: float,
     faces: Sequence[FaceObservation],
-    reading: RaySettings,
     settings: OpeningSettings,
     *,
+    door_height_m: float,
     needs_lintel: bool = False,
 ) -> Opening:
-    """Classify a pause of a wall as open, closed or unknown by what rays say of its faces there.
+    """Classify a gap of a wall as open, closed or unknown by what rays show of its faces there.
 
     Parameters
     ----------
     wall_line : lines.Line
     low_m, high_m : float
-        The pause along it.
+        The gap along it.
     faces : list of face_observation.FaceObservation
         Of the wall's sides.
-    reading : face_observation.RaySettings
     settings : OpeningSettings
+    door_height_m : float
+        What is higher says nothing about a way through.
     needs_lintel : bool
         Whether only what has wall above it is an opening: where no wall follows, anything could be
         beside a wall.
@@ -128,33 +120,29 @@ def classify_gap(
     """
     ends = wall_line.at(np.array([low_m, high_m]))
     spans_m = [np.sort(face.line.along_m(ends)) for face in faces]
-    looks = [_look(face, span_m, reading) for face, span_m in zip(faces, spans_m, strict=True)]
-    looks.sort(key=lambda look: (look.n_rays, look.open_share), reverse=True)
-    n_rays, open_share = looks[0].n_rays, looks[0].open_share
-    sill_m = _first_known(look.sill_m for look in looks)
-    below_wall = any(look.below_wall for look in looks)
+    shown = [
+        _observe_gap(face, span_m, door_height_m)
+        for face, span_m in zip(faces, spans_m, strict=True)
+    ]
+    shown.sort(key=lambda side: (side.n_rays, side.open_share), reverse=True)
+    n_rays, open_share = shown[0].n_rays, shown[0].open_share
+    sill_m = _first_known(side.sill_m for side in shown)
+    below_wall = any(side.below_wall for side in shown)
     width_m = high_m - low_m
     is_wide = settings.min_opening_m <= width_m <= settings.max_opening_m
-    least_share = _OPEN_SHARE_BELOW_LINTEL if below_wall else _OPEN_SHARE
-    is_open = n_rays >= _LEAST_RAYS and open_share >= least_share
+    least_share = _OPEN_SHARE / 2 if below_wall else _OPEN_SHARE
+    is_open = n_rays >= ENOUGH_RAYS and open_share >= least_share
     # rays went in and did not come back: through glass, or out of the building
-    is_open |= (
-        max(_glass_share(face, span_m) for face, span_m in zip(faces, spans_m, strict=True))
-        >= _OPEN_SHARE
-    )
+    is_open |= max(side.glass_share for side in shown) >= _OPEN_SHARE
     # wall above, some rays through a window, and what is below them hidden: no way through was seen
-    behind_things = below_wall and np.isnan(sill_m)
+    is_hidden = below_wall and np.isnan(sill_m)
+    is_short = width_m <= settings.max_closed_m
+    state = UNKNOWN
     if is_wide and is_open and (below_wall or not needs_lintel):
         state = OPEN
-    elif (
-        (open_share <= _CLOSED_SHARE or behind_things)
-        and width_m <= settings.max_closed_m
-        and not needs_lintel
-    ):
+    elif (open_share <= _CLOSED_SHARE or is_hidden) and is_short and not needs_lintel:
         state = CLOSED
-    else:
-        state = UNKNOWN
-    lintel_m = _first_known(look.lintel_m for look in looks)
+    lintel_m = _first_known(side.lintel_m for side in shown)
     return Opening(float(low_m), float(high_m), state, n_rays, sill_m, lintel_m, below_wall)
 
 
@@ -169,108 +157,39 @@ def _first_known(values_m: Iterable[float]) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class _Look:
-    """What a face shows of a pause.
+class _GapEvidence:
+    """What rays show of a gap on one side of a wall.
 
-    Rays through it, on what share of the width, sill, lintel, if wall is above.
+    How many went through, on what share of the width, on what share none came back, sill, lintel,
+    and whether wall is above.
     """
 
     n_rays: int = 0
     open_share: float = 0.0
+    glass_share: float = 0.0
     sill_m: float = math.nan
     lintel_m: float = math.nan
     below_wall: bool = False
 
 
-def _look(face: FaceObservation, span_m: FloatArray, reading: RaySettings) -> _Look:
-    low_m, high_m = span_m[0] + _EDGE_M, span_m[1] - _EDGE_M
+def _observe_gap(face: FaceObservation, span_m: FloatArray, door_height_m: float) -> _GapEvidence:
+    glass_share = _glass_share(face, span_m)
+    low_m, high_m = span_m[0] + NOISE_M, span_m[1] - NOISE_M
     if high_m <= low_m:
-        return _Look()
+        return _GapEvidence(glass_share=glass_share)
     free = face.free_between(low_m, high_m)
-    is_crossed = face.raster.is_crossed(reading.door_height_m)
+    is_crossed = face.raster.is_crossed(door_height_m)
     n_crossed = is_crossed[face.raster.between(low_m, high_m)].sum()
     open_share = min(float(n_crossed / max(round((high_m - low_m) / CELL_M), 1)), 1.0)
-    n_rays = free.stop - free.start
-    if face.planar or n_rays < _LEAST_RAYS:
-        return _Look(n_rays, open_share)
+    evidence = _GapEvidence(free.stop - free.start, open_share, glass_share)
+    if face.planar or evidence.n_rays < ENOUGH_RAYS:
+        return evidence
     free_z_m = face.free_z_m[free]
     occupied_z_m = face.occupied_z_m[face.occupied_between(low_m, high_m)]
-    sill_m = _sill_m(free_z_m, occupied_z_m)
-    step_m = _step_m(face, low_m, high_m, float(np.percentile(free_z_m, _LOW_PERCENTILE)))
-    sill_m = float(np.fmax(sill_m, step_m)) if step_m > 0 else sill_m
+    sill_m = estimate_sill_m(face, low_m, high_m)
     free_top_m = robust_highest_m(free_z_m)
-    least_m = max(free_top_m, reading.door_height_m)
-    if (occupied_z_m > least_m).sum() < _LEAST_RAYS:
-        return _Look(n_rays, open_share, sill_m)
+    least_m = max(free_top_m, door_height_m)
+    if (occupied_z_m > least_m).sum() < ENOUGH_RAYS:
+        return replace(evidence, sill_m=sill_m)
     lintel_m = estimate_lintel_m(face, low_m, high_m, free_top_m, least_m)
-    return _Look(n_rays, open_share, sill_m, lintel_m, True)
-
-
-def _step_m(seen: FaceObservation, low_m: float, high_m: float, lowest_m: float) -> float:
-    """Return the height of what stands all along near the floor below the lowest ray.
-
-    0 if nothing.
-
-    In a doorway rays end on the floor; a sill's front ends them above that.
-    """
-    low = seen.low_between(low_m, high_m)
-    raised = (seen.low_z_m[low] > _FLOOR_NOISE_M) & (seen.low_z_m[low] < lowest_m)
-    width = int((high_m - low_m) / _STEP_COLUMN_M)
-    column = ((seen.low_m[low][raised] - low_m) / _STEP_COLUMN_M).astype(np.int64)
-    if len(column) < _LEAST_RAYS or len(np.unique(column)) < _STEP_SHARE * width:
-        return 0.0
-    return (float(np.percentile(seen.low_z_m[low][raised], 95)) + lowest_m) / 2
-
-
-def _sill_m(free_z_m: FloatArray, occupied_z_m: FloatArray) -> float:
-    """Return the sill: between the rays that went through and the wall seen below them."""
-    low_m = np.percentile(free_z_m, _LOW_PERCENTILE)
-    if low_m <= AT_FLOOR_M:
-        return 0.0
-    below_m = occupied_z_m[occupied_z_m < low_m]
-    return (
-        float((np.percentile(below_m, 95) + low_m) / 2) if len(below_m) >= _LEAST_RAYS else np.nan
-    )
-
-
-def estimate_lintel_m(
-    seen: FaceObservation, low_m: float, high_m: float, free_m: float, least_m: float
-) -> float:
-    """Return the lintel, NaN where it could be anywhere between rays far apart.
-
-    It lies above the rays that went through and below the wall seen above them. Points at one
-    height behind the face are of its underside, and show it; those of a face are as high as the
-    beams that met it.
-
-    Parameters
-    ----------
-    seen : face_observation.FaceObservation
-    low_m, high_m : float
-        The opening along the line.
-    free_m : float
-        Up to where rays went through.
-    least_m : float
-        Points lower than that are none of the wall above it.
-    """
-    # beside a jamb points are its reveal's
-    inner = seen.occupied_between(low_m + REVEAL_M, high_m - REVEAL_M)
-    above = seen.occupied_z_m[inner] > least_m
-    above_m, off_m, scan = (
-        of[inner][above] for of in (seen.occupied_z_m, seen.occupied_off_m, seen.occupied_scan)
-    )
-    if len(above_m) < FEW_RAYS:
-        return np.nan
-    lowest_m = np.percentile(above_m, 5)
-    level = np.abs(above_m - lowest_m) <= _LEVEL_M
-    behind = level & (off_m < -_BEHIND_M)
-    enough = max(FEW_RAYS, _BEHIND_SHARE * level.sum())
-    if behind.sum() >= enough and len(np.unique(scan[behind])) >= _LEVEL_SCANS:
-        return float(np.median(above_m[level]))
-    return (
-        float((free_m + lowest_m) / 2) if lowest_m - free_m <= _MOST_DOUBT_M + _ROUND_M else np.nan
-    )
-
-
-def robust_highest_m(z_m: FloatArray) -> float:
-    """Return the height that not just one or two of heights (n,), n >= 3, reach."""
-    return float(np.partition(z_m, -FEW_RAYS)[-FEW_RAYS])
+    return replace(evidence, sill_m=sill_m, lintel_m=lintel_m, below_wall=True)

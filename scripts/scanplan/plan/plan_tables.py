@@ -8,11 +8,12 @@ import numpy as np
 import shapely
 from shapely.geometry import Polygon
 
-from scanplan.plan.openings import OpeningSettings
+from scanplan.plan.faces.intervals import FaceInterval
+from scanplan.plan.plan_wall import InferredFace, PlanWall
 from scanplan.plan.rooms import Room, rooms_beside
-from scanplan.plan.uncertainty import ReviewCriteria, WallEvidence
-from scanplan.plan.wall_faces import OBSERVED, WallFace
-from scanplan.plan.wall_pairs import PlanWall
+from scanplan.plan.tolerances import LOW_PERCENT
+from scanplan.plan.uncertainty import WallEvidence
+from scanplan.rays.face_raster import CELL_M
 from scanplan.store import schemas
 from scanplan.types import Array, FloatArray, IntArray
 
@@ -24,56 +25,63 @@ _TYPES: dict[str, type] = {
     "string": object,
     "binary": object,
 }
-_Z_PERCENTILES = (2, 98)  # of a face's points: stray ones above or below do not count
-_MOSTLY_OBSERVED = 0.5  # share of a wall's length
-_LABEL_M = 0.05  # precision of a room's label place
 
 Row = dict[str, Any]
 """Values of a table's row by column."""
 
 
-def face_columns(faces: Sequence[WallFace], floor_z_m: float) -> tuple[dict[str, Array], list[int]]:
+def face_columns(
+    walls: Sequence[PlanWall], floor_z_m: float
+) -> tuple[dict[str, Array], dict[tuple[int, bool], int]]:
     """Return the rows of `schemas.FACES`: observed faces first, the longest first.
 
     Parameters
     ----------
-    faces : sequence of wall_faces.WallFace
+    walls : sequence of plan_wall.PlanWall
+        Their faces cut, see `wall_faces.cut_wall_faces`.
     floor_z_m : float
 
     Returns
     -------
     dict of str to (n,) array
-    list of int
-        The row of each face.
+    dict of (int, bool) to int
+        The row of the longest observed face of each side: by wall, and whether it is the left one.
     """
-    order = sorted(range(len(faces)), key=lambda i: _rank(faces[i]))
-    rows = [{"face": row, **_face_row(faces[i], floor_z_m)} for row, i in enumerate(order)]
-    row_of_face = {i: row for row, i in enumerate(order)}
-    return _columns(rows, schemas.FACES), [row_of_face[i] for i in range(len(faces))]
+    faces: list[tuple[int, bool, FaceInterval | InferredFace]] = []
+    for number, wall in enumerate(walls):
+        faces += [(number, True, face) for face in wall.left]
+        faces += [(number, False, face) for face in wall.right]
+        faces += [(number, face.is_left, face) for face in wall.inferred]
+    faces.sort(key=lambda numbered: _rank(numbered[2]))
+    rows: list[Row] = []
+    main_rows: dict[tuple[int, bool], int] = {}
+    for row, (number, is_left, face) in enumerate(faces):
+        rows.append({"face": row, **_face_row(face, floor_z_m), "wall": number})
+        if isinstance(face, FaceInterval):
+            main_rows.setdefault((number, is_left), row)
+    return _columns(rows, schemas.FACES), main_rows
 
 
 def wall_columns(
     walls: Sequence[PlanWall],
     evidence: Sequence[WallEvidence],
-    face_rows: Sequence[int],
-    faces: Sequence[WallFace],
+    main_rows: dict[tuple[int, bool], int],
+    doubtful: Sequence[bool],
     floor_z_m: float,
-    criteria: ReviewCriteria,
 ) -> dict[str, Array]:
     """Return the rows of `schemas.PLAN_WALLS`.
 
     Parameters
     ----------
-    walls : sequence of wall_pairs.PlanWall
+    walls : sequence of plan_wall.PlanWall
     evidence : sequence of uncertainty.WallEvidence
         One per wall.
-    face_rows : sequence of int
-        Row of each of `faces` in the table of faces.
-    faces : sequence of wall_faces.WallFace
+    main_rows : dict of (int, bool) to int
+        See `face_columns`.
+    doubtful : sequence of bool
+        Which walls should be verified on site.
     floor_z_m : float
-    criteria : uncertainty.ReviewCriteria
     """
-    main_rows = _main_face_rows(face_rows, faces)
     rows: list[Row] = []
     for number, (wall, known) in enumerate(zip(walls, evidence, strict=True)):
         low_m, high_m = known.z_m
@@ -84,7 +92,7 @@ def wall_columns(
             "thickness_m": wall.thickness_m,
             "face_left": main_rows.get((number, True), -1),
             "face_right": main_rows.get((number, False), -1),
-            "state": "observed" if known.observed >= _MOSTLY_OBSERVED else "inferred",
+            "state": "observed" if known.observed >= 1 - known.observed else "inferred",
             "z_min_m": low_m + floor_z_m,
             "z_max_m": high_m + floor_z_m,
             "top_m": known.top_m + floor_z_m,
@@ -94,25 +102,25 @@ def wall_columns(
             "sigma_end1_m": sigma_end_m,
             "n_points": known.n_points,
             "n_scans": len(known.scans),
-            "verify": known.needs_a_visit(criteria),
+            "verify": doubtful[number],
         }
         rows.append(row)
     return _columns(rows, schemas.PLAN_WALLS)
 
 
 def opening_columns(
-    walls: Sequence[PlanWall], rooms: Sequence[Room], settings: OpeningSettings
+    walls: Sequence[PlanWall], rooms: Sequence[Room], max_door_m: float
 ) -> dict[str, Array]:
     """Return the rows of `schemas.OPENINGS`: those of each wall in order along it."""
     rows: list[Row] = []
     for number, wall in enumerate(walls):
         for opening in wall.openings:
             ends_m = wall.line.at(np.array([opening.low_m, opening.high_m]))
-            room_left, room_right = rooms_beside(rooms, ends_m, wall.half_m)
+            room_left, room_right = rooms_beside(rooms, ends_m.mean(axis=0), wall)
             row = {
                 "opening": len(rows),
                 "wall": number,
-                "type": opening.kind(settings),
+                "type": opening.kind(max_door_m),
                 **_end_columns(ends_m),
                 "width_m": opening.width_m,
                 "thickness_m": wall.thickness_m,
@@ -133,7 +141,7 @@ def room_columns(rooms: Sequence[Room]) -> dict[str, Array]:
     """
     rows: list[Row] = []
     for number, room in enumerate(rooms):
-        circle = shapely.maximum_inscribed_circle(room.polygon, tolerance=_LABEL_M)
+        circle = shapely.maximum_inscribed_circle(room.polygon, tolerance=CELL_M)
         x_m, y_m = shapely.get_coordinates(circle)[0].tolist()
         row = {
             "room": number,
@@ -176,49 +184,37 @@ def free_columns(polygons: Iterable[Polygon]) -> dict[str, Array]:
     return _columns(rows, schemas.FREE)
 
 
-def _face_row(face: WallFace, floor_z_m: float) -> Row:
+def _face_row(face: FaceInterval | InferredFace, floor_z_m: float) -> Row:
     return {
         **_end_columns(face.ends),
         "nx": face.line.normal[0],
         "ny": face.line.normal[1],
         **_points_of_face(face, floor_z_m),
-        "state": face.state,
-        "wall": face.wall,
     }
 
 
-def _points_of_face(face: WallFace, floor_z_m: float) -> Row:
+def _points_of_face(face: FaceInterval | InferredFace, floor_z_m: float) -> Row:
     """Return what the points say that show a face; none show an inferred one."""
-    interval = face.shown
-    if interval is None:
+    if isinstance(face, InferredFace):
         unknown = dict.fromkeys(("rmse_m", "z_min_m", "z_max_m"), math.nan)
-        return {"n_points": 0, "n_scans": 0, **unknown}
-    offset_m = interval.seen.occupied_off_m[interval.points]
-    height_m = interval.seen.occupied_z_m[interval.points]
-    z_min_m, z_max_m = np.percentile(height_m, _Z_PERCENTILES) + floor_z_m
+        return {"state": "inferred", "n_points": 0, "n_scans": 0, **unknown}
+    offset_m = face.seen.occupied_off_m[face.points]
+    height_m = face.seen.occupied_z_m[face.points]
+    z_min_m, z_max_m = np.percentile(height_m, (LOW_PERCENT, 100 - LOW_PERCENT)) + floor_z_m
     return {
-        "n_points": interval.n_points,
-        "n_scans": interval.n_scans,
+        "state": "observed",
+        "n_points": face.n_points,
+        "n_scans": face.n_scans,
         "rmse_m": float(np.sqrt(np.mean(offset_m**2))),
         "z_min_m": z_min_m,
         "z_max_m": z_max_m,
     }
 
 
-def _rank(face: WallFace) -> tuple[Any, ...]:
-    return face.state != OBSERVED, face.low_m - face.high_m, *face.ends.ravel().tolist()
-
-
-def _main_face_rows(
-    face_rows: Sequence[int], faces: Sequence[WallFace]
-) -> dict[tuple[int, bool], int]:
-    """Return the row of the longest observed face of each side, by (wall, left)."""
-    rows: dict[tuple[int, bool], int] = {}
-    # rows are in order of length
-    for row, face in sorted(zip(face_rows, faces, strict=True), key=lambda pair: pair[0]):
-        if face.state == OBSERVED:
-            rows.setdefault((face.wall, face.left), row)
-    return rows
+def _rank(face: FaceInterval | InferredFace) -> tuple[Any, ...]:
+    """Return a key to sort faces by."""
+    is_inferred = isinstance(face, InferredFace)
+    return is_inferred, face.low_m - face.high_m, *face.ends.ravel().tolist()
 
 
 def _end_columns(ends_m: FloatArray) -> Row:

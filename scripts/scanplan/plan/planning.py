@@ -17,11 +17,12 @@ from scanplan.plan import (
     windows,
 )
 from scanplan.plan.faces.merging import MergeSettings, merge_segments
-from scanplan.plan.faces.tracing import TracedFaces, trace_faces
+from scanplan.plan.faces.tracing import trace_faces
 from scanplan.plan.openings import OpeningSettings
+from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.rooms import find_rooms
 from scanplan.plan.uncertainty import ReviewCriteria
-from scanplan.plan.wall_pairs import PairSettings, PlanWall
+from scanplan.plan.wall_pairs import PairSettings
 from scanplan.plan.walls import assemble_walls
 from scanplan.rays import free_space, range_bias
 from scanplan.rays.face_observation import RaySettings
@@ -113,16 +114,15 @@ def make_plan_settings(
     ValueError
         If one is out of its range.
     """
-    merging = MergeSettings(**merge)
     return PlanSettings(
-        merge=merging,
+        merge=MergeSettings(**merge),
         reading=RaySettings(**trace),
         ranges=range_bias.RangeBiasSettings(**ranges),
         furniture=FurnitureLimits(**furniture),
         pairs=PairSettings(**pair, max_gap_m=openings["max_opening_m"]),
         openings=OpeningSettings(**openings),
         rooms=RoomSettings(**rooms),
-        trust=ReviewCriteria(registration_sigma_m=merging.registration_sigma_m, **trust),
+        trust=ReviewCriteria(**trust),
     )
 
 
@@ -162,7 +162,17 @@ def make_plan(
     rays = range_bias.remove_range_bias(rays, errors_m, up)
     candidates = merge_segments(segments, settings.merge)
     traced = trace_faces(candidates, rays, settings.merge, settings.reading, settings.furniture)
-    walls, tops_m = _make_walls(traced, rays, settings)
+    walls = assemble_walls(
+        traced.faces,
+        settings.pairs,
+        settings.openings,
+        corner_m=settings.merge.corner_m,
+        door_height_m=settings.reading.door_height_m,
+    )
+    walls = windows.add_windows(
+        walls, rays, min_width_m=settings.openings.min_opening_m, band_m=band_m
+    )
+    walls, tops_m = half_height.drop_low_surfaces(walls, settings.furniture.wall_height_m)
     unpaired_m = _usual_thickness_m(walls)
     views = free_space.free_polygons(rays)
     floor = free_space.union_on_grid(views)
@@ -184,15 +194,16 @@ def make_plan(
         floor=floor,
     )
     floor_z_m = 0.0 if math.isnan(rays.floor_z_m) else rays.floor_z_m
-    faces = wall_faces.cut_wall_faces(walls, max_beyond_m=settings.openings.max_closed_m)
-    face_columns, face_rows = plan_tables.face_columns(faces, floor_z_m)
-    evidence = uncertainty.estimate_evidence(walls, settings.trust, tops_m)
+    cut_walls = wall_faces.cut_wall_faces(walls, max_beyond_m=settings.openings.max_closed_m)
+    face_columns, main_rows = plan_tables.face_columns(cut_walls, floor_z_m)
+    evidence = uncertainty.estimate_evidence(
+        walls, tops_m, registration_sigma_m=settings.merge.registration_sigma_m
+    )
+    doubtful = [known.needs_a_visit(settings.trust) for known in evidence]
     return Plan(
         faces=face_columns,
-        walls=plan_tables.wall_columns(
-            walls, evidence, face_rows, faces, floor_z_m, settings.trust
-        ),
-        openings=plan_tables.opening_columns(walls, rooms, settings.openings),
+        walls=plan_tables.wall_columns(walls, evidence, main_rows, doubtful, floor_z_m),
+        openings=plan_tables.opening_columns(walls, rooms, settings.openings.max_door_m),
         rooms=plan_tables.room_columns(rooms),
         evidence=plan_tables.evidence_columns(evidence, rays.scan_ids, t_ns),
         free=plan_tables.free_columns(_find_free_floor(bounds, floor, unpaired_m)),
@@ -200,21 +211,6 @@ def make_plan(
         n_dropped=traced.n_dropped,
         range_errors_m=errors_m,
     )
-
-
-def _make_walls(
-    traced: TracedFaces, rays: RaySet, settings: PlanSettings
-) -> tuple[list[PlanWall], list[float]]:
-    """Return the walls of faces with their openings, and the heights of their tops."""
-    walls = assemble_walls(
-        traced.stretches,
-        settings.reading,
-        settings.pairs,
-        settings.openings,
-        corner_m=settings.merge.corner_m,
-    )
-    walls = windows.add_windows(walls, rays, settings.openings)
-    return half_height.drop_low_surfaces(walls, settings.furniture.wall_height_m)
 
 
 def _usual_thickness_m(walls: list[PlanWall]) -> float:

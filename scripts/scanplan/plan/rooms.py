@@ -9,26 +9,20 @@ from shapely.geometry import LineString, MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.plan import wall_ground
-from scanplan.plan.wall_pairs import PlanWall
+from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.tolerances import END_M
 from scanplan.rays import free_space
+from scanplan.rays.face_raster import CELL_M
 from scanplan.types import Array, FloatArray
 
-_NEAR_M = 0.2  # walls and ends this near to a part of the floor bound it
-_BESIDE_M = 0.12  # an outline this near to a wall's ground runs along it
-_NECK_M = 0.1  # half of what is too narrow to join two parts of a floor
 _MARGIN_M = 0.5  # of the drawing of lines around a part of the floor: the cells beside it, too
-_CELL_SHARE = 0.5  # a cell seen for more than this is floor
-_LEAST_CELL_SHARE = 0.25  # so is one that walls enclose: what hides the rest is in the room
-_LEAST_CELL_M2 = 1e-6  # smaller cells are rounding
+_LEAST_CELL_SHARE = 0.25  # seen of a cell that walls enclose: what hides the rest is in the room
 _LEAST_AGREEMENT = 0.75  # of cells and floor, intersection over union: else lines are missing
-_LEAST_UNION_M2 = 1e-9  # keeps that agreement finite
 _CLOSED_SHARE = 0.9  # of an outline along walls: corners and short gaps leave a tenth
-_SIMPLIFY_M = 0.05  # of the floor's outline: below what furniture makes of it
 _STEP_M = 0.25  # edge of the least square of floor that a scan must see of a room
 _BESIDE_WALL_M = np.array(
     [0.15, 0.3, 0.5]
 )  # from a wall: what stands at it may hide the nearest floor
-_SHORTEST_M = 1e-9  # keeps the direction of an opening of no width finite
 
 Ray = tuple[FloatArray, FloatArray]
 """A line without ends: a point (2,) and its unit direction (2,)."""
@@ -62,7 +56,7 @@ class Room:
 
 def find_rooms(
     walls: Sequence[PlanWall],
-    stars: Sequence[BaseGeometry],
+    views: Sequence[BaseGeometry],
     track_m: FloatArray,
     *,
     min_area_m2: float,
@@ -79,8 +73,8 @@ def find_rooms(
 
     Parameters
     ----------
-    walls : sequence of wall_pairs.PlanWall
-    stars : sequence of shapely geometry
+    walls : sequence of plan_wall.PlanWall
+    views : sequence of shapely geometry
         What each scan saw, `free_space.free_polygons`.
     track_m : (n, 2) float64
         Where sensors were.
@@ -93,7 +87,7 @@ def find_rooms(
     unpaired_m : float
         Thickness assumed of a wall of which one side is known.
     floor : shapely geometry, optional
-        `free_space.union_on_grid` of the stars, where it is known already.
+        `free_space.union_on_grid` of the views, where it is known already.
 
     Returns
     -------
@@ -102,7 +96,7 @@ def find_rooms(
     """
     strips = wall_ground.wall_strips(walls, unpaired_m)
     solid = free_space.union_on_grid(strips)
-    whole = free_space.union_on_grid(stars) if floor is None else floor
+    whole = free_space.union_on_grid(views) if floor is None else floor
     seen = free_space.difference_on_grid(whole, solid)
     track = shapely.points(track_m)
     rooms: list[Room] = []
@@ -116,18 +110,15 @@ def find_rooms(
         is_entered = bool(shapely.contains(polygon, track).any())
         is_wide = not polygon.buffer(-min_width_m / 2).is_empty
         if is_entered or (walled >= min_walled and is_wide):
-            rooms.append(Room(polygon, walled, is_entered, _count_scans(polygon, stars)))
+            rooms.append(Room(polygon, walled, is_entered, _count_scans(polygon, views)))
             occupied = free_space.union_on_grid([occupied, polygon])
     return sorted(rooms, key=lambda room: _largest_first(room.polygon))
 
 
-def rooms_beside(rooms: Sequence[Room], line_m: FloatArray, half_m: float) -> tuple[int, int]:
-    """Return the rooms (indices, -1: none) on the left and right of the middle of a line (2, 2)."""
-    middle = line_m.mean(axis=0)
-    way = line_m[1] - line_m[0]
-    normal = np.array([-way[1], way[0]]) / max(np.hypot(*way), _SHORTEST_M)
-    away = np.outer(half_m + _BESIDE_WALL_M, normal)
-    return _first_room(rooms, middle + away), _first_room(rooms, middle - away)
+def rooms_beside(rooms: Sequence[Room], place_m: FloatArray, wall: PlanWall) -> tuple[int, int]:
+    """Return the rooms (indices, -1: none) on the left and right of a place (2,) in a wall."""
+    away = np.outer(wall.half_m + _BESIDE_WALL_M, wall.line.normal)
+    return _first_room(rooms, place_m + away), _first_room(rooms, place_m - away)
 
 
 def _first_room(rooms: Sequence[Room], places_m: FloatArray) -> int:
@@ -145,19 +136,19 @@ def _largest_first(polygon: Polygon) -> tuple[float, ...]:
 
 def _large_parts(floor: BaseGeometry, min_area_m2: float) -> list[Polygon]:
     """Return the parts that a floor falls into at its necks, the largest first."""
-    parts = free_space.open_polygons(floor, _NECK_M)
+    parts = free_space.open_polygons(floor, END_M)
     return sorted((part for part in parts if part.area >= min_area_m2), key=_largest_first)
 
 
 def _largest(geometry: BaseGeometry) -> Polygon | None:
-    parts = free_space.open_polygons(geometry, _NECK_M)
+    parts = free_space.open_polygons(geometry, END_M)
     return max(parts, key=lambda part: part.area, default=None)
 
 
-def _count_scans(polygon: Polygon, stars: Sequence[BaseGeometry]) -> int:
+def _count_scans(polygon: Polygon, views: Sequence[BaseGeometry]) -> int:
     """Return how many scans saw a part of a polygon, which is prepared."""
-    all_stars = np.array(stars, object)
-    near = all_stars[shapely.intersects(polygon, all_stars)]
+    all_views = np.array(views, object)
+    near = all_views[shapely.intersects(polygon, all_views)]
     seen_m2 = shapely.area(shapely.intersection(polygon, near))
     return int((seen_m2 >= _STEP_M**2).sum())
 
@@ -171,10 +162,10 @@ def _draw_room(
     unpaired_m: float,
 ) -> tuple[Polygon | None, BaseGeometry]:
     """Return the polygon of a part of the floor, and the ground along its walls."""
-    rows = [row for row, strip in enumerate(strips) if strip.distance(part) <= _NEAR_M]
+    rows = [row for row, strip in enumerate(strips) if strip.distance(part) <= 2 * END_M]
     outline: BaseGeometry = MultiPolygon()
     if rows:
-        outline = shapely.union_all([strips[row] for row in rows]).buffer(_BESIDE_M)
+        outline = shapely.union_all([strips[row] for row in rows]).buffer(END_M)
     drawn = _fill_cells(part, [walls[row] for row in rows], solid, outline, unpaired_m)
     others = free_space.union_on_grid([solid, occupied])
     return _largest(free_space.difference_on_grid(drawn, others)), outline
@@ -192,13 +183,13 @@ def _fill_cells(
     It is the part of the floor itself where they do not agree with it. A cell that walls enclose
     was seen well enough at a quarter: what hides the rest is in the room.
     """
-    rough = part.simplify(_SIMPLIFY_M)
+    rough = part.simplify(CELL_M)
     cells = _cells(rough, walls, unpaired_m)
     if len(cells) == 0:
         return rough
     shapely.prepare(rough)
     share = shapely.area(shapely.intersection(cells, rough)) / shapely.area(cells)
-    is_floor = share > _CELL_SHARE
+    is_floor = share > 1 - share
     for row in np.flatnonzero(~is_floor & (share > _LEAST_CELL_SHARE)):
         is_floor[row] = _walled_share(cells[row], outline) >= _CLOSED_SHARE
     ground = free_space.union_on_grid(list(cells[is_floor]))
@@ -206,7 +197,7 @@ def _fill_cells(
     if drawn is None:
         return rough
     common_m2 = shapely.intersection(drawn, rough).area
-    agreement = common_m2 / max(shapely.union(drawn, rough).area, _LEAST_UNION_M2)
+    agreement = common_m2 / shapely.union(drawn, rough).area
     is_closed = _walled_share(drawn, outline) >= _CLOSED_SHARE
     return drawn if agreement >= _LEAST_AGREEMENT or is_closed else rough
 
@@ -231,7 +222,7 @@ def _cells(part: BaseGeometry, walls: Sequence[PlanWall], unpaired_m: float) -> 
     polygons = shapely.get_parts(shapely.polygonize(shapely.get_parts(noded)))
     cells = np.array(list(polygons), object)
     is_inside = shapely.covers(frame, shapely.point_on_surface(cells))
-    return cells[is_inside & (shapely.area(cells) > _LEAST_CELL_M2)]
+    return cells[is_inside & (shapely.area(cells) > free_space.GRID_M**2)]
 
 
 def _bounding_rays(wall: PlanWall, part: BaseGeometry, unpaired_m: float) -> list[Ray]:
@@ -243,6 +234,6 @@ def _bounding_rays(wall: PlanWall, part: BaseGeometry, unpaired_m: float) -> lis
     way = wall.line.direction
     rays: list[Ray] = [(beside_m + wall.half_m * normal, way), (beside_m - back_m * normal, way)]
     for end in wall.ends:
-        if shapely.Point(end).distance(part) <= _NEAR_M:
+        if shapely.Point(end).distance(part) <= 2 * END_M:
             rays.append((end, normal))
     return rays

@@ -9,14 +9,11 @@ import numpy as np
 from scanplan.geometry import intersections
 from scanplan.geometry.intervals import added_lengths_m
 from scanplan.plan.faces.intervals import FaceInterval
-from scanplan.plan.wall_pairs import PlanWall
+from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.tolerances import CORNER_M, ENOUGH_RAYS, LOW_PERCENT, ROUND_M
 from scanplan.types import FloatArray, IntArray
 
 _NEAR_END_M = 0.25  # points this near to an end show it: several columns of a scan at 10 m
-_MET_M = 1e-6  # an end is put on the line of the wall that it meets: rounding only
-_REACH_M = 0.5  # an end is this near to the wall it meets: half the widest, and a corner's gap
-_LOWEST_PERCENTILE = 2  # of a wall's points: stray ones below the floor do not count
-_POINTS_ABOVE = 10  # the highest points of a wall that may be stray
 
 
 @dataclass(frozen=True)
@@ -25,8 +22,6 @@ class ReviewCriteria:
 
     Attributes
     ----------
-    registration_sigma_m : float, > 0
-        Standard deviation of a registered scan's place.
     max_sigma_m : float, > 0
         Of a wall's offset or of one of its ends.
     min_scans : int, >= 1
@@ -34,7 +29,6 @@ class ReviewCriteria:
         Share of a wall's length, openings aside, that points show.
     """
 
-    registration_sigma_m: float
     max_sigma_m: float
     min_scans: int
     min_observed: float
@@ -86,21 +80,22 @@ class WallEvidence:
 
 
 def estimate_evidence(
-    walls: Sequence[PlanWall], criteria: ReviewCriteria, tops_m: Sequence[float]
+    walls: Sequence[PlanWall], tops_m: Sequence[float], *, registration_sigma_m: float
 ) -> list[WallEvidence]:
     """Return the evidence of every wall.
 
     Parameters
     ----------
-    walls : sequence of wall_pairs.PlanWall
-    criteria : ReviewCriteria
+    walls : sequence of plan_wall.PlanWall
     tops_m : sequence of float
         Where each ends below the ceiling, above the floor; NaN where it was not seen to.
+    registration_sigma_m : float, > 0
+        Standard deviation of a registered scan's place.
     """
-    offset_sigmas_m = np.array([_offset_sigma_m(wall, criteria) for wall in walls])
+    offset_sigmas_m = np.array([_offset_sigma_m(wall, registration_sigma_m) for wall in walls])
     spans = intersections.stack_spans(walls)
     return [
-        _estimate_wall(wall, row, top_m, spans, offset_sigmas_m, criteria)
+        _estimate_wall(wall, row, top_m, spans, offset_sigmas_m, registration_sigma_m)
         for row, (wall, top_m) in enumerate(zip(walls, tops_m, strict=True))
     ]
 
@@ -111,12 +106,12 @@ def _estimate_wall(
     top_m: float,
     spans: intersections.SpanArrays,
     offset_sigmas_m: FloatArray,
-    criteria: ReviewCriteria,
+    registration_sigma_m: float,
 ) -> WallEvidence:
     scan, residual_m, z_m = _hits(wall.members)
     scans, points = np.unique(scan, return_counts=True)
-    start_sigma_m = _end_sigma_m(wall, wall.low_m, spans, offset_sigmas_m, criteria)
-    end_sigma_m = _end_sigma_m(wall, wall.high_m, spans, offset_sigmas_m, criteria)
+    start_sigma_m = _end_sigma_m(wall, wall.low_m, spans, offset_sigmas_m, registration_sigma_m)
+    end_sigma_m = _end_sigma_m(wall, wall.high_m, spans, offset_sigmas_m, registration_sigma_m)
     return WallEvidence(
         rmse_m=float(np.sqrt(np.mean(residual_m**2))),
         sigma_offset_m=float(offset_sigmas_m[row]),
@@ -124,7 +119,7 @@ def _estimate_wall(
         n_points=len(scan),
         scans=scans,
         points=points,
-        z_m=(float(np.percentile(z_m, _LOWEST_PERCENTILE)), _highest_m(z_m)),
+        z_m=(float(np.percentile(z_m, LOW_PERCENT)), _highest_m(z_m)),
         top_m=top_m,
         observed=_observed_share(wall),
     )
@@ -143,17 +138,17 @@ def _highest_m(z_m: FloatArray) -> float:
 
     A percentile would leave out too many where few rays look up.
     """
-    return float(np.sort(z_m)[max(len(z_m) - 1 - _POINTS_ABOVE, len(z_m) // 2)])
+    return float(np.sort(z_m)[max(len(z_m) - 1 - ENOUGH_RAYS, len(z_m) // 2)])
 
 
-def _offset_sigma_m(wall: PlanWall, criteria: ReviewCriteria) -> float:
+def _offset_sigma_m(wall: PlanWall, registration_sigma_m: float) -> float:
     """Return the standard deviation of a wall's middle: the mean of its sides."""
     sides = [side for side in (wall.left, wall.right) if side]
-    variances = [_side_sigma_m(side, criteria) ** 2 for side in sides]
+    variances = [_side_sigma_m(side, registration_sigma_m) ** 2 for side in sides]
     return math.sqrt(sum(variances)) / len(sides)
 
 
-def _side_sigma_m(intervals: Sequence[FaceInterval], criteria: ReviewCriteria) -> float:
+def _side_sigma_m(intervals: Sequence[FaceInterval], registration_sigma_m: float) -> float:
     """Return the standard deviation of a side's offset.
 
     Scans err independently, a scan's points together. The spread of the scans' means is taken where
@@ -164,7 +159,7 @@ def _side_sigma_m(intervals: Sequence[FaceInterval], criteria: ReviewCriteria) -
     mean_m = np.bincount(index, offset_m) / count
     deviation_m = mean_m - np.average(mean_m, weights=count)
     spread_m = np.sqrt(np.average(deviation_m**2, weights=count))
-    of_scans_m = max(spread_m, criteria.registration_sigma_m) / math.sqrt(len(count))
+    of_scans_m = max(spread_m, registration_sigma_m) / math.sqrt(len(count))
     of_points_m = offset_m.std() / len(scan) ** 0.5
     return math.hypot(of_scans_m, of_points_m)
 
@@ -174,23 +169,23 @@ def _end_sigma_m(
     end_m: float,
     spans: intersections.SpanArrays,
     offset_sigmas_m: FloatArray,
-    criteria: ReviewCriteria,
+    registration_sigma_m: float,
 ) -> float:
     """Return the standard deviation of an end: of the wall it meets there, or by its last points.
 
     Parameters
     ----------
-    wall : wall_pairs.PlanWall
+    wall : plan_wall.PlanWall
     end_m : float
         Where the end is along the wall.
     spans : intersections.SpanArrays
         All walls.
     offset_sigmas_m : (n,) float64
         Of all walls.
-    criteria : ReviewCriteria
+    registration_sigma_m : float
     """
-    crossings = intersections.find_crossings(wall.line, spans, reach_m=_REACH_M)
-    is_at_end = np.abs(crossings.place_m - end_m) < _MET_M
+    crossings = intersections.find_crossings(wall.line, spans, reach_m=wall.half_m + CORNER_M)
+    is_at_end = np.abs(crossings.place_m - end_m) < ROUND_M
     if is_at_end.any():
         return float((offset_sigmas_m[crossings.which] / crossings.sine)[is_at_end].min())
     n_scans = 0
@@ -202,7 +197,7 @@ def _end_sigma_m(
         if is_near.any():
             n_scans += len(np.unique(seen.occupied_scan[interval.points][is_near]))
             pitch_m = min(pitch_m, _NEAR_END_M / is_near.sum())
-    of_scans_m = criteria.registration_sigma_m / math.sqrt(max(n_scans, 1))
+    of_scans_m = registration_sigma_m / math.sqrt(max(n_scans, 1))
     return math.hypot(of_scans_m, min(pitch_m, _NEAR_END_M))
 
 

@@ -1,87 +1,59 @@
 """The faces of the plan's walls: observed ones, and those inferred from them."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import shapely
 from shapely.geometry import LineString, Polygon
 
 from scanplan.geometry.intervals import find_gaps
-from scanplan.geometry.lines import Line, Span
+from scanplan.geometry.lines import Line
 from scanplan.plan.faces.intervals import FaceInterval
-from scanplan.plan.wall_pairs import PlanWall
+from scanplan.plan.plan_wall import InferredFace, PlanWall
+from scanplan.plan.tolerances import END_M
+from scanplan.rays.face_raster import CELL_M
 
-OBSERVED = "observed"
-INFERRED = "inferred"
 _INSIDE_M = 0.01  # a face this near to a wall's surface is not in it: rounding of places and angles
-_BUTT_M = 0.05  # a wall reaches this far beyond its end: faces that butt there are cut, too
-_SHORTEST_M = 0.1  # of an inferred face: less lies between two observed ones by their own errors
 
 Extent = tuple[float, float]
 """From where to where along a line, metres."""
 
 
-@dataclass(frozen=True, eq=False)
-class WallFace(Span):
-    """A face of a wall: an interval of its line, and the points that show it.
-
-    Attributes
-    ----------
-    line : lines.Line
-    low_m, high_m : float
-    shown : intervals.FaceInterval or None
-        None where it is inferred.
-    wall : int
-    left : bool
-        Whether it is the wall's left side.
-    """
-
-    line: Line
-    low_m: float
-    high_m: float
-    shown: FaceInterval | None
-    wall: int
-    left: bool
-
-    @property
-    def state(self) -> str:
-        """`OBSERVED` or `INFERRED`."""
-        return INFERRED if self.shown is None else OBSERVED
-
-
-def cut_wall_faces(walls: Sequence[PlanWall], *, max_beyond_m: float) -> list[WallFace]:
-    """Return the faces of walls, cut where other walls butt against them.
+def cut_wall_faces(walls: Sequence[PlanWall], *, max_beyond_m: float) -> list[PlanWall]:
+    """Return walls with their faces cut where other walls butt against them, hidden ones inferred.
 
     Where one side of a wall was seen and the other was not, the other is inferred between observed
-    intervals of it, and a little beyond; so is a pause that no ray went through; never an opening.
+    intervals of it, and a little beyond; so is a gap that no ray went through; never an opening.
 
     Parameters
     ----------
-    walls : sequence of wall_pairs.PlanWall
+    walls : sequence of plan_wall.PlanWall
     max_beyond_m : float
         How far a side may go on to the wall's end beyond where it was seen.
-
-    Returns
-    -------
-    list of WallFace
-        By wall.
     """
     ground = _Ground(walls)
-    faces: list[WallFace] = []
+    cut = []
     for number, wall in enumerate(walls):
-        for interval, is_left in _observed_intervals(wall):
-            for low_m, high_m in ground.cut(
-                interval.line, (interval.low_m, interval.high_m), number
-            ):
-                part = replace(interval, low_m=low_m, high_m=high_m)
-                if part.n_points:
-                    faces.append(WallFace(part.line, low_m, high_m, part, number, is_left))
-        for line, extent_m, is_left in _inferred_extents(wall, max_beyond_m):
-            for low_m, high_m in ground.cut(line, extent_m, number):
-                if high_m - low_m >= _SHORTEST_M:
-                    faces.append(WallFace(line, low_m, high_m, None, number, is_left))
-    return faces
+        left, right = (
+            [
+                part
+                for interval in side
+                for low_m, high_m in ground.cut(
+                    interval.line, (interval.low_m, interval.high_m), number
+                )
+                if (part := replace(interval, low_m=low_m, high_m=high_m)).n_points
+            ]
+            for side in (wall.left, wall.right)
+        )
+        inferred = [
+            InferredFace(line, low_m, high_m, is_left)
+            for line, extent_m, is_left in _inferred_extents(wall, max_beyond_m)
+            for low_m, high_m in ground.cut(line, extent_m, number)
+            if high_m - low_m >= END_M
+        ]
+        cut.append(replace(wall, left=left, right=right, inferred=inferred))
+    return cut
 
 
 class _Ground:
@@ -108,15 +80,9 @@ def _block(wall: PlanWall) -> Polygon:
     """Return the ground of a wall of known thickness, a little longer and slimmer; else nothing."""
     if np.isnan(wall.thickness_m) or wall.half_m <= _INSIDE_M:
         return Polygon()
-    start, end = wall.line.at(np.array([wall.low_m - _BUTT_M, wall.high_m + _BUTT_M]))
+    start, end = wall.line.at(np.array([wall.low_m - CELL_M, wall.high_m + CELL_M]))
     across = (wall.half_m - _INSIDE_M) * wall.line.normal
     return Polygon([start - across, end - across, end + across, start + across])
-
-
-def _observed_intervals(wall: PlanWall) -> list[tuple[FaceInterval, bool]]:
-    """Return the observed intervals of both sides, and whether each is of the left one."""
-    left = [(interval, True) for interval in wall.left]
-    return left + [(interval, False) for interval in wall.right]
 
 
 def _inferred_extents(wall: PlanWall, max_beyond_m: float) -> Iterator[tuple[Line, Extent, bool]]:
@@ -130,7 +96,7 @@ def _inferred_extents(wall: PlanWall, max_beyond_m: float) -> Iterator[tuple[Lin
         if wall.right:
             extents_m = _between_intervals(wall, side, line, max_beyond_m)
         else:
-            extents_m = [_extent_m(line, wall, pause.low_m, pause.high_m) for pause in wall.closed]
+            extents_m = [_extent_m(line, wall, gap.low_m, gap.high_m) for gap in wall.closed]
         for extent_m in extents_m:
             yield line, extent_m, is_left
 

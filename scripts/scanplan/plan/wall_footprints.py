@@ -8,9 +8,9 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from shapely.geometry import Polygon
 
+from scanplan.plan.tolerances import END_M
 from scanplan.types import Array, FloatArray
 
-_REACH_M = 0.12  # beyond half their walls: more closes corners, less keeps near walls apart
 _MIN_SINE = 0.17  # walls that turn by less than 10 degrees run on, they make no corner
 _MITRE_LIMIT = 3.0  # of a corner's distance in widths: sharper ones (below 20 degrees) are cut off
 
@@ -123,7 +123,7 @@ def _square(ends: _Ends, e: int, place_m: FloatArray) -> list[FloatArray]:
 def _find_joints(lines_m: FloatArray, half_m: FloatArray) -> _Joints:
     ends_m = lines_m.reshape(-1, 2)
     end, wall = _near_walls(lines_m, half_m)
-    reach_m = half_m[end // 2] + half_m[wall] + _REACH_M
+    reach_m = half_m[end // 2] + half_m[wall] + END_M
     to_ends_m = np.hypot(*np.moveaxis(lines_m[wall] - ends_m[end][:, None], 2, 0))
     nearest = to_ends_m.argmin(axis=1)
     is_corner = to_ends_m[np.arange(len(end)), nearest] <= reach_m
@@ -139,10 +139,10 @@ def _near_walls(lines_m: FloatArray, half_m: FloatArray) -> tuple[Array, Array]:
     """Return pairs (k,), (k,) of the number of an end and of another wall that it is near to."""
     points = np.asarray(shapely.points(lines_m.reshape(-1, 2)), object)
     lines = np.asarray(shapely.linestrings(lines_m), object)
-    farthest_m = half_m.repeat(2) + half_m.max(initial=0) + _REACH_M
+    farthest_m = half_m.repeat(2) + half_m.max(initial=0) + END_M
     end, wall = shapely.STRtree(lines).query(points, predicate="dwithin", distance=farthest_m)
     apart_m = shapely.distance(points[end], lines[wall])
-    is_near = apart_m <= half_m[end // 2] + half_m[wall] + _REACH_M
+    is_near = apart_m <= half_m[end // 2] + half_m[wall] + END_M
     keep = is_near & (end // 2 != wall)
     return end[keep], wall[keep]
 
@@ -185,7 +185,7 @@ def _mitre(ends: _Ends, meeting: list[int]) -> Corners:
             continue
         met_m = _crossing(corners[e][-1], ends.way[e], corners[following][0], ends.way[following])
         widest_m = max(ends.width_m[e], ends.width_m[following])
-        if np.hypot(*(met_m - centre_m)) <= _MITRE_LIMIT * widest_m + _REACH_M:
+        if np.hypot(*(met_m - centre_m)) <= _MITRE_LIMIT * widest_m + END_M:
             corners[e][-1] = met_m
             corners[following][0] = met_m
     if is_junction:

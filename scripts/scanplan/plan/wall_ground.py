@@ -6,7 +6,7 @@ import numpy as np
 from shapely.geometry import Polygon
 
 from scanplan.plan.openings import Opening
-from scanplan.plan.wall_pairs import PlanWall
+from scanplan.plan.plan_wall import PlanWall
 from scanplan.rays.free_space import GRID_M
 
 
@@ -15,7 +15,7 @@ def wall_strips(walls: Sequence[PlanWall], unpaired_m: float) -> list[Polygon]:
 
     Parameters
     ----------
-    walls : list of wall_pairs.PlanWall
+    walls : list of plan_wall.PlanWall
     unpaired_m : float
         How thick a wall is taken for of which one side is known; it lies behind that.
     """

@@ -2,26 +2,20 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
 
 import numpy as np
 import shapely
 
-from scanplan.geometry.lines import Line, Span, least_scatter_normal, rows_scatter
+from scanplan.geometry.lines import Line, least_scatter_normal, rows_scatter
 from scanplan.plan.faces.intervals import FaceInterval
-from scanplan.rays.face_observation import FaceObservation, RaySettings
+from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.tolerances import END_M, ROUND_M
 from scanplan.rays.face_raster import CELL_M
 from scanplan.types import FloatArray
 
-if TYPE_CHECKING:
-    from scanplan.plan.openings import Opening
-
-CORNER_M = 0.3  # a wall that ends this near before another meets it: half of a thick wall
-_LEAST_OVERLAP_M = 0.2  # faces opposite each other for less may be of two walls that meet
 _LEAST_OPEN_M = 0.3  # less that rays go through is noise of poses at an end
 _OPEN_SHARE = 0.3  # of one side's length: more that is free while the other is seen contradicts
-_SHORTEST_M = 1e-9  # no face is shorter; keeps weights finite
 _SAME_LINE, _OPPOSITE, _ONWARD = range(3)  # order in which pairs are joined: the surest first
 
 
@@ -36,7 +30,7 @@ class PairSettings:
     offset_m : float, > 0
         All faces of one side of a wall lie this near to one line.
     max_gap_m : float, >= 0
-        Faces of one side that pause for longer are different walls, unless the other side goes on.
+        Faces of one side that are farther apart are different walls, unless the other side goes on.
     """
 
     max_angle_deg: float
@@ -45,53 +39,14 @@ class PairSettings:
     offset_m: float
     max_gap_m: float
 
-
-@dataclass(frozen=True, eq=False)
-class PlanWall(Span):
-    """A straight wall of one or two sides, from `low_m` to `high_m` along its middle.
-
-    Attributes
-    ----------
-    line : lines.Line
-        Its middle, or its face where one side is known: then the wall is behind it. The normal is
-        on the left of the way along it.
-    low_m, high_m : float
-    thickness_m : float
-        NaN where one side is known.
-    left, right : list of intervals.FaceInterval
-        Its faces on the side of the line's normal, and on the other, which is empty where one side
-        is known.
-    openings, closed : list of openings.Opening
-        Ways through, and gaps taken for wall; in order along it.
-    """
-
-    line: Line
-    low_m: float
-    high_m: float
-    thickness_m: float
-    left: list[FaceInterval]
-    right: list[FaceInterval]
-    openings: list["Opening"] = field(default_factory=list)
-    closed: list["Opening"] = field(default_factory=list)
-
-    @property
-    def members(self) -> list[FaceInterval]:
-        """The faces of both sides."""
-        return self.left + self.right
-
-    @property
-    def lines(self) -> list[FaceObservation]:
-        """What was observed of the lines of its faces, each once."""
-        return list({id(face.seen): face.seen for face in self.members}.values())
-
-    @property
-    def half_m(self) -> float:
-        """From the middle to either face; 0 where the line is that of the face."""
-        return 0.0 if math.isnan(self.thickness_m) else self.thickness_m / 2
+    def is_thick(self, thickness_m: float) -> bool:
+        """Return whether a wall may be so thick; NaN, where one side is known, is."""
+        is_in_range = self.min_thickness_m <= thickness_m <= self.max_thickness_m
+        return is_in_range or math.isnan(thickness_m)
 
 
 def pair_faces(
-    faces: Sequence[FaceInterval], settings: PairSettings, reading: RaySettings
+    faces: Sequence[FaceInterval], settings: PairSettings, *, door_height_m: float
 ) -> list[PlanWall]:
     """Sort faces into walls.
 
@@ -103,21 +58,22 @@ def pair_faces(
     ----------
     faces : list of intervals.FaceInterval
     settings : PairSettings
-    reading : face_observation.RaySettings
+    door_height_m : float
+        Rays that are higher say nothing of the other side.
 
     Returns
     -------
     list of PlanWall
         Every face is in exactly one; openings are not looked for yet.
     """
-    walls = {index: _Sides([index], settings, faces) for index in range(len(faces))}
+    walls = {index: _Sides([index], faces) for index in range(len(faces))}
     wall_of = list(range(len(faces)))
-    for one, other in _offer_pairs(faces, settings, reading):
+    for one, other in _offer_pairs(faces, settings, door_height_m):
         first, second = wall_of[one], wall_of[other]
         if first == second:
             continue
-        joined = _Sides(walls[first].members + walls[second].members, settings, faces)
-        if joined.is_possible:
+        joined = _Sides(walls[first].members + walls[second].members, faces)
+        if joined.bend_m <= settings.offset_m and settings.is_thick(joined.thickness_m):
             walls[first] = joined
             del walls[second]
             for index in joined.members:
@@ -126,7 +82,7 @@ def pair_faces(
 
 
 def _offer_pairs(
-    faces: Sequence[FaceInterval], settings: PairSettings, reading: RaySettings
+    faces: Sequence[FaceInterval], settings: PairSettings, door_height_m: float
 ) -> list[tuple[int, int]]:
     """Return pairs that may be of one wall, the surest first."""
     ends = np.array([face.ends for face in faces]).reshape(-1, 2, 2)
@@ -141,9 +97,8 @@ def _offer_pairs(
     for i, j in pairs[is_parallel].tolist():
         overlap_m, behind_m = _overlap(faces[i], faces[j])
         if faces[i].line.normal @ faces[j].line.normal < 0:
-            is_thick = settings.min_thickness_m <= behind_m <= settings.max_thickness_m
-            is_opposite = is_thick and overlap_m >= _LEAST_OVERLAP_M
-            if is_opposite and not _contradict(faces[i], faces[j], reading):
+            is_opposite = settings.is_thick(behind_m) and overlap_m >= 2 * END_M
+            if is_opposite and not _contradict(faces[i], faces[j], door_height_m):
                 offers.append((_OPPOSITE, -overlap_m, i, j))
         elif -overlap_m <= settings.max_gap_m and abs(behind_m) <= settings.offset_m:
             kind = _SAME_LINE if faces[i].seen is faces[j].seen else _ONWARD
@@ -159,11 +114,11 @@ def _overlap(one: FaceInterval, other: FaceInterval) -> tuple[float, float]:
     return float(overlap_m), -float(longer.line.offset_m(shorter.ends).mean())
 
 
-def _contradict(one: FaceInterval, other: FaceInterval, reading: RaySettings) -> bool:
+def _contradict(one: FaceInterval, other: FaceInterval, door_height_m: float) -> bool:
     """Return whether rays go through one side where the other was seen and it was not."""
     for shown, unseen in ((one, other), (other, one)):
         raster = unseen.seen.raster
-        is_opened = raster.is_opened(reading.door_height_m)
+        is_opened = raster.is_opened(door_height_m)
         first_m, last_m = np.sort(unseen.line.along_m(shown.ends)).tolist()
         beside_m = ((first_m, min(last_m, unseen.low_m)), (max(first_m, unseen.high_m), last_m))
         open_m = unseen_m = 0.0
@@ -179,9 +134,8 @@ def _contradict(one: FaceInterval, other: FaceInterval, reading: RaySettings) ->
 class _Sides:
     """Faces, by their indices, as the two sides of one wall."""
 
-    def __init__(self, members: list[int], settings: PairSettings, faces: Sequence[FaceInterval]):
+    def __init__(self, members: list[int], faces: Sequence[FaceInterval]):
         self.members = sorted(members)
-        self._settings = settings
         longest = max(self.members, key=lambda i: faces[i].length_m)
         normal = faces[longest].line.normal
         chosen = [faces[i] for i in self.members]
@@ -190,21 +144,18 @@ class _Sides:
         self._line, self._offsets_m = _fit_sides([self.left, self.right], normal)
 
     @property
-    def is_possible(self) -> bool:
-        """Whether the sides are straight, and the wall as thick as walls are."""
-        for side, offset_m in zip((self.left, self.right), self._offsets_m, strict=True):
-            for face in side:
-                bend_m = np.abs(self._line.offset_m(face.ends) - offset_m).max()
-                if bend_m > self._settings.offset_m:
-                    return False
-        settings = self._settings
-        if not self.right:
-            return True
-        return settings.min_thickness_m <= self._thickness_m <= settings.max_thickness_m
+    def bend_m(self) -> float:
+        """How far an end of a face lies from the line of its side, at most."""
+        return max(
+            float(np.abs(self._line.offset_m(face.ends) - offset_m).max())
+            for side, offset_m in zip((self.left, self.right), self._offsets_m, strict=True)
+            for face in side
+        )
 
     @property
-    def _thickness_m(self) -> float:
-        return self._offsets_m[0] - self._offsets_m[1]
+    def thickness_m(self) -> float:
+        """From one side to the other; NaN where one is known."""
+        return float(self._offsets_m[0] - self._offsets_m[1]) if self.right else math.nan
 
     def make(self) -> PlanWall:
         """Return the wall, as long as its faces."""
@@ -215,7 +166,7 @@ class _Sides:
             line=line,
             low_m=float(np.min(along_m)),
             high_m=float(np.max(along_m)),
-            thickness_m=float(self._thickness_m) if self.right else math.nan,
+            thickness_m=self.thickness_m,
             left=self.left,
             right=self.right,
         )
@@ -237,7 +188,7 @@ def _fit_sides(
         ends = np.array([face.ends for face in side])
         half = (ends[:, 1] - ends[:, 0]) / 2
         length = np.hypot(*half.T)
-        weight = length / max(length.sum(), _SHORTEST_M)
+        weight = length / max(length.sum(), ROUND_M)
         centre, of_side = rows_scatter(ends.mean(axis=1), half, weight)
         scatter += length.sum() * of_side
         centres.append(centre)

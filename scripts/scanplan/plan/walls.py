@@ -2,8 +2,8 @@
 
 import itertools
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,11 +19,10 @@ from scanplan.plan.openings import (
     OpeningSettings,
     classify_gap,
 )
-from scanplan.plan.wall_pairs import PairSettings, PlanWall
-from scanplan.rays.face_observation import RaySettings
+from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.tolerances import CORNER_M, END_M
+from scanplan.plan.wall_pairs import PairSettings
 from scanplan.types import FloatArray
-
-_JAMB_M = 0.1  # what the places of a jamb on both sides of a wall differ by
 
 Crossing = tuple[PlanWall, float]
 """Another wall, and where along this one its middle crosses."""
@@ -31,15 +30,15 @@ Crossing = tuple[PlanWall, float]
 
 def assemble_walls(
     faces: Sequence[FaceInterval],
-    reading: RaySettings,
     pairing: PairSettings,
-    gapping: OpeningSettings,
+    opening: OpeningSettings,
     *,
     corner_m: float,
+    door_height_m: float,
 ) -> list[PlanWall]:
     """Make walls of faces.
 
-    1. Faces are paired, and a wall is cut where it pauses and nothing was seen.
+    1. Faces are paired, and a wall is cut at gaps in which nothing was seen.
     2. A wall goes on over an opening beside the wall that it ends at, and then
     3. through what is hidden there; both before ends move, as they need the gap between.
     4. Ends move to the middles of the walls that they meet.
@@ -48,50 +47,119 @@ def assemble_walls(
     Parameters
     ----------
     faces : list of intervals.FaceInterval
-    reading : face_observation.RaySettings
     pairing : wall_pairs.PairSettings
-    gapping : openings.OpeningSettings
+    opening : openings.OpeningSettings
     corner_m : float
         Ends no farther from a wall meet it.
+    door_height_m : float
+        What is higher says nothing about a way through.
 
     Returns
     -------
-    list of wall_pairs.PlanWall
+    list of plan_wall.PlanWall
         The longest first.
     """
-    walls = [
-        part
-        for wall in wall_pairs.pair_faces(faces, pairing, reading)
-        for part in _cut(wall, reading, gapping)
-    ]
-    walls = _each(walls, lambda w, c: _extend_over_openings(w, c, reading, gapping, corner_m))
-    walls = _each(walls, lambda w, c: _extend_through_hidden(w, c, reading, gapping, corner_m))
-    walls = _each(walls, lambda w, c: _meet_walls(w, c, corner_m))
-    walls = _each(walls, lambda w, c: _trim_openings(w, c, gapping))
+    paired = wall_pairs.pair_faces(faces, pairing, door_height_m=door_height_m)
+    assembly = _Assembly(opening, corner_m, door_height_m)
+    walls = [part for wall in paired for part in assembly.cut(wall)]
+    for change in (
+        assembly.extend_over_openings,
+        assembly.extend_through_hidden,
+        assembly.meet_walls,
+        assembly.trim_openings,
+    ):
+        stacked = intersections.stack_spans(walls)
+        walls = [change(wall, _find_crossings(wall, walls, stacked)) for wall in walls]
     return sorted(walls, key=lambda w: (-w.length_m, *w.ends.ravel()))
 
 
-def _each(
-    walls: Sequence[PlanWall], change: Callable[[PlanWall, list[Crossing]], PlanWall]
-) -> list[PlanWall]:
-    """Return every wall changed, given those that cross it as all are before any is changed."""
-    stacked = intersections.stack_spans(walls)
-    return [change(wall, _find_crossings(wall, walls, stacked)) for wall in walls]
+@dataclass(frozen=True)
+class _Assembly:
+    """The steps of `assemble_walls`, each of one wall, given those that cross it."""
 
+    settings: OpeningSettings
+    corner_m: float
+    door_height_m: float
 
-def _cut(wall: PlanWall, reading: RaySettings, gapping: OpeningSettings) -> list[PlanWall]:
-    """Return the parts of a wall between long gaps that are neither open nor closed."""
-    spans_m = np.array([np.sort(wall.line.along_m(face.ends)) for face in wall.members])
-    gaps = [
-        classify_gap(wall.line, low_m, high_m, wall.lines, reading, gapping)
-        for low_m, high_m in find_gaps(spans_m)
-    ]
-    breaks = [g for g in gaps if g.state == UNKNOWN and g.width_m >= gapping.min_opening_m]
-    breaks += _ways_between_things(gaps, spans_m)
-    places_m = sorted((g.low_m + g.high_m) / 2 for g in breaks)
-    rest = [g for g in gaps if g not in breaks]
-    bounds = itertools.pairwise([-math.inf, *places_m, math.inf])
-    return [_part(wall, spans_m, rest, begin_m, end_m) for begin_m, end_m in bounds]
+    def cut(self, wall: PlanWall) -> list[PlanWall]:
+        """Return the parts of a wall between long gaps that are neither open nor closed."""
+        spans_m = np.array([np.sort(wall.line.along_m(face.ends)) for face in wall.members])
+        gaps = [self._classify(wall, low_m, high_m) for low_m, high_m in find_gaps(spans_m)]
+        least_m = self.settings.min_opening_m
+        breaks = [g for g in gaps if g.state == UNKNOWN and g.width_m >= least_m]
+        breaks += _openings_between_things(gaps, spans_m)
+        places_m = sorted((g.low_m + g.high_m) / 2 for g in breaks)
+        rest = [g for g in gaps if g not in breaks]
+        bounds = itertools.pairwise([-math.inf, *places_m, math.inf])
+        return [_part(wall, spans_m, rest, begin_m, end_m) for begin_m, end_m in bounds]
+
+    def extend_over_openings(self, wall: PlanWall, crossings: Sequence[Crossing]) -> PlanWall:
+        """Let a wall go on over an opening, under a lintel, to the wall that it ends at."""
+        if wall.lines[0].planar:
+            return wall
+        least_m = max(self.corner_m, self.settings.min_opening_m)
+        for name, sign in (("low_m", -1), ("high_m", 1)):
+            end_m = getattr(wall, name)
+            ahead = [
+                side_m
+                for gap_m, side_m, _ in _ahead(crossings, end_m, sign)
+                if least_m < gap_m <= self.settings.max_door_m
+            ]
+            if not ahead:
+                continue
+            low_m, high_m = sorted((end_m, ahead[0]))
+            gap = self._classify(wall, low_m, high_m, needs_lintel=True)
+            if gap.state == OPEN:
+                openings = sorted([*wall.openings, gap], key=lambda g: g.low_m)
+                wall = replace(wall, **{name: float(ahead[0]), "openings": openings})
+        return wall
+
+    def extend_through_hidden(self, wall: PlanWall, crossings: Sequence[Crossing]) -> PlanWall:
+        """Let a wall go on to the wall ahead through what no ray went through or showed.
+
+        What stands on both sides hides it: a gap there would have let some ray pass, as in a gap of
+        the wall. It goes on no farther than it is long.
+        """
+        for name, sign in (("low_m", -1), ("high_m", 1)):
+            end_m = getattr(wall, name)
+            most_m = min(self.settings.max_closed_m, wall.length_m)
+            ahead = [a for a in _ahead(crossings, end_m, sign) if self.corner_m < a[0] <= most_m]
+            if not ahead:
+                continue
+            _, side_m, middle_m = ahead[0]
+            gap = self._classify(wall, *sorted((end_m, side_m)))
+            if gap.state == CLOSED and gap.n_rays == 0:
+                closed = sorted([*wall.closed, gap], key=lambda g: g.low_m)
+                wall = replace(wall, **{name: float(middle_m), "closed": closed})
+        return wall
+
+    def meet_walls(self, wall: PlanWall, crossings: Sequence[Crossing]) -> PlanWall:
+        """Move the ends of a wall to the middles of walls that it meets there."""
+        moved = {}
+        for name in ("low_m", "high_m"):
+            end_m = getattr(wall, name)
+            near = [m for other, m in crossings if abs(m - end_m) <= self.corner_m + other.half_m]
+            moved[name] = min(near, key=lambda m: (abs(m - end_m), m), default=end_m)
+        is_long = moved["high_m"] - moved["low_m"] > wall.length_m / 2
+        return replace(wall, **moved) if is_long else wall
+
+    def trim_openings(self, wall: PlanWall, crossings: Sequence[Crossing]) -> PlanWall:
+        """Let openings begin beside the walls that cross there."""
+        bodies_m = [
+            (place_m - other.half_m, place_m + other.half_m) for other, place_m in crossings
+        ]
+        openings = [_trim(opening, bodies_m) for opening in wall.openings]
+        least_m = self.settings.min_opening_m
+        return replace(wall, openings=[g for g in openings if g.width_m >= least_m])
+
+    def _classify(
+        self, wall: PlanWall, low_m: float, high_m: float, *, needs_lintel: bool = False
+    ) -> Opening:
+        return classify_gap(
+            *(wall.line, low_m, high_m, wall.lines, self.settings),
+            door_height_m=self.door_height_m,
+            needs_lintel=needs_lintel,
+        )
 
 
 def _part(
@@ -114,7 +182,7 @@ def _part(
     )
 
 
-def _ways_between_things(gaps: Sequence[Opening], spans_m: FloatArray) -> list[Opening]:
+def _openings_between_things(gaps: Sequence[Opening], spans_m: FloatArray) -> list[Opening]:
     """Return the openings of what is open for longer than it is wall.
 
     An opening is a gap of a wall; a wider one than all of the wall is the space between two things,
@@ -132,66 +200,9 @@ def _between_sides(gap: Opening, spans_m: FloatArray) -> Opening:
     if gap.state != OPEN:
         return gap
     starts_m, ends_m = spans_m.T
-    low_m = ends_m[(ends_m <= gap.low_m) & (ends_m >= gap.low_m - _JAMB_M)].mean()
-    high_m = starts_m[(starts_m >= gap.high_m) & (starts_m <= gap.high_m + _JAMB_M)].mean()
+    low_m = ends_m[(ends_m <= gap.low_m) & (ends_m >= gap.low_m - END_M)].mean()
+    high_m = starts_m[(starts_m >= gap.high_m) & (starts_m <= gap.high_m + END_M)].mean()
     return replace(gap, low_m=float(low_m), high_m=float(high_m))
-
-
-def _extend_over_openings(
-    wall: PlanWall,
-    crossings: Sequence[Crossing],
-    reading: RaySettings,
-    gapping: OpeningSettings,
-    corner_m: float,
-) -> PlanWall:
-    """Let a wall go on over an opening, under a lintel, to the wall that it ends at."""
-    lines = wall.lines
-    if lines[0].planar:
-        return wall
-    least_m = max(corner_m, gapping.min_opening_m)
-    for name, sign in (("low_m", -1), ("high_m", 1)):
-        end_m = getattr(wall, name)
-        ahead = [
-            side_m
-            for gap_m, side_m, _ in _ahead(crossings, end_m, sign)
-            if least_m < gap_m <= gapping.max_door_m
-        ]
-        if not ahead:
-            continue
-        low_m, high_m = sorted((end_m, ahead[0]))
-        gap = classify_gap(wall.line, low_m, high_m, lines, reading, gapping, needs_lintel=True)
-        if gap.state == OPEN:
-            openings = sorted([*wall.openings, gap], key=lambda g: g.low_m)
-            wall = replace(wall, **{name: float(ahead[0]), "openings": openings})
-    return wall
-
-
-def _extend_through_hidden(
-    wall: PlanWall,
-    crossings: Sequence[Crossing],
-    reading: RaySettings,
-    gapping: OpeningSettings,
-    corner_m: float,
-) -> PlanWall:
-    """Let a wall go on to the wall ahead through what no ray went through or showed.
-
-    What stands on both sides hides it: a gap there would have let some ray pass, as in a gap of the
-    wall. It goes on no farther than it is long.
-    """
-    lines = wall.lines
-    for name, sign in (("low_m", -1), ("high_m", 1)):
-        end_m = getattr(wall, name)
-        most_m = min(gapping.max_closed_m, wall.length_m)
-        ahead = [a for a in _ahead(crossings, end_m, sign) if corner_m < a[0] <= most_m]
-        if not ahead:
-            continue
-        _, side_m, middle_m = ahead[0]
-        low_m, high_m = sorted((end_m, side_m))
-        gap = classify_gap(wall.line, low_m, high_m, lines, reading, gapping)
-        if gap.state == CLOSED and gap.n_rays == 0:
-            closed = sorted([*wall.closed, gap], key=lambda g: g.low_m)
-            wall = replace(wall, **{name: float(middle_m), "closed": closed})
-    return wall
 
 
 def _ahead(
@@ -204,33 +215,13 @@ def _ahead(
     )
 
 
-def _meet_walls(wall: PlanWall, crossings: Sequence[Crossing], corner_m: float) -> PlanWall:
-    """Move the ends of a wall to the middles of walls that it meets there."""
-    moved = {}
-    for name in ("low_m", "high_m"):
-        end_m = getattr(wall, name)
-        near = [m for other, m in crossings if abs(m - end_m) <= corner_m + other.half_m]
-        moved[name] = min(near, key=lambda m: (abs(m - end_m), m), default=end_m)
-    is_long = moved["high_m"] - moved["low_m"] > wall.length_m / 2
-    return replace(wall, **moved) if is_long else wall
-
-
-def _trim_openings(
-    wall: PlanWall, crossings: Sequence[Crossing], gapping: OpeningSettings
-) -> PlanWall:
-    """Let openings begin beside the walls that cross there."""
-    bodies_m = [(place_m - other.half_m, place_m + other.half_m) for other, place_m in crossings]
-    openings = [_trim(opening, bodies_m) for opening in wall.openings]
-    return replace(wall, openings=[g for g in openings if g.width_m >= gapping.min_opening_m])
-
-
 def _trim(opening: Opening, bodies_m: Sequence[tuple[float, float]]) -> Opening:
     """Return what of an opening is left between walls that cross it near its ends."""
     low_m, high_m = opening.low_m, opening.high_m
     for begin_m, end_m in bodies_m:
-        if begin_m - _JAMB_M <= opening.low_m <= end_m:
+        if begin_m - END_M <= opening.low_m <= end_m:
             low_m = max(low_m, end_m)
-        if begin_m <= opening.high_m <= end_m + _JAMB_M:
+        if begin_m <= opening.high_m <= end_m + END_M:
             high_m = min(high_m, begin_m)
     return replace(opening, low_m=float(low_m), high_m=float(high_m))
 
@@ -238,6 +229,6 @@ def _trim(opening: Opening, bodies_m: Sequence[tuple[float, float]]) -> Opening:
 def _find_crossings(
     wall: PlanWall, walls: Sequence[PlanWall], stacked: intersections.SpanArrays
 ) -> list[Crossing]:
-    reach_m = wall.half_m + wall_pairs.CORNER_M
+    reach_m = wall.half_m + CORNER_M
     found = intersections.find_crossings(wall.line, stacked, reach_m=reach_m)
     return [(walls[i], place_m) for i, place_m in zip(found.which, found.place_m, strict=True)]

@@ -1,6 +1,6 @@
 """Windows of walls: where rays went through above a sill that was seen.
 
-A lidar near the floor sees the wall below a window, so the window is no pause of the wall. Higher
+A lidar near the floor sees the wall below a window, so the window is no gap of the wall. Higher
 up no ray ends at it: rays go through, and come back from what is behind, or, out of the building,
 never.
 """
@@ -9,45 +9,50 @@ from dataclasses import replace
 
 import numpy as np
 
-from scanplan.plan import openings
-from scanplan.plan.openings import Opening, OpeningSettings
-from scanplan.plan.wall_pairs import PlanWall
+from scanplan.plan.opening_heights import AT_FLOOR_M, estimate_lintel_m, estimate_sill_m
+from scanplan.plan.openings import OPEN, Opening
+from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.tolerances import ALONG_SHARE, END_M, FEW_RAYS, LEAST_SCANS
 from scanplan.rays.face_observation import FaceObservation, count_sent, filled_share
 from scanplan.rays.face_raster import CELL_M
 from scanplan.rays.ray_set import RaySet
 from scanplan.types import BoolArray, FloatArray
 
-_CHEST_M = (1.25, 1.7)  # sills are lower, lintels are higher
-_LEAST_SHOWN = 0.7  # the jambs' last columns may be hidden from most scans
-_LEAST_SCANS = 2  # something may stand nearer to one scan than it can measure
-_AT_M = 0.06  # returns this near to the plane are at it
-_MOST_IN_IT = 0.5  # reveals and panes send some back, a niche all
+_WINDOW_BAND_M = (1.25, 1.7)  # sills are lower, lintels are higher
 _SILL_SHARE = 0.3  # desks hide much of the wall below; in a doorway there is none
 
 
-def add_windows(walls: list[PlanWall], rays: RaySet, settings: OpeningSettings) -> list[PlanWall]:
+def add_windows(
+    walls: list[PlanWall], rays: RaySet, *, min_width_m: float, band_m: float
+) -> list[PlanWall]:
     """Return walls with their windows.
 
     Parameters
     ----------
-    walls : list of wall_pairs.PlanWall
+    walls : list of plan_wall.PlanWall
     rays : ray_set.RaySet
         Planar scans show no windows.
-    settings : openings.OpeningSettings
+    min_width_m : float
+    band_m : float, > 0
+        Returns this near to a face are at it.
 
     Returns
     -------
-    list of wall_pairs.PlanWall
+    list of plan_wall.PlanWall
     """
-    return list(walls) if rays.planar else [_with_windows(wall, rays, settings) for wall in walls]
+    if rays.planar:
+        return list(walls)
+    return [_with_windows(wall, rays, min_width_m, band_m) for wall in walls]
 
 
-def _with_windows(wall: PlanWall, rays: RaySet, settings: OpeningSettings) -> PlanWall:
+def _with_windows(wall: PlanWall, rays: RaySet, min_width_m: float, band_m: float) -> PlanWall:
     lines = wall.lines
     found = list(wall.openings)
     for seen in lines:
         first_m, last_m = np.sort(seen.line.along_m(wall.ends)).tolist()
-        for window in find_windows(rays, seen, first_m, last_m, settings):
+        for window in find_windows(
+            rays, seen, first_m, last_m, min_width_m=min_width_m, band_m=band_m
+        ):
             ends = seen.line.at(np.array([window.low_m, window.high_m]))
             low_m, high_m = np.sort(wall.line.along_m(ends)).tolist()
             is_known = any(low_m < gap.high_m and high_m > gap.low_m for gap in found)
@@ -57,25 +62,31 @@ def _with_windows(wall: PlanWall, rays: RaySet, settings: OpeningSettings) -> Pl
 
 
 def _is_wall(seen: FaceObservation, ends: FloatArray) -> bool:
-    """Return whether a line shows wall between two ends chest-high: a screen or a mirror there."""
+    """Return whether a line shows wall above a sill between two ends: a screen or a mirror."""
     low_m, high_m = np.sort(seen.line.along_m(ends))
     points = seen.occupied_between(low_m, high_m)
-    at_chest = _at_chest(seen.occupied_z_m[points])
-    return filled_share(seen.occupied_m[points][at_chest], low_m, high_m) > _MOST_IN_IT
+    is_in_band = _is_in_window_band(seen.occupied_z_m[points])
+    share = filled_share(seen.occupied_m[points][is_in_band], low_m, high_m)
+    return share > 1 - share
 
 
-def _at_chest(z_m: FloatArray) -> BoolArray:
-    return (z_m >= _CHEST_M[0]) & (z_m < _CHEST_M[1])
+def _is_in_window_band(z_m: FloatArray) -> BoolArray:
+    return (z_m >= _WINDOW_BAND_M[0]) & (z_m < _WINDOW_BAND_M[1])
 
 
 def find_windows(
-    rays: RaySet, seen: FaceObservation, low_m: float, high_m: float, settings: OpeningSettings
+    rays: RaySet,
+    seen: FaceObservation,
+    low_m: float,
+    high_m: float,
+    min_width_m: float,
+    band_m: float,
 ) -> list[Opening]:
     """Find the windows along a line.
 
-    Pauses of the points at the height of a chest, with wall beside and below them.
+    Gaps between the points in the window band, with wall beside and below them.
 
-    Rays must have been sent to nearly all of a pause, nothing before it in their way, and hardly
+    Rays must have been sent to nearly all of a gap, nothing before it in their way, and hardly
     one may have ended in it, as in a niche: where no ray is to be expected, or things hide the
     wall, nothing is known.
 
@@ -86,7 +97,9 @@ def find_windows(
     seen : face_observation.FaceObservation
     low_m, high_m : float
         The stretch of the line that is wall.
-    settings : openings.OpeningSettings
+    min_width_m : float
+    band_m : float, > 0
+        Returns this near to a face are at it.
 
     Returns
     -------
@@ -95,10 +108,10 @@ def find_windows(
     """
     points = seen.occupied_between(low_m, high_m)
     place_m, z_m = seen.occupied_m[points], seen.occupied_z_m[points]
-    beside_m = _not_alone(place_m[_at_chest(z_m)])
+    beside_m = _not_alone(place_m[_is_in_window_band(z_m)])
     spans_m = np.column_stack([beside_m[:-1], beside_m[1:]])
-    spans_m = spans_m[np.diff(spans_m, axis=1)[:, 0] >= settings.min_opening_m]
-    windows = (_classify_pause(rays, seen, low, high) for low, high in spans_m.tolist())
+    spans_m = spans_m[np.diff(spans_m, axis=1)[:, 0] >= min_width_m]
+    windows = (_classify_gap(rays, seen, low, high, band_m) for low, high in spans_m.tolist())
     return [window for window in windows if window is not None]
 
 
@@ -106,31 +119,29 @@ def _not_alone(place_m: FloatArray) -> FloatArray:
     """Return those of sorted places within a column of enough others: one or two are stray."""
     low = np.searchsorted(place_m, place_m - CELL_M / 2, "left")
     high = np.searchsorted(place_m, place_m + CELL_M / 2, "right")
-    return place_m[high - low >= openings.FEW_RAYS]
+    return place_m[high - low >= FEW_RAYS]
 
 
-def _classify_pause(
-    rays: RaySet, seen: FaceObservation, low_m: float, high_m: float
+def _classify_gap(
+    rays: RaySet, seen: FaceObservation, low_m: float, high_m: float, band_m: float
 ) -> Opening | None:
     """Return what is between two places of a line as a window, None if it is none."""
-    inner = seen.occupied_between(low_m + openings.REVEAL_M, high_m - openings.REVEAL_M)
-    below = seen.occupied_z_m[inner] < _CHEST_M[0]
-    sill_share = filled_share(
-        seen.occupied_m[inner][below], low_m + openings.REVEAL_M, high_m - openings.REVEAL_M
-    )
-    if below.sum() < openings.FEW_RAYS or sill_share < _SILL_SHARE:
+    inner_m = low_m + END_M, high_m - END_M
+    inner = seen.occupied_between(*inner_m)
+    is_below = seen.occupied_z_m[inner] < _WINDOW_BAND_M[0]
+    if filled_share(seen.occupied_m[inner][is_below], *inner_m) < _SILL_SHARE:
+        return None
+    sill_m = estimate_sill_m(seen, *inner_m, below_m=_WINDOW_BAND_M[0])
+    if not sill_m > AT_FLOOR_M:
         return None
     count = max(int((high_m - low_m) / CELL_M), 1)
-    sent = count_sent(rays, seen.line, low_m, count, _CHEST_M, _AT_M)
-    reached, _, in_wall = sent.reached(least_scans=_LEAST_SCANS)
+    sent = count_sent(rays, seen.line, low_m, count, _WINDOW_BAND_M, band_m)
+    reached, _, in_wall = sent.reached(least_scans=LEAST_SCANS)
     shown = np.isfinite(reached)
-    if shown.mean() < _LEAST_SHOWN or in_wall[shown].sum() > _MOST_IN_IT * reached[shown].sum():
+    n_reached, n_in_wall = reached[shown].sum(), in_wall[shown].sum()
+    # reveals and panes send some back, a niche all
+    if shown.mean() < ALONG_SHARE or n_in_wall > n_reached - n_in_wall:
         return None
-    sill_m = openings.robust_highest_m(seen.occupied_z_m[inner][below])
-    if sill_m <= openings.AT_FLOOR_M:
-        return None
-    n_rays = int(reached[shown].sum() - in_wall[shown].sum())
-    lintel_m = openings.estimate_lintel_m(seen, low_m, high_m, _CHEST_M[1], _CHEST_M[1])
-    return openings.Opening(
-        low_m, high_m, openings.OPEN, n_rays, sill_m, lintel_m, bool(np.isfinite(lintel_m))
-    )
+    n_rays = int(n_reached - n_in_wall)
+    lintel_m = estimate_lintel_m(seen, low_m, high_m, _WINDOW_BAND_M[1], _WINDOW_BAND_M[1])
+    return Opening(low_m, high_m, OPEN, n_rays, sill_m, lintel_m, bool(np.isfinite(lintel_m)))

@@ -1,4 +1,4 @@
-"""Candidates of faces: cut from common lines at pauses; and what holds for intervals, too.
+"""Candidates of faces: cut from common lines at gaps; and what holds for intervals, too.
 
 Ends meet at corners, and no face is drawn over another.
 """
@@ -18,9 +18,9 @@ from scanplan.types import FloatArray, IntArray
 if TYPE_CHECKING:
     from scanplan.plan.faces.intervals import FaceInterval
 
-_PARALLEL = 1e-12  # sine of lines that never cross, beyond rounding
 
-_Face = TypeVar("_Face", "FaceCandidate", "FaceInterval")
+FaceT = TypeVar("FaceT", "FaceCandidate", "FaceInterval")
+"""A face of either form."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +86,7 @@ def cut_candidates(
     ]
 
 
-def meet_at_corners(faces: Sequence[_Face], *, corner_m: float) -> list[_Face]:
+def meet_at_corners(faces: Sequence[FaceT], *, corner_m: float) -> list[FaceT]:
     """Move the ends of faces to where their lines cross, if that is no further than `corner_m`.
 
     A face ends at the corner of a room in front of the other face, at the edge of a pillar behind
@@ -110,13 +110,13 @@ def meet_at_corners(faces: Sequence[_Face], *, corner_m: float) -> list[_Face]:
 
 
 def remove_doubles(
-    faces: Sequence[_Face],
+    faces: Sequence[FaceT],
     *,
     max_angle_rad: float,
     distance_m: float,
     ghost_distance_m: float,
     ghost_share: float,
-) -> list[_Face]:
+) -> list[FaceT]:
     """Take away from every face what a stronger one of the same side already draws.
 
     That is what runs closer than `distance_m` beside it, and, further off, up to
@@ -149,7 +149,7 @@ def remove_doubles(
     ):
         beside[weaker].append((stronger, width_m))
     order = np.argsort(-points * length_m, kind="stable").tolist()
-    rests: dict[int, list[_Face]] = {}
+    rests: dict[int, list[FaceT]] = {}
     for number in order:
         rest = [faces[number]]
         for stronger, width_m in beside[number]:
@@ -159,7 +159,7 @@ def remove_doubles(
     return [face for number in order for face in rests[number]]
 
 
-def doubled_interval_m(face: _Face, other: _Face, distance_m: float) -> tuple[float, float]:
+def doubled_interval_m(face: FaceT, other: FaceT, distance_m: float) -> tuple[float, float]:
     """Return where along a face it runs closer than `distance_m` beside another.
 
     The end is no less than the begin, and equal to it where the face does so nowhere.
@@ -179,14 +179,13 @@ def doubled_interval_m(face: _Face, other: _Face, distance_m: float) -> tuple[fl
     low_m = face.low_m
     high_m = face.high_m
     for value, slope, least, most in (along, across):
-        turn = slope if abs(slope) >= _PARALLEL else 0.0
-        begin_m, end_m = intervals.solve_range(value, turn, least, most)
+        begin_m, end_m = intervals.solve_range(value, slope, least, most)
         low_m = max(low_m, float(begin_m))
         high_m = min(high_m, float(end_m))
     return low_m, max(low_m, high_m)
 
 
-def _move_ends(face: _Face, places_m: dict[str, list[float]]) -> _Face:
+def _move_ends(face: FaceT, places_m: dict[str, list[float]]) -> FaceT:
     """Return a face with each end at the nearest of its places, unless little were left of it."""
     if not places_m:
         return face
@@ -200,7 +199,7 @@ def _nearest(places_m: list[float], own_m: float) -> float:
     return min(places_m, key=lambda place_m: (abs(place_m - own_m), place_m))
 
 
-def _subtract(face: _Face, stronger: _Face, distance_m: float) -> list[_Face]:
+def _subtract(face: FaceT, stronger: FaceT, distance_m: float) -> list[FaceT]:
     """Return what is left of a face, one part or two, without what a stronger one draws."""
     low_m, high_m = doubled_interval_m(face, stronger, distance_m)
     if high_m <= low_m:

@@ -7,15 +7,12 @@ import numpy as np
 import shapely
 
 from scanplan.geometry import intersections
+from scanplan.plan.tolerances import CORNER_RAD, END_M, FACE_M
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 if TYPE_CHECKING:
     from scanplan.plan.faces.candidates import FaceCandidate
     from scanplan.plan.faces.intervals import FaceInterval
-
-_LEAST_CORNER_RAD = np.radians(30)  # at a flatter angle, noise moves a crossing along both lines
-_BEFORE_M = 0.08  # as far as points of a face lie from the line of another all the same
-_SHORT_M = 0.15  # of what noise, a skirting or a frame may hide of a face before a corner
 
 
 def pair_near(
@@ -48,7 +45,7 @@ def find_corner_moves(
     spans = intersections.stack_spans(faces)
     along = np.column_stack([spans.normal[:, 1], -spans.normal[:, 0]])
     turn = _dot(along[one], spans.normal[other])
-    steep = np.abs(turn) >= np.sin(_LEAST_CORNER_RAD)
+    steep = np.abs(turn) >= np.sin(CORNER_RAD)
     one = one[steep]
     other = other[steep]
     turn = turn[steep]
@@ -89,8 +86,8 @@ def _do_meet(before_m: FloatArray, other_before_m: FloatArray) -> BoolArray:
     A face that is seen well before another one ends there only if that one is seen to begin there:
     one would look at the other's front from where the first is.
     """
-    are_close = np.maximum(before_m, other_before_m) <= _BEFORE_M
-    return are_close | (np.minimum(before_m, other_before_m) >= -_SHORT_M)
+    are_close = np.maximum(before_m, other_before_m) <= FACE_M
+    return are_close | (np.minimum(before_m, other_before_m) >= -END_M)
 
 
 def _dot(one: FloatArray, other: FloatArray) -> FloatArray:

@@ -7,10 +7,10 @@ from functools import cached_property
 import numpy as np
 
 from scanplan.geometry.lines import Line, Span
+from scanplan.plan.tolerances import END_M, ENOUGH_RAYS, ROUND_M
 from scanplan.rays.face_observation import (
     LEAST_HEIGHT_M,
     FaceObservation,
-    RaySettings,
     observe_face,
 )
 from scanplan.rays.face_raster import CELL_M, FaceRaster
@@ -18,19 +18,12 @@ from scanplan.rays.face_rays import cast_at_face
 from scanplan.rays.ray_set import RaySet
 from scanplan.types import BoolArray, FloatArray, IntArray
 
-STUB_M = 0.1
-"""Shorter intervals are noise: less than the thickness of a wall."""
-
-_OVERLOOKED_SHARE = 0.5  # of an interval's length: more, and it is furniture rather than wall
 _REFIT_M = 0.04  # from the median: what points of one face scatter by; others do not pull the line
-_LEAST_REFIT_POINTS = 10  # fewer do not turn a line, nor do points on less than
-_LEAST_REFIT_M = 4 * CELL_M  # this length: noise of ranges across it would
+LEAST_OPEN_COLUMNS = 2
+"""A single column may be opened by what points at its edges leave out, or pass beside a way."""
+
 _MOST_TURN_RAD = np.radians(3)  # a line of segments turns by noise alone; more is another face
-_ROUND_M = 1e-9  # what rounding moves the edge of a column by
-_END_M = 0.1  # what poses and noise of ranges move an end by from scan to scan
-_MOST_LOOKS = 4  # doublings of the reach beyond an end: panes are shorter than that
-_LEAST_OPENED = 2  # columns: one alone may be opened by what points at its edges leave out
-_COLUMN_WEIGHT = 10  # points of a column that count: a near scan's are not a hundred times as true
+_MOST_DOUBLINGS = 3  # of the reach beyond an end: panes are shorter than that
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +62,7 @@ class FaceInterval(Span):
 
 
 def observe_along(
-    rays: RaySet, line: Line, low_m: float, high_m: float, reading: RaySettings
+    rays: RaySet, line: Line, low_m: float, high_m: float, *, band_m: float, reach_m: float
 ) -> FaceObservation:
     """Refit a line to the points at it, and observe it and what is beyond its ends.
 
@@ -79,34 +72,37 @@ def observe_along(
     line : lines.Line
     low_m, high_m : float
         What was extracted of it.
-    reading : face_observation.RaySettings
+    band_m : float, > 0
+        Points this near to it are at it.
+    reach_m : float, >= 0
+        How far beyond its ends more of it is looked for.
     """
     own_m = (low_m, high_m)
-    reach_m = np.full(2, reading.reach_m)
-    observation, span_m = _observe_refitted(rays, line, own_m, reach_m, reading)
-    for _ in range(_MOST_LOOKS - 1):
+    beyond_m = np.full(2, reach_m)
+    observation, span_m = _observe_refitted(rays, line, own_m, beyond_m, band_m)
+    for _ in range(_MOST_DOUBLINGS):
         nearest_m = [np.abs(observation.glass_m - end_m).min(initial=np.inf) for end_m in span_m]
-        is_in_glass = np.array(nearest_m) < _END_M
+        is_in_glass = np.array(nearest_m) < END_M
         if not is_in_glass.any():
             break
         # a pane is observed as a whole
-        reach_m = np.where(is_in_glass, 2 * reach_m, reach_m)
-        observation, span_m = _observe_refitted(rays, line, own_m, reach_m, reading)
+        beyond_m = np.where(is_in_glass, 2 * beyond_m, beyond_m)
+        observation, span_m = _observe_refitted(rays, line, own_m, beyond_m, band_m)
     return observation
 
 
 def _observe_refitted(
-    rays: RaySet, line: Line, own_m: tuple[float, float], reach_m: FloatArray, reading: RaySettings
+    rays: RaySet, line: Line, own_m: tuple[float, float], beyond_m: FloatArray, band_m: float
 ) -> tuple[FaceObservation, FloatArray]:
-    """Return what is seen of a refitted line up to `reach_m` (2,) beyond its own, and the span."""
-    span_m = own_m[0] - reach_m[0], own_m[1] + reach_m[1]
-    near = cast_at_face(rays, line, *own_m, at_m=reading.band_m, occluded_within_m=0.0)
+    """Return what is seen of a refitted line up to `beyond_m` (2,) beyond its own, and the span."""
+    span_m = own_m[0] - beyond_m[0], own_m[1] + beyond_m[1]
+    near = cast_at_face(rays, line, *own_m, at_m=band_m, occluded_within_m=0.0)
     is_own = near.is_occupied & (near.along_m >= own_m[0]) & (near.along_m <= own_m[1])
     if not rays.planar:
         is_own &= near.height_m > LEAST_HEIGHT_M
     refitted = refit_to_points(line, near.along_m[is_own], -near.behind_m[is_own])
     refitted_m = refitted.along_m(line.at(np.array(span_m)))
-    return observe_face(rays, refitted, *refitted_m, band_m=reading.band_m), refitted_m
+    return observe_face(rays, refitted, *refitted_m, band_m=band_m), refitted_m
 
 
 def refit_to_points(line: Line, along: FloatArray, offset: FloatArray) -> Line:
@@ -123,12 +119,12 @@ def refit_to_points(line: Line, along: FloatArray, offset: FloatArray) -> Line:
             is_near = np.abs(offset - np.median(offset)) <= _REFIT_M
             along = along[is_near]
             offset = offset[is_near]
-    if len(along) < _LEAST_REFIT_POINTS or np.ptp(along) < _LEAST_REFIT_M:
+    if len(along) < ENOUGH_RAYS or np.ptp(along) < 2 * END_M:
         middle = np.median(offset) if len(offset) else 0.0
         return Line(line.centre + middle * line.normal, line.normal)
     column = np.floor((along - along.min()) / CELL_M).astype(np.int64)
     count = np.bincount(column)
-    weight = (np.minimum(count, _COLUMN_WEIGHT) / np.maximum(count, 1)).take(column)
+    weight = (np.minimum(count, ENOUGH_RAYS) / np.maximum(count, 1)).take(column)
     centre_m = np.average(along, weights=weight)
     off_m = np.average(offset, weights=weight)
     slope = (weight * (along - centre_m)) @ (offset - off_m) / (weight @ (along - centre_m) ** 2)
@@ -138,11 +134,15 @@ def refit_to_points(line: Line, along: FloatArray, offset: FloatArray) -> Line:
 
 
 def find_face_intervals(
-    seen: FaceObservation, reading: RaySettings, *, foreign_m: Sequence[tuple[float, float]] = ()
+    seen: FaceObservation,
+    *,
+    door_height_m: float,
+    max_gap_m: float,
+    foreign_m: Sequence[tuple[float, float]] = (),
 ) -> list[FaceInterval]:
     """Find what is wall along a line.
 
-    Columns with points, joined over pauses that no ray went through.
+    Columns with points, joined over gaps that no ray went through.
 
     Glass is no wall; intervals that rays pass over along most of their length are furniture, and
     left out.
@@ -150,7 +150,10 @@ def find_face_intervals(
     Parameters
     ----------
     seen : face_observation.FaceObservation
-    reading : face_observation.RaySettings
+    door_height_m : float, > 0
+        What is higher says nothing about a way through.
+    max_gap_m : float, >= 0
+        Longest gap that is wall all the same where no ray went through.
     foreign_m : sequence of (float, float)
         From where to where other faces cross the line: points there are owned by these, so no
         interval begins or ends there.
@@ -164,12 +167,13 @@ def find_face_intervals(
         return []
     raster = seen.raster
     is_foreign = _is_within(raster, [*foreign_m, *seen.glass_m])
-    is_solid = raster.is_solid(reading.door_height_m) & ~is_foreign
-    is_overlooked = raster.is_overlooked(reading.door_height_m)
-    is_opened = raster.is_opened(reading.door_height_m)
+    is_solid = raster.is_solid(door_height_m) & ~is_foreign
+    is_overlooked = raster.is_overlooked(door_height_m)
+    is_opened = raster.is_opened(door_height_m)
     intervals = []
-    for first, last in _join_columns(is_solid, is_opened, reading.max_gap_m):
-        if is_overlooked[first : last + 1].mean() < _OVERLOOKED_SHARE:
+    for first, last in _join_columns(is_solid, is_opened, max_gap_m):
+        overlooked = is_overlooked[first : last + 1]
+        if overlooked.sum() < (~overlooked).sum():
             low_m = raster.first_m + CELL_M * first
             high_m = raster.first_m + CELL_M * (last + 1)
             intervals.append(_trim_ends(FaceInterval(seen, float(low_m), float(high_m))))
@@ -179,13 +183,13 @@ def find_face_intervals(
 def _join_columns(
     is_solid: BoolArray, is_opened: BoolArray, max_gap_m: float
 ) -> list[tuple[int, int]]:
-    """Return first and last of solid columns (c,), joined over short pauses that no ray opens."""
+    """Return first and last of solid columns (c,), joined over short gaps that no ray opens."""
     runs: list[tuple[int, int]] = []
     for column in np.flatnonzero(is_solid).tolist():
         if runs:
             first, last = runs[-1]
             is_short = (column - last - 1) * CELL_M <= max_gap_m
-            if is_short and is_opened[last + 1 : column].sum() < _LEAST_OPENED:
+            if is_short and is_opened[last + 1 : column].sum() < LEAST_OPEN_COLUMNS:
                 runs[-1] = (first, column)
                 continue
         runs.append((column, column))
@@ -210,7 +214,7 @@ def _trim_ends(interval: FaceInterval) -> FaceInterval:
     """
     observation = interval.seen
     # a point on the edge of a column is in it, whichever way the edge was rounded
-    points = observation.occupied_between(interval.low_m - _ROUND_M, interval.high_m + _ROUND_M)
+    points = observation.occupied_between(interval.low_m - ROUND_M, interval.high_m + ROUND_M)
     along_m = observation.occupied_m[points]
     scan = observation.occupied_scan[points]
     low_m = -_usual_end_m(-along_m, scan)
@@ -223,7 +227,7 @@ def _trim_ends(interval: FaceInterval) -> FaceInterval:
 
 def _usual_end_m(along_m: FloatArray, scan: IntArray) -> float:
     """Return the weighted median of the scans' last points near the last of all."""
-    near = along_m >= along_m.max() - _END_M
+    near = along_m >= along_m.max() - END_M
     _, index, count = np.unique(scan[near], return_inverse=True, return_counts=True)
     last_m = np.full(len(count), -np.inf)
     np.maximum.at(last_m, index, along_m[near])

@@ -6,10 +6,9 @@ from dataclasses import dataclass, fields
 
 from scanplan.geometry import lines
 from scanplan.plan.faces import candidates, segment_groups
-from scanplan.plan.faces.candidates import FaceCandidate
+from scanplan.plan.faces.candidates import FaceCandidate, FaceT
+from scanplan.plan.tolerances import ROUND_M
 from scanplan.types import Columns
-
-_RIGHT_DEG = 90.0  # normals that turn further are of the other side
 
 
 @dataclass(frozen=True)
@@ -30,9 +29,9 @@ class MergeSettings:
     ghost_share : float, 0 to 1
         less than this share of the stronger one's points per metre.
     max_gap_m : float, >= 0
-        A longer pause along a face stays open.
+        A longer gap along a face stays open.
     align_gap_m : float, >= 0
-        Faces on either side of a pause up to this length share one line where their segments allow
+        Faces on either side of a gap up to this length share one line where their segments allow
         (a door in a wall). Up to `max_gap_m` it has no effect.
     registration_sigma_m : float, > 0
         Standard deviation of a registered scan's place, for the weights of the fit.
@@ -69,17 +68,35 @@ class MergeSettings:
             for name in ("max_angle_deg", "tolerance_m", "registration_sigma_m")
             if not getattr(self, name)
         ]
-        wrong += ["max_angle_deg"] * (self.max_angle_deg >= _RIGHT_DEG)
+        wrong += ["max_angle_deg"] * (math.cos(math.radians(self.max_angle_deg)) < ROUND_M)
         wrong += ["ghost_share"] * (self.ghost_share > 1)
         wrong += ["merge_distance_m"] * (self.merge_distance_m < self.tolerance_m)
         if wrong:
             raise ValueError(f"merge settings out of range: {', '.join(dict.fromkeys(wrong))}")
 
+    def remove_doubles(self, faces: Sequence[FaceT]) -> list[FaceT]:
+        """Return faces without what stronger ones draw, see `candidates.remove_doubles`."""
+        return candidates.remove_doubles(
+            faces,
+            max_angle_rad=math.radians(self.max_angle_deg),
+            distance_m=self.merge_distance_m,
+            ghost_distance_m=self.ghost_distance_m,
+            ghost_share=self.ghost_share,
+        )
+
+    def supports(self, candidate: FaceCandidate) -> bool:
+        """Return whether a candidate is long and dense enough to be observed.
+
+        How many scans show it is better known from all their points (`tracing`).
+        """
+        least = max(1, self.min_points_per_m * candidate.length_m)
+        return candidate.n_points >= least and candidate.length_m >= self.min_length_m
+
 
 def merge_segments(walls: Columns, settings: MergeSettings) -> list[FaceCandidate]:
     """Merge the wall segments of many scans into candidates of faces on common lines.
 
-    Segments are grouped around common lines (`segment_groups`); each group's line is cut at pauses,
+    Segments are grouped around common lines (`segment_groups`); each group's line is cut at gaps,
     what too little supports is dropped, and so is what weaker faces draw over stronger ones
     (`candidates`). The two sides of a wall are different lines. Neither the order of the rows nor
     the place and turn of the map frame matters.
@@ -109,32 +126,11 @@ def merge_segments(walls: Columns, settings: MergeSettings) -> list[FaceCandidat
         tolerance_m=settings.tolerance_m,
         reach_m=max(settings.max_gap_m, settings.align_gap_m),
     )
-    cut = [
+    supported = [
         candidate
         for members in groups
         for candidate in candidates.cut_candidates(segments, members, max_gap_m=settings.max_gap_m)
+        if settings.supports(candidate)
     ]
-    return _select_candidates(cut, settings)
-
-
-def _select_candidates(
-    face_candidates: Sequence[FaceCandidate], settings: MergeSettings
-) -> list[FaceCandidate]:
-    """Return the candidates that are supported, none beside a stronger one."""
-    single = candidates.remove_doubles(
-        [candidate for candidate in face_candidates if _is_supported(candidate, settings)],
-        max_angle_rad=math.radians(settings.max_angle_deg),
-        distance_m=settings.merge_distance_m,
-        ghost_distance_m=settings.ghost_distance_m,
-        ghost_share=settings.ghost_share,
-    )
-    return [candidate for candidate in single if _is_supported(candidate, settings)]
-
-
-def _is_supported(candidate: FaceCandidate, settings: MergeSettings) -> bool:
-    """Return whether a candidate is long and dense enough to be observed.
-
-    How many scans show it is better known from all their points (`tracing`).
-    """
-    least = max(1, settings.min_points_per_m * candidate.length_m)
-    return candidate.n_points >= least and candidate.length_m >= settings.min_length_m
+    single = settings.remove_doubles(supported)
+    return [candidate for candidate in single if settings.supports(candidate)]

@@ -6,13 +6,9 @@ import numpy as np
 
 from scanplan.geometry import intersections
 from scanplan.geometry.intersections import SpanArrays
-from scanplan.plan.faces.intervals import STUB_M, FaceInterval
+from scanplan.plan.faces.intervals import FaceInterval
+from scanplan.plan.tolerances import END_M, FACE_M
 from scanplan.rays.face_observation import FaceObservation
-
-OWNED_M = 0.08
-"""Before and behind its line a face owns points so far: as they scatter about it."""
-
-_REACHES_M = 0.15  # an interval that ends this near before a line crosses it, too
 
 
 def owned_intervals(
@@ -37,7 +33,7 @@ def owned_intervals(
     owners = [
         interval
         for interval in found
-        if _unowned_m(interval, _crossed_m(interval.seen, found, stacked)) >= STUB_M
+        if _unowned_m(interval, _crossed_m(interval.seen, found, stacked)) >= END_M
     ]
     stacked = intersections.stack_spans(owners)
     return [_crossed_m(seen, owners, stacked) for seen in lines]
@@ -58,8 +54,8 @@ def _crossed_m(
     seen: FaceObservation, found: Sequence[FaceInterval], stacked: SpanArrays
 ) -> list[tuple[float, float]]:
     """Return from where to where along a line intervals of other lines cross it: (low, high)."""
-    crossings = intersections.find_crossings(seen.line, stacked, reach_m=_REACHES_M)
-    half_m = OWNED_M / crossings.sine
+    crossings = intersections.find_crossings(seen.line, stacked, reach_m=END_M)
+    half_m = FACE_M / crossings.sine
     return [
         (place_m - width_m, place_m + width_m)
         for number, place_m, width_m in zip(

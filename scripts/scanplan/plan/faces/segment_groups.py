@@ -15,7 +15,6 @@ from scanplan.geometry.lines import (
 from scanplan.types import Array, BoolArray, FloatArray, IntArray
 
 _MOST_ROUNDS = 100  # bounds the time of groups that settle in circles
-_STRIP_SPARE = 1.1  # covers that distances are taken square to slightly different lines
 
 
 def group_segments(
@@ -35,7 +34,7 @@ def group_segments(
     max_angle_rad : float
     tolerance_m : float
     reach_m : float
-        Longest pause along the line that a group may bridge.
+        Longest gap along the line that a group may bridge.
 
     Returns
     -------
@@ -137,7 +136,7 @@ def _join(
         if worst_m is not None:
             heapq.heappush(offers, (worst_m, one, other))
 
-    beside = _find_neighbours(segments, groups, *limits)
+    beside = _find_neighbours(segments, groups, max_angle_rad, reach_m)
     for one in range(len(groups)):
         for other in sorted(number for number in beside[one] if number > one):
             offer(one, other)
@@ -183,12 +182,11 @@ def _find_neighbours(
     segments: ObservedSegments,
     groups: list[IntArray],
     max_angle_rad: float,
-    tolerance_m: float,
     reach_m: float,
 ) -> dict[int, set[int]]:
     """Return for each group those that may share a line with it.
 
-    Within reach, much the same way, in a strip.
+    Within reach, much the same way.
     """
     lines = [fit_segments_line(segments, members) for members in groups]
     normals = np.array([line.normal for line in lines])
@@ -198,43 +196,15 @@ def _find_neighbours(
         low_m, high_m = extents_along_m(line, segments, members)
         starts.append(line.at(low_m.min()))
         ends.append(line.at(high_m.max()))
-    starts_m = np.array(starts)
-    ends_m = np.array(ends)
-    strings = _linestrings(starts_m, ends_m)
+    strings = _linestrings(np.array(starts), np.array(ends))
     near = shapely.STRtree(strings).query(strings, predicate="dwithin", distance=reach_m)
     cosine = np.einsum("ij,ij->i", normals[near[0]], normals[near[1]])
     pairs = near.T[(cosine >= np.cos(2 * max_angle_rad)) & (near[0] < near[1])]
-    pairs = pairs[_in_a_strip(starts_m, ends_m, pairs, tolerance_m)]
     beside: dict[int, set[int]] = {number: set() for number in range(len(groups))}
     for one, other in pairs.tolist():
         beside[one].add(other)
         beside[other].add(one)
     return beside
-
-
-def _in_a_strip(
-    starts_m: FloatArray, ends_m: FloatArray, pairs: IntArray, tolerance_m: float
-) -> BoolArray:
-    """Return which pairs of lines a common line could serve, (k,) bool.
-
-    Some that none serves pass, too.
-
-    Where the members of both lie within t of a common line, the ends of either own line lie within
-    2 t of it. Over the longer one's length L the two lines are then 2 t apart at most, at x beyond
-    its end ``2 t (1 + 2 x / L)``, and the shorter one's ends another 2 t.
-    """
-    length_m = np.hypot(*(ends_m - starts_m).T)
-    swap = length_m[pairs[:, 0]] < length_m[pairs[:, 1]]
-    longer, shorter = np.where(swap[:, None], pairs[:, ::-1], pairs).T
-    along = (ends_m[longer] - starts_m[longer]) / length_m[longer][:, None]
-    passes = np.ones(len(pairs), bool)
-    for shorter_m in (starts_m[shorter], ends_m[shorter]):
-        point_m = shorter_m - starts_m[longer]
-        place_m = np.einsum("ij,ij->i", point_m, along)
-        beyond_m = np.maximum(0, np.maximum(-place_m, place_m - length_m[longer]))
-        offset_m = np.abs(along[:, 0] * point_m[:, 1] - along[:, 1] * point_m[:, 0])
-        passes &= offset_m <= _STRIP_SPARE * 4 * tolerance_m * (1 + beyond_m / length_m[longer])
-    return passes
 
 
 def _linestrings(start_m: FloatArray, end_m: FloatArray) -> Array:

@@ -3,9 +3,9 @@
 Lines that segments agree on, cut to what the points and rays of the chosen scans show.
 """
 
-import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -14,13 +14,12 @@ from scanplan.extraction.furniture import FurnitureLimits, find_furniture_fronts
 from scanplan.geometry.lines import Line
 from scanplan.plan.faces import candidates, intervals, trimming
 from scanplan.plan.faces.candidates import FaceCandidate
-from scanplan.plan.faces.intervals import STUB_M, FaceInterval
+from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.faces.merging import MergeSettings
-from scanplan.plan.faces.owned_points import OWNED_M, owned_intervals
+from scanplan.plan.faces.owned_points import owned_intervals
+from scanplan.plan.tolerances import END_M, FACE_M
 from scanplan.rays.face_observation import FaceObservation, RaySettings
 from scanplan.rays.ray_set import RaySet
-
-_LEAST_POINTS = 2  # of an interval: one point has no extent
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,8 +28,7 @@ class TracedFaces:
 
     Attributes
     ----------
-    stretches : list of intervals.FaceInterval
-        The faces.
+    faces : list of intervals.FaceInterval
     n_lines : int
     n_dropped : int
         Lines of which nothing is left: too little seen, furniture, or drawn by a stronger one.
@@ -38,7 +36,7 @@ class TracedFaces:
         From where to where along a line there is glass.
     """
 
-    stretches: list[FaceInterval]
+    faces: list[FaceInterval]
     n_lines: int
     n_dropped: int
     panes: list[tuple[Line, float, float]]
@@ -57,19 +55,19 @@ def trace_faces(
 
     1. Observe (`_observe_lines`): each common line is refitted to the points at it, once; every
        later pass reads this observation.
-    2. First intervals (`_select_walls`): the solid intervals of each line, whatever crosses it.
-       Those too little supported go first, so that none of them takes away from others; then
-       doubles, since a ghost of a wall behind it could make a front of the wall; then fronts of
-       furniture. Only what stays may own points of another line.
+    2. First intervals (`_FaceSelection.select_walls`): the solid intervals of each line, whatever
+       crosses it. Those too little supported go first, so that none of them takes away from
+       others; then doubles, since a ghost of a wall behind it could make a front of the wall; then
+       fronts of furniture. Only what stays may own points of another line.
     3. Owned points (`owned_intervals`): where those faces cross other lines, the points at a
        crossing are theirs.
-    4. Second intervals (`_select_walls` again): the observations are cut anew, without the owned
+    4. Second intervals (`select_walls` again): the observations are cut anew, without the owned
        points. So what pass 2 removed is back, and intervals begin and end elsewhere: support,
        doubles and fronts are asked of these once more.
-    5. Trim (`_trim`): chords of a curve where they overshoot each other, then tails of stray points
+    5. Trim (`trim`): chords of a curve where they overshoot each other, then tails of stray points
        behind crossing faces, then stubs that are left. Before corners, since an end moves no
        farther than `corner_m`: it must first be where the face ends.
-    6. Meet (`_meet_at_corners`): ends are moved to where lines cross. Some faces reach the line
+    6. Meet (`meet_at_corners`): ends are moved to where lines cross. Some faces reach the line
        that they end at only now, so tails are trimmed a second time; extents and points per metre
        have changed, so doubles are removed a third time, which also leaves the strongest face
        first. Fronts are not asked again: corners bring no new face. Stubs that are left go last.
@@ -88,19 +86,25 @@ def trace_faces(
     TracedFaces
         Its faces meet at corners, none beside a stronger one.
     """
-    observations = _observe_lines(face_candidates, rays, reading)
-    of_lines = [intervals.find_face_intervals(seen, reading) for seen in observations]
-    owners = _select_walls(of_lines, merging, furniture)
+    selection = _FaceSelection(merging, furniture)
+    find_intervals = partial(
+        intervals.find_face_intervals,
+        door_height_m=reading.door_height_m,
+        max_gap_m=reading.max_gap_m,
+    )
+    observations = _observe_lines(
+        face_candidates, rays, band_m=reading.band_m, reach_m=reading.reach_m
+    )
+    owners = selection.select_walls(find_intervals(seen) for seen in observations)
     owned_m = owned_intervals(observations, owners)
-    of_lines = [
-        intervals.find_face_intervals(seen, reading, foreign_m=spans_m)
+    walls = selection.select_walls(
+        find_intervals(seen, foreign_m=spans_m)
         for seen, spans_m in zip(observations, owned_m, strict=True)
-    ]
-    walls = _select_walls(of_lines, merging, furniture)
-    faces = _meet_at_corners(_trim(walls, merging), merging)
+    )
+    faces = selection.meet_at_corners(selection.trim(walls))
     n_traced = len({id(face.seen) for face in faces})
     return TracedFaces(
-        stretches=faces,
+        faces=faces,
         n_lines=len(observations),
         n_dropped=len(observations) - n_traced,
         panes=[
@@ -112,7 +116,7 @@ def trace_faces(
 
 
 def _observe_lines(
-    face_candidates: Iterable[FaceCandidate], rays: RaySet, reading: RaySettings
+    face_candidates: Iterable[FaceCandidate], rays: RaySet, *, band_m: float, reach_m: float
 ) -> list[FaceObservation]:
     """Return the observation of each line that candidates share, from the first to the last."""
     of_line: dict[int, list[FaceCandidate]] = {}
@@ -122,34 +126,63 @@ def _observe_lines(
     for group in of_line.values():
         low_m = min(candidate.low_m for candidate in group)
         high_m = max(candidate.high_m for candidate in group)
-        line = group[0].line
-        observations.append(intervals.observe_along(rays, line, low_m, high_m, reading))
+        observations.append(
+            intervals.observe_along(
+                *(rays, group[0].line, low_m, high_m), band_m=band_m, reach_m=reach_m
+            )
+        )
     return observations
 
 
-def _select_walls(
-    of_lines: Iterable[Sequence[FaceInterval]], merging: MergeSettings, furniture: FurnitureLimits
-) -> list[FaceInterval]:
-    """Return the intervals, listed by line, that are walls.
+@dataclass(frozen=True)
+class _FaceSelection:
+    """Which intervals are faces of walls, and how much of each."""
 
-    Supported, none beside a stronger one, none a front of furniture.
-    """
-    supported = [interval for of_line in of_lines for interval in _supported(of_line, merging)]
-    return _without_furniture(_without_doubles(supported, merging), furniture)
+    merging: MergeSettings
+    furniture: FurnitureLimits
 
+    def select_walls(self, of_lines: Iterable[Sequence[FaceInterval]]) -> list[FaceInterval]:
+        """Return the intervals, listed by line, that are walls.
 
-def _trim(walls: Sequence[FaceInterval], merging: MergeSettings) -> list[FaceInterval]:
-    """Return intervals without overshoots, tails and stubs."""
-    trimmed = trimming.trim_tails(trimming.trim_overshoots(walls), share=merging.ghost_share)
-    return _without_stubs(trimmed)
+        Supported, none beside a stronger one, none a front of furniture.
+        """
+        supported = [interval for of_line in of_lines for interval in self._supported(of_line)]
+        return _without_furniture(self.merging.remove_doubles(supported), self.furniture)
 
+    def trim(self, walls: Sequence[FaceInterval]) -> list[FaceInterval]:
+        """Return intervals without overshoots, tails and stubs."""
+        trimmed = trimming.trim_overshoots(walls)
+        return _without_stubs(trimming.trim_tails(trimmed, share=self.merging.ghost_share))
 
-def _meet_at_corners(walls: Sequence[FaceInterval], merging: MergeSettings) -> list[FaceInterval]:
-    """Return intervals that end at corners, the strongest first, without what that leaves over."""
-    met = candidates.meet_at_corners(walls, corner_m=merging.corner_m)
-    # some faces reach the line that they end at only now
-    met = trimming.trim_tails(met, share=merging.ghost_share)
-    return _without_stubs(_without_doubles(met, merging))
+    def meet_at_corners(self, walls: Sequence[FaceInterval]) -> list[FaceInterval]:
+        """Return intervals that end at corners, the strongest first, without what that leaves."""
+        met = candidates.meet_at_corners(walls, corner_m=self.merging.corner_m)
+        # some faces reach the line that they end at only now
+        met = trimming.trim_tails(met, share=self.merging.ghost_share)
+        return _without_stubs(self.merging.remove_doubles(met))
+
+    def _supported(self, of_line: Iterable[FaceInterval]) -> list[FaceInterval]:
+        """Return the intervals of one line that enough points show.
+
+        Where one is sure, short ones beside it stay, too.
+        """
+        merging = self.merging
+        dense = [
+            interval
+            for interval in of_line
+            if interval.n_points >= merging.min_points_per_m * interval.length_m
+        ]
+        is_sure = any(
+            interval.length_m >= merging.min_length_m and self._is_shown(interval)
+            for interval in dense
+        )
+        return _without_stubs(dense) if is_sure else []
+
+    def _is_shown(self, interval: FaceInterval) -> bool:
+        """Return whether an interval is long, or enough scans show it."""
+        # its ends may have been left to faces that cross it there
+        is_long = interval.length_m + 2 * FACE_M >= self.merging.lone_length_m
+        return is_long or interval.n_scans >= self.merging.min_scans
 
 
 def _without_furniture(
@@ -176,40 +209,5 @@ def _without_furniture(
     return [interval for interval, is_front in zip(found, fronts, strict=True) if not is_front]
 
 
-def _without_doubles(found: Sequence[FaceInterval], merging: MergeSettings) -> list[FaceInterval]:
-    """Return the intervals, the strongest first, without what runs beside a stronger one."""
-    return candidates.remove_doubles(
-        found,
-        max_angle_rad=math.radians(merging.max_angle_deg),
-        distance_m=merging.merge_distance_m,
-        ghost_distance_m=merging.ghost_distance_m,
-        ghost_share=merging.ghost_share,
-    )
-
-
 def _without_stubs(found: Iterable[FaceInterval]) -> list[FaceInterval]:
-    return [interval for interval in found if interval.length_m >= STUB_M]
-
-
-def _supported(of_line: Iterable[FaceInterval], merging: MergeSettings) -> list[FaceInterval]:
-    """Return the intervals of one line that enough points show.
-
-    Where one is sure, short ones beside it stay, too.
-    """
-    dense = [
-        interval
-        for interval in of_line
-        if interval.n_points >= max(_LEAST_POINTS, merging.min_points_per_m * interval.length_m)
-    ]
-    is_sure = any(
-        interval.length_m >= merging.min_length_m and _is_shown(interval, merging)
-        for interval in dense
-    )
-    return _without_stubs(dense) if is_sure else []
-
-
-def _is_shown(interval: FaceInterval, merging: MergeSettings) -> bool:
-    """Return whether an interval is long, or enough scans show it."""
-    # its ends may have been left to faces that cross it there
-    is_long = interval.length_m + 2 * OWNED_M >= merging.lone_length_m
-    return is_long or interval.n_scans >= merging.min_scans
+    return [interval for interval in found if interval.length_m >= END_M]

@@ -12,13 +12,10 @@ import shapely
 
 from scanplan.geometry import intersections
 from scanplan.plan.faces.intervals import FaceInterval
+from scanplan.plan.tolerances import CORNER_RAD, END_M, ROUND_M
 from scanplan.rays.face_observation import FaceObservation
 from scanplan.types import FloatArray
 
-_MOST_RAD = math.radians(30)  # chords of one curve that cross; what turns more makes a corner
-_ROUND_M = 1e-9  # shorter is nothing but rounding
-_LONGER_M = 0.1  # what goes on by more beyond a crossing is a face of its own there
-_REACH_M = 0.1  # points this near behind a crossing may be the crossing face's own
 _TAIL_M = 1.0  # longer is no tail: a face that is seen poorly goes on
 
 
@@ -47,10 +44,10 @@ def trim_overshoots(intervals: Sequence[FaceInterval]) -> list[FaceInterval]:
                 sign * (ends_m[number] - place_m)
                 for number, place_m in zip(numbers, places_m, strict=True)
             ]
-            if min(arms_m) <= _ROUND_M:
+            if min(arms_m) <= ROUND_M:
                 continue
             loser = _select_loser(pair, places_m, sign * min(arms_m))
-            if arms_m[loser] <= arms_m[1 - loser] + _LONGER_M:
+            if arms_m[loser] <= arms_m[1 - loser] + END_M:
                 ends_m[numbers[loser]] = places_m[loser]
     return [
         replace(interval, low_m=begin_m, high_m=max(begin_m, end_m))
@@ -75,25 +72,25 @@ def trim_tails(intervals: Sequence[FaceInterval], *, share: float) -> list[FaceI
     stacked = intersections.stack_spans(intervals)
     trimmed = []
     for interval in intervals:
-        crossings = intersections.find_crossings(interval.line, stacked, reach_m=_REACH_M)
+        crossings = intersections.find_crossings(interval.line, stacked, reach_m=END_M)
         trimmed.append(_without_tails(interval, crossings.place_m, share))
     return trimmed
 
 
 def _without_tails(interval: FaceInterval, places_m: FloatArray, share: float) -> FaceInterval:
     """Return an interval, cut at the places of crossings behind which too few points lie."""
-    least_per_m = share * interval.n_points / max(interval.length_m, _ROUND_M)
+    least_per_m = share * interval.n_points / max(interval.length_m, ROUND_M)
     is_on_it = (places_m >= interval.low_m) & (places_m <= interval.high_m)
     middle_m = (interval.low_m + interval.high_m) / 2
     for place_m in sorted(places_m[is_on_it].tolist(), key=lambda place_m: abs(place_m - middle_m)):
         for name, sign in (("low_m", -1), ("high_m", 1)):
             end_m = getattr(interval, name)
             tail_m = sign * (end_m - place_m)
-            if not _REACH_M < tail_m <= _TAIL_M:
+            if not END_M < tail_m <= _TAIL_M:
                 continue
-            begin_m, stop_m = sorted((place_m + sign * _REACH_M, end_m))
+            begin_m, stop_m = sorted((place_m + sign * END_M, end_m))
             n_points = _count_points(interval.seen, begin_m, stop_m)
-            if n_points < least_per_m * (tail_m - _REACH_M):
+            if n_points < least_per_m * (tail_m - END_M):
                 interval = replace(interval, **{name: place_m})
     return interval
 
@@ -109,7 +106,7 @@ def _cross_flat(intervals: Sequence[FaceInterval]) -> list[tuple[int, int]]:
     ends_m = np.array([interval.ends for interval in intervals]).reshape(-1, 2, 2)
     strings = np.asarray(shapely.linestrings(ends_m), object)
     pairs = shapely.STRtree(strings).query(strings, predicate="crosses").T.tolist()
-    least_cosine = math.cos(_MOST_RAD)
+    least_cosine = math.cos(CORNER_RAD)
     return sorted(
         (i, j)
         for i, j in pairs

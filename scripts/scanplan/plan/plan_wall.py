@@ -1,0 +1,69 @@
+"""A wall of the plan: its middle, its faces on both sides, and its gaps."""
+
+import math
+from dataclasses import dataclass, field
+
+from scanplan.geometry.lines import Line, Span
+from scanplan.plan.faces.intervals import FaceInterval
+from scanplan.plan.openings import Opening
+from scanplan.rays.face_observation import FaceObservation
+
+
+@dataclass(frozen=True, eq=False)
+class InferredFace(Span):
+    """A face that no point shows, between or opposite to observed ones of its wall.
+
+    From `low_m` to `high_m` along the line; `is_left` if it is on the wall's left side.
+    """
+
+    line: Line
+    low_m: float
+    high_m: float
+    is_left: bool
+
+
+@dataclass(frozen=True, eq=False)
+class PlanWall(Span):
+    """A straight wall of one or two sides, from `low_m` to `high_m` along its middle.
+
+    Attributes
+    ----------
+    line : lines.Line
+        Its middle, or its face where one side is known: then the wall is behind it. The normal is
+        on the left of the way along it.
+    low_m, high_m : float
+    thickness_m : float
+        NaN where one side is known.
+    left, right : list of intervals.FaceInterval
+        Its faces on the side of the line's normal, and on the other, which is empty where one side
+        is known.
+    openings, closed : list of openings.Opening
+        Ways through, and gaps taken for wall; in order along it.
+    inferred : list of InferredFace
+        What else it has of faces, once `wall_faces` has cut them.
+    """
+
+    line: Line
+    low_m: float
+    high_m: float
+    thickness_m: float
+    left: list[FaceInterval]
+    right: list[FaceInterval]
+    openings: list[Opening] = field(default_factory=list)
+    closed: list[Opening] = field(default_factory=list)
+    inferred: list[InferredFace] = field(default_factory=list)
+
+    @property
+    def members(self) -> list[FaceInterval]:
+        """The faces of both sides."""
+        return self.left + self.right
+
+    @property
+    def lines(self) -> list[FaceObservation]:
+        """What was observed of the lines of its faces, each once."""
+        return list({id(face.seen): face.seen for face in self.members}.values())
+
+    @property
+    def half_m(self) -> float:
+        """From the middle to either face; 0 where the line is that of the face."""
+        return 0.0 if math.isnan(self.thickness_m) else self.thickness_m / 2
