@@ -59,7 +59,7 @@ def test_a_ray_from_behind_goes_through_but_shows_no_surface():
     assert by_place(face).tolist() == [[-1, 0.5, 0, 0], [1.5, 1.5, 2, 0]]
     assert face.is_free(0.15).sum() == 1
     assert not face.is_occupied.any() and not face.is_facing.any()
-    assert face.side_m.tolist() == [-2]
+    assert face.views.side_m.tolist() == [-2]
 
 
 def test_the_rays_of_many_scans_are_those_of_each():
@@ -122,7 +122,7 @@ def test_a_stretch_behind_the_cut_of_the_azimuth_is_seen_whole():
 def test_a_sensor_at_the_plane_sees_it_edge_on(y_m, count):
     face = cast(((0, y_m, 1), [(1, -y_m, 1)]))
     assert len(face.along_m) == count
-    assert face.least_side_m == LEAST_SIDE_M
+    assert face.views.least_side_m == LEAST_SIDE_M
 
 
 def test_heights_of_planar_scans_are_counted_from_zero():

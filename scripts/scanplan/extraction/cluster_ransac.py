@@ -49,6 +49,8 @@ class _Surfaces:
     Attributes
     ----------
     cells : normals.SurfaceCells
+    xy_m : (m, 2) float64
+        Their means, level.
     facing : (m, 2) float64
         Level unit normals.
     upright, level : (m,) bool
@@ -56,6 +58,7 @@ class _Surfaces:
     """
 
     cells: normals.SurfaceCells
+    xy_m: FloatArray
     facing: FloatArray
     upright: BoolArray
     level: BoolArray
@@ -116,7 +119,7 @@ def extract_by_clusters(
             reach_rad=reach_rad,
         )
         # twice as wide as what belongs to them, else noise leaves a second wall beside the first
-        is_beside = _is_beside(surfaces.cells.mean_m[:, :2], wall_rows, _WIDE * settings.inlier_m)
+        is_beside = _is_beside(surfaces.xy_m, wall_rows, _WIDE * settings.inlier_m)
         free &= ~(_is_alike(surfaces, wall.normal) & is_beside)
         rows += wall_rows
     return rows
@@ -160,9 +163,9 @@ def _find_surfaces(
     facing = normal[:, :2] / np.maximum(np.hypot(*normal[:, :2].T), _LEAST_LEVEL)[:, None]
     # between these heights, a normal that points up is a shelf's or a sill's, or of a strip of wall
     # too narrow for one
-    height_m = cells.mean_m[:, 2] - scan.floor_z_m
+    xy_m, height_m = cells.mean_m[:, :2], cells.mean_m[:, 2] - scan.floor_z_m
     outside = (height_m < SKIRTING_M) | (height_m > settings.door_height_m)
-    return _Surfaces(cells, facing, upright, outside & (np.abs(normal[:, 2]) >= _STEEP))
+    return _Surfaces(cells, xy_m, facing, upright, outside & (np.abs(normal[:, 2]) >= _STEEP))
 
 
 def _find_outlines(points: FloatArray, settings: ClusterRansacSettings) -> _Surfaces:
@@ -170,15 +173,14 @@ def _find_outlines(points: FloatArray, settings: ClusterRansacSettings) -> _Surf
     cells = normals.cut_outline_cells(points[:, :2], reach_deg=settings.reach_deg)
     has_normal = np.isfinite(cells.normal[:, 0])
     facing = np.where(has_normal[:, None], cells.normal, 0)
-    return _Surfaces(cells, facing, has_normal, np.zeros(len(points), bool))
+    return _Surfaces(cells, cells.mean_m, facing, has_normal, np.zeros(len(points), bool))
 
 
 def _cluster_cells(surfaces: _Surfaces, bandwidth_m: float) -> list[IntArray]:
     """Return the upright cells of each cluster of dual points, by the heaviest cluster."""
     (upright,) = np.nonzero(surfaces.upright)
-    mean_m = surfaces.cells.mean_m[upright, :2]
     label, modes_m = mean_shift.mean_shift(
-        project_along_normals(mean_m, surfaces.facing[upright]),
+        project_along_normals(surfaces.xy_m[upright], surfaces.facing[upright]),
         bandwidth_m=bandwidth_m,
         weight=surfaces.cells.count[upright],
     )
@@ -197,23 +199,27 @@ def _fit_wall(
     cells = surfaces.cells
     inlier_m = settings.inlier_m
     normal, offset_m, _ = ransac.fit_line_ransac(
-        cells.mean_m[own, :2],
+        surfaces.xy_m[own],
         inlier_m=inlier_m,
         trials=settings.trials,
         rng=rng,
         weight=cells.count[own].astype(float),
     )
-    is_near = np.abs(cells.mean_m[:, :2] @ normal - offset_m) <= inlier_m + cells.radius_m
-    is_own = free & _is_alike(surfaces, normal)
-    facing = points[cells.points_of(np.flatnonzero(is_near & is_own))]
-    other = points[cells.points_of(np.flatnonzero(is_near & ~is_own & ~surfaces.level))]
+    distance_m = np.abs(surfaces.xy_m @ normal - offset_m)
+    (near,) = np.nonzero(distance_m <= inlier_m + cells.radius_m)
+    is_own = (free & _is_alike(surfaces, normal))[near]
+    is_other = ~(is_own | surfaces.level[near])
+    facing = points.take(cells.points_of(near[is_own]), axis=0)
+    other = points.take(cells.points_of(near[is_other]), axis=0)
     on_wall = np.abs(facing[:, :2] @ normal - offset_m) <= inlier_m
     if on_wall.sum() >= _LEAST_REFIT:
         normal, offset_m, on_wall = ransac.refit_line(
             facing[:, :2], normal, offset_m, inlier_m=inlier_m
         )
     is_spare = np.abs(other[:, :2] @ normal - offset_m) <= inlier_m
-    return _WallPoints(normal, float(offset_m), facing[on_wall], other[is_spare])
+    return _WallPoints(
+        normal, float(offset_m), facing.compress(on_wall, axis=0), other.compress(is_spare, axis=0)
+    )
 
 
 def _is_alike(surfaces: _Surfaces, normal: FloatArray) -> BoolArray:

@@ -93,7 +93,7 @@ class _Bins:
         first = np.searchsorted(self.key, self._key(row, xy_m[:, 0] - half), "left")
         last = np.searchsorted(self.key, self._key(row, xy_m[:, 0] + half), "right")
         last = np.where(half > 0, np.maximum(last, first), first)
-        total = (self.sums[last] - self.sums[first]).sum(axis=0)
+        total = (self.sums.take(last, axis=0) - self.sums.take(first, axis=0)).sum(axis=0)
         return total[:, 0], total[:, 1:] / np.maximum(total[:, :1], _LEAST_WEIGHT)
 
     def seeds(self) -> FloatArray:

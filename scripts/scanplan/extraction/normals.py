@@ -56,7 +56,7 @@ class SurfaceCells:
         """Return the indices of the points of the given cells, (k,) int."""
         count = self.count[cells]
         skipped = self.first[cells] - (np.cumsum(count) - count)
-        return self.members[np.arange(count.sum()) + np.repeat(skipped, count)]
+        return self.members.take(np.arange(count.sum()) + np.repeat(skipped, count))
 
 
 def cut_surface_cells(xyz_m: FloatArray, *, reach_deg: float) -> SurfaceCells:
@@ -159,11 +159,11 @@ class _Grid:
         occupied[key] = True
         self.key = np.flatnonzero(occupied)
         self._before = np.concatenate([[0], np.cumsum(occupied, dtype=np.int32)])
-        self.of_point = self._before[key].astype(np.int64)
+        self.of_point = self._before.take(key).astype(np.int64)
 
     def before(self, key: IntArray) -> IntArray:
         """Return the number of occupied cells before each key."""
-        return np.searchsorted(self.key, key) if self.size > _TABLE_SIZE else self._before[key]
+        return np.searchsorted(self.key, key) if self.size > _TABLE_SIZE else self._before.take(key)
 
     def neighbourhood_sums(self, moments: FloatArray) -> FloatArray:
         """Return each cell's moments (k, m) with those of its occupied neighbours added.
@@ -179,7 +179,8 @@ class _Grid:
             start = (azimuth + turn) % self.turn * row_size + inside
             for rise in (-self.shells, 0, self.shells):
                 stop = self.before(start + rise + 2)
-                total += running[stop] - running[self.before(start + rise - 1)]
+                first = self.before(start + rise - 1)
+                total += running.take(stop, axis=0) - running.take(first, axis=0)
         return total.T
 
 

@@ -89,7 +89,6 @@ class FaceObservation:
         return face_raster.rasterise_rays(
             (self.occupied_m, self.occupied_z_m),
             (self.free_m, self.free_z_m),
-            (np.empty(0), np.empty(0)),
             span_m=(places_m.min(initial=0.0), places_m.max(initial=0.0)),
             planar=self.planar,
         )
