@@ -5,19 +5,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.extraction import mean_shift, normals, segments
-from scanplan.extraction.segment_limits import Row, SegmentLimits
+from scanplan.extraction.segment_limits import ALIKE, DIAGONAL, Row, SegmentLimits
 from scanplan.geometry import ransac
-from scanplan.rays.face_rays import SKIRTING_M
 from scanplan.rays.ray_set import RaySet
+from scanplan.rays.tolerances import ROUNDING, SKIRTING_M
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 _DUAL_SHIFT_M = 1.0  # several bandwidths: keeps dual points apart that differ in direction
-_ALIKE = np.cos(np.deg2rad(20))  # a point's normal against its wall's
 _CORNER_REACH = 1.5  # how far a corner smears normals, in reaches
 _WIDE = 2.0  # inlier distances: noise within leaves no second wall beside the first
-_LEAST_REFIT = 3  # points: any two fit a line
-_STEEP = np.cos(np.deg2rad(45))  # a normal more upright points up rather than out
-_LEAST_LEVEL = 1e-9  # length of a normal's level part, where it is plumb: no division by 0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -160,12 +156,12 @@ def _find_surfaces(
     has_normal = np.isfinite(cells.normal[:, 0])
     normal = np.where(has_normal[:, None], cells.normal, 0)
     upright = has_normal & (np.abs(normal[:, 2]) <= np.sin(np.deg2rad(settings.max_tilt_deg)))
-    facing = normal[:, :2] / np.maximum(np.hypot(*normal[:, :2].T), _LEAST_LEVEL)[:, None]
+    facing = normal[:, :2] / np.maximum(np.hypot(*normal[:, :2].T), ROUNDING)[:, None]
     # between these heights, a normal that points up is a shelf's or a sill's, or of a strip of wall
     # too narrow for one
     xy_m, height_m = cells.mean_m[:, :2], cells.mean_m[:, 2] - scan.floor_z_m
     outside = (height_m < SKIRTING_M) | (height_m > settings.door_height_m)
-    return _Surfaces(cells, xy_m, facing, upright, outside & (np.abs(normal[:, 2]) >= _STEEP))
+    return _Surfaces(cells, xy_m, facing, upright, outside & (np.abs(normal[:, 2]) >= DIAGONAL))
 
 
 def _find_outlines(points: FloatArray, settings: ClusterRansacSettings) -> _Surfaces:
@@ -211,11 +207,9 @@ def _fit_wall(
     is_other = ~(is_own | surfaces.level[near])
     facing = points.take(cells.points_of(near[is_own]), axis=0)
     other = points.take(cells.points_of(near[is_other]), axis=0)
-    on_wall = np.abs(facing[:, :2] @ normal - offset_m) <= inlier_m
-    if on_wall.sum() >= _LEAST_REFIT:
-        normal, offset_m, on_wall = ransac.refit_line(
-            facing[:, :2], normal, offset_m, inlier_m=inlier_m
-        )
+    normal, offset_m, on_wall = ransac.refit_line(
+        facing[:, :2], normal, offset_m, inlier_m=inlier_m
+    )
     is_spare = np.abs(other[:, :2] @ normal - offset_m) <= inlier_m
     return _WallPoints(
         normal, float(offset_m), facing.compress(on_wall, axis=0), other.compress(is_spare, axis=0)
@@ -224,7 +218,7 @@ def _fit_wall(
 
 def _is_alike(surfaces: _Surfaces, normal: FloatArray) -> BoolArray:
     """Return which cells (m,) face the way of a line whose normal points away from the sensor."""
-    return -surfaces.facing @ normal > _ALIKE
+    return -surfaces.facing @ normal > ALIKE
 
 
 def _is_beside(xy_m: FloatArray, rows: list[Row], width_m: float) -> BoolArray:

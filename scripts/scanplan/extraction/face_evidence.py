@@ -9,18 +9,11 @@ import numpy as np
 
 from scanplan.geometry.lines import Line
 from scanplan.rays.expected_returns import count_sent_rays
-from scanplan.rays.face_raster import SCAN_COLUMN_M, highest_of_each, seen_tops_m
-from scanplan.rays.face_rays import ON_M, SKIRTING_M, cast_at_face, cast_at_faces
+from scanplan.rays.face_raster import CELL_M, SCAN_COLUMN_M, highest_of_each, seen_tops_m
+from scanplan.rays.face_rays import cast_at_face, cast_at_faces
 from scanplan.rays.ray_set import RaySet
+from scanplan.rays.tolerances import BEHIND_M, ON_M, ROUNDING, SKIRTING_M, STRAY_SHARE, STRETCH_M
 from scanplan.types import FloatArray, IntArray
-
-BEHIND_M = 0.15  # a return farther behind a face is not its own: noise of ranges
-_EDGE_ON_M = 1e-3  # a face nearer to the sensor is seen edge on
-_GOOD_SHARE = 0.15  # of rays, or of a length: less may be stray
-_CLEAR_M = 0.03  # above a surface's edge: the noise of a height
-_LEAST_STRETCH_M = 0.3  # of a surface's length: less may be a return of something else
-_ENDS_M = (0.4, 2.3)  # heights that furniture and partitions end between
-_ENDS_STEP_M = 0.1  # finer than what one of them is higher than another by
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +52,7 @@ def weigh_faces(
     heights_m : (k, 2) float
         Of its returns, above the floor.
     """
-    face = cast_at_faces(scan, ends_m, normal, at_m=ON_M, least_side_m=_EDGE_ON_M)
+    face = cast_at_faces(scan, ends_m, normal, at_m=ON_M, least_side_m=ROUNDING)
     count = (np.hypot(*(ends_m[:, 1] - ends_m[:, 0]).T) / SCAN_COLUMN_M).astype(np.int64) + 1
     is_on, is_beyond = face.is_occupied, face.is_free(BEHIND_M)
     ways = [
@@ -95,12 +88,12 @@ def over_shares(top_m: FloatArray, free_top_m: FloatArray, count: IntArray) -> F
     count : (k,) int
         Columns that each surface has of these.
     """
-    ends_m = np.arange(*_ENDS_M, _ENDS_STEP_M)[:, None, None]
+    ends_m = np.arange(SKIRTING_M, top_m.max(initial=SKIRTING_M) + CELL_M, CELL_M)[:, None, None]
     is_met = top_m > ends_m
-    is_free = (free_top_m > ends_m + _CLEAR_M) & ~is_met & np.isfinite(top_m)
+    is_free = (free_top_m > ends_m + CELL_M) & ~is_met & np.isfinite(top_m)
     n_met, n_free = is_met.sum(axis=2), is_free.sum(axis=2)
-    enough = n_free >= np.maximum(_LEAST_STRETCH_M / SCAN_COLUMN_M, _GOOD_SHARE * count)
-    return np.max(n_free / np.maximum(n_free + n_met, 1) * enough, axis=0)
+    enough = n_free >= np.maximum(STRETCH_M / SCAN_COLUMN_M, STRAY_SHARE * count)
+    return np.max(n_free / np.maximum(n_free + n_met, 1) * enough, axis=0, initial=0.0)
 
 
 def _column_tops_m(
@@ -129,6 +122,6 @@ def gap_leads_on(rays: RaySet, line: Line, span_m: tuple[float, float], depth_m:
     bool
         Whether a good part of the rays through it get deeper; true if there are none.
     """
-    face = cast_at_face(rays, line, *span_m, at_m=ON_M, least_side_m=_EDGE_ON_M)
+    face = cast_at_face(rays, line, *span_m, at_m=ON_M, least_side_m=ROUNDING)
     behind_m = face.behind_m[face.is_free(BEHIND_M) & (face.height_m > SKIRTING_M)]
-    return not len(behind_m) or bool(np.mean(behind_m > depth_m) > _GOOD_SHARE)
+    return not len(behind_m) or bool(np.mean(behind_m > depth_m) > STRAY_SHARE)

@@ -15,7 +15,6 @@ import numpy as np
 
 from scanplan.extraction import face_evidence
 from scanplan.extraction.face_arrangement import (
-    LEVEL_M,
     Faces,
     find_collinear_faces,
     find_corner_faces,
@@ -25,6 +24,7 @@ from scanplan.extraction.face_arrangement import (
 from scanplan.extraction.segment_limits import Row
 from scanplan.geometry.lines import Line
 from scanplan.rays.ray_set import RaySet
+from scanplan.rays.tolerances import BEHIND_M
 from scanplan.types import BoolArray, FloatArray
 
 
@@ -165,7 +165,7 @@ def _are_walls_by_corners(
     while (joined := plain & ~wall & (inner & wall).any(axis=(1, 2))).any():
         wall |= joined
     # what is seen higher than a piece of furniture is no side of it
-    as_high = faces.top_m[None, :] > faces.top_m[:, None] - LEVEL_M
+    as_high = faces.top_m[None, :] > faces.top_m[:, None] - BEHIND_M
     beside_furniture = (outer & (~sound & as_high)[:, None]).any(axis=(1, 2))
     wall &= ~(beside_furniture & (faces.length_m <= limits.furniture_depth_m) & is_low)
     is_stub = faces.length_m < limits.stub_length_m

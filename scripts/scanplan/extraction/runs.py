@@ -8,12 +8,12 @@ import numpy as np
 from scanplan.extraction.segment_limits import SegmentLimits
 from scanplan.geometry.lines import Line
 from scanplan.rays.face_raster import CELL_M, SCAN_COLUMN_M, Places
-from scanplan.rays.face_rays import ON_M, SKIRTING_M, cast_at_face
+from scanplan.rays.face_rays import cast_at_face
 from scanplan.rays.ray_set import RaySet
+from scanplan.rays.tolerances import ON_M, ROUNDING, SKIRTING_M
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 _PAUSE_SHARE = 1 / 2  # of the reach: wider than beams apart at grazing angles, narrower than a door
-_EDGE_ON_M = 1e-6  # a line nearer to the sensor is seen edge on, and divides by about 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -190,7 +190,7 @@ def _look_at_columns(
 ) -> LineColumns:
     """Return a line's columns: points given are at it, rays go on through the thinnest wall."""
     span_m = float(where_m.min()), float(where_m.max())
-    face = cast_at_face(scan, line, *span_m, at_m=ON_M, least_side_m=_EDGE_ON_M)
+    face = cast_at_face(scan, line, *span_m, at_m=ON_M, least_side_m=ROUNDING)
     (free,) = np.nonzero(face.is_free(ON_M))
     (occluded,) = np.nonzero(face.is_occluded)
     free_m = face.along_m.take(free)

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from scanplan.rays.azimuth_sectors import N_SECTORS
+from scanplan.rays.tolerances import FEW, ON_M, STRAY_SHARE
 from scanplan.types import Array, FloatArray, IntArray
 
 if TYPE_CHECKING:
@@ -27,11 +29,7 @@ Their rays are few, and much stands before the surface.
 """
 
 _ROWS_PER_DEG = 10  # of elevation: beams of a VLP-16 are 2 degrees apart, of dense sensors 0.2
-_SECTORS = 72  # of 5 degrees: wider than what is between two firings
 _LEAST_RAYS = 20.0  # half of so many are not lost by chance
-_LEAST_RAYS_A_SCAN = 3.0  # fewer, and the count expected is mostly rounding
-_MOST_OCCLUDED = 0.15  # a frame or a plant may stop these; more, and the surface is hidden
-_BEFORE_M = 0.1  # returns farther before a surface are of something else
 _DEEP_M = 0.6  # no wall is thicker
 _WIDTH = 5  # columns that are judged together: single ones expect too few rays
 
@@ -50,9 +48,9 @@ def count_returns_below(azimuth_rad: FloatArray, xyz_m: FloatArray) -> FloatArra
     (1801,) float64
         Below each elevation from -90 degrees on, in steps of 0.1 degrees.
     """
-    sector = ((azimuth_rad + np.pi) / (2 * np.pi) * _SECTORS).astype(np.int64)
-    sector = np.minimum(sector, _SECTORS - 1)
-    seen_deg = max(np.count_nonzero(np.bincount(sector)), 1) * 360 / _SECTORS
+    sector = ((azimuth_rad + np.pi) / (2 * np.pi) * N_SECTORS).astype(np.int64)
+    sector = np.minimum(sector, N_SECTORS - 1)
+    seen_deg = max(np.count_nonzero(np.bincount(sector)), 1) * 360 / N_SECTORS
     elevation_deg = np.rad2deg(np.arctan2(xyz_m[:, 2], np.hypot(xyz_m[:, 0], xyz_m[:, 1])))
     n_rows = 180 * _ROWS_PER_DEG
     row = np.clip((elevation_deg + 90) * _ROWS_PER_DEG, 0, n_rows - 1).astype(np.int64)
@@ -103,11 +101,11 @@ class SentRays:
         occluded = _sum_neighbours(self.occluded)
         # where things hide the surface from a scan it says nothing: rays along the tops of
         # furniture get lost
-        clear = occluded < _MOST_OCCLUDED * expected
+        clear = occluded < STRAY_SHARE * expected
         reached = ((expected - occluded) * clear).sum(axis=0)
         returned = (_sum_neighbours(self.returned) * clear).sum(axis=0)
         in_wall = (_sum_neighbours(self.in_wall) * clear).sum(axis=0)
-        n_scans = (clear & (expected >= _LEAST_RAYS_A_SCAN)).sum(axis=0)
+        n_scans = (clear & (expected >= FEW)).sum(axis=0)
         enough = (n_scans >= least_scans) & (reached >= _LEAST_RAYS)
         known = [np.where(enough, rows, np.nan) for rows in (reached, returned, in_wall)]
         return known[0], known[1], known[2]
@@ -173,7 +171,7 @@ def count_sent_rays(
     column = ((along_m.take(rows) - low_m) / column_m).astype(np.int64)
     row = np.cumsum(is_looking) - 1
     cell = row.take(view.take(rows)) * len(number) + np.minimum(column, len(number) - 1)
-    is_returned = behind_m >= -_BEFORE_M
+    is_returned = behind_m >= -ON_M
     kinds = (~is_returned, is_returned, is_returned & (behind_m <= _DEEP_M))
     occluded, returned, in_wall = (
         np.bincount(cell[kind], minlength=expected.size).reshape(expected.shape) for kind in kinds

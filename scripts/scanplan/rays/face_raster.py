@@ -11,14 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from scanplan.rays.tolerances import FEW, STRAY_SHARE, STRETCH_M
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 CELL_M = 0.05  # edge of a cell of all scans together: a few times the noise of a range
 SCAN_COLUMN_M = 0.1  # column of a single scan: wider than what is between its rays
-
-_LEAST_STRETCH_M = 0.3  # of a surface's length: less may be a return of something else
-_FEW_RAYS = 3  # one or two may be stray, of any number of scans
-_OVER_SHARE = 0.15  # of what ends at a column: fewer over it are noise of heights and poses
 
 
 Places = tuple[FloatArray, FloatArray]
@@ -99,7 +96,7 @@ class FaceRaster:
 
     def is_opened(self, below_m: float) -> BoolArray:
         """Return in which columns (c,) that are crossed not just one or two rays go through."""
-        return self.is_crossed(below_m) & (self.count_below(self.free, below_m) >= _FEW_RAYS)
+        return self.is_crossed(below_m) & (self.count_below(self.free, below_m) >= FEW)
 
     def is_solid(self, below_m: float) -> BoolArray:
         """Return in which columns (c,) rays end below a height and hardly one goes through."""
@@ -111,7 +108,7 @@ class FaceRaster:
         np.maximum.at(top_row, *self.occupied)
         is_over = self.planar | (self.free.row > top_row[self.free.column])
         n_over = np.bincount(self.free.column[is_over], minlength=self.n_columns)
-        few = np.maximum(_FEW_RAYS, _OVER_SHARE * self.count_below(self.occupied, below_m))
+        few = np.maximum(FEW, STRAY_SHARE * self.count_below(self.occupied, below_m))
         return n_over >= few
 
     def seen_top_m(self, columns: slice = slice(None)) -> float:
@@ -151,7 +148,7 @@ def seen_tops_m(top_m: FloatArray, column_m: float) -> FloatArray:
     if not n_seen.any():
         return np.full(len(top_m), -np.inf)
     # the return of something else at an end may be all that a column has
-    enough = max(int(np.ceil(_LEAST_STRETCH_M / column_m)) - 1, 1)
+    enough = max(int(np.ceil(STRETCH_M / column_m)) - 1, 1)
     last = np.clip(n_seen - 1, 0, enough)
     return -np.sort(-top_m, axis=1)[np.arange(len(top_m)), last]
 

@@ -22,12 +22,8 @@ import numpy as np
 from scanplan.geometry.lines import Line
 from scanplan.rays import azimuth_sectors
 from scanplan.rays.ray_set import RaySet
+from scanplan.rays.tolerances import BEHIND_M, ROUNDING
 from scanplan.types import BoolArray, FloatArray, IntArray
-
-LEAST_SIDE_M = 0.15  # a sensor nearer to the plane sees the surface edge on
-ON_M = 0.08  # of one scan: returns this near are a surface's own, by noise of ranges and roughness
-SKIRTING_M = 0.2  # lower returns may be the floor's
-_AHEAD_M = 1e-6  # a ray that runs along the plane meets it nowhere
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +107,7 @@ def cast_at_face(
     *,
     at_m: float,
     occluded_within_m: float = np.inf,
-    least_side_m: float = LEAST_SIDE_M,
+    least_side_m: float = BEHIND_M,
 ) -> FaceRays:
     """Gather the rays that scans sent at a stretch of a line.
 
@@ -211,7 +207,7 @@ def _meet(
     side_m = views.side_m.take(view)
     behind_m = -end_offset_m * np.sign(side_m)
     distance_m = np.abs(side_m)
-    share = distance_m / np.maximum(distance_m + behind_m, _AHEAD_M)
+    share = distance_m / np.maximum(distance_m + behind_m, ROUNDING)
     share = np.where(np.abs(behind_m) <= at_m, 1.0, share)
     sensor_along_m = views.sensor_along_m.take(view)
     sensor_z_m = rays.sensors_m[views.scan, 2].take(view)
