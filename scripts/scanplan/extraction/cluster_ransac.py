@@ -5,13 +5,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.extraction import mean_shift, normals, segments
-from scanplan.extraction.segment_limits import ALIKE, DIAGONAL, Row, SegmentLimits
+from scanplan.extraction.segment_limits import DIAGONAL, Row, SegmentLimits
 from scanplan.geometry import ransac
 from scanplan.rays.ray_set import RaySet
 from scanplan.rays.tolerances import ROUNDING, SKIRTING_M
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 _DUAL_SHIFT_M = 1.0  # several bandwidths: keeps dual points apart that differ in direction
+_ALIKE = np.cos(np.deg2rad(20))  # a point's normal, by noise, against its wall's
 _CORNER_REACH = 1.5  # how far a corner smears normals, in reaches
 _WIDE = 2.0  # inlier distances: noise within leaves no second wall beside the first
 
@@ -218,7 +219,7 @@ def _fit_wall(
 
 def _is_alike(surfaces: _Surfaces, normal: FloatArray) -> BoolArray:
     """Return which cells (m,) face the way of a line whose normal points away from the sensor."""
-    return -surfaces.facing @ normal > ALIKE
+    return -surfaces.facing @ normal > _ALIKE
 
 
 def _is_beside(xy_m: FloatArray, rows: list[Row], width_m: float) -> BoolArray:

@@ -6,9 +6,11 @@ from functools import cached_property
 
 import numpy as np
 
-from scanplan.extraction.segment_limits import ALIKE, DIAGONAL
+from scanplan.extraction.segment_limits import DIAGONAL
 from scanplan.rays.tolerances import BEHIND_M, ON_M, STRETCH_M
 from scanplan.types import BoolArray, FloatArray, IntArray
+
+_PARALLEL = math.cos(math.radians(10))  # faces that turn more are chords of a round wall, or others
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +62,7 @@ class Faces:
     @cached_property
     def is_parallel(self) -> BoolArray:
         """Which faces are seen from the same side of much the same direction, (n, n)."""
-        return self.normal @ self.normal.T > ALIKE
+        return self.normal @ self.normal.T > _PARALLEL
 
     @cached_property
     def apart_m(self) -> FloatArray:
@@ -177,8 +179,8 @@ def _find_room(faces: Faces, one: int, door_m: float) -> tuple[float, float]:
     # a door may be next to the corner
     stands = (before_m[:, 0] <= door_m) & (before_m[:, 1] >= STRETCH_M)
     place_m = faces.along_m(one, faces.middle_m)
-    low = stands & (facing >= ALIKE) & (place_m < 0)
-    high = stands & (facing <= -ALIKE) & (place_m > 0)
+    low = stands & (facing >= _PARALLEL) & (place_m < 0)
+    high = stands & (facing <= -_PARALLEL) & (place_m > 0)
     return place_m[low].max(initial=-math.inf), place_m[high].min(initial=math.inf)
 
 

@@ -4,8 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-ALIKE = np.cos(np.radians(20))
-"""Cosine of what normals of one wall differ by at most."""
 DIAGONAL = np.cos(np.radians(45))
 """Cosine of half a right angle: what turns more stands across, or points up rather than out."""
 
