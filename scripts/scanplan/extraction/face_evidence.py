@@ -53,13 +53,14 @@ def weigh_faces(
         Of its returns, above the floor.
     """
     face = cast_at_faces(scan, ends_m, normal, at_m=ON_M, least_side_m=ROUNDING)
-    count = (np.hypot(*(ends_m[:, 1] - ends_m[:, 0]).T) / SCAN_COLUMN_M).astype(np.int64) + 1
+    way_m = ends_m[:, 1] - ends_m[:, 0]
+    count = (np.hypot(way_m[:, 0], way_m[:, 1]) / SCAN_COLUMN_M).astype(np.int64) + 1
     is_on, is_beyond = face.is_occupied, face.is_free(BEHIND_M)
-    ways = [
+    tops_m, free_tops_m = (
         _column_tops_m(face.view[kind], face.along_m[kind], face.height_m[kind], count)
         for kind in (is_on, is_beyond)
-    ]
-    top_m = seen_tops_m(ways[0], SCAN_COLUMN_M)
+    )
+    top_m = seen_tops_m(tops_m, SCAN_COLUMN_M)
     is_raised = face.height_m > SKIRTING_M
     is_through = is_beyond & is_raised & (face.height_m < top_m.take(face.view))
     n_through, n_on = (
@@ -69,7 +70,8 @@ def weigh_faces(
     sent = count_sent_rays(scan, face, 0.0, count, SCAN_COLUMN_M, heights_m)
     missing = np.zeros(len(count))
     missing[sent.view] = sent.missing_share
-    return FaceEvidence(top_m, over_shares(*ways, count), n_through / np.maximum(n_on, 1), missing)
+    over = over_shares(tops_m, free_tops_m, count)
+    return FaceEvidence(top_m, over, n_through / np.maximum(n_on, 1), missing)
 
 
 def over_shares(top_m: FloatArray, free_top_m: FloatArray, count: IntArray) -> FloatArray:

@@ -17,9 +17,7 @@ from scanplan.rays.ray_set import RaySet
 from scanplan.rays.tolerances import BEHIND_M, FEW, SKIRTING_M, STRETCH_M
 from scanplan.types import FloatArray, IntArray
 
-_MOST_SHARE = (
-    0.5  # of a wall's rays come back, however dark or glossy; of a pane's length has a frame
-)
+_MOST_SHARE = 0.5  # of rays return from any wall; of a pane's length has a frame
 _GLASS_HEIGHTS_M = ((0.2, 0.7), (0.9, 1.6))  # skirting to sill; above sills, below low lintels
 
 
