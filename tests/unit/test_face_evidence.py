@@ -1,3 +1,5 @@
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -29,9 +31,17 @@ FACE = (2.0, -1.0, 2.0, 1.0)
 
 def weigh(looked, low_m, high_m, ends=FACE):
     """Weigh a face between two heights relative to the sensor, which is to the left of its way."""
-    heights_m = low_m - looked.floor_z_m, high_m - looked.floor_z_m
-    length_m = float(np.hypot(ends[2] - ends[0], ends[3] - ends[1]))
-    return face_evidence.weigh_face(looked, line_through(*ends), (0.0, length_m), heights_m)
+    heights_m = np.array([[low_m, high_m]]) - looked.floor_z_m
+    return weigh_all(looked, [ends], heights_m)[0]
+
+
+def weigh_all(looked, ends, heights_m):
+    ends_m = np.array(ends, float).reshape(-1, 2, 2)
+    normal = np.array([line_through(*face).normal for face in ends])
+    found = face_evidence.weigh_faces(looked, ends_m, normal, heights_m)
+    names = ("top_m", "over", "through", "missing")
+    rows = zip(*(getattr(found, name).tolist() for name in names), strict=True)
+    return [SimpleNamespace(**dict(zip(names, row, strict=True))) for row in rows]
 
 
 def test_rays_that_all_end_on_a_face():
@@ -132,3 +142,46 @@ def test_a_door_leads_on_and_a_niche_does_not(deep_m, leads_on):
     assert face_evidence.gap_leads_on(looked, line, (0.0, 0.8), 1.0) is leads_on
     # where no ray goes nothing is against a door
     assert face_evidence.gap_leads_on(looked, line_through(9, 9, 9, 9.8), (0.0, 0.8), 1.0)
+
+
+def test_each_of_several_faces_is_weighed_by_itself():
+    points = returns([(4, -1, 4, 1, 0, 1.2), (6, -4, 6, 4, 0, 2.6), (-3, 2, -5, 2, 0, 2.6)])
+    looked = segments.view_scan(points, planar=False)
+    faces = [(4, -1, 4, 1), (6, -4, 6, -2), (-3, 2, -5, 2), (0, 0, 1, 0)]
+    heights_m = np.array([(0, 1.2), (0, 2.6), (0, 2.6), (0, 1)])
+    together = weigh_all(looked, faces, heights_m)
+    for number, face in enumerate(faces):
+        (alone,) = weigh_all(looked, [face], heights_m[[number]])
+        assert vars(together[number]) == pytest.approx(vars(alone))
+    # the sensor is on the last one's line: nothing is seen of it
+    assert together[3].top_m == -np.inf and together[3].missing == 0
+
+
+def over(tops_m, free_tops_m):
+    """Return how surely a face of columns of 10 cm ends."""
+    rows = [np.array([tops], float) for tops in (tops_m, free_tops_m)]
+    return face_evidence.over_shares(*rows, np.array([len(tops_m)])).tolist()[0]
+
+
+NONE = -np.inf
+
+
+def test_what_rays_pass_over_all_along_surely_ends():
+    assert over([0.72] * 10, [1.2] * 10) == 1
+    assert over([0.72] * 10, [NONE] * 10) == 0
+    # where nothing ends at it there is no surface to pass over
+    assert over([NONE] * 10, [1.2] * 10) == 0
+
+
+def test_the_share_over_a_face_is_that_of_what_rays_cross_above_its_end():
+    """Of ten columns three are 2 m high, six are passed over, and of one no more is known."""
+    assert over([2.05] * 3 + [0.72] * 7, [NONE] * 3 + [1.2] * 6 + [NONE]) == pytest.approx(6 / 9)
+
+
+def test_less_than_30_cm_passed_over_may_be_something_else():
+    assert over([0.72] * 10, [1.2] * 2 + [NONE] * 8) == 0
+    assert over([0.72] * 10, [1.2] * 3 + [NONE] * 7) == 1
+
+
+def test_a_top_and_a_ray_closer_than_noise_do_not_part():
+    assert over([0.79] * 10, [0.82] * 10) == 0

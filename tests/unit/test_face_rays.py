@@ -10,8 +10,9 @@ from hypothesis import strategies as st
 
 from helpers.ray_making import NORTH, rays, turned
 from scanplan.geometry.lines import Line
-from scanplan.rays.face_rays import LEAST_SIDE_M, ON_M, cast_at_face
+from scanplan.rays.face_rays import cast_at_face
 from scanplan.rays.ray_set import gather_rays
+from scanplan.rays.tolerances import BEHIND_M, ON_M
 
 NORTHERN, SOUTHERN = (0, 2, 1), (0, -2, 1)
 AT_WALL, THROUGH_DOOR, BEFORE_WALL = (-1, 0, 1), (3, -2, 1), (0.5, 1, 1)
@@ -59,7 +60,7 @@ def test_a_ray_from_behind_goes_through_but_shows_no_surface():
     assert by_place(face).tolist() == [[-1, 0.5, 0, 0], [1.5, 1.5, 2, 0]]
     assert face.is_free(0.15).sum() == 1
     assert not face.is_occupied.any() and not face.is_facing.any()
-    assert face.side_m.tolist() == [-2]
+    assert face.views.side_m.tolist() == [-2]
 
 
 def test_the_rays_of_many_scans_are_those_of_each():
@@ -122,7 +123,7 @@ def test_a_stretch_behind_the_cut_of_the_azimuth_is_seen_whole():
 def test_a_sensor_at_the_plane_sees_it_edge_on(y_m, count):
     face = cast(((0, y_m, 1), [(1, -y_m, 1)]))
     assert len(face.along_m) == count
-    assert face.least_side_m == LEAST_SIDE_M
+    assert face.views.least_side_m == BEHIND_M
 
 
 def test_heights_of_planar_scans_are_counted_from_zero():
@@ -190,7 +191,7 @@ def test_every_ray_that_meets_the_stretch_is_found_and_no_other(seed, line):
         for point_m in points:
             way = point_m - sensor_m
             gone_m = -np.sign(side_m) * (way[:2] @ line.normal)
-            if abs(side_m) < LEAST_SIDE_M or gone_m <= 0:
+            if abs(side_m) < BEHIND_M or gone_m <= 0:
                 continue
             share = abs(side_m) / gone_m
             crossing_m = sensor_m + share * way

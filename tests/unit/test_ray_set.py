@@ -19,6 +19,12 @@ def test_rays_are_in_order_of_azimuth_scan_by_scan():
     assert found.rows == [slice(0, 3), slice(3, 5)]
 
 
+def test_rays_of_one_azimuth_stay_in_the_order_given():
+    above = [(2.0, 0.0, z_m) for z_m in (0.3, 0.1, 0.2)]
+    found = rays((ORIGIN, [NORTH, *above, (-1, 0, 0.5), SOUTH, (-2, 0, 0.1)]))
+    assert found.xyz_m[:, 2].tolist() == [0, 0.3, 0.1, 0.2, 0, 0.5, 0.1]
+
+
 def test_points_that_are_not_finite_are_left_out():
     scans = [(4, [EAST, (np.nan, 0, 0)]), (7, [(0, np.inf, 0)])]
     found = gather_rays(scans, {4: np.zeros(3), 7: np.zeros(3)}, planar=False)

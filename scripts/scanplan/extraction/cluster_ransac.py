@@ -5,19 +5,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.extraction import mean_shift, normals, segments
-from scanplan.extraction.segment_limits import Row, SegmentLimits
+from scanplan.extraction.segment_limits import DIAGONAL, Row, SegmentLimits
 from scanplan.geometry import ransac
-from scanplan.rays.face_rays import SKIRTING_M
 from scanplan.rays.ray_set import RaySet
+from scanplan.rays.tolerances import ROUNDING, SKIRTING_M
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 _DUAL_SHIFT_M = 1.0  # several bandwidths: keeps dual points apart that differ in direction
-_ALIKE = np.cos(np.deg2rad(20))  # a point's normal against its wall's
+_ALIKE = np.cos(np.deg2rad(20))  # a point's normal, by noise, against its wall's
 _CORNER_REACH = 1.5  # how far a corner smears normals, in reaches
 _WIDE = 2.0  # inlier distances: noise within leaves no second wall beside the first
-_LEAST_REFIT = 3  # points: any two fit a line
-_STEEP = np.cos(np.deg2rad(45))  # a normal more upright points up rather than out
-_LEAST_LEVEL = 1e-9  # length of a normal's level part, where it is plumb: no division by 0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,6 +46,8 @@ class _Surfaces:
     Attributes
     ----------
     cells : normals.SurfaceCells
+    xy_m : (m, 2) float64
+        Their means, level.
     facing : (m, 2) float64
         Level unit normals.
     upright, level : (m,) bool
@@ -56,6 +55,7 @@ class _Surfaces:
     """
 
     cells: normals.SurfaceCells
+    xy_m: FloatArray
     facing: FloatArray
     upright: BoolArray
     level: BoolArray
@@ -116,7 +116,7 @@ def extract_by_clusters(
             reach_rad=reach_rad,
         )
         # twice as wide as what belongs to them, else noise leaves a second wall beside the first
-        is_beside = _is_beside(surfaces.cells.mean_m[:, :2], wall_rows, _WIDE * settings.inlier_m)
+        is_beside = _is_beside(surfaces.xy_m, wall_rows, _WIDE * settings.inlier_m)
         free &= ~(_is_alike(surfaces, wall.normal) & is_beside)
         rows += wall_rows
     return rows
@@ -157,12 +157,12 @@ def _find_surfaces(
     has_normal = np.isfinite(cells.normal[:, 0])
     normal = np.where(has_normal[:, None], cells.normal, 0)
     upright = has_normal & (np.abs(normal[:, 2]) <= np.sin(np.deg2rad(settings.max_tilt_deg)))
-    facing = normal[:, :2] / np.maximum(np.hypot(*normal[:, :2].T), _LEAST_LEVEL)[:, None]
+    facing = normal[:, :2] / np.maximum(np.hypot(*normal[:, :2].T), ROUNDING)[:, None]
     # between these heights, a normal that points up is a shelf's or a sill's, or of a strip of wall
     # too narrow for one
-    height_m = cells.mean_m[:, 2] - scan.floor_z_m
+    xy_m, height_m = cells.mean_m[:, :2], cells.mean_m[:, 2] - scan.floor_z_m
     outside = (height_m < SKIRTING_M) | (height_m > settings.door_height_m)
-    return _Surfaces(cells, facing, upright, outside & (np.abs(normal[:, 2]) >= _STEEP))
+    return _Surfaces(cells, xy_m, facing, upright, outside & (np.abs(normal[:, 2]) >= DIAGONAL))
 
 
 def _find_outlines(points: FloatArray, settings: ClusterRansacSettings) -> _Surfaces:
@@ -170,15 +170,14 @@ def _find_outlines(points: FloatArray, settings: ClusterRansacSettings) -> _Surf
     cells = normals.cut_outline_cells(points[:, :2], reach_deg=settings.reach_deg)
     has_normal = np.isfinite(cells.normal[:, 0])
     facing = np.where(has_normal[:, None], cells.normal, 0)
-    return _Surfaces(cells, facing, has_normal, np.zeros(len(points), bool))
+    return _Surfaces(cells, cells.mean_m, facing, has_normal, np.zeros(len(points), bool))
 
 
 def _cluster_cells(surfaces: _Surfaces, bandwidth_m: float) -> list[IntArray]:
     """Return the upright cells of each cluster of dual points, by the heaviest cluster."""
     (upright,) = np.nonzero(surfaces.upright)
-    mean_m = surfaces.cells.mean_m[upright, :2]
     label, modes_m = mean_shift.mean_shift(
-        project_along_normals(mean_m, surfaces.facing[upright]),
+        project_along_normals(surfaces.xy_m[upright], surfaces.facing[upright]),
         bandwidth_m=bandwidth_m,
         weight=surfaces.cells.count[upright],
     )
@@ -197,23 +196,25 @@ def _fit_wall(
     cells = surfaces.cells
     inlier_m = settings.inlier_m
     normal, offset_m, _ = ransac.fit_line_ransac(
-        cells.mean_m[own, :2],
+        surfaces.xy_m[own],
         inlier_m=inlier_m,
         trials=settings.trials,
         rng=rng,
         weight=cells.count[own].astype(float),
     )
-    is_near = np.abs(cells.mean_m[:, :2] @ normal - offset_m) <= inlier_m + cells.radius_m
-    is_own = free & _is_alike(surfaces, normal)
-    facing = points[cells.points_of(np.flatnonzero(is_near & is_own))]
-    other = points[cells.points_of(np.flatnonzero(is_near & ~is_own & ~surfaces.level))]
-    on_wall = np.abs(facing[:, :2] @ normal - offset_m) <= inlier_m
-    if on_wall.sum() >= _LEAST_REFIT:
-        normal, offset_m, on_wall = ransac.refit_line(
-            facing[:, :2], normal, offset_m, inlier_m=inlier_m
-        )
+    distance_m = np.abs(surfaces.xy_m @ normal - offset_m)
+    (near,) = np.nonzero(distance_m <= inlier_m + cells.radius_m)
+    is_own = (free & _is_alike(surfaces, normal))[near]
+    is_other = ~(is_own | surfaces.level[near])
+    facing = points.take(cells.points_of(near[is_own]), axis=0)
+    other = points.take(cells.points_of(near[is_other]), axis=0)
+    normal, offset_m, on_wall = ransac.refit_line(
+        facing[:, :2], normal, offset_m, inlier_m=inlier_m
+    )
     is_spare = np.abs(other[:, :2] @ normal - offset_m) <= inlier_m
-    return _WallPoints(normal, float(offset_m), facing[on_wall], other[is_spare])
+    return _WallPoints(
+        normal, float(offset_m), facing.compress(on_wall, axis=0), other.compress(is_spare, axis=0)
+    )
 
 
 def _is_alike(surfaces: _Surfaces, normal: FloatArray) -> BoolArray:

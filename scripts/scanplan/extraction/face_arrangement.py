@@ -6,15 +6,11 @@ from functools import cached_property
 
 import numpy as np
 
+from scanplan.extraction.segment_limits import DIAGONAL
+from scanplan.rays.tolerances import BEHIND_M, ON_M, STRETCH_M
 from scanplan.types import BoolArray, FloatArray, IntArray
 
-LEVEL_M = 0.15
-"""Faces closer than this are one, and so are tops: noise of ranges and poses."""
-
-_PARALLEL = math.cos(math.radians(10))  # what normals of faces of one wall differ by at most
-_ACROSS = math.cos(math.radians(45))  # faces that turn more stand across each other
-_ON_LINE_M = 0.08  # what faces of one line lie apart: noise of ranges
-_BESIDE_M = 0.3  # less of a wall beside furniture may be a trace of something else
+_PARALLEL = math.cos(math.radians(10))  # faces that turn more are chords of a round wall, or others
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +85,7 @@ def stand_in_front(faces: Faces, depth_m: float) -> BoolArray:
 
     What one scan sees behind a face, it sees over it or beside it.
     """
-    before = faces.is_parallel & (faces.forward_m > LEVEL_M) & (faces.forward_m <= depth_m)
+    before = faces.is_parallel & (faces.forward_m > BEHIND_M) & (faces.forward_m <= depth_m)
     return before & (faces.apart_m <= depth_m)
 
 
@@ -110,7 +106,7 @@ def stand_before(faces: Faces, chosen: BoolArray, *, depth_m: float, door_m: flo
     (n, n) bool
         Only the other of the longer line can be the wall.
     """
-    before = faces.is_parallel & (faces.forward_m > LEVEL_M) & (faces.forward_m <= depth_m)
+    before = faces.is_parallel & (faces.forward_m > BEHIND_M) & (faces.forward_m <= depth_m)
     before &= faces.line_length_m[:, None] < faces.line_length_m
     before &= chosen[:, None]
     for one in np.flatnonzero(before.any(axis=1)).tolist():
@@ -141,7 +137,7 @@ def find_corner_faces(faces: Faces, reach_m: float) -> tuple[BoolArray, BoolArra
     normal = faces.normal
     inner = np.zeros((len(ends_m), 2, len(ends_m)), bool)
     outer = inner.copy()
-    across = np.abs(normal @ normal.T) < _ACROSS
+    across = np.abs(normal @ normal.T) < DIAGONAL
     for own in (0, 1):
         for other in (0, 1):
             apart_m = ends_m[None, :, other] - ends_m[:, None, own]
@@ -157,7 +153,7 @@ def find_corner_faces(faces: Faces, reach_m: float) -> tuple[BoolArray, BoolArra
 
 def find_collinear_faces(faces: Faces, gap_m: float) -> BoolArray:
     """Return which faces are on one line with others, no farther than a gap apart: (n, n) bool."""
-    same_line = faces.is_parallel & (np.abs(faces.forward_m) <= _ON_LINE_M)
+    same_line = faces.is_parallel & (np.abs(faces.forward_m) <= ON_M)
     return same_line & (faces.apart_m <= gap_m) & ~np.eye(len(faces), dtype=bool)
 
 
@@ -181,7 +177,7 @@ def _find_room(faces: Faces, one: int, door_m: float) -> tuple[float, float]:
     facing = faces.normal @ direction
     before_m = np.sort((faces.ends_m - faces.middle_m[one]) @ faces.normal[one], axis=1)
     # a door may be next to the corner
-    stands = (before_m[:, 0] <= door_m) & (before_m[:, 1] >= _BESIDE_M)
+    stands = (before_m[:, 0] <= door_m) & (before_m[:, 1] >= STRETCH_M)
     place_m = faces.along_m(one, faces.middle_m)
     low = stands & (facing >= _PARALLEL) & (place_m < 0)
     high = stands & (facing <= -_PARALLEL) & (place_m > 0)
@@ -192,6 +188,6 @@ def _is_beside(spans_m: FloatArray, front_m: tuple[float, float], depth_m: float
     """Return whether enough of spans (n, 2) is beside a front, no farther than a depth."""
     left_m = np.minimum(spans_m[:, 1], front_m[0]) - spans_m[:, 0]
     right_m = spans_m[:, 1] - np.maximum(spans_m[:, 0], front_m[1])
-    is_left = (left_m >= _BESIDE_M) & (front_m[0] - spans_m[:, 1] <= depth_m)
-    is_right = (right_m >= _BESIDE_M) & (spans_m[:, 0] - front_m[1] <= depth_m)
+    is_left = (left_m >= STRETCH_M) & (front_m[0] - spans_m[:, 1] <= depth_m)
+    is_right = (right_m >= STRETCH_M) & (spans_m[:, 0] - front_m[1] <= depth_m)
     return is_left | is_right

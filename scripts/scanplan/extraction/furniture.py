@@ -15,7 +15,6 @@ import numpy as np
 
 from scanplan.extraction import face_evidence
 from scanplan.extraction.face_arrangement import (
-    LEVEL_M,
     Faces,
     find_collinear_faces,
     find_corner_faces,
@@ -25,6 +24,7 @@ from scanplan.extraction.face_arrangement import (
 from scanplan.extraction.segment_limits import Row
 from scanplan.geometry.lines import Line
 from scanplan.rays.ray_set import RaySet
+from scanplan.rays.tolerances import BEHIND_M
 from scanplan.types import BoolArray, FloatArray
 
 
@@ -135,15 +135,13 @@ def keep_walls(rows: list[Row], scan: RaySet | None, limits: FurnitureLimits) ->
 
 def _upright_walls(values: FloatArray, scan: RaySet, limits: FurnitureLimits) -> BoolArray:
     """Return which rows (n, 10) are walls, by what the rays of a 3-D scan show."""
-    evidence = [_weigh_row(scan, row) for row in values]
-    faces = Faces(
-        ends_m=values[:, 0:4].reshape(-1, 2, 2),
-        normal=values[:, 4:6],
-        top_m=np.array([e.top_m for e in evidence]),
-        line=np.arange(len(values)),
-    )
+    ends_m = values[:, 0:4].reshape(-1, 2, 2)
+    normal = values[:, 4:6]
+    heights_m = values[:, 8:10] - scan.floor_z_m
+    evidence = face_evidence.weigh_faces(scan, ends_m, normal, heights_m)
+    faces = Faces(ends_m=ends_m, normal=normal, top_m=evidence.top_m, line=np.arange(len(values)))
     is_low = faces.top_m < limits.furniture_height_m
-    sound = _is_sound(values, evidence, is_low, scan.floor_z_m, limits)
+    sound = _are_sound(values, evidence, is_low, scan.floor_z_m, limits)
     is_small = is_low & (faces.length_m <= limits.furniture_length_m)
     sound &= ~(is_small & (stand_in_front(faces, limits.furniture_depth_m) & sound).any(axis=1))
     inner, outer = find_corner_faces(faces, limits.corner_m)
@@ -167,7 +165,7 @@ def _are_walls_by_corners(
     while (joined := plain & ~wall & (inner & wall).any(axis=(1, 2))).any():
         wall |= joined
     # what is seen higher than a piece of furniture is no side of it
-    as_high = faces.top_m[None, :] > faces.top_m[:, None] - LEVEL_M
+    as_high = faces.top_m[None, :] > faces.top_m[:, None] - BEHIND_M
     beside_furniture = (outer & (~sound & as_high)[:, None]).any(axis=(1, 2))
     wall &= ~(beside_furniture & (faces.length_m <= limits.furniture_depth_m) & is_low)
     is_stub = faces.length_m < limits.stub_length_m
@@ -197,28 +195,20 @@ def _go_on_beyond_doors(
     return goes_on
 
 
-def _is_sound(
+def _are_sound(
     values: FloatArray,
-    evidence: list[face_evidence.FaceEvidence],
+    evidence: face_evidence.FaceEvidence,
     is_low: BoolArray,
     floor_z_m: float,
     limits: FurnitureLimits,
 ) -> BoolArray:
     """Return which faces (n,) may be walls: no clutter, railing or glass, none that ends low."""
-    is_pierced = np.array([e.through > limits.through_share for e in evidence])
-    is_glass = np.array([e.missing > limits.missing_share for e in evidence])
-    is_overlooked = np.array([e.over > limits.over_share for e in evidence])
+    is_pierced = evidence.through > limits.through_share
+    is_glass = evidence.missing > limits.missing_share
+    is_overlooked = evidence.over > limits.over_share
     is_clutter = values[:, 7] > limits.max_rmse_m
     hangs = values[:, 8] - floor_z_m > limits.hang_height_m
     return ~(is_pierced | is_glass | (is_low & (is_clutter | hangs | is_overlooked)))
-
-
-def _weigh_row(scan: RaySet, row: FloatArray) -> face_evidence.FaceEvidence:
-    """Return what a scan's rays show of the face of a row (10,)."""
-    line = Line((row[0:2] + row[2:4]) / 2, row[4:6])
-    low_m, high_m = np.sort(line.along_m(row[0:4].reshape(2, 2)))
-    heights_m = float(row[8] - scan.floor_z_m), float(row[9] - scan.floor_z_m)
-    return face_evidence.weigh_face(scan, line, (low_m, high_m), heights_m)
 
 
 def _is_door_between(

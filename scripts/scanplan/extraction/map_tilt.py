@@ -8,31 +8,31 @@ from collections.abc import Iterable
 import numpy as np
 
 from scanplan.extraction import normals
+from scanplan.extraction.segment_limits import DIAGONAL
 from scanplan.rays import sensor_frame
 from scanplan.types import Array, BoolArray, FloatArray
 
-_NEAR_RAD = np.deg2rad(5)  # what normals of good surfaces scatter by
-_STEEPEST = np.cos(np.deg2rad(45))  # a map that is tilted more is no case of this
+_NEAR_RAD = np.deg2rad(5)  # what normals of good surfaces scatter by: less is no tilt
 _CANDIDATES = 400  # a floor alone is a tenth of all surfaces: dozens of these are its
-_LEAST_TILT_DEG = 7.0  # less is within what `max_tilt_deg` forgives
 _SURER = 1.5  # times the surfaces that agree with z: a ramp or a stair in view shall not warn
-_SCANS = 10  # enough to see a floor somewhere
-_REACH_DEG = 3.5  # as between the beams of a coarse sensor, one and a half times
 
 
-def sample_scan_ids(scan_ids: list[int]) -> list[int]:
-    """Return up to 10 of the scans' ids, spread evenly."""
-    places = np.linspace(0, len(scan_ids) - 1, _SCANS).round().astype(int)
+def sample_scan_ids(scan_ids: list[int], most: int = 10) -> list[int]:
+    """Return up to `most` of the scans' ids, spread evenly: enough to see a floor somewhere."""
+    places = np.linspace(0, len(scan_ids) - 1, most).round().astype(int)
     return [scan_ids[i] for i in np.unique(places)]
 
 
-def tilt_warning(scans: Iterable[tuple[FloatArray, FloatArray]]) -> str:
+def tilt_warning(scans: Iterable[tuple[FloatArray, FloatArray]], reach_deg: float = 3.5) -> str:
     """Return a warning that a map is tilted, if its surfaces show it.
 
     Parameters
     ----------
     scans : iterable of (xyz_m (n, 3), sensor_xyz_m (3,))
         3-D scans in the map.
+    reach_deg : float
+        Half-width of a normal's neighbourhood: one and a half times what is between the beams of a
+        coarse sensor.
 
     Returns
     -------
@@ -43,13 +43,13 @@ def tilt_warning(scans: Iterable[tuple[FloatArray, FloatArray]]) -> str:
     weight: list[Array] = [np.empty(0)]
     for xyz_m, sensor_xyz_m in scans:
         points = sensor_frame.centre_on_sensor(xyz_m, sensor_xyz_m)
-        cells = normals.cut_surface_cells(points, reach_deg=_REACH_DEG)
+        cells = normals.cut_surface_cells(points, reach_deg=reach_deg)
         has_normal = np.isfinite(cells.normal[:, 0])
         normal.append(cells.normal[has_normal])
         weight.append(cells.count[has_normal])
     up = estimate_up_direction(np.concatenate(normal), np.concatenate(weight))
     tilt_deg = np.rad2deg(np.arccos(min(up[2], 1.0)))
-    if tilt_deg < _LEAST_TILT_DEG:
+    if tilt_deg < np.rad2deg(_NEAR_RAD):
         return ""
     return (
         f"surfaces stand {tilt_deg:.0f} degrees off the map's z"
@@ -73,7 +73,7 @@ def estimate_up_direction(normal: FloatArray, weight: FloatArray) -> FloatArray:
         Unit vector, at most 45 degrees off z; z itself unless another is clearly better.
     """
     z = np.array([0.0, 0.0, 1.0])
-    levels = np.flatnonzero(np.abs(normal[:, 2]) > _STEEPEST)
+    levels = np.flatnonzero(np.abs(normal[:, 2]) > DIAGONAL)
     if len(levels) == 0:
         return z
     chosen = levels[:: max(1, len(levels) // _CANDIDATES)]

@@ -7,13 +7,12 @@ Theory 21 (1975).
 import numpy as np
 from scipy.spatial import KDTree
 
+from scanplan.rays.tolerances import ROUNDING
 from scanplan.types import FloatArray, IntArray
 
 _BINS_PER_BANDWIDTH = 8  # means of bins move a mode by far less than the bandwidth
-_SEEDS_PER_BANDWIDTH = 4  # no mode is farther from a seed than what draws it in
 _MAX_STEPS = 300  # bounds the time of seeds that creep
 _ROWS = np.arange(-_BINS_PER_BANDWIDTH, _BINS_PER_BANDWIDTH + 1)[:, None]
-_LEAST_WEIGHT = 1e-12  # where nothing is near: no division by 0
 _STILL = 1e-2  # a seed that moves less than this share of the bandwidth has arrived
 
 
@@ -93,12 +92,12 @@ class _Bins:
         first = np.searchsorted(self.key, self._key(row, xy_m[:, 0] - half), "left")
         last = np.searchsorted(self.key, self._key(row, xy_m[:, 0] + half), "right")
         last = np.where(half > 0, np.maximum(last, first), first)
-        total = (self.sums[last] - self.sums[first]).sum(axis=0)
-        return total[:, 0], total[:, 1:] / np.maximum(total[:, :1], _LEAST_WEIGHT)
+        total = (self.sums.take(last, axis=0) - self.sums.take(first, axis=0)).sum(axis=0)
+        return total[:, 0], total[:, 1:] / np.maximum(total[:, :1], ROUNDING)
 
     def seeds(self) -> FloatArray:
         """Return the mean of the first bin in every square of a quarter of the bandwidth."""
-        square = np.floor((self.mean - self.origin) / (self.bandwidth / _SEEDS_PER_BANDWIDTH))
+        square = np.floor((self.mean - self.origin) / (2 * self.size))
         return self.mean[_first_of_each(square)]
 
 

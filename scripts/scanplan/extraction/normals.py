@@ -12,12 +12,11 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from scanplan.geometry.moments import FEWEST, group_moments, least_variance_direction
+from scanplan.rays.tolerances import ON_M, ROUNDING
 from scanplan.types import FloatArray, IntArray
 
-_MIN_RADIUS_2D_M = 0.08  # several times the noise of a range: a shorter outline has any direction
 _NEAREST_2D = 5  # neighbours, where beams lie apart: enough that noise does not turn the line
 _NEAREST_REACH_2D = 3.0  # reaches: what is farther apart may be of different walls
-_NEAR_M = 0.05  # ranges below count as this: a sensor's own housing is there
 _FAR_M = 1000.0  # ranges above count as this: no surface of a building is there
 _STEEPEST = 4.0  # of z / r, likewise: right above or below the sensor is no wall
 _TABLE_SIZE = 2**23  # cells: up to here a table, 40 MB, is faster than a search in the sorted keys
@@ -56,7 +55,7 @@ class SurfaceCells:
         """Return the indices of the points of the given cells, (k,) int."""
         count = self.count[cells]
         skipped = self.first[cells] - (np.cumsum(count) - count)
-        return self.members[np.arange(count.sum()) + np.repeat(skipped, count)]
+        return self.members.take(np.arange(count.sum()) + np.repeat(skipped, count))
 
 
 def cut_surface_cells(xyz_m: FloatArray, *, reach_deg: float) -> SurfaceCells:
@@ -125,9 +124,9 @@ def estimate_outline_normals(xy_m: FloatArray, *, reach_deg: float) -> FloatArra
     if len(xy_m) < FEWEST[2]:
         return np.full((len(xy_m), 2), np.nan)
     tree = KDTree(xy_m)
-    radius = np.maximum(_MIN_RADIUS_2D_M, np.deg2rad(reach_deg) * np.linalg.norm(xy_m, axis=1))
+    radius = np.maximum(ON_M, np.deg2rad(reach_deg) * np.linalg.norm(xy_m, axis=1))
     nearest = tree.query(xy_m, k=min(_NEAREST_2D + 1, len(xy_m)))[0][:, -1]
-    radius = np.maximum(radius, np.minimum(nearest * (1 + 1e-9), _NEAREST_REACH_2D * radius))
+    radius = np.maximum(radius, np.minimum(nearest * (1 + ROUNDING), _NEAREST_REACH_2D * radius))
     near = tree.query_ball_point(xy_m, radius, return_sorted=True)
     owner = np.repeat(np.arange(len(xy_m)), [len(n) for n in near])
     moments = group_moments(xy_m[np.concatenate(near).astype(int)], owner, len(xy_m))
@@ -138,7 +137,7 @@ class _Grid:
     """The occupied cells of a scan, sorted by (azimuth, z / r, ln r)."""
 
     def __init__(self, xyz_m: FloatArray, step: float) -> None:
-        horizontal = np.clip(np.hypot(xyz_m[:, 0], xyz_m[:, 1]), _NEAR_M, _FAR_M)
+        horizontal = np.clip(np.hypot(xyz_m[:, 0], xyz_m[:, 1]), ON_M, _FAR_M)
         self.turn = max(3, round(2 * np.pi / step))
         azimuth_rad = np.arctan2(xyz_m[:, 1], xyz_m[:, 0])
         rise = np.clip(xyz_m[:, 2] / horizontal, -_STEEPEST, _STEEPEST)
@@ -159,11 +158,11 @@ class _Grid:
         occupied[key] = True
         self.key = np.flatnonzero(occupied)
         self._before = np.concatenate([[0], np.cumsum(occupied, dtype=np.int32)])
-        self.of_point = self._before[key].astype(np.int64)
+        self.of_point = self._before.take(key).astype(np.int64)
 
     def before(self, key: IntArray) -> IntArray:
         """Return the number of occupied cells before each key."""
-        return np.searchsorted(self.key, key) if self.size > _TABLE_SIZE else self._before[key]
+        return np.searchsorted(self.key, key) if self.size > _TABLE_SIZE else self._before.take(key)
 
     def neighbourhood_sums(self, moments: FloatArray) -> FloatArray:
         """Return each cell's moments (k, m) with those of its occupied neighbours added.
@@ -179,7 +178,8 @@ class _Grid:
             start = (azimuth + turn) % self.turn * row_size + inside
             for rise in (-self.shells, 0, self.shells):
                 stop = self.before(start + rise + 2)
-                total += running[stop] - running[self.before(start + rise - 1)]
+                first = self.before(start + rise - 1)
+                total += running.take(stop, axis=0) - running.take(first, axis=0)
         return total.T
 
 
@@ -191,7 +191,7 @@ def _within(xyz_m: FloatArray) -> FloatArray:
     distance_m = np.sqrt(np.einsum("ij,ij->i", xyz_m, xyz_m))
     if distance_m.max() <= _FAR_M:
         return xyz_m
-    return xyz_m * np.minimum(1, _FAR_M / np.maximum(distance_m, _NEAR_M))[:, None]
+    return xyz_m * np.minimum(1, _FAR_M / np.maximum(distance_m, ON_M))[:, None]
 
 
 def _as_cells(

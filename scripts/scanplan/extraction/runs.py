@@ -1,26 +1,54 @@
 """Runs of points along a line: cut where they pause, grown and joined through further points."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from scanplan.extraction.segment_limits import SegmentLimits
 from scanplan.geometry.lines import Line
-from scanplan.rays.face_raster import BELOW_CEILING_M, SCAN_COLUMN_M, FaceRaster, rasterise_rays
-from scanplan.rays.face_rays import ON_M, SKIRTING_M, cast_at_face
+from scanplan.rays.face_raster import CELL_M, SCAN_COLUMN_M, Places
+from scanplan.rays.face_rays import cast_at_face
 from scanplan.rays.ray_set import RaySet
-from scanplan.types import BoolArray, FloatArray
+from scanplan.rays.tolerances import ON_M, ROUNDING, SKIRTING_M
+from scanplan.types import BoolArray, FloatArray, IntArray
 
 _PAUSE_SHARE = 1 / 2  # of the reach: wider than beams apart at grazing angles, narrower than a door
-_EDGE_ON_M = 1e-6  # a line nearer to the sensor is seen edge on, and divides by about 0
+
+
+@dataclass(frozen=True, eq=False)
+class LineColumns:
+    """Columns along a line, as the rays of one scan show them.
+
+    Attributes
+    ----------
+    first_m : float
+        Where the first begins.
+    is_open : (c,) bool
+        Which a ray goes through above what ends rays there: a way leads through.
+    is_stopped : (c,) bool
+        Which rays end lower than a door: at the line, or before it above the skirting.
+    """
+
+    first_m: float
+    is_open: BoolArray
+    is_stopped: BoolArray
+
+    def of(self, where_m: FloatArray) -> IntArray:
+        """Return the columns (n,) of places, the first or the last for those beyond."""
+        return _column_of(where_m, self.first_m, len(self.is_open))
 
 
 def find_runs(where_m: FloatArray, max_gap_m: float, min_points: int) -> FloatArray:
     """Return first and last (k, 2) of each run of enough positions without a gap."""
+    if len(where_m) == 0:
+        return np.empty((0, 2))
     where_m = np.sort(where_m)
-    parts = np.split(where_m, np.flatnonzero(np.diff(where_m) > max_gap_m) + 1)
-    least = max(min_points, 1)
-    return np.array([(p[0], p[-1]) for p in parts if len(p) >= least]).reshape(-1, 2)
+    (pauses,) = np.nonzero(where_m[1:] - where_m[:-1] > max_gap_m)
+    first = np.concatenate([[0], pauses + 1])
+    last = np.concatenate([pauses, [len(where_m) - 1]])
+    is_run = last - first + 1 >= min_points
+    return np.column_stack([where_m[first[is_run]], where_m[last[is_run]]])
 
 
 def find_upright_runs(
@@ -45,22 +73,16 @@ def find_upright_runs(
     """
     if n_own == 0:
         return np.empty((0, 2))
-    raster = _rasterise_scan(scan, line, where_m, height_m, limits.door_height_m)
-    column = raster.column_of(where_m)
-    heights_m = {"low_m": SKIRTING_M, "door_m": limits.door_height_m}
-    is_open = raster.is_open(limits.min_height_m, **heights_m)
-    is_closed = raster.is_stopped(**heights_m) & ~is_open
-    makes = (height_m <= limits.door_height_m) & ~is_open[column]
+    columns = _look_at_columns(scan, line, where_m, height_m, limits)
+    column = columns.of(where_m)
+    makes = (height_m <= limits.door_height_m) & ~columns.is_open[column]
     runs = find_runs(where_m[:n_own][makes[:n_own]], limits.max_gap_m, limits.min_points)
-    return grow_runs(runs, where_m[is_closed[column]], limits.corner_m, raster, is_open)
+    joins = (columns.is_stopped & ~columns.is_open)[column]
+    return grow_runs(runs, where_m[joins], limits.corner_m, columns)
 
 
 def grow_runs(
-    found: FloatArray,
-    where_m: FloatArray,
-    max_gap_m: float,
-    raster: FaceRaster,
-    is_open: BoolArray,
+    found: FloatArray, where_m: FloatArray, max_gap_m: float, columns: LineColumns
 ) -> FloatArray:
     """Let runs go on through further positions up to a gap or an opening, and join those that meet.
 
@@ -71,9 +93,7 @@ def grow_runs(
     where_m : (n,) float
         Further positions.
     max_gap_m : float
-    raster : face_raster.FaceRaster
-    is_open : (c,) bool
-        Which of its columns a way leads through.
+    columns : LineColumns
 
     Returns
     -------
@@ -82,14 +102,14 @@ def grow_runs(
     if len(found) == 0:
         return found
     where_m = np.sort(np.concatenate([where_m, found.ravel()]))
-    is_break = (np.diff(where_m) > max_gap_m) | _opens_between(where_m, raster, is_open)
-    breaks = np.flatnonzero(is_break) + 1
-    begins_m = where_m[np.r_[0, breaks]]
-    ends_m = where_m[np.r_[breaks - 1, len(where_m) - 1]]
-    joined = []
-    for first, last in found:
-        first_m = begins_m[np.searchsorted(begins_m, first, "right") - 1]
-        last_m = ends_m[np.searchsorted(ends_m, last)]
+    is_break = (where_m[1:] - where_m[:-1] > max_gap_m) | _opens_between(where_m, columns)
+    (breaks,) = np.nonzero(is_break)
+    begins_m = where_m[np.concatenate([[0], breaks + 1])]
+    ends_m = where_m[np.concatenate([breaks, [len(where_m) - 1]])]
+    firsts_m = begins_m[np.searchsorted(begins_m, found[:, 0], "right") - 1]
+    lasts_m = ends_m[np.searchsorted(ends_m, found[:, 1])]
+    joined: list[list[float]] = []
+    for first_m, last_m in zip(firsts_m.tolist(), lasts_m.tolist(), strict=True):
         if joined and first_m <= joined[-1][1]:
             joined[-1][1] = last_m
         else:
@@ -123,35 +143,92 @@ def extend_run_ends(
     return ends
 
 
-def _opens_between(where_m: FloatArray, raster: FaceRaster, is_open: BoolArray) -> BoolArray:
+def sort_into_columns(
+    occupied: Places,
+    free: Places,
+    free_until_m: FloatArray,
+    occluded: Places,
+    *,
+    span_m: tuple[float, float],
+    sill_m: float,
+    door_m: float,
+) -> LineColumns:
+    """Sort the rays of one scan into columns of 10 cm along a line.
+
+    Parameters
+    ----------
+    occupied, free, occluded : face_raster.Places
+        Where rays end at the line, go through it, and would have met it.
+    free_until_m : (n,) float
+        Until where along the line each ray through leaves the thinnest wall: columns up to there
+        are free, too.
+    span_m : (float, float)
+        From where to where; rays beyond count for the first and the last column.
+    sill_m : float
+        What is no higher does not close a column.
+    door_m : float
+        What is higher says nothing of what is below.
+    """
+    n_columns = int((span_m[1] - span_m[0]) / SCAN_COLUMN_M) + 1
+    top_row = np.full(n_columns, -1)
+    low, row = _low_rows(occupied[1], 0.0, door_m)
+    np.maximum.at(top_row, _column_of(occupied[0][low], span_m[0], n_columns), row)
+    over, row = _low_rows(free[1], SKIRTING_M, door_m)
+    begin = _column_of(free[0][over], span_m[0], n_columns)
+    end = _column_of(free_until_m[over], span_m[0], n_columns)
+    column, ray = _count_through(np.minimum(begin, end), np.maximum(begin, end))
+    is_open = np.zeros(n_columns, bool)
+    is_open[column[row[ray] > top_row[column]]] = True
+    is_stopped = top_row >= 0
+    before, _ = _low_rows(occluded[1], SKIRTING_M, door_m)
+    is_stopped[_column_of(occluded[0][before], span_m[0], n_columns)] = True
+    return LineColumns(span_m[0], is_open & ((top_row + 1) * CELL_M <= sill_m), is_stopped)
+
+
+def _look_at_columns(
+    scan: RaySet, line: Line, where_m: FloatArray, height_m: FloatArray, limits: SegmentLimits
+) -> LineColumns:
+    """Return a line's columns: points given are at it, rays go on through the thinnest wall."""
+    span_m = float(where_m.min()), float(where_m.max())
+    face = cast_at_face(scan, line, *span_m, at_m=ON_M, least_side_m=ROUNDING)
+    (free,) = np.nonzero(face.is_free(ON_M))
+    (occluded,) = np.nonzero(face.is_occluded)
+    free_m = face.along_m.take(free)
+    slope = (free_m - face.views.sensor_along_m) / np.abs(face.views.side_m)
+    return sort_into_columns(
+        (where_m, height_m),
+        (free_m, face.height_m.take(free)),
+        free_m + slope * ON_M,
+        (face.along_m.take(occluded), face.height_m.take(occluded)),
+        span_m=span_m,
+        sill_m=limits.min_height_m,
+        door_m=limits.door_height_m,
+    )
+
+
+def _column_of(along_m: FloatArray, first_m: float, n_columns: int) -> IntArray:
+    """Return the columns (n,) of places, the first or the last for those beyond."""
+    column = ((along_m - first_m) / SCAN_COLUMN_M).astype(np.int64)
+    return np.minimum(np.maximum(column, 0), n_columns - 1)
+
+
+def _low_rows(height_m: FloatArray, low_m: float, door_m: float) -> tuple[IntArray, IntArray]:
+    """Return which heights (n,) are between two, and the row of 5 cm that each of these is in."""
+    row = np.maximum(height_m / CELL_M, 0).astype(np.int64)
+    (low,) = np.nonzero((row >= round(low_m / CELL_M)) & (row < round(door_m / CELL_M)))
+    return low, row[low]
+
+
+def _count_through(begin: IntArray, end: IntArray) -> tuple[IntArray, IntArray]:
+    """Return each number from begin to end, both included, and of which pair (n,) it is."""
+    count = end - begin + 1
+    pair = np.repeat(np.arange(len(count)), count)
+    return np.arange(len(pair)) + np.repeat(begin + count - np.cumsum(count), count), pair
+
+
+def _opens_between(where_m: FloatArray, columns: LineColumns) -> BoolArray:
     """Return between which of consecutive positions (k,), rising, a column is open, (k - 1,)."""
-    n_open_before = np.concatenate([[0], np.cumsum(is_open)])
-    column = raster.column_of(where_m)
+    n_open_before = np.concatenate([[0], np.cumsum(columns.is_open)])
+    column = columns.of(where_m)
     after = np.minimum(column[:-1] + 1, column[1:])
     return n_open_before[column[1:]] > n_open_before[after]
-
-
-def _rasterise_scan(
-    scan: RaySet, line: Line, where_m: FloatArray, height_m: FloatArray, door_height_m: float
-) -> FaceRaster:
-    """Return the raster of a line.
-
-    The points given, below a door's height, are what is occupied; rays go on through the thinnest
-    wall.
-    """
-    span_m = where_m.min(), where_m.max()
-    face = cast_at_face(scan, line, *span_m, at_m=ON_M, least_side_m=_EDGE_ON_M)
-    free = face.is_free(ON_M)
-    occluded = face.is_occluded
-    sensor_m = np.zeros(2)
-    slope = (face.along_m[free] - line.along_m(sensor_m)) / np.abs(line.offset_m(sensor_m))
-    low = height_m <= door_height_m
-    return rasterise_rays(
-        (where_m[low], height_m[low]),
-        (face.along_m[free], face.height_m[free]),
-        (face.along_m[occluded], face.height_m[occluded]),
-        span_m=span_m,
-        column_m=SCAN_COLUMN_M,
-        high_m=max(BELOW_CEILING_M, door_height_m),
-        free_until_m=face.along_m[free] + slope * ON_M,
-    )

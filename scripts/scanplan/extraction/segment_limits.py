@@ -2,6 +2,11 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
+DIAGONAL = np.cos(np.radians(45))
+"""Cosine of half a right angle: what turns more stands across, or points up rather than out."""
+
 Row = tuple[float, ...]
 """A segment as `segments.cut_line` returns it.
 

@@ -107,10 +107,11 @@ def cut_line(
         runs = find_upright_runs(scan, line, where_m, height_m, n_own, limits)
     rows = []
     for first_m, last_m in runs:
-        inside = every[(first_m <= where_m) & (where_m <= last_m)]
-        row = _describe_run(line, sign * offset_m, (first_m, last_m), inside)
-        is_long = last_m - first_m >= limits.min_length_m
-        if is_long and (scan is None or row[9] - row[8] >= limits.min_height_m):
+        if last_m - first_m < limits.min_length_m:
+            continue
+        (inside,) = np.nonzero((first_m <= where_m) & (where_m <= last_m))
+        row = _describe_run(line, sign * offset_m, (first_m, last_m), every.take(inside, axis=0))
+        if scan is None or row[9] - row[8] >= limits.min_height_m:
             rows.append(row)
     return rows
 

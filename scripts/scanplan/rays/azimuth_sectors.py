@@ -7,21 +7,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from scanplan.rays.tolerances import ROUNDING
 from scanplan.types import FloatArray, IntArray
 
-_SECTORS = 180  # two degrees each: finer ones cost more than the rays that they spare
-_ROUND_M = 1e-6  # rounding of a length along a ray
+N_SECTORS = 72
+"""Of 5 degrees each: wider than what is between two firings of any sensor."""
 
 
 @dataclass(frozen=True, eq=False)
 class AzimuthSectors:
-    """The rays of each scan by the two degrees of azimuth that they lie in.
+    """The rays of each scan by the five degrees of azimuth that they lie in.
 
     Attributes
     ----------
-    first : (s, 181) int64
+    first : (s, 73) int64
         Row that each sector begins at, and that the last ends before.
-    reach_m : (s, 180) float64
+    reach_m : (s, 72) float64
         Level length of the longest ray in each; 0 where there is none.
     """
 
@@ -43,13 +44,13 @@ def sort_into_sectors(
     way_m : (n, 2) float64
         From the sensor to where each ray ends, level.
     """
-    edges_rad = np.linspace(-np.pi, np.pi, _SECTORS + 1)[1:-1]
+    edges_rad = np.linspace(-np.pi, np.pi, N_SECTORS + 1)[1:-1]
     scans = list(zip(first[:-1].tolist(), first[1:].tolist(), strict=True))
     inner = [begin + np.searchsorted(azimuth_rad[begin:end], edges_rad) for begin, end in scans]
-    inner = np.reshape(inner, (len(scans), _SECTORS - 1))
+    inner = np.reshape(inner, (len(scans), N_SECTORS - 1))
     rows = np.column_stack([first[:-1], inner, first[1:]]).astype(np.int64)
     square_m2 = np.einsum("ij,ij->i", way_m, way_m)
-    reach_m = np.zeros((len(scans), _SECTORS))
+    reach_m = np.zeros((len(scans), N_SECTORS))
     filled = np.diff(rows) > 0
     if filled.any():
         reach_m[filled] = np.sqrt(np.maximum.reduceat(square_m2, rows[:, :-1][filled]))
@@ -92,10 +93,10 @@ def cull_spans(
     """
     straight = -np.sign(side_m)[:, None] * normal
     straight_rad = np.arctan2(straight[:, 1], straight[:, 0])[:, None]
-    middle_rad = (np.arange(_SECTORS) + 0.5) * (2 * np.pi / _SECTORS) - np.pi
+    middle_rad = (np.arange(N_SECTORS) + 0.5) * (2 * np.pi / N_SECTORS) - np.pi
     apart_rad = np.abs((middle_rad - straight_rad + np.pi) % (2 * np.pi) - np.pi)
-    straightest = np.cos(np.maximum(apart_rad - np.pi / _SECTORS, 0))
+    straightest = np.cos(np.maximum(apart_rad - np.pi / N_SECTORS, 0))
     gone_m = sectors.reach_m[scans] * np.maximum(straightest, 0)
-    row, sector = np.nonzero(gone_m >= np.abs(side_m)[:, None] - at_m - _ROUND_M)
+    row, sector = np.nonzero(gone_m >= np.abs(side_m)[:, None] - at_m - ROUNDING)
     first, stop = sectors.first[scans[row], sector], sectors.first[scans[row], sector + 1]
     return np.maximum(low[:, row], first), np.minimum(high[:, row], stop), row

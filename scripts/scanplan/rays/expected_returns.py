@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from scanplan.rays.azimuth_sectors import N_SECTORS
+from scanplan.rays.tolerances import FEW, ON_M, STRAY_SHARE
 from scanplan.types import Array, FloatArray, IntArray
 
 if TYPE_CHECKING:
@@ -27,11 +29,7 @@ Their rays are few, and much stands before the surface.
 """
 
 _ROWS_PER_DEG = 10  # of elevation: beams of a VLP-16 are 2 degrees apart, of dense sensors 0.2
-_SECTORS = 72  # of 5 degrees: wider than what is between two firings
 _LEAST_RAYS = 20.0  # half of so many are not lost by chance
-_LEAST_RAYS_A_SCAN = 3.0  # fewer, and the count expected is mostly rounding
-_MOST_OCCLUDED = 0.15  # a frame or a plant may stop these; more, and the surface is hidden
-_BEFORE_M = 0.1  # returns farther before a surface are of something else
 _DEEP_M = 0.6  # no wall is thicker
 _WIDTH = 5  # columns that are judged together: single ones expect too few rays
 
@@ -50,9 +48,9 @@ def count_returns_below(azimuth_rad: FloatArray, xyz_m: FloatArray) -> FloatArra
     (1801,) float64
         Below each elevation from -90 degrees on, in steps of 0.1 degrees.
     """
-    sector = ((azimuth_rad + np.pi) / (2 * np.pi) * _SECTORS).astype(np.int64)
-    sector = np.minimum(sector, _SECTORS - 1)
-    seen_deg = max(np.count_nonzero(np.bincount(sector)), 1) * 360 / _SECTORS
+    sector = ((azimuth_rad + np.pi) / (2 * np.pi) * N_SECTORS).astype(np.int64)
+    sector = np.minimum(sector, N_SECTORS - 1)
+    seen_deg = max(np.count_nonzero(np.bincount(sector)), 1) * 360 / N_SECTORS
     elevation_deg = np.rad2deg(np.arctan2(xyz_m[:, 2], np.hypot(xyz_m[:, 0], xyz_m[:, 1])))
     n_rows = 180 * _ROWS_PER_DEG
     row = np.clip((elevation_deg + 90) * _ROWS_PER_DEG, 0, n_rows - 1).astype(np.int64)
@@ -61,10 +59,12 @@ def count_returns_below(azimuth_rad: FloatArray, xyz_m: FloatArray) -> FloatArra
 
 @dataclass(frozen=True, eq=False)
 class SentRays:
-    """Rays that scans sent to the columns of a surface at some heights, (s, n) each.
+    """Rays of some views to the columns of surfaces at some heights, (v, n) each.
 
     Attributes
     ----------
+    view : (v,) int64
+        Index of each view.
     expected : array
         How many returns there ought to be.
     occluded : array
@@ -75,20 +75,22 @@ class SentRays:
         Of these, at the surface or no further behind it than a wall is thick.
     """
 
+    view: IntArray
     expected: FloatArray
     occluded: IntArray
     returned: IntArray
     in_wall: IntArray
 
     @property
-    def missing_share(self) -> float:
-        """Share of the expected returns that are nowhere; 0 where none is expected."""
-        expected = self.expected.sum()
-        returned = self.occluded.sum() + self.returned.sum()
-        return float(max(0.0, 1 - returned / expected)) if expected > 0 else 0.0
+    def missing_share(self) -> FloatArray:
+        """Share (v,) of the returns expected of each view that are nowhere; 0 where none is."""
+        expected = self.expected.sum(axis=1)
+        returned = self.occluded.sum(axis=1) + self.returned.sum(axis=1)
+        share = np.divide(returned, expected, out=np.ones(len(expected)), where=expected > 0)
+        return np.maximum(0.0, 1 - share)
 
     def reached(self, *, least_scans: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return how many rays reached the columns (n,) and those around each.
+        """Return how many rays reached the columns (n,) of one surface and those around each.
 
         In all, of these those that came back, and those that ended in the wall.
 
@@ -99,11 +101,11 @@ class SentRays:
         occluded = _sum_neighbours(self.occluded)
         # where things hide the surface from a scan it says nothing: rays along the tops of
         # furniture get lost
-        clear = occluded < _MOST_OCCLUDED * expected
+        clear = occluded < STRAY_SHARE * expected
         reached = ((expected - occluded) * clear).sum(axis=0)
         returned = (_sum_neighbours(self.returned) * clear).sum(axis=0)
         in_wall = (_sum_neighbours(self.in_wall) * clear).sum(axis=0)
-        n_scans = (clear & (expected >= _LEAST_RAYS_A_SCAN)).sum(axis=0)
+        n_scans = (clear & (expected >= FEW)).sum(axis=0)
         enough = (n_scans >= least_scans) & (reached >= _LEAST_RAYS)
         known = [np.where(enough, rows, np.nan) for rows in (reached, returned, in_wall)]
         return known[0], known[1], known[2]
@@ -113,11 +115,11 @@ def count_sent_rays(
     rays: "RaySet",
     face: "FaceRays",
     low_m: float,
-    count: int,
+    count: int | IntArray,
     column_m: float,
-    heights_m: tuple[float, float],
+    heights_m: tuple[float, float] | FloatArray,
 ) -> SentRays:
-    """Return the rays that scans sent to the columns of a surface.
+    """Return the rays that were sent to the columns of surfaces.
 
     Parameters
     ----------
@@ -126,43 +128,55 @@ def count_sent_rays(
     face : face_rays.FaceRays
         Of these, with what is occluded within `NEAR_M`.
     low_m : float
-        Where along the line the first column begins.
-    count : int
-        Number of columns.
+        Where along its line the first column of a view begins.
+    count : int or (v,) int
+        Number of columns, if not of all views the same.
     column_m : float
-    heights_m : (float, float)
-        Above the floor.
+    heights_m : (2,) or (v, 2) float
+        From where to where above the floor.
 
     Returns
     -------
     SentRays
-        Of the scans on the side of the line's normal and near enough.
+        Of the views from the side of the line's normal and from near enough; nothing in columns
+        beyond a view's own.
     """
-    sensor_m = face.line.along_m(rays.sensors_m[:, :2])
-    high_m = low_m + column_m * count
-    beyond_m = np.maximum(np.maximum(low_m - sensor_m, sensor_m - high_m), 0)
-    grazing_m = np.tan(GRAZING_RAD) * face.side_m  # along the line, from where the sensor stands
-    is_near = (np.hypot(face.side_m, beyond_m) <= NEAR_M) & (beyond_m <= grazing_m)
-    scans = np.flatnonzero((face.side_m >= face.least_side_m) & is_near)
-    middle_m = low_m + column_m * (np.arange(count) + 0.5)
-    away_m = middle_m - sensor_m[scans, None]
-    expected = _expect_returns(rays, scans, face.side_m[scans, None], away_m, column_m, heights_m)
-    expected *= np.abs(away_m) < grazing_m[scans, None]
-    row = np.full(len(sensor_m), -1)
-    row[scans] = np.arange(len(scans))
-    is_inside = (face.height_m >= heights_m[0]) & (face.height_m < heights_m[1])
-    is_inside &= (row >= 0).take(face.scan) & (face.along_m >= low_m) & (face.along_m < high_m)
-    is_inside &= np.abs(face.along_m - sensor_m.take(face.scan)) < grazing_m.take(face.scan)
-    rows = np.flatnonzero(is_inside)
+    views = face.views
+    counts = np.broadcast_to(count, len(views.scan))
+    high_m = low_m + column_m * counts
+    beyond_m = np.maximum(low_m - views.sensor_along_m, views.sensor_along_m - high_m)
+    grazing_m = np.tan(GRAZING_RAD) * views.side_m  # along the line, from where the sensor stands
+    is_near = np.hypot(views.side_m, np.maximum(beyond_m, 0)) <= NEAR_M
+    is_looking = is_near & (beyond_m <= grazing_m) & (views.side_m >= views.least_side_m)
+    (looking,) = np.nonzero(is_looking)
+    number = np.arange(counts.max(initial=0))
+    away_m = low_m + column_m * (number + 0.5) - views.sensor_along_m[looking, None]
+    bottom_m, top_m = np.broadcast_to(heights_m, (len(counts), 2)).T
+    expected = _expect_returns(
+        rays,
+        views.scan[looking],
+        views.side_m[looking, None],
+        away_m,
+        column_m,
+        (bottom_m[looking, None], top_m[looking, None]),
+    )
+    expected *= np.abs(away_m) < grazing_m[looking, None]
+    expected *= number < counts[looking, None]
+    view, along_m, height_m = face.view, face.along_m, face.height_m
+    is_inside = is_looking.take(view) & (along_m >= low_m) & (along_m < high_m.take(view))
+    is_inside &= (height_m >= bottom_m.take(view)) & (height_m < top_m.take(view))
+    is_inside &= np.abs(along_m - views.sensor_along_m.take(view)) < grazing_m.take(view)
+    (rows,) = np.nonzero(is_inside)
     behind_m = face.behind_m.take(rows)
-    column = ((face.along_m.take(rows) - low_m) / column_m).astype(np.int64)
-    cell = row.take(face.scan.take(rows)) * count + np.minimum(column, count - 1)
-    is_returned = behind_m >= -_BEFORE_M
+    column = ((along_m.take(rows) - low_m) / column_m).astype(np.int64)
+    row = np.cumsum(is_looking) - 1
+    cell = row.take(view.take(rows)) * len(number) + np.minimum(column, len(number) - 1)
+    is_returned = behind_m >= -ON_M
     kinds = (~is_returned, is_returned, is_returned & (behind_m <= _DEEP_M))
     occluded, returned, in_wall = (
         np.bincount(cell[kind], minlength=expected.size).reshape(expected.shape) for kind in kinds
     )
-    return SentRays(expected, occluded, returned, in_wall)
+    return SentRays(looking, expected, occluded, returned, in_wall)
 
 
 def _expect_returns(
@@ -171,7 +185,7 @@ def _expect_returns(
     side_m: FloatArray,
     away_m: FloatArray,
     column_m: float,
-    heights_m: tuple[float, float],
+    heights_m: tuple[FloatArray, FloatArray],
 ) -> FloatArray:
     """Return how many returns scans (s,) usually have in the direction of columns (s, n).
 
@@ -181,12 +195,14 @@ def _expect_returns(
         How far the sensors lie from the line.
     away_m : (s, n) float64
         How far the columns lie from there, along the line.
+    heights_m : (s, 1) and (s, 1) float64
+        From where to where.
     """
     distance_m = np.hypot(away_m, side_m)
-    usual = rays.usual[scans]
     low, high = (
         _below(
-            usual,
+            rays.usual,
+            scans[:, None],
             np.arctan2(height_m + rays.floor_z_m - rays.sensors_m[scans, 2, None], distance_m),
         )
         for height_m in heights_m
@@ -194,11 +210,12 @@ def _expect_returns(
     return (high - low) * np.rad2deg(column_m * side_m / distance_m**2)
 
 
-def _below(usual: FloatArray, elevation_rad: FloatArray) -> FloatArray:
-    """Return the running sums (s, n) at elevations (s, c), straight between the steps."""
-    at = np.clip((np.rad2deg(elevation_rad) + 90) * _ROWS_PER_DEG, 0, usual.shape[1] - 1.001)
-    row, scan = at.astype(np.int64), np.arange(len(usual))[:, None]
-    return usual[scan, row] + (at - row) * (usual[scan, row + 1] - usual[scan, row])
+def _below(usual: FloatArray, scan: IntArray, elevation_rad: FloatArray) -> FloatArray:
+    """Return the running sums (s, n) of scans at elevations, straight between the steps."""
+    at = (np.rad2deg(elevation_rad) + 90) * _ROWS_PER_DEG
+    row = np.minimum(at.astype(np.int64), usual.shape[1] - 2)
+    below = usual[scan, row]
+    return below + (at - row) * (usual[scan, row + 1] - below)
 
 
 def _sum_neighbours(rows: Array) -> FloatArray:

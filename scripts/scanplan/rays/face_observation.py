@@ -14,17 +14,11 @@ from scanplan.rays.expected_returns import SentRays
 from scanplan.rays.face_raster import CELL_M, FaceRaster
 from scanplan.rays.face_rays import FaceRays, cast_at_face
 from scanplan.rays.ray_set import RaySet
+from scanplan.rays.tolerances import BEHIND_M, FEW, SKIRTING_M, STRETCH_M
 from scanplan.types import FloatArray, IntArray
 
-LEAST_HEIGHT_M = 0.1  # lower returns may be of the floor, which noise and tilt lift
-_BEHIND_M = (
-    0.15  # what poses err by: a ray that ends nearer behind the surface may have ended at it
-)
+_MOST_SHARE = 0.5  # of rays return from any wall; of a pane's length has a frame
 _GLASS_HEIGHTS_M = ((0.2, 0.7), (0.9, 1.6))  # skirting to sill; above sills, below low lintels
-_LEAST_GLASS_M = 0.3  # narrower panes are in doors and stairs
-_LEAST_GLASS_SCANS = 3  # two may share what stands too near to be measured
-_RETURNED_SHARE = 0.5  # of the rays; a dark or glossy wall still returns more
-_FRAMED_SHARE = 0.5  # of a pane's length: a line that merely goes on before a pane has no frame
 
 
 @dataclass(frozen=True)
@@ -89,7 +83,6 @@ class FaceObservation:
         return face_raster.rasterise_rays(
             (self.occupied_m, self.occupied_z_m),
             (self.free_m, self.free_z_m),
-            (np.empty(0), np.empty(0)),
             span_m=(places_m.min(initial=0.0), places_m.max(initial=0.0)),
             planar=self.planar,
         )
@@ -102,7 +95,7 @@ class FaceObservation:
         """
         returns_m = np.sort(np.concatenate([self.occupied_m, self.low_m]))
         share = [filled_share(returns_m, *span_m) for span_m in self.glass_m]
-        return self.glass_m[np.array(share, float) >= _FRAMED_SHARE]
+        return self.glass_m[np.array(share, float) >= _MOST_SHARE]
 
     def occupied_between(self, low_m: float, high_m: float) -> slice:
         """Return which returns lie between two places."""
@@ -135,9 +128,9 @@ def observe_face(
     within_m = 0.0 if rays.planar else expected_returns.NEAR_M
     face = cast_at_face(rays, line, low_m, high_m, at_m=band_m, occluded_within_m=within_m)
     order = np.argsort(face.along_m, kind="stable")
-    is_free = face.is_free(band_m + _BEHIND_M)[order]
+    is_free = face.is_free(band_m + BEHIND_M)[order]
     is_occupied = face.is_occupied[order]
-    is_upright = np.full(len(order), True) if rays.planar else face.height_m[order] > LEAST_HEIGHT_M
+    is_upright = np.full(len(order), True) if rays.planar else face.height_m[order] > SKIRTING_M
     occupied = order[is_occupied & is_upright]
     free = order[is_free]
     low = order[is_occupied & ~is_upright]
@@ -190,11 +183,11 @@ def _find_glass(rays: RaySet, face: FaceRays, low_m: float, high_m: float) -> Fl
     for heights_m in _GLASS_HEIGHTS_M:
         if is_lost.any():
             sent = expected_returns.count_sent_rays(rays, face, low_m, count, CELL_M, heights_m)
-            reached, returned, _ = sent.reached(least_scans=_LEAST_GLASS_SCANS)
-            is_lost &= returned < _RETURNED_SHARE * reached
+            reached, returned, _ = sent.reached(least_scans=FEW)
+            is_lost &= returned < _MOST_SHARE * reached
     steps = np.diff(np.concatenate([[False], is_lost, [False]]).astype(np.int8))
     spans_m = (low_m + CELL_M * np.flatnonzero(steps)).reshape(-1, 2)
-    return spans_m[np.diff(spans_m, axis=1)[:, 0] >= _LEAST_GLASS_M]
+    return spans_m[np.diff(spans_m, axis=1)[:, 0] >= STRETCH_M]
 
 
 def _between(places_m: FloatArray, low_m: float, high_m: float) -> slice:

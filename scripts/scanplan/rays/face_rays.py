@@ -22,12 +22,31 @@ import numpy as np
 from scanplan.geometry.lines import Line
 from scanplan.rays import azimuth_sectors
 from scanplan.rays.ray_set import RaySet
+from scanplan.rays.tolerances import BEHIND_M, ROUNDING
 from scanplan.types import BoolArray, FloatArray, IntArray
 
-LEAST_SIDE_M = 0.15  # a sensor nearer to the plane sees the surface edge on
-ON_M = 0.08  # of one scan: returns this near are a surface's own, by noise of ranges and roughness
-SKIRTING_M = 0.2  # lower returns may be the floor's
-_AHEAD_M = 1e-6  # a ray that runs along the plane meets it nowhere
+
+@dataclass(frozen=True, eq=False)
+class Views:
+    """What single scans see of single lines.
+
+    One for each of many scans that look at a line, or for each of many lines that a scan looks at.
+
+    Attributes
+    ----------
+    scan : (v,) int64
+        Index of the scan.
+    sensor_along_m, side_m : (v,) float64
+        Where its sensor stands: along the line, and how far from the upright plane over it,
+        positive on the side of the line's normal.
+    least_side_m : float
+        Of views whose sensor is nearer to the plane no rays are looked at.
+    """
+
+    scan: IntArray
+    sensor_along_m: FloatArray
+    side_m: FloatArray
+    least_side_m: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,35 +55,34 @@ class FaceRays:
 
     Attributes
     ----------
-    line : lines.Line
+    views : Views
+    view : (n,) int64
+        Index of each ray's view.
     along_m, height_m : (n,) float64
         Where a ray meets the plane: along the line and above the floor. Of a ray that ends within
         `at_m` of the plane where it ends.
     behind_m : (n,) float64
         How far behind the plane, seen from its sensor, a ray ends; negative before it.
-    scan : (n,) int64
-        Index of its scan.
     at_m : float
         A return this near to the plane is one of the surface.
-    side_m : (s,) float64
-        How far each scan's sensor lies from the plane, positive on the side of the line's normal.
-    least_side_m : float
-        Scans whose sensor is nearer to the plane sent none of these.
     """
 
-    line: Line
+    views: Views
+    view: IntArray
     along_m: FloatArray
     height_m: FloatArray
     behind_m: FloatArray
-    scan: IntArray
     at_m: float
-    side_m: FloatArray
-    least_side_m: float
+
+    @property
+    def scan(self) -> IntArray:
+        """Index of each ray's scan, (n,) int64."""
+        return self.views.scan.take(self.view)
 
     @cached_property
     def is_facing(self) -> BoolArray:
         """Which rays (n,) come from the side of the line's normal."""
-        return (self.side_m > 0).take(self.scan)
+        return (self.views.side_m > 0).take(self.view)
 
     @cached_property
     def is_occupied(self) -> BoolArray:
@@ -89,7 +107,7 @@ def cast_at_face(
     *,
     at_m: float,
     occluded_within_m: float = np.inf,
-    least_side_m: float = LEAST_SIDE_M,
+    least_side_m: float = BEHIND_M,
 ) -> FaceRays:
     """Gather the rays that scans sent at a stretch of a line.
 
@@ -110,10 +128,11 @@ def cast_at_face(
     """
     sensors_m = rays.sensors_m
     side_m = line.offset_m(sensors_m[:, :2])
+    sensor_along_m = line.along_m(sensors_m[:, :2])
     scans = np.flatnonzero(np.abs(side_m) >= least_side_m)
     low, high = rays.rows_between(line.at(np.array([low_m, high_m]))[:, None], scans)
     if occluded_within_m < np.inf:
-        there_m = line.along_m(sensors_m[scans, :2])
+        there_m = sensor_along_m[scans]
         beyond_m = np.maximum(np.maximum(low_m - there_m, there_m - high_m), 0)
         is_near = np.hypot(side_m[scans], beyond_m) <= occluded_within_m
         far = np.flatnonzero(~is_near)
@@ -129,22 +148,74 @@ def cast_at_face(
         low = np.hstack([low[:, is_near], cut_low])
         high = np.hstack([high[:, is_near], cut_high])
         scans = np.concatenate([scans[is_near], scans[far[row]]])
-    xyz_m, scan = rays.gather_rows(low, high, scans)
-    along_m, height_m, behind_m = _meet(rays, line, xyz_m, scan, side_m, at_m)
-    return FaceRays(line, along_m, height_m, behind_m, scan, at_m, side_m, least_side_m)
+    xyz_m, view = rays.gather_rows(low, high, scans)
+    ends_m = line.along_m(xyz_m[:, :2]), line.offset_m(xyz_m[:, :2]), xyz_m[:, 2]
+    views = Views(np.arange(len(sensors_m)), sensor_along_m, side_m, least_side_m)
+    return _meet(rays, views, view, *ends_m, at_m)
+
+
+def cast_at_faces(
+    rays: RaySet, ends_m: FloatArray, normal: FloatArray, *, at_m: float, least_side_m: float
+) -> FaceRays:
+    """Gather the rays that one scan sent at each of several faces, as `cast_at_face` does of one.
+
+    Parameters
+    ----------
+    rays : ray_set.RaySet
+        Of one scan.
+    ends_m : (v, 2, 2) float
+        Start and end of each face, its normal on the left of the way.
+    normal : (v, 2) float
+    at_m, least_side_m : float
+        As for `cast_at_face`.
+
+    Returns
+    -------
+    FaceRays
+        With a view of each face; places along its line are counted from its start.
+    """
+    sensor_m = rays.sensors_m[0, :2]
+    direction = np.column_stack([normal[:, 1], -normal[:, 0]])
+    from_start_m = sensor_m - ends_m[:, 0]
+    views = Views(
+        scan=np.zeros(len(normal), np.int64),
+        sensor_along_m=(from_start_m * direction).sum(axis=1),
+        side_m=(from_start_m * normal).sum(axis=1),
+        least_side_m=least_side_m,
+    )
+    seen = np.flatnonzero(np.abs(views.side_m) >= least_side_m)
+    low, high = rays.rows_between(ends_m[seen].swapaxes(0, 1), views.scan[seen])
+    xyz_m, view = rays.gather_rows(low, high, seen)
+    way_m = xyz_m[:, :2] - sensor_m
+    end_along_m, end_offset_m = (
+        from_m.take(view) + np.einsum("ij,ij->i", way_m, axis.take(view, axis=0))
+        for from_m, axis in ((views.sensor_along_m, direction), (views.side_m, normal))
+    )
+    return _meet(rays, views, view, end_along_m, end_offset_m, xyz_m[:, 2], at_m)
 
 
 def _meet(
-    rays: RaySet, line: Line, xyz_m: FloatArray, scan: IntArray, side_m: FloatArray, at_m: float
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return along, height and behind of rays that end at points (n, 3); see `FaceRays`."""
-    of_scan_m = side_m.take(scan)
-    behind_m = -line.offset_m(xyz_m[:, :2]) * np.sign(of_scan_m)
-    distance_m = np.abs(of_scan_m)
-    share = distance_m / np.maximum(distance_m + behind_m, _AHEAD_M)
-    share[np.abs(behind_m) <= at_m] = 1.0
-    sensor_along_m = line.along_m(rays.sensors_m[:, :2]).take(scan)
-    sensor_z_m = rays.sensors_m[:, 2].take(scan)
-    along_m = sensor_along_m + share * (line.along_m(xyz_m[:, :2]) - sensor_along_m)
-    height_m = sensor_z_m + share * (xyz_m[:, 2] - sensor_z_m) - rays.ground_z_m
-    return along_m, height_m, behind_m
+    rays: RaySet,
+    views: Views,
+    view: IntArray,
+    end_along_m: FloatArray,
+    end_offset_m: FloatArray,
+    end_z_m: FloatArray,
+    at_m: float,
+) -> FaceRays:
+    """Return rays where they meet the plane, given where they end; (n,) each."""
+    side_m = views.side_m.take(view)
+    behind_m = -end_offset_m * np.sign(side_m)
+    distance_m = np.abs(side_m)
+    share = distance_m / np.maximum(distance_m + behind_m, ROUNDING)
+    share = np.where(np.abs(behind_m) <= at_m, 1.0, share)
+    sensor_along_m = views.sensor_along_m.take(view)
+    sensor_z_m = rays.sensors_m[views.scan, 2].take(view)
+    return FaceRays(
+        views=views,
+        view=view,
+        along_m=sensor_along_m + share * (end_along_m - sensor_along_m),
+        height_m=sensor_z_m + share * (end_z_m - sensor_z_m) - rays.ground_z_m,
+        behind_m=behind_m,
+        at_m=at_m,
+    )

@@ -11,13 +11,11 @@ from scanplan.rays.ray_set import RaySet
 from scanplan.types import FloatArray
 
 _SECTOR_RAD = np.radians(0.5)
-_RAYS_A_SECTOR = 2.2  # at least two, however rays fall
-_COLUMNS_A_SECTOR = 1.1  # at least one column of beams
+_SPARE = 1.1  # a sector is so much wider than what has to be in it, however rays fall
 # ASSUME wider gaps than this are the end of a sensor's field, or openings that nothing came back
 # from
 _WIDEST_RAD = np.radians(10)
-_SIMPLIFY_M = 0.02  # what an outline may err by
-_SPIKE_M = 0.04  # half the width of what is no floor that anyone sees
+_SIMPLIFY_M = 0.02  # what an outline may err by: spikes of twice that on either side are no floor
 GRID_M = 1e-3  # corners of grounds lie on this: GEOS needs one, and nothing is surveyed as well
 
 
@@ -73,8 +71,8 @@ def column_spacing_rad(azimuth_rad: FloatArray) -> float:
 def _star(origin_m: FloatArray, azimuth_rad: FloatArray, range_m: FloatArray) -> MultiPolygon:
     steps_rad = np.diff(azimuth_rad)
     steps_rad = steps_rad[steps_rad > 0]
-    rays_rad = _RAYS_A_SECTOR * float(np.median(steps_rad)) if len(steps_rad) else 0.0
-    width_rad = max(_SECTOR_RAD, rays_rad, _COLUMNS_A_SECTOR * column_spacing_rad(azimuth_rad))
+    two_rays_rad = 2 * float(np.median(steps_rad)) if len(steps_rad) else 0.0
+    width_rad = max(_SECTOR_RAD, _SPARE * max(two_rays_rad, column_spacing_rad(azimuth_rad)))
     count = max(int(2 * np.pi / width_rad), 3)
     width_rad = 2 * np.pi / count
     sector = np.minimum(((azimuth_rad + np.pi) / width_rad).astype(np.int64), count - 1)
@@ -94,7 +92,7 @@ def _star(origin_m: FloatArray, azimuth_rad: FloatArray, range_m: FloatArray) ->
     )
     corners = origin_m + np.stack([begin, end], axis=1).reshape(-1, 2)
     star = shapely.make_valid(Polygon(corners)).simplify(_SIMPLIFY_M)
-    return union_on_grid(open_polygons(star, _SPIKE_M))
+    return union_on_grid(open_polygons(star, 2 * _SIMPLIFY_M))
 
 
 def union_on_grid(polygons: Sequence[BaseGeometry]) -> MultiPolygon:

@@ -2,12 +2,11 @@
 
 import numpy as np
 
+from scanplan.rays.face_raster import CELL_M
 from scanplan.types import FloatArray
 
 _LOWEST_PERCENTILE = 1  # fewer returns lie below the floor, by reflections
-_LAYER_M = 0.05  # a few times the noise of heights
 _SEARCH_M = 0.5  # above the lowest points: less than furniture is high
-_LEAST_SHARE = 1e-4  # of all points: stray returns below a floor are fewer
 _LEAST_POINTS = 30  # fewer show no level
 _PROMINENT = 1.5  # times what walls alone leave in layers that hold no level
 
@@ -30,8 +29,7 @@ def find_floor_z(z_m: FloatArray) -> float:
     """
     if len(z_m) == 0:
         return np.nan
-    lowest_m = np.percentile(z_m, _LOWEST_PERCENTILE, method="lower")  # one of the points
-    return float(np.median(z_m[np.abs(z_m - lowest_m) <= _LAYER_M]))
+    return float(np.median(z_m[np.abs(z_m - _find_lowest(z_m)) <= CELL_M]))
 
 
 def find_floor_and_ceiling(z_m: FloatArray) -> tuple[float, float]:
@@ -62,15 +60,20 @@ def _lowest_level(z_m: FloatArray) -> float:
     if len(z_m) < _LEAST_POINTS:
         return np.nan
     low_m = z_m.min()
-    counts = np.bincount(np.floor((z_m - low_m) / _LAYER_M).astype(np.int64))
+    counts = np.bincount(np.floor((z_m - low_m) / CELL_M).astype(np.int64))
     # stray points far below are no storey
-    first = int(np.argmax(counts >= max(_LEAST_POINTS, _LEAST_SHARE * len(z_m))))
-    n = round(_SEARCH_M / _LAYER_M)
+    first = int((_find_lowest(z_m) - low_m) / CELL_M)
+    n = round(_SEARCH_M / CELL_M)
     at = first + int(counts[first : first + n].argmax())
     # a level may lie across the border of two layers
     level = counts[at] + max(counts[max(at - 1, 0) : at].sum(), counts[at + 1 : at + 2].sum())
     beyond = counts[at + 2 : at + 2 + n // 2]
     if len(beyond) and level < _PROMINENT * 2 * beyond.mean():
         return np.nan
-    middle_m = low_m + (at + 0.5) * _LAYER_M
-    return float(np.median(z_m[np.abs(z_m - middle_m) <= 1.5 * _LAYER_M]))
+    middle_m = low_m + (at + 0.5) * CELL_M
+    return float(np.median(z_m[np.abs(z_m - middle_m) <= 1.5 * CELL_M]))
+
+
+def _find_lowest(z_m: FloatArray) -> float:
+    """Return the lowest of heights (n,), but for the few that are wrong."""
+    return float(np.percentile(z_m, _LOWEST_PERCENTILE, method="lower"))

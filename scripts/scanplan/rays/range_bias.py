@@ -14,16 +14,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from scanplan.rays.ray_set import RaySet
+from scanplan.rays.tolerances import ON_M, ROUNDING
 from scanplan.types import BoolArray, Columns, FloatArray, IntArray
 
 _MOST_POINTS = 600_000  # more cost time, and make no estimate better
 _LEAST_OF_GROUP = 100  # points of one scan at one wall: fewer show no bend
-_END_M = 0.1  # the last points before a corner may be of the wall around it
 _BINS = 16  # parts of a wall whose means show whether it is flat
 _MOST_BENT = 3.0  # mean square of these means by noise alone is 1
 _BOW_M = 0.0005  # no wall is flatter than that
 _PASSES = 3  # what is left of bows hardly changes after two
-_TINY = 1e-9  # keeps divisions finite
 
 
 @dataclass(frozen=True)
@@ -84,7 +83,7 @@ class _Hits:
         count = self.summed(np.ones(len(values)))
         values = values - (self.summed(values) / count)[self.group]
         along_m = self.along_m - (self.summed(self.along_m) / count)[self.group]
-        slope = self.summed(values * along_m) / np.maximum(self.summed(along_m**2), _TINY)
+        slope = self.summed(values * along_m) / np.maximum(self.summed(along_m**2), ROUNDING)
         return values - slope[self.group] * along_m
 
 
@@ -138,7 +137,7 @@ def remove_range_bias(rays: RaySet, error_m: FloatArray, up: FloatArray) -> RayS
     for rows, sensor_m, axis in zip(rays.rows, rays.sensors_m, up, strict=True):
         xyz_m = rays.xyz_m[rows]
         way = xyz_m - sensor_m
-        range_m = np.maximum(_length(way), _TINY)
+        range_m = np.maximum(_length(way), ROUNDING)
         way *= (error_m[_degrees(way @ axis / range_m)] / range_m)[:, None]
         np.subtract(xyz_m, way, out=moved[rows])
     return rays.with_points(moved)
@@ -153,9 +152,9 @@ def _hits(
     )
     normal = np.column_stack([segments["nx"], segments["ny"]]).astype(float)
     side_m = np.einsum("ij,ij->i", rays.sensors_m[scan, :2] - first, normal)
-    end = (last - first) * np.minimum(_END_M / np.maximum(np.hypot(*(last - first).T), _TINY), 0.5)[
-        :, None
-    ]
+    end = (last - first) * np.minimum(
+        ON_M / np.maximum(np.hypot(*(last - first).T), ROUNDING), 0.5
+    )[:, None]
     rows, group = rays.sample_rows_between(np.stack([first + end, last - end]), scan, _MOST_POINTS)
     xyz_m = rays.xyz_m.take(rows, axis=0)
     offset_m = np.einsum("ij,ij->i", xyz_m[:, :2] - first[group], normal[group])
@@ -166,11 +165,13 @@ def _hits(
         )
     xyz_m, group, offset_m = xyz_m[kept], group[kept], offset_m[kept]
     way = xyz_m - rays.sensors_m[scan[group]]
-    way /= np.maximum(_length(way), _TINY)[:, None]
+    way /= np.maximum(_length(way), ROUNDING)[:, None]
     cosine = -np.einsum("ij,ij->i", way[:, :2], normal[group])
     along = way[:, 1] * normal[group, 0] - way[:, 0] * normal[group, 1]
     beam = _degrees(np.einsum("ij,ij->i", way, up[scan[group]]))
-    found = _Hits(group, beam, cosine, side_m[group] * along / np.maximum(cosine, _TINY), offset_m)
+    found = _Hits(
+        group, beam, cosine, side_m[group] * along / np.maximum(cosine, ROUNDING), offset_m
+    )
     return found.of(cosine >= np.cos(np.radians(settings.max_incidence_deg)))
 
 
@@ -194,10 +195,10 @@ def _solve(hits: _Hits, n_beams: int, sigma_m: float) -> FloatArray:
         return np.zeros(n_beams)
     offset_m, bow = hits.level(hits.offset_m), hits.level(hits.cosine)
     count = hits.summed(np.ones(len(bow)))
-    noise_m2 = max(np.mean(offset_m**2), _TINY**2)
+    noise_m2 = max(np.mean(offset_m**2), ROUNDING**2)
     along_m = hits.along_m - (hits.summed(hits.along_m) / count)[hits.group]
-    along_m /= np.sqrt(np.maximum(hits.summed(along_m**2), _TINY))[hits.group]
-    bow /= np.sqrt(np.maximum(hits.summed(bow**2), _TINY))[hits.group]
+    along_m /= np.sqrt(np.maximum(hits.summed(along_m**2), ROUNDING))[hits.group]
+    bow /= np.sqrt(np.maximum(hits.summed(bow**2), ROUNDING))[hits.group]
     cell = hits.group * n_beams + hits.beam
     level, tilt, bowed = (
         np.bincount(cell, hits.cosine * values, hits.n_groups * n_beams).reshape(-1, n_beams)
@@ -231,16 +232,16 @@ def _are_flat(hits: _Hits, error_m: FloatArray) -> BoolArray:
         hits.level(hits.offset_m + error_m[hits.beam] * hits.cosine),
         hits.level(hits.cosine),
     )
-    common_m = hits.summed(offset_m * cosine) / np.maximum(hits.summed(cosine**2), _TINY)
+    common_m = hits.summed(offset_m * cosine) / np.maximum(hits.summed(cosine**2), ROUNDING)
     offset_m -= common_m[hits.group] * cosine
     noise_m2 = np.median(hits.summed(offset_m**2) / hits.summed(hits.cosine**2))
     low_m, high_m = np.full(hits.n_groups, np.inf), np.full(hits.n_groups, -np.inf)
     np.minimum.at(low_m, hits.group, hits.along_m)
     np.maximum.at(high_m, hits.group, hits.along_m)
-    share = (hits.along_m - low_m[hits.group]) / np.maximum(high_m - low_m, _TINY)[hits.group]
+    share = (hits.along_m - low_m[hits.group]) / np.maximum(high_m - low_m, ROUNDING)[hits.group]
     cell = hits.group * _BINS + np.minimum((share * _BINS).astype(np.int64), _BINS - 1)
     summed, spread = (
         np.bincount(cell, v, hits.n_groups * _BINS) for v in (offset_m, noise_m2 * hits.cosine**2)
     )
-    square = (summed**2 / np.maximum(spread, _TINY**2)).reshape(-1, _BINS).sum(axis=1)
+    square = (summed**2 / np.maximum(spread, ROUNDING**2)).reshape(-1, _BINS).sum(axis=1)
     return square <= _MOST_BENT * np.maximum((spread.reshape(-1, _BINS) > 0).sum(axis=1) - 3, 1)

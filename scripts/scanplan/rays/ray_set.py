@@ -5,7 +5,6 @@ sensor but its place: a direction without any return is known by how many the ot
 elevation have (`expected_returns`).
 """
 
-import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -94,6 +93,7 @@ class RaySet:
         ends : (2, k or 1, 2) float
             One pair of ends for each of the scans, or one for all.
         scans : (k,) int
+            One may be asked for several times.
 
         Returns
         -------
@@ -101,8 +101,6 @@ class RaySet:
             Rows that a scan's two spans begin at and end before: what lies beyond pi goes on from
             -pi.
         """
-        if len(scans) == 1:
-            return self._rows_of_one(ends[:, 0], int(scans[0]))
         way = ends - self.sensors_m[scans, :2]
         first, last = np.arctan2(way[..., 1], way[..., 0])
         turn = (last - first + np.pi) % (2 * np.pi) - np.pi
@@ -112,37 +110,24 @@ class RaySet:
         high = np.stack([np.minimum(stop, np.pi), stop - 2 * np.pi]) + _TURN * scans
         return np.searchsorted(self._key, low), np.searchsorted(self._key, high, side="right")
 
-    def _rows_of_one(self, ends: FloatArray, scan: int) -> tuple[IntArray, IntArray]:
-        """Return `rows_between` of one scan: numbers take a third of the time of arrays of one."""
-        x_m, y_m = self.sensors_m[scan, :2].tolist()
-        (x0_m, y0_m), (x1_m, y1_m) = ends.tolist()
-        first = math.atan2(y0_m - y_m, x0_m - x_m)
-        last = math.atan2(y1_m - y_m, x1_m - x_m)
-        turn = (last - first + math.pi) % (2 * math.pi) - math.pi
-        begin = first if turn > 0 else last
-        stop = begin + abs(turn)
-        low = np.array([[begin], [-math.pi]]) + _TURN * scan
-        high = np.array([[min(stop, math.pi)], [stop - 2 * math.pi]]) + _TURN * scan
-        return self._key.searchsorted(low), self._key.searchsorted(high, side="right")
-
     def gather_rows(
-        self, low: IntArray, high: IntArray, scans: IntArray
+        self, low: IntArray, high: IntArray, number: IntArray
     ) -> tuple[FloatArray, IntArray]:
-        """Return points and scans of spans (2, k) of rows, one after another.
+        """Return points and numbers of spans (2, k) of rows, one after another.
 
-        `scans` (k,) is that of each pair.
+        `number` (k,) is that of each pair, such as its scan's.
         """
-        low, high, scan = low.ravel(), high.ravel(), np.tile(scans, len(low))
+        low, high, number = low.ravel(), high.ravel(), np.concatenate([number] * len(low))
         filled = high > low
-        low, high, scan = low[filled], high[filled], scan[filled]
+        low, high, number = low[filled], high[filled], number[filled]
         # spans that follow each other are copied as one
         begins = np.flatnonzero(np.concatenate([[True], low[1:] != high[:-1]])[: len(low)])
         stops = np.concatenate([begins[1:] - 1, [len(low) - 1]])[: len(begins)]
         if len(begins) == 1:
-            return self.xyz_m[low[0] : high[-1]], np.repeat(scan, high - low)
+            return self.xyz_m[low[0] : high[-1]], np.repeat(number, high - low)
         runs = zip(low[begins].tolist(), high[stops].tolist(), strict=True)
         points = [self.xyz_m[begin:stop] for begin, stop in runs]
-        return np.concatenate([np.empty((0, 3)), *points]), np.repeat(scan, high - low)
+        return np.concatenate([np.empty((0, 3)), *points]), np.repeat(number, high - low)
 
     def sample_rows_between(
         self, ends: FloatArray, scans: IntArray, most: int
@@ -182,10 +167,11 @@ def gather_rays(
     scan_ids, azimuths, points = [], [], []
     for scan_id, scan_xyz_m in scans:
         xyz_m = np.asarray(scan_xyz_m, float)
-        xyz_m = xyz_m[np.isfinite(xyz_m).all(axis=1)]
+        if not np.isfinite(xyz_m).all():
+            xyz_m = xyz_m[np.isfinite(xyz_m).all(axis=1)]
         way = xyz_m[:, :2] - sensors_m[scan_id][:2]
         azimuth_rad = np.arctan2(way[:, 1], way[:, 0])
-        order = np.argsort(azimuth_rad, kind="stable")
+        order = _argsort_stably(azimuth_rad)
         scan_ids.append(scan_id)
         azimuths.append(azimuth_rad[order])
         points.append(xyz_m.take(order, axis=0))
@@ -199,3 +185,18 @@ def gather_rays(
         floor_z_m=np.nan if planar else levels.find_floor_z(xyz_m[:, 2]),
         planar=bool(planar),
     )
+
+
+def _argsort_stably(values: FloatArray) -> IntArray:
+    """Return an increasing order of values (n,), those that are equal in the order given.
+
+    Few are: to sort all, and then these, takes a third of the time of a stable sort.
+    """
+    order = np.argsort(values)
+    same = np.diff(values[order]) == 0
+    tied = np.zeros(len(order), bool)
+    tied[1:] = same
+    tied[:-1] |= same
+    number = order[tied]
+    order[tied] = number[np.lexsort((number, values[number]))]
+    return order

@@ -33,13 +33,13 @@ def centre_on_sensor(xyz_m: npt.ArrayLike, sensor_xyz_m: npt.ArrayLike) -> Float
         )
     if not (np.isfinite(points_m).all() and np.isfinite(sensor_m).all()):
         raise ValueError("points and sensor position must be finite")
-    return points_m[_order_points(points_m)] - sensor_m
+    return points_m.take(_order_points(points_m), axis=0) - sensor_m
 
 
 def _order_points(xyz_m: FloatArray) -> IntArray:
     """Return an order of points that depends on them alone."""
     mixed = xyz_m @ (1.0, np.sqrt(2), np.sqrt(3))
     order = np.argsort(mixed)
-    tied = mixed[order][1:] == mixed[order][:-1]
+    tied = np.diff(mixed.take(order)) == 0
     # one number a point sorts faster than three, and seldom do different points share it
     return order if not tied.any() else np.lexsort([*xyz_m.T, mixed])

@@ -11,11 +11,10 @@ import numpy as np
 import shapely
 
 from scanplan.rays import levels
+from scanplan.rays.free_space import GRID_M
 from scanplan.rays.sensor_frame import centre_on_sensor
+from scanplan.rays.tolerances import ROUNDING
 from scanplan.types import Array, FloatArray
-
-_AT_SENSOR_M = 0.01  # where nothing is known to be free; above 0: the outline never touches itself
-_ROUNDING = 1e-9  # of a sector: a turn of whole sectors has no further one
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,13 +100,13 @@ def visibility_columns(rows: Sequence[Mapping[str, Any]]) -> dict[str, Array]:
 
 def _free_ranges_m(xy_m: FloatArray, settings: VisibilitySettings) -> FloatArray:
     """Return how far each sector is free of obstacles (n, 2); next to nothing where it has none."""
-    n_sectors = max(3, int(np.ceil(360 / settings.sector_deg - _ROUNDING)))
+    n_sectors = max(3, int(np.ceil(360 / settings.sector_deg - ROUNDING)))
     turn = np.arctan2(xy_m[:, 1], xy_m[:, 0]) / (2 * np.pi)
     sector = np.floor(turn * n_sectors).astype(np.int64) % n_sectors
     free_m = np.full(n_sectors, np.inf)
     np.minimum.at(free_m, sector, np.hypot(*xy_m.T))
     is_known = np.isfinite(free_m)
-    return np.where(is_known, np.clip(free_m, _AT_SENSOR_M, settings.range_m), _AT_SENSOR_M)
+    return np.where(is_known, np.clip(free_m, GRID_M, settings.range_m), GRID_M)
 
 
 def _find_obstacles(points_m: FloatArray, planar: bool, settings: VisibilitySettings) -> FloatArray:

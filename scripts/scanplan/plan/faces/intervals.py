@@ -9,13 +9,13 @@ import numpy as np
 from scanplan.geometry.lines import Line, Span
 from scanplan.plan.tolerances import END_M, ENOUGH_RAYS, ROUND_M
 from scanplan.rays.face_observation import (
-    LEAST_HEIGHT_M,
     FaceObservation,
     observe_face,
 )
 from scanplan.rays.face_raster import CELL_M, FaceRaster
 from scanplan.rays.face_rays import cast_at_face
 from scanplan.rays.ray_set import RaySet
+from scanplan.rays.tolerances import SKIRTING_M
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 _REFIT_M = 0.04  # from the median: what points of one face scatter by; others do not pull the line
@@ -99,7 +99,7 @@ def _observe_refitted(
     near = cast_at_face(rays, line, *own_m, at_m=band_m, occluded_within_m=0.0)
     is_own = near.is_occupied & (near.along_m >= own_m[0]) & (near.along_m <= own_m[1])
     if not rays.planar:
-        is_own &= near.height_m > LEAST_HEIGHT_M
+        is_own &= near.height_m > SKIRTING_M
     refitted = refit_to_points(line, near.along_m[is_own], -near.behind_m[is_own])
     refitted_m = refitted.along_m(line.at(np.array(span_m)))
     return observe_face(rays, refitted, *refitted_m, band_m=band_m), refitted_m

@@ -1,0 +1,16 @@
+"""What measured places err by, and what may be stray: the same for all that reads rays."""
+
+ROUNDING = 1e-9
+"""Of lengths in metres and of shares: what arithmetic errs by, and less than is ever measured."""
+ON_M = 0.08
+"""Returns of one scan this near to a surface are its own: noise of ranges and roughness."""
+BEHIND_M = 0.15
+"""What is nearer before or behind a surface may be the surface: what poses and ranges err by."""
+SKIRTING_M = 0.2
+"""Above the floor: lower returns may be the floor's, or a skirting board's."""
+STRETCH_M = 0.3
+"""Of a surface's length: less of it may be a trace of something else."""
+STRAY_SHARE = 0.15
+"""Of rays, or of a length: less may be stray, or noise of heights and poses."""
+FEW = 3
+"""Rays, or scans: one or two that say so may be stray."""
