@@ -3,7 +3,14 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from scanplan.lab.evaluation import oracle, order_metrics, pose_errors, truth_file, wall_findings
+from scanplan.lab.evaluation import (
+    oracle,
+    order_metrics,
+    pose_errors,
+    true_plan,
+    truth_file,
+    wall_findings,
+)
 from scanplan.stage import log
 from scanplan.store import registered_scans, schemas, tables
 from scanplan.types import FilePath
@@ -49,6 +56,7 @@ def evaluate_walls(
         placed,
         truth_file.true_pose_matrices(poses),
         sight=truth_file.read_sensor_view(truth, max_range_m=max_range_m),
+        rooms=true_plan.read_true_plan(truth).entered_rooms,
     )
     orders = {
         Path(path).stem: registered_scans.read_order_rows(path, scans, registration)

@@ -260,8 +260,9 @@ EVIDENCE = Schema(
 )
 """Which scans show a wall of the plan, when they were taken and with how many points."""
 _WITHIN = ("005m", "010m", "015m")
+_SHARES = ("false_negative", "correct_match", "false_positive")
 _AGREEMENT = {
-    **dict.fromkeys(("false_negative", "correct_match", "false_positive"), "float64"),
+    **{f"{metric}{share}": "float64" for metric in ("", "literal_") for share in _SHARES},
     **{
         f"{truth}{measure}_{within}": "float64"
         for truth in ("", "visible_")
@@ -273,7 +274,7 @@ _AGREEMENT = {
 }
 EVALUATION = Schema(
     "evaluation",
-    3,
+    4,
     {
         "method": "string",
         "extractor": "string",
@@ -281,6 +282,7 @@ EVALUATION = Schema(
         **_AGREEMENT,
         **dict.fromkeys(
             (
+                "entered_completeness_010m",
                 "walls_per_true_wall_of_a_scan",
                 "seen",
                 "missed_not_seen",
@@ -397,7 +399,7 @@ CLAIMS = Schema(
 )
 PLAN_EVALUATION = Schema(
     "plan_evaluation",
-    3,
+    4,
     {
         "frame": "string",
         "n_scans": "int32",

@@ -5,8 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from scanplan.geometry import bitmap
-from scanplan.lab.evaluation import first_ranks, oracle
+from scanplan.lab.evaluation import bitmap_shares, first_ranks, oracle
 from scanplan.lab.evaluation.oracle import OracleOrder
 from scanplan.lab.evaluation.wall_findings import (
     JUDGED,
@@ -56,7 +55,7 @@ def measure_orders(
     drawn : dict of str to wall_findings.PlacedSegments
         Extractor to its segments.
     cell_m : float
-        Of the bitmaps: one grid around the truth and all segments, so that nothing is cut off and
+        Of the bitmaps: their grids hold the truth and all segments, so that nothing is cut off and
         all share one size.
 
     Returns
@@ -69,19 +68,16 @@ def measure_orders(
         what the best choice of as many finds.
     """
     faces_m, n_scans = truth.cells.faces_m, len(truth.seen)
-    all_lines_m = [faces_m, *(segments.lines_m for segments in drawn.values())]
-    grid = bitmap.fit_grid(np.concatenate(all_lines_m), cell_m)
-    true_bitmap = bitmap.rasterise_lines(faces_m, grid)
+    all_lines_m = np.concatenate([segments.lines_m for segments in drawn.values()])
+    bitmaps = bitmap_shares.trace_truth(faces_m, all_lines_m, cell_m)
     sizes = evaluated_sizes(n_scans)
     best, measures = {}, {}
     for extractor, segments in drawn.items():
-        findings = match_segments(segments, truth, grid)
+        findings = match_segments(segments, truth, bitmaps)
         best[extractor] = _order_by_findings(truth, findings)
         for method, order in {**orders, ORACLE: best[extractor].order}.items():
             rank = first_ranks.rank_of_rows(order, n_scans)
-            measures[method, extractor] = measure_first_scans(
-                truth, findings, rank, sizes, true_bitmap
-            )
+            measures[method, extractor] = measure_first_scans(truth, findings, rank, sizes)
     return wall_evaluation_columns(measures), best
 
 
