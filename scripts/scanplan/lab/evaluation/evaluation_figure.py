@@ -11,7 +11,6 @@ from scanplan.report import top_view
 from scanplan.selection.methods import METHODS
 from scanplan.types import Columns, IntArray
 
-_SIZE_IN = (7.0, 8.6)  # a page of A4 but for the caption
 _STYLES = {
     "oracle": ("oracle: knows the truth", "black"),
     "sight": ("oracle by sight alone", "0.55"),
@@ -49,7 +48,8 @@ def draw_evaluation_figure(
     -------
     matplotlib.figure.Figure
     """
-    figure = Figure(figsize=_SIZE_IN, layout="constrained")
+    # a page of A4 but for the caption
+    figure = Figure(figsize=(7.0, 8.6), layout="constrained")
     names = sorted(set(measures["extractor"].tolist()), key=lambda name: name != extractor)
     axes = figure.subplot_mosaic(_mosaic(len(names)))
     for row, name in enumerate(names):

@@ -11,8 +11,6 @@ from scanplan.lab.evaluation.order_metrics import COMPARED_SIZES, ORACLE
 from scanplan.types import Columns, FloatArray
 
 _FOUND = "visible_completeness_010m"
-_WIDTH_IN, _ROW_IN, _REST_IN = 7.0, 0.26, 0.75  # text width of A4; a line of 7 points; the title
-_DARK = 0.45  # share below which a cell is so dark that white letters are read better
 
 
 def draw_oracle_figure(*measures: Columns) -> Figure:
@@ -31,8 +29,9 @@ def draw_oracle_figure(*measures: Columns) -> Figure:
     """
     extractors = sorted(set(measures[0]["extractor"].tolist()))
     methods = _best_first(measures)
-    height_in = _REST_IN + _ROW_IN * len(methods)
-    figure = Figure(figsize=(_WIDTH_IN, height_in * len(extractors)), layout="constrained")
+    # the text width of A4; a title and a line of 7 points for each method
+    height_in = 0.75 + 0.26 * len(methods)
+    figure = Figure(figsize=(7.0, height_in * len(extractors)), layout="constrained")
     frames = figure.subplots(len(extractors), squeeze=False)[:, 0]
     for axes, extractor in zip(frames, extractors, strict=True):
         _draw_shares(axes, measures, extractor, methods)
@@ -97,7 +96,7 @@ def _draw_shares(
     sizes = common_sizes(*measures)
     share, found = _of_all_tables(measures, extractor, methods)
     mean = share.mean(axis=0)
-    axes.imshow(np.nan_to_num(mean), cmap="Blues_r", vmin=0, vmax=1.6, aspect="auto")
+    axes.imshow(np.nan_to_num(mean), cmap="Blues_r", vmin=-1.2, vmax=1.6, aspect="auto")
     for (row, column), value in np.ndenumerate(mean):
         of_seeds = share[:, row, column]
         if len(measures) > 1:
@@ -111,7 +110,6 @@ def _draw_shares(
             ha="center",
             va="center",
             fontsize=7,
-            color="white" if value < _DARK else "black",
         )
     axes.set_xticks(range(len(sizes)), [f"{k} scans" for k in sizes], fontsize=7)
     labels = [method_style(method)[0] for method in methods]
