@@ -75,7 +75,8 @@ def evaluate_walls(
     measures, best_orders = order_metrics.measure_orders(floor, orders, drawn, bitmap_cell_m)
     aligned_measures, _ = order_metrics.measure_orders(floor, orders, moved, bitmap_cell_m)
     for path, table in ((output, measures), (aligned, aligned_measures)):
-        tables.write_table(path, schemas.EVALUATION, table)
+        columns = {name: table[name].to_numpy() for name in table}
+        tables.write_table(path, schemas.EVALUATION, columns)
         for line in order_metrics.summarise_wall_measures(table):
             log.log_line(f"evaluate_walls: {Path(path).stem}, {line}")
     tables.write_table(best, schemas.ORACLE, oracle.oracle_columns(best_orders, scans))

@@ -2,9 +2,20 @@
 
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
 from scanplan.extraction.extractors import EXTRACTORS, Extractor
 from scanplan.lab.thesis import plain_ransac, timing
-from scanplan.lab.thesis.claim_measures import ITERATIVE, OURS, PLAIN, PLAIN_CLUSTERS
+from scanplan.lab.thesis.claim_measures import (
+    BUILDING,
+    ITERATIVE,
+    OURS,
+    PLAIN,
+    PLAIN_CLUSTERS,
+    SAMPLED,
+    UNSAMPLED,
+)
+from scanplan.plan.faces.merging import MergeSettings
 from scanplan.stage import log
 from scanplan.store import schemas, tables
 from scanplan.types import FilePath, Settings
@@ -21,12 +32,14 @@ def time_stages(
     scans: FilePath,
     registration: FilePath,
     built: FilePath,
+    segments: FilePath,
     output: FilePath,
     *,
     walls: Mapping[str, Settings],
     hulls: Settings,
     n_clusters: Sequence[int],
     timed_scans: int,
+    merge: Settings,
 ) -> None:
     """Write run times of cluster and iterative RANSAC as in the thesis, and of hulls and orders.
 
@@ -34,8 +47,8 @@ def time_stages(
 
     Parameters
     ----------
-    scans, registration, built : path-like
-        scans.parquet, registration.parquet and hulls.parquet.
+    scans, registration, built, segments : path-like
+        scans.parquet, registration.parquet, hulls.parquet and walls/cluster_ransac.parquet.
     output : path-like
         thesis/times.parquet, to write.
     walls : dict of str to dict
@@ -45,6 +58,8 @@ def time_stages(
     n_clusters : sequence of int
     timed_scans : int
         On how many scans, spread over the survey; clusters and thinned scans on a part of these.
+    merge : dict
+        See `merging.MergeSettings`.
     """
     store = tables.ScanStore(scans)
     columns = tables.read_table(built, schemas.HULLS)
@@ -53,9 +68,16 @@ def time_stages(
     timed_ids = timing.spread_rows(store.scan_ids, timed_scans)
     clustered_ids = timing.spread_rows(timed_ids, max(timed_scans // _CLUSTERED, 2))
     thinned_ids = timing.spread_rows(timed_ids, max(timed_scans // _THINNED, 2))
+    most = [max(n_clusters)]
+    unsampled = {**hulls, "sample_size": np.iinfo(np.int32).max}
     rows = [
         *timing.time_selection(columns, sizes),
-        *timing.time_clusters(store, clustered_ids, sorted(n_clusters), **hulls),
+        *timing.time_clusters(BUILDING, store, clustered_ids, sorted(n_clusters), **hulls),
+        *timing.time_clusters(SAMPLED, store, thinned_ids, most, **hulls),
+        *timing.time_clusters(UNSAMPLED, store, thinned_ids, most, **unsampled),
+        *timing.time_merging(
+            tables.read_table(segments, schemas.WALLS, allow_empty=True), MergeSettings(**merge)
+        ),
     ]
     for task, (extractor, name) in _EXTRACTORS.items():
         settings = {**walls[name], **plain_ransac.LIFTED}
@@ -75,9 +97,11 @@ if __name__ == "__main__":
             snakemake.input.scans,
             snakemake.input.registration,
             snakemake.input.hulls,
+            snakemake.input.segments,
             snakemake.output.times,
             walls=snakemake.params.walls,
             hulls=snakemake.params.hulls,
             n_clusters=snakemake.params.n_clusters,
             timed_scans=snakemake.params.timed_scans,
+            merge=snakemake.params.merge,
         )

@@ -64,7 +64,8 @@ def coverage(folder):
     inputs = [folder / name for name in ("scans.parquet", "hulls.parquet", "registration.parquet")]
     inputs += [folder / name for name in ("truth.geojson", "truth_poses.tum")]
     outputs = folder / "clusters.parquet", folder / "areas.parquet"
-    measure_coverage(*inputs, *outputs, n_clusters=[6, 1], max_range_m=100.0, **SAMPLING)
+    sampling = SAMPLING | {"n_clusters": 6}
+    measure_coverage(*inputs, *outputs, n_clusters=[6, 1], max_range_m=100.0, sampling=sampling)
     return outputs
 
 
@@ -100,7 +101,12 @@ def test_areas_are_those_of_the_room_each_time(survey):
     assert (measured["cluster_hull_iou"] < measured["full_hull_iou"]).all()
     # points on the walls: one hull is nearly the room, the clusters' hulls leave its middle out
     assert (measured["full_hull_m2"] > 22).all() and (measured["cluster_hull_m2"] < 20).all()
+    # a stray return as far as the farthest: outside of the room, but for a few directions
+    assert (measured["full_hull_stray_m2"] >= measured["full_hull_m2"] - 1e-6).all()
+    assert (measured["full_hull_stray_m2"] > measured["full_hull_m2"] + 0.1).any()
     growth = tables.read_table(clusters, schemas.CLUSTERS)
+    own_m2 = growth["area_m2"][growth["n_clusters"] == 6]
+    np.testing.assert_allclose(np.sort(own_m2), np.sort(measured["cluster_hull_m2"]))
     assert (
         growth["n_clusters"].tolist() == [1, 1, 1, 6, 6, 6]
         and growth["rank"].tolist() == [1, 2, 3] * 2
@@ -126,6 +132,7 @@ def test_of_a_room_that_every_scan_sees_nothing_is_lost(survey, tmp_path):
 def test_every_task_is_timed(survey, tmp_path):
     walls = stage_settings.select_extractors(SETTINGS, ("cluster_ransac", "iterative_ransac"))
     inputs = [survey / name for name in ("scans.parquet", "registration.parquet", "hulls.parquet")]
+    inputs.append(survey / "walls/cluster_ransac.parquet")
     time_stages(
         *inputs,
         tmp_path / "times.parquet",
@@ -133,12 +140,17 @@ def test_every_task_is_timed(survey, tmp_path):
         hulls=SAMPLING,
         n_clusters=[3, 1],
         timed_scans=3,
+        merge=stage_settings.select_merging(SETTINGS),
     )
     found = tables.read_table(tmp_path / "times.parquet", schemas.TIMES)
     extractors = {"plain_clusters", "plain_ransac"}
     assert set(found["task"]) == extractors | {f"thinned_{e}" for e in extractors} | {
         "build_hulls",
+        "build_sampled_hulls",
+        "build_unsampled_hulls",
+        "merge_segments",
         "order_scans",
+        "order_scans_literally",
     }
     thinned = found["size"][found["task"] == "thinned_plain_ransac"]
     assert sorted(set(thinned.tolist())) == [50, 100, 200, 400]
@@ -196,15 +208,16 @@ def test_every_figure_is_drawn_and_stands_on_the_page(survey, tmp_path):
     draw_thesis_rooms(
         files,
         [evaluation] * 2,
-        drawn[:8],
+        drawn[:11],
         tmp_path / "orders.svg",
         bitmap_cell_m=0.05,
         max_range_m=100.0,
+        extraction=stage_settings.select_extractor(SETTINGS, "cluster_ransac"),
     )
     walls = {extractor: survey / f"walls/{extractor}.parquet" for extractor in EXTRACTORS}
     tables_of_drive = [survey / name for name in ("scans.parquet", "registration.parquet")]
     draw_thesis_drive(
-        *tables_of_drive, files["cluster_hull"], walls, write_times(survey), drawn[8:]
+        *tables_of_drive, files["cluster_hull"], walls, write_times(survey), drawn[11:]
     )
     assert all("<svg" in path.read_text() for path in [*drawn, tmp_path / "orders.svg"])
 
@@ -213,10 +226,7 @@ def claim_files(folder):
     files = {}
     for name, columns in (made.rooms() | made.drive()).items():
         schema = _schema(name)
-        full = {
-            column: columns.get(column, np.zeros(len(next(iter(columns.values())))))
-            for column in schema.columns
-        }
+        full = {column: columns.get(column, np.zeros(len(columns))) for column in schema.columns}
         order = np.lexsort([np.asarray(full[column]) for column in reversed(schema.sorted_by)])
         path = folder / f"{name}.parquet"
         tables.write_table(
@@ -265,4 +275,5 @@ def test_crowded_places_are_circled_once():
         [rng.normal((0, 0), 0.2, (30, 2)), rng.normal((20, 0), 0.2, (28, 2)), [(10.0, 0)] * 3]
     )
     found = np.array(drive_figures.find_crowded_places(path_m))
-    assert len(found) == 2 and np.allclose(found, [(0, 0), (20, 0)], atol=0.6)
+    np.testing.assert_allclose(found, [(0, 0), (20, 0), (10, 0)], atol=0.6)
+    assert drive_figures.find_crowded_places(np.array([(0.0, 0.0), (9.0, 0.0)])) == []

@@ -33,7 +33,7 @@ def survey():
 
 
 def only(table, method):
-    return {name: values[table["method"] == method] for name, values in table.items()}
+    return {name: table.loc[table["method"] == method, name].to_numpy() for name in table}
 
 
 def truth_of(faces, n_scans=1):

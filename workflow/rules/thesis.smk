@@ -26,7 +26,7 @@ rule measure_coverage:
         runtime=30,
     params:
         n_clusters=section("thesis", "n_clusters"),
-        hulls=setting(stage_settings.select_hull_sampling),
+        hulls=setting(stage_settings.select_hulls),
         max_range_m=section("input", "max_range_m"),
     script:
         "../../scripts/measure_coverage.py"
@@ -65,6 +65,7 @@ rule time_stages:
         scans="results/{dataset}/scans.parquet",
         registration="results/{dataset}/registration.parquet",
         hulls="results/{dataset}/hulls.parquet",
+        segments="results/{dataset}/walls/cluster_ransac.parquet",
         code=code_of("time_stages"),
     output:
         times="results/{dataset}/thesis/times.parquet",
@@ -81,6 +82,7 @@ rule time_stages:
         hulls=setting(stage_settings.select_hull_sampling),
         n_clusters=section("thesis", "n_clusters"),
         timed_scans=section("thesis", "timed_scans"),
+        merge=setting(stage_settings.select_merging),
     script:
         "../../scripts/time_stages.py"
 
@@ -172,6 +174,9 @@ rule draw_thesis_rooms:
             "bitmap_cell_m"
         ],
         max_range_m=THESIS[experiments.ROOMS][0].settings["input"]["max_range_m"],
+        extraction=stage_settings.select_extractor(
+            THESIS[experiments.ROOMS][0].settings, "cluster_ransac"
+        ),
     script:
         "../../scripts/draw_thesis_rooms.py"
 

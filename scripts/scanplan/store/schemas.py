@@ -333,17 +333,28 @@ POSE_ERRORS = Schema(
 )
 CLUSTERS = Schema(
     "clusters",
-    1,
-    {"n_clusters": "int32", "rank": "int32", "scan_id": "int32", "covered_m2": "float64"},
+    2,
+    {
+        **dict.fromkeys(("n_clusters", "rank", "scan_id"), "int32"),
+        **dict.fromkeys(("area_m2", "covered_m2"), "float64"),
+    },
     ("n_clusters", "rank"),
 )
 AREAS = Schema(
     "areas",
-    2,
+    3,
     {
         "scan_id": "int32",
         **dict.fromkeys(
-            ("full_hull_m2", "cluster_hull_m2", "seen_m2", "full_hull_iou", "cluster_hull_iou"),
+            (
+                "full_hull_m2",
+                "cluster_hull_m2",
+                "seen_m2",
+                "full_hull_iou",
+                "cluster_hull_iou",
+                "full_hull_stray_m2",
+                "cluster_hull_stray_m2",
+            ),
             "float64",
         ),
     },
@@ -351,13 +362,14 @@ AREAS = Schema(
 )
 """Areas of a scan's hulls and of what it truly sees.
 
-`iou` is intersection over union of a hull with the latter.
+`iou` is intersection over union of a hull with the latter, `stray` a hull's area with one stray
+return more.
 """
 UNEVENNESS = Schema(
     "unevenness",
-    1,
-    {"order": "string", "crowd": "int32", "repeats": "int32", "draw": "int32", "seen_m": "float64"},
-    ("order", "crowd", "repeats", "draw"),
+    2,
+    {"order": "string", "crowd": "int32", "repeats": "int32", "seen_m": "float64"},
+    ("order", "crowd", "repeats"),
 )
 """True wall length seen by the first scans of an order, those of a crowd taken `repeats` times."""
 TIMES = Schema(
@@ -386,7 +398,7 @@ STEPS = Schema(
 )
 CLAIMS = Schema(
     "claims",
-    2,
+    3,
     {
         "claim": "string",
         "survey": "string",
