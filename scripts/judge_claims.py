@@ -16,6 +16,7 @@ _SCHEMAS = {
     "clusters": schemas.CLUSTERS,
     "areas": schemas.AREAS,
     "unevenness": schemas.UNEVENNESS,
+    "premises": schemas.PREMISES,
     "times": schemas.TIMES,
     "poses": schemas.POSE_ERRORS,
     "steps": schemas.STEPS,

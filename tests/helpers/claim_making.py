@@ -76,6 +76,13 @@ def unevenness(**seen_m):
     return pd.DataFrame(rows, columns=list(schemas.UNEVENNESS.columns))
 
 
+def premises(one_wall, **ratios):
+    """What is taken for granted: the share on one wall, and ratios of utilities."""
+    values = {"points of a cluster on its wall": one_wall, "correct match": 1.0} | ratios
+    rows = [(name, item, value) for name, value in values.items() for item in (0, 1)]
+    return pd.DataFrame(rows, columns=list(schemas.PREMISES.columns))
+
+
 def times(found=5, **seconds):
     """Run times: task to (sizes, seconds); `found` walls of each.
 
@@ -125,6 +132,7 @@ def rooms(**changes):
         "rooms_unevenness": unevenness(
             random=(100.0, 90.0, 70.0), cluster_hull=(120.0, 120.0, 116.0)
         ),
+        "rooms_premises": premises(0.95, **{"walls found": 1.5, "F1 of walls": 1.1}),
         "rooms_times": times(
             build_hulls=((1, 10), (0.1, 0.3)),
             build_sampled_hulls=((10,), (0.1,)),

@@ -1,6 +1,7 @@
 """The stages of the thesis's experiments on made-up surveys."""
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from build_hulls import build_hulls
@@ -19,8 +20,9 @@ from helpers.evaluation_making import (
 )
 from judge_claims import judge_claims
 from measure_coverage import measure_coverage
+from measure_premises import measure_premises
 from measure_unevenness import measure_unevenness
-from scanplan.lab.thesis import drive_figures
+from scanplan.lab.thesis import drive_figures, premises
 from scanplan.lab.thesis.shown_figures import FIGURES
 from scanplan.project import stage_settings
 from scanplan.store import schemas, tables
@@ -127,6 +129,32 @@ def test_of_a_room_that_every_scan_sees_nothing_is_lost(survey, tmp_path):
     # three crowds of one scan each, all within sight of the room's 20 m of wall
     assert set(columns["crowd"]) == {0, 1, 2} and set(columns["repeats"]) == {1, 5, 20}
     np.testing.assert_allclose(columns["seen_m"], 20.0)
+
+
+def test_premises_are_measured_scan_by_scan_and_draw_by_draw(survey, tmp_path):
+    inputs = [survey / name for name in ("scans.parquet", "walls/cluster_ransac.parquet")]
+    inputs += [survey / name for name in ("registration.parquet", "truth.geojson")]
+    found = []
+    for name in ("first", "second"):
+        output = tmp_path / f"{name}.parquet"
+        measure_premises(
+            *inputs,
+            survey / "truth_poses.tum",
+            output,
+            extraction=stage_settings.select_extractor(SETTINGS, "cluster_ransac"),
+            max_range_m=100.0,
+            bitmap_cell_m=0.05,
+            n_added=4,
+        )
+        found.append(output.read_bytes())
+    assert found[0] == found[1]
+    table = pd.DataFrame(tables.read_table(output, schemas.PREMISES))
+    assert table.groupby("premise").size().to_dict() == {
+        **dict.fromkeys(premises.UTILITIES, 4),
+        premises.ONE_WALL: 3,
+    }
+    # walls found is a union's length: no scan adds more to more
+    assert (table.loc[table["premise"] == "walls found", "value"].dropna() >= 1 - 1e-9).all()
 
 
 def test_every_task_is_timed(survey, tmp_path):

@@ -100,6 +100,18 @@ def test_a_stray_return_may_add_half_of_what_it_adds_to_one_hull(added, holds):
     assert values["outliers_harm_one_hull", quantity] == pytest.approx(0.1)
 
 
+def test_premises_hold_by_nine_tenths():
+    verdicts, values = rooms()
+    assert verdicts["utility_submodular"] == verdicts["clusters_are_walls"] == "yes"
+    assert values["utility_submodular", MARGIN] == pytest.approx(0.1)
+    low = made.premises(0.85, **{"walls found": 1.5, "F1 of walls": 0.8})
+    verdicts, _ = rooms(rooms_premises=low)
+    assert verdicts["utility_submodular"] == verdicts["clusters_are_walls"] == "no"
+    unknown = made.premises(np.nan, **{"walls found": np.nan, "F1 of walls": 1.0})
+    verdicts, _ = rooms(rooms_premises=unknown)
+    assert verdicts["utility_submodular"] == verdicts["clusters_are_walls"] == ""
+
+
 @pytest.mark.parametrize(("seen_m2", "holds"), [(10.0, "yes"), (31.0, "no"), (2.0, "no")])
 def test_an_area_that_can_be_adjusted_lies_on_both_sides_of_the_true_one(seen_m2, holds):
     # by one cluster a scan's hulls have 30 m2, by ten 3 m2

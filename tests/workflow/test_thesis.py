@@ -31,7 +31,7 @@ def test_it_runs_every_survey_with_every_seed_and_nothing_of_the_demo(project):
     # 3 surveys of the rooms and 3 drives, each of these registered with our limits and the thesis's
     assert found["simulate_survey"] == 6 and found["register_scans"] == 9
     assert found["evaluate_walls"] == found["time_stages"] == 6 and found["measure_coverage"] == 3
-    assert found["measure_unevenness"] == 3
+    assert found["measure_unevenness"] == found["measure_premises"] == 3
     assert found["judge_claims"] == found["write_thesis"] == found["thesis"] == 1
     assert not {"all", "assemble_plan", "export_plan"} & set(found)
 
@@ -78,4 +78,4 @@ def test_the_page_has_every_figure(project):
     )
     more = jobs(project, "thesis", "--configfile", "more.yaml")
     assert more["time_stages"] == more["measure_coverage"] == more["simulate_survey"] == 1
-    assert more["measure_unevenness"] == 1
+    assert more["measure_unevenness"] == more["measure_premises"] == 1

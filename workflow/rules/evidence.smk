@@ -10,6 +10,7 @@ ROOMS_TABLES = {
     "clusters": "thesis/clusters",
     "areas": "thesis/areas",
     "unevenness": "thesis/unevenness",
+    "premises": "thesis/premises",
     "times": "thesis/times",
 }
 DRIVE_TABLES = {

@@ -59,6 +59,34 @@ rule measure_unevenness:
         "../../scripts/measure_unevenness.py"
 
 
+rule measure_premises:
+    """Measure whether utilities are submodular and clusters of points are one wall each."""
+    input:
+        scans="results/{dataset}/scans.parquet",
+        walls="results/{dataset}/walls/cluster_ransac.parquet",
+        registration="results/{dataset}/registration.parquet",
+        truth=true_faces,
+        true_poses=true_poses,
+        code=code_of("measure_premises"),
+    output:
+        premises="results/{dataset}/thesis/premises.parquet",
+    log:
+        "logs/{dataset}/measure_premises.log",
+    benchmark:
+        "benchmarks/{dataset}/measure_premises.tsv"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=30,
+    params:
+        extraction=setting(stage_settings.select_extractor, "cluster_ransac"),
+        max_range_m=section("input", "max_range_m"),
+        evaluation=section("evaluation"),
+        n_added=stated_claims.SUBSET,
+    script:
+        "../../scripts/measure_premises.py"
+
+
 rule time_stages:
     """Time extraction scan by scan and selection by number of scans, with all cores to itself."""
     input:

@@ -372,6 +372,13 @@ UNEVENNESS = Schema(
     ("order", "crowd", "repeats"),
 )
 """True wall length seen by the first scans of an order, those of a crowd taken `repeats` times."""
+PREMISES = Schema(
+    "premises",
+    1,
+    {"premise": "string", "item": "int32", "value": "float64"},
+    ("premise", "item"),
+)
+"""What the thesis takes for granted, draw by draw or scan by scan."""
 TIMES = Schema(
     "times",
     1,

@@ -6,7 +6,7 @@ Every public function measures the claim that it is called like, from the tables
 import numpy as np
 import pandas as pd
 
-from scanplan.lab.thesis import unevenness
+from scanplan.lab.thesis import premises, unevenness
 from scanplan.lab.thesis.claim_measures import (
     AREA,
     BUILDING,
@@ -244,6 +244,23 @@ def uneven_harms_random(tables: Tables) -> ClaimMeasure:
     harm = 1 - ALMOST
     parts = [random.diff().min(), random.iloc[-1] - harm, harm - area.max()]
     return ClaimMeasure(values, min(parts) if lost.notna().all(axis=None) else np.nan, SHARE)
+
+
+def utility_submodular(tables: Tables) -> ClaimMeasure:
+    """Measure the submodularity ratio of what scans find of the walls."""
+    table = tables["rooms_premises"]
+    ratios = table[table["premise"].isin(premises.UTILITIES)].groupby("premise")["value"]
+    values = {f"ratio, {name}": ratio for name, ratio in ratios.mean().items()}
+    margin = min(ratios.mean().reindex(premises.UTILITIES)) - ALMOST
+    return ClaimMeasure(of_unit(values, NUMBER), margin)
+
+
+def clusters_are_walls(tables: Tables) -> ClaimMeasure:
+    """Measure how many of a scan's clustered points lie on their cluster's wall."""
+    table = tables["rooms_premises"]
+    share = table.loc[table["premise"] == premises.ONE_WALL, "value"].median()
+    values = {"points on their cluster's wall, median scan": share}
+    return ClaimMeasure(of_unit(values, SHARE), share - ALMOST, SHARE)
 
 
 def first_sixty(tables: Tables) -> ClaimMeasure:

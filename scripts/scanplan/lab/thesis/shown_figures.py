@@ -46,6 +46,7 @@ FIGURES = (
         "The main steps in our proposed wall finding algorithm",
         "The same scan as in Figure 3.2: points and normals, the points projected along their"
         " normals and clustered, one line for every cluster, and what is kept of the lines.",
+        ("clusters_are_walls",),
     ),
     Figure(
         "4.1",
@@ -85,6 +86,7 @@ FIGURES = (
             "sequential_poorest_match",
             "others_similar",
             "slower_is_better",
+            "utility_submodular",
         ),
     ),
     Figure(
