@@ -68,14 +68,15 @@ def fewer_walls(tables: Tables) -> ClaimMeasure:
 def fewer_walls_merge_faster(tables: Tables) -> ClaimMeasure:
     """Measure how the time to merge segments grows with their number."""
     times = tables["drive_times"]
-    merging = times[times["task"] == MERGING]
+    seconds = times[times["task"] == MERGING].set_index("size")["seconds"].sort_index()
     exponent = growth_exponent(times, MERGING)
-    values: Quantities = {"exponent of merging": (exponent, NUMBER)}
-    if len(merging):
-        most = merging.loc[merging["size"].idxmax()]
-        values["most segments"] = most["size"], COUNT
-        values["time to merge them"] = most["seconds"], SECONDS
-    return ClaimMeasure(values, exponent - GROWS)
+    values: Quantities = {"exponent of the time to merge": (exponent, NUMBER)}
+    if len(seconds) <= 1:
+        return ClaimMeasure(values, np.nan)
+    for row, name in ((0, "the fewest"), (-1, "the most")):
+        values[f"segments, {name}"] = seconds.index[row], COUNT
+        values[f"time to merge {name}"] = seconds.iloc[row], SECONDS
+    return ClaimMeasure(values, seconds.iloc[-1] / seconds.iloc[0] - 1 - LOADED, SHARE)
 
 
 def steadier_times(tables: Tables) -> ClaimMeasure:

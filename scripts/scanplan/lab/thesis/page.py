@@ -236,7 +236,7 @@ def _format_margin(margins: FloatArray, unit: str) -> str:
     if not len(margins):
         return ""
     interval = margin_interval(margins) if len(margins) > 1 else ()
-    return format_values([np.mean(margins), *interval], unit)
+    return format_values([float(np.mean(margins)), *interval], unit)
 
 
 def _fill_in(text: str, measured: Mapping[str, str]) -> str:

@@ -102,7 +102,7 @@ def share_on_one_wall(
     float
         Over the points of all clusters; NaN without any.
     """
-    points = shapely.points(steps.xy_m + sensor_xy_m)
+    points = np.asarray(shapely.points(steps.xy_m + sensor_xy_m))
     tree = shapely.STRtree(np.asarray(shapely.linestrings(faces_m)))
     point, face = tree.query_nearest(points, max_distance=WITHIN_M[JUDGED], all_matches=False)
     line = np.full(len(points), -1)

@@ -153,8 +153,9 @@ def more_clusters_more_time(tables: Tables) -> ClaimMeasure:
     """Compare run times by numbers of clusters."""
     seconds = _building_seconds(tables)
     values = {count_clusters(number): s for number, s in seconds.items()}
-    longer = (seconds / seconds.shift()).min() - 1
-    return ClaimMeasure(of_unit(values, SECONDS), longer - LOADED, SHARE)
+    step = (seconds / seconds.shift()).min() - 1
+    whole = seconds.iloc[-1] / seconds.iloc[0] - 1
+    return ClaimMeasure(of_unit(values, SECONDS), min(step + LOADED, whole - LOADED), SHARE)
 
 
 def area_adjustable(tables: Tables) -> ClaimMeasure:

@@ -95,7 +95,7 @@ def _draw_diagram(boxes: Boxes, arrows: tuple[str, ...]) -> Figure:
 
 def _draw_box(axes: Axes, x: float, y: float, text: str, colour: str) -> FancyBboxPatch:
     """Draw a box with a text around its middle."""
-    width, height = 0.8, 0.5
+    width, height = 0.9, 0.5
     corner = (x - width / 2, y - height / 2)
     box = FancyBboxPatch(corner, width, height, boxstyle="round,pad=0.02", fc=colour, ec="0.4")
     axes.add_patch(box)

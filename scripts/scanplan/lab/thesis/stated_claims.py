@@ -151,7 +151,8 @@ CLAIMS = (
         "more_clusters_more_time",
         "5.2",
         "The more clusters, the more computation time.",
-        f"hulls and order take longer with every larger number of clusters {_TIMES}",
+        "hulls and order take longer with the most clusters than with one, and with no larger"
+        f" number less than with a smaller, {_TIMES}",
         otherwise="Our implementation's: its clustering of a sample costs less than what every"
         " scan's points cost whatever their number of clusters.",
     ),
@@ -249,9 +250,10 @@ CLAIMS = (
         "5.4",
         "Fewer walls are desirable, as filtering them and relating them takes time that grows with"
         " their number.",
-        "the time to merge the segments of all scans, of a half, a quarter and an eighth of them"
-        f" grows with their number to the power of {GROWS} or more (processor time)",
-        otherwise="Our implementation's: the power is {exponent of merging}.",
+        "merging the segments of all scans takes longer than those of the fewest of a half, a"
+        f" quarter and an eighth of them, {_TIMES}",
+        otherwise="Our implementation's: {time to merge the most} against"
+        " {time to merge the fewest}.",
     ),
     Claim(
         "steadier_times",

@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -13,8 +12,6 @@ from scanplan.extraction.cluster_ransac import ClusterRansacSettings, project_al
 from scanplan.geometry import ransac
 from scanplan.report import top_view
 from scanplan.types import FloatArray, IntArray
-
-_COLOURS = matplotlib.colormaps["tab10"].colors
 
 
 @dataclass(frozen=True)
@@ -103,7 +100,7 @@ def draw_steps_figure(steps: WallSteps, segments_m: FloatArray) -> Figure:
     _draw_points(second, steps.dual_m, colours)
     n_clusters = steps.label.max(initial=-1) + 1
     _draw_points(third, steps.xy_m, colours)
-    _draw_lines(third, steps.lines_m, "black", 1.1)
+    _draw_lines(third, steps.lines_m, "black", 0.7)
     _draw_points(fourth, steps.xy_m, "0.75")
     _draw_lines(fourth, segments_m, "#0072b2", 2.0)
     titles = (
@@ -120,15 +117,14 @@ def draw_steps_figure(steps: WallSteps, segments_m: FloatArray) -> Figure:
     return figure
 
 
-def _cluster_colours(label: IntArray) -> Sequence[tuple[float, float, float]]:
+def _cluster_colours(label: IntArray) -> list[str]:
     """Return a colour for each point, of its cluster; grey of none."""
-    return [_COLOURS[number % len(_COLOURS)] if number >= 0 else (0.8,) * 3 for number in label]
+    # matplotlib has ten colours by number, and begins anew
+    return [f"C{number}" if number >= 0 else "0.8" for number in label.tolist()]
 
 
-def _draw_points(
-    axes: Axes, xy_m: FloatArray, colour: str | Sequence[tuple[float, float, float]]
-) -> None:
-    axes.scatter(*xy_m.T, s=0.8, c=colour, lw=0, rasterized=True, zorder=2)
+def _draw_points(axes: Axes, xy_m: FloatArray, colour: str | Sequence[str]) -> None:
+    axes.scatter(*xy_m.T, s=2.0, c=colour, lw=0, rasterized=True, zorder=2)
 
 
 def _draw_lines(axes: Axes, lines_m: FloatArray, colour: str, width: float) -> None:
