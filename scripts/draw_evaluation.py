@@ -1,5 +1,7 @@
 """Draw how well every ordering's first scans show the true walls (thesis, figure 5.4)."""
 
+import pandas as pd
+
 from scanplan.lab.evaluation import evaluation_figure, oracle_figure
 from scanplan.stage import figure_files, log
 from scanplan.store import atomic, schemas, tables
@@ -26,14 +28,14 @@ def draw_evaluation(
     method, extractor : str
         The plan's: whose misses and whose bitmap metrics are drawn.
     """
-    measures = tables.read_table(walls, schemas.EVALUATION)
-    aligned_measures = tables.read_table(aligned, schemas.EVALUATION)
+    measures = pd.DataFrame(tables.read_table(walls, schemas.EVALUATION))
+    aligned_measures = pd.DataFrame(tables.read_table(aligned, schemas.EVALUATION))
     figure = evaluation_figure.draw_evaluation_figure(
         measures, aligned_measures, method=method, extractor=extractor
     )
     atomic.write_text(output, figure_files.format_svg(figure))
     atomic.write_text(shares, figure_files.format_svg(oracle_figure.draw_oracle_figure(measures)))
-    log.log_line(f"draw_evaluation: {len(measures['k'])} subsets")
+    log.log_line(f"draw_evaluation: {len(measures)} subsets")
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 
 from scanplan.lab.evaluation import length_metrics
 from scanplan.lab.thesis import drive_figures
@@ -36,7 +37,7 @@ def draw_thesis_drive(
         figure_<number>.svg, to write.
     """
     store = tables.ScanStore(scans)
-    run_times = tables.read_table(times, schemas.TIMES)
+    run_times = pd.DataFrame(tables.read_table(times, schemas.TIMES))
     n_scans = len(store.scan_ids)
     clouds = log.report_progress(store.scans(), "draw_thesis_drive", total=n_scans)
     points_m = top_view.sample_points(clouds, n_scans)

@@ -1,14 +1,18 @@
-"""Draw the thesis's figures 3.2 and 5.1 to 5.7, and all orders, from the survey of the rooms."""
+"""Draw the thesis's figures 3.1 to 5.7, and all orders, from the survey of the rooms."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+import pandas as pd
+
+from scanplan.extraction import extractors
+from scanplan.extraction.cluster_ransac import ClusterRansacSettings
 from scanplan.lab.evaluation import oracle_figure, truth_file
 from scanplan.lab.thesis import room_figures
 from scanplan.lab.thesis.claim_measures import OURS
 from scanplan.stage import figure_files, log
 from scanplan.store import atomic, registered_scans, schemas, tables
-from scanplan.types import FilePath
+from scanplan.types import FilePath, Settings
 
 _METHODS = ("hull", "cluster_hull", "sequential")
 
@@ -21,6 +25,7 @@ def draw_thesis_rooms(
     *,
     bitmap_cell_m: float,
     max_range_m: float,
+    extraction: Settings,
 ) -> None:
     """Write the figures as SVG.
 
@@ -39,6 +44,8 @@ def draw_thesis_rooms(
         Of figure 5.1.
     max_range_m : float
         How far a scan can see.
+    extraction : dict
+        The settings of cluster RANSAC.
     """
     scans = registered_scans.read_registered_scans(files["registration"])
     poses = truth_file.interpolate_true_poses(
@@ -48,12 +55,16 @@ def draw_thesis_rooms(
         store=tables.ScanStore(files["scans"]),
         scan_ids=scans.scan_ids,
         places_m=poses[:, :2, 3],
+        sensor_xyz_m=scans.map_from_sensor[:, :3, 3],
+        extraction=extractors.select_settings(ClusterRansacSettings, extraction),
         faces=truth_file.read_true_faces(files["truth"]),
         hulls=tables.read_table(files["hulls"], schemas.HULLS),
         walls=tables.read_table(files[OURS], schemas.WALLS, allow_empty=True),
-        clusters=tables.read_table(files["clusters"], schemas.CLUSTERS),
-        selections={m: tables.read_table(files[m], schemas.SELECTION) for m in _METHODS},
-        evaluated=[tables.read_table(path, schemas.EVALUATION) for path in evaluated],
+        clusters=pd.DataFrame(tables.read_table(files["clusters"], schemas.CLUSTERS)),
+        selections={
+            m: pd.DataFrame(tables.read_table(files[m], schemas.SELECTION)) for m in _METHODS
+        },
+        evaluated=[pd.DataFrame(tables.read_table(path, schemas.EVALUATION)) for path in evaluated],
         max_range_m=max_range_m,
     )
     for path in outputs:
@@ -74,4 +85,5 @@ if __name__ == "__main__":
             snakemake.output.orders,
             bitmap_cell_m=snakemake.params.bitmap_cell_m,
             max_range_m=snakemake.params.max_range_m,
+            extraction=snakemake.params.extraction,
         )

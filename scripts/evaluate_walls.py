@@ -3,7 +3,14 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from scanplan.lab.evaluation import oracle, order_metrics, pose_errors, truth_file, wall_findings
+from scanplan.lab.evaluation import (
+    oracle,
+    order_metrics,
+    pose_errors,
+    true_plan,
+    truth_file,
+    wall_findings,
+)
 from scanplan.stage import log
 from scanplan.store import registered_scans, schemas, tables
 from scanplan.types import FilePath
@@ -49,6 +56,7 @@ def evaluate_walls(
         placed,
         truth_file.true_pose_matrices(poses),
         sight=truth_file.read_sensor_view(truth, max_range_m=max_range_m),
+        rooms=true_plan.read_true_plan(truth).entered_rooms,
     )
     orders = {
         Path(path).stem: registered_scans.read_order_rows(path, scans, registration)
@@ -67,7 +75,8 @@ def evaluate_walls(
     measures, best_orders = order_metrics.measure_orders(floor, orders, drawn, bitmap_cell_m)
     aligned_measures, _ = order_metrics.measure_orders(floor, orders, moved, bitmap_cell_m)
     for path, table in ((output, measures), (aligned, aligned_measures)):
-        tables.write_table(path, schemas.EVALUATION, table)
+        columns = {name: table[name].to_numpy() for name in table}
+        tables.write_table(path, schemas.EVALUATION, columns)
         for line in order_metrics.summarise_wall_measures(table):
             log.log_line(f"evaluate_walls: {Path(path).stem}, {line}")
     tables.write_table(best, schemas.ORACLE, oracle.oracle_columns(best_orders, scans))

@@ -2,10 +2,12 @@
 
 from collections.abc import Mapping, Sequence
 
+import pandas as pd
+
 from scanplan.lab.thesis import judging
 from scanplan.stage import log
 from scanplan.store import schemas, tables
-from scanplan.types import Columns, FilePath
+from scanplan.types import FilePath
 
 _SCHEMAS = {
     "walls": schemas.EVALUATION,
@@ -14,6 +16,7 @@ _SCHEMAS = {
     "clusters": schemas.CLUSTERS,
     "areas": schemas.AREAS,
     "unevenness": schemas.UNEVENNESS,
+    "premises": schemas.PREMISES,
     "times": schemas.TIMES,
     "poses": schemas.POSE_ERRORS,
     "steps": schemas.STEPS,
@@ -47,18 +50,16 @@ def judge_claims(
     ):
         for i, seed in enumerate(seeds):
             rows += judging.judge_claims(kind, f"seed {seed}", _read_tables(of_kind, i))
-    rows.sort(key=lambda row: (row["claim"], row["survey"], row["quantity"]))
-    columns = {name: [row[name] for row in rows] for name in schemas.CLAIMS.columns}
-    tables.write_table(output, schemas.CLAIMS, columns)
-    judged = {(row["claim"], row["survey"]): row["holds"] for row in rows if row["holds"]}
-    n_yes = list(judged.values()).count("yes")
-    log.log_line(f"judge_claims: {len(judged)} judgements, {n_yes} of them yes")
+    claims = pd.DataFrame(rows).sort_values(list(schemas.CLAIMS.sorted_by))
+    tables.write_table(output, schemas.CLAIMS, claims.to_dict("list"))
+    judged = claims[claims["holds"] != ""].drop_duplicates(["claim", "survey"])["holds"]
+    log.log_line(f"judge_claims: {len(judged)} judgements, {(judged == 'yes').sum()} of them yes")
 
 
-def _read_tables(files: Mapping[str, Sequence[FilePath]], i: int) -> dict[str, Columns]:
+def _read_tables(files: Mapping[str, Sequence[FilePath]], i: int) -> dict[str, pd.DataFrame]:
     """Read the tables of the i-th seed."""
     return {
-        name: tables.read_table(paths[i], _SCHEMAS[name.split("_", 1)[1]])
+        name: pd.DataFrame(tables.read_table(paths[i], _SCHEMAS[name.split("_", 1)[1]]))
         for name, paths in files.items()
     }
 

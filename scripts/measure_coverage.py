@@ -8,9 +8,9 @@ import shapely
 from scanplan.lab.evaluation import truth_file
 from scanplan.lab.thesis import coverage
 from scanplan.selection import hulls
-from scanplan.stage import log
+from scanplan.stage import log, per_scan
 from scanplan.store import registered_scans, schemas, tables
-from scanplan.types import FilePath
+from scanplan.types import FilePath, Settings
 
 
 def measure_coverage(
@@ -23,8 +23,7 @@ def measure_coverage(
     areas: FilePath,
     *,
     n_clusters: Sequence[int],
-    sample_size: int,
-    seed: int,
+    sampling: Settings,
     max_range_m: float,
     threads: int = 1,
 ) -> None:
@@ -39,15 +38,15 @@ def measure_coverage(
     clusters, areas : path-like
         thesis/clusters.parquet and thesis/areas.parquet, to write.
     n_clusters : sequence of int
-    sample_size, seed : int
-        See `hulls.make_cluster_hulls`.
+        The numbers of clusters to compare.
+    sampling : dict
+        `n_clusters`, `sample_size` and `seed` of `hulls.make_cluster_hulls`, as for `built`.
     max_range_m : float
         How far a scan can see.
     threads : int
     """
-    growth = coverage.cluster_growth_columns(
-        scans, n_clusters, sample_size=sample_size, seed=seed, threads=threads
-    )
+    others = {name: value for name, value in sampling.items() if name != "n_clusters"}
+    growth = coverage.cluster_growth_columns(scans, n_clusters, threads=threads, **others)
     tables.write_table(clusters, schemas.CLUSTERS, growth)
     registered = registered_scans.read_registered_scans(registration)
     poses = truth_file.read_true_poses(true_poses)
@@ -64,6 +63,15 @@ def measure_coverage(
         "full_hull_iou": coverage.polygon_iou(full_hulls, seen),
         "cluster_hull_iou": coverage.polygon_iou(cluster_hulls, seen),
     }
+    strays = per_scan.map_scans(
+        coverage.stray_area_columns,
+        scans,
+        label="measure_coverage, a stray return",
+        threads=threads,
+        **sampling,
+    )
+    for name in ("full_hull_stray_m2", "cluster_hull_stray_m2"):
+        measures[name] = np.concatenate([of_scan[name] for of_scan in strays])
     tables.write_table(areas, schemas.AREAS, {"scan_id": registered.scan_ids, **measures})
     medians = ", ".join(f"{np.median(values):.2f} {name}" for name, values in measures.items())
     log.log_line(f"measure_coverage: {len(registered.scan_ids)} scans, median {medians}")
@@ -80,8 +88,7 @@ if __name__ == "__main__":
             snakemake.output.clusters,
             snakemake.output.areas,
             n_clusters=snakemake.params.n_clusters,
-            sample_size=snakemake.params.hulls["sample_size"],
-            seed=snakemake.params.hulls["seed"],
+            sampling=snakemake.params.hulls,
             max_range_m=snakemake.params.max_range_m,
             threads=snakemake.threads,
         )

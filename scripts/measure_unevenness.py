@@ -1,5 +1,7 @@
 """Measure what uneven sampling does to a random order and to the area-based one (thesis, 5.2)."""
 
+import pandas as pd
+
 from scanplan.lab.evaluation import truth_file
 from scanplan.lab.thesis import unevenness
 from scanplan.selection import hulls
@@ -53,14 +55,14 @@ def measure_unevenness(
     }
     _, polygons = hulls.scan_polygons(tables.read_table(built, schemas.HULLS))
     columns = unevenness.unevenness_columns(
-        seen, length_m, polygons, repeated, crowds, n_selected=n_selected, seed=sampling["seed"]
+        seen, length_m, polygons, repeated, crowds, n_selected=n_selected
     )
     tables.write_table(output, schemas.UNEVENNESS, columns)
-    _, lost_at_random = unevenness.lost_shares(columns, unevenness.RANDOM)
-    _, lost_by_area = unevenness.lost_shares(columns, unevenness.AREA)
+    _, lost = unevenness.lost_shares(pd.DataFrame(columns))
+    most = lost.iloc[-1]
     log.log_line(
-        f"measure_unevenness: {len(rows)} scans repeated, lost {lost_at_random[-1]:.1%} at random,"
-        f" {lost_by_area[-1]:.1%} by area"
+        f"measure_unevenness: {len(rows)} scans repeated, lost {most[unevenness.RANDOM]:.1%} at"
+        f" random, {most[unevenness.AREA]:.1%} by area"
     )
 
 

@@ -6,7 +6,16 @@ import numpy as np
 
 from scanplan.extraction.extractors import EXTRACTORS, Extractor
 from scanplan.lab.thesis import plain_ransac, timing
-from scanplan.lab.thesis.claim_measures import ITERATIVE, OURS, PLAIN, PLAIN_CLUSTERS
+from scanplan.lab.thesis.claim_measures import (
+    BUILDING,
+    ITERATIVE,
+    OURS,
+    PLAIN,
+    PLAIN_CLUSTERS,
+    SAMPLED,
+    UNSAMPLED,
+)
+from scanplan.plan.faces.merging import MergeSettings
 from scanplan.stage import log
 from scanplan.store import schemas, tables
 from scanplan.types import FilePath, Settings
@@ -21,12 +30,14 @@ def time_stages(
     scans: FilePath,
     registration: FilePath,
     built: FilePath,
+    segments: FilePath,
     output: FilePath,
     *,
     walls: Mapping[str, Settings],
     hulls: Settings,
     n_clusters: Sequence[int],
     timed_scans: int,
+    merge: Settings,
 ) -> None:
     """Write run times of cluster and iterative RANSAC as in the thesis, and of hulls and orders.
 
@@ -34,8 +45,8 @@ def time_stages(
 
     Parameters
     ----------
-    scans, registration, built : path-like
-        scans.parquet, registration.parquet and hulls.parquet.
+    scans, registration, built, segments : path-like
+        scans.parquet, registration.parquet, hulls.parquet and walls/cluster_ransac.parquet.
     output : path-like
         thesis/times.parquet, to write.
     walls : dict of str to dict
@@ -45,6 +56,8 @@ def time_stages(
     n_clusters : sequence of int
     timed_scans : int
         On how many scans, spread over the survey; clusters and thinned scans on a part of these.
+    merge : dict
+        See `merging.MergeSettings`.
     """
     store = tables.ScanStore(scans)
     columns = tables.read_table(built, schemas.HULLS)
@@ -53,9 +66,16 @@ def time_stages(
     sizes = np.unique(np.geomspace(min(10, n_scans), n_scans, 14).round().astype(int)).tolist()
     timed_ids = timing.spread_rows(store.scan_ids, timed_scans)
     few_ids = timing.spread_rows(timed_ids, max(timed_scans // _FEWER, 2))
+    most = [max(n_clusters)]
+    unsampled = {**hulls, "sample_size": np.iinfo(np.int32).max}
     rows = [
         *timing.time_selection(columns, sizes),
-        *timing.time_clusters(store, few_ids, sorted(n_clusters), **hulls),
+        *timing.time_clusters(BUILDING, store, few_ids, sorted(n_clusters), **hulls),
+        *timing.time_clusters(SAMPLED, store, few_ids, most, **hulls),
+        *timing.time_clusters(UNSAMPLED, store, few_ids, most, **unsampled),
+        *timing.time_merging(
+            tables.read_table(segments, schemas.WALLS, allow_empty=True), MergeSettings(**merge)
+        ),
     ]
     for task, (extractor, name) in _EXTRACTORS.items():
         settings = {**walls[name], **plain_ransac.LIFTED}
@@ -75,9 +95,11 @@ if __name__ == "__main__":
             snakemake.input.scans,
             snakemake.input.registration,
             snakemake.input.hulls,
+            snakemake.input.segments,
             snakemake.output.times,
             walls=snakemake.params.walls,
             hulls=snakemake.params.hulls,
             n_clusters=snakemake.params.n_clusters,
             timed_scans=snakemake.params.timed_scans,
+            merge=snakemake.params.merge,
         )

@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+import pandas as pd
+
 from scanplan.lab.thesis.page import thesis_page
 from scanplan.stage import log
 from scanplan.store import atomic, schemas, tables
@@ -29,7 +31,7 @@ def write_thesis(
     claims, steps, limited : path-like
         claims.parquet, and thesis/steps.parquet of the drive with our limits and with the thesis's.
     page : list of path-like
-        Template and style.
+        Template, style and the table of deviations.
     output : path-like
         report.html, to write.
     """
@@ -38,9 +40,9 @@ def write_thesis(
         _read_texts(page),
         figure_texts,
         Path(orders).read_text(encoding="utf-8"),
-        tables.read_table(claims, schemas.CLAIMS),
-        tables.read_table(steps, schemas.STEPS),
-        tables.read_table(limited, schemas.STEPS),
+        pd.DataFrame(tables.read_table(claims, schemas.CLAIMS)),
+        pd.DataFrame(tables.read_table(steps, schemas.STEPS)),
+        pd.DataFrame(tables.read_table(limited, schemas.STEPS)),
     )
     atomic.write_text(output, text)
     log.log_line(f"write_thesis: {len(figure_texts)} figures, {len(text) / 1e6:.1f} MB")

@@ -1,6 +1,7 @@
 """The stages of the thesis's experiments on made-up surveys."""
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from build_hulls import build_hulls
@@ -19,8 +20,9 @@ from helpers.evaluation_making import (
 )
 from judge_claims import judge_claims
 from measure_coverage import measure_coverage
+from measure_premises import measure_premises
 from measure_unevenness import measure_unevenness
-from scanplan.lab.thesis import drive_figures
+from scanplan.lab.thesis import drive_figures, premises
 from scanplan.lab.thesis.shown_figures import FIGURES
 from scanplan.project import stage_settings
 from scanplan.store import schemas, tables
@@ -64,7 +66,8 @@ def coverage(folder):
     inputs = [folder / name for name in ("scans.parquet", "hulls.parquet", "registration.parquet")]
     inputs += [folder / name for name in ("truth.geojson", "truth_poses.tum")]
     outputs = folder / "clusters.parquet", folder / "areas.parquet"
-    measure_coverage(*inputs, *outputs, n_clusters=[6, 1], max_range_m=100.0, **SAMPLING)
+    sampling = SAMPLING | {"n_clusters": 6}
+    measure_coverage(*inputs, *outputs, n_clusters=[6, 1], max_range_m=100.0, sampling=sampling)
     return outputs
 
 
@@ -100,7 +103,12 @@ def test_areas_are_those_of_the_room_each_time(survey):
     assert (measured["cluster_hull_iou"] < measured["full_hull_iou"]).all()
     # points on the walls: one hull is nearly the room, the clusters' hulls leave its middle out
     assert (measured["full_hull_m2"] > 22).all() and (measured["cluster_hull_m2"] < 20).all()
+    # a stray return as far as the farthest: outside of the room, but for a few directions
+    assert (measured["full_hull_stray_m2"] >= measured["full_hull_m2"] - 1e-6).all()
+    assert (measured["full_hull_stray_m2"] > measured["full_hull_m2"] + 0.1).any()
     growth = tables.read_table(clusters, schemas.CLUSTERS)
+    own_m2 = growth["area_m2"][growth["n_clusters"] == 6]
+    np.testing.assert_allclose(np.sort(own_m2), np.sort(measured["cluster_hull_m2"]))
     assert (
         growth["n_clusters"].tolist() == [1, 1, 1, 6, 6, 6]
         and growth["rank"].tolist() == [1, 2, 3] * 2
@@ -123,9 +131,36 @@ def test_of_a_room_that_every_scan_sees_nothing_is_lost(survey, tmp_path):
     np.testing.assert_allclose(columns["seen_m"], 20.0)
 
 
+def test_premises_are_measured_scan_by_scan_and_draw_by_draw(survey, tmp_path):
+    inputs = [survey / name for name in ("scans.parquet", "walls/cluster_ransac.parquet")]
+    inputs += [survey / name for name in ("registration.parquet", "truth.geojson")]
+    found = []
+    for name in ("first", "second"):
+        output = tmp_path / f"{name}.parquet"
+        measure_premises(
+            *inputs,
+            survey / "truth_poses.tum",
+            output,
+            extraction=stage_settings.select_extractor(SETTINGS, "cluster_ransac"),
+            max_range_m=100.0,
+            bitmap_cell_m=0.05,
+            n_added=4,
+        )
+        found.append(output.read_bytes())
+    assert found[0] == found[1]
+    table = pd.DataFrame(tables.read_table(output, schemas.PREMISES))
+    assert table.groupby("premise").size().to_dict() == {
+        **dict.fromkeys(premises.UTILITIES, 4),
+        premises.ONE_WALL: 3,
+    }
+    # walls found is a union's length: no scan adds more to more
+    assert (table.loc[table["premise"] == "walls found", "value"].dropna() >= 1 - 1e-9).all()
+
+
 def test_every_task_is_timed(survey, tmp_path):
     walls = stage_settings.select_extractors(SETTINGS, ("cluster_ransac", "iterative_ransac"))
     inputs = [survey / name for name in ("scans.parquet", "registration.parquet", "hulls.parquet")]
+    inputs.append(survey / "walls/cluster_ransac.parquet")
     time_stages(
         *inputs,
         tmp_path / "times.parquet",
@@ -133,12 +168,17 @@ def test_every_task_is_timed(survey, tmp_path):
         hulls=SAMPLING,
         n_clusters=[3, 1],
         timed_scans=3,
+        merge=stage_settings.select_merging(SETTINGS),
     )
     found = tables.read_table(tmp_path / "times.parquet", schemas.TIMES)
     extractors = {"plain_clusters", "plain_ransac"}
     assert set(found["task"]) == extractors | {f"thinned_{e}" for e in extractors} | {
         "build_hulls",
+        "build_sampled_hulls",
+        "build_unsampled_hulls",
+        "merge_segments",
         "order_scans",
+        "order_scans_literally",
     }
     thinned = found["size"][found["task"] == "thinned_plain_ransac"]
     assert sorted(set(thinned.tolist())) == [50, 100, 200, 400]
@@ -196,15 +236,16 @@ def test_every_figure_is_drawn_and_stands_on_the_page(survey, tmp_path):
     draw_thesis_rooms(
         files,
         [evaluation] * 2,
-        drawn[:8],
+        drawn[:11],
         tmp_path / "orders.svg",
         bitmap_cell_m=0.05,
         max_range_m=100.0,
+        extraction=stage_settings.select_extractor(SETTINGS, "cluster_ransac"),
     )
     walls = {extractor: survey / f"walls/{extractor}.parquet" for extractor in EXTRACTORS}
     tables_of_drive = [survey / name for name in ("scans.parquet", "registration.parquet")]
     draw_thesis_drive(
-        *tables_of_drive, files["cluster_hull"], walls, write_times(survey), drawn[8:]
+        *tables_of_drive, files["cluster_hull"], walls, write_times(survey), drawn[11:]
     )
     assert all("<svg" in path.read_text() for path in [*drawn, tmp_path / "orders.svg"])
 
@@ -213,10 +254,7 @@ def claim_files(folder):
     files = {}
     for name, columns in (made.rooms() | made.drive()).items():
         schema = _schema(name)
-        full = {
-            column: columns.get(column, np.zeros(len(next(iter(columns.values())))))
-            for column in schema.columns
-        }
+        full = {column: columns.get(column, np.zeros(len(columns))) for column in schema.columns}
         order = np.lexsort([np.asarray(full[column]) for column in reversed(schema.sorted_by)])
         path = folder / f"{name}.parquet"
         tables.write_table(
@@ -265,4 +303,5 @@ def test_crowded_places_are_circled_once():
         [rng.normal((0, 0), 0.2, (30, 2)), rng.normal((20, 0), 0.2, (28, 2)), [(10.0, 0)] * 3]
     )
     found = np.array(drive_figures.find_crowded_places(path_m))
-    assert len(found) == 2 and np.allclose(found, [(0, 0), (20, 0)], atol=0.6)
+    np.testing.assert_allclose(found, [(0, 0), (20, 0), (10, 0)], atol=0.6)
+    assert drive_figures.find_crowded_places(np.array([(0.0, 0.0), (9.0, 0.0)])) == []

@@ -31,7 +31,7 @@ def test_outer_faces_hide_too():
 
 
 def test_range_ends_the_view():
-    assert seen(BOX, (3, 2), max_range_m=1.0).area == pytest.approx(np.pi, rel=1e-3)
+    assert seen(BOX, (3, 2), max_range_m=1.0).area == pytest.approx(np.pi, rel=1e-2)
 
 
 def test_behind_a_pillar_nothing_is_seen():

@@ -7,7 +7,7 @@ from scanplan.selection.methods import METHODS
 
 def shorter(table, n):
     """The evaluation as a survey of fewer scans has it: its last size another one."""
-    return table | {"k": np.where(table["k"] == 270, n, table["k"])}
+    return table.assign(k=table["k"].replace(270, n))
 
 
 def test_seeds_of_different_numbers_of_scans_are_drawn_together():

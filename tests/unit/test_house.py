@@ -41,7 +41,7 @@ HOMES = {
     "jinja2": ("report/", "lab/thesis/"),
     "matplotlib": ("exports/", "report/", "lab/", "stage/figure_files.py"),
     "snakemake": (),
-    "pandas": (),
+    "pandas": ("lab/",),
     "sklearn": (),
 }
 """Library to the files and folders of the package that may import it."""

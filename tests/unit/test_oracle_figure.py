@@ -8,7 +8,7 @@ from scanplan.lab.evaluation import oracle_figure
 
 def with_shares(factor, **changes):
     table = made.evaluation(**changes)
-    return table | {"oracle_share": factor * table["visible_completeness_010m"]}
+    return table.assign(oracle_share=factor * table["visible_completeness_010m"])
 
 
 def texts(*tables):
@@ -27,7 +27,7 @@ def test_one_survey_tells_share_and_completeness():
 
 def test_several_seeds_tell_mean_and_range_where_all_have_so_many_scans():
     few = with_shares(1.0)
-    few = {name: values[few["k"] != 80] for name, values in few.items()}
+    few = few[few["k"] != 80]
     (ours, _) = texts(with_shares(0.5), few)
     assert len(ours) == 5 and ours[0] == "0.73  (0.48 to 0.97)"
 

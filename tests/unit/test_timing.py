@@ -1,11 +1,19 @@
 import time
 
 import numpy as np
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
 
 from helpers import toy_rooms
+from helpers.default_settings import SETTINGS
+from helpers.wall_making import observed
+from reference import hull_selection as reference
 from scanplan.extraction.extractors import Extractor
 from scanplan.extraction.segments import SegmentLimits
 from scanplan.lab.thesis import timing
+from scanplan.plan.faces.merging import MergeSettings
+from scanplan.project import stage_settings
 from scanplan.selection import hulls
 from scanplan.store import tables
 
@@ -28,14 +36,40 @@ def built(n):
 
 def test_the_order_is_timed_for_every_number_of_scans():
     rows = list(timing.time_selection(built(6), [2, 6]))
-    assert [(row["size"], row["found"]) for row in rows] == [(2, 2), (6, 6)]
+    found = [(row["task"], row["size"], row["found"]) for row in rows]
+    tasks = ("order_scans", "order_scans_literally")
+    assert found == [(task, n, n) for n in (2, 6) for task in tasks]
     assert all(row["seconds"] > 0 for row in rows)
+
+
+@given(st.lists(st.tuples(*[st.integers(0, 6)] * 2, st.integers(1, 3)), min_size=1, max_size=7))
+def test_algorithm_1_as_written_gives_the_order_of_the_reference(corners):
+    # sides of unequal fractions: no two gains are the same by chance
+    polygons = np.array(
+        [shapely.box(x, y, x + w + i / 97, y + w + i / 89) for i, (x, y, w) in enumerate(corners)]
+    )
+    order = timing.order_literally(polygons)
+    literal, covered_m2 = reference.hull_selection(list(polygons))
+    union_m2 = [shapely.union_all(polygons[order[: k + 1]]).area for k in range(len(order))]
+    np.testing.assert_allclose(union_m2, covered_m2, rtol=1e-9)
+    assert sorted(order) == sorted(literal)
+
+
+def test_merging_is_timed_for_all_scans_and_parts_of_them():
+    walls = observed([(0, 0, 6, 0), (6, 0, 6, 4)], np.random.default_rng(5), n_scans=8)
+    settings = MergeSettings(**stage_settings.select_merging(SETTINGS))
+    rows = list(timing.time_merging(walls, settings))
+    n = len(walls["scan_id"])
+    assert [row["size"] for row in rows] == [n, n // 2, n // 4, n // 8]
+    assert all(row["seconds"] > 0 and row["found"] >= 0 for row in rows)
 
 
 def test_choosing_the_subset_is_timed_where_there_is_a_choice():
     rows = list(timing.time_selection(built(17), [15, 17]))
     found = [(row["task"], row["size"], row["found"]) for row in rows]
-    assert found == [("order_scans", 15, 15), ("order_scans", 17, 17), ("choose_scans", 17, 15)]
+    both = ("order_scans", "order_scans_literally")
+    assert [row for row in found if row[0] in both] == [(t, n, n) for n in (15, 17) for t in both]
+    assert [row for row in found if row[0] not in both] == [("choose_scans", 17, 15)]
 
 
 def test_a_part_of_the_points_is_kept_in_their_order():
@@ -82,5 +116,5 @@ def test_hulls_are_timed_for_every_number_of_clusters(tmp_path):
         for scan_id in (0, 3, 9):
             write(scan_id, rng.normal(0, 1, (60, 3)))
     store = tables.ScanStore(tmp_path / "scans.parquet")
-    rows = list(timing.time_clusters(store, [0, 9], [1, 4], sample_size=30, seed=0))
+    rows = list(timing.time_clusters("build_hulls", store, [0, 9], [1, 4], sample_size=30, seed=0))
     assert [(row["size"], row["found"]) for row in rows] == [(1, 2), (4, 2)]

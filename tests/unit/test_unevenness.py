@@ -1,7 +1,13 @@
 """Uneven sampling on paper: three rooms in a row, of which only the first is crowded."""
 
+from itertools import combinations
+
 import numpy as np
+import pandas as pd
+import pytest
 import shapely
+from hypothesis import given
+from hypothesis import strategies as st
 
 from scanplan.lab.evaluation import visible_faces
 from scanplan.lab.evaluation.truth_file import TrueFaces
@@ -17,40 +23,50 @@ POLYGONS = np.array([shapely.box(4 * room, 0, 4 * room + 1 + room, 1) for room i
 
 def measured(crowd, n_selected=2):
     further = {row: np.repeat(POLYGONS[row], 19) for row in crowd}
-    return unevenness.unevenness_columns(
-        SEEN, LENGTH_M, POLYGONS, further, [np.array(crowd)], n_selected=n_selected, seed=1
+    columns = unevenness.unevenness_columns(
+        SEEN, LENGTH_M, POLYGONS, further, [np.array(crowd)], n_selected=n_selected
     )
+    return pd.DataFrame(columns)
 
 
 def test_the_order_by_area_takes_the_largest_rooms_however_often_the_others_were_seen():
     columns = measured(range(10))
-    of_it = columns["order"] == "cluster_hull"
-    assert columns["repeats"][of_it].tolist() == [1, 5, 20] and columns["draw"][of_it].tolist() == [
-        0,
-        0,
-        0,
-    ]
-    np.testing.assert_allclose(columns["seen_m"][of_it], 50.0)
+    of_it = columns[columns["order"] == "cluster_hull"]
+    assert of_it["repeats"].tolist() == [1, 5, 20]
+    np.testing.assert_allclose(of_it["seen_m"], 50.0)
 
 
 def test_a_random_order_sees_what_chance_says():
-    columns = measured(range(10))
-    even_m, lost = unevenness.lost_shares(columns, "random")
+    even_m, lost = unevenness.lost_shares(measured(range(10)))
     # two of 10 + 2 scans: in the first room with one of 45/66, both others 1/66, one of them 10/66
     # each
-    np.testing.assert_allclose(even_m, (45 * 10 + 10 * 30 + 10 * 40 + 50) / 66, rtol=0.1)
+    assert even_m["random"] == pytest.approx((45 * 10 + 10 * 30 + 10 * 40 + 50) / 66)
     # of 200 + 2 scans both nearly always lie in the first room
-    assert 0 < lost[1] < lost[2] and abs(even_m * (1 - lost[2]) - 10) < 1.5
+    n = 202 * 201 / 2
+    crowded_m = (199 * 100 * 10 + 200 * 30 + 200 * 40 + 50) / n
+    assert lost["random"][20] == pytest.approx(1 - crowded_m / even_m["random"])
+    assert 0 < lost["random"][5] < lost["random"][20]
+
+
+@given(st.integers(0, 2**31), st.integers(1, 7))
+def test_what_is_to_be_expected_is_the_mean_of_all_subsets(seed, n_selected):
+    rng = np.random.default_rng(seed)
+    seen = rng.random((6, 4)) < 0.4
+    length_m = rng.uniform(1, 5, 4)
+    polygons = np.array([shapely.box(i, 0, i + 1, 1) for i in range(6)])
+    columns = unevenness.unevenness_columns(
+        seen, length_m, polygons, {0: np.repeat(polygons[0], 19)}, [np.array([0])],
+        n_selected=n_selected,
+    )  # fmt: skip
+    found = pd.DataFrame(columns).query("order == 'random' and repeats == 1")["seen_m"].item()
+    subsets = list(combinations(range(6), min(n_selected, 6)))
+    lengths_m = [length_m[seen[list(rows)].any(axis=0)].sum() for rows in subsets]
+    assert found == pytest.approx(np.mean(lengths_m))
 
 
 def test_a_crowd_in_the_longest_room_does_no_such_harm():
-    lost = unevenness.lost_shares(measured([11]), "random")[1]
-    assert lost[2] < 0
-
-
-def test_the_same_seed_draws_the_same():
-    first, again = measured(range(10)), measured(range(10))
-    assert all((first[name] == again[name]).all() for name in first)
+    _, lost = unevenness.lost_shares(measured([11]))
+    assert lost["random"][20] < 0
 
 
 def test_a_survey_of_fewer_scans_is_seen_whole():

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
+import shapely
 
 from helpers.wall_making import observed
-from scanplan.geometry import bitmap
 from scanplan.lab.evaluation import (
     face_cells,
     first_ranks,
@@ -33,15 +33,14 @@ def survey():
 
 
 def only(table, method):
-    return {name: values[table["method"] == method] for name, values in table.items()}
+    return {name: table.loc[table["method"] == method, name].to_numpy() for name in table}
 
 
 def truth_of(faces, n_scans=1):
     """Faces that every scan could see all of."""
     cells = face_cells.cut_faces(np.array(faces, float).reshape(-1, 2, 2))
-    return wall_findings.VisibleTruth(
-        cells, np.ones((n_scans, len(cells.face)), bool), np.ones(len(cells.face), bool)
-    )
+    every = np.ones(len(cells.face), bool)
+    return wall_findings.VisibleTruth(cells, np.tile(every, (n_scans, 1)), every, every)
 
 
 def test_sizes_grow_and_end_with_all():
@@ -152,7 +151,7 @@ def test_a_segment_belongs_to_the_face_it_mostly_lies_on():
     truth = truth_of([(0, 0, 4, 0), (4, 0, 4, 0.3)])
     lines = np.array([[(3, 0), (3.98, 0)], [(4, 0.02), (4, 0.3)], [(9, 9), (9, 8)]], float)
     drawn = wall_findings.PlacedSegments(lines, lines, np.zeros(3, int))
-    found = wall_findings.match_segments(drawn, truth, bitmap.fit_grid(lines, 1.0))
+    found = wall_findings.match_segments(drawn, truth, [])
     np.testing.assert_array_equal(found.face, [0, 1, -1])
 
 
@@ -180,3 +179,24 @@ def test_a_plan_is_measured_as_one_subset():
     assert row["correctness_010m"] == pytest.approx(5 / 6)
     assert (row["n_walls"], row["walls_per_true_wall"]) == (3, 2)
     assert "missed_misregistered" not in row
+
+
+def test_only_walls_of_rooms_that_were_entered_count_where_it_is_asked_for():
+    # two rooms of 4 m x 4 m with a wall between them, of which the survey went into the first
+    faces = [(0, 0, 4, 0), (4, 0, 4, 4), (4, 4, 0, 4), (0, 4, 0, 0), (4.2, 0, 8, 0), (8, 0, 8, 4)]
+    place = np.eye(4)[None]
+    place[0, :2, 3] = 2, 2
+    sight = visible_faces.SensorView(50.0)
+    inner = np.array(faces, float).reshape(-1, 2, 2)
+    rooms = [shapely.box(0, 0, 4, 4)]
+    both = TrueFaces(inner[[0, 2, 3, 4, 5]], NO_FACES)
+    truth = wall_findings.observe_truth(both, place, place, sight=sight, rooms=rooms)
+    assert truth.cells.length_m[truth.entered].sum() == pytest.approx(12, abs=0.05)
+    assert truth.cells.length_m[truth.visible].sum() > 15
+    # half of the entered room's walls is found, and nothing of the other's
+    lines = inner[[0]]
+    row = wall_findings.PlacedSegments(lines, lines, np.zeros(1, int))
+    table, _ = order_metrics.measure_orders(truth, {"some": np.array([0])}, {"e": row}, 0.1)
+    assert only(table, "some")["entered_completeness_010m"][0] == pytest.approx(4.1 / 12, abs=0.01)
+    unknown = wall_findings.observe_truth(both, place, place, sight=sight)
+    assert (unknown.entered == unknown.visible).all()

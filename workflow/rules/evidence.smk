@@ -10,6 +10,7 @@ ROOMS_TABLES = {
     "clusters": "thesis/clusters",
     "areas": "thesis/areas",
     "unevenness": "thesis/unevenness",
+    "premises": "thesis/premises",
     "times": "thesis/times",
 }
 DRIVE_TABLES = {
@@ -58,5 +59,17 @@ def figures_of(*numbers):
     ]
 
 
-ROOMS_FIGURES = ["3.2", "5.1", "5.2", "5.3", "5.4", "5.5", "5.6", "5.7"]
+ROOMS_FIGURES = [
+    "3.1",
+    "3.2",
+    "3.3",
+    "4.1",
+    "5.1",
+    "5.2",
+    "5.3",
+    "5.4",
+    "5.5",
+    "5.6",
+    "5.7",
+]
 DRIVE_FIGURES = ["5.8", "5.9", "5.10", "5.11", "5.12"]

@@ -24,7 +24,10 @@ def page_files(*names):
 
 
 REPORT_PAGE = page_files("page.html.j2", "tables.html.j2", "page.css", "page.js")
-THESIS_PAGE = page_files("thesis.html.j2", "thesis.css")
+THESIS_PAGE = [
+    *page_files("thesis.html.j2", "thesis.css"),
+    os.path.relpath(f"{workflow.basedir}/config/deviations.md"),
+]
 
 
 def report_results(wildcards):

@@ -26,7 +26,7 @@ rule measure_coverage:
         runtime=30,
     params:
         n_clusters=section("thesis", "n_clusters"),
-        hulls=setting(stage_settings.select_hull_sampling),
+        hulls=setting(stage_settings.select_hulls),
         max_range_m=section("input", "max_range_m"),
     script:
         "../../scripts/measure_coverage.py"
@@ -59,12 +59,41 @@ rule measure_unevenness:
         "../../scripts/measure_unevenness.py"
 
 
+rule measure_premises:
+    """Measure whether utilities are submodular and clusters of points are one wall each."""
+    input:
+        scans="results/{dataset}/scans.parquet",
+        walls="results/{dataset}/walls/cluster_ransac.parquet",
+        registration="results/{dataset}/registration.parquet",
+        truth=true_faces,
+        true_poses=true_poses,
+        code=code_of("measure_premises"),
+    output:
+        premises="results/{dataset}/thesis/premises.parquet",
+    log:
+        "logs/{dataset}/measure_premises.log",
+    benchmark:
+        "benchmarks/{dataset}/measure_premises.tsv"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=30,
+    params:
+        extraction=setting(stage_settings.select_extractor, "cluster_ransac"),
+        max_range_m=section("input", "max_range_m"),
+        evaluation=section("evaluation"),
+        n_added=stated_claims.SUBSET,
+    script:
+        "../../scripts/measure_premises.py"
+
+
 rule time_stages:
     """Time extraction scan by scan and selection by number of scans, with all cores to itself."""
     input:
         scans="results/{dataset}/scans.parquet",
         registration="results/{dataset}/registration.parquet",
         hulls="results/{dataset}/hulls.parquet",
+        segments="results/{dataset}/walls/cluster_ransac.parquet",
         code=code_of("time_stages"),
     output:
         times="results/{dataset}/thesis/times.parquet",
@@ -81,6 +110,7 @@ rule time_stages:
         hulls=setting(stage_settings.select_hull_sampling),
         n_clusters=section("thesis", "n_clusters"),
         timed_scans=section("thesis", "timed_scans"),
+        merge=setting(stage_settings.select_merging),
     script:
         "../../scripts/time_stages.py"
 
@@ -172,6 +202,9 @@ rule draw_thesis_rooms:
             "bitmap_cell_m"
         ],
         max_range_m=THESIS[experiments.ROOMS][0].settings["input"]["max_range_m"],
+        extraction=stage_settings.select_extractor(
+            THESIS[experiments.ROOMS][0].settings, "cluster_ransac"
+        ),
     script:
         "../../scripts/draw_thesis_rooms.py"
 

@@ -1,7 +1,4 @@
-"""Bitmap metrics: walls and truth as binary maps, and the shares of their difference.
-
-Thesis, section 5.1.
-"""
+"""Lines as binary maps: the square cells that they pass through (thesis, section 5.1)."""
 
 from dataclasses import dataclass
 
@@ -10,7 +7,7 @@ import numpy.typing as npt
 
 from scanplan.errors import StageError
 from scanplan.geometry.tolerances import ROUNDING
-from scanplan.types import Array, BoolArray, FloatArray, IntArray
+from scanplan.types import BoolArray, FloatArray, IntArray
 
 _MOST_CELLS = 100_000_000  # 100 MB a bitmap
 
@@ -30,15 +27,6 @@ class Grid:
     low_m: FloatArray
     cell_m: float
     shape: tuple[int, int]
-
-
-@dataclass(frozen=True)
-class Shares:
-    """Shares of all cells of an error map; they sum to 1."""
-
-    false_negative: float
-    correct_match: float
-    false_positive: float
 
 
 def fit_grid(lines_m: npt.ArrayLike, cell_m: float) -> Grid:
@@ -106,33 +94,6 @@ def rasterise_lines(lines_m: npt.ArrayLike, grid: Grid) -> BoolArray:
     bitmap = np.zeros(grid.shape, bool)
     bitmap.flat[trace_cells(lines_m, grid)[1]] = True
     return bitmap
-
-
-def subtract_bitmaps(result: Array, truth: Array) -> IntArray:
-    """Return B_E = B_I - B_GT, int8: -1 missed, 0 match, 1 invented.
-
-    Raises
-    ------
-    ValueError
-        If the maps differ in size, are empty or not of bool.
-    """
-    if (
-        result.shape != truth.shape
-        or result.size == 0
-        or result.dtype != bool
-        or truth.dtype != bool
-    ):
-        raise ValueError(
-            f"two binary maps of one size are needed, not {result.dtype} {result.shape}"
-            f" and {truth.dtype} {truth.shape}"
-        )
-    return result.astype(np.int8) - truth.astype(np.int8)
-
-
-def error_shares(errors: IntArray) -> Shares:
-    """Return the shares of -1, 0 and 1 among all cells of an error map."""
-    counts = [int(np.count_nonzero(errors == value)) for value in (-1, 0, 1)]
-    return Shares(*(count / errors.size for count in counts))
 
 
 def _crossings(ends: FloatArray) -> tuple[IntArray, FloatArray]:

@@ -134,6 +134,11 @@ def select_plan(settings: Settings) -> Keywords:
     }
 
 
+def select_merging(settings: Settings) -> Keywords:
+    """Return the keywords of `merging.MergeSettings`."""
+    return select_plan(settings)["merge"]
+
+
 def select_simulation(settings: Settings) -> Keywords:
     """Return the keywords of `simulate_survey`."""
     return _without(settings["simulate"], _OF_THE_WORKFLOW)

@@ -6,9 +6,14 @@ _AT = re.compile(r"_0(\d\d)m$")
 _WORDS = {
     "n_scans": "scans that the plan is made of",
     "length_m": "length of all faces of the plan, metres",
-    "false_negative": "share of the bitmap's cells where a true face is not drawn (thesis, 5.1)",
-    "correct_match": "share of the bitmap's cells that agree",
-    "false_positive": "share of the bitmap's cells where a face is drawn and none is",
+    "false_negative": "share of the bitmap's cells where a true face is not drawn (thesis, 5.1),"
+    " mean over where in a cell the grid begins",
+    "correct_match": "share of the bitmap's cells that agree, likewise",
+    "false_positive": "share of the bitmap's cells where a face is drawn and none is, likewise",
+    "literal_false_negative": "share of the cells missed in the one grid that begins at the map's"
+    " origin",
+    "literal_correct_match": "share of the cells of that grid that agree",
+    "literal_false_positive": "share of the cells of that grid where none is",
     "completeness": "share of the true faces' length that is drawn",
     "correctness": "share of the drawn faces' length that is true",
     "f1": "harmonic mean of completeness and correctness",

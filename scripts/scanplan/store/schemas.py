@@ -264,8 +264,9 @@ EVIDENCE = Schema(
 )
 """Which scans show a wall of the plan, when they were taken and with how many points."""
 _WITHIN = ("005m", "010m", "015m")
+_SHARES = ("false_negative", "correct_match", "false_positive")
 _AGREEMENT = {
-    **dict.fromkeys(("false_negative", "correct_match", "false_positive"), "float64"),
+    **{f"{metric}{share}": "float64" for metric in ("", "literal_") for share in _SHARES},
     **{
         f"{truth}{measure}_{within}": "float64"
         for truth in ("", "visible_")
@@ -277,7 +278,7 @@ _AGREEMENT = {
 }
 EVALUATION = Schema(
     "evaluation",
-    3,
+    4,
     {
         "method": "string",
         "extractor": "string",
@@ -285,6 +286,7 @@ EVALUATION = Schema(
         **_AGREEMENT,
         **dict.fromkeys(
             (
+                "entered_completeness_010m",
                 "walls_per_true_wall_of_a_scan",
                 "seen",
                 "missed_not_seen",
@@ -335,17 +337,28 @@ POSE_ERRORS = Schema(
 )
 CLUSTERS = Schema(
     "clusters",
-    1,
-    {"n_clusters": "int32", "rank": "int32", "scan_id": "int32", "covered_m2": "float64"},
+    2,
+    {
+        **dict.fromkeys(("n_clusters", "rank", "scan_id"), "int32"),
+        **dict.fromkeys(("area_m2", "covered_m2"), "float64"),
+    },
     ("n_clusters", "rank"),
 )
 AREAS = Schema(
     "areas",
-    2,
+    3,
     {
         "scan_id": "int32",
         **dict.fromkeys(
-            ("full_hull_m2", "cluster_hull_m2", "seen_m2", "full_hull_iou", "cluster_hull_iou"),
+            (
+                "full_hull_m2",
+                "cluster_hull_m2",
+                "seen_m2",
+                "full_hull_iou",
+                "cluster_hull_iou",
+                "full_hull_stray_m2",
+                "cluster_hull_stray_m2",
+            ),
             "float64",
         ),
     },
@@ -353,15 +366,23 @@ AREAS = Schema(
 )
 """Areas of a scan's hulls and of what it truly sees.
 
-`iou` is intersection over union of a hull with the latter.
+`iou` is intersection over union of a hull with the latter, `stray` a hull's area with one stray
+return more.
 """
 UNEVENNESS = Schema(
     "unevenness",
-    1,
-    {"order": "string", "crowd": "int32", "repeats": "int32", "draw": "int32", "seen_m": "float64"},
-    ("order", "crowd", "repeats", "draw"),
+    2,
+    {"order": "string", "crowd": "int32", "repeats": "int32", "seen_m": "float64"},
+    ("order", "crowd", "repeats"),
 )
 """True wall length seen by the first scans of an order, those of a crowd taken `repeats` times."""
+PREMISES = Schema(
+    "premises",
+    1,
+    {"premise": "string", "item": "int32", "value": "float64"},
+    ("premise", "item"),
+)
+"""What the thesis takes for granted, draw by draw or scan by scan."""
 TIMES = Schema(
     "times",
     1,
@@ -388,7 +409,7 @@ STEPS = Schema(
 )
 CLAIMS = Schema(
     "claims",
-    2,
+    3,
     {
         "claim": "string",
         "survey": "string",
@@ -401,7 +422,7 @@ CLAIMS = Schema(
 )
 PLAN_EVALUATION = Schema(
     "plan_evaluation",
-    3,
+    4,
     {
         "frame": "string",
         "n_scans": "int32",

@@ -2,16 +2,14 @@
 
 from collections.abc import Iterable
 
-import numpy as np
+import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter, StrMethodFormatter
 
 from scanplan.report import top_view
 from scanplan.selection.methods import METHODS
-from scanplan.types import Columns, IntArray
 
-_SIZE_IN = (7.0, 8.6)  # a page of A4 but for the caption
 _STYLES = {
     "oracle": ("oracle: knows the truth", "black"),
     "sight": ("oracle by sight alone", "0.55"),
@@ -32,7 +30,7 @@ _REASONS = {
 
 
 def draw_evaluation_figure(
-    measures: Columns, aligned: Columns, *, method: str, extractor: str
+    measures: pd.DataFrame, aligned: pd.DataFrame, *, method: str, extractor: str
 ) -> Figure:
     """Draw completeness by every method and extractor, bitmap metrics and reasons of misses.
 
@@ -40,8 +38,8 @@ def draw_evaluation_figure(
 
     Parameters
     ----------
-    measures, aligned : dict of str to (n,) array
-        The columns of `schemas.EVALUATION`, as registered and after the best rigid motion.
+    measures, aligned : pandas.DataFrame
+        `schemas.EVALUATION`, as registered and after the best rigid motion.
     method, extractor : str
         Whose misses, and whose bitmap metrics are drawn.
 
@@ -49,20 +47,22 @@ def draw_evaluation_figure(
     -------
     matplotlib.figure.Figure
     """
-    figure = Figure(figsize=_SIZE_IN, layout="constrained")
-    names = sorted(set(measures["extractor"].tolist()), key=lambda name: name != extractor)
+    # a page of A4 but for the caption
+    figure = Figure(figsize=(7.0, 8.6), layout="constrained")
+    names = sorted(sorted(measures["extractor"].unique()), key=lambda name: name != extractor)
     axes = figure.subplot_mosaic(_mosaic(len(names)))
     for row, name in enumerate(names):
         left, right = axes[str(2 * row)], axes[str(2 * row + 1)]
-        _draw_completeness(left, _select(measures, extractor=name), f"{name}, as registered")
-        _draw_completeness(right, _select(aligned, extractor=name), f"{name}, after a rigid motion")
-    of_extractor = _select(measures, extractor=extractor)
+        _draw_completeness(left, measures[measures["extractor"] == name], f"{name}, as registered")
+        moved = aligned[aligned["extractor"] == name]
+        _draw_completeness(right, moved, f"{name}, after a rigid motion")
+    of_extractor = measures[measures["extractor"] == extractor]
     for key, (share, title) in zip("abc", _BITMAP.items(), strict=True):
         _draw_curves(axes[key], of_extractor, share)
         axes[key].set_title(f"{title}, {extractor}", fontsize=7)
         axes[key].set_ylabel("share of all cells", fontsize=7)
     for key, name in (("m", method), ("o", "oracle")):
-        _draw_missed(axes[key], _select(of_extractor, method=name))
+        _draw_missed(axes[key], of_extractor[of_extractor["method"] == name])
         axes[key].set_title(f"missed, {name}, {extractor}, as registered", fontsize=7)
     handles, labels = axes["0"].get_legend_handles_labels()
     figure.legend(
@@ -82,8 +82,7 @@ def _mosaic(n_extractors: int) -> str:
 def sort_methods(methods: Iterable[str]) -> list[str]:
     """Return the methods in the order to draw them in: the known ones last, the oracle on top."""
     layer = {method: -place for place, method in enumerate(_STYLES)}
-    unique = set(np.asarray(methods).tolist())
-    return sorted(unique, key=lambda method: (layer.get(method, -len(_STYLES)), method))
+    return sorted(methods, key=lambda method: (layer.get(method, -len(_STYLES)), method))
 
 
 def method_style(method: str) -> tuple[str, str]:
@@ -93,22 +92,21 @@ def method_style(method: str) -> tuple[str, str]:
     )
 
 
-def _draw_completeness(axes: Axes, table: Columns, title: str) -> None:
+def _draw_completeness(axes: Axes, table: pd.DataFrame, title: str) -> None:
     _draw_curves(axes, table, _FOUND)
     axes.set_ylim(0, 1.02)
     axes.set_title(title, fontsize=7)
     axes.set_ylabel("visible walls found", fontsize=7)
 
 
-def _draw_curves(axes: Axes, table: Columns, column: str) -> None:
-    for method in sort_methods(table["method"]):
+def _draw_curves(axes: Axes, table: pd.DataFrame, column: str) -> None:
+    curves = table.pivot(index="k", columns="method", values=column)
+    for method in sort_methods(curves.columns):
         label, colour = method_style(method)
-        rows = _select(table, method=method)
         is_baseline = method in METHODS and METHODS[method].is_baseline
         dashes, width = ("--", 0.8) if is_baseline else ("-", 1.2)
         axes.plot(
-            rows["k"],
-            rows[column],
+            curves[method].dropna(),
             dashes,
             color=colour,
             lw=width,
@@ -120,7 +118,7 @@ def _draw_curves(axes: Axes, table: Columns, column: str) -> None:
     _scale_scan_axis(axes, table["k"])
 
 
-def _draw_missed(axes: Axes, table: Columns) -> None:
+def _draw_missed(axes: Axes, table: pd.DataFrame) -> None:
     labels, colours = zip(*_REASONS.values(), strict=True)
     shares = [table[reason] for reason in _REASONS]
     axes.stackplot(table["k"], *shares, colors=colours, lw=0, labels=labels)
@@ -129,7 +127,7 @@ def _draw_missed(axes: Axes, table: Columns) -> None:
     _scale_scan_axis(axes, table["k"])
 
 
-def _scale_scan_axis(axes: Axes, sizes: IntArray) -> None:
+def _scale_scan_axis(axes: Axes, sizes: pd.Series) -> None:
     axes.set_xscale("log")
     axes.set_xlim(1, max(2, sizes.max()) * 1.05)
     axes.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
@@ -137,9 +135,3 @@ def _scale_scan_axis(axes: Axes, sizes: IntArray) -> None:
     axes.set_xlabel("number of scans", fontsize=7)
     top_view.strip_frame(axes)
     axes.tick_params(labelsize=6)
-
-
-def _select(table: Columns, **wanted: str) -> Columns:
-    """Return the rows of a table whose columns have the wanted values."""
-    rows = np.all([table[name] == value for name, value in wanted.items()], axis=0)
-    return {name: values[rows] for name, values in table.items()}

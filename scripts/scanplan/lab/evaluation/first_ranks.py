@@ -1,4 +1,4 @@
-"""The rank of the first scan of an ordering that shows each piece of truth, and each cell of a map.
+"""The rank of the first scan of an ordering that shows each piece of truth.
 
 A subset is the first k scans of an ordering: what it shows is what has a first rank of k or less.
 """
@@ -54,22 +54,4 @@ def first_rank_found(found: CellRuns, segment_rank: IntArray, n_cells: int) -> I
     # the earlier scan is painted over the later one
     for begin_cell, end_cell, run_rank in runs:
         first[begin_cell:end_cell] = run_rank
-    return first
-
-
-def first_rank_drawn(
-    pixels: tuple[IntArray, IntArray], segment_rank: IntArray, shape: tuple[int, ...]
-) -> IntArray:
-    """Return the map of the rank of the first scan with a wall in each cell.
-
-    Parameters
-    ----------
-    pixels : (segment, cell)
-        The cells of the map that each segment passes through, as `bitmap.trace_cells` gives them.
-    segment_rank : (s,) int
-    shape : (rows, columns)
-    """
-    segment, cell = pixels
-    first = np.full(shape, NEVER, np.int64)
-    np.minimum.at(first.reshape(-1), cell, segment_rank[segment])
     return first

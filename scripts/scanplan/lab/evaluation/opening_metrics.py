@@ -8,15 +8,14 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.lab.evaluation import length_metrics
 from scanplan.lab.evaluation.face_cells import FaceCells
+from scanplan.lab.evaluation.wall_findings import JUDGED, WITHIN_M
 from scanplan.types import BoolArray, FloatArray
 
 PARALLEL = np.cos(np.radians(10))  # as far as a short line may be turned by noise at its ends
-WALL_M = 0.35  # a wall and what its place may be wrong by: both of its faces are nearer than this
-_NEAR_M = 0.35  # likewise, and less than half of a door's width: never the next door
-_WIDTH_M = 0.10  # as for faces
+WALL_M = 0.35  # a wall with both faces and what it is off by; less than half a door: never the next
 _BESIDE_M = 0.5  # a jamb's worth of wall has to be seen for a window to be found
-_NO_LENGTH_M = 1e-9  # below what coordinates are rounded to: keeps a division by 0 away
-_VISIBLE_SHARE = 0.5  # of what can be seen of a window's wall: less does not bound the window
+MOST = 0.5
+"""Share of a room, or of the wall beside a window, above which no other has as much of it."""
 
 
 def measure_doors(
@@ -37,7 +36,7 @@ def measure_doors(
     """
     entered = [room for room, was_entered in zip(rooms, visited, strict=True) if was_entered]
     apart_m = shapely.distance(shapely.linestrings(true_m), shapely.union_all(entered))
-    return _measure_openings("door", drawn_m, true_m, np.asarray(apart_m <= _NEAR_M))
+    return _measure_openings("door", drawn_m, true_m, np.asarray(apart_m <= WALL_M))
 
 
 def measure_windows(
@@ -77,7 +76,7 @@ def _is_visible(line_m: FloatArray, cells: FaceCells, visible: BoolArray) -> boo
     beside = is_near & (np.abs(along) >= PARALLEL)
     for side in (beside & (along > 0), beside & (along < 0)):
         visible_m = cells.length_m[side & visible].sum()
-        if side.any() and visible_m >= _VISIBLE_SHARE * cells.length_m[side].sum():
+        if side.any() and visible_m >= MOST * cells.length_m[side].sum():
             return True
     return False
 
@@ -98,7 +97,7 @@ def _measure_openings(
         f"{kind}_recall": length_metrics.safe_share(len(found), wanted.sum()),
         f"{kind}_precision": length_metrics.safe_share(len(pairs), len(drawn_m)),
         f"{kind}_width_error_m": float(np.median(error_m)) if found else np.nan,
-        f"{kind}_width_right": float(np.mean(error_m <= _WIDTH_M)) if found else np.nan,
+        f"{kind}_width_right": float(np.mean(error_m <= WITHIN_M[JUDGED])) if found else np.nan,
     }
 
 
@@ -110,7 +109,7 @@ def _nearest_pairs(drawn_m: FloatArray, true_m: FloatArray) -> list[tuple[int, i
     offset_m = drawn_m.mean(axis=1)[:, None] - true_m.mean(axis=1)[None]
     apart_m = np.hypot(*np.moveaxis(offset_m, -1, 0))
     alike = np.abs(unit_directions(drawn_m) @ unit_directions(true_m).T) >= PARALLEL
-    drawn, true = np.nonzero((apart_m <= _NEAR_M) & alike)
+    drawn, true = np.nonzero((apart_m <= WALL_M) & alike)
     order = np.lexsort((true, drawn, apart_m[drawn, true]))
     pairs = []
     paired_drawn, paired_true = set(), set()
@@ -125,4 +124,4 @@ def _nearest_pairs(drawn_m: FloatArray, true_m: FloatArray) -> list[tuple[int, i
 def unit_directions(lines_m: FloatArray) -> FloatArray:
     """Return the unit directions (n, 2) of lines (n, 2, 2); those of no length have none."""
     way_m = lines_m[:, 1] - lines_m[:, 0]
-    return way_m / np.maximum(np.hypot(*way_m.T), _NO_LENGTH_M)[:, None]
+    return way_m / np.maximum(np.hypot(*way_m.T), length_metrics.ROUNDING_M)[:, None]

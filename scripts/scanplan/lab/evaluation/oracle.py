@@ -9,11 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from scanplan.lab.evaluation.length_metrics import ROUNDING_M
 from scanplan.selection import lazy_greedy
 from scanplan.store.registered_scans import RegisteredScans
 from scanplan.types import BoolArray, Columns, FloatArray, IntArray
-
-_TIE_M = 1e-9  # sums of the lengths of cells agree far better
 
 
 @dataclass(frozen=True)
@@ -81,8 +80,8 @@ def _choose_round(seen: BoolArray, length_m: FloatArray) -> tuple[list[int], lis
     unseen = _UnseenLength(seen, length_m)
     adding = [
         (i, gain_m)
-        for i, gain_m in lazy_greedy.choose_greedily(unseen, tie=_TIE_M)
-        if gain_m > _TIE_M
+        for i, gain_m in lazy_greedy.choose_greedily(unseen, tie=ROUNDING_M)
+        if gain_m > ROUNDING_M
     ]
     if not adding:
         return list(range(len(seen))), [0.0] * len(seen)

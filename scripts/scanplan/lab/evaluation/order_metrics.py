@@ -1,12 +1,11 @@
 """The table of how well every order's first scans, by every extractor, show the true walls."""
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Mapping
 
 import numpy as np
+import pandas as pd
 
-from scanplan.geometry import bitmap
-from scanplan.lab.evaluation import first_ranks, oracle
+from scanplan.lab.evaluation import bitmap_shares, first_ranks, oracle
 from scanplan.lab.evaluation.oracle import OracleOrder
 from scanplan.lab.evaluation.wall_findings import (
     JUDGED,
@@ -17,13 +16,13 @@ from scanplan.lab.evaluation.wall_findings import (
     match_segments,
 )
 from scanplan.lab.evaluation.wall_metrics import measure_first_scans
-from scanplan.types import Columns, IntArray
+from scanplan.types import IntArray
 
 ORACLE = "oracle"
-COMPARED_SIZES = (5, 10, 20, 40, 80)
-"""Numbers of scans at which orderings are compared."""
 # denser the smaller: what one more scan adds falls with their number
 _FIRST_SIZES = (1, 2, 3, 4, 5, 8, 10, 15, 20, 30, 40, 60, 80)
+COMPARED_SIZES = _FIRST_SIZES[4::2]
+"""Numbers of scans at which orderings are compared: 5, and doubling."""
 _FOUND = f"visible_completeness_{JUDGED}"
 
 
@@ -45,7 +44,7 @@ def measure_orders(
     orders: Mapping[str, IntArray],
     drawn: Mapping[str, PlacedSegments],
     cell_m: float,
-) -> tuple[Columns, dict[str, OracleOrder]]:
+) -> tuple[pd.DataFrame, dict[str, OracleOrder]]:
     """Measure what every extractor shows by the first scans of every order, and by the best ones.
 
     Parameters
@@ -56,74 +55,51 @@ def measure_orders(
     drawn : dict of str to wall_findings.PlacedSegments
         Extractor to its segments.
     cell_m : float
-        Of the bitmaps: one grid around the truth and all segments, so that nothing is cut off and
+        Of the bitmaps: their grids hold the truth and all segments, so that nothing is cut off and
         all share one size.
 
     Returns
     -------
-    columns : dict of str to (n,) numpy.ndarray
-        Of `schemas.EVALUATION`; the method `oracle` is added.
+    measures : pandas.DataFrame
+        `schemas.EVALUATION`; the method `oracle` is added.
     best : dict of str to oracle.OracleOrder
         Extractor to the oracle's order: greedily the scan whose segments find most visible wall
         that no scan before it found. For every number of scans it finds at least 1 - 1/e (63 %) of
         what the best choice of as many finds.
     """
     faces_m, n_scans = truth.cells.faces_m, len(truth.seen)
-    all_lines_m = [faces_m, *(segments.lines_m for segments in drawn.values())]
-    grid = bitmap.fit_grid(np.concatenate(all_lines_m), cell_m)
-    true_bitmap = bitmap.rasterise_lines(faces_m, grid)
+    all_lines_m = np.concatenate([segments.lines_m for segments in drawn.values()])
+    bitmaps = bitmap_shares.trace_truth(faces_m, all_lines_m, cell_m)
     sizes = evaluated_sizes(n_scans)
     best, measures = {}, {}
     for extractor, segments in drawn.items():
-        findings = match_segments(segments, truth, grid)
+        findings = match_segments(segments, truth, bitmaps)
         best[extractor] = _order_by_findings(truth, findings)
         for method, order in {**orders, ORACLE: best[extractor].order}.items():
             rank = first_ranks.rank_of_rows(order, n_scans)
-            measures[method, extractor] = measure_first_scans(
-                truth, findings, rank, sizes, true_bitmap
-            )
-    return wall_evaluation_columns(measures), best
+            rows = measure_first_scans(truth, findings, rank, sizes)
+            measures[method, extractor] = pd.DataFrame(rows)
+    joined = pd.concat(measures, names=["method", "extractor", None]).droplevel(2)
+    table = joined.set_index("k", append=True).sort_index()
+    of_oracle = table[_FOUND][ORACLE]
+    table["oracle_share"] = table[_FOUND] / of_oracle.where(of_oracle > 0)
+    return table.reset_index(), best
 
 
-def wall_evaluation_columns(
-    measures: Mapping[tuple[str, str], Sequence[Mapping[str, Any]]],
-) -> dict[str, Any]:
-    """Join measured rows into the columns of `schemas.EVALUATION`.
-
-    Parameters
-    ----------
-    measures : dict of (method, extractor) to list of dict
-        As `measure_first_scans` gives them, for the same numbers of scans; with the method
-        `oracle`.
-
-    Returns
-    -------
-    dict of str to (n,) numpy.ndarray
-    """
-    rows = []
-    for method, extractor in sorted(measures):
-        of_order, of_oracle = measures[method, extractor], measures[ORACLE, extractor]
-        for row, best in zip(of_order, of_oracle, strict=True):
-            share = row[_FOUND] / best[_FOUND] if best[_FOUND] > 0 else np.nan
-            named = {"method": method, "extractor": extractor}
-            rows.append({**named, **row, "oracle_share": share})
-    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
-
-
-def summarise_wall_measures(measures: Columns) -> list[str]:
+def summarise_wall_measures(measures: pd.DataFrame) -> list[str]:
     """Return for every extractor, in a line, what each method's first scans find of the walls.
 
     It is the share of the visible walls at 0.10 m.
     """
+    compared = measures[measures["k"].isin([*COMPARED_SIZES, measures["k"].max()])]
     lines = []
-    is_compared = np.isin(measures["k"], [*COMPARED_SIZES, measures["k"].max()])
-    for extractor in np.unique(measures["extractor"]):
-        of_extractor = is_compared & (measures["extractor"] == extractor)
-        shares = []
-        for method in np.unique(measures["method"]):
-            found = measures[_FOUND][of_extractor & (measures["method"] == method)]
-            shares.append(f"{method} {' '.join(f'{share:.2f}' for share in found)}")
-        sizes = ", ".join(map(str, np.unique(measures["k"][of_extractor])))
+    for extractor, rows in compared.groupby("extractor"):
+        found = rows.pivot(index="method", columns="k", values=_FOUND)
+        shares = [
+            f"{method} {' '.join(f'{share:.2f}' for share in of_method)}"
+            for method, of_method in zip(found.index, found.to_numpy(), strict=True)
+        ]
+        sizes = ", ".join(map(str, found.columns))
         lines.append(
             f"{extractor}, share of the visible walls found by the first {sizes} scans:"
             f" {'; '.join(shares)}"

@@ -10,13 +10,11 @@ from shapely.geometry.base import BaseGeometry
 from scanplan.lab.evaluation import face_cells, length_metrics, opening_metrics
 from scanplan.lab.evaluation.face_cells import FaceCells
 from scanplan.lab.evaluation.true_plan import TruePlan
-from scanplan.lab.evaluation.wall_findings import VisibleTruth
+from scanplan.lab.evaluation.wall_findings import JUDGED, WITHIN_M, VisibleTruth
 from scanplan.store import schemas, tables
 from scanplan.types import BoolArray, Columns, FilePath, FloatArray, IntArray
 
-WITHIN_M = 0.10  # as for the walls of single scans, see `wall_findings.JUDGED`
 _MISPLACED_M = 0.30  # farther off a face is another one: twice a thin wall's thickness
-_SAME_ROOM_IOU = 0.5  # above it no two drawn rooms can match one true room
 _DOORS = ("door", "passage")
 _TABLES = {
     "faces": schemas.FACES,
@@ -110,13 +108,13 @@ def measure_faces(
         Shares of length at 0.10 m. What is missed of the visible is parted into what the chosen
         scans could not see, what is drawn within 0.30 m, and the rest.
     """
-    length_m = cells.length_m
-    found = _found_cells(cells, drawn_m, WITHIN_M)
+    length_m, within_m = cells.length_m, WITHIN_M[JUDGED]
+    found = _found_cells(cells, drawn_m, within_m)
     found_nearby = _found_cells(cells, drawn_m, _MISPLACED_M)
-    found_observed = _found_cells(cells, drawn_m[observed], WITHIN_M)
+    found_observed = _found_cells(cells, drawn_m[observed], within_m)
     missed = visible & ~found
     visible_m = length_m[visible].sum()
-    observed_agreement = length_metrics.compare_lines(drawn_m[observed], cells.faces_m, WITHIN_M)
+    observed_agreement = length_metrics.compare_lines(drawn_m[observed], cells.faces_m, within_m)
     return {
         "seen_completeness_010m": length_metrics.safe_share(
             length_m[seen & found].sum(), length_m[seen].sum()
@@ -219,8 +217,8 @@ def measure_rooms(
     best = iou.max(axis=1, initial=0.0)[visited]
     return {
         "n_rooms_true": int(visited.sum()),
-        "n_rooms_found": int((best > _SAME_ROOM_IOU).sum()),
-        "n_rooms_false": int((iou.max(axis=0, initial=0.0) <= _SAME_ROOM_IOU).sum()),
+        "n_rooms_found": int((best > opening_metrics.MOST).sum()),
+        "n_rooms_false": int((iou.max(axis=0, initial=0.0) <= opening_metrics.MOST).sum()),
         "room_iou": float(best.mean()) if len(best) else np.nan,
         "least_room_iou": float(best.min()) if len(best) else np.nan,
     }

@@ -44,6 +44,11 @@ class TruePlan:
     rooms: list[BaseGeometry]
     visited: BoolArray
 
+    @property
+    def entered_rooms(self) -> list[BaseGeometry]:
+        """The rooms that the survey went into."""
+        return [room for room, entered in zip(self.rooms, self.visited, strict=True) if entered]
+
 
 def read_true_plan(path: FilePath) -> TruePlan:
     """Read the features of kind `wall`, `opening` and `room` of a truth.geojson.

@@ -9,14 +9,13 @@ import numpy as np
 
 from scanplan.errors import StageError
 from scanplan.geometry import se3
+from scanplan.lab.evaluation.length_metrics import ROUNDING_M
 from scanplan.lab.evaluation.visible_faces import SensorView
 from scanplan.store import tum
 from scanplan.types import FilePath, FloatArray, IntArray
 
 _REMEDY = "simulate the survey again, or mend it"
 _MAX_GAP_S = 1.0  # true poses come tens a second: a longer gap means another survey
-_SHORTEST_M = 1e-6  # a run shorter than rounding has no direction
-_LEAST_QUATERNION = 1e-6  # of its largest part: a unit quaternion's is 0.5 or more
 
 
 @dataclass(frozen=True)
@@ -120,7 +119,7 @@ def read_true_poses(path: FilePath) -> TruePoses:
         raise StageError(f"{path}: cannot be read ({error.strerror}); {_REMEDY}") from None
     if len(t_ns) == 0:
         raise StageError(f"{path}: holds 0 poses, at least 1 needed; {_REMEDY}")
-    has_direction = np.abs(rows[:, 3:]).max(axis=1) >= _LEAST_QUATERNION
+    has_direction = rows[:, 3:].any(axis=1)
     n_wrong = np.count_nonzero(~(np.isfinite(rows).all(axis=1) & has_direction))
     if n_wrong:
         raise StageError(
@@ -207,4 +206,4 @@ def _runs(path: FilePath, number: int, geometry: dict[str, Any]) -> FloatArray:
             f" {_REMEDY}"
         )
     runs = np.stack([xy_m[:-1], xy_m[1:]], axis=1)
-    return runs[np.hypot(*(runs[:, 1] - runs[:, 0]).T) > _SHORTEST_M]
+    return runs[np.hypot(*(runs[:, 1] - runs[:, 0]).T) > ROUNDING_M]

@@ -4,13 +4,16 @@ A subset is the first scans of an ordering, so all that is needed of a piece of 
 the first scan that finds it: piece by piece the same for every k.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import shapely
+from shapely.geometry.base import BaseGeometry
 
-from scanplan.geometry import bitmap, se3
-from scanplan.lab.evaluation import face_cells, length_metrics, visible_faces
+from scanplan.geometry import se3
+from scanplan.lab.evaluation import bitmap_shares, face_cells, length_metrics, visible_faces
+from scanplan.lab.evaluation.bitmap_shares import DrawnCells, TrueBitmap
 from scanplan.lab.evaluation.face_cells import FaceCells
 from scanplan.lab.evaluation.first_ranks import CellRuns
 from scanplan.lab.evaluation.length_metrics import NearIntervals
@@ -34,11 +37,15 @@ class VisibleTruth:
         By each registered scan, from where it truly was.
     visible : (c,) bool
         By any scan of the survey, registered or not.
+    entered : (c,) bool
+        Visible, and of a room that the survey went into; all that is visible where no room is
+        known.
     """
 
     cells: FaceCells
     seen: BoolArray
     visible: BoolArray
+    entered: BoolArray
 
 
 @dataclass(frozen=True)
@@ -76,8 +83,8 @@ class Findings:
         Likewise at `JUDGED` for the segments as truly placed.
     face : (s,) int
         The true face that most of a segment lies near to; -1 if none.
-    pixels : (line, cell)
-        The cells of the bitmap that each segment passes through.
+    drawn : list of DrawnCells
+        The cells of every bitmap that the segments pass through, by line.
     """
 
     scan: IntArray
@@ -87,11 +94,16 @@ class Findings:
     found: Mapping[str, CellRuns]
     found_if_true: CellRuns
     face: IntArray
-    pixels: tuple[IntArray, IntArray]
+    drawn: Sequence[DrawnCells]
 
 
 def observe_truth(
-    faces: TrueFaces, placed: FloatArray, survey: FloatArray, *, sight: SensorView
+    faces: TrueFaces,
+    placed: FloatArray,
+    survey: FloatArray,
+    *,
+    sight: SensorView,
+    rooms: Sequence[BaseGeometry] = (),
 ) -> VisibleTruth:
     """Work out what could be seen.
 
@@ -103,6 +115,8 @@ def observe_truth(
     survey : (m, 4, 4) float
         Those at all scans of the survey.
     sight : visible_faces.SensorView
+    rooms : sequence of shapely geometry
+        Those that the survey went into.
 
     Returns
     -------
@@ -111,7 +125,12 @@ def observe_truth(
     cells = face_cells.cut_faces(faces.inner_m)
     seen = visible_faces.cells_seen_by_each(cells, faces.outer_m, placed, sight)
     by_survey = visible_faces.cells_seen_by_any(cells, faces.outer_m, survey, sight)
-    return VisibleTruth(cells, seen, seen.any(axis=0) | by_survey)
+    visible = seen.any(axis=0) | by_survey
+    if not rooms:
+        return VisibleTruth(cells, seen, visible, visible)
+    outline = shapely.union_all([room.boundary for room in rooms])
+    bounds_room = shapely.dwithin(outline, shapely.points(cells.middle_m), face_cells.CELL_M)
+    return VisibleTruth(cells, seen, visible, visible & bounds_room)
 
 
 def place_segments(
@@ -149,14 +168,17 @@ def move_segments(drawn: PlacedSegments, motion: FloatArray) -> PlacedSegments:
     return replace(drawn, lines_m=drawn.lines_m @ motion[:2, :2].T + motion[:2, 3])
 
 
-def match_segments(drawn: PlacedSegments, truth: VisibleTruth, grid: bitmap.Grid) -> Findings:
+def match_segments(
+    drawn: PlacedSegments, truth: VisibleTruth, bitmaps: Sequence[TrueBitmap]
+) -> Findings:
     """Work out what segments find.
 
     Parameters
     ----------
     drawn : PlacedSegments
     truth : VisibleTruth
-    grid : bitmap.Grid
+    bitmaps : sequence of TrueBitmap
+        As `bitmap_shares.trace_truth` gives them.
 
     Returns
     -------
@@ -175,7 +197,7 @@ def match_segments(drawn: PlacedSegments, truth: VisibleTruth, grid: bitmap.Grid
         found={b: _found_cells(cells, lines_m, m) for b, m in WITHIN_M.items()},
         found_if_true=_found_cells(cells, drawn.true_lines_m, WITHIN_M[JUDGED]),
         face=_main_face(near[JUDGED], n),
-        pixels=bitmap.trace_cells(lines_m, grid),
+        drawn=[bitmap_shares.match_cells(lines_m, true_bitmap) for true_bitmap in bitmaps],
     )
 
 

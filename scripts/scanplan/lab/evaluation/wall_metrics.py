@@ -5,8 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from scanplan.geometry import bitmap
-from scanplan.lab.evaluation import first_ranks, length_metrics
+from scanplan.lab.evaluation import bitmap_shares, first_ranks, length_metrics
 from scanplan.lab.evaluation.wall_findings import (
     JUDGED,
     WITHIN_M,
@@ -18,13 +17,14 @@ from scanplan.lab.evaluation.wall_findings import (
 from scanplan.store import schemas
 from scanplan.types import BoolArray, FloatArray, IntArray
 
+_SHARES = ("false_negative", "correct_match", "false_positive")
+
 
 def measure_first_scans(
     truth: VisibleTruth,
     findings: Findings,
     rank: IntArray,
     sizes: Sequence[int],
-    true_bitmap: BoolArray,
 ) -> list[dict[str, Any]]:
     """Measure the first k scans of an ordering for several k.
 
@@ -37,7 +37,6 @@ def measure_first_scans(
         Of each scan, see `first_ranks.rank_of_rows`.
     sizes : sequence of int
         The numbers of scans.
-    true_bitmap : (rows, columns) bool
 
     Returns
     -------
@@ -52,19 +51,23 @@ def measure_first_scans(
     }
     first_seen = first_ranks.first_rank_seen(truth.seen, rank)
     first_if_true = first_ranks.first_rank_found(findings.found_if_true, segment_rank, n_cells)
-    first_drawn = first_ranks.first_rank_drawn(findings.pixels, segment_rank, true_bitmap.shape)
+    literal, *others = (
+        bitmap_shares.measure_shares(drawn, segment_rank, sizes) for drawn in findings.drawn
+    )
+    averaged = np.mean(others, axis=0)
     every_cell = np.ones(n_cells, bool)
     near_m, near_visible_m = findings.near_truth_m, findings.near_visible_m
     rows = []
-    for k in sizes:
+    for row, k in enumerate(sizes):
         used = segment_rank <= k
         found = {b: first <= k for b, first in first_found.items()}
-        errors = bitmap.subtract_bitmaps(first_drawn <= k, true_bitmap)
         rows.append({
             "k": k,
-            **vars(bitmap.error_shares(errors)),
+            **dict(zip(_SHARES, averaged[row], strict=True)),
+            **{f"literal_{name}": share for name, share in zip(_SHARES, literal[row], strict=True)},
             **_agreement("", truth, every_cell, found, findings, near_m, used),
             **_agreement("visible_", truth, truth.visible, found, findings, near_visible_m, used),
+            f"entered_completeness_{JUDGED}": _found_share(truth, truth.entered, found[JUDGED]),
             **_counts(truth, findings, used, found[JUDGED]),
             "walls_per_true_wall_of_a_scan": _segments_per_face_and_scan(findings, used),
             **_missed(truth, found[JUDGED], first_seen <= k, first_if_true <= k),
@@ -88,10 +91,9 @@ def measure_plan_lines(lines_m: FloatArray, truth: VisibleTruth, cell_m: float) 
     """
     faces_m = truth.cells.faces_m
     drawn = PlacedSegments(lines_m, lines_m, np.zeros(len(lines_m), int))
-    grid = bitmap.fit_grid(np.concatenate([faces_m, lines_m]), cell_m)
-    findings = match_segments(drawn, truth, grid)
-    true_bitmap = bitmap.rasterise_lines(faces_m, grid)
-    (row,) = measure_first_scans(truth, findings, np.ones(1, int), [1], true_bitmap)
+    bitmaps = bitmap_shares.trace_truth(faces_m, lines_m, cell_m)
+    findings = match_segments(drawn, truth, bitmaps)
+    (row,) = measure_first_scans(truth, findings, np.ones(1, int), [1])
     return {name: row[name] for name in row if name in schemas.PLAN_EVALUATION.columns}
 
 
@@ -105,16 +107,21 @@ def _agreement(
     used: BoolArray,
 ) -> dict[str, float]:
     """Return completeness, correctness and f1 against the counted cells, for every tolerance."""
-    true_m = truth.cells.length_m[counted]
     drawn_m = findings.length_m[used].sum()
     row = {}
     for b in WITHIN_M:
-        completeness = length_metrics.safe_share(true_m[found[b][counted]].sum(), true_m.sum())
+        completeness = _found_share(truth, counted, found[b])
         correctness = length_metrics.safe_share(near_m[b][used].sum(), drawn_m)
         row[f"{prefix}completeness_{b}"] = completeness
         row[f"{prefix}correctness_{b}"] = correctness
         row[f"{prefix}f1_{b}"] = length_metrics.f1_score(completeness, correctness)
     return row
+
+
+def _found_share(truth: VisibleTruth, counted: BoolArray, found: BoolArray) -> float:
+    """Return the share of the length of counted cells (c,) that is found."""
+    length_m = truth.cells.length_m
+    return length_metrics.safe_share(length_m[counted & found].sum(), length_m[counted].sum())
 
 
 def _counts(

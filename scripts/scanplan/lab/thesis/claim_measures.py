@@ -4,13 +4,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
+import pandas as pd
 
-from scanplan.lab.thesis.stated_claims import ABOUT, ALMOST
+from scanplan.lab.thesis.stated_claims import ALMOST, MANY
 from scanplan.selection import stopping
-from scanplan.types import Columns
 
-Tables = Mapping[str, Columns]
+Tables = Mapping[str, pd.DataFrame]
 """The tables of one survey by the names that `judging.judge_claims` knows them by."""
 Quantities = dict[str, tuple[float, str]]
 """Value and unit by quantity."""
@@ -21,79 +20,87 @@ OURS, ITERATIVE = "cluster_ransac", "iterative_ransac"
 PLAIN, PLAIN_CLUSTERS = "plain_ransac", "plain_clusters"
 """Iterative and cluster RANSAC as the thesis describes them, see `plain_ransac`."""
 FOUND, CORRECT = "visible_completeness_010m", "visible_correctness_010m"
-CHOOSING, ORDERING, BUILDING = "choose_scans", "order_scans", "build_hulls"
+ENTERED = "entered_completeness_010m"
+CHOOSING, ORDERING, LITERAL = "choose_scans", "order_scans", "order_scans_literally"
+MERGING = "merge_segments"
+BUILDING, SAMPLED, UNSAMPLED = "build_hulls", "build_sampled_hulls", "build_unsampled_hulls"
 """Tasks that are timed, beside the extractors."""
 THINNED = "thinned_"
 """Comes before the name of an extractor where the scans were thinned."""
 SHARE, COUNT, NUMBER = "%", "count", "number"
 METRES, AREA, SECONDS, MILLISECONDS = "m", "m²", "s", "ms"
 """Units of what is measured: of a share its value is from 0 to 1."""
-_MOST = 80  # scans: the claims on whole orders are on the part in which they differ
+MARGIN = "margin of the criterion"
+"""The quantity that a verdict goes by: above 0 the criterion holds, and by so much."""
 
 
 @dataclass(frozen=True)
 class ClaimMeasure:
-    """What was measured, by quantity (value, unit), and whether the claim holds by it.
+    """What was measured, by quantity, and by how much the claim's criterion holds.
 
-    `holds` is None for a mere number and for what could not be measured.
+    `margin` is above 0 where it holds, NaN where that could not be measured, and None of a mere
+    number.
     """
 
     values: Quantities
-    holds: bool | None = None
+    margin: float | None = None
+    unit: str = NUMBER
 
 
-def rows_of_method(walls: Columns, method: str, extractor: str) -> Columns:
-    """Return the rows of an evaluation of one method and extractor, by number of scans."""
-    rows = (walls["method"] == method) & (walls["extractor"] == extractor)
-    return {name: values[rows] for name, values in walls.items()}
+def curve_of(walls: pd.DataFrame, method: str, extractor: str, column: str) -> pd.Series:
+    """Return a column of an evaluation for one method and extractor, by number of scans."""
+    rows = walls[(walls["method"] == method) & (walls["extractor"] == extractor)]
+    return rows.set_index("k")[column]
 
 
-def measure_at(walls: Columns, method: str, extractor: str, k: float, column: str) -> float:
+def measure_at(walls: pd.DataFrame, method: str, extractor: str, k: float, column: str) -> float:
     """Return a column of the evaluation for the first k scans, infinity for all.
 
     It is NaN where so many were not evaluated: a survey of fewer scans has no first k.
     """
-    rows = rows_of_method(walls, method, extractor)
-    wanted = rows["k"].max() if np.isinf(k) else k
-    values = rows[column][rows["k"] == wanted]
-    return float(values[0]) if len(values) else np.nan
+    curve = curve_of(walls, method, extractor, column)
+    return float(curve.get(curve.index.max() if np.isinf(k) else k, np.nan))
 
 
-def mean_over_first(walls: Columns, method: str, column: str) -> float:
-    """Return the mean of a column over the first 1, 2, ... 80 scans by cluster RANSAC.
+def count_scans_to(walls: pd.DataFrame, method: str, share: float) -> float:
+    """Return the least evaluated number of scans that find a share of what all of them find."""
+    found = curve_of(walls, method, OURS, FOUND)
+    enough = found.index[found >= share * found.iloc[-1]]
+    return float(enough.min())
 
-    It is linear between the numbers of scans evaluated: these lie denser the smaller they are, and
-    their own mean would be one of the first few scans.
+
+def mean_over_first(walls: pd.DataFrame, column: str) -> pd.Series:
+    """Return the means of a column over the first 1, 2, ... 60 scans by cluster RANSAC, by method.
+
+    They are linear between the numbers of scans evaluated: these lie denser the smaller they are,
+    and their own mean would be one of the first few scans.
     """
-    rows = rows_of_method(walls, method, OURS)
-    every = np.arange(1, min(_MOST, rows["k"].max()) + 1)
-    return float(np.interp(every, rows["k"], rows[column]).mean())
+    of_extractor = walls[walls["extractor"] == OURS]
+    curves = of_extractor.pivot(index="k", columns="method", values=column)
+    every = np.arange(1, min(MANY, curves.index.max()) + 1)
+    return curves.reindex(curves.index.union(every)).interpolate("index").loc[every].mean()
 
 
-def scans_for_99(selection: Columns) -> int:
+def scans_for_99(selection: pd.DataFrame) -> int:
     """Return how many scans of an order cover 99 % of what all cover."""
-    return stopping.choose_n_scans(selection, area_share=0.99)[0]
+    columns = {name: selection[name].to_numpy() for name in selection}
+    return stopping.choose_n_scans(columns, area_share=0.99)[0]
 
 
-def is_about(ours: float, stated: float) -> bool:
-    """Return whether a number is the one that the thesis states as "about"."""
-    return bool(abs(ours - stated) <= ABOUT * stated)
+def least_kept(some: Sequence[float], every: Sequence[float]) -> float:
+    """Return by how much more than 90 % a part keeps of the measure that it keeps least of.
 
-
-def is_similar(some: Sequence[float], every: Sequence[float]) -> bool | None:
-    """Return whether no more than a tenth is lost of any measure.
-
-    None where one is not known or all have nothing.
+    NaN where one is not known or all have nothing.
 
     Parameters
     ----------
     some, every : (n,) sequence of float
         Measures of a part and of the whole, in the same order: the more, the better.
     """
-    part, whole = np.array(some), np.array(every)
-    if not (np.isfinite(part).all() and np.isfinite(whole).all() and (whole > 0).all()):
-        return None
-    return bool((part >= ALMOST * whole).all())
+    whole = np.array(every)
+    if not (whole > 0).all():
+        return np.nan
+    return float((np.array(some) / whole).min() - ALMOST)
 
 
 def of_unit(values: Mapping[str, float], unit: str) -> Quantities:
@@ -106,6 +113,25 @@ def count_clusters(number: int) -> str:
     return f"{number} cluster{'s' if number > 1 else ''}"
 
 
-def if_known(values: ArrayLike, holds: bool | np.bool_) -> bool | None:
-    """Return a verdict, or none where a value that it goes by could not be measured."""
-    return bool(holds) if np.isfinite(values).all() else None
+def growth_exponent(times: pd.DataFrame, task: str, of: str = "seconds") -> float:
+    """Return the b of seconds = a size^b of a task, with an own a for every item.
+
+    By least squares; NaN where no size varies.
+
+    Parameters
+    ----------
+    times : pandas.DataFrame
+        `schemas.TIMES`.
+    task : str
+    of : str
+        The column that grows.
+    """
+    rows = times[times["task"] == task]
+    if not len(rows) or (rows[of] <= 0).any():
+        return np.nan
+    logs = np.log(rows[["size", of]]).groupby(rows["item"])
+    centred = np.log(rows[["size", of]]) - logs.transform("mean")
+    squares = (centred["size"] ** 2).sum()
+    if not (logs["size"].nunique() > 1).any():
+        return np.nan
+    return float((centred["size"] * centred[of]).sum() / squares)

@@ -1,6 +1,7 @@
 """The floor area that scans cover: by their clusters' hulls, and as they truly see it."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import shapely
@@ -11,16 +12,13 @@ from scanplan.selection import area_greedy, hulls
 from scanplan.stage import per_scan
 from scanplan.types import Array, Columns, FilePath, FloatArray
 
-_QUARTER_SEGMENTS = 64  # of the circle that ends the view: its area is right to 0.01 %
-
 
 def cluster_growth_columns(
     scans_path: FilePath,
     n_clusters: Sequence[int],
     *,
-    sample_size: int,
-    seed: int,
     threads: int = 1,
+    **sampling: Any,
 ) -> Columns:
     """Return how the covered area grows with every number of clusters (thesis, figure 5.7).
 
@@ -30,9 +28,9 @@ def cluster_growth_columns(
         scans.parquet.
     n_clusters : sequence of int
         The numbers of clusters to compare, in any order.
-    sample_size, seed : int
-        See `hulls.make_cluster_hulls`.
     threads : int
+    **sampling
+        See `hulls.make_cluster_hulls`.
 
     Returns
     -------
@@ -48,8 +46,7 @@ def cluster_growth_columns(
             label=f"measure_coverage, {number} clusters",
             threads=threads,
             n_clusters=number,
-            sample_size=sample_size,
-            seed=seed,
+            **sampling,
         )
         parts.append(_growth_columns(hulls.concatenate_hulls(scan_hulls), number))
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
@@ -62,7 +59,41 @@ def _growth_columns(columns: Columns, n_clusters: int) -> Columns:
         "n_clusters": np.full(len(scan_ids), n_clusters),
         "rank": np.arange(1, len(scan_ids) + 1),
         "scan_id": scan_ids[order.order],
+        "area_m2": shapely.area(polygons[order.order]),
         "covered_m2": order.covered,
+    }
+
+
+def stray_area_columns(scan_id: int, xyz_m: Array, *, seed: int, **sampling: Any) -> Columns:
+    """Return the areas of a scan's hulls with one stray return more.
+
+    It is as far from the middle of the scan's points as the farthest of them, in a direction drawn
+    at random.
+
+    Parameters
+    ----------
+    scan_id : int
+    xyz_m : (n, 2) or (n, 3) float
+    seed : int
+    **sampling
+        See `hulls.make_cluster_hulls`.
+
+    Returns
+    -------
+    dict of str to (1,) numpy.ndarray
+        `full_hull_stray_m2` and `cluster_hull_stray_m2` of `schemas.AREAS`.
+    """
+    middle_m = xyz_m[:, :2].mean(axis=0)
+    reach_m = np.hypot(*(xyz_m[:, :2] - middle_m).T).max()
+    turn_rad = np.random.default_rng([seed, scan_id]).uniform(0, 2 * np.pi)
+    stray_m = middle_m + reach_m * np.array([np.cos(turn_rad), np.sin(turn_rad)])
+    xy_m = np.concatenate([xyz_m[:, :2], stray_m[None]])
+    columns = hulls.make_cluster_hulls(scan_id, xy_m, seed=seed, **sampling)
+    _, full = hulls.scan_full_hulls(columns)
+    _, clusters = hulls.scan_polygons(columns)
+    return {
+        "full_hull_stray_m2": np.asarray(shapely.area(full)),
+        "cluster_hull_stray_m2": np.asarray(shapely.area(clusters)),
     }
 
 
@@ -87,7 +118,7 @@ def seen_polygons(faces: TrueFaces, places_m: FloatArray, *, max_range_m: float)
     # neighbouring corners that coincide make an outline touch itself; a line has no area
     touching = np.array([shapely.Polygon(outline) for outline in outlines])
     seen = shapely.make_valid(touching, method="structure", keep_collapsed=False)
-    discs = shapely.buffer(shapely.points(places_m), max_range_m, quad_segs=_QUARTER_SEGMENTS)
+    discs = shapely.buffer(shapely.points(places_m), max_range_m)
     return np.asarray(shapely.intersection(seen, discs))
 
 

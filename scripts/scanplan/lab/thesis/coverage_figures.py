@@ -3,25 +3,24 @@
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+import pandas as pd
 import shapely
 from matplotlib.collections import PatchCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from shapely.geometry.base import BaseGeometry
 
-from scanplan.lab.thesis.claim_measures import FOUR, rows_of_method, scans_for_99
-from scanplan.lab.thesis.stated_claims import SUBSET
+from scanplan.lab.thesis.claim_measures import FOUR, count_clusters, curve_of, scans_for_99
+from scanplan.lab.thesis.stated_claims import MANY, SUBSET
 from scanplan.report import top_view
 from scanplan.selection.methods import METHODS
-from scanplan.types import Array, Columns, FloatArray, IntArray
+from scanplan.types import Array, FloatArray
 
 _BITMAP = {
     "correct_match": "Correct match",
     "false_positive": "False positive",
     "false_negative": "False negative",
 }
-_SHOWN_TO = 120  # scans: beyond it the shares hardly change
-_CLUSTERS_SHOWN_TO = 80  # scans: the areas of the thesis's figure 5.7 have settled by then
 _TRUTH, _HULL, _CLUSTERS = "#009e73", "#d55e00", "#0072b2"
 
 
@@ -67,14 +66,14 @@ def draw_hulls_figure(
     return figure
 
 
-def draw_shares_figure(evaluated: Sequence[Columns], extractor: str) -> Figure:
+def draw_shares_figure(evaluated: Sequence[pd.DataFrame], extractor: str) -> Figure:
     """Draw the shares of the error map against the number of scans, by order (figure 5.4).
 
     Parameters
     ----------
-    evaluated : sequence of dict
-        The columns of `schemas.EVALUATION`, one table per seed; drawn to as many scans as all have,
-        linear between the numbers evaluated.
+    evaluated : sequence of pandas.DataFrame
+        `schemas.EVALUATION`, one table per seed; drawn to as many scans as all have, linear between
+        the numbers evaluated.
     extractor : str
 
     Returns
@@ -84,38 +83,30 @@ def draw_shares_figure(evaluated: Sequence[Columns], extractor: str) -> Figure:
     figure = Figure(figsize=(9.6, 3.4), layout="constrained")
     frames = figure.subplots(1, 3)
     for axes, (column, title) in zip(frames, _BITMAP.items(), strict=True):
-        n_scans = 1
         for method in FOUR:
             label, colour = METHODS[method].label, METHODS[method].colour
-            rows = [rows_of_method(table, method, extractor) for table in evaluated]
-            k = _common_sizes([row["k"] for row in rows])
-            share = np.array([np.interp(k, row["k"], row[column]) for row in rows])
-            axes.fill_between(
-                k, share.min(axis=0), share.max(axis=0), color=colour, alpha=0.25, lw=0
-            )
-            axes.plot(k, share.mean(axis=0), color=colour, lw=1.4, label=label)
-            n_scans = k.max()
+            curves = [curve_of(table, method, extractor, column) for table in evaluated]
+            joined = pd.concat(curves, axis=1).sort_index()
+            shares = joined.interpolate("index", limit_area="inside").dropna()
+            low, high = shares.min(axis=1), shares.max(axis=1)
+            axes.fill_between(shares.index, low, high, color=colour, alpha=0.25, lw=0)
+            axes.plot(shares.mean(axis=1), color=colour, lw=1.4, label=label)
         axes.set_title(title, fontsize=9)
-        axes.set_xlim(0, min(_SHOWN_TO, n_scans))
+        # twice the thesis's first 60: beyond it the shares hardly change
+        axes.set_xlim(0, min(2 * MANY, evaluated[0]["k"].max()))
         top_view.name_axes(axes, "number of scans", "share of all cells")
     handles, labels = frames[-1].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8, frameon=False)
     return figure
 
 
-def _common_sizes(sizes: Sequence[IntArray]) -> IntArray:
-    """Return all numbers of scans that any table has, as far as every one of them goes."""
-    every = np.unique(np.concatenate(sizes))
-    return every[every <= min(k.max() for k in sizes)]
-
-
-def draw_convergence_figure(selections: Mapping[str, Columns]) -> Figure:
+def draw_convergence_figure(selections: Mapping[str, pd.DataFrame]) -> Figure:
     """Draw the share of the area covered against the number of scans, 99 % marked (figure 5.6).
 
     Parameters
     ----------
-    selections : dict of str to dict
-        `hull` and `cluster_hull` to the columns of `schemas.SELECTION`.
+    selections : dict of str to pandas.DataFrame
+        `hull` and `cluster_hull` to `schemas.SELECTION`.
 
     Returns
     -------
@@ -126,7 +117,7 @@ def draw_convergence_figure(selections: Mapping[str, Columns]) -> Figure:
     latest, n_scans = 1, 1
     for method, selection in selections.items():
         name, colour = METHODS[method].label, METHODS[method].colour
-        covered_m2, at = selection["covered_m2"], scans_for_99(selection)
+        covered_m2, at = selection["covered_m2"].to_numpy(), scans_for_99(selection)
         share = covered_m2 / covered_m2[-1]
         label = f"{name}: 99 % at {at} scans of {covered_m2[-1]:,.0f} m²"
         axes.plot(selection["rank"], share, color=colour, lw=1.4, label=label)
@@ -140,13 +131,13 @@ def draw_convergence_figure(selections: Mapping[str, Columns]) -> Figure:
     return figure
 
 
-def draw_clusters_figure(clusters: Columns) -> Figure:
+def draw_clusters_figure(clusters: pd.DataFrame) -> Figure:
     """Draw covered area against the number of scans and against that of clusters (figure 5.7).
 
     Parameters
     ----------
-    clusters : dict of str to (n,) array
-        The columns of `schemas.CLUSTERS`.
+    clusters : pandas.DataFrame
+        `schemas.CLUSTERS`.
 
     Returns
     -------
@@ -154,20 +145,16 @@ def draw_clusters_figure(clusters: Columns) -> Figure:
     """
     figure = Figure(figsize=(9.6, 3.8), layout="constrained")
     left, right = figure.subplots(1, 2)
-    numbers = np.unique(clusters["n_clusters"])
-    shades = shades_of_blue(len(numbers))
-    covered_m2 = [clusters["covered_m2"][clusters["n_clusters"] == n] for n in numbers]
-    n_scans = len(covered_m2[-1])
-    for number, colour, area_m2 in zip(numbers, shades, covered_m2, strict=True):
-        label = f"{number} cluster{'s' if number > 1 else ''}"
-        left.plot(np.arange(1, len(area_m2) + 1), area_m2, color=colour, lw=1.3, label=label)
-    left.set_xlim(0, min(_CLUSTERS_SHOWN_TO, n_scans))
+    covered_m2 = clusters.pivot(index="rank", columns="n_clusters", values="covered_m2")
+    numbers, n_scans = covered_m2.columns, len(covered_m2)
+    for number, colour in zip(numbers, shades_of_blue(len(numbers)), strict=True):
+        left.plot(covered_m2[number], color=colour, lw=1.3, label=count_clusters(number))
+    left.set_xlim(0, min(2 * MANY, n_scans))
     top_view.name_axes(left, "number of scans", "area covered (m²)")
     left.legend(fontsize=8, frameon=False, loc="lower right")
     at = min(SUBSET, n_scans)
-    for label, colour, rank in ((f"first {at} scans", "0.55", at), ("all scans", "black", 0)):
-        areas_m2 = [area_m2[rank - 1] for area_m2 in covered_m2]
-        right.plot(numbers, areas_m2, "o-", ms=3.5, lw=1.2, color=colour, label=label)
+    for label, colour, rank in ((f"first {at} scans", "0.55", at), ("all scans", "black", n_scans)):
+        right.plot(covered_m2.loc[rank], "o-", ms=3.5, lw=1.2, color=colour, label=label)
     right.set_xscale("log")
     right.set_xticks(numbers, [str(n) for n in numbers])
     right.minorticks_off()

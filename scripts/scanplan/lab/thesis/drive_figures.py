@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 import numpy as np
+import pandas as pd
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
@@ -10,47 +11,49 @@ from matplotlib.patches import Circle
 from scanplan.lab.thesis.claim_measures import (
     CHOOSING,
     ITERATIVE,
+    LITERAL,
     ORDERING,
     OURS,
     PLAIN,
     PLAIN_CLUSTERS,
 )
 from scanplan.lab.thesis.stated_claims import SUBSET
+from scanplan.lab.thesis.unevenness import N_CROWDS
 from scanplan.report import figures, top_view
-from scanplan.types import Columns, FloatArray
+from scanplan.types import FloatArray
 
 _CLUSTERS = ("cluster RANSAC", "#0072b2")
 _ITERATIVE = ("iterative RANSAC", "#d55e00")
 _STYLES = {OURS: _CLUSTERS, PLAIN_CLUSTERS: _CLUSTERS, ITERATIVE: _ITERATIVE, PLAIN: _ITERATIVE}
 """Extractor to name and colour."""
-_CIRCLE_M = 2.0  # radius: marks a room's worth of floor, as the thesis's circles do
-_CROWDED = 0.75  # of the densest place's neighbours: the few densest alone are circled
 
 
-def draw_selection_times(times: Columns) -> Figure:
-    """Draw the times of choosing the subset and of ordering all scans, by number (figure 5.8).
+def draw_selection_times(times: pd.DataFrame) -> Figure:
+    """Draw the times of choosing the subset and of ordering scans, by their number (figure 5.8).
 
     Parameters
     ----------
-    times : dict of str to (n,) array
-        The columns of `schemas.TIMES`.
+    times : pandas.DataFrame
+        `schemas.TIMES`.
 
     Returns
     -------
     matplotlib.figure.Figure
     """
-    figure = Figure(figsize=(6.4, 3.4), layout="constrained")
-    axes = figure.add_subplot()
-    for task, label, colour in (
-        (CHOOSING, f"to choose {SUBSET}", _CLUSTERS[1]),
-        (ORDERING, "to order all", "0.55"),
-    ):
-        of_task = times["task"] == task
-        n_scans, seconds = times["size"][of_task], times["seconds"][of_task]
-        axes.plot(n_scans, seconds, "o-", ms=3.5, lw=1.2, color=colour, label=label)
-    axes.set(xlim=(0, None), ylim=(0, None))
-    top_view.name_axes(axes, "number of scans", "processor time (s)")
-    axes.legend(fontsize=8, frameon=False)
+    figure = Figure(figsize=(9.6, 3.4), layout="constrained")
+    for axes, scale in zip(figure.subplots(1, 2), ("linear", "log"), strict=True):
+        for task, label, colour in (
+            (LITERAL, "algorithm 1 as written, all in order", _ITERATIVE[1]),
+            (ORDERING, "ours, all in order", "0.55"),
+            (CHOOSING, f"ours, the first {SUBSET}", _CLUSTERS[1]),
+        ):
+            of_task = times[times["task"] == task].sort_values("size")
+            axes.plot("size", "seconds", "o-", data=of_task, ms=3.5, lw=1.2, color=colour)
+            axes.lines[-1].set_label(label)
+        axes.set(xscale=scale, yscale=scale)
+        top_view.name_axes(axes, "number of scans", "processor time (s)")
+    figure.axes[0].set(xlim=(0, None), ylim=(0, None))
+    figure.axes[0].legend(fontsize=8, frameon=False)
     return figure
 
 
@@ -63,45 +66,49 @@ def draw_places_figure(
     """
     figure = figures.draw_scans_figure(points_xy_m, path_xy_m, selected_xy_m)
     for x_m, y_m in find_crowded_places(path_xy_m):
-        circle = Circle((x_m, y_m), _CIRCLE_M, fill=False, ec="#d62728", lw=1.2, zorder=6)
+        radius_m = 2 * figures.NEARBY_M
+        circle = Circle((x_m, y_m), radius_m, fill=False, ec="#d62728", lw=1.2, zorder=6)
         figure.axes[0].add_patch(circle)
     return figure
 
 
 def find_crowded_places(path_xy_m: FloatArray) -> list[FloatArray]:
-    """Return the places with most of the densest one's neighbours, no two within a circle.
+    """Return the few places (2,) with most neighbours, the densest first.
 
-    The densest comes first.
+    No two are within a circle. As many as `unevenness` takes crowds of, where so many have
+    neighbours at all.
     """
     n_near = figures.count_nearby(path_xy_m)
-    left = n_near >= max(_CROWDED * n_near.max(), 1)
+    left = n_near > 0
     places_m = []
-    while left.any():
+    while left.any() and len(places_m) < N_CROWDS:
         row = int(np.argmax(np.where(left, n_near, -1)))
         places_m.append(path_xy_m[row])
-        left &= np.hypot(*(path_xy_m - path_xy_m[row]).T) > 2 * _CIRCLE_M
+        left &= np.hypot(*(path_xy_m - path_xy_m[row]).T) > 4 * figures.NEARBY_M
     return places_m
 
 
-def draw_times_figure(times: Columns) -> Figure:
-    """Draw time and cumulative walls of both extractors, scan by scan (figure 5.10).
+def draw_times_figure(times: pd.DataFrame) -> Figure:
+    """Draw time, cumulative walls and walls of both extractors, scan by scan (figure 5.10).
 
     `times` is as in `draw_selection_times`.
     """
     figure = Figure(figsize=(9.6, 3.4), layout="constrained")
-    left, right = figure.subplots(1, 2)
-    for extractor in (PLAIN_CLUSTERS, PLAIN):
-        name, colour = _STYLES[extractor]
-        rows = np.flatnonzero(times["task"] == extractor)
-        rows = rows[np.argsort(times["item"][rows])]
+    frames = figure.subplots(1, 3)
+    titles = ("processor time of a scan (ms)", "walls, cumulative", "walls of a scan")
+    for task in (PLAIN_CLUSTERS, PLAIN):
+        name, colour = _STYLES[task]
+        rows = times[times["task"] == task].sort_values("item")
+        time_ms, found = 1e3 * rows["seconds"], rows["found"]
+        curves = (
+            (time_ms, f"{name}: {time_ms.mean():.0f} ± {time_ms.std():.0f} ms"),
+            (found.cumsum(), f"{name}: {found.sum():,}"),
+            (found, f"{name}: {found.mean():.1f}"),
+        )
         number = np.arange(1, len(rows) + 1)
-        time_ms = 1e3 * times["seconds"][rows]
-        label = f"{name}: {time_ms.mean():.0f} ± {time_ms.std():.0f} ms"
-        left.plot(number, time_ms, color=colour, lw=1.0, label=label)
-        n_walls = np.cumsum(times["found"][rows])
-        right.plot(number, n_walls, color=colour, lw=1.4, label=f"{name}: {n_walls[-1]:,}")
-    titles = ("processor time of a scan (ms)", "walls, cumulative")
-    for axes, title in zip((left, right), titles, strict=True):
+        for axes, (curve, label) in zip(frames, curves, strict=True):
+            axes.plot(number, curve, color=colour, lw=1.1, label=label)
+    for axes, title in zip(frames, titles, strict=True):
         axes.set(xlim=(0, None), ylim=(0, None))
         top_view.name_axes(axes, "scan", title)
         axes.legend(fontsize=8, frameon=False)

@@ -1,14 +1,16 @@
 """Every claim of the thesis (`stated_claims`) held against our measurement of it.
 
-A measure takes the tables of one seed, by name, and returns what was measured and whether the
+A measure takes the tables of one seed, by name, and returns what was measured and by how much the
 claim's criterion holds (None where it has none). No number is written in it but the criterion's.
 """
 
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from scanplan.lab.thesis import drive_claims, room_claims
-from scanplan.lab.thesis.claim_measures import ClaimMeasure, Tables
+from scanplan.lab.thesis.claim_measures import MARGIN, ClaimMeasure, Tables
 from scanplan.lab.thesis.stated_claims import CLAIMS, Claim
 
 ROOMS, DRIVE = "rooms", "drive"
@@ -22,14 +24,14 @@ def judge_claims(kind: str, survey: str, tables: Tables) -> list[dict[str, Any]]
     kind : {"rooms", "drive"}
     survey : str
         The survey's name, for the table.
-    tables : dict of str to dict
-        Columns by the tables' names; those of the rooms begin with `rooms_`, those of the drive
+    tables : dict of str to pandas.DataFrame
+        By the tables' names; those of the rooms begin with `rooms_`, those of the drive
         with `drive_`, those of the drive with the thesis's limits with `limits_`.
 
     Returns
     -------
     list of dict
-        Rows of `schemas.CLAIMS`, one per quantity.
+        Rows of `schemas.CLAIMS`, one per quantity; of a judged claim the margin is one of them.
     """
     rows = []
     for claim in CLAIMS:
@@ -37,22 +39,25 @@ def judge_claims(kind: str, survey: str, tables: Tables) -> list[dict[str, Any]]
         if _kind(measure) != kind:
             continue
         measured = measure(tables)
-        for quantity, (value, unit) in measured.values.items():
+        values = dict(measured.values)
+        if measured.margin is not None:
+            values[MARGIN] = measured.margin, measured.unit
+        for quantity, (value, unit) in values.items():
             rows.append({
                 "claim": claim.name,
                 "survey": survey,
                 "quantity": quantity,
                 "value": float(value),
                 "unit": unit,
-                "holds": _verdict(measured.holds),
+                "holds": _verdict(measured.margin),
             })  # fmt: skip
     return rows
 
 
-def _verdict(holds: bool | None) -> str:
-    if holds is None:
+def _verdict(margin: float | None) -> str:
+    if margin is None or np.isnan(margin):
         return ""
-    return "yes" if holds else "no"
+    return "yes" if margin > 0 else "no"
 
 
 def _kind(measure: Callable[[Tables], ClaimMeasure]) -> str:

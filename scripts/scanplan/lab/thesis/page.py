@@ -1,18 +1,23 @@
 """The report of the thesis's experiments: one HTML page that needs nothing beside it."""
 
 import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import pandas as pd
 from markupsafe import Markup
+from scipy.special import stdtrit
 
-from scanplan.lab.thesis.claim_measures import COUNT, NUMBER, SHARE
+from scanplan.lab.thesis.claim_measures import COUNT, MARGIN, NUMBER, SHARE
 from scanplan.lab.thesis.shown_figures import FIGURES, STEPS, Figure
 from scanplan.lab.thesis.stated_claims import CLAIMS, Claim
 from scanplan.report import templates
-from scanplan.types import Columns, FloatArray
+from scanplan.types import FloatArray
 
+DEVIATIONS = "deviations.md"
+"""The file with the table of where the product differs from the thesis."""
 _UNKNOWN = "not measured"
 
 
@@ -35,6 +40,10 @@ class ClaimRow:
     stated, measured : list of (str, str)
         Quantities and their values, the thesis's and ours.
     verdict : Verdict
+    margin : str
+        By how much the criterion holds, with its interval; empty where nothing was judged.
+    otherwise : str
+        Whose doing it is that the claim does not hold; empty where it does.
     """
 
     states: str
@@ -43,6 +52,8 @@ class ClaimRow:
     stated: list[tuple[str, str]]
     measured: list[tuple[str, str]]
     verdict: Verdict
+    margin: str
+    otherwise: str
 
 
 @dataclass(frozen=True)
@@ -73,24 +84,24 @@ def thesis_page(
     sources: Mapping[str, str],
     figures: Mapping[str, str],
     orders: str,
-    claims: Columns,
-    steps: Columns,
-    limited: Columns,
+    claims: pd.DataFrame,
+    steps: pd.DataFrame,
+    limited: pd.DataFrame,
 ) -> str:
     """Return the page.
 
     Parameters
     ----------
     sources : dict of str to str
-        File name to text of `thesis.html.j2` and of all that it asks for.
+        File name to text of `thesis.html.j2`, of all that it asks for, and of `DEVIATIONS`.
     figures : dict of str to str
         File name to SVG text, of all `FIGURES`.
     orders : str
         SVG text of the orders of ours beside the thesis's.
-    claims : dict of str to (n,) array
-        The columns of `schemas.CLAIMS`.
-    steps, limited : dict of str to (4,) array
-        The columns of `schemas.STEPS`, with our limits of registration and with the thesis's.
+    claims : pandas.DataFrame
+        `schemas.CLAIMS`.
+    steps, limited : pandas.DataFrame
+        `schemas.STEPS`, with our limits of registration and with the thesis's.
 
     Returns
     -------
@@ -105,34 +116,60 @@ def thesis_page(
         steps={"thesis": STEPS, "ours": _step_rows(steps), "limited": _step_rows(limited)},
         figures=[_shown_figure(figure, figures[figure.file], claims) for figure in FIGURES],
         orders=_inline_svg(orders, "orders"),
+        deviations=read_deviations(sources[DEVIATIONS]),
     )
 
 
-def claim_rows(claims: Columns, chosen: Sequence[Claim]) -> list[ClaimRow]:
+def read_deviations(text: str) -> list[list[str]]:
+    """Return the rows of the table in a Markdown text, the head first, without its markup."""
+    lines = [line.strip() for line in text.splitlines() if line.startswith("|")]
+    cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
+    return [[cell.replace("`", "") for cell in row] for row in cells if set(row[0]) - set("-: ")]
+
+
+def claim_rows(claims: pd.DataFrame, chosen: Sequence[Claim]) -> list[ClaimRow]:
     """Return rows of some claims: what is stated, what was measured, and the verdict."""
-    return [_claim_row(_rows_of(claims, claim), claim) for claim in chosen]
+    return [_claim_row(claims[claims["claim"] == claim.name], claim) for claim in chosen]
 
 
-def verdict_over_seeds(holds: Sequence[str]) -> Verdict:
-    """Return the verdict over some seeds of `yes` and `no`."""
-    n_seeds, n_yes = len(holds), list(holds).count("yes")
-    if not n_seeds:
+def margin_interval(margins: Sequence[float] | FloatArray) -> tuple[float, float]:
+    """Return the 95 % interval of the mean of margins (n,), n >= 1, by Student's t.
+
+    A margin compares what was measured on the same seed, so this is the interval of the paired
+    differences. Of a single seed there is none: it is the margin itself, twice.
+    """
+    mean, n = np.mean(margins), len(margins)
+    if n == 1:
+        return float(mean), float(mean)
+    half = stdtrit(n - 1, 0.975) * np.std(margins, ddof=1) / np.sqrt(n)
+    return float(mean - half), float(mean + half)
+
+
+def verdict_over_seeds(margins: Sequence[float] | FloatArray) -> Verdict:
+    """Return the verdict by the margins (n,) of some seeds: by their interval."""
+    if not len(margins):
         return Verdict("", "")
-    if n_yes == n_seeds:
+    low, high = margin_interval(margins)
+    if low > 0:
         return Verdict("holds", "yes")
-    if n_yes == 0:
+    if high <= 0:
         return Verdict("does not hold", "no")
-    return Verdict(f"holds for {n_yes} of {n_seeds} seeds", "some")
+    n_yes = int(np.count_nonzero(np.asarray(margins) > 0))
+    return Verdict(f"undecided: holds for {n_yes} of {len(margins)} seeds", "some")
 
 
-def summarise_verdicts(claims: Columns) -> str:
-    """Return in a sentence how many claims hold."""
-    judged = [claim for claim in CLAIMS if claim.criterion]
-    kinds = [verdict_over_seeds(_judgements(_rows_of(claims, claim))).css for claim in judged]
-    some = f", {kinds.count('some')} hold for some seeds only" if "some" in kinds else ""
-    unknown = f", {kinds.count('')} could not be measured" if "" in kinds else ""
-    n_yes, n_no = kinds.count("yes"), kinds.count("no")
-    return f"Of {len(kinds)} claims {n_yes} hold, {n_no} do not{some}{unknown}."
+def summarise_verdicts(claims: pd.DataFrame) -> str:
+    """Return in sentences how many claims hold."""
+    rows = claim_rows(claims, [claim for claim in CLAIMS if claim.criterion])
+    counts = Counter(row.verdict.css for row in rows)
+    n_numbers = sum(not claim.criterion for claim in CLAIMS)
+    some = f", {counts['some']} cannot be decided by these seeds" if counts["some"] else ""
+    unknown = f", {counts['']} could not be measured" if counts[""] else ""
+    return (
+        f"Of {len(rows)} claims {counts['yes']} hold, {counts['no']} do not{some}{unknown}."
+        f" {n_numbers} more are numbers of another building, sensor or machine, or of a quantity"
+        " that the thesis leaves open: ours stand beside them without a verdict."
+    )
 
 
 def format_values(values: Sequence[float] | FloatArray, unit: str = NUMBER) -> str:
@@ -167,34 +204,47 @@ def _decimals(value: float) -> int:
     return max(0, 2 - int(np.floor(np.log10(value))))
 
 
-def _claim_row(rows: Columns, claim: Claim) -> ClaimRow:
-    unit_of = dict(zip(rows["quantity"].tolist(), rows["unit"].tolist(), strict=True))
+def _claim_row(rows: pd.DataFrame, claim: Claim) -> ClaimRow:
+    unit_of = rows.groupby("quantity")["unit"].first()
+    measured = {
+        quantity: format_values(values.to_numpy(), unit_of[quantity])
+        for quantity, values in rows.groupby("quantity")["value"]
+        if quantity != MARGIN
+    }
     stated = [
         (quantity, format_values([value], unit_of.get(quantity, NUMBER)))
         for quantity, value in claim.stated.items()
     ]
-    measured = [
-        (quantity, format_values(rows["value"][rows["quantity"] == quantity], unit_of[quantity]))
-        for quantity in sort_quantities(list(unit_of))
-    ]
-    verdict = verdict_over_seeds(_judgements(rows))
+    margins = rows.loc[(rows["quantity"] == MARGIN) & (rows["holds"] != ""), "value"].to_numpy()
+    verdict = verdict_over_seeds(margins)
     if claim.criterion and not verdict.text:
         verdict = Verdict(_UNKNOWN, "")
-    return ClaimRow(claim.states, claim.where, claim.criterion, stated, measured, verdict)
+    return ClaimRow(
+        claim.states,
+        claim.where,
+        claim.criterion,
+        stated,
+        [(quantity, measured[quantity]) for quantity in sort_quantities(list(measured))],
+        verdict,
+        _format_margin(margins, unit_of.get(MARGIN, NUMBER)),
+        _fill_in(claim.otherwise, measured) if verdict.css in ("no", "some") else "",
+    )
 
 
-def _rows_of(claims: Columns, claim: Claim) -> Columns:
-    of_claim = claims["claim"] == claim.name
-    return {name: values[of_claim] for name, values in claims.items()}
+def _format_margin(margins: FloatArray, unit: str) -> str:
+    """Return the mean of margins (n,) with the interval that the verdict goes by."""
+    if not len(margins):
+        return ""
+    interval = margin_interval(margins) if len(margins) > 1 else ()
+    return format_values([float(np.mean(margins)), *interval], unit)
 
 
-def _judgements(rows: Columns) -> list[str]:
-    """Return `yes` or `no` of every survey that a claim could be judged by."""
-    by_survey = dict(zip(rows["survey"].tolist(), rows["holds"].tolist(), strict=True))
-    return [holds for holds in by_survey.values() if holds]
+def _fill_in(text: str, measured: Mapping[str, str]) -> str:
+    """Return a text with what was measured in the place of the quantities in braces."""
+    return re.sub(r"\{([^}]+)\}", lambda match: measured.get(match[1], _UNKNOWN), text)
 
 
-def _shown_figure(figure: Figure, svg: str, claims: Columns) -> ShownFigure:
+def _shown_figure(figure: Figure, svg: str, claims: pd.DataFrame) -> ShownFigure:
     anchor = f"figure-{figure.number.replace('.', '-')}"
     return ShownFigure(
         anchor,
@@ -214,13 +264,11 @@ def _inline_svg(svg: str, mark: str) -> Markup:
     return Markup(re.sub(r'href="#', f'href="#{mark}-', svg))
 
 
-def _step_rows(steps: Columns) -> list[tuple[str, str, str, str]]:
+def _step_rows(steps: pd.DataFrame) -> list[tuple[str, str, str, str]]:
     """Return step, time, scans at its end and size of the data, as table 5.1 has them."""
-    names = ("name", "seconds", "n_scans", "n_bytes")
-    rows = zip(*(steps[name].tolist() for name in names), strict=True)
     return [
-        (name, _format_seconds(seconds), f"{n_scans:,}", _format_bytes(n_bytes))
-        for name, seconds, n_scans, n_bytes in rows
+        (row.name, _format_seconds(row.seconds), f"{row.n_scans:,}", _format_bytes(row.n_bytes))
+        for row in steps[["name", "seconds", "n_scans", "n_bytes"]].itertuples(index=False)
     ]
 
 

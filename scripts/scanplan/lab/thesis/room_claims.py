@@ -4,43 +4,36 @@ Every public function measures the claim that it is called like, from the tables
 """
 
 import numpy as np
+import pandas as pd
 
-from scanplan.lab.thesis import unevenness
+from scanplan.lab.thesis import premises, unevenness
 from scanplan.lab.thesis.claim_measures import (
     AREA,
     BUILDING,
     CORRECT,
     COUNT,
     FOUND,
-    FOUR,
     METRES,
     NUMBER,
     OURS,
+    PLAIN_CLUSTERS,
+    SAMPLED,
     SECONDS,
     SHARE,
+    UNSAMPLED,
     ClaimMeasure,
     Quantities,
     Tables,
     count_clusters,
-    if_known,
-    is_about,
-    is_similar,
+    count_scans_to,
+    least_kept,
     mean_over_first,
     measure_at,
     of_unit,
     scans_for_99,
 )
-from scanplan.lab.thesis.stated_claims import (
-    COMPLETE,
-    HARM,
-    MANY,
-    MUCH,
-    SUBSET,
-    stated_number,
-)
-from scanplan.types import Columns
+from scanplan.lab.thesis.stated_claims import ALMOST, LOADED, MANY, MUCH, SUBSET
 
-_LATER = 40  # scans: of the evaluated sizes the one at which both orders have long converged
 _NAMES = {
     "cluster_hull": "cluster hulls",
     "hull": "one hull",
@@ -52,125 +45,173 @@ _NAMES = {
 def sequential_poorest(tables: Tables) -> ClaimMeasure:
     """Compare the orders by what they miss."""
     missed = _mean_of_each(tables, "false_negative")
-    most_of_others = max(missed[method] for method in FOUR[:-1])
-    return ClaimMeasure(_by_order(missed), missed["sequential"] > most_of_others)
+    behind = missed["sequential"] - missed.drop("sequential").max()
+    return ClaimMeasure(of_unit(missed.to_dict(), SHARE), behind, SHARE)
 
 
 def sequential_poorest_match(tables: Tables) -> ClaimMeasure:
     """Compare the orders by the share of cells that agree."""
     matched = _mean_of_each(tables, "correct_match")
-    least_of_others = min(matched[method] for method in FOUR[:-1])
-    return ClaimMeasure(_by_order(matched), matched["sequential"] < least_of_others)
+    literal = _mean_of_each(tables, "literal_correct_match").add_prefix("in the literal grid, ")
+    behind = matched.drop("sequential").min() - matched["sequential"]
+    values = of_unit(matched.to_dict() | literal.to_dict(), SHARE)
+    return ClaimMeasure(values, behind, SHARE)
 
 
 def others_similar(tables: Tables) -> ClaimMeasure:
     """Compare how far the other three orders lie apart with how far sequential lies behind."""
     missed = _mean_of_each(tables, "false_negative")
-    others = [missed[method] for method in FOUR[:-1]]
-    apart = max(others) - min(others)
-    behind = missed["sequential"] - max(others)
+    others = missed.drop("sequential")
+    apart = others.max() - others.min()
+    behind = missed["sequential"] - others.max()
     values = {"range of the other three": apart, "sequential behind them": behind}
-    return ClaimMeasure(of_unit(values, SHARE), apart < behind)
+    return ClaimMeasure(of_unit(values, SHARE), behind - apart, SHARE)
 
 
 def full_hull_overestimates(tables: Tables) -> ClaimMeasure:
     """Compare the areas of whole scans' hulls with what the scans truly see."""
-    areas = _seeing_scans(tables["rooms_areas"])
+    areas = _seeing_scans(tables)
     ratio = areas["full_hull_m2"] / areas["seen_m2"]
-    median = float(np.median(ratio)) if len(ratio) else np.nan
-    over_share = float(np.mean(ratio > 1)) if len(ratio) else np.nan
+    over_share = (ratio > 1).mean() if len(ratio) else np.nan
     values: Quantities = {
-        "hull per seen area, median": (median, NUMBER),
+        "hull per seen area, median": (ratio.median(), NUMBER),
         "share of scans over-estimated": (over_share, SHARE),
     }
-    return ClaimMeasure(values, if_known(median, median > 1))
+    return ClaimMeasure(values, ratio.median() - 1)
 
 
 def cluster_hull_closer(tables: Tables) -> ClaimMeasure:
-    """Compare how well the shape of either kind of hull agrees with what the scans truly see."""
-    areas = _seeing_scans(tables["rooms_areas"])
-    is_known = len(areas["seen_m2"]) > 0
-    clusters = float(np.median(areas["cluster_hull_iou"])) if is_known else np.nan
-    full = float(np.median(areas["full_hull_iou"])) if is_known else np.nan
-    values = {"shared, cluster hulls, median": clusters, "shared, one hull, median": full}
-    holds = 1 - clusters <= MUCH * (1 - full)
-    return ClaimMeasure(of_unit(values, SHARE), if_known([clusters, full], holds))
+    """Compare how far the areas of either kind of hull are from what the scans truly see."""
+    areas = _seeing_scans(tables)
+    values, error = {}, {}
+    for hull, name in (("cluster_hull", "cluster hulls"), ("full_hull", "one hull")):
+        error[hull] = (areas[f"{hull}_m2"] / areas["seen_m2"] - 1).abs().median()
+        values[f"error of the area, {name}, median"] = error[hull]
+        values[f"intersection over union, {name}, median"] = areas[f"{hull}_iou"].median()
+    margin = MUCH - error["cluster_hull"] / error["full_hull"]
+    return ClaimMeasure(of_unit(values, SHARE), margin, SHARE)
+
+
+def outliers_harm_one_hull(tables: Tables) -> ClaimMeasure:
+    """Compare what a stray return adds to the area of either kind of hull."""
+    areas = _seeing_scans(tables)
+    added = {
+        name: (areas[f"{hull}_stray_m2"] / areas[f"{hull}_m2"] - 1).mean()
+        for hull, name in (("cluster_hull", "cluster hulls"), ("full_hull", "one hull"))
+    }
+    values = {f"area added by one stray return, {name}": share for name, share in added.items()}
+    margin = MUCH - added["cluster hulls"] / added["one hull"]
+    return ClaimMeasure(of_unit(values, SHARE), margin, SHARE)
 
 
 def full_hull_99(tables: Tables) -> ClaimMeasure:
     """Count the scans for 99 % of the area by one hull per scan."""
-    return _measure_99(tables["rooms_hull"], "full_hull_99")
+    return ClaimMeasure({"scans for 99 %": (scans_for_99(tables["rooms_hull"]), COUNT)})
 
 
 def cluster_hull_99(tables: Tables) -> ClaimMeasure:
     """Count the scans for 99 % of the area by cluster hulls."""
-    return _measure_99(tables["rooms_cluster_hull"], "cluster_hull_99")
+    return ClaimMeasure({"scans for 99 %": (scans_for_99(tables["rooms_cluster_hull"]), COUNT)})
 
 
 def full_hull_sooner(tables: Tables) -> ClaimMeasure:
     """Compare those two numbers."""
     full = scans_for_99(tables["rooms_hull"])
     cluster = scans_for_99(tables["rooms_cluster_hull"])
-    return ClaimMeasure(
-        of_unit({"one hull": full, "cluster hulls": cluster}, COUNT), full < cluster
-    )
+    values = of_unit({"one hull": full, "cluster hulls": cluster}, COUNT)
+    return ClaimMeasure(values, cluster - full, COUNT)
 
 
 def slower_is_better(tables: Tables) -> ClaimMeasure:
     """Compare what later scans of both orders bring."""
     walls = tables["rooms_walls"]
-    cluster = measure_at(walls, "cluster_hull", OURS, _LATER, FOUND)
-    full = measure_at(walls, "hull", OURS, _LATER, FOUND)
+    cluster = measure_at(walls, "cluster_hull", OURS, MANY, FOUND)
+    full = measure_at(walls, "hull", OURS, MANY, FOUND)
     values = {
-        f"walls found by {_LATER}, cluster hulls": cluster,
-        f"walls found by {_LATER}, one hull": full,
+        f"walls found by {MANY}, cluster hulls": cluster,
+        f"walls found by {MANY}, one hull": full,
     }
-    return ClaimMeasure(of_unit(values, SHARE), if_known([cluster, full], cluster > full))
+    return ClaimMeasure(of_unit(values, SHARE), cluster - full, SHARE)
 
 
 def more_clusters_less_area(tables: Tables) -> ClaimMeasure:
     """Compare the areas by numbers of clusters, for every number of scans."""
     table = tables["rooms_clusters"]
-    numbers = np.unique(table["n_clusters"])
-    covered_m2 = np.array([table["covered_m2"][table["n_clusters"] == n] for n in numbers])
-    is_less = (np.diff(covered_m2, axis=0) < 0).all(axis=0)
-    ranks = {"all": -1}
-    if covered_m2.shape[1] > SUBSET:
-        ranks = {str(SUBSET): SUBSET - 1, **ranks}
+    covered_m2 = table.pivot(index="rank", columns="n_clusters", values="covered_m2")
+    less_m2 = -covered_m2.diff(axis=1).iloc[:, 1:].max(axis=1)
+    ranks = {str(SUBSET): SUBSET} if len(covered_m2) > SUBSET else {}
     values: Quantities = {}
-    for scans, rank in ranks.items():
-        for row in (0, -1):
-            quantity = f"by {scans} scans, {count_clusters(numbers[row])}"
-            values[quantity] = covered_m2[row, rank], AREA
-    values["numbers of scans at which it holds"] = is_less.mean(), SHARE
-    return ClaimMeasure(values, bool(is_less.all()))
+    for scans, rank in (ranks | {"all": len(covered_m2)}).items():
+        for number in (covered_m2.columns.min(), covered_m2.columns.max()):
+            quantity = f"by {scans} scans, {count_clusters(number)}"
+            values[quantity] = covered_m2.loc[rank, number], AREA
+    values["numbers of scans at which it holds"] = (less_m2 > 0).mean(), SHARE
+    return ClaimMeasure(values, less_m2.min(), AREA)
 
 
 def more_clusters_more_time(tables: Tables) -> ClaimMeasure:
     """Compare run times by numbers of clusters."""
-    times = tables["rooms_times"]
-    rows = np.flatnonzero(times["task"] == BUILDING)
-    rows = rows[np.argsort(times["size"][rows])]
-    seconds = times["seconds"][rows]
-    names = [count_clusters(number) for number in times["size"][rows]]
-    values = of_unit(dict(zip(names, seconds, strict=True)), SECONDS)
-    return ClaimMeasure(values, bool((np.diff(seconds) > 0).all()))
+    seconds = _building_seconds(tables)
+    values = {count_clusters(number): s for number, s in seconds.items()}
+    step = (seconds / seconds.shift()).min() - 1
+    whole = seconds.iloc[-1] / seconds.iloc[0] - 1
+    return ClaimMeasure(of_unit(values, SECONDS), min(step + LOADED, whole - LOADED), SHARE)
+
+
+def area_adjustable(tables: Tables) -> ClaimMeasure:
+    """Compare the hulls' areas with what scans truly see, by number of clusters."""
+    areas = _seeing_scans(tables)[["scan_id", "seen_m2"]]
+    own = tables["rooms_clusters"].merge(areas, on="scan_id")
+    ratio = (own["area_m2"] / own["seen_m2"]).groupby(own["n_clusters"]).median()
+    values = {f"area per seen area, {count_clusters(n)}": r for n, r in ratio.items()}
+    margin = min(ratio.max() - 1, 1 - ratio.min()) if len(ratio) else np.nan
+    return ClaimMeasure(of_unit(values, NUMBER), margin)
+
+
+def clusters_save_time(tables: Tables) -> ClaimMeasure:
+    """Compare the time until most walls are found by one hull and by clusters, hulls included."""
+    walls, times = tables["rooms_walls"], tables["rooms_times"]
+    building = times[times["task"] == BUILDING].set_index("size")
+    hull_s = (building["seconds"] / building["found"]).sort_index()
+    extraction_s = times.loc[times["task"] == PLAIN_CLUSTERS, "seconds"].mean()
+    n_scans = walls["k"].max()
+    values, total_s = {}, {}
+    for method, name, of_hull_s in (
+        ("hull", "one hull", hull_s.iloc[0]),
+        ("cluster_hull", "the most clusters", hull_s.iloc[-1]),
+    ):
+        needed = count_scans_to(walls, method, ALMOST)
+        total_s[method] = n_scans * of_hull_s + needed * extraction_s
+        values[f"scans needed, {name}"] = needed, COUNT
+        values[f"time, {name}"] = total_s[method], SECONDS
+    saved = 1 - total_s["cluster_hull"] / total_s["hull"]
+    return ClaimMeasure(values, saved - LOADED, SHARE)
+
+
+def sample_saves_time(tables: Tables) -> ClaimMeasure:
+    """Compare run times of clustering a sample of the points and all of them."""
+    times = tables["rooms_times"].groupby("task")["seconds"].sum()
+    sampled_s, every_s = times.get(SAMPLED, np.nan), times.get(UNSAMPLED, np.nan)
+    values = {"a sample of the points": sampled_s, "all points": every_s}
+    return ClaimMeasure(of_unit(values, SECONDS), every_s / sampled_s - 1 - LOADED, SHARE)
 
 
 def fifteen_almost_complete(tables: Tables) -> ClaimMeasure:
-    """Compare what the thesis's subset finds with the truth, and with what other orders find."""
+    """Compare what the thesis's subset finds with what the best one of its size finds."""
     walls = tables["rooms_walls"]
     found = measure_at(walls, "cluster_hull", OURS, SUBSET, FOUND)
-    by_recorded = measure_at(walls, "sequential", OURS, SUBSET, FOUND)
+    best = measure_at(walls, "oracle", OURS, SUBSET, FOUND)
     values = {
         "walls found": found,
         "length that is wall": measure_at(walls, "cluster_hull", OURS, SUBSET, CORRECT),
         "walls found by all scans": measure_at(walls, "cluster_hull", OURS, np.inf, FOUND),
-        "walls found by the oracle's 15": measure_at(walls, "oracle", OURS, SUBSET, FOUND),
-        "walls found by the first 15 recorded": by_recorded,
+        "walls found by the best 15": best,
+        "walls found by the first 15 recorded": measure_at(
+            walls, "sequential", OURS, SUBSET, FOUND
+        ),
     }
     scans = {"of how many scans": (walls["k"].max(), COUNT)}
-    return ClaimMeasure(of_unit(values, SHARE) | scans, if_known(found, found >= COMPLETE))
+    return ClaimMeasure(of_unit(values, SHARE) | scans, least_kept([found], [best]), SHARE)
 
 
 def tenth_little_loss(tables: Tables) -> ClaimMeasure:
@@ -183,27 +224,44 @@ def tenth_little_loss(tables: Tables) -> ClaimMeasure:
     )
     values = {
         "walls found, a tenth": some[0],
+        "walls found, the best tenth": measure_at(walls, "oracle", OURS, tenth, FOUND),
         "walls found, all": every[0],
         "length that is wall, a tenth": some[1],
         "length that is wall, all": every[1],
     }
-    return ClaimMeasure({"scans": (tenth, COUNT)} | of_unit(values, SHARE), is_similar(some, every))
+    scans = {"scans": (tenth, COUNT)}
+    return ClaimMeasure(scans | of_unit(values, SHARE), least_kept(some, every), SHARE)
 
 
 def uneven_harms_random(tables: Tables) -> ClaimMeasure:
     """Compare what both orders lose where the scans of a crowd were taken many times."""
-    table = tables["rooms_unevenness"]
+    even_m, lost = unevenness.lost_shares(tables["rooms_unevenness"])
     values: Quantities = {}
-    losses = {}
     for order, name in ((unevenness.RANDOM, "random"), (unevenness.AREA, "cluster hulls")):
-        even_m, losses[order] = unevenness.lost_shares(table, order)
-        values[f"seen, {name}, each scan once"] = even_m, METRES
-        for repeats, lost in zip(unevenness.REPEATS[1:], losses[order][1:], strict=True):
-            values[f"lost, {name}, crowd {repeats} times"] = lost, SHARE
-    random, area = losses[unevenness.RANDOM], losses[unevenness.AREA]
-    random_suffers = (np.diff(random) > 0).all() and random[-1] > HARM
-    holds = random_suffers and (area <= HARM).all()
-    return ClaimMeasure(values, if_known([*random, *area], holds))
+        values[f"seen, {name}, each scan once"] = even_m[order], METRES
+        for repeats, share in lost[order].iloc[1:].items():
+            values[f"lost, {name}, crowd {repeats} times"] = share, SHARE
+    random, area = lost[unevenness.RANDOM], lost[unevenness.AREA]
+    harm = 1 - ALMOST
+    parts = [random.diff().min(), random.iloc[-1] - harm, harm - area.max()]
+    return ClaimMeasure(values, min(parts) if lost.notna().all(axis=None) else np.nan, SHARE)
+
+
+def utility_submodular(tables: Tables) -> ClaimMeasure:
+    """Measure the submodularity ratio of what scans find of the walls."""
+    table = tables["rooms_premises"]
+    ratios = table[table["premise"].isin(premises.UTILITIES)].groupby("premise")["value"]
+    values = {f"ratio, {name}": ratio for name, ratio in ratios.mean().items()}
+    margin = min(ratios.mean().reindex(premises.UTILITIES)) - ALMOST
+    return ClaimMeasure(of_unit(values, NUMBER), margin)
+
+
+def clusters_are_walls(tables: Tables) -> ClaimMeasure:
+    """Measure how many of a scan's clustered points lie on their cluster's wall."""
+    table = tables["rooms_premises"]
+    share = table.loc[table["premise"] == premises.ONE_WALL, "value"].median()
+    values = {"points on their cluster's wall, median scan": share}
+    return ClaimMeasure(of_unit(values, SHARE), share - ALMOST, SHARE)
 
 
 def first_sixty(tables: Tables) -> ClaimMeasure:
@@ -212,6 +270,9 @@ def first_sixty(tables: Tables) -> ClaimMeasure:
         "false negative": "false_negative",
         "correct match": "correct_match",
         "false positive": "false_positive",
+        "in the literal grid, false negative": "literal_false_negative",
+        "in the literal grid, correct match": "literal_correct_match",
+        "in the literal grid, false positive": "literal_false_positive",
         "walls found (0.10 m)": FOUND,
         "length that is wall (0.10 m)": CORRECT,
     }
@@ -229,20 +290,18 @@ def survey_of_rooms(tables: Tables) -> ClaimMeasure:
     return ClaimMeasure({"scans": (tables["rooms_walls"]["k"].max(), COUNT)})
 
 
-def _mean_of_each(tables: Tables, column: str) -> dict[str, float]:
-    return {method: mean_over_first(tables["rooms_walls"], method, column) for method in FOUR}
+def _mean_of_each(tables: Tables, column: str) -> pd.Series:
+    """Return the means of a column over the first scans of the thesis's orders, by their names."""
+    return mean_over_first(tables["rooms_walls"], column)[list(_NAMES)].rename(index=_NAMES)
 
 
-def _by_order(shares: dict[str, float]) -> Quantities:
-    return of_unit({_NAMES[method]: share for method, share in shares.items()}, SHARE)
-
-
-def _seeing_scans(areas: Columns) -> Columns:
+def _seeing_scans(tables: Tables) -> pd.DataFrame:
     """Return the rows of the scans that see any area."""
-    sees = areas["seen_m2"] > 0
-    return {name: values[sees] for name, values in areas.items()}
+    areas = tables["rooms_areas"]
+    return areas[areas["seen_m2"] > 0]
 
 
-def _measure_99(selection: Columns, claim: str) -> ClaimMeasure:
-    ours, quantity = scans_for_99(selection), "scans for 99 %"
-    return ClaimMeasure({quantity: (ours, COUNT)}, is_about(ours, stated_number(claim, quantity)))
+def _building_seconds(tables: Tables) -> pd.Series:
+    """Return the seconds of making hulls and ordering them, by number of clusters."""
+    times = tables["rooms_times"]
+    return times[times["task"] == BUILDING].set_index("size")["seconds"].sort_index()

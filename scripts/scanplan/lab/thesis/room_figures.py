@@ -1,29 +1,30 @@
-"""The thesis's figures of its synthetic survey: 3.2 and 5.1 to 5.7."""
+"""The thesis's figures of its synthetic survey: 3.1 to 4.1 and 5.1 to 5.7."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
+import pandas as pd
 import shapely
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
+from shapely.geometry.base import BaseGeometry
 
+from scanplan.extraction.cluster_ransac import ClusterRansacSettings
 from scanplan.geometry import bitmap
-from scanplan.lab.evaluation import length_metrics
+from scanplan.lab.evaluation import bitmap_shares, length_metrics
 from scanplan.lab.evaluation.truth_file import TrueFaces
-from scanplan.lab.thesis import coverage, coverage_figures
+from scanplan.lab.thesis import coverage, coverage_figures, schematic_figures, steps_figure
 from scanplan.lab.thesis.claim_measures import OURS
 from scanplan.lab.thesis.stated_claims import MANY, SUBSET
+from scanplan.rays import sensor_frame
 from scanplan.report import top_view
 from scanplan.selection import hulls
 from scanplan.store import tables
-from scanplan.types import Array, Columns, FloatArray, IntArray
+from scanplan.types import Columns, FloatArray, IntArray
 
-_WIDTH_IN = 9.6  # the width of the page that shows them
-_LEAST_IN, _MOST_IN = 2.0, 9.0  # height of a panel: readable, and within a screen
-_MARGIN_M = 0.8  # around the walls, so that marks at the outermost are whole
 _TRUTH, _WALLS, _ENDS, _PLACES = "0.75", "#0072b2", "#d62728", "#e6b800"
 
 
@@ -38,12 +39,17 @@ class RoomSurvey:
         Of the registered scans.
     places_m : (n, 2) float64
         Where each was truly taken.
+    sensor_xyz_m : (n, 3) float64
+        Where the sensor is in the map.
+    extraction : cluster_ransac.ClusterRansacSettings
     faces : truth_file.TrueFaces
-    hulls, walls, clusters : dict
-        Columns of hulls.parquet, walls/cluster_ransac.parquet and thesis/clusters.parquet.
-    selections : dict of str to dict
-        Method to the columns of its ordering.
-    evaluated : list of dict
+    hulls, walls : dict
+        Columns of hulls.parquet and walls/cluster_ransac.parquet.
+    clusters : pandas.DataFrame
+        thesis/clusters.parquet.
+    selections : dict of str to pandas.DataFrame
+        Method to its ordering.
+    evaluated : list of pandas.DataFrame
         evaluation/walls.parquet of every seed.
     max_range_m : float
     """
@@ -51,53 +57,59 @@ class RoomSurvey:
     store: tables.ScanStore
     scan_ids: IntArray
     places_m: FloatArray
+    sensor_xyz_m: FloatArray
+    extraction: ClusterRansacSettings
     faces: TrueFaces
     hulls: Columns
     walls: Columns
-    clusters: Columns
-    selections: Mapping[str, Columns]
-    evaluated: Sequence[Columns]
+    clusters: pd.DataFrame
+    selections: Mapping[str, pd.DataFrame]
+    evaluated: Sequence[pd.DataFrame]
     max_range_m: float
 
     def first_walls(self, method: str, k: int) -> tuple[FloatArray, FloatArray]:
         """Return the walls (m, 2, 2) of an order's first k scans, and their true places (k, 2)."""
-        scan_ids = self.selections[method]["scan_id"][:k]
+        scan_ids = self.selections[method]["scan_id"].to_numpy()[:k]
         is_chosen = np.isin(self.walls["scan_id"], scan_ids)
         walls_m = length_metrics.table_lines_m(self.walls)[is_chosen]
         return walls_m, self.places_m[np.searchsorted(self.scan_ids, scan_ids)]
 
 
 def draw_room_figure(survey: RoomSurvey, name: str, bitmap_cell_m: float) -> Figure:
-    """Draw the figure of a name: `figure_3_2`, `figure_5_1` to `figure_5_7`."""
+    """Draw the figure of a name: `figure_3_1` to `figure_4_1`, `figure_5_1` to `figure_5_7`."""
     faces_m = survey.faces.inner_m
     ours, recorded = "order by cluster hulls", "as recorded"
-    if name == "figure_3_2":
-        return _draw_typical_hulls(survey)
     if name == "figure_5_1":
         walls_m, _ = survey.first_walls("cluster_hull", MANY)
         return draw_overlay_figure(walls_m, faces_m, bitmap_cell_m)
-    if name == "figure_5_2":
-        return draw_survey_figure(faces_m, survey.places_m)
     if name == "figure_5_3":
         return draw_wall_panels(faces_m, {ours: survey.first_walls("cluster_hull", MANY)})
-    if name == "figure_5_4":
-        return coverage_figures.draw_shares_figure(survey.evaluated, OURS)
     if name == "figure_5_5":
         panels = {
             recorded: survey.first_walls("sequential", SUBSET),
             ours: survey.first_walls("cluster_hull", SUBSET),
         }
         return draw_wall_panels(faces_m, panels)
-    if name == "figure_5_6":
-        selections = {method: survey.selections[method] for method in ("hull", "cluster_hull")}
-        return coverage_figures.draw_convergence_figure(selections)
-    if name == "figure_5_7":
-        return coverage_figures.draw_clusters_figure(survey.clusters)
-    raise ValueError(f"{name} is no figure of the rooms")
+    selections = {method: survey.selections[method] for method in ("hull", "cluster_hull")}
+    drawings = {
+        "figure_3_1": schematic_figures.draw_system_overview,
+        "figure_3_2": partial(_draw_typical_hulls, survey),
+        "figure_3_3": partial(_draw_typical_steps, survey),
+        "figure_4_1": schematic_figures.draw_rover_architecture,
+        "figure_5_2": partial(draw_survey_figure, faces_m, survey.places_m),
+        "figure_5_4": partial(coverage_figures.draw_shares_figure, survey.evaluated, OURS),
+        "figure_5_6": partial(coverage_figures.draw_convergence_figure, selections),
+        "figure_5_7": partial(coverage_figures.draw_clusters_figure, survey.clusters),
+    }
+    if name not in drawings:
+        raise ValueError(f"{name} is no figure of the rooms")
+    return drawings[name]()
 
 
 def draw_overlay_figure(result_m: FloatArray, truth_m: FloatArray, cell_m: float) -> Figure:
     """Draw the bitmaps of result and truth over each other (figure 5.1).
+
+    What is drawn is the mean over the beginnings of the grid that the shares are the mean of.
 
     Parameters
     ----------
@@ -109,29 +121,29 @@ def draw_overlay_figure(result_m: FloatArray, truth_m: FloatArray, cell_m: float
     -------
     matplotlib.figure.Figure
     """
-    grid = bitmap.fit_grid(np.concatenate([result_m, truth_m]), cell_m)
-    result = bitmap.rasterise_lines(result_m, grid)
-    truth = bitmap.rasterise_lines(truth_m, grid)
-    shares = bitmap.error_shares(bitmap.subtract_bitmaps(result, truth))
+    literal, *shifted = bitmap_shares.trace_truth(truth_m, result_m, cell_m)
+    colours = np.array([(255, 255, 255), (31, 119, 255), (228, 26, 28), (123, 45, 142)])
+    rows, columns = literal.grid.shape
+    image, shares = np.zeros((rows, columns, 3)), []
+    every = np.ones(len(result_m), int)
+    for truth in shifted:
+        drawn = bitmap_shares.match_cells(result_m, truth)
+        shares.append(bitmap_shares.measure_shares(drawn, every, [1])[0])
+        is_true = np.zeros((rows + 1, columns + 1), int)
+        is_true.flat[truth.cells] = 1
+        code = is_true + 2 * bitmap.rasterise_lines(result_m, truth.grid)
+        # the middle of a cell of the literal grid lies in this one or the next of a shifted grid
+        column, row = ((literal.grid.low_m - truth.grid.low_m) / cell_m >= 0.5).astype(int)
+        image += colours[code[row : row + rows, column : column + columns]] / len(shifted)
     figure, (axes,) = _make_panels(truth_m, 1)
-    # a cell of a few centimetres is thinner than a pixel: of each block the worst cell is shown
-    code = _largest_of_blocks(truth * 1 + result * 2)
-    low_x_m, low_y_m = grid.low_m
-    high_x_m = low_x_m + code.shape[1] * 2 * cell_m
-    high_y_m = low_y_m + code.shape[0] * 2 * cell_m
-    axes.imshow(
-        code,
-        cmap=ListedColormap(["white", "#1f77ff", "#e41a1c", "#7b2d8e"]),
-        vmin=0,
-        vmax=3,
-        origin="lower",
-        extent=(low_x_m, high_x_m, low_y_m, high_y_m),
-        interpolation="none",
-    )
+    low_x_m, low_y_m = literal.grid.low_m
+    extent = (low_x_m, low_x_m + columns * cell_m, low_y_m, low_y_m + rows * cell_m)
+    pixels = _darkest_of_blocks(image).astype(np.uint8)
+    axes.imshow(pixels, origin="lower", extent=extent, interpolation="none")
+    missed, matched, invented = np.mean(shares, axis=0)
     axes.set_title(
-        f"false negative {shares.false_negative:.2%} (blue),"
-        f" false positive {shares.false_positive:.2%} (red),"
-        f" correct match {shares.correct_match:.2%} (walls purple)",
+        f"false negative {missed:.2%} (blue), false positive {invented:.2%} (red), correct match"
+        f" {matched:.2%} (walls purple); mean over {len(shifted)} beginnings of the grid",
         fontsize=9,
     )
     return figure
@@ -174,30 +186,47 @@ def draw_wall_panels(
 
 def _draw_typical_hulls(survey: RoomSurvey) -> Figure:
     """Draw the scan whose full hull exceeds what it sees by the median of all scans."""
-    _, full = hulls.scan_full_hulls(survey.hulls)
-    seen = coverage.seen_polygons(survey.faces, survey.places_m, max_range_m=survey.max_range_m)
-    ratio = np.asarray(shapely.area(full) / shapely.area(seen))
-    row = int(np.argsort(ratio, kind="stable")[len(ratio) // 2])
+    row, full, seen = _find_typical_scan(survey)
     scan_id = survey.scan_ids[row]
     shapes = shapely.from_wkb(survey.hulls["geometry"][survey.hulls["scan_id"] == scan_id])
     clusters = shapes[shapely.get_dimensions(shapes) == 2]
     points_m = survey.store.read(scan_id)[:, :2]
-    return coverage_figures.draw_hulls_figure(
-        points_m, survey.places_m[row], full[row], clusters, seen[row]
-    )
+    return coverage_figures.draw_hulls_figure(points_m, survey.places_m[row], full, clusters, seen)
+
+
+def _draw_typical_steps(survey: RoomSurvey) -> Figure:
+    """Draw how the walls of that same scan are found."""
+    row, _, _ = _find_typical_scan(survey)
+    scan_id = int(survey.scan_ids[row])
+    sensor_m = survey.sensor_xyz_m[row]
+    points_m = sensor_frame.centre_on_sensor(survey.store.read(scan_id), sensor_m)
+    steps = steps_figure.find_steps(points_m, scan_id, survey.extraction)
+    is_of_scan = survey.walls["scan_id"] == scan_id
+    segments_m = length_metrics.table_lines_m(survey.walls)[is_of_scan] - sensor_m[:2]
+    return steps_figure.draw_steps_figure(steps, segments_m)
+
+
+def _find_typical_scan(survey: RoomSurvey) -> tuple[int, BaseGeometry, BaseGeometry]:
+    """Return the row of the scan whose hull exceeds what it sees by the median, hull and view."""
+    _, full = hulls.scan_full_hulls(survey.hulls)
+    seen = coverage.seen_polygons(survey.faces, survey.places_m, max_range_m=survey.max_range_m)
+    ratio = np.asarray(shapely.area(full) / shapely.area(seen))
+    row = int(np.argsort(ratio, kind="stable")[len(ratio) // 2])
+    return row, full[row], seen[row]
 
 
 def _make_panels(shown_m: FloatArray, count: int) -> tuple[Figure, Sequence[Axes]]:
-    """Return a figure and that many axes in metres around lines."""
-    low_m = np.min(shown_m.reshape(-1, 2), axis=0)
-    high_m = np.max(shown_m.reshape(-1, 2), axis=0)
-    width_m, height_m = high_m - low_m
-    height_in = float(np.clip(_WIDTH_IN / count * height_m / width_m, _LEAST_IN, _MOST_IN)) + 0.7
-    figure = Figure(figsize=(_WIDTH_IN, height_in), layout="constrained", dpi=200)
+    """Return a figure as wide as the page and that many axes in metres around lines."""
+    corners_m = shown_m.reshape(-1, 2)
+    width_m, height_m = np.ptp(corners_m, axis=0)
+    figure = Figure(layout="constrained", dpi=200)
+    width_in = 9.6
+    figure.set_size_inches(width_in, width_in / count * height_m / width_m + 0.7)
     frames = figure.subplots(1, count, squeeze=False)[0]
     for axes in frames:
-        axes.set_xlim(low_m[0] - _MARGIN_M, high_m[0] + _MARGIN_M)
-        axes.set_ylim(low_m[1] - _MARGIN_M, high_m[1] + _MARGIN_M)
+        axes.update_datalim(corners_m)
+        axes.autoscale_view()
+        axes.set_autoscale_on(False)
         axes.set_aspect("equal")
         axes.set_xlabel("x (m)", fontsize=8)
         top_view.strip_frame(axes)
@@ -209,9 +238,12 @@ def _draw_lines(axes: Axes, lines_m: FloatArray, colour: str, width: float) -> N
     axes.add_collection(lines, autolim=False)
 
 
-def _largest_of_blocks(code: Array) -> Array:
-    """Return the largest code of every block of 2 x 2 cells."""
-    n_rows, n_columns = (-(-n // 2) * 2 for n in code.shape)
-    padded = np.zeros((n_rows, n_columns), code.dtype)
-    padded[: code.shape[0], : code.shape[1]] = code
-    return padded.reshape(n_rows // 2, 2, n_columns // 2, 2).max(axis=(1, 3))
+def _darkest_of_blocks(image: FloatArray) -> FloatArray:
+    """Return the darkest pixel (3,) of every block of 2 x 2: cells are thinner than the page's."""
+    n_rows, n_columns = (-(-n // 2) * 2 for n in image.shape[:2])
+    padded = np.full((n_rows, n_columns, 3), 255.0)
+    padded[: image.shape[0], : image.shape[1]] = image
+    blocks = padded.reshape(n_rows // 2, 2, n_columns // 2, 2, 3).swapaxes(1, 2)
+    blocks = blocks.reshape(n_rows // 2, n_columns // 2, 4, 3)
+    darkest = blocks.sum(axis=3).argmin(axis=2)
+    return np.take_along_axis(blocks, darkest[:, :, None, None], axis=2)[:, :, 0]

@@ -31,17 +31,34 @@ class Figure:
 
 FIGURES = (
     Figure(
+        "3.1",
+        "A high level overview of the system",
+        "The steps of the workflow, and the way by a model with known truth.",
+    ),
+    Figure(
         "3.2",
         "A graphical comparison between the naive solution, our solution and ground truth",
         "A scan's one convex hull, the hulls of its clusters, and the area that it truly sees.",
-        ("full_hull_overestimates", "cluster_hull_closer"),
+        ("full_hull_overestimates", "cluster_hull_closer", "outliers_harm_one_hull"),
+    ),
+    Figure(
+        "3.3",
+        "The main steps in our proposed wall finding algorithm",
+        "The same scan as in Figure 3.2: points and normals, the points projected along their"
+        " normals and clustered, one line for every cluster, and what is kept of the lines.",
+        ("clusters_are_walls",),
+    ),
+    Figure(
+        "4.1",
+        "Rover system architecture.",
+        "The parts of the thesis's rover, and what the simulated one has in their place.",
     ),
     Figure(
         "5.1",
         "Overlay of the inferred bitmap and the ground truth bitmap",
         "Bitmaps of the walls by cluster RANSAC in the first 60 scans and of the truth: missed"
-        " blue, found purple,"
-        " invented red.",
+        " blue, found purple, invented red. Each pixel is the mean over grids that begin at"
+        " different parts of a cell, and so are the shares.",
         ("first_sixty",),
     ),
     Figure(
@@ -64,7 +81,13 @@ FIGURES = (
         "Correct match, False positive and False negative",
         "The three shares against the number of scans for every order; mean and range over the"
         " seeds.",
-        ("sequential_poorest", "sequential_poorest_match", "others_similar", "slower_is_better"),
+        (
+            "sequential_poorest",
+            "sequential_poorest_match",
+            "others_similar",
+            "slower_is_better",
+            "utility_submodular",
+        ),
     ),
     Figure(
         "5.5",
@@ -72,7 +95,7 @@ FIGURES = (
         " and the order"
         " suggested by our algorithm",
         "Walls by cluster RANSAC in the first 15 scans of both orders.",
-        ("fifteen_almost_complete", "tenth_little_loss"),
+        ("fifteen_almost_complete", "tenth_little_loss", "tenth_of_drive"),
     ),
     Figure(
         "5.6",
@@ -86,14 +109,21 @@ FIGURES = (
         "Relationship between area cover and number of clusters",
         "Covered area against the number of scans for several numbers of clusters, and against that"
         " number.",
-        ("more_clusters_less_area", "more_clusters_more_time"),
+        (
+            "more_clusters_less_area",
+            "area_adjustable",
+            "more_clusters_more_time",
+            "clusters_save_time",
+            "sample_saves_time",
+        ),
     ),
     Figure(
         "5.8",
         "Time required to compute the subset selection for different number of scans.",
-        "Time to choose 15 scans by cluster hulls, and to order all, against the number of scans of"
-        " the drive.",
-        ("selection_time",),
+        "Time to choose 15 scans by cluster hulls and to order all, by algorithm 1 as it is written"
+        " and by ours, which looks at few scans in a step and gives the same order, against the"
+        " number of scans of the drive.",
+        ("selection_polynomial", "selection_time", "subset_scales"),
     ),
     Figure(
         "5.9",
@@ -107,9 +137,15 @@ FIGURES = (
     Figure(
         "5.10",
         "Time comparison and Cumulative number of walls extracted",
-        "Time and walls of both extractors as in the thesis (3.4, 5.3), scan by scan of the drive,"
-        " one process.",
-        ("fewer_walls", "steadier_times", "time_by_size", "several_per_wall"),
+        "Time, cumulative walls and walls a scan of both extractors as in the thesis (3.4, 5.3),"
+        " scan by scan of the drive, one process.",
+        (
+            "fewer_walls",
+            "fewer_walls_merge_faster",
+            "steadier_times",
+            "time_by_size",
+            "several_per_wall",
+        ),
     ),
     Figure(
         "5.11",
@@ -135,3 +171,6 @@ STEPS = (
     ("Cluster Subset selection", "4.5 s", "15", "1.6 MB"),
 )
 """Table 5.1: step, time, scans at its end, size of the data."""
+
+THESIS_SCANS = int(STEPS[-2][2])
+"""Scans that the thesis chooses its subset from."""

@@ -9,12 +9,15 @@ from functools import partial
 from typing import Any
 
 import numpy as np
+import shapely
 from numpy.typing import ArrayLike
 
 from scanplan.extraction import extractors
 from scanplan.extraction.extractors import Extractor
-from scanplan.lab.thesis.claim_measures import BUILDING, CHOOSING, ORDERING, THINNED
+from scanplan.lab.thesis.claim_measures import CHOOSING, LITERAL, MERGING, ORDERING, THINNED
+from scanplan.lab.thesis.shown_figures import THESIS_SCANS
 from scanplan.lab.thesis.stated_claims import SUBSET
+from scanplan.plan.faces.merging import MergeSettings, merge_segments
 from scanplan.selection import area_greedy, hulls
 from scanplan.stage import per_registered_scan
 from scanplan.store import tables
@@ -126,9 +129,53 @@ def time_selection(columns: Columns, sizes: Iterable[int]) -> Iterator[TimedRow]
             call = partial(area_greedy.choose_first, shapes, SUBSET)
             seconds, subset = _time_quickest(call)
             yield _row(CHOOSING, size, len(subset), seconds)
+        if size <= THESIS_SCANS:
+            # as it is written it takes minutes for more
+            seconds, rows = _time_call(partial(order_literally, shapes))
+            yield _row(LITERAL, size, len(rows), seconds)
+
+
+def order_literally(polygons: Array) -> list[int]:
+    """Return the rows of polygons (n,) as algorithm 1 of the thesis orders them, step by step.
+
+    In every step the union of what was chosen with every scan that is left is made, and that of
+    most area taken. What `area_greedy` does in less time; here it is only timed.
+    """
+    order: list[int] = []
+    left = list(range(len(polygons)))
+    union = shapely.Polygon()
+    while left:
+        unions = shapely.union(union, polygons[left])
+        best = int(np.argmax(shapely.area(unions)))
+        union = unions[best]
+        order.append(left.pop(best))
+    return order
+
+
+def time_merging(walls: Columns, settings: MergeSettings) -> Iterator[TimedRow]:
+    """Time merging the segments of all scans, of a half, a quarter and an eighth of them.
+
+    Parameters
+    ----------
+    walls : dict of str to (n,) array
+        The columns of `schemas.WALLS`.
+    settings : merging.MergeSettings
+
+    Yields
+    ------
+    TimedRow
+        `size` is the number of segments, `found` that of the faces.
+    """
+    scan_ids = np.unique(walls["scan_id"])
+    for part in (part for part in _PARTS if part <= len(scan_ids)):
+        is_of_part = np.isin(walls["scan_id"], scan_ids[::part])
+        segments = {name: values[is_of_part] for name, values in walls.items()}
+        seconds, faces = _time_quickest(partial(merge_segments, segments, settings))
+        yield _row(MERGING, int(is_of_part.sum()), len(faces), seconds)
 
 
 def time_clusters(
+    task: str,
     store: tables.ScanStore,
     scan_ids: IntArray | Sequence[int],
     numbers: Iterable[int],
@@ -138,6 +185,8 @@ def time_clusters(
 
     Parameters
     ----------
+    task : str
+        Its name in the table.
     store : tables.ScanStore
     scan_ids : (n,) int
     numbers : iterable of int
@@ -155,7 +204,7 @@ def time_clusters(
     for number in numbers:
         call = partial(_order_hulls, scans, n_clusters=number, **sampling)
         seconds, order = _time_quickest(call)
-        yield _row(BUILDING, number, len(order), seconds)
+        yield _row(task, number, len(order), seconds)
 
 
 def _row(task: str, size: int, found: int, seconds: float, item: int = 0) -> TimedRow:

@@ -5,10 +5,11 @@ Here the tenth of a survey's scans nearest to a place are taken 1, 5 or 20 times
 once. Each time the clusters of its hulls are drawn anew, so that no two are the same to the order.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+import pandas as pd
 
 from scanplan.lab.evaluation import face_cells, visible_faces
 from scanplan.lab.evaluation.truth_file import TrueFaces
@@ -19,7 +20,6 @@ from scanplan.types import Array, BoolArray, Columns, FloatArray, IntArray
 REPEATS = (1, 5, 20)  # from even sampling to a rover that stands still for some seconds
 CROWD_SHARE = 0.1  # of all scans: a place, not half of the survey
 N_CROWDS = 3  # places: one alone may be where nothing is to be seen
-N_DRAWS = 200  # random orders: their mean is right to a tenth of their spread
 RANDOM, AREA = "random", "cluster_hull"
 
 
@@ -71,9 +71,11 @@ def unevenness_columns(
     crowd_rows: Sequence[IntArray],
     *,
     n_selected: int,
-    seed: int,
 ) -> Columns:
     """Measure how much true wall the first scans see, by a random order and by cluster hulls.
+
+    Of random orders it is what is to be expected: a cell of the walls is not seen where all scans
+    drawn are among those that do not see it.
 
     Parameters
     ----------
@@ -86,12 +88,11 @@ def unevenness_columns(
         less one.
     crowd_rows : sequence of (k,) int
     n_selected : int
-    seed : int
 
     Returns
     -------
     dict of str to numpy.ndarray
-        The columns of `schemas.UNEVENNESS`; by cluster hulls there is one draw.
+        The columns of `schemas.UNEVENNESS`.
     """
     rows = []
     for crowd, members in enumerate(crowd_rows):
@@ -99,43 +100,41 @@ def unevenness_columns(
             scans = np.concatenate([np.arange(len(seen)), np.repeat(members, repeats - 1)])
             further = [repeated[row][: repeats - 1] for row in members]
             shapes = np.concatenate([polygons, *further])
-            by_area = [scans[area_greedy.choose_first(shapes, n_selected)]]
-            at_random = _random_subsets(scans, n_selected, [seed, crowd, repeats])
-            for order, subsets in ((AREA, by_area), (RANDOM, at_random)):
-                lengths_m = _seen_lengths_m(seen, length_m, subsets)
-                rows += [(order, crowd, repeats, draw, m) for draw, m in enumerate(lengths_m)]
-    names = ("order", "crowd", "repeats", "draw", "seen_m")
+            by_area = scans[area_greedy.choose_first(shapes, n_selected)]
+            seen_m = {
+                AREA: length_m[seen[by_area].any(axis=0)].sum(),
+                RANDOM: length_m @ _chance_seen(seen[scans], n_selected),
+            }
+            rows += [(order, crowd, repeats, float(m)) for order, m in seen_m.items()]
+    names = ("order", "crowd", "repeats", "seen_m")
     return dict(zip(names, map(np.array, zip(*sorted(rows), strict=True)), strict=True))
 
 
-def lost_shares(columns: Columns, order: str) -> tuple[float, FloatArray]:
+def lost_shares(table: pd.DataFrame) -> tuple[pd.Series, pd.DataFrame]:
     """Return the mean length seen with every scan taken once, and the shares lost with repeats.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        `schemas.UNEVENNESS`.
 
     Returns
     -------
-    even_m : float
-    lost : (r,) float64
-        With each of `REPEATS`; NaN where nothing is seen.
+    even_m : pandas.Series
+        By order.
+    lost : pandas.DataFrame
+        By repeats and order; NaN where nothing is seen.
     """
-    seen_m = []
-    for repeats in REPEATS:
-        rows = (columns["order"] == order) & (columns["repeats"] == repeats)
-        seen_m.append(columns["seen_m"][rows].mean())
-    even_m = seen_m[0]
-    if even_m <= 0:
-        return even_m, np.full(len(REPEATS), np.nan)
-    return even_m, 1 - np.array(seen_m) / even_m
+    seen_m = table.pivot_table(index="repeats", columns="order", values="seen_m")
+    even_m = seen_m.iloc[0]
+    return even_m, 1 - seen_m / even_m.where(even_m > 0)
 
 
-def _random_subsets(scans: IntArray, n_selected: int, seed: Sequence[int]) -> list[IntArray]:
-    """Return the first scans of random orders of all that was taken."""
-    rng = np.random.default_rng(seed)
-    size = min(n_selected, len(scans))
-    return [rng.choice(scans, size, replace=False) for _ in range(N_DRAWS)]
-
-
-def _seen_lengths_m(
-    seen: BoolArray, length_m: FloatArray, subsets: Iterable[IntArray]
-) -> list[float]:
-    """Return the true length that each subset of scans sees."""
-    return [float(length_m[seen[rows].any(axis=0)].sum()) for rows in subsets]
+def _chance_seen(seen: BoolArray, n_selected: int) -> FloatArray:
+    """Return how likely each cell is seen by so many of the scans (n, c), drawn at random."""
+    n_scans = len(seen)
+    n_blind = n_scans - seen.sum(axis=0)
+    drawn = np.arange(min(n_selected, n_scans))
+    # one after the other: the next one, too, is one of the blind that are left
+    blind = np.maximum(n_blind[:, None] - drawn, 0) / (n_scans - drawn)
+    return 1 - blind.prod(axis=1)
