@@ -10,7 +10,7 @@ from scanplan.lab.thesis import coverage
 from scanplan.selection import hulls
 from scanplan.stage import log
 from scanplan.store import registered_scans, schemas, tables
-from scanplan.types import FilePath
+from scanplan.types import FilePath, Settings
 
 
 def measure_coverage(
@@ -23,8 +23,7 @@ def measure_coverage(
     areas: FilePath,
     *,
     n_clusters: Sequence[int],
-    sample_size: int,
-    seed: int,
+    sampling: Settings,
     max_range_m: float,
     threads: int = 1,
 ) -> None:
@@ -39,15 +38,13 @@ def measure_coverage(
     clusters, areas : path-like
         thesis/clusters.parquet and thesis/areas.parquet, to write.
     n_clusters : sequence of int
-    sample_size, seed : int
-        See `hulls.make_cluster_hulls`.
+    sampling : dict
+        `sample_size`, `radius` and `seed` of `hulls.make_cluster_hulls`.
     max_range_m : float
         How far a scan can see.
     threads : int
     """
-    growth = coverage.cluster_growth_columns(
-        scans, n_clusters, sample_size=sample_size, seed=seed, threads=threads
-    )
+    growth = coverage.cluster_growth_columns(scans, n_clusters, threads=threads, **sampling)
     tables.write_table(clusters, schemas.CLUSTERS, growth)
     registered = registered_scans.read_registered_scans(registration)
     poses = truth_file.read_true_poses(true_poses)
@@ -80,8 +77,7 @@ if __name__ == "__main__":
             snakemake.output.clusters,
             snakemake.output.areas,
             n_clusters=snakemake.params.n_clusters,
-            sample_size=snakemake.params.hulls["sample_size"],
-            seed=snakemake.params.hulls["seed"],
+            sampling=snakemake.params.hulls,
             max_range_m=snakemake.params.max_range_m,
             threads=snakemake.threads,
         )

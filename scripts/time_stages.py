@@ -41,7 +41,7 @@ def time_stages(
     walls : dict of str to dict
         Extractor to its settings, among others.
     hulls : dict
-        `sample_size` and `seed` of `hulls.make_cluster_hulls`.
+        `sample_size`, `radius` and `seed` of `hulls.make_cluster_hulls`.
     n_clusters : sequence of int
     timed_scans : int
         On how many scans, spread over the survey; clusters and thinned scans on a part of these.

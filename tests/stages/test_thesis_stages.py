@@ -28,7 +28,7 @@ from tabulate_steps import tabulate_steps
 from time_stages import time_stages
 from write_thesis import write_thesis
 
-SAMPLING = {"sample_size": 200, "seed": 0}
+SAMPLING = {"sample_size": 200, "radius": "least_distance", "seed": 0}
 EXTRACTORS = ("cluster_ransac", "iterative_ransac")
 
 
@@ -64,7 +64,7 @@ def coverage(folder):
     inputs = [folder / name for name in ("scans.parquet", "hulls.parquet", "registration.parquet")]
     inputs += [folder / name for name in ("truth.geojson", "truth_poses.tum")]
     outputs = folder / "clusters.parquet", folder / "areas.parquet"
-    measure_coverage(*inputs, *outputs, n_clusters=[6, 1], max_range_m=100.0, **SAMPLING)
+    measure_coverage(*inputs, *outputs, n_clusters=[6, 1], sampling=SAMPLING, max_range_m=100.0)
     return outputs
 
 

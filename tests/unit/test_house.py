@@ -37,7 +37,7 @@ HOMES = {
     "matplotlib": ("exports/", "report/", "lab/"),
     "snakemake": (),
     "pandas": (),
-    "sklearn": (),
+    "sklearn": ("selection/hulls.py",),
 }
 """Library to the files and folders of the package that may import it."""
 

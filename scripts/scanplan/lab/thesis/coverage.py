@@ -1,6 +1,7 @@
 """The floor area that scans cover: by their clusters' hulls, and as they truly see it."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import shapely
@@ -18,9 +19,8 @@ def cluster_growth_columns(
     scans_path: FilePath,
     n_clusters: Sequence[int],
     *,
-    sample_size: int,
-    seed: int,
     threads: int = 1,
+    **sampling: Any,
 ) -> Columns:
     """Return how the covered area grows with every number of clusters (thesis, figure 5.7).
 
@@ -30,9 +30,9 @@ def cluster_growth_columns(
         scans.parquet.
     n_clusters : sequence of int
         The numbers of clusters to compare, in any order.
-    sample_size, seed : int
-        See `hulls.make_cluster_hulls`.
     threads : int
+    **sampling
+        See `hulls.make_cluster_hulls`.
 
     Returns
     -------
@@ -48,8 +48,7 @@ def cluster_growth_columns(
             label=f"measure_coverage, {number} clusters",
             threads=threads,
             n_clusters=number,
-            sample_size=sample_size,
-            seed=seed,
+            **sampling,
         )
         parts.append(_growth_columns(hulls.concatenate_hulls(scan_hulls), number))
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
