@@ -33,10 +33,11 @@ def build_hulls(
     tables.write_table(output, schemas.HULLS, columns)
     is_hull = columns["cluster"] != hulls.OUTLIERS
     area_m2 = columns["area_m2"][is_hull]
+    mean_m2 = area_m2.sum() / len(parts)
     outliers = columns["n_points"][~is_hull].sum() / columns["n_points"].sum()
     log.log_line(
         f"build_hulls: {len(parts):,} scans, {len(area_m2):,} hulls,"
-        f" {np.count_nonzero(area_m2 == 0):,} degenerate, {area_m2.sum() / len(parts):.1f} m2 a scan,"
+        f" {np.count_nonzero(area_m2 == 0):,} degenerate, {mean_m2:.1f} m2 a scan,"
         f" {outliers:.1%} of the points left out"
     )
 

@@ -2,15 +2,14 @@
 
 from collections.abc import Mapping, Sequence
 
-from scanplan.extraction.extractors import EXTRACTORS, Extractor
-from scanplan.lab.thesis import plain_ransac, timing
-from scanplan.lab.thesis.claim_measures import ITERATIVE, OURS, PLAIN, PLAIN_CLUSTERS
+from scanplan.extraction.extractors import EXTRACTORS
+from scanplan.lab.thesis import timing
+from scanplan.lab.thesis.claim_measures import PLAIN, PLAIN_CLUSTERS
 from scanplan.stage import log
 from scanplan.store import schemas, tables
 from scanplan.types import FilePath, Settings
 
-_PLAIN = Extractor(plain_ransac.PlainRansacSettings, plain_ransac.extract_plain)
-_EXTRACTORS = {PLAIN_CLUSTERS: (EXTRACTORS[OURS], OURS), PLAIN: (_PLAIN, ITERATIVE)}
+_EXTRACTORS = {PLAIN_CLUSTERS: "thesis_cluster_ransac", PLAIN: "thesis_iterative_ransac"}
 """Task to its extractor, and whose settings it has."""
 _CLUSTERED, _THINNED = 3, 8  # a call for every number of clusters, or of points, is long
 # a factor of about 1.4 apart: even steps of a power law
@@ -57,8 +56,8 @@ def time_stages(
         *timing.time_selection(columns, sizes),
         *timing.time_clusters(store, clustered_ids, sorted(n_clusters), **hulls),
     ]
-    for task, (extractor, name) in _EXTRACTORS.items():
-        settings = {**walls[name], **plain_ransac.LIFTED}
+    for task, name in _EXTRACTORS.items():
+        extractor, settings = EXTRACTORS[name], walls[name]
         times = timing.time_extractor(task, extractor, store, timed_ids, settings, registration)
         rows += log.report_progress(times, f"time_stages {task}", total=len(timed_ids))
         rows += timing.time_by_points(task, extractor, store, thinned_ids, settings, registration)
