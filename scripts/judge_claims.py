@@ -15,6 +15,7 @@ _SCHEMAS = {
     "areas": schemas.AREAS,
     "unevenness": schemas.UNEVENNESS,
     "times": schemas.TIMES,
+    "candidates": schemas.CANDIDATES,
     "poses": schemas.POSE_ERRORS,
     "steps": schemas.STEPS,
 }
