@@ -14,6 +14,7 @@ def build_hulls(
     *,
     n_clusters: int,
     sample_size: int,
+    radius: str,
     seed: int,
     threads: int,
 ) -> None:
@@ -25,15 +26,19 @@ def build_hulls(
         threads=threads,
         n_clusters=n_clusters,
         sample_size=sample_size,
+        radius=radius,
         seed=seed,
     )
     columns = hulls.concatenate_hulls(parts)
     tables.write_table(output, schemas.HULLS, columns)
-    n_degenerate = np.count_nonzero(columns["area_m2"] == 0)
-    mean_m2 = columns["area_m2"].sum() / len(parts)
+    is_hull = columns["cluster"] != hulls.OUTLIERS
+    area_m2 = columns["area_m2"][is_hull]
+    mean_m2 = area_m2.sum() / len(parts)
+    outliers = columns["n_points"][~is_hull].sum() / columns["n_points"].sum()
     log.log_line(
-        f"build_hulls: {len(parts):,} scans, {len(columns['cluster']):,} hulls,"
-        f" {n_degenerate:,} degenerate, {mean_m2:.1f} m2 a scan"
+        f"build_hulls: {len(parts):,} scans, {len(area_m2):,} hulls,"
+        f" {np.count_nonzero(area_m2 == 0):,} degenerate, {mean_m2:.1f} m2 a scan,"
+        f" {outliers:.1%} of the points left out"
     )
 
 

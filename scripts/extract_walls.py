@@ -5,8 +5,12 @@ from collections.abc import Mapping
 
 from scanplan.errors import StageError
 from scanplan.extraction import map_tilt, segments
-from scanplan.extraction.extractors import EXTRACTORS, find_wall_segments, select_settings
-from scanplan.extraction.furniture import FurnitureLimits
+from scanplan.extraction.extractors import (
+    EXTRACTORS,
+    find_wall_segments,
+    select_limits,
+    select_settings,
+)
 from scanplan.stage import log
 from scanplan.stage.per_registered_scan import sensor_keywords
 from scanplan.stage.per_scan import map_scans
@@ -34,7 +38,8 @@ def extract_walls(
     extractor : str
         A key of `EXTRACTORS`.
     settings : dict
-        Of that extractor's class of settings, and of `furniture.FurnitureLimits`.
+        Of that extractor's class of settings; of `furniture.FurnitureLimits`, too, where it drops
+        furniture.
     threads : int
     """
     started = time.perf_counter()
@@ -54,7 +59,7 @@ def extract_walls(
         planar=store.planar,
         extractor=method,
         settings=select_settings(method.settings, settings),
-        limits=select_settings(FurnitureLimits, settings),
+        limits=select_limits(method, settings),
     )
     if not store.planar:
         _warn_of_tilt(store, sensors)

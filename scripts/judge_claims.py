@@ -18,6 +18,7 @@ _SCHEMAS = {
     "unevenness": schemas.UNEVENNESS,
     "premises": schemas.PREMISES,
     "times": schemas.TIMES,
+    "candidates": schemas.CANDIDATES,
     "poses": schemas.POSE_ERRORS,
     "steps": schemas.STEPS,
 }

@@ -40,7 +40,8 @@ def measure_coverage(
     n_clusters : sequence of int
         The numbers of clusters to compare.
     sampling : dict
-        `n_clusters`, `sample_size` and `seed` of `hulls.make_cluster_hulls`, as for `built`.
+        `n_clusters`, `sample_size`, `radius` and `seed` of `hulls.make_cluster_hulls`, as for
+        `built`.
     max_range_m : float
         How far a scan can see.
     threads : int

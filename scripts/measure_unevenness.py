@@ -31,7 +31,7 @@ def measure_unevenness(
     output : path-like
         thesis/unevenness.parquet, to write.
     sampling : dict
-        `n_clusters`, `sample_size` and `seed` of `hulls.make_cluster_hulls`.
+        `n_clusters`, `sample_size`, `radius` and `seed` of `hulls.make_cluster_hulls`.
     max_range_m : float
         How far a scan can see.
     n_selected : int
@@ -68,7 +68,6 @@ def measure_unevenness(
 
 if __name__ == "__main__":
     with log.log_to_file(snakemake.log[0]):
-        names = ("n_clusters", "sample_size", "seed")
         measure_unevenness(
             snakemake.input.scans,
             snakemake.input.hulls,
@@ -76,7 +75,7 @@ if __name__ == "__main__":
             snakemake.input.truth,
             snakemake.input.true_poses,
             snakemake.output.unevenness,
-            sampling={name: snakemake.params.hulls[name] for name in names},
+            sampling=snakemake.params.hulls,
             max_range_m=snakemake.params.max_range_m,
             n_selected=snakemake.params.n_selected,
         )

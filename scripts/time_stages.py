@@ -4,12 +4,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from scanplan.extraction.extractors import EXTRACTORS, Extractor
-from scanplan.lab.thesis import plain_ransac, timing
+from scanplan.extraction.extractors import EXTRACTORS
+from scanplan.lab.thesis import timing
 from scanplan.lab.thesis.claim_measures import (
     BUILDING,
-    ITERATIVE,
-    OURS,
     PLAIN,
     PLAIN_CLUSTERS,
     SAMPLED,
@@ -20,8 +18,7 @@ from scanplan.stage import log
 from scanplan.store import schemas, tables
 from scanplan.types import FilePath, Settings
 
-_PLAIN = Extractor(plain_ransac.PlainRansacSettings, plain_ransac.extract_plain)
-_EXTRACTORS = {PLAIN_CLUSTERS: (EXTRACTORS[OURS], OURS), PLAIN: (_PLAIN, ITERATIVE)}
+_EXTRACTORS = {PLAIN_CLUSTERS: "thesis_cluster_ransac", PLAIN: "thesis_iterative_ransac"}
 """Task to its extractor, and whose settings it has."""
 _FEWER = 5  # times as few scans, where a call for every number of clusters or points is long
 
@@ -52,7 +49,7 @@ def time_stages(
     walls : dict of str to dict
         Extractor to its settings, among others.
     hulls : dict
-        `sample_size` and `seed` of `hulls.make_cluster_hulls`.
+        `sample_size`, `radius` and `seed` of `hulls.make_cluster_hulls`.
     n_clusters : sequence of int
     timed_scans : int
         On how many scans, spread over the survey; clusters and thinned scans on a part of these.
@@ -77,8 +74,8 @@ def time_stages(
             tables.read_table(segments, schemas.WALLS, allow_empty=True), MergeSettings(**merge)
         ),
     ]
-    for task, (extractor, name) in _EXTRACTORS.items():
-        settings = {**walls[name], **plain_ransac.LIFTED}
+    for task, name in _EXTRACTORS.items():
+        extractor, settings = EXTRACTORS[name], walls[name]
         times = timing.time_extractor(task, extractor, store, timed_ids, settings, registration)
         rows += log.report_progress(times, f"time_stages {task}", total=len(timed_ids))
         rows += timing.time_by_points(task, extractor, store, few_ids, settings, registration)

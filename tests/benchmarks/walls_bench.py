@@ -12,8 +12,12 @@ import wall_scans
 
 from reference import cluster_ransac as literal_clusters
 from scanplan.extraction import normals
-from scanplan.extraction.extractors import EXTRACTORS, find_wall_segments, select_settings
-from scanplan.extraction.furniture import FurnitureLimits
+from scanplan.extraction.extractors import (
+    EXTRACTORS,
+    find_wall_segments,
+    select_limits,
+    select_settings,
+)
 from scanplan.project.stage_settings import select_extractors
 from scanplan.rays import sensor_frame
 from scanplan.types import FloatArray, IntArray, Settings
@@ -191,7 +195,7 @@ def _keywords(name: str, settings: Settings) -> dict[str, Any]:
         "planar": False,
         "extractor": EXTRACTORS[name],
         "settings": select_settings(EXTRACTORS[name].settings, settings[name]),
-        "limits": select_settings(FurnitureLimits, settings[name]),
+        "limits": select_limits(EXTRACTORS[name], settings[name]),
     }
 
 

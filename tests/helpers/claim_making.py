@@ -114,6 +114,18 @@ def steps(*n_scans):
     })  # fmt: skip
 
 
+def candidates(near_walls):
+    """Columns of the candidates of two walls in one scan, by lines within 1 cm and 5 cm."""
+    return {
+        "model": np.array(["line", "line"]),
+        "inlier_m": np.array([0.01, 0.05]),
+        "scan_id": np.array([0, 0]),
+        "candidates": np.array([40, 40]),
+        "near_walls": np.array(near_walls),
+        "walls": np.array([2, 2]),
+    }
+
+
 def rooms(**changes):
     """All tables of a survey of the rooms."""
     return {
@@ -146,6 +158,7 @@ def drive(**changes):
     """All tables of a drive."""
     return {
         "drive_walls": evaluation(),
+        "drive_candidates": candidates([1, 3]),
         "drive_times": times(
             plain_clusters=((100, 200, 300), (0.03, 0.031, 0.03)),
             plain_ransac=((100, 200, 300), (0.05, 0.1, 0.15)),

@@ -6,10 +6,14 @@ from helpers import toy_rooms
 from scanplan.extraction.extractors import EXTRACTORS, find_wall_segments, select_settings
 from scanplan.extraction.furniture import FurnitureLimits
 
+_CLUSTERS = {"reach_deg": 3.5, "bandwidth_m": 0.3, "projection": "normal"}
+_THESIS = {"max_tilt_deg": 15.0, "model": "line", "max_trials": 50}
 SETTINGS = {
     "cluster_ransac": toy_rooms.LIMITS
     | {"reach_deg": 3.5, "max_tilt_deg": 15.0, "bandwidth_m": 0.3, "trials": 64},
     "iterative_ransac": toy_rooms.LIMITS | {"max_tilt_deg": 15.0, "trials": 200, "max_planes": 20},
+    "thesis_cluster_ransac": toy_rooms.LIMITS | _CLUSTERS | _THESIS,
+    "thesis_iterative_ransac": toy_rooms.LIMITS | _THESIS,
 }
 LIMITS = FurnitureLimits(**toy_rooms.FURNITURE)
 
@@ -24,7 +28,7 @@ def extract(name, xyz_m, sensor_xyz_m=toy_rooms.SENSOR, *, planar=False, limits=
         planar=planar,
         extractor=method,
         settings=select_settings(method.settings, SETTINGS[name] | more),
-        limits=limits,
+        limits=limits if method.drops_furniture else None,
     )
 
 

@@ -3,24 +3,46 @@
 Slow, and easy to check against the page.
 """
 
+import numpy as np
 import shapely
 from sklearn.cluster import KMeans
 
 TIE_M2 = 1e-6
 
 
-def cluster_and_hull(scans, n_clusters, seed=0):
+def cluster_and_hull(scans, n_clusters, radius="least_distance", seed=0):
     """Algorithm 2: the convex hulls of every scan's clusters; KMeans sees all points.
 
     The tests need the optimum and not a local one, hence the ten starts.
     """
     all_hulls = []
     for xy_m in scans:
-        label = KMeans(n_clusters, n_init=10, random_state=seed).fit_predict(xy_m)
-        all_hulls.append(
-            [shapely.MultiPoint(xy_m[label == c]).convex_hull for c in range(n_clusters)]
-        )
+        centres = KMeans(n_clusters, n_init=10, random_state=seed).fit(xy_m).cluster_centers_
+        clusters = select_points(xy_m, centres, radius)
+        all_hulls.append([shapely.MultiPoint(cluster).convex_hull for cluster in clusters])
     return all_hulls
+
+
+def select_points(xy_m, centres, radius):
+    """Section 3.3.2: the points around each centre, by the minimum distance between all centres."""
+    apart = {
+        (i, j): np.linalg.norm(a - b)
+        for i, a in enumerate(centres)
+        for j, b in enumerate(centres)
+        if i != j
+    }
+    clusters = [[] for _ in centres]
+    for p in xy_m:
+        own = min(range(len(centres)), key=lambda i: np.linalg.norm(p - centres[i]))
+        if radius == "least_distance":
+            reach = min(apart.values())
+        elif radius == "nearest_centre":
+            reach = min(apart[own, j] for j in range(len(centres)) if j != own)
+        else:
+            reach = np.inf
+        if np.linalg.norm(p - centres[own]) <= reach:
+            clusters[own].append(p)
+    return clusters
 
 
 def hull_selection(polygons, k=None):

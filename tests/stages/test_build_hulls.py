@@ -8,7 +8,7 @@ import build_hulls
 from scanplan.errors import StageError
 from scanplan.store import schemas, tables
 
-SETTINGS = {"n_clusters": 5, "sample_size": 50, "seed": 0}
+SETTINGS = {"n_clusters": 5, "sample_size": 50, "radius": "least_distance", "seed": 0}
 
 
 @pytest.fixture

@@ -23,6 +23,20 @@ SETTINGS = {
         "max_planes": 12,
     },
 }
+# no gap, height or furniture is asked for
+_LIMITS = {
+    key: toy_rooms.LIMITS[key] for key in ("inlier_m", "min_points", "min_points_planar", "seed")
+}
+_RANSAC = {**_LIMITS, "max_tilt_deg": 15.0, "model": "plane", "max_trials": 50}
+THESIS = {
+    "thesis_cluster_ransac": {
+        **_RANSAC,
+        "reach_deg": 3.5,
+        "bandwidth_m": 0.3,
+        "projection": "normal",
+    },
+    "thesis_iterative_ransac": _RANSAC,
+}
 SENSORS = {0: (2.0, 1.6, 0.9), 5: (3.0, 2.0, 0.9), 15: (4.0, 2.4, 0.9)}
 
 
@@ -67,11 +81,12 @@ def test_walls_of_every_scan(survey, extractor, tmp_path):
             assert np.abs(offsets - expected).min() < 0.01
 
 
-@pytest.mark.parametrize("extractor", SETTINGS)
+@pytest.mark.parametrize("extractor", [*SETTINGS, *THESIS])
 def test_same_bytes_for_one_and_two_processes(extractor, tmp_path):
     survey = write_survey(tmp_path, planar=False)
     for threads in (1, 2):
-        options = {"extractor": extractor, "settings": SETTINGS[extractor], "threads": threads}
+        settings = (SETTINGS | THESIS)[extractor]
+        options = {"extractor": extractor, "settings": settings, "threads": threads}
         extract_walls.extract_walls(*survey, tmp_path / f"{threads}.parquet", **options)
     assert (tmp_path / "1.parquet").read_bytes() == (tmp_path / "2.parquet").read_bytes()
 

@@ -11,7 +11,7 @@ from scanplan.registration import results
 from scanplan.selection import area_greedy, bounds, hulls, streaming
 
 pytestmark = pytest.mark.recordings
-SETTINGS = {"n_clusters": 10, "sample_size": 500, "seed": 1}
+SETTINGS = {"n_clusters": 10, "sample_size": 500, "radius": "least_distance", "seed": 1}
 N_SCANS = 40
 
 

@@ -19,6 +19,7 @@ from helpers.evaluation_making import (
     write_walls,
 )
 from judge_claims import judge_claims
+from measure_candidates import measure_candidates
 from measure_coverage import measure_coverage
 from measure_premises import measure_premises
 from measure_unevenness import measure_unevenness
@@ -30,7 +31,7 @@ from tabulate_steps import tabulate_steps
 from time_stages import time_stages
 from write_thesis import write_thesis
 
-SAMPLING = {"sample_size": 200, "seed": 0}
+SAMPLING = {"sample_size": 200, "radius": "least_distance", "seed": 0}
 EXTRACTORS = ("cluster_ransac", "iterative_ransac")
 
 
@@ -157,8 +158,31 @@ def test_premises_are_measured_scan_by_scan_and_draw_by_draw(survey, tmp_path):
     assert (table.loc[table["premise"] == "walls found", "value"].dropna() >= 1 - 1e-9).all()
 
 
+def test_candidates_are_counted_by_model_and_band(survey, tmp_path):
+    inputs = [survey / name for name in ("scans.parquet", "registration.parquet", "truth.geojson")]
+    walls = stage_settings.select_extractor(SETTINGS, "thesis_iterative_ransac")
+    # a strip of 0.1 m of a wall 1 m high has about ten of its hundred points
+    walls |= {"max_trials": 1000, "min_points": 8}
+    found = []
+    for name in ("first", "second"):
+        output = tmp_path / f"{name}.parquet"
+        measure_candidates(*inputs, output, walls=walls, n_scans=2)
+        found.append(output.read_bytes())
+    assert found[0] == found[1]
+    columns = tables.read_table(output, schemas.CANDIDATES)
+    assert len(columns["model"]) == 2 * 3 * 2
+    # the room's four walls without noise: planes are these walls, however narrow the band
+    is_plane = columns["model"] == "plane"
+    assert (
+        columns["near_walls"][is_plane].tolist() == columns["walls"][is_plane].tolist() == [4] * 6
+    )
+    is_wide = ~is_plane & (columns["inlier_m"] == 0.05)
+    assert (columns["near_walls"][is_wide] > 2 * columns["walls"][is_wide]).all()
+
+
 def test_every_task_is_timed(survey, tmp_path):
-    walls = stage_settings.select_extractors(SETTINGS, ("cluster_ransac", "iterative_ransac"))
+    thesis = ("thesis_cluster_ransac", "thesis_iterative_ransac")
+    walls = stage_settings.select_extractors(SETTINGS, thesis)
     inputs = [survey / name for name in ("scans.parquet", "registration.parquet", "hulls.parquet")]
     inputs.append(survey / "walls/cluster_ransac.parquet")
     time_stages(

@@ -42,7 +42,7 @@ HOMES = {
     "matplotlib": ("exports/", "report/", "lab/", "stage/figure_files.py"),
     "snakemake": (),
     "pandas": ("lab/",),
-    "sklearn": (),
+    "sklearn": ("selection/hulls.py",),
 }
 """Library to the files and folders of the package that may import it."""
 

@@ -6,11 +6,12 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from reference import hull_selection
-from scanplan.selection import hulls
+from scanplan.selection import area_greedy, hulls
 from scanplan.store import schemas
 
 CORNERS = np.array([(0, 0), (2, 0), (2, 1), (0, 1)], float)
-SETTINGS = {"n_clusters": 4, "sample_size": 100, "seed": 3}
+SETTINGS = {"n_clusters": 4, "sample_size": 100, "radius": "least_distance", "seed": 3}
+ALL = {"radius": "none", "seed": 0}
 
 
 def geometries(rows):
@@ -32,7 +33,7 @@ def room(n=4000, seed=0):
 
 def test_one_cluster_is_the_hull_of_all_points():
     rows = hulls.make_cluster_hulls(
-        7, scan(np.vstack([CORNERS, [(1, 0.5)]])), n_clusters=1, sample_size=10, seed=0
+        7, scan(np.vstack([CORNERS, [(1, 0.5)]])), n_clusters=1, sample_size=10, **ALL
     )
     assert {name: rows[name].tolist() for name in ("scan_id", "cluster", "n_points")} == {
         "scan_id": [7],
@@ -45,25 +46,30 @@ def test_one_cluster_is_the_hull_of_all_points():
 
 def test_two_squares_apart_are_two_hulls():
     xy_m = np.vstack([CORNERS, CORNERS + np.array([50, 0])])
-    rows = hulls.make_cluster_hulls(0, scan(xy_m), n_clusters=2, sample_size=8, seed=0)
+    rows = hulls.make_cluster_hulls(0, scan(xy_m), n_clusters=2, sample_size=8, **ALL)
     assert rows["area_m2"].tolist() == [2.0, 2.0]
     assert shapely.union_all(geometries(rows)).equals(
         shapely.box(0, 0, 2, 1) | shapely.box(50, 0, 52, 1)
     )
 
 
-def test_same_hulls_as_algorithm_2_where_clusters_are_clear():
+@pytest.mark.parametrize("radius", hulls.RADII)
+def test_same_hulls_as_algorithm_2_where_clusters_are_clear(radius):
     rng = np.random.default_rng(5)
     xy_m = np.vstack([rng.normal((10 * i, 7 * (i % 2)), 0.5, (60, 2)) for i in range(5)])
-    expected = hull_selection.cluster_and_hull([xy_m], 5)[0]
-    rows = hulls.make_cluster_hulls(0, xy_m, n_clusters=5, sample_size=100, seed=0)
-    assert {g.normalize().wkb for g in geometries(rows)} == {g.normalize().wkb for g in expected}
+    # 15 m from the nearest centre, where the nearest two centres are 12.2 m apart
+    xy_m = np.vstack([xy_m, [(40, -15)]])
+    expected = hull_selection.cluster_and_hull([xy_m], 5, radius)[0]
+    rows = hulls.make_cluster_hulls(0, xy_m, n_clusters=5, sample_size=400, radius=radius, seed=0)
+    shapes = geometries(rows)[rows["cluster"] != hulls.OUTLIERS]
+    assert {g.normalize().wkb for g in shapes} == {g.normalize().wkb for g in expected}
+    assert (len(shapes) < len(rows["cluster"])) == (radius != "none")
 
 
 def test_covers_about_what_algorithm_2_does_on_a_room():
-    expected = sum(g.area for g in hull_selection.cluster_and_hull([room()], 8)[0])
+    expected = sum(g.area for g in hull_selection.cluster_and_hull([room()], 8, "none")[0])
     found = [
-        hulls.make_cluster_hulls(i, room(), n_clusters=8, sample_size=300, seed=0)["area_m2"].sum()
+        hulls.make_cluster_hulls(i, room(), n_clusters=8, sample_size=300, **ALL)["area_m2"].sum()
         for i in range(10)
     ]
     assert np.mean(found) == pytest.approx(expected, rel=0.25)
@@ -95,7 +101,7 @@ def test_depends_on_seed_and_scan_alone():
     ],
 )
 def test_degenerate_clusters_stay_without_area(xy_m, kinds):
-    rows = hulls.make_cluster_hulls(0, np.array(xy_m, float), n_clusters=2, sample_size=10, seed=0)
+    rows = hulls.make_cluster_hulls(0, np.array(xy_m, float), n_clusters=2, sample_size=10, **ALL)
     assert sorted(g.geom_type for g in geometries(rows)) == kinds
     assert rows["area_m2"].tolist() == [0.0] * len(kinds)
     assert rows["n_points"].sum() == len(xy_m)
@@ -104,24 +110,28 @@ def test_degenerate_clusters_stay_without_area(xy_m, kinds):
 
 
 def test_more_clusters_than_points_gives_one_each():
-    rows = hulls.make_cluster_hulls(0, scan(CORNERS), n_clusters=10, sample_size=100, seed=0)
+    rows = hulls.make_cluster_hulls(0, scan(CORNERS), n_clusters=10, sample_size=100, **ALL)
     assert rows["n_points"].tolist() == [1, 1, 1, 1]
     assert shapely.union_all(geometries(rows)).convex_hull.equals(shapely.box(0, 0, 2, 1))
 
 
-@settings(max_examples=150, deadline=None)
-@given(
-    hnp.arrays(
-        float, st.tuples(st.integers(1, 60), st.just(2)), elements=st.floats(-50, 50, width=32)
-    ),
-    st.integers(1, 12),
-    st.integers(1, 40),
+scans_of_points = hnp.arrays(
+    float, st.tuples(st.integers(1, 60), st.just(2)), elements=st.floats(-50, 50, width=32)
 )
-def test_every_point_is_in_its_hull_and_the_whole_is_the_hull_of_all(xy_m, n_clusters, sample_size):
-    rows = hulls.make_cluster_hulls(0, xy_m, n_clusters=n_clusters, sample_size=sample_size, seed=1)
-    shapes = geometries(rows)
+
+
+@settings(max_examples=150, deadline=None)
+@given(scans_of_points, st.integers(1, 12), st.integers(1, 40), st.sampled_from(hulls.RADII))
+def test_every_point_is_in_its_hull_and_the_whole_is_the_hull_of_all(
+    xy_m, n_clusters, sample_size, radius
+):
+    rows = hulls.make_cluster_hulls(
+        0, xy_m, n_clusters=n_clusters, sample_size=sample_size, radius=radius, seed=1
+    )
+    shapes, is_cluster = geometries(rows), rows["cluster"] != hulls.OUTLIERS
     assert rows["n_points"].sum() == len(xy_m)
-    assert 1 <= len(shapes) <= n_clusters
+    assert is_cluster.sum() <= n_clusters and (~is_cluster).sum() <= (radius != "none")
+    assert rows["cluster"][is_cluster].tolist() == list(range(is_cluster.sum()))
     assert (rows["n_points"] > 0).all()
     points = shapely.points(xy_m)
     assert np.all([shapely.dwithin(shapes, p, 1e-12).any() for p in points])
@@ -131,9 +141,42 @@ def test_every_point_is_in_its_hull_and_the_whole_is_the_hull_of_all(xy_m, n_clu
         .convex_hull.normalize()
         .equals_exact(whole.normalize(), 0)
     )
-    area_m2 = shapely.union_all(shapes).area
+    area_m2 = hulls.scan_polygons(rows)[1][0].area
     assert area_m2 <= whole.area * (1 + 1e-9) + 1e-12
-    assert area_m2 <= rows["area_m2"].sum() + 1e-9
+    assert area_m2 <= rows["area_m2"][is_cluster].sum() + 1e-9
+    assert hulls.scan_full_hulls(rows)[1][0].area == pytest.approx(whole.area)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(scans_of_points, min_size=1, max_size=6), st.integers(1, 5))
+def test_the_order_without_outliers_is_that_of_algorithm_1(scans, n_clusters):
+    columns = hulls.concatenate_hulls(
+        [
+            hulls.make_cluster_hulls(i, xy_m, **{**SETTINGS, "n_clusters": n_clusters})
+            for i, xy_m in enumerate(scans)
+        ]
+    )
+    _, polygons = hulls.scan_polygons(columns)
+    order, covered_m2 = hull_selection.hull_selection(list(polygons))
+    found = area_greedy.order_by_area(polygons)
+    assert found.order.tolist() == order
+    assert found.covered == pytest.approx(covered_m2, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("radius", "n_points"),
+    [("none", [2, 2, 3]), ("nearest_centre", [1, 2, 2, 2]), ("least_distance", [3, 2, 2])],
+)
+def test_how_far_a_cluster_reaches(radius, n_points, monkeypatch):
+    # centres at 0, 4 and 20: the nearest others are 4, 4 and 16 m away; of the third cluster's
+    # points, two are 2 m and one 17 m from it
+    centres = np.array([(0, 0), (4, 0), (20, 0)], float)
+    xy_m = np.array([(0, 0), (1, 0), (4, 0), (5, 0), (20, 2), (20, -2), (37, 0)], float)
+    if radius == "least_distance":
+        xy_m[4:6, 1] *= 2.5
+    monkeypatch.setattr(hulls, "_find_centres", lambda *_: centres - xy_m.mean(axis=0))
+    rows = hulls.make_cluster_hulls(0, xy_m, n_clusters=3, sample_size=9, radius=radius, seed=0)
+    assert rows["n_points"].tolist() == n_points
 
 
 def test_far_from_the_origin_the_clusters_are_the_same():
@@ -180,7 +223,14 @@ def test_refuses_what_is_no_scan(xyz_m):
 
 
 @pytest.mark.parametrize(
-    "wrong", [{"n_clusters": 0}, {"n_clusters": 40_000}, {"sample_size": 0}, {"seed": -1}]
+    "wrong",
+    [
+        {"n_clusters": 0},
+        {"n_clusters": 40_000},
+        {"sample_size": 0},
+        {"seed": -1},
+        {"radius": "far"},
+    ],
 )
 def test_refuses_settings_out_of_range(wrong):
     with pytest.raises(ValueError):
@@ -227,9 +277,3 @@ def test_leaving_out_inner_points_leaves_the_hull(shape, shift_m):
         shapely.convex_hull(shapely.multipoints(xy_m))
     )
     assert shape not in ("disc", "triangle") or len(outer) < 0.6 * len(xy_m)
-
-
-def test_iterations_end_where_nothing_changes_and_keep_an_empty_centre():
-    sample = np.array([(0, 0), (0, 2), (10, 0), (10, 2)], float)
-    found = hulls._move_to_means(sample, np.array([(0, 0), (9, 9), (99, 99)], float))
-    assert found.tolist() == [[0, 1], [10, 1], [99, 99]]

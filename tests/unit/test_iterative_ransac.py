@@ -66,13 +66,15 @@ def test_rounds_are_limited():
 
 def test_the_same_lines_as_the_literal_algorithm():
     points = toy_rooms.laser(segments=toy_rooms.ROOM[:3], beams=240)
-    lines = literal.repeated(
+    rng = np.random.default_rng(1)
+    models = literal.repeated(
         (points - toy_rooms.SENSOR)[:, :2],
+        model="line",
         inlier_m=0.05,
         min_consensus=20,
-        rng=np.random.default_rng(1),
-        max_trials=60,
+        draw_samples=lambda n: literal.draw(n, 2, 60, rng),
     )
+    lines = [literal.normal_form(centre, direction) for centre, direction, _ in models]
     found = extract(points, planar=True)
     assert len(found) == len(lines) == 3
     for start_m, normal in zip(found.start_m, found.normal, strict=True):

@@ -244,7 +244,9 @@ def test_extraction():
     )
     assert values["fewer_walls", "walls a scan, cluster RANSAC"] == 5
     assert values["fewer_walls", "walls a scan, iterative RANSAC"] == 10
-    assert values["several_per_wall", "iterative RANSAC"] == pytest.approx(14 / 9)
+    assert values["several_per_wall", "iterative RANSAC of ours"] == pytest.approx(14 / 9)
+    assert values["several_per_wall", "lines, 10 mm"] == 0.5
+    assert values["several_per_wall", "lines, 50 mm"] == 1.5
     assert verdicts["fifteen_like_all"] == "no"
     swapped = made.times(
         plain_ransac=((100, 200, 300), (0.03, 0.03, 0.031)),
@@ -332,15 +334,12 @@ def test_the_time_for_the_thesiss_scans_is_that_of_no_other_number():
     assert np.isnan(drive(drive_times=few)[1]["selection_time", "to choose 15 of 90 scans"])
 
 
-def test_one_segment_and_a_few_more_per_wall_are_not_several():
-    walls = made.evaluation()
-    assert drive()[0]["several_per_wall"] == "yes"
-    for count, holds in ((1.49, "no"), (1.51, "yes"), (np.nan, "")):
-        # of all scans alone, not of the first of the orders
-        walls["walls_per_true_wall_of_a_scan"] = np.where(
-            walls["k"] == 270, count, 2.0 if holds == "no" else 1.0
-        )
-        assert drive(drive_walls=walls)[0]["several_per_wall"] == holds
+def test_one_candidate_and_a_few_more_per_wall_are_not_several():
+    for near_walls, holds in (([9, 3], "yes"), ([9, 2], "no")):
+        found = made.candidates(near_walls)
+        assert drive(drive_candidates=found)[0]["several_per_wall"] == holds
+    nothing = made.candidates([0, 0]) | {"walls": np.array([0, 0])}
+    assert drive(drive_candidates=nothing)[0]["several_per_wall"] == ""
 
 
 @pytest.mark.parametrize(

@@ -27,7 +27,7 @@ def built(n):
     rng = np.random.default_rng(0)
     parts = [
         hulls.make_cluster_hulls(
-            i, rng.normal((i, 0), 1, (50, 2)), n_clusters=2, sample_size=20, seed=0
+            i, rng.normal((i, 0), 1, (50, 2)), n_clusters=2, sample_size=20, radius="none", seed=0
         )
         for i in range(n)
     ]
@@ -116,5 +116,9 @@ def test_hulls_are_timed_for_every_number_of_clusters(tmp_path):
         for scan_id in (0, 3, 9):
             write(scan_id, rng.normal(0, 1, (60, 3)))
     store = tables.ScanStore(tmp_path / "scans.parquet")
-    rows = list(timing.time_clusters("build_hulls", store, [0, 9], [1, 4], sample_size=30, seed=0))
+    rows = list(
+        timing.time_clusters(
+            "build_hulls", store, [0, 9], [1, 4], sample_size=30, radius="none", seed=0
+        )
+    )
     assert [(row["size"], row["found"]) for row in rows] == [(1, 2), (4, 2)]

@@ -19,6 +19,7 @@ ROOM = np.array([0] * 10 + [1, 2])
 SEEN = ROOM[:, None] == np.arange(3)
 LENGTH_M = np.array([10.0, 20.0, 30.0])
 POLYGONS = np.array([shapely.box(4 * room, 0, 4 * room + 1 + room, 1) for room in ROOM])
+SAMPLING = {"n_clusters": 4, "sample_size": 50, "radius": "least_distance", "seed": 1}
 
 
 def measured(crowd, n_selected=2):
@@ -83,9 +84,9 @@ def test_a_crowd_is_of_neighbours():
 
 def test_no_two_times_that_a_scan_was_taken_are_the_same_to_the_order():
     points = np.random.default_rng(0).normal(0, 1, (300, 3))
-    found = unevenness.copy_hulls(5, points, n_copies=3, n_clusters=4, sample_size=50, seed=1)
+    found = unevenness.copy_hulls(5, points, n_copies=3, **SAMPLING)
     assert len(set(shapely.area(found).round(9))) == 3
-    again = unevenness.copy_hulls(5, points, n_copies=3, n_clusters=4, sample_size=50, seed=1)
+    again = unevenness.copy_hulls(5, points, n_copies=3, **SAMPLING)
     assert shapely.equals(found, again).all()
 
 

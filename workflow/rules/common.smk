@@ -215,11 +215,25 @@ def all_selections(wildcards):
     ]
 
 
+def compared_extractors(name):
+    """Extractors that a dataset's evaluation compares: ours, and that of its plan."""
+    chosen = DATASETS[name].settings["plan"]["extractor"]
+    return [e for e in EXTRACTORS if e == chosen or not e.startswith("thesis_")]
+
+
 def all_walls(wildcards):
-    """Walls by all extractors of one dataset."""
+    """Walls by all compared extractors of one dataset."""
     return [
         f"results/{wildcards.dataset}/walls/{extractor}.parquet"
-        for extractor in EXTRACTORS
+        for extractor in compared_extractors(wildcards.dataset)
+    ]
+
+
+def extraction_times(wildcards):
+    """Run times of all compared extractors of one dataset."""
+    return [
+        f"benchmarks/{wildcards.dataset}/extract_walls_{extractor}.tsv"
+        for extractor in compared_extractors(wildcards.dataset)
     ]
 
 
@@ -235,7 +249,7 @@ def all_settings(wildcards):
 
 def results_of(name):
     """Everything the workflow makes of one dataset."""
-    return list_results(DATASETS[name], METHODS, EXTRACTORS)
+    return list_results(DATASETS[name], METHODS, compared_extractors(name))
 
 
 def all_results():

@@ -33,10 +33,7 @@ rule tabulate_seconds:
         ordering=expand(
             "benchmarks/{{dataset}}/order_scans_{method}.tsv", method=METHODS
         ),
-        extraction=expand(
-            "benchmarks/{{dataset}}/extract_walls_{extractor}.tsv",
-            extractor=EXTRACTORS,
-        ),
+        extraction=extraction_times,
         code=code_of("tabulate_seconds"),
     output:
         seconds="results/{dataset}/evaluation/seconds.parquet",

@@ -15,6 +15,7 @@ ROOMS_TABLES = {
 }
 DRIVE_TABLES = {
     "walls": "evaluation/walls",
+    "candidates": "thesis/candidates",
     "times": "thesis/times",
     "poses": "evaluation/poses",
     "steps": "thesis/steps",

@@ -115,6 +115,30 @@ rule time_stages:
         "../../scripts/time_stages.py"
 
 
+rule measure_candidates:
+    """Measure how many candidates RANSAC with removal of inliers finds for a wall."""
+    input:
+        scans="results/{dataset}/scans.parquet",
+        registration="results/{dataset}/registration.parquet",
+        truth=true_faces,
+        code=code_of("measure_candidates"),
+    output:
+        candidates="results/{dataset}/thesis/candidates.parquet",
+    log:
+        "logs/{dataset}/measure_candidates.log",
+    benchmark:
+        "benchmarks/{dataset}/measure_candidates.tsv"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=10,
+    params:
+        walls=setting(stage_settings.select_extractor, "thesis_iterative_ransac"),
+        n_scans=8,
+    script:
+        "../../scripts/measure_candidates.py"
+
+
 rule tabulate_steps:
     """Tabulate time, scans and data after each step."""
     input:

@@ -1,14 +1,20 @@
 """Wall segments of one scan: an extractor and the classifier of furniture, composed.
 
-The extractors by name stand here and nowhere else. The thesis's own are these with no classifier.
+The extractors by name stand here and nowhere else. The thesis's own go without the classifier.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from scanplan.extraction import cluster_ransac, furniture, iterative_ransac, segments
-from scanplan.extraction.segment_limits import Row, SegmentLimits
+from scanplan.extraction import (
+    cluster_ransac,
+    furniture,
+    iterative_ransac,
+    segments,
+    thesis_ransac,
+)
+from scanplan.extraction.segment_limits import ExtractorSettings, Row
 from scanplan.rays.ray_set import RaySet
 from scanplan.rays.sensor_frame import centre_on_sensor
 from scanplan.types import FloatArray, Settings
@@ -26,15 +32,18 @@ class Extractor:
     Attributes
     ----------
     settings : type
-        A class of settings, with those of `SegmentLimits`.
+        A class of settings, with those of `ExtractorSettings`.
     extract : callable
         Called with the scan's id, its points, its rays and the settings; returns rows of
-        `segments.cut_line`.
+        `segments.describe_run`.
+    drops_furniture : bool
+        Whether the classifier is asked which of its segments are walls.
     """
 
-    settings: type[SegmentLimits]
+    settings: type[ExtractorSettings]
     # the class of the last argument is that of `settings`
     extract: Callable[[int, FloatArray, RaySet | None, Any], list[Row]]
+    drops_furniture: bool = True
 
 
 EXTRACTORS: dict[str, Extractor] = {
@@ -44,12 +53,29 @@ EXTRACTORS: dict[str, Extractor] = {
     "iterative_ransac": Extractor(
         iterative_ransac.IterativeRansacSettings, iterative_ransac.extract_iteratively
     ),
+    "thesis_cluster_ransac": Extractor(
+        thesis_ransac.ThesisClusterSettings,
+        thesis_ransac.extract_of_clusters,
+        drops_furniture=False,
+    ),
+    "thesis_iterative_ransac": Extractor(
+        thesis_ransac.ThesisIterativeSettings,
+        thesis_ransac.extract_repeatedly,
+        drops_furniture=False,
+    ),
 }
 
 
 def select_settings(kind: type[_Class], settings: Settings) -> _Class:
     """Make a dataclass of settings from the values it has fields for, among more of them."""
     return kind(**{field.name: settings[field.name] for field in fields(kind)})
+
+
+def select_limits(extractor: Extractor, settings: Settings) -> furniture.FurnitureLimits | None:
+    """Return what furniture is, among more settings; None for an extractor that drops none."""
+    if not extractor.drops_furniture:
+        return None
+    return select_settings(furniture.FurnitureLimits, settings)
 
 
 def find_wall_segments(
@@ -59,7 +85,7 @@ def find_wall_segments(
     sensor_xyz_m: FloatArray,
     planar: bool,
     extractor: Extractor,
-    settings: SegmentLimits,
+    settings: ExtractorSettings,
     limits: furniture.FurnitureLimits | None = None,
 ) -> segments.WallSegments:
     """Extract the wall segments of one scan, without furniture.
@@ -74,7 +100,7 @@ def find_wall_segments(
     planar : bool
         Whether all points are in one horizontal plane.
     extractor : Extractor
-    settings : SegmentLimits
+    settings : ExtractorSettings
         Of the extractor's class.
     limits : furniture.FurnitureLimits, optional
         What furniture is; without them, it stays among the segments.

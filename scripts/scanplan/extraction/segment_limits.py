@@ -15,13 +15,37 @@ The values of a row of the table of walls, relative to the sensor.
 
 
 @dataclass(frozen=True, kw_only=True)
-class SegmentLimits:
-    """What a wall segment must be; the settings of both extractors begin with these.
+class ExtractorSettings:
+    """What the settings of every extractor begin with.
 
     Attributes
     ----------
     inlier_m : float
         Largest distance of a wall's point from its line.
+    min_points : int
+        Of a 3-D scan.
+    min_points_planar : int
+        Of a scan of a 2-D laser scanner.
+    seed : int
+        For the random draws; a scan's draws depend on it and on the `scan_id` alone.
+    """
+
+    inlier_m: float
+    min_points: int
+    min_points_planar: int
+    seed: int
+
+    def least_points(self, planar: bool) -> int:
+        """Return the fewest points of a segment."""
+        return self.min_points_planar if planar else self.min_points
+
+
+@dataclass(frozen=True, kw_only=True)
+class SegmentLimits(ExtractorSettings):
+    """What a wall segment must be, where lines are cut at gaps.
+
+    Attributes
+    ----------
     max_gap_m : float
         A longer part of the line without points ends the segment.
     min_length_m : float
@@ -32,24 +56,10 @@ class SegmentLimits:
         3-D scans alone.
     corner_m : float
         Strips of wall above furniture pause for no longer.
-    min_points : int
-        Of a 3-D scan.
-    min_points_planar : int
-        Of a scan of a 2-D laser scanner.
-    seed : int
-        For the random draws; a scan's draws depend on it and on the `scan_id` alone.
     """
 
-    inlier_m: float
     max_gap_m: float
     min_length_m: float
     min_height_m: float
     door_height_m: float
     corner_m: float
-    min_points: int
-    min_points_planar: int
-    seed: int
-
-    def least_points(self, planar: bool) -> int:
-        """Return the fewest points of a segment."""
-        return self.min_points_planar if planar else self.min_points

@@ -110,16 +110,28 @@ def cut_line(
         if last_m - first_m < limits.min_length_m:
             continue
         (inside,) = np.nonzero((first_m <= where_m) & (where_m <= last_m))
-        row = _describe_run(line, sign * offset_m, (first_m, last_m), every.take(inside, axis=0))
+        row = describe_run(line, sign * offset_m, (first_m, last_m), every.take(inside, axis=0))
         if scan is None or row[9] - row[8] >= limits.min_height_m:
             rows.append(row)
     return rows
 
 
-def _describe_run(
+def describe_run(
     line: Line, offset_m: float, run_m: tuple[float, float], inside: FloatArray
 ) -> Row:
-    """Return the row of a run, and of the points (n, 3) within it."""
+    """Return the row of a segment.
+
+    Parameters
+    ----------
+    line : lines.Line
+        Its normal is towards the sensor, which is the origin.
+    offset_m : float
+        Of the line, along that normal.
+    run_m : (float, float)
+        Where along the line the segment begins and ends.
+    inside : (n, 3) float
+        Its points.
+    """
     heights_m = np.sort(inside[:, 2])
     most = len(heights_m) - 1
     z_min_m, z_max_m = (heights_m[round(p / 100 * most)] for p in _HEIGHT_PERCENTILES)

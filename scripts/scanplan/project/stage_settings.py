@@ -33,6 +33,20 @@ _FURNITURE = (
     "door_width_m",
     "corner_m",
 )
+_THESIS_RANSAC = (
+    "inlier_m",
+    "min_points",
+    "min_points_planar",
+    "max_tilt_deg",
+    "seed",
+    "model",
+    "max_trials",
+)
+_THESIS = {
+    "thesis_iterative_ransac": _THESIS_RANSAC,
+    "thesis_cluster_ransac": (*_THESIS_RANSAC, "reach_deg", "bandwidth_m", "projection"),
+}
+"""What the thesis's extractors go by: no gap, furniture or height."""
 _POINTS_ONLY = ("min_range_m", "max_range_m", "deskew")
 _OF_THE_WORKFLOW = ("building", "recording")
 
@@ -103,7 +117,11 @@ def select_extractor(settings: Settings, extractor: str) -> Keywords:
         "furniture_height_m": building["furniture_height_m"],
         "seed": settings["seed"],
     }
-    return shared | measures | walls[extractor]
+    known = shared | measures
+    if extractor not in _THESIS:
+        return known | walls[extractor]
+    known |= walls["cluster_ransac"] | walls["thesis_ransac"]
+    return {name: known[name] for name in _THESIS[extractor]}
 
 
 def select_extractors(settings: Settings, extractors: Iterable[str]) -> dict[str, Keywords]:
@@ -121,7 +139,7 @@ def select_plan(settings: Settings) -> Keywords:
     gap = {"max_gap_m": walls["max_gap_m"]}
     low = {"door_height_m": round(building["door_height_m"] - _PLAN_BELOW_DOOR_M, 6)}
     thickness = {key: building[key] for key in ("min_thickness_m", "max_thickness_m")}
-    extractor = select_extractor(settings, plan["extractor"])
+    extractor = select_extractor(settings, "cluster_ransac")
     return {
         "merge": plan["merge"] | gap | {"corner_m": walls["corner_m"]},
         "trace": plan["trace"] | gap | low,

@@ -4,30 +4,39 @@ Thesis 3.3.2, algorithm 2.
 """
 
 from collections.abc import Sequence
+from functools import cache
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import shapely
 from scipy.cluster import vq
+from scipy.spatial import distance
 
 from scanplan.geometry.tolerances import SAME_M, SMALLEST_M2
 from scanplan.store import schemas
-from scanplan.types import Array, Columns, FloatArray, IntArray
+from scanplan.types import Array, BoolArray, Columns, FloatArray, IntArray
 
-_LLOYD_ITERATIONS = 20  # centres move by less than the sample's noise after that
+OUTLIERS = -1
+"""The cluster of points that are in none, as scikit-learn numbers it."""
+RADII = ("least_distance", "nearest_centre", "none")
+"""How far a cluster reaches: to the least distance of any two centres, to that of its own centre
+from the nearest other one, or without end."""
+
 _MOST_CLUSTERS = np.iinfo(np.int16).max  # labels are sorted as 16-bit numbers
 _MANY_POINTS = 50  # with fewer, dropping inner points takes longer than the hull of all
 
 
 def make_cluster_hulls(
-    scan_id: int, xyz_m: Array, *, n_clusters: int, sample_size: int, seed: int
+    scan_id: int, xyz_m: Array, *, n_clusters: int, sample_size: int, radius: str, seed: int
 ) -> dict[str, Array]:
     """Cluster one scan's points in plan view and draw one convex hull round each cluster.
 
-    Thesis, algorithm 2. KMeans runs on a random sample of the points; then every point joins its
-    nearest centre. The sample depends on `seed` and `scan_id` alone. A cluster of fewer than three
-    points, or of points on one line, stays as the Point or LineString it is, with area 0: the
-    convex hull of all rows is exactly that of all points.
+    Thesis, algorithm 2 and 3.3.2. KMeans runs on a random sample of the points; then every point
+    joins its nearest centre, if that is within the radius; the others are outliers. The sample
+    depends on `seed` and `scan_id` alone. A cluster of fewer than three points, or of points on one
+    line, stays as the Point or LineString it is, with area 0: the convex hull of all rows is
+    exactly that of all points.
 
     Parameters
     ----------
@@ -38,18 +47,21 @@ def make_cluster_hulls(
         Number of clusters. A sample with fewer distinct points makes one cluster of each.
     sample_size : int, >= 1
         Number of points that KMeans sees; all of them if the scan has fewer.
+    radius : str
+        One of `RADII`. The thesis: "points around each cluster are selected, based on the minimum
+        distance between all the cluster centers".
     seed : int, >= 0
 
     Returns
     -------
-    dict of str to (m,) numpy.ndarray, 1 <= m <= `n_clusters`
-        The scan's rows of `schemas.HULLS`.
+    dict of str to (m,) numpy.ndarray, 1 <= m <= `n_clusters` + 1
+        The scan's rows of `schemas.HULLS`; that of its outliers, if any, is of cluster `OUTLIERS`.
 
     Raises
     ------
     ValueError
-        If there are no points, a coordinate is not finite, or a number of clusters or points is out
-        of its range.
+        If there are no points, a coordinate is not finite, the radius is not known, or a number of
+        clusters or points is out of its range.
     """
     xy_m = _plan_view(xyz_m)
     if not 1 <= n_clusters <= _MOST_CLUSTERS or sample_size < 1:
@@ -62,13 +74,13 @@ def make_cluster_hulls(
     sample = xy_m[rng.choice(len(xy_m), n_sampled, replace=False, shuffle=False)]
     # relative to the mean, squared distances keep their digits far from the map's origin
     middle_m = sample.mean(axis=0)
-    centres = _find_centres(sample - middle_m, n_clusters, rng)
-    label, n_points = _assign_clusters(xy_m - middle_m, centres)
-    hulls = _convex_hulls(xy_m, label, len(n_points))
+    centres = _find_centres(sample - middle_m, n_clusters, int(rng.integers(2**31)))
+    label = _assign_clusters(xy_m - middle_m, centres, _reach_m(centres, radius))
+    cluster, hulls = _convex_hulls(xy_m, label)
     return {
         "scan_id": np.full(len(hulls), scan_id, np.int32),
-        "cluster": np.arange(len(hulls), dtype=np.int32),
-        "n_points": n_points.astype(np.int32),
+        "cluster": cluster,
+        "n_points": np.bincount(label - OUTLIERS)[cluster - OUTLIERS].astype(np.int32),
         "area_m2": shapely.area(hulls),
         "geometry": shapely.to_wkb(hulls, byte_order=1),
     }
@@ -80,12 +92,12 @@ def concatenate_hulls(parts: Sequence[Columns]) -> dict[str, Array]:
 
 
 def scan_polygons(columns: Columns) -> tuple[IntArray, Array]:
-    """Return each scan's polygon: the union of the hulls of its clusters.
+    """Return each scan's polygon: the union of the hulls of its clusters, without its outliers.
 
     Parameters
     ----------
     columns : dict of str to (n,) numpy.ndarray
-        `scan_id` (sorted) and `geometry` (WKB) of a table of hulls.
+        `scan_id` (sorted), `cluster` and `geometry` (WKB) of a table of hulls.
 
     Returns
     -------
@@ -93,15 +105,18 @@ def scan_polygons(columns: Columns) -> tuple[IntArray, Array]:
     polygons : (m,) numpy.ndarray of shapely Polygon or MultiPolygon
         Empty for a scan of degenerate clusters only.
     """
-    scan_ids, groups = _split_by_scan(columns)
+    scan_ids, groups = _split_by_scan(columns, columns["cluster"] != OUTLIERS)
     unions = [shapely.union_all(hulls[shapely.get_dimensions(hulls) == 2]) for hulls in groups]
     with_area = [union if union.area > 0 else shapely.Polygon() for union in unions]
     return scan_ids, np.array(with_area, object)
 
 
 def scan_full_hulls(columns: Columns) -> tuple[IntArray, Array]:
-    """Return each scan's one convex hull, the thesis's baseline; see `scan_polygons`."""
-    scan_ids, groups = _split_by_scan(columns)
+    """Return each scan's one convex hull of all its points, the thesis's baseline.
+
+    See `scan_polygons`.
+    """
+    scan_ids, groups = _split_by_scan(columns, np.ones(len(columns["cluster"]), bool))
     hulls = shapely.convex_hull(
         np.array([shapely.geometrycollections(hulls) for hulls in groups], object)
     )
@@ -119,7 +134,7 @@ def _plan_view(xyz_m: Array) -> FloatArray:
     return xy_m
 
 
-def _find_centres(sample: FloatArray, n_clusters: int, rng: np.random.Generator) -> FloatArray:
+def _find_centres(sample: FloatArray, n_clusters: int, seed: int) -> FloatArray:
     """Return the centres of KMeans of the sample (k, 2); its distinct points if these suffice."""
     rounded = SAME_M * np.round(sample / SAME_M)
     # to compare points by x is quick, and nearly always enough
@@ -127,68 +142,57 @@ def _find_centres(sample: FloatArray, n_clusters: int, rng: np.random.Generator)
         distinct = np.unique(rounded, axis=0)
         if len(distinct) <= n_clusters:
             return distinct
-    return _move_to_means(sample, _spread_centres(sample, n_clusters, rng))
+    make_kmeans, threads = _load_kmeans()
+    # sums that threads share out differ in their last digits
+    with threads.limit(limits=1):
+        found = make_kmeans(n_clusters, n_init=1, random_state=seed).fit(sample)
+    return found.cluster_centers_.round(_SAME_POINT_DECIMALS)
 
 
-def _move_to_means(sample: FloatArray, centres: FloatArray) -> FloatArray:
-    """Iterate after Lloyd until nothing changes; a centre that loses all its points stays."""
-    nearest = None
-    for _ in range(_LLOYD_ITERATIONS):
-        before = nearest
-        nearest, _ = vq.vq(sample, centres, check_finite=False)
-        if before is not None and np.array_equal(nearest, before):
-            break
-        n_points = np.bincount(nearest, minlength=len(centres))
-        sums = np.column_stack(
-            [np.bincount(nearest, axis, minlength=len(centres)) for axis in sample.T]
-        )
-        centres = np.where(n_points[:, None] > 0, sums / np.maximum(n_points, 1)[:, None], centres)
-    return centres
+@cache
+def _load_kmeans() -> tuple[Any, Any]:
+    """Return scikit-learn's KMeans, and what limits the threads of its libraries."""
+    # takes a second: only processes that cluster pay for it
+    from sklearn.cluster import KMeans
+    from threadpoolctl import ThreadpoolController
+
+    # looks all loaded libraries up, which takes longer than a scan's clusters
+    return KMeans, ThreadpoolController()
 
 
-def _spread_centres(sample: FloatArray, n_clusters: int, rng: np.random.Generator) -> FloatArray:
-    """Draw first centres far from each other: k-means++ with several candidates a step.
-
-    Each centre is drawn with probability proportional to the squared distance to those already
-    drawn; of a few such candidates the one that leaves the least distance is taken (Arthur and
-    Vassilvitskii 2007, sections 2.2 and 7).
-    """
-    n_candidates = 2 + int(np.log(n_clusters))
-    chosen = [int(rng.integers(len(sample)))]
-    left = _squared_distance(sample, sample[chosen])[0]
-    while len(chosen) < n_clusters:
-        cumulative = np.cumsum(left)
-        drawn = np.searchsorted(cumulative, rng.random(n_candidates) * cumulative[-1], side="right")
-        drawn = np.minimum(drawn, len(sample) - 1)
-        left_by = np.minimum(left, _squared_distance(sample, sample[drawn]))
-        best = int(left_by.sum(axis=1).argmin())
-        chosen.append(int(drawn[best]))
-        left = left_by[best]
-    return sample[chosen]
+def _reach_m(centres: FloatArray, radius: str) -> FloatArray:
+    """Return how far the cluster of each centre (k,) reaches; without end if there is no other."""
+    if radius not in RADII:
+        raise ValueError(f"radius {radius} must be one of {', '.join(RADII)}")
+    if radius == "none" or len(centres) < 2:
+        return np.full(len(centres), np.inf)
+    apart_m = distance.squareform(distance.pdist(centres))
+    np.fill_diagonal(apart_m, np.inf)
+    nearest_m = apart_m.min(axis=0)
+    return np.full(len(centres), nearest_m.min()) if radius == "least_distance" else nearest_m
 
 
-def _squared_distance(xy_m: FloatArray, to_m: FloatArray) -> FloatArray:
-    """Return squared distances (m, n) of points (n, 2) to points (m, 2)."""
-    return (xy_m[:, 0] - to_m[:, :1]) ** 2 + (xy_m[:, 1] - to_m[:, 1:]) ** 2
-
-
-def _assign_clusters(xy_m: FloatArray, centres: FloatArray) -> tuple[IntArray, IntArray]:
-    """Return each point's nearest centre, numbered without gaps, and how many points each has."""
+def _assign_clusters(xy_m: FloatArray, centres: FloatArray, reach_m: FloatArray) -> IntArray:
+    """Return each point's nearest centre, numbered without gaps, or `OUTLIERS`."""
     # neither a matrix product nor threads: the same labels for any core count
-    nearest, _ = vq.vq(xy_m, centres, check_finite=False)
-    n_points = np.bincount(nearest, minlength=len(centres))
-    return (np.cumsum(n_points > 0) - 1)[nearest], n_points[n_points > 0]
+    nearest, distance_m = vq.vq(xy_m, centres, check_finite=False)
+    is_in = distance_m <= reach_m[nearest]
+    has_points = np.bincount(nearest[is_in], minlength=len(centres)) > 0
+    return np.where(is_in, (np.cumsum(has_points) - 1)[nearest], OUTLIERS)
 
 
-def _convex_hulls(xy_m: FloatArray, label: IntArray, n_clusters: int) -> Array:
-    """Return one convex hull per label, of the line through its outer points."""
+def _convex_hulls(xy_m: FloatArray, label: IntArray) -> tuple[IntArray, Array]:
+    """Return the labels (m,) that occur, rising, and the convex hull of the points of each."""
+    n_points = np.bincount(label - OUTLIERS)
+    (occurring,) = np.nonzero(n_points)
     # sorting 16-bit numbers is linear; a line is much faster made than a MultiPoint
     by_label = np.argsort(label.astype(np.int16), kind="stable")
-    start = np.cumsum(np.bincount(label + 1, minlength=n_clusters + 1))
+    start = np.concatenate([[0], np.cumsum(n_points[occurring])])
     clusters = [_outer(xy_m.take(by_label[a:b], axis=0)) for a, b in pairwise(start)]
-    indices = np.repeat(np.arange(n_clusters), [len(points) for points in clusters])
+    indices = np.repeat(np.arange(len(clusters)), [len(points) for points in clusters])
     lines = shapely.linestrings(np.concatenate(clusters), indices=indices)
-    return np.asarray(shapely.normalize(shapely.convex_hull(lines)))
+    hulls = np.asarray(shapely.normalize(shapely.convex_hull(lines)))
+    return (occurring + OUTLIERS).astype(np.int32), hulls
 
 
 def _outer(xy_m: FloatArray) -> FloatArray:
@@ -217,7 +221,8 @@ def _outer(xy_m: FloatArray) -> FloatArray:
     return np.concatenate([xy_m[outer], xy_m[:1]])
 
 
-def _split_by_scan(columns: Columns) -> tuple[IntArray, list[Array]]:
-    """Return the scans (m,) and the geometries of each."""
+def _split_by_scan(columns: Columns, is_taken: BoolArray) -> tuple[IntArray, list[Array]]:
+    """Return the scans (m,), and of each the geometries of the rows (n,) that are taken."""
     scan_ids, start = np.unique(columns["scan_id"], return_index=True)
-    return scan_ids, np.split(shapely.from_wkb(columns["geometry"]), start)[1:]
+    shapes = shapely.from_wkb(columns["geometry"][is_taken])
+    return scan_ids, np.split(shapes, np.concatenate([[0], np.cumsum(is_taken)])[start])[1:]

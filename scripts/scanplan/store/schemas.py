@@ -395,6 +395,20 @@ TIMES = Schema(
     },
     ("task", "size", "item"),
 )
+CANDIDATES = Schema(
+    "candidates",
+    1,
+    {
+        "model": "string",
+        "inlier_m": "float64",
+        "scan_id": "int32",
+        "candidates": "int32",
+        "near_walls": "int32",
+        "walls": "int32",
+    },
+    ("model", "inlier_m", "scan_id"),
+)
+"""Walls that RANSAC finds in a scan, those near true faces, and how many faces these are."""
 STEPS = Schema(
     "steps",
     1,

@@ -201,6 +201,12 @@ def match_segments(
     )
 
 
+def find_main_faces(lines_m: FloatArray, faces_m: FloatArray) -> IntArray:
+    """Return the true face (s,) that most of each line lies near to, at `JUDGED`; -1 if none."""
+    near = length_metrics.find_near_intervals(lines_m, faces_m, WITHIN_M[JUDGED])
+    return _main_face(near, len(lines_m))
+
+
 def cells_found_by_scan(found: CellRuns, scan: IntArray, shape: tuple[int, int]) -> BoolArray:
     """Return which cells the segments of each scan find.
 

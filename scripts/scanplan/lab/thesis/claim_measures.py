@@ -18,7 +18,7 @@ FOUR = ("cluster_hull", "hull", "random", "sequential")
 """The orders that the thesis compares."""
 OURS, ITERATIVE = "cluster_ransac", "iterative_ransac"
 PLAIN, PLAIN_CLUSTERS = "plain_ransac", "plain_clusters"
-"""Iterative and cluster RANSAC as the thesis describes them, see `plain_ransac`."""
+"""Iterative and cluster RANSAC as the thesis describes them, see `extraction.thesis_ransac`."""
 FOUND, CORRECT = "visible_completeness_010m", "visible_correctness_010m"
 ENTERED = "entered_completeness_010m"
 CHOOSING, ORDERING, LITERAL = "choose_scans", "order_scans", "order_scans_literally"

@@ -42,14 +42,21 @@ _PLAIN_NAMES = {PLAIN_CLUSTERS: _NAMES[OURS], PLAIN: _NAMES[ITERATIVE]}
 
 
 def several_per_wall(tables: Tables) -> ClaimMeasure:
-    """Count segments per true wall and scan, over every scan of the drive."""
+    """Count the candidates of RANSAC per true wall and scan, and our segments."""
+    found = tables["drive_candidates"]
+    values = {}
+    for model in np.unique(found["model"]):
+        for inlier_m in np.unique(found["inlier_m"]):
+            rows = (found["model"] == model) & (found["inlier_m"] == inlier_m)
+            n_walls = found["walls"][rows].sum()
+            count = found["near_walls"][rows].sum() / n_walls if n_walls else np.nan
+            values[f"{model}s, {1e3 * inlier_m:.0f} mm"] = count
+    claimed = values[f"lines, {1e3 * found['inlier_m'].max():.0f} mm"]
     column = "walls_per_true_wall_of_a_scan"
-    counts = {
-        extractor: measure_at(tables["drive_walls"], "sequential", extractor, np.inf, column)
-        for extractor in (ITERATIVE, OURS)
-    }
-    values = of_unit({_NAMES[extractor]: count for extractor, count in counts.items()}, NUMBER)
-    return ClaimMeasure(values, counts[ITERATIVE] - SEVERAL)
+    for extractor in (ITERATIVE, OURS):
+        count = measure_at(tables["drive_walls"], "sequential", extractor, np.inf, column)
+        values[f"{_NAMES[extractor]} of ours"] = count
+    return ClaimMeasure(of_unit(values, NUMBER), claimed - SEVERAL)
 
 
 def fewer_walls(tables: Tables) -> ClaimMeasure:
