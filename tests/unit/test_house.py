@@ -201,7 +201,6 @@ def figures():
     return house_figures.count_house(ROOT)
 
 
-@pytest.mark.xfail(strict=True, reason="587 today: most stand in exports, plan and buildings")
 def test_numeric_constants_are_few(figures):
     assert figures.numeric_constants <= 300
 

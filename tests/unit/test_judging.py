@@ -335,7 +335,7 @@ def test_the_time_for_the_thesiss_scans_is_that_of_no_other_number():
 
 
 def test_one_candidate_and_a_few_more_per_wall_are_not_several():
-    for near_walls, holds in (([9, 3], "yes"), ([9, 2], "no")):
+    for near_walls, holds in (([9, 4], "yes"), ([9, 3], "no")):
         found = made.candidates(near_walls)
         assert drive(drive_candidates=found)[0]["several_per_wall"] == holds
     nothing = made.candidates([0, 0]) | {"walls": np.array([0, 0])}

@@ -146,7 +146,7 @@ def _find_centres(sample: FloatArray, n_clusters: int, seed: int) -> FloatArray:
     # sums that threads share out differ in their last digits
     with threads.limit(limits=1):
         found = make_kmeans(n_clusters, n_init=1, random_state=seed).fit(sample)
-    return found.cluster_centers_.round(_SAME_POINT_DECIMALS)
+    return SAME_M * np.round(found.cluster_centers_ / SAME_M)
 
 
 @cache
