@@ -232,9 +232,9 @@ CLAIMS = (
         "several_per_wall",
         "5.3",
         "Iterative RANSAC finds several candidates for each wall of one scan.",
-        f"more than {SEVERAL} candidates per true wall and scan, mean over eight scans of the drive,"
-        " by lines in space within 50 mm. With planes, the band decides: five, two and one standard"
-        f" deviation of a range's noise. {_PLAIN}",
+        f"more than {SEVERAL} candidates per true wall and scan, mean over eight scans of the"
+        " drive, by lines in space within 50 mm. With planes, the band decides: five, two and one"
+        f" standard deviation of a range's noise. {_PLAIN}",
         otherwise="The recording's: lines find {lines, 50 mm} candidates a wall.",
     ),
     Claim(
