@@ -7,12 +7,14 @@ import numpy as np
 import small_gicp
 
 from scanplan.geometry import se3, twists
-from scanplan.registration import planar_icp, prepared_clouds
+from scanplan.registration import planar_icp, point_icp, prepared_clouds
 from scanplan.registration.prepared_clouds import PreparedCloud
 from scanplan.types import FloatArray
 
-METHODS = {"gicp": "GICP", "point_to_plane": "PLANE_ICP", "point_to_point": "ICP"}
-"""Names of the methods in space, and what small_gicp calls them."""
+POINT_TO_POINT = "point_to_point"
+"""The thesis's method, as Open3D has it: all pairs count, and nothing is held."""
+_METHODS = {"gicp": "GICP", "point_to_plane": "PLANE_ICP"}
+"""Names of the other methods in space, and what small_gicp calls them."""
 _LEAST_SHARE = 0.005  # of the largest eigenvalue: a direction with less is not observable
 _LEAST_TURNED = 0.01  # of the points: fewer are badly known normals at edges
 # metres and radians: of a step this small less than half is left to go
@@ -54,7 +56,7 @@ def align_clouds(
     """Refine the motion from source to target by iterative closest point (thesis, 3.2.2 and 3.5).
 
     Directions that the pairs determine far worse than the others (along a corridor) keep the
-    start's value.
+    start's value, but for point to point.
 
     Parameters
     ----------
@@ -69,6 +71,8 @@ def align_clouds(
     max_iterations : int
         Of each of these.
     """
+    if method == POINT_TO_POINT and not target.planar:
+        return _align_by_points(source, target, target_from_source, distances_m, max_iterations)
     motion = target_from_source
     information = np.zeros((6, 6))
     for distance_m in distances_m:
@@ -86,6 +90,25 @@ def align_clouds(
         motion, information = aligned
     reach_m = float(np.sqrt(np.mean(source.xyz_m**2) * 3))
     return _keep_unobservable(target_from_source, motion, information, reach_m)
+
+
+def _align_by_points(
+    source: PreparedCloud,
+    target: PreparedCloud,
+    start: FloatArray,
+    distances_m: Sequence[float],
+    max_iterations: int,
+) -> IcpResult:
+    motion = start
+    information = np.zeros((6, 6))
+    for distance_m in distances_m:
+        aligned = point_icp.align_points(
+            source.xyz_m, target.xyz_m, motion, distance_m, max_iterations
+        )
+        if aligned is None:
+            return _unsound(start)
+        motion, information = aligned
+    return IcpResult(motion, information / planar_icp.PAIR_SIGMA_M**2, 0, sound=True)
 
 
 def _unsound(start: FloatArray) -> IcpResult:
@@ -126,7 +149,7 @@ def _align_spatial(
         source.features,
         target.tree,
         init_T_target_source=start,
-        registration_type=METHODS[method],
+        registration_type=_METHODS[method],
         max_correspondence_distance=distance_m,
         max_iterations=max_iterations,
         rotation_epsilon=step_done,
