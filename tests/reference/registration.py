@@ -55,11 +55,20 @@ def register(
 
 
 def register_by_frames(
-    scans, poses, *, keep_every, distance_m, min_prior_fitness, min_refined_fitness, n_previous=5
+    scans,
+    poses,
+    *,
+    keep_every,
+    distance_m,
+    icp_distance_m,
+    min_prior_fitness,
+    min_refined_fitness,
+    n_previous=5,
 ):
     """Steps 2 to 6 with the previous frames, retained or not, in two passes.
 
-    The parameters are those of `register`. The first frame has none before it and is retained.
+    The parameters are those of `register`; pairs of the ICP are nearer than `icp_distance_m`. The
+    first frame has none before it and is retained.
 
     Returns
     -------
@@ -83,7 +92,7 @@ def register_by_frames(
         if row == 0:
             retained[index] = np.array(poses[index])
             continue
-        result = _align(frames[row], frames[row - 1], distance_m)
+        result = _align(frames[row], frames[row - 1], icp_distance_m)
         frames[row].transform(result.transformation)
         before = frames[max(0, row - n_previous) : row]
         if _mean_fitness(frames[row], before, distance_m) >= min_refined_fitness:

@@ -34,6 +34,13 @@ class _CloudMessage(NamedTuple):
     message: BagMessage
 
 
+class SurveyTopics(NamedTuple):
+    """What a survey is made of: the clouds, and everything that places their sensor."""
+
+    cloud: topics.Topic
+    small: list[topics.Topic]
+
+
 class BagSurvey:
     """The recordings of one survey in the order of their start.
 
@@ -105,6 +112,22 @@ class BagSurvey:
         if scan.time_raw is None:
             return None
         return scan.time_raw[clouds.is_in_range(scan.xyz_m, **self._limits)]
+
+    @property
+    def bags(self) -> list[Bag]:
+        """The recordings, in the order of their start."""
+        return self._bags
+
+    @property
+    def sensor_frame(self) -> str:
+        """The frame of the clouds."""
+        return self._index.sensor_frame
+
+    def list_topics(self) -> SurveyTopics:
+        """Return the topics of the clouds, and of poses, transforms and odometry."""
+        transforms = [t for t in self._topics if t.msgtype in topics.TRANSFORMS]
+        small = {t.name: t for t in (self._pose_source, *transforms, *self._odometry)}
+        return SurveyTopics(self._cloud, list(small.values()))
 
     def stamps(self) -> IntArray:
         """Return the header stamps of all clouds, (n,) int64, in scan_id order."""

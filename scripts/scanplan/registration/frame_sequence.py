@@ -5,17 +5,15 @@ one here: the first gate goes by the localiser's poses alone, the second by scan
 """
 
 from collections import deque
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from scanplan.errors import StageError
-from scanplan.registration import constraints, icp, prepared_clouds
+from scanplan.registration import constraints, icp
 from scanplan.registration.constraints import PlacedScan, PoseConstraint
 from scanplan.registration.registration_settings import SequentialSettings
 from scanplan.registration.sequential import ScanRegistrar, ScanResult
-from scanplan.types import FilePath, FloatArray
+from scanplan.types import FloatArray
 
 
 @dataclass
@@ -53,7 +51,9 @@ class FrameRegistrar(ScanRegistrar):
         figures = (prior_fitness, fitness, rmse_m)
         if fitness < self.settings.min_refined_fitness:
             return ScanResult(False, "low_refined_fitness", prior, *figures), []
-        return ScanResult(True, "kept", moved.world_from_cloud @ level_from_sensor, *figures), [edge]
+        return ScanResult(True, "kept", moved.world_from_cloud @ level_from_sensor, *figures), [
+            edge
+        ]
 
 
 def _align_scan(
