@@ -32,6 +32,7 @@ include: "workflow/rules/evidence.smk"
 if THESIS:
 
     include: "workflow/rules/thesis.smk"
+    include: "workflow/rules/gates.smk"
 
 
 rule all:

@@ -52,6 +52,7 @@ def align_clouds(
     method: str,
     distances_m: Sequence[float],
     max_iterations: int,
+    n_points: int | None = None,
 ) -> IcpResult:
     """Refine the motion from source to target by iterative closest point (thesis, 3.2.2 and 3.5).
 
@@ -70,9 +71,13 @@ def align_clouds(
         Points farther apart are no pair: first for the rough, then for the fine alignment.
     max_iterations : int
         Of each of these.
+    n_points : int, optional
+        Point to point pairs about so many of the source's points, evenly chosen; all by default.
     """
     if method == POINT_TO_POINT and not target.planar:
-        return _align_by_points(source, target, target_from_source, distances_m, max_iterations)
+        step = prepared_clouds.probe_step(source, n_points)
+        points_m = source.xyz_m[::step]
+        return _align_by_points(points_m, target, target_from_source, distances_m, max_iterations)
     motion = target_from_source
     information = np.zeros((6, 6))
     for distance_m in distances_m:
@@ -93,7 +98,7 @@ def align_clouds(
 
 
 def _align_by_points(
-    source: PreparedCloud,
+    points_m: FloatArray,
     target: PreparedCloud,
     start: FloatArray,
     distances_m: Sequence[float],
@@ -103,7 +108,7 @@ def _align_by_points(
     information = np.zeros((6, 6))
     for distance_m in distances_m:
         aligned = point_icp.align_points(
-            source.xyz_m, target.xyz_m, motion, distance_m, max_iterations
+            points_m, target.xyz_m, motion, distance_m, max_iterations
         )
         if aligned is None:
             return _unsound(start)

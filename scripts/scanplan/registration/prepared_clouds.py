@@ -149,7 +149,7 @@ def measure_overlap(
     rmse_m : float
         Root mean square distance of those points to their neighbours; infinite if there are none.
     """
-    step = _probe_step(source, n_probes)
+    step = probe_step(source, n_probes)
     index, apart_m = _nearest_probes(source, target, target_from_source, step, distance_m)
     near = np.flatnonzero(apart_m < distance_m)
     if facing:
@@ -172,11 +172,12 @@ def measure_distances(
 
     The parameters are those of `measure_overlap`.
     """
-    step = _probe_step(source, n_probes)
+    step = probe_step(source, n_probes)
     return _nearest_probes(source, target, target_from_source, step)[1]
 
 
-def _probe_step(source: PreparedCloud, n_probes: int | None) -> int:
+def probe_step(source: PreparedCloud, n_probes: int | None) -> int:
+    """Return n: every n-th point is asked, so that they are about so many."""
     return 1 if n_probes is None else max(1, len(source.xyz_m) // n_probes)
 
 

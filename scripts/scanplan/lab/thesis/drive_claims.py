@@ -98,7 +98,7 @@ def fifteen_like_all(tables: Tables) -> ClaimMeasure:
 
 def two_percent_survive(tables: Tables) -> ClaimMeasure:
     """Count what registration with the thesis's limits retains."""
-    recorded, retained = tables["limits_steps"]["n_scans"][:2]
+    recorded, _, retained = tables["limits_steps"]["n_scans"][:3]
     share = retained / recorded
     values: Quantities = {"share retained": (share, SHARE), "scans retained": (retained, COUNT)}
     stated = stated_number("two_percent_survive", "share retained")
@@ -138,7 +138,7 @@ def localiser(tables: Tables) -> ClaimMeasure:
 
 def own_limits(tables: Tables) -> ClaimMeasure:
     """Count what registration with our limits retains."""
-    return ClaimMeasure({"scans": (tables["drive_steps"]["n_scans"][1], COUNT)})
+    return ClaimMeasure({"scans": (tables["drive_steps"]["n_scans"][2], COUNT)})
 
 
 def _seconds_at(times: Columns, task: str) -> float:

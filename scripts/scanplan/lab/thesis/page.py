@@ -11,9 +11,11 @@ from scanplan.lab.thesis.claim_measures import COUNT, NUMBER, SHARE
 from scanplan.lab.thesis.shown_figures import FIGURES, STEPS, Figure
 from scanplan.lab.thesis.stated_claims import CLAIMS, Claim
 from scanplan.report import templates
+from scanplan.store.schemas import NOT_WRITTEN
 from scanplan.types import Columns, FloatArray
 
 _UNKNOWN = "not measured"
+_WITH_NEXT = "with the next"
 
 
 @dataclass(frozen=True)
@@ -72,7 +74,7 @@ class ShownFigure:
 def thesis_page(
     sources: Mapping[str, str],
     figures: Mapping[str, str],
-    orders: str,
+    own_figures: Mapping[str, str],
     claims: Columns,
     steps: Columns,
     limited: Columns,
@@ -85,11 +87,11 @@ def thesis_page(
         File name to text of `thesis.html.j2` and of all that it asks for.
     figures : dict of str to str
         File name to SVG text, of all `FIGURES`.
-    orders : str
-        SVG text of the orders of ours beside the thesis's.
+    own_figures : dict of str to str
+        File name to SVG text, of the figures that the thesis has not.
     claims : dict of str to (n,) array
         The columns of `schemas.CLAIMS`.
-    steps, limited : dict of str to (4,) array
+    steps, limited : dict of str to (5,) array
         The columns of `schemas.STEPS`, with our limits of registration and with the thesis's.
 
     Returns
@@ -104,7 +106,10 @@ def thesis_page(
         stated=claim_rows(claims, [claim for claim in CLAIMS if not claim.criterion]),
         steps={"thesis": STEPS, "ours": _step_rows(steps), "limited": _step_rows(limited)},
         figures=[_shown_figure(figure, figures[figure.file], claims) for figure in FIGURES],
-        orders=_inline_svg(orders, "orders"),
+        own_figures={
+            file.removesuffix(".svg"): _inline_svg(svg, file.removesuffix(".svg"))
+            for file, svg in own_figures.items()
+        },
     )
 
 
@@ -225,11 +230,15 @@ def _step_rows(steps: Columns) -> list[tuple[str, str, str, str]]:
 
 
 def _format_seconds(seconds: float) -> str:
+    if not np.isfinite(seconds):
+        return _WITH_NEXT
     minutes, rest = divmod(round(seconds), 60)
     return f"{minutes} min {rest} s" if minutes else f"{seconds:.2g} s"
 
 
 def _format_bytes(n_bytes: int) -> str:
+    if n_bytes == NOT_WRITTEN:
+        return _WITH_NEXT
     for unit, factor, digits in (("GB", 1e9, 2), ("MB", 1e6, 1)):
         if n_bytes >= factor:
             return f"{n_bytes / factor:.{digits}f} {unit}"
