@@ -22,9 +22,7 @@ def draw_gates(
     survivors = gate_figures.draw_gates(tables.read_table(swept, schemas.GATES))
     atomic.write_text(gates_figure, drawing.format_svg(survivors))
     pairs = tables.read_table(alignments, schemas.ALIGNMENTS)
-    atomic.write_text(
-        alignments_figure, drawing.format_svg(gate_figures.draw_alignments(pairs))
-    )
+    atomic.write_text(alignments_figure, drawing.format_svg(gate_figures.draw_alignments(pairs)))
     log.log_line(f"draw_gates: 2 figures, {len(pairs['method'])} alignments")
 
 

@@ -168,7 +168,7 @@ def test_extraction():
     ("retained", "holds"), [(76, "yes"), (55, "yes"), (89, "yes"), (30, "no"), (700, "no")]
 )
 def test_two_percent(retained, holds):
-    verdicts, values = drive(limits_steps=made.steps(3600, retained))
+    verdicts, values = drive(limits_steps=made.steps(3600, 300, retained))
     assert verdicts["two_percent_survive"] == holds
     assert values["two_percent_survive", "share retained"] == retained / 3600
 

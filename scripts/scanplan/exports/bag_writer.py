@@ -90,7 +90,7 @@ class BagWriter:
         if is_ros2 == self.ros2:
             return raw
         if is_ros2:
-            return ROS1_STORE.cdr_to_ros1(raw, msgtype)
+            return _ROS2_STORE.cdr_to_ros1(raw, msgtype)
         return _ROS2_STORE.ros1_to_cdr(raw, msgtype)
 
 

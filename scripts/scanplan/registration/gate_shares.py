@@ -1,4 +1,4 @@
-"""What to say where the gates of algorithm 3 leave nothing: the share at each, and what would pass."""
+"""What to say where the gates of algorithm 3 leave nothing: shares, and what would pass."""
 
 from collections.abc import Sequence
 
@@ -26,7 +26,7 @@ def check_any_survives(
     limits: SequentialSettings,
     where: FilePath,
 ) -> None:
-    """Raise StageError if no frame but the first passes both gates, with a distance that some would.
+    """Raise StageError if no frame but the first passes both gates; name a distance for some.
 
     Parameters
     ----------

@@ -107,9 +107,7 @@ def _align_by_points(
     motion = start
     information = np.zeros((6, 6))
     for distance_m in distances_m:
-        aligned = point_icp.align_points(
-            points_m, target.xyz_m, motion, distance_m, max_iterations
-        )
+        aligned = point_icp.align_points(points_m, target.xyz_m, motion, distance_m, max_iterations)
         if aligned is None:
             return _unsound(start)
         motion, information = aligned

@@ -56,7 +56,7 @@ def align_points(
 
 
 def _point_information(xyz_m: FloatArray) -> FloatArray:
-    """Return the sum of J' J over points (n, 3), where a small twist moves each by J = [1, -[p]]."""
+    """Return the sum of J' J over points (n, 3) that a twist moves by J = [1, -[p]]."""
     n_points = len(xyz_m)
     x, y, z = xyz_m.sum(axis=0)
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])

@@ -414,7 +414,7 @@ ALIGNMENTS = Schema(
     },
     ("method", "distance_m", "source"),
 )
-"""Pairs of successive scans aligned from the truth: how far it takes them from there, and fitness."""
+"""Pairs of successive scans aligned from the truth: how far off they end, and with what fitness."""
 CLAIMS = Schema(
     "claims",
     2,

@@ -1,4 +1,4 @@
-"""Figures of algorithm 3's gates: what survives by the fitness distance, and what fitness rewards."""
+"""Figures of algorithm 3's gates: what survives them, and what fitness rewards."""
 
 import numpy as np
 from matplotlib.axes import Axes

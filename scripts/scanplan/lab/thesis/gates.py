@@ -20,7 +20,10 @@ BY_FRAMES, BY_RETAINED, BY_NEAR_PAIRS = "frames", "retained", "frames, pairs wit
 PAIRED_METHODS = ("point_to_point", "point_to_plane", "gicp")
 _DISTANCES_M = (0.4, 0.45, 0.5, 0.6, 0.8, 1.2)  # from next to none to most of the scans
 _ASKED_POINTS = 1500  # of a scan: its fitness is known to less than half a per cent
-_PAIR_DISTANCES_M = (0.1, 0.5)  # a few times the noise; the distance that fitness was assumed to have
+_PAIR_DISTANCES_M = (
+    0.1,
+    0.5,
+)  # as the preset has pairs; near the thesis's 2 %
 _MOST_PAIRS = 40  # of successive scans, over the whole drive
 # the reading by retained scans knows no new starts and no limit of a correction
 _WITHOUT_LIMITS = {
@@ -199,9 +202,7 @@ def _align_pair(
     return [row]
 
 
-def _fitness(
-    source: PlacedScan, target: PlacedScan, step: FloatArray, distance_m: float
-) -> float:
-    return prepared_clouds.measure_overlap(
-        source.cloud, target.cloud, step, distance_m=distance_m
-    )[0]
+def _fitness(source: PlacedScan, target: PlacedScan, step: FloatArray, distance_m: float) -> float:
+    return prepared_clouds.measure_overlap(source.cloud, target.cloud, step, distance_m=distance_m)[
+        0
+    ]
