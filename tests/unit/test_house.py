@@ -20,11 +20,17 @@ DRAWN = (ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8")
 HABITS = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 
 HOMES = {
-    "rosbags": ("recordings/bags.py", "recordings/typestores.py", "lab/simulation/"),
+    "rosbags": (
+        "recordings/bags.py",
+        "recordings/typestores.py",
+        "exports/bag_writer.py",
+        "lab/simulation/",
+    ),
     "pyarrow": ("store/tables.py", "store/parquet.py"),
     "open3d": (
         "extraction/iterative_ransac.py",
         "recordings/scan_folder.py",
+        "registration/point_icp.py",
         "lab/simulation/raycast.py",
     ),
     "small_gicp": ("registration/",),

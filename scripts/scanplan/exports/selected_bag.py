@@ -17,7 +17,7 @@ from scanplan.store import atomic
 from scanplan.types import FilePath, FloatArray, IntArray, Settings
 
 POSE_TOPIC = "/registered_pose"
-"""Where the recording has the registered poses of the chosen scans' sensor."""
+"""Where the recording has the registered poses: of the rover, like those of a localiser."""
 _POSE_TYPE = "geometry_msgs/msg/PoseStamped"
 
 StampedStream = tuple[tuple[str, ...], int]
@@ -46,9 +46,10 @@ def copy_selected_scans(
         The number of messages.
     """
     stamps_ns = survey.stamps()
-    poses = dict(zip(np.asarray(scan_ids).tolist(), map_from_sensor, strict=True))
+    base_from_sensor = survey.base_from_sensor(stamps_ns[scan_ids])
+    map_from_base = map_from_sensor @ se3.invert_pose(base_from_sensor)
+    poses = dict(zip(np.asarray(scan_ids).tolist(), map_from_base, strict=True))
     needed = find_needed_messages(survey, stamps_ns[scan_ids], _longest_sweep_ns(stamps_ns))
-    map_frame = survey.pose_edges()[0].parent or "map"
     n_messages = 0
     with (
         atomic.replace_file(path) as temporary,
@@ -57,7 +58,7 @@ def copy_selected_scans(
         for bag, message, scan_id in _iterate_messages(survey, poses, needed):
             if scan_id is not None:
                 stamp_ns = int(stamps_ns[scan_id])
-                pose = _make_pose(stamp_ns, map_frame, poses[scan_id])
+                pose = _make_pose(stamp_ns, survey.map_frame, poses[scan_id])
                 writer.write_message(message[1], POSE_TOPIC, _POSE_TYPE, pose)
                 n_messages += 1
             _copy_message(writer, bag, message)
@@ -79,14 +80,9 @@ def reading_settings(survey: BagSurvey, reading: Settings) -> dict[str, Any]:
     dict
         Of the sections input, poses, registration and selection.
     """
-    own_poses = {
-        "cloud_topic": survey.list_topics().cloud.name,
-        "pose_topic": POSE_TOPIC,
-        "base_frame": survey.sensor_frame,
-        "base_from_sensor": [0.0] * 6,
-    }
+    own_topics = {"cloud_topic": survey.list_topics().cloud.name, "pose_topic": POSE_TOPIC}
     return {
-        "input": {**reading, **own_poses},
+        "input": {**reading, **own_topics},
         "poses": {"keep_every": 1},
         "registration": {"icp_method": "none"},
         "selection": {"stop": {"n_scans": None, "area_share": None}},
@@ -186,10 +182,10 @@ def _copy_message(writer: BagWriter, bag: Bag, message: BagMessage) -> None:
     writer.write_raw(receive_ns, topic.name, topic.msgtype, data, is_latched=is_latched)
 
 
-def _make_pose(stamp_ns: int, frame: str, map_from_sensor: FloatArray) -> Any:
+def _make_pose(stamp_ns: int, frame: str, map_from_base: FloatArray) -> Any:
     """Return a `geometry_msgs/PoseStamped`."""
     kinds = ROS1_STORE.types
-    xyz_m, quat_xyzw = se3.split_pose(map_from_sensor[None])
+    xyz_m, quat_xyzw = se3.split_pose(map_from_base[None])
     stamp = kinds["builtin_interfaces/msg/Time"](sec=stamp_ns // 10**9, nanosec=stamp_ns % 10**9)
     return kinds[_POSE_TYPE](
         header=kinds["std_msgs/msg/Header"](seq=0, stamp=stamp, frame_id=frame),

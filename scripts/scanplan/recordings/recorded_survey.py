@@ -7,7 +7,14 @@ from typing import NamedTuple
 import numpy as np
 
 from scanplan.errors import StageError
-from scanplan.recordings import clouds, messages, pose_chain, small_messages, topics
+from scanplan.recordings import (
+    clouds,
+    frame_edges,
+    messages,
+    pose_chain,
+    small_messages,
+    topics,
+)
 from scanplan.recordings.bags import Bag, BagMessage
 from scanplan.recordings.extrinsics import configured_extrinsics
 from scanplan.recordings.frame_edges import FrameEdge
@@ -119,9 +126,14 @@ class BagSurvey:
         return self._bags
 
     @property
-    def sensor_frame(self) -> str:
-        """The frame of the clouds."""
-        return self._index.sensor_frame
+    def map_frame(self) -> str:
+        """The frame of the poses."""
+        return self.pose_edges()[0].parent
+
+    def base_from_sensor(self, t_ns: IntArray) -> FloatArray:
+        """Return the poses (n, 4, 4) of the sensor on what poses without a child frame are of."""
+        mounting = self._chains.of_mounting(self.map_frame)
+        return frame_edges.chain_poses(mounting, t_ns, max_gap_s=np.inf)[0]
 
     def list_topics(self) -> SurveyTopics:
         """Return the topics of the clouds, and of poses, transforms and odometry."""

@@ -19,7 +19,7 @@ BY_FRAMES, BY_RETAINED, BY_NEAR_PAIRS = "frames", "retained", "frames, pairs wit
 """The previous 5 frames; the previous 5 retained; the first with pairs as the preset has them."""
 PAIRED_METHODS = ("point_to_point", "point_to_plane", "gicp")
 _DISTANCES_M = (0.4, 0.45, 0.5, 0.6, 0.8, 1.2)  # from next to none to most of the scans
-_ASKED_POINTS = 1500  # of a scan: its fitness is known to less than half a per cent
+_ASKED_POINTS = 1000  # of a scan: its fitness is known to half a per cent
 _PAIR_DISTANCES_M = (
     0.1,
     0.5,
