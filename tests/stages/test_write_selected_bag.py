@@ -14,10 +14,12 @@ from interpolate_poses import interpolate_poses
 from register_scans import register_scans
 from scanplan.errors import StageError
 from scanplan.exports import selected_bag
+from scanplan.geometry import se3
 from scanplan.project import dataset_files
 from scanplan.project.settings import merge_settings
 from scanplan.project.stage_settings import select_section
 from scanplan.store import schemas, tables
+from scanplan.store.pose_columns import pose_matrices
 from write_selected_bag import write_selected_bag
 
 N_SCANS = 8
@@ -62,7 +64,7 @@ def record(folder, kind, planar=False):
             scan = maker.laser(t_ns, ranges_from(place), frame="lidar")
             entries.append(("/scan", t_ns + 1, scan))
         elif 0 <= i < N_SCANS:
-            cloud = maker.cloud(t_ns, seen_from(place + [0, 0, 0.5], i))
+            cloud = maker.cloud(t_ns, seen_from(place + np.array([0, 0, 0.5]), i))
             entries.append(("/points", t_ns + 1, cloud))
     maker.write(folder / "run", entries)
     return dataset_files.find_files(folder)
@@ -153,7 +155,8 @@ def test_it_has_the_registered_poses_and_what_tells_the_motion(tmp_path):
     poses = messages_of(output, selected_bag.POSE_TOPIC)
     places = [(p.pose.position.x, p.pose.position.y, p.pose.position.z) for _, p in poses]
     # the poses are of the rover, half a metre below the sensor
-    expected = np.column_stack([registered[name] for name in schemas.XYZ])[CHOSEN] - [0, 0, 0.5]
+    sensor_from_base = se3.pose_matrix([0, 0, -0.5], [0, 0, 0, 1])
+    expected = (pose_matrices(registered)[CHOSEN] @ sensor_from_base)[:, :3, 3]
     np.testing.assert_allclose(places, expected, atol=1e-12)
     stamps = [p.header.stamp.sec * 10**9 + p.header.stamp.nanosec for _, p in poses]
     assert stamps == [bag_making.START_NS + i * STEP_NS for i in CHOSEN]
