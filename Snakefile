@@ -22,6 +22,7 @@ include: "workflow/rules/hulls.smk"
 include: "workflow/rules/selection.smk"
 include: "workflow/rules/walls.smk"
 include: "workflow/rules/plan.smk"
+include: "workflow/rules/selectedbag.smk"
 include: "workflow/rules/evaluate.smk"
 include: "workflow/rules/reportinputs.smk"
 include: "workflow/rules/report.smk"
@@ -31,6 +32,7 @@ include: "workflow/rules/evidence.smk"
 if THESIS:
 
     include: "workflow/rules/thesis.smk"
+    include: "workflow/rules/gates.smk"
 
 
 rule all:

@@ -6,7 +6,7 @@ from typing import Any
 from scanplan.recordings.clouds import Scan
 from scanplan.recordings.motion import trajectory
 from scanplan.recordings.survey import open_survey
-from scanplan.registration import mapping, results
+from scanplan.registration import gate_shares, mapping, results
 from scanplan.registration.registration_settings import registration_settings
 from scanplan.registration.sequential import ScanResult
 from scanplan.stage import log, workers
@@ -63,6 +63,7 @@ def register_scans(
                 survey, progress, raw, thinned, run, limits
             )
         results.check_any_kept(verdicts, counted.n_dropped, recordings[0])
+        gate_shares.check_any_survives(verdicts, survey, raw, limits.limits, recordings[0])
         _write_kept_scans(scans, survey, verdicts, raw)
     log.log_line(
         f"register_scans: {results.summarise_registration(verdicts, counted.n_dropped)};"

@@ -13,7 +13,7 @@ from scanplan.types import FilePath
 
 def write_thesis(
     figures: Sequence[FilePath],
-    orders: FilePath,
+    own_figures: Sequence[FilePath],
     claims: FilePath,
     steps: FilePath,
     limited: FilePath,
@@ -26,8 +26,8 @@ def write_thesis(
     ----------
     figures : list of path-like
         figure_<number>.svg.
-    orders : path-like
-        orders.svg.
+    own_figures : list of path-like
+        orders.svg, gates.svg and alignments.svg: figures that the thesis has not.
     claims, steps, limited : path-like
         claims.parquet, and thesis/steps.parquet of the drive with our limits and with the thesis's.
     page : list of path-like
@@ -39,7 +39,7 @@ def write_thesis(
     text = thesis_page(
         _read_texts(page),
         figure_texts,
-        Path(orders).read_text(encoding="utf-8"),
+        _read_texts(own_figures),
         pd.DataFrame(tables.read_table(claims, schemas.CLAIMS)),
         pd.DataFrame(tables.read_table(steps, schemas.STEPS)),
         pd.DataFrame(tables.read_table(limited, schemas.STEPS)),
@@ -56,7 +56,7 @@ if __name__ == "__main__":
     with log.log_to_file(snakemake.log[0]):
         write_thesis(
             list(snakemake.input.figures),
-            snakemake.input.orders,
+            [snakemake.input[name] for name in ("orders", "gates", "alignments")],
             snakemake.input.claims,
             snakemake.input.steps[0],
             snakemake.input.limited[0],

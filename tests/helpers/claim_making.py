@@ -101,10 +101,10 @@ def steps(*n_scans):
     """Table 5.1."""
     n = len(n_scans)
     seconds, n_bytes = (
-        np.array([360.0, 90.0, 8.0, 0.5])[:n],
-        np.array([4 * 10**9, 10**7, 10**6, 10**6])[:n],
+        np.array([360.0, np.nan, 90.0, 8.0, 0.5])[:n],
+        np.array([4 * 10**9, schemas.NOT_WRITTEN, 10**7, 10**6, 10**6])[:n],
     )
-    names = np.array(["Data collection", "Registering", "Hulls", "Selection"])[:n]
+    names = np.array(["Data collection", "Selecting", "Registering", "Hulls", "Selection"])[:n]
     return pd.DataFrame({
         "step": np.arange(1, n + 1),
         "name": names,
@@ -177,6 +177,6 @@ def drive(**changes):
                 "refined_error_m": np.array([0.01, 0.01]),
             }
         ),
-        "drive_steps": steps(3600, 700, 700, 15),
-        "limits_steps": steps(3600, 76, 76, 15),
+        "drive_steps": steps(3600, 710, 700, 700, 15),
+        "limits_steps": steps(3600, 130, 76, 76, 15),
     } | changes

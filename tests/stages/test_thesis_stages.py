@@ -217,14 +217,17 @@ def test_the_steps_are_counted(survey, tmp_path):
         [tmp_path / "first.tsv"],
         [tmp_path / "second.tsv"],
     ]
-    inputs = [survey / name for name in ("truth_poses.tum", "scans.parquet", "hulls.parquet")]
+    inputs = [
+        survey / name
+        for name in ("truth_poses.tum", "registration.parquet", "scans.parquet", "hulls.parquet")
+    ]
     selection = survey / "selection/cluster_hull.parquet"
     tabulate_steps(
         [tmp_path / "a.bag"], *inputs, selection, times, tmp_path / "steps.parquet", n_selected=2
     )
     found = tables.read_table(tmp_path / "steps.parquet", schemas.STEPS)
-    assert found["n_scans"].tolist() == [3, 3, 3, 2]
-    np.testing.assert_allclose(found["seconds"], [0.5, 3.0, 2.5, 0.5])
+    assert found["n_scans"].tolist() == [3, 3, 3, 3, 2]
+    np.testing.assert_allclose(found["seconds"], [0.5, np.nan, 3.0, 2.5, 0.5])
     whole = (survey / "scans.parquet").stat().st_size
     # a line that says nothing and commas are as good to the reader of all true poses
     truth = survey / "truth_poses.tum"
@@ -234,10 +237,11 @@ def test_the_steps_are_counted(survey, tmp_path):
     )
     np.testing.assert_allclose(
         tables.read_table(tmp_path / "steps.parquet", schemas.STEPS)["seconds"],
-        [0.5, 3.0, 2.5, 0.5],
+        [0.5, np.nan, 3.0, 2.5, 0.5],
     )
     assert found["n_bytes"].tolist() == [
         1000,
+        schemas.NOT_WRITTEN,
         whole,
         (survey / "hulls.parquet").stat().st_size,
         whole * 2 // 3,
@@ -312,12 +316,15 @@ def test_claims_are_judged_seed_by_seed_and_written_to_the_page(tmp_path):
         path.write_text("<svg></svg>")
     steps = files["drive_steps"][0], files["limits_steps"][0]
     output = tmp_path / "report.html"
-    write_thesis(figures, figures[0], tmp_path / "claims.parquet", *steps, made.PAGE, output)
+    own_figures = [tmp_path / f"{name}.svg" for name in ("orders", "gates", "alignments")]
+    for path in own_figures:
+        path.write_text("<svg></svg>")
+    write_thesis(figures, own_figures, tmp_path / "claims.parquet", *steps, made.PAGE, output)
     page = output.read_text()
     assert (
         "does not hold" in page
         and "<h3>Figure 5.12</h3>" in page
-        and page.count("<svg") == len(FIGURES) + 1
+        and page.count("<svg") == len(FIGURES) + 3
     )
 
 

@@ -260,7 +260,7 @@ def test_extraction():
 
 
 def test_what_survives_the_limits_is_a_number_without_a_verdict():
-    verdicts, values = drive(limits_steps=made.steps(3600, 72))
+    verdicts, values = drive(limits_steps=made.steps(3600, 300, 72))
     assert verdicts["two_percent_survive"] == ""
     assert values["two_percent_survive", "share retained"] == 0.02
 

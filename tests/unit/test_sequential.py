@@ -4,20 +4,19 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from helpers import default_settings
+from helpers.hall_drives import drive, pose
 from reference import registration as literal
 from scanplan.geometry import se3
-from scanplan.project import settings, stage_settings
 from scanplan.registration import constraints, sequential
 from scanplan.registration.registration_settings import (
     SequentialSettings,
-    registration_settings,
 )
 
 SETTINGS = SequentialSettings(
     voxel_m=0.1,
     voxel_planar_m=0.1,
     voxels=1,
+    compare_with="retained",
     n_previous=5,
     previous_apart_m=100.0,
     previous_turn_deg=180.0,
@@ -39,42 +38,6 @@ SETTINGS = SequentialSettings(
     anchor_apart_m=5.0,
     min_points=20,
 )
-
-
-def pose(x, y, yaw_deg):
-    return se3.pose_matrix([x, y, 0.4], Rotation.from_euler("z", yaw_deg, degrees=True).as_quat())
-
-
-def hall(rng, planar):
-    """Points of a 6 m by 4 m hall with a pillar, in the map."""
-    outline = np.array([[0, 0], [6, 0], [6, 4], [0, 4], [0, 0]])
-    pillar = np.array([[2, 1.5], [2.4, 1.5], [2.4, 1.9], [2, 1.9], [2, 1.5]])
-    edges = np.concatenate([np.stack([p[:-1], p[1:]], 1) for p in (outline, pillar)])
-    share = rng.uniform(size=(600, 1, 1))
-    xy = (edges[:, 0] * (1 - share) + edges[:, 1] * share).reshape(-1, 2)
-    z = np.full(len(xy), 0.4) if planar else rng.uniform(0, 2.5, len(xy))
-    points = np.column_stack([xy, z])
-    if not planar:
-        floor = np.column_stack([rng.uniform(0, 6, 3000), rng.uniform(0, 4, 3000), np.zeros(3000)])
-        points = np.concatenate([points, floor])
-    return points + rng.normal(0, 0.005, points.shape) * [1, 1, not planar]
-
-
-def drive(n, *, planar, noise_m=0.04, noise_deg=1.0, seed=0):
-    """Scans in the sensor frame, localiser's poses, true poses."""
-    rng = np.random.default_rng(seed)
-    true = [pose(1 + 0.1 * i, 2.8, 3 * i) for i in range(n)]
-    priors = [
-        se3.pose_matrix(
-            t[:3, 3] + [*rng.normal(0, noise_m, 2), 0], Rotation.from_matrix(t[:3, :3]).as_quat()
-        )
-        @ pose(0, 0, rng.normal(0, noise_deg))
-        @ se3.invert_pose(pose(0, 0, 0))
-        for t in true
-    ]
-    priors[0] = true[0]
-    scans = [se3.transform_points(se3.invert_pose(t), hall(rng, planar)) for t in true]
-    return scans, priors, true
 
 
 def register(scans, priors, planar, **changes):
@@ -245,40 +208,6 @@ def test_the_literal_algorithm_keeps_the_same_scans_at_the_same_places():
     assert [i for i, v in enumerate(ours) if v.kept] == sorted(theirs) == [0, 1, 2, 3, 5]
     for index, pose_of_scan in theirs.items():
         np.testing.assert_allclose(ours[index].world_from_sensor, pose_of_scan, atol=0.02)
-
-
-def test_the_preset_judges_as_the_thesis_does(project_root):
-    """Scans of a part of the hall each, so that fitness falls below 0.96 for some of them."""
-    preset = settings.read_yaml(project_root / "config/thesis.yaml")
-    merged = settings.merge_settings(default_settings.SETTINGS, preset)
-    section = stage_settings.select_section(merged, "registration")
-    limits = registration_settings(section).limits
-    scans, priors, _ = drive(8, planar=False, noise_m=0.02, noise_deg=0.5)
-    scans = [
-        scan[scan[:, 0] < reach_m]
-        for scan, reach_m in zip(scans, (2, 2, 2.1, 4, 2.1, 3, 2.2, 2), strict=True)
-    ]
-    registrar = sequential.SequentialRegistrar(limits, False)
-    ours = [
-        registrar.add(i, scan, prior)[0]
-        for i, (scan, prior) in enumerate(zip(scans, priors, strict=True))
-    ]
-    gates = {
-        key: section[key] for key in ("min_prior_fitness", "min_refined_fitness", "n_previous")
-    }
-    theirs = literal.register(
-        scans, priors, keep_every=1, distance_m=section["fitness_distance_m"], **gates
-    )
-    assert [i for i, verdict in enumerate(ours) if verdict.kept] == sorted(theirs)
-    assert 2 < len(theirs) < 8
-    first = literal._cloud(se3.transform_points(priors[0], scans[0]))
-    for scan, prior, verdict in zip(scans[1:2], priors[1:2], ours[1:2], strict=True):
-        placed = literal._cloud(se3.transform_points(prior, scan))
-        assert verdict.prior_fitness == pytest.approx(
-            literal._mean_fitness(placed, [first], 0.5), abs=2e-3
-        )
-    for index, pose_of_scan in theirs.items():
-        np.testing.assert_allclose(ours[index].world_from_sensor, pose_of_scan, atol=0.01)
 
 
 def test_scans_are_judged_by_those_that_may_show_the_same():

@@ -67,7 +67,7 @@ def test_the_page_has_every_figure(project):
     page = (project.folder / "results/thesis/report.html").read_text()
     for figure in FIGURES:
         assert f"<h3>Figure {figure.number}</h3>" in page
-    assert page.count("<svg") == len(FIGURES) + 1
+    assert page.count("<svg") == len(FIGURES) + 3
     assert re.search(r"Of \d+ claims \d+ hold, \d+ do not", page)
     assert '<h2 id="deviations">' in page
     assert "report:  results/thesis/report.html" in result.stderr

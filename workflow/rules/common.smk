@@ -81,6 +81,7 @@ THESIS_RULES = (
     "judge_claims",
     "draw_thesis_rooms",
     "draw_thesis_drive",
+    "draw_gates",
     "write_thesis",
 )
 

@@ -144,6 +144,7 @@ rule tabulate_steps:
     input:
         recordings=recordings,
         true_poses=true_poses,
+        registration="results/{dataset}/registration.parquet",
         scans="results/{dataset}/scans.parquet",
         hulls="results/{dataset}/hulls.parquet",
         selection="results/{dataset}/selection/cluster_hull.parquet",
@@ -265,6 +266,8 @@ rule write_thesis:
     input:
         figures=figures_of(*ROOMS_FIGURES, *DRIVE_FIGURES),
         orders="results/thesis/figures/orders.svg",
+        gates="results/thesis/figures/gates.svg",
+        alignments="results/thesis/figures/alignments.svg",
         claims="results/thesis/claims.parquet",
         steps=of_kind(experiments.DRIVE, "thesis/steps")[:1],
         limited=of_kind(experiments.LIMITS, "thesis/steps")[:1],

@@ -73,6 +73,19 @@ class PoseChains:
             log.log_line(hint)
         return edges
 
+    def of_mounting(self, world: str) -> list[frame_edges.FrameEdge]:
+        """Return the edges to the sensor from what poses in `world` are of that do not state it.
+
+        Raises
+        ------
+        StageError
+            If tf does not connect the two.
+        """
+        if self._extrinsics:
+            return self._extrinsics
+        sensor = self._index.sensor_frame
+        return find_extrinsics(self._tree, self._base_frame or "", sensor, world, self._where)
+
     def of_odometry(self, sources: Sequence[topics.Topic]) -> list[NamedChain]:
         """Return the chains from a frame that drifts but never jumps (REP 105), as far as recorded.
 

@@ -7,7 +7,14 @@ from typing import NamedTuple
 import numpy as np
 
 from scanplan.errors import StageError
-from scanplan.recordings import clouds, messages, pose_chain, small_messages, topics
+from scanplan.recordings import (
+    clouds,
+    frame_edges,
+    messages,
+    pose_chain,
+    small_messages,
+    topics,
+)
 from scanplan.recordings.bags import Bag, BagMessage
 from scanplan.recordings.extrinsics import configured_extrinsics
 from scanplan.recordings.frame_edges import FrameEdge
@@ -32,6 +39,13 @@ class _CloudMessage(NamedTuple):
     scan_id: int
     bag: Bag
     message: BagMessage
+
+
+class SurveyTopics(NamedTuple):
+    """What a survey is made of: the clouds, and everything that places their sensor."""
+
+    cloud: topics.Topic
+    small: list[topics.Topic]
 
 
 class BagSurvey:
@@ -105,6 +119,27 @@ class BagSurvey:
         if scan.time_raw is None:
             return None
         return scan.time_raw[clouds.is_in_range(scan.xyz_m, **self._limits)]
+
+    @property
+    def bags(self) -> list[Bag]:
+        """The recordings, in the order of their start."""
+        return self._bags
+
+    @property
+    def map_frame(self) -> str:
+        """The frame of the poses."""
+        return self.pose_edges()[0].parent
+
+    def base_from_sensor(self, t_ns: IntArray) -> FloatArray:
+        """Return the poses (n, 4, 4) of the sensor on what poses without a child frame are of."""
+        mounting = self._chains.of_mounting(self.map_frame)
+        return frame_edges.chain_poses(mounting, t_ns, max_gap_s=np.inf)[0]
+
+    def list_topics(self) -> SurveyTopics:
+        """Return the topics of the clouds, and of poses, transforms and odometry."""
+        transforms = [t for t in self._topics if t.msgtype in topics.TRANSFORMS]
+        small = {t.name: t for t in (self._pose_source, *transforms, *self._odometry)}
+        return SurveyTopics(self._cloud, list(small.values()))
 
     def stamps(self) -> IntArray:
         """Return the header stamps of all clouds, (n,) int64, in scan_id order."""

@@ -8,7 +8,8 @@ import numpy as np
 
 from scanplan.recordings.clouds import Scan
 from scanplan.registration.constraints import PoseConstraint
-from scanplan.registration.registration_settings import SequentialSettings
+from scanplan.registration.frame_sequence import FrameRegistrar
+from scanplan.registration.registration_settings import FRAMES, SequentialSettings
 from scanplan.registration.sequential import ScanResult, SequentialRegistrar
 from scanplan.store.scan_cache import ScanCache, ScanCachePart
 from scanplan.types import FloatArray, IntArray
@@ -104,7 +105,8 @@ def register_batch(
     edges : list of constraints.PoseConstraint
         From its own kept scans to predecessors.
     """
-    registrar = SequentialRegistrar(limits, batch.planar)
+    kind = FrameRegistrar if limits.compare_with == FRAMES else SequentialRegistrar
+    registrar = kind(limits, batch.planar)
     registered = [
         registrar.add(int(scan_id), xyz_m, prior)
         for scan_id, xyz_m, prior in zip(batch.scan_ids, part, batch.priors, strict=True)

@@ -145,7 +145,7 @@ def measure_constraint(
         See `icp.align_clouds`.
     settings : registration_settings.SequentialSettings
     """
-    start = se3.invert_pose(target.world_from_cloud) @ source.world_from_cloud
+    start = relative_pose(source, target)
     fit = icp.align_clouds(
         source.cloud,
         target.cloud,
@@ -170,7 +170,7 @@ def measure_facing_overlap(
     return prepared_clouds.measure_overlap(
         source.cloud,
         target.cloud,
-        _target_from_source(source, target),
+        relative_pose(source, target),
         distance_m=distance_m,
         n_probes=settings.fitness_points,
         facing=True,
@@ -184,7 +184,7 @@ def measure_scan_overlap(
     return prepared_clouds.measure_overlap(
         source.cloud,
         target.cloud,
-        _target_from_source(source, target),
+        relative_pose(source, target),
         distance_m=settings.fitness_distance_m,
         n_probes=settings.fitness_points,
     )
@@ -228,7 +228,8 @@ def level_pose(world_from_sensor: FloatArray) -> FloatArray:
     return se3.invert_pose(world_from_level) @ world_from_sensor
 
 
-def _target_from_source(source: PlacedScan, target: PlacedScan) -> FloatArray:
+def relative_pose(source: PlacedScan, target: PlacedScan) -> FloatArray:
+    """Return target_from_source (4, 4) of two scans as they are placed."""
     return se3.invert_pose(target.world_from_cloud) @ source.world_from_cloud
 
 

@@ -8,12 +8,14 @@ import small_gicp
 
 from scanplan.geometry import se3, twists
 from scanplan.geometry.tolerances import SHORTEST_M
-from scanplan.registration import planar_icp, prepared_clouds
+from scanplan.registration import planar_icp, point_icp, prepared_clouds
 from scanplan.registration.prepared_clouds import PreparedCloud
 from scanplan.types import FloatArray
 
-METHODS = {"gicp": "GICP", "point_to_plane": "PLANE_ICP", "point_to_point": "ICP"}
-"""Names of the methods in space, and what small_gicp calls them."""
+POINT_TO_POINT = "point_to_point"
+"""The thesis's method, as Open3D has it: all pairs count, and nothing is held."""
+_METHODS = {"gicp": "GICP", "point_to_plane": "PLANE_ICP"}
+"""Names of the other methods in space, and what small_gicp calls them."""
 _LEAST_SHARE = 0.005  # of the largest eigenvalue: a direction with less is not observable
 _LEAST_TURNED = 0.01  # of the points: fewer are badly known normals at edges
 # metres and radians: of a step this small less than half is left to go
@@ -51,11 +53,12 @@ def align_clouds(
     method: str,
     distances_m: Sequence[float],
     max_iterations: int,
+    n_points: int | None = None,
 ) -> IcpResult:
     """Refine the motion from source to target by iterative closest point (thesis, 3.2.2 and 3.5).
 
     Directions that the pairs determine far worse than the others (along a corridor) keep the
-    start's value.
+    start's value, but for point to point.
 
     Parameters
     ----------
@@ -69,7 +72,13 @@ def align_clouds(
         Points farther apart are no pair: first for the rough, then for the fine alignment.
     max_iterations : int
         Of each of these.
+    n_points : int, optional
+        Point to point pairs about so many of the source's points, evenly chosen; all by default.
     """
+    if method == POINT_TO_POINT and not target.planar:
+        step = prepared_clouds.probe_step(source, n_points)
+        points_m = source.xyz_m[::step]
+        return _align_by_points(points_m, target, target_from_source, distances_m, max_iterations)
     motion = target_from_source
     information = np.zeros((6, 6))
     for distance_m in distances_m:
@@ -87,6 +96,23 @@ def align_clouds(
         motion, information = aligned
     reach_m = float(np.sqrt(np.mean(source.xyz_m**2) * 3))
     return _keep_unobservable(target_from_source, motion, information, reach_m)
+
+
+def _align_by_points(
+    points_m: FloatArray,
+    target: PreparedCloud,
+    start: FloatArray,
+    distances_m: Sequence[float],
+    max_iterations: int,
+) -> IcpResult:
+    motion = start
+    information = np.zeros((6, 6))
+    for distance_m in distances_m:
+        aligned = point_icp.align_points(points_m, target.xyz_m, motion, distance_m, max_iterations)
+        if aligned is None:
+            return _unsound(start)
+        motion, information = aligned
+    return IcpResult(motion, information / planar_icp.PAIR_SIGMA_M**2, 0, sound=True)
 
 
 def _unsound(start: FloatArray) -> IcpResult:
@@ -127,7 +153,7 @@ def _align_spatial(
         source.features,
         target.tree,
         init_T_target_source=start,
-        registration_type=METHODS[method],
+        registration_type=_METHODS[method],
         max_correspondence_distance=distance_m,
         max_iterations=max_iterations,
         rotation_epsilon=step_done,

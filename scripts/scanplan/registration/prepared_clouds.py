@@ -145,13 +145,8 @@ def measure_overlap(
     rmse_m : float
         Root mean square distance of those points to their neighbours; infinite if there are none.
     """
-    step = 1 if n_probes is None else max(1, len(source.xyz_m) // n_probes)
-    moved_m = se3.transform_points(target_from_source, source.xyz_m[::step])
-    if target.planar:
-        apart_m, index = target.tree.query(moved_m[:, :2], distance_upper_bound=distance_m)
-    else:
-        index, squared_m2 = target.nearest_points(moved_m)
-        apart_m = np.sqrt(squared_m2)
+    step = probe_step(source, n_probes)
+    index, apart_m = _nearest_probes(source, target, target_from_source, step, distance_m)
     near = np.flatnonzero(apart_m < distance_m)
     if facing:
         size = target.normal.shape[1]
@@ -159,7 +154,46 @@ def measure_overlap(
         cosine = np.einsum("ij,ij->i", turned, target.normal[index[near]])
         near = near[cosine > FACING]
     rmse_m = float(np.sqrt(np.mean(apart_m[near] ** 2))) if len(near) else np.inf
-    return len(near) / len(moved_m), rmse_m
+    return len(near) / len(apart_m), rmse_m
+
+
+def measure_distances(
+    source: PreparedCloud,
+    target: PreparedCloud,
+    target_from_source: FloatArray,
+    *,
+    n_probes: int | None = None,
+) -> FloatArray:
+    """Return how far (n,) the points that fitness asks are from the target's nearest, metres.
+
+    The parameters are those of `measure_overlap`.
+    """
+    step = probe_step(source, n_probes)
+    return _nearest_probes(source, target, target_from_source, step)[1]
+
+
+def probe_step(source: PreparedCloud, n_probes: int | None) -> int:
+    """Return n: every n-th point is asked, so that they are about so many."""
+    return 1 if n_probes is None else max(1, len(source.xyz_m) // n_probes)
+
+
+def _nearest_probes(
+    source: PreparedCloud,
+    target: PreparedCloud,
+    target_from_source: FloatArray,
+    step: int,
+    reach_m: float = np.inf,
+) -> tuple[IntArray, FloatArray]:
+    """Return row and distance of the target's point nearest to every `step`-th of the source's.
+
+    In the plane those farther than `reach_m` are not looked for: their distance is infinite.
+    """
+    moved_m = se3.transform_points(target_from_source, source.xyz_m[::step])
+    if target.planar:
+        apart_m, index = target.tree.query(moved_m[:, :2], distance_upper_bound=reach_m)
+        return index, apart_m
+    index, squared_m2 = target.nearest_points(moved_m)
+    return index, np.sqrt(squared_m2)
 
 
 def _towards_origin(normal: FloatArray, points: FloatArray) -> FloatArray:

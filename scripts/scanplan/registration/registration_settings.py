@@ -8,6 +8,9 @@ import numpy as np
 from scanplan.geometry import twists
 from scanplan.types import FloatArray, Settings
 
+FRAMES = "frames"
+"""Scans are compared with the candidates before them, retained or not (thesis, algorithm 3)."""
+
 
 @dataclass(frozen=True)
 class SequentialSettings:
@@ -19,8 +22,11 @@ class SequentialSettings:
         Metres. Edge of the voxels that a scan is thinned to for fitting, in space and in the plane.
     voxels : int
         A scan in space that occupies fewer voxels is thinned to smaller ones.
+    compare_with : str
+        `retained`, or `FRAMES`, which goes by none of the limits on corrections and knows neither
+        anchors nor links to more than one scan.
     n_previous : int
-        Fitness is the mean over at most this many of the last retained scans.
+        Fitness is the mean over at most this many of the last retained scans, or candidates.
     previous_apart_m : float
         Metres. Retained scans farther away show other rooms and do not count.
     previous_turn_deg : float
@@ -34,7 +40,7 @@ class SequentialSettings:
     min_facing_fitness : float
         Share, 0 to 1. Threshold on the overlap of surfaces that face the same way, in space.
     icp_method : str
-        A key of `icp.METHODS`, or `sequential.GIVEN_POSES`.
+        A method of `icp.align_clouds`, or `sequential.GIVEN_POSES`.
     icp_targets : int
         A scan is aligned to this many of the last retained scans.
     icp_distances_m : sequence of float
@@ -57,6 +63,7 @@ class SequentialSettings:
     voxel_m: float
     voxel_planar_m: float
     voxels: int
+    compare_with: str
     n_previous: int
     previous_apart_m: float
     previous_turn_deg: float

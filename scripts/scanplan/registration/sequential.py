@@ -1,6 +1,8 @@
 """Selecting continuous scans and registering them one after the other (thesis 3.5, algorithm 3)."""
 
+from abc import ABC, abstractmethod
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -42,7 +44,7 @@ class ScanResult:
 
 
 @dataclass
-class SequentialRegistrar:
+class ScanRegistrar(ABC):
     """Registers the candidate scans one after the other.
 
     Attributes
@@ -58,16 +60,7 @@ class SequentialRegistrar:
     settings: SequentialSettings
     planar: bool
     edges: list[PoseConstraint] = field(default_factory=list)
-    _previous: deque[PlacedScan] = field(init=False)
-    # the scans compared with before an anchor that no scan has confirmed yet
-    _earlier: deque[PlacedScan] = field(init=False)
-    _confirmed: bool = False
     _after_gap: bool = False
-    _rejected_in_a_row: int = 0
-
-    def __post_init__(self) -> None:
-        self._previous = self._no_scans()
-        self._earlier = self._no_scans()
 
     def add(
         self, scan_id: int, xyz_m: FloatArray, prior: FloatArray
@@ -104,10 +97,62 @@ class SequentialRegistrar:
         reach_m = constraints.neighbour_reach_m(self.settings)
         cloud = prepared_clouds.prepare_cloud(thinned_m, planar=self.planar, reach_m=reach_m)
         scan = PlacedScan(scan_id, cloud, prior @ se3.invert_pose(level_from_sensor))
-        result, edges = self._register(scan, level_from_sensor)
+        result, edges = self.register_scan(scan, level_from_sensor)
         self.edges += edges
-        self._remember(scan, result, level_from_sensor)
         return result, thinned_m
+
+    @abstractmethod
+    def register_scan(
+        self, scan: PlacedScan, level_from_sensor: FloatArray
+    ) -> tuple[ScanResult, list[PoseConstraint]]:
+        """Register a scan that is at the localiser's pose, and remember it for those after it.
+
+        Parameters
+        ----------
+        scan : constraints.PlacedScan
+        level_from_sensor : (4, 4) float64
+            Its cloud's frame from the sensor's.
+
+        Returns
+        -------
+        ScanResult
+        list of constraints.PoseConstraint
+            To scans before it.
+        """
+        ...
+
+    def measure_overlap(
+        self, scan: PlacedScan, others: Sequence[PlacedScan]
+    ) -> tuple[float, float]:
+        """Return the mean fitness and rmse of a scan on others, one or more."""
+        overlaps = [
+            constraints.measure_scan_overlap(scan, other, self.settings) for other in others
+        ]
+        fitness, rmse_m = np.mean(overlaps, axis=0)
+        return float(fitness), float(rmse_m)
+
+
+@dataclass
+class SequentialRegistrar(ScanRegistrar):
+    """Compares every scan with the last ones retained; starts anew where they are lost."""
+
+    _previous: deque[PlacedScan] = field(init=False)
+    # the scans compared with before an anchor that no scan has confirmed yet
+    _earlier: deque[PlacedScan] = field(init=False)
+    _confirmed: bool = False
+    _rejected_in_a_row: int = 0
+
+    def __post_init__(self) -> None:
+        self._previous = self._no_scans()
+        self._earlier = self._no_scans()
+
+    def register_scan(
+        self, scan: PlacedScan, level_from_sensor: FloatArray
+    ) -> tuple[ScanResult, list[PoseConstraint]]:
+        """Gate a scan, align it to the last scans retained, and gate it again."""
+        result, edges = self._register(scan, level_from_sensor)
+        self._remember(scan, result, level_from_sensor)
+        return result, edges
 
     def _register(
         self, scan: PlacedScan, level_from_sensor: FloatArray
@@ -132,14 +177,14 @@ class SequentialRegistrar:
         settings = self.settings
         prior = scan.world_from_cloud @ level_from_sensor
         comparable = constraints.comparable_scans(scan, previous, settings)
-        prior_fitness, _ = self._mean_overlap(scan, comparable)
+        prior_fitness, _ = self.measure_overlap(scan, comparable)
         if prior_fitness < settings.min_prior_fitness:
             return ScanResult(False, "low_prior_fitness", prior, prior_fitness), []
         targets = list(previous)[: -settings.icp_targets - 1 : -1]
         refined, edges = constraints.refine_scan(scan, targets, settings)
         if refined is None:
             return ScanResult(False, "icp_diverged", prior, prior_fitness), []
-        fitness, rmse_m = self._mean_overlap(refined, comparable)
+        fitness, rmse_m = self.measure_overlap(refined, comparable)
         figures = (prior_fitness, fitness, rmse_m)
         if fitness < settings.min_refined_fitness or not self._faces_any(edges):
             return ScanResult(False, "low_refined_fitness", prior, *figures), []
@@ -186,14 +231,6 @@ class SequentialRegistrar:
             self._after_gap = False
             world_from_cloud = result.world_from_sensor @ se3.invert_pose(level_from_sensor)
             self._previous.append(replace(scan, world_from_cloud=world_from_cloud))
-
-    def _mean_overlap(self, scan: PlacedScan, previous: list[PlacedScan]) -> tuple[float, float]:
-        """Return the mean fitness and rmse of a scan on others."""
-        overlaps = [
-            constraints.measure_scan_overlap(scan, other, self.settings) for other in previous
-        ]
-        fitness, rmse_m = np.mean(overlaps, axis=0)
-        return float(fitness), float(rmse_m)
 
     def _no_scans(self) -> deque[PlacedScan]:
         return deque(maxlen=self.settings.n_previous)

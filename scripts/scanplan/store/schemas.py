@@ -421,6 +421,39 @@ STEPS = Schema(
     },
     ("step",),
 )
+NOT_WRITTEN = -1
+"""Bytes after a step of `STEPS` that writes no data."""
+GATES = Schema(
+    "gates",
+    1,
+    {
+        "reading": "string",
+        "distance_m": "float64",
+        "scan_id": "int32",
+        "passed": "bool",
+        "kept": "bool",
+        "x_m": "float64",
+        "y_m": "float64",
+    },
+    ("reading", "distance_m", "scan_id"),
+)
+"""Which candidates pass the first gate of algorithm 3, and both, by reading and fitness distance.
+
+Positions are the true ones.
+"""
+ALIGNMENTS = Schema(
+    "alignments",
+    1,
+    {
+        "method": "string",
+        "distance_m": "float64",
+        "source": "int32",
+        "target": "int32",
+        **dict.fromkeys(("true_step_m", "step_m", "error_m", "true_fitness", "fitness"), "float64"),
+    },
+    ("method", "distance_m", "source"),
+)
+"""Pairs of successive scans aligned from the truth: how far off they end, and with what fitness."""
 CLAIMS = Schema(
     "claims",
     3,

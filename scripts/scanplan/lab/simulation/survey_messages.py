@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
+from scanplan.exports import bag_writer
 from scanplan.geometry import se3
 from scanplan.lab.simulation.localisation import Belief
 from scanplan.types import FloatArray, IntArray
@@ -21,13 +21,7 @@ STATIC_TOPIC = "/tf_static"
 MAP_FRAME = "map"
 ODOM_FRAME = "odom"
 BASE_FRAME = "base_link"
-# contents have ROS1's types, which hold all that ROS2's do
-ROS1_STORE = get_typestore(Stores.ROS1_NOETIC)
-# rosbags' own selection of ROS1 types lacks it
-ROS1_STORE.register(
-    get_types_from_msg("geometry_msgs/TransformStamped[] transforms\n", "tf2_msgs/msg/TFMessage")
-)
-TYPE = ROS1_STORE.types
+TYPE = bag_writer.ROS1_STORE.types
 
 
 @dataclass(frozen=True)

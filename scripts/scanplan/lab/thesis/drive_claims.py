@@ -185,7 +185,7 @@ def selection_polynomial(tables: Tables) -> ClaimMeasure:
 
 def two_percent_survive(tables: Tables) -> ClaimMeasure:
     """Count what registration with the thesis's limits retains."""
-    recorded, retained = tables["limits_steps"]["n_scans"].iloc[:2]
+    recorded, _, retained = tables["limits_steps"]["n_scans"].iloc[:3]
     values: Quantities = {
         "share retained": (retained / recorded, SHARE),
         "scans retained": (retained, COUNT),
@@ -229,7 +229,7 @@ def localiser(tables: Tables) -> ClaimMeasure:
 
 def own_limits(tables: Tables) -> ClaimMeasure:
     """Count what registration with our limits retains."""
-    return ClaimMeasure({"scans": (tables["drive_steps"]["n_scans"].iloc[1], COUNT)})
+    return ClaimMeasure({"scans": (tables["drive_steps"]["n_scans"].iloc[2], COUNT)})
 
 
 def _seconds_at(times: pd.DataFrame, task: str) -> float:

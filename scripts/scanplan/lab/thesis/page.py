@@ -14,11 +14,13 @@ from scanplan.lab.thesis.claim_measures import COUNT, MARGIN, NUMBER, SHARE
 from scanplan.lab.thesis.shown_figures import FIGURES, STEPS, Figure
 from scanplan.lab.thesis.stated_claims import CLAIMS, Claim
 from scanplan.report import templates
+from scanplan.store.schemas import NOT_WRITTEN
 from scanplan.types import FloatArray
 
 DEVIATIONS = "deviations.md"
 """The file with the table of where the product differs from the thesis."""
 _UNKNOWN = "not measured"
+_WITH_NEXT = "with the next"
 
 
 @dataclass(frozen=True)
@@ -83,7 +85,7 @@ class ShownFigure:
 def thesis_page(
     sources: Mapping[str, str],
     figures: Mapping[str, str],
-    orders: str,
+    own_figures: Mapping[str, str],
     claims: pd.DataFrame,
     steps: pd.DataFrame,
     limited: pd.DataFrame,
@@ -96,8 +98,8 @@ def thesis_page(
         File name to text of `thesis.html.j2`, of all that it asks for, and of `DEVIATIONS`.
     figures : dict of str to str
         File name to SVG text, of all `FIGURES`.
-    orders : str
-        SVG text of the orders of ours beside the thesis's.
+    own_figures : dict of str to str
+        File name to SVG text, of the figures that the thesis has not.
     claims : pandas.DataFrame
         `schemas.CLAIMS`.
     steps, limited : pandas.DataFrame
@@ -115,8 +117,11 @@ def thesis_page(
         stated=claim_rows(claims, [claim for claim in CLAIMS if not claim.criterion]),
         steps={"thesis": STEPS, "ours": _step_rows(steps), "limited": _step_rows(limited)},
         figures=[_shown_figure(figure, figures[figure.file], claims) for figure in FIGURES],
-        orders=_inline_svg(orders, "orders"),
         deviations=read_deviations(sources[DEVIATIONS]),
+        own_figures={
+            file.removesuffix(".svg"): _inline_svg(svg, file.removesuffix(".svg"))
+            for file, svg in own_figures.items()
+        },
     )
 
 
@@ -273,11 +278,15 @@ def _step_rows(steps: pd.DataFrame) -> list[tuple[str, str, str, str]]:
 
 
 def _format_seconds(seconds: float) -> str:
+    if not np.isfinite(seconds):
+        return _WITH_NEXT
     minutes, rest = divmod(round(seconds), 60)
     return f"{minutes} min {rest} s" if minutes else f"{seconds:.2g} s"
 
 
 def _format_bytes(n_bytes: int) -> str:
+    if n_bytes == NOT_WRITTEN:
+        return _WITH_NEXT
     for unit, factor, digits in (("GB", 1e9, 2), ("MB", 1e6, 1)):
         if n_bytes >= factor:
             return f"{n_bytes / factor:.{digits}f} {unit}"

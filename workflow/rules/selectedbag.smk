@@ -1,0 +1,25 @@
+rule write_selected_bag:
+    """Write the scans that make the plan as a recording of their own, and settings to read it with."""
+    input:
+        recordings=recordings,
+        selection=plan_selection,
+        registration="results/{dataset}/registration.parquet",
+        code=code_of("write_selected_bag"),
+    output:
+        recording="results/{dataset}/selected.{suffix}",
+        settings="results/{dataset}/selected.{suffix}.yaml",
+    log:
+        "logs/{dataset}/write_selected_bag_{suffix}.log",
+    benchmark:
+        "benchmarks/{dataset}/write_selected_bag_{suffix}.tsv"
+    wildcard_constraints:
+        suffix="bag|mcap|db3",
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=60,
+    params:
+        reading=section("input"),
+        stop=section("selection", "stop"),
+    script:
+        "../../scripts/write_selected_bag.py"
