@@ -11,6 +11,7 @@ from scanplan.project.dataset import (
     RESERVED,
     describe_dataset,
     find_truth,
+    list_comparison,
     list_results,
     name_datasets,
     survey_files,
@@ -202,8 +203,14 @@ def plan_selection(wildcards):
     return f"results/{wildcards.dataset}/selection/{method}.parquet"
 
 
+def plan_extractor_settings(wildcards):
+    """Settings of the extractor whose walls make the plan."""
+    settings = DATASETS[wildcards.dataset].settings
+    return stage_settings.select_extractor(settings, settings["plan"]["extractor"])
+
+
 def plan_walls(wildcards):
-    """The walls that make the plan."""
+    """The walls of all scans by the extractor whose walls make the plan."""
     extractor = DATASETS[wildcards.dataset].settings["plan"]["extractor"]
     return f"results/{wildcards.dataset}/walls/{extractor}.parquet"
 
@@ -234,13 +241,18 @@ def all_settings(wildcards):
 
 
 def results_of(name):
-    """Everything the workflow makes of one dataset."""
-    return list_results(DATASETS[name], METHODS, EXTRACTORS)
+    """The plan of one dataset, and all that it is made of."""
+    return list_results(DATASETS[name])
 
 
-def all_results():
-    """Everything the workflow makes of the given datasets."""
-    return [file for name in GIVEN for file in results_of(name)]
+def comparison_of(name):
+    """What one dataset's plan is compared with: all orderings, and the walls of all scans."""
+    return list_comparison(DATASETS[name], METHODS, EXTRACTORS)
+
+
+def of_all_datasets(files_of):
+    """Files of all given datasets."""
+    return [file for name in GIVEN for file in files_of(name)]
 
 
 wildcard_constraints:

@@ -1,7 +1,7 @@
 rule assemble_plan:
     """Make faces, walls, openings and rooms of the first scans of an ordering."""
     input:
-        walls=plan_walls,
+        walls="results/{dataset}/plan/segments.parquet",
         selection=plan_selection,
         scans="results/{dataset}/scans.parquet",
         registration="results/{dataset}/registration.parquet",

@@ -79,25 +79,31 @@ rule draw_walls:
         "../../scripts/draw_walls.py"
 
 
+# what a report is made of, with a comparison or without
+REPORT_TABLES = {
+    "faces": "results/{dataset}/plan/faces.parquet",
+    "walls": "results/{dataset}/plan/walls.parquet",
+    "openings": "results/{dataset}/plan/openings.parquet",
+    "rooms": "results/{dataset}/plan/rooms.parquet",
+    "free": "results/{dataset}/plan/free.parquet",
+    "evidence": "results/{dataset}/plan/evidence.parquet",
+    "selection": plan_selection,
+    "segments": "results/{dataset}/plan/segments.parquet",
+    "poses": "results/{dataset}/poses.parquet",
+    "registration": "results/{dataset}/registration.parquet",
+    "recordings": recordings,
+    "page": REPORT_PAGE,
+    "code": code_of("write_report"),
+}
+
+
 rule write_report:
     """Write the report: one page that opens offline."""
     input:
-        faces="results/{dataset}/plan/faces.parquet",
-        walls="results/{dataset}/plan/walls.parquet",
-        openings="results/{dataset}/plan/openings.parquet",
-        rooms="results/{dataset}/plan/rooms.parquet",
-        free="results/{dataset}/plan/free.parquet",
-        evidence="results/{dataset}/plan/evidence.parquet",
-        selection=plan_selection,
-        segments=plan_walls,
-        poses="results/{dataset}/poses.parquet",
-        registration="results/{dataset}/registration.parquet",
-        figures=report_figures,
-        evaluation=report_evaluation,
-        recordings=recordings,
-        results=report_results,
-        page=REPORT_PAGE,
-        code=code_of("write_report"),
+        **REPORT_TABLES,
+        figures=figures_among(results_of),
+        evaluation=evaluated("plan"),
+        results=sizes_among(results_of),
     output:
         page="results/{dataset}/report.html",
     log:
@@ -110,6 +116,28 @@ rule write_report:
         runtime=10,
     params:
         settings=all_settings,
-        benchmarks="benchmarks/{dataset}",
+        run_times=run_times([]),
     script:
         "../../scripts/write_report.py"
+
+
+# a page of its own: a later run of the plan alone takes nothing from it
+use rule write_report as write_comparison with:
+    input:
+        **REPORT_TABLES,
+        figures=figures_among(compared),
+        evaluation=evaluated("plan", "walls"),
+        results=sizes_among(compared),
+    output:
+        page="results/{dataset}/comparison.html",
+    log:
+        "logs/{dataset}/write_comparison.log",
+    benchmark:
+        "benchmarks/{dataset}/write_comparison.tsv"
+    params:
+        settings=all_settings,
+        run_times=run_times(
+            METHODS,
+            EXTRACTORS,
+            ["draw_area", "evaluate_walls", "tabulate_seconds", "draw_evaluation"],
+        ),
