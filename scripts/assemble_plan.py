@@ -65,7 +65,7 @@ def assemble_plan(
     for name, schema in planning.TABLES.items():
         tables.write_table(outputs[name], schema, getattr(plan, name), allow_empty=True)
     if warning := messages.sparse_rays_warning(rays, settings["openings"]["min_opening_m"]):
-        log.log_line(f"assemble_plan: {warning}")
+        log.log_warning(f"assemble_plan: {warning}")
     log.log_line(
         f"assemble_plan: {is_used.sum():,} segments of {count} scans ({reason})"
         f" make {messages.summarise_plan(plan)}"

@@ -9,6 +9,7 @@ from scanplan.plan import floorplan
 from scanplan.project import code_files
 from scanplan.report.facts import RunFacts, SurveyFacts
 from scanplan.report.page import report_page
+from scanplan.report.summary import summarise_survey
 from scanplan.selection import stopping
 from scanplan.stage import log
 from scanplan.store import atomic, schemas, tables
@@ -22,6 +23,7 @@ def write_report(
     name: str,
     settings: Settings,
     run_times: Iterable[FilePath],
+    short: FilePath | None = None,
 ) -> None:
     """Write the report, with a comparison where there is one.
 
@@ -39,6 +41,8 @@ def write_report(
         All settings of the dataset.
     run_times : iterable of path-like
         What Snakemake measured of the stages, in their order, as far as it is there.
+    short : path-like, optional
+        summary.txt, to write.
     """
     plan = floorplan.FloorPlan(
         name=name,
@@ -62,6 +66,8 @@ def write_report(
     sources = {Path(path).name: text for path, text in _read_texts(files["page"])}
     text = report_page(sources, plan, survey, run)
     atomic.write_text(output, text)
+    if short is not None:
+        atomic.write_text(short, summarise_survey(plan, survey))
     summary = floorplan.summarise_floorplan(plan)
     log.log_line(f"write_report: {len(text) / 1e6:.1f} MB, {survey.chosen} scans, {summary}")
 
@@ -101,4 +107,5 @@ if __name__ == "__main__":
             name=snakemake.wildcards.dataset,
             settings=snakemake.params.settings,
             run_times=filter(os.path.exists, snakemake.params.run_times),
+            short=snakemake.output.get("summary"),
         )

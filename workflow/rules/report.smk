@@ -106,6 +106,7 @@ rule write_report:
         results=sizes_among(results_of),
     output:
         page="results/{dataset}/report.html",
+        summary="results/{dataset}/summary.txt",
     log:
         "logs/{dataset}/write_report.log",
     benchmark:

@@ -17,7 +17,7 @@ def sizes_among(files_of):
     """An input function: the tables and plans among the results, whose sizes a report states."""
 
     def sized(wildcards):
-        shown = (".html", ".svg")
+        shown = (".html", ".svg", ".txt")
         return [f for f in files_of(wildcards.dataset) if not f.endswith(shown)]
 
     return sized

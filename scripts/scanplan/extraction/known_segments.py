@@ -1,4 +1,4 @@
-"""Wall segments known from an earlier extraction: of the same points, by the same code and settings.
+"""Wall segments known from earlier: of the same points, by the same code and settings.
 
 Whether they are the same is told by a digest of all that a scan's segments depend on, which lies
 beside the segments in their table.

@@ -97,4 +97,4 @@ def _warn_of_tilt(
     sample_ids = map_tilt.sample_scan_ids(store.scan_ids.tolist())
     sample = ((store.read(i), sensors[i]["sensor_xyz_m"]) for i in sample_ids)
     if warning := map_tilt.tilt_warning(sample):
-        log.log_line(f"{stage}: {warning}")
+        log.log_warning(f"{stage}: {warning}")

@@ -31,6 +31,7 @@ _DRAWN = (
     "plan/map.yaml",
     *(f"figures/{f}.svg" for f in ("registration", "scans", "walls")),
     "report.html",
+    "summary.txt",
 )
 _EVALUATION = ("plan", "poses")
 _COMPARED = ("walls", "walls_aligned", "oracle", "seconds")
@@ -221,9 +222,7 @@ def list_results(found: Dataset) -> list[str]:
     return [f"results/{found.name}/{file}" for file in files]
 
 
-def list_comparison(
-    found: Dataset, methods: Sequence[str], extractors: Sequence[str]
-) -> list[str]:
+def list_comparison(found: Dataset, methods: Sequence[str], extractors: Sequence[str]) -> list[str]:
     """List what the plan of a dataset is compared with, beside what `list_results` lists.
 
     Parameters
