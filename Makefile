@@ -5,7 +5,7 @@ PYTHON ?= $(shell command -v python3.11 || command -v python3)
 VENV := .venv
 BIN := $(VENV)/bin
 LIBRARIES := libusb-1.0-0 libgl1 libgomp1 libx11-6
-SNAKEMAKE = PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --cores $(CORES)
+SNAKEMAKE = PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake $(if $(VERBOSE),--quiet host) --cores $(CORES)
 # tests of one group stay together: a group shares a run of the workflow
 PYTEST = $(BIN)/pytest --numprocesses $(CORES) --dist loadgroup
 
@@ -29,7 +29,7 @@ help: ## this list
 
 run: environment ## the demo: simulate an office, make its plan
 	@test -z "$(CONFIG)" || PYTHONPATH=scripts $(BIN)/python -m scanplan.project.settings "$(CONFIG)"
-	@$(SNAKEMAKE) $(TARGET) $(if $(VERBOSE),--quiet host) $(if $(CONFIG),--configfile "$(CONFIG)") \
+	@$(SNAKEMAKE) $(TARGET) $(if $(CONFIG),--configfile "$(CONFIG)") \
 	    $(if $(DATASET)$(REPLACE),--config $(if $(DATASET),'dataset="$(DATASET)"') $(if $(REPLACE),'replace="$(REPLACE)"')) \
 	    $(ARGS)
 

@@ -19,7 +19,6 @@ from scanplan.store import schemas, tables
 from scanplan.types import Array, Columns, FilePath, FloatArray, IntArray, Settings
 
 _DIGESTS = "digests"
-_DIGEST_BYTES = 16  # two scans of all that will ever be recorded do not share one by chance
 
 
 def digest_recipe(extractor: str, settings: Settings, code: Iterable[FilePath]) -> bytes:
@@ -69,7 +68,8 @@ def find_unknown_segments(
     segments : WallSegments or None
         None where they are known.
     """
-    total = hashlib.blake2b(recipe, digest_size=_DIGEST_BYTES)
+    # of all scans that will ever be recorded no two share 16 bytes by chance
+    total = hashlib.blake2b(recipe, digest_size=16)
     total.update(json.dumps([scan_id, planar, *np.asarray(sensor_xyz_m, float).tolist()]).encode())
     total.update(np.ascontiguousarray(xyz_m).data)
     digest = total.hexdigest()

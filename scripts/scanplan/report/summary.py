@@ -35,9 +35,10 @@ def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
         _name_some("room", rooms["room"][~rooms["closed"]], "not closed: area is a guess"),
     ]
     n_kept, n_candidates = (int(f(survey.registration["kept"])) for f in (np.sum, np.size))
+    n_recorded = survey.poses["scan_id"][-1] + 1  # a few more may follow the last candidate
     used = (
         f"{survey.chosen:,} of {_count(n_kept, 'registered scan')}"
-        f" ({n_candidates:,} candidates of {survey.poses['scan_id'][-1] + 1:,} recorded scans)"
+        f" ({n_candidates:,} candidates of about {n_recorded:,} recorded)"
     )
     lines = [
         ("found", found),
