@@ -1,6 +1,6 @@
 """Extract the wall segments of the scans that make the plan, as far as they are not known."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -22,7 +22,7 @@ def extract_chosen_walls(
     settings: Settings,
     stop: Mapping[str, Any],
     walls: FilePath | None = None,
-    code: Iterable[FilePath] = (),
+    code: str = "",
     threads: int = 1,
 ) -> None:
     """Write the walls of the first scans of an ordering.
@@ -70,6 +70,6 @@ if __name__ == "__main__":
             settings=snakemake.params.settings,
             stop=snakemake.params.stop,
             walls=snakemake.params.walls,
-            code=snakemake.input.extraction_code,
+            code=snakemake.params.extraction_code,
             threads=snakemake.threads,
         )

@@ -1,7 +1,5 @@
 """Extract the wall segments that each scan shows (thesis, sections 3.4 and 5.3)."""
 
-from collections.abc import Iterable
-
 from scanplan.extraction import survey_walls
 from scanplan.stage import log
 from scanplan.types import FilePath, Settings
@@ -14,7 +12,7 @@ def extract_walls(
     *,
     extractor: str,
     settings: Settings,
-    code: Iterable[FilePath] = (),
+    code: str = "",
     threads: int = 1,
 ) -> None:
     """Write the walls of every registered scan.
@@ -48,6 +46,6 @@ if __name__ == "__main__":
             snakemake.output.walls,
             extractor=snakemake.wildcards.extractor,
             settings=snakemake.params.settings,
-            code=snakemake.input.code,
+            code=snakemake.params.code,
             threads=snakemake.threads,
         )

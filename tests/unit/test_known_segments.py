@@ -53,15 +53,12 @@ def test_whatever_segments_depend_on_makes_them_unknown(other):
     assert changed != digest and segments is not None
 
 
-def test_the_recipe_is_told_by_extractor_settings_and_what_the_code_says(tmp_path):
-    a, b, same = (tmp_path / name for name in "abc")
-    for file, text in ((a, "one"), (b, "two"), (same, "one")):
-        file.write_text(text)
-    recipe = known_segments.digest_recipe("own", {"x": 1, "y": 2}, [a, b])
-    assert recipe == known_segments.digest_recipe("own", {"y": 2, "x": 1}, [b, same])
-    assert recipe != known_segments.digest_recipe("own", {"x": 1, "y": 3}, [a, b])
-    assert recipe != known_segments.digest_recipe("other", {"x": 1, "y": 2}, [a, b])
-    assert recipe != known_segments.digest_recipe("own", {"x": 1, "y": 2}, [a, a])
+def test_the_recipe_is_told_by_extractor_settings_and_code():
+    recipe = known_segments.digest_recipe("own", {"x": 1, "y": 2}, "code")
+    assert recipe == known_segments.digest_recipe("own", {"y": 2, "x": 1}, "code")
+    assert recipe != known_segments.digest_recipe("own", {"x": 1, "y": 3}, "code")
+    assert recipe != known_segments.digest_recipe("other", {"x": 1, "y": 2}, "code")
+    assert recipe != known_segments.digest_recipe("own", {"x": 1, "y": 2}, "edited")
 
 
 def test_a_table_of_new_and_known_segments_is_that_of_all_new_ones(tmp_path):

@@ -6,7 +6,7 @@ sys.path.insert(0, f"{workflow.basedir}/scripts")
 from scanplan.errors import StageError
 from scanplan.lab.thesis import experiments
 from scanplan.project import stage_settings
-from scanplan.project.code_files import list_helpers
+from scanplan.project.code_files import digest_helpers
 from scanplan.project.dataset import (
     RESERVED,
     describe_dataset,
@@ -132,14 +132,13 @@ def simulated_as(suffix):
 
 
 def code_of(script):
-    """Helper files that a script imports: as inputs they make an edit rerun the stages that use them."""
+    """A param function: a digest of the helpers that a script imports; an edit reruns what uses them."""
 
-    def helpers(wildcards):
+    def digest(wildcards):
         # looked up for the jobs of a run alone: every job parses the whole workflow anew
-        files = list_helpers(f"{workflow.basedir}/scripts/{script}.py")
-        return [os.path.relpath(file) for file in files]
+        return digest_helpers(f"{workflow.basedir}/scripts/{script}.py")
 
-    return helpers
+    return digest
 
 
 def all_cores(wildcards):

@@ -4,7 +4,6 @@ rule draw_scans:
         scans="results/{dataset}/scans.parquet",
         registration="results/{dataset}/registration.parquet",
         selection=plan_selection,
-        code=code_of("draw_scans"),
     output:
         figure=report(
             "results/{dataset}/figures/scans.svg",
@@ -21,6 +20,7 @@ rule draw_scans:
         mem_mb=1500,
         runtime=10,
     params:
+        code=code_of("draw_scans"),
         stop=section("selection", "stop"),
     script:
         "../../scripts/draw_scans.py"
@@ -30,7 +30,6 @@ rule draw_area:
     """Draw the covered area against the number of scans, for every ordering."""
     input:
         selections=all_selections,
-        code=code_of("draw_area"),
     output:
         figure=report(
             "results/{dataset}/figures/area.svg",
@@ -46,6 +45,8 @@ rule draw_area:
     resources:
         mem_mb=1000,
         runtime=10,
+    params:
+        code=code_of("draw_area"),
     script:
         "../../scripts/draw_area.py"
 
@@ -57,7 +58,6 @@ rule draw_walls:
         registration="results/{dataset}/registration.parquet",
         selection=plan_selection,
         faces="results/{dataset}/plan/faces.parquet",
-        code=code_of("draw_walls"),
     output:
         figure=report(
             "results/{dataset}/figures/walls.svg",
@@ -74,6 +74,7 @@ rule draw_walls:
         mem_mb=1500,
         runtime=10,
     params:
+        code=code_of("draw_walls"),
         stop=section("selection", "stop"),
     script:
         "../../scripts/draw_walls.py"
@@ -93,7 +94,6 @@ REPORT_TABLES = {
     "registration": "results/{dataset}/registration.parquet",
     "recordings": recordings,
     "page": REPORT_PAGE,
-    "code": code_of("write_report"),
 }
 
 
@@ -116,6 +116,7 @@ rule write_report:
         mem_mb=1500,
         runtime=10,
     params:
+        code=code_of("write_report"),
         settings=all_settings,
         run_times=run_times([]),
     script:
@@ -136,6 +137,7 @@ use rule write_report as write_comparison with:
     benchmark:
         "benchmarks/{dataset}/write_comparison.tsv"
     params:
+        code=code_of("write_report"),
         settings=all_settings,
         run_times=run_times(
             METHODS,

@@ -3,7 +3,6 @@ rule extract_walls:
     input:
         scans="results/{dataset}/scans.parquet",
         registration="results/{dataset}/registration.parquet",
-        code=code_of("extract_walls"),
     output:
         walls="results/{dataset}/walls/{extractor}.parquet",
     log:
@@ -15,6 +14,7 @@ rule extract_walls:
         mem_mb=2000,
         runtime=60,
     params:
+        code=code_of("extract_walls"),
         settings=extractor_settings,
     script:
         "../../scripts/extract_walls.py"
@@ -26,8 +26,6 @@ rule extract_chosen_walls:
         scans="results/{dataset}/scans.parquet",
         registration="results/{dataset}/registration.parquet",
         selection=plan_selection,
-        extraction_code=code_of("extract_walls"),
-        code=code_of("extract_chosen_walls"),
     output:
         # the stage takes from the old file what is still good in it
         segments=update("results/{dataset}/plan/segments.parquet"),
@@ -40,6 +38,8 @@ rule extract_chosen_walls:
         mem_mb=2000,
         runtime=60,
     params:
+        code=code_of("extract_chosen_walls"),
+        extraction_code=code_of("extract_walls"),
         extractor=section("plan", "extractor"),
         settings=plan_extractor_settings,
         stop=section("selection", "stop"),

@@ -7,7 +7,6 @@ beside the segments in their table.
 import hashlib
 import json
 from collections.abc import Iterable, Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,20 +20,18 @@ from scanplan.types import Array, Columns, FilePath, FloatArray, IntArray, Setti
 _DIGESTS = "digests"
 
 
-def digest_recipe(extractor: str, settings: Settings, code: Iterable[FilePath]) -> bytes:
+def digest_recipe(extractor: str, settings: Settings, code: str) -> bytes:
     """Return a digest of what the segments of all scans depend on beside their points.
 
     Parameters
     ----------
     extractor : str
     settings : dict
-    code : iterable of path-like
-        The files that the extraction is made of; what they hold counts, not where they lie.
+    code : str
+        What names the code of the extraction.
     """
-    total = hashlib.blake2b(json.dumps([extractor, settings], sort_keys=True).encode())
-    for content in sorted(Path(file).read_bytes() for file in code):
-        total.update(hashlib.blake2b(content).digest())
-    return total.digest()
+    recipe = json.dumps([extractor, settings, code], sort_keys=True)
+    return hashlib.blake2b(recipe.encode()).digest()
 
 
 def find_unknown_segments(

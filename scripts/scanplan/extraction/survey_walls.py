@@ -24,7 +24,7 @@ def write_survey_walls(
     settings: Settings,
     scan_ids: IntArray | None = None,
     known: Iterable[FilePath] = (),
-    code: Iterable[FilePath] = (),
+    code: str = "",
     threads: int = 1,
 ) -> None:
     """Write the wall segments of registered scans.
@@ -46,8 +46,8 @@ def write_survey_walls(
     known : iterable of path-like
         Tables of walls: the segments of scans that they have of the same points, by the same code
         and settings, are taken from them.
-    code : iterable of path-like
-        The files of that code.
+    code : str
+        What names that code.
     threads : int
 
     Raises
