@@ -32,6 +32,7 @@ _CHATTER = (
     "Using shell",
     "Singularity containers",
     "Provided ",
+    "Exiting because a job",
 )
 _CHATTER_EVENTS = {event for event in LogEvent if event != LogEvent.ERROR}
 # the stage itself says what was wrong
@@ -180,11 +181,9 @@ class RunConsole(logging.Handler):
         event = getattr(record, "event", None)
         if event == LogEvent.ERROR:
             return getattr(record, "exception", None) not in _ERRORS_OF_STAGES
-        if event in _CHATTER_EVENTS:
+        if event in _CHATTER_EVENTS or str(record.msg).startswith(_CHATTER):
             return False
-        if record.levelno >= logging.WARNING:
-            return True
-        return not self._total and not str(record.msg).startswith(_CHATTER)
+        return record.levelno >= logging.WARNING or not self._total
 
 
 def open_console(datasets: Iterable[str]) -> RunConsole:
