@@ -5,17 +5,17 @@ PYTHON ?= $(shell command -v python3.11 || command -v python3)
 VENV := .venv
 BIN := $(VENV)/bin
 LIBRARIES := libusb-1.0-0 libgl1 libgomp1 libx11-6
-SNAKEMAKE = PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --cores $(CORES)
+SNAKEMAKE = PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake $(if $(VERBOSE),--quiet host) --cores $(CORES)
 # tests of one group stay together: a group shares a run of the workflow
 PYTEST = $(BIN)/pytest --numprocesses $(CORES) --dist loadgroup
 
 # a misspelt variable would make the demo instead of what was meant
-KNOWN := CORES PYTHON DATASET CONFIG REPLACE ARGS
+KNOWN := CORES PYTHON DATASET CONFIG REPLACE VERBOSE ARGS
 GIVEN := $(foreach name,$(.VARIABLES),$(if $(findstring command line,$(origin $(name))),$(name)))
 UNKNOWN := $(filter-out $(KNOWN),$(GIVEN))
 $(if $(UNKNOWN),$(error $(UNKNOWN): no such variable; there are $(KNOWN)))
 
-.PHONY: help run quick test lint style bench figures settings environment clean
+.PHONY: help run compare quick test lint style bench figures settings environment clean
 .DEFAULT_GOAL := run
 
 help: ## this list
@@ -24,13 +24,17 @@ help: ## this list
 	@echo "make run DATASET=PATH                the plan of a folder with recordings"
 	@echo "make run DATASET=PATH CONFIG=FILE    with settings from a file"
 	@echo "make run DATASET=PATH REPLACE=NAME   in the place of results/NAME, made of another source"
-	@echo "CORES=N for run, quick and test (2); PYTHON=PATH for the set-up; ARGS='...' is handed on"
+	@echo "make run VERBOSE=1                   with all that Snakemake and the stages say"
+	@echo "CORES=N for run, compare, quick and test (2); PYTHON=PATH for the set-up; ARGS='...' is handed on"
 
 run: environment ## the demo: simulate an office, make its plan
 	@test -z "$(CONFIG)" || PYTHONPATH=scripts $(BIN)/python -m scanplan.project.settings "$(CONFIG)"
-	@$(SNAKEMAKE) $(if $(CONFIG),--configfile "$(CONFIG)") \
+	@$(SNAKEMAKE) $(TARGET) $(if $(CONFIG),--configfile "$(CONFIG)") \
 	    $(if $(DATASET)$(REPLACE),--config $(if $(DATASET),'dataset="$(DATASET)"') $(if $(REPLACE),'replace="$(REPLACE)"')) \
 	    $(ARGS)
+
+compare: TARGET = comparison
+compare: run ## the same with all orderings and extractors beside the plan's own
 
 quick: environment style ## lint and the tests of what changed since main, under 90 seconds
 	@changed=$$($(BIN)/python tests/changed_tests.py python); \

@@ -38,4 +38,10 @@ if THESIS:
 rule all:
     default_target: True
     input:
-        all_results(),
+        of_all_datasets(results_of),
+
+
+rule comparison:
+    input:
+        of_all_datasets(results_of),
+        of_all_datasets(comparison_of),

@@ -64,22 +64,22 @@ def assemble_plan(
     messages.check_plan(walls, plan, is_used.sum(), count)
     heights_m = _find_heights(rays)
     for name, schema in planning.TABLES.items():
-        numbers = heights_m if name == "free" else None
+        notes = heights_m if name == "free" else None
         columns = getattr(plan, name)
-        tables.write_table(outputs[name], schema, columns, allow_empty=True, numbers=numbers)
+        tables.write_table(outputs[name], schema, columns, allow_empty=True, notes=notes)
     if warning := messages.sparse_rays_warning(rays, settings["openings"]["min_opening_m"]):
-        log.log_line(f"assemble_plan: {warning}")
+        log.log_warning(f"assemble_plan: {warning}")
     log.log_line(
         f"assemble_plan: {is_used.sum():,} segments of {count} scans ({reason})"
         f" make {messages.summarise_plan(plan)}"
     )
 
 
-def _find_heights(rays: ray_set.RaySet) -> dict[str, float]:
-    """Return the heights of floor and ceiling in the map frame; NaN where not seen."""
+def _find_heights(rays: ray_set.RaySet) -> dict[str, str]:
+    """Return the heights of floor and ceiling in the map frame in words; nan where not seen."""
     z_m = np.empty(0) if rays.planar else rays.xyz_m[:, 2]
     floor_z_m, ceiling_z_m = levels.find_floor_and_ceiling(z_m)
-    return {"floor_z_m": floor_z_m, "ceiling_z_m": ceiling_z_m}
+    return {"floor_z_m": repr(float(floor_z_m)), "ceiling_z_m": repr(float(ceiling_z_m))}
 
 
 if __name__ == "__main__":

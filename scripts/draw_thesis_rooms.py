@@ -77,9 +77,8 @@ def draw_thesis_rooms(
 
 if __name__ == "__main__":
     with log.log_to_file(snakemake.log[0]):
-        others = ("code", "evaluated")
         draw_thesis_rooms(
-            {name: path for name, path in snakemake.input.items() if name not in others},
+            {name: path for name, path in snakemake.input.items() if name != "evaluated"},
             list(snakemake.input.evaluated),
             snakemake.output.figures,
             snakemake.output.orders,

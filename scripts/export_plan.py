@@ -41,7 +41,8 @@ def export_plan(
         free=_read_optional(plan["free"], schemas.FREE),
         assumed_thickness_m=settings["assumed_thickness_m"],
         assumed_height_m=settings["assumed_height_m"],
-        **tables.read_numbers(plan["free"], schemas.FREE),
+        floor_z_m=float(tables.read_note(plan["free"], schemas.FREE, "floor_z_m")),
+        ceiling_z_m=float(tables.read_note(plan["free"], schemas.FREE, "ceiling_z_m")),
     )
     sheet = drawing.draw_plan(drawn)
     grid = grid_map.draw_grid_map(drawn, settings["map_cell_m"])

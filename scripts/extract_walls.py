@@ -1,21 +1,8 @@
 """Extract the wall segments that each scan shows (thesis, sections 3.4 and 5.3)."""
 
-import time
-from collections.abc import Mapping
-
-from scanplan.errors import StageError
-from scanplan.extraction import map_tilt, segments
-from scanplan.extraction.extractors import (
-    EXTRACTORS,
-    find_wall_segments,
-    select_limits,
-    select_settings,
-)
+from scanplan.extraction import survey_walls
 from scanplan.stage import log
-from scanplan.stage.per_registered_scan import sensor_keywords
-from scanplan.stage.per_scan import map_scans
-from scanplan.store import schemas, tables
-from scanplan.types import FilePath, FloatArray, Settings
+from scanplan.types import FilePath, Settings
 
 
 def extract_walls(
@@ -25,6 +12,7 @@ def extract_walls(
     *,
     extractor: str,
     settings: Settings,
+    code: str = "",
     threads: int = 1,
 ) -> None:
     """Write the walls of every registered scan.
@@ -35,47 +23,19 @@ def extract_walls(
         scans.parquet and registration.parquet.
     output : path-like
         walls/<extractor>.parquet, to write.
-    extractor : str
-        A key of `EXTRACTORS`.
-    settings : dict
-        Of that extractor's class of settings; of `furniture.FurnitureLimits`, too, where it drops
-        furniture.
-    threads : int
+    extractor, settings, code, threads
+        See `survey_walls.write_survey_walls`.
     """
-    started = time.perf_counter()
-    if extractor not in EXTRACTORS:
-        raise StageError(
-            f"extractor {extractor}: is not known; choose one of {', '.join(EXTRACTORS)}"
-        )
-    method = EXTRACTORS[extractor]
-    store = tables.ScanStore(scans)
-    sensors = sensor_keywords(store.scan_ids, scans, registration)
-    wall_segments = map_scans(
-        find_wall_segments,
+    survey_walls.write_survey_walls(
         scans,
-        label=f"extract_walls {extractor}",
+        registration,
+        output,
+        stage="extract_walls",
+        extractor=extractor,
+        settings=settings,
+        code=code,
         threads=threads,
-        per_scan=sensors,
-        planar=store.planar,
-        extractor=method,
-        settings=select_settings(method.settings, settings),
-        limits=select_limits(method, settings),
     )
-    if not store.planar:
-        _warn_of_tilt(store, sensors)
-    columns = segments.segment_columns(store.scan_ids, wall_segments)
-    tables.write_table(output, schemas.WALLS, columns, allow_empty=True)
-    took_ms = 1e3 * (time.perf_counter() - started)
-    summary = segments.summarise_segments(columns, len(store.scan_ids), took_ms)
-    log.log_line(f"extract_walls: {extractor}, {summary}")
-
-
-def _warn_of_tilt(store: tables.ScanStore, sensors: Mapping[int, Mapping[str, FloatArray]]) -> None:
-    """Log a warning if the map is tilted."""
-    sample_ids = map_tilt.sample_scan_ids(store.scan_ids.tolist())
-    sample = ((store.read(i), sensors[i]["sensor_xyz_m"]) for i in sample_ids)
-    if warning := map_tilt.tilt_warning(sample):
-        log.log_line(f"extract_walls: {warning}")
 
 
 if __name__ == "__main__":
@@ -86,5 +46,6 @@ if __name__ == "__main__":
             snakemake.output.walls,
             extractor=snakemake.wildcards.extractor,
             settings=snakemake.params.settings,
+            code=snakemake.params.code,
             threads=snakemake.threads,
         )

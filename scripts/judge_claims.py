@@ -68,7 +68,7 @@ def _read_tables(files: Mapping[str, Sequence[FilePath]], i: int) -> dict[str, p
 if __name__ == "__main__":
     with log.log_to_file(snakemake.log[0]):
         judge_claims(
-            {key: list(paths) for key, paths in snakemake.input.items() if key != "code"},
+            {key: list(paths) for key, paths in snakemake.input.items()},
             snakemake.output.claims,
             rooms_seeds=snakemake.params.rooms_seeds,
             drive_seeds=snakemake.params.drive_seeds,

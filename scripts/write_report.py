@@ -9,10 +9,11 @@ from scanplan.plan import floorplan
 from scanplan.project import code_files
 from scanplan.report.facts import RunFacts, SurveyFacts
 from scanplan.report.page import report_page
+from scanplan.report.summary import summarise_survey
 from scanplan.selection import stopping
 from scanplan.stage import log
 from scanplan.store import atomic, schemas, tables
-from scanplan.types import FilePath, Settings
+from scanplan.types import Columns, FilePath, Settings
 
 
 def write_report(
@@ -21,23 +22,27 @@ def write_report(
     *,
     name: str,
     settings: Settings,
-    benchmarks: FilePath,
+    run_times: Iterable[FilePath],
+    short: FilePath | None = None,
 ) -> None:
-    """Write the report.
+    """Write the report, with a comparison where there is one.
 
     Parameters
     ----------
     files : dict of str to path-like, or list of path-like
-        `faces`, `walls`, `openings`, `rooms`, `free`, `evidence` of plan/; `selection`, `segments`
-        (walls/), `poses`, `registration`; `page` (templates, CSS, JavaScript); `figures`;
-        `evaluation` (none, or of walls and of plan); `recordings`; `results`.
+        `faces`, `walls`, `openings`, `rooms`, `free`, `evidence`, `segments` of plan/;
+        `selection`, `poses`, `registration`; `page` (templates, CSS, JavaScript); `figures`;
+        `evaluation` (plan.parquet and walls.parquet, as far as they are known); `recordings`;
+        `results`.
     output : path-like
-        report.html, to write.
+        report.html or comparison.html, to write.
     name : str
     settings : dict
         All settings of the dataset.
-    benchmarks : path-like
-        Folder of the stages' run times, as far as they are there.
+    run_times : iterable of path-like
+        What Snakemake measured of the stages, in their order, as far as it is there.
+    short : path-like, optional
+        summary.txt, to write.
     """
     plan = floorplan.FloorPlan(
         name=name,
@@ -54,22 +59,22 @@ def write_report(
     run = RunFacts(
         settings=settings,
         figures={Path(path).stem: text for path, text in _read_texts(files["figures"])},
-        benchmarks={path.stem: path.read_text() for path in sorted(Path(benchmarks).glob("*.tsv"))},
+        benchmarks={Path(path).stem: text for path, text in _read_texts(run_times)},
         sizes=[*recorded, *made],
         version=f"Made by scanplan, code {code_files.digest_code()}.",
     )
     sources = {Path(path).name: text for path, text in _read_texts(files["page"])}
     text = report_page(sources, plan, survey, run)
     atomic.write_text(output, text)
+    if short is not None:
+        atomic.write_text(short, summarise_survey(plan, survey))
     summary = floorplan.summarise_floorplan(plan)
     log.log_line(f"write_report: {len(text) / 1e6:.1f} MB, {survey.chosen} scans, {summary}")
 
 
 def _read_survey(files: Mapping[str, Any], stop: Settings) -> SurveyFacts:
     selection = tables.read_table(files["selection"], schemas.SELECTION)
-    kinds = (schemas.EVALUATION, schemas.PLAN_EVALUATION)
-    # without a truth there is no table of the evaluation
-    evaluation = zip(files["evaluation"], kinds, strict=False)
+    evaluation = {Path(path).stem: path for path in files["evaluation"]}
     return SurveyFacts(
         selection=selection,
         registration=tables.read_table(files["registration"], schemas.REGISTRATION),
@@ -77,8 +82,13 @@ def _read_survey(files: Mapping[str, Any], stop: Settings) -> SurveyFacts:
         segments=tables.read_table(files["segments"], schemas.WALLS, allow_empty=True),
         evidence=tables.read_table(files["evidence"], schemas.EVIDENCE, allow_empty=True),
         chosen=stopping.choose_n_scans(selection, **stop)[0],
-        evaluation=tuple(tables.read_table(path, kind) for path, kind in evaluation),
+        plan_measures=_read_if_known(evaluation.get("plan"), schemas.PLAN_EVALUATION),
+        wall_measures=_read_if_known(evaluation.get("walls"), schemas.EVALUATION),
     )
+
+
+def _read_if_known(path: FilePath | None, schema: schemas.Schema) -> Columns | None:
+    return None if path is None else tables.read_table(path, schema)
 
 
 def _read_texts(paths: Iterable[FilePath]) -> list[tuple[FilePath, str]]:
@@ -96,5 +106,6 @@ if __name__ == "__main__":
             snakemake.output.page,
             name=snakemake.wildcards.dataset,
             settings=snakemake.params.settings,
-            benchmarks=snakemake.params.benchmarks,
+            run_times=filter(os.path.exists, snakemake.params.run_times),
+            short=snakemake.output.get("summary"),
         )

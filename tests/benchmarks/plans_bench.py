@@ -76,7 +76,7 @@ def bench(results: Path, surveys: Sequence[Path], settings: Settings) -> None:
     finished = {folder: truth for folder, truth in truths.items() if truth is not None}
     if not finished:
         print(
-            f"plans: no survey with walls and a truth under {results}; run the workflow first",
+            f"plans: no survey with walls and a truth under {results}; `make compare` makes them",
             flush=True,
         )
     for folder, truth in finished.items():

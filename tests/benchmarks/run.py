@@ -5,7 +5,7 @@ Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [pl
        run.py compare FOLDER FOLDER
 
 Without a name all of them but wall_quality, which takes minutes, and plans, which measures the
-surveys that the workflow has finished under results/; a FOLDER holds the dataset folders with the
+surveys that `make compare` has finished under results/; a FOLDER holds the dataset folders with the
 truths of those it did not simulate.
 
 `guard` makes the plans of twelve simulated drives and six real recordings with the code of a

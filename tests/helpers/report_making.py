@@ -114,8 +114,8 @@ def files(folder):
         "segments": (schemas.WALLS, segments()),
         "poses": (schemas.POSES, poses()),
         "registration": (schemas.REGISTRATION, registration()),
-        "evaluation": (schemas.EVALUATION, evaluation()),
-        "plan_evaluation": (schemas.PLAN_EVALUATION, plan_evaluation()),
+        "evaluation/walls": (schemas.EVALUATION, evaluation()),
+        "evaluation/plan": (schemas.PLAN_EVALUATION, plan_evaluation()),
     }
     paths = {name: folder / f"{name}.parquet" for name in made}
     for name, (schema, columns) in made.items():
@@ -134,7 +134,7 @@ def files(folder):
     return paths | {
         "page": [PAGE / name for name in ("page.html.j2", "tables.html.j2", "page.css", "page.js")],
         "figures": [folder / "scans.svg"],
-        "evaluation": [paths["evaluation"], paths["plan_evaluation"]],
+        "evaluation": [paths["evaluation/walls"], paths["evaluation/plan"]],
         "recordings": [folder / "survey.bag"],
         "results": [paths["faces"], paths["walls"]],
     }

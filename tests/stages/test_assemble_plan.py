@@ -100,7 +100,7 @@ def test_the_same_tables_give_the_same_bytes(house, tmp_path):
 def test_no_wall_in_the_selected_scans_is_told(house, tmp_path):
     inputs = with_walls(house, tmp_path, walls([(0, 0, 1, 0)]))
     with pytest.raises(
-        StageError, match=r"walls\.parquet: no wall in the first 1 scans .*selection\.stop"
+        StageError, match=r"walls\.parquet: no wall in the first 1 scans, .*selection\.stop"
     ):
         assembled(inputs, tmp_path / "plan", n_scans=1)
     assert not (tmp_path / "plan/faces.parquet").exists()

@@ -37,8 +37,8 @@ NAMES = {
 def plan(tmp_path):
     paths = {name: tmp_path / f"{name}.parquet" for name in TABLES}
     for name, (schema, made) in TABLES.items():
-        numbers = {"floor_z_m": 0.0, "ceiling_z_m": floorplan_making.HEIGHT_M + 0.1}
-        tables.write_table(paths[name], schema, made(), numbers=numbers)
+        notes = {"floor_z_m": "0.0", "ceiling_z_m": str(floorplan_making.HEIGHT_M + 0.1)}
+        tables.write_table(paths[name], schema, made(), notes=notes)
     return paths
 
 
@@ -127,8 +127,8 @@ def test_walls_that_scans_show_from_both_sides_have_their_true_volume(tmp_path):
     outputs = {kind: tmp_path / name for kind, name in NAMES.items()}
     # beams of 15 degrees hardly reach floor and ceiling of rooms of 4 m; another sensor's do
     free = tables.read_table(made["free"], schemas.FREE)
-    heights = {"floor_z_m": 0.0, "ceiling_z_m": HEIGHT_M}
-    tables.write_table(made["free"], schemas.FREE, free, numbers=heights)
+    heights = {"floor_z_m": "0.0", "ceiling_z_m": str(HEIGHT_M)}
+    tables.write_table(made["free"], schemas.FREE, free, notes=heights)
     export_plan(made, outputs, name="house", settings=SETTINGS)
     model = ifcopenshell.open(outputs["ifc"])
     measured = [

@@ -41,3 +41,12 @@ def test_a_stage_does_not_depend_on_what_it_does_not_import():
 def test_every_script_imports_helpers_that_exist():
     for script in SCRIPTS.glob("*.py"):
         assert {"log", "errors"} <= names(script)
+
+
+def test_a_digest_of_helpers_is_of_what_they_say(tmp_path):
+    one, same, other = (tmp_path / f"{name}.py" for name in ("one", "same", "other"))
+    for script, imported in ((one, "tum"), (same, "tum"), (other, "atomic")):
+        script.write_text(f"from scanplan.store import {imported}\n")
+    digest = code_files.digest_helpers(one)
+    assert len(digest) == 12 and digest == code_files.digest_helpers(same)
+    assert digest != code_files.digest_helpers(other)

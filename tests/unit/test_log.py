@@ -1,5 +1,6 @@
 """The output of a stage; each case in a process of its own, as descriptors are redirected."""
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -9,14 +10,14 @@ import pytest
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 
 
-def run(tmp_path, body):
+def run(tmp_path, body, **variables):
     code = "import os, signal, sys, time\nfrom scanplan.stage import log\n"
     code += "from scanplan.errors import StageError\n"
     code += f"with log.log_to_file('logs/stage.log'):\n    {body}\n"
     result = subprocess.run(
         [sys.executable, "-c", code],
         cwd=tmp_path,
-        env={"PYTHONPATH": str(SCRIPTS)},
+        env={"PYTHONPATH": str(SCRIPTS), **variables},
         capture_output=True,
         text=True,
     )
@@ -59,3 +60,17 @@ def test_an_interrupted_stage_says_so_and_nothing_of_memory(tmp_path, sent):
 def test_progress_counts_and_is_seen(tmp_path):
     result, log = run(tmp_path, "assert list(log.report_progress(range(3), 'stage')) == [0, 1, 2]")
     assert "stage: 3/3 scans" in result.stderr and "stage: 3/3 scans" in log
+
+
+def test_progress_tells_the_rate_and_the_time_left(tmp_path):
+    # two of ten in two seconds
+    body = "list(log.report_progress((time.sleep(1.05) for _ in range(2)), 'stage', total=10))"
+    _, said = run(tmp_path, body)
+    assert re.search(r"stage: 1/10 scans, (0\.9|1\.0) per s, (9|10) s left", said)
+
+
+def test_a_watched_stage_leaves_the_screen_to_its_run(tmp_path):
+    body = "log.log_line('a line'); log.log_warning('doubt'); raise StageError('a.bag: cut')"
+    result, said = run(tmp_path, body, SCANPLAN_WATCHED="1")
+    assert result.stdout == result.stderr == ""
+    assert "INFO a line" in said and "WARNING doubt" in said and "ERROR stage: a.bag: cut" in said

@@ -80,5 +80,12 @@ def test_empty_folders_go_and_results_stay():
 
 
 def test_results_are_said_with_their_places():
+    Path("results/floor").mkdir(parents=True)
     text = run_outcome.describe_results("floor")
-    assert "results/floor/plan/plan.svg" in text and "results/floor/report.html" in text
+    assert "results/floor/plan/plan.pdf" in text and "results/floor/report.html" in text
+    assert "comparison" not in text
+    Path("results/floor/summary.txt").write_text("found    2 rooms\n")
+    Path("results/floor/comparison.html").touch()
+    text = run_outcome.describe_results("floor")
+    assert "floor\nfound    2 rooms\nplan " in text
+    assert "report.html, results/floor/comparison.html" in text

@@ -9,7 +9,11 @@ import time
 
 import pytest
 
+from assemble_plan import assemble_plan
+from helpers.default_settings import SETTINGS
 from helpers.project_copy import TINY, Project
+from scanplan.plan import planning
+from scanplan.project import stage_settings
 
 # the tests share one run, which each leaves as it was
 pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("workflow")]
@@ -18,47 +22,88 @@ pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("workflow")]
 @pytest.fixture(scope="module")
 def project(project_root, tmp_path_factory):
     project = Project(project_root, tmp_path_factory.mktemp("work space"))
-    result = project.run()
-    assert result.returncode == 0, result.stdout + result.stderr
-    project.output = result.stdout + result.stderr
+    planned = project.run()
+    assert planned.returncode == 0, planned.stdout + planned.stderr
+    project.plan_alone = project.digests()
+    compared = project.run("comparison")
+    assert compared.returncode == 0, compared.stdout + compared.stderr
+    project.said = {"plan": planned.stderr, "comparison": compared.stderr}
+    assert planned.stdout == compared.stdout == ""
     return project
 
 
-EVALUATED = {"evaluate_walls", "draw_evaluation", "tabulate_seconds"}
 PLANNED = {"assemble_plan", "export_plan", "draw_walls", "evaluate_plan"}
-AFTER_ORDERS = {"order_scans", "draw_scans", "draw_area"} | PLANNED | EVALUATED
+CHOSEN = {"extract_chosen_walls", "draw_scans"} | PLANNED
+EVALUATED = {"evaluate_walls", "draw_evaluation", "tabulate_seconds"}
+AFTER_ORDERS = {"order_scans", "draw_area"} | CHOSEN | EVALUATED
 AFTER_HULLS = {"build_hulls"} | AFTER_ORDERS
+REPORTS = {"write_report", "write_comparison"}
 
 
-def test_every_result_is_there_and_the_user_is_told(project):
-    made = set(project.digests())
+def test_the_plan_and_its_report_are_there_and_the_user_is_told(project):
+    made = set(project.plan_alone)
     for name in (
         "poses.parquet",
         "scans.parquet",
         *(f"plan/plan.{suffix}" for suffix in ("geojson", "dxf", "svg", "pdf", "ifc")),
         "plan/map.yaml",
         "figures/walls.svg",
-        "evaluation/walls.parquet",
+        "evaluation/plan.parquet",
     ):
         assert f"results/demo/{name}" in made
-    assert (project.folder / "results/demo/report.html").stat().st_size > 100_000
-    assert (
-        "results/demo/plan/plan.svg" in project.output
-        and "results/demo/report.html" in project.output
+    assert not [p for p in made if ".part" in p]
+    assert not [p for p in made if "/walls/" in p or "comparison" in p]
+    assert [p for p in made if "/selection/" in p] == ["results/demo/selection/wall_length.parquet"]
+    said = project.said["plan"]
+    assert "results/demo/plan/plan.pdf" in said and "results/demo/report.html" in said
+    assert "of floor" in said and "doubtful" in said and "took" in said
+    stages = re.findall(r"^ *(\d+)/(\d+) demo (\w+)", said, re.M)
+    assert [int(done) for done, _, _ in stages] == list(range(1, len(stages) + 1))
+    assert {total for _, total, _ in stages} == {str(len(stages))}
+    assert len(said.splitlines()) <= 40 and "\x1b" not in said
+
+
+def test_the_comparison_leaves_the_plan_as_it_is(project):
+    made = project.digests()
+    assert {name: made[name] for name in project.plan_alone} == project.plan_alone
+    assert "results/demo/evaluation/walls.parquet" in made
+    assert "results/demo/comparison.html" in project.said["comparison"]
+    pages = [(project.folder / f"results/demo/{n}.html").read_text() for n in PAGES]
+    assert ['id="figure-area"' in page for page in pages] == [False, True]
+    assert all('id="figure-walls"' in page for page in pages)
+
+
+PAGES = ("report", "comparison")
+
+
+def test_the_plan_of_chosen_walls_is_that_of_all_walls(project, tmp_path):
+    """Byte for byte, all tables of the plan."""
+    results = project.folder / "results/demo"
+    outputs = {name: tmp_path / f"{name}.parquet" for name in planning.TABLES}
+    assemble_plan(
+        results / f"walls/{SETTINGS['plan']['extractor']}.parquet",
+        results / f"selection/{SETTINGS['plan']['method']}.parquet",
+        results / "scans.parquet",
+        results / "registration.parquet",
+        outputs,
+        settings=stage_settings.select_plan(SETTINGS),
+        **stage_settings.select_section(SETTINGS, "selection", "stop"),
     )
-    assert "register_scans:" in project.output and not [p for p in made if ".part" in p]
+    for name, path in outputs.items():
+        assert path.read_bytes() == (results / f"plan/{name}.parquet").read_bytes()
 
 
-def test_a_second_run_does_nothing(project):
+def test_a_second_run_does_nothing_and_says_where_the_results_are(project):
     before = project.digests()
     result = project.run()
     assert result.returncode == 0 and "Nothing to be done" in result.stderr
-    assert project.would_run() == set() and project.digests() == before
+    assert "results/demo/report.html, results/demo/comparison.html" in result.stderr
+    assert project.would_run("comparison") == set() and project.digests() == before
 
 
 def test_a_touched_file_reruns_nothing(project):
     os.utime(project.folder / "scripts/scanplan/selection/hulls.py")
-    assert project.would_run() == set()
+    assert project.would_run("comparison") == set()
 
 
 @pytest.mark.parametrize(
@@ -66,7 +111,8 @@ def test_a_touched_file_reruns_nothing(project):
     [
         ("hulls: {n_clusters: 7}", AFTER_HULLS),
         ("plan: {merge: {tolerance_m: 0.08}}", PLANNED),
-        ("plan: {method: sequential}", PLANNED | {"draw_scans", "draw_evaluation"}),
+        ("plan: {method: sequential}", CHOSEN | {"draw_evaluation"}),
+        ("selection: {stop: {n_scans: 3}}", CHOSEN),
         ("evaluation: {bitmap_cell_m: 0.1}", EVALUATED | {"evaluate_plan"}),
         (
             "advanced: {selection: {wall_length: {cell_m: 0.5}}}",
@@ -79,15 +125,21 @@ def test_a_touched_file_reruns_nothing(project):
         ("selection: {min_overlap: 0.1}", AFTER_ORDERS),
         (
             "walls: {min_length_m: 0.7}",
-            {"extract_walls"} | PLANNED | EVALUATED,
+            {"extract_walls", "extract_chosen_walls"} | PLANNED | EVALUATED,
         ),
     ],
 )
 def test_a_changed_parameter_reruns_exactly_its_stages(project, change, rules):
     other = project.folder / "change.yaml"
     other.write_text(change)
-    # the report states all settings
-    assert project.would_run("--configfile", TINY, str(other)) == rules | {"write_report"}
+    # the reports state all settings
+    assert project.would_run("comparison", "--configfile", TINY, str(other)) == rules | REPORTS
+
+
+def test_what_only_the_comparison_reads_reruns_nothing_of_the_plan(project):
+    other = project.folder / "change.yaml"
+    other.write_text("advanced: {selection: {visibility: {range_m: 9.0}}}")
+    assert project.would_run("--configfile", TINY, str(other)) == {"write_report"}
 
 
 @pytest.mark.parametrize(
@@ -100,7 +152,8 @@ def test_a_changed_parameter_reruns_exactly_its_stages(project, change, rules):
 def test_a_setting_of_one_order_reruns_no_other(project, change, methods):
     other = project.folder / "change.yaml"
     other.write_text(change)
-    listing = project.run("--dry-run", "--quiet", "reason", "--configfile", TINY, str(other)).stdout
+    wanted = ("comparison", "--dry-run", "--quiet", "reason", "--configfile", TINY, str(other))
+    listing = project.run(*wanted).stdout
     ordered = re.findall(r"output: results/demo/selection/(\w+)\.parquet", listing)
     assert sorted(ordered) == sorted(methods)
 
@@ -121,7 +174,7 @@ def test_an_edited_helper_reruns_exactly_the_stages_that_import_it(project, help
     source = path.read_text()
     path.write_text(source + "\n# an edit\n")
     try:
-        assert project.would_run() == rules | {"write_report"}
+        assert project.would_run("comparison") == rules | REPORTS
     finally:
         path.write_text(source)
 
@@ -129,10 +182,10 @@ def test_an_edited_helper_reruns_exactly_the_stages_that_import_it(project, help
 def test_a_truth_beside_the_recording_switches_evaluation_on(project):
     house = project.folder / "house"
     shutil.copytree(project.folder / "results/demo/survey", house)
-    both = {"evaluate_walls", "evaluate_poses", "draw_evaluation", "tabulate_seconds"}
-    assert both <= project.would_run("--config", "dataset=house")
+    both = {"evaluate_poses", "evaluate_plan"} | EVALUATED
+    assert both <= project.would_run("comparison", "--config", "dataset=house")
     (house / "truth_poses.tum").unlink()
-    assert not both & project.would_run("--config", "dataset=house")
+    assert not both & project.would_run("comparison", "--config", "dataset=house")
 
 
 def test_a_file_is_a_simulated_dataset_beside_recorded_ones(project):
@@ -150,7 +203,7 @@ def test_a_file_is_a_simulated_dataset_beside_recorded_ones(project):
     )
     assert "results/recorded/plan/plan.svg" in listed and "results/recorded/survey" not in listed
     assert (
-        "results/toy/evaluation/walls.parquet" in listed
+        "results/toy/evaluation/plan.parquet" in listed
         and "results/recorded/evaluation" not in listed
     )
 
@@ -171,7 +224,7 @@ def test_one_stage_can_be_rerun(project):
 
 def test_one_core_gives_the_same_bytes(project):
     before = project.digests()
-    result = project.run("--cores", "1", "--forcerun", "build_hulls", "extract_walls")
+    result = project.run("--cores", "1", "--forcerun", "build_hulls", "extract_chosen_walls")
     assert result.returncode == 0 and project.digests() == before
 
 
@@ -222,7 +275,8 @@ def test_a_killed_run_resumes_with_the_same_command(project, sent, targets):
 
 def test_two_runs_at_once_do_not_mix(project):
     before = project.digests()
-    first = started(project)
+    # at work for longer than the second takes to begin
+    first = started(project, "results/demo/plan/faces.parquet")
     second = project.run("--forcerun", "build_hulls")
     assert first.wait(timeout=120) == 0
     assert second.returncode != 0 and "another run is at work" in second.stdout + second.stderr

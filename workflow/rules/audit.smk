@@ -4,7 +4,6 @@ rule measure_crispness:
         scans="results/{dataset}/scans.parquet",
         registration="results/{dataset}/registration.parquet",
         poses="results/{dataset}/poses.parquet",
-        code=code_of("measure_crispness"),
     output:
         crispness="results/{dataset}/crispness.parquet",
     log:
@@ -16,6 +15,7 @@ rule measure_crispness:
         mem_mb=1500,
         runtime=30,
     params:
+        code=code_of("measure_crispness"),
         settings=setting(stage_settings.select_crispness),
     script:
         "../../scripts/measure_crispness.py"
@@ -28,7 +28,6 @@ rule draw_registration:
         registration="results/{dataset}/registration.parquet",
         edges="results/{dataset}/edges.parquet",
         crispness="results/{dataset}/crispness.parquet",
-        code=code_of("draw_registration"),
     output:
         figure=report(
             "results/{dataset}/figures/registration.svg",
@@ -44,5 +43,7 @@ rule draw_registration:
     resources:
         mem_mb=1500,
         runtime=10,
+    params:
+        code=code_of("draw_registration"),
     script:
         "../../scripts/draw_registration.py"

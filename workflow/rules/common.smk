@@ -6,11 +6,12 @@ sys.path.insert(0, f"{workflow.basedir}/scripts")
 from scanplan.errors import StageError
 from scanplan.lab.thesis import experiments
 from scanplan.project import stage_settings
-from scanplan.project.code_files import list_helpers
+from scanplan.project.code_files import digest_helpers
 from scanplan.project.dataset import (
     RESERVED,
     describe_dataset,
     find_truth,
+    list_comparison,
     list_results,
     name_datasets,
     survey_files,
@@ -132,14 +133,13 @@ def simulated_as(suffix):
 
 
 def code_of(script):
-    """Helper files that a script imports: as inputs they make an edit rerun the stages that use them."""
+    """A param function: a digest of the helpers that a script imports; an edit reruns what uses them."""
 
-    def helpers(wildcards):
+    def digest(wildcards):
         # looked up for the jobs of a run alone: every job parses the whole workflow anew
-        files = list_helpers(f"{workflow.basedir}/scripts/{script}.py")
-        return [os.path.relpath(file) for file in files]
+        return digest_helpers(f"{workflow.basedir}/scripts/{script}.py")
 
-    return helpers
+    return digest
 
 
 def all_cores(wildcards):
@@ -203,8 +203,14 @@ def plan_selection(wildcards):
     return f"results/{wildcards.dataset}/selection/{method}.parquet"
 
 
+def plan_extractor_settings(wildcards):
+    """Settings of the extractor whose walls make the plan."""
+    settings = DATASETS[wildcards.dataset].settings
+    return stage_settings.select_extractor(settings, settings["plan"]["extractor"])
+
+
 def plan_walls(wildcards):
-    """The walls that make the plan."""
+    """The walls of all scans by the extractor whose walls make the plan."""
     extractor = DATASETS[wildcards.dataset].settings["plan"]["extractor"]
     return f"results/{wildcards.dataset}/walls/{extractor}.parquet"
 
@@ -249,13 +255,18 @@ def all_settings(wildcards):
 
 
 def results_of(name):
-    """Everything the workflow makes of one dataset."""
-    return list_results(DATASETS[name], METHODS, compared_extractors(name))
+    """The plan of one dataset, and all that it is made of."""
+    return list_results(DATASETS[name])
 
 
-def all_results():
-    """Everything the workflow makes of the given datasets."""
-    return [file for name in GIVEN for file in results_of(name)]
+def comparison_of(name):
+    """What one dataset's plan is compared with: all orderings, and the walls of all scans."""
+    return list_comparison(DATASETS[name], METHODS, compared_extractors(name))
+
+
+def of_all_datasets(files_of):
+    """Files of all given datasets."""
+    return [file for name in GIVEN for file in files_of(name)]
 
 
 wildcard_constraints:

@@ -6,7 +6,6 @@ rule evaluate_walls:
         registration="results/{dataset}/registration.parquet",
         truth=true_faces,
         true_poses=true_poses,
-        code=code_of("evaluate_walls"),
     output:
         walls="results/{dataset}/evaluation/walls.parquet",
         aligned="results/{dataset}/evaluation/walls_aligned.parquet",
@@ -20,6 +19,7 @@ rule evaluate_walls:
         mem_mb=2000,
         runtime=30,
     params:
+        code=code_of("evaluate_walls"),
         max_range_m=section("input", "max_range_m"),
         settings=section("evaluation"),
     script:
@@ -34,7 +34,6 @@ rule tabulate_seconds:
             "benchmarks/{{dataset}}/order_scans_{method}.tsv", method=METHODS
         ),
         extraction=extraction_times,
-        code=code_of("tabulate_seconds"),
     output:
         seconds="results/{dataset}/evaluation/seconds.parquet",
     log:
@@ -45,6 +44,8 @@ rule tabulate_seconds:
     resources:
         mem_mb=500,
         runtime=5,
+    params:
+        code=code_of("tabulate_seconds"),
     script:
         "../../scripts/tabulate_seconds.py"
 
@@ -60,7 +61,6 @@ rule evaluate_plan:
         registration="results/{dataset}/registration.parquet",
         truth=true_faces,
         true_poses=true_poses,
-        code=code_of("evaluate_plan"),
     output:
         plan="results/{dataset}/evaluation/plan.parquet",
     log:
@@ -72,6 +72,7 @@ rule evaluate_plan:
         mem_mb=1000,
         runtime=10,
     params:
+        code=code_of("evaluate_plan"),
         max_range_m=section("input", "max_range_m"),
         settings=section("evaluation"),
     script:
@@ -84,7 +85,6 @@ rule evaluate_poses:
         poses="results/{dataset}/poses.parquet",
         registration="results/{dataset}/registration.parquet",
         true_poses=true_poses,
-        code=code_of("evaluate_poses"),
     output:
         poses="results/{dataset}/evaluation/poses.parquet",
     log:
@@ -95,6 +95,8 @@ rule evaluate_poses:
     resources:
         mem_mb=1000,
         runtime=10,
+    params:
+        code=code_of("evaluate_poses"),
     script:
         "../../scripts/evaluate_poses.py"
 
@@ -104,7 +106,6 @@ rule draw_evaluation:
     input:
         walls="results/{dataset}/evaluation/walls.parquet",
         aligned="results/{dataset}/evaluation/walls_aligned.parquet",
-        code=code_of("draw_evaluation"),
     output:
         figure=report(
             "results/{dataset}/figures/evaluation.svg",
@@ -127,6 +128,7 @@ rule draw_evaluation:
         mem_mb=1000,
         runtime=10,
     params:
+        code=code_of("draw_evaluation"),
         method=section("plan", "method"),
         extractor=section("plan", "extractor"),
     script:

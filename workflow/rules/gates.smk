@@ -4,7 +4,6 @@ rule sweep_gates:
         recordings=recordings,
         poses="results/{dataset}/poses.parquet",
         true_poses=true_poses,
-        code=code_of("sweep_gates"),
     output:
         gates="results/{dataset}/thesis/gates.parquet",
         alignments="results/{dataset}/thesis/alignments.parquet",
@@ -17,6 +16,7 @@ rule sweep_gates:
         mem_mb=2000,
         runtime=60,
     params:
+        code=code_of("sweep_gates"),
         reading=section("input"),
         settings=section("registration"),
     script:
@@ -28,7 +28,6 @@ rule draw_gates:
     input:
         gates=of_kind(experiments.LIMITS, "thesis/gates")[0],
         alignments=of_kind(experiments.LIMITS, "thesis/alignments")[0],
-        code=code_of("draw_gates"),
     output:
         gates="results/thesis/figures/gates.svg",
         alignments="results/thesis/figures/alignments.svg",
@@ -40,5 +39,7 @@ rule draw_gates:
     resources:
         mem_mb=1000,
         runtime=10,
+    params:
+        code=code_of("draw_gates"),
     script:
         "../../scripts/draw_gates.py"

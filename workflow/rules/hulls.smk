@@ -2,7 +2,6 @@ rule build_hulls:
     """Cluster every scan and put a convex hull around each cluster."""
     input:
         scans="results/{dataset}/scans.parquet",
-        code=code_of("build_hulls"),
     output:
         hulls="results/{dataset}/hulls.parquet",
     log:
@@ -14,6 +13,7 @@ rule build_hulls:
         mem_mb=1500,
         runtime=30,
     params:
+        code=code_of("build_hulls"),
         settings=setting(stage_settings.select_hulls),
     script:
         "../../scripts/build_hulls.py"

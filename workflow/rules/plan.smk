@@ -1,11 +1,10 @@
 rule assemble_plan:
     """Make faces, walls, openings and rooms of the first scans of an ordering."""
     input:
-        walls=plan_walls,
+        walls="results/{dataset}/plan/segments.parquet",
         selection=plan_selection,
         scans="results/{dataset}/scans.parquet",
         registration="results/{dataset}/registration.parquet",
-        code=code_of("assemble_plan"),
     output:
         faces="results/{dataset}/plan/faces.parquet",
         walls="results/{dataset}/plan/walls.parquet",
@@ -22,6 +21,7 @@ rule assemble_plan:
         mem_mb=2000,
         runtime=20,
     params:
+        code=code_of("assemble_plan"),
         stop=section("selection", "stop"),
         settings=setting(stage_settings.select_plan),
     script:
@@ -37,7 +37,6 @@ rule export_plan:
         rooms="results/{dataset}/plan/rooms.parquet",
         evidence="results/{dataset}/plan/evidence.parquet",
         free="results/{dataset}/plan/free.parquet",
-        code=code_of("export_plan"),
     output:
         geojson="results/{dataset}/plan/plan.geojson",
         dxf="results/{dataset}/plan/plan.dxf",
@@ -60,6 +59,7 @@ rule export_plan:
         mem_mb=1500,
         runtime=10,
     params:
+        code=code_of("export_plan"),
         settings=section("plan", "export"),
     script:
         "../../scripts/export_plan.py"

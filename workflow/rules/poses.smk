@@ -2,7 +2,6 @@ rule interpolate_poses:
     """Give every candidate scan the pose its sensor had at that moment, and tell how it moved."""
     input:
         recordings=recordings,
-        code=code_of("interpolate_poses"),
     output:
         poses="results/{dataset}/poses.parquet",
         motion="results/{dataset}/motion.parquet",
@@ -15,6 +14,7 @@ rule interpolate_poses:
         mem_mb=1500,
         runtime=60,
     params:
+        code=code_of("interpolate_poses"),
         reading=setting(stage_settings.select_topics),
         settings=section("poses"),
     script:

@@ -4,7 +4,6 @@ rule register_scans:
         recordings=recordings,
         poses="results/{dataset}/poses.parquet",
         motion="results/{dataset}/motion.parquet",
-        code=code_of("register_scans"),
     output:
         scans="results/{dataset}/scans.parquet",
         registration="results/{dataset}/registration.parquet",
@@ -18,6 +17,7 @@ rule register_scans:
         mem_mb=1500,
         runtime=120,
     params:
+        code=code_of("register_scans"),
         reading=section("input"),
         settings=section("registration"),
     script:

@@ -4,7 +4,6 @@ rule draw_scans:
         scans="results/{dataset}/scans.parquet",
         registration="results/{dataset}/registration.parquet",
         selection=plan_selection,
-        code=code_of("draw_scans"),
     output:
         figure=report(
             "results/{dataset}/figures/scans.svg",
@@ -21,6 +20,7 @@ rule draw_scans:
         mem_mb=1500,
         runtime=10,
     params:
+        code=code_of("draw_scans"),
         stop=section("selection", "stop"),
     script:
         "../../scripts/draw_scans.py"
@@ -30,7 +30,6 @@ rule draw_area:
     """Draw the covered area against the number of scans, for every ordering."""
     input:
         selections=all_selections,
-        code=code_of("draw_area"),
     output:
         figure=report(
             "results/{dataset}/figures/area.svg",
@@ -46,6 +45,8 @@ rule draw_area:
     resources:
         mem_mb=1000,
         runtime=10,
+    params:
+        code=code_of("draw_area"),
     script:
         "../../scripts/draw_area.py"
 
@@ -57,7 +58,6 @@ rule draw_walls:
         registration="results/{dataset}/registration.parquet",
         selection=plan_selection,
         faces="results/{dataset}/plan/faces.parquet",
-        code=code_of("draw_walls"),
     output:
         figure=report(
             "results/{dataset}/figures/walls.svg",
@@ -74,32 +74,39 @@ rule draw_walls:
         mem_mb=1500,
         runtime=10,
     params:
+        code=code_of("draw_walls"),
         stop=section("selection", "stop"),
     script:
         "../../scripts/draw_walls.py"
 
 
+# what a report is made of, with a comparison or without
+REPORT_TABLES = {
+    "faces": "results/{dataset}/plan/faces.parquet",
+    "walls": "results/{dataset}/plan/walls.parquet",
+    "openings": "results/{dataset}/plan/openings.parquet",
+    "rooms": "results/{dataset}/plan/rooms.parquet",
+    "free": "results/{dataset}/plan/free.parquet",
+    "evidence": "results/{dataset}/plan/evidence.parquet",
+    "selection": plan_selection,
+    "segments": "results/{dataset}/plan/segments.parquet",
+    "poses": "results/{dataset}/poses.parquet",
+    "registration": "results/{dataset}/registration.parquet",
+    "recordings": recordings,
+    "page": REPORT_PAGE,
+}
+
+
 rule write_report:
     """Write the report: one page that opens offline."""
     input:
-        faces="results/{dataset}/plan/faces.parquet",
-        walls="results/{dataset}/plan/walls.parquet",
-        openings="results/{dataset}/plan/openings.parquet",
-        rooms="results/{dataset}/plan/rooms.parquet",
-        free="results/{dataset}/plan/free.parquet",
-        evidence="results/{dataset}/plan/evidence.parquet",
-        selection=plan_selection,
-        segments=plan_walls,
-        poses="results/{dataset}/poses.parquet",
-        registration="results/{dataset}/registration.parquet",
-        figures=report_figures,
-        evaluation=report_evaluation,
-        recordings=recordings,
-        results=report_results,
-        page=REPORT_PAGE,
-        code=code_of("write_report"),
+        **REPORT_TABLES,
+        figures=figures_among(results_of),
+        evaluation=evaluated("plan"),
+        results=sizes_among(results_of),
     output:
         page="results/{dataset}/report.html",
+        summary="results/{dataset}/summary.txt",
     log:
         "logs/{dataset}/write_report.log",
     benchmark:
@@ -109,7 +116,31 @@ rule write_report:
         mem_mb=1500,
         runtime=10,
     params:
+        code=code_of("write_report"),
         settings=all_settings,
-        benchmarks="benchmarks/{dataset}",
+        run_times=run_times([]),
     script:
         "../../scripts/write_report.py"
+
+
+# a page of its own: a later run of the plan alone takes nothing from it
+use rule write_report as write_comparison with:
+    input:
+        **REPORT_TABLES,
+        figures=figures_among(compared),
+        evaluation=evaluated("plan", "walls"),
+        results=sizes_among(compared),
+    output:
+        page="results/{dataset}/comparison.html",
+    log:
+        "logs/{dataset}/write_comparison.log",
+    benchmark:
+        "benchmarks/{dataset}/write_comparison.tsv"
+    params:
+        code=code_of("write_report"),
+        settings=all_settings,
+        run_times=run_times(
+            METHODS,
+            EXTRACTORS,
+            ["draw_area", "evaluate_walls", "tabulate_seconds", "draw_evaluation"],
+        ),

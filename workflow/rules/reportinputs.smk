@@ -1,20 +1,65 @@
-def report_figures(wildcards):
-    """The figures of a dataset, those of the evaluation last."""
-    return [
-        file
-        for file in results_of(wildcards.dataset)
-        if file.startswith(f"results/{wildcards.dataset}/figures")
-        and file.endswith(".svg")
-    ]
+def compared(name):
+    """All results of a dataset, with those of the comparison."""
+    return results_of(name) + comparison_of(name)
 
 
-def report_evaluation(wildcards):
-    """The measured walls and plan of a dataset, if its truth is known."""
-    known = DATASETS[wildcards.dataset].truth
-    tables = ["walls", "plan"] if known else []
-    return [
-        f"results/{wildcards.dataset}/evaluation/{table}.parquet" for table in tables
-    ]
+def figures_among(files_of):
+    """An input function: the figures among the results of the job's dataset."""
+
+    def figures(wildcards):
+        folder = f"results/{wildcards.dataset}/figures/"
+        return [f for f in files_of(wildcards.dataset) if f.startswith(folder)]
+
+    return figures
+
+
+def sizes_among(files_of):
+    """An input function: the tables and plans among the results, whose sizes a report states."""
+
+    def sized(wildcards):
+        shown = (".html", ".svg", ".txt")
+        return [f for f in files_of(wildcards.dataset) if not f.endswith(shown)]
+
+    return sized
+
+
+def evaluated(*tables):
+    """An input function: tables of the evaluation of the job's dataset, if its truth is known."""
+
+    def known(wildcards):
+        folder = f"results/{wildcards.dataset}/evaluation"
+        if DATASETS[wildcards.dataset].truth is None:
+            return []
+        return [f"{folder}/{table}.parquet" for table in tables]
+
+    return known
+
+
+# which stage makes the tables that orderings need
+TABLE_STAGES = {"observations": "observe_walls", "visibility": "build_visibility"}
+
+
+def run_times(orderings, extractors=(), comparing=()):
+    """A param function: Snakemake's measurements of the stages of a report, in their order."""
+
+    def measured(wildcards):
+        of_plan = DATASETS[wildcards.dataset].settings["plan"]["method"]
+        ordered = [m for m in METHODS if m in orderings or m == of_plan]
+        tables = {table for m in ordered for table in methods.METHODS[m].tables}
+        stages = [
+            *("simulate_survey", "interpolate_poses", "register_scans"),
+            *("measure_crispness", "build_hulls"),
+            *(stage for table, stage in TABLE_STAGES.items() if table in tables),
+            *(f"order_scans_{method}" for method in ordered),
+            "extract_chosen_walls",
+            *(f"extract_walls_{extractor}" for extractor in extractors),
+            *("assemble_plan", "export_plan", "evaluate_poses", "evaluate_plan"),
+            *("draw_registration", "draw_scans", "draw_walls"),
+            *comparing,
+        ]
+        return [f"benchmarks/{wildcards.dataset}/{stage}.tsv" for stage in stages]
+
+    return measured
 
 
 def page_files(*names):
@@ -28,12 +73,3 @@ THESIS_PAGE = [
     *page_files("thesis.html.j2", "thesis.css"),
     os.path.relpath(f"{workflow.basedir}/config/deviations.md"),
 ]
-
-
-def report_results(wildcards):
-    """The tables and plans whose sizes the report states."""
-    return [
-        file
-        for file in results_of(wildcards.dataset)
-        if not file.endswith((".html", ".svg"))
-    ]

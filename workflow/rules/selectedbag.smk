@@ -4,7 +4,6 @@ rule write_selected_bag:
         recordings=recordings,
         selection=plan_selection,
         registration="results/{dataset}/registration.parquet",
-        code=code_of("write_selected_bag"),
     output:
         recording="results/{dataset}/selected.{suffix}",
         settings="results/{dataset}/selected.{suffix}.yaml",
@@ -19,6 +18,7 @@ rule write_selected_bag:
         mem_mb=1500,
         runtime=60,
     params:
+        code=code_of("write_selected_bag"),
         reading=section("input"),
         stop=section("selection", "stop"),
     script:

@@ -3,7 +3,6 @@ rule observe_walls:
     input:
         scans="results/{dataset}/scans.parquet",
         registration="results/{dataset}/registration.parquet",
-        code=code_of("observe_walls"),
     output:
         observations="results/{dataset}/observations.parquet",
     log:
@@ -15,6 +14,7 @@ rule observe_walls:
         mem_mb=2000,
         runtime=30,
     params:
+        code=code_of("observe_walls"),
         settings=setting(stage_settings.select_wall_cells, methods.WALL_LIMITS),
     script:
         "../../scripts/observe_walls.py"
@@ -25,7 +25,6 @@ rule build_visibility:
     input:
         scans="results/{dataset}/scans.parquet",
         registration="results/{dataset}/registration.parquet",
-        code=code_of("build_visibility"),
     output:
         visibility="results/{dataset}/visibility.parquet",
     log:
@@ -37,6 +36,7 @@ rule build_visibility:
         mem_mb=1500,
         runtime=30,
     params:
+        code=code_of("build_visibility"),
         settings=setting(stage_settings.select_visibility),
     script:
         "../../scripts/build_visibility.py"
@@ -47,7 +47,6 @@ rule order_scans:
     input:
         unpack(order_tables),
         hulls="results/{dataset}/hulls.parquet",
-        code=code_of("order_scans"),
     output:
         selection="results/{dataset}/selection/{method}.parquet",
     log:
@@ -59,6 +58,7 @@ rule order_scans:
         mem_mb=1500,
         runtime=30,
     params:
+        code=code_of("order_scans"),
         settings=order_settings,
     script:
         "../../scripts/order_scans.py"

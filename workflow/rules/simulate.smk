@@ -2,7 +2,6 @@ rule simulate_survey:
     """Drive a simulated rover through a building and record it as a ROS 1 bag."""
     input:
         building=building,
-        code=code_of("simulate_survey"),
     output:
         **survey_files("bag"),
     log:
@@ -16,6 +15,7 @@ rule simulate_survey:
         mem_mb=1000,
         runtime=30,
     params:
+        code=code_of("simulate_survey"),
         settings=setting(stage_settings.select_simulation),
     script:
         "../../scripts/simulate_survey.py"

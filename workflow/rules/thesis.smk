@@ -12,7 +12,6 @@ rule measure_coverage:
         registration="results/{dataset}/registration.parquet",
         truth=true_faces,
         true_poses=true_poses,
-        code=code_of("measure_coverage"),
     output:
         clusters="results/{dataset}/thesis/clusters.parquet",
         areas="results/{dataset}/thesis/areas.parquet",
@@ -25,6 +24,7 @@ rule measure_coverage:
         mem_mb=1500,
         runtime=30,
     params:
+        code=code_of("measure_coverage"),
         n_clusters=section("thesis", "n_clusters"),
         hulls=setting(stage_settings.select_hulls),
         max_range_m=section("input", "max_range_m"),
@@ -40,7 +40,6 @@ rule measure_unevenness:
         registration="results/{dataset}/registration.parquet",
         truth=true_faces,
         true_poses=true_poses,
-        code=code_of("measure_unevenness"),
     output:
         unevenness="results/{dataset}/thesis/unevenness.parquet",
     log:
@@ -52,6 +51,7 @@ rule measure_unevenness:
         mem_mb=1500,
         runtime=30,
     params:
+        code=code_of("measure_unevenness"),
         hulls=setting(stage_settings.select_hulls),
         max_range_m=section("input", "max_range_m"),
         n_selected=stated_claims.SUBSET,
@@ -67,7 +67,6 @@ rule measure_premises:
         registration="results/{dataset}/registration.parquet",
         truth=true_faces,
         true_poses=true_poses,
-        code=code_of("measure_premises"),
     output:
         premises="results/{dataset}/thesis/premises.parquet",
     log:
@@ -79,6 +78,7 @@ rule measure_premises:
         mem_mb=1500,
         runtime=30,
     params:
+        code=code_of("measure_premises"),
         extraction=setting(stage_settings.select_extractor, "cluster_ransac"),
         max_range_m=section("input", "max_range_m"),
         evaluation=section("evaluation"),
@@ -94,7 +94,6 @@ rule time_stages:
         registration="results/{dataset}/registration.parquet",
         hulls="results/{dataset}/hulls.parquet",
         segments="results/{dataset}/walls/cluster_ransac.parquet",
-        code=code_of("time_stages"),
     output:
         times="results/{dataset}/thesis/times.parquet",
     log:
@@ -106,6 +105,7 @@ rule time_stages:
         mem_mb=1500,
         runtime=30,
     params:
+        code=code_of("time_stages"),
         walls=setting(stage_settings.select_extractors, EXTRACTORS),
         hulls=setting(stage_settings.select_hull_sampling),
         n_clusters=section("thesis", "n_clusters"),
@@ -121,7 +121,6 @@ rule measure_candidates:
         scans="results/{dataset}/scans.parquet",
         registration="results/{dataset}/registration.parquet",
         truth=true_faces,
-        code=code_of("measure_candidates"),
     output:
         candidates="results/{dataset}/thesis/candidates.parquet",
     log:
@@ -133,6 +132,7 @@ rule measure_candidates:
         mem_mb=1500,
         runtime=10,
     params:
+        code=code_of("measure_candidates"),
         walls=setting(stage_settings.select_extractor, "thesis_iterative_ransac"),
         n_scans=8,
     script:
@@ -154,7 +154,6 @@ rule tabulate_steps:
         ],
         hulling=["benchmarks/{dataset}/build_hulls.tsv"],
         ordering=["benchmarks/{dataset}/order_scans_cluster_hull.tsv"],
-        code=code_of("tabulate_steps"),
     output:
         steps="results/{dataset}/thesis/steps.parquet",
     log:
@@ -166,6 +165,7 @@ rule tabulate_steps:
         mem_mb=1000,
         runtime=10,
     params:
+        code=code_of("tabulate_steps"),
         n_selected=stated_claims.SUBSET,
     script:
         "../../scripts/tabulate_steps.py"
@@ -175,7 +175,6 @@ rule judge_claims:
     """Measure every claim of the thesis on every seed."""
     input:
         **evidence(),
-        code=code_of("judge_claims"),
     output:
         claims="results/thesis/claims.parquet",
     log:
@@ -187,6 +186,7 @@ rule judge_claims:
         mem_mb=1000,
         runtime=10,
     params:
+        code=code_of("judge_claims"),
         rooms_seeds=seeds_of(experiments.ROOMS),
         drive_seeds=seeds_of(experiments.DRIVE),
     script:
@@ -210,7 +210,6 @@ rule draw_thesis_rooms:
         truth=THESIS[experiments.ROOMS][0].truth[0],
         true_poses=THESIS[experiments.ROOMS][0].truth[1],
         evaluated=of_kind(experiments.ROOMS, "evaluation/walls"),
-        code=code_of("draw_thesis_rooms"),
     output:
         figures=figures_of(*ROOMS_FIGURES),
         orders="results/thesis/figures/orders.svg",
@@ -223,6 +222,7 @@ rule draw_thesis_rooms:
         mem_mb=1500,
         runtime=10,
     params:
+        code=code_of("draw_thesis_rooms"),
         bitmap_cell_m=THESIS[experiments.ROOMS][0].settings["evaluation"][
             "bitmap_cell_m"
         ],
@@ -246,7 +246,6 @@ rule draw_thesis_drive:
             "walls/iterative_ransac",
             "thesis/times",
         ),
-        code=code_of("draw_thesis_drive"),
     output:
         figures=figures_of(*DRIVE_FIGURES),
     log:
@@ -257,6 +256,8 @@ rule draw_thesis_drive:
     resources:
         mem_mb=1500,
         runtime=10,
+    params:
+        code=code_of("draw_thesis_drive"),
     script:
         "../../scripts/draw_thesis_drive.py"
 
@@ -272,7 +273,6 @@ rule write_thesis:
         steps=of_kind(experiments.DRIVE, "thesis/steps")[:1],
         limited=of_kind(experiments.LIMITS, "thesis/steps")[:1],
         page=THESIS_PAGE,
-        code=code_of("write_thesis"),
     output:
         page="results/thesis/report.html",
     log:
@@ -283,5 +283,7 @@ rule write_thesis:
     resources:
         mem_mb=1000,
         runtime=10,
+    params:
+        code=code_of("write_thesis"),
     script:
         "../../scripts/write_thesis.py"

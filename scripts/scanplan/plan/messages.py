@@ -26,8 +26,8 @@ def check_segments(path: FilePath, segments: Columns, used: BoolArray, n_scans: 
     """
     if not used.any():
         raise StageError(
-            f"{path}: no wall in the first {n_scans} scans ({len(used)} in all scans), at least 1"
-            " needed; take more scans (selection.stop) or loosen the wall extractor (walls)"
+            f"{path}: no wall in the first {n_scans} scans, at least 1 needed; take more scans"
+            " (selection.stop) or loosen the wall extractor (walls)"
         )
     n_wrong = sum(int((~np.isfinite(values[used])).sum()) for values in segments.values())
     if n_wrong:

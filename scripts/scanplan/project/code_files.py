@@ -2,7 +2,7 @@
 
 import ast
 import hashlib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
 
@@ -34,19 +34,34 @@ def list_helpers(script: FilePath) -> list[Path]:
     return sorted(helpers)
 
 
+@cache
+def digest_helpers(script: FilePath) -> str:
+    """Return 12 hexadecimal digits that name what the helpers of a script say."""
+    return _digest_files(list_helpers(script))
+
+
 def digest_code() -> str:
     """Return 12 hexadecimal digits that name the code: a digest of all scripts and helpers."""
+    return _digest_files(sorted(_PACKAGE.parent.rglob("*.py")))
+
+
+def _digest_files(files: Iterable[Path]) -> str:
     total = hashlib.sha256()
-    for file in sorted(_PACKAGE.parent.rglob("*.py")):
-        total.update(file.read_bytes())
+    for file in files:
+        total.update(_read(file).encode())
     return total.hexdigest()[:12]
+
+
+@cache
+def _read(file: Path) -> str:
+    return file.read_text(encoding="utf-8")
 
 
 @cache
 def _imports(path: Path) -> frozenset[Path]:
     # a workflow asks for the helpers of every script when it starts, and most are shared
     helpers = set()
-    for node in _walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in _walk(ast.parse(_read(path))):
         if not isinstance(node, ast.ImportFrom) or node.module is None:
             continue
         parts = node.module.split(".")

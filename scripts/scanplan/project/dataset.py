@@ -24,15 +24,17 @@ RESERVED = "thesis"
 """Name under results/ that the thesis's experiments have to themselves."""
 
 _PLAN = tuple(f"plan/{t}" for t in ("faces", "walls", "openings", "rooms", "evidence", "free"))
-_TABLES = ("poses", "registration", "edges", "scans", "hulls", *_PLAN)
+_TABLES = ("poses", "registration", "edges", "scans", "hulls", "plan/segments", *_PLAN)
 _DRAWN = (
     *(f"plan/plan.{suffix}" for suffix in ("geojson", "dxf", "svg", "pdf", "ifc")),
     "plan/map.pgm",
     "plan/map.yaml",
-    *(f"figures/{f}.svg" for f in ("registration", "scans", "area", "walls")),
+    *(f"figures/{f}.svg" for f in ("registration", "scans", "walls")),
     "report.html",
+    "summary.txt",
 )
-_EVALUATION = ("walls", "walls_aligned", "oracle", "plan", "poses", "seconds")
+_EVALUATION = ("plan", "poses")
+_COMPARED = ("walls", "walls_aligned", "oracle", "seconds")
 
 
 @dataclass(frozen=True)
@@ -208,24 +210,37 @@ def survey_files(suffix: str, name: str = "{dataset}") -> dict[str, str]:
     }
 
 
-def list_results(found: Dataset, methods: Sequence[str], extractors: Sequence[str]) -> list[str]:
-    """List everything that the workflow makes of a dataset, but the recording of a simulated one.
+def list_results(found: Dataset) -> list[str]:
+    """List the plan of a dataset and all that it is made of, but the recording of a simulated one.
+
+    Where the truth is known the plan and the poses are evaluated, too.
+    """
+    files = [f"{table}.parquet" for table in _TABLES]
+    files += [f"selection/{found.settings['plan']['method']}.parquet", *_DRAWN]
+    if found.truth:
+        files += [f"evaluation/{table}.parquet" for table in _EVALUATION]
+    return [f"results/{found.name}/{file}" for file in files]
+
+
+def list_comparison(found: Dataset, methods: Sequence[str], extractors: Sequence[str]) -> list[str]:
+    """List what the plan of a dataset is compared with, beside what `list_results` lists.
 
     Parameters
     ----------
     found : Dataset
     methods, extractors : list of str
+        All orderings, and all extractors: they find the walls of all scans.
 
     Returns
     -------
     list of str
     """
-    files = [f"{table}.parquet" for table in _TABLES]
-    files += [f"selection/{method}.parquet" for method in methods]
+    others = [method for method in methods if method != found.settings["plan"]["method"]]
+    files = [f"selection/{method}.parquet" for method in others]
     files += [f"walls/{extractor}.parquet" for extractor in extractors]
-    files += _DRAWN
+    files += ["figures/area.svg", "comparison.html"]
     if found.truth:
-        files += [f"evaluation/{table}.parquet" for table in _EVALUATION]
+        files += [f"evaluation/{table}.parquet" for table in _COMPARED]
         files += ["figures/evaluation.svg", "figures/oracle_shares.svg"]
     return [f"results/{found.name}/{file}" for file in files]
 

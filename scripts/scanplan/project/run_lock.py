@@ -8,6 +8,7 @@ import fcntl
 import signal
 import time
 from collections.abc import Callable
+from datetime import timedelta
 from pathlib import Path
 from typing import TextIO
 
@@ -76,6 +77,10 @@ class FolderRun:
         if self._lock is not None:
             self._lock.close()
             self._lock = None
+
+    def elapsed(self) -> str:
+        """Return how long it has been at work, as `0:02:05`."""
+        return str(timedelta(seconds=(time.time_ns() - self.started_ns) // 10**9))
 
     def _note_signal(self, number: signal.Signals) -> None:
         """Note when a signal arrives, and let it do what it did before; an ignored one stays so."""

@@ -12,11 +12,16 @@ _DONE = " stage done"
 
 
 def describe_results(name: str) -> str:
-    """Return the lines that say where a dataset's plan and report lie."""
+    """Return the lines that say what was found of a dataset, and where its files lie."""
     folder = f"results/{name}"
+    summary = Path(folder, "summary.txt")
+    found = summary.read_text(encoding="utf-8") if summary.exists() else ""
+    compared = f"{folder}/comparison.html"
+    beside = f", {compared}" if Path(compared).exists() else ""
     return (
-        f"\nplan:    {folder}/plan/plan.svg (also .pdf, .dxf, .ifc, .geojson and map.pgm)\n"
-        f"report:  {folder}/report.html"
+        f"\n{name}\n{found}"
+        f"plan     {folder}/plan/plan.pdf (also .svg, .dxf, .ifc, .geojson and map.pgm)\n"
+        f"report   {folder}/report.html{beside}"
     )
 
 

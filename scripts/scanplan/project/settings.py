@@ -95,8 +95,10 @@ def settings_of_dataset(
     """
     settings = dict(defaults)
     for layer in layers:
-        settings = merge_settings(settings, layer.values)
-        check_settings(settings, schema, layer.origin)
+        # what a run is of has been checked once: the list of many datasets is long
+        own = {key: value for key, value in layer.values.items() if key not in OF_A_RUN}
+        check_settings(own, schema, layer.origin)
+        settings = merge_settings(settings, own)
     if crossed := find_crossed_limits(settings, schema):
         keys, fault = crossed
         raise StageError(f"{find_origin(layers, *keys) or _DEFAULTS}: {fault}; {MANUAL}")

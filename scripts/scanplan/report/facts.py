@@ -17,9 +17,9 @@ class SurveyFacts:
         (the plan's extractor) and `EVIDENCE`.
     chosen : int
         How many scans of the selection make the plan.
-    evaluation : tuple of dict of str to (n,) array
-        The columns of `schemas.EVALUATION` and of `schemas.PLAN_EVALUATION`, where the truth is
-        known.
+    plan_measures, wall_measures : dict of str to (n,) array or None
+        The columns of `schemas.PLAN_EVALUATION` and of `schemas.EVALUATION`, where the truth is
+        known and they were measured.
     """
 
     selection: Columns
@@ -28,7 +28,8 @@ class SurveyFacts:
     segments: Columns
     evidence: Columns
     chosen: int
-    evaluation: tuple[Columns, ...]
+    plan_measures: Columns | None = None
+    wall_measures: Columns | None = None
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,8 @@ class RunFacts:
     figures : dict of str to str
         Name to the text of an SVG file.
     benchmarks : dict of str to str
-        Stage to the text of Snakemake's benchmark file; what is missing or damaged is left out.
+        Stage to the text of Snakemake's benchmark file, in the workflow's order; what is missing
+        or damaged is left out.
     sizes : list of (str, str, int)
         What, file name, bytes.
     version : str

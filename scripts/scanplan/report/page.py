@@ -13,10 +13,6 @@ from scanplan.report import chart, figures, growth, page_tables, plan_svg, templ
 from scanplan.report.facts import RunFacts, SurveyFacts
 from scanplan.types import FloatArray, Settings
 
-_STAGES = (
-    "simulate", "interpolate", "register", "measure", "build", "observe", "order", "extract",
-    "assemble", "export", "evaluate", "draw",
-)  # fmt: skip
 _FOUND, _RIGHT = "visible_completeness_010m", "correctness_010m"
 _CAPTIONS = {
     "scans": "Points of the registered scans from above, where each was taken, and the selected"
@@ -77,7 +73,7 @@ def report_page(
         chart=Markup(chart.chart_svg(curves, n_scans, survey.chosen)),
         curves=[(css, curve.name) for css, curve in curves.items()],
         certificate=wording.coverage_note(survey, of_plan["method"]),
-        truth=page_tables.truth_table(survey.evaluation[1]) if survey.evaluation else None,
+        truth=page_tables.truth_table(survey.plan_measures) if survey.plan_measures else None,
         review=wording.review_note(plan),
         walls=page_tables.wall_table(plan, survey.evidence),
         openings=page_tables.opening_table(plan),
@@ -94,20 +90,16 @@ def report_page(
 
 
 def _stage_times(benchmarks: Mapping[str, str]) -> list[tuple[str, float, float, float]]:
-    """Return stage, seconds, processor seconds and peak memory in MB, in the workflow's order."""
+    """Return stage, seconds, processor seconds and peak memory in MB of each."""
     rows = []
-    for stage in sorted(benchmarks, key=lambda stage: (_stage_rank(stage), stage)):
-        head, *lines = [line.split("\t") for line in benchmarks[stage].splitlines()] or [[]]
+    for stage, text in benchmarks.items():
+        head, *lines = [line.split("\t") for line in text.splitlines()] or [[]]
         if not lines or not {"s", "cpu_time", "max_rss"} <= set(head):
             continue
         runs = [dict(zip(head, line, strict=False)) for line in lines]
         seconds, cpu_s, memory_mb = (_mean(runs, c) for c in ("s", "cpu_time", "max_rss"))
         rows.append((stage, seconds, cpu_s, memory_mb))
     return rows
-
-
-def _stage_rank(stage: str) -> int:
-    return next((i for i, name in enumerate(_STAGES) if stage.startswith(name)), len(_STAGES))
 
 
 def _mean(runs: Sequence[Mapping[str, str]], column: str) -> float:
@@ -155,8 +147,8 @@ def _curves(survey: SurveyFacts, of_plan: Settings, objective: str) -> dict[str,
         "covered": chart.Curve(f"{objective}, of what all scans give", rank, share),
         "bound": chart.Curve("most that any choice of as many scans can give", rank, bound),
     }
-    if survey.evaluation:
-        measures = survey.evaluation[0]
+    if survey.wall_measures:
+        measures = survey.wall_measures
         rows = (measures["method"] == of_plan["method"]) & (
             measures["extractor"] == of_plan["extractor"]
         )

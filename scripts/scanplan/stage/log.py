@@ -18,6 +18,10 @@ from scanplan.stage import orphans
 INTERRUPTED = "was interrupted; the same command goes on from here"
 """Last words of a stage that Ctrl-C or a signal to end has ended."""
 
+WATCHED = "SCANPLAN_WATCHED"
+"""Variable of the environment that is set where the run shows what its stages log."""
+
+_TOLD_EVERY_S = 1.0  # between lines of progress: often enough to follow, seldom enough to read
 _log = logging.getLogger("scanplan")
 _screen: TextIO | None = None
 
@@ -112,15 +116,21 @@ def log_line(text: str) -> None:
     _show(text)
 
 
+def log_warning(text: str) -> None:
+    """Write one line that the user should see to the log and, inside a stage, to the screen."""
+    _log.warning("%s", text)
+    _show(text)
+
+
 def _show(line: str) -> None:
-    if _screen is not None:
+    if _screen is not None and WATCHED not in os.environ:
         _screen.write(f"{line}\n")
 
 
 def report_progress(
     items: Iterable[Item], label: str, total: int | None = None, unit: str = "scans"
 ) -> Iterator[Item]:
-    """Iterate over `items` and report how many are done, of how many, and the rate.
+    """Iterate over `items` and report how many are done, of how many, the rate and the time left.
 
     Parameters
     ----------
@@ -140,7 +150,7 @@ def report_progress(
     for done, item in enumerate(items, 1):
         yield item
         now = time.monotonic()
-        if now - reported > orphans.INTERVAL_S:
+        if now - reported > _TOLD_EVERY_S:
             reported = now
             log_line(_progress_line(label, done, total, unit, now - started))
     log_line(_progress_line(label, done, total, unit, time.monotonic() - started))
@@ -148,4 +158,7 @@ def report_progress(
 
 def _progress_line(label: str, done: int, total: int | None, unit: str, elapsed_s: float) -> str:
     of_all = "" if total is None else f"/{total}"
-    return f"{label}: {done}{of_all} {unit}, {done / max(elapsed_s, 1e-3):.0f} per s"
+    per_s = done / max(elapsed_s, 1e-3)
+    rate = f"{per_s:.0f}" if per_s >= 10 else f"{per_s:.1f}"
+    left = f", {(total - done) / per_s:.0f} s left" if total and 0 < done < total else ""
+    return f"{label}: {done}{of_all} {unit}, {rate} per s{left}"

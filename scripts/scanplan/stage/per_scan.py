@@ -19,10 +19,11 @@ def map_scans(
     *,
     label: str,
     threads: int = 1,
+    scan_ids: IntArray | None = None,
     per_scan: Mapping[int, Keywords] | None = None,
     **settings: Any,
 ) -> list[Result]:
-    """Call `function(scan_id, xyz_m, **settings)` for every scan of a table, on several cores.
+    """Call `function(scan_id, xyz_m, **settings)` for scans of a table, on several cores.
 
     Parameters
     ----------
@@ -35,6 +36,8 @@ def map_scans(
         The stage's name, for the progress line.
     threads : int
         Number of processes.
+    scan_ids : (n,) int, optional
+        Which scans, in this order; all by default.
     per_scan : dict of int to dict, optional
         Further keywords of the call of a scan alone, by scan_id.
     **settings
@@ -45,7 +48,8 @@ def map_scans(
     list
         One result per scan, in the order of the scans.
     """
-    scan_ids = tables.ScanStore(scans_path).scan_ids
+    if scan_ids is None:
+        scan_ids = tables.ScanStore(scans_path).scan_ids
     keywords = per_scan or {}
     parts = np.array_split(scan_ids, max(1, threads) * workers.JOBS_PER_CORE)
     jobs = [

@@ -250,7 +250,7 @@ ROOMS = Schema(
     ("room",),
     geometry=True,
 )
-FREE = Schema("free", 1, {"part": "int32", "geometry": "binary"}, ("part",), geometry=True)
+FREE = Schema("free", 2, {"part": "int32", "geometry": "binary"}, ("part",), geometry=True)
 """The floor that rays went over: polygons that do not overlap.
 
 Of the whole plan the file states `floor_z_m` and `ceiling_z_m`: heights in the map frame, NaN where

@@ -22,7 +22,7 @@ def write_table(
     columns: Mapping[str, Array | Sequence[object]],
     *,
     allow_empty: bool = False,
-    numbers: Mapping[str, float] | None = None,
+    notes: Mapping[str, str] | None = None,
 ) -> None:
     """Write a table, whole or not at all.
 
@@ -34,8 +34,8 @@ def write_table(
         Exactly the schema's columns.
     allow_empty : bool
         Whether zero rows are an answer (no wall found) and not a mistake.
-    numbers : dict of str to float, optional
-        What is true of the table as a whole; kept in the file for `read_numbers`.
+    notes : dict of str to str, optional
+        What the file says beside its rows, by name; see `read_note`.
 
     Raises
     ------
@@ -51,8 +51,7 @@ def write_table(
     form = parquet.arrow_schema(schema)
     table = pa.table({n: pa.array(columns[n], type=form.field(n).type) for n in schema.columns})
     parquet.check_rows(table, schema, path, allow_empty, ValueError)
-    extra = {"numbers": json.dumps(numbers)} if numbers else None
-    with parquet.open_writer(path, schema, extra) as writer:
+    with parquet.open_writer(path, schema, notes) as writer:
         writer.write_table(table.cast(form))
 
 
@@ -90,10 +89,16 @@ def read_table(
     return {name: table[name].to_numpy() for name in table.column_names}
 
 
-def read_numbers(path: FilePath, schema: schemas.Schema) -> dict[str, float]:
-    """Return what was written of a table as a whole, by name."""
+def read_note(path: FilePath, schema: schemas.Schema, name: str) -> str:
+    """Return what a table says beside its rows under a name; nothing where it says nothing.
+
+    Raises
+    ------
+    StageError
+        If the file is missing, damaged or of another schema or version.
+    """
     with parquet.open_file(path, schema) as file:
-        return json.loads(file.metadata.metadata.get(b"numbers", b"{}"))
+        return (file.metadata.metadata or {}).get(name.encode(), b"").decode()
 
 
 @contextmanager

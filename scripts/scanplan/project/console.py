@@ -1,0 +1,200 @@
+"""What the user sees of a run: a line a stage, with its dataset, how far it is and how it ended.
+
+Snakemake tells which stages begin and end, their logs how far they are. No heavy imports: this is
+part of the run itself.
+"""
+
+import logging
+import os
+import re
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from snakemake_interface_logger_plugins.common import LogEvent
+
+from scanplan.project.terminal import Terminal
+from scanplan.stage.log import WATCHED
+
+_NOTHING_TO_DO = "Nothing to be done"  # how Snakemake begins to say that all results are there
+_NO_STAGES = ("total", "all", "comparison", "thesis")
+_REDRAWN_EVERY_S = 0.25  # as often as an eye follows numbers
+_TOLD_EVERY_S = 60.0  # a log file of a run of an hour has a hundred lines more, not thousands
+_TAIL_BYTES = 8192  # the last lines of a log
+_DEFAULT_SCREEN = "DefaultStreamHandler"
+_STAGE_WIDTH = 25  # characters of the longest usual name, `order_scans cluster_hull:`
+_CHATTER = (
+    "Assuming unrestricted",
+    "Building DAG",
+    "Using shell",
+    "Singularity containers",
+    "Provided ",
+    "Exiting because a job",
+)
+_CHATTER_EVENTS = {event for event in LogEvent if event != LogEvent.ERROR}
+# the stage itself says what was wrong
+_ERRORS_OF_STAGES = ("CalledProcessError", "RuleException")
+_PROGRESS = re.compile(r" INFO [^:]+: (\d+(?:/\d+)? [^:]*, [\d.]+ per s.*)$")
+_SAID = re.compile(r" (INFO|WARNING) (.*)$")
+
+
+@dataclass
+class _Stage:
+    """A stage at work: its dataset and name as they are shown, its log, when it began and told."""
+
+    dataset: str
+    name: str
+    log: Path
+    began_s: float
+    told_s: float
+
+    def progress(self) -> str:
+        """Return how far it is, as far as its log says."""
+        found = [match[1] for line in _last_lines(self) if (match := _PROGRESS.search(line))]
+        return found[-1] if found else ""
+
+    def findings(self) -> tuple[str, list[str]]:
+        """Return its last line, without its name, and its warnings."""
+        said = [match.groups() for line in _last_lines(self) if (match := _SAID.search(line))]
+        lines = [text for level, text in said if level == "INFO" and not text.startswith("stage ")]
+        warnings = [text for level, text in said if level == "WARNING"]
+        return (lines[-1].partition(": ")[2] or lines[-1]) if lines else "", warnings
+
+
+class RunConsole(logging.Handler):
+    """Shows a run stage by stage; on a terminal, the stages at work stay in place.
+
+    Parameters
+    ----------
+    terminal : Terminal
+    datasets : iterable of str
+        Names, for the width of their column.
+    """
+
+    def __init__(self, terminal: Terminal, datasets: Iterable[str]) -> None:
+        super().__init__()
+        self._terminal = terminal
+        self._width = max(map(len, datasets), default=0)
+        self._stages: dict[int, _Stage] = {}
+        self._total = self._ended = 0
+        self._is_over = threading.Event()
+        self._guard = threading.RLock()
+        self._when_idle: Callable[[], None] = lambda: None
+
+    def take_over(self, logger: logging.Logger, when_idle: Callable[[], None]) -> None:
+        """Show what the logger of Snakemake tells, in the place of its own screen.
+
+        Parameters
+        ----------
+        logger : logging.Logger
+        when_idle : callable
+            Called where there is nothing to be done.
+        """
+        self._when_idle = when_idle
+        for handler in logger.handlers:
+            if handler.name == _DEFAULT_SCREEN:
+                handler.addFilter(self._is_for_the_user)
+        logger.addHandler(self)
+        # children learn that their lines are shown here
+        os.environ[WATCHED] = "1"
+        threading.Thread(target=self._watch, daemon=True).start()
+
+    def end(self) -> None:
+        """Leave the screen to others: what is still at work was stopped."""
+        self._is_over.set()
+        with self._guard:
+            for number in list(self._stages):
+                self._close(number, "stopped")
+            self._terminal.show([])
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Take a message of Snakemake."""
+        with self._guard:
+            self._take(record)
+
+    def _take(self, record: logging.LogRecord) -> None:
+        event = getattr(record, "event", None)
+        if str(record.msg).startswith(_NOTHING_TO_DO):
+            self._when_idle()
+        elif event == LogEvent.RUN_INFO:
+            stats = getattr(record, "stats", {})
+            self._total = sum(n for rule, n in stats.items() if rule not in _NO_STAGES)
+        elif event == LogEvent.JOB_INFO and getattr(record, "log", None):
+            self._open(record)
+        elif event == LogEvent.JOB_FINISHED:
+            self._close(getattr(record, "job_id", -1), "")
+        elif event == LogEvent.JOB_ERROR:
+            self._close(getattr(record, "jobid", -1), "failed")
+
+    def _open(self, record: logging.LogRecord) -> None:
+        of_job = dict(getattr(record, "wildcards", {}))
+        dataset = of_job.pop("dataset", "")
+        name = " ".join([getattr(record, "rule_name", ""), *of_job.values()])
+        now_s = time.monotonic()
+        # an older log stays until the job has begun, and is not its own
+        log = Path(getattr(record, "log", [""])[0])
+        log.unlink(missing_ok=True)
+        self._stages[getattr(record, "jobid", -1)] = _Stage(dataset, name, log, now_s, now_s)
+
+    def _close(self, number: int, how: str) -> None:
+        stage = self._stages.pop(number, None)
+        if stage is None:
+            return
+        self._ended += not how
+        took_s = time.monotonic() - stage.began_s
+        said, warnings = stage.findings()
+        for warning in warnings:
+            self._terminal.say(self._line(stage, f"warning: {warning.partition(': ')[2]}"))
+        text = how if how else said
+        self._terminal.say(self._line(stage, f"{took_s:6.1f} s  {text}"))
+
+    def _line(self, stage: _Stage, text: str) -> str:
+        done = f"{self._ended:{len(str(self._total))}}/{self._total}"
+        return f"{done} {stage.dataset:{self._width}} {stage.name + ':':{_STAGE_WIDTH}} {text}"
+
+    def _watch(self) -> None:
+        """Show how far the stages at work are, until the run is over."""
+        while not self._is_over.wait(_REDRAWN_EVERY_S):
+            with self._guard:
+                if not self._is_over.is_set():
+                    self._tell_progress()
+
+    def _tell_progress(self) -> None:
+        now_s = time.monotonic()
+        stages = list(self._stages.values())
+        if self._terminal.in_place:
+            self._terminal.show([self._running_line(stage, now_s) for stage in stages])
+            return
+        for stage in stages:
+            if now_s - stage.told_s > _TOLD_EVERY_S:
+                stage.told_s = now_s
+                self._terminal.say(self._running_line(stage, now_s))
+
+    def _running_line(self, stage: _Stage, now_s: float) -> str:
+        return self._line(stage, f"{now_s - stage.began_s:6.1f} s  {stage.progress() or '...'}")
+
+    def _is_for_the_user(self, record: logging.LogRecord) -> bool:
+        """Return whether Snakemake's own screen still shows a message."""
+        event = getattr(record, "event", None)
+        if event == LogEvent.ERROR:
+            return getattr(record, "exception", None) not in _ERRORS_OF_STAGES
+        if event in _CHATTER_EVENTS or str(record.msg).startswith(_CHATTER):
+            return False
+        return record.levelno >= logging.WARNING or not self._total
+
+
+def open_console(datasets: Iterable[str]) -> RunConsole:
+    """Return a console on the error output, where Snakemake writes, too."""
+    return RunConsole(Terminal(sys.stderr), datasets)
+
+
+def _last_lines(stage: _Stage) -> list[str]:
+    try:
+        with stage.log.open("rb") as file:
+            file.seek(max(0, stage.log.stat().st_size - _TAIL_BYTES))
+            return file.read().decode(errors="replace").splitlines()
+    except OSError:
+        return []

@@ -1,0 +1,60 @@
+"""Lines on the user's screen: some that stay, and at their end some that are written over in place.
+
+No heavy imports: this is part of the run itself.
+"""
+
+import os
+import shutil
+from collections.abc import Sequence
+from typing import TextIO
+
+_ERASE_BELOW = "\x1b[J"
+
+
+class Terminal:
+    """A screen, or a file where lines can only be added.
+
+    No mode of the terminal is changed, so that a killed run leaves nothing to be mended.
+
+    Parameters
+    ----------
+    stream : text file
+
+    Attributes
+    ----------
+    in_place : bool
+        Whether lines can be written over.
+    """
+
+    def __init__(self, stream: TextIO) -> None:
+        self.in_place = stream.isatty() and os.environ.get("TERM", "dumb") != "dumb"
+        self._stream = stream
+        self._live: Sequence[str] = ()
+
+    def say(self, line: str) -> None:
+        """Write a line that stays, above those that are in place; cut to the width of a screen."""
+        self._write(self._erase() + self._fit(line) + "\n" + self._draw())
+
+    def show(self, lines: Sequence[str]) -> None:
+        """Write lines in the place of those that were shown last; nothing where that cannot be."""
+        if self.in_place and (lines or self._live):
+            erased = self._erase()
+            self._live = lines
+            self._write(erased + self._draw())
+
+    def _erase(self) -> str:
+        return f"\x1b[{len(self._live)}A\r{_ERASE_BELOW}" if self._live else ""
+
+    def _draw(self) -> str:
+        return "".join(f"{self._fit(line)}\n" for line in self._live)
+
+    def _fit(self, line: str) -> str:
+        """Return a line that does not wrap: one more row would be one that nobody erases."""
+        if not self.in_place:
+            return line
+        width = shutil.get_terminal_size().columns - 1
+        return line if len(line) <= width else f"{line[: width - 1]}…"
+
+    def _write(self, text: str) -> None:
+        self._stream.write(text)
+        self._stream.flush()

@@ -1,0 +1,146 @@
+"""What the user sees of a run, on a terminal and in a file."""
+
+import io
+import logging
+from pathlib import Path
+
+import pytest
+from snakemake_interface_logger_plugins.common import LogEvent
+
+from scanplan.project.console import RunConsole
+from scanplan.project.terminal import Terminal
+
+
+class Screen(io.StringIO):
+    def isatty(self):
+        return True
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setenv("COLUMNS", "60")
+    monkeypatch.setenv("SCANPLAN_WATCHED", "")
+
+
+def record(event, **values):
+    made = logging.LogRecord("snakemake", values.pop("level", logging.INFO), "", 0, "", (), None)
+    made.__dict__ |= {"event": event, "msg": "", **values}
+    return made
+
+
+@pytest.fixture
+def file():
+    return io.StringIO()
+
+
+@pytest.fixture
+def console(file):
+    console = RunConsole(Terminal(file), ["floor"])
+    stats = {"register_scans": 1, "order_scans": 1, "all": 1, "total": 3}
+    console.emit(record(LogEvent.RUN_INFO, stats=stats))
+    return console
+
+
+def begin(console, jobid, rule, text, **wildcards):
+    log = Path(f"{rule}.log")
+    values = {"rule_name": rule, "log": [str(log)], "wildcards": {"dataset": "floor", **wildcards}}
+    console.emit(record(LogEvent.JOB_INFO, jobid=jobid, **values))
+    log.write_text(text)
+
+
+REGISTERED = """12:00 INFO register_scans: 3/9 scans, 5 per s, 1 s left
+12:00 INFO register_scans: 8 of 9 candidates retained
+12:00 INFO stage done
+"""
+
+
+def test_a_stage_that_ended_is_a_line_of_what_it_found(console, file):
+    begin(console, 7, "register_scans", REGISTERED)
+    console.emit(record(LogEvent.JOB_FINISHED, job_id=7))
+    (line,) = file.getvalue().splitlines()
+    assert line.startswith("1/2 floor register_scans: ")
+    assert line.endswith(" s  8 of 9 candidates retained")
+
+
+def test_warnings_are_said_and_a_failed_stage_says_so(console, file):
+    begin(console, 1, "order_scans", "12:00 WARNING order_scans: too few\n", method="hull")
+    console.emit(record(LogEvent.JOB_ERROR, jobid=1))
+    warned, failed = file.getvalue().splitlines()
+    assert warned.startswith("0/2 floor order_scans hull: ") and warned.endswith("warning: too few")
+    assert failed.endswith(" s  failed")
+
+
+def test_what_an_interrupted_run_was_at_is_said(console, file):
+    begin(console, 7, "register_scans", "")
+    console.end()
+    assert file.getvalue().startswith("0/2 floor register_scans: ")
+    assert file.getvalue().endswith("stopped\n")
+
+
+def test_targets_and_jobs_without_a_log_are_no_stages(console, file):
+    console.emit(record(LogEvent.JOB_INFO, jobid=2, rule_name="all", log=[], wildcards={}))
+    console.emit(record(LogEvent.JOB_FINISHED, job_id=2))
+    assert file.getvalue() == ""
+
+
+def test_an_older_log_is_not_read(console, file):
+    Path("register_scans.log").write_text("12:00 INFO register_scans: of yesterday\n")
+    begin(console, 7, "register_scans", "")
+    console.emit(record(LogEvent.JOB_FINISHED, job_id=7))
+    assert "yesterday" not in file.getvalue()
+
+
+def test_snakemakes_own_screen_shows_errors_that_no_stage_has_said(console):
+    logger = logging.Logger("snakemake")
+    screen = io.StringIO()
+    own = logging.StreamHandler(screen)
+    own.name = "DefaultStreamHandler"
+    logger.addHandler(own)
+    console.take_over(logger, lambda: None)
+    logger.info("Building DAG of jobs...")
+    logger.info("Finished jobid: 7", extra={"event": LogEvent.JOB_FINISHED, "job_id": 7})
+    logger.error("a rule", extra={"event": LogEvent.JOB_ERROR, "jobid": 7})
+    logger.error("of it", extra={"event": LogEvent.ERROR, "exception": "CalledProcessError"})
+    assert screen.getvalue() == ""
+    logger.error("a cycle", extra={"event": LogEvent.ERROR, "exception": "CyclicGraphException"})
+    logger.warning("a disk")
+    assert screen.getvalue() == "a cycle\na disk\n"
+    console.end()
+
+
+def test_with_nothing_to_do_the_results_are_told(console):
+    logger, told = logging.Logger("snakemake"), []
+    console.take_over(logger, lambda: told.append(1))
+    logger.info("Nothing to be done (all requested files are present and up to date).")
+    assert told == [1]
+    console.end()
+
+
+def test_lines_in_place_are_written_over():
+    screen = Screen()
+    terminal = Terminal(screen)
+    terminal.show(["one", "two"])
+    terminal.show(["one more"])
+    assert screen.getvalue() == "one\ntwo\n\x1b[2A\r\x1b[Jone more\n"
+    terminal.say("stays")
+    assert screen.getvalue().endswith("\x1b[1A\r\x1b[Jstays\none more\n")
+    terminal.show([])
+    assert screen.getvalue().endswith("\x1b[1A\r\x1b[J")
+
+
+def test_no_line_of_a_screen_wraps():
+    screen = Screen()
+    Terminal(screen).say("x" * 100)
+    assert screen.getvalue() == "x" * 58 + "…\n"
+
+
+@pytest.mark.parametrize("term", ["xterm", "dumb"])
+def test_a_file_and_a_dumb_terminal_get_whole_lines_and_no_codes(term, monkeypatch):
+    monkeypatch.setenv("TERM", term)
+    stream = io.StringIO() if term == "xterm" else Screen()
+    terminal = Terminal(stream)
+    terminal.show(["at work"])
+    terminal.say("x" * 100)
+    assert stream.getvalue() == "x" * 100 + "\n"

@@ -1,0 +1,46 @@
+"""A plan in lines that a surveyor reads."""
+
+import numpy as np
+
+from helpers import floorplan_making, report_making
+from scanplan.plan import floorplan
+from scanplan.report.facts import SurveyFacts
+from scanplan.report.summary import summarise_survey
+
+
+def survey():
+    return SurveyFacts(
+        selection=report_making.selection(),
+        registration=report_making.registration(),
+        poses=report_making.poses(),
+        segments=report_making.segments(),
+        evidence=floorplan_making.evidence(),
+        chosen=3,
+    )
+
+
+def plan(**tables):
+    names = ("faces", "walls", "openings", "rooms", "free")
+    made = {name: getattr(floorplan_making, name)() for name in names}
+    return floorplan.FloorPlan(name="office", **(made | tables))
+
+
+def test_it_counts_what_was_found_and_names_what_is_doubtful():
+    found, doubtful, made_of = summarise_survey(plan(), survey()).splitlines()
+    n_rooms = len(floorplan_making.rooms()["room"])
+    assert found.startswith(f"found    {n_rooms} rooms, ") and "m² of floor" in found
+    assert "1 wall (2) weakly supported: verify on site" in doubtful
+    assert made_of.startswith("made of  3 of 4 registered scans (5 candidates of about ")
+
+
+def test_a_plan_without_doubts_says_so_and_many_are_not_all_named():
+    walls = floorplan_making.walls()
+    sure = walls | {"verify": np.zeros(len(walls["wall"]), bool)}
+    rooms = floorplan_making.rooms()
+    closed = rooms | {"closed": np.ones(len(rooms["room"]), bool)}
+    text = summarise_survey(plan(walls=sure, rooms=closed), survey())
+    assert "doubtful nothing that the plan marks" in text
+    nine = {name: np.repeat(values[:1], 9) for name, values in rooms.items()}
+    nine |= {"room": np.arange(9), "closed": np.zeros(9, bool)}
+    text = summarise_survey(plan(walls=sure, rooms=nine), survey())
+    assert "9 rooms (0, 1, 2, 3, 4, 5, 6, 7 and 1 more) not closed: area is a guess" in text
