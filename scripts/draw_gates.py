@@ -1,8 +1,7 @@
 """Draw what survives algorithm 3's gates, and what fitness rewards."""
 
-from scanplan.exports import drawing
-from scanplan.lab.thesis import gate_figures
-from scanplan.stage import log
+from scanplan.lab.thesis.figures import gate_figures
+from scanplan.stage import figure_files, log
 from scanplan.store import atomic, schemas, tables
 from scanplan.types import FilePath
 
@@ -20,9 +19,11 @@ def draw_gates(
         To write.
     """
     survivors = gate_figures.draw_gates(tables.read_table(swept, schemas.GATES))
-    atomic.write_text(gates_figure, drawing.format_svg(survivors))
+    atomic.write_text(gates_figure, figure_files.format_svg(survivors))
     pairs = tables.read_table(alignments, schemas.ALIGNMENTS)
-    atomic.write_text(alignments_figure, drawing.format_svg(gate_figures.draw_alignments(pairs)))
+    atomic.write_text(
+        alignments_figure, figure_files.format_svg(gate_figures.draw_alignments(pairs))
+    )
     log.log_line(f"draw_gates: 2 figures, {len(pairs['method'])} alignments")
 
 

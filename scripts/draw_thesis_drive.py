@@ -7,8 +7,8 @@ import numpy as np
 import pandas as pd
 
 from scanplan.lab.evaluation import length_metrics
-from scanplan.lab.thesis import drive_figures
 from scanplan.lab.thesis.claim_measures import ITERATIVE, OURS
+from scanplan.lab.thesis.figures import drive_figures
 from scanplan.lab.thesis.stated_claims import SUBSET
 from scanplan.report import figures, top_view
 from scanplan.stage import figure_files, log

@@ -8,8 +8,8 @@ import pandas as pd
 from scanplan.extraction import extractors
 from scanplan.extraction.cluster_ransac import ClusterRansacSettings
 from scanplan.lab.evaluation import oracle_figure, truth_file
-from scanplan.lab.thesis import room_figures
 from scanplan.lab.thesis.claim_measures import OURS
+from scanplan.lab.thesis.figures import room_figures
 from scanplan.stage import figure_files, log
 from scanplan.store import atomic, registered_scans, schemas, tables
 from scanplan.types import FilePath, Settings

@@ -11,7 +11,8 @@ from interpolate_poses import interpolate_poses
 from reference import registration as literal
 from scanplan.geometry import se3
 from scanplan.lab.simulation.survey_truth import format_tum
-from scanplan.lab.thesis import gate_figures, gates
+from scanplan.lab.thesis import gates
+from scanplan.lab.thesis.figures import gate_figures
 from scanplan.project.settings import merge_settings
 from scanplan.project.stage_settings import select_section
 from scanplan.project.yaml_file import read_yaml

@@ -23,8 +23,9 @@ from measure_candidates import measure_candidates
 from measure_coverage import measure_coverage
 from measure_premises import measure_premises
 from measure_unevenness import measure_unevenness
-from scanplan.lab.thesis import drive_figures, premises
-from scanplan.lab.thesis.shown_figures import FIGURES
+from scanplan.lab.thesis import premises
+from scanplan.lab.thesis.figures import drive_figures
+from scanplan.lab.thesis.figures.shown_figures import FIGURES
 from scanplan.project import stage_settings
 from scanplan.store import schemas, tables
 from tabulate_steps import tabulate_steps

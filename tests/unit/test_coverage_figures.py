@@ -1,7 +1,7 @@
 import numpy as np
 
 from helpers import claim_making as made
-from scanplan.lab.thesis import coverage_figures
+from scanplan.lab.thesis.figures import coverage_figures
 from scanplan.selection.methods import METHODS
 
 

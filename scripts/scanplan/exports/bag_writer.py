@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 ROS1_STORE = typestores.standard_store(Stores.ROS1_NOETIC)
 _ROS2_STORE = typestores.standard_store(Stores.ROS2_HUMBLE)
 _ROS2_STORAGE = {".db3": rosbag2.StoragePlugin.SQLITE3, ".mcap": rosbag2.StoragePlugin.MCAP}
-_ROS2_VERSION = 9  # of the bag's metadata, the newest that rosbags writes
 _QUEUE_DEPTH = 10  # ASSUME the depth that ROS 2 publishers take by default
 _FOREVER = QosTime(2147483647, 4294967295)  # rmw's infinite duration
 
@@ -121,7 +120,8 @@ def open_bag_writer(path: Path) -> Iterator[BagWriter]:
         # the writer makes a folder; the file in it is complete without the rest
         with tempfile.TemporaryDirectory(dir=path.parent, prefix=".recording") as folder:
             bag = Path(folder, "survey")
-            with rosbag2.Writer(bag, version=_ROS2_VERSION, storage_plugin=storage) as writer:
+            newest = rosbag2.Writer.VERSION_LATEST
+            with rosbag2.Writer(bag, version=newest, storage_plugin=storage) as writer:
                 yield BagWriter(writer, _ROS2_STORE, _ROS2_STORE.serialize_cdr, ros2=True)
             (bag / f"survey{path.suffix}").replace(path)
     else:

@@ -10,7 +10,7 @@ from scanplan.lab.thesis.gates import (
     BY_RETAINED,
     PAIRED_METHODS,
 )
-from scanplan.lab.thesis.stated_claims import stated_number
+from scanplan.lab.thesis.stated_claims import CLAIMS
 from scanplan.report import top_view
 from scanplan.types import Columns, FloatArray
 
@@ -44,7 +44,8 @@ def draw_gates(gates: Columns) -> Figure:
     """
     figure = Figure(figsize=(9.6, 3.6), layout="constrained")
     left, *maps = figure.subplots(1, 3, width_ratios=(1.5, 1, 1))
-    stated = stated_number("two_percent_survive", "share retained")
+    (claim,) = (claim for claim in CLAIMS if claim.name == "two_percent_survive")
+    stated = claim.stated["share retained"]
     for reading, colour in _COLOURS.items():
         distances_m, passed, kept = surviving_shares(gates, reading)
         left.plot(distances_m, 100 * kept, "o-", ms=3.5, lw=1.2, color=colour, label=reading)
