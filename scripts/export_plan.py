@@ -41,8 +41,8 @@ def export_plan(
         free=_read_optional(plan["free"], schemas.FREE),
         assumed_thickness_m=settings["assumed_thickness_m"],
         assumed_height_m=settings["assumed_height_m"],
-        floor_z_m=float(tables.read_note(plan["free"], schemas.FREE, "floor_z_m")),
-        ceiling_z_m=float(tables.read_note(plan["free"], schemas.FREE, "ceiling_z_m")),
+        floor_z_m=_read_height(plan["free"], "floor_z_m"),
+        ceiling_z_m=_read_height(plan["free"], "ceiling_z_m"),
     )
     sheet = drawing.draw_plan(drawn)
     grid = grid_map.draw_grid_map(drawn, settings["map_cell_m"])
@@ -56,6 +56,11 @@ def export_plan(
     log.log_line(
         f"export_plan: {floorplan.summarise_floorplan(drawn)}; {_summarise_heights(drawn)}"
     )
+
+
+def _read_height(path: FilePath, name: str) -> float:
+    """Return a height in metres that the table of free floor states; NaN where it was not seen."""
+    return float(tables.read_note(path, schemas.FREE, name) or "nan")
 
 
 def _read_optional(path: FilePath, schema: schemas.Schema) -> Columns:

@@ -168,7 +168,12 @@ def test_the_surveys_that_are_shipped_fit_the_schema(known, project_root, name):
 
 
 def test_choices_are_what_the_schema_allows():
-    assert list_choices(SCHEMA, "plan", "extractor") == ["cluster_ransac", "iterative_ransac"]
+    assert list_choices(SCHEMA, "plan", "extractor") == [
+        "cluster_ransac",
+        "iterative_ransac",
+        "thesis_cluster_ransac",
+        "thesis_iterative_ransac",
+    ]
 
 
 def test_settings_of_a_recording_are_no_survey(tmp_path, known):

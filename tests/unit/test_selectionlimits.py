@@ -110,6 +110,7 @@ def test_more_scans_than_there_are():
 def test_no_scans_have_an_empty_order(method):
     nothing = {
         "scan_id": np.zeros(0, np.int32),
+        "cluster": np.zeros(0, np.int32),
         "n_points": np.zeros(0, np.int32),
         "geometry": np.zeros(0, object),
     }
