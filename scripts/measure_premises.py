@@ -5,8 +5,7 @@ import numpy as np
 from scanplan.extraction import extractors
 from scanplan.extraction.cluster_ransac import ClusterRansacSettings
 from scanplan.lab.evaluation import bitmap_shares, truth_file, wall_findings
-from scanplan.lab.thesis import premises
-from scanplan.lab.thesis.figures import steps_figure
+from scanplan.lab.thesis import premises, steps_figure
 from scanplan.rays import sensor_frame
 from scanplan.stage import log
 from scanplan.store import registered_scans, schemas, tables

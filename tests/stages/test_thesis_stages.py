@@ -25,7 +25,7 @@ from measure_premises import measure_premises
 from measure_unevenness import measure_unevenness
 from scanplan.lab.thesis import premises
 from scanplan.lab.thesis.figures import drive_figures
-from scanplan.lab.thesis.figures.shown_figures import FIGURES
+from scanplan.lab.thesis.shown_figures import FIGURES
 from scanplan.project import stage_settings
 from scanplan.store import schemas, tables
 from tabulate_steps import tabulate_steps

@@ -10,8 +10,8 @@ from markupsafe import escape
 from helpers import claim_making as made
 from scanplan.lab.thesis import judging
 from scanplan.lab.thesis import page as page_module
-from scanplan.lab.thesis.figures.shown_figures import FIGURES
 from scanplan.lab.thesis.page import Verdict
+from scanplan.lab.thesis.shown_figures import FIGURES
 from scanplan.lab.thesis.stated_claims import CLAIMS
 
 (DEVIATIONS,) = (path for path in made.PAGE if path.suffix == ".md")

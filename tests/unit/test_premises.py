@@ -5,7 +5,7 @@ import pytest
 
 from scanplan.lab.evaluation import bitmap_shares, face_cells, wall_findings
 from scanplan.lab.thesis import premises
-from scanplan.lab.thesis.figures.steps_figure import WallSteps
+from scanplan.lab.thesis.steps_figure import WallSteps
 
 # a wall with a door in it, and one at a right angle
 FACES = np.array([(0, 2, 2, 2), (3, 2, 5, 2), (5, 2, 5, -2)], float).reshape(-1, 2, 2)

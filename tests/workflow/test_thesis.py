@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from helpers.project_copy import Project
-from scanplan.lab.thesis.figures.shown_figures import FIGURES
+from scanplan.lab.thesis.shown_figures import FIGURES
 
 pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("thesis")]
 TINY_THESIS = "tests/data/tiny_thesis.yaml"

@@ -1,7 +1,7 @@
 import os
 
 from scanplan.lab.thesis import stated_claims
-from scanplan.lab.thesis.figures import shown_figures
+from scanplan.lab.thesis import shown_figures
 
 # what the claims are measured on: table of the results by the name that the measures know it by
 ROOMS_TABLES = {

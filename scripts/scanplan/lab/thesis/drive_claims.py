@@ -34,7 +34,7 @@ from scanplan.lab.thesis.claim_measures import (
     measure_at,
     of_unit,
 )
-from scanplan.lab.thesis.figures.shown_figures import THESIS_SCANS
+from scanplan.lab.thesis.shown_figures import THESIS_SCANS
 from scanplan.lab.thesis.stated_claims import GROWS, LOADED, SEVERAL, SUBSET
 
 _NAMES = {OURS: "cluster RANSAC", ITERATIVE: "iterative RANSAC"}

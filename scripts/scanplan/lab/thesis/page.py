@@ -11,7 +11,7 @@ from markupsafe import Markup
 from scipy.special import stdtrit
 
 from scanplan.lab.thesis.claim_measures import COUNT, MARGIN, NUMBER, SHARE
-from scanplan.lab.thesis.figures.shown_figures import FIGURES, STEPS, Figure
+from scanplan.lab.thesis.shown_figures import FIGURES, STEPS, Figure
 from scanplan.lab.thesis.stated_claims import CLAIMS, Claim
 from scanplan.report import templates
 from scanplan.store.schemas import NOT_WRITTEN

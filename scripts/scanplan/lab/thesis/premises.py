@@ -12,7 +12,7 @@ import shapely
 from scanplan.lab.evaluation import first_ranks
 from scanplan.lab.evaluation.wall_findings import JUDGED, WITHIN_M, Findings, VisibleTruth
 from scanplan.lab.evaluation.wall_metrics import measure_first_scans
-from scanplan.lab.thesis.figures.steps_figure import WallSteps
+from scanplan.lab.thesis.steps_figure import WallSteps
 from scanplan.types import FloatArray, IntArray
 
 UTILITIES = {

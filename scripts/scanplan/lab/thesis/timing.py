@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from scanplan.extraction import extractors
 from scanplan.extraction.extractors import Extractor
 from scanplan.lab.thesis.claim_measures import CHOOSING, LITERAL, MERGING, ORDERING, THINNED
-from scanplan.lab.thesis.figures.shown_figures import THESIS_SCANS
+from scanplan.lab.thesis.shown_figures import THESIS_SCANS
 from scanplan.lab.thesis.stated_claims import SUBSET
 from scanplan.plan.faces.merging import MergeSettings, merge_segments
 from scanplan.selection import area_greedy, hulls

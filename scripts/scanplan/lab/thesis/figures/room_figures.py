@@ -16,9 +16,9 @@ from scanplan.extraction.cluster_ransac import ClusterRansacSettings
 from scanplan.geometry import bitmap
 from scanplan.lab.evaluation import bitmap_shares, length_metrics
 from scanplan.lab.evaluation.truth_file import TrueFaces
-from scanplan.lab.thesis import coverage
+from scanplan.lab.thesis import coverage, steps_figure
 from scanplan.lab.thesis.claim_measures import OURS
-from scanplan.lab.thesis.figures import coverage_figures, schematic_figures, steps_figure
+from scanplan.lab.thesis.figures import coverage_figures, schematic_figures
 from scanplan.lab.thesis.stated_claims import MANY, SUBSET
 from scanplan.rays import sensor_frame
 from scanplan.report import top_view
