@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan.lab.evaluation.length_metrics import ROUNDING_M
+from scanplan.geometry.tolerances import ROUNDING
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 CELL_M = 0.02  # longest cell: what is seen or found is known to half of it at either end
@@ -36,7 +36,7 @@ def cut_faces(faces_m: FloatArray) -> FaceCells:
     """Cut faces (n, 2, 2), all of some length, into cells."""
     ways_m = faces_m[:, 1] - faces_m[:, 0]
     length_m = np.hypot(*ways_m.T)
-    count = np.maximum(np.ceil((length_m - ROUNDING_M) / CELL_M), 1).astype(np.int64)
+    count = np.maximum(np.ceil((length_m - ROUNDING) / CELL_M), 1).astype(np.int64)
     first = np.concatenate([[0], np.cumsum(count)])
     face = np.repeat(np.arange(len(faces_m)), count)
     share = (np.arange(len(face)) - first[face] + 0.5) / count[face]

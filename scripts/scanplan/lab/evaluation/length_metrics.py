@@ -15,8 +15,6 @@ from numpy.typing import ArrayLike
 from scanplan.geometry import intervals
 from scanplan.types import Columns, FloatArray, IntArray
 
-ROUNDING_M = 1e-9
-"""Coordinates and sums of lengths are rounded to far less: what is shorter has no length."""
 _ENDS = ("x0_m", "y0_m", "x1_m", "y1_m")
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry.tolerances import ROUNDING
 from scanplan.lab.evaluation import length_metrics
 from scanplan.lab.evaluation.face_cells import FaceCells
 from scanplan.lab.evaluation.wall_findings import JUDGED, WITHIN_M
@@ -124,4 +125,4 @@ def _nearest_pairs(drawn_m: FloatArray, true_m: FloatArray) -> list[tuple[int, i
 def unit_directions(lines_m: FloatArray) -> FloatArray:
     """Return the unit directions (n, 2) of lines (n, 2, 2); those of no length have none."""
     way_m = lines_m[:, 1] - lines_m[:, 0]
-    return way_m / np.maximum(np.hypot(*way_m.T), length_metrics.ROUNDING_M)[:, None]
+    return way_m / np.maximum(np.hypot(*way_m.T), ROUNDING)[:, None]

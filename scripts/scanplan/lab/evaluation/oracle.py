@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan.lab.evaluation.length_metrics import ROUNDING_M
+from scanplan.geometry.tolerances import ROUNDING
 from scanplan.selection import lazy_greedy
 from scanplan.store.registered_scans import RegisteredScans
 from scanplan.types import BoolArray, Columns, FloatArray, IntArray
@@ -80,8 +80,8 @@ def _choose_round(seen: BoolArray, length_m: FloatArray) -> tuple[list[int], lis
     unseen = _UnseenLength(seen, length_m)
     adding = [
         (i, gain_m)
-        for i, gain_m in lazy_greedy.choose_greedily(unseen, tie=ROUNDING_M)
-        if gain_m > ROUNDING_M
+        for i, gain_m in lazy_greedy.choose_greedily(unseen, tie=ROUNDING)
+        if gain_m > ROUNDING
     ]
     if not adding:
         return list(range(len(seen))), [0.0] * len(seen)

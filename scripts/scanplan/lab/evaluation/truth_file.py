@@ -9,7 +9,7 @@ import numpy as np
 
 from scanplan.errors import StageError
 from scanplan.geometry import se3
-from scanplan.lab.evaluation.length_metrics import ROUNDING_M
+from scanplan.geometry.tolerances import ROUNDING
 from scanplan.lab.evaluation.visible_faces import SensorView
 from scanplan.store import tum
 from scanplan.types import FilePath, FloatArray, IntArray
@@ -206,4 +206,4 @@ def _runs(path: FilePath, number: int, geometry: dict[str, Any]) -> FloatArray:
             f" {_REMEDY}"
         )
     runs = np.stack([xy_m[:-1], xy_m[1:]], axis=1)
-    return runs[np.hypot(*(runs[:, 1] - runs[:, 0]).T) > ROUNDING_M]
+    return runs[np.hypot(*(runs[:, 1] - runs[:, 0]).T) > ROUNDING]
