@@ -4,6 +4,7 @@ Snakemake tells which stages begin and end, their logs how far they are. No heav
 part of the run itself.
 """
 
+import io
 import logging
 import os
 import re
@@ -23,7 +24,6 @@ _NOTHING_TO_DO = "Nothing to be done"  # how Snakemake begins to say that all re
 _NO_STAGES = ("total", "all", "comparison", "thesis")
 _REDRAWN_EVERY_S = 0.25  # as often as an eye follows numbers
 _TOLD_EVERY_S = 60.0  # a log file of a run of an hour has a hundred lines more, not thousands
-_TAIL_BYTES = 8192  # the last lines of a log
 _DEFAULT_SCREEN = "DefaultStreamHandler"
 _STAGE_WIDTH = 25  # characters of the longest usual name, `order_scans cluster_hull:`
 _CHATTER = (
@@ -194,7 +194,7 @@ def open_console(datasets: Iterable[str]) -> RunConsole:
 def _last_lines(stage: _Stage) -> list[str]:
     try:
         with stage.log.open("rb") as file:
-            file.seek(max(0, stage.log.stat().st_size - _TAIL_BYTES))
+            file.seek(max(0, stage.log.stat().st_size - io.DEFAULT_BUFFER_SIZE))
             return file.read().decode(errors="replace").splitlines()
     except OSError:
         return []
