@@ -193,3 +193,16 @@ def test_a_survey_file_is_told_from_a_folder(tmp_path):
     assert not dataset_files.is_survey_file(
         tmp_path / "run.yaml"
     ) and not dataset_files.is_survey_file("a.bag")
+
+
+@pytest.mark.parametrize("name", ["<script>run.bag", "a<b>/run.bag"])
+def test_a_name_that_snakemake_takes_for_a_placeholder_is_refused(tmp_path, name):
+    put(tmp_path / name)
+    with pytest.raises(StageError, match=r"Snakemake takes <\w+> in a name .*; rename it"):
+        dataset_files.find_files((tmp_path / name).parent)
+
+
+def test_signs_alone_are_no_placeholder(tmp_path):
+    put(tmp_path / "a<b.bag")
+    put(tmp_path / "<B>.bag")
+    assert len(dataset_files.find_files(tmp_path)) == 2

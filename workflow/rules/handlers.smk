@@ -34,6 +34,7 @@ def tell_results():
 
 # before the jobs are worked out: while another run is at work, files come and go
 if workflow.is_main_process:
+    or_end(run_lock.check_places, GIVEN)
     or_end(run_lock.lock_folder).close()
 if is_to_be_told():
     CONSOLE.take_over(logging.getLogger("snakemake.logging"), tell_results)
