@@ -3,6 +3,7 @@
 import os
 import shutil
 import signal
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -89,17 +90,28 @@ def test_an_interrupted_stage_is_said_once_and_last():
 
 def test_empty_folders_go_and_results_stay():
     Path("results/floor/plan/empty").mkdir(parents=True)
-    run_outcome.remove_empty_folders(["floor", "never"])
+    run_outcome.remove_unfinished(["floor", "never"])
     assert not Path("results").exists()
     Path("results/floor/plan").mkdir(parents=True)
     Path("results/floor/poses.parquet").touch()
     Path("results/other").mkdir()
-    run_outcome.remove_empty_folders(["floor"])
+    run_outcome.remove_unfinished(["floor"])
     assert sorted(str(path) for path in Path("results").rglob("*")) == [
         "results/floor",
         "results/floor/poses.parquet",
         "results/other",
     ]
+
+
+def test_temporary_files_of_killed_stages_go():
+    killed = subprocess.Popen(["true"])
+    killed.wait()
+    Path("results/floor/plan").mkdir(parents=True)
+    Path(f"results/floor/.scans.{killed.pid}.part.spool").touch()
+    Path(f"results/floor/plan/.faces.{os.getpid()}.part.parquet").touch()
+    run_outcome.remove_unfinished(["floor"])
+    (left,) = (path for path in Path("results").rglob("*") if path.is_file())
+    assert left.name == f".faces.{os.getpid()}.part.parquet"
 
 
 def test_folders_behind_a_link_stay():
@@ -108,13 +120,13 @@ def test_folders_behind_a_link_stay():
     Path("results/floor").symlink_to("../outside")
     provenance.begin_results("floor", "a/floor")
     provenance.discard_lone_note("floor")
-    run_outcome.remove_empty_folders(["floor"])
+    run_outcome.remove_unfinished(["floor"])
     assert Path("outside/empty").is_dir() and Path("results/floor").is_symlink()
     assert not Path("results/floor/source.txt").exists()
     Path("elsewhere").mkdir()
     shutil.rmtree("results")
     Path("results").symlink_to("elsewhere")
-    run_outcome.remove_empty_folders(["floor"])
+    run_outcome.remove_unfinished(["floor"])
     assert Path("results").is_symlink()
 
 

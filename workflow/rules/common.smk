@@ -3,11 +3,6 @@ import re
 import sys
 
 sys.path.insert(0, f"{workflow.basedir}/scripts")
-from scanplan.project import run_lock
-
-if workflow.is_main_process:
-    run_lock.end_on_interrupt()
-
 from scanplan.errors import StageError
 from scanplan.lab.thesis import experiments
 from scanplan.project import stage_settings

@@ -7,6 +7,7 @@ import hashlib
 import io
 import os
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
@@ -91,19 +92,20 @@ def discard_lone_note(name: str) -> None:
     note = _note_of(name)
     if _is_lone(note):
         note.unlink()
-        for folder in own_folders(name):
-            folder.rmdir()
+        remove_empty_folders(name)
 
 
-def own_folders(name: str) -> list[Path]:
-    """List the folders of a dataset's results, the innermost first.
+def remove_empty_folders(name: str) -> None:
+    """Remove the empty folders of a dataset's results.
 
     None where results/<name> is a link: what it leads to was there before.
     """
     place = Path("results", name)
-    if place.is_symlink():
-        return []
-    return [Path(folder) for folder, _, _ in os.walk(place, topdown=False)]
+    inner = [] if place.is_symlink() else os.walk(place, topdown=False)
+    for folder, _, _ in inner:
+        # one that is not empty, or the root of a disk, stays
+        with suppress(OSError):
+            Path(folder).rmdir()
 
 
 def _note_of(name: str) -> Path:

@@ -1,12 +1,14 @@
 """The lines that end a run, for the user: where the results lie, or what went wrong."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 
 from scanplan.project import provenance
 from scanplan.project.run_lock import FolderRun
 from scanplan.project.settings import Layer, locate_fault
 from scanplan.stage.log import INTERRUPTED
+from scanplan.store import atomic
 
 _DONE = " stage done"
 
@@ -58,14 +60,10 @@ def _list_faults(name: str, run: FolderRun, layers: Sequence[Layer]) -> Iterator
             )
 
 
-def remove_empty_folders(names: Iterable[str]) -> None:
-    """Remove the empty folders of datasets below results, and results itself where it is empty."""
+def remove_unfinished(names: Iterable[str]) -> None:
+    """Remove what stages that were killed left below results: temporary files, empty folders."""
     for name in names:
-        for folder in provenance.own_folders(name):
-            _remove_if_empty(folder)
-    _remove_if_empty(Path("results"))
-
-
-def _remove_if_empty(folder: Path) -> None:
-    if folder.is_dir() and not folder.is_symlink() and not any(folder.iterdir()):
-        folder.rmdir()
+        atomic.remove_leftovers(Path("results", name))
+        provenance.remove_empty_folders(name)
+    with suppress(OSError):
+        Path("results").rmdir()

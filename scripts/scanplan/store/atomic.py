@@ -3,6 +3,7 @@
 import errno
 import glob
 import os
+import re
 import shutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -15,6 +16,7 @@ from scanplan.plain_types import FilePath
 
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 _REFUSED = (errno.EACCES, errno.EPERM, errno.EROFS, errno.ENOTDIR, errno.EISDIR, errno.EEXIST)
+_WRITER = re.compile(r"\.(\d+)\.part")
 _unfinished: set[Path] = set()
 _refusals: list[Callable[[], bool]] = []
 
@@ -78,7 +80,7 @@ def scratch_file(path: FilePath) -> Iterator[Path]:
     path = Path(path)
     with explain_unwritable(path):
         path.parent.mkdir(parents=True, exist_ok=True)
-        _remove_leftovers(path)
+        remove_leftovers(path.parent, f".{glob.escape(path.stem)}.*.part{path.suffix}")
     temporary = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
     _unfinished.add(temporary)
     try:
@@ -110,7 +112,7 @@ def describe_unwritable(path: FilePath, error: OSError) -> StageError:
     remedy = "make it a place that can be written to, or move away what stands there"
     if error.errno in _FULL:
         remedy = _describe_room(Path(path))
-    return StageError(f"{path}: cannot be written ({error.strerror}); {remedy}")
+    return StageError(f"{path}: cannot be written ({os.strerror(error.errno or 0)}); {remedy}")
 
 
 def _describe_room(path: Path) -> str:
@@ -148,12 +150,11 @@ def is_process_alive(pid: int) -> bool:
         return False
 
 
-def _remove_leftovers(path: Path) -> None:
-    """Remove the temporary files of `path` whose writers were killed."""
-    for leftover in path.parent.glob(f".{glob.escape(path.stem)}.*.part{path.suffix}"):
-        parts = leftover.name.split(".")
-        writer = parts[-3] if path.suffix else parts[-2]
-        if writer.isdigit() and not is_process_alive(int(writer)):
+def remove_leftovers(folder: Path, pattern: str = "**/.*.part*") -> None:
+    """Remove the temporary files in a folder whose writers were killed."""
+    for leftover in folder.glob(pattern):
+        writer = _WRITER.search(leftover.name)
+        if writer and not is_process_alive(int(writer[1])):
             leftover.unlink(missing_ok=True)
 
 
