@@ -206,3 +206,14 @@ def test_signs_alone_are_no_placeholder(tmp_path):
     put(tmp_path / "a<b.bag")
     put(tmp_path / "<B>.bag")
     assert len(dataset_files.find_files(tmp_path)) == 2
+
+
+@pytest.mark.parametrize(
+    ("name", "is_taken"), [("x" * 19, True), ("x" * 20, False), ("ab" * 30, False)]
+)
+def test_names_that_snakemake_takes_for_endless_are_refused(name, is_taken):
+    if is_taken:
+        assert dataset_files.dataset_name(name) == name
+        return
+    with pytest.raises(StageError, match="repeats itself so often"):
+        dataset_files.dataset_name(name)
