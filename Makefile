@@ -28,9 +28,8 @@ help: ## this list
 	@echo "CORES=N for run, compare, quick and test (2); PYTHON=PATH for the set-up; ARGS='...' is handed on"
 
 run: environment ## the demo: simulate an office, make its plan
-	@test -z "$(CONFIG)" || PYTHONPATH=scripts $(BIN)/python -m scanplan.project.settings "$(CONFIG)"
 	@$(SNAKEMAKE) $(TARGET) $(if $(CONFIG),--configfile "$(CONFIG)") \
-	    $(if $(DATASET)$(REPLACE),--config $(if $(DATASET),'dataset="$(DATASET)"') $(if $(REPLACE),'replace="$(REPLACE)"')) \
+	    $(if $(DATASET)$(REPLACE),--config $(if $(DATASET),'dataset=["$(DATASET)"]') $(if $(REPLACE),'replace=["$(REPLACE)"]')) \
 	    $(ARGS)
 
 compare: TARGET = comparison

@@ -9,4 +9,6 @@ class StageError(Exception):
     """
 
     def __init__(self, message: object) -> None:
-        super().__init__(" ".join(str(message).split()))
+        line = " ".join(str(message).split())
+        # a value may be a page long: what is before and behind it says more
+        super().__init__(line if len(line) <= 1200 else f"{line[:800]} ... {line[-300:]}")

@@ -1,12 +1,18 @@
 """Files appear whole or not at all."""
 
+import errno
 import subprocess
+import sys
 import time
+from pathlib import Path
 
 import psutil
 import pytest
 
+from scanplan.errors import StageError
 from scanplan.store import atomic
+
+SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 
 
 def test_a_failed_write_leaves_the_old_file(tmp_path):
@@ -57,3 +63,43 @@ def test_a_refusal_leaves_the_old_file(tmp_path, monkeypatch):
     with pytest.raises(SystemExit, match="has ended"):
         atomic.write_text(tmp_path / "plan.svg", "new")
     assert [file.read_text() for file in tmp_path.iterdir()] == ["old"]
+
+
+def test_a_full_disk_is_told_with_what_is_left(tmp_path):
+    body = (
+        "import resource, signal, sys; from scanplan.store import atomic;"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000));"
+        "atomic.write_bytes(sys.argv[1], bytes(10**6))"
+    )
+    path = tmp_path / "scans.parquet"
+    ended = subprocess.run(
+        [sys.executable, "-c", body, str(path)],
+        env={"PYTHONPATH": str(SCRIPTS)},
+        capture_output=True,
+        text=True,
+    )
+    (line,) = [line for line in ended.stderr.splitlines() if "StageError" in line]
+    assert f"{path}: cannot be written (File too large); " in line
+    assert "MB are free there" in line and "make room" in line
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EDQUOT])
+def test_no_space_is_told_with_the_file_that_was_written(tmp_path, number):
+    with (
+        pytest.raises(StageError, match=r"a.txt: cannot be written \(.*\); .* MB are free"),
+        atomic.replace_file(tmp_path / "a.txt"),
+    ):
+        raise OSError(number, "no room")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_that_is_a_file_is_told(tmp_path):
+    (tmp_path / "plan").write_text("in the way")
+    with pytest.raises(StageError, match=r"a.txt: cannot be written .*move away"):
+        atomic.write_text(tmp_path / "plan/a.txt", "text")
+
+
+def test_what_cannot_be_read_meanwhile_is_not_taken_for_it(tmp_path):
+    with pytest.raises(FileNotFoundError), atomic.replace_file(tmp_path / "a.txt"):
+        (tmp_path / "nowhere").read_text()

@@ -193,3 +193,27 @@ def test_a_survey_file_is_told_from_a_folder(tmp_path):
     assert not dataset_files.is_survey_file(
         tmp_path / "run.yaml"
     ) and not dataset_files.is_survey_file("a.bag")
+
+
+@pytest.mark.parametrize("name", ["<script>run.bag", "a<b>/run.bag"])
+def test_a_name_that_snakemake_takes_for_a_placeholder_is_refused(tmp_path, name):
+    put(tmp_path / name)
+    with pytest.raises(StageError, match=r"Snakemake takes <\w+> in a name .*; rename it"):
+        dataset_files.find_files((tmp_path / name).parent)
+
+
+def test_signs_alone_are_no_placeholder(tmp_path):
+    put(tmp_path / "a<b.bag")
+    put(tmp_path / "<B>.bag")
+    assert len(dataset_files.find_files(tmp_path)) == 2
+
+
+@pytest.mark.parametrize(
+    ("name", "is_taken"), [("x" * 19, True), ("x" * 20, False), ("ab" * 30, False)]
+)
+def test_names_that_snakemake_takes_for_endless_are_refused(name, is_taken):
+    if is_taken:
+        assert dataset_files.dataset_name(name) == name
+        return
+    with pytest.raises(StageError, match="repeats itself so often"):
+        dataset_files.dataset_name(name)

@@ -22,6 +22,7 @@ HABITS = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 HOMES = {
     "rosbags": (
         "recordings/bags.py",
+        "recordings/integrity/",
         "recordings/rosbag1_messages.py",
         "recordings/typestores.py",
         "exports/bag_writer.py",

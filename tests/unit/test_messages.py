@@ -165,6 +165,28 @@ def test_laser_scan_drops_what_is_no_return():
     assert time_raw is None
 
 
+@pytest.mark.parametrize(
+    "angles",
+    [
+        {"angle_min": -180.0, "angle_max": 180.0, "angle_increment": 1.0},
+        {"angle_increment": 3.0},
+        {"angle_increment": -0.02},
+    ],
+)
+def test_laser_scan_of_more_than_a_turn_is_refused(angles):
+    scan = bag_making.laser_scan(np.ones(360), **angles)
+    with pytest.raises(StageError, match=r"angle_increment .* rad turns 360 beams by .* degrees"):
+        messages.read_laser_scan(scan)
+
+
+def test_laser_scan_may_overlap_by_a_few_beams():
+    # 362 beams a degree apart: the last two repeat the directions of the first
+    step_rad = np.deg2rad(1)
+    scan = bag_making.laser_scan(np.ones(362), angle_increment=step_rad)
+    xyz_m, _ = messages.read_laser_scan(scan)
+    np.testing.assert_allclose(xyz_m[:2], xyz_m[360:], atol=1e-6)
+
+
 def test_laser_scan_without_limit_or_beams():
     assert np.isfinite(
         messages.read_laser_scan(bag_making.laser_scan([50.0, 60.0], range_max=0.0))[0]

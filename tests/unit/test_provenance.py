@@ -1,5 +1,6 @@
 """Results keep the place of the dataset that they were made of."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -87,3 +88,19 @@ def test_until_a_whole_run_has_ended_results_are_of_both():
     provenance.check_sources({"x": "b/x"})
     with pytest.raises(StageError, match="was made of b/x, not of a/x"):
         provenance.check_sources({"x": "a/x"})
+
+
+def test_a_recording_in_the_place_of_another_is_told_by_its_bytes(tmp_path):
+    def digest(content, name="run.bag"):
+        Path(name).write_bytes(content)
+        os.utime(name, ns=(5, 5))
+        provenance.digest_recordings.cache_clear()
+        return provenance.digest_recordings((name,))
+
+    middle = bytes(100_000)
+    whole = digest(b"head" + middle + b"tail")
+    assert digest(b"head" + middle + b"tail") == whole
+    others = [b"Head" + middle + b"tail", b"head" + middle + b"Tail", b"head" + middle + b"0tail"]
+    assert len({whole, *map(digest, others)}) == 4
+    assert digest(b"head" + middle + b"tail", "other.bag") != whole
+    assert digest(b"") != digest(b"x")

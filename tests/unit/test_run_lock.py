@@ -61,7 +61,7 @@ def test_a_signal_is_noted_and_does_what_it_did(handlers):
     signal.signal(signal.SIGTERM, lambda number, _: received.append(number))
     run = run_lock.FolderRun()
     run.begin()
-    assert not run.interrupted and run.started_ns > 0
+    assert not run.interrupted and run.elapsed() == "0:00:00"
     os.kill(os.getpid(), signal.SIGTERM)
     assert run.interrupted and received == [signal.SIGTERM]
     run.end()
@@ -74,3 +74,49 @@ def test_an_ignored_signal_stays_ignored(handlers):
     os.kill(os.getpid(), signal.SIGINT)
     assert not run.interrupted and signal.getsignal(signal.SIGINT) == signal.SIG_IGN
     run.end()
+
+
+def test_ctrl_c_while_rules_are_read_ends_in_one_line():
+    body = (
+        "from scanplan.project import run_lock; import time; run_lock.end_on_interrupt();"
+        "open('reading', 'w').close(); time.sleep(60)"
+    )
+    reader = subprocess.Popen(
+        [sys.executable, "-c", body], env={"PYTHONPATH": str(SCRIPTS)}, stderr=subprocess.PIPE
+    )
+    deadline = time.monotonic() + 60
+    while not Path("reading").exists():
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+    reader.send_signal(signal.SIGINT)
+    said = reader.communicate()[1].decode().strip()
+    assert said == "scanplan: the run was interrupted; the same command goes on from here"
+    assert reader.returncode == 1
+
+
+def test_once_a_run_has_begun_it_ends_its_stages_first(handlers):
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    run_lock.end_on_interrupt()
+    run = run_lock.FolderRun()
+    run.begin()
+    with pytest.raises(KeyboardInterrupt):
+        os.kill(os.getpid(), signal.SIGINT)
+    assert run.interrupted
+    run.end()
+
+
+@pytest.mark.parametrize("place", ["results", "logs", ".snakemake", "results/d", "benchmarks/d"])
+def test_a_file_or_a_dangling_link_in_the_place_of_a_folder_is_told(place):
+    Path(place).parent.mkdir(exist_ok=True)
+    run_lock.check_places(["d"])
+    Path(place).write_text("in the way")
+    with pytest.raises(StageError, match=f"^{place}: cannot be written .*move away"):
+        run_lock.check_places(["d"])
+    Path(place).unlink()
+    Path(place).symlink_to("nowhere")
+    with pytest.raises(StageError, match=f"^{place}: cannot be written"):
+        run_lock.check_places(["d"])
+    Path(place).unlink()
+    Path(place).mkdir()
+    run_lock.check_places(["d"])
+    assert list(Path(place).iterdir()) == []

@@ -1,11 +1,14 @@
 """What a run says last."""
 
 import os
+import shutil
+import signal
+import subprocess
 from pathlib import Path
 
 import pytest
 
-from scanplan.project import run_outcome
+from scanplan.project import provenance, run_outcome
 from scanplan.project.run_lock import FolderRun
 from scanplan.project.settings import Layer
 from scanplan.stage.log import INTERRUPTED
@@ -25,9 +28,9 @@ def write_log(stage, text, name="floor"):
     return path
 
 
-def failure(*, started_ns=1, interrupted=False, layers=()):
-    run = FolderRun()
-    run.started_ns, run.interrupted = started_ns, interrupted
+def failure(*, run=None, interrupted=False, layers=()):
+    run = run or FolderRun()
+    run.interrupted = interrupted
     return run_outcome.describe_failure(run, {"floor": layers, "thesis": ()})
 
 
@@ -39,9 +42,30 @@ def test_the_last_error_of_each_failed_stage_is_said():
     assert failure() == ["stage_a: run.bag: no cloud topic", "stage_c: other"]
 
 
-def test_a_log_of_an_earlier_run_is_not_read():
-    os.utime(write_log("stage_a", FAULT), ns=(5, 5))
-    assert failure(started_ns=6) == [] and failure(started_ns=5) != []
+@pytest.fixture
+def run():
+    """A run that begins when a test says so."""
+    run = FolderRun()
+    handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    yield run
+    run.end()
+    for number, handler in handlers.items():
+        signal.signal(number, handler)
+
+
+def test_a_log_of_an_earlier_run_is_not_read(run):
+    write_log("stage_a", FAULT)
+    run.begin()
+    assert failure(run=run) == []
+
+
+@pytest.mark.parametrize("t_ns", [5, 2 * 10**18])
+def test_a_log_of_this_run_is_read_whatever_the_clock_says(run, t_ns):
+    write_log("stage_a", FAULT)
+    run.begin()
+    os.utime(write_log("stage_a", FAULT), ns=(t_ns, t_ns))
+    os.utime(write_log("stage_b", "12:00 ERROR stage_b: new\n"), ns=(t_ns, t_ns))
+    assert failure(run=run) == ["stage_a: run.bag: no cloud topic", "stage_b: new"]
 
 
 def test_a_setting_is_said_with_its_file():
@@ -66,17 +90,44 @@ def test_an_interrupted_stage_is_said_once_and_last():
 
 def test_empty_folders_go_and_results_stay():
     Path("results/floor/plan/empty").mkdir(parents=True)
-    run_outcome.remove_empty_folders(["floor", "never"])
+    run_outcome.remove_unfinished(["floor", "never"])
     assert not Path("results").exists()
     Path("results/floor/plan").mkdir(parents=True)
     Path("results/floor/poses.parquet").touch()
     Path("results/other").mkdir()
-    run_outcome.remove_empty_folders(["floor"])
+    run_outcome.remove_unfinished(["floor"])
     assert sorted(str(path) for path in Path("results").rglob("*")) == [
         "results/floor",
         "results/floor/poses.parquet",
         "results/other",
     ]
+
+
+def test_temporary_files_of_killed_stages_go():
+    killed = subprocess.Popen(["true"])
+    killed.wait()
+    Path("results/floor/plan").mkdir(parents=True)
+    Path(f"results/floor/.scans.{killed.pid}.part.spool").touch()
+    Path(f"results/floor/plan/.faces.{os.getpid()}.part.parquet").touch()
+    run_outcome.remove_unfinished(["floor"])
+    (left,) = (path for path in Path("results").rglob("*") if path.is_file())
+    assert left.name == f".faces.{os.getpid()}.part.parquet"
+
+
+def test_folders_behind_a_link_stay():
+    Path("outside/empty").mkdir(parents=True)
+    Path("results").mkdir()
+    Path("results/floor").symlink_to("../outside")
+    provenance.begin_results("floor", "a/floor")
+    provenance.discard_lone_note("floor")
+    run_outcome.remove_unfinished(["floor"])
+    assert Path("outside/empty").is_dir() and Path("results/floor").is_symlink()
+    assert not Path("results/floor/source.txt").exists()
+    Path("elsewhere").mkdir()
+    shutil.rmtree("results")
+    Path("results").symlink_to("elsewhere")
+    run_outcome.remove_unfinished(["floor"])
+    assert Path("results").is_symlink()
 
 
 def test_results_are_said_with_their_places():

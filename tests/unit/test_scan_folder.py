@@ -3,8 +3,10 @@ import pytest
 
 from helpers import bag_making
 from scanplan.errors import StageError
+from scanplan.project import dataset_files
 from scanplan.recordings import frame_edges, scan_folder
 from scanplan.recordings.survey import open_survey
+from scanplan.store import tum
 
 LIMITS = {"min_range_m": 0.1, "max_range_m": 50.0}
 POINTS = bag_making.room_points(40)
@@ -171,3 +173,76 @@ def test_asking_for_a_scan_that_is_not_there(tmp_path):
     )
     with pytest.raises(ValueError, match="asked for"):
         list(survey.scans([1]))
+
+
+def write_binary_ply(path, xyz_m, order="little", x="double"):
+    header = (
+        f"ply\nformat binary_{order}_endian 1.0\nelement vertex {len(xyz_m)}\n"
+        f"property {x} x\nproperty double y\nproperty double z\nproperty uchar intensity\n"
+        "end_header\n"
+    )
+    kinds = [{"double": "f8", "float": "f4"}[x], "f8", "f8", "u1"]
+    points = np.zeros(len(xyz_m), [(n, k) for n, k in zip("xyzi", kinds, strict=True)])
+    points = points.astype(points.dtype.newbyteorder("<" if order == "little" else ">"))
+    points["x"], points["y"], points["z"] = np.asarray(xyz_m).T
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(header.encode() + points.tobytes())
+    return path
+
+
+def scans_of(folder):
+    (folder / "poses.tum").write_text("100 0 0 0 0 0 0 1\n")
+    files = dataset_files.find_files(folder)
+    with open_survey(files, **LIMITS) as survey:
+        return [scan.xyz_m for scan in survey.scans([0])]
+
+
+@pytest.mark.parametrize("order", ["little", "big"])
+def test_a_binary_ply_comes_whole_or_is_refused(tmp_path, order):
+    path = write_binary_ply(tmp_path / "scans/a.ply", POINTS, order=order)
+    np.testing.assert_allclose(scans_of(tmp_path)[0], POINTS, atol=1e-6)
+    # 40 points of 25 bytes
+    path.write_bytes(path.read_bytes()[:-1])
+    with pytest.raises(StageError, match=r"a.ply: damaged: .* 1000 bytes, 999 are there"):
+        scans_of(tmp_path)
+
+
+def test_a_ply_of_mixed_coordinates_is_refused(tmp_path):
+    write_binary_ply(tmp_path / "scans/a.ply", POINTS, x="float")
+    with pytest.raises(StageError, match=r"a.ply: x, y, z are of several types \(double, float\)"):
+        scans_of(tmp_path)
+
+
+def test_a_ply_of_text_that_is_cut_short_is_refused(tmp_path):
+    path = write_ply(tmp_path / "scans/a.ply", POINTS)
+    assert len(scans_of(tmp_path)[0]) == 40
+    path.write_text("\n".join(path.read_text().splitlines()[:-2]))
+    with pytest.raises(StageError, match=r"a.ply: damaged: .* 120 numbers, 114 are there"):
+        scans_of(tmp_path)
+
+
+def test_a_ply_without_a_header_is_refused(tmp_path):
+    (tmp_path / "scans").mkdir()
+    (tmp_path / "scans/a.ply").write_bytes(b"\xff\xfe no header")
+    with pytest.raises(StageError, match=r"a.ply: damaged: its header"):
+        scans_of(tmp_path)
+
+
+def test_names_of_more_digits_than_a_stamp_has_are_refused(tmp_path):
+    write_ply(tmp_path / f"scans/{'1' * 200}.ply", POINTS)
+    with pytest.raises(StageError, match=r"its name is no stamp"):
+        scans_of(tmp_path)
+
+
+@pytest.mark.parametrize("stamp", ["1e99999999", "nan", "1e19"])
+def test_stamps_that_no_clock_shows_are_refused(tmp_path, stamp):
+    write_ply(tmp_path / "scans/a.ply", POINTS)
+    (tmp_path / "poses.tum").write_text(f"{stamp} 0 0 0 0 0 0 1\n")
+    with pytest.raises(StageError, match=r"poses.tum: line 1 "):
+        tum.read_tum(tmp_path / "poses.tum")
+
+
+def test_poses_may_begin_with_a_mark_of_their_coding(tmp_path):
+    (tmp_path / "poses.tum").write_text("100 1 2 3 0 0 0 1\n", encoding="utf-8-sig")
+    t_ns, rows = tum.read_tum(tmp_path / "poses.tum")
+    assert t_ns.tolist() == [100 * 10**9] and rows[0, :3].tolist() == [1, 2, 3]

@@ -1,8 +1,6 @@
 """Settings are merged in order and every fault names itself."""
 
 import copy
-import subprocess
-import sys
 
 import pytest
 from snakemake.common.configfile import load_configfile
@@ -11,6 +9,7 @@ from helpers.default_settings import SCHEMA, SETTINGS
 from scanplan.errors import StageError
 from scanplan.project.settings import (
     Layer,
+    end_on_faulty_files,
     find_origin,
     locate_fault,
     merge_settings,
@@ -74,7 +73,8 @@ def test_what_a_run_is_of_is_no_setting_of_its_results(defaults, schema):
 
 
 @pytest.mark.parametrize(
-    ("given", "said"), [([], r"is \[\], expected: folder"), (12, "--config 'dataset=\"12\"'")]
+    ("given", "said"),
+    [([], r"is \[\], expected: folder"), (12, r"--config 'dataset=\[\"NAME\"\]'")],
 )
 def test_a_dataset_that_is_none(defaults, schema, given, said):
     with pytest.raises(StageError, match=said):
@@ -251,16 +251,19 @@ def test_a_stages_fault_is_told_with_the_file_that_gives_its_setting():
         (b'"__use\\u005fyte__": true', "has Snakemake execute what the file says"),
     ],
 )
-def test_a_file_for_the_command_line_is_checked_first(project_root, tmp_path, content, said):
+def test_a_file_for_the_command_line_is_checked_first(tmp_path, content, said):
     path = tmp_path / "my.yaml"
     if content is not None:
         path.write_bytes(content)
-    command = [sys.executable, "-m", "scanplan.project.settings", str(path)]
-    checked = subprocess.run(command, cwd=project_root / "scripts", capture_output=True, text=True)
-    assert checked.returncode != 0 and said in checked.stderr
-    assert checked.stderr.startswith(f"scanplan: {path}: ") and checked.stderr.count("\n") == 1
+    for given in (["--configfile", "a.yaml", str(path)], [f"--configfiles={path}"]):
+        (tmp_path / "a.yaml").write_text("poses: {keep_every: 3}")
+        arguments = ["snakemake", "--cores", "2", *given, "--config", "dataset=d"]
+        with pytest.MonkeyPatch.context() as patch, pytest.raises(SystemExit) as end:
+            patch.chdir(tmp_path)
+            end_on_faulty_files(arguments)
+        assert str(end.value).startswith(f"scanplan: {path}: ") and said in str(end.value)
     path.write_text("poses: {keep_every: 2}")
-    assert subprocess.run(command, cwd=project_root / "scripts", check=False).returncode == 0
+    end_on_faulty_files(["snakemake", "--configfile", str(path), "--config", "dataset=d"])
 
 
 def test_a_bomb_of_merge_keys_is_refused_at_once(tmp_path):

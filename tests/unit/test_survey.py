@@ -240,9 +240,25 @@ def test_the_configured_base_is_used_even_across_and_must_be_connected(tmp_path,
 def test_of_a_static_transform_sent_twice_the_last_holds(tmp_path, maker):
     path = recorded(
         tmp_path,
-        with_tf(maker, ("base_link", "lidar", (0.2, 0, 0)), ("base_link", "lidar", (9, 0, 0))),
+        with_tf(maker, ("base_link", "lidar", (0.2, 0, 0)), ("base_link", "lidar", (0.2004, 0, 0))),
     )
     with opened(path) as survey:  # with_tf records the first of them last
+        np.testing.assert_allclose(positions(survey)[0], [0.2, 0, 0], atol=1e-6)
+
+
+def test_static_transforms_that_contradict_one_another_are_refused(tmp_path, maker):
+    turned = ("base_link", "lidar", (0.2, 0, 0), (0, 0, 1, 0))
+    path = recorded(tmp_path, with_tf(maker, ("base_link", "lidar", (0.2, 0, 0)), turned))
+    with opened(path) as survey, pytest.raises(StageError, match=r"base_link -> lidar .*contradic"):
+        survey.pose_edges()
+    with opened(path, base_from_sensor=[0.2, 0, 0, 0, 0, 0]) as survey:
+        np.testing.assert_allclose(positions(survey)[0], [0.2, 0, 0], atol=1e-6)
+
+
+def test_static_transforms_that_are_not_needed_may_contradict(tmp_path, maker):
+    arm = [("base_link", "arm", (0, y, 0)) for y in (0, 1)]
+    path = recorded(tmp_path, with_tf(maker, ("base_link", "lidar", (0.2, 0, 0)), *arm))
+    with opened(path) as survey:
         np.testing.assert_allclose(positions(survey)[0], [0.2, 0, 0], atol=1e-6)
 
 
@@ -400,6 +416,22 @@ def test_transforms_stamped_ahead_are_taken_back(tmp_path, maker, caplog):
             positions(survey), [[i / 10, i > 4, 1] for i in range(10)], atol=1e-6
         )
     assert "tf map -> odom is stamped 1.000 s ahead of its receipt: taken back" in caplog.text
+
+
+@pytest.mark.parametrize(("ahead_s", "is_told"), [(0.5, True), (0.01, False)])
+def test_poses_stamped_ahead_are_taken_back(tmp_path, maker, caplog, ahead_s, is_told):
+    entries = bag_making.survey(maker)
+    for topic, receive_ns, message in entries:
+        if topic == "/amcl_pose":
+            message.header.stamp = maker.stamp(receive_ns + round(ahead_s * 1e9))
+    with caplog.at_level("INFO"), opened(recorded(tmp_path, entries)) as survey:
+        moved_m = 0 if is_told else -0.01
+        # 0.1 m per 0.1 s: poses that count as later put the sensor farther back
+        np.testing.assert_allclose(
+            positions(survey)[1:9, 0], [i / 10 + moved_m for i in range(1, 9)], atol=1e-6
+        )
+    said = "is stamped 0.500 s ahead of its receipt: taken back; check the clocks"
+    assert (said in caplog.text) == is_told
 
 
 def test_odd_stamps_of_clouds_are_said(tmp_path, maker, caplog):

@@ -1,6 +1,10 @@
 """Tables are whole, checked, and refused when damaged."""
 
+import contextlib
+
 import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
 from scanplan.errors import StageError
@@ -135,3 +139,81 @@ def test_hulls_say_that_they_are_local_metres(tmp_path):
     tables.write_table(tmp_path / "h.parquet", schemas.HULLS, row)
     geo = json.loads(pq.read_metadata(tmp_path / "h.parquet").metadata[b"geo"])
     assert geo["columns"]["geometry"]["crs"] is None
+
+
+def rows_by_parts(path):
+    with pq.ParquetFile(path) as file:
+        whole = file.metadata
+        return whole.num_rows, [whole.row_group(i).num_rows for i in range(whole.num_row_groups)]
+
+
+def misstate_rows_of_a_part(path):
+    """Flip the bit of the footer that has the first part state one row less or more."""
+    content = path.read_bytes()
+    before = rows_by_parts(path)
+    number = 2 * before[1][0]  # as Thrift writes it: the sign in the last bit
+    for place in range(len(content)):
+        if content[place] == number:
+            spoilt = bytearray(content)
+            spoilt[place] ^= 2
+            path.write_bytes(bytes(spoilt))
+            with contextlib.suppress(OSError, pa.ArrowException):
+                after = rows_by_parts(path)
+                if after[0] == before[0] and after[1] != before[1]:
+                    return
+    raise AssertionError("no such bit")
+
+
+def test_parts_that_lie_about_their_rows_are_noticed(selection):
+    misstate_rows_of_a_part(selection)
+    with pytest.raises(StageError, match=r"selection.parquet: damaged \(states 3 rows, its parts "):
+        tables.read_table(selection, schemas.SELECTION)
+
+
+def test_scans_that_lie_about_their_rows_are_noticed(scans):
+    misstate_rows_of_a_part(scans)
+    with pytest.raises(StageError, match=r"scans.parquet: damaged \(states 3 rows, its parts "):
+        tables.ScanStore(scans)
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        (b'{"table": "selection"', b'{"tab\xffe": "selection"'),
+        (b'{"table": "selection"', b'["table": "selection"'),
+        (b"scanplan", b"scanplam"),
+    ],
+)
+def test_a_spoilt_footer_is_noticed(selection, before, after):
+    content = selection.read_bytes()
+    assert before in content
+    selection.write_bytes(content.replace(before, after))
+    with pytest.raises(StageError, match=r"selection.parquet: .*delete it and run again"):
+        tables.read_table(selection, schemas.SELECTION)
+
+
+@pytest.mark.parametrize(("before", "after"), [(b"planar", b"plamar"), (b"true", b"trve")])
+def test_spoilt_notes_of_scans_are_noticed(scans, before, after):
+    content = scans.read_bytes()
+    assert before in content
+    scans.write_bytes(content.replace(before, after))
+    with pytest.raises(StageError, match=r"scans.parquet: damaged .*delete it and run again"):
+        tables.ScanStore(scans)
+
+
+def test_a_spoilt_note_is_noticed(tmp_path):
+    path = tmp_path / "noted.parquet"
+    tables.write_table(path, schemas.SELECTION, ROWS, notes={"floor_z_m": "0.125"})
+    assert tables.read_note(path, schemas.SELECTION, "floor_z_m") == "0.125"
+    assert tables.read_note(path, schemas.SELECTION, "ceiling_z_m") == ""
+    path.write_bytes(path.read_bytes().replace(b"0.125", b"4.125"))
+    with pytest.raises(StageError, match=r"notes do not fit their checksum"):
+        tables.read_note(path, schemas.SELECTION, "floor_z_m")
+
+
+def test_points_that_are_no_numbers_are_noticed(tmp_path):
+    path = tmp_path / "scans.parquet"
+    with tables.open_scan_writer(path, planar=True) as write:
+        write(3, np.array([[0.0, np.nan, 0.0]]))
+    with pytest.raises(StageError, match=r"scan 3 has no points, or some that are no numbers"):
+        tables.ScanStore(path).read(3)

@@ -1,5 +1,8 @@
 """Bad input ends in one clear line, a status that is not zero, and an empty results folder."""
 
+import os
+import shutil
+
 import numpy as np
 import pytest
 
@@ -192,6 +195,72 @@ def test_a_truncated_bag(project, tmp_path):
     bag = tmp_path / "cut/run.bag"
     bag.write_bytes(bag.read_bytes()[:-100])
     ends_with_one_line(project, name, "run.bag", "rosbag reindex")
+
+
+def test_settings_that_are_code_are_refused_before_they_are_executed(project, tmp_path):
+    (tmp_path / "evil.yaml").write_text(
+        "\"__use\\u005fyte__\": true\n__definitions__: [\"open('executed', 'w')\"]\n"
+    )
+    result = project.run("--dry-run", "--configfile", "tests/data/tiny.yaml", "evil.yaml")
+    assert result.returncode == 1 and not (tmp_path / "executed").exists()
+    assert result.stderr.splitlines()[-1] == (
+        "scanplan: evil.yaml: __use_yte__: has Snakemake execute what the file says;"
+        " settings are data, drop it"
+    )
+
+
+def test_a_recording_that_an_older_one_replaced_is_read_anew(project, tmp_path):
+    maker = bag_making.Maker()
+    name = written(tmp_path / "floor", list(bag_making.survey(maker)))
+    other = maker.write(tmp_path / "other", bag_making.survey(maker, first=50))
+    os.utime(other, (10**9, 10**9))
+    poses = "results/floor/poses.parquet"
+    given = (poses, "--config", f"dataset={name}")
+    assert project.run(*given).returncode == 0
+    before = (tmp_path / poses).read_bytes()
+    assert "Nothing to be done" in project.run(*given).stderr
+    shutil.copy2(other, tmp_path / name / "run.bag")
+    assert project.run(*given).returncode == 0
+    assert (tmp_path / poses).read_bytes() != before
+
+
+def test_a_name_of_digits_wants_a_list(project, tmp_path):
+    name = written(tmp_path / "2018_1", list(bag_making.survey(bag_making.Maker())))
+    bare = project.run("--dry-run", "--config", f'dataset="{name}"')
+    assert "--config 'dataset=[\"NAME\"]'" in bare.stderr.splitlines()[-1]
+    listed = project.run("--dry-run", "--quiet", "--config", f'dataset=["{name}"]')
+    assert listed.returncode == 0, listed.stderr
+
+
+def test_results_behind_a_link_keep_what_was_there(project, tmp_path):
+    name = written(tmp_path / "cut", bag_making.survey(bag_making.Maker()))
+    bag = tmp_path / "cut/run.bag"
+    bag.write_bytes(bag.read_bytes()[:-100])
+    (tmp_path / "outside/empty").mkdir(parents=True)
+    (tmp_path / "results").mkdir()
+    (tmp_path / "results/cut").symlink_to("../outside")
+    result = project.run("--config", f"dataset={name}")
+    assert result.stderr.splitlines()[-1].startswith("scanplan: interpolate_poses: cut/run.bag: ")
+    assert [path.name for path in (tmp_path / "outside").iterdir()] == ["empty"]
+
+
+@pytest.mark.parametrize("place", ["results", "logs", "results/d", "results/d/source.txt"])
+def test_what_stands_in_the_way_of_results_is_told(project, tmp_path, place):
+    name = written(tmp_path / "d", list(bag_making.survey(bag_making.Maker())))
+    (tmp_path / place).parent.mkdir(parents=True, exist_ok=True)
+    if place.endswith(".txt"):
+        (tmp_path / place).mkdir()
+    else:
+        (tmp_path / place).touch()
+    result = project.run("--config", f"dataset={name}")
+    assert result.returncode == 1 and "Traceback" not in result.stderr
+    assert result.stderr.splitlines()[-1].startswith(f"scanplan: {place}: cannot be written (")
+
+
+@pytest.mark.parametrize("folder", ["<script>x", "x" * 60])
+def test_a_name_that_snakemake_cannot_take_is_told(project, tmp_path, folder):
+    name = written(tmp_path / folder, list(bag_making.survey(bag_making.Maker())))
+    ends_with_one_line(project, name, folder, "Snakemake", "rename it")
 
 
 @pytest.mark.recordings

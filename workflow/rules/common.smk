@@ -19,6 +19,7 @@ from scanplan.project.dataset import (
 from scanplan.project.provenance import (
     begin_results,
     check_sources,
+    digest_recordings,
     discard_lone_note,
     end_results,
 )
@@ -185,6 +186,13 @@ def order_settings(wildcards):
 def recordings(wildcards):
     """Files that hold a dataset's clouds and poses."""
     return DATASETS[wildcards.dataset].recordings
+
+
+def content_of_recordings(wildcards):
+    """A param function: what tells recordings from others in their place, older ones too."""
+    dataset = DATASETS[wildcards.dataset]
+    # a simulated one is made in the run, of what its rule names
+    return "" if dataset.building else digest_recordings(dataset.recordings)
 
 
 def true_faces(wildcards):

@@ -34,6 +34,7 @@ def tell_results():
 
 # before the jobs are worked out: while another run is at work, files come and go
 if workflow.is_main_process:
+    or_end(run_lock.check_places, GIVEN)
     or_end(run_lock.lock_folder).close()
 if is_to_be_told():
     CONSOLE.take_over(logging.getLogger("snakemake.logging"), tell_results)
@@ -42,7 +43,7 @@ if is_to_be_told():
 onstart:
     or_end(THIS_RUN.begin)
     for name, dataset in GIVEN.items():
-        begin_results(name, dataset.source)
+        or_end(begin_results, name, dataset.source)
 
 
 onsuccess:
@@ -56,7 +57,7 @@ onsuccess:
     }
     if is_whole and comparison_is_up_to_date():
         for name, dataset in GIVEN.items():
-            end_results(name, dataset.source)
+            or_end(end_results, name, dataset.source)
     tell_results()
     print(f"took     {THIS_RUN.elapsed()}", file=sys.stderr)
 
@@ -67,7 +68,7 @@ onerror:
         discard_lone_note(name)
     layers = {name: dataset.layers for name, dataset in DATASETS.items()}
     layers[RESERVED] = ()
-    run_outcome.remove_empty_folders(layers)
+    run_outcome.remove_unfinished(layers)
     for line in run_outcome.describe_failure(THIS_RUN, layers):
         print(f"scanplan: {line}", file=sys.stderr)
     # whatever Snakemake would add says less

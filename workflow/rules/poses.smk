@@ -15,6 +15,7 @@ rule interpolate_poses:
         runtime=60,
     params:
         code=code_of("interpolate_poses"),
+        content=content_of_recordings,
         reading=setting(stage_settings.select_topics),
         settings=section("poses"),
     script:

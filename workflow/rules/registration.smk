@@ -18,6 +18,7 @@ rule register_scans:
         runtime=120,
     params:
         code=code_of("register_scans"),
+        content=content_of_recordings,
         reading=section("input"),
         settings=section("registration"),
     script:

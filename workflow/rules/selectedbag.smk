@@ -19,6 +19,7 @@ rule write_selected_bag:
         runtime=60,
     params:
         code=code_of("write_selected_bag"),
+        content=content_of_recordings,
         reading=section("input"),
         stop=section("selection", "stop"),
     script:

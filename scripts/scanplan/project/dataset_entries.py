@@ -4,6 +4,7 @@ Standard library only: this runs while the workflow is being parsed.
 """
 
 import os
+import re
 from pathlib import Path
 
 from scanplan.errors import StageError
@@ -12,6 +13,7 @@ from scanplan.plain_types import FilePath
 POSES_FILE = "poses.tum"
 SCANS_FOLDER = "scans"
 ROSBAG2_SUFFIXES = (".db3", ".mcap", ".db3.zstd", ".mcap.zstd")
+_PLACEHOLDER = re.compile(r"<[a-z][a-z0-9_]*>")
 _CLOUD_SUFFIXES = (".pcd", ".ply")
 
 
@@ -95,12 +97,16 @@ def check_unfinished(path: Path) -> None:
 
 
 def check_file(file: Path) -> None:
-    """Refuse a file that is empty, or a database that its recorder did not close.
+    """Refuse a file that is empty, named as Snakemake cannot, or that its recorder did not close.
 
     Raises
     ------
     StageError
     """
+    if named := _PLACEHOLDER.search(str(file)):
+        raise StageError(
+            f"{file}: Snakemake takes {named[0]} in a name for a placeholder; rename it"
+        )
     if file.stat().st_size == 0:
         raise StageError(f"{file}: is empty (0 bytes); remove it or copy it again")
     wal = file.with_name(file.name + "-wal")

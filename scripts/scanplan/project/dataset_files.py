@@ -19,6 +19,7 @@ TRUTH_FILES = ("truth.geojson", "truth_poses.tum")
 _BAG_SUFFIXES = (".bag", ".mcap", ".db3")
 _SURVEY_SUFFIXES = (".yaml", ".yml")
 _PACKED_SUFFIXES = (".gz", ".zip", ".tar", ".tgz", ".7z", ".xz", ".bz2")
+_PERIODIC = re.compile(r"(.+)\1{19,}$")
 _ACCEPTED = (
     "*.bag, *.mcap, *.db3, rosbag2 folders (metadata.yaml), or scans/*.pcd|*.ply with poses.tum"
 )
@@ -41,7 +42,7 @@ def dataset_name(path: FilePath) -> str:
     Raises
     ------
     StageError
-        If no letter or digit is left, or the name starts with a dot.
+        If no letter or digit is left, or the name starts with a dot or repeats itself endlessly.
     """
     path = Path(os.path.normpath(Path.cwd() / path))
     is_file = path.suffix in (*_BAG_SUFFIXES, *_SURVEY_SUFFIXES) and not path.is_dir()
@@ -49,6 +50,11 @@ def dataset_name(path: FilePath) -> str:
     if name.startswith(".") or not re.search(r"[A-Za-z0-9]", name):
         raise StageError(
             f"{path}: no name for results can be made of it; rename it to letters, digits, _ . -"
+        )
+    if _PERIODIC.search(name):
+        raise StageError(
+            f"{path}: Snakemake takes a name that repeats itself so often for a fault of its rules;"
+            " rename it"
         )
     return name
 

@@ -3,8 +3,12 @@
 So no dataset takes the place of another of its name.
 """
 
+import hashlib
+import io
 import os
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from functools import cache
 from pathlib import Path
 
 from scanplan.errors import StageError
@@ -88,7 +92,19 @@ def discard_lone_note(name: str) -> None:
     note = _note_of(name)
     if _is_lone(note):
         note.unlink()
-        for folder, _, _ in os.walk(note.parent, topdown=False):
+        remove_empty_folders(name)
+
+
+def remove_empty_folders(name: str) -> None:
+    """Remove the empty folders of a dataset's results.
+
+    None where results/<name> is a link: what it leads to was there before.
+    """
+    place = Path("results", name)
+    inner = [] if place.is_symlink() else os.walk(place, topdown=False)
+    for folder, _, _ in inner:
+        # one that is not empty, or the root of a disk, stays
+        with suppress(OSError):
             Path(folder).rmdir()
 
 
@@ -109,3 +125,21 @@ def _is_lone(note: Path) -> bool:
     if not note.is_file():
         return False
     return all(entry == note or entry.is_dir() for entry in note.parent.rglob("*"))
+
+
+@cache
+def digest_recordings(files: tuple[str, ...]) -> str:
+    """Return a digest of recordings by their names, sizes, beginnings and ends.
+
+    A file that is replaced by an older one has other bytes there: an index, counts and stamps. Its
+    time alone would not tell, as copies keep it.
+    """
+    digest = hashlib.sha256()
+    for file in map(Path, files):
+        size = file.stat().st_size
+        digest.update(f"{file.name} {size}\n".encode())
+        with file.open("rb") as content:
+            digest.update(content.read(io.DEFAULT_BUFFER_SIZE))
+            content.seek(max(0, size - io.DEFAULT_BUFFER_SIZE))
+            digest.update(content.read())
+    return digest.hexdigest()

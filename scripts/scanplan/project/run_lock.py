@@ -5,14 +5,21 @@ with its process.
 """
 
 import fcntl
+import os
 import signal
+import sys
+import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from datetime import timedelta
 from pathlib import Path
 from typing import TextIO
 
 from scanplan.errors import StageError
+from scanplan.stage.log import INTERRUPTED
+from scanplan.store import atomic
+
+_State = tuple[int, ...]
 
 LOCK_FILE = Path(".snakemake/scanplan.lock")
 
@@ -28,10 +35,13 @@ def lock_folder() -> TextIO:
     Raises
     ------
     StageError
-        If another run holds it.
+        If another run holds it, or it cannot be written.
     """
-    LOCK_FILE.parent.mkdir(exist_ok=True)
-    file = LOCK_FILE.open("w")
+    try:
+        LOCK_FILE.parent.mkdir(exist_ok=True)
+        file = LOCK_FILE.open("w")
+    except OSError as error:
+        raise atomic.describe_unwritable(LOCK_FILE, error) from None
     try:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
@@ -42,20 +52,64 @@ def lock_folder() -> TextIO:
     return file
 
 
+def end_on_interrupt() -> None:
+    """Have Ctrl-C end the process in one line, from now until a run of it begins.
+
+    While rules are read nothing is at work that would have to be ended first. Where it is ignored
+    it stays so.
+    """
+    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
+        signal.signal(signal.SIGINT, _end_in_one_line)
+
+
+def _end_in_one_line(*_: object) -> None:
+    sys.stdout.flush()
+    os.write(sys.stderr.fileno(), f"\nscanplan: the run {INTERRUPTED}\n".encode())
+    os._exit(1)
+
+
+def _state_of(file: Path) -> _State:
+    """Return what differs once a file has been written anew."""
+    found = file.stat()
+    return found.st_mtime_ns, found.st_size, found.st_ino
+
+
+def check_places(names: Iterable[str]) -> None:
+    """Refuse to begin where a folder of results, or of what goes with them, cannot be written to.
+
+    Parameters
+    ----------
+    names : iterable of str
+        Of the datasets.
+
+    Raises
+    ------
+    StageError
+    """
+    of_all = [Path(name) for name in ("results", "logs", "benchmarks", ".snakemake")]
+    of_each = [place / name for name in names for place in of_all[:3]]
+    for folder in (Path(), *of_all, *of_each):
+        # what is not there yet is made where another was tried
+        if os.path.lexists(folder):
+            try:
+                tempfile.TemporaryFile(dir=folder).close()
+            except OSError as error:
+                raise atomic.describe_unwritable(folder, error) from None
+
+
 class FolderRun:
     """A run of the workflow in a folder, which it locks from `begin` until it or its process ends.
 
     Attributes
     ----------
-    started_ns : int
-        When it began, nanoseconds since the epoch.
     interrupted : bool
         Whether Ctrl-C or a signal to end has reached it since.
     """
 
     def __init__(self) -> None:
-        self.started_ns = 0
         self.interrupted = False
+        self._began_s = time.monotonic()
+        self._older_logs: dict[Path, _State] = {}
         self._lock: TextIO | None = None
 
     def begin(self) -> None:
@@ -66,8 +120,11 @@ class FolderRun:
         StageError
             If another run is at work in the folder.
         """
-        self.started_ns = time.time_ns()
+        self._began_s = time.monotonic()
+        self._older_logs = {log: _state_of(log) for log in Path("logs").rglob("*.log")}
         self.interrupted = False
+        if signal.getsignal(signal.SIGINT) is _end_in_one_line:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
         for number in (signal.SIGINT, signal.SIGTERM):
             self._note_signal(number)
         self._lock = lock_folder()
@@ -80,7 +137,11 @@ class FolderRun:
 
     def elapsed(self) -> str:
         """Return how long it has been at work, as `0:02:05`."""
-        return str(timedelta(seconds=(time.time_ns() - self.started_ns) // 10**9))
+        return str(timedelta(seconds=int(time.monotonic() - self._began_s)))
+
+    def has_written(self, log: Path) -> bool:
+        """Return whether a log of a stage has changed since the run began, whatever clocks say."""
+        return self._older_logs.get(log) != _state_of(log)
 
     def _note_signal(self, number: signal.Signals) -> None:
         """Note when a signal arrives, and let it do what it did before; an ignored one stays so."""

@@ -1,12 +1,14 @@
 """The lines that end a run, for the user: where the results lie, or what went wrong."""
 
-import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 
+from scanplan.project import provenance
 from scanplan.project.run_lock import FolderRun
 from scanplan.project.settings import Layer, locate_fault
 from scanplan.stage.log import INTERRUPTED
+from scanplan.store import atomic
 
 _DONE = " stage done"
 
@@ -45,8 +47,7 @@ def _list_faults(name: str, run: FolderRun, layers: Sequence[Layer]) -> Iterator
     """Iterate over the last errors of a dataset's stages that failed in this run."""
     for log in sorted(Path("logs", name).glob("*.log")):
         lines = log.read_text(errors="replace").splitlines()
-        is_of_this_run = log.stat().st_mtime_ns >= run.started_ns
-        if not is_of_this_run or (lines and lines[-1].endswith(_DONE)):
+        if not run.has_written(log) or (lines and lines[-1].endswith(_DONE)):
             continue
         errors = [line.split(" ERROR ", 1)[1] for line in lines if " ERROR " in line]
         if errors:
@@ -54,18 +55,15 @@ def _list_faults(name: str, run: FolderRun, layers: Sequence[Layer]) -> Iterator
             yield f"{stage}: {locate_fault(fault, layers)}"
         elif not run.interrupted:
             yield (
-                f"{log.stem}: was ended from outside, perhaps for want of memory; its log is {log}"
+                f"{log.stem}: was ended from outside, perhaps for want of memory or of space on the"
+                f" disk; its log is {log}"
             )
 
 
-def remove_empty_folders(names: Iterable[str]) -> None:
-    """Remove the empty folders of datasets below results, and results itself where it is empty."""
+def remove_unfinished(names: Iterable[str]) -> None:
+    """Remove what stages that were killed left below results: temporary files, empty folders."""
     for name in names:
-        for folder, _, _ in os.walk(f"results/{name}", topdown=False):
-            _remove_if_empty(Path(folder))
-    _remove_if_empty(Path("results"))
-
-
-def _remove_if_empty(folder: Path) -> None:
-    if folder.is_dir() and not any(folder.iterdir()):
-        folder.rmdir()
+        atomic.remove_leftovers(Path("results", name))
+        provenance.remove_empty_folders(name)
+    with suppress(OSError):
+        Path("results").rmdir()

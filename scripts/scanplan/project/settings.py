@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import os
 import re
-import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -167,20 +166,43 @@ def locate_fault(fault: str, layers: Sequence[Layer]) -> str:
     return f"{origin}: {fault}" if origin else fault
 
 
-def _check_files(paths: Sequence[str]) -> None:
-    """Refuse files that cannot be settings of a run, before Snakemake itself reads them."""
+def end_on_faulty_files(arguments: Sequence[str]) -> None:
+    """End the process in one line if a file for --configfile cannot be settings of a run.
+
+    Parameters
+    ----------
+    arguments : list of str
+        Of Snakemake's command, which itself would execute what such a file may say.
+
+    Raises
+    ------
+    SystemExit
+    """
     schema = read_schema(_ROOT / "workflow/schemas/config.schema.yaml")
-    for path in paths:
-        values = read_yaml(path)
-        if not values:
-            raise StageError(
-                f"{path}: holds no settings; write `section: {{key: value}}`, or leave CONFIG out"
-            )
-        check_settings(merge_settings(default_settings(schema), values), schema, path)
-
-
-if __name__ == "__main__":
     try:
-        _check_files(sys.argv[1:])
+        for path in _list_setting_files(arguments):
+            _check_file(path, schema)
     except StageError as error:
         raise SystemExit(f"scanplan: {error}") from None
+
+
+def _list_setting_files(arguments: Sequence[str]) -> list[str]:
+    """Return the files after --configfile, --configfiles or a shorter form of them."""
+    paths = []
+    is_of_files = False
+    for word in arguments:
+        if word.startswith("-"):
+            is_of_files = word.startswith("--configf")
+            word = word.partition("=")[2]
+        if is_of_files and word:
+            paths.append(word)
+    return paths
+
+
+def _check_file(path: str, schema: Schema) -> None:
+    values = read_yaml(path)
+    if not values:
+        raise StageError(
+            f"{path}: holds no settings; write `section: {{key: value}}`, or leave the file out"
+        )
+    check_settings(merge_settings(default_settings(schema), values), schema, path)

@@ -127,7 +127,7 @@ def _explain(fault: ValidationError, origin: str) -> str:
         return f"{key}: {fault.message} ({remedy})"
     if fault.validator in ("anyOf", "oneOf"):
         numeral = origin == COMMAND_LINE and isinstance(value, (int, float))
-        remedy = f" (a name of digits wants quotes: --config '{key}=\"{value}\"')"
+        remedy = f" (a name of digits wants to be in a list: --config '{key}=[\"NAME\"]')"
         hint = remedy if numeral else ""
         return f"{key}: is {value!r}{hint}, expected: {node['description']}"
     return f"{key}: {fault.message}"

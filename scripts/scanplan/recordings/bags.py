@@ -4,7 +4,9 @@ Each connection is decoded by the definition it carries itself, so that a bad de
 topic does not matter; without one, by the standard definitions of the ROS release.
 """
 
+import errno
 import tempfile
+from collections import Counter
 from collections.abc import Collection, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -19,6 +21,7 @@ from rosbags.typesys.store import Typestore
 
 from scanplan.errors import StageError
 from scanplan.recordings import topics, typestores
+from scanplan.recordings.integrity import stated_counts, unpacking
 from scanplan.recordings.messages import read_header
 from scanplan.recordings.rosbag1_messages import StoredMessage, iterate_messages
 from scanplan.types import FilePath
@@ -57,8 +60,11 @@ def open_bag(path: FilePath, *, ros2_release: str = "humble") -> Iterator["Bag"]
         with _explain_faults(path):
             place = _openable_name(path, stack)
             reader = rosbag2.Reader(place) if is_ros2 else rosbag1.Reader(place)
+            if path.is_dir():
+                unpacking.check_room(path)
             stack.enter_context(reader)
-        yield Bag(path, reader, store if is_ros2 else Stores.ROS1_NOETIC)
+            bag = Bag(path, reader, store if is_ros2 else Stores.ROS1_NOETIC)
+        yield bag
 
 
 class Bag:
@@ -84,6 +90,9 @@ class Bag:
         self._reader = reader
         self._default_store = default_store
         self._typestores: dict[tuple[str, Any], Typestore] = {}
+        self._unpack = unpacking.limit_unpacking(reader)
+        stated_counts.check_checksums(reader)
+        self._stated = stated_counts.count_stated_messages(reader)
 
     def messages(self, names: Collection[str]) -> Iterator[BagMessage]:
         """Iterate over the messages of some topics in the order of recording.
@@ -99,17 +108,26 @@ class Bag:
         receive_ns : int
         raw : bytes or rosbag1_messages.StoredMessage
             For `header` and `decode`; what is given to neither may not even be read.
+
+        Raises
+        ------
+        StageError
+            If a message cannot be read, or, at the end, fewer came than the recording states.
         """
         connections = [c for c in self._reader.connections if c.topic in names]
         if not connections:  # rosbags takes an empty choice for all
             return
         source = self._iterate(connections)
+        came: Counter[str] = Counter()
         while True:
             with _explain_faults(self.path):
                 item = next(source, None)
             if item is None:
-                return
+                break
+            came[item[0].topic] += 1
             yield item
+        if fault := stated_counts.find_lost_messages(came, self._stated, names):
+            raise StageError(f"{self.path}: {fault}; {_remedy_of_storage(self.path)}")
 
     def header(self, connection: Connection, raw: RawMessage) -> tuple[int, str]:
         """Return the header stamp and the frame of a message without decoding the rest."""
@@ -129,7 +147,10 @@ class Bag:
         reader = self._reader
         if isinstance(reader, rosbag1.Reader) and is_uncompressed(reader):
             return _iterate_uncompressed(reader, connections)
-        return reader.messages(connections)
+        if self._unpack is None:
+            return reader.messages(connections)
+        unpack = self._unpack
+        return ((c, time_ns, unpack(raw)) for c, time_ns, raw in reader.messages(connections))
 
     def _typestore(self, connection: Connection) -> Typestore:
         key = (connection.msgtype, connection.msgdef)
@@ -199,9 +220,19 @@ def _remedy(path: Path, error: Exception) -> str:
         )
     if "rofile is not" in str(error):
         return "only mcap files of the profile ros2 are read; convert it to a ROS 2 or ROS 1 bag"
+    if isinstance(error, OSError) and error.errno == errno.ENOSPC:
+        return (
+            f"make room in {tempfile.gettempdir()}, or set TMPDIR to a folder with more; it is"
+            " unpacked there"
+        )
+    return _remedy_of_storage(path)
+
+
+def _remedy_of_storage(path: Path) -> str:
+    files = [path, *path.iterdir()] if path.is_dir() else [path]
     if path.suffix == ".bag":
         return "try `rosbag reindex` on a copy, or copy it again from the robot"
-    if path.suffix == ".mcap":
+    if any(".mcap" in file.suffixes for file in files):
         return "try `mcap recover` on it, or copy it again from the robot"
     return (
         "try `ros2 bag reindex` on the folder or `sqlite3 FILE .recover`,"

@@ -70,6 +70,11 @@ def estimate_ahead_ns(
     return int(lead_ns) if _AHEAD_S * 1e9 < lead_ns < _MOST_AHEAD_S * 1e9 else 0
 
 
+def describe_lead(name: str, ahead_ns: int) -> str:
+    """Return a line that says by how much stamps of a source were taken back."""
+    return f"{name} is stamped {ahead_ns / 1e9:.3f} s ahead of its receipt: taken back"
+
+
 def find_repeated_times(t_ns: IntArray) -> BoolArray:
     """Return which stamps lie in a time that went by twice, since the clock was set back.
 

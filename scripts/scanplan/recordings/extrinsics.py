@@ -1,11 +1,13 @@
 """The sensor's extrinsics, base_from_sensor: from the config, from tf, or the identity."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from scanplan.errors import StageError
+from scanplan.geometry.tolerances import SHORTEST_M
 from scanplan.recordings import clocks, frame_edges, tf_tree, topics
 from scanplan.recordings.small_messages import TransformKey, TransformSample
 from scanplan.stage import log
@@ -83,11 +85,16 @@ def make_transform_edges(
 def _make_static_edge(
     parent: str, child: str, recorded: Sequence[TransformSample]
 ) -> tuple[frame_edges.FrameEdge | None, dict[str, int]]:
-    """Make an edge of the last valid transform: their order stands in for their stamps."""
+    """Make an edge of the last valid transform: their order stands in for their stamps.
+
+    Those that differ by less than a millimetre were printed with fewer digits once.
+    """
     order = np.arange(1, len(recorded) + 1)
     rows = [sample.row for sample in recorded]
     edge, faults = frame_edges.make_track_edge(parent, child, order, order, rows)
-    return edge if edge is None else edge.frozen(), faults
+    if edge is None:
+        return None, faults
+    return replace(edge.frozen(), is_contradicted=not edge.is_still(SHORTEST_M)), faults
 
 
 def _make_moving_edge(
@@ -102,10 +109,7 @@ def _make_moving_edge(
     rows = [sample.row for sample in recorded]
     ahead_ns = clocks.estimate_ahead_ns(t_ns, receive_ns, cloud_t_ns, cloud_receive_ns)
     if ahead_ns:
-        log.log_line(
-            f"tf {parent} -> {child} is stamped {ahead_ns / 1e9:.3f} s ahead of its receipt:"
-            " taken back"
-        )
+        log.log_line(clocks.describe_lead(f"tf {parent} -> {child}", ahead_ns))
     return frame_edges.make_track_edge(parent, child, t_ns - ahead_ns, receive_ns, rows)
 
 

@@ -5,7 +5,7 @@ sensor is the pose `chain_poses` (REP 105).
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -29,6 +29,8 @@ class FrameEdge:
     quat_xyzw : (n, 4) float64
     t_ns : (n,) int64, strictly increasing, or None
         None if it never changes; then n = 1.
+    is_contradicted : bool
+        Whether it is said never to change, and was recorded with other values, too.
     """
 
     parent: str
@@ -36,20 +38,24 @@ class FrameEdge:
     xyz_m: FloatArray
     quat_xyzw: FloatArray
     t_ns: IntArray | None = None
+    is_contradicted: bool = False
 
     def inverse(self) -> "FrameEdge":
         """Return child_from_parent, sample by sample."""
         xyz_m, quat = se3.split_pose(se3.invert_pose(se3.pose_matrix(self.xyz_m, self.quat_xyzw)))
-        return FrameEdge(self.child, self.parent, xyz_m, quat, self.t_ns)
+        return replace(self, parent=self.child, child=self.parent, xyz_m=xyz_m, quat_xyzw=quat)
 
     def frozen(self) -> "FrameEdge":
         """Return the edge without time, as its last sample has it."""
-        return FrameEdge(self.parent, self.child, self.xyz_m[-1:], self.quat_xyzw[-1:])
+        return replace(self, xyz_m=self.xyz_m[-1:], quat_xyzw=self.quat_xyzw[-1:], t_ns=None)
 
-    def is_still(self) -> bool:
-        """Return whether all samples are the same, to a micrometre and a microradian."""
-        same_turn = np.abs(self.quat_xyzw @ self.quat_xyzw[0]) >= 1 - SAME_M**2
-        same_place = np.abs(self.xyz_m - self.xyz_m[0]) <= SAME_M
+    def is_still(self, tolerance: float = SAME_M) -> bool:
+        """Return whether all samples are the same, to a tolerance in metres and about in radians.
+
+        By default to a micrometre.
+        """
+        same_turn = np.abs(self.quat_xyzw @ self.quat_xyzw[0]) >= 1 - tolerance**2
+        same_place = np.abs(self.xyz_m - self.xyz_m[0]) <= tolerance
         return bool(same_turn.all() and same_place.all())
 
 

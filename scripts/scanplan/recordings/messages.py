@@ -116,7 +116,7 @@ def read_laser_scan(message: Any) -> tuple[FloatArray, FloatArray | None]:
     Raises
     ------
     StageError
-        If the angles of the beams are not given.
+        If the angles of the beams are not given, or those of more than one turn.
     """
     range_m = np.asarray(message.ranges, np.float64).reshape(-1)
     beam = np.arange(len(range_m))
@@ -125,6 +125,13 @@ def read_laser_scan(message: Any) -> tuple[FloatArray, FloatArray | None]:
         raise StageError(
             f"angle_min {message.angle_min}, angle_increment {message.angle_increment}"
             " give no directions"
+        )
+    # some drivers overlap by a few beams; degrees are off by 57
+    if len(range_m) and np.ptp(angle_rad) > 1.1 * 2 * np.pi:
+        raise StageError(
+            f"angle_increment {message.angle_increment:g} rad turns {len(range_m)} beams by"
+            f" {np.ptp(angle_rad):.1f} rad, more than once around: the message wants radians,"
+            " these may be degrees"
         )
     # range_max itself is what many drivers report for "no return"
     limit_m = message.range_max if message.range_max > 0 else np.inf

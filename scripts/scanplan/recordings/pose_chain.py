@@ -152,7 +152,7 @@ class PoseChains:
         track, counts = frame_edges.make_track_edge(
             parents[0] if parents else "",
             self._base_frame or (children[0] if children else ""),
-            *_stamps_of(samples),
+            *self._possible_stamps(source, samples),
             [sample.row for sample in samples],
         )
         faults = clocks.summarise_faults(counts)
@@ -165,6 +165,21 @@ class PoseChains:
                 " input.pose_topic to another topic, or take out what is recorded there twice"
             )
         return track
+
+    def _possible_stamps(
+        self, source: topics.Topic, samples: Sequence[PoseSample]
+    ) -> tuple[IntArray, IntArray]:
+        """Return stamps and times of receipt, (n,) int64; no pose is received before it was."""
+        t_ns, receive_ns = _stamps_of(samples)
+        if len(t_ns) == 0:
+            return t_ns, receive_ns
+        ahead_ns = clocks.estimate_ahead_ns(
+            t_ns, receive_ns, self._index.stamps_ns, self._index.cloud_receive_ns
+        )
+        if ahead_ns:
+            lead = clocks.describe_lead(str(source), ahead_ns)
+            log.log_warning(f"{self._where}: {lead}; check the clocks")
+        return t_ns - ahead_ns, receive_ns
 
     def _chain_of_transforms(self) -> list[frame_edges.FrameEdge]:
         target, extrinsics = self._target()

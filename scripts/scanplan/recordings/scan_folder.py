@@ -13,6 +13,7 @@ from scanplan.errors import StageError
 from scanplan.project import dataset_files
 from scanplan.recordings import clocks, clouds, frame_edges
 from scanplan.recordings.extrinsics import configured_extrinsics
+from scanplan.recordings.integrity.ply_size import check_ply_size
 from scanplan.recordings.messages import TIME_FIELDS
 from scanplan.recordings.motion import point_times
 from scanplan.recordings.survey_protocol import NamedChain
@@ -154,6 +155,11 @@ def _order_clouds(
     stems = [path.stem for path in paths]
     if all(_SECONDS.fullmatch(s) or _NANOSECONDS.fullmatch(s) for s in stems):
         stamps = [int(Decimal(s) * 10**9) if "." in s else int(s) for s in stems]
+        if not max(stamps) < tum.END_NS:
+            longest = max(paths, key=lambda path: len(path.stem))
+            raise StageError(
+                f"{longest}: its name is no stamp in seconds or nanoseconds; rename the clouds"
+            )
         pairs = sorted(zip(stamps, paths, strict=True))
         return [path for _, path in pairs], np.array([t for t, _ in pairs], np.int64)
     if len(paths) != len(pose_ns):
@@ -177,6 +183,8 @@ def _natural_key(path: Path) -> list[tuple[int, str]]:
 
 def _read_cloud(path: Path) -> tuple[FloatArray, Array | None]:
     """Read xyz_m (n, 3) float32 and the per-point times as recorded, or None."""
+    if path.suffix.lower() == ".ply":
+        check_ply_size(path)
     with path.open("rb") as file:
         declared = _DECLARED.search(file.read(io.DEFAULT_BUFFER_SIZE))
     fields = _read_fields(path)

@@ -87,8 +87,8 @@ class FrameTree:
         Raises
         ------
         StageError
-            If there is a cycle above one of them, or only a frame that hangs on two others could
-            connect them.
+            If there is a cycle above one of them, only a frame that hangs on two others could
+            connect them, or a constant transform on the way was recorded with several values.
         """
         rising, start_error = self._climb(start)
         falling, end_error = self._climb(end)
@@ -97,7 +97,9 @@ class FrameTree:
             if frame in above_end:
                 ascent = [edge.inverse() for edge in rising[:i]]
                 descent = falling[: above_end.index(frame)]
-                return ascent + descent[::-1]
+                way = ascent + descent[::-1]
+                _check_constants(way)
+                return way
         error = end_error or start_error
         if error is not None:
             raise error
@@ -133,3 +135,13 @@ class FrameTree:
             if edge.parent == "map":
                 break
         return next((name for name in ("map", "odom") if name in above), above[-1])
+
+
+def _check_constants(edges: Sequence[FrameEdge]) -> None:
+    for edge in edges:
+        if edge.is_contradicted:
+            raise StageError(
+                f"tf_static: {edge.parent} -> {edge.child} was recorded with values that contradict"
+                " one another; set input.base_from_sensor, or give each recording a dataset of its"
+                " own"
+            )

@@ -1,15 +1,22 @@
 """Files that appear whole or not at all."""
 
+import errno
 import glob
 import os
+import re
+import shutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 import psutil
 
+from scanplan.errors import StageError
 from scanplan.plain_types import FilePath
 
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+_REFUSED = (errno.EACCES, errno.EPERM, errno.EROFS, errno.ENOTDIR, errno.EISDIR, errno.EEXIST)
+_WRITER = re.compile(r"\.(\d+)\.part")
 _unfinished: set[Path] = set()
 _refusals: list[Callable[[], bool]] = []
 
@@ -40,6 +47,8 @@ def replace_file(path: FilePath) -> Iterator[Path]:
     ------
     SystemExit
         If the workflow run that asked for the file has ended meanwhile.
+    StageError
+        If the file cannot be written.
     """
     with scratch_file(path) as temporary:
         yield temporary
@@ -62,17 +71,58 @@ def scratch_file(path: FilePath) -> Iterator[Path]:
     ------
     pathlib.Path
         A name in the same folder, with the same suffix.
+
+    Raises
+    ------
+    StageError
+        If the folder cannot be written to, or there is no space left.
     """
     path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    _remove_leftovers(path)
+    with explain_unwritable(path):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        remove_leftovers(path.parent, f".{glob.escape(path.stem)}.*.part{path.suffix}")
     temporary = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
     _unfinished.add(temporary)
     try:
-        yield temporary
+        with explain_unwritable(path):
+            yield temporary
     finally:
         temporary.unlink(missing_ok=True)
         _unfinished.discard(temporary)
+
+
+@contextmanager
+def explain_unwritable(path: FilePath) -> Iterator[None]:
+    """Turn what the system says of a place that cannot be written to into one line with a remedy.
+
+    Errors of other places are left as they are.
+    """
+    try:
+        yield
+    except OSError as error:
+        places = {str(path), str(Path(path).parent), *map(str, _unfinished)}
+        is_of_place = error.errno in _REFUSED and str(error.filename) in places
+        if error.errno not in _FULL and not is_of_place:
+            raise
+        raise describe_unwritable(path, error) from None
+
+
+def describe_unwritable(path: FilePath, error: OSError) -> StageError:
+    """Return what to raise where the system refuses to write to a file or a folder."""
+    remedy = "make it a place that can be written to, or move away what stands there"
+    if error.errno in _FULL:
+        remedy = _describe_room(Path(path))
+    return StageError(f"{path}: cannot be written ({os.strerror(error.errno or 0)}); {remedy}")
+
+
+def _describe_room(path: Path) -> str:
+    folder = next(place for place in (path, *path.absolute().parents) if place.is_dir())
+    usage = shutil.disk_usage(folder)
+    return (
+        f"{usage.free / 1e6:.0f} of {usage.total / 1e6:.0f} MB are free there, or a limit on the"
+        " size of files is reached: make room for twice the size of the recordings; the same"
+        " command goes on from here"
+    )
 
 
 def write_text(path: FilePath, text: str) -> None:
@@ -100,12 +150,11 @@ def is_process_alive(pid: int) -> bool:
         return False
 
 
-def _remove_leftovers(path: Path) -> None:
-    """Remove the temporary files of `path` whose writers were killed."""
-    for leftover in path.parent.glob(f".{glob.escape(path.stem)}.*.part{path.suffix}"):
-        parts = leftover.name.split(".")
-        writer = parts[-3] if path.suffix else parts[-2]
-        if writer.isdigit() and not is_process_alive(int(writer)):
+def remove_leftovers(folder: Path, pattern: str = "**/.*.part*") -> None:
+    """Remove the temporary files in a folder whose writers were killed."""
+    for leftover in folder.glob(pattern):
+        writer = _WRITER.search(leftover.name)
+        if writer and not is_process_alive(int(writer[1])):
             leftover.unlink(missing_ok=True)
 
 

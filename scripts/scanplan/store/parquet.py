@@ -1,6 +1,7 @@
 """Parquet files of a schema: opened, written and checked."""
 
 import json
+from binascii import crc32
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
@@ -15,6 +16,9 @@ from scanplan.types import Array, FilePath
 
 RERUN = "delete it and run again"
 
+_SEAL = "scanplan_notes_crc32"
+_OWN_NOTES = ("scanplan", "geo", "ARROW:schema")
+
 
 def arrow_schema(schema: Schema) -> pa.Schema:
     """Return the schema as Arrow's; no cell may be empty."""
@@ -28,7 +32,8 @@ def open_writer(
     path: FilePath, schema: Schema, extra: Mapping[str, str] | None = None
 ) -> Iterator[pq.ParquetWriter]:
     """Write a file of a schema, whole or not at all, with further metadata."""
-    form = arrow_schema(schema).with_metadata(_file_metadata(schema) | dict(extra or {}))
+    notes = dict(extra or {})
+    form = arrow_schema(schema).with_metadata(_file_metadata(schema) | notes | _seal(notes))
     floats = [n for n, t in schema.columns.items() if t.startswith("float")]
     with (
         atomic.replace_file(path) as temporary,
@@ -55,6 +60,27 @@ def _file_metadata(schema: Schema) -> dict[str, str]:
     return metadata
 
 
+def _seal(notes: Mapping[str, str]) -> dict[str, str]:
+    """Return the checksum of a file's further metadata, which Parquet's own do not cover."""
+    return {_SEAL: f"{crc32(json.dumps(notes, sort_keys=True).encode()):08x}"} if notes else {}
+
+
+def read_notes(file: pq.ParquetFile, path: FilePath) -> dict[str, str]:
+    """Return a file's further metadata, without its schema's.
+
+    Raises
+    ------
+    StageError
+        If they do not fit their checksum.
+    """
+    with explain_damage(path):
+        stated = {k.decode(): v.decode() for k, v in (file.metadata.metadata or {}).items()}
+    notes = {k: v for k, v in stated.items() if k not in (*_OWN_NOTES, _SEAL)}
+    if notes and _seal(notes)[_SEAL] != stated.get(_SEAL):
+        raise StageError(f"{path}: damaged (its notes do not fit their checksum); {RERUN}")
+    return notes
+
+
 @contextmanager
 def open_file(path: FilePath, schema: Schema) -> Iterator[pq.ParquetFile]:
     """Open a file of a schema to read it.
@@ -66,12 +92,23 @@ def open_file(path: FilePath, schema: Schema) -> Iterator[pq.ParquetFile]:
     """
     try:
         with pq.ParquetFile(path, page_checksum_verification=True) as file:
-            _check_schema(file, schema, path)
+            with explain_damage(path):
+                _check_schema(file, schema, path)
             yield file
     except FileNotFoundError:
         raise StageError(f"{path}: does not exist; run the stage that makes it") from None
     except (pa.ArrowException, OSError) as error:
         raise StageError(f"{path}: damaged ({error}); {RERUN}") from None
+
+
+@contextmanager
+def explain_damage(path: FilePath) -> Iterator[None]:
+    """Turn what reading a damaged footer raises, which has no checksum, into one line."""
+    try:
+        yield
+    except (ValueError, LookupError, AttributeError, TypeError) as error:
+        reason = " ".join(f"{type(error).__name__}: {error}".split())
+        raise StageError(f"{path}: damaged ({reason}); {RERUN}") from None
 
 
 def _check_schema(file: pq.ParquetFile, schema: Schema, path: FilePath) -> None:
@@ -84,6 +121,17 @@ def _check_schema(file: pq.ParquetFile, schema: Schema, path: FilePath) -> None:
     if not file.schema_arrow.equals(arrow_schema(schema)):
         raise StageError(
             f"{path}: columns {file.schema_arrow.names} are not those of {schema.name}; {RERUN}"
+        )
+    _check_row_counts(file, path)
+
+
+def _check_row_counts(file: pq.ParquetFile, path: FilePath) -> None:
+    """Refuse a file whose parts state other numbers of rows than the whole: some would be lost."""
+    whole = file.metadata
+    of_parts = sum(whole.row_group(i).num_rows for i in range(whole.num_row_groups))
+    if of_parts != whole.num_rows:
+        raise StageError(
+            f"{path}: damaged (states {whole.num_rows} rows, its parts {of_parts}); {RERUN}"
         )
 
 

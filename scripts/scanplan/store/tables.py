@@ -98,7 +98,7 @@ def read_note(path: FilePath, schema: schemas.Schema, name: str) -> str:
         If the file is missing, damaged or of another schema or version.
     """
     with parquet.open_file(path, schema) as file:
-        return (file.metadata.metadata or {}).get(name.encode(), b"").decode()
+        return parquet.read_notes(file, path).get(name, "")
 
 
 @contextmanager
@@ -157,13 +157,13 @@ class ScanStore:
 
     def __init__(self, path: FilePath) -> None:
         self.path = path
-        with parquet.open_file(path, schemas.SCANS) as file:
+        with parquet.open_file(path, schemas.SCANS) as file, parquet.explain_damage(path):
             metadata = file.metadata
             ids = [
                 metadata.row_group(i).column(0).statistics for i in range(metadata.num_row_groups)
             ]
-            self.planar = bool(json.loads(metadata.metadata[b"planar"]))
-        self.scan_ids = np.array([group.min for group in ids], np.int32)
+            self.planar = bool(json.loads(parquet.read_notes(file, path)["planar"]))
+            self.scan_ids = np.array([group.min for group in ids], np.int32)
         if len(self.scan_ids) == 0:
             raise StageError(f"{path}: holds no scan; {parquet.RERUN}")
         if (np.diff(self.scan_ids) <= 0).any() or any(group.min != group.max for group in ids):
@@ -187,6 +187,8 @@ class ScanStore:
         ------
         ValueError
             If a scan is asked for that is not there.
+        StageError
+            If one has no points, or points that are no numbers.
         """
         group = {int(s): i for i, s in enumerate(self.scan_ids)}
         wanted = self.scan_ids.tolist() if scan_ids is None else map(int, scan_ids)
@@ -195,4 +197,10 @@ class ScanStore:
                 if scan_id not in group:
                     raise ValueError(f"{self.path}: no scan {scan_id}")
                 table = file.read_row_group(group[scan_id])
-                yield scan_id, np.column_stack([table[name].to_numpy() for name in schemas.XYZ])
+                xyz_m = np.column_stack([table[name].to_numpy() for name in schemas.XYZ])
+                if len(xyz_m) == 0 or not np.isfinite(xyz_m).all():
+                    raise StageError(
+                        f"{self.path}: scan {scan_id} has no points, or some that are no numbers;"
+                        f" {parquet.RERUN}"
+                    )
+                yield scan_id, xyz_m

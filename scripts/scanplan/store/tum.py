@@ -1,12 +1,15 @@
 """Poses as text in TUM's form: `t tx ty tz qx qy qz qw`, seconds and metres, a pose a line."""
 
-from decimal import Decimal, InvalidOperation
+from decimal import Decimal
 from pathlib import Path
 
 import numpy as np
 
 from scanplan.errors import StageError
 from scanplan.types import FilePath, FloatArray, IntArray
+
+END_NS = np.iinfo(np.int64).max
+"""Stamps in nanoseconds lie below it: 64 bits hold those up to the year 2262."""
 
 
 def read_tum(path: FilePath) -> tuple[IntArray, FloatArray]:
@@ -30,7 +33,8 @@ def read_tum(path: FilePath) -> tuple[IntArray, FloatArray]:
     """
     stamps = []
     rows = []
-    text = Path(path).read_text(encoding="utf-8", errors="replace")
+    # some editors put a mark that is not shown before the first line
+    text = Path(path).read_text(encoding="utf-8-sig", errors="replace")
     for number, line in enumerate(text.splitlines(), 1):
         values = line.split("#")[0].replace(",", " ").split()
         if not values:
@@ -38,11 +42,11 @@ def read_tum(path: FilePath) -> tuple[IntArray, FloatArray]:
         try:
             stamps.append(int(Decimal(values[0]) * 10**9))
             rows.append([float(value) for value in values[1:]])
-        except (ValueError, OverflowError, InvalidOperation):
+        except (ValueError, ArithmeticError):
             raise StageError(
                 f"{path}: line {number} is not `t tx ty tz qx qy qz qw`; mend it"
             ) from None
-        if len(values) != 8 or abs(stamps[-1]) >= 2**63:
+        if len(values) != 8 or abs(stamps[-1]) >= END_NS:
             raise StageError(
                 f"{path}: line {number} has {len(values)} numbers instead of 8, or no stamp;"
                 " mend it"

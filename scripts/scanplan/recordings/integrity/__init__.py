@@ -1,0 +1,1 @@
+"""Recordings held against what they state of themselves: sizes, counts, checksums."""
