@@ -65,7 +65,7 @@ class _Surface:
         if self.element is None:
             return
         kind, number, first = self.element
-        places_m = np.linspace(*self.ends_m, self.n_spans + 1)
+        places_m = np.linspace(self.ends_m[0], self.ends_m[1], self.n_spans + 1)
         for i in range(self.n_spans):
             yield (kind, number, first + i), places_m[i : i + 2]
 
@@ -145,7 +145,7 @@ def _opening_surfaces(plan: FloorPlan, *, planar: bool) -> Iterator[_Surface]:
     known = (plan.openings[name] for name in ("opening", "sill_m", "lintel_m"))
     rows = zip(*known, plan.hosts, centrelines_m(plan.openings), strict=True)
     for opening, sill_m, lintel_m, host, ends_m in rows:
-        left_m, right_m = (side[host] if host >= 0 else 0.0 for side in plan.sides_m)
+        left_m, right_m = (float(side[host]) if host >= 0 else 0.0 for side in plan.sides_m)
         element = (OPENING, int(opening), 0)
         normal = _normal(ends_m)
         sides_m = [ends_m + left_m * normal, ends_m - right_m * normal]

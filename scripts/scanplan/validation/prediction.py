@@ -89,7 +89,7 @@ def validate_by_rays(plan: FloorPlan, rays: RaySet, settings: ValidationSettings
     told = np.flatnonzero(found.outcome != OUTSIDE)
     n = len(surfaces.elements["kind"])
     of_plan = whole | _judge_groups(np.zeros_like(told), found.outcome[told], place[told], 1)
-    of_elements = surfaces.elements | _judge_groups(
+    of_elements = dict(surfaces.elements) | _judge_groups(
         found.element, found.verdict, place[found.row], n
     )
     elements = {name: np.concatenate([of_elements[name], of_plan[name]]) for name in of_plan}
