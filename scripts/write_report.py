@@ -89,6 +89,7 @@ def _read_prediction(path: FilePath) -> PredictionFacts:
         n_rays=whole["n_rays"],
         share=whole["share"],
         bounds=(whole["share_low"], whole["share_high"]),
+        length_share=elements["share"][-2].item(),
         n_stopped=whole["n_stopped"],
         n_passed=whole["n_passed"],
         n_beyond=whole["n_beyond"],

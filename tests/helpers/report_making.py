@@ -95,17 +95,25 @@ def evaluation(methods=("random", "wall_length")):
 
 
 PREDICTION = PredictionFacts(
-    n_scans=1, n_rays=1000, share=0.9, bounds=(0.85, 0.93), n_stopped=70, n_passed=20, n_beyond=10
+    n_scans=1,
+    n_rays=1000,
+    share=0.9,
+    bounds=(0.85, 0.93),
+    length_share=0.95,
+    n_stopped=70,
+    n_passed=20,
+    n_beyond=10,
 )
 
 
 def validation():
-    """The whole plan alone, in numbers that `PREDICTION` states."""
+    """The rows of the whole plan, in numbers that `PREDICTION` states."""
     counts = {"n_rays": 1000, "n_explained": 900, "n_stopped": 70, "n_passed": 20, "n_beyond": 10}
-    known = {"kind": "plan", "number": 0, "span": 0, **counts, "n_places": 1}
+    known = {"kind": "plan_rays", "number": 0, "span": 0, **counts, "n_places": 1}
     shares = {"share": 0.9, "share_low": 0.85, "share_high": 0.93}
     values = dict.fromkeys(("x0_m", "y0_m", "x1_m", "y1_m"), np.nan) | known | shares
-    return {name: np.array([value]) for name, value in values.items()}
+    by_length = {"kind": "plan_length", "share": 0.95}
+    return {name: np.array([by_length.get(name, v), v]) for name, v in values.items()}
 
 
 def plan_evaluation():

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scanplan.validation.clustered_shares import estimate_shares, number_places
+from scanplan.validation.clustered_shares import average_shares, estimate_shares, number_places
 
 
 def one_group(place, is_good):
@@ -65,6 +65,31 @@ def test_groups_are_what_each_is_alone(rows):
             np.testing.assert_allclose(getattr(found, name)[number], getattr(alone, name)[0])
         if alone.n_places[0] > 1:
             assert 0 <= alone.low[0] <= alone.share[0] <= alone.high[0] <= 1
+
+
+def test_a_mean_weighs_groups_by_what_they_stand_for():
+    # 3 m that all rays of both places agree with, 1 m that half of each place's do; 6 m seen once
+    group = np.repeat([0, 0, 1, 1, 2], 4)
+    place = np.repeat([0, 1, 0, 1, 0], 4)
+    is_good = np.array([True] * 8 + [True, True, False, False] * 2 + [False] * 4)
+    found = average_shares(group, place, is_good, np.array([3.0, 1.0, 6.0]))
+    assert (found.share[0], found.n_places[0]) == (3.5 / 4, 2)
+    # no place differs from the mean in any group: each counts as one ray
+    np.testing.assert_allclose((found.low[0], found.high[0]), wilson(3.5 / 4, 2), atol=1e-6)
+
+
+def test_a_mean_of_what_no_two_places_saw_is_unknown():
+    found = average_shares(np.zeros(3, int), np.zeros(3, int), np.ones(3, bool), np.ones(1))
+    assert np.isnan([found.share[0], found.low[0], found.high[0]]).all()
+
+
+@given(st.lists(st.tuples(st.integers(0, 4), st.booleans()), min_size=1, max_size=60))
+def test_the_mean_of_one_group_is_its_share(rows):
+    place, is_good = (np.array(column) for column in zip(*rows, strict=True))
+    group = np.zeros_like(place)
+    alone, mean = one_group(place, is_good), average_shares(group, place, is_good, np.full(1, 2.0))
+    for name in ("share", "low", "high"):
+        np.testing.assert_allclose(getattr(mean, name), getattr(alone, name))
 
 
 @pytest.mark.parametrize("start", [0.0, 0.97, -3.3])

@@ -39,7 +39,9 @@ def test_it_counts_what_was_found_and_names_what_is_doubtful():
 
 
 def test_an_unknown_prediction_is_no_number():
-    unknown = PredictionFacts(0, 0, np.nan, (np.nan, np.nan), 0, 0, 0, absent="one scan alone")
+    unknown = PredictionFacts(
+        0, 0, np.nan, (np.nan, np.nan), np.nan, 0, 0, 0, absent="one scan alone"
+    )
     tested = summarise_survey(plan(), survey(unknown)).splitlines()[-1]
     assert tested.endswith("is not known: one scan alone.") and "%" not in tested
 

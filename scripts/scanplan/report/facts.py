@@ -17,6 +17,8 @@ class PredictionFacts:
         Of these rays, that ended where the plan says; NaN where it is not known.
     bounds : (float, float)
         Of its 95 % interval.
+    length_share : float
+        Mean share that agrees with the plan's elements, by their length; NaN likewise.
     n_stopped, n_passed, n_beyond : int
         What became of the others, see `schemas.VALIDATION`.
     absent : str
@@ -27,6 +29,7 @@ class PredictionFacts:
     n_rays: int
     share: float
     bounds: tuple[float, float]
+    length_share: float
     n_stopped: int
     n_passed: int
     n_beyond: int

@@ -281,11 +281,13 @@ VALIDATION = Schema(
 
 A row for each element: `kind` is face, opening or outline (what is neither face nor opening of a
 room's outline), `number` that of the face, opening or room, `span` counts pieces along it, between
-the ends in metres. `kind` plan is the whole, without ends (NaN). `n_rays` is how many say something
-of it: `n_explained` ended at a drawn surface, or went through an opening; `n_stopped` ended before
-(of openings and outlines: in the way), `n_passed` went through a drawn surface, `n_beyond` ended
-where nothing is drawn. `share` of `n_rays` is explained, with its 95 % interval; NaN where rays of
-fewer than two places (`n_places`) tell.
+the ends in metres. The last two rows are of the whole plan, without ends (NaN): `kind` plan_length,
+the mean share of the elements by their length, and plan_rays, of all rays.
+
+`n_rays` is how many say something of it: `n_explained` ended at a drawn surface, or went through an
+opening; `n_stopped` ended before (of openings and outlines: in the way), `n_passed` went through a
+drawn surface, `n_beyond` ended where nothing is drawn. `share` of them is explained, with its 95 %
+interval; NaN where rays of fewer than two places (`n_places`) tell.
 
 The file states `n_left_out` and `n_scans` (scans left out, and drawn of them), `tolerance_m`, and
 `absent`: why the share of the whole is not known, if it is not.

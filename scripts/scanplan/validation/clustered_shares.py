@@ -50,28 +50,74 @@ def estimate_shares(group: IntArray, place: IntArray, is_good: BoolArray, n_grou
     is_good : (n,) bool
     n_groups : int
     """
-    n_places = int(place.max(initial=-1)) + 1
-    cell, which = np.unique(group.astype(np.int64) * max(n_places, 1) + place, return_inverse=True)
-    group_of = cell // max(n_places, 1)
-    size = np.bincount(which, minlength=len(cell))
-    good = np.bincount(which, is_good, len(cell))
-    n = np.bincount(group_of, size, n_groups)
-    n_good = np.bincount(group_of, good, n_groups)
-    m = np.bincount(group_of, minlength=n_groups)
+    counts = _count_by_place(group, place, is_good, n_groups)
+    n, n_good, m = counts.summed(counts.size), counts.summed(counts.good), counts.n_places
     is_told = m > 1
     share = np.full(n_groups, np.nan)
     np.divide(n_good, n, out=share, where=is_told)
-    square = np.bincount(group_of, (good - np.nan_to_num(share)[group_of] * size) ** 2, n_groups)
+    apart = counts.good - np.nan_to_num(share)[counts.group] * counts.size
     variance = np.zeros(n_groups)
-    np.divide(m / np.maximum(m - 1, 1) * square, n**2, out=variance, where=is_told)
-    # where places do not differ, as if all were good, each counts as one ray
-    effective = m.astype(float)
-    differ = variance > ROUNDING**2
-    of_sample = np.divide(share * (1 - share), variance, out=effective.copy(), where=differ)
-    spread = SIGMAS / special.stdtrit(np.maximum(m - 1, 1), 0.975)
-    effective[differ] = (np.minimum(of_sample, n) * spread**2)[differ]
-    low, high = _wilson_bounds(share, effective)
+    np.divide(counts.summed(apart**2), n**2, out=variance, where=is_told)
+    low, high = _bounds(share, variance, m, n)
     return Shares(m, share, low, high)
+
+
+def average_shares(
+    group: IntArray, place: IntArray, is_good: BoolArray, weight: FloatArray
+) -> Shares:
+    """Return the mean share of groups that two places or more tell of, by weights (g,): one row.
+
+    Parameters
+    ----------
+    group, place : (n,) int, >= 0
+    is_good : (n,) bool
+    weight : (g,) float, >= 0
+    """
+    counts = _count_by_place(group, place, is_good, len(weight))
+    n, n_good = counts.summed(counts.size), counts.summed(counts.good)
+    weight = np.where(counts.n_places > 1, weight, 0.0)
+    if weight.sum() == 0:
+        unknown = np.full(1, np.nan)
+        return Shares(np.zeros(1, np.int64), unknown, unknown, unknown)
+    weight = weight / weight.sum()
+    each = n_good / np.maximum(n, 1)
+    share = weight @ each
+    # what each place adds to the error of the mean, by its error in each group
+    apart = (counts.good - each[counts.group] * counts.size) / np.maximum(n, 1)[counts.group]
+    told = counts.place[weight[counts.group] > 0]
+    of_place = np.bincount(counts.place, weight[counts.group] * apart)
+    m, n_told = len(np.unique(told)), n[weight > 0].sum()
+    parts = (np.atleast_1d(part) for part in (share, (of_place**2).sum(), m, n_told))
+    share, variance, m, n_told = parts
+    return Shares(m, share, *_bounds(share, variance, m, n_told))
+
+
+@dataclass(frozen=True, eq=False)
+class _Counts:
+    """Rays, and good ones, of each group at each place that has any, (c,)."""
+
+    group: IntArray
+    place: IntArray
+    size: IntArray
+    good: FloatArray
+    n_groups: int
+
+    @property
+    def n_places(self) -> IntArray:
+        """How many places tell of each group."""
+        return np.bincount(self.group, minlength=self.n_groups)
+
+    def summed(self, values: FloatArray | IntArray) -> FloatArray:
+        """Return sums of values (c,) by group."""
+        return np.bincount(self.group, values, self.n_groups)
+
+
+def _count_by_place(group: IntArray, place: IntArray, is_good: BoolArray, n_groups: int) -> _Counts:
+    n_places = int(place.max(initial=0)) + 1
+    cell, which = np.unique(group.astype(np.int64) * n_places + place, return_inverse=True)
+    size = np.bincount(which, minlength=len(cell))
+    good = np.bincount(which, is_good, len(cell))
+    return _Counts(cell // n_places, cell % n_places, size, good, n_groups)
 
 
 def number_places(sensors_m: FloatArray, place_m: float) -> IntArray:
@@ -85,11 +131,23 @@ def number_places(sensors_m: FloatArray, place_m: float) -> IntArray:
     return np.unique(cells, axis=0, return_inverse=True)[1].ravel()
 
 
-def _wilson_bounds(share: FloatArray, n: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return Wilson's interval of shares (g,) of n (g,) independent trials."""
-    n = np.where(n > 0, n, np.nan)
-    square = SIGMAS**2 / n
-    middle = (share + square / 2) / (1 + square)
-    half = SIGMAS * np.sqrt(share * (1 - share) / n + square / (4 * n)) / (1 + square)
+def _bounds(
+    share: FloatArray, square: FloatArray, m: IntArray, n: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return intervals of shares (g,) that m (g,) places tell by n (g,) rays.
+
+    `square` is the sum of squares of what each place adds to the share's error.
+    """
+    variance = m / np.maximum(m - 1, 1) * square
+    # where places do not differ, as if all were good, each counts as one ray
+    effective = np.where(m > 0, m, np.nan).astype(float)
+    differ = variance > ROUNDING**2
+    of_sample = np.divide(share * (1 - share), variance, out=effective.copy(), where=differ)
+    spread = SIGMAS / special.stdtrit(np.maximum(m - 1, 1), 0.975)
+    effective[differ] = (np.minimum(of_sample, n) * spread**2)[differ]
+    # Wilson's interval of so many independent rays
+    ratio = SIGMAS**2 / effective
+    middle = (share + ratio / 2) / (1 + ratio)
+    half = SIGMAS * np.sqrt(share * (1 - share) / effective + ratio / (4 * effective)) / (1 + ratio)
     # rounding apart, the share is between them
     return np.clip(middle - half, 0.0, share), np.clip(middle + half, share, 1.0)

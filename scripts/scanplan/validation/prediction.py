@@ -7,7 +7,13 @@ import numpy as np
 from scanplan.plan.floorplan import FloorPlan, centrelines_m
 from scanplan.rays.ray_set import RaySet
 from scanplan.types import Array, Columns, FloatArray, IntArray
-from scanplan.validation.clustered_shares import SIGMAS, estimate_shares, number_places
+from scanplan.validation.clustered_shares import (
+    SIGMAS,
+    Shares,
+    average_shares,
+    estimate_shares,
+    number_places,
+)
 from scanplan.validation.drawn_surfaces import list_surfaces
 from scanplan.validation.ray_outcomes import (
     BEYOND,
@@ -20,8 +26,8 @@ from scanplan.validation.ray_outcomes import (
     cast_rays,
 )
 
-WHOLE = "plan"
-"""Kind of the element that stands for all of the plan."""
+LENGTH, RAYS = "plan_length", "plan_rays"
+"""Kinds of the rows that stand for all of the plan, the last two: by drawn length, and by rays."""
 _COUNTS = {EXPLAINED: "n_explained", STOPPED: "n_stopped", PASSED: "n_passed", BEYOND: "n_beyond"}
 
 
@@ -80,19 +86,31 @@ def validate_by_rays(plan: FloorPlan, rays: RaySet, settings: ValidationSettings
     tolerance_m = find_tolerance(plan.faces, settings.registration_sigma_m)
     found = cast_rays(rays, surfaces, tolerance_m)
     place = number_places(rays.sensors_m[:, :2], settings.place_m)[rays.scan]
-    whole = {
-        "kind": np.array([WHOLE], object),
+    no_element = {
         "number": np.zeros(1, np.int32),
         "span": np.zeros(1, np.int32),
         **dict.fromkeys(("x0_m", "y0_m", "x1_m", "y1_m"), np.full(1, np.nan)),
     }
     told = np.flatnonzero(found.outcome != OUTSIDE)
-    n = len(surfaces.elements["kind"])
-    of_plan = whole | _judge_groups(np.zeros_like(told), found.outcome[told], place[told], 1)
-    of_elements = dict(surfaces.elements) | _judge_groups(
-        found.element, found.verdict, place[found.row], n
-    )
-    elements = {name: np.concatenate([of_elements[name], of_plan[name]]) for name in of_plan}
+    lines_m = centrelines_m(surfaces.elements)
+    length_m = np.hypot(*(lines_m[:, 1] - lines_m[:, 0]).T)
+    spoken = (found.element, place[found.row], found.verdict == EXPLAINED)
+    parts = [
+        dict(surfaces.elements)
+        | _count_groups(found.element, found.verdict, len(length_m))
+        | _share_columns(estimate_shares(*spoken, len(length_m))),
+        {"kind": np.array([LENGTH], object)}
+        | no_element
+        | _count_groups(np.zeros_like(found.element), found.verdict, 1)
+        | _share_columns(average_shares(*spoken, length_m)),
+        {"kind": np.array([RAYS], object)}
+        | no_element
+        | _count_groups(np.zeros_like(told), found.outcome[told], 1)
+        | _share_columns(
+            estimate_shares(np.zeros_like(told), place[told], found.outcome[told] == EXPLAINED, 1)
+        ),
+    ]
+    elements = {name: np.concatenate([part[name] for part in parts]) for name in parts[-1]}
     return Validation(elements, _ray_columns(rays, found), tolerance_m)
 
 
@@ -136,19 +154,21 @@ def summarise_counts(found: Validation) -> str:
     whole = {name: values[-1] for name, values in found.elements.items()}
     shares = [f"{whole[name] / whole['n_rays']:.1%} {name[2:]}" for name in _COUNTS.values()]
     bounds = f"{whole['share_low']:.1%} to {whole['share_high']:.1%}"
-    tolerance = f"within {found.tolerance_m:.3f} m"
-    return f"{whole['n_rays']:,} rays, {', '.join(shares)} (explained {bounds}) {tolerance}"
+    length = f"{found.elements['share'][-2]:.1%} of the drawn length"
+    counted = f"{whole['n_rays']:,} rays, {', '.join(shares)} (explained {bounds})"
+    return f"{counted}; agree with {length}, within {found.tolerance_m:.3f} m"
 
 
-def _judge_groups(
-    group: IntArray, outcome: IntArray, place: IntArray, n_groups: int
-) -> dict[str, Array]:
-    """Return the counts and shares of groups of rays by column."""
+def _count_groups(group: IntArray, outcome: IntArray, n_groups: int) -> dict[str, Array]:
+    """Return how many rays of each group came to which end, by column."""
     columns: dict[str, Array] = {"n_rays": np.bincount(group, minlength=n_groups)}
     for code, name in _COUNTS.items():
         columns[name] = np.bincount(group[outcome == code], minlength=n_groups)
-    shares = estimate_shares(group, place, outcome == EXPLAINED, n_groups)
-    return columns | {
+    return columns
+
+
+def _share_columns(shares: Shares) -> dict[str, Array]:
+    return {
         "n_places": shares.n_places,
         "share": shares.share,
         "share_low": shares.low,
