@@ -83,6 +83,17 @@ def test_without_a_scan_left_out_the_share_is_absent(house, tmp_path):
     draw_validation(outputs["elements"], outputs["rays"], tmp_path / "validation.svg")
 
 
+def test_each_absence_has_its_reason():
+    columns = {"share": np.array([np.nan]), "n_rays": np.array([0])}
+    unknown = prediction.Validation(columns, {}, 0.04)
+    reasons = [prediction.explain_absence(unknown, *n) for n in ((1, 0), (5, 0), (5, 2))]
+    assert reasons == [
+        "the only registered scan makes the plan, none is left to test it",
+        "all scans make the plan, none is left to test it",
+        "no ray of the scans left out ends between floor and ceiling",
+    ]
+
+
 def test_from_one_place_the_share_is_absent(tmp_path):
     # the two scans left out are taken 0.1 m apart
     sensors = [(2, 2, 0.9), (1, 3, 0.9), (6, 2.2, 0.9), (1.1, 3, 0.9)]

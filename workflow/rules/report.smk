@@ -90,7 +90,7 @@ rule draw_validation:
             "results/{dataset}/figures/validation.svg",
             caption="../report/validation.rst",
             category="{dataset}",
-            labels={"figure": "5 prediction of other scans"},
+            labels={"figure": "8 prediction of other scans"},
         ),
     log:
         "logs/{dataset}/draw_validation.log",
