@@ -89,10 +89,10 @@ def _bench_damage(name: str, survey: Survey) -> None:
     print(f"{quality.min():.3f} to {quality.max():.3f}, {took_s:.0f} s", flush=True)
     for row, of_what, scores in ((-1, "rays", of_rays), (-2, "length", of_length)):
         share, low, high = (whole[column][row] for column in ("share", "share_low", "share_high"))
-        rank = stats.spearmanr(scores, quality).statistic
+        rank = _rank_correlation(scores, quality)
         each = {kind: kinds == kind for kind in dict.fromkeys(kinds.tolist())}
         ranks = [
-            f"{kind} {stats.spearmanr(scores[those], quality[those]).statistic:.2f}"
+            f"{kind} {_rank_correlation(scores[those], quality[those]):.2f}"
             for kind, those in each.items()
         ]
         print(
@@ -100,6 +100,12 @@ def _bench_damage(name: str, survey: Survey) -> None:
             f" {scores.max():.3f}, rank correlation {rank:.3f} ({', '.join(ranks)})",
             flush=True,
         )
+
+
+def _rank_correlation(scores: FloatArray, qualities: FloatArray) -> float:
+    """Return Spearman's coefficient."""
+    ranks = stats.rankdata(scores), stats.rankdata(qualities)
+    return float(np.corrcoef(*ranks)[0, 1])
 
 
 def _score(survey: Survey, plan: floorplan.FloorPlan) -> tuple[float, float]:

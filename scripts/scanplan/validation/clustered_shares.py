@@ -86,10 +86,10 @@ def average_shares(
     apart = (counts.good - each[counts.group] * counts.size) / np.maximum(n, 1)[counts.group]
     told = counts.place[weight[counts.group] > 0]
     of_place = np.bincount(counts.place, weight[counts.group] * apart)
-    m, n_told = len(np.unique(told)), n[weight > 0].sum()
-    parts = (np.atleast_1d(part) for part in (share, (of_place**2).sum(), m, n_told))
-    share, variance, m, n_told = parts
-    return Shares(m, share, *_bounds(share, variance, m, n_told))
+    n_told = np.full(1, n[weight > 0].sum())
+    m = np.full(1, len(np.unique(told)))
+    mean, square = np.full(1, share), np.full(1, np.sum(of_place**2))
+    return Shares(m, mean, *_bounds(mean, square, m, n_told))
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +99,7 @@ class _Counts:
     group: IntArray
     place: IntArray
     size: IntArray
-    good: FloatArray
+    good: FloatArray | IntArray
     n_groups: int
 
     @property
@@ -132,7 +132,7 @@ def number_places(sensors_m: FloatArray, place_m: float) -> IntArray:
 
 
 def _bounds(
-    share: FloatArray, square: FloatArray, m: IntArray, n: FloatArray
+    share: FloatArray, square: FloatArray, m: IntArray, n: FloatArray | IntArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return intervals of shares (g,) that m (g,) places tell by n (g,) rays.
 
