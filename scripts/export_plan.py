@@ -7,7 +7,7 @@ from scanplan.exports import drawing, dxf, geojson, grid_map, ifc
 from scanplan.plan import floorplan
 from scanplan.stage import figure_files, log
 from scanplan.store import atomic, schemas, tables
-from scanplan.types import Columns, FilePath, Settings
+from scanplan.types import FilePath, Settings
 
 
 def export_plan(
@@ -32,18 +32,8 @@ def export_plan(
         of the map's cells.
     """
     evidence = tables.read_table(plan["evidence"], schemas.EVIDENCE, allow_empty=True)
-    drawn = floorplan.FloorPlan(
-        name=name,
-        faces=tables.read_table(plan["faces"], schemas.FACES),
-        walls=_read_optional(plan["walls"], schemas.PLAN_WALLS),
-        openings=_read_optional(plan["openings"], schemas.OPENINGS),
-        rooms=_read_optional(plan["rooms"], schemas.ROOMS),
-        free=_read_optional(plan["free"], schemas.FREE),
-        assumed_thickness_m=settings["assumed_thickness_m"],
-        assumed_height_m=settings["assumed_height_m"],
-        floor_z_m=_read_height(plan["free"], "floor_z_m"),
-        ceiling_z_m=_read_height(plan["free"], "ceiling_z_m"),
-    )
+    assumed_m = {key: settings[key] for key in ("assumed_thickness_m", "assumed_height_m")}
+    drawn = floorplan.read_floorplan(plan, name, **assumed_m)
     sheet = drawing.draw_plan(drawn)
     grid = grid_map.draw_grid_map(drawn, settings["map_cell_m"])
     atomic.write_text(outputs["geojson"], geojson.format_geojson(drawn, evidence))
@@ -56,16 +46,6 @@ def export_plan(
     log.log_line(
         f"export_plan: {floorplan.summarise_floorplan(drawn)}; {_summarise_heights(drawn)}"
     )
-
-
-def _read_height(path: FilePath, name: str) -> float:
-    """Return a height in metres that the table of free floor states; NaN where it was not seen."""
-    return float(tables.read_note(path, schemas.FREE, name) or "nan")
-
-
-def _read_optional(path: FilePath, schema: schemas.Schema) -> Columns:
-    """Read a table that may have no rows."""
-    return tables.read_table(path, schema, allow_empty=True)
 
 
 def _summarise_heights(plan: floorplan.FloorPlan) -> str:

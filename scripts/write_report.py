@@ -7,7 +7,7 @@ from typing import Any
 
 from scanplan.plan import floorplan
 from scanplan.project import code_files
-from scanplan.report.facts import RunFacts, SurveyFacts
+from scanplan.report.facts import PredictionFacts, RunFacts, SurveyFacts
 from scanplan.report.page import report_page
 from scanplan.report.summary import summarise_survey
 from scanplan.selection import stopping
@@ -30,8 +30,8 @@ def write_report(
     Parameters
     ----------
     files : dict of str to path-like, or list of path-like
-        `faces`, `walls`, `openings`, `rooms`, `free`, `evidence`, `segments` of plan/;
-        `selection`, `poses`, `registration`; `page` (templates, CSS, JavaScript); `figures`;
+        `faces`, `walls`, `openings`, `rooms`, `free`, `evidence`, `segments`, `validation` of
+        plan/; `selection`, `poses`, `registration`; `page` (templates, CSS, JavaScript); `figures`;
         `evaluation` (plan.parquet and walls.parquet, as far as they are known); `recordings`;
         `results`.
     output : path-like
@@ -44,14 +44,7 @@ def write_report(
     short : path-like, optional
         summary.txt, to write.
     """
-    plan = floorplan.FloorPlan(
-        name=name,
-        faces=tables.read_table(files["faces"], schemas.FACES),
-        walls=tables.read_table(files["walls"], schemas.PLAN_WALLS, allow_empty=True),
-        openings=tables.read_table(files["openings"], schemas.OPENINGS, allow_empty=True),
-        rooms=tables.read_table(files["rooms"], schemas.ROOMS, allow_empty=True),
-        free=tables.read_table(files["free"], schemas.FREE, allow_empty=True),
-    )
+    plan = floorplan.read_floorplan(files, name)
     survey = _read_survey(files, settings["selection"]["stop"])
     recorded = [("recording", Path(path).name, _size(path)) for path in files["recordings"]]
     folder = Path(output).parent
@@ -82,8 +75,25 @@ def _read_survey(files: Mapping[str, Any], stop: Settings) -> SurveyFacts:
         segments=tables.read_table(files["segments"], schemas.WALLS, allow_empty=True),
         evidence=tables.read_table(files["evidence"], schemas.EVIDENCE, allow_empty=True),
         chosen=stopping.choose_n_scans(selection, **stop)[0],
+        prediction=_read_prediction(files["validation"]),
         plan_measures=_read_if_known(evaluation.get("plan"), schemas.PLAN_EVALUATION),
         wall_measures=_read_if_known(evaluation.get("walls"), schemas.EVALUATION),
+    )
+
+
+def _read_prediction(path: FilePath) -> PredictionFacts:
+    elements = tables.read_table(path, schemas.VALIDATION)
+    whole = {name: values[-1].item() for name, values in elements.items() if name != "kind"}
+    return PredictionFacts(
+        n_scans=int(tables.read_note(path, schemas.VALIDATION, "n_scans")),
+        n_rays=whole["n_rays"],
+        share=whole["share"],
+        bounds=(whole["share_low"], whole["share_high"]),
+        length_share=elements["share"][-2].item(),
+        n_stopped=whole["n_stopped"],
+        n_passed=whole["n_passed"],
+        n_beyond=whole["n_beyond"],
+        absent=tables.read_note(path, schemas.VALIDATION, "absent"),
     )
 
 

@@ -72,7 +72,7 @@ def bench(results: Path, surveys: Sequence[Path], settings: Settings) -> None:
         The whole configuration.
     """
     folders = sorted(path.parent for path in results.glob("*/walls"))
-    truths = {folder: _find_truth(folder, surveys) for folder in folders}
+    truths = {folder: find_truth(folder, surveys) for folder in folders}
     finished = {folder: truth for folder, truth in truths.items() if truth is not None}
     if not finished:
         print(
@@ -83,7 +83,8 @@ def bench(results: Path, surveys: Sequence[Path], settings: Settings) -> None:
         _bench_survey(_read_results(folder, settings), truth, settings)
 
 
-def _find_truth(folder: Path, surveys: Sequence[Path]) -> Path | None:
+def find_truth(folder: Path, surveys: Sequence[Path]) -> Path | None:
+    """Return the folder of a survey's truth, there or in one of `surveys`."""
     places = [folder / "survey", *(survey / folder.name for survey in surveys)]
     names = ("truth.geojson", "truth_poses.tum")
     complete = (place for place in places if all((place / name).exists() for name in names))
@@ -120,7 +121,7 @@ def _bench_plan(
     name: str, found: Results, scan_ids: IntArray, truth: Path, settings: Settings
 ) -> tuple[Plan, wall_findings.VisibleTruth]:
     rows = registered_scans.rows_of_scans(scan_ids, found.registered, found.folder, found.folder)
-    floor = _visible_truth(truth, found.registered.t_ns, rows, settings)
+    floor = visible_truth(truth, found.registered.t_ns, rows, settings)
     started = time.process_time()
     plan = _make_plan(found, rows, scan_ids, settings)
     took_s = time.process_time() - started
@@ -129,9 +130,10 @@ def _bench_plan(
     return plan, floor
 
 
-def _visible_truth(
+def visible_truth(
     truth: Path, t_ns: IntArray, rows: IntArray, settings: Settings
 ) -> wall_findings.VisibleTruth:
+    """Return what the survey, and the scans at these rows, could see of the true faces."""
     poses = truth_file.read_true_poses(truth / "truth_poses.tum")
     placed = truth_file.interpolate_true_poses(poses, t_ns, truth)
     survey = truth_file.true_pose_matrices(poses)

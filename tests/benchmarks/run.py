@@ -1,12 +1,13 @@
 """The stages against the algorithms written literally, each pair timed in this one process.
 
-Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [plans] [FOLDER ...]
+Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [plans] [validation]
+              [FOLDER ...]
        run.py guard REVISION FOLDER [SURVEY ...]
        run.py compare FOLDER FOLDER
 
-Without a name all of them but wall_quality, which takes minutes, and plans, which measures the
-surveys that `make compare` has finished under results/; a FOLDER holds the dataset folders with the
-truths of those it did not simulate.
+Without a name all of them but wall_quality, which takes minutes, plans, which measures the surveys
+that `make compare` has finished under results/, and validation, which damages the plans there; a
+FOLDER holds the dataset folders with the truths of those it did not simulate.
 
 `guard` makes the plans of twelve simulated drives and six real recordings with the code of a
 commit, in a folder of its own; `compare` prints what changed between two such folders, and fails
@@ -67,6 +68,13 @@ def bench_plans(folders: Sequence[Path] = ()) -> None:
     plans_bench.bench(ROOT / "results", folders, SETTINGS)
 
 
+def bench_validation(folders: Sequence[Path] = ()) -> None:
+    """Prediction of left-out scans against the truth, over damaged plans of finished surveys."""
+    import validation_bench
+
+    validation_bench.bench(ROOT / "results", folders, SETTINGS)
+
+
 def record_guard(revision: str, folder: str, *names: str) -> None:
     """Make the guard's plans with the code of a commit."""
     import guard
@@ -96,6 +104,7 @@ def run_benches(words: Sequence[str]) -> None:
     folders = [Path(word) for word in words if Path(word).is_dir()]
     names = [word for word in words if Path(word) not in folders]
     more = {"wall_quality": bench_wall_quality, "plans": lambda: bench_plans(folders)}
+    more["validation"] = lambda: bench_validation(folders)
     known = BENCHES | more
     unknown = sorted(set(names) - set(known))
     if unknown:

@@ -6,6 +6,7 @@ import numpy as np
 
 from helpers import floorplan_making
 from helpers.wall_making import walls as wall_table
+from scanplan.report.facts import PredictionFacts
 from scanplan.store import schemas, tables
 
 PAGE = Path(__file__).resolve().parents[2] / "workflow/report/page"
@@ -93,6 +94,28 @@ def evaluation(methods=("random", "wall_length")):
     return columns
 
 
+PREDICTION = PredictionFacts(
+    n_scans=1,
+    n_rays=1000,
+    share=0.9,
+    bounds=(0.85, 0.93),
+    length_share=0.95,
+    n_stopped=70,
+    n_passed=20,
+    n_beyond=10,
+)
+
+
+def validation():
+    """The rows of the whole plan, in numbers that `PREDICTION` states."""
+    counts = {"n_rays": 1000, "n_explained": 900, "n_stopped": 70, "n_passed": 20, "n_beyond": 10}
+    known = {"kind": "plan_rays", "number": 0, "span": 0, **counts, "n_places": 1}
+    shares = {"share": 0.9, "share_low": 0.85, "share_high": 0.93}
+    values = dict.fromkeys(("x0_m", "y0_m", "x1_m", "y1_m"), np.nan) | known | shares
+    by_length = {"kind": "plan_length", "share": 0.95}
+    return {name: np.array([by_length.get(name, v), v]) for name, v in values.items()}
+
+
 def plan_evaluation():
     columns = {
         name: np.array([3, 3], np.int32) if kind == "int32" else np.array([0.97, 0.98])
@@ -120,6 +143,9 @@ def files(folder):
     paths = {name: folder / f"{name}.parquet" for name in made}
     for name, (schema, columns) in made.items():
         tables.write_table(paths[name], schema, columns)
+    paths["validation"] = folder / "validation.parquet"
+    notes = {"n_scans": "1", "absent": ""}
+    tables.write_table(paths["validation"], schemas.VALIDATION, validation(), notes=notes)
     (folder / "scans.svg").write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><path d="M0 0"/></svg>'
     )

@@ -85,6 +85,13 @@ def test_it_says_what_it_was_made_of_and_how_good_that_is(report):
     assert "office &lt;two&gt; rooms" in text and "<two>" not in text
 
 
+def test_its_header_says_how_well_the_plan_predicts(report):
+    header = report.read_text().partition("<header>")[2].partition("</header>")[0]
+    assert "It predicts 90.0% (85.0% to 93.0%) of 1,000 rays of 1 scan that was not used" in header
+    assert "2.0% passed through it and 1.0% ended where nothing is drawn" in header
+    assert "Rays agree with 95.0% of the length of faces, openings and outlines." in header
+
+
 def test_it_holds_all_it_needs(report):
     text = report.read_text()
     # names of namespaces and the figures' own data apart, there is no address in it

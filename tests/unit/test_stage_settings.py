@@ -20,6 +20,7 @@ from scanplan.project import stage_settings
 from scanplan.project.settings_schema import iterate_keys, list_choices
 from scanplan.registration.registration_settings import registration_settings
 from scanplan.selection import methods, wall_cells
+from scanplan.validation import prediction
 from simulate_survey import simulate_survey
 
 SECTIONS = ("input", "poses", "registration", "evaluation", "thesis")
@@ -54,6 +55,7 @@ def received(settings):
         },
         "walls": select.select_extractors(settings, names),
         "plan": select.select_plan(settings),
+        "validation": select.select_validation(settings),
         "simulation": select.select_simulation(settings),
     }
 
@@ -99,6 +101,7 @@ def test_the_settings_classes_take_what_is_selected():
     cells = stage_settings.select_wall_cells(SETTINGS, methods.WALL_LIMITS)
     wall_cells.WallCellSettings(**cells)
     planning.make_plan_settings(**stage_settings.select_plan(SETTINGS))
+    prediction.ValidationSettings(**stage_settings.select_validation(SETTINGS))
     registration_settings(stage_settings.select_section(SETTINGS, "registration"))
 
 

@@ -4,11 +4,11 @@ import numpy as np
 
 from helpers import floorplan_making, report_making
 from scanplan.plan import floorplan
-from scanplan.report.facts import SurveyFacts
+from scanplan.report.facts import PredictionFacts, SurveyFacts
 from scanplan.report.summary import summarise_survey
 
 
-def survey():
+def survey(prediction=report_making.PREDICTION):
     return SurveyFacts(
         selection=report_making.selection(),
         registration=report_making.registration(),
@@ -16,6 +16,7 @@ def survey():
         segments=report_making.segments(),
         evidence=floorplan_making.evidence(),
         chosen=3,
+        prediction=prediction,
     )
 
 
@@ -26,11 +27,23 @@ def plan(**tables):
 
 
 def test_it_counts_what_was_found_and_names_what_is_doubtful():
-    found, doubtful, made_of = summarise_survey(plan(), survey()).splitlines()
+    found, doubtful, made_of, tested = summarise_survey(plan(), survey()).splitlines()
     n_rooms = len(floorplan_making.rooms()["room"])
     assert found.startswith(f"found    {n_rooms} rooms, ") and "m² of floor" in found
     assert "1 wall (2) weakly supported: verify on site" in doubtful
     assert made_of.startswith("made of  3 of 4 registered scans (5 candidates of about ")
+    assert tested.startswith(
+        "tested   It predicts 90.0% (85.0% to 93.0%) of 1,000 rays of 1 scan that was not used:"
+        " 7.0% stopped"
+    )
+
+
+def test_an_unknown_prediction_is_no_number():
+    unknown = PredictionFacts(
+        0, 0, np.nan, (np.nan, np.nan), np.nan, 0, 0, 0, absent="one scan alone"
+    )
+    tested = summarise_survey(plan(), survey(unknown)).splitlines()[-1]
+    assert tested.endswith("is not known: one scan alone.") and "%" not in tested
 
 
 def test_a_plan_without_doubts_says_so_and_many_are_not_all_named():

@@ -32,7 +32,10 @@ def project(project_root, tmp_path_factory):
     return project
 
 
-PLANNED = {"assemble_plan", "export_plan", "draw_walls", "evaluate_plan"}
+PLANNED = {
+    *("assemble_plan", "validate_plan", "export_plan", "draw_walls", "draw_validation"),
+    "evaluate_plan",
+}
 CHOSEN = {"extract_chosen_walls", "draw_scans"} | PLANNED
 EVALUATED = {"evaluate_walls", "draw_evaluation", "tabulate_seconds"}
 AFTER_ORDERS = {"order_scans", "draw_area"} | CHOSEN | EVALUATED

@@ -28,6 +28,36 @@ rule assemble_plan:
         "../../scripts/assemble_plan.py"
 
 
+rule validate_plan:
+    """Measure how well the plan predicts rays of scans that it was not made of."""
+    input:
+        faces="results/{dataset}/plan/faces.parquet",
+        walls="results/{dataset}/plan/walls.parquet",
+        openings="results/{dataset}/plan/openings.parquet",
+        rooms="results/{dataset}/plan/rooms.parquet",
+        free="results/{dataset}/plan/free.parquet",
+        selection=plan_selection,
+        scans="results/{dataset}/scans.parquet",
+        registration="results/{dataset}/registration.parquet",
+    output:
+        elements="results/{dataset}/plan/validation.parquet",
+        rays="results/{dataset}/plan/validation_rays.parquet",
+    log:
+        "logs/{dataset}/validate_plan.log",
+    benchmark:
+        "benchmarks/{dataset}/validate_plan.tsv"
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=10,
+    params:
+        code=code_of("validate_plan"),
+        stop=section("selection", "stop"),
+        settings=setting(stage_settings.select_validation),
+    script:
+        "../../scripts/validate_plan.py"
+
+
 rule export_plan:
     """Write the plan as GeoJSON, DXF, SVG, PDF, IFC and as a map for nav2."""
     input:

@@ -80,6 +80,32 @@ rule draw_walls:
         "../../scripts/draw_walls.py"
 
 
+rule draw_validation:
+    """Draw where rays of scans left out of the plan ended, and whether the plan explains it."""
+    input:
+        elements="results/{dataset}/plan/validation.parquet",
+        rays="results/{dataset}/plan/validation_rays.parquet",
+    output:
+        figure=report(
+            "results/{dataset}/figures/validation.svg",
+            caption="../report/validation.rst",
+            category="{dataset}",
+            labels={"figure": "8 prediction of other scans"},
+        ),
+    log:
+        "logs/{dataset}/draw_validation.log",
+    benchmark:
+        "benchmarks/{dataset}/draw_validation.tsv"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=10,
+    params:
+        code=code_of("draw_validation"),
+    script:
+        "../../scripts/draw_validation.py"
+
+
 # what a report is made of, with a comparison or without
 REPORT_TABLES = {
     "faces": "results/{dataset}/plan/faces.parquet",
@@ -88,6 +114,7 @@ REPORT_TABLES = {
     "rooms": "results/{dataset}/plan/rooms.parquet",
     "free": "results/{dataset}/plan/free.parquet",
     "evidence": "results/{dataset}/plan/evidence.parquet",
+    "validation": "results/{dataset}/plan/validation.parquet",
     "selection": plan_selection,
     "segments": "results/{dataset}/plan/segments.parquet",
     "poses": "results/{dataset}/poses.parquet",

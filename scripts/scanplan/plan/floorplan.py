@@ -1,6 +1,6 @@
 """A floor plan as one thing: its tables, and the shapes that drawings and models make of them."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -9,7 +9,8 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.plan import wall_footprints
-from scanplan.types import Array, BoolArray, Columns, FloatArray, IntArray
+from scanplan.store import schemas, tables
+from scanplan.types import Array, BoolArray, Columns, FilePath, FloatArray, IntArray
 
 STATES = ("observed", "inferred")
 """Of faces and walls."""
@@ -201,6 +202,44 @@ class FloorPlan:
         """How wide each room's label may be, (r,): across the circle that has room around it."""
         places = shapely.points(self.rooms["x_m"], self.rooms["y_m"])
         return 2 * shapely.distance(places, shapely.boundary(self.areas))
+
+
+def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: float) -> FloorPlan:
+    """Read a plan from its tables.
+
+    Parameters
+    ----------
+    files : dict of str to path-like
+        `faces`, `walls`, `openings`, `rooms` and `free` of plan/; the last states the heights of
+        floor and ceiling.
+    name : str
+    **assumed_m
+        What `FloorPlan` assumes, where it is not the default.
+
+    Raises
+    ------
+    StageError
+        If one is missing, damaged, or there is no face.
+    """
+
+    def read(table: str, schema: schemas.Schema) -> Columns:
+        return tables.read_table(files[table], schema, allow_empty=table != "faces")
+
+    floor_z_m, ceiling_z_m = (
+        float(tables.read_note(files["free"], schemas.FREE, note) or "nan")
+        for note in ("floor_z_m", "ceiling_z_m")
+    )
+    return FloorPlan(
+        name=name,
+        faces=read("faces", schemas.FACES),
+        walls=read("walls", schemas.PLAN_WALLS),
+        openings=read("openings", schemas.OPENINGS),
+        rooms=read("rooms", schemas.ROOMS),
+        free=read("free", schemas.FREE),
+        floor_z_m=floor_z_m,
+        ceiling_z_m=ceiling_z_m,
+        **assumed_m,
+    )
 
 
 def summarise_floorplan(plan: FloorPlan) -> str:

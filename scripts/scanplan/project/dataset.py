@@ -24,12 +24,16 @@ RESERVED = "thesis"
 """Name under results/ that the thesis's experiments have to themselves."""
 
 _PLAN = tuple(f"plan/{t}" for t in ("faces", "walls", "openings", "rooms", "evidence", "free"))
-_TABLES = ("poses", "registration", "edges", "scans", "hulls", "plan/segments", *_PLAN)
+_VALIDATION = ("plan/validation", "plan/validation_rays")
+_TABLES = (
+    *("poses", "registration", "edges", "scans", "hulls"),
+    *("plan/segments", *_PLAN, *_VALIDATION),
+)
 _DRAWN = (
     *(f"plan/plan.{suffix}" for suffix in ("geojson", "dxf", "svg", "pdf", "ifc")),
     "plan/map.pgm",
     "plan/map.yaml",
-    *(f"figures/{f}.svg" for f in ("registration", "scans", "walls")),
+    *(f"figures/{f}.svg" for f in ("registration", "scans", "walls", "validation")),
     "report.html",
     "summary.txt",
 )

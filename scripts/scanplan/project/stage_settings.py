@@ -157,6 +157,13 @@ def select_merging(settings: Settings) -> Keywords:
     return select_plan(settings)["merge"]
 
 
+def select_validation(settings: Settings) -> Keywords:
+    """Return the keywords of `prediction.ValidationSettings`."""
+    plan = select_section(settings, "plan")
+    sigma = {"registration_sigma_m": plan["merge"]["registration_sigma_m"]}
+    return plan["validation"] | sigma | {"seed": settings["seed"]}
+
+
 def select_simulation(settings: Settings) -> Keywords:
     """Return the keywords of `simulate_survey`."""
     return _without(settings["simulate"], _OF_THE_WORKFLOW)

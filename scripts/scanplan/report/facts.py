@@ -7,6 +7,36 @@ from scanplan.types import Columns, Settings
 
 
 @dataclass(frozen=True)
+class PredictionFacts:
+    """How well the plan predicts rays of scans that it was not made of.
+
+    Attributes
+    ----------
+    n_scans, n_rays : int
+    share : float
+        Of these rays, that ended where the plan says; NaN where it is not known.
+    bounds : (float, float)
+        Of its 95 % interval.
+    length_share : float
+        Mean share that agrees with the plan's elements, by their length; NaN likewise.
+    n_stopped, n_passed, n_beyond : int
+        What became of the others, see `schemas.VALIDATION`.
+    absent : str
+        Why the share is not known; empty if it is.
+    """
+
+    n_scans: int
+    n_rays: int
+    share: float
+    bounds: tuple[float, float]
+    length_share: float
+    n_stopped: int
+    n_passed: int
+    n_beyond: int
+    absent: str = ""
+
+
+@dataclass(frozen=True)
 class SurveyFacts:
     """What a plan was made of.
 
@@ -17,6 +47,7 @@ class SurveyFacts:
         (the plan's extractor) and `EVIDENCE`.
     chosen : int
         How many scans of the selection make the plan.
+    prediction : PredictionFacts
     plan_measures, wall_measures : dict of str to (n,) array or None
         The columns of `schemas.PLAN_EVALUATION` and of `schemas.EVALUATION`, where the truth is
         known and they were measured.
@@ -28,6 +59,7 @@ class SurveyFacts:
     segments: Columns
     evidence: Columns
     chosen: int
+    prediction: PredictionFacts
     plan_measures: Columns | None = None
     wall_measures: Columns | None = None
 

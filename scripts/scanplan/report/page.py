@@ -23,6 +23,8 @@ _CAPTIONS = {
     "area": "Covered area against the number of scans for every ordering, and the most any choice"
     " could cover.",
     "walls": "Wall faces of the plan over the points of the selected scans.",
+    "validation": "Where rays of scans that did not make the plan ended, and whether the plan"
+    " explains it.",
     "oracle_shares": "What the first scans of every ordering find, as a share of what the oracle's"
     " do.",
     "evaluation": "What the first scans of every ordering find of the true walls, and why walls"
@@ -66,6 +68,7 @@ def report_page(
         "page.html.j2",
         name=plan.name,
         summary=wording.plan_sentence(plan, survey),
+        prediction=wording.prediction_sentence(survey.prediction),
         facts=wording.head_figures(plan, survey),
         plan=Markup(_plan_svg(plan, survey, of_plan["merge"])),
         chosen=survey.chosen,

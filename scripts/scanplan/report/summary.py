@@ -3,7 +3,7 @@
 import numpy as np
 
 from scanplan.plan import floorplan
-from scanplan.report import page_tables
+from scanplan.report import page_tables, wording
 from scanplan.report.facts import SurveyFacts
 from scanplan.types import Array, FloatArray
 
@@ -44,6 +44,7 @@ def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
         ("found", found),
         ("doubtful", "; ".join(filter(None, doubts)) or "nothing that the plan marks"),
         ("made of", used),
+        ("tested", wording.prediction_sentence(survey.prediction)),
     ]
     return "".join(f"{what:<9}{text}\n" for what, text in lines)
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from scanplan.plan import floorplan
 from scanplan.report import page_tables
-from scanplan.report.facts import SurveyFacts
+from scanplan.report.facts import PredictionFacts, SurveyFacts
 from scanplan.types import Columns
 
 _OBJECTIVES = {"wall_length": ("wall shown", "m"), "visibility": ("free space seen", "m²")}
@@ -18,6 +18,24 @@ def plan_sentence(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
     return (
         f"A plan of {floorplan.summarise_floorplan(plan)}, made of {survey.chosen} scans chosen"
         f" from {n_kept:,} registered ones; {n_candidates:,} were candidates."
+    )
+
+
+def prediction_sentence(prediction: PredictionFacts) -> str:
+    """Return how well the plan predicts what other scans saw, or why that is not known."""
+    if prediction.absent:
+        return f"How well it predicts what other scans saw is not known: {prediction.absent}."
+    low, high = prediction.bounds
+    counts = (prediction.n_stopped, prediction.n_passed, prediction.n_beyond)
+    stopped, passed, beyond = (n / prediction.n_rays for n in counts)
+    n = prediction.n_scans
+    scans = "1 scan that was" if n == 1 else f"{n:,} scans that were"
+    return (
+        f"It predicts {prediction.share:.1%} ({low:.1%} to {high:.1%}) of"
+        f" {prediction.n_rays:,} rays of {scans} not used:"
+        f" {stopped:.1%} stopped before what is drawn (furniture, people, or what is missing),"
+        f" {passed:.1%} passed through it and {beyond:.1%} ended where nothing is drawn. Rays agree"
+        f" with {prediction.length_share:.1%} of the length of faces, openings and outlines."
     )
 
 

@@ -263,6 +263,51 @@ EVIDENCE = Schema(
     ("wall", "scan_id"),
 )
 """Which scans show a wall of the plan, when they were taken and with how many points."""
+VALIDATION = Schema(
+    "validation",
+    1,
+    {
+        "kind": "string",
+        "number": "int32",
+        "span": "int32",
+        **_CENTRELINE,
+        **dict.fromkeys(("n_rays", "n_explained", "n_stopped", "n_passed", "n_beyond"), "int64"),
+        "n_places": "int32",
+        **dict.fromkeys(("share", "share_low", "share_high"), "float64"),
+    },
+    ("kind", "number", "span"),
+)
+"""How well a plan predicts rays of scans that it was not made of.
+
+A row for each element: `kind` is face, opening or outline (what is neither face nor opening of a
+room's outline), `number` that of the face, opening or room, `span` counts pieces along it, between
+the ends in metres. The last two rows are of the whole plan, without ends (NaN): `kind` plan_length,
+the mean share of the elements by their length, and plan_rays, of all rays.
+
+`n_rays` is how many say something of it: `n_explained` ended at a drawn surface, or went through an
+opening; `n_stopped` ended before (of openings and outlines: in the way), `n_passed` went through a
+drawn surface, `n_beyond` ended where nothing is drawn. `share` of them is explained, with its 95 %
+interval; NaN where rays of fewer than two places (`n_places`) tell.
+
+The file states `n_left_out` and `n_scans` (scans left out, and drawn of them), `tolerance_m`, and
+`absent`: why the share of the whole is not known, if it is not.
+"""
+VALIDATION_RAYS = Schema(
+    "validation_rays",
+    1,
+    {
+        "scan_id": "int32",
+        "ray": "int32",
+        **dict.fromkeys(XYZ, "float32"),
+        "outcome": "string",
+    },
+    ("scan_id", "ray"),
+)
+"""Where the rays ended that a plan was validated by (map frame), and what became of each.
+
+`outcome` is explained, stopped, passed, beyond or outside: the last left through an opening, and
+the plan predicts nothing of it.
+"""
 _WITHIN = ("005m", "010m", "015m")
 _SHARES = ("false_negative", "correct_match", "false_positive")
 _AGREEMENT = {

@@ -1,0 +1,1 @@
+"""How well a plan predicts the rays of scans that it was not made of."""
