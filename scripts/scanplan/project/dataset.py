@@ -24,7 +24,7 @@ RESERVED = "thesis"
 """Name under results/ that the thesis's experiments have to themselves."""
 
 _PLAN = tuple(f"plan/{t}" for t in ("faces", "walls", "openings", "rooms", "evidence", "free"))
-_TABLES = ("poses", "registration", "edges", "scans", "hulls", "plan/segments", *_PLAN)
+_TABLES = ("poses", "registration", "edges", "scans", "plan/segments", *_PLAN)
 _DRAWN = (
     *(f"plan/plan.{suffix}" for suffix in ("geojson", "dxf", "svg", "pdf", "ifc")),
     "plan/map.pgm",
@@ -238,7 +238,7 @@ def list_comparison(found: Dataset, methods: Sequence[str], extractors: Sequence
     others = [method for method in methods if method != found.settings["plan"]["method"]]
     files = [f"selection/{method}.parquet" for method in others]
     files += [f"walls/{extractor}.parquet" for extractor in extractors]
-    files += ["figures/area.svg", "comparison.html"]
+    files += ["hulls.parquet", "figures/area.svg", "comparison.html"]
     if found.truth:
         files += [f"evaluation/{table}.parquet" for table in _COMPARED]
         files += ["figures/evaluation.svg", "figures/oracle_shares.svg"]

@@ -25,7 +25,11 @@ def arrow_schema(schema: Schema) -> pa.Schema:
 
 @contextmanager
 def open_writer(
-    path: FilePath, schema: Schema, extra: Mapping[str, str] | None = None
+    path: FilePath,
+    schema: Schema,
+    extra: Mapping[str, str] | None = None,
+    *,
+    compression: str = "zstd",
 ) -> Iterator[pq.ParquetWriter]:
     """Write a file of a schema, whole or not at all, with further metadata."""
     form = arrow_schema(schema).with_metadata(_file_metadata(schema) | dict(extra or {}))
@@ -35,7 +39,7 @@ def open_writer(
         pq.ParquetWriter(
             temporary,
             form,
-            compression="zstd",
+            compression=compression,
             write_page_checksum=True,
             use_dictionary=False,
             column_encoding=dict.fromkeys(floats, "BYTE_STREAM_SPLIT"),

@@ -26,7 +26,7 @@ _POINT = {
     "ring": ("<u2", 16, 4),
     "time": ("<f4", 18, 7),
 }
-_POINT_DTYPE = np.dtype(
+POINT_DTYPE = np.dtype(
     {
         "names": list(_POINT),
         "formats": [form for form, _, _ in _POINT.values()],
@@ -80,7 +80,7 @@ def _encode_clouds(
             width=len(points),
             fields=fields,
             is_bigendian=False,
-            point_step=_POINT_DTYPE.itemsize,
+            point_step=POINT_DTYPE.itemsize,
             row_step=points.nbytes,
             data=points.view(np.uint8) if len(points) else np.empty(0, np.uint8),
             is_dense=True,
@@ -92,7 +92,7 @@ def _points(sensor: Sensor, scan: SimulatedScan) -> Array:
     """Return the returns of a scan as records, in the order fired."""
     ray = np.flatnonzero(np.isfinite(scan.range_m))
     column, beam = np.divmod(ray, len(sensor.ring))
-    points = np.empty(len(ray), _POINT_DTYPE)
+    points = np.empty(len(ray), POINT_DTYPE)
     xyz_m = sensor.direction.reshape(-1, 3).take(ray, axis=0) * scan.range_m.take(ray)[:, None]
     points["x"], points["y"], points["z"] = xyz_m.T
     points["intensity"] = scan.intensity.take(ray)
