@@ -98,9 +98,9 @@ def write_hulls(path):
 
 def test_draw_area(results):
     hulls = write_hulls(results / "hulls.parquet")
-    unmeasured = dict.fromkeys(("gain_m2", "covered_m2", "bound_m2"), [np.nan, np.nan])
+    unmeasured = {name: [np.nan, np.nan] for name in ("gain_m2", "covered_m2", "bound_m2")}
     by_walls = {"rank": [1, 2], "scan_id": [4, 0], "n_points": [500, 500], **unmeasured}
-    by_walls |= dict.fromkeys(("gain", "covered", "bound"), [7.0, 8.0])
+    by_walls |= {name: [7.0, 8.0] for name in ("gain", "covered", "bound")}
     tables.write_table(results / "wall_length.parquet", schemas.SELECTION, by_walls)
     methods = ("cluster_hull", "random", "wall_length")
     inputs = [results / f"{name}.parquet" for name in methods]

@@ -61,8 +61,8 @@ def order_scans(
     dict of str to (n,) numpy.ndarray
         The columns of `schemas.SELECTION`. Areas are those of one convex hull per scan for `hull`
         and those of the clusters' hulls for the others, NaN without hulls; `bound_m2` at rank k is
-        what no k scans, of any order, can exceed. `gain`, `covered` and `bound` are the same in the unit of the
-        method's objective; areas for methods without one.
+        what no k scans, of any order, can exceed. `gain`, `covered` and `bound` are the same in the
+        unit of the method's objective; areas for methods without one.
 
     Raises
     ------

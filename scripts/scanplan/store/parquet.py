@@ -9,7 +9,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from scanplan.errors import StageError
-from scanplan.store import atomic
+from scanplan.store import arrow_arrays, atomic
 from scanplan.store.schemas import Schema
 from scanplan.types import Array, FilePath
 
@@ -109,7 +109,7 @@ def check_rows(
         raise StageError(f"{path}: no rows to work on; see the log of the stage that makes it")
     if any(column.null_count for column in table.columns):
         raise error(f"{path}: empty cells in a table of {schema.name}")
-    keys = [table[c].to_numpy() for c in schema.sorted_by if c in table.column_names]
+    keys = [arrow_arrays.to_numpy(table[c]) for c in schema.sorted_by if c in table.column_names]
     if len(keys) == len(schema.sorted_by) and not _strictly_sorted(keys):
         raise error(
             f"{path}: rows of {schema.name} are not sorted by {', '.join(schema.sorted_by)}"

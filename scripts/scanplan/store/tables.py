@@ -12,7 +12,7 @@ import numpy as np
 import pyarrow as pa
 
 from scanplan.errors import StageError
-from scanplan.store import parquet, schemas
+from scanplan.store import arrow_arrays, parquet, schemas
 from scanplan.types import Array, FilePath, FloatArray
 
 
@@ -49,10 +49,11 @@ def write_table(
             f"{schema.name}: columns {sorted(columns)} instead of {sorted(schema.columns)}"
         )
     form = parquet.arrow_schema(schema)
-    table = pa.table({n: pa.array(columns[n], type=form.field(n).type) for n in schema.columns})
+    arrays = [arrow_arrays.to_arrow(columns[n], form.field(n).type) for n in schema.columns]
+    table = pa.Table.from_arrays(arrays, schema=form)
     parquet.check_rows(table, schema, path, allow_empty, ValueError)
     with parquet.open_writer(path, schema, notes) as writer:
-        writer.write_table(table.cast(form))
+        writer.write_table(table)
 
 
 def read_table(
@@ -86,7 +87,7 @@ def read_table(
     with parquet.open_file(path, schema) as file:
         table = file.read(columns=None if columns is None else list(columns))
     parquet.check_rows(table, schema, path, allow_empty, StageError)
-    return {name: table[name].to_numpy() for name in table.column_names}
+    return {name: arrow_arrays.to_numpy(table[name]) for name in table.column_names}
 
 
 def read_note(path: FilePath, schema: schemas.Schema, name: str) -> str:
@@ -135,9 +136,13 @@ def open_scan_writer(
                 raise ValueError(f"scan {scan_id} after {last} with {len(xyz_m)} points")
             last = scan_id
             xyz_m = np.asarray(xyz_m, np.float32)
-            columns = [np.full(len(xyz_m), scan_id, np.int32), *xyz_m.T.copy()]
-            arrays = [pa.array(column) for column in columns]
-            rows = pa.Table.from_arrays(arrays, schema=parquet.arrow_schema(schemas.SCANS))
+            columns = [np.full(len(xyz_m), scan_id, np.int32), *xyz_m.T]
+            form = parquet.arrow_schema(schemas.SCANS)
+            arrays = [
+                arrow_arrays.to_arrow(column, field.type)
+                for column, field in zip(columns, form, strict=True)
+            ]
+            rows = pa.Table.from_arrays(arrays, schema=form)
             writer.write_table(rows, row_group_size=len(rows))
 
         yield write_scan
@@ -199,4 +204,4 @@ class ScanStore:
                     raise ValueError(f"{self.path}: no scan {scan_id}")
                 # three columns are read before threads have begun
                 table = file.read_row_group(group[scan_id], schemas.XYZ, use_threads=False)
-                yield scan_id, np.column_stack([table[name].to_numpy() for name in schemas.XYZ])
+                yield scan_id, np.column_stack([arrow_arrays.to_numpy(c) for c in table.columns])
