@@ -15,7 +15,6 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from rosbags.rosbag1.reader import RecordType
 
-
 _SMALL_RECORD = 1024  # bytes that hold the headers of a record, and all of an odometry's or a tf's
 
 
