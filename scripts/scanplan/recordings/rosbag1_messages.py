@@ -15,8 +15,6 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from rosbags.rosbag1.reader import RecordType
 
-_SMALL_RECORD = 1024  # bytes that hold the headers of a record, and all of an odometry's or a tf's
-
 
 class StoredMessage:
     """A message that lies in a file.
@@ -102,7 +100,7 @@ class _Blocks:
         self._begin = 0
         self._block = b""
 
-    def read_from(self, place: int, at_least: int = io.DEFAULT_BUFFER_SIZE) -> bytes:
+    def read_from(self, place: int, at_least: int) -> bytes:
         """Return some kilobytes from a place on, those of the last call where they reach so far."""
         skipped = place - self._begin
         if not 0 <= skipped <= len(self._block) - at_least:
@@ -123,8 +121,8 @@ def _read_record(blocks: _Blocks, place: int) -> tuple[int, int, int, bytes]:
         Its first bytes.
     """
     while True:
-        # the record's header and the message's own fit in; a small message does, too
-        block = blocks.read_from(place, _SMALL_RECORD)
+        # an eighth holds the record's header and the message's own, and all of a small one
+        block = blocks.read_from(place, io.DEFAULT_BUFFER_SIZE // 8)
         (header_size,) = struct.unpack_from("<I", block)
         fields = _read_fields(block, 4, 4 + header_size)
         (length,) = struct.unpack_from("<I", block, 4 + header_size)
@@ -132,7 +130,7 @@ def _read_record(blocks: _Blocks, place: int) -> tuple[int, int, int, bytes]:
         if fields[b"op"] == bytes([RecordType.MSGDATA]):
             (connection_id,) = struct.unpack("<I", fields[b"conn"])
             if begin + length > len(block):
-                block = blocks.read_from(place)
+                block = blocks.read_from(place, io.DEFAULT_BUFFER_SIZE)
             return connection_id, place + begin, length, block[begin : begin + length]
         if fields[b"op"] != bytes([RecordType.CONNECTION]):
             raise ValueError("the index leads to no message")

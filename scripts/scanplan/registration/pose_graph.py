@@ -15,9 +15,7 @@ from scanplan.registration.graph_equations import GraphEquations, GraphState, Mo
 from scanplan.types import FloatArray
 
 _WIDE_KERNELS = (1000.0, 30.0, 3.0)  # times the kernel: at first all measurements count in full
-# metres and radians: far below what measurements are off by
-_STEP_DONE = 1e-5
-_ROUGH_STEP_DONE = 1e-3  # of poses that only another solution starts from
+_STEP_DONE = 1e-5  # metres and radians: far below what measurements are off by
 
 
 @dataclass(frozen=True)
@@ -74,6 +72,8 @@ def solve_pose_graph(
     is_start : bool
         Whether the poses are only where another solution starts.
     """
+    # a millimetre is enough for poses that another solution starts from
+    rough_done = 100 * _STEP_DONE
 
     def minimise(pose: FloatArray, width: float, step_done: float) -> tuple[FloatArray, GraphState]:
         equations = GraphEquations(
@@ -83,8 +83,8 @@ def solve_pose_graph(
 
     pose = np.array(start, float)
     for width in _WIDE_KERNELS:
-        pose, _ = minimise(pose, width, _ROUGH_STEP_DONE)
-    pose, state = minimise(pose, 1.0, _ROUGH_STEP_DONE if is_start else _STEP_DONE)
+        pose, _ = minimise(pose, width, rough_done)
+    pose, state = minimise(pose, 1.0, rough_done if is_start else _STEP_DONE)
     return PoseGraphSolution(pose, state.residual, state.weight, state.prior_weight)
 
 

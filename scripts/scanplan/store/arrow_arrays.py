@@ -45,9 +45,11 @@ def to_numpy(column: pa.ChunkedArray) -> Array:
 
 
 def _pack_bytes(values: Array | Sequence[object], form: pa.DataType) -> pa.Array:
-    encoded = [value.encode() if isinstance(value, str) else value for value in values]
-    if not all(isinstance(value, bytes) for value in encoded):
-        raise pa.ArrowInvalid(f"a column of {form} holds something else")
+    encoded: list[bytes] = []
+    for value in values:
+        if not isinstance(value, str | bytes):
+            raise pa.ArrowInvalid(f"a column of {form} holds something else")
+        encoded.append(value.encode() if isinstance(value, str) else value)
     ends = np.cumsum([0, *map(len, encoded)], dtype=np.int32)
     buffers = [None, pa.py_buffer(ends), pa.py_buffer(b"".join(encoded))]
     return pa.Array.from_buffers(form, len(encoded), buffers)
