@@ -39,7 +39,7 @@ def _with_areas(selection: Columns, hulls: Columns) -> Columns:
         return selection
     order = np.searchsorted(np.unique(hulls["scan_id"]), selection["scan_id"])
     areas = orderings.measure_area(order, hulls)
-    return selection | {f"{name}_m2": values for name, values in areas.items()}
+    return {**selection, **{f"{name}_m2": values for name, values in areas.items()}}
 
 
 if __name__ == "__main__":

@@ -69,9 +69,9 @@ def _encode_clouds(
 ) -> Iterator[RosMessage]:
     """Yield dense unordered clouds, stamped with their last firing; `time` runs up to 0."""
     form = TYPE["sensor_msgs/msg/PointField"]
-    layout = POINT_DTYPE.fields or {}
+    offset = {str(name): field[1] for name, field in (POINT_DTYPE.fields or {}).items()}
     fields: list[Msg] = [
-        form(name=name, offset=layout[name][1], datatype=code, count=1)
+        form(name=name, offset=offset[name], datatype=code, count=1)
         for name, (_, _, code) in _POINT.items()
     ]
     for seq, (stamp_ns, scan) in enumerate(zip(t_ns, scans, strict=True)):
