@@ -24,10 +24,10 @@ def draw_registration(
     verdicts = tables.read_table(registration, schemas.REGISTRATION)
     links = tables.read_table(edges, schemas.EDGES, _LINKS, allow_empty=True)
     thickness = tables.read_table(crispness, schemas.CRISPNESS, ["poses", "sigma_m"])
-    n_scans = len(store.scan_ids)
-    clouds = log.report_progress(store.scans(), "draw_registration", total=n_scans)
+    shown = top_view.choose_scans(store.scan_ids)
+    clouds = log.report_progress(store.scans(shown), "draw_registration", total=len(shown))
     figure = registration_figure.draw_registration_figure(
-        top_view.sample_points(clouds, n_scans),
+        top_view.sample_points(clouds, len(shown)),
         verdicts,
         links,
         dict(zip(thickness["poses"].tolist(), thickness["sigma_m"].tolist(), strict=True)),

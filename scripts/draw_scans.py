@@ -28,9 +28,10 @@ def draw_scans(
     count, reason = stopping.choose_n_scans(ordering, **stop)
     poses = tables.read_table(registration, schemas.REGISTRATION)
     n_scans = len(store.scan_ids)
-    clouds = log.report_progress(store.scans(), "draw_scans", total=n_scans)
+    shown = top_view.choose_scans(store.scan_ids)
+    clouds = log.report_progress(store.scans(shown), "draw_scans", total=len(shown))
     figure = figures.draw_scans_figure(
-        top_view.sample_points(clouds, n_scans),
+        top_view.sample_points(clouds, len(shown)),
         figures.sensor_positions(poses, store.scan_ids),
         figures.sensor_positions(poses, ordering["scan_id"][:count]),
     )

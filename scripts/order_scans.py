@@ -7,7 +7,7 @@ from scanplan.errors import StageError
 from scanplan.selection import orderings, stopping
 from scanplan.stage import log
 from scanplan.store import schemas, tables
-from scanplan.types import FilePath
+from scanplan.types import Columns, FilePath
 
 _SCHEMAS = {
     "observations": schemas.OBSERVATIONS,
@@ -17,10 +17,11 @@ _SCHEMAS = {
 
 
 def order_scans(
-    hulls: FilePath,
+    scans: FilePath,
     output: FilePath,
     *,
     method: str,
+    hulls: FilePath | None = None,
     seed: int | None = None,
     min_overlap: float = 0.0,
     streaming: Mapping[str, Any] | None = None,
@@ -31,21 +32,21 @@ def order_scans(
 
     Parameters
     ----------
-    hulls : path-like
-        hulls.parquet.
+    scans : path-like
+        scans.parquet.
     output : path-like
         selection/<method>.parquet, to write.
     method : str
         One of `methods.METHODS`.
+    hulls : path-like, optional
+        hulls.parquet, to measure the area that the order covers; methods that need it state so.
     seed, min_overlap, streaming, budget
         Those of them that `methods.METHODS` names for the method, see `orderings.order_scans`;
         `budget` are keywords of `stopping.points_budget`.
     others : dict of str to path-like, optional
         The tables that `methods.METHODS` names for the method.
     """
-    columns = tables.read_table(
-        hulls, schemas.HULLS, ["scan_id", "cluster", "n_points", "geometry"]
-    )
+    columns = _read_scans(scans) if hulls is None else _read_hulls(hulls)
     other_tables = {
         name: tables.read_table(path, _SCHEMAS[name], allow_empty=True)
         for name, path in (others or {}).items()
@@ -69,11 +70,21 @@ def order_scans(
     log.log_line(f"order_scans: {orderings.summarise_order(method, selection)}")
 
 
+def _read_scans(path: FilePath) -> Columns:
+    store = tables.ScanStore(path)
+    return {"scan_id": store.scan_ids, "n_points": store.n_points}
+
+
+def _read_hulls(path: FilePath) -> Columns:
+    return tables.read_table(path, schemas.HULLS, ["scan_id", "cluster", "n_points", "geometry"])
+
+
 if __name__ == "__main__":
     with log.log_to_file(snakemake.log[0]):
         order_scans(
-            snakemake.input.hulls,
+            snakemake.input.scans,
             snakemake.output.selection,
+            hulls=snakemake.input.get("hulls"),
             method=snakemake.wildcards.method,
             **snakemake.params.settings,
             others={name: path for name, path in snakemake.input.items() if name in _SCHEMAS},

@@ -74,7 +74,7 @@ def record(
         If git or the workflow fails; it has said why.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    code = _checked_out(project, revision, folder)
+    code = check_out(project, revision, folder)
     surveys = _surveys(folder, recordings)
     unknown = set(names) - set(surveys)
     if unknown:
@@ -97,7 +97,8 @@ def record(
     subprocess.run([*command, "--", *targets], cwd=code, env=environment, check=True)
 
 
-def _checked_out(project: Path, revision: str, folder: Path) -> Path:
+def check_out(project: Path, revision: str, folder: Path) -> Path:
+    """Return a checkout of a commit of the project, made in the folder where it is missing."""
     code = folder / "code"
     commit = _git(project, "rev-parse", f"{revision}^{{commit}}")
     if not code.is_dir():

@@ -2,6 +2,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+import shapely
 
 from draw_area import draw_area
 from draw_scans import draw_scans
@@ -83,11 +84,29 @@ def test_draw_walls(results):
     assert "position of a selected scan (2)" in text
 
 
+def write_hulls(path):
+    columns = {
+        "scan_id": [0, 4],
+        "cluster": [0, 0],
+        "n_points": [500, 500],
+        "area_m2": [1.0, 3.0],
+        "geometry": shapely.to_wkb([shapely.box(0, 0, 1, 1), shapely.box(2, 0, 5, 1)]),
+    }
+    tables.write_table(path, schemas.HULLS, columns)
+    return path
+
+
 def test_draw_area(results):
-    inputs = [results / f"{name}.parquet" for name in ("cluster_hull", "random")]
-    text = drawn_twice(lambda o: draw_area(inputs, o), results / "area.svg")
-    assert "greedy by cluster hulls: 99 % with 2" in text
-    assert "random: 99 % with 2" in text
+    hulls = write_hulls(results / "hulls.parquet")
+    unmeasured = {name: [np.nan, np.nan] for name in ("gain_m2", "covered_m2", "bound_m2")}
+    by_walls = {"rank": [1, 2], "scan_id": [4, 0], "n_points": [500, 500], **unmeasured}
+    by_walls |= {name: [7.0, 8.0] for name in ("gain", "covered", "bound")}
+    tables.write_table(results / "wall_length.parquet", schemas.SELECTION, by_walls)
+    methods = ("cluster_hull", "random", "wall_length")
+    inputs = [results / f"{name}.parquet" for name in methods]
+    text = drawn_twice(lambda o: draw_area(inputs, hulls, o), results / "area.svg")
+    for label in ("greedy by cluster hulls", "random", "greedy by wall length"):
+        assert f"{label}: 99 % with 2" in text
 
 
 def test_tables_of_different_runs_are_refused(results):

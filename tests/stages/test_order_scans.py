@@ -67,8 +67,9 @@ def write_others(folder, method, n):
 def test_an_order_of_all_scans(hulls, tmp_path, caplog, method):
     caplog.set_level(logging.INFO)
     output = tmp_path / "selection" / f"{method}.parquet"
-    options = {"method": method, "seed": 1, "others": write_others(tmp_path, method, 12)}
-    order_scans.order_scans(hulls, output, **options)
+    others = write_others(tmp_path, method, 12)
+    options = {"method": method, "hulls": hulls, "seed": 1, "others": others}
+    order_scans.order_scans(tmp_path / "scans.parquet", output, **options)
     selection = tables.read_table(output, schemas.SELECTION)
     assert sorted(selection["scan_id"]) == list(range(0, 60, 5))
     assert selection["covered_m2"][-1] == pytest.approx(15)
@@ -76,8 +77,25 @@ def test_an_order_of_all_scans(hulls, tmp_path, caplog, method):
     covered = {"visibility": "24.0 m2", "wall_length": "1.6 m"}.get(method, "15.0 m2")
     assert f"order_scans: {method}, 12 scans, {covered}; 99% at " in caplog.text
     again = tmp_path / "again.parquet"
-    order_scans.order_scans(hulls, again, **options)
+    order_scans.order_scans(tmp_path / "scans.parquet", again, **options)
     assert again.read_bytes() == output.read_bytes()
+
+
+@pytest.mark.parametrize("method", ["wall_length", "visibility"])
+def test_an_order_by_something_else_needs_no_hulls(hulls, tmp_path, method):
+    scans = tmp_path / "scans.parquet"
+    with tables.open_scan_writer(scans, planar=False) as write:
+        for scan_id in range(0, 60, 5):
+            write(scan_id, np.zeros((9, 3)))
+    paths = [tmp_path / "without.parquet", tmp_path / "with.parquet"]
+    options = {"method": method, "others": write_others(tmp_path, method, 12)}
+    for path, table in zip(paths, (None, hulls), strict=True):
+        order_scans.order_scans(scans, path, hulls=table, **options)
+    alone, measured = (tables.read_table(path, schemas.SELECTION) for path in paths)
+    for name in ("scan_id", "n_points", "gain", "covered", "bound"):
+        assert (alone[name] == measured[name]).all()
+    for name in ("gain_m2", "covered_m2", "bound_m2"):
+        assert np.isnan(alone[name]).all() and np.isfinite(measured[name]).all()
 
 
 def test_scans_that_cover_nothing_are_refused(tmp_path):
@@ -86,6 +104,9 @@ def test_scans_that_cover_nothing_are_refused(tmp_path):
     )
     with pytest.raises(StageError, match="3 scans cover 0 m2"):
         order_scans.order_scans(
-            hulls, tmp_path / "selection.parquet", method="cluster_hull", seed=0
+            tmp_path / "scans.parquet",
+            tmp_path / "selection.parquet",
+            method="cluster_hull",
+            hulls=hulls,
         )
     assert not (tmp_path / "selection.parquet").exists()

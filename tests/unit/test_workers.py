@@ -1,5 +1,6 @@
 import os
 import signal
+import sys
 
 import pytest
 
@@ -65,3 +66,17 @@ def refuse():
 def test_a_setup_that_fails_is_no_killed_worker(threads):
     with pytest.raises(ValueError, match="no mesh"), workers.open_pool(threads, refuse) as run:
         list(run(abs, [(1,)]))
+
+
+def list_own_modules():
+    return sorted(name for name in sys.modules if name.startswith("script"))
+
+
+def test_workers_do_not_import_the_script(tmp_path, monkeypatch):
+    script = tmp_path / "script_of_stage.py"
+    script.write_text("import sys\nsys.modules['script_was_imported'] = sys\n")
+    monkeypatch.setattr(sys.modules["__main__"], "__file__", str(script))
+    monkeypatch.setattr(sys.modules["__main__"], "__spec__", None)
+    with workers.open_pool(2) as run:
+        assert list(run(list_own_modules, [()])) == [[]]
+    assert sys.modules["__main__"].__file__ == str(script)

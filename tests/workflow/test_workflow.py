@@ -39,7 +39,7 @@ PLANNED = {
 CHOSEN = {"extract_chosen_walls", "draw_scans"} | PLANNED
 EVALUATED = {"evaluate_walls", "draw_evaluation", "tabulate_seconds"}
 AFTER_ORDERS = {"order_scans", "draw_area"} | CHOSEN | EVALUATED
-AFTER_HULLS = {"build_hulls"} | AFTER_ORDERS
+AFTER_HULLS = {"build_hulls", "order_scans", "draw_area"} | EVALUATED
 REPORTS = {"write_report", "write_comparison"}
 
 
@@ -164,7 +164,7 @@ def test_a_setting_of_one_order_reruns_no_other(project, change, methods):
 @pytest.mark.parametrize(
     ("helper", "rules"),
     [
-        ("selection/hulls", AFTER_HULLS),
+        ("selection/hulls", {"build_hulls"} | AFTER_ORDERS),
         ("exports/dxf", {"export_plan"}),
         ("lab/evaluation/length_metrics", EVALUATED | {"evaluate_plan"}),
         ("lab/evaluation/pose_errors", {"evaluate_poses", "evaluate_plan"} | EVALUATED),

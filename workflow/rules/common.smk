@@ -170,8 +170,11 @@ def extractor_settings(wildcards):
 
 
 def order_tables(wildcards):
-    """The tables that the job's method needs, by name, beside that of the hulls."""
-    tables = methods.METHODS[wildcards.method].tables
+    """The tables that the job's method needs, by name; that of the hulls where areas decide."""
+    method = methods.METHODS[wildcards.method]
+    stop = DATASETS[wildcards.dataset].settings["selection"]["stop"]
+    by_area = method.needs_hulls or stop["min_gain_m2"] is not None
+    tables = (*method.tables, *(["hulls"] if by_area else []))
     return {table: f"results/{wildcards.dataset}/{table}.parquet" for table in tables}
 
 

@@ -30,6 +30,7 @@ rule draw_area:
     """Draw the covered area against the number of scans, for every ordering."""
     input:
         selections=all_selections,
+        hulls="results/{dataset}/hulls.parquet",
     output:
         figure=report(
             "results/{dataset}/figures/area.svg",

@@ -46,7 +46,7 @@ rule order_scans:
     """Order the scans by how much each adds to what those before it show."""
     input:
         unpack(order_tables),
-        hulls="results/{dataset}/hulls.parquet",
+        scans="results/{dataset}/scans.parquet",
     output:
         selection="results/{dataset}/selection/{method}.parquet",
     log:

@@ -78,22 +78,21 @@ def cut_surface_cells(xyz_m: FloatArray, *, reach_deg: float) -> SurfaceCells:
     SurfaceCells
         No normal where there are too few points, one ring alone, an edge or clutter.
     """
-    xyz_m = np.asarray(xyz_m, float).reshape(-1, 3)
-    if len(xyz_m) == 0:
-        return _as_cells(np.empty(0, np.int64), np.empty((0, 3)), np.empty((0, 3)), np.empty(0))
-    step = np.deg2rad(reach_deg) / 1.5
-    grid = _Grid(xyz_m, step)
-    moments = group_moments(_within(xyz_m), grid.of_point, len(grid.key))
-    mean_m = moments[1:4] / moments[0]
-    normal = least_variance_direction(grid.neighbourhood_sums(moments))
-    radius_m = step * np.hypot(mean_m[0], mean_m[1])
-    return _as_cells(grid.of_point, mean_m.T, _towards_sensor(normal, mean_m), radius_m)
+    of_point, mean_m, normal = _fit_cells(xyz_m, reach_deg)
+    radius_m = _cell_step_rad(reach_deg) * np.hypot(mean_m[0], mean_m[1])
+    return _as_cells(of_point, mean_m.T, normal, radius_m)
+
+
+def estimate_cell_normals(xyz_m: FloatArray, *, reach_deg: float) -> tuple[IntArray, FloatArray]:
+    """Return the cell (n,) of each point, and the unit normals (m, 3): see `cut_surface_cells`."""
+    of_point, _, normal = _fit_cells(xyz_m, reach_deg)
+    return of_point, normal
 
 
 def estimate_surface_normals(xyz_m: FloatArray, *, reach_deg: float) -> FloatArray:
     """Return unit normals (n, 3) of a 3-D scan's surfaces, see `cut_surface_cells`."""
-    cells = cut_surface_cells(xyz_m, reach_deg=reach_deg)
-    return cells.normal[cells.of_point]
+    of_point, normal = estimate_cell_normals(xyz_m, reach_deg=reach_deg)
+    return normal[of_point]
 
 
 def cut_outline_cells(xy_m: FloatArray, *, reach_deg: float) -> SurfaceCells:
@@ -131,6 +130,23 @@ def estimate_outline_normals(xy_m: FloatArray, *, reach_deg: float) -> FloatArra
     owner = np.repeat(np.arange(len(xy_m)), [len(n) for n in near])
     moments = group_moments(xy_m[np.concatenate(near).astype(int)], owner, len(xy_m))
     return _towards_sensor(least_variance_direction(moments), xy_m.T)
+
+
+def _cell_step_rad(reach_deg: float) -> float:
+    """Return the edge of a cell, of which a neighbourhood has three."""
+    return float(np.deg2rad(reach_deg)) / 1.5
+
+
+def _fit_cells(xyz_m: FloatArray, reach_deg: float) -> tuple[IntArray, FloatArray, FloatArray]:
+    """Return the cell (n,) of each point, the cells' means (3, m) and their normals (m, 3)."""
+    xyz_m = np.asarray(xyz_m, float).reshape(-1, 3)
+    if len(xyz_m) == 0:
+        return np.empty(0, np.int64), np.empty((3, 0)), np.empty((0, 3))
+    grid = _Grid(xyz_m, _cell_step_rad(reach_deg))
+    moments = group_moments(_within(xyz_m), grid.of_point, len(grid.key))
+    mean_m = moments[1:4] / moments[0]
+    normal = least_variance_direction(grid.neighbourhood_sums(moments))
+    return grid.of_point, mean_m, _towards_sensor(normal, mean_m)
 
 
 class _Grid:

@@ -26,7 +26,7 @@ RESERVED = "thesis"
 _PLAN = tuple(f"plan/{t}" for t in ("faces", "walls", "openings", "rooms", "evidence", "free"))
 _VALIDATION = ("plan/validation", "plan/validation_rays")
 _TABLES = (
-    *("poses", "registration", "edges", "scans", "hulls"),
+    *("poses", "registration", "edges", "scans"),
     *("plan/segments", *_PLAN, *_VALIDATION),
 )
 _DRAWN = (
@@ -242,7 +242,7 @@ def list_comparison(found: Dataset, methods: Sequence[str], extractors: Sequence
     others = [method for method in methods if method != found.settings["plan"]["method"]]
     files = [f"selection/{method}.parquet" for method in others]
     files += [f"walls/{extractor}.parquet" for extractor in extractors]
-    files += ["figures/area.svg", "comparison.html"]
+    files += ["hulls.parquet", "figures/area.svg", "comparison.html"]
     if found.truth:
         files += [f"evaluation/{table}.parquet" for table in _COMPARED]
         files += ["figures/evaluation.svg", "figures/oracle_shares.svg"]

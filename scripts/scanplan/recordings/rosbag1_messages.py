@@ -77,15 +77,40 @@ def iterate_messages(
     ValueError, struct.error, KeyError
         If the index leads to no message, or one reaches beyond its chunk.
     """
+    blocks = _Blocks(file)
     for time_ns, chunk, offset in heapq.merge(*indexes):
         begin, size = chunks[chunk]
-        connection_id, place, length, head = _read_record(file, begin + offset)
+        connection_id, place, length, head = _read_record(blocks, begin + offset)
         if place + length > begin + size:
             raise ValueError(f"message of {length} bytes reaches beyond its chunk")
         yield connection_id, time_ns, StoredMessage(file, place, length, head)
 
 
-def _read_record(file: int, place: int) -> tuple[int, int, int, bytes]:
+class _Blocks:
+    """A file read in blocks: small messages lie together, a dozen between two clouds.
+
+    Parameters
+    ----------
+    file : int
+        Its descriptor.
+    """
+
+    def __init__(self, file: int) -> None:
+        self._file = file
+        self._begin = 0
+        self._block = b""
+
+    def read_from(self, place: int, at_least: int) -> bytes:
+        """Return some kilobytes from a place on, those of the last call where they reach so far."""
+        skipped = place - self._begin
+        if not 0 <= skipped <= len(self._block) - at_least:
+            self._block = os.pread(self._file, io.DEFAULT_BUFFER_SIZE, place)
+            self._begin = place
+            skipped = 0
+        return self._block[skipped:]
+
+
+def _read_record(blocks: _Blocks, place: int) -> tuple[int, int, int, bytes]:
     """Read the message record at a place, or behind the descriptions of connections there.
 
     Returns
@@ -96,14 +121,16 @@ def _read_record(file: int, place: int) -> tuple[int, int, int, bytes]:
         Its first bytes.
     """
     while True:
-        # the record's header and the message's own fit in
-        block = os.pread(file, io.DEFAULT_BUFFER_SIZE, place)
+        # an eighth holds the record's header and the message's own, and all of a small one
+        block = blocks.read_from(place, io.DEFAULT_BUFFER_SIZE // 8)
         (header_size,) = struct.unpack_from("<I", block)
         fields = _read_fields(block, 4, 4 + header_size)
         (length,) = struct.unpack_from("<I", block, 4 + header_size)
         begin = 8 + header_size
         if fields[b"op"] == bytes([RecordType.MSGDATA]):
             (connection_id,) = struct.unpack("<I", fields[b"conn"])
+            if begin + length > len(block):
+                block = blocks.read_from(place, io.DEFAULT_BUFFER_SIZE)
             return connection_id, place + begin, length, block[begin : begin + length]
         if fields[b"op"] != bytes([RecordType.CONNECTION]):
             raise ValueError("the index leads to no message")

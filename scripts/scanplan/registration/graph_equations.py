@@ -1,5 +1,6 @@
 """The measurements of a pose graph as equations: residuals, robust weights, normal equations."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,9 +8,6 @@ from scipy import sparse
 
 from scanplan.geometry import se3, twists
 from scanplan.types import FloatArray, IntArray
-
-Block = tuple[IntArray, IntArray, FloatArray]
-"""Block rows (m,), block columns (m,) and square blocks (m, d, d) of a sparse matrix."""
 
 
 @dataclass(frozen=True)
@@ -75,6 +73,10 @@ class GraphEquations:
         self._scan_from_world = se3.invert_pose(priors)
         self._information = self._reduce(constraints.information)
         self._prior_information = self._reduce(prior_information)
+        every_pose = np.arange(len(priors))
+        ends = (self._source, self._target)
+        places = [(every_pose, every_pose), *((row, column) for row in ends for column in ends)]
+        self._hessian = _BlockMatrix(places, len(priors), len(self._dimensions))
 
     def evaluate(self, pose: FloatArray) -> GraphState:
         """Compare poses (n, 4, 4) with the measurements."""
@@ -89,24 +91,19 @@ class GraphEquations:
 
     def normal_equations(self, state: GraphState) -> tuple[sparse.csc_array, FloatArray]:
         """Return Hessian and gradient of the weighted squared error in the free dimensions."""
-        n_poses = len(state.prior_residual)
-        n_dimensions = len(self._dimensions)
-        rows = np.arange(n_poses)
         prior_jacobian = self._reduce(_jacobian(state.prior_residual))
         prior_information = state.prior_weight[:, None, None] * self._prior_information
         hessian = _quadratic(prior_jacobian, prior_information, prior_jacobian)
-        blocks: list[Block] = [(rows, rows, hessian)]
-        gradient = np.zeros((n_poses, n_dimensions))
-        pull = _pull(prior_jacobian, prior_information, state.prior_residual[:, self._dimensions])
-        np.add.at(gradient, rows, pull)
+        blocks = [hessian]
+        prior_residual = state.prior_residual[:, self._dimensions]
+        gradient = _pull(prior_jacobian, prior_information, prior_residual)
         information = state.weight[:, None, None] * self._information
         residual = state.residual[:, self._dimensions]
         sides = self._sides(state)
         for row, left in sides:
             np.add.at(gradient, row, _pull(left, information, residual))
-            for column, right in sides:
-                blocks.append((row, column, _quadratic(left, information, right)))
-        return _block_matrix(blocks, n_poses, n_dimensions), gradient.ravel()
+            blocks += [_quadratic(left, information, right) for _, right in sides]
+        return self._hessian.fill(blocks), gradient.ravel()
 
     def move(self, pose: FloatArray, step: FloatArray) -> FloatArray:
         """Return poses (n, 4, 4) after a step, true rotations again."""
@@ -155,12 +152,35 @@ def _pull(jacobian: FloatArray, information: FloatArray, residual: FloatArray) -
     return np.einsum("nji,njk,nk->ni", jacobian, information, residual)
 
 
-def _block_matrix(blocks: list[Block], n_blocks: int, size: int) -> sparse.csc_array:
-    """Return the sparse matrix, `n_blocks` times `size` wide, that is the sum of blocks."""
-    row_in, column_in = np.divmod(np.arange(size * size), size)
-    rows = [(row[:, None] * size + row_in).ravel() for row, _, _ in blocks]
-    columns = [(column[:, None] * size + column_in).ravel() for _, column, _ in blocks]
-    values = [block.reshape(-1) for _, _, block in blocks]
-    places = (np.concatenate(rows), np.concatenate(columns))
-    shape = (n_blocks * size, n_blocks * size)
-    return sparse.coo_array((np.concatenate(values), places), shape=shape).tocsc()
+class _BlockMatrix:
+    """Sparse matrices that are sums of square blocks, always at the same places.
+
+    Where each number goes is found out once: that takes longer than to add them up.
+
+    Parameters
+    ----------
+    places : list of ((m,) int, (m,) int)
+        Block rows and block columns of each array of blocks.
+    n_blocks, size : int
+        The matrix is `n_blocks` times `size` wide.
+    """
+
+    def __init__(
+        self, places: Sequence[tuple[IntArray, IntArray]], n_blocks: int, size: int
+    ) -> None:
+        row_in, column_in = np.divmod(np.arange(size * size), size)
+        width = n_blocks * size
+        self._shape = (width, width)
+        keys = [
+            ((column[:, None] * size + column_in) * width + row[:, None] * size + row_in).ravel()
+            for row, column in places
+        ]
+        key, self._place = np.unique(np.concatenate(keys), return_inverse=True)
+        column, self._row = np.divmod(key, width)
+        self._first = np.searchsorted(column, np.arange(width + 1))
+
+    def fill(self, blocks: Sequence[FloatArray]) -> sparse.csc_array:
+        """Return the matrix with these blocks, an array (m, d, d) for each of the places."""
+        values = np.concatenate([block.reshape(-1) for block in blocks])
+        total = np.bincount(self._place, values, minlength=len(self._row))
+        return sparse.csc_array((total, self._row, self._first), shape=self._shape)

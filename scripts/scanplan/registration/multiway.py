@@ -109,7 +109,7 @@ def optimise_poses(
     prior_information = limits.localiser_information(priors)
 
     def solve(
-        begin: FloatArray, constraints: Sequence[PoseConstraint]
+        begin: FloatArray, constraints: Sequence[PoseConstraint], *, is_start: bool = False
     ) -> pose_graph.PoseGraphSolution:
         return pose_graph.solve_pose_graph(
             begin,
@@ -118,10 +118,11 @@ def optimise_poses(
             prior_information,
             planar=planar,
             kernel=settings.kernel_sigmas,
+            is_start=is_start,
         )
 
     sequence = _between(edges, row_of_scan)
-    poses = solve(start, sequence).world_from_scan
+    poses = solve(start, sequence, is_start=True).world_from_scan
     constrained = {(row_of_scan[edge.source], row_of_scan[edge.target]) for edge in sequence}
     # a planar scan constrains less than a spatial one, and costs less to align
     step_m = settings.loop_step_planar_m if planar else settings.loop_step_m

@@ -4,7 +4,6 @@ Lu and Milios 1997, "Globally consistent range scan alignment for environment ma
 weights are those of Geman and McClure, by which a false loop ends with next to no weight.
 """
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -47,6 +46,7 @@ def solve_pose_graph(
     planar: bool,
     kernel: float = 5.0,
     max_iterations: int = 50,
+    is_start: bool = False,
 ) -> PoseGraphSolution:
     """Find the poses of the least robust squared error (Gauss and Newton, reweighted).
 
@@ -69,19 +69,22 @@ def solve_pose_graph(
         twice as far off with a twenty-fifth.
     max_iterations : int
         Per width of the kernel.
+    is_start : bool
+        Whether the poses are only where another solution starts.
     """
+    # a millimetre is enough for poses that another solution starts from
+    rough_done = 100 * _STEP_DONE
 
-    def minimise(pose: FloatArray, width: float) -> tuple[FloatArray, GraphState]:
+    def minimise(pose: FloatArray, width: float, step_done: float) -> tuple[FloatArray, GraphState]:
         equations = GraphEquations(
             constraints, priors, prior_information, planar=planar, kernel=kernel * width
         )
-        # a wide kernel's solution is a start only
-        return _minimise(equations, pose, max_iterations, _STEP_DONE * math.sqrt(width))
+        return _minimise(equations, pose, max_iterations, step_done)
 
     pose = np.array(start, float)
     for width in _WIDE_KERNELS:
-        pose, _ = minimise(pose, width)
-    pose, state = minimise(pose, 1.0)
+        pose, _ = minimise(pose, width, rough_done)
+    pose, state = minimise(pose, 1.0, rough_done if is_start else _STEP_DONE)
     return PoseGraphSolution(pose, state.residual, state.weight, state.prior_weight)
 
 

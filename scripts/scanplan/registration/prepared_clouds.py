@@ -87,9 +87,10 @@ def prepare_cloud(thinned_m: FloatArray, *, planar: bool, reach_m: float = 1.0) 
         normal = _towards_origin(estimate_planar_normals(xy_m, tree, reach_m=reach_m), xy_m)
         return PreparedCloud(points, tree, True, normal, None)
     cloud = small_gicp.PointCloud(points)
-    small_gicp.estimate_normals_covariances(cloud, num_neighbors=NEIGHBOURS, num_threads=1)
+    space_tree = small_gicp.KdTree(cloud)
+    small_gicp.estimate_normals_covariances(cloud, space_tree, NEIGHBOURS)
     normal = _towards_origin(cloud.normals()[:, :3], points)
-    return PreparedCloud(points, small_gicp.KdTree(cloud), False, normal, cloud)
+    return PreparedCloud(points, space_tree, False, normal, cloud)
 
 
 def estimate_planar_normals(xy_m: FloatArray, tree: KDTree, *, reach_m: float) -> FloatArray:

@@ -1,13 +1,14 @@
 """Points seen from above: the ground of the figures that lie in the map."""
 
 from collections.abc import Iterable
+from math import isqrt
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colorbar import Colorbar
 from matplotlib.figure import Figure
 
-from scanplan.types import Array, FloatArray
+from scanplan.types import Array, FloatArray, IntArray
 
 MOST_POINTS = 200_000  # more than a figure has pixels to show; bounds memory and time
 WIDTH_IN = 7.0  # text width of an A4 page
@@ -15,6 +16,11 @@ MARGIN_M = 0.5  # around what must be shown, so that marks at the edge are whole
 _AROUND_IN = np.array([0.6, 0.85])  # what labels of the axes take beside, and a legend below
 _HEIGHTS_IN = (2.5, 8.5)  # of the drawing: readable, and within a page
 _OUTLIER_PERCENT = 0.5  # of the points at either end: the few returns from far outside
+
+
+def choose_scans(scan_ids: IntArray) -> IntArray:
+    """Return scans (k,) evenly among (n,): so many that a figure shows as many points of each."""
+    return scan_ids[:: -(-len(scan_ids) // isqrt(MOST_POINTS))]
 
 
 def sample_points(scans: Iterable[tuple[int, Array]], n_scans: int) -> FloatArray:

@@ -65,19 +65,15 @@ def method_objective(method: str) -> tuple[str, str]:
 def coverage_note(survey: SurveyFacts, method: str) -> str:
     """Return what the chosen scans cover, and how much better any other choice could be."""
     selection, k = survey.selection, survey.chosen
-    covered, covered_m2 = selection["covered"], selection["covered_m2"]
+    covered = selection["covered"]
     objective, unit = method_objective(method)
-    area_share = covered_m2[k - 1] / covered_m2[-1]
-    area = (
-        f"The {k} scans of the plan cover {area_share:.1%} of the area that the hulls of all"
-        f" {len(covered):,} registered scans cover ({covered_m2[-1]:,.1f} m²)"
-    )
+    chosen = f"The plan is made of {k} of {len(covered):,} registered scans"
     if covered[-1] <= 0:
-        return f"{area}; no scan has any {objective}."
+        return f"{chosen}; no scan has any {objective}."
     given = covered[k - 1]
     best = min(selection["bound"][k - 1], covered[-1])
     return (
-        f"{area} and give {given / covered[-1]:.1%} of their {objective} ({given:,.1f} of"
+        f"{chosen}, which give {given / covered[-1]:.1%} of the {objective} of all ({given:,.1f} of"
         f" {covered[-1]:,.1f} {unit}). Certificate: no {k} of these scans give more than"
         f" {best:,.1f} {unit}, so this choice is within {1 - given / best:.1%} of the best."
     )

@@ -30,7 +30,7 @@ class Method:
     is_baseline : bool
         Whether it looks at nothing measured; figures dash it.
     tables : tuple of str
-        What it needs beside the table of hulls, which measures the area that every order covers.
+        What it needs beside scans or, where it `needs_hulls`, hulls.
     settings : tuple of str
         What it depends on: keys of `selection`, and `budget`, what the scans may cost together.
     """
@@ -44,6 +44,11 @@ class Method:
     is_baseline: bool = False
     tables: tuple[str, ...] = ()
     settings: tuple[str, ...] = ()
+
+    @property
+    def needs_hulls(self) -> bool:
+        """Whether what it covers is the area of hulls: its own objective, or for want of one."""
+        return self.objective is None or self.is_area
 
 
 _GREEDY = ("min_overlap", "budget")

@@ -41,7 +41,8 @@ def order_scans(
         over the recording; `distance`, always the one taken farthest from those before; `random`, a
         permutation drawn with `seed`; `sequential`, as recorded.
     columns : dict of str to (m,) numpy.ndarray
-        `scan_id`, `n_points` and `geometry` of a table of hulls.
+        `scan_id`, `n_points`, `cluster` and `geometry` of a table of hulls; or the first two alone,
+        a scan a row, for a method with an objective that is no area.
     seed : int, >= 0
         For `random` only, which needs it.
     others : dict of str to columns, optional
@@ -59,9 +60,9 @@ def order_scans(
     -------
     dict of str to (n,) numpy.ndarray
         The columns of `schemas.SELECTION`. Areas are those of one convex hull per scan for `hull`
-        and those of the clusters' hulls for the others; `bound_m2` at rank k is what no k scans, of
-        any order, can exceed. `gain`, `covered` and `bound` are the same in the unit of the
-        method's objective; areas for methods without one.
+        and those of the clusters' hulls for the others, NaN without hulls; `bound_m2` at rank k is
+        what no k scans, of any order, can exceed. `gain`, `covered` and `bound` are the same in the
+        unit of the method's objective; areas for methods without one.
 
     Raises
     ------
@@ -77,26 +78,52 @@ def order_scans(
     tables = {"hulls": columns, **(others or {})}
     scans = SurveyScans(scan_ids, tables, seed, streaming_settings or {})
     n_points = _count_points(columns)
-    area = _make_objective(chosen_method if chosen_method.is_area else METHODS[AREA_METHOD], scans)
-    most_area = area.greedy()
-    if chosen_method.objective and not chosen_method.is_area:
-        own = _make_objective(chosen_method, scans)
-        most = own.greedy()
-    else:
-        own, most = area, most_area
+    own = _make_objective(_measuring(chosen_method), scans)
+    most = own.greedy()
     if chosen_method.order:
         order = _order_directly(chosen_method.order, scans)
     else:
         order = own.greedy(min_overlap).order if min_overlap > 0 else most.order
         order = order if budget is None else _put_affordable_first(own, n_points, budget, order)
-    areas = _measure_along(order, area, most_area)
+    covered = _measure_along(order, own, most)
+    if chosen_method.needs_hulls:
+        areas = covered
+    elif "geometry" in columns:
+        areas = measure_area(order, columns)
+    else:
+        areas = {name: np.full(len(order), np.nan) for name in covered}
     return {
         "rank": np.arange(1, len(order) + 1, dtype=np.int32),
         "scan_id": scan_ids[order],
         "n_points": n_points[order],
         **{f"{name}_m2": values for name, values in areas.items()},
-        **(areas if own is area else _measure_along(order, own, most)),
+        **covered,
     }
+
+
+def measure_area(order: IntArray, columns: Columns) -> dict[str, Array]:
+    """Return the area of the hulls of clusters along any order.
+
+    Parameters
+    ----------
+    order : (n,) int
+        Rows of the scans.
+    columns : dict of str to (m,) numpy.ndarray
+        A table of hulls.
+
+    Returns
+    -------
+    dict of str to (n,) float64
+        `gain`, `covered` and `bound`, square metres.
+    """
+    scans = SurveyScans(np.unique(columns["scan_id"]), {"hulls": columns})
+    area = _make_objective(METHODS[AREA_METHOD], scans)
+    return _measure_along(order, area, area.greedy())
+
+
+def _measuring(method: Method) -> Method:
+    """Return the method whose objective measures what a method's order covers."""
+    return method if method.objective else METHODS[AREA_METHOD]
 
 
 def summarise_order(method: str, columns: Columns) -> str:

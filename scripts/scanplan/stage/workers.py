@@ -1,6 +1,7 @@
 """Jobs on several cores whose results come back in order."""
 
 import multiprocessing
+import sys
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
@@ -26,6 +27,8 @@ def open_pool(
 ) -> Iterator[RunJobs]:
     """Open a pool of worker processes; with one thread there is none, and the work is done here.
 
+    Functions and their arguments are of modules, not of the script that is run.
+
     Parameters
     ----------
     threads : int
@@ -49,7 +52,10 @@ def open_pool(
         return
     # a forked child of a process with threads (Arrow, TBB) can hang, a spawned one cannot
     context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(threads, context, _begin_worker, (setup, state)) as executor:
+    with (
+        _hide_script(),
+        ProcessPoolExecutor(threads, context, _begin_worker, (setup, state)) as executor,
+    ):
         try:
             yield lambda function, jobs: _run_in_order(
                 executor, function, jobs, threads * JOBS_PER_CORE
@@ -62,6 +68,24 @@ def open_pool(
         except BaseException:
             executor.shutdown(wait=False, cancel_futures=True)
             raise
+
+
+@contextmanager
+def _hide_script() -> Iterator[None]:
+    """Let spawned processes import what they are given, and not this process's script.
+
+    A stage's script imports Snakemake, and what only the stage itself needs.
+    """
+    script = sys.modules["__main__"]
+    file = getattr(script, "__file__", None)
+    if file is None:
+        yield
+        return
+    del script.__file__
+    try:
+        yield
+    finally:
+        script.__file__ = file
 
 
 def _set_up(setup: Callable[..., None] | None, state: tuple[Any, ...]) -> None:

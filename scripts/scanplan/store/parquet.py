@@ -10,7 +10,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from scanplan.errors import StageError
-from scanplan.store import atomic
+from scanplan.store import arrow_arrays, atomic
 from scanplan.store.schemas import Schema
 from scanplan.types import Array, FilePath
 
@@ -29,7 +29,11 @@ def arrow_schema(schema: Schema) -> pa.Schema:
 
 @contextmanager
 def open_writer(
-    path: FilePath, schema: Schema, extra: Mapping[str, str] | None = None
+    path: FilePath,
+    schema: Schema,
+    extra: Mapping[str, str] | None = None,
+    *,
+    compression: str = "zstd",
 ) -> Iterator[pq.ParquetWriter]:
     """Write a file of a schema, whole or not at all, with further metadata."""
     notes = dict(extra or {})
@@ -40,7 +44,7 @@ def open_writer(
         pq.ParquetWriter(
             temporary,
             form,
-            compression="zstd",
+            compression=compression,
             write_page_checksum=True,
             use_dictionary=False,
             column_encoding=dict.fromkeys(floats, "BYTE_STREAM_SPLIT"),
@@ -153,7 +157,7 @@ def check_rows(
         raise StageError(f"{path}: no rows to work on; see the log of the stage that makes it")
     if any(column.null_count for column in table.columns):
         raise error(f"{path}: empty cells in a table of {schema.name}")
-    keys = [table[c].to_numpy() for c in schema.sorted_by if c in table.column_names]
+    keys = [arrow_arrays.to_numpy(table[c]) for c in schema.sorted_by if c in table.column_names]
     if len(keys) == len(schema.sorted_by) and not _strictly_sorted(keys):
         raise error(
             f"{path}: rows of {schema.name} are not sorted by {', '.join(schema.sorted_by)}"

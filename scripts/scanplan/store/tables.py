@@ -12,7 +12,7 @@ import numpy as np
 import pyarrow as pa
 
 from scanplan.errors import StageError
-from scanplan.store import parquet, schemas
+from scanplan.store import arrow_arrays, parquet, schemas
 from scanplan.types import Array, FilePath, FloatArray
 
 
@@ -49,10 +49,11 @@ def write_table(
             f"{schema.name}: columns {sorted(columns)} instead of {sorted(schema.columns)}"
         )
     form = parquet.arrow_schema(schema)
-    table = pa.table({n: pa.array(columns[n], type=form.field(n).type) for n in schema.columns})
+    arrays = [arrow_arrays.to_arrow(columns[n], form.field(n).type) for n in schema.columns]
+    table = pa.Table.from_arrays(arrays, schema=form)
     parquet.check_rows(table, schema, path, allow_empty, ValueError)
     with parquet.open_writer(path, schema, notes) as writer:
-        writer.write_table(table.cast(form))
+        writer.write_table(table)
 
 
 def read_table(
@@ -86,7 +87,7 @@ def read_table(
     with parquet.open_file(path, schema) as file:
         table = file.read(columns=None if columns is None else list(columns))
     parquet.check_rows(table, schema, path, allow_empty, StageError)
-    return {name: table[name].to_numpy() for name in table.column_names}
+    return {name: arrow_arrays.to_numpy(table[name]) for name in table.column_names}
 
 
 def read_note(path: FilePath, schema: schemas.Schema, name: str) -> str:
@@ -125,7 +126,9 @@ def open_scan_writer(
         If no scan was written: the file does not appear.
     """
     last: int | None = None
-    with parquet.open_writer(path, schemas.SCANS, {"planar": json.dumps(bool(planar))}) as writer:
+    extra = {"planar": json.dumps(bool(planar))}
+    # of points lz4 saves as much as zstd, and takes half the time to write and to read
+    with parquet.open_writer(path, schemas.SCANS, extra, compression="lz4") as writer:
 
         def write_scan(scan_id: int, xyz_m: FloatArray) -> None:
             nonlocal last
@@ -133,9 +136,13 @@ def open_scan_writer(
                 raise ValueError(f"scan {scan_id} after {last} with {len(xyz_m)} points")
             last = scan_id
             xyz_m = np.asarray(xyz_m, np.float32)
-            columns = [np.full(len(xyz_m), scan_id, np.int32), *xyz_m.T.copy()]
-            arrays = [pa.array(column) for column in columns]
-            rows = pa.Table.from_arrays(arrays, schema=parquet.arrow_schema(schemas.SCANS))
+            columns = [np.full(len(xyz_m), scan_id, np.int32), *xyz_m.T]
+            form = parquet.arrow_schema(schemas.SCANS)
+            arrays = [
+                arrow_arrays.to_arrow(column, field.type)
+                for column, field in zip(columns, form, strict=True)
+            ]
+            rows = pa.Table.from_arrays(arrays, schema=form)
             writer.write_table(rows, row_group_size=len(rows))
 
         yield write_scan
@@ -151,6 +158,7 @@ class ScanStore:
     Attributes
     ----------
     scan_ids : (n,) int32, increasing
+    n_points : (n,) int64
     planar : bool
         Whether the sensor measures in one plane only.
     """
@@ -159,11 +167,11 @@ class ScanStore:
         self.path = path
         with parquet.open_file(path, schemas.SCANS) as file, parquet.explain_damage(path):
             metadata = file.metadata
-            ids = [
-                metadata.row_group(i).column(0).statistics for i in range(metadata.num_row_groups)
-            ]
+            groups = [metadata.row_group(i) for i in range(metadata.num_row_groups)]
+            ids = [group.column(0).statistics for group in groups]
             self.planar = bool(json.loads(parquet.read_notes(file, path)["planar"]))
-            self.scan_ids = np.array([group.min for group in ids], np.int32)
+        self.scan_ids = np.array([group.min for group in ids], np.int32)
+        self.n_points = np.array([group.num_rows for group in groups], np.int64)
         if len(self.scan_ids) == 0:
             raise StageError(f"{path}: holds no scan; {parquet.RERUN}")
         if (np.diff(self.scan_ids) <= 0).any() or any(group.min != group.max for group in ids):
@@ -196,8 +204,9 @@ class ScanStore:
             for scan_id in wanted:
                 if scan_id not in group:
                     raise ValueError(f"{self.path}: no scan {scan_id}")
-                table = file.read_row_group(group[scan_id])
-                xyz_m = np.column_stack([table[name].to_numpy() for name in schemas.XYZ])
+                # three columns are read before threads have begun
+                table = file.read_row_group(group[scan_id], schemas.XYZ, use_threads=False)
+                xyz_m = np.column_stack([arrow_arrays.to_numpy(c) for c in table.columns])
                 if len(xyz_m) == 0 or not np.isfinite(xyz_m).all():
                     raise StageError(
                         f"{self.path}: scan {scan_id} has no points, or some that are no numbers;"

@@ -26,7 +26,7 @@ _POINT = {
     "ring": ("<u2", 16, 4),
     "time": ("<f4", 18, 7),
 }
-_POINT_DTYPE = np.dtype(
+POINT_DTYPE = np.dtype(
     {
         "names": list(_POINT),
         "formats": [form for form, _, _ in _POINT.values()],
@@ -69,8 +69,10 @@ def _encode_clouds(
 ) -> Iterator[RosMessage]:
     """Yield dense unordered clouds, stamped with their last firing; `time` runs up to 0."""
     form = TYPE["sensor_msgs/msg/PointField"]
+    offset = {str(name): field[1] for name, field in (POINT_DTYPE.fields or {}).items()}
     fields: list[Msg] = [
-        form(name=name, offset=at, datatype=code, count=1) for name, (_, at, code) in _POINT.items()
+        form(name=name, offset=offset[name], datatype=code, count=1)
+        for name, (_, _, code) in _POINT.items()
     ]
     for seq, (stamp_ns, scan) in enumerate(zip(t_ns, scans, strict=True)):
         points = _points(sensor, scan)
@@ -80,7 +82,7 @@ def _encode_clouds(
             width=len(points),
             fields=fields,
             is_bigendian=False,
-            point_step=_POINT_DTYPE.itemsize,
+            point_step=POINT_DTYPE.itemsize,
             row_step=points.nbytes,
             data=points.view(np.uint8) if len(points) else np.empty(0, np.uint8),
             is_dense=True,
@@ -92,7 +94,7 @@ def _points(sensor: Sensor, scan: SimulatedScan) -> Array:
     """Return the returns of a scan as records, in the order fired."""
     ray = np.flatnonzero(np.isfinite(scan.range_m))
     column, beam = np.divmod(ray, len(sensor.ring))
-    points = np.empty(len(ray), _POINT_DTYPE)
+    points = np.empty(len(ray), POINT_DTYPE)
     xyz_m = sensor.direction.reshape(-1, 3).take(ray, axis=0) * scan.range_m.take(ray)[:, None]
     points["x"], points["y"], points["z"] = xyz_m.T
     points["intensity"] = scan.intensity.take(ray)
