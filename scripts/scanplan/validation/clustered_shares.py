@@ -85,7 +85,7 @@ def average_shares(
     # what each place adds to the error of the mean, by its error in each group
     apart = (counts.good - each[counts.group] * counts.size) / np.maximum(n, 1)[counts.group]
     told = counts.place[weight[counts.group] > 0]
-    of_place = np.bincount(counts.place, weight[counts.group] * apart)
+    of_place = np.asarray(np.bincount(counts.place, weight[counts.group] * apart), float)
     n_told = np.full(1, n[weight > 0].sum())
     m = np.full(1, len(np.unique(told)))
     mean, square = np.full(1, share), np.full(1, np.sum(of_place**2))
@@ -109,7 +109,7 @@ class _Counts:
 
     def summed(self, values: FloatArray | IntArray) -> FloatArray:
         """Return sums of values (c,) by group."""
-        return np.bincount(self.group, values, self.n_groups)
+        return np.asarray(np.bincount(self.group, values, self.n_groups), float)
 
 
 def _count_by_place(group: IntArray, place: IntArray, is_good: BoolArray, n_groups: int) -> _Counts:
