@@ -75,8 +75,8 @@ def list_own_modules():
 def test_workers_do_not_import_the_script(tmp_path, monkeypatch):
     script = tmp_path / "script_of_stage.py"
     script.write_text("import sys\nsys.modules['script_was_imported'] = sys\n")
-    monkeypatch.setattr(sys.modules["__main__"], "__file__", str(script))
-    monkeypatch.setattr(sys.modules["__main__"], "__spec__", None)
+    monkeypatch.setattr(sys.modules["__main__"], "__file__", str(script), raising=False)
+    monkeypatch.setattr(sys.modules["__main__"], "__spec__", None, raising=False)
     with workers.open_pool(2) as run:
         assert list(run(list_own_modules, [()])) == [[]]
     assert sys.modules["__main__"].__file__ == str(script)
