@@ -80,7 +80,8 @@ def read_notes(file: pq.ParquetFile, path: FilePath) -> dict[str, str]:
     with explain_damage(path):
         stated = {k.decode(): v.decode() for k, v in (file.metadata.metadata or {}).items()}
     notes = {k: v for k, v in stated.items() if k not in (*_OWN_NOTES, _SEAL)}
-    if notes and _seal(notes)[_SEAL] != stated.get(_SEAL):
+    # files of older versions have no checksum
+    if _SEAL in stated and _seal(notes).get(_SEAL) != stated[_SEAL]:
         raise StageError(f"{path}: damaged (its notes do not fit their checksum); {RERUN}")
     return notes
 
