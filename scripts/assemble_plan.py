@@ -41,9 +41,9 @@ def assemble_plan(
         How many scans to use, see `stopping.choose_n_scans`.
     """
     observed = tables.read_table(walls, schemas.WALLS, allow_empty=True)
-    ordering = tables.read_table(selection, schemas.SELECTION)
-    count, reason = stopping.choose_n_scans(ordering, **stop)
-    scan_ids = np.sort(ordering["scan_id"][:count])
+    chosen_ids, reason = stopping.read_chosen_scans(selection, **stop)
+    count = len(chosen_ids)
+    scan_ids = np.sort(chosen_ids)
     is_used = np.isin(observed["scan_id"], scan_ids)
     messages.check_segments(walls, observed, is_used, count)
     segments = {column: values[is_used] for column, values in observed.items()}

@@ -24,8 +24,7 @@ def draw_scans(
         How many scans are selected, see `stopping.choose_n_scans`.
     """
     store = tables.ScanStore(scans)
-    ordering = tables.read_table(selection, schemas.SELECTION)
-    count, reason = stopping.choose_n_scans(ordering, **stop)
+    selected_ids, reason = stopping.read_chosen_scans(selection, **stop)
     poses = tables.read_table(registration, schemas.REGISTRATION)
     n_scans = len(store.scan_ids)
     shown = top_view.choose_scans(store.scan_ids)
@@ -33,10 +32,10 @@ def draw_scans(
     figure = figures.draw_scans_figure(
         top_view.sample_points(clouds, len(shown)),
         figures.sensor_positions(poses, store.scan_ids),
-        figures.sensor_positions(poses, ordering["scan_id"][:count]),
+        figures.sensor_positions(poses, selected_ids),
     )
     atomic.write_text(output, figure_files.format_svg(figure))
-    log.log_line(f"draw_scans: {n_scans} scans, {count} selected ({reason})")
+    log.log_line(f"draw_scans: {n_scans} scans, {len(selected_ids)} selected ({reason})")
 
 
 if __name__ == "__main__":

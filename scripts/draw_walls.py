@@ -29,9 +29,8 @@ def draw_walls(
         How many scans are selected, see `stopping.choose_n_scans`.
     """
     store = tables.ScanStore(scans)
-    ordering = tables.read_table(selection, schemas.SELECTION)
-    count, reason = stopping.choose_n_scans(ordering, **stop)
-    selected_ids = ordering["scan_id"][:count]
+    selected_ids, reason = stopping.read_chosen_scans(selection, **stop)
+    count = len(selected_ids)
     poses = tables.read_table(registration, schemas.REGISTRATION)
     plan_faces = tables.read_table(faces, schemas.FACES)
     figure = figures.draw_walls_figure(

@@ -8,7 +8,6 @@ import numpy as np
 from scanplan.extraction import survey_walls
 from scanplan.selection import stopping
 from scanplan.stage import log
-from scanplan.store import schemas, tables
 from scanplan.types import FilePath, Settings
 
 
@@ -43,8 +42,7 @@ def extract_chosen_walls(
     extractor, settings, code, threads
         See `survey_walls.write_survey_walls`.
     """
-    ordering = tables.read_table(selection, schemas.SELECTION)
-    count, _ = stopping.choose_n_scans(ordering, **stop)
+    chosen_ids, _ = stopping.read_chosen_scans(selection, **stop)
     survey_walls.write_survey_walls(
         scans,
         registration,
@@ -52,7 +50,7 @@ def extract_chosen_walls(
         stage="extract_chosen_walls",
         extractor=extractor,
         settings=settings,
-        scan_ids=np.sort(ordering["scan_id"][:count]),
+        scan_ids=np.sort(chosen_ids),
         known=[output] if walls is None else [output, walls],
         code=code,
         threads=threads,

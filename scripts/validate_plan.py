@@ -40,10 +40,9 @@ def validate_plan(
     """
     limits = prediction.ValidationSettings(**settings)
     drawn = floorplan.read_floorplan(plan)
-    ordering = tables.read_table(selection, schemas.SELECTION)
-    count, _ = stopping.choose_n_scans(ordering, **stop)
+    chosen_ids, _ = stopping.read_chosen_scans(selection, **stop)
     registered = registered_scans.read_registered_scans(registration)
-    left_out_ids = np.setdiff1d(registered.scan_ids, ordering["scan_id"][:count])
+    left_out_ids = np.setdiff1d(registered.scan_ids, chosen_ids)
     scan_ids = left_out_scans.draw_left_out_scans(left_out_ids, limits.max_scans, limits.seed)
     rays = left_out_scans.draw_rays(
         tables.ScanStore(scans),

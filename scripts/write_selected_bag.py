@@ -13,7 +13,7 @@ from scanplan.recordings.recorded_survey import BagSurvey
 from scanplan.recordings.survey import open_survey
 from scanplan.selection import stopping
 from scanplan.stage import log
-from scanplan.store import atomic, registered_scans, schemas, tables
+from scanplan.store import atomic, registered_scans
 from scanplan.types import FilePath
 
 
@@ -49,9 +49,8 @@ def write_selected_bag(
     StageError
         If the dataset is a folder of scans, which has no messages.
     """
-    ordering = tables.read_table(selection, schemas.SELECTION)
-    count, _ = stopping.choose_n_scans(ordering, **stop)
-    scan_ids = np.sort(ordering["scan_id"][:count])
+    chosen_ids, _ = stopping.read_chosen_scans(selection, **stop)
+    scan_ids = np.sort(chosen_ids)
     registered = registered_scans.read_registered_scans(registration)
     rows = registered_scans.rows_of_scans(scan_ids, registered, selection, registration)
     poses = registered.map_from_sensor[rows]
@@ -59,7 +58,7 @@ def write_selected_bag(
         if not isinstance(survey, BagSurvey):
             raise StageError(
                 f"{output}: not written, as {Path(recordings[0]).parent} holds clouds in files and"
-                f" no messages; copy the files of the {count} scans of {selection} instead"
+                f" no messages; copy the files of the {len(scan_ids)} scans of {selection} instead"
             )
         n_messages = selected_bag.copy_selected_scans(output, survey, scan_ids, poses)
         own_settings = selected_bag.reading_settings(survey, dict(reading))
@@ -67,7 +66,7 @@ def write_selected_bag(
     atomic.write_text(settings, json.dumps(own_settings, indent=2) + "\n")
     before = sum(Path(file).stat().st_size for file in recordings)
     log.log_line(
-        f"write_selected_bag: {count} scans, {n_messages:,} messages,"
+        f"write_selected_bag: {len(scan_ids)} scans, {n_messages:,} messages,"
         f" {Path(output).stat().st_size:,} of {before:,} bytes"
     )
 

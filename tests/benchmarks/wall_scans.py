@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from scanplan.geometry.lines import line_lengths_m
 from scanplan.lab.buildings import building as buildings
 from scanplan.lab.evaluation import (
     face_cells,
@@ -133,13 +134,13 @@ def measure_quality(
         faces longer than 0.5 m near a wall) at 0.05 and 0.10 m, and walls per true wall and scan.
     """
     cells = truth.cells
-    long_faces = length_metrics.line_lengths_m(cells.faces_m) > _LONG_M
+    long_faces = line_lengths_m(cells.faces_m) > _LONG_M
     asked = truth.visible & long_faces[cells.face]
     row = {}
     for distance_m in _DISTANCES_M:
         near = length_metrics.find_near_intervals(lines_m, cells.faces_m, distance_m)
         near_m = length_metrics.union_length_m(near, len(lines_m)).sum()
-        all_m = length_metrics.line_lengths_m(lines_m).sum()
+        all_m = line_lengths_m(lines_m).sum()
         found = _found_cells(lines_m, truth, distance_m)
         found_m = cells.length_m[asked & found].sum()
         row[f"correct {distance_m:.2f}"] = length_metrics.safe_share(near_m, all_m)

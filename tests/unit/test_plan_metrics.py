@@ -5,7 +5,8 @@ import pytest
 import shapely
 
 from scanplan.errors import StageError
-from scanplan.lab.evaluation import face_cells, length_metrics, plan_metrics, true_plan
+from scanplan.geometry.lines import line_lengths_m
+from scanplan.lab.evaluation import face_cells, plan_metrics, true_plan
 
 SQUARE = np.array([[(0, 0), (4, 0)], [(4, 0), (4, 4)], [(4, 4), (0, 4)], [(0, 4), (0, 0)]], float)
 
@@ -115,8 +116,8 @@ class TestTruth:
         lines = {t: shapely.LineString([(0, 0), (width_m, 0)]) for t, width_m in widths_m.items()}
         features = [(line, {"kind": "opening", "type": t}) for t, line in lines.items()]
         true = true_plan.read_true_plan(self.write(tmp_path / "truth.geojson", *features))
-        np.testing.assert_allclose(length_metrics.line_lengths_m(true.doors_m), [0.9, 1.2])
-        np.testing.assert_allclose(length_metrics.line_lengths_m(true.windows_m), [1.4])
+        np.testing.assert_allclose(line_lengths_m(true.doors_m), [0.9, 1.2])
+        np.testing.assert_allclose(line_lengths_m(true.windows_m), [1.4])
 
     def test_a_wall_without_thickness_is_told(self, tmp_path):
         path = self.write(

@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 import shapely
 
-from scanplan.lab.evaluation import face_cells, length_metrics, visible_faces
+from scanplan.geometry.lines import line_lengths_m
+from scanplan.lab.evaluation import face_cells, visible_faces
 
 NO_FACES = np.empty((0, 2, 2))
 # a room of 4 m x 4 m whose east wall, 0.2 m thick, has a door of 1 m, and a larger room behind it
@@ -114,7 +115,7 @@ class TestCells:
 
     def test_joining_all_gives_the_faces(self):
         everything = face_cells.join_cells(self.CELLS, np.ones(5, bool))
-        np.testing.assert_allclose(length_metrics.line_lengths_m(everything), [0.05, 0.04])
+        np.testing.assert_allclose(line_lengths_m(everything), [0.05, 0.04])
 
 
 def test_a_field_lies_to_either_side_of_forward():

@@ -7,8 +7,9 @@ import numpy as np
 from scanplan.extraction import mean_shift, normals, segments
 from scanplan.extraction.segment_limits import DIAGONAL, Row, SegmentLimits
 from scanplan.geometry import ransac
+from scanplan.geometry.tolerances import ROUNDING
 from scanplan.rays.ray_set import RaySet
-from scanplan.rays.tolerances import ROUNDING, SKIRTING_M
+from scanplan.rays.tolerances import SKIRTING_M
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 _DUAL_SHIFT_M = 1.0  # several bandwidths: keeps dual points apart that differ in direction

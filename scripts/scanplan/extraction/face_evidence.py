@@ -8,11 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.geometry.lines import Line
+from scanplan.geometry.tolerances import ROUNDING
 from scanplan.rays.expected_returns import count_sent_rays
 from scanplan.rays.face_raster import CELL_M, SCAN_COLUMN_M, highest_of_each, seen_tops_m
 from scanplan.rays.face_rays import cast_at_face, cast_at_faces
 from scanplan.rays.ray_set import RaySet
-from scanplan.rays.tolerances import BEHIND_M, ON_M, ROUNDING, SKIRTING_M, STRAY_SHARE, STRETCH_M
+from scanplan.rays.tolerances import BEHIND_M, ON_M, SKIRTING_M, STRAY_SHARE, STRETCH_M
 from scanplan.types import FloatArray, IntArray
 
 

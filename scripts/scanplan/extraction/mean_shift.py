@@ -7,7 +7,7 @@ Theory 21 (1975).
 import numpy as np
 from scipy.spatial import KDTree
 
-from scanplan.rays.tolerances import ROUNDING
+from scanplan.geometry.tolerances import ROUNDING
 from scanplan.types import FloatArray, IntArray
 
 _BINS_PER_BANDWIDTH = 8  # means of bins move a mode by far less than the bandwidth

@@ -12,7 +12,8 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from scanplan.geometry.moments import FEWEST, group_moments, least_variance_direction
-from scanplan.rays.tolerances import ON_M, ROUNDING
+from scanplan.geometry.tolerances import ROUNDING
+from scanplan.rays.tolerances import ON_M
 from scanplan.types import FloatArray, IntArray
 
 _NEAREST_2D = 5  # neighbours, where beams lie apart: enough that noise does not turn the line

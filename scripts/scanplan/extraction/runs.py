@@ -7,10 +7,11 @@ import numpy as np
 
 from scanplan.extraction.segment_limits import SegmentLimits
 from scanplan.geometry.lines import Line
+from scanplan.geometry.tolerances import ROUNDING
 from scanplan.rays.face_raster import CELL_M, SCAN_COLUMN_M, Places
 from scanplan.rays.face_rays import cast_at_face
 from scanplan.rays.ray_set import RaySet
-from scanplan.rays.tolerances import ON_M, ROUNDING, SKIRTING_M
+from scanplan.rays.tolerances import ON_M, SKIRTING_M
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 _PAUSE_SHARE = 1 / 2  # of the reach: wider than beams apart at grazing angles, narrower than a door

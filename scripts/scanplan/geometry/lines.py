@@ -16,6 +16,11 @@ from scanplan.geometry.tolerances import SHORTEST_M
 from scanplan.types import Columns, FloatArray, IntArray
 
 
+def line_lengths_m(lines_m: FloatArray) -> FloatArray:
+    """Return the lengths (n,) of lines (n, 2, 2)."""
+    return np.hypot(*(lines_m[:, 1] - lines_m[:, 0]).T)
+
+
 @dataclass(frozen=True, eq=False)
 class Line:
     """A straight line with a side: a point on it (2,) and its unit normal (2,)."""

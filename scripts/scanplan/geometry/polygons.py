@@ -52,14 +52,6 @@ def subtract_polygons(polygons: Polygons, others: Polygons) -> Array:
     return _each(shapely.difference, polygons, others)
 
 
-def intersect_polygons(polygons: Polygons, others: Polygons) -> Array:
-    """Intersect (n,) polygons with (n,) others; see `subtract_polygons`.
-
-    Without points and lines where they only touch.
-    """
-    return _polygonal(_each(shapely.intersection, polygons, others))
-
-
 def unite_polygons(polygons: Polygons) -> BaseGeometry:
     """Unite (n,) polygons; see `subtract_polygons`."""
     try:

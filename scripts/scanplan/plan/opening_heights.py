@@ -2,17 +2,17 @@
 
 import numpy as np
 
+from scanplan.geometry.tolerances import ROUNDING
 from scanplan.plan.tolerances import (
     ALONG_SHARE,
     END_M,
     ENOUGH_RAYS,
-    FEW_RAYS,
     LEAST_SCANS,
     LOW_PERCENT,
     NOISE_M,
-    ROUND_M,
 )
 from scanplan.rays.face_observation import FaceObservation, filled_share
+from scanplan.rays.tolerances import FEW
 from scanplan.types import FloatArray
 
 AT_FLOOR_M = 0.3  # lower returns may be of a step or of what lies there
@@ -85,19 +85,19 @@ def estimate_lintel_m(
     above_m, off_m, scan = (
         of[inner][above] for of in (seen.occupied_z_m, seen.occupied_off_m, seen.occupied_scan)
     )
-    if len(above_m) < FEW_RAYS:
+    if len(above_m) < FEW:
         return np.nan
     lowest_m = np.percentile(above_m, 5)
     level = np.abs(above_m - lowest_m) <= NOISE_M
     behind = level & (off_m < -_BEHIND_M)
-    enough = max(FEW_RAYS, _BEHIND_SHARE * level.sum())
+    enough = max(FEW, _BEHIND_SHARE * level.sum())
     if behind.sum() >= enough and len(np.unique(scan[behind])) >= LEAST_SCANS:
         return float(np.median(above_m[level]))
     return (
-        float((free_m + lowest_m) / 2) if lowest_m - free_m <= _MOST_DOUBT_M + ROUND_M else np.nan
+        float((free_m + lowest_m) / 2) if lowest_m - free_m <= _MOST_DOUBT_M + ROUNDING else np.nan
     )
 
 
 def robust_highest_m(z_m: FloatArray) -> float:
     """Return the height that not just one or two of heights (n,), n >= 3, reach."""
-    return float(np.partition(z_m, -FEW_RAYS)[-FEW_RAYS])
+    return float(np.partition(z_m, -FEW)[-FEW])

@@ -8,9 +8,10 @@ import numpy as np
 import shapely
 
 from scanplan.geometry.lines import Line, least_scatter_normal, rows_scatter
+from scanplan.geometry.tolerances import ROUNDING
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.plan_wall import PlanWall
-from scanplan.plan.tolerances import END_M, ROUND_M
+from scanplan.plan.tolerances import END_M
 from scanplan.rays.face_raster import CELL_M
 from scanplan.types import FloatArray
 
@@ -188,7 +189,7 @@ def _fit_sides(
         ends = np.array([face.ends for face in side])
         half = (ends[:, 1] - ends[:, 0]) / 2
         length = np.hypot(*half.T)
-        weight = length / max(length.sum(), ROUND_M)
+        weight = length / max(length.sum(), ROUNDING)
         centre, of_side = rows_scatter(ends.mean(axis=1), half, weight)
         scatter += length.sum() * of_side
         centres.append(centre)

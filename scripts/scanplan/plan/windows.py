@@ -12,10 +12,11 @@ import numpy as np
 from scanplan.plan.opening_heights import AT_FLOOR_M, estimate_lintel_m, estimate_sill_m
 from scanplan.plan.openings import OPEN, Opening
 from scanplan.plan.plan_wall import PlanWall
-from scanplan.plan.tolerances import ALONG_SHARE, END_M, FEW_RAYS, LEAST_SCANS
+from scanplan.plan.tolerances import ALONG_SHARE, END_M, LEAST_SCANS
 from scanplan.rays.face_observation import FaceObservation, count_sent, filled_share
 from scanplan.rays.face_raster import CELL_M
 from scanplan.rays.ray_set import RaySet
+from scanplan.rays.tolerances import FEW
 from scanplan.types import BoolArray, FloatArray
 
 _WINDOW_BAND_M = (1.25, 1.7)  # sills are lower, lintels are higher
@@ -119,7 +120,7 @@ def _not_alone(place_m: FloatArray) -> FloatArray:
     """Return those of sorted places within a column of enough others: one or two are stray."""
     low = np.searchsorted(place_m, place_m - CELL_M / 2, "left")
     high = np.searchsorted(place_m, place_m + CELL_M / 2, "right")
-    return place_m[high - low >= FEW_RAYS]
+    return place_m[high - low >= FEW]
 
 
 def _classify_gap(

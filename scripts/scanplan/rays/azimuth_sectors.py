@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan.rays.tolerances import ROUNDING
+from scanplan.geometry.tolerances import ROUNDING
 from scanplan.types import FloatArray, IntArray
 
 N_SECTORS = 72

@@ -20,9 +20,10 @@ from functools import cached_property
 import numpy as np
 
 from scanplan.geometry.lines import Line
+from scanplan.geometry.tolerances import ROUNDING
 from scanplan.rays import azimuth_sectors
 from scanplan.rays.ray_set import RaySet
-from scanplan.rays.tolerances import BEHIND_M, ROUNDING
+from scanplan.rays.tolerances import BEHIND_M
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 

@@ -13,8 +13,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from scanplan.geometry.tolerances import ROUNDING
 from scanplan.rays.ray_set import RaySet
-from scanplan.rays.tolerances import ON_M, ROUNDING
+from scanplan.rays.tolerances import ON_M
 from scanplan.types import BoolArray, Columns, FloatArray, IntArray
 
 _MOST_POINTS = 600_000  # more cost time, and make no estimate better

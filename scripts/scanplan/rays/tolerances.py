@@ -1,7 +1,5 @@
 """What measured places err by, and what may be stray: the same for all that reads rays."""
 
-ROUNDING = 1e-9
-"""Of lengths in metres and of shares: what arithmetic errs by, and less than is ever measured."""
 ON_M = 0.08
 """Returns of one scan this near to a surface are its own: noise of ranges and roughness."""
 BEHIND_M = 0.15

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import shapely
 
+from scanplan.geometry.tolerances import ROUNDING
 from scanplan.rays import levels
 from scanplan.rays.free_space import GRID_M
 from scanplan.rays.sensor_frame import centre_on_sensor
-from scanplan.rays.tolerances import ROUNDING
 from scanplan.types import Array, FloatArray
 
 

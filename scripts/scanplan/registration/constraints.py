@@ -214,11 +214,29 @@ def neighbour_reach_m(settings: SequentialSettings) -> float:
     return _LINE_REACH_VOXELS * settings.voxel_planar_m
 
 
-def level_pose(world_from_sensor: FloatArray) -> FloatArray:
-    """Return level_from_sensor: a pose (4, 4) without its position x, y and its heading.
+def place_scan(
+    scan_id: int,
+    thinned_m: FloatArray,
+    world_from_sensor: FloatArray,
+    level_from_sensor: FloatArray,
+    *,
+    planar: bool,
+    settings: SequentialSettings,
+) -> PlacedScan:
+    """Prepare the points (m, 3) that `thin_scan` returned, with the pose that they have."""
+    reach_m = neighbour_reach_m(settings)
+    cloud = prepared_clouds.prepare_cloud(thinned_m, planar=planar, reach_m=reach_m)
+    return PlacedScan(scan_id, cloud, world_from_sensor @ se3.invert_pose(level_from_sensor))
 
-    It levels the scans of a planar survey.
+
+def level_pose(world_from_sensor: FloatArray, *, planar: bool) -> FloatArray:
+    """Return level_from_sensor (4, 4): the frame of a scan's cloud.
+
+    Scans of a planar survey are levelled: it is the pose without its position x, y and its heading.
+    Others stay as the sensor has them.
     """
+    if not planar:
+        return np.eye(4)
     heading = se3.pose_yaw_rad(world_from_sensor)
     cos = np.cos(heading)
     sin = np.sin(heading)

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from scanplan.errors import StageError
-from scanplan.geometry import se3
 from scanplan.registration import constraints, prepared_clouds
 from scanplan.registration.batches import CandidateScans
 from scanplan.registration.constraints import PlacedScan
@@ -95,13 +94,14 @@ def _place_scans(
     survey: CandidateScans, rows: IntArray, raw: ScanCache, limits: SequentialSettings
 ) -> list[PlacedScan]:
     """Return scans at the localiser's poses."""
-    reach_m = constraints.neighbour_reach_m(limits)
+    planar = survey.planar
     placed = []
     for row, xyz_m in zip(rows.tolist(), raw.part(rows), strict=True):
         prior = survey.priors[row]
-        level = constraints.level_pose(prior) if survey.planar else np.eye(4)
-        thinned_m = constraints.thin_scan(xyz_m, level, survey.planar, limits)
-        cloud = prepared_clouds.prepare_cloud(thinned_m, planar=survey.planar, reach_m=reach_m)
+        level = constraints.level_pose(prior, planar=planar)
+        thinned_m = constraints.thin_scan(xyz_m, level, planar, limits)
         scan_id = int(survey.scan_ids[row])
-        placed.append(PlacedScan(scan_id, cloud, prior @ se3.invert_pose(level)))
+        placed.append(
+            constraints.place_scan(scan_id, thinned_m, prior, level, planar=planar, settings=limits)
+        )
     return placed

@@ -173,4 +173,4 @@ def _drop_unconfirmed(
 
 
 def _level_from_sensor(survey: CandidateScans, row: int) -> FloatArray:
-    return constraints.level_pose(survey.priors[row]) if survey.planar else np.eye(4)
+    return constraints.level_pose(survey.priors[row], planar=survey.planar)

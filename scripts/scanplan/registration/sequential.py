@@ -89,14 +89,19 @@ class ScanRegistrar(ABC):
             return ScanResult(False, "too_few_points", prior), no_points
         if self.settings.icp_method == GIVEN_POSES:
             return ScanResult(True, "kept", prior), no_points
-        level_from_sensor = constraints.level_pose(prior) if self.planar else np.eye(4)
+        level_from_sensor = constraints.level_pose(prior, planar=self.planar)
         thinned_m = constraints.thin_scan(xyz_m, level_from_sensor, self.planar, self.settings)
         # too few for normals fix no pose, however many were thinned to them
         if len(thinned_m) < prepared_clouds.NEIGHBOURS:
             return ScanResult(False, "too_few_points", prior), thinned_m
-        reach_m = constraints.neighbour_reach_m(self.settings)
-        cloud = prepared_clouds.prepare_cloud(thinned_m, planar=self.planar, reach_m=reach_m)
-        scan = PlacedScan(scan_id, cloud, prior @ se3.invert_pose(level_from_sensor))
+        scan = constraints.place_scan(
+            scan_id,
+            thinned_m,
+            prior,
+            level_from_sensor,
+            planar=self.planar,
+            settings=self.settings,
+        )
         result, edges = self.register_scan(scan, level_from_sensor)
         self.edges += edges
         return result, thinned_m

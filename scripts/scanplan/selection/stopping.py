@@ -1,11 +1,13 @@
 """How many scans of an ordering the plan is made of, and why."""
 
+from typing import Any
+
 import numpy as np
 
 from scanplan.errors import StageError
 from scanplan.geometry.tolerances import SMALLEST_M2
-from scanplan.store import scan_cache
-from scanplan.types import Columns, FloatArray, IntArray
+from scanplan.store import scan_cache, schemas, tables
+from scanplan.types import Columns, FilePath, FloatArray, IntArray
 
 BYTES_PER_POINT = scan_cache.POINT.itemsize
 """As registered scans are stored before they are compressed."""
@@ -67,6 +69,27 @@ def choose_n_scans(
             limits.append(_by_budget(columns["n_points"], limit, unit, size))
     # of equals the last: the limit that was asked for
     return min(reversed(limits), key=lambda limit: limit[0])
+
+
+def read_chosen_scans(selection: FilePath, **stop: Any) -> tuple[IntArray, str]:
+    """Return which scans the plan is made of, and why so many.
+
+    Parameters
+    ----------
+    selection : path-like
+        selection/<method>.parquet.
+    **stop
+        See `choose_n_scans`.
+
+    Returns
+    -------
+    scan_ids : (k,) int
+        By rank.
+    reason : str
+    """
+    ordering = tables.read_table(selection, schemas.SELECTION)
+    count, reason = choose_n_scans(ordering, **stop)
+    return ordering["scan_id"][:count], reason
 
 
 def points_budget(*, max_points: int | None = None, max_bytes: int | None = None) -> int | None:

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import special
 
-from scanplan.rays.tolerances import ROUNDING
+from scanplan.geometry.tolerances import ROUNDING
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 SIGMAS = float(special.ndtri(0.975))

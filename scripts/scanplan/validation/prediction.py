@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from scanplan.geometry.lines import line_lengths_m
 from scanplan.plan.floorplan import FloorPlan, centrelines_m
 from scanplan.rays.ray_set import RaySet
 from scanplan.types import Array, Columns, FloatArray, IntArray
@@ -93,7 +94,7 @@ def validate_by_rays(plan: FloorPlan, rays: RaySet, settings: ValidationSettings
     }
     told = np.flatnonzero(found.outcome != OUTSIDE)
     lines_m = centrelines_m(surfaces.elements)
-    length_m = np.hypot(*(lines_m[:, 1] - lines_m[:, 0]).T)
+    length_m = line_lengths_m(lines_m)
     spoken = (found.element, place[found.row], found.verdict == EXPLAINED)
     parts = [
         dict(surfaces.elements)
@@ -130,7 +131,7 @@ def find_tolerance(faces: Columns, registration_sigma_m: float) -> float:
     noise_m = 0.0
     if seen.any():
         lines_m = centrelines_m(faces)[seen]
-        length_m = np.hypot(*(lines_m[:, 1] - lines_m[:, 0]).T)
+        length_m = line_lengths_m(lines_m)
         order = np.argsort(faces["rmse_m"][seen])
         half = np.searchsorted(np.cumsum(length_m[order]), length_m.sum() / 2)
         noise_m = float(faces["rmse_m"][seen][order][half])

@@ -9,7 +9,8 @@ from shapely import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.errors import StageError
-from scanplan.lab.buildings.tolerances import DRAWN_M, GRID_M
+from scanplan.geometry.tolerances import SAME_M
+from scanplan.lab.buildings.tolerances import DRAWN_M
 from scanplan.types import FloatArray
 
 
@@ -70,9 +71,9 @@ def cut_walls(plan: DrawnFloor, z_m: float) -> BaseGeometry:
     bodies = [body for body, height_m in _bodies(plan) if z_m < height_m]
     open_here = [o for o in plan.openings if o.sill_m < z_m < o.lintel_m]
     holes = [o.line_m.buffer(o.thickness_m / 2 + DRAWN_M, cap_style="flat") for o in open_here]
-    solid = shapely.union_all(bodies, grid_size=GRID_M)
-    hole = shapely.union_all(holes, grid_size=GRID_M)
-    return shapely.difference(solid, hole, grid_size=GRID_M).normalize()
+    solid = shapely.union_all(bodies, grid_size=SAME_M)
+    hole = shapely.union_all(holes, grid_size=SAME_M)
+    return shapely.difference(solid, hole, grid_size=SAME_M).normalize()
 
 
 def cut_wall_bands(plan: DrawnFloor) -> list[tuple[float, float, BaseGeometry]]:
@@ -96,7 +97,7 @@ def cut_wall_bands(plan: DrawnFloor) -> list[tuple[float, float, BaseGeometry]]:
 def floor_footprint(plan: DrawnFloor) -> BaseGeometry:
     """Return the whole floor with the walls on it: all that the outer faces enclose."""
     filled = [Polygon(part.exterior) for part in shapely.get_parts(_footprint_of_walls(plan))]
-    return shapely.union_all(filled, grid_size=GRID_M)
+    return shapely.union_all(filled, grid_size=SAME_M)
 
 
 def floor_rooms(plan: DrawnFloor) -> list[tuple[str, Polygon]]:
@@ -108,7 +109,7 @@ def floor_rooms(plan: DrawnFloor) -> list[tuple[str, Polygon]]:
         Name ("" where none is drawn) and floor, in a fixed order.
     """
     walls = _footprint_of_walls(plan)
-    free = shapely.difference(floor_footprint(plan), walls, grid_size=GRID_M).normalize()
+    free = shapely.difference(floor_footprint(plan), walls, grid_size=SAME_M).normalize()
     rooms = [room for room in shapely.get_parts(free) if not room.is_empty]
     return [(_name_of_room(plan, room), room) for room in rooms]
 
@@ -131,7 +132,7 @@ def floor_obstacles(plan: DrawnFloor, height_m: float) -> BaseGeometry:
 
 
 def _footprint_of_walls(plan: DrawnFloor) -> BaseGeometry:
-    return shapely.union_all([body for body, _ in _bodies(plan)], grid_size=GRID_M)
+    return shapely.union_all([body for body, _ in _bodies(plan)], grid_size=SAME_M)
 
 
 def _name_of_room(plan: DrawnFloor, room: Polygon) -> str:

@@ -8,8 +8,8 @@ import shapely
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry.tolerances import SAME_M
 from scanplan.lab.buildings import drawn_floor
-from scanplan.lab.buildings.tolerances import GRID_M
 from scanplan.types import FloatArray, IntArray
 
 SURFACES = ("wall", "floor", "ceiling", "furniture", "glass", "door", "other")
@@ -100,8 +100,8 @@ def extrude_bands(bands: Sequence[Band]) -> FloatArray:
     below = [Polygon(), *sections]
     above = [*sections, Polygon()]
     for z_m, under, over in zip(levels_m, below, above, strict=True):
-        tops = shapely.difference(under, over, grid_size=GRID_M)
-        undersides = shapely.difference(over, under, grid_size=GRID_M)
+        tops = shapely.difference(under, over, grid_size=SAME_M)
+        undersides = shapely.difference(over, under, grid_size=SAME_M)
         surfaces.append(_triangulate(tops, z_m, up=True))
         surfaces.append(_triangulate(undersides, z_m, up=False))
     return np.concatenate(surfaces)

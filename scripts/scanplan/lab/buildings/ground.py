@@ -8,15 +8,9 @@ from shapely import LineString, MultiLineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.errors import StageError
+from scanplan.geometry.tolerances import SAME_M
 from scanplan.lab.buildings import slicing, storeys
-from scanplan.lab.buildings.tolerances import (
-    CRACK_M,
-    DRAWN_M,
-    GRID_M,
-    MESHING_M,
-    ROOM_M,
-    THRESHOLD_M,
-)
+from scanplan.lab.buildings.tolerances import CRACK_M, DRAWN_M, MESHING_M, ROOM_M, THRESHOLD_M
 from scanplan.types import FilePath, FloatArray
 
 SCREEN_M = 1.5  # ASSUME lower things occlude no wall: the sensor's upper beams pass over them
@@ -117,9 +111,9 @@ def _tall_outlines(storey: storeys.Storey, slice_height_m: float) -> list[BaseGe
 def _section(soups: list[list[FloatArray]], z_m: float) -> tuple[BaseGeometry, BaseGeometry]:
     """Return matter and sheets of surfaces, each split into its bodies."""
     sections = [slicing.cut_section(bodies_m, z_m) for bodies_m in soups]
-    solid = shapely.union_all([s for s, _ in sections], grid_size=GRID_M)
-    sheets = shapely.union_all([s for _, s in sections], grid_size=GRID_M)
-    return solid, sheets.difference(solid.buffer(2 * GRID_M))
+    solid = shapely.union_all([s for s, _ in sections], grid_size=SAME_M)
+    sheets = shapely.union_all([s for _, s in sections], grid_size=SAME_M)
+    return solid, sheets.difference(solid.buffer(2 * SAME_M))
 
 
 def _shadow(soups: list[list[FloatArray]], height_m: float) -> BaseGeometry:

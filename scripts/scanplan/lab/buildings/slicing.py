@@ -10,7 +10,8 @@ from scipy.sparse.csgraph import connected_components
 from shapely import LineString, MultiLineString
 from shapely.geometry.base import BaseGeometry
 
-from scanplan.lab.buildings.tolerances import CRACK_M, GRID_M, MESHING_M
+from scanplan.geometry.tolerances import SAME_M
+from scanplan.lab.buildings.tolerances import CRACK_M, MESHING_M
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 MAX_SOLID_M = 2.0  # ASSUME matter is nowhere thicker: a wider closed surface is a room's
@@ -86,9 +87,9 @@ def cut_section(
     """
     cuts = [cut_triangles(body_m, z_m) for body_m in bodies_m]
     sections = [_body_section(ends_m, max_solid_m) for ends_m in cuts if len(ends_m)]
-    solid = shapely.union_all([s for s, _ in sections], grid_size=GRID_M)
-    sheets = shapely.union_all([s for _, s in sections], grid_size=GRID_M)
-    return solid, _only_lines(shapely.difference(sheets, solid.buffer(2 * GRID_M)))
+    solid = shapely.union_all([s for s, _ in sections], grid_size=SAME_M)
+    sheets = shapely.union_all([s for _, s in sections], grid_size=SAME_M)
+    return solid, _only_lines(shapely.difference(sheets, solid.buffer(2 * SAME_M)))
 
 
 def section_faces(
@@ -155,8 +156,8 @@ def find_screens(outlines: Iterable[BaseGeometry], walls: BaseGeometry) -> list[
     -------
     list of LineString, each straight
     """
-    union = shapely.union_all(list(outlines), grid_size=GRID_M)
-    free = _only_lines(shapely.difference(union, walls.buffer(2 * GRID_M)))
+    union = shapely.union_all(list(outlines), grid_size=SAME_M)
+    free = _only_lines(shapely.difference(union, walls.buffer(2 * SAME_M)))
     lines = shapely.line_merge(free).simplify(2 * MESHING_M).normalize()
     return [LineString(run) for line in shapely.get_parts(lines) for run in pairwise(line.coords)]
 
@@ -195,13 +196,13 @@ def _crossing(
 
 
 def _body_section(ends_m: FloatArray, max_solid_m: float) -> tuple[BaseGeometry, MultiLineString]:
-    noded = shapely.union_all(shapely.linestrings(ends_m), grid_size=GRID_M)
+    noded = shapely.union_all(shapely.linestrings(ends_m), grid_size=SAME_M)
     cells = shapely.get_parts(shapely.polygonize([noded]))
     matter = [c for c in cells if _crossing_count(c.representative_point(), ends_m) % 2]
     if np.isfinite(max_solid_m):
         matter = [c for c in matter if c.buffer(-max_solid_m / 2).is_empty]
-    solid = shapely.union_all(matter, grid_size=GRID_M)
-    return solid, _only_lines(shapely.difference(noded, solid, grid_size=GRID_M))
+    solid = shapely.union_all(matter, grid_size=SAME_M)
+    return solid, _only_lines(shapely.difference(noded, solid, grid_size=SAME_M))
 
 
 def _crossing_count(point: shapely.Point, ends_m: FloatArray) -> int:

@@ -1,7 +1,6 @@
-"""Lengths that reading, cutting and describing buildings agree on, from rounding to a room."""
+"""Lengths that reading, cutting and describing buildings agree on, from digits to a room."""
 
 DECIMALS = 6  # of coordinates and lengths in metres, as written
-GRID_M = 1e-6  # shapely's snapping grid: closes rounding alone
 MESHING_M = 1e-4  # seams and corners of one thing differ by this in a mesh
 DRAWN_M = 0.001  # how exactly things lie on each other in drawings; lines count as this wide
 CRACK_M = 0.01  # what is thinner is a gap between parts, or the difference of two thicknesses

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike
 
-from scanplan.lab.buildings.tolerances import GRID_M
+from scanplan.geometry.tolerances import SAME_M
 from scanplan.types import FloatArray
 
 
@@ -62,7 +62,7 @@ def _improve(tour: list[int], metres: FloatArray, closed: bool) -> list[int]:
         for i in range(1, len(tour) - 1):
             for j in range(i + 1, len(tour)):
                 # what saves less may save nothing but rounding, and never end
-                if _gain(tour, metres, i, j, closed) > GRID_M:
+                if _gain(tour, metres, i, j, closed) > SAME_M:
                     tour[i : j + 1] = tour[i : j + 1][::-1]
                     is_better = True
     return tour

@@ -11,8 +11,9 @@ from numpy.typing import ArrayLike
 from shapely import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry.tolerances import SAME_M
 from scanplan.lab.buildings import drawn_floor, ground, slicing
-from scanplan.lab.buildings.tolerances import DECIMALS, GRID_M
+from scanplan.lab.buildings.tolerances import DECIMALS
 
 Feature = tuple[BaseGeometry, dict[str, Any]]
 """A geometry in the map frame, metres, and its properties."""
@@ -61,9 +62,9 @@ def true_wall_faces(
     """
     section = shapely.orient_polygons(drawn_floor.cut_walls(plan, slice_height_m))
     # a vertex in the middle of a straight wall is where another wall ended in the drawing
-    section = section.simplify(GRID_M)
-    skin = shapely.boundary(drawn_floor.floor_footprint(plan)).buffer(10 * GRID_M)
-    runs = slicing.straight_runs(section, GRID_M)
+    section = section.simplify(SAME_M)
+    skin = shapely.boundary(drawn_floor.floor_footprint(plan)).buffer(10 * SAME_M)
+    runs = slicing.straight_runs(section, SAME_M)
     lines = [LineString(run) for run in runs]
     return [(line, "outside" if skin.covers(line) else "inside") for line in lines]
 

@@ -13,6 +13,7 @@ import shapely
 from numpy.typing import ArrayLike
 
 from scanplan.geometry import intervals
+from scanplan.geometry.lines import line_lengths_m
 from scanplan.types import Columns, FloatArray, IntArray
 
 _ENDS = ("x0_m", "y0_m", "x1_m", "y1_m")
@@ -48,11 +49,6 @@ class Agreement:
 def table_lines_m(columns: Columns) -> FloatArray:
     """Return the lines (n, 2, 2) of a table with the columns x0_m, y0_m, x1_m, y1_m."""
     return np.column_stack([columns[name] for name in _ENDS]).reshape(-1, 2, 2)
-
-
-def line_lengths_m(lines_m: FloatArray) -> FloatArray:
-    """Return the lengths (n,) of lines."""
-    return np.hypot(*(lines_m[:, 1] - lines_m[:, 0]).T)
 
 
 def find_near_intervals(

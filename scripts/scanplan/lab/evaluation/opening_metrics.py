@@ -6,6 +6,7 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry.lines import line_lengths_m
 from scanplan.geometry.tolerances import ROUNDING
 from scanplan.lab.evaluation import length_metrics
 from scanplan.lab.evaluation.face_cells import FaceCells
@@ -71,7 +72,7 @@ def _is_visible(line_m: FloatArray, cells: FaceCells, visible: BoolArray) -> boo
     way = unit_directions(line_m[None])[0]
     across = np.array([-way[1], way[0]])
     offset_m = cells.middle_m - line_m.mean(axis=0)
-    reach_m = length_metrics.line_lengths_m(line_m[None])[0] / 2 + _BESIDE_M
+    reach_m = line_lengths_m(line_m[None])[0] / 2 + _BESIDE_M
     along = (unit_directions(cells.faces_m) @ way)[cells.face]
     is_near = (np.abs(offset_m @ way) <= reach_m) & (np.abs(offset_m @ across) <= WALL_M)
     beside = is_near & (np.abs(along) >= PARALLEL)
@@ -88,8 +89,8 @@ def _measure_openings(
     """Return the measures of a kind of openings, of which those wanted (m,) are to be found."""
     pairs = _nearest_pairs(drawn_m, true_m)
     found = [(drawn, true) for drawn, true in pairs if wanted[true]]
-    drawn_width_m = length_metrics.line_lengths_m(drawn_m)
-    true_width_m = length_metrics.line_lengths_m(true_m)
+    drawn_width_m = line_lengths_m(drawn_m)
+    true_width_m = line_lengths_m(true_m)
     error_m = np.array([abs(drawn_width_m[drawn] - true_width_m[true]) for drawn, true in found])
     return {
         f"n_{kind}s_true": int(wanted.sum()),

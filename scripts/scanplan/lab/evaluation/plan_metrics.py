@@ -7,6 +7,7 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry.lines import line_lengths_m
 from scanplan.lab.evaluation import face_cells, length_metrics, opening_metrics
 from scanplan.lab.evaluation.face_cells import FaceCells
 from scanplan.lab.evaluation.true_plan import TruePlan
@@ -69,7 +70,7 @@ def measure_plan(
         lambda xy_m: np.asarray(_moved(xy_m, motion), np.float64),
     )
     return {
-        "length_m": float(length_metrics.line_lengths_m(faces_m).sum()),
+        "length_m": float(line_lengths_m(faces_m).sum()),
         **measure_faces(faces_m, observed, floor.cells, floor.visible, seen),
         **measure_walls(walls_m, drawn["walls"]["thickness_m"], true.walls_m, true.thickness_m),
         **opening_metrics.measure_doors(doors_m, true.doors_m, true.rooms, true.visited),

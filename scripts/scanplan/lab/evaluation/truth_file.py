@@ -9,6 +9,7 @@ import numpy as np
 
 from scanplan.errors import StageError
 from scanplan.geometry import se3
+from scanplan.geometry.lines import line_lengths_m
 from scanplan.geometry.tolerances import ROUNDING
 from scanplan.lab.evaluation.visible_faces import SensorView
 from scanplan.store import tum
@@ -206,4 +207,4 @@ def _runs(path: FilePath, number: int, geometry: dict[str, Any]) -> FloatArray:
             f" {_REMEDY}"
         )
     runs = np.stack([xy_m[:-1], xy_m[1:]], axis=1)
-    return runs[np.hypot(*(runs[:, 1] - runs[:, 0]).T) > ROUNDING]
+    return runs[line_lengths_m(runs) > ROUNDING]

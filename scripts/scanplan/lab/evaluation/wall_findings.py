@@ -12,6 +12,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import se3
+from scanplan.geometry.lines import line_lengths_m
 from scanplan.lab.evaluation import bitmap_shares, face_cells, length_metrics, visible_faces
 from scanplan.lab.evaluation.bitmap_shares import DrawnCells, TrueBitmap
 from scanplan.lab.evaluation.face_cells import FaceCells
@@ -191,7 +192,7 @@ def match_segments(
     n = len(lines_m)
     return Findings(
         scan=drawn.scan,
-        length_m=length_metrics.line_lengths_m(lines_m),
+        length_m=line_lengths_m(lines_m),
         near_truth_m={b: length_metrics.union_length_m(near[b], n) for b in near},
         near_visible_m={b: length_metrics.union_length_m(near_visible[b], n) for b in near},
         found={b: _found_cells(cells, lines_m, m) for b, m in WITHIN_M.items()},

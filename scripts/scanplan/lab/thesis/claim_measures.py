@@ -62,6 +62,26 @@ def measure_at(walls: pd.DataFrame, method: str, extractor: str, k: float, colum
     return float(curve.get(curve.index.max() if np.isinf(k) else k, np.nan))
 
 
+def measure_tenth(
+    walls: pd.DataFrame, columns: Sequence[str]
+) -> tuple[int, list[float], list[float]]:
+    """Measure the first tenth of the scans, and all of them, by cluster hulls.
+
+    Returns
+    -------
+    tenth : int
+        How many scans it is.
+    some, every : list of float
+        The columns of the evaluation for these, and for all.
+    """
+    tenth = max(1, walls["k"].max() // 10)
+    some, every = (
+        [measure_at(walls, "cluster_hull", OURS, k, column) for column in columns]
+        for k in (tenth, np.inf)
+    )
+    return tenth, some, every
+
+
 def count_scans_to(walls: pd.DataFrame, method: str, share: float) -> float:
     """Return the least evaluated number of scans that find a share of what all of them find."""
     found = curve_of(walls, method, OURS, FOUND)

@@ -32,6 +32,7 @@ from scanplan.lab.thesis.claim_measures import (
     growth_exponent,
     least_kept,
     measure_at,
+    measure_tenth,
     of_unit,
 )
 from scanplan.lab.thesis.shown_figures import THESIS_SCANS
@@ -135,11 +136,7 @@ def fifteen_like_all(tables: Tables) -> ClaimMeasure:
 def tenth_of_drive(tables: Tables) -> ClaimMeasure:
     """Compare what a tenth of the scans finds of the hallways' walls with what all find."""
     walls = tables["drive_walls"]
-    tenth = max(1, walls["k"].max() // 10)
-    some, every = (
-        [measure_at(walls, "cluster_hull", OURS, k, column) for column in (ENTERED, CORRECT)]
-        for k in (tenth, np.inf)
-    )
+    tenth, some, every = measure_tenth(walls, (ENTERED, CORRECT))
     values = {
         "walls of the hallways found, a tenth": some[0],
         "walls of the hallways found, all": every[0],

@@ -20,10 +20,7 @@ BY_FRAMES, BY_RETAINED, BY_NEAR_PAIRS = "frames", "retained", "frames, pairs wit
 PAIRED_METHODS = ("point_to_point", "point_to_plane", "gicp")
 _DISTANCES_M = (0.4, 0.45, 0.5, 0.6, 0.8, 1.2)  # from next to none to most of the scans
 _ASKED_POINTS = 1000  # of a scan: its fitness is known to half a per cent
-_PAIR_DISTANCES_M = (
-    0.1,
-    0.5,
-)  # as the preset has pairs; near the thesis's 2 %
+_PAIR_DISTANCES_M = (0.1, 0.5)  # as the preset has pairs; near the thesis's 2 %
 _MOST_PAIRS = 40  # of successive scans, over the whole drive
 # the reading by retained scans knows no new starts and no limit of a correction
 _WITHOUT_LIMITS = {
@@ -113,12 +110,13 @@ def place_candidates(
     planar: bool,
 ) -> Iterator[tuple[PlacedScan, FloatArray]]:
     """Yield thinned scans at given poses, each with its level_from_sensor."""
-    reach_m = constraints.neighbour_reach_m(preset)
     for scan_id, xyz_m, pose in zip(scan_ids.tolist(), part, poses, strict=True):
-        level = constraints.level_pose(pose) if planar else np.eye(4)
+        level = constraints.level_pose(pose, planar=planar)
         thinned_m = constraints.thin_scan(xyz_m, level, planar, preset)
-        cloud = prepared_clouds.prepare_cloud(thinned_m, planar=planar, reach_m=reach_m)
-        yield PlacedScan(scan_id, cloud, pose @ se3.invert_pose(level)), level
+        yield (
+            constraints.place_scan(scan_id, thinned_m, pose, level, planar=planar, settings=preset),
+            level,
+        )
 
 
 def gate_columns(

@@ -29,6 +29,7 @@ from scanplan.lab.thesis.claim_measures import (
     least_kept,
     mean_over_first,
     measure_at,
+    measure_tenth,
     of_unit,
     scans_for_99,
 )
@@ -217,11 +218,7 @@ def fifteen_almost_complete(tables: Tables) -> ClaimMeasure:
 def tenth_little_loss(tables: Tables) -> ClaimMeasure:
     """Compare what a tenth of the scans finds with what all find."""
     walls = tables["rooms_walls"]
-    tenth = max(1, walls["k"].max() // 10)
-    some, every = (
-        [measure_at(walls, "cluster_hull", OURS, k, column) for column in (FOUND, CORRECT)]
-        for k in (tenth, np.inf)
-    )
+    tenth, some, every = measure_tenth(walls, (FOUND, CORRECT))
     values = {
         "walls found, a tenth": some[0],
         "walls found, the best tenth": measure_at(walls, "oracle", OURS, tenth, FOUND),

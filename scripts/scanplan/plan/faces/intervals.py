@@ -7,7 +7,8 @@ from functools import cached_property
 import numpy as np
 
 from scanplan.geometry.lines import Line, Span
-from scanplan.plan.tolerances import END_M, ENOUGH_RAYS, ROUND_M
+from scanplan.geometry.tolerances import ROUNDING
+from scanplan.plan.tolerances import END_M, ENOUGH_RAYS
 from scanplan.rays.face_observation import (
     FaceObservation,
     observe_face,
@@ -214,7 +215,7 @@ def _trim_ends(interval: FaceInterval) -> FaceInterval:
     """
     observation = interval.seen
     # a point on the edge of a column is in it, whichever way the edge was rounded
-    points = observation.occupied_between(interval.low_m - ROUND_M, interval.high_m + ROUND_M)
+    points = observation.occupied_between(interval.low_m - ROUNDING, interval.high_m + ROUNDING)
     along_m = observation.occupied_m[points]
     scan = observation.occupied_scan[points]
     low_m = -_usual_end_m(-along_m, scan)

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 from scanplan.geometry import lines
+from scanplan.geometry.tolerances import ROUNDING
 from scanplan.plan.faces import candidates, segment_groups
 from scanplan.plan.faces.candidates import FaceCandidate, FaceT
-from scanplan.plan.tolerances import ROUND_M
 from scanplan.types import Columns
 
 
@@ -68,7 +68,7 @@ class MergeSettings:
             for name in ("max_angle_deg", "tolerance_m", "registration_sigma_m")
             if not getattr(self, name)
         ]
-        wrong += ["max_angle_deg"] * (math.cos(math.radians(self.max_angle_deg)) < ROUND_M)
+        wrong += ["max_angle_deg"] * (math.cos(math.radians(self.max_angle_deg)) < ROUNDING)
         wrong += ["ghost_share"] * (self.ghost_share > 1)
         wrong += ["merge_distance_m"] * (self.merge_distance_m < self.tolerance_m)
         if wrong:

@@ -11,8 +11,9 @@ import numpy as np
 import shapely
 
 from scanplan.geometry import intersections
+from scanplan.geometry.tolerances import ROUNDING
 from scanplan.plan.faces.intervals import FaceInterval
-from scanplan.plan.tolerances import CORNER_RAD, END_M, ROUND_M
+from scanplan.plan.tolerances import CORNER_RAD, END_M
 from scanplan.rays.face_observation import FaceObservation
 from scanplan.types import FloatArray
 
@@ -44,7 +45,7 @@ def trim_overshoots(intervals: Sequence[FaceInterval]) -> list[FaceInterval]:
                 sign * (ends_m[number] - place_m)
                 for number, place_m in zip(numbers, places_m, strict=True)
             ]
-            if min(arms_m) <= ROUND_M:
+            if min(arms_m) <= ROUNDING:
                 continue
             loser = _select_loser(pair, places_m, sign * min(arms_m))
             if arms_m[loser] <= arms_m[1 - loser] + END_M:
@@ -79,7 +80,7 @@ def trim_tails(intervals: Sequence[FaceInterval], *, share: float) -> list[FaceI
 
 def _without_tails(interval: FaceInterval, places_m: FloatArray, share: float) -> FaceInterval:
     """Return an interval, cut at the places of crossings behind which too few points lie."""
-    least_per_m = share * interval.n_points / max(interval.length_m, ROUND_M)
+    least_per_m = share * interval.n_points / max(interval.length_m, ROUNDING)
     is_on_it = (places_m >= interval.low_m) & (places_m <= interval.high_m)
     middle_m = (interval.low_m + interval.high_m) / 2
     for place_m in sorted(places_m[is_on_it].tolist(), key=lambda place_m: abs(place_m - middle_m)):
