@@ -2,7 +2,9 @@ import os
 import re
 import sys
 
-sys.path.insert(0, f"{workflow.basedir}/scripts")
+from snakemake.exceptions import WorkflowError
+
+sys.path.insert(0, f"{PROJECT}/scripts")
 from scanplan.errors import StageError
 from scanplan.lab.thesis import experiments
 from scanplan.project import stage_settings
@@ -27,16 +29,21 @@ from scanplan.project.settings import (
     Layer,
     locate_fault,
     read_defaults,
+    settings_of_dataset,
     settings_of_run,
 )
-from scanplan.project.settings_check import COMMAND_LINE
+from scanplan.project.settings_check import COMMAND_LINE, MODULE
 from scanplan.project.settings_schema import list_choices, read_schema
 from scanplan.project.yaml_file import read_yaml
 from scanplan.selection import methods
 
-SCHEMA = read_schema(f"{workflow.basedir}/workflow/schemas/config.schema.yaml")
+SCHEMA = read_schema(f"{PROJECT}/workflow/schemas/config.schema.yaml")
 METHODS = list_choices(SCHEMA, "plan", "method")
 EXTRACTORS = list_choices(SCHEMA, "plan", "extractor")
+
+
+# of another workflow, whose run, console and lock are not ours
+IS_MODULE = not workflow.modifier.is_main_snakefile()
 
 
 def or_end(function, *arguments):
@@ -44,12 +51,16 @@ def or_end(function, *arguments):
     try:
         return function(*arguments)
     except StageError as error:
+        if IS_MODULE:
+            raise WorkflowError(f"scanplan: {error}") from None
         print(f"scanplan: {error}", file=sys.stderr)
         raise SystemExit(1)
 
 
 def given_settings():
-    """What the command line says, file by file, and last what is not in a file."""
+    """What the command line says, file by file, and last what is not in a file; or what a module is given."""
+    if IS_MODULE:
+        return [Layer(MODULE, dict(config))]
     files = map(os.path.relpath, workflow.config_settings.configfiles)
     layers = [Layer(file, read_yaml(file)) for file in files]
     alone = Layer(COMMAND_LINE, dict(workflow.config_settings.config))
@@ -57,7 +68,7 @@ def given_settings():
 
 
 KNOWN = {
-    "defaults": or_end(read_defaults, f"{workflow.basedir}/config/config.yaml", SCHEMA),
+    "defaults": or_end(read_defaults, f"{PROJECT}/config/config.yaml", SCHEMA),
     "given": or_end(given_settings),
     "schema": SCHEMA,
 }
@@ -66,16 +77,17 @@ RUN = or_end(settings_of_run, *KNOWN.values())
 
 def given_datasets():
     """The datasets that the user gave, by name; the simulated demo where none is given."""
-    drawings = f"{workflow.basedir}/config/buildings"
+    drawings = f"{PROJECT}/config/buildings"
+    usual = settings_of_dataset(*KNOWN.values())
     return {
-        name: describe_dataset(name, path, drawings=drawings, **KNOWN)
+        name: describe_dataset(name, path, drawings=drawings, usual=usual, **KNOWN)
         for name, path in name_datasets(RUN["dataset"]).items()
     }
 
 
 def thesis_surveys():
     """The surveys of the thesis's experiments, by kind."""
-    return experiments.list_surveys(config=f"{workflow.basedir}/config", **KNOWN)
+    return experiments.list_surveys(config=f"{PROJECT}/config", **KNOWN)
 
 
 THESIS_RULES = (
@@ -107,7 +119,7 @@ def thesis_if_fit():
 GIVEN = or_end(given_datasets)
 THESIS = or_end(thesis_if_fit)
 # a job's own process finds the note that its run has made
-if workflow.is_main_process:
+if workflow.is_main_process and not IS_MODULE:
     for note in (note for found in GIVEN.values() for note in found.notes):
         print(f"scanplan: {note}", file=sys.stderr)
     or_end(
@@ -138,7 +150,7 @@ def code_of(script):
 
     def digest(wildcards):
         # looked up for the jobs of a run alone: every job parses the whole workflow anew
-        return digest_helpers(f"{workflow.basedir}/scripts/{script}.py")
+        return digest_helpers(f"{PROJECT}/scripts/{script}.py")
 
     return digest
 
@@ -186,9 +198,15 @@ def order_settings(wildcards):
     )
 
 
+def of_dataset(dataset, files):
+    """A dataset's recordings or truth: results of a simulated one, else files of the user, whom no module's prefix concerns."""
+    return list(files) if dataset.building else list(map(local, files))
+
+
 def recordings(wildcards):
     """Files that hold a dataset's clouds and poses."""
-    return DATASETS[wildcards.dataset].recordings
+    dataset = DATASETS[wildcards.dataset]
+    return of_dataset(dataset, dataset.recordings)
 
 
 def content_of_recordings(wildcards):
@@ -200,12 +218,14 @@ def content_of_recordings(wildcards):
 
 def true_faces(wildcards):
     """The true walls of a dataset."""
-    return or_end(find_truth, DATASETS[wildcards.dataset])[0]
+    dataset = DATASETS[wildcards.dataset]
+    return of_dataset(dataset, or_end(find_truth, dataset))[0]
 
 
 def true_poses(wildcards):
     """The true sensor poses of a dataset."""
-    return or_end(find_truth, DATASETS[wildcards.dataset])[1]
+    dataset = DATASETS[wildcards.dataset]
+    return of_dataset(dataset, or_end(find_truth, dataset))[1]
 
 
 def plan_selection(wildcards):
@@ -257,7 +277,7 @@ def extraction_times(wildcards):
 
 def building(wildcards):
     """The file of the building that a dataset is simulated in."""
-    return DATASETS[wildcards.dataset].building
+    return local(DATASETS[wildcards.dataset].building)
 
 
 def all_settings(wildcards):
@@ -275,9 +295,13 @@ def comparison_of(name):
     return list_comparison(DATASETS[name], METHODS, compared_extractors(name))
 
 
-def of_all_datasets(files_of):
-    """Files of all given datasets."""
-    return [file for name in GIVEN for file in files_of(name)]
+def of_all_datasets(*kinds):
+    """An input function: files of all given datasets, worked out where they are asked for alone."""
+
+    def files(wildcards):
+        return [file for files_of in kinds for name in GIVEN for file in files_of(name)]
+
+    return files
 
 
 wildcard_constraints:

@@ -13,12 +13,12 @@ def is_to_be_told():
     output = workflow.output_settings
     quiet = output.quiet or ()
     wanted = Quietness.RULES in quiet and not output.verbose
-    return workflow.is_main_process and wanted and not output.dryrun
+    return workflow.is_main_process and wanted and not output.dryrun and not IS_MODULE
 
 
 def comparison_is_up_to_date():
     """Whether all of the given datasets' results that there are were asked for in this run."""
-    there = any(map(os.path.exists, of_all_datasets(comparison_of)))
+    there = any(os.path.exists(file) for name in GIVEN for file in comparison_of(name))
     return "comparison" in workflow.dag_settings.targets or not there
 
 
@@ -33,7 +33,7 @@ def tell_results():
 
 
 # before the jobs are worked out: while another run is at work, files come and go
-if workflow.is_main_process:
+if workflow.is_main_process and not IS_MODULE:
     or_end(run_lock.check_places, GIVEN)
     or_end(run_lock.lock_folder).close()
 if is_to_be_told():

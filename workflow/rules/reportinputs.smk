@@ -39,6 +39,10 @@ def evaluated(*tables):
 TABLE_STAGES = {"observations": "observe_walls", "visibility": "build_visibility"}
 
 
+# a param is no input or output: what a module's prefix makes of its paths is asked for
+placed = workflow.modifier.path_modifier.modify
+
+
 def run_times(orderings, extractors=(), comparing=()):
     """A param function: Snakemake's measurements of the stages of a report, in their order."""
 
@@ -58,19 +62,21 @@ def run_times(orderings, extractors=(), comparing=()):
             "draw_validation",
             *comparing,
         ]
-        return [f"benchmarks/{wildcards.dataset}/{stage}.tsv" for stage in stages]
+        return [
+            placed(f"benchmarks/{wildcards.dataset}/{stage}.tsv") for stage in stages
+        ]
 
     return measured
 
 
 def page_files(*names):
     """Files that a page is made from: templates, style and script."""
-    folder = f"{workflow.basedir}/workflow/report/page"
-    return [os.path.relpath(f"{folder}/{name}") for name in names]
+    folder = f"{PROJECT}/workflow/report/page"
+    return [local(os.path.relpath(f"{folder}/{name}")) for name in names]
 
 
 REPORT_PAGE = page_files("page.html.j2", "tables.html.j2", "page.css", "page.js")
 THESIS_PAGE = [
     *page_files("thesis.html.j2", "thesis.css"),
-    os.path.relpath(f"{workflow.basedir}/config/deviations.md"),
+    local(os.path.relpath(f"{PROJECT}/config/deviations.md")),
 ]

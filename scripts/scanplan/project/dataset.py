@@ -6,13 +6,13 @@ No heavy imports: this runs while the workflow is being parsed.
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from scanplan.errors import StageError
-from scanplan.project import dataset_files, provenance
+from scanplan.project import dataset_files, dataset_list, provenance
 from scanplan.project.settings import Layer, read_own_layers, settings_of_dataset
 from scanplan.project.settings_schema import Schema
 
@@ -81,7 +81,8 @@ def name_datasets(given: FilePath | list[FilePath] | None) -> dict[str, str | No
     Parameters
     ----------
     given : None, path-like or list of path-like
-        A folder, a recording or the file of a simulated survey, or several; the demo if None.
+        A folder, a recording or the file of a simulated survey, or several; the demo if None. A
+        file that lists them (`dataset_list`) stands for what it lists.
 
     Returns
     -------
@@ -91,13 +92,13 @@ def name_datasets(given: FilePath | list[FilePath] | None) -> dict[str, str | No
     Raises
     ------
     StageError
-        If two would share a folder of results, or one would take that of the thesis's experiments.
+        If two would share a folder of results, or one would take that of the thesis's experiments;
+        see `dataset_list.read_list`.
     """
     if given is None:
         return {DEMO: None}
     paths: dict[str, str | None] = {}
-    for path in map(str, given if isinstance(given, list) else [given]):
-        name = dataset_files.dataset_name(path)
+    for name, path in _list_named(given):
         other = paths.get(name)
         if other and provenance.identify_source(path) == provenance.identify_source(other):
             raise StageError(f"{path}: is given twice, first as {other}; leave one out")
@@ -111,6 +112,14 @@ def name_datasets(given: FilePath | list[FilePath] | None) -> dict[str, str | No
     return paths
 
 
+def _list_named(given: FilePath | list[FilePath]) -> Iterator[tuple[str, str]]:
+    for path in map(str, given if isinstance(given, list) else [given]):
+        if dataset_list.is_list(path):
+            yield from dataset_list.read_list(path)
+        else:
+            yield dataset_files.dataset_name(path), path
+
+
 def describe_dataset(
     name: str,
     path: FilePath | None,
@@ -119,6 +128,7 @@ def describe_dataset(
     given: Sequence[Layer],
     schema: Schema,
     drawings: FilePath,
+    usual: Settings | None = None,
 ) -> Dataset:
     """Gather what is known of a dataset before anything is run.
 
@@ -133,6 +143,9 @@ def describe_dataset(
         The command line's settings.
     drawings : path-like
         The folder of the drawings that settings may name.
+    usual : dict, optional
+        The settings of a dataset that states none of its own, where they have been worked out: of
+        many datasets most are such.
 
     Returns
     -------
@@ -146,7 +159,10 @@ def describe_dataset(
     own = _read_own_settings(path)
     layers = (*own, *given)
     source = provenance.identify_source(path)
-    settings = settings_of_dataset(defaults, layers, schema)
+    if own or usual is None:
+        settings = settings_of_dataset(defaults, layers, schema)
+    else:
+        settings = dict(usual)
     if path is None or dataset_files.is_survey_file(path):
         _check_survey(path, own)
         found = describe_simulated(name, settings, drawings)

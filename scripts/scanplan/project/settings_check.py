@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 COMMAND_LINE = "--config"
 """Origin of the settings that were given one by one on the command line."""
 
+MODULE = "config of the module"
+"""Origin of those that another workflow gives."""
+
 MANUAL = "config/README.md explains every key"
 """What a message about a key ends with."""
 

@@ -1,0 +1,69 @@
+"""A list of many datasets in a file: tab-separated, a line each, as sample sheets are.
+
+Standard library only: this runs while the workflow is being parsed.
+"""
+
+import csv
+from collections.abc import Iterator
+from pathlib import Path
+
+from scanplan.errors import StageError
+from scanplan.plain_types import FilePath
+from scanplan.project import dataset_files
+
+SUFFIX = ".tsv"
+_COLUMNS = ("name", "path")
+
+
+def is_list(given: FilePath) -> bool:
+    """Return whether what was given as a dataset is a file that lists datasets."""
+    return Path(given).suffix == SUFFIX and not Path(given).is_dir()
+
+
+def read_list(file: FilePath) -> list[tuple[str, str]]:
+    """Read the datasets that a file lists.
+
+    Parameters
+    ----------
+    file : path-like
+        UTF-8, separated by tabs, the columns named in its first line: `path`, what else is given as
+        a dataset, from the working directory; and, if wanted, `name`, which its results bear. Other
+        columns are left alone.
+
+    Returns
+    -------
+    list of (str, str)
+        Name and path of each dataset, in the order of the file.
+
+    Raises
+    ------
+    StageError
+        If the file cannot be read, has no such columns or no line, or a line of it says too little.
+    """
+    try:
+        with open(file, encoding="utf-8-sig", newline="") as content:
+            datasets = list(_read_rows(file, csv.DictReader(content, delimiter="\t")))
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        fault = error.strerror if isinstance(error, OSError) else "is no text in UTF-8"
+        raise StageError(f"{file}: {fault}; give a list with the columns name and path") from None
+    if not datasets:
+        raise StageError(f"{file}: lists no dataset; write a line `name<tab>path` for each")
+    return datasets
+
+
+def _read_rows(file: FilePath, rows: csv.DictReader) -> Iterator[tuple[str, str]]:
+    if "path" not in (rows.fieldnames or ()):
+        named = ", ".join(rows.fieldnames or ()) or "nothing"
+        raise StageError(
+            f"{file}: its first line names {named}; name the columns {' and '.join(_COLUMNS)},"
+            " separated by tabs"
+        )
+    for row in rows:
+        place = f"{file}: line {rows.line_num}"
+        path = (row["path"] or "").strip()
+        if not path:
+            raise StageError(f"{place}: has no path; write one, or drop the line")
+        name = (row.get("name") or "").strip()
+        if name and dataset_files.dataset_name(name) != name:
+            raise StageError(f"{place}: {name!r} names no results; use letters, digits, _ . -")
+        yield name or dataset_files.dataset_name(path), path
