@@ -69,3 +69,13 @@ def test_ground_whose_mitres_nest_is_opened_all_the_same():
     opened = free_space.open_polygons(ground, 0.04)
     assert opened and all(part.is_valid for part in opened)
     assert shapely.union_all(opened).difference(ground.buffer(1e-3)).area == 0
+
+
+def test_a_mitre_that_folds_into_a_line_leaves_no_line():
+    """Repaired it is polygons and lines, and no overlay takes both."""
+    corners = [(391, 4829), (1110, 4824), (2927, 3765), (866, 1751)]
+    hole = [(1474, 4208), (878, 4655), (887, 4590)]
+    ground = shapely.Polygon(np.array(corners) / 1000, [np.array(hole) / 1000])
+    opened = free_space.open_polygons(ground, 0.1)
+    assert opened and all(part.geom_type == "Polygon" for part in opened)
+    assert shapely.union_all(opened).difference(ground.buffer(1e-3)).area == 0

@@ -127,7 +127,8 @@ def open_polygons(ground: BaseGeometry, half_m: float) -> list[Polygon]:
     for core in polygon_parts(ground.buffer(-half_m, join_style="mitre")).geoms:
         grown = core.buffer(half_m, join_style="mitre")
         # GEOS 3.14 makes nested shells of some mitres, which no overlay takes
-        grown = grown if grown.is_valid else shapely.make_valid(grown)
+        # or shells that touch along a line, which stays when they are repaired
+        grown = grown if grown.is_valid else polygon_parts(shapely.make_valid(grown))
         grown = shapely.intersection(grown, ground, grid_size=GRID_M)
         opened += [part for part in polygon_parts(grown).geoms if part.intersects(core)]
     return opened
