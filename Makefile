@@ -15,7 +15,7 @@ GIVEN := $(foreach name,$(.VARIABLES),$(if $(findstring command line,$(origin $(
 UNKNOWN := $(filter-out $(KNOWN),$(GIVEN))
 $(if $(UNKNOWN),$(error $(UNKNOWN): no such variable; there are $(KNOWN)))
 
-.PHONY: help run compare quick test lint style bench figures settings environment clean
+.PHONY: help run compare quick test test-slurm lint style bench figures settings environment clean
 .DEFAULT_GOAL := run
 
 help: ## this list
@@ -41,7 +41,12 @@ quick: environment style ## lint and the tests of what changed since main, under
 	@$(PYTEST) -m "not workflow and not recordings" $$($(BIN)/python tests/changed_tests.py tests) $(ARGS)
 
 test: environment lint ## lint and all tests, about ten minutes
-	@$(PYTEST) $(ARGS)
+	@$(PYTEST) -m "not slurm" $(ARGS)
+
+test-slurm: environment ## the profile for Slurm, on a Slurm installed and started here; as root on Debian
+	@PYTHONPATH=tests $(BIN)/python -m helpers.slurm_node || exit 0; \
+	    $(BIN)/pip install -qq --disable-pip-version-check --no-deps --require-hashes -r environment-slurm.lock && \
+	    PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pytest -n 0 -s -m slurm tests/slurm $(ARGS)
 
 lint: environment style ## style, types and the workflow's own checks
 	@$(BIN)/basedpyright --threads $(CORES) --project .

@@ -144,3 +144,19 @@ def test_a_file_and_a_dumb_terminal_get_whole_lines_and_no_codes(term, monkeypat
     terminal.show(["at work"])
     terminal.say("x" * 100)
     assert stream.getvalue() == "x" * 100 + "\n"
+
+
+def test_a_stage_that_waits_for_a_cluster_is_not_at_work(console, file, monkeypatch):
+    now_s = 0.0
+    monkeypatch.setattr("scanplan.project.console.time.monotonic", lambda: now_s)
+    begin(console, 7, "register_scans", "")
+    Path("register_scans.log").unlink()
+    now_s = 100.0
+    console._tell_progress()
+    assert not file.getvalue()
+    Path("register_scans.log").write_text(REGISTERED)
+    console._tell_progress()
+    now_s = 170.0
+    console._tell_progress()
+    (line,) = file.getvalue().splitlines()
+    assert line.startswith("0/2 floor register_scans: ") and "  70.0 s  3/9 scans" in line

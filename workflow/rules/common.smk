@@ -155,6 +155,24 @@ def code_of(script):
     return digest
 
 
+# what a stage needs more for each gigabyte recorded, with as much again to spare: a pass through a
+# gigabyte takes seconds and a map of it some megabytes, a drawing of the map some hundred
+NEEDED_PER_GB = {"runtime": 5, "mem_mb": 100}
+
+
+def grown(**least):
+    """A resource function: what a stage asks of a cluster, more for long recordings and at every further attempt."""
+    ((resource, amount),) = least.items()
+
+    def amount_of(wildcards, attempt):
+        dataset = DATASETS[wildcards.dataset]
+        recorded = () if dataset.building else dataset.recordings
+        recorded_gb = sum(map(os.path.getsize, recorded)) / 1e9
+        return int((amount + NEEDED_PER_GB[resource] * recorded_gb) * attempt)
+
+    return amount_of
+
+
 def all_cores(wildcards):
     """All cores of this machine's run; where an executor is told none, as many as the other stages use at most."""
     return workflow.resource_settings.cores or 2

@@ -1,11 +1,42 @@
 import logging
 import os
+from pathlib import Path
 
 from snakemake.settings.enums import Quietness
-from scanplan.project import console, run_lock, run_outcome
+from scanplan.project import console, run_lock, run_outcome, slurm_jobs
 
 THIS_RUN = run_lock.FolderRun()
 CONSOLE = console.open_console(GIVEN)
+# Slurm's jobs of earlier runs in this folder
+OLDER_JOBS = []
+
+
+def is_on_slurm():
+    """Whether the stages of this run are jobs of Slurm."""
+    plugin = workflow.executor_plugin
+    return plugin is not None and plugin.name == "slurm"
+
+
+def end_older_jobs():
+    """Leave no job of a killed run at work beside those of this one."""
+    ended = slurm_jobs.end_older_jobs(Path.cwd())
+    OLDER_JOBS.extend(job.number for job in slurm_jobs.list_jobs(Path.cwd()))
+    if ended:
+        print(
+            f"scanplan: Slurm jobs {', '.join(ended)} of an earlier run were cancelled; this one goes on",
+            file=sys.stderr,
+        )
+
+
+def causes_in_slurm():
+    """Why jobs of this run ended, as far as Slurm knows; None where it is not what runs them."""
+    if not is_on_slurm():
+        return None
+    jobs = or_end(slurm_jobs.list_jobs, Path.cwd())
+    if {job.number for job in jobs} <= set(OLDER_JOBS):
+        asked = workflow.resource_settings.default_resources.get("slurm_partition")
+        return [slurm_jobs.explain_refusal(asked and asked.value)]
+    return list(slurm_jobs.explain_ends(jobs, OLDER_JOBS))
 
 
 def is_to_be_told():
@@ -42,6 +73,8 @@ if is_to_be_told():
 
 onstart:
     or_end(THIS_RUN.begin)
+    if is_on_slurm():
+        or_end(end_older_jobs)
     for name, dataset in GIVEN.items():
         or_end(begin_results, name, dataset.source)
 
@@ -69,7 +102,7 @@ onerror:
     layers = {name: dataset.layers for name, dataset in DATASETS.items()}
     layers[RESERVED] = ()
     run_outcome.remove_unfinished(layers)
-    for line in run_outcome.describe_failure(THIS_RUN, layers):
+    for line in run_outcome.describe_failure(THIS_RUN, layers, causes_in_slurm()):
         print(f"scanplan: {line}", file=sys.stderr)
     # whatever Snakemake would add says less
     raise SystemExit(1)

@@ -10,8 +10,8 @@ rule build_hulls:
         "benchmarks/{dataset}/build_hulls.tsv"
     threads: 2
     resources:
-        mem_mb=1500,
-        runtime=30,
+        mem_mb=grown(mem_mb=1500),
+        runtime=grown(runtime=30),
     params:
         code=code_of("build_hulls"),
         settings=setting(stage_settings.select_hulls),

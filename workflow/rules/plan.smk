@@ -18,8 +18,8 @@ rule assemble_plan:
         "benchmarks/{dataset}/assemble_plan.tsv"
     threads: 1
     resources:
-        mem_mb=2000,
-        runtime=20,
+        mem_mb=grown(mem_mb=2000),
+        runtime=grown(runtime=20),
     params:
         code=code_of("assemble_plan"),
         stop=section("selection", "stop"),
@@ -48,8 +48,8 @@ rule validate_plan:
         "benchmarks/{dataset}/validate_plan.tsv"
     threads: 1
     resources:
-        mem_mb=2000,
-        runtime=10,
+        mem_mb=grown(mem_mb=2000),
+        runtime=grown(runtime=10),
     params:
         code=code_of("validate_plan"),
         stop=section("selection", "stop"),
@@ -86,8 +86,8 @@ rule export_plan:
         "benchmarks/{dataset}/export_plan.tsv"
     threads: 1
     resources:
-        mem_mb=1500,
-        runtime=10,
+        mem_mb=grown(mem_mb=1500),
+        runtime=grown(runtime=10),
     params:
         code=code_of("export_plan"),
         settings=section("plan", "export"),

@@ -11,8 +11,8 @@ rule interpolate_poses:
         "benchmarks/{dataset}/interpolate_poses.tsv"
     threads: 1
     resources:
-        mem_mb=1500,
-        runtime=60,
+        mem_mb=grown(mem_mb=1500),
+        runtime=grown(runtime=60),
     params:
         code=code_of("interpolate_poses"),
         content=content_of_recordings,

@@ -14,8 +14,8 @@ rule register_scans:
         "benchmarks/{dataset}/register_scans.tsv"
     threads: 2
     resources:
-        mem_mb=1500,
-        runtime=120,
+        mem_mb=grown(mem_mb=1500),
+        runtime=grown(runtime=120),
     params:
         code=code_of("register_scans"),
         content=content_of_recordings,

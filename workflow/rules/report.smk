@@ -17,8 +17,8 @@ rule draw_scans:
         "benchmarks/{dataset}/draw_scans.tsv"
     threads: 1
     resources:
-        mem_mb=1500,
-        runtime=10,
+        mem_mb=grown(mem_mb=1500),
+        runtime=grown(runtime=10),
     params:
         code=code_of("draw_scans"),
         stop=section("selection", "stop"),
@@ -44,8 +44,8 @@ rule draw_area:
         "benchmarks/{dataset}/draw_area.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=grown(mem_mb=1000),
+        runtime=grown(runtime=10),
     params:
         code=code_of("draw_area"),
     script:
@@ -72,8 +72,8 @@ rule draw_walls:
         "benchmarks/{dataset}/draw_walls.tsv"
     threads: 1
     resources:
-        mem_mb=1500,
-        runtime=10,
+        mem_mb=grown(mem_mb=1500),
+        runtime=grown(runtime=10),
     params:
         code=code_of("draw_walls"),
         stop=section("selection", "stop"),
@@ -99,8 +99,8 @@ rule draw_validation:
         "benchmarks/{dataset}/draw_validation.tsv"
     threads: 1
     resources:
-        mem_mb=1500,
-        runtime=10,
+        mem_mb=grown(mem_mb=1500),
+        runtime=grown(runtime=10),
     params:
         code=code_of("draw_validation"),
     script:
@@ -141,8 +141,8 @@ rule write_report:
         "benchmarks/{dataset}/write_report.tsv"
     threads: 1
     resources:
-        mem_mb=1500,
-        runtime=10,
+        mem_mb=grown(mem_mb=1500),
+        runtime=grown(runtime=10),
     params:
         code=code_of("write_report"),
         settings=all_settings,

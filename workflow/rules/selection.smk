@@ -11,8 +11,8 @@ rule observe_walls:
         "benchmarks/{dataset}/observe_walls.tsv"
     threads: 2
     resources:
-        mem_mb=2000,
-        runtime=30,
+        mem_mb=grown(mem_mb=2000),
+        runtime=grown(runtime=30),
     params:
         code=code_of("observe_walls"),
         settings=setting(stage_settings.select_wall_cells, methods.WALL_LIMITS),
@@ -33,8 +33,8 @@ rule build_visibility:
         "benchmarks/{dataset}/build_visibility.tsv"
     threads: 2
     resources:
-        mem_mb=1500,
-        runtime=30,
+        mem_mb=grown(mem_mb=1500),
+        runtime=grown(runtime=30),
     params:
         code=code_of("build_visibility"),
         settings=setting(stage_settings.select_visibility),
@@ -55,8 +55,8 @@ rule order_scans:
         "benchmarks/{dataset}/order_scans_{method}.tsv"
     threads: 1
     resources:
-        mem_mb=1500,
-        runtime=30,
+        mem_mb=grown(mem_mb=1500),
+        runtime=grown(runtime=30),
     params:
         code=code_of("order_scans"),
         settings=order_settings,

@@ -12,8 +12,8 @@ rule simulate_survey:
         dataset=simulated_as("bag"),
     threads: 2
     resources:
-        mem_mb=1000,
-        runtime=30,
+        mem_mb=grown(mem_mb=1000),
+        runtime=grown(runtime=30),
     params:
         code=code_of("simulate_survey"),
         settings=setting(stage_settings.select_simulation),

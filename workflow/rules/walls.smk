@@ -11,8 +11,8 @@ rule extract_walls:
         "benchmarks/{dataset}/extract_walls_{extractor}.tsv"
     threads: 2
     resources:
-        mem_mb=2000,
-        runtime=60,
+        mem_mb=grown(mem_mb=2000),
+        runtime=grown(runtime=60),
     params:
         code=code_of("extract_walls"),
         settings=extractor_settings,
@@ -35,8 +35,8 @@ rule extract_chosen_walls:
         "benchmarks/{dataset}/extract_chosen_walls.tsv"
     threads: 2
     resources:
-        mem_mb=2000,
-        runtime=60,
+        mem_mb=grown(mem_mb=2000),
+        runtime=grown(runtime=60),
     params:
         code=code_of("extract_chosen_walls"),
         extraction_code=code_of("extract_walls"),

@@ -33,6 +33,12 @@ _CHATTER = (
     "Singularity containers",
     "Provided ",
     "Exiting because a job",
+    # of the plugin for Slurm, where that keeps no accounts
+    "SLURM run ID",
+    "No SLURM account",
+    "No account was given",
+    "Unable to guess SLURM",
+    "Cannot restore",
 )
 _CHATTER_EVENTS = {event for event in LogEvent if event != LogEvent.ERROR}
 # the stage itself says what was wrong
@@ -43,13 +49,21 @@ _SAID = re.compile(r" (INFO|WARNING) (.*)$")
 
 @dataclass
 class _Stage:
-    """A stage at work: its dataset and name as they are shown, its log, when it began and told."""
+    """A stage: its dataset and name as they are shown, its log, when it was given out and told."""
 
     dataset: str
     name: str
     log: Path
     began_s: float
     told_s: float
+    waits: bool = True
+
+    def is_at_work(self, now_s: float) -> bool:
+        """Return whether it has opened its log: on a cluster it may wait for long."""
+        if self.waits and self.log.exists():
+            self.waits = False
+            self.began_s = self.told_s = now_s
+        return not self.waits
 
     def progress(self) -> str:
         """Return how far it is, as far as its log says."""
@@ -141,7 +155,7 @@ class RunConsole(logging.Handler):
 
     def _close(self, number: int, how: str) -> None:
         stage = self._stages.pop(number, None)
-        if stage is None:
+        if stage is None or (how and not stage.log.exists()):
             return
         self._ended += not how
         took_s = time.monotonic() - stage.began_s
@@ -164,7 +178,7 @@ class RunConsole(logging.Handler):
 
     def _tell_progress(self) -> None:
         now_s = time.monotonic()
-        stages = list(self._stages.values())
+        stages = [stage for stage in self._stages.values() if stage.is_at_work(now_s)]
         if self._terminal.in_place:
             self._terminal.show([self._running_line(stage, now_s) for stage in stages])
             return

@@ -41,7 +41,7 @@ def read_list(file: FilePath) -> list[tuple[str, str]]:
         If the file cannot be read, has no such columns or no line, or a line of it says too little.
     """
     try:
-        with open(file, encoding="utf-8-sig", newline="") as content:
+        with Path(file).open(encoding="utf-8-sig", newline="") as content:
             datasets = list(_read_rows(file, csv.DictReader(content, delimiter="\t")))
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         fault = error.strerror if isinstance(error, OSError) else "is no text in UTF-8"

@@ -49,6 +49,12 @@ def lock_folder() -> TextIO:
         raise StageError(
             f"{Path.cwd()}: another run is at work in this folder; wait for it or stop it"
         ) from None
+    except OSError as error:
+        file.close()
+        raise StageError(
+            f"{LOCK_FILE}: {error.strerror}: this file system locks no files, so that two runs"
+            " could be at work in one folder; give the command in a folder on another"
+        ) from None
     return file
 
 

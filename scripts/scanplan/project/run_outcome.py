@@ -7,10 +7,12 @@ from pathlib import Path
 from scanplan.project import provenance
 from scanplan.project.run_lock import FolderRun
 from scanplan.project.settings import Layer, locate_fault
+from scanplan.project.slurm_jobs import LOGS as JOB_LOGS
 from scanplan.stage.log import INTERRUPTED
 from scanplan.store import atomic
 
 _DONE = " stage done"
+_OUTSIDE = "was ended from outside"
 
 
 def describe_results(name: str) -> str:
@@ -27,7 +29,9 @@ def describe_results(name: str) -> str:
     )
 
 
-def describe_failure(run: FolderRun, layers: Mapping[str, Sequence[Layer]]) -> list[str]:
+def describe_failure(
+    run: FolderRun, layers: Mapping[str, Sequence[Layer]], causes: Sequence[str] | None = None
+) -> list[str]:
     """Return the lines that say why a run failed: a line a stage, and one if it was interrupted.
 
     Parameters
@@ -35,12 +39,22 @@ def describe_failure(run: FolderRun, layers: Mapping[str, Sequence[Layer]]) -> l
     run : run_lock.FolderRun
     layers : dict of str to list of settings.Layer
         By name, the settings of all datasets whose stages could have run.
+    causes : sequence of str, optional
+        On a cluster, what it says of stages that it ended itself; to them that looks like an
+        interrupt.
     """
     lines = [line for name in layers for line in _list_faults(name, run, layers[name])]
+    if causes is not None:
+        # what it says is nearer to the truth than that a log just ends
+        lines = [line for line in lines if _OUTSIDE not in line]
     faults = [line for line in lines if not line.endswith(INTERRUPTED)]
-    if run.interrupted or len(faults) < len(lines):
-        return [*faults, f"the run {INTERRUPTED}"]
-    return faults
+    told = [*faults, *(causes or ())]
+    # what fails on a cluster takes the other stages of its job along
+    if run.interrupted or (causes is None and len(faults) < len(lines)):
+        return [*told, f"the run {INTERRUPTED}"]
+    if causes is not None and not told:
+        return [f"the cluster ended stages without a word; their jobs' logs are in {JOB_LOGS}"]
+    return told
 
 
 def _list_faults(name: str, run: FolderRun, layers: Sequence[Layer]) -> Iterator[str]:
@@ -55,8 +69,8 @@ def _list_faults(name: str, run: FolderRun, layers: Sequence[Layer]) -> Iterator
             yield f"{stage}: {locate_fault(fault, layers)}"
         elif not run.interrupted:
             yield (
-                f"{log.stem}: was ended from outside, perhaps for want of memory or of space on the"
-                f" disk; its log is {log}"
+                f"{log.stem}: {_OUTSIDE}, perhaps for want of memory or of space on the disk; its"
+                f" log is {log}"
             )
 
 
