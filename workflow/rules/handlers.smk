@@ -71,6 +71,28 @@ if is_to_be_told():
     CONSOLE.take_over(logging.getLogger("snakemake.logging"), tell_results)
 
 
+def tell_overview():
+    """Put what became of many datasets into one table and one page, failed ones among them."""
+    if len(GIVEN) < 2 or not set(workflow.dag_settings.targets) <= {"all", "comparison"}:
+        return
+    # takes a second to import, and is needed at the end alone
+    from scanplan.report import overview
+
+    faults = {
+        name: list(run_outcome.list_faults(name, THIS_RUN, dataset.layers))
+        for name, dataset in GIVEN.items()
+    }
+    pages = page_files("overview.html.j2", "overview.css")
+    sources = {os.path.basename(page): Path(page).read_text() for page in pages}
+    table, page = or_end(
+        overview.write_overview,
+        overview.gather_overview("results", faults),
+        "results",
+        sources,
+    )
+    print(f"\nall      {page} (also {table})", file=sys.stderr)
+
+
 onstart:
     or_end(THIS_RUN.begin)
     if is_on_slurm():
@@ -92,6 +114,7 @@ onsuccess:
         for name, dataset in GIVEN.items():
             or_end(end_results, name, dataset.source)
     tell_results()
+    tell_overview()
     print(f"took     {THIS_RUN.elapsed()}", file=sys.stderr)
 
 
@@ -104,5 +127,6 @@ onerror:
     run_outcome.remove_unfinished(layers)
     for line in run_outcome.describe_failure(THIS_RUN, layers, causes_in_slurm()):
         print(f"scanplan: {line}", file=sys.stderr)
+    tell_overview()
     # whatever Snakemake would add says less
     raise SystemExit(1)

@@ -43,7 +43,7 @@ def describe_failure(
         On a cluster, what it says of stages that it ended itself; to them that looks like an
         interrupt.
     """
-    lines = [line for name in layers for line in _list_faults(name, run, layers[name])]
+    lines = [line for name in layers for line in list_faults(name, run, layers[name])]
     if causes is not None:
         # what it says is nearer to the truth than that a log just ends
         lines = [line for line in lines if _OUTSIDE not in line]
@@ -57,8 +57,16 @@ def describe_failure(
     return told
 
 
-def _list_faults(name: str, run: FolderRun, layers: Sequence[Layer]) -> Iterator[str]:
-    """Iterate over the last errors of a dataset's stages that failed in this run."""
+def list_faults(name: str, run: FolderRun, layers: Sequence[Layer]) -> Iterator[str]:
+    """Iterate over the last errors of a dataset's stages that failed in this run.
+
+    Parameters
+    ----------
+    name : str
+    run : run_lock.FolderRun
+    layers : sequence of settings.Layer
+        The settings of the dataset.
+    """
     for log in sorted(Path("logs", name).glob("*.log")):
         lines = log.read_text(errors="replace").splitlines()
         if not run.has_written(log) or (lines and lines[-1].endswith(_DONE)):

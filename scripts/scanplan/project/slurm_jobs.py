@@ -117,7 +117,7 @@ def list_jobs(folder: Path) -> list[SlurmJob]:
         raise StageError(str(error).removeprefix("scanplan: ")) from None
     jobs = map(_parse_job, lines)
     here = [job for job in jobs if job is not None and job.folder == folder]
-    return sorted(here, key=lambda job: int(re.match(r"\d*", job.number)[0] or 0))
+    return sorted(here, key=lambda job: int(job.number.partition("_")[0]))
 
 
 def _parse_job(line: str) -> SlurmJob | None:

@@ -1,0 +1,126 @@
+"""One table of many datasets: what was found of each, how doubtful it is, and which failed."""
+
+import csv
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from scanplan.plan import floorplan
+from scanplan.report.templates import render_template
+from scanplan.store import atomic, schemas, tables
+from scanplan.types import FilePath
+
+MADE, FAILED, MISSING = "plan", "failed", "no plan"
+"""What became of a dataset: it has a plan, a stage of it failed, it was not got to."""
+
+_TEXTS = ("name", "state", "why")
+_NUMBERS = (
+    *("area_m2", "rooms", "open_rooms", "walls", "verify", "doors", "windows", "passages"),
+    *("chosen", "registered", "candidates", "predicted", "seconds"),
+)
+_PLAN = {
+    "rooms": schemas.ROOMS,
+    "walls": schemas.PLAN_WALLS,
+    "openings": schemas.OPENINGS,
+    "validation": schemas.VALIDATION,
+}
+
+
+def gather_overview(results: FilePath, faults: Mapping[str, Sequence[str]]) -> pd.DataFrame:
+    """Gather a row for each dataset from its results.
+
+    Parameters
+    ----------
+    results : path-like
+        The folder with a folder for each dataset; `benchmarks` lies beside it.
+    faults : dict of str to sequence of str
+        Name of every dataset to what its stages ended with in this run; empty where none failed.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Columns `name`, `state`, `why`, `area_m2`, `rooms`, `walls`, `doors`, `windows`, `passages`,
+        `verify` (walls to verify), `open_rooms`, `chosen`, `registered`, `candidates` (scans),
+        `predicted` (share of rays of left-out scans), `seconds` (of all stages); NaN where unknown.
+    """
+    rows = [_gather_row(Path(results), name, told) for name, told in faults.items()]
+    overview = pd.DataFrame(rows, columns=[*_TEXTS, *_NUMBERS])
+    overview = overview.astype(dict.fromkeys(_NUMBERS, float))
+    return overview.sort_values("name", ignore_index=True)
+
+
+def _gather_row(results: Path, name: str, faults: Sequence[str]) -> dict[str, Any]:
+    folder = results / name
+    row: dict[str, Any] = {"name": name, "why": "; ".join(faults)}
+    row["seconds"] = _sum_seconds(results.parent / "benchmarks" / name)
+    if (folder / "registration.parquet").exists():
+        kept = tables.read_table(folder / "registration.parquet", schemas.REGISTRATION)["kept"]
+        row |= {"registered": int(kept.sum()), "candidates": len(kept)}
+    files = {table: folder / "plan" / f"{table}.parquet" for table in _PLAN}
+    is_made = all(file.exists() for file in files.values())
+    row["state"] = FAILED if faults else MADE if is_made else MISSING
+    if is_made:
+        row |= _describe_plan(files)
+        left_out = tables.read_note(files["validation"], schemas.VALIDATION, "n_left_out")
+        row["chosen"] = row["registered"] - int(left_out)
+    return row
+
+
+def _describe_plan(files: Mapping[str, Path]) -> dict[str, Any]:
+    plan = {
+        table: tables.read_table(files[table], schema, allow_empty=True)
+        for table, schema in _PLAN.items()
+    }
+    kinds = plan["openings"]["type"]
+    return {
+        "area_m2": float(plan["rooms"]["area_m2"].sum()),
+        "rooms": len(plan["rooms"]["room"]),
+        "open_rooms": int((~plan["rooms"]["closed"]).sum()),
+        "walls": len(plan["walls"]["wall"]),
+        "verify": int(plan["walls"]["verify"].sum()),
+        **{f"{kind}s": int((kinds == kind).sum()) for kind in floorplan.OPENINGS},
+        "predicted": float(plan["validation"]["share"][-1]),
+    }
+
+
+def _sum_seconds(folder: Path) -> float:
+    """Return the wall seconds of all stages, as far as Snakemake's measurements can be read."""
+    seconds = 0.0
+    for file in folder.glob("*.tsv"):
+        with file.open(encoding="utf-8", newline="") as content:
+            for run in csv.DictReader(content, delimiter="\t"):
+                try:
+                    seconds += float(run["s"])
+                except (KeyError, TypeError, ValueError):
+                    continue
+    return seconds
+
+
+def write_overview(
+    overview: pd.DataFrame, results: FilePath, page_sources: Mapping[str, str]
+) -> tuple[Path, Path]:
+    """Write summary.parquet and summary.html beside the datasets' folders, and return both.
+
+    Parameters
+    ----------
+    overview : pandas.DataFrame
+        See `gather_overview`.
+    results : path-like
+    page_sources : dict of str to str
+        The template `overview.html.j2` and what it takes in, see `templates.render_template`.
+    """
+    table, page = (Path(results, f"summary.{suffix}") for suffix in ("parquet", "html"))
+    with atomic.replace_file(table) as temporary:
+        overview.to_parquet(temporary, index=False)
+    text = render_template(
+        page_sources,
+        "overview.html.j2",
+        rows=overview.astype(object).where(overview.notna(), None).to_dict("records"),
+        totals=overview[list(_NUMBERS)].sum().to_dict(),
+        states=overview["state"].value_counts().to_dict(),
+        made=MADE,
+    )
+    atomic.write_text(page, text)
+    return table, page

@@ -1,0 +1,72 @@
+"""One table of many datasets."""
+
+import numpy as np
+import pandas as pd
+
+from scanplan.report import overview
+from scanplan.store import schemas, tables
+
+
+def some(schema, n, **columns):
+    """Return a table's columns, zero or empty where not given."""
+    filled = {}
+    for name, kind in schema.columns.items():
+        empty = {"string": "", "binary": b""}.get(kind, 0)
+        filled[name] = np.full(n, empty, object if kind in ("string", "binary") else kind)
+    return filled | columns
+
+
+def make_results(folder):
+    kept = np.array([True, True, False])
+    registration = some(schemas.REGISTRATION, 3, scan_id=np.arange(3, dtype=np.int32), kept=kept)
+    tables.write_table(folder / "registration.parquet", schemas.REGISTRATION, registration)
+    rooms = some(schemas.ROOMS, 2, room=np.array([1, 2], np.int32))
+    rooms |= {"area_m2": np.array([10.0, 2.5]), "closed": np.array([True, False])}
+    walls = some(schemas.PLAN_WALLS, 1, verify=np.array([True]))
+    openings = some(schemas.OPENINGS, 3, opening=np.arange(3, dtype=np.int32))
+    openings["type"] = np.array(["door", "window", "door"], object)
+    rays = some(schemas.VALIDATION, 1, share=np.array([0.75]))
+    plan = {"rooms": rooms, "walls": walls, "openings": openings, "validation": rays}
+    for name, schema in overview._PLAN.items():
+        notes = dict.fromkeys(("n_left_out", "n_scans", "tolerance_m", "absent"), "1")
+        notes = notes if name == "validation" else None
+        tables.write_table(folder / "plan" / f"{name}.parquet", schema, plan[name], notes=notes)
+
+
+def test_a_plan_a_fault_and_what_was_not_got_to(tmp_path):
+    make_results(tmp_path / "results/first")
+    times = tmp_path / "benchmarks/first/register_scans.tsv"
+    times.parent.mkdir(parents=True)
+    times.write_text("s\tmax_rss\n2.5\t100\n1.5\t-\n-\t-\n")
+    faults = {"third": [], "second": ["register_scans: too few <scans>"], "first": []}
+    rows = overview.gather_overview(tmp_path / "results", faults)
+    assert list(rows["name"]) == ["first", "second", "third"]
+    assert list(rows["state"]) == [overview.MADE, overview.FAILED, overview.MISSING]
+    first = rows.iloc[0]
+    assert (first["area_m2"], first["rooms"], first["open_rooms"]) == (12.5, 2, 1)
+    assert (first["doors"], first["windows"], first["passages"]) == (2, 1, 0)
+    assert (first["chosen"], first["registered"], first["candidates"]) == (1, 2, 3)
+    assert (first["verify"], first["predicted"], first["seconds"]) == (1, 0.75, 4.0)
+    assert rows["area_m2"].isna().tolist() == [False, True, True]
+
+
+def test_the_page_says_all_and_takes_names_for_text(tmp_path, project_root):
+    folder = project_root / "workflow/report/page"
+    sources = {name: (folder / name).read_text() for name in ("overview.html.j2", "overview.css")}
+    make_results(tmp_path / "results/first")
+    faults = {"first": [], "second": ["register_scans: too few <scans>"]}
+    rows = overview.gather_overview(tmp_path / "results", faults)
+    table, page = overview.write_overview(rows, tmp_path / "results", sources)
+    text = page.read_text()
+    assert 'href="first/report.html"' in text and "75.0%" in text
+    assert "1 plan, 1 failed" in text or "1 failed, 1 plan" in text
+    assert "too few &lt;scans&gt;" in text and 'href="second' not in text
+    pd.testing.assert_frame_equal(pd.read_parquet(table), rows)
+
+
+def test_nothing_at_all_is_a_page_too(tmp_path, project_root):
+    folder = project_root / "workflow/report/page"
+    sources = {name: (folder / name).read_text() for name in ("overview.html.j2", "overview.css")}
+    rows = overview.gather_overview(tmp_path / "results", {"a": [], "b": []})
+    _, page = overview.write_overview(rows, tmp_path / "results", sources)
+    assert "2 no plan" in page.read_text()
