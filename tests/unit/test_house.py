@@ -44,7 +44,7 @@ HOMES = {
     "jinja2": ("report/", "lab/thesis/"),
     "matplotlib": ("exports/", "report/", "lab/", "stage/figure_files.py"),
     "snakemake": (),
-    "pandas": ("lab/",),
+    "pandas": ("lab/", "report/overview.py"),
     "sklearn": ("selection/hulls.py",),
 }
 """Library to the files and folders of the package that may import it."""
