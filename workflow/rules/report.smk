@@ -116,6 +116,7 @@ REPORT_TABLES = {
     "free": "results/{dataset}/plan/free.parquet",
     "evidence": "results/{dataset}/plan/evidence.parquet",
     "validation": "results/{dataset}/plan/validation.parquet",
+    "scans": "results/{dataset}/scans.parquet",
     "selection": plan_selection,
     "segments": "results/{dataset}/plan/segments.parquet",
     "poses": "results/{dataset}/poses.parquet",
@@ -131,7 +132,7 @@ rule write_report:
         **REPORT_TABLES,
         figures=figures_among(results_of),
         evaluation=evaluated("plan"),
-        results=sizes_among(results_of),
+        results=files_beside(results_of),
     output:
         page="results/{dataset}/report.html",
         summary="results/{dataset}/summary.txt",
@@ -157,7 +158,7 @@ use rule write_report as write_comparison with:
         **REPORT_TABLES,
         figures=figures_among(compared),
         evaluation=evaluated("plan", "walls"),
-        results=sizes_among(compared),
+        results=files_beside(compared),
     output:
         page="results/{dataset}/comparison.html",
     log:

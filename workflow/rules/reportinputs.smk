@@ -13,14 +13,15 @@ def figures_among(files_of):
     return figures
 
 
-def sizes_among(files_of):
-    """An input function: the tables and plans among the results, whose sizes a report states."""
+def files_beside(files_of):
+    """An input function: the tables and plans among the results, which a report links and sizes."""
 
-    def sized(wildcards):
-        shown = (".html", ".svg", ".txt")
-        return [f for f in files_of(wildcards.dataset) if not f.endswith(shown)]
+    def beside(wildcards):
+        folder = f"results/{wildcards.dataset}/figures/"
+        files = files_of(wildcards.dataset)
+        return [f for f in files if not f.startswith(folder) and not f.endswith((".html", ".txt"))]
 
-    return sized
+    return beside
 
 
 def evaluated(*tables):
@@ -69,7 +70,9 @@ def page_files(*names):
     return [os.path.relpath(f"{folder}/{name}") for name in names]
 
 
-REPORT_PAGE = page_files("page.html.j2", "tables.html.j2", "page.css", "page.js")
+REPORT_PAGE = page_files(
+    *("page.html.j2", "tables.html.j2", "page.css", "page.js", "elements.js"),
+)
 THESIS_PAGE = [
     *page_files("thesis.html.j2", "thesis.css"),
     os.path.relpath(f"{workflow.basedir}/config/deviations.md"),

@@ -79,6 +79,8 @@ class RunFacts:
         or damaged is left out.
     sizes : list of (str, str, int)
         What, file name, bytes.
+    results : list of str
+        What was made beside the page, as paths from its folder.
     version : str
     """
 
@@ -86,4 +88,5 @@ class RunFacts:
     figures: Mapping[str, str]
     benchmarks: Mapping[str, str]
     sizes: Sequence[tuple[str, str, int]]
+    results: Sequence[str]
     version: str
