@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from scanplan.plan import floorplan
-from scanplan.project import code_files
+from scanplan.project import code_files, corrections_file
 from scanplan.report import figures, point_image
 from scanplan.report.facts import PredictionFacts, RunFacts, SurveyFacts
 from scanplan.report.page import report_page
@@ -36,7 +36,7 @@ def write_report(
         `faces`, `walls`, `openings`, `rooms`, `free`, `evidence`, `segments`, `validation` of
         plan/; `scans`, `selection`, `poses`, `registration`; `page` (templates, CSS, JavaScript);
         `figures`; `evaluation` (plan.parquet and walls.parquet, as far as they are known);
-        `recordings`; `results`.
+        `recordings`; `results`; `corrections`, if there are any.
     output : path-like
         report.html or comparison.html, to write.
     name : str
@@ -62,6 +62,7 @@ def write_report(
         benchmarks={Path(path).stem: text for path, text in _read_texts(run_times)},
         sizes=[*recorded, *made],
         results=[*beside, *([] if short is None else [Path(short).name])],
+        corrections=_read_entries(files["corrections"]),
         version=f"Made by scanplan, code {code_files.digest_code()}.",
     )
     sources = {Path(path).name: text for path, text in _read_texts(files["page"])}
@@ -114,6 +115,11 @@ def _read_prediction(path: FilePath) -> PredictionFacts:
 
 def _read_if_known(path: FilePath | None, schema: schemas.Schema) -> Columns | None:
     return None if path is None else tables.read_table(path, schema)
+
+
+def _read_entries(path: FilePath | list[FilePath]) -> list[dict[str, Any]]:
+    """Return the entries of a file of corrections, none without one: the workflow gives a list."""
+    return [] if isinstance(path, list) else corrections_file.read_entries(path)
 
 
 def _read_texts(paths: Iterable[FilePath]) -> list[tuple[FilePath, str]]:

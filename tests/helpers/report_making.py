@@ -170,6 +170,7 @@ def files(folder):
         "page": [PAGE / name for name in PAGE_FILES],
         "figures": [folder / "scans.svg"],
         "evaluation": [paths["evaluation/walls"], paths["evaluation/plan"]],
+        "corrections": [],
         "recordings": [folder / "survey.bag"],
         "results": [paths["faces"], paths["walls"], folder / "plan.svg", folder / "plan.dxf"],
     }

@@ -6,6 +6,7 @@ import pytest
 
 from helpers import browser, floorplan_making, report_making
 from scanplan.errors import StageError
+from scanplan.project import corrections_file
 from scanplan.store import schemas, tables
 from write_report import write_report
 
@@ -58,9 +59,9 @@ def test_tables_state_what_the_stages_found(report):
     assert found["walls"][1][:8] == ["0", "", "observed", "7.20", "200", "", "2.0", "10.0"]
     assert found["walls"][2][4] == "–"
     assert found["walls"][3][1:3] == ["few scans show it, or its place is uncertain", "inferred"]
-    joined = ["door", "0.90", "0.00", "2.00", "Room 0 – Room 1", "40"]
+    joined = ["door", "0.90", "0.00", "2.00", "Room 0 – Room 1", "40", ""]
     assert found["openings"][2] == ["1", "", *joined]
-    assert found["rooms"][1] == ["0", "Room 0", "", "12.00", "14.00", "yes", "2"]
+    assert found["rooms"][1] == ["0", "Room 0", "", "12.00", "14.00", "yes", "2", ""]
     assert found["registration"][1] == ["kept", "yes", "3", "60.0", "0.800", "0.900", "50", "30"]
     assert found["stages"][1:] == [
         ["build_hulls", "2.5", "3.4", "444"],
@@ -349,6 +350,41 @@ def test_the_wheel_over_the_plan_scrolls_the_page(page):
     page.mouse("mouseWheel", 500, 400, deltaX=0, deltaY=200)
     page.run("new Promise(done => setTimeout(done, 300))")
     assert page.run("scrollY") > 100
+
+
+@needs_browser
+def test_corrections_made_in_the_page_are_a_file_that_the_next_run_reads(page, tmp_path):
+    page.ask("Page.setDownloadBehavior", behavior="allow", downloadPath=str(tmp_path))
+    act = "[...document.querySelectorAll('#card button')].find(b => b.textContent === '{}').click()"
+    page.run("document.querySelector('tr[data-element=\"wall 2\"]').click()")
+    page.run(act.format("remove"))
+    page.run("document.querySelector('tr[data-element=\"opening 1\"]').click()")
+    page.run(act.format("is a window"))
+    page.run("document.querySelector('tr[data-element=\"room 1\"]').click()")
+    page.run("document.querySelector('#card input').value = 'Küche \"2\"'")
+    page.run("document.querySelector('#card form').requestSubmit()")
+    page.run("document.getElementById('download').click()")
+    path = tmp_path / "corrections.yaml"
+    for _ in range(100):
+        if path.exists():
+            break
+        page.run("new Promise(done => setTimeout(done, 50))")
+    wall, opening, room = corrections_file.read_corrections(path)
+    assert (wall.action, wall.at_m) == ("remove", pytest.approx((5.575, 3.1)))
+    assert (opening.kind, opening.at_m) == ("window", pytest.approx((4.05, 1.45)))
+    assert (room.name, room.at_m) == ('Küche "2"', pytest.approx((5.6, 1.5)))
+
+
+@needs_browser
+def test_corrections_that_a_plan_has_are_listed(chromium, tmp_path):
+    files = report_making.files(tmp_path)
+    files["corrections"] = tmp_path / "corrections.yaml"
+    files["corrections"].write_text(
+        "corrections:\n- {element: room, at: [1, 2], name: '</script> & co'}\n"
+    )
+    page = chromium.open(written(tmp_path, files).as_uri())
+    assert "room is </script> & co at 1,2" in text_of(page, "#corrections li")
+    assert page.complaints == []
 
 
 SIZES = [(1600, 1000), (1280, 800), (390, 844), (360, 640)]

@@ -81,6 +81,8 @@ class RunFacts:
         What, file name, bytes.
     results : list of str
         What was made beside the page, as paths from its folder.
+    corrections : list of dict
+        Entries of the dataset's file of corrections, as they stand in it.
     version : str
     """
 
@@ -89,4 +91,5 @@ class RunFacts:
     benchmarks: Mapping[str, str]
     sizes: Sequence[tuple[str, str, int]]
     results: Sequence[str]
+    corrections: Sequence[Mapping[str, object]]
     version: str

@@ -107,7 +107,7 @@ def report_page(
         sizes=page_tables.size_table(run.sizes),
         settings=page_tables.settings_table(run.settings),
         version=run.version,
-        data=_script_data(survey, objective),
+        data=_script_data(survey, run, objective),
     )
 
 
@@ -197,7 +197,7 @@ def _page_figure(name: str, svg: str) -> PageFigure:
     return PageFigure(name, caption, base64.b64encode(text.encode()).decode())
 
 
-def _script_data(survey: SurveyFacts, objective: str) -> dict[str, object]:
+def _script_data(survey: SurveyFacts, run: RunFacts, objective: str) -> dict[str, object]:
     """Return what the page's script needs to know."""
     selection = survey.selection
     covered = _of_all(selection["covered"], selection["covered"][-1])
@@ -206,7 +206,7 @@ def _script_data(survey: SurveyFacts, objective: str) -> dict[str, object]:
         "scan_ids": selection["scan_id"][: survey.chosen].tolist(),
         "covered": covered.round(5).tolist(),
         "objective": objective,
-        "corrections": [],
+        "corrections": run.corrections,
     }
 
 

@@ -77,12 +77,13 @@ def wall_table(plan: floorplan.FloorPlan, evidence: Columns) -> PageTable:
             _number(at["n_scans"], 0),
             _moment(first_ns),
             _moment(last_ns),
+            Cell(at["corrected"]),
         ]
         rows.append(Row(cells, f"wall {wall}"))
     heads = _heads(
         "#wall", "to verify", "state", "#length (m)", "#thickness (mm)", "#ends at height (m)",
         "#σ offset (mm)", "#σ start (mm)", "#σ end (mm)", "#residual (mm)", "#points", "#scans",
-        "#first seen", "#last seen",
+        "#first seen", "#last seen", "corrected",
     )  # fmt: skip
     return PageTable("walls", heads, rows, sortable=True)
 
@@ -100,12 +101,13 @@ def opening_table(plan: floorplan.FloorPlan) -> PageTable:
             _number(at["lintel_m"], 2),
             Cell(f"{name_of.get(at['room_a'], _OUTSIDE)} – {name_of.get(at['room_b'], _OUTSIDE)}"),
             _number(at["n_rays"], 0),
+            Cell(at["corrected"]),
         ], f"opening {at['opening']}")
         for i, at in enumerate(_records(plan.openings))
     ]  # fmt: skip
     heads = _heads(
         "#opening", "to verify", "type", "#width (m)", "#sill (m)", "#lintel (m)", "joins",
-        "#rays through",
+        "#rays through", "corrected",
     )  # fmt: skip
     return PageTable("openings", heads, rows, sortable=True)
 
@@ -121,12 +123,13 @@ def room_table(plan: floorplan.FloorPlan) -> PageTable:
             _number(at["perimeter_m"], 2),
             Cell("yes" if at["closed"] else "no"),
             _number(at["n_scans"], 0),
+            Cell(at["corrected"]),
         ], f"room {at['room']}")
         for i, at in enumerate(_records(plan.rooms))
     ]  # fmt: skip
     heads = _heads(
         "#room", "name", "to verify", "#area (m²)", "#perimeter (m)", "closed",
-        "#scans that see it",
+        "#scans that see it", "corrected",
     )  # fmt: skip
     return PageTable("rooms", heads, rows, sortable=True)
 
