@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 COMMAND_LINE = "--config"
 """Origin of the settings that were given one by one on the command line."""
 
-MANUAL = "config/README.md explains every key"
+MANUAL = "config/settings.md explains every key"
 """What a message about a key ends with."""
 
 # JSON knows no whole numbers and takes 5.0 for one; range() and a schema's reader do not
