@@ -15,7 +15,7 @@ GIVEN := $(foreach name,$(.VARIABLES),$(if $(findstring command line,$(origin $(
 UNKNOWN := $(filter-out $(KNOWN),$(GIVEN))
 $(if $(UNKNOWN),$(error $(UNKNOWN): no such variable; there are $(KNOWN)))
 
-.PHONY: help run compare quick test test-slurm lint style bench figures settings environment clean
+.PHONY: help run compare quick test test-slurm lint style bench figures pictures settings environment clean
 .DEFAULT_GOAL := run
 
 help: ## this list
@@ -62,6 +62,9 @@ bench: environment ## the stages against the algorithms of the thesis written li
 
 figures: environment ## the house in figures; ARGS='OTHER_CHECKOUT .' compares, ARGS=--types counts type errors
 	@$(BIN)/python tests/house_figures.py $(ARGS)
+
+pictures: environment ## the pictures of README.md from results/demo, by a headless Chromium
+	@$(BIN)/python tests/pictures.py $(ARGS)
 
 settings: environment ## write the lists in config/ and the manual's tables from the schema
 	@PYTHONPATH=scripts $(BIN)/python -m scanplan.project.settings_files

@@ -1,19 +1,22 @@
 """Write the report of a dataset: one page that opens offline."""
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 from scanplan.plan import floorplan
-from scanplan.project import code_files
+from scanplan.project import code_files, corrections_file
+from scanplan.report import figures, point_image
 from scanplan.report.facts import PredictionFacts, RunFacts, SurveyFacts
 from scanplan.report.page import report_page
 from scanplan.report.summary import summarise_survey
 from scanplan.selection import stopping
 from scanplan.stage import log
 from scanplan.store import atomic, schemas, tables
-from scanplan.types import Columns, FilePath, Settings
+from scanplan.types import Columns, FilePath, FloatArray, Settings
+
+_NOT_SIZED = (".svg", ".html", ".txt")
 
 
 def write_report(
@@ -31,9 +34,9 @@ def write_report(
     ----------
     files : dict of str to path-like, or list of path-like
         `faces`, `walls`, `openings`, `rooms`, `free`, `evidence`, `segments`, `validation` of
-        plan/; `selection`, `poses`, `registration`; `page` (templates, CSS, JavaScript); `figures`;
-        `evaluation` (plan.parquet and walls.parquet, as far as they are known); `recordings`;
-        `results`.
+        plan/; `scans`, `selection`, `poses`, `registration`; `page` (templates, CSS, JavaScript);
+        `figures`; `evaluation` (plan.parquet and walls.parquet, as far as they are known);
+        `recordings`; `results`; `corrections`, if there are any.
     output : path-like
         report.html or comparison.html, to write.
     name : str
@@ -46,23 +49,36 @@ def write_report(
     """
     plan = floorplan.read_floorplan(files, name)
     survey = _read_survey(files, settings["selection"]["stop"])
+    points = point_image.draw_point_image(_read_chosen_scans(files["scans"], survey), plan)
     recorded = [("recording", Path(path).name, _size(path)) for path in files["recordings"]]
     folder = Path(output).parent
-    made = [("result", os.path.relpath(path, folder), _size(path)) for path in files["results"]]
+    beside = [os.path.relpath(path, folder) for path in files["results"]]
+    made = [
+        ("result", name, _size(folder / name)) for name in beside if not name.endswith(_NOT_SIZED)
+    ]
     run = RunFacts(
         settings=settings,
         figures={Path(path).stem: text for path, text in _read_texts(files["figures"])},
         benchmarks={Path(path).stem: text for path, text in _read_texts(run_times)},
         sizes=[*recorded, *made],
+        results=[*beside, *([] if short is None else [Path(short).name])],
+        corrections=_read_entries(files["corrections"]),
         version=f"Made by scanplan, code {code_files.digest_code()}.",
     )
     sources = {Path(path).name: text for path, text in _read_texts(files["page"])}
-    text = report_page(sources, plan, survey, run)
+    text = report_page(sources, plan, survey, points, run)
     atomic.write_text(output, text)
     if short is not None:
         atomic.write_text(short, summarise_survey(plan, survey))
     summary = floorplan.summarise_floorplan(plan)
     log.log_line(f"write_report: {len(text) / 1e6:.1f} MB, {survey.chosen} scans, {summary}")
+
+
+def _read_chosen_scans(path: FilePath, survey: SurveyFacts) -> Iterator[tuple[int, FloatArray]]:
+    chosen_ids = survey.selection["scan_id"][: survey.chosen]
+    # a selection of another run may name scans that were not kept
+    figures.sensor_positions(survey.registration, chosen_ids)
+    return tables.ScanStore(path).scans(chosen_ids)
 
 
 def _read_survey(files: Mapping[str, Any], stop: Settings) -> SurveyFacts:
@@ -99,6 +115,11 @@ def _read_prediction(path: FilePath) -> PredictionFacts:
 
 def _read_if_known(path: FilePath | None, schema: schemas.Schema) -> Columns | None:
     return None if path is None else tables.read_table(path, schema)
+
+
+def _read_entries(path: FilePath | list[FilePath]) -> list[dict[str, Any]]:
+    """Return the entries of a file of corrections, none without one: the workflow gives a list."""
+    return [] if isinstance(path, list) else corrections_file.read_entries(path)
 
 
 def _read_texts(paths: Iterable[FilePath]) -> list[tuple[FilePath, str]]:

@@ -89,6 +89,7 @@ def walls(rows=WALLS):
         "n_points": np.full(n, 500, np.int64),
         "n_scans": np.full(n, 3, np.int32),
         "verify": np.array([row[4] == "inferred" for row in rows], bool),
+        "corrected": np.full(n, "", object),
     }
 
 
@@ -108,6 +109,7 @@ def openings(rows=OPENINGS):
         "room_a": np.array([row[5] for row in rows], np.int32),
         "room_b": np.array([row[6] for row in rows], np.int32),
         "n_rays": np.full(n, 40, np.int64),
+        "corrected": np.full(n, "", object),
     }
 
 
@@ -121,6 +123,8 @@ def rooms(polygons=ROOMS):
         "y_m": np.array([p.centroid.y for p in polygons], float),
         "closed": np.ones(n, bool),
         "n_scans": np.full(n, 2, np.int32),
+        "name": np.full(n, "", object),
+        "corrected": np.full(n, "", object),
         "geometry": np.array([shapely.to_wkb(p) for p in polygons], object),
     }
 

@@ -10,6 +10,7 @@ from scanplan.report.facts import PredictionFacts
 from scanplan.store import schemas, tables
 
 PAGE = Path(__file__).resolve().parents[2] / "workflow/report/page"
+PAGE_FILES = ("page.html.j2", "tables.html.j2", "page.css", "page.js", "elements.js")
 SETTINGS = {
     "selection": {"stop": {"n_scans": 3, "area_share": None}},
     "plan": {
@@ -23,6 +24,8 @@ PLACES_M = [(1.0, 1.0), (2.0, 1.5), (4.05, 1.4), (6.0, 1.0), (6.5, 2.0)]
 START_NS = 1_700_000_000_000_000_000
 # what each scan shows of the faces of the plan
 SEEN = [(9, 0), (9, 1), (9, 5), (5, 0), (5, 3), (5, 4), (12, 0), (12, 1), (0, 4)]
+# on the faces in the south and the west, and on the floor
+SCANNED_M = np.array([(1.0, 0.0, 1.2), (2.0, 0.0, 1.2), (0.0, 2.0, 1.2), (2.0, 2.0, 0.0)])
 BENCHMARK = "s\th:m:s\tmax_rss\tmax_vms\tmax_uss\tmax_pss\tio_in\tio_out\tmean_load\tcpu_time\n{}\n"
 
 
@@ -143,6 +146,10 @@ def files(folder):
     paths = {name: folder / f"{name}.parquet" for name in made}
     for name, (schema, columns) in made.items():
         tables.write_table(paths[name], schema, columns)
+    paths["scans"] = folder / "scans.parquet"
+    with tables.open_scan_writer(paths["scans"], planar=False) as write:
+        for scan_id in SCAN_IDS[:4]:
+            write(scan_id, SCANNED_M)
     paths["validation"] = folder / "validation.parquet"
     notes = {"n_scans": "1", "absent": ""}
     tables.write_table(paths["validation"], schemas.VALIDATION, validation(), notes=notes)
@@ -150,6 +157,8 @@ def files(folder):
         '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><path d="M0 0"/></svg>'
     )
     (folder / "survey.bag").write_bytes(bytes(2_500_000))
+    for name in ("plan.svg", "plan.dxf"):
+        (folder / name).write_text("drawn")
     (folder / "benchmarks").mkdir(exist_ok=True)
     (folder / "benchmarks/build_hulls.tsv").write_text(
         BENCHMARK.format("2.5\t0:00:02\t443.8\t1\t1\t1\t0\t0\t80\t3.4")
@@ -158,9 +167,10 @@ def files(folder):
         BENCHMARK.format("0.1\t0:00:00\t-\t-\t-\t-\t-\t-\t-\t-")
     )
     return paths | {
-        "page": [PAGE / name for name in ("page.html.j2", "tables.html.j2", "page.css", "page.js")],
+        "page": [PAGE / name for name in PAGE_FILES],
         "figures": [folder / "scans.svg"],
         "evaluation": [paths["evaluation/walls"], paths["evaluation/plan"]],
+        "corrections": [],
         "recordings": [folder / "survey.bag"],
-        "results": [paths["faces"], paths["walls"]],
+        "results": [paths["faces"], paths["walls"], folder / "plan.svg", folder / "plan.dxf"],
     }

@@ -31,7 +31,7 @@ def test_what_methods_need():
 
 
 def test_every_method_is_in_the_manual(project_root):
-    manual = (project_root / "config/README.md").read_text()
+    manual = (project_root / "config/method.md").read_text()
     assert [m for m in methods.METHODS if f"\n| `{m}` |" not in manual] == []
 
 

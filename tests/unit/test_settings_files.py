@@ -41,15 +41,15 @@ def test_the_lists_are_in_step_with_the_schema(project_root, name):
 
 
 def test_the_manual_is_in_step_with_the_schema(project_root):
-    manual = (project_root / "config/README.md").read_text()
-    assert settings_files.fill_manual(manual, SCHEMA) == manual, f"config/README.md {REMEDY}"
+    manual = (project_root / "config/settings.md").read_text()
+    assert settings_files.fill_manual(manual, SCHEMA) == manual, f"config/settings.md {REMEDY}"
 
 
 def test_the_manual_has_a_table_of_every_section(project_root):
     sections = [key for key, node in SCHEMA["properties"].items() if is_section(node)]
     tuned = [f"advanced.{key}" for key in SCHEMA["properties"]["advanced"]["properties"]]
     sections.remove("advanced")
-    manual = (project_root / "config/README.md").read_text()
+    manual = (project_root / "config/settings.md").read_text()
     tables = re.findall(r"(?m)^<!-- settings (\S+) -->$", manual)
     assert sorted(tables) == sorted(["general", *sections, *tuned])
 
@@ -106,10 +106,10 @@ def test_writing_again_changes_nothing(project_root, tmp_path):
     (tmp_path / "config").mkdir()
     schema = "workflow/schemas/config.schema.yaml"
     (tmp_path / schema).parent.mkdir(parents=True)
-    for name in (schema, "config/README.md"):
+    for name in (schema, "config/settings.md"):
         (tmp_path / name).write_text((project_root / name).read_text())
     settings_files.write_settings_files(tmp_path)
-    for name in ("README.md", *FILES):
+    for name in ("settings.md", *FILES):
         assert (tmp_path / "config" / name).read_text() == (
             project_root / "config" / name
         ).read_text()

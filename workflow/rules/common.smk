@@ -252,6 +252,22 @@ def plan_selection(wildcards):
     return f"results/{wildcards.dataset}/selection/{method}.parquet"
 
 
+def plan_table(table):
+    """An input function: a table of the plan, the corrected one where the dataset has corrections."""
+
+    def path(wildcards):
+        is_corrected = DATASETS[wildcards.dataset].corrections is not None
+        folder = "plan/corrected" if is_corrected else "plan"
+        return f"results/{wildcards.dataset}/{folder}/{table}.parquet"
+
+    return path
+
+
+def corrections(wildcards):
+    """The file of what a person says of a dataset's plan, where there is one."""
+    return DATASETS[wildcards.dataset].corrections or []
+
+
 def plan_extractor_settings(wildcards):
     """Settings of the extractor whose walls make the plan."""
     settings = DATASETS[wildcards.dataset].settings

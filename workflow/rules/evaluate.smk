@@ -53,11 +53,11 @@ rule tabulate_seconds:
 rule evaluate_plan:
     """Measure the plan against the true one."""
     input:
-        faces="results/{dataset}/plan/faces.parquet",
-        walls="results/{dataset}/plan/walls.parquet",
-        openings="results/{dataset}/plan/openings.parquet",
-        rooms="results/{dataset}/plan/rooms.parquet",
-        evidence="results/{dataset}/plan/evidence.parquet",
+        faces=plan_table("faces"),
+        walls=plan_table("walls"),
+        openings=plan_table("openings"),
+        rooms=plan_table("rooms"),
+        evidence=plan_table("evidence"),
         registration="results/{dataset}/registration.parquet",
         truth=true_faces,
         true_poses=true_poses,

@@ -28,14 +28,45 @@ rule assemble_plan:
         "../../scripts/assemble_plan.py"
 
 
-rule validate_plan:
-    """Measure how well the plan predicts rays of scans that it was not made of."""
+rule correct_plan:
+    """Carry out what a person says of the plan in the dataset's folder."""
     input:
+        corrections=corrections,
         faces="results/{dataset}/plan/faces.parquet",
         walls="results/{dataset}/plan/walls.parquet",
         openings="results/{dataset}/plan/openings.parquet",
         rooms="results/{dataset}/plan/rooms.parquet",
+        evidence="results/{dataset}/plan/evidence.parquet",
         free="results/{dataset}/plan/free.parquet",
+    output:
+        faces="results/{dataset}/plan/corrected/faces.parquet",
+        walls="results/{dataset}/plan/corrected/walls.parquet",
+        openings="results/{dataset}/plan/corrected/openings.parquet",
+        rooms="results/{dataset}/plan/corrected/rooms.parquet",
+        evidence="results/{dataset}/plan/corrected/evidence.parquet",
+        free="results/{dataset}/plan/corrected/free.parquet",
+    log:
+        "logs/{dataset}/correct_plan.log",
+    benchmark:
+        "benchmarks/{dataset}/correct_plan.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=5,
+    params:
+        code=code_of("correct_plan"),
+    script:
+        "../../scripts/correct_plan.py"
+
+
+rule validate_plan:
+    """Measure how well the plan predicts rays of scans that it was not made of."""
+    input:
+        faces=plan_table("faces"),
+        walls=plan_table("walls"),
+        openings=plan_table("openings"),
+        rooms=plan_table("rooms"),
+        free=plan_table("free"),
         selection=plan_selection,
         scans="results/{dataset}/scans.parquet",
         registration="results/{dataset}/registration.parquet",
@@ -61,12 +92,12 @@ rule validate_plan:
 rule export_plan:
     """Write the plan as GeoJSON, DXF, SVG, PDF, IFC and as a map for nav2."""
     input:
-        faces="results/{dataset}/plan/faces.parquet",
-        walls="results/{dataset}/plan/walls.parquet",
-        openings="results/{dataset}/plan/openings.parquet",
-        rooms="results/{dataset}/plan/rooms.parquet",
-        evidence="results/{dataset}/plan/evidence.parquet",
-        free="results/{dataset}/plan/free.parquet",
+        faces=plan_table("faces"),
+        walls=plan_table("walls"),
+        openings=plan_table("openings"),
+        rooms=plan_table("rooms"),
+        evidence=plan_table("evidence"),
+        free=plan_table("free"),
     output:
         geojson="results/{dataset}/plan/plan.geojson",
         dxf="results/{dataset}/plan/plan.dxf",

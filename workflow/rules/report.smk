@@ -58,7 +58,7 @@ rule draw_walls:
         scans="results/{dataset}/scans.parquet",
         registration="results/{dataset}/registration.parquet",
         selection=plan_selection,
-        faces="results/{dataset}/plan/faces.parquet",
+        faces=plan_table("faces"),
     output:
         figure=report(
             "results/{dataset}/figures/walls.svg",
@@ -109,18 +109,20 @@ rule draw_validation:
 
 # what a report is made of, with a comparison or without
 REPORT_TABLES = {
-    "faces": "results/{dataset}/plan/faces.parquet",
-    "walls": "results/{dataset}/plan/walls.parquet",
-    "openings": "results/{dataset}/plan/openings.parquet",
-    "rooms": "results/{dataset}/plan/rooms.parquet",
-    "free": "results/{dataset}/plan/free.parquet",
-    "evidence": "results/{dataset}/plan/evidence.parquet",
+    "faces": plan_table("faces"),
+    "walls": plan_table("walls"),
+    "openings": plan_table("openings"),
+    "rooms": plan_table("rooms"),
+    "free": plan_table("free"),
+    "evidence": plan_table("evidence"),
     "validation": "results/{dataset}/plan/validation.parquet",
+    "scans": "results/{dataset}/scans.parquet",
     "selection": plan_selection,
     "segments": "results/{dataset}/plan/segments.parquet",
     "poses": "results/{dataset}/poses.parquet",
     "registration": "results/{dataset}/registration.parquet",
     "recordings": recordings,
+    "corrections": corrections,
     "page": REPORT_PAGE,
 }
 
@@ -131,7 +133,7 @@ rule write_report:
         **REPORT_TABLES,
         figures=figures_among(results_of),
         evaluation=evaluated("plan"),
-        results=sizes_among(results_of),
+        results=files_beside(results_of),
     output:
         page="results/{dataset}/report.html",
         summary="results/{dataset}/summary.txt",
@@ -157,7 +159,7 @@ use rule write_report as write_comparison with:
         **REPORT_TABLES,
         figures=figures_among(compared),
         evaluation=evaluated("plan", "walls"),
-        results=sizes_among(compared),
+        results=files_beside(compared),
     output:
         page="results/{dataset}/comparison.html",
     log:

@@ -13,14 +13,15 @@ def figures_among(files_of):
     return figures
 
 
-def sizes_among(files_of):
-    """An input function: the tables and plans among the results, whose sizes a report states."""
+def files_beside(files_of):
+    """An input function: the tables and plans among the results, which a report links and sizes."""
 
-    def sized(wildcards):
-        shown = (".html", ".svg", ".txt")
-        return [f for f in files_of(wildcards.dataset) if not f.endswith(shown)]
+    def beside(wildcards):
+        folder = f"results/{wildcards.dataset}/figures/"
+        files = files_of(wildcards.dataset)
+        return [f for f in files if not f.startswith(folder) and not f.endswith((".html", ".txt"))]
 
-    return sized
+    return beside
 
 
 def evaluated(*tables):
@@ -57,7 +58,7 @@ def run_times(orderings, extractors=(), comparing=()):
             *(f"order_scans_{method}" for method in ordered),
             "extract_chosen_walls",
             *(f"extract_walls_{extractor}" for extractor in extractors),
-            *("assemble_plan", "validate_plan", "export_plan", "evaluate_poses"),
+            *("assemble_plan", "correct_plan", "validate_plan", "export_plan", "evaluate_poses"),
             *("evaluate_plan", "draw_registration", "draw_scans", "draw_walls"),
             "draw_validation",
             *comparing,
@@ -75,7 +76,9 @@ def page_files(*names):
     return [local(os.path.relpath(f"{folder}/{name}")) for name in names]
 
 
-REPORT_PAGE = page_files("page.html.j2", "tables.html.j2", "page.css", "page.js")
+REPORT_PAGE = page_files(
+    *("page.html.j2", "tables.html.j2", "page.css", "page.js", "elements.js"),
+)
 THESIS_PAGE = [
     *page_files("thesis.html.j2", "thesis.css"),
     local(os.path.relpath(f"{PROJECT}/config/deviations.md")),

@@ -1,5 +1,6 @@
 """A floor plan as one thing: its tables, and the shapes that drawings and models make of them."""
 
+import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -31,6 +32,29 @@ def centrelines_m(columns: Columns) -> FloatArray:
 
 
 @dataclass(frozen=True)
+class GeoReference:
+    """The rigid motion from the map frame to a system of the Earth.
+
+    Attributes
+    ----------
+    crs : str
+        Its name, such as EPSG:25832.
+    east_m, north_m : float
+        The map frame's origin in it.
+    rotation_rad : float
+        The direction of the map's x axis in it, counter-clockwise from east.
+    residual_m : float
+        Root of the mean square distance of the reference points after it.
+    """
+
+    crs: str
+    east_m: float
+    north_m: float
+    rotation_rad: float
+    residual_m: float
+
+
+@dataclass(frozen=True)
 class FloorPlan:
     """The tables of a plan, and what follows from them.
 
@@ -47,6 +71,8 @@ class FloorPlan:
         ASSUME of the storey, where neither its ceiling nor walls were seen in their height.
     floor_z_m, ceiling_z_m : float
         Heights in the map frame, NaN where not seen.
+    georeference : GeoReference or None
+        Where the plan lies on Earth, where a person said so.
     """
 
     name: str
@@ -59,6 +85,7 @@ class FloorPlan:
     assumed_height_m: float = 2.5
     floor_z_m: float = np.nan
     ceiling_z_m: float = np.nan
+    georeference: GeoReference | None = None
 
     @cached_property
     def thick(self) -> BoolArray:
@@ -198,6 +225,13 @@ class FloorPlan:
         return shapely.from_wkb(np.asarray(self.rooms["geometry"], object))
 
     @cached_property
+    def room_names(self) -> list[str]:
+        """What each room is called, (r,): the name given by hand, or its number."""
+        numbers = self.rooms["room"].tolist()
+        given = self.rooms.get("name", np.full(len(numbers), "", object))
+        return [name or f"Room {n}" for name, n in zip(given, numbers, strict=True)]
+
+    @cached_property
     def label_widths_m(self) -> FloatArray:
         """How wide each room's label may be, (r,): across the circle that has room around it."""
         places = shapely.points(self.rooms["x_m"], self.rooms["y_m"])
@@ -229,6 +263,7 @@ def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: f
         float(tables.read_note(files["free"], schemas.FREE, note) or "nan")
         for note in ("floor_z_m", "ceiling_z_m")
     )
+    reference = tables.read_note(files["free"], schemas.FREE, "georeference")
     return FloorPlan(
         name=name,
         faces=read("faces", schemas.FACES),
@@ -238,6 +273,7 @@ def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: f
         free=read("free", schemas.FREE),
         floor_z_m=floor_z_m,
         ceiling_z_m=ceiling_z_m,
+        georeference=GeoReference(**json.loads(reference)) if reference else None,
         **assumed_m,
     )
 

@@ -59,7 +59,7 @@ def face_columns(
         rows.append({"face": row, **_face_row(face, floor_z_m), "wall": number})
         if isinstance(face, FaceInterval):
             main_rows.setdefault((number, is_left), row)
-    return _columns(rows, schemas.FACES), main_rows
+    return columns_of_rows(rows, schemas.FACES), main_rows
 
 
 def wall_columns(
@@ -103,9 +103,10 @@ def wall_columns(
             "n_points": known.n_points,
             "n_scans": len(known.scans),
             "verify": doubtful[number],
+            "corrected": "",
         }
         rows.append(row)
-    return _columns(rows, schemas.PLAN_WALLS)
+    return columns_of_rows(rows, schemas.PLAN_WALLS)
 
 
 def opening_columns(
@@ -129,9 +130,10 @@ def opening_columns(
                 "room_a": room_left,
                 "room_b": room_right,
                 "n_rays": opening.n_rays,
+                "corrected": "",
             }
             rows.append(row)
-    return _columns(rows, schemas.OPENINGS)
+    return columns_of_rows(rows, schemas.OPENINGS)
 
 
 def room_columns(rooms: Sequence[Room]) -> dict[str, Array]:
@@ -151,10 +153,12 @@ def room_columns(rooms: Sequence[Room]) -> dict[str, Array]:
             "y_m": y_m,
             "closed": room.closed,
             "n_scans": room.n_scans,
+            "name": "",
+            "corrected": "",
             "geometry": shapely.to_wkb(room.polygon),
         }
         rows.append(row)
-    return _columns(rows, schemas.ROOMS)
+    return columns_of_rows(rows, schemas.ROOMS)
 
 
 def evidence_columns(
@@ -174,14 +178,22 @@ def evidence_columns(
         for scan, n_points in zip(known.scans, known.points, strict=True):
             scan_row = {"scan_id": scan_ids[scan], "t_ns": t_ns[scan]}
             rows.append({"wall": wall, **scan_row, "n_points": n_points})
-    return _columns(rows, schemas.EVIDENCE)
+    return columns_of_rows(rows, schemas.EVIDENCE)
 
 
 def free_columns(polygons: Iterable[Polygon]) -> dict[str, Array]:
     """Return the rows of `schemas.FREE` of polygons, the largest first."""
     parts = sorted(polygons, key=lambda polygon: (-polygon.area, *polygon.bounds))
     rows = [{"part": i, "geometry": shapely.to_wkb(part)} for i, part in enumerate(parts)]
-    return _columns(rows, schemas.FREE)
+    return columns_of_rows(rows, schemas.FREE)
+
+
+def columns_of_rows(rows: Sequence[Row], schema: schemas.Schema) -> dict[str, Array]:
+    """Return rows as the columns of a schema."""
+    return {
+        name: np.array([row[name] for row in rows], _TYPES[kind])
+        for name, kind in schema.columns.items()
+    }
 
 
 def _face_row(face: FaceInterval | InferredFace, floor_z_m: float) -> Row:
@@ -220,10 +232,3 @@ def _rank(face: FaceInterval | InferredFace) -> tuple[Any, ...]:
 def _end_columns(ends_m: FloatArray) -> Row:
     names = ("x0_m", "y0_m", "x1_m", "y1_m")
     return dict(zip(names, ends_m.ravel().tolist(), strict=True))
-
-
-def _columns(rows: Sequence[Row], schema: schemas.Schema) -> dict[str, Array]:
-    return {
-        name: np.array([row[name] for row in rows], _TYPES[kind])
-        for name, kind in schema.columns.items()
-    }

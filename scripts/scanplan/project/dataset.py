@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from scanplan.errors import StageError
-from scanplan.project import dataset_files, dataset_list, provenance
+from scanplan.project import corrections_file, dataset_files, dataset_list, provenance
 from scanplan.project.settings import Layer, read_own_layers, settings_of_dataset
 from scanplan.project.settings_schema import Schema
 
@@ -63,6 +63,8 @@ class Dataset:
         What its results are made of, as `provenance` compares it.
     notes : tuple of str
         What the user should know of it before it is run.
+    corrections : str or None
+        The file of what a person says of its plan, where there is one.
     """
 
     name: str
@@ -73,6 +75,7 @@ class Dataset:
     layers: tuple[Layer, ...] = ()
     source: str = ""
     notes: tuple[str, ...] = ()
+    corrections: str | None = None
 
 
 def name_datasets(given: FilePath | list[FilePath] | None) -> dict[str, str | None]:
@@ -169,7 +172,9 @@ def describe_dataset(
     else:
         recordings = tuple(dataset_files.find_files(path))
         notes = tuple(dataset_files.list_overlooked(path))
-        found = Dataset(name, settings, recordings, _truth_beside(Path(path)), notes=notes)
+        corrections = _read_corrections(Path(path))
+        truth = _truth_beside(Path(path))
+        found = Dataset(name, settings, recordings, truth, notes=notes, corrections=corrections)
     return replace(found, layers=layers, source=source)
 
 
@@ -185,6 +190,14 @@ def _read_own_settings(path: FilePath | None) -> list[Layer]:
         remedy = f"give its folder as the dataset, {Path(path).parent}"
         raise StageError(f"{path}: describes a rosbag2 recording; {remedy}")
     return read_own_layers(path)
+
+
+def _read_corrections(folder: Path) -> str | None:
+    """Return the file of corrections; one with a mistake ends the run before it begins."""
+    path = corrections_file.find_corrections(folder)
+    if path is not None:
+        corrections_file.read_corrections(path)
+    return path
 
 
 def _check_survey(path: FilePath | None, own: Sequence[Layer]) -> None:
@@ -237,6 +250,8 @@ def list_results(found: Dataset) -> list[str]:
     """
     files = [f"{table}.parquet" for table in _TABLES]
     files += [f"selection/{found.settings['plan']['method']}.parquet", *_DRAWN]
+    if found.corrections:
+        files += [f"{table.replace('plan/', 'plan/corrected/')}.parquet" for table in _PLAN]
     if found.truth:
         files += [f"evaluation/{table}.parquet" for table in _EVALUATION]
     return [f"results/{found.name}/{file}" for file in files]

@@ -11,6 +11,7 @@ from pathlib import Path
 from scanplan.errors import StageError
 from scanplan.plain_types import FilePath
 from scanplan.project import dataset_entries
+from scanplan.project.corrections_file import CORRECTIONS_FILES
 from scanplan.project.dataset_entries import POSES_FILE, ROSBAG2_SUFFIXES, SCANS_FOLDER
 from scanplan.project.dataset_entries import is_rosbag2_metadata as is_rosbag2_metadata
 
@@ -144,7 +145,8 @@ def _note_beside(path: Path) -> list[str]:
     if not path.is_file() and not (path / "metadata.yaml").is_file():
         return []
     folder = path.parent
-    beside = [name for name in (SETTINGS_FILE, *TRUTH_FILES) if (folder / name).is_file()]
+    names = (SETTINGS_FILE, *CORRECTIONS_FILES, *TRUTH_FILES)
+    beside = [name for name in names if (folder / name).is_file()]
     if not beside:
         return []
     return [

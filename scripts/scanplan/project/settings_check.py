@@ -21,7 +21,7 @@ COMMAND_LINE = "--config"
 MODULE = "config of the module"
 """Origin of those that another workflow gives."""
 
-MANUAL = "config/README.md explains every key"
+MANUAL = "config/settings.md explains every key"
 """What a message about a key ends with."""
 
 # JSON knows no whole numbers and takes 5.0 for one; range() and a schema's reader do not

@@ -11,13 +11,13 @@ from scanplan.project.settings_schema import ADVANCED, Schema, is_section, read_
 
 _ROOT = Path(__file__).parents[3]
 _SCHEMA = "workflow/schemas/config.schema.yaml"
-_MANUAL = "config/README.md"
+_MANUAL = "config/settings.md"
 _WIDTH = tomllib.loads((_ROOT / "pyproject.toml").read_text())["tool"]["ruff"]["line-length"]
 """Columns, as of the code."""
 _LABORATORY = ("simulate", "evaluation", "thesis")
 _HEADS = {
     "config.yaml": """\
-What a user may want to set, each key with its meaning [unit, range]; README.md beside has more.
+What a user may want to set, each key with its meaning [unit, range]; settings.md beside has more.
 Values here hold for all datasets; those of one belong into a file dataset.yaml in its folder, those
 of a run into a file for CONFIG= (--configfile). advanced.yaml and simulate.yaml list all others.
 """,

@@ -79,6 +79,10 @@ class RunFacts:
         or damaged is left out.
     sizes : list of (str, str, int)
         What, file name, bytes.
+    results : list of str
+        What was made beside the page, as paths from its folder.
+    corrections : list of dict
+        Entries of the dataset's file of corrections, as they stand in it.
     version : str
     """
 
@@ -86,4 +90,6 @@ class RunFacts:
     figures: Mapping[str, str]
     benchmarks: Mapping[str, str]
     sizes: Sequence[tuple[str, str, int]]
+    results: Sequence[str]
+    corrections: Sequence[Mapping[str, object]]
     version: str

@@ -9,8 +9,19 @@ import numpy as np
 from markupsafe import Markup
 
 from scanplan.plan import floorplan
-from scanplan.report import chart, figures, growth, page_tables, plan_svg, templates, wording
+from scanplan.report import (
+    chart,
+    doubts,
+    figures,
+    growth,
+    page_tables,
+    plan_svg,
+    result_links,
+    templates,
+    wording,
+)
 from scanplan.report.facts import RunFacts, SurveyFacts
+from scanplan.report.point_image import PointImage
 from scanplan.types import FloatArray, Settings
 
 _FOUND, _RIGHT = "visible_completeness_010m", "correctness_010m"
@@ -42,7 +53,11 @@ class PageFigure:
 
 
 def report_page(
-    sources: Mapping[str, str], plan: floorplan.FloorPlan, survey: SurveyFacts, run: RunFacts
+    sources: Mapping[str, str],
+    plan: floorplan.FloorPlan,
+    survey: SurveyFacts,
+    points: PointImage,
+    run: RunFacts,
 ) -> str:
     """Return the page.
 
@@ -52,6 +67,8 @@ def report_page(
         File name to text of `page.html.j2` and of all that it asks for.
     plan : floorplan.FloorPlan
     survey : SurveyFacts
+    points : point_image.PointImage
+        What the chosen scans saw, from above.
     run : RunFacts
 
     Returns
@@ -70,7 +87,9 @@ def report_page(
         summary=wording.plan_sentence(plan, survey),
         prediction=wording.prediction_sentence(survey.prediction),
         facts=wording.head_figures(plan, survey),
-        plan=Markup(_plan_svg(plan, survey, of_plan["merge"])),
+        links=result_links.link_results(run.results),
+        doubts=doubts.list_doubts(plan),
+        plan=Markup(_plan_svg(plan, survey, points, of_plan["merge"])),
         chosen=survey.chosen,
         min_scans=of_plan["merge"]["min_scans"],
         chart=Markup(chart.chart_svg(curves, n_scans, survey.chosen)),
@@ -88,7 +107,7 @@ def report_page(
         sizes=page_tables.size_table(run.sizes),
         settings=page_tables.settings_table(run.settings),
         version=run.version,
-        data=_script_data(survey, objective),
+        data=_script_data(survey, run, objective),
     )
 
 
@@ -116,7 +135,9 @@ def _float(text: str | None) -> float:
         return np.nan
 
 
-def _plan_svg(plan: floorplan.FloorPlan, survey: SurveyFacts, merging: Settings) -> str:
+def _plan_svg(
+    plan: floorplan.FloorPlan, survey: SurveyFacts, points: PointImage, merging: Settings
+) -> str:
     """Draw the plan, its growth, and what each chosen scan shows."""
     selected_ids = survey.selection["scan_id"][: survey.chosen]
     rank_of = {scan: rank for rank, scan in enumerate(selected_ids.tolist(), 1)}
@@ -135,7 +156,7 @@ def _plan_svg(plan: floorplan.FloorPlan, survey: SurveyFacts, merging: Settings)
     lines_m = floorplan.centrelines_m(segments)
     shown_m = [lines_m[rank == k] for k in range(1, survey.chosen + 1)]
     positions_m = figures.sensor_positions(survey.registration, selected_ids)
-    return plan_svg.growing_plan_svg(plan, stretches, positions_m, shown_m)
+    return plan_svg.growing_plan_svg(plan, stretches, positions_m, shown_m, points)
 
 
 def _curves(survey: SurveyFacts, of_plan: Settings, objective: str) -> dict[str, chart.Curve]:
@@ -176,7 +197,7 @@ def _page_figure(name: str, svg: str) -> PageFigure:
     return PageFigure(name, caption, base64.b64encode(text.encode()).decode())
 
 
-def _script_data(survey: SurveyFacts, objective: str) -> dict[str, object]:
+def _script_data(survey: SurveyFacts, run: RunFacts, objective: str) -> dict[str, object]:
     """Return what the page's script needs to know."""
     selection = survey.selection
     covered = _of_all(selection["covered"], selection["covered"][-1])
@@ -185,6 +206,7 @@ def _script_data(survey: SurveyFacts, objective: str) -> dict[str, object]:
         "scan_ids": selection["scan_id"][: survey.chosen].tolist(),
         "covered": covered.round(5).tolist(),
         "objective": objective,
+        "corrections": run.corrections,
     }
 
 

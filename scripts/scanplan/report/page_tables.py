@@ -9,10 +9,11 @@ import numpy as np
 
 from scanplan.plan import floorplan
 from scanplan.project.settings import iterate_leaves
-from scanplan.report import measure_meanings
+from scanplan.report import doubts, measure_meanings
 from scanplan.types import Columns, FloatArray, Settings
 
 _NOT_KNOWN = "–"
+_OUTSIDE = "outside or not known"
 _DEVIATIONS = ("sigma_offset_m", "sigma_end0_m", "sigma_end1_m", "rmse_m")
 
 
@@ -35,10 +36,10 @@ class Cell:
 
 @dataclass(frozen=True)
 class Row:
-    """Cells of a row; `wall` is the wall of the plan that choosing the row shows."""
+    """Cells of a row; `element` is what of the plan choosing the row shows, such as `wall 3`."""
 
     cells: list[Cell]
-    wall: int | None = None
+    element: str | None = None
 
 
 @dataclass(frozen=True)
@@ -66,7 +67,7 @@ def wall_table(plan: floorplan.FloorPlan, evidence: Columns) -> PageTable:
         first_ns, last_ns = moments.get(wall, (None, None))
         cells = [
             _number(wall, 0),
-            Cell("verify", "flag") if at["verify"] else Cell(""),
+            _doubt("wall", plan.walls, i),
             Cell(str(at["state"])),
             _number(length_m[i], 2),
             _number(1000 * at["thickness_m"], 0),
@@ -76,33 +77,38 @@ def wall_table(plan: floorplan.FloorPlan, evidence: Columns) -> PageTable:
             _number(at["n_scans"], 0),
             _moment(first_ns),
             _moment(last_ns),
+            Cell(at["corrected"]),
         ]
-        rows.append(Row(cells, wall))
+        rows.append(Row(cells, f"wall {wall}"))
     heads = _heads(
-        "#wall", "on site", "state", "#length (m)", "#thickness (mm)", "#ends at height (m)",
+        "#wall", "to verify", "state", "#length (m)", "#thickness (mm)", "#ends at height (m)",
         "#σ offset (mm)", "#σ start (mm)", "#σ end (mm)", "#residual (mm)", "#points", "#scans",
-        "#first seen", "#last seen",
+        "#first seen", "#last seen", "corrected",
     )  # fmt: skip
     return PageTable("walls", heads, rows, sortable=True)
 
 
 def opening_table(plan: floorplan.FloorPlan) -> PageTable:
     """Return the table of openings and of the rooms that each joins."""
+    name_of = dict(zip(plan.rooms["room"].tolist(), plan.room_names, strict=True))
     rows = [
         Row([
             _number(at["opening"], 0),
+            _doubt("opening", plan.openings, i),
             Cell(at["type"]),
             _number(at["width_m"], 2),
             _number(at["sill_m"], 2),
             _number(at["lintel_m"], 2),
-            Cell(f"{_room_name(at['room_a'])} – {_room_name(at['room_b'])}"),
+            Cell(f"{name_of.get(at['room_a'], _OUTSIDE)} – {name_of.get(at['room_b'], _OUTSIDE)}"),
             _number(at["n_rays"], 0),
-        ])
-        for at in _records(plan.openings)
+            Cell(at["corrected"]),
+        ], f"opening {at['opening']}")
+        for i, at in enumerate(_records(plan.openings))
     ]  # fmt: skip
     heads = _heads(
-        "#opening", "type", "#width (m)", "#sill (m)", "#lintel (m)", "joins", "#rays through"
-    )
+        "#opening", "to verify", "type", "#width (m)", "#sill (m)", "#lintel (m)", "joins",
+        "#rays through", "corrected",
+    )  # fmt: skip
     return PageTable("openings", heads, rows, sortable=True)
 
 
@@ -111,14 +117,20 @@ def room_table(plan: floorplan.FloorPlan) -> PageTable:
     rows = [
         Row([
             _number(at["room"], 0),
+            Cell(plan.room_names[i]),
+            _doubt("room", plan.rooms, i),
             _number(at["area_m2"], 2),
             _number(at["perimeter_m"], 2),
             Cell("yes" if at["closed"] else "no"),
             _number(at["n_scans"], 0),
-        ])
-        for at in _records(plan.rooms)
+            Cell(at["corrected"]),
+        ], f"room {at['room']}")
+        for i, at in enumerate(_records(plan.rooms))
     ]  # fmt: skip
-    heads = _heads("#room", "#area (m²)", "#perimeter (m)", "closed", "#scans that see it")
+    heads = _heads(
+        "#room", "name", "to verify", "#area (m²)", "#perimeter (m)", "closed",
+        "#scans that see it", "corrected",
+    )  # fmt: skip
     return PageTable("rooms", heads, rows, sortable=True)
 
 
@@ -235,8 +247,9 @@ def _first_and_last(evidence: Columns) -> dict[int, tuple[int, int]]:
     return moments
 
 
-def _room_name(room: int) -> str:
-    return "outside or not known" if room < 0 else f"room {room}"
+def _doubt(kind: str, columns: Columns, row: int) -> Cell:
+    reason = doubts.explain_doubt(kind, columns, row)
+    return Cell(reason, "flag") if reason else Cell("")
 
 
 def _all_or_some(kept: np.ndarray) -> str:

@@ -7,12 +7,11 @@ import numpy as np
 import shapely
 
 from scanplan.plan import floorplan
-from scanplan.report import growth
+from scanplan.report import doubts, growth
+from scanplan.report.point_image import PointImage
 from scanplan.report.top_view import MARGIN_M
 from scanplan.types import Columns, FloatArray
 
-_ROOM_LABEL_LETTERS = 8  # of this many heights is a label wide: it stays within its room
-_LABELS_ALONG = 60  # letters are at most this part of the plan high, however large the room
 _TITLES = {
     "observed": "observed wall",
     "inferred": "inferred wall: closed between two observed pieces",
@@ -24,6 +23,7 @@ def growing_plan_svg(
     stretches: Columns,
     positions_m: FloatArray,
     shown_m: Sequence[FloatArray],
+    points: PointImage,
 ) -> str:
     """Return the plan as the text of an SVG element, one user unit a metre, y downwards.
 
@@ -36,24 +36,31 @@ def growing_plan_svg(
         Where the chosen scans were taken, by rank.
     shown_m : list of k (s, 2, 2) float arrays
         The segments that each of them shows.
+    points : point_image.PointImage
+        What the scans saw, under it all.
 
     Returns
     -------
     str
-        Elements with `data-rank` belong to the scan of that rank, those with `data-first` and
-        `data-enough` to the ranks from which on they are seen and sure, those with `data-wall` to a
-        wall. Classes say what a part is; the page's style how it looks.
+        Parts with `data-rank` belong to the scan of that rank, those with `data-first` and
+        `data-enough` to the ranks from which on they are seen and sure, those with `data-element`
+        to a wall, opening or room. Classes say what a part is; the page's style how it looks, and
+        its script keeps letters and dots as large on the screen however near the plan is.
     """
     return "\n".join([
         f'<svg id="plan" viewBox="{_view_box(plan, positions_m)}" role="img"'
         ' aria-labelledby="plan-title" tabindex="0">',
         f'<title id="plan-title">Floor plan of {escape(plan.name)}</title>',
-        '<g id="finished">', *_rooms(plan), *_walls(plan), *_openings(plan), "</g>",
+        '<g id="floors">', *_rooms(plan), "</g>",
+        '<g id="points">', _point_image(points), "</g>",
+        '<g id="finished">', *_walls(plan), *_openings(plan), "</g>",
         '<g id="picks">', *_picks(plan), "</g>",
         '<g id="growth">', *_stretches(stretches), "</g>",
         '<g id="shown">', *_shown(shown_m), "</g>",
         '<g id="scans">', *_scans(positions_m), "</g>",
         '<g id="labels">', *_labels(plan), "</g>",
+        '<g id="doubts">', *_doubts(plan), "</g>",
+        '<g id="tape"></g>',
         "</svg>",
     ])  # fmt: skip
 
@@ -75,11 +82,11 @@ def _walls(plan: floorplan.FloorPlan) -> Iterator[str]:
 
 
 def _picks(plan: floorplan.FloorPlan) -> Iterator[str]:
-    """Draw what a row of the table of walls points at."""
-    lines_m = floorplan.centrelines_m(plan.walls)
-    for wall, line_m in zip(plan.walls["wall"].tolist(), lines_m, strict=True):
-        attributes = f'class="pick" data-wall="{wall}"'
-        yield _path(line_m[None], attributes, f"<title>wall {wall}</title>")
+    """Draw what is clicked on, and what a row of a table points at."""
+    for kind, columns in (("wall", plan.walls), ("opening", plan.openings)):
+        lines_m = floorplan.centrelines_m(columns)
+        for number, line_m in zip(columns[kind].tolist(), lines_m, strict=True):
+            yield _path(line_m[None], f'class="pick" data-element="{kind} {number}"')
 
 
 def _openings(plan: floorplan.FloorPlan) -> Iterator[str]:
@@ -91,23 +98,51 @@ def _openings(plan: floorplan.FloorPlan) -> Iterator[str]:
 
 
 def _rooms(plan: floorplan.FloorPlan) -> Iterator[str]:
-    for area in plan.areas:
-        yield f'<path class="room" d="{" ".join(map(_outline, shapely.get_parts(area)))}"/>'
+    rooms = (plan.rooms[c].tolist() for c in ("room", "x_m", "y_m"))
+    for room, x_m, y_m, area in zip(*rooms, plan.areas, strict=True):
+        outline = " ".join(map(_outline, shapely.get_parts(area)))
+        attributes = f'data-element="room {room}" data-x="{_number(x_m)}" data-y="{_number(-y_m)}"'
+        yield f'<path class="room" {attributes} d="{outline}"/>'
+
+
+def _point_image(points: PointImage) -> str:
+    (x_m, y_m), (width_m, height_m) = points.low_m.tolist(), points.size_m.tolist()
+    place = f'x="{_number(x_m)}" y="{_number(-y_m - height_m)}"'
+    size = f'width="{_number(width_m)}" height="{_number(height_m)}"'
+    return f'<image {place} {size} href="data:image/png;base64,{points.base64}"/>'
 
 
 def _labels(plan: floorplan.FloorPlan) -> Iterator[str]:
-    extent_m = float(np.max(plan.bounds_m[1] - plan.bounds_m[0]))
-    largest_m = extent_m / _LABELS_ALONG
-    rooms = (plan.rooms[c].tolist() for c in ("room", "area_m2", "closed", "x_m", "y_m"))
-    for room, area_m2, closed, x_m, y_m, width_m in zip(
-        *rooms, plan.label_widths_m.tolist(), strict=True
-    ):
-        size_m = min(width_m / _ROOM_LABEL_LETTERS, largest_m)
-        place = f'x="{_number(x_m)}" font-size="{size_m:.2f}"'
+    """Write each room's name and area; its width says how much of them there is room for."""
+    rooms = (plan.rooms[c].tolist() for c in ("area_m2", "closed", "x_m", "y_m"))
+    names, widths_m = plan.room_names, plan.label_widths_m.tolist()
+    for name, area_m2, closed, x_m, y_m, width_m in zip(names, *rooms, widths_m, strict=True):
+        place = f'x="{_number(x_m)}" y="{_number(-y_m)}"'
         area = f"{'' if closed else 'about '}{area_m2:.1f} m²"
         yield (
-            f'<text y="{_number(-y_m)}" {place}>Room {room}</text>'
-            f'<text y="{_number(-y_m + 1.2 * size_m)}" {place}>{area}</text>'
+            f'<g class="label" data-width="{_number(width_m)}"><text {place}>{escape(name)}</text>'
+            f'<text class="area" {place} dy="1.2em">{area}</text></g>'
+        )
+
+
+def _doubts(plan: floorplan.FloorPlan) -> Iterator[str]:
+    """Mark what is to be verified on site."""
+    tables = (("wall", plan.walls), ("opening", plan.openings))
+    places_m = {
+        f"{kind} {number}": line_m.mean(axis=0)
+        for kind, columns in tables
+        for number, line_m in zip(columns[kind], floorplan.centrelines_m(columns), strict=True)
+    }
+    centres = (plan.rooms[c].tolist() for c in ("room", "x_m", "y_m"))
+    places_m |= {f"room {n}": np.array([x_m, y_m]) for n, x_m, y_m in zip(*centres, strict=True)}
+    for doubt in doubts.list_doubts(plan):
+        x_m, y_m = (_number(value) for value in places_m[doubt.element] * (1, -1))
+        css = f"doubt of-{doubt.element.partition(' ')[0]}"
+        yield (
+            f'<g class="{css}" data-element="{doubt.element}">'
+            f"<title>{escape(doubt.name)}: {escape(doubt.reason)}</title>"
+            f'<circle cx="{x_m}" cy="{y_m}" r="0.1"/>'
+            f'<text x="{x_m}" y="{y_m}" dy=".36em">?</text></g>'
         )
 
 
@@ -132,7 +167,7 @@ def _scans(positions_m: FloatArray) -> Iterator[str]:
         yield (
             f'<g class="scan" data-rank="{rank}"><title>scan of rank {rank}</title>'
             f'<circle cx="{x_m}" cy="{y_m}" r="0.06"/>'
-            f'<text x="{x_m}" y="{y_m}" dy="-0.14" font-size="0.3">{rank}</text></g>'
+            f'<text x="{x_m}" y="{y_m}" dy="-.6em">{rank}</text></g>'
         )
 
 

@@ -74,8 +74,8 @@ def coverage_note(survey: SurveyFacts, method: str) -> str:
     best = min(selection["bound"][k - 1], covered[-1])
     return (
         f"{chosen}, which give {given / covered[-1]:.1%} of the {objective} of all ({given:,.1f} of"
-        f" {covered[-1]:,.1f} {unit}). Certificate: no {k} of these scans give more than"
-        f" {best:,.1f} {unit}, so this choice is within {1 - given / best:.1%} of the best."
+        f" {covered[-1]:,.1f} {unit}). Guarantee: the best possible {k} scans would give"
+        f" at most {best:,.1f} {unit}: this choice is within {1 - given / best:.1%} of it."
     )
 
 
@@ -85,7 +85,7 @@ def review_note(plan: floorplan.FloorPlan) -> str:
     return (
         "Standard deviations of a wall's offset and of both its ends as the scans that show it"
         f" tell. {n_to_verify:,} of {len(plan.walls['wall']):,} walls are weakly supported and"
-        " marked to be verified on site. Choosing a row shows its wall in the plan."
+        " marked to be verified on site. Choosing a row shows what it is of in the plan."
     )
 
 

@@ -187,7 +187,7 @@ FACES = Schema(
 _CENTRELINE = dict.fromkeys(("x0_m", "y0_m", "x1_m", "y1_m"), "float64")
 PLAN_WALLS = Schema(
     "plan_walls",
-    2,
+    3,
     {
         "wall": "int32",
         **_CENTRELINE,
@@ -210,16 +210,18 @@ PLAN_WALLS = Schema(
         "n_points": "int64",
         "n_scans": "int32",
         "verify": "bool",
+        "corrected": "string",
     },
     ("wall",),
 )
 """Walls of the plan.
 
-One seen from a single side has no thickness (NaN), and its line is that of its face.
+One seen from a single side has no thickness (NaN), and its line is that of its face. `corrected`
+says what a person said of it, here and of openings and rooms; empty where nobody did.
 """
 OPENINGS = Schema(
     "openings",
-    1,
+    2,
     {
         "opening": "int32",
         "wall": "int32",
@@ -229,6 +231,7 @@ OPENINGS = Schema(
         "room_a": "int32",
         "room_b": "int32",
         "n_rays": "int64",
+        "corrected": "string",
     },
     ("opening",),
 )
@@ -239,12 +242,14 @@ count as rays, too: as many as were expected through a window above its sill.
 """
 ROOMS = Schema(
     "rooms",
-    1,
+    2,
     {
         "room": "int32",
         **dict.fromkeys(("area_m2", "perimeter_m", "x_m", "y_m"), "float64"),
         "closed": "bool",
         "n_scans": "int32",
+        "name": "string",
+        "corrected": "string",
         "geometry": "binary",
     },
     ("room",),
@@ -254,7 +259,7 @@ FREE = Schema("free", 2, {"part": "int32", "geometry": "binary"}, ("part",), geo
 """The floor that rays went over: polygons that do not overlap.
 
 Of the whole plan the file states `floor_z_m` and `ceiling_z_m`: heights in the map frame, NaN where
-not seen.
+not seen; and `georeference`, where the plan lies on Earth, where reference points say so.
 """
 EVIDENCE = Schema(
     "evidence",

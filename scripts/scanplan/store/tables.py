@@ -98,8 +98,13 @@ def read_note(path: FilePath, schema: schemas.Schema, name: str) -> str:
     StageError
         If the file is missing, damaged or of another schema or version.
     """
+    return read_notes(path, schema).get(name, "")
+
+
+def read_notes(path: FilePath, schema: schemas.Schema) -> dict[str, str]:
+    """Return all that a table says beside its rows, by name; raises as `read_note`."""
     with parquet.open_file(path, schema) as file:
-        return parquet.read_notes(file, path).get(name, "")
+        return parquet.read_notes(file, path)
 
 
 @contextmanager

@@ -1,5 +1,6 @@
 "use strict";
-(() => {
+// the plan: how it grows, zooms and moves; elements.js says what its parts are
+const planView = (() => {
   const data = JSON.parse(document.getElementById("data").textContent);
   const plan = document.getElementById("plan");
   const view = document.getElementById("view");
@@ -72,14 +73,32 @@
   const fit = { x: whole.x, y: whole.y, width: whole.width, height: whole.height };
   let box = { ...fit };
 
+  let pixels = 1;
+
   function show() {
     plan.setAttribute("viewBox", `${box.x} ${box.y} ${box.width} ${box.height}`);
-    const pixels = plan.getScreenCTM().a;
+    pixels = plan.getScreenCTM().a;
+    plan.style.setProperty("--px", 1 / pixels);
+    fitLabels();
     const power = 10 ** Math.floor(Math.log10(160 / pixels));
     const length = [5, 2, 1].map((m) => m * power).find((m) => m * pixels <= 160);
     const bar = document.querySelector("#scale span");
     bar.style.width = `${length * pixels}px`;
     bar.textContent = `${Number(length.toPrecision(1))} m`;
+    for (const follow of followers) follow();
+  }
+  const followers = [];
+
+  // a letter is about 7 pixels wide; what has no room is not written until the plan is nearer
+  const labels = all(".label").map((label) => ({
+    label, width: Number(label.dataset.width), texts: [...label.children].map((text) => text.textContent.length),
+  }));
+  function fitLabels() {
+    for (const { label, width, texts } of labels) {
+      const letters = (width * pixels) / 7;
+      label.classList.toggle("tight", texts[0] > letters);
+      label.classList.toggle("narrow", texts[1] > letters || width * pixels < 34);
+    }
   }
 
   function metres(event) {
@@ -101,7 +120,11 @@
     show();
   }
 
-  view.addEventListener("wheel", (event) => {
+  // the page scrolls over the plan as elsewhere; enlarged there is nothing to scroll
+  const drawing = document.getElementById("drawing");
+  const isEnlarged = () => drawing.classList.contains("enlarged");
+  plan.addEventListener("wheel", (event) => {
+    if (!event.ctrlKey && !event.metaKey && !isEnlarged()) return say("Ctrl with the wheel zooms");
     event.preventDefault();
     zoom(Math.exp(Math.max(-1, Math.min(1, event.deltaY / 300))), metres(event));
   }, { passive: false });
@@ -114,7 +137,10 @@
     const before = fingers.get(event.pointerId);
     if (!before) return;
     // not before it moves: a click on a wall is to stay one
-    plan.setPointerCapture(event.pointerId);
+    if (!plan.hasPointerCapture(event.pointerId)) {
+      if (Math.hypot(event.clientX - before.clientX, event.clientY - before.clientY) < 4) return;
+      plan.setPointerCapture(event.pointerId);
+    }
     plan.classList.add("dragged");
     const [from, to] = [metres(before), metres(event)];
     const other = [...fingers.values()].find((finger) => finger.pointerId !== event.pointerId);
@@ -150,6 +176,30 @@
     button.addEventListener("click", buttons[button.dataset.zoom]);
   }
   addEventListener("resize", show);
+  addEventListener("beforeprint", reset);
+
+  const hint = document.getElementById("hint");
+  let hiding = null;
+  function say(text, seconds = 2) {
+    clearTimeout(hiding);
+    hint.textContent = text;
+    hint.hidden = text === "";
+    if (seconds) hiding = setTimeout(() => { hint.hidden = true; }, 1000 * seconds);
+  }
+
+  const enlarge = document.getElementById("enlarge");
+  enlarge.addEventListener("click", () => {
+    drawing.classList.toggle("enlarged");
+    enlarge.setAttribute("aria-pressed", String(isEnlarged()));
+    reset();
+  });
+
+  function lookAt(place) {
+    const width = Math.min(box.width, Math.max(fit.width / 3, 6));
+    const height = (box.height * width) / box.width;
+    box = { x: place.x - width / 2, y: place.y - height / 2, width, height };
+    show();
+  }
 
   // --- the tables: sorted by any column; a wall's row shows the wall ---
   for (const button of document.querySelectorAll("th button")) {
@@ -171,21 +221,11 @@
     });
   }
 
-  function pick(wall) {
-    for (const part of document.querySelectorAll("[data-wall]")) {
-      part.classList.toggle("picked", part.dataset.wall === wall);
-    }
+  for (const box of document.querySelectorAll("[data-layer]")) {
+    document.getElementById(box.dataset.layer).classList.toggle("off", !box.checked);
   }
-  for (const row of document.querySelectorAll("tr[data-wall]")) {
-    const chosen = () => {
-      pick(row.dataset.wall);
-      view.scrollIntoView({ block: "nearest" });
-    };
-    row.addEventListener("click", chosen);
-    row.addEventListener("keydown", (event) => event.key === "Enter" && chosen());
-  }
-  for (const path of all(".pick")) path.addEventListener("click", () => pick(path.dataset.wall));
-
+  view.style.setProperty("--aspect", fit.width / fit.height);
   show();
   grow(data.chosen);
+  return { data, plan, view, metres, lookAt, say, follow: (each) => followers.push(each) };
 })();

@@ -1,0 +1,1 @@
+"""What people say of a plan, carried out on its tables."""

@@ -1,0 +1,145 @@
+"""Walls and openings that a person draws: their rows, and what they change of those around them."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import shapely
+
+from scanplan.plan import floorplan
+from scanplan.plan.corrections.rows import PlanRows, Row
+from scanplan.store import schemas
+from scanplan.types import FloatArray
+
+REACH_M = 0.5
+"""From a place to its wall or opening: a later run moves it less, and the next is farther."""
+_ENDS = ("x0_m", "y0_m", "x1_m", "y1_m")
+
+
+def find_nearest(rows: Sequence[Row], place: shapely.Point) -> Row | None:
+    """Return the row with the line nearest to a place, None where none is within reach."""
+    far_m = [shapely.distance(_line(row), place) for row in rows]
+    nearest = int(np.argmin(far_m)) if far_m else -1
+    return rows[nearest] if far_m and far_m[nearest] <= REACH_M else None
+
+
+def add_wall(rows: PlanRows, line_m: FloatArray, thickness_m: float | None, said: str) -> None:
+    """Add a wall along a line (2, 2), with a face on each side, or of no known thickness with one.
+
+    No point shows it: it is inferred, and nothing of it is measured.
+    """
+    number = rows.next_number("wall")
+    half_m = 0.0 if thickness_m is None else thickness_m / 2
+    left = _add_face(rows, number, line_m, half_m)
+    right = -1 if thickness_m is None else _add_face(rows, number, line_m[::-1], half_m)
+    wall = _blank_row(schemas.PLAN_WALLS) | _ends(line_m)
+    wall |= {"wall": number, "face_left": left, "face_right": right, "state": "inferred"}
+    wall |= {"thickness_m": np.nan if thickness_m is None else thickness_m, "corrected": said}
+    rows.walls.append(wall)
+
+
+def add_opening(rows: PlanRows, line_m: FloatArray, kind: str, said: str) -> bool:
+    """Add an opening in the wall nearest to the middle of a line (2, 2), and cut its faces.
+
+    Returns
+    -------
+    bool
+        Whether there is such a wall.
+    """
+    wall = find_nearest(rows.walls, shapely.Point(line_m.mean(axis=0)))
+    if wall is None:
+        return False
+    start_m, along = _frame(wall)
+    reach_m = np.sort((line_m - start_m) @ along)
+    ends_m = start_m + reach_m[:, None] * along
+    half_m = max(_half_m(wall), REACH_M)
+    left_m = half_m * np.array([-along[1], along[0]])
+    opening = _blank_row(schemas.OPENINGS) | _ends(ends_m)
+    opening |= {
+        "opening": rows.next_number("opening"),
+        "wall": wall["wall"],
+        "type": kind,
+        "width_m": float(np.diff(reach_m)[0]),
+        "thickness_m": wall["thickness_m"],
+        "room_a": _room_at(rows, ends_m.mean(axis=0) + left_m),
+        "room_b": _room_at(rows, ends_m.mean(axis=0) - left_m),
+        "corrected": said,
+    }
+    _cut_faces(rows, wall, ends_m)
+    rows.openings.append(opening)
+    return True
+
+
+def close_opening(rows: PlanRows, opening: Row) -> None:
+    """Let the faces of a wall go on where an opening was, on the sides that it has faces on."""
+    wall = next((row for row in rows.walls if row["wall"] == opening["wall"]), None)
+    if wall is None:
+        return
+    _, along = _frame(wall)
+    line_m = floorplan.centrelines_m({name: np.array([opening[name]]) for name in _ENDS})[0]
+    if np.diff(line_m @ along)[0] < 0:
+        line_m = line_m[::-1]
+    half_m = _half_m(wall)
+    if wall["face_left"] >= 0:
+        _add_face(rows, wall["wall"], line_m, half_m)
+    if wall["face_right"] >= 0:
+        _add_face(rows, wall["wall"], line_m[::-1], half_m)
+
+
+def _add_face(rows: PlanRows, wall: int, line_m: FloatArray, off_m: float) -> int:
+    """Add an inferred face beside a line, to the left of its direction; return its number."""
+    along = np.diff(line_m, axis=0)[0]
+    normal = np.array([-along[1], along[0]]) / np.hypot(*along)
+    number = rows.next_number("face")
+    face = _blank_row(schemas.FACES) | _ends(line_m + off_m * normal)
+    nx, ny = normal.tolist()
+    rows.faces.append(
+        face | {"face": number, "nx": nx, "ny": ny, "state": "inferred", "wall": wall}
+    )
+    return number
+
+
+def _cut_faces(rows: PlanRows, wall: Row, ends_m: FloatArray) -> None:
+    """Cut an opening out of the faces of its wall; a second part gets a number of its own."""
+    half_m = np.array([_half_m(wall) + REACH_M])
+    (gap,) = floorplan.buffer_lines(ends_m[None], half_m)
+    for face in [row for row in rows.faces if row["wall"] == wall["wall"]]:
+        parts = shapely.get_parts(shapely.difference(_line(face), gap))
+        parts = parts[shapely.length(parts) > 0]
+        if len(parts) == 0:
+            rows.faces.remove(face)
+            continue
+        face |= _ends(shapely.get_coordinates(parts[0]))
+        for part in parts[1:]:
+            number = rows.next_number("face")
+            rows.faces.append(face | _ends(shapely.get_coordinates(part)) | {"face": number})
+
+
+def _frame(wall: Row) -> tuple[FloatArray, FloatArray]:
+    """Return where a wall's line starts, and its direction."""
+    start_m, end_m = shapely.get_coordinates(_line(wall))
+    return start_m, (end_m - start_m) / np.hypot(*(end_m - start_m))
+
+
+def _half_m(wall: Row) -> float:
+    return float(np.nan_to_num(wall["thickness_m"])) / 2
+
+
+def _room_at(rows: PlanRows, place_m: FloatArray) -> int:
+    place = shapely.Point(place_m)
+    inside = [r["room"] for r in rows.rooms if shapely.from_wkb(r["geometry"]).covers(place)]
+    return inside[0] if inside else -1
+
+
+def _line(row: Row) -> shapely.LineString:
+    x0_m, y0_m, x1_m, y1_m = (row[name] for name in _ENDS)
+    return shapely.LineString([(x0_m, y0_m), (x1_m, y1_m)])
+
+
+def _ends(line_m: FloatArray) -> Row:
+    return dict(zip(_ENDS, line_m.ravel().tolist(), strict=True))
+
+
+def _blank_row(schema: schemas.Schema) -> Row:
+    """Return a row of which nothing is known."""
+    blanks = {"float64": np.nan, "bool": False, "string": ""}
+    return {name: blanks.get(kind, 0) for name, kind in schema.columns.items()}

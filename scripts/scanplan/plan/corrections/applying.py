@@ -1,0 +1,141 @@
+"""Corrections carried out on the tables of a plan: elements are found by where they are."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import shapely
+
+from scanplan.errors import StageError
+from scanplan.plan.corrections import added
+from scanplan.plan.corrections.rows import PlanRows, Row
+from scanplan.project.corrections_file import Correction
+
+SAID = {
+    "keep": "kept by hand",
+    "change": "changed by hand",
+    "add": "added by hand",
+}
+"""What column `corrected` says of an element."""
+
+
+@dataclass
+class Outcome:
+    """What became of corrections.
+
+    Attributes
+    ----------
+    n_applied : int
+    unmatched : list of str
+        Of each that matches nothing, why.
+    told : list of str
+        What else follows from one.
+    """
+
+    n_applied: int = 0
+    unmatched: list[str] = field(default_factory=list)
+    told: list[str] = field(default_factory=list)
+
+
+def apply_corrections(rows: PlanRows, corrections: Sequence[Correction]) -> Outcome:
+    """Carry corrections out on the rows of a plan, in their order; what is added comes last.
+
+    Walls and openings are those nearest to the place of an entry, within reach, rooms those that
+    it is in. Numbers stay what they were. With a wall go its faces, its openings and its evidence;
+    rooms keep their outlines.
+
+    Parameters
+    ----------
+    rows : rows.PlanRows
+        Changed in place.
+    corrections : sequence of corrections_file.Correction
+        Reference points among them are passed over.
+
+    Raises
+    ------
+    StageError
+        If two say something of the same element, or nothing is left of the plan.
+    """
+    outcome = Outcome()
+    matched: dict[tuple[str, int], Correction] = {}
+    found: list[tuple[Correction, Row]] = []
+    for correction in corrections:
+        if correction.action == "add":
+            continue
+        row = _find(rows, correction)
+        if row is None:
+            outcome.unmatched.append(_tell_unmatched(correction))
+            continue
+        element = (correction.element, row[correction.element])
+        other = matched.setdefault(element, correction)
+        if other is not correction:
+            fault = f"is of {element[0]} {element[1]}, as {other.entry.rpartition(': ')[2]} is"
+            raise StageError(f"{correction.entry}: {fault}; keep one of the two")
+        found.append((correction, row))
+    for correction, row in found:
+        _change(rows, correction, row, outcome)
+    for correction in corrections:
+        if correction.action == "add" and correction.element != "reference_point":
+            _add(rows, correction, outcome)
+    outcome.n_applied += len(found)
+    if not rows.faces:
+        raise StageError(f"{corrections[0].entry}: with these no wall is left; remove fewer")
+    return outcome
+
+
+def _find(rows: PlanRows, correction: Correction) -> Row | None:
+    """Return the row that an entry is of; None where there is none."""
+    place = shapely.Point(correction.at_m)
+    if correction.element == "room":
+        inside = [r for r in rows.rooms if shapely.from_wkb(r["geometry"]).covers(place)]
+        return inside[0] if inside else None
+    return added.find_nearest(rows.of(correction.element), place)
+
+
+def _tell_unmatched(correction: Correction) -> str:
+    x_m, y_m = correction.at_m
+    nothing = {
+        "room": "lies in no room",
+        "wall": f"lies within {added.REACH_M} m of no wall",
+        "opening": f"lies within {added.REACH_M} m of no opening",
+    }[correction.element]
+    return f"{correction.entry}: ({x_m:g}, {y_m:g}) {nothing}: not applied"
+
+
+def _change(rows: PlanRows, correction: Correction, row: Row, outcome: Outcome) -> None:
+    if correction.action == "remove":
+        _remove(rows, correction, row, outcome)
+        return
+    row["corrected"] = SAID[correction.action]
+    if correction.element == "room" and correction.action == "change":
+        row["name"] = correction.name
+    elif correction.action == "change":
+        row["type"] = correction.kind
+    # what a person has looked at needs no other to verify it
+    row |= {"verify": False} if "verify" in row else {}
+    row |= {"doubt": ""} if "doubt" in row else {}
+
+
+def _remove(rows: PlanRows, correction: Correction, row: Row, outcome: Outcome) -> None:
+    number = row[correction.element]
+    if correction.element == "opening":
+        added.close_opening(rows, row)
+    rows.drop(correction.element, number)
+    if correction.element == "wall":
+        lost = [opening["opening"] for opening in rows.openings if opening["wall"] == number]
+        for opening in lost:
+            rows.drop("opening", opening)
+        if lost:
+            with_it = f"{len(lost)} opening{'s' if len(lost) > 1 else ''}"
+            outcome.told.append(f"{correction.entry}: with wall {number} goes {with_it} in it")
+
+
+def _add(rows: PlanRows, correction: Correction, outcome: Outcome) -> None:
+    line_m = np.array(correction.line_m)
+    if correction.element == "wall":
+        added.add_wall(rows, line_m, correction.thickness_m, SAID["add"])
+    elif not added.add_opening(rows, line_m, correction.kind, SAID["add"]):
+        where = f"no wall lies within {added.REACH_M} m of the middle of its line"
+        outcome.unmatched.append(f"{correction.entry}: {where}: not applied")
+        return
+    outcome.n_applied += 1

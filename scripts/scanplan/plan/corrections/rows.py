@@ -1,0 +1,66 @@
+"""The tables of a plan as rows, to be changed one by one."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from scanplan.plan import plan_tables
+from scanplan.store import schemas
+from scanplan.types import Array, Columns
+
+Row = dict[str, Any]
+"""Values of a table's row by column."""
+_SCHEMAS = {
+    "faces": schemas.FACES,
+    "walls": schemas.PLAN_WALLS,
+    "openings": schemas.OPENINGS,
+    "rooms": schemas.ROOMS,
+    "evidence": schemas.EVIDENCE,
+}
+
+
+@dataclass
+class PlanRows:
+    """Rows of the tables of a plan."""
+
+    faces: list[Row]
+    walls: list[Row]
+    openings: list[Row]
+    rooms: list[Row]
+    evidence: list[Row]
+
+    def of(self, element: str) -> list[Row]:
+        """Return the rows of walls, openings or rooms by the singular."""
+        return getattr(self, f"{element}s")
+
+    def drop(self, element: str, number: int) -> None:
+        """Remove a wall with its faces and evidence, an opening, or a room and what names it."""
+        kept = [row for row in self.of(element) if row[element] != number]
+        setattr(self, f"{element}s", kept)
+        if element == "wall":
+            self.faces = [row for row in self.faces if row["wall"] != number]
+            self.evidence = [row for row in self.evidence if row["wall"] != number]
+        for row in self.openings if element == "room" else []:
+            row |= {side: -1 for side in ("room_a", "room_b") if row[side] == number}
+
+    def next_number(self, element: str) -> int:
+        """Return the first free number after those of faces, walls or openings."""
+        return max((row[element] for row in self.of(element)), default=-1) + 1
+
+
+def rows_of_plan(tables: Mapping[str, Columns]) -> PlanRows:
+    """Return the tables of a plan, by the names of planning's, as rows."""
+    rows = {}
+    for name in _SCHEMAS:
+        columns = tables[name]
+        values = zip(*(column.tolist() for column in columns.values()), strict=True)
+        rows[name] = [dict(zip(columns, row, strict=True)) for row in values]
+    return PlanRows(**rows)
+
+
+def columns_of_plan(rows: PlanRows) -> dict[str, dict[str, Array]]:
+    """Return rows as tables again, by name."""
+    return {
+        name: plan_tables.columns_of_rows(getattr(rows, name), schema)
+        for name, schema in _SCHEMAS.items()
+    }

@@ -1,0 +1,248 @@
+"""What a person says of a plan: corrections.yaml, or corrections.geojson, in a dataset's folder.
+
+No heavy imports: this runs while the workflow is being parsed, so that a mistake ends the run
+before it has begun.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from scanplan.errors import StageError
+from scanplan.project.yaml_file import read_yaml
+
+if TYPE_CHECKING:
+    from scanplan.types import FilePath
+
+CORRECTIONS_FILES = ("corrections.yaml", "corrections.geojson")
+_KEYS = {
+    ("wall", "keep"): ("at",),
+    ("wall", "remove"): ("at",),
+    ("wall", "add"): ("line", "thickness_m"),
+    ("opening", "keep"): ("at",),
+    ("opening", "remove"): ("at",),
+    ("opening", "change"): ("at", "kind"),
+    ("opening", "add"): ("line", "kind"),
+    ("room", "keep"): ("at",),
+    ("room", "remove"): ("at",),
+    ("room", "change"): ("at", "name"),
+    ("reference_point", "add"): ("at", "world", "crs"),
+}
+"""What may be done to an element, and the keys of such an entry."""
+_OPTIONAL = ("thickness_m",)
+_KINDS = ("door", "window", "passage")
+_NOT_IN_NAMES = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029<>{}\\^]")
+_LONGEST_NAME = 80  # characters: more than fit into any drawing's label
+
+
+@dataclass(frozen=True)
+class Correction:
+    """An entry of a file of corrections.
+
+    Attributes
+    ----------
+    entry : str
+        File and number of the entry, for messages.
+    element : str
+        wall, opening, room, or reference_point.
+    action : str
+        keep, remove, add, or change (of an opening's kind, or a room's name).
+    at_m : (float, float)
+        A place in the map frame on the element; of what is added the middle of its line.
+    line_m : two (float, float) or None
+        Ends of what is added.
+    kind, name : str
+        Of an opening and of a room.
+    thickness_m : float or None
+        Of a wall that is added.
+    world_m : tuple of float or None
+        East and north of a reference point.
+    crs : str
+        In which these are, such as EPSG:25832.
+    """
+
+    entry: str
+    element: str
+    action: str
+    at_m: tuple[float, float]
+    line_m: tuple[tuple[float, float], tuple[float, float]] | None = None
+    kind: str = ""
+    name: str = ""
+    thickness_m: float | None = None
+    world_m: tuple[float, float] | None = None
+    crs: str = ""
+
+
+def find_corrections(folder: Path) -> str | None:
+    """Return the file of corrections in a dataset's folder, None without.
+
+    Raises
+    ------
+    StageError
+        If there are two.
+    """
+    found = [folder / name for name in CORRECTIONS_FILES if (folder / name).is_file()]
+    if len(found) > 1:
+        raise StageError(f"{found[0]}: {found[1].name} lies beside it; keep one of the two")
+    return str(found[0]) if found else None
+
+
+def read_entries(path: FilePath) -> list[dict[str, Any]]:
+    """Read the entries of a file as they stand in it, those of GeoJSON as in YAML.
+
+    Raises
+    ------
+    StageError
+        If the file is damaged, or has no list of entries.
+    """
+    if Path(path).suffix == ".geojson":
+        return [_of_feature(feature) for feature in _read_features(path)]
+    values = read_yaml(path)
+    entries = values.get("corrections")
+    if set(values) != {"corrections"} or not isinstance(entries, list):
+        raise StageError(f"{path}: expected a list of entries under `corrections:` and no other")
+    return entries
+
+
+def read_corrections(path: FilePath) -> list[Correction]:
+    """Read and check a file of corrections.
+
+    Raises
+    ------
+    StageError
+        If an entry is wrong, or two say something else of the same place: the file, the entry, the
+        fault and the remedy.
+    """
+    corrections = [
+        _check_entry(f"{path}: entry {number}", entry)
+        for number, entry in enumerate(read_entries(path), 1)
+    ]
+    _check_places(corrections)
+    points = [c for c in corrections if c.element == "reference_point"]
+    if len({point.crs for point in points}) > 1:
+        raise StageError(f"{path}: reference points are in several `crs`; give all in one")
+    if len(points) == 1:
+        raise StageError(f"{points[0].entry}: one reference point gives no direction; add another")
+    return corrections
+
+
+def _read_features(path: FilePath) -> list[Mapping[str, Any]]:
+    try:
+        collection = json.loads(Path(path).read_text(encoding="utf-8"))
+        features = collection["features"]
+        properly = all(isinstance(f["properties"], dict) and f["geometry"] for f in features)
+    except (ValueError, LookupError, TypeError, RecursionError) as error:
+        fault = f"is no GeoJSON FeatureCollection ({error})"
+        raise StageError(f"{path}: {fault}; mend it, or write corrections.yaml") from None
+    if not properly:
+        raise StageError(f"{path}: a feature has no properties or no geometry; mend it")
+    return features
+
+
+def _of_feature(feature: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the entry that a feature stands for: a point is a place, a line what is added."""
+    properties = {k: v for k, v in feature["properties"].items() if v is not None}
+    geometry = feature["geometry"]
+    key = "at" if geometry.get("type") == "Point" else "line"
+    return {**properties, key: geometry.get("coordinates")}
+
+
+def _check_entry(entry: str, values: Any) -> Correction:
+    if not isinstance(values, dict):
+        raise StageError(f"{entry}: is {values!r}, expected `element: ...` with what is said of it")
+    element = values.get("element")
+    elements = sorted({known for known, _ in _KEYS})
+    if element not in elements:
+        raise StageError(f"{entry}: element is {element!r}, expected one of {', '.join(elements)}")
+    action = values.get("action") or ("add" if element == "reference_point" else "change")
+    if (element, action) not in _KEYS:
+        known = ", ".join(a for e, a in _KEYS if e == element)
+        raise StageError(f"{entry}: action of a {element} is {action!r}, expected one of {known}")
+    keys = _KEYS[element, action]
+    unknown = sorted(map(str, set(values) - {"element", "action", *keys}))
+    missing = [key for key in keys if key not in values and key not in _OPTIONAL]
+    if unknown or missing:
+        fault = f"has {', '.join(unknown)}" if unknown else f"has no {', '.join(missing)}"
+        expected = ", ".join(keys)
+        raise StageError(f"{entry}: {fault}; to {action} a {element} takes {expected}")
+    line_m = _check_line(entry, values["line"]) if "line" in keys else None
+    return Correction(
+        entry,
+        element,
+        action,
+        at_m=_middle(*line_m) if line_m else _check_place(entry, "at", values["at"]),
+        line_m=line_m,
+        kind=_check_kind(entry, values["kind"]) if "kind" in keys else "",
+        name=_check_text(entry, "name", values["name"]) if "name" in keys else "",
+        thickness_m=_check_thickness(entry, values.get("thickness_m")),
+        world_m=_check_place(entry, "world", values["world"]) if "world" in keys else None,
+        crs=_check_text(entry, "crs", values["crs"]) if "crs" in keys else "",
+    )
+
+
+def _check_place(entry: str, key: str, value: Any) -> tuple[float, float]:
+    if not (isinstance(value, list) and len(value) == 2 and all(map(_is_number, value))):
+        raise StageError(f"{entry}: {key} is {value!r}, expected two numbers [x, y] in metres")
+    return float(value[0]), float(value[1])
+
+
+def _is_number(value: Any) -> bool:
+    is_plain = isinstance(value, int | float) and not isinstance(value, bool)
+    # an integer may be too large for a float
+    return is_plain and abs(value) < 1e12 and math.isfinite(value)
+
+
+def _check_line(entry: str, value: Any) -> tuple[tuple[float, float], tuple[float, float]]:
+    if not isinstance(value, list) or len(value) != 2:
+        raise StageError(f"{entry}: line is {value!r}, expected two places [[x, y], [x, y]]")
+    start_m, end_m = (_check_place(entry, "an end of line", place) for place in value)
+    if math.dist(start_m, end_m) <= 0:
+        raise StageError(f"{entry}: line begins and ends at {list(start_m)}; give two places")
+    return start_m, end_m
+
+
+def _middle(start_m: tuple[float, float], end_m: tuple[float, float]) -> tuple[float, float]:
+    return (start_m[0] + end_m[0]) / 2, (start_m[1] + end_m[1]) / 2
+
+
+def _check_kind(entry: str, value: Any) -> str:
+    if value not in _KINDS:
+        raise StageError(f"{entry}: kind is {value!r}, expected one of {', '.join(_KINDS)}")
+    return value
+
+
+def _check_text(entry: str, key: str, value: Any) -> str:
+    text = value.strip() if isinstance(value, str) else ""
+    if not text or len(text) > _LONGEST_NAME:
+        limit = f"expected text of 1 to {_LONGEST_NAME} characters"
+        raise StageError(f"{entry}: {key} is {value!r}, {limit}; put it in quotes")
+    if wrong := _NOT_IN_NAMES.search(text):
+        raise StageError(
+            f"{entry}: {key} has {wrong[0]!r}; leave out line breaks, control characters"
+            " and any of < > { } \\ ^"
+        )
+    return text
+
+
+def _check_thickness(entry: str, value: Any) -> float | None:
+    if value is None:
+        return None
+    if not _is_number(value) or not 0 < value < 10:
+        raise StageError(f"{entry}: thickness_m is {value!r}, expected metres above 0, below 10")
+    return float(value)
+
+
+def _check_places(corrections: Iterable[Correction]) -> None:
+    first: dict[tuple[Any, ...], Correction] = {}
+    for correction in corrections:
+        place = (correction.element, correction.at_m)
+        other = first.setdefault(place, correction)
+        if other is not correction:
+            fault = f"{other.entry.rpartition(': ')[2]} is of the same place"
+            raise StageError(f"{correction.entry}: {fault}; keep one of the two")

@@ -1,0 +1,70 @@
+"""What of a plan should be verified on site, and why."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from scanplan.plan.floorplan import FloorPlan
+from scanplan.types import Columns
+
+_WEAK = "few scans show it, or its place is uncertain"
+_NOT_CLOSED = "its outline is not closed: the area is a guess"
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """An element of a plan that should be verified on site.
+
+    Attributes
+    ----------
+    element : str
+        Its kind and number, such as `wall 3`.
+    name : str
+        What it is called.
+    reason : str
+    """
+
+    element: str
+    name: str
+    reason: str
+
+
+def list_doubts(plan: FloorPlan) -> list[Doubt]:
+    """List what to verify, openings first, then walls and rooms; of each the least certain first.
+
+    Parameters
+    ----------
+    plan : floorplan.FloorPlan
+        Its tables' columns `verify`, `doubt` and `p_true` are taken where they stand.
+    """
+    kinds = plan.openings["type"].tolist()
+    numbered = zip(kinds, plan.openings["opening"].tolist(), strict=True)
+    openings = [f"{kind} {n}".capitalize() for kind, n in numbered]
+    walls = [f"Wall {n}" for n in plan.walls["wall"].tolist()]
+    return [
+        *_doubts_of("opening", plan.openings, openings),
+        *_doubts_of("wall", plan.walls, walls),
+        *_doubts_of("room", plan.rooms, plan.room_names),
+    ]
+
+
+def explain_doubt(kind: str, columns: Columns, row: int) -> str:
+    """Return why a row of a table of walls, openings or rooms is doubtful; nothing if it is not."""
+    reasons: list[str] = []
+    if "verify" in columns and columns["verify"][row]:
+        told = str(columns["doubt"][row]) if "doubt" in columns else ""
+        reasons.append(told or _WEAK)
+    if kind == "room" and not columns["closed"][row] and not reasons:
+        reasons.append(_NOT_CLOSED)
+    return "; ".join(reasons)
+
+
+def _doubts_of(kind: str, columns: Columns, names: list[str]) -> list[Doubt]:
+    numbers = columns[kind].tolist()
+    certain = columns.get("p_true", np.zeros(len(numbers)))
+    found: list[Doubt] = []
+    for row in np.argsort(certain, kind="stable").tolist():
+        reason = explain_doubt(kind, columns, row)
+        if reason:
+            found.append(Doubt(f"{kind} {numbers[row]}", names[row], reason))
+    return found

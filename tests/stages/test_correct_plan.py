@@ -1,0 +1,186 @@
+"""Corrections carried out on the plan of two rooms drawn by hand."""
+
+import json
+
+import numpy as np
+import pytest
+import shapely
+import yaml
+
+from correct_plan import correct_plan
+from helpers import floorplan_making
+from scanplan.errors import StageError
+from scanplan.plan import floorplan, planning
+from scanplan.store import tables
+
+MADE = {name: getattr(floorplan_making, name) for name in planning.TABLES}
+
+
+@pytest.fixture
+def plan(tmp_path):
+    paths = {name: tmp_path / f"{name}.parquet" for name in planning.TABLES}
+    notes = {"floor_z_m": "0.0", "ceiling_z_m": "2.5", "other": "kept"}
+    for name, schema in planning.TABLES.items():
+        own = notes if name == "free" else None
+        tables.write_table(paths[name], schema, MADE[name](), notes=own)
+    return paths
+
+
+def corrected(plan, *entries):
+    """The corrected plan; `element: wall` and the like are given as keywords."""
+    folder = plan["walls"].parent
+    path = folder / "corrections.yaml"
+    path.write_text(yaml.safe_dump({"corrections": list(entries)}))
+    outputs = {name: folder / f"corrected/{name}.parquet" for name in planning.TABLES}
+    correct_plan(path, plan, outputs)
+    return floorplan.read_floorplan(outputs, "office")
+
+
+def faces_of(plan, wall):
+    """Lines of the faces of a wall, (n, 2, 2)."""
+    return floorplan.centrelines_m(plan.faces)[plan.faces["wall"] == wall]
+
+
+def test_no_entry_changes_nothing(plan):
+    found = corrected(plan)
+    for name in ("faces", "walls", "openings", "rooms", "free"):
+        before = MADE[name]()
+        for column, values in getattr(found, name).items():
+            np.testing.assert_array_equal(values, before[column], err_msg=column)
+    assert found.floor_z_m == 0.0 and found.georeference is None
+
+
+def test_a_room_is_named_where_the_place_lies(plan):
+    found = corrected(plan, {"element": "room", "at": [5, 1], "name": "Küche"})
+    assert found.room_names == ["Room 0", "Küche"]
+    assert found.rooms["corrected"].tolist() == ["", "changed by hand"]
+
+
+def test_a_door_becomes_a_window_and_a_doubtful_wall_is_kept(plan):
+    found = corrected(
+        plan,
+        {"element": "opening", "at": [4.1, 1.4], "kind": "window"},
+        {"element": "wall", "at": [5.5, 3.0], "action": "keep"},
+    )
+    assert found.openings["type"].tolist() == ["door", "window", "window"]
+    assert found.openings["corrected"].tolist() == ["", "changed by hand", ""]
+    assert MADE["walls"]()["verify"][2] and not found.walls["verify"].any()
+    assert found.walls["corrected"][2] == "kept by hand"
+
+
+def test_with_a_wall_go_its_faces_openings_and_evidence(plan):
+    found = corrected(plan, {"element": "wall", "at": [3, 3.2], "action": "remove"},
+                      {"element": "wall", "at": [4.0, 0.4], "action": "remove"})  # fmt: skip
+    assert found.walls["wall"].tolist() == [0, 1, 2, 4]
+    assert not set(found.faces["wall"]) & {3, 5}
+    assert found.openings["opening"].tolist() == [0, 2]
+    assert len(found.rooms["room"]) == 2
+
+
+def test_a_removed_room_is_named_by_no_door(plan):
+    found = corrected(plan, {"element": "room", "at": [5, 1], "action": "remove"})
+    assert found.rooms["room"].tolist() == [0]
+    assert found.openings["room_b"].tolist() == [-1, -1, -1]
+
+
+def test_a_removed_opening_is_wall(plan):
+    found = corrected(plan, {"element": "opening", "at": [4.05, 1.5], "action": "remove"})
+    assert found.openings["opening"].tolist() == [0, 2]
+    lines = faces_of(found, 5)
+    # of 0.1 m thickness, on either side where the door was, from 1.0 to 1.9
+    closed = {tuple(map(tuple, line.round(6).tolist())) for line in lines[-2:]}
+    assert closed == {((4.0, 1.0), (4.0, 1.9)), ((4.1, 1.9), (4.1, 1.0))}
+    assert found.solid("observed").covers(shapely.Point(4.05, 1.5))
+
+
+def test_a_wall_is_added_with_its_faces(plan):
+    found = corrected(
+        plan,
+        {"element": "wall", "action": "add", "line": [[1, 2], [3, 2]], "thickness_m": 0.2},
+        {"element": "wall", "action": "add", "line": [[5, 0.5], [5, 1.5]]},
+    )
+    assert found.walls["wall"].tolist() == list(range(8))
+    assert found.walls["corrected"][6:].tolist() == ["added by hand"] * 2
+    np.testing.assert_allclose(faces_of(found, 6), [[[1, 2.1], [3, 2.1]], [[3, 1.9], [1, 1.9]]])
+    np.testing.assert_allclose(faces_of(found, 7), [[[5, 0.5], [5, 1.5]]])
+    assert found.walls["face_right"][7] == -1 and np.isnan(found.walls["thickness_m"][7])
+    assert found.solid("inferred").covers(shapely.Point(2, 2))
+
+
+def test_an_opening_is_added_in_the_nearest_wall_and_cuts_its_faces(plan):
+    line = [[4.2, 2.9], [4.0, 2.1]]
+    found = corrected(plan, {"element": "opening", "action": "add", "line": line, "kind": "door"})
+    row = {name: values[-1] for name, values in found.openings.items()}
+    assert (row["opening"], row["wall"], row["type"]) == (3, 5, "door")
+    assert [row[c] for c in ("x0_m", "y0_m", "x1_m", "y1_m")] == pytest.approx(
+        [4.05, 2.1, 4.05, 2.9]
+    )
+    assert (row["width_m"], row["thickness_m"]) == pytest.approx((0.8, 0.1))
+    # to the left of the wall, which runs upwards, lies the western room
+    assert (row["room_a"], row["room_b"], row["n_rays"]) == (0, 1, 0)
+    cut = sorted(np.sort(line[:, 1]).tolist() for line in faces_of(found, 5))
+    np.testing.assert_allclose(cut, [[0, 2.1], [0, 2.1], [2.9, 3], [2.9, 3]])
+    assert not found.solid("observed").covers(shapely.Point(4.05, 2.5))
+
+
+def test_one_that_matches_nothing_is_told(plan, caplog):
+    caplog.set_level("INFO")
+    before = floorplan_making.plan()
+    found = corrected(
+        plan,
+        {"element": "wall", "at": [20, 20], "action": "remove"},
+        {"element": "room", "at": [20, 20], "name": "nowhere"},
+        {"element": "opening", "at": [20, 20], "kind": "door"},
+        {"element": "opening", "action": "add", "kind": "door", "line": [[20, 20], [21, 20]]},
+    )
+    said = caplog.text
+    assert "entry 1: (20, 20) lies within 0.5 m of no wall: not applied" in said
+    assert "entry 2: (20, 20) lies in no room" in said and "entry 3: (20, 20) lies within" in said
+    assert "entry 4: no wall lies within 0.5 m" in said
+    assert "0 of 4 corrections applied" in said
+    assert len(found.walls["wall"]) == len(before.walls["wall"])
+
+
+def test_two_of_the_same_element_end_in_one_line(plan):
+    with pytest.raises(StageError, match=r"entry 2: is of wall 1, as entry 1 is; keep one"):
+        corrected(
+            plan,
+            {"element": "wall", "at": [7.1, 1], "action": "keep"},
+            {"element": "wall", "at": [7.1, 2], "action": "remove"},
+        )
+
+
+def test_nothing_left_ends_in_one_line(plan):
+    for name in ("walls", "openings", "evidence"):
+        rows = {k: v[:1] if name == "walls" else v[:0] for k, v in MADE[name]().items()}
+        tables.write_table(plan[name], planning.TABLES[name], rows, allow_empty=True)
+    faces = {k: v[:1] for k, v in MADE["faces"]().items()}
+    tables.write_table(plan["faces"], planning.TABLES["faces"], faces)
+    with pytest.raises(StageError, match="with these no wall is left; remove fewer"):
+        corrected(plan, {"element": "wall", "at": [3, -0.1], "action": "remove"})
+
+
+def test_reference_points_say_where_the_plan_lies(plan, caplog):
+    caplog.set_level("INFO")
+    # the map turned by a right angle: its x axis points north
+    points = [((0, 0), (1000, 2000)), ((4, 0), (1000, 2004)), ((0, 3), (997, 2000))]
+    found = corrected(
+        plan,
+        *(
+            {
+                "element": "reference_point",
+                "at": list(at),
+                "world": list(world),
+                "crs": "EPSG:25832",
+            }
+            for at, world in points
+        ),
+    )
+    reference = found.georeference
+    assert (reference.crs, reference.residual_m) == ("EPSG:25832", pytest.approx(0, abs=1e-9))
+    where = (reference.east_m, reference.north_m, reference.rotation_rad)
+    assert where == pytest.approx((1000, 2000, np.pi / 2))
+    note = tables.read_note(plan["free"].parent / "corrected/free.parquet",
+                            planning.TABLES["free"], "georeference")  # fmt: skip
+    assert json.loads(note)["crs"] == "EPSG:25832"
+    assert "3 reference points agree within 0.00 m" in caplog.text

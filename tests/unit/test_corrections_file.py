@@ -1,0 +1,118 @@
+"""Files of corrections: what they may say, and one line for each mistake."""
+
+import json
+
+import pytest
+
+from scanplan.errors import StageError
+from scanplan.project.corrections_file import find_corrections, read_corrections, read_entries
+
+GOOD = """\
+corrections:
+- {element: room, at: [1, 2], name: "Foyer & bar"}
+- {"element":"wall","at":[1.5,-2],"action":"remove"}
+- {element: opening, at: [3, 0], kind: window}
+- {element: wall, action: add, line: [[0, 0], [4, 0]], thickness_m: 0.2}
+- {element: opening, action: add, line: [[1, 0], [2, 0]], kind: door}
+- {element: reference_point, at: [0, 0], world: [500000, 5400000], crs: EPSG:25832}
+- {element: reference_point, at: [0, 9], world: [500000, 5400009], crs: EPSG:25832}
+"""
+
+
+def written(folder, text, name="corrections.yaml"):
+    path = folder / name
+    path.write_text(text)
+    return path
+
+
+def test_entries_are_read_as_they_stand(tmp_path):
+    room, wall, opening, new_wall, door, point, _ = read_corrections(written(tmp_path, GOOD))
+    assert (room.action, room.at_m, room.name) == ("change", (1.0, 2.0), "Foyer & bar")
+    assert (wall.action, wall.at_m) == ("remove", (1.5, -2.0))
+    assert (opening.action, opening.kind) == ("change", "window")
+    assert new_wall.line_m == ((0.0, 0.0), (4.0, 0.0)) and new_wall.thickness_m == 0.2
+    assert (door.action, door.kind, door.at_m) == ("add", "door", (1.5, 0.0))
+    assert (point.world_m, point.crs) == ((500000.0, 5400000.0), "EPSG:25832")
+
+
+def test_geojson_says_the_same(tmp_path):
+    geometries = {
+        "at": lambda place: {"type": "Point", "coordinates": place},
+        "line": lambda line: {"type": "LineString", "coordinates": line},
+    }
+    features = []
+    for entry in read_entries(written(tmp_path, GOOD)):
+        ((key, place),) = ((key, entry[key]) for key in geometries if key in entry)
+        features.append({
+            "type": "Feature",
+            "properties": {k: v for k, v in entry.items() if k != key},
+            "geometry": geometries[key](place),
+        })  # fmt: skip
+    text = json.dumps({"type": "FeatureCollection", "features": features})
+    path = written(tmp_path, text, "corrections.geojson")
+    assert read_entries(path) == read_entries(tmp_path / "corrections.yaml")
+    assert len(read_corrections(path)) == 7
+
+
+@pytest.mark.parametrize(
+    ("entry", "fault"),
+    [
+        ("{element: wal, at: [1, 2], action: keep}", "element is 'wal', expected one of opening"),
+        ("{element: wall, at: [1, 2], action: paint}", "action of a wall is 'paint', expected"),
+        ("{element: wall, at: [1, 2]}", "action of a wall is 'change', expected one of keep"),
+        ("{element: wall, at: [1], action: keep}", "at is [1], expected two numbers"),
+        ("{element: wall, at: [1, .inf], action: keep}", "expected two numbers"),
+        ("{element: wall, at: [1, yes], action: keep}", "expected two numbers"),
+        ("{element: wall, at: [1, 1" + "0" * 400 + "], action: keep}", "expected two numbers"),
+        ("{element: room, at: [1, 2], name: 5}", "name is 5, expected text of 1 to 80"),
+        ("{element: room, at: [1, 2], name: ' '}", "expected text of 1 to 80"),
+        ('{element: room, at: [1, 2], name: "a\\nb"}', "name has '\\n'; leave out line breaks"),
+        ("{element: room, at: [1, 2], name: '<b>x'}", "name has '<'"),
+        ("{element: room, at: [1, 2], name: 'a\\Pb'}", "name has '\\\\'"),
+        ("{element: room, at: [1, 2], name: x, kind: door}", "has kind; to change a room takes"),
+        ("{element: opening, at: [1, 2], kind: gate}", "kind is 'gate', expected one of door"),
+        ("{element: opening, action: add, kind: door}", "has no line"),
+        ("{element: wall, action: add, line: [[0, 0], [0, 0]]}", "begins and ends at [0.0, 0.0]"),
+        ("{element: wall, action: add, line: [[0, 0]]}", "expected two places"),
+        ("{element: wall, action: add, line: [[0, 0], [1, 0]], thickness_m: -1}", "above 0"),
+        ("{element: reference_point, at: [0, 0], world: [1, 2], crs: x}", "add another"),
+        ("just words", "is 'just words', expected `element: ...`"),
+    ],
+)
+def test_a_wrong_entry_ends_in_one_line(tmp_path, entry, fault):
+    path = written(tmp_path, f"corrections:\n- {entry}\n")
+    with pytest.raises(StageError) as told:
+        read_corrections(path)
+    assert f"{path}: entry 1: " in str(told.value) and fault in str(told.value)
+
+
+@pytest.mark.parametrize("text", ["", "corrections: 5", "corrections: []\nwalls: []", "rooms: []"])
+def test_a_file_of_something_else_is_told(tmp_path, text):
+    with pytest.raises(StageError, match="expected a list of entries under `corrections:`"):
+        read_corrections(written(tmp_path, text))
+
+
+@pytest.mark.parametrize("text", ["{", "[]", '{"features": [{}]}', '{"features": [5]}'])
+def test_damaged_geojson_is_told(tmp_path, text):
+    with pytest.raises(StageError, match="is no GeoJSON FeatureCollection"):
+        read_corrections(written(tmp_path, text, "corrections.geojson"))
+
+
+def test_two_entries_of_one_place_are_told(tmp_path):
+    text = GOOD + "- {element: wall, at: [1.5, -2], action: keep}\n"
+    with pytest.raises(StageError, match=r"entry 8: entry 2 is of the same place; keep one"):
+        read_corrections(written(tmp_path, text))
+
+
+def test_reference_points_in_two_systems_are_told(tmp_path):
+    with pytest.raises(StageError, match="several `crs`"):
+        read_corrections(written(tmp_path, GOOD.replace("EPSG:25832", "EPSG:4326", 1)))
+
+
+def test_one_file_of_corrections_is_used(tmp_path):
+    assert find_corrections(tmp_path) is None
+    path = written(tmp_path, GOOD)
+    assert find_corrections(tmp_path) == str(path)
+    written(tmp_path, "{}", "corrections.geojson")
+    with pytest.raises(StageError, match="keep one of the two"):
+        find_corrections(tmp_path)

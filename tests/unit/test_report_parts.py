@@ -1,0 +1,66 @@
+"""Parts of the report: the points under the plan, what to verify, links to files."""
+
+import base64
+import io
+
+import numpy as np
+from PIL import Image
+
+from helpers import floorplan_making
+from scanplan.report.doubts import list_doubts
+from scanplan.report.point_image import draw_point_image
+from scanplan.report.result_links import link_results
+
+
+def pixels(points_m, **plan):
+    image = draw_point_image([(0, np.array(points_m, float))], floorplan_making.plan(**plan))
+    picture = Image.open(io.BytesIO(base64.b64decode(image.base64)))
+    ink = np.asarray(picture.convert("RGBA"))[..., 3]
+    rows, columns = np.nonzero(ink)
+    scale_m = image.size_m / ink.shape[::-1]
+    x_m = image.low_m[0] + (columns + 0.5) * scale_m[0]
+    y_m = image.low_m[1] + (ink.shape[0] - rows - 0.5) * scale_m[1]
+    return sorted(zip(x_m.tolist(), y_m.tolist(), strict=True)), scale_m
+
+
+def test_points_are_drawn_where_they_are():
+    found, scale_m = pixels([(1.0, 0.5, 1.0), (6.0, 2.5, 1.0), (99.0, 0.0, 1.0)])
+    np.testing.assert_allclose(found, [(1.0, 0.5), (6.0, 2.5)], atol=scale_m.max())
+
+
+def test_points_of_floor_and_ceiling_are_left_out_where_these_were_seen():
+    points = [(1.0, 0.5, 0.05), (2.0, 0.5, 1.2), (3.0, 0.5, 2.45)]
+    assert len(pixels(points)[0]) == 3
+    ((x_m, _),), _ = pixels(points, floor_z_m=0.0, ceiling_z_m=2.5)
+    assert abs(x_m - 2.0) < 0.05
+
+
+def test_no_point_makes_a_clear_picture():
+    assert pixels(np.empty((0, 3)))[0] == []
+
+
+def test_doubts_are_taken_where_the_tables_have_them():
+    rooms = floorplan_making.rooms() | {"closed": np.array([True, False])}
+    openings = floorplan_making.openings() | {
+        "verify": np.array([True, False, True]),
+        "doubt": np.array(["few rays", "", "no sill seen"], object),
+        "p_true": np.array([0.4, 0.99, 0.2]),
+    }
+    plan = floorplan_making.plan(rooms=rooms, openings=openings)
+    assert [(d.element, d.name, d.reason) for d in list_doubts(plan)] == [
+        ("opening 2", "Window 2", "no sill seen"),
+        ("opening 0", "Door 0", "few rays"),
+        ("wall 2", "Wall 2", "few scans show it, or its place is uncertain"),
+        ("room 1", "Room 1", "its outline is not closed: the area is a guess"),
+    ]
+
+
+def test_links_are_of_what_people_open_the_drawing_first():
+    files = ["plan/faces.parquet", "plan/other.step", "plan/plan.dxf", "figures/a.svg",
+             "plan/plan.svg", "comparison.html", "../x.csv"]  # fmt: skip
+    links = [(link.href, link.text) for link in link_results(files)]
+    assert links == [
+        ("plan/plan.svg", "drawing (SVG)"),
+        ("plan/plan.dxf", "CAD (DXF)"),
+        ("plan/other.step", "other.step"),
+    ]
