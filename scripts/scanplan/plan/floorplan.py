@@ -10,6 +10,7 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.plan import wall_footprints
 from scanplan.store import schemas, tables
+from scanplan.store.doubts import NO_DOUBT, Doubts, read_doubts
 from scanplan.types import Array, BoolArray, Columns, FilePath, FloatArray, IntArray
 
 STATES = ("observed", "inferred")
@@ -47,6 +48,8 @@ class FloorPlan:
         ASSUME of the storey, where neither its ceiling nor walls were seen in their height.
     floor_z_m, ceiling_z_m : float
         Heights in the map frame, NaN where not seen.
+    doubted : doubts.Doubts
+        What speaks against all of the plan.
     """
 
     name: str
@@ -59,6 +62,16 @@ class FloorPlan:
     assumed_height_m: float = 2.5
     floor_z_m: float = np.nan
     ceiling_z_m: float = np.nan
+    doubted: Doubts = NO_DOUBT
+
+    @property
+    def mark(self) -> str:
+        """What every sheet of it says where all of it is in doubt; empty where nothing is."""
+        marks = {
+            "from a damaged recording": self.doubted.damage,
+            "in doubt, see summary.txt": self.doubted.contradictions,
+        }
+        return ", ".join(words for words, sentences in marks.items() if sentences)
 
     @cached_property
     def thick(self) -> BoolArray:
@@ -211,7 +224,7 @@ def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: f
     ----------
     files : dict of str to path-like
         `faces`, `walls`, `openings`, `rooms` and `free` of plan/; the last states the heights of
-        floor and ceiling.
+        floor and ceiling, and doubts.
     name : str
     **assumed_m
         What `FloorPlan` assumes, where it is not the default.
@@ -238,6 +251,7 @@ def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: f
         free=read("free", schemas.FREE),
         floor_z_m=floor_z_m,
         ceiling_z_m=ceiling_z_m,
+        doubted=read_doubts(files["free"], schemas.FREE),
         **assumed_m,
     )
 

@@ -69,6 +69,7 @@ def report_page(
         name=plan.name,
         summary=wording.plan_sentence(plan, survey),
         prediction=wording.prediction_sentence(survey.prediction),
+        doubts=[*plan.doubted.damage, *wording.list_contradictions(plan, survey.prediction)],
         facts=wording.head_figures(plan, survey),
         plan=Markup(_plan_svg(plan, survey, of_plan["merge"])),
         chosen=survey.chosen,
