@@ -15,7 +15,7 @@ GIVEN := $(foreach name,$(.VARIABLES),$(if $(findstring command line,$(origin $(
 UNKNOWN := $(filter-out $(KNOWN),$(GIVEN))
 $(if $(UNKNOWN),$(error $(UNKNOWN): no such variable; there are $(KNOWN)))
 
-.PHONY: help run compare quick test lint style bench figures settings environment clean
+.PHONY: help run compare quick test lint style faults bench figures settings environment clean
 .DEFAULT_GOAL := run
 
 help: ## this list
@@ -51,6 +51,9 @@ style: environment
 	@$(BIN)/ruff format --check .
 	@$(BIN)/snakefmt --check Snakefile workflow/rules
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --lint
+
+faults: environment ## damaged and hostile input of every kind, and how each ends; about twenty minutes
+	@PYTHONPATH=scripts:tests $(BIN)/python -m faults.run_faults $(ARGS)
 
 bench: environment ## the stages against the algorithms of the thesis written literally
 	@$(BIN)/python tests/benchmarks/run.py $(ARGS)

@@ -6,6 +6,7 @@ ruamel.yaml reads it, `yes`, `010` and `1:30` would mean something else here tha
 
 from __future__ import annotations
 
+import reprlib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -41,12 +42,15 @@ class _Loader(yaml.SafeLoader):
         return super().construct_mapping(node, deep)
 
     def construct_object(self, node: yaml.Node, deep: bool = False) -> Any:
+        if node.tag.endswith((":int", ":float")) and ":" in node.value:
+            raise _fault(f"`{node.value}` would be read as minutes, to the base of 60", node)
         try:
             return super().construct_object(node, deep)
         except (ValueError, LookupError, AttributeError):
             # what looks like a date or is tagged as a number, and is none
             kind = node.tag.rpartition(":")[2]
-            raise _fault(f"`{node.value}` is no {kind}", node) from None
+            shown = reprlib.repr(node.value)
+            raise _fault(f"{shown} is no {kind}", node) from None
 
 
 def _fault(problem: str, place: Any) -> yaml.MarkedYAMLError:
