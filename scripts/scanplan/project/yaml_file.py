@@ -6,7 +6,6 @@ ruamel.yaml reads it, `yes`, `010` and `1:30` would mean something else here tha
 
 from __future__ import annotations
 
-import reprlib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -49,8 +48,8 @@ class _Loader(yaml.SafeLoader):
         except (ValueError, LookupError, AttributeError):
             # what looks like a date or is tagged as a number, and is none
             kind = node.tag.rpartition(":")[2]
-            shown = reprlib.repr(node.value)
-            raise _fault(f"{shown} is no {kind}", node) from None
+            shown = node.value if len(node.value) < 80 else f"{node.value[:40]}..."
+            raise _fault(f"`{shown}` is no {kind}", node) from None
 
 
 def _fault(problem: str, place: Any) -> yaml.MarkedYAMLError:
