@@ -15,7 +15,8 @@ GIVEN := $(foreach name,$(.VARIABLES),$(if $(findstring command line,$(origin $(
 UNKNOWN := $(filter-out $(KNOWN),$(GIVEN))
 $(if $(UNKNOWN),$(error $(UNKNOWN): no such variable; there are $(KNOWN)))
 
-.PHONY: help run compare quick test test-slurm lint style bench figures pictures settings environment clean
+.PHONY: help run compare quick test test-slurm lint style faults audit bench figures pictures settings
+.PHONY: environment clean
 .DEFAULT_GOAL := run
 
 help: ## this list
@@ -56,6 +57,12 @@ style: environment
 	@$(BIN)/ruff format --check .
 	@$(BIN)/snakefmt --check Snakefile workflow/Snakefile workflow/rules
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --lint
+
+faults: environment ## damaged and hostile input of every kind, and how each ends; about twenty minutes
+	@PYTHONPATH=scripts:tests $(BIN)/python -m faults.run_faults $(ARGS)
+
+audit: environment ## licences of all packages; fails on ones that do not fit the project's
+	@$(BIN)/python tests/audit_licences.py
 
 bench: environment ## the stages against the algorithms of the thesis written literally
 	@$(BIN)/python tests/benchmarks/run.py $(ARGS)

@@ -9,11 +9,13 @@ from typing import Any
 import numpy as np
 
 from scanplan.plan import messages, planning
+from scanplan.plan.floorplan import FloorPlan
 from scanplan.rays import levels, ray_set
 from scanplan.selection import stopping
 from scanplan.stage import log
-from scanplan.store import registered_scans, schemas, tables
+from scanplan.store import doubts, registered_scans, schemas, tables
 from scanplan.types import FilePath, Settings
+from scanplan.validation import contradictions
 
 
 def assemble_plan(
@@ -63,8 +65,18 @@ def assemble_plan(
     )
     messages.check_plan(walls, plan, is_used.sum(), count)
     heights_m = _find_heights(rays)
+    drawn = FloorPlan(
+        name="",
+        **{name: getattr(plan, name) for name in ("faces", "walls", "openings", "rooms", "free")},
+        floor_z_m=float(heights_m["floor_z_m"]),
+        ceiling_z_m=float(heights_m["ceiling_z_m"]),
+    )
+    new = contradictions.find_contradictions(drawn, rays, poses[np.argsort(registered.t_ns), :2, 3])
+    found = doubts.read_doubts(registration, schemas.REGISTRATION).add(contradictions=new)
+    for sentence in new:
+        log.log_warning(f"assemble_plan: {sentence}")
     for name, schema in planning.TABLES.items():
-        notes = heights_m if name == "free" else None
+        notes = {**heights_m, **found.as_notes()} if name == "free" else None
         columns = getattr(plan, name)
         tables.write_table(outputs[name], schema, columns, allow_empty=True, notes=notes)
     if warning := messages.sparse_rays_warning(rays, settings["openings"]["min_opening_m"]):

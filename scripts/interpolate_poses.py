@@ -9,7 +9,7 @@ from scanplan.recordings import candidates, frame_edges
 from scanplan.recordings.motion import time_check, trajectory
 from scanplan.recordings.survey import open_survey
 from scanplan.stage import log
-from scanplan.store import schemas, tables
+from scanplan.store import doubts, schemas, tables
 from scanplan.types import FilePath
 
 
@@ -60,8 +60,11 @@ def interpolate_poses(
             motion = trajectory.choose_motion(survey.motion_chains(), t_ns, **limits)
             motion = time_check.check_point_times(survey, motion)
             tables.write_table(moved, schemas.MOTION, motion.columns())
+        found = doubts.Doubts().add(survey.describe_damage())
     columns = candidates.pose_columns(chosen, t_ns, pose, gap_s, covered)
-    tables.write_table(output, schemas.POSES, columns)
+    tables.write_table(output, schemas.POSES, columns, notes=found.as_notes())
+    for sentence in found.sentences:
+        log.log_warning(f"interpolate_poses: {sentence}")
     n_covered = int(covered[chosen].sum())
     log.log_line(
         f"interpolate_poses: {len(t_ns):,} scans, {len(chosen):,} candidates,"

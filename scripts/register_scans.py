@@ -6,11 +6,11 @@ from typing import Any
 from scanplan.recordings.clouds import Scan
 from scanplan.recordings.motion import trajectory
 from scanplan.recordings.survey import open_survey
-from scanplan.registration import gate_shares, mapping, results
+from scanplan.registration import contradictions, gate_shares, mapping, results
 from scanplan.registration.registration_settings import registration_settings
 from scanplan.registration.sequential import ScanResult
 from scanplan.stage import log, workers
-from scanplan.store import scan_cache, schemas, tables
+from scanplan.store import doubts, scan_cache, schemas, tables
 from scanplan.types import FilePath
 
 
@@ -62,6 +62,7 @@ def register_scans(
             verdicts, constraints = mapping.register_scans(
                 survey, progress, raw, thinned, run, limits
             )
+            damage = opened.describe_damage()
         results.check_any_kept(verdicts, counted.n_dropped, recordings[0])
         gate_shares.check_any_survives(verdicts, survey, raw, limits.limits, recordings[0])
         _write_kept_scans(scans, survey, verdicts, raw)
@@ -72,7 +73,12 @@ def register_scans(
     columns = results.constraint_columns(constraints)
     tables.write_table(edges, schemas.EDGES, columns, allow_empty=True)
     columns = results.registration_columns(survey.scan_ids, candidates["t_ns"], verdicts)
-    tables.write_table(registered, schemas.REGISTRATION, columns)
+    found = doubts.read_doubts(poses, schemas.POSES).add(
+        damage, contradictions.find_misfit(verdicts)
+    )
+    for sentence in found.sentences:
+        log.log_warning(f"register_scans: {sentence}")
+    tables.write_table(registered, schemas.REGISTRATION, columns, notes=found.as_notes())
 
 
 class _CountedScans:

@@ -23,6 +23,7 @@ HOMES = {
     "rosbags": (
         "recordings/bags.py",
         "recordings/integrity/",
+        "recordings/salvage/",
         "recordings/rosbag1_messages.py",
         "recordings/typestores.py",
         "exports/bag_writer.py",

@@ -120,3 +120,10 @@ def test_a_file_or_a_dangling_link_in_the_place_of_a_folder_is_told(place):
     Path(place).mkdir()
     run_lock.check_places(["d"])
     assert list(Path(place).iterdir()) == []
+
+
+def test_a_link_that_leads_nowhere_is_told(tmp_path):
+    (tmp_path / "results/d").mkdir(parents=True)
+    (tmp_path / "results/d/scans.parquet").symlink_to("nowhere")
+    with pytest.raises(StageError, match=r"results/d/scans.parquet: is a link that leads nowhere"):
+        run_lock.check_places(["d"])

@@ -45,7 +45,7 @@ def draw_plan(plan: FloorPlan) -> Figure:
         _label_rooms(axes, plan, drawing_frame.letter_m(scale))
         drawing_frame.draw_dimension(axes, low_m, np.array([high_m[0], low_m[1]]), scale)
         drawing_frame.draw_dimension(axes, np.array([low_m[0], high_m[1]]), low_m, scale)
-        contents = floorplan.summarise_floorplan(plan)
+        contents = "   ·   ".join(filter(None, [plan.mark, floorplan.summarise_floorplan(plan)]))
         drawing_frame.draw_title_block(axes, plan.name, contents, scale, _legend_samples(plan))
         drawing_frame.close_page(figure)
     return figure

@@ -11,6 +11,7 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.plan import wall_footprints
 from scanplan.store import schemas, tables
+from scanplan.store.doubts import NO_DOUBT, Doubts, read_doubts
 from scanplan.types import Array, BoolArray, Columns, FilePath, FloatArray, IntArray
 
 STATES = ("observed", "inferred")
@@ -73,6 +74,8 @@ class FloorPlan:
         Heights in the map frame, NaN where not seen.
     georeference : GeoReference or None
         Where the plan lies on Earth, where a person said so.
+    doubted : doubts.Doubts
+        What speaks against all of the plan.
     """
 
     name: str
@@ -86,6 +89,16 @@ class FloorPlan:
     floor_z_m: float = np.nan
     ceiling_z_m: float = np.nan
     georeference: GeoReference | None = None
+    doubted: Doubts = NO_DOUBT
+
+    @property
+    def mark(self) -> str:
+        """What every sheet of it says where all of it is in doubt; empty where nothing is."""
+        marks = {
+            "from a damaged recording": self.doubted.damage,
+            "in doubt, see summary.txt": self.doubted.contradictions,
+        }
+        return ", ".join(words for words, sentences in marks.items() if sentences)
 
     @cached_property
     def thick(self) -> BoolArray:
@@ -245,7 +258,7 @@ def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: f
     ----------
     files : dict of str to path-like
         `faces`, `walls`, `openings`, `rooms` and `free` of plan/; the last states the heights of
-        floor and ceiling.
+        floor and ceiling, and doubts.
     name : str
     **assumed_m
         What `FloorPlan` assumes, where it is not the default.
@@ -274,6 +287,7 @@ def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: f
         floor_z_m=floor_z_m,
         ceiling_z_m=ceiling_z_m,
         georeference=GeoReference(**json.loads(reference)) if reference else None,
+        doubted=read_doubts(files["free"], schemas.FREE),
         **assumed_m,
     )
 

@@ -101,6 +101,10 @@ def check_places(names: Iterable[str]) -> None:
                 tempfile.TemporaryFile(dir=folder).close()
             except OSError as error:
                 raise atomic.describe_unwritable(folder, error) from None
+    for folder in of_each:
+        for path in folder.rglob("*"):
+            if path.is_symlink() and not path.exists():
+                raise StageError(f"{path}: is a link that leads nowhere; remove it")
 
 
 class FolderRun:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from scanplan.errors import StageError
 from scanplan.project.settings_check import (
+    COMMAND_LINE,
     MANUAL,
     check_settings,
     find_crossed_limits,
@@ -109,6 +110,11 @@ def settings_of_run(defaults: Settings, layers: Sequence[Layer], schema: Schema)
     settings = dict(defaults)
     for layer in layers:
         of_run = {key: layer.values[key] for key in OF_A_RUN if key in layer.values}
+        if layer.origin == COMMAND_LINE and of_run.get("dataset", layer) is None:
+            raise StageError(
+                f"{COMMAND_LINE}: dataset: is empty; name a folder or a recording, or leave it out"
+                " for the demo"
+            )
         settings = merge_settings(settings, of_run)
         check_settings(settings, schema, layer.origin)
     return {key: settings[key] for key in OF_A_RUN}

@@ -133,4 +133,9 @@ def _explain(fault: ValidationError, origin: str) -> str:
         remedy = f" (a name of digits wants to be in a list: --config '{key}=[\"NAME\"]')"
         hint = remedy if numeral else ""
         return f"{key}: is {value!r}{hint}, expected: {node['description']}"
-    return f"{key}: {fault.message}"
+    return f"{key}: {_shorten(fault.message)}"
+
+
+def _shorten(message: str) -> str:
+    """Return a message with the middle left out that a value of hundreds of letters has."""
+    return message if len(message) <= 200 else f"{message[:60]} ... {message[-60:]}"

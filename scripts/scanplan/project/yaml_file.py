@@ -41,12 +41,15 @@ class _Loader(yaml.SafeLoader):
         return super().construct_mapping(node, deep)
 
     def construct_object(self, node: yaml.Node, deep: bool = False) -> Any:
+        if node.tag.endswith((":int", ":float")) and ":" in node.value:
+            raise _fault(f"`{node.value}` would be read as minutes, to the base of 60", node)
         try:
             return super().construct_object(node, deep)
         except (ValueError, LookupError, AttributeError):
             # what looks like a date or is tagged as a number, and is none
             kind = node.tag.rpartition(":")[2]
-            raise _fault(f"`{node.value}` is no {kind}", node) from None
+            shown = node.value if len(node.value) < 80 else f"{node.value[:40]}..."
+            raise _fault(f"`{shown}` is no {kind}", node) from None
 
 
 def _fault(problem: str, place: Any) -> yaml.MarkedYAMLError:

@@ -7,7 +7,7 @@ topic does not matter; without one, by the standard definitions of the ROS relea
 import errno
 import tempfile
 from collections import Counter
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
@@ -24,17 +24,23 @@ from scanplan.recordings import topics, typestores
 from scanplan.recordings.integrity import stated_counts, unpacking
 from scanplan.recordings.messages import read_header
 from scanplan.recordings.rosbag1_messages import StoredMessage, iterate_messages
+from scanplan.recordings.salvage.salvaged_reader import SalvagedReader
 from scanplan.types import FilePath
 
 RawMessage = bytes | StoredMessage
 BagMessage = tuple[Connection, int, RawMessage]
 """A message's connection, its time of receipt in nanoseconds, and its content, not decoded."""
 
+SoundReader = rosbag1.Reader | rosbag2.Reader
+"""What reads a recording that has to be whole."""
+
 _URI_CHARACTERS = frozenset("#?%")
 
 
 @contextmanager
-def open_bag(path: FilePath, *, ros2_release: str = "humble") -> Iterator["Bag"]:
+def open_bag(
+    path: FilePath, *, ros2_release: str = "humble", salvage: bool = False
+) -> Iterator["Bag"]:
     """Open one recording.
 
     Parameters
@@ -43,6 +49,8 @@ def open_bag(path: FilePath, *, ros2_release: str = "humble") -> Iterator["Bag"]
         A .bag, .db3 or .mcap file, or a rosbag2 folder.
     ros2_release : str
         Whose message definitions hold where a ROS 2 recording carries none.
+    salvage : bool
+        Whether to read what is whole of a damaged recording, message by message.
 
     Yields
     ------
@@ -58,13 +66,18 @@ def open_bag(path: FilePath, *, ros2_release: str = "humble") -> Iterator["Bag"]
     is_ros2 = path.suffix != ".bag" or path.is_dir()
     with ExitStack() as stack:
         with _explain_faults(path):
-            place = _openable_name(path, stack)
-            reader = rosbag2.Reader(place) if is_ros2 else rosbag1.Reader(place)
-            if path.is_dir():
-                unpacking.check_room(path)
+            reader = SalvagedReader(path) if salvage else _choose_reader(path, is_ros2, stack)
             stack.enter_context(reader)
-            bag = Bag(path, reader, store if is_ros2 else Stores.ROS1_NOETIC)
+            bag = Bag(path, reader, store if is_ros2 else Stores.ROS1_NOETIC, ros2=is_ros2)
         yield bag
+
+
+def _choose_reader(path: Path, is_ros2: bool, stack: ExitStack) -> SoundReader:
+    """Return rosbags' reader of a recording, not opened."""
+    place = _openable_name(path, stack)
+    if path.is_dir():
+        unpacking.check_room(path)
+    return rosbag2.Reader(place) if is_ros2 else rosbag1.Reader(place)
 
 
 class Bag:
@@ -81,18 +94,21 @@ class Bag:
     """
 
     def __init__(
-        self, path: Path, reader: rosbag1.Reader | rosbag2.Reader, default_store: Stores
+        self, path: Path, reader: SoundReader | SalvagedReader, default_store: Stores, *, ros2: bool
     ) -> None:
         self.path = path
-        self.ros2 = isinstance(reader, rosbag2.Reader)
+        self.ros2 = ros2
         self.start_ns = reader.start_time
         self.topics = [topics.Topic(c.topic, c.msgtype, c.msgcount) for c in reader.connections]
         self._reader = reader
         self._default_store = default_store
         self._typestores: dict[tuple[str, Any], Typestore] = {}
-        self._unpack = unpacking.limit_unpacking(reader)
-        stated_counts.check_checksums(reader)
-        self._stated = stated_counts.count_stated_messages(reader)
+        self._unpack: Callable[[bytes], bytes] | None = None
+        self._stated: Mapping[str, int] = {}
+        if not isinstance(reader, SalvagedReader):
+            self._unpack = unpacking.limit_unpacking(reader)
+            stated_counts.check_checksums(reader)
+            self._stated = stated_counts.count_stated_messages(reader)
 
     def messages(self, names: Collection[str]) -> Iterator[BagMessage]:
         """Iterate over the messages of some topics in the order of recording.
@@ -129,6 +145,14 @@ class Bag:
         if fault := stated_counts.find_lost_messages(came, self._stated, names):
             raise StageError(f"{self.path}: {fault}; {_remedy_of_storage(self.path)}")
 
+    def describe_loss(self) -> str:
+        """Return what of a salvaged recording is lost; nothing where it is whole or not salvaged.
+
+        Messages that are none of their type count once they were iterated over.
+        """
+        reader = self._reader
+        return reader.describe_loss() if isinstance(reader, SalvagedReader) else ""
+
     def header(self, connection: Connection, raw: RawMessage) -> tuple[int, str]:
         """Return the header stamp and the frame of a message without decoding the rest."""
         with _explain_faults(self.path, connection.topic):
@@ -145,12 +169,26 @@ class Bag:
 
     def _iterate(self, connections: list[Connection]) -> Iterator[BagMessage]:
         reader = self._reader
+        if isinstance(reader, SalvagedReader):
+            return self._iterate_salvaged(reader, connections)
         if isinstance(reader, rosbag1.Reader) and is_uncompressed(reader):
             return _iterate_uncompressed(reader, connections)
         if self._unpack is None:
             return reader.messages(connections)
         unpack = self._unpack
         return ((c, time_ns, unpack(raw)) for c, time_ns, raw in reader.messages(connections))
+
+    def _iterate_salvaged(
+        self, reader: SalvagedReader, connections: list[Connection]
+    ) -> Iterator[BagMessage]:
+        """Iterate over the messages that can be decoded; without checksums that alone is told."""
+        for connection, time_ns, raw in reader.messages(connections):
+            try:
+                self.decode(connection, raw)
+            except StageError:
+                reader.note_unreadable(connection.topic, time_ns)
+            else:
+                yield connection, time_ns, raw
 
     def _typestore(self, connection: Connection) -> Typestore:
         key = (connection.msgtype, connection.msgdef)
@@ -231,10 +269,12 @@ def _remedy(path: Path, error: Exception) -> str:
 def _remedy_of_storage(path: Path) -> str:
     files = [path, *path.iterdir()] if path.is_dir() else [path]
     if path.suffix == ".bag":
-        return "try `rosbag reindex` on a copy, or copy it again from the robot"
-    if any(".mcap" in file.suffixes for file in files):
-        return "try `mcap recover` on it, or copy it again from the robot"
+        tool = "`rosbag reindex` on a copy"
+    elif any(".mcap" in file.suffixes for file in files):
+        tool = "`mcap recover` on it"
+    else:
+        tool = "`ros2 bag reindex` on the folder or `sqlite3 FILE .recover`"
     return (
-        "try `ros2 bag reindex` on the folder or `sqlite3 FILE .recover`,"
-        " or copy it again from the robot"
+        f"try {tool}, or copy it again from the robot, or set input.salvage: true to read what is"
+        " whole of it"
     )

@@ -1,7 +1,7 @@
 """One survey recorded in ROS bags: its clouds, and the chains that place its sensor."""
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +18,7 @@ from scanplan.recordings import (
 from scanplan.recordings.bags import Bag, BagMessage
 from scanplan.recordings.extrinsics import configured_extrinsics
 from scanplan.recordings.frame_edges import FrameEdge
+from scanplan.recordings.integrity.damaged_clouds import DamagedClouds
 from scanplan.recordings.motion import point_times
 from scanplan.recordings.survey_protocol import NamedChain
 from scanplan.stage import log
@@ -59,6 +60,8 @@ class BagSurvey:
     base_from_sensor : (6,) float or None
         x, y, z in metres, roll, pitch, yaw in degrees.
     min_range_m, max_range_m : float
+    max_damaged_share : float
+        Of the clouds that are read.
 
     Raises
     ------
@@ -76,6 +79,7 @@ class BagSurvey:
         base_from_sensor: Sequence[float] | None,
         min_range_m: float,
         max_range_m: float,
+        max_damaged_share: float = 0.0,
     ) -> None:
         self._bags = sorted(recordings, key=lambda bag: (bag.start_ns, str(bag.path)))
         self._where = ", ".join(str(bag.path) for bag in self._bags)
@@ -88,6 +92,8 @@ class BagSurvey:
         self._extrinsics = (
             None if base_from_sensor is None else configured_extrinsics(base_from_sensor)
         )
+        self._max_damaged_share = max_damaged_share
+        self._damaged = DamagedClouds(0, max_damaged_share)
         self._limits = {"min_range_m": min_range_m, "max_range_m": max_range_m}
 
     @property
@@ -155,15 +161,21 @@ class BagSurvey:
         ValueError
             If there is no scan of one of the numbers.
         StageError
-            If a cloud cannot be decoded.
+            If too many clouds cannot be decoded.
         """
         missing = {int(scan_id) for scan_id in wanted}
-        sweep_times = self.sweep_times
+        self._damaged = DamagedClouds(len(missing), self._max_damaged_share)
         for cloud in self._cloud_messages(missing.copy()):
             missing.remove(cloud.scan_id)
-            yield self._keep_in_range(self._decode(cloud), sweep_times)
+            received_ns = cloud.message[1]
+            yield self._damaged.read(cloud.scan_id, received_ns, partial(self._read_scan, cloud))
         if missing:
             raise ValueError(f"{self._where}: there is no scan {min(missing)}")
+
+    def describe_damage(self) -> list[str]:
+        """Return what could not be read so far, in sentences."""
+        losses = filter(None, (bag.describe_loss() for bag in self._bags))
+        return [*losses, *self._damaged.describe()]
 
     def pose_edges(self) -> list[FrameEdge]:
         """Return the chain of transforms whose product is world_from_sensor.
@@ -255,6 +267,9 @@ class BagSurvey:
                 return
             if wanted is None or scan_id in wanted:
                 yield _CloudMessage(scan_id, bag, message)
+
+    def _read_scan(self, cloud: _CloudMessage) -> clouds.Scan:
+        return self._keep_in_range(self._decode(cloud), self.sweep_times)
 
     def _decode(self, cloud: _CloudMessage) -> _RawScan:
         bag = cloud.bag

@@ -4,7 +4,7 @@ import io
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from decimal import Decimal
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +13,7 @@ from scanplan.errors import StageError
 from scanplan.project import dataset_files
 from scanplan.recordings import clocks, clouds, frame_edges
 from scanplan.recordings.extrinsics import configured_extrinsics
+from scanplan.recordings.integrity.damaged_clouds import DamagedClouds
 from scanplan.recordings.integrity.ply_size import check_ply_size
 from scanplan.recordings.messages import TIME_FIELDS
 from scanplan.recordings.motion import point_times
@@ -40,6 +41,8 @@ class ScanFolder:
     base_from_sensor : (6,) float or None
         x, y, z in metres, roll, pitch, yaw in degrees; by default the poses are the sensor's own.
     min_range_m, max_range_m : float
+    max_damaged_share : float
+        Of the clouds that are read.
 
     Raises
     ------
@@ -54,12 +57,15 @@ class ScanFolder:
         base_from_sensor: Sequence[float] | None,
         min_range_m: float,
         max_range_m: float,
+        max_damaged_share: float = 0.0,
     ) -> None:
         paths = [Path(file) for file in files]
         self._poses_path = next(p for p in paths if p.name == dataset_files.POSES_FILE)
         self._extrinsics = (
             [] if base_from_sensor is None else configured_extrinsics(base_from_sensor)
         )
+        self._max_damaged_share = max_damaged_share
+        self._damaged = DamagedClouds(0, max_damaged_share)
         self._limits = {"min_range_m": min_range_m, "max_range_m": max_range_m}
         pose_ns, rows = tum.read_tum(self._poses_path)
         self._track = _make_track(self._poses_path, pose_ns, rows)
@@ -100,6 +106,10 @@ class ScanFolder:
         """Return the stamps of all clouds, (n,) int64, in scan_id order."""
         return self._stamps_ns
 
+    def describe_damage(self) -> list[str]:
+        """Return what could not be read so far, in sentences."""
+        return self._damaged.describe()
+
     def pose_edges(self) -> list[frame_edges.FrameEdge]:
         """Return the chain of transforms whose product is world_from_sensor."""
         return [self._track, *self._extrinsics]
@@ -118,7 +128,7 @@ class ScanFolder:
         ValueError
             If there is no scan of one of the numbers.
         StageError
-            If a file is damaged.
+            If too many files are damaged.
         """
         scan_ids = sorted({int(scan_id) for scan_id in wanted})
         if scan_ids and not 0 <= scan_ids[0] <= scan_ids[-1] < len(self._clouds):
@@ -126,8 +136,10 @@ class ScanFolder:
                 f"{self._poses_path.parent}: {len(self._clouds)} scans,"
                 f" asked for up to {scan_ids[-1]}"
             )
+        self._damaged = DamagedClouds(len(scan_ids), self._max_damaged_share)
         for scan_id in scan_ids:
-            yield self._read_scan(scan_id, self.sweep_times)
+            read = partial(self._read_scan, scan_id, self.sweep_times)
+            yield self._damaged.read(scan_id, int(self._stamps_ns[scan_id]), read)
 
     def _read_scan(
         self, scan_id: int, sweep_times: point_times.TimeConvention | None = None

@@ -22,6 +22,8 @@ def open_survey(
     ros2_release: str = "humble",
     min_range_m: float = 0.0,
     max_range_m: float = math.inf,
+    max_damaged_share: float = 0.0,
+    salvage: bool = False,
     deskew: bool = True,
     motion: SensorMotion | None = None,
 ) -> Iterator[Survey]:
@@ -42,6 +44,10 @@ def open_survey(
         Whose message definitions hold where a ROS 2 bag carries none.
     min_range_m, max_range_m : float
         Points outside are dropped.
+    max_damaged_share : float
+        So many of the scans that are read may be damaged; they come without points.
+    salvage : bool
+        Whether to read what is whole of damaged bags.
     deskew : bool
         Whether to move points to where they would have been seen at their scan's stamp, given a
         `motion`.
@@ -66,16 +72,18 @@ def open_survey(
         "base_from_sensor": base_from_sensor,
         "min_range_m": min_range_m,
         "max_range_m": max_range_m,
+        "max_damaged_share": max_damaged_share,
     }
+    opening = {"ros2_release": ros2_release, "salvage": salvage}
     with ExitStack() as stack:
-        survey = _open_recordings(files, stack, ros2_release, topics_and_frame, common)
+        survey = _open_recordings(files, stack, opening, topics_and_frame, common)
         yield DeskewedSurvey(survey, motion) if deskew and motion is not None else survey
 
 
 def _open_recordings(
     files: Sequence[str],
     stack: ExitStack,
-    ros2_release: str,
+    opening: Mapping[str, Any],
     topics_and_frame: Mapping[str, str | None],
     common: Mapping[str, Any],
 ) -> Survey:
@@ -87,7 +95,7 @@ def _open_recordings(
     from scanplan.recordings import bags, recorded_survey
 
     opened = [
-        stack.enter_context(bags.open_bag(path, ros2_release=ros2_release))
+        stack.enter_context(bags.open_bag(path, **opening))
         for path in dataset_files.group_recordings(files)
     ]
     return recorded_survey.BagSurvey(opened, **topics_and_frame, **common)

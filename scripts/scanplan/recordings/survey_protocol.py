@@ -37,6 +37,10 @@ class Survey(Protocol):
         """Return all that states how the sensor moved, the smoothest first and the poses last."""
         ...
 
+    def describe_damage(self) -> list[str]:
+        """Return what could not be read so far, in sentences."""
+        ...
+
     def scans(self, wanted: Iterable[int]) -> Iterator[Scan]:
         """Iterate over the scans of the scan_ids in `wanted`, in scan_id order."""
         ...

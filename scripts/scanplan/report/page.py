@@ -86,6 +86,10 @@ def report_page(
         name=plan.name,
         summary=wording.plan_sentence(plan, survey),
         prediction=wording.prediction_sentence(survey.prediction),
+        contradictions=[
+            *plan.doubted.damage,
+            *wording.list_contradictions(plan, survey.prediction),
+        ],
         facts=wording.head_figures(plan, survey),
         links=result_links.link_results(run.results),
         doubts=doubts.list_doubts(plan),

@@ -31,6 +31,7 @@ def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
         f" {page_tables.wall_lengths_m(plan).sum():,.1f} m"
     )
     doubts = [
+        *wording.list_contradictions(plan, survey.prediction),
         _name_some("wall", walls["wall"][walls["verify"]], "weakly supported: verify on site"),
         _name_some("room", rooms["room"][~rooms["closed"]], "not closed: area is a guess"),
     ]
@@ -40,7 +41,9 @@ def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
         f"{survey.chosen:,} of {_count(n_kept, 'registered scan')}"
         f" ({n_candidates:,} candidates of about {n_recorded:,} recorded)"
     )
+    damage = plan.doubted.damage
     lines = [
+        *([("damaged", "; ".join(damage))] if damage else []),
         ("found", found),
         ("doubtful", "; ".join(filter(None, doubts)) or "nothing that the plan marks"),
         ("made of", used),

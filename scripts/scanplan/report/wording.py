@@ -39,6 +39,17 @@ def prediction_sentence(prediction: PredictionFacts) -> str:
     )
 
 
+def list_contradictions(plan: floorplan.FloorPlan, prediction: PredictionFacts) -> list[str]:
+    """Return what cannot be if units, mounting and clock are right, in sentences."""
+    found = list(plan.doubted.contradictions)
+    if not prediction.absent and prediction.share < 0.5:
+        found.append(
+            "most rays of scans that were not used contradict the plan: only"
+            f" {prediction.share:.0%} of them end where it says"
+        )
+    return found
+
+
 def head_figures(plan: floorplan.FloorPlan, survey: SurveyFacts) -> list[tuple[str, str]]:
     """Return the figures at the head of the page: what each is called, and its value."""
     t_s = survey.poses["t_ns"] / 1e9

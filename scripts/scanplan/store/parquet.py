@@ -102,7 +102,7 @@ def open_file(path: FilePath, schema: Schema) -> Iterator[pq.ParquetFile]:
             yield file
     except FileNotFoundError:
         raise StageError(f"{path}: does not exist; run the stage that makes it") from None
-    except (pa.ArrowException, OSError) as error:
+    except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
         raise StageError(f"{path}: damaged ({error}); {RERUN}") from None
 
 

@@ -175,7 +175,7 @@ class ScanStore:
             groups = [metadata.row_group(i) for i in range(metadata.num_row_groups)]
             ids = [group.column(0).statistics for group in groups]
             self.planar = bool(json.loads(parquet.read_notes(file, path)["planar"]))
-        self.scan_ids = np.array([group.min for group in ids], np.int32)
+            self.scan_ids = np.array([group.min for group in ids], np.int32)
         self.n_points = np.array([group.num_rows for group in groups], np.int64)
         if len(self.scan_ids) == 0:
             raise StageError(f"{path}: holds no scan; {parquet.RERUN}")

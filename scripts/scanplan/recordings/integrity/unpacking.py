@@ -24,6 +24,9 @@ from scanplan.errors import StageError
 MOST_UNPACKED_BYTES = 2**29
 """A chunk and a message are a few megabytes, 10 million points of 48 bytes below this."""
 
+ZSTD_MAGIC = b"\x28\xb5\x2f\xfd"
+"""What every frame of zstd begins with (RFC 8878); no message in CDR does."""
+
 
 class _Unpacker(Protocol):
     @property

@@ -135,6 +135,10 @@ class DeskewedSurvey:
         """Return the stamps of all clouds, (n,) int64, in scan_id order."""
         return self._survey.stamps()
 
+    def describe_damage(self) -> list[str]:
+        """Return what could not be read so far, in sentences."""
+        return self._survey.describe_damage()
+
     def pose_edges(self) -> list[FrameEdge]:
         """Return the chain of transforms whose product is world_from_sensor."""
         return self._survey.pose_edges()

@@ -1,0 +1,1 @@
+"""What is whole of damaged recordings: messages found without the index, and what is lost."""

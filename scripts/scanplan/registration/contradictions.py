@@ -1,0 +1,27 @@
+"""What of a registration cannot be if the recording's units, mounting and clock are right."""
+
+from collections.abc import Sequence
+
+from scanplan.registration.sequential import ScanResult
+
+_LEAST_KEPT = 0.7  # sound recordings keep 0.95 and more, those of a wrong mounting half or less
+_UNASKED = ("too_few_points", "pose_gap")
+
+
+def find_misfit(scan_results: Sequence[ScanResult]) -> list[str]:
+    """Return whether most scans do not fit one another at their poses, as a sentence.
+
+    Parameters
+    ----------
+    scan_results : sequence of sequential.ScanResult
+        One per candidate.
+    """
+    asked = [result for result in scan_results if result.reason not in _UNASKED]
+    n_kept = sum(result.kept for result in asked)
+    if n_kept >= _LEAST_KEPT * len(asked):
+        return []
+    return [
+        f"only {n_kept:,} of {len(asked):,} scans fit one another where their poses put them: the"
+        " clock of the poses, the mounting (input.base_from_sensor) or the unit of ranges may"
+        " be wrong"
+    ]

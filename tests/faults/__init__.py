@@ -1,0 +1,1 @@
+"""Faults on purpose: every case ends soundly, told, or in one clear line, and never in silence."""

@@ -1,0 +1,129 @@
+"""Faults tried through the real command: names, limits of disk and memory, kills at random."""
+
+import os
+import random
+import resource
+import shutil
+import signal
+import subprocess
+import time
+from functools import partial
+from pathlib import Path
+
+from faults import judging
+from helpers import bag_making
+from helpers.project_copy import Project
+
+_ROOT = Path(__file__).resolve().parents[2]
+_LONGEST_S = 600
+_MB = 2**20
+_NAMES = (
+    "a b",
+    "it's",
+    "$(touch pwned)",
+    "; touch pwned",
+    "`touch pwned`",
+    "ü€",
+    "<script>x",
+    "-x",
+)
+_TARGET = "hulls.parquet"
+
+
+def try_commands(folder, tally, n_kills=60):
+    """Try all of them in one copy of the project."""
+    (folder / "project").mkdir()
+    project = Project(_ROOT, folder / "project")
+    for name in _NAMES:
+        _write_dataset(project.folder / name)
+        outcome, said = run_command(project, "--dry-run", dataset=name)
+        if (project.folder / "pwned").exists():
+            outcome = judging.SILENT
+        tally.add("hostile names", name, outcome, said)
+    _write_dataset(project.folder / "d")
+    for mb in (0.001, 0.02, 0.1):
+        limit = partial(_limit, resource.RLIMIT_FSIZE, int(mb * _MB))
+        outcome, said = run_command(project, target=_TARGET, before=limit, may_pass=False)
+        tally.add("disk full", f"files of {mb} MB", outcome, said)
+    for mb in (300, 700, 1200):
+        limit = partial(_limit, resource.RLIMIT_AS, mb * _MB)
+        outcome, said = run_command(project, target=_TARGET, before=limit)
+        tally.add("little memory", f"{mb} MB", outcome, said)
+    try_kills(project, tally, n_kills)
+
+
+def run_command(project, *arguments, dataset="d", target=None, before=None, may_pass=True):
+    """Run the workflow; return the outcome, and its last line."""
+    wanted = [f"results/{dataset}/{target}"] if target else []
+    command = project.command(*wanted, *arguments, "--config", f'dataset=["{dataset}"]')
+    try:
+        run = subprocess.run(
+            command,
+            cwd=project.folder,
+            env=project.env(),
+            capture_output=True,
+            text=True,
+            timeout=_LONGEST_S,
+            preexec_fn=before,
+        )
+    except subprocess.TimeoutExpired:
+        return judging.HANG, ""
+    output = (run.stdout + run.stderr).splitlines()
+    last = output[-1] if output else ""
+    if run.returncode == 0:
+        return (judging.SOUND if may_pass else judging.SILENT), last
+    if "unexpected failure" in last:
+        return judging.UNEXPECTED, last
+    return (judging.CLEAR if last.startswith("scanplan: ") else judging.NO_LINE), last
+
+
+def try_kills(project, tally, n_kills):
+    """Kill a chain at random moments, go on each time, and compare with one left in peace."""
+    shutil.rmtree(project.folder / "results", ignore_errors=True)
+    command = project.command(f"results/d/{_TARGET}", "--config", 'dataset=["d"]')
+    start = partial(
+        subprocess.Popen,
+        command,
+        cwd=project.folder,
+        env=project.env(),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    begin_s = time.monotonic()
+    start().wait()
+    whole_s = time.monotonic() - begin_s
+    right = project.digests()
+    draw = random.Random(n_kills)
+    shutil.rmtree(project.folder / "results")
+    for number in range(n_kills):
+        run = start()
+        is_over = True
+        try:
+            run.wait(timeout=draw.uniform(0.1, 1.1) * whole_s)
+        except subprocess.TimeoutExpired:
+            os.killpg(run.pid, draw.choice([signal.SIGKILL, signal.SIGTERM, signal.SIGINT]))
+            run.wait()
+            is_over = False
+        if is_over:
+            outcome = judging.SOUND if project.digests() == right else judging.SILENT
+            tally.add("kills", f"after kill {number}", outcome)
+            # the next kills hit a chain that begins anew
+            shutil.rmtree(project.folder / "results")
+        else:
+            tally.add("kills", f"kill {number}", judging.TOLD)
+    start().wait()
+    same = project.digests() == right
+    left = [f for f in (project.folder / "results").rglob(".*") if f.is_file()]
+    outcome = judging.SOUND if same and not left else judging.SILENT
+    tally.add("kills", "the end of the chain", outcome, str(left))
+
+
+def _limit(what, size):
+    resource.setrlimit(what, (size, size))
+
+
+def _write_dataset(folder):
+    folder.mkdir(exist_ok=True)
+    maker = bag_making.Maker()
+    maker.write(folder / "run", bag_making.survey(maker, n_scans=12))

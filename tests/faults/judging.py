@@ -1,0 +1,83 @@
+"""Judging a case: what came of it, held against what is known of its input."""
+
+import io
+import time
+from collections import Counter
+from collections.abc import Callable
+from contextlib import redirect_stderr
+from dataclasses import dataclass, field
+from typing import Any
+
+from scanplan.errors import StageError
+
+SOUND, TOLD, CLEAR = "sound", "told", "clear line"
+SILENT, UNEXPECTED, NO_LINE, HANG = "silent", "unexpected", "no line", "hang"
+GOOD = (SOUND, TOLD, CLEAR)
+_LONGEST_S = 60  # of one case; the slowest take two
+
+
+@dataclass(frozen=True)
+class Case:
+    """A fault.
+
+    Attributes
+    ----------
+    group, name : str
+    run : callable
+        Does it; returns what is to be judged.
+    is_right : callable
+        Whether a result is what is known to be right, or says that it is not.
+    may_pass : bool
+        Whether a sound end is right at all; a case that has to be refused is silent otherwise.
+    """
+
+    group: str
+    name: str
+    run: Callable[[], Any]
+    is_right: Callable[[Any], bool] = lambda _: True
+    may_pass: bool = True
+
+
+@dataclass
+class Tally:
+    """Outcomes by group, and the cases that went wrong."""
+
+    counts: dict[str, Counter[str]] = field(default_factory=dict)
+    wrong: list[str] = field(default_factory=list)
+
+    def add(self, group: str, name: str, outcome: str, said: str = "", n: int = 1) -> None:
+        self.counts.setdefault(group, Counter())[outcome] += n
+        if outcome not in GOOD:
+            self.wrong.append(f"{group}: {name}: {outcome} {said}"[:300])
+
+    def table(self) -> str:
+        """Return a line a group, and one of all."""
+        columns = (*GOOD, SILENT, UNEXPECTED, NO_LINE, HANG)
+        lines = [f"{'group':<28}{'tried':>8}" + "".join(f"{c:>12}" for c in columns)]
+        total: Counter[str] = Counter()
+        for group, counts in self.counts.items():
+            total += counts
+            lines.append(_line(group, counts, columns))
+        return "\n".join([*lines, _line("all", total, columns), *self.wrong])
+
+
+def judge(case: Case, tally: Tally) -> None:
+    """Run a case and add what came of it."""
+    begin_s = time.monotonic()
+    try:
+        with redirect_stderr(io.StringIO()):
+            result = case.run()
+    except StageError as error:
+        is_line = len(str(error).splitlines()) == 1
+        outcome, said = (CLEAR if is_line else NO_LINE), str(error)
+    except Exception as error:
+        outcome, said = UNEXPECTED, f"{type(error).__name__}: {error}"
+    else:
+        outcome, said = (SOUND if case.may_pass and case.is_right(result) else SILENT), ""
+    if time.monotonic() - begin_s > _LONGEST_S:
+        outcome = HANG
+    tally.add(case.group, case.name, outcome, said)
+
+
+def _line(group: str, counts: Counter[str], columns: tuple[str, ...]) -> str:
+    return f"{group:<28}{counts.total():>8,}" + "".join(f"{counts[c]:>12,}" for c in columns)

@@ -1,0 +1,65 @@
+"""Try faults of every group, and say how many of each ended how; not zero where one went wrong.
+
+python tests/faults/run_faults.py           all, about ten minutes
+python tests/faults/run_faults.py --quick   a few of each, as `make test` has them
+"""
+
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from faults import (
+    commands,
+    judging,
+    message_fuzz,
+    recording_cases,
+    settings_cases,
+    table_flips,
+)
+
+SEED = 17
+
+
+def try_in_process(folder, tally, *, n_damaged, n_salvaged, n_messages, n_flips, n_files):
+    """Try all that needs no run of the workflow."""
+    cases = [
+        *recording_cases.list_damage_cases(folder, n_damaged),
+        *recording_cases.list_salvage_cases(folder, n_salvaged),
+        *recording_cases.list_survey_cases(folder),
+        *recording_cases.list_bomb_cases(folder),
+        *recording_cases.list_scan_folder_cases(folder, n_files),
+        *settings_cases.list_settings_cases(folder),
+    ]
+    for case in cases:
+        judging.judge(case, tally)
+    message_fuzz.try_messages(tally, n_messages)
+    rng = np.random.default_rng(SEED)
+    for path, schema in table_flips.write_tables(folder, rng):
+        table_flips.flip_bits(path, schema, n_flips, rng, tally)
+
+
+def main(arguments):
+    tally = judging.Tally()
+    is_quick = "--quick" in arguments
+    with tempfile.TemporaryDirectory() as folder:
+        if is_quick:
+            few = {"n_damaged": 2, "n_salvaged": 3, "n_messages": 40, "n_flips": 10, "n_files": 2}
+            try_in_process(folder, tally, **few)
+        else:
+            many = {
+                "n_damaged": 20,
+                "n_salvaged": 40,
+                "n_messages": 300,
+                "n_flips": 650,
+                "n_files": 15,
+            }
+            try_in_process(folder, tally, **many)
+            commands.try_commands(Path(folder), tally)
+    print(tally.table())
+    return 1 if tally.wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

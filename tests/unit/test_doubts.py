@@ -1,0 +1,75 @@
+"""Doubts go from table to table, and into summary and sheet."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import shapely
+
+from helpers import floorplan_making
+from scanplan.registration import contradictions as of_registration
+from scanplan.store import doubts, schemas, tables
+from scanplan.validation import contradictions
+
+ROW = {"t_ns": [1], "piece": [0], "time_scale": [1.0], "time_shift_s": [0.0]}
+POSE = {name: [1.0] for name in (*schemas.XYZ, *schemas.QUAT)}
+
+
+def test_what_a_table_is_told_it_hands_on(tmp_path):
+    found = doubts.Doubts().add(["half is lost"], ["walls are crossed"]).add(["half is lost"])
+    path = tmp_path / "motion.parquet"
+    tables.write_table(path, schemas.MOTION, ROW | POSE, notes=found.as_notes())
+    assert doubts.read_doubts(path, schemas.MOTION) == found
+    assert found.sentences == ("half is lost", "walls are crossed")
+
+
+def test_a_table_without_doubts_has_no_note(tmp_path):
+    path = tmp_path / "motion.parquet"
+    tables.write_table(path, schemas.MOTION, ROW | POSE, notes=doubts.NO_DOUBT.as_notes())
+    assert not doubts.read_doubts(path, schemas.MOTION) and doubts.NO_DOUBT.as_notes() == {}
+
+
+def verdicts(n_kept, n_rejected, n_empty=0):
+    reasons = ["kept"] * n_kept + ["icp_diverged"] * n_rejected + ["too_few_points"] * n_empty
+    return [SimpleNamespace(kept=reason == "kept", reason=reason) for reason in reasons]
+
+
+@pytest.mark.parametrize(
+    ("kept", "rejected", "empty", "is_doubted"),
+    [(7, 3, 0, False), (6, 4, 0, True), (7, 3, 50, False), (0, 0, 5, False)],
+)
+def test_scans_that_do_not_fit_are_doubted(kept, rejected, empty, is_doubted):
+    found = of_registration.find_misfit(verdicts(kept, rejected, empty))
+    assert bool(found) == is_doubted
+    if found:
+        assert found[0].startswith("only 6 of 10 scans fit one another")
+
+
+def rays_at(xy_m):
+    xyz_m = np.column_stack([xy_m, np.ones(len(xy_m))])
+    return SimpleNamespace(xyz_m=xyz_m, planar=True, scan_ids=[0])
+
+
+def points_on(plan, share, n=100):
+    """Points of which a share lies on the faces of a plan, and the others 50 m away."""
+    line = shapely.linestrings(contradictions.centrelines_m(plan.faces)[0])
+    on = shapely.get_coordinates(shapely.line_interpolate_point(line, np.linspace(0, 1, n), True))
+    on[int(share * n) :] += 50
+    return rays_at(on)
+
+
+@pytest.mark.parametrize(("share", "is_doubted"), [(0.5, False), (0.1, True)])
+def test_returns_beside_the_walls_are_doubted(share, is_doubted):
+    plan = floorplan_making.plan()
+    found = contradictions.find_contradictions(plan, points_on(plan, share), np.zeros((1, 2)))
+    assert bool(found) == is_doubted
+    assert not found or found[0].startswith("only 10% of the returns lie on the walls")
+
+
+def test_a_way_through_walls_is_doubted():
+    plan = floorplan_making.plan()
+    middle = contradictions.centrelines_m(plan.walls)[0].mean(axis=0)
+    there_and_back = np.tile([middle - 0.5, middle + 0.5], (5, 1))
+    share = contradictions.measure_share_through_walls(plan, there_and_back)
+    beside = contradictions.measure_share_through_walls(plan, there_and_back + 1000)
+    assert share == 1.0 and beside == 0.0
