@@ -33,6 +33,7 @@ if THESIS:
 
     include: "workflow/rules/thesis.smk"
     include: "workflow/rules/gates.smk"
+    include: "workflow/rules/thesismore.smk"
 
 
 rule all:
