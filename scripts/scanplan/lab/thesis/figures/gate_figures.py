@@ -76,12 +76,15 @@ def draw_alignments(alignments: pd.DataFrame) -> Figure:
     figure = Figure(figsize=(9.6, 3.6), layout="constrained")
     frames = figure.subplots(1, len(by_distance), sharey=True, squeeze=False)[0]
     for axes, (distance_m, within) in zip(frames, by_distance, strict=True):
-        for method, pairs in within.groupby("method"):
+        for method, colour in _METHOD_COLOURS.items():
+            pairs = within[within["method"] == method]
+            if pairs.empty:
+                continue
             gain = pairs["fitness"] - pairs["true_fitness"]
             step = (pairs["step_m"] / pairs["true_step_m"]).median()
             label = f"{method.replace('_', ' ')}: {step:.2f} of the true step"
-            style = {"color": _METHOD_COLOURS[method], "alpha": 0.7, "label": label}
-            axes.plot(100 * gain, 100 * pairs["error_m"], "o", ms=3, **style)
+            error_cm = 100 * pairs["error_m"]
+            axes.plot(100 * gain, error_cm, "o", ms=3, color=colour, alpha=0.7, label=label)
         axes.axvline(0, color="0.6", lw=0.8)
         axes.set_title(f"pairs and fitness within {distance_m:g} m", fontsize=9)
         name = "off the truth after alignment (cm)" if axes is frames[0] else ""
