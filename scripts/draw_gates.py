@@ -1,5 +1,7 @@
 """Draw what survives algorithm 3's gates, and what fitness rewards."""
 
+import pandas as pd
+
 from scanplan.lab.thesis.figures import gate_figures
 from scanplan.stage import figure_files, log
 from scanplan.store import atomic, schemas, tables
@@ -18,13 +20,13 @@ def draw_gates(
     gates_figure, alignments_figure : path-like
         To write.
     """
-    survivors = gate_figures.draw_gates(tables.read_table(swept, schemas.GATES))
-    atomic.write_text(gates_figure, figure_files.format_svg(survivors))
-    pairs = tables.read_table(alignments, schemas.ALIGNMENTS)
-    atomic.write_text(
-        alignments_figure, figure_files.format_svg(gate_figures.draw_alignments(pairs))
-    )
-    log.log_line(f"draw_gates: 2 figures, {len(pairs['method'])} alignments")
+    survivors = pd.DataFrame(tables.read_table(swept, schemas.GATES))
+    survived = gate_figures.draw_gates(survivors)
+    atomic.write_text(gates_figure, figure_files.format_svg(survived))
+    pairs = pd.DataFrame(tables.read_table(alignments, schemas.ALIGNMENTS))
+    aligned = gate_figures.draw_alignments(pairs)
+    atomic.write_text(alignments_figure, figure_files.format_svg(aligned))
+    log.log_line(f"draw_gates: 2 figures, {len(pairs)} alignments")
 
 
 if __name__ == "__main__":

@@ -1,16 +1,17 @@
 """Pass a drive through the gates of algorithm 3 at several fitness distances (thesis, 3.5)."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from scanplan.lab.evaluation import truth_file
 from scanplan.lab.thesis import gates
+from scanplan.recordings.clouds import Scan
 from scanplan.recordings.survey import open_survey
 from scanplan.registration import results
 from scanplan.registration.registration_settings import SequentialSettings, registration_settings
-from scanplan.stage import log, workers
+from scanplan.stage import log
 from scanplan.store import scan_cache, schemas, tables
 from scanplan.types import Columns, FilePath, FloatArray, IntArray
 
@@ -24,7 +25,6 @@ def sweep_gates(
     *,
     reading: Mapping[str, Any],
     settings: Mapping[str, Any],
-    threads: int = 1,
 ) -> None:
     """Write what survives by reading and distance, and how far alignment takes pairs of scans.
 
@@ -40,8 +40,6 @@ def sweep_gates(
         Keywords of `survey.open_survey`.
     settings : dict
         Section `registration` of the settings, as config/thesis.yaml has it.
-    threads : int
-        Cores to use; the result does not depend on it.
     """
     candidates = tables.read_table(poses, schemas.POSES)
     has_pose = candidates["covered"]
@@ -52,27 +50,31 @@ def sweep_gates(
     )
     preset = registration_settings(settings).limits
     every = gates.list_gates()
-    with scan_cache.open_scan_cache(swept) as raw, workers.open_pool(threads) as run:
-        with open_survey(recordings, **reading) as survey:
-            planar = survey.planar
-            scans = survey.scans(scan_ids)
-            for scan in log.report_progress(scans, "sweep_gates", total=len(scan_ids)):
-                raw.add(scan.xyz_m)
-        part = raw.part(range(len(scan_ids)))
-        # dear and cheap gates in every share
-        shares = [every[first::threads] for first in range(threads)]
-        jobs = [(share, part, scan_ids, priors, preset, planar) for share in shares]
-        by_share = list(run(gates.pass_gates, jobs))
+    with (
+        scan_cache.open_scan_cache(swept) as raw,
+        open_survey(recordings, **reading) as survey,
+    ):
+        planar = survey.planar
+        scans = survey.scans(scan_ids)
+        progress = log.report_progress(scans, "sweep_gates", total=len(scan_ids))
+        clouds_m = _keep_clouds(progress, raw)
+        candidates = gates.place_candidates(clouds_m, scan_ids, priors, preset, planar=planar)
+        verdicts = gates.pass_gates(every, candidates, preset, planar)
         pairs = _align_pairs(raw, scan_ids, truth, preset, planar)
-    ordered = [gate for share in shares for gate in share]
-    verdicts = [of_gate for of_share in by_share for of_gate in of_share]
-    columns = gates.gate_columns(ordered, verdicts, scan_ids, truth[:, :2, 3])
+    columns = gates.gate_columns(every, verdicts, scan_ids, truth[:, :2, 3])
     tables.write_table(swept, schemas.GATES, columns)
     tables.write_table(alignments, schemas.ALIGNMENTS, pairs)
     log.log_line(
         f"sweep_gates: {len(scan_ids)} candidates, {len(every)} gates,"
         f" {np.sum(columns['kept']):,} scans kept by all of them together"
     )
+
+
+def _keep_clouds(scans: Iterable[Scan], raw: scan_cache.ScanCache) -> Iterator[FloatArray]:
+    """Yield the points (n, 3) of scans, and cache them."""
+    for scan in scans:
+        raw.add(scan.xyz_m)
+        yield scan.xyz_m
 
 
 def _align_pairs(
@@ -91,7 +93,7 @@ def _align_pairs(
         )
         (target, _), (source, _) = placed
         pairs.append((target, source))
-    return gates.align_pairs(pairs, preset)
+    return gates.align_pairs(log.report_progress(pairs, "sweep_gates", unit="pairs"), preset)
 
 
 if __name__ == "__main__":
@@ -104,5 +106,4 @@ if __name__ == "__main__":
             snakemake.output.alignments,
             reading=snakemake.params.reading,
             settings=snakemake.params.settings,
-            threads=snakemake.threads,
         )

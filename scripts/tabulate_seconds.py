@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-import numpy as np
+import pandas as pd
 
 from scanplan.lab.evaluation import run_times
 from scanplan.stage import log
@@ -34,14 +34,12 @@ def tabulate_seconds(
     """
     order_s = {name: run_times.read_job_seconds(path) for name, path in ordering.items()}
     extract_s = {name: run_times.read_job_seconds(path) for name, path in extraction.items()}
-    subsets = tables.read_table(evaluated, schemas.EVALUATION, ["method", "extractor", "k"])
-    is_timed = np.isin(subsets["method"], list(order_s))
-    rows = {name: values[is_timed] for name, values in subsets.items()}
-    share = rows["k"] / rows["k"].max()
-    of_order_s = np.array([order_s[method] for method in rows["method"]])
-    of_walls_s = np.array([extract_s[extractor] for extractor in rows["extractor"]])
-    seconds = of_order_s + share * of_walls_s
-    tables.write_table(output, schemas.SECONDS, {**rows, "seconds": seconds})
+    columns = tables.read_table(evaluated, schemas.EVALUATION, ["method", "extractor", "k"])
+    subsets = pd.DataFrame(columns)
+    timed = subsets[subsets["method"].isin(order_s)]
+    share = timed["k"] / timed["k"].max()
+    seconds = timed["method"].map(order_s) + share * timed["extractor"].map(extract_s)
+    tables.write_table(output, schemas.SECONDS, timed.assign(seconds=seconds).to_dict("list"))
     slowest = max(order_s, key=lambda method: order_s[method])
     log.log_line(f"tabulate_seconds: ordering takes at most {order_s[slowest]:.1f} s ({slowest})")
 

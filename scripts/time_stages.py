@@ -1,6 +1,7 @@
 """Time the extractors by scan and the selection by number of scans (thesis, figures 5.8, 5.10)."""
 
 from collections.abc import Mapping, Sequence
+from itertools import chain
 
 import numpy as np
 
@@ -65,20 +66,21 @@ def time_stages(
     few_ids = timing.spread_rows(timed_ids, max(timed_scans // _FEWER, 2))
     most = [max(n_clusters)]
     unsampled = {**hulls, "sample_size": np.iinfo(np.int32).max}
-    rows = [
-        *timing.time_selection(columns, sizes),
-        *timing.time_clusters(BUILDING, store, few_ids, sorted(n_clusters), **hulls),
-        *timing.time_clusters(SAMPLED, store, few_ids, most, **hulls),
-        *timing.time_clusters(UNSAMPLED, store, few_ids, most, **unsampled),
-        *timing.time_merging(
+    times = [
+        timing.time_selection(columns, sizes),
+        timing.time_clusters(BUILDING, store, few_ids, sorted(n_clusters), **hulls),
+        timing.time_clusters(SAMPLED, store, few_ids, most, **hulls),
+        timing.time_clusters(UNSAMPLED, store, few_ids, most, **unsampled),
+        timing.time_merging(
             tables.read_table(segments, schemas.WALLS, allow_empty=True), MergeSettings(**merge)
         ),
     ]
     for task, name in _EXTRACTORS.items():
-        extractor, settings = EXTRACTORS[name], walls[name]
-        times = timing.time_extractor(task, extractor, store, timed_ids, settings, registration)
-        rows += log.report_progress(times, f"time_stages {task}", total=len(timed_ids))
-        rows += timing.time_by_points(task, extractor, store, few_ids, settings, registration)
+        calls = (task, EXTRACTORS[name], store)
+        of_task = (walls[name], registration)
+        times.append(timing.time_extractor(*calls, timed_ids, *of_task))
+        times.append(timing.time_by_points(*calls, few_ids, *of_task))
+    rows = list(log.report_progress(chain.from_iterable(times), "time_stages", unit="times"))
     rows.sort(key=lambda row: (row["task"], row["size"], row["item"]))
     times_columns = {name: [row[name] for row in rows] for name in schemas.TIMES.columns}
     tables.write_table(output, schemas.TIMES, times_columns)

@@ -115,15 +115,15 @@ def steps(*n_scans):
 
 
 def candidates(near_walls):
-    """Columns of the candidates of two walls in one scan, by lines within 1 cm and 5 cm."""
-    return {
-        "model": np.array(["line", "line"]),
-        "inlier_m": np.array([0.01, 0.05]),
-        "scan_id": np.array([0, 0]),
-        "candidates": np.array([40, 40]),
-        "near_walls": np.array(near_walls),
-        "walls": np.array([2, 2]),
-    }
+    """Table of the candidates of two walls in one scan, by lines within 1 cm and 5 cm."""
+    return pd.DataFrame({
+        "model": ["line", "line"],
+        "inlier_m": [0.01, 0.05],
+        "scan_id": [0, 0],
+        "candidates": [40, 40],
+        "near_walls": near_walls,
+        "walls": [2, 2],
+    })  # fmt: skip
 
 
 def rooms(**changes):

@@ -1,3 +1,5 @@
+import re
+
 import numpy as np
 import pytest
 
@@ -7,7 +9,9 @@ from interpolate_poses import interpolate_poses
 from register_scans import register_scans
 from scanplan.errors import StageError
 from scanplan.project import dataset_files
+from scanplan.project.settings import merge_settings
 from scanplan.project.stage_settings import select_section
+from scanplan.project.yaml_file import read_yaml
 from scanplan.store import schemas, tables
 
 STEP_NS = 100_000_000
@@ -109,6 +113,31 @@ def test_nothing_to_retain_is_one_line_and_no_table(run, tmp_path, entries, chan
     ):
         run(entries, **changes)
     assert sorted(p.name for p in (tmp_path / "a").iterdir()) == ["poses.parquet", "run.bag"]
+
+
+def sparse(n_scans=8):
+    """Clouds of a drive whose scans have too few points to lie near one another's."""
+    maker, entries = bag_making.Maker(), []
+    for i in range(n_scans):
+        t_ns, place = bag_making.START_NS + i * STEP_NS, np.array([1 + 0.1 * i, 2, 0.5])
+        seen = hall(n=40, seed=i) - place
+        entries.append(("/amcl_pose", t_ns, maker.amcl(t_ns, place)))
+        entries.append(("/points", t_ns + 1, maker.cloud(t_ns, seen.astype(np.float32))))
+    return entries
+
+
+def test_where_the_preset_keeps_nothing_the_distance_named_keeps_some(run, project_root, tmp_path):
+    preset = merge_settings(SETTINGS, read_yaml(project_root / "config/thesis.yaml"))
+    limits = select_section(preset, "registration")
+    with pytest.raises(StageError) as caught:
+        run(sparse(), **limits)
+    text = str(caught.value)
+    assert "\n" not in text and "of 7 scans 0.0 % pass the first gate" in text
+    assert "0 % the second" in text and "leave config/thesis.yaml out" in text
+    assert sorted(p.name for p in (tmp_path / "a").iterdir()) == ["poses.parquet", "run.bag"]
+    (named,) = re.findall(r"set registration.fitness_distance_m to ([\d.]+),", text)
+    _, registered, _ = run(sparse(), "wider", **limits | {"fitness_distance_m": float(named)})
+    assert tables.read_table(registered, schemas.REGISTRATION)["kept"].sum() > 1
 
 
 def test_a_map_too_far_from_its_origin_is_refused(run):

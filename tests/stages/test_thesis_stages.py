@@ -3,8 +3,10 @@
 import numpy as np
 import pandas as pd
 import pytest
+import shapely
 
 from build_hulls import build_hulls
+from choose_by_confidence import choose_by_confidence
 from draw_thesis_drive import draw_thesis_drive
 from draw_thesis_rooms import draw_thesis_rooms
 from evaluate_walls import evaluate_walls
@@ -22,6 +24,7 @@ from judge_claims import judge_claims
 from measure_candidates import measure_candidates
 from measure_coverage import measure_coverage
 from measure_premises import measure_premises
+from measure_surrogates import measure_surrogates
 from measure_unevenness import measure_unevenness
 from scanplan.lab.thesis import premises
 from scanplan.lab.thesis.figures import drive_figures
@@ -31,6 +34,7 @@ from scanplan.store import schemas, tables
 from tabulate_steps import tabulate_steps
 from time_stages import time_stages
 from write_thesis import write_thesis
+from write_thesis_more import write_thesis_more
 
 SAMPLING = {"sample_size": 200, "radius": "least_distance", "seed": 0}
 EXTRACTORS = ("cluster_ransac", "iterative_ransac")
@@ -337,3 +341,38 @@ def test_crowded_places_are_circled_once():
     found = np.array(drive_figures.find_crowded_places(path_m))
     np.testing.assert_allclose(found, [(0, 0), (20, 0), (10, 0)], atol=0.6)
     assert drive_figures.find_crowded_places(np.array([(0.0, 0.0), (9.0, 0.0)])) == []
+
+
+def test_experiments_beyond_the_thesis_stand_on_their_page(survey, tmp_path, project_root):
+    """Every scan shows a wall cell; the orders that the figure compares are those of the survey."""
+    for method in ("wall_length", "distance"):
+        write_selection(survey, method, SCAN_IDS)
+    cells = {"facing": [0, 1, 2], "along": [4] * 3, "across": [2] * 3, "length_m": [0.2] * 3}
+    tables.write_table(
+        survey / "observations.parquet", schemas.OBSERVATIONS, {"scan_id": SCAN_IDS, **cells}
+    )
+    squares = shapely.to_wkb(shapely.box(0, 0, [1, 2, 3], 1))
+    tables.write_table(
+        survey / "visibility.parquet",
+        schemas.VISIBILITY,
+        {"scan_id": SCAN_IDS, "area_m2": [1.0, 2.0, 3.0], "geometry": squares},
+    )
+    known = [survey / name for name in ("walls/cluster_ransac.parquet", "registration.parquet")]
+    known += [survey / name for name in ("truth.geojson", "truth_poses.tum")]
+    truth = {"max_range_m": 100.0, "bitmap_cell_m": 0.05}
+    chosen, stood = survey / "confidence.parquet", survey / "surrogates.parquet"
+    observations = survey / "observations.parquet"
+    choose_by_confidence(observations, *known, chosen, cell_m=0.25, sigma_m=0.06, **truth)
+    covers = {name: survey / f"{name}.parquet" for name in ("observations", "visibility", "hulls")}
+    measure_surrogates(covers, *known, stood, n_added=2, seed=1, **truth)
+    found = tables.read_table(chosen, schemas.EVALUATION)
+    assert set(found["method"]) == {"confidence", "oracle"} and found["k"].max() == len(SCAN_IDS)
+    ratios = tables.read_table(stood, schemas.SURROGATES)["ratio"]
+    # covered areas and lengths are submodular
+    assert (ratios[np.isfinite(ratios)] >= 1 - 1e-9).all()
+    folder = project_root / "workflow/report/page"
+    page = [folder / name for name in ("thesis_more.html.j2", "thesis.css")]
+    output = tmp_path / "more.html"
+    write_thesis_more([evaluated(survey)] * 2, [chosen] * 2, [stood] * 2, page, output)
+    text = output.read_text()
+    assert text.count("<svg") == 2 and "2 seeds" in text

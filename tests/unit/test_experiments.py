@@ -28,9 +28,10 @@ def test_every_survey_has_its_seed_and_its_place(known):
         assert survey.settings["registration"]["icp_method"] == "none"
 
 
-def test_the_limits_are_tried_on_the_same_recording(known):
+def test_the_limits_are_tried_on_the_first_drive(known):
+    known["given"].append(settings.Layer("b.yaml", {"thesis": {"drive_seeds": [7, 8]}}))
     found = experiments.list_surveys(**known)
-    (drive,), (strict,) = found[experiments.DRIVE], found[experiments.LIMITS]
+    (drive, _), (strict,) = found[experiments.DRIVE], found[experiments.LIMITS]
     assert strict.recordings == drive.recordings and strict.truth == drive.truth
     assert strict.name != drive.name and strict.building is None and drive.building
     assert strict.settings["registration"]["min_refined_fitness"] == 0.99

@@ -265,6 +265,13 @@ def test_what_survives_the_limits_is_a_number_without_a_verdict():
     assert values["two_percent_survive", "share retained"] == 0.02
 
 
+def test_a_drive_without_the_limits_says_nothing_of_them():
+    tables = made.drive()
+    del tables["limits_steps"]
+    verdicts, _ = judged(judging.DRIVE, tables)
+    assert "two_percent_survive" not in verdicts and "own_limits" in verdicts
+
+
 def test_numbers_of_the_drive():
     _, values = drive()
     assert values["survey_drive", "minutes"] == 6 and values["own_limits", "scans"] == 700
@@ -338,7 +345,7 @@ def test_one_candidate_and_a_few_more_per_wall_are_not_several():
     for near_walls, holds in (([9, 4], "yes"), ([9, 3], "no")):
         found = made.candidates(near_walls)
         assert drive(drive_candidates=found)[0]["several_per_wall"] == holds
-    nothing = made.candidates([0, 0]) | {"walls": np.array([0, 0])}
+    nothing = made.candidates([0, 0]).assign(walls=0)
     assert drive(drive_candidates=nothing)[0]["several_per_wall"] == ""
 
 

@@ -97,6 +97,8 @@ THESIS_RULES = (
     "draw_thesis_drive",
     "draw_gates",
     "write_thesis",
+    "thesis_more",
+    "write_thesis_more",
 )
 
 

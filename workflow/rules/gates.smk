@@ -11,7 +11,7 @@ rule sweep_gates:
         "logs/{dataset}/sweep_gates.log",
     benchmark:
         "benchmarks/{dataset}/sweep_gates.tsv"
-    threads: 2
+    threads: 1
     resources:
         mem_mb=2000,
         runtime=60,

@@ -1,3 +1,10 @@
+def registering_threads(wildcards):
+    """Batches share two cores; frames that go by those before them are one sequence, on one core."""
+    settings = DATASETS[wildcards.dataset].settings
+    registration = stage_settings.select_section(settings, "registration")
+    return 1 if registration["compare_with"] == "frames" else 2
+
+
 rule register_scans:
     """Keep the scans that fit their predecessors, registered in one map."""
     input:
@@ -12,7 +19,7 @@ rule register_scans:
         "logs/{dataset}/register_scans.log",
     benchmark:
         "benchmarks/{dataset}/register_scans.tsv"
-    threads: 2
+    threads: registering_threads
     resources:
         mem_mb=grown(mem_mb=1500),
         runtime=grown(runtime=120),

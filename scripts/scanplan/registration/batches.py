@@ -1,4 +1,7 @@
-"""Batches: runs of candidates that are registered one after the other, each batch on any core."""
+"""Batches: runs of candidates that are registered one after the other, each batch on any core.
+
+By the thesis's frames there are none: all candidates are one sequence.
+"""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -9,7 +12,7 @@ import numpy as np
 from scanplan.recordings.clouds import Scan
 from scanplan.registration.constraints import PoseConstraint
 from scanplan.registration.frame_sequence import FrameRegistrar
-from scanplan.registration.registration_settings import FRAMES, SequentialSettings
+from scanplan.registration.registration_settings import SequentialSettings
 from scanplan.registration.sequential import ScanResult, SequentialRegistrar
 from scanplan.store.scan_cache import ScanCache, ScanCachePart
 from scanplan.types import FloatArray, IntArray
@@ -105,8 +108,7 @@ def register_batch(
     edges : list of constraints.PoseConstraint
         From its own kept scans to predecessors.
     """
-    kind = FrameRegistrar if limits.compare_with == FRAMES else SequentialRegistrar
-    registrar = kind(limits, batch.planar)
+    registrar = SequentialRegistrar(limits, batch.planar)
     registered = [
         registrar.add(int(scan_id), xyz_m, prior)
         for scan_id, xyz_m, prior in zip(batch.scan_ids, part, batch.priors, strict=True)
@@ -116,3 +118,38 @@ def register_batch(
     thinned_m = [points_m for result, points_m in own if result.kept]
     edges = [edge for edge in registrar.edges if edge.source >= batch.scan_ids[n_early]]
     return own_results, thinned_m, edges
+
+
+def register_frames(
+    scans: Iterable[Scan],
+    raw: ScanCache,
+    thinned: ScanCache,
+    survey: CandidateScans,
+    limits: SequentialSettings,
+) -> tuple[list[ScanResult], list[PoseConstraint]]:
+    """Register all candidates as they come, each after the frames before it.
+
+    Parameters
+    ----------
+    scans : iterable of clouds.Scan
+        The candidates, in order.
+    raw, thinned : scan_cache.ScanCache
+        Empty; left with the points of all candidates, and with the thinned points of the kept ones.
+    survey : CandidateScans
+    limits : registration_settings.SequentialSettings
+
+    Returns
+    -------
+    results : list of sequential.ScanResult
+        One per candidate.
+    edges : list of constraints.PoseConstraint
+    """
+    registrar = FrameRegistrar(limits, survey.planar)
+    results: list[ScanResult] = []
+    for scan, scan_id, prior in zip(scans, survey.scan_ids.tolist(), survey.priors, strict=True):
+        raw.add(scan.xyz_m)
+        result, thinned_m = registrar.add(scan_id, scan.xyz_m, prior)
+        if result.kept:
+            thinned.add(thinned_m)
+        results.append(result)
+    return results, registrar.edges

@@ -47,7 +47,7 @@ def check_any_survives(
     share = np.mean(np.array(passes)[is_compared])
     distance_m = find_passing_distance_m(survey, np.flatnonzero(is_compared | is_kept), raw, limits)
     raise StageError(
-        f"{where}: of {is_compared.sum()} scans {share:.1%} pass the first gate"
+        f"{where}: of {is_compared.sum()} scans {100 * share:.1f} % pass the first gate"
         f" (registration.min_prior_fitness {limits.min_prior_fitness:g} within fitness_distance_m"
         f" {limits.fitness_distance_m:g} m) and 0 % the second (min_refined_fitness"
         f" {limits.min_refined_fitness:g}); set registration.fitness_distance_m to"

@@ -1,7 +1,7 @@
 """From candidate scans to the poses of one map: sequential registration in batches, then a graph.
 
-Batches of candidates are registered on their own, on any core; then all retained scans are
-optimised together.
+Batches of candidates are registered on their own, on any core, by the thesis's frames all in one
+sequence; then all retained scans are optimised together.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -15,7 +15,7 @@ from scanplan.recordings.clouds import Scan
 from scanplan.registration import batches, constraints, multiway, results, sequential
 from scanplan.registration.batches import CandidateScans
 from scanplan.registration.constraints import PoseConstraint
-from scanplan.registration.registration_settings import RegistrationSettings
+from scanplan.registration.registration_settings import FRAMES, RegistrationSettings
 from scanplan.registration.sequential import ScanResult
 from scanplan.stage import log
 from scanplan.store.scan_cache import ScanCache
@@ -51,15 +51,11 @@ def register_scans(
         None where no scan was registered.
     """
     limits = settings.limits
-    jobs = batches.batch_jobs(scans, raw, survey, limits, settings.batch_size)
-    scan_results: list[ScanResult] = []
-    edges: list[PoseConstraint] = []
-    for batch_results, batch_thinned_m, batch_edges in run(batches.register_batch, jobs):
-        scan_results += batch_results
-        edges += batch_edges
-        for xyz_m in batch_thinned_m:
-            thinned.add(xyz_m)
-        _log_progress(scan_results, len(survey.scan_ids))
+    if limits.compare_with == FRAMES:
+        scan_results, edges = batches.register_frames(scans, raw, thinned, survey, limits)
+    else:
+        jobs = batches.batch_jobs(scans, raw, survey, limits, settings.batch_size)
+        scan_results, edges = _register_batches(jobs, len(survey.scan_ids), thinned, run)
     is_any_kept = any(result.kept for result in scan_results)
     if limits.icp_method == sequential.GIVEN_POSES or not is_any_kept:
         return scan_results, None
@@ -108,6 +104,24 @@ def find_unconfirmed(
 def drop_anchor(result: ScanResult, prior: FloatArray) -> ScanResult:
     """Return the result of an unconfirmed anchor, at the localiser's pose."""
     return replace(result, kept=False, reason="unconfirmed", world_from_sensor=prior)
+
+
+def _register_batches(
+    jobs: Iterable[tuple[Any, ...]],
+    n_candidates: int,
+    thinned: ScanCache,
+    run: Callable[..., Iterator[Any]],
+) -> tuple[list[ScanResult], list[PoseConstraint]]:
+    """Register batches on the cores that there are; return results and constraints of all."""
+    scan_results: list[ScanResult] = []
+    edges: list[PoseConstraint] = []
+    for batch_results, batch_thinned_m, batch_edges in run(batches.register_batch, jobs):
+        scan_results += batch_results
+        edges += batch_edges
+        for xyz_m in batch_thinned_m:
+            thinned.add(xyz_m)
+        _log_progress(scan_results, n_candidates)
+    return scan_results, edges
 
 
 def _log_progress(scan_results: list[ScanResult], n_candidates: int) -> None:

@@ -433,6 +433,22 @@ PREMISES = Schema(
     ("premise", "item"),
 )
 """What the thesis takes for granted, draw by draw or scan by scan."""
+SURROGATES = Schema(
+    "surrogates",
+    1,
+    {
+        "surrogate": "string",
+        "draw": "int32",
+        "value": "float64",
+        "ratio": "float64",
+        "found": "float64",
+    },
+    ("surrogate", "draw"),
+)
+"""What random subsets are worth by a surrogate, and the share of walls that they find.
+
+`ratio` is the submodularity ratio of as many scans added to them.
+"""
 TIMES = Schema(
     "times",
     1,

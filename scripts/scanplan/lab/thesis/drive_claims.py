@@ -45,13 +45,9 @@ _PLAIN_NAMES = {PLAIN_CLUSTERS: _NAMES[OURS], PLAIN: _NAMES[ITERATIVE]}
 def several_per_wall(tables: Tables) -> ClaimMeasure:
     """Count the candidates of RANSAC per true wall and scan, and our segments."""
     found = tables["drive_candidates"]
-    values = {}
-    for model in np.unique(found["model"]):
-        for inlier_m in np.unique(found["inlier_m"]):
-            rows = (found["model"] == model) & (found["inlier_m"] == inlier_m)
-            n_walls = found["walls"][rows].sum()
-            count = found["near_walls"][rows].sum() / n_walls if n_walls else np.nan
-            values[f"{model}s, {1e3 * inlier_m:.0f} mm"] = count
+    totals = found.groupby(["model", "inlier_m"])[["near_walls", "walls"]].sum()
+    counts = totals["near_walls"] / totals["walls"].where(totals["walls"] > 0)
+    values = {f"{model}s, {1e3 * band_m:.0f} mm": n for (model, band_m), n in counts.items()}
     claimed = values[f"lines, {1e3 * found['inlier_m'].max():.0f} mm"]
     column = "walls_per_true_wall_of_a_scan"
     for extractor in (ITERATIVE, OURS):
@@ -181,7 +177,9 @@ def selection_polynomial(tables: Tables) -> ClaimMeasure:
 
 
 def two_percent_survive(tables: Tables) -> ClaimMeasure:
-    """Count what registration with the thesis's limits retains."""
+    """Count what registration with the thesis's limits retains, on the drive that it is made of."""
+    if "limits_steps" not in tables:
+        return ClaimMeasure({})
     recorded, _, retained = tables["limits_steps"]["n_scans"].iloc[:3]
     values: Quantities = {
         "share retained": (retained / recorded, SHARE),

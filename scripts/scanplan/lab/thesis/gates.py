@@ -12,7 +12,6 @@ from scanplan.registration.constraints import PlacedScan
 from scanplan.registration.frame_sequence import FrameRegistrar
 from scanplan.registration.registration_settings import FRAMES, SequentialSettings
 from scanplan.registration.sequential import ScanRegistrar, ScanResult, SequentialRegistrar
-from scanplan.store.scan_cache import ScanCachePart
 from scanplan.types import Array, Columns, FloatArray, IntArray
 
 BY_FRAMES, BY_RETAINED, BY_NEAR_PAIRS = "frames", "retained", "frames, pairs within 0.1 m"
@@ -70,9 +69,7 @@ def make_registrar(gate: Gate, preset: SequentialSettings, *, planar: bool) -> S
 
 def pass_gates(
     gates: Sequence[Gate],
-    part: ScanCachePart,
-    scan_ids: IntArray,
-    priors: FloatArray,
+    candidates: Iterable[tuple[PlacedScan, FloatArray]],
     preset: SequentialSettings,
     planar: bool,
 ) -> list[list[ScanResult]]:
@@ -81,10 +78,8 @@ def pass_gates(
     Parameters
     ----------
     gates : sequence of Gate
-    part : scan_cache.ScanCachePart
-        The candidates' points, sensor frame; all with a pose.
-    scan_ids : (n,) int
-    priors : (n, 4, 4) float64
+    candidates : iterable of (constraints.PlacedScan, (4, 4) float64)
+        As `place_candidates` yields them, at the localiser's poses.
     preset : registration_settings.SequentialSettings
     planar : bool
 
@@ -95,22 +90,22 @@ def pass_gates(
     """
     registrars = [make_registrar(gate, preset, planar=planar) for gate in gates]
     results: list[list[ScanResult]] = [[] for _ in gates]
-    for scan, level in place_candidates(part, scan_ids, priors, preset, planar=planar):
+    for scan, level in candidates:
         for registrar, of_gate in zip(registrars, results, strict=True):
             of_gate.append(registrar.register_scan(scan, level)[0])
     return results
 
 
 def place_candidates(
-    part: Iterable[Array],
+    clouds_m: Iterable[Array],
     scan_ids: IntArray,
     poses: FloatArray,
     preset: SequentialSettings,
     *,
     planar: bool,
 ) -> Iterator[tuple[PlacedScan, FloatArray]]:
-    """Yield thinned scans at given poses, each with its level_from_sensor."""
-    for scan_id, xyz_m, pose in zip(scan_ids.tolist(), part, poses, strict=True):
+    """Yield thinned scans (n, 3) in the sensor's frame at given poses, with level_from_sensor."""
+    for scan_id, xyz_m, pose in zip(scan_ids.tolist(), clouds_m, poses, strict=True):
         level = constraints.level_pose(pose, planar=planar)
         thinned_m = constraints.thin_scan(xyz_m, level, planar, preset)
         yield (
@@ -148,7 +143,7 @@ def choose_pairs(n_scans: int) -> IntArray:
 
 
 def align_pairs(
-    pairs: Sequence[tuple[PlacedScan, PlacedScan]], preset: SequentialSettings
+    pairs: Iterable[tuple[PlacedScan, PlacedScan]], preset: SequentialSettings
 ) -> Columns:
     """Align pairs of scans (target, source) that are where they truly are.
 
@@ -159,11 +154,12 @@ def align_pairs(
     """
     rows = [
         row
-        for method in sorted(PAIRED_METHODS)
-        for distance_m in _PAIR_DISTANCES_M
         for target, source in pairs
+        for method in PAIRED_METHODS
+        for distance_m in _PAIR_DISTANCES_M
         for row in _align_pair(target, source, method, distance_m, preset)
     ]
+    rows.sort(key=lambda row: (row["method"], row["distance_m"]))
     return {name: np.array([row[name] for row in rows]) for name in rows[0]} if rows else {}
 
 

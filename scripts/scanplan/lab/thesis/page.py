@@ -119,7 +119,7 @@ def thesis_page(
         figures=[_shown_figure(figure, figures[figure.file], claims) for figure in FIGURES],
         deviations=read_deviations(sources[DEVIATIONS]),
         own_figures={
-            file.removesuffix(".svg"): _inline_svg(svg, file.removesuffix(".svg"))
+            file.removesuffix(".svg"): inline_svg(svg, file.removesuffix(".svg"))
             for file, svg in own_figures.items()
         },
     )
@@ -254,14 +254,14 @@ def _shown_figure(figure: Figure, svg: str, claims: pd.DataFrame) -> ShownFigure
     return ShownFigure(
         anchor,
         figure.number,
-        _inline_svg(svg, anchor),
+        inline_svg(svg, anchor),
         figure.caption,
         figure.ours,
         claim_rows(claims, [claim for claim in CLAIMS if claim.name in figure.claims]),
     )
 
 
-def _inline_svg(svg: str, mark: str) -> Markup:
+def inline_svg(svg: str, mark: str) -> Markup:
     """Return an SVG without its prologue, its identifiers marked: two figures may have the same."""
     svg = svg[svg.index("<svg") :]
     svg = re.sub(r'\bid="', f'id="{mark}-', svg)

@@ -50,17 +50,30 @@ def submodularity_ratios(
     for _ in range(n_added):
         drawn = rng.choice(n_scans, min(2 * size, n_scans), replace=False)
         before, added = drawn[:size], drawn[size:]
-        alone = _utilities(truth, findings, before)
-        together = _utilities(truth, findings, drawn) - alone
-        singly = [_utilities(truth, findings, [*before, scan]) - alone for scan in added]
+        alone = measure_utilities(truth, findings, before)
+        together = measure_utilities(truth, findings, drawn) - alone
+        singly = [measure_utilities(truth, findings, [*before, scan]) - alone for scan in added]
         gain = np.sum(singly, axis=0)
         ratio = np.divide(gain, together, out=np.full(len(gain), np.nan), where=together > 0)
         ratios.append(dict(zip(UTILITIES, ratio.tolist(), strict=True)))
     return ratios
 
 
-def _utilities(truth: VisibleTruth, findings: Findings, rows: Iterable[int]) -> FloatArray:
-    """Return the utilities of a set of scans."""
+def measure_utilities(truth: VisibleTruth, findings: Findings, rows: Iterable[int]) -> FloatArray:
+    """Return the utilities of a set of scans, as `UTILITIES` has them.
+
+    Parameters
+    ----------
+    truth : wall_findings.VisibleTruth
+    findings : wall_findings.Findings
+        Of one extractor.
+    rows : iterable of int
+        The scans'.
+
+    Returns
+    -------
+    (u,) float64
+    """
     rank = np.full(len(truth.seen), first_ranks.NEVER)
     rank[list(rows)] = 1
     (measured,) = measure_first_scans(truth, findings, rank, [1])

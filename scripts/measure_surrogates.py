@@ -1,0 +1,83 @@
+"""Measure how well what orders maximise stands for the walls found (thesis, chapter 5)."""
+
+from collections.abc import Mapping
+
+from scanplan.lab.evaluation import bitmap_shares, truth_file, wall_findings
+from scanplan.lab.thesis import surrogates
+from scanplan.selection.survey_scans import SurveyScans
+from scanplan.stage import log
+from scanplan.store import registered_scans, schemas, tables
+from scanplan.types import FilePath
+
+_SCHEMAS = {
+    "observations": schemas.OBSERVATIONS,
+    "visibility": schemas.VISIBILITY,
+    "hulls": schemas.HULLS,
+}
+
+
+def measure_surrogates(
+    covers: Mapping[str, FilePath],
+    walls: FilePath,
+    registration: FilePath,
+    truth: FilePath,
+    true_poses: FilePath,
+    output: FilePath,
+    *,
+    max_range_m: float,
+    bitmap_cell_m: float,
+    n_added: int,
+    seed: int,
+) -> None:
+    """Write submodularity ratios and values of random subsets, and what these find.
+
+    Parameters
+    ----------
+    covers : dict of str to path-like
+        observations.parquet, visibility.parquet and hulls.parquet by their stems.
+    walls, registration, truth, true_poses : path-like
+        walls/cluster_ransac.parquet, registration.parquet, truth.geojson and truth_poses.tum.
+    output : path-like
+        thesis/surrogates.parquet, to write.
+    max_range_m, bitmap_cell_m : float
+        How far a scan can see; edge of a bitmap's cell.
+    n_added, seed : int
+        See `surrogates.measure_surrogates`.
+    """
+    registered = registered_scans.read_registered_scans(registration)
+    poses = truth_file.read_true_poses(true_poses)
+    placed = truth_file.interpolate_true_poses(poses, registered.t_ns, true_poses)
+    faces = truth_file.read_true_faces(truth)
+    sight = truth_file.read_sensor_view(truth, max_range_m=max_range_m)
+    floor = wall_findings.observe_truth(faces, placed, placed, sight=sight)
+    columns = registered_scans.read_wall_segments(walls, registered, registration)
+    drawn = wall_findings.place_segments(
+        columns, registered.scan_ids, registered.map_from_sensor, placed
+    )
+    bitmaps = bitmap_shares.trace_truth(faces.inner_m, drawn.lines_m, bitmap_cell_m)
+    findings = wall_findings.match_segments(drawn, floor, bitmaps)
+    covered = {
+        name: tables.read_table(path, _SCHEMAS[name], allow_empty=True)
+        for name, path in covers.items()
+    }
+    scans = SurveyScans(registered.scan_ids, covered)
+    rows = surrogates.measure_surrogates(scans, floor, findings, n_added=n_added, seed=seed)
+    measured = {name: [row[name] for row in rows] for name in schemas.SURROGATES.columns}
+    tables.write_table(output, schemas.SURROGATES, measured)
+    log.log_line(f"measure_surrogates: {n_added} draws, {len(rows)} values")
+
+
+if __name__ == "__main__":
+    with log.log_to_file(snakemake.log[0]):
+        measure_surrogates(
+            {name: path for name, path in snakemake.input.items() if name in _SCHEMAS},
+            snakemake.input.walls,
+            snakemake.input.registration,
+            snakemake.input.truth,
+            snakemake.input.true_poses,
+            snakemake.output.surrogates,
+            max_range_m=snakemake.params.max_range_m,
+            n_added=snakemake.params.n_added,
+            seed=snakemake.params.seed,
+            **snakemake.params.evaluation,
+        )

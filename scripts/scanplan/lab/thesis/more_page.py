@@ -1,0 +1,43 @@
+"""The page of the experiments that go beyond the thesis's own."""
+
+from collections.abc import Mapping
+
+import pandas as pd
+
+from scanplan.lab.evaluation.evaluation_figure import method_style
+from scanplan.lab.thesis.claim_measures import SHARE
+from scanplan.lab.thesis.page import format_values, inline_svg
+from scanplan.lab.thesis.stated_claims import SUBSET
+from scanplan.report import templates
+
+
+def more_page(sources: Mapping[str, str], figures: Mapping[str, str], found: pd.DataFrame) -> str:
+    """Return the page.
+
+    Parameters
+    ----------
+    sources : dict of str to str
+        File name to text of `thesis_more.html.j2` and of its style.
+    figures : dict of str to str
+        SVG text by name: `confidence`, `surrogates`.
+    found : pandas.DataFrame
+        As in `more_figures.join_orders`.
+
+    Returns
+    -------
+    str
+    """
+    by_method = found.groupby("method", sort=False)
+    rows = [
+        (k, [format_values(shares.to_numpy(), SHARE) for _, shares in by_method[k]])
+        for k in found.columns
+    ]
+    return templates.render_template(
+        sources,
+        "thesis_more.html.j2",
+        figures={name: inline_svg(svg, name) for name, svg in figures.items()},
+        methods=[method_style(method)[0] for method in by_method.groups],
+        found=rows,
+        n_seeds=found.index.get_level_values("seed").nunique(),
+        n_scans=SUBSET,
+    )

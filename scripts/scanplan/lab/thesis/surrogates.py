@@ -1,0 +1,72 @@
+"""What orders maximise, as a stand-in for the walls found: how submodular, and how well it ranks.
+
+See `premises` for the submodularity ratio. By theory it is 1 or more of every covered area and of
+the covered length of wall; what matters is that it is so of the walls found, for which they stand.
+"""
+
+import numpy as np
+
+from scanplan.lab.evaluation.wall_findings import Findings, VisibleTruth
+from scanplan.lab.thesis import premises
+from scanplan.selection import objectives
+from scanplan.selection.objectives import Objective
+from scanplan.selection.survey_scans import SurveyScans
+from scanplan.types import IntArray
+
+FOUND = "walls found"
+SURROGATES = {
+    "length of wall shown": objectives.cover_wall_length,
+    "free space": objectives.cover_free_space,
+    "area of cluster hulls": objectives.cover_cluster_hulls,
+    "area of one hull each": objectives.cover_full_hulls,
+}
+
+
+def measure_surrogates(
+    scans: SurveyScans,
+    truth: VisibleTruth,
+    findings: Findings,
+    *,
+    n_added: int,
+    seed: int,
+) -> list[dict[str, str | int | float]]:
+    """Measure every surrogate on random scans that are added to as many random others.
+
+    Parameters
+    ----------
+    scans : survey_scans.SurveyScans
+        With the tables `observations`, `visibility` and `hulls`.
+    truth : wall_findings.VisibleTruth
+    findings : wall_findings.Findings
+        Of one extractor.
+    n_added : int
+        So many scans are added to as many others, and so often; fewer of a small survey.
+    seed : int
+
+    Returns
+    -------
+    list of dict
+        Rows of `schemas.SURROGATES`.
+    """
+    covers = {name: make(scans) for name, make in SURROGATES.items()}
+    size = max(1, min(n_added, len(scans) // 2))
+    rng = np.random.default_rng(seed)
+    rows: list[dict[str, str | int | float]] = []
+    for draw in range(n_added):
+        drawn = rng.choice(len(scans), min(2 * size, len(scans)), replace=False)
+        found = premises.measure_utilities(truth, findings, drawn[:size])[0]
+        for name, cover in covers.items():
+            value, ratio = _measure_draw(cover, drawn[:size], drawn[size:])
+            rows.append(
+                {"surrogate": name, "draw": draw, "value": value, "ratio": ratio, "found": found}
+            )
+    return sorted(rows, key=lambda row: (str(row["surrogate"]), row["draw"]))
+
+
+def _measure_draw(cover: Objective, before: IntArray, added: IntArray) -> tuple[float, float]:
+    """Return what some scans cover, and the ratio of what others add singly and together."""
+    gains = cover.gains(np.concatenate([before, added]))
+    together = gains[len(before) :].sum()
+    singly = sum(cover.gains(np.append(before, scan))[-1] for scan in added)
+    value = float(gains[: len(before)].sum())
+    return value, float(singly / together) if together > 0 else np.nan
