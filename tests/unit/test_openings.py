@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -34,14 +36,13 @@ def judge(hits, passes, low=1.0, high=1.9, n_scans=1, behind_m=0.0, **more):
 
 def test_a_door():
     gap = judge(grid(1, 1.9, 2.2, 2.5), grid(1, 1.9, 0.1, 1.0, 2.0))
-    assert (gap.state, gap.kind(SETTINGS.max_door_m), gap.sill_m) == (openings.OPEN, "door", 0)
+    assert (gap.state, gap.kind, gap.sill_m) == (openings.OPEN, openings.GAP, 0)
     assert gap.lintel_m == pytest.approx(2.1, abs=0.11)
     assert gap.width_m == pytest.approx(0.9)
 
 
 def test_a_window():
     gap = judge(grid(1, 1.9, 0.5, 0.8, 2.2), grid(1, 1.9, 1.0, 1.6))
-    assert gap.kind(SETTINGS.max_door_m) == "window"
     assert gap.sill_m == pytest.approx(0.8)
 
 
@@ -52,7 +53,7 @@ def judge_with_low(low, hits, lowest_m):
 
 def test_a_low_sill_all_along_makes_a_window():
     gap = judge_with_low(grid(1, 1.9, 0.02, 0.07, 0.09), grid(1, 1.9, 2.2), 0.13)
-    assert (gap.kind(SETTINGS.max_door_m), gap.sill_m) == ("window", pytest.approx(0.09))
+    assert gap.sill_m == pytest.approx(0.09)
 
 
 @pytest.mark.parametrize(("below", "sill_m"), [([], 0.09), (grid(1, 1.9, 0.15, 0.2), 0.2)])
@@ -64,7 +65,7 @@ def test_a_step_makes_a_window_whether_or_not_wall_is_seen_below_it(below, sill_
     gap = judge_with_low(
         grid(1, 1.9, 0.05, 0.09), [*below, *grid(1, 1.9, 2.2)], 0.35 if below else 0.13
     )
-    assert (gap.kind(SETTINGS.max_door_m), gap.sill_m) == ("window", pytest.approx(sill_m))
+    assert gap.sill_m == pytest.approx(sill_m)
 
 
 def test_a_step_shows_a_sill_that_no_wall_is_below():
@@ -76,7 +77,7 @@ def test_a_step_shows_a_sill_that_no_wall_is_below():
 @pytest.mark.parametrize("low", [grid(1, 1.9, 0.0, 0.02, 0.03), grid(1, 1.3, 0.05, 0.07, 0.09)])
 def test_a_floor_or_what_stands_on_it_is_no_sill(low):
     gap = judge_with_low(low, grid(1, 1.9, 2.2), 0.13)
-    assert (gap.kind(SETTINGS.max_door_m), gap.sill_m) == ("door", 0)
+    assert gap.sill_m == 0
 
 
 @pytest.mark.parametrize(
@@ -88,7 +89,9 @@ def test_where_rays_go_and_do_not_come_back_there_is_an_opening(lost, state):
 
 
 def test_a_wide_opening_is_a_passage():
-    assert judge([], grid(1, 2.8, 0.1, 1.0), high=2.8).kind(SETTINGS.max_door_m) == "passage"
+    gap = replace(judge([], grid(1, 2.8, 0.1, 1.0), high=2.8), kind="door")
+    assert gap.type_name(SETTINGS.max_door_m) == "passage"
+    assert gap.type_name(2.0) == "door"
 
 
 def test_nothing_seen_to_pass_is_wall():
@@ -174,5 +177,5 @@ def test_beside_the_end_of_a_wall_only_a_lintel_makes_an_opening():
 def test_heights_are_not_told_of_a_plane():
     flat = seen([], grid(1, 1.9, 0.0, 0.0), planar=True)
     gap = classify(1.0, 1.9, [flat])
-    assert (gap.state, gap.kind(SETTINGS.max_door_m)) == (openings.OPEN, "door")
+    assert gap.state == openings.OPEN
     assert np.isnan([gap.sill_m, gap.lintel_m]).all()

@@ -41,6 +41,7 @@ def draw_plan(plan: FloorPlan) -> Figure:
         for state in floorplan.STATES:
             _draw_walls(axes, plan, state)
         _draw_openings(axes, plan, scale * constants.point)
+        _draw_unseen(axes, plan)
         _label_low_walls(axes, plan, scale * constants.point)
         _label_rooms(axes, plan, drawing_frame.letter_m(scale))
         drawing_frame.draw_dimension(axes, low_m, np.array([high_m[0], low_m[1]]), scale)
@@ -91,6 +92,13 @@ def _draw_openings(axes: Axes, plan: FloorPlan, m_per_point: float) -> None:
         if math.dist(*line) >= 2 * letters_m:
             words = f"{math.dist(*line):.2f}"
             _write_along(axes, line, words, 0.0 if is_in_wall else thick_m / 2 + letters_m)
+
+
+def _draw_unseen(axes: Axes, plan: FloorPlan) -> None:
+    """Draw the spans of rooms' outlines of which nothing is known."""
+    lines = floorplan.centrelines_m(plan.unseen)
+    for number, line in zip(plan.unseen["opening"], lines, strict=True):
+        axes.plot(*line.T, gid=f"unseen-{number}", **STROKES["unseen"].line)
 
 
 def _opening_path(line: FloatArray, thickness_m: float, *, has_pane: bool) -> Path:
@@ -164,9 +172,9 @@ def _legend_samples(plan: FloorPlan) -> list[Artist]:
     for state, name in (("observed", "thickness not known"), ("inferred", "inferred")):
         if len(plan.single(state)):
             samples.append(Line2D([], [], label=f"surface, {name}", **STROKES[state].line))
-    for kind in floorplan.OPENINGS:
+    for kind, name in floorplan.OPENINGS.items():
         if kind in plan.openings["type"]:
-            label = f"{kind} (width in m)"
+            label = f"{name} (width in m)"
             stroke = STROKES[kind]
             is_window = kind == "window"
             samples.append(
@@ -174,4 +182,6 @@ def _legend_samples(plan: FloorPlan) -> list[Artist]:
                 if is_window
                 else Line2D([], [], label=label, **stroke.line)
             )
+    if len(plan.unseen["opening"]):
+        samples.append(Line2D([], [], label="not seen", **STROKES["unseen"].line))
     return samples

@@ -99,9 +99,13 @@ STROKES = {
     "door": Stroke("OPENINGS", dashes=(3, 2)),
     "window": Stroke("OPENINGS"),
     "passage": Stroke("OPENINGS", ink=FAINT, dashes=(1, 2)),  # a boundary without a thing
+    "glass": Stroke("OPENINGS"),
+    "gap": Stroke("OPENINGS", ink=FAINT, dashes=(1, 1)),
+    "unseen": Stroke("ROOMS", ink=FAINT, dashes=(6, 3)),
     "dimension": Stroke("TEXT", ink=FAINT),
 }
-"""By the state of a wall (`floorplan.STATES`), the type of an opening (`floorplan.OPENINGS`)."""
+"""By the state of a wall (`floorplan.STATES`), the type of an opening (`floorplan.OPENINGS`), and
+of what was not seen."""
 
 
 def read_along(line: FloatArray) -> FloatArray:

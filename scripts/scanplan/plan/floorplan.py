@@ -10,6 +10,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.plan import wall_footprints
+from scanplan.plan.wall_ground import UNSEEN
 from scanplan.store import schemas, tables
 from scanplan.store.doubts import NO_DOUBT, Doubts, read_doubts
 from scanplan.types import Array, BoolArray, Columns, FilePath, FloatArray, IntArray
@@ -18,8 +19,14 @@ STATES = ("observed", "inferred")
 """Of faces and walls."""
 HEIGHTS = {"ceiling": "ceiling", "walls": "highest seen of all walls", "assumed": "assumed"}
 """What the height of a storey follows from, and its wording."""
-OPENINGS = ("door", "window", "passage")
-"""Types of openings."""
+OPENINGS = {
+    "door": "door",
+    "window": "window",
+    "passage": "passage",
+    "glass": "glass pane",
+    "gap": "unknown gap",
+}
+"""Types of openings, and their wording."""
 _ENDS = ("x0_m", "y0_m", "x1_m", "y1_m")
 _CLEARANCE_M = 0.02  # an opening is cut this much deeper than its wall, so that no skin is left
 _GRID_M = 1e-4  # of corners: a tenth of a millimetre, what drawings are rounded to
@@ -30,6 +37,10 @@ def centrelines_m(columns: Columns) -> FloatArray:
     """Return the lines (n, 2, 2) float64 of a table with the columns x0_m, y0_m, x1_m, y1_m."""
     ends = np.column_stack([columns[name] for name in _ENDS])
     return ends.astype(float).reshape(-1, 2, 2)
+
+
+def _no_openings() -> Columns:
+    return {name: np.empty(0) for name in schemas.OPENINGS.columns}
 
 
 @dataclass(frozen=True)
@@ -65,7 +76,9 @@ class FloorPlan:
         The dataset's name.
     faces, walls, openings, rooms, free : dict of str to (n,) array
         The columns of `schemas.FACES`, `PLAN_WALLS`, `OPENINGS`, `ROOMS` and `FREE`; all but
-        `faces` may have no rows.
+        `faces` may have no rows, and openings that were not seen are in `unseen`.
+    unseen : dict of str to (u,) array
+        The rows of `schemas.OPENINGS` that are spans of rooms' outlines of which nothing is known.
     assumed_thickness_m : float, > 0
         ASSUME of a wall that was seen from one side only, behind its face.
     assumed_height_m : float, > 0
@@ -84,6 +97,7 @@ class FloorPlan:
     openings: Columns = field(repr=False)
     rooms: Columns = field(repr=False)
     free: Columns = field(repr=False)
+    unseen: Columns = field(repr=False, default_factory=_no_openings)
     assumed_thickness_m: float = 0.1
     assumed_height_m: float = 2.5
     floor_z_m: float = np.nan
@@ -277,11 +291,14 @@ def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: f
         for note in ("floor_z_m", "ceiling_z_m")
     )
     reference = tables.read_note(files["free"], schemas.FREE, "georeference")
+    openings = read("openings", schemas.OPENINGS)
+    is_unseen = openings["type"] == UNSEEN
     return FloorPlan(
         name=name,
         faces=read("faces", schemas.FACES),
         walls=read("walls", schemas.PLAN_WALLS),
-        openings=read("openings", schemas.OPENINGS),
+        openings={column: values[~is_unseen] for column, values in openings.items()},
+        unseen={column: values[is_unseen] for column, values in openings.items()},
         rooms=read("rooms", schemas.ROOMS),
         free=read("free", schemas.FREE),
         floor_z_m=floor_z_m,
@@ -295,8 +312,8 @@ def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: f
 def summarise_floorplan(plan: FloorPlan) -> str:
     """Return how many walls, faces, openings of each type and rooms a plan has, in words."""
     counts = {"wall": len(plan.walls["wall"]), "wall face": len(plan.faces["face"])}
-    for kind in OPENINGS:
-        counts[kind] = int((plan.openings["type"] == kind).sum())
+    for kind, noun in OPENINGS.items():
+        counts[noun] = int((plan.openings["type"] == kind).sum())
     counts["room"] = len(plan.rooms["room"])
     return ", ".join(f"{n} {noun}{'s' if n != 1 else ''}" for noun, n in counts.items() if n)
 

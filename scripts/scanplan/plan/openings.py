@@ -19,9 +19,10 @@ from scanplan.rays.face_raster import CELL_M
 from scanplan.types import FloatArray
 
 OPEN, CLOSED, UNKNOWN = "open", "closed", "unknown"
+GAP = "gap"
+"""Kind of an opening of which it is not known what it is."""
 _OPEN_SHARE = 0.4  # of the width: furniture hides the rest of a way; half as much below a lintel
 _CLOSED_SHARE = 0.1  # of the width: less is noise at the jambs
-_DOORSTEP_M = 0.06  # one steps over less
 
 
 @dataclass(frozen=True)
@@ -59,6 +60,10 @@ class Opening:
         Above the floor; NaN where not seen.
     below_wall : bool
         Whether wall was seen above it, at a height that need not be known.
+    kind : str
+        One of `opening_kinds.KINDS`, or `GAP`: as long as nothing else is known of it.
+    p_kind : float
+        Probability of the likeliest kind; NaN as long as none was weighed.
     """
 
     low_m: float
@@ -68,22 +73,23 @@ class Opening:
     sill_m: float
     lintel_m: float
     below_wall: bool
+    kind: str = GAP
+    p_kind: float = math.nan
 
     @property
     def is_above_wall(self) -> bool:
-        """Whether the wall goes on below it: its sill is well above the floor."""
-        return self.sill_m > AT_FLOOR_M
+        """Whether the wall goes on below it."""
+        is_hidden = math.isnan(self.sill_m)
+        return self.sill_m > AT_FLOOR_M or (self.kind == "window" and is_hidden)
 
     @property
     def width_m(self) -> float:
         """Width of the gap."""
         return self.high_m - self.low_m
 
-    def kind(self, max_door_m: float) -> str:
-        """Return `window`, `door` or, wider than a door, `passage`: by its sill, then its width."""
-        if self.sill_m > _DOORSTEP_M:
-            return "window"
-        return "door" if self.width_m <= max_door_m else "passage"
+    def type_name(self, max_door_m: float) -> str:
+        """Return its kind; that of a door wider than a door is `passage`."""
+        return "passage" if self.kind == "door" and self.width_m > max_door_m else self.kind
 
 
 def classify_gap(

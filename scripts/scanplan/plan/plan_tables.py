@@ -13,6 +13,7 @@ from scanplan.plan.plan_wall import InferredFace, PlanWall
 from scanplan.plan.rooms import Room, rooms_beside
 from scanplan.plan.tolerances import LOW_PERCENT
 from scanplan.plan.uncertainty import WallEvidence
+from scanplan.plan.wall_ground import BareSpan
 from scanplan.rays.face_raster import CELL_M
 from scanplan.store import schemas
 from scanplan.types import Array, FloatArray, IntArray
@@ -28,6 +29,12 @@ _TYPES: dict[str, type] = {
 
 Row = dict[str, Any]
 """Values of a table's row by column."""
+_NOT_IN_A_WALL: Row = {
+    "wall": -1,
+    "n_rays": 0,
+    "corrected": "",
+    **dict.fromkeys(("thickness_m", "sill_m", "lintel_m", "p_kind"), math.nan),
+}
 
 
 def face_columns(
@@ -110,30 +117,48 @@ def wall_columns(
 
 
 def opening_columns(
-    walls: Sequence[PlanWall], rooms: Sequence[Room], max_door_m: float
+    walls: Sequence[PlanWall],
+    rooms: Sequence[Room],
+    max_door_m: float,
+    panes: Sequence[PlanWall] = (),
+    bare: Sequence[BareSpan] = (),
 ) -> dict[str, Array]:
-    """Return the rows of `schemas.OPENINGS`: those of each wall in order along it."""
+    """Return the rows of `schemas.OPENINGS`: those of each wall in order along it.
+
+    Then panes that are in no wall, and what is bare of rooms' outlines.
+    """
     rows: list[Row] = []
     for number, wall in enumerate(walls):
         for opening in wall.openings:
             ends_m = wall.line.at(np.array([opening.low_m, opening.high_m]))
-            room_left, room_right = rooms_beside(rooms, ends_m.mean(axis=0), wall)
-            row = {
-                "opening": len(rows),
+            known = {
                 "wall": number,
-                "type": opening.kind(max_door_m),
-                **_end_columns(ends_m),
-                "width_m": opening.width_m,
+                "type": opening.type_name(max_door_m),
                 "thickness_m": wall.thickness_m,
                 "sill_m": opening.sill_m,
                 "lintel_m": opening.lintel_m,
-                "room_a": room_left,
-                "room_b": room_right,
                 "n_rays": opening.n_rays,
+                "p_kind": opening.p_kind,
                 "corrected": "",
             }
-            rows.append(row)
-    return columns_of_rows(rows, schemas.OPENINGS)
+            rows.append(
+                known | _place_columns(ends_m, rooms_beside(rooms, ends_m.mean(axis=0), wall))
+            )
+    for pane in panes:
+        beside = rooms_beside(rooms, pane.ends.mean(axis=0), pane)
+        rows.append(_NOT_IN_A_WALL | {"type": "glass"} | _place_columns(pane.ends, beside))
+    for span in bare:
+        rows.append(
+            _NOT_IN_A_WALL | {"type": span.kind} | _place_columns(span.ends_m, (span.room, -1))
+        )
+    return columns_of_rows(
+        [{"opening": number, **row} for number, row in enumerate(rows)], schemas.OPENINGS
+    )
+
+
+def _place_columns(ends_m: FloatArray, rooms: tuple[int, int]) -> Row:
+    width_m = float(np.hypot(*(ends_m[1] - ends_m[0])))
+    return {**_end_columns(ends_m), "width_m": width_m, "room_a": rooms[0], "room_b": rooms[1]}
 
 
 def room_columns(rooms: Sequence[Room]) -> dict[str, Array]:

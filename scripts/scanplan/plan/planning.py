@@ -1,5 +1,6 @@
 """From wall segments and the points of the chosen scans to a floor plan."""
 
+import functools
 import math
 from dataclasses import dataclass
 
@@ -10,17 +11,17 @@ from scanplan.extraction.furniture import FurnitureLimits
 from scanplan.plan import (
     glass,
     half_height,
+    opening_kinds,
     plan_tables,
     uncertainty,
     wall_faces,
     wall_ground,
-    windows,
 )
 from scanplan.plan.faces.merging import MergeSettings, merge_segments
 from scanplan.plan.faces.tracing import trace_faces
 from scanplan.plan.openings import OpeningSettings
 from scanplan.plan.plan_wall import PlanWall
-from scanplan.plan.rooms import find_rooms
+from scanplan.plan.rooms import find_rooms, rooms_beside
 from scanplan.plan.uncertainty import ReviewCriteria
 from scanplan.plan.wall_pairs import PairSettings
 from scanplan.plan.walls import assemble_walls
@@ -169,7 +170,7 @@ def make_plan(
         corner_m=settings.merge.corner_m,
         door_height_m=settings.reading.door_height_m,
     )
-    walls = windows.add_windows(
+    walls = opening_kinds.add_windows(
         walls, rays, min_width_m=settings.openings.min_opening_m, band_m=band_m
     )
     walls, tops_m = half_height.drop_low_surfaces(walls, settings.furniture.wall_height_m)
@@ -193,6 +194,21 @@ def make_plan(
         unpaired_m=unpaired_m,
         floor=floor,
     )
+    walls = opening_kinds.decide_kinds(
+        *(walls, rays, track_m, functools.partial(rooms_beside, rooms)),
+        min_width_m=settings.openings.min_opening_m,
+        band_m=band_m,
+    )
+    bounds = [*walls, *glass_walls]
+    areas = [room.polygon for room in rooms]
+    bare = wall_ground.find_bare_spans(
+        areas,
+        bounds,
+        floor,
+        unpaired_m=unpaired_m,
+        min_length_m=settings.openings.min_opening_m,
+    )
+    bare = opening_kinds.decide_bare_spans(bare, rays, track_m, areas, band_m=band_m)
     floor_z_m = 0.0 if math.isnan(rays.floor_z_m) else rays.floor_z_m
     cut_walls = wall_faces.cut_wall_faces(walls, max_beyond_m=settings.openings.max_closed_m)
     face_columns, main_rows = plan_tables.face_columns(cut_walls, floor_z_m)
@@ -203,7 +219,9 @@ def make_plan(
     return Plan(
         faces=face_columns,
         walls=plan_tables.wall_columns(walls, evidence, main_rows, doubtful, floor_z_m),
-        openings=plan_tables.opening_columns(walls, rooms, settings.openings.max_door_m),
+        openings=plan_tables.opening_columns(
+            walls, rooms, settings.openings.max_door_m, glass_walls, bare
+        ),
         rooms=plan_tables.room_columns(rooms),
         evidence=plan_tables.evidence_columns(evidence, rays.scan_ids, t_ns),
         free=plan_tables.free_columns(_find_free_floor(bounds, floor, unpaired_m)),
@@ -227,7 +245,7 @@ def _find_free_floor(
         wall_ground.opening_polygon(wall, opening, unpaired_m)
         for wall in walls
         for opening in wall.openings
-        if not opening.is_above_wall
+        if opening.kind == "door"
     ]
     solid = free_space.difference_on_grid(
         free_space.union_on_grid(strips), free_space.union_on_grid(ways)

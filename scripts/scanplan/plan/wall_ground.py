@@ -1,13 +1,39 @@
 """The ground that walls and their openings stand on, as plain strips: what parts free floor."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
+import shapely
 from shapely.geometry import Polygon
+from shapely.geometry.base import BaseGeometry
 
-from scanplan.plan.openings import Opening
+from scanplan.plan.openings import GAP, Opening
 from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.tolerances import END_M
 from scanplan.rays.free_space import GRID_M
+from scanplan.types import FloatArray
+
+UNSEEN = "unseen"
+"""Kind of a span of a room's outline of which nothing is known."""
+
+
+@dataclass(frozen=True, eq=False)
+class BareSpan:
+    """A straight span of a room's outline that no wall stands along.
+
+    Attributes
+    ----------
+    ends_m : (2, 2) float64
+    room : int
+    kind : str
+        `UNSEEN`, or `GAP` where the floor was seen to go on: open, by what it leads through is not
+        known.
+    """
+
+    ends_m: FloatArray
+    room: int
+    kind: str
 
 
 def wall_strips(walls: Sequence[PlanWall], unpaired_m: float) -> list[Polygon]:
@@ -25,6 +51,49 @@ def wall_strips(walls: Sequence[PlanWall], unpaired_m: float) -> list[Polygon]:
 def opening_polygon(wall: PlanWall, gap: Opening, unpaired_m: float) -> Polygon:
     """Return the ground of an opening in a wall, a polygon a little deeper than the wall."""
     return _ground(wall, gap.low_m, gap.high_m, unpaired_m).buffer(GRID_M, join_style="mitre")
+
+
+def find_bare_spans(
+    rooms: Sequence[Polygon],
+    walls: Sequence[PlanWall],
+    floor: BaseGeometry,
+    *,
+    unpaired_m: float,
+    min_length_m: float,
+) -> list[BareSpan]:
+    """Find what no wall, opening or pane stands along of the outlines of rooms.
+
+    Parameters
+    ----------
+    rooms : sequence of shapely.Polygon
+    walls : sequence of plan_wall.PlanWall
+        Panes of glass with them.
+    floor : shapely geometry
+        That was seen.
+    unpaired_m : float
+        As in `wall_strips`.
+    min_length_m : float
+        Shorter spans are of corners.
+    """
+    strips = wall_strips(walls, unpaired_m)
+    walled = shapely.union_all(shapely.buffer(np.array(strips, object), END_M))
+    found: list[BareSpan] = []
+    for number, room in enumerate(rooms):
+        bare = shapely.difference(shapely.boundary(room), walled)
+        for line in shapely.get_parts(shapely.line_merge(bare)):
+            corners_m = shapely.get_coordinates(line.simplify(END_M))
+            for ends_m in np.stack([corners_m[:-1], corners_m[1:]], axis=1):
+                if np.hypot(*(ends_m[1] - ends_m[0])) >= min_length_m:
+                    found.append(BareSpan(ends_m, number, _kind_beyond(ends_m, room, floor)))
+    return found
+
+
+def _kind_beyond(ends_m: FloatArray, room: Polygon, floor: BaseGeometry) -> str:
+    """Return what a span is by what lies beyond it."""
+    beside = shapely.LineString(ends_m).buffer(2 * END_M, cap_style="flat")
+    beyond = shapely.difference(beside, room)
+    seen_m2 = shapely.intersection(beyond, floor).area
+    return GAP if seen_m2 > beyond.area - seen_m2 else UNSEEN
 
 
 def _ground(wall: PlanWall, low_m: float, high_m: float, unpaired_m: float) -> Polygon:

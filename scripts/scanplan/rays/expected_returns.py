@@ -30,7 +30,7 @@ Their rays are few, and much stands before the surface.
 
 _ROWS_PER_DEG = 10  # of elevation: beams of a VLP-16 are 2 degrees apart, of dense sensors 0.2
 _LEAST_RAYS = 20.0  # half of so many are not lost by chance
-_DEEP_M = 0.6  # no wall is thicker
+DEEP_M = 0.6  # no wall is thicker
 _WIDTH = 5  # columns that are judged together: single ones expect too few rays
 
 
@@ -110,6 +110,11 @@ class SentRays:
         known = [np.where(enough, rows, np.nan) for rows in (reached, returned, in_wall)]
         return known[0], known[1], known[2]
 
+    def lost(self) -> FloatArray:
+        """Return how many of the rays that reached the columns (n,) of one surface are nowhere."""
+        reached, returned, _ = self.reached(least_scans=2)
+        return np.nan_to_num(np.maximum(reached - returned, 0.0)) / _WIDTH
+
 
 def count_sent_rays(
     rays: "RaySet",
@@ -172,7 +177,7 @@ def count_sent_rays(
     row = np.cumsum(is_looking) - 1
     cell = row.take(view.take(rows)) * len(number) + np.minimum(column, len(number) - 1)
     is_returned = behind_m >= -ON_M
-    kinds = (~is_returned, is_returned, is_returned & (behind_m <= _DEEP_M))
+    kinds = (~is_returned, is_returned, is_returned & (behind_m <= DEEP_M))
     occluded, returned, in_wall = (
         np.bincount(cell[kind], minlength=expected.size).reshape(expected.shape) for kind in kinds
     )

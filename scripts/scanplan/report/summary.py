@@ -24,7 +24,10 @@ def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
         Each line ends with a newline.
     """
     rooms, walls, openings = plan.rooms, plan.walls, plan.openings
-    ways = [_count(int((openings["type"] == kind).sum()), kind) for kind in floorplan.OPENINGS]
+    ways = [
+        _count(int((openings["type"] == kind).sum()), noun)
+        for kind, noun in floorplan.OPENINGS.items()
+    ]
     found = (
         f"{_count(len(rooms['room']), 'room')}, {_area(rooms['area_m2'])} of floor;"
         f" {', '.join(ways)}; {_count(len(walls['wall']), 'wall')},"

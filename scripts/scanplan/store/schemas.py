@@ -231,11 +231,16 @@ OPENINGS = Schema(
         "room_a": "int32",
         "room_b": "int32",
         "n_rays": "int64",
+        "p_kind": "float64",
         "corrected": "string",
     },
     ("opening",),
 )
-"""Doors, windows and passages that rays went through.
+"""What is no wall of rooms' outlines and walls: openings, and what is not known.
+
+`type` is door, window, passage, glass (down to the floor), gap (rays go through, and it is not
+known what it is), or unseen (a span of a room's outline of which nothing is known); `p_kind` the
+probability of the likeliest kind, NaN where none was weighed.
 
 Heights are above the floor, NaN where not known; -1 stands for no wall or no room. Missing returns
 count as rays, too: as many as were expected through a window above its sill.

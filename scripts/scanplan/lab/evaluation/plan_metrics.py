@@ -17,6 +17,7 @@ from scanplan.types import BoolArray, Columns, FilePath, FloatArray, IntArray
 
 _MISPLACED_M = 0.30  # farther off a face is another one: twice a thin wall's thickness
 _DOORS = ("door", "passage")
+_WINDOWS = ("window", "glass")
 _TABLES = {
     "faces": schemas.FACES,
     "walls": schemas.PLAN_WALLS,
@@ -64,7 +65,7 @@ def measure_plan(
     walls_m = _moved(length_metrics.table_lines_m(drawn["walls"]), motion)
     openings_m = _moved(length_metrics.table_lines_m(drawn["openings"]), motion)
     kinds = drawn["openings"]["type"]
-    doors_m, windows_m = openings_m[np.isin(kinds, _DOORS)], openings_m[kinds == "window"]
+    doors_m, windows_m = (openings_m[np.isin(kinds, of)] for of in (_DOORS, _WINDOWS))
     rooms = shapely.transform(
         shapely.from_wkb(drawn["rooms"]["geometry"]),
         lambda xy_m: np.asarray(_moved(xy_m, motion), np.float64),

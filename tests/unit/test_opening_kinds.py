@@ -1,4 +1,7 @@
-"""Windows of a toy room: what becomes of the rays to a part of its south wall is known on paper."""
+"""Kinds of openings, and windows of a toy room.
+
+What becomes of the rays to a part of its south wall is known on paper.
+"""
 
 from dataclasses import replace
 
@@ -7,14 +10,16 @@ import pytest
 import shapely
 
 from helpers import house_making
-from helpers.observation_making import observation
+from helpers.observation_making import line_through, observation
 from helpers.wall_making import walls
 from scanplan.geometry.lines import Line
-from scanplan.plan import planning, windows
+from scanplan.plan import opening_kinds, planning
 from scanplan.plan.faces import intervals
-from scanplan.plan.openings import OPEN, Opening
+from scanplan.plan.openings import CLOSED, GAP, OPEN, Opening
 from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.wall_ground import UNSEEN, BareSpan, find_bare_spans
 from scanplan.rays import ray_set
+from scanplan.rays.height_profile import ROWS_M, HeightProfile
 
 SENSORS = [(1, 2.5, 0.9), (2, 3, 0.9), (3, 2.5, 0.9), (2.5, 3.4, 0.9)]
 SOUTH = Line(np.array([0.0, 0.0]), np.array([0.0, 1.0]))
@@ -83,8 +88,17 @@ def with_points(line, places_m):
 
 
 def find(*part, **more):
+    """Windows found in the south wall, places along it counted from the origin."""
     looked = look(*part, **more)
-    return windows.find_windows(looked, seen(looked), *ENDS_M, **LIMITS)
+    return find_along(looked, seen(looked))
+
+
+def find_along(looked, line):
+    side = intervals.FaceInterval(line, *ENDS_M)
+    (found,) = opening_kinds.add_windows(
+        [PlanWall(line.line, *ENDS_M, np.nan, [side], [])], looked, **LIMITS
+    )
+    return found.openings
 
 
 @pytest.mark.parametrize("ends", [LOST, BEYOND])
@@ -95,7 +109,7 @@ def test_rays_that_go_through_above_a_wall_show_a_window(ends):
         pytest.approx(2.2, abs=0.03),
     )
     assert window.sill_m == pytest.approx(0.85, abs=0.04)
-    assert (window.state, window.kind(SETTINGS.openings.max_door_m)) == (OPEN, "window")
+    assert (window.state, window.kind) == (OPEN, GAP)
 
 
 def test_a_window_may_be_wider_than_a_door():
@@ -124,23 +138,13 @@ def test_one_scan_is_not_enough():
     assert find((1.0, 2.2), (0.85, 2.4), sensors=SENSORS[1:2]) == []
 
 
-def test_where_no_ray_is_sent_nothing_is_known():
-    """From 1 m away the highest beam meets the wall at 1.17 m.
-
-    Of the wall beside more is seen from further off.
-    """
-    looked = look((1.0, 2.2), (0.85, 2.4), sensors=[(1.6, 1, 0.9), (1.4, 0.9, 0.9)])
-    line = with_points(seen(looked), np.repeat([0.2, 0.5, 0.9, 2.3, 2.6, 3.0], 3))
-    assert windows.find_windows(looked, line, *ENDS_M, **LIMITS) == []
-
-
 @pytest.mark.parametrize(
     ("places_m", "count"), [([1.6], 1), ([1.4, 1.8], 1), ([1.6] * 2, 1), ([1.6] * 3, 2)]
 )
 def test_stray_points_part_no_window_and_a_mullion_does(places_m, count):
     looked = look((1.0, 2.2), (0.85, 2.4))
     line = with_points(seen(looked), np.array(places_m))
-    assert len(windows.find_windows(looked, line, *ENDS_M, **LIMITS)) == count
+    assert len(find_along(looked, line)) == count
 
 
 def wall(looked, openings=()):
@@ -152,7 +156,7 @@ def wall(looked, openings=()):
 
 def test_windows_lie_along_the_wall_and_the_wall_goes_on_below_them():
     looked = look((1.0, 2.2), (0.85, 2.4))
-    (found,) = windows.add_windows([wall(looked)], looked, **LIMITS)
+    (found,) = opening_kinds.add_windows([wall(looked)], looked, **LIMITS)
     (window,) = found.openings
     ends = found.line.at(np.array([window.low_m, window.high_m]))
     np.testing.assert_allclose(np.sort(ends[:, 0]), [1.0, 2.2], atol=0.03)
@@ -162,43 +166,14 @@ def test_windows_lie_along_the_wall_and_the_wall_goes_on_below_them():
 def test_an_opening_is_not_found_again():
     looked = look((1.0, 2.2), (0.85, 2.4))
     known = Opening(2.0, 2.9, OPEN, 99, 0.0, np.nan, False)
-    (found,) = windows.add_windows([wall(looked, [known])], looked, **LIMITS)
+    (found,) = opening_kinds.add_windows([wall(looked, [known])], looked, **LIMITS)
     assert found.openings == [known]
-
-
-@pytest.mark.parametrize(("to_m", "count"), [(2.1, 0), (1.4, 1)])
-def test_where_the_other_side_is_whole_there_is_no_window(to_m, count):
-    """A screen or a mirror; a frame seen from the other side is not enough."""
-    looked = look((1.0, 2.2), (0.85, 2.4))
-    back = Line(np.array([0.0, -0.2]), np.array([0.0, -1.0]))
-    place_m = back.along_m(np.array([(x, -0.2) for x in np.arange(1.1, to_m, 0.04)]))
-    other = observation(back, [(along_m, 1.5) for along_m in place_m])
-    this = wall(looked)
-    behind = intervals.FaceInterval(other, -4.0, 0.0)
-    (found,) = windows.add_windows([replace(this, left=[behind])], looked, **LIMITS)
-    assert len(found.openings) == count
-
-
-@pytest.mark.parametrize("count", [1, 2])
-def test_one_or_two_points_below_show_no_sill(count):
-    looked = look((1.0, 1.5), (0.85, 2.4))
-    line = seen(looked)
-    below = (line.occupied_m > 1.1) & (line.occupied_m < 1.4)
-    below[np.searchsorted(line.occupied_m, [1.12, 1.38][:count])] = False
-    few = replace(
-        line,
-        **{
-            c: getattr(line, c)[~below]
-            for c in ("occupied_m", "occupied_z_m", "occupied_off_m", "occupied_scan")
-        },
-    )
-    assert windows.find_windows(looked, few, *ENDS_M, **LIMITS) == []
 
 
 def test_a_plane_has_no_windows():
     looked = look((1.0, 2.2), (0.85, 2.4))
     flat = [wall(looked)]
-    assert windows.add_windows(flat, replace(looked, planar=True), **LIMITS) == flat
+    assert opening_kinds.add_windows(flat, replace(looked, planar=True), **LIMITS) == flat
 
 
 def plan(ends):
@@ -223,3 +198,121 @@ def test_faces_of_a_plan_go_on_below_windows():
     faces = plan(LOST).faces
     south = np.maximum(np.abs(faces["y0_m"]), np.abs(faces["y1_m"])) < 0.1
     assert np.abs(faces["x1_m"] - faces["x0_m"])[south].sum() == pytest.approx(4, abs=0.1)
+
+
+def profile(rows, *, n_floor=0):
+    """A profile of ten rays a row; `rows` says where each ends: s(olid), o(pen), - for none."""
+    ends = {"s": (10, 0, 0), "r": (0, 10, 0), "o": (0, 0, 10), "-": (0, 0, 0)}
+    assert len(rows) == len(ROWS_M) - 1
+    return HeightProfile(np.array([ends[row] for row in rows], float), n_floor, 1.0)
+
+
+def likeliest(rows, *, is_outside, n_floor=0, **more):
+    share = opening_kinds.weigh_kinds(profile(rows, n_floor=n_floor), is_outside=is_outside, **more)
+    assert share.sum() == pytest.approx(1)
+    return opening_kinds.KINDS[share.argmax()], share.max()
+
+
+DOOR, WINDOW, HIDDEN = "oooooooooosss", "sssooooooosss", "----ooooooss-"
+
+
+@pytest.mark.parametrize("is_outside", [False, True])
+@pytest.mark.parametrize(
+    ("rows", "n_floor", "kind"),
+    [
+        (DOOR, 50, "door"),
+        (WINDOW, 0, "window"),
+        ("s" * 13, 0, "wall"),
+        ("r" * 13, 0, "wall"),
+    ],
+)
+def test_what_is_seen_from_floor_to_lintel_is_told_inside_as_outside(
+    rows, n_floor, kind, is_outside
+):
+    found, share = likeliest(rows, is_outside=is_outside, n_floor=n_floor)
+    assert (found, share > 0.8) == (kind, True)
+
+
+def test_a_way_out_that_no_floor_was_seen_through_and_nobody_drove_is_no_door():
+    assert likeliest(DOOR, is_outside=True)[0] == "glass"
+    assert likeliest(DOOR, is_outside=True, is_driven=True)[0] == "door"
+    assert likeliest(DOOR, is_outside=True, n_floor=9)[0] == "door"
+
+
+def test_a_gap_of_a_facade_whose_foot_furniture_hides_is_a_window():
+    found, share = likeliest(HIDDEN, is_outside=True)
+    assert (found, share > 0.8) == ("window", True)
+
+
+def test_between_rooms_nothing_is_said_of_a_gap_whose_foot_is_hidden():
+    assert likeliest(HIDDEN, is_outside=False)[1] < 0.8
+
+
+def test_a_low_step_makes_a_window_of_what_is_open_down_to_it():
+    assert likeliest(DOOR, is_outside=True, sill_m=0.12)[0] == "window"
+
+
+def test_without_rays_the_priors_are_left():
+    """Nothing reached the foot, either, so that these are weighed by what stands before things."""
+    share = opening_kinds.weigh_kinds(profile("-" * 13), is_outside=True)
+    weight = np.array([2 * 0.5, 1 * 0.05, 6.5 * 0.5, 0.5 * 0.1])
+    np.testing.assert_allclose(share, weight / weight.sum())
+
+
+def test_nobody_calls_anything_a_window_in_a_plane():
+    share = opening_kinds.weigh_kinds(profile("o" + 12 * "-"), is_outside=True, planar=True)
+    assert share[opening_kinds.KINDS.index("window")] == 0
+
+
+def beside(place_m, wall):
+    return 0, -1
+
+
+def decide(looked, **gaps):
+    (decided,) = opening_kinds.decide_kinds(
+        [replace(wall(looked), **gaps)], looked, np.array(SENSORS)[:, :2], beside, **LIMITS
+    )
+    return decided
+
+
+def gap(state):
+    return Opening(1.8, 3.0, state, 0, np.nan, np.nan, False)
+
+
+def test_a_closed_gap_that_rays_go_through_at_eye_height_is_a_window():
+    decided = decide(look((1.0, 2.2), (0.85, 2.4)), closed=[gap(CLOSED)])
+    assert [opening.kind for opening in decided.openings] == ["window"]
+    assert decided.closed == []
+
+
+def test_a_gap_where_rays_end_in_a_niche_is_closed():
+    decided = decide(look((1.0, 2.2), (-1.0, 2.4), NICHE), openings=[gap(OPEN)])
+    assert decided.openings == []
+    assert [closed.kind for closed in decided.closed] == ["wall"]
+
+
+def test_a_bare_span_of_an_outline_is_what_rays_show_it_to_be():
+    room = shapely.box(0, 0, 4, 4)
+    spans = [BareSpan(np.array([(x, 0.0), (x + 1.2, 0.0)]), 0, UNSEEN) for x in (1.0, 2.5)]
+    track_m = np.array(SENSORS)[:, :2]
+    looked = look((1.0, 2.2), (0.85, 2.4))
+    kinds = [
+        span.kind
+        for span in opening_kinds.decide_bare_spans(spans, looked, track_m, [room], band_m=0.08)
+    ]
+    assert kinds == ["window", UNSEEN]
+
+
+@pytest.mark.parametrize(("floor", "kind"), [((0, -1, 4, 4), GAP), ((0, 0, 4, 4), UNSEEN)])
+def test_what_no_wall_stands_along_is_open_where_the_floor_goes_on(floor, kind):
+    """Three of four sides have walls; the fourth is bare."""
+    sides = [
+        intervals.FaceInterval(observation(line_through(*ends)), 0.0, 4.0) for ends in ROOM[1:]
+    ]
+    three = [PlanWall(side.line, 0.0, 4.0, np.nan, [side], []) for side in sides]
+    (span,) = find_bare_spans(
+        [shapely.box(0, 0, 4, 4)], three, shapely.box(*floor), unpaired_m=0.1, min_length_m=0.5
+    )
+    assert (span.kind, span.room) == (kind, 0)
+    np.testing.assert_allclose(np.sort(span.ends_m[:, 0]), [0.1, 3.9], atol=0.11)
+    np.testing.assert_allclose(span.ends_m[:, 1], 0)

@@ -1,0 +1,302 @@
+"""What a gap of a wall is: wall, door, window or glass, by how likely each makes what rays show.
+
+Each kind is a column of heights that are wall or open, its sill and lintel unknown; whether a floor
+was seen in or behind it, whether a sensor went through, and what lies on both sides weigh with it.
+What no kind explains decidedly better than the others is a gap that is not known.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+import shapely
+
+from scanplan.geometry.lines import Line
+from scanplan.plan.opening_heights import estimate_lintel_m, estimate_sill_m
+from scanplan.plan.openings import CLOSED, GAP, OPEN, Opening
+from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.tolerances import END_M, ENOUGH_RAYS
+from scanplan.plan.wall_ground import BareSpan
+from scanplan.rays.face_observation import FaceObservation
+from scanplan.rays.face_raster import CELL_M
+from scanplan.rays.height_profile import EYE_ROWS, ROWS_M, HeightProfile, observe_heights
+from scanplan.rays.ray_set import RaySet
+from scanplan.rays.tolerances import FEW, NEAR_FLOOR_M
+from scanplan.types import FloatArray
+
+KINDS = ("wall", "door", "window", "glass")
+"""What a gap may be; a wide door is a passage."""
+_WALL, _DOOR, _WINDOW, _GLASS = range(len(KINDS))
+_LIKELY = {
+    "rooms on both sides": np.array((1, 7, 1, 1)) / 10,
+    "outside": np.array((2, 1, 6.5, 0.5)) / 10,
+    "floor": np.array((0.005, 0.95, 0.005, 0.3)),
+    "hidden": np.array((0.5, 0.05, 0.5, 0.1)),
+    "step": np.array((0.2, 0.02, 0.5, 0.05)),
+    "driven": np.array((1e-3, 0.5, 1e-3, 1e-3)),
+}  # in offices and houses: of ten gaps how many are of each kind; how often a floor is seen in or
+# behind them where rays pass low down, things stand before them, a sill is seen, a sensor passes
+_SURE = 0.8  # else it is not known what it is: one in five would be wrong
+
+
+def weigh_kinds(
+    profile: HeightProfile,
+    *,
+    is_outside: bool,
+    is_driven: bool = False,
+    sill_m: float = np.nan,
+    planar: bool = False,
+) -> FloatArray:
+    """Return the probability (4,) of each of `KINDS`.
+
+    Parameters
+    ----------
+    profile : height_profile.HeightProfile
+        Of all sides of the wall.
+    is_outside : bool
+        Whether there is no room on one of its sides.
+    is_driven : bool
+        Whether a sensor went through.
+    sill_m : float
+        As high as something was seen below the lowest rays through; NaN where nothing was.
+    planar : bool
+        Whether heights mean nothing: then nobody tells a window from glass.
+    """
+    wall, is_open = (
+        np.concatenate([[0.0], np.cumsum(of_rows)]) for of_rows in profile.log_likelihoods()
+    )
+
+    def pierced(low: int, high: int) -> float:
+        """Return how likely the rows are if they are open from one edge to another."""
+        return wall[low] + is_open[high] - is_open[low] + wall[-1] - wall[high]
+
+    last = len(ROWS_M) - 1
+    as_door = _log_mean([pierced(0, top) for top in range(EYE_ROWS.stop, last + 1)])
+    first_sill = 0 if sill_m > NEAR_FLOOR_M else 1
+    as_window = _log_mean(
+        [
+            pierced(sill, top)
+            for sill in range(first_sill, EYE_ROWS.start + 1)
+            for top in range(EYE_ROWS.start + 1, last + 1)
+        ]
+    )
+    likely = np.array([wall[-1], as_door, -np.inf if planar else as_window, as_door])
+    likely += np.log(_LIKELY["outside" if is_outside else "rooms on both sides"])
+    if not planar:
+        likely += np.log(_LIKELY["hidden"] if profile.is_hidden else 1 - _LIKELY["hidden"])
+        is_low_open = profile.n_through[0] >= ENOUGH_RAYS
+        if profile.n_floor >= FEW:
+            likely += np.log(_LIKELY["floor"])
+        elif is_low_open:
+            likely += np.log(1 - _LIKELY["floor"])
+        if sill_m > NEAR_FLOOR_M:
+            likely += np.log(_LIKELY["step"])
+    if is_driven:
+        likely += np.log(_LIKELY["driven"])
+    weight = np.exp(likely - likely.max())
+    return weight / weight.sum()
+
+
+def _log_mean(values: Sequence[float]) -> float:
+    return float(np.logaddexp.reduce(values) - np.log(len(values)))
+
+
+def add_windows(
+    walls: Sequence[PlanWall], rays: RaySet, *, min_width_m: float, band_m: float
+) -> list[PlanWall]:
+    """Return walls with what may be windows in them: gaps at eye height that are no other gap's.
+
+    A lidar near the floor sees the wall below a window, so that it is no gap of the wall. Higher up
+    rays go through, and come back from what is behind, or, out of the building, never.
+
+    Parameters
+    ----------
+    walls : list of plan_wall.PlanWall
+    rays : ray_set.RaySet
+        Planar scans show no windows.
+    min_width_m : float
+    band_m : float, > 0
+        Returns this near to a face are at it.
+    """
+    if rays.planar:
+        return list(walls)
+    return [_with_windows(wall, rays, min_width_m, band_m) for wall in walls]
+
+
+def _with_windows(wall: PlanWall, rays: RaySet, min_width_m: float, band_m: float) -> PlanWall:
+    found = list(wall.openings)
+    for seen in wall.lines:
+        for span_m in _find_pauses(seen, wall, min_width_m):
+            low_m, high_m = _along_wall(wall, seen.line, span_m)
+            is_known = any(low_m < gap.high_m and high_m > gap.low_m for gap in found)
+            if is_known:
+                continue
+            profile = observe_gap(wall, low_m, high_m, rays, band_m)
+            share = weigh_kinds(profile, is_outside=True)
+            if share[_WINDOW] >= _SURE and profile.open_share >= 1 - profile.open_share:
+                window = _measure_window(seen, span_m, profile)
+                found.append(replace(window, low_m=low_m, high_m=high_m))
+    return replace(wall, openings=sorted(found, key=lambda gap: gap.low_m))
+
+
+def _measure_window(
+    seen: FaceObservation, span_m: tuple[float, float], profile: HeightProfile
+) -> Opening:
+    inner_m = span_m[0] + END_M, span_m[1] - END_M
+    eye_m = float(ROWS_M[EYE_ROWS.start]), float(ROWS_M[EYE_ROWS.stop])
+    sill_m = estimate_sill_m(seen, *inner_m, below_m=eye_m[0])
+    lintel_m = estimate_lintel_m(seen, *span_m, eye_m[1], eye_m[1])
+    n_rays = round(float(profile.n_through.sum()))
+    return Opening(*span_m, OPEN, n_rays, sill_m, lintel_m, bool(np.isfinite(lintel_m)))
+
+
+def observe_gap(
+    wall: PlanWall, low_m: float, high_m: float, rays: RaySet, band_m: float
+) -> HeightProfile:
+    """Return what all sides of a wall show of a gap of it, by height; its jambs are left out."""
+    margin_m = min(END_M, (high_m - low_m) / 4)  # of a narrow one half is left
+    ends = wall.line.at(np.array([low_m + margin_m, high_m - margin_m]))
+    shown = [
+        observe_heights(rays, seen.line, *np.sort(seen.line.along_m(ends)).tolist(), band_m=band_m)
+        for seen in wall.lines
+    ]
+    return sum(shown[1:], start=shown[0])
+
+
+def _find_pauses(
+    seen: FaceObservation, wall: PlanWall, min_width_m: float
+) -> list[tuple[float, float]]:
+    """Return the spans along a face between returns at eye height, of a least width."""
+    first_m, last_m = np.sort(seen.line.along_m(wall.ends)).tolist()
+    points = seen.occupied_between(first_m, last_m)
+    z_m = seen.occupied_z_m[points]
+    is_at_eye = (z_m >= ROWS_M[EYE_ROWS.start]) & (z_m < ROWS_M[EYE_ROWS.stop])
+    beside_m = _not_alone(seen.occupied_m[points][is_at_eye])
+    wide = np.flatnonzero(np.diff(beside_m) >= min_width_m)
+    return [(float(beside_m[i]), float(beside_m[i + 1])) for i in wide]
+
+
+def _not_alone(place_m: FloatArray) -> FloatArray:
+    """Return those of sorted places within a column of enough others: one or two are stray."""
+    low = np.searchsorted(place_m, place_m - CELL_M / 2, "left")
+    high = np.searchsorted(place_m, place_m + CELL_M / 2, "right")
+    return place_m[high - low >= FEW]
+
+
+def _along_wall(wall: PlanWall, line: Line, span_m: tuple[float, float]) -> tuple[float, float]:
+    low_m, high_m = np.sort(wall.line.along_m(line.at(np.array(span_m)))).tolist()
+    return low_m, high_m
+
+
+def decide_kinds(
+    walls: Sequence[PlanWall],
+    rays: RaySet,
+    track_m: FloatArray,
+    rooms_beside: Callable[[FloatArray, PlanWall], tuple[int, int]],
+    *,
+    min_width_m: float,
+    band_m: float,
+) -> list[PlanWall]:
+    """Return walls with the kinds of their gaps; what is wall after all is closed.
+
+    A gap that was closed because no way through it was seen may be a window yet.
+
+    Parameters
+    ----------
+    walls : sequence of plan_wall.PlanWall
+    rays : ray_set.RaySet
+    track_m : (n, 2) float64
+        Where sensors were, in the order of time.
+    rooms_beside : function
+        Of a place (2,) and its wall: the rooms on both sides, -1 for none.
+    min_width_m : float
+        Of an opening.
+    band_m : float, > 0
+        Returns this near to a face are at it.
+    """
+    track = _track_line(track_m)
+    return [_decide(wall, rays, track, rooms_beside, min_width_m, band_m) for wall in walls]
+
+
+def _decide(
+    wall: PlanWall,
+    rays: RaySet,
+    track: shapely.Geometry,
+    rooms_beside: Callable[[FloatArray, PlanWall], tuple[int, int]],
+    min_width_m: float,
+    band_m: float,
+) -> PlanWall:
+    openings: list[Opening] = []
+    closed: list[Opening] = []
+    for gap in [*wall.openings, *wall.closed]:
+        ends_m = wall.line.at(np.array([gap.low_m, gap.high_m]))
+        profile = observe_gap(wall, gap.low_m, gap.high_m, rays, band_m)
+        share = weigh_kinds(
+            profile,
+            is_outside=min(rooms_beside(ends_m.mean(axis=0), wall)) < 0,
+            is_driven=bool(shapely.intersects(track, shapely.linestrings(ends_m))),
+            sill_m=gap.sill_m,
+            planar=rays.planar,
+        )
+        best = int(share.argmax())
+        kind = KINDS[best] if share[best] >= _SURE else GAP
+        is_open = gap.width_m >= min_width_m and profile.open_share >= 1 - profile.open_share
+        is_known = any(gap.low_m < other.high_m and gap.high_m > other.low_m for other in openings)
+        is_wall = kind == KINDS[_WALL] or (gap.state == CLOSED and (is_known or not is_open))
+        decided = replace(gap, kind=kind, p_kind=float(share[best]))
+        (closed if is_wall else openings).append(decided)
+    openings, closed = (sorted(gaps, key=lambda gap: gap.low_m) for gaps in (openings, closed))
+    return replace(wall, openings=openings, closed=closed)
+
+
+def decide_bare_spans(
+    spans: Sequence[BareSpan],
+    rays: RaySet,
+    track_m: FloatArray,
+    rooms: Sequence[shapely.Polygon],
+    *,
+    band_m: float,
+) -> list[BareSpan]:
+    """Return bare spans of rooms' outlines as what rays show them to be, if they do decidedly.
+
+    Parameters
+    ----------
+    spans : sequence of wall_ground.BareSpan
+    rays : ray_set.RaySet
+    track_m : (n, 2) float64
+        Where sensors were, in the order of time.
+    rooms : sequence of shapely.Polygon
+    band_m : float, > 0
+        Returns this near to an outline are at it.
+    """
+    if rays.planar:
+        return list(spans)
+    track = _track_line(track_m)
+    decided: list[BareSpan] = []
+    for span in spans:
+        line = _facing_line(span.ends_m, rooms[span.room])
+        low_m, high_m = np.sort(line.along_m(span.ends_m)).tolist()
+        profile = observe_heights(rays, line, low_m, high_m, band_m=band_m)
+        is_driven = bool(shapely.intersects(track, shapely.linestrings(span.ends_m)))
+        share = weigh_kinds(profile, is_outside=span.kind != GAP, is_driven=is_driven)
+        best = int(share.argmax())
+        is_open = share[best] >= _SURE and profile.open_share >= 1 - profile.open_share
+        kind = KINDS[best] if is_open and best != _WALL else span.kind
+        decided.append(replace(span, kind=kind))
+    return decided
+
+
+def _facing_line(ends_m: FloatArray, room: shapely.Polygon) -> Line:
+    """Return the line through two points (2, 2) with its normal towards a room."""
+    along = (ends_m[1] - ends_m[0]) / np.hypot(*(ends_m[1] - ends_m[0]))
+    normal = np.array([-along[1], along[0]])
+    inside = room.covers(shapely.Point(ends_m.mean(axis=0) + END_M * normal))
+    return Line(ends_m[0], normal if inside else -normal)
+
+
+def _track_line(track_m: FloatArray) -> shapely.Geometry:
+    """Return the way (n, 2) of a sensor without steps that are too long to be straight."""
+    steps_m = np.stack([track_m[:-1], track_m[1:]], axis=1)
+    length_m = np.hypot(*(steps_m[:, 1] - steps_m[:, 0]).T)
+    usual_m = np.median(length_m) if len(length_m) else 0.0
+    return shapely.MultiLineString([*steps_m[length_m <= FEW * usual_m]])
