@@ -109,9 +109,15 @@ def wall_columns(
 
 
 def opening_columns(
-    walls: Sequence[PlanWall], rooms: Sequence[Room], max_door_m: float
+    walls: Sequence[PlanWall],
+    partings: Sequence[PlanWall],
+    rooms: Sequence[Room],
+    max_door_m: float,
 ) -> dict[str, Array]:
-    """Return the rows of `schemas.OPENINGS`: those of each wall in order along it."""
+    """Return the rows of `schemas.OPENINGS`: those of each wall in order along it.
+
+    Then a passage for each parting between two rooms: inferred, and in no wall.
+    """
     rows: list[Row] = []
     for number, wall in enumerate(walls):
         for opening in wall.openings:
@@ -131,6 +137,24 @@ def opening_columns(
                 "n_rays": opening.n_rays,
             }
             rows.append(row)
+    for parting in partings:
+        (opening,) = parting.openings
+        ends_m = parting.line.at(np.array([opening.low_m, opening.high_m]))
+        room_left, room_right = rooms_beside(rooms, ends_m.mean(axis=0), parting)
+        if room_left == room_right or min(room_left, room_right) < 0:
+            continue
+        row = {
+            "opening": len(rows),
+            "wall": -1,
+            "type": "passage",
+            **_end_columns(ends_m),
+            "width_m": opening.width_m,
+            **dict.fromkeys(("thickness_m", "sill_m", "lintel_m"), math.nan),
+            "room_a": room_left,
+            "room_b": room_right,
+            "n_rays": opening.n_rays,
+        }
+        rows.append(row)
     return _columns(rows, schemas.OPENINGS)
 
 

@@ -13,11 +13,9 @@ from scanplan.lab.buildings.building_route import ROVER_RADIUS_M
 from scanplan.lab.random_streams import RandomStream, open_stream
 from scanplan.types import FloatArray
 
-_SEAT_M = 0.42  # ASSUME a visitor's chair: four legs of 3 cm under a seat as high
-_LEG_M = 0.03
-_LEAF_M = 0.04  # ASSUME the thickness of a door's leaf
+_CHAIR_M = (0.42, 0.03)  # ASSUME a visitor's chair: seat as high as wide, legs under its corners
+_LEAF_M = _CHAIR_M[1]  # ASSUME a door's leaf as thick as a chair's leg
 _AJAR_DEG = (40.0, 110.0)  # ASSUME a leaf left standing opens as far
-_TRIES = 200  # places drawn for one that is clear of all that stands there
 
 
 def add_clutter(
@@ -55,7 +53,7 @@ def add_clutter(
     if not leaves and not legs:
         return site
     soups = [("door", extrusion.extrude_bands([(0.0, 2.0, leaf)])) for leaf in leaves]
-    soups += [("furniture", extrusion.extrude_bands([(0.0, _SEAT_M, leg)])) for leg in legs]
+    soups += [("furniture", extrusion.extrude_bands([(0.0, _CHAIR_M[0], leg)])) for leg in legs]
     outlines = [LineString(side) for leaf in leaves for side in _sides(leaf)]
     return replace(
         site,
@@ -98,15 +96,17 @@ def _draw_chairs(
     """Yield the legs of chairs that stand clear of all else, turned anyhow."""
     low_x, low_y, high_x, high_y = floor.bounds
     standing: list[BaseGeometry] = list(leaves)
+    seat_m, leg_m = _CHAIR_M
     for _ in range(count):
-        for place in generator.uniform((low_x, low_y), (high_x, high_y), (_TRIES, 2)):
+        # so many places for one that is clear: where none is, the floor is full
+        for place in generator.uniform((low_x, low_y), (high_x, high_y), (200, 2)):
             turn_deg = generator.uniform(0.0, 90.0)
-            seat = _square(place, _SEAT_M, turn_deg)
+            seat = _square(place, seat_m, turn_deg)
             is_clear = floor.contains(seat) and not taken.intersects(seat)
             if is_clear and not any(other.intersects(seat) for other in standing):
                 standing.append(seat)
-                corners = shapely.get_coordinates(_square(place, _SEAT_M - _LEG_M, turn_deg))[:4]
-                yield [_square(corner, _LEG_M, turn_deg) for corner in corners]
+                corners = shapely.get_coordinates(_square(place, seat_m - leg_m, turn_deg))[:4]
+                yield [_square(corner, leg_m, turn_deg) for corner in corners]
                 break
 
 
