@@ -24,6 +24,29 @@ BUILDINGS: dict[str, dict[str, Any]] = {
     "fzk": {"building": "AC20-FZK-Haus.ifc", "site": {"route": "rooms", "storey": "Erdgeschoss"}},
 }
 """Drive to its settings of `simulate`; a building with a suffix is a file among the recordings."""
+PLANAR: dict[str, dict[str, Any]] = {
+    "laser180": {
+        "mount": {"height_m": 0.3},
+        "sensor": {
+            **{"model": "laser", "n_azimuth": 181, "field_deg": 180.0},
+            **{"max_range_m": 80.0, "rate_hz": 1.0, "sweep": False},
+        },
+        "errors": {"noise_m": 0.02},
+        "drive": {"speed_m_s": 1.0},
+        "people": {"count": 3},
+    },
+    "laser270": {
+        "mount": {"height_m": 0.3},
+        "sensor": {
+            **{"model": "laser", "n_azimuth": 541, "field_deg": 270.0},
+            **{"max_range_m": 30.0, "rate_hz": 10.0, "sweep": True},
+        },
+        "errors": {"noise_m": 0.01},
+        "people": {"count": 3},
+    },
+}
+"""Kind of drive with a 2-D scanner to its settings: a scan each metre, or ten a second."""
+_CHAIRS = {"demo": 40, "ring": 120, "duplex": 12, "fzk": 16}  # one on each ten square metres
 LOCALISER = {"noise_m": 0.05, "noise_deg": 1.0, "jumps_per_min": 1.0}
 SEEDS = (1, 2, 3)
 RECORDINGS = (
@@ -119,7 +142,7 @@ def _surveys(folder: Path, recordings: Path) -> dict[str, Path]:
     surveys = folder / "surveys"
     surveys.mkdir(exist_ok=True)
     paths = {}
-    for name, settings in BUILDINGS.items():
+    for name, settings in _drives():
         building = settings["building"]
         place = str(recordings / "buildings" / building) if Path(building).suffix else building
         for seed in SEEDS:
@@ -130,6 +153,16 @@ def _surveys(folder: Path, recordings: Path) -> dict[str, Path]:
                 path.write_text(text)
             paths[path.stem] = path
     return paths | {name: recordings / name for name in RECORDINGS}
+
+
+def _drives() -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield names and settings of the drives: in space, and in the plane among chairs."""
+    yield from BUILDINGS.items()
+    for building, settings in BUILDINGS.items():
+        clutter = {"chairs": _CHAIRS[building], "doors_ajar": 0.5}
+        site = {**settings.get("site", {}), **clutter}
+        for kind, planar in PLANAR.items():
+            yield f"{building}_{kind}", {**settings, **planar, "site": site}
 
 
 def _wanted(name: str) -> tuple[str, ...]:
@@ -151,7 +184,7 @@ def compare(before: Path, after: Path) -> int:
     int
         How many measures fell by more than `MAX_DROP`.
     """
-    drives = [f"{building}_{seed}" for building in BUILDINGS for seed in SEEDS]
+    drives = [f"{name}_{seed}" for name, _ in _drives() for seed in SEEDS]
     fallen = sum(_compare_survey(name, before, after) for name in (*drives, *RECORDINGS))
     print(f"guard: {fallen} measures fell by more than {MAX_DROP:g}")
     return fallen

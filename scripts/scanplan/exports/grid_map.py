@@ -1,17 +1,14 @@
 """The plan as an occupancy grid, for the navigation of a robot."""
 
-import math
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 import shapely
-from shapely.geometry import Polygon
 
 from scanplan.geometry import bitmap
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
-from scanplan.types import Array, BoolArray, FloatArray, IntArray
+from scanplan.types import Array, FloatArray, IntArray
 
 # grey values of ROS map_server
 FREE = 254
@@ -67,9 +64,9 @@ def draw_grid_map(plan: FloorPlan, resolution_m: float) -> GridMap:
     floor = shapely.from_wkb(np.asarray(plan.free["geometry"], object))
     grid = _fit_grid(*_extent_m(plan, floor), resolution_m)
     cells = np.full(grid.shape, UNKNOWN, np.uint8)
-    cells[_find_inside(floor, grid)] = FREE
+    cells[bitmap.fill_polygons(floor, grid)] = FREE
     solid, lines_m = _obstacles(plan)
-    cells[_find_inside(solid, grid)] = OCCUPIED
+    cells[bitmap.fill_polygons(solid, grid)] = OCCUPIED
     cells[bitmap.rasterise_lines(lines_m, grid)] = OCCUPIED
     x_m, y_m = (round(float(value), 6) + 0.0 for value in grid.low_m)
     return GridMap(np.ascontiguousarray(cells[::-1]), grid.cell_m, (x_m, y_m))
@@ -132,20 +129,3 @@ def _segments_m(line: shapely.LineString) -> FloatArray:
     """Return the segments (n, 2, 2) of a line or ring."""
     corners_m = shapely.get_coordinates(line)
     return np.stack([corners_m[:-1], corners_m[1:]], axis=1)
-
-
-def _find_inside(polygons: Array, grid: bitmap.Grid) -> BoolArray:
-    """Return which cells (rows, columns) have their middle in any of the polygons.
-
-    Such a cell has an odd number of edges on its left.
-    """
-    is_odd = np.zeros(grid.shape, np.uint8)
-    merged = shapely.union_all(polygons) if len(polygons) else Polygon()
-    for ring in shapely.get_rings(shapely.get_parts(merged)):
-        corners = (shapely.get_coordinates(ring) - grid.low_m) / grid.cell_m - 0.5
-        for (x0, y0), (x1, y1) in pairwise(corners):
-            rows = np.arange(math.ceil(min(y0, y1)), math.ceil(max(y0, y1)))
-            if len(rows):
-                columns = np.ceil(x0 + (rows - y0) * (x1 - x0) / (y1 - y0)).astype(int)
-                is_odd[rows, columns] ^= 1
-    return np.bitwise_xor.accumulate(is_odd, axis=1).astype(bool)

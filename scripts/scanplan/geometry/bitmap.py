@@ -1,9 +1,14 @@
 """Lines as binary maps: the square cells that they pass through (thesis, section 5.1)."""
 
+import math
+from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
+import shapely
+from shapely.geometry.base import BaseGeometry
 
 from scanplan.errors import StageError
 from scanplan.geometry.tolerances import ROUNDING
@@ -94,6 +99,23 @@ def rasterise_lines(lines_m: npt.ArrayLike, grid: Grid) -> BoolArray:
     bitmap = np.zeros(grid.shape, bool)
     bitmap.flat[trace_cells(lines_m, grid)[1]] = True
     return bitmap
+
+
+def fill_polygons(polygons: Iterable[BaseGeometry], grid: Grid) -> BoolArray:
+    """Return which cells (rows, columns) have their middle in any of the polygons.
+
+    Such a cell has an odd number of edges on its left.
+    """
+    is_odd = np.zeros(grid.shape, np.uint8)
+    merged = shapely.union_all(list(polygons))
+    for ring in shapely.get_rings(shapely.get_parts(merged)):
+        corners = (shapely.get_coordinates(ring) - grid.low_m) / grid.cell_m - 0.5
+        for (x0, y0), (x1, y1) in pairwise(corners):
+            rows = np.arange(math.ceil(min(y0, y1)), math.ceil(max(y0, y1)))
+            if len(rows):
+                columns = np.ceil(x0 + (rows - y0) * (x1 - x0) / (y1 - y0)).astype(int)
+                is_odd[rows, columns] ^= 1
+    return np.bitwise_xor.accumulate(is_odd, axis=1).astype(bool)
 
 
 def _crossings(ends: FloatArray) -> tuple[IntArray, FloatArray]:

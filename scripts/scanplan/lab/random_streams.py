@@ -18,6 +18,7 @@ class RandomStream(IntEnum):
     LOCALISER_DRIFT = 7
     LOCALISER_JUMPS = 8
     ROUTE_START = 9
+    CLUTTER = 10
 
 
 def open_stream(seed: int, stream: RandomStream, *index: int) -> np.random.Generator:

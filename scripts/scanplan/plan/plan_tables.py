@@ -121,11 +121,13 @@ def opening_columns(
     rooms: Sequence[Room],
     max_door_m: float,
     panes: Sequence[PlanWall] = (),
+    partings: Sequence[PlanWall] = (),
     bare: Sequence[BareSpan] = (),
 ) -> dict[str, Array]:
     """Return the rows of `schemas.OPENINGS`: those of each wall in order along it.
 
-    Then panes that are in no wall, and what is bare of rooms' outlines.
+    Then what is in no wall: panes, a passage for each parting between two rooms (inferred), and
+    what is bare of rooms' outlines.
     """
     rows: list[Row] = []
     for number, wall in enumerate(walls):
@@ -147,6 +149,13 @@ def opening_columns(
     for pane in panes:
         beside = rooms_beside(rooms, pane.ends.mean(axis=0), pane)
         rows.append(_NOT_IN_A_WALL | {"type": "glass"} | _place_columns(pane.ends, beside))
+    for parting in partings:
+        (opening,) = parting.openings
+        ends_m = parting.line.at(np.array([opening.low_m, opening.high_m]))
+        beside = rooms_beside(rooms, ends_m.mean(axis=0), parting)
+        if beside[0] != beside[1] and min(beside) >= 0:
+            known = _NOT_IN_A_WALL | {"type": "passage", "n_rays": opening.n_rays}
+            rows.append(known | _place_columns(ends_m, beside))
     for span in bare:
         rows.append(
             _NOT_IN_A_WALL | {"type": span.kind} | _place_columns(span.ends_m, (span.room, -1))

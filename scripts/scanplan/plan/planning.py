@@ -9,10 +9,10 @@ import shapely
 
 from scanplan.extraction.furniture import FurnitureLimits
 from scanplan.plan import (
-    glass,
     half_height,
     opening_kinds,
     plan_tables,
+    room_bounds,
     uncertainty,
     wall_faces,
     wall_ground,
@@ -177,15 +177,23 @@ def make_plan(
     unpaired_m = _usual_thickness_m(walls)
     views = free_space.free_polygons(rays)
     floor = free_space.union_on_grid(views)
-    glass_walls = glass.find_glass_walls(
+    glass_walls = room_bounds.find_glass_walls(
         walls,
         traced.panes,
         min_length_m=settings.openings.min_opening_m,
         unpaired_m=unpaired_m,
     )
     bounds = [*walls, *glass_walls]
-    rooms = find_rooms(
+    partings = room_bounds.find_partings(
         bounds,
+        floor,
+        track_m,
+        max_width_m=settings.openings.max_door_m,
+        min_area_m2=settings.rooms.min_area_m2,
+        unpaired_m=unpaired_m,
+    )
+    rooms = find_rooms(
+        [*bounds, *partings],
         views,
         track_m,
         min_area_m2=settings.rooms.min_area_m2,
@@ -193,6 +201,7 @@ def make_plan(
         min_width_m=settings.pairs.max_thickness_m,
         unpaired_m=unpaired_m,
         floor=floor,
+        planar=rays.planar,
     )
     walls = opening_kinds.decide_kinds(
         *(walls, rays, track_m, functools.partial(rooms_beside, rooms)),
@@ -203,7 +212,7 @@ def make_plan(
     areas = [room.polygon for room in rooms]
     bare = wall_ground.find_bare_spans(
         areas,
-        bounds,
+        [*bounds, *partings],
         floor,
         unpaired_m=unpaired_m,
         min_length_m=settings.openings.min_opening_m,
@@ -220,7 +229,7 @@ def make_plan(
         faces=face_columns,
         walls=plan_tables.wall_columns(walls, evidence, main_rows, doubtful, floor_z_m),
         openings=plan_tables.opening_columns(
-            walls, rooms, settings.openings.max_door_m, glass_walls, bare
+            walls, rooms, settings.openings.max_door_m, glass_walls, partings, bare
         ),
         rooms=plan_tables.room_columns(rooms),
         evidence=plan_tables.evidence_columns(evidence, rays.scan_ids, t_ns),

@@ -15,17 +15,15 @@ from scanplan.rays import free_space
 from scanplan.rays.face_raster import CELL_M
 from scanplan.types import Array, FloatArray
 
-_MARGIN_M = 0.5  # of the drawing of lines around a part of the floor: the cells beside it, too
+_MARGIN_M = 0.5  # of lines drawn around a part of the floor, and beyond walls as short as a jamb
 _LEAST_CELL_SHARE = 0.25  # seen of a cell that walls enclose: what hides the rest is in the room
 _LEAST_AGREEMENT = 0.75  # of cells and floor, intersection over union: else lines are missing
+_MOST_UNSEEN = 0.02  # of a room: slivers between rays, and what stands on its floor
 _CLOSED_SHARE = 0.9  # of an outline along walls: corners and short gaps leave a tenth
 _STEP_M = 0.25  # edge of the least square of floor that a scan must see of a room
 _BESIDE_WALL_M = np.array(
     [0.15, 0.3, 0.5]
 )  # from a wall: what stands at it may hide the nearest floor
-
-Ray = tuple[FloatArray, FloatArray]
-"""A line without ends: a point (2,) and its unit direction (2,)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +62,7 @@ def find_rooms(
     min_width_m: float,
     unpaired_m: float,
     floor: BaseGeometry | None = None,
+    planar: bool = False,
 ) -> list[Room]:
     """Find the rooms.
 
@@ -88,6 +87,9 @@ def find_rooms(
         Thickness assumed of a wall of which one side is known.
     floor : shapely geometry, optional
         `free_space.union_on_grid` of the views, where it is known already.
+    planar : bool
+        Whether scans lie in one plane: then nothing tells furniture from what is behind it, and of
+        a room no more than a fiftieth is filled in.
 
     Returns
     -------
@@ -103,6 +105,7 @@ def find_rooms(
     occupied: BaseGeometry = MultiPolygon()
     for part in _large_parts(seen, min_area_m2):
         polygon, outline = _draw_room(part, walls, strips, solid, occupied, unpaired_m)
+        polygon = _without_unseen(polygon, whole) if planar else polygon
         if polygon is None or polygon.area < min_area_m2:
             continue
         walled = _walled_share(polygon, outline)
@@ -202,6 +205,24 @@ def _fill_cells(
     return drawn if agreement >= _LEAST_AGREEMENT or is_closed else rough
 
 
+def _without_unseen(polygon: Polygon | None, seen: BaseGeometry) -> Polygon | None:
+    """Return a room without the largest parts of it that were not seen, all but a fiftieth."""
+    if polygon is None:
+        return None
+    unseen = sorted(
+        free_space.difference_on_grid(polygon, seen).geoms, key=_largest_first, reverse=True
+    )
+    left_m2 = sum(part.area for part in unseen)
+    while unseen and left_m2 > _MOST_UNSEEN * polygon.area:
+        part = unseen.pop()
+        left_m2 -= part.area
+        rest = _largest(free_space.difference_on_grid(polygon, part))
+        if rest is None:
+            return None
+        polygon = rest
+    return polygon
+
+
 def _walled_share(polygon: Polygon, outline: BaseGeometry) -> float:
     """Return the share of a polygon's outline that runs along walls."""
     return float(polygon.exterior.intersection(outline).length / polygon.exterior.length)
@@ -209,31 +230,29 @@ def _walled_share(polygon: Polygon, outline: BaseGeometry) -> float:
 
 def _cells(part: BaseGeometry, walls: Sequence[PlanWall], unpaired_m: float) -> Array:
     """Return the cells (n,) that the lines of walls' faces and ends make around a part."""
-    rays = [ray for wall in walls for ray in _bounding_rays(wall, part, unpaired_m)]
-    if len(rays) < 3:
+    lines = [line for wall in walls for line in _bounding_lines(wall, part, unpaired_m)]
+    if len(lines) < 3:
         return np.empty(0, object)
-    low_x, low_y, high_x, high_y = part.buffer(_MARGIN_M).bounds
-    frame = shapely.box(low_x, low_y, high_x, high_y)
-    reach_m = 2 * float(np.hypot(high_x - low_x, high_y - low_y))
-    drawing: list[BaseGeometry] = [frame.exterior]
-    for point, way in rays:
-        drawing.append(LineString([point - reach_m * way, point + reach_m * way]))
-    noded = shapely.union_all(np.array(drawing, object), grid_size=free_space.GRID_M)
+    frame = shapely.box(*part.buffer(_MARGIN_M).bounds)
+    drawing = np.array([frame.exterior, *shapely.intersection(lines, frame)], object)
+    noded = shapely.union_all(drawing, grid_size=free_space.GRID_M)
     polygons = shapely.get_parts(shapely.polygonize(shapely.get_parts(noded)))
     cells = np.array(list(polygons), object)
     is_inside = shapely.covers(frame, shapely.point_on_surface(cells))
     return cells[is_inside & (shapely.area(cells) > free_space.GRID_M**2)]
 
 
-def _bounding_rays(wall: PlanWall, part: BaseGeometry, unpaired_m: float) -> list[Ray]:
-    """Return the lines of a wall that may bound a part: its faces, and its ends near to it."""
+def _bounding_lines(wall: PlanWall, part: BaseGeometry, unpaired_m: float) -> list[LineString]:
+    """Return the lines of a wall that may bound a part: its faces, and its ends near to it.
+
+    They go on no farther than it is long: short walls bound what is near to them.
+    """
     back_m = unpaired_m if np.isnan(wall.thickness_m) else wall.half_m
-    centroid = np.array(part.centroid.coords[0])
-    beside_m = wall.line.at(wall.line.along_m(centroid))
     normal = wall.line.normal
-    way = wall.line.direction
-    rays: list[Ray] = [(beside_m + wall.half_m * normal, way), (beside_m - back_m * normal, way)]
+    reach_m = wall.length_m + _MARGIN_M
+    along_m = np.array([wall.low_m - reach_m, wall.high_m + reach_m])
+    lines = [LineString(wall.line.at(along_m) + off_m * normal) for off_m in (wall.half_m, -back_m)]
     for end in wall.ends:
         if shapely.Point(end).distance(part) <= 2 * END_M:
-            rays.append((end, normal))
-    return rays
+            lines.append(LineString([end - reach_m * normal, end + reach_m * normal]))
+    return lines

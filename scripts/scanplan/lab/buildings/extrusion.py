@@ -81,6 +81,16 @@ def join_meshes(soups: Sequence[tuple[str, FloatArray]]) -> Mesh:
     return Mesh(vertices, inverse.reshape(-1, 3).astype(np.int32), surface.astype(np.uint8))
 
 
+def extend_mesh(mesh: Mesh, soups: Sequence[tuple[str, FloatArray]]) -> Mesh:
+    """Return a mesh with more triangles, given as `join_meshes` takes them, behind its own."""
+    more = join_meshes(soups)
+    return Mesh(
+        np.concatenate([mesh.vertices_m, more.vertices_m]),
+        np.concatenate([mesh.triangles, more.triangles + np.int32(len(mesh.vertices_m))]),
+        np.concatenate([mesh.surface, more.surface]),
+    )
+
+
 def extrude_bands(bands: Sequence[Band]) -> FloatArray:
     """Return the closed surface of slabs stacked without gaps.
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from scanplan.lab.buildings import building, building_route
+from scanplan.lab.buildings import building, building_route, clutter
 from scanplan.lab.buildings.truth import Feature
 from scanplan.lab.evaluation import visible_faces
 from scanplan.lab.simulation import localisation, rover, sensor_errors, sensors, sweeps
@@ -24,6 +24,8 @@ def prepare_site(
     waypoints_m: Any,
     start_m: Any,
     clearance_m: float,
+    chairs: int,
+    doors_ajar: float,
     **reading: Any,
 ) -> building.Building:
     """Read a building and find the rover's way through it.
@@ -37,6 +39,8 @@ def prepare_site(
         Settings of `rover.mount_sensor`.
     seed, route, waypoints_m, start_m, clearance_m
         See `building_route.plan_building_route`.
+    chairs, doors_ajar
+        See `clutter.add_clutter`.
     **reading
         Settings of `building.load_building`.
 
@@ -46,7 +50,7 @@ def prepare_site(
         With a way.
     """
     site = building.load_building(data, source, slice_height_m=mount["height_m"], **reading)
-    return building_route.plan_building_route(
+    driven = building_route.plan_building_route(
         site,
         source,
         route=route,
@@ -56,6 +60,7 @@ def prepare_site(
         clearance_m=clearance_m,
         reach_m=abs(mount["forward_m"]),
     )
+    return clutter.add_clutter(driven, chairs=chairs, doors_ajar=doors_ajar, seed=seed)
 
 
 def prepare_survey(

@@ -1,10 +1,12 @@
-"""Glass walls: panes between walls, seen from above."""
+"""What bounds rooms without a ray ending there, seen from above: panes, narrow places."""
 
 import numpy as np
+import shapely
+from shapely import box
 
 from helpers.observation_making import line_through
 from scanplan.geometry.lines import Line
-from scanplan.plan import glass
+from scanplan.plan import room_bounds
 from scanplan.plan.openings import OPEN, Opening
 from scanplan.plan.plan_wall import PlanWall
 
@@ -18,7 +20,7 @@ def wall(x0, y0, x1, y1, openings=()):
 
 
 def between(walls, *span):
-    found = glass.find_glass_walls(walls, [(SOUTH, *span)], min_length_m=0.5, unpaired_m=0.1)
+    found = room_bounds.find_glass_walls(walls, [(SOUTH, *span)], min_length_m=0.5, unpaired_m=0.1)
     return [pane.ends[:, 0] for pane in found]
 
 
@@ -37,3 +39,16 @@ def test_a_glass_door_in_a_wall_is_an_opening_of_it():
 
 def test_a_slit_bounds_nothing():
     assert between([], 1.0, 1.3) == []
+
+
+def test_floor_without_a_door_is_parted_on_the_line_of_the_wall_beside():
+    wall = PlanWall(Line(np.array([4.05, 0.0]), np.array([1.0, 0.0])), -1.6, 0.0, 0.1, [], [])
+    rooms = shapely.union_all([box(0, 0, 4, 4), box(4.1, 0, 8, 4), box(3.9, 1.6, 4.2, 2.5)])
+    track_m = np.array([[2.0, 2.0], [6.0, 2.0]])
+    (parting,) = room_bounds.find_partings(
+        [wall], rooms, track_m, max_width_m=1.5, min_area_m2=1.0, unpaired_m=0.1
+    )
+    (way,) = parting.openings
+    np.testing.assert_allclose(parting.line.at(way.low_m)[0], 4.05)
+    assert abs(way.width_m - 0.9) < 0.1
+    assert parting.low_m < way.low_m and way.high_m < parting.high_m

@@ -1,0 +1,286 @@
+"""Where ground is narrow: lines that part it, by a watershed of the distance to its outline.
+
+After Bormann et al., Room segmentation: survey, implementation, and analysis (ICRA 2016), whose
+methods threshold or flood the same distances. Theirs take one threshold for all rooms; here a
+narrow place is one that is narrow beside what it parts on either side.
+"""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import shapely
+from scipy import ndimage
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from shapely.geometry import LineString, Polygon
+from shapely.geometry.base import BaseGeometry
+
+from scanplan.geometry.bitmap import Grid, fill_polygons
+from scanplan.geometry.tolerances import SHORTEST_M
+from scanplan.types import Array, FloatArray, IntArray
+
+_NARROWER = 0.75  # of the widest on either side: a corridor's pillars and cupboards leave more
+_FURNITURE_M2 = 3.0  # that furniture stands on, or parts off between it and a wall, at most
+_BESIDE_M = np.array([0.5, 1.0])  # beyond a door's wall, and what stands just beside a door
+
+
+def find_narrow_places(
+    ground: BaseGeometry,
+    visited_m: FloatArray,
+    *,
+    max_width_m: float,
+    min_area_m2: float,
+    cell_m: float,
+) -> list[FloatArray]:
+    """Find where ground is narrower than on both sides, and no wider than a given width.
+
+    Where nobody was on one side, it need not be wider just there: through a door one sees no more
+    than a fan of what is behind it.
+
+    Parameters
+    ----------
+    ground : Polygon or MultiPolygon
+        What small islands leave out of it counts as ground.
+    visited_m : (n, 2) float64
+        Places that were visited.
+    max_width_m : float, > 0
+    min_area_m2 : float, >= 0
+        No less lies on a visited side, nor less than furniture parts off on another.
+
+    cell_m : float, > 0
+        Of the distances: a fraction of the width.
+
+    Returns
+    -------
+    list of (2, 2) float64
+        The shortest lines across, from outline to outline.
+    """
+    filled = _fill_islands(ground)
+    if filled.is_empty:
+        return []
+    grid = _fit_grid(filled, cell_m)
+    inside = fill_polygons([filled], grid)
+    far_m = np.asarray(ndimage.distance_transform_edt(inside)) * cell_m
+    basin = _flood(far_m, max_width_m / 2, cell_m)
+    visited_m = visited_m[shapely.contains_xy(filled, *visited_m.T)]
+    column, row = np.floor((visited_m - grid.low_m) / cell_m).astype(int).T
+    visited = set(basin[row, column].tolist())
+    # what is wider around a place than this is much wider
+    reach_m = 3 * max_width_m
+    lines = []
+    for pair, cells in _borders(basin):
+        row, column = cells[np.argmax(far_m[cells[:, 0], cells[:, 1]])]
+        middle_m = grid.low_m + (np.array([column, row]) + 0.5) * cell_m
+        near = shapely.clip_by_rect(filled, *(middle_m - reach_m), *(middle_m + reach_m))
+        line = _shortest_across(near, middle_m)
+        if line is None or not 0 < _length_m(line) <= max_width_m:
+            continue
+        if not visited.issuperset(pair) or all(_widens(near, line, side) for side in (-1, 1)):
+            lines.append(line)
+    return _part_enough(filled, lines, shapely.points(visited_m), min_area_m2)
+
+
+def _fit_grid(ground: BaseGeometry, cell_m: float) -> Grid:
+    """Return the grid that holds ground, with cells outside of it all around."""
+    low_x, low_y, high_x, high_y = ground.bounds
+    low_m = np.array([low_x, low_y]) - 2 * cell_m
+    columns, rows = np.ceil((np.array([high_x, high_y]) - low_m) / cell_m).astype(int) + 2
+    return Grid(low_m, cell_m, (int(rows), int(columns)))
+
+
+def _fill_islands(ground: BaseGeometry) -> BaseGeometry:
+    parts = [part for part in shapely.get_parts(ground) if part.geom_type == "Polygon"]
+    holes = [Polygon(ring) for part in parts for ring in part.interiors]
+    islands = [hole for hole in holes if hole.area <= _FURNITURE_M2]
+    return shapely.union_all([*parts, *islands], grid_size=SHORTEST_M)
+
+
+def _flood(far_m: FloatArray, most_m: float, cell_m: float) -> IntArray:
+    """Return the basin of each cell, 0 outside, of ground flooded from its widest places down.
+
+    Basins stay apart that meet where it is much narrower than at the widest place of either.
+    """
+    basin = np.zeros(far_m.size, np.int64)
+    number = np.full(far_m.size, -1)
+    joined = _JoinedBasins()
+    steps = far_m.shape[1] * np.repeat((-1, 0, 1), 3) + np.tile((-1, 0, 1), 3)
+    level_of = np.minimum(np.floor(far_m / cell_m + 0.5), max(round(most_m / cell_m), 1))
+    of_level = np.argsort(-level_of, axis=None, kind="stable")
+    level_of = level_of.ravel()[of_level].astype(np.int64)
+    for level in range(level_of[0] if len(level_of) else 0, 0, -1):
+        cells = of_level[np.searchsorted(-level_of, -level) : np.searchsorted(-level_of, 1 - level)]
+        _grow(basin, cells, steps)
+        rest = cells[basin[cells] == 0]
+        count, fresh = _connect(rest, number, steps)
+        basin[rest] = fresh + len(joined.widest_m)
+        widest_m = np.zeros(count)
+        np.maximum.at(widest_m, fresh, far_m.flat[rest])
+        joined.add(widest_m)
+        for one, other in _touching(basin, cells, steps):
+            joined.meet(one, other, level * cell_m)
+    return joined.joined[basin].reshape(far_m.shape)
+
+
+def _grow(basin: IntArray, cells: IntArray, steps: IntArray) -> None:
+    """Give cells, of flat indices, the basin beside them; over and over, while any is."""
+    rest = cells[basin[cells] == 0]
+    while len(rest):
+        near = basin[rest[:, None] + steps].max(axis=1)
+        if not near.any():
+            return
+        basin[rest] = near
+        rest = rest[near == 0]
+
+
+def _connect(cells: IntArray, number: IntArray, steps: IntArray) -> tuple[int, IntArray]:
+    """Return how many groups of connected cells there are, and the group of each, from 0.
+
+    `number` is -1 for all cells, before and after.
+    """
+    number[cells] = np.arange(len(cells))
+    beside = number[cells[:, None] + steps]
+    number[cells] = -1
+    one, step = np.nonzero(beside >= 0)
+    pairs = (one, beside[one, step])
+    links = coo_array((np.ones(len(one)), pairs), shape=(len(cells), len(cells)))
+    return connected_components(links, directed=False)
+
+
+def _touching(basin: IntArray, cells: IntArray, steps: IntArray) -> list[tuple[int, int]]:
+    """Return the pairs of basins of which one has a cell among those given, beside the other."""
+    beside = basin[cells[:, None] + steps]
+    own = np.broadcast_to(basin[cells, None], beside.shape)
+    is_border = (beside != own) & (beside > 0)
+    pairs = np.sort(np.stack([own[is_border], beside[is_border]], axis=1), axis=1)
+    return [(a, b) for a, b in np.unique(pairs, axis=0).tolist()]
+
+
+class _JoinedBasins:
+    """Which basins were joined, by number from 1; 0 is no basin."""
+
+    def __init__(self) -> None:
+        self.widest_m: list[float] = [0.0]
+        self.joined = np.zeros(1, np.int64)
+        self._apart: set[tuple[int, int]] = set()
+
+    def add(self, widest_m: FloatArray) -> None:
+        """Add basins by the distance at the widest place of each."""
+        first = len(self.widest_m)
+        self.widest_m += widest_m.tolist()
+        self.joined = np.append(self.joined, np.arange(first, len(self.widest_m)))
+
+    def meet(self, one: int, other: int, level_m: float) -> None:
+        """Join two basins that touch at a level, unless it is narrow there beside both."""
+        weak, strong = sorted(self.joined[[one, other]].tolist(), key=lambda b: self.widest_m[b])
+        pair = (min(weak, strong), max(weak, strong))
+        if weak == strong or pair in self._apart:
+            return
+        if level_m < _NARROWER * self.widest_m[weak]:
+            self._apart.add(pair)
+            return
+        self.joined[self.joined == weak] = strong
+        renamed = [
+            sorted((strong if a == weak else a, strong if b == weak else b)) for a, b in self._apart
+        ]
+        self._apart = {(a, b) for a, b in renamed}
+
+
+def _borders(basin: IntArray) -> list[tuple[list[int], IntArray]]:
+    """Return two basins, and cells (n, 2: row, column), of each place where basins touch."""
+    borders = []
+    for axis in (0, 1):
+        other = np.roll(basin, -1, axis)
+        row, column = np.nonzero((basin != other) & (basin > 0) & (other > 0))
+        pair = np.sort(np.stack([basin[row, column], other[row, column]], axis=1), axis=1)
+        borders.append(np.column_stack([pair, row, column]))
+    rows = np.concatenate(borders)
+    pairs, of_pair = np.unique(rows[:, :2], axis=0, return_inverse=True)
+    places = []
+    for number in range(len(pairs)):
+        cells = np.unique(rows[of_pair.ravel() == number, 2:], axis=0)
+        first = cells.min(axis=0)
+        here = np.zeros(cells.max(axis=0) - first + 1, bool)
+        here[tuple((cells - first).T)] = True
+        label, count = ndimage.label(here, np.ones((3, 3)))
+        for place in range(1, count + 1):
+            places.append((pairs[number].tolist(), np.argwhere(label == place) + first))
+    return places
+
+
+def _shortest_across(ground: BaseGeometry, middle_m: FloatArray) -> FloatArray | None:
+    """Return the shortest line (2, 2) across ground through a place; None outside of it."""
+    # every five degrees: a line that far off the shortest is no longer by a hundredth
+    angle = np.radians(np.arange(0, 180, 5))
+    ways = np.column_stack([np.cos(angle), np.sin(angle)])
+    across = [_line_across(ground, middle_m, way) for way in ways]
+    found = [line for line in across if line is not None]
+    return min(found, key=_length_m, default=None)
+
+
+def _line_across(ground: BaseGeometry, place_m: FloatArray, way: FloatArray) -> FloatArray | None:
+    """Return the line (2, 2) through a place from outline to outline; None outside of ground."""
+    reach = _diagonal_m(ground) * way
+    pieces = shapely.intersection(ground, LineString([place_m - reach, place_m + reach]))
+    place = shapely.Point(place_m)
+    for piece in shapely.get_parts(pieces):
+        if piece.geom_type == "LineString" and piece.distance(place) < SHORTEST_M:
+            return shapely.get_coordinates(piece)[[0, -1]]
+    return None
+
+
+def _diagonal_m(ground: BaseGeometry) -> float:
+    low_x, low_y, high_x, high_y = ground.bounds
+    return math.hypot(high_x - low_x, high_y - low_y)
+
+
+def _length_m(line: FloatArray) -> float:
+    return math.hypot(*(line[1] - line[0]))
+
+
+def _widens(ground: BaseGeometry, line: FloatArray, side: int) -> bool:
+    """Return whether ground is much wider than a line across it on its left (1) or right (-1)."""
+    width_m = _length_m(line)
+    way = (line[1] - line[0]) / width_m
+    across = side * np.array([-way[1], way[0]])
+    places_m = line.mean(axis=0) + _BESIDE_M[:, None] * across
+    beside = [_line_across(ground, place_m, way) for place_m in places_m]
+    widest_m = max((_length_m(other) for other in beside if other is not None), default=0.0)
+    return width_m < _NARROWER * widest_m
+
+
+def _part_enough(
+    ground: BaseGeometry, lines: Sequence[FloatArray], visited: Array, min_area_m2: float
+) -> list[FloatArray]:
+    """Return the lines that, all together, part ground into large enough parts."""
+    chosen = list(lines)
+    while True:
+        cuts = [_lengthen(line).buffer(SHORTEST_M) for line in chosen]
+        parts = shapely.get_parts(shapely.difference(ground, shapely.union_all(cuts)))
+        is_large = np.array([_is_large(part, visited, min_area_m2) for part in parts], bool)
+        beside = [_parts_beside(cut, parts) for cut in cuts]
+        kept = [
+            line
+            for line, rows in zip(chosen, beside, strict=True)
+            if len(rows) > 1 and is_large[rows].all()
+        ]
+        if len(kept) == len(chosen):
+            return chosen
+        chosen = kept
+
+
+def _parts_beside(cut: Polygon, parts: Array) -> IntArray:
+    """Return the rows of the parts that a cut went along."""
+    return np.flatnonzero(shapely.area(shapely.intersection(parts, cut.buffer(SHORTEST_M))) > 0)
+
+
+def _is_large(part: Polygon, visited: Array, min_area_m2: float) -> bool:
+    shapely.prepare(part)
+    is_visited = bool(shapely.contains(part, visited).any())
+    return part.area >= (min_area_m2 if is_visited else _FURNITURE_M2)
+
+
+def _lengthen(line: FloatArray) -> LineString:
+    """Return a line that goes on a little beyond both ends."""
+    beyond = _BESIDE_M[0] / 10 * (line[1] - line[0]) / _length_m(line)
+    return LineString([line[0] - beyond, line[1] + beyond])

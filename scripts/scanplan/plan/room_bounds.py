@@ -1,0 +1,140 @@
+"""What bounds a room though hardly a ray ends there: glass, and where free floor is narrow."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import shapely
+from shapely.geometry.base import BaseGeometry
+
+from scanplan.geometry import intersections, narrow_places
+from scanplan.geometry.lines import Line
+from scanplan.plan import wall_ground
+from scanplan.plan.openings import OPEN, Opening
+from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.tolerances import CORNER_M, CORNER_RAD, END_M
+from scanplan.rays import free_space
+from scanplan.rays.face_raster import CELL_M
+from scanplan.types import FloatArray
+
+_FRAME_M = 0.8  # frame, reveal and the part of a pane seen at grazing angles only
+
+
+def find_glass_walls(
+    walls: Sequence[PlanWall],
+    spans: Sequence[tuple[Line, float, float]],
+    *,
+    min_length_m: float,
+    unpaired_m: float,
+) -> list[PlanWall]:
+    """Return panes that are no openings of walls as walls without faces, up to the walls beside.
+
+    Rays that graze a frame or a deep reveal, or that furniture stops, leave the ends of a pane
+    unknown.
+
+    Parameters
+    ----------
+    walls : list of plan_wall.PlanWall
+    spans : list of (lines.Line, float, float)
+        From where to where along a line there is glass.
+    min_length_m : float
+        Shorter panes bound nothing.
+    unpaired_m : float
+        How thick a wall is taken for of which one side is known.
+    """
+    ways = [(wall, opening) for wall in walls for opening in wall.openings]
+    grounds = [wall_ground.opening_polygon(*way, unpaired_m).buffer(END_M) for way in ways]
+    open_m2 = shapely.union_all(grounds)
+    shapely.prepare(open_m2)
+    stacked = intersections.stack_spans(walls)
+    extended = (_extend(*span, walls, stacked) for span in spans)
+    panes = [PlanWall(*span, math.nan, [], []) for span in extended]
+    return [
+        pane
+        for pane in panes
+        if pane.length_m >= min_length_m
+        and not open_m2.covers(shapely.Point(pane.ends.mean(axis=0)))
+    ]
+
+
+def find_partings(
+    bounds: Sequence[PlanWall],
+    floor: BaseGeometry,
+    track_m: FloatArray,
+    *,
+    max_width_m: float,
+    min_area_m2: float,
+    unpaired_m: float,
+) -> list[PlanWall]:
+    """Return where free floor is narrow between walls: thin walls without faces, all an opening.
+
+    There a wall was not seen, or its door was not; on the line of a wall nearby it stands in that.
+
+    Parameters
+    ----------
+    bounds : list of plan_wall.PlanWall
+        What parts the floor already.
+    floor : shapely geometry
+        That was seen free.
+    track_m : (n, 2) float64
+        Where sensors were.
+    max_width_m : float
+        Of a door; what is wider parts no rooms.
+    min_area_m2 : float
+        Of a room; less is not parted off.
+    unpaired_m : float
+        As in `find_glass_walls`.
+    """
+    solid = free_space.union_on_grid(wall_ground.wall_strips(bounds, unpaired_m))
+    free = free_space.difference_on_grid(floor, solid)
+    partings = []
+    for part in free_space.open_polygons(free, END_M):
+        for ends_m in narrow_places.find_narrow_places(
+            part, track_m, max_width_m=max_width_m, min_area_m2=min_area_m2, cell_m=CELL_M
+        ):
+            partings.append(_make_parting(_snap(ends_m, bounds)))
+    return partings
+
+
+def _snap(ends_m: FloatArray, walls: Sequence[PlanWall]) -> FloatArray:
+    """Return a line's ends (2, 2) moved onto the line of the wall nearest to both, if one is."""
+    way = ends_m[1] - ends_m[0]
+    least = math.cos(CORNER_RAD) * math.hypot(*way)
+    off_m, nearest = CORNER_M, None
+    for wall in walls:
+        farthest_m = float(np.abs(wall.line.offset_m(ends_m)).max())
+        if farthest_m < off_m and abs(wall.line.direction @ way) >= least:
+            off_m, nearest = farthest_m, wall
+    return ends_m if nearest is None else nearest.line.at(nearest.line.along_m(ends_m))
+
+
+def _make_parting(ends_m: FloatArray) -> PlanWall:
+    """Return a thin wall between two places, a little longer, that is open all along."""
+    way = ends_m[1] - ends_m[0]
+    half_m = math.hypot(*way) / 2
+    normal = np.array([-way[1], way[0]]) / (2 * half_m)
+    opening = Opening(-half_m, half_m, OPEN, 0, math.nan, math.nan, below_wall=False)
+    line = Line(ends_m.mean(axis=0), normal)
+    low_m, high_m = np.sort(line.along_m(ends_m))
+    reach_m = (float(low_m) - 2 * END_M, float(high_m) + 2 * END_M)
+    return PlanWall(line, *reach_m, 2 * free_space.GRID_M, [], [], [opening])
+
+
+def _extend(
+    line: Line,
+    low_m: float,
+    high_m: float,
+    walls: Sequence[PlanWall],
+    stacked: intersections.SpanArrays,
+) -> tuple[Line, float, float]:
+    """Return a span with its ends moved to the nearest walls on or across its line."""
+    places_m = [intersections.find_crossings(line, stacked, reach_m=CORNER_M).place_m]
+    for wall in walls:
+        is_on = np.abs(line.offset_m(wall.ends)) <= wall.half_m + END_M
+        places_m.append(line.along_m(wall.ends)[is_on])
+    place_m = np.concatenate(places_m)
+    before_m = place_m[(place_m <= low_m) & (place_m >= low_m - _FRAME_M)]
+    after_m = place_m[(place_m >= high_m) & (place_m <= high_m + _FRAME_M)]
+    first_m = float(before_m.max()) if len(before_m) else float(low_m)
+    last_m = float(after_m.min()) if len(after_m) else float(high_m)
+    return line, first_m, last_m

@@ -1,0 +1,72 @@
+"""Where ground is narrow, at rooms whose doors can be seen on paper."""
+
+import numpy as np
+import pytest
+import shapely
+from shapely import box
+
+from scanplan.geometry.narrow_places import find_narrow_places
+
+LEFT = box(0, 0, 4, 4)
+RIGHT = box(4.2, 0, 8, 4)
+DOOR = box(3.9, 1.5, 4.3, 2.4)  # 0.9 m wide
+IN_BOTH = np.array([[2.0, 2.0], [6.0, 2.0]])
+
+
+def find(*shapes, visited_m=IN_BOTH, max_width_m=1.5, min_area_m2=1.0):
+    ground = shapely.union_all(shapes)
+    return find_narrow_places(
+        ground, visited_m, max_width_m=max_width_m, min_area_m2=min_area_m2, cell_m=0.05
+    )
+
+
+def test_a_door_between_two_rooms_parts_them_where_it_is_narrowest():
+    (line,) = find(LEFT, RIGHT, DOOR)
+    np.testing.assert_allclose(np.sort(line[:, 1]), [1.5, 2.4], atol=0.06)
+    assert np.all((line[:, 0] > 3.85) & (line[:, 0] < 4.35))
+
+
+@pytest.mark.parametrize("turn_deg", [30, 117])
+def test_it_is_found_however_the_building_is_turned(turn_deg):
+    def turn(shape):
+        return shapely.affinity.rotate(shape, turn_deg, origin=(0, 0))
+
+    visited_m = shapely.get_coordinates(turn(shapely.MultiPoint(IN_BOTH)))
+    (line,) = find(turn(LEFT), turn(RIGHT), turn(DOOR), visited_m=visited_m)
+    assert abs(np.hypot(*(line[1] - line[0])) - 0.9) < 0.1
+
+
+@pytest.mark.parametrize(
+    "shapes",
+    [
+        [box(0, 0, 12, 1.2)],  # a corridor has no narrow place
+        [box(0, 0, 8, 4)],  # nor has a hall
+        [LEFT, RIGHT, box(3.9, 1, 4.3, 3)],  # 2 m are no door
+        [box(0, 0, 12, 1.6).difference(box(6, 0, 6.4, 0.3))],  # a pillar leaves most of it
+    ],
+)
+def test_what_is_wide_or_as_narrow_on_either_side_is_not_parted(shapes):
+    assert find(*shapes) == []
+
+
+def test_a_corner_behind_a_cupboard_is_no_room_but_one_that_was_visited_is():
+    corner = box(0, 4.5, 1.4, 6)
+    mouth = box(0.4, 3.9, 1.0, 4.6)
+    assert find(LEFT, corner, mouth, visited_m=IN_BOTH[:1]) == []
+    visited_m = np.array([[2.0, 2.0], [0.7, 5.2]])
+    assert len(find(LEFT, corner, mouth, visited_m=visited_m)) == 1
+
+
+def test_chairs_part_nothing():
+    chairs = [box(x, 1.9, x + 0.1, 2.0) for x in (0.5, 1.2, 1.9, 2.6, 3.3)]
+    assert find(LEFT.difference(shapely.union_all(chairs)), visited_m=IN_BOTH[:1]) == []
+
+
+def test_a_fan_seen_through_a_gap_is_parted_off():
+    fan = shapely.Polygon([(4, 2.0), (4, 2.4), (20, 8), (20, 4)])
+    (line,) = find(LEFT, fan, visited_m=IN_BOTH[:1])
+    assert line[:, 0].min() > 3.9
+
+
+def test_no_ground_has_no_narrow_place():
+    assert find(shapely.Polygon()) == []
