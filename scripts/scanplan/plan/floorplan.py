@@ -198,6 +198,13 @@ class FloorPlan:
         return shapely.from_wkb(np.asarray(self.rooms["geometry"], object))
 
     @cached_property
+    def room_names(self) -> list[str]:
+        """What each room is called, (r,): the name given by hand, or its number."""
+        numbers = self.rooms["room"].tolist()
+        given = self.rooms.get("name", np.full(len(numbers), "", object))
+        return [name or f"Room {n}" for name, n in zip(given, numbers, strict=True)]
+
+    @cached_property
     def label_widths_m(self) -> FloatArray:
         """How wide each room's label may be, (r,): across the circle that has room around it."""
         places = shapely.points(self.rooms["x_m"], self.rooms["y_m"])
