@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from pathlib import Path
 
-from scanplan.exports import drawing, dxf, geojson, grid_map, ifc
+from scanplan.exports import drawing, dxf, geojson, grid_map
 from scanplan.plan import floorplan
 from scanplan.stage import figure_files, log
 from scanplan.store import atomic, schemas, tables
@@ -17,7 +17,7 @@ def export_plan(
     name: str,
     settings: Settings,
 ) -> None:
-    """Write a plan as GeoJSON, DXF, SVG, PDF, IFC and as a map for nav2.
+    """Write a plan as GeoJSON, DXF, SVG, PDF and as a map for nav2.
 
     Parameters
     ----------
@@ -25,7 +25,7 @@ def export_plan(
         `faces`, `walls`, `openings`, `rooms`, `free` and `evidence` of plan/; the file of `free`
         states the heights of floor and ceiling.
     outputs : dict of str to path-like
-        `geojson`, `dxf`, `svg`, `pdf`, `ifc`, `pgm` and `yaml`, to write.
+        `geojson`, `dxf`, `svg`, `pdf`, `pgm` and `yaml`, to write.
     name : str
     settings : dict
         `assumed_thickness_m` and `assumed_height_m`, see `floorplan.FloorPlan`; `map_cell_m`, edge
@@ -40,7 +40,6 @@ def export_plan(
     atomic.write_text(outputs["dxf"], dxf.format_dxf(drawn))
     atomic.write_text(outputs["svg"], figure_files.format_svg(sheet))
     atomic.write_bytes(outputs["pdf"], figure_files.format_pdf(sheet))
-    atomic.write_text(outputs["ifc"], ifc.format_ifc(drawn))
     atomic.write_bytes(outputs["pgm"], grid_map.format_pgm(grid))
     atomic.write_text(outputs["yaml"], grid_map.format_map_yaml(grid, Path(outputs["pgm"]).name))
     log.log_line(

@@ -4,9 +4,9 @@ from pathlib import Path
 
 from scanplan.lab.buildings.truth import format_features
 from scanplan.lab.simulation import scan_messages, survey_bag, survey_messages, survey_setup, sweeps
-from scanplan.lab.simulation.survey_truth import format_tum
 from scanplan.stage import log
 from scanplan.store import atomic
+from scanplan.store.tum import format_tum
 from scanplan.types import FilePath, Settings
 
 

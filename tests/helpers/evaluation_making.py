@@ -7,8 +7,8 @@ import numpy as np
 from helpers.wall_making import walls
 from scanplan.geometry import se3
 from scanplan.lab.simulation import rover
-from scanplan.lab.simulation.survey_truth import format_tum
 from scanplan.store import schemas, tables
+from scanplan.store.tum import format_tum
 
 FACES = [(0, 0, 6, 0), (6, 0, 6, 4), (6, 4, 0, 4), (0, 4, 0, 0)]
 POSITIONS = [(1.0, 1.0), (3.0, 2.0), (5.0, 3.0)]

@@ -11,7 +11,6 @@ from helpers.hall_drives import drive
 from interpolate_poses import interpolate_poses
 from reference import registration as literal
 from scanplan.geometry import se3
-from scanplan.lab.simulation.survey_truth import format_tum
 from scanplan.lab.thesis import gates
 from scanplan.lab.thesis.figures import gate_figures
 from scanplan.project.settings import merge_settings
@@ -19,6 +18,7 @@ from scanplan.project.stage_settings import select_section
 from scanplan.project.yaml_file import read_yaml
 from scanplan.registration import prepared_clouds
 from scanplan.store import schemas, tables
+from scanplan.store.tum import format_tum
 from sweep_gates import sweep_gates
 
 N_SCANS = 12

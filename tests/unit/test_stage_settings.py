@@ -30,6 +30,7 @@ OF_THE_WORKFLOW = {
     "replace",
     "plan.method",
     "plan.extractor",
+    "plan.export.formats",
     "simulate.building",
     "simulate.recording",
 }
@@ -42,7 +43,9 @@ def received(settings):
     return {
         **{name: select.select_section(settings, name) for name in SECTIONS},
         "stop": select.select_section(settings, "selection", "stop"),
-        "export": select.select_section(settings, "plan", "export"),
+        "drawing": select.select_drawing(settings),
+        "files": select.select_files(settings),
+        "cloud": select.select_section(settings, "plan", "export", "cloud"),
         "topics": select.select_topics(settings),
         "crispness": select.select_crispness(settings),
         "hulls": select.select_hulls(settings),

@@ -7,6 +7,7 @@ from helpers import simple_rooms as drawn
 from scanplan.lab.buildings.truth import truth_features
 from scanplan.lab.evaluation import visible_faces
 from scanplan.lab.simulation import rover, survey_truth
+from scanplan.store import tum
 
 
 def of_kind(features, kind):
@@ -15,7 +16,7 @@ def of_kind(features, kind):
 
 def test_tum_keeps_whole_nanoseconds():
     t_ns = np.array([1_704_067_200_000_000_001, 1_704_067_200_123_456_789])
-    text = survey_truth.format_tum(t_ns, rover.planar_poses([[1, 2], [3, 4]], [0.0, np.pi], 0.4))
+    text = tum.format_tum(t_ns, rover.planar_poses([[1, 2], [3, 4]], [0.0, np.pi], 0.4))
     first, second = text.splitlines()
     assert (
         first

@@ -6,7 +6,7 @@ import pytest
 from scanplan.errors import StageError
 from scanplan.lab.evaluation import truth_file, visible_faces
 from scanplan.lab.simulation import rover
-from scanplan.lab.simulation.survey_truth import format_tum
+from scanplan.store.tum import format_tum
 
 
 def geojson(path, *features):

@@ -33,8 +33,8 @@ def project(project_root, tmp_path_factory):
 
 
 PLANNED = {
-    *("assemble_plan", "validate_plan", "export_plan", "draw_walls", "draw_validation"),
-    "evaluate_plan",
+    *("assemble_plan", "validate_plan", "export_plan", "export_files", "draw_walls"),
+    *("draw_validation", "evaluate_plan"),
 }
 CHOSEN = {"extract_chosen_walls", "draw_scans"} | PLANNED
 EVALUATED = {"evaluate_walls", "draw_evaluation", "tabulate_seconds"}
@@ -48,7 +48,9 @@ def test_the_plan_and_its_report_are_there_and_the_user_is_told(project):
     for name in (
         "poses.parquet",
         "scans.parquet",
-        *(f"plan/plan.{suffix}" for suffix in ("geojson", "dxf", "svg", "pdf", "ifc")),
+        *(f"plan/plan.{suffix}" for suffix in ("geojson", "dxf", "svg", "pdf", "ifc", "gpkg")),
+        "plan/rooms.csv",
+        "trajectory.tum",
         "plan/map.yaml",
         "figures/walls.svg",
         "evaluation/plan.parquet",
@@ -116,6 +118,9 @@ def test_a_touched_file_reruns_nothing(project):
         ("plan: {merge: {tolerance_m: 0.08}}", PLANNED),
         ("plan: {method: sequential}", CHOSEN | {"draw_evaluation"}),
         ("selection: {stop: {n_scans: 3}}", CHOSEN),
+        ("plan: {export: {formats: [ifc, laz]}}", {"export_cloud", "export_files"}),
+        ("plan: {export: {formats: []}}", set()),
+        ("advanced: {plan: {export: {author: A. Surveyor}}}", {"export_files"}),
         ("evaluation: {bitmap_cell_m: 0.1}", EVALUATED | {"evaluate_plan"}),
         (
             "advanced: {selection: {wall_length: {cell_m: 0.5}}}",
@@ -166,6 +171,7 @@ def test_a_setting_of_one_order_reruns_no_other(project, change, methods):
     [
         ("selection/hulls", {"build_hulls"} | AFTER_ORDERS),
         ("exports/dxf", {"export_plan"}),
+        ("exports/data/mesh", {"export_files"}),
         ("lab/evaluation/length_metrics", EVALUATED | {"evaluate_plan"}),
         ("lab/evaluation/pose_errors", {"evaluate_poses", "evaluate_plan"} | EVALUATED),
         ("plan/faces/merging", PLANNED),

@@ -7,7 +7,7 @@ from snakemake.exceptions import WorkflowError
 sys.path.insert(0, f"{PROJECT}/scripts")
 from scanplan.errors import StageError
 from scanplan.lab.thesis import experiments
-from scanplan.project import stage_settings
+from scanplan.project import export_formats, stage_settings
 from scanplan.project.code_files import digest_helpers
 from scanplan.project.dataset import (
     RESERVED,
@@ -314,6 +314,33 @@ def extraction_times(wildcards):
 def building(wildcards):
     """The file of the building that a dataset is simulated in."""
     return local(DATASETS[wildcards.dataset].building)
+
+
+def formats_of(name):
+    """The formats whose files `export_files` writes of a dataset."""
+    chosen = DATASETS[name].settings["plan"]["export"]["formats"]
+    return tuple(format for format in export_formats.FILES if format in chosen)
+
+
+def chosen_formats():
+    """The choices of formats of all datasets, each once."""
+    return [f for f in dict.fromkeys(map(formats_of, DATASETS)) if f]
+
+
+def exported_as(formats):
+    """Names of the datasets that are exported in just these formats."""
+    return any_of(name for name in DATASETS if formats_of(name) == formats)
+
+
+def exported_files(formats):
+    """The files of some formats, by what they are."""
+    files = export_formats.list_files(formats)
+    return {what: f"results/{{dataset}}/{file}" for what, file in files.items()}
+
+
+def source_of_results(wildcards):
+    """What the results of the job's dataset are made of."""
+    return DATASETS[wildcards.dataset].source
 
 
 def all_settings(wildcards):

@@ -90,7 +90,7 @@ rule validate_plan:
 
 
 rule export_plan:
-    """Write the plan as GeoJSON, DXF, SVG, PDF, IFC and as a map for nav2."""
+    """Write the plan as GeoJSON, DXF, SVG, PDF and as a map for nav2."""
     input:
         faces=plan_table("faces"),
         walls=plan_table("walls"),
@@ -108,7 +108,6 @@ rule export_plan:
             labels={"figure": "1 floor plan"},
         ),
         pdf="results/{dataset}/plan/plan.pdf",
-        ifc="results/{dataset}/plan/plan.ifc",
         pgm="results/{dataset}/plan/map.pgm",
         yaml="results/{dataset}/plan/map.yaml",
     log:
@@ -121,6 +120,68 @@ rule export_plan:
         runtime=grown(runtime=10),
     params:
         code=code_of("export_plan"),
-        settings=section("plan", "export"),
+        settings=setting(stage_settings.select_drawing),
     script:
         "../../scripts/export_plan.py"
+
+
+# a rule for every choice of formats, as the files of a rule are the same for all datasets
+for number, formats in enumerate(chosen_formats()):
+
+    rule:
+        """Write the plan and the sensor's way as files for other programs, with ids that stay."""
+        name:
+            f"export_files_{number}" if number else "export_files"
+        input:
+            faces="results/{dataset}/plan/faces.parquet",
+            walls="results/{dataset}/plan/walls.parquet",
+            openings="results/{dataset}/plan/openings.parquet",
+            rooms="results/{dataset}/plan/rooms.parquet",
+            free="results/{dataset}/plan/free.parquet",
+            registration="results/{dataset}/registration.parquet",
+            poses="results/{dataset}/poses.parquet",
+        output:
+            **exported_files(formats),
+            ids="results/{dataset}/plan/ids.parquet",
+            # the stage takes from the old file what was known, wherever the plan's have gone
+            known=update("results/{dataset}/known_elements.parquet"),
+        log:
+            "logs/{dataset}/export_files.log",
+        benchmark:
+            "benchmarks/{dataset}/export_files.tsv"
+        wildcard_constraints:
+            dataset=exported_as(formats),
+        threads: 1
+        resources:
+            mem_mb=1500,
+            runtime=10,
+        params:
+            code=code_of("export_files"),
+            source=source_of_results,
+            settings=setting(stage_settings.select_files),
+        script:
+            "../../scripts/export_files.py"
+
+
+rule export_cloud:
+    """Write the registered points as a LAZ file."""
+    input:
+        scans="results/{dataset}/scans.parquet",
+        registration="results/{dataset}/registration.parquet",
+        selection=plan_selection,
+    output:
+        cloud="results/{dataset}/cloud.laz",
+    log:
+        "logs/{dataset}/export_cloud.log",
+    benchmark:
+        "benchmarks/{dataset}/export_cloud.tsv"
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=60,
+    params:
+        code=code_of("export_cloud"),
+        stop=section("selection", "stop"),
+        settings=section("plan", "export", "cloud"),
+    script:
+        "../../scripts/export_cloud.py"

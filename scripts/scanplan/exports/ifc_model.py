@@ -1,23 +1,34 @@
-"""Building an IFC4 file: the tree of a building, solids, properties, identifiers that stay."""
+"""Building an IFC4 file: the tree of a building, solids, properties, identifiers."""
 
 import math
-import uuid
 from collections.abc import Iterable, Mapping, Sequence
+from datetime import UTC, datetime
 from typing import Any
 
 import ifcopenshell
-import ifcopenshell.guid
 import numpy as np
 import shapely
 from ifcopenshell import entity_instance
 from shapely.geometry import Polygon
 
+from scanplan.exports.data import element_ids
+from scanplan.exports.model_colours import read_colour
+from scanplan.exports.model_origin import ModelOrigin, Site
 from scanplan.types import Array, FloatArray
 
-_NAMESPACE = uuid.UUID("6f1c2c0e-6b0b-5f0e-9d55-3d2f6f0a7c11")  # ours, drawn once
-_TIME = "1970-01-01T00:00:00"  # of the header: the same plan gives the same bytes
+_APPLICATION = "scanplan"
 _PRECISION_M = 1e-5  # of the coordinates: points nearer than this are one, 0.01 mm
 _VIEW = "ViewDefinition [ReferenceView_V1.2]"  # buildingSMART's view for coordination
+
+_RELATED = {
+    "IfcRelAggregates": "RelatedObjects",
+    "IfcRelAssociatesMaterial": "RelatedObjects",
+    "IfcRelCoversSpaces": "RelatedCoverings",
+    "IfcRelDefinesByProperties": "RelatedObjects",
+    "IfcRelDefinesByType": "RelatedObjects",
+    "IfcRelFillsElement": "RelatedBuildingElement",
+    "IfcRelVoidsElement": "RelatedOpeningElement",
+}
 
 Values = Mapping[str, tuple[str, Any]]
 """IFC types and values by name; None for what is not known."""
@@ -32,6 +43,7 @@ class IfcModel:
     file : ifcopenshell.file
     ids : set of str
         GlobalIds in use.
+    origin : ModelOrigin
     body, axis : entity
         The contexts of solids and of lines that products run along.
     storey : entity
@@ -39,10 +51,13 @@ class IfcModel:
         at the floor.
     """
 
-    def __init__(self, name: str, floor_m: float) -> None:
+    def __init__(self, name: str, floor_m: float, origin: ModelOrigin) -> None:
         self.name = name
+        self.origin = origin
         self.file = ifcopenshell.file(schema="IFC4")
         self.ids: set[str] = set()
+        self._styles: dict[str, entity_instance] = {}
+        self._history = self._owner_history()
         units = self._units()
         context = self._contexts()
         project = self.root("IfcProject", (), Name=name)
@@ -56,16 +71,40 @@ class IfcModel:
         The same ones again give another.
         """
         key = "/".join([self.name, *map(str, words)])
-        global_id = _compress(key)
+        global_id = element_ids.derive_id(key)
         while global_id in self.ids:
             key += "+"
-            global_id = _compress(key)
+            global_id = element_ids.derive_id(key)
         self.ids.add(global_id)
         return global_id
 
     def root(self, ifc_class: str, key: Iterable[Any], **attributes: Any) -> entity_instance:
         """Add an entity with a GlobalId that follows from its class and `key`."""
-        return self.file.create_entity(ifc_class, GlobalId=self.guid(ifc_class, *key), **attributes)
+        return self.known(ifc_class, self.guid(ifc_class, *key), **attributes)
+
+    def known(self, ifc_class: str, global_id: str, **attributes: Any) -> entity_instance:
+        """Add an entity with a GlobalId that it has."""
+        self.ids.add(global_id)
+        return self.file.create_entity(
+            ifc_class, GlobalId=global_id, OwnerHistory=self._history, **attributes
+        )
+
+    def rooted(self, ifc_class: str, *joined: entity_instance) -> dict[str, Any]:
+        """Return the attributes of a relation's identity, which follows from what it joins."""
+        words = [part.GlobalId for part in joined]
+        return {"GlobalId": self.guid(ifc_class, *words), "OwnerHistory": self._history}
+
+    def join(
+        self,
+        ifc_class: str,
+        related: entity_instance | Sequence[entity_instance],
+        **relating: entity_instance,
+    ) -> None:
+        """Add a relation to what is relating, of one or of several."""
+        first = related if isinstance(related, entity_instance) else related[0]
+        self.file.create_entity(
+            ifc_class, **self.rooted(ifc_class, first), **relating, **{_RELATED[ifc_class]: related}
+        )
 
     def new(self, ifc_class: str, *values: Any) -> entity_instance:
         """Add an entity without identity, its attributes in order."""
@@ -102,6 +141,27 @@ class IfcModel:
         up = self.new("IfcDirection", [0.0, 0.0, 1.0])
         return self.new("IfcExtrudedAreaSolid", profile, base, up, high_m - low_m)
 
+    def upright(self, line_m: FloatArray, extent_m: tuple[float, float]) -> entity_instance:
+        """Return the upright rectangle over a line (2, 2), facing to its right, as a connection.
+
+        `extent_m` is from where to where it reaches above the floor.
+        """
+        length_m = math.dist(*line_m)
+        along_x, along_y = ((line_m[1] - line_m[0]) / length_m).tolist()
+        facing = self.new("IfcDirection", [along_y, -along_x, 0.0])
+        along = self.new("IfcDirection", [along_x, along_y, 0.0])
+        axes = self.new("IfcAxis2Placement3D", self.point((*line_m[0], 0)), facing, along)
+        low_m, high_m = extent_m
+        return self._connection(axes, shapely.box(0, low_m, length_m, high_m))
+
+    def level(self, polygon: Polygon, height_m: float, *, up: bool) -> entity_instance:
+        """Return a level polygon at a height above the floor, facing up or down, likewise."""
+        side = 1.0 if up else -1.0
+        facing = self.new("IfcDirection", [0.0, 0.0, side])
+        along = self.new("IfcDirection", [1.0, 0.0, 0.0])
+        axes = self.new("IfcAxis2Placement3D", self.point((0, 0, height_m)), facing, along)
+        return self._connection(axes, shapely.transform(polygon, lambda xy: xy * (1.0, side)))
+
     def shape(
         self, solids: Sequence[entity_instance], axis: FloatArray | None = None
     ) -> entity_instance:
@@ -116,8 +176,7 @@ class IfcModel:
     def aggregate(self, whole: entity_instance, parts: Sequence[entity_instance]) -> None:
         """Make parts the parts of a whole."""
         if parts:
-            key = (whole.GlobalId,)
-            self.root("IfcRelAggregates", key, RelatingObject=whole, RelatedObjects=parts)
+            self.join("IfcRelAggregates", parts, RelatingObject=whole)
 
     def contain(self, products: Sequence[entity_instance]) -> None:
         """Put products into the storey."""
@@ -129,35 +188,76 @@ class IfcModel:
                 RelatingStructure=self.storey,
             )
 
-    def describe(self, product: entity_instance, name: str, values: Values) -> None:
-        """Give a product a set of properties; what is None is not known and left out."""
+    def describe(
+        self, product: entity_instance, name: str, values: Values, unknown: Sequence[str] = ()
+    ) -> None:
+        """Give a product a set of properties; what is None is not known and left out.
+
+        Those named `unknown` stand in the set without a value.
+        """
         properties = [
             self.new("IfcPropertySingleValue", key, None, self.new(kind, value), None)
             for key, (kind, value) in values.items()
             if value is not None
         ]
+        properties += [self.new("IfcPropertySingleValue", key) for key in unknown]
         key = (product.GlobalId, name)
         self._define(product, self.root("IfcPropertySet", key, Name=name, HasProperties=properties))
 
-    def measure(self, product: entity_instance, name: str, values: Values) -> None:
-        """Give a product a set of quantities, IfcQuantityLength or IfcQuantityArea."""
+    def measure(self, product: entity_instance, name: str, values: Mapping[str, float]) -> None:
+        """Give a product a set of quantities; their names say whether length, area or volume."""
         quantities = [
-            self.new(kind, key, None, None, value) for key, (kind, value) in values.items()
+            self.new(_quantity_class(key), key, None, None, float(value))
+            for key, value in values.items()
         ]
         key = (product.GlobalId, name)
         self._define(
             product, self.root("IfcElementQuantity", key, Name=name, Quantities=quantities)
         )
 
+    def colour(self, solids: Iterable[entity_instance], name: str) -> None:
+        """Give solids one of `model_colours.COLOURS`."""
+        if name not in self._styles:
+            *rgb, opacity = read_colour(name)
+            tone = self.new("IfcColourRgb", None, *rgb)
+            shading = self.new("IfcSurfaceStyleShading", tone, 1 - opacity)
+            self._styles[name] = self.new("IfcSurfaceStyle", name, "BOTH", [shading])
+        for solid in solids:
+            self.new("IfcStyledItem", solid, [self._styles[name]], None)
+
     def text(self) -> str:
-        """Return the file's text, without time or user."""
+        """Return the file's text; its time is the survey's, not that of writing."""
         header = self.file.header
         header.file_description.description = (_VIEW,)
-        header.file_name.name = self.name.encode("ascii", "replace").decode()
-        header.file_name.time_stamp = _TIME
-        header.file_name.preprocessor_version = "scanplan"
-        header.file_name.originating_system = "scanplan"
+        header.file_name.name = _plain(self.name)
+        header.file_name.time_stamp = self._surveyed_at.strftime("%Y-%m-%dT%H:%M:%S")
+        header.file_name.author = (_plain(self.origin.author),)
+        header.file_name.organization = (_plain(self.origin.organisation),)
+        header.file_name.preprocessor_version = _APPLICATION
+        header.file_name.originating_system = _APPLICATION
         return self.file.to_string()
+
+    @property
+    def _surveyed_at(self) -> datetime:
+        return datetime.fromtimestamp(self.origin.t_ns // 10**9, UTC)
+
+    def _owner_history(self) -> entity_instance:
+        person = self.new("IfcPerson", None, self.origin.author or "not stated")
+        organisation = self.new("IfcOrganization", None, self.origin.organisation or "not stated")
+        maker = self.new("IfcOrganization", None, _APPLICATION)
+        application = self.new(
+            "IfcApplication",
+            maker,
+            self.origin.version,
+            "scanplan, floor plans of LiDAR surveys",
+            _APPLICATION,
+        )
+        return self.file.create_entity(
+            "IfcOwnerHistory",
+            OwningUser=self.new("IfcPersonAndOrganization", person, organisation, None),
+            OwningApplication=application,
+            CreationDate=int(self._surveyed_at.timestamp()),
+        )
 
     def _units(self) -> list[entity_instance]:
         units = [
@@ -174,9 +274,30 @@ class IfcModel:
         whole = self.new(
             "IfcGeometricRepresentationContext", None, "Model", 3, _PRECISION_M, origin, None
         )
+        self._georeference(whole, self.origin.site)
         self.body = self._subcontext(whole, "Body", "MODEL_VIEW")
         self.axis = self._subcontext(whole, "Axis", "GRAPH_VIEW")
         return whole
+
+    def _georeference(self, context: entity_instance, site: Site) -> None:
+        """State where the map frame lies on earth, and where north is, as far as that is known."""
+        if site.north_deg is not None:
+            north_rad = math.radians(site.north_deg)
+            ratios = [math.cos(north_rad), math.sin(north_rad)]
+            context.TrueNorth = self.new("IfcDirection", ratios)
+        if site.crs is not None:
+            turn_rad = math.radians(site.turn_deg)
+            self.file.create_entity(
+                "IfcMapConversion",
+                SourceCRS=context,
+                TargetCRS=self.new("IfcProjectedCRS", site.crs),
+                Eastings=site.east_m,
+                Northings=site.north_m,
+                OrthogonalHeight=site.height_m,
+                XAxisAbscissa=math.cos(turn_rad),
+                XAxisOrdinate=math.sin(turn_rad),
+                Scale=1.0,
+            )
 
     def _subcontext(self, whole: entity_instance, name: str, view: str) -> entity_instance:
         return self.file.create_entity(
@@ -188,33 +309,43 @@ class IfcModel:
         )
 
     def _storey(self, project: entity_instance, floor_m: float) -> entity_instance:
-        """Add site, building and storey, whose floor lies at `floor_m`; return the storey."""
+        """Add site, building and storey; return the storey.
+
+        The building's height 0 is its floor, at `floor_m` of the map frame.
+        """
+        is_placed = self.origin.site.crs is not None
         whole = project
         placement = None
         for ifc_class, name, height_m in (
-            ("IfcSite", "Site, place on earth and north unknown", 0.0),
-            ("IfcBuilding", self.name, 0.0),
-            ("IfcBuildingStorey", "Surveyed storey", floor_m),
+            ("IfcSite", "Site" if is_placed else "Site, place on earth unknown", 0.0),
+            ("IfcBuilding", self.name, floor_m),
+            ("IfcBuildingStorey", "Surveyed storey", 0.0),
         ):
             placement = self.placement((0, 0, height_m), (1, 0), placement)
             part = self.root(
                 ifc_class, (), Name=name, ObjectPlacement=placement, CompositionType="ELEMENT"
             )
             self.aggregate(whole, [part])
+            if ifc_class == "IfcBuilding" and is_placed:
+                part.ElevationOfRefHeight = self.origin.site.height_m + floor_m
             whole = part
-        whole.Elevation = floor_m
+        whole.Elevation = 0.0
         return whole
+
+    def _connection(self, axes: entity_instance, face: Polygon) -> entity_instance:
+        """Return a face in the plane of two axes as what connects two elements."""
+        outer, *inner = [
+            self._polyline(shapely.get_coordinates(ring)) for ring in shapely.get_rings(face)
+        ]
+        plane = self.new("IfcPlane", axes)
+        surface = self.new("IfcCurveBoundedPlane", plane, outer, inner)
+        return self.new("IfcConnectionSurfaceGeometry", surface, None)
 
     def _polyline(self, points_m: Array) -> entity_instance:
         return self.new("IfcPolyline", [self.point(xy) for xy in points_m.tolist()])
 
     def _define(self, product: entity_instance, definition: entity_instance) -> None:
-        self.root(
-            "IfcRelDefinesByProperties",
-            (product.GlobalId, definition.Name),
-            RelatedObjects=[product],
-            RelatingPropertyDefinition=definition,
-        )
+        self.join("IfcRelDefinesByProperties", [product], RelatingPropertyDefinition=definition)
 
 
 class Frame:
@@ -235,5 +366,14 @@ class Frame:
         return model.placement((*self._start, 0), self.along, model.storey.ObjectPlacement)
 
 
-def _compress(key: str) -> str:
-    return ifcopenshell.guid.compress(uuid.uuid5(_NAMESPACE, key).hex)
+def _quantity_class(name: str) -> str:
+    """Return the class of a base quantity of IFC4."""
+    for measure in ("Area", "Volume"):
+        if name.endswith(measure):
+            return f"IfcQuantity{measure}"
+    return "IfcQuantityLength"
+
+
+def _plain(text: str) -> str:
+    """Return a text as the header of a file may hold it."""
+    return text.encode("ascii", "replace").decode()

@@ -12,7 +12,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from scanplan.errors import StageError
-from scanplan.project import corrections_file, dataset_files, dataset_list, provenance
+from scanplan.project import (
+    corrections_file,
+    dataset_files,
+    dataset_list,
+    export_formats,
+    provenance,
+)
 from scanplan.project.settings import Layer, read_own_layers, settings_of_dataset
 from scanplan.project.settings_schema import Schema
 
@@ -30,7 +36,7 @@ _TABLES = (
     *("plan/segments", *_PLAN, *_VALIDATION),
 )
 _DRAWN = (
-    *(f"plan/plan.{suffix}" for suffix in ("geojson", "dxf", "svg", "pdf", "ifc")),
+    *(f"plan/plan.{suffix}" for suffix in ("geojson", "dxf", "svg", "pdf")),
     "plan/map.pgm",
     "plan/map.yaml",
     *(f"figures/{f}.svg" for f in ("registration", "scans", "walls", "validation")),
@@ -252,6 +258,7 @@ def list_results(found: Dataset) -> list[str]:
     files += [f"selection/{found.settings['plan']['method']}.parquet", *_DRAWN]
     if found.corrections:
         files += [f"{table.replace('plan/', 'plan/corrected/')}.parquet" for table in _PLAN]
+    files += export_formats.list_exports(found.settings["plan"]["export"]["formats"])
     if found.truth:
         files += [f"evaluation/{table}.parquet" for table in _EVALUATION]
     return [f"results/{found.name}/{file}" for file in files]

@@ -48,6 +48,9 @@ _THESIS = {
 }
 """What the thesis's extractors go by: no gap, furniture or height."""
 _POINTS_ONLY = ("min_range_m", "max_range_m", "deskew")
+_ASSUMED = ("assumed_thickness_m", "assumed_height_m")
+_OF_FILES = ("formats", "author", "organisation", "site", "cloud")
+"""What the drawings do not depend on."""
 _OF_THE_WORKFLOW = ("building", "recording")
 
 
@@ -150,6 +153,17 @@ def select_plan(settings: Settings) -> Keywords:
         "rooms": plan["rooms"],
         "trust": plan["trust"] | {"min_scans": plan["merge"]["min_scans"]},
     }
+
+
+def select_drawing(settings: Settings) -> Keywords:
+    """Return the settings of `export_plan`."""
+    return _without(select_section(settings, "plan", "export"), _OF_FILES)
+
+
+def select_files(settings: Settings) -> Keywords:
+    """Return the settings of `export_files`."""
+    export = select_section(settings, "plan", "export")
+    return {key: export[key] for key in (*_ASSUMED, "author", "organisation", "site")}
 
 
 def select_merging(settings: Settings) -> Keywords:

@@ -273,6 +273,26 @@ EVIDENCE = Schema(
     ("wall", "scan_id"),
 )
 """Which scans show a wall of the plan, when they were taken and with how many points."""
+ELEMENT_IDS = Schema(
+    "element_ids",
+    1,
+    {"kind": "string", "number": "int32", "global_id": "string"},
+    ("kind", "number"),
+)
+"""The GlobalIds of a plan's elements: `kind` is wall, opening or room, `number` that of its table.
+"""
+KNOWN_ELEMENTS = Schema(
+    "known_elements",
+    1,
+    {"kind": "string", "global_id": "string", "geometry": "binary"},
+    ("kind", "global_id"),
+    geometry=True,
+)
+"""All elements that plans of a dataset ever had, where each was when it was first seen.
+
+`kind` is wall, room, or the type of an opening. The file states the `source` that the plans were
+made of.
+"""
 VALIDATION = Schema(
     "validation",
     1,

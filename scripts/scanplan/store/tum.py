@@ -4,8 +4,10 @@ from decimal import Decimal
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from scanplan.errors import StageError
+from scanplan.geometry import se3
 from scanplan.types import FilePath, FloatArray, IntArray
 
 END_NS = np.iinfo(np.int64).max
@@ -52,3 +54,17 @@ def read_tum(path: FilePath) -> tuple[IntArray, FloatArray]:
                 " mend it"
             )
     return np.array(stamps, np.int64), np.array(rows).reshape(-1, 7)
+
+
+def format_tum(t_ns: ArrayLike, world_from_sensor: FloatArray) -> str:
+    """Return poses as text in TUM's form, nine decimals, a pose a line.
+
+    A line is the stamp in seconds, then x, y, z, qx, qy, qz, qw.
+    """
+    xyz_m, quat = se3.split_pose(world_from_sensor)
+    rows = zip(np.asarray(t_ns).tolist(), np.column_stack([xyz_m, quat]).tolist(), strict=True)
+    # whole nanoseconds do not fit a float's 53 bits, so the stamp is put together from integers
+    lines = (
+        f"{t // 10**9}.{t % 10**9:09d} {' '.join(f'{v:.9f}' for v in pose)}\n" for t, pose in rows
+    )
+    return "".join(lines)

@@ -4,10 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 import shapely
-from numpy.typing import ArrayLike
 from shapely.geometry.base import BaseGeometry
 
-from scanplan.geometry import se3
 from scanplan.lab.buildings.tolerances import CRACK_M
 from scanplan.lab.buildings.truth import Feature
 from scanplan.lab.evaluation import face_cells, visible_faces
@@ -49,20 +47,6 @@ def mark_visible(
         (g, {**values, "visible_m": round(visible_m[i], 3)} if i in visible_m else values)
         for i, (g, values) in enumerate(features)
     ]
-
-
-def format_tum(t_ns: ArrayLike, world_from_sensor: FloatArray) -> str:
-    """Return poses as text in TUM's form, nine decimals, a pose a line.
-
-    A line is the stamp in seconds, then x, y, z, qx, qy, qz, qw.
-    """
-    xyz_m, quat = se3.split_pose(world_from_sensor)
-    rows = zip(np.asarray(t_ns).tolist(), np.column_stack([xyz_m, quat]).tolist(), strict=True)
-    # whole nanoseconds do not fit a float's 53 bits, so the stamp is put together from integers
-    lines = (
-        f"{t // 10**9}.{t % 10**9:09d} {' '.join(f'{v:.9f}' for v in pose)}\n" for t, pose in rows
-    )
-    return "".join(lines)
 
 
 def _only_occludes(values: dict) -> bool:

@@ -1,0 +1,140 @@
+"""Write the plan, and the way of the sensor, as files for other programs, with ids that stay."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import numpy as np
+import shapely
+
+from scanplan.exports import ifc
+from scanplan.exports.data import element_ids, element_tables, geopackage, mesh, room_graph
+from scanplan.exports.data.element_ids import ElementIds
+from scanplan.exports.model_origin import ModelOrigin, Site
+from scanplan.plan import floorplan
+from scanplan.plan.floorplan import FloorPlan
+from scanplan.stage import log
+from scanplan.store import atomic, registered_scans, schemas, tables, tum
+from scanplan.store.pose_columns import pose_matrices
+from scanplan.store.registered_scans import RegisteredScans
+from scanplan.types import Columns, FilePath, Settings
+
+
+def export_files(
+    plan: Mapping[str, FilePath],
+    outputs: Mapping[str, FilePath],
+    *,
+    name: str,
+    source: str,
+    settings: Settings,
+    version: str = "",
+) -> None:
+    """Write the ids of the plan's elements, and the files that are asked for.
+
+    Parameters
+    ----------
+    plan : dict of str to path-like
+        `faces`, `walls`, `openings`, `rooms` and `free` of plan/; `registration` and `poses`.
+    outputs : dict of str to path-like
+        `ids` and `known`, to write: the GlobalIds of the plan's elements, and all elements that
+        plans of the dataset ever had. The latter is read, too, where there is one of the same
+        source: what lies where something did before keeps its id. Of `export_formats.FILES` what
+        is to be written.
+    name : str
+    source : str
+        What the dataset's results are made of, see `provenance.identify_source`.
+    settings : dict
+        See `stage_settings.select_files`.
+    version : str
+        Of the code.
+    """
+    assumed_m = {key: settings[key] for key in ("assumed_thickness_m", "assumed_height_m")}
+    drawn = floorplan.read_floorplan(plan, name, **assumed_m)
+    registered = registered_scans.read_registered_scans(plan["registration"])
+    t_ns = int(registered.t_ns[-1])
+    ids = _identify_elements(drawn, outputs["ids"], outputs["known"], source)
+    origin = ModelOrigin(
+        author=settings["author"] or "",
+        organisation=settings["organisation"] or "",
+        version=version,
+        t_ns=t_ns,
+        site=Site(**settings["site"]),
+    )
+    writers: dict[str, Callable[[], str | bytes]] = {
+        "ifc": lambda: ifc.format_ifc(drawn, ids, origin),
+        "glb": lambda: mesh.format_glb(drawn, ids),
+        "trajectory": lambda: tum.format_tum(registered.t_ns, registered.map_from_sensor),
+        "localiser": lambda: _format_localiser(plan["poses"]),
+    }
+    rows = element_tables.tabulate_elements(drawn, ids)
+    for table in ("walls", "openings", "rooms"):
+        writers[f"{table}_csv"] = lambda table=table: element_tables.format_csv(rows[table])
+    writers["json"] = lambda: room_graph.format_room_graph(drawn, rows)
+    for what in [what for what in outputs if what in writers]:
+        content = writers[what]()
+        binary = content.encode() if isinstance(content, str) else content
+        atomic.write_bytes(outputs[what], binary)
+    if "gpkg" in outputs:
+        layers = geopackage.plan_layers(drawn, rows) | _way_layers(registered)
+        with atomic.replace_file(outputs["gpkg"]) as temporary:
+            geopackage.write_geopackage(temporary, layers, t_ns)
+
+
+def _identify_elements(
+    plan: FloorPlan, output: FilePath, known: FilePath, source: str
+) -> ElementIds:
+    """Write the GlobalIds of walls, openings and rooms, note those that are new, return them."""
+    elements = element_ids.list_elements(plan)
+    before = _read_known(known, source)
+    ids = element_ids.identify_elements(elements, before, plan.name)
+    after = element_ids.merge_known(elements, ids, before)
+    columns = element_ids.tabulate_ids(plan, ids)
+    notes = {"source": source}
+    tables.write_table(known, schemas.KNOWN_ELEMENTS, after, notes=notes, allow_empty=True)
+    tables.write_table(output, schemas.ELEMENT_IDS, columns, allow_empty=True)
+    n_new = len(after["kind"]) - len(before["kind"])
+    log.log_line(
+        f"export_files: {len(ids)} elements, {len(ids) - n_new} of them known before, {n_new} new"
+    )
+    return element_ids.ids_of_table(columns)
+
+
+def _read_known(path: FilePath, source: str) -> Columns:
+    schema = schemas.KNOWN_ELEMENTS
+    if not Path(path).exists() or tables.read_note(path, schema, "source") != source:
+        return element_ids.no_known()
+    return tables.read_table(path, schema, allow_empty=True)
+
+
+def _format_localiser(path: FilePath) -> str:
+    """Return the localiser's poses of all candidate scans that have one."""
+    poses = tables.read_table(path, schemas.POSES)
+    known = {column: values[poses["covered"]] for column, values in poses.items()}
+    return tum.format_tum(known["t_ns"], pose_matrices(known))
+
+
+def _way_layers(registered: RegisteredScans) -> dict[str, geopackage.Layer]:
+    """Return the sensor's way, and where it took the registered scans, as layers."""
+    places_m = registered.map_from_sensor[:, :2, 3]
+    # one scan alone is a way of no length
+    way_m = places_m if len(places_m) > 1 else np.repeat(places_m, 2, axis=0)
+    way = np.array([shapely.LineString(way_m)], object)
+    scans: element_tables.Rows = {
+        "scan_id": registered.scan_ids.tolist(),
+        "t_ns": registered.t_ns.tolist(),
+    }
+    return {
+        "trajectory": geopackage.Layer("LINESTRING", way, {"n_scans": [len(places_m)]}),
+        "scans": geopackage.Layer("POINT", shapely.points(places_m), scans),
+    }
+
+
+if __name__ == "__main__":
+    with log.log_to_file(snakemake.log[0]):
+        export_files(
+            dict(snakemake.input.items()),
+            dict(snakemake.output.items()),
+            name=snakemake.wildcards.dataset,
+            source=snakemake.params.source,
+            settings=snakemake.params.settings,
+            version=snakemake.params.code,
+        )

@@ -1,0 +1,159 @@
+"""GlobalIds that stay: an element keeps the id under which it was first seen, by its place."""
+
+import string
+import uuid
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from scipy.optimize import linear_sum_assignment
+
+from scanplan.exports.envelope import NEAR_M
+from scanplan.plan.floorplan import FloorPlan
+from scanplan.types import Array, Columns, FloatArray
+
+KINDS = ("wall", "opening", "room")
+"""Tables of the plan whose elements have ids."""
+_NAMESPACE = uuid.UUID("6f1c2c0e-6b0b-5f0e-9d55-3d2f6f0a7c11")  # ours, drawn once
+# IFC's own alphabet: 22 characters of 6 bits for the 128 of a UUID
+_ALPHABET = string.digits + string.ascii_uppercase + string.ascii_lowercase + "_$"
+_ID_DIGITS = 3  # of coordinates in a new id: a millimetre, below any plan's precision
+
+ElementIds = Mapping[str, Sequence[str]]
+"""The GlobalIds of walls, openings and rooms, in the order of their tables."""
+
+
+@dataclass(frozen=True)
+class Elements:
+    """Elements of plans.
+
+    Attributes
+    ----------
+    kinds : (n,) str
+        wall, room, or the type of an opening: those of different kinds are never the same.
+    shapes : (n,) Polygons
+        What they cover, metres in the map frame.
+    """
+
+    kinds: Array
+    shapes: Array
+
+
+def list_elements(plan: FloorPlan) -> Elements:
+    """Return a plan's walls, openings and rooms, in this order and that of their tables."""
+    kinds = [*["wall"] * len(plan.bodies), *plan.openings["type"], *["room"] * len(plan.areas)]
+    shapes = [*plan.bodies, *plan.gaps, *plan.areas]
+    return Elements(np.array(kinds, object), np.array(shapes, object))
+
+
+def identify_elements(elements: Elements, known: Columns, name: str) -> list[str]:
+    """Return the GlobalId of each element: that of a known one in its place, or a new one.
+
+    Of all ways to pair elements with known ones of their kind, that with the largest sum of shared
+    areas (intersection over union, each with 0.1 m around it) is taken, and in it what shares at
+    least half. Elements that were known as they are keep their ids whatever else is known.
+
+    Parameters
+    ----------
+    elements : Elements
+    known : dict of str to (k,) array
+        The columns of `schemas.KNOWN_ELEMENTS`.
+    name : str
+        The dataset's: a new id follows from it, the element's kind and its place.
+
+    Returns
+    -------
+    list of str
+        Unique, also among the known ones.
+    """
+    shapes = shapely.from_wkb(np.asarray(known["geometry"], object))
+    ids = np.full(len(elements.kinds), "", object)
+    for kind in dict.fromkeys(elements.kinds.tolist()):
+        rows = np.flatnonzero(elements.kinds == kind)
+        known_rows = np.flatnonzero(known["kind"] == kind)
+        shared = _shared_areas(elements.shapes[rows], shapes[known_rows])
+        pairs = np.column_stack(linear_sum_assignment(shared, maximize=True))
+        kept = pairs[shared[*pairs.T] >= 1 / 2]
+        ids[rows[kept[:, 0]]] = known["global_id"][known_rows[kept[:, 1]]]
+    taken = set(known["global_id"].tolist())
+    for row in np.flatnonzero(ids == ""):
+        ids[row] = _new_id(name, elements.kinds[row], elements.shapes[row], taken)
+        taken.add(ids[row])
+    return ids.tolist()
+
+
+def merge_known(elements: Elements, ids: Sequence[str], known: Columns) -> dict[str, Array]:
+    """Return the columns of `schemas.KNOWN_ELEMENTS` with the elements that are new."""
+    is_new = ~np.isin(np.array(ids, object), known["global_id"])
+    columns = {
+        "kind": elements.kinds[is_new],
+        "global_id": np.array(ids, object)[is_new],
+        "geometry": shapely.to_wkb(elements.shapes[is_new]),
+    }
+    merged = {n: np.concatenate([known[n], values]) for n, values in columns.items()}
+    keys = list(zip(merged["kind"].tolist(), merged["global_id"].tolist(), strict=True))
+    order = sorted(range(len(keys)), key=keys.__getitem__)
+    return {n: values[order] for n, values in merged.items()}
+
+
+def tabulate_ids(plan: FloorPlan, ids: Sequence[str]) -> dict[str, Array]:
+    """Return the columns of `schemas.ELEMENT_IDS` of the ids of `list_elements`."""
+    numbers = [(kind, number) for kind in KINDS for number in _table(plan, kind)[kind].tolist()]
+    rows = sorted((*key, global_id) for key, global_id in zip(numbers, ids, strict=True))
+    kinds, of_kind, global_ids = zip(*rows, strict=True) if rows else ((), (), ())
+    return {
+        "kind": np.array(kinds, object),
+        "number": np.array(of_kind, np.int32),
+        "global_id": np.array(global_ids, object),
+    }
+
+
+def ids_of_table(columns: Columns) -> ElementIds:
+    """Return the ids of a table with the columns of `schemas.ELEMENT_IDS`."""
+    return {kind: columns["global_id"][columns["kind"] == kind].tolist() for kind in KINDS}
+
+
+def ids_from_places(plan: FloorPlan) -> ElementIds:
+    """Return the ids that a plan's elements have where none was known before."""
+    elements = list_elements(plan)
+    ids = identify_elements(elements, no_known(), plan.name)
+    return ids_of_table(tabulate_ids(plan, ids))
+
+
+def no_known() -> dict[str, Array]:
+    """Return the columns of `schemas.KNOWN_ELEMENTS` without rows."""
+    return {name: np.array([], object) for name in ("kind", "global_id", "geometry")}
+
+
+def derive_id(*words: object) -> str:
+    """Return the GlobalId that follows from words and numbers, 22 characters of IFC's alphabet."""
+    number = uuid.uuid5(_NAMESPACE, "/".join(map(str, words))).int
+    digits = [number >> 6 * place & 63 for place in reversed(range(22))]
+    return "".join(_ALPHABET[digit] for digit in digits)
+
+
+def _table(plan: FloorPlan, kind: str) -> Columns:
+    return {"wall": plan.walls, "opening": plan.openings, "room": plan.rooms}[kind]
+
+
+def _shared_areas(shapes: Array, known: Array) -> FloatArray:
+    """Return the intersection over union (n, k) of shapes and known ones."""
+    grown = shapely.buffer(shapes, NEAR_M, join_style="mitre")
+    grown_known = shapely.buffer(known, NEAR_M, join_style="mitre")
+    shared = np.zeros((len(shapes), len(known)))
+    tree = shapely.STRtree(grown_known)
+    rows, others = tree.query(grown, predicate="intersects")
+    common = shapely.area(shapely.intersection(grown[rows], grown_known[others]))
+    both = shapely.area(grown)[rows] + shapely.area(grown_known)[others] - common
+    shared[rows, others] = common / both
+    return shared
+
+
+def _new_id(name: str, kind: str, shape: shapely.Polygon, taken: set[str]) -> str:
+    # + 0.0 turns a negative zero into zero
+    corners = np.round(shapely.get_coordinates(shape).ravel(), _ID_DIGITS) + 0.0
+    words = [name, kind, *corners.tolist()]
+    while (global_id := derive_id(*words)) in taken:
+        words.append("again")
+    return global_id

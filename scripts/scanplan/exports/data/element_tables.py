@@ -1,0 +1,90 @@
+"""The plan's walls, openings and rooms as rows: what CSV files and GeoPackage layers hold."""
+
+import csv
+import io
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from scanplan.exports import envelope
+from scanplan.exports.data.element_ids import ElementIds
+from scanplan.plan import floorplan
+from scanplan.plan.floorplan import FloorPlan
+from scanplan.types import Array, Columns
+
+_NOT_SHOWN = ("geometry",)
+_REFERENCES = ("wall", "face_left", "face_right", "room_a", "room_b")
+_FORMULA = ("=", "+", "-", "@", "\t", "\r")
+
+Rows = dict[str, list[Any]]
+"""Values by column, None where not known."""
+
+
+def tabulate_elements(plan: FloorPlan, ids: ElementIds) -> dict[str, Rows]:
+    """Return walls, openings and rooms as rows.
+
+    Parameters
+    ----------
+    plan : floorplan.FloorPlan
+    ids : dict of str to sequence of str
+        See `element_ids.ElementIds`.
+
+    Returns
+    -------
+    dict of str to dict of str to list
+        By `walls`, `openings` and `rooms`: the columns of the plan's tables but for geometry, with
+        `global_id` as in the building model; walls also `height_m` and `external`, openings and
+        rooms the names of rooms. Numbers are Python's; None where not known, or for no wall or
+        room.
+    """
+    names = dict(zip(plan.rooms["room"].tolist(), plan.room_names, strict=True))
+    walls = _plain(plan.walls, ids["wall"])
+    lines_m = floorplan.centrelines_m(plan.walls)
+    lengths_m = np.linalg.norm(lines_m[:, 1] - lines_m[:, 0], axis=1)
+    walls["length_m"] = np.round(lengths_m, 4).tolist()
+    walls["height_m"] = np.round(plan.heights_m, 4).tolist()
+    walls["external"] = envelope.find_external_walls(plan).tolist()
+    openings = _plain(plan.openings, ids["opening"])
+    for side in ("a", "b"):
+        openings[f"room_{side}_name"] = [names.get(room) for room in openings[f"room_{side}"]]
+    rooms = _plain(plan.rooms, ids["room"])
+    rooms["name"] = list(plan.room_names)
+    return {"walls": walls, "openings": openings, "rooms": rooms}
+
+
+def format_csv(rows: Rows) -> str:
+    """Return rows as the text of a CSV file (RFC 4180) with a line of column names.
+
+    Nothing in it is a formula to a spreadsheet: a text that begins like one has a ' before it.
+    """
+    text = io.StringIO()
+    writer = csv.writer(text)
+    writer.writerow(rows)
+    writer.writerows([_cell(value) for value in row] for row in zip(*rows.values(), strict=True))
+    return text.getvalue()
+
+
+def _plain(columns: Columns, global_ids: Sequence[str]) -> Rows:
+    shown: Mapping[str, Array] = {n: c for n, c in columns.items() if n not in _NOT_SHOWN}
+    own, *others = shown
+    rows: Rows = {own: shown[own].tolist(), "global_id": list(global_ids)}
+    for name in others:
+        rows[name] = [_known(name, value) for value in shown[name].tolist()]
+    return rows
+
+
+def _known(name: str, value: Any) -> Any:
+    if name in _REFERENCES and value == -1:
+        return None
+    if not isinstance(value, float):
+        return value
+    # to a tenth of a millimetre, as drawings are
+    return None if np.isnan(value) else round(value, 4)
+
+
+def _cell(value: Any) -> Any:
+    if isinstance(value, bool):
+        return str(value).lower()
+    is_formula = isinstance(value, str) and value.startswith(_FORMULA)
+    return f"'{value}" if is_formula else value

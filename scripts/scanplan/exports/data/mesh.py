@@ -1,0 +1,167 @@
+"""The plan as a model to look at: binary glTF 2.0, an object for each element."""
+
+import json
+import struct
+from collections.abc import Iterator
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+import shapely
+from shapely.geometry.base import BaseGeometry
+
+from scanplan.exports.data.element_ids import ElementIds
+from scanplan.exports.model_colours import read_colour
+from scanplan.exports.opening_extents import LEAF_M, vertical_extent_m
+from scanplan.plan import floorplan
+from scanplan.plan.floorplan import FloorPlan
+from scanplan.types import Array, FloatArray, IntArray
+
+
+class _Code(IntEnum):
+    """Numbers that glTF has names for: types of components, targets of buffers."""
+
+    UNSIGNED_INT = 5125
+    FLOAT = 5126
+    ARRAY_BUFFER = 34962
+    ELEMENT_ARRAY_BUFFER = 34963
+
+
+class _Model:
+    """A glTF file that grows by one object after the other."""
+
+    def __init__(self, name: str) -> None:
+        self.content: dict[str, Any] = {
+            "asset": {"version": "2.0", "generator": "scanplan"},
+            "scene": 0,
+            "scenes": [{"name": name, "nodes": []}],
+            **{part: [] for part in ("nodes", "meshes", "materials", "accessors", "bufferViews")},
+        }
+        self._data = bytearray()
+        self._materials: dict[str, int] = {}
+
+    def add(self, name: str, global_id: str, colour: str, triangles_m: FloatArray) -> None:
+        """Add triangles (n, 3, 3) in the map frame as an object."""
+        if len(triangles_m) == 0:
+            return
+        # glTF's y points up
+        turned = triangles_m.reshape(-1, 3)[:, [0, 2, 1]] * (1.0, 1.0, -1.0)
+        corners, indices = np.unique(turned.astype("<f4"), axis=0, return_inverse=True)
+        primitive = {
+            "attributes": {"POSITION": self._add_corners(corners)},
+            "indices": self._add_indices(indices.ravel().astype("<u4")),
+            "material": self._material(colour),
+        }
+        self.content["meshes"].append({"name": name, "primitives": [primitive]})
+        number = len(self.content["nodes"])
+        self.content["scenes"][0]["nodes"].append(number)
+        self.content["nodes"].append(
+            {"name": name, "mesh": number, "extras": {"global_id": global_id}}
+        )
+
+    def pack(self) -> bytes:
+        """Return the file."""
+        self.content["buffers"] = [{"byteLength": len(self._data)}]
+        text = json.dumps(self.content, separators=(",", ":")).encode()
+        chunks = (_chunk(b"JSON", text, b" "), _chunk(b"BIN\0", bytes(self._data), b"\0"))
+        body = b"".join(chunks)
+        return struct.pack("<4sII", b"glTF", 2, 12 + len(body)) + body
+
+    def _add_corners(self, corners_m: FloatArray) -> int:
+        return self._add_array(corners_m, "VEC3", _Code.FLOAT, _Code.ARRAY_BUFFER)
+
+    def _add_indices(self, indices: IntArray) -> int:
+        return self._add_array(indices, "SCALAR", _Code.UNSIGNED_INT, _Code.ELEMENT_ARRAY_BUFFER)
+
+    def _add_array(self, values: Array, kind: str, component: _Code, target: _Code) -> int:
+        view = {"buffer": 0, "byteOffset": len(self._data), "byteLength": values.nbytes}
+        self._data += values.tobytes()
+        self.content["bufferViews"].append(view | {"target": target})
+        accessor = {
+            "bufferView": len(self.content["bufferViews"]) - 1,
+            "componentType": component,
+            "count": len(values),
+            "type": kind,
+            # a scalar's extremes are lists of one, too
+            "min": np.atleast_1d(values.min(axis=0)).tolist(),
+            "max": np.atleast_1d(values.max(axis=0)).tolist(),
+        }
+        self.content["accessors"].append(accessor)
+        return len(self.content["accessors"]) - 1
+
+    def _material(self, colour: str) -> int:
+        if colour not in self._materials:
+            *rgb, opacity = read_colour(colour)
+            shading = {"baseColorFactor": [*rgb, opacity], "metallicFactor": 0.0}
+            material = {"name": colour, "pbrMetallicRoughness": shading, "doubleSided": True}
+            blended = {"alphaMode": "BLEND"} if opacity < 1 else {}
+            self._materials[colour] = len(self.content["materials"])
+            self.content["materials"].append(material | blended)
+        return self._materials[colour]
+
+
+def format_glb(plan: FloorPlan, ids: ElementIds) -> bytes:
+    """Return a plan as a binary glTF file: walls with openings, doors, windows, rooms' floors.
+
+    Metres, y up; x is the map frame's, its y is -z here, 0 the floor. There is no ceiling, so that
+    one sees in. Objects are named as in the building model, and have its GlobalIds.
+    """
+    model = _Model(plan.name)
+    for row, body in enumerate(plan.bodies):
+        state = "wall" if plan.walls["state"][row] == "observed" else "inferred wall"
+        parts = [_prism(part, *extent_m) for part, extent_m in _solid_parts(plan, row, body)]
+        colour = "to verify" if plan.walls["verify"][row] else state
+        name = f"Wall {plan.walls['wall'][row]}"
+        model.add(name, ids["wall"][row], colour, np.concatenate(parts))
+    lines_m = floorplan.centrelines_m(plan.openings)
+    leaves = floorplan.buffer_lines(lines_m, np.full(len(lines_m), LEAF_M / 2))
+    for row, kind in enumerate(plan.openings["type"]):
+        if kind != "passage":
+            name = f"{kind.capitalize()} {plan.openings['opening'][row]}"
+            leaf = _prism(leaves[row], *vertical_extent_m(plan, row))
+            model.add(name, ids["opening"][row], kind, leaf)
+    for row, area in enumerate(plan.areas):
+        model.add(plan.room_names[row], ids["room"][row], "slab", _flat(area, 0.0))
+    return model.pack()
+
+
+def _solid_parts(
+    plan: FloorPlan, row: int, body: BaseGeometry
+) -> Iterator[tuple[BaseGeometry, tuple[float, float]]]:
+    """Yield what is solid of a wall, as areas and from where to where above the floor."""
+    height_m = float(plan.heights_m[row])
+    own = np.flatnonzero(plan.hosts == row)
+    yield shapely.difference(body, shapely.union_all(plan.gaps[own])), (0.0, height_m)
+    for opening in own:
+        low_m, high_m = vertical_extent_m(plan, opening)
+        cut = shapely.intersection(body, plan.gaps[opening])
+        yield cut, (0.0, low_m)
+        yield cut, (high_m, height_m)
+
+
+def _prism(area: BaseGeometry, low_m: float, high_m: float) -> FloatArray:
+    """Return the triangles (n, 3, 3) of the surface of an upright prism, facing outwards."""
+    if high_m <= low_m or area.is_empty:
+        return np.zeros((0, 3, 3))
+    sides = []
+    for ring in shapely.get_rings(shapely.orient_polygons(shapely.get_parts(area))):
+        corners_m = shapely.get_coordinates(ring)
+        low, high = (np.insert(corners_m, 2, z_m, axis=1) for z_m in (low_m, high_m))
+        sides.append(np.stack([low[:-1], low[1:], high[1:]], axis=1))
+        sides.append(np.stack([low[:-1], high[1:], high[:-1]], axis=1))
+    bottom = _flat(area, low_m)[:, ::-1]
+    return np.concatenate([*sides, bottom, _flat(area, high_m)])
+
+
+def _flat(area: BaseGeometry, height_m: float) -> FloatArray:
+    """Return the triangles (n, 3, 3) of a level area, facing up."""
+    pieces = shapely.get_parts(shapely.constrained_delaunay_triangles(area))
+    if len(pieces) == 0:
+        return np.zeros((0, 3, 3))
+    corners_m = shapely.get_coordinates(shapely.orient_polygons(pieces)).reshape(-1, 4, 2)[:, :3]
+    return np.insert(corners_m, 2, height_m, axis=2)
+
+
+def _chunk(kind: bytes, content: bytes, filling: bytes) -> bytes:
+    padded = content + filling * (-len(content) % 4)
+    return struct.pack("<I4s", len(padded), kind) + padded

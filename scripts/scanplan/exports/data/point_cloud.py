@@ -1,0 +1,94 @@
+"""Registered points as a LAZ file."""
+
+from collections.abc import Iterable
+from datetime import UTC, datetime
+
+import laspy
+import numpy as np
+
+from scanplan.types import BoolArray, FilePath, FloatArray, IntArray
+
+_SCALE_M = 0.001  # what coordinates are rounded to: less than any scanner's noise
+
+
+def write_laz(
+    path: FilePath, scans: Iterable[tuple[int, FloatArray]], cell_m: float, t_ns: int
+) -> tuple[int, int]:
+    """Write the points of scans, thinned.
+
+    Parameters
+    ----------
+    path : path-like
+        Where there is no file yet.
+    scans : iterable of (int, (n, 3) float32)
+        scan_id and points, metres in the map frame.
+    cell_m : float, >= 0
+        Of all points in a cube of this edge the first is kept; all are at 0.
+    t_ns : int
+        When the survey was made, Unix time: the day that the file says it was made.
+
+    Returns
+    -------
+    n_points, n_kept : int
+
+    Notes
+    -----
+    LAS 1.4, point format 6, with the extra dimension `scan_id`. Coordinates are rounded to a
+    millimetre; they are the map frame's, no system on earth is stated.
+    """
+    cells = _SeenCells(cell_m)
+    n_points = n_kept = 0
+    with laspy.open(
+        path, mode="w", header=_header(t_ns), laz_backend=laspy.LazBackend.Lazrs, do_compress=True
+    ) as file:
+        for scan_id, xyz_m in scans:
+            kept_m = xyz_m[cells.add(xyz_m)]
+            record = laspy.ScaleAwarePointRecord.zeros(len(kept_m), header=file.header)
+            record.x, record.y, record.z = kept_m.astype(float).T
+            record["scan_id"] = np.full(len(kept_m), scan_id, np.uint32)
+            record["return_number"] = record["number_of_returns"] = np.ones(len(kept_m), np.uint8)
+            file.write_points(record)
+            n_points += len(xyz_m)
+            n_kept += len(kept_m)
+    return n_points, n_kept
+
+
+def _header(t_ns: int) -> laspy.LasHeader:
+    header = laspy.LasHeader(point_format=6, version="1.4")
+    header.add_extra_dim(laspy.ExtraBytesParams("scan_id", np.uint32, "scan of the recording"))
+    header.scales = np.full(3, _SCALE_M)
+    header.offsets = np.zeros(3)
+    header.generating_software = "scanplan"
+    header.creation_date = datetime.fromtimestamp(t_ns // 10**9, UTC).date()
+    return header
+
+
+class _SeenCells:
+    """Cubes that points were in.
+
+    They are kept as sorted runs of falling length, so that to add many scans takes hardly more
+    than to sort all.
+    """
+
+    def __init__(self, cell_m: float) -> None:
+        self._cell_m = cell_m
+        self._runs: list[IntArray] = []
+
+    def add(self, xyz_m: FloatArray) -> BoolArray:
+        """Return which points (n,) are the first in their cubes, of those that were added."""
+        is_first = np.zeros(len(xyz_m), bool)
+        if self._cell_m == 0:
+            return ~is_first
+        keys, firsts = np.unique(self._keys(xyz_m), return_index=True)
+        is_new = ~np.logical_or.reduce([np.isin(keys, run) for run in self._runs] or [keys != keys])
+        is_first[firsts[is_new]] = True
+        self._runs.append(keys[is_new])
+        while len(self._runs) > 1 and len(self._runs[-2]) < 2 * len(self._runs[-1]):
+            last = self._runs.pop()
+            self._runs[-1] = np.union1d(self._runs[-1], last)
+        return is_first
+
+    def _keys(self, xyz_m: FloatArray) -> IntArray:
+        """Return a number for the cube of each point, 21 bits of each coordinate."""
+        cells = np.floor(xyz_m / self._cell_m).astype(np.int64) & (1 << 21) - 1
+        return cells @ np.array([1 << 42, 1 << 21, 1], np.int64)

@@ -1,0 +1,101 @@
+"""The rooms and the ways between them, for robots: which door leads where."""
+
+import json
+from typing import Any
+
+import numpy as np
+import shapely
+
+from scanplan.exports.data.element_tables import Rows
+from scanplan.plan import floorplan
+from scanplan.plan.floorplan import FloorPlan
+from scanplan.types import FloatArray
+
+_WAYS = ("door", "passage")
+_PLACE = {"frame": "map", "unit": "m"}
+
+
+def format_room_graph(plan: FloorPlan, rows: dict[str, Rows]) -> str:
+    """Return rooms, doors and passages, and the graph that they make, as the text of a JSON file.
+
+    Parameters
+    ----------
+    plan : floorplan.FloorPlan
+    rows : dict
+        See `element_tables.tabulate_elements`.
+
+    Returns
+    -------
+    str
+        `rooms` with outline and a place inside; `ways`, each with its ends, its width and a place
+        to go through in either room; `graph`, of each room by its number the ways and the rooms
+        that they lead to, null for one that no scan shows. Metres in the map frame, as in
+        `map.yaml`.
+    """
+    ways = [_describe_way(plan, rows["openings"], row) for row in _list_ways(plan)]
+    rooms = [_describe_room(plan, rows["rooms"], row) for row in range(len(plan.areas))]
+    graph = {str(room["room"]): _list_exits(ways, room["room"]) for room in rooms}
+    content = {"name": plan.name, **_PLACE, "rooms": rooms, "ways": ways, "graph": graph}
+    return json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _list_ways(plan: FloorPlan) -> list[int]:
+    return np.flatnonzero(np.isin(plan.openings["type"], _WAYS)).tolist()
+
+
+def _describe_room(plan: FloorPlan, rows: Rows, row: int) -> dict[str, Any]:
+    polygons = shapely.get_parts(plan.areas[row])
+    return {
+        **{name: values[row] for name, values in rows.items() if name not in ("x_m", "y_m")},
+        "place_m": _round([rows["x_m"][row], rows["y_m"][row]]),
+        "outlines_m": [
+            [_round(shapely.get_coordinates(ring)) for ring in shapely.get_rings(polygon)]
+            for polygon in polygons
+        ],
+    }
+
+
+def _describe_way(plan: FloorPlan, rows: Rows, row: int) -> dict[str, Any]:
+    line_m = floorplan.centrelines_m(plan.openings)[row]
+    along = (line_m[1] - line_m[0]) / np.linalg.norm(line_m[1] - line_m[0])
+    # a rover that fits through stands clear of the wall as far from it as the way is wide
+    step_m = rows["width_m"][row] * np.array([-along[1], along[0]])
+    middle_m = line_m.mean(axis=0)
+    joined = [rows["room_a"][row], rows["room_b"][row]]
+    through_m = _order_places(plan, np.array([middle_m + step_m, middle_m - step_m]), joined)
+    doubt = {name: rows[name][row] for name in ("p_true", "verify", "doubt") if name in rows}
+    return {
+        "opening": rows["opening"][row],
+        "global_id": rows["global_id"][row],
+        "type": rows["type"][row],
+        "rooms": joined,
+        "width_m": _round(rows["width_m"][row]),
+        "ends_m": _round(line_m),
+        "through_m": _round(through_m),
+        **doubt,
+    }
+
+
+def _order_places(plan: FloorPlan, places_m: FloatArray, rooms: list[int | None]) -> FloatArray:
+    """Return two places (2, 2) in the order of the rooms that they are in or near."""
+    areas = dict(zip(plan.rooms["room"].tolist(), plan.areas, strict=True))
+
+    def off_m(ordered_m: FloatArray) -> float:
+        pairs = zip(rooms, shapely.points(ordered_m), strict=True)
+        return sum(areas[room].distance(place) for room, place in pairs if room in areas)
+
+    return min((places_m, places_m[::-1]), key=off_m)
+
+
+def _list_exits(ways: list[dict[str, Any]], room: int) -> list[dict[str, Any]]:
+    exits = []
+    for way in ways:
+        one, other = way["rooms"]
+        if room in (one, other):
+            exits.append({"opening": way["opening"], "to": other if room == one else one})
+    return exits
+
+
+def _round(values: Any) -> Any:
+    # to a millimetre; + 0.0 turns a negative zero into zero
+    return (np.round(np.asarray(values, float), 3) + 0.0).tolist()

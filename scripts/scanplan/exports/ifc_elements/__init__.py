@@ -1,0 +1,1 @@
+"""The elements of a building model, and what joins them."""

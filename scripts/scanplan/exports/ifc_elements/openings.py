@@ -1,0 +1,194 @@
+"""Openings of a building model, and the doors and windows in them."""
+
+from collections import defaultdict
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import shapely
+from ifcopenshell import entity_instance
+from shapely.geometry import Polygon
+
+from scanplan.exports.ifc_elements.storey_plan import (
+    EVIDENCE,
+    StoreyPlan,
+    colour_of,
+    describe_doubt,
+)
+from scanplan.exports.ifc_elements.walls import nominal_m
+from scanplan.exports.ifc_model import Frame, IfcModel
+from scanplan.exports.opening_extents import LEAF_M, vertical_extent_m
+from scanplan.plan import floorplan
+
+_FILLED_BY = {"door": "IfcDoor", "window": "IfcWindow"}
+
+
+@dataclass(frozen=True)
+class Opening:
+    """An opening of the plan as the model has it.
+
+    Attributes
+    ----------
+    void : entity or None
+        The IfcOpeningElement in its wall; None if it is in none.
+    filling : entity or None
+        The door or window; None of a passage.
+    """
+
+    void: entity_instance | None
+    filling: entity_instance | None
+
+    @property
+    def element(self) -> entity_instance | None:
+        """What bounds the rooms here: the filling, or else the void."""
+        return self.filling or self.void
+
+
+def add_openings(
+    model: IfcModel, storey: StoreyPlan, walls: list[entity_instance]
+) -> list[Opening]:
+    """Add the openings of a plan, in the order of its table."""
+    rows = range(len(storey.plan.openings["opening"]))
+    openings = [_add_opening(model, storey, row, walls) for row in rows]
+    _give_types(model, storey, openings)
+    return openings
+
+
+def _add_opening(
+    model: IfcModel, storey: StoreyPlan, row: int, walls: list[entity_instance]
+) -> Opening:
+    plan = storey.plan
+    frame = Frame(floorplan.centrelines_m(plan.openings)[row])
+    kind = plan.openings["type"][row]
+    extent_m = vertical_extent_m(plan, row)
+    attributes = {
+        "Name": f"{kind.capitalize()} {plan.openings['opening'][row]}",
+        "Tag": str(plan.openings["opening"][row]),
+        "ObjectPlacement": frame.placement(model),
+    }
+    global_id = storey.ids["opening"][row]
+    void = None
+    host = plan.hosts[row]
+    if host >= 0 and plan.gaps[row].intersects(plan.bodies[host]):
+        # a passage is its opening; that of a door or window is known by it
+        own_id = global_id if kind not in _FILLED_BY else model.guid("void", global_id)
+        gap = frame.move_here(plan.gaps[row])
+        void = _add_void(model, own_id, gap, extent_m, attributes)
+        model.join("IfcRelVoidsElement", void, RelatingBuildingElement=walls[host])
+        _describe_opening(model, storey, row, void)
+        depth_m = float(plan.bodies[host].intersection(plan.gaps[row]).area / frame.length_m)
+        _measure_void(model, void, frame.length_m, extent_m, depth_m)
+    if kind not in _FILLED_BY:
+        return Opening(void, None)
+    colour = colour_of(plan.openings, row, kind)
+    filling = _add_filling(model, global_id, kind, frame.length_m, extent_m, attributes, colour)
+    if void is not None:
+        model.join("IfcRelFillsElement", filling, RelatingOpeningElement=void)
+    _describe_filling(model, storey, row, filling)
+    return Opening(void, filling)
+
+
+def _add_void(
+    model: IfcModel,
+    global_id: str,
+    gap: Polygon,
+    extent_m: tuple[float, float],
+    attributes: dict[str, Any],
+) -> entity_instance:
+    """Add an opening, `gap` in its own frame."""
+    void = model.known("IfcOpeningElement", global_id, PredefinedType="OPENING", **attributes)
+    void.Representation = model.shape([model.prism(gap, *extent_m)])
+    return void
+
+
+def _add_filling(
+    model: IfcModel,
+    global_id: str,
+    kind: str,
+    width_m: float,
+    extent_m: tuple[float, float],
+    attributes: dict[str, Any],
+    colour: str,
+) -> entity_instance:
+    """Add a door or window."""
+    low_m, high_m = extent_m
+    filling = model.known(
+        _FILLED_BY[kind],
+        global_id,
+        OverallHeight=high_m - low_m,
+        OverallWidth=width_m,
+        **attributes,
+    )
+    leaf = model.prism(shapely.box(0, -LEAF_M / 2, width_m, LEAF_M / 2), low_m, high_m)
+    model.colour([leaf], colour)
+    filling.Representation = model.shape([leaf])
+    return filling
+
+
+def _measure_void(
+    model: IfcModel,
+    void: entity_instance,
+    width_m: float,
+    extent_m: tuple[float, float],
+    depth_m: float,
+) -> None:
+    height_m = extent_m[1] - extent_m[0]
+    area_m2 = width_m * height_m
+    quantities = {
+        "Width": width_m,
+        "Height": height_m,
+        "Depth": depth_m,
+        "Area": area_m2,
+        "Volume": area_m2 * depth_m,
+    }
+    model.measure(void, "Qto_OpeningElementBaseQuantities", quantities)
+
+
+def _describe_filling(
+    model: IfcModel, storey: StoreyPlan, row: int, filling: entity_instance
+) -> None:
+    noun = filling.is_a().removeprefix("Ifc")
+    common = {"IsExternal": ("IfcBoolean", storey.leads_outside(row))}
+    model.describe(filling, f"Pset_{noun}Common", common)
+    width_m, height_m = filling.OverallWidth, filling.OverallHeight
+    quantities = {
+        "Width": width_m,
+        "Height": height_m,
+        "Perimeter": 2 * (width_m + height_m),
+        "Area": width_m * height_m,
+    }
+    model.measure(filling, f"Qto_{noun}BaseQuantities", quantities)
+    _describe_opening(model, storey, row, filling)
+
+
+def _describe_opening(
+    model: IfcModel, storey: StoreyPlan, row: int, product: entity_instance
+) -> None:
+    columns = storey.plan.openings
+    names = dict(zip(storey.plan.rooms["room"].tolist(), storey.plan.room_names, strict=True))
+    sides = [names.get(int(columns[side][row])) for side in ("room_a", "room_b")]
+    properties = {
+        **describe_doubt(columns, row),
+        "SillMeasured": ("IfcBoolean", bool(np.isfinite(columns["sill_m"][row]))),
+        "LintelMeasured": ("IfcBoolean", bool(np.isfinite(columns["lintel_m"][row]))),
+        "Rays": ("IfcInteger", int(columns["n_rays"][row])),
+        "JoinsRooms": ("IfcLabel", " and ".join(filter(None, sides)) or None),
+    }
+    model.describe(product, EVIDENCE, properties)
+
+
+def _give_types(model: IfcModel, storey: StoreyPlan, openings: list[Opening]) -> None:
+    """Give doors, and windows, of one nominal width a type."""
+    kinds = storey.plan.openings["type"]
+    fillings_of = defaultdict(list)
+    for kind, opening in zip(kinds, openings, strict=True):
+        if opening.filling is not None:
+            width_m = nominal_m(opening.filling.OverallWidth)
+            fillings_of[kind, width_m].append(opening.filling)
+    for (kind, width_m), fillings in sorted(fillings_of.items()):
+        noun = kind.capitalize()
+        name = f"{noun} {100 * width_m:.0f} cm"
+        operation = "OperationType" if kind == "door" else "PartitioningType"
+        attributes = {"PredefinedType": kind.upper(), operation: "NOTDEFINED"}
+        product_type = model.root(f"Ifc{noun}Type", (name,), Name=name, **attributes)
+        model.join("IfcRelDefinesByType", fillings, RelatingType=product_type)

@@ -1,0 +1,142 @@
+"""Walls of a building model, their types and layers."""
+
+from collections import defaultdict
+
+import numpy as np
+import shapely
+from ifcopenshell import entity_instance
+
+from scanplan.exports.ifc_elements.storey_plan import (
+    EVIDENCE,
+    StoreyPlan,
+    colour_of,
+    describe_doubt,
+    known,
+)
+from scanplan.exports.ifc_model import Frame, IfcModel
+from scanplan.exports.opening_extents import vertical_extent_m
+from scanplan.plan import floorplan
+from scanplan.plan.floorplan import FloorPlan
+
+
+def add_walls(model: IfcModel, storey: StoreyPlan) -> list[entity_instance]:
+    """Add the walls of a plan, in the order of its table."""
+    walls = [_add_wall(model, storey, row) for row in range(len(storey.plan.bodies))]
+    _give_types(model, storey, walls)
+    return walls
+
+
+def nominal_m(size_m: float) -> float:
+    """Return a size to the centimetre, no less than one."""
+    return max(round(100 * float(size_m)), 1) / 100
+
+
+def _add_wall(model: IfcModel, storey: StoreyPlan, row: int) -> entity_instance:
+    plan = storey.plan
+    height_m = float(plan.heights_m[row])
+    frame = Frame(floorplan.centrelines_m(plan.walls)[row])
+    number = str(plan.walls["wall"][row])
+    wall = model.known(
+        "IfcWall",
+        storey.ids["wall"][row],
+        Name=f"Wall {number}",
+        Tag=number,
+        ObjectPlacement=frame.placement(model),
+    )
+    body = model.prism(frame.move_here(plan.bodies[row]), 0.0, height_m)
+    state = "wall" if plan.walls["state"][row] == "observed" else "inferred wall"
+    model.colour([body], colour_of(plan.walls, row, state))
+    wall.Representation = model.shape([body], np.array([(0, 0), (frame.length_m, 0)]))
+    common = {"IsExternal": ("IfcBoolean", bool(storey.external[row]))}
+    model.describe(wall, "Pset_WallCommon", common, unknown=["LoadBearing"])
+    _describe_wall(model, storey, row, wall)
+    _measure_wall(model, storey, row, wall)
+    return wall
+
+
+def _measure_wall(model: IfcModel, storey: StoreyPlan, row: int, wall: entity_instance) -> None:
+    plan = storey.plan
+    length_m = Frame(floorplan.centrelines_m(plan.walls)[row]).length_m
+    height_m = float(plan.heights_m[row])
+    left_m, right_m = plan.sides_m
+    body = plan.bodies[row]
+    open_m2, open_m3 = _cut_out(plan, row)
+    # doors and passages reach the floor, where windows have wall below them
+    ways = plan.gaps[(plan.hosts == row) & (plan.openings["type"] != "window")]
+    model.measure(
+        wall,
+        "Qto_WallBaseQuantities",
+        {
+            "Length": length_m,
+            "Width": left_m[row] + right_m[row],
+            "Height": height_m,
+            "GrossFootprintArea": body.area,
+            "NetFootprintArea": body.difference(shapely.union_all(ways)).area,
+            "GrossSideArea": length_m * height_m,
+            "NetSideArea": length_m * height_m - open_m2,
+            "GrossVolume": body.area * height_m,
+            "NetVolume": body.area * height_m - open_m3,
+        },
+    )
+
+
+def _cut_out(plan: FloorPlan, row: int) -> tuple[float, float]:
+    """Return the area, seen from the side, and the volume of the openings in a wall."""
+    area_m2 = volume_m3 = 0.0
+    for opening in np.flatnonzero(plan.hosts == row):
+        low_m, high_m = vertical_extent_m(plan, opening)
+        area_m2 += float(plan.openings["width_m"][opening]) * (high_m - low_m)
+        volume_m3 += plan.bodies[row].intersection(plan.gaps[opening]).area * (high_m - low_m)
+    return area_m2, volume_m3
+
+
+def _describe_wall(model: IfcModel, storey: StoreyPlan, row: int, wall: entity_instance) -> None:
+    plan = storey.plan
+    floor_m, _ = plan.storey_m
+    columns = plan.walls
+    is_low = bool(plan.low[row])
+    height_from = "top of the wall" if is_low else floorplan.HEIGHTS[plan.height_from]
+
+    def known_m(name: str, above_m: float = 0.0) -> tuple[str, float | None]:
+        return "IfcLengthMeasure", known(columns[name][row] - above_m)
+
+    properties = {
+        "State": ("IfcLabel", str(columns["state"][row])),
+        **describe_doubt(columns, row),
+        "ThicknessMeasured": ("IfcBoolean", bool(plan.thick[row])),
+        "OffsetStandardDeviation": known_m("sigma_offset_m"),
+        "StartStandardDeviation": known_m("sigma_end0_m"),
+        "EndStandardDeviation": known_m("sigma_end1_m"),
+        "Residual": known_m("rmse_m"),
+        "HeightMeasured": ("IfcBoolean", is_low or plan.height_from == "ceiling"),
+        "HeightFrom": ("IfcLabel", height_from),
+        "SeenFromHeight": known_m("z_min_m", floor_m),
+        "SeenToHeight": known_m("z_max_m", floor_m),
+        "Points": ("IfcInteger", int(columns["n_points"][row])),
+        "Scans": ("IfcInteger", int(columns["n_scans"][row])),
+    }
+    model.describe(wall, EVIDENCE, properties)
+
+
+def _give_types(model: IfcModel, storey: StoreyPlan, walls: list[entity_instance]) -> None:
+    """Give walls of one nominal thickness, measured or assumed, a type with a layer of it."""
+    plan = storey.plan
+    left_m, right_m = plan.sides_m
+    rows_of = defaultdict(list)
+    for row, is_thick in enumerate(plan.thick.tolist()):
+        rows_of[is_thick, nominal_m(left_m[row] + right_m[row])].append(row)
+    for (is_thick, thickness_m), rows in sorted(rows_of.items()):
+        assumed = "" if is_thick else ", thickness assumed"
+        name = f"Wall {100 * thickness_m:.0f} cm{assumed}"
+        material = model.new("IfcMaterial", "Not known" + assumed, None, "not known")
+        layer = model.new("IfcMaterialLayer", material, thickness_m)
+        layers = model.new("IfcMaterialLayerSet", [layer], name)
+        wall_type = model.root("IfcWallType", (name,), Name=name, PredefinedType="NOTDEFINED")
+        model.join("IfcRelAssociatesMaterial", [wall_type], RelatingMaterial=layers)
+        model.join("IfcRelDefinesByType", [walls[row] for row in rows], RelatingType=wall_type)
+        for row in rows:
+            # the layer lies to the left of a line on the right surface
+            usage = model.new(
+                "IfcMaterialLayerSetUsage", layers, "AXIS2", "POSITIVE", -float(right_m[row])
+            )
+            model.join("IfcRelAssociatesMaterial", [walls[row]], RelatingMaterial=usage)

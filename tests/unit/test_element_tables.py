@@ -1,0 +1,61 @@
+"""pandas reads the rows of the plan's tables from CSV."""
+
+import io
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from helpers import floorplan_making
+from helpers.floorplan_making import bare, plan
+from scanplan.exports.data import element_ids, element_tables
+
+
+def tabulated(drawn):
+    return element_tables.tabulate_elements(drawn, element_ids.ids_from_places(drawn))
+
+
+def read(rows, **how):
+    return pd.read_csv(io.StringIO(element_tables.format_csv(rows)), **how)
+
+
+def test_walls_have_their_columns_lengths_heights_and_ids():
+    drawn = plan()
+    walls = read(tabulated(drawn)["walls"])
+    assert walls["wall"].tolist() == [0, 1, 2, 3, 4, 5]
+    assert walls["global_id"].tolist() == element_ids.ids_from_places(drawn)["wall"]
+    assert walls["length_m"].tolist() == pytest.approx([7.2, 3.2, 3.05, 4.15, 3.2, 3.2])
+    assert walls["height_m"].tolist() == [floorplan_making.HEIGHT_M] * 6
+    assert walls["external"].tolist() == [True] * 5 + [False]
+    assert walls["thickness_m"].isna().tolist() == [False, True, False, False, False, False]
+    assert walls["face_right"].isna().tolist() == [False, True, True, True, True, False]
+
+
+def test_openings_name_the_rooms_that_they_join():
+    openings = read(tabulated(plan())["openings"], keep_default_na=False)
+    assert openings["room_a_name"].tolist() == ["Room 0"] * 3
+    assert openings["room_b_name"].tolist() == ["", "Room 1", ""]
+    assert openings["room_b"].tolist() == ["", "1", ""]
+
+
+def test_rooms_have_areas_and_no_geometry():
+    rooms = read(tabulated(plan())["rooms"])
+    assert rooms["area_m2"].tolist() == [12.0, 9.0] and "geometry" not in rooms
+
+
+def test_numbers_have_no_more_digits_than_they_mean():
+    walls = floorplan_making.walls() | {"rmse_m": np.full(6, 1 / 3)}
+    assert tabulated(plan(walls=walls))["walls"]["rmse_m"] == [0.3333] * 6
+
+
+@pytest.mark.parametrize("name", ["=HYPERLINK(1)", "+1", "-1", "@x", "a\nb", 'a,"b"', "<b>"])
+def test_a_name_is_neither_a_formula_nor_another_cell(name):
+    drawn = plan()
+    drawn.rooms["name"] = np.array([name, "Hall"], object)
+    rooms = read(tabulated(drawn)["rooms"])
+    assert rooms["name"].tolist() == [f"'{name}" if name[0] in "=+-@" else name, "Hall"]
+
+
+def test_a_plan_of_faces_alone_has_heads_without_rows():
+    rows = tabulated(bare())
+    assert [len(read(rows[table])) for table in ("walls", "openings", "rooms")] == [0, 0, 0]
