@@ -2,8 +2,8 @@
 
 Drives go through all rooms of ring_office, ten scans a second. They are simulated once and kept.
 Points take 32 bytes each, as drivers that write PCL's aligned points record them: 6,000 scans make
-5.3 GB. The ten bags of the big drive hold clouds of a fifth as many points; their seconds are
-compared with those of the first of them alone.
+5.3 GB. The bags of the big drive, ten or as many as are asked for, hold clouds of a fifth as many
+points; their seconds are compared with those of the first of them alone.
 """
 
 import contextlib
@@ -30,7 +30,6 @@ from scanplan.types import Settings
 _SPEED_M_S = 0.627  # through all rooms this makes 6,000 scans
 _N_AZIMUTH = 1800  # of a VLP-16 at 10 Hz
 _N_AZIMUTH_BIG = 360
-_N_BAGS = 10
 _BAG_EVERY_NS = 3600 * 10**9  # from the start of one bag to that of the next
 _BLOCK = 2**20  # bytes of a raw read
 _ALIGNED = {"x": 0, "y": 4, "z": 8, "intensity": 16, "ring": 20, "time": 24}
@@ -55,7 +54,12 @@ class Stage:
 
 
 def bench(
-    project: Path, settings: Settings, folder: Path, revisions: Sequence[str], *, big: bool = False
+    project: Path,
+    settings: Settings,
+    folder: Path,
+    revisions: Sequence[str],
+    *,
+    n_big: int | None = None,
 ) -> None:
     """Print what the stages of the default target take on a drive, beside a raw read of its bags.
 
@@ -68,28 +72,36 @@ def bench(
         For the drives, kept, and a checkout with results for each commit.
     revisions : list of str
         Commits that are measured before the last one of the project.
-    big : bool
-        Whether on the drive of 60,000 scans, after its first tenth.
+    n_big : int, optional
+        Bags of a big drive, each of 6,000 scans: all of them are measured after the first alone.
     """
-    tenth, drive = folder / "tenth", folder / ("ten_drives" if big else "drive")
-    _simulate_drives(project, settings, drive, n_bags=_N_BAGS if big else 1)
+    drive = folder / (f"drives_{n_big}" if n_big else "drive")
+    _simulate_drives(project, settings, drive, n_bags=n_big or 1, is_big=n_big is not None)
     before: dict[str, Stage] = {}
-    if big:
-        tenth.mkdir(exist_ok=True)
+    if n_big:
+        first = folder / "first_drive"
+        first.mkdir(exist_ok=True)
         with contextlib.suppress(FileExistsError):
-            (tenth / "drive_0.bag").symlink_to(drive / "drive_0.bag")
-        before = {s.name: s for s in _run(project, "HEAD", folder, tenth)}
+            (first / "drive_0.bag").symlink_to(drive / "drive_0.bag")
+        before = {s.name: s for s in _run(project, "HEAD", folder, first)}
     for revision in (*revisions, "HEAD"):
         _read_raw(drive)
         for stage in _run(project, revision, folder, drive):
-            if stage.name in before:
-                tenfold = _N_BAGS * before[stage.name].seconds
-                print(f"pipeline:   {stage.name}: {stage.seconds / tenfold:.2f} of linear")
+            if n_big and stage.name in before:
+                _print_growth(stage, before[stage.name], n_big)
 
 
-def _simulate_drives(project: Path, settings: Settings, drive: Path, *, n_bags: int) -> None:
+def _print_growth(whole: Stage, part: Stage, n_parts: int) -> None:
+    seconds = whole.seconds / (n_parts * part.seconds)
+    processor = whole.processor_s / (n_parts * max(part.processor_s, 0.01))
+    print(f"pipeline:   {whole.name}: {seconds:.2f} of linear, processor {processor:.2f}")
+
+
+def _simulate_drives(
+    project: Path, settings: Settings, drive: Path, *, n_bags: int, is_big: bool
+) -> None:
     rig = copy.deepcopy(settings["simulate"])
-    rig["sensor"] |= {"n_azimuth": _N_AZIMUTH if n_bags == 1 else _N_AZIMUTH_BIG}
+    rig["sensor"] |= {"n_azimuth": _N_AZIMUTH_BIG if is_big else _N_AZIMUTH}
     rig["drive"] |= {"speed_m_s": _SPEED_M_S}
     rig["site"] |= {"route": "rooms", "start_m": "random"}
     keywords = {k: v for k, v in rig.items() if k not in ("building", "recording", "seed")}

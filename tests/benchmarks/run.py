@@ -2,7 +2,7 @@
 
 Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [plans] [validation]
               [FOLDER ...]
-       run.py pipeline [big] [FOLDER] [REVISION ...]
+       run.py pipeline [big | big=BAGS] [FOLDER] [REVISION ...]
        run.py guard REVISION FOLDER [SURVEY ...]
        run.py compare FOLDER FOLDER
 
@@ -10,9 +10,10 @@ Without a name all of them but wall_quality, which takes minutes, plans, which m
 that `make compare` has finished under results/, and validation, which damages the plans there; a
 FOLDER holds the dataset folders with the truths of those it did not simulate.
 
-`pipeline` runs the default target on a drive of 6,000 scans, or of 60,000 (big), with the code of
-the last commit, after that of other commits where some are named: time, memory and bytes of every
-stage, beside a raw read. The drives, 6 and 8 GB, are simulated once and kept in FOLDER.
+`pipeline` runs the default target on a drive of 6,000 scans, or of 60,000 in ten bags (big; or in
+as many bags as are said, as big=3), with the code of the last commit, after that of other commits
+where some are named: time, memory and bytes of every stage, beside a raw read. The drives, 6 and
+11 GB, are simulated once and kept in FOLDER.
 
 `guard` makes the plans of twelve simulated drives and six real recordings with the code of a
 commit, in a folder of its own; `compare` prints what changed between two such folders, and fails
@@ -100,10 +101,11 @@ def bench_pipeline(*words: str) -> None:
     """Bag to plan and report on a long drive."""
     import pipeline_bench
 
-    is_big = "big" in words
-    given = [word for word in words if word != "big"]
+    big = [word for word in words if word.partition("=")[0] == "big"]
+    given = [word for word in words if word not in big]
+    n_big = int(big[0].partition("=")[2] or 10) if big else None
     kept = Path(given[0]) if given else Path(tempfile.gettempdir()) / "scanplan_drives"
-    pipeline_bench.bench(ROOT, SETTINGS, kept.resolve(), given[1:], big=is_big)
+    pipeline_bench.bench(ROOT, SETTINGS, kept.resolve(), given[1:], n_big=n_big)
 
 
 APART: dict[str, Callable[..., None]] = {

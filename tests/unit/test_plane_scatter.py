@@ -50,31 +50,41 @@ def test_a_place_by_hand():
     grid = np.array([[0, 0], [0.1, 0], [0, 0.1]])
     xyz_m = np.concatenate([np.column_stack([grid, np.full(3, 0.01 * i)]) for i in range(4)])
     places = plane_scatter.measure_scatter(
-        xyz_m, np.repeat(range(4), 3), xyz_m[:1], planar=False, radius_m=0.5
+        xyz_m, np.repeat(range(4), 3), xyz_m[:1], planar=False, radius_m=0.12
     )
     assert places.sigma_m[0] == pytest.approx(0.01 * np.sqrt(3 * (2.25 + 0.25) * 2 / 11))
 
 
 def test_places_with_few_points_or_few_scans_tell_nothing():
-    xyz_m = np.zeros((20, 3))
+    square = np.array([[x, y, 0] for x in (-0.05, 0.05) for y in (-0.05, 0.05)])
+    xyz_m = np.tile(square, (5, 1))
     for n_points, scan_ids in ((9, np.arange(9)), (20, np.arange(20) % 2)):
         places = plane_scatter.measure_scatter(
             xyz_m[:n_points], scan_ids[:n_points], xyz_m[:1], planar=False, radius_m=0.1
         )
         assert np.isnan(places.sigma_m).all() and np.isnan(places.median_m)
     places = plane_scatter.measure_scatter(
-        xyz_m[:10], np.arange(10) % 3, xyz_m[:1], planar=False, radius_m=0.1
+        xyz_m[:12], np.arange(12) % 3, np.zeros((1, 3)), planar=False, radius_m=0.1
     )
-    assert places.sigma_m.tolist() == [0.0]
+    assert places.sigma_m == pytest.approx([0.0], abs=1e-9)
+
+
+@pytest.mark.parametrize("planar", [False, True])
+def test_points_on_a_line_show_no_surface_in_space_but_one_in_the_plane(planar):
+    along = np.linspace(-0.09, 0.09, 12)
+    ring_m = np.column_stack([along, np.tile([-0.01, 0.01], 6), 0 * along])
+    places = plane_scatter.measure_scatter(
+        ring_m, np.arange(12) % 3, np.zeros((1, 3)), planar=planar, radius_m=0.1
+    )
+    assert np.isfinite(places.sigma_m[0]) == planar
 
 
 def test_places_are_spread_evenly_however_dense_the_points():
     rng = np.random.default_rng(2)
     dense, sparse = rng.uniform(0, 1, (5000, 3)), rng.uniform(10, 11, (500, 3))
     xyz_m = np.concatenate([dense, sparse]) * (1, 1, 0)
-    centres = plane_scatter.choose_places(
-        xyz_m, planar=False, radius_m=0.2, most_places=1000, seed=1
-    )
+    rows = plane_scatter.choose_places(xyz_m, planar=False, radius_m=0.2, most_places=1000, seed=1)
+    centres = xyz_m[rows]
     assert len(centres) == 50 and (centres[:, 0] < 5).sum() == 25
     assert (
         len(plane_scatter.choose_places(xyz_m, planar=False, radius_m=0.2, most_places=20, seed=1))

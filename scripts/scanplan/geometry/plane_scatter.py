@@ -22,6 +22,7 @@ from scanplan.types import FloatArray, IntArray
 
 _FEWEST_POINTS = 10  # a covariance of fewer says little
 _FEWEST_SCANS = 3  # two may be off together
+_LEAST_SPREAD = 0.25  # of the radius; points all over a disc have half of it, a single ring's none
 
 
 @dataclass(frozen=True)
@@ -34,7 +35,9 @@ class SurfaceScatter:
         A point of the map in the middle of each.
     sigma_m : (n,) float64
         Standard deviation of its points across the surface; NaN where fewer than 10 points, or
-        points of fewer than 3 scans, are there.
+        points of fewer than 3 scans, are there, or they lie along a line in space, at a spot in
+        the plane: far away a sensor's rings are wider apart than a neighbourhood, and how thin
+        one ring is says nothing of the surface.
     """
 
     xyz_m: FloatArray
@@ -82,7 +85,7 @@ def thin_randomly(
 
 def choose_places(
     xyz_m: FloatArray, *, planar: bool, radius_m: float, most_places: int, seed: int
-) -> FloatArray:
+) -> IntArray:
     """Choose places evenly over a map: a point of every occupied cube (square, in the plane).
 
     Parameters
@@ -97,7 +100,8 @@ def choose_places(
 
     Returns
     -------
-    (m, 3) float64
+    (m,) int64
+        Rows of these points.
     """
     rng = np.random.default_rng(seed)
     order = rng.permutation(len(xyz_m))
@@ -108,7 +112,7 @@ def choose_places(
     _, first = np.unique(key, return_index=True)
     if len(first) > most_places:
         first = rng.choice(first, most_places, replace=False)
-    return xyz_m[order[np.sort(first)]]
+    return order[np.sort(first)]
 
 
 def measure_scatter(
@@ -138,7 +142,7 @@ def measure_scatter(
     """
     axes = slice(2) if planar else slice(3)
     near = cKDTree(xyz_m[:, axes]).query_ball_point(centres_m[:, axes], radius_m)
-    sigma_m = [_sigma_m(xyz_m[points, axes], scan_ids[points]) for points in near]
+    sigma_m = [_sigma_m(xyz_m[points, axes], scan_ids[points], radius_m) for points in near]
     return SurfaceScatter(np.asarray(centres_m, float), np.array(sigma_m, float))
 
 
@@ -152,10 +156,10 @@ def measure_map_scatter(
     seed: int,
 ) -> SurfaceScatter:
     """Measure the spread (`measure_scatter`) around places of a map (`choose_places`)."""
-    centres_m = choose_places(
+    rows = choose_places(
         xyz_m, planar=planar, radius_m=radius_m, most_places=most_places, seed=seed
     )
-    return measure_scatter(xyz_m, scan_ids, centres_m, planar=planar, radius_m=radius_m)
+    return measure_scatter(xyz_m, scan_ids, xyz_m[rows], planar=planar, radius_m=radius_m)
 
 
 def scatter_columns(measured: Mapping[str, SurfaceScatter]) -> dict[str, Any]:
@@ -177,9 +181,11 @@ def _quartiles(values: FloatArray) -> FloatArray:
     return np.percentile(values, (25, 50, 75)) if len(values) else np.full(3, np.nan)
 
 
-def _sigma_m(points_m: FloatArray, scan_ids: IntArray) -> float:
+def _sigma_m(points_m: FloatArray, scan_ids: IntArray, radius_m: float) -> float:
     if len(points_m) < _FEWEST_POINTS or len(np.unique(scan_ids)) < _FEWEST_SCANS:
         return np.nan
     centred = points_m - points_m.mean(axis=0)
-    least = np.linalg.eigvalsh(centred.T @ centred / (len(points_m) - 1))[0]
-    return float(np.sqrt(max(least, 0.0)))
+    across, *along = np.linalg.eigvalsh(centred.T @ centred / (len(points_m) - 1))
+    if along[0] < (_LEAST_SPREAD * radius_m) ** 2:
+        return np.nan
+    return float(np.sqrt(max(across, 0.0)))

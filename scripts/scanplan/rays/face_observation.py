@@ -127,12 +127,16 @@ def observe_face(
     """
     within_m = 0.0 if rays.planar else expected_returns.NEAR_M
     face = cast_at_face(rays, line, low_m, high_m, at_m=band_m, occluded_within_m=within_m)
-    order = np.argsort(face.along_m, kind="stable")
-    is_free = face.is_free(band_m + BEHIND_M)[order]
-    is_occupied = face.is_occupied[order]
-    is_upright = np.full(len(order), True) if rays.planar else face.height_m[order] > SKIRTING_M
+    is_free = face.is_free(band_m + BEHIND_M)
+    # most rays end before the surface and are not asked for by their place: sorting is for the rest
+    met = np.flatnonzero(face.is_occupied | is_free)
+    order = met.take(np.argsort(face.along_m.take(met), kind="stable"))
+    is_occupied = face.is_occupied.take(order)
+    is_upright = (
+        np.full(len(order), True) if rays.planar else face.height_m.take(order) > SKIRTING_M
+    )
     occupied = order[is_occupied & is_upright]
-    free = order[is_free]
+    free = order[is_free.take(order)]
     low = order[is_occupied & ~is_upright]
     seen = FaceObservation(
         line=line,

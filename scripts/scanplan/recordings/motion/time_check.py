@@ -195,7 +195,11 @@ def choose_reading(
 def _measure_scatters(
     group: Sequence[Scan], readings: Sequence[TimeReading], motion: SensorMotion, planar: bool
 ) -> FloatArray:
-    """Return the scatter across surfaces at the same places by each reading: (readings, places)."""
+    """Return the scatter across surfaces around points by each reading: (readings, points).
+
+    Around the same points, wherever a reading moves them: a place that stays may be on a wall by
+    one reading, on the floor by another, and floors are thinner.
+    """
     maps = []
     for reading in readings:
         merged = _merge_scans(group, reading.apply_to(motion))
@@ -203,7 +207,7 @@ def _measure_scatters(
             return np.empty((len(readings), 0))
         maps.append(merged)
     owners = np.concatenate([np.full(len(scan.xyz_m), scan.scan_id) for scan in group])
-    centres_m = plane_scatter.choose_places(
+    rows = plane_scatter.choose_places(
         maps[0],
         planar=planar,
         radius_m=_RADIUS_M,
@@ -211,7 +215,7 @@ def _measure_scatters(
         seed=_SEED,
     )
     scatters = [
-        plane_scatter.measure_scatter(xyz_m, owners, centres_m, planar=planar, radius_m=_RADIUS_M)
+        plane_scatter.measure_scatter(xyz_m, owners, xyz_m[rows], planar=planar, radius_m=_RADIUS_M)
         for xyz_m in maps
     ]
     return np.array([scatter.sigma_m for scatter in scatters])
