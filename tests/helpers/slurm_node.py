@@ -41,7 +41,7 @@ AccountingStorageType=accounting_storage/none
 ReturnToService=2
 SlurmdTimeout=30
 KillWait=5
-MinJobAge=300
+MinJobAge=7200
 DefMemPerCPU=1000
 NodeName={host} CPUs={cpus} Boards=1 SocketsPerBoard=1 CoresPerSocket={cpus} ThreadsPerCore=1 \
 RealMemory={memory_mb} State=UNKNOWN
