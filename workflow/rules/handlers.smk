@@ -73,7 +73,10 @@ if is_to_be_told():
 
 def tell_overview():
     """Put what became of many datasets into one table and one page, failed ones among them."""
-    if len(GIVEN) < 2 or not set(workflow.dag_settings.targets) <= {"all", "comparison"}:
+    if len(GIVEN) < 2 or not set(workflow.dag_settings.targets) <= {
+        "all",
+        "comparison",
+    }:
         return
     # takes a second to import, and is needed at the end alone
     from scanplan.report import overview

@@ -133,11 +133,11 @@ for number, formats in enumerate(chosen_formats()):
         name:
             f"export_files_{number}" if number else "export_files"
         input:
-            faces="results/{dataset}/plan/faces.parquet",
-            walls="results/{dataset}/plan/walls.parquet",
-            openings="results/{dataset}/plan/openings.parquet",
-            rooms="results/{dataset}/plan/rooms.parquet",
-            free="results/{dataset}/plan/free.parquet",
+            faces=plan_table("faces"),
+            walls=plan_table("walls"),
+            openings=plan_table("openings"),
+            rooms=plan_table("rooms"),
+            free=plan_table("free"),
             registration="results/{dataset}/registration.parquet",
             poses="results/{dataset}/poses.parquet",
         output:
@@ -153,8 +153,8 @@ for number, formats in enumerate(chosen_formats()):
             dataset=exported_as(formats),
         threads: 1
         resources:
-            mem_mb=1500,
-            runtime=10,
+            mem_mb=grown(mem_mb=1500),
+            runtime=grown(runtime=10),
         params:
             code=code_of("export_files"),
             source=source_of_results,
@@ -177,8 +177,8 @@ rule export_cloud:
         "benchmarks/{dataset}/export_cloud.tsv"
     threads: 1
     resources:
-        mem_mb=2000,
-        runtime=60,
+        mem_mb=grown(mem_mb=2000),
+        runtime=grown(runtime=60),
     params:
         code=code_of("export_cloud"),
         stop=section("selection", "stop"),

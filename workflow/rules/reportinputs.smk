@@ -19,7 +19,11 @@ def files_beside(files_of):
     def beside(wildcards):
         folder = f"results/{wildcards.dataset}/figures/"
         files = files_of(wildcards.dataset)
-        return [f for f in files if not f.startswith(folder) and not f.endswith((".html", ".txt"))]
+        return [
+            f
+            for f in files
+            if not f.startswith(folder) and not f.endswith((".html", ".txt"))
+        ]
 
     return beside
 
