@@ -12,7 +12,7 @@ import pytest
 
 from helpers.project_copy import TINY, Project
 from helpers.slurm_node import SlurmNode
-from scanplan.project import slurm_jobs
+from scanplan.project.run import slurm_jobs
 
 pytestmark = [pytest.mark.slurm, pytest.mark.xdist_group("slurm")]
 SEEDS = (1, 2, 3)

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from snakemake_interface_logger_plugins.common import LogEvent
 
-from scanplan.project.console import RunConsole
-from scanplan.project.terminal import Terminal
+from scanplan.project.run.console import RunConsole
+from scanplan.project.run.terminal import Terminal
 
 
 class Screen(io.StringIO):
@@ -148,7 +148,7 @@ def test_a_file_and_a_dumb_terminal_get_whole_lines_and_no_codes(term, monkeypat
 
 def test_a_stage_that_waits_for_a_cluster_is_not_at_work(console, file, monkeypatch):
     now_s = 0.0
-    monkeypatch.setattr("scanplan.project.console.time.monotonic", lambda: now_s)
+    monkeypatch.setattr("scanplan.project.run.console.time.monotonic", lambda: now_s)
     begin(console, 7, "register_scans", "")
     Path("register_scans.log").unlink()
     now_s = 100.0

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from scanplan.errors import StageError
-from scanplan.project import run_lock
+from scanplan.project.run import run_lock
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 
@@ -32,7 +32,7 @@ def test_a_second_run_is_refused_until_the_first_has_ended(tmp_path):
 
 
 def test_the_lock_dies_with_its_process():
-    body = "from scanplan.project import run_lock; import time; lock = run_lock.lock_folder()"
+    body = "from scanplan.project.run import run_lock; import time; lock = run_lock.lock_folder()"
     holder = subprocess.Popen(
         [sys.executable, "-c", f"{body}; open('locked', 'w').close(); time.sleep(60)"],
         env={"PYTHONPATH": str(SCRIPTS)},
@@ -78,7 +78,7 @@ def test_an_ignored_signal_stays_ignored(handlers):
 
 def test_ctrl_c_while_rules_are_read_ends_in_one_line():
     body = (
-        "from scanplan.project import run_lock; import time; run_lock.end_on_interrupt();"
+        "from scanplan.project.run import run_lock; import time; run_lock.end_on_interrupt();"
         "open('reading', 'w').close(); time.sleep(60)"
     )
     reader = subprocess.Popen(

@@ -8,8 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from scanplan.project import provenance, run_outcome
-from scanplan.project.run_lock import FolderRun
+from scanplan.project import provenance
+from scanplan.project.run import run_outcome
+from scanplan.project.run.run_lock import FolderRun
 from scanplan.project.settings import Layer
 from scanplan.stage.log import INTERRUPTED
 

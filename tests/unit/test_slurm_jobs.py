@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from scanplan.errors import StageError
-from scanplan.project import slurm_jobs
-from scanplan.project.slurm_jobs import SlurmJob, end_older_jobs, explain_ends, list_jobs
+from scanplan.project.run import slurm_jobs
+from scanplan.project.run.slurm_jobs import SlurmJob, end_older_jobs, explain_ends, list_jobs
 
 HERE = Path("/survey/of|two")
 SHOWN = """\

@@ -3,7 +3,7 @@ import os
 from pathlib import Path
 
 from snakemake.settings.enums import Quietness
-from scanplan.project import console, run_lock, run_outcome, slurm_jobs
+from scanplan.project.run import console, run_lock, run_outcome, slurm_jobs
 
 THIS_RUN = run_lock.FolderRun()
 CONSOLE = console.open_console(GIVEN)

@@ -17,7 +17,7 @@ from pathlib import Path
 
 from snakemake_interface_logger_plugins.common import LogEvent
 
-from scanplan.project.terminal import Terminal
+from scanplan.project.run.terminal import Terminal
 from scanplan.stage.log import WATCHED
 
 _NOTHING_TO_DO = "Nothing to be done"  # how Snakemake begins to say that all results are there

@@ -5,9 +5,9 @@ from contextlib import suppress
 from pathlib import Path
 
 from scanplan.project import provenance
-from scanplan.project.run_lock import FolderRun
+from scanplan.project.run.run_lock import FolderRun
+from scanplan.project.run.slurm_jobs import LOGS as JOB_LOGS
 from scanplan.project.settings import Layer, locate_fault
-from scanplan.project.slurm_jobs import LOGS as JOB_LOGS
 from scanplan.stage.log import INTERRUPTED
 from scanplan.store import atomic
 
