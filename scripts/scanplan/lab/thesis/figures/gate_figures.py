@@ -53,7 +53,7 @@ def draw_gates(gates: pd.DataFrame) -> Figure:
     left.axhline(100 * stated, color="0.4", lw=0.8, ls="--", label="thesis: about 2 %")
     left.set(xlim=(0, None), ylim=(0, None))
     top_view.name_axes(left, "fitness distance (m)", "recorded scans that survive (%)")
-    left.legend(fontsize=7, frameon=False)
+    figure.legend(loc="outside lower left", ncols=len(_COLOURS) + 1, fontsize=7, frameon=False)
     for axes, reading in zip(maps, (BY_FRAMES, BY_RETAINED), strict=True):
         off = (surviving_shares(gates, reading)["kept"] - stated).abs()
         _draw_places(axes, gates, reading, off.idxmin())
