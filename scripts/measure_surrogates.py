@@ -42,7 +42,7 @@ def measure_surrogates(
     max_range_m, bitmap_cell_m : float
         How far a scan can see; edge of a bitmap's cell.
     n_added, seed : int
-        See `surrogates.measure_surrogates`.
+        See `surrogates.measure_draws`.
     """
     registered = registered_scans.read_registered_scans(registration)
     poses = truth_file.read_true_poses(true_poses)
@@ -61,7 +61,10 @@ def measure_surrogates(
         for name, path in covers.items()
     }
     scans = SurveyScans(registered.scan_ids, covered)
-    rows = surrogates.measure_surrogates(scans, floor, findings, n_added=n_added, seed=seed)
+    draws = surrogates.measure_draws(scans, floor, findings, n_added=n_added, seed=seed)
+    told = log.report_progress(draws, "measure_surrogates", total=n_added, unit="draws")
+    rows = [row for of_draw in told for row in of_draw]
+    rows.sort(key=lambda row: (row["surrogate"], row["draw"]))
     measured = {name: [row[name] for row in rows] for name in schemas.SURROGATES.columns}
     tables.write_table(output, schemas.SURROGATES, measured)
     log.log_line(f"measure_surrogates: {n_added} draws, {len(rows)} values")

@@ -28,8 +28,8 @@ def jobs(project, *arguments):
 
 def test_it_runs_every_survey_with_every_seed_and_nothing_of_the_demo(project):
     found = jobs(project, "thesis", "--configfile", "config/config.yaml")
-    # 5 surveys of the rooms and 3 drives, each of these registered with our limits and the thesis's
-    assert found["simulate_survey"] == 8 and found["register_scans"] == 11
+    # 5 surveys of the rooms and 3 drives, the first of these also with the thesis's limits
+    assert found["simulate_survey"] == 8 and found["register_scans"] == 9
     assert found["evaluate_walls"] == found["time_stages"] == 8 and found["measure_coverage"] == 5
     assert found["measure_unevenness"] == found["measure_premises"] == 5
     assert found["judge_claims"] == found["write_thesis"] == found["thesis"] == 1
@@ -72,6 +72,10 @@ def test_the_page_has_every_figure(project):
     assert '<h2 id="deviations">' in page
     assert "report:  results/thesis/report.html" in result.stderr
     assert jobs(project, "thesis", "--configfile", TINY_THESIS) == {}
+    result = project.run("thesis_more", "--configfile", TINY_THESIS)
+    assert result.returncode == 0, result.stdout + result.stderr
+    assert "report:  results/thesis/more.html" in result.stderr
+    assert (project.folder / "results/thesis/more.html").read_text().count("<svg") == 2
     # another seed is no reason to time or measure those again that there are
     settings = (project.folder / TINY_THESIS).read_text()
     (project.folder / "more.yaml").write_text(

@@ -56,8 +56,9 @@ def comparison_is_up_to_date():
 def tell_results():
     """Say what was made of the given datasets, and where it is."""
     targets = workflow.dag_settings.targets
-    if "thesis" in targets:
-        print(f"\nreport:  results/{RESERVED}/report.html", file=sys.stderr)
+    pages = {"thesis": "report", "thesis_more": "more"}
+    for target in sorted(pages.keys() & set(targets)):
+        print(f"\nreport:  results/{RESERVED}/{pages[target]}.html", file=sys.stderr)
     if not workflow.dag_settings.until and set(targets) <= {"all", "comparison"}:
         for name in GIVEN:
             print(run_outcome.describe_results(name), file=sys.stderr)

@@ -4,6 +4,9 @@ See `premises` for the submodularity ratio. By theory it is 1 or more of every c
 the covered length of wall; what matters is that it is so of the walls found, for which they stand.
 """
 
+from collections.abc import Iterator
+from typing import Any
+
 import numpy as np
 
 from scanplan.lab.evaluation.wall_findings import Findings, VisibleTruth
@@ -13,7 +16,8 @@ from scanplan.selection.objectives import Objective
 from scanplan.selection.survey_scans import SurveyScans
 from scanplan.types import IntArray
 
-FOUND = "walls found"
+SurrogateRow = dict[str, Any]
+"""A row of `schemas.SURROGATES`."""
 SURROGATES = {
     "length of wall shown": objectives.cover_wall_length,
     "free space": objectives.cover_free_space,
@@ -22,14 +26,14 @@ SURROGATES = {
 }
 
 
-def measure_surrogates(
+def measure_draws(
     scans: SurveyScans,
     truth: VisibleTruth,
     findings: Findings,
     *,
     n_added: int,
     seed: int,
-) -> list[dict[str, str | int | float]]:
+) -> Iterator[list[SurrogateRow]]:
     """Measure every surrogate on random scans that are added to as many random others.
 
     Parameters
@@ -43,24 +47,24 @@ def measure_surrogates(
         So many scans are added to as many others, and so often; fewer of a small survey.
     seed : int
 
-    Returns
-    -------
-    list of dict
-        Rows of `schemas.SURROGATES`.
+    Yields
+    ------
+    list of SurrogateRow
+        Of one draw, a row for every surrogate.
     """
     covers = {name: make(scans) for name, make in SURROGATES.items()}
     size = max(1, min(n_added, len(scans) // 2))
     rng = np.random.default_rng(seed)
-    rows: list[dict[str, str | int | float]] = []
     for draw in range(n_added):
         drawn = rng.choice(len(scans), min(2 * size, len(scans)), replace=False)
         found = premises.measure_utilities(truth, findings, drawn[:size])[0]
+        rows: list[SurrogateRow] = []
         for name, cover in covers.items():
             value, ratio = _measure_draw(cover, drawn[:size], drawn[size:])
             rows.append(
                 {"surrogate": name, "draw": draw, "value": value, "ratio": ratio, "found": found}
             )
-    return sorted(rows, key=lambda row: (str(row["surrogate"]), row["draw"]))
+        yield rows
 
 
 def _measure_draw(cover: Objective, before: IntArray, added: IntArray) -> tuple[float, float]:

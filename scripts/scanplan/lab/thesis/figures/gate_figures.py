@@ -47,13 +47,13 @@ def draw_gates(gates: pd.DataFrame) -> Figure:
     (claim,) = (claim for claim in CLAIMS if claim.name == "two_percent_survive")
     stated = claim.stated["share retained"]
     for reading, colour in _COLOURS.items():
-        share = 100 * surviving_shares(gates, reading)
+        share = surviving_shares(gates, reading).mul(100)
         left.plot(share["kept"], "o-", ms=3.5, lw=1.2, color=colour, label=reading)
         left.plot(share["passed"], ":", lw=1.0, color=colour)
     left.axhline(100 * stated, color="0.4", lw=0.8, ls="--", label="thesis: about 2 %")
     left.set(xlim=(0, None), ylim=(0, None))
     top_view.name_axes(left, "fitness distance (m)", "recorded scans that survive (%)")
-    left.legend(fontsize=7, frameon=False)
+    figure.legend(loc="outside lower left", ncols=len(_COLOURS) + 1, fontsize=7, frameon=False)
     for axes, reading in zip(maps, (BY_FRAMES, BY_RETAINED), strict=True):
         off = (surviving_shares(gates, reading)["kept"] - stated).abs()
         _draw_places(axes, gates, reading, off.idxmin())
