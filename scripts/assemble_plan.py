@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from scanplan.plan import messages, planning
 from scanplan.plan.floorplan import FloorPlan
@@ -26,6 +27,7 @@ def assemble_plan(
     outputs: Mapping[str, FilePath],
     *,
     settings: Settings,
+    threads: int = 1,
     **stop: Any,
 ) -> None:
     """Write the tables of the plan.
@@ -39,6 +41,8 @@ def assemble_plan(
         Files to write: plan/<name>.parquet for the names in `planning.TABLES`.
     settings : dict
         Keywords of `planning.make_plan_settings`.
+    threads : int
+        Cores to use; the plan does not depend on it.
     **stop
         How many scans to use, see `stopping.choose_n_scans`.
     """
@@ -55,14 +59,17 @@ def assemble_plan(
     store = tables.ScanStore(scans)
     sensors_m = dict(zip(scan_ids.tolist(), poses[rows, :3, 3], strict=True))
     rays = ray_set.gather_rays(store.scans(scan_ids), sensors_m, planar=store.planar)
-    plan = planning.make_plan(
-        segments,
-        rays,
-        poses[:, :2, 3],
-        registered.t_ns[rows],
-        planning.make_plan_settings(**settings),
-        poses[rows, :3, 2],
-    )
+    # sums that a library shares out among cores differ in their last digits
+    with threadpool_limits(1):
+        plan = planning.make_plan(
+            segments,
+            rays,
+            poses[:, :2, 3],
+            registered.t_ns[rows],
+            planning.make_plan_settings(**settings),
+            poses[rows, :3, 2],
+            threads=threads,
+        )
     messages.check_plan(walls, plan, is_used.sum(), count)
     heights_m = _find_heights(rays)
     drawn = FloorPlan(
@@ -104,4 +111,5 @@ if __name__ == "__main__":
             dict(snakemake.output.items()),
             **snakemake.params.stop,
             settings=snakemake.params.settings,
+            threads=snakemake.threads,
         )

@@ -1,6 +1,7 @@
 """Select continuous scans and register them in the map frame (thesis, algorithm 3)."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
 from scanplan.recordings.clouds import Scan
@@ -102,11 +103,20 @@ def _write_kept_scans(
 ) -> None:
     """Write the scans that registration kept, in the map frame."""
     rows = [row for row, verdict in enumerate(verdicts) if verdict.kept]
-    with tables.open_scan_writer(path, planar=survey.planar) as write_scan:
+    with (
+        tables.open_scan_writer(path, planar=survey.planar) as write_scan,
+        ThreadPoolExecutor(max_workers=1) as writer,
+    ):
+        written: Future[None] | None = None
         for row, xyz_m in zip(rows, raw.part(rows), strict=True):
             scan_id = survey.scan_ids[row]
-            pose = verdicts[row].world_from_sensor
-            write_scan(scan_id, results.move_to_map(scan_id, xyz_m, pose))
+            moved_m = results.move_to_map(scan_id, xyz_m, verdicts[row].world_from_sensor)
+            # the next scan is moved while this one is packed
+            if written is not None:
+                written.result()
+            written = writer.submit(write_scan, scan_id, moved_m)
+        if written is not None:
+            written.result()
 
 
 def _read_motion(moved: FilePath) -> trajectory.SensorMotion:

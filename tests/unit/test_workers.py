@@ -80,3 +80,21 @@ def test_workers_do_not_import_the_script(tmp_path, monkeypatch):
     with workers.open_pool(2) as run:
         assert list(run(list_own_modules, [()])) == [[]]
     assert sys.modules["__main__"].__file__ == str(script)
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_threads_share_the_memory_and_keep_the_order(threads):
+    seen = []
+
+    def square(number):
+        seen.append(number)
+        return number**2
+
+    assert workers.map_in_threads(square, iter(range(5)), threads) == [0, 1, 4, 9, 16]
+    assert sorted(seen) == [0, 1, 2, 3, 4]
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_what_a_job_in_a_thread_raises_is_raised(threads):
+    with pytest.raises(ZeroDivisionError):
+        workers.map_in_threads(lambda number: 1 / number, [1, 0], threads)

@@ -16,7 +16,7 @@ rule assemble_plan:
         "logs/{dataset}/assemble_plan.log",
     benchmark:
         "benchmarks/{dataset}/assemble_plan.tsv"
-    threads: 1
+    threads: 2
     resources:
         mem_mb=grown(mem_mb=2000),
         runtime=grown(runtime=20),

@@ -134,6 +134,8 @@ def make_plan(
     t_ns: IntArray,
     settings: PlanSettings,
     up: FloatArray | None = None,
+    *,
+    threads: int = 1,
 ) -> Plan:
     """Make a plan.
 
@@ -151,6 +153,8 @@ def make_plan(
     up : (s, 3) float, optional
         The axis that the beams of each chosen scan's sensor are inclined to, in the map frame;
         plumb by default.
+    threads : int
+        Cores to use; the plan does not depend on it.
 
     Returns
     -------
@@ -162,7 +166,9 @@ def make_plan(
     errors_m = range_bias.estimate_range_bias(rays, segments, settings.ranges, band_m, up)
     rays = range_bias.remove_range_bias(rays, errors_m, up)
     candidates = merge_segments(segments, settings.merge)
-    traced = trace_faces(candidates, rays, settings.merge, settings.reading, settings.furniture)
+    traced = trace_faces(
+        *(candidates, rays, settings.merge, settings.reading, settings.furniture), threads=threads
+    )
     walls = assemble_walls(
         traced.faces,
         settings.pairs,

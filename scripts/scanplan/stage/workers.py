@@ -1,16 +1,19 @@
-"""Jobs on several cores whose results come back in order."""
+"""Jobs on several cores, in processes or threads, whose results come back in order."""
 
 import multiprocessing
 import sys
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, TypeVar
 
 from scanplan.errors import StageError
 from scanplan.stage import orphans
+
+Job = TypeVar("Job")
+Result = TypeVar("Result")
 
 RunJobs = Callable[[Callable[..., Any], Iterable[tuple[Any, ...]]], Iterator[Any]]
 """`run(function, jobs)`: iterates over `function(*job)` of all jobs, in their order."""
@@ -68,6 +71,31 @@ def open_pool(
         except BaseException:
             executor.shutdown(wait=False, cancel_futures=True)
             raise
+
+
+def map_in_threads(
+    function: Callable[[Job], Result], jobs: Iterable[Job], threads: int
+) -> list[Result]:
+    """Call a function of each job, in threads of this process.
+
+    For work on large arrays that all jobs share, nearly all of which numpy does without Python's
+    lock.
+
+    Parameters
+    ----------
+    function : callable
+    jobs : iterable
+    threads : int
+
+    Returns
+    -------
+    list
+        What it returned, in the order of the jobs.
+    """
+    if threads <= 1:
+        return [function(job) for job in jobs]
+    with ThreadPoolExecutor(threads) as executor:
+        return list(executor.map(function, jobs))
 
 
 @contextmanager

@@ -20,6 +20,7 @@ from scanplan.plan.faces.owned_points import owned_intervals
 from scanplan.plan.tolerances import END_M, FACE_M
 from scanplan.rays.face_observation import FaceObservation, RaySettings
 from scanplan.rays.ray_set import RaySet
+from scanplan.stage import workers
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +49,8 @@ def trace_faces(
     merging: MergeSettings,
     reading: RaySettings,
     furniture: FurnitureLimits,
+    *,
+    threads: int = 1,
 ) -> TracedFaces:
     """Trace the faces along the lines of candidates.
 
@@ -80,6 +83,8 @@ def trace_faces(
     merging : merging.MergeSettings
     reading : face_observation.RaySettings
     furniture : furniture.FurnitureLimits
+    threads : int
+        Cores to use; the result does not depend on it.
 
     Returns
     -------
@@ -92,9 +97,7 @@ def trace_faces(
         door_height_m=reading.door_height_m,
         max_gap_m=reading.max_gap_m,
     )
-    observations = _observe_lines(
-        face_candidates, rays, band_m=reading.band_m, reach_m=reading.reach_m
-    )
+    observations = _observe_lines(face_candidates, rays, reading, threads)
     owners = selection.select_walls(find_intervals(seen) for seen in observations)
     owned_m = owned_intervals(observations, owners)
     walls = selection.select_walls(
@@ -116,22 +119,21 @@ def trace_faces(
 
 
 def _observe_lines(
-    face_candidates: Iterable[FaceCandidate], rays: RaySet, *, band_m: float, reach_m: float
+    face_candidates: Iterable[FaceCandidate], rays: RaySet, reading: RaySettings, threads: int
 ) -> list[FaceObservation]:
     """Return the observation of each line that candidates share, from the first to the last."""
     of_line: dict[int, list[FaceCandidate]] = {}
     for candidate in face_candidates:
         of_line.setdefault(id(candidate.line), []).append(candidate)
-    observations = []
-    for group in of_line.values():
+
+    def observe_line(group: Sequence[FaceCandidate]) -> FaceObservation:
         low_m = min(candidate.low_m for candidate in group)
         high_m = max(candidate.high_m for candidate in group)
-        observations.append(
-            intervals.observe_along(
-                *(rays, group[0].line, low_m, high_m), band_m=band_m, reach_m=reach_m
-            )
+        return intervals.observe_along(
+            *(rays, group[0].line, low_m, high_m), band_m=reading.band_m, reach_m=reading.reach_m
         )
-    return observations
+
+    return workers.map_in_threads(observe_line, of_line.values(), threads)
 
 
 @dataclass(frozen=True)
