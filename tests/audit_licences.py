@@ -8,6 +8,7 @@ project as well (GPL, AGPL), and packages that state none, unless `KNOWN` says w
 import re
 import sys
 from importlib.metadata import Distribution, distributions
+from pathlib import Path
 
 FITTING = re.compile(
     r"\b(MIT|BSD|0BSD|Apache|ISC|PSF|Python Software Foundation|Zlib|CC0|HPND|Unlicense|any-OSI"
@@ -27,19 +28,19 @@ KNOWN = {
 def find_licence(package: Distribution) -> tuple[str, bool]:
     """Return what a package says of its licence, and whether that fits."""
     metadata = package.metadata
-    parts = (metadata.get("License-Expression") or "").split(" AND ")
-    if parts != [""] and not all(map(FITTING.search, parts)):
+    stated = metadata.get_all("License-Expression") or []
+    parts = " AND ".join(stated).split(" AND ") if stated else []
+    if parts and not all(map(FITTING.search, parts)):
         return " AND ".join(parts), False
-    stated = [metadata.get("License-Expression") or ""]
     labels = metadata.get_all("Classifier") or []
     stated += [label.rpartition(" :: ")[2] for label in labels if label.startswith("License ::")]
-    stated.append((metadata.get("License") or "").strip().partition("\n")[0])
+    stated += [text.strip().partition("\n")[0] for text in metadata.get_all("License") or []]
     named = sorted({words for words in stated if words and words != "UNKNOWN"})
     if any(map(FITTING.search, named)):
         return ", ".join(named)[:80], True
     # some name none, and have its text beside their code
     files = [f for f in package.files or () if re.match(r"(LICEN[CS]E|COPYING)", f.name, re.I)]
-    texts = [file.locate() for file in files]
+    texts = [Path(file.locate()) for file in files]
     for text in texts:
         if FITTING_TEXT.search(text.read_text(encoding="utf-8", errors="replace")):
             return f"{', '.join(named) or 'not named'}; its {text.name} fits", True

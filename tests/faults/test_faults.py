@@ -5,8 +5,7 @@ from faults import judging, run_faults
 
 def test_no_fault_is_silent_unexpected_or_without_a_line(tmp_path):
     tally = judging.Tally()
-    few = {"n_damaged": 2, "n_salvaged": 3, "n_messages": 40, "n_flips": 10, "n_files": 2}
-    run_faults.try_in_process(tmp_path, tally, **few)
+    run_faults.try_in_process(tmp_path, tally, **run_faults.FEW)
     assert tally.wrong == []
     assert sum(counts.total() for counts in tally.counts.values()) >= 500
 

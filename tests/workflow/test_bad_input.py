@@ -197,6 +197,16 @@ def test_a_truncated_bag(project, tmp_path):
     ends_with_one_line(project, name, "run.bag", "rosbag reindex")
 
 
+def test_what_is_whole_of_a_truncated_bag_is_read_where_that_is_asked_for(project, tmp_path):
+    name = written(tmp_path / "cut", bag_making.survey(bag_making.Maker(), n_scans=20))
+    bag = tmp_path / "cut/run.bag"
+    bag.write_bytes(bag.read_bytes()[: bag.stat().st_size // 2])
+    (tmp_path / "cut/dataset.yaml").write_text("input: {salvage: true}")
+    result = project.run("results/cut/poses.parquet", "--config", f"dataset={name}")
+    assert result.returncode == 0, result.stderr
+    assert "cut/run.bag: from a damaged recording" in result.stderr
+
+
 def test_settings_that_are_code_are_refused_before_they_are_executed(project, tmp_path):
     (tmp_path / "evil.yaml").write_text(
         "\"__use\\u005fyte__\": true\n__definitions__: [\"open('executed', 'w')\"]\n"

@@ -55,7 +55,7 @@ def measure_share_on_walls(plan: FloorPlan, rays: RaySet) -> float:
         is_flat |= xyz_m[:, 2] > plan.ceiling_z_m - STRETCH_M
         xyz_m = xyz_m[~is_flat]
     # as many as one scan has tell enough
-    points = np.atleast_1d(shapely.points(xyz_m[:: len(rays.scan_ids), :2].astype(float)))
+    points = shapely.get_parts(shapely.multipoints(xyz_m[:: len(rays.scan_ids), :2].astype(float)))
     tree = shapely.STRtree(line_shapes(centrelines_m(plan.faces)))
     near = tree.query(points, predicate="dwithin", distance=END_M)[0]
     return len(np.unique(near)) / max(len(points), 1)
