@@ -234,8 +234,9 @@ OPENINGS = Schema(
 )
 """Doors, windows and passages that rays went through.
 
-Heights are above the floor, NaN where not known; -1 stands for no wall or no room. Missing returns
-count as rays, too: as many as were expected through a window above its sill.
+Heights are above the floor, NaN where not known; -1 stands for no wall or no room. A passage in no
+wall is inferred: there free floor is narrow, and parts two rooms. Missing returns count as rays,
+too: as many as were expected through a window above its sill.
 """
 ROOMS = Schema(
     "rooms",
