@@ -39,6 +39,8 @@ def observe_walls(
         settings=wall_cells.WallCellSettings(**settings),
     )
     columns = wall_cells.observation_columns(scan_ids, observations)
+    if tables.ScanStore(scans).planar:
+        columns = wall_cells.even_out_noise(columns)
     tables.write_table(output, schemas.OBSERVATIONS, columns, allow_empty=True)
     mean_m = columns["length_m"].sum() / len(observations)
     n_blind = sum(len(observation["length_m"]) == 0 for observation in observations)

@@ -22,7 +22,6 @@ from scanplan.types import Array, FloatArray, IntArray
 
 _NARROWER = 0.75  # of the widest on either side: a corridor's pillars and cupboards leave more
 _FURNITURE_M2 = 3.0  # that furniture stands on, or parts off between it and a wall, at most
-_BESIDE_M = np.array([0.5, 1.0])  # beyond a door's wall, and what stands just beside a door
 
 
 def find_narrow_places(
@@ -243,7 +242,9 @@ def _widens(ground: BaseGeometry, line: FloatArray, side: int) -> bool:
     width_m = _length_m(line)
     way = (line[1] - line[0]) / width_m
     across = side * np.array([-way[1], way[0]])
-    places_m = line.mean(axis=0) + _BESIDE_M[:, None] * across
+    # beyond the wall that a door is in, and beyond what stands just beside a door
+    away_m = width_m * np.array([0.5, 1.0])
+    places_m = line.mean(axis=0) + away_m[:, None] * across
     beside = [_line_across(ground, place_m, way) for place_m in places_m]
     widest_m = max((_length_m(other) for other in beside if other is not None), default=0.0)
     return width_m < _NARROWER * widest_m
@@ -282,5 +283,5 @@ def _is_large(part: Polygon, visited: Array, min_area_m2: float) -> bool:
 
 def _lengthen(line: FloatArray) -> LineString:
     """Return a line that goes on a little beyond both ends."""
-    beyond = _BESIDE_M[0] / 10 * (line[1] - line[0]) / _length_m(line)
+    beyond = (line[1] - line[0]) / 10
     return LineString([line[0] - beyond, line[1] + beyond])

@@ -23,7 +23,7 @@ FACINGS = ("-x", "+x", "-y", "+y")
 _FARTHEST_M = 150.0  # beams 0.1 degrees apart leave a cell of 0.25 m with one return or none there
 _ROWS = 3  # a wall's returns are in two rows of cells, noise puts some into a third
 _SAME_SIDE = 1e-3  # cosine; a wall that is square to a facing faces it by rounding alone
-_HALF_SURE = 0.5  # what may be a wall or furniture counts half
+_HALF_SURE = 0.5  # what may be a wall or furniture counts half; half of a wall is the wall
 _SURE = 2  # times the fewest returns: an extractor may split fewer otherwise
 _KEYS = ("facing", "along", "across")
 
@@ -135,6 +135,26 @@ def observation_columns(
         name: np.concatenate([part[name] for part in observed]) for name in (*_KEYS, "length_m")
     }
     return {"scan_id": scan_id, **values}
+
+
+def even_out_noise(columns: Columns) -> dict[str, Array]:
+    """Return observations of which every cell counts in full where half of it is shown.
+
+    Of a cell's best scan. Where few returns stand for a cell, as of a planar scanner, noise parts
+    them between two rows otherwise in every scan, and each scan would add a little more of a wall
+    that others show as well.
+
+    Parameters
+    ----------
+    columns : dict of str to (m,) array
+        Columns of `schemas.OBSERVATIONS`.
+    """
+    length_m = np.asarray(columns["length_m"], float)
+    _, cell = np.unique(number_cells(columns), return_inverse=True)
+    best_m = np.zeros(len(length_m))
+    np.maximum.at(best_m, cell, length_m)
+    evened_m = np.minimum(length_m / _HALF_SURE, best_m[cell])
+    return {**columns, "length_m": evened_m}
 
 
 def number_cells(columns: Mapping[str, Array]) -> IntArray:

@@ -242,8 +242,9 @@ OPENINGS = Schema(
 known what it is), or unseen (a span of a room's outline of which nothing is known); `p_kind` the
 probability of the likeliest kind, NaN where none was weighed.
 
-Heights are above the floor, NaN where not known; -1 stands for no wall or no room. Missing returns
-count as rays, too: as many as were expected through a window above its sill.
+Heights are above the floor, NaN where not known; -1 stands for no wall or no room. A passage in no
+wall is inferred: there free floor is narrow, and parts two rooms. Missing returns count as rays,
+too: as many as were expected through a window above its sill.
 """
 ROOMS = Schema(
     "rooms",

@@ -13,9 +13,8 @@ from scanplan.lab.buildings.building_route import ROVER_RADIUS_M
 from scanplan.lab.random_streams import RandomStream, open_stream
 from scanplan.types import FloatArray
 
-_CHAIR_M = (0.42, 0.03)  # ASSUME a visitor's chair: seat as high as wide, legs under its corners
-_LEAF_M = _CHAIR_M[1]  # ASSUME a door's leaf as thick as a chair's leg
-_AJAR_DEG = (40.0, 110.0)  # ASSUME a leaf left standing opens as far
+# ASSUME a visitor's chair: a seat as high as wide, legs under its corners, as thick as a leaf
+_CHAIR_M = (0.42, 0.03)
 
 
 def add_clutter(
@@ -75,13 +74,14 @@ def _draw_leaves(
     """Yield leaves that hang on either jamb and open to either side, where the way lets them."""
     for door in doors:
         is_ajar, hinge, side = generator.random(3) < (share, 0.5, 0.5)
-        turn_rad = np.radians(generator.uniform(*_AJAR_DEG))
+        # ASSUME a leaf left standing is open by a quarter of a half turn at least
+        turn_rad = np.radians(generator.uniform(45, 110))
         ends = shapely.get_coordinates(door)
         pivot, other = ends if hinge else ends[::-1]
         turn = turn_rad if side else -turn_rad
         rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
         leaf = LineString([pivot, pivot + rotation @ (other - pivot)])
-        body = leaf.buffer(_LEAF_M / 2, cap_style="flat")
+        body = leaf.buffer(_CHAIR_M[1] / 2, cap_style="flat")
         if is_ajar and not body.intersects(way):
             yield body
 

@@ -192,23 +192,26 @@ def _without_furniture(
 ) -> list[FaceInterval]:
     """Return the intervals that are no fronts of furniture.
 
-    All of a 2-D scanner, whose heights are unknown.
-
     From where furniture hides the wall behind it, and no ray passes over it, it looks like a wall
     to a scan; all scans together show the wall behind.
     """
-    if not found or found[0].seen.planar:
-        return list(found)
+    if not found:
+        return []
     observations = {id(interval.seen): None for interval in found}
     numbers = {key: number for number, key in enumerate(observations)}
     faces = Faces(
         ends_m=np.array([interval.ends for interval in found]),
         normal=np.array([interval.line.normal for interval in found]),
-        top_m=np.array([interval.top_m for interval in found]),
+        top_m=np.array([_top_m(interval, limits) for interval in found]),
         line=np.array([numbers[id(interval.seen)] for interval in found]),
     )
     fronts = find_furniture_fronts(faces, limits).tolist()
     return [interval for interval, is_front in zip(found, fronts, strict=True) if not is_front]
+
+
+def _top_m(interval: FaceInterval, limits: FurnitureLimits) -> float:
+    """Return how high a face is seen; of a 2-D scanner what may be furniture, and may be a wall."""
+    return limits.wall_height_m if interval.seen.planar else interval.top_m
 
 
 def _without_stubs(found: Iterable[FaceInterval]) -> list[FaceInterval]:
