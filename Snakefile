@@ -29,6 +29,11 @@ include: "workflow/rules/report.smk"
 include: "workflow/rules/evidence.smk"
 
 
+if BUILDING:
+
+    include: "workflow/rules/building.smk"
+
+
 if THESIS:
 
     include: "workflow/rules/thesis.smk"
@@ -39,9 +44,11 @@ rule all:
     default_target: True
     input:
         of_all_datasets(results_of),
+        BUILDING.list_results() if BUILDING else [],
 
 
 rule comparison:
     input:
         of_all_datasets(results_of),
+        BUILDING.list_results() if BUILDING else [],
         of_all_datasets(comparison_of),

@@ -6,6 +6,7 @@ sys.path.insert(0, f"{workflow.basedir}/scripts")
 from scanplan.errors import StageError
 from scanplan.lab.thesis import experiments
 from scanplan.project import stage_settings
+from scanplan.project.building_file import find_building
 from scanplan.project.code_files import digest_helpers
 from scanplan.project.dataset import (
     RESERVED,
@@ -105,10 +106,14 @@ def thesis_if_fit():
 
 
 GIVEN = or_end(given_datasets)
+# two or more datasets in a folder with building.yaml are storeys of one building
+BUILDING = or_end(find_building, name_datasets(RUN["dataset"]))
 THESIS = or_end(thesis_if_fit)
 # a job's own process finds the note that its run has made
 if workflow.is_main_process:
     for note in (note for found in GIVEN.values() for note in found.notes):
+        print(f"scanplan: {note}", file=sys.stderr)
+    for note in BUILDING.note_unaligned() if BUILDING else []:
         print(f"scanplan: {note}", file=sys.stderr)
     or_end(
         check_sources,
@@ -289,6 +294,13 @@ def results_of(name):
 def comparison_of(name):
     """What one dataset's plan is compared with: all orderings, and the walls of all scans."""
     return list_comparison(DATASETS[name], METHODS, compared_extractors(name))
+
+
+def storeys_beside(wildcards):
+    """Names and datasets of the storeys of the job's building, from the lowest up; none where it is of none."""
+    storeys = BUILDING.storeys if BUILDING else ()
+    is_storey = wildcards.dataset in [storey.dataset for storey in storeys]
+    return [(s.name, s.dataset) for s in storeys] if is_storey else []
 
 
 def of_all_datasets(files_of):

@@ -19,7 +19,11 @@ def files_beside(files_of):
     def beside(wildcards):
         folder = f"results/{wildcards.dataset}/figures/"
         files = files_of(wildcards.dataset)
-        return [f for f in files if not f.startswith(folder) and not f.endswith((".html", ".txt"))]
+        return [
+            f
+            for f in files
+            if not f.startswith(folder) and not f.endswith((".html", ".txt"))
+        ]
 
     return beside
 
@@ -54,7 +58,13 @@ def run_times(orderings, extractors=(), comparing=()):
             *(f"order_scans_{method}" for method in ordered),
             "extract_chosen_walls",
             *(f"extract_walls_{extractor}" for extractor in extractors),
-            *("assemble_plan", "correct_plan", "validate_plan", "export_plan", "evaluate_poses"),
+            *(
+                "assemble_plan",
+                "correct_plan",
+                "validate_plan",
+                "export_plan",
+                "evaluate_poses",
+            ),
             *("evaluate_plan", "draw_registration", "draw_scans", "draw_walls"),
             "draw_validation",
             *comparing,
