@@ -8,7 +8,7 @@ from typing import Any
 from scanplan.plan import floorplan
 from scanplan.project import code_files, corrections_file
 from scanplan.report import figures, point_image
-from scanplan.report.facts import PredictionFacts, RunFacts, SurveyFacts
+from scanplan.report.facts import PredictionFacts, RunFacts, Storey, SurveyFacts
 from scanplan.report.page import report_page
 from scanplan.report.summary import summarise_survey
 from scanplan.selection import stopping
@@ -27,6 +27,7 @@ def write_report(
     settings: Settings,
     run_times: Iterable[FilePath],
     short: FilePath | None = None,
+    storeys: Iterable[tuple[str, str]] = (),
 ) -> None:
     """Write the report, with a comparison where there is one.
 
@@ -46,6 +47,8 @@ def write_report(
         What Snakemake measured of the stages, in their order, as far as it is there.
     short : path-like, optional
         summary.txt, to write.
+    storeys : iterable of (str, str)
+        Names and datasets of the storeys of its building, from the lowest up, if it is of one.
     """
     plan = floorplan.read_floorplan(files, name)
     survey = _read_survey(files, settings["selection"]["stop"])
@@ -62,6 +65,10 @@ def write_report(
         benchmarks={Path(path).stem: text for path, text in _read_texts(run_times)},
         sizes=[*recorded, *made],
         results=[*beside, *([] if short is None else [Path(short).name])],
+        storeys=[
+            Storey(storey, f"../{dataset}/{Path(output).name}", dataset == name)
+            for storey, dataset in storeys
+        ],
         corrections=_read_entries(files["corrections"]),
         version=f"Made by scanplan, code {code_files.digest_code()}.",
     )
@@ -139,4 +146,5 @@ if __name__ == "__main__":
             settings=snakemake.params.settings,
             run_times=filter(os.path.exists, snakemake.params.run_times),
             short=snakemake.output.get("summary"),
+            storeys=snakemake.params.storeys,
         )

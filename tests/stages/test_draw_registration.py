@@ -66,7 +66,9 @@ def test_the_figure_names_every_reason_with_its_number(results):
         "dropped: pose gap (1, nowhere on the map)",
         "dropped: odd thing (1)",
         "5 of 8 candidates kept; thickness of walls: 31 mm localiser, 12 mm registered",
-        "2 thick to neighbours, 0 thin loops",
+        "residual of a link (m)",
+        "link to a neighbour (2)",
+        "loop (0)",
     ):
         assert told in text, told
 
@@ -93,4 +95,5 @@ def test_loops_are_told_apart(results):
     figure = registration_figure.draw_registration_figure(
         np.random.default_rng(0).uniform(0, 7, (50, 2)), registration, links, {}
     )
-    assert "1 thick to neighbours, 1 thin loops" in figure.axes[1].get_ylabel()
+    named = figure.axes[0].get_legend_handles_labels()[1]
+    assert {"link to a neighbour (1)", "loop (1)"} <= set(named)

@@ -17,7 +17,7 @@ def report(tmp_path_factory):
     return written(folder, report_making.files(folder))
 
 
-def written(folder, files, name="office <two> rooms", output="report.html"):
+def written(folder, files, name="office <two> rooms", output="report.html", storeys=()):
     write_report(
         files,
         folder / output,
@@ -25,6 +25,7 @@ def written(folder, files, name="office <two> rooms", output="report.html"):
         settings=report_making.SETTINGS,
         run_times=sorted((folder / "benchmarks").glob("*.tsv")),
         short=folder / "summary.txt",
+        storeys=storeys,
     )
     return folder / output
 
@@ -100,6 +101,18 @@ def links(report):
 def test_its_links_lead_to_the_files_beside_it(report):
     assert links(report) == ["plan.svg", "plan.dxf", "summary.txt"]
     assert all((report.parent / link).is_file() for link in links(report))
+
+
+def test_the_reports_of_a_building_lead_to_each_other(tmp_path):
+    storeys = [("Ground", "floor_0"), ("First", "floor_1")]
+    made = written(tmp_path, report_making.files(tmp_path), name="floor_1", storeys=storeys)
+    switch = made.read_text().partition('<nav id="storeys"')[2].partition("</nav>")[0]
+    assert re.findall(r'href="([^"]*)"( aria-current="page")?>([^<]*)<', switch) == [
+        ("../floor_0/report.html", "", "Ground"),
+        ("../floor_1/report.html", ' aria-current="page"', "First"),
+    ]
+    alone = written(tmp_path, report_making.files(tmp_path))
+    assert 'id="storeys"' not in alone.read_text()
 
 
 def test_what_to_verify_comes_before_all_tables(report):

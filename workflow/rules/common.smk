@@ -8,6 +8,7 @@ sys.path.insert(0, f"{PROJECT}/scripts")
 from scanplan.errors import StageError
 from scanplan.lab.thesis import experiments
 from scanplan.project import export_formats, stage_settings
+from scanplan.project.building_file import find_building
 from scanplan.project.code_files import digest_helpers
 from scanplan.project.dataset import (
     RESERVED,
@@ -119,10 +120,14 @@ def thesis_if_fit():
 
 
 GIVEN = or_end(given_datasets)
+# two or more datasets in a folder with building.yaml are storeys of one building
+BUILDING = or_end(find_building, name_datasets(RUN["dataset"]))
 THESIS = or_end(thesis_if_fit)
 # a job's own process finds the note that its run has made
 if workflow.is_main_process and not IS_MODULE:
     for note in (note for found in GIVEN.values() for note in found.notes):
+        print(f"scanplan: {note}", file=sys.stderr)
+    for note in BUILDING.note_unaligned() if BUILDING else []:
         print(f"scanplan: {note}", file=sys.stderr)
     or_end(
         check_sources,
@@ -365,6 +370,13 @@ def of_all_datasets(*kinds):
         return [file for files_of in kinds for name in GIVEN for file in files_of(name)]
 
     return files
+
+
+def storeys_beside(wildcards):
+    """Names and datasets of the storeys of the job's building, from the lowest up; none where it is of none."""
+    storeys = BUILDING.storeys if BUILDING else ()
+    is_storey = wildcards.dataset in [storey.dataset for storey in storeys]
+    return [(s.name, s.dataset) for s in storeys] if is_storey else []
 
 
 wildcard_constraints:

@@ -148,6 +148,7 @@ rule write_report:
     params:
         code=code_of("write_report"),
         settings=all_settings,
+        storeys=storeys_beside,
         run_times=run_times([]),
     script:
         "../../scripts/write_report.py"
@@ -169,6 +170,7 @@ use rule write_report as write_comparison with:
     params:
         code=code_of("write_report"),
         settings=all_settings,
+        storeys=storeys_beside,
         run_times=run_times(
             METHODS,
             EXTRACTORS,

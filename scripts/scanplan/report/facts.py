@@ -65,6 +65,15 @@ class SurveyFacts:
 
 
 @dataclass(frozen=True)
+class Storey:
+    """A storey of the building: its name, where its report lies, and whether it is this one."""
+
+    name: str
+    href: str
+    is_shown: bool
+
+
+@dataclass(frozen=True)
 class RunFacts:
     """How it was made.
 
@@ -81,6 +90,8 @@ class RunFacts:
         What, file name, bytes.
     results : list of str
         What was made beside the page, as paths from its folder.
+    storeys : list of Storey
+        Of the building, from the lowest up; none where it is of none.
     corrections : list of dict
         Entries of the dataset's file of corrections, as they stand in it.
     version : str
@@ -91,5 +102,6 @@ class RunFacts:
     benchmarks: Mapping[str, str]
     sizes: Sequence[tuple[str, str, int]]
     results: Sequence[str]
+    storeys: Sequence[Storey]
     corrections: Sequence[Mapping[str, object]]
     version: str

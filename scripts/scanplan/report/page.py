@@ -92,6 +92,7 @@ def report_page(
         ],
         facts=wording.head_figures(plan, survey),
         links=result_links.link_results(run.results),
+        storeys=run.storeys,
         doubts=doubts.list_doubts(plan),
         plan=Markup(_plan_svg(plan, survey, points, of_plan["merge"])),
         chosen=survey.chosen,

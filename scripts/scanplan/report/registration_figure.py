@@ -82,12 +82,12 @@ def _draw_links(
     neighbours = _add_links(
         axes, ends_m[~is_loop], residual_m[~is_loop], limits_m, width=2.0, zorder=3
     )
-    n_loops = int(is_loop.sum())
-    n_neighbours = len(ends_m) - n_loops
     bar = figure.colorbar(neighbours, ax=axes, shrink=0.5, aspect=30, pad=0.02, extend="both")
-    top_view.label_colour_bar(
-        bar, f"residual of a link (m): {n_neighbours} thick to neighbours, {n_loops} thin loops"
-    )
+    top_view.label_colour_bar(bar, "residual of a link (m)")
+    n_loops = int(is_loop.sum())
+    kinds = ((2.0, f"link to a neighbour ({len(ends_m) - n_loops})"), (0.5, f"loop ({n_loops})"))
+    for width, label in kinds:
+        axes.plot([], [], color="0.3", lw=width, label=label)
 
 
 def _add_links(

@@ -1,0 +1,1 @@
+"""Several storeys as one building: their models and drawings put together."""
