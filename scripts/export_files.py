@@ -1,6 +1,6 @@
 """Write the plan, and the way of the sensor, as files for other programs, with ids that stay."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -27,6 +27,7 @@ def export_files(
     source: str,
     settings: Settings,
     version: str = "",
+    unwanted: Iterable[FilePath] = (),
 ) -> None:
     """Write the ids of the plan's elements, and the files that are asked for.
 
@@ -46,6 +47,8 @@ def export_files(
         See `stage_settings.select_files`.
     version : str
         Of the code.
+    unwanted : iterable of path-like
+        Files of formats that were asked for before: they are removed, being of an older plan.
     """
     assumed_m = {key: settings[key] for key in ("assumed_thickness_m", "assumed_height_m")}
     drawn = floorplan.read_floorplan(plan, name, **assumed_m)
@@ -73,6 +76,8 @@ def export_files(
         content = writers[what]()
         binary = content.encode() if isinstance(content, str) else content
         atomic.write_bytes(outputs[what], binary)
+    for file in unwanted:
+        Path(file).unlink(missing_ok=True)
     if "gpkg" in outputs:
         layers = geopackage.plan_layers(drawn, rows) | _way_layers(registered)
         with atomic.replace_file(outputs["gpkg"]) as temporary:
@@ -124,7 +129,7 @@ def _way_layers(registered: RegisteredScans) -> dict[str, geopackage.Layer]:
     }
     return {
         "trajectory": geopackage.Layer("LINESTRING", way, {"n_scans": [len(places_m)]}),
-        "scans": geopackage.Layer("POINT", shapely.points(places_m), scans),
+        "scans": geopackage.Layer("POINT", np.asarray(shapely.points(places_m), object), scans),
     }
 
 
@@ -137,4 +142,5 @@ if __name__ == "__main__":
             source=snakemake.params.source,
             settings=snakemake.params.settings,
             version=snakemake.params.code,
+            unwanted=snakemake.params.unwanted,
         )

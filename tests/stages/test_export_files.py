@@ -91,8 +91,9 @@ def test_independent_readers_find_the_same_plan_in_all_files(plan, tmp_path):
 
 
 def test_walls_are_as_high_as_the_ceiling_that_the_scans_show(plan, tmp_path):
-    walls = exported_model(plan, tmp_path).by_type("IfcWall")
-    heights = [get_psets(wall)["Qto_WallBaseQuantities"]["Height"] for wall in walls]
+    model = exported_model(plan, tmp_path)
+    stated = [get_psets(wall)["Qto_WallBaseQuantities"] for wall in model.by_type("IfcWall")]
+    heights = [quantities["Height"] for quantities in stated]
     assert heights == pytest.approx([floorplan_making.HEIGHT_M + 0.1] * 6, abs=0.02)
 
 
@@ -120,6 +121,15 @@ def test_only_what_is_asked_for_is_written(plan, tmp_path):
     exported(plan, tmp_path / "few", ["rooms_csv"])
     written = {p.name for p in (tmp_path / "few").rglob("*") if p.is_file()}
     assert written == {"rooms.csv", "ids.parquet", "known_elements.parquet"}
+
+
+def test_files_of_formats_no_longer_asked_for_go(plan, tmp_path):
+    before = exported(plan, tmp_path)
+    outputs = {what: before[what] for what in ("ids", "known", "ifc")}
+    settings = stage_settings.select_files(SETTINGS)
+    unwanted = [before["glb"], tmp_path / "never.gpkg"]
+    export_files(plan, outputs, name="office", source="a", settings=settings, unwanted=unwanted)
+    assert not before["glb"].exists() and before["ifc"].exists()
 
 
 def test_a_second_run_gives_the_same_bytes_with_its_register_and_without(plan, tmp_path):
@@ -171,7 +181,10 @@ def test_a_planar_survey_has_the_assumed_height(plan, tmp_path):
     tables.write_table(plan["walls"], schemas.PLAN_WALLS, flat)
     model = exported_model(plan, tmp_path)
     wall = model.by_type("IfcWall")[0]
-    assert get_psets(wall)["Qto_WallBaseQuantities"]["Height"] == SETTINGS["assumed_height_m"]
+    assert (
+        get_psets(wall)["Qto_WallBaseQuantities"]["Height"]
+        == SETTINGS["plan"]["export"]["assumed_height_m"]
+    )
     assert get_psets(wall)["Scanplan_Evidence"]["HeightMeasured"] is False
 
 

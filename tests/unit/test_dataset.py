@@ -139,18 +139,19 @@ def test_a_folder_brings_its_settings_and_its_truth(known, tmp_path):
 
 
 def test_evaluation_is_a_result_where_there_is_a_truth():
-    settings = {"plan": {"method": "own"}}
+    settings = {"plan": {"method": "own", "export": {"formats": ["ifc"]}}}
     plain = dataset.Dataset("a", settings, ("a.bag",))
     known_truth = dataset.Dataset("a", settings, ("a.bag",), ("t", "p"))
     files = dataset.list_results(plain)
-    assert "results/a/selection/own.parquet" in files
+    assert {"results/a/selection/own.parquet", "results/a/plan/plan.ifc"} <= set(files)
+    assert "results/a/plan/plan.gpkg" not in files
     assert not any(f.startswith(("results/a/walls", "results/a/evaluation")) for f in files)
     more = set(dataset.list_results(known_truth)) - set(files)
     assert more == {f"results/a/evaluation/{table}.parquet" for table in ("plan", "poses")}
 
 
 def test_a_comparison_adds_the_other_orderings_and_the_walls_of_all_scans():
-    settings = {"plan": {"method": "own"}}
+    settings = {"plan": {"method": "own", "export": {"formats": ["ifc"]}}}
     plain = dataset.Dataset("a", settings, ("a.bag",))
     known_truth = dataset.Dataset("a", settings, ("a.bag",), ("t", "p"))
     files = dataset.list_comparison(plain, ["hull", "own"], ["ransac"])

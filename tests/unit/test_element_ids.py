@@ -46,11 +46,18 @@ def test_a_wall_that_moves_and_grows_a_little_keeps_its_id():
     assert after["global_id"].tolist() == known["global_id"].tolist()
 
 
-def test_half_of_what_either_covers_must_be_shared():
-    # with 0.1 m around: 4.2 m of 8.3 m, then of 8.5 m
+def test_half_of_the_smaller_must_lie_in_the_other():
+    # with 0.1 m around: 2.2 m of 4.2 m, then 2.0 m
     ids, known = first(wall(0, 4))
-    assert run(elements(wall(0, 8.1)), known)[0] == ids
-    assert run(elements(wall(0, 8.3)), known)[0] != ids
+    assert run(elements(wall(2, 9)), known)[0] == ids
+    assert run(elements(wall(2.2, 9)), known)[0] != ids
+    assert run(elements(wall(1, 2)), known)[0] == ids
+
+
+def test_walls_side_by_side_are_two():
+    # with 0.1 m around they are 0.3 m wide, and share 0.14 m
+    ids, known = first(wall(0, 4))
+    assert run(elements(wall(0, 4, y_m=0.16)), known)[0] != ids
 
 
 def test_of_the_parts_of_a_wall_the_longer_keeps_its_id():

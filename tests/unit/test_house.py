@@ -41,6 +41,8 @@ HOMES = {
     "jsonschema": ("project/",),
     "ezdxf": ("exports/",),
     "ifcopenshell": ("exports/", "lab/buildings/"),
+    "laspy": ("exports/data/point_cloud.py",),
+    "sqlite3": ("exports/data/geopackage.py",),
     "trimesh": ("lab/buildings/",),
     "jinja2": ("report/", "lab/thesis/"),
     "matplotlib": ("exports/", "report/", "lab/", "stage/figure_files.py"),

@@ -343,6 +343,13 @@ def exported_files(formats):
     return {what: f"results/{{dataset}}/{file}" for what, file in files.items()}
 
 
+def files_unasked_for(wildcards):
+    """The files of formats that are not chosen for the job's dataset."""
+    others = set(export_formats.FILES) - set(formats_of(wildcards.dataset))
+    files = export_formats.list_files(sorted(others)).values()
+    return [f"results/{wildcards.dataset}/{file}" for file in files]
+
+
 def source_of_results(wildcards):
     """What the results of the job's dataset are made of."""
     return DATASETS[wildcards.dataset].source

@@ -158,6 +158,8 @@ for number, formats in enumerate(chosen_formats()):
         params:
             code=code_of("export_files"),
             source=source_of_results,
+            # of an earlier choice, they would stay as they are while the plan changes
+            unwanted=files_unasked_for,
             settings=setting(stage_settings.select_files),
         script:
             "../../scripts/export_files.py"

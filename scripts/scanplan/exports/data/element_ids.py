@@ -50,9 +50,10 @@ def list_elements(plan: FloorPlan) -> Elements:
 def identify_elements(elements: Elements, known: Columns, name: str) -> list[str]:
     """Return the GlobalId of each element: that of a known one in its place, or a new one.
 
-    Of all ways to pair elements with known ones of their kind, that with the largest sum of shared
-    areas (intersection over union, each with 0.1 m around it) is taken, and in it what shares at
-    least half. Elements that were known as they are keep their ids whatever else is known.
+    Two of a kind may be the same if half of the smaller lies in the other, each with 0.1 m around
+    it: of a wall more or less is drawn. Of all ways to pair such elements that with the largest sum
+    of intersections over unions is taken. Elements that were known as they are keep their ids
+    whatever else is known.
 
     Parameters
     ----------
@@ -74,7 +75,7 @@ def identify_elements(elements: Elements, known: Columns, name: str) -> list[str
         known_rows = np.flatnonzero(known["kind"] == kind)
         shared = _shared_areas(elements.shapes[rows], shapes[known_rows])
         pairs = np.column_stack(linear_sum_assignment(shared, maximize=True))
-        kept = pairs[shared[*pairs.T] >= 1 / 2]
+        kept = pairs[shared[*pairs.T] > 0]
         ids[rows[kept[:, 0]]] = known["global_id"][known_rows[kept[:, 1]]]
     taken = set(known["global_id"].tolist())
     for row in np.flatnonzero(ids == ""):
@@ -138,15 +139,16 @@ def _table(plan: FloorPlan, kind: str) -> Columns:
 
 
 def _shared_areas(shapes: Array, known: Array) -> FloatArray:
-    """Return the intersection over union (n, k) of shapes and known ones."""
+    """Return the intersection over union (n, k) of shapes and known ones; 0 where too little."""
     grown = shapely.buffer(shapes, NEAR_M, join_style="mitre")
     grown_known = shapely.buffer(known, NEAR_M, join_style="mitre")
     shared = np.zeros((len(shapes), len(known)))
     tree = shapely.STRtree(grown_known)
     rows, others = tree.query(grown, predicate="intersects")
     common = shapely.area(shapely.intersection(grown[rows], grown_known[others]))
-    both = shapely.area(grown)[rows] + shapely.area(grown_known)[others] - common
-    shared[rows, others] = common / both
+    areas, known_areas = shapely.area(grown)[rows], shapely.area(grown_known)[others]
+    is_enough = common >= np.minimum(areas, known_areas) / 2
+    shared[rows, others] = np.where(is_enough, common / (areas + known_areas - common), 0.0)
     return shared
 
 

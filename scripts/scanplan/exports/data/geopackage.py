@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import shapely
+from shapely.geometry.base import BaseGeometry
 
 from scanplan.exports.data.element_tables import Rows
 from scanplan.plan.floorplan import FloorPlan
@@ -134,7 +135,7 @@ def _column_type(values: list[Any]) -> str:
     return _TYPES[type(known[0])] if known else "DOUBLE"
 
 
-def _encode(shape: shapely.Geometry) -> bytes:
+def _encode(shape: BaseGeometry) -> bytes:
     """Return a geometry as GeoPackage's binary: a header with its bounds, then WKB."""
     has_bounds = not shape.is_empty
     flags = 0b1 | has_bounds << 1 | shape.is_empty << 4

@@ -130,7 +130,7 @@ def _solid_parts(
 ) -> Iterator[tuple[BaseGeometry, tuple[float, float]]]:
     """Yield what is solid of a wall, as areas and from where to where above the floor."""
     height_m = float(plan.heights_m[row])
-    own = np.flatnonzero(plan.hosts == row)
+    own = np.flatnonzero(plan.hosts == row).tolist()
     yield shapely.difference(body, shapely.union_all(plan.gaps[own])), (0.0, height_m)
     for opening in own:
         low_m, high_m = vertical_extent_m(plan, opening)

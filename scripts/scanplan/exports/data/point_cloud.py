@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from datetime import UTC, datetime
+from pathlib import Path
 
 import laspy
 import numpy as np
@@ -38,9 +39,12 @@ def write_laz(
     """
     cells = _SeenCells(cell_m)
     n_points = n_kept = 0
-    with laspy.open(
-        path, mode="w", header=_header(t_ns), laz_backend=laspy.LazBackend.Lazrs, do_compress=True
-    ) as file:
+    with (
+        Path(path).open("w+b") as stream,
+        laspy.LasWriter(
+            stream, _header(t_ns), do_compress=True, laz_backend=laspy.LazBackend.Lazrs
+        ) as file,
+    ):
         for scan_id, xyz_m in scans:
             kept_m = xyz_m[cells.add(xyz_m)]
             record = laspy.ScaleAwarePointRecord.zeros(len(kept_m), header=file.header)
@@ -55,7 +59,7 @@ def write_laz(
 
 def _header(t_ns: int) -> laspy.LasHeader:
     header = laspy.LasHeader(point_format=6, version="1.4")
-    header.add_extra_dim(laspy.ExtraBytesParams("scan_id", np.uint32, "scan of the recording"))
+    header.add_extra_dim(laspy.ExtraBytesParams("scan_id", "u4", "scan of the recording"))
     header.scales = np.full(3, _SCALE_M)
     header.offsets = np.zeros(3)
     header.generating_software = "scanplan"

@@ -81,7 +81,7 @@ def _order_places(plan: FloorPlan, places_m: FloatArray, rooms: list[int | None]
     areas = dict(zip(plan.rooms["room"].tolist(), plan.areas, strict=True))
 
     def off_m(ordered_m: FloatArray) -> float:
-        pairs = zip(rooms, shapely.points(ordered_m), strict=True)
+        pairs = zip(rooms, map(shapely.Point, ordered_m), strict=True)
         return sum(areas[room].distance(place) for room, place in pairs if room in areas)
 
     return min((places_m, places_m[::-1]), key=off_m)

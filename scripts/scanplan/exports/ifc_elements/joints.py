@@ -147,8 +147,8 @@ def _add_boundary(
 
 def _touching(bodies: Array) -> Iterator[tuple[int, int]]:
     """Yield the pairs of bodies that intersect, each once, in order."""
-    pairs = np.column_stack(shapely.STRtree(bodies).query(bodies, predicate="intersects"))
-    yield from sorted(map(tuple, pairs[pairs[:, 0] < pairs[:, 1]].tolist()))
+    ones, others = shapely.STRtree(bodies).query(bodies, predicate="intersects").tolist()
+    yield from sorted((one, other) for one, other in zip(ones, others, strict=True) if one < other)
 
 
 def _part_at(line_m: FloatArray, place_m: FloatArray, width_m: float) -> str:

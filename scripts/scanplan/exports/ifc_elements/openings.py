@@ -76,7 +76,8 @@ def _add_opening(
         void = _add_void(model, own_id, gap, extent_m, attributes)
         model.join("IfcRelVoidsElement", void, RelatingBuildingElement=walls[host])
         _describe_opening(model, storey, row, void)
-        depth_m = float(plan.bodies[host].intersection(plan.gaps[row]).area / frame.length_m)
+        cut = shapely.intersection(plan.bodies[host], plan.gaps[row])
+        depth_m = float(shapely.area(cut)) / frame.length_m
         _measure_void(model, void, frame.length_m, extent_m, depth_m)
     if kind not in _FILLED_BY:
         return Opening(void, None)

@@ -83,7 +83,7 @@ def _measure_wall(model: IfcModel, storey: StoreyPlan, row: int, wall: entity_in
 def _cut_out(plan: FloorPlan, row: int) -> tuple[float, float]:
     """Return the area, seen from the side, and the volume of the openings in a wall."""
     area_m2 = volume_m3 = 0.0
-    for opening in np.flatnonzero(plan.hosts == row):
+    for opening in np.flatnonzero(plan.hosts == row).tolist():
         low_m, high_m = vertical_extent_m(plan, opening)
         area_m2 += float(plan.openings["width_m"][opening]) * (high_m - low_m)
         volume_m3 += plan.bodies[row].intersection(plan.gaps[opening]).area * (high_m - low_m)

@@ -24,7 +24,7 @@ def describe_results(name: str) -> str:
     beside = f", {compared}" if Path(compared).exists() else ""
     return (
         f"\n{name}\n{found}"
-        f"plan     {folder}/plan/plan.pdf (also .svg, .dxf, .ifc, .geojson and map.pgm)\n"
+        f"plan     {folder}/plan/plan.pdf (also .svg, .dxf, .geojson, map.pgm and more)\n"
         f"report   {folder}/report.html{beside}"
     )
 
