@@ -59,7 +59,7 @@ rule validate_plan:
 
 
 rule export_plan:
-    """Write the plan as GeoJSON, DXF, SVG, PDF, IFC and as a map for nav2."""
+    """Write the plan as GeoJSON, DXF, SVG, PDF, PNG, IFC and as a map for nav2."""
     input:
         faces="results/{dataset}/plan/faces.parquet",
         walls="results/{dataset}/plan/walls.parquet",
@@ -77,6 +77,7 @@ rule export_plan:
             labels={"figure": "1 floor plan"},
         ),
         pdf="results/{dataset}/plan/plan.pdf",
+        png="results/{dataset}/plan/plan.png",
         ifc="results/{dataset}/plan/plan.ifc",
         pgm="results/{dataset}/plan/map.pgm",
         yaml="results/{dataset}/plan/map.yaml",
