@@ -142,6 +142,8 @@ class _Plan:
         start, end = dimension.ends_m
         line = dimension.line_m
         x, y = line[1] - line[0]
+        # a line on what it measures has no extension lines
+        is_bare = int(np.allclose(line, dimension.ends_m))
         made = self._space.add_linear_dim(
             base=self._point(line[0]),
             p1=self._point(start),
@@ -149,6 +151,7 @@ class _Plan:
             angle=float(np.degrees(np.arctan2(y, x))),
             location=self._point(dimension.word.place),
             dimstyle=dxf_document.DIMENSIONS,
+            override={"dimse1": is_bare, "dimse2": is_bare},
             dxfattribs={"layer": STYLES["dimension"].layer},
         )
         made.render()

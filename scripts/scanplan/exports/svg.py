@@ -5,7 +5,13 @@ from html import escape
 from itertools import groupby
 
 from scanplan.exports.sheet.composition import Sheet, paper_marks, paper_words
-from scanplan.exports.sheet.lettering import FONT, font_size_mm, measure_width_mm, rotation
+from scanplan.exports.sheet.lettering import (
+    FONT,
+    clean_text,
+    font_size_mm,
+    measure_width_mm,
+    rotation,
+)
 from scanplan.exports.sheet.marks import Mark, Word
 from scanplan.exports.sheet.styles import STYLES
 from scanplan.types import FloatArray
@@ -53,8 +59,9 @@ def _format_mark(mark: Mark, height: float) -> str:
     drawn = "".join(_format_path(path, height, closed=mark.closed) for path in mark.paths)
     name = f' id="{escape(mark.element)}"' if mark.element else ""
     doubt = ' class="doubtful"' if mark.verify else ""
-    if mark.title:
-        return f'<path{name}{doubt} d="{drawn}"><title>{escape(mark.title)}</title></path>'
+    title = escape(clean_text(mark.title))
+    if title:
+        return f'<path{name}{doubt} d="{drawn}"><title>{title}</title></path>'
     return f'<path{name}{doubt} d="{drawn}"/>'
 
 

@@ -18,7 +18,7 @@ from scanplan.exports.sheet.title import SheetFacts
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.plan.tolerances import END_M
-from scanplan.types import Columns, FloatArray
+from scanplan.types import FloatArray
 
 
 @dataclass(frozen=True)
@@ -62,28 +62,23 @@ def compose_sheet(plan: FloorPlan, facts: SheetFacts | None = None, *, turn: boo
         Whether the plan is turned so that its main walls run along the sheet.
     """
     facts = facts or SheetFacts()
-    marks = [
-        *content.draw_walls(plan),
-        *content.draw_axes(plan),
-        *content.draw_doubts(plan),
-    ]
+    marks = [*content.draw_walls(plan), *content.draw_axes(plan), *content.draw_doubts(plan)]
     symbols = content.list_symbols(plan)
-    doubtful = {"verify"} if any(content.is_doubtful(c).any() for c in _tables(plan)) else set()
-    legend = title.list_legend(marks, {symbol.kind for symbol in symbols} | doubtful)
+    legend = _list_legend(plan, marks, symbols)
     # the scale bar with the axes takes six rows
     blocks = [6, len(legend), len(plan.areas)]
     turn_deg = -plan.main_direction_deg if turn else 0.0
     page = choose_page(*_extent(marks, symbols, turn_deg), turn_deg, blocks)
-    bar, *slots = fill_slots(page.slots(), blocks) or []
+    bar, legend_slots, table_slots = fill_slots(page.slots(), blocks) or ([], [], [])
     beside: list[Mark | Word] = [
         *title.draw_frame(page),
         *title.draw_title_block(page, plan, facts),
         *title.draw_scale_bar(page, bar[0]),
-        *title.draw_legend(legend, slots[0]),
+        *title.draw_legend(legend, legend_slots),
     ]
     space = _open_space(page, marks, symbols)
     stamps = words.stamp_rooms(page, plan, space)
-    beside += title.draw_room_table(stamps, slots[1])
+    beside += title.draw_room_table(stamps, table_slots)
     drawn = _dimension(page, plan, marks, symbols, space)
     is_stated = _find_stated(symbols, drawn)
     rooms = [
@@ -109,8 +104,12 @@ def compose_sheet(plan: FloorPlan, facts: SheetFacts | None = None, *, turn: boo
     )
 
 
-def _tables(plan: FloorPlan) -> tuple[Columns, ...]:
-    return plan.walls, plan.openings, plan.rooms
+def _list_legend(plan: FloorPlan, marks: list[Mark], symbols: list[Symbol]) -> list[str]:
+    kinds = {symbol.kind for symbol in symbols}
+    tables = (plan.walls, plan.openings, plan.rooms)
+    if any(content.is_doubtful(columns).any() for columns in tables):
+        kinds.add("verify")
+    return title.list_legend(marks, kinds)
 
 
 def _extent(

@@ -76,15 +76,22 @@ def _find_facades(outline: BaseGeometry, gap: float) -> list[_Facade]:
         ring = shapely.get_coordinates(shapely.orient_polygons(part).exterior)
         for (x0, y0), (x1, y1) in itertools.pairwise(ring):
             # counterclockwise, what runs to the right is below
-            if x1 - x0 > 5 * gap and abs(y1 - y0) <= _SQUARE * (x1 - x0):
+            if x1 - x0 > 0 and abs(y1 - y0) <= _SQUARE * (x1 - x0):
                 edges.append(_Facade(x0, x1, (y0 + y1) / 2))
     seen: list[_Facade] = []
     for edge in sorted(edges, key=lambda e: e.y):
         hidden = [(other.x0, other.x1) for other in seen]
         for x0, x1 in _cut_intervals((edge.x0, edge.x1), hidden):
-            if x1 - x0 > 5 * gap:
+            if x1 - x0 > 0:
                 seen.append(_Facade(x0, x1, edge.y))
-    return sorted(seen, key=lambda e: e.x0)
+    joined: list[_Facade] = []
+    for facade in sorted(seen, key=lambda e: e.x0):
+        last = joined[-1] if joined else None
+        if last and facade.x0 - last.x1 <= gap and abs(facade.y - last.y) <= gap:
+            joined[-1] = _Facade(last.x0, facade.x1, min(last.y, facade.y))
+        else:
+            joined.append(facade)
+    return [facade for facade in joined if facade.x1 - facade.x0 > 5 * gap]
 
 
 def _cut_intervals(
