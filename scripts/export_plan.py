@@ -1,13 +1,19 @@
 """Write the plan in the formats that drawing, building and navigation programs read."""
 
 from collections.abc import Mapping
+from datetime import UTC, datetime
 from pathlib import Path
 
-from scanplan.exports import drawing, dxf, geojson, grid_map
+import numpy as np
+
+from scanplan.exports import drawing, dxf, geojson, grid_map, svg
+from scanplan.exports.sheet import composition
+from scanplan.exports.sheet.title import SheetFacts
 from scanplan.plan import floorplan
+from scanplan.project import code_files
 from scanplan.stage import figure_files, log
 from scanplan.store import atomic, schemas, tables
-from scanplan.types import FilePath, Settings
+from scanplan.types import Columns, FilePath, Settings
 
 
 def export_plan(
@@ -16,8 +22,9 @@ def export_plan(
     *,
     name: str,
     settings: Settings,
+    version: str = "",
 ) -> None:
-    """Write a plan as GeoJSON, DXF, SVG, PDF and as a map for nav2.
+    """Write a plan as GeoJSON, DXF, SVG, PDF, PNG and as a map for nav2.
 
     Parameters
     ----------
@@ -25,26 +32,44 @@ def export_plan(
         `faces`, `walls`, `openings`, `rooms`, `free` and `evidence` of plan/; the file of `free`
         states the heights of floor and ceiling.
     outputs : dict of str to path-like
-        `geojson`, `dxf`, `svg`, `pdf`, `pgm` and `yaml`, to write.
+        `geojson`, `dxf`, `svg`, `pdf`, `png`, `pgm` and `yaml`, to write.
     name : str
     settings : dict
         `assumed_thickness_m` and `assumed_height_m`, see `floorplan.FloorPlan`; `map_cell_m`, edge
-        of the map's cells.
+        of the map's cells; `turn`, `project` and `storey` of the sheet, see
+        `composition.compose_sheet`; `dxf_unit`, mm or m.
+    version : str
+        Of the software, for the title block.
     """
     evidence = tables.read_table(plan["evidence"], schemas.EVIDENCE, allow_empty=True)
     assumed_m = {key: settings[key] for key in ("assumed_thickness_m", "assumed_height_m")}
     drawn = floorplan.read_floorplan(plan, name, **assumed_m)
-    sheet = drawing.draw_plan(drawn)
+    facts = _survey_facts(evidence, settings, version)
+    sheet = composition.compose_sheet(drawn, facts, turn=settings["turn"])
+    figure = drawing.draw_sheet(sheet)
     grid = grid_map.draw_grid_map(drawn, settings["map_cell_m"])
     atomic.write_text(outputs["geojson"], geojson.format_geojson(drawn, evidence))
-    atomic.write_text(outputs["dxf"], dxf.format_dxf(drawn))
-    atomic.write_text(outputs["svg"], figure_files.format_svg(sheet))
-    atomic.write_bytes(outputs["pdf"], figure_files.format_pdf(sheet))
+    atomic.write_text(outputs["dxf"], dxf.format_dxf(sheet, settings["dxf_unit"]))
+    atomic.write_text(outputs["svg"], svg.format_svg_sheet(sheet))
+    atomic.write_bytes(
+        outputs["pdf"], figure_files.format_pdf(figure, f"Floor plan of {sheet.name}")
+    )
+    atomic.write_bytes(outputs["png"], figure_files.format_png(figure))
     atomic.write_bytes(outputs["pgm"], grid_map.format_pgm(grid))
     atomic.write_text(outputs["yaml"], grid_map.format_map_yaml(grid, Path(outputs["pgm"]).name))
-    log.log_line(
-        f"export_plan: {floorplan.summarise_floorplan(drawn)}; {_summarise_heights(drawn)}"
-    )
+    on_paper = f"1:{sheet.page.scale} on {sheet.page.name}"
+    contents = floorplan.summarise_floorplan(drawn)
+    log.log_line(f"export_plan: {contents}; {_summarise_heights(drawn)}; {on_paper}")
+
+
+def _survey_facts(evidence: Columns, settings: Settings, version: str) -> SheetFacts:
+    t_ns = evidence["t_ns"]
+    surveyed = "not known"
+    if len(t_ns):
+        surveyed = datetime.fromtimestamp(int(t_ns.min()) / 1e9, UTC).strftime("%Y-%m-%d")
+    n_scans = len(np.unique(evidence["scan_id"]))
+    project, storey = settings["project"] or "", settings["storey"] or ""
+    return SheetFacts(project, storey, surveyed, n_scans, version)
 
 
 def _summarise_heights(plan: floorplan.FloorPlan) -> str:
@@ -63,4 +88,5 @@ if __name__ == "__main__":
             dict(snakemake.output.items()),
             name=snakemake.wildcards.dataset,
             settings=snakemake.params.settings,
+            version=f"scanplan, code {code_files.digest_code()}",
         )

@@ -11,7 +11,10 @@ from helpers import floorplan_making
 from scanplan.errors import StageError
 from scanplan.store import schemas, tables
 
-SETTINGS = {"assumed_thickness_m": 0.1, "assumed_height_m": 2.5, "map_cell_m": 0.05}
+SETTINGS = {
+    "assumed_thickness_m": 0.1, "assumed_height_m": 2.5, "map_cell_m": 0.05,
+    "turn": True, "project": None, "storey": None, "dxf_unit": "mm",
+}  # fmt: skip
 TABLES = {
     "faces": (schemas.FACES, floorplan_making.faces),
     "walls": (schemas.PLAN_WALLS, floorplan_making.walls),
@@ -22,6 +25,7 @@ TABLES = {
 }
 NAMES = {
     "geojson": "plan.geojson", "dxf": "plan.dxf", "svg": "plan.svg", "pdf": "plan.pdf",
+    "png": "plan.png",
     "pgm": "map.pgm", "yaml": "map.yaml",
 }  # fmt: skip
 
@@ -45,10 +49,12 @@ def test_all_files_hold_the_same_plan(plan, tmp_path):
     files = exported(plan, tmp_path / "plan")
     kinds = [f["properties"]["kind"] for f in json.loads(files["geojson"].read_text())["features"]]
     assert [kinds.count(kind) for kind in ("face", "wall", "opening", "room")] == [9, 6, 3, 2]
-    assert len(ezdxf.readfile(files["dxf"]).modelspace().query('LWPOLYLINE[layer=="ROOMS"]')) == 2
+    assert len(ezdxf.readfile(files["dxf"]).modelspace().query('LWPOLYLINE[layer=="A-AREA"]')) == 2
     drawn = {e.get("id") for e in ElementTree.parse(files["svg"]).iter()}
     assert {"door-0", "door-1", "window-2"} <= drawn
     assert files["pdf"].read_bytes().startswith(b"%PDF")
+    with Image.open(files["png"]) as picture:
+        assert max(picture.size) == 2400
     about = yaml.safe_load(files["yaml"].read_text())
     with Image.open(files["yaml"].parent / about["image"]) as image:
         width, height = image.size

@@ -90,7 +90,7 @@ rule validate_plan:
 
 
 rule export_plan:
-    """Write the plan as GeoJSON, DXF, SVG, PDF and as a map for nav2."""
+    """Write the plan as GeoJSON, DXF, SVG, PDF, PNG and as a map for nav2."""
     input:
         faces=plan_table("faces"),
         walls=plan_table("walls"),
@@ -108,6 +108,7 @@ rule export_plan:
             labels={"figure": "1 floor plan"},
         ),
         pdf="results/{dataset}/plan/plan.pdf",
+        png="results/{dataset}/plan/plan.png",
         pgm="results/{dataset}/plan/map.pgm",
         yaml="results/{dataset}/plan/map.yaml",
     log:

@@ -1,158 +1,297 @@
-"""The plan as DXF, for CAD programs."""
+"""The sheet of a plan as DXF, for CAD programs."""
 
-import io
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-
-import ezdxf
 import numpy as np
 import shapely
 from ezdxf import zoom
 from ezdxf.document import Drawing
-from ezdxf.enums import InsertUnits, TextEntityAlignment
-from ezdxf.filemanagement import new
-from ezdxf.layouts.layout import Modelspace
-from scipy import constants
-from shapely.geometry.base import BaseGeometry
+from ezdxf.entities.dxfgfx import DXFGraphic
+from ezdxf.entities.insert import Insert
+from ezdxf.enums import TextEntityAlignment
+from ezdxf.layouts.base import BaseLayout
+from ezdxf.layouts.layout import Modelspace, Paperspace
 
-from scanplan.exports.drawing_style import LAYERS, STROKES, read_along
-from scanplan.plan import floorplan
-from scanplan.plan.floorplan import FloorPlan
-from scanplan.types import Array, FloatArray
+from scanplan.exports import dxf_document
+from scanplan.exports.dxf_document import APPLICATION, Scale
+from scanplan.exports.sheet.composition import Sheet, surround_symbol
+from scanplan.exports.sheet.lettering import clean_text
+from scanplan.exports.sheet.marks import Dimension, Facts, Mark, Stamp, Symbol, Word
+from scanplan.exports.sheet.paper import Page
+from scanplan.exports.sheet.styles import LAYERS, STYLES, Letters, Paper, doubt_layer
+from scanplan.exports.sheet.symbols import block_scales, choose_block, symbol_angle_deg
+from scanplan.exports.sheet.title import TITLE_TAG
+from scanplan.types import FloatArray
 
-WALLS, INFERRED, OPENINGS, ROOMS, TEXT = LAYERS
-_VERSION = "R2010"  # AC1024, which all current CAD programs read
-_LINE_TYPE = "DASHED"  # ISO 128-2's dashed line, by the name that AutoCAD has for it
-_SCALE = 100  # on paper at this scale dashes are as in the drawing
-_TEXT_M = 0.2  # and letters
-_LINE_SPACING = 1.5  # of a text's height, and of its middle from a line: about ISO 3098's
+_HATCHES = {"wall": "SOLID", "assumed": "ANSI31", "scale-bar": "SOLID"}
+_ALIGNMENTS = {
+    0.0: TextEntityAlignment.MIDDLE_LEFT,
+    0.5: TextEntityAlignment.MIDDLE_CENTER,
+    1.0: TextEntityAlignment.MIDDLE_RIGHT,
+}
 
 
-def format_dxf(plan: FloorPlan) -> str:
-    """Return a plan as the text of a DXF R2010 file, in metres.
+def format_dxf(sheet: Sheet, unit: str = "mm") -> str:
+    """Return a sheet as the text of a DXF R2010 file.
 
-    Walls of known thickness are closed outlines (double lines) with their openings cut out,
-    surfaces with nothing known behind them single lines; what is inferred lies on a layer of its
-    own. Every opening is a line as long as it is wide, with two more along the surfaces for a
-    window in a wall of known thickness; every room is a closed outline.
+    The model space holds the plan in the frame of the map: hatched outlines of walls, blocks with
+    attributes for openings and room stamps, dimensions, and what is doubtful on layers of its own;
+    rooms, lines of walls (a layer that is off) and openings carry what is known of them as extended
+    data. The layout holds the sheet: its frame, title block and tables, and a viewport in which the
+    plan is turned and to scale.
 
     Parameters
     ----------
-    plan : floorplan.FloorPlan
+    sheet : Sheet
+    unit : str
+        mm or m: of the model space.
 
     Returns
     -------
     str
-        The same for the same plan: no time, no random identifier.
+        The same for the same sheet: no time, no random identifier.
 
     Raises
     ------
     ValueError
         If the drawing does not pass the audit of ezdxf.
     """
-    with _fixed_metadata():
-        document = _new_document()
-        modelspace = document.modelspace()
-        _add_walls(modelspace, plan)
-        _add_openings(modelspace, plan)
-        _add_rooms(modelspace, plan)
-        zoom.extents(modelspace)
-        _check_document(document)
-        # ezdxf would register these in the order of a set, which differs from run to run
-        for name in sorted(document.entitydb.dxf_types_in_use()):
-            document.classes.add_class(name)
-        text = io.StringIO()
-        document.write(text)
-    return text.getvalue()
+    scale = Scale(unit, sheet.page)
+    with dxf_document.fix_metadata():
+        document = dxf_document.open_document(unit, scale)
+        _Plan(document.modelspace(), sheet.page, scale).draw(sheet)
+        _draw_layout(document, sheet, scale)
+        _state_extent(document, sheet, scale)
+        return dxf_document.format_document(document)
 
 
-def _new_document() -> Drawing:
-    document = new(_VERSION, units=InsertUnits.Meters)
-    inferred = STROKES["inferred"]
-    width_m = LAYERS[inferred.layer].width_mm * constants.milli * _SCALE
-    dash_m, gap_m = (width_m * part for part in inferred.dashes)
-    pattern = [dash_m + gap_m, dash_m, -gap_m]
-    document.linetypes.add(_LINE_TYPE, pattern=pattern, description="Dashed __ __ __")
-    for name, layer in LAYERS.items():
-        # line weights are hundredths of a millimetre
-        made = document.layers.add(name, lineweight=round(layer.width_mm * 100), color=layer.colour)
-        if name == inferred.layer:
-            made.dxf.linetype = _LINE_TYPE
-    return document
+class _Plan:
+    """The plan in the model space."""
+
+    def __init__(self, space: Modelspace, page: Page, scale: Scale) -> None:
+        self._space = space
+        self._page = page
+        self._scale = scale
+
+    def draw(self, sheet: Sheet) -> None:
+        """Add all of the plan, what others must not cover last."""
+        order = list(STYLES)
+        marks = sorted(sheet.marks, key=lambda mark: order.index(mark.kind))
+        for mark in marks:
+            if mark.kind in _HATCHES:
+                _add_hatch(self._space, mark, self._scale.per_m, self._scale.per_mm)
+        for mark in marks:
+            _add_mark(self._space, mark, self._scale.per_m)
+        for symbol in sheet.symbols:
+            self._add_symbol(symbol)
+        for dimension in sheet.dimensions:
+            self._add_dimension(dimension)
+        for stamp in sheet.stamps:
+            self._add_stamp(stamp)
+        for word in sheet.words:
+            _add_text(self._space, word, self._scale.per_m, self._scale.per_mm)
+
+    def _add_symbol(self, symbol: Symbol) -> None:
+        layer = STYLES[symbol.kind].layer
+        along, across = np.array(block_scales(symbol)) * self._scale.per_m
+        insert = self._space.add_blockref(
+            choose_block(symbol),
+            self._point(symbol.ends_m[0]),
+            dxfattribs={
+                "layer": doubt_layer(layer) if symbol.verify else layer,
+                "xscale": along,
+                "yscale": across,
+                "zscale": along,
+                "rotation": symbol_angle_deg(symbol),
+            },
+        )
+        facts: Facts = {**symbol.facts, "element": symbol.element, "width_m": symbol.width_m}
+        middle = self._point(symbol.ends_m.mean(axis=0))
+        for tag, fact in dxf_document.SYMBOL_TAGS.items():
+            self._add_attribute(insert, tag, _format_fact(facts.get(fact)), middle, "A-ANNO-TEXT")
+        _attach_facts(insert, symbol.facts)
+        if symbol.verify:
+            around = surround_symbol(self._page, symbol) * self._scale.per_m
+            drawn = {"layer": doubt_layer(layer)}
+            self._space.add_lwpolyline(around.tolist(), close=True, dxfattribs=drawn)
+
+    def _add_attribute(
+        self, insert: Insert, tag: str, text: str, place: tuple[float, float], layer: str
+    ) -> None:
+        size = Letters.SMALL * self._scale.per_mm
+        drawn = {"layer": layer, "height": size, "style": dxf_document.TEXT_STYLE}
+        attribute = insert.add_attrib(tag, _plain_text(text), place, dxfattribs=drawn)
+        attribute.is_invisible = True
+
+    def _add_stamp(self, stamp: Stamp) -> None:
+        layer = STYLES["stamp"].layer
+        if not stamp.words:
+            return
+        first = stamp.words[0]
+        insert = self._space.add_blockref(
+            dxf_document.STAMP, self._point(first.place), dxfattribs={"layer": layer}
+        )
+        is_number = first.text.removesuffix(" ?") == stamp.facts["NUMBER"]
+        shown = dict(zip(("NUMBER" if is_number else "NAME", "AREA"), stamp.words, strict=False))
+        for tag in dxf_document.STAMP_TAGS:
+            if tag in shown:
+                _add_word_attribute(insert, tag, shown[tag], self._scale.per_m, self._scale.per_mm)
+            else:
+                place = self._point(first.place)
+                self._add_attribute(insert, tag, stamp.facts[tag], place, layer)
+
+    def _add_dimension(self, dimension: Dimension) -> None:
+        start, end = dimension.ends_m
+        line = dimension.line_m
+        x, y = line[1] - line[0]
+        # a line on what it measures has no extension lines
+        is_bare = int(np.allclose(line, dimension.ends_m))
+        made = self._space.add_linear_dim(
+            base=self._point(line[0]),
+            p1=self._point(start),
+            p2=self._point(end),
+            angle=float(np.degrees(np.arctan2(y, x))),
+            location=self._point(dimension.word.place),
+            dimstyle=dxf_document.DIMENSIONS,
+            override={"dimse1": is_bare, "dimse2": is_bare},
+            dxfattribs={"layer": STYLES["dimension"].layer},
+        )
+        made.render()
+
+    def _point(self, place_m: FloatArray) -> tuple[float, float]:
+        x, y = (place_m * self._scale.per_m).tolist()
+        return x, y
 
 
-def _add_walls(modelspace: Modelspace, plan: FloorPlan) -> None:
-    for state, layer in zip(floorplan.STATES, (WALLS, INFERRED), strict=True):
-        _add_outlines(modelspace, shapely.get_parts(plan.solid(state)), layer)
-        for line in plan.single(state):
-            _add_line(modelspace, shapely.get_coordinates(line), layer)
+def _draw_layout(document: Drawing, sheet: Sheet, scale: Scale) -> None:
+    """Add the sheet: what stands beside the plan, and a viewport that shows it."""
+    page = sheet.page
+    layout = document.layout("Layout1")
+    document.layouts.rename("Layout1", "Sheet")
+    assert isinstance(layout, Paperspace)
+    layout.page_setup(size=page.size_mm, margins=(0, 0, 0, 0), units="mm")
+    for mark in sheet.paper_marks:
+        if mark.kind in _HATCHES:
+            _add_hatch(layout, mark, 1.0, 1.0)
+    for mark in sheet.paper_marks:
+        for entity in _add_mark(layout, mark, 1.0):
+            # line types are made for the model
+            entity.dxf.ltscale = 1 / scale.per_mm
+    title = layout.add_blockref(dxf_document.TITLE, (0, 0), dxfattribs={"layer": "A-ANNO-TTLB"})
+    for word in sheet.paper_words:
+        if word.element.startswith(TITLE_TAG):
+            _add_word_attribute(title, word.element.removeprefix(TITLE_TAG), word, 1.0, 1.0)
+        else:
+            _add_text(layout, word, 1.0, 1.0)
+    x0, y0, x1, y1 = page.drawing_mm
+    port = layout.add_viewport(
+        center=((x0 + x1) / 2, (y0 + y1) / 2),
+        size=(x1 - x0, y1 - y0),
+        view_center_point=tuple((page.middle_m * scale.per_m).tolist()),
+        view_height=(y1 - y0) * scale.per_mm,
+        status=2,
+        dxfattribs={"layer": "A-ANNO-NPLT"},
+    )
+    port.dxf.view_twist_angle = page.turn_deg
+    for viewport in layout.viewports():
+        viewport.dxf.layer = port.dxf.layer
 
 
-def _add_outlines(
-    modelspace: Modelspace, polygons: Array | Sequence[BaseGeometry], layer: str
-) -> None:
-    if len(polygons) == 0:
-        return
-    for ring in shapely.get_rings(np.asarray(polygons, object)):
-        corners_m = shapely.get_coordinates(ring)[:-1].tolist()
-        modelspace.add_lwpolyline(corners_m, close=True, dxfattribs={"layer": layer})
+def _state_extent(document: Drawing, sheet: Sheet, scale: Scale) -> None:
+    """State where the drawing is, and open its view there."""
+    space = document.modelspace()
+    corners = sheet.page.to_plan(_box_corners(sheet.page)) * scale.per_m
+    low, high = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
+    space.reset_extents((*low, 0), (*high, 0))
+    space.reset_limits(low, high)
+    zoom.window(space, low, high)
 
 
-def _add_line(modelspace: Modelspace, ends_m: FloatArray, layer: str) -> None:
-    start_m, end_m = ends_m.tolist()
-    modelspace.add_line(start_m, end_m, dxfattribs={"layer": layer})
+def _box_corners(page: Page) -> FloatArray:
+    return shapely.get_coordinates(shapely.box(*page.drawing_mm))
 
 
-def _add_openings(modelspace: Modelspace, plan: FloorPlan) -> None:
-    columns = plan.openings
-    for row, line in enumerate(floorplan.centrelines_m(columns)):
-        modelspace.add_lwpolyline(line.tolist(), dxfattribs={"layer": OPENINGS})
-        along = read_along(line)
-        left = np.array([-along[1], along[0]])
-        half_m = columns["thickness_m"][row] / 2
-        if columns["type"][row] == "window" and np.isfinite(half_m):
-            for side_m in (-half_m, half_m):
-                _add_line(modelspace, line + side_m * left, OPENINGS)
-        beside_m = line.mean(axis=0) + _LINE_SPACING * _TEXT_M * left
-        turn_deg = np.degrees(np.arctan2(along[1], along[0]))
-        _add_text(modelspace, f"{columns['width_m'][row]:.2f}", beside_m.tolist(), turn_deg)
+def _add_mark(space: BaseLayout, mark: Mark, factor: float) -> list[DXFGraphic]:
+    layer = STYLES[mark.kind].layer
+    if mark.verify:
+        layer = doubt_layer("A-WALL" if mark.kind == "verify" else layer)
+    entities: list[DXFGraphic] = []
+    for path in mark.paths:
+        corners = path * [factor, factor, 1]
+        if mark.closed:
+            corners = corners[:-1]
+        points = [tuple(corner) for corner in corners.tolist()]
+        entity = space.add_lwpolyline(
+            points, format="xyb", close=mark.closed, dxfattribs={"layer": layer}
+        )
+        _attach_facts(entity, mark.facts)
+        entities.append(entity)
+    return entities
 
 
-def _add_rooms(modelspace: Modelspace, plan: FloorPlan) -> None:
-    _add_outlines(modelspace, plan.areas, ROOMS)
-    names = ("room", "area_m2", "x_m", "y_m")
-    columns = [plan.rooms[name].tolist() for name in names]
-    for room, area_m2, x_m, y_m in zip(*columns, strict=True):
-        _add_text(modelspace, f"Room {room}", (x_m, y_m))
-        below_m = y_m - _LINE_SPACING * _TEXT_M
-        _add_text(modelspace, f"{area_m2:.1f} m2", (x_m, below_m))
+def _add_hatch(space: BaseLayout, mark: Mark, factor: float, per_mm: float) -> None:
+    hatch = space.add_hatch(dxfattribs={"layer": "A-WALL-PATT"})
+    pattern = _HATCHES[mark.kind]
+    if pattern == "SOLID":
+        hatch.set_solid_fill(color=LAYERS["A-WALL-PATT"].colour)
+    else:
+        hatch.set_pattern_fill(
+            pattern, scale=Paper.HATCH * per_mm / 3.175
+        )  # the pattern's own distance
+    for number, path in enumerate(mark.paths):
+        corners = path[:-1, :2] * factor
+        # the first path is the outline, others are holes
+        hatch.paths.add_polyline_path(corners.tolist(), flags=1 if number == 0 else 16)
 
 
-def _add_text(
-    modelspace: Modelspace,
-    words: str,
-    middle_m: Sequence[float],
-    turn_deg: float | None = None,
-) -> None:
-    text = modelspace.add_text(words, height=_TEXT_M, dxfattribs={"layer": TEXT})
-    if turn_deg is not None:
-        text.dxf.rotation = turn_deg
-    text.set_placement(middle_m, align=TextEntityAlignment.MIDDLE_CENTER)
+def _add_text(space: BaseLayout, word: Word, factor: float, per_mm: float) -> None:
+    text = space.add_text(
+        _plain_text(word.text),
+        height=word.size_mm * per_mm,
+        rotation=word.turn_deg,
+        dxfattribs={"layer": STYLES[word.kind].layer, "style": dxf_document.TEXT_STYLE},
+    )
+    place = (word.place * factor).tolist()
+    text.set_placement(place, align=_ALIGNMENTS[word.align])
+    if word.leader is not None:
+        leader = (word.leader * factor).tolist()
+        space.add_lwpolyline(leader, dxfattribs={"layer": STYLES["leader"].layer})
 
 
-def _check_document(document: Drawing) -> None:
-    faults = document.audit().errors
-    if faults:
-        raise ValueError(f"the drawing has {len(faults)} faults, the first: {faults[0].message}")
+def _add_word_attribute(insert: Insert, tag: str, word: Word, factor: float, per_mm: float) -> None:
+    drawn = {
+        "layer": STYLES[word.kind].layer,
+        "style": dxf_document.TEXT_STYLE,
+        "height": word.size_mm * per_mm,
+        "rotation": word.turn_deg,
+    }
+    place = (word.place * factor).tolist()
+    attribute = insert.add_attrib(tag, _plain_text(word.text), dxfattribs=drawn)
+    attribute.set_placement(place, align=_ALIGNMENTS[word.align])
 
 
-@contextmanager
-def _fixed_metadata() -> Iterator[None]:
-    # ezdxf documents its options under this name, but does not declare it
-    options = ezdxf.options  # pyright: ignore[reportPrivateImportUsage]
-    before = options.write_fixed_meta_data_for_testing
-    options.write_fixed_meta_data_for_testing = True
-    try:
-        yield
-    finally:
-        options.write_fixed_meta_data_for_testing = before
+def _attach_facts(entity: DXFGraphic, facts: Facts) -> None:
+    """Attach what is known of an element as extended data: names, each with its value.
+
+    A string of extended data has at most 255 bytes.
+    """
+    tags: list[tuple[int, str | float | int]] = []
+    for name, value in facts.items():
+        tags.append((1000, name))
+        if isinstance(value, str):
+            tags.append((1000, clean_text(value).encode()[:250].decode(errors="ignore")))
+        elif isinstance(value, float):
+            tags.append((1040, value))
+        else:
+            tags.append((1071, int(value)))
+    if tags:
+        entity.set_xdata(APPLICATION, tags)
+
+
+def _format_fact(value: str | float | None) -> str:
+    if value is None:
+        return "not seen"
+    return f"{value:.2f}" if isinstance(value, float) else str(value)
+
+
+def _plain_text(text: str) -> str:
+    """Return a text in which no character is a command of CAD programs."""
+    return clean_text(text).replace("\\", "/").replace("%%", "% %").replace("^", "^ ")

@@ -188,6 +188,32 @@ class FloorPlan:
         return parts[shapely.length(parts) > 0]
 
     @cached_property
+    def assumed(self) -> BaseGeometry:
+        """The footprint of what is assumed behind walls seen from one side, less openings.
+
+        Rooms and the walls of known thickness are left out of it, but for what these have in
+        corners with assumed ones.
+        """
+        if self.thick.all():
+            return shapely.Polygon()
+        bodies = shapely.union_all(self.bodies, grid_size=_GRID_M)
+        others = shapely.union_all([*self.gaps, *self.known_bodies, *self.areas])
+        return shapely.difference(bodies, others, grid_size=_GRID_M)
+
+    @cached_property
+    def main_direction_deg(self) -> float:
+        """Direction of the wall that most length of walls is nearest to along or across.
+
+        In the map frame, at most 45 degrees from its x axis.
+        """
+        columns = self.walls if len(self.walls["wall"]) else self.faces
+        ways = np.diff(centrelines_m(columns), axis=1)[:, 0] @ np.array([1, 1j])
+        angles = np.angle(ways)
+        off = np.abs(np.sin(2 * (angles[:, None] - angles)))
+        best = float(np.degrees(angles[np.argmin(off @ np.abs(ways))]))
+        return best - 90 * round(best / 90)
+
+    @cached_property
     def storey_m(self) -> tuple[float, float]:
         """Height of the floor in the map frame and of the ceiling above it, metres.
 

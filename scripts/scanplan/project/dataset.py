@@ -36,7 +36,7 @@ _TABLES = (
     *("plan/segments", *_PLAN, *_VALIDATION),
 )
 _DRAWN = (
-    *(f"plan/plan.{suffix}" for suffix in ("geojson", "dxf", "svg", "pdf")),
+    *(f"plan/plan.{suffix}" for suffix in ("geojson", "dxf", "svg", "pdf", "png")),
     "plan/map.pgm",
     "plan/map.yaml",
     *(f"figures/{f}.svg" for f in ("registration", "scans", "walls", "validation")),

@@ -19,11 +19,22 @@ def format_svg(figure: Figure) -> str:
     return text.getvalue()
 
 
-def format_pdf(figure: Figure) -> bytes:
+def format_pdf(figure: Figure, title: str | None = None) -> bytes:
     """Return a figure as PDF bytes that are the same for the same figure."""
-    metadata = {"CreationDate": None, "Creator": "scanplan", "Producer": None}
+    metadata = {"Title": title, "CreationDate": None, "Creator": "scanplan", "Producer": None}
     # 42: TrueType fonts, whose text can be searched
     with matplotlib.rc_context({"pdf.fonttype": 42}):
         page = io.BytesIO()
         figure.savefig(page, format="pdf", metadata=metadata)
     return page.getvalue()
+
+
+def format_png(figure: Figure, pixels: int = 2400) -> bytes:
+    """Return a figure as PNG bytes that are the same for the same figure, its longer side so long.
+
+    By default letters of an A3 sheet can be read.
+    """
+    picture = io.BytesIO()
+    resolution = pixels / max(figure.get_size_inches())
+    figure.savefig(picture, format="png", dpi=resolution, metadata={"Software": None})
+    return picture.getvalue()

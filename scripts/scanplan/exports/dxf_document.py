@@ -1,0 +1,156 @@
+"""A DXF document before anything is drawn: layers, line types, blocks, style of dimensions."""
+
+import io
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import ezdxf
+from ezdxf.document import Drawing
+from ezdxf.enums import InsertUnits
+from ezdxf.filemanagement import new
+from scipy import constants
+
+from scanplan.exports.sheet.paper import Page
+from scanplan.exports.sheet.styles import DASHES_MM, LAYERS, Letters, Paper
+from scanplan.exports.sheet.symbols import BLOCKS
+
+APPLICATION = "SCANPLAN"
+"""Of extended data: pairs of a column's name and its value."""
+DIMENSIONS = "SCANPLAN"
+"""The style of dimensions."""
+TEXT_STYLE = "SCANPLAN"
+STAMP = "ROOM-STAMP"
+TITLE = "TITLE-BLOCK"
+STAMP_TAGS = ("NUMBER", "NAME", "AREA", "PERIMETER", "HEIGHT", "CLOSED")
+SYMBOL_TAGS = {
+    "TAG": "element",
+    "WIDTH": "width_m",
+    "SILL": "sill_m",
+    "LINTEL": "lintel_m",
+    "RAYS": "n_rays",
+}
+"""Attributes of doors, windows and passages, and what of their facts they state."""
+UNITS = {"mm": InsertUnits.Millimeters, "m": InsertUnits.Meters}
+_PER_M = {"mm": 1 / constants.milli, "m": 1.0}
+_VERSION = "R2010"  # AC1024, which all current CAD programs read
+_FONT = "arial.ttf"  # narrower than the font that words were placed by
+
+
+class Scale:
+    """Units of a drawing.
+
+    Parameters
+    ----------
+    unit : str
+        mm or m.
+    page : Page
+
+    Attributes
+    ----------
+    per_m, per_mm : float
+        Units for a metre of the building, and for a millimetre on paper.
+    """
+
+    def __init__(self, unit: str, page: Page) -> None:
+        self.per_m = _PER_M[unit]
+        self.per_mm = self.per_m / page.mm_per_m
+
+
+def open_document(unit: str, scale: Scale) -> Drawing:
+    """Return a document without entities, whose letters and dashes are as on paper."""
+    document = new(_VERSION, units=UNITS[unit])
+    document.header["$MEASUREMENT"] = 1
+    document.header["$PSLTSCALE"] = 0
+    document.appids.add(APPLICATION)
+    for name, (dash_mm, gap_mm) in DASHES_MM.items():
+        dash, gap = dash_mm * scale.per_mm, gap_mm * scale.per_mm
+        document.linetypes.add(name, pattern=[dash + gap, dash, -gap], description=name.title())
+    for name, layer in LAYERS.items():
+        # line weights are hundredths of a millimetre
+        made = document.layers.add(
+            name,
+            lineweight=round(layer.width_mm * 100),
+            color=layer.colour,
+            linetype=layer.line_type,
+            plot=layer.plots,
+        )
+        if name == "A-WALL-CNTR":
+            made.off()
+    document.styles.add(TEXT_STYLE, font=_FONT)
+    _add_dimension_style(document, scale)
+    _add_blocks(document, scale)
+    return document
+
+
+def _add_dimension_style(document: Drawing, scale: Scale) -> None:
+    letters = Letters.SMALL * scale.per_mm
+    style = document.dimstyles.new(DIMENSIONS)
+    style.dxf.dimtxsty = TEXT_STYLE
+    style.dxf.dimtxt = letters
+    style.dxf.dimtsz = 0.7 * letters
+    style.dxf.dimexe = 0.7 * letters
+    style.dxf.dimexo = 0.7 * letters
+    style.dxf.dimgap = letters / 2
+    style.dxf.dimtad = 1
+    style.dxf.dimtih = 0
+    style.dxf.dimtoh = 0
+    style.dxf.dimdec = 2
+    style.dxf.dimzin = 0
+    style.dxf.dimdsep = ord(".")
+    lines = LAYERS["A-ANNO-DIMS"]
+    style.dxf.dimlwd = style.dxf.dimlwe = round(100 * lines.width_mm)
+    style.dxf.dimclrd = style.dxf.dimclre = lines.colour
+    # whatever the unit, dimensions are read in metres
+    style.dxf.dimlfac = 1 / scale.per_m
+    style.dxf.dimfxlon = 1
+    style.dxf.dimfxl = Paper.EXTENSION * scale.per_mm
+
+
+def _add_blocks(document: Drawing, scale: Scale) -> None:
+    """Add the symbols, in unit size, the room stamp and the title block, with attributes."""
+    for name, paths in BLOCKS.items():
+        block = document.blocks.new(name)
+        for path in paths:
+            # x, y and bulge; layer 0 takes the insertion's layer
+            block.add_lwpolyline([tuple(p) for p in path.tolist()], format="xyb")
+        for tag in SYMBOL_TAGS:
+            definition = block.add_attdef(tag, (0, 0), height=Letters.SMALL * scale.per_mm)
+            definition.is_invisible = True
+    for name, tags in ((STAMP, STAMP_TAGS), (TITLE, ())):
+        block = document.blocks.new(name)
+        for number, tag in enumerate(tags):
+            place = (0, -2 * number * Letters.MEDIUM * scale.per_mm)
+            definition = block.add_attdef(tag, place, height=Letters.MEDIUM * scale.per_mm)
+            definition.is_invisible = tag not in ("NAME", "AREA")
+
+
+def format_document(document: Drawing) -> str:
+    """Return a document as text that is the same for the same drawing.
+
+    Raises
+    ------
+    ValueError
+        If it does not pass the audit of ezdxf.
+    """
+    faults = document.audit().errors
+    if faults:
+        raise ValueError(f"the drawing has {len(faults)} faults, the first: {faults[0].message}")
+    # ezdxf would register these in the order of a set, which differs from run to run
+    for name in sorted(document.entitydb.dxf_types_in_use()):
+        document.classes.add_class(name)
+    text = io.StringIO()
+    document.write(text)
+    return text.getvalue()
+
+
+@contextmanager
+def fix_metadata() -> Iterator[None]:
+    """Leave times and random identifiers out of documents."""
+    # ezdxf documents its options under this name, but does not declare it
+    options = ezdxf.options  # pyright: ignore[reportPrivateImportUsage]
+    before = options.write_fixed_meta_data_for_testing
+    options.write_fixed_meta_data_for_testing = True
+    try:
+        yield
+    finally:
+        options.write_fixed_meta_data_for_testing = before

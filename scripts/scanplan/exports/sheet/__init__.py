@@ -1,0 +1,1 @@
+"""The sheet of a plan: one description of it that SVG, PDF, PNG and DXF render."""

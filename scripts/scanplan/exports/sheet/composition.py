@@ -1,0 +1,266 @@
+"""The sheet of a plan, put together: what SVG, PDF, PNG and DXF render."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+import shapely
+from shapely.geometry.base import BaseGeometry
+
+from scanplan.exports.sheet import content, dimensions, title, words
+from scanplan.exports.sheet.labels import LabelSpace
+from scanplan.exports.sheet.lettering import clean_text, rotation
+from scanplan.exports.sheet.marks import Dimension, Mark, Stamp, Symbol, Word, flatten, straight
+from scanplan.exports.sheet.paper import Page, choose_page, fill_slots
+from scanplan.exports.sheet.styles import STYLES, Letters, Paper
+from scanplan.exports.sheet.symbols import symbol_paths
+from scanplan.exports.sheet.title import SheetFacts
+from scanplan.plan import floorplan
+from scanplan.plan.floorplan import FloorPlan
+from scanplan.plan.tolerances import END_M
+from scanplan.types import FloatArray
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """The description of a sheet.
+
+    Attributes
+    ----------
+    name : str
+        Of the plan.
+    page : Page
+        How the map lies on paper.
+    facts : SheetFacts
+    marks, symbols, words, stamps, dimensions : lists
+        Of the plan: metres in the map frame.
+    paper_marks, paper_words : lists
+        Frame, title block and tables: millimetres on paper.
+    """
+
+    name: str
+    page: Page
+    facts: SheetFacts
+    marks: list[Mark] = field(repr=False)
+    symbols: list[Symbol] = field(repr=False)
+    words: list[Word] = field(repr=False)
+    stamps: list[Stamp] = field(repr=False)
+    dimensions: list[Dimension] = field(repr=False)
+    paper_marks: list[Mark] = field(repr=False)
+    paper_words: list[Word] = field(repr=False)
+
+
+def compose_sheet(plan: FloorPlan, facts: SheetFacts | None = None, *, turn: bool = True) -> Sheet:
+    """Compose the sheet of a plan.
+
+    Parameters
+    ----------
+    plan : FloorPlan
+    facts : SheetFacts, optional
+        What the title block states beside the plan.
+    turn : bool
+        Whether the plan is turned so that its main walls run along the sheet.
+    """
+    facts = facts or SheetFacts()
+    marks = [*content.draw_walls(plan), *content.draw_axes(plan), *content.draw_doubts(plan)]
+    symbols = content.list_symbols(plan)
+    legend = _list_legend(plan, marks, symbols)
+    # the scale bar with the axes takes six rows
+    blocks = [6, len(legend), len(plan.areas)]
+    turn_deg = -plan.main_direction_deg if turn else 0.0
+    page = choose_page(*_extent(marks, symbols, turn_deg), turn_deg, blocks)
+    bar, legend_slots, table_slots = fill_slots(page.slots(), blocks) or ([], [], [])
+    beside: list[Mark | Word] = [
+        *title.draw_frame(page),
+        *title.draw_title_block(page, plan, facts),
+        *title.draw_scale_bar(page, bar[0]),
+        *title.draw_legend(legend, legend_slots),
+    ]
+    space = _open_space(page, marks, symbols)
+    stamps = words.stamp_rooms(page, plan, space)
+    beside += title.draw_room_table(stamps, table_slots)
+    drawn = _dimension(page, plan, marks, symbols, space)
+    is_stated = _find_stated(symbols, drawn)
+    rooms = [
+        dimension
+        for area in plan.areas
+        for dimension in dimensions.dimension_room(page, page.place_shape(area), space)
+    ]
+    labels = [
+        *words.label_openings(page, symbols, is_stated, space),
+        *words.label_walls(page, plan, space),
+    ]
+    return Sheet(
+        clean_text(plan.name),
+        page,
+        facts,
+        marks,
+        symbols,
+        labels,
+        stamps,
+        [*drawn, *rooms],
+        [item for item in beside if isinstance(item, Mark)],
+        [item for item in beside if isinstance(item, Word)],
+    )
+
+
+def _list_legend(plan: FloorPlan, marks: list[Mark], symbols: list[Symbol]) -> list[str]:
+    kinds = {symbol.kind for symbol in symbols}
+    tables = (plan.walls, plan.openings, plan.rooms)
+    if any(content.is_doubtful(columns).any() for columns in tables):
+        kinds.add("verify")
+    return title.list_legend(marks, kinds)
+
+
+def _extent(
+    marks: list[Mark], symbols: list[Symbol], turn_deg: float
+) -> tuple[FloatArray, FloatArray]:
+    corners = [path[:, :2] for mark in marks for path in mark.paths]
+    corners += [symbol.ends_m for symbol in symbols]
+    turned = np.concatenate(corners) @ rotation(turn_deg).T
+    return turned.min(axis=0), turned.max(axis=0)
+
+
+def _open_space(page: Page, marks: list[Mark], symbols: list[Symbol]) -> LabelSpace:
+    """Return the part of the sheet above the tables, with what words keep off."""
+    solid = {"wall", "inferred", "low", "assumed"}
+    walls = [
+        polygon for mark in marks if mark.kind in solid for polygon in _rings(page, mark.paths)
+    ]
+    loose = [
+        path
+        for mark in marks
+        if mark.kind not in {*solid, "room", "axis", "verify"}
+        for path in mark.paths
+    ]
+    loose += [path for symbol in symbols for path in symbol_paths(symbol)]
+    lines = [shapely.LineString(page.to_paper(flatten(path))) for path in loose]
+    return LabelSpace(page.drawing_mm, walls, lines)
+
+
+def _rings(page: Page, paths: list[FloatArray]) -> list[BaseGeometry]:
+    shell, *holes = [page.to_paper(path[:, :2]) for path in paths]
+    return [shapely.Polygon(shell, holes)]
+
+
+def _dimension(
+    page: Page, plan: FloorPlan, marks: list[Mark], symbols: list[Symbol], space: LabelSpace
+) -> list[Dimension]:
+    """Return the chains along the facades of all that is built.
+
+    That is walls, openings and the rooms that these close; surfaces where there is no wall.
+    """
+    rooms = plan.areas[plan.rooms["closed"].astype(bool)]
+    openings_m = np.array([symbol.ends_m for symbol in symbols]).reshape(-1, 2, 2)
+    half_m = np.array([symbol.thickness_m / 2 for symbol in symbols])
+    openings = floorplan.buffer_lines(openings_m, half_m)
+    built = shapely.union_all([*plan.bodies, *rooms, *openings])
+    if built.is_empty:
+        lines = [shapely.LineString(path[:, :2]) for mark in marks for path in mark.paths]
+        outline = page.place_shape(shapely.union_all(lines)).envelope
+    else:
+        closed = shapely.buffer(built, 2 * END_M, join_style="mitre").buffer(
+            -2 * END_M, join_style="mitre"
+        )
+        outline = page.place_shape(closed)
+    swings = [
+        shapely.LineString(page.to_paper(flatten(path)))
+        for symbol in symbols
+        for path in symbol_paths(symbol)
+    ]
+    reach = shapely.union_all([outline, *swings])
+    return list(dimensions.dimension_facades(page, outline, reach, openings_m, space))
+
+
+def _find_stated(symbols: list[Symbol], drawn: list[Dimension]) -> list[bool]:
+    """Return which openings have their width in a chain."""
+    ends_m = np.array([d.ends_m for d in drawn]).reshape(-1, 2, 2)
+    widths_m = np.hypot(*(ends_m[:, 1] - ends_m[:, 0]).T)
+    middles_m = ends_m.mean(axis=1)
+    stated: list[bool] = []
+    for symbol in symbols:
+        is_as_wide = np.abs(widths_m - symbol.width_m) < END_M
+        apart_m = np.hypot(*(middles_m - symbol.ends_m.mean(axis=0)).T)
+        stated.append(bool((is_as_wide & (apart_m < symbol.thickness_m + END_M)).any()))
+    return stated
+
+
+def paper_marks(sheet: Sheet) -> Iterator[Mark]:
+    """Yield all marks of a sheet on paper, in the order of drawing."""
+    order = list(STYLES)
+    found = [*_plan_marks(sheet), *sheet.paper_marks]
+    yield from sorted(found, key=lambda mark: order.index(mark.kind))
+
+
+def _plan_marks(sheet: Sheet) -> Iterator[Mark]:
+    page = sheet.page
+    for mark in sheet.marks:
+        if mark.kind == "axis":
+            continue
+        yield Mark(
+            mark.kind,
+            [straight(page.to_paper(path[:, :2])) for path in mark.paths],
+            mark.closed,
+            mark.element,
+            mark.title,
+            mark.facts,
+            mark.verify,
+        )
+    for symbol in sheet.symbols:
+        paths = [straight(page.to_paper(flatten(path))) for path in symbol_paths(symbol)]
+        yield Mark(
+            symbol.kind, paths, False, symbol.element, symbol.title, symbol.facts, symbol.verify
+        )
+        if symbol.verify:
+            around = straight(page.to_paper(surround_symbol(page, symbol)))
+            yield Mark("verify", [around], True, f"verify-{symbol.element}")
+    for word in plan_words(sheet):
+        if word.leader is not None:
+            yield Mark("leader", [straight(page.to_paper(word.leader))])
+    for dimension in sheet.dimensions:
+        yield from _dimension_marks(page, dimension)
+
+
+def surround_symbol(page: Page, symbol: Symbol) -> FloatArray:
+    """Return a line (n, 2) around a doubtful opening, map frame."""
+    half_m = symbol.thickness_m / 2 + Letters.SMALL / 2 / page.mm_per_m
+    return shapely.get_coordinates(shapely.buffer(shapely.LineString(symbol.ends_m), half_m))
+
+
+def _dimension_marks(page: Page, dimension: Dimension) -> Iterator[Mark]:
+    line, ends = page.to_paper(dimension.line_m), page.to_paper(dimension.ends_m)
+    paths = [line]
+    along = (line[1] - line[0]) / np.hypot(*(line[1] - line[0]))
+    ticks = []
+    for place, end in zip(line, ends, strict=True):
+        away = place - end
+        length = np.hypot(*away)
+        if length > Paper.BEYOND:
+            way = away / length
+            begin = min(length - Paper.BEYOND, Paper.EXTENSION)
+            paths.append(np.stack([place - begin * way, place + Paper.BEYOND * way]))
+        oblique = rotation(45) @ along
+        ticks.append(
+            straight(np.stack([place - Paper.TICK * oblique, place + Paper.TICK * oblique]))
+        )
+    yield Mark("dimension", [straight(path) for path in paths], title=f"{dimension.word.text} m")
+    yield Mark("tick", ticks)
+
+
+def plan_words(sheet: Sheet) -> Iterator[Word]:
+    """Yield the words in and around the plan, map frame."""
+    yield from sheet.words
+    for stamp in sheet.stamps:
+        yield from stamp.words
+    for dimension in sheet.dimensions:
+        yield dimension.word
+
+
+def paper_words(sheet: Sheet) -> Iterator[Word]:
+    """Yield all words of a sheet on paper."""
+    page = sheet.page
+    for word in plan_words(sheet):
+        place = page.to_paper(word.place)
+        turn_deg = word.turn_deg + page.turn_deg
+        yield Word(word.kind, word.text, place, word.size_mm, turn_deg, word.align, word.element)
+    yield from sheet.paper_words

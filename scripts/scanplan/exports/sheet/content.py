@@ -1,0 +1,167 @@
+"""What of a plan is drawn on a sheet: walls, openings and rooms as marks in the map frame."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import shapely
+from shapely.geometry import Polygon
+from shapely.geometry.base import BaseGeometry
+
+from scanplan.exports.sheet.lettering import clean_text
+from scanplan.exports.sheet.marks import Facts, Mark, Symbol, straight
+from scanplan.plan import floorplan
+from scanplan.plan.floorplan import FloorPlan
+from scanplan.plan.tolerances import END_M
+from scanplan.types import BoolArray, Columns, FloatArray
+
+_FACTS = {
+    "wall": (
+        "thickness_m",
+        "sigma_offset_m",
+        "sigma_end0_m",
+        "sigma_end1_m",
+        "n_points",
+        "n_scans",
+    ),
+    "opening": ("width_m", "thickness_m", "sill_m", "lintel_m", "n_rays", "room_a", "room_b"),
+    "room": ("area_m2", "perimeter_m", "closed", "n_scans"),
+}
+_OF_ALL = ("p_true", "doubt")
+
+
+def facts_of(table: str, columns: Columns, row: int) -> Facts:
+    """Return what a table's row says of a wall, an opening or a room, NaN left out."""
+    names = [name for name in (table, *_FACTS[table], *_OF_ALL) if name in columns]
+    values = {name: _plain_value(columns[name][row]) for name in names}
+    return {name: value for name, value in values.items() if value not in (None, "")}
+
+
+def is_doubtful(columns: Columns) -> BoolArray:
+    """Return which rows (n,) of a table are to be verified on site."""
+    n_rows = len(next(iter(columns.values())))
+    return np.asarray(columns.get("verify", np.zeros(n_rows)), bool)
+
+
+def draw_walls(plan: FloorPlan) -> Iterator[Mark]:
+    """Yield rooms, what was not seen of their outlines, walls by what is known, and surfaces."""
+    doubtful = is_doubtful(plan.rooms)
+    for row, area in enumerate(plan.areas):
+        room, name = plan.rooms["room"][row], clean_text(plan.room_names[row])
+        facts = {"name": name, **facts_of("room", plan.rooms, row)}
+        yield _area("room", area, f"room-{room}", name, facts, verify=bool(doubtful[row]))
+    for number, line in enumerate(_find_blanks(plan)):
+        path = [straight(shapely.get_coordinates(line))]
+        yield Mark("not-seen", path, element=f"not-seen-{number}", title="not seen")
+    assumed = [*_polygons(plan.assumed)]
+    for number, part in enumerate(assumed):
+        title = f"wall, assumed {plan.assumed_thickness_m:.2f} m thick"
+        yield _area("assumed", part, f"assumed-{number}", title)
+    known = {"inferred": plan.walls["state"] == "inferred", "low": plan.low}
+    known["inferred"] = known["inferred"] & ~plan.low
+    known["wall"] = ~known["inferred"] & ~known["low"]
+    above = shapely.Polygon()
+    for kind in ("wall", "inferred", "low"):
+        shape = shapely.difference(_footprint(plan, known[kind]), above)
+        above = shapely.union(above, shape)
+        for number, part in enumerate(_polygons(shape)):
+            yield _area(kind, part, f"{kind}-{number}", kind)
+    for kind, state in (("surface", "observed"), ("surface-inferred", "inferred")):
+        for number, line in enumerate(plan.single(state)):
+            path = [straight(shapely.get_coordinates(line))]
+            yield Mark(kind, path, element=f"{kind}-{number}", title=f"{state} surface")
+
+
+def draw_axes(plan: FloorPlan) -> Iterator[Mark]:
+    """Yield the line of each wall, with what is known of it: not on paper, for CAD."""
+    for row, ends_m in enumerate(floorplan.centrelines_m(plan.walls)):
+        number = plan.walls["wall"][row]
+        facts = facts_of("wall", plan.walls, row)
+        yield Mark("axis", [straight(ends_m)], element=f"wall-{number}", facts=facts)
+
+
+def draw_doubts(plan: FloorPlan) -> Iterator[Mark]:
+    """Yield the outlines of the walls that are to be verified, with what is known of them."""
+    for row in np.flatnonzero(is_doubtful(plan.walls)).tolist():
+        number = plan.walls["wall"][row]
+        facts = facts_of("wall", plan.walls, row)
+        title = " ".join(["verify wall", str(number), str(facts.get("doubt", ""))]).strip()
+        yield _area("verify", plan.bodies[row], f"verify-wall-{number}", title, facts, verify=True)
+
+
+def list_symbols(plan: FloorPlan) -> list[Symbol]:
+    """Return the symbols of doors, windows and passages, in the middle of their walls."""
+    left_m, right_m = (np.append(side_m, 0.0) for side_m in plan.sides_m)
+    doubtful = is_doubtful(plan.openings)
+    symbols: list[Symbol] = []
+    for row, ends_m in enumerate(floorplan.centrelines_m(plan.openings)):
+        kind, number = plan.openings["type"][row], plan.openings["opening"][row]
+        host = plan.hosts[row]
+        left = _left_of(ends_m)
+        thick_m = float(left_m[host] + right_m[host]) or plan.assumed_thickness_m
+        shift_m = (left_m[host] - right_m[host]) / 2
+        # a wall's sides are left and right of its own line, which an opening may run against
+        if host >= 0 and left @ _left_of(floorplan.centrelines_m(plan.walls)[host]) < 0:
+            shift_m = -shift_m
+        width_m = plan.openings["width_m"][row]
+        symbols.append(
+            Symbol(
+                kind,
+                ends_m + shift_m * left,
+                thick_m,
+                f"{kind}-{number}",
+                f"{kind} {number}, {width_m:.2f} m",
+                facts_of("opening", plan.openings, row),
+                bool(doubtful[row]),
+            )
+        )
+    return symbols
+
+
+def _footprint(plan: FloorPlan, is_wanted: BoolArray) -> BaseGeometry:
+    bodies = shapely.union_all(plan.known_bodies[is_wanted[plan.thick]])
+    return shapely.difference(bodies, shapely.union_all(plan.gaps))
+
+
+def _find_blanks(plan: FloorPlan) -> Iterator[BaseGeometry]:
+    """Yield what of rooms' outlines has neither wall nor opening beside it."""
+    faces = floorplan.line_shapes(floorplan.centrelines_m(plan.faces))
+    near = shapely.union_all(shapely.buffer([*plan.bodies, *faces, *plan.gaps], END_M))
+    blank = shapely.difference(shapely.union_all(shapely.boundary(plan.areas)), near)
+    merged = shapely.line_merge(blank) if blank.geom_type == "MultiLineString" else blank
+    for part in shapely.get_parts(merged):
+        if part.length > 2 * END_M:
+            yield shapely.simplify(part, END_M / 2)
+
+
+def _area(
+    kind: str,
+    shape: BaseGeometry,
+    element: str,
+    title: str,
+    facts: Facts | None = None,
+    *,
+    verify: bool = False,
+) -> Mark:
+    rings = shapely.get_rings(shapely.get_parts(shape))
+    paths = [straight(shapely.get_coordinates(ring)) for ring in rings]
+    return Mark(kind, paths, True, element, title, facts or {}, verify)
+
+
+def _polygons(shape: BaseGeometry) -> Iterator[Polygon]:
+    for part in shapely.get_parts(shape):
+        if isinstance(part, Polygon) and not part.is_empty:
+            yield part
+
+
+def _left_of(ends_m: FloatArray) -> FloatArray:
+    x, y = (ends_m[1] - ends_m[0]) / np.hypot(*(ends_m[1] - ends_m[0]))
+    return np.array([-y, x])
+
+
+def _plain_value(value: object) -> str | int | float | bool | None:
+    """Return a value of a table as Python's own; None of NaN."""
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float):
+        return value if np.isfinite(value) else None
+    return value if isinstance(value, str | int | bool) else None

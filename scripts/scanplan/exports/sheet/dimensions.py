@@ -1,0 +1,251 @@
+"""Chains of dimensions along facades, and dimensions of rooms, on paper."""
+
+import itertools
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from shapely.geometry.base import BaseGeometry
+
+from scanplan.exports.sheet.labels import Candidate, LabelSpace
+from scanplan.exports.sheet.lettering import measure_width_mm, rotation
+from scanplan.exports.sheet.marks import Dimension, Word
+from scanplan.exports.sheet.paper import Page
+from scanplan.exports.sheet.styles import Letters, Paper
+from scanplan.plan.tolerances import END_M
+from scanplan.types import FloatArray
+
+_READ_ALONG = np.array([1.0, 0.1])  # an almost upright line is read from the right
+_SQUARE = 0.1  # of a facade's direction: by less it runs along the sheet's
+
+
+@dataclass(frozen=True)
+class _Facade:
+    """A stretch that is seen from below: from x to x, at y; millimetres on turned paper."""
+
+    x0: float
+    x1: float
+    y: float
+
+
+def dimension_facades(
+    page: Page,
+    outline: BaseGeometry,
+    reach: BaseGeometry,
+    openings_m: FloatArray,
+    space: LabelSpace,
+) -> Iterator[Dimension]:
+    """Yield chains along all four sides of a plan, and its whole width and depth.
+
+    Parameters
+    ----------
+    page : Page
+    outline : shapely geometry
+        All that is built, openings closed, on paper.
+    reach : shapely geometry
+        All that chains keep off: outline and symbols, on paper.
+    openings_m : (n, 2, 2) float
+        Map frame.
+    space : LabelSpace
+    """
+    openings = page.to_paper(openings_m).reshape(-1, 2, 2)
+    for quarter in range(4):
+        # each side in turn is brought below
+        turn = rotation(-90 * quarter)
+        turned = shapely.transform(outline, lambda xy, turn=turn: xy @ turn.T)
+        x0, y0, x1, _ = turned.bounds
+        gap = END_M * page.mm_per_m
+        facades = _find_facades(turned, gap)
+        stops = _chain_stops(facades, openings @ turn.T, gap, (x0, x1))
+        level = shapely.transform(reach, lambda xy, turn=turn: xy @ turn.T).bounds[1]
+        if len(stops) > 2:
+            level -= Paper.CHAIN
+            yield from _draw_chain(page, stops, level, turn, space)
+        if quarter in (0, 3):
+            yield from _draw_chain(page, [(x0, y0), (x1, y0)], level - Paper.CHAIN, turn, space)
+
+
+def _find_facades(outline: BaseGeometry, gap: float) -> list[_Facade]:
+    """Return the stretches of an outline that are seen from below, from the left.
+
+    Stretches below five times what ends err by are stubs and jambs, and no facades.
+    """
+    edges: list[_Facade] = []
+    for part in shapely.get_parts(outline):
+        ring = shapely.get_coordinates(shapely.orient_polygons(part).exterior)
+        for (x0, y0), (x1, y1) in itertools.pairwise(ring):
+            # counterclockwise, what runs to the right is below
+            if x1 - x0 > 0 and abs(y1 - y0) <= _SQUARE * (x1 - x0):
+                edges.append(_Facade(x0, x1, (y0 + y1) / 2))
+    seen: list[_Facade] = []
+    for edge in sorted(edges, key=lambda e: e.y):
+        hidden = [(other.x0, other.x1) for other in seen]
+        for x0, x1 in _cut_intervals((edge.x0, edge.x1), hidden):
+            if x1 - x0 > 0:
+                seen.append(_Facade(x0, x1, edge.y))
+    joined: list[_Facade] = []
+    for facade in sorted(seen, key=lambda e: e.x0):
+        last = joined[-1] if joined else None
+        if last and facade.x0 - last.x1 <= gap and abs(facade.y - last.y) <= gap:
+            joined[-1] = _Facade(last.x0, facade.x1, min(last.y, facade.y))
+        else:
+            joined.append(facade)
+    return [facade for facade in joined if facade.x1 - facade.x0 > 5 * gap]
+
+
+def _cut_intervals(
+    whole: tuple[float, float], hidden: Sequence[tuple[float, float]]
+) -> Iterator[tuple[float, float]]:
+    start, end = whole
+    for x0, x1 in sorted(hidden):
+        if x0 > start:
+            yield start, min(x0, end)
+        start = max(start, x1)
+        if start >= end:
+            return
+    yield start, end
+
+
+def _chain_stops(
+    facades: list[_Facade], openings: FloatArray, gap: float, ends: tuple[float, float]
+) -> list[tuple[float, float]]:
+    """Return the stops (x, y) of a chain: its ends, openings in facades, and the facades' ends.
+
+    Too near to another, whatever comes first in this order stays.
+    """
+    if not facades:
+        return []
+    found = [(ends[0], facades[0].y), (ends[1], facades[-1].y)]
+    for (x0, y0), (x1, y1) in openings:
+        low, high = min(x0, x1), max(x0, x1)
+        is_along = abs(y1 - y0) <= _SQUARE * (high - low)
+        y = (y0 + y1) / 2
+        for facade in facades if is_along else []:
+            # an opening lies in the middle of its wall, whose face is before it
+            is_in_it = facade.x0 - gap <= low and high <= facade.x1 + gap
+            if is_in_it and -gap <= y - facade.y <= 4 * gap:
+                found += [(low, facade.y), (high, facade.y)]
+    found += [(x, facade.y) for facade in facades for x in (facade.x0, facade.x1)]
+    stops: list[tuple[float, float]] = []
+    for x, y in found:
+        if all(abs(x - other) >= Paper.LEAST for other, _ in stops):
+            stops.append((x, y))
+    return sorted(stops)
+
+
+def _draw_chain(
+    page: Page,
+    stops: Sequence[tuple[float, float]],
+    level: float,
+    turn: FloatArray,
+    space: LabelSpace,
+) -> Iterator[Dimension]:
+    """Yield the dimensions of a chain, whose stops and level are on turned paper."""
+    for start, end in itertools.pairwise(stops):
+        # what has hardly any width is not measured
+        if end[0] - start[0] < Paper.GAP:
+            continue
+        line = np.array([[start[0], level], [end[0], level]])
+        length_mm = line[1, 0] - line[0, 0]
+        words = f"{length_mm / page.mm_per_m:.2f}"
+        candidates = _beside_line(line @ turn, words)
+        chosen = space.place(candidates)
+        if chosen is None:
+            continue
+        yield _make_dimension(page, np.array([start, end]) @ turn, line @ turn, chosen.words[0])
+
+
+def _beside_line(line: FloatArray, text: str, base: float = 0.0) -> Iterator[Candidate]:
+    """Yield places for a text above and below the middle of a line, and farther away."""
+    along, turn_deg = read_along(line)
+    above = np.array([-along[1], along[0]])
+    middle = line.mean(axis=0)
+    drawn = (line,)
+    for cost, away in ((0, 1.0), (1, -1.0), (3, 2.6), (4, -2.6)):
+        offset = away * 0.95 * Letters.SMALL
+        place = middle + offset * above
+        word = Word("dimension", text, place, Letters.SMALL, turn_deg)
+        yield Candidate([word], base + cost, drawn if base else ())
+
+
+def read_along(line: FloatArray) -> tuple[FloatArray, float]:
+    """Return the direction (2,) to write in along a line (2, 2) on paper, and its angle, degrees.
+
+    It is read from below or from the right (ISO 129-1).
+    """
+    way = (line[1] - line[0]) / np.hypot(*(line[1] - line[0]))
+    along = way if way @ _READ_ALONG > 0 else -way
+    return along, float(np.degrees(np.arctan2(along[1], along[0])))
+
+
+def _make_dimension(page: Page, ends: FloatArray, line: FloatArray, word: Word) -> Dimension:
+    # along the way that it is read in
+    if (line[1] - line[0]) @ _READ_ALONG < 0:
+        ends, line = ends[::-1], line[::-1]
+    return Dimension(page.to_plan(ends), page.to_plan(line), to_plan_word(page, word))
+
+
+def to_plan_word(page: Page, word: Word) -> Word:
+    """Return a word on paper as one in the map frame."""
+    leader = None if word.leader is None else page.to_plan(word.leader)
+    place = page.to_plan(word.place)
+    turn_deg = word.turn_deg - page.turn_deg
+    return Word(
+        word.kind, word.text, place, word.size_mm, turn_deg, word.align, word.element, leader
+    )
+
+
+def dimension_room(page: Page, room: BaseGeometry, space: LabelSpace) -> Iterator[Dimension]:
+    """Yield a room's width and depth (its outline on paper), where its sides are square to them.
+
+    Each is measured where the room is as wide a little beside it, too; the widest such place is
+    the best, and one that no words or doors are in the way.
+    """
+    for turn_deg in (0, -90):
+        turn = rotation(turn_deg)
+        turned = shapely.transform(room, lambda xy, turn=turn: xy @ turn.T)
+        _, y0, _, y1 = turned.bounds
+        candidates: list[Candidate] = []
+        for share in (0.2, 0.8, 0.35, 0.65, 0.5):
+            chord = _find_chord(turned, y0 + share * (y1 - y0), END_M * page.mm_per_m)
+            if chord is None:
+                continue
+            length_mm = float(chord[1, 0] - chord[0, 0])
+            words = f"{length_mm / page.mm_per_m:.2f}"
+            if length_mm < measure_width_mm(words, Letters.SMALL) + Paper.LEAST:
+                continue
+            drawn = chord @ turn
+            short = 20 * (1 - length_mm / (turned.bounds[2] - turned.bounds[0]))
+            for part in (0.5, 0.3, 0.7):
+                shifted = drawn + (part - 0.5) * (drawn[1] - drawn[0])
+                for found in _beside_line(shifted, words, 0.5 + short + abs(part - 0.5)):
+                    candidates.append(Candidate(found.words, found.cost, (drawn,)))
+        chosen = space.place(candidates, most=10.0)
+        if chosen is not None:
+            line = chosen.lines[0]
+            yield _make_dimension(page, line, line, chosen.words[0])
+
+
+def _find_chord(room: BaseGeometry, y: float, beside: float) -> FloatArray | None:
+    """Return the longest stretch (2, 2) across a room at a height; None if its sides are oblique.
+
+    They are square where the room is as wide above and below, to a twentieth of how far.
+    """
+    chords = [_longest_level(room, level) for level in (y, y - beside, y + beside)]
+    if any(chord is None for chord in chords):
+        return None
+    ends = np.array([chord[:, 0] for chord in chords if chord is not None])
+    if np.ptp(ends, axis=0).max() > beside * _SQUARE * 2:
+        return None
+    return chords[0]
+
+
+def _longest_level(room: BaseGeometry, y: float) -> FloatArray | None:
+    x0, _, x1, _ = room.bounds
+    cut = shapely.intersection(room, shapely.LineString([(x0 - 1, y), (x1 + 1, y)]))
+    parts = [part for part in shapely.get_parts(cut) if part.geom_type == "LineString"]
+    if not parts:
+        return None
+    longest = shapely.get_coordinates(max(parts, key=lambda part: part.length))
+    return longest[np.argsort(longest[:, 0])][[0, -1]]

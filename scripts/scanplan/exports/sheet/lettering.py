@@ -1,0 +1,68 @@
+"""Text on a sheet: how wide it is, and which characters it may have."""
+
+from functools import lru_cache
+
+import numpy as np
+import shapely
+from matplotlib.font_manager import FontProperties
+from matplotlib.textpath import TextToPath
+from scipy import constants
+
+from scanplan.exports.sheet.marks import Word
+from scanplan.types import FloatArray
+
+FONT = "DejaVu Sans"
+"""Of SVG, PDF and PNG: it comes with matplotlib, so that widths are the same everywhere."""
+_CAPITALS = 0.729  # height of the font's capitals as a share of its size, from its tables
+POINTS_PER_MM = constants.milli / constants.point
+CLEAR = 0.35  # of a capital's height: kept free around words, less than the gap between lines
+
+
+def font_size_mm(capitals_mm: float) -> float:
+    """Return the font's size for a height of capitals."""
+    return capitals_mm / _CAPITALS
+
+
+@lru_cache(maxsize=4096)
+def measure_width_mm(text: str, capitals_mm: float) -> float:
+    """Return the length of a line of text on paper."""
+    size = font_size_mm(capitals_mm) * POINTS_PER_MM
+    width, _, _ = TextToPath().get_text_width_height_descent(
+        text, FontProperties(family=FONT, size=size), ismath=False
+    )
+    return float(width) / POINTS_PER_MM
+
+
+def clean_text(text: str) -> str:
+    """Return a text as one line without control characters.
+
+    Names come from folders and settings: whatever they hold ends up as letters, and not as markup
+    or as a new line of a file.
+    """
+    return " ".join("".join(c if c.isprintable() else " " for c in text).split())
+
+
+def shorten_text(text: str, capitals_mm: float, width_mm: float) -> str:
+    """Return a clean text, cut off with an ellipsis where it is longer than a width."""
+    text = clean_text(text)
+    if measure_width_mm(text, capitals_mm) <= width_mm:
+        return text
+    while text and measure_width_mm(f"{text}…", capitals_mm) > width_mm:
+        text = text[:-1]
+    return f"{text.rstrip()}…"
+
+
+def word_box(word: Word, clear: float = 0.0) -> shapely.Polygon:
+    """Return the rectangle of a word on paper, with a share of its capitals' height around."""
+    length = measure_width_mm(word.text, word.size_mm)
+    around = clear * word.size_mm
+    x0, x1 = -word.align * length - around, (1 - word.align) * length + around
+    y = word.size_mm / 2 + around
+    corners = np.array([[x0, -y], [x1, -y], [x1, y], [x0, y]])
+    return shapely.Polygon(word.place + corners @ rotation(word.turn_deg).T)
+
+
+def rotation(turn_deg: float) -> FloatArray:
+    """Return the matrix (2, 2) that turns counterclockwise."""
+    cos, sin = np.cos(np.radians(turn_deg)), np.sin(np.radians(turn_deg))
+    return np.array([[cos, -sin], [sin, cos]])

@@ -1,0 +1,170 @@
+"""The elements of a sheet: what is drawn, where, and what is known of it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+import numpy as np
+
+from scanplan.types import FloatArray
+
+Facts = Mapping[str, str | int | float | bool]
+"""What is known of an element beside its shape, by the names of its table's columns."""
+
+
+@dataclass(frozen=True)
+class Mark:
+    """Lines, or an area with its outline.
+
+    Attributes
+    ----------
+    kind : str
+        Of `styles.STYLES`.
+    paths : list of (n, 3) float arrays
+        Corners x, y and the bulge of the stretch that follows: the tangent of a quarter of the
+        angle that its arc turns by, 0 of straight ones. Metres in the map frame, or millimetres
+        on paper from the lower left.
+    closed : bool
+        Whether the paths are outlines; one inside another is a hole.
+    element : str
+        Its name, such as `wall-3`.
+    title : str
+        What it is, in words.
+    facts : dict
+    verify : bool
+    """
+
+    kind: str
+    paths: list[FloatArray] = field(repr=False)
+    closed: bool = False
+    element: str = ""
+    title: str = ""
+    facts: Facts = field(default_factory=dict, repr=False)
+    verify: bool = False
+
+
+@dataclass(frozen=True)
+class Word:
+    """A line of text.
+
+    Attributes
+    ----------
+    kind : str
+        Of `styles.STYLES`.
+    text : str
+    place : (2,) float
+        Its anchor: metres in the map frame, or millimetres on paper.
+    size_mm : float
+        Height of capitals on paper, one of `styles.LETTERS_MM`.
+    turn_deg : float
+        Counterclockwise, in the frame of `place`.
+    align : float
+        Which part of its length lies before the anchor: 0, 0.5 or 1. In height the anchor is in
+        the middle of capitals.
+    element : str
+        What it belongs to.
+    leader : (2, 2) float or None
+        A line from the words to what they are about.
+    """
+
+    kind: str
+    text: str
+    place: FloatArray
+    size_mm: float
+    turn_deg: float = 0.0
+    align: float = 0.5
+    element: str = ""
+    leader: FloatArray | None = None
+
+
+@dataclass(frozen=True)
+class Symbol:
+    """A door, window or passage.
+
+    Attributes
+    ----------
+    kind : str
+    ends_m : (2, 2) float
+        Along the middle of its wall, map frame.
+    thickness_m : float
+        Of its wall, as drawn.
+    element, title : str
+    facts : dict
+    verify : bool
+    """
+
+    kind: str
+    ends_m: FloatArray = field(repr=False)
+    thickness_m: float
+    element: str
+    title: str
+    facts: Facts = field(default_factory=dict, repr=False)
+    verify: bool = False
+
+    @property
+    def width_m(self) -> float:
+        """Its clear width."""
+        return float(np.hypot(*(self.ends_m[1] - self.ends_m[0])))
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """A dimension: its line, and its text (ISO 129-1).
+
+    Attributes
+    ----------
+    ends_m : (2, 2) float
+        What is measured, map frame.
+    line_m : (2, 2) float
+        The dimension line, as long and parallel.
+    word : Word
+    """
+
+    ends_m: FloatArray = field(repr=False)
+    line_m: FloatArray = field(repr=False)
+    word: Word
+
+
+@dataclass(frozen=True)
+class Stamp:
+    """A room's stamp.
+
+    Attributes
+    ----------
+    words : list of Word
+        Its lines, from the top.
+    facts : dict of str to str
+        `NUMBER`, `NAME`, `AREA`, `PERIMETER`, `HEIGHT`, `CLOSED`, as text.
+    verify : bool
+    """
+
+    words: list[Word]
+    facts: dict[str, str]
+    verify: bool = False
+
+
+def straight(points: FloatArray) -> FloatArray:
+    """Return corners (n, 2) as a path (n, 3) without arcs."""
+    points = np.asarray(points, float)
+    return np.column_stack([points, np.zeros(len(points))])
+
+
+def flatten(path: FloatArray) -> FloatArray:
+    """Return the corners (m, 2) of a path (n, 3), its arcs cut into short lines."""
+    parts = [path[:1, :2]]
+    for (x0, y0, bulge), (x1, y1, _) in pairwise(path):
+        start, end = np.array([x0, y0]), np.array([x1, y1])
+        if bulge == 0:
+            parts.append(end[None])
+            continue
+        turn = 4 * np.arctan(bulge)
+        chord = end - start
+        # the centre lies left of the chord's middle where the arc turns left by less than half
+        away = np.array([-chord[1], chord[0]]) / (2 * np.tan(turn / 2))
+        centre = (start + end) / 2 + away
+        # a corner every tenth of a radian: off by a hundredth of a millimetre at a door's size
+        angles = np.linspace(0, turn, int(np.ceil(10 * abs(turn))) + 1)[1:]
+        x, y = start - centre
+        turned = [x * np.cos(angles) - y * np.sin(angles), x * np.sin(angles) + y * np.cos(angles)]
+        parts.append(centre + np.column_stack(turned))
+    return np.concatenate(parts)

@@ -1,0 +1,196 @@
+"""Sheets of paper: their sizes, the scale of a plan on one, and where things go on it."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import shapely
+from scipy import constants
+from shapely.geometry.base import BaseGeometry
+
+from scanplan.exports.sheet.lettering import rotation
+from scanplan.exports.sheet.styles import Paper
+from scanplan.types import FloatArray
+
+SIZES_MM = {
+    "A4": (297.0, 210.0),
+    "A3": (420.0, 297.0),
+    "A2": (594.0, 420.0),
+    "A1": (841.0, 594.0),
+    "A0": (1189.0, 841.0),
+}
+"""Of sheets (ISO 216), the smallest first."""
+LARGEST = {50: "A3", 100: "A1"}
+"""The largest sheet at a scale: a house is read on a desk, a floor on a plotter; others: A0."""
+_SCALES = (50, *(m * 10**e for e in range(2, 6) for m in (1, 2, 5)))  # ISO 5455, of buildings
+TITLE_ROWS = 9  # of the title block
+
+
+@dataclass(frozen=True)
+class Slot:
+    """A place for rows of a table: its upper left corner on paper, and how many there are."""
+
+    x_mm: float
+    y_mm: float
+    rows: int
+
+
+@dataclass(frozen=True)
+class Page:
+    """A sheet with a plan at a scale.
+
+    Attributes
+    ----------
+    name : str
+        Of `SIZES_MM`.
+    size_mm : (float, float)
+        Width and height, the greater first unless the sheet is upright.
+    scale : int
+        Its denominator.
+    rows : int
+        High is what lies below the plan, in `Paper.ROW`.
+    turn_deg : float
+        The plan is turned by, counterclockwise.
+    middle_m : (2,) float
+        Of the plan, in its turned frame.
+    """
+
+    name: str
+    size_mm: tuple[float, float]
+    scale: int
+    rows: int
+    turn_deg: float
+    middle_m: FloatArray
+
+    @property
+    def inner_mm(self) -> tuple[float, float, float, float]:
+        """The frame: least x and y, greatest x and y."""
+        width, height = self.size_mm
+        return 2 * Paper.MARGIN, Paper.MARGIN, width - Paper.MARGIN, height - Paper.MARGIN
+
+    @property
+    def drawing_mm(self) -> tuple[float, float, float, float]:
+        """The part of the frame above tables and title block: as `inner_mm`."""
+        x0, y0, x1, y1 = self.inner_mm
+        return x0, y0 + self.rows * Paper.ROW + Paper.ROW / 2, x1, y1
+
+    @cached_property
+    def mm_per_m(self) -> float:
+        """Millimetres on paper for a metre."""
+        return 1 / constants.milli / self.scale
+
+    @cached_property
+    def _origin_mm(self) -> FloatArray:
+        x0, y0, x1, y1 = self.drawing_mm
+        return np.array([(x0 + x1) / 2, (y0 + y1) / 2]) - self.mm_per_m * self.middle_m
+
+    def to_paper(self, xy_m: FloatArray) -> FloatArray:
+        """Return places (..., 2) of the map on paper, millimetres."""
+        turned = np.asarray(xy_m, float) @ rotation(self.turn_deg).T
+        return self._origin_mm + self.mm_per_m * turned
+
+    def place_shape(self, shape: BaseGeometry) -> BaseGeometry:
+        """Return a shape of the map on paper."""
+        return shapely.transform(shape, lambda xy_m: np.asarray(self.to_paper(xy_m), np.float64))
+
+    def to_plan(self, xy_mm: FloatArray) -> FloatArray:
+        """Return places (..., 2) on paper in the map frame, metres."""
+        turned = (np.asarray(xy_mm, float) - self._origin_mm) / self.mm_per_m
+        return turned @ rotation(self.turn_deg)
+
+    def slots(self) -> Iterator[Slot]:
+        """Yield the places for tables below the plan, from the left; the title block is right."""
+        yield from find_slots(self.inner_mm, self.rows)
+
+
+def find_slots(inner_mm: tuple[float, float, float, float], rows: int) -> Iterator[Slot]:
+    """Yield the columns left of a title block and above it, in a strip of so many rows."""
+    x0, y0, x1, _ = inner_mm
+    top = y0 + rows * Paper.ROW
+    n_left = int((x1 - x0 - 3 * Paper.COLUMN) // Paper.COLUMN)
+    for column in range(n_left):
+        yield Slot(x0 + column * Paper.COLUMN, top, rows)
+    if rows > TITLE_ROWS:
+        for column in range(3):
+            yield Slot(x1 - (3 - column) * Paper.COLUMN, top, rows - TITLE_ROWS)
+
+
+def choose_page(low_m: FloatArray, high_m: FloatArray, turn_deg: float, blocks: list[int]) -> Page:
+    """Choose the sheet and the scale for a plan.
+
+    The largest of the usual scales at which it fits on a sheet, then the smallest sheet: at 1:50
+    up to A3, at 1:100 up to A1, at others up to A0.
+
+    Parameters
+    ----------
+    low_m, high_m : (2,) float
+        Least and greatest x and y of the turned plan.
+    turn_deg : float
+    blocks : list of int
+        Rows of the tables that go with it; see `fill_slots`.
+    """
+    extent_m = np.asarray(high_m, float) - low_m
+    middle_m = (np.asarray(high_m, float) + low_m) / 2
+    largest = list(SIZES_MM)[-1]
+    for scale in _SCALES:
+        for name, (long, short) in SIZES_MM.items():
+            for size in ((long, short), (short, long)):
+                page = _fill_page(Page(name, size, scale, 0, turn_deg, middle_m), blocks)
+                if page is not None and _holds(page, extent_m):
+                    return page
+            if name == LARGEST.get(scale, largest):
+                break
+    size = SIZES_MM[largest]
+    page = _fill_page(Page(largest, size, _SCALES[-1], 0, turn_deg, middle_m), blocks)
+    if page is None:
+        raise ValueError(f"tables of {sum(blocks)} rows are more than a sheet holds")
+    x0, y0, x1, y1 = page.drawing_mm
+    room_mm = np.array([x1 - x0, y1 - y0]) - 2 * Paper.AROUND
+    scale = math.ceil(float((extent_m / constants.milli / room_mm).max()))
+    return Page(largest, size, scale, page.rows, turn_deg, middle_m)
+
+
+def _fill_page(page: Page, blocks: list[int]) -> Page | None:
+    """Return a page with as many rows below the plan as its tables need; None if over half."""
+    most = int((page.size_mm[1] / 2) // Paper.ROW)
+    for rows in range(TITLE_ROWS, most):
+        if fill_slots(find_slots(page.inner_mm, rows), blocks) is not None:
+            return Page(page.name, page.size_mm, page.scale, rows, page.turn_deg, page.middle_m)
+    return None
+
+
+def fill_slots(slots: Iterator[Slot], blocks: list[int]) -> list[list[Slot]] | None:
+    """Return where the rows of each block go, slot by slot; None if there is no room.
+
+    Every part of a block begins with a row for its head, which it is counted without. A block goes
+    below the last, one row apart, if it has room there, else to the next slot; it is broken only
+    where a whole slot does not hold it.
+    """
+    places: list[list[Slot]] = []
+    slot = next(slots, None)
+    is_fresh = True
+    for rows in blocks:
+        parts: list[Slot] = []
+        while rows > 0:
+            if slot is None:
+                return None
+            fits = rows < slot.rows
+            if not fits and (not is_fresh or slot.rows < 3):
+                slot, is_fresh = next(slots, None), True
+                continue
+            taken = min(rows, slot.rows - 1)
+            parts.append(Slot(slot.x_mm, slot.y_mm, taken))
+            rows -= taken
+            used = taken + 2
+            slot = Slot(slot.x_mm, slot.y_mm - used * Paper.ROW, slot.rows - used)
+            is_fresh = False
+        places.append(parts)
+    return places
+
+
+def _holds(page: Page, extent_m: FloatArray) -> bool:
+    x0, y0, x1, y1 = page.drawing_mm
+    room_mm = np.array([x1 - x0, y1 - y0]) - 2 * Paper.AROUND
+    return bool((extent_m * page.mm_per_m <= room_mm).all())

@@ -1,0 +1,64 @@
+"""Symbols of doors, windows and passages: as blocks of unit size, and where each is put."""
+
+import math
+
+import numpy as np
+
+from scanplan.exports.sheet.lettering import rotation
+from scanplan.exports.sheet.marks import Symbol
+from scanplan.types import FloatArray
+
+_WIDEST_LEAF_M = 1.25  # a wider door has two leaves (DIN 18101 ends there)
+
+
+def _leaf(hinge: float, tip: float) -> list[FloatArray]:
+    """Return a leaf that opens to both sides, and the way of its tip."""
+    length = abs(tip - hinge)
+    # of a quarter of a circle, clockwise from the left hinge
+    bulge = math.copysign(math.tan(math.pi / 8), hinge - tip)
+    return [
+        np.array([[hinge, -length, 0], [hinge, length, 0]]),
+        np.array([[hinge, length, bulge], [tip, 0, bulge], [hinge, -length, 0]]),
+    ]
+
+
+_SIDES = [np.array([[0, y, 0], [1, y, 0]]) for y in (-0.5, 0.5)]
+BLOCKS = {
+    "DOOR-1": _leaf(0.0, 1.0),
+    "DOOR-2": [*_leaf(0.0, 0.5), *_leaf(1.0, 0.5)],
+    "WINDOW": [
+        np.array([[0, -0.5, 0], [1, -0.5, 0], [1, 0.5, 0], [0, 0.5, 0], [0, -0.5, 0]]),
+        np.array([[0, 0, 0], [1, 0, 0]]),
+    ],
+    "PASSAGE": _SIDES,
+}
+"""Paths of each symbol, from 0 to 1 along its wall; windows and passages are 1 thick, too."""
+
+
+def choose_block(symbol: Symbol) -> str:
+    """Return the block of `BLOCKS` that a symbol is drawn with."""
+    if symbol.kind == "door":
+        return "DOOR-2" if symbol.width_m > _WIDEST_LEAF_M else "DOOR-1"
+    return symbol.kind.upper()
+
+
+def block_scales(symbol: Symbol) -> tuple[float, float]:
+    """Return the scales of its block along its wall and across; equal ones keep arcs round."""
+    across_m = symbol.width_m if symbol.kind == "door" else symbol.thickness_m
+    return symbol.width_m, across_m
+
+
+def symbol_angle_deg(symbol: Symbol) -> float:
+    """Return the direction of its block, map frame."""
+    x, y = symbol.ends_m[1] - symbol.ends_m[0]
+    return math.degrees(math.atan2(y, x))
+
+
+def symbol_paths(symbol: Symbol, block: list[FloatArray] | None = None) -> list[FloatArray]:
+    """Return its paths (n, 3) in the frame of its ends, by its own or another block."""
+    turn = rotation(symbol_angle_deg(symbol)).T
+    scales = np.array(block_scales(symbol))
+    return [
+        np.column_stack([symbol.ends_m[0] + (path[:, :2] * scales) @ turn, path[:, 2]])
+        for path in block or BLOCKS[choose_block(symbol)]
+    ]

@@ -1,0 +1,224 @@
+"""What stands on a sheet beside its plan: frame, title block, legend, table of rooms, scale bar."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from scanplan.exports.sheet.accuracy import state_accuracy
+from scanplan.exports.sheet.lettering import rotation, shorten_text
+from scanplan.exports.sheet.marks import Mark, Stamp, Symbol, Word, flatten, straight
+from scanplan.exports.sheet.paper import TITLE_ROWS, Page, Slot
+from scanplan.exports.sheet.styles import STYLES, Letters, Paper
+from scanplan.exports.sheet.symbols import BLOCKS, symbol_paths
+from scanplan.plan import floorplan
+from scanplan.plan.floorplan import OPENINGS, FloorPlan
+from scanplan.types import FloatArray
+
+TITLE_TAG = "title:"
+"""What the elements of a title block's values begin with."""
+_COLUMNS = {"No.": 0.0, "Room": 7.0, "Area m²": 33.0, "Perim. m": 45.5, "Height m": 58.0}
+"""Of the table of rooms: where each begins, or ends from the third on, millimetres."""
+
+
+@dataclass(frozen=True)
+class SheetFacts:
+    """What a title block states beside the plan.
+
+    Attributes
+    ----------
+    project, storey : str
+        Empty where not given.
+    surveyed : str
+        Day of the survey, by the recording's stamps.
+    n_scans : int
+        Scans that the plan is made of.
+    version : str
+        Of the software.
+    """
+
+    project: str = ""
+    storey: str = ""
+    surveyed: str = "not known"
+    n_scans: int = 0
+    version: str = ""
+
+
+def draw_frame(page: Page) -> Iterator[Mark]:
+    """Yield the frame, and the line above tables and title block."""
+    x0, y0, x1, y1 = page.inner_mm
+    yield Mark("frame", [_box(x0, y0, x1, y1)], True, "frame", "frame")
+    level = page.drawing_mm[1]
+    yield Mark("title", [straight(np.array([[x0, level], [x1, level]]))], element="strip")
+
+
+def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator[Mark | Word]:
+    """Yield the title block, at the lower right, 180 mm wide (ISO 7200)."""
+    _, y0, x1, _ = page.inner_mm
+    x0 = x1 - 3 * Paper.COLUMN
+    y1 = y0 + TITLE_ROWS * Paper.ROW
+    turned = round(page.turn_deg, 1) + 0.0
+    turn = f"turned by {turned:+.1f}° to the main walls" if turned else "not turned"
+    n_doubts = sum(
+        int(np.sum(columns.get("verify", 0))) for columns in (plan.walls, plan.openings, plan.rooms)
+    )
+    rows = [
+        [("Project", facts.project or plan.name, 2), ("Storey", facts.storey or "not named", 1)],
+        [("Drawing", "Floor plan, as surveyed", 2), ("Survey", plan.name, 1)],
+        [
+            ("Date of survey", facts.surveyed, 1),
+            ("Accuracy", state_accuracy(plan), 2),
+        ],
+        [
+            ("Made of", f"{facts.n_scans} scans", 1),
+            ("Contents", floorplan.summarise_floorplan(plan), 2),
+        ],
+        [
+            ("Scale", f"1:{page.scale}", 1),
+            ("Sheet", f"{page.name}, 1 of 1", 1),
+            ("To verify on site", str(n_doubts) if n_doubts else "nothing flagged", 1),
+        ],
+        [
+            ("Frame", f"map, {turn}; north unknown", 2),
+            ("Software", facts.version or "scanplan", 1),
+        ],
+    ]
+    height = (y1 - y0) / len(rows)
+    yield Mark("title", [_box(x0, y0, x1, y1)], True, "title-block", "title block")
+    for number, row in enumerate(rows):
+        top = y1 - number * height
+        yield _rule(x0, top, x1, top)
+        x = x0
+        for head, value, columns in row:
+            width = columns * Paper.COLUMN
+            if x > x0:
+                yield _rule(x, top, x, top - height)
+            is_large = head == "Project"
+            size = Letters.LARGE if is_large else Letters.SMALL
+            yield _word("note", head, x + Paper.GAP, top - height / 2, Letters.SMALL)
+            indent = 24.0
+            text = shorten_text(value, size, width - indent - Paper.GAP)
+            place = np.array([x + indent, top - height / 2])
+            tag = TITLE_TAG + head.upper().replace(" ", "_")
+            yield Word("title", text, place, size, align=0.0, element=tag)
+            x += width
+
+
+def list_legend(marks: Sequence[Mark], kinds: set[str]) -> list[str]:
+    """Return the kinds that a legend explains: those that are drawn and have a meaning."""
+    drawn = {mark.kind for mark in marks} | kinds
+    return [kind for kind, style in STYLES.items() if kind in drawn and style.meaning]
+
+
+def draw_legend(kinds: Sequence[str], slots: Sequence[Slot]) -> Iterator[Mark | Word]:
+    """Yield the legend: samples with their meanings."""
+    rows = [(kind, *place) for kind, place in zip(kinds, _row_places(slots), strict=True)]
+    yield from _heads(slots, ["Legend"], [0.0])
+    for kind, x, y in rows:
+        low, high = y - 0.3 * Paper.ROW, y + 0.3 * Paper.ROW
+        if kind in OPENINGS:
+            paths, closed = _sample_symbol(kind, x + Paper.SAMPLE / 2, y), False
+        elif STYLES[kind].fill != "none" or kind == "verify":
+            paths, closed = [_box(x + Paper.GAP, low, x + Paper.SAMPLE, high)], True
+        else:
+            ends = np.array([[x + Paper.GAP, y], [x + Paper.SAMPLE, y]])
+            paths, closed = [straight(ends)], False
+        yield Mark(kind, paths, closed, f"legend-{kind}", STYLES[kind].meaning)
+        yield _word(
+            "title", STYLES[kind].meaning, x + Paper.SAMPLE + 2 * Paper.GAP, y, Letters.SMALL
+        )
+
+
+def _sample_symbol(kind: str, x: float, y: float) -> list[FloatArray]:
+    """Return the symbol of an opening as high as a row of the legend, on paper."""
+    width = Paper.ROW / 2 if kind == "door" else Paper.SAMPLE - Paper.GAP
+    ends = np.array([[x - width / 2, y], [x + width / 2, y]])
+    sample = Symbol(kind, ends, Paper.ROW / 4, "", "")
+    block = BLOCKS["DOOR-1"] if kind == "door" else None
+    return [straight(flatten(path)) for path in symbol_paths(sample, block)]
+
+
+def draw_room_table(stamps: Sequence[Stamp], slots: Sequence[Slot]) -> Iterator[Mark | Word]:
+    """Yield the table of rooms: number, name, area, perimeter, height."""
+    names, ends = list(_COLUMNS), list(_COLUMNS.values())
+    yield from _heads(slots, names, ends)
+    for stamp, (x, y) in zip(stamps, _row_places(slots), strict=True):
+        facts = stamp.facts
+        area = facts["AREA"].removesuffix(" m²").replace("about ", "~")
+        height = "-" if facts["HEIGHT"] == "not seen" else facts["HEIGHT"].removesuffix(" m")
+        name = shorten_text(facts["NAME"] + " ?" * stamp.verify, Letters.SMALL, 15.0)
+        texts = [facts["NUMBER"], name, area, facts["PERIMETER"].removesuffix(" m"), height]
+        for column, (text, end) in enumerate(zip(texts, ends, strict=True)):
+            kind = "verify" if stamp.verify and column == 1 else "title"
+            yield _word(kind, text, x + Paper.GAP + end, y, Letters.SMALL, float(column > 1))
+        yield _rule(
+            x + Paper.GAP, y - Paper.ROW / 2, x + Paper.COLUMN - Paper.GAP, y - Paper.ROW / 2
+        )
+
+
+def draw_scale_bar(page: Page, slot: Slot) -> Iterator[Mark | Word]:
+    """Yield a scale bar, and the axes of the map frame as they lie on the sheet."""
+    length_m = 10.0 ** np.floor(np.log10(0.75 * Paper.COLUMN / page.mm_per_m))
+    parts = 5
+    while length_m * 2 * page.mm_per_m <= 0.7 * Paper.COLUMN:
+        length_m *= 2
+        parts = 4
+    x, y = slot.x_mm + 2 * Paper.GAP, slot.y_mm - 1.4 * Paper.ROW
+    width = length_m * page.mm_per_m / parts
+    for number in range(parts):
+        kind = "title" if number % 2 else "scale-bar"
+        left = x + number * width
+        yield Mark(kind, [_box(left, y, left + width, y + 1.2)], True, f"scale-bar-{number}")
+    for share, unit in ((0, ""), (1, " m")):
+        text = f"{share * length_m:g}{unit}"
+        yield _word("title", text, x + share * parts * width, y - 2.2, Letters.SMALL, 0.5)
+    yield from _draw_axes(page, np.array([slot.x_mm + 10.0, slot.y_mm - 4.4 * Paper.ROW]))
+
+
+def _draw_axes(page: Page, origin: FloatArray) -> Iterator[Mark | Word]:
+    reach = 1.5 * Paper.ROW
+    for name, along in (("x", np.array([1.0, 0.0])), ("y", np.array([0.0, 1.0]))):
+        way = rotation(page.turn_deg) @ along
+        side = np.array([-way[1], way[0]])
+        tip = origin + reach * way
+        yield Mark("title", [straight(np.stack([origin, tip]))], element=f"axis-{name}")
+        head = np.stack([tip, tip - 1.6 * way + 0.5 * side, tip - 1.6 * way - 0.5 * side, tip])
+        yield Mark("scale-bar", [straight(head)], True, f"axis-{name}-head")
+        place = tip + 1.6 * way
+        yield Word("title", name, place, Letters.SMALL)
+    turned = round(page.turn_deg, 1) + 0.0
+    notes = ["axes of the map frame", f"turned by {turned:+.1f}°", "north unknown"]
+    x, y = origin + np.array([14.0, reach])
+    for number, note in enumerate(notes if turned else ["axes of the map frame", "north unknown"]):
+        yield _word("note", note, x, y - number * 3.2, Letters.SMALL)
+
+
+def _heads(slots: Sequence[Slot], names: list[str], ends: list[float]) -> Iterator[Mark | Word]:
+    for slot in slots:
+        y = slot.y_mm - Paper.ROW / 2
+        for column, (name, end) in enumerate(zip(names, ends, strict=True)):
+            x = slot.x_mm + Paper.GAP + end
+            yield _word("note", name, x, y, Letters.SMALL, float(column > 1))
+        y -= Paper.ROW / 2
+        yield _rule(slot.x_mm + Paper.GAP, y, slot.x_mm + Paper.COLUMN - Paper.GAP, y)
+
+
+def _row_places(slots: Sequence[Slot]) -> list[tuple[float, float]]:
+    """Return where rows begin below the heads of their slots: left, middle of the height."""
+    return [
+        (slot.x_mm, slot.y_mm - (number + 1.5) * Paper.ROW)
+        for slot in slots
+        for number in range(slot.rows)
+    ]
+
+
+def _word(kind: str, text: str, x: float, y: float, size_mm: float, align: float = 0.0) -> Word:
+    return Word(kind, text, np.array([x, y]), size_mm, 0.0, align)
+
+
+def _rule(x0: float, y0: float, x1: float, y1: float) -> Mark:
+    return Mark("dimension", [straight(np.array([[x0, y0], [x1, y1]]))])
+
+
+def _box(x0: float, y0: float, x1: float, y1: float) -> FloatArray:
+    return straight(np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]]))

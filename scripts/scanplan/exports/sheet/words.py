@@ -1,0 +1,144 @@
+"""Words in a plan: rooms' stamps, widths of openings, heights of low walls, marks of doubt."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import shapely
+from shapely.geometry.base import BaseGeometry
+
+from scanplan.exports.sheet.content import is_doubtful
+from scanplan.exports.sheet.dimensions import read_along, to_plan_word
+from scanplan.exports.sheet.labels import Candidate, LabelSpace
+from scanplan.exports.sheet.lettering import clean_text, shorten_text
+from scanplan.exports.sheet.marks import Stamp, Symbol, Word
+from scanplan.exports.sheet.paper import Page
+from scanplan.exports.sheet.styles import Letters, Paper
+from scanplan.plan import floorplan
+from scanplan.plan.floorplan import FloorPlan
+from scanplan.types import FloatArray
+
+
+def stamp_rooms(page: Page, plan: FloorPlan, space: LabelSpace) -> list[Stamp]:
+    """Return the rooms' stamps, by number: small rooms have the choice of places first."""
+    _, height_m = plan.storey_m
+    rooms = plan.rooms
+    doubtful = is_doubtful(rooms)
+    stamps: dict[int, Stamp] = {}
+    areas: list[BaseGeometry] = plan.areas.tolist()
+    for row in np.argsort(rooms["area_m2"], kind="stable").tolist():
+        number, closed = int(rooms["room"][row]), bool(rooms["closed"][row])
+        area = f"{'' if closed else 'about '}{rooms['area_m2'][row]:.1f} m²"
+        name = clean_text(plan.room_names[row])
+        facts = {
+            "NUMBER": str(number),
+            "NAME": name,
+            "AREA": area,
+            "PERIMETER": f"{rooms['perimeter_m'][row]:.2f} m",
+            "HEIGHT": f"{height_m:.2f} m" if plan.height_from == "ceiling" else "not seen",
+            "CLOSED": "yes" if closed else "no",
+        }
+        outline = page.place_shape(areas[row])
+        middle = page.to_paper(np.array([rooms["x_m"][row], rooms["y_m"][row]]))
+        title = shorten_text(name, Letters.MEDIUM, Paper.NAME)
+        if doubtful[row]:
+            title += " ?"
+        chosen = space.place(_stamp_places(outline, middle, number, title, area))
+        words = [] if chosen is None else [to_plan_word(page, word) for word in chosen.words]
+        stamps[row] = Stamp(words, facts, bool(doubtful[row]))
+    return [stamps[row] for row in sorted(stamps)]
+
+
+def _stamp_places(
+    outline: BaseGeometry, middle: FloatArray, number: int, title: str, area: str
+) -> Iterator[Candidate]:
+    """Yield a room's name and area in it, its number alone, and led out of it."""
+    element = f"room-{number}"
+    x0, y0, x1, y1 = outline.bounds
+    shares = np.linspace(0, 1, 9)[1:-1]
+    grid = [np.array([x, y]) for x in x0 + shares * (x1 - x0) for y in y0 + shares * (y1 - y0)]
+    places = [middle, *(place for place in grid if outline.contains(shapely.Point(place)))]
+    reach = np.hypot(x1 - x0, y1 - y0)
+    for place in places:
+        off = np.hypot(*(place - middle)) / reach
+        apart = np.array([0, (Letters.MEDIUM + Letters.SMALL) / 2 + 0.5 * Letters.SMALL])
+        lines = [
+            Word("stamp", title, place + apart / 2, Letters.MEDIUM, element=element),
+            Word("stamp", area, place - apart / 2, Letters.SMALL, element=element),
+        ]
+        yield Candidate(lines, off)
+        short = Word("stamp", lines[0].text.removeprefix("Room "), lines[0].place, Letters.MEDIUM)
+        yield Candidate([short, lines[1]], 3 + off)
+        yield Candidate(
+            [Word("stamp", str(number), place, Letters.SMALL, element=element)], 5 + off
+        )
+    yield from lead_out(Word("stamp", str(number), middle, Letters.SMALL, element=element), 6)
+
+
+def lead_out(word: Word, cost: float) -> Iterator[Candidate]:
+    """Yield places around a word's own, with a line to it."""
+    for away in (5.0, 8.0, 12.0, 17.0):
+        for angle in np.arange(0, 2 * np.pi, np.pi / 6):
+            way = np.array([np.cos(angle), np.sin(angle)])
+            place = word.place + away * way
+            side = 0.0 if way[0] > 0.3 else 1.0 if way[0] < -0.3 else 0.5
+            end = place - (word.size_mm if side == 0.5 else 0.6) * way
+            leader = np.array([word.place, end])
+            moved = Word(word.kind, word.text, place, word.size_mm, 0.0, side, word.element, leader)
+            yield Candidate([moved], cost + away / 17, (leader,))
+
+
+def label_openings(
+    page: Page, symbols: Sequence[Symbol], is_in_chain: Sequence[bool], space: LabelSpace
+) -> Iterator[Word]:
+    """Yield the widths of openings that no chain of dimensions states, and marks of doubt."""
+    for symbol, is_stated in zip(symbols, is_in_chain, strict=True):
+        text = "" if is_stated else f"{symbol.width_m:.2f}"
+        text += "?" * symbol.verify
+        if text:
+            kind = "verify" if symbol.verify else "width"
+            ends = page.to_paper(symbol.ends_m)
+            thick_mm = symbol.thickness_m * page.mm_per_m
+            yield from _place_beside(page, kind, text, ends, thick_mm, symbol.element, space)
+
+
+def label_walls(page: Page, plan: FloorPlan, space: LabelSpace) -> Iterator[Word]:
+    """Yield the heights of walls that end below the ceiling, and marks of doubt."""
+    doubtful = is_doubtful(plan.walls)
+    left_m, right_m = plan.sides_m
+    for row, ends_m in enumerate(floorplan.centrelines_m(plan.walls)):
+        text = f"{plan.heights_m[row]:.2f} high" if plan.low[row] else ""
+        text += "?" * bool(doubtful[row])
+        if text:
+            kind = "verify" if doubtful[row] else "note"
+            thick_mm = float(left_m[row] + right_m[row]) * page.mm_per_m
+            element = f"wall-{plan.walls['wall'][row]}"
+            ends = page.to_paper(ends_m)
+            yield from _place_beside(page, kind, text, ends, thick_mm, element, space)
+
+
+def _place_beside(
+    page: Page,
+    kind: str,
+    text: str,
+    ends: FloatArray,
+    thick_mm: float,
+    element: str,
+    space: LabelSpace,
+) -> Iterator[Word]:
+    """Yield a text along a stretch of wall on paper, beside it or led out, if there is room."""
+    along, turn_deg = read_along(ends)
+    above = np.array([-along[1], along[0]])
+    middle = ends.mean(axis=0)
+    length = np.hypot(*(ends[1] - ends[0]))
+    candidates: list[Candidate] = []
+    for away, cost in ((0.5, 0.0), (1.5, 1.5)):
+        for side in (1, -1):
+            for shift in (0.0, 0.25, -0.25):
+                offset = thick_mm / 2 + (0.6 + away) * Letters.SMALL
+                place = middle + side * offset * above + shift * length * along
+                word = Word(kind, text, place, Letters.SMALL, turn_deg, element=element)
+                candidates.append(Candidate([word], cost + abs(shift)))
+    candidates += lead_out(Word(kind, text, middle, Letters.SMALL, element=element), 4)
+    chosen = space.place(candidates, most=LabelSpace.OFF_WALL)
+    if chosen is not None:
+        yield to_plan_word(page, chosen.words[0])

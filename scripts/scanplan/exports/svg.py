@@ -1,0 +1,95 @@
+"""The sheet of a plan as SVG: real text, a group for each kind of element, titles."""
+
+from collections.abc import Iterator
+from html import escape
+from itertools import groupby
+
+from scanplan.exports.sheet.composition import Sheet, paper_marks, paper_words
+from scanplan.exports.sheet.lettering import (
+    FONT,
+    clean_text,
+    font_size_mm,
+    measure_width_mm,
+    rotation,
+)
+from scanplan.exports.sheet.marks import Mark, Word
+from scanplan.exports.sheet.styles import STYLES
+from scanplan.types import FloatArray
+
+_ANCHORS = {0.0: "start", 0.5: "middle", 1.0: "end"}
+
+
+def format_svg_sheet(sheet: Sheet) -> str:
+    """Return a sheet as the text of an SVG file of its size, one user unit a millimetre.
+
+    Every kind of element has a group with its name as class; classes are styled in one place.
+    """
+    width, height = sheet.page.size_mm
+    name = escape(sheet.name)
+    rows = [
+        '<?xml version="1.0" encoding="UTF-8"?>',
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}mm" height="{height:g}mm"'
+        f' viewBox="0 0 {width:g} {height:g}" role="img" aria-labelledby="title">',
+        f'<title id="title">Floor plan of {name}</title>',
+        f"<desc>Scale 1:{sheet.page.scale} on {sheet.page.name}</desc>",
+        f"<style>{' '.join(_style_rules())}</style>",
+        f'<rect class="paper" width="{width:g}" height="{height:g}" fill="#ffffff"/>',
+    ]
+    for kind, marks in groupby(paper_marks(sheet), key=lambda mark: mark.kind):
+        rows += [f'<g class="{kind}">', *(_format_mark(mark, height) for mark in marks), "</g>"]
+    words = sorted(paper_words(sheet), key=lambda word: list(STYLES).index(word.kind))
+    for kind, group in groupby(words, key=lambda word: word.kind):
+        rows += [f'<g class="words {kind}">', *(_format_word(w, height) for w in group), "</g>"]
+    return "\n".join([*rows, "</svg>", ""])
+
+
+def _style_rules() -> Iterator[str]:
+    yield f"text {{ font-family: '{FONT}', Verdana, sans-serif; }}"
+    yield "path { stroke-linejoin: miter; stroke-miterlimit: 4; fill-rule: evenodd; }"
+    for kind, style in STYLES.items():
+        dashes = f" stroke-dasharray: {_numbers(style.dashes_mm)};" if style.dashes_mm else ""
+        yield (
+            f".{kind} path {{ stroke: {style.ink}; stroke-width: {style.width_mm};"
+            f" fill: {style.fill};{dashes} }}"
+        )
+        yield f".{kind} text {{ fill: {style.ink}; }}"
+
+
+def _format_mark(mark: Mark, height: float) -> str:
+    drawn = "".join(_format_path(path, height, closed=mark.closed) for path in mark.paths)
+    name = f' id="{escape(mark.element)}"' if mark.element else ""
+    doubt = ' class="doubtful"' if mark.verify else ""
+    title = escape(clean_text(mark.title))
+    if title:
+        return f'<path{name}{doubt} d="{drawn}"><title>{title}</title></path>'
+    return f'<path{name}{doubt} d="{drawn}"/>'
+
+
+def _format_path(path: FloatArray, height: float, *, closed: bool) -> str:
+    points = path[:-1] if closed else path
+    drawn = "L".join(f"{_number(x)} {_number(height - y)}" for x, y, _ in points)
+    return f"M{drawn}{'Z' if closed else ''}"
+
+
+def _format_word(word: Word, height: float) -> str:
+    # the baseline lies half of a capital's height below the middle
+    x, y = word.place - rotation(word.turn_deg)[:, 1] * word.size_mm / 2
+    y = height - y
+    turn = f' transform="rotate({_number(-word.turn_deg)} {_number(x)} {_number(y)})"'
+    # other fonts are squeezed to the width that the place was chosen by
+    length = measure_width_mm(word.text, word.size_mm)
+    size = font_size_mm(word.size_mm)
+    return (
+        f'<text x="{_number(x)}" y="{_number(y)}" font-size="{_number(size)}"'
+        f' text-anchor="{_ANCHORS[word.align]}" textLength="{_number(length)}"'
+        f' lengthAdjust="spacingAndGlyphs"{turn if abs(word.turn_deg) > 1e-6 else ""}>'
+        f"{escape(word.text)}</text>"
+    )
+
+
+def _numbers(values: tuple[float, ...]) -> str:
+    return " ".join(map(_number, values))
+
+
+def _number(value: float) -> str:
+    return f"{round(float(value), 3) + 0.0:g}"

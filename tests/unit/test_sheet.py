@@ -1,0 +1,273 @@
+"""Sheets are usual ones, to scale, and no word on them lies on another."""
+
+import itertools
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from helpers import floorplan_making
+from helpers.floorplan_making import bare, plan
+from scanplan.exports.sheet import accuracy, composition, content, lettering, paper, symbols
+from scanplan.exports.sheet.marks import Symbol, flatten
+from scanplan.exports.sheet.paper import Slot
+from scanplan.exports.sheet.styles import LAYERS, STYLES, Letters, doubt_layer
+from scanplan.exports.sheet.title import SheetFacts
+
+
+def turned(drawn, angle_deg):
+    """A plan turned in the map."""
+    turn = lettering.rotation(angle_deg)
+
+    def turn_ends(columns):
+        ends = np.stack([columns[f"{c}{i}_m"] for i in "01" for c in "xy"], axis=1)
+        x0, y0, x1, y1 = (ends.reshape(-1, 2) @ turn.T).reshape(-1, 4).T
+        return columns | {"x0_m": x0, "y0_m": y0, "x1_m": x1, "y1_m": y1}
+
+    areas = [shapely.transform(area, lambda xy: xy @ turn.T) for area in drawn.areas]
+    rooms = floorplan_making.rooms(areas) | {"name": drawn.rooms.get("name", None)}
+    if rooms["name"] is None:
+        del rooms["name"]
+    return replace(
+        drawn,
+        faces=turn_ends(drawn.faces),
+        walls=turn_ends(drawn.walls),
+        openings=turn_ends(drawn.openings),
+        rooms=rooms,
+    )
+
+
+def crowded(n=9):
+    """Rooms of 1.2 m side by side: words have hardly any room."""
+    rooms = [
+        shapely.box(1.3 * i, 1.3 * j, 1.3 * i + 1.2, 1.3 * j + 1.2)
+        for i in range(n)
+        for j in range(n)
+    ]
+    side = 1.3 * n
+    lines = [
+        ((1.3 * i - 0.05, -0.1, 1.3 * i - 0.05, side), 0.1, 0, 1, "observed") for i in range(n + 1)
+    ]
+    lines += [
+        ((-0.1, 1.3 * j - 0.05, side, 1.3 * j - 0.05), 0.1, 2, 3, "observed") for j in range(n + 1)
+    ]
+    doors = [
+        ((1.3 * i + 0.2, 1.3 * j - 0.05, 1.3 * i + 0.9, 1.3 * j - 0.05), 0, "door", 0.0, 2.0, 0, 1)
+        for i in range(n)
+        for j in range(n)
+    ]
+    walls = floorplan_making.walls(lines) | {"verify": np.ones(len(lines), bool)}
+    openings = floorplan_making.openings(doors) | {"verify": np.ones(len(doors), bool)}
+    return plan(rooms=floorplan_making.rooms(rooms), walls=walls, openings=openings)
+
+
+PLANS = {
+    "house": plan(),
+    "turned house": turned(plan(), 27),
+    "crowded": crowded(),
+    "crowded and turned": turned(crowded(5), -12),
+    "bare": bare(),
+    "tiny": bare([(0, 0, 0.3, 0, -1)]),
+    "huge": bare([(0, 0, 900, 400, -1)]),
+    "long name": replace(plan(), name="W" * 300),
+}
+
+
+@pytest.fixture(params=PLANS, scope="module")
+def sheet(request):
+    return composition.compose_sheet(PLANS[request.param])
+
+
+def test_no_word_lies_on_another(sheet):
+    words = [*composition.paper_words(sheet)]
+    boxes = [lettering.word_box(word) for word in words]
+    pairs = itertools.combinations(range(len(words)), 2)
+    over = [(words[i].text, words[j].text) for i, j in pairs if boxes[i].intersects(boxes[j])]
+    assert len(words) > 20 and over == []
+
+
+def test_every_word_lies_in_the_frame(sheet):
+    frame = shapely.box(*sheet.page.inner_mm)
+    words = [*composition.paper_words(sheet)]
+    assert [word.text for word in words if not lettering.word_box(word).within(frame)] == []
+
+
+def test_words_have_three_sizes_none_below_the_least_of_the_standard(sheet):
+    sizes = {word.size_mm for word in composition.paper_words(sheet)}
+    assert sizes <= {Letters.SMALL, Letters.MEDIUM, Letters.LARGE} and min(sizes) >= 1.8
+
+
+def test_the_plan_lies_above_the_title_block(sheet):
+    area = shapely.box(*sheet.page.drawing_mm)
+    drawn = [sheet.page.to_paper(path[:, :2]) for mark in sheet.marks for path in mark.paths]
+    assert shapely.multipoints(np.concatenate(drawn)).within(area)
+
+
+def test_paper_and_plan_are_each_other_s_inverse(sheet):
+    places_m = np.array([[0.0, 0.0], [3.0, -2.0]])
+    np.testing.assert_allclose(sheet.page.to_plan(sheet.page.to_paper(places_m)), places_m)
+    (first, other) = sheet.page.to_paper(places_m)
+    assert np.hypot(*(other - first)) == pytest.approx(1000 * np.hypot(3, 2) / sheet.page.scale)
+
+
+@pytest.mark.parametrize(
+    ("extent_m", "name", "upright", "scale"),
+    [
+        # A4 upright: 180 x 277 in the frame, less 66 of tables and 24 on each side: 132 x 163
+        ((6.6, 8.1), "A4", True, 50),
+        # A3 has tables beside the title block, 38 high: 390 x 277 less these leave 342 x 191
+        ((17.1, 9.5), "A3", False, 50),
+        # more than that at 1:50, and A4 at 1:100 is too low for it (267 - 48 = 219 wide, 104 high)
+        ((17.2, 9.5), "A4", False, 100),
+        ((40, 30), "A2", False, 100),
+        # A1: 811 x 574 less the same: 763 x 488
+        ((76.3, 48.8), "A1", False, 100),
+        ((76.4, 48.8), "A2", False, 200),
+        ((900, 400), "A0", False, 1000),
+    ],
+)
+def test_the_scale_is_the_largest_usual_one_and_the_sheet_the_smallest(
+    extent_m, name, upright, scale
+):
+    page = paper.choose_page(np.zeros(2), np.array(extent_m), 0.0, [6])
+    assert (page.name, page.scale) == (name, scale)
+    assert (page.size_mm[0] < page.size_mm[1]) == upright
+
+
+def test_a_plan_beyond_all_usual_scales_fills_the_largest_sheet():
+    page = paper.choose_page(np.zeros(2), np.array([900_000, 1]), 0.0, [6])
+    assert page.name == "A0" and page.scale == pytest.approx(900_000_000 / (1159 - 48), abs=1)
+
+
+def test_tables_break_only_where_no_slot_holds_them():
+    slots = [Slot(0, 100, 10), Slot(60, 100, 10), Slot(120, 100, 10)]
+    # six rows and a head leave two rows: the next block goes to a slot of its own, and on
+    first, second = paper.fill_slots(iter(slots), [6, 12])
+    assert [(s.x_mm, s.rows) for s in first] == [(0, 6)]
+    assert [(s.x_mm, s.rows) for s in second] == [(60, 9), (120, 3)]
+    assert paper.fill_slots(iter(slots[:1]), [10]) is None
+
+
+@given(st.floats(-180, 180))
+@settings(max_examples=25, deadline=None)
+def test_the_main_direction_follows_the_building(angle_deg):
+    found = turned(plan(), angle_deg).main_direction_deg
+    assert -45 <= found <= 45
+    off = (found - angle_deg) % 90
+    assert min(off, 90 - off) == pytest.approx(0, abs=1e-6)
+
+
+def test_a_plan_is_turned_unless_it_is_not_to_be():
+    drawn = turned(plan(), 27)
+    assert composition.compose_sheet(drawn).page.turn_deg == pytest.approx(-27)
+    straight = composition.compose_sheet(drawn, turn=False)
+    assert straight.page.turn_deg == 0
+    said = [word.text for word in straight.paper_words]
+    assert any("not turned" in text for text in said)
+
+
+def test_chains_and_rooms_measure_the_house():
+    sheet = composition.compose_sheet(plan())
+    measured = sorted({float(d.word.text) for d in sheet.dimensions})
+    for dimension in sheet.dimensions:
+        line, ends = dimension.line_m, dimension.ends_m
+        along = (line[1] - line[0]) / np.hypot(*(line[1] - line[0]))
+        assert (ends[1] - ends[0]) @ along == pytest.approx(float(dimension.word.text), abs=0.006)
+    # outside: 7.4 x 3.4 m; the window, 1.2 m wide, begins 1.2 m from the west; the entrance is 1 m
+    assert {7.4, 3.4, 1.2, 1.0} <= set(measured)
+    # inside: rooms of 4 x 3 and 3 x 3 m
+    assert {4.0, 3.0} <= set(measured)
+
+
+def test_what_a_chain_states_is_not_written_again():
+    sheet = composition.compose_sheet(plan())
+    widths = [word.text for word in sheet.words if word.kind == "width"]
+    assert widths == ["0.90"]
+
+
+def test_an_opening_in_an_assumed_wall_lies_in_its_middle():
+    east = ((7.1, 1.0, 7.1, 2.0), 1, "window", 0.9, 2.1, 1, -1)
+    drawn = plan(openings=floorplan_making.openings([east]))
+    (window,) = content.list_symbols(drawn)
+    # seen from the west, the wall is assumed 0.1 m thick behind x = 7.1
+    np.testing.assert_allclose(window.ends_m[:, 0], 7.15)
+    assert window.thickness_m == pytest.approx(0.1)
+    assert drawn.assumed.bounds[0] == pytest.approx(7.1, abs=1e-3)
+
+
+@pytest.mark.parametrize(("width_m", "block"), [(0.9, "DOOR-1"), (1.25, "DOOR-1"), (1.6, "DOOR-2")])
+def test_doors_swing_both_ways_as_far_as_their_leaves_are_wide(width_m, block):
+    ends_m = np.array([[2.0, 1.0], [2.0 + width_m, 1.0]])
+    door = Symbol("door", ends_m, 0.1, "door-0", "")
+    assert symbols.choose_block(door) == block
+    leaf_m = width_m / (2 if block == "DOOR-2" else 1)
+    drawn = np.concatenate([flatten(path) for path in symbols.symbol_paths(door)])
+    assert drawn[:, 1].min() == pytest.approx(1 - leaf_m)
+    assert drawn[:, 1].max() == pytest.approx(1 + leaf_m)
+    for path in symbols.symbol_paths(door)[1::2]:
+        hinge = path[0, :2] - [0, leaf_m]
+        radii = np.hypot(*(flatten(path) - hinge).T)
+        np.testing.assert_allclose(radii, leaf_m)
+
+
+def test_doubt_is_marked_told_and_on_layers_of_its_own():
+    openings = floorplan_making.openings() | {
+        "verify": np.array([True, False, False]),
+        "doubt": np.array(["few rays", "", ""], object),
+    }
+    sheet = composition.compose_sheet(plan(openings=openings))
+    doors = [symbol for symbol in sheet.symbols if symbol.verify]
+    assert [door.facts["doubt"] for door in doors] == ["few rays"]
+    doubted = [mark.element for mark in composition.paper_marks(sheet) if mark.kind == "verify"]
+    assert {"verify-door-0", "verify-wall-2"} <= set(doubted)
+    said = [word.text for word in composition.paper_words(sheet)]
+    assert sum(text.endswith("?") for text in said) >= 2
+    assert any("doubtful" in text for text in said)
+    assert {doubt_layer(STYLES[kind].layer) for kind in ("wall", "door", "window", "room")} == {
+        "A-WALL-VRFY", "A-DOOR-VRFY", "A-GLAZ-VRFY", "A-AREA-VRFY"
+    }  # fmt: skip
+
+
+def test_what_was_not_seen_of_a_room_is_dotted():
+    rooms = floorplan_making.rooms([shapely.box(0, 0, 4, 3), shapely.box(10, 0, 12, 2)])
+    (blank,) = [m for m in content.draw_walls(plan(rooms=rooms)) if m.kind == "not-seen"]
+    assert shapely.LineString(blank.paths[0][:, :2]).length == pytest.approx(8, abs=0.3)
+
+
+def test_the_title_block_states_the_survey():
+    facts = SheetFacts("Town hall", "First floor", "2024-05-06", 12, "scanplan 1")
+    rooms = floorplan_making.rooms() | {"name": np.array(["Foyer", ""], object)}
+    said = [word.text for word in composition.compose_sheet(plan(rooms=rooms), facts).paper_words]
+    assert {"Town hall", "First floor", "2024-05-06", "12 scans", "scanplan 1"} <= set(said)
+    # 2 mm of offset are 3.9 mm of 95 %
+    assert "LOA40: walls ± 3.9 mm (95 %), relative" in said
+    assert {"Foyer", "Room 1", "12.0", "9.0", "14.00"} <= set(said)
+
+
+@pytest.mark.parametrize(
+    ("sigma_m", "name"), [(0.0005, "LOA50"), (0.003, "LOA30"), (0.02, "LOA20"), (0.1, "LOA10")]
+)
+def test_accuracy_is_the_class_that_holds_95_percent(sigma_m, name):
+    walls = floorplan_making.walls() | {"sigma_offset_m": np.full(6, sigma_m)}
+    assert accuracy.state_accuracy(plan(walls=walls)).startswith(name)
+
+
+def test_accuracy_without_sigmas_is_not_known():
+    walls = floorplan_making.walls() | {"sigma_offset_m": np.full(6, np.nan)}
+    assert accuracy.state_accuracy(plan(walls=walls)) == "not known"
+
+
+def test_texts_are_one_line_and_cut_where_they_are_too_long():
+    assert lettering.clean_text(" a\nb\t\x00c\u2028d ") == "a b c d"
+    cut = lettering.shorten_text("W" * 50, 1.8, 20.0)
+    assert cut.endswith("…") and lettering.measure_width_mm(cut, 1.8) <= 20
+    assert lettering.shorten_text("short", 1.8, 20.0) == "short"
+
+
+def test_every_style_has_a_layer_and_walls_are_drawn_over_rooms():
+    assert {style.layer for style in STYLES.values()} <= set(LAYERS)
+    order = list(STYLES)
+    assert order.index("room") < order.index("assumed") < order.index("wall")
