@@ -106,11 +106,12 @@ def _fit_grid(low_m: FloatArray, high_m: FloatArray, resolution_m: float) -> bit
 def _obstacles(plan: FloorPlan) -> tuple[Array, FloatArray]:
     """Return polygons, and lines (n, 2, 2) of surfaces, that are in the way.
 
-    A window is no way through. In a wall of which one side is known only that side is in the way.
+    Windows and glass are no ways through, nor is a gap that may be anything. In a wall of which one
+    side is known only that side is in the way.
     """
-    is_window = plan.openings["type"] == "window"
-    panes_m = floorplan.centrelines_m(plan.openings)[is_window]
-    thickness_m = plan.openings["thickness_m"][is_window]
+    is_shut = ~np.isin(plan.openings["type"], floorplan.WAYS)
+    panes_m = floorplan.centrelines_m(plan.openings)[is_shut]
+    thickness_m = plan.openings["thickness_m"][is_shut]
     is_thick = np.isfinite(thickness_m)
     polygons = []
     lines = []

@@ -8,6 +8,7 @@ COLOURS: Mapping[str, str] = {
     "to verify": "#f29933ff",
     "door": "#996b42ff",
     "window": "#8cc7e666",
+    "glass": "#8cc7e666",
     "slab": "#9e9e9eff",
     "ceiling": "#edede64d",
     "space": "#99d99926",

@@ -21,7 +21,7 @@ def vertical_extent_m(plan: FloorPlan, row: int) -> tuple[float, float]:
     _, storey_m = plan.storey_m
     wall_m = float(plan.heights_m[host]) if host >= 0 else storey_m
     usual_low_m = _SILL_M if kind == "window" else 0.0
-    usual_high_m = wall_m if kind == "passage" else _DOOR_M
+    usual_high_m = _DOOR_M if kind in ("door", "window") else wall_m
     low_m = max(sill_m if np.isfinite(sill_m) else usual_low_m, 0.0)
     high_m = min(lintel_m if np.isfinite(lintel_m) else usual_high_m, wall_m)
     if high_m > low_m + LEAF_M:

@@ -27,6 +27,8 @@ OPENINGS = {
     "gap": "unknown gap",
 }
 """Types of openings, and their wording."""
+WAYS = ("door", "passage")
+"""Those that one may go through."""
 _ENDS = ("x0_m", "y0_m", "x1_m", "y1_m")
 _CLEARANCE_M = 0.02  # an opening is cut this much deeper than its wall, so that no skin is left
 _GRID_M = 1e-4  # of corners: a tenth of a millimetre, what drawings are rounded to

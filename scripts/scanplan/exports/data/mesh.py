@@ -11,7 +11,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.exports.data.element_ids import ElementIds
-from scanplan.exports.model_colours import read_colour
+from scanplan.exports.model_colours import COLOURS, read_colour
 from scanplan.exports.opening_extents import LEAF_M, vertical_extent_m
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
@@ -116,7 +116,7 @@ def format_glb(plan: FloorPlan, ids: ElementIds) -> bytes:
     lines_m = floorplan.centrelines_m(plan.openings)
     leaves = floorplan.buffer_lines(lines_m, np.full(len(lines_m), LEAF_M / 2))
     for row, kind in enumerate(plan.openings["type"]):
-        if kind != "passage":
+        if kind in COLOURS:
             name = f"{kind.capitalize()} {plan.openings['opening'][row]}"
             leaf = _prism(leaves[row], *vertical_extent_m(plan, row))
             model.add(name, ids["opening"][row], kind, leaf)

@@ -11,7 +11,6 @@ from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.types import FloatArray
 
-_WAYS = ("door", "passage")
 _PLACE = {"frame": "map", "unit": "m"}
 
 
@@ -40,7 +39,7 @@ def format_room_graph(plan: FloorPlan, rows: dict[str, Rows]) -> str:
 
 
 def _list_ways(plan: FloorPlan) -> list[int]:
-    return np.flatnonzero(np.isin(plan.openings["type"], _WAYS)).tolist()
+    return np.flatnonzero(np.isin(plan.openings["type"], floorplan.WAYS)).tolist()
 
 
 def _describe_room(plan: FloorPlan, rows: Rows, row: int) -> dict[str, Any]:

@@ -20,7 +20,7 @@ from scanplan.exports.ifc_model import Frame, IfcModel
 from scanplan.exports.opening_extents import LEAF_M, vertical_extent_m
 from scanplan.plan import floorplan
 
-_FILLED_BY = {"door": "IfcDoor", "window": "IfcWindow"}
+_FILLED_BY = {"door": "IfcDoor", "window": "IfcWindow", "glass": "IfcWindow"}
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,6 @@ from scanplan.exports.sheet.lettering import clean_text
 from scanplan.exports.sheet.marks import Facts, Mark, Symbol, straight
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
-from scanplan.plan.tolerances import END_M
 from scanplan.types import BoolArray, Columns, FloatArray
 
 _FACTS = {
@@ -49,8 +48,9 @@ def draw_walls(plan: FloorPlan) -> Iterator[Mark]:
         room, name = plan.rooms["room"][row], clean_text(plan.room_names[row])
         facts = {"name": name, **facts_of("room", plan.rooms, row)}
         yield _area("room", area, f"room-{room}", name, facts, verify=bool(doubtful[row]))
-    for number, line in enumerate(_find_blanks(plan)):
-        path = [straight(shapely.get_coordinates(line))]
+    unseen_m = floorplan.centrelines_m(plan.unseen)
+    for number, line_m in zip(plan.unseen["opening"], unseen_m, strict=True):
+        path = [straight(line_m)]
         yield Mark("not-seen", path, element=f"not-seen-{number}", title="not seen")
     assumed = [*_polygons(plan.assumed)]
     for number, part in enumerate(assumed):
@@ -120,17 +120,6 @@ def list_symbols(plan: FloorPlan) -> list[Symbol]:
 def _footprint(plan: FloorPlan, is_wanted: BoolArray) -> BaseGeometry:
     bodies = shapely.union_all(plan.known_bodies[is_wanted[plan.thick]])
     return shapely.difference(bodies, shapely.union_all(plan.gaps))
-
-
-def _find_blanks(plan: FloorPlan) -> Iterator[BaseGeometry]:
-    """Yield what of rooms' outlines has neither wall nor opening beside it."""
-    faces = floorplan.line_shapes(floorplan.centrelines_m(plan.faces))
-    near = shapely.union_all(shapely.buffer([*plan.bodies, *faces, *plan.gaps], END_M))
-    blank = shapely.difference(shapely.union_all(shapely.boundary(plan.areas)), near)
-    merged = shapely.line_merge(blank) if blank.geom_type == "MultiLineString" else blank
-    for part in shapely.get_parts(merged):
-        if part.length > 2 * END_M:
-            yield shapely.simplify(part, END_M / 2)
 
 
 def _area(

@@ -131,6 +131,8 @@ STYLES = {
     "passage": Style("A-WALL-OPNG", "passage", FAINT, dashes_mm=(1.2, 0.8)),
     "door": Style("A-DOOR", "door, swing not known: both ways"),
     "window": Style("A-GLAZ", "window", fill="#ffffff"),
+    "glass": Style("A-GLAZ", "glass pane", fill="#ffffff"),
+    "gap": Style("A-WALL-OPNG", "gap, not known what", FAINT, dashes_mm=(0.6, 0.6)),
     "verify": Style("A-ANNO-VRFY", "doubtful: verify on site", DOUBT, dashes_mm=(1.2, 0.8)),
     "leader": Style("A-ANNO-DIMS", ink=FAINT),
     "dimension": Style("A-ANNO-DIMS", ink=FAINT),

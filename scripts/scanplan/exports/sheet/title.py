@@ -62,6 +62,7 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
     n_doubts = sum(
         int(np.sum(columns.get("verify", 0))) for columns in (plan.walls, plan.openings, plan.rooms)
     )
+    contents = "; ".join(filter(None, [plan.mark, floorplan.summarise_floorplan(plan)]))
     rows = [
         [("Project", facts.project or plan.name, 2), ("Storey", facts.storey or "not named", 1)],
         [("Drawing", "Floor plan, as surveyed", 2), ("Survey", plan.name, 1)],
@@ -71,7 +72,7 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
         ],
         [
             ("Made of", f"{facts.n_scans} scans", 1),
-            ("Contents", floorplan.summarise_floorplan(plan), 2),
+            ("Contents", contents, 2),
         ],
         [
             ("Scale", f"1:{page.scale}", 1),
