@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import ifcopenshell
 import numpy as np
 import walls_bench
+import watershed_rooms
 
 from helpers import ifc_volumes
 from scanplan.lab.evaluation import plan_metrics, true_plan, truth_file, wall_findings, wall_metrics
@@ -115,6 +116,7 @@ def _bench_survey(found: Results, truth: Path, settings: Settings) -> None:
     plan, floor = _bench_plan("plan of all scans", found, all_ids, truth, settings)
     _print_volumes(found.folder, truth)
     _bench_raster(found, all_ids, plan, floor)
+    _bench_watershed(found, all_ids, truth)
 
 
 def _bench_plan(
@@ -202,6 +204,19 @@ def _bench_raster(
     lines_m = walls_bench.raster_lines(scans)
     took_s = time.process_time() - started
     _print_row("raster and LSD, all scans", _measure_lines(lines_m, floor), took_s)
+
+
+def _bench_watershed(found: Results, scan_ids: IntArray, truth: Path) -> None:
+    rows = registered_scans.rows_of_scans(scan_ids, found.registered, found.folder, found.folder)
+    sensors_m = found.registered.map_from_sensor[rows, :3, 3]
+    positions = dict(zip(scan_ids.tolist(), sensors_m, strict=True))
+    started = time.process_time()
+    rays = ray_set.gather_rays(found.store.scans(scan_ids), positions, planar=found.store.planar)
+    rooms = watershed_rooms.find_watershed_rooms(rays)
+    took_s = time.process_time() - started
+    true = true_plan.read_true_plan(truth / "truth.geojson")
+    row = plan_metrics.measure_rooms(rooms, true.rooms, true.visited)
+    _print_row("watershed of distances, all scans", row, took_s)
 
 
 def _print_row(name: str, row: Mapping[str, float], took_s: float) -> None:

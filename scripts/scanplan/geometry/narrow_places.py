@@ -201,8 +201,9 @@ def _borders(basin: IntArray) -> list[tuple[list[int], IntArray]]:
         first = cells.min(axis=0)
         here = np.zeros(cells.max(axis=0) - first + 1, bool)
         here[tuple((cells - first).T)] = True
-        label, count = ndimage.label(here, np.ones((3, 3)))
-        for place in range(1, count + 1):
+        label = np.zeros(here.shape, np.int64)
+        ndimage.label(here, np.ones((3, 3)), output=label)
+        for place in range(1, int(label.max()) + 1):
             places.append((pairs[number].tolist(), np.argwhere(label == place) + first))
     return places
 
