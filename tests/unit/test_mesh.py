@@ -47,6 +47,13 @@ def test_objects_have_names_ids_and_materials():
     assert colours == {"Wall 0": "wall", "Wall 2": "to verify", "Window 2": "window"}
 
 
+def test_a_doubtful_door_is_shown_as_such():
+    openings = floorplan_making.openings() | {"verify": np.array([True, False, False])}
+    scene = read(plan(openings=openings))
+    colours = [scene.geometry[n].visual.material.name for n in ("Door 0", "Door 1")]
+    assert colours == ["to verify", "door"]
+
+
 def test_a_passage_is_a_hole_with_nothing_in_it():
     openings = floorplan_making.openings() | {"type": np.array(["passage"] * 3, object)}
     assert not [n for n in read(plan(openings=openings)).geometry if n.startswith("Passage")]

@@ -11,7 +11,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.exports.data.element_ids import ElementIds
-from scanplan.exports.model_colours import COLOURS, read_colour
+from scanplan.exports.model_colours import COLOURS, colour_of, read_colour
 from scanplan.exports.opening_extents import LEAF_M, vertical_extent_m
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
@@ -110,7 +110,7 @@ def format_glb(plan: FloorPlan, ids: ElementIds) -> bytes:
     for row, body in enumerate(plan.bodies):
         state = "wall" if plan.walls["state"][row] == "observed" else "inferred wall"
         parts = [_prism(part, *extent_m) for part, extent_m in _solid_parts(plan, row, body)]
-        colour = "to verify" if plan.walls["verify"][row] else state
+        colour = colour_of(plan.walls, row, state)
         name = f"Wall {plan.walls['wall'][row]}"
         model.add(name, ids["wall"][row], colour, np.concatenate(parts))
     lines_m = floorplan.centrelines_m(plan.openings)
@@ -119,7 +119,8 @@ def format_glb(plan: FloorPlan, ids: ElementIds) -> bytes:
         if kind in COLOURS:
             name = f"{kind.capitalize()} {plan.openings['opening'][row]}"
             leaf = _prism(leaves[row], *vertical_extent_m(plan, row))
-            model.add(name, ids["opening"][row], kind, leaf)
+            colour = colour_of(plan.openings, row, kind)
+            model.add(name, ids["opening"][row], colour, leaf)
     for row, area in enumerate(plan.areas):
         model.add(plan.room_names[row], ids["room"][row], "slab", _flat(area, 0.0))
     return model.pack()

@@ -84,9 +84,13 @@ class _SeenCells:
         if self._cell_m == 0:
             return ~is_first
         keys, firsts = np.unique(self._keys(xyz_m), return_index=True)
-        is_new = ~np.logical_or.reduce([np.isin(keys, run) for run in self._runs] or [keys != keys])
-        is_first[firsts[is_new]] = True
-        self._runs.append(keys[is_new])
+        for run in self._runs:
+            places = np.searchsorted(run, keys).clip(max=len(run) - 1)
+            is_new = run[places] != keys
+            keys, firsts = keys[is_new], firsts[is_new]
+        is_first[firsts] = True
+        if len(keys):
+            self._runs.append(keys)
         while len(self._runs) > 1 and len(self._runs[-2]) < 2 * len(self._runs[-1]):
             last = self._runs.pop()
             self._runs[-1] = np.union1d(self._runs[-1], last)

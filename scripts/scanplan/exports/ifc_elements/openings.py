@@ -12,11 +12,11 @@ from shapely.geometry import Polygon
 from scanplan.exports.ifc_elements.storey_plan import (
     EVIDENCE,
     StoreyPlan,
-    colour_of,
     describe_doubt,
 )
 from scanplan.exports.ifc_elements.walls import nominal_m
 from scanplan.exports.ifc_model import Frame, IfcModel
+from scanplan.exports.model_colours import colour_of
 from scanplan.exports.opening_extents import LEAF_M, vertical_extent_m
 from scanplan.plan import floorplan
 

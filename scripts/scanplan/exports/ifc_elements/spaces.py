@@ -7,10 +7,10 @@ from ifcopenshell import entity_instance
 from scanplan.exports.ifc_elements.storey_plan import (
     EVIDENCE,
     StoreyPlan,
-    colour_of,
     describe_doubt,
 )
 from scanplan.exports.ifc_model import IfcModel
+from scanplan.exports.model_colours import colour_of
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.types import Array
 

@@ -50,9 +50,3 @@ def describe_doubt(columns: Columns, row: int) -> dict[str, tuple[str, Any]]:
 def known(value: float) -> float | None:
     """Return a number, None for NaN."""
     return float(value) if np.isfinite(value) else None
-
-
-def colour_of(columns: Columns, row: int, usual: str) -> str:
-    """Return the colour of an element: its usual one, or that of what is to be verified."""
-    is_doubtful = "verify" in columns and bool(columns["verify"][row])
-    return "to verify" if is_doubtful else usual

@@ -9,11 +9,11 @@ from ifcopenshell import entity_instance
 from scanplan.exports.ifc_elements.storey_plan import (
     EVIDENCE,
     StoreyPlan,
-    colour_of,
     describe_doubt,
     known,
 )
 from scanplan.exports.ifc_model import Frame, IfcModel
+from scanplan.exports.model_colours import colour_of
 from scanplan.exports.opening_extents import vertical_extent_m
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
