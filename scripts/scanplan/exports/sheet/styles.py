@@ -129,6 +129,8 @@ STYLES = {
     "surface": Style("A-WALL-SURF", "surface, seen from one side"),
     "surface-inferred": Style("A-WALL-INFR", "inferred surface", FAINT, dashes_mm=_DASHED),
     "passage": Style("A-WALL-OPNG", "passage", FAINT, dashes_mm=(1.2, 0.8)),
+    "gap": Style("A-WALL-OPNG", "gap, not known what", FAINT, dashes_mm=DASHES_MM["DOTTED"]),
+    "glass": Style("A-GLAZ", "glass down to the floor"),
     "door": Style("A-DOOR", "door, swing not known: both ways"),
     "window": Style("A-GLAZ", "window", fill="#ffffff"),
     "verify": Style("A-ANNO-VRFY", "doubtful: verify on site", DOUBT, dashes_mm=(1.2, 0.8)),
