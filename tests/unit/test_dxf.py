@@ -99,6 +99,20 @@ def test_openings_are_blocks_with_attributes_as_wide_as_they_are():
     assert facts_of(inserts["window-2"])["n_rays"] == 40
 
 
+def test_every_kind_of_opening_has_a_symbol_and_a_meaning():
+    openings = floorplan_making.openings() | {
+        "type": np.array(["passage", "gap", "glass"], object),
+        "corrected": np.array(["kept by hand", "", ""], object),
+    }
+    sheet = composition.compose_sheet(plan(openings=openings))
+    document = ezdxf.read(io.StringIO(dxf.format_dxf(sheet)))
+    inserts = document.modelspace().query("INSERT")
+    assert {"PASSAGE", "GAP", "GLASS"} <= {insert.dxf.name for insert in inserts}
+    said = [word.text for word in sheet.paper_words]
+    assert {"passage", "gap, not known what", "glass down to the floor"} <= set(said)
+    assert sheet.symbols[0].title == "passage 0, 1.00 m; kept by hand"
+
+
 def test_openings_are_cut_out_of_the_walls():
     walls = outlines(reopened(plan()), "A-WALL")
     assert not walls.intersects(shapely.LineString([(3, 1.5), (5, 1.5)]))

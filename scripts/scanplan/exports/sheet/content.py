@@ -22,10 +22,19 @@ _FACTS = {
         "n_points",
         "n_scans",
     ),
-    "opening": ("width_m", "thickness_m", "sill_m", "lintel_m", "n_rays", "room_a", "room_b"),
+    "opening": (
+        "width_m",
+        "thickness_m",
+        "sill_m",
+        "lintel_m",
+        "n_rays",
+        "p_kind",
+        "room_a",
+        "room_b",
+    ),
     "room": ("area_m2", "perimeter_m", "closed", "n_scans"),
 }
-_OF_ALL = ("p_true", "doubt")
+_OF_ALL = ("p_true", "doubt", "corrected")
 
 
 def facts_of(table: str, columns: Columns, row: int) -> Facts:
@@ -102,15 +111,17 @@ def list_symbols(plan: FloorPlan) -> list[Symbol]:
         # a wall's sides are left and right of its own line, which an opening may run against
         if host >= 0 and left @ _left_of(floorplan.centrelines_m(plan.walls)[host]) < 0:
             shift_m = -shift_m
-        width_m = plan.openings["width_m"][row]
+        facts = facts_of("opening", plan.openings, row)
+        said = [f"{kind} {number}, {plan.openings['width_m'][row]:.2f} m"]
+        said += [str(facts[name]) for name in ("doubt", "corrected") if name in facts]
         symbols.append(
             Symbol(
                 kind,
                 ends_m + shift_m * left,
                 thick_m,
                 f"{kind}-{number}",
-                f"{kind} {number}, {width_m:.2f} m",
-                facts_of("opening", plan.openings, row),
+                "; ".join(said),
+                facts,
                 bool(doubtful[row]),
             )
         )

@@ -23,17 +23,16 @@ def _leaf(hinge: float, tip: float) -> list[FloatArray]:
 
 
 _SIDES = [np.array([[0, y, 0], [1, y, 0]]) for y in (-0.5, 0.5)]
-_PANE = [
-    np.array([[0, -0.5, 0], [1, -0.5, 0], [1, 0.5, 0], [0, 0.5, 0], [0, -0.5, 0]]),
-    np.array([[0, 0, 0], [1, 0, 0]]),
-]
 BLOCKS = {
     "DOOR-1": _leaf(0.0, 1.0),
     "DOOR-2": [*_leaf(0.0, 0.5), *_leaf(1.0, 0.5)],
-    "WINDOW": _PANE,
-    "GLASS": _PANE,
+    "WINDOW": [
+        np.array([[0, -0.5, 0], [1, -0.5, 0], [1, 0.5, 0], [0, 0.5, 0], [0, -0.5, 0]]),
+        np.array([[0, 0, 0], [1, 0, 0]]),
+    ],
     "PASSAGE": _SIDES,
-    "GAP": _SIDES,
+    "GLASS": [np.array([[0, y, 0], [1, y, 0]]) for y in (-0.1, 0.1)],
+    "GAP": [*_SIDES, np.array([[0, -0.5, 0], [1, 0.5, 0]])],
 }
 """Paths of each symbol, from 0 to 1 along its wall; windows and passages are 1 thick, too."""
 
