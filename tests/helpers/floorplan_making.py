@@ -108,6 +108,7 @@ def openings(rows=OPENINGS):
         "room_a": np.array([row[5] for row in rows], np.int32),
         "room_b": np.array([row[6] for row in rows], np.int32),
         "n_rays": np.full(n, 40, np.int64),
+        "p_kind": np.full(n, 0.95),
     }
 
 

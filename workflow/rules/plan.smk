@@ -58,6 +58,31 @@ rule validate_plan:
         "../../scripts/validate_plan.py"
 
 
+rule rate_plan:
+    """Say how likely each element of the plan exists as it is drawn."""
+    input:
+        faces="results/{dataset}/plan/faces.parquet",
+        walls="results/{dataset}/plan/walls.parquet",
+        openings="results/{dataset}/plan/openings.parquet",
+        rooms="results/{dataset}/plan/rooms.parquet",
+        free="results/{dataset}/plan/free.parquet",
+        validation="results/{dataset}/plan/validation.parquet",
+    output:
+        confidence="results/{dataset}/plan/confidence.parquet",
+    log:
+        "logs/{dataset}/rate_plan.log",
+    benchmark:
+        "benchmarks/{dataset}/rate_plan.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=5,
+    params:
+        code=code_of("rate_plan"),
+    script:
+        "../../scripts/rate_plan.py"
+
+
 rule export_plan:
     """Write the plan as GeoJSON, DXF, SVG, PDF, IFC and as a map for nav2."""
     input:
@@ -67,6 +92,7 @@ rule export_plan:
         rooms="results/{dataset}/plan/rooms.parquet",
         evidence="results/{dataset}/plan/evidence.parquet",
         free="results/{dataset}/plan/free.parquet",
+        confidence="results/{dataset}/plan/confidence.parquet",
     output:
         geojson="results/{dataset}/plan/plan.geojson",
         dxf="results/{dataset}/plan/plan.dxf",

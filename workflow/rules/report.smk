@@ -116,6 +116,7 @@ REPORT_TABLES = {
     "free": "results/{dataset}/plan/free.parquet",
     "evidence": "results/{dataset}/plan/evidence.parquet",
     "validation": "results/{dataset}/plan/validation.parquet",
+    "confidence": "results/{dataset}/plan/confidence.parquet",
     "selection": plan_selection,
     "segments": "results/{dataset}/plan/segments.parquet",
     "poses": "results/{dataset}/poses.parquet",

@@ -53,7 +53,7 @@ def run_times(orderings, extractors=(), comparing=()):
             *(f"order_scans_{method}" for method in ordered),
             "extract_chosen_walls",
             *(f"extract_walls_{extractor}" for extractor in extractors),
-            *("assemble_plan", "validate_plan", "export_plan", "evaluate_poses"),
+            *("assemble_plan", "validate_plan", "rate_plan", "export_plan", "evaluate_poses"),
             *("evaluate_plan", "draw_registration", "draw_scans", "draw_walls"),
             "draw_validation",
             *comparing,

@@ -25,6 +25,8 @@ OPENINGS = {
     "gap": "unknown gap",
 }
 """Types of openings, and their wording."""
+NUMBERS = {"walls": "wall", "faces": "face", "openings": "opening", "rooms": "room"}
+"""Tables of elements to the columns that number their rows."""
 _ENDS = ("x0_m", "y0_m", "x1_m", "y1_m")
 _CLEARANCE_M = 0.02  # an opening is cut this much deeper than its wall, so that no skin is left
 _GRID_M = 1e-4  # of corners: a tenth of a millimetre, what drawings are rounded to
@@ -243,20 +245,55 @@ def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: f
         float(tables.read_note(files["free"], schemas.FREE, note) or "nan")
         for note in ("floor_z_m", "ceiling_z_m")
     )
-    openings = read("openings", schemas.OPENINGS)
+    parts = {
+        "faces": read("faces", schemas.FACES),
+        "walls": read("walls", schemas.PLAN_WALLS),
+        "openings": read("openings", schemas.OPENINGS),
+        "rooms": read("rooms", schemas.ROOMS),
+        "free": read("free", schemas.FREE),
+    }
+    if "confidence" in files:
+        rated = tables.read_table(files["confidence"], schemas.CONFIDENCE, allow_empty=True)
+        parts = {table: _join_confidence(table, columns, rated) for table, columns in parts.items()}
+    return make_floorplan(parts, floor_z_m, ceiling_z_m, name, **assumed_m)
+
+
+def make_floorplan(
+    parts: Mapping[str, Columns],
+    floor_z_m: float,
+    ceiling_z_m: float,
+    name: str = "",
+    **assumed_m: float,
+) -> FloorPlan:
+    """Return a plan of its tables, columns by name; what was not seen is no opening of it."""
+    openings = parts["openings"]
     is_unseen = openings["type"] == UNSEEN
     return FloorPlan(
         name=name,
-        faces=read("faces", schemas.FACES),
-        walls=read("walls", schemas.PLAN_WALLS),
+        faces=parts["faces"],
+        walls=parts["walls"],
         openings={column: values[~is_unseen] for column, values in openings.items()},
         unseen={column: values[is_unseen] for column, values in openings.items()},
-        rooms=read("rooms", schemas.ROOMS),
-        free=read("free", schemas.FREE),
+        rooms=parts["rooms"],
+        free=parts["free"],
         floor_z_m=floor_z_m,
         ceiling_z_m=ceiling_z_m,
         **assumed_m,
     )
+
+
+def _join_confidence(table: str, columns: Columns, rated: Columns) -> Columns:
+    """Return a table with the columns `p_true`, `verify` and `doubt` of its elements."""
+    if table not in NUMBERS:
+        return columns
+    rows = np.flatnonzero(rated["table"] == table)
+    row_of = dict(zip(rated["number"][rows].tolist(), rows, strict=True))
+    known = [row_of.get(number, -1) for number in columns[NUMBERS[table]].tolist()]
+    # what was not seen is rated by none
+    added = {"p_true": np.append(rated["p_true"], 0.0)[known]}
+    added["verify"] = np.append(rated["verify"], True)[known]
+    added["doubt"] = np.append(rated["doubt"], "not seen")[known]
+    return {**columns, **added}
 
 
 def summarise_floorplan(plan: FloorPlan) -> str:

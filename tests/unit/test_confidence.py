@@ -1,0 +1,86 @@
+"""Probabilities of a plan's elements, by models whose sums are known on paper."""
+
+import numpy as np
+import pytest
+
+from helpers import floorplan_making
+from scanplan.plan import floorplan
+from scanplan.store import schemas
+from scanplan.validation import confidence
+from scanplan.validation.confidence_coefficients import COEFFICIENTS
+
+PARTS = {
+    name: getattr(floorplan_making, name)()
+    for name in ("faces", "walls", "openings", "rooms", "free")
+}
+PLAN = floorplan.make_floorplan(PARTS, 0.0, 2.5)
+
+
+def validation(*rows):
+    """Rows are kind, number, span, rays, explained."""
+    rows = [*rows, ("plan_rays", 0, 0, 1, 1)]
+    columns = {name: np.zeros(len(rows)) for name in schemas.VALIDATION.columns}
+    kinds, numbers, spans, rays, good = zip(*rows, strict=True)
+    return columns | {
+        "kind": np.array(kinds, object),
+        "number": np.array(numbers),
+        "span": np.array(spans),
+        "n_rays": np.array(rays),
+        "n_explained": np.array(good),
+    }
+
+
+def rated(table, **columns):
+    found = confidence.rate_elements(PLAN, validation(*columns.get("rows", ())))
+    of_table = found["table"] == table
+    return {name: values[of_table] for name, values in found.items()}
+
+
+def test_the_worst_span_tells_of_a_face_that_is_right_elsewhere():
+    rows = [("face", 0, 0, 98, 98), ("face", 0, 1, 8, 0), ("face", 1, 0, 8, 4)]
+    faces = confidence.describe_elements(PLAN, validation(*rows))["faces"]
+    np.testing.assert_allclose(faces["agreement"][:3], [np.log(99 / 9), 0, 0])
+    np.testing.assert_allclose(faces["worst_span"][:3], [np.log(1 / 9), 0, 0])
+
+
+def test_a_probability_is_the_logistic_of_what_its_features_add():
+    model = {
+        "intercept": 1.0,
+        "features": {"scans": {"mean": 2.0, "weight": 3.0}, "length": {"mean": 0, "weight": -1}},
+    }
+    features = {"scans": np.array([2.0, 1.0]), "length": np.array([1.0, 0.0])}
+    p_true, added = confidence.weigh_features(features, model)
+    np.testing.assert_allclose(added, [[0, -1], [-3, 0]])
+    np.testing.assert_allclose(p_true, 1 / (1 + np.exp([0, 2])))
+
+
+def test_every_element_has_a_row_and_only_doubtful_ones_a_doubt():
+    for table, number in floorplan.NUMBERS.items():
+        found = rated(table)
+        assert found["number"].tolist() == PARTS[table][number].tolist()
+        assert ((found["p_true"] >= 0) & (found["p_true"] <= 1)).all()
+        assert [bool(words) for words in found["doubt"]] == found["verify"].tolist()
+
+
+def test_rays_of_other_scans_that_pass_through_a_face_make_it_less_likely():
+    good = rated("faces", rows=[("face", 0, 0, 100, 100)])["p_true"][0]
+    bad = rated("faces", rows=[("face", 0, 0, 100, 10)])["p_true"][0]
+    assert bad < good
+
+
+def test_a_gap_that_is_not_known_is_always_to_be_verified():
+    openings = PARTS["openings"]
+    kinds = openings["type"].copy()
+    kinds[0] = "gap"
+    plan = floorplan.make_floorplan(PARTS | {"openings": openings | {"type": kinds}}, 0.0, 2.5)
+    found = confidence.rate_elements(plan, validation())
+    row = np.flatnonzero(found["table"] == "openings")[0]
+    assert (found["verify"][row], found["doubt"][row]) == (True, "not known what it is")
+
+
+@pytest.mark.parametrize("table", list(floorplan.NUMBERS))
+def test_the_coefficients_are_of_features_that_there_are(table):
+    features = confidence.describe_elements(PLAN, validation())[table]
+    assert list(COEFFICIENTS[table]["features"]) == list(features)
+    assert set(features) <= set(confidence.REASONS)
+    assert 0 < COEFFICIENTS[table]["level"] < 1
