@@ -65,7 +65,7 @@ def bench(
     sheet.savefig(figure, dpi=110, bbox_inches="tight")
 
 
-def _rate_survey(folder: Path, settings: Settings) -> Iterator[dict[str, tuple[Any, BoolArray]]]:
+def _rate_survey(folder: Path, settings: Settings) -> Iterator[dict[str, Any]]:
     """Yield, of plans of a survey, features and rightness by table."""
     method = settings["plan"]["method"]
     ordering = tables.read_table(folder / f"selection/{method}.parquet", schemas.SELECTION)
@@ -108,7 +108,7 @@ def _make_plan(
     )
     z_m = levels.find_floor_and_ceiling(np.empty(0) if rays.planar else rays.xyz_m[:, 2])
     parts = {name: getattr(made, name) for name in ("faces", "walls", "openings", "rooms", "free")}
-    plan = floorplan.make_floorplan(parts, *map(float, z_m))
+    plan = floorplan.make_floorplan(parts, float(z_m[0]), float(z_m[1]))
     limits = prediction.ValidationSettings(**stage_settings.select_validation(settings))
     left_out = np.setdiff1d(registered.scan_ids, chosen)
     scan_ids = left_out_scans.draw_left_out_scans(left_out, limits.max_scans, limits.seed)
@@ -161,7 +161,7 @@ def _judge(plan: Any, motion: FloatArray, truth: Path) -> dict[str, FloatArray]:
     length_m = np.hypot(*(faces_m[:, 1] - faces_m[:, 0]).T)
     host = plan.faces["wall"]
     share_of_wall = [_mean(share, length_m, host == wall) for wall in plan.walls["wall"]]
-    areas = shapely.transform(plan.areas, lambda xy_m: moved(xy_m))
+    areas = shapely.transform(plan.areas, lambda xy_m: np.asarray(moved(xy_m), np.float64))
     ious = [max((_iou(area, room) for room in true.rooms), default=0.0) for area in areas]
     return {
         "faces": (share >= _RIGHT_SHARE).astype(float),

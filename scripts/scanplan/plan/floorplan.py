@@ -288,7 +288,8 @@ def _join_confidence(table: str, columns: Columns, rated: Columns) -> Columns:
         return columns
     rows = np.flatnonzero(rated["table"] == table)
     row_of = dict(zip(rated["number"][rows].tolist(), rows, strict=True))
-    known = [row_of.get(number, -1) for number in columns[NUMBERS[table]].tolist()]
+    numbers = columns[NUMBERS[table]].tolist()
+    known = np.array([row_of.get(number, -1) for number in numbers], np.int64)
     # what was not seen is rated by none
     added = {"p_true": np.append(rated["p_true"], 0.0)[known]}
     added["verify"] = np.append(rated["verify"], True)[known]
