@@ -29,8 +29,8 @@ def export_plan(
     Parameters
     ----------
     plan : dict of str to path-like
-        `faces`, `walls`, `openings`, `rooms`, `free` and `evidence` of plan/; the file of `free`
-        states the heights of floor and ceiling.
+        `faces`, `walls`, `openings`, `rooms`, `free`, `evidence` and `confidence` of plan/; the
+        file of `free` states the heights of floor and ceiling.
     outputs : dict of str to path-like
         `geojson`, `dxf`, `svg`, `pdf`, `png`, `pgm` and `yaml`, to write.
     name : str
@@ -83,7 +83,10 @@ if __name__ == "__main__":
         export_plan(
             {
                 part: snakemake.input[part]
-                for part in ("faces", "walls", "openings", "rooms", "free", "evidence")
+                for part in (
+                    *("faces", "walls", "openings", "rooms"),
+                    *("free", "evidence", "confidence"),
+                )
             },
             dict(snakemake.output.items()),
             name=snakemake.wildcards.dataset,

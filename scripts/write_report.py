@@ -34,10 +34,10 @@ def write_report(
     Parameters
     ----------
     files : dict of str to path-like, or list of path-like
-        `faces`, `walls`, `openings`, `rooms`, `free`, `evidence`, `segments`, `validation` of
-        plan/; `scans`, `selection`, `poses`, `registration`; `page` (templates, CSS, JavaScript);
-        `figures`; `evaluation` (plan.parquet and walls.parquet, as far as they are known);
-        `recordings`; `results`; `corrections`, if there are any.
+        `faces`, `walls`, `openings`, `rooms`, `free`, `evidence`, `segments`, `validation`,
+        `confidence` of plan/; `scans`, `selection`, `poses`, `registration`; `page` (templates,
+        CSS, JavaScript); `figures`; `evaluation` (plan.parquet and walls.parquet, as far as they
+        are known); `recordings`; `results`; `corrections`, if there are any.
     output : path-like
         report.html or comparison.html, to write.
     name : str

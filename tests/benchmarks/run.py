@@ -5,6 +5,7 @@ Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [pl
        run.py pipeline [big | big=BAGS] [FOLDER] [REVISION ...]
        run.py guard REVISION FOLDER [SURVEY ...]
        run.py compare FOLDER FOLDER
+       run.py confidence FOLDER SURVEY,... SURVEY,...
 
 Without a name all of them but wall_quality, which takes minutes, plans, which measures the surveys
 that `make compare` has finished under results/, and validation, which damages the plans there; a
@@ -18,6 +19,10 @@ where some are named: time, memory and bytes of every stage, beside a raw read. 
 `guard` makes the plans of twelve simulated drives and six real recordings with the code of a
 commit, in a folder of its own; `compare` prints what changed between two such folders, and fails
 where a measure fell.
+
+`confidence` fits how likely elements of a plan are right on the first of the surveys in a folder
+that `guard` has made, tests it on the others, and writes the coefficients into the package, with a
+reliability diagram in that folder.
 """
 
 import sys
@@ -108,9 +113,25 @@ def bench_pipeline(*words: str) -> None:
     pipeline_bench.bench(ROOT, SETTINGS, kept.resolve(), given[1:], n_big=n_big)
 
 
+def fit_confidence(folder: str, train: str, test: str) -> None:
+    """Write the coefficients of the confidence in a plan's elements."""
+    import confidence_bench
+
+    package = ROOT / "scripts/scanplan/validation"
+    confidence_bench.bench(
+        Path(folder) / "code/results",
+        train.split(","),
+        test.split(","),
+        coefficients=package / "confidence_coefficients.py",
+        figure=Path(folder) / "reliability.png",
+        settings=SETTINGS,
+    )
+
+
 APART: dict[str, Callable[..., None]] = {
     "guard": record_guard,
     "compare": compare_guards,
+    "confidence": fit_confidence,
     "pipeline": bench_pipeline,
 }
 BENCHES: dict[str, Callable[[], None]] = {

@@ -6,6 +6,7 @@ import numpy as np
 
 from helpers import floorplan_making
 from helpers.wall_making import walls as wall_table
+from scanplan.plan import floorplan
 from scanplan.report.facts import PredictionFacts
 from scanplan.store import schemas, tables
 
@@ -119,6 +120,27 @@ def validation():
     return {name: np.array([by_length.get(name, v), v]) for name, v in values.items()}
 
 
+def confidence():
+    """All elements are sure, but for the walls that have no point."""
+    parts = []
+    for table, number in floorplan.NUMBERS.items():
+        made = getattr(floorplan_making, table)()
+        n = len(made[number])
+        verify = made["verify"] if table == "walls" else np.zeros(n, bool)
+        parts.append(
+            {
+                "table": np.full(n, table, object),
+                "number": made[number],
+                "p_true": np.where(verify, 0.5, 0.99),
+                "verify": verify,
+                "doubt": np.where(verify, "few points", "").astype(object),
+            }
+        )
+    joined = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    order = np.lexsort((joined["number"], joined["table"].astype(str)))
+    return {name: values[order] for name, values in joined.items()}
+
+
 def plan_evaluation():
     columns = {
         name: np.array([3, 3], np.int32) if kind == "int32" else np.array([0.97, 0.98])
@@ -153,6 +175,8 @@ def files(folder):
     paths["validation"] = folder / "validation.parquet"
     notes = {"n_scans": "1", "absent": ""}
     tables.write_table(paths["validation"], schemas.VALIDATION, validation(), notes=notes)
+    paths["confidence"] = folder / "confidence.parquet"
+    tables.write_table(paths["confidence"], schemas.CONFIDENCE, confidence())
     (folder / "scans.svg").write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><path d="M0 0"/></svg>'
     )

@@ -8,6 +8,7 @@ import pytest
 from assemble_plan import assemble_plan
 from draw_validation import draw_validation
 from helpers import house_making
+from rate_plan import rate_plan
 from scanplan.plan import floorplan, planning
 from scanplan.project import code_files
 from scanplan.store import schemas, tables
@@ -102,12 +103,24 @@ def test_from_one_place_the_share_is_absent(tmp_path):
     assert elements["n_rays"][-1] > 1000 and np.isnan(elements["share"]).all()
 
 
-def test_no_truth_is_read():
+def test_every_element_of_a_plan_is_rated(house, tmp_path):
+    _, _, _, outputs = validated(house, tmp_path)
+    rate_plan(house[1], outputs["elements"], tmp_path / "confidence.parquet")
+    plan = floorplan.read_floorplan(house[1] | {"confidence": tmp_path / "confidence.parquet"})
+    for table in floorplan.NUMBERS:
+        columns = getattr(plan, table)
+        assert ((columns["p_true"] > 0) & (columns["p_true"] <= 1)).all()
+        assert [bool(words) for words in columns["doubt"]] == columns["verify"].tolist()
+    assert np.isnan(floorplan.read_floorplan(house[1]).walls.get("p_true", np.nan))
+
+
+@pytest.mark.parametrize("stage", ["validate_plan", "rate_plan"])
+def test_no_truth_is_read(stage):
     """Neither is it an input of the rule, nor does the stage import what reads truths."""
     rules = (ROOT / "workflow/rules/plan.smk").read_text()
-    rule = rules.partition("rule validate_plan:")[2].partition("\nrule ")[0]
-    assert "rays=" in rule and "truth" not in rule and "evaluation" not in rule
-    helpers = code_files.list_helpers(ROOT / "scripts/validate_plan.py")
+    rule = rules.partition(f"rule {stage}:")[2].partition("\nrule ")[0]
+    assert "rooms=" in rule and "truth" not in rule and "evaluation" not in rule
+    helpers = code_files.list_helpers(ROOT / f"scripts/{stage}.py")
     assert len(helpers) > 5 and not any("lab" in path.parts for path in helpers)
 
 

@@ -1,109 +1,86 @@
-"""Selection by the confidence of the walls so far, on walls whose gains are worked out on paper."""
+"""Probabilities of a plan's elements, by models whose sums are known on paper."""
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from scanplan.selection import confidence
-from scanplan.selection.confidence import CellViews, WallConfidence, Walls
+from helpers import floorplan_making
+from scanplan.plan import floorplan
+from scanplan.store import schemas
+from scanplan.validation import confidence
+from scanplan.validation.confidence_coefficients import COEFFICIENTS
 
-SIGMA_M = 0.06
-NOTHING = Walls(np.zeros((0, 2, 2)), np.zeros((0, 2)))
-
-
-def gains(*sightings):
-    """Of one cell, after looks that found a wall at an offset, or none (NaN)."""
-    cell = WallConfidence(1, SIGMA_M)
-    for offset_m in sightings:
-        cell.add(np.array([0]), np.array([offset_m]))
-    return cell.expected_gain()[0] / SIGMA_M**2
+PARTS = {
+    name: getattr(floorplan_making, name)()
+    for name in ("faces", "walls", "openings", "rooms", "free")
+}
+PLAN = floorplan.make_floorplan(PARTS, 0.0, 2.5)
 
 
-def test_a_gap_is_worth_more_than_a_wall_that_was_found():
-    # a look finds a wall with a chance of 1/2 and halves the variance; after a hit 2/3, 1/2 - 1/3
-    assert gains() == pytest.approx(1 / 2 * 1 / 2)
-    assert gains(0.0) == pytest.approx(2 / 3 * 1 / 6)
-    assert gains(0.0, 0.0) == pytest.approx(3 / 4 * 1 / 2 * 1 / 12)
-
-
-def test_where_looks_found_nothing_one_more_is_worth_less():
-    assert gains(np.nan) == pytest.approx(1 / 3 * 1 / 2)
-    assert gains(np.nan, np.nan) == pytest.approx(1 / 4 * 1 / 2)
-
-
-def test_walls_that_lie_apart_are_worth_another_look():
-    # 6 cm to either side: a spread of two variances beside the one that is assumed
-    assert gains(-SIGMA_M, SIGMA_M) == pytest.approx(3 * gains(0.0, 0.0))
-
-
-def test_offsets_are_to_the_nearest_wall_of_the_cells_facing():
-    walls = Walls(
-        np.array([[[0.0, 1.0], [4.0, 1.0]], [[0.0, 1.2], [4.0, 1.2]]]),
-        np.array([[0.0, -1.0], [0.0, 1.0]]),
-    )
-    centre_m = np.array([[1.0, 1.1], [1.0, 1.1], [1.0, 0.9], [4.3, 1.0], [1.0, 1.1]])
-    # -y, +y, -y, -y beyond the wall's end, and a facing that no wall has
-    facing = np.array([2, 3, 2, 2, 0])
-    found = confidence.measure_offsets(centre_m, facing, walls, 0.25)
-    np.testing.assert_allclose(found, [-0.1, -0.1, 0.1, np.nan, np.nan], atol=1e-12)
-    nothing = confidence.measure_offsets(centre_m, facing, NOTHING, 0.25)
-    assert np.isnan(nothing).all()
-
-
-def test_cells_lie_where_observations_have_them():
-    columns = {
-        "scan_id": np.array([3, 3, 7]),
-        "facing": np.array([0, 2, 0]),
-        "along": np.array([4, 4, 4]),
-        "across": np.array([1, 1, 1]),
-        "length_m": np.array([0.2, 0.1, 0.05]),
+def validation(*rows):
+    """Rows are kind, number, span, rays, explained."""
+    rows = [*rows, ("plan_rays", 0, 0, 1, 1)]
+    columns = {name: np.zeros(len(rows)) for name in schemas.VALIDATION.columns}
+    kinds, numbers, spans, rays, good = zip(*rows, strict=True)
+    return columns | {
+        "kind": np.array(kinds, object),
+        "number": np.array(numbers),
+        "span": np.array(spans),
+        "n_rays": np.array(rays),
+        "n_explained": np.array(good),
     }
-    views = confidence.view_cells_of(columns, np.array([3, 5, 7]), 0.5)
-    assert views.first.tolist() == [0, 2, 2, 3]
-    assert views.cell[0] == views.cell[2] != views.cell[1]
-    # of a facing along x: across is x, along y; along y the other way round
-    np.testing.assert_allclose(views.centre_m[views.cell[:2]], [[0.75, 2.25], [2.25, 0.75]])
 
 
-def views_of(shown, n_cells):
-    """Scans that show some cells, 1 m long each: cells 1 m apart on the line y = 0, facing -y."""
-    centre_m = np.column_stack([np.arange(n_cells), np.zeros(n_cells)]).astype(float)
-    counts = [len(cells) for cells in shown]
-    cell = np.array([c for cells in shown for c in cells], int)
-    first = np.concatenate([[0], np.cumsum(counts)])
-    return CellViews(first, cell, np.ones(len(cell)), centre_m, np.full(n_cells, 2))
+def rated(table, **columns):
+    found = confidence.rate_elements(PLAN, validation(*columns.get("rows", ())))
+    of_table = found["table"] == table
+    return {name: values[of_table] for name, values in found.items()}
 
 
-def test_a_gap_comes_before_a_second_look_at_a_longer_wall():
-    """Scans 0 and 1 show the same three cells, 2 and 3 two others, in which nothing is found."""
-    views = views_of([[0, 1, 2], [0, 1, 2], [3, 4], [3, 4]], 5)
-    wall = Walls(np.array([[[-0.5, 0.0], [2.5, 0.0]]]), np.array([[0.0, -1.0]]))
-    asked = []
-
-    def extract(scan):
-        asked.append(scan)
-        return wall if scan < 2 else NOTHING
-
-    order = confidence.order_by_confidence(views, extract, sigma_m=SIGMA_M, near_m=0.25)
-    # 2 x 1/2 x 1/2 of the gap, 3 x 2/3 x 1/6 of the wall found once
-    assert order.tolist()[:2] == [0, 2] and asked == order.tolist()
+def test_the_worst_span_tells_of_a_face_that_is_right_elsewhere():
+    rows = [("face", 0, 0, 98, 98), ("face", 0, 1, 8, 0), ("face", 1, 0, 8, 4)]
+    faces = confidence.describe_elements(PLAN, validation(*rows))["faces"]
+    np.testing.assert_allclose(faces["agreement"][:3], [np.log(99 / 9), 0, 0])
+    np.testing.assert_allclose(faces["worst_span"][:3], [np.log(1 / 9), 0, 0])
 
 
-@given(
-    shown=st.lists(st.sets(st.integers(0, 5)).map(sorted), min_size=1, max_size=7),
-    finds=st.integers(0, 127),
-)
-def test_every_scan_is_asked_once_and_ordered(shown, finds):
-    wall = Walls(np.array([[[-0.5, 0.0], [5.5, 0.0]]]), np.array([[0.0, -1.0]]))
-    asked = []
+def test_a_probability_is_the_logistic_of_what_its_features_add():
+    model = {
+        "intercept": 1.0,
+        "features": {"scans": {"mean": 2.0, "weight": 3.0}, "length": {"mean": 0, "weight": -1}},
+    }
+    features = {"scans": np.array([2.0, 1.0]), "length": np.array([1.0, 0.0])}
+    p_true, added = confidence.weigh_features(features, model)
+    np.testing.assert_allclose(added, [[0, -1], [-3, 0]])
+    np.testing.assert_allclose(p_true, 1 / (1 + np.exp([0, 2])))
 
-    def extract(scan):
-        asked.append(scan)
-        return wall if finds >> scan & 1 else NOTHING
 
-    views = views_of(shown, 6)
-    order = confidence.order_by_confidence(views, extract, sigma_m=SIGMA_M, near_m=0.25)
-    assert order.tolist() == asked and sorted(asked) == list(range(len(shown)))
-    most = max(len(cells) for cells in shown)
-    assert len(shown[asked[0]]) == most
+def test_every_element_has_a_row_and_only_doubtful_ones_a_doubt():
+    for table, number in floorplan.NUMBERS.items():
+        found = rated(table)
+        assert found["number"].tolist() == PARTS[table][number].tolist()
+        assert ((found["p_true"] >= 0) & (found["p_true"] <= 1)).all()
+        assert [bool(words) for words in found["doubt"]] == found["verify"].tolist()
+
+
+def test_rays_of_other_scans_that_pass_through_a_face_make_it_less_likely():
+    good = rated("faces", rows=[("face", 0, 0, 100, 100)])["p_true"][0]
+    bad = rated("faces", rows=[("face", 0, 0, 100, 10)])["p_true"][0]
+    assert bad < good
+
+
+def test_a_gap_that_is_not_known_is_always_to_be_verified():
+    openings = PARTS["openings"]
+    kinds = openings["type"].copy()
+    kinds[0] = "gap"
+    plan = floorplan.make_floorplan(PARTS | {"openings": openings | {"type": kinds}}, 0.0, 2.5)
+    found = confidence.rate_elements(plan, validation())
+    row = np.flatnonzero(found["table"] == "openings")[0]
+    assert (found["verify"][row], found["doubt"][row]) == (True, "not known what it is")
+
+
+@pytest.mark.parametrize("table", list(floorplan.NUMBERS))
+def test_the_coefficients_are_of_features_that_there_are(table):
+    features = confidence.describe_elements(PLAN, validation())[table]
+    assert list(COEFFICIENTS[table]["features"]) == list(features)
+    assert set(features) <= set(confidence.REASONS)
+    assert 0 < COEFFICIENTS[table]["level"] < 1

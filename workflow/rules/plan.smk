@@ -89,6 +89,31 @@ rule validate_plan:
         "../../scripts/validate_plan.py"
 
 
+rule rate_plan:
+    """Say how likely each element of the plan exists as it is drawn."""
+    input:
+        faces=plan_table("faces"),
+        walls=plan_table("walls"),
+        openings=plan_table("openings"),
+        rooms=plan_table("rooms"),
+        free=plan_table("free"),
+        validation="results/{dataset}/plan/validation.parquet",
+    output:
+        confidence="results/{dataset}/plan/confidence.parquet",
+    log:
+        "logs/{dataset}/rate_plan.log",
+    benchmark:
+        "benchmarks/{dataset}/rate_plan.tsv"
+    threads: 1
+    resources:
+        mem_mb=grown(mem_mb=1000),
+        runtime=grown(runtime=5),
+    params:
+        code=code_of("rate_plan"),
+    script:
+        "../../scripts/rate_plan.py"
+
+
 rule export_plan:
     """Write the plan as GeoJSON, DXF, SVG, PDF, PNG and as a map for nav2."""
     input:
@@ -98,6 +123,7 @@ rule export_plan:
         rooms=plan_table("rooms"),
         evidence=plan_table("evidence"),
         free=plan_table("free"),
+        confidence="results/{dataset}/plan/confidence.parquet",
     output:
         geojson="results/{dataset}/plan/plan.geojson",
         dxf="results/{dataset}/plan/plan.dxf",
@@ -139,6 +165,7 @@ for number, formats in enumerate(chosen_formats()):
             openings=plan_table("openings"),
             rooms=plan_table("rooms"),
             free=plan_table("free"),
+            confidence="results/{dataset}/plan/confidence.parquet",
             registration="results/{dataset}/registration.parquet",
             poses="results/{dataset}/poses.parquet",
         output:

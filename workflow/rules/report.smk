@@ -117,6 +117,7 @@ REPORT_TABLES = {
     "evidence": plan_table("evidence"),
     "validation": "results/{dataset}/plan/validation.parquet",
     "scans": "results/{dataset}/scans.parquet",
+    "confidence": "results/{dataset}/plan/confidence.parquet",
     "selection": plan_selection,
     "segments": "results/{dataset}/plan/segments.parquet",
     "poses": "results/{dataset}/poses.parquet",

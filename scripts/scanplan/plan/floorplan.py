@@ -29,6 +29,8 @@ OPENINGS = {
 """Types of openings, and their wording."""
 WAYS = ("door", "passage")
 """Those that one may go through."""
+NUMBERS = {"walls": "wall", "faces": "face", "openings": "opening", "rooms": "room"}
+"""Tables of elements to the columns that number their rows."""
 _ENDS = ("x0_m", "y0_m", "x1_m", "y1_m")
 _CLEARANCE_M = 0.02  # an opening is cut this much deeper than its wall, so that no skin is left
 _GRID_M = 1e-4  # of corners: a tenth of a millimetre, what drawings are rounded to
@@ -318,23 +320,68 @@ def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: f
         float(tables.read_note(files["free"], schemas.FREE, note) or "nan")
         for note in ("floor_z_m", "ceiling_z_m")
     )
+    parts = {
+        "faces": read("faces", schemas.FACES),
+        "walls": read("walls", schemas.PLAN_WALLS),
+        "openings": read("openings", schemas.OPENINGS),
+        "rooms": read("rooms", schemas.ROOMS),
+        "free": read("free", schemas.FREE),
+    }
+    if "confidence" in files:
+        rated = tables.read_table(files["confidence"], schemas.CONFIDENCE, allow_empty=True)
+        parts = {table: _join_confidence(table, columns, rated) for table, columns in parts.items()}
     reference = tables.read_note(files["free"], schemas.FREE, "georeference")
-    openings = read("openings", schemas.OPENINGS)
-    is_unseen = openings["type"] == UNSEEN
-    return FloorPlan(
-        name=name,
-        faces=read("faces", schemas.FACES),
-        walls=read("walls", schemas.PLAN_WALLS),
-        openings={column: values[~is_unseen] for column, values in openings.items()},
-        unseen={column: values[is_unseen] for column, values in openings.items()},
-        rooms=read("rooms", schemas.ROOMS),
-        free=read("free", schemas.FREE),
-        floor_z_m=floor_z_m,
-        ceiling_z_m=ceiling_z_m,
+    return make_floorplan(
+        parts,
+        floor_z_m,
+        ceiling_z_m,
+        name,
         georeference=GeoReference(**json.loads(reference)) if reference else None,
         doubted=read_doubts(files["free"], schemas.FREE),
         **assumed_m,
     )
+
+
+def make_floorplan(
+    parts: Mapping[str, Columns],
+    floor_z_m: float,
+    ceiling_z_m: float,
+    name: str = "",
+    **known: Any,
+) -> FloorPlan:
+    """Return a plan of its tables, columns by name; what was not seen is no opening of it.
+
+    `known` are further attributes of `FloorPlan`.
+    """
+    openings = parts["openings"]
+    is_unseen = openings["type"] == UNSEEN
+    return FloorPlan(
+        name=name,
+        faces=parts["faces"],
+        walls=parts["walls"],
+        openings={column: values[~is_unseen] for column, values in openings.items()},
+        unseen={column: values[is_unseen] for column, values in openings.items()},
+        rooms=parts["rooms"],
+        free=parts["free"],
+        floor_z_m=floor_z_m,
+        ceiling_z_m=ceiling_z_m,
+        **known,
+    )
+
+
+def _join_confidence(table: str, columns: Columns, rated: Columns) -> Columns:
+    """Return a table with the columns `p_true`, `verify` and `doubt` of its elements."""
+    if table not in NUMBERS:
+        return columns
+    rows = np.flatnonzero(rated["table"] == table)
+    row_of = dict(zip(rated["number"][rows].tolist(), rows, strict=True))
+    numbers = columns[NUMBERS[table]].tolist()
+    known = np.array([row_of.get(number, -1) for number in numbers], np.int64)
+    # what was not seen is rated by none
+    added = {"p_true": np.append(rated["p_true"], 0.0)[known]}
+    added["verify"] = np.append(rated["verify"], True)[known]
+    added["doubt"] = np.append(rated["doubt"], "not seen")[known]
+    return {**columns, **added}
 
 
 def summarise_floorplan(plan: FloorPlan) -> str:

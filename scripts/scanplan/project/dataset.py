@@ -30,7 +30,7 @@ RESERVED = "thesis"
 """Name under results/ that the thesis's experiments have to themselves."""
 
 _PLAN = tuple(f"plan/{t}" for t in ("faces", "walls", "openings", "rooms", "evidence", "free"))
-_VALIDATION = ("plan/validation", "plan/validation_rays")
+_VALIDATION = ("plan/validation", "plan/validation_rays", "plan/confidence")
 _TABLES = (
     *("poses", "registration", "edges", "scans"),
     *("plan/segments", *_PLAN, *_VALIDATION),

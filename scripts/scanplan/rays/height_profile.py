@@ -21,7 +21,6 @@ from scanplan.types import FloatArray
 
 ROWS_M = np.arange(1, 29, 2) / 10  # edges: of beams 2 degrees apart two meet 0.2 m at 3 m
 EYE_ROWS = slice(6, 8)  # 1.3 to 1.7 m: sills are lower, lintels are higher
-_PAIR = 2  # rows in which missing returns are counted together: single ones expect too few
 _SOLID, _RECESSED, _OPEN = range(3)
 _ENDS = np.array(((9, 0.5, 0.5), (0.5, 9, 0.5), (0.5, 1, 2)))
 # of ten rays as many as end at the face, in the wall, and beyond it, in each state: the reveals,
@@ -119,7 +118,7 @@ def observe_heights(
     if not rays.planar:
         ends[:, :, _OPEN] += _count_lost(rays, face, low_m, n_columns)
     # some row of these is between the sill and the lintel of any window
-    around_eye = slice(EYE_ROWS.start - _PAIR, EYE_ROWS.stop + 1)
+    around_eye = slice(EYE_ROWS.start - 2, EYE_ROWS.stop + 1)
     is_open = (ends[around_eye, :, _OPEN] > ends[around_eye, :, _SOLID]).any(axis=0)
     is_on_floor = is_reaching & (state != _SOLID)
     is_on_floor &= np.abs(_heights_of_returns_m(rays, face)) <= NEAR_FLOOR_M
@@ -137,8 +136,9 @@ def _heights_of_returns_m(rays: RaySet, face: FaceRays) -> FloatArray:
 def _count_lost(rays: RaySet, face: FaceRays, low_m: float, n_columns: int) -> FloatArray:
     """Return how many rays of each row and column (r, c) reached it and never came back."""
     lost = np.zeros((len(ROWS_M) - 1, n_columns))
-    for row in range(0, len(lost), _PAIR):
-        heights_m = ROWS_M[row], ROWS_M[min(row + _PAIR, len(lost))]
+    # of two rows together: single ones expect too few rays
+    for row in range(0, len(lost), 2):
+        heights_m = ROWS_M[row], ROWS_M[min(row + 2, len(lost))]
         sent = expected_returns.count_sent_rays(rays, face, low_m, n_columns, CELL_M, heights_m)
-        lost[row : row + _PAIR] = sent.lost() / _PAIR
+        lost[row : row + 2] = sent.lost() / 2
     return lost

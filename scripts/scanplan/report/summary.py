@@ -35,7 +35,7 @@ def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
     )
     doubts = [
         *wording.list_contradictions(plan, survey.prediction),
-        _name_some("wall", walls["wall"][walls["verify"]], "weakly supported: verify on site"),
+        *_name_doubts(plan),
         _name_some("room", rooms["room"][~rooms["closed"]], "not closed: area is a guess"),
     ]
     n_kept, n_candidates = (int(f(survey.registration["kept"])) for f in (np.sum, np.size))
@@ -53,6 +53,24 @@ def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
         ("tested", wording.prediction_sentence(survey.prediction)),
     ]
     return "".join(f"{what:<9}{text}\n" for what, text in lines)
+
+
+def _name_doubts(plan: floorplan.FloorPlan) -> list[str]:
+    """Return which elements to verify on site, those of each table with what most are flagged for.
+
+    The likeliest to be wrong first.
+    """
+    named: list[str] = []
+    for table in ("openings", "walls", "rooms"):
+        columns, noun = getattr(plan, table), floorplan.NUMBERS[table]
+        if "p_true" not in columns or not columns["verify"].any():
+            continue
+        rows = np.flatnonzero(columns["verify"])
+        rows = rows[np.argsort(columns["p_true"][rows], kind="stable")]
+        reasons, counts = np.unique(columns["doubt"][rows].astype(str), return_counts=True)
+        most = reasons[counts.argmax()]
+        named.append(_name_some(noun, columns[noun][rows], f"verify on site, {most}"))
+    return named
 
 
 def _count(n: int, noun: str) -> str:

@@ -323,6 +323,24 @@ interval; NaN where rays of fewer than two places (`n_places`) tell.
 The file states `n_left_out` and `n_scans` (scans left out, and drawn of them), `tolerance_m`, and
 `absent`: why the share of the whole is not known, if it is not.
 """
+CONFIDENCE = Schema(
+    "confidence",
+    1,
+    {
+        "table": "string",
+        "number": "int32",
+        "p_true": "float64",
+        "verify": "bool",
+        "doubt": "string",
+    },
+    ("table", "number"),
+)
+"""How likely elements of a plan exist as they are drawn.
+
+`table` is walls, faces, openings or rooms, `number` that of the element in it; `verify` says that
+`p_true` is below the level of its kind (`validation/confidence_coefficients.py`), that a wall is
+weakly supported, or that it is not known what a gap is; `doubt` in words why.
+"""
 VALIDATION_RAYS = Schema(
     "validation_rays",
     1,

@@ -87,7 +87,7 @@ def _measure_openings(
     kind: str, drawn_m: FloatArray, true_m: FloatArray, wanted: BoolArray
 ) -> dict[str, float]:
     """Return the measures of a kind of openings, of which those wanted (m,) are to be found."""
-    pairs = _nearest_pairs(drawn_m, true_m)
+    pairs = nearest_pairs(drawn_m, true_m)
     found = [(drawn, true) for drawn, true in pairs if wanted[true]]
     drawn_width_m = line_lengths_m(drawn_m)
     true_width_m = line_lengths_m(true_m)
@@ -103,7 +103,7 @@ def _measure_openings(
     }
 
 
-def _nearest_pairs(drawn_m: FloatArray, true_m: FloatArray) -> list[tuple[int, int]]:
+def nearest_pairs(drawn_m: FloatArray, true_m: FloatArray) -> list[tuple[int, int]]:
     """Return pairs (drawn, true), each once, the nearest first.
 
     Their middles lie within 0.35 m, and they run much the same way.

@@ -1,0 +1,263 @@
+"""Coefficients of the confidence in a plan's elements, and how well they hold on other surveys.
+
+Plans of few and of all chosen scans of simulated surveys are held against the truth: which of their
+elements exist as they are drawn. What is fitted on some surveys is tested on others.
+"""
+
+import pprint
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+import shapely
+from sklearn.linear_model import LogisticRegression
+
+from scanplan.extraction import extractors, furniture, segments
+from scanplan.lab.evaluation import (
+    length_metrics,
+    opening_metrics,
+    pose_errors,
+    true_plan,
+    truth_file,
+)
+from scanplan.plan import floorplan, planning
+from scanplan.project import stage_settings
+from scanplan.rays import levels, ray_set
+from scanplan.selection import stopping
+from scanplan.stage.per_registered_scan import sensor_keywords
+from scanplan.store import registered_scans, schemas, tables
+from scanplan.types import BoolArray, FloatArray, Settings
+from scanplan.validation import confidence, left_out_scans, prediction
+
+_PLANS = ((0.1, 0.0), (0.3, 0.0), (1.0, 0.0), (0.5, 0.15))
+# share of the chosen scans, and how far some are displaced [m]: so that there is more that is wrong
+_EVERY = 4  # scan is displaced
+_RIGHT_SHARE = 0.8  # of the length of a face or wall near a true one
+_WITHIN_M = 0.1
+_FLAGGED = 0.9  # of wrong elements are to lie below the level
+_BINS = 10
+_KINDS = {"door": "door", "passage": "door", "window": "window", "glass": "window"}
+
+
+def bench(
+    results: Path,
+    train: Sequence[str],
+    test: Sequence[str],
+    *,
+    coefficients: Path,
+    figure: Path,
+    settings: Settings,
+) -> None:
+    """Fit on some surveys below `results`, test on others; write coefficients and a figure."""
+    rows = {name: list(_rate_survey(results / name, settings)) for name in (*train, *test)}
+    fitted = {table: _fit(*_join(rows, train, table)) for table in floorplan.NUMBERS}
+    text = pprint.pformat(fitted, sort_dicts=False, width=90)
+    coefficients.write_text(
+        '"""The model of `confidence.py`, written by `make bench ARGS="confidence ..."`.\n\n'
+        f"Fitted on {', '.join(train)}; tested on {', '.join(test)}.\n"
+        '"""\n\nfrom typing import Any\n\nCOEFFICIENTS: dict[str, Any] = ' + text + "\n"
+    )
+    sheet, axes = plt.subplots(1, 2, figsize=(9, 4.5), sharey=True)
+    for chart, names, title in zip(axes, (train, test), ("fitted on", "tested on"), strict=True):
+        _report(chart, rows, names, fitted, title)
+    sheet.savefig(figure, dpi=110, bbox_inches="tight")
+
+
+def _rate_survey(folder: Path, settings: Settings) -> Iterator[dict[str, Any]]:
+    """Yield, of plans of a survey, features and rightness by table."""
+    method = settings["plan"]["method"]
+    ordering = tables.read_table(folder / f"selection/{method}.parquet", schemas.SELECTION)
+    stop = stage_settings.select_section(settings, "selection", "stop")
+    count, _ = stopping.choose_n_scans(ordering, **stop)
+    for share, shift_m in _PLANS:
+        chosen = np.sort(ordering["scan_id"][: max(round(share * count), 3)])
+        plan, validation, motion = _make_plan(folder, chosen, settings, shift_m)
+        features = confidence.describe_elements(plan, validation)
+        right = _judge(plan, motion, folder / "survey/truth.geojson")
+        yield {table: (features[table], right[table]) for table in floorplan.NUMBERS}
+        n_wrong = {table: int((right[table] == 0).sum()) for table in right}
+        print(f"confidence, {folder.name}, {len(chosen)} scans: wrong {n_wrong}", flush=True)
+
+
+def _make_plan(
+    folder: Path, chosen: Any, settings: Settings, shift_m: float
+) -> tuple[Any, Any, FloatArray]:
+    store = tables.ScanStore(folder / "scans.parquet")
+    shifts_m = np.zeros((len(chosen), 3))
+    wrong = np.arange(len(chosen)) % _EVERY == 0
+    shifts_m[wrong, :2] = np.random.default_rng(1).normal(0, shift_m, (wrong.sum(), 2))
+    moved = [
+        (scan_id, xyz_m + shift)
+        for (scan_id, xyz_m), shift in zip(store.scans(chosen), shifts_m, strict=True)
+    ]
+    found = _extract(folder, chosen, moved, store.planar, settings)
+    registered = registered_scans.read_registered_scans(folder / "registration.parquet")
+    rows = registered_scans.rows_of_scans(chosen, registered, "selection", "registration")
+    poses = registered.map_from_sensor
+    sensors_m = dict(zip(chosen.tolist(), poses[rows, :3, 3] + shifts_m, strict=True))
+    rays = ray_set.gather_rays(moved, sensors_m, planar=store.planar)
+    made = planning.make_plan(
+        segments.segment_columns(chosen, found),
+        rays,
+        poses[:, :2, 3],
+        registered.t_ns[rows],
+        planning.make_plan_settings(**stage_settings.select_plan(settings)),
+        poses[rows, :3, 2],
+    )
+    z_m = levels.find_floor_and_ceiling(np.empty(0) if rays.planar else rays.xyz_m[:, 2])
+    parts = {name: getattr(made, name) for name in ("faces", "walls", "openings", "rooms", "free")}
+    plan = floorplan.make_floorplan(parts, float(z_m[0]), float(z_m[1]))
+    limits = prediction.ValidationSettings(**stage_settings.select_validation(settings))
+    left_out = np.setdiff1d(registered.scan_ids, chosen)
+    scan_ids = left_out_scans.draw_left_out_scans(left_out, limits.max_scans, limits.seed)
+    drawn = left_out_scans.draw_rays(
+        store,
+        scan_ids,
+        registered_scans.sensor_positions(scan_ids, registered, "scans", "registration"),
+        (plan.storey_m[0], plan.ceiling_z_m),
+        max_rays=limits.max_rays,
+        seed=limits.seed,
+    )
+    truth = truth_file.read_true_poses(folder / "survey/truth_poses.tum")
+    placed = truth_file.interpolate_true_poses(truth, registered.t_ns, folder)
+    motion = pose_errors.fit_alignment(poses[:, :3, 3], placed[:, :3, 3])
+    return plan, prediction.validate_by_rays(plan, drawn, limits).elements, motion
+
+
+def _extract(
+    folder: Path, chosen: Any, scans: Sequence[Any], planar: bool, settings: Settings
+) -> list[Any]:
+    extractor = extractors.EXTRACTORS["cluster_ransac"]
+    keywords = stage_settings.select_extractor(settings, "cluster_ransac")
+    of_walls = extractors.select_settings(extractor.settings, keywords)
+    limits = extractors.select_settings(furniture.FurnitureLimits, keywords)
+    sensors = sensor_keywords(chosen, "selection", folder / "registration.parquet")
+    return [
+        extractors.find_wall_segments(
+            scan_id,
+            xyz_m,
+            planar=planar,
+            extractor=extractor,
+            settings=of_walls,
+            limits=limits,
+            **sensors[scan_id],
+        )
+        for scan_id, xyz_m in scans
+    ]
+
+
+def _judge(plan: Any, motion: FloatArray, truth: Path) -> dict[str, FloatArray]:
+    """Return of each element whether it exists as drawn (1) or not (0); NaN of unknown gaps."""
+
+    def moved(lines_m: FloatArray) -> FloatArray:
+        return lines_m @ motion[:2, :2].T + motion[:2, 3]
+
+    true, known = true_plan.read_true_plan(truth), truth_file.read_true_faces(truth)
+    true_m = np.concatenate([known.inner_m, known.outer_m])
+    faces_m = moved(floorplan.centrelines_m(plan.faces))
+    share = np.array([_share_near(line_m, true_m) for line_m in faces_m])
+    length_m = np.hypot(*(faces_m[:, 1] - faces_m[:, 0]).T)
+    host = plan.faces["wall"]
+    share_of_wall = [_mean(share, length_m, host == wall) for wall in plan.walls["wall"]]
+    areas = shapely.transform(plan.areas, lambda xy_m: np.asarray(moved(xy_m), np.float64))
+    ious = [max((_iou(area, room) for room in true.rooms), default=0.0) for area in areas]
+    return {
+        "faces": (share >= _RIGHT_SHARE).astype(float),
+        "walls": (np.array(share_of_wall) >= _RIGHT_SHARE).astype(float),
+        "openings": _judge_openings(plan, moved(floorplan.centrelines_m(plan.openings)), true),
+        "rooms": (np.array(ious) > opening_metrics.MOST).astype(float),
+    }
+
+
+def _share_near(line_m: FloatArray, true_m: FloatArray) -> float:
+    return length_metrics.compare_lines(line_m[None], true_m, _WITHIN_M).correctness
+
+
+def _mean(values: FloatArray, weights: FloatArray, chosen: BoolArray) -> float:
+    """Return the weighted mean of the chosen values, 0 without any."""
+    return float(np.average(values[chosen], weights=weights[chosen])) if chosen.any() else 0.0
+
+
+def _iou(area: Any, room: Any) -> float:
+    return shapely.intersection(area, room).area / shapely.union(area, room).area
+
+
+def _judge_openings(plan: Any, lines_m: FloatArray, true: Any) -> FloatArray:
+    kinds = np.array([_KINDS.get(kind, "") for kind in plan.openings["type"]], object)
+    right = np.where(kinds == "", np.nan, 0.0)
+    for kind, true_m in (("door", true.doors_m), ("window", true.windows_m)):
+        rows = np.flatnonzero(kinds == kind)
+        pairs = opening_metrics.nearest_pairs(lines_m[rows], true_m)
+        right[rows[[drawn for drawn, _ in pairs]]] = 1.0
+    return right
+
+
+def _join(rows: Mapping[str, Any], names: Sequence[str], table: str) -> tuple[Any, FloatArray]:
+    parts = [part[table] for name in names for part in rows[name]]
+    right = np.concatenate([right for _, right in parts])
+    known = np.isfinite(right)
+    features = {
+        name: np.concatenate([features[name] for features, _ in parts])[known]
+        for name in parts[0][0]
+    }
+    return features, right[known]
+
+
+def _fit(features: Mapping[str, FloatArray], right: FloatArray) -> dict[str, Any]:
+    values = np.column_stack(list(features.values()))
+    mean, scale = values.mean(axis=0), np.maximum(values.std(axis=0), 1e-6)
+    model = LogisticRegression(C=1.0, max_iter=1000).fit((values - mean) / scale, right)
+    weights = model.coef_[0] / scale
+    fitted = {
+        "intercept": round(float(model.intercept_[0]), 4),
+        "features": {
+            name: {"mean": round(float(m), 4), "weight": round(float(w), 4)}
+            for name, m, w in zip(features, mean, weights, strict=True)
+        },
+    }
+    p_true, _ = confidence.weigh_features(features, fitted)
+    # nine of ten wrong ones lie below, but no more than one of ten right ones
+    level = min(
+        np.quantile(p_true[right == 0], _FLAGGED), np.quantile(p_true[right == 1], 1 - _FLAGGED)
+    )
+    return fitted | {"level": round(float(level), 3)}
+
+
+def _report(
+    chart: Any, rows: Mapping[str, Any], names: Sequence[str], coefficients: Any, title: str
+) -> None:
+    every: list[tuple[FloatArray, FloatArray, BoolArray]] = []
+    for table, model in coefficients.items():
+        features, right = _join(rows, names, table)
+        p_true, _ = confidence.weigh_features(features, model)
+        every.append((p_true, right, p_true < model["level"]))
+        _print_line(f"{title}, {table}", *every[-1])
+    p_true, right, verify = (np.concatenate(part) for part in zip(*every, strict=True))
+    _print_line(f"{title}, all", p_true, right, verify)
+    bins = np.minimum((p_true * _BINS).astype(int), _BINS - 1)
+    used = np.unique(bins)
+    chart.plot([0, 1], [0, 1], color="0.7")
+    said = [p_true[bins == b].mean() for b in used]
+    held = [right[bins == b].mean() for b in used]
+    chart.plot(said, held, "o-")
+    for b, x, y in zip(used, said, held, strict=True):
+        chart.annotate(f"{(bins == b).sum()}", (x, y), (4, -12), textcoords="offset points")
+    chart.set(title=f"{title} {', '.join(names)}", xlabel="stated probability")
+    chart.set_ylabel("share that is right")
+    chart.title.set_fontsize(7)
+
+
+def _print_line(what: str, p_true: FloatArray, right: FloatArray, verify: BoolArray) -> None:
+    bins = np.minimum((p_true * _BINS).astype(int), _BINS - 1)
+    error = sum(abs(p_true[bins == b].sum() - right[bins == b].sum()) for b in range(_BINS)) / len(
+        right
+    )
+    wrong = right == 0
+    print(
+        f"{what}: {len(right)} elements, {wrong.sum()} wrong; calibration error {error:.3f};"
+        f" flagged {verify[wrong].mean() if wrong.any() else np.nan:.2f} of the wrong,"
+        f" {verify[~wrong].mean():.3f} of the right",
+        flush=True,
+    )
