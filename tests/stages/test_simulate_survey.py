@@ -27,6 +27,8 @@ SURE = {"noise_m": 0.0, "noise_deg": 0.0, "drift_m": 0.0, "drift_deg": 0.0, "jum
 SETTINGS = {
     "seed": 7,
     "site": {
+        "chairs": 0,
+        "doors_ajar": 0.0,
         "route": "given",
         "waypoints_m": None,
         "start_m": None,

@@ -33,6 +33,7 @@ def test_data_for_scripts_is_json_that_ends_no_script():
 
 
 def test_every_file_of_the_pages_is_an_input_of_a_page(project_root):
-    rules = (project_root / "workflow/rules/reportinputs.smk").read_text()
+    folder = project_root / "workflow/rules"
+    rules = "".join((folder / f"{name}.smk").read_text() for name in ("reportinputs", "handlers"))
     listed = re.findall(r'"([\w.]+\.(?:j2|css|js))"', rules)
     assert sorted(listed) == sorted(file.name for file in PAGES.iterdir())
