@@ -3,6 +3,7 @@
 import re
 
 import pytest
+import yaml
 
 from helpers.default_settings import SCHEMA, SETTINGS
 from scanplan.project import settings_files
@@ -139,3 +140,18 @@ def test_every_unit_is_that_of_the_keys_name():
         if fitting and not key.endswith("timed_scans"):
             # the longest ending says it
             assert node.get("x-unit") == max(fitting, key=len), key
+
+
+def test_no_key_of_the_schema_stands_twice(project_root):
+    """YAML takes the last of two, and what the first says is gone."""
+
+    class Strict(yaml.SafeLoader):
+        pass
+
+    def make_mapping(loader, node):
+        keys = [loader.construct_object(key) for key, _ in node.value]
+        assert len(keys) == len(set(keys)), node.start_mark
+        return yaml.SafeLoader.construct_mapping(loader, node, deep=True)
+
+    Strict.add_constructor("tag:yaml.org,2002:map", make_mapping)
+    yaml.load((project_root / "workflow/schemas/config.schema.yaml").read_text(), Strict)
