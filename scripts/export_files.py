@@ -1,6 +1,8 @@
 """Write the plan, and the way of the sensor, as files for other programs, with ids that stay."""
 
+import math
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -60,7 +62,7 @@ def export_files(
         organisation=settings["organisation"] or "",
         version=version,
         t_ns=t_ns,
-        site=Site(**settings["site"]),
+        site=_find_site(drawn, settings["site"]),
     )
     writers: dict[str, Callable[[], str | bytes]] = {
         "ifc": lambda: ifc.format_ifc(drawn, ids, origin),
@@ -82,6 +84,21 @@ def export_files(
         layers = geopackage.plan_layers(drawn, rows) | _way_layers(registered)
         with atomic.replace_file(outputs["gpkg"]) as temporary:
             geopackage.write_geopackage(temporary, layers, t_ns)
+
+
+def _find_site(plan: FloorPlan, stated: Settings) -> Site:
+    """Return where the plan lies on earth: as its corrections' points say, else as the settings."""
+    site = Site(**stated)
+    measured = plan.georeference
+    if measured is None:
+        return site
+    return replace(
+        site,
+        crs=measured.crs,
+        east_m=measured.east_m,
+        north_m=measured.north_m,
+        turn_deg=math.degrees(measured.rotation_rad),
+    )
 
 
 def _identify_elements(

@@ -240,3 +240,15 @@ def test_true_walls_that_meet_are_built_once(plan, tmp_path):
     whole_m3 = (7.2 + 3.2 + 7.2 + 3.2) * 0.2 * 2.5
     assert count == 5
     assert true_m3 == pytest.approx(whole_m3 - (2 * 0.1**2 + 2 * 0.1 * 0.2) * 2.5)
+
+
+def test_reference_points_say_where_the_model_lies(plan, tmp_path):
+    """A quarter of a turn, and an origin of their own; the settings have no say then."""
+    points = {"crs": "EPSG:25833", "east_m": 5.0, "north_m": 6.0, "residual_m": 0.01}
+    heights = {"floor_z_m": "0.0", "ceiling_z_m": "2.7"}
+    notes = heights | {"georeference": json.dumps(points | {"rotation_rad": np.pi / 2})}
+    tables.write_table(plan["free"], schemas.FREE, floorplan_making.free(), notes=notes)
+    (conversion,) = exported_model(plan, tmp_path / "placed").by_type("IfcMapConversion")
+    assert (conversion.Eastings, conversion.Northings) == (5.0, 6.0)
+    assert (conversion.XAxisAbscissa, conversion.XAxisOrdinate) == pytest.approx((0.0, 1.0))
+    assert conversion.TargetCRS.Name == "EPSG:25833"
