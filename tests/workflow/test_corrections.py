@@ -8,7 +8,10 @@ from helpers.project_copy import TINY, Project
 from scanplan.store import schemas, tables
 
 pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("corrections")]
-READERS = {"validate_plan", "export_plan", "draw_walls", "draw_validation", "write_report"}
+READERS = {
+    *("validate_plan", "rate_plan", "export_plan", "export_files"),
+    *("draw_walls", "draw_validation", "write_report"),
+}
 
 
 def test_corrections_are_kept_and_rerun_what_reads_the_plan_alone(project_root, tmp_path):

@@ -174,7 +174,9 @@ def grown(**least):
     def amount_of(wildcards, attempt):
         dataset = DATASETS[wildcards.dataset]
         recorded = () if dataset.building else dataset.recordings
-        recorded_gb = sum(map(os.path.getsize, recorded)) / 1e9
+        # one may be made in this run, for another dataset
+        there = filter(os.path.exists, recorded)
+        recorded_gb = sum(map(os.path.getsize, there)) / 1e9
         return int((amount + NEEDED_PER_GB[resource] * recorded_gb) * attempt)
 
     return amount_of

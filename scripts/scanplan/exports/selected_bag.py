@@ -23,6 +23,8 @@ _POSE_TYPE = "geometry_msgs/msg/PoseStamped"
 StampedStream = tuple[tuple[str, ...], int]
 """What a small message tells, as (topic,) or (topic, parent, child), and its stamp."""
 
+_OF_DAMAGED = ("salvage", "max_damaged_share")
+
 
 def copy_selected_scans(
     path: FilePath, survey: BagSurvey, scan_ids: IntArray, map_from_sensor: FloatArray
@@ -82,7 +84,7 @@ def reading_settings(survey: BagSurvey, reading: Settings) -> dict[str, Any]:
     """
     own_topics = {"cloud_topic": survey.list_topics().cloud.name, "pose_topic": POSE_TOPIC}
     return {
-        "input": {**reading, **own_topics},
+        "input": {**_without_damage(reading), **own_topics},
         "poses": {"keep_every": 1},
         "registration": {"icp_method": "none"},
         "selection": {"stop": {"n_scans": None, "area_share": None}},
@@ -194,3 +196,8 @@ def _make_pose(stamp_ns: int, frame: str, map_from_base: FloatArray) -> Any:
             orientation=kinds["geometry_msgs/msg/Quaternion"](*quat_xyzw[0].tolist()),
         ),
     )
+
+
+def _without_damage(reading: Settings) -> dict[str, Any]:
+    """Return how to read without what is for damaged recordings: what is written anew is whole."""
+    return {key: value for key, value in reading.items() if key not in _OF_DAMAGED}

@@ -187,9 +187,12 @@ def _give_types(model: IfcModel, storey: StoreyPlan, openings: list[Opening]) ->
             width_m = nominal_m(opening.filling.OverallWidth)
             fillings_of[kind, width_m].append(opening.filling)
     for (kind, width_m), fillings in sorted(fillings_of.items()):
-        noun = kind.capitalize()
-        name = f"{noun} {100 * width_m:.0f} cm"
-        operation = "OperationType" if kind == "door" else "PartitioningType"
-        attributes = {"PredefinedType": kind.upper(), operation: "NOTDEFINED"}
-        product_type = model.root(f"Ifc{noun}Type", (name,), Name=name, **attributes)
+        of_doors = kind == "door"
+        name = f"{kind.capitalize()} {100 * width_m:.0f} cm"
+        operation = "OperationType" if of_doors else "PartitioningType"
+        attributes = {
+            "PredefinedType": "DOOR" if of_doors else "WINDOW",
+            operation: "NOTDEFINED",
+        }
+        product_type = model.root(f"{_FILLED_BY[kind]}Type", (name,), Name=name, **attributes)
         model.join("IfcRelDefinesByType", fillings, RelatingType=product_type)
