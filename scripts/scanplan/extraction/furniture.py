@@ -4,8 +4,8 @@ One classifier, for one scan or all together.
 
 A wall goes on upward as far as rays reach, lets none through, and has nothing like it close behind.
 Where no ray could show that it ends, a low face is judged by its corners: walls meet in the inner
-corners of a room, furniture shows its outer ones. Extraction goes without it: the thesis's own
-extractors know no furniture.
+corners of a room, furniture shows its outer ones. The thesis's own extractors go without it: they
+know no furniture.
 """
 
 import math

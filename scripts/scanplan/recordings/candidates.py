@@ -1,4 +1,4 @@
-"""Keyframes: which scans go on to registration as its candidates."""
+"""Candidates: which scans go on to registration."""
 
 from collections.abc import Sequence
 
@@ -16,7 +16,7 @@ from scanplan.types import Array, BoolArray, FloatArray, IntArray
 def choose_candidates(
     world_from_sensor: FloatArray, *, keep_every: int, max_step_m: float, max_turn_deg: float
 ) -> IntArray:
-    """Retain every `keep_every`-th scan (thesis, algorithm 3, step 2), more if the rover is fast.
+    """Take every `keep_every`-th scan (thesis, algorithm 3, step 2), more if the rover is fast.
 
     A scan between two of them is retained too once the sensor has moved more than `max_step_m` or
     turned more than `max_turn_deg` since the last retained scan with a pose, so that neighbours
