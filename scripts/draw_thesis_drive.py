@@ -9,7 +9,7 @@ import pandas as pd
 from scanplan.lab.evaluation import length_metrics
 from scanplan.lab.thesis.claim_measures import ITERATIVE, OURS
 from scanplan.lab.thesis.figures import drive_figures
-from scanplan.lab.thesis.stated_claims import SUBSET
+from scanplan.lab.thesis.stated_claims import Sizes
 from scanplan.report import figures, top_view
 from scanplan.stage import figure_files, log
 from scanplan.store import atomic, schemas, tables
@@ -42,7 +42,7 @@ def draw_thesis_drive(
     clouds = log.report_progress(store.scans(), "draw_thesis_drive", total=n_scans)
     points_m = top_view.sample_points(clouds, n_scans)
     poses = tables.read_table(registration, schemas.REGISTRATION)
-    subset_ids = tables.read_table(selection, schemas.SELECTION)["scan_id"][:SUBSET]
+    subset_ids = tables.read_table(selection, schemas.SELECTION)["scan_id"][: Sizes.SUBSET]
     subset_m = figures.sensor_positions(poses, subset_ids)
     places_m = figures.sensor_positions(poses, store.scan_ids)
     lines_m, subset_lines_m = {}, {}

@@ -8,8 +8,14 @@ from matplotlib.ticker import LogLocator, MaxNLocator
 
 from scanplan.types import FloatArray, IntArray
 
-_WIDTH, _HEIGHT = 580, 250  # SVG units of the plot without its labels: about one a pixel
 LOGARITHMIC_FROM = 100  # scans: from here on the first few would crowd on a linear axis
+
+
+class Plot:
+    """SVG units of the plot without its labels: about one a pixel."""
+
+    WIDTH = 580
+    HEIGHT = 250
 
 
 @dataclass(frozen=True)
@@ -49,16 +55,16 @@ def chart_svg(curves: Mapping[str, Curve], n_scans: int, n_chosen: int) -> str:
     chosen_x = axis.x(n_chosen)
     return "\n".join([
         # beside the plot there is room for "100 %" and for two lines of text
-        f'<svg id="chart" viewBox="-48 -12 {_WIDTH + 60} {_HEIGHT + 50}" role="img"'
+        f'<svg id="chart" viewBox="-48 -12 {Plot.WIDTH + 60} {Plot.HEIGHT + 50}" role="img"'
         ' aria-label="Shares against the number of scans"'
-        f' data-width="{_WIDTH}" data-scans="{n_scans}"'
+        f' data-width="{Plot.WIDTH}" data-scans="{n_scans}"'
         f' data-logarithmic="{int(axis.logarithmic)}">',
         *_share_grid(),
         *_scan_ticks(axis),
         *(_polyline(css, curve, axis) for css, curve in curves.items()),
-        f'<path class="chosen" d="M{chosen_x:.1f} 0V{_HEIGHT}">'
+        f'<path class="chosen" d="M{chosen_x:.1f} 0V{Plot.HEIGHT}">'
         "<title>scans of the plan</title></path>",
-        f'<path id="chart-k" d="M0 0V{_HEIGHT}"/></svg>',
+        f'<path id="chart-k" d="M0 0V{Plot.HEIGHT}"/></svg>',
     ])  # fmt: skip
 
 
@@ -74,7 +80,7 @@ class _ScanAxis:
             share = np.log(k) / np.log(self.n_scans)
         else:
             share = (k - 1) / max(self.n_scans - 1, 1)
-        return share * _WIDTH
+        return share * Plot.WIDTH
 
     def ticks(self) -> list[int]:
         if self.logarithmic:
@@ -89,7 +95,7 @@ def _share_grid() -> list[str]:
     parts = []
     for share in np.linspace(0, 1, 6):
         y = _y(share)
-        parts.append(f'<path class="grid" d="M0 {y:.1f}H{_WIDTH}"/>')
+        parts.append(f'<path class="grid" d="M0 {y:.1f}H{Plot.WIDTH}"/>')
         parts.append(_text("-6", f"{y + 4:.1f}", "end", f"{share:.0%}"))
     return parts
 
@@ -97,8 +103,11 @@ def _share_grid() -> list[str]:
 def _scan_ticks(axis: _ScanAxis) -> list[str]:
     scale = " (logarithmic)" if axis.logarithmic else ""
     return [
-        *(_text(f"{axis.x(t):.1f}", f"{_HEIGHT + 18}", "middle", f"{t:,}") for t in axis.ticks()),
-        _text(f"{_WIDTH / 2:g}", f"{_HEIGHT + 34}", "middle", f"number of scans{scale}"),
+        *(
+            _text(f"{axis.x(t):.1f}", f"{Plot.HEIGHT + 18}", "middle", f"{t:,}")
+            for t in axis.ticks()
+        ),
+        _text(f"{Plot.WIDTH / 2:g}", f"{Plot.HEIGHT + 34}", "middle", f"number of scans{scale}"),
     ]
 
 
@@ -114,4 +123,4 @@ def _polyline(css: str, curve: Curve, axis: _ScanAxis) -> str:
 
 
 def _y(share: float) -> float:
-    return (1 - share) * _HEIGHT
+    return (1 - share) * Plot.HEIGHT

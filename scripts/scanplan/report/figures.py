@@ -146,7 +146,7 @@ def draw_area_figure(orderings: Mapping[str, Columns]) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    figure = Figure(figsize=(top_view.WIDTH_IN, 4.2), layout="constrained")
+    figure = Figure(figsize=(top_view.Layout.WIDTH_IN, 4.2), layout="constrained")
     axes = figure.add_subplot()
     for method in sorted(orderings, key=lambda m: (m == _FULL_HULLS, *_legend_rank(m))):
         _draw_ordering(axes, method, orderings[method])

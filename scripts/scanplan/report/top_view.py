@@ -11,11 +11,16 @@ from matplotlib.figure import Figure
 from scanplan.types import Array, FloatArray, IntArray
 
 MOST_POINTS = 200_000  # more than a figure has pixels to show; bounds memory and time
-WIDTH_IN = 7.0  # text width of an A4 page
 MARGIN_M = 0.5  # around what must be shown, so that marks at the edge are whole
-_AROUND_IN = np.array([0.6, 0.85])  # what labels of the axes take beside, and a legend below
-_HEIGHTS_IN = (2.5, 8.5)  # of the drawing: readable, and within a page
 _OUTLIER_PERCENT = 0.5  # of the points at either end: the few returns from far outside
+
+
+class Layout:
+    """Sizes of a figure, in inches."""
+
+    WIDTH_IN = 7.0  # text width of an A4 page
+    AROUND_IN = (0.6, 0.85)  # what labels of the axes take beside, and a legend below
+    HEIGHTS_IN = (2.5, 8.5)  # of the drawing: readable, and within a page
 
 
 def choose_scans(scan_ids: IntArray) -> IntArray:
@@ -66,9 +71,11 @@ def draw_top_view(
     """
     low_m, high_m = _view(points_xy_m, must_show_xy_m)
     extent_m = high_m - low_m
-    width_in = WIDTH_IN - _AROUND_IN[0] - beside_in
-    height_in = float(np.clip(width_in * extent_m[1] / extent_m[0], *_HEIGHTS_IN))
-    figure = Figure(figsize=(WIDTH_IN, height_in + _AROUND_IN[1]), layout="constrained")
+    width_in = Layout.WIDTH_IN - Layout.AROUND_IN[0] - beside_in
+    height_in = float(np.clip(width_in * extent_m[1] / extent_m[0], *Layout.HEIGHTS_IN))
+    figure = Figure(
+        figsize=(Layout.WIDTH_IN, height_in + Layout.AROUND_IN[1]), layout="constrained"
+    )
     axes = figure.add_subplot()
     _shade(axes, points_xy_m, low_m, high_m)
     axes.set_xlabel("x in the map frame (m)", fontsize=8)

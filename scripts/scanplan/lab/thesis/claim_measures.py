@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from scanplan.lab.thesis.stated_claims import ALMOST, MANY
+from scanplan.lab.thesis.stated_claims import Judged, Sizes
 from scanplan.selection import stopping
 
 Tables = Mapping[str, pd.DataFrame]
@@ -97,7 +97,7 @@ def mean_over_first(walls: pd.DataFrame, column: str) -> pd.Series:
     """
     of_extractor = walls[walls["extractor"] == OURS]
     curves = of_extractor.pivot(index="k", columns="method", values=column)
-    every = np.arange(1, min(MANY, curves.index.max()) + 1)
+    every = np.arange(1, min(Sizes.MANY, curves.index.max()) + 1)
     return curves.reindex(curves.index.union(every)).interpolate("index").loc[every].mean()
 
 
@@ -120,7 +120,7 @@ def least_kept(some: Sequence[float], every: Sequence[float]) -> float:
     whole = np.array(every)
     if not (whole > 0).all():
         return np.nan
-    return float((np.array(some) / whole).min() - ALMOST)
+    return float((np.array(some) / whole).min() - Judged.ALMOST)
 
 
 def of_unit(values: Mapping[str, float], unit: str) -> Quantities:

@@ -36,7 +36,7 @@ from scanplan.lab.thesis.claim_measures import (
     of_unit,
 )
 from scanplan.lab.thesis.shown_figures import THESIS_SCANS
-from scanplan.lab.thesis.stated_claims import GROWS, LOADED, SEVERAL, SUBSET
+from scanplan.lab.thesis.stated_claims import Judged, Sizes
 
 _NAMES = {OURS: "cluster RANSAC", ITERATIVE: "iterative RANSAC"}
 _PLAIN_NAMES = {PLAIN_CLUSTERS: _NAMES[OURS], PLAIN: _NAMES[ITERATIVE]}
@@ -53,7 +53,7 @@ def several_per_wall(tables: Tables) -> ClaimMeasure:
     for extractor in (ITERATIVE, OURS):
         count = measure_at(tables["drive_walls"], "sequential", extractor, np.inf, column)
         values[f"{_NAMES[extractor]} of ours"] = count
-    return ClaimMeasure(of_unit(values, NUMBER), claimed - SEVERAL)
+    return ClaimMeasure(of_unit(values, NUMBER), claimed - Judged.SEVERAL)
 
 
 def fewer_walls(tables: Tables) -> ClaimMeasure:
@@ -80,7 +80,7 @@ def fewer_walls_merge_faster(tables: Tables) -> ClaimMeasure:
     for row, name in ((0, "the fewest"), (-1, "the most")):
         values[f"segments, {name}"] = seconds.index[row], COUNT
         values[f"time to merge {name}"] = seconds.iloc[row], SECONDS
-    return ClaimMeasure(values, seconds.iloc[-1] / seconds.iloc[0] - 1 - LOADED, SHARE)
+    return ClaimMeasure(values, seconds.iloc[-1] / seconds.iloc[0] - 1 - Judged.LOADED, SHARE)
 
 
 def steadier_times(tables: Tables) -> ClaimMeasure:
@@ -93,7 +93,7 @@ def steadier_times(tables: Tables) -> ClaimMeasure:
         values[f"a scan, {name}"] = 1e3 * mean_s[task], MILLISECONDS
         values[f"deviation per mean, {name}"] = spread[task], SHARE
     steadier = 1 - spread[PLAIN_CLUSTERS] / spread[PLAIN]
-    return ClaimMeasure(values, steadier - LOADED, SHARE)
+    return ClaimMeasure(values, steadier - Judged.LOADED, SHARE)
 
 
 def time_by_size(tables: Tables) -> ClaimMeasure:
@@ -105,7 +105,9 @@ def time_by_size(tables: Tables) -> ClaimMeasure:
         values[f"exponent of time, {name}"] = exponents[task]
         # each wall is one run of RANSAC: what the thesis's sentence gives as the reason
         values[f"exponent of walls, {name}"] = growth_exponent(times, THINNED + task, of="found")
-    margin = np.minimum(exponents[PLAIN] - GROWS, GROWS - abs(exponents[PLAIN_CLUSTERS]))
+    margin = np.minimum(
+        exponents[PLAIN] - Judged.GROWS, Judged.GROWS - abs(exponents[PLAIN_CLUSTERS])
+    )
     return ClaimMeasure(of_unit(values, NUMBER), float(margin))
 
 
@@ -113,7 +115,7 @@ def fifteen_like_all(tables: Tables) -> ClaimMeasure:
     """Compare cluster RANSAC on the thesis's subset with iterative RANSAC on all scans."""
     walls = tables["drive_walls"]
     values, measures = {}, {}
-    for extractor, k, scans in ((OURS, SUBSET, "15 scans"), (ITERATIVE, np.inf, "all scans")):
+    for extractor, k, scans in ((OURS, Sizes.SUBSET, "15 scans"), (ITERATIVE, np.inf, "all scans")):
         entered, correct, found = (
             measure_at(walls, "cluster_hull", extractor, k, column)
             for column in (ENTERED, CORRECT, FOUND)
@@ -123,7 +125,7 @@ def fifteen_like_all(tables: Tables) -> ClaimMeasure:
         values[f"length that is wall, {name}"] = correct
         values[f"with the rooms behind open doors, {name}"] = found
         measures[extractor] = entered, correct
-    at_random = measure_at(walls, "random", OURS, SUBSET, ENTERED)
+    at_random = measure_at(walls, "random", OURS, Sizes.SUBSET, ENTERED)
     values["walls of the hallways found, 15 scans at random"] = at_random
     margin = least_kept(measures[OURS], measures[ITERATIVE])
     return ClaimMeasure(of_unit(values, SHARE), margin, SHARE)
@@ -156,7 +158,7 @@ def subset_scales(tables: Tables) -> ClaimMeasure:
         saved[task] = 1 - (hull_s + extraction_s / 10) / extraction_s
         values[f"a scan, {name}"] = 1e3 * extraction_s, MILLISECONDS
         values[f"time saved, {name}"] = saved[task], SHARE
-    return ClaimMeasure(values, min(saved.values()) - LOADED, SHARE)
+    return ClaimMeasure(values, min(saved.values()) - Judged.LOADED, SHARE)
 
 
 def selection_polynomial(tables: Tables) -> ClaimMeasure:
@@ -165,7 +167,7 @@ def selection_polynomial(tables: Tables) -> ClaimMeasure:
     exponents = {
         "exponent, algorithm 1": growth_exponent(times, LITERAL),
         "exponent, ours, all in order": growth_exponent(times, ORDERING),
-        f"exponent, ours, the first {SUBSET}": growth_exponent(times, CHOOSING),
+        f"exponent, ours, the first {Sizes.SUBSET}": growth_exponent(times, CHOOSING),
     }
     seconds = times.pivot_table(index="size", columns="task", values="seconds")
     both = seconds.reindex(columns=[LITERAL, ORDERING]).dropna()
@@ -173,7 +175,7 @@ def selection_polynomial(tables: Tables) -> ClaimMeasure:
     for n_scans, (literal_s, ours_s) in both.tail(1).iterrows():
         values[f"{n_scans} scans, algorithm 1"] = literal_s, SECONDS
         values[f"{n_scans} scans, ours"] = ours_s, SECONDS
-    return ClaimMeasure(values, exponents["exponent, algorithm 1"] - 1 - LOADED)
+    return ClaimMeasure(values, exponents["exponent, algorithm 1"] - 1 - Judged.LOADED)
 
 
 def two_percent_survive(tables: Tables) -> ClaimMeasure:
@@ -206,7 +208,10 @@ def selection_time(tables: Tables) -> ClaimMeasure:
     """
     times = tables["drive_times"]
     return ClaimMeasure({
-        f"to choose {SUBSET} of {THESIS_SCANS} scans": (_seconds_at(times, CHOOSING), SECONDS),
+        f"to choose {Sizes.SUBSET} of {THESIS_SCANS} scans": (
+            _seconds_at(times, CHOOSING),
+            SECONDS,
+        ),
         f"to order all {THESIS_SCANS}": (_seconds_at(times, ORDERING), SECONDS),
         f"to order all {THESIS_SCANS} by algorithm 1": (_seconds_at(times, LITERAL), SECONDS),
     })  # fmt: skip

@@ -7,7 +7,7 @@ import pandas as pd
 from scanplan.lab.evaluation.evaluation_figure import method_style
 from scanplan.lab.thesis.claim_measures import SHARE
 from scanplan.lab.thesis.page import format_values, inline_svg
-from scanplan.lab.thesis.stated_claims import SUBSET
+from scanplan.lab.thesis.stated_claims import Sizes
 from scanplan.report import templates
 
 
@@ -39,5 +39,5 @@ def more_page(sources: Mapping[str, str], figures: Mapping[str, str], found: pd.
         methods=[method_style(method)[0] for method in by_method.groups],
         found=rows,
         n_seeds=found.index.get_level_values("seed").nunique(),
-        n_scans=SUBSET,
+        n_scans=Sizes.SUBSET,
     )

@@ -33,7 +33,7 @@ from scanplan.lab.thesis.claim_measures import (
     of_unit,
     scans_for_99,
 )
-from scanplan.lab.thesis.stated_claims import ALMOST, LOADED, MANY, MUCH, SUBSET
+from scanplan.lab.thesis.stated_claims import Judged, Sizes
 
 _NAMES = {
     "cluster_hull": "cluster hulls",
@@ -89,7 +89,7 @@ def cluster_hull_closer(tables: Tables) -> ClaimMeasure:
         error[hull] = (areas[f"{hull}_m2"] / areas["seen_m2"] - 1).abs().median()
         values[f"error of the area, {name}, median"] = error[hull]
         values[f"intersection over union, {name}, median"] = areas[f"{hull}_iou"].median()
-    margin = MUCH - error["cluster_hull"] / error["full_hull"]
+    margin = Judged.MUCH - error["cluster_hull"] / error["full_hull"]
     return ClaimMeasure(of_unit(values, SHARE), margin, SHARE)
 
 
@@ -101,7 +101,7 @@ def outliers_harm_one_hull(tables: Tables) -> ClaimMeasure:
         for hull, name in (("cluster_hull", "cluster hulls"), ("full_hull", "one hull"))
     }
     values = {f"area added by one stray return, {name}": share for name, share in added.items()}
-    margin = MUCH - added["cluster hulls"] / added["one hull"]
+    margin = Judged.MUCH - added["cluster hulls"] / added["one hull"]
     return ClaimMeasure(of_unit(values, SHARE), margin, SHARE)
 
 
@@ -126,11 +126,11 @@ def full_hull_sooner(tables: Tables) -> ClaimMeasure:
 def slower_is_better(tables: Tables) -> ClaimMeasure:
     """Compare what later scans of both orders bring."""
     walls = tables["rooms_walls"]
-    cluster = measure_at(walls, "cluster_hull", OURS, MANY, FOUND)
-    full = measure_at(walls, "hull", OURS, MANY, FOUND)
+    cluster = measure_at(walls, "cluster_hull", OURS, Sizes.MANY, FOUND)
+    full = measure_at(walls, "hull", OURS, Sizes.MANY, FOUND)
     values = {
-        f"walls found by {MANY}, cluster hulls": cluster,
-        f"walls found by {MANY}, one hull": full,
+        f"walls found by {Sizes.MANY}, cluster hulls": cluster,
+        f"walls found by {Sizes.MANY}, one hull": full,
     }
     return ClaimMeasure(of_unit(values, SHARE), cluster - full, SHARE)
 
@@ -140,7 +140,7 @@ def more_clusters_less_area(tables: Tables) -> ClaimMeasure:
     table = tables["rooms_clusters"]
     covered_m2 = table.pivot(index="rank", columns="n_clusters", values="covered_m2")
     less_m2 = -covered_m2.diff(axis=1).iloc[:, 1:].max(axis=1)
-    ranks = {str(SUBSET): SUBSET} if len(covered_m2) > SUBSET else {}
+    ranks = {str(Sizes.SUBSET): Sizes.SUBSET} if len(covered_m2) > Sizes.SUBSET else {}
     values: Quantities = {}
     for scans, rank in (ranks | {"all": len(covered_m2)}).items():
         for number in (covered_m2.columns.min(), covered_m2.columns.max()):
@@ -156,7 +156,9 @@ def more_clusters_more_time(tables: Tables) -> ClaimMeasure:
     values = {count_clusters(number): s for number, s in seconds.items()}
     step = (seconds / seconds.shift()).min() - 1
     whole = seconds.iloc[-1] / seconds.iloc[0] - 1
-    return ClaimMeasure(of_unit(values, SECONDS), min(step + LOADED, whole - LOADED), SHARE)
+    return ClaimMeasure(
+        of_unit(values, SECONDS), min(step + Judged.LOADED, whole - Judged.LOADED), SHARE
+    )
 
 
 def area_adjustable(tables: Tables) -> ClaimMeasure:
@@ -181,12 +183,12 @@ def clusters_save_time(tables: Tables) -> ClaimMeasure:
         ("hull", "one hull", hull_s.iloc[0]),
         ("cluster_hull", "the most clusters", hull_s.iloc[-1]),
     ):
-        needed = count_scans_to(walls, method, ALMOST)
+        needed = count_scans_to(walls, method, Judged.ALMOST)
         total_s[method] = n_scans * of_hull_s + needed * extraction_s
         values[f"scans needed, {name}"] = needed, COUNT
         values[f"time, {name}"] = total_s[method], SECONDS
     saved = 1 - total_s["cluster_hull"] / total_s["hull"]
-    return ClaimMeasure(values, saved - LOADED, SHARE)
+    return ClaimMeasure(values, saved - Judged.LOADED, SHARE)
 
 
 def sample_saves_time(tables: Tables) -> ClaimMeasure:
@@ -194,21 +196,21 @@ def sample_saves_time(tables: Tables) -> ClaimMeasure:
     times = tables["rooms_times"].groupby("task")["seconds"].sum()
     sampled_s, every_s = times.get(SAMPLED, np.nan), times.get(UNSAMPLED, np.nan)
     values = {"a sample of the points": sampled_s, "all points": every_s}
-    return ClaimMeasure(of_unit(values, SECONDS), every_s / sampled_s - 1 - LOADED, SHARE)
+    return ClaimMeasure(of_unit(values, SECONDS), every_s / sampled_s - 1 - Judged.LOADED, SHARE)
 
 
 def fifteen_almost_complete(tables: Tables) -> ClaimMeasure:
     """Compare what the thesis's subset finds with what the best one of its size finds."""
     walls = tables["rooms_walls"]
-    found = measure_at(walls, "cluster_hull", OURS, SUBSET, FOUND)
-    best = measure_at(walls, "oracle", OURS, SUBSET, FOUND)
+    found = measure_at(walls, "cluster_hull", OURS, Sizes.SUBSET, FOUND)
+    best = measure_at(walls, "oracle", OURS, Sizes.SUBSET, FOUND)
     values = {
         "walls found": found,
-        "length that is wall": measure_at(walls, "cluster_hull", OURS, SUBSET, CORRECT),
+        "length that is wall": measure_at(walls, "cluster_hull", OURS, Sizes.SUBSET, CORRECT),
         "walls found by all scans": measure_at(walls, "cluster_hull", OURS, np.inf, FOUND),
         "walls found by the best 15": best,
         "walls found by the first 15 recorded": measure_at(
-            walls, "sequential", OURS, SUBSET, FOUND
+            walls, "sequential", OURS, Sizes.SUBSET, FOUND
         ),
     }
     scans = {"of how many scans": (walls["k"].max(), COUNT)}
@@ -239,7 +241,7 @@ def uneven_harms_random(tables: Tables) -> ClaimMeasure:
         for repeats, share in lost[order].iloc[1:].items():
             values[f"lost, {name}, crowd {repeats} times"] = share, SHARE
     random, area = lost[unevenness.RANDOM], lost[unevenness.AREA]
-    harm = 1 - ALMOST
+    harm = 1 - Judged.ALMOST
     parts = [random.diff().min(), random.iloc[-1] - harm, harm - area.max()]
     return ClaimMeasure(values, min(parts) if lost.notna().all(axis=None) else np.nan, SHARE)
 
@@ -249,7 +251,7 @@ def utility_submodular(tables: Tables) -> ClaimMeasure:
     table = tables["rooms_premises"]
     ratios = table[table["premise"].isin(premises.UTILITIES)].groupby("premise")["value"]
     values = {f"ratio, {name}": ratio for name, ratio in ratios.mean().items()}
-    margin = min(ratios.mean().reindex(premises.UTILITIES)) - ALMOST
+    margin = min(ratios.mean().reindex(premises.UTILITIES)) - Judged.ALMOST
     return ClaimMeasure(of_unit(values, NUMBER), margin)
 
 
@@ -258,7 +260,7 @@ def clusters_are_walls(tables: Tables) -> ClaimMeasure:
     table = tables["rooms_premises"]
     share = table.loc[table["premise"] == premises.ONE_WALL, "value"].median()
     values = {"points on their cluster's wall, median scan": share}
-    return ClaimMeasure(of_unit(values, SHARE), share - ALMOST, SHARE)
+    return ClaimMeasure(of_unit(values, SHARE), share - Judged.ALMOST, SHARE)
 
 
 def first_sixty(tables: Tables) -> ClaimMeasure:
@@ -275,10 +277,10 @@ def first_sixty(tables: Tables) -> ClaimMeasure:
     }
     walls = tables["rooms_walls"]
     values = {
-        name: measure_at(walls, "cluster_hull", OURS, MANY, column)
+        name: measure_at(walls, "cluster_hull", OURS, Sizes.MANY, column)
         for name, column in columns.items()
     }
-    n_segments = measure_at(walls, "cluster_hull", OURS, MANY, "n_walls")
+    n_segments = measure_at(walls, "cluster_hull", OURS, Sizes.MANY, "n_walls")
     return ClaimMeasure(of_unit(values, SHARE) | {"segments": (n_segments, COUNT)})
 
 

@@ -9,13 +9,23 @@ building, the sensor or the machine have no criterion: ours stand beside them wi
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-SUBSET, MANY = 15, 60
-"""Sizes, in scans, of the subsets that the thesis shows walls of."""
-ALMOST = 0.9  # "similar", "almost complete", "little loss": at least this share is kept
-SEVERAL = 1.5  # segments per wall on average, every wall shown having one at least
-GROWS = 0.5  # power of the number of points: nearer to growing with it than to being the same
-MUCH = 0.5  # "much better": at most this part of the error of what is compared with
-LOADED = 0.1  # share: other work of the machine shifts the quickest of three calls by less
+
+class Sizes:
+    """Sizes, in scans, of the subsets that the thesis shows walls of."""
+
+    SUBSET = 15
+    MANY = 60
+
+
+class Judged:
+    """What the words of a claim are taken to mean."""
+
+    ALMOST = 0.9  # "similar", "almost complete", "little loss": at least this share is kept
+    SEVERAL = 1.5  # segments per wall on average, every wall shown having one at least
+    GROWS = 0.5  # power of the number of points: nearer to growing with it than to being the same
+    MUCH = 0.5  # "much better": at most this part of the error of what is compared with
+    LOADED = 0.1  # share: other work of the machine shifts the quickest of three calls by less
+
 
 _OURS = (
     "Iterative RANSAC is ours here, which also cuts walls at gaps, leaves out planes by scatter and"
@@ -26,7 +36,8 @@ _PLAIN = (
     " furniture."
 )
 _TIMES = (
-    f"by {100 * LOADED:.0f} % or more (processor time, of each the quickest of three calls: what a"
+    f"by {100 * Judged.LOADED:.0f} % or more (processor time, of each the quickest of three"
+    " calls: what a"
     " loaded machine shifts is less)"
 )
 
@@ -64,7 +75,7 @@ CLAIMS = (
         "sequential_poorest",
         "5.2, Figure 5.4",
         "Of four orders of the scans, the sequential one performs the poorest.",
-        f"most false negatives of the four, mean over the first 1, 2, ... {MANY} scans",
+        f"most false negatives of the four, mean over the first 1, 2, ... {Sizes.MANY} scans",
         otherwise="The building's: its route decides how soon the recorded order has been"
         " everywhere. As recorded {sequential} are missed, at random {random}.",
     ),
@@ -72,7 +83,7 @@ CLAIMS = (
         "sequential_poorest_match",
         "5.2, Figure 5.4",
         "The same by the share of correct matches, which the thesis plots beside it.",
-        f"fewest correct matches of the four, mean over the first 1, 2, ... {MANY} scans",
+        f"fewest correct matches of the four, mean over the first 1, 2, ... {Sizes.MANY} scans",
         otherwise="The metric's: an order that finds little has little that can be false."
         " {sequential} match as recorded, {random} at random.",
     ),
@@ -97,7 +108,8 @@ CLAIMS = (
         "3.3.2, Figure 3.2",
         "The union of cluster hulls is a much better approximation.",
         "the error of its area, which is what the algorithm goes by, is no more than"
-        f" {100 * MUCH:.0f} % of that of one hull (medians of the scans); the shape's agreement is"
+        f" {100 * Judged.MUCH:.0f} % of that of one hull (medians of the scans); the shape's"
+        " agreement is"
         " shown beside it",
         otherwise="The algorithm's: its area is off by {error of the area, cluster hulls, median},"
         " that of one hull by {error of the area, one hull, median}.",
@@ -108,7 +120,8 @@ CLAIMS = (
         "The convex hull is extremely sensitive to outliers; clustering the points first solves"
         " this.",
         "one stray return, as far as the scan's farthest and in a random direction, adds to the"
-        f" union of cluster hulls no more than {100 * MUCH:.0f} % of the share that it adds to one"
+        f" union of cluster hulls no more than {100 * Judged.MUCH:.0f} % of the share that it"
+        " adds to one"
         " hull (mean of the scans)",
         otherwise="The algorithm's, as read here: a stray return joins its nearest centre and"
         " stretches that cluster's hull. It adds {area added by one stray return, cluster hulls} to"
@@ -125,7 +138,8 @@ CLAIMS = (
         "slower_is_better",
         "5.2",
         "Quick convergence is not desirable: after it the order is not informative any more.",
-        f"the first {MANY} scans by cluster hulls find more wall (0.10 m) than the first {MANY} by"
+        f"the first {Sizes.MANY} scans by cluster hulls find more wall (0.10 m) than the"
+        f" first {Sizes.MANY} by"
         " full hulls",
         otherwise="The orders': {walls found by 60, cluster hulls} against"
         " {walls found by 60, one hull}.",
@@ -160,7 +174,8 @@ CLAIMS = (
         "clusters_save_time",
         "5.2",
         "A number of clusters above one can minimise the total computation time.",
-        f"hulls of all scans, and walls of so many as find {100 * ALMOST:.0f} % of the visible"
+        f"hulls of all scans, and walls of so many as find {100 * Judged.ALMOST:.0f} % of the"
+        " visible"
         f" walls, take less time by the most clusters than by one hull {_TIMES}; walls by cluster"
         " RANSAC as in the thesis",
         otherwise="Of the extraction's speed: hulls of all scans cost more than the walls of the"
@@ -179,7 +194,8 @@ CLAIMS = (
         "fifteen_almost_complete",
         "5.2, Figure 5.5",
         "15 of 273 scans in the order of the algorithm give an almost complete floor plan.",
-        f"they find {100 * ALMOST:.0f} % or more of the true walls that the best 15 scans find"
+        f"they find {100 * Judged.ALMOST:.0f} % or more of the true walls that the best 15"
+        " scans find"
         " (0.10 m; chosen greedily by one who knows the truth). In a building of 25 rooms no 15"
         " scans show all of it",
         {"of how many scans": 273},
@@ -190,7 +206,8 @@ CLAIMS = (
         "tenth_little_loss",
         "1.3, 5",
         "A subset, ten times fewer scans, costs little of the final result.",
-        f"the first tenth keeps {100 * ALMOST:.0f} % or more of the walls found and of the length"
+        f"the first tenth keeps {100 * Judged.ALMOST:.0f} % or more of the walls found and of"
+        " the length"
         " that is wall that all scans have, each (0.10 m, visible walls)",
         otherwise="The order's: {walls found, a tenth} of the walls are found, by the best tenth"
         " {walls found, the best tenth}.",
@@ -203,8 +220,8 @@ CLAIMS = (
         "in the survey of the rooms, the tenth of the scans nearest to a place (mean of 3 places)"
         " taken 1, 5 and 20 times, each time with clusters drawn anew: of a random order the first"
         " 15 (what is to be expected of all) see less true wall with every step and in the end over"
-        f" {100 * (1 - ALMOST):.0f} % less; the first 15 by cluster hulls never over"
-        f" {100 * (1 - ALMOST):.0f} % less",
+        f" {100 * (1 - Judged.ALMOST):.0f} % less; the first 15 by cluster hulls never over"
+        f" {100 * (1 - Judged.ALMOST):.0f} % less",
         otherwise="The orders': a random one loses {lost, random, crowd 20 times}, that by cluster"
         " hulls {lost, cluster hulls, crowd 20 times}.",
     ),
@@ -213,7 +230,8 @@ CLAIMS = (
         "5",
         "We believe that the data of the scans have a submodular property.",
         "what 15 random scans add one by one to 15 others, summed, is at least"
-        f" {ALMOST} of what they add together (submodularity ratio, mean of 15 draws): of the walls"
+        f" {Judged.ALMOST} of what they add together (submodularity ratio, mean of 15 draws):"
+        " of the walls"
         " found, of the F1 of walls and of the correct match of the bitmaps",
         otherwise="The utility's: the ratio is {ratio, walls found} for the walls found,"
         " {ratio, F1 of walls} for the F1 and {ratio, correct match} for the correct match; false"
@@ -223,7 +241,8 @@ CLAIMS = (
         "clusters_are_walls",
         "3.4",
         "Each cluster of projected points contains the points of roughly one wall.",
-        f"{100 * ALMOST:.0f} % or more of a scan's points in clusters lie on the true wall that"
+        f"{100 * Judged.ALMOST:.0f} % or more of a scan's points in clusters lie on the true"
+        " wall that"
         " most of their cluster lie on (0.10 m, median of the scans)",
         otherwise="The building's furniture or the algorithm's bandwidth:"
         " {points on their cluster's wall, median scan} of the points lie on their cluster's wall.",
@@ -232,7 +251,8 @@ CLAIMS = (
         "several_per_wall",
         "5.3",
         "Iterative RANSAC finds several candidates for each wall of one scan.",
-        f"more than {SEVERAL} candidates per true wall and scan, mean over eight scans of the"
+        f"more than {Judged.SEVERAL} candidates per true wall and scan, mean over eight scans"
+        " of the"
         " drive, by lines in space within 50 mm. With planes, the band decides: five, two and one"
         f" standard deviation of a range's noise. {_PLAIN}",
         otherwise="The recording's: lines find {lines, 50 mm} candidates a wall.",
@@ -269,7 +289,8 @@ CLAIMS = (
         "The time of iterative RANSAC depends on the size of the cloud, that of cluster RANSAC does"
         " not.",
         "on the same scans whole and thinned to 1/2, 1/4 and 1/8 of their points, time goes with"
-        f" the number of points to the power of {GROWS} or more for iterative RANSAC, of less for"
+        f" the number of points to the power of {Judged.GROWS} or more for iterative RANSAC,"
+        " of less for"
         f" cluster RANSAC. {_PLAIN}",
         otherwise="The thesis's: normals and mean shift of its cluster RANSAC see every point, so"
         " that its time goes with the power {exponent of time, cluster RANSAC} of their number"
@@ -282,7 +303,7 @@ CLAIMS = (
         "5.4, Figures 5.11, 5.12",
         "Cluster RANSAC on 15 scans performs like iterative RANSAC on all.",
         f"of the walls found of the hallways, which the rover surveyed, and of the length that is"
-        f" wall it has {100 * ALMOST:.0f} % or more each of that (0.10 m). {_OURS}",
+        f" wall it has {100 * Judged.ALMOST:.0f} % or more each of that (0.10 m). {_OURS}",
         otherwise="The order's: {walls of the hallways found, cluster RANSAC, 15 scans} of the"
         " hallways' walls, where 15 scans at random find"
         " {walls of the hallways found, 15 scans at random}.",
@@ -291,7 +312,8 @@ CLAIMS = (
         "tenth_of_drive",
         "1.3, 5",
         "A subset, ten times fewer scans, costs little: the same on the drive.",
-        f"the first tenth keeps {100 * ALMOST:.0f} % or more of the walls of the hallways found and"
+        f"the first tenth keeps {100 * Judged.ALMOST:.0f} % or more of the walls of the"
+        " hallways found and"
         " of the length that is wall that all scans have, each (0.10 m)",
         otherwise="The order's: {walls of the hallways found, a tenth} against"
         " {walls of the hallways found, all}.",
@@ -311,7 +333,7 @@ CLAIMS = (
         "5.4, Figure 5.8",
         "Choosing can be lengthy: its time is a polynomial of the number of scans.",
         "the time of algorithm 1, all scans put in order as it is written, grows with their number"
-        f" to a power above {1 + LOADED:.1f} (processor time)",
+        f" to a power above {1 + Judged.LOADED:.1f} (processor time)",
         otherwise="The algorithm's: the power is {exponent, algorithm 1}.",
     ),
     Claim(

@@ -16,7 +16,7 @@ from scanplan.extraction import extractors
 from scanplan.extraction.extractors import Extractor
 from scanplan.lab.thesis.claim_measures import CHOOSING, LITERAL, MERGING, ORDERING, THINNED
 from scanplan.lab.thesis.shown_figures import THESIS_SCANS
-from scanplan.lab.thesis.stated_claims import SUBSET
+from scanplan.lab.thesis.stated_claims import Sizes
 from scanplan.plan.faces.merging import MergeSettings, merge_segments
 from scanplan.selection import area_greedy, hulls
 from scanplan.stage import per_registered_scan
@@ -125,8 +125,8 @@ def time_selection(columns: Columns, sizes: Iterable[int]) -> Iterator[TimedRow]
         shapes = polygons[spread_rows(np.arange(len(polygons)), size)]
         seconds, order = _time_call(partial(area_greedy.order_by_area, shapes))
         yield _row(ORDERING, size, len(order.order), seconds)
-        if size > SUBSET:
-            call = partial(area_greedy.choose_first, shapes, SUBSET)
+        if size > Sizes.SUBSET:
+            call = partial(area_greedy.choose_first, shapes, Sizes.SUBSET)
             seconds, subset = _time_quickest(call)
             yield _row(CHOOSING, size, len(subset), seconds)
         if size <= THESIS_SCANS:

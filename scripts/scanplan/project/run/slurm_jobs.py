@@ -36,8 +36,7 @@ _CAUSES = {
     "DEADLINE": "could not end before its deadline",
 }
 _NO_MEMORY = re.compile("exceeded memory limit|oom.kill", re.IGNORECASE)
-_PATIENCE_S = 60.0  # a node kills what does not end by itself after half of it (KillWait)
-_COMMAND_S = 30.0  # a controller that answers later is down
+_PATIENCE_S = 60.0  # for a controller to answer, and for a node to kill what does not end by itself
 
 
 @dataclass(frozen=True)
@@ -209,7 +208,7 @@ def _find_log(job: SlurmJob) -> Path:
 def _ask(*command: str) -> str:
     try:
         return subprocess.run(
-            command, check=True, capture_output=True, text=True, timeout=_COMMAND_S
+            command, check=True, capture_output=True, text=True, timeout=_PATIENCE_S
         ).stdout
     except (OSError, subprocess.SubprocessError) as error:
         said = (getattr(error, "stderr", None) or str(error)).strip().splitlines()

@@ -11,7 +11,7 @@ from matplotlib.patches import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.lab.thesis.claim_measures import FOUR, count_clusters, curve_of, scans_for_99
-from scanplan.lab.thesis.stated_claims import MANY, SUBSET
+from scanplan.lab.thesis.stated_claims import Sizes
 from scanplan.report import top_view
 from scanplan.selection.methods import METHODS
 from scanplan.types import Array, FloatArray
@@ -93,7 +93,7 @@ def draw_shares_figure(evaluated: Sequence[pd.DataFrame], extractor: str) -> Fig
             axes.plot(shares.mean(axis=1), color=colour, lw=1.4, label=label)
         axes.set_title(title, fontsize=9)
         # twice the thesis's first 60: beyond it the shares hardly change
-        axes.set_xlim(0, min(2 * MANY, evaluated[0]["k"].max()))
+        axes.set_xlim(0, min(2 * Sizes.MANY, evaluated[0]["k"].max()))
         top_view.name_axes(axes, "number of scans", "share of all cells")
     handles, labels = frames[-1].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8, frameon=False)
@@ -149,10 +149,10 @@ def draw_clusters_figure(clusters: pd.DataFrame) -> Figure:
     numbers, n_scans = covered_m2.columns, len(covered_m2)
     for number, colour in zip(numbers, shades_of_blue(len(numbers)), strict=True):
         left.plot(covered_m2[number], color=colour, lw=1.3, label=count_clusters(number))
-    left.set_xlim(0, min(2 * MANY, n_scans))
+    left.set_xlim(0, min(2 * Sizes.MANY, n_scans))
     top_view.name_axes(left, "number of scans", "area covered (m²)")
     left.legend(fontsize=8, frameon=False, loc="lower right")
-    at = min(SUBSET, n_scans)
+    at = min(Sizes.SUBSET, n_scans)
     for label, colour, rank in ((f"first {at} scans", "0.55", at), ("all scans", "black", n_scans)):
         right.plot(covered_m2.loc[rank], "o-", ms=3.5, lw=1.2, color=colour, label=label)
     right.set_xscale("log")

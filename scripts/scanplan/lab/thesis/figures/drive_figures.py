@@ -17,7 +17,7 @@ from scanplan.lab.thesis.claim_measures import (
     PLAIN,
     PLAIN_CLUSTERS,
 )
-from scanplan.lab.thesis.stated_claims import SUBSET
+from scanplan.lab.thesis.stated_claims import Sizes
 from scanplan.lab.thesis.unevenness import N_CROWDS
 from scanplan.report import figures, top_view
 from scanplan.types import FloatArray
@@ -45,7 +45,7 @@ def draw_selection_times(times: pd.DataFrame) -> Figure:
         for task, label, colour in (
             (LITERAL, "algorithm 1 as written, all in order", _ITERATIVE[1]),
             (ORDERING, "ours, all in order", "0.55"),
-            (CHOOSING, f"ours, the first {SUBSET}", _CLUSTERS[1]),
+            (CHOOSING, f"ours, the first {Sizes.SUBSET}", _CLUSTERS[1]),
         ):
             of_task = times[times["task"] == task].sort_values("size")
             axes.plot("size", "seconds", "o-", data=of_task, ms=3.5, lw=1.2, color=colour)

@@ -19,7 +19,7 @@ from scanplan.lab.evaluation.truth_file import TrueFaces
 from scanplan.lab.thesis import coverage, steps_figure
 from scanplan.lab.thesis.claim_measures import OURS
 from scanplan.lab.thesis.figures import coverage_figures, schematic_figures
-from scanplan.lab.thesis.stated_claims import MANY, SUBSET
+from scanplan.lab.thesis.stated_claims import Sizes
 from scanplan.rays import sensor_frame
 from scanplan.report import top_view
 from scanplan.selection import hulls
@@ -81,14 +81,14 @@ def draw_room_figure(survey: RoomSurvey, name: str, bitmap_cell_m: float) -> Fig
     faces_m = survey.faces.inner_m
     ours, recorded = "order by cluster hulls", "as recorded"
     if name == "figure_5_1":
-        walls_m, _ = survey.first_walls("cluster_hull", MANY)
+        walls_m, _ = survey.first_walls("cluster_hull", Sizes.MANY)
         return draw_overlay_figure(walls_m, faces_m, bitmap_cell_m)
     if name == "figure_5_3":
-        return draw_wall_panels(faces_m, {ours: survey.first_walls("cluster_hull", MANY)})
+        return draw_wall_panels(faces_m, {ours: survey.first_walls("cluster_hull", Sizes.MANY)})
     if name == "figure_5_5":
         panels = {
-            recorded: survey.first_walls("sequential", SUBSET),
-            ours: survey.first_walls("cluster_hull", SUBSET),
+            recorded: survey.first_walls("sequential", Sizes.SUBSET),
+            ours: survey.first_walls("cluster_hull", Sizes.SUBSET),
         }
         return draw_wall_panels(faces_m, panels)
     selections = {method: survey.selections[method] for method in ("hull", "cluster_hull")}
