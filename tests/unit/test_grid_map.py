@@ -60,7 +60,7 @@ def test_walls_have_no_hole_that_a_planner_could_leak_through():
         grown[:-1] |= reached[1:]
         grown[:, 1:] |= reached[:, :-1]
         grown[:, :-1] |= reached[:, 1:]
-        grown &= cells != grid_map.OCCUPIED
+        grown &= cells != grid_map.Grey.OCCUPIED
         if (grown == reached).all():
             break
         reached = grown
@@ -74,7 +74,7 @@ def test_free_area_is_that_of_the_floor(cell_m):
         bare([(20, 0, 21, 0, -1)]), free=floorplan_making.free([floorplan_making.ROOMS[0]])
     )
     grid = grid_map.draw_grid_map(drawn, cell_m)
-    assert (grid.cells == grid_map.FREE).sum() * cell_m**2 == pytest.approx(12.0, rel=0.02)
+    assert (grid.cells == grid_map.Grey.FREE).sum() * cell_m**2 == pytest.approx(12.0, rel=0.02)
 
 
 def test_a_pillar_in_the_floor_is_not_free():
@@ -90,8 +90,8 @@ def test_a_campus_is_drawn_with_larger_cells():
 
 def test_a_plan_of_one_face_has_a_map():
     assert set(np.unique(grid_map.draw_grid_map(bare([(0, 0, 1, 0, -1)]), 0.05).cells)) == {
-        grid_map.OCCUPIED,
-        grid_map.UNKNOWN,
+        grid_map.Grey.OCCUPIED,
+        grid_map.Grey.UNKNOWN,
     }
 
 

@@ -1,6 +1,7 @@
 """The plan as an occupancy grid, for the navigation of a robot."""
 
 from dataclasses import dataclass
+from enum import IntEnum
 
 import numpy as np
 import shapely
@@ -10,13 +11,9 @@ from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.types import Array, FloatArray, IntArray
 
-# grey values of ROS map_server
-FREE = 254
-OCCUPIED = 0
-UNKNOWN = 205
 _MARGIN_M = 0.5  # around all that is known: room for a planner's inflation of obstacles
 _MOST_CELLS = 64_000_000  # a robot's memory: 64 MB, 400 m x 400 m at 5 cm
-# occupancy is (255 - grey) / 255, that of `UNKNOWN` 0.196: nav2's own free_thresh of 0.25 would
+# occupancy is (255 - grey) / 255, of `Grey.UNKNOWN` 0.196: nav2's own free_thresh of 0.25 would
 # take the unknown for free
 _MAP_YAML = """\
 image: {image}
@@ -29,6 +26,14 @@ free_thresh: 0.1
 """
 
 
+class Grey(IntEnum):
+    """Grey values of ROS map_server."""
+
+    FREE = 254
+    OCCUPIED = 0
+    UNKNOWN = 205
+
+
 @dataclass(frozen=True)
 class GridMap:
     """An occupancy grid.
@@ -36,7 +41,7 @@ class GridMap:
     Attributes
     ----------
     cells : (rows, columns) uint8
-        `FREE`, `OCCUPIED` or `UNKNOWN`; the first row is that of the greatest y, as in an image.
+        Of `Grey`; the first row is that of the greatest y, as in an image.
     resolution_m : float
         Edge of a cell.
     origin_m : (float, float)
@@ -63,11 +68,11 @@ def draw_grid_map(plan: FloorPlan, resolution_m: float) -> GridMap:
     """
     floor = shapely.from_wkb(np.asarray(plan.free["geometry"], object))
     grid = _fit_grid(*_extent_m(plan, floor), resolution_m)
-    cells = np.full(grid.shape, UNKNOWN, np.uint8)
-    cells[bitmap.fill_polygons(floor, grid)] = FREE
+    cells = np.full(grid.shape, Grey.UNKNOWN, np.uint8)
+    cells[bitmap.fill_polygons(floor, grid)] = Grey.FREE
     solid, lines_m = _obstacles(plan)
-    cells[bitmap.fill_polygons(solid, grid)] = OCCUPIED
-    cells[bitmap.rasterise_lines(lines_m, grid)] = OCCUPIED
+    cells[bitmap.fill_polygons(solid, grid)] = Grey.OCCUPIED
+    cells[bitmap.rasterise_lines(lines_m, grid)] = Grey.OCCUPIED
     x_m, y_m = (round(float(value), 6) + 0.0 for value in grid.low_m)
     return GridMap(np.ascontiguousarray(cells[::-1]), grid.cell_m, (x_m, y_m))
 

@@ -14,11 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.geometry.lines import line_lengths_m
-from scanplan.geometry.tolerances import SHORTEST_M
+from scanplan.geometry.tolerances import FACING, SHORTEST_M
 from scanplan.selection import wall_cells
 from scanplan.types import BoolArray, Columns, FloatArray, IntArray
 
-_FACES = 0.5  # cosine: a wall turned by more than 60 degrees from a facing counts by others
 _OUTWARD = np.array([[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]])
 """Unit normals of `wall_cells.FACINGS`."""
 
@@ -203,7 +202,7 @@ def measure_offsets(
     at_m = np.einsum("mkj,kj->mk", apart_m, along)
     beyond_m = np.maximum(np.maximum(-at_m, at_m - length_m), 0)
     away_m = np.hypot(across_m, beyond_m)
-    is_other = _OUTWARD[facing] @ walls.normal.T < _FACES
+    is_other = _OUTWARD[facing] @ walls.normal.T < FACING
     away_m[is_other] = np.inf
     nearest = away_m.argmin(axis=1)
     rows = np.arange(len(centre_m))
