@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 ROS1_STORE = typestores.standard_store(Stores.ROS1_NOETIC)
 _ROS2_STORE = typestores.standard_store(Stores.ROS2_HUMBLE)
 _ROS2_STORAGE = {".db3": rosbag2.StoragePlugin.SQLITE3, ".mcap": rosbag2.StoragePlugin.MCAP}
-_QUEUE_DEPTH = 10  # ASSUME the depth that ROS 2 publishers take by default
 _FOREVER = QosTime(2147483647, 4294967295)  # rmw's infinite duration
 
 
@@ -135,7 +134,8 @@ def _ros2_options(is_latched: bool) -> dict[str, Any]:
     """
     quality = Qos(
         history=QosHistory.KEEP_LAST,
-        depth=1 if is_latched else _QUEUE_DEPTH,
+        # ASSUME the depth that ROS 2 publishers take by default
+        depth=1 if is_latched else 10,
         reliability=QosReliability.RELIABLE,
         durability=QosDurability.TRANSIENT_LOCAL if is_latched else QosDurability.VOLATILE,
         deadline=_FOREVER,

@@ -31,7 +31,6 @@ SYMBOL_TAGS = {
 }
 """Attributes of doors, windows and passages, and what of their facts they state."""
 UNITS = {"mm": InsertUnits.Millimeters, "m": InsertUnits.Meters}
-_PER_M = {"mm": 1 / constants.milli, "m": 1.0}
 _VERSION = "R2010"  # AC1024, which all current CAD programs read
 _FONT = "arial.ttf"  # narrower than the font that words were placed by
 
@@ -52,7 +51,7 @@ class Scale:
     """
 
     def __init__(self, unit: str, page: Page) -> None:
-        self.per_m = _PER_M[unit]
+        self.per_m = 1 / constants.milli if unit == "mm" else 1.0
         self.per_mm = self.per_m / page.mm_per_m
 
 

@@ -13,7 +13,7 @@ from scanplan.types import Array, FloatArray, IntArray
 
 _MARGIN_M = 0.5  # around all that is known: room for a planner's inflation of obstacles
 _MOST_CELLS = 64_000_000  # a robot's memory: 64 MB, 400 m x 400 m at 5 cm
-# occupancy is (255 - grey) / 255, that of `UNKNOWN` 0.196: nav2's own free_thresh of 0.25 would
+# occupancy is (255 - grey) / 255, of `Grey.UNKNOWN` 0.196: nav2's own free_thresh of 0.25 would
 # take the unknown for free
 _MAP_YAML = """\
 image: {image}
@@ -29,9 +29,9 @@ free_thresh: 0.1
 class Grey(IntEnum):
     """Grey values of ROS map_server."""
 
+    FREE = 254
     OCCUPIED = 0
     UNKNOWN = 205
-    FREE = 254
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class GridMap:
     Attributes
     ----------
     cells : (rows, columns) uint8
-        `FREE`, `OCCUPIED` or `UNKNOWN`; the first row is that of the greatest y, as in an image.
+        Of `Grey`; the first row is that of the greatest y, as in an image.
     resolution_m : float
         Edge of a cell.
     origin_m : (float, float)

@@ -17,7 +17,6 @@ from scanplan.exports.model_origin import ModelOrigin, Site
 from scanplan.types import Array, FloatArray
 
 _APPLICATION = "scanplan"
-_PRECISION_M = 1e-5  # of the coordinates: points nearer than this are one, 0.01 mm
 _VIEW = "ViewDefinition [ReferenceView_V1.2]"  # buildingSMART's view for coordination
 
 _RELATED = {
@@ -271,8 +270,9 @@ class IfcModel:
     def _contexts(self) -> entity_instance:
         """Add the context of all shapes, and those of bodies and axes in it."""
         origin = self.new("IfcAxis2Placement3D", self.point((0, 0, 0)), None, None)
+        precision_m = 1e-5  # of the coordinates: points nearer than this are one, 0.01 mm
         whole = self.new(
-            "IfcGeometricRepresentationContext", None, "Model", 3, _PRECISION_M, origin, None
+            "IfcGeometricRepresentationContext", None, "Model", 3, precision_m, origin, None
         )
         self._georeference(whole, self.origin.site)
         self.body = self._subcontext(whole, "Body", "MODEL_VIEW")

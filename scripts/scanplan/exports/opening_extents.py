@@ -6,9 +6,6 @@ from scanplan.plan.floorplan import FloorPlan
 
 LEAF_M = 0.04
 """Thickness of a door leaf and a window, usual; nothing thinner is drawn."""
-# ASSUME where the scans show no lintel or sill, metres above the floor
-_DOOR_M = 2.0  # a usual door's clear height
-_SILL_M = 0.9  # a usual balustrade's height
 
 
 def vertical_extent_m(plan: FloorPlan, row: int) -> tuple[float, float]:
@@ -20,8 +17,9 @@ def vertical_extent_m(plan: FloorPlan, row: int) -> tuple[float, float]:
     host = plan.hosts[row]
     _, storey_m = plan.storey_m
     wall_m = float(plan.heights_m[host]) if host >= 0 else storey_m
-    usual_low_m = _SILL_M if kind == "window" else 0.0
-    usual_high_m = _DOOR_M if kind in ("door", "window") else wall_m
+    # ASSUME a usual balustrade and clear height; where there is no leaf the wall's height
+    usual_m = {"window": (0.9, 2.0), "door": (0.0, 2.0)}
+    usual_low_m, usual_high_m = usual_m.get(kind, (0.0, wall_m))
     low_m = max(sill_m if np.isfinite(sill_m) else usual_low_m, 0.0)
     high_m = min(lintel_m if np.isfinite(lintel_m) else usual_high_m, wall_m)
     if high_m > low_m + LEAF_M:

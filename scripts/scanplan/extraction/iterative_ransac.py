@@ -7,10 +7,9 @@ import numpy as np
 from scanplan.extraction import segments
 from scanplan.extraction.segment_limits import Row, SegmentLimits
 from scanplan.geometry import ransac
+from scanplan.geometry.consensus import MODELS
 from scanplan.rays.ray_set import RaySet
 from scanplan.types import BoolArray, FloatArray
-
-_LEAST_POINTS = 3  # make a plane
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,7 +57,7 @@ def extract_iteratively(
     """
     planar = scan is None
     fit_largest = _fit_largest_line if planar else _fit_largest_plane
-    least = max(settings.least_points(planar), _LEAST_POINTS)
+    least = max(settings.least_points(planar), MODELS["plane"])
     rng = np.random.default_rng([settings.seed, scan_id])
     rest = points
     rows: list[Row] = []

@@ -9,7 +9,8 @@ import numpy as np
 from scanplan.geometry.lines import Line, SpanLike
 from scanplan.types import FloatArray, IntArray
 
-_LEAST_RAD = math.radians(30)  # flatter crossings lie too far along both lines for their noise
+LEAST_RAD = math.radians(30)
+"""Flatter crossings are of one curve, or noise moves them far along both lines."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +73,7 @@ def find_crossings(line: Line, others: SpanArrays, *, reach_m: float) -> Crossin
         Of those that turn by 30 degrees or more.
     """
     turn = others.normal @ line.direction
-    steep = np.flatnonzero(np.abs(turn) >= math.sin(_LEAST_RAD))
+    steep = np.flatnonzero(np.abs(turn) >= math.sin(LEAST_RAD))
     centre, normal = others.centre[steep], others.normal[steep]
     turn = turn[steep]
     place_m = -np.einsum("ij,ij->i", line.centre - centre, normal) / turn

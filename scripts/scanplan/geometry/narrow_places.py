@@ -77,7 +77,8 @@ def find_narrow_places(
             continue
         if not visited.issuperset(pair) or all(_widens(near, line, side) for side in (-1, 1)):
             lines.append(line)
-    return _part_enough(filled, lines, np.asarray(shapely.points(visited_m)), min_area_m2)
+    visits = np.asarray(shapely.points(visited_m))
+    return _part_enough(filled, lines, visits, min_area_m2)
 
 
 def _fit_grid(ground: BaseGeometry, cell_m: float) -> Grid:

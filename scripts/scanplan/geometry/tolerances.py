@@ -9,5 +9,8 @@ SAME_M = 1e-6
 SHORTEST_M = 1e-3
 """Shorter lengths are rounding of coordinates that are given to the millimetre."""
 
+FACING = 0.5
+"""Cosine: surfaces turned by less than 60 degrees face the same way."""
+
 SMALLEST_M2 = SHORTEST_M * SHORTEST_M
 """A square millimetre: smaller areas are equal, as overlays of large regions round them."""

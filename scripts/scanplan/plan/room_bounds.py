@@ -12,7 +12,7 @@ from scanplan.geometry.lines import Line
 from scanplan.plan import wall_ground
 from scanplan.plan.openings import OPEN, Opening
 from scanplan.plan.plan_wall import PlanWall
-from scanplan.plan.tolerances import CORNER_M, CORNER_RAD, END_M
+from scanplan.plan.tolerances import CORNER_M, END_M
 from scanplan.rays import free_space
 from scanplan.rays.face_raster import CELL_M
 from scanplan.types import FloatArray
@@ -99,7 +99,7 @@ def find_partings(
 def _snap(ends_m: FloatArray, walls: Sequence[PlanWall]) -> FloatArray:
     """Return a line's ends (2, 2) moved onto the line of the wall nearest to both, if one is."""
     way = ends_m[1] - ends_m[0]
-    least = math.cos(CORNER_RAD) * math.hypot(*way)
+    least = math.cos(intersections.LEAST_RAD) * math.hypot(*way)
     off_m, nearest = CORNER_M, None
     for wall in walls:
         farthest_m = float(np.abs(wall.line.offset_m(ends_m)).max())

@@ -1,12 +1,9 @@
 """What all steps of a plan take for noise, and for enough."""
 
-import math
-
 END_M = 0.1  # how far ends err: poses, noise of ranges, and what a scan sees of a reveal
 CORNER_M = 0.3  # a wall that ends this near before another meets it: half of a thick wall
 FACE_M = 0.08  # as far as points of a face scatter before and behind its line
 NOISE_M = 0.03  # of a range or a height: a range seen along 15 degrees, poses, beams
-CORNER_RAD = math.radians(30)  # flatter crossings are of one curve; noise moves them along it
 ENOUGH_RAYS = 10  # fewer say nothing of a height, a direction or a way
 LEAST_SCANS = 2  # one alone may meet a wall at one height, or have something too near to measure
 LOW_PERCENT = 2  # of heights: lower ones may be stray, as may be so many at the top

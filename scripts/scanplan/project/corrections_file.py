@@ -38,7 +38,6 @@ _KEYS = {
 _OPTIONAL = ("thickness_m",)
 _KINDS = ("door", "window", "passage")
 _NOT_IN_NAMES = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029<>{}\\^]")
-_LONGEST_NAME = 80  # characters: more than fit into any drawing's label
 
 
 @dataclass(frozen=True)
@@ -219,8 +218,9 @@ def _check_kind(entry: str, value: Any) -> str:
 
 def _check_text(entry: str, key: str, value: Any) -> str:
     text = value.strip() if isinstance(value, str) else ""
-    if not text or len(text) > _LONGEST_NAME:
-        limit = f"expected text of 1 to {_LONGEST_NAME} characters"
+    longest = 80  # characters: more than fit into any drawing's label
+    if not text or len(text) > longest:
+        limit = f"expected text of 1 to {longest} characters"
         raise StageError(f"{entry}: {key} is {value!r}, {limit}; put it in quotes")
     if wrong := _NOT_IN_NAMES.search(text):
         raise StageError(

@@ -7,6 +7,7 @@ import shapely
 from shapely.geometry import MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry.tolerances import SHORTEST_M
 from scanplan.rays.ray_set import RaySet
 from scanplan.types import FloatArray
 
@@ -16,7 +17,9 @@ _SPARE = 1.1  # a sector is so much wider than what has to be in it, however ray
 # from
 _WIDEST_RAD = np.radians(10)
 _SIMPLIFY_M = 0.02  # what an outline may err by: spikes of twice that on either side are no floor
-GRID_M = 1e-3  # corners of grounds lie on this: GEOS needs one, and nothing is surveyed as well
+GRID_M = (
+    SHORTEST_M  # corners of grounds lie on this: GEOS needs one, and nothing is surveyed as well
+)
 
 
 def free_polygons(rays: RaySet) -> list[MultiPolygon]:

@@ -7,7 +7,7 @@ import numpy as np
 import small_gicp
 
 from scanplan.geometry import se3, twists
-from scanplan.geometry.tolerances import SHORTEST_M
+from scanplan.geometry.tolerances import FACING, SHORTEST_M
 from scanplan.registration import planar_icp, point_icp, prepared_clouds
 from scanplan.registration.prepared_clouds import PreparedCloud
 from scanplan.types import FloatArray
@@ -132,7 +132,7 @@ def _without_other_sides(
     index, squared_m2 = target.nearest_points(moved_m)
     turned = source.normal @ target_from_source[:3, :3].T
     cosine = np.einsum("ij,ij->i", turned, target.normal[index])
-    is_other_side = (squared_m2 < distance_m**2) & (cosine < -prepared_clouds.FACING)
+    is_other_side = (squared_m2 < distance_m**2) & (cosine < -FACING)
     if is_other_side.mean() < _LEAST_TURNED or is_other_side.all():
         return source
     return prepared_clouds.prepare_cloud(source.xyz_m[~is_other_side], planar=False)

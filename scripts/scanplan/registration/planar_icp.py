@@ -11,7 +11,6 @@ from scanplan.types import FloatArray
 # covariances; the information of other methods, the planar one's too, is stated alike
 PAIR_SIGMA_M = 0.045
 _LEAST_SHARE = 1e-3  # of the largest eigenvalue: a direction with less is not observable
-_MAD_TO_SIGMA = 1.4826  # of a normal distribution
 _LEAST_SCALE_PART = 10  # the robust scale is at least this part of the pairs' largest distance
 
 
@@ -78,7 +77,8 @@ def _normal_equations(
     by_turn = source_normal[:, 1] * point_m[:, 0] - source_normal[:, 0] * point_m[:, 1]
     jacobian = np.column_stack([source_normal, by_turn])
     # a scale from the residuals alone would trust the wall that fits best and let others slide
-    sigma_m = _MAD_TO_SIGMA * np.median(np.abs(residual_m))
+    # of a normal distribution by its median absolute deviation
+    sigma_m = 1.4826 * np.median(np.abs(residual_m))
     scale_m = max(sigma_m, distance_m / _LEAST_SCALE_PART)
     weighted = jacobian.T / (1 + (residual_m / scale_m) ** 2)
     return weighted @ jacobian, weighted @ residual_m

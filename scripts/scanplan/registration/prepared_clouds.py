@@ -7,9 +7,9 @@ import small_gicp
 from scipy.spatial import KDTree
 
 from scanplan.geometry import se3
+from scanplan.geometry.tolerances import FACING
 from scanplan.types import FloatArray, IntArray
 
-FACING = 0.5  # cosine: surfaces turned by less than 60 degrees face the same way
 NEIGHBOURS = 10  # of a spatial normal: few see noise, many smooth edges away
 _LINE_NEIGHBOURS = 6  # of a planar normal; fewer, as a line needs fewer than a surface
 _MOST_LINE_SPREAD = 0.1  # across to along, squared: 18 degrees, rounder neighbourhoods are corners

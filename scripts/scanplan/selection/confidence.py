@@ -14,8 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.geometry.lines import line_lengths_m
-from scanplan.geometry.tolerances import SHORTEST_M
-from scanplan.registration.prepared_clouds import FACING
+from scanplan.geometry.tolerances import FACING, SHORTEST_M
 from scanplan.selection import wall_cells
 from scanplan.types import BoolArray, Columns, FloatArray, IntArray
 

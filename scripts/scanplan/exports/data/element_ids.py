@@ -18,7 +18,6 @@ KINDS = ("wall", "opening", "room")
 _NAMESPACE = uuid.UUID("6f1c2c0e-6b0b-5f0e-9d55-3d2f6f0a7c11")  # ours, drawn once
 # IFC's own alphabet: 22 characters of 6 bits for the 128 of a UUID
 _ALPHABET = string.digits + string.ascii_uppercase + string.ascii_lowercase + "_$"
-_ID_DIGITS = 3  # of coordinates in a new id: a millimetre, below any plan's precision
 
 ElementIds = Mapping[str, Sequence[str]]
 """The GlobalIds of walls, openings and rooms, in the order of their tables."""
@@ -153,8 +152,8 @@ def _shared_areas(shapes: Array, known: Array) -> FloatArray:
 
 
 def _new_id(name: str, kind: str, shape: shapely.Polygon, taken: set[str]) -> str:
-    # + 0.0 turns a negative zero into zero
-    corners = np.round(shapely.get_coordinates(shape).ravel(), _ID_DIGITS) + 0.0
+    # to a millimetre, below any plan's precision; + 0.0 turns a negative zero into zero
+    corners = np.round(shapely.get_coordinates(shape).ravel(), 3) + 0.0
     words = [name, kind, *corners.tolist()]
     while (global_id := derive_id(*words)) in taken:
         words.append("again")

@@ -9,8 +9,6 @@ import numpy as np
 
 from scanplan.types import BoolArray, FilePath, FloatArray, IntArray
 
-_SCALE_M = 0.001  # what coordinates are rounded to: less than any scanner's noise
-
 
 def write_laz(
     path: FilePath, scans: Iterable[tuple[int, FloatArray]], cell_m: float, t_ns: int
@@ -60,7 +58,8 @@ def write_laz(
 def _header(t_ns: int) -> laspy.LasHeader:
     header = laspy.LasHeader(point_format=6, version="1.4")
     header.add_extra_dim(laspy.ExtraBytesParams("scan_id", "u4", "scan of the recording"))
-    header.scales = np.full(3, _SCALE_M)
+    # metres that coordinates are rounded to: less than any scanner's noise
+    header.scales = np.full(3, 0.001)
     header.offsets = np.zeros(3)
     header.generating_software = "scanplan"
     header.creation_date = datetime.fromtimestamp(t_ns // 10**9, UTC).date()

@@ -17,8 +17,6 @@ from scanplan.types import FloatArray
 
 TITLE_TAG = "title:"
 """What the elements of a title block's values begin with."""
-_COLUMNS = {"No.": 0.0, "Room": 7.0, "Area m²": 33.0, "Perim. m": 45.5, "Height m": 58.0}
-"""Of the table of rooms: where each begins, or ends from the third on, millimetres."""
 
 
 @dataclass(frozen=True)
@@ -141,7 +139,9 @@ def _sample_symbol(kind: str, x: float, y: float) -> list[FloatArray]:
 
 def draw_room_table(stamps: Sequence[Stamp], slots: Sequence[Slot]) -> Iterator[Mark | Word]:
     """Yield the table of rooms: number, name, area, perimeter, height."""
-    names, ends = list(_COLUMNS), list(_COLUMNS.values())
+    names = ["No.", "Room", "Area m²", "Perim. m", "Height m"]
+    # where each begins, or ends from the third on, millimetres
+    ends = [0.0, 7.0, 33.0, 45.5, 58.0]
     yield from _heads(slots, names, ends)
     for stamp, (x, y) in zip(stamps, _row_places(slots), strict=True):
         facts = stamp.facts

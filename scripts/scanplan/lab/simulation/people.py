@@ -16,7 +16,6 @@ RADIUS_M = 0.2  # ASSUME an adult seen from above is a disc of 40 cm
 HEIGHT_M = 1.75  # ASSUME an adult
 _CLEARANCE_M = RADIUS_M + 0.1  # to walls, and to the sensor, of which they step out of the way
 _GOAL_TRIES = 30  # places drawn for one in sight: few rests against the time of a simulation
-_REST_S = 2.0  # where no place is in sight; then all is drawn anew
 
 
 @dataclass(frozen=True)
@@ -142,7 +141,8 @@ def _walk(
         here = xy_m[-1]
         goal = _draw_goal(room, here, generator)
         if goal is None:
-            t_s.append(t_s[-1] + _REST_S)
+            # a rest, then all is drawn anew
+            t_s.append(t_s[-1] + 2.0)
             xy_m.append(here)
         else:
             t_s.append(t_s[-1] + float(np.hypot(goal[0] - here[0], goal[1] - here[1])) / speed_m_s)

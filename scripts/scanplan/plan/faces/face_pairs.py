@@ -7,7 +7,7 @@ import numpy as np
 import shapely
 
 from scanplan.geometry import intersections
-from scanplan.plan.tolerances import CORNER_RAD, END_M, FACE_M
+from scanplan.plan.tolerances import END_M, FACE_M
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def find_corner_moves(
     spans = intersections.stack_spans(faces)
     along = np.column_stack([spans.normal[:, 1], -spans.normal[:, 0]])
     turn = _dot(along[one], spans.normal[other])
-    steep = np.abs(turn) >= np.sin(CORNER_RAD)
+    steep = np.abs(turn) >= np.sin(intersections.LEAST_RAD)
     one = one[steep]
     other = other[steep]
     turn = turn[steep]

@@ -13,7 +13,7 @@ import shapely
 from scanplan.geometry import intersections
 from scanplan.geometry.tolerances import ROUNDING
 from scanplan.plan.faces.intervals import FaceInterval
-from scanplan.plan.tolerances import CORNER_RAD, END_M
+from scanplan.plan.tolerances import END_M
 from scanplan.rays.face_observation import FaceObservation
 from scanplan.types import FloatArray
 
@@ -107,7 +107,7 @@ def _cross_flat(intervals: Sequence[FaceInterval]) -> list[tuple[int, int]]:
     ends_m = np.array([interval.ends for interval in intervals]).reshape(-1, 2, 2)
     strings = np.asarray(shapely.linestrings(ends_m), object)
     pairs = shapely.STRtree(strings).query(strings, predicate="crosses").T.tolist()
-    least_cosine = math.cos(CORNER_RAD)
+    least_cosine = math.cos(intersections.LEAST_RAD)
     return sorted(
         (i, j)
         for i, j in pairs

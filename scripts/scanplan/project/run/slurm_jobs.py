@@ -36,7 +36,7 @@ _CAUSES = {
     "DEADLINE": "could not end before its deadline",
 }
 _NO_MEMORY = re.compile("exceeded memory limit|oom.kill", re.IGNORECASE)
-_PATIENCE_S = 60.0  # for a controller to answer, and for a node to kill what does not end by itself
+_PATIENCE_S = 60.0  # a node kills what does not end by itself after half of it (KillWait)
 
 
 @dataclass(frozen=True)
@@ -205,10 +205,11 @@ def _find_log(job: SlurmJob) -> Path:
     return found or LOGS
 
 
-def _ask(*command: str) -> str:
+def _ask(*command: str, timeout_s: float = 30.0) -> str:
+    """Return what a command says; a controller that answers later is down."""
     try:
         return subprocess.run(
-            command, check=True, capture_output=True, text=True, timeout=_PATIENCE_S
+            command, check=True, capture_output=True, text=True, timeout=timeout_s
         ).stdout
     except (OSError, subprocess.SubprocessError) as error:
         said = (getattr(error, "stderr", None) or str(error)).strip().splitlines()
