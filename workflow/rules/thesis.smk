@@ -54,7 +54,7 @@ rule measure_unevenness:
         code=code_of("measure_unevenness"),
         hulls=setting(stage_settings.select_hulls),
         max_range_m=section("input", "max_range_m"),
-        n_selected=stated_claims.SUBSET,
+        n_selected=stated_claims.Sizes.SUBSET,
     script:
         "../../scripts/measure_unevenness.py"
 
@@ -82,7 +82,7 @@ rule measure_premises:
         extraction=setting(stage_settings.select_extractor, "cluster_ransac"),
         max_range_m=section("input", "max_range_m"),
         evaluation=section("evaluation"),
-        n_added=stated_claims.SUBSET,
+        n_added=stated_claims.Sizes.SUBSET,
     script:
         "../../scripts/measure_premises.py"
 
@@ -166,7 +166,7 @@ rule tabulate_steps:
         runtime=10,
     params:
         code=code_of("tabulate_steps"),
-        n_selected=stated_claims.SUBSET,
+        n_selected=stated_claims.Sizes.SUBSET,
     script:
         "../../scripts/tabulate_steps.py"
 

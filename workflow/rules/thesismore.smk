@@ -56,7 +56,7 @@ rule measure_surrogates:
         code=code_of("measure_surrogates"),
         max_range_m=section("input", "max_range_m"),
         evaluation=section("evaluation"),
-        n_added=stated_claims.SUBSET,
+        n_added=stated_claims.Sizes.SUBSET,
         seed=section("seed"),
     script:
         "../../scripts/measure_surrogates.py"
