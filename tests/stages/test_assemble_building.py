@@ -8,14 +8,17 @@ import numpy as np
 import pytest
 
 from assemble_building import assemble_building
+from export_files import export_files
 from export_plan import export_plan
 from helpers import floorplan_making
+from helpers.default_settings import SETTINGS
+from helpers.report_making import registration
 from scanplan.errors import StageError
 from scanplan.plan import planning
-from scanplan.store import tables
+from scanplan.project import stage_settings
+from scanplan.store import schemas, tables
 
-SETTINGS = {"assumed_thickness_m": 0.1, "assumed_height_m": 2.5, "map_cell_m": 0.05}
-NAMES = ("geojson", "dxf", "svg", "pdf", "ifc", "pgm", "yaml")
+NAMES = ("geojson", "dxf", "svg", "pdf", "png", "ifc", "pgm", "yaml", "ids", "known")
 
 
 @pytest.fixture(scope="module")
@@ -29,8 +32,13 @@ def floors(tmp_path_factory):
         for table, schema in planning.TABLES.items():
             own = notes if table == "free" else None
             tables.write_table(plan[table], schema, getattr(floorplan_making, table)(), notes=own)
+        plan["registration"] = folder / "registration.parquet"
+        tables.write_table(plan["registration"], schemas.REGISTRATION, registration())
         outputs = {kind: folder / f"plan.{kind}" for kind in NAMES}
-        export_plan(plan, outputs, name=name, settings=SETTINGS)
+        export_plan(plan, outputs, name=name, settings=stage_settings.select_drawing(SETTINGS))
+        of_files = stage_settings.select_files(SETTINGS)
+        written = {kind: outputs[kind] for kind in ("ifc", "ids", "known")}
+        export_files(plan, written, name=name, source=name, settings=of_files)
         for kind in files:
             files[kind].append(plan["free"] if kind == "free" else outputs[kind])
     return files
