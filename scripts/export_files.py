@@ -60,7 +60,7 @@ def export_files(
     origin = ModelOrigin(
         author=settings["author"] or "",
         organisation=settings["organisation"] or "",
-        version=version,
+        version=version or "not stated",
         t_ns=t_ns,
         site=_find_site(drawn, settings["site"]),
     )

@@ -174,13 +174,17 @@ def rate_elements(
     validation : dict of str to (n,) array
         The columns of `schemas.VALIDATION`.
     coefficients : dict
-        As `confidence_coefficients` has them.
+        As `confidence_coefficients` has them. They hold where heights above the floor are seen;
+        of a plan without them, such as a planar survey's, probabilities are not known (NaN).
     """
     described = describe_elements(plan, validation)
+    has_heights = np.isfinite(plan.floor_z_m)
     parts = []
     for table, number in sorted(NUMBERS.items()):
         columns, features = getattr(plan, table), described[table]
         p_true, shares = weigh_features(features, coefficients[table])
+        if not has_heights:
+            p_true = np.full(len(p_true), np.nan)
         verify = p_true < coefficients[table]["level"]
         doubt = _explain(shares, features, verify)
         if table == "walls":

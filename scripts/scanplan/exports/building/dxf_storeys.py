@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 from ezdxf.addons.importer import Importer
 from ezdxf.document import Drawing
+from ezdxf.entities import Dimension
 from ezdxf.enums import InsertUnits
 from ezdxf.filemanagement import new, read
 from ezdxf.math import Matrix44
@@ -40,6 +41,9 @@ def merge_dxf(storeys: Sequence[PlacedStorey]) -> str:
         for entity in merged.modelspace():
             if entity.dxf.layer.startswith(f"{number}-"):
                 entity.transform(motion)
+                # its lines are in a block of its own, which is not imported with it
+                if isinstance(entity, Dimension):
+                    entity.render()
     text = io.StringIO()
     merged.write(text)
     return text.getvalue()

@@ -61,7 +61,16 @@ def _add_file(
         elements.replace_element(copy, whole[ifc_class])
         model.remove(copy)
     model.remove(units)
+    _share_application(model)
     return copies[other.by_type("IfcBuildingStorey")[0].id()]
+
+
+def _share_application(model: ifcopenshell.file) -> None:
+    """Let all be made by one and the same program: no two may be of one name."""
+    kept, *others = model.by_type("IfcApplication")
+    for other in others:
+        elements.replace_element(other, kept)
+        model.remove(other)
 
 
 def _share_contexts(
