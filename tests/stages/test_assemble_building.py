@@ -108,7 +108,7 @@ def test_the_drawing_has_each_storey_on_layers_of_its_own(house, floors):
         of_storey = [e for e in entities if e.dxf.layer.startswith(prefix)]
         own_kinds = Counter(e.dxftype() for e in ezdxf.readfile(file).modelspace())
         assert Counter(e.dxftype() for e in of_storey) == own_kinds
-    names = {layer.dxf.name for layer in own.layers} - {"0", "Defpoints"}
+    names = {entity.dxf.layer for entity in own.modelspace()} - {"0", "Defpoints"}
     assert {f"{n}-{name}" for n in (1, 2) for name in names} <= {
         layer.dxf.name for layer in drawing.layers
     }
