@@ -84,3 +84,13 @@ def test_the_coefficients_are_of_features_that_there_are(table):
     assert list(COEFFICIENTS[table]["features"]) == list(features)
     assert set(features) <= set(confidence.REASONS)
     assert 0 < COEFFICIENTS[table]["level"] < 1
+
+
+def test_where_no_height_is_seen_nothing_is_likely_or_not():
+    """What was learned with heights says nothing then; weak walls and unknown gaps stay doubted."""
+    planar = floorplan.make_floorplan(PARTS, np.nan, np.nan)
+    found = confidence.rate_elements(planar, validation())
+    walls = found["table"] == "walls"
+    assert np.isnan(found["p_true"][walls]).all()
+    assert (found["verify"][walls] == PARTS["walls"]["verify"]).all()
+    assert not found["verify"][found["table"] == "rooms"].any()

@@ -1,8 +1,3 @@
-def of_storeys(file):
-    """A result of every storey of the building, from the lowest up."""
-    return [f"results/{storey.dataset}/{file}" for storey in BUILDING.storeys]
-
-
 rule assemble_building:
     """Put the plans of all storeys into one model and one drawing."""
     input:

@@ -187,6 +187,13 @@ def all_cores(wildcards):
     return workflow.resource_settings.cores or 2
 
 
+def registering_threads(wildcards):
+    """Batches share two cores; frames that go by those before them are one sequence, on one core."""
+    settings = DATASETS[wildcards.dataset].settings
+    registration = stage_settings.select_section(settings, "registration")
+    return 1 if registration["compare_with"] == "frames" else 2
+
+
 def setting(select, *arguments):
     """A param function: what one of `stage_settings` selects from the settings of the job's dataset."""
 
@@ -370,6 +377,11 @@ def results_of(name):
 def comparison_of(name):
     """What one dataset's plan is compared with: all orderings, and the walls of all scans."""
     return list_comparison(DATASETS[name], METHODS, compared_extractors(name))
+
+
+def of_storeys(file):
+    """A result of every storey of the building, from the lowest up."""
+    return [f"results/{storey.dataset}/{file}" for storey in BUILDING.storeys]
 
 
 def of_all_datasets(*kinds):

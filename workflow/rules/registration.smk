@@ -1,10 +1,3 @@
-def registering_threads(wildcards):
-    """Batches share two cores; frames that go by those before them are one sequence, on one core."""
-    settings = DATASETS[wildcards.dataset].settings
-    registration = stage_settings.select_section(settings, "registration")
-    return 1 if registration["compare_with"] == "frames" else 2
-
-
 rule register_scans:
     """Keep the scans that fit their predecessors, registered in one map."""
     input:
