@@ -119,7 +119,7 @@ def test_a_single_wall_is_a_plan_without_rooms_but_those_entered(house, tmp_path
         [4 + house_making.PLAN["trace"]["reach_m"]], abs=0.1
     )
     # where floor is narrow it is parted, in no wall
-    assert set(plan["openings"]["type"]) <= {"unseen", "passage"}
+    assert set(plan["openings"]["type"]) <= {"unseen", "passage", "gap"}
     assert (plan["openings"]["wall"] == -1).all()
     assert not plan["rooms"]["closed"].any()
 

@@ -59,7 +59,7 @@ def test_tables_state_what_the_stages_found(report):
     found = Tables(report.read_text()).rows
     assert found["walls"][1][:8] == ["0", "", "observed", "7.20", "200", "", "2.0", "10.0"]
     assert found["walls"][2][4] == "–"
-    assert found["walls"][3][1:3] == ["few scans show it, or its place is uncertain", "inferred"]
+    assert found["walls"][3][1:3] == ["few points", "inferred"]
     joined = ["door", "0.90", "0.00", "2.00", "Room 0 – Room 1", "40", ""]
     assert found["openings"][2] == ["1", "", *joined]
     assert found["rooms"][1] == ["0", "Room 0", "", "12.00", "14.00", "yes", "2", ""]
@@ -118,7 +118,7 @@ def test_the_reports_of_a_building_lead_to_each_other(tmp_path):
 def test_what_to_verify_comes_before_all_tables(report):
     text = report.read_text()
     listed = re.findall(r'data-show="([^"]*)"><b>([^<]*)</b> ([^<]*)<', text)
-    assert listed == [("wall 2", "Wall 2", "few scans show it, or its place is uncertain")]
+    assert listed == [("wall 2", "Wall 2", "few points")]
     assert text.index("data-show=") < text.index("<table")
 
 
@@ -325,7 +325,7 @@ def test_a_click_says_what_was_clicked_beside_it_and_marks_its_row(page):
 @needs_browser
 def test_what_to_verify_is_shown_where_it_is(page):
     page.run("document.querySelector('[data-show=\"wall 2\"]').click()")
-    assert "few scans show it" in text_of(page, "#card")
+    assert "To verify: few points" in text_of(page, "#card")
     x, y = middle_of(page, '#plan .pick[data-element="wall 2"]')
     view = middle_of(page, "#view")
     assert abs(x - view[0]) < 5 and abs(y - view[1]) < 5
