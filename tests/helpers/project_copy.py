@@ -49,7 +49,7 @@ class Project:
 
     def digests(self):
         # these tell run times
-        timed = {"report.html", "seconds.parquet"}
+        timed = {"report.html", "seconds.parquet", "summary.html", "summary.parquet"}
         files = [
             p for p in (self.folder / "results").rglob("*") if p.is_file() and p.name not in timed
         ]

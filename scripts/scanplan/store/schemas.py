@@ -337,9 +337,10 @@ CONFIDENCE = Schema(
 )
 """How likely elements of a plan exist as they are drawn.
 
-`table` is walls, faces, openings or rooms, `number` that of the element in it; `verify` says that
-`p_true` is below the level of its kind (`validation/confidence_coefficients.py`), that a wall is
-weakly supported, or that it is not known what a gap is; `doubt` in words why.
+`table` is walls, faces, openings or rooms, `number` that of the element in it; `p_true` is NaN of
+a plan without heights above the floor. `verify` says that `p_true` is below the level of its kind
+(`validation/confidence_coefficients.py`), that a wall is weakly supported, or that it is not known
+what a gap is; `doubt` in words why.
 """
 VALIDATION_RAYS = Schema(
     "validation_rays",
