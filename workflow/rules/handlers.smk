@@ -35,7 +35,8 @@ def causes_in_slurm():
     jobs = or_end(slurm_jobs.list_jobs, Path.cwd())
     if {job.number for job in jobs} <= set(OLDER_JOBS):
         asked = workflow.resource_settings.default_resources.get("slurm_partition")
-        return [slurm_jobs.explain_refusal(asked and asked.value)]
+        # as it was given: its value is one of a rule
+        return [slurm_jobs.explain_refusal(asked and str(asked.raw))]
     return list(slurm_jobs.explain_ends(jobs, OLDER_JOBS))
 
 
