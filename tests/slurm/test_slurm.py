@@ -110,7 +110,7 @@ def test_a_partition_that_is_not_there_is_told(floors):
     given = ("--default-resources", "slurm_partition=nowhere", "mem_mb=500", "runtime=5")
     code, (told,) = one(floors, "--retries", "0", *given)
     assert code == 1
-    assert "invalid partition" in told
+    assert "Invalid partition name" in told
 
 
 def test_what_a_lost_node_had_is_made_again(floors, node):

@@ -184,7 +184,8 @@ def explain_refusal(partition: str | None = None) -> str:
     try:
         _ask("sbatch", "--test-only", *where, "--wrap=true")
     except SystemExit as error:
-        return str(error).removeprefix("scanplan: ")
+        said = str(error).removeprefix("scanplan: ").partition(";")[0]
+        return f"{said}; name another with --default-resources slurm_partition=NAME"
     return f"Slurm took no job; what it said is in the newest log of {SNAKEMAKE_LOGS}"
 
 
