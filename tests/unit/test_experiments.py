@@ -57,3 +57,9 @@ def test_settings_are_not_changed_by_a_seed():
     assert seeded["seed"] == seeded["simulate"]["seed"] == 5
     assert seeded["simulate"]["building"] == "a" and seeded["hulls"] == {"n_clusters": 3}
     assert given["seed"] == given["simulate"]["seed"] == 1
+
+
+def test_seeds_after_the_first_are_timed_on_a_fifth_of_the_scans(known):
+    surveys = experiments.list_surveys(**known)[experiments.ROOMS]
+    timed = [survey.settings["thesis"]["timed_scans"] for survey in surveys]
+    assert timed == [SETTINGS["thesis"]["timed_scans"], SETTINGS["thesis"]["timed_scans"] // 5]

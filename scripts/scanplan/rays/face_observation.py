@@ -10,7 +10,6 @@ import numpy as np
 
 from scanplan.geometry.lines import Line
 from scanplan.rays import expected_returns, face_raster
-from scanplan.rays.expected_returns import SentRays
 from scanplan.rays.face_raster import CELL_M, FaceRaster
 from scanplan.rays.face_rays import FaceRays, cast_at_face
 from scanplan.rays.ray_set import RaySet
@@ -152,21 +151,6 @@ def observe_face(
         planar=rays.planar,
     )
     return seen if rays.planar else replace(seen, glass_m=_find_glass(rays, face, low_m, high_m))
-
-
-def count_sent(
-    rays: RaySet, line: Line, low_m: float, count: int, heights_m: tuple[float, float], at_m: float
-) -> SentRays:
-    """Return the rays that scans sent to columns of 5 cm of a line from a place on.
-
-    See `expected_returns`.
-    """
-    face = cast_at_face(
-        *(rays, line, low_m, low_m + CELL_M * count),
-        at_m=at_m,
-        occluded_within_m=expected_returns.NEAR_M,
-    )
-    return expected_returns.count_sent_rays(rays, face, low_m, count, CELL_M, heights_m)
 
 
 def filled_share(places_m: FloatArray, low_m: float, high_m: float) -> float:
