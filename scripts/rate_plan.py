@@ -32,7 +32,9 @@ def rate_plan(plan: Mapping[str, FilePath], validation: FilePath, output: FilePa
         f" of {np.sum(rated['table'] == table)} {table}"
         for table in floorplan.NUMBERS
     ]
-    log.log_line(f"rate_plan: to verify on site: {', '.join(counts)}")
+    is_rated = np.isfinite(rated["p_true"]).any()
+    words = "" if is_rated else "; not rated, as no heights above the floor are known"
+    log.log_line(f"rate_plan: to verify on site: {', '.join(counts)}{words}")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,174 @@
+"""What is known of the elements of a plan without any truth: their evidence, and how they fit."""
+
+import numpy as np
+from scipy import special
+
+from scanplan.geometry.lines import line_lengths_m
+from scanplan.plan.floorplan import WAYS, FloorPlan, centrelines_m
+from scanplan.types import Columns, FloatArray, IntArray
+from scanplan.validation import surroundings
+from scanplan.validation.drawn_surfaces import FACE, OPENING
+
+REASONS = {
+    "agreement": "rays of other scans contradict it",
+    "worst_span": "rays of other scans contradict a part of it",
+    "points": "few points",
+    "observed": "partly or wholly inferred",
+    "length": "short",
+    "smooth": "points scatter",
+    "undoubled": "another surface just behind or before it",
+    "joined": "its ends meet nothing",
+    "bounding": "bounds no room",
+    "kind": "kind uncertain",
+    "rays": "few rays",
+    "sill": "sill not seen",
+    "lintel": "lintel not seen",
+    "between_rooms": "leads out of the known rooms",
+    "is_way": "a way through, by what rays show",
+    "hosted": "in no wall",
+    "wall": "rays of other scans contradict its wall",
+    "alone": "another opening beside it",
+    "width": "wide for what it is",
+    "closed": "not closed by walls",
+    "walled": "outline partly not seen",
+    "faced": "outline partly without walls",
+    "parted": "parted from the next where floor is narrow, by no wall",
+    "compact": "odd shape",
+    "area": "small",
+}
+"""Features of elements, each the better the greater, and the doubt where one is low."""
+
+SIGNLESS = ("between_rooms", "is_way")
+"""Those that say what an element is: which is the better follows from the surveys."""
+
+
+def describe_elements(plan: FloorPlan, validation: Columns) -> dict[str, dict[str, FloatArray]]:
+    """Return the features of the rows of each table of a plan, (n,) float64 by name.
+
+    Parameters
+    ----------
+    plan : FloorPlan
+    validation : dict of str to (n,) array
+        The columns of `schemas.VALIDATION`.
+    """
+    faces = _describe_faces(plan, validation)
+    walls = _describe_walls(plan, faces)
+    return {
+        "walls": walls,
+        "faces": faces,
+        "openings": _describe_openings(plan, validation, walls["agreement"]),
+        "rooms": _describe_rooms(plan, validation),
+    }
+
+
+def _describe_faces(plan: FloorPlan, validation: Columns) -> dict[str, FloatArray]:
+    faces, lines_m = plan.faces, centrelines_m(plan.faces)
+    length_m = np.maximum(line_lengths_m(lines_m), 0.1)
+    agreement, worst = _agreements(validation, FACE, faces["face"])
+    normals = np.column_stack([faces["nx"], faces["ny"]])
+    return {
+        "agreement": agreement,
+        "worst_span": worst,
+        "points": np.log1p(faces["n_points"] / length_m),
+        "observed": (faces["state"] == "observed").astype(float),
+        "length": np.log(length_m),
+        "smooth": -np.nan_to_num(faces["rmse_m"], nan=0.0) * 100,
+        "undoubled": 1 - surroundings.share_doubled(lines_m, normals),
+        "joined": surroundings.count_joined_ends(lines_m, lines_m, same=True).astype(float),
+        "bounding": surroundings.share_along(lines_m, plan.areas),
+    }
+
+
+def _describe_walls(plan: FloorPlan, faces: dict[str, FloatArray]) -> dict[str, FloatArray]:
+    """Return the features of walls (n,): means of their faces' by length, and their least."""
+    row_of = {wall: row for row, wall in enumerate(plan.walls["wall"].tolist())}
+    host = np.array([row_of.get(wall, -1) for wall in plan.faces["wall"].tolist()], np.int64)
+    n, has_host = len(row_of), host >= 0
+    length_m = line_lengths_m(centrelines_m(plan.faces))
+    whole_m = np.bincount(host[has_host], length_m[has_host], n)
+
+    def mean(name: str) -> FloatArray:
+        sums = np.bincount(host[has_host], (faces[name] * length_m)[has_host], n)
+        return np.divide(sums, whole_m, out=np.zeros(n), where=whole_m > 0)
+
+    least = np.zeros(n)
+    np.minimum.at(least, host[has_host], faces["worst_span"][has_host])
+    wall_m = np.maximum(line_lengths_m(centrelines_m(plan.walls)), 0.1)
+    means = ("agreement", "observed", "undoubled", "joined", "bounding")
+    return {name: mean(name) for name in means} | {
+        "worst_span": least,
+        "points": np.log1p(plan.walls["n_points"] / wall_m),
+        "length": np.log(wall_m),
+    }
+
+
+def _describe_openings(
+    plan: FloorPlan, validation: Columns, of_walls: FloatArray
+) -> dict[str, FloatArray]:
+    openings, lines_m = plan.openings, centrelines_m(plan.openings)
+    agreement, _ = _agreements(validation, OPENING, openings["opening"])
+    p_kind = np.nan_to_num(openings["p_kind"], nan=0.5).astype(float)
+    is_hosted = plan.hosts >= 0
+    observed_m = centrelines_m(plan.faces)[plan.faces["state"] == "observed"]
+    return {
+        "agreement": agreement,
+        "kind": special.logit(np.clip(p_kind, 0.01, 0.99)),
+        "rays": np.log1p(openings["n_rays"]),
+        "sill": np.isfinite(openings["sill_m"]).astype(float),
+        "lintel": np.isfinite(openings["lintel_m"]).astype(float),
+        "between_rooms": (np.minimum(openings["room_a"], openings["room_b"]) >= 0).astype(float),
+        "is_way": np.isin(openings["type"].astype(str), WAYS).astype(float),
+        "hosted": is_hosted.astype(float),
+        "wall": np.where(is_hosted, np.append(of_walls, 0.0)[plan.hosts], 0.0),
+        "joined": surroundings.count_joined_ends(lines_m, observed_m, same=False).astype(float),
+        "alone": surroundings.stand_alone(lines_m),
+        "width": -np.log(np.maximum(openings["width_m"], 0.1)),
+    }
+
+
+def _describe_rooms(plan: FloorPlan, validation: Columns) -> dict[str, FloatArray]:
+    rooms, openings = plan.rooms, plan.openings
+    is_bare = validation["kind"] == "outline"
+    bare_m = _sum_by_room(
+        rooms["room"],
+        validation["number"][is_bare],
+        line_lengths_m(centrelines_m(validation)[is_bare]),
+    )
+    is_inferred = (openings["type"] == "passage") & (plan.hosts < 0)
+    parted_m = sum(
+        _sum_by_room(rooms["room"], openings[side][is_inferred], openings["width_m"][is_inferred])
+        for side in ("room_a", "room_b")
+    )
+    perimeter_m = np.maximum(rooms["perimeter_m"], 0.1)
+    return {
+        "closed": rooms["closed"].astype(float),
+        "walled": 1 - bare_m / perimeter_m,
+        "faced": surroundings.share_faced(plan.areas, centrelines_m(plan.faces)),
+        "parted": -parted_m / perimeter_m,
+        "compact": np.log(4 * np.pi * rooms["area_m2"] / perimeter_m**2),
+        "area": np.log(np.maximum(rooms["area_m2"], 0.1)),
+    }
+
+
+def _sum_by_room(rooms: IntArray, numbers: IntArray, lengths_m: FloatArray) -> FloatArray:
+    """Return the sum (r,) of the lengths that have each room's number."""
+    return np.array([lengths_m[numbers == room].sum() for room in rooms.tolist()], np.float64)
+
+
+def _agreements(validation: Columns, kind: str, numbers: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Return logarithms of odds (n,) that rays left out agree with elements, and with their worst.
+
+    Spans that no ray tells of are as likely as not.
+    """
+    rows = np.flatnonzero(validation["kind"] == kind)
+    row_of = {number: row for row, number in enumerate(numbers.tolist())}
+    element = np.array([row_of.get(number, -1) for number in validation["number"][rows]], np.int64)
+    rows, element = rows[element >= 0], element[element >= 0]
+    good, all_rays = validation["n_explained"][rows], validation["n_rays"][rows]
+    n = len(numbers)
+    of_spans = np.log((good + 1) / (all_rays - good + 1))
+    worst = np.full(n, np.inf)
+    np.minimum.at(worst, element, of_spans)
+    sums = (np.bincount(element, values, n) for values in (good, all_rays - good))
+    n_good, n_bad = sums
+    return np.log((n_good + 1) / (n_bad + 1)), np.where(np.isfinite(worst), worst, 0.0)
