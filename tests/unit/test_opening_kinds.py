@@ -147,6 +147,16 @@ def test_stray_points_part_no_window_and_a_mullion_does(places_m, count):
     assert len(find_along(looked, line)) == count
 
 
+def test_a_side_that_is_hidden_at_eye_height_is_seen_above_the_sill():
+    looked = look((1.0, 2.2), (0.85, 2.4))
+    line = seen(looked)
+    is_hidden = (line.occupied_m > 2.1) & (line.occupied_m < 2.6) & (line.occupied_z_m > 1.25)
+    columns = ("occupied_m", "occupied_z_m", "occupied_off_m", "occupied_scan")
+    shown = replace(line, **{c: getattr(line, c)[~is_hidden] for c in columns})
+    (window,) = find_along(looked, shown)
+    assert (window.low_m, window.high_m) == pytest.approx((1.0, 2.2), abs=0.05)
+
+
 def wall(looked, openings=()):
     side = intervals.FaceInterval(seen(looked), 0.0, 4.0)
     # the other way round than its face, and begun elsewhere

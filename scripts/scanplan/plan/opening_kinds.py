@@ -135,6 +135,7 @@ def _with_windows(wall: PlanWall, rays: RaySet, min_width_m: float, band_m: floa
             share = weigh_kinds(profile, is_outside=True)
             if share[_WINDOW] >= _SURE and profile.open_share >= 1 - profile.open_share:
                 window = _measure_window(seen, span_m, profile)
+                low_m, high_m = _along_wall(wall, seen.line, (window.low_m, window.high_m))
                 found.append(replace(window, low_m=low_m, high_m=high_m))
     return replace(wall, openings=sorted(found, key=lambda gap: gap.low_m))
 
@@ -142,12 +143,34 @@ def _with_windows(wall: PlanWall, rays: RaySet, min_width_m: float, band_m: floa
 def _measure_window(
     seen: FaceObservation, span_m: tuple[float, float], profile: HeightProfile
 ) -> Opening:
-    inner_m = span_m[0] + END_M, span_m[1] - END_M
+    clear_m = _clear_above_sill(seen, span_m)
+    inner_m = clear_m[0] + END_M, clear_m[1] - END_M
     eye_m = float(ROWS_M[EYE_ROWS.start]), float(ROWS_M[EYE_ROWS.stop])
     sill_m = estimate_sill_m(seen, *inner_m, below_m=eye_m[0])
-    lintel_m = estimate_lintel_m(seen, *span_m, eye_m[1], eye_m[1])
+    lintel_m = estimate_lintel_m(seen, *clear_m, eye_m[1], eye_m[1])
     n_rays = round(float(profile.n_through.sum()))
-    return Opening(*span_m, OPEN, n_rays, sill_m, lintel_m, bool(np.isfinite(lintel_m)))
+    return Opening(*clear_m, OPEN, n_rays, sill_m, lintel_m, bool(np.isfinite(lintel_m)))
+
+
+def _clear_above_sill(seen: FaceObservation, span_m: tuple[float, float]) -> tuple[float, float]:
+    """Return the widest part of a pause at eye height that has no returns down to the sill either.
+
+    Its sides may be hidden at eye height, and be seen below that. The sill is taken as high as wall
+    is seen in the median of columns.
+    """
+    points = seen.occupied_between(*span_m)
+    along_m, z_m = seen.occupied_m[points], seen.occupied_z_m[points]
+    is_below = z_m < ROWS_M[EYE_ROWS.start]
+    if not is_below.any():
+        return span_m
+    column = ((along_m - span_m[0]) / CELL_M).astype(np.int64)
+    highest_m = np.full(column.max() + 1, -np.inf)
+    np.maximum.at(highest_m, column[is_below], z_m[is_below])
+    sill_m = np.median(highest_m[np.isfinite(highest_m)])
+    is_above = (z_m >= sill_m + END_M) & (z_m < ROWS_M[EYE_ROWS.stop])
+    beside_m = np.concatenate([span_m[:1], _not_alone(along_m[is_above]), span_m[1:]])
+    widest = int(np.diff(beside_m).argmax())
+    return float(beside_m[widest]), float(beside_m[widest + 1])
 
 
 def observe_gap(
