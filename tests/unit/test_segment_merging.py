@@ -212,9 +212,9 @@ class TestWhole:
         rng = np.random.default_rng(5)
         grid = [(x, y, x + 3, y) for x in range(0, 40, 4) for y in range(0, 20, 2)]
         table = observed(grid, rng, n_scans=50)
-        began = time.perf_counter()
+        began_s = time.process_time()
         assert len(merge(table, **SETTINGS)["face"]) == len(grid)
-        assert time.perf_counter() - began < 10
+        assert time.process_time() - began_s < 10
 
     def test_a_thousand_fragments_over_each_other_are_one_face(self):
         table = observed([(0, 0, 5, 1)], np.random.default_rng(6), n_scans=1000, least_share=0.05)
