@@ -5,7 +5,9 @@ PYTHON ?= $(shell command -v python3.11 || command -v python3)
 VENV := .venv
 BIN := $(VENV)/bin
 LIBRARIES := libusb-1.0-0 libgl1 libgomp1 libx11-6
-SNAKEMAKE = PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake $(if $(VERBOSE),--quiet host) --cores $(CORES)
+# Python reads scripts/startup first: Ctrl-C ends in one line while Snakemake itself is still read
+SNAKEMAKE = PATH="$(CURDIR)/$(BIN):$$PATH" PYTHONPATH="$(CURDIR)/scripts/startup$${PYTHONPATH:+:$$PYTHONPATH}" \
+    $(BIN)/snakemake $(if $(VERBOSE),--quiet host) --cores $(CORES)
 # tests of one group stay together: a group shares a run of the workflow
 PYTEST = $(BIN)/pytest --numprocesses $(CORES) --dist loadgroup
 

@@ -134,4 +134,4 @@ onerror:
         print(f"scanplan: {line}", file=sys.stderr)
     tell_overview()
     # whatever Snakemake would add says less
-    raise SystemExit(1)
+    raise SystemExit(THIS_RUN.exit_status)
