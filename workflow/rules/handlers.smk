@@ -91,7 +91,11 @@ def tell_overview():
     sources = {os.path.basename(page): Path(page).read_text() for page in pages}
     table, page = or_end(
         overview.write_overview,
-        overview.gather_overview("results", faults),
+        overview.gather_overview(
+            "results",
+            faults,
+            [name for name, dataset in GIVEN.items() if dataset.corrections is not None],
+        ),
         "results",
         sources,
     )
