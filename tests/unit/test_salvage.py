@@ -120,9 +120,10 @@ def test_chunks_with_a_checksum_are_known_to_be_unaltered(tmp_path, compression,
     content = bytearray(storage.read_bytes())
     place = content.index(b"\x06", 8)
     head = struct.Struct("<BQQQQII")
-    _, _, _, _, size, checksum, length = head.unpack_from(content, place)
+    *_, checksum, length = head.unpack_from(content, place)
     assert checksum == 0 and length == len(compression)
     inner = place + head.size + length + 8
+    (size,) = struct.unpack_from("<Q", content, inner - 8)
     if has_checksum:
         packed = bytes(content[inner : inner + size])
         records = unpacking.unpack_bytes(packed, form="zstd") if compression else packed

@@ -43,8 +43,9 @@ def gather_overview(
     -------
     pandas.DataFrame
         Columns `name`, `state`, `why`, `area_m2`, `rooms`, `walls`, `doors`, `windows`, `passages`,
-        `verify` (elements to verify on site, as the report lists them), `open_rooms`, `chosen`, `registered`, `candidates` (scans),
-        `predicted` (share of rays of left-out scans), `seconds` (of all stages); NaN where unknown.
+        `verify` (elements to verify on site, as the report lists them), `open_rooms`, `chosen`,
+        `registered`, `candidates` (scans), `predicted` (share of rays of left-out scans), `seconds`
+        (of all stages); NaN where unknown.
     """
     rows = [
         _gather_row(Path(results), name, told, "plan/corrected" if name in corrected else "plan")
