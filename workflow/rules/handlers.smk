@@ -94,7 +94,11 @@ def tell_overview():
         overview.gather_overview(
             "results",
             faults,
-            [name for name, dataset in GIVEN.items() if dataset.corrections is not None],
+            [
+                name
+                for name, dataset in GIVEN.items()
+                if dataset.corrections is not None
+            ],
         ),
         "results",
         sources,
