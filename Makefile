@@ -5,7 +5,9 @@ PYTHON ?= $(shell command -v python3.11 || command -v python3)
 VENV := .venv
 BIN := $(VENV)/bin
 LIBRARIES := libusb-1.0-0 libgl1 libgomp1 libx11-6
-SNAKEMAKE = PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake $(if $(VERBOSE),--quiet host) --cores $(CORES)
+# Python reads scripts/startup first: Ctrl-C ends in one line while Snakemake itself is still read
+SNAKEMAKE = PATH="$(CURDIR)/$(BIN):$$PATH" PYTHONPATH="$(CURDIR)/scripts/startup$${PYTHONPATH:+:$$PYTHONPATH}" \
+    $(BIN)/snakemake $(if $(VERBOSE),--quiet host) --cores $(CORES)
 # tests of one group stay together: a group shares a run of the workflow
 PYTEST = $(BIN)/pytest --numprocesses $(CORES) --dist loadgroup
 
@@ -58,7 +60,7 @@ style: environment
 	@$(BIN)/snakefmt --check Snakefile workflow/Snakefile workflow/rules
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --lint
 
-faults: environment ## damaged and hostile input of every kind, and how each ends; about twenty minutes
+faults: environment ## damaged and hostile input of every kind, and how each ends; under an hour
 	@PYTHONPATH=scripts:tests $(BIN)/python -m faults.run_faults $(ARGS)
 
 audit: environment ## licences of all packages; fails on ones that do not fit the project's

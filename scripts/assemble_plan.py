@@ -53,10 +53,10 @@ def assemble_plan(
     is_used = np.isin(observed["scan_id"], scan_ids)
     messages.check_segments(walls, observed, is_used, count)
     segments = {column: values[is_used] for column, values in observed.items()}
-    registered = registered_scans.read_registered_scans(registration)
+    store = tables.ScanStore(scans)
+    registered = registered_scans.read_registered_scans(registration, store)
     rows = registered_scans.rows_of_scans(scan_ids, registered, selection, registration)
     poses = registered.map_from_sensor
-    store = tables.ScanStore(scans)
     sensors_m = dict(zip(scan_ids.tolist(), poses[rows, :3, 3], strict=True))
     rays = ray_set.gather_rays(store.scans(scan_ids), sensors_m, planar=store.planar)
     # sums that a library shares out among cores differ in their last digits

@@ -4,12 +4,13 @@ import numpy as np
 
 from scanplan.selection import hulls
 from scanplan.stage import log, per_scan
-from scanplan.store import schemas, tables
+from scanplan.store import registered_scans, schemas, tables
 from scanplan.types import FilePath
 
 
 def build_hulls(
     scans: FilePath,
+    registration: FilePath,
     output: FilePath,
     *,
     n_clusters: int,
@@ -18,7 +19,8 @@ def build_hulls(
     seed: int,
     threads: int,
 ) -> None:
-    """Write the table of hulls of a table of scans."""
+    """Write the table of hulls of a table of scans; all registered ones must be there."""
+    registered_scans.read_registered_scans(registration, tables.ScanStore(scans))
     parts = per_scan.map_scans(
         hulls.make_cluster_hulls,
         scans,
@@ -46,6 +48,7 @@ if __name__ == "__main__":
     with log.log_to_file(snakemake.log[0]):
         build_hulls(
             snakemake.input.scans,
+            snakemake.input.registration,
             snakemake.output.hulls,
             **snakemake.params.settings,
             threads=snakemake.threads,

@@ -40,7 +40,8 @@ def interpolate_poses(
     moved : path-like, optional
         motion.parquet, to write.
     **reading
-        Keywords of `survey.open_survey`.
+        Keywords of `survey.open_survey`, but for how many clouds may be damaged: few are read
+        here, so that `register_scans` counts them.
 
     Raises
     ------
@@ -48,7 +49,7 @@ def interpolate_poses(
         If the recordings cannot be used or no candidate has a pose.
     """
     limits = {"max_gap_s": max_gap_s, "max_speed_m_s": max_speed_m_s}
-    with open_survey(files, **reading) as survey:
+    with open_survey(files, max_damaged_share=1.0, **reading) as survey:
         t_ns = survey.stamps()
         edges = survey.pose_edges()
         pose, gap_s, covered = frame_edges.chain_poses(edges, t_ns, **limits)
@@ -56,11 +57,12 @@ def interpolate_poses(
             pose, keep_every=keep_every, max_step_m=max_step_m, max_turn_deg=max_turn_deg
         )
         candidates.require_poses(chosen, t_ns, covered, edges, files[0], **limits)
+        # what of it is lost, and not which of the few clouds that are read next are damaged
+        found = doubts.Doubts().add(survey.describe_damage())
         if moved is not None:
             motion = trajectory.choose_motion(survey.motion_chains(), t_ns, **limits)
             motion = time_check.check_point_times(survey, motion)
             tables.write_table(moved, schemas.MOTION, motion.columns())
-        found = doubts.Doubts().add(survey.describe_damage())
     columns = candidates.pose_columns(chosen, t_ns, pose, gap_s, covered)
     tables.write_table(output, schemas.POSES, columns, notes=found.as_notes())
     for sentence in found.sentences:

@@ -7,6 +7,7 @@ import shutil
 import signal
 import subprocess
 import time
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 
@@ -27,6 +28,8 @@ _NAMES = (
     "<script>x",
     "-x",
 )
+_INTERRUPTED = "scanplan: the run was interrupted; the same command goes on from here"
+_PYTHON_S = 0.5  # until Python has begun to run a line of its own, on a busy computer, too
 _TARGET = "hulls.parquet"
 
 
@@ -39,7 +42,7 @@ def try_commands(folder, tally, n_kills=60):
         outcome, said = run_command(project, "--dry-run", dataset=name)
         if (project.folder / "pwned").exists():
             outcome = judging.SILENT
-        tally.add("hostile names", name, outcome, said)
+        tally.add("hostile names", name, outcome, said, peak_mb=judging.children_peak_mb())
     _write_dataset(project.folder / "d")
     # Snakemake's own copies of the rules have 7 kB, the scans half a megabyte
     _write_dataset(project.folder / "large", n_points=20_000)
@@ -47,12 +50,15 @@ def try_commands(folder, tally, n_kills=60):
         limit = partial(_limit, resource.RLIMIT_FSIZE, kb * 1024)
         given = {"dataset": "large", "target": "scans.parquet"}
         outcome, said = run_command(project, before=limit, may_pass=False, **given)
-        tally.add("disk full", f"files of {kb} kB", outcome, said)
+        peak_mb = judging.children_peak_mb()
+        tally.add("disk full", f"files of {kb} kB", outcome, said, peak_mb=peak_mb)
     # Python and its libraries alone take half of the least
     for mb in (700, 1000, 1500):
         limit = partial(_limit, resource.RLIMIT_AS, mb * _MB)
         outcome, said = run_command(project, target=_TARGET, before=limit)
-        tally.add("little memory", f"{mb} MB", outcome, said)
+        peak_mb = judging.children_peak_mb()
+        tally.add("little memory", f"{mb} MB", outcome, said, peak_mb=peak_mb)
+    try_interrupts(project, tally, n_kills // 5)
     try_kills(project, tally, n_kills)
 
 
@@ -81,6 +87,40 @@ def run_command(project, *arguments, dataset="d", target=None, before=None, may_
     return (judging.CLEAR if last.startswith("scanplan: ") else judging.NO_LINE), last
 
 
+def try_interrupts(project, tally, n_times):
+    """Press Ctrl-C from the first moment on: one line of ours, no traceback, status 130."""
+    python_path = str(project.folder / "scripts/startup")
+    begin_s = time.monotonic()
+    for number in range(n_times):
+        shutil.rmtree(project.folder / "results", ignore_errors=True)
+        run = subprocess.Popen(
+            project.command(f"results/d/{_TARGET}", "--config", 'dataset=["d"]'),
+            cwd=project.folder,
+            # as `make run` starts it
+            env={**project.env(), "PYTHONPATH": python_path},
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+            preexec_fn=partial(signal.signal, signal.SIGINT, signal.default_int_handler),
+        )
+        if number == 0:
+            # how long the whole takes tells when to press
+            run.communicate()
+            whole_s = time.monotonic() - begin_s
+            continue
+        with suppress(subprocess.TimeoutExpired):
+            run.wait(timeout=max(_PYTHON_S, (number - 1) / n_times * whole_s))
+        if run.poll() is None:
+            os.killpg(run.pid, signal.SIGINT)
+        said = run.communicate()[1].splitlines()
+        is_told = [line for line in said if line.startswith("scanplan: ")] == [_INTERRUPTED]
+        outcome = judging.CLEAR if is_told and run.returncode == 130 else judging.NO_LINE
+        if "Traceback" in " ".join(said):
+            outcome = judging.UNEXPECTED
+        tally.add("Ctrl-C", f"{number}", outcome, " ".join(said))
+
+
 def try_kills(project, tally, n_kills):
     """Kill a chain at random moments, go on each time, and compare with one left in peace."""
     shutil.rmtree(project.folder / "results", ignore_errors=True)
@@ -100,15 +140,18 @@ def try_kills(project, tally, n_kills):
     right = project.digests()
     draw = random.Random(n_kills)
     shutil.rmtree(project.folder / "results")
-    for number in range(n_kills):
+    number = 0
+    while number < n_kills:
         run = start()
         is_over = True
+        # each begins where the one before was killed, and is over sooner than the whole
         try:
-            run.wait(timeout=draw.uniform(0.1, 1.1) * whole_s)
+            run.wait(timeout=draw.uniform(0.05, 0.8) * whole_s)
         except subprocess.TimeoutExpired:
             os.killpg(run.pid, draw.choice([signal.SIGKILL, signal.SIGTERM, signal.SIGINT]))
             run.wait()
             is_over = False
+            number += 1
         if is_over:
             outcome = judging.SOUND if project.digests() == right else judging.SILENT
             tally.add("kills", f"after kill {number}", outcome)
@@ -120,7 +163,9 @@ def try_kills(project, tally, n_kills):
     same = project.digests() == right
     left = [f for f in (project.folder / "results").rglob(".*") if f.is_file()]
     outcome = judging.SOUND if same and not left else judging.SILENT
-    tally.add("kills", "the end of the chain", outcome, str(left))
+    tally.add(
+        "kills", "the end of the chain", outcome, str(left), peak_mb=judging.children_peak_mb()
+    )
 
 
 def _limit(what, size):

@@ -1,5 +1,6 @@
 """Damaged, odd and hostile recordings, read as the first stages read them."""
 
+import bz2
 import struct
 from functools import partial
 from pathlib import Path
@@ -212,6 +213,20 @@ def list_bomb_cases(folder):
             bomb.write_bytes(content[:place] + struct.pack("<I", size) + content[place + 4 :])
             run = partial(read_strictly, bomb)
             cases.append(Case("compression bombs", f"{kind} of {size} B", run, may_pass=False))
+    # two gigabytes of zeros in the place of a chunk
+    packed = bz2.compress(bytes(10**8)) * 20
+    maker = bag_making.Maker("ros1_bz2")
+    content = maker.write(
+        Path(folder, "bombs", "large"), bag_making.survey(maker, n_scans=60)
+    ).read_bytes()
+    begin, place = content.index(b"BZh"), content.index(b"size=") + 5
+    assert len(packed) < struct.unpack_from("<I", content, begin - 4)[0]
+    for size in (2 * 10**9, 5 * 10**8, 1000):
+        bomb = Path(folder, "bombs", f"zeros_{size}.bag")
+        stated = content[:place] + struct.pack("<I", size) + content[place + 4 : begin]
+        bomb.write_bytes(stated + packed + content[begin + len(packed) :])
+        run = partial(read_strictly, bomb)
+        cases.append(Case("compression bombs", f"zeros as {size} B", run, may_pass=False))
     return cases
 
 

@@ -1,8 +1,8 @@
 """Try faults of every group, and say how many of each ended how; not zero where one went wrong.
 
-make faults                          all, half an hour
+make faults                          all, three quarters of an hour
 make faults ARGS=--quick             a few of each, as `make test` has them
-make faults ARGS="--kills 0"         without runs of the workflow, three minutes
+make faults ARGS="--kills 0"         without runs of the workflow, ten minutes
 """
 
 import argparse
@@ -19,6 +19,7 @@ from faults import (
     recording_cases,
     settings_cases,
     table_flips,
+    wrong_units,
 )
 
 SEED = 17
@@ -62,6 +63,8 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         if not asked.only_runs:
             try_in_process(folder, tally, **(FEW if asked.quick else MANY))
+            if not asked.quick:
+                wrong_units.try_mistakes(Path(folder), tally)
             print(tally.table(), flush=True)
         if asked.kills and not asked.quick:
             commands.try_commands(Path(folder), tally, asked.kills)

@@ -57,7 +57,7 @@ def flip_bits(path, schema, n_flips, rng, tally):
     path.write_bytes(content)
     for outcome, n in counts.items():
         kind = judging.UNEXPECTED if outcome.startswith(judging.UNEXPECTED) else outcome
-        tally.add(group, path.name, kind, outcome, n)
+        tally.add(group, path.name, kind, outcome, n, judging.children_peak_mb())
 
 
 def _flip_in_child(path, schema, content, bits, right):

@@ -17,6 +17,12 @@ def write_survey(folder, *, planar=False, registered=tuple(SENSORS)):
                 scan_id,
                 (toy_rooms.laser if planar else toy_rooms.vlp16)(np.array(sensor), seed=scan_id),
             )
+    write_registration(registration, registered, [SENSORS[s] for s in registered])
+    return scans, registration
+
+
+def write_registration(path, registered, positions_m):
+    """Write a registration of level scans that were all kept."""
     n = len(registered)
     columns = {
         "scan_id": registered,
@@ -27,8 +33,5 @@ def write_survey(folder, *, planar=False, registered=tuple(SENSORS)):
     columns |= dict.fromkeys(
         ("prior_fitness", "refined_fitness", "rmse_m", "qx", "qy", "qz"), np.zeros(n)
     )
-    columns |= dict(
-        zip(schemas.XYZ, np.array([SENSORS[s] for s in registered]).T.copy(), strict=True)
-    )
-    tables.write_table(registration, schemas.REGISTRATION, {**columns, "qw": np.ones(n)})
-    return scans, registration
+    columns |= dict(zip(schemas.XYZ, np.array(positions_m, float).T.copy(), strict=True))
+    tables.write_table(path, schemas.REGISTRATION, {**columns, "qw": np.ones(n)})

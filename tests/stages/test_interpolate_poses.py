@@ -5,7 +5,7 @@ from helpers import bag_making
 from interpolate_poses import interpolate_poses
 from scanplan.errors import StageError
 from scanplan.project import dataset_files
-from scanplan.store import schemas, tables
+from scanplan.store import doubts, schemas, tables
 
 START, STEP = bag_making.START_NS, 100_000_000
 SETTINGS = {
@@ -47,6 +47,28 @@ def test_every_fifth_scan_gets_its_pose(run, entries):
     np.testing.assert_allclose(poses["qw"], 1)
     assert poses["covered"].all()
     np.testing.assert_allclose(poses["gap_s"], 0, atol=1e-9)  # each has a pose of its own stamp
+
+
+def test_few_clouds_are_read_here_so_that_none_is_too_many_damaged(tmp_path, monkeypatch):
+    maker = bag_making.Maker()
+    entries = list(bag_making.survey(maker, n_scans=12))
+    number = [i for i, entry in enumerate(entries) if entry[0] == "/points"][7]
+    t_ns = entries[number][1]
+    damaged = maker.cloud(t_ns, bag_making.room_points(), width=10**6)
+    entries[number] = ("/points", t_ns, damaged)
+    maker.write(tmp_path / "run", entries)
+    sizes = []
+
+    def read_three(survey, motion):
+        sizes.extend(len(scan.xyz_m) for scan in survey.scans([6, 7, 8]))
+        return motion
+
+    monkeypatch.setattr("interpolate_poses.time_check.check_point_times", read_three)
+    poses, moved = tmp_path / "poses.parquet", tmp_path / "motion.parquet"
+    interpolate_poses([str(tmp_path / "run.bag")], poses, moved=moved, **SETTINGS)
+    assert sizes[1] == 0 and sizes[0] > 0 and sizes[2] > 0
+    # whoever reads all that are wanted counts them
+    assert not doubts.read_doubts(poses, schemas.POSES)
 
 
 def test_motion_adds_candidates(run, entries):

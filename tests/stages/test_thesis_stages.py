@@ -57,7 +57,12 @@ def survey(tmp_path):
                 ),
             )
     build_hulls(
-        tmp_path / "scans.parquet", tmp_path / "hulls.parquet", n_clusters=6, threads=1, **SAMPLING
+        tmp_path / "scans.parquet",
+        tmp_path / "registration.parquet",
+        tmp_path / "hulls.parquet",
+        n_clusters=6,
+        threads=1,
+        **SAMPLING,
     )
     for extractor in EXTRACTORS:
         write_walls(

@@ -36,13 +36,13 @@ def verdicts(n_kept, n_rejected, n_empty=0):
 
 @pytest.mark.parametrize(
     ("kept", "rejected", "empty", "is_doubted"),
-    [(7, 3, 0, False), (6, 4, 0, True), (7, 3, 50, False), (0, 0, 5, False)],
+    [(18, 3, 0, False), (16, 4, 0, True), (18, 3, 50, False), (0, 0, 5, False), (3, 1, 0, False)],
 )
 def test_scans_that_do_not_fit_are_doubted(kept, rejected, empty, is_doubted):
     found = of_registration.find_misfit(verdicts(kept, rejected, empty))
     assert bool(found) == is_doubted
     if found:
-        assert found[0].startswith("only 6 of 10 scans fit one another")
+        assert found[0].startswith("only 16 of 20 scans fit one another")
 
 
 def rays_at(xy_m):

@@ -26,11 +26,24 @@ def make_results(folder):
     openings = some(schemas.OPENINGS, 3, opening=np.arange(3, dtype=np.int32))
     openings["type"] = np.array(["door", "window", "door"], object)
     rays = some(schemas.VALIDATION, 1, share=np.array([0.75]))
-    plan = {"rooms": rooms, "walls": walls, "openings": openings, "validation": rays}
-    for name, schema in overview._PLAN.items():
+    numbers = [0, 1, 2, 1, 2, 0]
+    rated = some(schemas.CONFIDENCE, 6, number=np.array(numbers, np.int32), p_true=np.ones(6))
+    rated["table"] = np.array([*["openings"] * 3, *["rooms"] * 2, "walls"], object)
+    rated["verify"] = np.array([False, False, True, False, False, True])
+    plan = {
+        "faces": (schemas.FACES, some(schemas.FACES, 1)),
+        "free": (schemas.FREE, some(schemas.FREE, 0)),
+        "rooms": (schemas.ROOMS, rooms),
+        "walls": (schemas.PLAN_WALLS, walls),
+        "openings": (schemas.OPENINGS, openings),
+        "confidence": (schemas.CONFIDENCE, rated),
+        "validation": (schemas.VALIDATION, rays),
+    }
+    for name, (schema, columns) in plan.items():
         notes = dict.fromkeys(("n_left_out", "n_scans", "tolerance_m", "absent"), "1")
-        notes = notes if name == "validation" else None
-        tables.write_table(folder / "plan" / f"{name}.parquet", schema, plan[name], notes=notes)
+        path = folder / "plan" / f"{name}.parquet"
+        told = notes if name == "validation" else None
+        tables.write_table(path, schema, columns, allow_empty=True, notes=told)
 
 
 def test_a_plan_a_fault_and_what_was_not_got_to(tmp_path):
@@ -46,7 +59,8 @@ def test_a_plan_a_fault_and_what_was_not_got_to(tmp_path):
     assert (first["area_m2"], first["rooms"], first["open_rooms"]) == (12.5, 2, 1)
     assert (first["doors"], first["windows"], first["passages"]) == (2, 1, 0)
     assert (first["chosen"], first["registered"], first["candidates"]) == (1, 2, 3)
-    assert (first["verify"], first["predicted"], first["seconds"]) == (1, 0.75, 4.0)
+    # the wall, a door, and the room that is not closed
+    assert (first["verify"], first["predicted"], first["seconds"]) == (3, 0.75, 4.0)
     assert rows["area_m2"].isna().tolist() == [False, True, True]
 
 

@@ -100,6 +100,17 @@ def test_faces_are_cut_into_spans_between_openings():
     assert not (elements["kind"] == "outline").any()
 
 
+def test_an_opening_at_the_end_of_a_face_leaves_no_part_without_a_length():
+    # of the face from (0, 3) to (0, 0) all but the last rounding of its begin
+    entrance = ((-0.1, 1.0, -0.1, np.nextafter(3.0, 0)), 4, "door", 0.0, 2.0, 0, -1)
+    openings = floorplan_making.openings([entrance, *floorplan_making.OPENINGS[1:]])
+    plan = floorplan_making.plan(openings=openings)
+    surfaces = drawn_surfaces.list_surfaces(plan, 1.0, planar=False)
+    length_m = np.hypot(*(surfaces.ends_m[:, 1] - surfaces.ends_m[:, 0]).T)
+    assert length_m.min() > 0.01
+    assert judged((4.0, 2.5, 1.0), plan=plan)[0] == ["explained"]
+
+
 def test_low_walls_end_at_their_top():
     walls = floorplan_making.walls()
     walls["top_m"] = np.where(walls["wall"] == 5, 1.2, np.nan)

@@ -52,3 +52,16 @@ def test_prior_poses_follow_the_registered_scans(tmp_path):
     tables.write_table(tmp_path / "poses.parquet", schemas.POSES, poses)
     prior = registered_scans.read_prior_poses(tmp_path / "poses.parquet", kept(), "registration")
     assert prior[:, 0, 3].tolist() == [1, 3]
+
+
+def test_a_registered_scan_without_points_is_told(tmp_path):
+    path = tmp_path / "registration.parquet"
+    others = dict.fromkeys(("prior_fitness", "refined_fitness", "rmse_m"), np.zeros(3))
+    tables.write_table(path, schemas.REGISTRATION, registration(reason=["kept"] * 3, **others))
+    with tables.open_scan_writer(tmp_path / "scans.parquet", planar=False) as write:
+        write(0, np.ones((2, 3)))
+        write(5, np.ones((2, 3)))
+    store = tables.ScanStore(tmp_path / "scans.parquet")
+    assert len(registered_scans.read_registered_scans(path).scan_ids) == 2
+    with pytest.raises(StageError, match=r"scans\.parquet: lacks scan 10 of .*\(1 such scans\)"):
+        registered_scans.read_registered_scans(path, store)

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 
+from scanplan.interrupts import INTERRUPTED
 from scanplan.project import provenance
 from scanplan.project.run import run_outcome
 from scanplan.project.run.run_lock import FolderRun
 from scanplan.project.settings import Layer
-from scanplan.stage.log import INTERRUPTED
 
 FAULT = "12:00 ERROR stage_a: run.bag: no cloud topic\n12:00 INFO stage failed\n"
 
@@ -20,6 +20,8 @@ FAULT = "12:00 ERROR stage_a: run.bag: no cloud topic\n12:00 INFO stage failed\n
 @pytest.fixture(autouse=True)
 def here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    # a run that begins prepares its stages by it
+    monkeypatch.setenv("PYTHONPATH", "")
 
 
 def write_log(stage, text, name="floor"):

@@ -1,6 +1,8 @@
 """Salvage reads every message that is whole of a damaged recording, and makes none up."""
 
 import re
+import struct
+from binascii import crc32
 
 import numpy as np
 import pytest
@@ -9,6 +11,8 @@ from faults import damaged_bags
 from helpers import bag_making
 from scanplan.errors import StageError
 from scanplan.recordings import bags
+from scanplan.recordings.integrity import unpacking
+from scanplan.recordings.salvage import salvaged_reader
 from scanplan.recordings.survey import open_survey
 
 
@@ -94,6 +98,38 @@ def test_messages_that_cannot_be_decoded_count_as_lost(tmp_path):
     found, loss = damaged_bags.read_salvaged(path)
     assert sum(topic == "/points" for topic, _, _ in found) == 9
     assert "1 of 10 of /points" in loss
+
+
+@pytest.mark.parametrize(
+    ("kind", "is_told"), [("ros1", True), ("ros1_bz2", False), ("mcap", True), ("sqlite3", True)]
+)
+def test_that_a_message_may_be_altered_is_told_where_no_checksum_shows_it(tmp_path, kind, is_told):
+    path = written(tmp_path, kind, n_scans=40)
+    storage = storage_of(path)
+    storage.write_bytes(storage.read_bytes()[:-300])
+    loss = damaged_bags.read_salvaged(path)[1]
+    assert "from a damaged recording" in loss
+    assert loss.endswith("one that was hit may be altered") == is_told
+
+
+@pytest.mark.parametrize("compression", ["", "zstd"])
+@pytest.mark.parametrize("has_checksum", [True, False])
+def test_chunks_with_a_checksum_are_known_to_be_unaltered(tmp_path, compression, has_checksum):
+    path = written(tmp_path, "mcap_zstd" if compression else "mcap", n_scans=10)
+    storage = storage_of(path)
+    content = bytearray(storage.read_bytes())
+    place = content.index(b"\x06", 8)
+    head = struct.Struct("<BQQQQII")
+    *_, checksum, length = head.unpack_from(content, place)
+    assert checksum == 0 and length == len(compression)
+    inner = place + head.size + length + 8
+    (size,) = struct.unpack_from("<Q", content, inner - 8)
+    if has_checksum:
+        packed = bytes(content[inner : inner + size])
+        records = unpacking.unpack_bytes(packed, form="zstd") if compression else packed
+        struct.pack_into("<I", content, place + head.size - 8, crc32(records))
+    storage.write_bytes(content)
+    assert salvaged_reader.find_records(storage).is_checked == has_checksum
 
 
 def test_a_survey_says_what_of_it_is_lost(tmp_path):

@@ -45,7 +45,10 @@ def test_what_to_verify_is_named_the_likeliest_to_be_wrong_first_with_the_common
     p_true[[0, 1]], verify[[0, 1]], doubt[[0, 1]] = (0.4, 0.2), True, "few rays"
     rated = made | {"p_true": p_true, "verify": verify, "doubt": doubt}
     doubtful = summarise_survey(plan(openings=rated), survey()).splitlines()[1]
-    assert doubtful == "doubtful 2 openings (1, 0) verify on site, few rays"
+    assert doubtful == (
+        "doubtful 2 openings (1, 0) verify on site, few rays; 1 wall (2) verify on site, few scans"
+        " show it, or its place is uncertain"
+    )
 
 
 def test_an_unknown_prediction_is_no_number():
@@ -66,4 +69,7 @@ def test_a_plan_without_doubts_says_so_and_many_are_not_all_named():
     nine = {name: np.repeat(values[:1], 9) for name, values in rooms.items()}
     nine |= {"room": np.arange(9), "closed": np.zeros(9, bool)}
     text = summarise_survey(plan(walls=sure, rooms=nine), survey())
-    assert "9 rooms (0, 1, 2, 3, 4, 5, 6, 7 and 1 more) not closed: area is a guess" in text
+    assert (
+        "9 rooms (0, 1, 2, 3, 4, 5, 6, 7 and 1 more) verify on site, its outline is not closed:"
+        in text
+    )

@@ -57,8 +57,36 @@ def test_scans_are_read_one_by_one(scans):
     np.testing.assert_array_equal(store.read(9), [[1, 1, 1]])
     assert [scan_id for scan_id, _ in store.scans([9, 3])] == [9, 3]
     assert store.read(3).dtype == np.float32
-    with pytest.raises(ValueError, match="no scan 4"):
+    with pytest.raises(StageError, match="no scan 4, which"):
         store.read(4)
+
+
+def write_anew(path, keep, lost=None):
+    """Write a file as another program would that takes rows out: whole by itself."""
+    with pq.ParquetFile(path) as file:
+        groups = [file.read_row_group(i) for i in range(file.num_row_groups)]
+    kept = {k: v for k, v in groups[0].schema.metadata.items() if k != lost}
+    groups = [group.replace_schema_metadata(kept) for group in groups]
+    form = groups[0].schema
+    with pq.ParquetWriter(path, form, write_page_checksum=True) as writer:
+        for group in keep(groups):
+            writer.write_table(group)
+
+
+@pytest.mark.parametrize(
+    ("keep", "n_left"),
+    [(lambda g: g[1:], 1), (lambda g: [g[0].slice(1), g[1]], 2), (lambda g: [*g, g[0]], 5)],
+)
+def test_rows_that_another_program_took_out_or_added_are_missed(scans, keep, n_left):
+    write_anew(scans, keep)
+    with pytest.raises(StageError, match=f"was written with 3 rows, holds {n_left}: another"):
+        tables.ScanStore(scans)
+
+
+def test_a_program_that_loses_their_number_is_noticed_too(scans):
+    write_anew(scans, lambda groups: groups, b"scanplan_rows")
+    with pytest.raises(StageError, match="was written with an unknown number of rows, holds 3"):
+        tables.ScanStore(scans)
 
 
 def test_a_store_without_scans_does_not_appear(tmp_path):

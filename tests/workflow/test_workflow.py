@@ -273,7 +273,8 @@ def test_a_killed_run_resumes_with_the_same_command(project, sent, targets):
     before = project.digests()
     run = started(project, *targets)
     os.kill(run.pid, sent) if sent == signal.SIGKILL else os.killpg(run.pid, sent)
-    assert run.wait(timeout=120) != 0
+    status = run.wait(timeout=120)
+    assert status == (-sent if sent == signal.SIGKILL else 128 + sent)
     if sent != signal.SIGKILL:
         last = (project.folder / "said.txt").read_text().splitlines()[-1]
         assert last == "scanplan: the run was interrupted; the same command goes on from here"

@@ -91,7 +91,15 @@ def tell_overview():
     sources = {os.path.basename(page): Path(page).read_text() for page in pages}
     table, page = or_end(
         overview.write_overview,
-        overview.gather_overview("results", faults),
+        overview.gather_overview(
+            "results",
+            faults,
+            [
+                name
+                for name, dataset in GIVEN.items()
+                if dataset.corrections is not None
+            ],
+        ),
         "results",
         sources,
     )
@@ -134,4 +142,4 @@ onerror:
         print(f"scanplan: {line}", file=sys.stderr)
     tell_overview()
     # whatever Snakemake would add says less
-    raise SystemExit(1)
+    raise SystemExit(THIS_RUN.exit_status)

@@ -2,6 +2,7 @@ rule build_hulls:
     """Cluster every scan and put a convex hull around each cluster."""
     input:
         scans="results/{dataset}/scans.parquet",
+        registration="results/{dataset}/registration.parquet",
     output:
         hulls="results/{dataset}/hulls.parquet",
     log:

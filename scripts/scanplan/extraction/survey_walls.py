@@ -10,6 +10,7 @@ from scanplan.stage import log
 from scanplan.stage.per_registered_scan import sensor_keywords
 from scanplan.stage.per_scan import map_scans
 from scanplan.store import schemas, tables
+from scanplan.store.registered_scans import read_registered_scans
 from scanplan.types import FilePath, FloatArray, IntArray, Settings
 
 
@@ -53,7 +54,7 @@ def write_survey_walls(
     Raises
     ------
     StageError
-        If there is no such extractor, or a scan has no pose.
+        If there is no such extractor, or a scan has no pose, or no points.
     """
     started = time.perf_counter()
     if extractor not in EXTRACTORS:
@@ -62,6 +63,7 @@ def write_survey_walls(
         )
     method = EXTRACTORS[extractor]
     store = tables.ScanStore(scans)
+    read_registered_scans(registration, store)
     wanted = store.scan_ids if scan_ids is None else scan_ids
     sensors = sensor_keywords(store.scan_ids, scans, registration)
     earlier = known_segments.KnownSegments(known)

@@ -1,4 +1,4 @@
-"""What of a plan should be verified on site, and why."""
+"""What of a plan should be verified on site, and why: for the report, the summaries, the sheet."""
 
 from dataclasses import dataclass
 
@@ -17,16 +17,23 @@ class Doubt:
 
     Attributes
     ----------
-    element : str
-        Its kind and number, such as `wall 3`.
+    kind : str
+        `opening`, `wall` or `room`.
+    number : int
     name : str
         What it is called.
     reason : str
     """
 
-    element: str
+    kind: str
+    number: int
     name: str
     reason: str
+
+    @property
+    def element(self) -> str:
+        """Its kind and number, such as `wall 3`."""
+        return f"{self.kind} {self.number}"
 
 
 def list_doubts(plan: FloorPlan) -> list[Doubt]:
@@ -66,5 +73,5 @@ def _doubts_of(kind: str, columns: Columns, names: list[str]) -> list[Doubt]:
     for row in np.argsort(certain, kind="stable").tolist():
         reason = explain_doubt(kind, columns, row)
         if reason:
-            found.append(Doubt(f"{kind} {numbers[row]}", names[row], reason))
+            found.append(Doubt(kind, numbers[row], names[row], reason))
     return found

@@ -1,13 +1,14 @@
 """One table of many datasets: what was found of each, how doubtful it is, and which failed."""
 
 import csv
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
 from scanplan.plan import floorplan
+from scanplan.report.doubts import list_doubts
 from scanplan.report.templates import render_template
 from scanplan.store import atomic, schemas, tables
 from scanplan.types import FilePath
@@ -20,15 +21,13 @@ _NUMBERS = (
     *("area_m2", "rooms", "open_rooms", "walls", "verify", "doors", "windows", "passages"),
     *("chosen", "registered", "candidates", "predicted", "seconds"),
 )
-_PLAN = {
-    "rooms": schemas.ROOMS,
-    "walls": schemas.PLAN_WALLS,
-    "openings": schemas.OPENINGS,
-    "validation": schemas.VALIDATION,
-}
+_DRAWN = ("faces", "walls", "openings", "rooms", "free")
+_CHECKED = ("confidence", "validation")
 
 
-def gather_overview(results: FilePath, faults: Mapping[str, Sequence[str]]) -> pd.DataFrame:
+def gather_overview(
+    results: FilePath, faults: Mapping[str, Sequence[str]], corrected: Collection[str] = ()
+) -> pd.DataFrame:
     """Gather a row for each dataset from its results.
 
     Parameters
@@ -37,28 +36,35 @@ def gather_overview(results: FilePath, faults: Mapping[str, Sequence[str]]) -> p
         The folder with a folder for each dataset; `benchmarks` lies beside it.
     faults : dict of str to sequence of str
         Name of every dataset to what its stages ended with in this run; empty where none failed.
+    corrected : collection of str
+        Those whose plans have corrections.
 
     Returns
     -------
     pandas.DataFrame
         Columns `name`, `state`, `why`, `area_m2`, `rooms`, `walls`, `doors`, `windows`, `passages`,
-        `verify` (walls to verify), `open_rooms`, `chosen`, `registered`, `candidates` (scans),
-        `predicted` (share of rays of left-out scans), `seconds` (of all stages); NaN where unknown.
+        `verify` (elements to verify on site, as the report lists them), `open_rooms`, `chosen`,
+        `registered`, `candidates` (scans), `predicted` (share of rays of left-out scans), `seconds`
+        (of all stages); NaN where unknown.
     """
-    rows = [_gather_row(Path(results), name, told) for name, told in faults.items()]
+    rows = [
+        _gather_row(Path(results), name, told, "plan/corrected" if name in corrected else "plan")
+        for name, told in faults.items()
+    ]
     overview = pd.DataFrame(rows, columns=[*_TEXTS, *_NUMBERS])
     overview = overview.astype(dict.fromkeys(_NUMBERS, float))
     return overview.sort_values("name", ignore_index=True)
 
 
-def _gather_row(results: Path, name: str, faults: Sequence[str]) -> dict[str, Any]:
+def _gather_row(results: Path, name: str, faults: Sequence[str], plan: str) -> dict[str, Any]:
     folder = results / name
     row: dict[str, Any] = {"name": name, "why": "; ".join(faults)}
     row["seconds"] = _sum_seconds(results.parent / "benchmarks" / name)
     if (folder / "registration.parquet").exists():
         kept = tables.read_table(folder / "registration.parquet", schemas.REGISTRATION)["kept"]
         row |= {"registered": int(kept.sum()), "candidates": len(kept)}
-    files = {table: folder / "plan" / f"{table}.parquet" for table in _PLAN}
+    files = {table: folder / plan / f"{table}.parquet" for table in _DRAWN}
+    files |= {table: folder / "plan" / f"{table}.parquet" for table in _CHECKED}
     is_made = all(file.exists() for file in files.values())
     row["state"] = FAILED if faults else MADE if is_made else MISSING
     if is_made:
@@ -69,19 +75,17 @@ def _gather_row(results: Path, name: str, faults: Sequence[str]) -> dict[str, An
 
 
 def _describe_plan(files: Mapping[str, Path]) -> dict[str, Any]:
-    plan = {
-        table: tables.read_table(files[table], schema, allow_empty=True)
-        for table, schema in _PLAN.items()
-    }
-    kinds = plan["openings"]["type"]
+    plan = floorplan.read_floorplan(files)
+    validation = tables.read_table(files["validation"], schemas.VALIDATION, allow_empty=True)
+    kinds = plan.openings["type"]
     return {
-        "area_m2": float(plan["rooms"]["area_m2"].sum()),
-        "rooms": len(plan["rooms"]["room"]),
-        "open_rooms": int((~plan["rooms"]["closed"]).sum()),
-        "walls": len(plan["walls"]["wall"]),
-        "verify": int(plan["walls"]["verify"].sum()),
+        "area_m2": float(plan.rooms["area_m2"].sum()),
+        "rooms": len(plan.rooms["room"]),
+        "open_rooms": int((~plan.rooms["closed"]).sum()),
+        "walls": len(plan.walls["wall"]),
+        "verify": len(list_doubts(plan)),
         **{f"{kind}s": int((kinds == kind).sum()) for kind in floorplan.OPENINGS},
-        "predicted": float(plan["validation"]["share"][-1]),
+        "predicted": float(validation["share"][-1]),
     }
 
 

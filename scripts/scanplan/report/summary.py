@@ -1,11 +1,17 @@
 """A plan in a few lines of text: what there is, what is doubtful, what it was made of."""
 
+from collections import Counter
+from collections.abc import Sequence
+from itertools import groupby
+from operator import attrgetter
+
 import numpy as np
 
 from scanplan.plan import floorplan
 from scanplan.report import page_tables, wording
+from scanplan.report.doubts import list_doubts
 from scanplan.report.facts import SurveyFacts
-from scanplan.types import Array, FloatArray
+from scanplan.types import FloatArray
 
 _NAMED = 8  # of more than these the report has the list
 
@@ -36,7 +42,6 @@ def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
     doubts = [
         *wording.list_contradictions(plan, survey.prediction),
         *_name_doubts(plan),
-        _name_some("room", rooms["room"][~rooms["closed"]], "not closed: area is a guess"),
     ]
     n_kept, n_candidates = (int(f(survey.registration["kept"])) for f in (np.sum, np.size))
     n_recorded = survey.poses["scan_id"][-1] + 1  # a few more may follow the last candidate
@@ -48,7 +53,7 @@ def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
     lines = [
         *([("damaged", "; ".join(damage))] if damage else []),
         ("found", found),
-        ("doubtful", "; ".join(filter(None, doubts)) or "nothing that the plan marks"),
+        ("doubtful", "; ".join(doubts) or "nothing that the plan marks"),
         ("made of", used),
         ("tested", wording.prediction_sentence(survey.prediction)),
     ]
@@ -56,20 +61,13 @@ def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
 
 
 def _name_doubts(plan: floorplan.FloorPlan) -> list[str]:
-    """Return which elements to verify on site, those of each table with what most are flagged for.
-
-    The likeliest to be wrong first.
-    """
+    """Return which elements to verify on site, those of each kind with what most of them have."""
     named: list[str] = []
-    for table in ("openings", "walls", "rooms"):
-        columns, noun = getattr(plan, table), floorplan.NUMBERS[table]
-        if "p_true" not in columns or not columns["verify"].any():
-            continue
-        rows = np.flatnonzero(columns["verify"])
-        rows = rows[np.argsort(columns["p_true"][rows], kind="stable")]
-        reasons, counts = np.unique(columns["doubt"][rows].astype(str), return_counts=True)
-        most = reasons[counts.argmax()]
-        named.append(_name_some(noun, columns[noun][rows], f"verify on site, {most}"))
+    for kind, group in groupby(list_doubts(plan), attrgetter("kind")):
+        of_kind = list(group)
+        ((most, _),) = Counter(doubt.reason for doubt in of_kind).most_common(1)
+        numbers = [doubt.number for doubt in of_kind]
+        named.append(_name_some(kind, numbers, f"verify on site, {most}"))
     return named
 
 
@@ -81,10 +79,8 @@ def _area(area_m2: FloatArray) -> str:
     return f"{area_m2.sum():,.1f} m²"
 
 
-def _name_some(noun: str, numbers: Array, fault: str) -> str:
-    """Return which elements have a fault; nothing where none has."""
-    if len(numbers) == 0:
-        return ""
-    named = ", ".join(map(str, numbers[:_NAMED].tolist()))
+def _name_some(noun: str, numbers: Sequence[int], fault: str) -> str:
+    """Return which elements have a fault."""
+    named = ", ".join(map(str, numbers[:_NAMED]))
     more = f" and {len(numbers) - _NAMED} more" if len(numbers) > _NAMED else ""
     return f"{_count(len(numbers), noun)} ({named}{more}) {fault}"

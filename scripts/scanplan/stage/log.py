@@ -11,15 +11,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TextIO, TypeVar
 
+from scanplan import interrupts
 from scanplan.errors import StageError
 from scanplan.plain_types import FilePath
 from scanplan.stage import orphans
-
-INTERRUPTED = "was interrupted; the same command goes on from here"
-"""Last words of a stage that Ctrl-C or a signal to end has ended."""
-
-WATCHED = "SCANPLAN_WATCHED"
-"""Variable of the environment that is set where the run shows what its stages log."""
 
 _TOLD_EVERY_S = 1.0  # between lines of progress: often enough to follow, seldom enough to read
 _log = logging.getLogger("scanplan")
@@ -33,7 +28,8 @@ def log_to_file(path: FilePath) -> Iterator[None]:
     """Send all output of this process, native libraries' too, to a file for the time of a stage.
 
     A `StageError` ends the process with status 1 and its one line on the screen; any other
-    exception likewise, its traceback in the log; so do Ctrl-C and SIGTERM, with `INTERRUPTED`.
+    exception likewise, its traceback in the log; so do Ctrl-C and SIGTERM, with
+    `interrupts.INTERRUPTED`.
     Should the workflow run that started the stage be killed, the stage ends itself.
 
     Parameters
@@ -49,13 +45,16 @@ def log_to_file(path: FilePath) -> Iterator[None]:
         faulthandler.enable()
         orphans.end_with_supervisor()
         outcome = "failed"
-        handler = signal.signal(signal.SIGTERM, signal.default_int_handler)
+        handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+        interrupts.begin_work()
+        signal.signal(signal.SIGTERM, signal.default_int_handler)
         try:
             with _end_in_one_line(path):
                 yield
             outcome = "done"
         finally:
-            signal.signal(signal.SIGTERM, handler)
+            for number, handler in handlers.items():
+                signal.signal(number, handler)
             _log.info("stage %s", outcome)
 
 
@@ -99,7 +98,7 @@ def _end_in_one_line(path: FilePath) -> Iterator[None]:
         _show(f"{stage}: {error}")
         raise SystemExit(1) from None
     except KeyboardInterrupt:
-        _log.error("%s: %s", stage, INTERRUPTED)
+        _log.error("%s: %s", stage, interrupts.INTERRUPTED)
         raise SystemExit(1) from None
     except Exception as error:
         _log.exception("unexpected failure")
@@ -123,7 +122,7 @@ def log_warning(text: str) -> None:
 
 
 def _show(line: str) -> None:
-    if _screen is not None and WATCHED not in os.environ:
+    if _screen is not None and interrupts.WATCHED not in os.environ:
         _screen.write(f"{line}\n")
 
 

@@ -40,9 +40,10 @@ def map_registered_scans(
     Raises
     ------
     StageError
-        If a scan has no pose.
+        If a scan has no pose, or no points.
     """
     store = tables.ScanStore(scans)
+    registered_scans.read_registered_scans(registration, store)
     results = map_scans(
         function,
         scans,

@@ -2,7 +2,7 @@
 
 import json
 from binascii import crc32
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 
 import numpy as np
@@ -17,7 +17,9 @@ from scanplan.types import Array, FilePath
 RERUN = "delete it and run again"
 
 _SEAL = "scanplan_notes_crc32"
-_OWN_NOTES = ("scanplan", "geo", "ARROW:schema")
+_IS_COUNTED = "scanplan_counts_rows"
+_N_ROWS = "scanplan_rows"
+_OWN_NOTES = ("scanplan", "geo", "ARROW:schema", _SEAL, _IS_COUNTED, _N_ROWS)
 
 
 def arrow_schema(schema: Schema) -> pa.Schema:
@@ -34,8 +36,17 @@ def open_writer(
     extra: Mapping[str, str] | None = None,
     *,
     compression: str = "zstd",
-) -> Iterator[pq.ParquetWriter]:
-    """Write a file of a schema, whole or not at all, with further metadata."""
+) -> Iterator[Callable[..., None]]:
+    """Write a file of a schema, whole or not at all, with further metadata.
+
+    It states how many rows were written to it, so that ones that another program took out are
+    missed.
+
+    Yields
+    ------
+    callable
+        `write_rows(table, row_group_size=None)`, for one table after the other.
+    """
     notes = dict(extra or {})
     form = arrow_schema(schema).with_metadata(_file_metadata(schema) | notes | _seal(notes))
     floats = [n for n, t in schema.columns.items() if t.startswith("float")]
@@ -50,12 +61,24 @@ def open_writer(
             column_encoding=dict.fromkeys(floats, "BYTE_STREAM_SPLIT"),
         ) as writer,
     ):
-        yield writer
+        n_rows = 0
+
+        def write_rows(table: pa.Table, row_group_size: int | None = None) -> None:
+            nonlocal n_rows
+            n_rows += len(table)
+            writer.write_table(table, row_group_size=row_group_size)
+
+        yield write_rows
+        writer.add_key_value_metadata({_N_ROWS: str(n_rows)})
 
 
 def _file_metadata(schema: Schema) -> dict[str, str]:
     """Return the file's own metadata: our schema, and the description that GeoParquet asks for."""
-    metadata = {"scanplan": json.dumps({"table": schema.name, "version": schema.version})}
+    metadata = {
+        "scanplan": json.dumps({"table": schema.name, "version": schema.version}),
+        # programs that write a table anew keep this, and not the number itself
+        _IS_COUNTED: "true",
+    }
     if schema.geometry:
         column = {"encoding": "WKB", "geometry_types": [], "crs": None}
         metadata["geo"] = json.dumps(
@@ -79,7 +102,7 @@ def read_notes(file: pq.ParquetFile, path: FilePath) -> dict[str, str]:
     """
     with explain_damage(path):
         stated = {k.decode(): v.decode() for k, v in (file.metadata.metadata or {}).items()}
-    notes = {k: v for k, v in stated.items() if k not in (*_OWN_NOTES, _SEAL)}
+    notes = {k: v for k, v in stated.items() if k not in _OWN_NOTES}
     # files of older versions have no checksum
     if _SEAL in stated and _seal(notes).get(_SEAL) != stated[_SEAL]:
         raise StageError(f"{path}: damaged (its notes do not fit their checksum); {RERUN}")
@@ -131,12 +154,20 @@ def _check_schema(file: pq.ParquetFile, schema: Schema, path: FilePath) -> None:
 
 
 def _check_row_counts(file: pq.ParquetFile, path: FilePath) -> None:
-    """Refuse a file whose parts state other numbers of rows than the whole: some would be lost."""
+    """Refuse a file whose parts hold other numbers of rows than stated: some would be lost."""
     whole = file.metadata
     of_parts = sum(whole.row_group(i).num_rows for i in range(whole.num_row_groups))
     if of_parts != whole.num_rows:
         raise StageError(
             f"{path}: damaged (states {whole.num_rows} rows, its parts {of_parts}); {RERUN}"
+        )
+    stated = {k.decode(): v.decode() for k, v in whole.metadata.items()}
+    # files of older versions do not count
+    n_written = stated.get(_N_ROWS, "an unknown number of")
+    if _IS_COUNTED in stated and n_written != str(of_parts):
+        raise StageError(
+            f"{path}: was written with {n_written} rows, holds {of_parts}: another program has"
+            f" changed it; {RERUN}"
         )
 
 

@@ -9,8 +9,6 @@ from scanplan.store import schemas, tables
 from scanplan.store.pose_columns import pose_matrices
 from scanplan.types import Array, Columns, FilePath, FloatArray, IntArray
 
-_RERUN = "delete the results of this dataset and run again"
-
 
 @dataclass(frozen=True)
 class RegisteredScans:
@@ -29,15 +27,28 @@ class RegisteredScans:
     map_from_sensor: FloatArray
 
 
-def read_registered_scans(path: FilePath) -> RegisteredScans:
+def read_registered_scans(path: FilePath, store: tables.ScanStore | None = None) -> RegisteredScans:
     """Read the kept scans of a registration.parquet.
+
+    Parameters
+    ----------
+    path : path-like
+    store : ScanStore, optional
+        Their points; where given, those of every scan must be there, so that none is lost in
+        silence.
 
     Raises
     ------
     StageError
-        If there is none, or one has no pose.
+        If there is none, or one has no pose, or one of them no points in the store.
     """
-    return select_kept_scans(tables.read_table(path, schemas.REGISTRATION), path)
+    scans = select_kept_scans(tables.read_table(path, schemas.REGISTRATION), path)
+    if store is not None and len(lacking := np.setdiff1d(scans.scan_ids, store.scan_ids)):
+        raise StageError(
+            f"{store.path}: lacks scan {lacking[0]} of {path} ({len(lacking)} such scans);"
+            f" {tables.RERUN_ALL}"
+        )
+    return scans
 
 
 def select_kept_scans(columns: Columns, path: FilePath) -> RegisteredScans:
@@ -53,7 +64,8 @@ def select_kept_scans(columns: Columns, path: FilePath) -> RegisteredScans:
     n_unknown = np.count_nonzero(~np.isfinite(pose).all(axis=(1, 2)))
     if len(pose) == 0 or n_unknown:
         raise StageError(
-            f"{path}: {len(pose)} scans are kept, {n_unknown} of them without a pose; {_RERUN}"
+            f"{path}: {len(pose)} scans are kept, {n_unknown} of them without a pose;"
+            f" {tables.RERUN_ALL}"
         )
     return RegisteredScans(kept["scan_id"], kept["t_ns"], pose)
 
@@ -130,6 +142,6 @@ def _join(scan_ids: IntArray, known_ids: IntArray, path: FilePath, origin: FileP
     if len(unknown):
         raise StageError(
             f"{origin}: no pose of scan {unknown[0]} of {path} ({len(unknown)} such scans);"
-            f" {_RERUN}"
+            f" {tables.RERUN_ALL}"
         )
     return np.searchsorted(known_ids, scan_ids)

@@ -15,6 +15,9 @@ from scanplan.errors import StageError
 from scanplan.store import arrow_arrays, parquet, schemas
 from scanplan.types import Array, FilePath, FloatArray
 
+RERUN_ALL = "delete the results of this dataset and run again"
+"""What to do where tables are not of one run."""
+
 
 def write_table(
     path: FilePath,
@@ -52,8 +55,8 @@ def write_table(
     arrays = [arrow_arrays.to_arrow(columns[n], form.field(n).type) for n in schema.columns]
     table = pa.Table.from_arrays(arrays, schema=form)
     parquet.check_rows(table, schema, path, allow_empty, ValueError)
-    with parquet.open_writer(path, schema, notes) as writer:
-        writer.write_table(table)
+    with parquet.open_writer(path, schema, notes) as write_rows:
+        write_rows(table)
 
 
 def read_table(
@@ -133,7 +136,7 @@ def open_scan_writer(
     last: int | None = None
     extra = {"planar": json.dumps(bool(planar))}
     # of points lz4 saves as much as zstd, and takes half the time to write and to read
-    with parquet.open_writer(path, schemas.SCANS, extra, compression="lz4") as writer:
+    with parquet.open_writer(path, schemas.SCANS, extra, compression="lz4") as write_rows:
 
         def write_scan(scan_id: int, xyz_m: FloatArray) -> None:
             nonlocal last
@@ -148,7 +151,7 @@ def open_scan_writer(
                 for column, field in zip(columns, form, strict=True)
             ]
             rows = pa.Table.from_arrays(arrays, schema=form)
-            writer.write_table(rows, row_group_size=len(rows))
+            write_rows(rows, row_group_size=len(rows))
 
         yield write_scan
         if last is None:
@@ -198,17 +201,18 @@ class ScanStore:
 
         Raises
         ------
-        ValueError
-            If a scan is asked for that is not there.
         StageError
-            If one has no points, or points that are no numbers.
+            If a scan is asked for that is not there, or one has no points, or points that are no
+            numbers.
         """
         group = {int(s): i for i, s in enumerate(self.scan_ids)}
         wanted = self.scan_ids.tolist() if scan_ids is None else map(int, scan_ids)
         with parquet.open_file(self.path, schemas.SCANS) as file:
             for scan_id in wanted:
                 if scan_id not in group:
-                    raise ValueError(f"{self.path}: no scan {scan_id}")
+                    raise StageError(
+                        f"{self.path}: has no scan {scan_id}, which other tables name; {RERUN_ALL}"
+                    )
                 # three columns are read before threads have begun
                 table = file.read_row_group(group[scan_id], schemas.XYZ, use_threads=False)
                 xyz_m = np.column_stack([arrow_arrays.to_numpy(c) for c in table.columns])

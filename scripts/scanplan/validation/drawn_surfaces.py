@@ -8,6 +8,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry.intervals import find_gaps
+from scanplan.geometry.tolerances import SHORTEST_M
 from scanplan.plan.floorplan import FloorPlan, centrelines_m, line_shapes
 from scanplan.plan.tolerances import END_M
 from scanplan.types import Array, BoolArray, Columns, FloatArray, IntArray
@@ -188,7 +189,7 @@ def _wall_ends(plan: FloorPlan) -> Iterator[_Surface]:
 def _caps(left_m: FloatArray, right_m: FloatArray) -> Iterator[_Surface]:
     for end in (0, 1):
         across_m = np.stack([left_m[end], right_m[end]])
-        if np.hypot(*(across_m[1] - across_m[0])) > 0:
+        if np.hypot(*(across_m[1] - across_m[0])) > SHORTEST_M:
             yield _Surface(across_m, _EVERYWHERE_M)
 
 
@@ -200,7 +201,10 @@ def _cut_out(ends_m: FloatArray, openings_m: FloatArray) -> list[FloatArray]:
     taken_m = taken_m[(taken_m[:, 1] > 0) & (taken_m[:, 0] < length_m)]
     # the ends stand for openings of no width, so that there is always one
     taken_m = np.concatenate([[[0.0, 0.0]], taken_m])
-    return [ends_m[0] + gap_m[:, None] * along for gap_m in find_gaps(taken_m, 0.0, length_m)]
+    gaps_m = find_gaps(taken_m, 0.0, length_m)
+    # an opening that ends where the line does may leave a part without a length
+    gaps_m = gaps_m[np.diff(gaps_m)[:, 0] > SHORTEST_M]
+    return [ends_m[0] + gap_m[:, None] * along for gap_m in gaps_m]
 
 
 def _count_spans(ends_m: FloatArray, span_m: float) -> int:

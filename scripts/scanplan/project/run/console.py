@@ -17,8 +17,8 @@ from pathlib import Path
 
 from snakemake_interface_logger_plugins.common import LogEvent
 
+from scanplan.interrupts import WATCHED
 from scanplan.project.run.terminal import Terminal
-from scanplan.stage.log import WATCHED
 
 _NOTHING_TO_DO = "Nothing to be done"  # how Snakemake begins to say that all results are there
 _NO_STAGES = ("total", "all", "comparison", "thesis", "thesis_more")

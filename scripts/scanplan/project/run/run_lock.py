@@ -7,7 +7,6 @@ with its process.
 import fcntl
 import os
 import signal
-import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterable
@@ -15,8 +14,8 @@ from datetime import timedelta
 from pathlib import Path
 from typing import TextIO
 
+from scanplan import interrupts
 from scanplan.errors import StageError
-from scanplan.stage.log import INTERRUPTED
 from scanplan.store import atomic
 
 _State = tuple[int, ...]
@@ -58,22 +57,6 @@ def lock_folder() -> TextIO:
     return file
 
 
-def end_on_interrupt() -> None:
-    """Have Ctrl-C end the process in one line, from now until a run of it begins.
-
-    While rules are read nothing is at work that would have to be ended first. Where it is ignored
-    it stays so.
-    """
-    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
-        signal.signal(signal.SIGINT, _end_in_one_line)
-
-
-def _end_in_one_line(*_: object) -> None:
-    sys.stdout.flush()
-    os.write(sys.stderr.fileno(), f"\nscanplan: the run {INTERRUPTED}\n".encode())
-    os._exit(1)
-
-
 def _state_of(file: Path) -> _State:
     """Return what differs once a file has been written anew."""
     found = file.stat()
@@ -113,11 +96,14 @@ class FolderRun:
     Attributes
     ----------
     interrupted : bool
-        Whether Ctrl-C or a signal to end has reached it since.
+        Whether Ctrl-C or a signal to end has reached it since. At a second Ctrl-C it ends at once.
+    exit_status : int
+        That of the process if the run fails.
     """
 
     def __init__(self) -> None:
         self.interrupted = False
+        self.exit_status = 1
         self._began_s = time.monotonic()
         self._older_logs: dict[Path, _State] = {}
         self._lock: TextIO | None = None
@@ -133,8 +119,8 @@ class FolderRun:
         self._began_s = time.monotonic()
         self._older_logs = {log: _state_of(log) for log in Path("logs").rglob("*.log")}
         self.interrupted = False
-        if signal.getsignal(signal.SIGINT) is _end_in_one_line:
-            signal.signal(signal.SIGINT, signal.default_int_handler)
+        interrupts.prepare_children()
+        interrupts.begin_work()
         for number in (signal.SIGINT, signal.SIGTERM):
             self._note_signal(number)
         self._lock = lock_folder()
@@ -144,6 +130,7 @@ class FolderRun:
         if self._lock is not None:
             self._lock.close()
             self._lock = None
+        interrupts.prepare_children()
 
     def elapsed(self) -> str:
         """Return how long it has been at work, as `0:02:05`."""
@@ -160,8 +147,12 @@ class FolderRun:
             signal.signal(number, self._noting(handler))
 
     def _noting(self, handler: Callable[..., object]) -> Callable[..., None]:
-        def note(*arguments: object) -> None:
+        def note(number: int, frame: object) -> None:
+            if self.interrupted and number == signal.SIGINT:
+                interrupts.end_in_one_line(number)
             self.interrupted = True
-            handler(*arguments)
+            interrupts.refuse_children()
+            self.exit_status = interrupts.exit_status(number)
+            handler(number, frame)
 
         return note

@@ -4,11 +4,11 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 
+from scanplan.interrupts import INTERRUPTED
 from scanplan.project import provenance
 from scanplan.project.run.run_lock import FolderRun
 from scanplan.project.run.slurm_jobs import LOGS as JOB_LOGS
 from scanplan.project.settings import Layer, locate_fault
-from scanplan.stage.log import INTERRUPTED
 from scanplan.store import atomic
 
 _DONE = " stage done"

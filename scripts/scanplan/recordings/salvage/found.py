@@ -59,6 +59,8 @@ class FoundRecords:
         In the order of the file; some may be of connections that were not found.
     stated : Counter of int
         How many messages of each connection the file states, as far as that can be read.
+    is_checked : bool
+        Whether all messages found fit checksums: of others, bytes may be changed unnoticed.
     gaps : list of int
         How many messages were found before each place that is damaged.
     last_part : Packed or None
@@ -74,6 +76,7 @@ class FoundRecords:
         self.connections: dict[int, Connection] = {}
         self.messages: list[FoundMessage] = []
         self.stated: Counter[int] = Counter()
+        self.is_checked = True
         self.gaps: list[int] = []
         self.last_part: Packed | None = None
         # chunks of one time lie side by side and are read alternately

@@ -78,6 +78,7 @@ class _Reading:
         self.has_footer = False
         self.stated: Counter[int] = Counter()
         self.listed: Counter[int] = Counter()
+        self._checked_to = 0
         self._schemas: dict[int, storage_mcap.Schema] = {}
         self._channels: dict[int, tuple[int, str, str, bytes]] = {}
 
@@ -151,7 +152,9 @@ class _Reading:
             # of one that is cut short, or has no checksum, each message is asked by itself, and
             # what follows the last of them may lie elsewhere than the chunk's size says
             stop = inner + packed_size
-            if not checksum or stop > len(data) or crc32(data[inner:stop]) == checksum:
+            is_checked = checksum != 0 and stop <= len(data)
+            if not is_checked or crc32(data[inner:stop]) == checksum:
+                self._checked_to = stop if is_checked else inner
                 return inner
             self.found.note_gap()
             return stop
@@ -166,6 +169,7 @@ class _Reading:
             is_sized = _is_followed(data, part.end, len(data), records=2)
             return part.end if is_sized else _find_record(data, inner, len(data), (_Opcode.CHUNK,))
         self.found.last_part = part
+        self.found.is_checked &= checksum != 0
         self.walk(records, part, 0)
         return part.end
 
@@ -179,6 +183,7 @@ class _Reading:
         if not _is_followed(data, after, end) and _find_record(data, begin, end) < after:
             raise ValueError("another record begins within a message")
         content = begin + _MESSAGE_HEAD.size
+        self.found.is_checked &= part is not None or after <= self._checked_to
         place = ((content, after - content),)
         self.found.messages.append(FoundMessage(channel, t_ns, part, place))
 

@@ -132,6 +132,8 @@ def _take_chunk(found: FoundRecords, counts: _Counts, chunk: _Record) -> int:
 
 
 def _take_message(found: FoundRecords, data: Buffer, part: Packed | None, record: _Record) -> None:
+    # bz2 has checksums of what it packs
+    found.is_checked &= part is not None and part.form == "bz2"
     (connection,) = struct.unpack("<I", record.fields[b"conn"])
     seconds, nanoseconds = struct.unpack("<II", record.fields[b"time"])
     if nanoseconds >= 10**9:

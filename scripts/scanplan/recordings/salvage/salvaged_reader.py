@@ -96,7 +96,12 @@ class SalvagedReader:
         where = f"; it is damaged at {places}, {spans[0][0]} to {spans[-1][1]}" if spans else ""
         unknown = self._count_unknown()
         nameless = f"; {unknown:,} messages are of topics that are lost" if unknown else ""
-        return f"{self.path}: from a damaged recording, {counted}{nameless}{where}"
+        altered = (
+            ""
+            if all(found.is_checked for found in self._files)
+            else "; it has no checksums of its messages, so that one that was hit may be altered"
+        )
+        return f"{self.path}: from a damaged recording, {counted}{nameless}{where}{altered}"
 
     def _count_lost(self) -> dict[str, tuple[int, int]]:
         """Return, of the topics with messages lost, their number and that of all."""

@@ -48,6 +48,7 @@ class _Row(NamedTuple):
 def find_sqlite_records(path: Path) -> FoundRecords:
     """Return the rows of a rosbag2 database that are whole."""
     found = FoundRecords(path)
+    found.is_checked = False
     if len(found.data) > _FILE_HEAD.size:
         _Pages(found).gather()
     else:

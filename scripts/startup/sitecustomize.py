@@ -1,0 +1,28 @@
+"""Ctrl-C while a process still imports ends it in one line; Python runs this before all else.
+
+It does where this folder is on PYTHONPATH: `make run` puts it there for Snakemake, and a run for
+its stages.
+"""
+
+import os
+import sys
+
+# what is imported here is what Python itself has imported by now: this is to be over at once
+_HERE = os.path.dirname(os.path.abspath(__file__))  # noqa: PTH100, PTH120
+_SCRIPTS = os.path.dirname(_HERE)  # noqa: PTH120
+
+sys.path.insert(0, _SCRIPTS)
+from scanplan import interrupts  # noqa: E402
+
+sys.path.remove(_SCRIPTS)
+# workers end with their stage, which is told when one ends by itself
+if "--multiprocessing-fork" not in sys.orig_argv:
+    interrupts.end_on_interrupt()
+
+# the computer's own module of this name, if it has one, is not to be kept from its work
+sys.path[:] = [place for place in sys.path if os.path.abspath(place) != _HERE]  # noqa: PTH100
+_own = sys.modules.pop("sitecustomize")
+try:
+    import sitecustomize  # noqa: F401
+except ImportError:
+    sys.modules["sitecustomize"] = _own
