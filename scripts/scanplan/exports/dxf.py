@@ -103,14 +103,15 @@ class _Plan:
                 "rotation": symbol_angle_deg(symbol),
             },
         )
-        facts: Facts = {**symbol.facts, "element": symbol.element, "width_m": symbol.width_m}
+        own: Facts = {"element": symbol.element, "width_m": symbol.width_m}
+        facts: Facts = {"corrected": "no", **symbol.facts, **own}
         middle = self._point(symbol.ends_m.mean(axis=0))
         for tag, fact in dxf_document.SYMBOL_TAGS.items():
             self._add_attribute(insert, tag, _format_fact(facts.get(fact)), middle, "A-ANNO-TEXT")
         _attach_facts(insert, symbol.facts)
-        if symbol.verify:
+        for kind in symbol.surrounded_by:
             around = surround_symbol(self._page, symbol) * self._scale.per_m
-            drawn = {"layer": doubt_layer(layer)}
+            drawn = {"layer": doubt_layer(layer) if kind == "verify" else STYLES[kind].layer}
             self._space.add_lwpolyline(around.tolist(), close=True, dxfattribs=drawn)
 
     def _add_attribute(
@@ -129,7 +130,7 @@ class _Plan:
         insert = self._space.add_blockref(
             dxf_document.STAMP, self._point(first.place), dxfattribs={"layer": layer}
         )
-        is_number = first.text.removesuffix(" ?") == stamp.facts["NUMBER"]
+        is_number = first.text.removesuffix(" ?").removesuffix(" *") == stamp.facts["NUMBER"]
         shown = dict(zip(("NUMBER" if is_number else "NAME", "AREA"), stamp.words, strict=False))
         for tag in dxf_document.STAMP_TAGS:
             if tag in shown:

@@ -21,13 +21,14 @@ DIMENSIONS = "SCANPLAN"
 TEXT_STYLE = "SCANPLAN"
 STAMP = "ROOM-STAMP"
 TITLE = "TITLE-BLOCK"
-STAMP_TAGS = ("NUMBER", "NAME", "AREA", "PERIMETER", "HEIGHT", "CLOSED")
+STAMP_TAGS = ("NUMBER", "NAME", "AREA", "PERIMETER", "HEIGHT", "CLOSED", "CORRECTED")
 SYMBOL_TAGS = {
     "TAG": "element",
     "WIDTH": "width_m",
     "SILL": "sill_m",
     "LINTEL": "lintel_m",
     "RAYS": "n_rays",
+    "CORRECTED": "corrected",
 }
 """Attributes of doors, windows and passages, and what of their facts they state."""
 UNITS = {"mm": InsertUnits.Millimeters, "m": InsertUnits.Meters}

@@ -61,9 +61,11 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
         int(np.sum(columns.get("verify", 0))) for columns in (plan.walls, plan.openings, plan.rooms)
     )
     contents = "; ".join(filter(None, [plan.mark, floorplan.summarise_floorplan(plan)]))
+    noun = "correction" if plan.n_corrections == 1 else "corrections"
+    by_hand = f"; {plan.n_corrections} {noun} by hand" if plan.n_corrections else ""
     rows = [
         [("Project", facts.project or plan.name, 2), ("Storey", facts.storey or "not named", 1)],
-        [("Drawing", "Floor plan, as surveyed", 2), ("Survey", plan.name, 1)],
+        [("Drawing", f"Floor plan, as surveyed{by_hand}", 2), ("Survey", plan.name, 1)],
         [
             ("Date of survey", facts.surveyed, 1),
             ("Accuracy", state_accuracy(plan), 2),
@@ -147,7 +149,8 @@ def draw_room_table(stamps: Sequence[Stamp], slots: Sequence[Slot]) -> Iterator[
         facts = stamp.facts
         area = facts["AREA"].removesuffix(" m²").replace("about ", "~")
         height = "-" if facts["HEIGHT"] == "not seen" else facts["HEIGHT"].removesuffix(" m")
-        name = shorten_text(facts["NAME"] + " ?" * stamp.verify, Letters.SMALL, 15.0)
+        marks = " *" * (facts["CORRECTED"] != "no") + " ?" * stamp.verify
+        name = shorten_text(facts["NAME"], Letters.SMALL, 15.0 - 2.0 * len(marks)) + marks
         texts = [facts["NUMBER"], name, area, facts["PERIMETER"].removesuffix(" m"), height]
         for column, (text, end) in enumerate(zip(texts, ends, strict=True)):
             kind = "verify" if stamp.verify and column == 1 else "title"
