@@ -65,6 +65,15 @@ def open_document(unit: str, scale: Scale) -> Drawing:
     for name, (dash_mm, gap_mm) in DASHES_MM.items():
         dash, gap = dash_mm * scale.per_mm, gap_mm * scale.per_mm
         document.linetypes.add(name, pattern=[dash + gap, dash, -gap], description=name.title())
+    add_layers(document)
+    document.styles.add(TEXT_STYLE, font=_FONT)
+    _add_dimension_style(document, scale)
+    _add_blocks(document, scale)
+    return document
+
+
+def add_layers(document: Drawing) -> None:
+    """Add the layers of a plan."""
     for name, layer in LAYERS.items():
         # line weights are hundredths of a millimetre
         made = document.layers.add(
@@ -76,10 +85,6 @@ def open_document(unit: str, scale: Scale) -> Drawing:
         )
         if name == "A-WALL-CNTR":
             made.off()
-    document.styles.add(TEXT_STYLE, font=_FONT)
-    _add_dimension_style(document, scale)
-    _add_blocks(document, scale)
-    return document
 
 
 def _add_dimension_style(document: Drawing, scale: Scale) -> None:

@@ -50,7 +50,13 @@ class Sheet:
     paper_words: list[Word] = field(repr=False)
 
 
-def compose_sheet(plan: FloorPlan, facts: SheetFacts | None = None, *, turn: bool = True) -> Sheet:
+def compose_sheet(
+    plan: FloorPlan,
+    facts: SheetFacts | None = None,
+    *,
+    turn_deg: float | None = None,
+    least_scale: int = 1,
+) -> Sheet:
     """Compose the sheet of a plan.
 
     Parameters
@@ -58,8 +64,11 @@ def compose_sheet(plan: FloorPlan, facts: SheetFacts | None = None, *, turn: boo
     plan : FloorPlan
     facts : SheetFacts, optional
         What the title block states beside the plan.
-    turn : bool
-        Whether the plan is turned so that its main walls run along the sheet.
+    turn_deg : float, optional
+        The plan is turned by, counterclockwise; by default so that its main walls run along the
+        sheet.
+    least_scale : int
+        Least denominator of its scale, as of the other sheets of a set.
     """
     facts = facts or SheetFacts()
     marks = [*content.draw_walls(plan), *content.draw_axes(plan), *content.draw_doubts(plan)]
@@ -67,8 +76,8 @@ def compose_sheet(plan: FloorPlan, facts: SheetFacts | None = None, *, turn: boo
     legend = _list_legend(plan, marks, symbols)
     # the scale bar with the axes takes six rows
     blocks = [6, len(legend), len(plan.areas)]
-    turn_deg = -plan.main_direction_deg if turn else 0.0
-    page = choose_page(*_extent(marks, symbols, turn_deg), turn_deg, blocks)
+    turn_deg = -plan.main_direction_deg if turn_deg is None else turn_deg
+    page = choose_page(*_extent(marks, symbols, turn_deg), turn_deg, blocks, least_scale)
     bar, legend_slots, table_slots = fill_slots(page.slots(), blocks) or ([], [], [])
     beside: list[Mark | Word] = [
         *title.draw_frame(page),
