@@ -184,3 +184,26 @@ def test_who_has_looked_at_an_element_need_not_verify_it(tmp_path):
         is_by_hand = np.isin(columns[kind], list(SAID[kind]))
         assert is_by_hand.any() and (columns["verify"] == ~is_by_hand).all()
         assert ((columns["doubt"] == "") == is_by_hand).all()
+
+
+@pytest.mark.parametrize(
+    "name", ["=1+1", "'); DROP TABLE rooms; --", '"a", "b" & c', "#{x} ${y} %(z)s", "$x_2$"]
+)
+def test_a_name_is_the_same_letters_to_every_reader(name, tmp_path):
+    entry = {"element": "room", "at": [5, 1], "name": name}
+    files = exported(tmp_path, [entry], name="office", project=name, storey=name)
+    model = ifcopenshell.open(files["ifc"])
+    assert model.by_type("IfcSpace")[1].LongName == name
+    features = json.loads(files["geojson"].read_text())["features"]
+    assert name in [f["properties"].get("name") for f in features]
+    assert json.loads(files["json"].read_text())["rooms"][1]["name"] == name
+    about, _, _, columns = pyogrio.raw.read(files["gpkg"], layer="rooms")
+    assert dict(zip(about["fields"], columns, strict=True))["name"].tolist()[1] == name
+    # a spreadsheet shows no formula
+    (shown,) = pd.read_csv(files["rooms_csv"])["name"].tolist()[1:]
+    assert shown == (f"'{name}" if name.startswith("=") else name)
+    texts = ["".join(e.itertext()) for e in ElementTree.parse(files["svg"]).iter()]
+    assert name in texts and any(text.startswith(f"{name} *") for text in texts)
+    document = ezdxf.readfile(files["dxf"])
+    stamps = [i for i in document.modelspace().query("INSERT") if i.dxf.name == "ROOM-STAMP"]
+    assert len(stamps) == 2 and not document.audit().errors

@@ -32,6 +32,11 @@ SYMBOL_TAGS = {
 }
 """Attributes of doors, windows and passages, and what of their facts they state."""
 UNITS = {"mm": InsertUnits.Millimeters, "m": InsertUnits.Meters}
+_DRAWN_BY = (
+    *("dimtxt", "dimtsz", "dimexe", "dimexo", "dimgap", "dimlfac"),
+    *("dimtad", "dimtih", "dimtoh", "dimdec", "dimzin", "dimdsep"),
+)
+"""What of a style of dimensions a drawing states as a whole, too."""
 _VERSION = "R2010"  # AC1024, which all current CAD programs read
 _FONT = "arial.ttf"  # narrower than the font that words were placed by
 
@@ -109,6 +114,10 @@ def _add_dimension_style(document: Drawing, scale: Scale) -> None:
     style.dxf.dimlfac = 1 / scale.per_m
     style.dxf.dimfxlon = 1
     style.dxf.dimfxl = Paper.EXTENSION * scale.per_mm
+    # programs that know no styles of dimensions take the drawing's own values
+    document.header["$DIMSTYLE"] = DIMENSIONS
+    for name in _DRAWN_BY:
+        document.header[f"${name.upper()}"] = style.dxf.get(name)
 
 
 def _add_blocks(document: Drawing, scale: Scale) -> None:

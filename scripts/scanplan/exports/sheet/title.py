@@ -170,11 +170,14 @@ def draw_room_table(stamps: Sequence[Stamp], slots: Sequence[Slot]) -> Iterator[
     yield from _heads(slots, names, ends)
     for stamp, (x, y) in zip(stamps, _row_places(slots), strict=True):
         facts = stamp.facts
-        area = facts["AREA"].removesuffix(" m²").replace("about ", "~")
+        sizes = [
+            facts[tag].removesuffix(unit).replace("about ", "~")
+            for tag, unit in (("AREA", " m²"), ("PERIMETER", " m"))
+        ]
         height = "-" if facts["HEIGHT"] == "not seen" else facts["HEIGHT"].removesuffix(" m")
         marks = " *" * (facts["CORRECTED"] != "no") + " ?" * stamp.verify
         name = shorten_text(facts["NAME"], Letters.SMALL, 15.0 - 2.0 * len(marks)) + marks
-        texts = [facts["NUMBER"], name, area, facts["PERIMETER"].removesuffix(" m"), height]
+        texts = [facts["NUMBER"], name, *sizes, height]
         for column, (text, end) in enumerate(zip(texts, ends, strict=True)):
             kind = "verify" if stamp.verify and column == 1 else "title"
             yield _word(kind, text, x + Paper.GAP + end, y, Letters.SMALL, float(column > 1))

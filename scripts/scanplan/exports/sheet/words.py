@@ -27,13 +27,14 @@ def stamp_rooms(page: Page, plan: FloorPlan, space: LabelSpace) -> list[Stamp]:
     areas: list[BaseGeometry] = plan.areas.tolist()
     for row in np.argsort(rooms["area_m2"], kind="stable").tolist():
         number, closed = int(rooms["room"][row]), bool(rooms["closed"][row])
-        area = f"{'' if closed else 'about '}{rooms['area_m2'][row]:.1f} m²"
+        about = "" if closed else "about "
+        area = f"{about}{rooms['area_m2'][row]:.1f} m²"
         name = clean_text(plan.room_names[row])
         facts = {
             "NUMBER": str(number),
             "NAME": name,
             "AREA": area,
-            "PERIMETER": f"{rooms['perimeter_m'][row]:.2f} m",
+            "PERIMETER": f"{about}{rooms['perimeter_m'][row]:.2f} m",
             "HEIGHT": f"{height_m:.2f} m" if plan.height_from == "ceiling" else "not seen",
             "CLOSED": "yes" if closed else "no",
             "CORRECTED": str(rooms["corrected"][row]) if corrected[row] else "no",
