@@ -85,7 +85,7 @@ def _hide_others(document: Drawing) -> None:
     """Freeze in the view of each layout the layers of all storeys but its own."""
     names = [layer.dxf.name for layer in document.layers if layer.dxf.name[0].isdigit()]
     names.remove("0")
-    for layout in document.layout_names_in_taborder()[1:]:
+    for layout in list(document.layout_names_in_taborder())[1:]:
         own = f"{layout.split()[0]}-"
         for port in document.layout(layout).query("VIEWPORT"):
             assert isinstance(port, Viewport)
