@@ -1,4 +1,4 @@
-"""Put the plans of several storeys into one model and one drawing."""
+"""Put the plans of several storeys into one model, one drawing and one set of sheets."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -6,12 +6,18 @@ from pathlib import Path
 from typing import Any
 
 from scanplan.errors import StageError
-from scanplan.exports.building.dxf_storeys import merge_dxf
+from scanplan.exports import drawing
+from scanplan.exports.building.dxf_storeys import format_building_dxf
 from scanplan.exports.building.ifc_storeys import merge_ifc
 from scanplan.exports.building.placed_storey import PlacedStorey
-from scanplan.stage import log
+from scanplan.exports.building.sheet_set import compose_sheets
+from scanplan.exports.sheet.composition import Sheet
+from scanplan.exports.sheet.title import summarise_survey
+from scanplan.plan import floorplan
+from scanplan.project import code_files
+from scanplan.stage import figure_files, log
 from scanplan.store import atomic, schemas, tables
-from scanplan.types import FilePath
+from scanplan.types import FilePath, Settings
 
 
 def assemble_building(
@@ -20,19 +26,26 @@ def assemble_building(
     *,
     name: str,
     storeys: Sequence[Mapping[str, Any]],
+    settings: Sequence[Settings],
+    version: str = "",
 ) -> None:
-    """Write building.ifc and building.dxf.
+    """Write building.ifc, building.dxf and building.pdf.
 
     Parameters
     ----------
     files : dict of str to list of path-like
-        `ifc`, `dxf` and `free` of each storey's plan, from the lowest up.
+        Of each storey, from the lowest up: `ifc` and the tables of its plan, as `export_plan` has
+        them.
     outputs : dict of str to path-like
-        `ifc` and `dxf`, to write.
+        `ifc`, `dxf` and `pdf`, to write.
     name : str
         Of the building.
     storeys : sequence of dict
         What `building_file.Storey` says of each, by name.
+    settings : sequence of dict
+        What `export_plan` is told of each; the lowest storey's `turn` and `dxf_unit` hold for all.
+    version : str
+        Of the software, for the title blocks.
 
     Raises
     ------
@@ -42,27 +55,53 @@ def assemble_building(
     elevations_m = [
         _elevation_m(storey, free) for storey, free in zip(storeys, files["free"], strict=True)
     ]
-
-    def place(paths: Sequence[FilePath]) -> list[PlacedStorey]:
-        return [
-            PlacedStorey(
-                storey["name"],
-                Path(path).read_text(encoding="utf-8"),
-                x_m=storey["place"][0],
-                y_m=storey["place"][1],
-                rotation_rad=math.radians(storey["place"][2]),
-                elevation_m=elevation_m,
-            )
-            for storey, path, elevation_m in zip(storeys, paths, elevations_m, strict=True)
-        ]
-
-    atomic.write_text(outputs["ifc"], merge_ifc(name, place(files["ifc"])))
-    atomic.write_text(outputs["dxf"], merge_dxf(place(files["dxf"])))
+    placed = [
+        PlacedStorey(
+            storey["name"],
+            Path(path).read_text(encoding="utf-8"),
+            x_m=storey["place"][0],
+            y_m=storey["place"][1],
+            rotation_rad=math.radians(storey["place"][2]),
+            elevation_m=elevation_m,
+        )
+        for storey, path, elevation_m in zip(storeys, files["ifc"], elevations_m, strict=True)
+    ]
+    sheets = _compose_sheets(files, name, storeys, settings, version)
+    figures = [drawing.draw_sheet(sheet) for sheet in sheets]
+    atomic.write_text(outputs["ifc"], merge_ifc(name, placed))
+    drawn = format_building_dxf(placed, sheets, settings[0]["dxf_unit"])
+    atomic.write_text(outputs["dxf"], drawn)
+    pages = figure_files.format_pdf(figures, f"Floor plans of {name}")
+    atomic.write_bytes(outputs["pdf"], pages)
     heights = ", ".join(
         f"{storey['name']} at {elevation_m:.2f} m"
         for storey, elevation_m in zip(storeys, elevations_m, strict=True)
     )
-    log.log_line(f"assemble_building: {len(storeys)} storeys of {name}: {heights}")
+    on_paper = f"{len(sheets)} sheets at 1:{sheets[0].page.scale}"
+    log.log_line(f"assemble_building: {len(storeys)} storeys of {name}: {heights}; {on_paper}")
+
+
+def _compose_sheets(
+    files: Mapping[str, Sequence[FilePath]],
+    name: str,
+    storeys: Sequence[Mapping[str, Any]],
+    settings: Sequence[Settings],
+    version: str,
+) -> list[Sheet]:
+    """Return a sheet of each storey, with the names that the building gives it."""
+    plans, facts = [], []
+    for number, (storey, own) in enumerate(zip(storeys, settings, strict=True)):
+        paths = {table: files[table][number] for table in files if table != "ifc"}
+        assumed_m = {key: own[key] for key in ("assumed_thickness_m", "assumed_height_m")}
+        plans.append(floorplan.read_floorplan(paths, storey["dataset"], **assumed_m))
+        evidence = tables.read_table(paths["evidence"], schemas.EVIDENCE, allow_empty=True)
+        stated = {"project": own["project"] or name, "storey": storey["name"], "version": version}
+        sheet = {"number": number + 1, "of": len(storeys)}
+        facts.append(summarise_survey(evidence, **stated, **sheet))
+    rotations_rad = [
+        math.radians(storey["place"][2]) if storey["aligned"] else None for storey in storeys
+    ]
+    return compose_sheets(plans, facts, rotations_rad, turn=settings[0]["turn"])
 
 
 def _elevation_m(storey: Mapping[str, Any], free: FilePath) -> float:
@@ -79,8 +118,10 @@ def _elevation_m(storey: Mapping[str, Any], free: FilePath) -> float:
 if __name__ == "__main__":
     with log.log_to_file(snakemake.log[0]):
         assemble_building(
-            {kind: snakemake.input[kind] for kind in ("ifc", "dxf", "free")},
+            dict(snakemake.input.items()),
             dict(snakemake.output.items()),
             name=snakemake.params.name,
             storeys=snakemake.params.storeys,
+            settings=snakemake.params.settings,
+            version=f"scanplan, code {code_files.digest_code()}",
         )

@@ -37,6 +37,7 @@ def correct_plan(
     points = [correction for correction in said if correction.element == "reference_point"]
     reference = georeference.fit_reference(points)
     notes = tables.read_notes(plan["free"], schemas.FREE)
+    notes |= {"n_corrections": str(outcome.n_applied)}
     placed = ""
     if reference is not None:
         notes |= {"georeference": georeference.format_reference(reference)}

@@ -1,19 +1,16 @@
 """Write the plan in the formats that drawing, building and navigation programs read."""
 
 from collections.abc import Mapping
-from datetime import UTC, datetime
 from pathlib import Path
-
-import numpy as np
 
 from scanplan.exports import drawing, dxf, geojson, grid_map, svg
 from scanplan.exports.sheet import composition
-from scanplan.exports.sheet.title import SheetFacts
+from scanplan.exports.sheet.title import summarise_survey
 from scanplan.plan import floorplan
 from scanplan.project import code_files
 from scanplan.stage import figure_files, log
 from scanplan.store import atomic, schemas, tables
-from scanplan.types import Columns, FilePath, Settings
+from scanplan.types import FilePath, Settings
 
 
 def export_plan(
@@ -44,32 +41,27 @@ def export_plan(
     evidence = tables.read_table(plan["evidence"], schemas.EVIDENCE, allow_empty=True)
     assumed_m = {key: settings[key] for key in ("assumed_thickness_m", "assumed_height_m")}
     drawn = floorplan.read_floorplan(plan, name, **assumed_m)
-    facts = _survey_facts(evidence, settings, version)
-    sheet = composition.compose_sheet(drawn, facts, turn=settings["turn"])
+    facts = summarise_survey(
+        evidence,
+        project=settings["project"] or "",
+        storey=settings["storey"] or "",
+        version=version,
+    )
+    turn_deg = None if settings["turn"] else 0.0
+    sheet = composition.compose_sheet(drawn, facts, turn_deg=turn_deg)
     figure = drawing.draw_sheet(sheet)
     grid = grid_map.draw_grid_map(drawn, settings["map_cell_m"])
     atomic.write_text(outputs["geojson"], geojson.format_geojson(drawn, evidence))
     atomic.write_text(outputs["dxf"], dxf.format_dxf(sheet, settings["dxf_unit"]))
     atomic.write_text(outputs["svg"], svg.format_svg_sheet(sheet))
-    atomic.write_bytes(
-        outputs["pdf"], figure_files.format_pdf(figure, f"Floor plan of {sheet.name}")
-    )
+    title = f"Floor plan of {sheet.name}"
+    atomic.write_bytes(outputs["pdf"], figure_files.format_pdf([figure], title))
     atomic.write_bytes(outputs["png"], figure_files.format_png(figure))
     atomic.write_bytes(outputs["pgm"], grid_map.format_pgm(grid))
     atomic.write_text(outputs["yaml"], grid_map.format_map_yaml(grid, Path(outputs["pgm"]).name))
     on_paper = f"1:{sheet.page.scale} on {sheet.page.name}"
     contents = floorplan.summarise_floorplan(drawn)
     log.log_line(f"export_plan: {contents}; {_summarise_heights(drawn)}; {on_paper}")
-
-
-def _survey_facts(evidence: Columns, settings: Settings, version: str) -> SheetFacts:
-    t_ns = evidence["t_ns"]
-    surveyed = "not known"
-    if len(t_ns):
-        surveyed = datetime.fromtimestamp(int(t_ns.min()) / 1e9, UTC).strftime("%Y-%m-%d")
-    n_scans = len(np.unique(evidence["scan_id"]))
-    project, storey = settings["project"] or "", settings["storey"] or ""
-    return SheetFacts(project, storey, surveyed, n_scans, version)
 
 
 def _summarise_heights(plan: floorplan.FloorPlan) -> str:

@@ -1,5 +1,6 @@
-"""Two storeys of the plan drawn by hand as one model and one drawing."""
+"""Two storeys of the plan drawn by hand as one model, one drawing and one set of sheets."""
 
+import re
 from collections import Counter
 
 import ezdxf
@@ -8,6 +9,7 @@ import ifcopenshell.util.placement
 import ifcopenshell.validate
 import numpy as np
 import pytest
+from ezdxf.math import Vec3
 
 from assemble_building import assemble_building
 from export_files import export_files
@@ -16,6 +18,8 @@ from helpers import floorplan_making
 from helpers.default_settings import SETTINGS
 from helpers.report_making import registration
 from scanplan.errors import StageError
+from scanplan.exports.building.sheet_set import compose_sheets
+from scanplan.exports.sheet.title import SheetFacts
 from scanplan.plan import planning
 from scanplan.project import stage_settings
 from scanplan.store import schemas, tables
@@ -26,7 +30,7 @@ NAMES = ("geojson", "dxf", "svg", "pdf", "png", "ifc", "pgm", "yaml", "ids", "kn
 @pytest.fixture(scope="module")
 def floors(tmp_path_factory):
     """The files of two floors of different names, whose scans saw the floor at -0.3 m."""
-    files = {"ifc": [], "dxf": [], "free": []}
+    files = {kind: [] for kind in ("ifc", *planning.TABLES)}
     for name in ("floor_0", "floor_1"):
         folder = tmp_path_factory.mktemp(name)
         plan = {table: folder / f"{table}.parquet" for table in planning.TABLES}
@@ -42,17 +46,21 @@ def floors(tmp_path_factory):
         written = {kind: outputs[kind] for kind in ("ifc", "ids", "known")}
         export_files(plan, written, name=name, source=name, settings=of_files)
         for kind in files:
-            files[kind].append(plan["free"] if kind == "free" else outputs[kind])
+            files[kind].append(outputs["ifc"] if kind == "ifc" else plan[kind])
     return files
 
 
-def storey(name, elevation_m, place=(0.0, 0.0, 0.0)):
-    return {"name": name, "elevation_m": elevation_m, "place": place}
+def storey(name, elevation_m, place=(0.0, 0.0, 0.0), *, aligned=True):
+    dataset = f"survey of {name}"
+    stated = {"name": name, "dataset": dataset, "elevation_m": elevation_m}
+    return stated | {"place": place, "aligned": aligned}
 
 
 def building(floors, folder, *storeys):
-    outputs = {kind: folder / f"building.{kind}" for kind in ("ifc", "dxf")}
-    assemble_building(floors, outputs, name="house", storeys=storeys)
+    outputs = {kind: folder / f"building.{kind}" for kind in ("ifc", "dxf", "pdf")}
+    drawing = stage_settings.select_drawing(SETTINGS)
+    settings = [drawing for _ in storeys]
+    assemble_building(floors, outputs, name="house", storeys=storeys, settings=settings)
     return outputs
 
 
@@ -101,12 +109,12 @@ def test_the_model_is_valid(house):
 def test_the_drawing_has_each_storey_on_layers_of_its_own(house, floors):
     drawing = ezdxf.readfile(house["dxf"])
     assert not drawing.audit().has_errors
-    own = ezdxf.readfile(floors["dxf"][0])
+    own = ezdxf.readfile(floors["ifc"][0].with_suffix(".dxf"))
     assert drawing.units == own.units
     entities = list(drawing.modelspace())
-    for prefix, file in zip(("1-", "2-"), floors["dxf"], strict=True):
+    own_kinds = Counter(e.dxftype() for e in own.modelspace())
+    for prefix in ("1-", "2-"):
         of_storey = [e for e in entities if e.dxf.layer.startswith(prefix)]
-        own_kinds = Counter(e.dxftype() for e in ezdxf.readfile(file).modelspace())
         assert Counter(e.dxftype() for e in of_storey) == own_kinds
     names = {entity.dxf.layer for entity in own.modelspace()} - {"0", "Defpoints"}
     assert {f"{n}-{name}" for n in (1, 2) for name in names} <= {
@@ -117,7 +125,66 @@ def test_the_drawing_has_each_storey_on_layers_of_its_own(house, floors):
 def test_the_same_floors_give_the_same_model(house, floors, tmp_path):
     upper = storey("First", 3.0, (10.0, 0.0, 90.0))
     again = building(floors, tmp_path, storey("Ground", 0.0), upper)
-    assert again["ifc"].read_bytes() == house["ifc"].read_bytes()
+    assert {kind: file.read_bytes() for kind, file in again.items()} == {
+        kind: file.read_bytes() for kind, file in house.items()
+    }
+
+
+def test_each_storey_has_a_layout_with_its_name_that_shows_it_alone(house):
+    document = ezdxf.readfile(house["dxf"])
+    assert document.layout_names_in_taborder() == ["Model", "1 Ground", "2 First"]
+    # the corner of a room, in the frame of the map, in millimetres
+    corner = Vec3(7100, 3000)
+    upper = Vec3(10_000 - 3000, 7100)
+    sides = []
+    for name, number, place in (("1 Ground", 1, corner), ("2 First", 2, upper)):
+        layout = document.layout(name)
+        (title,) = layout.query("INSERT")
+        said = {attribute.dxf.tag: attribute.dxf.text for attribute in title.attribs}
+        assert (said["STOREY"], said["PROJECT"]) == (name[2:], "house")
+        assert said["SHEET"].endswith(f"{number} of 2")
+        (port,) = [v for v in layout.query("VIEWPORT") if v.dxf.status > 1]
+        assert {layer[:2] for layer in port.frozen_layers} == {f"{3 - number}-"}
+        shown = port.get_transformation_matrix().transform(place) - port.dxf.center
+        sides.append((round(shown.x, 3), round(shown.y, 3)))
+    # of both the corner is 3.6 m and 1.5 m off the middle, 1:50; they lie as in the building
+    assert sides == [(72.0, 30.0), (-30.0, 72.0)]
+
+
+def test_evidence_and_dimensions_of_storeys_are_those_of_their_own_drawings(house, floors):
+    own = ezdxf.readfile(floors["ifc"][0].with_suffix(".dxf"))
+    document = ezdxf.readfile(house["dxf"])
+
+    def said(drawing, prefix):
+        axes = drawing.modelspace().query(f'LWPOLYLINE[layer=="{prefix}A-WALL-CNTR"]')
+        dimensions = drawing.modelspace().query(f'DIMENSION[layer=="{prefix}A-ANNO-DIMS"]')
+        blocks = [drawing.blocks.get(dimension.dxf.geometry) for dimension in dimensions]
+        texts = [text.text for block in blocks for text in block.query("MTEXT")]
+        return [axis.get_xdata("SCANPLAN") for axis in axes], sorted(texts)
+
+    axes, texts = said(own, "")
+    assert len(axes) == 6 and "7.40" in texts
+    assert said(document, "1-") == said(document, "2-") == (axes, texts)
+
+
+def test_a_set_of_sheets_has_a_page_of_each_storey(house):
+    made = house["pdf"].read_bytes()
+    boxes = re.findall(rb"/MediaBox \[ 0 0 ([\d.]+) ([\d.]+) \]", made)
+    # one lies, one stands
+    assert sorted(boxes[0]) == sorted(boxes[1]) and len(boxes) == 2
+    assert b"Floor plans of house" in made
+
+
+def test_sheets_of_a_set_have_one_scale_and_lie_alike():
+    small, large = floorplan_making.plan(), floorplan_making.bare([(0, 0, 60, 40, -1)])
+    facts = [SheetFacts(storey=name) for name in ("Ground", "First")]
+    for turn, expected in ((True, 30.0), (False, 0.0)):
+        sheets = compose_sheets([small, large], facts, [np.radians(-30), 0.0], turn=turn)
+        assert sheets[0].page.scale == sheets[1].page.scale == 100
+        own = [sheet.page.turn_deg for sheet in sheets]
+        assert own == pytest.approx([expected - 30, expected])
+    loose = compose_sheets([small, large], facts, [0.0, None], turn=True)[1]
+    assert loose.page.turn_deg == pytest.approx(-large.main_direction_deg)
 
 
 def test_a_shared_frame_tells_the_elevations(floors, tmp_path):

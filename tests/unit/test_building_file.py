@@ -29,6 +29,7 @@ def test_storeys_are_read_as_they_stand(tmp_path):
     assert building.list_results() == [
         "results/Town_hall/building.ifc",
         "results/Town_hall/building.dxf",
+        "results/Town_hall/building.pdf",
     ]
 
 

@@ -79,20 +79,20 @@ def test_names_are_letters_and_no_markup(name):
     assert not any("onload" in e.attrib for e in ElementTree.fromstring(text).iter())
     assert " ".join(name.split()) in texts(text)
     figure = drawing.draw_sheet(composition.compose_sheet(drawn))
-    assert figure_files.format_pdf(figure, name).startswith(b"%PDF")
+    assert figure_files.format_pdf([figure], name).startswith(b"%PDF")
 
 
 def test_the_same_plan_gives_the_same_bytes():
     sheets = [composition.compose_sheet(plan()) for _ in range(2)]
     assert svg.format_svg_sheet(sheets[0]) == svg.format_svg_sheet(sheets[1])
-    for form in (figure_files.format_pdf, figure_files.format_png):
-        once, again = (form(drawing.draw_sheet(sheet)) for sheet in sheets)
-        assert once == again
+    once, again = (drawing.draw_sheet(sheet) for sheet in sheets)
+    assert figure_files.format_pdf([once]) == figure_files.format_pdf([again])
+    assert figure_files.format_png(once) == figure_files.format_png(again)
 
 
 def test_pdf_is_one_page_of_the_sheet_s_size_with_letters_of_its_own():
     sheet = composition.compose_sheet(plan())
-    made = figure_files.format_pdf(drawing.draw_sheet(sheet), "Floor plan of office")
+    made = figure_files.format_pdf([drawing.draw_sheet(sheet)], "Floor plan of office")
     assert made.startswith(b"%PDF") and b"CreationDate" not in made
     assert b"Floor plan of office" in made and b"DejaVuSans" in made
     (box,) = re.findall(rb"/MediaBox \[ 0 0 ([\d.]+) ([\d.]+) \]", made)

@@ -133,6 +133,7 @@ def test_an_open_room_s_area_is_a_guess_here_too():
     rooms = floorplan_making.rooms() | {"closed": np.array([True, False])}
     stamps = reopened(plan(rooms=rooms)).modelspace().query('INSERT[name=="ROOM-STAMP"]')
     assert [attributes(i)["AREA"] for i in stamps] == ["12.0 m²", "about 9.0 m²"]
+    assert [attributes(i)["PERIMETER"] for i in stamps] == ["14.00 m", "about 12.00 m"]
 
 
 def test_evidence_of_walls_lies_on_their_lines_on_a_layer_that_is_off():
@@ -170,6 +171,14 @@ def test_dimensions_measure_metres_in_any_unit(unit, per_m):
     assert read[-1] == pytest.approx(7.4, abs=1e-3)
     assert outlines(document, "A-AREA").area == pytest.approx(21 * per_m**2)
     assert {d.dxf.layer for d in dimensions} == {"A-ANNO-DIMS"}
+
+
+def test_the_drawing_states_its_style_of_dimensions_for_programs_without_styles():
+    header = reopened(plan(), "mm").header
+    # letters of 1.8 mm at 1:50, metres of millimetres
+    stated = {name: header[name] for name in ("$DIMTXT", "$DIMLFAC", "$DIMDEC", "$DIMTAD")}
+    assert stated == {"$DIMTXT": 90.0, "$DIMLFAC": 0.001, "$DIMDEC": 2, "$DIMTAD": 1}
+    assert header["$DIMSTYLE"] == "SCANPLAN"
 
 
 @pytest.mark.parametrize("unit", ["m", "mm"])

@@ -66,11 +66,25 @@ def test_of_the_parts_of_a_wall_the_longer_keeps_its_id():
     assert parts[1] == ids[0] and parts[0] != ids[0]
 
 
-def test_a_door_is_not_the_window_that_was_there():
+def test_an_opening_keeps_its_id_when_it_is_of_another_type():
     place = shapely.box(0, 0, 1, 0.1)
     ids, known = first(("door", place))
     again, after = run(elements(("window", place)), known)
-    assert again != ids and after["kind"].tolist() == ["door", "window"]
+    assert again == ids and after["kind"].tolist() == ["door"]
+    # a wall or a room in its place is something else
+    assert run(elements(("wall", place)), known)[0] != ids
+    assert run(elements(("room", place)), known)[0] != ids
+
+
+def test_an_opening_of_the_same_type_has_the_id_before_one_of_another():
+    # with 0.1 m around both share 1.0 m of 1.2 m with the door that was there
+    ids, known = first(("door", shapely.box(0, 0, 1, 0.1)))
+    window, door = (
+        ("window", shapely.box(-0.2, 0, 0.8, 0.1)),
+        ("door", shapely.box(0.2, 0, 1.2, 0.1)),
+    )
+    again, _ = run(elements(window, door), known)
+    assert again[1] == ids[0] and again[0] != ids[0]
 
 
 def test_what_was_away_comes_back_under_its_id():

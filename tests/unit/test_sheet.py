@@ -163,7 +163,7 @@ def test_the_main_direction_follows_the_building(angle_deg):
 def test_a_plan_is_turned_unless_it_is_not_to_be():
     drawn = turned(plan(), 27)
     assert composition.compose_sheet(drawn).page.turn_deg == pytest.approx(-27)
-    straight = composition.compose_sheet(drawn, turn=False)
+    straight = composition.compose_sheet(drawn, turn_deg=0.0)
     assert straight.page.turn_deg == 0
     said = [word.text for word in straight.paper_words]
     assert any("not turned" in text for text in said)

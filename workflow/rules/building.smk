@@ -1,12 +1,18 @@
 rule assemble_building:
-    """Put the plans of all storeys into one model and one drawing."""
+    """Put the plans of all storeys into one model, one drawing and one set of sheets."""
     input:
         ifc=of_storeys("plan/plan.ifc"),
-        dxf=of_storeys("plan/plan.dxf"),
-        free=of_storeys("plan/free.parquet"),
+        faces=tables_of_storeys("faces"),
+        walls=tables_of_storeys("walls"),
+        openings=tables_of_storeys("openings"),
+        rooms=tables_of_storeys("rooms"),
+        evidence=tables_of_storeys("evidence"),
+        free=tables_of_storeys("free"),
+        confidence=of_storeys("plan/confidence.parquet"),
     output:
         ifc=f"results/{BUILDING.name}/building.ifc",
         dxf=f"results/{BUILDING.name}/building.dxf",
+        pdf=f"results/{BUILDING.name}/building.pdf",
     log:
         f"logs/{BUILDING.name}/assemble_building.log",
     benchmark:
@@ -19,5 +25,9 @@ rule assemble_building:
         code=code_of("assemble_building"),
         name=BUILDING.name,
         storeys=[vars(storey) for storey in BUILDING.storeys],
+        settings=[
+            stage_settings.select_drawing(DATASETS[storey.dataset].settings)
+            for storey in BUILDING.storeys
+        ],
     script:
         "../../scripts/assemble_building.py"

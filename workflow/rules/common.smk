@@ -272,11 +272,15 @@ def plan_table(table):
     """An input function: a table of the plan, the corrected one where the dataset has corrections."""
 
     def path(wildcards):
-        is_corrected = DATASETS[wildcards.dataset].corrections is not None
-        folder = "plan/corrected" if is_corrected else "plan"
-        return f"results/{wildcards.dataset}/{folder}/{table}.parquet"
+        return plan_table_of(wildcards.dataset, table)
 
     return path
+
+
+def plan_table_of(dataset, table):
+    """Likewise of one dataset."""
+    folder = "plan" if DATASETS[dataset].corrections is None else "plan/corrected"
+    return f"results/{dataset}/{folder}/{table}.parquet"
 
 
 def corrections(wildcards):
@@ -382,6 +386,11 @@ def comparison_of(name):
 def of_storeys(file):
     """A result of every storey of the building, from the lowest up."""
     return [f"results/{storey.dataset}/{file}" for storey in BUILDING.storeys]
+
+
+def tables_of_storeys(table):
+    """Likewise a table of their plans."""
+    return [plan_table_of(storey.dataset, table) for storey in BUILDING.storeys]
 
 
 def of_all_datasets(*kinds):

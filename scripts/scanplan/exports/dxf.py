@@ -6,6 +6,7 @@ from ezdxf import zoom
 from ezdxf.document import Drawing
 from ezdxf.entities.dxfgfx import DXFGraphic
 from ezdxf.entities.insert import Insert
+from ezdxf.entities.viewport import Viewport
 from ezdxf.enums import TextEntityAlignment
 from ezdxf.layouts.base import BaseLayout
 from ezdxf.layouts.layout import Modelspace, Paperspace
@@ -57,10 +58,16 @@ def format_dxf(sheet: Sheet, unit: str = "mm") -> str:
     scale = Scale(unit, sheet.page)
     with dxf_document.fix_metadata():
         document = dxf_document.open_document(unit, scale)
-        _Plan(document.modelspace(), sheet.page, scale).draw(sheet)
-        _draw_layout(document, sheet, scale)
-        _state_extent(document, sheet, scale)
+        draw_plan(document, sheet, scale)
+        draw_layout(document, "Sheet", sheet, scale)
+        document.layouts.delete("Layout1")
+        state_extent(document, sheet_corners_m(sheet) * scale.per_m)
         return dxf_document.format_document(document)
+
+
+def draw_plan(document: Drawing, sheet: Sheet, scale: Scale) -> None:
+    """Draw the plan of a sheet into the model space, in the frame of the map."""
+    _Plan(document.modelspace(), sheet.page, scale).draw(sheet)
 
 
 class _Plan:
@@ -103,14 +110,15 @@ class _Plan:
                 "rotation": symbol_angle_deg(symbol),
             },
         )
-        facts: Facts = {**symbol.facts, "element": symbol.element, "width_m": symbol.width_m}
+        own: Facts = {"element": symbol.element, "width_m": symbol.width_m}
+        facts: Facts = {"corrected": "no", **symbol.facts, **own}
         middle = self._point(symbol.ends_m.mean(axis=0))
         for tag, fact in dxf_document.SYMBOL_TAGS.items():
             self._add_attribute(insert, tag, _format_fact(facts.get(fact)), middle, "A-ANNO-TEXT")
         _attach_facts(insert, symbol.facts)
-        if symbol.verify:
+        for kind in symbol.surrounded_by:
             around = surround_symbol(self._page, symbol) * self._scale.per_m
-            drawn = {"layer": doubt_layer(layer)}
+            drawn = {"layer": doubt_layer(layer) if kind == "verify" else STYLES[kind].layer}
             self._space.add_lwpolyline(around.tolist(), close=True, dxfattribs=drawn)
 
     def _add_attribute(
@@ -129,7 +137,7 @@ class _Plan:
         insert = self._space.add_blockref(
             dxf_document.STAMP, self._point(first.place), dxfattribs={"layer": layer}
         )
-        is_number = first.text.removesuffix(" ?") == stamp.facts["NUMBER"]
+        is_number = first.text.removesuffix(" ?").removesuffix(" *") == stamp.facts["NUMBER"]
         shown = dict(zip(("NUMBER" if is_number else "NAME", "AREA"), stamp.words, strict=False))
         for tag in dxf_document.STAMP_TAGS:
             if tag in shown:
@@ -161,11 +169,10 @@ class _Plan:
         return x, y
 
 
-def _draw_layout(document: Drawing, sheet: Sheet, scale: Scale) -> None:
-    """Add the sheet: what stands beside the plan, and a viewport that shows it."""
+def draw_layout(document: Drawing, name: str, sheet: Sheet, scale: Scale) -> Viewport:
+    """Add a layout with what stands beside a plan; return its view of the plan."""
     page = sheet.page
-    layout = document.layout("Layout1")
-    document.layouts.rename("Layout1", "Sheet")
+    layout = document.layouts.new(name)
     assert isinstance(layout, Paperspace)
     layout.page_setup(size=page.size_mm, margins=(0, 0, 0, 0), units="mm")
     for mark in sheet.paper_marks:
@@ -193,20 +200,22 @@ def _draw_layout(document: Drawing, sheet: Sheet, scale: Scale) -> None:
     port.dxf.view_twist_angle = page.turn_deg
     for viewport in layout.viewports():
         viewport.dxf.layer = port.dxf.layer
+    return port
 
 
-def _state_extent(document: Drawing, sheet: Sheet, scale: Scale) -> None:
-    """State where the drawing is, and open its view there."""
+def state_extent(document: Drawing, corners: FloatArray) -> None:
+    """State that the drawing lies within corners (n, 2), and open its view there."""
     space = document.modelspace()
-    corners = sheet.page.to_plan(_box_corners(sheet.page)) * scale.per_m
     low, high = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
     space.reset_extents((*low, 0), (*high, 0))
     space.reset_limits(low, high)
     zoom.window(space, low, high)
 
 
-def _box_corners(page: Page) -> FloatArray:
-    return shapely.get_coordinates(shapely.box(*page.drawing_mm))
+def sheet_corners_m(sheet: Sheet) -> FloatArray:
+    """Return the corners (5, 2) of the part of the map that a sheet shows."""
+    corners_mm = shapely.get_coordinates(shapely.box(*sheet.page.drawing_mm))
+    return sheet.page.to_plan(corners_mm)
 
 
 def _add_mark(space: BaseLayout, mark: Mark, factor: float) -> list[DXFGraphic]:

@@ -21,16 +21,22 @@ DIMENSIONS = "SCANPLAN"
 TEXT_STYLE = "SCANPLAN"
 STAMP = "ROOM-STAMP"
 TITLE = "TITLE-BLOCK"
-STAMP_TAGS = ("NUMBER", "NAME", "AREA", "PERIMETER", "HEIGHT", "CLOSED")
+STAMP_TAGS = ("NUMBER", "NAME", "AREA", "PERIMETER", "HEIGHT", "CLOSED", "CORRECTED")
 SYMBOL_TAGS = {
     "TAG": "element",
     "WIDTH": "width_m",
     "SILL": "sill_m",
     "LINTEL": "lintel_m",
     "RAYS": "n_rays",
+    "CORRECTED": "corrected",
 }
 """Attributes of doors, windows and passages, and what of their facts they state."""
 UNITS = {"mm": InsertUnits.Millimeters, "m": InsertUnits.Meters}
+_DRAWN_BY = (
+    *("dimtxt", "dimtsz", "dimexe", "dimexo", "dimgap", "dimlfac"),
+    *("dimtad", "dimtih", "dimtoh", "dimdec", "dimzin", "dimdsep"),
+)
+"""What of a style of dimensions a drawing states as a whole, too."""
 _VERSION = "R2010"  # AC1024, which all current CAD programs read
 _FONT = "arial.ttf"  # narrower than the font that words were placed by
 
@@ -64,6 +70,15 @@ def open_document(unit: str, scale: Scale) -> Drawing:
     for name, (dash_mm, gap_mm) in DASHES_MM.items():
         dash, gap = dash_mm * scale.per_mm, gap_mm * scale.per_mm
         document.linetypes.add(name, pattern=[dash + gap, dash, -gap], description=name.title())
+    add_layers(document)
+    document.styles.add(TEXT_STYLE, font=_FONT)
+    _add_dimension_style(document, scale)
+    _add_blocks(document, scale)
+    return document
+
+
+def add_layers(document: Drawing) -> None:
+    """Add the layers of a plan."""
     for name, layer in LAYERS.items():
         # line weights are hundredths of a millimetre
         made = document.layers.add(
@@ -75,10 +90,6 @@ def open_document(unit: str, scale: Scale) -> Drawing:
         )
         if name == "A-WALL-CNTR":
             made.off()
-    document.styles.add(TEXT_STYLE, font=_FONT)
-    _add_dimension_style(document, scale)
-    _add_blocks(document, scale)
-    return document
 
 
 def _add_dimension_style(document: Drawing, scale: Scale) -> None:
@@ -103,6 +114,10 @@ def _add_dimension_style(document: Drawing, scale: Scale) -> None:
     style.dxf.dimlfac = 1 / scale.per_m
     style.dxf.dimfxlon = 1
     style.dxf.dimfxl = Paper.EXTENSION * scale.per_mm
+    # programs that know no styles of dimensions take the drawing's own values
+    document.header["$DIMSTYLE"] = DIMENSIONS
+    for name in _DRAWN_BY:
+        document.header[f"${name.upper()}"] = style.dxf.get(name)
 
 
 def _add_blocks(document: Drawing, scale: Scale) -> None:

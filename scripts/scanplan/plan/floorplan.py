@@ -92,6 +92,8 @@ class FloorPlan:
         Heights in the map frame, NaN where not seen.
     georeference : GeoReference or None
         Where the plan lies on Earth, where a person said so.
+    n_corrections : int
+        How many corrections by hand are carried out in it, removals with them.
     doubted : doubts.Doubts
         What speaks against all of the plan.
     """
@@ -108,6 +110,7 @@ class FloorPlan:
     floor_z_m: float = np.nan
     ceiling_z_m: float = np.nan
     georeference: GeoReference | None = None
+    n_corrections: int = 0
     doubted: Doubts = NO_DOUBT
 
     @property
@@ -338,6 +341,7 @@ def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: f
         ceiling_z_m,
         name,
         georeference=GeoReference(**json.loads(reference)) if reference else None,
+        n_corrections=int(tables.read_note(files["free"], schemas.FREE, "n_corrections") or 0),
         doubted=read_doubts(files["free"], schemas.FREE),
         **assumed_m,
     )
@@ -382,6 +386,11 @@ def _join_confidence(table: str, columns: Columns, rated: Columns) -> Columns:
     added = {"p_true": np.append(rated["p_true"], 0.0)[known]}
     added["verify"] = np.append(rated["verify"], True)[known]
     added["doubt"] = np.append(rated["doubt"], "not seen")[known]
+    if "corrected" in columns:
+        # what a person has looked at needs no other to verify it
+        is_by_hand = columns["corrected"] != ""
+        added["verify"] &= ~is_by_hand
+        added["doubt"][is_by_hand] = ""
     return {**columns, **added}
 
 

@@ -56,7 +56,7 @@ class Building:
 
     def list_results(self) -> list[str]:
         """List what is made of all storeys together."""
-        return [f"results/{self.name}/building.{suffix}" for suffix in ("ifc", "dxf")]
+        return [f"results/{self.name}/building.{suffix}" for suffix in ("ifc", "dxf", "pdf")]
 
     def note_unaligned(self) -> list[str]:
         """Say which storeys are laid on the others as their frames happen to lie."""

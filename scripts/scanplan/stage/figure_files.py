@@ -2,8 +2,10 @@
 
 import io
 import logging
+from collections.abc import Sequence
 
 import matplotlib
+from matplotlib.backends.backend_pdf import PdfPages
 from matplotlib.figure import Figure
 
 # it logs every table that it leaves out of a font
@@ -19,14 +21,16 @@ def format_svg(figure: Figure) -> str:
     return text.getvalue()
 
 
-def format_pdf(figure: Figure, title: str | None = None) -> bytes:
-    """Return a figure as PDF bytes that are the same for the same figure."""
+def format_pdf(figures: Sequence[Figure], title: str | None = None) -> bytes:
+    """Return figures as the pages of a PDF: bytes that are the same for the same figures."""
     metadata = {"Title": title, "CreationDate": None, "Creator": "scanplan", "Producer": None}
     # 42: TrueType fonts, whose text can be searched
     with matplotlib.rc_context({"pdf.fonttype": 42}):
-        page = io.BytesIO()
-        figure.savefig(page, format="pdf", metadata=metadata)
-    return page.getvalue()
+        file = io.BytesIO()
+        with PdfPages(file, metadata=metadata) as pages:
+            for figure in figures:
+                pages.savefig(figure)
+    return file.getvalue()
 
 
 def format_png(figure: Figure, pixels: int = 2400) -> bytes:

@@ -3,6 +3,10 @@
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
+from scanplan.types import FloatArray
+
 
 @dataclass(frozen=True)
 class PlacedStorey:
@@ -12,7 +16,7 @@ class PlacedStorey:
     ----------
     name : str
     text : str
-        Of its IFC or DXF file, in its own map frame.
+        Of its IFC file, in its own map frame.
     x_m, y_m, rotation_rad : float
         Of its map frame in the building's.
     elevation_m : float
@@ -25,6 +29,11 @@ class PlacedStorey:
     y_m: float
     rotation_rad: float
     elevation_m: float
+
+    def to_building(self, xy_m: FloatArray) -> FloatArray:
+        """Return places (n, 2) of its map frame in the building's."""
+        x, y = self.along
+        return xy_m @ np.array([[x, y], [-y, x]]) + [self.x_m, self.y_m]
 
     @property
     def along(self) -> tuple[float, float]:

@@ -30,7 +30,8 @@ class Elements:
     Attributes
     ----------
     kinds : (n,) str
-        wall, room, or the type of an opening: those of different kinds are never the same.
+        wall, room, or the type of an opening: a wall is never a room or an opening, and an opening
+        of another type is the same only where none of its own type is.
     shapes : (n,) Polygons
         What they cover, metres in the map frame.
     """
@@ -49,10 +50,11 @@ def list_elements(plan: FloorPlan) -> Elements:
 def identify_elements(elements: Elements, known: Columns, name: str) -> list[str]:
     """Return the GlobalId of each element: that of a known one in its place, or a new one.
 
-    Two of a kind may be the same if half of the smaller lies in the other, each with 0.1 m around
+    Two of a table may be the same if half of the smaller lies in the other, each with 0.1 m around
     it: of a wall more or less is drawn. Of all ways to pair such elements that with the largest sum
-    of intersections over unions is taken. Elements that were known as they are keep their ids
-    whatever else is known.
+    of intersections over unions is taken, which count half where an opening is of another type: a
+    door that turns out to be a window is still what people wrote of. Elements that were known as
+    they are keep their ids whatever else is known.
 
     Parameters
     ----------
@@ -69,10 +71,13 @@ def identify_elements(elements: Elements, known: Columns, name: str) -> list[str
     """
     shapes = shapely.from_wkb(np.asarray(known["geometry"], object))
     ids = np.full(len(elements.kinds), "", object)
-    for kind in dict.fromkeys(elements.kinds.tolist()):
-        rows = np.flatnonzero(elements.kinds == kind)
-        known_rows = np.flatnonzero(known["kind"] == kind)
+    of_table, known_of_table = _tables_of(elements.kinds), _tables_of(known["kind"])
+    for table in KINDS:
+        rows = np.flatnonzero(of_table == table)
+        known_rows = np.flatnonzero(known_of_table == table)
         shared = _shared_areas(elements.shapes[rows], shapes[known_rows])
+        is_of_type = elements.kinds[rows, None] == known["kind"][known_rows]
+        shared = np.where(is_of_type, shared, shared / 2)
         pairs = np.column_stack(linear_sum_assignment(shared, maximize=True))
         kept = pairs[shared[*pairs.T] > 0]
         ids[rows[kept[:, 0]]] = known["global_id"][known_rows[kept[:, 1]]]
@@ -135,6 +140,12 @@ def derive_id(*words: object) -> str:
 
 def _table(plan: FloorPlan, kind: str) -> Columns:
     return {"wall": plan.walls, "opening": plan.openings, "room": plan.rooms}[kind]
+
+
+def _tables_of(kinds: Array) -> Array:
+    """Return in which of `KINDS` elements of some kinds are: types of openings are all of one."""
+    kinds = np.asarray(kinds, str)
+    return np.where(np.isin(kinds, KINDS), kinds, "opening")
 
 
 def _shared_areas(shapes: Array, known: Array) -> FloatArray:

@@ -2,7 +2,7 @@
 
 import json
 import struct
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from enum import IntEnum
 from typing import Any
 
@@ -15,7 +15,7 @@ from scanplan.exports.model_colours import COLOURS, colour_of, read_colour
 from scanplan.exports.opening_extents import LEAF_M, vertical_extent_m
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
-from scanplan.types import Array, FloatArray, IntArray
+from scanplan.types import Array, Columns, FloatArray, IntArray
 
 
 class _Code(IntEnum):
@@ -40,8 +40,10 @@ class _Model:
         self._data = bytearray()
         self._materials: dict[str, int] = {}
 
-    def add(self, name: str, global_id: str, colour: str, triangles_m: FloatArray) -> None:
-        """Add triangles (n, 3, 3) in the map frame as an object."""
+    def add(
+        self, name: str, about: Mapping[str, str], colour: str, triangles_m: FloatArray
+    ) -> None:
+        """Add triangles (n, 3, 3) in the map frame as an object, with what is known about it."""
         if len(triangles_m) == 0:
             return
         # glTF's y points up
@@ -55,9 +57,7 @@ class _Model:
         self.content["meshes"].append({"name": name, "primitives": [primitive]})
         number = len(self.content["nodes"])
         self.content["scenes"][0]["nodes"].append(number)
-        self.content["nodes"].append(
-            {"name": name, "mesh": number, "extras": {"global_id": global_id}}
-        )
+        self.content["nodes"].append({"name": name, "mesh": number, "extras": {**about}})
 
     def pack(self) -> bytes:
         """Return the file."""
@@ -112,7 +112,8 @@ def format_glb(plan: FloorPlan, ids: ElementIds) -> bytes:
         parts = [_prism(part, *extent_m) for part, extent_m in _solid_parts(plan, row, body)]
         colour = colour_of(plan.walls, row, state)
         name = f"Wall {plan.walls['wall'][row]}"
-        model.add(name, ids["wall"][row], colour, np.concatenate(parts))
+        about = _about(ids["wall"][row], plan.walls, row)
+        model.add(name, about, colour, np.concatenate(parts))
     lines_m = floorplan.centrelines_m(plan.openings)
     leaves = floorplan.buffer_lines(lines_m, np.full(len(lines_m), LEAF_M / 2))
     for row, kind in enumerate(plan.openings["type"]):
@@ -120,10 +121,17 @@ def format_glb(plan: FloorPlan, ids: ElementIds) -> bytes:
             name = f"{kind.capitalize()} {plan.openings['opening'][row]}"
             leaf = _prism(leaves[row], *vertical_extent_m(plan, row))
             colour = colour_of(plan.openings, row, kind)
-            model.add(name, ids["opening"][row], colour, leaf)
+            model.add(name, _about(ids["opening"][row], plan.openings, row), colour, leaf)
     for row, area in enumerate(plan.areas):
-        model.add(plan.room_names[row], ids["room"][row], "slab", _flat(area, 0.0))
+        about = _about(ids["room"][row], plan.rooms, row)
+        model.add(plan.room_names[row], about, "slab", _flat(area, 0.0))
     return model.pack()
+
+
+def _about(global_id: str, columns: Columns, row: int) -> dict[str, str]:
+    """Return an element's id, and what a person said of it where one did."""
+    said = {"corrected": str(columns["corrected"][row])} if "corrected" in columns else {}
+    return {"global_id": global_id, **{name: text for name, text in said.items() if text}}
 
 
 def _solid_parts(

@@ -62,7 +62,8 @@ def _describe_way(plan: FloorPlan, rows: Rows, row: int) -> dict[str, Any]:
     middle_m = line_m.mean(axis=0)
     joined = [rows["room_a"][row], rows["room_b"][row]]
     through_m = _order_places(plan, np.array([middle_m + step_m, middle_m - step_m]), joined)
-    doubt = {name: rows[name][row] for name in ("p_true", "verify", "doubt") if name in rows}
+    stated = ("p_true", "verify", "doubt", "corrected")
+    doubt = {name: rows[name][row] for name in stated if name in rows}
     return {
         "opening": rows["opening"][row],
         "global_id": rows["global_id"][row],

@@ -37,13 +37,17 @@ class StoreyPlan:
 
 
 def describe_doubt(columns: Columns, row: int) -> dict[str, tuple[str, Any]]:
-    """Return what a table says of the doubt about an element, as far as it has such columns."""
+    """Return what a table says of the doubt about an element, and whether a person corrected it.
+
+    As far as it has such columns.
+    """
     stated = {name: values[row] for name, values in columns.items()}
     doubt = str(stated.get("doubt", ""))
     return {
         "VerifyOnSite": ("IfcBoolean", bool(stated["verify"]) if "verify" in stated else None),
         "ProbabilityOfExistence": ("IfcReal", known(stated.get("p_true", np.nan))),
         "Doubt": ("IfcText", doubt or None),
+        "Corrected": ("IfcLabel", str(stated.get("corrected", "")) or None),
     }
 
 

@@ -50,7 +50,13 @@ class Sheet:
     paper_words: list[Word] = field(repr=False)
 
 
-def compose_sheet(plan: FloorPlan, facts: SheetFacts | None = None, *, turn: bool = True) -> Sheet:
+def compose_sheet(
+    plan: FloorPlan,
+    facts: SheetFacts | None = None,
+    *,
+    turn_deg: float | None = None,
+    least_scale: int = 1,
+) -> Sheet:
     """Compose the sheet of a plan.
 
     Parameters
@@ -58,8 +64,11 @@ def compose_sheet(plan: FloorPlan, facts: SheetFacts | None = None, *, turn: boo
     plan : FloorPlan
     facts : SheetFacts, optional
         What the title block states beside the plan.
-    turn : bool
-        Whether the plan is turned so that its main walls run along the sheet.
+    turn_deg : float, optional
+        The plan is turned by, counterclockwise; by default so that its main walls run along the
+        sheet.
+    least_scale : int
+        Least denominator of its scale, as of the other sheets of a set.
     """
     facts = facts or SheetFacts()
     marks = [*content.draw_walls(plan), *content.draw_axes(plan), *content.draw_doubts(plan)]
@@ -67,8 +76,8 @@ def compose_sheet(plan: FloorPlan, facts: SheetFacts | None = None, *, turn: boo
     legend = _list_legend(plan, marks, symbols)
     # the scale bar with the axes takes six rows
     blocks = [6, len(legend), len(plan.areas)]
-    turn_deg = -plan.main_direction_deg if turn else 0.0
-    page = choose_page(*_extent(marks, symbols, turn_deg), turn_deg, blocks)
+    turn_deg = -plan.main_direction_deg if turn_deg is None else turn_deg
+    page = choose_page(*_extent(marks, symbols, turn_deg), turn_deg, blocks, least_scale)
     bar, legend_slots, table_slots = fill_slots(page.slots(), blocks) or ([], [], [])
     beside: list[Mark | Word] = [
         *title.draw_frame(page),
@@ -76,6 +85,7 @@ def compose_sheet(plan: FloorPlan, facts: SheetFacts | None = None, *, turn: boo
         *title.draw_scale_bar(page, bar[0]),
         *title.draw_legend(legend, legend_slots),
     ]
+    marks += content.draw_corrections(plan, _apart_m(page))
     space = _open_space(page, marks, symbols)
     stamps = words.stamp_rooms(page, plan, space)
     beside += title.draw_room_table(stamps, table_slots)
@@ -109,6 +119,8 @@ def _list_legend(plan: FloorPlan, marks: list[Mark], symbols: list[Symbol]) -> l
     tables = (plan.walls, plan.openings, plan.rooms)
     if any(content.is_doubtful(columns).any() for columns in tables):
         kinds.add("verify")
+    if any(content.is_corrected(columns).any() for columns in tables):
+        kinds.add("corrected")
     return title.list_legend(marks, kinds)
 
 
@@ -130,7 +142,7 @@ def _open_space(page: Page, marks: list[Mark], symbols: list[Symbol]) -> LabelSp
     loose = [
         path
         for mark in marks
-        if mark.kind not in {*solid, "room", "axis", "verify"}
+        if mark.kind not in {*solid, "room", "axis", "verify", "corrected"}
         for path in mark.paths
     ]
     loose += [path for symbol in symbols for path in symbol_paths(symbol)]
@@ -211,9 +223,9 @@ def _plan_marks(sheet: Sheet) -> Iterator[Mark]:
         yield Mark(
             symbol.kind, paths, False, symbol.element, symbol.title, symbol.facts, symbol.verify
         )
-        if symbol.verify:
+        for kind in symbol.surrounded_by:
             around = straight(page.to_paper(surround_symbol(page, symbol)))
-            yield Mark("verify", [around], True, f"verify-{symbol.element}")
+            yield Mark(kind, [around], True, f"{kind}-{symbol.element}")
     for word in plan_words(sheet):
         if word.leader is not None:
             yield Mark("leader", [straight(page.to_paper(word.leader))])
@@ -222,9 +234,14 @@ def _plan_marks(sheet: Sheet) -> Iterator[Mark]:
 
 
 def surround_symbol(page: Page, symbol: Symbol) -> FloatArray:
-    """Return a line (n, 2) around a doubtful opening, map frame."""
-    half_m = symbol.thickness_m / 2 + Letters.SMALL / 2 / page.mm_per_m
+    """Return a line (n, 2) around a doubtful or corrected opening, map frame."""
+    half_m = symbol.thickness_m / 2 + _apart_m(page)
     return shapely.get_coordinates(shapely.buffer(shapely.LineString(symbol.ends_m), half_m))
+
+
+def _apart_m(page: Page) -> float:
+    """Return how far a line around an element is from it."""
+    return Letters.SMALL / 2 / page.mm_per_m
 
 
 def _dimension_marks(page: Page, dimension: Dimension) -> Iterator[Mark]:

@@ -50,6 +50,12 @@ def is_doubtful(columns: Columns) -> BoolArray:
     return np.asarray(columns.get("verify", np.zeros(n_rows)), bool)
 
 
+def is_corrected(columns: Columns) -> BoolArray:
+    """Return which rows (n,) of a table a person corrected."""
+    n_rows = len(next(iter(columns.values())))
+    return np.asarray(columns.get("corrected", np.full(n_rows, "")), str) != ""
+
+
 def draw_walls(plan: FloorPlan) -> Iterator[Mark]:
     """Yield rooms, what was not seen of their outlines, walls by what is known, and surfaces."""
     doubtful = is_doubtful(plan.rooms)
@@ -95,6 +101,15 @@ def draw_doubts(plan: FloorPlan) -> Iterator[Mark]:
         facts = facts_of("wall", plan.walls, row)
         title = " ".join(["verify wall", str(number), str(facts.get("doubt", ""))]).strip()
         yield _area("verify", plan.bodies[row], f"verify-wall-{number}", title, facts, verify=True)
+
+
+def draw_corrections(plan: FloorPlan, apart_m: float) -> Iterator[Mark]:
+    """Yield lines around the walls that a person corrected, so far from them, likewise."""
+    for row in np.flatnonzero(is_corrected(plan.walls)).tolist():
+        number, said = plan.walls["wall"][row], plan.walls["corrected"][row]
+        around = shapely.buffer(plan.bodies[row], apart_m, join_style="mitre")
+        facts = facts_of("wall", plan.walls, row)
+        yield _area("corrected", around, f"corrected-wall-{number}", f"wall {number} {said}", facts)
 
 
 def list_symbols(plan: FloorPlan) -> list[Symbol]:

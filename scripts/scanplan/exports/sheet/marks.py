@@ -106,6 +106,12 @@ class Symbol:
         """Its clear width."""
         return float(np.hypot(*(self.ends_m[1] - self.ends_m[0])))
 
+    @property
+    def surrounded_by(self) -> list[str]:
+        """The kinds of lines around it: of what is to be verified, or was corrected by hand."""
+        stated = {"verify": self.verify, "corrected": "corrected" in self.facts}
+        return [kind for kind, holds in stated.items() if holds]
+
 
 @dataclass(frozen=True)
 class Dimension:
@@ -134,7 +140,7 @@ class Stamp:
     words : list of Word
         Its lines, from the top.
     facts : dict of str to str
-        `NUMBER`, `NAME`, `AREA`, `PERIMETER`, `HEIGHT`, `CLOSED`, as text.
+        `NUMBER`, `NAME`, `AREA`, `PERIMETER`, `HEIGHT`, `CLOSED`, `CORRECTED`, as text.
     verify : bool
     """
 

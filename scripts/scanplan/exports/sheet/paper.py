@@ -117,7 +117,13 @@ def find_slots(inner_mm: tuple[float, float, float, float], rows: int) -> Iterat
             yield Slot(x1 - (3 - column) * Paper.COLUMN, top, rows - TITLE_ROWS)
 
 
-def choose_page(low_m: FloatArray, high_m: FloatArray, turn_deg: float, blocks: list[int]) -> Page:
+def choose_page(
+    low_m: FloatArray,
+    high_m: FloatArray,
+    turn_deg: float,
+    blocks: list[int],
+    least_scale: int = 1,
+) -> Page:
     """Choose the sheet and the scale for a plan.
 
     The largest of the usual scales at which it fits on a sheet, then the smallest sheet: at 1:50
@@ -130,11 +136,13 @@ def choose_page(low_m: FloatArray, high_m: FloatArray, turn_deg: float, blocks: 
     turn_deg : float
     blocks : list of int
         Rows of the tables that go with it; see `fill_slots`.
+    least_scale : int
+        Scales with a lesser denominator are not taken.
     """
     extent_m = np.asarray(high_m, float) - low_m
     middle_m = (np.asarray(high_m, float) + low_m) / 2
     largest = list(SIZES_MM)[-1]
-    for scale in _SCALES:
+    for scale in [scale for scale in _SCALES if scale >= least_scale]:
         for name, (long, short) in SIZES_MM.items():
             for size in ((long, short), (short, long)):
                 page = _fill_page(Page(name, size, scale, 0, turn_deg, middle_m), blocks)

@@ -1,7 +1,8 @@
 """What stands on a sheet beside its plan: frame, title block, legend, table of rooms, scale bar."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from scanplan.exports.sheet.styles import STYLES, Letters, Paper
 from scanplan.exports.sheet.symbols import BLOCKS, symbol_paths
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import OPENINGS, FloorPlan
-from scanplan.types import FloatArray
+from scanplan.types import Columns, FloatArray
 
 TITLE_TAG = "title:"
 """What the elements of a title block's values begin with."""
@@ -33,6 +34,8 @@ class SheetFacts:
         Scans that the plan is made of.
     version : str
         Of the software.
+    number, of : int
+        Which sheet of a set of how many it is.
     """
 
     project: str = ""
@@ -40,6 +43,26 @@ class SheetFacts:
     surveyed: str = "not known"
     n_scans: int = 0
     version: str = ""
+    number: int = 1
+    of: int = 1
+
+
+def summarise_survey(evidence: Columns, **stated: str | int) -> SheetFacts:
+    """Return what a title block states of the scans that a plan is made of.
+
+    Parameters
+    ----------
+    evidence : dict of str to (n,) array
+        The columns of `schemas.EVIDENCE`.
+    **stated
+        Other attributes of `SheetFacts`.
+    """
+    t_ns = evidence["t_ns"]
+    n_scans = len(np.unique(evidence["scan_id"]))
+    if len(t_ns) == 0:
+        return replace(SheetFacts(n_scans=n_scans), **stated)
+    first = datetime.fromtimestamp(int(t_ns.min()) / 1e9, UTC)
+    return replace(SheetFacts("", "", first.strftime("%Y-%m-%d"), n_scans), **stated)
 
 
 def draw_frame(page: Page) -> Iterator[Mark]:
@@ -61,9 +84,11 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
         int(np.sum(columns.get("verify", 0))) for columns in (plan.walls, plan.openings, plan.rooms)
     )
     contents = "; ".join(filter(None, [plan.mark, floorplan.summarise_floorplan(plan)]))
+    noun = "correction" if plan.n_corrections == 1 else "corrections"
+    by_hand = f"; {plan.n_corrections} {noun} by hand" if plan.n_corrections else ""
     rows = [
         [("Project", facts.project or plan.name, 2), ("Storey", facts.storey or "not named", 1)],
-        [("Drawing", "Floor plan, as surveyed", 2), ("Survey", plan.name, 1)],
+        [("Drawing", f"Floor plan, as surveyed{by_hand}", 2), ("Survey", plan.name, 1)],
         [
             ("Date of survey", facts.surveyed, 1),
             ("Accuracy", state_accuracy(plan), 2),
@@ -74,7 +99,7 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
         ],
         [
             ("Scale", f"1:{page.scale}", 1),
-            ("Sheet", f"{page.name}, 1 of 1", 1),
+            ("Sheet", f"{page.name}, {facts.number} of {facts.of}", 1),
             ("To verify on site", str(n_doubts) if n_doubts else "nothing flagged", 1),
         ],
         [
@@ -145,10 +170,14 @@ def draw_room_table(stamps: Sequence[Stamp], slots: Sequence[Slot]) -> Iterator[
     yield from _heads(slots, names, ends)
     for stamp, (x, y) in zip(stamps, _row_places(slots), strict=True):
         facts = stamp.facts
-        area = facts["AREA"].removesuffix(" m²").replace("about ", "~")
+        sizes = [
+            facts[tag].removesuffix(unit).replace("about ", "~")
+            for tag, unit in (("AREA", " m²"), ("PERIMETER", " m"))
+        ]
         height = "-" if facts["HEIGHT"] == "not seen" else facts["HEIGHT"].removesuffix(" m")
-        name = shorten_text(facts["NAME"] + " ?" * stamp.verify, Letters.SMALL, 15.0)
-        texts = [facts["NUMBER"], name, area, facts["PERIMETER"].removesuffix(" m"), height]
+        marks = " *" * (facts["CORRECTED"] != "no") + " ?" * stamp.verify
+        name = shorten_text(facts["NAME"], Letters.SMALL, 15.0 - 2.0 * len(marks)) + marks
+        texts = [facts["NUMBER"], name, *sizes, height]
         for column, (text, end) in enumerate(zip(texts, ends, strict=True)):
             kind = "verify" if stamp.verify and column == 1 else "title"
             yield _word(kind, text, x + Paper.GAP + end, y, Letters.SMALL, float(column > 1))

@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from scanplan.exports.sheet.content import is_doubtful
+from scanplan.exports.sheet.content import is_corrected, is_doubtful
 from scanplan.exports.sheet.dimensions import read_along, to_plan_word
 from scanplan.exports.sheet.labels import Candidate, LabelSpace
 from scanplan.exports.sheet.lettering import clean_text, shorten_text
@@ -22,26 +22,27 @@ def stamp_rooms(page: Page, plan: FloorPlan, space: LabelSpace) -> list[Stamp]:
     """Return the rooms' stamps, by number: small rooms have the choice of places first."""
     _, height_m = plan.storey_m
     rooms = plan.rooms
-    doubtful = is_doubtful(rooms)
+    doubtful, corrected = is_doubtful(rooms), is_corrected(rooms)
     stamps: dict[int, Stamp] = {}
     areas: list[BaseGeometry] = plan.areas.tolist()
     for row in np.argsort(rooms["area_m2"], kind="stable").tolist():
         number, closed = int(rooms["room"][row]), bool(rooms["closed"][row])
-        area = f"{'' if closed else 'about '}{rooms['area_m2'][row]:.1f} m²"
+        about = "" if closed else "about "
+        area = f"{about}{rooms['area_m2'][row]:.1f} m²"
         name = clean_text(plan.room_names[row])
         facts = {
             "NUMBER": str(number),
             "NAME": name,
             "AREA": area,
-            "PERIMETER": f"{rooms['perimeter_m'][row]:.2f} m",
+            "PERIMETER": f"{about}{rooms['perimeter_m'][row]:.2f} m",
             "HEIGHT": f"{height_m:.2f} m" if plan.height_from == "ceiling" else "not seen",
             "CLOSED": "yes" if closed else "no",
+            "CORRECTED": str(rooms["corrected"][row]) if corrected[row] else "no",
         }
         outline = page.place_shape(areas[row])
         middle = page.to_paper(np.array([rooms["x_m"][row], rooms["y_m"][row]]))
         title = shorten_text(name, Letters.MEDIUM, Paper.NAME)
-        if doubtful[row]:
-            title += " ?"
+        title += " *" * int(corrected[row]) + " ?" * int(doubtful[row])
         chosen = space.place(_stamp_places(outline, middle, number, title, area))
         words = [] if chosen is None else [to_plan_word(page, word) for word in chosen.words]
         stamps[row] = Stamp(words, facts, bool(doubtful[row]))

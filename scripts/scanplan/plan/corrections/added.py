@@ -69,11 +69,17 @@ def add_opening(rows: PlanRows, line_m: FloatArray, kind: str, said: str) -> boo
     return True
 
 
-def close_opening(rows: PlanRows, opening: Row) -> None:
-    """Let the faces of a wall go on where an opening was, on the sides that it has faces on."""
+def close_opening(rows: PlanRows, opening: Row) -> Row | None:
+    """Let the faces of a wall go on where an opening was, on the sides that it has faces on.
+
+    Returns
+    -------
+    dict or None
+        The wall's row; None where the opening is in none.
+    """
     wall = next((row for row in rows.walls if row["wall"] == opening["wall"]), None)
     if wall is None:
-        return
+        return None
     _, along = _frame(wall)
     line_m = floorplan.centrelines_m({name: np.array([opening[name]]) for name in _ENDS})[0]
     if np.diff(line_m @ along)[0] < 0:
@@ -83,6 +89,7 @@ def close_opening(rows: PlanRows, opening: Row) -> None:
         _add_face(rows, wall["wall"], line_m, half_m)
     if wall["face_right"] >= 0:
         _add_face(rows, wall["wall"], line_m[::-1], half_m)
+    return wall
 
 
 def _add_face(rows: PlanRows, wall: int, line_m: FloatArray, off_m: float) -> int:

@@ -119,7 +119,9 @@ def _change(rows: PlanRows, correction: Correction, row: Row, outcome: Outcome) 
 def _remove(rows: PlanRows, correction: Correction, row: Row, outcome: Outcome) -> None:
     number = row[correction.element]
     if correction.element == "opening":
-        added.close_opening(rows, row)
+        wall = added.close_opening(rows, row)
+        if wall is not None:
+            wall["corrected"] = wall["corrected"] or SAID["change"]
     rows.drop(correction.element, number)
     if correction.element == "wall":
         lost = [opening["opening"] for opening in rows.openings if opening["wall"] == number]

@@ -1,0 +1,207 @@
+"""What a person corrected says so in every export, and names are letters to every reader."""
+
+import json
+import struct
+from xml.etree import ElementTree
+
+import ezdxf
+import ifcopenshell
+import numpy as np
+import pandas as pd
+import pyogrio
+import pytest
+import yaml
+from ifcopenshell.util.element import get_psets
+from PIL import Image
+
+from correct_plan import correct_plan
+from export_files import export_files
+from export_plan import export_plan
+from helpers import floorplan_making
+from helpers.default_settings import SETTINGS
+from helpers.report_making import registration
+from scanplan.plan import floorplan, planning
+from scanplan.project import export_formats, stage_settings
+from scanplan.store import schemas, tables
+from scanplan.store.pose_columns import pose_columns
+
+CORRECTIONS = [
+    {"element": "room", "at": [5, 1], "name": "Küche"},
+    {"element": "wall", "at": [5.5, 3.0], "action": "keep"},
+    {"element": "opening", "at": [1.6, -0.1], "kind": "door"},
+    {"element": "opening", "at": [4.05, 1.5], "action": "remove"},
+    {"element": "wall", "action": "add", "line": [[1, 2], [3, 2]], "thickness_m": 0.2},
+]
+# by hand: wall 2 kept, wall 5 without its door, wall 6 added; window 2 a door; room 1 named
+SAID = {
+    "wall": {2: "kept by hand", 5: "changed by hand", 6: "added by hand"},
+    "opening": {2: "changed by hand"},
+    "room": {1: "changed by hand"},
+}
+DRAWN = ("geojson", "dxf", "svg", "pdf", "png", "pgm", "yaml")
+FILES = export_formats.list_files(export_formats.FILES)
+
+
+def exported(folder, corrections=(), name="office", **settings):
+    """The files of the plan drawn by hand, with corrections."""
+    plan = {table: folder / f"{table}.parquet" for table in planning.TABLES}
+    for table, schema in planning.TABLES.items():
+        tables.write_table(plan[table], schema, getattr(floorplan_making, table)())
+    if corrections:
+        path = folder / "corrections.yaml"
+        path.write_text(yaml.safe_dump({"corrections": list(corrections)}))
+        outputs = {table: folder / f"corrected/{table}.parquet" for table in planning.TABLES}
+        correct_plan(path, plan, outputs)
+        plan = outputs
+    registered = registration()
+    plan |= {"registration": folder / "registration.parquet", "poses": folder / "poses.parquet"}
+    tables.write_table(plan["registration"], schemas.REGISTRATION, registered)
+    n = len(registered["scan_id"])
+    poses = {
+        "scan_id": registered["scan_id"],
+        "t_ns": registered["t_ns"],
+        **pose_columns(np.zeros((n, 3)), np.tile([0.0, 0.0, 0.0, 1.0], (n, 1))),
+        "gap_s": np.zeros(n),
+        "covered": np.ones(n, bool),
+    }
+    tables.write_table(plan["poses"], schemas.POSES, poses)
+    files = {kind: folder / f"plan.{kind}" for kind in DRAWN}
+    files |= {kind: folder / FILES[kind] for kind in FILES if kind != "laz"}
+    drawing = stage_settings.select_drawing(SETTINGS) | settings
+    export_plan(plan, files, name=name, settings=drawing)
+    written = {kind: files[kind] for kind in FILES if kind in files}
+    written |= {"ids": folder / "ids.parquet", "known": folder / "known.parquet"}
+    own = stage_settings.select_files(SETTINGS)
+    export_files(plan, written, name=name, source="a", settings=own)
+    return files
+
+
+@pytest.fixture(scope="module")
+def corrected(tmp_path_factory):
+    return exported(tmp_path_factory.mktemp("corrected"), CORRECTIONS)
+
+
+def said(numbers, corrections):
+    pairs = zip(numbers, corrections, strict=True)
+    return {int(number): text for number, text in pairs if isinstance(text, str) and text}
+
+
+def test_geojson_says_so(corrected):
+    features = json.loads(corrected["geojson"].read_text())["features"]
+    for kind, expected in SAID.items():
+        rows = [f["properties"] for f in features if f["properties"]["kind"] == kind]
+        assert said([r[kind] for r in rows], [r["corrected"] for r in rows]) == expected
+
+
+def test_the_building_model_says_so(corrected):
+    model = ifcopenshell.open(corrected["ifc"])
+    found = {}
+    for kind, classes in {"wall": ["IfcWall"], "opening": ["IfcDoor", "IfcWindow"]}.items():
+        products = [p for ifc_class in classes for p in model.by_type(ifc_class)]
+        texts = [get_psets(p)["Scanplan_Evidence"].get("Corrected") for p in products]
+        found[kind] = said([p.Tag for p in products], texts)
+    spaces = model.by_type("IfcSpace")
+    texts = [get_psets(space)["Scanplan_Evidence"].get("Corrected") for space in spaces]
+    assert found == {kind: SAID[kind] for kind in found}
+    assert dict(zip([s.LongName for s in spaces], texts, strict=True)) == {
+        "Room 0": None, "Küche": "changed by hand"
+    }  # fmt: skip
+
+
+def test_tables_and_layers_say_so(corrected):
+    for kind, expected in SAID.items():
+        rows = pd.read_csv(corrected[f"{kind}s_csv"])
+        assert said(rows[kind], rows["corrected"]) == expected
+        about, _, _, columns = pyogrio.raw.read(corrected["gpkg"], layer=f"{kind}s")
+        layer = dict(zip(about["fields"], columns, strict=True))
+        assert said(layer[kind], layer["corrected"]) == expected
+    graph = json.loads(corrected["json"].read_text())
+    ways = graph["ways"]
+    assert said([w["opening"] for w in ways], [w["corrected"] for w in ways]) == SAID["opening"]
+    assert (
+        said([r["room"] for r in graph["rooms"]], [r["corrected"] for r in graph["rooms"]])
+        == (SAID["room"])
+    )
+
+
+def test_the_3d_model_says_so(corrected):
+    content = corrected["glb"].read_bytes()
+    (length,) = struct.unpack_from("<I", content, 12)
+    nodes = json.loads(content[20 : 20 + length])["nodes"]
+    found = {n["name"]: n["extras"]["corrected"] for n in nodes if "corrected" in n["extras"]}
+    walls = {f"Wall {number}": text for number, text in SAID["wall"].items()}
+    assert found == walls | {"Door 2": "changed by hand", "Küche": "changed by hand"}
+
+
+def test_the_drawing_says_so_on_a_layer_of_its_own(corrected):
+    document = ezdxf.readfile(corrected["dxf"])
+    assert not document.audit().errors
+    space = document.modelspace()
+    assert len(space.query('LWPOLYLINE[layer=="A-ANNO-REVS"]')) == 4
+    axes = space.query('LWPOLYLINE[layer=="A-WALL-CNTR"]')
+    facts = [[value for _, value in axis.get_xdata("SCANPLAN")] for axis in axes]
+    walls = {f[f.index("wall") + 1]: f[f.index("corrected") + 1] for f in facts if "corrected" in f}
+    assert walls == SAID["wall"]
+    inserts = [{a.dxf.tag: a.dxf.text for a in i.attribs} for i in space.query("INSERT")]
+    stated = {a.get("TAG", a.get("NAME")): a["CORRECTED"] for a in inserts}
+    assert stated == {
+        "door-0": "no", "door-2": "changed by hand", "Room 0": "no", "Küche *": "changed by hand"
+    }  # fmt: skip
+
+
+def test_sheets_show_it_and_explain_it(corrected, tmp_path):
+    root = ElementTree.parse(corrected["svg"]).getroot()
+    names = {e.get("id") for e in root.iter()}
+    assert {"corrected-wall-2", "corrected-wall-5", "corrected-wall-6"} < names
+    assert "corrected-door-2" in names and "corrected-door-0" not in names
+    texts = ["".join(e.itertext()) for e in root.iter("{http://www.w3.org/2000/svg}text")]
+    assert "corrected by hand *" in texts and "Küche *" in texts
+    assert "Floor plan, as surveyed; 5 corrections by hand" in texts
+    with Image.open(corrected["png"]) as image:
+        shown = np.asarray(image.convert("L"), float)
+    with Image.open(exported(tmp_path)["png"]) as image:
+        before = np.asarray(image.convert("L"), float)
+    assert shown.shape == before.shape and (np.abs(shown - before) > 60).mean() > 1e-3
+
+
+def test_who_has_looked_at_an_element_need_not_verify_it(tmp_path):
+    exported(tmp_path, CORRECTIONS)
+    numbers = {"openings": (0, 2), "rooms": range(2), "walls": range(7)}
+    rows = [(table, number) for table, of_table in numbers.items() for number in of_table]
+    rated = {
+        "table": np.array([table for table, _ in rows], object),
+        "number": np.array([number for _, number in rows], np.int32),
+        "p_true": np.full(len(rows), 0.3),
+        "verify": np.ones(len(rows), bool),
+        "doubt": np.full(len(rows), "few rays", object),
+    }
+    files = {table: tmp_path / f"corrected/{table}.parquet" for table in planning.TABLES}
+    files["confidence"] = tmp_path / "confidence.parquet"
+    tables.write_table(files["confidence"], schemas.CONFIDENCE, rated)
+    plan = floorplan.read_floorplan(files)
+    for table, kind in (("walls", "wall"), ("openings", "opening"), ("rooms", "room")):
+        columns = getattr(plan, table)
+        is_by_hand = np.isin(columns[kind], list(SAID[kind]))
+        assert is_by_hand.any() and (columns["verify"] == ~is_by_hand).all()
+        assert ((columns["doubt"] == "") == is_by_hand).all()
+
+
+@pytest.mark.parametrize("name", ["=1+1", "'); DROP TABLE rooms; --", '"a", "b" & c', "$x_2$"])
+def test_a_name_is_the_same_letters_to_every_reader(name, tmp_path):
+    entry = {"element": "room", "at": [5, 1], "name": name}
+    files = exported(tmp_path, [entry], name="office", project=name, storey=name)
+    model = ifcopenshell.open(files["ifc"])
+    assert model.by_type("IfcSpace")[1].LongName == name
+    features = json.loads(files["geojson"].read_text())["features"]
+    assert name in [f["properties"].get("name") for f in features]
+    assert json.loads(files["json"].read_text())["rooms"][1]["name"] == name
+    about, _, _, columns = pyogrio.raw.read(files["gpkg"], layer="rooms")
+    assert dict(zip(about["fields"], columns, strict=True))["name"].tolist()[1] == name
+    # a spreadsheet shows no formula
+    (shown,) = pd.read_csv(files["rooms_csv"])["name"].tolist()[1:]
+    assert shown == (f"'{name}" if name.startswith("=") else name)
+    texts = ["".join(e.itertext()) for e in ElementTree.parse(files["svg"]).iter()]
+    assert name in texts
+    document = ezdxf.readfile(files["dxf"])
+    stamps = [i for i in document.modelspace().query("INSERT") if i.dxf.name == "ROOM-STAMP"]
+    assert len(stamps) == 2 and not document.audit().errors
