@@ -17,13 +17,15 @@ def build_hulls(
     radius: str,
     seed: int,
     threads: int,
+    chunk: str | None = None,
 ) -> None:
-    """Write the table of hulls of a table of scans."""
+    """Write the table of hulls of a table of scans, or of a chunk of them."""
     parts = per_scan.map_scans(
         hulls.make_cluster_hulls,
         scans,
         label="build_hulls",
         threads=threads,
+        scan_ids=per_scan.read_chunk_ids(scans, chunk),
         n_clusters=n_clusters,
         sample_size=sample_size,
         radius=radius,
@@ -49,4 +51,5 @@ if __name__ == "__main__":
             snakemake.output.hulls,
             **snakemake.params.settings,
             threads=snakemake.threads,
+            chunk=snakemake.wildcards.get("chunk"),
         )

@@ -6,6 +6,7 @@ def compared(name):
 def figures_among(files_of):
     """An input function: the figures among the results of the job's dataset."""
 
+    @signed
     def figures(wildcards):
         folder = f"results/{wildcards.dataset}/figures/"
         return [f for f in files_of(wildcards.dataset) if f.startswith(folder)]
@@ -16,6 +17,7 @@ def figures_among(files_of):
 def files_beside(files_of):
     """An input function: the tables and plans among the results, which a report links and sizes."""
 
+    @signed
     def beside(wildcards):
         folder = f"results/{wildcards.dataset}/figures/"
         files = files_of(wildcards.dataset)
@@ -31,6 +33,7 @@ def files_beside(files_of):
 def evaluated(*tables):
     """An input function: tables of the evaluation of the job's dataset, if its truth is known."""
 
+    @signed
     def known(wildcards):
         folder = f"results/{wildcards.dataset}/evaluation"
         if DATASETS[wildcards.dataset].truth is None:
@@ -51,6 +54,7 @@ placed = workflow.modifier.path_modifier.modify
 def run_times(orderings, extractors=(), comparing=()):
     """A param function: Snakemake's measurements of the stages of a report, in their order."""
 
+    @signed
     def measured(wildcards):
         of_plan = DATASETS[wildcards.dataset].settings["plan"]["method"]
         ordered = [m for m in METHODS if m in orderings or m == of_plan]
@@ -68,9 +72,13 @@ def run_times(orderings, extractors=(), comparing=()):
             "draw_validation",
             *comparing,
         ]
-        return [
-            placed(f"benchmarks/{wildcards.dataset}/{stage}.tsv") for stage in stages
+        # those that are there are shown
+        names = [
+            name
+            for stage in stages
+            for name in dict.fromkeys([stage, *timed(stage, wildcards.dataset)])
         ]
+        return [placed(f"benchmarks/{wildcards.dataset}/{name}.tsv") for name in names]
 
     return measured
 
