@@ -1,4 +1,4 @@
-"""Join the tables of chunks of a dataset's scans to the one that a single job would have written."""
+"""Join the tables of chunks of a survey's scans to the one that a single job would write."""
 
 from collections.abc import Sequence
 

@@ -335,7 +335,8 @@ def plan_table(table):
 @signed
 def corrections(wildcards):
     """The file of what a person says of a dataset's plan, where there is one."""
-    return DATASETS[wildcards.dataset].corrections or []
+    file = DATASETS[wildcards.dataset].corrections
+    return local(file) if file else []
 
 
 @signed
