@@ -2,7 +2,6 @@ import os
 import re
 import sys
 from functools import cache
-from inspect import signature
 
 from snakemake.exceptions import WorkflowError
 
@@ -140,12 +139,6 @@ if workflow.is_main_process and not IS_MODULE:
 DATASETS = GIVEN | {found.name: found for kind in THESIS.values() for found in kind}
 
 
-def signed(function):
-    """A function with its signature worked out: Snakemake asks for it whenever a job needs the function."""
-    function.__signature__ = signature(function)
-    return function
-
-
 def any_of(names):
     """A wildcard's constraint to some names; to nothing where there is none."""
     return "|".join(map(re.escape, names)) or "(?!)"
@@ -163,7 +156,6 @@ def simulated_as(suffix):
 def code_of(script):
     """A param function: a digest of the helpers that a script imports; an edit reruns what uses them."""
 
-    @signed
     def digest(wildcards):
         # looked up for the jobs of a run alone: every job parses the whole workflow anew
         return digest_helpers(f"{PROJECT}/scripts/{script}.py")
@@ -214,7 +206,6 @@ def grown(**least):
     """A resource function: what a stage asks of a cluster, more for long recordings and at every further attempt."""
     ((resource, amount),) = least.items()
 
-    @signed
     def amount_of(wildcards, attempt):
         n_jobs = n_chunks(wildcards.dataset) if "chunk" in wildcards.keys() else 1
         gb = recorded_gb(wildcards.dataset) / n_jobs
@@ -223,13 +214,11 @@ def grown(**least):
     return amount_of
 
 
-@signed
 def all_cores(wildcards):
     """All cores of this machine's run; where an executor is told none, as many as the other stages use at most."""
     return workflow.resource_settings.cores or 2
 
 
-@signed
 def registering_threads(wildcards):
     """Batches share two cores; frames that go by those before them are one sequence, on one core."""
     settings = DATASETS[wildcards.dataset].settings
@@ -240,7 +229,6 @@ def registering_threads(wildcards):
 def setting(select, *arguments):
     """A param function: what one of `stage_settings` selects from the settings of the job's dataset."""
 
-    @signed
     def look_up(wildcards):
         return select(DATASETS[wildcards.dataset].settings, *arguments)
 
@@ -252,7 +240,6 @@ def section(*keys):
     return setting(stage_settings.select_section, *keys)
 
 
-@signed
 def extractor_settings(wildcards):
     """Settings of the job's wall extractor."""
     return stage_settings.select_extractor(
@@ -260,7 +247,6 @@ def extractor_settings(wildcards):
     )
 
 
-@signed
 def order_tables(wildcards):
     """The tables that the job's method needs, by name; that of the hulls where areas decide."""
     method = methods.METHODS[wildcards.method]
@@ -270,7 +256,6 @@ def order_tables(wildcards):
     return {table: f"results/{wildcards.dataset}/{table}.parquet" for table in tables}
 
 
-@signed
 def order_settings(wildcards):
     """Settings of the job's ordering, by name: a change of one reruns the orderings that depend on it."""
     return stage_settings.select_order(
@@ -284,14 +269,12 @@ def of_dataset(dataset, files):
     return list(files) if dataset.building else list(map(local, files))
 
 
-@signed
 def recordings(wildcards):
     """Files that hold a dataset's clouds and poses."""
     dataset = DATASETS[wildcards.dataset]
     return of_dataset(dataset, dataset.recordings)
 
 
-@signed
 def content_of_recordings(wildcards):
     """A param function: what tells recordings from others in their place, older ones too."""
     dataset = DATASETS[wildcards.dataset]
@@ -299,21 +282,18 @@ def content_of_recordings(wildcards):
     return "" if dataset.building else digest_recordings(dataset.recordings)
 
 
-@signed
 def true_faces(wildcards):
     """The true walls of a dataset."""
     dataset = DATASETS[wildcards.dataset]
     return of_dataset(dataset, or_end(find_truth, dataset))[0]
 
 
-@signed
 def true_poses(wildcards):
     """The true sensor poses of a dataset."""
     dataset = DATASETS[wildcards.dataset]
     return of_dataset(dataset, or_end(find_truth, dataset))[1]
 
 
-@signed
 def plan_selection(wildcards):
     """The ordering whose first scans make the plan."""
     method = DATASETS[wildcards.dataset].settings["plan"]["method"]
@@ -323,7 +303,6 @@ def plan_selection(wildcards):
 def plan_table(table):
     """An input function: a table of the plan, the corrected one where the dataset has corrections."""
 
-    @signed
     def path(wildcards):
         is_corrected = DATASETS[wildcards.dataset].corrections is not None
         folder = "plan/corrected" if is_corrected else "plan"
@@ -332,28 +311,24 @@ def plan_table(table):
     return path
 
 
-@signed
 def corrections(wildcards):
     """The file of what a person says of a dataset's plan, where there is one."""
     file = DATASETS[wildcards.dataset].corrections
     return local(file) if file else []
 
 
-@signed
 def plan_extractor_settings(wildcards):
     """Settings of the extractor whose walls make the plan."""
     settings = DATASETS[wildcards.dataset].settings
     return stage_settings.select_extractor(settings, settings["plan"]["extractor"])
 
 
-@signed
 def plan_walls(wildcards):
     """The walls of all scans by the extractor whose walls make the plan."""
     extractor = DATASETS[wildcards.dataset].settings["plan"]["extractor"]
     return f"results/{wildcards.dataset}/walls/{extractor}.parquet"
 
 
-@signed
 def all_selections(wildcards):
     """Orderings of all methods of one dataset."""
     return [
@@ -367,7 +342,6 @@ def compared_extractors(name):
     return [e for e in EXTRACTORS if e == chosen or not e.startswith("thesis_")]
 
 
-@signed
 def all_walls(wildcards):
     """Walls by all compared extractors of one dataset."""
     return [
@@ -376,7 +350,6 @@ def all_walls(wildcards):
     ]
 
 
-@signed
 def extraction_times(wildcards):
     """Run times of all compared extractors of one dataset."""
     return [
@@ -386,7 +359,6 @@ def extraction_times(wildcards):
     ]
 
 
-@signed
 def building(wildcards):
     """The file of the building that a dataset is simulated in."""
     return local(DATASETS[wildcards.dataset].building)
@@ -414,7 +386,6 @@ def exported_files(formats):
     return {what: f"results/{{dataset}}/{file}" for what, file in files.items()}
 
 
-@signed
 def files_unasked_for(wildcards):
     """The files of formats that are not chosen for the job's dataset."""
     others = set(export_formats.FILES) - set(formats_of(wildcards.dataset))
@@ -422,13 +393,11 @@ def files_unasked_for(wildcards):
     return [f"results/{wildcards.dataset}/{file}" for file in files]
 
 
-@signed
 def source_of_results(wildcards):
     """What the results of the job's dataset are made of."""
     return DATASETS[wildcards.dataset].source
 
 
-@signed
 def all_settings(wildcards):
     """All settings of the job's dataset."""
     return DATASETS[wildcards.dataset].settings
@@ -452,14 +421,12 @@ def of_storeys(file):
 def of_all_datasets(*kinds):
     """An input function: files of all given datasets, worked out where they are asked for alone."""
 
-    @signed
     def files(wildcards):
         return [file for files_of in kinds for name in GIVEN for file in files_of(name)]
 
     return files
 
 
-@signed
 def storeys_beside(wildcards):
     """Names and datasets of the storeys of the job's building, from the lowest up; none where it is of none."""
     storeys = BUILDING.storeys if BUILDING else ()

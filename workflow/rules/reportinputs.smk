@@ -6,7 +6,6 @@ def compared(name):
 def figures_among(files_of):
     """An input function: the figures among the results of the job's dataset."""
 
-    @signed
     def figures(wildcards):
         folder = f"results/{wildcards.dataset}/figures/"
         return [f for f in files_of(wildcards.dataset) if f.startswith(folder)]
@@ -17,7 +16,6 @@ def figures_among(files_of):
 def files_beside(files_of):
     """An input function: the tables and plans among the results, which a report links and sizes."""
 
-    @signed
     def beside(wildcards):
         folder = f"results/{wildcards.dataset}/figures/"
         files = files_of(wildcards.dataset)
@@ -33,7 +31,6 @@ def files_beside(files_of):
 def evaluated(*tables):
     """An input function: tables of the evaluation of the job's dataset, if its truth is known."""
 
-    @signed
     def known(wildcards):
         folder = f"results/{wildcards.dataset}/evaluation"
         if DATASETS[wildcards.dataset].truth is None:
@@ -54,7 +51,6 @@ placed = workflow.modifier.path_modifier.modify
 def run_times(orderings, extractors=(), comparing=()):
     """A param function: Snakemake's measurements of the stages of a report, in their order."""
 
-    @signed
     def measured(wildcards):
         of_plan = DATASETS[wildcards.dataset].settings["plan"]["method"]
         ordered = [m for m in METHODS if m in orderings or m == of_plan]
