@@ -36,7 +36,7 @@ def extract_walls(
         stage="extract_walls",
         extractor=extractor,
         settings=settings,
-        scan_ids=per_scan.read_chunk_ids(scans, chunk),
+        scan_ids=None if chunk is None else per_scan.read_chunk_ids(scans, chunk),
         code=code,
         threads=threads,
     )
