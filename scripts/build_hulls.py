@@ -18,14 +18,16 @@ def build_hulls(
     radius: str,
     seed: int,
     threads: int,
+    chunk: str | None = None,
 ) -> None:
-    """Write the table of hulls of a table of scans; all registered ones must be there."""
+    """Write the table of hulls of scans, or of a chunk of them; all registered must be there."""
     registered_scans.read_registered_scans(registration, tables.ScanStore(scans))
     parts = per_scan.map_scans(
         hulls.make_cluster_hulls,
         scans,
         label="build_hulls",
         threads=threads,
+        scan_ids=per_scan.read_chunk_ids(scans, chunk),
         n_clusters=n_clusters,
         sample_size=sample_size,
         radius=radius,
@@ -52,4 +54,5 @@ if __name__ == "__main__":
             snakemake.output.hulls,
             **snakemake.params.settings,
             threads=snakemake.threads,
+            chunk=snakemake.wildcards.get("chunk"),
         )

@@ -17,6 +17,7 @@ def build_visibility(
     *,
     settings: Mapping[str, Any],
     threads: int = 1,
+    chunk: str | None = None,
 ) -> None:
     """Write the table of visibility polygons of a table of scans.
 
@@ -29,6 +30,8 @@ def build_visibility(
     settings : dict
         Keywords of `visibility_polygon.VisibilitySettings`.
     threads : int
+    chunk : str, optional
+        Which scans, see `per_scan.read_chunk_ids`; all by default.
     """
     _, polygons = map_registered_scans(
         visibility_polygon.scan_free_space,
@@ -37,6 +40,7 @@ def build_visibility(
         label="build_visibility",
         threads=threads,
         settings=visibility_polygon.VisibilitySettings(**settings),
+        chunk=chunk,
     )
     columns = visibility_polygon.visibility_columns(polygons)
     tables.write_table(output, schemas.VISIBILITY, columns)
@@ -54,4 +58,5 @@ if __name__ == "__main__":
             snakemake.output.visibility,
             settings=snakemake.params.settings,
             threads=snakemake.threads,
+            chunk=snakemake.wildcards.get("chunk"),
         )

@@ -1,7 +1,7 @@
 """Extract the wall segments that each scan shows (thesis, sections 3.4 and 5.3)."""
 
 from scanplan.extraction import survey_walls
-from scanplan.stage import log
+from scanplan.stage import log, per_scan
 from scanplan.types import FilePath, Settings
 
 
@@ -14,6 +14,7 @@ def extract_walls(
     settings: Settings,
     code: str = "",
     threads: int = 1,
+    chunk: str | None = None,
 ) -> None:
     """Write the walls of every registered scan.
 
@@ -25,6 +26,8 @@ def extract_walls(
         walls/<extractor>.parquet, to write.
     extractor, settings, code, threads
         See `survey_walls.write_survey_walls`.
+    chunk : str, optional
+        Which scans, see `per_scan.read_chunk_ids`; all by default.
     """
     survey_walls.write_survey_walls(
         scans,
@@ -33,6 +36,7 @@ def extract_walls(
         stage="extract_walls",
         extractor=extractor,
         settings=settings,
+        scan_ids=None if chunk is None else per_scan.read_chunk_ids(scans, chunk),
         code=code,
         threads=threads,
     )
@@ -48,4 +52,5 @@ if __name__ == "__main__":
             settings=snakemake.params.settings,
             code=snakemake.params.code,
             threads=snakemake.threads,
+            chunk=snakemake.wildcards.get("chunk"),
         )

@@ -17,6 +17,7 @@ def observe_walls(
     *,
     settings: Mapping[str, Any],
     threads: int = 1,
+    chunk: str | None = None,
 ) -> None:
     """Write the table of observed wall of a table of scans.
 
@@ -29,6 +30,8 @@ def observe_walls(
     settings : dict
         Keywords of `wall_cells.WallCellSettings`.
     threads : int
+    chunk : str, optional
+        Which scans, see `per_scan.read_chunk_ids`; all by default.
     """
     scan_ids, observations = map_registered_scans(
         wall_cells.observe_wall_cells,
@@ -37,9 +40,11 @@ def observe_walls(
         label="observe_walls",
         threads=threads,
         settings=wall_cells.WallCellSettings(**settings),
+        chunk=chunk,
     )
     columns = wall_cells.observation_columns(scan_ids, observations)
-    if tables.ScanStore(scans).planar:
+    # a cell's best scan may be in another chunk: that is for `gather_chunks`
+    if chunk is None and tables.ScanStore(scans).planar:
         columns = wall_cells.even_out_noise(columns)
     tables.write_table(output, schemas.OBSERVATIONS, columns, allow_empty=True)
     mean_m = columns["length_m"].sum() / len(observations)
@@ -58,4 +63,5 @@ if __name__ == "__main__":
             snakemake.output.observations,
             settings=snakemake.params.settings,
             threads=snakemake.threads,
+            chunk=snakemake.wildcards.get("chunk"),
         )

@@ -1,7 +1,6 @@
 """Tabulate how long ordering the scans and extracting the walls of the first ones takes."""
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 
 import pandas as pd
 
@@ -13,8 +12,8 @@ from scanplan.types import FilePath
 
 def tabulate_seconds(
     evaluated: FilePath,
-    ordering: Mapping[str, FilePath],
-    extraction: Mapping[str, FilePath],
+    ordering: Mapping[str, Sequence[FilePath]],
+    extraction: Mapping[str, Sequence[FilePath]],
     output: FilePath,
 ) -> None:
     """Write the seconds of every method, extractor and number of scans.
@@ -27,13 +26,14 @@ def tabulate_seconds(
     ----------
     evaluated : path-like
         evaluation/walls.parquet.
-    ordering, extraction : dict of str to path-like
-        What Snakemake measured of order_scans, by method, and of extract_walls, by extractor.
+    ordering, extraction : dict of str to sequence of path-like
+        What Snakemake measured of order_scans, by method, and of extract_walls, by extractor: of a
+        long recording, of each chunk of its scans.
     output : path-like
         evaluation/seconds.parquet, to write.
     """
-    order_s = {name: run_times.read_job_seconds(path) for name, path in ordering.items()}
-    extract_s = {name: run_times.read_job_seconds(path) for name, path in extraction.items()}
+    order_s = {name: _sum_seconds(paths) for name, paths in ordering.items()}
+    extract_s = {name: _sum_seconds(paths) for name, paths in extraction.items()}
     columns = tables.read_table(evaluated, schemas.EVALUATION, ["method", "extractor", "k"])
     subsets = pd.DataFrame(columns)
     timed = subsets[subsets["method"].isin(order_s)]
@@ -44,16 +44,15 @@ def tabulate_seconds(
     log.log_line(f"tabulate_seconds: ordering takes at most {order_s[slowest]:.1f} s ({slowest})")
 
 
-def _name_by_job(paths: Sequence[FilePath], job: str) -> dict[str, FilePath]:
-    """Return the benchmark files of a job by what follows its name in theirs."""
-    return {Path(path).stem.removeprefix(f"{job}_"): path for path in paths}
+def _sum_seconds(paths: Sequence[FilePath]) -> float:
+    return sum(map(run_times.read_job_seconds, paths))
 
 
 if __name__ == "__main__":
     with log.log_to_file(snakemake.log[0]):
         tabulate_seconds(
             snakemake.input.walls,
-            _name_by_job(snakemake.input.ordering, "order_scans"),
-            _name_by_job(snakemake.input.extraction, "extract_walls"),
+            run_times.group_by_name(snakemake.input.ordering, "order_scans"),
+            run_times.group_by_name(snakemake.input.extraction, "extract_walls"),
             snakemake.output.seconds,
         )

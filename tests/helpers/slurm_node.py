@@ -9,6 +9,7 @@ import shutil
 import signal
 import socket
 import subprocess
+import tempfile
 import time
 from pathlib import Path
 
@@ -50,12 +51,25 @@ PartitionName=main Nodes={host} Default=YES MaxTime=INFINITE State=UP OverSubscr
 _PATIENCE_S = 60
 
 
-def is_installable():
-    """Install Slurm where it is missing, and return whether it is there and may be started."""
+def find_lack():
+    """Install Slurm where it is missing and start it once; return why not, or nothing."""
     if os.getuid() != 0:
-        return False
-    if shutil.which("slurmctld") and shutil.which("munged"):
-        return True
+        return "only root may start one"
+    if not (shutil.which("slurmctld") and shutil.which("munged")) and not _is_installed():
+        return f"no {' and '.join(PACKAGES)} can be installed"
+    with tempfile.TemporaryDirectory() as folder:
+        node = SlurmNode(folder)
+        try:
+            node.start()
+        except (OSError, TimeoutError) as error:
+            return f"its daemons do not start: {error}"
+        finally:
+            node.stop()
+    return ""
+
+
+def _is_installed():
+    """Install Slurm, where this is a Debian, and return whether it is there."""
     if shutil.which("apt-get") is None:
         return False
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
@@ -144,7 +158,6 @@ def _output(*command):
     return done.stdout + done.stderr
 
 
-if __name__ == "__main__":
-    if not is_installable():
-        print("no Slurm here, and none can be installed: the profile for Slurm is not tested")
-        raise SystemExit(1)
+if __name__ == "__main__" and (lack := find_lack()):
+    print(f"the profile for Slurm is not tested: {lack}")
+    raise SystemExit(1)

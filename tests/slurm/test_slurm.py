@@ -63,6 +63,24 @@ def one(floors, *arguments):
     return done.returncode, told
 
 
+def started(floors):
+    """Start the first stages of one floor, and return the run once a job of it is at work."""
+    command = floors.command(dataset="floor_1.yaml")
+    with (floors.folder / "said.txt").open("w") as said:
+        run = subprocess.Popen(
+            [*command, "--", POSES],
+            cwd=floors.folder,
+            env=floors.env(),
+            stdout=said,
+            stderr=said,
+            start_new_session=True,
+        )
+    while not any(job.state == "RUNNING" for job in slurm_jobs.list_jobs(floors.folder)):
+        assert run.poll() is None, (floors.folder / "said.txt").read_text()
+        time.sleep(0.2)
+    return run
+
+
 def test_three_floors_are_as_those_of_a_local_run(floors, project_root, tmp_path_factory):
     began_s = time.monotonic()
     made = floors.run()
@@ -77,18 +95,7 @@ def test_three_floors_are_as_those_of_a_local_run(floors, project_root, tmp_path
 
 
 def test_jobs_that_outlive_a_killed_run_are_ended_before_they_run_twice(floors):
-    command = floors.command(dataset="floor_1.yaml")
-    run = subprocess.Popen(
-        [*command, "--", POSES],
-        cwd=floors.folder,
-        env=floors.env(),
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        start_new_session=True,
-    )
-    while not any(job.state == "RUNNING" for job in slurm_jobs.list_jobs(floors.folder)):
-        assert run.poll() is None
-        time.sleep(0.2)
+    run = started(floors)
     os.killpg(run.pid, signal.SIGKILL)
     run.wait()
     code, told = one(floors)
@@ -114,22 +121,11 @@ def test_a_partition_that_is_not_there_is_told(floors):
 
 
 def test_what_a_lost_node_had_is_made_again(floors, node):
-    command = floors.command(dataset="floor_1.yaml")
-    run = subprocess.Popen(
-        [*command, "--", POSES],
-        cwd=floors.folder,
-        env=floors.env(),
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-    )
-    while not any(job.state == "RUNNING" for job in slurm_jobs.list_jobs(floors.folder)):
-        time.sleep(0.2)
+    run = started(floors)
     node.command("scontrol", "update", f"nodename={node.host}", "state=down", "reason=test")
     time.sleep(2)
     node.command("scontrol", "update", f"nodename={node.host}", "state=resume")
-    said, _ = run.communicate()
-    assert run.returncode == 0, said
+    assert run.wait() == 0, (floors.folder / "said.txt").read_text()
     assert (floors.folder / POSES).exists()
 
 

@@ -17,9 +17,11 @@ def test_order_and_share_of_the_extraction_add_up(tmp_path):
         {c: [row[c] for row in rows] for c in rows[0]},
     )
     files = {}
-    for name, seconds in (("hull", 3.0), ("one", 8.0), ("two", 16.0)):
-        files[name] = tmp_path / f"{name}.tsv"
-        files[name].write_text(f"s\th:m:s\n{seconds}\t-\n")
+    # of two, each chunk of the scans was a job
+    for name, of_jobs in (("hull", [3.0]), ("one", [8.0]), ("two", [11.0, 5.0])):
+        files[name] = [tmp_path / f"{name}_{number}.tsv" for number in range(len(of_jobs))]
+        for file, seconds in zip(files[name], of_jobs, strict=True):
+            file.write_text(f"s\th:m:s\n{seconds}\t-\n")
     ordering, extraction = {"hull": files.pop("hull")}, files
     tabulate_seconds(tmp_path / "walls.parquet", ordering, extraction, tmp_path / "seconds.parquet")
     found = tables.read_table(tmp_path / "seconds.parquet", schemas.SECONDS)

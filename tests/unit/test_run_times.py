@@ -16,3 +16,8 @@ def test_anything_else_is_refused(tmp_path, text):
     path.write_text(text)
     with pytest.raises(StageError, match=r"job\.tsv: is no benchmark file"):
         run_times.read_job_seconds(path)
+
+
+def test_files_of_chunks_go_by_the_name_of_the_whole():
+    files = ["b/walls_one.tsv", "b/walls_two_1-of-2.tsv", "b/walls_two_2-of-2.tsv"]
+    assert run_times.group_by_name(files, "walls") == {"one": files[:1], "two": files[1:]}

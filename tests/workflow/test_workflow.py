@@ -241,13 +241,11 @@ def restore_sigint():
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
-def started(project, *targets):
-    """Start a run that registers the scans anew, and return it once that stage is at work."""
-    log = project.folder / "logs/demo/register_scans.log"
-    log.unlink()
+def started(project, log, *arguments):
+    """Start a run, and return it once the stage with this log is at work."""
     with (project.folder / "said.txt").open("w") as said:
         run = subprocess.Popen(
-            project.command(*targets, "--forcerun", "register_scans"),
+            project.command(*arguments),
             cwd=project.folder,
             env=project.env(),
             stdout=subprocess.DEVNULL,
@@ -262,6 +260,13 @@ def started(project, *targets):
     return run
 
 
+def registering(project, *targets):
+    """Start a run that registers the scans anew, and return it once that stage is at work."""
+    log = project.folder / "logs/demo/register_scans.log"
+    log.unlink()
+    return started(project, log, *targets, "--forcerun", "register_scans")
+
+
 # later stages see of a resumed one only its files, so one way to be killed has them all run
 SCANS = ("results/demo/scans.parquet",)
 
@@ -271,7 +276,7 @@ SCANS = ("results/demo/scans.parquet",)
 )
 def test_a_killed_run_resumes_with_the_same_command(project, sent, targets):
     before = project.digests()
-    run = started(project, *targets)
+    run = registering(project, *targets)
     os.kill(run.pid, sent) if sent == signal.SIGKILL else os.killpg(run.pid, sent)
     status = run.wait(timeout=120)
     assert status == (-sent if sent == signal.SIGKILL else 128 + sent)
@@ -286,8 +291,36 @@ def test_a_killed_run_resumes_with_the_same_command(project, sent, targets):
 def test_two_runs_at_once_do_not_mix(project):
     before = project.digests()
     # at work for longer than the second takes to begin
-    first = started(project, "results/demo/plan/faces.parquet")
+    first = registering(project, "results/demo/plan/faces.parquet")
     second = project.run("--forcerun", "build_hulls")
     assert first.wait(timeout=120) == 0
     assert second.returncode != 0 and "another run is at work" in second.stdout + second.stderr
     assert project.digests() == before
+
+
+def test_stages_in_chunks_killed_and_resumed_give_the_bytes_of_one_job(project):
+    survey = project.folder / "long"
+    survey.mkdir()
+    shutil.copy2(project.folder / "results/demo/survey/survey.bag", survey)
+    third_gb = (survey / "survey.bag").stat().st_size / 3.5e9
+    (survey / "dataset.yaml").write_text(f"advanced: {{jobs: {{chunk_gb: {third_gb}}}}}")
+    tables = ("observations", "visibility", "hulls", "walls/cluster_ransac")
+    wanted = [f"results/long/{table}.parquet" for table in tables]
+    given = (*wanted, "--config", "dataset=long")
+    try:
+        stages = {"observe_walls_chunk", "build_visibility_chunk", "build_hulls_chunk"}
+        gathering = {"extract_walls_chunk", "gather_chunks", "gather_wall_chunks"}
+        assert stages | gathering < project.would_run(*given)
+        run = started(project, project.folder / "logs/long/observe_walls_2-of-3.log", *given)
+        run.kill()
+        run.wait()
+        made = project.run(*given)
+        assert made.returncode == 0, made.stderr
+        results = project.folder / "results"
+        for table in tables:
+            gathered = (results / f"long/{table}.parquet").read_bytes()
+            assert gathered == (results / f"demo/{table}.parquet").read_bytes()
+        assert not list(results.rglob("*-of-3*"))
+        assert not project.would_run(*given)
+    finally:
+        shutil.rmtree(project.folder / "results/long", ignore_errors=True)

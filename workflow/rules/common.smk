@@ -1,6 +1,7 @@
 import os
 import re
 import sys
+from functools import cache
 
 from snakemake.exceptions import WorkflowError
 
@@ -167,17 +168,48 @@ def code_of(script):
 NEEDED_PER_GB = {"runtime": 5, "mem_mb": 100}
 
 
+@cache
+def size_gb(file):
+    """Gigabytes of a file; every job of its dataset asks."""
+    return os.path.getsize(file) / 1e9
+
+
+def recorded_gb(name):
+    """Gigabytes recorded of a dataset; none of a recording that is made in a run."""
+    dataset = DATASETS[name]
+    try:
+        return 0 if dataset.building else sum(map(size_gb, dataset.recordings))
+    except FileNotFoundError:
+        # made in this run, for another dataset
+        return 0
+
+
+def n_chunks(name):
+    """Into how many jobs a stage is divided that treats scans one by one."""
+    chunk_gb = DATASETS[name].settings["advanced"]["jobs"]["chunk_gb"]
+    return max(1, int(recorded_gb(name) / chunk_gb))
+
+
+def chunks_of(name):
+    """The chunks of a dataset's scans, as their files' names say them."""
+    count = n_chunks(name)
+    return [f"{number}-of-{count}" for number in range(1, count + 1)]
+
+
+def timed(stage, name):
+    """The names of a stage's measured times: one for each chunk of scans where there are several."""
+    chunks = chunks_of(name)
+    return [stage] if len(chunks) == 1 else [f"{stage}_{chunk}" for chunk in chunks]
+
+
 def grown(**least):
     """A resource function: what a stage asks of a cluster, more for long recordings and at every further attempt."""
     ((resource, amount),) = least.items()
 
     def amount_of(wildcards, attempt):
-        dataset = DATASETS[wildcards.dataset]
-        recorded = () if dataset.building else dataset.recordings
-        # one may be made in this run, for another dataset
-        there = filter(os.path.exists, recorded)
-        recorded_gb = sum(map(os.path.getsize, there)) / 1e9
-        return int((amount + NEEDED_PER_GB[resource] * recorded_gb) * attempt)
+        n_jobs = n_chunks(wildcards.dataset) if "chunk" in wildcards.keys() else 1
+        gb = recorded_gb(wildcards.dataset) / n_jobs
+        return int((amount + NEEDED_PER_GB[resource] * gb) * attempt)
 
     return amount_of
 
@@ -285,7 +317,8 @@ def plan_table_of(dataset, table):
 
 def corrections(wildcards):
     """The file of what a person says of a dataset's plan, where there is one."""
-    return DATASETS[wildcards.dataset].corrections or []
+    file = DATASETS[wildcards.dataset].corrections
+    return local(file) if file else []
 
 
 def plan_extractor_settings(wildcards):
@@ -324,8 +357,9 @@ def all_walls(wildcards):
 def extraction_times(wildcards):
     """Run times of all compared extractors of one dataset."""
     return [
-        f"benchmarks/{wildcards.dataset}/extract_walls_{extractor}.tsv"
+        f"benchmarks/{wildcards.dataset}/{times}.tsv"
         for extractor in compared_extractors(wildcards.dataset)
+        for times in timed(f"extract_walls_{extractor}", wildcards.dataset)
     ]
 
 
@@ -409,7 +443,12 @@ def storeys_beside(wildcards):
     return [(s.name, s.dataset) for s in storeys] if is_storey else []
 
 
+# only those of which a stage is divided have rules for chunks
+CHUNKED = [name for name in GIVEN if n_chunks(name) > 1]
+
+
 wildcard_constraints:
+    chunk=r"\d+-of-\d+",
     dataset=any_of(DATASETS),
     method=any_of(METHODS),
     extractor=any_of(EXTRACTORS),

@@ -40,12 +40,19 @@ def causes_in_slurm():
     return list(slurm_jobs.explain_ends(jobs, OLDER_JOBS))
 
 
+def has_files_here():
+    """Whether results and logs are files of this folder, not objects of a storage."""
+    return workflow.storage_settings.default_storage_provider is None
+
+
 def is_to_be_told():
     """Whether this process shows its run in lines of our own, and not in Snakemake's."""
     output = workflow.output_settings
     quiet = output.quiet or ()
     wanted = Quietness.RULES in quiet and not output.verbose
-    return workflow.is_main_process and wanted and not output.dryrun and not IS_MODULE
+    # our lines are read from the stages' logs
+    is_shown = wanted and has_files_here() and not output.dryrun
+    return workflow.is_main_process and is_shown and not IS_MODULE
 
 
 def comparison_is_up_to_date():
@@ -56,6 +63,8 @@ def comparison_is_up_to_date():
 
 def tell_results():
     """Say what was made of the given datasets, and where it is."""
+    if not has_files_here():
+        return
     targets = workflow.dag_settings.targets
     pages = {"thesis": "report", "thesis_more": "more"}
     for target in sorted(pages.keys() & set(targets)):
@@ -75,10 +84,8 @@ if is_to_be_told():
 
 def tell_overview():
     """Put what became of many datasets into one table and one page, failed ones among them."""
-    if len(GIVEN) < 2 or not set(workflow.dag_settings.targets) <= {
-        "all",
-        "comparison",
-    }:
+    are_all_asked_for = set(workflow.dag_settings.targets) <= {"all", "comparison"}
+    if len(GIVEN) < 2 or not are_all_asked_for or not has_files_here():
         return
     # takes a second to import, and is needed at the end alone
     from scanplan.report import overview

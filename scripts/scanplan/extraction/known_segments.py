@@ -138,3 +138,11 @@ def note_digests(
     """Return the note of a table of walls that says which segments it has, for `KnownSegments`."""
     digests = [digest for digest, _ in found]
     return {_DIGESTS: json.dumps(dict(zip(scan_ids.tolist(), digests, strict=True)))}
+
+
+def join_notes(notes: Iterable[Mapping[str, str]]) -> dict[str, str]:
+    """Return the notes of the table that holds the rows of several, of other scans each."""
+    digests: dict[str, str] = {}
+    for of_table in notes:
+        digests |= json.loads(of_table.get(_DIGESTS, "{}"))
+    return {_DIGESTS: json.dumps(digests)} if digests else {}

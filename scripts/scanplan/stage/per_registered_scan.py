@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from scanplan.stage.per_scan import Result, map_scans
+from scanplan.stage.per_scan import Result, map_scans, read_chunk_ids
 from scanplan.store import registered_scans, tables
 from scanplan.types import FilePath, FloatArray, IntArray
 
@@ -15,8 +15,9 @@ def map_registered_scans(
     label: str,
     threads: int,
     settings: object,
+    chunk: str | None = None,
 ) -> tuple[IntArray, list[Result]]:
-    """Call `function(scan_id, xyz_m, sensor_xyz_m=, planar=, settings=)` for every registered scan.
+    """Call `function(scan_id, xyz_m, sensor_xyz_m=, planar=, settings=)` for registered scans.
 
     Parameters
     ----------
@@ -30,6 +31,8 @@ def map_registered_scans(
     threads : int
     settings : object
         Passed on.
+    chunk : str, optional
+        Which scans, see `per_scan.read_chunk_ids`; all by default.
 
     Returns
     -------
@@ -44,16 +47,18 @@ def map_registered_scans(
     """
     store = tables.ScanStore(scans)
     registered_scans.read_registered_scans(registration, store)
+    scan_ids = read_chunk_ids(scans, chunk)
     results = map_scans(
         function,
         scans,
         label=label,
         threads=threads,
-        per_scan=sensor_keywords(store.scan_ids, scans, registration),
+        scan_ids=scan_ids,
+        per_scan=sensor_keywords(scan_ids, scans, registration),
         planar=store.planar,
         settings=settings,
     )
-    return store.scan_ids, results
+    return scan_ids, results
 
 
 def sensor_keywords(

@@ -5,6 +5,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from scanplan.errors import StageError
 from scanplan.stage import log, workers
 from scanplan.store import tables
 from scanplan.types import FilePath, IntArray
@@ -60,6 +61,37 @@ def map_scans(
     with workers.open_pool(min(threads, len(jobs))) as run:
         results = (result for part in run(_map_part, jobs) for result in part)
         return list(log.report_progress(results, label, total=len(scan_ids)))
+
+
+def read_chunk_ids(scans_path: FilePath, chunk: str | None) -> IntArray:
+    """Return the scans of one of the equal chunks that a long recording's are divided into.
+
+    Parameters
+    ----------
+    scans_path : path-like
+        A scans.parquet.
+    chunk : str or None
+        `2-of-5`, the second of five; None: all scans.
+
+    Returns
+    -------
+    (n,) int32, increasing, n >= 1
+
+    Raises
+    ------
+    StageError
+        If there are fewer scans than chunks.
+    """
+    scan_ids = tables.ScanStore(scans_path).scan_ids
+    if chunk is None:
+        return scan_ids
+    number, count = map(int, chunk.split("-of-"))
+    if len(scan_ids) < count:
+        raise StageError(
+            f"{scans_path}: holds {len(scan_ids)} scans, too few for {count} jobs; raise"
+            " advanced.jobs.chunk_gb"
+        )
+    return np.array_split(scan_ids, count)[number - 1]
 
 
 def _keywords_of(scan_ids: IntArray, keywords: Mapping[int, Keywords]) -> dict[int, Keywords]:
