@@ -10,13 +10,17 @@ from shapely import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.errors import StageError
-from scanplan.lab.buildings import hallways, roadmap, tour
+from scanplan.geometry import roadmap, tour
+from scanplan.geometry.roadmap import RoadmapGrid
+from scanplan.lab.buildings import hallways
 from scanplan.lab.buildings.hallways import Rooms
-from scanplan.lab.buildings.roadmap import RoadmapGrid
 from scanplan.lab.random_streams import RandomStream, open_stream
 from scanplan.types import FilePath, FloatArray, IntArray
 
 KINDS = ("given", "rooms", "hallways")
+_CELLS_M = (0.05, 0.1)  # doors hardly wider than the rover are met, and those of large floors
+_LARGE_M2 = 300.0  # of floor, 120,000 fine cells: seconds for every stop's ways
+_MAX_CELLS = 20e6  # rasters of 160 MB each
 _YIELD_M = 0.1  # less space than its cells have that a straightened way may keep: corners for space
 _SPACING_M = 6.0  # by cost, from a stop to the middle of what is visited: hallways get several
 
@@ -95,7 +99,7 @@ def plan_route(
     free = free_ground(area_m, obstacles_m, clearance_m)
     start_xy_m = None if isinstance(start_m, str) else start_m
     part = _part_of(free, start_xy_m, clearance_m, asked, source)
-    grid = roadmap.connected_grid(roadmap.make_grid(part, clearance_m, source), start_xy_m)
+    grid = roadmap.connected_grid(_grid_over(part, clearance_m, source), start_xy_m)
     first = _first_cell(grid, start_m, seed)
     stops, is_reached, ways = _choose_stops(grid, asked, first)
     _check_stops(stops, is_reached, clearance_m, source)
@@ -171,6 +175,22 @@ def _part_of(
     )
 
 
+def _grid_over(part: Polygon, clearance_m: float, source: FilePath) -> RoadmapGrid:
+    """Return the grid over connected free ground, in cells as fine as its size allows."""
+    if part.is_empty:
+        return roadmap.make_grid(part, clearance_m, _CELLS_M[0])
+    cell_m = _CELLS_M[part.area >= _LARGE_M2]
+    x0, y0, x1, y1 = part.bounds
+    limit_m2 = _MAX_CELLS * cell_m**2
+    if (x1 - x0) * (y1 - y0) > limit_m2:
+        raise StageError(
+            f"{source}: its floor of {x1 - x0:.0f} x {y1 - y0:.0f} m is too large to plan a way"
+            f" over (limit {limit_m2:,.0f} m2); check simulate.site.unit, or give"
+            " simulate.site.waypoints_m"
+        )
+    return roadmap.make_grid(part, clearance_m, cell_m)
+
+
 def _choose_stops(
     grid: RoadmapGrid, rooms: Rooms, first: int | None
 ) -> tuple[list[int], list[bool], Ways]:
@@ -217,10 +237,7 @@ def _join_stops(
     legs = []
     for a, b in pairwise([*order, order[0]] if closed else order):
         _, cell_before = ways[a]
-        leg = [stops[b]]
-        while leg[-1] != stops[a]:
-            leg.append(int(cell_before[leg[-1]]))
-        legs.append(leg[::-1])
+        legs.append(roadmap.trace_way(cell_before, stops[a], stops[b]))
     return legs
 
 
