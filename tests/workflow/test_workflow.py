@@ -33,7 +33,8 @@ def project(project_root, tmp_path_factory):
 
 
 PLANNED = {
-    *("assemble_plan", "validate_plan", "rate_plan", "export_plan", "export_files"),
+    *("assemble_plan", "validate_plan", "rate_plan", "plan_next_visit"),
+    *("export_plan", "export_files"),
     *("draw_walls", "draw_validation", "evaluate_plan"),
 }
 CHOSEN = {"extract_chosen_walls", "draw_scans"} | PLANNED

@@ -113,6 +113,48 @@ def plan_route(
     )
 
 
+def join_places(
+    floor_m: BaseGeometry,
+    obstacles_m: BaseGeometry,
+    places_m: FloatArray,
+    source: FilePath,
+    *,
+    clearance_m: float,
+) -> FloatArray:
+    """Return the corners (n, 2) of a way through places in their order.
+
+    Parameters
+    ----------
+    floor_m, obstacles_m : shapely geometry
+        Where there is floor, and what stands on it.
+    places_m : (k, 2) float, k >= 2
+        Each stands for the nearest free ground that is connected to that of the first.
+    source : path-like
+        What errors name as their origin.
+    clearance_m : float
+        What the way keeps from any obstacle.
+
+    Raises
+    ------
+    StageError
+        If there is no free ground, or it is too large.
+    """
+    free = free_ground(floor_m, obstacles_m, clearance_m)
+    parts = [part for part in shapely.get_parts(free) if part.area > 0]
+    part = min(parts, key=lambda p: p.distance(Point(places_m[0])), default=Polygon())
+    grid = roadmap.connected_grid(_grid_over(part, clearance_m, source))
+    if len(grid.xy_m) == 0:
+        raise StageError(f"{source}: has no free floor {clearance_m:g} m wide to either side")
+    cells = [roadmap.nearest_cell(grid, place_m) for place_m in places_m]
+    stops = [cell for i, cell in enumerate(cells) if i == 0 or cell != cells[i - 1]]
+    corners_m = []
+    for a, b in pairwise(stops):
+        _, cell_before = roadmap.cheapest_ways(grid, a)
+        leg = roadmap.trace_way(cell_before, a, b)
+        corners_m.append(_straighten(grid, leg, part, obstacles_m))
+    return np.vstack([*corners_m, grid.xy_m[stops[-1]]])
+
+
 def free_ground(
     floor_m: BaseGeometry, obstacles_m: BaseGeometry, clearance_m: float
 ) -> BaseGeometry:
