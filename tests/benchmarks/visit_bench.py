@@ -59,7 +59,7 @@ def bench(
         for drive, right in _visit_again(project, settings, folder, recordings, name).items():
             totals[drive] = totals.get(drive, []) + right
     for drive, right in totals.items():
-        print(f"next_visit, all, {drive}: {sum(right)} of {len(right)} settled rightly")
+        print(f"next_visit, all, {drive}: {sum(right)} of {len(right)}")
 
 
 def _visit_again(
@@ -96,21 +96,20 @@ def _visit_again(
     reachable = asked["standpoint"] > 0
     print(f"next_visit, {name}: {n_first} scans, {reachable.sum()} of {len(reachable)} questions"
           f" can be seen, from {len(stops['standpoint'])} standpoints", flush=True)  # fmt: skip
-    settled = {}
+    right, _ = _judge(folder / "results" / first.name, first, asked, motion)
+    settled = {"before, right": right[reachable].tolist()}
+    print(f"next_visit, {name}: {right[reachable].sum()} of them are right before", flush=True)
     for drive, corners_m in drives.items():
         again = folder / "surveys" / f"{name}_{drive}"
         n_scans = _drive(source, again, drive, simulated, corners_m, first)
         _make_plan(project, folder, again)
-        right = _judge(folder / "results" / again.name, again, asked, motion)
-        settled[drive] = right[reachable].tolist()
-        by_kind = {
-            kind: f"{right[reachable & (asked['kind'] == kind)].sum()}/"
-            f"{(reachable & (asked['kind'] == kind)).sum()}"
-            for kind in sorted(set(asked["kind"]))
-        }
+        right, is_sure = _judge(folder / "results" / again.name, again, asked, motion)
+        settled[f"{drive}, right"] = right[reachable].tolist()
+        settled[f"{drive}, right and in no doubt"] = (right & is_sure)[reachable].tolist()
         print(
-            f"next_visit, {name}, {drive}: {n_scans} scans more, {sum(settled[drive])} of"
-            f" {len(settled[drive])} settled rightly {by_kind}",
+            f"next_visit, {name}, {drive}: {n_scans} scans more, {right[reachable].sum()} of"
+            f" {reachable.sum()} right, {(right & is_sure)[reachable].sum()} of them in no doubt;"
+            f" by kind {_count_kinds(asked['kind'], reachable, right)}",
             flush=True,
         )
     return settled
@@ -216,105 +215,105 @@ def _move(xy_m: FloatArray, motion: FloatArray) -> FloatArray:
     return xy_m @ motion[:2, :2].T + motion[:2, 3]
 
 
+def _count_kinds(kinds: Array, reachable: Array, right: Array) -> str:
+    counts = []
+    for kind in sorted(set(kinds)):
+        of_kind = reachable & (kinds == kind)
+        counts.append(f"{kind} {right[of_kind].sum()}/{of_kind.sum()}")
+    return ", ".join(counts)
+
+
 @dataclass(frozen=True, eq=False)
 class _Statements:
-    """What a plan, or the truth, says of places: shapes by door, window and wall; rooms."""
+    """What a plan, or the truth, says of places: the ground of doors, windows, walls, and rooms.
+
+    In `doubt` is that of what the plan marks, or did not see.
+    """
 
     door: Any
     window: Any
     wall: Any
-    doubtful: Any
+    doubt: Any
     rooms: Any
 
     def of_places(self, points: Array) -> Array:
         """Return what is said of each place, (n,) str."""
         said = np.full(len(points), "nothing", object)
-        for name in ("wall", "doubtful", "window", "door"):
-            shape = getattr(self, name)
-            is_there = shapely.distance(points, shape) <= 0
-            if name == "doubtful":
-                is_there &= said == "nothing"
-            said[is_there] = name
+        for name in ("wall", "window", "door"):
+            said[shapely.intersects(getattr(self, name), points)] = name
         return said
 
 
-def _judge(results: Path, survey: Path, asked: Any, motion: FloatArray) -> Array:
-    """Return which questions of the first plan the second one settles rightly, (q,) bool."""
+def _judge(results: Path, survey: Path, asked: Any, motion: FloatArray) -> tuple[Array, Array]:
+    """Return of which questions of the first plan another says what is true, and is sure: (q,)."""
     plan = floorplan.read_floorplan({t: results / f"plan/{t}.parquet" for t in _TABLES})
     true = true_plan.read_true_plan(survey / "truth.geojson")
     known = truth_file.read_true_faces(survey / "truth.geojson")
     own = _find_motion(results, survey)
     drawn, is_true = _read_statements(plan, own), _true_statements(true, known)
-    right = np.zeros(len(asked["kind"]), bool)
-    for row, kind in enumerate(asked["kind"]):
-        shape = shapely.transform(
-            shapely.from_wkb(asked["geometry"][row]), lambda xy_m: _move(xy_m, motion)
-        )
+    shapes = shapely.transform(shapely.from_wkb(asked["geometry"]), lambda m: _move(m, motion))
+    verdicts = []
+    for kind, shape in zip(asked["kind"], shapes, strict=True):
         if kind == "room":
-            right[row] = _is_room_right(shape, plan, own, true)
-        elif kind == "way":
-            places = _places_beside(shape)
-            inside = [shapely.intersects(s.rooms, places) for s in (drawn, is_true)]
-            right[row] = bool((inside[0] == inside[1]).all())
+            verdicts.append(_judge_room(shape, plan, own, true))
+            continue
+        points = _places_along(shape)
+        is_sure = np.mean(~shapely.intersects(drawn.doubt, points)) >= _RIGHT_SHARE
+        if kind == "way":
+            beside = _places_beside(shape)
+            inside = [shapely.intersects(s.rooms, beside) for s in (drawn, is_true)]
+            verdicts.append((bool((inside[0] == inside[1]).all()), is_sure))
         else:
-            length_m = shape.length
-            middles = (np.arange(max(round(length_m / _STEP_M), 1)) + 0.5) * _STEP_M
-            lines = shapely.get_parts(shape)
-            ends_m = np.concatenate([[0.0], np.cumsum(shapely.length(lines))])
-            middles = middles[middles < length_m] if length_m > _STEP_M else [length_m / 2]
-            line = np.searchsorted(ends_m, middles, side="right") - 1
-            points = shapely.line_interpolate_point(lines[line], middles - ends_m[line])
             agrees = drawn.of_places(points) == is_true.of_places(points)
-            right[row] = agrees.mean() >= _RIGHT_SHARE
-    return right
+            verdicts.append((agrees.mean() >= _RIGHT_SHARE, is_sure))
+    right, sure = np.reshape(verdicts, (-1, 2)).astype(bool).T
+    return right, sure
 
 
 def _read_statements(plan: Any, motion: FloatArray) -> _Statements:
-    def near(lines_m: FloatArray, within_m: float) -> Any:
-        moved_m = _move(lines_m, motion)
-        return shapely.union_all(
-            shapely.buffer(shapely.linestrings(moved_m), within_m, cap_style=2)
-        )
+    def widen(lines_m: FloatArray, half_m: float) -> Any:
+        return _widen(_move(lines_m, motion), half_m)
 
-    openings_m = floorplan.centrelines_m(plan.openings)
+    openings_m, faces_m = (floorplan.centrelines_m(t) for t in (plan.openings, plan.faces))
     kinds = np.array([_KINDS.get(kind, "") for kind in plan.openings["type"]], object)
-    sure = ~plan.openings["verify"]
-    faces_m = floorplan.centrelines_m(plan.faces)
-    weak = set(plan.walls["wall"][plan.walls["verify"]].tolist())
-    is_weak = np.array([wall in weak for wall in plan.faces["wall"].tolist()], bool)
+    weak = plan.walls["wall"][plan.walls["verify"]]
     doubtful_m = [
-        faces_m[is_weak], openings_m[~sure | (kinds == "")], floorplan.centrelines_m(plan.unseen)
-    ]  # fmt: skip
-    areas = shapely.transform(plan.areas, lambda xy_m: _move(xy_m, motion))
+        faces_m[np.isin(plan.faces["wall"], weak)],
+        openings_m[plan.openings["verify"]],
+        floorplan.centrelines_m(plan.unseen),
+    ]
     return _Statements(
-        near(openings_m[sure & (kinds == "door")], opening_metrics.WALL_M),
-        near(openings_m[sure & (kinds == "window")], opening_metrics.WALL_M),
-        near(faces_m[~is_weak], _WITHIN_M),
-        near(np.concatenate(doubtful_m), _WITHIN_M),
-        shapely.union_all(areas),
+        widen(openings_m[kinds == "door"], opening_metrics.WALL_M),
+        widen(openings_m[kinds == "window"], opening_metrics.WALL_M),
+        widen(faces_m, _WITHIN_M),
+        widen(np.concatenate(doubtful_m), _WITHIN_M),
+        shapely.union_all(shapely.transform(plan.areas, lambda xy_m: _move(xy_m, motion))),
+    )
+
+
+def _true_statements(true: Any, known: Any) -> _Statements:
+    return _Statements(
+        _widen(true.doors_m, opening_metrics.WALL_M),
+        _widen(true.windows_m, opening_metrics.WALL_M),
+        _widen(np.concatenate([known.inner_m, known.outer_m]), _WITHIN_M),
+        shapely.Polygon(),
+        shapely.union_all(true.rooms),
     )
 
 
 def _widen(lines_m: FloatArray, half_m: float) -> Any:
     """Return the ground along lines (n, 2, 2), so wide to each side."""
-    half = np.full(len(lines_m), half_m)
-    return shapely.union_all(floorplan.buffer_lines(lines_m, half))
+    return shapely.union_all(floorplan.buffer_lines(lines_m, np.full(len(lines_m), half_m)))
 
 
-def _true_statements(true: Any, known: Any) -> _Statements:
-    def near(lines_m: FloatArray, within_m: float) -> Any:
-        return shapely.union_all(
-            shapely.buffer(shapely.linestrings(lines_m), within_m, cap_style=2)
-        )
-
-    faces_m = np.concatenate([known.inner_m, known.outer_m])
-    return _Statements(
-        _widen(true.doors_m, opening_metrics.WALL_M),
-        _widen(true.windows_m, opening_metrics.WALL_M),
-        _widen(faces_m, _WITHIN_M),
-        shapely.Polygon(),
-        shapely.union_all(true.rooms),
-    )
+def _places_along(shape: Any) -> Array:
+    """Return places along lines, the middles of equal parts of about a step."""
+    places: list[Any] = []
+    for line in shapely.get_parts(shape):
+        n = max(round(line.length / _STEP_M), 1)
+        middles = (np.arange(n) + 0.5) / n
+        places += [*shapely.line_interpolate_point(line, middles, normalized=True)]
+    return np.array(places, object)
 
 
 def _places_beside(shape: Any) -> Array:
@@ -326,14 +325,16 @@ def _places_beside(shape: Any) -> Array:
     return shapely.points(np.stack([middle_m + aside_m, middle_m - aside_m]))
 
 
-def _is_room_right(shape: Any, plan: Any, motion: FloatArray, true: Any) -> bool:
-    """Return whether the room that lies where one was asked for is sure, and a true one."""
+def _judge_room(shape: Any, plan: Any, motion: FloatArray, true: Any) -> tuple[bool, bool]:
+    """Return whether the room that lies where one was asked for is a true one, and sure."""
     asked = shapely.union_all(shapely.get_parts(shapely.polygonize(shapely.get_parts(shape))))
     areas = shapely.transform(plan.areas, lambda xy_m: _move(xy_m, motion))
     shared_m2 = shapely.area(shapely.intersection(areas, asked))
-    if not shared_m2.any() or plan.rooms["verify"][shared_m2.argmax()]:
-        return False
-    area = areas[shared_m2.argmax()]
-    whole_m2 = [shapely.union(area, room).area for room in true.rooms]
-    common_m2 = [shapely.intersection(area, room).area for room in true.rooms]
-    return bool(np.max(np.divide(common_m2, whole_m2)) > opening_metrics.MOST)
+    if not shared_m2.any():
+        return False, False
+    row = int(shared_m2.argmax())
+    ious = [
+        shapely.intersection(areas[row], room).area / shapely.union(areas[row], room).area
+        for room in true.rooms
+    ]
+    return max(ious) > opening_metrics.MOST, not plan.rooms["verify"][row]

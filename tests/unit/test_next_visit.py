@@ -1,6 +1,7 @@
 """Second visits to rooms in which one sees on paper from where."""
 
 import json
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -39,7 +40,7 @@ def room_plan(corners, spans=(), *, openings=(), walls=(), others=(), doubtful_r
     """A room of single surfaces with spans of its outline that were not seen."""
     rooms = [shapely.Polygon(corners), *others]
     rings = [shapely.get_coordinates(room)[:, :2] for room in rooms]
-    faces = [(*a, *b, -1) for ring in rings for a, b in zip(ring[:-1], ring[1:], strict=True)]
+    faces = [(*a, *b, -1) for ring in rings for a, b in pairwise(ring)]
     return FloorPlan(
         name="bent",
         faces=rated(floorplan_making.faces(faces)),
@@ -114,7 +115,7 @@ def test_the_collection_has_standpoints_ways_and_questions():
     }  # fmt: skip
 
 
-@pytest.mark.parametrize(("place", "asked"), [((3.5, 1.0), []), ((1.0, 1.0), ["way"])])
+@pytest.mark.parametrize(("place", "asked"), [((3.6, 1.0), []), ((1.0, 1.0), ["way"])])
 def test_where_a_way_out_leads_is_asked_until_someone_stood_at_it(place, asked):
     door = ((4, 0.5, 4, 1.5), -1, "door", 0.0, 2.0, 0, -1)
     plan = room_plan([(0, 0), (4, 0), (4, 2), (0, 2)], openings=[door])
@@ -186,8 +187,7 @@ def test_no_view_that_was_left_out_shows_more_than_a_stray_part(n_views, n_quest
     assert len(set(chosen)) == len(chosen)
 
     def worth(views):
-        known = seen[views].any(axis=0).reshape(n_questions, 4).mean(axis=1)
-        return np.minimum(known / 0.7, 1).sum()
+        return seen[views].any(axis=0).sum() / 4
 
     for view in set(range(n_views)) - set(chosen):
         assert worth([*chosen, view]) - worth(chosen) <= STRAY_SHARE + 1e-9

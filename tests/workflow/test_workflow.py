@@ -176,7 +176,7 @@ def test_a_setting_of_one_order_reruns_no_other(project, change, methods):
         ("lab/evaluation/length_metrics", EVALUATED | {"evaluate_plan"}),
         ("lab/evaluation/pose_errors", {"evaluate_poses", "evaluate_plan"} | EVALUATED),
         ("plan/faces/merging", PLANNED),
-        ("report/plan_svg", set()),
+        ("report/plan_view/plan_svg", set()),
     ],
 )
 def test_an_edited_helper_reruns_exactly_the_stages_that_import_it(project, helper, rules):

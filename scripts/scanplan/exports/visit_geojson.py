@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 
 from scanplan.exports.geojson import CRS, NOTE, Feature, round_value
-from scanplan.types import Columns
+from scanplan.types import Array, Columns
 from scanplan.visit.next_visit import NextVisit
 
 
@@ -37,7 +37,7 @@ def format_visit(name: str, visit: NextVisit, summary: str) -> str:
     }
     places = np.column_stack([visit.standpoints["x_m"], visit.standpoints["y_m"]])
     features = [
-        *_features("standpoint", visit.standpoints, shapely.points(places)),
+        *_features("standpoint", visit.standpoints, np.asarray(shapely.points(places))),
         *_features("way", visit.standpoints, shapely.from_wkb(visit.standpoints["geometry"])),
         *_features("question", visit.questions, shapely.from_wkb(visit.questions["geometry"])),
     ]
@@ -46,7 +46,7 @@ def format_visit(name: str, visit: NextVisit, summary: str) -> str:
     return f'{head[:-1]}, "features": [\n{lines}\n]}}\n'
 
 
-def _features(what: str, columns: Columns, shapes: np.ndarray) -> list[Feature]:
+def _features(what: str, columns: Columns, shapes: Array) -> list[Feature]:
     """Return features of the rows of a table; of ways their number and length alone."""
     names = ("standpoint", "way_m") if what == "way" else [n for n in columns if n != "geometry"]
     # a tenth of a millimetre

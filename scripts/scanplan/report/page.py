@@ -13,15 +13,13 @@ from scanplan.report import (
     chart,
     doubts,
     figures,
-    growth,
-    next_visit,
     page_tables,
-    plan_svg,
     result_links,
     templates,
     wording,
 )
 from scanplan.report.facts import RunFacts, SurveyFacts
+from scanplan.report.plan_view import growth, next_visit, plan_svg
 from scanplan.report.point_image import PointImage
 from scanplan.types import FloatArray, Settings
 

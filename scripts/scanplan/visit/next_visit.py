@@ -90,8 +90,8 @@ def plan_visit(
     chosen = standpoints.choose_views(seen, pieces)
     stops = _order_stops(grid, views, chosen, track_m[0])
     shown = _shares_shown(seen[stops.view], pieces, len(asked))
-    seeable = _shares_shown(seen.any(axis=0)[None], pieces, len(asked))[0]
-    known = _shares_shown(seen[stops.view].any(axis=0)[None], pieces, len(asked))[0]
+    any_view = np.stack([seen.any(axis=0), seen[stops.view].any(axis=0)])
+    seeable, known = _shares_shown(any_view, pieces, len(asked))
     best = shown.argmax(axis=0) + 1 if len(shown) else np.zeros(len(asked), np.int64)
     standpoint = np.where(known > STRAY_SHARE, best, -1)
     return NextVisit(
@@ -120,7 +120,8 @@ def _order_stops(grid: RoadmapGrid, views: Views, chosen: list[int], start_m: Fl
     """Return the chosen views in the order of a short tour from a place."""
     if not chosen:
         return _Stops(np.empty(0, np.int64), [])
-    cells = [roadmap.nearest_cell(grid, place) for place in (start_m, *views.place_m[chosen])]
+    places_m = [start_m.tolist(), *views.place_m[chosen].tolist()]
+    cells = [roadmap.nearest_cell(grid, place_m) for place_m in places_m]
     ways = [roadmap.cheapest_ways(grid, cell) for cell in cells]
     cost = np.stack([costs[cells] for costs, _ in ways])
     order = tour.shortest_tour((cost + cost.T) / 2, closed=False, first=0)

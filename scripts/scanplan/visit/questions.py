@@ -15,7 +15,6 @@ from scanplan.types import FloatArray, IntArray
 UNSEEN, WAY = "unseen", "way"
 """Kinds of questions besides opening, wall and room: a span of an outline, and where a way leads.
 """
-_MAY_LEAD_ON = (*WAYS, "gap")
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +36,8 @@ class Question:
         How far to the left of each line that lies which a sensor has to see, on one side or on
         either: NaN stands for none.
     reach_m : float
-        From how far away it is settled at most; infinite where that is for the sensor to say.
+        What one has to stand at is settled from so near, whichever way it faces; infinite where
+        how far one sees is for the sensor to say.
     """
 
     kind: str
@@ -104,7 +104,7 @@ def cut_questions(questions: Sequence[Question]) -> Pieces:
     step = np.arange(len(line)) - np.repeat(np.cumsum(number) - number, number)
     way_m = lines_m[line, 1] - lines_m[line, 0]
     middle_m = lines_m[line, 0] + way_m * ((step + 0.5) / number[line])[:, None]
-    left = np.column_stack([-way_m[:, 1], way_m[:, 0]]) / length_m[line, None]
+    left = _left_of(lines_m)[line]
     side_m = sides_m[line][..., None]
     reach_m = np.array([asked.reach_m for asked in questions])
     return Pieces(
@@ -127,25 +127,30 @@ def _ask_unseen(plan: FloorPlan) -> Iterator[Question]:
 
 
 def _ask_openings(plan: FloorPlan) -> Iterator[Question]:
-    for row in np.flatnonzero(plan.openings["verify"]):
+    """Yield doubtful openings; where one may go through one has to stand at them."""
+    for row in np.flatnonzero(plan.openings["verify"]).tolist():
         number, doubt = int(plan.openings["opening"][row]), str(plan.openings["doubt"][row])
-        yield Question("opening", number, doubt, *_both_sides(plan, row))
+        line_m, sides_m = _both_sides(plan, row)
+        is_way = plan.openings["type"][row] in WAYS
+        reach_m = float(line_lengths_m(line_m)[0]) / 2 if is_way else np.inf
+        yield Question("opening", number, doubt, line_m, sides_m, reach_m)
 
 
 def _ask_ways(plan: FloorPlan, track_m: FloatArray) -> Iterator[Question]:
-    """Yield the ways out of the known rooms that no scan was taken at, no farther than their width.
+    """Yield the ways out of the known rooms that no scan was taken at.
 
-    From there one looks through; what one sees then is what a plan can know of it.
+    Who stands there looks through; what one sees then is what a plan can know of it.
     """
     openings = plan.openings
     leads_on = np.minimum(openings["room_a"], openings["room_b"]) < 0
-    for row in np.flatnonzero(leads_on & np.isin(openings["type"].astype(str), _MAY_LEAD_ON)):
+    for row in np.flatnonzero(leads_on & np.isin(openings["type"].astype(str), WAYS)).tolist():
         line_m, sides_m = _both_sides(plan, row)
-        width_m = float(line_lengths_m(line_m)[0])
-        apart_m = np.hypot(*(track_m - line_m[0].mean(axis=0)).T)
-        if apart_m.min(initial=np.inf) > width_m:
+        half_m = float(line_lengths_m(line_m)[0]) / 2
+        before_m = line_m[0].mean(axis=0) + sides_m[0, :, None] * _left_of(line_m)
+        apart_m = np.hypot(*np.moveaxis(track_m[:, None] - before_m, -1, 0))
+        if apart_m.min(initial=np.inf) > half_m:
             doubt = "nobody looked through it from near"
-            yield Question(WAY, int(openings["opening"][row]), doubt, line_m, sides_m, width_m)
+            yield Question(WAY, int(openings["opening"][row]), doubt, line_m, sides_m, half_m)
 
 
 def _ask_walls(plan: FloorPlan) -> Iterator[Question]:
@@ -156,7 +161,7 @@ def _ask_walls(plan: FloorPlan) -> Iterator[Question]:
     is_left = way_m[:, 0] * normals[:, 1] - way_m[:, 1] * normals[:, 0] > 0
     side_m = np.where(is_left, END_M, -END_M)
     for row in np.flatnonzero(plan.walls["verify"]):
-        number, doubt = int(plan.walls["wall"][row]), str(plan.walls.get("doubt", {row: ""})[row])
+        number, doubt = int(plan.walls["wall"][row]), str(plan.walls["doubt"][row])
         drawn = np.flatnonzero((plan.faces["wall"] == number) & (line_lengths_m(faces_m) > 0))
         if len(drawn):
             sides_m = np.column_stack([side_m[drawn], np.full(len(drawn), np.nan)])
@@ -183,8 +188,12 @@ def _both_sides(plan: FloorPlan, row: int) -> tuple[FloatArray, FloatArray]:
 
 def _inner_sides_m(lines_m: FloatArray, area: shapely.Geometry) -> FloatArray:
     """Return the sides (k, 2) of lines along a room's outline that lie in the room."""
-    way_m = lines_m[:, 1] - lines_m[:, 0]
-    left = np.column_stack([-way_m[:, 1], way_m[:, 0]]) / np.hypot(*way_m.T)[:, None]
-    beside_m = lines_m.mean(axis=1) + END_M * left
+    beside_m = lines_m.mean(axis=1) + END_M * _left_of(lines_m)
     is_left = shapely.contains_xy(area, beside_m)
     return np.column_stack([np.where(is_left, END_M, -END_M), np.full(len(lines_m), np.nan)])
+
+
+def _left_of(lines_m: FloatArray) -> FloatArray:
+    """Return the unit normals (k, 2) to the left of lines."""
+    way_m = lines_m[:, 1] - lines_m[:, 0]
+    return np.column_stack([-way_m[:, 1], way_m[:, 0]]) / np.hypot(*way_m.T)[:, None]

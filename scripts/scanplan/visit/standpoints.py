@@ -6,7 +6,6 @@ import shapely
 from scanplan.geometry import roadmap
 from scanplan.geometry.roadmap import RoadmapGrid
 from scanplan.plan.floorplan import WAYS, FloorPlan
-from scanplan.plan.tolerances import ALONG_SHARE
 from scanplan.rays.tolerances import STRAY_SHARE
 from scanplan.selection import lazy_greedy
 from scanplan.types import BoolArray, FloatArray, IntArray
@@ -39,11 +38,11 @@ def spread_cells(grid: RoadmapGrid, spacing_m: float) -> IntArray:
     square = np.floor(grid.xy_m / spacing_m).astype(np.int64)
     roomiest = np.lexsort((*grid.xy_m.T, -np.round(grid.near_m, 3)))
     _, first = np.unique(square[roomiest], axis=0, return_index=True)
-    return roomiest[np.sort(first)]
+    return np.asarray(roomiest[np.sort(first)], np.int64)
 
 
 class SettledQuestions(lazy_greedy.SingleGains):
-    """How much of each question is seen, up to what settles it; the sum of that by views.
+    """How many questions are seen, parts of them added up.
 
     Parameters
     ----------
@@ -57,25 +56,13 @@ class SettledQuestions(lazy_greedy.SingleGains):
         self._known = np.zeros(seen.shape[1], bool)
         super().__init__(len(seen))
 
-    def shares(self, known: BoolArray) -> FloatArray:
-        """Return the share (q,) of each question that is seen in some pieces (p,)."""
-        return np.bincount(self._pieces.question[known], self._pieces.share[known], self._n)
-
-    @property
-    def _n(self) -> int:
-        return int(self._pieces.question.max(initial=-1)) + 1
-
     def measure_gain(self, i: int) -> float:
-        """Return how many questions more a view would settle, parts of them added up."""
-        return self._worth(self._known | self._seen[i]) - self._worth(self._known)
+        """Return how many questions more a view would show, parts of them added up."""
+        return float(self._pieces.share[self._seen[i] & ~self._known].sum())
 
     def cover(self, i: int) -> None:
         """See what a view sees."""
         self._known |= self._seen[i]
-
-    def _worth(self, known: BoolArray) -> float:
-        # more than what hidden corners leave of a width is not asked for
-        return float(np.minimum(self.shares(known) / ALONG_SHARE, 1.0).sum())
 
 
 def choose_views(seen: BoolArray, pieces: Pieces) -> list[int]:

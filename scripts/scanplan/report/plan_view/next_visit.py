@@ -6,11 +6,11 @@ import numpy as np
 import shapely
 
 from scanplan.plan import floorplan
-from scanplan.report import plan_svg
 from scanplan.report.facts import VisitFacts
 from scanplan.report.page_tables import Cell, PageTable, Row, make_heads, number_cell
+from scanplan.report.plan_view import plan_svg
 from scanplan.report.top_view import MARGIN_M
-from scanplan.types import Columns
+from scanplan.types import Array, Columns
 
 _NUMBER_M = 0.35  # radius of a standpoint's mark: half of a door's width
 
@@ -48,7 +48,7 @@ def standpoint_table(plan: floorplan.FloorPlan, visit: VisitFacts) -> PageTable:
             number_cell(at["y_m"], 2),
             Cell("all around") if is_all_around else number_cell(heading_deg, 0),
             number_cell(at["way_m"], 1),
-            Cell("; ".join(settled)),
+            Cell("; ".join(settled) or "parts of what others show"),
         ]))  # fmt: skip
     heads = make_heads(
         "#standpoint", "#x (m)", "#y (m)", "look towards (deg)", "#way to it (m)", "shows"
@@ -66,7 +66,7 @@ def hidden_table(plan: floorplan.FloorPlan, visit: VisitFacts) -> PageTable:
     return PageTable("hidden", make_heads("not to be seen", "why it is asked"), rows)
 
 
-def name_questions(plan: floorplan.FloorPlan, questions: Columns) -> np.ndarray:
+def name_questions(plan: floorplan.FloorPlan, questions: Columns) -> Array:
     """Return what each question (q,) is about, in words."""
     kinds = zip(plan.openings["opening"].tolist(), plan.openings["type"].tolist(), strict=True)
     openings = {number: f"{kind} {number}" for number, kind in kinds}

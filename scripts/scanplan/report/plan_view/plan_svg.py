@@ -7,7 +7,8 @@ import numpy as np
 import shapely
 
 from scanplan.plan import floorplan
-from scanplan.report import doubts, growth
+from scanplan.report import doubts
+from scanplan.report.plan_view import growth
 from scanplan.report.point_image import PointImage
 from scanplan.report.top_view import MARGIN_M
 from scanplan.types import Columns, FloatArray
