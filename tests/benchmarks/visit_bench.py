@@ -74,7 +74,7 @@ def _visit_again(
     place = survey_setup.prepare_site(
         source.read_bytes(), source, simulated["mount"], seed=int(seed), **simulated["site"]
     )
-    way_m = _cut_way(place.waypoints_m, _DRIVEN)
+    way_m = _cut_way(np.asarray(place.waypoints_m), _DRIVEN)
     first = folder / "surveys" / f"{name}_first"
     n_first = _drive(source, first, "first", simulated, way_m)
     _make_plan(project, folder, first)
@@ -215,6 +215,11 @@ def _move(xy_m: FloatArray, motion: FloatArray) -> FloatArray:
     return xy_m @ motion[:2, :2].T + motion[:2, 3]
 
 
+def _move_shapes(shapes: Array, motion: FloatArray) -> Array:
+    moved = shapely.transform(shapes, lambda xy_m: np.asarray(_move(xy_m, motion), np.float64))
+    return np.asarray(moved, object)
+
+
 def _count_kinds(kinds: Array, reachable: Array, right: Array) -> str:
     counts = []
     for kind in sorted(set(kinds)):
@@ -251,7 +256,7 @@ def _judge(results: Path, survey: Path, asked: Any, motion: FloatArray) -> tuple
     known = truth_file.read_true_faces(survey / "truth.geojson")
     own = _find_motion(results, survey)
     drawn, is_true = _read_statements(plan, own), _true_statements(true, known)
-    shapes = shapely.transform(shapely.from_wkb(asked["geometry"]), lambda m: _move(m, motion))
+    shapes = _move_shapes(shapely.from_wkb(asked["geometry"]), motion)
     verdicts = []
     for kind, shape in zip(asked["kind"], shapes, strict=True):
         if kind == "room":
@@ -287,7 +292,7 @@ def _read_statements(plan: Any, motion: FloatArray) -> _Statements:
         widen(openings_m[kinds == "window"], opening_metrics.WALL_M),
         widen(faces_m, _WITHIN_M),
         widen(np.concatenate(doubtful_m), _WITHIN_M),
-        shapely.union_all(shapely.transform(plan.areas, lambda xy_m: _move(xy_m, motion))),
+        shapely.union_all(_move_shapes(plan.areas, motion)),
     )
 
 
@@ -322,13 +327,13 @@ def _places_beside(shape: Any) -> Array:
     way = (end_m - begin_m) / np.hypot(*(end_m - begin_m))
     aside_m = 0.5 * np.array([-way[1], way[0]])
     middle_m = (begin_m + end_m) / 2
-    return shapely.points(np.stack([middle_m + aside_m, middle_m - aside_m]))
+    return np.asarray(shapely.points(np.stack([middle_m + aside_m, middle_m - aside_m])))
 
 
 def _judge_room(shape: Any, plan: Any, motion: FloatArray, true: Any) -> tuple[bool, bool]:
     """Return whether the room that lies where one was asked for is a true one, and sure."""
     asked = shapely.union_all(shapely.get_parts(shapely.polygonize(shapely.get_parts(shape))))
-    areas = shapely.transform(plan.areas, lambda xy_m: _move(xy_m, motion))
+    areas = _move_shapes(plan.areas, motion)
     shared_m2 = shapely.area(shapely.intersection(areas, asked))
     if not shared_m2.any():
         return False, False
