@@ -25,11 +25,12 @@ def simulate_survey(
     drive: Settings,
     localiser: Settings,
     people: Settings,
+    start_ns: int = survey_bag.EPOCH_NS,
     threads: int = 1,
 ) -> None:
     """Write a drive's recording (.bag, .db3 or .mcap), the floor's truth, and the true poses.
 
-    The poses at the scans' stamps, and those of the whole way.
+    The poses at the scans' stamps, and those of the whole way; the drive begins at `start_ns`.
     """
     data = Path(building).read_bytes()
     place = survey_setup.prepare_site(data, Path(building), mount, seed=seed, **site)
@@ -39,7 +40,6 @@ def simulate_survey(
         place, seed=seed, mount=mount, sensor=sensor, errors=errors, drive=drive, people=people
     )
     belief = survey_setup.survey_belief(survey, **localiser)
-    start_ns = survey_bag.EPOCH_NS
     scans = log.report_progress(
         sweeps.simulate_scans(survey, threads=threads), "simulate_survey", total=len(survey.t_ns)
     )

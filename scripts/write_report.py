@@ -8,7 +8,7 @@ from typing import Any
 from scanplan.plan import floorplan
 from scanplan.project import code_files, corrections_file
 from scanplan.report import figures, point_image
-from scanplan.report.facts import PredictionFacts, RunFacts, Storey, SurveyFacts
+from scanplan.report.facts import PredictionFacts, RunFacts, Storey, SurveyFacts, VisitFacts
 from scanplan.report.page import report_page
 from scanplan.report.summary import summarise_survey
 from scanplan.selection import stopping
@@ -35,9 +35,10 @@ def write_report(
     ----------
     files : dict of str to path-like, or list of path-like
         `faces`, `walls`, `openings`, `rooms`, `free`, `evidence`, `segments`, `validation`,
-        `confidence` of plan/; `scans`, `selection`, `poses`, `registration`; `page` (templates,
-        CSS, JavaScript); `figures`; `evaluation` (plan.parquet and walls.parquet, as far as they
-        are known); `recordings`; `results`; `corrections`, if there are any.
+        `confidence`, `questions`, `standpoints` of plan/; `scans`, `selection`, `poses`,
+        `registration`; `page` (templates, CSS, JavaScript); `figures`; `evaluation` (plan.parquet
+        and walls.parquet, as far as they are known); `recordings`; `results`; `corrections`, if
+        there are any.
     output : path-like
         report.html or comparison.html, to write.
     name : str
@@ -99,6 +100,11 @@ def _read_survey(files: Mapping[str, Any], stop: Settings) -> SurveyFacts:
         evidence=tables.read_table(files["evidence"], schemas.EVIDENCE, allow_empty=True),
         chosen=stopping.choose_n_scans(selection, **stop)[0],
         prediction=_read_prediction(files["validation"]),
+        visit=VisitFacts(
+            tables.read_table(files["questions"], schemas.QUESTIONS, allow_empty=True),
+            tables.read_table(files["standpoints"], schemas.STANDPOINTS, allow_empty=True),
+            tables.read_note(files["questions"], schemas.QUESTIONS, "summary"),
+        ),
         plan_measures=_read_if_known(evaluation.get("plan"), schemas.PLAN_EVALUATION),
         wall_measures=_read_if_known(evaluation.get("walls"), schemas.EVALUATION),
     )

@@ -6,6 +6,7 @@ Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [pl
        run.py guard REVISION FOLDER [SURVEY ...]
        run.py compare FOLDER FOLDER
        run.py confidence FOLDER SURVEY,... SURVEY,...
+       run.py next_visit FOLDER [SURVEY ...]
 
 Without a name all of them but wall_quality, which takes minutes, plans, which measures the surveys
 that `make compare` has finished under results/, and validation, which damages the plans there; a
@@ -23,6 +24,10 @@ where a measure fell.
 `confidence` fits how likely elements of a plan are right on the first of the surveys in a folder
 that `guard` has made, tests it on the others, and writes the coefficients into the package, with a
 reliability diagram in that folder.
+
+`next_visit` cuts drives short, drives to where their plans say that a second visit should stand,
+and as far again at random, and counts what is settled rightly. Surveys are named as those of
+`guard`, with any seed; drives and plans are kept in FOLDER.
 """
 
 import sys
@@ -128,10 +133,20 @@ def fit_confidence(folder: str, train: str, test: str) -> None:
     )
 
 
+def bench_next_visit(folder: str, *names: str) -> None:
+    """Second drives as planned, and at random with twice the scans."""
+    import visit_bench
+
+    recordings = (ROOT.parent / "shared/data").resolve()
+    surveys = names or ("demo_4", "duplex_4")
+    visit_bench.bench(ROOT, SETTINGS, Path(folder).resolve(), recordings, surveys)
+
+
 APART: dict[str, Callable[..., None]] = {
     "guard": record_guard,
     "compare": compare_guards,
     "confidence": fit_confidence,
+    "next_visit": bench_next_visit,
     "pipeline": bench_pipeline,
 }
 BENCHES: dict[str, Callable[[], None]] = {

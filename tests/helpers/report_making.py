@@ -3,11 +3,12 @@
 from pathlib import Path
 
 import numpy as np
+import shapely
 
 from helpers import floorplan_making
 from helpers.wall_making import walls as wall_table
 from scanplan.plan import floorplan
-from scanplan.report.facts import PredictionFacts
+from scanplan.report.facts import PredictionFacts, VisitFacts
 from scanplan.store import schemas, tables
 
 PAGE = Path(__file__).resolve().parents[2] / "workflow/report/page"
@@ -141,6 +142,37 @@ def confidence():
     return {name: values[order] for name, values in joined.items()}
 
 
+def questions():
+    """A wall that the only standpoint shows, and one that cannot be seen."""
+    lines = [shapely.MultiLineString([[(4.05, 3.1), (7.1, 3.1)]])] * 2
+    return {
+        "kind": np.array(["wall", "wall"], object),
+        "number": np.array([1, 2], np.int32),
+        "doubt": np.array(["short", "few points"], object),
+        "x_m": np.full(2, 5.6),
+        "y_m": np.full(2, 3.1),
+        "seeable": np.array([1.0, 0.0]),
+        "seen": np.array([1.0, 0.0]),
+        "standpoint": np.array([1, -1], np.int32),
+        "geometry": shapely.to_wkb(np.array(lines, object)),
+    }
+
+
+def standpoints():
+    return {
+        "standpoint": np.array([1], np.int32),
+        "x_m": np.array([5.5]),
+        "y_m": np.array([1.25]),
+        "heading_deg": np.array([np.nan]),
+        "way_m": np.array([4.5]),
+        "n_questions": np.array([1], np.int32),
+        "geometry": shapely.to_wkb(np.array([shapely.LineString([(1, 1.25), (5.5, 1.25)])])),
+    }
+
+
+VISIT = VisitFacts(questions(), standpoints(), "1 of 2 can be seen")
+
+
 def plan_evaluation():
     columns = {
         name: np.array([3, 3], np.int32) if kind == "int32" else np.array([0.97, 0.98])
@@ -177,6 +209,11 @@ def files(folder):
     tables.write_table(paths["validation"], schemas.VALIDATION, validation(), notes=notes)
     paths["confidence"] = folder / "confidence.parquet"
     tables.write_table(paths["confidence"], schemas.CONFIDENCE, confidence())
+    paths["questions"] = folder / "questions.parquet"
+    notes = {"summary": VISIT.summary}
+    tables.write_table(paths["questions"], schemas.QUESTIONS, questions(), notes=notes)
+    paths["standpoints"] = folder / "standpoints.parquet"
+    tables.write_table(paths["standpoints"], schemas.STANDPOINTS, standpoints())
     (folder / "scans.svg").write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><path d="M0 0"/></svg>'
     )

@@ -2,8 +2,8 @@ import numpy as np
 
 from helpers.floorplan_making import faces
 from helpers.wall_making import walls
-from scanplan.report import growth
-from scanplan.report.growth import NEVER
+from scanplan.report.plan_view import growth
+from scanplan.report.plan_view.growth import NEVER
 
 SETTINGS = {"max_angle_deg": 10.0, "distance_m": 0.1}
 

@@ -155,3 +155,24 @@ def test_ground_with_a_neck_too_narrow_for_the_grid_is_driven_in_part(start_m, r
     here = (floor, shapely.Polygon(), rooms, "a")
     found = route.plan_route(*here, kind="rooms", clearance_m=0.3, start_m=start_m, seed=1)
     assert found.reached == (reached,) and len(found.missed) == 1
+
+
+def test_places_are_joined_in_their_order_round_what_stands_between():
+    floor = shapely.box(0, 0, 10, 4)
+    wall = shapely.box(4.9, 1.5, 5.1, 4)
+    places_m = np.array([[1.0, 3.0], [9.0, 3.0], [9.0, 3.0], [1.0, 3.0]])
+    way_m = route.join_places(floor, wall, places_m, "drawn", clearance_m=0.3)
+    np.testing.assert_allclose(way_m[[0, -1]], places_m[[0, -1]], atol=0.05)
+    assert np.hypot(*(way_m - places_m[1]).T).min() < 0.05
+    way = shapely.LineString(way_m)
+    assert way.distance(wall) >= 0.3 - 1e-6
+    # under the wall's lower end there and back, with 0.3 m to spare
+    assert way.length >= 4 * np.hypot(4, 1.8) - 0.2
+
+
+def test_without_free_floor_places_are_not_joined():
+    places_m = np.array([[0.5, 0.5], [1.0, 0.5]])
+    with pytest.raises(StageError, match=r"drawn: has no free floor 0\.6 m wide"):
+        route.join_places(
+            shapely.box(0, 0, 1, 1), shapely.Point(9, 9), places_m, "drawn", clearance_m=0.6
+        )

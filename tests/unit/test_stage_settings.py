@@ -21,6 +21,7 @@ from scanplan.project.settings_schema import iterate_keys, list_choices
 from scanplan.registration.registration_settings import registration_settings
 from scanplan.selection import methods, wall_cells
 from scanplan.validation import prediction
+from scanplan.visit import next_visit
 from simulate_survey import simulate_survey
 
 SECTIONS = ("input", "poses", "registration", "evaluation", "thesis")
@@ -59,6 +60,7 @@ def received(settings):
         "walls": select.select_extractors(settings, names),
         "plan": select.select_plan(settings),
         "validation": select.select_validation(settings),
+        "visit": select.select_visit(settings),
         "simulation": select.select_simulation(settings),
     }
 
@@ -105,6 +107,7 @@ def test_the_settings_classes_take_what_is_selected():
     wall_cells.WallCellSettings(**cells)
     planning.make_plan_settings(**stage_settings.select_plan(SETTINGS))
     prediction.ValidationSettings(**stage_settings.select_validation(SETTINGS))
+    next_visit.VisitSettings(**stage_settings.select_visit(SETTINGS))
     registration_settings(stage_settings.select_section(SETTINGS, "registration"))
 
 

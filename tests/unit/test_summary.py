@@ -17,6 +17,7 @@ def survey(prediction=report_making.PREDICTION):
         evidence=floorplan_making.evidence(),
         chosen=3,
         prediction=prediction,
+        visit=report_making.VISIT,
     )
 
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scanplan.lab.buildings import tour
+from scanplan.geometry import tour
 
 
 def distances(xy):

@@ -9,7 +9,7 @@ from scanplan.store import schemas, tables
 
 pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("corrections")]
 READERS = {
-    *("validate_plan", "rate_plan", "export_plan", "export_files"),
+    *("validate_plan", "rate_plan", "plan_next_visit", "export_plan", "export_files"),
     *("draw_walls", "draw_validation", "write_report"),
 }
 

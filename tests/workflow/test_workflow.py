@@ -33,7 +33,8 @@ def project(project_root, tmp_path_factory):
 
 
 PLANNED = {
-    *("assemble_plan", "validate_plan", "rate_plan", "export_plan", "export_files"),
+    *("assemble_plan", "validate_plan", "rate_plan", "plan_next_visit"),
+    *("export_plan", "export_files"),
     *("draw_walls", "draw_validation", "evaluate_plan"),
 }
 CHOSEN = {"extract_chosen_walls", "draw_scans"} | PLANNED
@@ -175,7 +176,7 @@ def test_a_setting_of_one_order_reruns_no_other(project, change, methods):
         ("lab/evaluation/length_metrics", EVALUATED | {"evaluate_plan"}),
         ("lab/evaluation/pose_errors", {"evaluate_poses", "evaluate_plan"} | EVALUATED),
         ("plan/faces/merging", PLANNED),
-        ("report/plan_svg", set()),
+        ("report/plan_view/plan_svg", set()),
     ],
 )
 def test_an_edited_helper_reruns_exactly_the_stages_that_import_it(project, helper, rules):

@@ -114,6 +114,38 @@ rule rate_plan:
         "../../scripts/rate_plan.py"
 
 
+rule plan_next_visit:
+    """Plan from where a second visit would settle what the plan leaves open."""
+    input:
+        faces=plan_table("faces"),
+        walls=plan_table("walls"),
+        openings=plan_table("openings"),
+        rooms=plan_table("rooms"),
+        free=plan_table("free"),
+        confidence="results/{dataset}/plan/confidence.parquet",
+        selection=plan_selection,
+        scans="results/{dataset}/scans.parquet",
+        registration="results/{dataset}/registration.parquet",
+    output:
+        questions="results/{dataset}/plan/questions.parquet",
+        standpoints="results/{dataset}/plan/standpoints.parquet",
+        geojson="results/{dataset}/plan/next_visit.geojson",
+    log:
+        "logs/{dataset}/plan_next_visit.log",
+    benchmark:
+        "benchmarks/{dataset}/plan_next_visit.tsv"
+    threads: 1
+    resources:
+        mem_mb=grown(mem_mb=1000),
+        runtime=grown(runtime=5),
+    params:
+        code=code_of("plan_next_visit"),
+        stop=section("selection", "stop"),
+        settings=setting(stage_settings.select_visit),
+    script:
+        "../../scripts/plan_next_visit.py"
+
+
 rule export_plan:
     """Write the plan as GeoJSON, DXF, SVG, PDF, PNG and as a map for nav2."""
     input:

@@ -116,6 +116,8 @@ REPORT_TABLES = {
     "free": plan_table("free"),
     "evidence": plan_table("evidence"),
     "validation": "results/{dataset}/plan/validation.parquet",
+    "questions": "results/{dataset}/plan/questions.parquet",
+    "standpoints": "results/{dataset}/plan/standpoints.parquet",
     "scans": "results/{dataset}/scans.parquet",
     "confidence": "results/{dataset}/plan/confidence.parquet",
     "selection": plan_selection,

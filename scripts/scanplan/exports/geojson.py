@@ -92,7 +92,7 @@ def _feature(
     kind: str, columns: Columns, row: int, geometry: dict[str, Any], derived: dict[str, Any]
 ) -> Feature:
     properties = {
-        name: _to_json(values[row], _NORMAL_DIGITS if name in _NORMALS else _DIGITS)
+        name: round_value(values[row], _NORMAL_DIGITS if name in _NORMALS else _DIGITS)
         for name, values in columns.items()
         if name not in _LEFT_OUT
     }
@@ -112,7 +112,7 @@ def _add_scans(walls: list[Feature], evidence: Columns) -> None:
         feature["properties"]["t_ns"] = evidence["t_ns"][is_of_wall].tolist()
 
 
-def _to_json(value: Any, digits: int) -> Any:
+def round_value(value: Any, digits: int = _DIGITS) -> Any:
     """Return a table's value as JSON has it: null for NaN, floats rounded."""
     plain = value.item() if isinstance(value, np.generic) else value
     if not isinstance(plain, float):

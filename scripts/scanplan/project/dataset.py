@@ -31,12 +31,14 @@ RESERVED = "thesis"
 
 _PLAN = tuple(f"plan/{t}" for t in ("faces", "walls", "openings", "rooms", "evidence", "free"))
 _VALIDATION = ("plan/validation", "plan/validation_rays", "plan/confidence")
+_VISIT = ("plan/questions", "plan/standpoints")
 _TABLES = (
     *("poses", "registration", "edges", "scans"),
-    *("plan/segments", *_PLAN, *_VALIDATION),
+    *("plan/segments", *_PLAN, *_VALIDATION, *_VISIT),
 )
 _DRAWN = (
     *(f"plan/plan.{suffix}" for suffix in ("geojson", "dxf", "svg", "pdf", "png")),
+    "plan/next_visit.geojson",
     "plan/map.pgm",
     "plan/map.yaml",
     *(f"figures/{f}.svg" for f in ("registration", "scans", "walls", "validation")),

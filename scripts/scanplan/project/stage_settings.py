@@ -178,6 +178,11 @@ def select_validation(settings: Settings) -> Keywords:
     return plan["validation"] | sigma | {"seed": settings["seed"]}
 
 
+def select_visit(settings: Settings) -> Keywords:
+    """Return the keywords of `next_visit.VisitSettings`."""
+    return select_section(settings, "plan", "next_visit")
+
+
 def select_simulation(settings: Settings) -> Keywords:
     """Return the keywords of `simulate_survey`."""
     return _without(settings["simulate"], _OF_THE_WORKFLOW)

@@ -37,6 +37,23 @@ class PredictionFacts:
 
 
 @dataclass(frozen=True)
+class VisitFacts:
+    """What a second visit is for.
+
+    Attributes
+    ----------
+    questions, standpoints : dict of str to (n,) array
+        The columns of `schemas.QUESTIONS` and `STANDPOINTS`; there may be no row.
+    summary : str
+        In words.
+    """
+
+    questions: Columns
+    standpoints: Columns
+    summary: str
+
+
+@dataclass(frozen=True)
 class SurveyFacts:
     """What a plan was made of.
 
@@ -48,6 +65,7 @@ class SurveyFacts:
     chosen : int
         How many scans of the selection make the plan.
     prediction : PredictionFacts
+    visit : VisitFacts
     plan_measures, wall_measures : dict of str to (n,) array or None
         The columns of `schemas.PLAN_EVALUATION` and of `schemas.EVALUATION`, where the truth is
         known and they were measured.
@@ -60,6 +78,7 @@ class SurveyFacts:
     evidence: Columns
     chosen: int
     prediction: PredictionFacts
+    visit: VisitFacts
     plan_measures: Columns | None = None
     wall_measures: Columns | None = None
 

@@ -13,14 +13,13 @@ from scanplan.report import (
     chart,
     doubts,
     figures,
-    growth,
     page_tables,
-    plan_svg,
     result_links,
     templates,
     wording,
 )
 from scanplan.report.facts import RunFacts, SurveyFacts
+from scanplan.report.plan_view import growth, next_visit, plan_svg
 from scanplan.report.point_image import PointImage
 from scanplan.types import FloatArray, Settings
 
@@ -95,6 +94,10 @@ def report_page(
         storeys=run.storeys,
         doubts=doubts.list_doubts(plan),
         plan=Markup(_plan_svg(plan, survey, points, of_plan["merge"])),
+        visit=survey.visit.summary,
+        visit_map=Markup(next_visit.draw_visit_map(plan, survey.visit)),
+        standpoints=next_visit.standpoint_table(plan, survey.visit),
+        hidden=next_visit.hidden_table(plan, survey.visit),
         chosen=survey.chosen,
         min_scans=of_plan["merge"]["min_scans"],
         chart=Markup(chart.chart_svg(curves, n_scans, survey.chosen)),

@@ -66,21 +66,21 @@ def wall_table(plan: floorplan.FloorPlan, evidence: Columns) -> PageTable:
         at = {name: values[i] for name, values in plan.walls.items()}
         first_ns, last_ns = moments.get(wall, (None, None))
         cells = [
-            _number(wall, 0),
+            number_cell(wall, 0),
             _doubt("wall", plan.walls, i),
             Cell(str(at["state"])),
-            _number(length_m[i], 2),
-            _number(1000 * at["thickness_m"], 0),
-            _number(plan.heights_m[i], 2) if plan.low[i] else _blank_number(),
-            *(_number(1000 * at[name], 1) for name in _DEVIATIONS),
-            _number(at["n_points"], 0),
-            _number(at["n_scans"], 0),
+            number_cell(length_m[i], 2),
+            number_cell(1000 * at["thickness_m"], 0),
+            number_cell(plan.heights_m[i], 2) if plan.low[i] else _blank_number(),
+            *(number_cell(1000 * at[name], 1) for name in _DEVIATIONS),
+            number_cell(at["n_points"], 0),
+            number_cell(at["n_scans"], 0),
             _moment(first_ns),
             _moment(last_ns),
             Cell(at["corrected"]),
         ]
         rows.append(Row(cells, f"wall {wall}"))
-    heads = _heads(
+    heads = make_heads(
         "#wall", "to verify", "state", "#length (m)", "#thickness (mm)", "#ends at height (m)",
         "#σ offset (mm)", "#σ start (mm)", "#σ end (mm)", "#residual (mm)", "#points", "#scans",
         "#first seen", "#last seen", "corrected",
@@ -93,19 +93,19 @@ def opening_table(plan: floorplan.FloorPlan) -> PageTable:
     name_of = dict(zip(plan.rooms["room"].tolist(), plan.room_names, strict=True))
     rows = [
         Row([
-            _number(at["opening"], 0),
+            number_cell(at["opening"], 0),
             _doubt("opening", plan.openings, i),
             Cell(at["type"]),
-            _number(at["width_m"], 2),
-            _number(at["sill_m"], 2),
-            _number(at["lintel_m"], 2),
+            number_cell(at["width_m"], 2),
+            number_cell(at["sill_m"], 2),
+            number_cell(at["lintel_m"], 2),
             Cell(f"{name_of.get(at['room_a'], _OUTSIDE)} – {name_of.get(at['room_b'], _OUTSIDE)}"),
-            _number(at["n_rays"], 0),
+            number_cell(at["n_rays"], 0),
             Cell(at["corrected"]),
         ], f"opening {at['opening']}")
         for i, at in enumerate(_records(plan.openings))
     ]  # fmt: skip
-    heads = _heads(
+    heads = make_heads(
         "#opening", "to verify", "type", "#width (m)", "#sill (m)", "#lintel (m)", "joins",
         "#rays through", "corrected",
     )  # fmt: skip
@@ -116,18 +116,18 @@ def room_table(plan: floorplan.FloorPlan) -> PageTable:
     """Return the table of rooms."""
     rows = [
         Row([
-            _number(at["room"], 0),
+            number_cell(at["room"], 0),
             Cell(plan.room_names[i]),
             _doubt("room", plan.rooms, i),
-            _number(at["area_m2"], 2),
-            _number(at["perimeter_m"], 2),
+            number_cell(at["area_m2"], 2),
+            number_cell(at["perimeter_m"], 2),
             Cell("yes" if at["closed"] else "no"),
-            _number(at["n_scans"], 0),
+            number_cell(at["n_scans"], 0),
             Cell(at["corrected"]),
         ], f"room {at['room']}")
         for i, at in enumerate(_records(plan.rooms))
     ]  # fmt: skip
-    heads = _heads(
+    heads = make_heads(
         "#room", "name", "to verify", "#area (m²)", "#perimeter (m)", "closed",
         "#scans that see it", "corrected",
     )  # fmt: skip
@@ -151,15 +151,15 @@ def registration_table(verdicts: Columns, shift_m: FloatArray) -> PageTable:
         cells = [
             Cell(reason),
             Cell(_all_or_some(verdicts["kept"][of_reason])),
-            _number(of_reason.sum(), 0),
-            _number(of_reason.mean() * 100, 1),
-            _number(_median(verdicts["prior_fitness"][of_reason]), 3),
-            _number(_median(verdicts["refined_fitness"][of_reason]), 3),
-            _number(1000 * _median(verdicts["rmse_m"][of_reason]), 0),
-            _number(1000 * _median(shift_m[of_reason]), 0),
+            number_cell(of_reason.sum(), 0),
+            number_cell(of_reason.mean() * 100, 1),
+            number_cell(_median(verdicts["prior_fitness"][of_reason]), 3),
+            number_cell(_median(verdicts["refined_fitness"][of_reason]), 3),
+            number_cell(1000 * _median(verdicts["rmse_m"][of_reason]), 0),
+            number_cell(1000 * _median(shift_m[of_reason]), 0),
         ]
         rows.append(Row(cells))
-    heads = _heads(
+    heads = make_heads(
         "verdict", "kept", "#scans", "#share (%)", "#fitness at the localiser's pose",
         "#fitness after alignment", "#residual (mm)", "#shift (mm)",
     )  # fmt: skip
@@ -172,32 +172,41 @@ def truth_table(measures: Columns) -> PageTable:
     for name, values in measures.items():
         if name == "frame":
             continue
-        numbers = [_number(value, 0 if name.startswith("n_") else 3) for value in values.tolist()]
+        numbers = [
+            number_cell(value, 0 if name.startswith("n_") else 3) for value in values.tolist()
+        ]
         meaning = Cell(measure_meanings.measure_meaning(name))
         rows.append(Row([Cell(name.replace("_", " ")), *numbers, meaning]))
-    heads = _heads("measure", *(f"#{frame}" for frame in measures["frame"]), "meaning")
+    heads = make_heads("measure", *(f"#{frame}" for frame in measures["frame"]), "meaning")
     return PageTable("truth", heads, rows)
 
 
 def stage_table(run_times: Sequence[tuple[str, float, float, float]]) -> PageTable:
     """Return the table of run times: stage, seconds, processor seconds, peak memory in MB each."""
     rows = [
-        Row([Cell(stage), _number(seconds, 1), _number(cpu_s, 1), _number(memory_mb, 0)])
+        Row(
+            [Cell(stage), number_cell(seconds, 1), number_cell(cpu_s, 1), number_cell(memory_mb, 0)]
+        )
         for stage, seconds, cpu_s, memory_mb in run_times
     ]
     if rows:
         seconds = np.nansum([row[1] for row in run_times])
         cpu_s = np.nansum([row[2] for row in run_times])
-        total = [Cell("all", "total"), _number(seconds, 1), _number(cpu_s, 1), _blank_number()]
+        total = [
+            Cell("all", "total"),
+            number_cell(seconds, 1),
+            number_cell(cpu_s, 1),
+            _blank_number(),
+        ]
         rows.append(Row(total))
-    heads = _heads("stage", "#time (s)", "#processor (s)", "#peak memory (MB)")
+    heads = make_heads("stage", "#time (s)", "#processor (s)", "#peak memory (MB)")
     return PageTable("stages", heads, rows)
 
 
 def size_table(files: Iterable[tuple[str, str, int]]) -> PageTable:
     """Return the table of data sizes: rows of what, file, bytes."""
-    rows = [Row([Cell(what), Cell(file), _number(n / 1e6, 3)]) for what, file, n in files]
-    return PageTable("sizes", _heads("what", "file", "#size (MB)"), rows)
+    rows = [Row([Cell(what), Cell(file), number_cell(n / 1e6, 3)]) for what, file, n in files]
+    return PageTable("sizes", make_heads("what", "file", "#size (MB)"), rows)
 
 
 def settings_table(values: Settings) -> PageTable:
@@ -206,15 +215,15 @@ def settings_table(values: Settings) -> PageTable:
         Row([Cell(key), Cell("null" if value is None else str(value))])
         for key, value in iterate_leaves(values)
     ]
-    return PageTable("settings", _heads("key", "value"), rows)
+    return PageTable("settings", make_heads("key", "value"), rows)
 
 
-def _heads(*texts: str) -> list[Head]:
+def make_heads(*texts: str) -> list[Head]:
     """Return heads; one that begins with `#` stands over numbers."""
     return [Head(text.removeprefix("#"), text.startswith("#")) for text in texts]
 
 
-def _number(value: float, digits: int) -> Cell:
+def number_cell(value: float, digits: int) -> Cell:
     """Return a cell of a number, NaN where it is not known."""
     if not np.isfinite(value):
         return Cell(_NOT_KNOWN, "number")

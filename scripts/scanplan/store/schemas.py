@@ -358,6 +358,45 @@ VALIDATION_RAYS = Schema(
 `outcome` is explained, stopped, passed, beyond or outside: the last left through an opening, and
 the plan predicts nothing of it.
 """
+QUESTIONS = Schema(
+    "questions",
+    1,
+    {
+        "kind": "string",
+        "number": "int32",
+        "doubt": "string",
+        **dict.fromkeys(("x_m", "y_m", "seeable", "seen"), "float64"),
+        "standpoint": "int32",
+        "geometry": "binary",
+    },
+    ("kind", "number"),
+    geometry=True,
+)
+"""What a second visit is to settle: what of a plan is unseen or doubtful.
+
+`kind` is wall, opening or room; unseen: a row of openings that was not seen; way: what an opening
+leads to, that no scan was taken at. `number` is that of its table, `doubt` why it is asked. Of its
+length a share is `seeable` from places that can be reached, and `seen` from the chosen ones;
+`standpoint` is the one that shows most of it, -1 where it cannot be seen.
+"""
+STANDPOINTS = Schema(
+    "standpoints",
+    1,
+    {
+        "standpoint": "int32",
+        **dict.fromkeys(("x_m", "y_m", "heading_deg", "way_m"), "float64"),
+        "n_questions": "int32",
+        "geometry": "binary",
+    },
+    ("standpoint",),
+    geometry=True,
+)
+"""Where a second visit is to stand, in visiting order from 1.
+
+`heading_deg` is the direction in the map that the middle of the sensor's field is to look in, NaN
+of one that sees all around; `way_m` how long the way to it is (`geometry`) from the one before, and
+to the first from where the survey began; `n_questions` how many it shows most of.
+"""
 _WITHIN = ("005m", "010m", "015m")
 _SHARES = ("false_negative", "correct_match", "false_positive")
 _AGREEMENT = {

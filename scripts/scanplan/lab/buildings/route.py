@@ -10,13 +10,17 @@ from shapely import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.errors import StageError
-from scanplan.lab.buildings import hallways, roadmap, tour
+from scanplan.geometry import roadmap, tour
+from scanplan.geometry.roadmap import RoadmapGrid
+from scanplan.lab.buildings import hallways
 from scanplan.lab.buildings.hallways import Rooms
-from scanplan.lab.buildings.roadmap import RoadmapGrid
 from scanplan.lab.random_streams import RandomStream, open_stream
 from scanplan.types import FilePath, FloatArray, IntArray
 
 KINDS = ("given", "rooms", "hallways")
+_CELLS_M = (0.05, 0.1)  # doors hardly wider than the rover are met, and those of large floors
+_LARGE_M2 = 300.0  # of floor, 120,000 fine cells: seconds for every stop's ways
+_MAX_CELLS = 20e6  # rasters of 160 MB each
 _YIELD_M = 0.1  # less space than its cells have that a straightened way may keep: corners for space
 _SPACING_M = 6.0  # by cost, from a stop to the middle of what is visited: hallways get several
 
@@ -95,7 +99,7 @@ def plan_route(
     free = free_ground(area_m, obstacles_m, clearance_m)
     start_xy_m = None if isinstance(start_m, str) else start_m
     part = _part_of(free, start_xy_m, clearance_m, asked, source)
-    grid = roadmap.connected_grid(roadmap.make_grid(part, clearance_m, source), start_xy_m)
+    grid = roadmap.connected_grid(_grid_over(part, clearance_m, source), start_xy_m)
     first = _first_cell(grid, start_m, seed)
     stops, is_reached, ways = _choose_stops(grid, asked, first)
     _check_stops(stops, is_reached, clearance_m, source)
@@ -107,6 +111,48 @@ def plan_route(
         reached=tuple(name for name, ok in named if ok),
         missed=tuple(name for name, ok in named if not ok),
     )
+
+
+def join_places(
+    floor_m: BaseGeometry,
+    obstacles_m: BaseGeometry,
+    places_m: FloatArray,
+    source: FilePath,
+    *,
+    clearance_m: float,
+) -> FloatArray:
+    """Return the corners (n, 2) of a way through places in their order.
+
+    Parameters
+    ----------
+    floor_m, obstacles_m : shapely geometry
+        Where there is floor, and what stands on it.
+    places_m : (k, 2) float, k >= 2
+        Each stands for the nearest free ground that is connected to that of the first.
+    source : path-like
+        What errors name as their origin.
+    clearance_m : float
+        What the way keeps from any obstacle.
+
+    Raises
+    ------
+    StageError
+        If there is no free ground, or it is too large.
+    """
+    free = free_ground(floor_m, obstacles_m, clearance_m)
+    parts = [part for part in shapely.get_parts(free) if part.area > 0]
+    part = min(parts, key=lambda p: p.distance(Point(places_m[0])), default=Polygon())
+    grid = roadmap.connected_grid(_grid_over(part, clearance_m, source))
+    if len(grid.xy_m) == 0:
+        raise StageError(f"{source}: has no free floor {clearance_m:g} m wide to either side")
+    cells = [roadmap.nearest_cell(grid, place_m) for place_m in places_m]
+    stops = [cell for i, cell in enumerate(cells) if i == 0 or cell != cells[i - 1]]
+    corners_m = []
+    for a, b in pairwise(stops):
+        _, cell_before = roadmap.cheapest_ways(grid, a)
+        leg = roadmap.trace_way(cell_before, a, b)
+        corners_m.append(_straighten(grid, leg, part, obstacles_m))
+    return np.vstack([*corners_m, grid.xy_m[stops[-1]]])
 
 
 def free_ground(
@@ -171,6 +217,22 @@ def _part_of(
     )
 
 
+def _grid_over(part: Polygon, clearance_m: float, source: FilePath) -> RoadmapGrid:
+    """Return the grid over connected free ground, in cells as fine as its size allows."""
+    if part.is_empty:
+        return roadmap.make_grid(part, clearance_m, _CELLS_M[0])
+    cell_m = _CELLS_M[part.area >= _LARGE_M2]
+    x0, y0, x1, y1 = part.bounds
+    limit_m2 = _MAX_CELLS * cell_m**2
+    if (x1 - x0) * (y1 - y0) > limit_m2:
+        raise StageError(
+            f"{source}: its floor of {x1 - x0:.0f} x {y1 - y0:.0f} m is too large to plan a way"
+            f" over (limit {limit_m2:,.0f} m2); check simulate.site.unit, or give"
+            " simulate.site.waypoints_m"
+        )
+    return roadmap.make_grid(part, clearance_m, cell_m)
+
+
 def _choose_stops(
     grid: RoadmapGrid, rooms: Rooms, first: int | None
 ) -> tuple[list[int], list[bool], Ways]:
@@ -217,10 +279,7 @@ def _join_stops(
     legs = []
     for a, b in pairwise([*order, order[0]] if closed else order):
         _, cell_before = ways[a]
-        leg = [stops[b]]
-        while leg[-1] != stops[a]:
-            leg.append(int(cell_before[leg[-1]]))
-        legs.append(leg[::-1])
+        legs.append(roadmap.trace_way(cell_before, stops[a], stops[b]))
     return legs
 
 

@@ -1,4 +1,4 @@
-"""A grid over free ground: where the rover's middle can be, and the costs of its steps."""
+"""A grid over free ground: where a rover's middle can be, and the costs of its steps."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,16 +8,11 @@ import shapely
 from scipy.ndimage import distance_transform_edt, maximum_filter
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import connected_components, dijkstra
-from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
-from scanplan.errors import StageError
-from scanplan.types import BoolArray, FilePath, FloatArray, IntArray
+from scanplan.types import BoolArray, FloatArray, IntArray
 
 _MARGIN_M = 0.02  # beyond the stated clearance, so that steps between cells keep the clearance
-_CELLS_M = (0.05, 0.1)  # doors hardly wider than the rover are met, and those of large floors
-_LARGE_M2 = 300.0  # of floor, 120,000 fine cells: seconds for every stop's ways
-_MAX_CELLS = 20e6  # rasters of 160 MB each
 ROOMY_M = 0.6  # from an obstacle: the way keeps the middle of doors, with no detour in rooms
 _NARROW = 3.0  # a step at an obstacle costs 1 + this times its length, falling to 1 at ROOMY_M
 _PLENTY_M = 1.5  # free space about a place that makes it the middle of a room
@@ -45,18 +40,19 @@ class RoadmapGrid:
     steps: csr_array
 
 
-def make_grid(part: Polygon, clearance_m: float, source: FilePath) -> RoadmapGrid:
-    """Return the grid over connected free ground that keeps a clearance already.
+def make_grid(part: BaseGeometry, clearance_m: float, cell_m: float) -> RoadmapGrid:
+    """Return the grid over free ground that keeps a clearance already.
 
-    Raises
-    ------
-    StageError
-        If that would take too many cells.
+    Parameters
+    ----------
+    part : Polygon or MultiPolygon
+        Where the middle can be.
+    clearance_m : float, > 0
+    cell_m : float, > 0
+        Edge of a cell: narrower grounds are lost.
     """
     if part.is_empty:
         return RoadmapGrid(np.empty((0, 2)), np.empty(0), np.empty(0, bool), csr_array((0, 0)))
-    cell_m = _CELLS_M[part.area >= _LARGE_M2]
-    _check_size(part, cell_m, source)
     x0, y0, x1, y1 = part.bounds
     x = np.arange(x0 - cell_m, x1 + 2 * cell_m, cell_m)
     y = np.arange(y0 - cell_m, y1 + 2 * cell_m, cell_m)
@@ -91,6 +87,14 @@ def cheapest_ways(grid: RoadmapGrid, stop: int) -> tuple[FloatArray, IntArray]:
     return dijkstra(grid.steps, directed=False, indices=stop, return_predecessors=True)
 
 
+def trace_way(cell_before: IntArray, stop: int, cell: int) -> list[int]:
+    """Return the cells from a stop of `cheapest_ways` to a cell that can be reached from it."""
+    way = [cell]
+    while way[-1] != stop:
+        way.append(int(cell_before[way[-1]]))
+    return way[::-1]
+
+
 def room_cells(grid: RoadmapGrid, room: BaseGeometry) -> IntArray:
     """Return the cells of a room, first that with most space about it.
 
@@ -105,17 +109,6 @@ def room_cells(grid: RoadmapGrid, room: BaseGeometry) -> IntArray:
 def nearest_cell(grid: RoadmapGrid, xy_m: Sequence[float]) -> int:
     """Return the cell nearest a place."""
     return int(np.argmin(np.hypot(*(grid.xy_m - np.asarray(xy_m)).T)))
-
-
-def _check_size(part: Polygon, cell_m: float, source: FilePath) -> None:
-    x0, y0, x1, y1 = part.bounds
-    limit_m2 = _MAX_CELLS * cell_m**2
-    if (x1 - x0) * (y1 - y0) > limit_m2:
-        raise StageError(
-            f"{source}: its floor of {x1 - x0:.0f} x {y1 - y0:.0f} m is too large to plan a way"
-            f" over (limit {limit_m2:,.0f} m2); check simulate.site.unit, or give"
-            " simulate.site.waypoints_m"
-        )
 
 
 def _is_middle(near_m: FloatArray, cell_m: float) -> BoolArray:

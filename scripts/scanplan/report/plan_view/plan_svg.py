@@ -7,7 +7,8 @@ import numpy as np
 import shapely
 
 from scanplan.plan import floorplan
-from scanplan.report import doubts, growth
+from scanplan.report import doubts
+from scanplan.report.plan_view import growth
 from scanplan.report.point_image import PointImage
 from scanplan.report.top_view import MARGIN_M
 from scanplan.types import Columns, FloatArray
@@ -53,7 +54,7 @@ def growing_plan_svg(
         f'<title id="plan-title">Floor plan of {escape(plan.name)}</title>',
         '<g id="floors">', *_rooms(plan), "</g>",
         '<g id="points">', _point_image(points), "</g>",
-        '<g id="finished">', *_walls(plan), *_openings(plan), "</g>",
+        '<g id="finished">', *draw_walls(plan), *_openings(plan), "</g>",
         '<g id="picks">', *_picks(plan), "</g>",
         '<g id="growth">', *_stretches(stretches), "</g>",
         '<g id="shown">', *_shown(shown_m), "</g>",
@@ -69,16 +70,17 @@ def _view_box(plan: floorplan.FloorPlan, positions_m: FloatArray) -> str:
     places_m = np.concatenate([np.stack(plan.bounds_m), positions_m])
     low_m = places_m.min(axis=0) - MARGIN_M
     high_m = places_m.max(axis=0) + MARGIN_M
-    return " ".join(_number(value) for value in (low_m[0], -high_m[1], *(high_m - low_m)))
+    return " ".join(format_number(value) for value in (low_m[0], -high_m[1], *(high_m - low_m)))
 
 
-def _walls(plan: floorplan.FloorPlan) -> Iterator[str]:
+def draw_walls(plan: floorplan.FloorPlan) -> Iterator[str]:
+    """Yield the elements of a plan's walls and single surfaces."""
     for state in floorplan.STATES:
         title = f"<title>{_TITLES[state]}</title>"
         for part in shapely.get_parts(plan.solid(state)):
-            yield f'<path class="wall {state}" d="{_outline(part)}">{title}</path>'
+            yield f'<path class="wall {state}" d="{_outline_path(part)}">{title}</path>'
         for line in plan.single(state):
-            yield _path(shapely.get_coordinates(line)[None], f'class="single {state}"')
+            yield draw_path(shapely.get_coordinates(line)[None], f'class="single {state}"')
 
 
 def _picks(plan: floorplan.FloorPlan) -> Iterator[str]:
@@ -86,7 +88,7 @@ def _picks(plan: floorplan.FloorPlan) -> Iterator[str]:
     for kind, columns in (("wall", plan.walls), ("opening", plan.openings)):
         lines_m = floorplan.centrelines_m(columns)
         for number, line_m in zip(columns[kind].tolist(), lines_m, strict=True):
-            yield _path(line_m[None], f'class="pick" data-element="{kind} {number}"')
+            yield draw_path(line_m[None], f'class="pick" data-element="{kind} {number}"')
 
 
 def _openings(plan: floorplan.FloorPlan) -> Iterator[str]:
@@ -94,21 +96,22 @@ def _openings(plan: floorplan.FloorPlan) -> Iterator[str]:
     lines_m = floorplan.centrelines_m(plan.openings)
     for kind, line_m, width_m in zip(kinds, lines_m, widths_m, strict=True):
         title = f"<title>{escape(kind)}, {width_m:.2f} m</title>"
-        yield _path(line_m[None], f'class="opening {kind}"', title)
+        yield draw_path(line_m[None], f'class="opening {kind}"', title)
 
 
 def _rooms(plan: floorplan.FloorPlan) -> Iterator[str]:
     rooms = (plan.rooms[c].tolist() for c in ("room", "x_m", "y_m"))
     for room, x_m, y_m, area in zip(*rooms, plan.areas, strict=True):
-        outline = " ".join(map(_outline, shapely.get_parts(area)))
-        attributes = f'data-element="room {room}" data-x="{_number(x_m)}" data-y="{_number(-y_m)}"'
+        outline = " ".join(map(_outline_path, shapely.get_parts(area)))
+        place = f'data-x="{format_number(x_m)}" data-y="{format_number(-y_m)}"'
+        attributes = f'data-element="room {room}" {place}'
         yield f'<path class="room" {attributes} d="{outline}"/>'
 
 
 def _point_image(points: PointImage) -> str:
     (x_m, y_m), (width_m, height_m) = points.low_m.tolist(), points.size_m.tolist()
-    place = f'x="{_number(x_m)}" y="{_number(-y_m - height_m)}"'
-    size = f'width="{_number(width_m)}" height="{_number(height_m)}"'
+    place = f'x="{format_number(x_m)}" y="{format_number(-y_m - height_m)}"'
+    size = f'width="{format_number(width_m)}" height="{format_number(height_m)}"'
     return f'<image {place} {size} href="data:image/png;base64,{points.base64}"/>'
 
 
@@ -117,10 +120,11 @@ def _labels(plan: floorplan.FloorPlan) -> Iterator[str]:
     rooms = (plan.rooms[c].tolist() for c in ("area_m2", "closed", "x_m", "y_m"))
     names, widths_m = plan.room_names, plan.label_widths_m.tolist()
     for name, area_m2, closed, x_m, y_m, width_m in zip(names, *rooms, widths_m, strict=True):
-        place = f'x="{_number(x_m)}" y="{_number(-y_m)}"'
+        place = f'x="{format_number(x_m)}" y="{format_number(-y_m)}"'
         area = f"{'' if closed else 'about '}{area_m2:.1f} m²"
         yield (
-            f'<g class="label" data-width="{_number(width_m)}"><text {place}>{escape(name)}</text>'
+            f'<g class="label" data-width="{format_number(width_m)}">'
+            f"<text {place}>{escape(name)}</text>"
             f'<text class="area" {place} dy="1.2em">{area}</text></g>'
         )
 
@@ -136,7 +140,7 @@ def _doubts(plan: floorplan.FloorPlan) -> Iterator[str]:
     centres = (plan.rooms[c].tolist() for c in ("room", "x_m", "y_m"))
     places_m |= {f"room {n}": np.array([x_m, y_m]) for n, x_m, y_m in zip(*centres, strict=True)}
     for doubt in doubts.list_doubts(plan):
-        x_m, y_m = (_number(value) for value in places_m[doubt.element] * (1, -1))
+        x_m, y_m = (format_number(value) for value in places_m[doubt.element] * (1, -1))
         css = f"doubt of-{doubt.element.partition(' ')[0]}"
         yield (
             f'<g class="{css}" data-element="{doubt.element}">'
@@ -152,18 +156,18 @@ def _stretches(stretches: Columns) -> Iterator[str]:
     for line_m, first, enough in zip(lines_m, *ranks, strict=True):
         if first != growth.NEVER:
             attributes = f'class="stretch" data-first="{first}" data-enough="{enough}"'
-            yield _path(line_m[None], attributes)
+            yield draw_path(line_m[None], attributes)
 
 
 def _shown(shown_m: Sequence[FloatArray]) -> Iterator[str]:
     for rank, lines_m in enumerate(shown_m, 1):
         if len(lines_m):
-            yield _path(lines_m, f'class="shown" data-rank="{rank}"')
+            yield draw_path(lines_m, f'class="shown" data-rank="{rank}"')
 
 
 def _scans(positions_m: FloatArray) -> Iterator[str]:
     for rank, position_m in enumerate(positions_m, 1):
-        x_m, y_m = _number(position_m[0]), _number(-position_m[1])
+        x_m, y_m = format_number(position_m[0]), format_number(-position_m[1])
         yield (
             f'<g class="scan" data-rank="{rank}"><title>scan of rank {rank}</title>'
             f'<circle cx="{x_m}" cy="{y_m}" r="0.06"/>'
@@ -171,21 +175,22 @@ def _scans(positions_m: FloatArray) -> Iterator[str]:
         )
 
 
-def _path(lines_m: FloatArray, attributes: str, inside: str = "") -> str:
+def draw_path(lines_m: FloatArray, attributes: str, inside: str = "") -> str:
     """Return a path along lines (n, p, 2), metres."""
     drawn = "".join("M" + "L".join(map(_point, line_m)) for line_m in lines_m)
     end = f">{inside}</path>" if inside else "/>"
     return f'<path {attributes} d="{drawn}"{end}'
 
 
-def _outline(polygon: shapely.Polygon) -> str:
+def _outline_path(polygon: shapely.Polygon) -> str:
     rings = (shapely.get_coordinates(ring)[:-1] for ring in shapely.get_rings(polygon))
     return "".join("M" + "L".join(map(_point, ring)) + "Z" for ring in rings)
 
 
 def _point(place_m: FloatArray) -> str:
-    return f"{_number(place_m[0])} {_number(-place_m[1])}"
+    return f"{format_number(place_m[0])} {format_number(-place_m[1])}"
 
 
-def _number(value: float) -> str:
+def format_number(value: float) -> str:
+    """Return metres to the millimetre, as short as they can be written."""
     return f"{round(float(value), 3) + 0.0:g}"

@@ -1,0 +1,82 @@
+"""Where a sensor may stand, and the fewest places from which questions are settled."""
+
+import numpy as np
+import shapely
+
+from scanplan.geometry import roadmap
+from scanplan.geometry.roadmap import RoadmapGrid
+from scanplan.plan.floorplan import WAYS, FloorPlan
+from scanplan.rays.tolerances import STRAY_SHARE
+from scanplan.selection import lazy_greedy
+from scanplan.types import BoolArray, FloatArray, IntArray
+from scanplan.visit.questions import Pieces
+
+
+def find_ground(plan: FloorPlan, track_m: FloatArray, clearance_m: float) -> RoadmapGrid:
+    """Return the free floor that can be reached from where the survey began, as a grid.
+
+    Parameters
+    ----------
+    plan : FloorPlan
+    track_m : (n, 2) float64, n >= 1
+        Where scans were taken, in the order of time, map frame.
+    clearance_m : float
+        What the sensor keeps from walls, furniture and floor that was not seen.
+    """
+    cell_m = 0.1  # doors leave a lane of two cells beside the clearance
+    floor = shapely.union_all(shapely.from_wkb(np.asarray(plan.free["geometry"], object)))
+    is_way = np.isin(plan.openings["type"].astype(str), WAYS)
+    walls = shapely.difference(shapely.union_all(plan.bodies), shapely.union_all(plan.gaps[is_way]))
+    free = shapely.difference(floor, walls).buffer(-clearance_m)
+    driven = shapely.union_all(shapely.buffer(shapely.points(track_m), clearance_m))
+    grid = roadmap.make_grid(shapely.union(free, driven), clearance_m, cell_m)
+    return roadmap.connected_grid(grid, track_m[0]) if len(grid.xy_m) else grid
+
+
+def spread_cells(grid: RoadmapGrid, spacing_m: float) -> IntArray:
+    """Return one cell of a grid for each square of an edge, those with most space around first."""
+    square = np.floor(grid.xy_m / spacing_m).astype(np.int64)
+    roomiest = np.lexsort((*grid.xy_m.T, -np.round(grid.near_m, 3)))
+    _, first = np.unique(square[roomiest], axis=0, return_index=True)
+    return np.asarray(roomiest[np.sort(first)], np.int64)
+
+
+class SettledQuestions(lazy_greedy.SingleGains):
+    """How many questions are seen, parts of them added up.
+
+    Parameters
+    ----------
+    seen : (n, p) bool
+        Which views see which pieces.
+    pieces : Pieces
+    """
+
+    def __init__(self, seen: BoolArray, pieces: Pieces) -> None:
+        self._seen, self._pieces = seen, pieces
+        self._known = np.zeros(seen.shape[1], bool)
+        super().__init__(len(seen))
+
+    def measure_gain(self, i: int) -> float:
+        """Return how many questions more a view would show, parts of them added up."""
+        return float(self._pieces.share[self._seen[i] & ~self._known].sum())
+
+    def cover(self, i: int) -> None:
+        """See what a view sees."""
+        self._known |= self._seen[i]
+
+
+def choose_views(seen: BoolArray, pieces: Pieces) -> list[int]:
+    """Choose the fewest views, greedily, until none shows more than a stray part of a question.
+
+    Of views that show about as much the first is taken.
+
+    Parameters
+    ----------
+    seen : (n, p) bool
+        Which views see which pieces.
+    pieces : Pieces
+    """
+    if not seen.any():
+        return []
+    chosen = lazy_greedy.choose_greedily(SettledQuestions(seen, pieces), tie=STRAY_SHARE)
+    return [view for view, gain in chosen if gain > STRAY_SHARE]

@@ -1,0 +1,76 @@
+"""A second visit to a house of two rooms is planned from its tables."""
+
+import json
+
+import numpy as np
+import pytest
+
+from assemble_plan import assemble_plan
+from helpers import house_making
+from plan_next_visit import plan_next_visit
+from scanplan.plan import floorplan, planning
+from scanplan.store import schemas, tables
+
+PARTS = ("faces", "walls", "openings", "rooms", "free")
+SETTINGS = {"clearance_m": 0.3, "spacing_m": 0.5}
+
+
+@pytest.fixture(scope="module")
+def house(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("house")
+    inputs = house_making.write(folder, house_making.segments(), house_making.SENSORS)
+    paths = {name: folder / f"plan_{name}.parquet" for name in planning.TABLES}
+    assemble_plan(*inputs, paths, settings=house_making.PLAN, n_scans=None)
+    return inputs[1:], {name: paths[name] for name in PARTS}
+
+
+def planned(house, folder, doubtful=()):
+    """Plan a visit where the rooms named are doubtful and all else is sure."""
+    inputs, plan = house
+    parts = []
+    for table, number in sorted(floorplan.NUMBERS.items()):
+        schema = schemas.PLAN_WALLS if table == "walls" else getattr(schemas, table.upper())
+        numbers = tables.read_table(plan[table], schema, allow_empty=True)[number]
+        verify = np.isin(numbers, doubtful) if table == "rooms" else np.zeros(len(numbers), bool)
+        parts.append({
+            "table": np.full(len(numbers), table, object),
+            "number": numbers.astype(np.int32),
+            "p_true": np.where(verify, 0.4, 0.99),
+            "verify": verify,
+            "doubt": np.where(verify, "few scans", "").astype(object),
+        })  # fmt: skip
+    rated = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    tables.write_table(folder / "confidence.parquet", schemas.CONFIDENCE, rated)
+    files = {name: folder / f"{name}.parquet" for name in ("questions", "standpoints")}
+    files["geojson"] = folder / "next_visit.geojson"
+    known = plan | {"confidence": folder / "confidence.parquet"}
+    plan_next_visit(known, *inputs, files, name="house", settings=SETTINGS, n_scans=None)
+    asked = tables.read_table(files["questions"], schemas.QUESTIONS, allow_empty=True)
+    stops = tables.read_table(files["standpoints"], schemas.STANDPOINTS, allow_empty=True)
+    return asked, stops, json.loads(files["geojson"].read_text())
+
+
+def test_where_nothing_is_doubtful_nobody_has_to_come_again(house, tmp_path):
+    asked, stops, collection = planned(house, tmp_path)
+    assert len(asked["kind"]) == len(stops["standpoint"]) == 0
+    assert collection["features"] == []
+    assert collection["summary"] == "nothing of the plan is unseen or doubtful"
+
+
+def test_a_doubtful_room_is_seen_from_within(house, tmp_path):
+    areas = floorplan.read_floorplan(house[1]).areas
+    for room, area in enumerate(areas):
+        asked, stops, _ = planned(house, tmp_path, doubtful=[room])
+        assert (asked["kind"].tolist(), asked["number"].tolist()) == (["room"], [room])
+        assert asked["seen"][0] > 0.8 and asked["standpoint"][0] >= 1
+        x_m, y_m = area.centroid.x, area.centroid.y
+        assert np.hypot(stops["x_m"] - x_m, stops["y_m"] - y_m).max() < 2
+        assert np.isnan(stops["heading_deg"]).all()
+
+
+def test_the_same_tables_give_the_same_bytes(house, tmp_path):
+    texts = []
+    for _ in range(2):
+        planned(house, tmp_path, doubtful=[0, 1])
+        texts.append((tmp_path / "standpoints.parquet").read_bytes())
+    assert texts[0] == texts[1]
