@@ -48,4 +48,4 @@ def mean_by_level(measured: pd.DataFrame, quantity: str) -> pd.DataFrame:
     """Return the mean of a quantity over items and surveys: levels by rows, cases by columns."""
     rows = measured[measured["quantity"] == quantity]
     cases = rows["case"].unique()
-    return rows.pivot_table(index="level", columns="case", values="value")[list(cases)]
+    return rows.groupby(["level", "case"])["value"].mean().unstack()[list(cases)]

@@ -126,7 +126,8 @@ def measure_outliers(
             for name, (area_m2, walls) in found.items():
                 case = f"{kind}: {name}"
                 measured.append(Measurement(case, share, 0, FOUND_SHARE, walls))
-                ratio = area_m2 / clean[name][0]
+                alone_m2 = clean[name][0]
+                ratio = area_m2 / alone_m2 if alone_m2 > 0 else np.nan
                 measured.append(Measurement(case, share, 0, AREA_RATIO, ratio))
         yield measured
 

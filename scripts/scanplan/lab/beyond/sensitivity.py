@@ -9,6 +9,7 @@ import numpy as np
 from scanplan.lab.beyond.measurements import Measurement
 from scanplan.lab.beyond.survey_files import OpenedSurvey
 from scanplan.lab.beyond.wall_search import WallSearch, measure_walls
+from scanplan.lab.evaluation.length_metrics import safe_share
 from scanplan.lab.evaluation.survey_findings import SurveyTruth, match_walls
 from scanplan.lab.evaluation.wall_findings import Findings
 from scanplan.lab.thesis.claim_measures import FOUND
@@ -105,7 +106,7 @@ def judge_claims_of(
     every, first, recorded, random = (measure_walls(survey, findings, rows) for rows in subsets)
     others = min(first["correct_match"], random["correct_match"])
     return {
-        LITTLE_LOSS: float(first[FOUND] / every[FOUND] - Judged.ALMOST),
+        LITTLE_LOSS: safe_share(first[FOUND], every[FOUND]) - Judged.ALMOST,
         POOREST: float(others - recorded["correct_match"]),
     }
 
