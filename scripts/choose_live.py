@@ -50,7 +50,7 @@ if __name__ == "__main__":
             snakemake.input.observations,
             snakemake.output.chosen,
             shares=snakemake.params.shares,
-            max_cells=snakemake.params.max_cells,
+            max_cells=snakemake.params.playing["max_cells"],
             max_range_m=snakemake.params.max_range_m,
             **snakemake.params.evaluation,
         )

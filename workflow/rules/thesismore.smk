@@ -266,7 +266,7 @@ rule choose_live:
         code=code_of("choose_live"),
         # from nearly all scans to a seventh of them
         shares=[0.05, 0.1, 0.2, 0.3, 0.5],
-        max_cells=section("selection", "playing", "max_cells"),
+        playing=section("selection", "playing"),
         max_range_m=section("input", "max_range_m"),
         evaluation=section("evaluation"),
     script:

@@ -80,12 +80,15 @@ def conclude_registrability(measured: pd.DataFrame) -> str:
     """Say which part of a subset hangs together."""
     parts = mean_by_level(measured, registrability.ALIGNED)
     pairs = mean_by_level(measured, registrability.PAIRS_ALIGNED)
-    size = parts.index[-2] if len(parts) > 1 else parts.index[-1]
-    shares = [f"{_label(method)} {_percent(parts.loc[size, method])}" for method in parts]
+    chosen = parts.index[:-1] if len(parts) > 1 else parts.index
+    told = []
+    for size in dict.fromkeys((chosen[len(chosen) // 2], chosen[-1])):
+        shares = [f"{_label(method)} {_percent(parts.loc[size, method])}" for method in parts]
+        told.append(f"of {size:.0f} scans {', '.join(shares)}")
     return (
-        f"Of {size:.0f} scans the largest part that can be registered without the others holds"
-        f" {', '.join(shares)}; of all scans {_percent(parts.iloc[-1].max())}. Where two scans"
-        f" overlap, alignment is right in {_percent(pairs.loc[size].mean())}."
+        f"The largest part that can be registered without the other scans holds {'; '.join(told)};"
+        f" of all scans {_percent(parts.iloc[-1].max())}. Where two chosen scans overlap, alignment"
+        f" is right in {_percent(pairs.loc[chosen].mean(axis=None))}."
     )
 
 
@@ -102,10 +105,11 @@ def conclude_live_choice(measured: pd.DataFrame) -> str:
             if method != live_choice.PLAYING
         ]
         parts.append(
-            f"taken at {share:.2f} of new wall, {taken[share]:.0f} scans find"
+            f"{share:.2f} asked for, {taken[share]:.0f} scans find"
             f" {_percent(found.loc[share, live_choice.PLAYING])} (as many by {', '.join(others)})"
         )
-    return f"{'; '.join(parts).capitalize()}. At most {held:.0f} cells of wall are kept."
+    told = "; ".join(parts)
+    return f"With a share of new wall of {told}. At most {held:.0f} cells of wall are kept."
 
 
 def conclude_sensitivity(measured: pd.DataFrame) -> str:

@@ -132,10 +132,14 @@ def _make_figure(n: int) -> tuple[Figure, Sequence[Axes]]:
 
 
 def _draw_cases(axes: Axes, values: pd.DataFrame) -> None:
-    """Draw a line a column, by the index."""
+    """Draw a line a column, by the index; what is no order of scans is dashed beside orders."""
+    has_orders = any(case in METHODS for case in values.columns)
     for case in values.columns:
         label, colour = _style(case)
-        axes.plot(values.index, values[case], "o-", ms=3, lw=1.1, color=colour, label=label)
+        dashes = "--" if has_orders and colour is None else "-"
+        axes.plot(
+            values.index, values[case], dashes, marker="o", ms=3, lw=1.1, color=colour, label=label
+        )
 
 
 def _style(case: str) -> tuple[str, str | None]:
