@@ -53,7 +53,8 @@ def measure_outliers(
         cells=WallCellSettings(**settings["cells"]),
         seed=seed,
     )
-    told = log.report_progress(measured, "measure_outliers", total=len(outliers.KINDS))
+    total = len(outliers.KINDS)
+    told = log.report_progress(measured, "measure_outliers", total, unit="kinds")
     measurements.write_measurements(output, [row for of_kind in told for row in of_kind])
 
 
