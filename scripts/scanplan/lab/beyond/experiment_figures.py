@@ -43,7 +43,7 @@ def draw_quality_times(measured: pd.DataFrame) -> Figure:
         label, colour = _style(case)
         own = values.loc[case]
         seconds, f1 = own[quality_times.SECONDS], own[quality_times.F1]
-        axes.plot(seconds, f1, "o-", ms=4, lw=1.1, color=colour, label=label)
+        axes.plot(seconds, f1, "o-", ms=4, lw=1.1, color=colour or "black", label=label)
         for level, x, y in zip(own.index, seconds, f1, strict=True):
             place = {"xytext": (3, -7), "textcoords": "offset points"}
             axes.annotate(f"{level:.0f}", (x, y), fontsize=6, **place)
