@@ -4,7 +4,7 @@ import numpy as np
 
 from scanplan.extraction import extractors
 from scanplan.extraction.cluster_ransac import ClusterRansacSettings
-from scanplan.lab.evaluation import bitmap_shares, truth_file, wall_findings
+from scanplan.lab.evaluation import survey_findings
 from scanplan.lab.thesis import premises, steps_figure
 from scanplan.rays import sensor_frame
 from scanplan.stage import log
@@ -41,20 +41,15 @@ def measure_premises(
     n_added : int
         See `premises.submodularity_ratios`.
     """
-    registered = registered_scans.read_registered_scans(registration)
-    poses = truth_file.read_true_poses(true_poses)
-    placed = truth_file.interpolate_true_poses(poses, registered.t_ns, true_poses)
-    faces = truth_file.read_true_faces(truth)
-    sight = truth_file.read_sensor_view(truth, max_range_m=max_range_m)
-    floor = wall_findings.observe_truth(faces, placed, placed, sight=sight)
-    columns = registered_scans.read_wall_segments(walls, registered, registration)
-    drawn = wall_findings.place_segments(
-        columns, registered.scan_ids, registered.map_from_sensor, placed
+    survey = survey_findings.read_survey_truth(
+        registration, truth, true_poses, max_range_m=max_range_m
     )
-    bitmaps = bitmap_shares.trace_truth(faces.inner_m, drawn.lines_m, bitmap_cell_m)
-    findings = wall_findings.match_segments(drawn, floor, bitmaps)
+    columns = registered_scans.read_wall_segments(walls, survey.registered, registration)
+    findings = survey_findings.match_walls(survey, columns, bitmap_cell_m)
     settings = extractors.select_settings(ClusterRansacSettings, extraction)
-    ratios = premises.submodularity_ratios(floor, findings, n_added=n_added, seed=settings.seed)
+    ratios = premises.submodularity_ratios(
+        survey.visible, findings, n_added=n_added, seed=settings.seed
+    )
     rows = [
         (name, draw, ratio)
         for draw, of_draw in enumerate(ratios)
@@ -63,11 +58,11 @@ def measure_premises(
     store = tables.ScanStore(scans)
     clouds = log.report_progress(store.scans(), "measure_premises", total=len(store.scan_ids))
     for row, (scan_id, xyz_m) in enumerate(clouds):
-        sensor_m = registered.map_from_sensor[row, :3, 3]
+        sensor_m = survey.registered.map_from_sensor[row, :3, 3]
         centred_m = sensor_frame.centre_on_sensor(xyz_m, sensor_m)
         steps = steps_figure.find_steps(centred_m, scan_id, settings)
         share = premises.share_on_one_wall(
-            steps, placed[row, :2, 3], faces.inner_m, min_points=settings.min_points
+            steps, survey.placed[row, :2, 3], survey.faces.inner_m, min_points=settings.min_points
         )
         rows.append((premises.ONE_WALL, scan_id, share))
     measured = dict(zip(schemas.PREMISES.columns, zip(*sorted(rows), strict=True), strict=True))

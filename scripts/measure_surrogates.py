@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from scanplan.lab.evaluation import bitmap_shares, truth_file, wall_findings
+from scanplan.lab.evaluation import survey_findings
 from scanplan.lab.thesis import surrogates
 from scanplan.selection.survey_scans import SurveyScans
 from scanplan.stage import log
@@ -44,24 +44,17 @@ def measure_surrogates(
     n_added, seed : int
         See `surrogates.measure_draws`.
     """
-    registered = registered_scans.read_registered_scans(registration)
-    poses = truth_file.read_true_poses(true_poses)
-    placed = truth_file.interpolate_true_poses(poses, registered.t_ns, true_poses)
-    faces = truth_file.read_true_faces(truth)
-    sight = truth_file.read_sensor_view(truth, max_range_m=max_range_m)
-    floor = wall_findings.observe_truth(faces, placed, placed, sight=sight)
-    columns = registered_scans.read_wall_segments(walls, registered, registration)
-    drawn = wall_findings.place_segments(
-        columns, registered.scan_ids, registered.map_from_sensor, placed
+    survey = survey_findings.read_survey_truth(
+        registration, truth, true_poses, max_range_m=max_range_m
     )
-    bitmaps = bitmap_shares.trace_truth(faces.inner_m, drawn.lines_m, bitmap_cell_m)
-    findings = wall_findings.match_segments(drawn, floor, bitmaps)
+    columns = registered_scans.read_wall_segments(walls, survey.registered, registration)
+    findings = survey_findings.match_walls(survey, columns, bitmap_cell_m)
     covered = {
         name: tables.read_table(path, _SCHEMAS[name], allow_empty=True)
         for name, path in covers.items()
     }
-    scans = SurveyScans(registered.scan_ids, covered)
-    draws = surrogates.measure_draws(scans, floor, findings, n_added=n_added, seed=seed)
+    scans = SurveyScans(survey.registered.scan_ids, covered)
+    draws = surrogates.measure_draws(scans, survey.visible, findings, n_added=n_added, seed=seed)
     told = log.report_progress(draws, "measure_surrogates", total=n_added, unit="draws")
     rows = [row for of_draw in told for row in of_draw]
     rows.sort(key=lambda row: (row["surrogate"], row["draw"]))

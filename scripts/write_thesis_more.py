@@ -1,10 +1,12 @@
 """Write the page of the experiments that go beyond the thesis's own."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import pandas as pd
 
+from scanplan.lab.beyond import measurements
+from scanplan.lab.beyond.experiments import EXPERIMENTS
 from scanplan.lab.thesis.figures import more_figures
 from scanplan.lab.thesis.more_page import more_page
 from scanplan.stage import figure_files, log
@@ -16,6 +18,7 @@ def write_thesis_more(
     evaluated: Sequence[FilePath],
     chosen: Sequence[FilePath],
     surrogates: Sequence[FilePath],
+    measured: Mapping[str, Sequence[FilePath]],
     page: Sequence[FilePath],
     output: FilePath,
 ) -> None:
@@ -26,6 +29,8 @@ def write_thesis_more(
     evaluated, chosen, surrogates : list of path-like
         evaluation/walls.parquet, thesis/confidence.parquet and thesis/surrogates.parquet of every
         seed.
+    measured : dict of str to list of path-like
+        Tables of the further experiments by the names in `experiments.EXPERIMENTS`.
     page : list of path-like
         Template and style.
     output : path-like
@@ -36,15 +41,26 @@ def write_thesis_more(
         for paths in (evaluated, chosen)
     )
     found = more_figures.join_orders(orders, own)
-    measured = [pd.DataFrame(tables.read_table(path, schemas.SURROGATES)) for path in surrogates]
+    ranked = [pd.DataFrame(tables.read_table(path, schemas.SURROGATES)) for path in surrogates]
     figures = {
         "confidence": more_figures.draw_confidence(found),
-        "surrogates": more_figures.draw_surrogates(measured),
+        "surrogates": more_figures.draw_surrogates(ranked),
     }
+    shown = {}
+    for name, experiment in EXPERIMENTS.items():
+        values = measurements.read_measurements(measured[name])
+        figures[name] = experiment.draw(values)
+        shown[name] = {
+            "title": experiment.title,
+            "how": experiment.how,
+            "caption": experiment.caption,
+            "shows": experiment.conclude(values),
+        }
+        log.log_line(f"write_thesis_more: {experiment.title}: {shown[name]['shows']}")
     svgs = {name: figure_files.format_svg(figure) for name, figure in figures.items()}
     sources = {Path(path).name: Path(path).read_text(encoding="utf-8") for path in page}
-    atomic.write_text(output, more_page(sources, svgs, found))
-    log.log_line(f"write_thesis_more: {len(svgs)} figures, {len(measured)} seeds")
+    atomic.write_text(output, more_page(sources, svgs, found, shown))
+    log.log_line(f"write_thesis_more: {len(svgs)} figures, {len(ranked)} seeds")
 
 
 if __name__ == "__main__":
@@ -53,6 +69,7 @@ if __name__ == "__main__":
             list(snakemake.input.evaluated),
             list(snakemake.input.chosen),
             list(snakemake.input.surrogates),
+            {name: list(snakemake.input[name]) for name in EXPERIMENTS},
             list(snakemake.input.page),
             snakemake.output.page,
         )

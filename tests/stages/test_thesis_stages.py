@@ -7,6 +7,8 @@ import shapely
 
 from build_hulls import build_hulls
 from choose_by_confidence import choose_by_confidence
+from choose_live import choose_live
+from compare_budgets import compare_budgets
 from draw_thesis_drive import draw_thesis_drive
 from draw_thesis_rooms import draw_thesis_rooms
 from evaluate_walls import evaluate_walls
@@ -23,16 +25,29 @@ from helpers.evaluation_making import (
 from judge_claims import judge_claims
 from measure_candidates import measure_candidates
 from measure_coverage import measure_coverage
+from measure_outliers import measure_outliers
 from measure_premises import measure_premises
+from measure_registrability import measure_registrability
+from measure_sensitivity import measure_sensitivity
 from measure_surrogates import measure_surrogates
 from measure_unevenness import measure_unevenness
+from scanplan.lab.beyond import live_choice, point_budgets, room_counts
+from scanplan.lab.beyond.experiments import EXPERIMENTS
+from scanplan.lab.beyond.measurements import (
+    Measurement,
+    mean_by_level,
+    read_measurements,
+    write_measurements,
+)
 from scanplan.lab.thesis import premises
 from scanplan.lab.thesis.figures import drive_figures
 from scanplan.lab.thesis.shown_figures import FIGURES
 from scanplan.project import stage_settings
+from scanplan.selection.methods import WALL_LIMITS
 from scanplan.store import schemas, tables
 from tabulate_steps import tabulate_steps
 from time_stages import time_stages
+from time_to_quality import time_to_quality
 from write_thesis import write_thesis
 from write_thesis_more import write_thesis_more
 
@@ -375,9 +390,69 @@ def test_experiments_beyond_the_thesis_stand_on_their_page(survey, tmp_path, pro
     ratios = tables.read_table(stood, schemas.SURROGATES)["ratio"]
     # covered areas and lengths are submodular
     assert (ratios[np.isfinite(ratios)] >= 1 - 1e-9).all()
+    measured = further_experiments(survey, tmp_path, truth)
     folder = project_root / "workflow/report/page"
     page = [folder / name for name in ("thesis_more.html.j2", "thesis.css")]
     output = tmp_path / "more.html"
-    write_thesis_more([evaluated(survey)] * 2, [chosen] * 2, [stood] * 2, page, output)
+    evaluations = [evaluated(survey)] * 2
+    write_thesis_more(evaluations, [chosen] * 2, [stood] * 2, measured, page, output)
     text = output.read_text()
-    assert text.count("<svg") == 2 and "2 seeds" in text
+    assert text.count("<svg") == 2 + len(EXPERIMENTS) and "2 seeds" in text
+    for experiment in EXPERIMENTS.values():
+        assert f"<h2>{experiment.title}</h2>" in text
+
+
+def further_experiments(survey, folder, truth):
+    """The tables of the further experiments on the made-up room, by name."""
+    files = {name: survey / f"{name}.parquet" for name in ("scans", "registration")}
+    files |= {"walls": survey / "walls/cluster_ransac.parquet"}
+    files |= {"truth": survey / "truth.geojson", "true_poses": survey / "truth_poses.tum"}
+    for method in ("distance", "every_nth", "wall_length"):
+        write_selection(survey, method, SCAN_IDS)
+        files[method] = survey / f"selection/{method}.parquet"
+    extraction = stage_settings.select_extractor(SETTINGS, "cluster_ransac")
+    cells = stage_settings.select_wall_cells(SETTINGS, WALL_LIMITS)
+    hulls = SAMPLING | {"n_clusters": 6}
+    benchmark = folder / "job.tsv"
+    benchmark.write_text("s\tcpu_time\n2.5\t1.5\n")
+    table = {name: folder / f"{name}.parquet" for name in EXPERIMENTS}
+    search = {"extraction": extraction, "cells": cells, "hulls": hulls}
+    compare_budgets(files, table["budgets"], extraction=extraction, sizes=[1, 2], seed=1, **truth)
+    time_to_quality(
+        files,
+        [benchmark],
+        table["quality_times"],
+        settings=search | {"plan": stage_settings.select_plan(SETTINGS)},
+        sizes=[1],
+        **truth,
+    )
+    rows = [Measurement(case, 4, 1, room_counts.NEEDED, 5) for case in ("oracle", "distance")]
+    write_measurements(table["floors"], rows)
+    seen = {"visibility": stage_settings.select_visibility(SETTINGS)}
+    limits = {"n_scans": 3, "n_selected": 1, "seed": 1}
+    measure_outliers(
+        files, table["outliers"], settings=search | seen, shares=[0.3], **limits, **truth
+    )
+    measure_registrability(
+        files,
+        table["registrability"],
+        registration=stage_settings.select_section(SETTINGS, "registration"),
+        sizes=[2],
+        max_range_m=truth["max_range_m"],
+        seed=1,
+    )
+    observations = survey / "observations.parquet"
+    live = table["live_choice"]
+    choose_live(files, observations, live, shares=[0.1, 0.5], max_cells=100, **truth)
+    factors = [1.0, 2.0]
+    measure_sensitivity(
+        files, table["sensitivity"], extraction=extraction, hulls=hulls, factors=factors, **truth
+    )
+    # every scan shows a cell of its own
+    found = read_measurements([live])
+    assert (found.loc[found["quantity"] == live_choice.TAKEN, "value"] == 3).all()
+    assert (found.loc[found["quantity"] == live_choice.HELD, "value"] == 3).all()
+    # with the points of two of three scans no way finds more than all there is
+    shares = mean_by_level(read_measurements([table["budgets"]]), point_budgets.FOUND_SHARE)
+    assert shares.index.tolist() == [1, 2] and (shares <= 1).all(axis=None)
+    return {name: [path] for name, path in table.items()}

@@ -75,7 +75,7 @@ def test_the_page_has_every_figure(project):
     result = project.run("thesis_more", "--configfile", TINY_THESIS)
     assert result.returncode == 0, result.stdout + result.stderr
     assert "report:  results/thesis/more.html" in result.stderr
-    assert (project.folder / "results/thesis/more.html").read_text().count("<svg") == 2
+    assert (project.folder / "results/thesis/more.html").read_text().count("<svg") == 9
     # another seed is no reason to time or measure those again that there are
     settings = (project.folder / TINY_THESIS).read_text()
     (project.folder / "more.yaml").write_text(

@@ -62,12 +62,256 @@ rule measure_surrogates:
         "../../scripts/measure_surrogates.py"
 
 
+# by the stems of their tables, on the first survey of the rooms
+FURTHER_EXPERIMENTS = (
+    "budgets",
+    "quality_times",
+    "outliers",
+    "registrability",
+    "live_choice",
+    "sensitivity",
+)
+# what the further experiments read of a survey of the rooms
+SURVEYED = {
+    "scans": "results/{dataset}/scans.parquet",
+    "walls": "results/{dataset}/walls/cluster_ransac.parquet",
+    "registration": "results/{dataset}/registration.parquet",
+    "truth": true_faces,
+    "true_poses": true_poses,
+}
+
+
+def orders_by(*methods):
+    """The orders of a survey's scans, by method."""
+    return {
+        method: f"results/{{dataset}}/selection/{method}.parquet" for method in methods
+    }
+
+
+def settings_of_search(*parts):
+    """A param function: settings of what is measured again, by what they are of."""
+    select = {
+        "extraction": lambda settings: stage_settings.select_extractor(
+            settings, "cluster_ransac"
+        ),
+        "plan": stage_settings.select_plan,
+        "hulls": stage_settings.select_hulls,
+        "visibility": stage_settings.select_visibility,
+        "simulation": stage_settings.select_simulation,
+        "cells": lambda settings: stage_settings.select_wall_cells(
+            settings, methods.WALL_LIMITS
+        ),
+    }
+
+    def look_up(wildcards):
+        name = wildcards.get("dataset", THESIS[experiments.ROOMS][0].name)
+        return {part: select[part](DATASETS[name].settings) for part in parts}
+
+    return look_up
+
+
+def thesis_setting(key):
+    """A setting of the experiments."""
+    return THESIS[experiments.ROOMS][0].settings["thesis"][key] if THESIS else None
+
+
+rule compare_budgets:
+    """Compare whole scans with all scans thinned, at the same number of points."""
+    input:
+        **SURVEYED,
+        **orders_by("wall_length", "cluster_hull", "every_nth"),
+    output:
+        budgets="results/{dataset}/thesis/budgets.parquet",
+    log:
+        "logs/{dataset}/compare_budgets.log",
+    benchmark:
+        "benchmarks/{dataset}/compare_budgets.tsv"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=30,
+    params:
+        code=code_of("compare_budgets"),
+        extraction=setting(stage_settings.select_extractor, "cluster_ransac"),
+        # few, as the thesis's subset, and ever twice as many
+        sizes=[5, 10, 20, 40],
+        max_range_m=section("input", "max_range_m"),
+        evaluation=section("evaluation"),
+        seed=section("seed"),
+    script:
+        "../../scripts/compare_budgets.py"
+
+
+rule time_to_quality:
+    """Time how long it takes to a good plan, selection included, with all cores to itself."""
+    input:
+        **SURVEYED,
+        recorded=[
+            "benchmarks/{dataset}/interpolate_poses.tsv",
+            "benchmarks/{dataset}/register_scans.tsv",
+        ],
+    output:
+        times="results/{dataset}/thesis/quality_times.parquet",
+    log:
+        "logs/{dataset}/time_to_quality.log",
+    benchmark:
+        "benchmarks/{dataset}/time_to_quality.tsv"
+    threads: all_cores
+    resources:
+        mem_mb=2500,
+        runtime=30,
+    params:
+        code=code_of("time_to_quality"),
+        settings=settings_of_search("extraction", "plan", "cells", "hulls"),
+        # a plan of the rooms is good with some twenty scans at best
+        sizes=[10, 20, 30, 40, 60, 80, 120],
+        max_range_m=section("input", "max_range_m"),
+        evaluation=section("evaluation"),
+    script:
+        "../../scripts/time_to_quality.py"
+
+
+rule count_room_scans:
+    """Count the scans that floors drawn at random need, by their number of rooms."""
+    output:
+        floors="results/thesis/floors_{floor_seed}.parquet",
+    log:
+        "logs/thesis/count_room_scans_{floor_seed}.log",
+    benchmark:
+        "benchmarks/thesis/count_room_scans_{floor_seed}.tsv"
+    wildcard_constraints:
+        floor_seed=r"\d+",
+    threads: 1
+    resources:
+        mem_mb=2500,
+        runtime=60,
+    params:
+        code=code_of("count_room_scans"),
+        n_rooms=thesis_setting("n_rooms"),
+        settings=settings_of_search("simulation", "extraction", "cells"),
+        evaluation=lambda _: THESIS[experiments.ROOMS][0].settings["evaluation"],
+    script:
+        "../../scripts/count_room_scans.py"
+
+
+rule measure_outliers:
+    """Measure what stray returns, glass and people do to what scans cover, and to orders by it."""
+    input:
+        **SURVEYED,
+    output:
+        outliers="results/{dataset}/thesis/outliers.parquet",
+    log:
+        "logs/{dataset}/measure_outliers.log",
+    benchmark:
+        "benchmarks/{dataset}/measure_outliers.tsv"
+    threads: 1
+    resources:
+        mem_mb=2500,
+        runtime=30,
+    params:
+        code=code_of("measure_outliers"),
+        settings=settings_of_search("hulls", "visibility", "cells"),
+        shares=section("thesis", "outlier_shares"),
+        n_scans=section("thesis", "timed_scans"),
+        n_selected=stated_claims.Sizes.SUBSET,
+        max_range_m=section("input", "max_range_m"),
+        evaluation=section("evaluation"),
+        seed=section("seed"),
+    script:
+        "../../scripts/measure_outliers.py"
+
+
+rule measure_registrability:
+    """Measure whether chosen scans could be registered on their own."""
+    input:
+        **SURVEYED,
+        **orders_by("wall_length", "cluster_hull", "every_nth", "distance"),
+    output:
+        registrability="results/{dataset}/thesis/registrability.parquet",
+    log:
+        "logs/{dataset}/measure_registrability.log",
+    benchmark:
+        "benchmarks/{dataset}/measure_registrability.tsv"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=10,
+    params:
+        code=code_of("measure_registrability"),
+        registration=section("registration"),
+        sizes=[10, 20, 40, 80, 160],
+        max_range_m=section("input", "max_range_m"),
+        seed=section("seed"),
+    script:
+        "../../scripts/measure_registrability.py"
+
+
+rule choose_live:
+    """Choose scans as if the recording played, and measure what they find."""
+    input:
+        **SURVEYED,
+        **orders_by("wall_length", "every_nth", "distance"),
+        observations="results/{dataset}/observations.parquet",
+    output:
+        chosen="results/{dataset}/thesis/live_choice.parquet",
+    log:
+        "logs/{dataset}/choose_live.log",
+    benchmark:
+        "benchmarks/{dataset}/choose_live.tsv"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=10,
+    params:
+        code=code_of("choose_live"),
+        # from nearly all scans to a seventh of them
+        shares=[0.05, 0.1, 0.2, 0.3, 0.5],
+        playing=section("selection", "playing"),
+        max_range_m=section("input", "max_range_m"),
+        evaluation=section("evaluation"),
+    script:
+        "../../scripts/choose_live.py"
+
+
+rule measure_sensitivity:
+    """Judge claims with the numbers that the thesis does not state halved and doubled."""
+    input:
+        **SURVEYED,
+    output:
+        sensitivity="results/{dataset}/thesis/sensitivity.parquet",
+    log:
+        "logs/{dataset}/measure_sensitivity.log",
+    benchmark:
+        "benchmarks/{dataset}/measure_sensitivity.tsv"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=30,
+    params:
+        code=code_of("measure_sensitivity"),
+        extraction=setting(stage_settings.select_extractor, "cluster_ransac"),
+        hulls=setting(stage_settings.select_hulls),
+        factors=[0.5, 1.0, 2.0],
+        max_range_m=section("input", "max_range_m"),
+        evaluation=section("evaluation"),
+    script:
+        "../../scripts/measure_sensitivity.py"
+
+
 rule write_thesis_more:
     """Write the page of the experiments that go beyond the thesis's own."""
     input:
+        **{
+            name: of_kind(experiments.ROOMS, f"thesis/{name}")[:1]
+            for name in FURTHER_EXPERIMENTS
+        },
         evaluated=of_kind(experiments.ROOMS, "evaluation/walls"),
         chosen=of_kind(experiments.ROOMS, "thesis/confidence"),
         surrogates=of_kind(experiments.ROOMS, "thesis/surrogates"),
+        floors=expand(
+            "results/thesis/floors_{floor_seed}.parquet",
+            floor_seed=thesis_setting("floor_seeds") or [],
+        ),
         page=page_files("thesis_more.html.j2", "thesis.css"),
     output:
         page="results/thesis/more.html",

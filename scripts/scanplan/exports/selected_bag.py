@@ -63,7 +63,7 @@ def copy_selected_scans(
                 pose = _make_pose(stamp_ns, survey.map_frame, poses[scan_id])
                 writer.write_message(message[1], POSE_TOPIC, _POSE_TYPE, pose)
                 n_messages += 1
-            _copy_message(writer, bag, message)
+            copy_message(writer, bag, message)
             n_messages += 1
     return n_messages
 
@@ -84,7 +84,7 @@ def reading_settings(survey: BagSurvey, reading: Settings) -> dict[str, Any]:
     """
     own_topics = {"cloud_topic": survey.list_topics().cloud.name, "pose_topic": POSE_TOPIC}
     return {
-        "input": {**_without_damage(reading), **own_topics},
+        "input": {**without_damage(reading), **own_topics},
         "poses": {"keep_every": 1},
         "registration": {"icp_method": "none"},
         "selection": {"stop": {"n_scans": None, "area_share": None}},
@@ -175,7 +175,8 @@ def _iterate_messages(
             n_small += 1
 
 
-def _copy_message(writer: BagWriter, bag: Bag, message: BagMessage) -> None:
+def copy_message(writer: BagWriter, bag: Bag, message: BagMessage) -> None:
+    """Write a message as it was recorded, in the form of this kind of recording."""
     connection, receive_ns, raw = message
     data = raw.read() if isinstance(raw, StoredMessage) else raw
     data = writer.convert(data, connection.msgtype, is_ros2=bag.ros2)
@@ -198,6 +199,6 @@ def _make_pose(stamp_ns: int, frame: str, map_from_base: FloatArray) -> Any:
     )
 
 
-def _without_damage(reading: Settings) -> dict[str, Any]:
+def without_damage(reading: Settings) -> dict[str, Any]:
     """Return how to read without what is for damaged recordings: what is written anew is whole."""
     return {key: value for key, value in reading.items() if key not in _OF_DAMAGED}

@@ -172,6 +172,16 @@ class BagSurvey:
         if missing:
             raise ValueError(f"{self._where}: there is no scan {min(missing)}")
 
+    def read_cloud(self, scan_id: int, bag: Bag, message: BagMessage) -> clouds.Scan:
+        """Return the scan that a message of `list_topics().cloud` holds.
+
+        Raises
+        ------
+        StageError
+            If it cannot be decoded.
+        """
+        return self._read_scan(_CloudMessage(scan_id, bag, message))
+
     def describe_damage(self) -> list[str]:
         """Return what could not be read so far, in sentences."""
         losses = filter(None, (bag.describe_loss() for bag in self._bags))

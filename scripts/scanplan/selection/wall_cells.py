@@ -25,7 +25,7 @@ _ROWS = 3  # a wall's returns are in two rows of cells, noise puts some into a t
 _SAME_SIDE = 1e-3  # cosine; a wall that is square to a facing faces it by rounding alone
 _HALF_SURE = 0.5  # what may be a wall or furniture counts half; half of a wall is the wall
 _SURE = 2  # times the fewest returns: an extractor may split fewer otherwise
-_KEYS = ("facing", "along", "across")
+KEYS = ("facing", "along", "across")
 
 _Cells = tuple[IntArray, IntArray, FloatArray]
 
@@ -132,7 +132,7 @@ def observation_columns(
     counts = [len(part["length_m"]) for part in observed]
     scan_id = np.repeat(np.asarray(scan_ids, np.int32), counts)
     values = {
-        name: np.concatenate([part[name] for part in observed]) for name in (*_KEYS, "length_m")
+        name: np.concatenate([part[name] for part in observed]) for name in (*KEYS, "length_m")
     }
     return {"scan_id": scan_id, **values}
 
@@ -160,7 +160,7 @@ def even_out_noise(columns: Columns) -> dict[str, Array]:
 def number_cells(columns: Mapping[str, Array]) -> IntArray:
     """Return a number (m,), 0 or above, for each row's cell: the same for the same cell."""
     cell = np.zeros(len(columns["facing"]), np.int64)
-    for name in _KEYS:
+    for name in KEYS:
         values = columns[name].astype(np.int64)
         low = values.min(initial=0)
         cell = cell * (values.max(initial=0) - low + 1) + values - low
@@ -185,7 +185,9 @@ def _find_upright(
     of_point, normal = normals.estimate_cell_normals(points_m, reach_deg=settings.reach_deg)
     is_upright = np.abs(normal[:, 2]) <= np.sin(np.deg2rad(settings.max_tilt_deg))
     upright = np.flatnonzero(is_upright.take(of_point))
-    facing = normal[:, :2] / np.hypot(normal[:, 0], normal[:, 1])[:, None]
+    level = np.hypot(normal[:, 0], normal[:, 1])[:, None]
+    # a floor's normal may have no direction in plan view; it is not upright
+    facing = np.divide(normal[:, :2], level, out=np.zeros_like(normal[:, :2]), where=level > 0)
     return upright, facing.take(of_point.take(upright), axis=0)
 
 

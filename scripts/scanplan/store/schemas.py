@@ -533,6 +533,19 @@ SURROGATES = Schema(
 
 `ratio` is the submodularity ratio of as many scans added to them.
 """
+MEASUREMENTS = Schema(
+    "measurements",
+    1,
+    {
+        "case": "string",
+        "level": "float64",
+        "item": "int32",
+        "quantity": "string",
+        "value": "float64",
+    },
+    ("case", "level", "item", "quantity"),
+)
+"""What an experiment beyond the thesis's measures, see `lab.beyond.measurements`."""
 TIMES = Schema(
     "times",
     1,

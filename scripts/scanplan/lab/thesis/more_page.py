@@ -11,7 +11,12 @@ from scanplan.lab.thesis.stated_claims import Sizes
 from scanplan.report import templates
 
 
-def more_page(sources: Mapping[str, str], figures: Mapping[str, str], found: pd.DataFrame) -> str:
+def more_page(
+    sources: Mapping[str, str],
+    figures: Mapping[str, str],
+    found: pd.DataFrame,
+    experiments: Mapping[str, Mapping[str, str]],
+) -> str:
     """Return the page.
 
     Parameters
@@ -19,9 +24,11 @@ def more_page(sources: Mapping[str, str], figures: Mapping[str, str], found: pd.
     sources : dict of str to str
         File name to text of `thesis_more.html.j2` and of its style.
     figures : dict of str to str
-        SVG text by name: `confidence`, `surrogates`.
+        SVG text by name: `confidence`, `surrogates`, and those of the further experiments.
     found : pandas.DataFrame
         As in `more_figures.join_orders`.
+    experiments : dict of str to dict of str to str
+        Further ones: `title`, `how`, `caption` and `shows` by the names of their figures.
 
     Returns
     -------
@@ -40,4 +47,5 @@ def more_page(sources: Mapping[str, str], figures: Mapping[str, str], found: pd.
         found=rows,
         n_seeds=found.index.get_level_values("seed").nunique(),
         n_scans=Sizes.SUBSET,
+        experiments=experiments,
     )

@@ -4,7 +4,7 @@ The submodularity ratio of a utility (Das and Kempe 2011, "Submodular meets spec
 scans add to others one by one, summed, per what they add together: at least 1 of a submodular one.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 import shapely
@@ -34,29 +34,45 @@ def submodularity_ratios(
     truth : wall_findings.VisibleTruth
     findings : wall_findings.Findings
         Of one extractor.
-    n_added : int
-        So many scans are added to as many others, and so often; fewer of a small survey.
-    seed : int
+    n_added, seed : int
+        See `draw_additions`.
 
     Returns
     -------
     list of dict
         Draw by draw, ratio by the names of `UTILITIES`; NaN where nothing is added.
     """
-    n_scans = len(truth.seen)
-    size = max(1, min(n_added, n_scans // 2))
-    rng = np.random.default_rng(seed)
     ratios = []
-    for _ in range(n_added):
-        drawn = rng.choice(n_scans, min(2 * size, n_scans), replace=False)
-        before, added = drawn[:size], drawn[size:]
+    for before, added in draw_additions(len(truth.seen), n_added=n_added, seed=seed):
         alone = measure_utilities(truth, findings, before)
-        together = measure_utilities(truth, findings, drawn) - alone
+        together = measure_utilities(truth, findings, [*before, *added]) - alone
         singly = [measure_utilities(truth, findings, [*before, scan]) - alone for scan in added]
         gain = np.sum(singly, axis=0)
         ratio = np.divide(gain, together, out=np.full(len(gain), np.nan), where=together > 0)
         ratios.append(dict(zip(UTILITIES, ratio.tolist(), strict=True)))
     return ratios
+
+
+def draw_additions(n_scans: int, *, n_added: int, seed: int) -> Iterator[tuple[IntArray, IntArray]]:
+    """Draw random scans, and others that are added to them.
+
+    Parameters
+    ----------
+    n_scans : int
+    n_added : int
+        So many scans are added to as many others, and so often; fewer of a small survey.
+    seed : int
+
+    Yields
+    ------
+    before, added : (k,) int
+        Rows of scans, none twice.
+    """
+    size = max(1, min(n_added, n_scans // 2))
+    rng = np.random.default_rng(seed)
+    for _ in range(n_added):
+        drawn = rng.choice(n_scans, min(2 * size, n_scans), replace=False)
+        yield drawn[:size], drawn[size:]
 
 
 def measure_utilities(truth: VisibleTruth, findings: Findings, rows: Iterable[int]) -> FloatArray:

@@ -43,9 +43,8 @@ def measure_draws(
     truth : wall_findings.VisibleTruth
     findings : wall_findings.Findings
         Of one extractor.
-    n_added : int
-        So many scans are added to as many others, and so often; fewer of a small survey.
-    seed : int
+    n_added, seed : int
+        See `premises.draw_additions`.
 
     Yields
     ------
@@ -53,14 +52,12 @@ def measure_draws(
         Of one draw, a row for every surrogate.
     """
     covers = {name: make(scans) for name, make in SURROGATES.items()}
-    size = max(1, min(n_added, len(scans) // 2))
-    rng = np.random.default_rng(seed)
-    for draw in range(n_added):
-        drawn = rng.choice(len(scans), min(2 * size, len(scans)), replace=False)
-        found = premises.measure_utilities(truth, findings, drawn[:size])[0]
+    draws = premises.draw_additions(len(scans), n_added=n_added, seed=seed)
+    for draw, (before, added) in enumerate(draws):
+        found = premises.measure_utilities(truth, findings, before)[0]
         rows: list[SurrogateRow] = []
         for name, cover in covers.items():
-            value, ratio = _measure_draw(cover, drawn[:size], drawn[size:])
+            value, ratio = _measure_draw(cover, before, added)
             rows.append(
                 {"surrogate": name, "draw": draw, "value": value, "ratio": ratio, "found": found}
             )

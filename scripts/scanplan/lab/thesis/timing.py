@@ -123,7 +123,7 @@ def time_selection(columns: Columns, sizes: Iterable[int]) -> Iterator[TimedRow]
     area_greedy.order_by_area(polygons[:2])
     for size in sizes:
         shapes = polygons[spread_rows(np.arange(len(polygons)), size)]
-        seconds, order = _time_call(partial(area_greedy.order_by_area, shapes))
+        seconds, order = time_call(partial(area_greedy.order_by_area, shapes))
         yield _row(ORDERING, size, len(order.order), seconds)
         if size > Sizes.SUBSET:
             call = partial(area_greedy.choose_first, shapes, Sizes.SUBSET)
@@ -131,7 +131,7 @@ def time_selection(columns: Columns, sizes: Iterable[int]) -> Iterator[TimedRow]
             yield _row(CHOOSING, size, len(subset), seconds)
         if size <= THESIS_SCANS:
             # as it is written it takes minutes for more
-            seconds, rows = _time_call(partial(order_literally, shapes))
+            seconds, rows = time_call(partial(order_literally, shapes))
             yield _row(LITERAL, size, len(rows), seconds)
 
 
@@ -222,10 +222,11 @@ def _time_quickest(call: Callable[[], Any]) -> tuple[float, Any]:
 
     What disturbs a call can only lengthen it.
     """
-    return min((_time_call(call) for _ in range(_REPEATS)), key=lambda timed: timed[0])
+    return min((time_call(call) for _ in range(_REPEATS)), key=lambda timed: timed[0])
 
 
-def _time_call(call: Callable[[], Any]) -> tuple[float, Any]:
+def time_call(call: Callable[[], Any]) -> tuple[float, Any]:
+    """Return the processor seconds of a call, and its result."""
     started = time.process_time()
     result = call()
     return time.process_time() - started, result

@@ -1,0 +1,1 @@
+"""Experiments that go beyond those of the thesis."""

@@ -1,0 +1,51 @@
+"""What an experiment measures: one table for all, case by case."""
+
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+import pandas as pd
+
+from scanplan.store import schemas, tables
+from scanplan.types import FilePath
+
+
+class Measurement(NamedTuple):
+    """A row of `schemas.MEASUREMENTS`.
+
+    Attributes
+    ----------
+    case : str
+        What is compared, as figures call it.
+    level : float
+        How much of it: number of scans, share, factor.
+    item : int
+        Which one of several alike: draw, seed, scan.
+    quantity : str
+    value : float
+    """
+
+    case: str
+    level: float
+    item: int
+    quantity: str
+    value: float
+
+
+def write_measurements(path: FilePath, rows: Iterable[Measurement]) -> None:
+    """Write the table of an experiment."""
+    columns = dict(zip(Measurement._fields, zip(*sorted(rows), strict=True), strict=True))
+    tables.write_table(path, schemas.MEASUREMENTS, columns)
+
+
+def read_measurements(paths: Sequence[FilePath]) -> pd.DataFrame:
+    """Return what was measured on several surveys: `schemas.MEASUREMENTS`, and `survey` from 0."""
+    parts = [pd.DataFrame(tables.read_table(path, schemas.MEASUREMENTS)) for path in paths]
+    joined = pd.concat(parts, keys=range(len(parts)), names=["survey", None])
+    return joined.reset_index("survey")
+
+
+def mean_by_level(measured: pd.DataFrame, quantity: str) -> pd.DataFrame:
+    """Return the mean of a quantity over items and surveys: levels by rows, cases by columns."""
+    rows = measured[measured["quantity"] == quantity]
+    cases = rows["case"].unique()
+    return rows.groupby(["level", "case"])["value"].mean().unstack()[list(cases)]

@@ -1,0 +1,107 @@
+"""Write a recording reduced to the scans that show new wall, deciding on each as it comes."""
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from scanplan.errors import StageError
+from scanplan.exports import reduced_bag
+from scanplan.geometry import se3
+from scanplan.recordings import candidates, frame_edges
+from scanplan.recordings.clouds import Scan
+from scanplan.recordings.recorded_survey import BagSurvey
+from scanplan.recordings.survey import open_survey
+from scanplan.selection import wall_cells
+from scanplan.selection.playing import PlayingSelection
+from scanplan.selection.wall_cells import WallCellSettings
+from scanplan.stage import log
+from scanplan.store import atomic
+from scanplan.types import FilePath, Settings
+
+
+def write_reduced_bag(
+    recordings: Sequence[str],
+    output: FilePath,
+    settings: FilePath,
+    *,
+    reading: Mapping[str, Any],
+    poses: Settings,
+    cells: Settings,
+    playing: Settings,
+) -> None:
+    """Write the recording, and settings with which a plan is made of it.
+
+    Scans are placed where the localiser says, by the poses before and after them.
+
+    Parameters
+    ----------
+    recordings : list of str
+        The dataset's files.
+    output, settings : path-like
+        reduced.bag, .mcap or .db3 and reduced.<suffix>.yaml, to write.
+    reading, poses : dict
+        Sections `input` and `poses`.
+    cells, playing : dict
+        Keywords of `wall_cells.WallCellSettings` and of `playing.PlayingSelection`.
+
+    Raises
+    ------
+    StageError
+        If the dataset is a folder of scans, or no scan shows a wall.
+    """
+    limits = {name: poses[name] for name in ("max_gap_s", "max_speed_m_s")}
+    spacing = {name: value for name, value in poses.items() if name not in limits}
+    selection = PlayingSelection(**playing)
+    with open_survey(recordings, **{**reading, "deskew": False}) as survey:
+        if not isinstance(survey, BagSurvey):
+            raise StageError(
+                f"{output}: not written, as {Path(recordings[0]).parent} holds clouds in files and"
+                " no messages; ask for the plan, which chooses among them"
+            )
+        known, _, covered = frame_edges.chain_poses(survey.pose_edges(), survey.stamps(), **limits)
+        chosen = candidates.choose_candidates(known, **spacing)
+        own = WallCellSettings(**cells)
+        planar = survey.planar
+
+        def is_taken(scan: Scan) -> bool:
+            pose = known[scan.scan_id]
+            xyz_m = se3.transform_points(pose, scan.xyz_m)
+            return selection.take(
+                wall_cells.observe_wall_cells(
+                    scan.scan_id, xyz_m, sensor_xyz_m=pose[:3, 3], planar=planar, settings=own
+                )
+            )
+
+        placed = set(chosen[covered[chosen]].tolist())
+        n_taken = reduced_bag.copy_taken_scans(output, survey, placed, is_taken)
+        n_scans = len(survey.stamps())
+    if not n_taken:
+        Path(output).unlink()
+        raise StageError(
+            f"{output}: not written, as none of {len(placed)} scans with a pose shows a wall; check"
+            " input.cloud_topic and poses.max_gap_s"
+        )
+    own_settings = reduced_bag.reduced_settings(dict(reading), poses)
+    # JSON is YAML, too
+    atomic.write_text(settings, json.dumps(own_settings, indent=2) + "\n")
+    before = np.sum([Path(file).stat().st_size for file in recordings])
+    log.log_line(
+        f"write_reduced_bag: {n_taken:,} of {n_scans:,} scans, {selection.most_held:,} cells of"
+        f" wall kept at most, {Path(output).stat().st_size:,} of {before:,} bytes"
+    )
+
+
+if __name__ == "__main__":
+    with log.log_to_file(snakemake.log[0]):
+        write_reduced_bag(
+            snakemake.input.recordings,
+            snakemake.output.recording,
+            snakemake.output.settings,
+            reading=snakemake.params.reading,
+            poses=snakemake.params.poses,
+            cells=snakemake.params.cells,
+            playing=snakemake.params.playing,
+        )
