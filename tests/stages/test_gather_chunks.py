@@ -25,8 +25,9 @@ def make_visibility(scans, registration, output, chunk=None):
     build_visibility(scans, registration, output, settings=settings, chunk=chunk)
 
 
-def make_hulls(scans, _registration, output, chunk=None):
-    build_hulls(scans, output, **stage_settings.select_hulls(SETTINGS), threads=1, chunk=chunk)
+def make_hulls(scans, registration, output, chunk=None):
+    settings = stage_settings.select_hulls(SETTINGS)
+    build_hulls(scans, registration, output, **settings, threads=1, chunk=chunk)
 
 
 def make_walls(scans, registration, output, chunk=None):
