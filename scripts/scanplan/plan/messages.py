@@ -61,7 +61,10 @@ def sparse_rays_warning(rays: RaySet, min_opening_m: float) -> str:
     str
         Empty where most points are near enough.
     """
-    spacings_rad = [free_space.column_spacing_rad(rays.azimuth_rad[rows]) for rows in rays.rows]
+    spacings_rad = [
+        free_space.column_spacing_rad(rays.azimuth_rad[rows], rays.xyz_m[rows] - sensor_m)
+        for rows, sensor_m in zip(rays.rows, rays.sensors_m, strict=True)
+    ]
     spacing_rad = float(np.median(spacings_rad))
     if spacing_rad <= 0:
         return ""
