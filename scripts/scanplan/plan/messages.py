@@ -111,4 +111,5 @@ def _summarise_range_bias(range_errors_m: FloatArray) -> str:
 
 def _ranges_m(rays: RaySet) -> FloatArray:
     """Return the level distances of all points from their sensors."""
-    return np.hypot(*(rays.xyz_m - rays.sensors_m[rays.scan])[:, :2].T)
+    way_m = rays.level_way_m
+    return np.hypot(way_m[:, 0], way_m[:, 1])
