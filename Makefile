@@ -17,6 +17,9 @@ GIVEN := $(foreach name,$(.VARIABLES),$(if $(findstring command line,$(origin $(
 UNKNOWN := $(filter-out $(KNOWN),$(GIVEN))
 $(if $(UNKNOWN),$(error $(UNKNOWN): no such variable; there are $(KNOWN)))
 
+# every stage is a process, which would compile the package anew
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: help run compare quick test test-slurm lint style faults audit bench figures pictures settings
 .PHONY: environment clean
 .DEFAULT_GOAL := run

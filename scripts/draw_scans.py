@@ -5,7 +5,7 @@ from typing import Any
 from scanplan.report import figures, top_view
 from scanplan.selection import stopping
 from scanplan.stage import figure_files, log
-from scanplan.store import atomic, schemas, tables
+from scanplan.store import atomic, registered_scans, schemas, tables
 from scanplan.types import FilePath
 
 
@@ -31,8 +31,8 @@ def draw_scans(
     clouds = log.report_progress(store.scans(shown), "draw_scans", total=len(shown))
     figure = figures.draw_scans_figure(
         top_view.sample_points(clouds, len(shown)),
-        figures.sensor_positions(poses, store.scan_ids),
-        figures.sensor_positions(poses, selected_ids),
+        registered_scans.sensor_places(poses, store.scan_ids),
+        registered_scans.sensor_places(poses, selected_ids),
     )
     atomic.write_text(output, figure_files.format_svg(figure))
     log.log_line(f"draw_scans: {n_scans} scans, {len(selected_ids)} selected ({reason})")

@@ -10,9 +10,9 @@ from scanplan.lab.evaluation import length_metrics
 from scanplan.lab.thesis.claim_measures import ITERATIVE, OURS
 from scanplan.lab.thesis.figures import drive_figures
 from scanplan.lab.thesis.stated_claims import Sizes
-from scanplan.report import figures, top_view
+from scanplan.report import top_view
 from scanplan.stage import figure_files, log
-from scanplan.store import atomic, schemas, tables
+from scanplan.store import atomic, registered_scans, schemas, tables
 from scanplan.types import FilePath
 
 
@@ -43,8 +43,8 @@ def draw_thesis_drive(
     points_m = top_view.sample_points(clouds, n_scans)
     poses = tables.read_table(registration, schemas.REGISTRATION)
     subset_ids = tables.read_table(selection, schemas.SELECTION)["scan_id"][: Sizes.SUBSET]
-    subset_m = figures.sensor_positions(poses, subset_ids)
-    places_m = figures.sensor_positions(poses, store.scan_ids)
+    subset_m = registered_scans.sensor_places(poses, subset_ids)
+    places_m = registered_scans.sensor_places(poses, store.scan_ids)
     lines_m, subset_lines_m = {}, {}
     for extractor, path in walls.items():
         columns = tables.read_table(path, schemas.WALLS, allow_empty=True)

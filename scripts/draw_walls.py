@@ -5,7 +5,7 @@ from typing import Any
 from scanplan.report import figures, top_view
 from scanplan.selection import stopping
 from scanplan.stage import figure_files, log
-from scanplan.store import atomic, schemas, tables
+from scanplan.store import atomic, registered_scans, schemas, tables
 from scanplan.types import FilePath
 
 
@@ -36,7 +36,7 @@ def draw_walls(
     figure = figures.draw_walls_figure(
         top_view.sample_points(store.scans(selected_ids), count),
         plan_faces,
-        figures.sensor_positions(poses, selected_ids),
+        registered_scans.sensor_places(poses, selected_ids),
     )
     atomic.write_text(output, figure_files.format_svg(figure))
     log.log_line(f"draw_walls: {len(plan_faces['face'])} faces over {count} scans ({reason})")

@@ -7,13 +7,13 @@ from typing import Any
 
 from scanplan.plan import floorplan
 from scanplan.project import code_files, corrections_file
-from scanplan.report import figures, point_image
+from scanplan.report import point_image
 from scanplan.report.facts import PredictionFacts, RunFacts, Storey, SurveyFacts, VisitFacts
 from scanplan.report.page import report_page
 from scanplan.report.summary import summarise_survey
 from scanplan.selection import stopping
 from scanplan.stage import log
-from scanplan.store import atomic, schemas, tables
+from scanplan.store import atomic, registered_scans, schemas, tables
 from scanplan.types import Columns, FilePath, FloatArray, Settings
 
 _NOT_SIZED = (".svg", ".html", ".txt")
@@ -85,7 +85,7 @@ def write_report(
 def _read_chosen_scans(path: FilePath, survey: SurveyFacts) -> Iterator[tuple[int, FloatArray]]:
     chosen_ids = survey.selection["scan_id"][: survey.chosen]
     # a selection of another run may name scans that were not kept
-    figures.sensor_positions(survey.registration, chosen_ids)
+    registered_scans.sensor_places(survey.registration, chosen_ids)
     return tables.ScanStore(path).scans(chosen_ids)
 
 

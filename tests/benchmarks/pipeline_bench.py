@@ -158,6 +158,8 @@ def _run(project: Path, revision: str, folder: Path, drive: Path) -> list[Stage]
     command = [sys.executable, "-m", "snakemake", "--cores", "2"]
     command += ["--config", f'dataset="{drive}"', "--", *targets]
     environment = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
+    # as `make run` has it: modules are compiled once
+    environment.pop("PYTHONDONTWRITEBYTECODE", None)
     started, before = time.perf_counter(), _children_s()
     subprocess.run(command, cwd=code, env=environment, check=True)
     seconds, processor_s = time.perf_counter() - started, _children_s() - before

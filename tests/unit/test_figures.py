@@ -9,6 +9,7 @@ from helpers.wall_making import BARE, walls
 from scanplan.errors import StageError
 from scanplan.report import figures, top_view
 from scanplan.stage import figure_files
+from scanplan.store import registered_scans
 
 
 def ordering(covered_m2):
@@ -64,13 +65,13 @@ class TestPositions:
 
     def test_they_come_in_the_order_asked_for(self):
         np.testing.assert_array_equal(
-            figures.sensor_positions(self.REGISTRATION, [10, 0]), [[3, 6], [1, 4]]
+            registered_scans.sensor_places(self.REGISTRATION, [10, 0]), [[3, 6], [1, 4]]
         )
 
     @pytest.mark.parametrize("scan_id", [5, 7])
     def test_a_scan_that_was_not_kept_is_refused(self, scan_id):
         with pytest.raises(StageError, match=f"scan {scan_id} "):
-            figures.sensor_positions(self.REGISTRATION, [0, scan_id])
+            registered_scans.sensor_places(self.REGISTRATION, [0, scan_id])
 
 
 def test_nearby_counts_the_others_within_the_radius():

@@ -249,23 +249,27 @@ class TestFreeSpace:
         )
         assert found[0].intersection(shapely.box(0, 0, 4, 4)).area == pytest.approx(16, rel=0.06)
 
+    @pytest.mark.parametrize("spread", [0.01, 0.65, 0.95])
     @pytest.mark.parametrize("columns", [240, 360, 1440])
     def test_beams_above_one_another_see_their_room_however_far_apart_their_columns_are(
-        self, columns
+        self, columns, spread
     ):
+        """However much of the way to the next column the rays of one are spread over, too."""
         flat = laser(SENSORS[0], np.array(house_making.HOUSE, float), beams=columns)
-        turns = np.radians(np.arange(16) * 0.001)[:, None]
+        turns = np.linspace(0, spread * 2 * np.pi / columns, 16)[:, None]
         way = flat[:, :2] - SENSORS[0][:2]
         beside = np.column_stack([-way[:, 1], way[:, 0]])
         near = [SENSORS[0][:2] + way * np.cos(turn) + beside * np.sin(turn) for turn in turns]
-        points = np.column_stack([np.concatenate(near), np.zeros(16 * len(flat))])
-        gathered = ray_set.gather_rays([(0, points)], {0: SENSORS[0]}, planar=True)
+        rise = np.tan(np.radians(np.linspace(-15, 15, 16)))[:, None] * np.hypot(*way.T)
+        points = np.column_stack([np.concatenate(near), SENSORS[0][2] + rise.ravel()])
+        gathered = ray_set.gather_rays([(0, points)], {0: SENSORS[0]}, planar=False)
         assert free_space.free_polygons(gathered)[0].intersection(
             shapely.box(0, 0, 4, 4)
         ).area == pytest.approx(16, rel=0.06)
-        assert np.degrees(free_space.column_spacing_rad(gathered.azimuth_rad)) == pytest.approx(
-            360 / columns, abs=0.02
+        spacing_rad = free_space.column_spacing_rad(
+            gathered.azimuth_rad, gathered.xyz_m - SENSORS[0]
         )
+        assert np.degrees(spacing_rad) == pytest.approx(360 / columns, abs=0.02)
 
     def test_rays_too_far_apart_for_an_opening_are_told(self):
         """In a room of 4 m most walls are some 2 to 3 m away.
@@ -285,14 +289,17 @@ class TestFreeSpace:
             and "n_azimuth" in told[45]
         )
 
-    def test_the_end_of_a_sensors_field_is_no_gap_between_its_columns(self):
-        assert free_space.column_spacing_rad(np.radians(np.arange(-30, 31, 2.0))) == pytest.approx(
-            np.radians(2)
-        )
-        assert (
-            free_space.column_spacing_rad(np.radians([-120.0, 120.0]))
-            == free_space.column_spacing_rad(np.empty(0))
-            == 0
+    @pytest.mark.parametrize(
+        ("directions_deg", "spacing_deg"),
+        [(np.arange(-30, 31, 2.0), 2), (np.array([-120.0, 120.0]), 0), (np.empty(0), 0)],
+    )
+    def test_the_end_of_a_sensors_field_is_no_gap_between_its_columns(
+        self, directions_deg, spacing_deg
+    ):
+        azimuth_rad = np.radians(directions_deg)
+        level = np.column_stack([np.cos(azimuth_rad), np.sin(azimuth_rad), 0 * azimuth_rad])
+        assert free_space.column_spacing_rad(azimuth_rad, level) == pytest.approx(
+            np.radians(spacing_deg)
         )
 
     def test_a_scan_of_no_points_sees_nothing(self):

@@ -2,11 +2,14 @@
 
 import base64
 import io
+import re
 
 import numpy as np
+import pytest
 from PIL import Image
 
 from helpers import floorplan_making
+from scanplan.report.chart import chart_svg
 from scanplan.report.doubts import list_doubts
 from scanplan.report.point_image import draw_point_image
 from scanplan.report.result_links import link_results
@@ -64,3 +67,20 @@ def test_links_are_of_what_people_open_the_drawing_first():
         ("plan/plan.dxf", "CAD (DXF)"),
         ("plan/other.step", "other.step"),
     ]
+
+
+@pytest.mark.parametrize(
+    ("n_scans", "ticks"),
+    [
+        (1, [1]),
+        (7, [1, 2, 3, 4, 5, 6, 7]),
+        (21, [1, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20]),
+        (22, [1, 5, 10, 15, 20]),
+        (99, [1, 10, 20, 30, 40, 50, 60, 70, 80, 90]),
+        (100, [1, 2, 5, 10, 20, 50, 100]),
+        (1173, [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000]),
+    ],
+)
+def test_the_chart_counts_scans_in_round_numbers(n_scans, ticks):
+    labels = re.findall(r'text-anchor="middle">([0-9,]+)<', chart_svg({}, n_scans, 1))
+    assert [int(label.replace(",", "")) for label in labels] == ticks

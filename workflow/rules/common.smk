@@ -5,6 +5,9 @@ from functools import cache
 
 from snakemake.exceptions import WorkflowError
 
+# of a plan of two threads an eighth of the memory: each would keep for itself what it has freed
+os.environ.setdefault("MALLOC_ARENA_MAX", "1")
+
 sys.path.insert(0, f"{PROJECT}/scripts")
 from scanplan.errors import StageError
 from scanplan.lab.thesis import experiments

@@ -61,7 +61,10 @@ def sparse_rays_warning(rays: RaySet, min_opening_m: float) -> str:
     str
         Empty where most points are near enough.
     """
-    spacings_rad = [free_space.column_spacing_rad(rays.azimuth_rad[rows]) for rows in rays.rows]
+    spacings_rad = [
+        free_space.column_spacing_rad(rays.azimuth_rad[rows], rays.xyz_m[rows] - sensor_m)
+        for rows, sensor_m in zip(rays.rows, rays.sensors_m, strict=True)
+    ]
     spacing_rad = float(np.median(spacings_rad))
     if spacing_rad <= 0:
         return ""
@@ -108,4 +111,5 @@ def _summarise_range_bias(range_errors_m: FloatArray) -> str:
 
 def _ranges_m(rays: RaySet) -> FloatArray:
     """Return the level distances of all points from their sensors."""
-    return np.hypot(*(rays.xyz_m - rays.sensors_m[rays.scan])[:, :2].T)
+    way_m = rays.level_way_m
+    return np.hypot(way_m[:, 0], way_m[:, 1])

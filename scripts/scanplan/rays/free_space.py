@@ -39,31 +39,36 @@ def free_polygons(rays: RaySet) -> list[MultiPolygon]:
         A polygon, polygons, or an empty one, per scan.
     """
     return [
-        _star(
-            sensor_m[:2], rays.azimuth_rad[rows], np.hypot(*(rays.xyz_m[rows] - sensor_m)[:, :2].T)
-        )
+        _star(sensor_m[:2], rays.azimuth_rad[rows], rays.xyz_m[rows] - sensor_m)
         for rows, sensor_m in zip(rays.rows, rays.sensors_m, strict=True)
     ]
 
 
-def column_spacing_rad(azimuth_rad: FloatArray) -> float:
-    """Return the angle between a scan's columns of rays.
+def column_spacing_rad(azimuth_rad: FloatArray, way_m: FloatArray) -> float:
+    """Return the angle between a scan's columns of rays: those of one beam, one after the other.
 
-    Half of the directions between rays lie in gaps up to this.
-
-    The median of the gaps themselves says nothing of a sensor with several beams, whose rays stand
-    one above the other: nearly all of them are next to none.
+    Of the rays within the degree of elevation that most of them lie in, half of the directions
+    between them lie in gaps up to this. Those of all beams together say nothing of it: they stand
+    one above the other, or beams fire in turns and rays lie anywhere from one column to the next.
 
     Parameters
     ----------
     azimuth_rad : (n,) float64, increasing
+    way_m : (n, 3) float64
+        From the sensor to where each ray ends.
 
     Returns
     -------
     float
         0 where there are no two directions.
     """
-    steps_rad = np.sort(np.diff(azimuth_rad))
+    if not len(azimuth_rad):
+        return 0.0
+    elevation_rad = np.arctan2(way_m[:, 2], np.hypot(way_m[:, 0], way_m[:, 1]))
+    # rounded, so that what is level is of one degree
+    degree = np.rint(np.degrees(elevation_rad)).astype(np.int64)
+    degree -= degree.min()
+    steps_rad = np.sort(np.diff(azimuth_rad[degree == np.bincount(degree).argmax()]))
     steps_rad = steps_rad[steps_rad <= _WIDEST_RAD]
     turned_rad = np.cumsum(steps_rad)
     return (
@@ -71,11 +76,12 @@ def column_spacing_rad(azimuth_rad: FloatArray) -> float:
     )
 
 
-def _star(origin_m: FloatArray, azimuth_rad: FloatArray, range_m: FloatArray) -> MultiPolygon:
+def _star(origin_m: FloatArray, azimuth_rad: FloatArray, way_m: FloatArray) -> MultiPolygon:
+    range_m = np.hypot(way_m[:, 0], way_m[:, 1])
     steps_rad = np.diff(azimuth_rad)
     steps_rad = steps_rad[steps_rad > 0]
     two_rays_rad = 2 * float(np.median(steps_rad)) if len(steps_rad) else 0.0
-    width_rad = max(_SECTOR_RAD, _SPARE * max(two_rays_rad, column_spacing_rad(azimuth_rad)))
+    width_rad = max(_SECTOR_RAD, _SPARE * max(two_rays_rad, column_spacing_rad(azimuth_rad, way_m)))
     count = max(int(2 * np.pi / width_rad), 3)
     width_rad = 2 * np.pi / count
     sector = np.minimum(((azimuth_rad + np.pi) / width_rad).astype(np.int64), count - 1)

@@ -57,9 +57,16 @@ class RaySet:
     @cached_property
     def sectors(self) -> azimuth_sectors.AzimuthSectors:
         """How far the rays go in each direction."""
-        return azimuth_sectors.sort_into_sectors(
-            self.first, self.azimuth_rad, self.xyz_m[:, :2] - self.sensors_m[self.scan, :2]
-        )
+        return azimuth_sectors.sort_into_sectors(self.first, self.azimuth_rad, self.level_way_m)
+
+    @property
+    def level_way_m(self) -> FloatArray:
+        """From its sensor to where each ray ends, level: (n, 2) float64."""
+        way_m = self.xyz_m[:, :2].copy()
+        # scan by scan: the sensors of all rays would take as much memory again
+        for rows, sensor_m in zip(self.rows, self.sensors_m, strict=True):
+            way_m[rows] -= sensor_m[:2]
+        return way_m
 
     @cached_property
     def usual(self) -> FloatArray:
@@ -80,6 +87,11 @@ class RaySet:
     def rows(self) -> list[slice]:
         """The rows of each scan."""
         return [slice(a, b) for a, b in zip(self.first[:-1], self.first[1:], strict=True)]
+
+    def index_rays(self) -> None:
+        """Make what rays are found by now: threads that first ask together would each make it."""
+        _ = self.sectors
+        _ = self._key
 
     def with_points(self, xyz_m: FloatArray) -> "RaySet":
         """Return rays that end at other points (n, 3), in the same directions."""
@@ -143,7 +155,8 @@ class RaySet:
 
     @cached_property
     def _key(self) -> FloatArray:
-        return self.azimuth_rad + _TURN * self.scan
+        turned_rad = _TURN * np.arange(len(self.scan_ids))
+        return self.azimuth_rad + np.repeat(turned_rad, np.diff(self.first))
 
 
 def gather_rays(
@@ -175,11 +188,14 @@ def gather_rays(
         scan_ids.append(scan_id)
         azimuths.append(azimuth_rad[order])
         points.append(xyz_m.take(order, axis=0))
+    first = np.cumsum([0, *map(len, points)])
     xyz_m = np.concatenate([np.empty((0, 3)), *points])
+    # they are as large again
+    points.clear()
     return RaySet(
         scan_ids=np.array(scan_ids, np.int64),
         sensors_m=np.array([sensors_m[i] for i in scan_ids], float).reshape(-1, 3),
-        first=np.cumsum([0, *map(len, points)]),
+        first=first,
         azimuth_rad=np.concatenate([np.empty(0), *azimuths]),
         xyz_m=xyz_m,
         floor_z_m=np.nan if planar else levels.find_floor_z(xyz_m[:, 2]),

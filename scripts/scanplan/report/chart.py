@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from matplotlib.ticker import LogLocator, MaxNLocator
 
 from scanplan.types import FloatArray, IntArray
 
+MARGIN_M = 0.5  # around what drawings must show, so that marks at the edge are whole
 LOGARITHMIC_FROM = 100  # scans: from here on the first few would crowd on a linear axis
 
 
@@ -83,12 +83,12 @@ class _ScanAxis:
         return share * Plot.WIDTH
 
     def ticks(self) -> list[int]:
+        """Return round numbers: 1, 2, 5 times powers of ten, or ten even steps at most."""
+        round_numbers = [lead * 10**k for k in range(len(str(self.n_scans))) for lead in (1, 2, 5)]
         if self.logarithmic:
-            locator = LogLocator(subs=(1, 2, 5), numticks=self.n_scans)
-        else:
-            locator = MaxNLocator(steps=[1, 2, 5, 10], integer=True)
-        ticks = {1, *map(int, locator.tick_values(1, self.n_scans))}
-        return sorted(tick for tick in ticks if 1 <= tick <= self.n_scans)
+            return [number for number in round_numbers if number <= self.n_scans]
+        step = next(number for number in round_numbers if self.n_scans - 1 <= 10 * number)
+        return sorted({1, *range(step, self.n_scans + 1, step)})
 
 
 def _share_grid() -> list[str]:

@@ -14,34 +14,11 @@ from scanplan.report import top_view
 from scanplan.report.chart import LOGARITHMIC_FROM
 from scanplan.selection import stopping
 from scanplan.selection.methods import METHODS, Method
-from scanplan.store import registered_scans
 from scanplan.types import Columns, FloatArray, IntArray
 
 NEARBY_M = 1.0  # scans this near show much the same: "crowded" in the figure means that
 _SELECTED = "#d55e00"
 _FULL_HULLS = "hull"
-
-
-def sensor_positions(registration: Columns, scan_ids: IntArray) -> FloatArray:
-    """Return where the sensor stood in scans, in the order asked for.
-
-    Parameters
-    ----------
-    registration : dict of str to (n,) array
-        Of a table of registration.
-    scan_ids : (k,) int
-
-    Returns
-    -------
-    (k, 2) float64, map frame
-
-    Raises
-    ------
-    StageError
-        If a scan was not kept: the tables are of different runs.
-    """
-    scans = registered_scans.select_kept_scans(registration, "registration")
-    return registered_scans.sensor_positions(scan_ids, scans, "selection", "registration")[:, :2]
 
 
 def count_nearby(xy_m: FloatArray, radius_m: float = NEARBY_M) -> IntArray:

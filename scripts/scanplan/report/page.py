@@ -12,7 +12,6 @@ from scanplan.plan import floorplan
 from scanplan.report import (
     chart,
     doubts,
-    figures,
     page_tables,
     result_links,
     templates,
@@ -21,6 +20,7 @@ from scanplan.report import (
 from scanplan.report.facts import RunFacts, SurveyFacts
 from scanplan.report.plan_view import growth, next_visit, plan_svg
 from scanplan.report.point_image import PointImage
+from scanplan.store import registered_scans
 from scanplan.types import FloatArray, Settings
 
 _FOUND, _RIGHT = "visible_completeness_010m", "correctness_010m"
@@ -163,7 +163,7 @@ def _plan_svg(
     )
     lines_m = floorplan.centrelines_m(segments)
     shown_m = [lines_m[rank == k] for k in range(1, survey.chosen + 1)]
-    positions_m = figures.sensor_positions(survey.registration, selected_ids)
+    positions_m = registered_scans.sensor_places(survey.registration, selected_ids)
     return plan_svg.growing_plan_svg(plan, stretches, positions_m, shown_m, points)
 
 

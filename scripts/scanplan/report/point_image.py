@@ -10,7 +10,7 @@ from PIL import Image
 
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.rays import tolerances
-from scanplan.report.top_view import MARGIN_M
+from scanplan.report.chart import MARGIN_M
 from scanplan.types import Array, FloatArray, IntArray
 
 _LONGER_SIDE = 2000  # pixels: as many as a large screen has, at 4 bits each 2 MB at the very most

@@ -8,10 +8,10 @@ from matplotlib.axes import Axes
 from matplotlib.colorbar import Colorbar
 from matplotlib.figure import Figure
 
+from scanplan.report.chart import MARGIN_M
 from scanplan.types import Array, FloatArray, IntArray
 
 MOST_POINTS = 200_000  # more than a figure has pixels to show; bounds memory and time
-MARGIN_M = 0.5  # around what must be shown, so that marks at the edge are whole
 _OUTLIER_PERCENT = 0.5  # of the points at either end: the few returns from far outside
 
 

@@ -114,6 +114,28 @@ def sensor_positions(
     return scans.map_from_sensor[rows_of_scans(scan_ids, scans, path, origin), :3, 3]
 
 
+def sensor_places(registration: Columns, scan_ids: IntArray) -> FloatArray:
+    """Return where the sensor stood in scans, in the order asked for.
+
+    Parameters
+    ----------
+    registration : dict of str to (n,) array
+        Of a table of registration.
+    scan_ids : (k,) int
+
+    Returns
+    -------
+    (k, 2) float64, map frame
+
+    Raises
+    ------
+    StageError
+        If a scan was not kept: the tables are of different runs.
+    """
+    scans = select_kept_scans(registration, "registration")
+    return sensor_positions(scan_ids, scans, "selection", "registration")[:, :2]
+
+
 def read_order_rows(path: FilePath, scans: RegisteredScans, origin: FilePath) -> IntArray:
     """Return the rows of the scans in the order of a selection/<method>.parquet."""
     ordering = tables.read_table(path, schemas.SELECTION, ["rank", "scan_id"])

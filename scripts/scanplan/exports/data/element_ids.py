@@ -7,11 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from scipy.optimize import linear_sum_assignment
 
 from scanplan.exports.envelope import NEAR_M
 from scanplan.plan.floorplan import FloorPlan
-from scanplan.types import Array, Columns, FloatArray
+from scanplan.types import Array, Columns, FloatArray, IntArray
 
 KINDS = ("wall", "opening", "room")
 """Tables of the plan whose elements have ids."""
@@ -75,11 +74,11 @@ def identify_elements(elements: Elements, known: Columns, name: str) -> list[str
     for table in KINDS:
         rows = np.flatnonzero(of_table == table)
         known_rows = np.flatnonzero(known_of_table == table)
+        if not len(known_rows):
+            continue
         shared = _shared_areas(elements.shapes[rows], shapes[known_rows])
         is_of_type = elements.kinds[rows, None] == known["kind"][known_rows]
-        shared = np.where(is_of_type, shared, shared / 2)
-        pairs = np.column_stack(linear_sum_assignment(shared, maximize=True))
-        kept = pairs[shared[*pairs.T] > 0]
+        kept = _pair_most(np.where(is_of_type, shared, shared / 2))
         ids[rows[kept[:, 0]]] = known["global_id"][known_rows[kept[:, 1]]]
     taken = set(known["global_id"].tolist())
     for row in np.flatnonzero(ids == ""):
@@ -146,6 +145,14 @@ def _tables_of(kinds: Array) -> Array:
     """Return in which of `KINDS` elements of some kinds are: types of openings are all of one."""
     kinds = np.asarray(kinds, str)
     return np.where(np.isin(kinds, KINDS), kinds, "opening")
+
+
+def _pair_most(shared: FloatArray) -> IntArray:
+    """Return the pairs (k, 2) of rows and columns that share most, of those that share any."""
+    from scipy.optimize import linear_sum_assignment  # 0.3 s, and no first plan needs it
+
+    pairs = np.column_stack(linear_sum_assignment(shared, maximize=True))
+    return pairs[shared[*pairs.T] > 0]
 
 
 def _shared_areas(shapes: Array, known: Array) -> FloatArray:

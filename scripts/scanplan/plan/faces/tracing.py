@@ -133,6 +133,7 @@ def _observe_lines(
             *(rays, group[0].line, low_m, high_m), band_m=reading.band_m, reach_m=reading.reach_m
         )
 
+    rays.index_rays()
     return workers.map_in_threads(observe_line, of_line.values(), threads)
 
 

@@ -6,10 +6,10 @@ import numpy as np
 import shapely
 
 from scanplan.plan import floorplan
+from scanplan.report.chart import MARGIN_M
 from scanplan.report.facts import VisitFacts
 from scanplan.report.page_tables import Cell, PageTable, Row, make_heads, number_cell
 from scanplan.report.plan_view import plan_svg
-from scanplan.report.top_view import MARGIN_M
 from scanplan.types import Array, Columns
 
 _NUMBER_M = 0.35  # radius of a standpoint's mark: half of a door's width

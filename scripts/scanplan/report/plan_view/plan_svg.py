@@ -8,9 +8,9 @@ import shapely
 
 from scanplan.plan import floorplan
 from scanplan.report import doubts
+from scanplan.report.chart import MARGIN_M
 from scanplan.report.plan_view import growth
 from scanplan.report.point_image import PointImage
-from scanplan.report.top_view import MARGIN_M
 from scanplan.types import Columns, FloatArray
 
 _TITLES = {
