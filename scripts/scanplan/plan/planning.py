@@ -2,10 +2,12 @@
 
 import functools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import shapely
+from shapely.geometry.base import BaseGeometry
 
 from scanplan.extraction.furniture import FurnitureLimits
 from scanplan.plan import (
@@ -17,8 +19,11 @@ from scanplan.plan import (
     wall_faces,
     wall_ground,
 )
+from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.faces.merging import MergeSettings, merge_segments
 from scanplan.plan.faces.tracing import trace_faces
+from scanplan.plan.furniture import fronts
+from scanplan.plan.furniture.pieces import find_pieces
 from scanplan.plan.openings import OpeningSettings
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.rooms import find_rooms, rooms_beside
@@ -38,6 +43,7 @@ TABLES = {
     "rooms": schemas.ROOMS,
     "evidence": schemas.EVIDENCE,
     "free": schemas.FREE,
+    "furniture": schemas.FURNITURE,
 }
 """The tables of a plan by the names of their files."""
 _THICKNESS_M = 0.1  # of a partition, where no wall shows both sides
@@ -79,7 +85,7 @@ class Plan:
 
     Attributes
     ----------
-    faces, walls, openings, rooms, evidence, free : dict of str to (n,) array
+    faces, walls, openings, rooms, evidence, free, furniture : dict of str to (n,) array
     n_lines, n_dropped : int
         Lines of faces, and those dropped.
     range_errors_m : (181,) float64
@@ -92,6 +98,7 @@ class Plan:
     rooms: dict[str, Array]
     evidence: dict[str, Array]
     free: dict[str, Array]
+    furniture: dict[str, Array]
     n_lines: int
     n_dropped: int
     range_errors_m: FloatArray
@@ -169,20 +176,16 @@ def make_plan(
     traced = trace_faces(
         *(candidates, rays, settings.merge, settings.reading, settings.furniture), threads=threads
     )
-    walls = assemble_walls(
-        traced.faces,
-        settings.pairs,
-        settings.openings,
-        corner_m=settings.merge.corner_m,
-        door_height_m=settings.reading.door_height_m,
+    views = free_space.free_polygons(rays)
+    floor = free_space.union_on_grid(views)
+    walls, pockets = _assemble_without_furniture(
+        traced.faces, floor if rays.planar else None, settings
     )
+    unpaired_m = _usual_thickness_m(walls)
     walls = opening_kinds.add_windows(
         walls, rays, min_width_m=settings.openings.min_opening_m, band_m=band_m
     )
     walls, tops_m = half_height.drop_low_surfaces(walls, settings.furniture.wall_height_m)
-    unpaired_m = _usual_thickness_m(walls)
-    views = free_space.free_polygons(rays)
-    floor = free_space.union_on_grid(views)
     glass_walls = room_bounds.find_glass_walls(
         walls,
         traced.panes,
@@ -206,7 +209,7 @@ def make_plan(
         min_walled=settings.rooms.min_walled,
         min_width_m=settings.pairs.max_thickness_m,
         unpaired_m=unpaired_m,
-        floor=floor,
+        floor=free_space.union_on_grid([floor, *pockets]) if pockets else floor,
         planar=rays.planar,
     )
     walls = opening_kinds.decide_kinds(
@@ -225,6 +228,10 @@ def make_plan(
     )
     bare = opening_kinds.decide_bare_spans(bare, rays, track_m, areas, band_m=band_m)
     floor_z_m = 0.0 if math.isnan(rays.floor_z_m) else rays.floor_z_m
+    pieces = find_pieces(
+        *(rays, wall_ground.wall_strips(bounds, unpaired_m), areas, views),
+        max_height_m=settings.furniture.furniture_height_m,
+    )
     cut_walls = wall_faces.cut_wall_faces(walls, max_beyond_m=settings.openings.max_closed_m)
     face_columns, main_rows = plan_tables.face_columns(cut_walls, floor_z_m)
     evidence = uncertainty.estimate_evidence(
@@ -240,10 +247,46 @@ def make_plan(
         rooms=plan_tables.room_columns(rooms),
         evidence=plan_tables.evidence_columns(evidence, rays.scan_ids, t_ns),
         free=plan_tables.free_columns(_find_free_floor(bounds, floor, unpaired_m)),
+        furniture=plan_tables.furniture_columns(pieces, floor_z_m),
         n_lines=traced.n_lines,
         n_dropped=traced.n_dropped,
         range_errors_m=errors_m,
     )
+
+
+def _assemble_without_furniture(
+    faces: Sequence[FaceInterval], floor: BaseGeometry | None, settings: PlanSettings
+) -> tuple[list[PlanWall], list[BaseGeometry]]:
+    """Return walls, and the ground that furniture stands on whose fronts are none of them.
+
+    Fronts are looked for in the plane only, on a floor: in space they have been found by height.
+    """
+    grounds: list[BaseGeometry] = []
+    while True:
+        walls = assemble_walls(
+            faces,
+            settings.pairs,
+            settings.openings,
+            corner_m=settings.merge.corner_m,
+            door_height_m=settings.reading.door_height_m,
+        )
+        pockets = (
+            []
+            if floor is None
+            else fronts.find_pockets(
+                walls,
+                floor,
+                unpaired_m=_usual_thickness_m(walls),
+                max_thickness_m=settings.pairs.max_thickness_m,
+            )
+        )
+        if not pockets:
+            return walls, grounds
+        grounds += [pocket.ground for pocket in pockets]
+        dropped = {id(front) for pocket in pockets for front in pocket.fronts}
+        faces = [face for face in faces if id(face) not in dropped]
+        # without fronts walls behind them may be joined, and close more pockets
+        floor = free_space.union_on_grid([floor, *grounds])
 
 
 def _usual_thickness_m(walls: list[PlanWall]) -> float:
