@@ -70,3 +70,12 @@ def test_pieces_that_touch_are_one_and_the_largest_comes_first():
     pieces = find(((1, 1, 1), points), ((4, 1, 1), points))
     assert [round(piece.outline.centroid.y) for piece in pieces] == [4, 2]
     assert pieces[0].outline.bounds[2] > 4
+
+
+def test_ground_behind_a_front_is_of_its_piece():
+    views = [ROOM.difference(box(1.9, 3.4, 3.1, 4))] * 2
+    found = rays(((1, 1, 0), cupboard([0.0])), ((4, 1, 0), cupboard([0.0])), planar=True)
+    behind = box(2, 3.5, 3, 4)
+    (piece,) = find_pieces(found, WALLS, [ROOM], views, max_height_m=2.1, hidden=[behind])
+    assert piece.outline.covers(box(2.05, 3.55, 2.95, 3.9))
+    assert (piece.n_points, piece.n_scans) == (42, 2)

@@ -93,3 +93,13 @@ def test_a_surface_of_the_next_room_is_no_front():
     floor = shapely.union_all([floor, box(0, 4.15, 5, 7)])
     found = pockets([*walls, beyond], floor)
     assert all(beyond.left[0] is not face for pocket in found for face in pocket.fronts)
+
+
+def test_walls_are_left_without_the_fronts_and_their_ground_is_told():
+    walls, floor = room_with_cupboard(2.0, 3.5, 0.5)
+
+    def assemble(faces):
+        return [wall for wall in walls if any(face in faces for face in wall.members)]
+
+    left, grounds = fronts.drop_fronts(walls, floor, assemble, lambda _: 0.1, max_thickness_m=0.6)
+    assert left == walls[:4] and len(grounds) == 1

@@ -2,12 +2,10 @@
 
 import functools
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from shapely.geometry.base import BaseGeometry
 
 from scanplan.extraction.furniture import FurnitureLimits
 from scanplan.plan import (
@@ -19,7 +17,6 @@ from scanplan.plan import (
     wall_faces,
     wall_ground,
 )
-from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.faces.merging import MergeSettings, merge_segments
 from scanplan.plan.faces.tracing import trace_faces
 from scanplan.plan.furniture import fronts
@@ -178,9 +175,19 @@ def make_plan(
     )
     views = free_space.free_polygons(rays)
     floor = free_space.union_on_grid(views)
-    walls, pockets = _assemble_without_furniture(
-        traced.faces, floor if rays.planar else None, settings
+    assemble = functools.partial(
+        assemble_walls,
+        pairing=settings.pairs,
+        opening=settings.openings,
+        corner_m=settings.merge.corner_m,
+        door_height_m=settings.reading.door_height_m,
     )
+    walls, furnished = assemble(traced.faces), []
+    if rays.planar:
+        walls, furnished = fronts.drop_fronts(
+            *(walls, floor, assemble, _usual_thickness_m),
+            max_thickness_m=settings.pairs.max_thickness_m,
+        )
     unpaired_m = _usual_thickness_m(walls)
     walls = opening_kinds.add_windows(
         walls, rays, min_width_m=settings.openings.min_opening_m, band_m=band_m
@@ -209,7 +216,7 @@ def make_plan(
         min_walled=settings.rooms.min_walled,
         min_width_m=settings.pairs.max_thickness_m,
         unpaired_m=unpaired_m,
-        floor=free_space.union_on_grid([floor, *pockets]) if pockets else floor,
+        floor=free_space.union_on_grid([floor, *furnished]),
         planar=rays.planar,
     )
     walls = opening_kinds.decide_kinds(
@@ -231,6 +238,7 @@ def make_plan(
     pieces = find_pieces(
         *(rays, wall_ground.wall_strips(bounds, unpaired_m), areas, views),
         max_height_m=settings.furniture.furniture_height_m,
+        hidden=furnished,
     )
     cut_walls = wall_faces.cut_wall_faces(walls, max_beyond_m=settings.openings.max_closed_m)
     face_columns, main_rows = plan_tables.face_columns(cut_walls, floor_z_m)
@@ -252,41 +260,6 @@ def make_plan(
         n_dropped=traced.n_dropped,
         range_errors_m=errors_m,
     )
-
-
-def _assemble_without_furniture(
-    faces: Sequence[FaceInterval], floor: BaseGeometry | None, settings: PlanSettings
-) -> tuple[list[PlanWall], list[BaseGeometry]]:
-    """Return walls, and the ground that furniture stands on whose fronts are none of them.
-
-    Fronts are looked for in the plane only, on a floor: in space they have been found by height.
-    """
-    grounds: list[BaseGeometry] = []
-    while True:
-        walls = assemble_walls(
-            faces,
-            settings.pairs,
-            settings.openings,
-            corner_m=settings.merge.corner_m,
-            door_height_m=settings.reading.door_height_m,
-        )
-        pockets = (
-            []
-            if floor is None
-            else fronts.find_pockets(
-                walls,
-                floor,
-                unpaired_m=_usual_thickness_m(walls),
-                max_thickness_m=settings.pairs.max_thickness_m,
-            )
-        )
-        if not pockets:
-            return walls, grounds
-        grounds += [pocket.ground for pocket in pockets]
-        dropped = {id(front) for pocket in pockets for front in pocket.fronts}
-        faces = [face for face in faces if id(face) not in dropped]
-        # without fronts walls behind them may be joined, and close more pockets
-        floor = free_space.union_on_grid([floor, *grounds])
 
 
 def _usual_thickness_m(walls: list[PlanWall]) -> float:

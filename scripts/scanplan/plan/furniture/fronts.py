@@ -7,7 +7,7 @@ the pocket in the same room, whose line runs on behind it. A block that stands a
 a room is furniture, too, if it is thicker than a wall of the building and longer than a column.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,6 +39,44 @@ class Pocket:
 
     ground: BaseGeometry
     fronts: list[FaceInterval]
+
+
+def drop_fronts(
+    walls: list[PlanWall],
+    floor: BaseGeometry,
+    assemble: Callable[[Sequence[FaceInterval]], list[PlanWall]],
+    measure_thickness_m: Callable[[list[PlanWall]], float],
+    *,
+    max_thickness_m: float,
+) -> tuple[list[PlanWall], list[BaseGeometry]]:
+    """Return walls without fronts of furniture, and the ground that the furniture stands on.
+
+    Without its fronts walls behind it may be joined, and close more pockets: until none is found.
+
+    Parameters
+    ----------
+    walls : list of plan_wall.PlanWall
+    floor : shapely geometry
+        That was seen free.
+    assemble : callable
+        Makes walls of faces.
+    measure_thickness_m : callable
+        Says how thick walls usually are.
+    max_thickness_m : float
+        Of a wall.
+    """
+    grounds: list[BaseGeometry] = []
+    while pockets := find_pockets(
+        *(walls, free_space.union_on_grid([floor, *grounds])),
+        unpaired_m=measure_thickness_m(walls),
+        max_thickness_m=max_thickness_m,
+    ):
+        grounds += [pocket.ground for pocket in pockets]
+        dropped = {id(front) for pocket in pockets for front in pocket.fronts}
+        walls = assemble(
+            [face for wall in walls for face in wall.members if id(face) not in dropped]
+        )
+    return walls, grounds
 
 
 def find_pockets(

@@ -4,7 +4,7 @@ Whatever stands there is kept, so that what is no wall of the plan is not lost.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -50,7 +50,7 @@ class _Returns:
     cell: IntArray
     height_m: FloatArray
 
-    def take(self, is_wanted: BoolArray) -> "_Returns":
+    def take(self, is_wanted: BoolArray | IntArray) -> "_Returns":
         return _Returns(self.scan[is_wanted], self.cell[is_wanted], self.height_m[is_wanted])
 
 
@@ -61,6 +61,7 @@ def find_pieces(
     views: Sequence[BaseGeometry],
     *,
     max_height_m: float,
+    hidden: Sequence[BaseGeometry] = (),
 ) -> list[Piece]:
     """Find the furniture in rooms.
 
@@ -77,6 +78,8 @@ def find_pieces(
         What each scan saw, `free_space.free_polygons`.
     max_height_m : float
         What is higher above the floor is no furniture.
+    hidden : sequence of shapely geometry
+        Ground behind fronts of furniture, which is of the piece that the front is of.
 
     Returns
     -------
@@ -92,10 +95,15 @@ def find_pieces(
     grid = bitmap.fit_grid([[(x0_m, y0_m), (x1_m, y1_m)]], CELL_M)
     returns = _gather_returns(rays, grid, bitmap.fill_polygons([ground], grid), max_height_m)
     returns = _without_passers(returns, grid, views if rays.planar else [])
-    label = _label_cells(returns.cell, grid)
-    order = np.argsort(label, kind="stable")
-    parts = np.split(order, np.flatnonzero(np.diff(label[order])) + 1) if len(order) else []
-    found = [_make_piece(returns.take(part), grid, rays) for part in parts]
+    taken = shapely.intersection(shapely.union_all(list(hidden)), ground)
+    is_there = bitmap.fill_polygons([taken], grid)
+    is_there.flat[returns.cell] = True
+    # pauses of a cell join
+    labels, _ = ndimage.label(ndimage.binary_dilation(is_there, np.ones((3, 3), bool)))
+    found = [
+        _make_piece(returns.take(rows), cells, grid, rays)
+        for rows, cells in _group_by_label(labels, returns.cell, np.flatnonzero(is_there))
+    ]
     return sorted(
         (
             piece
@@ -113,11 +121,13 @@ def _gather_returns(
     height_m = rays.xyz_m[:, 2] - rays.ground_z_m
     is_wanted = np.full(len(height_m), rays.planar)
     is_wanted |= (height_m > SKIRTING_M) & (height_m < max_height_m)
-    place = np.floor((rays.xyz_m[:, :2] - grid.low_m) / grid.cell_m)
+    rows = np.flatnonzero(is_wanted)
+    place = np.floor((rays.xyz_m[rows, :2] - grid.low_m) / grid.cell_m)
     n_rows, n_columns = grid.shape
-    is_wanted &= ((place >= 0) & (place < (n_columns, n_rows))).all(axis=1)
-    column, row = place[is_wanted].astype(np.int64).T
-    returns = _Returns(rays.scan[is_wanted], row * n_columns + column, height_m[is_wanted])
+    is_inside = ((place >= 0) & (place < (n_columns, n_rows))).all(axis=1)
+    column, row = place[is_inside].astype(np.int64).T
+    rows = rows[is_inside]
+    returns = _Returns(rays.scan[rows], row * n_columns + column, height_m[rows])
     return returns.take(is_ground.ravel()[returns.cell])
 
 
@@ -139,19 +149,34 @@ def _without_passers(
     return returns.take(np.isin(returns.cell, stays))
 
 
-def _label_cells(cell: IntArray, grid: bitmap.Grid) -> IntArray:
-    """Return the number of the piece that each return (n,) is of: pauses of a cell join."""
-    is_there = np.zeros(grid.shape, bool)
-    is_there.flat[cell] = True
-    labels, _ = ndimage.label(ndimage.binary_dilation(is_there, np.ones((3, 3), bool)))
-    return labels.flat[cell].astype(np.int64)
+def _group_by_label(
+    labels: IntArray, of_returns: IntArray, there: IntArray
+) -> Iterator[tuple[IntArray, IntArray]]:
+    """Yield the rows of the returns in each labelled part of a grid, and its cells.
+
+    Parameters
+    ----------
+    labels : (rows, columns) int
+    of_returns : (n,) int64
+        Cell of each return.
+    there : (c,) int64
+        Cells that are of a part.
+    """
+    of_return = labels.ravel()[of_returns]
+    of_cell = labels.ravel()[there]
+    return_order = np.argsort(of_return, kind="stable")
+    cell_order = np.argsort(of_cell, kind="stable")
+    for label in np.unique(of_return):
+        rows = slice(*np.searchsorted(of_return[return_order], (label, label + 1)))
+        cells = slice(*np.searchsorted(of_cell[cell_order], (label, label + 1)))
+        yield return_order[rows], there[cell_order[cells]]
 
 
-def _make_piece(returns: _Returns, grid: bitmap.Grid, rays: RaySet) -> Piece:
+def _make_piece(returns: _Returns, cells: IntArray, grid: bitmap.Grid, rays: RaySet) -> Piece:
     z_m = np.percentile(returns.height_m, (LOW_PERCENT, 100 - LOW_PERCENT))
     low_m, high_m = (math.nan, math.nan) if rays.planar else z_m.tolist()
     return Piece(
-        outline=_draw_outline(_middles_m(np.unique(returns.cell), grid), grid.cell_m),
+        outline=_draw_outline(_middles_m(cells, grid), grid.cell_m),
         z_min_m=low_m,
         z_max_m=high_m,
         n_points=len(returns.cell),
