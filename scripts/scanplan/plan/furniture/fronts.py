@@ -137,7 +137,7 @@ class _NearFaces:
     def __init__(self, faces: Sequence[FaceInterval]) -> None:
         self._faces = faces
         ends_m = np.array([face.ends for face in faces]).reshape(-1, 2, 2)
-        self._tree = shapely.STRtree(shapely.linestrings(ends_m))
+        self._tree = shapely.STRtree(np.asarray(shapely.linestrings(ends_m), object))
 
     def within(self, shape: BaseGeometry, distance_m: float) -> list[FaceInterval]:
         """Return the faces no farther from a shape than a distance."""

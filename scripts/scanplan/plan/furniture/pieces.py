@@ -99,7 +99,8 @@ def find_pieces(
     is_there = bitmap.fill_polygons([taken], grid)
     is_there.flat[returns.cell] = True
     # pauses of a cell join
-    labels, _ = ndimage.label(ndimage.binary_dilation(is_there, np.ones((3, 3), bool)))
+    labels = np.zeros(grid.shape, np.int64)
+    ndimage.label(ndimage.binary_dilation(is_there, np.ones((3, 3), bool)), output=labels)
     found = [
         _make_piece(returns.take(rows), cells, grid, rays)
         for rows, cells in _group_by_label(labels, returns.cell, np.flatnonzero(is_there))
