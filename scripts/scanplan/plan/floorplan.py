@@ -338,14 +338,14 @@ def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: f
     if "confidence" in files:
         rated = tables.read_table(files["confidence"], schemas.CONFIDENCE, allow_empty=True)
         parts = {table: _join_confidence(table, columns, rated) for table, columns in parts.items()}
-    if "furniture" in files:
-        assumed_m["furniture"] = read("furniture", schemas.FURNITURE)
+    furniture = read("furniture", schemas.FURNITURE) if "furniture" in files else _no_furniture()
     reference = tables.read_note(files["free"], schemas.FREE, "georeference")
     return make_floorplan(
         parts,
         floor_z_m,
         ceiling_z_m,
         name,
+        furniture=furniture,
         georeference=GeoReference(**json.loads(reference)) if reference else None,
         doubted=read_doubts(files["free"], schemas.FREE),
         **assumed_m,
