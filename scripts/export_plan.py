@@ -26,8 +26,8 @@ def export_plan(
     Parameters
     ----------
     plan : dict of str to path-like
-        `faces`, `walls`, `openings`, `rooms`, `free`, `evidence` and `confidence` of plan/; the
-        file of `free` states the heights of floor and ceiling.
+        `faces`, `walls`, `openings`, `rooms`, `free`, `furniture`, `evidence` and `confidence` of
+        plan/; the file of `free` states the heights of floor and ceiling.
     outputs : dict of str to path-like
         `geojson`, `dxf`, `svg`, `pdf`, `png`, `pgm` and `yaml`, to write.
     name : str
@@ -77,7 +77,7 @@ if __name__ == "__main__":
                 part: snakemake.input[part]
                 for part in (
                     *("faces", "walls", "openings", "rooms"),
-                    *("free", "evidence", "confidence"),
+                    *("free", "furniture", "evidence", "confidence"),
                 )
             },
             dict(snakemake.output.items()),

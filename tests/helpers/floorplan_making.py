@@ -28,6 +28,7 @@ OPENINGS = [
     ((1.0, -0.1, 2.2, -0.1), 0, "window", 0.9, 2.1, 0, -1),
 ]
 ROOMS = [shapely.box(0, 0, 4, 3), shapely.box(4.1, 0, 7.1, 3)]
+PIECES = [shapely.box(3.0, 2.5, 4.0, 3.0)]
 FREE = [shapely.box(0, 0, 4, 3), shapely.box(4, 1.0, 4.1, 1.9), shapely.box(4.1, 0, 7.1, 2)]
 # the outline, with what is assumed behind the east face, less the rooms
 FOOTPRINT_M2 = 7.4 * 3.4 - 12 - 9
@@ -133,6 +134,19 @@ def rooms(polygons=ROOMS):
 def free(polygons=FREE):
     return {
         "part": np.arange(len(polygons), dtype=np.int32),
+        "geometry": np.array([shapely.to_wkb(p) for p in polygons], object),
+    }
+
+
+def furniture(polygons=PIECES):
+    n = len(polygons)
+    return {
+        "furniture": np.arange(n, dtype=np.int32),
+        "area_m2": shapely.area(np.array(polygons, object)) if n else np.zeros(0),
+        "z_min_m": np.full(n, 0.3),
+        "z_max_m": np.full(n, 0.9),
+        "n_points": np.full(n, 60, np.int32),
+        "n_scans": np.full(n, 2, np.int32),
         "geometry": np.array([shapely.to_wkb(p) for p in polygons], object),
     }
 

@@ -21,6 +21,7 @@ TABLES = {
     "openings": (schemas.OPENINGS, floorplan_making.openings),
     "rooms": (schemas.ROOMS, floorplan_making.rooms),
     "free": (schemas.FREE, floorplan_making.free),
+    "furniture": (schemas.FURNITURE, floorplan_making.furniture),
     "evidence": (schemas.EVIDENCE, floorplan_making.evidence),
 }
 NAMES = {

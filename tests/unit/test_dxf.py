@@ -145,6 +145,12 @@ def test_evidence_of_walls_lies_on_their_lines_on_a_layer_that_is_off():
     assert document.layers.get("A-WALL-CNTR").is_off()
 
 
+def test_furniture_has_a_layer_of_its_own():
+    document = reopened(plan(furniture=floorplan_making.furniture()))
+    (piece,) = document.modelspace().query('LWPOLYLINE[layer=="A-FURN"]')
+    assert len(piece) == 4 and piece.closed
+
+
 def test_doubt_has_layers_of_its_own():
     openings = floorplan_making.openings() | {
         "verify": np.array([True, False, True]),

@@ -82,3 +82,13 @@ def test_an_infinite_number_is_refused():
 
 def test_a_name_with_quotes_and_accents_survives():
     assert json.loads(geojson.format_geojson(plan(name='Bât. "A"')))["name"] == 'Bât. "A"'
+
+
+def test_furniture_is_a_polygon_with_its_evidence():
+    (piece,) = features(plan(furniture=floorplan_making.furniture()), "furniture")
+    assert piece["id"] == "furniture-0"
+    assert piece["properties"] == {
+        "kind": "furniture", "furniture": 0, "area_m2": 0.5, "z_min_m": 0.3, "z_max_m": 0.9,
+        "n_points": 60, "n_scans": 2,
+    }  # fmt: skip
+    assert shapely.from_geojson(json.dumps(piece["geometry"])).area == pytest.approx(0.5)

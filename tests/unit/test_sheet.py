@@ -237,6 +237,15 @@ def test_what_was_not_seen_of_a_room_is_dotted():
     assert shapely.LineString(blank.paths[0][:, :2]).length == 2
 
 
+def test_furniture_is_a_thin_outline_on_a_layer_of_its_own_with_its_evidence():
+    sheet = composition.compose_sheet(plan(furniture=floorplan_making.furniture()))
+    (piece,) = [mark for mark in sheet.marks if mark.kind == "furniture"]
+    assert STYLES[piece.kind].layer == "A-FURN" and piece.element == "furniture-0"
+    assert shapely.Polygon(piece.paths[0][:, :2]).area == pytest.approx(0.5)
+    assert (piece.facts["z_max_m"], piece.facts["n_scans"]) == (0.9, 2)
+    assert any("furniture" in word.text for word in sheet.paper_words)
+
+
 def test_the_title_block_states_the_survey():
     facts = SheetFacts("Town hall", "First floor", "2024-05-06", 12, "scanplan 1")
     rooms = floorplan_making.rooms() | {"name": np.array(["Foyer", ""], object)}

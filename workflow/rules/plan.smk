@@ -12,6 +12,7 @@ rule assemble_plan:
         rooms="results/{dataset}/plan/rooms.parquet",
         evidence="results/{dataset}/plan/evidence.parquet",
         free="results/{dataset}/plan/free.parquet",
+        furniture="results/{dataset}/plan/furniture.parquet",
     log:
         "logs/{dataset}/assemble_plan.log",
     benchmark:
@@ -38,6 +39,7 @@ rule correct_plan:
         rooms="results/{dataset}/plan/rooms.parquet",
         evidence="results/{dataset}/plan/evidence.parquet",
         free="results/{dataset}/plan/free.parquet",
+        furniture="results/{dataset}/plan/furniture.parquet",
     output:
         faces="results/{dataset}/plan/corrected/faces.parquet",
         walls="results/{dataset}/plan/corrected/walls.parquet",
@@ -45,6 +47,7 @@ rule correct_plan:
         rooms="results/{dataset}/plan/corrected/rooms.parquet",
         evidence="results/{dataset}/plan/corrected/evidence.parquet",
         free="results/{dataset}/plan/corrected/free.parquet",
+        furniture="results/{dataset}/plan/corrected/furniture.parquet",
     log:
         "logs/{dataset}/correct_plan.log",
     benchmark:
@@ -155,6 +158,7 @@ rule export_plan:
         rooms=plan_table("rooms"),
         evidence=plan_table("evidence"),
         free=plan_table("free"),
+        furniture=plan_table("furniture"),
         confidence="results/{dataset}/plan/confidence.parquet",
     output:
         geojson="results/{dataset}/plan/plan.geojson",

@@ -44,8 +44,8 @@ def format_geojson(plan: FloorPlan, evidence: Columns | None = None) -> str:
     str
         Coordinates in metres rounded to 0.1 mm. Features are of `kind` face and wall (LineString; a
         wall's is its centreline, or its only face), opening (LineString from one side of it to the
-        other) and room (Polygon). Their properties are the columns of the tables, null where not
-        known.
+        other), room and furniture (Polygon). Their properties are the columns of the tables, null
+        where not known.
     """
     collection = {
         "type": "FeatureCollection",
@@ -62,6 +62,7 @@ def format_geojson(plan: FloorPlan, evidence: Columns | None = None) -> str:
         *walls,
         *_line_features("opening", plan.openings),
         *_polygon_features("room", plan.rooms),
+        *_polygon_features("furniture", plan.furniture),
     ]
     head = json.dumps(collection, ensure_ascii=False)
     lines = ",\n".join(json.dumps(feature, allow_nan=False) for feature in features)

@@ -21,7 +21,7 @@ from scanplan.geometry.tolerances import SHORTEST_M
 from scanplan.types import Array, FloatArray, IntArray
 
 _NARROWER = 0.75  # of the widest on either side: a corridor's pillars and cupboards leave more
-_FURNITURE_M2 = 3.0  # that furniture stands on, or parts off between it and a wall, at most
+FURNITURE_M2 = 3.0  # that furniture stands on, or parts off between it and a wall, at most
 
 
 def find_narrow_places(
@@ -92,7 +92,7 @@ def _fit_grid(ground: BaseGeometry, cell_m: float) -> Grid:
 def _fill_islands(ground: BaseGeometry) -> BaseGeometry:
     parts = [part for part in shapely.get_parts(ground) if part.geom_type == "Polygon"]
     holes = [Polygon(ring) for part in parts for ring in part.interiors]
-    islands = [hole for hole in holes if hole.area <= _FURNITURE_M2]
+    islands = [hole for hole in holes if hole.area <= FURNITURE_M2]
     return shapely.union_all([*parts, *islands], grid_size=SHORTEST_M)
 
 
@@ -280,7 +280,7 @@ def _parts_beside(cut: Polygon, parts: Array) -> IntArray:
 def _is_large(part: Polygon, visited: Array, min_area_m2: float) -> bool:
     shapely.prepare(part)
     is_visited = bool(shapely.contains(part, visited).any())
-    return part.area >= (min_area_m2 if is_visited else _FURNITURE_M2)
+    return part.area >= (min_area_m2 if is_visited else FURNITURE_M2)
 
 
 def _lengthen(line: FloatArray) -> LineString:

@@ -48,6 +48,10 @@ def _no_openings() -> Columns:
     return {name: np.empty(0) for name in schemas.OPENINGS.columns}
 
 
+def _no_furniture() -> Columns:
+    return {name: np.empty(0) for name in schemas.FURNITURE.columns}
+
+
 @dataclass(frozen=True)
 class GeoReference:
     """The rigid motion from the map frame to a system of the Earth.
@@ -84,6 +88,8 @@ class FloorPlan:
         `faces` may have no rows, and openings that were not seen are in `unseen`.
     unseen : dict of str to (u,) array
         The rows of `schemas.OPENINGS` that are spans of rooms' outlines of which nothing is known.
+    furniture : dict of str to (f,) array
+        The columns of `schemas.FURNITURE`.
     assumed_thickness_m : float, > 0
         ASSUME of a wall that was seen from one side only, behind its face.
     assumed_height_m : float, > 0
@@ -105,6 +111,7 @@ class FloorPlan:
     rooms: Columns = field(repr=False)
     free: Columns = field(repr=False)
     unseen: Columns = field(repr=False, default_factory=_no_openings)
+    furniture: Columns = field(repr=False, default_factory=_no_furniture)
     assumed_thickness_m: float = 0.1
     assumed_height_m: float = 2.5
     floor_z_m: float = np.nan
@@ -305,8 +312,8 @@ def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: f
     Parameters
     ----------
     files : dict of str to path-like
-        `faces`, `walls`, `openings`, `rooms` and `free` of plan/; the last states the heights of
-        floor and ceiling, and doubts.
+        `faces`, `walls`, `openings`, `rooms` and `free` of plan/, where they are wanted `furniture`
+        and `confidence`; `free` states the heights of floor and ceiling, and doubts.
     name : str
     **assumed_m
         What `FloorPlan` assumes, where it is not the default.
@@ -334,12 +341,14 @@ def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: f
     if "confidence" in files:
         rated = tables.read_table(files["confidence"], schemas.CONFIDENCE, allow_empty=True)
         parts = {table: _join_confidence(table, columns, rated) for table, columns in parts.items()}
+    furniture = read("furniture", schemas.FURNITURE) if "furniture" in files else _no_furniture()
     reference = tables.read_note(files["free"], schemas.FREE, "georeference")
     return make_floorplan(
         parts,
         floor_z_m,
         ceiling_z_m,
         name,
+        furniture=furniture,
         georeference=GeoReference(**json.loads(reference)) if reference else None,
         n_corrections=int(tables.read_note(files["free"], schemas.FREE, "n_corrections") or 0),
         doubted=read_doubts(files["free"], schemas.FREE),

@@ -96,6 +96,7 @@ def summarise_plan(plan: Plan) -> str:
         f"{len(faces['face'])} faces, {n_inferred} of them inferred",
         f"{len(plan.openings['opening'])} openings",
         f"{len(rooms['room'])} rooms, {n_closed} closed, {rooms['area_m2'].sum():,.1f} m2",
+        f"{len(plan.furniture['furniture'])} pieces of furniture",
         f"{plan.n_dropped} of {plan.n_lines} lines of faces dropped",
         _summarise_range_bias(plan.range_errors_m),
     ]

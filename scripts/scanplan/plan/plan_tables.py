@@ -9,6 +9,7 @@ import shapely
 from shapely.geometry import Polygon
 
 from scanplan.plan.faces.intervals import FaceInterval
+from scanplan.plan.furniture.pieces import Piece
 from scanplan.plan.plan_wall import InferredFace, PlanWall
 from scanplan.plan.rooms import Room, rooms_beside
 from scanplan.plan.tolerances import LOW_PERCENT
@@ -220,6 +221,23 @@ def free_columns(polygons: Iterable[Polygon]) -> dict[str, Array]:
     parts = sorted(polygons, key=lambda polygon: (-polygon.area, *polygon.bounds))
     rows = [{"part": i, "geometry": shapely.to_wkb(part)} for i, part in enumerate(parts)]
     return columns_of_rows(rows, schemas.FREE)
+
+
+def furniture_columns(pieces: Iterable[Piece], floor_z_m: float) -> dict[str, Array]:
+    """Return the rows of `schemas.FURNITURE`, in the order given."""
+    rows = [
+        {
+            "furniture": number,
+            "area_m2": piece.outline.area,
+            "z_min_m": piece.z_min_m + floor_z_m,
+            "z_max_m": piece.z_max_m + floor_z_m,
+            "n_points": piece.n_points,
+            "n_scans": piece.n_scans,
+            "geometry": shapely.to_wkb(piece.outline),
+        }
+        for number, piece in enumerate(pieces)
+    ]
+    return columns_of_rows(rows, schemas.FURNITURE)
 
 
 def columns_of_rows(rows: Sequence[Row], schema: schemas.Schema) -> dict[str, Array]:

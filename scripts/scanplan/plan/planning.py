@@ -19,6 +19,8 @@ from scanplan.plan import (
 )
 from scanplan.plan.faces.merging import MergeSettings, merge_segments
 from scanplan.plan.faces.tracing import trace_faces
+from scanplan.plan.furniture import fronts
+from scanplan.plan.furniture.pieces import find_pieces
 from scanplan.plan.openings import OpeningSettings
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.rooms import find_rooms, rooms_beside
@@ -38,6 +40,7 @@ TABLES = {
     "rooms": schemas.ROOMS,
     "evidence": schemas.EVIDENCE,
     "free": schemas.FREE,
+    "furniture": schemas.FURNITURE,
 }
 """The tables of a plan by the names of their files."""
 _THICKNESS_M = 0.1  # of a partition, where no wall shows both sides
@@ -79,7 +82,7 @@ class Plan:
 
     Attributes
     ----------
-    faces, walls, openings, rooms, evidence, free : dict of str to (n,) array
+    faces, walls, openings, rooms, evidence, free, furniture : dict of str to (n,) array
     n_lines, n_dropped : int
         Lines of faces, and those dropped.
     range_errors_m : (181,) float64
@@ -92,6 +95,7 @@ class Plan:
     rooms: dict[str, Array]
     evidence: dict[str, Array]
     free: dict[str, Array]
+    furniture: dict[str, Array]
     n_lines: int
     n_dropped: int
     range_errors_m: FloatArray
@@ -169,20 +173,26 @@ def make_plan(
     traced = trace_faces(
         *(candidates, rays, settings.merge, settings.reading, settings.furniture), threads=threads
     )
-    walls = assemble_walls(
-        traced.faces,
-        settings.pairs,
-        settings.openings,
+    views = free_space.free_polygons(rays)
+    floor = free_space.union_on_grid(views)
+    assemble = functools.partial(
+        assemble_walls,
+        pairing=settings.pairs,
+        opening=settings.openings,
         corner_m=settings.merge.corner_m,
         door_height_m=settings.reading.door_height_m,
     )
+    walls, furnished = assemble(traced.faces), []
+    if rays.planar:
+        walls, furnished = fronts.drop_fronts(
+            *(walls, floor, assemble, _usual_thickness_m),
+            max_thickness_m=settings.pairs.max_thickness_m,
+        )
+    unpaired_m = _usual_thickness_m(walls)
     walls = opening_kinds.add_windows(
         walls, rays, min_width_m=settings.openings.min_opening_m, band_m=band_m
     )
     walls, tops_m = half_height.drop_low_surfaces(walls, settings.furniture.wall_height_m)
-    unpaired_m = _usual_thickness_m(walls)
-    views = free_space.free_polygons(rays)
-    floor = free_space.union_on_grid(views)
     glass_walls = room_bounds.find_glass_walls(
         walls,
         traced.panes,
@@ -206,7 +216,7 @@ def make_plan(
         min_walled=settings.rooms.min_walled,
         min_width_m=settings.pairs.max_thickness_m,
         unpaired_m=unpaired_m,
-        floor=floor,
+        floor=free_space.union_on_grid([floor, *furnished]),
         planar=rays.planar,
     )
     walls = opening_kinds.decide_kinds(
@@ -225,6 +235,11 @@ def make_plan(
     )
     bare = opening_kinds.decide_bare_spans(bare, rays, track_m, areas, band_m=band_m)
     floor_z_m = 0.0 if math.isnan(rays.floor_z_m) else rays.floor_z_m
+    pieces = find_pieces(
+        *(rays, wall_ground.wall_strips(bounds, unpaired_m), areas, views),
+        max_height_m=settings.furniture.furniture_height_m,
+        hidden=furnished,
+    )
     cut_walls = wall_faces.cut_wall_faces(walls, max_beyond_m=settings.openings.max_closed_m)
     face_columns, main_rows = plan_tables.face_columns(cut_walls, floor_z_m)
     evidence = uncertainty.estimate_evidence(
@@ -240,6 +255,7 @@ def make_plan(
         rooms=plan_tables.room_columns(rooms),
         evidence=plan_tables.evidence_columns(evidence, rays.scan_ids, t_ns),
         free=plan_tables.free_columns(_find_free_floor(bounds, floor, unpaired_m)),
+        furniture=plan_tables.furniture_columns(pieces, floor_z_m),
         n_lines=traced.n_lines,
         n_dropped=traced.n_dropped,
         range_errors_m=errors_m,

@@ -29,7 +29,9 @@ DEMO = "demo"
 RESERVED = "thesis"
 """Name under results/ that the thesis's experiments have to themselves."""
 
-_PLAN = tuple(f"plan/{t}" for t in ("faces", "walls", "openings", "rooms", "evidence", "free"))
+_PLAN = tuple(
+    f"plan/{t}" for t in ("faces", "walls", "openings", "rooms", "evidence", "free", "furniture")
+)
 _VALIDATION = ("plan/validation", "plan/validation_rays", "plan/confidence")
 _VISIT = ("plan/questions", "plan/standpoints")
 _TABLES = (

@@ -47,7 +47,7 @@ MOTION = Schema(
     1,
     {
         "t_ns": "int64",
-        "piece": "int32",
+        "furniture": "int32",
         **_POSE,
         "time_scale": "float64",
         "time_shift_s": "float64",
@@ -266,6 +266,23 @@ FREE = Schema("free", 2, {"part": "int32", "geometry": "binary"}, ("part",), geo
 
 Of the whole plan the file states `floor_z_m` and `ceiling_z_m`: heights in the map frame, NaN where
 not seen; and `georeference`, where the plan lies on Earth, where reference points say so.
+"""
+FURNITURE = Schema(
+    "furniture",
+    1,
+    {
+        "furniture": "int32",
+        **dict.fromkeys(("area_m2", "z_min_m", "z_max_m"), "float64"),
+        "n_points": "int32",
+        "n_scans": "int32",
+        "geometry": "binary",
+    },
+    ("furniture",),
+    geometry=True,
+)
+"""What stands in rooms and is no wall: outlines, by the points of chosen scans that show it.
+
+Heights are in the map frame, NaN of planar scans.
 """
 EVIDENCE = Schema(
     "evidence",

@@ -72,6 +72,7 @@ def compose_sheet(
     """
     facts = facts or SheetFacts()
     marks = [*content.draw_walls(plan), *content.draw_axes(plan), *content.draw_doubts(plan)]
+    marks += content.draw_furniture(plan)
     symbols = content.list_symbols(plan)
     legend = _list_legend(plan, marks, symbols)
     # the scale bar with the axes takes six rows
@@ -142,7 +143,7 @@ def _open_space(page: Page, marks: list[Mark], symbols: list[Symbol]) -> LabelSp
     loose = [
         path
         for mark in marks
-        if mark.kind not in {*solid, "room", "axis", "verify", "corrected"}
+        if mark.kind not in {*solid, "room", "axis", "verify", "corrected", "furniture"}
         for path in mark.paths
     ]
     loose += [path for symbol in symbols for path in symbol_paths(symbol)]

@@ -33,6 +33,7 @@ _FACTS = {
         "room_b",
     ),
     "room": ("area_m2", "perimeter_m", "closed", "n_scans"),
+    "furniture": ("area_m2", "z_min_m", "z_max_m", "n_points", "n_scans"),
 }
 _OF_ALL = ("p_true", "doubt", "corrected")
 
@@ -110,6 +111,15 @@ def draw_corrections(plan: FloorPlan, apart_m: float) -> Iterator[Mark]:
         around = shapely.buffer(plan.bodies[row], apart_m, join_style="mitre")
         facts = facts_of("wall", plan.walls, row)
         yield _area("corrected", around, f"corrected-wall-{number}", f"wall {number} {said}", facts)
+
+
+def draw_furniture(plan: FloorPlan) -> Iterator[Mark]:
+    """Yield the outlines of furniture, with what is known of it."""
+    outlines = shapely.from_wkb(np.asarray(plan.furniture["geometry"], object))
+    for row, outline in enumerate(outlines):
+        facts = facts_of("furniture", plan.furniture, row)
+        name = f"furniture-{facts['furniture']}"
+        yield _area("furniture", outline, name, "furniture", facts)
 
 
 def list_symbols(plan: FloorPlan) -> list[Symbol]:

@@ -95,6 +95,7 @@ LAYERS = {
     "A-AREA-VRFY": Layer(0.18, 1, "DASHED"),
     "A-WALL-PATT": Layer(0.13, 8),
     "A-WALL-CNTR": Layer(0.13, 9, plots=False),
+    "A-FURN": Layer(0.13, 9),
     "A-WALL-NSEN": Layer(0.25, 8, "DOTTED"),
     "A-WALL-ASMD": Layer(0.18, 8, "DASHED"),
     "A-WALL-INFR": Layer(0.25, 8, "DASHED"),
@@ -122,6 +123,7 @@ _DASHED = DASHES_MM["DASHED"]
 STYLES = {
     "room": Style("A-AREA", ink="none"),
     "axis": Style("A-WALL-CNTR", ink="none"),
+    "furniture": Style("A-FURN", "furniture, as far as seen", ink=FAINT),
     "not-seen": Style("A-WALL-NSEN", "not seen", ink=FAINT, dashes_mm=DASHES_MM["DOTTED"]),
     "assumed": Style("A-WALL-ASMD", "wall, its thickness assumed", FAINT, "#e3e3e3", (1.2, 0.8)),
     "inferred": Style("A-WALL-INFR", "inferred wall", FAINT, "#f4f4f4", _DASHED),

@@ -1,0 +1,199 @@
+"""Pieces of furniture: returns in rooms that no wall, floor or ceiling explains.
+
+Whatever stands there is kept, so that what is no wall of the plan is not lost.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from scipy import ndimage
+from shapely.geometry import Polygon
+from shapely.geometry.base import BaseGeometry
+
+from scanplan.geometry import bitmap
+from scanplan.plan.tolerances import CORNER_M, ENOUGH_RAYS, FACE_M, LEAST_SCANS, LOW_PERCENT
+from scanplan.rays.face_raster import CELL_M
+from scanplan.rays.ray_set import RaySet
+from scanplan.rays.tolerances import SKIRTING_M
+from scanplan.types import BoolArray, FloatArray, IntArray
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """A piece of furniture, or several that touch.
+
+    Attributes
+    ----------
+    outline : shapely.Polygon
+        Around what was seen of it.
+    z_min_m, z_max_m : float
+        Between which heights above the floor, NaN of planar scans.
+    n_points, n_scans : int
+        That show it.
+    """
+
+    outline: Polygon
+    z_min_m: float
+    z_max_m: float
+    n_points: int
+    n_scans: int
+
+
+@dataclass(frozen=True, eq=False)
+class _Returns:
+    """Returns (n,) that nothing explains: scan, cell of the grid, height above the floor."""
+
+    scan: IntArray
+    cell: IntArray
+    height_m: FloatArray
+
+    def take(self, is_wanted: BoolArray | IntArray) -> "_Returns":
+        return _Returns(self.scan[is_wanted], self.cell[is_wanted], self.height_m[is_wanted])
+
+
+def find_pieces(
+    rays: RaySet,
+    walls: Sequence[Polygon],
+    rooms: Sequence[Polygon],
+    views: Sequence[BaseGeometry],
+    *,
+    max_height_m: float,
+    hidden: Sequence[BaseGeometry] = (),
+) -> list[Piece]:
+    """Find the furniture in rooms.
+
+    People that pass leave returns where other scans see free floor, or no other scan sees
+    anything: cells that one scan alone shows, or in the plane more scans see through, are left out.
+
+    Parameters
+    ----------
+    rays : ray_set.RaySet
+    walls : sequence of shapely.Polygon
+        The ground that walls and their openings stand on.
+    rooms : sequence of shapely.Polygon
+    views : sequence of shapely geometry
+        What each scan saw, `free_space.free_polygons`.
+    max_height_m : float
+        What is higher above the floor is no furniture.
+    hidden : sequence of shapely geometry
+        Ground behind fronts of furniture, which is of the piece that the front is of.
+
+    Returns
+    -------
+    list of Piece
+        The largest first.
+    """
+    solid = shapely.union_all(shapely.buffer(np.array(walls, object), FACE_M))
+    ground = shapely.difference(shapely.union_all(list(rooms)).buffer(CORNER_M), solid)
+    if ground.is_empty:
+        return []
+    # `fill_polygons` asks for a column beyond
+    x0_m, y0_m, x1_m, y1_m = ground.buffer(CELL_M).bounds
+    grid = bitmap.fit_grid([[(x0_m, y0_m), (x1_m, y1_m)]], CELL_M)
+    returns = _gather_returns(rays, grid, bitmap.fill_polygons([ground], grid), max_height_m)
+    returns = _without_passers(returns, grid, views if rays.planar else [])
+    taken = shapely.intersection(shapely.union_all(list(hidden)), ground)
+    is_there = bitmap.fill_polygons([taken], grid)
+    is_there.flat[returns.cell] = True
+    # pauses of a cell join
+    labels = np.zeros(grid.shape, np.int64)
+    ndimage.label(ndimage.binary_dilation(is_there, np.ones((3, 3), bool)), output=labels)
+    found = [
+        _make_piece(returns.take(rows), cells, grid, rays)
+        for rows, cells in _group_by_label(labels, returns.cell, np.flatnonzero(is_there))
+    ]
+    return sorted(
+        (
+            piece
+            for piece in found
+            if piece.n_points >= ENOUGH_RAYS and piece.n_scans >= LEAST_SCANS
+        ),
+        key=lambda piece: (-piece.outline.area, *piece.outline.bounds),
+    )
+
+
+def _gather_returns(
+    rays: RaySet, grid: bitmap.Grid, is_ground: BoolArray, max_height_m: float
+) -> _Returns:
+    """Return the returns above the ground, lower than a height and higher than the floor."""
+    height_m = rays.xyz_m[:, 2] - rays.ground_z_m
+    is_wanted = np.full(len(height_m), rays.planar)
+    is_wanted |= (height_m > SKIRTING_M) & (height_m < max_height_m)
+    rows = np.flatnonzero(is_wanted)
+    place = np.floor((rays.xyz_m[rows, :2] - grid.low_m) / grid.cell_m)
+    n_rows, n_columns = grid.shape
+    is_inside = ((place >= 0) & (place < (n_columns, n_rows))).all(axis=1)
+    column, row = place[is_inside].astype(np.int64).T
+    rows = rows[is_inside]
+    returns = _Returns(rays.scan[rows], row * n_columns + column, height_m[rows])
+    return returns.take(is_ground.ravel()[returns.cell])
+
+
+def _without_passers(
+    returns: _Returns, grid: bitmap.Grid, views: Sequence[BaseGeometry]
+) -> _Returns:
+    """Return the returns in cells that several scans show, and no more scans see through."""
+    n_scans = int(returns.scan.max(initial=-1)) + 1
+    shown = np.unique(returns.cell * max(n_scans, 1) + returns.scan) // max(n_scans, 1)
+    cells, n_shown = np.unique(shown, return_counts=True)
+    middle_m = _middles_m(cells, grid)
+    n_free = np.zeros(len(cells), np.int64)
+    for view in views:
+        # a ray that ends in a cell goes over a part of it
+        inner = view.buffer(-grid.cell_m)
+        shapely.prepare(inner)
+        n_free += shapely.contains_xy(inner, middle_m)
+    stays = cells[(n_shown >= LEAST_SCANS) & (n_shown > n_free)]
+    return returns.take(np.isin(returns.cell, stays))
+
+
+def _group_by_label(
+    labels: IntArray, of_returns: IntArray, there: IntArray
+) -> Iterator[tuple[IntArray, IntArray]]:
+    """Yield the rows of the returns in each labelled part of a grid, and its cells.
+
+    Parameters
+    ----------
+    labels : (rows, columns) int
+    of_returns : (n,) int64
+        Cell of each return.
+    there : (c,) int64
+        Cells that are of a part.
+    """
+    of_return = labels.ravel()[of_returns]
+    of_cell = labels.ravel()[there]
+    return_order = np.argsort(of_return, kind="stable")
+    cell_order = np.argsort(of_cell, kind="stable")
+    for label in np.unique(of_return):
+        rows = slice(*np.searchsorted(of_return[return_order], (label, label + 1)))
+        cells = slice(*np.searchsorted(of_cell[cell_order], (label, label + 1)))
+        yield return_order[rows], there[cell_order[cells]]
+
+
+def _make_piece(returns: _Returns, cells: IntArray, grid: bitmap.Grid, rays: RaySet) -> Piece:
+    z_m = np.percentile(returns.height_m, (LOW_PERCENT, 100 - LOW_PERCENT))
+    low_m, high_m = (math.nan, math.nan) if rays.planar else z_m.tolist()
+    return Piece(
+        outline=_draw_outline(_middles_m(cells, grid), grid.cell_m),
+        z_min_m=low_m,
+        z_max_m=high_m,
+        n_points=len(returns.cell),
+        n_scans=len(np.unique(returns.scan)),
+    )
+
+
+def _draw_outline(middle_m: FloatArray, cell_m: float) -> Polygon:
+    """Return the outline of cells (n, 2) that are a cell apart at most, half a cell around them."""
+    reach_m = 1.5 * cell_m
+    boxes = shapely.box(*(middle_m - reach_m).T, *(middle_m + reach_m).T)
+    grown = shapely.union_all(boxes, grid_size=cell_m / 100)
+    drawn = grown.buffer(-cell_m / 2, join_style="mitre").simplify(cell_m)
+    return max(shapely.get_parts(drawn), key=lambda part: part.area)
+
+
+def _middles_m(cells: IntArray, grid: bitmap.Grid) -> FloatArray:
+    row, column = np.divmod(cells, grid.shape[1])
+    return grid.low_m + grid.cell_m * (np.column_stack([column, row]) + 0.5)

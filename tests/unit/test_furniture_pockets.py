@@ -1,0 +1,105 @@
+"""Fronts of furniture in the plane: rooms with cupboards of known place, seen from above."""
+
+import itertools
+
+import numpy as np
+import pytest
+import shapely
+from shapely import box
+
+from helpers.observation_making import stretch
+from scanplan.plan.furniture import fronts
+from scanplan.plan.openings import OPEN, Opening
+from scanplan.plan.plan_wall import PlanWall
+
+ROOM = [(0, 0, 5, 0), (5, 0, 5, 4), (0, 4, 0, 0)]
+"""South, east and west face of a room of 5 m by 4 m, seen from within."""
+
+
+def wall(faces, openings=()):
+    """A wall of faces of one line that are seen from within."""
+    found = [stretch(*face, planar=True) for face in faces]
+    line = found[0].line
+    along_m = np.concatenate([line.along_m(face.ends) for face in found])
+    ways = [Opening(low, high, OPEN, 99, 0.0, np.nan, False) for low, high in openings]
+    return PlanWall(line, along_m.min(), along_m.max(), np.nan, found, [], ways)
+
+
+def pockets(walls, floor):
+    return fronts.find_pockets(walls, floor, unpaired_m=0.1, max_thickness_m=0.6)
+
+
+def room_with_cupboard(x0, x1, depth_m):
+    """North wall seen beside a cupboard, and the cupboard's front."""
+    north = wall([(5, 4, x1, 4), (x0, 4, 0, 4)] if x0 > 0 else [(5, 4, x1, 4)])
+    # what the cupboard hides of the wall was closed
+    north = PlanWall(north.line, *np.sort(north.line.along_m(np.array([[0, 4], [5, 4]]))),
+                     np.nan, north.left, [])  # fmt: skip
+    front = wall([(x1, 4 - depth_m, x0, 4 - depth_m)])
+    sides = [wall([(x1, 4, x1, 4 - depth_m)])] + [wall([(x0, 4 - depth_m, x0, 4)])] * (x0 > 0)
+    floor = box(0, 0, 5, 4).difference(box(x0, 4 - depth_m, x1, 4))
+    return [*(wall([face]) for face in ROOM), north, front, *sides], floor
+
+
+@pytest.mark.parametrize("x0", [0.0, 2.0])
+def test_a_cupboard_before_a_wall_seen_beside_it_is_furniture_with_all_its_sides(x0):
+    walls, floor = room_with_cupboard(x0, 3.5, 0.5)
+    (pocket,) = pockets(walls, floor)
+    (front,), *sides = (wall.left for wall in walls[4:])
+    assert {id(face) for face in pocket.fronts} == {id(front), *(id(side[0]) for side in sides)}
+    # a cell more, where returns at the front scatter
+    np.testing.assert_allclose(pocket.ground.bounds, (x0 - 0.05, 3.45, 3.55, 4.05), atol=0.051)
+
+
+def test_what_fills_a_room_from_wall_to_wall_may_be_a_closet():
+    faces = [(0, 0, 5, 0), (5, 0, 5, 3.5), (5, 3.5, 0, 3.5), (0, 3.5, 0, 0)]
+    behind = wall([(0, 4.1, 5, 4.1)])
+    known = shapely.union_all([box(0, 0, 5, 3.5), box(-0.1, 3.4, 0, 4.2), box(5, 3.4, 5.1, 4.2)])
+    assert pockets([*(wall([face]) for face in faces), behind], known) == []
+
+
+def test_what_is_larger_than_furniture_is_a_part_of_the_building():
+    assert pockets(*room_with_cupboard(2.0, 4.5, 1.9)) == []
+
+
+def block(width_m, length_m):
+    """A room with a block in its middle, seen from all sides."""
+    x1, y1 = 1.5 + length_m, 1.5 + width_m
+    corners = [(1.5, 1.5), (1.5, y1), (x1, y1), (x1, 1.5), (1.5, 1.5)]
+    sides = [wall([(*a, *b)]) for a, b in itertools.pairwise(corners)]
+    outside = [wall([face]) for face in [*ROOM, (5, 4, 0, 4)]]
+    return [*outside, *sides], box(0, 0, 5, 4).difference(box(1.5, 1.5, x1, y1))
+
+
+@pytest.mark.parametrize(
+    ("width_m", "length_m", "n_pockets"),
+    [(0.7, 1.6, 1), (0.5, 0.5, 0), (0.19, 1.6, 0)],
+    ids=["table", "column", "wall"],
+)
+def test_a_block_is_furniture_if_it_is_no_wall_and_no_column(width_m, length_m, n_pockets):
+    assert len(pockets(*block(width_m, length_m))) == n_pockets
+
+
+def test_a_block_that_goes_on_beyond_a_door_is_wall():
+    walls, floor = block(0.7, 1.6)
+    walls[4] = PlanWall(walls[4].line, 0.0, 2.5, np.nan, walls[4].left, [],
+                        [Opening(0.8, 1.7, OPEN, 99, 0.0, np.nan, False)])  # fmt: skip
+    assert pockets(walls, floor) == []
+
+
+def test_a_surface_of_the_next_room_is_no_front():
+    walls, floor = room_with_cupboard(2.0, 3.5, 0.5)
+    beyond = wall([(1.5, 4.05, 4.0, 4.05)])
+    floor = shapely.union_all([floor, box(0, 4.15, 5, 7)])
+    found = pockets([*walls, beyond], floor)
+    assert all(beyond.left[0] is not face for pocket in found for face in pocket.fronts)
+
+
+def test_walls_are_left_without_the_fronts_and_their_ground_is_told():
+    walls, floor = room_with_cupboard(2.0, 3.5, 0.5)
+
+    def assemble(faces):
+        return [wall for wall in walls if any(face in faces for face in wall.members)]
+
+    left, grounds = fronts.drop_fronts(walls, floor, assemble, lambda _: 0.1, max_thickness_m=0.6)
+    assert left == walls[:4] and len(grounds) == 1
