@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from scanplan.recordings import candidates, frame_edges
+from scanplan.recordings import pose_kind as pose_kinds
 from scanplan.recordings.motion import time_check, trajectory
 from scanplan.recordings.survey import open_survey
 from scanplan.stage import log
@@ -23,6 +24,7 @@ def interpolate_poses(
     max_gap_s: float,
     max_speed_m_s: float = np.inf,
     moved: FilePath | None = None,
+    pose_kind: str = pose_kinds.FOUND,
     **reading: Any,
 ) -> None:
     """Write the candidates for registration with interpolated poses, and the sensor's motion.
@@ -39,8 +41,10 @@ def interpolate_poses(
         Longest time between two poses to interpolate over, and fastest way.
     moved : path-like, optional
         motion.parquet, to write.
+    pose_kind : str, optional
+        Of which kind the poses are; found by default.
     **reading
-        Keywords of `survey.open_survey`.
+        Further keywords of `survey.open_survey`.
 
     Raises
     ------
@@ -48,9 +52,14 @@ def interpolate_poses(
         If the recordings cannot be used or no candidate has a pose.
     """
     limits = {"max_gap_s": max_gap_s, "max_speed_m_s": max_speed_m_s}
-    with open_survey(files, **reading) as survey:
+    with open_survey(files, pose_kind=pose_kind, **reading) as survey:
         t_ns = survey.stamps()
         edges = survey.pose_edges()
+        found = doubts.Doubts()
+        is_odometry = survey.pose_kind == pose_kinds.ODOMETRY
+        if is_odometry:
+            edges, resets = _join_resets(edges, max_speed_m_s)
+            found = found.add(contradictions=resets)
         pose, gap_s, covered = frame_edges.chain_poses(edges, t_ns, **limits)
         chosen = candidates.choose_candidates(
             pose, keep_every=keep_every, max_step_m=max_step_m, max_turn_deg=max_turn_deg
@@ -60,9 +69,10 @@ def interpolate_poses(
             motion = trajectory.choose_motion(survey.motion_chains(), t_ns, **limits)
             motion = time_check.check_point_times(survey, motion)
             tables.write_table(moved, schemas.MOTION, motion.columns())
-        found = doubts.Doubts().add(survey.describe_damage())
+        found = found.add(survey.describe_damage())
     columns = candidates.pose_columns(chosen, t_ns, pose, gap_s, covered)
-    tables.write_table(output, schemas.POSES, columns, notes=found.as_notes())
+    notes = found.as_notes() | {pose_kinds.NOTE: survey.pose_kind}
+    tables.write_table(output, schemas.POSES, columns, notes=notes)
     for sentence in found.sentences:
         log.log_warning(f"interpolate_poses: {sentence}")
     n_covered = int(covered[chosen].sum())
@@ -70,6 +80,31 @@ def interpolate_poses(
         f"interpolate_poses: {len(t_ns):,} scans, {len(chosen):,} candidates,"
         f" {n_covered:,} with poses, {len(chosen) - n_covered:,} without"
     )
+    _log_pose_kind(is_odometry, is_set=pose_kind != pose_kinds.FOUND)
+
+
+def _join_resets(
+    edges: Sequence[frame_edges.FrameEdge], max_speed_m_s: float
+) -> tuple[list[frame_edges.FrameEdge], list[str]]:
+    """Return odometry that goes on where it was reset, and a sentence that says how often."""
+    joined = [edge.without_jumps(max_speed_m_s=max_speed_m_s) for edge in edges]
+    n_jumps = sum(n for _, n in joined)
+    if n_jumps == 0:
+        return list(edges), []
+    return [edge for edge, _ in joined], [
+        f"the odometry jumps or is reset {n_jumps} times: how the rover moved meanwhile is taken"
+        " from the scans alone"
+    ]
+
+
+def _log_pose_kind(is_odometry: bool, *, is_set: bool) -> None:
+    by = "set by advanced.input.pose_kind" if is_set else "found by topic and frame"
+    meaning = (
+        "odometry, which drifts: they count as motions between scans, and loops are looked for"
+        if is_odometry
+        else "a localiser's, in its map"
+    )
+    log.log_line(f"interpolate_poses: the poses are {meaning} ({by})")
 
 
 if __name__ == "__main__":
