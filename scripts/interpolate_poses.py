@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from scanplan.recordings import candidates, frame_edges
-from scanplan.recordings import pose_kind as pose_kinds
+from scanplan.recordings.motion import pose_kind as pose_kinds
 from scanplan.recordings.motion import time_check, trajectory
 from scanplan.recordings.survey import open_survey
 from scanplan.stage import log

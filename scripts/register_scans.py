@@ -4,9 +4,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
-from scanplan.recordings import pose_kind
 from scanplan.recordings.clouds import Scan
-from scanplan.recordings.motion import trajectory
+from scanplan.recordings.motion import pose_kind, trajectory
 from scanplan.recordings.survey import open_survey
 from scanplan.registration import contradictions, gate_shares, mapping, results
 from scanplan.registration.registration_settings import registration_settings

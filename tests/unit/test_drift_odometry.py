@@ -1,4 +1,4 @@
-"""Odometry as motions: chained, weighted by the drift expected, and only where scans say nothing."""
+"""Odometry as motions: chained, weighted by the drift expected, where scans say nothing."""
 
 import numpy as np
 

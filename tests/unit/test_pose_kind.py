@@ -2,7 +2,8 @@
 
 import pytest
 
-from scanplan.recordings import pose_kind, topics
+from scanplan.recordings import topics
+from scanplan.recordings.motion import pose_kind
 
 POSE = topics.POSES[0]
 

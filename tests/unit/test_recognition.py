@@ -57,7 +57,7 @@ def test_another_room_is_not_found():
 
 def test_a_place_of_which_there_are_two_is_not_found():
     # two equal rooms side by side, 4 m apart: a scan of one may be either
-    both = room(3, 3) + [(points + [4.0, 0.0], normal) for points, normal in room(3, 3)]
+    both = room(3, 3) + [(points + np.array([4.0, 0.0]), normal) for points, normal in room(3, 3)]
     window = {"reach_m": 5.0, "turn_rad": np.radians(5)}
     target = submap(both)
     away = planar_poses([[2.0, 0.0]], [0.0])[0]

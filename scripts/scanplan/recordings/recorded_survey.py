@@ -20,7 +20,7 @@ from scanplan.recordings.extrinsics import configured_extrinsics
 from scanplan.recordings.frame_edges import FrameEdge
 from scanplan.recordings.integrity.damaged_clouds import DamagedClouds
 from scanplan.recordings.motion import point_times
-from scanplan.recordings.pose_kind import FOUND, find_pose_kind
+from scanplan.recordings.motion.pose_kind import FOUND, find_pose_kind
 from scanplan.recordings.survey_protocol import NamedChain
 from scanplan.stage import log
 from scanplan.types import Array, FloatArray, IntArray

@@ -17,7 +17,7 @@ from scanplan.recordings.integrity.damaged_clouds import DamagedClouds
 from scanplan.recordings.integrity.ply_size import check_ply_size
 from scanplan.recordings.messages import TIME_FIELDS
 from scanplan.recordings.motion import point_times
-from scanplan.recordings.pose_kind import FOUND, LOCALISER
+from scanplan.recordings.motion.pose_kind import FOUND, LOCALISER
 from scanplan.recordings.survey_protocol import NamedChain
 from scanplan.stage import log
 from scanplan.store import tum

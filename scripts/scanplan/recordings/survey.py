@@ -7,8 +7,8 @@ from typing import Any
 
 from scanplan.project import dataset_files
 from scanplan.recordings.motion.deskew import DeskewedSurvey
+from scanplan.recordings.motion.pose_kind import FOUND
 from scanplan.recordings.motion.trajectory import SensorMotion
-from scanplan.recordings.pose_kind import FOUND
 from scanplan.recordings.survey_protocol import Survey
 
 

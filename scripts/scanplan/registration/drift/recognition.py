@@ -8,13 +8,12 @@ how exactly, and the rays of both whether it can be.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import fft
 
 from scanplan.geometry import se3
 from scanplan.geometry.tolerances import ROUNDING
 from scanplan.registration import icp
 from scanplan.registration.drift.submaps import Submap
-from scanplan.types import BoolArray, FloatArray
+from scanplan.types import Array, BoolArray, FloatArray, IntArray
 
 _FINE_M = 0.1  # cell in which walls and free floor are compared: less than a wall is thick
 
@@ -166,12 +165,12 @@ def _correlate(
     moved_m = se3.transform_points(target_from_source, source.cloud.xyz_m)[:, :2]
     radius_m = np.linalg.norm(moved_m - target_from_source[:2, 3], axis=1).max()
     # shifts that would wrap around must not be read: the raster is wider than the window
-    padded = [fft.next_fast_len(int(cells) + 2 * n_shifts + 2, real=True) for cells in size]
+    padded = [-(-(int(cells) + 2 * n_shifts + 2) // 16) * 16 for cells in size]
     walls = np.zeros(padded)
     column, row = ((target_xy_m - low_m) / cell_m).astype(int).T
     walls[column, row] = 1.0
     blurred = _blur(walls)
-    spectrum = fft.rfft2(blurred)
+    spectrum = np.fft.rfft2(blurred)
     step_rad = max(cell_m / radius_m, np.radians(1.0))
     n_turns = int(np.ceil(turn_rad / step_rad))
     scores = []
@@ -220,8 +219,8 @@ def _turn_about_middle(target_from_source: FloatArray, turn: float) -> FloatArra
 def _shift_scores(
     xy_m: FloatArray,
     low_m: FloatArray,
-    size: FloatArray,
-    spectrum: FloatArray,
+    size: IntArray,
+    spectrum: Array,
     n_shifts: int,
     padded: list[int],
     cell_m: float,
@@ -233,7 +232,7 @@ def _shift_scores(
     points = np.zeros(padded)
     kept = cell[inside]
     points[kept[:, 0] % padded[0], kept[:, 1] % padded[1]] = 1.0
-    correlation = fft.irfft2(spectrum * np.conj(fft.rfft2(points)), s=padded)
+    correlation = np.fft.irfft2(spectrum * np.conj(np.fft.rfft2(points)), s=padded)
     shifts = np.arange(-n_shifts, n_shifts + 1)
     return correlation[np.ix_(shifts % padded[0], shifts % padded[1])]
 
