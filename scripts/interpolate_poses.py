@@ -6,8 +6,7 @@ from typing import Any
 import numpy as np
 
 from scanplan.recordings import candidates, frame_edges
-from scanplan.recordings.motion import pose_kind as pose_kinds
-from scanplan.recordings.motion import time_check, trajectory
+from scanplan.recordings.motion import pose_kind, time_check, trajectory
 from scanplan.recordings.survey import open_survey
 from scanplan.stage import log
 from scanplan.store import doubts, schemas, tables
@@ -24,7 +23,6 @@ def interpolate_poses(
     max_gap_s: float,
     max_speed_m_s: float = np.inf,
     moved: FilePath | None = None,
-    pose_kind: str = pose_kinds.FOUND,
     **reading: Any,
 ) -> None:
     """Write the candidates for registration with interpolated poses, and the sensor's motion.
@@ -41,10 +39,8 @@ def interpolate_poses(
         Longest time between two poses to interpolate over, and fastest way.
     moved : path-like, optional
         motion.parquet, to write.
-    pose_kind : str, optional
-        Of which kind the poses are; found by default.
     **reading
-        Further keywords of `survey.open_survey`.
+        Keywords of `survey.open_survey`.
 
     Raises
     ------
@@ -52,11 +48,11 @@ def interpolate_poses(
         If the recordings cannot be used or no candidate has a pose.
     """
     limits = {"max_gap_s": max_gap_s, "max_speed_m_s": max_speed_m_s}
-    with open_survey(files, pose_kind=pose_kind, **reading) as survey:
+    with open_survey(files, **reading) as survey:
         t_ns = survey.stamps()
         edges = survey.pose_edges()
         found = doubts.Doubts()
-        is_odometry = survey.pose_kind == pose_kinds.ODOMETRY
+        is_odometry = survey.pose_kind == pose_kind.ODOMETRY
         if is_odometry:
             edges, resets = _join_resets(edges, max_speed_m_s)
             found = found.add(contradictions=resets)
@@ -71,7 +67,7 @@ def interpolate_poses(
             tables.write_table(moved, schemas.MOTION, motion.columns())
         found = found.add(survey.describe_damage())
     columns = candidates.pose_columns(chosen, t_ns, pose, gap_s, covered)
-    notes = found.as_notes() | {pose_kinds.NOTE: survey.pose_kind}
+    notes = found.as_notes() | {pose_kind.NOTE: survey.pose_kind}
     tables.write_table(output, schemas.POSES, columns, notes=notes)
     for sentence in found.sentences:
         log.log_warning(f"interpolate_poses: {sentence}")
@@ -80,7 +76,7 @@ def interpolate_poses(
         f"interpolate_poses: {len(t_ns):,} scans, {len(chosen):,} candidates,"
         f" {n_covered:,} with poses, {len(chosen) - n_covered:,} without"
     )
-    _log_pose_kind(is_odometry, is_set=pose_kind != pose_kinds.FOUND)
+    _log_pose_kind(is_odometry, is_set=reading.get("pose_kind", pose_kind.FOUND) != pose_kind.FOUND)
 
 
 def _join_resets(
