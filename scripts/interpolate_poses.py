@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from scanplan.recordings import candidates, frame_edges
-from scanplan.recordings.motion import time_check, trajectory
+from scanplan.recordings.motion import pose_kind, time_check, trajectory
 from scanplan.recordings.survey import open_survey
 from scanplan.stage import log
 from scanplan.store import doubts, schemas, tables
@@ -52,19 +52,25 @@ def interpolate_poses(
     with open_survey(files, max_damaged_share=1.0, **reading) as survey:
         t_ns = survey.stamps()
         edges = survey.pose_edges()
+        found = doubts.Doubts()
+        is_odometry = survey.pose_kind == pose_kind.ODOMETRY
+        if is_odometry:
+            edges, resets = _join_resets(edges, max_speed_m_s)
+            found = found.add(contradictions=resets)
         pose, gap_s, covered = frame_edges.chain_poses(edges, t_ns, **limits)
         chosen = candidates.choose_candidates(
             pose, keep_every=keep_every, max_step_m=max_step_m, max_turn_deg=max_turn_deg
         )
         candidates.require_poses(chosen, t_ns, covered, edges, files[0], **limits)
         # what of it is lost, and not which of the few clouds that are read next are damaged
-        found = doubts.Doubts().add(survey.describe_damage())
+        found = found.add(survey.describe_damage())
         if moved is not None:
             motion = trajectory.choose_motion(survey.motion_chains(), t_ns, **limits)
             motion = time_check.check_point_times(survey, motion)
             tables.write_table(moved, schemas.MOTION, motion.columns())
     columns = candidates.pose_columns(chosen, t_ns, pose, gap_s, covered)
-    tables.write_table(output, schemas.POSES, columns, notes=found.as_notes())
+    notes = found.as_notes() | {pose_kind.NOTE: survey.pose_kind}
+    tables.write_table(output, schemas.POSES, columns, notes=notes)
     for sentence in found.sentences:
         log.log_warning(f"interpolate_poses: {sentence}")
     n_covered = int(covered[chosen].sum())
@@ -72,6 +78,31 @@ def interpolate_poses(
         f"interpolate_poses: {len(t_ns):,} scans, {len(chosen):,} candidates,"
         f" {n_covered:,} with poses, {len(chosen) - n_covered:,} without"
     )
+    _log_pose_kind(is_odometry, is_set=reading.get("pose_kind", pose_kind.FOUND) != pose_kind.FOUND)
+
+
+def _join_resets(
+    edges: Sequence[frame_edges.FrameEdge], max_speed_m_s: float
+) -> tuple[list[frame_edges.FrameEdge], list[str]]:
+    """Return odometry that goes on where it was reset, and a sentence that says how often."""
+    joined = [edge.without_jumps(max_speed_m_s=max_speed_m_s) for edge in edges]
+    n_jumps = sum(n for _, n in joined)
+    if n_jumps == 0:
+        return list(edges), []
+    return [edge for edge, _ in joined], [
+        f"the odometry jumps or is reset {n_jumps} times: how the rover moved meanwhile is taken"
+        " from the scans alone"
+    ]
+
+
+def _log_pose_kind(is_odometry: bool, *, is_set: bool) -> None:
+    by = "set by advanced.input.pose_kind" if is_set else "found by topic and frame"
+    meaning = (
+        "odometry, which drifts: they count as motions between scans, and loops are looked for"
+        if is_odometry
+        else "a localiser's, in its map"
+    )
+    log.log_line(f"interpolate_poses: the poses are {meaning} ({by})")
 
 
 if __name__ == "__main__":

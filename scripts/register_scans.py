@@ -5,7 +5,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
 from scanplan.recordings.clouds import Scan
-from scanplan.recordings.motion import trajectory
+from scanplan.recordings.motion import pose_kind, trajectory
 from scanplan.recordings.survey import open_survey
 from scanplan.registration import contradictions, gate_shares, mapping, results
 from scanplan.registration.registration_settings import registration_settings
@@ -56,7 +56,9 @@ def register_scans(
         workers.open_pool(threads) as run,
     ):
         with open_survey(recordings, **reading, motion=motion) as opened:
-            survey = mapping.CandidateScans(candidates["scan_id"], priors, opened.planar)
+            survey = mapping.CandidateScans(
+                candidates["scan_id"], priors, opened.planar, is_odometry=_is_odometry(poses)
+            )
             counted = _CountedScans(opened.scans(survey.scan_ids))
             progress = log.report_progress(counted, "register_scans", total=len(priors))
             limits = registration_settings(settings)
@@ -77,6 +79,8 @@ def register_scans(
     found = doubts.read_doubts(poses, schemas.POSES).add(
         damage, contradictions.find_misfit(verdicts)
     )
+    if constraints is not None:
+        found = found.add(contradictions=constraints.doubts)
     for sentence in found.sentences:
         log.log_warning(f"register_scans: {sentence}")
     tables.write_table(registered, schemas.REGISTRATION, columns, notes=found.as_notes())
@@ -117,6 +121,10 @@ def _write_kept_scans(
             written = writer.submit(write_scan, scan_id, moved_m)
         if written is not None:
             written.result()
+
+
+def _is_odometry(poses: FilePath) -> bool:
+    return tables.read_note(poses, schemas.POSES, pose_kind.NOTE) == pose_kind.ODOMETRY
 
 
 def _read_motion(moved: FilePath) -> trajectory.SensorMotion:

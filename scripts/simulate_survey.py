@@ -23,6 +23,7 @@ def simulate_survey(
     sensor: Settings,
     errors: Settings,
     drive: Settings,
+    odometry: Settings,
     localiser: Settings,
     people: Settings,
     start_ns: int = survey_bag.EPOCH_NS,
@@ -39,7 +40,8 @@ def simulate_survey(
     survey = survey_setup.prepare_survey(
         place, seed=seed, mount=mount, sensor=sensor, errors=errors, drive=drive, people=people
     )
-    belief = survey_setup.survey_belief(survey, **localiser)
+    errors_of_poses = {key: value for key, value in localiser.items() if key != "present"}
+    belief = survey_setup.survey_belief(survey, odometry, **errors_of_poses)
     scans = log.report_progress(
         sweeps.simulate_scans(survey, threads=threads), "simulate_survey", total=len(survey.t_ns)
     )
@@ -51,7 +53,7 @@ def simulate_survey(
             scan_messages.sensor_frame(survey.sensor),
         ),
         scan_messages.encode_scans(start_ns + survey.t_ns, survey.sensor, scans),
-        *survey_messages.encode_belief(start_ns, belief),
+        *survey_messages.encode_belief(start_ns, belief, localised=localiser["present"]),
     )
     features, view = survey_setup.survey_truth(place, survey)
     atomic.write_text(truth, format_features(features, sensor=view))

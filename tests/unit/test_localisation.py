@@ -20,11 +20,14 @@ SURE = {
     "max_jump_m": 0.3,
     "seed": 1,
 }
+WHEELS = {"scale_share": 0.01, "drift_deg_per_m": 0.0}
 SPEAKING = {"update_distance_m": 0.25, "update_angle_deg": 11.5, "transform_tolerance_s": 0.1}
 
 
 def believe(**changes):
-    return localisation.simulate_belief(TICKS, TRUE, **{**SURE, **SPEAKING, **changes})
+    return localisation.simulate_belief(
+        TICKS, TRUE, odometry=WHEELS, **{**SURE, **SPEAKING, **changes}
+    )
 
 
 def test_localiser_speaks_first_last_and_after_enough_motion():
@@ -105,18 +108,27 @@ def test_transform_holds_what_the_last_update_said():
 
 
 def test_odometry_starts_at_zero_and_drifts_slowly():
-    drifting = localisation.integrate_odometry(TRUE, seed=5)
+    drifting = localisation.integrate_odometry(TRUE, **WHEELS, seed=5)
     np.testing.assert_allclose(drifting[0], np.eye(4), atol=1e-12)
     off_m = np.linalg.norm(drifting[-1, :2, 3] - TRUE[-1, :2, 3])
     assert 0.001 < off_m < 0.15
 
 
-def test_odometry_without_error_is_the_motion_from_the_start(monkeypatch):
-    monkeypatch.setattr(localisation, "_ODOMETRY_SCALE_ERROR", 0.0)
+def test_heading_of_odometry_drifts_with_the_way():
+    straight = rover.planar_poses([[0, 0], [1, 0], [2, 0], [4, 0]], np.zeros(4))
+    drifting = localisation.integrate_odometry(
+        straight, scale_share=0.0, drift_deg_per_m=0.5, seed=1
+    )
+    np.testing.assert_allclose(np.degrees(se3.pose_yaw_rad(drifting)), [0, 0.5, 1, 2], atol=1e-9)
+
+
+def test_odometry_without_error_is_the_motion_from_the_start():
     turned = rover.plan_drive([[1, 1], [1, 3], [2, 3]], speed_m_s=0.5, turn_rate_deg_s=60.0)
     true = rover.drive_poses(turned, rover.tick_stamps(turned, 100_000_000))
     np.testing.assert_allclose(
-        localisation.integrate_odometry(true, seed=5), se3.invert_pose(true[0]) @ true, atol=1e-9
+        localisation.integrate_odometry(true, scale_share=0.0, drift_deg_per_m=0.0, seed=5),
+        se3.invert_pose(true[0]) @ true,
+        atol=1e-9,
     )
 
 

@@ -132,6 +132,7 @@ def test_every_unit_is_that_of_the_keys_name():
         "_hz": "Hz",
         "_m_s": "m/s",
         "_deg_s": "deg/s",
+        "_deg_per_m": "deg/m",
         "_per_m": "per m",
         "_per_min": "per minute",
     }

@@ -70,7 +70,8 @@ def select_section(settings: Settings, *keys: str) -> Any:
 
 def select_topics(settings: Settings) -> Keywords:
     """Return what poses depend on of the input: all but what is done to the points."""
-    return _without(settings["input"], _POINTS_ONLY)
+    poses = {"pose_kind": settings[ADVANCED]["input"]["pose_kind"]}
+    return _without(settings["input"], _POINTS_ONLY) | poses
 
 
 def select_crispness(settings: Settings) -> Keywords:

@@ -40,6 +40,17 @@ class FrameEdge:
     t_ns: IntArray | None = None
     is_contradicted: bool = False
 
+    def without_jumps(self, *, max_speed_m_s: float) -> "tuple[FrameEdge, int]":
+        """Return the edge with its jumps taken out, and how many there were."""
+        if self.t_ns is None:
+            return self, 0
+        jumping = pose_jumps.find_jumps(self.t_ns, self.xyz_m, max_speed_m_s=max_speed_m_s)
+        if not jumping.any():
+            return self, 0
+        pose = pose_jumps.join_jumps(se3.pose_matrix(self.xyz_m, self.quat_xyzw), jumping)
+        xyz_m, quat = se3.split_pose(pose)
+        return replace(self, xyz_m=xyz_m, quat_xyzw=quat), int(jumping.sum())
+
     def inverse(self) -> "FrameEdge":
         """Return child_from_parent, sample by sample."""
         xyz_m, quat = se3.split_pose(se3.invert_pose(se3.pose_matrix(self.xyz_m, self.quat_xyzw)))

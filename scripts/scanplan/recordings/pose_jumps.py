@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from scanplan.geometry import se3
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 LEAST_M = 0.5  # above what localisers correct as a matter of course, below what displaces a wall
@@ -22,6 +23,28 @@ def find_jumps(t_ns: IntArray, xyz_m: FloatArray, *, max_speed_m_s: float) -> Bo
     """
     step_m = np.linalg.norm(np.diff(xyz_m, axis=0), axis=1)
     return (step_m > LEAST_M) & (step_m > max_speed_m_s * np.diff(t_ns) / 1e9)
+
+
+def join_jumps(pose: FloatArray, jumping: BoolArray) -> FloatArray:
+    """Return poses without their jumps: after each the way goes on from where it was.
+
+    Of odometry that was reset this is what it would have said; of wheels that slipped the motion in
+    between is lost.
+
+    Parameters
+    ----------
+    pose : (n, 4, 4) float64
+    jumping : (n - 1,) bool
+        As `find_jumps` gives it.
+
+    Returns
+    -------
+    (n, 4, 4) float64
+    """
+    joined = np.array(pose, float)
+    for row in np.flatnonzero(jumping).tolist():
+        joined[row + 1 :] = joined[row] @ se3.invert_pose(joined[row + 1]) @ joined[row + 1 :]
+    return joined
 
 
 def is_inside_jump(t_ns: IntArray, jumping: BoolArray, query_ns: IntArray) -> BoolArray:

@@ -20,6 +20,7 @@ from scanplan.recordings.extrinsics import configured_extrinsics
 from scanplan.recordings.frame_edges import FrameEdge
 from scanplan.recordings.integrity.damaged_clouds import DamagedClouds
 from scanplan.recordings.motion import point_times
+from scanplan.recordings.motion.pose_kind import FOUND, find_pose_kind
 from scanplan.recordings.survey_protocol import NamedChain
 from scanplan.stage import log
 from scanplan.types import Array, FloatArray, IntArray
@@ -62,6 +63,8 @@ class BagSurvey:
     min_range_m, max_range_m : float
     max_damaged_share : float
         Of the clouds that are read.
+    pose_kind : str, optional
+        Found by topic and frame by default.
 
     Raises
     ------
@@ -80,6 +83,7 @@ class BagSurvey:
         min_range_m: float,
         max_range_m: float,
         max_damaged_share: float = 0.0,
+        pose_kind: str = FOUND,
     ) -> None:
         self._bags = sorted(recordings, key=lambda bag: (bag.start_ns, str(bag.path)))
         self._where = ", ".join(str(bag.path) for bag in self._bags)
@@ -88,6 +92,7 @@ class BagSurvey:
         )
         self._cloud = topics.choose_cloud_topic(self._topics, cloud_topic, self._where)
         self._pose_topic = pose_topic
+        self._wanted_pose_kind = pose_kind
         self._base_frame = base_frame
         self._extrinsics = (
             None if base_from_sensor is None else configured_extrinsics(base_from_sensor)
@@ -125,6 +130,13 @@ class BagSurvey:
         if scan.time_raw is None:
             return None
         return scan.time_raw[clouds.is_in_range(scan.xyz_m, **self._limits)]
+
+    @property
+    def pose_kind(self) -> str:
+        """Of which kind the poses are: see `pose_kind.find_pose_kind`."""
+        if self._wanted_pose_kind != FOUND:
+            return self._wanted_pose_kind
+        return find_pose_kind(self._pose_source.msgtype, self.map_frame)
 
     @property
     def bags(self) -> list[Bag]:

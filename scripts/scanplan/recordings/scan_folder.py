@@ -17,6 +17,7 @@ from scanplan.recordings.integrity.damaged_clouds import DamagedClouds
 from scanplan.recordings.integrity.ply_size import check_ply_size
 from scanplan.recordings.messages import TIME_FIELDS
 from scanplan.recordings.motion import point_times
+from scanplan.recordings.motion.pose_kind import FOUND, LOCALISER
 from scanplan.recordings.survey_protocol import NamedChain
 from scanplan.stage import log
 from scanplan.store import tum
@@ -43,6 +44,8 @@ class ScanFolder:
     min_range_m, max_range_m : float
     max_damaged_share : float
         Of the clouds that are read.
+    pose_kind : str, optional
+        By default the poses are a localiser's.
 
     Raises
     ------
@@ -58,6 +61,7 @@ class ScanFolder:
         min_range_m: float,
         max_range_m: float,
         max_damaged_share: float = 0.0,
+        pose_kind: str = FOUND,
     ) -> None:
         paths = [Path(file) for file in files]
         self._poses_path = next(p for p in paths if p.name == dataset_files.POSES_FILE)
@@ -66,6 +70,7 @@ class ScanFolder:
         )
         self._max_damaged_share = max_damaged_share
         self._damaged = DamagedClouds(0, max_damaged_share)
+        self._pose_kind = LOCALISER if pose_kind == FOUND else pose_kind
         self._limits = {"min_range_m": min_range_m, "max_range_m": max_range_m}
         pose_ns, rows = tum.read_tum(self._poses_path)
         self._track = _make_track(self._poses_path, pose_ns, rows)
@@ -101,6 +106,11 @@ class ScanFolder:
         if time_raw is None:
             return None
         return np.asarray(time_raw)[clouds.is_in_range(xyz_m, **self._limits)]
+
+    @property
+    def pose_kind(self) -> str:
+        """Of which kind the poses are: see `pose_kind.find_pose_kind`."""
+        return self._pose_kind
 
     def stamps(self) -> IntArray:
         """Return the stamps of all clouds, (n,) int64, in scan_id order."""

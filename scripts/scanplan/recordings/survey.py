@@ -7,6 +7,7 @@ from typing import Any
 
 from scanplan.project import dataset_files
 from scanplan.recordings.motion.deskew import DeskewedSurvey
+from scanplan.recordings.motion.pose_kind import FOUND
 from scanplan.recordings.motion.trajectory import SensorMotion
 from scanplan.recordings.survey_protocol import Survey
 
@@ -25,6 +26,7 @@ def open_survey(
     max_damaged_share: float = 0.0,
     salvage: bool = False,
     deskew: bool = True,
+    pose_kind: str = FOUND,
     motion: SensorMotion | None = None,
 ) -> Iterator[Survey]:
     """Open all recordings of a dataset as one survey.
@@ -51,6 +53,8 @@ def open_survey(
     deskew : bool
         Whether to move points to where they would have been seen at their scan's stamp, given a
         `motion`.
+    pose_kind : str, optional
+        Of which kind the poses are (`pose_kind.find_pose_kind`); found by default.
     motion : trajectory.SensorMotion, optional
         How the sensor moved.
 
@@ -73,6 +77,7 @@ def open_survey(
         "min_range_m": min_range_m,
         "max_range_m": max_range_m,
         "max_damaged_share": max_damaged_share,
+        "pose_kind": pose_kind,
     }
     opening = {"ros2_release": ros2_release, "salvage": salvage}
     with ExitStack() as stack:

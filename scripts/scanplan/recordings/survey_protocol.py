@@ -25,6 +25,11 @@ class Survey(Protocol):
         """How the driver writes the time of a point, or None if it does not."""
         ...
 
+    @property
+    def pose_kind(self) -> str:
+        """Of which kind the poses are: see `pose_kind.find_pose_kind`."""
+        ...
+
     def stamps(self) -> IntArray:
         """Return the stamps of all clouds, (n,) int64 nanoseconds, in scan_id order."""
         ...

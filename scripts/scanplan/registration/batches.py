@@ -4,7 +4,7 @@ By the thesis's frames there are none: all candidates are one sequence.
 """
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -29,11 +29,14 @@ class CandidateScans:
         The localiser's world_from_sensor; NaN where it has none.
     planar : bool
         Whether the sensor measures in one plane.
+    is_odometry : bool
+        Whether the poses are odometry, which drifts, instead of a localiser's.
     """
 
     scan_ids: IntArray
     priors: FloatArray
     planar: bool
+    is_odometry: bool = False
 
 
 def cut_batches(n_candidates: int, batch_size: int, n_early: int) -> list[tuple[int, int, int]]:
@@ -81,7 +84,7 @@ def batch_jobs(
         while pending and len(raw) == pending[0][2]:
             first, begin, end = pending.pop(0)
             rows = np.arange(first, end)
-            batch = CandidateScans(survey.scan_ids[rows], survey.priors[rows], survey.planar)
+            batch = replace(survey, scan_ids=survey.scan_ids[rows], priors=survey.priors[rows])
             yield raw.part(rows), batch, begin - first, limits
 
 
@@ -108,7 +111,7 @@ def register_batch(
     edges : list of constraints.PoseConstraint
         From its own kept scans to predecessors.
     """
-    registrar = SequentialRegistrar(limits, batch.planar)
+    registrar = SequentialRegistrar(limits, batch.planar, is_odometry=batch.is_odometry)
     registered = [
         registrar.add(int(scan_id), xyz_m, prior)
         for scan_id, xyz_m, prior in zip(batch.scan_ids, part, batch.priors, strict=True)

@@ -15,6 +15,7 @@ from scanplan.recordings.clouds import Scan
 from scanplan.registration import batches, constraints, multiway, results, sequential
 from scanplan.registration.batches import CandidateScans
 from scanplan.registration.constraints import PoseConstraint
+from scanplan.registration.drift import drifting_map
 from scanplan.registration.registration_settings import FRAMES, RegistrationSettings
 from scanplan.registration.sequential import ScanResult
 from scanplan.stage import log
@@ -148,17 +149,16 @@ def _optimise(
     start = world_from_sensor @ sensor_from_level
     if not settings.graph.optimise:
         return multiway.keep_sequential(survey.scan_ids[kept], start, edges)
-    optimised = multiway.optimise_poses(
-        survey.scan_ids[kept],
-        start,
-        survey.priors[kept] @ sensor_from_level,
-        edges,
-        thinned,
-        run,
-        planar=survey.planar,
-        limits=settings.limits,
-        settings=settings.graph,
-    )
+    given = survey.priors[kept] @ sensor_from_level
+    common = {"planar": survey.planar, "limits": settings.limits, "settings": settings.graph}
+    if survey.is_odometry:
+        optimised = drifting_map.optimise_drifting_poses(
+            survey.scan_ids[kept], given, edges, thinned, run, **common, drift=settings.drift
+        )
+    else:
+        optimised = multiway.optimise_poses(
+            survey.scan_ids[kept], start, given, edges, thinned, run, **common
+        )
     poses = optimised.world_from_cloud @ level_from_sensor
     for row, pose in zip(kept, poses, strict=True):
         scan_results[row] = replace(scan_results[row], world_from_sensor=pose)

@@ -34,7 +34,11 @@ class OptimisedMap:
     weight : (m,) float64
         Share of its information with which each counts, 0 to 1.
     prior_weight : (n,) float64
-        The same of the localiser's poses.
+        The same of what was recorded of the poses.
+    recorded : str
+        What that is: a localiser's poses, or odometry's motions.
+    doubts : tuple of str
+        What cannot be if the map is right, in sentences.
     """
 
     world_from_cloud: FloatArray
@@ -42,10 +46,12 @@ class OptimisedMap:
     residual: FloatArray
     weight: FloatArray
     prior_weight: FloatArray
+    recorded: str = "the localiser's poses"
+    doubts: tuple[str, ...] = ()
 
     def without(self, scan_ids: IntArray) -> "OptimisedMap":
         """Return the map without the constraints of some scans."""
-        ends = np.array([_ends(edge) for edge in self.edges], np.int64).reshape(-1, 2)
+        ends = np.array([edge_ends(edge) for edge in self.edges], np.int64).reshape(-1, 2)
         rows = np.flatnonzero(~np.isin(ends, scan_ids).any(axis=1))
         return replace(
             self,
@@ -65,8 +71,8 @@ def keep_sequential(
     scan_ids, start, edges
         As of `optimise_poses`.
     """
-    row_of_scan = _rows(scan_ids)
-    kept = sorted(_between(edges, row_of_scan), key=_ends)
+    row_of_scan = find_rows(scan_ids)
+    kept = sorted(edges_between(edges, row_of_scan), key=edge_ends)
     motions = _motions(kept, row_of_scan)
     source_from_target = se3.invert_pose(motions.target_from_source)
     target_from_world = se3.invert_pose(start[motions.target])
@@ -105,7 +111,7 @@ def optimise_poses(
     limits : registration_settings.SequentialSettings
     settings : registration_settings.PoseGraphSettings
     """
-    row_of_scan = _rows(scan_ids)
+    row_of_scan = find_rows(scan_ids)
     prior_information = limits.localiser_information(priors)
 
     def solve(
@@ -113,7 +119,7 @@ def optimise_poses(
     ) -> pose_graph.PoseGraphSolution:
         return pose_graph.solve_pose_graph(
             begin,
-            _with_least_covariance(_motions(constraints, row_of_scan), settings),
+            edge_motions(constraints, row_of_scan, settings),
             priors,
             prior_information,
             planar=planar,
@@ -121,15 +127,13 @@ def optimise_poses(
             is_start=is_start,
         )
 
-    sequence = _between(edges, row_of_scan)
+    sequence = edges_between(edges, row_of_scan)
     poses = solve(start, sequence, is_start=True).world_from_scan
     constrained = {(row_of_scan[edge.source], row_of_scan[edge.target]) for edge in sequence}
-    # a planar scan constrains less than a spatial one, and costs less to align
-    step_m = settings.loop_step_planar_m if planar else settings.loop_step_m
-    pairs = _chosen(poses, constrained, step_m, settings)
-    jobs = _alignment_jobs(pairs, scan_ids, poses, thinned, planar, limits, settings)
-    loop_edges = [edge for of_job in run(loops.align_pairs, jobs) for edge in of_job]
-    all_edges = sorted([*sequence, *loop_edges], key=_ends)
+    pairs = choose_pairs(poses, constrained, settings, planar=planar)
+    jobs = alignment_jobs(pairs, scan_ids, poses, thinned, planar, limits, settings)
+    loop_edges = align_jobs(jobs, run)
+    all_edges = sorted([*sequence, *loop_edges], key=edge_ends)
     solution = solve(poses, all_edges)
     return OptimisedMap(
         solution.world_from_scan,
@@ -149,15 +153,19 @@ def add_covariance(information: FloatArray, covariance: FloatArray) -> FloatArra
     return information - information @ np.linalg.solve(total, information)
 
 
-def _rows(scan_ids: IntArray) -> dict[int, int]:
+def find_rows(scan_ids: IntArray) -> dict[int, int]:
+    """Return the row of each scan by its scan_id."""
     return {int(scan_id): row for row, scan_id in enumerate(scan_ids)}
 
 
-def _ends(edge: PoseConstraint) -> tuple[int, int]:
+def edge_ends(edge: PoseConstraint) -> tuple[int, int]:
+    """Return the scans that a constraint is between: its source and its target."""
     return edge.source, edge.target
 
 
-def _between(edges: Sequence[PoseConstraint], row_of_scan: dict[int, int]) -> list[PoseConstraint]:
+def edges_between(
+    edges: Sequence[PoseConstraint], row_of_scan: dict[int, int]
+) -> list[PoseConstraint]:
     """Return the constraints between retained scans."""
     return [edge for edge in edges if edge.source in row_of_scan and edge.target in row_of_scan]
 
@@ -174,22 +182,26 @@ def _motions(
     )
 
 
-def _with_least_covariance(
-    motions: pose_graph.MotionConstraints, settings: PoseGraphSettings
+def edge_motions(
+    edges: Sequence[PoseConstraint], row_of_scan: dict[int, int], settings: PoseGraphSettings
 ) -> pose_graph.MotionConstraints:
     """Return constraints with the sensor's systematic errors added, which pairs do not show."""
+    motions = _motions(edges, row_of_scan)
     variance = np.array([settings.edge_sigma_m**2, np.radians(settings.edge_sigma_deg) ** 2])
     least = np.diag(np.repeat(variance, 3))
     return replace(motions, information=add_covariance(motions.information, least))
 
 
-def _chosen(
+def choose_pairs(
     world_from_scan: FloatArray,
     constrained: set[RowPair],
-    step_m: float,
     settings: PoseGraphSettings,
+    *,
+    planar: bool,
 ) -> list[RowPair]:
     """Return the pairs of rows to align, but for those that are constrained already."""
+    # a planar scan constrains less than a spatial one, and costs less to align
+    step_m = settings.loop_step_planar_m if planar else settings.loop_step_m
     xy_m = world_from_scan[:, :2, 3]
     radius_m = settings.loop_radius_m
     apart = settings.loop_apart
@@ -202,7 +214,7 @@ def _chosen(
     return sorted(set(visits + bridges) - constrained)
 
 
-def _alignment_jobs(
+def alignment_jobs(
     pairs: Sequence[RowPair],
     scan_ids: IntArray,
     world_from_cloud: FloatArray,
@@ -226,3 +238,10 @@ def _alignment_jobs(
             settings.loop_min_fitness,
             settings.loop_apart,
         )
+
+
+def align_jobs(
+    jobs: Iterator[tuple[Any, ...]], run: Callable[..., Iterator[Any]]
+) -> list[PoseConstraint]:
+    """Return the constraints of `alignment_jobs`."""
+    return [edge for of_job in run(loops.align_pairs, jobs) for edge in of_job]

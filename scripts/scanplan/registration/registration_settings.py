@@ -132,6 +132,25 @@ class PoseGraphSettings:
 
 
 @dataclass(frozen=True)
+class DriftSettings:
+    """How far poses that drift are expected to be off.
+
+    Attributes
+    ----------
+    drift_share : float
+        Share, above 0. Of the way that was driven, and of the angle that was turned.
+    drift_deg_per_m : float
+        Degrees. Of the heading, a metre of way.
+    submap_m : float
+        Metres. The scans of so much way are recognised together.
+    """
+
+    drift_share: float
+    drift_deg_per_m: float
+    submap_m: float
+
+
+@dataclass(frozen=True)
 class RegistrationSettings:
     """Section `registration` of the configuration.
 
@@ -141,18 +160,22 @@ class RegistrationSettings:
         So many candidates are registered one after the other on one core.
     limits : SequentialSettings
     graph : PoseGraphSettings
+    drift : DriftSettings
     """
 
     batch_size: int
     limits: SequentialSettings
     graph: PoseGraphSettings
+    drift: DriftSettings
 
 
 def registration_settings(section: Settings) -> RegistrationSettings:
     """Return the `RegistrationSettings` of a section `registration`."""
-    limits = {key: value for key, value in section.items() if key not in ("batch_size", "graph")}
+    apart = ("batch_size", "graph", "drift")
+    limits = {key: value for key, value in section.items() if key not in apart}
     return RegistrationSettings(
         batch_size=section["batch_size"],
         limits=SequentialSettings(**limits),
         graph=PoseGraphSettings(**section["graph"]),
+        drift=DriftSettings(**section["drift"]),
     )

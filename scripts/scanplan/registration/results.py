@@ -126,7 +126,7 @@ def summarise_constraints(optimised: OptimisedMap | None) -> str:
     n_jumps = int((optimised.prior_weight < INLIER_WEIGHT).sum())
     return (
         f"constraints: {', '.join(counts) or 'none'};"
-        f" {n_jumps:,} of the localiser's poses are outliers"
+        f" {n_jumps:,} of {optimised.recorded} are outliers"
     )
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from scanplan.geometry import se3
 from scanplan.registration import constraints, prepared_clouds
 from scanplan.registration.constraints import PlacedScan, PoseConstraint
+from scanplan.registration.drift import recognition, submaps
 from scanplan.registration.registration_settings import SequentialSettings
 from scanplan.types import FloatArray
 
@@ -146,6 +147,9 @@ class SequentialRegistrar(ScanRegistrar):
     _earlier: deque[PlacedScan] = field(init=False)
     _confirmed: bool = False
     _rejected_in_a_row: int = 0
+    is_odometry: bool = False
+    # of odometry: what it has drifted by up to the last retained scan
+    _world_from_odometry: FloatArray = field(default_factory=lambda: np.eye(4))
 
     def __post_init__(self) -> None:
         self._previous = self._no_scans()
@@ -155,7 +159,15 @@ class SequentialRegistrar(ScanRegistrar):
         self, scan: PlacedScan, level_from_sensor: FloatArray
     ) -> tuple[ScanResult, list[PoseConstraint]]:
         """Gate a scan, align it to the last scans retained, and gate it again."""
+        odometry_from_cloud = scan.world_from_cloud
+        if self.is_odometry:
+            # only the motion since the last retained scan is known
+            moved = self._world_from_odometry @ odometry_from_cloud
+            scan = replace(scan, world_from_cloud=moved)
         result, edges = self._register(scan, level_from_sensor)
+        if self.is_odometry and result.kept:
+            world_from_cloud = result.world_from_sensor @ se3.invert_pose(level_from_sensor)
+            self._world_from_odometry = world_from_cloud @ se3.invert_pose(odometry_from_cloud)
         self._remember(scan, result, level_from_sensor)
         return result, edges
 
@@ -171,6 +183,12 @@ class SequentialRegistrar(ScanRegistrar):
             if earlier_result.kept:
                 self._previous = self._earlier
                 return earlier_result, earlier_edges
+        if not result.kept and self.is_odometry:
+            found = self._search(scan)
+            if found is not None:
+                searched, searched_edges = self._compare(found, level_from_sensor, self._previous)
+                if searched.kept:
+                    return searched, searched_edges
         if not result.kept and self._is_anchor(scan):
             result = replace(result, kept=True, reason="anchor")
         return result, edges
@@ -196,6 +214,37 @@ class SequentialRegistrar(ScanRegistrar):
         return ScanResult(
             True, "kept", refined.world_from_cloud @ level_from_sensor, *figures
         ), edges
+
+    def _search(self, scan: PlacedScan) -> PlacedScan | None:
+        """Return a scan where its walls lie on those of the scans before it, by correlation.
+
+        Wheels that slip turn a rover by more than an alignment finds back.
+        """
+        previous = submaps.merge_scans(
+            np.arange(len(self._previous)),
+            [other.cloud for other in self._previous],
+            np.array([other.world_from_cloud for other in self._previous]),
+        )
+        own = submaps.merge_scans(np.zeros(1, int), [scan.cloud], scan.world_from_cloud[None])
+        if previous is None or own is None:
+            return None
+        middle = self._previous[previous.row].world_from_cloud
+        world_from_target = submaps.level_frame(middle)
+        world_from_source = submaps.level_frame(scan.world_from_cloud)
+        found = recognition.find_submap(
+            own,
+            previous,
+            se3.invert_pose(world_from_target) @ world_from_source,
+            reach_m=2 * self.settings.max_correction_m,
+            turn_rad=np.radians(4 * self.settings.max_correction_deg),
+        )
+        if found is None:
+            return None
+        moved = world_from_target @ found.fit.target_from_source
+        level_from_cloud = se3.invert_pose(world_from_source) @ scan.world_from_cloud
+        # a search in the plane leaves the height
+        moved[2, 3] = scan.world_from_cloud[2, 3]
+        return replace(scan, world_from_cloud=moved @ level_from_cloud)
 
     def _faces_any(self, edges: list[PoseConstraint]) -> bool:
         """Return whether a scan's surfaces agree with those of any scan that it is aligned to.

@@ -8,9 +8,8 @@ from numpy.typing import ArrayLike
 from scanplan.geometry import se3
 from scanplan.lab.random_streams import RandomStream, open_stream
 from scanplan.lab.simulation import rover
-from scanplan.types import FloatArray, IntArray
+from scanplan.types import FloatArray, IntArray, Settings
 
-_ODOMETRY_SCALE_ERROR = 0.01  # ASSUME of wheels and gyro of a small rover, constant over a drive
 _TICKS_PER_TRANSFORM = 5  # ASSUME laser scans at 10 Hz; AMCL sends its transform with each
 
 
@@ -56,6 +55,7 @@ def simulate_belief(
     update_distance_m: float,
     update_angle_deg: float,
     transform_tolerance_s: float,
+    odometry: Settings,
     seed: int,
     **error_settings: float,
 ) -> Belief:
@@ -70,6 +70,8 @@ def simulate_belief(
         Motion since the localiser's last update that brings the next.
     transform_tolerance_s : float
         AMCL's parameter of that name.
+    odometry : dict
+        Settings of `integrate_odometry`.
     seed : int
     **error_settings
         As for `draw_pose_errors`.
@@ -83,7 +85,7 @@ def simulate_belief(
     )
     errors = draw_pose_errors(t_ns[update] / 1e9, **error_settings, seed=seed)
     map_from_base = add_pose_errors(world_from_base[update], errors)
-    odom_from_base = integrate_odometry(world_from_base, seed=seed)
+    odom_from_base = integrate_odometry(world_from_base, **odometry, seed=seed)
     transform = np.arange(0, len(t_ns), _TICKS_PER_TRANSFORM)
     deviation_deg = np.hypot(error_settings["noise_deg"], error_settings["drift_deg"])
     return Belief(
@@ -201,16 +203,30 @@ def add_pose_errors(world_from_base: FloatArray, error: FloatArray) -> FloatArra
     return rover.planar_poses(xy_m, se3.pose_yaw_rad(world_from_base) + error[:, 2])
 
 
-def integrate_odometry(world_from_base: FloatArray, *, seed: int) -> FloatArray:
+def integrate_odometry(
+    world_from_base: FloatArray, *, scale_share: float, drift_deg_per_m: float, seed: int
+) -> FloatArray:
     """Return odom_from_base (n, 4, 4): the motion summed up from its start with a scale error.
 
     The small errors of turns and steps are constant over the drive, so the odometry drifts.
+
+    Parameters
+    ----------
+    world_from_base : (n, 4, 4) float64
+        True planar poses.
+    scale_share : float
+        Standard deviation of the scales of turns and of steps, which are drawn once.
+    drift_deg_per_m : float
+        What the heading turns by, a metre of way: to the left.
+    seed : int
     """
     generator = open_stream(seed, RandomStream.ODOMETRY)
-    turn_scale, step_scale = 1 + _ODOMETRY_SCALE_ERROR * generator.standard_normal(2)
+    turn_scale, step_scale = 1 + scale_share * generator.standard_normal(2)
     yaw_rad = np.unwrap(se3.pose_yaw_rad(world_from_base))
     step_m = np.diff(world_from_base[:, :2, 3], axis=0)
-    odometry_yaw_rad = turn_scale * (yaw_rad - yaw_rad[0])
+    way_m = np.concatenate([[0], np.cumsum(np.hypot(*step_m.T))])
+    drift_rad = np.radians(drift_deg_per_m) * way_m
+    odometry_yaw_rad = turn_scale * (yaw_rad - yaw_rad[0]) + drift_rad
     # a step is measured in the base's frame, and added in the direction the base seems to face
     error_rad = odometry_yaw_rad[:-1] - yaw_rad[:-1]
     step = step_scale * (step_m[:, 0] + 1j * step_m[:, 1]) * np.exp(1j * error_rad)

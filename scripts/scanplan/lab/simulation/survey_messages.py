@@ -38,7 +38,7 @@ class RosMessage:
         return self.content.__msgtype__
 
 
-def encode_belief(start_ns: int, belief: Belief) -> list[Iterator[RosMessage]]:
+def encode_belief(start_ns: int, belief: Belief, *, localised: bool) -> list[Iterator[RosMessage]]:
     """Encode all that wheels and localiser send over a drive.
 
     Parameters
@@ -46,13 +46,21 @@ def encode_belief(start_ns: int, belief: Belief) -> list[Iterator[RosMessage]]:
     start_ns : int
         When the drive starts.
     belief : localisation.Belief
+    localised : bool
+        Whether there is a localiser.
 
     Returns
     -------
     list of iterators of RosMessage
-        /amcl_pose, /odom, and on /tf odom to base and map to odom.
+        /odom and on /tf odom to base; of a localiser /amcl_pose, and on /tf map to odom.
     """
     ticks_ns = start_ns + belief.t_ns
+    wheels = [
+        encode_odometry(ticks_ns, belief.odom_from_base),
+        encode_transforms(ticks_ns, ODOM_FRAME, BASE_FRAME, belief.odom_from_base),
+    ]
+    if not localised:
+        return wheels
     return [
         encode_localiser_poses(
             ticks_ns[belief.update],
@@ -60,8 +68,7 @@ def encode_belief(start_ns: int, belief: Belief) -> list[Iterator[RosMessage]]:
             noise_m=belief.deviation_m,
             noise_rad=belief.deviation_rad,
         ),
-        encode_odometry(ticks_ns, belief.odom_from_base),
-        encode_transforms(ticks_ns, ODOM_FRAME, BASE_FRAME, belief.odom_from_base),
+        *wheels,
         encode_transforms(
             ticks_ns[belief.transform],
             MAP_FRAME,

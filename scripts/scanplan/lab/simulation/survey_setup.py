@@ -112,18 +112,24 @@ def prepare_survey(
     )
 
 
-def survey_belief(survey: sweeps.SimulatedSurvey, **localiser: Any) -> localisation.Belief:
+def survey_belief(
+    survey: sweeps.SimulatedSurvey, odometry: Settings, **localiser: Any
+) -> localisation.Belief:
     """Return what wheels and localiser estimate, a turn of the sensor beyond either end.
 
     Parameters
     ----------
     survey : sweeps.SimulatedSurvey
+    odometry : dict
+        Settings of `localisation.integrate_odometry`.
     **localiser
         Settings of `localisation.simulate_belief`.
     """
     tick_ns = rover.tick_stamps(survey.drive, _turn_ns(survey))
     world_from_base = rover.drive_poses(survey.drive, tick_ns)
-    return localisation.simulate_belief(tick_ns, world_from_base, **localiser, seed=survey.seed)
+    return localisation.simulate_belief(
+        tick_ns, world_from_base, odometry=odometry, **localiser, seed=survey.seed
+    )
 
 
 def true_poses(survey: sweeps.SimulatedSurvey) -> tuple[IntArray, FloatArray]:

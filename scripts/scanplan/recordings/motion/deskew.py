@@ -131,6 +131,11 @@ class DeskewedSurvey:
         """How the driver writes the time of a point, or None if it does not."""
         return self._survey.sweep_times
 
+    @property
+    def pose_kind(self) -> str:
+        """Of which kind the poses are."""
+        return self._survey.pose_kind
+
     def stamps(self) -> IntArray:
         """Return the stamps of all clouds, (n,) int64, in scan_id order."""
         return self._survey.stamps()

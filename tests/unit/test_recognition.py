@@ -1,0 +1,94 @@
+"""A submap is found on another one where it lies, and nowhere else; contradictions are told."""
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from scanplan.geometry import se3
+from scanplan.lab.simulation.rover import planar_poses
+from scanplan.registration.drift import folds, recognition, submaps
+from scanplan.registration.prepared_clouds import PreparedCloud
+
+STEP_M = 0.1
+
+
+def wall(begin, end):
+    """Points (n, 2) along a straight wall, and their unit normals."""
+    begin, end = np.array(begin, float), np.array(end, float)
+    length_m = np.linalg.norm(end - begin)
+    share = np.arange(0, length_m, STEP_M)[:, None] / length_m
+    along = (end - begin) / length_m
+    return begin + share * (end - begin), np.tile([-along[1], along[0]], (len(share), 1))
+
+
+def room(width_m, depth_m, niche_m=1.0):
+    """A room about the origin with a niche in one corner, which tells its four sides apart."""
+    x, y = width_m / 2, depth_m / 2
+    corners = [[-x, -y], [x, -y], [x, y - niche_m], [x - 1, y - niche_m], [x - 1, y], [-x, y]]
+    return [wall(a, b) for a, b in zip(corners, [*corners[1:], corners[0]], strict=True)]
+
+
+def submap(walls, row=0, frame=None):
+    """What a sensor at the origin sees of walls, in a frame of its own."""
+    xy_m = np.concatenate([points for points, _ in walls])
+    normal = np.concatenate([normals for _, normals in walls])
+    pose = np.eye(4) if frame is None else frame
+    flat_m = se3.transform_points(pose, np.column_stack([xy_m, np.zeros(len(xy_m))]))
+    cloud = PreparedCloud(flat_m, KDTree(flat_m[:, :2]), True, normal @ pose[:2, :2].T, None)
+    return submaps.Submap(row, cloud, np.tile(pose[:2, 3], (len(xy_m), 1)))
+
+
+def test_a_room_is_found_again_where_it_lies():
+    true = planar_poses([[1.3, -0.8]], [0.2])[0]
+    source = submap(room(6, 4), frame=se3.invert_pose(true))
+    found = recognition.find_submap(
+        source, submap(room(6, 4)), np.eye(4), reach_m=2.0, turn_rad=np.radians(20)
+    )
+    assert found is not None and found.agreement.support > 0.99
+    np.testing.assert_allclose(found.fit.target_from_source[:2, 3], [1.3, -0.8], atol=0.02)
+    assert abs(se3.pose_yaw_rad(found.fit.target_from_source) - 0.2) < 0.01
+
+
+def test_another_room_is_not_found():
+    window = {"reach_m": 2.0, "turn_rad": np.radians(20)}
+    assert (
+        recognition.find_submap(submap(room(4, 3)), submap(room(7, 5)), np.eye(4), **window) is None
+    )
+
+
+def test_a_place_of_which_there_are_two_is_not_found():
+    # two equal rooms side by side, 4 m apart: a scan of one may be either
+    both = room(3, 3) + [(points + np.array([4.0, 0.0]), normal) for points, normal in room(3, 3)]
+    window = {"reach_m": 5.0, "turn_rad": np.radians(5)}
+    target = submap(both)
+    away = planar_poses([[2.0, 0.0]], [0.0])[0]
+    assert recognition.find_submap(submap(room(3, 3)), target, away, **window) is None
+
+
+def test_walls_on_free_floor_contradict():
+    small, large = submap(room(3, 3)), submap(room(6, 6))
+    agreement = recognition.compare_submaps(small, large, np.eye(4))
+    assert agreement.support < 0.1
+    same = recognition.compare_submaps(small, submap(room(3, 3)), np.eye(4))
+    assert same.support == 1.0 and same.overlap == 1.0
+
+
+def test_rooms_laid_over_one_another_are_told_as_a_fold():
+    poses = planar_poses([[0, 0], [50, 0], [0.5, 0]], [0, 0, 0])
+    way_m = np.array([0.0, 50.0, 99.5])
+    sound = [submap(room(6, 6), 0), submap(room(6, 6), 1), submap(room(6, 6), 0)]
+    assert folds.find_folds(sound[:2], poses, way_m) == []
+    folded = [submap(room(6, 6), 0), submap(room(6, 6), 1), submap(room(3, 3), 2)]
+    (sentence,) = folds.find_folds(folded, poses, way_m)
+    assert "1 of 1 places" in sentence and "folded" in sentence
+
+
+def test_parts_without_a_tie_are_told():
+    def ties(*pairs):
+        return folds.find_loose_parts(8, *np.array(pairs, np.int64).T)
+
+    chain = [(row + 1, row) for row in range(7)]
+    assert ties(*chain) == []
+    (sentence,) = ties(*chain[:4], *chain[5:])
+    assert "3 of 8 scans, in 1 parts" in sentence
+    # the last two scans alone displace next to nothing
+    assert ties(*chain[:5], chain[6]) == []
