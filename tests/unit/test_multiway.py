@@ -25,8 +25,13 @@ def test_no_pair_is_linked_twice():
     """Across anchors a scan may have been registered against one far back: here the last one."""
     there_and_back = np.tile(np.eye(4), (20, 1, 1))
     there_and_back[:, 0, 3] = [*range(10), *range(9, -1, -1)]
-    near = SimpleNamespace(loop_radius_m=0.5, loop_apart=2, loops_per_scan=4)
+    near = SimpleNamespace(
+        loop_radius_m=0.5, loop_apart=2, loops_per_scan=4, loop_step_planar_m=0.5, loop_step_m=9
+    )
     in_sequence = {(row, row - 1) for row in range(1, 20)}
     expected = [(row, 19 - row) for row in range(11, 20)]
-    assert multiway._chosen(there_and_back, in_sequence, 0.5, near) == expected
-    assert multiway._chosen(there_and_back, in_sequence | {(19, 0)}, 0.5, near) == expected[:-1]
+    assert multiway.choose_pairs(there_and_back, in_sequence, near, planar=True) == expected
+    assert (
+        multiway.choose_pairs(there_and_back, in_sequence | {(19, 0)}, near, planar=True)
+        == expected[:-1]
+    )

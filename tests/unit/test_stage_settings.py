@@ -34,6 +34,7 @@ OF_THE_WORKFLOW = {
     "plan.export.formats",
     "simulate.building",
     "simulate.recording",
+    "advanced.jobs.chunk_gb",
 }
 
 
@@ -44,6 +45,7 @@ def received(settings):
     return {
         **{name: select.select_section(settings, name) for name in SECTIONS},
         "stop": select.select_section(settings, "selection", "stop"),
+        "playing": select.select_section(settings, "selection", "playing"),
         "drawing": select.select_drawing(settings),
         "files": select.select_files(settings),
         "cloud": select.select_section(settings, "plan", "export", "cloud"),
@@ -120,8 +122,8 @@ def keywords(stage):
     ("stage", "selected", "others"),
     [
         (measure_crispness, stage_settings.select_crispness(SETTINGS), set()),
-        (build_hulls, stage_settings.select_hulls(SETTINGS), {"threads"}),
-        (simulate_survey, stage_settings.select_simulation(SETTINGS), {"threads"}),
+        (build_hulls, stage_settings.select_hulls(SETTINGS), {"threads", "chunk"}),
+        (simulate_survey, stage_settings.select_simulation(SETTINGS), {"threads", "start_ns"}),
         (interpolate_poses, stage_settings.select_section(SETTINGS, "poses"), {"moved"}),
     ],
 )

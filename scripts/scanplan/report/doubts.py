@@ -55,6 +55,14 @@ def list_doubts(plan: FloorPlan) -> list[Doubt]:
     ]
 
 
+def list_unrated(plan: FloorPlan) -> list[str]:
+    """Return in a sentence why no element has a probability, where none has; else nothing."""
+    known = plan.walls.get("p_true", np.zeros(1))
+    if len(known) == 0 or np.isfinite(known).any():
+        return []
+    return ["how likely elements are is not known, as no heights above the floor were seen"]
+
+
 def explain_doubt(kind: str, columns: Columns, row: int) -> str:
     """Return why a row of a table of walls, openings or rooms is doubtful; nothing if it is not."""
     reasons: list[str] = []

@@ -88,6 +88,7 @@ def report_page(
         contradictions=[
             *plan.doubted.damage,
             *wording.list_contradictions(plan, survey.prediction),
+            *doubts.list_unrated(plan),
         ],
         facts=wording.head_figures(plan, survey),
         links=result_links.link_results(run.results),

@@ -9,7 +9,7 @@ import numpy as np
 
 from scanplan.plan import floorplan
 from scanplan.report import page_tables, wording
-from scanplan.report.doubts import list_doubts
+from scanplan.report.doubts import list_doubts, list_unrated
 from scanplan.report.facts import SurveyFacts
 from scanplan.types import FloatArray
 
@@ -42,6 +42,7 @@ def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
     doubts = [
         *wording.list_contradictions(plan, survey.prediction),
         *_name_doubts(plan),
+        *list_unrated(plan),
     ]
     n_kept, n_candidates = (int(f(survey.registration["kept"])) for f in (np.sum, np.size))
     n_recorded = survey.poses["scan_id"][-1] + 1  # a few more may follow the last candidate

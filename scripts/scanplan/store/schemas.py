@@ -47,7 +47,7 @@ MOTION = Schema(
     1,
     {
         "t_ns": "int64",
-        "furniture": "int32",
+        "piece": "int32",
         **_POSE,
         "time_scale": "float64",
         "time_shift_s": "float64",

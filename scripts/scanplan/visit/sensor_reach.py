@@ -52,10 +52,12 @@ def measure_reach(scans: Iterable[tuple[FloatArray, FloatArray]], floor_z_m: flo
     is_seen = np.zeros(_SECTORS, bool)
     for xyz_m, map_from_sensor in scans:
         from_sensor_m = (xyz_m - map_from_sensor[:3, 3]) @ map_from_sensor[:3, :3]
-        azimuth_rad = np.sort(np.arctan2(from_sensor_m[:, 1], from_sensor_m[:, 0]))
+        azimuth_rad = np.arctan2(from_sensor_m[:, 1], from_sensor_m[:, 0])
+        order = np.argsort(azimuth_rad, kind="stable")
+        azimuth_rad, from_sensor_m = azimuth_rad[order], from_sensor_m[order]
         range_m = np.hypot(from_sensor_m[:, 0], from_sensor_m[:, 1])
         farthest_m = max(farthest_m, float(range_m.max(initial=0.0)))
-        spacings_rad.append(column_spacing_rad(azimuth_rad))
+        spacings_rad.append(column_spacing_rad(azimuth_rad, from_sensor_m))
         heights_m.append(map_from_sensor[2, 3] - floor_z_m)
         sector = ((azimuth_rad + np.pi) / (2 * np.pi) * _SECTORS).astype(np.int64)
         is_seen[np.minimum(sector, _SECTORS - 1)] = True
