@@ -52,8 +52,10 @@ SETTINGS = {
     },
     "errors": EXACT,
     "drive": {"speed_m_s": 0.6, "turn_rate_deg_s": 60.0},
+    "odometry": {"scale_share": 0.01, "drift_deg_per_m": 0.0},
     "localiser": {
         **SURE,
+        "present": True,
         "drift_time_s": 20.0,
         "max_jump_m": 0.3,
         "update_distance_m": 0.25,
