@@ -1,0 +1,51 @@
+# by the stems of their tables, on the first survey of the rooms
+FURTHER_EXPERIMENTS = (
+    "budgets",
+    "quality_times",
+    "outliers",
+    "registrability",
+    "live_choice",
+    "sensitivity",
+)
+# what the further experiments read of a survey of the rooms
+SURVEYED = {
+    "scans": "results/{dataset}/scans.parquet",
+    "walls": "results/{dataset}/walls/cluster_ransac.parquet",
+    "registration": "results/{dataset}/registration.parquet",
+    "truth": true_faces,
+    "true_poses": true_poses,
+}
+
+
+def orders_by(*methods):
+    """The orders of a survey's scans, by method."""
+    return {
+        method: f"results/{{dataset}}/selection/{method}.parquet" for method in methods
+    }
+
+
+def settings_of_search(*parts):
+    """A param function: settings of what is measured again, by what they are of."""
+    select = {
+        "extraction": lambda settings: stage_settings.select_extractor(
+            settings, "cluster_ransac"
+        ),
+        "plan": stage_settings.select_plan,
+        "hulls": stage_settings.select_hulls,
+        "visibility": stage_settings.select_visibility,
+        "simulation": stage_settings.select_simulation,
+        "cells": lambda settings: stage_settings.select_wall_cells(
+            settings, methods.WALL_LIMITS
+        ),
+    }
+
+    def look_up(wildcards):
+        name = wildcards.get("dataset", THESIS[experiments.ROOMS][0].name)
+        return {part: select[part](DATASETS[name].settings) for part in parts}
+
+    return look_up
+
+
+def thesis_setting(key):
+    """A setting of the experiments."""
+    return THESIS[experiments.ROOMS][0].settings["thesis"][key] if THESIS else None
