@@ -14,7 +14,7 @@ from helpers.project_copy import TINY, Project
 from helpers.slurm_node import SlurmNode
 from scanplan.project.run import slurm_jobs
 
-pytestmark = [pytest.mark.slurm, pytest.mark.xdist_group("slurm")]
+pytestmark = pytest.mark.slurm
 SEEDS = (1, 2, 3)
 PROFILE = ("--workflow-profile", "workflow/profiles/slurm")
 POSES = "results/floor_1/poses.parquet"

@@ -4,7 +4,7 @@ import pytest
 
 from helpers.project_copy import TINY, Project
 
-pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("building")]
+pytestmark = pytest.mark.workflow
 BUILDING = """\
 name: Town hall
 storeys:

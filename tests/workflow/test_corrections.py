@@ -7,7 +7,7 @@ import pytest
 from helpers.project_copy import TINY, Project
 from scanplan.store import schemas, tables
 
-pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("corrections")]
+pytestmark = pytest.mark.workflow
 READERS = {
     *("validate_plan", "rate_plan", "plan_next_visit", "export_plan", "export_files"),
     *("draw_walls", "draw_validation", "write_report"),

@@ -9,7 +9,7 @@ import pytest
 
 from helpers.project_copy import TINY
 
-pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("module")]
+pytestmark = pytest.mark.workflow
 CALLER = """
 module scanplan:
     snakefile:

@@ -7,7 +7,7 @@ import yaml
 
 from helpers.project_copy import Project
 
-pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("module")]
+pytestmark = pytest.mark.workflow
 
 
 @pytest.fixture

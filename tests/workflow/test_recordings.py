@@ -13,10 +13,6 @@ from scanplan.store import tables
 pytestmark = [pytest.mark.workflow, pytest.mark.recordings]
 
 
-# tests that share a run; the others may be spread over processes
-of_one_run = pytest.mark.xdist_group("recordings")
-
-
 @pytest.fixture(scope="module")
 def project(project_root, recordings_dir, tmp_path_factory):
     """Make everything of a recording, and what tells the same one in ROS 2 from it."""
@@ -42,7 +38,6 @@ def plan(project, name):
     ]
 
 
-@of_one_run
 def test_ros1_and_ros2_give_the_same_scans_and_the_same_plan(project):
     folders = [project.folder / f"results/jackal_ros{n}" for n in (1, 2)]
     assert (folders[0] / "scans.parquet").read_bytes() == (
@@ -53,7 +48,6 @@ def test_ros1_and_ros2_give_the_same_scans_and_the_same_plan(project):
     ]
 
 
-@of_one_run
 def test_the_arena_has_its_six_walls_once_each(project):
     """The arena is an L: six walls whose ends meet in pairs, none beside another."""
     walls = plan(project, "jackal_ros1")
@@ -65,7 +59,6 @@ def test_the_arena_has_its_six_walls_once_each(project):
             assert first.buffer(0.3, cap_style="flat").intersection(second).length < 0.5
 
 
-@of_one_run
 def test_returns_lie_on_the_walls(project):
     folder = project.folder / "results/jackal_ros1"
     points = np.concatenate(

@@ -6,7 +6,7 @@ import pytest
 from helpers.project_copy import TINY, Project
 from scanplan.store import schemas, tables
 
-pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("selected_bag")]
+pytestmark = pytest.mark.workflow
 PLANS = {"walls": schemas.PLAN_WALLS, "openings": schemas.OPENINGS, "rooms": schemas.ROOMS}
 
 

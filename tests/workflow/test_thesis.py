@@ -9,7 +9,7 @@ import pytest
 from helpers.project_copy import Project
 from scanplan.lab.thesis.shown_figures import FIGURES
 
-pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("thesis")]
+pytestmark = pytest.mark.workflow
 TINY_THESIS = "tests/data/tiny_thesis.yaml"
 
 

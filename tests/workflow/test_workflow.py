@@ -16,7 +16,7 @@ from scanplan.plan import planning
 from scanplan.project import stage_settings
 
 # the tests share one run, which each leaves as it was
-pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("workflow")]
+pytestmark = pytest.mark.workflow
 
 
 @pytest.fixture(scope="module")

@@ -75,7 +75,7 @@ def reading_settings(survey: BagSurvey, reading: Settings) -> dict[str, Any]:
     ----------
     survey : recorded_survey.BagSurvey
     reading : dict
-        Section `input` of the survey's own settings.
+        What poses depend on of the survey's own settings, see `stage_settings.select_topics`.
 
     Returns
     -------
@@ -83,8 +83,10 @@ def reading_settings(survey: BagSurvey, reading: Settings) -> dict[str, Any]:
         Of the sections input, poses, registration and selection.
     """
     own_topics = {"cloud_topic": survey.list_topics().cloud.name, "pose_topic": POSE_TOPIC}
+    # found anew: the poses that are written are registered ones
+    sound = {key: value for key, value in without_damage(reading).items() if key != "pose_kind"}
     return {
-        "input": {**without_damage(reading), **own_topics},
+        "input": sound | own_topics,
         "poses": {"keep_every": 1},
         "registration": {"icp_method": "none"},
         "selection": {"stop": {"n_scans": None, "area_share": None}},
