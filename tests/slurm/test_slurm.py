@@ -132,7 +132,13 @@ def test_what_a_lost_node_had_is_made_again(floors, node):
 def test_without_the_plugin_the_profile_says_what_to_install(floors):
     hidden = floors.folder / "hidden"
     hidden.mkdir()
-    hook = "import sys\nsys.modules['snakemake_executor_plugin_slurm'] = None\n"
+    # as Snakemake looks for its plugins, installed ones too
+    hook = (
+        "import pkgutil, sys\nsys.modules['snakemake_executor_plugin_slurm'] = None\n"
+        "listed = pkgutil.iter_modules\n"
+        "pkgutil.iter_modules = lambda *given, **more: (module for module in"
+        " listed(*given, **more) if module.name != 'snakemake_executor_plugin_slurm')\n"
+    )
     (hidden / "sitecustomize.py").write_text(hook)
     done = subprocess.run(
         floors.command("-n", dataset="floor_1.yaml"),
