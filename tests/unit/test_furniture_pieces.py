@@ -51,8 +51,8 @@ def test_what_one_scan_shows_is_left_out():
 
 @pytest.mark.parametrize(
     "shift",
-    [(0, 0.5, 0), (0, 0, 2.0), (0, 0, -0.85), (0, 3.0, 0)],
-    ids=["at the wall", "above furniture", "floor", "outside"],
+    [(0, 0.5, 0), (0, 0.73, 0), (0, 0, 2.0), (0, 0, -0.85), (0, 3.0, 0)],
+    ids=["at the wall", "the reveal of a window", "above furniture", "floor", "outside"],
 )
 def test_walls_floor_and_what_is_high_or_outside_are_no_furniture(shift):
     points = cupboard([0.9, 1.0]) + shift

@@ -87,7 +87,8 @@ def find_pieces(
         The largest first.
     """
     solid = shapely.union_all(shapely.buffer(np.array(walls, object), FACE_M))
-    ground = shapely.difference(shapely.union_all(list(rooms)).buffer(CORNER_M), solid)
+    inside = shapely.union_all(list(rooms))
+    ground = shapely.difference(inside.buffer(CORNER_M), solid)
     if ground.is_empty:
         return []
     # `fill_polygons` asks for a column beyond
@@ -109,7 +110,10 @@ def find_pieces(
         (
             piece
             for piece in found
-            if piece.n_points >= ENOUGH_RAYS and piece.n_scans >= LEAST_SCANS
+            if piece.n_points >= ENOUGH_RAYS
+            and piece.n_scans >= LEAST_SCANS
+            # the reveals of windows lie beyond the outline of their room
+            and piece.outline.intersects(inside)
         ),
         key=lambda piece: (-piece.outline.area, *piece.outline.bounds),
     )
