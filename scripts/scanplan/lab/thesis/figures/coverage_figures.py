@@ -61,7 +61,7 @@ def draw_hulls_figure(
         axes.plot(*place_m, "o", ms=4, mfc="white", mec="black", zorder=3)
         axes.set_title(f"{title}: {shapely.union_all(shapes).area:.0f} m²", fontsize=9)
         axes.set_aspect("equal")
-        top_view.strip_frame(axes)
+        top_view.name_axes(axes, "x (m)", "y (m)" if axes is frames[0] else "")
     figure.dpi = 200
     return figure
 
