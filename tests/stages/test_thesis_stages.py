@@ -215,6 +215,7 @@ def test_every_task_is_timed(survey, tmp_path):
         n_clusters=[3, 1],
         timed_scans=3,
         merge=stage_settings.select_merging(SETTINGS),
+        whole=True,
     )
     found = tables.read_table(tmp_path / "times.parquet", schemas.TIMES)
     extractors = {"plain_clusters", "plain_ransac"}

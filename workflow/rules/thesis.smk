@@ -106,6 +106,7 @@ rule time_stages:
         n_clusters=section("thesis", "n_clusters"),
         timed_scans=section("thesis", "timed_scans"),
         merge=setting(stage_settings.select_merging),
+        whole=is_drive,
     script:
         "../../scripts/time_stages.py"
 

@@ -225,7 +225,7 @@ def _decimals(value: float) -> int:
 def _claim_row(rows: pd.DataFrame, claim: Claim) -> ClaimRow:
     unit_of = rows.groupby("quantity")["unit"].first()
     measured = {
-        quantity: format_values(values.to_numpy(), unit_of[quantity])
+        quantity: format_values(_known(values), unit_of[quantity])
         for quantity, values in rows.groupby("quantity")["value"]
         if quantity != MARGIN
     }
@@ -247,6 +247,12 @@ def _claim_row(rows: pd.DataFrame, claim: Claim) -> ClaimRow:
         _format_margin(margins, unit_of.get(MARGIN, NUMBER)),
         _fill_in(claim.otherwise, measured) if verdict.css in ("no", "some") else "",
     )
+
+
+def _known(values: pd.Series) -> FloatArray:
+    """Return the values of the seeds that have one; all, where none has."""
+    known = values.dropna()
+    return (known if len(known) else values).to_numpy()
 
 
 def _format_margin(margins: FloatArray, unit: str) -> str:
