@@ -405,7 +405,9 @@ def open_files(survey, *methods):
     files = {name: survey / f"{name}.parquet" for name in ("scans", "registration")}
     files |= {"walls": survey / "walls/cluster_ransac.parquet"}
     files |= {"truth": survey / "truth.geojson", "true_poses": survey / "truth_poses.tum"}
-    files |= {method: survey / f"selection/{method}.parquet" for method in methods}
+    files |= {f"order_{method}": survey / f"selection/{method}.parquet" for method in methods}
+    # a table that is called like a method is none
+    files |= {"visibility": survey / "visibility.parquet"}
     return open_survey_files(files, max_range_m=100.0, bitmap_cell_m=0.05)
 
 

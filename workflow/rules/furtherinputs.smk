@@ -27,9 +27,10 @@ def evaluation_of_survey(wildcards):
 
 
 def orders_by(*methods):
-    """The orders of a survey's scans, by method."""
+    """The orders of a survey's scans; some tables are called like a method."""
     return {
-        method: f"results/{{dataset}}/selection/{method}.parquet" for method in methods
+        f"order_{method}": f"results/{{dataset}}/selection/{method}.parquet"
+        for method in methods
     }
 
 

@@ -1,6 +1,6 @@
 """The files of a survey that experiments are made on, opened."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from scanplan.lab.evaluation.survey_findings import SurveyTruth, match_walls, read_survey_truth
@@ -46,8 +46,8 @@ def open_survey_files(
     Parameters
     ----------
     files : dict of str to path-like
-        `scans`, `walls`, `registration`, `truth` and `true_poses`; selection/<method>.parquet by
-        method; others are not looked at.
+        `scans`, `walls`, `registration`, `truth` and `true_poses`; selection/<method>.parquet as
+        `order_<method>`; others are not looked at.
     max_range_m, bitmap_cell_m : float
         How far a scan can see; edge of a bitmap's cell.
 
@@ -62,13 +62,10 @@ def open_survey_files(
     )
     known = truth.registered
     orders = {
-        method: registered_scans.read_order_rows(files[method], known, registration)
-        for method in _known_methods(files)
+        method: registered_scans.read_order_rows(files[f"order_{method}"], known, registration)
+        for method in METHODS
+        if f"order_{method}" in files
     }
     walls = registered_scans.read_wall_segments(files["walls"], known, registration)
     store = tables.ScanStore(files["scans"])
     return OpenedSurvey(truth, store, walls, orders, bitmap_cell_m)
-
-
-def _known_methods(files: Iterable[str]) -> list[str]:
-    return [method for method in METHODS if method in files]
