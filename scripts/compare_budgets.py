@@ -1,47 +1,39 @@
 """Compare whole scans with all scans thinned, at the same number of points."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from scanplan.lab.beyond import measurements, point_budgets
-from scanplan.lab.beyond.survey_files import open_survey_files
 from scanplan.lab.beyond.wall_search import make_wall_search
+from scanplan.lab.thesis.survey_files import OpenedSurvey, open_survey_files
 from scanplan.stage import log
 from scanplan.types import FilePath, Settings
 
 
 def compare_budgets(
-    files: Mapping[str, FilePath],
+    survey: OpenedSurvey,
     output: FilePath,
     *,
     extraction: Settings,
     sizes: Sequence[int],
-    max_range_m: float,
-    bitmap_cell_m: float,
     seed: int,
 ) -> None:
     """Write what either finds of the walls.
 
     Parameters
     ----------
-    files : dict of str to path-like
-        See `survey_files.open_survey_files`.
+    survey : survey_files.OpenedSurvey
     output : path-like
         thesis/budgets.parquet, to write.
     extraction : dict
         The settings of cluster RANSAC.
     sizes : sequence of int
         A budget is that of so many scans.
-    max_range_m, bitmap_cell_m : float
-        How far a scan can see; edge of a bitmap's cell.
     seed : int
         Of the points drawn at random.
     """
-    survey = open_survey_files(files, max_range_m=max_range_m)
     search = make_wall_search(extraction, planar=survey.store.planar)
     told = log.report_progress(
-        point_budgets.compare_budgets(
-            survey, search, sizes, bitmap_cell_m=bitmap_cell_m, seed=seed
-        ),
+        point_budgets.compare_budgets(survey, search, sizes, seed=seed),
         "compare_budgets",
         total=len(sizes),
         unit="budgets",
@@ -54,11 +46,9 @@ def compare_budgets(
 if __name__ == "__main__":
     with log.log_to_file(snakemake.log[0]):
         compare_budgets(
-            dict(snakemake.input.items()),
+            open_survey_files(dict(snakemake.input.items()), **snakemake.params.evaluation),
             snakemake.output.budgets,
             extraction=snakemake.params.extraction,
             sizes=snakemake.params.sizes,
-            max_range_m=snakemake.params.max_range_m,
             seed=snakemake.params.seed,
-            **snakemake.params.evaluation,
         )

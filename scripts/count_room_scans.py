@@ -15,7 +15,6 @@ def count_room_scans(
     n_rooms: Sequence[int],
     seed: int,
     settings: Mapping[str, Settings],
-    bitmap_cell_m: float,
 ) -> None:
     """Write how many scans of every order find 95 % of the walls.
 
@@ -28,15 +27,11 @@ def count_room_scans(
     settings : dict
         `simulation`, `extraction` and `cells`: the settings of the survey, of cluster RANSAC, and
         of the wall that scans show.
-    bitmap_cell_m : float
-        Edge of a bitmap's cell.
     """
     search = make_wall_search(settings["extraction"], planar=False)
     cells = WallCellSettings(**settings["cells"])
     floors = (
-        room_counts.measure_floor(
-            number, seed, settings["simulation"], search, cells, bitmap_cell_m=bitmap_cell_m
-        )
+        room_counts.measure_floor(number, seed, settings["simulation"], search, cells)
         for number in n_rooms
     )
     told = log.report_progress(floors, "count_room_scans", total=len(n_rooms), unit="floors")
@@ -50,5 +45,4 @@ if __name__ == "__main__":
             n_rooms=snakemake.params.n_rooms,
             seed=int(snakemake.wildcards.floor_seed),
             settings=snakemake.params.settings,
-            **snakemake.params.evaluation,
         )

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from scanplan.lab.beyond import measurements, outliers
-from scanplan.lab.beyond.survey_files import open_survey_files
+from scanplan.lab.thesis.survey_files import OpenedSurvey, open_survey_files
 from scanplan.lab.thesis.timing import spread_rows
 from scanplan.rays.visibility_polygon import VisibilitySettings
 from scanplan.selection.wall_cells import WallCellSettings
@@ -12,23 +12,20 @@ from scanplan.types import FilePath, Settings
 
 
 def measure_outliers(
-    files: Mapping[str, FilePath],
+    survey: OpenedSurvey,
     output: FilePath,
     *,
     settings: Mapping[str, Settings],
     shares: Sequence[float],
     n_scans: int,
     n_selected: int,
-    max_range_m: float,
-    bitmap_cell_m: float,
     seed: int,
 ) -> None:
     """Write areas, and the walls that first scans find, by kind and share of outliers.
 
     Parameters
     ----------
-    files : dict of str to path-like
-        See `survey_files.open_survey_files`.
+    survey : survey_files.OpenedSurvey
     output : path-like
         thesis/outliers.parquet, to write.
     settings : dict
@@ -36,15 +33,12 @@ def measure_outliers(
     shares : sequence of float
     n_scans, n_selected : int
         Scans, spread over the survey, to choose from, and those chosen.
-    max_range_m, bitmap_cell_m : float
-        How far a scan can see; edge of a bitmap's cell.
     seed : int
     """
-    survey = open_survey_files(files, max_range_m=max_range_m)
     scans = list(survey.store.scans(spread_rows(survey.store.scan_ids, n_scans)))
     measured = outliers.measure_outliers(
         survey.truth,
-        survey.match_walls(bitmap_cell_m),
+        survey.match_walls(),
         scans,
         shares,
         n_selected=n_selected,
@@ -61,13 +55,11 @@ def measure_outliers(
 if __name__ == "__main__":
     with log.log_to_file(snakemake.log[0]):
         measure_outliers(
-            dict(snakemake.input.items()),
+            open_survey_files(dict(snakemake.input.items()), **snakemake.params.evaluation),
             snakemake.output.outliers,
             settings=snakemake.params.settings,
             shares=snakemake.params.shares,
             n_scans=snakemake.params.n_scans,
             n_selected=snakemake.params.n_selected,
-            max_range_m=snakemake.params.max_range_m,
             seed=snakemake.params.seed,
-            **snakemake.params.evaluation,
         )

@@ -1,41 +1,36 @@
 """Measure whether chosen scans could be registered on their own."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from scanplan.lab.beyond import measurements, registrability
-from scanplan.lab.beyond.survey_files import open_survey_files
+from scanplan.lab.thesis.survey_files import OpenedSurvey, open_survey_files
 from scanplan.registration.registration_settings import registration_settings
 from scanplan.stage import log
 from scanplan.types import FilePath, Settings
 
 
 def measure_registrability(
-    files: Mapping[str, FilePath],
+    survey: OpenedSurvey,
     output: FilePath,
     *,
     registration: Settings,
     sizes: Sequence[int],
-    max_range_m: float,
     seed: int,
 ) -> None:
     """Write how the first scans of orders hang together.
 
     Parameters
     ----------
-    files : dict of str to path-like
-        See `survey_files.open_survey_files`.
+    survey : survey_files.OpenedSurvey
     output : path-like
         thesis/registrability.parquet, to write.
     registration : dict
         Section `registration`.
     sizes : sequence of int
         Numbers of scans; all of them, too, are measured.
-    max_range_m : float
-        How far a scan can see.
     seed : int
         Of the errors of the localiser.
     """
-    survey = open_survey_files(files, max_range_m=max_range_m)
     poses = survey.truth.registered.map_from_sensor
     limits = registration_settings(registration).limits
     subsets = registrability.SubsetRegistration(survey.store, poses, limits, seed)
@@ -49,10 +44,9 @@ def measure_registrability(
 if __name__ == "__main__":
     with log.log_to_file(snakemake.log[0]):
         measure_registrability(
-            dict(snakemake.input.items()),
+            open_survey_files(dict(snakemake.input.items()), **snakemake.params.evaluation),
             snakemake.output.registrability,
             registration=snakemake.params.registration,
             sizes=snakemake.params.sizes,
-            max_range_m=snakemake.params.max_range_m,
             seed=snakemake.params.seed,
         )

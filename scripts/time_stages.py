@@ -21,7 +21,7 @@ from scanplan.types import FilePath, Settings
 
 _EXTRACTORS = {PLAIN_CLUSTERS: "thesis_cluster_ransac", PLAIN: "thesis_iterative_ransac"}
 """Task to its extractor, and whose settings it has."""
-_FEWER = 5  # times as few scans, where a call for every number of clusters or points is long
+_FEWER = 5  # times as few scans, where a call for every number of points is long
 
 
 def time_stages(
@@ -36,9 +36,11 @@ def time_stages(
     n_clusters: Sequence[int],
     timed_scans: int,
     merge: Settings,
+    whole: bool,
 ) -> None:
-    """Write run times of cluster and iterative RANSAC as in the thesis, and of hulls and orders.
+    """Write run times of hulls and of cluster RANSAC, and of all else that is claimed of a drive.
 
+    That is iterative RANSAC as in the thesis, both extractors on fewer points, orders, and merging.
     They differ from run to run.
 
     Parameters
@@ -53,33 +55,37 @@ def time_stages(
         `sample_size`, `radius` and `seed` of `hulls.make_cluster_hulls`.
     n_clusters : sequence of int
     timed_scans : int
-        On how many scans, spread over the survey; clusters and thinned scans on a part of these.
+        On how many scans, spread over the survey, extractors are timed; thinned scans on a part of
+        these.
     merge : dict
         See `merging.MergeSettings`.
+    whole : bool
+        Whether to time what is claimed of a drive alone, too.
     """
     store = tables.ScanStore(scans)
-    columns = tables.read_table(built, schemas.HULLS)
-    n_scans = len(store.scan_ids)
-    # even steps of a power law
-    sizes = np.unique(np.geomspace(min(10, n_scans), n_scans, 14).round().astype(int)).tolist()
     timed_ids = timing.spread_rows(store.scan_ids, timed_scans)
-    few_ids = timing.spread_rows(timed_ids, max(timed_scans // _FEWER, 2))
+    # of the same number for every seed: calls of milliseconds are not steady
+    hull_ids = timing.spread_rows(store.scan_ids, 18)
     most = [max(n_clusters)]
     unsampled = {**hulls, "sample_size": np.iinfo(np.int32).max}
     times = [
-        timing.time_selection(columns, sizes),
-        timing.time_clusters(BUILDING, store, few_ids, sorted(n_clusters), **hulls),
-        timing.time_clusters(SAMPLED, store, few_ids, most, **hulls),
-        timing.time_clusters(UNSAMPLED, store, few_ids, most, **unsampled),
-        timing.time_merging(
-            tables.read_table(segments, schemas.WALLS, allow_empty=True), MergeSettings(**merge)
-        ),
+        timing.time_clusters(BUILDING, store, hull_ids, sorted(n_clusters), **hulls),
+        timing.time_clusters(SAMPLED, store, hull_ids, most, **hulls),
+        timing.time_clusters(UNSAMPLED, store, hull_ids, most, **unsampled),
     ]
-    for task, name in _EXTRACTORS.items():
+    for task in _EXTRACTORS if whole else [PLAIN_CLUSTERS]:
+        name = _EXTRACTORS[task]
         calls = (task, EXTRACTORS[name], store)
         of_task = (walls[name], registration)
         times.append(timing.time_extractor(*calls, timed_ids, *of_task))
-        times.append(timing.time_by_points(*calls, few_ids, *of_task))
+        if whole:
+            few_ids = timing.spread_rows(timed_ids, max(timed_scans // _FEWER, 2))
+            times.append(timing.time_by_points(*calls, few_ids, *of_task))
+    if whole:
+        columns = tables.read_table(built, schemas.HULLS)
+        found = tables.read_table(segments, schemas.WALLS, allow_empty=True)
+        times.append(timing.time_selection(columns, timing.list_sizes(len(store.scan_ids))))
+        times.append(timing.time_merging(found, MergeSettings(**merge)))
     rows = list(log.report_progress(chain.from_iterable(times), "time_stages", unit="times"))
     rows.sort(key=lambda row: (row["task"], row["size"], row["item"]))
     times_columns = {name: [row[name] for row in rows] for name in schemas.TIMES.columns}
@@ -101,4 +107,5 @@ if __name__ == "__main__":
             n_clusters=snakemake.params.n_clusters,
             timed_scans=snakemake.params.timed_scans,
             merge=snakemake.params.merge,
+            whole=snakemake.params.whole,
         )

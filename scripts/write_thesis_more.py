@@ -6,7 +6,7 @@ from pathlib import Path
 import pandas as pd
 
 from scanplan.lab.beyond import measurements
-from scanplan.lab.beyond.experiments import EXPERIMENTS
+from scanplan.lab.beyond.shown.experiments import EXPERIMENTS
 from scanplan.lab.thesis.figures import more_figures
 from scanplan.lab.thesis.more_page import more_page
 from scanplan.stage import figure_files, log

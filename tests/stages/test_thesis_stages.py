@@ -32,16 +32,17 @@ from measure_sensitivity import measure_sensitivity
 from measure_surrogates import measure_surrogates
 from measure_unevenness import measure_unevenness
 from scanplan.lab.beyond import live_choice, point_budgets, room_counts
-from scanplan.lab.beyond.experiments import EXPERIMENTS
 from scanplan.lab.beyond.measurements import (
     Measurement,
     mean_by_level,
     read_measurements,
     write_measurements,
 )
+from scanplan.lab.beyond.shown.experiments import EXPERIMENTS
 from scanplan.lab.thesis import premises
 from scanplan.lab.thesis.figures import drive_figures
 from scanplan.lab.thesis.shown_figures import FIGURES
+from scanplan.lab.thesis.survey_files import open_survey_files
 from scanplan.project import stage_settings
 from scanplan.selection.methods import WALL_LIMITS
 from scanplan.store import schemas, tables
@@ -158,18 +159,14 @@ def test_of_a_room_that_every_scan_sees_nothing_is_lost(survey, tmp_path):
 
 
 def test_premises_are_measured_scan_by_scan_and_draw_by_draw(survey, tmp_path):
-    inputs = [survey / name for name in ("scans.parquet", "walls/cluster_ransac.parquet")]
-    inputs += [survey / name for name in ("registration.parquet", "truth.geojson")]
+    opened = open_files(survey)
     found = []
     for name in ("first", "second"):
         output = tmp_path / f"{name}.parquet"
         measure_premises(
-            *inputs,
-            survey / "truth_poses.tum",
+            opened,
             output,
             extraction=stage_settings.select_extractor(SETTINGS, "cluster_ransac"),
-            max_range_m=100.0,
-            bitmap_cell_m=0.05,
             n_added=4,
         )
         found.append(output.read_bytes())
@@ -218,6 +215,7 @@ def test_every_task_is_timed(survey, tmp_path):
         n_clusters=[3, 1],
         timed_scans=3,
         merge=stage_settings.select_merging(SETTINGS),
+        whole=True,
     )
     found = tables.read_table(tmp_path / "times.parquet", schemas.TIMES)
     extractors = {"plain_clusters", "plain_ransac"}
@@ -384,13 +382,13 @@ def test_experiments_beyond_the_thesis_stand_on_their_page(survey, tmp_path, pro
     observations = survey / "observations.parquet"
     choose_by_confidence(observations, *known, chosen, cell_m=0.25, sigma_m=0.06, **truth)
     covers = {name: survey / f"{name}.parquet" for name in ("observations", "visibility", "hulls")}
-    measure_surrogates(covers, *known, stood, n_added=2, seed=1, **truth)
+    measure_surrogates(covers, open_files(survey), stood, n_added=2, seed=1)
     found = tables.read_table(chosen, schemas.EVALUATION)
     assert set(found["method"]) == {"confidence", "oracle"} and found["k"].max() == len(SCAN_IDS)
     ratios = tables.read_table(stood, schemas.SURROGATES)["ratio"]
     # covered areas and lengths are submodular
     assert (ratios[np.isfinite(ratios)] >= 1 - 1e-9).all()
-    measured = further_experiments(survey, tmp_path, truth)
+    measured = further_experiments(survey, tmp_path)
     folder = project_root / "workflow/report/page"
     page = [folder / name for name in ("thesis_more.html.j2", "thesis.css")]
     output = tmp_path / "more.html"
@@ -402,14 +400,23 @@ def test_experiments_beyond_the_thesis_stand_on_their_page(survey, tmp_path, pro
         assert f"<h2>{experiment.title}</h2>" in text
 
 
-def further_experiments(survey, folder, truth):
-    """The tables of the further experiments on the made-up room, by name."""
+def open_files(survey, *methods):
+    """The made-up room as stages open it, with orders by some methods."""
     files = {name: survey / f"{name}.parquet" for name in ("scans", "registration")}
     files |= {"walls": survey / "walls/cluster_ransac.parquet"}
     files |= {"truth": survey / "truth.geojson", "true_poses": survey / "truth_poses.tum"}
-    for method in ("distance", "every_nth", "wall_length"):
+    files |= {f"order_{method}": survey / f"selection/{method}.parquet" for method in methods}
+    # a table that is called like a method is none
+    files |= {"visibility": survey / "visibility.parquet"}
+    return open_survey_files(files, max_range_m=100.0, bitmap_cell_m=0.05)
+
+
+def further_experiments(survey, folder):
+    """The tables of the further experiments on the made-up room, by name."""
+    methods = ("distance", "every_nth", "wall_length")
+    for method in methods:
         write_selection(survey, method, SCAN_IDS)
-        files[method] = survey / f"selection/{method}.parquet"
+    opened = open_files(survey, *methods)
     extraction = stage_settings.select_extractor(SETTINGS, "cluster_ransac")
     cells = stage_settings.select_wall_cells(SETTINGS, WALL_LIMITS)
     hulls = SAMPLING | {"n_clusters": 6}
@@ -417,36 +424,32 @@ def further_experiments(survey, folder, truth):
     benchmark.write_text("s\tcpu_time\n2.5\t1.5\n")
     table = {name: folder / f"{name}.parquet" for name in EXPERIMENTS}
     search = {"extraction": extraction, "cells": cells, "hulls": hulls}
-    compare_budgets(files, table["budgets"], extraction=extraction, sizes=[1, 2], seed=1, **truth)
+    compare_budgets(opened, table["budgets"], extraction=extraction, sizes=[1, 2], seed=1)
     time_to_quality(
-        files,
+        opened,
         [benchmark],
         table["quality_times"],
         settings=search | {"plan": stage_settings.select_plan(SETTINGS)},
         sizes=[1],
-        **truth,
     )
     rows = [Measurement(case, 4, 1, room_counts.NEEDED, 5) for case in ("oracle", "distance")]
     write_measurements(table["floors"], rows)
     seen = {"visibility": stage_settings.select_visibility(SETTINGS)}
     limits = {"n_scans": 3, "n_selected": 1, "seed": 1}
-    measure_outliers(
-        files, table["outliers"], settings=search | seen, shares=[0.3], **limits, **truth
-    )
+    measure_outliers(opened, table["outliers"], settings=search | seen, shares=[0.3], **limits)
     measure_registrability(
-        files,
+        opened,
         table["registrability"],
         registration=stage_settings.select_section(SETTINGS, "registration"),
         sizes=[2],
-        max_range_m=truth["max_range_m"],
         seed=1,
     )
     observations = survey / "observations.parquet"
     live = table["live_choice"]
-    choose_live(files, observations, live, shares=[0.1, 0.5], max_cells=100, **truth)
+    choose_live(opened, observations, live, shares=[0.1, 0.5], max_cells=100)
     factors = [1.0, 2.0]
     measure_sensitivity(
-        files, table["sensitivity"], extraction=extraction, hulls=hulls, factors=factors, **truth
+        opened, table["sensitivity"], extraction=extraction, hulls=hulls, factors=factors
     )
     # every scan shows a cell of its own
     found = read_measurements([live])

@@ -8,7 +8,6 @@ import pytest
 
 from scanplan.errors import StageError
 from scanplan.lab.beyond import (
-    conclusions,
     generated_floor,
     outliers,
     point_budgets,
@@ -16,14 +15,15 @@ from scanplan.lab.beyond import (
     registrability,
     room_counts,
 )
-from scanplan.lab.beyond.experiments import EXPERIMENTS
 from scanplan.lab.beyond.measurements import Measurement, mean_by_level
+from scanplan.lab.beyond.shown import case_lines, equal_points, good_plans
+from scanplan.lab.beyond.shown.experiments import EXPERIMENTS
 from scanplan.lab.buildings import drawing_file, drawn_floor
 from scanplan.stage import run_times
 
 
 def as_table(rows):
-    return pd.DataFrame([Measurement(*row)._asdict() for row in rows])
+    return pd.DataFrame([Measurement(*row)._asdict() for row in rows]).assign(survey=0)
 
 
 # --- equal bytes
@@ -67,7 +67,7 @@ def test_plans_are_made_until_one_is_good():
     survey = SimpleNamespace(truth=truth, measure_plan=measure_plan)
     orders = {"distance": (3.0, np.arange(50))}
     rows = quality_times.time_to_quality(survey, orders, [5, 10, 20, 40], recorded_s=2.0)
-    table = pd.DataFrame([row._asdict() for of_order in rows for row in of_order])
+    table = as_table(row for of_order in rows for row in of_order)
     # the fourth is not needed; all scans are always measured
     assert made == [5, 10, 20, 50]
     seconds = table[table["quantity"] == quality_times.SECONDS].set_index(["case", "level"])[
@@ -75,7 +75,7 @@ def test_plans_are_made_until_one_is_good():
     ]
     assert seconds["distance", 20] == 2.0 + 3.0 + 10.0
     assert seconds[quality_times.ALL_SCANS, 50] == 2.0 + 25.0
-    sentence = conclusions.conclude_quality_times(table)
+    sentence = good_plans.conclude_quality_times(table)
     assert sentence.index("farthest next 15 s with 20 scans") < sentence.index("all scans 27 s")
 
 
@@ -178,9 +178,25 @@ def test_the_sentence_on_budgets_names_the_best_of_either_kind():
         (point_budgets.VOXELS, 5, 0, found, 0.25),
         (point_budgets.RANDOM_POINTS, 5, 0, found, 0.4),
     ]
-    sentence = conclusions.conclude_budgets(as_table(rows))
+    sentence = equal_points.conclude_budgets(as_table(rows))
     assert "30.0 % of the walls by whole scans (greedy by wall length)" in sentence
     assert f"40.0 % by {point_budgets.RANDOM_POINTS}" in sentence
+
+
+def test_numbers_of_several_surveys_are_told_with_their_range():
+    assert case_lines.tell_number(pd.Series([3.0, 5.0])) == "4 (3 to 5)"
+    assert case_lines.tell_share(pd.Series([0.5])) == "50.0 %"
+
+
+def test_good_plans_are_counted_survey_by_survey():
+    measured = []
+    for survey, f1 in enumerate((0.97, 0.90)):
+        rows = [("distance", 10, 0, quality_times.F1, f1)]
+        rows += [("distance", 10, 0, quality_times.SECONDS, 7.0 + survey)]
+        rows += [("distance", 10, 0, quality_times.SELECTING, 0.5)]
+        measured.append(as_table(rows).assign(survey=survey))
+    sentence = good_plans.conclude_quality_times(pd.concat(measured))
+    assert "7 s with 10 scans (selection 0.5 s, in 1 of 2 surveys)" in sentence
 
 
 def test_every_experiment_says_what_it_does():

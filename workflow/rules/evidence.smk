@@ -46,6 +46,11 @@ def seeds_of(kind):
     return [survey.settings["simulate"]["seed"] for survey in THESIS[kind]]
 
 
+def is_drive(wildcards):
+    """A param function: whether the job's survey is a drive, of which more is claimed of run times."""
+    return wildcards.dataset in [drive.name for drive in THESIS[experiments.DRIVE]]
+
+
 def first_of(kind, *files):
     """Files of the first survey of a kind, by their stems."""
     name = THESIS[kind][0].name

@@ -7,7 +7,7 @@ FURTHER_EXPERIMENTS = (
     "live_choice",
     "sensitivity",
 )
-# what the further experiments read of a survey of the rooms
+# what most experiments read of a survey, see thesis/survey_files.py
 SURVEYED = {
     "scans": "results/{dataset}/scans.parquet",
     "walls": "results/{dataset}/walls/cluster_ransac.parquet",
@@ -17,10 +17,20 @@ SURVEYED = {
 }
 
 
-def orders_by(*methods):
-    """The orders of a survey's scans, by method."""
+def evaluation_of_survey(wildcards):
+    """A param function: how far a scan sees, and the cell of bitmaps; what a survey is opened with."""
+    settings = DATASETS[wildcards.dataset].settings
     return {
-        method: f"results/{{dataset}}/selection/{method}.parquet" for method in methods
+        "max_range_m": settings["input"]["max_range_m"],
+        **settings["evaluation"],
+    }
+
+
+def orders_by(*methods):
+    """The orders of a survey's scans; some tables are called like a method."""
+    return {
+        f"order_{method}": f"results/{{dataset}}/selection/{method}.parquet"
+        for method in methods
     }
 
 

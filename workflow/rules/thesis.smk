@@ -62,11 +62,7 @@ rule measure_unevenness:
 rule measure_premises:
     """Measure whether utilities are submodular and clusters of points are one wall each."""
     input:
-        scans="results/{dataset}/scans.parquet",
-        walls="results/{dataset}/walls/cluster_ransac.parquet",
-        registration="results/{dataset}/registration.parquet",
-        truth=true_faces,
-        true_poses=true_poses,
+        **SURVEYED,
     output:
         premises="results/{dataset}/thesis/premises.parquet",
     log:
@@ -80,8 +76,7 @@ rule measure_premises:
     params:
         code=code_of("measure_premises"),
         extraction=setting(stage_settings.select_extractor, "cluster_ransac"),
-        max_range_m=section("input", "max_range_m"),
-        evaluation=section("evaluation"),
+        evaluation=evaluation_of_survey,
         n_added=stated_claims.Sizes.SUBSET,
     script:
         "../../scripts/measure_premises.py"
@@ -111,6 +106,7 @@ rule time_stages:
         n_clusters=section("thesis", "n_clusters"),
         timed_scans=section("thesis", "timed_scans"),
         merge=setting(stage_settings.select_merging),
+        whole=is_drive,
     script:
         "../../scripts/time_stages.py"
 

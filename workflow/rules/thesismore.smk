@@ -35,13 +35,10 @@ rule choose_by_confidence:
 rule measure_surrogates:
     """Measure how well what orders maximise stands for the walls found."""
     input:
+        **SURVEYED,
         observations="results/{dataset}/observations.parquet",
         visibility="results/{dataset}/visibility.parquet",
         hulls="results/{dataset}/hulls.parquet",
-        walls="results/{dataset}/walls/cluster_ransac.parquet",
-        registration="results/{dataset}/registration.parquet",
-        truth=true_faces,
-        true_poses=true_poses,
     output:
         surrogates="results/{dataset}/thesis/surrogates.parquet",
     log:
@@ -54,8 +51,7 @@ rule measure_surrogates:
         runtime=10,
     params:
         code=code_of("measure_surrogates"),
-        max_range_m=section("input", "max_range_m"),
-        evaluation=section("evaluation"),
+        evaluation=evaluation_of_survey,
         n_added=stated_claims.Sizes.SUBSET,
         seed=section("seed"),
     script:
@@ -79,11 +75,10 @@ rule compare_budgets:
         runtime=30,
     params:
         code=code_of("compare_budgets"),
+        evaluation=evaluation_of_survey,
         extraction=setting(stage_settings.select_extractor, "cluster_ransac"),
         # few, as the thesis's subset, and ever twice as many
         sizes=[5, 10, 20, 40],
-        max_range_m=section("input", "max_range_m"),
-        evaluation=section("evaluation"),
         seed=section("seed"),
     script:
         "../../scripts/compare_budgets.py"
@@ -109,11 +104,10 @@ rule time_to_quality:
         runtime=30,
     params:
         code=code_of("time_to_quality"),
+        evaluation=evaluation_of_survey,
         settings=settings_of_search("extraction", "plan", "cells", "hulls"),
         # a plan of the rooms is good with some twenty scans at best
         sizes=[10, 20, 30, 40, 60, 80, 120],
-        max_range_m=section("input", "max_range_m"),
-        evaluation=section("evaluation"),
     script:
         "../../scripts/time_to_quality.py"
 
@@ -136,7 +130,6 @@ rule count_room_scans:
         code=code_of("count_room_scans"),
         n_rooms=thesis_setting("n_rooms"),
         settings=settings_of_search("simulation", "extraction", "cells"),
-        evaluation=lambda _: THESIS[experiments.ROOMS][0].settings["evaluation"],
     script:
         "../../scripts/count_room_scans.py"
 
@@ -157,12 +150,11 @@ rule measure_outliers:
         runtime=30,
     params:
         code=code_of("measure_outliers"),
+        evaluation=evaluation_of_survey,
         settings=settings_of_search("hulls", "visibility", "cells"),
         shares=section("thesis", "outlier_shares"),
         n_scans=section("thesis", "timed_scans"),
         n_selected=stated_claims.Sizes.SUBSET,
-        max_range_m=section("input", "max_range_m"),
-        evaluation=section("evaluation"),
         seed=section("seed"),
     script:
         "../../scripts/measure_outliers.py"
@@ -185,9 +177,9 @@ rule measure_registrability:
         runtime=10,
     params:
         code=code_of("measure_registrability"),
+        evaluation=evaluation_of_survey,
         registration=section("registration"),
         sizes=[10, 20, 40, 80, 160],
-        max_range_m=section("input", "max_range_m"),
         seed=section("seed"),
     script:
         "../../scripts/measure_registrability.py"
@@ -211,11 +203,10 @@ rule choose_live:
         runtime=10,
     params:
         code=code_of("choose_live"),
+        evaluation=evaluation_of_survey,
         # from nearly all scans to a seventh of them
         shares=[0.05, 0.1, 0.2, 0.3, 0.5],
         playing=section("selection", "playing"),
-        max_range_m=section("input", "max_range_m"),
-        evaluation=section("evaluation"),
     script:
         "../../scripts/choose_live.py"
 
@@ -236,11 +227,10 @@ rule measure_sensitivity:
         runtime=30,
     params:
         code=code_of("measure_sensitivity"),
+        evaluation=evaluation_of_survey,
         extraction=setting(stage_settings.select_extractor, "cluster_ransac"),
         hulls=setting(stage_settings.select_hulls),
         factors=[0.5, 1.0, 2.0],
-        max_range_m=section("input", "max_range_m"),
-        evaluation=section("evaluation"),
     script:
         "../../scripts/measure_sensitivity.py"
 

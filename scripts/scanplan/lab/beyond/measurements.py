@@ -44,8 +44,13 @@ def read_measurements(paths: Sequence[FilePath]) -> pd.DataFrame:
     return joined.reset_index("survey")
 
 
+def select_quantity(measured: pd.DataFrame, quantity: str) -> pd.DataFrame:
+    """Return a quantity by level and survey, the mean over items; cases by columns."""
+    rows = measured[measured["quantity"] == quantity]
+    means = rows.groupby(["level", "survey", "case"])["value"].mean()
+    return means.unstack()[list(rows["case"].unique())]
+
+
 def mean_by_level(measured: pd.DataFrame, quantity: str) -> pd.DataFrame:
     """Return the mean of a quantity over items and surveys: levels by rows, cases by columns."""
-    rows = measured[measured["quantity"] == quantity]
-    cases = rows["case"].unique()
-    return rows.groupby(["level", "case"])["value"].mean().unstack()[list(cases)]
+    return select_quantity(measured, quantity).groupby("level").mean()

@@ -6,10 +6,10 @@ from functools import partial
 import numpy as np
 
 from scanplan.lab.beyond.measurements import Measurement
-from scanplan.lab.beyond.survey_files import OpenedSurvey
 from scanplan.lab.beyond.wall_search import WallSearch, measure_walls
 from scanplan.lab.evaluation.survey_findings import SurveyTruth, match_walls
 from scanplan.lab.thesis.claim_measures import CORRECT, FOUND
+from scanplan.lab.thesis.survey_files import OpenedSurvey
 from scanplan.registration import prepared_clouds
 from scanplan.store.tables import ScanStore
 from scanplan.types import FloatArray, IntArray
@@ -59,7 +59,6 @@ def compare_budgets(
     search: WallSearch,
     sizes: Sequence[int],
     *,
-    bitmap_cell_m: float,
     seed: int,
 ) -> Iterator[list[Measurement]]:
     """Measure what the walls of whole scans and of thinned ones find at the same numbers of points.
@@ -71,7 +70,6 @@ def compare_budgets(
     search : wall_search.WallSearch
     sizes : sequence of int
         A budget is that of so many scans of the mean number of points.
-    bitmap_cell_m : float
     seed : int
 
     Yields
@@ -79,9 +77,9 @@ def compare_budgets(
     list of Measurement
         Of one budget; `level` is the number of scans that it is of.
     """
-    truth, store = survey.truth, survey.store
+    truth, store, cell_m = survey.truth, survey.store, survey.bitmap_cell_m
     total = int(store.n_points.sum())
-    findings = survey.match_walls(bitmap_cell_m)
+    findings = survey.match_walls()
     # a voxel that thins every 17th scan, or all of a small survey, thins the others alike
     sampled_ids = store.scan_ids[:: max(1, len(store.scan_ids) // 17)]
     sample = [xyz_m for _, xyz_m in store.scans(sampled_ids)]
@@ -99,7 +97,7 @@ def compare_budgets(
         }
         for name, thin in ways.items():
             for case, own in ((name, search), (name + LOWERED, lower_limits(search, share))):
-                measured += _measure_thinned(truth, store, thin, own, (case, size), bitmap_cell_m)
+                measured += _measure_thinned(truth, store, thin, own, (case, size), cell_m)
         yield measured
 
 

@@ -1,19 +1,18 @@
 """What verdicts on the thesis's claims make of numbers that it does not state."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 
 from scanplan.lab.beyond.measurements import Measurement
-from scanplan.lab.beyond.survey_files import OpenedSurvey
 from scanplan.lab.beyond.wall_search import WallSearch, measure_walls
 from scanplan.lab.evaluation.length_metrics import safe_share
 from scanplan.lab.evaluation.survey_findings import SurveyTruth, match_walls
 from scanplan.lab.evaluation.wall_findings import Findings
 from scanplan.lab.thesis.claim_measures import FOUND
 from scanplan.lab.thesis.stated_claims import Judged
+from scanplan.lab.thesis.survey_files import OpenedSurvey
 from scanplan.selection import area_greedy, hulls
 from scanplan.types import Columns, FloatArray, IntArray, Settings
 
@@ -22,33 +21,19 @@ POOREST = "the recorded order is the poorest"
 """Two claims of the thesis (5.2, 5.4) that hang on every stage; values are margins, in shares."""
 
 
-@dataclass(frozen=True)
-class Unstated:
-    """The numbers that the thesis does not state, as they are used.
-
-    Attributes
-    ----------
-    search : wall_search.WallSearch
-        Inlier band and bandwidth of the mean shift among its settings.
-    sampling : dict
-        Keywords of `hulls.make_cluster_hulls`, with the size of the sample.
-    bitmap_cell_m : float
-    """
-
-    search: WallSearch
-    sampling: Settings
-    bitmap_cell_m: float
-
-
 def measure_sensitivity(
-    survey: OpenedSurvey, numbers: Unstated, factors: Sequence[float]
+    survey: OpenedSurvey, search: WallSearch, sampling: Settings, factors: Sequence[float]
 ) -> Iterator[list[Measurement]]:
     """Judge two claims with each unstated number multiplied by factors, one at a time.
 
     Parameters
     ----------
     survey : survey_files.OpenedSurvey
-    numbers : Unstated
+        With the cell of its bitmaps.
+    search : wall_search.WallSearch
+        Inlier band and bandwidth of the mean shift among its settings.
+    sampling : dict
+        Keywords of `hulls.make_cluster_hulls`, with the size of the sample.
     factors : sequence of float
 
     Yields
@@ -56,8 +41,8 @@ def measure_sensitivity(
     list of Measurement
         Of one value of one number; `level` is the factor.
     """
-    search, sampling, cell_m = numbers.search, numbers.sampling, numbers.bitmap_cell_m
-    usual = survey.match_walls(cell_m)
+    cell_m = survey.bitmap_cell_m
+    usual = survey.match_walls()
     order = _order_by_hulls(survey, sampling)
 
     def change_walls(name: str, factor: float) -> tuple[Findings, IntArray]:
@@ -70,7 +55,7 @@ def measure_sensitivity(
         return usual, _order_by_hulls(survey, {**sampling, "sample_size": size})
 
     def change_cell(factor: float) -> tuple[Findings, IntArray]:
-        return survey.match_walls(factor * cell_m), order
+        return match_walls(survey.truth, survey.walls, factor * cell_m), order
 
     ways: dict[str, Callable[[float], tuple[Findings, IntArray]]] = {
         "inlier band of RANSAC": partial(change_walls, "inlier_m"),

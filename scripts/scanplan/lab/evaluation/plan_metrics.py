@@ -8,7 +8,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry.lines import line_lengths_m
-from scanplan.lab.evaluation import face_cells, length_metrics, opening_metrics
+from scanplan.lab.evaluation import length_metrics, opening_metrics, wall_findings
 from scanplan.lab.evaluation.face_cells import FaceCells
 from scanplan.lab.evaluation.true_plan import TruePlan
 from scanplan.lab.evaluation.wall_findings import JUDGED, WITHIN_M, VisibleTruth
@@ -137,8 +137,7 @@ def _part(length_m: FloatArray, chosen: BoolArray, whole_m: float) -> float:
 
 def _found_cells(cells: FaceCells, drawn_m: FloatArray, within_m: float) -> BoolArray:
     """Return which cells (c,) have a drawn line within a distance of their middles."""
-    near = length_metrics.find_near_intervals(cells.faces_m, drawn_m, within_m)
-    begins, ends = face_cells.cells_in_intervals(cells, near.line, near.low_m, near.high_m)
+    _, begins, ends = wall_findings.find_cells(cells, drawn_m, within_m)
     found = np.zeros(len(cells.face), bool)
     for begin, end in zip(begins.tolist(), ends.tolist(), strict=True):
         found[begin:end] = True

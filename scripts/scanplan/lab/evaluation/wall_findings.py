@@ -195,8 +195,8 @@ def match_segments(
         length_m=line_lengths_m(lines_m),
         near_truth_m={b: length_metrics.union_length_m(near[b], n) for b in near},
         near_visible_m={b: length_metrics.union_length_m(near_visible[b], n) for b in near},
-        found={b: _found_cells(cells, lines_m, m) for b, m in WITHIN_M.items()},
-        found_if_true=_found_cells(cells, drawn.true_lines_m, WITHIN_M[JUDGED]),
+        found={b: find_cells(cells, lines_m, m) for b, m in WITHIN_M.items()},
+        found_if_true=find_cells(cells, drawn.true_lines_m, WITHIN_M[JUDGED]),
         face=_main_face(near[JUDGED], n),
         drawn=[bitmap_shares.match_cells(lines_m, true_bitmap) for true_bitmap in bitmaps],
     )
@@ -206,6 +206,14 @@ def find_main_faces(lines_m: FloatArray, faces_m: FloatArray) -> IntArray:
     """Return the true face (s,) that most of each line lies near to, at `JUDGED`; -1 if none."""
     near = length_metrics.find_near_intervals(lines_m, faces_m, WITHIN_M[JUDGED])
     return _main_face(near, len(lines_m))
+
+
+def find_cells(cells: FaceCells, lines_m: FloatArray, within_m: float) -> CellRuns:
+    """Return the runs of cells whose middles lie near segments (n, 2, 2)."""
+    near = length_metrics.find_near_intervals(cells.faces_m, lines_m, within_m)
+    begin, end = face_cells.cells_in_intervals(cells, near.line, near.low_m, near.high_m)
+    some = end > begin
+    return near.other[some], begin[some], end[some]
 
 
 def cells_found_by_scan(found: CellRuns, scan: IntArray, shape: tuple[int, int]) -> BoolArray:
@@ -236,14 +244,6 @@ def _near_intervals(lines_m: FloatArray, others_m: FloatArray) -> dict[str, Near
         b: length_metrics.find_near_intervals(lines_m, others_m, within_m)
         for b, within_m in WITHIN_M.items()
     }
-
-
-def _found_cells(cells: FaceCells, lines_m: FloatArray, within_m: float) -> CellRuns:
-    """Return the runs of cells whose middles lie near segments."""
-    near = length_metrics.find_near_intervals(cells.faces_m, lines_m, within_m)
-    begin, end = face_cells.cells_in_intervals(cells, near.line, near.low_m, near.high_m)
-    some = end > begin
-    return near.other[some], begin[some], end[some]
 
 
 def _main_face(near: NearIntervals, n_segments: int) -> IntArray:

@@ -9,6 +9,7 @@ from shapely.geometry.base import BaseGeometry
 from scanplan.lab.buildings.tolerances import CRACK_M
 from scanplan.lab.buildings.truth import Feature
 from scanplan.lab.evaluation import face_cells, visible_faces
+from scanplan.lab.evaluation.truth_file import TrueFaces
 from scanplan.types import BoolArray, FloatArray
 
 _PARALLEL_SINE = 0.1  # of the angle of a face to its wall, 6 degrees: its jambs stand across
@@ -33,9 +34,9 @@ def mark_visible(
         As given, nothing is changed; of a wall both its faces count.
     """
     inner = [i for i, (_, values) in enumerate(features) if values.get("side") == "inside"]
-    outer = [i for i, (_, values) in enumerate(features) if _only_occludes(values)]
-    cells = face_cells.cut_faces(_ends_m(features, inner))
-    is_seen = visible_faces.cells_seen_by_any(cells, _ends_m(features, outer), poses, sensor)
+    faces = select_faces(features)
+    cells = face_cells.cut_faces(faces.inner_m)
+    is_seen = visible_faces.cells_seen_by_any(cells, faces.outer_m, poses, sensor)
     length_m = np.where(is_seen, cells.length_m, 0.0)
     by_face_m = np.bincount(cells.face, length_m, len(inner))
     visible_m = dict(zip(inner, by_face_m.tolist(), strict=True))
@@ -49,13 +50,20 @@ def mark_visible(
     ]
 
 
+def select_faces(features: Sequence[Feature]) -> TrueFaces:
+    """Return the faces of a floor's features, as `truth_file.read_true_faces` of their file."""
+    inner = [line for line, values in features if values.get("side") == "inside"]
+    outer = [line for line, values in features if _only_occludes(values)]
+    return TrueFaces(_ends_m(inner), _ends_m(outer))
+
+
 def _only_occludes(values: dict) -> bool:
     return values["kind"] == "screen" or values.get("side") == "outside"
 
 
-def _ends_m(features: Sequence[Feature], rows: list[int]) -> FloatArray:
-    """Return the ends (n, 2, 2) of some straight lines."""
-    return np.array([features[i][0].coords for i in rows]).reshape(-1, 2, 2)
+def _ends_m(lines: Sequence[BaseGeometry]) -> FloatArray:
+    """Return the ends (n, 2, 2) of straight lines."""
+    return np.array([line.coords for line in lines]).reshape(-1, 2, 2)
 
 
 def _on_wall(line: BaseGeometry, thickness_m: float, cells: face_cells.FaceCells) -> BoolArray:

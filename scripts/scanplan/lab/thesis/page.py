@@ -160,7 +160,20 @@ def verdict_over_seeds(margins: Sequence[float] | FloatArray) -> Verdict:
     if high <= 0:
         return Verdict("does not hold", "no")
     n_yes = int(np.count_nonzero(np.asarray(margins) > 0))
-    return Verdict(f"undecided: holds for {n_yes} of {len(margins)} seeds", "some")
+    needed = f"; about {n:,} such seeds would decide" if (n := seeds_to_decide(margins)) else ""
+    return Verdict(f"undecided: holds for {n_yes} of {len(margins)} seeds{needed}", "some")
+
+
+def seeds_to_decide(margins: Sequence[float] | FloatArray) -> int:
+    """Return how many seeds would decide, with the mean and the deviation of these margins (n,).
+
+    0 where no thousand seeds would, as their mean is hardly off 0.
+    """
+    mean, deviation = np.mean(margins), np.std(margins, ddof=1)
+    numbers = np.arange(len(margins), 1001)
+    half = stdtrit(numbers - 1, 0.975) * deviation / np.sqrt(numbers)
+    enough = numbers[half < abs(mean)]
+    return int(enough[0]) if len(enough) else 0
 
 
 def summarise_verdicts(claims: pd.DataFrame) -> str:
@@ -212,7 +225,7 @@ def _decimals(value: float) -> int:
 def _claim_row(rows: pd.DataFrame, claim: Claim) -> ClaimRow:
     unit_of = rows.groupby("quantity")["unit"].first()
     measured = {
-        quantity: format_values(values.to_numpy(), unit_of[quantity])
+        quantity: format_values(_known(values), unit_of[quantity])
         for quantity, values in rows.groupby("quantity")["value"]
         if quantity != MARGIN
     }
@@ -234,6 +247,12 @@ def _claim_row(rows: pd.DataFrame, claim: Claim) -> ClaimRow:
         _format_margin(margins, unit_of.get(MARGIN, NUMBER)),
         _fill_in(claim.otherwise, measured) if verdict.css in ("no", "some") else "",
     )
+
+
+def _known(values: pd.Series) -> FloatArray:
+    """Return the values of the seeds that have one; all, where none has."""
+    known = values.dropna()
+    return (known if len(known) else values).to_numpy()
 
 
 def _format_margin(margins: FloatArray, unit: str) -> str:

@@ -38,7 +38,8 @@ FIGURES = (
     Figure(
         "3.2",
         "A graphical comparison between the naive solution, our solution and ground truth",
-        "A scan's one convex hull, the hulls of its clusters, and the area that it truly sees.",
+        "A scan's one convex hull, the hulls of its clusters without its outliers, and the area"
+        " that it truly sees.",
         ("full_hull_overestimates", "cluster_hull_closer", "outliers_harm_one_hull"),
     ),
     Figure(
@@ -57,8 +58,8 @@ FIGURES = (
         "5.1",
         "Overlay of the inferred bitmap and the ground truth bitmap",
         "Bitmaps of the walls by cluster RANSAC in the first 60 scans and of the truth: missed"
-        " blue, found purple, invented red. Each pixel is the mean over grids that begin at"
-        " different parts of a cell, and so are the shares.",
+        " blue, found purple, invented red. The shares are means over grids that begin at different"
+        " parts of a cell; drawn is one of them.",
         ("first_sixty",),
     ),
     Figure(
@@ -131,7 +132,8 @@ FIGURES = (
         " that location."
         " Areas with many scans are circled.",
         "The registered scans of the drive and their places, darker where there are more within a"
-        " metre.",
+        " metre; the three densest are circled. The simulated rover turns at corners, but waits at"
+        " no door. Numbered, the first 15 scans by cluster hulls.",
         ("uneven_harms_random", "two_percent_survive", "own_limits", "localiser"),
     ),
     Figure(

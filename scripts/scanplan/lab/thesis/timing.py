@@ -103,6 +103,12 @@ def thin_points(xyz_m: Array, part: int, seed: int) -> Array:
     return xyz_m[np.sort(np.random.default_rng(seed).choice(len(xyz_m), n, replace=False))]
 
 
+def list_sizes(n_scans: int) -> list[int]:
+    """Return numbers of scans in even steps of a power law, and the thesis's own."""
+    sizes = set(np.geomspace(min(10, n_scans), n_scans, 14).round().astype(int).tolist())
+    return sorted(sizes | ({THESIS_SCANS} if n_scans >= THESIS_SCANS else set()))
+
+
 def time_selection(columns: Columns, sizes: Iterable[int]) -> Iterator[TimedRow]:
     """Time choosing the thesis's subset of some scans, spread over the survey, and ordering them.
 

@@ -61,7 +61,7 @@ def draw_hulls_figure(
         axes.plot(*place_m, "o", ms=4, mfc="white", mec="black", zorder=3)
         axes.set_title(f"{title}: {shapely.union_all(shapes).area:.0f} m²", fontsize=9)
         axes.set_aspect("equal")
-        top_view.strip_frame(axes)
+        top_view.name_axes(axes, "x (m)", "y (m)" if axes is frames[0] else "")
     figure.dpi = 200
     return figure
 
@@ -127,7 +127,8 @@ def draw_convergence_figure(selections: Mapping[str, pd.DataFrame]) -> Figure:
     axes.axhline(0.99, color="0.5", lw=0.6)
     axes.set(xlim=(0, min(2 * latest, n_scans) + 1), ylim=(0, 1.03))
     top_view.name_axes(axes, "number of scans", "area covered, share of that of all scans")
-    axes.legend(fontsize=8, frameon=False, loc="lower right")
+    # between the curves, which meet at the right, and clear of the mark's dotted line
+    axes.legend(fontsize=8, loc="center right", edgecolor="white", framealpha=1.0)
     return figure
 
 

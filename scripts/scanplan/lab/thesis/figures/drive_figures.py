@@ -109,9 +109,10 @@ def draw_times_figure(times: pd.DataFrame) -> Figure:
         for axes, (curve, label) in zip(frames, curves, strict=True):
             axes.plot(number, curve, color=colour, lw=1.1, label=label)
     for axes, title in zip(frames, titles, strict=True):
-        axes.set(xlim=(0, None), ylim=(0, None))
+        # a quarter more for the legend, above the curves
+        axes.set(xlim=(0, None), ylim=(0, 1.25 * axes.dataLim.y1))
         top_view.name_axes(axes, "scan", title)
-        axes.legend(fontsize=8, frameon=False)
+        axes.legend(fontsize=8, frameon=False, loc="upper left")
     return figure
 
 
@@ -143,5 +144,5 @@ def draw_drive_walls(
         axes.add_collection(lines, autolim=False)
         axes.plot(*places_m.T, "o", ms=1.8, mfc="#e6b800", mec="0.3", mew=0.2, zorder=4)
         axes.set_title(f"{name}: {len(lines_m):,} walls of {len(places_m)} scans", fontsize=9)
-        axes.set_xlabel("x in the map frame (m)", fontsize=8)
+        top_view.name_axes(axes, "x (m)", "y (m)" if axes is frames[0] else "")
     return figure

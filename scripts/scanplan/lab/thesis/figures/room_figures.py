@@ -110,7 +110,8 @@ def draw_room_figure(survey: RoomSurvey, name: str, bitmap_cell_m: float) -> Fig
 def draw_overlay_figure(result_m: FloatArray, truth_m: FloatArray, cell_m: float) -> Figure:
     """Draw the bitmaps of result and truth over each other (figure 5.1).
 
-    What is drawn is the mean over the beginnings of the grid that the shares are the mean of.
+    The shares are means over grids that begin at different parts of a cell; drawn is the one of
+    them that begins in the middle of the literal one's cells.
 
     Parameters
     ----------
@@ -122,29 +123,27 @@ def draw_overlay_figure(result_m: FloatArray, truth_m: FloatArray, cell_m: float
     -------
     matplotlib.figure.Figure
     """
-    literal, *shifted = bitmap_shares.trace_truth(truth_m, result_m, cell_m)
-    colours = np.array([(255, 255, 255), (31, 119, 255), (228, 26, 28), (123, 45, 142)])
-    rows, columns = literal.grid.shape
-    image, shares = np.zeros((rows, columns, 3)), []
+    _, *shifted = bitmap_shares.trace_truth(truth_m, result_m, cell_m)
     every = np.ones(len(result_m), int)
-    for truth in shifted:
-        drawn = bitmap_shares.match_cells(result_m, truth)
-        shares.append(bitmap_shares.measure_shares(drawn, every, [1])[0])
-        is_true = np.zeros((rows + 1, columns + 1), int)
-        is_true.flat[truth.cells] = 1
-        code = is_true + 2 * bitmap.rasterise_lines(result_m, truth.grid)
-        # the middle of a cell of the literal grid lies in this one or the next of a shifted grid
-        column, row = ((literal.grid.low_m - truth.grid.low_m) / cell_m >= 0.5).astype(int)
-        image += colours[code[row : row + rows, column : column + columns]] / len(shifted)
+    shares = [
+        bitmap_shares.measure_shares(bitmap_shares.match_cells(result_m, truth), every, [1])[0]
+        for truth in shifted
+    ]
+    middle = shifted[len(shifted) // 2]
+    rows, columns = middle.grid.shape
+    is_true = np.zeros((rows, columns), int)
+    is_true.flat[middle.cells] = 1
+    colours = np.array([(255, 255, 255), (31, 119, 255), (228, 26, 28), (123, 45, 142)])
+    image = colours[is_true + 2 * bitmap.rasterise_lines(result_m, middle.grid)]
     figure, (axes,) = _make_panels(truth_m, 1)
-    low_x_m, low_y_m = literal.grid.low_m
+    low_x_m, low_y_m = middle.grid.low_m
     extent = (low_x_m, low_x_m + columns * cell_m, low_y_m, low_y_m + rows * cell_m)
     pixels = _darkest_of_blocks(image).astype(np.uint8)
     axes.imshow(pixels, origin="lower", extent=extent, interpolation="none")
     missed, matched, invented = np.mean(shares, axis=0)
     axes.set_title(
         f"false negative {missed:.2%} (blue), false positive {invented:.2%} (red), correct match"
-        f" {matched:.2%} (walls purple); mean over {len(shifted)} beginnings of the grid",
+        f" {matched:.2%} (walls purple); shares are means over {len(shifted)} grids",
         fontsize=9,
     )
     return figure
@@ -189,7 +188,9 @@ def _draw_typical_hulls(survey: RoomSurvey) -> Figure:
     """Draw the scan whose full hull exceeds what it sees by the median of all scans."""
     row, full, seen = _find_typical_scan(survey)
     scan_id = survey.scan_ids[row]
-    shapes = shapely.from_wkb(survey.hulls["geometry"][survey.hulls["scan_id"] == scan_id])
+    is_cluster = survey.hulls["cluster"] != hulls.OUTLIERS
+    is_of_scan = (survey.hulls["scan_id"] == scan_id) & is_cluster
+    shapes = shapely.from_wkb(survey.hulls["geometry"][is_of_scan])
     clusters = shapes[shapely.get_dimensions(shapes) == 2]
     points_m = survey.store.read(scan_id)[:, :2]
     return coverage_figures.draw_hulls_figure(points_m, survey.places_m[row], full, clusters, seen)
@@ -229,8 +230,7 @@ def _make_panels(shown_m: FloatArray, count: int) -> tuple[Figure, Sequence[Axes
         axes.autoscale_view()
         axes.set_autoscale_on(False)
         axes.set_aspect("equal")
-        axes.set_xlabel("x (m)", fontsize=8)
-        top_view.strip_frame(axes)
+        top_view.name_axes(axes, "x (m)", "y (m)" if axes is frames[0] else "")
     return figure, frames
 
 

@@ -15,16 +15,16 @@ Boxes = Mapping[str, tuple[float, float, str, str]]
 def draw_system_overview() -> Figure:
     """Draw the steps from a recording to a plan, and the way by a model with known truth (3.1)."""
     boxes = {
-        "rover": (0, 2, "recording of a rover\n(.bag, .db3, .mcap)", _INPUT),
-        "model": (0, 0, "model of a building\n(drawing, .stl, .ifc)", _INPUT),
-        "simulated": (1, 0, "simulated survey", _STEP),
-        "registered": (1, 2, "poses interpolated,\nscans registered", _STEP),
-        "hulls": (2, 3, "clusters of points,\nconvex hulls", _STEP),
-        "order": (3, 3, "scans ordered,\nsubset chosen", _STEP),
-        "walls": (2, 2, "walls of single scans:\nclusters, RANSAC", _STEP),
-        "plan": (3, 2, "floor plan: walls,\nopenings, rooms", _STEP),
-        "truth": (2, 0, "true walls: slice at the\nsensor's height", _CHECK),
-        "errors": (3, 0, "bitmaps, lengths,\nclaims judged", _CHECK),
+        "rover": (0, 1.8, "recording of a rover\n(.bag, .db3, .mcap)", _INPUT),
+        "model": (0, 0.8, "model of a building\n(drawing, .stl, .ifc)", _INPUT),
+        "simulated": (1, 0.8, "simulated survey", _STEP),
+        "registered": (1, 1.8, "poses interpolated,\nscans registered", _STEP),
+        "hulls": (1, 2.6, "clusters of points,\nconvex hulls", _STEP),
+        "order": (2, 2.6, "scans ordered,\nsubset chosen", _STEP),
+        "walls": (2, 1.8, "walls of the chosen scans:\nclusters, RANSAC", _STEP),
+        "plan": (3, 1.8, "floor plan: walls,\nopenings, rooms", _STEP),
+        "truth": (2, 0.8, "true walls: slice at the\nsensor's height", _CHECK),
+        "errors": (3, 0.8, "bitmaps, lengths,\nclaims judged", _CHECK),
     }
     arrows = (
         "rover registered",
@@ -33,11 +33,12 @@ def draw_system_overview() -> Figure:
         "registered hulls",
         "registered walls",
         "hulls order",
-        "order plan",
+        "order walls",
         "walls plan",
+        "walls errors",
+        "plan errors",
         "simulated truth",
         "truth errors",
-        "plan errors",
     )
     return _draw_diagram(boxes, arrows)
 
@@ -61,6 +62,7 @@ def draw_rover_architecture() -> Figure:
         "sonars controller",
         "controller motors",
         "laptop controller",
+        "controller laptop",
         "laptop amcl",
         "laptop move",
         "amcl bag",

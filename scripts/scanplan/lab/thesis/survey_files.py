@@ -1,6 +1,6 @@
 """The files of a survey that experiments are made on, opened."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from scanplan.lab.evaluation.survey_findings import SurveyTruth, match_walls, read_survey_truth
@@ -23,28 +23,33 @@ class OpenedSurvey:
         The columns of walls/cluster_ransac.parquet.
     orders : dict of str to (n,) int
         Rows of the scans by method, of the methods whose orders were given.
+    bitmap_cell_m : float
+        Edge of a bitmap's cell.
     """
 
     truth: SurveyTruth
     store: ScanStore
     walls: dict[str, Array]
     orders: dict[str, IntArray]
+    bitmap_cell_m: float
 
-    def match_walls(self, bitmap_cell_m: float) -> Findings:
+    def match_walls(self) -> Findings:
         """Work out what the walls find, see `survey_findings.match_walls`."""
-        return match_walls(self.truth, self.walls, bitmap_cell_m)
+        return match_walls(self.truth, self.walls, self.bitmap_cell_m)
 
 
-def open_survey_files(files: Mapping[str, FilePath], *, max_range_m: float) -> OpenedSurvey:
+def open_survey_files(
+    files: Mapping[str, FilePath], *, max_range_m: float, bitmap_cell_m: float
+) -> OpenedSurvey:
     """Open a survey.
 
     Parameters
     ----------
     files : dict of str to path-like
-        `scans`, `walls`, `registration`, `truth` and `true_poses`; selection/<method>.parquet by
-        method; others are not looked at.
-    max_range_m : float
-        How far a scan can see.
+        `scans`, `walls`, `registration`, `truth` and `true_poses`; selection/<method>.parquet as
+        `order_<method>`; others are not looked at.
+    max_range_m, bitmap_cell_m : float
+        How far a scan can see; edge of a bitmap's cell.
 
     Raises
     ------
@@ -57,12 +62,10 @@ def open_survey_files(files: Mapping[str, FilePath], *, max_range_m: float) -> O
     )
     known = truth.registered
     orders = {
-        method: registered_scans.read_order_rows(files[method], known, registration)
-        for method in _known_methods(files)
+        method: registered_scans.read_order_rows(files[f"order_{method}"], known, registration)
+        for method in METHODS
+        if f"order_{method}" in files
     }
     walls = registered_scans.read_wall_segments(files["walls"], known, registration)
-    return OpenedSurvey(truth, tables.ScanStore(files["scans"]), walls, orders)
-
-
-def _known_methods(files: Iterable[str]) -> list[str]:
-    return [method for method in METHODS if method in files]
+    store = tables.ScanStore(files["scans"])
+    return OpenedSurvey(truth, store, walls, orders, bitmap_cell_m)
