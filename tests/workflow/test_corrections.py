@@ -10,7 +10,7 @@ from scanplan.store import schemas, tables
 pytestmark = pytest.mark.workflow
 READERS = {
     *("validate_plan", "rate_plan", "plan_next_visit", "export_plan", "export_files"),
-    *("draw_walls", "draw_validation", "write_report"),
+    *("draw_figures", "write_report"),
 }
 
 
