@@ -13,7 +13,7 @@ from scanplan.report import figures, registration_figure, top_view, validation_f
 from scanplan.selection import stopping
 from scanplan.stage import figure_files, log
 from scanplan.store import atomic, registered_scans, schemas, tables
-from scanplan.types import Columns, FilePath, FloatArray
+from scanplan.types import Columns, FilePath, FloatArray, IntArray
 
 _LINKS = ["source", "target", "kind", "residual_m"]
 
@@ -37,13 +37,13 @@ def draw_figures(
     """
     poses = tables.read_table(made["registration"], schemas.REGISTRATION)
     chosen_ids, reason = stopping.read_chosen_scans(made["selection"], **stop)
-    for name, figure in _draw_figures(made, poses, chosen_ids.tolist()):
+    for name, figure in _draw_figures(made, poses, chosen_ids):
         atomic.write_text(outputs[name], figure_files.format_svg(figure))
     log.log_line(f"draw_figures: {len(chosen_ids)} scans selected ({reason})")
 
 
 def _draw_figures(
-    made: Mapping[str, FilePath], poses: Columns, chosen_ids: list[int]
+    made: Mapping[str, FilePath], poses: Columns, chosen_ids: IntArray
 ) -> Iterator[tuple[str, Figure]]:
     store = tables.ScanStore(made["scans"])
     shown = top_view.choose_scans(store.scan_ids)
@@ -54,7 +54,7 @@ def _draw_figures(
     every_xy_m = registered_scans.sensor_places(poses, store.scan_ids)
     yield "scans", figures.draw_scans_figure(points_xy_m, every_xy_m, chosen_xy_m)
     faces = tables.read_table(made["faces"], schemas.FACES)
-    selected_xy_m = top_view.sample_points(store.scans(chosen_ids), len(chosen_ids))
+    selected_xy_m = top_view.sample_points(store.scans(chosen_ids.tolist()), len(chosen_ids))
     yield "walls", figures.draw_walls_figure(selected_xy_m, faces, chosen_xy_m)
     yield "validation", _draw_validation(made)
 
