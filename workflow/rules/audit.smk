@@ -10,6 +10,8 @@ rule measure_crispness:
         "logs/{dataset}/measure_crispness.log",
     benchmark:
         "benchmarks/{dataset}/measure_crispness.tsv"
+    # the plan does not wait for it: it goes beside a stage that leaves a core free
+    priority: -1
     threads: 1
     resources:
         mem_mb=1500,
