@@ -5,8 +5,7 @@ import pytest
 import shapely
 
 from draw_area import draw_area
-from draw_scans import draw_scans
-from draw_walls import draw_walls
+from draw_figures import draw_figures
 from helpers import face_making
 from helpers.wall_making import BARE, walls
 from scanplan.errors import StageError
@@ -52,7 +51,47 @@ def results(tmp_path):
         tables.write_table(tmp_path / f"{method}.parquet", schemas.SELECTION, known | columns)
     merged = face_making.merge(walls([(0, 0, 6, 0), (6, 4, 0, 4)]), BARE)
     tables.write_table(tmp_path / "faces.parquet", schemas.FACES, merged)
+    write_audit(tmp_path)
+    write_validation(tmp_path)
     return tmp_path
+
+
+def write_audit(folder):
+    """One link between the kept scans, and the map's thickness by two kinds of poses."""
+    spread = {key: [0.031, 0.012] for key in ("sigma_m", "quarter_below_m", "quarter_above_m")}
+    crispness = {"poses": ["localiser", "registered"], "n_places": [9, 9], **spread}
+    tables.write_table(folder / "crispness.parquet", schemas.CRISPNESS, crispness)
+    link = {"source": [4], "target": [0], "kind": ["sequence"], "inlier": [True]}
+    others = set(schemas.EDGES.columns) - set(link)
+    link |= {name: [0] if name == "unobservable" else [0.01] for name in others}
+    tables.write_table(folder / "edges.parquet", schemas.EDGES, link)
+
+
+def write_validation(folder):
+    """No ray tests the plan; one face is judged, and the whole."""
+    columns = {"kind": ["face", "plan_length", "plan_rays"], "number": [1, 0, 0]}
+    ends_m = dict(zip(("x0_m", "y0_m", "x1_m", "y1_m"), (0.0, 0.0, 6.0, 0.0), strict=True))
+    columns |= {name: [end_m, np.nan, np.nan] for name, end_m in ends_m.items()}
+    shares = {"share", "share_low", "share_high"}
+    columns |= {name: [np.nan] * 3 for name in shares}
+    others = set(schemas.VALIDATION.columns) - set(columns)
+    columns |= {name: [0] * 3 for name in others}
+    notes = {"n_left_out": "0", "n_scans": "0", "tolerance_m": "0.05", "absent": "none is left"}
+    tables.write_table(folder / "elements.parquet", schemas.VALIDATION, columns, notes=notes)
+    none = {name: [] for name in schemas.VALIDATION_RAYS.columns}
+    tables.write_table(folder / "rays.parquet", schemas.VALIDATION_RAYS, none, allow_empty=True)
+
+
+def draw(results, folder, n_scans=1):
+    """Draw all figures of some results; return their texts by name."""
+    folder.mkdir()
+    names = ("scans", "registration", "edges", "crispness", "faces", "elements", "rays")
+    made = {name: results / f"{name}.parquet" for name in names}
+    made["selection"] = results / "cluster_hull.parquet"
+    figures = ("registration", "scans", "walls", "validation")
+    outputs = {name: folder / f"{name}.svg" for name in figures}
+    draw_figures(made, outputs, n_scans=n_scans, area_share=None)
+    return {name: path.read_text() for name, path in outputs.items()}
 
 
 def drawn_twice(draw, output):
@@ -64,24 +103,28 @@ def drawn_twice(draw, output):
     return first.decode()
 
 
-def test_draw_scans(results):
-    inputs = [results / f"{name}.parquet" for name in ("scans", "registration", "cluster_hull")]
-    text = drawn_twice(
-        lambda o: draw_scans(*inputs, o, n_scans=1, area_share=None), results / "scans.svg"
-    )
-    assert "position of a scan (2)" in text
-    assert "numbered by rank (1)" in text
+def test_each_figure_states_what_it_shows(results, tmp_path):
+    drawn = draw(results, tmp_path / "once")
+    for text in drawn.values():
+        ElementTree.fromstring(text)
+    assert "2 of 3 candidates kept" in drawn["registration"]
+    assert "31 mm localiser, 12 mm registered" in drawn["registration"]
+    assert "link to a neighbour (1)" in drawn["registration"]
+    assert "position of a scan (2)" in drawn["scans"]
+    assert "numbered by rank (1)" in drawn["scans"]
+    assert "wall face (2)" in drawn["walls"]
+    assert "position of a selected scan (1)" in drawn["walls"]
+    assert "none is left" in drawn["validation"]
 
 
-def test_draw_walls(results):
-    inputs = [
-        results / f"{name}.parquet" for name in ("scans", "faces", "registration", "cluster_hull")
-    ]
-    text = drawn_twice(
-        lambda o: draw_walls(*inputs, o, n_scans=None, area_share=None), results / "walls.svg"
-    )
-    assert "wall face (2)" in text
-    assert "position of a selected scan (2)" in text
+def test_figures_are_the_same_bytes_again(results, tmp_path):
+    assert draw(results, tmp_path / "once") == draw(results, tmp_path / "again")
+
+
+def test_all_scans_may_be_selected(results, tmp_path):
+    drawn = draw(results, tmp_path / "all", n_scans=None)
+    assert "numbered by rank (2)" in drawn["scans"]
+    assert "position of a selected scan (2)" in drawn["walls"]
 
 
 def write_hulls(path):
@@ -109,11 +152,10 @@ def test_draw_area(results):
         assert f"{label}: 99 % with 2" in text
 
 
-def test_tables_of_different_runs_are_refused(results):
+def test_tables_of_different_runs_are_refused(results, tmp_path):
     registration = tables.read_table(results / "registration.parquet", schemas.REGISTRATION)
     registration["kept"] = np.array([False, False, True])
     tables.write_table(results / "registration.parquet", schemas.REGISTRATION, registration)
-    inputs = [results / f"{name}.parquet" for name in ("scans", "registration", "cluster_hull")]
     with pytest.raises(StageError, match="scan 0 "):
-        draw_scans(*inputs, results / "scans.svg", n_scans=None, area_share=None)
-    assert not (results / "scans.svg").exists()
+        draw(results, tmp_path / "drawn", n_scans=None)
+    assert not list((tmp_path / "drawn").iterdir())

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.spatial.transform import Rotation
+from scipy.spatial.transform import Rotation, Slerp
 
 from scanplan.geometry import se3
 
@@ -97,3 +97,28 @@ def test_unknown_poses_stay_unknown():
     pose = se3.pose_matrix(np.full((2, 3), np.nan), QUAT[:2])
     assert np.isnan(pose[:, :3]).all()
     assert all(np.isnan(part).all() for part in se3.split_pose(pose))
+
+
+@pytest.mark.parametrize("error", [0.0, 1e-15, 1e-11, 1e-8, 1e-2])
+def test_the_nearest_rotation_is_that_of_the_singular_values(error):
+    rng = np.random.default_rng(3)
+    pose = np.eye(4)
+    pose[:3, :3] = Rotation.random(rng=rng).as_matrix() + error * rng.normal(size=(3, 3))
+    left, _, right = np.linalg.svd(pose[:3, :3])
+    np.testing.assert_allclose(se3.nearest_rigid(pose)[:3, :3], left @ right, atol=1e-14)
+
+
+def test_a_reflection_becomes_a_rotation():
+    turn = se3.nearest_rigid(np.diag([1.0, 1.0, -1.0, 1.0]))[:3, :3]
+    assert np.linalg.det(turn) == pytest.approx(1)
+
+
+def test_turns_are_interpolated_as_by_scipy():
+    rng = np.random.default_rng(4)
+    quat = Rotation.random(20, rng=rng).as_quat() * rng.choice([-1, 1], (20, 1))
+    quat[7] = -quat[6]
+    t_ns = np.arange(20) * 10**9
+    query_ns = np.sort(rng.integers(0, t_ns[-1], 200))
+    found = se3.interpolate_poses(t_ns, np.zeros((20, 3)), quat, query_ns, max_gap_s=2)[1]
+    expected = Slerp(t_ns / 1e9, Rotation.from_quat(quat))(query_ns / 1e9).as_quat(canonical=True)
+    np.testing.assert_allclose(found, expected, atol=1e-9)

@@ -13,7 +13,7 @@ DATASET = ("--configfile", TINY, "floor/selected.bag.yaml", "--config", "dataset
 PLANS = {"walls": schemas.PLAN_WALLS, "openings": schemas.OPENINGS, "rooms": schemas.ROOMS}
 READERS = {
     *("validate_plan", "rate_plan", "plan_next_visit", "export_plan", "export_files"),
-    *("draw_walls", "draw_validation", "write_report"),
+    *("draw_figures", "write_report"),
 }
 
 

@@ -35,9 +35,9 @@ def project(project_root, tmp_path_factory):
 PLANNED = {
     *("assemble_plan", "validate_plan", "rate_plan", "plan_next_visit"),
     *("export_plan", "export_files"),
-    *("draw_walls", "draw_validation", "evaluate_plan"),
+    *("draw_figures", "evaluate_plan"),
 }
-CHOSEN = {"extract_chosen_walls", "draw_scans"} | PLANNED
+CHOSEN = {"extract_chosen_walls"} | PLANNED
 EVALUATED = {"evaluate_walls", "draw_evaluation", "tabulate_seconds"}
 AFTER_ORDERS = {"order_scans", "draw_area"} | CHOSEN | EVALUATED
 AFTER_HULLS = {"build_hulls", "order_scans", "draw_area"} | EVALUATED

@@ -10,6 +10,8 @@ rule measure_crispness:
         "logs/{dataset}/measure_crispness.log",
     benchmark:
         "benchmarks/{dataset}/measure_crispness.tsv"
+    # the plan does not wait for it: it goes beside a stage that leaves a core free
+    priority: -1
     threads: 1
     resources:
         mem_mb=1500,
@@ -19,31 +21,3 @@ rule measure_crispness:
         settings=setting(stage_settings.select_crispness),
     script:
         "../../scripts/measure_crispness.py"
-
-
-rule draw_registration:
-    """Draw what became of every scan, and how well neighbours fit."""
-    input:
-        scans="results/{dataset}/scans.parquet",
-        registration="results/{dataset}/registration.parquet",
-        edges="results/{dataset}/edges.parquet",
-        crispness="results/{dataset}/crispness.parquet",
-    output:
-        figure=report(
-            "results/{dataset}/figures/registration.svg",
-            caption="../report/registration.rst",
-            category="{dataset}",
-            labels={"figure": "7 registration"},
-        ),
-    log:
-        "logs/{dataset}/draw_registration.log",
-    benchmark:
-        "benchmarks/{dataset}/draw_registration.tsv"
-    threads: 1
-    resources:
-        mem_mb=1500,
-        runtime=10,
-    params:
-        code=code_of("draw_registration"),
-    script:
-        "../../scripts/draw_registration.py"

@@ -1,29 +1,52 @@
-rule draw_scans:
-    """Draw the registered scans, where they were taken, and which were selected."""
+rule draw_figures:
+    """Draw the registration, the scans and their selection, the walls over points, the validation."""
     input:
         scans="results/{dataset}/scans.parquet",
         registration="results/{dataset}/registration.parquet",
+        edges="results/{dataset}/edges.parquet",
+        crispness="results/{dataset}/crispness.parquet",
         selection=plan_selection,
+        faces=plan_table("faces"),
+        elements="results/{dataset}/plan/validation.parquet",
+        rays="results/{dataset}/plan/validation_rays.parquet",
     output:
-        figure=report(
+        registration=report(
+            "results/{dataset}/figures/registration.svg",
+            caption="../report/registration.rst",
+            category="{dataset}",
+            labels={"figure": "7 registration"},
+        ),
+        scans=report(
             "results/{dataset}/figures/scans.svg",
             caption="../report/scans.rst",
             category="{dataset}",
             labels={"figure": "2 scans and selection"},
         ),
+        walls=report(
+            "results/{dataset}/figures/walls.svg",
+            caption="../report/walls.rst",
+            category="{dataset}",
+            labels={"figure": "4 walls over points"},
+        ),
+        validation=report(
+            "results/{dataset}/figures/validation.svg",
+            caption="../report/validation.rst",
+            category="{dataset}",
+            labels={"figure": "8 prediction of other scans"},
+        ),
     log:
-        "logs/{dataset}/draw_scans.log",
+        "logs/{dataset}/draw_figures.log",
     benchmark:
-        "benchmarks/{dataset}/draw_scans.tsv"
+        "benchmarks/{dataset}/draw_figures.tsv"
     threads: 1
     resources:
         mem_mb=grown(mem_mb=1500),
         runtime=grown(runtime=10),
     params:
-        code=code_of("draw_scans"),
+        code=code_of("draw_figures"),
         stop=section("selection", "stop"),
     script:
-        "../../scripts/draw_scans.py"
+        "../../scripts/draw_figures.py"
 
 
 rule draw_area:
@@ -50,61 +73,6 @@ rule draw_area:
         code=code_of("draw_area"),
     script:
         "../../scripts/draw_area.py"
-
-
-rule draw_walls:
-    """Draw the walls of the plan over the points of the selected scans."""
-    input:
-        scans="results/{dataset}/scans.parquet",
-        registration="results/{dataset}/registration.parquet",
-        selection=plan_selection,
-        faces=plan_table("faces"),
-    output:
-        figure=report(
-            "results/{dataset}/figures/walls.svg",
-            caption="../report/walls.rst",
-            category="{dataset}",
-            labels={"figure": "4 walls over points"},
-        ),
-    log:
-        "logs/{dataset}/draw_walls.log",
-    benchmark:
-        "benchmarks/{dataset}/draw_walls.tsv"
-    threads: 1
-    resources:
-        mem_mb=grown(mem_mb=1500),
-        runtime=grown(runtime=10),
-    params:
-        code=code_of("draw_walls"),
-        stop=section("selection", "stop"),
-    script:
-        "../../scripts/draw_walls.py"
-
-
-rule draw_validation:
-    """Draw where rays of scans left out of the plan ended, and whether the plan explains it."""
-    input:
-        elements="results/{dataset}/plan/validation.parquet",
-        rays="results/{dataset}/plan/validation_rays.parquet",
-    output:
-        figure=report(
-            "results/{dataset}/figures/validation.svg",
-            caption="../report/validation.rst",
-            category="{dataset}",
-            labels={"figure": "8 prediction of other scans"},
-        ),
-    log:
-        "logs/{dataset}/draw_validation.log",
-    benchmark:
-        "benchmarks/{dataset}/draw_validation.tsv"
-    threads: 1
-    resources:
-        mem_mb=grown(mem_mb=1500),
-        runtime=grown(runtime=10),
-    params:
-        code=code_of("draw_validation"),
-    script:
-        "../../scripts/draw_validation.py"
 
 
 # what a report is made of, with a comparison or without

@@ -65,8 +65,7 @@ def run_times(orderings, extractors=(), comparing=()):
             *("assemble_plan", "correct_plan", "validate_plan", "rate_plan"),
             "plan_next_visit",
             *("export_plan", "export_files", "export_cloud", "evaluate_poses"),
-            *("evaluate_plan", "draw_registration", "draw_scans", "draw_walls"),
-            "draw_validation",
+            *("evaluate_plan", "draw_figures"),
             *comparing,
         ]
         # those that are there are shown

@@ -5,8 +5,9 @@
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial.transform import Rotation, Slerp
+from scipy.spatial.transform import Rotation
 
+from scanplan.geometry.tolerances import ROUNDING
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 
@@ -68,8 +69,14 @@ def nearest_rigid(pose: npt.ArrayLike) -> FloatArray:
     `invert_pose` takes a rotation's transpose for its inverse, so in a chain of products and
     inverses a rounding error doubles with every link unless it is taken out.
     """
-    left, _, right = np.linalg.svd(np.asarray(pose, float)[:3, :3])
     cleaned = np.array(pose, float)
+    turn = cleaned[:3, :3]
+    error = turn.T @ turn - np.eye(3)
+    if np.abs(error).max() < ROUNDING and np.linalg.det(turn) > 0:
+        # the series of turn (1 + error)^-1/2: what is left out is of the error's square
+        cleaned[:3, :3] = turn - turn @ error / 2
+        return cleaned
+    left, _, right = np.linalg.svd(turn)
     cleaned[:3, :3] = left @ np.diag([1, 1, np.linalg.det(left @ right)]) @ right
     return cleaned
 
@@ -149,7 +156,18 @@ def interpolate_poses(
 def _slerp(
     quat_xyzw: FloatArray, before: IntArray, after: IntArray, share: FloatArray
 ) -> FloatArray:
-    if len(quat_xyzw) == 1:
-        return Rotation.from_quat(quat_xyzw[before]).as_quat(canonical=True)
-    turns = Slerp(np.arange(len(quat_xyzw), dtype=float), Rotation.from_quat(quat_xyzw))
-    return turns(np.where(before == after, before, before + share)).as_quat(canonical=True)
+    unit = quat_xyzw / np.linalg.norm(quat_xyzw, axis=1, keepdims=True)
+    start, end = unit[before], unit[after]
+    # q and -q are one turn: the shorter way
+    end = np.where((start * end).sum(axis=1, keepdims=True) < 0, -end, end)
+    apart = np.linalg.norm(end - start, axis=1), np.linalg.norm(end + start, axis=1)
+    angle = 2 * np.arctan2(*apart)
+    whole = np.sin(angle)
+    is_turned = whole > ROUNDING
+    weights = [
+        np.divide(np.sin(part * angle), whole, out=part.copy(), where=is_turned)[:, None]
+        for part in (1 - share, share)
+    ]
+    quat = weights[0] * start + weights[1] * end
+    quat /= np.linalg.norm(quat, axis=1, keepdims=True)
+    return np.where(quat[:, 3:] < 0, -quat, quat)

@@ -34,19 +34,22 @@ def motion_to_twist(a_from_b: npt.ArrayLike) -> FloatArray:
     a_from_b = np.asarray(a_from_b, float)
     turn = a_from_b[..., :3, :3]
     # sin and cos of the angle, times the axis: a tenth of the time of scipy's way through
-    # quaternions
-    skew = [turn[..., i, j] - turn[..., j, i] for i, j in ((2, 1), (0, 2), (1, 0))]
-    axis = np.stack(skew, axis=-1) / 2
-    sine = np.linalg.norm(axis, axis=-1)
-    cosine = (np.trace(turn, axis1=-2, axis2=-1) - 1) / 2
+    # quaternions; entry by entry, as most calls are of one motion
+    x, y, z = ((turn[..., i, j] - turn[..., j, i]) / 2 for i, j in ((2, 1), (0, 2), (1, 0)))
+    sine = np.sqrt(x * x + y * y + z * z)
+    cosine = (turn[..., 0, 0] + turn[..., 1, 1] + turn[..., 2, 2] - 1) / 2
     # a small angle is its own sine
     scale = np.where(sine > ROUNDING, np.arctan2(sine, cosine) / np.maximum(sine, ROUNDING), 1.0)
-    vector = axis * scale[..., None]
+    twist = np.empty((*a_from_b.shape[:-2], 6))
+    twist[..., :3] = a_from_b[..., :3, 3]
+    vector = twist[..., 3:]
+    for part, along in enumerate((x, y, z)):
+        vector[..., part] = along * scale
     # near half a turn rounding leaves nothing of the axis
     reversed_turn = (cosine < 0) & np.isfinite(cosine)
     if np.any(reversed_turn):
         vector[reversed_turn] = Rotation.from_matrix(turn[reversed_turn]).as_rotvec()
-    return np.concatenate([a_from_b[..., :3, 3], vector], axis=-1)
+    return twist
 
 
 def cross_matrix(vector: npt.ArrayLike) -> FloatArray:

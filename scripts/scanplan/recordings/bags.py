@@ -103,6 +103,7 @@ class Bag:
         self._reader = reader
         self._default_store = default_store
         self._typestores: dict[tuple[str, Any], Typestore] = {}
+        self._typestore_of: dict[int, tuple[Connection, Typestore]] = {}
         self._unpack: Callable[[bytes], bytes] | None = None
         self._stated: Mapping[str, int] = {}
         if not isinstance(reader, SalvagedReader):
@@ -133,15 +134,12 @@ class Bag:
         connections = [c for c in self._reader.connections if c.topic in names]
         if not connections:  # rosbags takes an empty choice for all
             return
-        source = self._iterate(connections)
         came: Counter[str] = Counter()
-        while True:
-            with _explain_faults(self.path):
-                item = next(source, None)
-            if item is None:
-                break
-            came[item[0].topic] += 1
-            yield item
+        # what its reader does with a message is not raised in here
+        with _explain_faults(self.path):
+            for item in self._iterate(connections):
+                came[item[0].topic] += 1
+                yield item
         if fault := stated_counts.find_lost_messages(came, self._stated, names):
             raise StageError(f"{self.path}: {fault}; {_remedy_of_storage(self.path)}")
 
@@ -191,10 +189,15 @@ class Bag:
                 yield connection, time_ns, raw
 
     def _typestore(self, connection: Connection) -> Typestore:
+        # a definition of some kilobytes takes longer to look up than a message to decode
+        known, store = self._typestore_of.get(connection.id, (None, None))
+        if known is connection and store is not None:
+            return store
         key = (connection.msgtype, connection.msgdef)
         if key not in self._typestores:
             own = typestores.own_store(connection, self.path)
             self._typestores[key] = own or typestores.standard_store(self._default_store)
+        self._typestore_of[connection.id] = connection, self._typestores[key]
         return self._typestores[key]
 
 
@@ -232,17 +235,25 @@ def _openable_name(path: Path, stack: ExitStack) -> Path:
     return link
 
 
-@contextmanager
-def _explain_faults(path: Path, topic: str | None = None) -> Iterator[None]:
+class _explain_faults:  # noqa: N801 -- a context like those of functions, entered for every message
     """Turn whatever rosbags, SQLite or a decompressor raises on bad data into one line."""
-    try:
-        yield
-    except StageError:
-        raise
-    except Exception as error:
+
+    __slots__ = ("_path", "_topic")
+
+    def __init__(self, path: Path, topic: str | None = None) -> None:
+        self._path = path
+        self._topic = topic
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
+        if not isinstance(error, Exception) or isinstance(error, StageError):
+            return
         reason = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-        where = f"{path}: topic {topic}" if topic else str(path)
-        raise StageError(f"{where}: cannot be read ({reason}); {_remedy(path, error)}") from error
+        where = f"{self._path}: topic {self._topic}" if self._topic else str(self._path)
+        remedy = _remedy(self._path, error)
+        raise StageError(f"{where}: cannot be read ({reason}); {remedy}") from error
 
 
 def _remedy(path: Path, error: Exception) -> str:

@@ -162,7 +162,8 @@ def _align_spatial(
     if not result.num_inliers:
         return None
     # small_gicp puts the turn before the shift
-    information = np.roll(np.roll(np.asarray(result.H), 3, axis=0), 3, axis=1)
+    order = [3, 4, 5, 0, 1, 2]
+    information = np.asarray(result.H)[order][:, order]
     motion = se3.nearest_rigid(np.asarray(result.T_target_source))
     return motion, information if method == "gicp" else information / planar_icp.PAIR_SIGMA_M**2
 

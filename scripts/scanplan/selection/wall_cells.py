@@ -15,7 +15,7 @@ import numpy as np
 from scipy import ndimage
 
 from scanplan.extraction import normals
-from scanplan.geometry.tolerances import SHORTEST_M
+from scanplan.geometry.tolerances import ROUNDING, SHORTEST_M
 from scanplan.rays import levels, sensor_frame
 from scanplan.types import Array, Columns, FloatArray, IntArray
 
@@ -105,11 +105,13 @@ def observe_wall_cells(
         If a coordinate is not finite.
     """
     points_m = sensor_frame.centre_on_sensor(xyz_m, sensor_xyz_m)
-    far = np.hypot(points_m[:, 0], points_m[:, 1]) > _FARTHEST_M
-    points_m = points_m[~far] if far.any() else points_m
+    range_m = np.hypot(points_m[:, 0], points_m[:, 1])
+    far = range_m > _FARTHEST_M
+    if far.any():
+        points_m, range_m = points_m[~far], range_m[~far]
     door_top_m = _door_top_m(points_m, settings, planar)
     wall_top_m = door_top_m - settings.door_height_m + settings.wall_height_m
-    tallness = _rate_tallness(points_m, wall_top_m, np.deg2rad(settings.reach_deg))
+    tallness = _rate_tallness(points_m[:, 2], range_m, wall_top_m, np.deg2rad(settings.reach_deg))
     # by number and not by mask: a third of the time
     low = np.flatnonzero(points_m[:, 2] <= door_top_m)
     points_m, tallness = points_m.take(low, axis=0), tallness.take(low)
@@ -191,14 +193,19 @@ def _find_upright(
     return upright, facing.take(of_point.take(upright), axis=0)
 
 
-def _rate_tallness(points_m: FloatArray, height_m: float, reach_rad: float) -> FloatArray:
+def _rate_tallness(
+    z_m: FloatArray, range_m: FloatArray, height_m: float, reach_rad: float
+) -> FloatArray:
     """Return how surely each point (n,) shows something as tall as a wall, 0 to 1.
 
-    1 above a height, half for those about as high as the scan looks there, 0 for others.
+    1 above a height, half for those about as high as the scan looks there, 0 for others. Ranges are
+    horizontal.
     """
-    elevation = np.arctan2(points_m[:, 2], np.hypot(points_m[:, 0], points_m[:, 1]))
-    as_high = elevation >= elevation.max(initial=-np.inf) - reach_rad
-    return np.where(points_m[:, 2] >= height_m, 1.0, np.where(as_high, _HALF_SURE, 0.0))
+    # the slope rises with the elevation: angles of all points take five times as long
+    slope = z_m / np.maximum(range_m, ROUNDING)
+    lowest_rad = max(np.arctan(slope.max(initial=-np.inf)) - reach_rad, -np.pi / 2)
+    as_high = slope >= np.tan(lowest_rad)
+    return np.where(z_m >= height_m, 1.0, np.where(as_high, _HALF_SURE, 0.0))
 
 
 def _measure_facing(
@@ -220,8 +227,9 @@ def _measure_facing(
     cosine = np.abs(facing[:, axis].take(there))
     across_m, along_m = xy_m[:, axis].take(there), xy_m[:, 1 - axis].take(there)
     grid = _Grid(along_m, across_m, settings.cell_m)
-    n_points = grid.sums(cosine**2)
-    mean_cosine = _ratio(grid.sums(cosine**3), n_points)
+    share = cosine * cosine
+    n_points = grid.sums(share)
+    mean_cosine = _ratio(grid.sums(share * cosine), n_points)
     n_beside = ndimage.convolve1d(n_points, np.ones(_ROWS), axis=1, mode="constant")
     window = 2 * round(settings.max_gap_m / settings.cell_m) + 1
     wanted = settings.min_points_planar if heights is None else settings.min_points
@@ -265,8 +273,11 @@ class _Grid:
         largest = np.full(self.shape, -np.inf)
         for cells in (self._lower, self._lower + 1):
             np.maximum.at(largest.reshape(-1), cells, value)
-        widened = ndimage.maximum_filter(largest, window, mode="constant", cval=-np.inf)
-        return np.asarray(widened, float)
+        for axis, size in enumerate(window):
+            largest = ndimage.maximum_filter1d(
+                largest, size, axis=axis, mode="constant", cval=-np.inf
+            )
+        return np.asarray(largest, float)
 
 
 def _ratio(part: FloatArray, whole: FloatArray) -> FloatArray:

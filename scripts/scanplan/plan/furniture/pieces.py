@@ -123,17 +123,27 @@ def _gather_returns(
     rays: RaySet, grid: bitmap.Grid, is_ground: BoolArray, max_height_m: float
 ) -> _Returns:
     """Return the returns above the ground, lower than a height and higher than the floor."""
-    height_m = rays.xyz_m[:, 2] - rays.ground_z_m
-    is_wanted = np.full(len(height_m), rays.planar)
-    is_wanted |= (height_m > SKIRTING_M) & (height_m < max_height_m)
-    rows = np.flatnonzero(is_wanted)
-    place = np.floor((rays.xyz_m[rows, :2] - grid.low_m) / grid.cell_m)
     n_rows, n_columns = grid.shape
-    is_inside = ((place >= 0) & (place < (n_columns, n_rows))).all(axis=1)
-    column, row = place[is_inside].astype(np.int64).T
-    rows = rows[is_inside]
-    returns = _Returns(rays.scan[rows], row * n_columns + column, height_m[rows])
-    return returns.take(is_ground.ravel()[returns.cell])
+    empty = _Returns(np.empty(0, np.int64), np.empty(0, np.int64), np.empty(0))
+    parts = [empty]
+    # scan by scan: the places of all returns would take a third of all of a plan's memory
+    for scan, of_scan in enumerate(rays.rows):
+        xyz_m = rays.xyz_m[of_scan]
+        height_m = xyz_m[:, 2] - rays.ground_z_m
+        is_wanted = np.full(len(height_m), rays.planar)
+        is_wanted |= (height_m > SKIRTING_M) & (height_m < max_height_m)
+        rows = np.flatnonzero(is_wanted)
+        place = np.floor((xyz_m[rows, :2] - grid.low_m) / grid.cell_m)
+        is_inside = ((place >= 0) & (place < (n_columns, n_rows))).all(axis=1)
+        column, row = place[is_inside].astype(np.int64).T
+        cell = row * n_columns + column
+        of_part = _Returns(np.full(len(cell), scan), cell, height_m[rows[is_inside]])
+        parts.append(of_part.take(is_ground.ravel()[cell]))
+    return _Returns(
+        np.concatenate([part.scan for part in parts]),
+        np.concatenate([part.cell for part in parts]),
+        np.concatenate([part.height_m for part in parts]),
+    )
 
 
 def _without_passers(

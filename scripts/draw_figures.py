@@ -1,0 +1,90 @@
+"""Draw the figures of a plan: its registration, scans, walls and validation.
+
+One stage, as what they share costs more than they do: a start of Python with Matplotlib takes
+longer than a figure, and two of them show the same points.
+"""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from scanplan.report import figures, registration_figure, top_view, validation_figure
+from scanplan.selection import stopping
+from scanplan.stage import figure_files, log
+from scanplan.store import atomic, registered_scans, schemas, tables
+from scanplan.types import Columns, FilePath, FloatArray, IntArray
+
+_LINKS = ["source", "target", "kind", "residual_m"]
+
+
+def draw_figures(
+    made: Mapping[str, FilePath], outputs: Mapping[str, FilePath], **stop: Any
+) -> None:
+    """Write the figures as SVG.
+
+    Parameters
+    ----------
+    made : dict of str to path-like
+        `scans`, `registration`, `edges` and `crispness` of the registration; `selection`, the
+        plan's ordering; `faces`, `elements` and `rays` of plan/, the latter two of its validation.
+    outputs : dict of str to path-like
+        To write: `registration`, the audit of the registration; `scans`, where they were taken and
+        which are selected (thesis, figure 5.9); `walls`, the plan's faces over the points of the
+        selected scans (thesis, figure 5.11); `validation`, where rays of other scans ended.
+    **stop
+        How many scans are selected, see `stopping.choose_n_scans`.
+    """
+    poses = tables.read_table(made["registration"], schemas.REGISTRATION)
+    chosen_ids, reason = stopping.read_chosen_scans(made["selection"], **stop)
+    for name, figure in _draw_figures(made, poses, chosen_ids):
+        atomic.write_text(outputs[name], figure_files.format_svg(figure))
+    log.log_line(f"draw_figures: {len(chosen_ids)} scans selected ({reason})")
+
+
+def _draw_figures(
+    made: Mapping[str, FilePath], poses: Columns, chosen_ids: IntArray
+) -> Iterator[tuple[str, Figure]]:
+    store = tables.ScanStore(made["scans"])
+    shown = top_view.choose_scans(store.scan_ids)
+    clouds = log.report_progress(store.scans(shown), "draw_figures", total=len(shown))
+    points_xy_m = top_view.sample_points(clouds, len(shown))
+    chosen_xy_m = registered_scans.sensor_places(poses, chosen_ids)
+    yield "registration", _draw_registration(made, poses, points_xy_m)
+    every_xy_m = registered_scans.sensor_places(poses, store.scan_ids)
+    yield "scans", figures.draw_scans_figure(points_xy_m, every_xy_m, chosen_xy_m)
+    faces = tables.read_table(made["faces"], schemas.FACES)
+    selected_xy_m = top_view.sample_points(store.scans(chosen_ids.tolist()), len(chosen_ids))
+    yield "walls", figures.draw_walls_figure(selected_xy_m, faces, chosen_xy_m)
+    yield "validation", _draw_validation(made)
+
+
+def _draw_registration(
+    made: Mapping[str, FilePath], poses: Columns, points_xy_m: FloatArray
+) -> Figure:
+    """Draw the track, every scan's verdict, and how well neighbours fit."""
+    links = tables.read_table(made["edges"], schemas.EDGES, _LINKS, allow_empty=True)
+    thickness = tables.read_table(made["crispness"], schemas.CRISPNESS, ["poses", "sigma_m"])
+    sigma_m = dict(zip(thickness["poses"].tolist(), thickness["sigma_m"].tolist(), strict=True))
+    return registration_figure.draw_registration_figure(points_xy_m, poses, links, sigma_m)
+
+
+def _draw_validation(made: Mapping[str, FilePath]) -> Figure:
+    """Draw where rays of scans left out of the plan ended, and whether the plan explains it."""
+    judged = tables.read_table(made["elements"], schemas.VALIDATION)
+    notes = tables.read_notes(made["elements"], schemas.VALIDATION)
+    rays = tables.read_table(made["rays"], schemas.VALIDATION_RAYS, allow_empty=True)
+    n_scans = int(notes["n_scans"])
+    n_rays = judged["n_rays"][-1]
+    title = f"{judged['share'][-1]:.1%} of {n_rays:,} rays of {n_scans:,} scans are as predicted"
+    absent = notes.get("absent", "")
+    return validation_figure.draw_validation_figure(judged, rays, absent or title)
+
+
+if __name__ == "__main__":
+    with log.log_to_file(snakemake.log[0]):
+        draw_figures(
+            dict(snakemake.input.items()),
+            dict(snakemake.output.items()),
+            **snakemake.params.stop,
+        )
