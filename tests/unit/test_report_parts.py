@@ -58,9 +58,9 @@ def test_doubts_are_taken_where_the_tables_have_them():
         ("opening 2", "Window 2", "no sill seen"),
         ("opening 0", "Door 0", "few rays"),
         ("wall 2", "Wall 2", "few scans show it, or its place is uncertain"),
+        ("room 1", "Room 1", "its outline is not closed: the area is a guess"),
         ("face 1", "Face 1 of wall 1", "short"),
         ("face 8", "Face 8", "short"),
-        ("room 1", "Room 1", "its outline is not closed: the area is a guess"),
     ]
 
 

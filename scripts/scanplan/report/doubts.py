@@ -37,7 +37,7 @@ class Doubt:
 
 
 def list_doubts(plan: FloorPlan) -> list[Doubt]:
-    """List what to verify, openings first, then walls, faces, rooms; the least certain first.
+    """List what to verify, openings, walls, rooms, at last faces; the least certain first.
 
     A face of a wall that is listed is not.
 
@@ -53,8 +53,8 @@ def list_doubts(plan: FloorPlan) -> list[Doubt]:
     return [
         *_doubts_of("opening", plan.openings, openings),
         *_doubts_of("wall", plan.walls, walls),
-        *_doubts_of_faces(plan),
         *_doubts_of("room", plan.rooms, plan.room_names),
+        *_doubts_of_faces(plan),
     ]
 
 

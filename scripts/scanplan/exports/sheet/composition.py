@@ -205,6 +205,14 @@ def paper_marks(sheet: Sheet) -> Iterator[Mark]:
     yield from sorted(found, key=lambda mark: order.index(mark.kind))
 
 
+def plan_extent_mm(sheet: Sheet) -> tuple[float, float, float, float]:
+    """Return least x and y, greatest x and y of the plan on paper, without dimensions and words."""
+    page = sheet.page
+    turned_m = np.stack(_extent(sheet.marks, sheet.symbols, page.turn_deg))
+    (x0, y0), (x1, y1) = page.to_paper(turned_m @ rotation(page.turn_deg)).tolist()
+    return x0, y0, x1, y1
+
+
 def _plan_marks(sheet: Sheet) -> Iterator[Mark]:
     page = sheet.page
     for mark in sheet.marks:
