@@ -68,6 +68,7 @@ def open_document(unit: str, scale: Scale) -> Drawing:
     document = new(_VERSION, units=UNITS[unit])
     document.header["$MEASUREMENT"] = 1
     document.header["$PSLTSCALE"] = 0
+    document.header["$LASTSAVEDBY"] = "scanplan"
     document.appids.add(APPLICATION)
     for name, (dash_mm, gap_mm) in DASHES_MM.items():
         dash, gap = dash_mm * scale.per_mm, gap_mm * scale.per_mm

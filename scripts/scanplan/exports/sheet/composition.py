@@ -148,7 +148,13 @@ def _open_space(page: Page, marks: list[Mark], symbols: list[Symbol]) -> LabelSp
     ]
     loose += [path for symbol in symbols for path in symbol_paths(symbol)]
     lines = [shapely.LineString(page.to_paper(flatten(path))) for path in loose]
-    return LabelSpace(page.drawing_mm, walls, lines)
+    furniture = [
+        shapely.LineString(page.to_paper(path[:, :2]))
+        for mark in marks
+        if mark.kind == "furniture"
+        for path in mark.paths
+    ]
+    return LabelSpace(page.drawing_mm, walls, lines, furniture)
 
 
 def _rings(page: Page, paths: list[FloatArray]) -> list[BaseGeometry]:
