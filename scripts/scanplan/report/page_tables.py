@@ -92,8 +92,9 @@ def face_table(plan: floorplan.FloorPlan) -> PageTable:
     """Return the table of the faces that are to be verified on site though their walls are not."""
     length_m = np.hypot(*np.diff(floorplan.centrelines_m(plan.faces), axis=1)[:, 0].T)
     rows = []
+    records = _records(plan.faces)
     for i in doubts.find_doubtful_faces(plan).tolist():
-        at = {name: values[i] for name, values in plan.faces.items()}
+        at = records[i]
         cells = [
             number_cell(at["face"], 0),
             _doubt("face", plan.faces, i),

@@ -45,8 +45,9 @@ def growing_plan_svg(
     str
         Parts with `data-rank` belong to the scan of that rank, those with `data-first` and
         `data-enough` to the ranks from which on they are seen and sure, those with `data-element`
-        to a wall, opening, room or doubtful face. Classes say what a part is; the page's style how it looks, and
-        its script keeps letters and dots as large on the screen however near the plan is.
+        to a wall, opening, room or doubtful face. Classes say what a part is; the page's style how
+        it looks, and its script keeps letters and dots as large on the screen however near the plan
+        is.
     """
     return "\n".join([
         f'<svg id="plan" viewBox="{_view_box(plan, positions_m)}" role="img"'
