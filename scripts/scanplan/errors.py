@@ -1,4 +1,9 @@
-"""The one exception whose message is for the user."""
+"""The one exception whose message is for the user, and what more than one place tells."""
+
+MORE_MEMORY = (
+    "close other programs, use fewer cores, or allow more (`ulimit -v`, `mem_mb` of a job)"
+)
+"""What to do where memory is not enough."""
 
 
 class StageError(Exception):

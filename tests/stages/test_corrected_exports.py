@@ -145,7 +145,7 @@ def test_the_drawing_says_so_on_a_layer_of_its_own(corrected):
     inserts = [{a.dxf.tag: a.dxf.text for a in i.attribs} for i in space.query("INSERT")]
     stated = {a.get("TAG", a.get("NAME")): a["CORRECTED"] for a in inserts}
     assert stated == {
-        "door-0": "no", "door-2": "changed by hand", "Room 0": "no", "Küche *": "changed by hand"
+        "door-0": "no", "door-2": "changed by hand", "Room 0": "no", "Küche": "changed by hand"
     }  # fmt: skip
 
 
@@ -203,5 +203,6 @@ def test_a_name_is_the_same_letters_to_every_reader(name, tmp_path):
     texts = ["".join(e.itertext()) for e in ElementTree.parse(files["svg"]).iter()]
     assert name in texts
     document = ezdxf.readfile(files["dxf"])
-    stamps = [i for i in document.modelspace().query("INSERT") if i.dxf.name == "ROOM-STAMP"]
+    inserts = document.modelspace().query("INSERT")
+    stamps = [insert for insert in inserts if insert.dxf.name.startswith("ROOM-STAMP")]
     assert len(stamps) == 2 and not document.audit().errors

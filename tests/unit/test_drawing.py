@@ -75,7 +75,7 @@ def test_names_are_letters_and_no_markup(name):
     drawn = replace(plan(rooms=rooms), name=name)
     text = formatted(drawn, SheetFacts(project=name, storey=name, version=name))
     tags = {element.tag.removeprefix(NAMESPACE) for element in ElementTree.fromstring(text).iter()}
-    assert tags == {"svg", "title", "desc", "style", "rect", "g", "path", "text"}
+    assert tags == {"svg", "title", "desc", "view", "style", "rect", "g", "path", "text"}
     assert not any("onload" in e.attrib for e in ElementTree.fromstring(text).iter())
     assert " ".join(name.split()) in texts(text)
     figure = drawing.draw_sheet(composition.compose_sheet(drawn))
@@ -99,6 +99,19 @@ def test_pdf_is_one_page_of_the_sheet_s_size_with_letters_of_its_own():
     size_mm = np.array(box, float) / _POINTS_PER_MM
     np.testing.assert_allclose(size_mm, sheet.page.size_mm, atol=0.01)
     assert sorted(sheet.page.size_mm) == [210, 297]
+
+
+@pytest.mark.parametrize("turn_deg", [0.0, 90.0])
+def test_the_svg_has_a_view_of_the_plan_alone(turn_deg):
+    sheet = composition.compose_sheet(plan(), turn_deg=turn_deg)
+    view = ElementTree.fromstring(svg.format_svg_sheet(sheet)).find(f"{NAMESPACE}view")
+    x, y, width, height = map(float, view.get("viewBox").split())
+    # 7.4 m x 3.4 m at 1:50
+    sides_mm = [7.4 * 20, 3.4 * 20]
+    assert [width, height] == pytest.approx(sides_mm if turn_deg == 0 else sides_mm[::-1], abs=0.1)
+    x0, y0, x1, y1 = sheet.page.drawing_mm
+    assert x0 <= x and x + width <= x1
+    assert y0 <= sheet.page.size_mm[1] - y - height and sheet.page.size_mm[1] - y <= y1
 
 
 def test_svg_has_the_sheet_s_size():

@@ -14,6 +14,7 @@ from helpers import floorplan_making
 from helpers.floorplan_making import FOOTPRINT_M2, bare, plan
 from scanplan.exports import dxf
 from scanplan.exports.sheet import composition
+from scanplan.exports.sheet.marks import Word
 from scanplan.exports.sheet.styles import LAYERS
 from scanplan.exports.sheet.title import SheetFacts
 
@@ -30,6 +31,11 @@ def outlines(document, layer):
 
 def attributes(insert):
     return {attribute.dxf.tag: attribute.dxf.text for attribute in insert.attribs}
+
+
+def room_stamps(document):
+    inserts = document.modelspace().query("INSERT")
+    return [insert for insert in inserts if insert.dxf.name.startswith("ROOM-STAMP")]
 
 
 def facts_of(entity):
@@ -83,7 +89,7 @@ def test_openings_are_blocks_with_attributes_as_wide_as_they_are():
     inserts = {
         attributes(insert)["TAG"]: insert
         for insert in reopened(plan()).modelspace().query("INSERT")
-        if insert.dxf.name != "ROOM-STAMP"
+        if not insert.dxf.name.startswith("ROOM-STAMP")
     }
     assert {tag: insert.dxf.name for tag, insert in inserts.items()} == {
         "door-0": "DOOR-1", "door-1": "DOOR-1", "window-2": "WINDOW"
@@ -123,15 +129,42 @@ def test_rooms_are_outlines_of_their_area_below_all_else_with_a_stamp():
     assert outlines(document, "A-AREA").area == pytest.approx(21)
     first = next(e for e in document.modelspace() if e.dxftype() != "HATCH")
     assert first.dxf.layer == "A-AREA"
-    stamps = [attributes(i) for i in document.modelspace().query('INSERT[name=="ROOM-STAMP"]')]
+    stamps = [attributes(insert) for insert in room_stamps(document)]
     assert [(s["NUMBER"], s["AREA"], s["PERIMETER"]) for s in stamps] == [
         ("0", "12.0 m²", "14.00 m"), ("1", "9.0 m²", "12.00 m")
     ]  # fmt: skip
 
 
+def test_what_a_stamp_shows_is_text_of_its_block_and_no_attribute():
+    sheet = composition.compose_sheet(plan())
+    document = ezdxf.read(io.StringIO(dxf.format_dxf(sheet, "mm")))
+    drawn = {
+        (text.dxf.text, tuple(np.round(text.get_placement()[1].vec2, 1)))
+        for insert in room_stamps(document)
+        for text in insert.virtual_entities()
+        if text.dxftype() == "TEXT"
+    }
+    words = [word for stamp in sheet.stamps for word in stamp.words]
+    assert drawn == {(word.text, tuple(np.round(1000 * word.place, 1))) for word in words}
+    assert {text for text, _ in drawn} >= {"12.0 m²", "9.0 m²"}
+    assert all(a.is_invisible for insert in room_stamps(document) for a in insert.attribs)
+
+
+def test_a_stamp_beside_its_room_has_a_line_to_it():
+    sheet = composition.compose_sheet(plan())
+    beside = replace(
+        sheet.stamps[0],
+        words=[Word("stamp", "0", np.array([3.0, 9.0]), 1.8, leader=np.array([[2, 7], [3, 8]]))],
+    )
+    document = ezdxf.read(io.StringIO(dxf.format_dxf(replace(sheet, stamps=[beside]), "m")))
+    (insert,) = room_stamps(document)
+    (line,) = [e for e in insert.virtual_entities() if e.dxftype() == "LWPOLYLINE"]
+    assert np.allclose(line.get_points("xy"), [[2, 7], [3, 8]])
+
+
 def test_an_open_room_s_area_is_a_guess_here_too():
     rooms = floorplan_making.rooms() | {"closed": np.array([True, False])}
-    stamps = reopened(plan(rooms=rooms)).modelspace().query('INSERT[name=="ROOM-STAMP"]')
+    stamps = room_stamps(reopened(plan(rooms=rooms)))
     assert [attributes(i)["AREA"] for i in stamps] == ["12.0 m²", "about 9.0 m²"]
     assert [attributes(i)["PERIMETER"] for i in stamps] == ["14.00 m", "about 12.00 m"]
 

@@ -66,6 +66,19 @@ def test_of_the_parts_of_a_wall_the_longer_keeps_its_id():
     assert parts[1] == ids[0] and parts[0] != ids[0]
 
 
+def test_walls_that_become_one_have_the_id_of_the_longer_until_they_are_two_again():
+    ids, known = first(wall(0, 3), wall(3.5, 10))
+    joined, after = run(elements(wall(0, 10)), known)
+    assert joined == [ids[1]]
+    assert run(elements(wall(0, 3), wall(3.5, 10)), after)[0] == ids
+
+
+def test_an_opening_keeps_its_id_in_whatever_wall():
+    door = ("door", shapely.box(1, -0.05, 2, 0.05))
+    ids, known = first(wall(0, 3), wall(3.5, 10), door)
+    assert run(elements(wall(0, 10), door), known)[0] == ids[1:]
+
+
 def test_an_opening_keeps_its_id_when_it_is_of_another_type():
     place = shapely.box(0, 0, 1, 0.1)
     ids, known = first(("door", place))

@@ -48,6 +48,13 @@ def test_a_bug_is_one_line_and_its_traceback_in_the_log(tmp_path):
     assert "Traceback" in log
 
 
+def test_too_little_memory_is_told_as_that_with_what_to_do(tmp_path):
+    result, log = run(tmp_path, "bytearray(1 << 62)")
+    assert result.returncode == 1 and result.stderr.count("\n") == 1
+    assert result.stderr.startswith("stage: not enough memory (MemoryError")
+    assert "allow more (`ulimit -v`" in result.stderr and "Traceback" in log
+
+
 @pytest.mark.parametrize("sent", ["SIGINT", "SIGTERM"])
 def test_an_interrupted_stage_says_so_and_nothing_of_memory(tmp_path, sent):
     # whoever runs the tests in the background may ignore SIGINT, and children inherit that

@@ -49,12 +49,18 @@ def test_doubts_are_taken_where_the_tables_have_them():
         "doubt": np.array(["few rays", "", "no sill seen"], object),
         "p_true": np.array([0.4, 0.99, 0.2]),
     }
-    plan = floorplan_making.plan(rooms=rooms, openings=openings)
+    faces = floorplan_making.faces()
+    # a side of wall 1, one of the doubtful wall 2, and one of no wall
+    faces["verify"] = np.isin(faces["face"], [1, 2, 8])
+    faces["doubt"] = np.where(faces["verify"], "short", "")
+    plan = floorplan_making.plan(faces=faces, rooms=rooms, openings=openings)
     assert [(d.element, d.name, d.reason) for d in list_doubts(plan)] == [
         ("opening 2", "Window 2", "no sill seen"),
         ("opening 0", "Door 0", "few rays"),
         ("wall 2", "Wall 2", "few scans show it, or its place is uncertain"),
         ("room 1", "Room 1", "its outline is not closed: the area is a guess"),
+        ("face 1", "Face 1 of wall 1", "short"),
+        ("face 8", "Face 8", "short"),
     ]
 
 

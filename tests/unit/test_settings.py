@@ -90,7 +90,10 @@ def test_a_dataset_that_is_none(defaults, schema, given, said):
     [
         ("poses: {keep_every: 0}", "poses.keep_every: 0 is less than the minimum of 1"),
         ("poses: {keep_every: 1:30}", "`1:30` would be read as minutes, to the base of 60"),
-        ("poses: {keep_evry: 2}", "poses: unknown key keep_evry; known are keep_every"),
+        (
+            "poses: {keep_evry: 2}",
+            "poses: unknown key keep_evry (did you mean keep_every?); known ",
+        ),
         ("poses: {keep_every: two}", "poses.keep_every: 'two' is not of type 'integer'"),
         ("poses: {max_gap_s: .nan}", "poses.max_gap_s: nan"),
         ("pose: {}", "settings: unknown key pose"),

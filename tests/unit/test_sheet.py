@@ -89,6 +89,16 @@ def test_no_word_lies_on_another(sheet):
     assert len(words) > 20 and over == []
 
 
+def test_the_name_of_a_room_keeps_off_furniture_in_its_middle():
+    piece = shapely.box(1.9, 1.4, 2.1, 1.6)
+    sheet = composition.compose_sheet(plan(furniture=floorplan_making.furniture([piece])))
+    outline = sheet.page.place_shape(piece.exterior)
+    words = [*composition.paper_words(sheet)]
+    named = [word for word in words if word.element == "room-0"]
+    assert len(named) == 2
+    assert not any(lettering.word_box(word).intersects(outline) for word in named)
+
+
 def test_every_word_lies_in_the_frame(sheet):
     frame = shapely.box(*sheet.page.inner_mm)
     words = [*composition.paper_words(sheet)]

@@ -2,6 +2,9 @@
 
 import contextlib
 import operator
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
@@ -11,6 +14,7 @@ import pytest
 from scanplan.errors import StageError
 from scanplan.store import schemas, tables
 
+SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 ROWS = {
     "rank": [1, 2, 3],
     "scan_id": [7, 3, 5],
@@ -143,6 +147,31 @@ def test_a_flipped_bit_is_noticed(tmp_path):
         path.write_bytes(whole[:position] + bytes([whole[position] ^ 1]) + whole[position + 1 :])
         with pytest.raises(StageError, match="damaged"):
             list(tables.ScanStore(path).scans())
+
+
+def test_a_table_that_memory_does_not_hold_is_not_called_damaged(tmp_path):
+    path = tmp_path / "scans.parquet"
+    with tables.open_scan_writer(path, planar=False) as write:
+        write(0, np.random.default_rng(0).normal(size=(2_000_000, 3)))
+    # a process of its own that may take 20 MB more than it has: the points take 24
+    code = (
+        "import resource, sys\n"
+        "from scanplan.errors import StageError\n"
+        "from scanplan.store import tables\n"
+        "store = tables.ScanStore(sys.argv[1])\n"
+        "held = int(open('/proc/self/statm').read().split()[0]) * resource.getpagesize()\n"
+        "resource.setrlimit(resource.RLIMIT_AS, (held + 20_000_000,) * 2)\n"
+        "try:\n    list(store.scans())\n"
+        "except StageError as error:\n    print(error)\n"
+    )
+    said = subprocess.run(
+        [sys.executable, "-c", code, path],
+        env={"PYTHONPATH": str(SCRIPTS)},
+        capture_output=True,
+        text=True,
+    ).stdout
+    assert said.startswith(f"{path}: not enough memory to read it (")
+    assert said.count("\n") == 1 and "`ulimit -v`" in said
 
 
 @pytest.mark.parametrize("size", [0, 3, 200])

@@ -1,5 +1,5 @@
 rule simulate_survey:
-    """Drive a simulated rover through a building and record it as a ROS 1 bag."""
+    """Drive a simulated rover through a building and record it."""
     input:
         building=building,
     output:

@@ -1,5 +1,7 @@
 """The sheet of a plan as DXF, for CAD programs."""
 
+from dataclasses import replace
+
 import numpy as np
 import shapely
 from ezdxf import zoom
@@ -130,21 +132,25 @@ class _Plan:
         attribute.is_invisible = True
 
     def _add_stamp(self, stamp: Stamp) -> None:
-        layer = STYLES["stamp"].layer
+        """Add a room's words as a block of its own, whose attributes are not shown.
+
+        Not every program shows attributes, all show the text of a block.
+        """
         if not stamp.words:
             return
-        first = stamp.words[0]
-        insert = self._space.add_blockref(
-            dxf_document.STAMP, self._point(first.place), dxfattribs={"layer": layer}
-        )
-        is_number = first.text.removesuffix(" ?").removesuffix(" *") == stamp.facts["NUMBER"]
-        shown = dict(zip(("NUMBER" if is_number else "NAME", "AREA"), stamp.words, strict=False))
+        origin = stamp.words[0].place
+        document = self._space.doc
+        assert document is not None
+        block = dxf_document.open_stamp_block(document, self._scale)
+        for word in stamp.words:
+            leader = None if word.leader is None else word.leader - origin
+            moved = replace(word, place=word.place - origin, leader=leader)
+            _add_text(block, moved, self._scale.per_m, self._scale.per_mm)
+        layer = STYLES["stamp"].layer
+        place = self._point(origin)
+        insert = self._space.add_blockref(block.name, place, dxfattribs={"layer": layer})
         for tag in dxf_document.STAMP_TAGS:
-            if tag in shown:
-                _add_word_attribute(insert, tag, shown[tag], self._scale.per_m, self._scale.per_mm)
-            else:
-                place = self._point(first.place)
-                self._add_attribute(insert, tag, stamp.facts[tag], place, layer)
+            self._add_attribute(insert, tag, stamp.facts[tag], place, layer)
 
     def _add_dimension(self, dimension: Dimension) -> None:
         start, end = dimension.ends_m

@@ -8,6 +8,7 @@ import ezdxf
 from ezdxf.document import Drawing
 from ezdxf.enums import InsertUnits
 from ezdxf.filemanagement import new
+from ezdxf.layouts.blocklayout import BlockLayout
 from scipy import constants
 
 from scanplan.exports.sheet.paper import Page
@@ -20,6 +21,7 @@ DIMENSIONS = "SCANPLAN"
 """The style of dimensions."""
 TEXT_STYLE = "SCANPLAN"
 STAMP = "ROOM-STAMP"
+"""What the name of each room's block begins with."""
 TITLE = "TITLE-BLOCK"
 STAMP_TAGS = ("NUMBER", "NAME", "AREA", "PERIMETER", "HEIGHT", "CLOSED", "CORRECTED")
 SYMBOL_TAGS = {
@@ -66,6 +68,7 @@ def open_document(unit: str, scale: Scale) -> Drawing:
     document = new(_VERSION, units=UNITS[unit])
     document.header["$MEASUREMENT"] = 1
     document.header["$PSLTSCALE"] = 0
+    document.header["$LASTSAVEDBY"] = "scanplan"
     document.appids.add(APPLICATION)
     for name, (dash_mm, gap_mm) in DASHES_MM.items():
         dash, gap = dash_mm * scale.per_mm, gap_mm * scale.per_mm
@@ -121,7 +124,7 @@ def _add_dimension_style(document: Drawing, scale: Scale) -> None:
 
 
 def _add_blocks(document: Drawing, scale: Scale) -> None:
-    """Add the symbols, in unit size, the room stamp and the title block, with attributes."""
+    """Add the symbols, in unit size, with attributes, and the title block."""
     for name, paths in BLOCKS.items():
         block = document.blocks.new(name)
         for path in paths:
@@ -130,12 +133,17 @@ def _add_blocks(document: Drawing, scale: Scale) -> None:
         for tag in SYMBOL_TAGS:
             definition = block.add_attdef(tag, (0, 0), height=Letters.SMALL * scale.per_mm)
             definition.is_invisible = True
-    for name, tags in ((STAMP, STAMP_TAGS), (TITLE, ())):
-        block = document.blocks.new(name)
-        for number, tag in enumerate(tags):
-            place = (0, -2 * number * Letters.MEDIUM * scale.per_mm)
-            definition = block.add_attdef(tag, place, height=Letters.MEDIUM * scale.per_mm)
-            definition.is_invisible = tag not in ("NAME", "AREA")
+    document.blocks.new(TITLE)
+
+
+def open_stamp_block(document: Drawing, scale: Scale) -> BlockLayout:
+    """Add the block of one more room's stamp, with the definitions of its attributes."""
+    number = sum(block.name.startswith(STAMP) for block in document.blocks)
+    block = document.blocks.new(f"{STAMP}-{number}")
+    for tag in STAMP_TAGS:
+        definition = block.add_attdef(tag, (0, 0), height=Letters.SMALL * scale.per_mm)
+        definition.is_invisible = True
+    return block
 
 
 def format_document(document: Drawing) -> str:

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from html import escape
 from itertools import groupby
 
-from scanplan.exports.sheet.composition import Sheet, paper_marks, paper_words
+from scanplan.exports.sheet.composition import Sheet, paper_marks, paper_words, plan_extent_mm
 from scanplan.exports.sheet.lettering import (
     FONT,
     clean_text,
@@ -22,9 +22,12 @@ _ANCHORS = {0.0: "start", 0.5: "middle", 1.0: "end"}
 def format_svg_sheet(sheet: Sheet) -> str:
     """Return a sheet as the text of an SVG file of its size, one user unit a millimetre.
 
-    Every kind of element has a group with its name as class; classes are styled in one place.
+    Every kind of element has a group with its name as class; classes are styled in one place. As
+    `plan.svg#drawn` a page shows the plan alone, without what stands around it.
     """
     width, height = sheet.page.size_mm
+    x0, y0, x1, y1 = plan_extent_mm(sheet)
+    drawn = " ".join(map(_number, (x0, height - y1, x1 - x0, y1 - y0)))
     name = escape(sheet.name)
     rows = [
         '<?xml version="1.0" encoding="UTF-8"?>',
@@ -32,6 +35,7 @@ def format_svg_sheet(sheet: Sheet) -> str:
         f' viewBox="0 0 {width:g} {height:g}" role="img" aria-labelledby="title">',
         f'<title id="title">Floor plan of {name}</title>',
         f"<desc>Scale 1:{sheet.page.scale} on {sheet.page.name}</desc>",
+        f'<view id="drawn" viewBox="{drawn}"/>',
         f"<style>{' '.join(_style_rules())}</style>",
         f'<rect class="paper" width="{width:g}" height="{height:g}" fill="#ffffff"/>',
     ]

@@ -404,8 +404,12 @@ def _join_confidence(table: str, columns: Columns, rated: Columns) -> Columns:
 
 
 def summarise_floorplan(plan: FloorPlan) -> str:
-    """Return how many walls, faces, openings of each type and rooms a plan has, in words."""
-    counts = {"wall": len(plan.walls["wall"]), "wall face": len(plan.faces["face"])}
+    """Return how many walls, openings of each type and rooms a plan has, in words.
+
+    Without walls it is how many faces of such.
+    """
+    counts = {"wall": len(plan.walls["wall"])}
+    counts["wall face"] = 0 if counts["wall"] else len(plan.faces["face"])
     for kind, noun in OPENINGS.items():
         counts[noun] = int((plan.openings["type"] == kind).sum())
     counts["room"] = len(plan.rooms["room"])

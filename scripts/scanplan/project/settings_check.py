@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 from jsonschema import Draft202012Validator, ValidationError, validators
@@ -120,8 +121,10 @@ def _explain(fault: ValidationError, origin: str) -> str:
     value: Any = fault.instance
     if fault.validator == "additionalProperties":
         known = ", ".join(node["properties"])
-        extra = ", ".join(sorted(map(str, set(value) - set(node["properties"]))))
-        return f"{key}: unknown key {extra}; known are {known}"
+        extra = sorted(map(str, set(value) - set(node["properties"])))
+        meant = [near for name in extra for near in get_close_matches(name, node["properties"], 1)]
+        ask = f" (did you mean {', '.join(meant)}?)" if meant else ""
+        return f"{key}: unknown key {', '.join(extra)}{ask}; known are {known}"
     if fault.validator == "type" and fault.validator_value == "object":
         remedy = "leave the section out if there are none"
         return f"{key}: is {value!r}, expected keys with values below it; {remedy}"

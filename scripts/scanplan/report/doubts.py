@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.plan.floorplan import FloorPlan
-from scanplan.types import Columns
+from scanplan.types import Columns, IntArray
 
 _WEAK = "few scans show it, or its place is uncertain"
 _NOT_CLOSED = "its outline is not closed: the area is a guess"
@@ -18,7 +18,7 @@ class Doubt:
     Attributes
     ----------
     kind : str
-        `opening`, `wall` or `room`.
+        `opening`, `wall`, `face` or `room`.
     number : int
     name : str
         What it is called.
@@ -37,7 +37,9 @@ class Doubt:
 
 
 def list_doubts(plan: FloorPlan) -> list[Doubt]:
-    """List what to verify, openings first, then walls and rooms; of each the least certain first.
+    """List what to verify, openings, walls, rooms, at last faces; the least certain first.
+
+    A face of a wall that is listed is not.
 
     Parameters
     ----------
@@ -52,6 +54,7 @@ def list_doubts(plan: FloorPlan) -> list[Doubt]:
         *_doubts_of("opening", plan.openings, openings),
         *_doubts_of("wall", plan.walls, walls),
         *_doubts_of("room", plan.rooms, plan.room_names),
+        *_doubts_of_faces(plan),
     ]
 
 
@@ -64,7 +67,7 @@ def list_unrated(plan: FloorPlan) -> list[str]:
 
 
 def explain_doubt(kind: str, columns: Columns, row: int) -> str:
-    """Return why a row of a table of walls, openings or rooms is doubtful; nothing if it is not."""
+    """Return why a row of a table of elements is doubtful; nothing if it is not."""
     reasons: list[str] = []
     if "verify" in columns and columns["verify"][row]:
         told = str(columns["doubt"][row]) if "doubt" in columns else ""
@@ -72,6 +75,22 @@ def explain_doubt(kind: str, columns: Columns, row: int) -> str:
     if kind == "room" and not columns["closed"][row] and not reasons:
         reasons.append(_NOT_CLOSED)
     return "; ".join(reasons)
+
+
+def _doubts_of_faces(plan: FloorPlan) -> list[Doubt]:
+    rows = find_doubtful_faces(plan)
+    faces = {name: values[rows] for name, values in plan.faces.items()}
+    sides = zip(faces["face"].tolist(), faces["wall"].tolist(), strict=True)
+    names = [f"Face {n} of wall {wall}" if wall >= 0 else f"Face {n}" for n, wall in sides]
+    return _doubts_of("face", faces, names)
+
+
+def find_doubtful_faces(plan: FloorPlan) -> IntArray:
+    """Return the rows of the doubtful faces that are no sides of doubtful walls."""
+    faces, walls = plan.faces, plan.walls
+    is_doubtful = np.asarray(faces.get("verify", np.zeros(len(faces["face"]))), bool)
+    doubtful_walls = walls["wall"][np.asarray(walls["verify"], bool)]
+    return np.flatnonzero(is_doubtful & ~np.isin(faces["wall"], doubtful_walls))
 
 
 def _doubts_of(kind: str, columns: Columns, names: list[str]) -> list[Doubt]:

@@ -107,6 +107,7 @@ def report_page(
         truth=page_tables.truth_table(survey.plan_measures) if survey.plan_measures else None,
         review=wording.review_note(plan),
         walls=page_tables.wall_table(plan, survey.evidence),
+        faces=page_tables.face_table(plan),
         openings=page_tables.opening_table(plan),
         rooms=page_tables.room_table(plan),
         registration_note=wording.registration_note(survey),

@@ -89,6 +89,29 @@ def wall_table(plan: floorplan.FloorPlan, evidence: Columns) -> PageTable:
     return PageTable("walls", heads, rows, sortable=True)
 
 
+def face_table(plan: floorplan.FloorPlan) -> PageTable:
+    """Return the table of the faces that are to be verified on site though their walls are not."""
+    length_m = np.hypot(*np.diff(floorplan.centrelines_m(plan.faces), axis=1)[:, 0].T)
+    rows = []
+    records = _records(plan.faces)
+    for i in doubts.find_doubtful_faces(plan).tolist():
+        at = records[i]
+        cells = [
+            number_cell(at["face"], 0),
+            _doubt("face", plan.faces, i),
+            number_cell(at["wall"], 0) if at["wall"] >= 0 else _blank_number(),
+            Cell(str(at["state"])),
+            number_cell(length_m[i], 2),
+            number_cell(at["n_points"], 0),
+            number_cell(at["n_scans"], 0),
+        ]
+        rows.append(Row(cells, f"face {at['face']}"))
+    heads = make_heads(
+        "#face", "to verify", "#of wall", "state", "#length (m)", "#points", "#scans"
+    )
+    return PageTable("faces", heads, rows, sortable=True)
+
+
 def opening_table(plan: floorplan.FloorPlan) -> PageTable:
     """Return the table of openings and of the rooms that each joins."""
     name_of = dict(zip(plan.rooms["room"].tolist(), plan.room_names, strict=True))

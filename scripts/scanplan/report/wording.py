@@ -1,11 +1,12 @@
 """The report's sentences and head figures."""
 
+from collections import Counter
 from datetime import UTC, datetime
 
 import numpy as np
 
 from scanplan.plan import floorplan
-from scanplan.report import page_tables
+from scanplan.report import doubts, page_tables
 from scanplan.report.facts import PredictionFacts, SurveyFacts
 from scanplan.types import Columns
 
@@ -56,7 +57,8 @@ def head_figures(plan: floorplan.FloorPlan, survey: SurveyFacts) -> list[tuple[s
     recorded = datetime.fromtimestamp(t_s[0], UTC).strftime("%Y-%m-%d %H:%M UTC")
     thickness_m = plan.walls["thickness_m"][plan.thick]
     thickness = f"{1000 * np.median(thickness_m):.0f} mm" if len(thickness_m) else "not known"
-    n_to_verify = plan.walls["verify"].sum()
+    counts = Counter(doubt.kind for doubt in doubts.list_doubts(plan))
+    to_verify = [f"{n:,} {kind}{'' if n == 1 else 's'}" for kind, n in counts.items()]
     return [
         ("recorded", recorded),
         ("duration", f"{(t_s[-1] - t_s[0]) / 60:.1f} min"),
@@ -64,7 +66,7 @@ def head_figures(plan: floorplan.FloorPlan, survey: SurveyFacts) -> list[tuple[s
         ("length of walls", f"{page_tables.wall_lengths_m(plan).sum():,.1f} m"),
         ("median thickness", thickness),
         ("area of rooms", _area_of_rooms(plan.rooms)),
-        ("to verify on site", f"{n_to_verify:,} of {len(plan.walls['wall']):,} walls"),
+        ("to verify on site", ", ".join(to_verify) or "nothing that is marked"),
     ]
 
 

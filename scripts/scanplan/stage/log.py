@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TextIO, TypeVar
 
 from scanplan import interrupts
-from scanplan.errors import StageError
+from scanplan.errors import MORE_MEMORY, StageError
 from scanplan.plain_types import FilePath
 from scanplan.stage import orphans
 
@@ -102,11 +102,17 @@ def _end_in_one_line(path: FilePath) -> Iterator[None]:
         raise SystemExit(1) from None
     except Exception as error:
         _log.exception("unexpected failure")
-        reason = " ".join(f"{type(error).__name__}: {error}".split())
-        line = f"{stage}: unexpected failure, {reason}; the details are in {path}"
+        line = f"{stage}: {_explain(error)}; the details are in {path}"
         _log.error("%s", line)
         _show(line)
         raise SystemExit(1) from None
+
+
+def _explain(error: Exception) -> str:
+    reason = " ".join(f"{type(error).__name__}: {error}".split()).removesuffix(":")
+    if isinstance(error, MemoryError):
+        return f"not enough memory ({reason}): {MORE_MEMORY}"
+    return f"unexpected failure, {reason}"
 
 
 def log_line(text: str) -> None:

@@ -1,5 +1,6 @@
 """Parquet files of a schema: opened, written and checked."""
 
+import errno
 import itertools
 import json
 from binascii import crc32
@@ -11,7 +12,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from scanplan.errors import StageError
+from scanplan.errors import MORE_MEMORY, StageError
 from scanplan.store import arrow_arrays, atomic
 from scanplan.store.schemas import Schema
 from scanplan.types import Array, FilePath
@@ -127,7 +128,7 @@ def open_file(path: FilePath, schema: Schema) -> Iterator[pq.ParquetFile]:
     Raises
     ------
     StageError
-        If it is missing, damaged or of another schema or version.
+        If it is missing, damaged or of another schema or version, or memory is not enough for it.
     """
     try:
         with pq.ParquetFile(path, page_checksum_verification=True) as file:
@@ -136,7 +137,11 @@ def open_file(path: FilePath, schema: Schema) -> Iterator[pq.ParquetFile]:
             yield file
     except FileNotFoundError:
         raise StageError(f"{path}: does not exist; run the stage that makes it") from None
-    except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
+    except (pa.ArrowException, MemoryError, OSError, UnicodeDecodeError) as error:
+        if isinstance(error, MemoryError) or getattr(error, "errno", None) == errno.ENOMEM:
+            # a damaged length asks for more than there is, too
+            fault = f"not enough memory to read it ({error}): {MORE_MEMORY}"
+            raise StageError(f"{path}: {fault}; with memory to spare, {RERUN}") from None
         raise StageError(f"{path}: damaged ({error}); {RERUN}") from None
 
 

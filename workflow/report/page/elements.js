@@ -171,7 +171,7 @@
     const [kind] = element.split(" ");
     const act = (text, change) =>
       button(text, () => correct({ element: kind, at: rounded(placeOf(element)), ...change }));
-    if (kind === "room") return [];
+    if (kind === "room" || kind === "face") return [];
     const kinds = kind === "opening" ? ["door", "window", "passage"] : [];
     return [
       ...kinds.map((each) => act(`is a ${each}`, { kind: each })),

@@ -167,13 +167,14 @@ def _describe_opening(
 ) -> None:
     columns = storey.plan.openings
     names = dict(zip(storey.plan.rooms["room"].tolist(), storey.plan.room_names, strict=True))
-    sides = [names.get(int(columns[side][row])) for side in ("room_a", "room_b")]
+    # an opening may lie within one room
+    joined = dict.fromkeys(names.get(int(columns[side][row])) for side in ("room_a", "room_b"))
     properties = {
         **describe_doubt(columns, row),
         "SillMeasured": ("IfcBoolean", bool(np.isfinite(columns["sill_m"][row]))),
         "LintelMeasured": ("IfcBoolean", bool(np.isfinite(columns["lintel_m"][row]))),
         "Rays": ("IfcInteger", int(columns["n_rays"][row])),
-        "JoinsRooms": ("IfcLabel", " and ".join(filter(None, sides)) or None),
+        "JoinsRooms": ("IfcLabel", " and ".join(filter(None, joined)) or None),
     }
     model.describe(product, EVIDENCE, properties)
 

@@ -148,7 +148,13 @@ def _open_space(page: Page, marks: list[Mark], symbols: list[Symbol]) -> LabelSp
     ]
     loose += [path for symbol in symbols for path in symbol_paths(symbol)]
     lines = [shapely.LineString(page.to_paper(flatten(path))) for path in loose]
-    return LabelSpace(page.drawing_mm, walls, lines)
+    furniture = [
+        shapely.LineString(page.to_paper(path[:, :2]))
+        for mark in marks
+        if mark.kind == "furniture"
+        for path in mark.paths
+    ]
+    return LabelSpace(page.drawing_mm, walls, lines, furniture)
 
 
 def _rings(page: Page, paths: list[FloatArray]) -> list[BaseGeometry]:
@@ -203,6 +209,14 @@ def paper_marks(sheet: Sheet) -> Iterator[Mark]:
     order = list(STYLES)
     found = [*_plan_marks(sheet), *sheet.paper_marks]
     yield from sorted(found, key=lambda mark: order.index(mark.kind))
+
+
+def plan_extent_mm(sheet: Sheet) -> tuple[float, float, float, float]:
+    """Return least x and y, greatest x and y of the plan on paper, without dimensions and words."""
+    page = sheet.page
+    turned_m = np.stack(_extent(sheet.marks, sheet.symbols, page.turn_deg))
+    (x0, y0), (x1, y1) = page.to_paper(turned_m @ rotation(page.turn_deg)).tolist()
+    return x0, y0, x1, y1
 
 
 def _plan_marks(sheet: Sheet) -> Iterator[Mark]:

@@ -48,7 +48,9 @@ class LabelSpace:
     walls : sequence of shapely geometries
         On paper; no word lies on these if it can lie anywhere else.
     lines : sequence of shapely geometries
-        Words should not lie on these.
+        Neither words nor lines drawn with them should lie on these.
+    pale : sequence of shapely geometries
+        Words alone should not lie on these.
     """
 
     OFF_WALL = 9.0
@@ -58,10 +60,12 @@ class LabelSpace:
         frame_mm: tuple[float, float, float, float],
         walls: Iterable[BaseGeometry],
         lines: Iterable[BaseGeometry],
+        pale: Iterable[BaseGeometry] = (),
     ) -> None:
         self._frame = shapely.box(*frame_mm)
         self._walls = shapely.STRtree([*walls])
         self._lines = shapely.STRtree([*lines])
+        self._pale = shapely.STRtree([*pale])
         self._words = _Shapes()
         self._drawn = _Shapes()
 
@@ -88,7 +92,8 @@ class LabelSpace:
         on_walls = len(self._walls.query(boxes, "intersects")[0])
         drawn = [*boxes, *map(shapely.LineString, lines)]
         on_lines = len(self._lines.query(drawn, "intersects")[0])
-        return (self.OFF_WALL + 1) * on_walls + on_lines
+        on_pale = len(self._pale.query(boxes, "intersects")[0])
+        return (self.OFF_WALL + 1) * on_walls + on_lines + on_pale
 
     def _is_free(self, boxes: list[BaseGeometry], lines: Iterable[FloatArray]) -> bool:
         """Return whether words lie apart from words and lines, and lines apart from words."""

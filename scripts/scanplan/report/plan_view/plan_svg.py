@@ -45,8 +45,9 @@ def growing_plan_svg(
     str
         Parts with `data-rank` belong to the scan of that rank, those with `data-first` and
         `data-enough` to the ranks from which on they are seen and sure, those with `data-element`
-        to a wall, opening or room. Classes say what a part is; the page's style how it looks, and
-        its script keeps letters and dots as large on the screen however near the plan is.
+        to a wall, opening, room or doubtful face. Classes say what a part is; the page's style how
+        it looks, and its script keeps letters and dots as large on the screen however near the plan
+        is.
     """
     return "\n".join([
         f'<svg id="plan" viewBox="{_view_box(plan, positions_m)}" role="img"'
@@ -85,7 +86,9 @@ def draw_walls(plan: floorplan.FloorPlan) -> Iterator[str]:
 
 def _picks(plan: floorplan.FloorPlan) -> Iterator[str]:
     """Draw what is clicked on, and what a row of a table points at."""
-    for kind, columns in (("wall", plan.walls), ("opening", plan.openings)):
+    rows = doubts.find_doubtful_faces(plan)
+    faces = {name: values[rows] for name, values in plan.faces.items()}
+    for kind, columns in (("wall", plan.walls), ("face", faces), ("opening", plan.openings)):
         lines_m = floorplan.centrelines_m(columns)
         for number, line_m in zip(columns[kind].tolist(), lines_m, strict=True):
             yield draw_path(line_m[None], f'class="pick" data-element="{kind} {number}"')
@@ -131,7 +134,7 @@ def _labels(plan: floorplan.FloorPlan) -> Iterator[str]:
 
 def _doubts(plan: floorplan.FloorPlan) -> Iterator[str]:
     """Mark what is to be verified on site."""
-    tables = (("wall", plan.walls), ("opening", plan.openings))
+    tables = (("wall", plan.walls), ("face", plan.faces), ("opening", plan.openings))
     places_m = {
         f"{kind} {number}": line_m.mean(axis=0)
         for kind, columns in tables
