@@ -21,7 +21,7 @@ $(if $(UNKNOWN),$(error $(UNKNOWN): no such variable; there are $(KNOWN)))
 unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: help run compare quick test test-slurm lint style faults audit bench figures pictures settings
-.PHONY: environment clean
+.PHONY: environment kiss-icp clean
 .DEFAULT_GOAL := run
 
 help: ## this list
@@ -98,6 +98,9 @@ $(VENV)/.ready: environment.lock
 	    $(BIN)/python -c 'import open3d' || \
 	    { echo "Open3D lacks system libraries; install them with: apt-get install $(LIBRARIES)"; exit 1; }; }
 	@touch $@
+
+kiss-icp: environment ## add KISS-ICP, which estimates poses of recordings that have none (2 MB)
+	@$(BIN)/pip install -qq --disable-pip-version-check --no-deps --require-hashes -r environment-kiss-icp.lock
 
 clean: ## remove .venv and everything that was made
 	rm -rf $(VENV) results logs benchmarks .snakemake

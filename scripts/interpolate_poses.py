@@ -51,10 +51,10 @@ def interpolate_poses(
     limits = {"max_gap_s": max_gap_s, "max_speed_m_s": max_speed_m_s}
     with open_survey(files, max_damaged_share=1.0, **reading) as survey:
         t_ns = survey.stamps()
+        # what of it is lost, and not which of the clouds that are read here are damaged
+        found = doubts.Doubts().add(survey.describe_damage())
         edges = survey.pose_edges()
-        found = doubts.Doubts()
-        is_odometry = survey.pose_kind == pose_kind.ODOMETRY
-        if is_odometry:
+        if pose_kind.is_drifting(survey.pose_kind):
             edges, resets = _join_resets(edges, max_speed_m_s)
             found = found.add(contradictions=resets)
         pose, gap_s, covered = frame_edges.chain_poses(edges, t_ns, **limits)
@@ -62,8 +62,6 @@ def interpolate_poses(
             pose, keep_every=keep_every, max_step_m=max_step_m, max_turn_deg=max_turn_deg
         )
         candidates.require_poses(chosen, t_ns, covered, edges, files[0], **limits)
-        # what of it is lost, and not which of the few clouds that are read next are damaged
-        found = found.add(survey.describe_damage())
         if moved is not None:
             motion = trajectory.choose_motion(survey.motion_chains(), t_ns, **limits)
             motion = time_check.check_point_times(survey, motion)
@@ -78,7 +76,9 @@ def interpolate_poses(
         f"interpolate_poses: {len(t_ns):,} scans, {len(chosen):,} candidates,"
         f" {n_covered:,} with poses, {len(chosen) - n_covered:,} without"
     )
-    _log_pose_kind(is_odometry, is_set=reading.get("pose_kind", pose_kind.FOUND) != pose_kind.FOUND)
+    _log_pose_kind(
+        survey.pose_kind, is_set=reading.get("pose_kind", pose_kind.FOUND) != pose_kind.FOUND
+    )
 
 
 def _join_resets(
@@ -95,13 +95,15 @@ def _join_resets(
     ]
 
 
-def _log_pose_kind(is_odometry: bool, *, is_set: bool) -> None:
+def _log_pose_kind(kind: str, *, is_set: bool) -> None:
     by = "set by advanced.input.pose_kind" if is_set else "found by topic and frame"
-    meaning = (
-        "odometry, which drifts: they count as motions between scans, and loops are looked for"
-        if is_odometry
-        else "a localiser's, in its map"
-    )
+    of = {
+        pose_kind.LOCALISER: "a localiser's, in its map",
+        pose_kind.ODOMETRY: "odometry, which drifts",
+        pose_kind.ESTIMATED: "estimated from the clouds, and drift",
+    }
+    means = ": they count as motions between scans, and loops are looked for"
+    meaning = of[kind] + (means if pose_kind.is_drifting(kind) else "")
     log.log_line(f"interpolate_poses: the poses are {meaning} ({by})")
 
 

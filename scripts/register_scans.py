@@ -124,7 +124,7 @@ def _write_kept_scans(
 
 
 def _is_odometry(poses: FilePath) -> bool:
-    return tables.read_note(poses, schemas.POSES, pose_kind.NOTE) == pose_kind.ODOMETRY
+    return pose_kind.is_drifting(tables.read_note(poses, schemas.POSES, pose_kind.NOTE))
 
 
 def _read_motion(moved: FilePath) -> trajectory.SensorMotion:

@@ -12,6 +12,7 @@ from scanplan.exports import reduced_bag
 from scanplan.geometry import se3
 from scanplan.recordings import candidates, frame_edges
 from scanplan.recordings.clouds import Scan
+from scanplan.recordings.motion.pose_kind import ESTIMATED
 from scanplan.recordings.recorded_survey import BagSurvey
 from scanplan.recordings.survey import open_survey
 from scanplan.selection import wall_cells
@@ -50,7 +51,7 @@ def write_reduced_bag(
     Raises
     ------
     StageError
-        If the dataset is a folder of scans, or no scan shows a wall.
+        If the dataset is a folder of scans or has no poses, or no scan shows a wall.
     """
     limits = {name: poses[name] for name in ("max_gap_s", "max_speed_m_s")}
     spacing = {name: value for name, value in poses.items() if name not in limits}
@@ -60,6 +61,11 @@ def write_reduced_bag(
             raise StageError(
                 f"{output}: not written, as {Path(recordings[0]).parent} holds clouds in files and"
                 " no messages; ask for the plan, which chooses among them"
+            )
+        if survey.pose_kind == ESTIMATED:
+            raise StageError(
+                f"{output}: not written, as its poses would be estimated from the clouds, which"
+                " takes all of them; ask for selected.bag instead"
             )
         known, _, covered = frame_edges.chain_poses(survey.pose_edges(), survey.stamps(), **limits)
         chosen = candidates.choose_candidates(known, **spacing)

@@ -37,6 +37,7 @@ HOMES = {
         "lab/simulation/raycast.py",
     ),
     "small_gicp": ("registration/",),
+    "kiss_icp": ("recordings/motion/lidar_odometry.py",),
     "yaml": ("project/",),
     "jsonschema": ("project/",),
     "ezdxf": ("exports/",),

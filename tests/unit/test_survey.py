@@ -157,7 +157,6 @@ def test_clouds_of_two_sensors_on_one_topic(tmp_path, maker):
     ("change", "settings", "told"),
     [
         (lambda m, e: without(e, "/points"), {}, "no cloud topic.*/amcl_pose"),
-        (lambda m, e: without(e, "/amcl_pose"), {}, "no pose topic.*/points"),
         (lambda m, e: [*e, ("/scan", START, m.laser(START, [1, 2]))], {}, "input.cloud_topic"),
         (
             lambda m, e: [*e, ("/pose2", START, m.amcl(START, (0, 0, 0)))],

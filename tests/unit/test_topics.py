@@ -66,8 +66,9 @@ def test_poses_in_doubt_or_missing():
     with pytest.raises(StageError, match=r"/odom .*/odometry/filtered .*input.pose_topic"):
         topics.choose_pose_topic([ODOM, second], None, "d")
     assert topics.choose_pose_topic([ODOM, second, TF], "/tf", "d") == TF
-    with pytest.raises(StageError, match=r"no pose topic.*/points"):
-        topics.choose_pose_topic([CLOUD, TF_STATIC], None, "d")
+    assert topics.choose_pose_topic([CLOUD, TF_STATIC], None, "d") is None
+    assert "no pose topic" in topics.describe_missing_poses([CLOUD, TF_STATIC], "d")
+    assert "/points" in topics.describe_missing_poses([CLOUD, TF_STATIC], "d")
     with pytest.raises(StageError, match="one of: /odom"):
         topics.choose_pose_topic([ODOM, CLOUD], "/points", "d")
 

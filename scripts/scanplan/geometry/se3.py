@@ -94,6 +94,18 @@ def pose_yaw_rad(pose: npt.ArrayLike) -> FloatArray:
     return np.arctan2(pose[..., 1, 0], pose[..., 0, 0])
 
 
+def level_frame(pose: npt.ArrayLike) -> FloatArray:
+    """Return poses (..., 4, 4) with the places and headings of others, not tilted."""
+    yaw_rad = pose_yaw_rad(pose)
+    level = np.zeros(np.shape(pose))
+    level[..., 0, 0] = level[..., 1, 1] = np.cos(yaw_rad)
+    level[..., 1, 0] = np.sin(yaw_rad)
+    level[..., 0, 1] = -level[..., 1, 0]
+    level[..., 2, 2] = level[..., 3, 3] = 1
+    level[..., :3, 3] = np.asarray(pose)[..., :3, 3]
+    return level
+
+
 def interpolate_poses(
     t_ns: npt.ArrayLike,
     xyz_m: npt.ArrayLike,

@@ -19,8 +19,8 @@ from scanplan.recordings.bags import Bag, BagMessage
 from scanplan.recordings.extrinsics import configured_extrinsics
 from scanplan.recordings.frame_edges import FrameEdge
 from scanplan.recordings.integrity.damaged_clouds import DamagedClouds
-from scanplan.recordings.motion import point_times
-from scanplan.recordings.motion.pose_kind import FOUND, find_pose_kind
+from scanplan.recordings.motion import lidar_odometry, point_times
+from scanplan.recordings.motion.pose_kind import ESTIMATED, FOUND, find_pose_kind
 from scanplan.recordings.survey_protocol import NamedChain
 from scanplan.stage import log
 from scanplan.types import Array, FloatArray, IntArray
@@ -136,6 +136,8 @@ class BagSurvey:
         """Of which kind the poses are: see `pose_kind.find_pose_kind`."""
         if self._wanted_pose_kind != FOUND:
             return self._wanted_pose_kind
+        if self._pose_source is None:
+            return ESTIMATED
         return find_pose_kind(self._pose_source.msgtype, self.map_frame)
 
     @property
@@ -146,7 +148,7 @@ class BagSurvey:
     @property
     def map_frame(self) -> str:
         """The frame of the poses."""
-        return self.pose_edges()[0].parent
+        return lidar_odometry.WORLD if self._pose_source is None else self.pose_edges()[0].parent
 
     def base_from_sensor(self, t_ns: IntArray) -> FloatArray:
         """Return the poses (n, 4, 4) of the sensor on what poses without a child frame are of."""
@@ -156,7 +158,7 @@ class BagSurvey:
     def list_topics(self) -> SurveyTopics:
         """Return the topics of the clouds, and of poses, transforms and odometry."""
         transforms = [t for t in self._topics if t.msgtype in topics.TRANSFORMS]
-        small = {t.name: t for t in (self._pose_source, *transforms, *self._odometry)}
+        small = {t.name: t for t in (*self._pose_sources, *transforms, *self._odometry)}
         return SurveyTopics(self._cloud, list(small.values()))
 
     def stamps(self) -> IntArray:
@@ -205,22 +207,26 @@ class BagSurvey:
         Returns
         -------
         list of frame_edges.FrameEdge
+            Where no poses are recorded, estimated from all clouds, once.
 
         Raises
         ------
         StageError
-            If no pose topic can be chosen, none of its poses is usable, or the sensor is not
-            connected to them.
+            If no pose topic can be chosen, none of its poses is usable, the sensor is not connected
+            to them, or the poses cannot be estimated.
         """
         return self._pose_edges
 
     def motion_chains(self) -> list[NamedChain]:
         """Return (name, edges) of all that states how the sensor moved, the smoothest first."""
         odometry = self._chains.of_odometry(self._odometry)
-        return [*odometry, (str(self._pose_source), self.pose_edges())]
+        name = "the clouds" if self._pose_source is None else str(self._pose_source)
+        return [*odometry, (name, self.pose_edges())]
 
     @cached_property
     def _pose_edges(self) -> list[FrameEdge]:
+        if self._pose_source is None:
+            return self._estimate_edges()
         edges = self._chains.of_poses(self._pose_source)
         frames = [edges[0].parent, *(edge.child or self._index.sensor_frame for edge in edges)]
         log.log_line(
@@ -229,9 +235,23 @@ class BagSurvey:
         )
         return edges
 
+    def _estimate_edges(self) -> list[FrameEdge]:
+        missing = f"{self._where}: advanced.input.pose_kind is {ESTIMATED}"
+        if self._wanted_pose_kind != ESTIMATED:
+            missing = topics.describe_missing_poses(self._topics, self._where)
+        mounting = self._chains.of_mounting(self.map_frame)
+        return [lidar_odometry.estimate_track(self, mounting, missing), *mounting]
+
     @cached_property
-    def _pose_source(self) -> topics.Topic:
+    def _pose_source(self) -> topics.Topic | None:
+        """The topic of the poses; None where they are estimated from the clouds."""
+        if self._wanted_pose_kind == ESTIMATED:
+            return None
         return topics.choose_pose_topic(self._topics, self._pose_topic, self._where)
+
+    @property
+    def _pose_sources(self) -> list[topics.Topic]:
+        return [] if self._pose_source is None else [self._pose_source]
 
     @property
     def _odometry(self) -> list[topics.Topic]:
@@ -245,8 +265,9 @@ class BagSurvey:
 
     @cached_property
     def _index(self) -> small_messages.SmallMessages:
-        needed = [self._pose_source]
-        if self._extrinsics is None or self._pose_source.msgtype in topics.TRANSFORMS:
+        needed = self._pose_sources
+        of_transforms = any(topic.msgtype in topics.TRANSFORMS for topic in needed)
+        if self._extrinsics is None or of_transforms:
             needed += [
                 topic
                 for topic in self._topics

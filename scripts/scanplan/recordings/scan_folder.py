@@ -16,8 +16,8 @@ from scanplan.recordings.extrinsics import configured_extrinsics
 from scanplan.recordings.integrity.damaged_clouds import DamagedClouds
 from scanplan.recordings.integrity.ply_size import check_ply_size
 from scanplan.recordings.messages import TIME_FIELDS
-from scanplan.recordings.motion import point_times
-from scanplan.recordings.motion.pose_kind import FOUND, LOCALISER
+from scanplan.recordings.motion import lidar_odometry, point_times
+from scanplan.recordings.motion.pose_kind import ESTIMATED, FOUND, LOCALISER
 from scanplan.recordings.survey_protocol import NamedChain
 from scanplan.stage import log
 from scanplan.store import tum
@@ -122,7 +122,14 @@ class ScanFolder:
 
     def pose_edges(self) -> list[frame_edges.FrameEdge]:
         """Return the chain of transforms whose product is world_from_sensor."""
-        return [self._track, *self._extrinsics]
+        return [self._chosen_track, *self._extrinsics]
+
+    @cached_property
+    def _chosen_track(self) -> frame_edges.FrameEdge:
+        if self._pose_kind != ESTIMATED:
+            return self._track
+        missing = f"{self._poses_path.parent}: advanced.input.pose_kind is {ESTIMATED}"
+        return lidar_odometry.estimate_track(self, self._extrinsics, missing)
 
     def motion_chains(self) -> list[NamedChain]:
         """Return (name, edges) of all that states how the sensor moved: the poses."""

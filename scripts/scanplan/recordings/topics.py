@@ -95,15 +95,16 @@ def choose_cloud_topic(topics: Sequence[Topic], wanted: str | None, where: str) 
     return _only(filled, where, "input.cloud_topic")
 
 
-def choose_pose_topic(topics: Sequence[Topic], wanted: str | None, where: str) -> Topic:
+def choose_pose_topic(topics: Sequence[Topic], wanted: str | None, where: str) -> Topic | None:
     """Choose the topic of the poses: the first type of `POSES` that occurs, else tf.
 
     Parameters and errors are those of `choose_cloud_topic`, with `input.pose_topic`.
 
     Returns
     -------
-    Topic
-        Of a type of `POSES`, or of `TRANSFORMS` if the poses come from tf.
+    Topic or None
+        Of a type of `POSES`, or of `TRANSFORMS` if the poses come from tf; None if no poses are
+        recorded.
     """
     tf = [t for t in topics if t.msgtype in TRANSFORMS and not is_static_tf(t)]
     candidates = [t for t in topics if t.msgtype in POSES] + tf
@@ -114,9 +115,14 @@ def choose_pose_topic(topics: Sequence[Topic], wanted: str | None, where: str) -
         of_type = [t for t in filled if t.msgtype in msgtypes]
         if of_type:
             return _only(of_type, where, "input.pose_topic")
-    raise StageError(
+    return None
+
+
+def describe_missing_poses(topics: Sequence[Topic], where: str) -> str:
+    """Return that a recording has no poses, as the begin of a line on what to do."""
+    return (
         f"{where}: no pose topic with messages (PoseWithCovarianceStamped, PoseStamped, Odometry"
-        f" or /tf); topics: {_list(topics)}; record the localiser's poses too"
+        f" or /tf); topics: {_list(topics)}"
     )
 
 

@@ -229,8 +229,8 @@ class SequentialRegistrar(ScanRegistrar):
         if previous is None or own is None:
             return None
         middle = self._previous[previous.row].world_from_cloud
-        world_from_target = submaps.level_frame(middle)
-        world_from_source = submaps.level_frame(scan.world_from_cloud)
+        world_from_target = se3.level_frame(middle)
+        world_from_source = se3.level_frame(scan.world_from_cloud)
         found = recognition.find_submap(
             own,
             previous,

@@ -1,4 +1,4 @@
-"""Whether recorded poses are a localiser's, in a map, or odometry, which drifts."""
+"""Whether poses are a localiser's, in a map, or odometry, which drifts: of wheels or of scans."""
 
 from scanplan.recordings import topics
 
@@ -6,6 +6,8 @@ FOUND = "found"
 """What the settings say where topic and frame decide."""
 LOCALISER = "localiser"
 ODOMETRY = "odometry"
+ESTIMATED = "estimated"
+"""Odometry that is estimated from the clouds, whatever was recorded."""
 NOTE = "pose_kind"
 """Under this name a table of poses says which."""
 
@@ -30,3 +32,8 @@ def find_pose_kind(msgtype: str, frame: str) -> str:
     if name == "map":
         return LOCALISER
     return ODOMETRY if name == "odom" or msgtype == topics.ODOMETRY else LOCALISER
+
+
+def is_drifting(kind: str) -> bool:
+    """Return whether poses of a kind say only how the sensor moved, and drift."""
+    return kind in (ODOMETRY, ESTIMATED)

@@ -16,7 +16,7 @@ from scipy.sparse.csgraph import dijkstra
 from scanplan.geometry import se3, twists
 from scanplan.registration import multiway, results
 from scanplan.registration.constraints import PoseConstraint
-from scanplan.registration.drift import recognition, submaps
+from scanplan.registration.drift import recognition
 from scanplan.registration.drift.submaps import Submap
 from scanplan.registration.icp import IcpResult
 from scanplan.registration.registration_settings import DriftSettings
@@ -161,7 +161,7 @@ class LoopCloser:
     def _jobs(
         self, pairs: Sequence[tuple[int, int, float]], world_from_cloud: FloatArray
     ) -> Iterable[tuple[Any, ...]]:
-        world_from_level = submaps.level_frame(world_from_cloud[self._rows])
+        world_from_level = se3.level_frame(world_from_cloud[self._rows])
         way_m = self.expected_way_m()
         n_of_job = 8
         for begin in range(0, len(pairs), n_of_job):
@@ -175,7 +175,7 @@ class LoopCloser:
 
     def _consistent(self, found: Sequence[Link], world_from_cloud: FloatArray) -> list[Link]:
         """Return the links that another one confirms, or that little drift leaves no doubt of."""
-        world_from_level = submaps.level_frame(world_from_cloud[self._rows])
+        world_from_level = se3.level_frame(world_from_cloud[self._rows])
         drift_m = self._expect_drift(self.expected_way_m())[0]
         known = [*self.links, *found]
         return [
@@ -203,7 +203,7 @@ class LoopCloser:
     def _constraint(self, link: Link, world_from_cloud: FloatArray) -> PoseConstraint:
         rows = self._rows[[link.source, link.target]]
         level_from_cloud = (
-            se3.invert_pose(submaps.level_frame(world_from_cloud[rows])) @ world_from_cloud[rows]
+            se3.invert_pose(se3.level_frame(world_from_cloud[rows])) @ world_from_cloud[rows]
         )
         fit = link.found.fit
         target_from_source = (

@@ -7,7 +7,7 @@ from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
 from scanplan.geometry import se3
-from scanplan.registration.drift import recognition, submaps
+from scanplan.registration.drift import recognition
 from scanplan.registration.drift.submaps import Submap
 from scanplan.types import FloatArray, IntArray
 
@@ -54,7 +54,7 @@ def find_folds(
     rows = np.array([submap.row for submap in maps], np.int64)
     if len(rows) < 2:
         return []
-    world_from_level = submaps.level_frame(world_from_cloud[rows])
+    world_from_level = se3.level_frame(world_from_cloud[rows])
     xy_m = world_from_level[:, :2, 3]
     apart_m = np.linalg.norm(xy_m[:, None] - xy_m[None], axis=2)
     driven_m = np.abs(way_m[rows][:, None] - way_m[rows][None])

@@ -65,7 +65,7 @@ def merge_scans(
     world_from_cloud : (k, 4, 4) float64
     """
     middle = len(rows) // 2
-    level = level_frame(world_from_cloud[middle])
+    level = se3.level_frame(world_from_cloud[middle])
     level_from_cloud = se3.invert_pose(level) @ world_from_cloud
     parts = [_slice_scan(cloud, pose) for cloud, pose in zip(clouds, level_from_cloud, strict=True)]
     xy_m, normal, sensor_xy_m = (np.concatenate(part) for part in zip(*parts, strict=True))
@@ -79,18 +79,6 @@ def merge_scans(
     flat_m = np.column_stack([xy_m, np.zeros(len(xy_m))])
     cloud = PreparedCloud(flat_m, KDTree(xy_m), True, normal[first], None)
     return Submap(int(rows[middle]), cloud, sensor_xy_m[first])
-
-
-def level_frame(pose: FloatArray) -> FloatArray:
-    """Return poses (..., 4, 4) with the places and headings of others, not tilted."""
-    yaw_rad = se3.pose_yaw_rad(pose)
-    level = np.zeros(np.shape(pose))
-    level[..., 0, 0] = level[..., 1, 1] = np.cos(yaw_rad)
-    level[..., 1, 0] = np.sin(yaw_rad)
-    level[..., 0, 1] = -level[..., 1, 0]
-    level[..., 2, 2] = level[..., 3, 3] = 1
-    level[..., :3, 3] = pose[..., :3, 3]
-    return level
 
 
 def _slice_scan(

@@ -1,0 +1,135 @@
+"""Poses from the clouds alone, where none are recorded: LiDAR odometry.
+
+Each cloud is aligned to those before it by KISS-ICP (Vizzo et al. 2023, "KISS-ICP: In defense of
+point-to-point ICP"), an optional package. The poses drift; registration finds the loops.
+"""
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from scanplan.errors import StageError
+from scanplan.geometry import se3
+from scanplan.recordings import frame_edges
+from scanplan.recordings.clouds import Scan
+from scanplan.recordings.survey_protocol import Survey
+from scanplan.stage import log
+from scanplan.types import FloatArray, IntArray
+
+if TYPE_CHECKING:
+    from kiss_icp.kiss_icp import KissICP
+
+WORLD = "map"
+"""The frame of the poses: that of the rover at the first cloud, turned upright."""
+
+
+def estimate_track(
+    survey: Survey, mounting: Sequence[frame_edges.FrameEdge], missing: str
+) -> frame_edges.FrameEdge:
+    """Estimate how a rover moved from its clouds.
+
+    Parameters
+    ----------
+    survey : survey_protocol.Survey
+        All its scans are read.
+    mounting : sequence of frame_edges.FrameEdge
+        From the rover to the sensor, as far as it is known: it says where up is.
+    missing : str
+        Why there are no other poses, as the begin of an error.
+
+    Returns
+    -------
+    frame_edges.FrameEdge
+        The rover in `WORLD`: level and at one height where it rolls, as `is_rolling` has it.
+
+    Raises
+    ------
+    StageError
+        If the sensor is planar, KISS-ICP is not installed or no cloud has points.
+    """
+    if survey.planar:
+        raise StageError(
+            f"{missing}; 2-D scans alone do not say where they were taken: record the poses of a"
+            " localiser, odometry (/odom), or slam_toolbox's /pose or /tf, run live or on this"
+            " recording"
+        )
+    odometry = _start_odometry(missing)
+    n_scans = len(survey.stamps())
+    scans = log.report_progress(survey.scans(range(n_scans)), "estimate_poses", n_scans)
+    t_ns, first_from_sensor = _align_scans(odometry, scans)
+    if len(t_ns) == 0:
+        raise StageError(f"{missing}; and no cloud has points to estimate poses from; record again")
+    base_from_sensor, _, _ = frame_edges.chain_poses(mounting, t_ns, max_gap_s=np.inf)
+    world_from_base = base_from_sensor[0] @ first_from_sensor @ se3.invert_pose(base_from_sensor)
+    ground = "heights and tilts are kept"
+    if is_rolling(t_ns, world_from_base):
+        world_from_base = se3.level_frame(world_from_base)
+        world_from_base[:, 2, 3] = 0.0
+        ground = "it rolls on a level floor: heights and tilts are taken for drift"
+    way_m = np.linalg.norm(np.diff(world_from_base[:, :3, 3], axis=0), axis=1).sum()
+    log.log_line(f"estimate_poses: {len(t_ns):,} clouds placed on {way_m:,.0f} m of way; {ground}")
+    xyz_m, quat_xyzw = se3.split_pose(world_from_base)
+    rows = np.column_stack([xyz_m, quat_xyzw])
+    track, _ = frame_edges.make_track_edge(WORLD, "", t_ns, t_ns, rows)
+    if track is None:
+        raise StageError(f"{missing}; and no stamp of the clouds is usable; check the clocks")
+    return track
+
+
+def is_rolling(t_ns: IntArray, world_from_base: FloatArray) -> bool:
+    """Return whether something moves on wheels over a level floor, by how its tilt changes.
+
+    What is carried sways by degrees at every step; a rover's tilt changes by the odometry's noise
+    alone, though that may add up.
+
+    Parameters
+    ----------
+    t_ns : (n,) int64
+        Increasing.
+    world_from_base : (n, 4, 4) float64
+    """
+    # a step takes about half a second
+    later = np.minimum(np.searchsorted(t_ns, t_ns + 500_000_000), len(t_ns) - 1)
+    upright = world_from_base[:, :3, 2]
+    cosine = np.einsum("ij,ij->i", upright, upright[later])
+    sway_deg = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
+    # noise is some tenths of a degree (measured in rooms); who walks sways by several
+    return float(np.median(sway_deg)) < 1.0
+
+
+def _start_odometry(missing: str) -> "KissICP":
+    try:
+        from kiss_icp.config import KISSConfig
+        from kiss_icp.kiss_icp import KissICP
+    except ModuleNotFoundError as error:
+        raise StageError(
+            f"{missing}; KISS-ICP estimates them from 3-D clouds, and is not installed: run"
+            " `make kiss-icp`, or record the poses of a localiser or odometry"
+        ) from error
+    config = KISSConfig()
+    # nearer returns are the rover's own body
+    config.data.min_range = 0.5
+    # a quarter of a metre tells two walls of a narrow room apart; coarser, the way through rooms is
+    # lost, finer takes four times as long (tried: 1.0, 0.5, 0.25, 0.1)
+    config.mapping.voxel_size = 0.25
+    # sums in an order of their own would differ from run to run
+    config.registration.max_num_threads = 1
+    return KissICP(config)
+
+
+def _align_scans(odometry: "KissICP", scans: Iterable[Scan]) -> tuple[IntArray, FloatArray]:
+    """Return the moments (n,) of the scans that have points, and first_from_sensor (n, 4, 4)."""
+    moments_ns = []
+    poses = []
+    for scan in scans:
+        if len(scan.xyz_m) == 0:
+            continue
+        time_s = np.zeros(0) if scan.time_s is None else scan.time_s
+        odometry.register_frame(scan.xyz_m.astype(np.float64), time_s)
+        # it moves points to where they would have been seen at the end of the sweep
+        end_s = 0.0 if scan.time_s is None else float(scan.time_s.max())
+        moments_ns.append(scan.t_ns + round(end_s * 1e9))
+        poses.append(np.array(odometry.last_pose))
+    order = np.argsort(moments_ns, kind="stable")
+    return np.array(moments_ns, np.int64)[order], np.array(poses).reshape(-1, 4, 4)[order]

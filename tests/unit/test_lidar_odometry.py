@@ -1,0 +1,117 @@
+"""Poses from clouds alone: what moves on wheels, what is told, and KISS-ICP itself where it is."""
+
+import sys
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from helpers import bag_making
+from helpers.hall_recording import ranges_from, seen_from
+from scanplan.errors import StageError
+from scanplan.geometry import se3
+from scanplan.recordings import frame_edges
+from scanplan.recordings.motion import lidar_odometry, pose_kind
+from scanplan.recordings.survey import open_survey
+
+STEP_NS = 100_000_000
+N_SCANS = 20
+TURNED = Rotation.from_euler("z", 90, degrees=True).as_quat()
+
+
+def swaying(tilt_deg):
+    """Poses ten times a second with given tilts (n,) about x."""
+    poses = np.tile(np.eye(4), (len(tilt_deg), 1, 1))
+    poses[:, :3, :3] = Rotation.from_euler("x", tilt_deg[:, None], degrees=True).as_matrix()
+    return np.arange(len(tilt_deg)) * STEP_NS, poses
+
+
+def test_a_tilt_that_adds_up_slowly_is_drift_and_sway_is_not():
+    moments = np.arange(100)
+    assert lidar_odometry.is_rolling(*swaying(0.06 * moments))  # six degrees in ten seconds
+    assert not lidar_odometry.is_rolling(*swaying(3 * np.sin(np.pi * moments / 5)))  # of a walk
+    # a rover that rocks once over a sill
+    assert lidar_odometry.is_rolling(*swaying(np.where(np.abs(moments - 50) < 3, 5.0, 0.0)))
+
+
+def place_of(i):
+    return np.array([1.5 + 0.1 * i, 1.5 + 0.02 * i, 0.5])
+
+
+def record(folder, *, planar=False, mount=None):
+    """Scans along a hall without any pose; the sensor is mounted turned by `mount`, if at all."""
+    maker = bag_making.Maker()
+    entries = []
+    if mount is not None:
+        static = (0, "base_link", "lidar", (0, 0, 0.5), mount)
+        entries.append(("/tf_static", bag_making.START_NS - 1, maker.transforms(static)))
+    sensor_from_hall = np.eye(3) if mount is None else Rotation.from_quat(mount).as_matrix().T
+    for i in range(N_SCANS):
+        t_ns = bag_making.START_NS + i * STEP_NS
+        if planar:
+            entries.append(("/scan", t_ns, maker.laser(t_ns, ranges_from(place_of(i)[:2]))))
+        else:
+            points = seen_from(place_of(i), i) @ sensor_from_hall.T
+            entries.append(("/points", t_ns, maker.cloud(t_ns, points)))
+    return [str(maker.write(folder / "run", entries))]
+
+
+def test_2_d_scans_without_poses_are_told_what_to_record(tmp_path):
+    with (
+        open_survey(record(tmp_path, planar=True)) as survey,
+        pytest.raises(StageError, match=r"no pose topic.*/scan.*slam_toolbox's /pose"),
+    ):
+        survey.pose_edges()
+
+
+def test_without_the_package_the_line_says_how_to_get_it(tmp_path, monkeypatch):
+    # an import of it fails as if it were not there
+    for name in ("kiss_icp", "kiss_icp.config", "kiss_icp.kiss_icp"):
+        monkeypatch.setitem(sys.modules, name, None)
+    files = record(tmp_path)
+    with open_survey(files) as survey:
+        assert survey.pose_kind == pose_kind.ESTIMATED
+        with pytest.raises(StageError, match=r"no pose topic.*/points.*`make kiss-icp`"):
+            survey.pose_edges()
+    with (
+        open_survey(files, pose_kind=pose_kind.ESTIMATED) as survey,
+        pytest.raises(StageError, match=r"pose_kind is estimated; .*`make kiss-icp`"),
+    ):
+        survey.pose_edges()
+
+
+@pytest.mark.parametrize("mount", [None, TURNED])
+def test_kiss_icp_finds_the_way_of_the_rover(tmp_path, mount):
+    pytest.importorskip("kiss_icp", reason="KISS-ICP is not installed (make kiss-icp)")
+    files = record(tmp_path, mount=mount)
+    with open_survey(files) as survey:
+        edges = survey.pose_edges()
+        pose, _, covered = frame_edges.chain_poses(edges, survey.stamps(), max_gap_s=0.5)
+    assert covered.all()
+    # from where the rover was at the first cloud, and as high as its sensor is mounted
+    height_m = 0.0 if mount is None else 0.5
+    expected_m = np.array([place_of(i) - place_of(0) for i in range(N_SCANS)])
+    expected_m[:, 2] += height_m
+    assert np.linalg.norm(pose[:, :3, 3] - expected_m, axis=1).max() < 0.05
+    np.testing.assert_allclose(pose[:, 2, 3], height_m, atol=1e-9)
+    yaw_deg = np.degrees(se3.pose_yaw_rad(pose)) - (0 if mount is None else 90)
+    assert np.abs(yaw_deg).max() < 1.0
+    # the same recording gives the same bits
+    with open_survey(files) as survey:
+        again = survey.pose_edges()
+    np.testing.assert_array_equal(again[0].xyz_m, edges[0].xyz_m)
+
+
+def test_kiss_icp_leaves_recorded_poses_aside_where_that_is_set(tmp_path):
+    pytest.importorskip("kiss_icp", reason="KISS-ICP is not installed (make kiss-icp)")
+    maker = bag_making.Maker()
+    entries = []
+    for i in range(N_SCANS):
+        t_ns = bag_making.START_NS + i * STEP_NS
+        entries.append(("/odom", t_ns, maker.odometry(t_ns, (7.0 * i, 0, 0))))
+        entries.append(("/points", t_ns, maker.cloud(t_ns, seen_from(place_of(i), i))))
+    path = maker.write(tmp_path / "run", entries)
+    with open_survey([str(path)], pose_kind=pose_kind.ESTIMATED) as survey:
+        track = survey.pose_edges()[0]
+    expected_m = np.linalg.norm(place_of(N_SCANS - 1) - place_of(0))
+    assert np.linalg.norm(track.xyz_m[-1] - track.xyz_m[0]) == pytest.approx(expected_m, abs=0.05)
