@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from shapely import box
 from shapely.geometry import LineString, Polygon
 
-from scanplan.geometry.bare_parts import cut_bare_parts
+from scanplan.geometry.bare_parts import cut_bare_parts, take_visited
 
 ROOM = box(0, 0, 6, 4)
 MOUTH_M = (1.0, 3.0)
@@ -44,6 +44,11 @@ def test_a_room_behind_a_wide_mouth_stays_where_its_walls_were_seen():
 def test_a_corner_whose_walls_nobody_saw_stays():
     walls = LineString([(0, 2), (0, 0), (6, 0), (6, 4), (2, 4)])
     assert cut(ROOM, walls).equals(ROOM)
+
+
+def test_a_fan_alone_is_all_cut():
+    assert cut_bare_parts(FAN, WALLS, INSIDE, max_walled=0.3, step_m=0.1) in ([], [FAN])
+    assert take_visited(Polygon(), INSIDE) == []
 
 
 def test_two_fans_are_cut_each_at_its_own_mouth():

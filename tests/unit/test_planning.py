@@ -251,6 +251,16 @@ class TestRooms:
         assert furnished.polygon.covers(piece.intersection(room.polygon))
         assert rooms.leave_out_unseen([room], shapely.box(0, 0, 0.9, 1), box(), **rest) == []
 
+    def test_no_place_that_was_driven_to_is_drawn_out_of_its_room(self):
+        """A corridor of which no wall was found hangs on a square with four walls."""
+        corridor = shapely.box(3.5, 1.5, 12, 2.5)
+        floor = shapely.union(shapely.box(0.1, 0.1, 3.9, 3.9), corridor)
+        walls_ = [wall(0, 0, 4, 0), wall(0, 4, 0, 0), wall(4, 4, 0, 4), wall(4, 0, 4, 1.4)]
+        walls_.append(wall(4, 2.6, 4, 4))
+        ways = np.array([(2.0, 2.0), (11.0, 2.0)])
+        (room,) = rooms.find_rooms(walls_, [floor], ways, **ROOMS)
+        assert room.polygon.covers(shapely.LineString(ways))
+
     def test_a_room_that_falls_apart_is_every_part_of_it_that_was_driven_into(self):
         room = rooms.Room(shapely.box(0.1, 0.1, 3.9, 3.9), 1.0, entered=True, n_scans=1)
         seen = shapely.union(shapely.box(0, 0, 4, 1.9), shapely.box(0, 2.4, 4, 4))

@@ -40,7 +40,8 @@ def cut_bare_parts(
     Returns
     -------
     list of Polygon
-        What is left: of several parts those that somebody was in, or else the largest.
+        What is left: of several parts those that somebody was in, or else the largest; none where
+        all of it is bare.
     """
     shapely.prepare([walled, visited])
     rest, whole = [ground], []
@@ -62,7 +63,7 @@ def take_visited(ground: BaseGeometry, visited: BaseGeometry) -> list[Polygon]:
     ----------
     ground, visited : shapely geometry
     """
-    polygons = [part for part in shapely.get_parts(ground) if part.geom_type == "Polygon"]
+    polygons = [part for part in shapely.get_parts(ground) if shapely.area(part)]
     largest = sorted(polygons, key=lambda polygon: (-polygon.area, *polygon.bounds))
     return [polygon for polygon in largest if polygon.intersects(visited)] or largest[:1]
 

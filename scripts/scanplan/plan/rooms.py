@@ -11,7 +11,7 @@ from shapely.geometry.base import BaseGeometry
 from scanplan.geometry import bare_parts
 from scanplan.plan import wall_ground
 from scanplan.plan.plan_wall import PlanWall
-from scanplan.plan.tolerances import END_M
+from scanplan.plan.tolerances import CORNER_M, END_M
 from scanplan.rays import free_space
 from scanplan.rays.face_raster import CELL_M
 from scanplan.types import Array, FloatArray
@@ -107,7 +107,7 @@ def find_rooms(
     rooms: list[Room] = []
     occupied: BaseGeometry = MultiPolygon()
     for part in _large_parts(seen, min_area_m2):
-        drawn, outline = _draw_room(part, walls, strips, solid, occupied, unpaired_m)
+        drawn, outline = _draw_room(part, track, walls, strips, solid, occupied, unpaired_m)
         polygons = [] if drawn is None else [drawn]
         if planar and drawn is not None:
             polygons = bare_parts.cut_bare_parts(
@@ -206,20 +206,29 @@ def _count_scans(polygon: Polygon, views: Sequence[BaseGeometry]) -> int:
 
 def _draw_room(
     part: Polygon,
+    track: Array,
     walls: Sequence[PlanWall],
     strips: Sequence[Polygon],
     solid: BaseGeometry,
     occupied: BaseGeometry,
     unpaired_m: float,
 ) -> tuple[Polygon | None, BaseGeometry]:
-    """Return the polygon of a part of the floor, and the ground along its walls."""
+    """Return the polygon of a part of the floor, and the ground along its walls.
+
+    It is drawn by its walls where that leaves out no place that sensors were at.
+    """
     rows = [row for row, strip in enumerate(strips) if strip.distance(part) <= 2 * END_M]
     outline: BaseGeometry = MultiPolygon()
     if rows:
         outline = shapely.union_all([strips[row] for row in rows]).buffer(END_M)
     drawn = _fill_cells(part, [walls[row] for row in rows], solid, outline, unpaired_m)
     others = free_space.union_on_grid([solid, occupied])
-    return _largest(free_space.difference_on_grid(drawn, others)), outline
+    polygon = _largest(free_space.difference_on_grid(drawn, others))
+    shapely.prepare(part)
+    visits = track[shapely.contains(part, track)]
+    if polygon is not None and (shapely.distance(polygon, visits) > CORNER_M).any():
+        polygon = _largest(free_space.difference_on_grid(part.simplify(CELL_M), others))
+    return polygon, outline
 
 
 def _fill_cells(
