@@ -207,6 +207,7 @@ def make_plan(
         max_width_m=settings.openings.max_door_m,
         min_area_m2=settings.rooms.min_area_m2,
         unpaired_m=unpaired_m,
+        planar=rays.planar,
     )
     rooms = find_rooms(
         [*bounds, *partings],

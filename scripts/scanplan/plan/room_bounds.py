@@ -65,12 +65,14 @@ def find_partings(
     max_width_m: float,
     min_area_m2: float,
     unpaired_m: float,
+    planar: bool = False,
 ) -> list[PlanWall]:
     """Return where free floor is narrow between walls: thin walls without faces, all an opening.
 
     There a wall was not seen, or its door was not; on the line of a wall nearby it stands in that.
-    What is wider than a door parts floor where it is a gap in the line of a wall, no wider than the
-    wall is long, between places that were visited.
+    In planar scans, which show no lintel and less of walls behind furniture, what is wider than a
+    door parts floor too: where it is a gap in the line of a wall, no wider than the wall is long,
+    between places that were visited.
 
     Parameters
     ----------
@@ -86,11 +88,13 @@ def find_partings(
         Of a room; less is not parted off.
     unpaired_m : float
         As in `find_glass_walls`.
+    planar : bool
+        Whether all scans lie in one plane.
     """
     solid = free_space.union_on_grid(wall_ground.wall_strips(bounds, unpaired_m))
     free = free_space.difference_on_grid(floor, solid)
     partings = []
-    gaps_m = _find_line_gaps(bounds, free, max_width_m, unpaired_m)
+    gaps_m = _find_line_gaps(bounds, free, max_width_m, unpaired_m) if planar else []
     for part in free_space.open_polygons(free, END_M):
         for ends_m in narrow_places.find_narrow_places(
             part, track_m, gaps_m, max_width_m=max_width_m, min_area_m2=min_area_m2, cell_m=CELL_M
@@ -102,11 +106,14 @@ def find_partings(
 def _find_line_gaps(
     walls: Sequence[PlanWall], free: BaseGeometry, min_width_m: float, unpaired_m: float
 ) -> list[FloatArray]:
-    """Return lines (2, 2) from where walls end, on along them over free floor to other walls."""
+    """Return lines (2, 2) over free floor, from where a wall ends to where one goes on in its line.
+
+    What only ends at a wall across may be a corner that stands into one room.
+    """
     strips = np.array(wall_ground.wall_strips(walls, unpaired_m), object)
     tree = shapely.STRtree(strips)
     gaps_m: list[FloatArray] = []
-    for number, wall in enumerate(walls):
+    for wall in walls:
         back_m = unpaired_m / 2 if math.isnan(wall.thickness_m) else 0.0
         for end_m, sign in ((wall.low_m, -1), (wall.high_m, 1)):
             ray_m = wall.line.at(end_m + sign * np.array([0.0, wall.length_m]))
@@ -119,10 +126,16 @@ def _find_line_gaps(
                 continue
             ends_m = shapely.get_coordinates(first)[[0, -1]]
             far = max(map(shapely.Point, ends_m), key=start.distance)
-            others = tree.query(far, predicate="dwithin", distance=END_M)
-            if (others != number).any():
+            beyond = (walls[i] for i in tree.query(far, predicate="dwithin", distance=END_M))
+            if any(_goes_on(wall, other) for other in beyond if other is not wall):
                 gaps_m.append(ends_m)
     return gaps_m
+
+
+def _goes_on(wall: PlanWall, other: PlanWall) -> bool:
+    """Return whether another wall is much the same way, in the line of one."""
+    is_along = abs(wall.line.direction @ other.line.direction) >= math.cos(intersections.LEAST_RAD)
+    return is_along and float(np.abs(wall.line.offset_m(other.ends)).min()) <= CORNER_M
 
 
 def _snap(ends_m: FloatArray, walls: Sequence[PlanWall]) -> FloatArray:

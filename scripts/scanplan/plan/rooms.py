@@ -109,7 +109,7 @@ def find_rooms(
     for part in _large_parts(seen, min_area_m2):
         drawn, outline = _draw_room(part, track, walls, strips, solid, occupied, unpaired_m)
         polygons = [] if drawn is None else [drawn]
-        if planar and drawn is not None:
+        if planar and drawn is not None and drawn.intersects(way):
             polygons = bare_parts.cut_bare_parts(
                 *(drawn, facing, way), max_walled=1 - min_walled, step_m=END_M
             )
