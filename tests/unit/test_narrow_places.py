@@ -13,10 +13,10 @@ DOOR = box(3.9, 1.5, 4.3, 2.4)  # 0.9 m wide
 IN_BOTH = np.array([[2.0, 2.0], [6.0, 2.0]])
 
 
-def find(*shapes, visited_m=IN_BOTH, max_width_m=1.5, min_area_m2=1.0):
+def find(*shapes, visited_m=IN_BOTH, gaps_m=(), max_width_m=1.5, min_area_m2=1.0):
     ground = shapely.union_all(shapes)
     return find_narrow_places(
-        ground, visited_m, max_width_m=max_width_m, min_area_m2=min_area_m2, cell_m=0.05
+        ground, visited_m, gaps_m, max_width_m=max_width_m, min_area_m2=min_area_m2, cell_m=0.05
     )
 
 
@@ -70,3 +70,25 @@ def test_a_fan_seen_through_a_gap_is_parted_off():
 
 def test_no_ground_has_no_narrow_place():
     assert find(shapely.Polygon()) == []
+
+
+GAP = np.array([[4.1, 1.0], [4.1, 3.0]])  # 2 m wide, in the line of the wall between the rooms
+WIDE = box(3.9, 1, 4.3, 3)
+
+
+def test_a_wide_gap_of_a_wall_parts_rooms_that_were_both_visited():
+    (line,) = find(LEFT, RIGHT, WIDE, gaps_m=[GAP])
+    np.testing.assert_array_equal(line, GAP)
+    assert find(LEFT, RIGHT, WIDE, gaps_m=[GAP], visited_m=IN_BOTH[:1]) == []
+
+
+def test_where_a_corridor_goes_on_as_wide_no_gap_parts_it():
+    mouth = np.array([[4.1, 1.0], [4.1, 2.8]])
+    corridor = box(4.2, 1, 12, 2.8)
+    assert find(LEFT, corridor, box(3.9, 1, 4.3, 2.8), gaps_m=[mouth]) == []
+
+
+def test_of_two_gaps_in_one_place_the_narrower_parts():
+    longer = np.array([[4.0, 1.0], [4.25, 3.1]])
+    (line,) = find(LEFT, RIGHT, WIDE, gaps_m=[longer, GAP])
+    np.testing.assert_array_equal(line, GAP)

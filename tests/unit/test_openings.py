@@ -179,3 +179,10 @@ def test_heights_are_not_told_of_a_plane():
     gap = classify(1.0, 1.9, [flat])
     assert gap.state == openings.OPEN
     assert np.isnan([gap.sill_m, gap.lintel_m]).all()
+
+
+@pytest.mark.parametrize(("n_rays", "state"), [(2, openings.CLOSED), (3, openings.UNKNOWN)])
+def test_one_or_two_rays_through_open_no_wall(n_rays, state):
+    """Each goes through a column of its own, more than a tenth of all."""
+    passes = [(1.1 + 0.2 * number, 1.0) for number in range(n_rays)]
+    assert judge([], passes).state == state

@@ -229,6 +229,46 @@ class TestRooms:
         assert not room.closed
         assert room.walled == pytest.approx(0.75, abs=0.06)
 
+    def test_a_planar_scanner_that_looks_out_through_glass_leaves_its_room_inside(self):
+        fan = shapely.Polygon([(3.9, 0.5), (3.9, 3.5), (20, 9), (20, -5)])
+        floor = shapely.union(shapely.box(0.1, 0.1, 3.9, 3.9), fan)
+        track_m = np.array([(1.0, 1.0), (2.0, 2.0)])
+        walls_ = [w for w in box() if np.abs(w.ends[:, 0] - 4).max() > 0.1]
+        (room,) = rooms.find_rooms(walls_, [floor], track_m, **ROOMS, planar=True)
+        assert room.polygon.area == pytest.approx(14.4, abs=0.5)
+        (leaking,) = rooms.find_rooms(walls_, [floor], track_m, **ROOMS)
+        assert leaking.polygon.area > 100
+
+    def test_of_a_room_no_more_than_a_fiftieth_is_left_that_was_not_seen(self):
+        room = rooms.Room(shapely.box(0.1, 0.1, 3.9, 3.9), 1.0, entered=True, n_scans=1)
+        seen = shapely.box(0, 0, 4, 3).union(shapely.box(0, 3, 1, 3.5))
+        piece = shapely.box(1, 3, 3, 4)
+        rest = {"track_m": np.array([(2.0, 1.0)]), "min_area_m2": 1.0, "unpaired_m": 0.1}
+        (bare,) = rooms.leave_out_unseen([room], seen, box(), **rest)
+        assert bare.polygon.difference(seen).area <= 0.02 * bare.polygon.area
+        assert bare.walled < room.walled
+        (furnished,) = rooms.leave_out_unseen([room], seen.union(piece), box(), **rest)
+        assert furnished.polygon.covers(piece.intersection(room.polygon))
+        assert rooms.leave_out_unseen([room], shapely.box(0, 0, 0.9, 1), box(), **rest) == []
+
+    def test_no_place_that_was_driven_to_is_drawn_out_of_its_room(self):
+        """A corridor of which no wall was found hangs on a square with four walls."""
+        corridor = shapely.box(3.5, 1.5, 12, 2.5)
+        floor = shapely.union(shapely.box(0.1, 0.1, 3.9, 3.9), corridor)
+        walls_ = [wall(0, 0, 4, 0), wall(0, 4, 0, 0), wall(4, 4, 0, 4), wall(4, 0, 4, 1.4)]
+        walls_.append(wall(4, 2.6, 4, 4))
+        ways = np.array([(2.0, 2.0), (11.0, 2.0)])
+        (room,) = rooms.find_rooms(walls_, [floor], ways, **ROOMS)
+        assert room.polygon.covers(shapely.LineString(ways))
+
+    def test_a_room_that_falls_apart_is_every_part_of_it_that_was_driven_into(self):
+        room = rooms.Room(shapely.box(0.1, 0.1, 3.9, 3.9), 1.0, entered=True, n_scans=1)
+        seen = shapely.union(shapely.box(0, 0, 4, 1.9), shapely.box(0, 2.4, 4, 4))
+        rest = {"min_area_m2": 1.0, "unpaired_m": 0.1}
+        ways = np.array([(2.0, 1.0), (2.0, 3.0)])
+        assert len(rooms.leave_out_unseen([room], seen, box(), ways, **rest)) == 2
+        assert len(rooms.leave_out_unseen([room], seen, box(), ways[:1], **rest)) == 1
+
     def test_no_walls_leave_what_was_seen(self):
         found = rooms.find_rooms([], [shapely.box(0, 0, 3, 3)], np.array([(1.0, 1.0)]), **ROOMS)
         assert [r.polygon.area for r in found] == [pytest.approx(9, rel=0.01)]

@@ -52,3 +52,33 @@ def test_floor_without_a_door_is_parted_on_the_line_of_the_wall_beside():
     np.testing.assert_allclose(parting.line.at(way.low_m)[0], 4.05)
     assert abs(way.width_m - 0.9) < 0.1
     assert parting.low_m < way.low_m and way.high_m < parting.high_m
+
+
+TWO_ROOMS = shapely.union_all([box(0, 0, 4, 4), box(4.1, 0, 8, 4), box(3.9, 1.0, 4.2, 3.4)])
+TRACK_M = np.array([[2.0, 2.0], [6.0, 2.0]])
+
+
+def part(walls, *, planar=True):
+    return room_bounds.find_partings(
+        walls, TWO_ROOMS, TRACK_M, max_width_m=1.5, min_area_m2=1.0, unpaired_m=0.1, planar=planar
+    )
+
+
+def test_a_gap_wider_than_a_door_parts_rooms_in_the_line_of_a_longer_wall():
+    """The wall between the rooms has a gap of 2.4 m, and is 3 m long on one side of it."""
+    walls = [wall(4.05, -2, 4.05, 1), wall(4.05, 3.4, 4.05, 4)]
+    (parting,) = part(walls)
+    assert part(walls, planar=False) == []
+    (way,) = parting.openings
+    np.testing.assert_allclose(parting.line.at(way.low_m)[0], 4.05, atol=0.01)
+    assert abs(way.width_m - 2.4) < 0.02
+
+
+def test_a_gap_wider_than_the_wall_is_long_parts_nothing():
+    assert part([wall(4.05, 0, 4.05, 1), wall(4.05, 3.4, 4.05, 4)]) == []
+
+
+def test_a_corner_that_stands_into_a_room_parts_nothing():
+    """The wall's line ends at a wall across: it may be one room around a corner."""
+    assert part([wall(4.05, -2, 4.05, 1), wall(8, 3.5, 0, 3.5)]) == []
+    assert part([wall(4.05, -2, 4.05, 1)]) == []

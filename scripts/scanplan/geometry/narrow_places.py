@@ -27,6 +27,7 @@ FURNITURE_M2 = 3.0  # that furniture stands on, or parts off between it and a wa
 def find_narrow_places(
     ground: BaseGeometry,
     visited_m: FloatArray,
+    gaps_m: Sequence[FloatArray] = (),
     *,
     max_width_m: float,
     min_area_m2: float,
@@ -43,7 +44,11 @@ def find_narrow_places(
         What small islands leave out of it counts as ground.
     visited_m : (n, 2) float64
         Places that were visited.
+    gaps_m : sequence of (2, 2) float64
+        Lines across ground that may part visited places however wide they are, if ground is wider
+        on both sides.
     max_width_m : float, > 0
+        Of other lines.
     min_area_m2 : float, >= 0
         No less lies on a visited side, nor less than furniture parts off on another.
 
@@ -77,8 +82,25 @@ def find_narrow_places(
             continue
         if not visited.issuperset(pair) or all(_widens(near, line, side) for side in (-1, 1)):
             lines.append(line)
+    lines += _choose_gaps(filled, gaps_m, lines)
     visits = np.asarray(shapely.points(visited_m))
-    return _part_enough(filled, lines, visits, min_area_m2)
+    return _part_enough(filled, lines, visits, min_area_m2, max_width_m)
+
+
+def _choose_gaps(
+    ground: BaseGeometry, gaps_m: Sequence[FloatArray], lines: Sequence[FloatArray]
+) -> list[FloatArray]:
+    """Return the gaps that ground is much wider beside, the narrowest of those near each other."""
+    chosen: list[FloatArray] = []
+    for gap in sorted(gaps_m, key=_length_m):
+        across = LineString(gap)
+        reach_m = _length_m(gap) / 2
+        is_known = any(LineString(line).distance(across) < reach_m for line in [*lines, *chosen])
+        if is_known or not shapely.contains_xy(ground, *gap.mean(axis=0)):
+            continue
+        if all(_widens(ground, gap, side) for side in (-1, 1)):
+            chosen.append(gap)
+    return chosen
 
 
 def _fit_grid(ground: BaseGeometry, cell_m: float) -> Grid:
@@ -253,19 +275,29 @@ def _widens(ground: BaseGeometry, line: FloatArray, side: int) -> bool:
 
 
 def _part_enough(
-    ground: BaseGeometry, lines: Sequence[FloatArray], visited: Array, min_area_m2: float
+    ground: BaseGeometry,
+    lines: Sequence[FloatArray],
+    visited: Array,
+    min_area_m2: float,
+    max_width_m: float,
 ) -> list[FloatArray]:
-    """Return the lines that, all together, part ground into large enough parts."""
+    """Return the lines that, all together, part ground into large enough parts.
+
+    Those that are wider than a width, into visited ones.
+    """
     chosen = list(lines)
     while True:
         cuts = [_lengthen(line).buffer(SHORTEST_M) for line in chosen]
         parts = shapely.get_parts(shapely.difference(ground, shapely.union_all(cuts)))
-        is_large = np.array([_is_large(part, visited, min_area_m2) for part in parts], bool)
+        is_visited = np.array([_is_visited(part, visited) for part in parts], bool)
+        is_large = shapely.area(parts) >= np.where(is_visited, min_area_m2, FURNITURE_M2)
         beside = [_parts_beside(cut, parts) for cut in cuts]
         kept = [
             line
             for line, rows in zip(chosen, beside, strict=True)
-            if len(rows) > 1 and is_large[rows].all()
+            if len(rows) > 1
+            and is_large[rows].all()
+            and (is_visited[rows].all() or _length_m(line) <= max_width_m)
         ]
         if len(kept) == len(chosen):
             return chosen
@@ -277,10 +309,9 @@ def _parts_beside(cut: Polygon, parts: Array) -> IntArray:
     return np.flatnonzero(shapely.area(shapely.intersection(parts, cut.buffer(SHORTEST_M))) > 0)
 
 
-def _is_large(part: Polygon, visited: Array, min_area_m2: float) -> bool:
+def _is_visited(part: Polygon, visited: Array) -> bool:
     shapely.prepare(part)
-    is_visited = bool(shapely.contains(part, visited).any())
-    return part.area >= (min_area_m2 if is_visited else FURNITURE_M2)
+    return bool(shapely.contains(part, visited).any())
 
 
 def _lengthen(line: FloatArray) -> LineString:

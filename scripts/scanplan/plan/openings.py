@@ -16,6 +16,7 @@ from scanplan.plan.opening_heights import (
 from scanplan.plan.tolerances import ENOUGH_RAYS, NOISE_M
 from scanplan.rays.face_observation import FaceObservation
 from scanplan.rays.face_raster import CELL_M
+from scanplan.rays.tolerances import FEW
 from scanplan.types import FloatArray
 
 OPEN, CLOSED, UNKNOWN = "open", "closed", "unknown"
@@ -142,11 +143,12 @@ def classify_gap(
     is_open |= max(side.glass_share for side in shown) >= _OPEN_SHARE
     # wall above, some rays through a window, and what is below them hidden: no way through was seen
     is_hidden = below_wall and np.isnan(sill_m)
+    is_solid = open_share <= _CLOSED_SHARE or n_rays < FEW
     is_short = width_m <= settings.max_closed_m
     state = UNKNOWN
     if is_wide and is_open and (below_wall or not needs_lintel):
         state = OPEN
-    elif (open_share <= _CLOSED_SHARE or is_hidden) and is_short and not needs_lintel:
+    elif (is_solid or is_hidden) and is_short and not needs_lintel:
         state = CLOSED
     lintel_m = _first_known(side.lintel_m for side in shown)
     return Opening(float(low_m), float(high_m), state, n_rays, sill_m, lintel_m, below_wall)

@@ -23,7 +23,7 @@ from scanplan.plan.furniture import fronts
 from scanplan.plan.furniture.pieces import find_pieces
 from scanplan.plan.openings import OpeningSettings
 from scanplan.plan.plan_wall import PlanWall
-from scanplan.plan.rooms import find_rooms, rooms_beside
+from scanplan.plan.rooms import find_rooms, leave_out_unseen, rooms_beside
 from scanplan.plan.uncertainty import ReviewCriteria
 from scanplan.plan.wall_pairs import PairSettings
 from scanplan.plan.walls import assemble_walls
@@ -207,6 +207,7 @@ def make_plan(
         max_width_m=settings.openings.max_door_m,
         min_area_m2=settings.rooms.min_area_m2,
         unpaired_m=unpaired_m,
+        planar=rays.planar,
     )
     rooms = find_rooms(
         [*bounds, *partings],
@@ -219,6 +220,23 @@ def make_plan(
         floor=free_space.union_on_grid([floor, *furnished]),
         planar=rays.planar,
     )
+    pieces = find_pieces(
+        *(
+            rays,
+            wall_ground.wall_strips(bounds, unpaired_m),
+            [room.polygon for room in rooms],
+            views,
+        ),
+        max_height_m=settings.furniture.furniture_height_m,
+        hidden=furnished,
+    )
+    if rays.planar:
+        rooms = leave_out_unseen(
+            *(rooms, free_space.union_on_grid([floor, *(piece.outline for piece in pieces)])),
+            *(bounds, track_m),
+            min_area_m2=settings.rooms.min_area_m2,
+            unpaired_m=unpaired_m,
+        )
     walls = opening_kinds.decide_kinds(
         *(walls, rays, track_m, functools.partial(rooms_beside, rooms)),
         min_width_m=settings.openings.min_opening_m,
@@ -235,11 +253,6 @@ def make_plan(
     )
     bare = opening_kinds.decide_bare_spans(bare, rays, track_m, areas, band_m=band_m)
     floor_z_m = 0.0 if math.isnan(rays.floor_z_m) else rays.floor_z_m
-    pieces = find_pieces(
-        *(rays, wall_ground.wall_strips(bounds, unpaired_m), areas, views),
-        max_height_m=settings.furniture.furniture_height_m,
-        hidden=furnished,
-    )
     cut_walls = wall_faces.cut_wall_faces(walls, max_beyond_m=settings.openings.max_closed_m)
     face_columns, main_rows = plan_tables.face_columns(cut_walls, floor_z_m)
     evidence = uncertainty.estimate_evidence(

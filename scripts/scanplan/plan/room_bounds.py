@@ -65,10 +65,14 @@ def find_partings(
     max_width_m: float,
     min_area_m2: float,
     unpaired_m: float,
+    planar: bool = False,
 ) -> list[PlanWall]:
     """Return where free floor is narrow between walls: thin walls without faces, all an opening.
 
     There a wall was not seen, or its door was not; on the line of a wall nearby it stands in that.
+    In planar scans, which show no lintel and less of walls behind furniture, what is wider than a
+    door parts floor too: where it is a gap in the line of a wall, no wider than the wall is long,
+    between places that were visited.
 
     Parameters
     ----------
@@ -79,21 +83,59 @@ def find_partings(
     track_m : (n, 2) float64
         Where sensors were.
     max_width_m : float
-        Of a door; what is wider parts no rooms.
+        Of a door.
     min_area_m2 : float
         Of a room; less is not parted off.
     unpaired_m : float
         As in `find_glass_walls`.
+    planar : bool
+        Whether all scans lie in one plane.
     """
     solid = free_space.union_on_grid(wall_ground.wall_strips(bounds, unpaired_m))
     free = free_space.difference_on_grid(floor, solid)
     partings = []
+    gaps_m = _find_line_gaps(bounds, free, max_width_m, unpaired_m) if planar else []
     for part in free_space.open_polygons(free, END_M):
         for ends_m in narrow_places.find_narrow_places(
-            part, track_m, max_width_m=max_width_m, min_area_m2=min_area_m2, cell_m=CELL_M
+            part, track_m, gaps_m, max_width_m=max_width_m, min_area_m2=min_area_m2, cell_m=CELL_M
         ):
             partings.append(_make_parting(_snap(ends_m, bounds)))
     return partings
+
+
+def _find_line_gaps(
+    walls: Sequence[PlanWall], free: BaseGeometry, min_width_m: float, unpaired_m: float
+) -> list[FloatArray]:
+    """Return lines (2, 2) over free floor, from where a wall ends to where one goes on in its line.
+
+    What only ends at a wall across may be a corner that stands into one room.
+    """
+    strips = np.array(wall_ground.wall_strips(walls, unpaired_m), object)
+    tree = shapely.STRtree(strips)
+    gaps_m: list[FloatArray] = []
+    for wall in walls:
+        back_m = unpaired_m / 2 if math.isnan(wall.thickness_m) else 0.0
+        for end_m, sign in ((wall.low_m, -1), (wall.high_m, 1)):
+            ray_m = wall.line.at(end_m + sign * np.array([0.0, wall.length_m]))
+            ray_m -= back_m * wall.line.normal
+            over = shapely.intersection(free, shapely.LineString(ray_m))
+            pieces = [p for p in shapely.get_parts(over) if p.geom_type == "LineString"]
+            start = shapely.Point(ray_m[0])
+            first = min(pieces, key=start.distance, default=None)
+            if first is None or start.distance(first) > CORNER_M or first.length <= min_width_m:
+                continue
+            ends_m = shapely.get_coordinates(first)[[0, -1]]
+            far = max(map(shapely.Point, ends_m), key=start.distance)
+            beyond = (walls[i] for i in tree.query(far, predicate="dwithin", distance=END_M))
+            if any(_goes_on(wall, other) for other in beyond if other is not wall):
+                gaps_m.append(ends_m)
+    return gaps_m
+
+
+def _goes_on(wall: PlanWall, other: PlanWall) -> bool:
+    """Return whether another wall is much the same way, in the line of one."""
+    is_along = abs(wall.line.direction @ other.line.direction) >= math.cos(intersections.LEAST_RAD)
+    return is_along and float(np.abs(wall.line.offset_m(other.ends)).min()) <= CORNER_M
 
 
 def _snap(ends_m: FloatArray, walls: Sequence[PlanWall]) -> FloatArray:

@@ -1,16 +1,17 @@
 """Rooms: floor that walls and openings enclose."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
 from shapely.geometry import LineString, MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import bare_parts
 from scanplan.plan import wall_ground
 from scanplan.plan.plan_wall import PlanWall
-from scanplan.plan.tolerances import END_M
+from scanplan.plan.tolerances import CORNER_M, END_M
 from scanplan.rays import free_space
 from scanplan.rays.face_raster import CELL_M
 from scanplan.types import Array, FloatArray
@@ -88,8 +89,8 @@ def find_rooms(
     floor : shapely geometry, optional
         `free_space.union_on_grid` of the views, where it is known already.
     planar : bool
-        Whether scans lie in one plane: then nothing tells furniture from what is behind it, and of
-        a room no more than a fiftieth is filled in.
+        Whether scans lie in one plane. They look through glass and far out of the building: what of
+        a room nobody was in, and hardly any wall bounds, is none of it.
 
     Returns
     -------
@@ -101,21 +102,68 @@ def find_rooms(
     whole = free_space.union_on_grid(views) if floor is None else floor
     seen = free_space.difference_on_grid(whole, solid)
     track = shapely.points(track_m)
+    way = _draw_way(track_m)
+    facing = wall_ground.ground_before(walls, unpaired_m)
     rooms: list[Room] = []
     occupied: BaseGeometry = MultiPolygon()
     for part in _large_parts(seen, min_area_m2):
-        polygon, outline = _draw_room(part, walls, strips, solid, occupied, unpaired_m)
-        polygon = _without_unseen(polygon, whole) if planar else polygon
-        if polygon is None or polygon.area < min_area_m2:
-            continue
-        walled = _walled_share(polygon, outline)
-        shapely.prepare(polygon)
-        is_entered = bool(shapely.contains(polygon, track).any())
-        is_wide = not polygon.buffer(-min_width_m / 2).is_empty
-        if is_entered or (walled >= min_walled and is_wide):
-            rooms.append(Room(polygon, walled, is_entered, _count_scans(polygon, views)))
-            occupied = free_space.union_on_grid([occupied, polygon])
+        drawn, outline = _draw_room(part, track, walls, strips, solid, occupied, unpaired_m)
+        polygons = [] if drawn is None else [drawn]
+        if planar and drawn is not None and drawn.intersects(way):
+            polygons = bare_parts.cut_bare_parts(
+                *(drawn, facing, way), max_walled=1 - min_walled, step_m=END_M
+            )
+        for polygon in polygons:
+            walled = _walled_share(polygon, outline)
+            shapely.prepare(polygon)
+            is_entered = bool(shapely.contains(polygon, track).any())
+            is_wide = not polygon.buffer(-min_width_m / 2).is_empty
+            is_room = is_entered or (walled >= min_walled and is_wide)
+            if is_room and polygon.area >= min_area_m2:
+                rooms.append(Room(polygon, walled, is_entered, _count_scans(polygon, views)))
+                occupied = free_space.union_on_grid([occupied, polygon])
     return sorted(rooms, key=lambda room: _largest_first(room.polygon))
+
+
+def leave_out_unseen(
+    rooms: Sequence[Room],
+    seen: BaseGeometry,
+    walls: Sequence[PlanWall],
+    track_m: FloatArray,
+    *,
+    min_area_m2: float,
+    unpaired_m: float,
+) -> list[Room]:
+    """Return rooms without the largest parts of them that were not seen, all but a fiftieth.
+
+    Parameters
+    ----------
+    rooms : sequence of Room
+    seen : shapely geometry
+        Floor that was seen, and what is drawn to stand on it.
+    walls, track_m, min_area_m2, unpaired_m
+        As in `find_rooms`.
+
+    Returns
+    -------
+    list of Room
+        A room that falls apart becomes those parts that sensors were in, or its largest part.
+    """
+    strips = wall_ground.wall_strips(walls, unpaired_m)
+    outline = shapely.union_all(strips).buffer(END_M)
+    way = _draw_way(track_m)
+    left = [
+        replace(room, polygon=polygon, walled=_walled_share(polygon, outline))
+        for room in rooms
+        for polygon in _without_unseen(room.polygon, seen, way)
+        if polygon.area >= min_area_m2
+    ]
+    return sorted(left, key=lambda room: _largest_first(room.polygon))
+
+
+def _draw_way(track_m: FloatArray) -> BaseGeometry:
+    """Return the way from each place (n, 2) to the next."""
+    return shapely.LineString(track_m) if len(track_m) > 1 else shapely.MultiPoint(track_m)
 
 
 def rooms_beside(rooms: Sequence[Room], place_m: FloatArray, wall: PlanWall) -> tuple[int, int]:
@@ -158,20 +206,29 @@ def _count_scans(polygon: Polygon, views: Sequence[BaseGeometry]) -> int:
 
 def _draw_room(
     part: Polygon,
+    track: Array,
     walls: Sequence[PlanWall],
     strips: Sequence[Polygon],
     solid: BaseGeometry,
     occupied: BaseGeometry,
     unpaired_m: float,
 ) -> tuple[Polygon | None, BaseGeometry]:
-    """Return the polygon of a part of the floor, and the ground along its walls."""
+    """Return the polygon of a part of the floor, and the ground along its walls.
+
+    It is drawn by its walls where that leaves out no place that sensors were at.
+    """
     rows = [row for row, strip in enumerate(strips) if strip.distance(part) <= 2 * END_M]
     outline: BaseGeometry = MultiPolygon()
     if rows:
         outline = shapely.union_all([strips[row] for row in rows]).buffer(END_M)
     drawn = _fill_cells(part, [walls[row] for row in rows], solid, outline, unpaired_m)
     others = free_space.union_on_grid([solid, occupied])
-    return _largest(free_space.difference_on_grid(drawn, others)), outline
+    polygon = _largest(free_space.difference_on_grid(drawn, others))
+    shapely.prepare(part)
+    visits = track[shapely.contains(part, track)]
+    if polygon is not None and (shapely.distance(polygon, visits) > CORNER_M).any():
+        polygon = _largest(free_space.difference_on_grid(part.simplify(CELL_M), others))
+    return polygon, outline
 
 
 def _fill_cells(
@@ -205,22 +262,20 @@ def _fill_cells(
     return drawn if agreement >= _LEAST_AGREEMENT or is_closed else rough
 
 
-def _without_unseen(polygon: Polygon | None, seen: BaseGeometry) -> Polygon | None:
-    """Return a room without the largest parts of it that were not seen, all but a fiftieth."""
-    if polygon is None:
-        return None
+def _without_unseen(polygon: Polygon, seen: BaseGeometry, way: BaseGeometry) -> list[Polygon]:
     unseen = sorted(
         free_space.difference_on_grid(polygon, seen).geoms, key=_largest_first, reverse=True
     )
     left_m2 = sum(part.area for part in unseen)
-    while unseen and left_m2 > _MOST_UNSEEN * polygon.area:
-        part = unseen.pop()
-        left_m2 -= part.area
-        rest = _largest(free_space.difference_on_grid(polygon, part))
-        if rest is None:
-            return None
-        polygon = rest
-    return polygon
+    taken: list[Polygon] = []
+    while unseen and left_m2 > _MOST_UNSEEN * (polygon.area - sum(part.area for part in taken)):
+        taken.append(unseen.pop())
+        left_m2 -= taken[-1].area
+    if not taken:
+        return [polygon]
+    rest = free_space.difference_on_grid(polygon, free_space.union_on_grid(taken))
+    opened = free_space.open_polygons(rest, END_M)
+    return bare_parts.take_visited(shapely.GeometryCollection(opened), way)
 
 
 def _walled_share(polygon: Polygon, outline: BaseGeometry) -> float:

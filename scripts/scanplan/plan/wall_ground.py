@@ -48,6 +48,24 @@ def wall_strips(walls: Sequence[PlanWall], unpaired_m: float) -> list[Polygon]:
     return [_ground(wall, wall.low_m, wall.high_m, unpaired_m) for wall in walls]
 
 
+def ground_before(walls: Sequence[PlanWall], unpaired_m: float) -> BaseGeometry:
+    """Return the ground close before walls, on the sides of them that are known.
+
+    Parameters
+    ----------
+    walls, unpaired_m
+        As in `wall_strips`.
+    """
+    before: list[BaseGeometry] = []
+    for wall, strip in zip(walls, wall_strips(walls, unpaired_m), strict=True):
+        around = strip.buffer(END_M)
+        if np.isnan(wall.thickness_m):
+            back = shapely.LineString(wall.ends - unpaired_m * wall.line.normal)
+            around = around.difference(back.buffer(END_M, cap_style="square"))
+        before.append(around)
+    return shapely.union_all(before)
+
+
 def opening_polygon(wall: PlanWall, gap: Opening, unpaired_m: float) -> Polygon:
     """Return the ground of an opening in a wall, a polygon a little deeper than the wall."""
     return _ground(wall, gap.low_m, gap.high_m, unpaired_m).buffer(GRID_M, join_style="mitre")

@@ -1,0 +1,134 @@
+"""Parts of ground with hardly any wall around them: what is seen from far, through a wide mouth."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import shapely
+from shapely.geometry import Polygon
+from shapely.geometry.base import BaseGeometry
+
+from scanplan.geometry.tolerances import SHORTEST_M
+from scanplan.types import BoolArray, FloatArray, IntArray
+
+
+def cut_bare_parts(
+    ground: Polygon,
+    walled: BaseGeometry,
+    visited: BaseGeometry,
+    *,
+    max_walled: float,
+    step_m: float,
+) -> list[Polygon]:
+    """Cut ground at the mouths of parts that nobody was in, and whose outline is bare.
+
+    A mouth is a straight line to where the outline passes nearest, from a corner of it that points
+    inwards, or from where a wall ends. It is worth a cut if the bare outline that it takes away is
+    longer than twice the mouth and the walls that go with it: what lies in a corner is not.
+
+    Parameters
+    ----------
+    ground : Polygon
+    walled : shapely geometry
+        Ground before walls, which outlines along walls lie in.
+    visited : shapely geometry
+        Ways or places where somebody was.
+    max_walled : float, 0 to 1
+        A part with a larger share of its outline along walls stays.
+    step_m : float, > 0
+        What places along the outline are apart, at most.
+
+    Returns
+    -------
+    list of Polygon
+        What is left: of several parts those that somebody was in, or else the largest; none where
+        all of it is bare.
+    """
+    shapely.prepare([walled, visited])
+    rest, whole = [ground], []
+    while rest:
+        polygon = rest.pop()
+        bare = list(_find_bare_parts(polygon, walled, visited, max_walled, step_m))
+        left = shapely.difference(polygon, shapely.union_all(bare), grid_size=SHORTEST_M)
+        if left.area < polygon.area - SHORTEST_M:
+            rest += take_visited(left, visited)
+        else:
+            whole.append(polygon)
+    return whole
+
+
+def take_visited(ground: BaseGeometry, visited: BaseGeometry) -> list[Polygon]:
+    """Return the polygons of ground that somebody was in, or else the largest.
+
+    Parameters
+    ----------
+    ground, visited : shapely geometry
+    """
+    polygons = [part for part in shapely.get_parts(ground) if shapely.area(part)]
+    largest = sorted(polygons, key=lambda polygon: (-polygon.area, *polygon.bounds))
+    return [polygon for polygon in largest if polygon.intersects(visited)] or largest[:1]
+
+
+def _find_bare_parts(
+    ground: Polygon,
+    walled: BaseGeometry,
+    visited: BaseGeometry,
+    max_walled: float,
+    step_m: float,
+) -> Iterator[Polygon]:
+    """Yield bare parts of ground that do not overlap, those that are worth most first."""
+    ring = shapely.orient_polygons(ground).exterior
+    places_m = shapely.get_coordinates(shapely.segmentize(ring, step_m))[:-1]
+    steps_m = np.roll(places_m, -1, axis=0) - places_m
+    middle_m = places_m + steps_m / 2
+    length_m = np.hypot(*steps_m.T)
+    is_walled = shapely.contains_xy(walled, *middle_m.T)
+    may_begin = _points_inwards(steps_m) | (is_walled != np.roll(is_walled, 1))
+    begin, end, chord_m = _find_mouths(places_m, np.flatnonzero(may_begin))
+    walled_m = _between(np.where(is_walled, length_m, 0), begin, end)
+    bare_m = _between(np.where(is_walled, 0, length_m), begin, end)
+    worth_m = bare_m - walled_m - 2 * chord_m
+    is_bare = (worth_m > step_m) & (walled_m <= max_walled * (walled_m + bare_m))
+    rows = np.flatnonzero(is_bare)
+    chords = shapely.linestrings(np.stack([places_m[begin[rows]], places_m[end[rows]]], axis=1))
+    inner = ground.buffer(SHORTEST_M)
+    shapely.prepare(inner)
+    rows = rows[shapely.covers(inner, chords)]
+    is_taken = np.zeros(len(places_m), bool)
+    for row in rows[np.argsort(-worth_m[rows] / chord_m[rows], kind="stable")].tolist():
+        chain = _chain(int(begin[row]), int(end[row]), len(places_m))
+        if is_taken[chain].any():
+            continue
+        part = Polygon(places_m[chain])
+        if part.is_valid and not visited.intersects(part):
+            is_taken[chain] = True
+            yield part
+
+
+def _points_inwards(steps_m: FloatArray) -> BoolArray:
+    """Return at which places (n,) of an outline, counterclockwise, ground has a corner in it."""
+    before_m = np.roll(steps_m, 1, axis=0)
+    turn = before_m[:, 0] * steps_m[:, 1] - before_m[:, 1] * steps_m[:, 0]
+    # a tenth of a radian: flatter ones are of the outline's noise
+    return turn < -0.1 * np.hypot(*steps_m.T) * np.hypot(*before_m.T)
+
+
+def _find_mouths(places_m: FloatArray, corners: IntArray) -> tuple[IntArray, IntArray, FloatArray]:
+    """Return where mouths begin and end (k,), both ways round, and how wide (k,) they are."""
+    away_m = np.hypot(*(places_m[corners, None] - places_m).transpose(2, 0, 1))
+    is_nearest = (away_m <= np.roll(away_m, 1, axis=1)) & (away_m <= np.roll(away_m, -1, axis=1))
+    row, other = np.nonzero(is_nearest & (away_m > 0))
+    corner = corners[row]
+    chord_m = away_m[row, other]
+    return np.append(corner, other), np.append(other, corner), np.tile(chord_m, 2)
+
+
+def _between(length_m: FloatArray, begin: IntArray, end: IntArray) -> FloatArray:
+    """Return the sums of lengths (n,) of a ring from places on to others, (k,) each."""
+    sums_m = np.concatenate([[0.0], np.cumsum(length_m)])
+    along_m = sums_m[end] - sums_m[begin]
+    return np.where(end < begin, along_m + sums_m[-1], along_m)
+
+
+def _chain(begin: int, end: int, count: int) -> IntArray:
+    """Return the places of a ring from one to another."""
+    return np.arange(begin, end + 1 if begin <= end else end + count + 1) % count

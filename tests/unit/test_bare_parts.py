@@ -1,0 +1,93 @@
+"""Parts of ground that hardly any wall bounds, at shapes that can be cut on paper."""
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
+from shapely import box
+from shapely.geometry import LineString, Polygon
+
+from scanplan.geometry.bare_parts import cut_bare_parts, take_visited
+
+ROOM = box(0, 0, 6, 4)
+MOUTH_M = (1.0, 3.0)
+FAN = Polygon([(6, 1), (16, -4), (16, 8), (6, 3)])  # seen through a mouth of 2 m
+WALLS = ROOM.exterior.difference(LineString([(6, 1), (6, 3)]))
+INSIDE = LineString([(1, 2), (5, 2)])
+
+
+def cut(ground, walls=WALLS, visited=INSIDE):
+    (left,) = cut_bare_parts(ground, walls.buffer(0.1), visited, max_walled=0.3, step_m=0.1)
+    return left
+
+
+def test_a_fan_seen_through_a_wide_mouth_is_cut_at_the_mouth():
+    left = cut(shapely.union(ROOM, FAN))
+    assert left.symmetric_difference(ROOM).area < 0.2
+
+
+def test_a_fan_that_somebody_was_in_stays():
+    whole = shapely.union(ROOM, FAN)
+    left = cut(whole, visited=LineString([(1, 2), (10, 2)]))
+    assert left.intersects(shapely.Point(9.9, 2))
+    assert left.area > ROOM.area + 5
+
+
+def test_a_room_behind_a_wide_mouth_stays_where_its_walls_were_seen():
+    beyond = box(6, 0, 10, 4)
+    walls = shapely.union(WALLS, beyond.exterior.difference(LineString([(6, 1), (6, 3)])))
+    whole = shapely.union(ROOM, beyond)
+    assert cut(whole, walls).equals(whole)
+
+
+def test_a_corner_whose_walls_nobody_saw_stays():
+    walls = LineString([(0, 2), (0, 0), (6, 0), (6, 4), (2, 4)])
+    assert cut(ROOM, walls).equals(ROOM)
+
+
+def test_a_fan_alone_is_all_cut():
+    assert cut_bare_parts(FAN, WALLS, INSIDE, max_walled=0.3, step_m=0.1) in ([], [FAN])
+    assert take_visited(Polygon(), INSIDE) == []
+
+
+def test_two_fans_are_cut_each_at_its_own_mouth():
+    other = Polygon([(2, 4), (-2, 12), (8, 12), (3.5, 4)])
+    walls = WALLS.difference(LineString([(2, 4), (3.5, 4)]))
+    left = cut(shapely.union_all([ROOM, FAN, other]), walls)
+    assert left.symmetric_difference(ROOM).area < 0.3
+
+
+def test_ground_without_any_wall_is_all_that_is_known():
+    whole = shapely.union(ROOM, FAN)
+    assert cut(whole, LineString(), visited=shapely.union(INSIDE, FAN.centroid)).area > 20
+
+
+def test_of_ground_that_a_cut_parts_all_that_was_visited_stays():
+    """The fan leads to a second room, which was driven into by another way."""
+    second = box(16, 0, 20, 4)
+    walls = shapely.union(WALLS, second.exterior.difference(LineString([(16, 0), (16, 4)])))
+    ground = shapely.union_all([ROOM, FAN, second])
+    ways = shapely.MultiLineString([[(1, 2), (5, 2)], [(17, 2), (19, 2)]])
+    found = cut_bare_parts(ground, walls.buffer(0.1), ways, max_walled=0.3, step_m=0.1)
+    assert all(any(part.covers(way) for part in found) for way in ways.geoms)
+
+
+@pytest.mark.parametrize("turn_deg", [0, 33, 90, 211])
+def test_the_building_may_be_turned(turn_deg):
+    ground, walls, way = (
+        shapely.affinity.rotate(shape, turn_deg, origin=(0, 0))
+        for shape in (shapely.union(ROOM, FAN), WALLS, INSIDE)
+    )
+    assert cut(ground, walls, way).area == pytest.approx(ROOM.area, abs=0.3)
+
+
+@given(st.floats(0.5, 3.5), st.floats(3, 30), st.floats(-3, 3))
+def test_what_is_left_is_of_the_ground_and_holds_all_ways(half_m, depth_m, aside_m):
+    low, high = 2 - half_m / 2, 2 + half_m / 2
+    fan = Polygon([(6, low), (6 + depth_m, low - 4 + aside_m), (6 + depth_m, high + 4), (6, high)])
+    ground = shapely.union(ROOM, fan)
+    left = cut(ground)
+    assert left.difference(ground).area < 1e-2
+    assert left.covers(INSIDE)
+    assert np.isfinite(left.area)
