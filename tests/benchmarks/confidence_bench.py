@@ -31,7 +31,7 @@ from scanplan.stage.per_registered_scan import sensor_keywords
 from scanplan.store import registered_scans, schemas, tables
 from scanplan.types import BoolArray, FloatArray, IntArray, Settings
 from scanplan.validation import confidence, left_out_scans, prediction
-from scanplan.validation.element_features import SIGNLESS, describe_elements
+from scanplan.validation.element_features import describe_elements
 
 _PLANS = ((0.1, 0.0), (0.3, 0.0), (1.0, 0.0), (0.5, 0.15))
 # share of the chosen scans, and how far some are displaced [m]: so that there is more that is wrong
@@ -229,7 +229,7 @@ def _join(rows: Mapping[str, Any], names: Sequence[str], table: str) -> tuple[An
 
 
 def _fit(features: Mapping[str, FloatArray], right: FloatArray) -> dict[str, Any]:
-    """Fit a logistic model whose features speak for an element only, but for the signless ones.
+    """Fit a logistic model whose features speak for an element only.
 
     What few surveys seem to teach against reason (the more scans, the less likely) holds on no
     other.
@@ -246,7 +246,7 @@ def _fit(features: Mapping[str, FloatArray], right: FloatArray) -> dict[str, Any
         slope = -(sign * special.expit(-margin)) @ standard + held
         return float(np.logaddexp(0, -margin).sum() + held @ held / 2), slope
 
-    bounds = [(None, None), *((None if name in SIGNLESS else 0.0, None) for name in features)]
+    bounds = [(None, None), *[(0.0, None)] * len(features)]
     start = np.zeros(len(bounds))
     weights = optimize.minimize(lose, start, jac=True, bounds=bounds, method="L-BFGS-B").x
     fitted = {

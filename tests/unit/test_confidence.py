@@ -78,6 +78,27 @@ def test_a_gap_that_is_not_known_is_always_to_be_verified():
     assert (found["verify"][row], found["doubt"][row]) == (True, "not known what it is")
 
 
+def described_openings(**columns):
+    openings = PARTS["openings"] | columns
+    plan = floorplan.make_floorplan(PARTS | {"openings": openings}, 0.0, 2.5)
+    return confidence.describe_elements(plan, validation())["openings"]
+
+
+def test_ways_lead_between_rooms_and_windows_out_of_them():
+    n = len(PARTS["openings"]["type"])
+    room_a, room_b = np.zeros(n, int), np.arange(n) % 2 - 1
+    ways = described_openings(type=np.full(n, "door"), room_a=room_a, room_b=room_b)
+    panes = described_openings(type=np.full(n, "glass"), room_a=room_a, room_b=room_b)
+    np.testing.assert_array_equal(ways["usual"], np.arange(n) % 2)
+    np.testing.assert_array_equal(panes["usual"], 1 - np.arange(n) % 2)
+
+
+def test_a_kind_that_was_weighed_is_no_surer_than_one_that_need_not_be():
+    n = len(PARTS["openings"]["type"])
+    kinds = described_openings(p_kind=np.array([0.8, 0.9999, np.nan, *[0.5] * (n - 3)]))["kind"]
+    np.testing.assert_allclose(kinds[:3], np.log([4, 19, 19]))
+
+
 @pytest.mark.parametrize("table", list(floorplan.NUMBERS))
 def test_the_coefficients_are_of_features_that_there_are(table):
     features = confidence.describe_elements(PLAN, validation())[table]

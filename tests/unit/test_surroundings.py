@@ -6,7 +6,6 @@ import shapely
 
 from scanplan.validation import surroundings
 from scanplan.validation.confidence_coefficients import COEFFICIENTS
-from scanplan.validation.element_features import SIGNLESS
 
 SQUARE_M = np.array(
     [
@@ -74,5 +73,12 @@ def test_openings_that_overlap_do_not_stand_alone():
 
 def test_what_speaks_for_an_element_never_lowers_its_probability():
     for model in COEFFICIENTS.values():
-        for name, of_feature in model["features"].items():
-            assert of_feature["weight"] >= 0 or name in SIGNLESS
+        for of_feature in model["features"].values():
+            assert of_feature["weight"] >= 0
+
+
+def test_a_corridor_is_broader_than_a_slip_as_narrow():
+    areas = np.array([shapely.box(0, 0, 2, 36), shapely.box(0, 0, 2, 4), shapely.box(0, 0, 3, 4)])
+    np.testing.assert_allclose(
+        surroundings.measure_breadth(areas), [np.sqrt(72) / 2, 2, 3], rtol=1e-3
+    )

@@ -7,6 +7,7 @@ What no kind explains decidedly better than the others is a gap that is not know
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import shapely
@@ -21,7 +22,7 @@ from scanplan.rays.face_observation import FaceObservation
 from scanplan.rays.face_raster import CELL_M
 from scanplan.rays.height_profile import EYE_ROWS, ROWS_M, HeightProfile, observe_heights
 from scanplan.rays.ray_set import RaySet
-from scanplan.rays.tolerances import FEW, NEAR_FLOOR_M
+from scanplan.rays.tolerances import FEW, NEAR_FLOOR_M, STRETCH_M
 from scanplan.types import FloatArray
 
 KINDS = ("wall", "door", "window", "glass")
@@ -143,9 +144,9 @@ def _with_windows(wall: PlanWall, rays: RaySet, min_width_m: float, band_m: floa
 def _measure_window(
     seen: FaceObservation, span_m: tuple[float, float], profile: HeightProfile
 ) -> Opening:
+    eye_m = float(ROWS_M[EYE_ROWS.start]), float(ROWS_M[EYE_ROWS.stop])
     clear_m = _clear_above_sill(seen, span_m)
     inner_m = clear_m[0] + END_M, clear_m[1] - END_M
-    eye_m = float(ROWS_M[EYE_ROWS.start]), float(ROWS_M[EYE_ROWS.stop])
     sill_m = estimate_sill_m(seen, *inner_m, below_m=eye_m[0])
     lintel_m = estimate_lintel_m(seen, *clear_m, eye_m[1], eye_m[1])
     n_rays = round(float(profile.n_through.sum()))
@@ -155,20 +156,21 @@ def _measure_window(
 def _clear_above_sill(seen: FaceObservation, span_m: tuple[float, float]) -> tuple[float, float]:
     """Return the widest part of a pause at eye height that has no returns down to the sill either.
 
-    Its sides may be hidden at eye height, and be seen below that. The sill is taken as high as wall
-    is seen in the median of columns.
+    Its sides may be hidden at eye height, and be seen below that: the sill is the
+    median of stretches.
     """
-    points = seen.occupied_between(*span_m)
-    along_m, z_m = seen.occupied_m[points], seen.occupied_z_m[points]
-    is_below = z_m < ROWS_M[EYE_ROWS.start]
-    if not is_below.any():
+    eye_m = float(ROWS_M[EYE_ROWS.start])
+    edges_m = np.linspace(*span_m, max(round((span_m[1] - span_m[0]) / STRETCH_M), 1) + 1)
+    sills_m = np.array([estimate_sill_m(seen, *ends, below_m=eye_m) for ends in pairwise(edges_m)])
+    is_seen = np.isfinite(sills_m)
+    if not is_seen.any():
         return span_m
-    column = ((along_m - span_m[0]) / CELL_M).astype(np.int64)
-    highest_m = np.full(column.max() + 1, -np.inf)
-    np.maximum.at(highest_m, column[is_below], z_m[is_below])
-    sill_m = np.median(highest_m[np.isfinite(highest_m)])
+    sill_m = np.median(sills_m[is_seen])
+    points = seen.occupied_between(*span_m)
+    z_m = seen.occupied_z_m[points]
     is_above = (z_m >= sill_m + END_M) & (z_m < ROWS_M[EYE_ROWS.stop])
-    beside_m = np.concatenate([span_m[:1], _not_alone(along_m[is_above]), span_m[1:]])
+    beside_m = _not_alone(seen.occupied_m[points][is_above])
+    beside_m = np.concatenate([span_m[:1], beside_m, span_m[1:]])
     widest = int(np.diff(beside_m).argmax())
     return float(beside_m[widest]), float(beside_m[widest + 1])
 

@@ -23,8 +23,7 @@ REASONS = {
     "rays": "few rays",
     "sill": "sill not seen",
     "lintel": "lintel not seen",
-    "between_rooms": "leads out of the known rooms",
-    "is_way": "a way through, by what rays show",
+    "usual": "a way out of the known rooms, or a window inside",
     "hosted": "in no wall",
     "wall": "rays of other scans contradict its wall",
     "alone": "another opening beside it",
@@ -33,13 +32,9 @@ REASONS = {
     "walled": "outline partly not seen",
     "faced": "outline partly without walls",
     "parted": "parted from the next where floor is narrow, by no wall",
-    "compact": "odd shape",
-    "area": "small",
+    "broad": "small or narrow",
 }
 """Features of elements, each the better the greater, and the doubt where one is low."""
-
-SIGNLESS = ("between_rooms", "is_way")
-"""Those that say what an element is: which is the better follows from the surveys."""
 
 
 def describe_elements(plan: FloorPlan, validation: Columns) -> dict[str, dict[str, FloatArray]]:
@@ -107,17 +102,20 @@ def _describe_openings(
 ) -> dict[str, FloatArray]:
     openings, lines_m = plan.openings, centrelines_m(plan.openings)
     agreement, _ = _agreements(validation, OPENING, openings["opening"])
-    p_kind = np.nan_to_num(openings["p_kind"], nan=0.5).astype(float)
+    # rays of one gap depend on each other: what they say beyond 19 to 1 is not surer. A passage in
+    # no wall is narrow floor, of whatever kind
+    p_kind = np.clip(np.nan_to_num(openings["p_kind"], nan=0.95).astype(float), 0.05, 0.95)
+    is_way = np.isin(openings["type"].astype(str), WAYS)
+    is_inner = np.minimum(openings["room_a"], openings["room_b"]) >= 0
     is_hosted = plan.hosts >= 0
     observed_m = centrelines_m(plan.faces)[plan.faces["state"] == "observed"]
     return {
         "agreement": agreement,
-        "kind": special.logit(np.clip(p_kind, 0.01, 0.99)),
+        "kind": special.logit(p_kind),
         "rays": np.log1p(openings["n_rays"]),
         "sill": np.isfinite(openings["sill_m"]).astype(float),
         "lintel": np.isfinite(openings["lintel_m"]).astype(float),
-        "between_rooms": (np.minimum(openings["room_a"], openings["room_b"]) >= 0).astype(float),
-        "is_way": np.isin(openings["type"].astype(str), WAYS).astype(float),
+        "usual": (is_way == is_inner).astype(float),
         "hosted": is_hosted.astype(float),
         "wall": np.where(is_hosted, np.append(of_walls, 0.0)[plan.hosts], 0.0),
         "joined": surroundings.count_joined_ends(lines_m, observed_m, same=False).astype(float),
@@ -145,8 +143,7 @@ def _describe_rooms(plan: FloorPlan, validation: Columns) -> dict[str, FloatArra
         "walled": 1 - bare_m / perimeter_m,
         "faced": surroundings.share_faced(plan.areas, centrelines_m(plan.faces)),
         "parted": -parted_m / perimeter_m,
-        "compact": np.log(4 * np.pi * rooms["area_m2"] / perimeter_m**2),
-        "area": np.log(np.maximum(rooms["area_m2"], 0.1)),
+        "broad": np.log(np.maximum(surroundings.measure_breadth(plan.areas), 0.1)),
     }
 
 

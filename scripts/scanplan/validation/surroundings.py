@@ -3,6 +3,7 @@
 import numpy as np
 import shapely
 
+from scanplan.geometry.intersections import LEAST_RAD
 from scanplan.geometry.lines import line_lengths_m
 from scanplan.geometry.tolerances import SHORTEST_M
 from scanplan.plan.floorplan import line_shapes
@@ -33,8 +34,9 @@ def count_joined_ends(lines_m: FloatArray, others_m: FloatArray, *, same: bool) 
 def share_doubled(lines_m: FloatArray, normals: FloatArray) -> FloatArray:
     """Return the share (n,) of faces before or behind which, within 0.3 m, another looks their way.
 
-    Two surfaces one behind the other that are both seen from the same side: casings and niches are
-    rare, walls that poses have doubled are not.
+    Lines that meet too flatly for a corner count as parallel. Of two surfaces one behind the other
+    that are both seen from the same side casings and niches are rare, walls that poses have doubled
+    are not.
 
     Parameters
     ----------
@@ -51,7 +53,7 @@ def share_doubled(lines_m: FloatArray, normals: FloatArray) -> FloatArray:
     direction = (lines_m[:, 1] - lines_m[:, 0]) / length_m[:, None]
     tree = shapely.STRtree(line_shapes(lines_m))
     row, other = tree.query(tree.geometries, predicate="dwithin", distance=CORNER_M)
-    alike = (normals[row] * normals[other]).sum(axis=1) > np.cos(np.radians(20))
+    alike = (normals[row] * normals[other]).sum(axis=1) > np.cos(LEAST_RAD)
     row, other = row[alike & (row != other)], other[alike & (row != other)]
     from_start_m = lines_m[other] - lines_m[row, 0][:, None]
     along_m = np.sort((from_start_m * direction[row][:, None]).sum(axis=-1), axis=1)
@@ -94,6 +96,21 @@ def share_faced(areas: Array, lines_m: FloatArray) -> FloatArray:
     return shapely.length(shapely.intersection(outlines, near)) / np.maximum(
         shapely.length(outlines), SHORTEST_M
     )
+
+
+def measure_breadth(areas: Array) -> FloatArray:
+    """Return how broad areas (r,) are, metres: the diameter of the largest circle in each.
+
+    It is at least half the edge of a square as large: a long corridor is narrow, and no less a room
+    for that. What is left between walls where a room is cut wrongly is narrow and small.
+
+    Parameters
+    ----------
+    areas : (r,) object
+        Shapely polygons.
+    """
+    circle_m = 2 * shapely.length(shapely.maximum_inscribed_circle(areas))
+    return np.maximum(circle_m, np.sqrt(shapely.area(areas)) / 2)
 
 
 def stand_alone(lines_m: FloatArray) -> FloatArray:
