@@ -47,7 +47,7 @@ MANY = {
     "n_damaged": 20,
     "n_salvaged": 40,
     "n_messages": 300,
-    "n_flips": 650,
+    "n_flips": 2000,
     "n_files": 15,
 }
 FEW = {"n_damaged": 2, "n_salvaged": 3, "n_messages": 40, "n_flips": 10, "n_files": 2}
