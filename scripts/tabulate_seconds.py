@@ -4,8 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import pandas as pd
 
-from scanplan.lab.evaluation import run_times
-from scanplan.stage import log
+from scanplan.stage import log, run_times
 from scanplan.store import schemas, tables
 from scanplan.types import FilePath
 

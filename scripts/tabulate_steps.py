@@ -5,8 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from scanplan.lab.evaluation import run_times
-from scanplan.stage import log
+from scanplan.stage import log, run_times
 from scanplan.store import schemas, tables, tum
 from scanplan.types import FilePath
 

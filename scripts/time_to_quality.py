@@ -5,9 +5,8 @@ from collections.abc import Mapping, Sequence
 from scanplan.lab.beyond import measurements, quality_times
 from scanplan.lab.beyond.survey_files import open_survey_files
 from scanplan.lab.beyond.wall_search import make_wall_search
-from scanplan.lab.evaluation import run_times
 from scanplan.selection.wall_cells import WallCellSettings
-from scanplan.stage import log
+from scanplan.stage import log, run_times
 from scanplan.types import FilePath, Settings
 
 

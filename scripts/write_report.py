@@ -13,6 +13,7 @@ from scanplan.report.page import report_page
 from scanplan.report.summary import summarise_survey
 from scanplan.selection import stopping
 from scanplan.stage import log
+from scanplan.stage.run_times import read_job_costs
 from scanplan.store import atomic, registered_scans, schemas, tables
 from scanplan.types import Columns, FilePath, FloatArray, Settings
 
@@ -63,7 +64,7 @@ def write_report(
     run = RunFacts(
         settings=settings,
         figures={Path(path).stem: text for path, text in _read_texts(files["figures"])},
-        benchmarks={Path(path).stem: text for path, text in _read_texts(run_times)},
+        costs=read_job_costs(run_times),
         sizes=[*recorded, *made],
         results=[*beside, *([] if short is None else [Path(short).name])],
         storeys=[

@@ -19,7 +19,7 @@ from scanplan.lab.beyond import (
 from scanplan.lab.beyond.experiments import EXPERIMENTS
 from scanplan.lab.beyond.measurements import Measurement, mean_by_level
 from scanplan.lab.buildings import drawing_file, drawn_floor
-from scanplan.lab.evaluation import run_times
+from scanplan.stage import run_times
 
 
 def as_table(rows):

@@ -1,5 +1,6 @@
 """Imports are followed as Python follows them."""
 
+import ast
 from pathlib import Path
 
 from scanplan.project import code_files
@@ -31,6 +32,25 @@ def test_an_import_within_a_function_counts(tmp_path):
     script = tmp_path / "stage.py"
     script.write_text("def stage():\n    from scanplan.store.tum import read_tum\n")
     assert {"tum", "errors"} <= names(script)
+
+
+def imported_modules(tree):
+    """Names that a syntax tree imports from the package, but for types alone."""
+    names, waiting = set(), [tree]
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("scanplan"):
+            names |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
+        if not (isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"):
+            waiting.extend(ast.iter_child_nodes(node))
+    return names
+
+
+def test_the_imports_of_every_file_are_those_of_its_syntax_tree():
+    for path in SCRIPTS.rglob("*.py"):
+        modules = imported_modules(ast.parse(path.read_text()))
+        files = {SCRIPTS / f"{module.replace('.', '/')}.py" for module in modules}
+        assert code_files._imports(path) == {file for file in files if file.exists()}, path
 
 
 def test_a_stage_does_not_depend_on_what_it_does_not_import():

@@ -1,7 +1,7 @@
 import pytest
 
 from scanplan.errors import StageError
-from scanplan.lab.evaluation import run_times
+from scanplan.stage import run_times
 
 
 def test_seconds_are_the_column_s(tmp_path):

@@ -1,6 +1,7 @@
 """Tables are whole, checked, and refused when damaged."""
 
 import contextlib
+import operator
 import subprocess
 import sys
 from pathlib import Path
@@ -231,6 +232,45 @@ def test_scans_that_lie_about_their_rows_are_noticed(scans):
     misstate_rows_of_a_part(scans)
     with pytest.raises(StageError, match=r"scans.parquet: damaged \(states 3 rows, its parts "):
         tables.ScanStore(scans)
+
+
+def places_of_columns(path):
+    with pq.ParquetFile(path) as file:
+        groups = [file.metadata.row_group(i) for i in range(file.metadata.num_row_groups)]
+        return [g.column(j).data_page_offset for g in groups for j in range(g.num_columns)]
+
+
+def test_a_column_that_is_sought_at_another_place_is_noticed(scans):
+    """The pages there fit their checksums."""
+    content, before = scans.read_bytes(), places_of_columns(scans)
+    n_moved = 0
+    footer = len(content) - 8 - int.from_bytes(content[-8:-4], "little")
+    for bit in range(8 * footer, 8 * (len(content) - 8)):
+        spoilt = bytearray(content)
+        spoilt[bit // 8] ^= 1 << bit % 8
+        scans.write_bytes(bytes(spoilt))
+        with contextlib.suppress(OSError, ValueError, pa.ArrowException):
+            after = places_of_columns(scans)
+            if len(after) == len(before) and sum(map(operator.ne, after, before)) == 1:
+                n_moved += 1
+                with pytest.raises(StageError, match=r"scans.parquet: damaged"):
+                    tables.ScanStore(scans)
+    assert n_moved > len(before)
+
+
+def test_notes_that_are_no_longer_listed_are_noticed(tmp_path):
+    path = tmp_path / "noted.parquet"
+    tables.write_table(path, schemas.SELECTION, ROWS, notes={"floor_z_m": "0.125"})
+    content = bytearray(path.read_bytes())
+    first = content.index(b"\x18\x0dscanplan_rows")
+    # of a list of structures in Thrift: how many, and what
+    n_listed, kind = divmod(content[first - 1], 16)
+    assert n_listed > 2 and kind == 12
+    for fewer in range(n_listed):
+        content[first - 1] = 16 * fewer + kind
+        path.write_bytes(bytes(content))
+        with contextlib.suppress(StageError):
+            assert tables.read_note(path, schemas.SELECTION, "floor_z_m") == "0.125"
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from scanplan.stage.run_times import JobCost
 from scanplan.types import Columns, Settings
 
 
@@ -102,9 +103,8 @@ class RunFacts:
         All settings of the dataset.
     figures : dict of str to str
         Name to the text of an SVG file.
-    benchmarks : dict of str to str
-        Stage to the text of Snakemake's benchmark file, in the workflow's order; what is missing
-        or damaged is left out.
+    costs : dict of str to JobCost
+        Of each stage, in the workflow's order; what is not known is left out.
     sizes : list of (str, str, int)
         What, file name, bytes.
     results : list of str
@@ -118,7 +118,7 @@ class RunFacts:
 
     settings: Settings
     figures: Mapping[str, str]
-    benchmarks: Mapping[str, str]
+    costs: Mapping[str, JobCost]
     sizes: Sequence[tuple[str, str, int]]
     results: Sequence[str]
     storeys: Sequence[Storey]

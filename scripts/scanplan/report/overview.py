@@ -1,6 +1,6 @@
 """One table of many datasets: what was found of each, how doubtful it is, and which failed."""
 
-import csv
+import math
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -10,6 +10,7 @@ import pandas as pd
 from scanplan.plan import floorplan
 from scanplan.report.doubts import list_doubts
 from scanplan.report.templates import render_template
+from scanplan.stage.run_times import read_job_costs
 from scanplan.store import atomic, schemas, tables
 from scanplan.types import FilePath
 
@@ -59,7 +60,8 @@ def gather_overview(
 def _gather_row(results: Path, name: str, faults: Sequence[str], plan: str) -> dict[str, Any]:
     folder = results / name
     row: dict[str, Any] = {"name": name, "why": "; ".join(faults)}
-    row["seconds"] = _sum_seconds(results.parent / "benchmarks" / name)
+    costs = read_job_costs((results.parent / "benchmarks" / name).glob("*.tsv"))
+    row["seconds"] = math.fsum(cost.seconds for cost in costs.values())
     if (folder / "registration.parquet").exists():
         kept = tables.read_table(folder / "registration.parquet", schemas.REGISTRATION)["kept"]
         row |= {"registered": int(kept.sum()), "candidates": len(kept)}
@@ -87,19 +89,6 @@ def _describe_plan(files: Mapping[str, Path]) -> dict[str, Any]:
         **{f"{kind}s": int((kinds == kind).sum()) for kind in floorplan.OPENINGS},
         "predicted": float(validation["share"][-1]),
     }
-
-
-def _sum_seconds(folder: Path) -> float:
-    """Return the wall seconds of all stages, as far as Snakemake's measurements can be read."""
-    seconds = 0.0
-    for file in folder.glob("*.tsv"):
-        with file.open(encoding="utf-8", newline="") as content:
-            for run in csv.DictReader(content, delimiter="\t"):
-                try:
-                    seconds += float(run["s"])
-                except (KeyError, TypeError, ValueError):
-                    continue
-    return seconds
 
 
 def write_overview(

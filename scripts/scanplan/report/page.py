@@ -2,7 +2,7 @@
 
 import base64
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -113,36 +113,12 @@ def report_page(
         registration_note=wording.registration_note(survey),
         registration=page_tables.registration_table(survey.registration, _shift_m(survey)),
         figures=[_page_figure(name, svg) for name, svg in run.figures.items()],
-        stages=page_tables.stage_table(_stage_times(run.benchmarks)),
+        stages=page_tables.stage_table(run.costs),
         sizes=page_tables.size_table(run.sizes),
         settings=page_tables.settings_table(run.settings),
         version=run.version,
         data=_script_data(survey, run, objective),
     )
-
-
-def _stage_times(benchmarks: Mapping[str, str]) -> list[tuple[str, float, float, float]]:
-    """Return stage, seconds, processor seconds and peak memory in MB of each."""
-    rows = []
-    for stage, text in benchmarks.items():
-        head, *lines = [line.split("\t") for line in text.splitlines()] or [[]]
-        if not lines or not {"s", "cpu_time", "max_rss"} <= set(head):
-            continue
-        runs = [dict(zip(head, line, strict=False)) for line in lines]
-        seconds, cpu_s, memory_mb = (_mean(runs, c) for c in ("s", "cpu_time", "max_rss"))
-        rows.append((stage, seconds, cpu_s, memory_mb))
-    return rows
-
-
-def _mean(runs: Sequence[Mapping[str, str]], column: str) -> float:
-    return float(np.mean([_float(run.get(column)) for run in runs]))
-
-
-def _float(text: str | None) -> float:
-    try:
-        return float(text or "")
-    except ValueError:
-        return np.nan
 
 
 def _plan_svg(

@@ -1,6 +1,6 @@
 """The tables of the report's page, as rows of cells that its template shows."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Any
@@ -10,6 +10,7 @@ import numpy as np
 from scanplan.plan import floorplan
 from scanplan.project.settings import iterate_leaves
 from scanplan.report import doubts, measure_meanings
+from scanplan.stage.run_times import JobCost
 from scanplan.types import Columns, FloatArray, Settings
 
 _NOT_KNOWN = "–"
@@ -204,21 +205,24 @@ def truth_table(measures: Columns) -> PageTable:
     return PageTable("truth", heads, rows)
 
 
-def stage_table(run_times: Sequence[tuple[str, float, float, float]]) -> PageTable:
-    """Return the table of run times: stage, seconds, processor seconds, peak memory in MB each."""
+def stage_table(costs: Mapping[str, JobCost]) -> PageTable:
+    """Return the table of what each stage took."""
     rows = [
         Row(
-            [Cell(stage), number_cell(seconds, 1), number_cell(cpu_s, 1), number_cell(memory_mb, 0)]
+            [
+                Cell(stage),
+                number_cell(cost.seconds, 1),
+                number_cell(cost.cpu_s, 1),
+                number_cell(cost.memory_mb, 0),
+            ]
         )
-        for stage, seconds, cpu_s, memory_mb in run_times
+        for stage, cost in costs.items()
     ]
     if rows:
-        seconds = np.nansum([row[1] for row in run_times])
-        cpu_s = np.nansum([row[2] for row in run_times])
         total = [
             Cell("all", "total"),
-            number_cell(seconds, 1),
-            number_cell(cpu_s, 1),
+            number_cell(np.nansum([cost.seconds for cost in costs.values()]), 1),
+            number_cell(np.nansum([cost.cpu_s for cost in costs.values()]), 1),
             _blank_number(),
         ]
         rows.append(Row(total))

@@ -1,10 +1,12 @@
 """Parquet files of a schema: opened, written and checked."""
 
 import errno
+import itertools
 import json
 from binascii import crc32
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
@@ -17,10 +19,11 @@ from scanplan.types import Array, FilePath
 
 RERUN = "delete it and run again"
 
-_SEAL = "scanplan_notes_crc32"
-_IS_COUNTED = "scanplan_counts_rows"
+_MAGIC = b"PAR1"
 _N_ROWS = "scanplan_rows"
-_OWN_NOTES = ("scanplan", "geo", "ARROW:schema", _SEAL, _IS_COUNTED, _N_ROWS)
+_OF_OLDER_VERSIONS = ("scanplan_notes_crc32", "scanplan_counts_rows")
+_STATED = frozenset({"table", "version", "counted", "notes_crc32"})
+_OWN_NOTES = ("scanplan", "geo", "ARROW:schema", _N_ROWS, *_OF_OLDER_VERSIONS)
 
 
 def arrow_schema(schema: Schema) -> pa.Schema:
@@ -49,7 +52,7 @@ def open_writer(
         `write_rows(table, row_group_size=None)`, for one table after the other.
     """
     notes = dict(extra or {})
-    form = arrow_schema(schema).with_metadata(_file_metadata(schema) | notes | _seal(notes))
+    form = arrow_schema(schema).with_metadata(_file_metadata(schema, notes) | notes)
     floats = [n for n, t in schema.columns.items() if t.startswith("float")]
     with (
         atomic.replace_file(path) as temporary,
@@ -73,13 +76,11 @@ def open_writer(
         writer.add_key_value_metadata({_N_ROWS: str(n_rows)})
 
 
-def _file_metadata(schema: Schema) -> dict[str, str]:
+def _file_metadata(schema: Schema, notes: Mapping[str, str]) -> dict[str, str]:
     """Return the file's own metadata: our schema, and the description that GeoParquet asks for."""
-    metadata = {
-        "scanplan": json.dumps({"table": schema.name, "version": schema.version}),
-        # programs that write a table anew keep this, and not the number itself
-        _IS_COUNTED: "true",
-    }
+    # programs that write a table anew keep that rows are counted, and not the number itself
+    stated = {**_identity(schema), "counted": True, "notes_crc32": _checksum(notes)}
+    metadata = {"scanplan": json.dumps(stated)}
     if schema.geometry:
         column = {"encoding": "WKB", "geometry_types": [], "crs": None}
         metadata["geo"] = json.dumps(
@@ -88,9 +89,18 @@ def _file_metadata(schema: Schema) -> dict[str, str]:
     return metadata
 
 
-def _seal(notes: Mapping[str, str]) -> dict[str, str]:
+def _identity(schema: Schema) -> dict[str, object]:
+    return {"table": schema.name, "version": schema.version}
+
+
+def _checksum(notes: Mapping[str, str]) -> str:
     """Return the checksum of a file's further metadata, which Parquet's own do not cover."""
-    return {_SEAL: f"{crc32(json.dumps(notes, sort_keys=True).encode()):08x}"} if notes else {}
+    return f"{crc32(json.dumps(notes, sort_keys=True).encode()):08x}"
+
+
+def _read_statement(file: pq.ParquetFile) -> dict[str, object]:
+    """Return what a file says of itself; empty if it is none of ours."""
+    return json.loads((file.metadata.metadata or {}).get(b"scanplan", b"{}"))
 
 
 def read_notes(file: pq.ParquetFile, path: FilePath) -> dict[str, str]:
@@ -103,9 +113,10 @@ def read_notes(file: pq.ParquetFile, path: FilePath) -> dict[str, str]:
     """
     with explain_damage(path):
         stated = {k.decode(): v.decode() for k, v in (file.metadata.metadata or {}).items()}
+        checksum = _read_statement(file).get("notes_crc32")
     notes = {k: v for k, v in stated.items() if k not in _OWN_NOTES}
     # files of older versions have no checksum
-    if _SEAL in stated and _seal(notes).get(_SEAL) != stated[_SEAL]:
+    if checksum not in (None, _checksum(notes)):
         raise StageError(f"{path}: damaged (its notes do not fit their checksum); {RERUN}")
     return notes
 
@@ -145,10 +156,11 @@ def explain_damage(path: FilePath) -> Iterator[None]:
 
 
 def _check_schema(file: pq.ParquetFile, schema: Schema, path: FilePath) -> None:
-    stated = json.loads((file.metadata.metadata or {}).get(b"scanplan", b"{}"))
-    if stated != {"table": schema.name, "version": schema.version}:
+    stated = _read_statement(file)
+    identity = {key: stated.get(key) for key in _identity(schema)}
+    if identity != _identity(schema) or not _STATED.issuperset(stated):
         raise StageError(
-            f"{path}: is {stated or 'no table of scanplan'}, expected {schema.name}"
+            f"{path}: is {identity if stated else 'no table of scanplan'}, expected {schema.name}"
             f" version {schema.version}; {RERUN}"
         )
     if not file.schema_arrow.equals(arrow_schema(schema)):
@@ -156,6 +168,7 @@ def _check_schema(file: pq.ParquetFile, schema: Schema, path: FilePath) -> None:
             f"{path}: columns {file.schema_arrow.names} are not those of {schema.name}; {RERUN}"
         )
     _check_row_counts(file, path)
+    _check_places(file, path)
 
 
 def _check_row_counts(file: pq.ParquetFile, path: FilePath) -> None:
@@ -169,11 +182,32 @@ def _check_row_counts(file: pq.ParquetFile, path: FilePath) -> None:
     stated = {k.decode(): v.decode() for k, v in whole.metadata.items()}
     # files of older versions do not count
     n_written = stated.get(_N_ROWS, "an unknown number of")
-    if _IS_COUNTED in stated and n_written != str(of_parts):
+    if "counted" in _read_statement(file) and n_written != str(of_parts):
         raise StageError(
             f"{path}: was written with {n_written} rows, holds {of_parts}: another program has"
             f" changed it; {RERUN}"
         )
+
+
+def _check_places(file: pq.ParquetFile, path: FilePath) -> None:
+    """Refuse a file whose columns share bytes: one would be read for another, checksums and all."""
+    groups = [file.metadata.row_group(i) for i in range(file.metadata.num_row_groups)]
+    chunks = [g.column(j) for g in groups for j in range(g.num_columns) if g.num_rows]
+    # a dictionary lies before the pages that refer to it
+    spans = [
+        (chunk.dictionary_page_offset or chunk.data_page_offset, chunk.total_compressed_size)
+        for chunk in chunks
+    ]
+    n_magic = len(_MAGIC)
+    # behind the footer stand its length, in as many bytes as the mark has, and the mark again
+    footer = Path(path).stat().st_size - 2 * n_magic - file.metadata.serialized_size
+    places = [(0, n_magic), *sorted(spans), (footer, 0)]
+    for (begin, size), (end, _) in itertools.pairwise(places):
+        if begin + size > end:
+            raise StageError(
+                f"{path}: damaged (its footer states {size} bytes at {begin}, the next at {end});"
+                f" {RERUN}"
+            )
 
 
 def check_rows(
