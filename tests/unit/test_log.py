@@ -48,10 +48,18 @@ def test_a_bug_is_one_line_and_its_traceback_in_the_log(tmp_path):
     assert "Traceback" in log
 
 
-def test_too_little_memory_is_told_as_that_with_what_to_do(tmp_path):
-    result, log = run(tmp_path, "bytearray(1 << 62)")
+@pytest.mark.parametrize(
+    "body",
+    [
+        "bytearray(1 << 62)",
+        "raise ImportError('a.so: failed to map segment from shared object')",
+        "raise OSError(12, 'Cannot allocate memory')",
+    ],
+)
+def test_too_little_memory_is_told_as_that_with_what_to_do(tmp_path, body):
+    result, log = run(tmp_path, body)
     assert result.returncode == 1 and result.stderr.count("\n") == 1
-    assert result.stderr.startswith("stage: not enough memory (MemoryError")
+    assert result.stderr.startswith("stage: not enough memory (")
     assert "allow more (`ulimit -v`" in result.stderr and "Traceback" in log
 
 

@@ -17,6 +17,8 @@ from scanplan.plain_types import FilePath
 from scanplan.stage import orphans
 
 _TOLD_EVERY_S = 1.0  # between lines of progress: often enough to follow, seldom enough to read
+# what the loader of libraries, the system and Python say where address space ends
+_WANT_OF_MEMORY = ("failed to map segment", "Cannot allocate memory", "can't start new thread")
 _log = logging.getLogger("scanplan")
 _screen: TextIO | None = None
 
@@ -110,7 +112,7 @@ def _end_in_one_line(path: FilePath) -> Iterator[None]:
 
 def _explain(error: Exception) -> str:
     reason = " ".join(f"{type(error).__name__}: {error}".split()).removesuffix(":")
-    if isinstance(error, MemoryError):
+    if isinstance(error, MemoryError) or any(words in reason for words in _WANT_OF_MEMORY):
         return f"not enough memory ({reason}): {MORE_MEMORY}"
     return f"unexpected failure, {reason}"
 
