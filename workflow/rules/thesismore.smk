@@ -239,8 +239,8 @@ rule write_thesis_more:
     """Write the page of the experiments that go beyond the thesis's own."""
     input:
         **{
-            name: of_kind(experiments.ROOMS, f"thesis/{name}")[:1]
-            for name in FURTHER_EXPERIMENTS
+            name: of_kind(experiments.ROOMS, f"thesis/{name}")[surveys]
+            for name, surveys in FURTHER_EXPERIMENTS.items()
         },
         evaluated=of_kind(experiments.ROOMS, "evaluation/walls"),
         chosen=of_kind(experiments.ROOMS, "thesis/confidence"),
