@@ -3,8 +3,6 @@
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
 from scanplan.plan import floorplan
 from scanplan.selection import stopping
 from scanplan.stage import log
@@ -42,28 +40,28 @@ def validate_plan(
     drawn = floorplan.read_floorplan(plan)
     chosen_ids, _ = stopping.read_chosen_scans(selection, **stop)
     registered = registered_scans.read_registered_scans(registration)
-    left_out_ids = np.setdiff1d(registered.scan_ids, chosen_ids)
-    scan_ids = left_out_scans.draw_left_out_scans(left_out_ids, limits.max_scans, limits.seed)
-    rays = left_out_scans.draw_rays(
+    rays = left_out_scans.draw_left_out_rays(
         tables.ScanStore(scans),
-        scan_ids,
-        registered_scans.sensor_positions(scan_ids, registered, scans, registration),
+        registered,
+        chosen_ids,
         (drawn.storey_m[0], drawn.ceiling_z_m),
+        max_scans=limits.max_scans,
         max_rays=limits.max_rays,
         seed=limits.seed,
     )
+    n_left_out, n_drawn = len(registered.scan_ids) - len(chosen_ids), len(rays.scan_ids)
     found = prediction.validate_by_rays(drawn, rays, limits)
-    absent = prediction.explain_absence(found, len(registered.scan_ids), len(left_out_ids))
+    absent = prediction.explain_absence(found, len(registered.scan_ids), n_left_out)
     notes = {
-        "n_left_out": str(len(left_out_ids)),
-        "n_scans": str(len(scan_ids)),
+        "n_left_out": str(n_left_out),
+        "n_scans": str(n_drawn),
         "tolerance_m": repr(found.tolerance_m),
         "absent": absent,
     }
     tables.write_table(outputs["elements"], schemas.VALIDATION, found.elements, notes=notes)
     tables.write_table(outputs["rays"], schemas.VALIDATION_RAYS, found.rays, allow_empty=True)
     result = absent or prediction.summarise_counts(found)
-    log.log_line(f"validate_plan: {len(scan_ids)} of {len(left_out_ids)} scans left out; {result}")
+    log.log_line(f"validate_plan: {n_drawn} of {n_left_out} scans left out; {result}")
 
 
 if __name__ == "__main__":

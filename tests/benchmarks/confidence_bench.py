@@ -113,13 +113,12 @@ def _make_plan(
     parts = {name: getattr(made, name) for name in ("faces", "walls", "openings", "rooms", "free")}
     plan = floorplan.make_floorplan(parts, float(z_m[0]), float(z_m[1]))
     limits = prediction.ValidationSettings(**stage_settings.select_validation(settings))
-    left_out = np.setdiff1d(registered.scan_ids, chosen)
-    scan_ids = left_out_scans.draw_left_out_scans(left_out, limits.max_scans, limits.seed)
-    drawn = left_out_scans.draw_rays(
+    drawn = left_out_scans.draw_left_out_rays(
         store,
-        scan_ids,
-        registered_scans.sensor_positions(scan_ids, registered, "scans", "registration"),
+        registered,
+        chosen,
         (plan.storey_m[0], plan.ceiling_z_m),
+        max_scans=limits.max_scans,
         max_rays=limits.max_rays,
         seed=limits.seed,
     )

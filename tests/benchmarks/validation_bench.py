@@ -60,13 +60,12 @@ def _read_survey(folder: Path, truth: Path, settings: Settings) -> Survey:
     count, _ = stopping.choose_n_scans(ordering, **settings["selection"]["stop"])
     chosen_ids = np.sort(ordering["scan_id"][:count])
     known = registered_scans.read_registered_scans(folder / "registration.parquet")
-    left_out_ids = np.setdiff1d(known.scan_ids, chosen_ids)
-    scan_ids = left_out_scans.draw_left_out_scans(left_out_ids, limits.max_scans, limits.seed)
-    rays = left_out_scans.draw_rays(
+    rays = left_out_scans.draw_left_out_rays(
         tables.ScanStore(folder / "scans.parquet"),
-        scan_ids,
-        known.map_from_sensor[np.searchsorted(known.scan_ids, scan_ids), :3, 3],
+        known,
+        chosen_ids,
         (plan.storey_m[0], plan.ceiling_z_m),
+        max_scans=limits.max_scans,
         max_rays=limits.max_rays,
         seed=limits.seed,
     )
