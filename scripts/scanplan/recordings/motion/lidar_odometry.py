@@ -111,7 +111,7 @@ def _start_odometry(missing: str) -> "KissICP":
     config = KISSConfig()
     # nearer returns are the rover's own body
     config.data.min_range = 0.5
-    # rooms end within it, and what counts as near grows with it by the angle that a turn begins with
+    # rooms end within it, and what it takes for near where a turn begins grows with it
     config.data.max_range = 30.0
     # a quarter of a metre tells two walls of a narrow room apart; coarser, the way through rooms is
     # lost, finer takes four times as long (tried: 1.0, 0.5, 0.25, 0.1)
