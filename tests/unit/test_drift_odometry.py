@@ -66,6 +66,14 @@ def test_odometry_that_is_reset_goes_on():
     )
 
 
+def test_after_hundreds_of_resets_poses_are_still_rigid():
+    rng = np.random.default_rng(1)
+    reset = planar_poses(rng.uniform(-9, 9, (400, 2)), rng.uniform(-3, 3, 400))
+    joined = pose_jumps.join_jumps(reset, np.ones(399, bool))
+    # it jumps at every step, so that it never moved
+    np.testing.assert_allclose(joined, np.tile(reset[0], (400, 1, 1)), atol=1e-9)
+
+
 def test_the_way_is_cut_into_lengths():
     pieces = submaps.cut_way(np.array([0.0, 1.0, 3.9, 4.1, 9.0]), 4.0)
     assert [piece.tolist() for piece in pieces] == [[0, 1, 2], [3], [4]]

@@ -43,7 +43,9 @@ def join_jumps(pose: FloatArray, jumping: BoolArray) -> FloatArray:
     """
     joined = np.array(pose, float)
     for row in np.flatnonzero(jumping).tolist():
-        joined[row + 1 :] = joined[row] @ se3.invert_pose(joined[row + 1]) @ joined[row + 1 :]
+        # of many jumps each would double the rounding of the one before
+        moved = se3.nearest_rigid(joined[row] @ se3.invert_pose(joined[row + 1]))
+        joined[row + 1 :] = moved @ joined[row + 1 :]
     return joined
 
 

@@ -46,7 +46,8 @@ def estimate_track(
     Raises
     ------
     StageError
-        If the sensor is planar, KISS-ICP is not installed or no cloud has points.
+        If the sensor is planar, KISS-ICP is not installed or loses the way, or no cloud has
+        points.
     """
     if survey.planar:
         raise StageError(
@@ -57,7 +58,7 @@ def estimate_track(
     odometry = _start_odometry(missing)
     n_scans = len(survey.stamps())
     scans = log.report_progress(survey.scans(range(n_scans)), "estimate_poses", n_scans)
-    t_ns, first_from_sensor = _align_scans(odometry, scans)
+    t_ns, first_from_sensor = _align_scans(odometry, scans, missing)
     if len(t_ns) == 0:
         raise StageError(f"{missing}; and no cloud has points to estimate poses from; record again")
     base_from_sensor, _, _ = frame_edges.chain_poses(mounting, t_ns, max_gap_s=np.inf)
@@ -110,6 +111,8 @@ def _start_odometry(missing: str) -> "KissICP":
     config = KISSConfig()
     # nearer returns are the rover's own body
     config.data.min_range = 0.5
+    # rooms end within it, and what it takes for near where a turn begins grows with it
+    config.data.max_range = 30.0
     # a quarter of a metre tells two walls of a narrow room apart; coarser, the way through rooms is
     # lost, finer takes four times as long (tried: 1.0, 0.5, 0.25, 0.1)
     config.mapping.voxel_size = 0.25
@@ -118,7 +121,9 @@ def _start_odometry(missing: str) -> "KissICP":
     return KissICP(config)
 
 
-def _align_scans(odometry: "KissICP", scans: Iterable[Scan]) -> tuple[IntArray, FloatArray]:
+def _align_scans(
+    odometry: "KissICP", scans: Iterable[Scan], missing: str
+) -> tuple[IntArray, FloatArray]:
     """Return the moments (n,) of the scans that have points, and first_from_sensor (n, 4, 4)."""
     moments_ns = []
     poses = []
@@ -127,6 +132,14 @@ def _align_scans(odometry: "KissICP", scans: Iterable[Scan]) -> tuple[IntArray, 
             continue
         time_s = np.zeros(0) if scan.time_s is None else scan.time_s
         odometry.register_frame(scan.xyz_m.astype(np.float64), time_s)
+        if not np.isfinite(odometry.last_pose).all():
+            raise StageError(
+                f"{missing}; and KISS-ICP loses the way at scan {scan.scan_id}, at"
+                f" {scan.t_ns / 1e9:.3f} s; record poses, or cut the recording there"
+            )
+        # its products of matrices drift off true rotations, on a long way without bound
+        odometry.last_pose = se3.nearest_rigid(odometry.last_pose)
+        odometry.last_delta = se3.nearest_rigid(odometry.last_delta)
         # it moves points to where they would have been seen at the end of the sweep
         end_s = 0.0 if scan.time_s is None else float(scan.time_s.max())
         moments_ns.append(scan.t_ns + round(end_s * 1e9))
