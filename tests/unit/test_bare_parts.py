@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from shapely import box
 from shapely.geometry import LineString, Polygon
+from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry.bare_parts import cut_bare_parts, take_visited
 
@@ -17,7 +18,7 @@ WALLS = ROOM.exterior.difference(LineString([(6, 1), (6, 3)]))
 INSIDE = LineString([(1, 2), (5, 2)])
 
 
-def cut(ground, walls=WALLS, visited=INSIDE):
+def cut(ground, walls: BaseGeometry = WALLS, visited: BaseGeometry = INSIDE):
     (left,) = cut_bare_parts(ground, walls.buffer(0.1), visited, max_walled=0.3, step_m=0.1)
     return left
 

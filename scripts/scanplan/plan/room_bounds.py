@@ -134,8 +134,9 @@ def _find_line_gaps(
 
 def _goes_on(wall: PlanWall, other: PlanWall) -> bool:
     """Return whether another wall is much the same way, in the line of one."""
-    is_along = abs(wall.line.direction @ other.line.direction) >= math.cos(intersections.LEAST_RAD)
-    return is_along and float(np.abs(wall.line.offset_m(other.ends)).min()) <= CORNER_M
+    turn = abs(float(wall.line.direction @ other.line.direction))
+    nearest_m = float(np.abs(wall.line.offset_m(other.ends)).min())
+    return turn >= math.cos(intersections.LEAST_RAD) and nearest_m <= CORNER_M
 
 
 def _snap(ends_m: FloatArray, walls: Sequence[PlanWall]) -> FloatArray:

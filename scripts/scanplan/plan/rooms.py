@@ -101,7 +101,7 @@ def find_rooms(
     solid = free_space.union_on_grid(strips)
     whole = free_space.union_on_grid(views) if floor is None else floor
     seen = free_space.difference_on_grid(whole, solid)
-    track = shapely.points(track_m)
+    track = np.asarray(shapely.points(track_m), object)
     way = _draw_way(track_m)
     facing = wall_ground.ground_before(walls, unpaired_m)
     rooms: list[Room] = []
