@@ -10,7 +10,7 @@ from PIL import Image
 
 from helpers import floorplan_making
 from scanplan.report.chart import chart_svg
-from scanplan.report.doubts import list_doubts
+from scanplan.validation.doubts import list_doubts
 from scanplan.report.point_image import draw_point_image
 from scanplan.report.result_links import link_results
 

@@ -16,6 +16,7 @@ from scanplan.exports.sheet.marks import Symbol, flatten
 from scanplan.exports.sheet.paper import Slot
 from scanplan.exports.sheet.styles import LAYERS, STYLES, Letters, doubt_layer
 from scanplan.exports.sheet.title import SheetFacts
+from scanplan.validation.doubts import list_doubts
 
 
 def turned(drawn, angle_deg):
@@ -239,6 +240,18 @@ def test_doubt_is_marked_told_and_on_layers_of_its_own():
     assert {doubt_layer(STYLES[kind].layer) for kind in ("wall", "door", "window", "room")} == {
         "A-WALL-VRFY", "A-DOOR-VRFY", "A-GLAZ-VRFY", "A-AREA-VRFY"
     }  # fmt: skip
+
+
+def test_a_doubtful_face_is_drawn_and_counted_unless_its_wall_is():
+    faces = floorplan_making.faces()
+    # the loose one, and a side of wall 2, which is doubtful itself
+    faces["verify"] = np.isin(faces["face"], [2, 8])
+    doubted = plan(faces=faces)
+    sheet = composition.compose_sheet(doubted)
+    drawn = [mark.element for mark in composition.paper_marks(sheet) if mark.kind == "verify"]
+    assert [name for name in drawn if "face" in name] == ["verify-face-8"]
+    said = [word.text for word in composition.paper_words(sheet)]
+    assert said[said.index("To verify on site") + 1] == str(len(list_doubts(doubted)))
 
 
 def test_what_was_not_seen_of_a_room_is_dotted():

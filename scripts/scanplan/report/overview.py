@@ -8,11 +8,11 @@ from typing import Any
 import pandas as pd
 
 from scanplan.plan import floorplan
-from scanplan.report.doubts import list_doubts
 from scanplan.report.templates import render_template
 from scanplan.stage.run_times import read_job_costs
 from scanplan.store import atomic, schemas, tables
 from scanplan.types import FilePath
+from scanplan.validation.doubts import list_doubts
 
 MADE, FAILED, MISSING = "plan", "failed", "no plan"
 """What became of a dataset: it has a plan, a stage of it failed, it was not got to."""

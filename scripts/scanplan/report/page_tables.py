@@ -9,9 +9,10 @@ import numpy as np
 
 from scanplan.plan import floorplan
 from scanplan.project.settings import iterate_leaves
-from scanplan.report import doubts, measure_meanings
+from scanplan.report import measure_meanings
 from scanplan.stage.run_times import JobCost
 from scanplan.types import Columns, FloatArray, Settings
+from scanplan.validation import doubts
 
 _NOT_KNOWN = "–"
 _OUTSIDE = "outside or not known"

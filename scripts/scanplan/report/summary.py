@@ -9,9 +9,9 @@ import numpy as np
 
 from scanplan.plan import floorplan
 from scanplan.report import page_tables, wording
-from scanplan.report.doubts import list_doubts, list_unrated
 from scanplan.report.facts import SurveyFacts
 from scanplan.types import FloatArray
+from scanplan.validation.doubts import list_doubts, list_unrated
 
 _NAMED = 8  # of more than these the report has the list
 

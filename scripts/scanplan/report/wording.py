@@ -6,9 +6,10 @@ from datetime import UTC, datetime
 import numpy as np
 
 from scanplan.plan import floorplan
-from scanplan.report import doubts, page_tables
+from scanplan.report import page_tables
 from scanplan.report.facts import PredictionFacts, SurveyFacts
 from scanplan.types import Columns
+from scanplan.validation import doubts
 
 _OBJECTIVES = {"wall_length": ("wall shown", "m"), "visibility": ("free space seen", "m²")}
 

@@ -19,6 +19,7 @@ from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.plan.tolerances import END_M
 from scanplan.types import FloatArray
+from scanplan.validation.doubts import list_doubts
 
 
 @dataclass(frozen=True)
@@ -117,9 +118,9 @@ def compose_sheet(
 
 def _list_legend(plan: FloorPlan, marks: list[Mark], symbols: list[Symbol]) -> list[str]:
     kinds = {symbol.kind for symbol in symbols}
-    tables = (plan.walls, plan.openings, plan.rooms)
-    if any(content.is_doubtful(columns).any() for columns in tables):
+    if list_doubts(plan):
         kinds.add("verify")
+    tables = (plan.walls, plan.openings, plan.rooms)
     if any(content.is_corrected(columns).any() for columns in tables):
         kinds.add("corrected")
     return title.list_legend(marks, kinds)

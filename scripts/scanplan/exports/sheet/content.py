@@ -12,6 +12,7 @@ from scanplan.exports.sheet.marks import Facts, Mark, Symbol, straight
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.types import BoolArray, Columns, FloatArray
+from scanplan.validation import doubts
 
 _FACTS = {
     "wall": (
@@ -22,6 +23,7 @@ _FACTS = {
         "n_points",
         "n_scans",
     ),
+    "face": ("n_points", "n_scans", "rmse_m", "z_min_m", "z_max_m"),
     "opening": (
         "width_m",
         "thickness_m",
@@ -96,12 +98,20 @@ def draw_axes(plan: FloorPlan) -> Iterator[Mark]:
 
 
 def draw_doubts(plan: FloorPlan) -> Iterator[Mark]:
-    """Yield the outlines of the walls that are to be verified, with what is known of them."""
+    """Yield what of the walls is to be verified, with what is known of it.
+
+    Outlines of whole walls, and lines of faces whose walls are not.
+    """
     for row in np.flatnonzero(is_doubtful(plan.walls)).tolist():
         number = plan.walls["wall"][row]
         facts = facts_of("wall", plan.walls, row)
         title = " ".join(["verify wall", str(number), str(facts.get("doubt", ""))]).strip()
         yield _area("verify", plan.bodies[row], f"verify-wall-{number}", title, facts, verify=True)
+    for row in doubts.find_doubtful_faces(plan).tolist():
+        number, facts = plan.faces["face"][row], facts_of("face", plan.faces, row)
+        title = " ".join(["verify face", str(number), str(facts.get("doubt", ""))]).strip()
+        line = straight(floorplan.centrelines_m(plan.faces)[row])
+        yield Mark("verify", [line], False, f"verify-face-{number}", title, facts, True)
 
 
 def draw_corrections(plan: FloorPlan, apart_m: float) -> Iterator[Mark]:

@@ -15,6 +15,7 @@ from scanplan.exports.sheet.symbols import BLOCKS, symbol_paths
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import OPENINGS, FloorPlan
 from scanplan.types import Columns, FloatArray
+from scanplan.validation.doubts import list_doubts
 
 TITLE_TAG = "title:"
 """What the elements of a title block's values begin with."""
@@ -80,9 +81,7 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
     y1 = y0 + TITLE_ROWS * Paper.ROW
     turned = round(page.turn_deg, 1) + 0.0
     turn = f"turned by {turned:+.1f}° to the main walls" if turned else "not turned"
-    n_doubts = sum(
-        int(np.sum(columns.get("verify", 0))) for columns in (plan.walls, plan.openings, plan.rooms)
-    )
+    n_doubts = len(list_doubts(plan))
     contents = "; ".join(filter(None, [plan.mark, floorplan.summarise_floorplan(plan)]))
     noun = "correction" if plan.n_corrections == 1 else "corrections"
     by_hand = f"; {plan.n_corrections} {noun} by hand" if plan.n_corrections else ""

@@ -7,11 +7,11 @@ import numpy as np
 import shapely
 
 from scanplan.plan import floorplan
-from scanplan.report import doubts
 from scanplan.report.chart import MARGIN_M
 from scanplan.report.plan_view import growth
 from scanplan.report.point_image import PointImage
 from scanplan.types import Columns, FloatArray
+from scanplan.validation import doubts
 
 _TITLES = {
     "observed": "observed wall",
