@@ -10,9 +10,9 @@ from PIL import Image
 
 from helpers import floorplan_making
 from scanplan.report.chart import chart_svg
-from scanplan.validation.doubts import list_doubts
 from scanplan.report.point_image import draw_point_image
 from scanplan.report.result_links import link_results
+from scanplan.validation.doubts import list_doubts
 
 
 def pixels(points_m, **plan):
