@@ -14,7 +14,7 @@ from typing import TextIO, TypeVar
 from scanplan import interrupts
 from scanplan.errors import MORE_MEMORY, StageError
 from scanplan.plain_types import FilePath
-from scanplan.stage import orphans
+from scanplan.stage import bytecode, orphans
 
 _TOLD_EVERY_S = 1.0  # between lines of progress: often enough to follow, seldom enough to read
 # what the loader of libraries, the system and Python say where address space ends
@@ -114,6 +114,9 @@ def _explain(error: Exception) -> str:
     reason = " ".join(f"{type(error).__name__}: {error}".split()).removesuffix(":")
     if isinstance(error, MemoryError) or any(words in reason for words in _WANT_OF_MEMORY):
         return f"not enough memory ({reason}): {MORE_MEMORY}"
+    if isinstance(error, (EOFError, ValueError)) and "marshal" in reason:
+        bytecode.remove_cut_files()
+        return bytecode.CUT_SHORT
     return f"unexpected failure, {reason}"
 
 

@@ -9,6 +9,7 @@ from scanplan.project import provenance
 from scanplan.project.run.run_lock import FolderRun
 from scanplan.project.run.slurm_jobs import LOGS as JOB_LOGS
 from scanplan.project.settings import Layer, locate_fault
+from scanplan.stage import bytecode
 from scanplan.store import atomic
 
 _DONE = " stage done"
@@ -49,6 +50,8 @@ def describe_failure(
         lines = [line for line in lines if _OUTSIDE not in line]
     faults = [line for line in lines if not line.endswith(INTERRUPTED)]
     told = [*faults, *(causes or ())]
+    if bytecode.remove_cut_files():
+        told.append(bytecode.CUT_SHORT)
     # what fails on a cluster takes the other stages of its job along
     if run.interrupted or (causes is None and len(faults) < len(lines)):
         return [*told, f"the run {INTERRUPTED}"]
