@@ -46,7 +46,7 @@ quick: environment style ## lint and the tests of what changed since main, under
 	    test -z "$$changed" || $(BIN)/basedpyright --project . $$changed
 	@$(PYTEST) -m "not workflow and not recordings" $$($(BIN)/python tests/changed_tests.py tests) $(ARGS)
 
-test: environment lint ## lint and all tests but Slurm's, about twelve minutes
+test: environment lint ## lint and all tests but Slurm's, about ten minutes
 	@$(PYTEST) -m "not slurm" $(ARGS)
 
 test-slurm: environment ## the profile for Slurm, on a Slurm installed and started here; as root on Debian

@@ -168,7 +168,10 @@ def interpolate_poses(
 def _slerp(
     quat_xyzw: FloatArray, before: IntArray, after: IntArray, share: FloatArray
 ) -> FloatArray:
-    unit = quat_xyzw / np.linalg.norm(quat_xyzw, axis=1, keepdims=True)
+    length = np.linalg.norm(quat_xyzw, axis=1, keepdims=True)
+    if not length.all():
+        raise ValueError("a quaternion of length 0 is no rotation")
+    unit = quat_xyzw / length
     start, end = unit[before], unit[after]
     # q and -q are one turn: the shorter way
     end = np.where((start * end).sum(axis=1, keepdims=True) < 0, -end, end)

@@ -237,6 +237,8 @@ def make_plan(
             min_area_m2=settings.rooms.min_area_m2,
             unpaired_m=unpaired_m,
         )
+        ground = shapely.union_all([room.polygon for room in rooms])
+        pieces = [piece for piece in pieces if piece.outline.intersects(ground)]
     walls = opening_kinds.decide_kinds(
         *(walls, rays, track_m, functools.partial(rooms_beside, rooms)),
         min_width_m=settings.openings.min_opening_m,

@@ -115,7 +115,7 @@ def read_notes(file: pq.ParquetFile, path: FilePath) -> dict[str, str]:
         stated = {k.decode(): v.decode() for k, v in (file.metadata.metadata or {}).items()}
         checksum = _read_statement(file).get("notes_crc32")
     notes = {k: v for k, v in stated.items() if k not in _OWN_NOTES}
-    # files of older versions have no checksum
+    # files of older versions state theirs elsewhere, or have none
     if checksum not in (None, _checksum(notes)):
         raise StageError(f"{path}: damaged (its notes do not fit their checksum); {RERUN}")
     return notes
@@ -180,7 +180,7 @@ def _check_row_counts(file: pq.ParquetFile, path: FilePath) -> None:
             f"{path}: damaged (states {whole.num_rows} rows, its parts {of_parts}); {RERUN}"
         )
     stated = {k.decode(): v.decode() for k, v in whole.metadata.items()}
-    # files of older versions do not count
+    # nor do those of older versions count here
     n_written = stated.get(_N_ROWS, "an unknown number of")
     if "counted" in _read_statement(file) and n_written != str(of_parts):
         raise StageError(
@@ -194,10 +194,8 @@ def _check_places(file: pq.ParquetFile, path: FilePath) -> None:
     groups = [file.metadata.row_group(i) for i in range(file.metadata.num_row_groups)]
     chunks = [g.column(j) for g in groups for j in range(g.num_columns) if g.num_rows]
     # a dictionary lies before the pages that refer to it
-    spans = [
-        (chunk.dictionary_page_offset or chunk.data_page_offset, chunk.total_compressed_size)
-        for chunk in chunks
-    ]
+    begins = [min(filter(None, (c.dictionary_page_offset, c.data_page_offset))) for c in chunks]
+    spans = zip(begins, (chunk.total_compressed_size for chunk in chunks), strict=True)
     n_magic = len(_MAGIC)
     # behind the footer stand its length, in as many bytes as the mark has, and the mark again
     footer = Path(path).stat().st_size - 2 * n_magic - file.metadata.serialized_size

@@ -89,7 +89,8 @@ def find_doubtful_faces(plan: FloorPlan) -> IntArray:
     """Return the rows of the doubtful faces that are no sides of doubtful walls."""
     faces, walls = plan.faces, plan.walls
     is_doubtful = np.asarray(faces.get("verify", np.zeros(len(faces["face"]))), bool)
-    doubtful_walls = walls["wall"][np.asarray(walls["verify"], bool)]
+    of_walls = np.asarray(walls.get("verify", np.zeros(len(walls["wall"]))), bool)
+    doubtful_walls = walls["wall"][of_walls]
     return np.flatnonzero(is_doubtful & ~np.isin(faces["wall"], doubtful_walls))
 
 

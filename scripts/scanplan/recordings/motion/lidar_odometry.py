@@ -95,6 +95,11 @@ def is_rolling(t_ns: IntArray, world_from_base: FloatArray) -> bool:
     upright = world_from_base[:, :3, 2]
     cosine = np.einsum("ij,ij->i", upright, upright[later])
     sway_deg = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
+    # what stands still tells nothing: half a second at a fifth of a metre a second
+    way_m = np.linalg.norm(world_from_base[later, :3, 3] - world_from_base[:, :3, 3], axis=1)
+    is_moving = way_m > 0.1
+    if is_moving.any():
+        sway_deg = sway_deg[is_moving]
     # noise is some tenths of a degree (measured in rooms); who walks sways by several
     return float(np.median(sway_deg)) < 1.0
 
@@ -103,9 +108,9 @@ def _start_odometry(missing: str) -> "KissICP":
     try:
         from kiss_icp.config import KISSConfig
         from kiss_icp.kiss_icp import KissICP
-    except ModuleNotFoundError as error:
+    except ImportError as error:
         raise StageError(
-            f"{missing}; KISS-ICP estimates them from 3-D clouds, and is not installed: run"
+            f"{missing}; KISS-ICP estimates them from 3-D clouds, and cannot be read ({error}): run"
             " `make kiss-icp`, or record the poses of a localiser or odometry"
         ) from error
     config = KISSConfig()
