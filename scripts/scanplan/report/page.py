@@ -11,7 +11,6 @@ from markupsafe import Markup
 from scanplan.plan import floorplan
 from scanplan.report import (
     chart,
-    doubts,
     page_tables,
     result_links,
     templates,
@@ -22,6 +21,7 @@ from scanplan.report.plan_view import growth, next_visit, plan_svg
 from scanplan.report.point_image import PointImage
 from scanplan.store import registered_scans
 from scanplan.types import FloatArray, Settings
+from scanplan.validation import doubts
 
 _FOUND, _RIGHT = "visible_completeness_010m", "correctness_010m"
 _CAPTIONS = {
