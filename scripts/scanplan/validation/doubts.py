@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.plan.floorplan import FloorPlan
-from scanplan.types import Columns, IntArray
+from scanplan.types import BoolArray, Columns, IntArray
 
 _WEAK = "few scans show it, or its place is uncertain"
 _NOT_CLOSED = "its outline is not closed: the area is a guess"
@@ -83,6 +83,12 @@ def _doubts_of_faces(plan: FloorPlan) -> list[Doubt]:
     sides = zip(faces["face"].tolist(), faces["wall"].tolist(), strict=True)
     names = [f"Face {n} of wall {wall}" if wall >= 0 else f"Face {n}" for n, wall in sides]
     return _doubts_of("face", faces, names)
+
+
+def find_doubtful_rooms(plan: FloorPlan) -> BoolArray:
+    """Return which rooms (n,) are doubtful, their areas among it."""
+    n_rooms = len(plan.rooms["room"])
+    return np.array([bool(explain_doubt("room", plan.rooms, row)) for row in range(n_rooms)], bool)
 
 
 def find_doubtful_faces(plan: FloorPlan) -> IntArray:

@@ -61,7 +61,7 @@ def is_corrected(columns: Columns) -> BoolArray:
 
 def draw_walls(plan: FloorPlan) -> Iterator[Mark]:
     """Yield rooms, what was not seen of their outlines, walls by what is known, and surfaces."""
-    doubtful = is_doubtful(plan.rooms)
+    doubtful = doubts.find_doubtful_rooms(plan)
     for row, area in enumerate(plan.areas):
         room, name = plan.rooms["room"][row], clean_text(plan.room_names[row])
         facts = {"name": name, **facts_of("room", plan.rooms, row)}

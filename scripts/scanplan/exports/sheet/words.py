@@ -16,13 +16,14 @@ from scanplan.exports.sheet.styles import Letters, Paper
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.types import FloatArray
+from scanplan.validation.doubts import find_doubtful_rooms
 
 
 def stamp_rooms(page: Page, plan: FloorPlan, space: LabelSpace) -> list[Stamp]:
     """Return the rooms' stamps, by number: small rooms have the choice of places first."""
     _, height_m = plan.storey_m
     rooms = plan.rooms
-    doubtful, corrected = is_doubtful(rooms), is_corrected(rooms)
+    doubtful, corrected = find_doubtful_rooms(plan), is_corrected(rooms)
     stamps: dict[int, Stamp] = {}
     areas: list[BaseGeometry] = plan.areas.tolist()
     for row in np.argsort(rooms["area_m2"], kind="stable").tolist():
