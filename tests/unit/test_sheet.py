@@ -16,7 +16,7 @@ from scanplan.exports.sheet.marks import Symbol, flatten
 from scanplan.exports.sheet.paper import Slot
 from scanplan.exports.sheet.styles import LAYERS, STYLES, Letters, doubt_layer
 from scanplan.exports.sheet.title import SheetFacts
-from scanplan.validation.doubts import list_doubts
+from scanplan.validation.doubts import find_doubtful_faces, list_doubts
 
 
 def turned(drawn, angle_deg):
@@ -252,6 +252,15 @@ def test_a_doubtful_face_is_drawn_and_counted_unless_its_wall_is():
     assert [name for name in drawn if "face" in name] == ["verify-face-8"]
     said = [word.text for word in composition.paper_words(sheet)]
     assert said[said.index("To verify on site") + 1] == str(len(list_doubts(doubted)))
+
+
+def test_the_sides_of_a_wall_that_a_person_kept_are_in_no_doubt():
+    faces = floorplan_making.faces()
+    faces["verify"] = faces["wall"] == 5
+    walls = floorplan_making.walls()
+    assert len(find_doubtful_faces(plan(faces=faces, walls=walls))) == 2
+    walls["corrected"] = np.where(walls["wall"] == 5, "kept", "").astype(object)
+    assert len(find_doubtful_faces(plan(faces=faces, walls=walls))) == 0
 
 
 def test_what_was_not_seen_of_a_room_is_dotted():

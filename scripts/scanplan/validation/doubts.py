@@ -92,12 +92,14 @@ def find_doubtful_rooms(plan: FloorPlan) -> BoolArray:
 
 
 def find_doubtful_faces(plan: FloorPlan) -> IntArray:
-    """Return the rows of the doubtful faces that are no sides of doubtful walls."""
+    """Return the rows of the doubtful faces that are no sides of doubtful walls, nor corrected."""
     faces, walls = plan.faces, plan.walls
     is_doubtful = np.asarray(faces.get("verify", np.zeros(len(faces["face"]))), bool)
-    of_walls = np.asarray(walls.get("verify", np.zeros(len(walls["wall"]))), bool)
-    doubtful_walls = walls["wall"][of_walls]
-    return np.flatnonzero(is_doubtful & ~np.isin(faces["wall"], doubtful_walls))
+    n_walls = len(walls["wall"])
+    is_judged = np.asarray(walls.get("verify", np.zeros(n_walls)), bool)
+    # a person who was there answers for both sides
+    is_judged |= np.asarray(walls.get("corrected", np.full(n_walls, "")), str) != ""
+    return np.flatnonzero(is_doubtful & ~np.isin(faces["wall"], walls["wall"][is_judged]))
 
 
 def _doubts_of(kind: str, columns: Columns, names: list[str]) -> list[Doubt]:
