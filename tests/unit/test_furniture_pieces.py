@@ -5,7 +5,7 @@ import pytest
 from shapely import box
 
 from helpers.ray_making import rays
-from scanplan.plan.furniture.pieces import find_pieces
+from scanplan.plan.furniture.pieces import find_pieces, pieces_in_rooms
 
 WALLS = [box(-0.1, 0, 0, 4), box(6, 0, 6.1, 4), box(0, -0.1, 6, 0), box(0, 4, 6, 4.1)]
 ROOM = box(0, 0, 6, 4)
@@ -20,7 +20,7 @@ def cupboard(z_m=(0.3, 0.9), n=21):
 def find(*scans, planar=False, views=None):
     found = rays(*scans, planar=planar)
     views = views or [ROOM] * len(scans)
-    return find_pieces(found, WALLS, [ROOM], views, max_height_m=2.1)
+    return pieces_in_rooms(find_pieces(found, WALLS, [ROOM], views, max_height_m=2.1), [ROOM])
 
 
 def test_what_two_scans_show_is_a_piece_with_its_heights_and_evidence():

@@ -2,10 +2,12 @@
 
 import functools
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
+from shapely.geometry.base import BaseGeometry
 
 from scanplan.extraction.furniture import FurnitureLimits
 from scanplan.plan import (
@@ -20,10 +22,10 @@ from scanplan.plan import (
 from scanplan.plan.faces.merging import MergeSettings, merge_segments
 from scanplan.plan.faces.tracing import trace_faces
 from scanplan.plan.furniture import fronts
-from scanplan.plan.furniture.pieces import find_pieces
+from scanplan.plan.furniture.pieces import Piece, find_pieces, pieces_in_rooms
 from scanplan.plan.openings import OpeningSettings
 from scanplan.plan.plan_wall import PlanWall
-from scanplan.plan.rooms import find_rooms, leave_out_unseen, rooms_beside
+from scanplan.plan.rooms import Room, find_rooms, leave_out_unseen, rooms_beside
 from scanplan.plan.uncertainty import ReviewCriteria
 from scanplan.plan.wall_pairs import PairSettings
 from scanplan.plan.walls import assemble_walls
@@ -166,115 +168,198 @@ def make_plan(
         Without any row of faces or walls where nothing is supported enough.
     """
     up = np.tile((0.0, 0.0, 1.0), (len(rays.scan_ids), 1)) if up is None else up
-    band_m = settings.reading.band_m
-    errors_m = range_bias.estimate_range_bias(rays, segments, settings.ranges, band_m, up)
-    rays = range_bias.remove_range_bias(rays, errors_m, up)
-    candidates = merge_segments(segments, settings.merge)
-    traced = trace_faces(
-        *(candidates, rays, settings.merge, settings.reading, settings.furniture), threads=threads
+    errors_m = range_bias.estimate_range_bias(
+        rays, segments, settings.ranges, settings.reading.band_m, up
     )
+    rays = range_bias.remove_range_bias(rays, errors_m, up)
     views = free_space.free_polygons(rays)
     floor = free_space.union_on_grid(views)
-    assemble = functools.partial(
-        assemble_walls,
-        pairing=settings.pairs,
-        opening=settings.openings,
-        corner_m=settings.merge.corner_m,
-        door_height_m=settings.reading.door_height_m,
-    )
-    walls, furnished = assemble(traced.faces), []
-    if rays.planar:
-        walls, furnished = fronts.drop_fronts(
-            *(walls, floor, assemble, _usual_thickness_m),
-            max_thickness_m=settings.pairs.max_thickness_m,
-        )
-    unpaired_m = _usual_thickness_m(walls)
-    walls = opening_kinds.add_windows(
-        walls, rays, min_width_m=settings.openings.min_opening_m, band_m=band_m
-    )
-    walls, tops_m = half_height.drop_low_surfaces(walls, settings.furniture.wall_height_m)
-    glass_walls = room_bounds.find_glass_walls(
-        walls,
-        traced.panes,
-        min_length_m=settings.openings.min_opening_m,
-        unpaired_m=unpaired_m,
-    )
-    bounds = [*walls, *glass_walls]
-    partings = room_bounds.find_partings(
-        bounds,
-        floor,
-        track_m,
-        max_width_m=settings.openings.max_door_m,
-        min_area_m2=settings.rooms.min_area_m2,
-        unpaired_m=unpaired_m,
-        planar=rays.planar,
-    )
-    rooms = find_rooms(
-        [*bounds, *partings],
-        views,
-        track_m,
-        min_area_m2=settings.rooms.min_area_m2,
-        min_walled=settings.rooms.min_walled,
-        min_width_m=settings.pairs.max_thickness_m,
-        unpaired_m=unpaired_m,
-        floor=free_space.union_on_grid([floor, *furnished]),
-        planar=rays.planar,
-    )
-    pieces = find_pieces(
-        *(
-            rays,
-            wall_ground.wall_strips(bounds, unpaired_m),
-            [room.polygon for room in rooms],
-            views,
-        ),
-        max_height_m=settings.furniture.furniture_height_m,
-        hidden=furnished,
-    )
-    if rays.planar:
-        rooms = leave_out_unseen(
-            *(rooms, free_space.union_on_grid([floor, *(piece.outline for piece in pieces)])),
-            *(bounds, track_m),
-            min_area_m2=settings.rooms.min_area_m2,
-            unpaired_m=unpaired_m,
-        )
-        ground = shapely.union_all([room.polygon for room in rooms])
-        pieces = [piece for piece in pieces if piece.outline.intersects(ground)]
-    walls = opening_kinds.decide_kinds(
-        *(walls, rays, track_m, functools.partial(rooms_beside, rooms)),
-        min_width_m=settings.openings.min_opening_m,
-        band_m=band_m,
-    )
-    bounds = [*walls, *glass_walls]
-    areas = [room.polygon for room in rooms]
-    bare = wall_ground.find_bare_spans(
-        areas,
-        [*bounds, *partings],
-        floor,
-        unpaired_m=unpaired_m,
-        min_length_m=settings.openings.min_opening_m,
-    )
-    bare = opening_kinds.decide_bare_spans(bare, rays, track_m, areas, band_m=band_m)
+    survey = _Survey(settings, rays, track_m, views, floor)
+    surfaces = survey.find_surfaces(segments, threads)
+    spaces = survey.find_spaces(surfaces)
+    walls = survey.decide_kinds(surfaces.walls, spaces.rooms)
+    surfaces = replace(surfaces, walls=walls)
+    bare = survey.find_bare_spans(surfaces, spaces)
     floor_z_m = 0.0 if math.isnan(rays.floor_z_m) else rays.floor_z_m
     cut_walls = wall_faces.cut_wall_faces(walls, max_beyond_m=settings.openings.max_closed_m)
     face_columns, main_rows = plan_tables.face_columns(cut_walls, floor_z_m)
     evidence = uncertainty.estimate_evidence(
-        walls, tops_m, registration_sigma_m=settings.merge.registration_sigma_m
+        walls, surfaces.tops_m, registration_sigma_m=settings.merge.registration_sigma_m
     )
     doubtful = [known.needs_a_visit(settings.trust) for known in evidence]
+    free_floor = _find_free_floor(surfaces.bounds, floor, surfaces.unpaired_m)
     return Plan(
         faces=face_columns,
         walls=plan_tables.wall_columns(walls, evidence, main_rows, doubtful, floor_z_m),
         openings=plan_tables.opening_columns(
-            walls, rooms, settings.openings.max_door_m, glass_walls, partings, bare
+            *(walls, spaces.rooms, settings.openings.max_door_m),
+            *(surfaces.glass_walls, spaces.partings, bare),
         ),
-        rooms=plan_tables.room_columns(rooms),
+        rooms=plan_tables.room_columns(spaces.rooms),
         evidence=plan_tables.evidence_columns(evidence, rays.scan_ids, t_ns),
-        free=plan_tables.free_columns(_find_free_floor(bounds, floor, unpaired_m)),
-        furniture=plan_tables.furniture_columns(pieces, floor_z_m),
-        n_lines=traced.n_lines,
-        n_dropped=traced.n_dropped,
+        free=plan_tables.free_columns(free_floor),
+        furniture=plan_tables.furniture_columns(spaces.pieces, floor_z_m),
+        n_lines=surfaces.n_lines,
+        n_dropped=surfaces.n_dropped,
         range_errors_m=errors_m,
     )
+
+
+@dataclass(frozen=True, eq=False)
+class _Surfaces:
+    """What stands, before rooms are known.
+
+    Attributes
+    ----------
+    walls, glass_walls : list of PlanWall
+    tops_m : list of float
+        How high each wall is, see `half_height.drop_low_surfaces`.
+    unpaired_m : float
+        How thick a wall is taken to be of which one side was seen.
+    furnished : list of shapely geometry
+        Ground behind fronts of furniture, of planar scans.
+    n_lines, n_dropped : int
+        As in `Plan`.
+    """
+
+    walls: list[PlanWall]
+    glass_walls: list[PlanWall]
+    tops_m: list[float]
+    unpaired_m: float
+    furnished: list[BaseGeometry]
+    n_lines: int
+    n_dropped: int
+
+    @property
+    def bounds(self) -> list[PlanWall]:
+        """What bounds rooms."""
+        return [*self.walls, *self.glass_walls]
+
+
+@dataclass(frozen=True, eq=False)
+class _Spaces:
+    """Rooms, the passages that part them where no wall does, and the furniture in them."""
+
+    rooms: list[Room]
+    partings: list[PlanWall]
+    pieces: list[Piece]
+
+
+@dataclass(frozen=True, eq=False)
+class _Survey:
+    """What was seen, and the settings to read it by: finds what a plan shows, step by step.
+
+    Attributes
+    ----------
+    settings : PlanSettings
+    rays : ray_set.RaySet
+        Their ranges set right.
+    track_m : (k, 2) float64
+    views : list of shapely geometry
+        What each scan saw free.
+    floor : shapely.MultiPolygon
+        All that was seen free.
+    """
+
+    settings: PlanSettings
+    rays: RaySet
+    track_m: FloatArray
+    views: Sequence[BaseGeometry]
+    floor: shapely.MultiPolygon
+
+    def find_surfaces(self, segments: Columns, threads: int) -> _Surfaces:
+        """Return walls with their openings, kinds of openings not yet decided."""
+        reading = self.settings.reading
+        candidates = merge_segments(segments, self.settings.merge)
+        traced = trace_faces(
+            *(candidates, self.rays, self.settings.merge, reading, self.settings.furniture),
+            threads=threads,
+        )
+        assemble = functools.partial(
+            assemble_walls,
+            pairing=self.settings.pairs,
+            opening=self.settings.openings,
+            corner_m=self.settings.merge.corner_m,
+            door_height_m=reading.door_height_m,
+        )
+        walls, furnished = assemble(traced.faces), []
+        if self.rays.planar:
+            walls, furnished = fronts.drop_fronts(
+                *(walls, self.floor, assemble, _usual_thickness_m),
+                max_thickness_m=self.settings.pairs.max_thickness_m,
+            )
+        unpaired_m = _usual_thickness_m(walls)
+        min_width_m = self.settings.openings.min_opening_m
+        walls = opening_kinds.add_windows(
+            walls, self.rays, min_width_m=min_width_m, band_m=reading.band_m
+        )
+        walls, tops_m = half_height.drop_low_surfaces(walls, self.settings.furniture.wall_height_m)
+        return _Surfaces(
+            walls=walls,
+            glass_walls=room_bounds.find_glass_walls(
+                walls, traced.panes, min_length_m=min_width_m, unpaired_m=unpaired_m
+            ),
+            tops_m=tops_m,
+            unpaired_m=unpaired_m,
+            furnished=furnished,
+            n_lines=traced.n_lines,
+            n_dropped=traced.n_dropped,
+        )
+
+    def find_spaces(self, surfaces: _Surfaces) -> _Spaces:
+        """Return rooms and what stands in them."""
+        min_area_m2 = self.settings.rooms.min_area_m2
+        partings = room_bounds.find_partings(
+            *(surfaces.bounds, self.floor, self.track_m),
+            max_width_m=self.settings.openings.max_door_m,
+            min_area_m2=min_area_m2,
+            unpaired_m=surfaces.unpaired_m,
+            planar=self.rays.planar,
+        )
+        rooms = find_rooms(
+            *([*surfaces.bounds, *partings], self.views, self.track_m),
+            min_area_m2=min_area_m2,
+            min_walled=self.settings.rooms.min_walled,
+            min_width_m=self.settings.pairs.max_thickness_m,
+            unpaired_m=surfaces.unpaired_m,
+            floor=free_space.union_on_grid([self.floor, *surfaces.furnished]),
+            planar=self.rays.planar,
+        )
+        pieces = find_pieces(
+            *(self.rays, wall_ground.wall_strips(surfaces.bounds, surfaces.unpaired_m)),
+            *([room.polygon for room in rooms], self.views),
+            max_height_m=self.settings.furniture.furniture_height_m,
+            hidden=surfaces.furnished,
+        )
+        if self.rays.planar:
+            seen = free_space.union_on_grid([self.floor, *(piece.outline for piece in pieces)])
+            rooms = leave_out_unseen(
+                *(rooms, seen, surfaces.bounds, self.track_m),
+                min_area_m2=min_area_m2,
+                unpaired_m=surfaces.unpaired_m,
+            )
+        pieces = pieces_in_rooms(pieces, [room.polygon for room in rooms])
+        return _Spaces(rooms=rooms, partings=partings, pieces=pieces)
+
+    def decide_kinds(self, walls: list[PlanWall], rooms: list[Room]) -> list[PlanWall]:
+        """Return walls with their openings as the kinds that rays show them to be."""
+        return opening_kinds.decide_kinds(
+            *(walls, self.rays, self.track_m, functools.partial(rooms_beside, rooms)),
+            min_width_m=self.settings.openings.min_opening_m,
+            band_m=self.settings.reading.band_m,
+        )
+
+    def find_bare_spans(self, surfaces: _Surfaces, spaces: _Spaces) -> list[wall_ground.BareSpan]:
+        """Return the spans of rooms' outlines where nothing is drawn, and what each is."""
+        areas = [room.polygon for room in spaces.rooms]
+        bare = wall_ground.find_bare_spans(
+            *(areas, [*surfaces.bounds, *spaces.partings], self.floor),
+            unpaired_m=surfaces.unpaired_m,
+            min_length_m=self.settings.openings.min_opening_m,
+        )
+        return opening_kinds.decide_bare_spans(
+            bare, self.rays, self.track_m, areas, band_m=self.settings.reading.band_m
+        )
 
 
 def _usual_thickness_m(walls: list[PlanWall]) -> float:

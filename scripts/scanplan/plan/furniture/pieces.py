@@ -63,7 +63,7 @@ def find_pieces(
     max_height_m: float,
     hidden: Sequence[BaseGeometry] = (),
 ) -> list[Piece]:
-    """Find the furniture in rooms.
+    """Find the furniture in rooms and close to them, as are the reveals of windows.
 
     People that pass leave returns where other scans see free floor, or no other scan sees
     anything: cells that one scan alone shows, or in the plane more scans see through, are left out.
@@ -87,8 +87,8 @@ def find_pieces(
         The largest first.
     """
     solid = shapely.union_all(shapely.buffer(np.array(walls, object), FACE_M))
-    inside = shapely.union_all(list(rooms))
-    ground = shapely.difference(inside.buffer(CORNER_M), solid)
+    near = shapely.union_all(list(rooms)).buffer(CORNER_M)
+    ground = shapely.difference(near, solid)
     if ground.is_empty:
         return []
     # `fill_polygons` asks for a column beyond
@@ -110,13 +110,16 @@ def find_pieces(
         (
             piece
             for piece in found
-            if piece.n_points >= ENOUGH_RAYS
-            and piece.n_scans >= LEAST_SCANS
-            # the reveals of windows lie beyond the outline of their room
-            and piece.outline.intersects(inside)
+            if piece.n_points >= ENOUGH_RAYS and piece.n_scans >= LEAST_SCANS
         ),
         key=lambda piece: (-piece.outline.area, *piece.outline.bounds),
     )
+
+
+def pieces_in_rooms(pieces: Sequence[Piece], rooms: Sequence[Polygon]) -> list[Piece]:
+    """Return the pieces that stand in a room, a part of them at least."""
+    ground = shapely.union_all(list(rooms))
+    return [piece for piece in pieces if piece.outline.intersects(ground)]
 
 
 def _gather_returns(
