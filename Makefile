@@ -8,8 +8,8 @@ LIBRARIES := libusb-1.0-0 libgl1 libgomp1 libx11-6
 # Python reads scripts/startup first: Ctrl-C ends in one line while Snakemake itself is still read
 SNAKEMAKE = PATH="$(CURDIR)/$(BIN):$$PATH" PYTHONPATH="$(CURDIR)/scripts/startup$${PYTHONPATH:+:$$PYTHONPATH}" \
     $(BIN)/snakemake $(if $(VERBOSE),--quiet host) --cores $(CORES)
-# tests of one file stay together: they share a run of the workflow
-PYTEST = $(BIN)/pytest --numprocesses $(CORES) --dist loadfile
+# tests of one file stay together: they share a run of the workflow; their order is tests/conftest.py's
+PYTEST = $(BIN)/pytest --numprocesses $(CORES) --dist loadfile --no-loadscope-reorder
 
 # a misspelt variable would make the demo instead of what was meant
 KNOWN := CORES PYTHON DATASET CONFIG REPLACE VERBOSE ARGS

@@ -26,3 +26,8 @@ def recordings_dir():
     if not folder.is_dir():
         pytest.skip("no real recordings beside the project (../shared/data)")
     return folder
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Run the workflow's tests first: the short ones fill what is left at the end of each core."""
+    items.sort(key=lambda item: item.get_closest_marker("workflow") is None)
