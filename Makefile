@@ -20,7 +20,7 @@ $(if $(UNKNOWN),$(error $(UNKNOWN): no such variable; there are $(KNOWN)))
 # every stage is a process, which would compile the package anew
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help run compare quick test test-slurm lint style faults audit bench figures pictures settings
+.PHONY: help run compare quick test test-slurm lint style types faults audit bench figures pictures settings
 .PHONY: environment kiss-icp clean
 .DEFAULT_GOAL := run
 
@@ -54,8 +54,11 @@ test-slurm: environment ## the profile for Slurm, on a Slurm installed and start
 	    $(BIN)/pip install -qq --disable-pip-version-check --no-deps --require-hashes -r environment-slurm.lock && \
 	    PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pytest -n 0 -s -m slurm tests/slurm $(ARGS)
 
-lint: environment style ## style, types and the workflow's own checks
-	@$(BIN)/basedpyright --threads $(CORES) --project .
+lint: environment ## style, types and the workflow's own checks, side by side
+	@$(MAKE) --no-print-directory --jobs $(CORES) --output-sync=target style types
+
+types: environment
+	@$(BIN)/basedpyright --project .
 
 style: environment
 	@$(BIN)/ruff check .
