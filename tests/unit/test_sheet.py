@@ -15,7 +15,7 @@ from scanplan.exports.sheet import accuracy, composition, content, lettering, pa
 from scanplan.exports.sheet.marks import Symbol, flatten
 from scanplan.exports.sheet.paper import Slot
 from scanplan.exports.sheet.styles import LAYERS, STYLES, Letters, doubt_layer
-from scanplan.exports.sheet.title import SheetFacts
+from scanplan.exports.sheet.title import SheetFacts, summarise_survey
 from scanplan.validation.doubts import find_doubtful_faces, list_doubts
 
 
@@ -312,3 +312,25 @@ def test_every_style_has_a_layer_and_walls_are_drawn_over_rooms():
     assert {style.layer for style in STYLES.values()} <= set(LAYERS)
     order = list(STYLES)
     assert order.index("room") < order.index("assumed") < order.index("wall")
+
+
+def test_without_a_ceiling_the_table_of_rooms_states_how_high_walls_were_seen():
+    def stated(drawn):
+        sheet = composition.compose_sheet(drawn)
+        heights = [stamp.facts["HEIGHT"] for stamp in sheet.stamps]
+        return heights, {word.text for word in sheet.paper_words}
+
+    facts, words = stated(plan(floor_z_m=0.0))
+    assert facts == ["at least 2.50 m"] * 2 and "min. 2.50" in words
+    facts, words = stated(plan(floor_z_m=0.0, ceiling_z_m=2.6))
+    assert facts == ["2.60 m"] * 2 and "2.60" in words
+
+
+def test_no_date_is_stated_of_a_clock_that_nobody_set():
+    evidence = floorplan_making.evidence()
+    surveyed = summarise_survey(evidence | {"t_ns": evidence["t_ns"] + 1_554_107_481 * 10**9})
+    assert surveyed.surveyed == "2019-04-01"
+    unset = summarise_survey(evidence | {"t_ns": evidence["t_ns"] + 10**18})
+    assert unset.surveyed == "not known, clock not set"
+    words = {word.text for word in composition.compose_sheet(plan(), unset).paper_words}
+    assert "not known, clock not set" in words

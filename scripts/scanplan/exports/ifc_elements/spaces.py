@@ -11,7 +11,7 @@ from scanplan.exports.ifc_elements.storey_plan import (
 )
 from scanplan.exports.ifc_model import IfcModel
 from scanplan.exports.model_colours import colour_of
-from scanplan.plan.floorplan import FloorPlan
+from scanplan.plan.floorplan import HEIGHTS, FloorPlan
 from scanplan.types import Array
 
 
@@ -108,6 +108,7 @@ def _add_space(model: IfcModel, storey: StoreyPlan, row: int) -> entity_instance
     model.describe(space, "Pset_SpaceCommon", {"IsExternal": ("IfcBoolean", False)})
     properties = {
         "Closed": ("IfcBoolean", bool(columns["closed"][row])),
+        "HeightFrom": ("IfcLabel", HEIGHTS[plan.height_from]),
         "Scans": ("IfcInteger", int(columns["n_scans"][row])),
         **describe_doubt(columns, row),
     }
