@@ -14,7 +14,7 @@ from helpers.floorplan_making import bare, plan
 from scanplan.exports.sheet import accuracy, composition, content, lettering, paper, symbols
 from scanplan.exports.sheet.marks import Symbol, flatten
 from scanplan.exports.sheet.paper import Slot
-from scanplan.exports.sheet.styles import LAYERS, STYLES, Letters, doubt_layer
+from scanplan.exports.sheet.styles import LAYERS, STYLES, Letters, Paper, doubt_layer
 from scanplan.exports.sheet.title import SheetFacts, summarise_survey
 from scanplan.validation.doubts import find_doubtful_faces, list_doubts
 
@@ -160,6 +160,28 @@ def test_tables_break_only_where_no_slot_holds_them():
     assert [(s.x_mm, s.rows) for s in first] == [(0, 6)]
     assert [(s.x_mm, s.rows) for s in second] == [(60, 9), (120, 3)]
     assert paper.fill_slots(iter(slots[:1]), [10]) is None
+
+
+@pytest.mark.parametrize("n_rooms", range(1, 40))
+def test_no_row_of_a_table_stands_alone_unless_the_sheet_would_be_larger(n_rooms):
+    blocks = [6, 7, n_rooms]
+
+    def chosen(height_m):
+        return paper.choose_page(np.zeros(2), np.array([18.0, height_m]), 0.0, blocks)
+
+    page = chosen(12.0)
+    (parts,) = paper.fill_slots(page.slots(), blocks)[2:]
+    assert sum(part.rows for part in parts) == n_rooms
+    assert len(parts) == 1 or min(part.rows for part in parts) >= 3
+    # as high a plan as the sheet holds with tables as low as can be
+    rows = next(
+        rows
+        for rows in range(paper.TITLE_ROWS, 60)
+        if paper.fill_slots(paper.find_slots(page.inner_mm, rows), blocks) is not None
+    )
+    _, y0, _, y1 = replace(page, rows=rows).drawing_mm
+    full_m = (y1 - y0 - 2 * Paper.AROUND) / page.mm_per_m
+    assert chosen(full_m - 0.01).name == page.name
 
 
 @given(st.floats(-180, 180))

@@ -164,7 +164,7 @@ def draw_room_table(stamps: Sequence[Stamp], slots: Sequence[Slot]) -> Iterator[
     """Yield the table of rooms: number, name, area, perimeter, height."""
     names = ["No.", "Room", "Area m²", "Perim. m", "Height m"]
     # where each begins, or ends from the third on, millimetres
-    ends = [0.0, 7.0, 33.0, 45.5, 58.0]
+    ends = [0.0, 6.0, 30.0, 42.5, 55.5]
     yield from _heads(slots, names, ends)
     for stamp, (x, y) in zip(stamps, _row_places(slots), strict=True):
         facts = stamp.facts
