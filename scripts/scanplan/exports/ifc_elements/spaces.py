@@ -26,11 +26,14 @@ def add_floors(model: IfcModel, storey: StoreyPlan) -> list[entity_instance]:
     if not np.isfinite(plan.floor_z_m):
         return []
     slabs = []
-    for number, part in enumerate(floor_parts(plan)):
+    parts = floor_parts(plan)
+    for number, part in enumerate(parts):
         slab = model.root(
             "IfcSlab",
             (number,),
-            Name=f"Floor {number}",
+            Name="Floor slab"
+            if len(parts) == 1
+            else f"Floor slab, part {number + 1} of {len(parts)}",
             ObjectPlacement=_on_floor(model),
             PredefinedType="FLOOR",
         )
