@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from helpers import floorplan_making
 from helpers.floorplan_making import bare, plan
 from scanplan.exports.sheet import accuracy, composition, content, lettering, paper, symbols
-from scanplan.exports.sheet.marks import Symbol, flatten
+from scanplan.exports.sheet.labels import Candidate, LabelSpace
+from scanplan.exports.sheet.marks import Symbol, Word, flatten
 from scanplan.exports.sheet.paper import Slot
 from scanplan.exports.sheet.styles import LAYERS, STYLES, Letters, Paper, doubt_layer
 from scanplan.exports.sheet.title import SheetFacts, summarise_survey
@@ -356,3 +357,25 @@ def test_no_date_is_stated_of_a_clock_that_nobody_set():
     assert unset.surveyed == "not known, clock not set"
     words = {word.text for word in composition.compose_sheet(plan(), unset).paper_words}
     assert "not known, clock not set" in words
+
+
+def test_furniture_smaller_than_a_letter_is_not_drawn():
+    piece, speck = shapely.box(1, 1, 1.5, 1.5), shapely.box(2, 2, 2.02, 2.02)
+    sheet = composition.compose_sheet(plan(furniture=floorplan_making.furniture([piece, speck])))
+    assert 0.02 * sheet.page.mm_per_m < Letters.SMALL < 0.5 * sheet.page.mm_per_m
+    drawn = [mark.element for mark in sheet.marks if mark.kind == "furniture"]
+    assert drawn == ["furniture-0"]
+
+
+def test_a_dimension_goes_where_it_crosses_no_door_though_its_words_lie_on_a_line():
+    door = shapely.LineString([(20, 0), (20, 30)])
+    other = shapely.LineString([(0, 80), (60, 80)])
+    space = LabelSpace((0, 0, 100, 100), [], [door, other])
+
+    def measured(y_mm):
+        line = np.array([[10.0, y_mm], [50.0, y_mm]])
+        word = Word("dimension", "4.00", np.array([35.0, y_mm + 1.5]), Letters.SMALL)
+        return Candidate([word], 0.0, (line,))
+
+    chosen = space.place([measured(10.0), measured(79.0)])
+    assert chosen.words[0].place[1] == 80.5
