@@ -23,8 +23,10 @@ def tell_fault(
 ) -> None:
     """Tell what a stage raised before it began its log like what it raises later."""
     stage = getattr(sys.modules.get("__main__"), "snakemake", None)
+    path = next(iter(getattr(stage, "log", ())), None)
     try:
-        path = stage.log[0]
+        if path is None:
+            raise error
         from scanplan.stage import log
 
         with log.log_to_file(path):

@@ -139,16 +139,13 @@ def make_plan(results: Path, settings: Settings, kept: Path, *, rate: bool = Fal
 
 def _make_tables(results: Path, settings: Settings, kept: Path, *, rate: bool) -> None:
     method = settings["plan"]["method"]
-    scans = (
-        results / f"selection/{method}.parquet",
-        results / "scans.parquet",
-        results / "registration.parquet",
-    )
-    selection, *registered = scans
+    selection = results / f"selection/{method}.parquet"
+    scans, registration = results / "scans.parquet", results / "registration.parquet"
     stop = stage_settings.select_section(settings, "selection", "stop")
     extractor = settings["plan"]["extractor"]
     extract_chosen_walls.extract_chosen_walls(
-        *registered,
+        scans,
+        registration,
         selection,
         kept / "segments.parquet",
         extractor=extractor,
@@ -158,7 +155,9 @@ def _make_tables(results: Path, settings: Settings, kept: Path, *, rate: bool) -
     tables = {table: kept / f"{table}.parquet" for table in planning.TABLES}
     assemble_plan.assemble_plan(
         kept / "segments.parquet",
-        *scans,
+        selection,
+        scans,
+        registration,
         tables,
         settings=stage_settings.select_plan(settings),
         **stop,
@@ -168,7 +167,9 @@ def _make_tables(results: Path, settings: Settings, kept: Path, *, rate: bool) -
     validation = kept / "validation.parquet"
     validate_plan.validate_plan(
         tables,
-        *scans,
+        selection,
+        scans,
+        registration,
         {"elements": validation, "rays": kept / "validation_rays.parquet"},
         settings=stage_settings.select_validation(settings),
         **stop,
