@@ -8,6 +8,7 @@ from scanplan.exports.sheet import composition
 from scanplan.exports.sheet.title import summarise_survey
 from scanplan.plan import floorplan
 from scanplan.project import code_files
+from scanplan.recordings import clocks
 from scanplan.stage import figure_files, log
 from scanplan.store import atomic, schemas, tables
 from scanplan.types import FilePath, Settings
@@ -59,6 +60,8 @@ def export_plan(
     atomic.write_bytes(outputs["png"], figure_files.format_png(figure))
     atomic.write_bytes(outputs["pgm"], grid_map.format_pgm(grid))
     atomic.write_text(outputs["yaml"], grid_map.format_map_yaml(grid, Path(outputs["pgm"]).name))
+    if len(evidence["t_ns"]) and clocks.read_date(int(evidence["t_ns"].min())) is None:
+        log.log_line("export_plan: stamps begin where clocks do that nobody set: no date is stated")
     on_paper = f"1:{sheet.page.scale} on {sheet.page.name}"
     contents = floorplan.summarise_floorplan(drawn)
     log.log_line(f"export_plan: {contents}; {_summarise_heights(drawn)}; {on_paper}")

@@ -1,11 +1,12 @@
 """Ctrl-C while a process still imports ends it in one line; Python runs this before all else.
 
-It does where this folder is on PYTHONPATH: `make run` puts it there for Snakemake, and a run for
-its stages.
+So does what a stage's imports raise. Both hold where this folder is on PYTHONPATH: `make run` puts
+it there for Snakemake, and a run for its stages.
 """
 
 import os
 import sys
+import types
 
 # what is imported here is what Python itself has imported by now: this is to be over at once
 _HERE = os.path.dirname(os.path.abspath(__file__))  # noqa: PTH100, PTH120
@@ -15,6 +16,29 @@ sys.path.insert(0, _SCRIPTS)
 from scanplan import interrupts  # noqa: E402
 
 sys.path.remove(_SCRIPTS)
+
+
+def tell_fault(
+    kind: type[BaseException], error: BaseException, trace: types.TracebackType | None
+) -> None:
+    """Tell what a stage raised before it began its log like what it raises later."""
+    stage = getattr(sys.modules.get("__main__"), "snakemake", None)
+    path = next(iter(getattr(stage, "log", ())), None)
+    try:
+        if path is None:
+            raise error
+        from scanplan.stage import log
+
+        with log.log_to_file(path):
+            raise error
+    except SystemExit:
+        pass
+    except BaseException:
+        # no stage, or one that lacks code to tell it by
+        sys.__excepthook__(kind, error, trace)
+
+
+sys.excepthook = tell_fault
 # workers end with their stage, which is told when one ends by itself
 if "--multiprocessing-fork" not in sys.orig_argv:
     interrupts.end_on_interrupt()

@@ -7,6 +7,8 @@ Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [pl
        run.py compare FOLDER FOLDER
        run.py confidence FOLDER SURVEY,... SURVEY,...
        run.py next_visit FOLDER [SURVEY ...]
+       run.py sheets RESULTS FOLDER [SURVEY ...]
+       run.py ids RESULTS FOLDER SURVEY ...
 
 Without a name all of them but wall_quality, which takes minutes, plans, which measures the surveys
 that `make compare` has finished under results/, and validation, which damages the plans there; a
@@ -28,6 +30,10 @@ reliability diagram in that folder.
 `next_visit` cuts drives short, drives to where their plans say that a second visit should stand,
 and as far again at random, and counts what is settled rightly. Surveys are named as those of
 `guard`, with any seed; drives and plans are kept in FOLDER.
+
+`sheets` counts words that lie on others on the sheets of surveys that are registered in RESULTS,
+and `ids` the elements that keep their GlobalIds over twenty changes of settings. Their plans are
+made with this code, and kept in FOLDER.
 """
 
 import sys
@@ -142,12 +148,28 @@ def bench_next_visit(folder: str, *names: str) -> None:
     visit_bench.bench(ROOT, SETTINGS, Path(folder).resolve(), recordings, surveys)
 
 
+def bench_sheets(results: str, folder: str, *names: str) -> None:
+    """Words on sheets that lie on others, and the least height of letters."""
+    import exchange_bench
+
+    exchange_bench.bench_sheets(Path(results), Path(folder), names, SETTINGS)
+
+
+def bench_ids(results: str, folder: str, *names: str) -> None:
+    """GlobalIds that stay over twenty changes of settings."""
+    import exchange_bench
+
+    exchange_bench.bench_ids(Path(results), Path(folder), names, SETTINGS)
+
+
 APART: dict[str, Callable[..., None]] = {
     "guard": record_guard,
     "compare": compare_guards,
     "confidence": fit_confidence,
     "next_visit": bench_next_visit,
     "pipeline": bench_pipeline,
+    "sheets": bench_sheets,
+    "ids": bench_ids,
 }
 BENCHES: dict[str, Callable[[], None]] = {
     "simulation": bench_simulation,

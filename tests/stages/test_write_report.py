@@ -464,3 +464,22 @@ def test_the_browser_tells_when_a_page_complains(chromium, tmp_path):
     wrong.write_text('<img src="missing.png"><script>console.error("no"); missing()</script>')
     said = "\n".join(chromium.open(wrong.as_uri()).complaints)
     assert "no" in said and "ReferenceError" in said and "request of" in said
+
+
+def test_the_key_names_each_kind_of_opening_that_is_drawn_as_it_is_drawn(tmp_path):
+    files = report_making.files(tmp_path)
+    kinds = np.array(["door", "gap", "glass"], object)
+    openings = floorplan_making.openings() | {"type": kinds}
+    tables.write_table(files["openings"], schemas.OPENINGS, openings)
+    text = written(tmp_path, files).read_text()
+    key = text.partition('<p class="key">')[2].partition("</p>")[0]
+    named = re.findall(r'swatch (door|gap|glass|passage|window)"></span>([^<]*)', key)
+    assert [(kind, words.strip()) for kind, words in named] == [
+        ("door", "door"),
+        ("glass", "glass pane"),
+        ("gap", "unknown gap"),
+    ]
+    style = (report_making.PAGE / "page.css").read_text()
+    kinds = "door|gap|glass|passage|window"
+    borders = re.findall(rf"\.swatch\.(?:{kinds}) {{ border-top: ([^;]*)", style)
+    assert len(set(borders)) == 5

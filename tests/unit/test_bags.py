@@ -1,3 +1,4 @@
+import re
 import struct
 
 import pytest
@@ -116,15 +117,15 @@ def text(path):
         ("ros1", lambda p: cut(p, 0.5), "rosbag reindex"),
         ("ros1", cut_tail, "rosbag reindex"),
         ("ros1", no_index, "rosbag reindex"),
-        ("ros1", text, "rosbag reindex"),
+        ("ros1", text, "but text that begins with"),
         ("ros1_lz4", scramble, "rosbag reindex"),
         ("ros1_bz2", scramble, "rosbag reindex"),
         ("mcap", lambda p: cut(p, 0.5), "mcap recover"),
         ("mcap", cut_tail, "mcap recover"),
-        ("mcap", text, "mcap recover"),
+        ("mcap", text, "but text that begins with"),
         ("mcap_zstd", scramble, "mcap recover"),
         ("sqlite3", lambda p: cut(p, 0.5), "sqlite3 FILE .recover"),
-        ("sqlite3", text, "sqlite3 FILE .recover"),
+        ("sqlite3", text, "but text that begins with"),
         ("sqlite3_message", scramble, "sqlite3 FILE .recover"),
         ("sqlite3_file", scramble, "sqlite3 FILE .recover"),
     ],
@@ -275,3 +276,45 @@ def test_the_index_of_an_old_bag(recordings_dir):
         StageError, match=r"bad_index.bag: cannot be read \(AssertionError\); try `rosbag reindex`"
     ):
         read_all(path)
+
+
+@pytest.mark.parametrize("salvage", [False, True])
+@pytest.mark.parametrize(
+    ("name", "head", "told"),
+    [
+        ("notes.bag", b"Drive 3, upper floor\nbattery low\n", "not a ROS 1 bag (.bag) but text"),
+        ("notes.bag", "Gr\u00fc\u00dfe".encode(), "text that begins with 'Gr\u00fc\u00dfe'"),
+        ("page.mcap", b"<!DOCTYPE html>\n", "begins with '<!DOCTYPE html>'"),
+        ("run.bag", b"\x89MCAP0\r\n\x01", "but an MCAP file; rename it to *.mcap"),
+        ("run.db3", b"#ROSBAG V2.0\n", "but a ROS 1 bag; rename it to *.bag"),
+        ("run.bag", b"\x1f\x8b\x08\x00", "but packed by gzip; unpack it"),
+    ],
+)
+def test_another_kind_of_file_is_named(tmp_path, name, head, told, salvage):
+    path = tmp_path / name
+    path.write_bytes(head)
+    with (
+        pytest.raises(StageError, match=re.escape(told)) as caught,
+        bags.open_bag(path, salvage=salvage),
+    ):
+        pass
+    assert "\n" not in str(caught.value)
+
+
+def test_letters_cut_at_the_end_of_what_is_looked_at_are_text(tmp_path):
+    path = tmp_path / "notes.bag"
+    path.write_bytes(b"x" + "\u00fc".encode() * 400)
+    with pytest.raises(StageError, match="but text"), bags.open_bag(path):
+        pass
+
+
+def test_a_bag_whose_head_is_damaged_is_left_to_its_reader(tmp_path):
+    maker = bag_making.Maker("ros1")
+    path = maker.write(tmp_path / "run", simple(maker))
+    content = bytearray(path.read_bytes())
+    content[0] ^= 1
+    path.write_bytes(content)
+    with pytest.raises(StageError, match="magic"), bags.open_bag(path):
+        pass
+    with bags.open_bag(path, salvage=True) as bag:
+        assert {topic.name for topic in bag.topics} >= {"/points", "/amcl_pose"}

@@ -1,5 +1,9 @@
+from datetime import UTC, datetime
+
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from scanplan.recordings import clocks
 
@@ -69,3 +73,39 @@ def test_a_clock_that_is_set_back_tells_a_time_twice():
 )
 def test_late_and_latched_messages_are_no_clock_set_back(t_s):
     assert not any(twice(*t_s))
+
+
+def stamp_ns(said):
+    return int(datetime.fromisoformat(said).replace(tzinfo=UTC).timestamp()) * S
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "1970-01-01T00:07:12",  # since a sensor or a simulation was switched on
+        "1979-12-31T23:59:59",
+        "2000-01-01T00:20:00",  # a computer without a battery
+        "2024-01-01T00:00:00",
+        "2001-09-09T01:46:40",  # 1,000,000,000 s, added to a log that counts from 0
+        "2020-09-13T12:40:00",  # 1,600,000,000 s and 800 s
+    ],
+)
+def test_where_clocks_begin_that_nobody_set_is_no_date(said):
+    assert clocks.read_date(stamp_ns(said)) is None
+    assert clocks.state_date(stamp_ns(said)) == "not known, clock not set"
+
+
+@pytest.mark.parametrize(
+    "said",
+    ["1999-06-11T08:00:00", "2000-01-01T01:00:00", "2001-09-09T02:46:40", "2019-04-01T08:31:00"],
+)
+def test_any_other_stamp_is_a_date(said):
+    assert clocks.read_date(stamp_ns(said)) == datetime.fromisoformat(said).replace(tzinfo=UTC)
+    assert clocks.state_date(stamp_ns(said)) == said[:10]
+
+
+@given(st.integers(0, 4_000_000_000))
+def test_of_a_year_at_most_some_hours_are_no_date(t_s):
+    # one may be in the first hour of a year, one in that of a hundred million seconds
+    hours = [clocks.read_date((max(t_s, 400_000_000) + 3600 * n) * S) for n in range(4)]
+    assert any(hours)

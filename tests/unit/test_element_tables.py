@@ -59,3 +59,11 @@ def test_a_name_is_neither_a_formula_nor_another_cell(name):
 def test_a_plan_of_faces_alone_has_heads_without_rows():
     rows = tabulated(bare())
     assert [len(read(rows[table])) for table in ("walls", "openings", "rooms")] == [0, 0, 0]
+
+
+def test_rooms_have_a_height_where_the_ceiling_was_seen_and_else_a_least_one():
+    seen = tabulated(plan(floor_z_m=0.0, ceiling_z_m=2.7))["rooms"]
+    assert seen["height_m"] == seen["least_height_m"] == [2.7, 2.7]
+    unseen = tabulated(plan(floor_z_m=0.0))["rooms"]
+    assert unseen["height_m"] == [None, None]
+    assert unseen["least_height_m"] == [floorplan_making.HEIGHT_M] * 2

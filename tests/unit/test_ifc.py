@@ -37,6 +37,11 @@ def model():
     return opened(plan())
 
 
+def short(element):
+    """What an element is, and its number."""
+    return element.Name.partition(",")[0]
+
+
 @pytest.fixture(scope="module")
 def seen():
     """The model of a plan whose floor and ceiling were seen."""
@@ -82,7 +87,7 @@ def test_a_wall_ends_where_it_was_seen_to_and_so_does_the_hole_in_it():
     solid_m3 = volume_m3(walls[5], disable_opening_subtractions=True)
     assert solid_m3 == pytest.approx(drawn.bodies[5].area * 1.2, rel=1e-3)
     assert volume_m3(walls[5]) == pytest.approx(solid_m3 - 0.9 * 0.1 * 1.2, rel=1e-3)
-    door = next(d for d in model.by_type("IfcDoor") if d.Name == "Door 1")
+    door = next(d for d in model.by_type("IfcDoor") if short(d) == "Door 1")
     assert door.OverallHeight == pytest.approx(1.2)
 
 
@@ -111,7 +116,7 @@ def test_doors_and_windows_fill_openings_of_their_walls(model):
     hosts = {}
     for leaf in [*model.by_type("IfcDoor"), *model.by_type("IfcWindow")]:
         hole = leaf.FillsVoids[0].RelatingOpeningElement
-        hosts[leaf.Name] = hole.VoidsElements[0].RelatingBuildingElement.Name
+        hosts[short(leaf)] = short(hole.VoidsElements[0].RelatingBuildingElement)
     assert hosts == {"Door 0": "Wall 4", "Door 1": "Wall 5", "Window 2": "Wall 0"}
     window = model.by_type("IfcWindow")[0]
     assert (window.OverallWidth, window.OverallHeight) == pytest.approx((1.2, 1.2))
@@ -210,12 +215,36 @@ def test_walls_say_whether_they_are_external_and_that_load_bearing_is_unknown(mo
     assert [values["IsExternal"] for values in common] == [True] * 5 + [False]
     assert all(values["LoadBearing"] is None for values in common)
     leaves = [*model.by_type("IfcDoor"), *model.by_type("IfcWindow")]
-    external = {leaf.Name: psets(leaf)[f"Pset_{leaf.is_a()[3:]}Common"] for leaf in leaves}
+    external = {short(leaf): psets(leaf)[f"Pset_{leaf.is_a()[3:]}Common"] for leaf in leaves}
     assert {n: v["IsExternal"] for n, v in external.items()} == {
         "Door 0": True,
         "Door 1": False,
         "Window 2": True,
     }
+
+
+def test_names_say_what_an_element_is_by_the_number_that_tables_have():
+    rooms = floorplan_making.rooms() | {"name": np.array(["Foyer", ""], object)}
+    walls = floorplan_making.walls() | {"top_m": np.array([np.nan] * 5 + [1.2])}
+    model = opened(plan(rooms=rooms, walls=walls, ceiling_z_m=2.5, floor_z_m=0.0))
+    names = {
+        kind: [element.Name for element in model.by_type(f"Ifc{kind}")]
+        for kind in ("Wall", "Door", "Window", "OpeningElement", "Slab")
+    }
+    assert names["Wall"] == [
+        "Wall 0, exterior, 20 cm",
+        "Wall 1, exterior, thickness assumed",
+        "Wall 2, exterior, 20 cm, inferred",
+        "Wall 3, exterior, 20 cm",
+        "Wall 4, exterior, 20 cm",
+        "Wall 5, interior, 10 cm, 1.20 m high",
+    ]
+    assert names["Door"] == ["Door 0, 1.00 m, Foyer to outside", "Door 1, 0.90 m, Foyer to Room 1"]
+    assert names["Window"] == ["Window 2, 1.20 m, Foyer"]
+    voids = ["Opening of door 0", "Opening of door 1", "Opening of window 2"]
+    assert names["OpeningElement"] == voids and names["Slab"] == ["Floor slab"]
+    for element in [*model.by_type("IfcWall"), *model.by_type("IfcDoor")]:
+        assert short(element).split()[1] == element.Tag
 
 
 def test_walls_of_one_thickness_share_a_type_with_a_layer_of_it(model):
@@ -235,7 +264,7 @@ def test_walls_of_one_thickness_share_a_type_with_a_layer_of_it(model):
 
 def test_the_layer_lies_where_the_wall_does(model):
     offsets = {
-        wall.Name: ifcopenshell.util.element.get_material(wall).OffsetFromReferenceLine
+        short(wall): ifcopenshell.util.element.get_material(wall).OffsetFromReferenceLine
         for wall in model.by_type("IfcWall")
     }
     # the east wall is seen from its left: all that is assumed lies to the right of its line
@@ -250,7 +279,7 @@ def test_quantities_are_those_of_the_shapes(model):
         assert stated["GrossVolume"] == pytest.approx(solid_m3, rel=1e-3)
     north = psets(model.by_type("IfcWall")[5])["Qto_WallBaseQuantities"]
     assert north["NetSideArea"] == pytest.approx(3.2 * 2.5 - 0.9 * 2.0)
-    door = next(d for d in model.by_type("IfcDoor") if d.Name == "Door 1")
+    door = next(d for d in model.by_type("IfcDoor") if short(d) == "Door 1")
     stated = psets(door)["Qto_DoorBaseQuantities"]
     assert (stated["Area"], stated["Perimeter"]) == pytest.approx((1.8, 5.8))
     hole = psets(door.FillsVoids[0].RelatingOpeningElement)["Qto_OpeningElementBaseQuantities"]
@@ -275,13 +304,13 @@ def test_spaces_say_what_bounds_them(seen):
     bounds = {}
     for rel in seen.by_type("IfcRelSpaceBoundary"):
         element = rel.RelatedBuildingElement
-        at = (element.Name, rel.InternalOrExternalBoundary, rel.PhysicalOrVirtualBoundary)
+        at = (short(element), rel.InternalOrExternalBoundary, rel.PhysicalOrVirtualBoundary)
         bounds.setdefault(rel.RelatingSpace.LongName, []).append(at)
     assert sorted(bounds["Room 0"]) == [
         ("Ceiling of Room 0", "INTERNAL", "PHYSICAL"),
         ("Door 0", "EXTERNAL", "PHYSICAL"),
         ("Door 1", "INTERNAL", "PHYSICAL"),
-        ("Floor 0", "INTERNAL", "PHYSICAL"),
+        ("Floor slab", "INTERNAL", "PHYSICAL"),
         ("Wall 0", "EXTERNAL", "PHYSICAL"),
         ("Wall 3", "EXTERNAL", "PHYSICAL"),
         ("Wall 4", "EXTERNAL", "PHYSICAL"),
@@ -309,7 +338,7 @@ def test_boundaries_lie_on_the_outline_and_face_outwards(seen):
     door = next(
         r
         for r in seen.by_type("IfcRelSpaceBoundary")
-        if (r.RelatedBuildingElement.Name, r.RelatingSpace.LongName) == ("Door 1", "Room 0")
+        if (short(r.RelatedBuildingElement), r.RelatingSpace.LongName) == ("Door 1", "Room 0")
     )
     low, high = np.min(corners_m(door)[0], axis=0), np.max(corners_m(door)[0], axis=0)
     assert low == pytest.approx([4, 1.0, 0]) and high == pytest.approx([4, 1.9, 2])
@@ -328,7 +357,7 @@ def test_a_passage_is_a_virtual_boundary():
 
 def test_walls_that_meet_are_connected_at_their_ends(model):
     met = {
-        (r.RelatingElement.Name, r.RelatedElement.Name): (
+        (short(r.RelatingElement), short(r.RelatedElement)): (
             r.RelatingConnectionType,
             r.RelatedConnectionType,
         )
@@ -344,7 +373,7 @@ def test_elements_have_colours_and_doubt_its_own(model):
     colours = {}
     for wall in model.by_type("IfcWall"):
         solid = wall.Representation.Representations[1].Items[0]
-        colours[wall.Name] = solid.StyledByItem[0].Styles[0].Name
+        colours[short(wall)] = solid.StyledByItem[0].Styles[0].Name
     assert colours["Wall 0"] == "wall" and colours["Wall 2"] == "to verify"
 
 
@@ -355,7 +384,7 @@ def test_doubt_is_told_where_the_tables_have_it():
         "doubt": np.array(["", "few rays", ""], object),
     }
     model = opened(plan(openings=openings))
-    evidence = {d.Name: psets(d)["Scanplan_Evidence"] for d in model.by_type("IfcDoor")}
+    evidence = {short(d): psets(d)["Scanplan_Evidence"] for d in model.by_type("IfcDoor")}
     assert evidence["Door 1"]["ProbabilityOfExistence"] == 0.3
     assert evidence["Door 1"]["Doubt"] == "few rays" and "Doubt" not in evidence["Door 0"]
     assert evidence["Door 1"]["VerifyOnSite"] is True

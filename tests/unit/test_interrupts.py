@@ -1,4 +1,4 @@
-"""Ctrl-C while a process imports: one line, status 130, and no traceback."""
+"""Ctrl-C while a process imports, and what it raises then: one line, and no traceback."""
 
 import os
 import signal
@@ -10,6 +10,8 @@ from pathlib import Path
 import pytest
 
 from scanplan import interrupts
+from scanplan.project.run import run_outcome
+from scanplan.project.run.run_lock import FolderRun
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 LINE = "scanplan: the run was interrupted; the same command goes on from here"
@@ -120,3 +122,36 @@ def test_what_children_are_given_is_added_once(monkeypatch):
     interrupts.prepare_children()
     interrupts.prepare_children()
     assert os.environ["PYTHONPATH"] == f"{SCRIPTS / 'startup'}{os.pathsep}/of/the/user"
+
+
+def raised(body, **env):
+    """Return the status of a process in which a script raises, and what it says."""
+    places = {"PYTHONPATH": f"{SCRIPTS / 'startup'}{os.pathsep}{SCRIPTS}"}
+    process = subprocess.run(
+        [sys.executable, "-c", body],
+        env={**os.environ, **places, **env},
+        capture_output=True,
+        text=True,
+    )
+    return process.returncode, process.stderr.strip()
+
+
+STAGE = "import types; snakemake = types.SimpleNamespace(log=['logs/floor/stage_a.log'])\n"
+FAULT = "stage_a: unexpected failure, ImportError: no such name; the details are in"
+
+
+@pytest.mark.parametrize("watched", [False, True])
+def test_what_a_stage_raises_while_it_imports_is_told_like_what_it_raises_later(watched):
+    env = {"SCANPLAN_WATCHED": "1"} if watched else {}
+    status, said = raised(f"{STAGE}raise ImportError('no such name')", **env)
+    line = f"{FAULT} logs/floor/stage_a.log"
+    assert (status, said) == (1, "" if watched else line)
+    text = Path("logs/floor/stage_a.log").read_text()
+    assert f"ERROR {line}" in text and "Traceback" in text
+    (told,) = run_outcome.list_faults("floor", FolderRun(), ())
+    assert told == line
+
+
+def test_what_another_program_raises_is_python_s_to_tell():
+    status, said = raised("raise ImportError('no such name')")
+    assert status == 1 and said.endswith("ImportError: no such name") and "Traceback" in said

@@ -12,10 +12,11 @@ from hypothesis import strategies as st
 from helpers import floorplan_making
 from helpers.floorplan_making import bare, plan
 from scanplan.exports.sheet import accuracy, composition, content, lettering, paper, symbols
-from scanplan.exports.sheet.marks import Symbol, flatten
+from scanplan.exports.sheet.labels import Candidate, LabelSpace
+from scanplan.exports.sheet.marks import Symbol, Word, flatten
 from scanplan.exports.sheet.paper import Slot
-from scanplan.exports.sheet.styles import LAYERS, STYLES, Letters, doubt_layer
-from scanplan.exports.sheet.title import SheetFacts
+from scanplan.exports.sheet.styles import LAYERS, STYLES, Letters, Paper, doubt_layer
+from scanplan.exports.sheet.title import SheetFacts, summarise_survey
 from scanplan.validation.doubts import find_doubtful_faces, list_doubts
 
 
@@ -160,6 +161,28 @@ def test_tables_break_only_where_no_slot_holds_them():
     assert [(s.x_mm, s.rows) for s in first] == [(0, 6)]
     assert [(s.x_mm, s.rows) for s in second] == [(60, 9), (120, 3)]
     assert paper.fill_slots(iter(slots[:1]), [10]) is None
+
+
+@pytest.mark.parametrize("n_rooms", range(1, 40))
+def test_no_row_of_a_table_stands_alone_unless_the_sheet_would_be_larger(n_rooms):
+    blocks = [6, 7, n_rooms]
+
+    def chosen(height_m):
+        return paper.choose_page(np.zeros(2), np.array([18.0, height_m]), 0.0, blocks)
+
+    page = chosen(12.0)
+    (parts,) = paper.fill_slots(page.slots(), blocks)[2:]
+    assert sum(part.rows for part in parts) == n_rooms
+    assert len(parts) == 1 or min(part.rows for part in parts) >= 3
+    # as high a plan as the sheet holds with tables as low as can be
+    rows = next(
+        rows
+        for rows in range(paper.TITLE_ROWS, 60)
+        if paper.fill_slots(paper.find_slots(page.inner_mm, rows), blocks) is not None
+    )
+    _, y0, _, y1 = replace(page, rows=rows).drawing_mm
+    full_m = (y1 - y0 - 2 * Paper.AROUND) / page.mm_per_m
+    assert chosen(full_m - 0.01).name == page.name
 
 
 @given(st.floats(-180, 180))
@@ -312,3 +335,47 @@ def test_every_style_has_a_layer_and_walls_are_drawn_over_rooms():
     assert {style.layer for style in STYLES.values()} <= set(LAYERS)
     order = list(STYLES)
     assert order.index("room") < order.index("assumed") < order.index("wall")
+
+
+def test_without_a_ceiling_the_table_of_rooms_states_how_high_walls_were_seen():
+    def stated(drawn):
+        sheet = composition.compose_sheet(drawn)
+        heights = [stamp.facts["HEIGHT"] for stamp in sheet.stamps]
+        return heights, {word.text for word in sheet.paper_words}
+
+    facts, words = stated(plan(floor_z_m=0.0))
+    assert facts == ["at least 2.50 m"] * 2 and "min. 2.50" in words
+    facts, words = stated(plan(floor_z_m=0.0, ceiling_z_m=2.6))
+    assert facts == ["2.60 m"] * 2 and "2.60" in words
+
+
+def test_no_date_is_stated_of_a_clock_that_nobody_set():
+    evidence = floorplan_making.evidence()
+    surveyed = summarise_survey(evidence | {"t_ns": evidence["t_ns"] + 1_554_107_481 * 10**9})
+    assert surveyed.surveyed == "2019-04-01"
+    unset = summarise_survey(evidence | {"t_ns": evidence["t_ns"] + 10**18})
+    assert unset.surveyed == "not known, clock not set"
+    words = {word.text for word in composition.compose_sheet(plan(), unset).paper_words}
+    assert "not known, clock not set" in words
+
+
+def test_furniture_smaller_than_a_letter_is_not_drawn():
+    piece, speck = shapely.box(1, 1, 1.5, 1.5), shapely.box(2, 2, 2.02, 2.02)
+    sheet = composition.compose_sheet(plan(furniture=floorplan_making.furniture([piece, speck])))
+    assert 0.02 * sheet.page.mm_per_m < Letters.SMALL < 0.5 * sheet.page.mm_per_m
+    drawn = [mark.element for mark in sheet.marks if mark.kind == "furniture"]
+    assert drawn == ["furniture-0"]
+
+
+def test_a_dimension_goes_where_it_crosses_no_door_though_its_words_lie_on_a_line():
+    door = shapely.LineString([(20, 0), (20, 30)])
+    other = shapely.LineString([(0, 80), (60, 80)])
+    space = LabelSpace((0, 0, 100, 100), [], [door, other])
+
+    def measured(y_mm):
+        line = np.array([[10.0, y_mm], [50.0, y_mm]])
+        word = Word("dimension", "4.00", np.array([35.0, y_mm + 1.5]), Letters.SMALL)
+        return Candidate([word], 0.0, (line,))
+
+    chosen = space.place([measured(10.0), measured(79.0)])
+    assert chosen.words[0].place[1] == 80.5

@@ -45,6 +45,20 @@ def test_a_wrong_key_in_dataset_yaml(project, tmp_path):
     ends_with_one_line(project, "survey", "dataset.yaml", "keep_evry")
 
 
+@pytest.mark.parametrize(
+    ("target", "said"),
+    [
+        ("plan.method=hull", 'write --config \'plan={"method": "hull"}\''),
+        ("results/intel/plan/plan.svg", "no dataset intel is given, only demo"),
+    ],
+)
+def test_what_is_no_target_is_told_with_what_to_write(project, target, said):
+    result = project.run(target)
+    assert result.returncode != 0 and "Traceback" not in result.stderr
+    assert result.stderr.splitlines()[-1].startswith(f"scanplan: {target}: ")
+    assert said in result.stderr and "MissingRule" not in result.stderr
+
+
 def test_an_old_name_is_refused_with_the_new_one(project, tmp_path):
     (tmp_path / "survey").mkdir()
     (tmp_path / "survey/dataset.yaml").write_text("walls: {cluster_ransac: {min_height_m: 1.0}}")

@@ -1,6 +1,7 @@
 import os
 import re
 import sys
+from contextlib import redirect_stderr
 from functools import cache
 
 from snakemake.exceptions import WorkflowError
@@ -39,6 +40,7 @@ from scanplan.project.settings import (
 )
 from scanplan.project.settings_check import COMMAND_LINE, MODULE
 from scanplan.project.settings_schema import list_choices, read_schema
+from scanplan.project.targets import check_targets
 from scanplan.project.yaml_file import read_yaml
 from scanplan.selection import methods
 
@@ -95,6 +97,20 @@ def thesis_surveys():
     return experiments.list_surveys(config=f"{PROJECT}/config", **KNOWN)
 
 
+def given_targets():
+    """The targets that the command names, which Snakemake does not tell before all is parsed."""
+    command = sys.modules.get("snakemake.cli")
+    if command is None:
+        return []
+    try:
+        # what is no command of Snakemake's is another program's
+        with redirect_stderr(None):
+            parsed, _ = command.get_argument_parser().parse_known_args(sys.argv[1:])
+    except SystemExit:
+        return []
+    return parsed.targets
+
+
 THESIS_RULES = (
     "thesis",
     "judge_claims",
@@ -140,6 +156,9 @@ if workflow.is_main_process and not IS_MODULE:
     )
 # jobs are worked out for what is asked for; these are all that could be
 DATASETS = GIVEN | {found.name: found for kind in THESIS.values() for found in kind}
+if workflow.is_main_process and not IS_MODULE:
+    others = [*DATASETS, RESERVED, *([BUILDING.name] if BUILDING else [])]
+    or_end(check_targets, given_targets(), list(GIVEN), others)
 
 
 def any_of(names):

@@ -253,6 +253,21 @@ class FloorPlan:
         return "walls" if highest_m > self.assumed_height_m else "assumed"
 
     @cached_property
+    def height_words(self) -> str:
+        """How high the storey is, in words: to its ceiling, or at least as walls were seen."""
+        if self.height_from == "ceiling":
+            return f"{self.storey_m[1]:.2f} m"
+        is_known = np.isfinite(self.least_height_m)
+        return f"at least {self.least_height_m:.2f} m" if is_known else "not seen"
+
+    @cached_property
+    def least_height_m(self) -> float:
+        """How high above the floor its ceiling or else its walls were seen; NaN of planar scans."""
+        _, highest_m = self._walls_z_m
+        seen_m = self.storey_m[1] if self.height_from == "ceiling" else highest_m
+        return seen_m if seen_m > _FLAT_M else np.nan
+
+    @cached_property
     def _walls_z_m(self) -> tuple[float, float]:
         """Height of the floor in the map frame, and how high above it walls were seen."""
         is_seen = np.isfinite(self.floor_z_m)

@@ -21,7 +21,7 @@ from rosbags.typesys.store import Typestore
 
 from scanplan.errors import StageError
 from scanplan.recordings import topics, typestores
-from scanplan.recordings.integrity import stated_counts, unpacking
+from scanplan.recordings.integrity import file_kind, stated_counts, unpacking
 from scanplan.recordings.messages import read_header
 from scanplan.recordings.rosbag1_messages import StoredMessage, iterate_messages
 from scanplan.recordings.salvage.salvaged_reader import SalvagedReader
@@ -66,6 +66,7 @@ def open_bag(
     is_ros2 = path.suffix != ".bag" or path.is_dir()
     with ExitStack() as stack:
         with _explain_faults(path):
+            file_kind.check_kind(path)
             reader = SalvagedReader(path) if salvage else _choose_reader(path, is_ros2, stack)
             stack.enter_context(reader)
             bag = Bag(path, reader, store if is_ros2 else Stores.ROS1_NOETIC, ros2=is_ros2)

@@ -95,6 +95,7 @@ def report_page(
         storeys=run.storeys,
         doubts=doubts.list_doubts(plan),
         plan=Markup(_plan_svg(plan, survey, points, of_plan["merge"])),
+        opening_kinds=_list_opening_kinds(plan),
         visit=survey.visit.summary,
         visit_map=Markup(next_visit.draw_visit_map(plan, survey.visit)),
         standpoints=next_visit.standpoint_table(plan, survey.visit),
@@ -119,6 +120,12 @@ def report_page(
         version=run.version,
         data=_script_data(survey, run, objective),
     )
+
+
+def _list_opening_kinds(plan: floorplan.FloorPlan) -> list[tuple[str, str]]:
+    """Return the kinds of openings that a plan has, and what its key calls them."""
+    drawn = set(plan.openings["type"].tolist())
+    return [(kind, words) for kind, words in floorplan.OPENINGS.items() if kind in drawn]
 
 
 def _plan_svg(

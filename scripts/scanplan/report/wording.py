@@ -1,11 +1,11 @@
 """The report's sentences and head figures."""
 
 from collections import Counter
-from datetime import UTC, datetime
 
 import numpy as np
 
 from scanplan.plan import floorplan
+from scanplan.recordings.clocks import state_date
 from scanplan.report import page_tables
 from scanplan.report.facts import PredictionFacts, SurveyFacts
 from scanplan.types import Columns
@@ -55,7 +55,7 @@ def list_contradictions(plan: floorplan.FloorPlan, prediction: PredictionFacts) 
 def head_figures(plan: floorplan.FloorPlan, survey: SurveyFacts) -> list[tuple[str, str]]:
     """Return the figures at the head of the page: what each is called, and its value."""
     t_s = survey.poses["t_ns"] / 1e9
-    recorded = datetime.fromtimestamp(t_s[0], UTC).strftime("%Y-%m-%d %H:%M UTC")
+    recorded = state_date(int(survey.poses["t_ns"][0]), "%Y-%m-%d %H:%M UTC")
     thickness_m = plan.walls["thickness_m"][plan.thick]
     thickness = f"{1000 * np.median(thickness_m):.0f} mm" if len(thickness_m) else "not known"
     counts = Counter(doubt.kind for doubt in doubts.list_doubts(plan))

@@ -70,7 +70,7 @@ def identify_elements(elements: Elements, known: Columns, name: str) -> list[str
     """
     shapes = shapely.from_wkb(np.asarray(known["geometry"], object))
     ids = np.full(len(elements.kinds), "", object)
-    of_table, known_of_table = _tables_of(elements.kinds), _tables_of(known["kind"])
+    of_table, known_of_table = tables_of(elements.kinds), tables_of(known["kind"])
     for table in KINDS:
         rows = np.flatnonzero(of_table == table)
         known_rows = np.flatnonzero(known_of_table == table)
@@ -137,11 +137,16 @@ def derive_id(*words: object) -> str:
     return "".join(_ALPHABET[digit] for digit in digits)
 
 
+def grow_shapes(shapes: Array) -> Array:
+    """Return shapes with as much around them as what lies near is away, by which they compare."""
+    return shapely.buffer(shapes, NEAR_M, join_style="mitre")
+
+
 def _table(plan: FloorPlan, kind: str) -> Columns:
     return {"wall": plan.walls, "opening": plan.openings, "room": plan.rooms}[kind]
 
 
-def _tables_of(kinds: Array) -> Array:
+def tables_of(kinds: Array) -> Array:
     """Return in which of `KINDS` elements of some kinds are: types of openings are all of one."""
     kinds = np.asarray(kinds, str)
     return np.where(np.isin(kinds, KINDS), kinds, "opening")
@@ -157,8 +162,7 @@ def _pair_most(shared: FloatArray) -> IntArray:
 
 def _shared_areas(shapes: Array, known: Array) -> FloatArray:
     """Return the intersection over union (n, k) of shapes and known ones; 0 where too little."""
-    grown = shapely.buffer(shapes, NEAR_M, join_style="mitre")
-    grown_known = shapely.buffer(known, NEAR_M, join_style="mitre")
+    grown, grown_known = grow_shapes(shapes), grow_shapes(known)
     shared = np.zeros((len(shapes), len(known)))
     tree = shapely.STRtree(grown_known)
     rows, others = tree.query(grown, predicate="intersects")

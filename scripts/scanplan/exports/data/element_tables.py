@@ -35,8 +35,9 @@ def tabulate_elements(plan: FloorPlan, ids: ElementIds) -> dict[str, Rows]:
     dict of str to dict of str to list
         By `walls`, `openings` and `rooms`: the columns of the plan's tables but for geometry, with
         `global_id` as in the building model; walls also `height_m` and `external`, openings and
-        rooms the names of rooms. Numbers are Python's; None where not known, or for no wall or
-        room.
+        rooms the names of rooms; rooms `height_m`, where the ceiling was seen, and
+        `least_height_m`, as high as anything was. Numbers are Python's; None where not known, or
+        for no wall or room.
     """
     names = dict(zip(plan.rooms["room"].tolist(), plan.room_names, strict=True))
     walls = _plain(plan.walls, ids["wall"])
@@ -50,6 +51,10 @@ def tabulate_elements(plan: FloorPlan, ids: ElementIds) -> dict[str, Rows]:
         openings[f"room_{side}_name"] = [names.get(room) for room in openings[f"room_{side}"]]
     rooms = _plain(plan.rooms, ids["room"])
     rooms["name"] = list(plan.room_names)
+    height_m = _known("height_m", plan.least_height_m)
+    is_ceiling = plan.height_from == "ceiling"
+    rooms["height_m"] = [height_m if is_ceiling else None] * len(plan.room_names)
+    rooms["least_height_m"] = [height_m] * len(plan.room_names)
     return {"walls": walls, "openings": openings, "rooms": rooms}
 
 

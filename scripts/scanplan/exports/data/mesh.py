@@ -104,7 +104,8 @@ def format_glb(plan: FloorPlan, ids: ElementIds) -> bytes:
     """Return a plan as a binary glTF file: walls with openings, doors, windows, rooms' floors.
 
     Metres, y up; x is the map frame's, its y is -z here, 0 the floor. There is no ceiling, so that
-    one sees in. Objects are named as in the building model, and have its GlobalIds.
+    one sees in. Objects are named by kind and number, and have the building model's
+    GlobalIds.
     """
     model = _Model(plan.name)
     for row, body in enumerate(plan.bodies):

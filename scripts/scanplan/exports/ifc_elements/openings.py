@@ -19,6 +19,7 @@ from scanplan.exports.ifc_model import Frame, IfcModel
 from scanplan.exports.model_colours import colour_of
 from scanplan.exports.opening_extents import LEAF_M, vertical_extent_m
 from scanplan.plan import floorplan
+from scanplan.plan.floorplan import WAYS
 
 _FILLED_BY = {"door": "IfcDoor", "window": "IfcWindow", "glass": "IfcWindow"}
 
@@ -62,7 +63,7 @@ def _add_opening(
     kind = plan.openings["type"][row]
     extent_m = vertical_extent_m(plan, row)
     attributes = {
-        "Name": f"{kind.capitalize()} {plan.openings['opening'][row]}",
+        "Name": _name_opening(storey, row),
         "Tag": str(plan.openings["opening"][row]),
         "ObjectPlacement": frame.placement(model),
     }
@@ -74,6 +75,8 @@ def _add_opening(
         own_id = global_id if kind not in _FILLED_BY else model.guid("void", global_id)
         gap = frame.move_here(plan.gaps[row])
         void = _add_void(model, own_id, gap, extent_m, attributes)
+        if kind in _FILLED_BY:
+            void.Name = f"Opening of {kind} {attributes['Tag']}"
         model.join("IfcRelVoidsElement", void, RelatingBuildingElement=walls[host])
         _describe_opening(model, storey, row, void)
         cut = shapely.intersection(plan.bodies[host], plan.gaps[row])
@@ -87,6 +90,17 @@ def _add_opening(
         model.join("IfcRelFillsElement", filling, RelatingOpeningElement=void)
     _describe_filling(model, storey, row, filling)
     return Opening(void, filling)
+
+
+def _name_opening(storey: StoreyPlan, row: int) -> str:
+    """Return the number that an opening has in tables, its width, and what it joins."""
+    columns = storey.plan.openings
+    kind, width_m = columns["type"][row], columns["width_m"][row]
+    joined = storey.name_joined_rooms(row)
+    if len(joined) == 1 and kind in WAYS and storey.leads_outside(row):
+        joined = [*joined, "outside"]
+    words = [f"{kind.capitalize()} {columns['opening'][row]}", f"{width_m:.2f} m"]
+    return ", ".join([*words, *filter(None, [" to ".join(joined)])])
 
 
 def _add_void(
@@ -166,15 +180,12 @@ def _describe_opening(
     model: IfcModel, storey: StoreyPlan, row: int, product: entity_instance
 ) -> None:
     columns = storey.plan.openings
-    names = dict(zip(storey.plan.rooms["room"].tolist(), storey.plan.room_names, strict=True))
-    # an opening may lie within one room
-    joined = dict.fromkeys(names.get(int(columns[side][row])) for side in ("room_a", "room_b"))
     properties = {
         **describe_doubt(columns, row),
         "SillMeasured": ("IfcBoolean", bool(np.isfinite(columns["sill_m"][row]))),
         "LintelMeasured": ("IfcBoolean", bool(np.isfinite(columns["lintel_m"][row]))),
         "Rays": ("IfcInteger", int(columns["n_rays"][row])),
-        "JoinsRooms": ("IfcLabel", " and ".join(filter(None, joined)) or None),
+        "JoinsRooms": ("IfcLabel", " and ".join(storey.name_joined_rooms(row)) or None),
     }
     model.describe(product, EVIDENCE, properties)
 

@@ -11,7 +11,7 @@ from scanplan.exports.ifc_elements.storey_plan import (
 )
 from scanplan.exports.ifc_model import IfcModel
 from scanplan.exports.model_colours import colour_of
-from scanplan.plan.floorplan import FloorPlan
+from scanplan.plan.floorplan import HEIGHTS, FloorPlan
 from scanplan.types import Array
 
 
@@ -26,11 +26,14 @@ def add_floors(model: IfcModel, storey: StoreyPlan) -> list[entity_instance]:
     if not np.isfinite(plan.floor_z_m):
         return []
     slabs = []
-    for number, part in enumerate(floor_parts(plan)):
+    parts = floor_parts(plan)
+    for number, part in enumerate(parts):
         slab = model.root(
             "IfcSlab",
             (number,),
-            Name=f"Floor {number}",
+            Name="Floor slab"
+            if len(parts) == 1
+            else f"Floor slab, part {number + 1} of {len(parts)}",
             ObjectPlacement=_on_floor(model),
             PredefinedType="FLOOR",
         )
@@ -108,6 +111,7 @@ def _add_space(model: IfcModel, storey: StoreyPlan, row: int) -> entity_instance
     model.describe(space, "Pset_SpaceCommon", {"IsExternal": ("IfcBoolean", False)})
     properties = {
         "Closed": ("IfcBoolean", bool(columns["closed"][row])),
+        "HeightFrom": ("IfcLabel", HEIGHTS[plan.height_from]),
         "Scans": ("IfcInteger", int(columns["n_scans"][row])),
         **describe_doubt(columns, row),
     }

@@ -35,6 +35,13 @@ class StoreyPlan:
         host = self.plan.hosts[opening]
         return bool(host >= 0 and self.external[host])
 
+    def name_joined_rooms(self, opening: int) -> list[str]:
+        """Return the names of the rooms on both sides of an opening, each once; it may have one."""
+        names = dict(zip(self.plan.rooms["room"].tolist(), self.plan.room_names, strict=True))
+        columns = self.plan.openings
+        rooms = dict.fromkeys(int(columns[side][opening]) for side in ("room_a", "room_b"))
+        return [names[room] for room in rooms if room in names]
+
 
 def describe_doubt(columns: Columns, row: int) -> dict[str, tuple[str, Any]]:
     """Return what a table says of the doubt about an element, and whether a person corrected it.

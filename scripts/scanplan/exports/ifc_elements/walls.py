@@ -39,7 +39,7 @@ def _add_wall(model: IfcModel, storey: StoreyPlan, row: int) -> entity_instance:
     wall = model.known(
         "IfcWall",
         storey.ids["wall"][row],
-        Name=f"Wall {number}",
+        Name=_name_wall(storey, row),
         Tag=number,
         ObjectPlacement=frame.placement(model),
     )
@@ -52,6 +52,20 @@ def _add_wall(model: IfcModel, storey: StoreyPlan, row: int) -> entity_instance:
     _describe_wall(model, storey, row, wall)
     _measure_wall(model, storey, row, wall)
     return wall
+
+
+def _name_wall(storey: StoreyPlan, row: int) -> str:
+    """Return the number that a wall has in tables and on sheets, and what tells it from others."""
+    plan = storey.plan
+    thickness_cm = 100 * plan.walls["thickness_m"][row]
+    words = [
+        f"Wall {plan.walls['wall'][row]}",
+        "exterior" if storey.external[row] else "interior",
+        f"{thickness_cm:.0f} cm" if plan.thick[row] else "thickness assumed",
+        f"{plan.heights_m[row]:.2f} m high" if plan.low[row] else "",
+        "inferred" if plan.walls["state"][row] == "inferred" else "",
+    ]
+    return ", ".join(filter(None, words))
 
 
 def _measure_wall(model: IfcModel, storey: StoreyPlan, row: int, wall: entity_instance) -> None:

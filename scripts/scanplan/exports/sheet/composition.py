@@ -87,7 +87,7 @@ def compose_sheet(
         *title.draw_scale_bar(page, bar[0]),
         *title.draw_legend(legend, legend_slots),
     ]
-    marks += content.draw_corrections(plan, _apart_m(page))
+    marks = [*_drop_specks(page, marks), *content.draw_corrections(plan, _apart_m(page))]
     space = _open_space(page, marks, symbols)
     stamps = words.stamp_rooms(page, plan, space)
     beside += title.draw_room_table(stamps, table_slots)
@@ -133,6 +133,17 @@ def _extent(
     corners += [symbol.ends_m for symbol in symbols]
     turned = np.concatenate(corners) @ rotation(turn_deg).T
     return turned.min(axis=0), turned.max(axis=0)
+
+
+def _drop_specks(page: Page, marks: list[Mark]) -> list[Mark]:
+    """Return marks without furniture that is smaller on paper than the smallest letter."""
+    least_m2 = (Letters.SMALL / page.mm_per_m) ** 2
+
+    def is_speck(mark: Mark) -> bool:
+        outline = shapely.Polygon(mark.paths[0][:, :2]) if mark.kind == "furniture" else None
+        return outline is not None and outline.area < least_m2
+
+    return [mark for mark in marks if not is_speck(mark)]
 
 
 def _open_space(page: Page, marks: list[Mark], symbols: list[Symbol]) -> LabelSpace:

@@ -207,7 +207,7 @@ def dimension_room(page: Page, room: BaseGeometry, space: LabelSpace) -> Iterato
         turned = shapely.transform(room, lambda xy, turn=turn: xy @ turn.T)
         _, y0, _, y1 = turned.bounds
         candidates: list[Candidate] = []
-        for share in (0.2, 0.8, 0.35, 0.65, 0.5):
+        for share in (0.2, 0.8, 0.35, 0.65, 0.5, 0.12, 0.88, 0.28, 0.72, 0.42, 0.58):
             chord = _find_chord(turned, y0 + share * (y1 - y0), END_M * page.mm_per_m)
             if chord is None:
                 continue

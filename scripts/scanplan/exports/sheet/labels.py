@@ -26,7 +26,7 @@ class Candidate:
     words : list of Word
         On paper, millimetres.
     cost : float
-        Less is better; every line that they lie on costs one more.
+        Less is better; every line that they lie on costs one more, one that is crossed two.
     lines : list of (n, 2) float arrays
         Drawn with them: no word may lie on these.
     """
@@ -88,12 +88,17 @@ class LabelSpace:
         return best
 
     def _measure_cost(self, boxes: list[BaseGeometry], lines: Iterable[FloatArray]) -> float:
-        """Return what is lain on: more than `OFF_WALL` for a wall, one for a line."""
+        """Return what is lain on: more than `OFF_WALL` for a wall, one for a line.
+
+        A line through another is worse than a word on it, which can be read all the same.
+        """
         on_walls = len(self._walls.query(boxes, "intersects")[0])
-        drawn = [*boxes, *map(shapely.LineString, lines)]
-        on_lines = len(self._lines.query(drawn, "intersects")[0])
+        on_lines = len(self._lines.query(boxes, "intersects")[0])
+        crossed = sum(
+            len(self._lines.query(shapely.LineString(line), "intersects")) for line in lines
+        )
         on_pale = len(self._pale.query(boxes, "intersects")[0])
-        return (self.OFF_WALL + 1) * on_walls + on_lines + on_pale
+        return (self.OFF_WALL + 1) * on_walls + on_lines + 2 * crossed + on_pale
 
     def _is_free(self, boxes: list[BaseGeometry], lines: Iterable[FloatArray]) -> bool:
         """Return whether words lie apart from words and lines, and lines apart from words."""

@@ -127,7 +127,8 @@ def choose_page(
     """Choose the sheet and the scale for a plan.
 
     The largest of the usual scales at which it fits on a sheet, then the smallest sheet: at 1:50
-    up to A3, at 1:100 up to A1, at others up to A0.
+    up to A3, at 1:100 up to A1, at others up to A0. Tables are broken off a row or two alone only
+    where the sheet would otherwise be larger.
 
     Parameters
     ----------
@@ -145,9 +146,12 @@ def choose_page(
     for scale in [scale for scale in _SCALES if scale >= least_scale]:
         for name, (long, short) in SIZES_MM.items():
             for size in ((long, short), (short, long)):
-                page = _fill_page(Page(name, size, scale, 0, turn_deg, middle_m), blocks)
-                if page is not None and _holds(page, extent_m):
-                    return page
+                empty = Page(name, size, scale, 0, turn_deg, middle_m)
+                # three rows under a head are a table, fewer look forgotten
+                for least in (3, 1):
+                    page = _fill_page(empty, blocks, least)
+                    if page is not None and _holds(page, extent_m):
+                        return page
             if name == LARGEST.get(scale, largest):
                 break
     size = SIZES_MM[largest]
@@ -160,13 +164,22 @@ def choose_page(
     return Page(largest, size, scale, page.rows, turn_deg, middle_m)
 
 
-def _fill_page(page: Page, blocks: list[int]) -> Page | None:
-    """Return a page with as many rows below the plan as its tables need; None if over half."""
+def _fill_page(page: Page, blocks: list[int], least: int = 1) -> Page | None:
+    """Return a page with as many rows below the plan as its tables need; None if over half.
+
+    Of a table that is broken, each part has so many rows at least.
+    """
     most = int((page.size_mm[1] / 2) // Paper.ROW)
     for rows in range(TITLE_ROWS, most):
-        if fill_slots(find_slots(page.inner_mm, rows), blocks) is not None:
+        places = fill_slots(find_slots(page.inner_mm, rows), blocks)
+        if places is not None and all(_is_unbroken(parts, least) for parts in places):
             return Page(page.name, page.size_mm, page.scale, rows, page.turn_deg, page.middle_m)
     return None
+
+
+def _is_unbroken(parts: list[Slot], least: int) -> bool:
+    """Return whether a table is whole, or none of its parts has fewer rows than the least."""
+    return len(parts) == 1 or all(part.rows >= least for part in parts)
 
 
 def fill_slots(slots: Iterator[Slot], blocks: list[int]) -> list[list[Slot]] | None:

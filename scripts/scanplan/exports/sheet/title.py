@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from datetime import UTC, datetime
 
 import numpy as np
 
@@ -14,6 +13,7 @@ from scanplan.exports.sheet.styles import STYLES, Letters, Paper
 from scanplan.exports.sheet.symbols import BLOCKS, symbol_paths
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import OPENINGS, FloorPlan
+from scanplan.recordings.clocks import state_date
 from scanplan.types import Columns, FloatArray
 from scanplan.validation.doubts import list_doubts
 
@@ -62,8 +62,7 @@ def summarise_survey(evidence: Columns, **stated: str | int) -> SheetFacts:
     n_scans = len(np.unique(evidence["scan_id"]))
     if len(t_ns) == 0:
         return replace(SheetFacts(n_scans=n_scans), **stated)
-    first = datetime.fromtimestamp(int(t_ns.min()) / 1e9, UTC)
-    return replace(SheetFacts("", "", first.strftime("%Y-%m-%d"), n_scans), **stated)
+    return replace(SheetFacts("", "", state_date(int(t_ns.min())), n_scans), **stated)
 
 
 def draw_frame(page: Page) -> Iterator[Mark]:
@@ -165,7 +164,7 @@ def draw_room_table(stamps: Sequence[Stamp], slots: Sequence[Slot]) -> Iterator[
     """Yield the table of rooms: number, name, area, perimeter, height."""
     names = ["No.", "Room", "Area m²", "Perim. m", "Height m"]
     # where each begins, or ends from the third on, millimetres
-    ends = [0.0, 7.0, 33.0, 45.5, 58.0]
+    ends = [0.0, 6.0, 30.0, 42.5, 55.5]
     yield from _heads(slots, names, ends)
     for stamp, (x, y) in zip(stamps, _row_places(slots), strict=True):
         facts = stamp.facts
@@ -173,7 +172,8 @@ def draw_room_table(stamps: Sequence[Stamp], slots: Sequence[Slot]) -> Iterator[
             facts[tag].removesuffix(unit).replace("about ", "~")
             for tag, unit in (("AREA", " m²"), ("PERIMETER", " m"))
         ]
-        height = "-" if facts["HEIGHT"] == "not seen" else facts["HEIGHT"].removesuffix(" m")
+        height = facts["HEIGHT"].removesuffix(" m").replace("at least", "min.")
+        height = height.replace("not seen", "-")
         marks = " *" * (facts["CORRECTED"] != "no") + " ?" * stamp.verify
         name = shorten_text(facts["NAME"], Letters.SMALL, 15.0 - 2.0 * len(marks)) + marks
         texts = [facts["NUMBER"], name, *sizes, height]

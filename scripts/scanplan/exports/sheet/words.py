@@ -21,7 +21,6 @@ from scanplan.validation.doubts import find_doubtful_rooms
 
 def stamp_rooms(page: Page, plan: FloorPlan, space: LabelSpace) -> list[Stamp]:
     """Return the rooms' stamps, by number: small rooms have the choice of places first."""
-    _, height_m = plan.storey_m
     rooms = plan.rooms
     doubtful, corrected = find_doubtful_rooms(plan), is_corrected(rooms)
     stamps: dict[int, Stamp] = {}
@@ -36,7 +35,7 @@ def stamp_rooms(page: Page, plan: FloorPlan, space: LabelSpace) -> list[Stamp]:
             "NAME": name,
             "AREA": area,
             "PERIMETER": f"{about}{rooms['perimeter_m'][row]:.2f} m",
-            "HEIGHT": f"{height_m:.2f} m" if plan.height_from == "ceiling" else "not seen",
+            "HEIGHT": plan.height_words,
             "CLOSED": "yes" if closed else "no",
             "CORRECTED": str(rooms["corrected"][row]) if corrected[row] else "no",
         }

@@ -1,0 +1,55 @@
+"""What is asked of a run on its command line: faults that Snakemake tells as a missing rule."""
+
+import json
+from collections.abc import Collection, Iterable
+from pathlib import PurePath
+
+from scanplan.errors import StageError
+
+
+def check_targets(
+    targets: Iterable[str], datasets: Collection[str], others: Collection[str]
+) -> None:
+    """Refuse targets that are settings, and results of datasets that were not given.
+
+    Parameters
+    ----------
+    targets : iterable of str
+        Rules and files.
+    datasets : collection of str
+        Names of the given ones.
+    others : collection of str
+        Names of all folders of results that rules make.
+
+    Raises
+    ------
+    StageError
+        With what to write instead.
+    """
+    for target in map(str, targets):
+        key, is_setting, value = target.partition("=")
+        if is_setting and "/" not in key:
+            raise StageError(
+                f"{target}: is a setting, not a target; write --config {_as_config(key, value)}"
+            )
+        folder, *rest = PurePath(target).parts or ("",)
+        if folder == "results" and len(rest) > 1 and rest[0] not in {*datasets, *others}:
+            given = ", ".join(datasets)
+            raise StageError(
+                f"{target}: no dataset {rest[0]} is given, only {given}; add"
+                " `--config dataset=PATH`, the folder or recording that these results are of"
+            )
+
+
+def _as_config(key: str, value: str) -> str:
+    """Return a setting as `--config` takes it: sections are objects of JSON."""
+    section, *keys = key.split(".")
+    if not keys:
+        return f"{section}={value}"
+    try:
+        nested: object = json.loads(value)
+    except ValueError:
+        nested = value
+    for name in reversed(keys):
+        nested = {name: nested}
+    return f"'{section}={json.dumps(nested)}'"
