@@ -34,7 +34,9 @@ def simulate_survey(
     The poses at the scans' stamps, and those of the whole way; the drive begins at `start_ns`.
     """
     data = Path(building).read_bytes()
-    place = survey_setup.prepare_site(data, Path(building), mount, seed=seed, **site)
+    place = survey_setup.prepare_site(
+        *(data, Path(building), mount), seed=seed, planar=sensor["model"] == "laser", **site
+    )
     for note in place.notes:
         log.log_line(f"simulate_survey: {note}")
     survey = survey_setup.prepare_survey(

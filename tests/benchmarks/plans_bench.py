@@ -8,17 +8,25 @@ from typing import Any, NamedTuple
 
 import ifcopenshell
 import numpy as np
+import shapely
 import walls_bench
 import watershed_rooms
 
 from helpers import ifc_volumes
-from scanplan.lab.evaluation import plan_metrics, true_plan, truth_file, wall_findings, wall_metrics
+from scanplan.lab.evaluation import (
+    plan_metrics,
+    true_plan,
+    truth_file,
+    visible_faces,
+    wall_findings,
+    wall_metrics,
+)
 from scanplan.plan import planning
 from scanplan.project import stage_settings
-from scanplan.rays import ray_set
+from scanplan.rays import free_space, ray_set
 from scanplan.selection import stopping
 from scanplan.store import registered_scans, schemas, tables
-from scanplan.types import Columns, FloatArray, IntArray, Settings
+from scanplan.types import Array, Columns, FloatArray, IntArray, Settings
 
 _FIGURES = {
     "correctness_010m": "right",
@@ -34,6 +42,7 @@ _FIGURES = {
     "n_rooms_found": "rooms",
     "n_rooms_false": "false",
     "room_iou": "IoU",
+    "seen_room_iou": "of what was seen",
     "missed_not_seen": "not seen",
     "missed_misplaced": "misplaced",
     "missed_misextracted": "not extracted",
@@ -116,7 +125,7 @@ def _bench_survey(found: Results, truth: Path, settings: Settings) -> None:
     plan, floor = _bench_plan("plan of all scans", found, all_ids, truth, settings)
     _print_volumes(found.folder, truth)
     _bench_raster(found, all_ids, plan, floor)
-    _bench_watershed(found, all_ids, truth)
+    _bench_watershed(found, all_ids, truth, settings)
 
 
 def _bench_plan(
@@ -128,8 +137,49 @@ def _bench_plan(
     plan = _make_plan(found, rows, scan_ids, settings)
     took_s = time.process_time() - started
     true = true_plan.read_true_plan(truth / "truth.geojson")
-    _print_row(name, _measure_plan(plan, true, floor), took_s)
+    rooms = shapely.from_wkb(plan.plan.rooms["geometry"])
+    measures = _measure_plan(plan, true, floor) | _measure_seen_rooms(rooms, true, truth, settings)
+    _print_row(name, measures, took_s)
     return plan, floor
+
+
+def _measure_seen_rooms(
+    rooms: Array, true: true_plan.TruePlan, truth: Path, settings: Settings
+) -> dict[str, float]:
+    """Measure rooms on the ground that the survey could see.
+
+    What stands in a room hides ground from level beams: no plan can know what is there.
+    """
+    seen = _find_visible_ground(truth, settings)
+    drawn, entered = (
+        shapely.intersection(shapely.make_valid(np.asarray(shapes, object)), seen)
+        for shapes in (rooms, true.rooms)
+    )
+    measures = plan_metrics.measure_rooms(list(drawn), list(entered), true.visited)
+    return {"seen_room_iou": measures["room_iou"]}
+
+
+def _find_visible_ground(truth: Path, settings: Settings) -> shapely.Geometry:
+    """Return the ground between the sensor's true places and what stops its level beams."""
+    faces = truth_file.read_true_faces(truth / "truth.geojson")
+    lines_m = np.concatenate([faces.inner_m, faces.outer_m])
+    view = truth_file.read_sensor_view(
+        truth / "truth.geojson", max_range_m=settings["input"]["max_range_m"]
+    )
+    poses = truth_file.true_pose_matrices(truth_file.read_true_poses(truth / "truth_poses.tum"))
+    grounds = []
+    for pose in poses:
+        place_m = pose[:2, 3]
+        corners_m = visible_faces.visible_polygon(lines_m, place_m, open_m=view.max_range_m)
+        ahead_rad = np.arctan2(pose[1, 0], pose[0, 0])
+        turn_rad = ahead_rad + np.linspace(-view.field_rad / 2, view.field_rad / 2, 60)
+        rim_m = place_m + view.max_range_m * np.column_stack([np.cos(turn_rad), np.sin(turn_rad)])
+        field, ground = (
+            free_space.polygon_parts(shapely.make_valid(shapely.Polygon(outline)))
+            for outline in ([place_m, *rim_m], corners_m)
+        )
+        grounds.append(free_space.polygon_parts(shapely.intersection(ground, field)))
+    return free_space.union_on_grid(grounds)
 
 
 def visible_truth(
@@ -201,12 +251,12 @@ def _bench_raster(
     up_m = np.array([0, 0, np.nan_to_num(plan.floor_z_m)])
     scans = [(i, np.asarray(xyz_m, float) - up_m) for i, xyz_m in found.store.scans(scan_ids)]
     started = time.process_time()
-    lines_m = walls_bench.raster_lines(scans)
+    lines_m = walls_bench.raster_lines(scans, planar=found.store.planar)
     took_s = time.process_time() - started
     _print_row("raster and LSD, all scans", _measure_lines(lines_m, floor), took_s)
 
 
-def _bench_watershed(found: Results, scan_ids: IntArray, truth: Path) -> None:
+def _bench_watershed(found: Results, scan_ids: IntArray, truth: Path, settings: Settings) -> None:
     rows = registered_scans.rows_of_scans(scan_ids, found.registered, found.folder, found.folder)
     sensors_m = found.registered.map_from_sensor[rows, :3, 3]
     positions = dict(zip(scan_ids.tolist(), sensors_m, strict=True))
@@ -216,6 +266,7 @@ def _bench_watershed(found: Results, scan_ids: IntArray, truth: Path) -> None:
     took_s = time.process_time() - started
     true = true_plan.read_true_plan(truth / "truth.geojson")
     row = plan_metrics.measure_rooms(rooms, true.rooms, true.visited)
+    row |= _measure_seen_rooms(np.array(rooms, object), true, truth, settings)
     _print_row("watershed of distances, all scans", row, took_s)
 
 

@@ -141,12 +141,15 @@ def bench_quality(root: Path, settings: Settings, every: int = 3) -> None:
             print(f"walls, {building}, {len(survey.scans)} scans, {name}: {values}", flush=True)
 
 
-def raster_lines(scans: Scans) -> FloatArray:
-    """Return the lines (n, 2, 2) that OpenCV's LSD finds on a raster of all points of a slice."""
+def raster_lines(scans: Scans, *, planar: bool = False) -> FloatArray:
+    """Return the lines (n, 2, 2) that OpenCV's LSD finds on a raster of all points of a slice.
+
+    Of planar scans all points are in it.
+    """
     import cv2  # pyright: ignore[reportMissingImports]  # where it is installed: no stage needs it
 
     points = np.concatenate([xyz for _, xyz in scans]).astype(float)
-    in_slice = (points[:, 2] > _SLICE_M[0]) & (points[:, 2] < _SLICE_M[1])
+    in_slice = planar | ((points[:, 2] > _SLICE_M[0]) & (points[:, 2] < _SLICE_M[1]))
     places_m = points[in_slice, :2]
     low_m = places_m.min(axis=0) - 1
     cell = np.floor((places_m - low_m) / _CELL_M).astype(int)

@@ -9,6 +9,7 @@ from shapely import box
 
 from helpers.observation_making import stretch
 from scanplan.plan.furniture import fronts
+from scanplan.plan.furniture.pockets import find_pockets
 from scanplan.plan.openings import OPEN, Opening
 from scanplan.plan.plan_wall import PlanWall
 
@@ -26,7 +27,7 @@ def wall(faces, openings=()):
 
 
 def pockets(walls, floor):
-    return fronts.find_pockets(walls, floor, unpaired_m=0.1, max_thickness_m=0.6)
+    return find_pockets(walls, floor, unpaired_m=0.1, max_thickness_m=0.6)
 
 
 def room_with_cupboard(x0, x1, depth_m):
@@ -59,7 +60,33 @@ def test_what_fills_a_room_from_wall_to_wall_may_be_a_closet():
 
 
 def test_what_is_larger_than_furniture_is_a_part_of_the_building():
-    assert pockets(*room_with_cupboard(2.0, 4.5, 1.9)) == []
+    assert pockets(*room_with_cupboard(1.5, 4.5, 2.5)) == []
+
+
+def test_a_desk_in_a_corner_that_hides_both_walls_is_furniture():
+    front, side = (wall([face]) for face in [(0, 1, 1.5, 1), (1.5, 1, 1.5, 0)])
+    seen = [(1.5, 0, 5, 0), (5, 0, 5, 4), (5, 4, 0, 4), (0, 4, 0, 1)]
+    floor = box(0, 0, 5, 4).difference(box(0, 0, 1.5, 1))
+    found = pockets([*(wall([face]) for face in seen), front, side], floor)
+    assert {id(face) for pocket in found for face in pocket.fronts} == {
+        id(front.left[0]),
+        id(side.left[0]),
+    }
+    assert shapely.union_all([pocket.ground for pocket in found]).covers(box(0, 0, 1.5, 1))
+
+
+def test_a_wall_that_goes_farther_than_that_of_a_bay_beside_it_stays():
+    faces = [(0, 1, 4, 1), (4, 1, 4, 0), (4, 0, 5, 0), (5, 0, 5, 4), (5, 4, 0, 4), (0, 4, 0, 1)]
+    floor = box(0, 1, 5, 4).union(box(4, 0, 5, 1))
+    assert pockets([wall([face]) for face in faces], floor) == []
+
+
+def test_what_is_deeper_than_furniture_hides_more_than_it():
+    seen = [(0, 0, 5, 0), (5, 0, 5, 4), (5, 4, 0, 4), (0, 4, 0, 3)]
+    front, side = (wall([face]) for face in [(3, 3, 3, 2.2), (3, 2.2, 0, 2.2)])
+    floor = box(0, 0, 5, 4).difference(box(0, 2.2, 3, 3))
+    found = pockets([*(wall([face]) for face in seen), front, side], floor)
+    assert all(front.left[0] is not face for pocket in found for face in pocket.fronts)
 
 
 def block(width_m, length_m):

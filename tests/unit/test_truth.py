@@ -87,3 +87,11 @@ def test_a_cupboard_against_the_wall_is_a_screen_without_its_back():
         line for line, _ in of_kind(truth.truth_features(drawn.plan(cupboard), 0.4), "screen")
     ]
     assert sorted(round(line.length, 3) for line in screens) == [0.5, 0.5, 1.0]
+
+
+@pytest.mark.parametrize(("planar", "n_sides"), [(False, 0), (True, 3)])
+def test_a_desk_is_a_screen_to_a_planar_scanner_alone(planar, n_sides):
+    corners = [[1.0, 2.5], [2.0, 2.5], [2.0, 3.0], [1.0, 3.0], [1.0, 2.5]]
+    desk = drawn.feature("furniture", "Polygon", [corners], height_m=0.7)
+    features = truth.truth_features(drawn.plan(desk), 0.4, planar=planar)
+    assert len(of_kind(features, "screen")) == n_sides

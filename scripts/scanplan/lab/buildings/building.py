@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
@@ -55,6 +55,7 @@ def load_building(
     source: Path,
     *,
     slice_height_m: float,
+    planar: bool = False,
     storey: str | int | None = None,
     unit: str = "m",
     floor_z_m: float = 0.0,
@@ -71,6 +72,8 @@ def load_building(
         The file's name: its suffix is that of the format, errors name it.
     slice_height_m : float
         Height above the floor at which wall faces are cut, the sensor's.
+    planar : bool
+        Whether all beams of the sensor are level, so that low furniture occludes walls, too.
     storey : str, int or None
         Of a building model: name, or index from below; may be None where there is one.
     unit : str
@@ -98,11 +101,13 @@ def load_building(
         )
     suffix = source.suffix.lower()
     if suffix in (".geojson", ".json"):
-        return _building_of_drawing(drawing_file.parse_drawing(data, source), slice_height_m)
+        plan = drawing_file.parse_drawing(data, source)
+        return _building_of_drawing(plan, slice_height_m, planar)
     if suffix in MESH_SUFFIXES:
-        return _load_mesh(data, source, unit, floor_z_m, slice_height_m)
+        return _load_mesh(data, source, unit, floor_z_m, slice_height_m, planar)
     if suffix == ".ifc":
-        return _load_model(data, source, storey, doors, windows, slice_height_m)
+        opening = {"doors": doors, "windows": windows}
+        return _load_model(data, source, storey, slice_height_m, planar=planar, **opening)
     raise StageError(
         f"{source}: is no building; accepted are .geojson (a drawing),"
         f" {', '.join(MESH_SUFFIXES)} (meshes) and .ifc"
@@ -117,6 +122,7 @@ def building_of_model(
     *,
     doors: str = "open",
     windows: str = "glass",
+    planar: bool = False,
 ) -> Building:
     """Return one storey of a building model that is read already; as `load_building` otherwise."""
     storey = storeys.storey_of_model(model, index, doors=doors, windows=windows)
@@ -125,13 +131,15 @@ def building_of_model(
             f"{source}: the sensor is {slice_height_m:g} m above the floor, and the next storey's"
             f" floor {storey.height_m:g} m; lower simulate.mount.height_m"
         )
-    return _building_of_storey(storey, slice_height_m, source, model.notes)
+    return _building_of_storey(storey, slice_height_m, source, model.notes, planar)
 
 
-def _building_of_drawing(plan: drawn_floor.DrawnFloor, slice_height_m: float) -> Building:
+def _building_of_drawing(
+    plan: drawn_floor.DrawnFloor, slice_height_m: float, planar: bool
+) -> Building:
     return Building(
         mesh=extrusion.make_building_mesh(plan),
-        truth=truth.truth_features(plan, slice_height_m),
+        truth=truth.truth_features(plan, slice_height_m, planar=planar),
         rooms=drawn_floor.floor_rooms(plan),
         floor_m=drawn_floor.floor_footprint(plan),
         obstacles_m=drawn_floor.floor_obstacles(plan, slice_height_m),
@@ -140,35 +148,38 @@ def _building_of_drawing(plan: drawn_floor.DrawnFloor, slice_height_m: float) ->
 
 
 def _load_mesh(
-    data: bytes, source: Path, unit: str, floor_z_m: float, slice_height_m: float
+    data: bytes, source: Path, unit: str, floor_z_m: float, slice_height_m: float, planar: bool
 ) -> Building:
     # imported here so that the demo does not wait a second for a reader that it has no use for
     from scanplan.lab.buildings import mesh_file
 
     triangles_m, notes = mesh_file.parse_mesh(data, source.suffix.lower(), source, unit=unit)
     storey = storeys.storey_of_mesh(triangles_m - [0.0, 0.0, floor_z_m], slice_height_m, source)
-    return _building_of_storey(storey, slice_height_m, source, notes)
+    return _building_of_storey(storey, slice_height_m, source, notes, planar)
 
 
 def _load_model(
     data: bytes,
     source: Path,
     chosen: str | int | None,
-    doors: str,
-    windows: str,
     slice_height_m: float,
+    **reading: Any,
 ) -> Building:
     from scanplan.lab.buildings import ifc_file
 
     model = ifc_file.parse_ifc(data, source)
     index = ifc_file.find_storey(model, chosen, source)
-    return building_of_model(model, index, slice_height_m, source, doors=doors, windows=windows)
+    return building_of_model(model, index, slice_height_m, source, **reading)
 
 
 def _building_of_storey(
-    storey: storeys.Storey, slice_height_m: float, source: FilePath, notes: tuple[str, ...]
+    storey: storeys.Storey,
+    slice_height_m: float,
+    source: FilePath,
+    notes: tuple[str, ...],
+    planar: bool,
 ) -> Building:
-    cut = ground.cut_storey(storey, slice_height_m, source)
+    cut = ground.cut_storey(storey, slice_height_m, source, planar=planar)
     walls = ground.find_storey_walls(storey, cut, slice_height_m)
     features = [truth.face_feature(line, side) for line, side in cut.faces]
     features += [truth.screen_feature(line) for line in cut.screens]

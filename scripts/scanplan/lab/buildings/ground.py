@@ -13,7 +13,7 @@ from scanplan.lab.buildings import slicing, storeys
 from scanplan.lab.buildings.tolerances import CRACK_M, DRAWN_M, MESHING_M, ROOM_M, THRESHOLD_M
 from scanplan.types import FilePath, FloatArray
 
-SCREEN_M = 1.5  # ASSUME lower things occlude no wall: the sensor's upper beams pass over them
+_SCREEN_M = 1.5  # ASSUME lower things occlude no wall: the sensor's upper beams pass over them
 _CUT_STEP_M = 0.12  # between cuts: they meet what is over a door, and the slopes of obstacles
 _HEADROOM_M = 0.15  # above the sensor: its housing, and what would hang into its view
 _MIN_FLOOR_SHARE = 0.05  # of the outline; less is a stray surface of a building without floor
@@ -36,8 +36,18 @@ class Ground:
     notes: tuple[str, ...]
 
 
-def cut_storey(storey: storeys.Storey, slice_height_m: float, source: FilePath) -> Ground:
-    """Cut a storey.
+def least_screen_m(slice_height_m: float, *, planar: bool) -> float:
+    """Return how high above the floor things reach that occlude walls at the slice.
+
+    Over lower ones a sensor's upper beams pass; one whose beams are all level (`planar`) has none.
+    """
+    return slice_height_m if planar else max(_SCREEN_M, slice_height_m)
+
+
+def cut_storey(
+    storey: storeys.Storey, slice_height_m: float, source: FilePath, *, planar: bool = False
+) -> Ground:
+    """Cut a storey, for a sensor as high as the slice, `planar` if its beams are level.
 
     Returns
     -------
@@ -62,7 +72,7 @@ def cut_storey(storey: storeys.Storey, slice_height_m: float, source: FilePath) 
     return Ground(
         solid=solid,
         faces=slicing.section_faces(solid, sheets, outline),
-        screens=slicing.find_screens(_tall_outlines(storey, slice_height_m), solid),
+        screens=slicing.find_screens(_tall_outlines(storey, slice_height_m, planar), solid),
         rooms=_space_rooms(storey, slice_height_m) or _enclosed_rooms(outline, shadow),
         floor_m=floor,
         obstacles_m=_obstacles(storey, solid, slice_height_m),
@@ -96,14 +106,17 @@ def _body_walls(body: storeys.Body, slice_height_m: float) -> list[tuple[LineStr
     return [(line, width_m)] if is_straight else strips
 
 
-def _tall_outlines(storey: storeys.Storey, slice_height_m: float) -> list[BaseGeometry]:
-    """Return outlines at the slice of opaque surfaces that stand below it and reach above a head.
+def _tall_outlines(
+    storey: storeys.Storey, slice_height_m: float, planar: bool
+) -> list[BaseGeometry]:
+    """Return outlines at the slice of opaque surfaces that stand below it and occlude walls.
 
     Those of walls are left out.
     """
     others = [surface for body in storey.bodies if not body.is_wall for surface in body.surfaces]
     opaque = [t for kind, t in others if kind not in ("glass", "floor", "ceiling")]
-    tall = [t for t in opaque if t[..., 2].min() < slice_height_m and t[..., 2].max() >= SCREEN_M]
+    top_m = least_screen_m(slice_height_m, planar=planar)
+    tall = [t for t in opaque if t[..., 2].min() < slice_height_m and t[..., 2].max() >= top_m]
     cuts = (slicing.cut_triangles(triangles_m, slice_height_m) for triangles_m in tall)
     return [MultiLineString(list(cut)) for cut in cuts]
 

@@ -19,7 +19,9 @@ Feature = tuple[BaseGeometry, dict[str, Any]]
 """A geometry in the map frame, metres, and its properties."""
 
 
-def truth_features(plan: drawn_floor.DrawnFloor, slice_height_m: float) -> list[Feature]:
+def truth_features(
+    plan: drawn_floor.DrawnFloor, slice_height_m: float, *, planar: bool = False
+) -> list[Feature]:
     """Return the truth of a drawn floor.
 
     Parameters
@@ -28,6 +30,8 @@ def truth_features(plan: drawn_floor.DrawnFloor, slice_height_m: float) -> list[
     slice_height_m : float
         Height above the floor at which wall faces are cut, the sensor's: an opening interrupts
         them where it is open at this height.
+    planar : bool
+        Whether all beams are level, so that what is lower than a wall occludes it, too.
 
     Returns
     -------
@@ -38,7 +42,7 @@ def truth_features(plan: drawn_floor.DrawnFloor, slice_height_m: float) -> list[
         `height_m`), `opening` (stretch of a centreline with `type`, `width_m`, `sill_m`,
         `lintel_m`), `room` (Polygon with `name`, `area_m2` and whether the rover `visited` it).
     """
-    lowest_m = max(ground.SCREEN_M, slice_height_m)
+    lowest_m = ground.least_screen_m(slice_height_m, planar=planar)
     tall = [shapely.boundary(f.footprint_m) for f in plan.furniture if f.height_m >= lowest_m]
     screens = slicing.find_screens(tall, drawn_floor.cut_walls(plan, slice_height_m))
     features = [face_feature(*face) for face in true_wall_faces(plan, slice_height_m)]

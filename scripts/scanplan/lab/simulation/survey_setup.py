@@ -42,7 +42,7 @@ def prepare_site(
     chairs, doors_ajar
         See `clutter.add_clutter`.
     **reading
-        Settings of `building.load_building`.
+        Settings of `building.load_building`; `planar` for a 2-D scanner.
 
     Returns
     -------
