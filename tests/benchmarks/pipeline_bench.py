@@ -116,9 +116,15 @@ def _simulate_drives(
         # beside the recording a truth would be evaluated, which no user's recording has
         files = [truth / f"{name}_{number}" for name in ("truth", "poses", "trajectory")]
         points = contextlib.nullcontext() if is_big else _aligned_points()
-        with points, mock.patch.object(survey_bag, "EPOCH_NS", start_ns):
+        with points:
             simulate_survey.simulate_survey(
-                building, bag, *files, seed=1 + number, threads=2, **keywords
+                building,
+                bag,
+                *files,
+                seed=1 + number,
+                threads=2,
+                start_ns=start_ns,
+                **keywords,
             )
 
 
