@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
+from scipy.sparse.linalg import SuperLU
 
 from scanplan.geometry import se3, twists
 from scanplan.types import FloatArray, IntArray
@@ -53,7 +54,13 @@ class GraphState:
 
 
 class GraphEquations:
-    """The measurements in the form that an iteration needs; see `pose_graph.solve_pose_graph`."""
+    """The measurements in the form that an iteration needs; see `pose_graph.solve_pose_graph`.
+
+    Attributes
+    ----------
+    factors : scipy.sparse.linalg.SuperLU or None
+        Those of an earlier Hessian, kept for the steps after it.
+    """
 
     def __init__(
         self,
@@ -64,6 +71,7 @@ class GraphEquations:
         planar: bool,
         kernel: float,
     ) -> None:
+        self.factors: SuperLU | None = None
         self._source = constraints.source
         self._target = constraints.target
         every = range(prior_information.shape[-1])
