@@ -75,16 +75,14 @@ def solve_pose_graph(
     # a millimetre is enough for poses that another solution starts from
     rough_done = 100 * _STEP_DONE
 
-    def minimise(pose: FloatArray, width: float, step_done: float) -> tuple[FloatArray, GraphState]:
-        equations = GraphEquations(
-            constraints, priors, prior_information, planar=planar, kernel=kernel * width
-        )
-        return _minimise(equations, pose, max_iterations, step_done)
-
+    equations = GraphEquations(constraints, priors, prior_information, planar=planar, kernel=kernel)
     pose = np.array(start, float)
     for width in _WIDE_KERNELS:
-        pose, _ = minimise(pose, width, rough_done)
-    pose, state = minimise(pose, 1.0, rough_done if is_start else _STEP_DONE)
+        equations.kernel = kernel * width
+        pose, _ = _minimise(equations, pose, max_iterations, rough_done)
+    equations.kernel = kernel
+    step_done = rough_done if is_start else _STEP_DONE
+    pose, state = _minimise(equations, pose, max_iterations, step_done)
     return PoseGraphSolution(pose, state.residual, state.weight, state.prior_weight)
 
 
