@@ -44,6 +44,8 @@ def make_results(folder):
         path = folder / "plan" / f"{name}.parquet"
         told = notes if name == "validation" else None
         tables.write_table(path, schema, columns, allow_empty=True, notes=told)
+    for page in ("plan/plan.svg", "report.html"):
+        (folder / page).touch()
 
 
 def test_a_plan_a_fault_and_what_was_not_got_to(tmp_path):
@@ -63,6 +65,13 @@ def test_a_plan_a_fault_and_what_was_not_got_to(tmp_path):
     # the wall, a door, and the room that is not closed
     assert (first["verify"], first["predicted"], first["seconds"]) == (3, 0.75, 4.0)
     assert rows["area_m2"].isna().tolist() == [False, True, True]
+
+
+def test_tables_of_an_interrupted_run_are_no_plan_to_look_at(tmp_path):
+    make_results(tmp_path / "results/first")
+    (tmp_path / "results/first/report.html").unlink()
+    rows = overview.gather_overview(tmp_path / "results", {"first": []}, {"first": []})
+    assert list(rows["state"]) == [overview.MISSING] and rows["area_m2"].isna().all()
 
 
 def test_the_page_says_all_and_takes_names_for_text(tmp_path, project_root):

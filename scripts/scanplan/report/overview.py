@@ -76,7 +76,9 @@ def _describe_results(folder: Path, faults: Sequence[str], plan: str) -> dict[st
         row |= {"registered": int(kept.sum()), "candidates": len(kept)}
     files = {table: folder / plan / f"{table}.parquet" for table in _DRAWN}
     files |= {table: folder / "plan" / f"{table}.parquet" for table in _CHECKED}
-    is_made = all(file.exists() for file in files.values())
+    # of a run that was interrupted there may be tables alone, and the page leads to both of these
+    pages = (folder / "plan/plan.svg", folder / "report.html")
+    is_made = all(file.exists() for file in (*files.values(), *pages))
     row["state"] = FAILED if faults else MADE if is_made else MISSING
     if is_made:
         row |= _describe_plan(files)
