@@ -44,6 +44,8 @@ def make_results(folder):
         path = folder / "plan" / f"{name}.parquet"
         told = notes if name == "validation" else None
         tables.write_table(path, schema, columns, allow_empty=True, notes=told)
+    for page in ("plan/plan.svg", "report.html"):
+        (folder / page).touch()
 
 
 def test_a_plan_a_fault_and_what_was_not_got_to(tmp_path):
@@ -52,7 +54,8 @@ def test_a_plan_a_fault_and_what_was_not_got_to(tmp_path):
     times.parent.mkdir(parents=True)
     times.write_text("s\tmax_rss\n2.5\t100\n1.5\t-\n-\t-\n")
     faults = {"third": [], "second": ["register_scans: too few <scans>"], "first": []}
-    rows = overview.gather_overview(tmp_path / "results", faults)
+    run_times = {"third": [], "second": [], "first": [times]}
+    rows = overview.gather_overview(tmp_path / "results", faults, run_times)
     assert list(rows["name"]) == ["first", "second", "third"]
     assert list(rows["state"]) == [overview.MADE, overview.FAILED, overview.MISSING]
     first = rows.iloc[0]
@@ -64,12 +67,19 @@ def test_a_plan_a_fault_and_what_was_not_got_to(tmp_path):
     assert rows["area_m2"].isna().tolist() == [False, True, True]
 
 
+def test_tables_of_an_interrupted_run_are_no_plan_to_look_at(tmp_path):
+    make_results(tmp_path / "results/first")
+    (tmp_path / "results/first/report.html").unlink()
+    rows = overview.gather_overview(tmp_path / "results", {"first": []}, {"first": []})
+    assert list(rows["state"]) == [overview.MISSING] and rows["area_m2"].isna().all()
+
+
 def test_the_page_says_all_and_takes_names_for_text(tmp_path, project_root):
     folder = project_root / "workflow/report/page"
     sources = {name: (folder / name).read_text() for name in ("overview.html.j2", "overview.css")}
     make_results(tmp_path / "results/first")
     faults = {"first": [], "second": ["register_scans: too few <scans>"]}
-    rows = overview.gather_overview(tmp_path / "results", faults)
+    rows = overview.gather_overview(tmp_path / "results", faults, dict.fromkeys(faults, ()))
     table, page = overview.write_overview(rows, tmp_path / "results", sources)
     text = page.read_text()
     assert 'href="first/report.html"' in text and "75.0%" in text
@@ -81,6 +91,6 @@ def test_the_page_says_all_and_takes_names_for_text(tmp_path, project_root):
 def test_nothing_at_all_is_a_page_too(tmp_path, project_root):
     folder = project_root / "workflow/report/page"
     sources = {name: (folder / name).read_text() for name in ("overview.html.j2", "overview.css")}
-    rows = overview.gather_overview(tmp_path / "results", {"a": [], "b": []})
+    rows = overview.gather_overview(tmp_path / "results", {"a": [], "b": []}, {"a": [], "b": []})
     _, page = overview.write_overview(rows, tmp_path / "results", sources)
     assert "2 no plan" in page.read_text()

@@ -153,3 +153,32 @@ def test_the_same_answer_as_open3d():
     theirs = start[0] @ se3.invert_pose(theirs[0]) @ theirs
     np.testing.assert_allclose(ours, theirs, atol=2e-3)
     assert np.abs(ours - start).max() > 0.02
+
+
+def test_factors_serve_for_the_steps_after_them(monkeypatch):
+    """Steps with old factors lead where steps with factors of their own do."""
+    true = ring(60)
+    rng = np.random.default_rng(2)
+    pairs = [(row, other) for row in range(3, 60, 2) for other in rng.integers(0, row - 1, 3)]
+    links = chain(true, noise=0.005, seed=3, extra=pairs)
+    false = slice(60, None, 17)
+    links.target_from_source[false] = links.target_from_source[false] @ pose(1.0, 0.5, 20)
+    start = true @ twists.twist_to_motion(rng.normal(0, 0.1, (60, 6)))
+    calls = []
+
+    def count(function):
+        return lambda *given, **more: calls.append(function) or function(*given, **more)
+
+    def solve():
+        calls.clear()
+        found = pose_graph.solve_pose_graph(start, links, true, weak(60), planar=False)
+        return found, calls.count(factor)
+
+    factor = pose_graph.splu
+    monkeypatch.setattr(pose_graph, "splu", count(factor))
+    found, n_factors = solve()
+    monkeypatch.setattr(pose_graph, "cg", lambda *_, **__: (None, 1))
+    exact, n_exact = solve()
+    assert n_factors <= n_exact / 2
+    np.testing.assert_allclose(found.world_from_scan, exact.world_from_scan, atol=1e-6)
+    np.testing.assert_allclose(found.weight[false], 0, atol=1e-2)

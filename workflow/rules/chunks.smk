@@ -65,7 +65,7 @@ rule gather_chunks:
     benchmark:
         "benchmarks/{dataset}/gather_chunks_{table}.tsv"
     wildcard_constraints:
-        dataset=any_of(CHUNKED),
+        dataset=match_names(CHUNKED),
         table="observations|visibility|hulls",
     threads: 1
     resources:
@@ -85,4 +85,4 @@ use rule gather_chunks as gather_wall_chunks with:
     benchmark:
         "benchmarks/{dataset}/gather_wall_chunks_{extractor}.tsv"
     wildcard_constraints:
-        dataset=any_of(CHUNKED),
+        dataset=match_names(CHUNKED),

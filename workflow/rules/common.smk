@@ -1,11 +1,17 @@
+import gc
 import os
-import re
 import sys
 from contextlib import redirect_stderr
 from functools import cache
 
 from snakemake.exceptions import WorkflowError
 
+# of another workflow, whose run, console and lock are not ours
+IS_MODULE = not workflow.modifier.is_main_snakefile()
+if not IS_MODULE:
+    # all objects of a graph of jobs stay: to look for garbage among them after every 700 new ones
+    # takes a sixth of a start
+    gc.set_threshold(100_000)
 # of a plan of two threads an eighth of the memory: each would keep for itself what it has freed
 os.environ.setdefault("MALLOC_ARENA_MAX", "1")
 
@@ -24,6 +30,7 @@ from scanplan.project.dataset import (
     name_datasets,
     survey_files,
 )
+from scanplan.project.name_pattern import match_names
 from scanplan.project.provenance import (
     begin_results,
     check_sources,
@@ -47,10 +54,6 @@ from scanplan.selection import methods
 SCHEMA = read_schema(f"{PROJECT}/workflow/schemas/config.schema.yaml")
 METHODS = list_choices(SCHEMA, "plan", "method")
 EXTRACTORS = list_choices(SCHEMA, "plan", "extractor")
-
-
-# of another workflow, whose run, console and lock are not ours
-IS_MODULE = not workflow.modifier.is_main_snakefile()
 
 
 def or_end(function, *arguments):
@@ -161,14 +164,9 @@ if workflow.is_main_process and not IS_MODULE:
     or_end(check_targets, given_targets(), list(GIVEN), others)
 
 
-def any_of(names):
-    """A wildcard's constraint to some names; to nothing where there is none."""
-    return "|".join(map(re.escape, names)) or "(?!)"
-
-
 def simulated_as(suffix):
     """Names of the simulated datasets whose recording has a suffix."""
-    return any_of(
+    return match_names(
         name
         for name, dataset in DATASETS.items()
         if dataset.building and dataset.settings["simulate"]["recording"] == suffix
@@ -403,7 +401,7 @@ def chosen_formats():
 
 def exported_as(formats):
     """Names of the datasets that are exported in just these formats."""
-    return any_of(name for name in DATASETS if formats_of(name) == formats)
+    return match_names(name for name in DATASETS if formats_of(name) == formats)
 
 
 def exported_files(formats):
@@ -471,6 +469,6 @@ CHUNKED = [name for name in GIVEN if n_chunks(name) > 1]
 
 wildcard_constraints:
     chunk=r"\d+-of-\d+",
-    dataset=any_of(DATASETS),
-    method=any_of(METHODS),
-    extractor=any_of(EXTRACTORS),
+    dataset=match_names(DATASETS),
+    method=match_names(METHODS),
+    extractor=match_names(EXTRACTORS),

@@ -82,6 +82,13 @@ if is_to_be_told():
     CONSOLE.take_over(logging.getLogger("snakemake.logging"), tell_results)
 
 
+def benchmarks_of(name):
+    """What Snakemake measured of a dataset's stages, but of those that are gone."""
+    patterns = [rule.benchmark for rule in workflow.rules if rule.benchmark]
+    files = sorted(map(str, Path("benchmarks", name).glob("*.tsv")))
+    return [file for file in files if any(p.match(file) for p in patterns)]
+
+
 def tell_overview():
     """Put what became of many datasets into one table and one page, failed ones among them."""
     are_all_asked_for = set(workflow.dag_settings.targets) <= {"all", "comparison"}
@@ -101,6 +108,7 @@ def tell_overview():
         overview.gather_overview(
             "results",
             faults,
+            {name: benchmarks_of(name) for name in GIVEN},
             [
                 name
                 for name, dataset in GIVEN.items()

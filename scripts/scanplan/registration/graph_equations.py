@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
+from scipy.sparse.linalg import SuperLU
 
 from scanplan.geometry import se3, twists
 from scanplan.types import FloatArray, IntArray
@@ -53,7 +54,15 @@ class GraphState:
 
 
 class GraphEquations:
-    """The measurements in the form that an iteration needs; see `pose_graph.solve_pose_graph`."""
+    """The measurements in the form that an iteration needs; see `pose_graph.solve_pose_graph`.
+
+    Attributes
+    ----------
+    kernel : float
+        A measurement this many standard deviations off counts with a quarter of its weight.
+    factors : scipy.sparse.linalg.SuperLU or None
+        Those of an earlier Hessian, kept for the steps after it.
+    """
 
     def __init__(
         self,
@@ -64,11 +73,12 @@ class GraphEquations:
         planar: bool,
         kernel: float,
     ) -> None:
+        self.kernel = kernel
+        self.factors: SuperLU | None = None
         self._source = constraints.source
         self._target = constraints.target
         every = range(prior_information.shape[-1])
         self._dimensions = np.array(twists.PLANAR_DIMENSIONS if planar else every)
-        self._squared_kernel = kernel**2
         self._source_from_target = se3.invert_pose(constraints.target_from_source)
         self._scan_from_world = se3.invert_pose(priors)
         self._information = self._reduce(constraints.information)
@@ -128,7 +138,7 @@ class GraphEquations:
         """Return weights (m,) and the robust squared error (Geman and McClure)."""
         reduced = residual[:, self._dimensions]
         squared = np.einsum("ni,nij,nj->n", reduced, information, reduced)
-        share = self._squared_kernel / (self._squared_kernel + squared)
+        share = self.kernel**2 / (self.kernel**2 + squared)
         return share**2, float((squared * share).sum())
 
 

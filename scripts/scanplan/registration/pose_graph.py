@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.linalg import splu
+from scipy.sparse.linalg import LinearOperator, cg, splu
 
 from scanplan.geometry.tolerances import ROUNDING
 from scanplan.registration.graph_equations import GraphEquations, GraphState, MotionConstraints
@@ -75,16 +75,14 @@ def solve_pose_graph(
     # a millimetre is enough for poses that another solution starts from
     rough_done = 100 * _STEP_DONE
 
-    def minimise(pose: FloatArray, width: float, step_done: float) -> tuple[FloatArray, GraphState]:
-        equations = GraphEquations(
-            constraints, priors, prior_information, planar=planar, kernel=kernel * width
-        )
-        return _minimise(equations, pose, max_iterations, step_done)
-
+    equations = GraphEquations(constraints, priors, prior_information, planar=planar, kernel=kernel)
     pose = np.array(start, float)
     for width in _WIDE_KERNELS:
-        pose, _ = minimise(pose, width, rough_done)
-    pose, state = minimise(pose, 1.0, rough_done if is_start else _STEP_DONE)
+        equations.kernel = kernel * width
+        pose, _ = _minimise(equations, pose, max_iterations, rough_done)
+    equations.kernel = kernel
+    step_done = rough_done if is_start else _STEP_DONE
+    pose, state = _minimise(equations, pose, max_iterations, step_done)
     return PoseGraphSolution(pose, state.residual, state.weight, state.prior_weight)
 
 
@@ -116,11 +114,22 @@ def _minimise(
 def _least_squares_step(equations: GraphEquations, state: GraphState) -> FloatArray:
     hessian, gradient = equations.normal_equations(state)
     # regular even where no measurement says anything
-    regular = hessian + sparse.diags_array(ROUNDING * (hessian.diagonal() + 1.0))
-    factors = splu(
-        regular.tocsc(),
+    regular = (hessian + sparse.diags_array(ROUNDING * (hessian.diagonal() + 1.0))).tocsc()
+    if equations.factors is not None:
+        # weights and turns change a little from step to step: with the factors of an earlier
+        # matrix conjugate gradients take some five rounds, where factors of many visits to the
+        # same rooms take time that grows with more than the scans. The next step corrects what a
+        # thousandth leaves
+        near = LinearOperator(regular.shape, equations.factors.solve, dtype=regular.dtype)
+        step, n_rounds_missed = cg(regular, -gradient, rtol=1e-3, maxiter=15, M=near)
+        if n_rounds_missed == 0:
+            return step
+    # the old ones may be the largest thing in memory
+    equations.factors = None
+    equations.factors = splu(
+        regular,
         permc_spec="MMD_AT_PLUS_A",
         diag_pivot_thresh=0.0,
         options={"SymmetricMode": True},
     )
-    return -factors.solve(gradient)
+    return -equations.factors.solve(gradient)

@@ -27,16 +27,21 @@ _CHECKED = ("confidence", "validation")
 
 
 def gather_overview(
-    results: FilePath, faults: Mapping[str, Sequence[str]], corrected: Collection[str] = ()
+    results: FilePath,
+    faults: Mapping[str, Sequence[str]],
+    run_times: Mapping[str, Sequence[FilePath]],
+    corrected: Collection[str] = (),
 ) -> pd.DataFrame:
     """Gather a row for each dataset from its results.
 
     Parameters
     ----------
     results : path-like
-        The folder with a folder for each dataset; `benchmarks` lies beside it.
+        The folder with a folder for each dataset.
     faults : dict of str to sequence of str
         Name of every dataset to what its stages ended with in this run; empty where none failed.
+    run_times : dict of str to sequence of path-like
+        Name of every dataset to what Snakemake measured of its stages.
     corrected : collection of str
         Those whose plans have corrections.
 
@@ -49,7 +54,14 @@ def gather_overview(
         (of all stages); NaN where unknown.
     """
     rows = [
-        _gather_row(Path(results), name, told, "plan/corrected" if name in corrected else "plan")
+        {
+            "name": name,
+            "why": "; ".join(told),
+            "seconds": math.fsum(c.seconds for c in read_job_costs(run_times[name]).values()),
+            **_describe_results(
+                Path(results, name), told, "plan/corrected" if name in corrected else "plan"
+            ),
+        }
         for name, told in faults.items()
     ]
     overview = pd.DataFrame(rows, columns=[*_TEXTS, *_NUMBERS])
@@ -57,17 +69,16 @@ def gather_overview(
     return overview.sort_values("name", ignore_index=True)
 
 
-def _gather_row(results: Path, name: str, faults: Sequence[str], plan: str) -> dict[str, Any]:
-    folder = results / name
-    row: dict[str, Any] = {"name": name, "why": "; ".join(faults)}
-    costs = read_job_costs((results.parent / "benchmarks" / name).glob("*.tsv"))
-    row["seconds"] = math.fsum(cost.seconds for cost in costs.values())
+def _describe_results(folder: Path, faults: Sequence[str], plan: str) -> dict[str, Any]:
+    row: dict[str, Any] = {}
     if (folder / "registration.parquet").exists():
         kept = tables.read_table(folder / "registration.parquet", schemas.REGISTRATION)["kept"]
         row |= {"registered": int(kept.sum()), "candidates": len(kept)}
     files = {table: folder / plan / f"{table}.parquet" for table in _DRAWN}
     files |= {table: folder / "plan" / f"{table}.parquet" for table in _CHECKED}
-    is_made = all(file.exists() for file in files.values())
+    # of a run that was interrupted there may be tables alone, and the page leads to both of these
+    pages = (folder / "plan/plan.svg", folder / "report.html")
+    is_made = all(file.exists() for file in (*files.values(), *pages))
     row["state"] = FAILED if faults else MADE if is_made else MISSING
     if is_made:
         row |= _describe_plan(files)
