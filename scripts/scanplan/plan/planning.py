@@ -253,7 +253,11 @@ def make_plan(
         unpaired_m=unpaired_m,
         min_length_m=settings.openings.min_opening_m,
     )
-    bare = opening_kinds.decide_bare_spans(bare, rays, track_m, areas, band_m=band_m)
+    bare = opening_kinds.decide_bare_spans(
+        *(bare, rays, track_m, areas),
+        max_width_m=settings.openings.max_opening_m,
+        band_m=band_m,
+    )
     floor_z_m = 0.0 if math.isnan(rays.floor_z_m) else rays.floor_z_m
     cut_walls = wall_faces.cut_wall_faces(walls, max_beyond_m=settings.openings.max_closed_m)
     face_columns, main_rows = plan_tables.face_columns(cut_walls, floor_z_m)
