@@ -20,10 +20,10 @@ _TOUCH_M = 1e-6
 def draw_building(seed: int) -> bytes:
     """Draw a floor by a seed, as `drawing_file.parse_drawing` reads it.
 
-    A third each are offices, houses, and houses with more glass than wall around them.
+    Every third is an office, the others are houses; around one in twelve is more glass than wall.
     """
     rng = np.random.default_rng(seed)
-    is_office, is_glass = seed % 3 == 0, seed % 3 == 1
+    is_office, is_glass = seed % 3 == 0, seed % 12 == 4
     height_m = float(rng.choice([2.5, 2.7, 3.0]))
     outer_m, inner_m = float(rng.choice([0.24, 0.3, 0.4])), float(rng.choice([0.1, 0.12, 0.15]))
     width_m, depth_m = (26, 12) if is_office else (13, 10)
