@@ -14,6 +14,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+import drawn_buildings
 import pyarrow.parquet as pq
 import yaml
 
@@ -46,6 +47,8 @@ PLANAR: dict[str, dict[str, Any]] = {
     },
 }
 """Kind of drive with a 2-D scanner to its settings: a scan each metre, or ten a second."""
+DRAWN = "drawn"
+"""Drives of this name lead through buildings drawn at random by the seed behind it."""
 _CHAIRS = {"demo": 40, "ring": 120, "duplex": 12, "fzk": 16}  # one on each ten square metres
 LOCALISER = {"noise_m": 0.05, "noise_deg": 1.0, "jumps_per_min": 1.0}
 SEEDS = (1, 2, 3)
@@ -89,7 +92,7 @@ def record(
     recordings : Path
         Folder with the real recordings and the buildings.
     names : sequence of str
-        Only these surveys; all if empty.
+        Only these surveys; all but drawn ones if empty.
 
     Raises
     ------
@@ -98,7 +101,7 @@ def record(
     """
     folder.mkdir(parents=True, exist_ok=True)
     code = check_out(project, revision, folder)
-    surveys = _surveys(folder, recordings)
+    surveys = _surveys(folder, recordings) | _drawn_surveys(folder, names)
     unknown = set(names) - set(surveys)
     if unknown:
         sys.exit(f"guard: no survey {', '.join(sorted(unknown))}; there are {', '.join(surveys)}")
@@ -155,6 +158,27 @@ def _surveys(folder: Path, recordings: Path) -> dict[str, Path]:
     return paths | {name: recordings / name for name in RECORDINGS}
 
 
+def _drawn_surveys(folder: Path, names: Sequence[str]) -> dict[str, Path]:
+    """Return the drives among names through buildings drawn at random, made where missing."""
+    paths = {}
+    for name in names:
+        kind, _, seed = name.partition("_")
+        if kind != DRAWN or not seed.isdecimal():
+            continue
+        path, drawing = (folder / f"surveys/{name}{suffix}" for suffix in (".yaml", ".geojson"))
+        drawing.write_bytes(drawn_buildings.draw_building(int(seed)))
+        drive = {"building": str(drawing), "seed": int(seed), "localiser": LOCALISER}
+        site = {"route": "rooms", **_clutter(int(seed))}
+        path.write_text(yaml.safe_dump({"simulate": {**drive, "site": site}}))
+        paths[name] = path
+    return paths
+
+
+def _clutter(seed: int) -> dict[str, Any]:
+    """Return what stands about every other drawn building."""
+    return {"chairs": 12, "doors_ajar": 0.4} if seed % 2 else {}
+
+
 def _drives() -> Iterator[tuple[str, dict[str, Any]]]:
     """Yield names and settings of the drives: in space, and in the plane among chairs."""
     yield from BUILDINGS.items()
@@ -166,6 +190,8 @@ def _drives() -> Iterator[tuple[str, dict[str, Any]]]:
 
 
 def _wanted(name: str) -> tuple[str, ...]:
+    if name.startswith(DRAWN):
+        return ("selection/wall_length.parquet",)
     drawn = ("plan/plan.svg", "plan/plan.geojson")
     measured = ("evaluation/plan.parquet", "evaluation/walls.parquet")
     return drawn if name in RECORDINGS else drawn + measured

@@ -140,7 +140,7 @@ def fit_confidence(folder: str, train: str, test: str) -> None:
 
 
 def bench_next_visit(folder: str, *names: str) -> None:
-    """Second drives as planned, and at random with twice the scans."""
+    """Second drives as planned, and at random with as many scans and more."""
     import visit_bench
 
     recordings = (ROOT.parent / "shared/data").resolve()

@@ -1,4 +1,4 @@
-"""Second visits to simulated buildings: as planned, and at random with twice the scans.
+"""Second visits to simulated buildings: as planned, and at random with as many scans and more.
 
 A drive is cut short, and its plan says from where a second visit would settle what it leaves open.
 The rover drives there; the bag is added to the first, and the plan made again. What was asked is
@@ -14,9 +14,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import drawn_buildings
 import numpy as np
 import shapely
-from guard import BUILDINGS, LOCALISER
+from guard import BUILDINGS, DRAWN, LOCALISER
 
 import simulate_survey
 from scanplan.lab.buildings import route
@@ -28,7 +29,7 @@ from scanplan.store import registered_scans, schemas, tables
 from scanplan.types import Array, FloatArray, Settings
 
 _DRIVEN = 0.45  # of the way through all rooms: some are seen through doors alone
-_MORE = 2.0  # times as many scans has the random drive
+_MORE = (1, 2, 4)  # times as many scans have random drives, each the first part of the next
 _RIGHT_SHARE = 0.8  # of a length
 _WITHIN_M = 0.1
 _STEP_M = 0.1  # along what is asked
@@ -52,23 +53,27 @@ def bench(
     recordings : Path
         The folder with the buildings.
     names : sequence of str
-        Of `guard.BUILDINGS`, with a seed behind an underscore, as duplex_4.
+        Of `guard.BUILDINGS`, with a seed behind an underscore, as duplex_4; or drawn_9.
     """
     totals: dict[str, list[bool]] = {}
     for name in names:
         for drive, right in _visit_again(project, settings, folder, recordings, name).items():
             totals[drive] = totals.get(drive, []) + right
-    for drive, right in totals.items():
-        print(f"next_visit, all, {drive}: {sum(right)} of {len(right)}")
+        for drive, right in totals.items():
+            print(f"next_visit, so far, {drive}: {sum(right)} of {len(right)}", flush=True)
 
 
 def _visit_again(
     project: Path, settings: Settings, folder: Path, recordings: Path, name: str
 ) -> dict[str, list[bool]]:
     building, _, seed = name.partition("_")
-    given = BUILDINGS[building]
+    given = BUILDINGS.get(building, {"building": building, "site": {"route": "rooms"}})
     source = Path(given["building"])
-    source = recordings / "buildings" / source if source.suffix else _drawing(project, source)
+    if building == DRAWN:
+        source = folder / f"{name}.geojson"
+        source.write_bytes(drawn_buildings.draw_building(int(seed)))
+    else:
+        source = recordings / "buildings" / source if source.suffix else _drawing(project, source)
     simulated = settings["simulate"] | {"seed": int(seed), "localiser": _localiser(settings)}
     simulated["site"] = simulated["site"] | given.get("site", {})
     place = survey_setup.prepare_site(
@@ -92,12 +97,18 @@ def _visit_again(
         return route.join_places(*floor, places_m, source, clearance_m=_clearance(settings))
 
     planned_m = join(np.vstack([way_m[:1], standpoints_m]))
-    drives = {"planned": planned_m, "random": _wander(place, join, way_m, planned_m, simulated)}
+    planned_s = _duration_s(planned_m, simulated)
+    drives = {"planned": planned_m} | {
+        f"random{times}": _wander(place, join, way_m, times * planned_s, simulated)
+        for times in _MORE
+    }
     reachable = asked["standpoint"] > 0
     print(f"next_visit, {name}: {n_first} scans, {reachable.sum()} of {len(reachable)} questions"
           f" can be seen, from {len(stops['standpoint'])} standpoints", flush=True)  # fmt: skip
     right, _ = _judge(folder / "results" / first.name, first, asked, motion)
     settled = {"before, right": right[reachable].tolist()}
+    if not reachable.any():
+        return settled
     print(f"next_visit, {name}: {right[reachable].sum()} of them are right before", flush=True)
     for drive, corners_m in drives.items():
         again = folder / "surveys" / f"{name}_{drive}"
@@ -137,11 +148,10 @@ def _cut_way(way_m: FloatArray, share: float) -> FloatArray:
 
 
 def _wander(
-    place: Any, join: Any, way_m: FloatArray, planned_m: FloatArray, simulated: Settings
+    place: Any, join: Any, way_m: FloatArray, wanted_s: float, simulated: Settings
 ) -> FloatArray:
-    """Return a way through places drawn at random, as long as gives so many times the scans."""
+    """Return a way through places drawn at random that takes so long."""
     random = np.random.default_rng(simulated["seed"])
-    wanted_s = _MORE * _duration_s(planned_m, simulated)
     low_m, high_m = np.reshape(shapely.bounds(place.floor_m), (2, 2))
     corners_m = way_m[:1]
     while len(corners_m) < 2 or _duration_s(corners_m, simulated) < wanted_s:

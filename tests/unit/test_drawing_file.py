@@ -37,6 +37,7 @@ BAD_FEATURES = [
         ),
         "Self-intersection",
     ),
+    (drawn.door(2, -0.1, glazed="yes"), "glazed is 'yes'; expected true or false"),
     (drawn.feature("room", "Point", [9, 9], name="attic"), "'attic' at .* is not enclosed"),
     (drawn.feature("stairs", "Point", [1, 1]), "kind is 'stairs'; expected one of wall"),
     (drawn.feature("wall", "Point", [1, 1], thickness_m=0.1), "is a Point"),

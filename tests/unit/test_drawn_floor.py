@@ -78,6 +78,18 @@ def test_obstacles_are_walls_and_furniture_but_not_open_doors_or_what_hangs_abov
     assert blocked.area == pytest.approx(BOX.area - 0.2 + 0.5, abs=1e-9)
 
 
+@pytest.mark.parametrize(("sill_m", "ground_m2"), [(0.0, 1.0 * 0.02), (0.5, 0.0)])
+def test_a_pane_is_an_obstacle_unless_it_begins_above_the_sensor(sill_m, ground_m2):
+    """It is 1 m wide and 2 cm thick; below a sill stands wall."""
+    opened, closed = (
+        drawn_floor.floor_obstacles(
+            drawn.plan(drawn.door(2, -0.1), drawn.door(4.1, 1, sill_m=sill_m, glazed=glazed)), 0.4
+        ).area
+        for glazed in (False, True)
+    )
+    assert closed - opened == pytest.approx(ground_m2, abs=1e-9)
+
+
 @pytest.mark.parametrize("height_m", [0.0, 2.5])
 def test_sensor_must_be_between_floor_and_ceiling(height_m):
     with pytest.raises(StageError, match=r"ceiling 2\.5 m"):

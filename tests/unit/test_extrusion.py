@@ -59,6 +59,17 @@ def test_floor_looks_up_and_ceiling_down_over_the_whole_footprint():
     assert (np.unique(floor[..., 2]), np.unique(ceiling[..., 2])) == (0.0, 2.5)
 
 
+def test_only_what_is_glazed_has_a_pane_and_its_wall_is_open_all_the_same():
+    empty, glazed = (
+        extrusion.make_building_mesh(drawn.plan(drawn.door(2, -0.1, sill_m=0.5, glazed=glazed)))
+        for glazed in (False, True)
+    )
+    assert len(corners(empty, "glass")) == 0
+    # 1 m wide, 1.5 m high, 2 cm thick
+    assert volume(corners(glazed, "glass")) == pytest.approx(1.0 * 1.5 * 0.02)
+    assert volume(corners(glazed, "wall")) == pytest.approx(volume(corners(empty, "wall")))
+
+
 def test_furniture_is_closed():
     box = drawn.feature(
         "furniture", "Polygon", [[[1, 2], [2, 2], [2, 2.5], [1, 2.5], [1, 2]]], height_m=0.8

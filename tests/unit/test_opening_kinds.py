@@ -308,9 +308,36 @@ def test_a_bare_span_of_an_outline_is_what_rays_show_it_to_be():
     looked = look((1.0, 2.2), (0.85, 2.4))
     kinds = [
         span.kind
-        for span in opening_kinds.decide_bare_spans(spans, looked, track_m, [room], band_m=0.08)
+        for span in opening_kinds.decide_bare_spans(
+            spans, looked, track_m, [room], max_width_m=2.0, band_m=0.08
+        )
     ]
     assert kinds == ["window", UNSEEN]
+
+
+@pytest.mark.parametrize(
+    ("track_m", "max_width_m", "kind"),
+    [
+        ([(2.0, 2.0), (2.0, 1.0)], 3.0, "door"),
+        ([(2.0, 2.0), (2.0, 1.0)], 2.0, "glass"),
+        ([(2.0, 1.0), (2.0, -1.0)], 2.0, "door"),
+    ],
+)
+def test_a_bare_way_out_too_wide_for_leaves_is_glass_if_nobody_drove_there(
+    track_m, max_width_m, kind, monkeypatch
+):
+    """Over 2.4 m it is open down to the floor, which is seen."""
+    seen = profile(DOOR, n_floor=50)
+    monkeypatch.setattr(opening_kinds, "observe_heights", lambda *_, **__: seen)
+    (span,) = opening_kinds.decide_bare_spans(
+        [BareSpan(np.array([(0.8, 0.0), (3.2, 0.0)]), 0, UNSEEN)],
+        look((0.8, 3.2), (-1.0, 2.4)),
+        np.array(track_m),
+        [shapely.box(0, 0, 4, 4)],
+        max_width_m=max_width_m,
+        band_m=0.08,
+    )
+    assert (span.kind, span.p_kind > 0.8, span.n_rays) == (kind, True, 100)
 
 
 @pytest.mark.parametrize(("floor", "kind"), [((0, -1, 4, 4), GAP), ((0, 0, 4, 4), UNSEEN)])

@@ -280,6 +280,7 @@ def decide_bare_spans(
     track_m: FloatArray,
     rooms: Sequence[shapely.Polygon],
     *,
+    max_width_m: float,
     band_m: float,
 ) -> list[BareSpan]:
     """Return bare spans of rooms' outlines as what rays show them to be, if they do decidedly.
@@ -291,6 +292,8 @@ def decide_bare_spans(
     track_m : (n, 2) float64
         Where sensors were, in the order of time.
     rooms : sequence of shapely.Polygon
+    max_width_m : float
+        Of a way out that nothing drove through.
     band_m : float, > 0
         Returns this near to an outline are at it.
     """
@@ -303,11 +306,18 @@ def decide_bare_spans(
         low_m, high_m = np.sort(line.along_m(span.ends_m)).tolist()
         profile = observe_heights(rays, line, low_m, high_m, band_m=band_m)
         is_driven = bool(shapely.intersects(track, shapely.linestrings(span.ends_m)))
-        share = weigh_kinds(profile, is_outside=span.kind != GAP, is_driven=is_driven)
+        is_outside = span.kind != GAP
+        share = weigh_kinds(profile, is_outside=is_outside, is_driven=is_driven)
+        if is_outside and not is_driven and high_m - low_m > max_width_m:
+            # nothing but glass is open down to the floor and as wide
+            share[_GLASS] += share[_DOOR]
+            share[_DOOR] = 0.0
         best = int(share.argmax())
         is_open = share[best] >= _SURE and profile.open_share >= 1 - profile.open_share
-        kind = KINDS[best] if is_open and best != _WALL else span.kind
-        decided.append(replace(span, kind=kind))
+        if is_open and best != _WALL:
+            n_rays = round(float(profile.n_through.sum()))
+            span = replace(span, kind=KINDS[best], p_kind=float(share[best]), n_rays=n_rays)
+        decided.append(span)
     return decided
 
 

@@ -358,7 +358,9 @@ class _Survey:
             min_length_m=self.settings.openings.min_opening_m,
         )
         return opening_kinds.decide_bare_spans(
-            bare, self.rays, self.track_m, areas, band_m=self.settings.reading.band_m
+            *(bare, self.rays, self.track_m, areas),
+            max_width_m=self.settings.openings.max_opening_m,
+            band_m=self.settings.reading.band_m,
         )
 
 

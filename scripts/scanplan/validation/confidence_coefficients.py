@@ -39,13 +39,10 @@ COEFFICIENTS: dict[str, Any] = {
     "openings": {
         "intercept": 5.7007,
         "features": {
-            "agreement": {"mean": 4.0576, "weight": 0.0},
             "kind": {"mean": 2.9096, "weight": 3.3252},
-            "rays": {"mean": 6.7089, "weight": 0.0},
             "sill": {"mean": 0.9088, "weight": 0.6487},
             "lintel": {"mean": 0.2134, "weight": 1.9438},
             "usual": {"mean": 0.9625, "weight": 0.4842},
-            "hosted": {"mean": 0.9528, "weight": 0.0},
             "wall": {"mean": 4.9899, "weight": 0.6326},
             "joined": {"mean": 1.9837, "weight": 1.0046},
             "alone": {"mean": 0.9153, "weight": 4.586},

@@ -7,7 +7,7 @@ from scanplan.geometry.lines import line_lengths_m
 from scanplan.plan.floorplan import WAYS, FloorPlan, centrelines_m
 from scanplan.types import Columns, FloatArray, IntArray
 from scanplan.validation import surroundings
-from scanplan.validation.drawn_surfaces import FACE, OPENING
+from scanplan.validation.drawn_surfaces import FACE
 
 REASONS = {
     "agreement": "rays of other scans contradict it",
@@ -20,11 +20,9 @@ REASONS = {
     "joined": "its ends meet nothing",
     "bounding": "bounds no room",
     "kind": "kind uncertain",
-    "rays": "few rays",
     "sill": "sill not seen",
     "lintel": "lintel not seen",
     "usual": "a way out of the known rooms, or a window inside",
-    "hosted": "in no wall",
     "wall": "rays of other scans contradict its wall",
     "alone": "another opening beside it",
     "width": "wide for what it is",
@@ -51,7 +49,7 @@ def describe_elements(plan: FloorPlan, validation: Columns) -> dict[str, dict[st
     return {
         "walls": walls,
         "faces": faces,
-        "openings": _describe_openings(plan, validation, walls["agreement"]),
+        "openings": _describe_openings(plan, walls["agreement"]),
         "rooms": _describe_rooms(plan, validation),
     }
 
@@ -59,7 +57,7 @@ def describe_elements(plan: FloorPlan, validation: Columns) -> dict[str, dict[st
 def _describe_faces(plan: FloorPlan, validation: Columns) -> dict[str, FloatArray]:
     faces, lines_m = plan.faces, centrelines_m(plan.faces)
     length_m = np.maximum(line_lengths_m(lines_m), 0.1)
-    agreement, worst = _agreements(validation, FACE, faces["face"])
+    agreement, worst = _agreements(validation, faces["face"])
     normals = np.column_stack([faces["nx"], faces["ny"]])
     return {
         "agreement": agreement,
@@ -97,11 +95,8 @@ def _describe_walls(plan: FloorPlan, faces: dict[str, FloatArray]) -> dict[str, 
     }
 
 
-def _describe_openings(
-    plan: FloorPlan, validation: Columns, of_walls: FloatArray
-) -> dict[str, FloatArray]:
+def _describe_openings(plan: FloorPlan, of_walls: FloatArray) -> dict[str, FloatArray]:
     openings, lines_m = plan.openings, centrelines_m(plan.openings)
-    agreement, _ = _agreements(validation, OPENING, openings["opening"])
     # rays of one gap depend on each other: what they say beyond 19 to 1 is not surer. A passage in
     # no wall is narrow floor, of whatever kind
     p_kind = np.clip(np.nan_to_num(openings["p_kind"], nan=0.95).astype(float), 0.05, 0.95)
@@ -110,13 +105,10 @@ def _describe_openings(
     is_hosted = plan.hosts >= 0
     observed_m = centrelines_m(plan.faces)[plan.faces["state"] == "observed"]
     return {
-        "agreement": agreement,
         "kind": special.logit(p_kind),
-        "rays": np.log1p(openings["n_rays"]),
         "sill": np.isfinite(openings["sill_m"]).astype(float),
         "lintel": np.isfinite(openings["lintel_m"]).astype(float),
         "usual": (is_way == is_inner).astype(float),
-        "hosted": is_hosted.astype(float),
         "wall": np.where(is_hosted, np.append(of_walls, 0.0)[plan.hosts], 0.0),
         "joined": surroundings.count_joined_ends(lines_m, observed_m, same=False).astype(float),
         "alone": surroundings.stand_alone(lines_m),
@@ -152,12 +144,12 @@ def _sum_by_room(rooms: IntArray, numbers: IntArray, lengths_m: FloatArray) -> F
     return np.array([lengths_m[numbers == room].sum() for room in rooms.tolist()], np.float64)
 
 
-def _agreements(validation: Columns, kind: str, numbers: IntArray) -> tuple[FloatArray, FloatArray]:
-    """Return logarithms of odds (n,) that rays left out agree with elements, and with their worst.
+def _agreements(validation: Columns, numbers: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Return logarithms of odds (n,) that rays left out agree with faces, and with their worst.
 
     Spans that no ray tells of are as likely as not.
     """
-    rows = np.flatnonzero(validation["kind"] == kind)
+    rows = np.flatnonzero(validation["kind"] == FACE)
     row_of = {number: row for row, number in enumerate(numbers.tolist())}
     element = np.array([row_of.get(number, -1) for number in validation["number"][rows]], np.int64)
     rows, element = rows[element >= 0], element[element >= 0]

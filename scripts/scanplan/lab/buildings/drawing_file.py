@@ -55,7 +55,8 @@ def parse_drawing(text: str | bytes, source: FilePath) -> DrawnFloor:
     text : str or bytes
         GeoJSON FeatureCollection, coordinates in metres. Every feature has a property `kind`:
         `wall` (LineString with `thickness_m` and optionally `height_m`), `opening` (Point with
-        `width_m`, or LineString along a wall; with `type`, `sill_m`, `lintel_m`), `furniture`
+        `width_m`, or LineString along a wall; with `type`, `sill_m`, `lintel_m`, and `glazed`
+        where a pane is in it, otherwise it is empty), `furniture`
         (Polygon with `height_m`), `room` (Point or Polygon with `name`), and at most one
         `waypoints` (LineString). The member `height_m` of the collection is the ceiling (2.7).
     source : path-like
@@ -186,6 +187,9 @@ def _opening(part: _DrawnPart, walls: Sequence[DrawnWall]) -> DrawnOpening:
             f"{part.where}: type is {part.values.get('type')!r}; expected one of"
             f" {', '.join(OPENING_TYPES)}"
         )
+    glazed = part.values.get("glazed", False)
+    if not isinstance(glazed, bool):
+        raise StageError(f"{part.where}: glazed is {glazed!r}; expected true or false")
     wall, line_m = _place_on_wall(part, walls)
     sill_m = part.number("sill_m", 0.0, wall.height_m, default=0.0)
     return DrawnOpening(
@@ -194,6 +198,7 @@ def _opening(part: _DrawnPart, walls: Sequence[DrawnWall]) -> DrawnOpening:
         sill_m=sill_m,
         lintel_m=part.number("lintel_m", sill_m + 0.01, wall.height_m),
         type=part.values["type"],
+        glazed=glazed,
     )
 
 

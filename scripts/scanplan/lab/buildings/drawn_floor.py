@@ -25,13 +25,22 @@ class DrawnWall:
 
 @dataclass(frozen=True)
 class DrawnOpening:
-    """A hole through a wall: its stretch of the centreline, its edges above the floor."""
+    """A hole through a wall: its stretch of the centreline, its edges above the floor.
+
+    A pane of glass stands in it if it is glazed.
+    """
 
     line_m: LineString
     thickness_m: float
     sill_m: float
     lintel_m: float
     type: str
+    glazed: bool = False
+
+    @property
+    def pane_m(self) -> Polygon:
+        """The ground below its pane, as thick as double glazing."""
+        return Polygon(self.line_m.buffer(0.01, cap_style="flat"))
 
 
 @dataclass(frozen=True)
@@ -115,7 +124,7 @@ def floor_rooms(plan: DrawnFloor) -> list[tuple[str, Polygon]]:
 
 
 def floor_obstacles(plan: DrawnFloor, height_m: float) -> BaseGeometry:
-    """Return the ground that a vehicle of a height cannot stand on: walls, parapets, furniture.
+    """Return the ground that a vehicle of a height cannot stand on: walls, panes, furniture.
 
     Raises
     ------
@@ -128,7 +137,8 @@ def floor_obstacles(plan: DrawnFloor, height_m: float) -> BaseGeometry:
             " lower it"
         )
     sections = [section for low_m, _, section in cut_wall_bands(plan) if low_m < height_m]
-    return shapely.union_all([*sections, *(f.footprint_m for f in plan.furniture)])
+    panes = [o.pane_m for o in plan.openings if o.glazed and o.sill_m < height_m]
+    return shapely.union_all([*sections, *panes, *(f.footprint_m for f in plan.furniture)])
 
 
 def _footprint_of_walls(plan: DrawnFloor) -> BaseGeometry:

@@ -40,7 +40,7 @@ def make_building_mesh(plan: drawn_floor.DrawnFloor) -> Mesh:
     """Return the mesh of a floor: closed walls and furniture between floor and ceiling.
 
     Floor and ceiling run through under and above the walls, so that no gap opens where they meet.
-    Windows and doors are empty space (thesis, section 4.1).
+    Windows and doors are empty space (thesis, section 4.1), but for those that are drawn glazed.
 
     Parameters
     ----------
@@ -58,6 +58,10 @@ def make_building_mesh(plan: drawn_floor.DrawnFloor) -> Mesh:
     ]
     for box in plan.furniture:
         soups.append(("furniture", extrude_bands([(0.0, box.height_m, box.footprint_m)])))
+    for opening in plan.openings:
+        if opening.glazed:
+            pane = (opening.sill_m, opening.lintel_m, opening.pane_m)
+            soups.append(("glass", extrude_bands([pane])))
     return join_meshes(soups)
 
 
