@@ -5,7 +5,6 @@ Theory 21 (1975).
 """
 
 import numpy as np
-from scipy.spatial import KDTree
 
 from scanplan.geometry.tolerances import ROUNDING
 from scanplan.types import FloatArray, IntArray
@@ -45,6 +44,8 @@ def mean_shift(
     ValueError
         If the bandwidth is not positive or a coordinate is not finite.
     """
+    from scipy.spatial import KDTree  # 0.3 s, and only processes that extract walls need it
+
     xy_m = np.asarray(xy_m, float).reshape(-1, 2)
     if not bandwidth_m > 0 or not np.isfinite(xy_m).all():
         raise ValueError(

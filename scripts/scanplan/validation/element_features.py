@@ -1,7 +1,6 @@
 """What is known of the elements of a plan without any truth: their evidence, and how they fit."""
 
 import numpy as np
-from scipy import special
 
 from scanplan.geometry.lines import line_lengths_m
 from scanplan.plan.floorplan import WAYS, FloorPlan, centrelines_m
@@ -111,7 +110,7 @@ def _describe_openings(
     observed_m = centrelines_m(plan.faces)[plan.faces["state"] == "observed"]
     return {
         "agreement": agreement,
-        "kind": special.logit(p_kind),
+        "kind": np.log(p_kind / (1 - p_kind)),
         "rays": np.log1p(openings["n_rays"]),
         "sill": np.isfinite(openings["sill_m"]).astype(float),
         "lintel": np.isfinite(openings["lintel_m"]).astype(float),
