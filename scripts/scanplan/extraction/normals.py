@@ -175,7 +175,8 @@ class _Grid:
         occupied = np.zeros(self.size, bool)
         occupied[key] = True
         self.key = np.flatnonzero(occupied)
-        self._before = np.concatenate([[0], np.cumsum(occupied, dtype=np.int32)])
+        self._before = np.zeros(self.size + 1, np.int32)
+        np.cumsum(occupied, out=self._before[1:])
         self.of_point = self._before.take(key).astype(np.int64)
 
     def before(self, key: IntArray) -> IntArray:

@@ -173,7 +173,7 @@ def make_plan(
     traced = trace_faces(
         *(candidates, rays, settings.merge, settings.reading, settings.furniture), threads=threads
     )
-    views = free_space.free_polygons(rays)
+    views = free_space.free_polygons(rays, threads)
     floor = free_space.union_on_grid(views)
     assemble = functools.partial(
         assemble_walls,
