@@ -44,8 +44,6 @@ def mean_shift(
     ValueError
         If the bandwidth is not positive or a coordinate is not finite.
     """
-    from scipy.spatial import KDTree  # 0.3 s, and only processes that extract walls need it
-
     xy_m = np.asarray(xy_m, float).reshape(-1, 2)
     if not bandwidth_m > 0 or not np.isfinite(xy_m).all():
         raise ValueError(
@@ -57,8 +55,21 @@ def mean_shift(
     bins = _Bins(xy_m, point_weight, bandwidth_m)
     modes_m, mode_weight = _climb(bins)
     modes_m = _select_modes(modes_m, mode_weight, bandwidth_m)
-    distance_m, nearest = KDTree(modes_m).query(bins.mean)
+    distance_m, nearest = _find_nearest(bins.mean, modes_m)
     return np.where(distance_m <= bandwidth_m, nearest, -1)[bins.bin_of_point], modes_m
+
+
+def _find_nearest(xy_m: FloatArray, modes_m: FloatArray) -> tuple[FloatArray, IntArray]:
+    """Return distance and number of the mode nearest to each place (n, 2)."""
+    distance_m = np.full(len(xy_m), np.inf)
+    nearest = np.zeros(len(xy_m), np.int64)
+    # modes are few: scipy's trees take longer to import
+    for number, mode_m in enumerate(modes_m):
+        apart_m = np.hypot(*(xy_m - mode_m).T)
+        is_nearer = apart_m < distance_m
+        distance_m[is_nearer] = apart_m[is_nearer]
+        nearest[is_nearer] = number
+    return distance_m, nearest
 
 
 class _Bins:
