@@ -51,7 +51,7 @@ class TestCells:
     def test_a_plane_has_one_row(self):
         found = rasterise(column(1, -5.0, 0.0, 9.0), planar=True)
         assert cells(found.occupied) == [[1, 0]] * 3
-        assert found.count_below(found.occupied, 0.1)[1] == 3
+        assert found.count_occupied(0.1)[1] == 3
 
     def test_middles_of_columns_and_those_between_places(self):
         found = rasterise(span_m=(1.0, 1.1))
@@ -127,7 +127,7 @@ places = st.lists(st.tuples(st.floats(-1, 2), st.floats(-1, 9)), max_size=30)
 @given(places, places, st.booleans())
 def test_every_ray_is_counted_once(occupied, free, planar):
     found = rasterise(occupied, free, planar=planar)
-    counts = [found.count_below(cells, 9.1).sum() for cells in (found.occupied, found.free)]
+    counts = [found.count_occupied(9.1).sum(), found.count_free(9.1).sum()]
     assert counts == [len(occupied), len(free)]
 
 

@@ -197,6 +197,23 @@ def test_what_rules_import_is_light():
     assert result.stdout.strip() == "[]"
 
 
+WITHOUT_SCIPY = (
+    *("observe_walls", "order_scans", "extract_chosen_walls", "validate_plan", "rate_plan"),
+    *("draw_figures", "export_plan", "export_files", "write_report"),
+    # what worker processes of the registration import
+    *("scanplan.registration.batches", "scanplan.registration.loops"),
+)
+"""Stages of the default target that work without scipy, which takes as long to import as they."""
+
+
+def test_stages_begin_without_scipy_where_they_do_not_need_it():
+    code = f"import sys, {', '.join(WITHOUT_SCIPY)}; print('scipy' in sys.modules)"
+    result = subprocess.run(
+        [sys.executable, "-c", code], cwd=SCRIPTS, capture_output=True, text=True, check=True
+    )
+    assert result.stdout.strip() == "False"
+
+
 def test_only_guarded_calls_of_stages_say_snakemake():
     for script in SCRIPTS.glob("*.py"):
         before, _, _ = script.read_text(encoding="utf-8").partition('if __name__ == "__main__":')

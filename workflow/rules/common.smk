@@ -14,6 +14,9 @@ if not IS_MODULE:
     gc.set_threshold(100_000)
 # of a plan of two threads an eighth of the memory: each would keep for itself what it has freed
 os.environ.setdefault("MALLOC_ARENA_MAX", "1")
+# arrays are multiplied in thousands of small pieces: threads for one of them would wait for the next
+# at full load, on the cores that other stages and workers have
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 sys.path.insert(0, f"{PROJECT}/scripts")
 from scanplan.errors import StageError

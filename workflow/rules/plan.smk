@@ -177,6 +177,8 @@ rule export_plan:
         "logs/{dataset}/export_plan.log",
     benchmark:
         "benchmarks/{dataset}/export_plan.tsv"
+    # of what waits for the rated plan it takes longest, and the report waits for it
+    priority: 1
     threads: 1
     resources:
         mem_mb=grown(mem_mb=1500),

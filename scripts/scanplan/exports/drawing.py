@@ -4,7 +4,6 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
-from scipy import constants
 
 from scanplan.exports.sheet.composition import Sheet, paper_marks, paper_words
 from scanplan.exports.sheet.lettering import FONT, POINTS_PER_MM, font_size_mm, rotation
@@ -17,7 +16,7 @@ _ALIGNMENTS = {0.0: "left", 0.5: "center", 1.0: "right"}
 def draw_sheet(sheet: Sheet) -> Figure:
     """Return a sheet as a figure of its size."""
     width, height = sheet.page.size_mm
-    mm_per_inch = constants.inch / constants.milli
+    mm_per_inch = 25.4
     figure = Figure(figsize=(width / mm_per_inch, height / mm_per_inch))
     axes = figure.add_axes((0, 0, 1, 1))
     axes.set_axis_off()

@@ -9,7 +9,6 @@ from ezdxf.document import Drawing
 from ezdxf.enums import InsertUnits
 from ezdxf.filemanagement import new
 from ezdxf.layouts.blocklayout import BlockLayout
-from scipy import constants
 
 from scanplan.exports.sheet.paper import Page
 from scanplan.exports.sheet.styles import DASHES_MM, LAYERS, Letters, Paper
@@ -59,7 +58,7 @@ class Scale:
     """
 
     def __init__(self, unit: str, page: Page) -> None:
-        self.per_m = 1 / constants.milli if unit == "mm" else 1.0
+        self.per_m = 1000.0 if unit == "mm" else 1.0
         self.per_mm = self.per_m / page.mm_per_m
 
 

@@ -5,7 +5,6 @@ Theory 21 (1975).
 """
 
 import numpy as np
-from scipy.spatial import KDTree
 
 from scanplan.geometry.tolerances import ROUNDING
 from scanplan.types import FloatArray, IntArray
@@ -56,8 +55,21 @@ def mean_shift(
     bins = _Bins(xy_m, point_weight, bandwidth_m)
     modes_m, mode_weight = _climb(bins)
     modes_m = _select_modes(modes_m, mode_weight, bandwidth_m)
-    distance_m, nearest = KDTree(modes_m).query(bins.mean)
+    distance_m, nearest = _find_nearest(bins.mean, modes_m)
     return np.where(distance_m <= bandwidth_m, nearest, -1)[bins.bin_of_point], modes_m
+
+
+def _find_nearest(xy_m: FloatArray, modes_m: FloatArray) -> tuple[FloatArray, IntArray]:
+    """Return distance and number of the mode nearest to each place (n, 2)."""
+    distance_m = np.full(len(xy_m), np.inf)
+    nearest = np.zeros(len(xy_m), np.int64)
+    # modes are few: scipy's trees take longer to import
+    for number, mode_m in enumerate(modes_m):
+        apart_m = np.hypot(*(xy_m - mode_m).T)
+        is_nearer = apart_m < distance_m
+        distance_m[is_nearer] = apart_m[is_nearer]
+        nearest[is_nearer] = number
+    return distance_m, nearest
 
 
 class _Bins:

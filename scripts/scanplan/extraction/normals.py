@@ -9,7 +9,6 @@ constant angle, as seen from the sensor, spans the same few rings at any range.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import KDTree
 
 from scanplan.geometry.moments import FEWEST, group_moments, least_variance_direction
 from scanplan.geometry.tolerances import ROUNDING
@@ -123,6 +122,8 @@ def estimate_outline_normals(xy_m: FloatArray, *, reach_deg: float) -> FloatArra
     xy_m = np.asarray(xy_m, float)
     if len(xy_m) < FEWEST[2]:
         return np.full((len(xy_m), 2), np.nan)
+    from scipy.spatial import KDTree  # 0.3 s, and scans in space do not need it
+
     tree = KDTree(xy_m)
     radius = np.maximum(ON_M, np.deg2rad(reach_deg) * np.linalg.norm(xy_m, axis=1))
     nearest = tree.query(xy_m, k=min(_NEAREST_2D + 1, len(xy_m)))[0][:, -1]
@@ -174,7 +175,8 @@ class _Grid:
         occupied = np.zeros(self.size, bool)
         occupied[key] = True
         self.key = np.flatnonzero(occupied)
-        self._before = np.concatenate([[0], np.cumsum(occupied, dtype=np.int32)])
+        self._before = np.zeros(self.size + 1, np.int32)
+        np.cumsum(occupied, out=self._before[1:])
         self.of_point = self._before.take(key).astype(np.int64)
 
     def before(self, key: IntArray) -> IntArray:

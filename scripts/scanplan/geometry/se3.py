@@ -5,8 +5,8 @@
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial.transform import Rotation
 
+from scanplan.geometry import rotations
 from scanplan.geometry.tolerances import ROUNDING
 from scanplan.types import BoolArray, FloatArray, IntArray
 
@@ -30,7 +30,7 @@ def pose_matrix(xyz_m: npt.ArrayLike, quat_xyzw: npt.ArrayLike) -> FloatArray:
     pose[..., 3, :] = (0, 0, 0, 1)
     known = np.isfinite(quat_xyzw).all(axis=-1) & np.isfinite(xyz_m).all(axis=-1)
     if known.any():
-        pose[known, :3, :3] = Rotation.from_quat(quat_xyzw[known]).as_matrix()
+        pose[known, :3, :3] = rotations.quaternions_to_matrices(quat_xyzw[known])
         pose[known, :3, 3] = xyz_m[known]
     return pose
 
@@ -44,7 +44,7 @@ def split_pose(pose: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
     quat = np.full((*pose.shape[:-2], 4), np.nan)
     known = np.isfinite(pose).all(axis=(-2, -1))
     if known.any():
-        quat[known] = Rotation.from_matrix(pose[known, :3, :3]).as_quat(canonical=True)
+        quat[known] = rotations.matrices_to_quaternions(pose[known][:, :3, :3])
     return pose[..., :3, 3].copy(), quat
 
 

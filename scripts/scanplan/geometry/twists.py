@@ -6,8 +6,8 @@ screw motion), which makes the six numbers those that errors are stated in.
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial.transform import Rotation
 
+from scanplan.geometry import rotations
 from scanplan.geometry.tolerances import ROUNDING
 from scanplan.types import FloatArray
 
@@ -19,7 +19,7 @@ def twist_to_motion(twist: npt.ArrayLike) -> FloatArray:
     """Return the 4 x 4 matrices of six numbers each, (..., 6) to (..., 4, 4)."""
     twist = np.asarray(twist, float)
     result = np.zeros((*twist.shape[:-1], 4, 4))
-    turns = Rotation.from_rotvec(twist[..., 3:].reshape(-1, 3)).as_matrix()
+    turns = rotations.vectors_to_matrices(twist[..., 3:].reshape(-1, 3))
     result[..., :3, :3] = turns.reshape(*twist.shape[:-1], 3, 3)
     result[..., :3, 3] = twist[..., :3]
     result[..., 3, 3] = 1
@@ -33,7 +33,7 @@ def motion_to_twist(a_from_b: npt.ArrayLike) -> FloatArray:
     """
     a_from_b = np.asarray(a_from_b, float)
     turn = a_from_b[..., :3, :3]
-    # sin and cos of the angle, times the axis: a tenth of the time of scipy's way through
+    # sin and cos of the angle, times the axis: a tenth of the time of the way through
     # quaternions; entry by entry, as most calls are of one motion
     x, y, z = ((turn[..., i, j] - turn[..., j, i]) / 2 for i, j in ((2, 1), (0, 2), (1, 0)))
     sine = np.sqrt(x * x + y * y + z * z)
@@ -48,15 +48,8 @@ def motion_to_twist(a_from_b: npt.ArrayLike) -> FloatArray:
     # near half a turn rounding leaves nothing of the axis
     reversed_turn = (cosine < 0) & np.isfinite(cosine)
     if np.any(reversed_turn):
-        vector[reversed_turn] = Rotation.from_matrix(turn[reversed_turn]).as_rotvec()
+        vector[reversed_turn] = rotations.matrices_to_vectors(turn[reversed_turn])
     return twist
-
-
-def cross_matrix(vector: npt.ArrayLike) -> FloatArray:
-    """Return [v]x with [v]x w = v x w, (..., 3) to (..., 3, 3)."""
-    x, y, z = np.moveaxis(np.asarray(vector, float), -1, 0)
-    zero = np.zeros_like(x)
-    return np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=-1).reshape(*x.shape, 3, 3)
 
 
 def twist_adjoint(a_from_b: npt.ArrayLike) -> FloatArray:
@@ -65,7 +58,7 @@ def twist_adjoint(a_from_b: npt.ArrayLike) -> FloatArray:
     turn = a_from_b[..., :3, :3]
     result = np.zeros((*a_from_b.shape[:-2], 6, 6))
     result[..., :3, :3] = result[..., 3:, 3:] = turn
-    result[..., :3, 3:] = cross_matrix(a_from_b[..., :3, 3]) @ turn
+    result[..., :3, 3:] = rotations.cross_matrix(a_from_b[..., :3, 3]) @ turn
     return result
 
 

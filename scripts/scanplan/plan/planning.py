@@ -172,7 +172,7 @@ def make_plan(
         rays, segments, settings.ranges, settings.reading.band_m, up
     )
     rays = range_bias.remove_range_bias(rays, errors_m, up)
-    views = free_space.free_polygons(rays)
+    views = free_space.free_polygons(rays, threads)
     floor = free_space.union_on_grid(views)
     survey = _Survey(settings, rays, track_m, views, floor)
     surfaces = survey.find_surfaces(segments, threads)

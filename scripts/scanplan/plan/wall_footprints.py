@@ -4,8 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 from shapely.geometry import Polygon
 
 from scanplan.plan.tolerances import END_M
@@ -149,8 +147,11 @@ def _near_walls(lines_m: FloatArray, half_m: FloatArray) -> tuple[Array, Array]:
 
 def _group_ends(first: Array, second: Array, at_corner: Array, n_ends: int) -> list[list[int]]:
     """Return the groups of ends that meet, directly or through one another, in order."""
-    pairs = coo_matrix((np.ones(len(first)), (first, second)), shape=(n_ends, n_ends))
-    _, label = connected_components(pairs, directed=False)
+    # ends are few: scipy's connected components would take longer to import
+    label = np.arange(n_ends)
+    for one, other in zip(first, second, strict=True):
+        low, high = sorted((label[one], label[other]))
+        label[label == high] = low
     group_of = label[at_corner]
     return [at_corner[group_of == group].tolist() for group in np.unique(group_of)]
 

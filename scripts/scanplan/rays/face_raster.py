@@ -85,22 +85,25 @@ class FaceRaster:
         low, high = np.ceil(places - 0.5).astype(np.int64)
         return slice(max(low, 0), max(high, 0))
 
-    def count_below(self, cells: Cells, height_m: float) -> IntArray:
-        """Return how many rays each column (c,) has in rows below a height; in the plane all."""
-        column = cells.column if self.planar else cells.column[cells.row < _row_at(height_m)]
-        return np.bincount(column, minlength=self.n_columns)
+    def count_occupied(self, below_m: float) -> IntArray:
+        """Return how many rays of each column (c,) end below a height; in the plane all."""
+        return self._count_below(self.occupied, self._n_occupied, below_m)
+
+    def count_free(self, below_m: float) -> IntArray:
+        """Return how many rays of each column (c,) go through below a height; in the plane all."""
+        return self._count_below(self.free, self._n_free, below_m)
 
     def is_crossed(self, below_m: float) -> BoolArray:
         """Return in which columns (c,) more rays go through below a height than end there."""
-        return self.count_below(self.free, below_m) > self.count_below(self.occupied, below_m)
+        return self.count_free(below_m) > self.count_occupied(below_m)
 
     def is_opened(self, below_m: float) -> BoolArray:
         """Return in which columns (c,) that are crossed not just one or two rays go through."""
-        return self.is_crossed(below_m) & (self.count_below(self.free, below_m) >= FEW)
+        return self.is_crossed(below_m) & (self.count_free(below_m) >= FEW)
 
     def is_solid(self, below_m: float) -> BoolArray:
         """Return in which columns (c,) rays end below a height and hardly one goes through."""
-        return (self.count_below(self.occupied, below_m) > 0) & ~self.is_opened(below_m)
+        return (self.count_occupied(below_m) > 0) & ~self.is_opened(below_m)
 
     def is_overlooked(self, below_m: float) -> BoolArray:
         """Return in which columns (c,) rays go through above whatever rays end at."""
@@ -108,7 +111,7 @@ class FaceRaster:
         np.maximum.at(top_row, *self.occupied)
         is_over = self.planar | (self.free.row > top_row[self.free.column])
         n_over = np.bincount(self.free.column[is_over], minlength=self.n_columns)
-        few = np.maximum(FEW, STRAY_SHARE * self.count_below(self.occupied, below_m))
+        few = np.maximum(FEW, STRAY_SHARE * self.count_occupied(below_m))
         return n_over >= few
 
     def seen_top_m(self, columns: slice = slice(None)) -> float:
@@ -117,6 +120,22 @@ class FaceRaster:
         See `seen_tops_m`.
         """
         return float(seen_tops_m(self.top_m[None, columns], CELL_M)[0])
+
+    @cached_property
+    def _n_occupied(self) -> dict[int, IntArray]:
+        """What was counted: every pair of faces asks for the height of doors again."""
+        return {}
+
+    @cached_property
+    def _n_free(self) -> dict[int, IntArray]:
+        return {}
+
+    def _count_below(self, cells: Cells, counted: dict[int, IntArray], below_m: float) -> IntArray:
+        row = _row_at(below_m)
+        if row not in counted:
+            column = cells.column if self.planar else cells.column[cells.row < row]
+            counted[row] = np.bincount(column, minlength=self.n_columns)
+        return counted[row]
 
     def _cells_of(self, places: Places) -> Cells:
         along_m, height_m = places

@@ -9,6 +9,7 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry.tolerances import SHORTEST_M
 from scanplan.rays.ray_set import RaySet
+from scanplan.stage import workers
 from scanplan.types import FloatArray
 
 _SECTOR_RAD = np.radians(0.5)
@@ -22,7 +23,7 @@ GRID_M = (
 )
 
 
-def free_polygons(rays: RaySet) -> list[MultiPolygon]:
+def free_polygons(rays: RaySet, threads: int = 1) -> list[MultiPolygon]:
     """Return what each scan's rays went over, as polygons.
 
     In every half degree (more where a sensor's rays are further apart) a ray of the longest tenth
@@ -32,16 +33,20 @@ def free_polygons(rays: RaySet) -> list[MultiPolygon]:
     Parameters
     ----------
     rays : ray_set.RaySet
+    threads : int
+        Cores to use; the result does not depend on it.
 
     Returns
     -------
     list of shapely geometry
         A polygon, polygons, or an empty one, per scan.
     """
-    return [
-        _star(sensor_m[:2], rays.azimuth_rad[rows], rays.xyz_m[rows] - sensor_m)
-        for rows, sensor_m in zip(rays.rows, rays.sensors_m, strict=True)
-    ]
+
+    def draw_star(scan: int) -> MultiPolygon:
+        rows, sensor_m = rays.rows[scan], rays.sensors_m[scan]
+        return _star(sensor_m[:2], rays.azimuth_rad[rows], rays.xyz_m[rows] - sensor_m)
+
+    return workers.map_in_threads(draw_star, range(len(rays.rows)), threads)
 
 
 def column_spacing_rad(azimuth_rad: FloatArray, way_m: FloatArray) -> float:

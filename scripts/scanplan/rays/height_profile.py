@@ -9,7 +9,6 @@ rays of few scans do not count as many proofs: Minka (2000), Estimating a Dirich
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import special
 
 from scanplan.geometry.lines import Line
 from scanplan.rays import expected_returns
@@ -70,6 +69,8 @@ class HeightProfile:
         Logarithms; rows without rays say nothing, and no row alone says all: what it shows may be
         of something else.
         """
+        from scipy import special  # 0.2 s, and few stages ask this
+
         count = self.ends[:, None]
         total = count.sum(axis=2)
         of_ends = special.gammaln(count + _ENDS) - special.gammaln(_ENDS)

@@ -76,4 +76,5 @@ def _lowest_level(z_m: FloatArray) -> float:
 
 def _find_lowest(z_m: FloatArray) -> float:
     """Return the lowest of heights (n,), but for the few that are wrong."""
-    return float(np.percentile(z_m, _LOWEST_PERCENTILE, method="lower"))
+    rank = (len(z_m) - 1) * _LOWEST_PERCENTILE // 100
+    return float(np.partition(z_m, rank)[rank])

@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from scanplan.errors import StageError
 from scanplan.geometry.tolerances import SHORTEST_M
@@ -31,6 +30,8 @@ def configured_extrinsics(base_from_sensor: Sequence[float]) -> list[frame_edges
     StageError
         If it is not six finite numbers.
     """
+    from scipy.spatial.transform import Rotation  # 0.3 s, and few sensors are configured
+
     values = np.asarray(base_from_sensor, float)
     if values.shape != (6,) or not np.isfinite(values).all():
         raise StageError(

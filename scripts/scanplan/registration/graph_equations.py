@@ -7,7 +7,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import SuperLU
 
-from scanplan.geometry import se3, twists
+from scanplan.geometry import rotations, se3, twists
 from scanplan.types import FloatArray, IntArray
 
 
@@ -150,7 +150,7 @@ def _jacobian(residual: FloatArray) -> FloatArray:
     result = np.zeros((len(residual), 6, 6))
     turn = residual[:, 3:]
     result[:, :3, :3] = twists.twist_to_motion(residual)[:, :3, :3]
-    result[:, 3:, 3:] = np.eye(3) + twists.cross_matrix(turn) / 2
+    result[:, 3:, 3:] = np.eye(3) + rotations.cross_matrix(turn) / 2
     return result
 
 

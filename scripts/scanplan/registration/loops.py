@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from functools import cache
 
 import numpy as np
-from scipy.spatial import KDTree
 
 from scanplan.geometry import se3
 from scanplan.registration import constraints, prepared_clouds
@@ -76,6 +75,8 @@ def choose_loop_pairs(
     list of (source, target)
         Rows, source > target, sorted.
     """
+    from scipy.spatial import KDTree  # 0.3 s, and processes that align pairs do not need it
+
     tree = KDTree(xy_m)
     pairs: list[RowPair] = []
     for source in np.flatnonzero(is_station).tolist():

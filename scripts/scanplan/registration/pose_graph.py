@@ -100,14 +100,13 @@ def _minimise(
         moved = equations.move(pose, step)
         moved_state = equations.evaluate(moved)
         is_done = np.abs(step).max() < step_done
-        if moved_state.cost <= state.cost:
+        is_better = moved_state.cost <= state.cost
+        if is_better:
             pose = moved
             state = moved_state
-            step = _least_squares_step(equations, state)
-        else:
-            step = step / 2
         if is_done:
             break
+        step = _least_squares_step(equations, state) if is_better else step / 2
     return pose, state
 
 

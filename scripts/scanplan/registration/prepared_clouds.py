@@ -1,14 +1,17 @@
 """Scans prepared for registration: voxel means, normals, a search tree; and how far two overlap."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import small_gicp
-from scipy.spatial import KDTree
 
 from scanplan.geometry import se3
 from scanplan.geometry.tolerances import FACING
 from scanplan.types import FloatArray, IntArray
+
+if TYPE_CHECKING:
+    from scipy.spatial import KDTree
 
 NEIGHBOURS = 10  # of a spatial normal: few see noise, many smooth edges away
 _LINE_NEIGHBOURS = 6  # of a planar normal; fewer, as a line needs fewer than a surface
@@ -34,7 +37,7 @@ class PreparedCloud:
     """
 
     xyz_m: FloatArray
-    tree: small_gicp.KdTree | KDTree
+    tree: "small_gicp.KdTree | KDTree"
     planar: bool
     normal: FloatArray
     features: small_gicp.PointCloud | None
@@ -82,6 +85,8 @@ def prepare_cloud(thinned_m: FloatArray, *, planar: bool, reach_m: float = 1.0) 
     """
     points = np.ascontiguousarray(thinned_m, np.float64)
     if planar:
+        from scipy.spatial import KDTree  # 0.3 s, and scans in space do not need it
+
         xy_m = points[:, :2]
         tree = KDTree(xy_m)
         normal = _towards_origin(estimate_planar_normals(xy_m, tree, reach_m=reach_m), xy_m)
@@ -93,7 +98,7 @@ def prepare_cloud(thinned_m: FloatArray, *, planar: bool, reach_m: float = 1.0) 
     return PreparedCloud(points, space_tree, False, normal, cloud)
 
 
-def estimate_planar_normals(xy_m: FloatArray, tree: KDTree, *, reach_m: float) -> FloatArray:
+def estimate_planar_normals(xy_m: FloatArray, tree: "KDTree", *, reach_m: float) -> FloatArray:
     """Return unit normals (n, 2) from the nearest neighbours.
 
     They are NaN where neighbours are too few or too far, or form no line.

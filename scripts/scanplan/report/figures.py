@@ -3,12 +3,12 @@
 from collections.abc import Mapping
 
 import numpy as np
+import shapely
 from matplotlib import colors
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, StrMethodFormatter
-from scipy.spatial import KDTree
 
 from scanplan.report import top_view
 from scanplan.report.chart import LOGARITHMIC_FROM
@@ -23,7 +23,9 @@ _FULL_HULLS = "hull"
 
 def count_nearby(xy_m: FloatArray, radius_m: float = NEARBY_M) -> IntArray:
     """Return how many other positions (n,) lie within `radius_m` of each position (n, 2)."""
-    return KDTree(xy_m).query_ball_point(xy_m, radius_m, return_length=True) - 1
+    places = shapely.points(xy_m)
+    near, _ = shapely.STRtree(places).query(places, predicate="dwithin", distance=radius_m)
+    return np.bincount(near, minlength=len(xy_m)) - 1
 
 
 def draw_scans_figure(

@@ -10,8 +10,6 @@ from typing import Any
 
 import numpy as np
 import shapely
-from scipy.cluster import vq
-from scipy.spatial import distance
 
 from scanplan.geometry.tolerances import SAME_M, SMALLEST_M2
 from scanplan.store import schemas
@@ -166,6 +164,8 @@ def _reach_m(centres: FloatArray, radius: str) -> FloatArray:
         raise ValueError(f"radius {radius} must be one of {', '.join(RADII)}")
     if radius == "none" or len(centres) < 2:
         return np.full(len(centres), np.inf)
+    from scipy.spatial import distance  # 0.3 s, and only processes that cluster need it
+
     apart_m = distance.squareform(distance.pdist(centres))
     np.fill_diagonal(apart_m, np.inf)
     nearest_m = apart_m.min(axis=0)
@@ -174,6 +174,8 @@ def _reach_m(centres: FloatArray, radius: str) -> FloatArray:
 
 def _assign_clusters(xy_m: FloatArray, centres: FloatArray, reach_m: FloatArray) -> IntArray:
     """Return each point's nearest centre, numbered without gaps, or `OUTLIERS`."""
+    from scipy.cluster import vq  # 0.3 s, and only processes that cluster need it
+
     # neither a matrix product nor threads: the same labels for any core count
     nearest, distance_m = vq.vq(xy_m, centres, check_finite=False)
     is_in = distance_m <= reach_m[nearest]

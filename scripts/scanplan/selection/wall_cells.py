@@ -12,7 +12,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import ndimage
 
 from scanplan.extraction import normals
 from scanplan.geometry.tolerances import ROUNDING, SHORTEST_M
@@ -230,16 +229,16 @@ def _measure_facing(
     share = cosine * cosine
     n_points = grid.sums(share)
     mean_cosine = _ratio(grid.sums(share * cosine), n_points)
-    n_beside = ndimage.convolve1d(n_points, np.ones(_ROWS), axis=1, mode="constant")
+    n_beside = _join_window(n_points.T, _ROWS, np.add, 0.0).T
     window = 2 * round(settings.max_gap_m / settings.cell_m) + 1
     wanted = settings.min_points_planar if heights is None else settings.min_points
-    n_together = ndimage.convolve1d(n_beside, np.ones(window), axis=0, mode="constant")
+    n_together = _join_window(n_beside, window, np.add, 0.0)
     findable = np.minimum(n_together / (_SURE * wanted), 1.0)
     if heights is not None:
         z_m, tallness = (values.take(there) for values in heights)
-        extent_m = grid.top(z_m, (window, _ROWS)) + grid.top(-z_m, (window, _ROWS))
+        extent_m = grid.top(z_m, window) + grid.top(-z_m, window)
         findable = findable * (extent_m >= settings.min_height_m)
-        findable = findable * np.maximum(grid.top(tallness, (window, _ROWS)), 0.0)
+        findable = findable * np.maximum(grid.top(tallness, window), 0.0)
     length_m = settings.cell_m * mean_cosine * _ratio(n_points, n_beside) * findable
     along, across = np.nonzero(length_m >= SHORTEST_M)
     origin = grid.origin.astype(np.int32)
@@ -268,16 +267,32 @@ class _Grid:
         upper = np.bincount(self._lower + 1, weight * self._upper_share, minlength=n_cells)
         return np.asarray(lower + upper, float).reshape(self.shape)
 
-    def top(self, value: FloatArray, window: tuple[int, int]) -> FloatArray:
-        """Return the largest value of points in a window round every cell; -inf without any."""
+    def top(self, value: FloatArray, window: int) -> FloatArray:
+        """Return the largest value of points about every cell, -inf without any.
+
+        In a window along, and in `_ROWS` across.
+        """
         largest = np.full(self.shape, -np.inf)
-        for cells in (self._lower, self._lower + 1):
-            np.maximum.at(largest.reshape(-1), cells, value)
-        for axis, size in enumerate(window):
-            largest = ndimage.maximum_filter1d(
-                largest, size, axis=axis, mode="constant", cval=-np.inf
-            )
-        return np.asarray(largest, float)
+        np.maximum.at(largest.reshape(-1), self._lower, value)
+        largest[:, 1:] = np.maximum(largest[:, 1:], largest[:, :-1])
+        across = _join_window(largest.T, _ROWS, np.maximum, -np.inf).T
+        return _join_window(across, window, np.maximum, -np.inf)
+
+
+def _join_window(values: FloatArray, size: int, join: np.ufunc, beyond: float) -> FloatArray:
+    """Return values (n, k) joined with those of the rows about them, `size` rows in all.
+
+    Those before the first row and behind the last are `beyond`. Scipy's filters take longer to
+    import than all scans take here.
+    """
+    half = size // 2
+    padded = np.pad(values, ((half, half), (0, 0)), constant_values=beyond)
+    joined = values
+    for step in range(half, 0, -1):
+        before = padded[half - step :][: len(values)]
+        behind = padded[half + step :][: len(values)]
+        joined = join(joined, join(before, behind))
+    return np.asarray(joined, float)
 
 
 def _ratio(part: FloatArray, whole: FloatArray) -> FloatArray:

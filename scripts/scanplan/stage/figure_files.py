@@ -5,7 +5,6 @@ import logging
 from collections.abc import Sequence
 
 import matplotlib
-from matplotlib.backends.backend_pdf import PdfPages
 from matplotlib.figure import Figure
 
 # it logs every table that it leaves out of a font
@@ -24,6 +23,8 @@ def format_svg(figure: Figure) -> str:
 def format_pdf(figures: Sequence[Figure], title: str | None = None) -> bytes:
     """Return figures as the pages of a PDF: bytes that are the same for the same figures."""
     metadata = {"Title": title, "CreationDate": None, "Creator": "scanplan", "Producer": None}
+    from matplotlib.backends.backend_pdf import PdfPages  # 0.3 s, and most figures are SVG
+
     # 42: TrueType fonts, whose text can be searched
     with matplotlib.rc_context({"pdf.fonttype": 42}):
         file = io.BytesIO()

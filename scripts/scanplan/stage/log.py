@@ -1,6 +1,7 @@
 """The output of a stage: everything to its log file, progress and errors to the user's screen."""
 
 import faulthandler
+import gc
 import logging
 import os
 import signal
@@ -45,6 +46,8 @@ def log_to_file(path: FilePath) -> Iterator[None]:
             level=logging.INFO, format="%(asctime)s %(levelname)s %(message)s", force=True
         )
         faulthandler.enable()
+        # what is imported stays: the collector is not to look through it over and over
+        gc.freeze()
         orphans.end_with_supervisor()
         outcome = "failed"
         handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}

@@ -13,14 +13,14 @@ succession, and statistical inference (interval of a share).
 """
 
 from dataclasses import dataclass
+from statistics import NormalDist
 
 import numpy as np
-from scipy import special
 
 from scanplan.geometry.tolerances import ROUNDING
 from scanplan.types import BoolArray, FloatArray, IntArray
 
-SIGMAS = float(special.ndtri(0.975))
+SIGMAS = NormalDist().inv_cdf(0.975)
 """Standard deviations to either side that hold 95 of 100 cases, of intervals and tolerances."""
 
 
@@ -138,6 +138,8 @@ def _bounds(
 
     `square` is the sum of squares of what each place adds to the share's error.
     """
+    from scipy import special  # 0.2 s, and what reads intervals does not need it
+
     variance = m / np.maximum(m - 1, 1) * square
     # where places do not differ, as if all were good, each counts as one ray
     effective = np.where(m > 0, m, np.nan).astype(float)

@@ -9,7 +9,6 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from scipy import special
 
 from scanplan.plan.floorplan import NUMBERS, FloorPlan
 from scanplan.types import Array, BoolArray, Columns, FloatArray
@@ -77,7 +76,8 @@ def weigh_features(
     means = np.array([model["features"][name]["mean"] for name in names])
     weights = np.array([model["features"][name]["weight"] for name in names])
     shares = (np.column_stack([features[name] for name in names]) - means) * weights
-    return special.expit(model["intercept"] + shares.sum(axis=1)), shares
+    logit = model["intercept"] + shares.sum(axis=1)
+    return (1 + np.tanh(logit / 2)) / 2, shares
 
 
 def _explain(shares: FloatArray, features: Mapping[str, Any], verify: BoolArray) -> Array:

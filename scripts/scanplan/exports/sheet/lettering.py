@@ -6,7 +6,6 @@ import numpy as np
 import shapely
 from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import TextToPath
-from scipy import constants
 
 from scanplan.exports.sheet.marks import Word
 from scanplan.types import FloatArray
@@ -14,7 +13,7 @@ from scanplan.types import FloatArray
 FONT = "DejaVu Sans"
 """Of SVG, PDF and PNG: it comes with matplotlib, so that widths are the same everywhere."""
 _CAPITALS = 0.729  # height of the font's capitals as a share of its size, from its tables
-POINTS_PER_MM = constants.milli / constants.point
+POINTS_PER_MM = 72 / 25.4  # points and millimetres of an inch
 CLEAR = 0.35  # of a capital's height: kept free around words, less than the gap between lines
 
 

@@ -7,7 +7,6 @@ from functools import cached_property
 
 import numpy as np
 import shapely
-from scipy import constants
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.exports.sheet.lettering import rotation
@@ -79,7 +78,7 @@ class Page:
     @cached_property
     def mm_per_m(self) -> float:
         """Millimetres on paper for a metre."""
-        return 1 / constants.milli / self.scale
+        return 1000 / self.scale
 
     @cached_property
     def _origin_mm(self) -> FloatArray:
@@ -160,7 +159,7 @@ def choose_page(
         raise ValueError(f"tables of {sum(blocks)} rows are more than a sheet holds")
     x0, y0, x1, y1 = page.drawing_mm
     room_mm = np.array([x1 - x0, y1 - y0]) - 2 * Paper.AROUND
-    scale = math.ceil(float((extent_m / constants.milli / room_mm).max()))
+    scale = math.ceil(float((1000 * extent_m / room_mm).max()))
     return Page(largest, size, scale, page.rows, turn_deg, middle_m)
 
 

@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import KDTree
 
 from scanplan.geometry import se3
 from scanplan.registration.prepared_clouds import PreparedCloud
@@ -64,6 +63,8 @@ def merge_scans(
     clouds : sequence of k prepared_clouds.PreparedCloud
     world_from_cloud : (k, 4, 4) float64
     """
+    from scipy.spatial import KDTree  # 0.3 s, and only poses that drift need it
+
     middle = len(rows) // 2
     level = se3.level_frame(world_from_cloud[middle])
     level_from_cloud = se3.invert_pose(level) @ world_from_cloud
