@@ -7,6 +7,7 @@ Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [pl
        run.py compare FOLDER FOLDER
        run.py confidence FOLDER SURVEY,... SURVEY,...
        run.py next_visit FOLDER [SURVEY ...]
+       run.py odometry FOLDER [DRIVE ...]
 
 Without a name all of them but wall_quality, which takes minutes, plans, which measures the surveys
 that `make compare` has finished under results/, and validation, which damages the plans there; a
@@ -28,6 +29,10 @@ reliability diagram in that folder.
 `next_visit` cuts drives short, drives to where their plans say that a second visit should stand,
 and as far again at random, and counts what is settled rightly. Surveys are named as those of
 `guard`, with any seed; drives and plans are kept in FOLDER.
+
+`odometry` registers drives with odometry alone, of 200 and 600 m with a planar and a spatial
+scanner, two seeds each, and a real one, and fails where poses are farther off than they may be;
+drives are named 200_2d_1 to 600_3d_2, and intel_odometry.
 """
 
 import sys
@@ -142,11 +147,22 @@ def bench_next_visit(folder: str, *names: str) -> None:
     visit_bench.bench(ROOT, SETTINGS, Path(folder).resolve(), recordings, surveys)
 
 
+def bench_odometry(folder: str, *names: str) -> None:
+    """Poses of drives without a localiser against the truth."""
+    import odometry_bench
+
+    recordings = (ROOT.parent / "shared/data").resolve()
+    drives = names or odometry_bench.drive_names()
+    kept = Path(folder).resolve()
+    sys.exit(not odometry_bench.bench(ROOT, SETTINGS, kept, recordings, drives))
+
+
 APART: dict[str, Callable[..., None]] = {
     "guard": record_guard,
     "compare": compare_guards,
     "confidence": fit_confidence,
     "next_visit": bench_next_visit,
+    "odometry": bench_odometry,
     "pipeline": bench_pipeline,
 }
 BENCHES: dict[str, Callable[[], None]] = {
