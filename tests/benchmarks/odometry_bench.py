@@ -9,8 +9,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from helpers import odometry_drives
 
+from helpers import odometry_drives
 from scanplan.lab.simulation import survey_setup
 from scanplan.types import FloatArray, Settings
 
@@ -51,12 +51,11 @@ def bench(
     bool
         Whether all are in bounds.
     """
-    return all([_measure(project, settings, folder, recordings, name) for name in names])
+    are_good = [_measure(project, settings, folder, recordings, name) for name in names]
+    return all(are_good)
 
 
-def _measure(
-    project: Path, settings: Settings, folder: Path, recordings: Path, name: str
-) -> bool:
+def _measure(project: Path, settings: Settings, folder: Path, recordings: Path, name: str) -> bool:
     started_s = time.process_time()
     if name == _REAL:
         return _measure_real(recordings / _REAL, folder / name, started_s)

@@ -120,9 +120,7 @@ def compare_submaps(source: Submap, target: Submap, target_from_source: FloatArr
     return Agreement(float(overlap), float(support))
 
 
-def measure_contradiction(
-    source: Submap, target: Submap, target_from_source: FloatArray
-) -> float:
+def measure_contradiction(source: Submap, target: Submap, target_from_source: FloatArray) -> float:
     """Return the longest piece of either's walls on the other's free floor, metres.
 
     Parameters
