@@ -77,7 +77,7 @@ def register_scans(
     tables.write_table(edges, schemas.EDGES, columns, allow_empty=True)
     columns = results.registration_columns(survey.scan_ids, candidates["t_ns"], verdicts)
     found = doubts.read_doubts(poses, schemas.POSES).add(
-        damage, contradictions.find_misfit(verdicts)
+        damage, contradictions.find_misfit(verdicts, is_odometry=survey.is_odometry)
     )
     if constraints is not None:
         found = found.add(contradictions=constraints.doubts)

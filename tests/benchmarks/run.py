@@ -9,6 +9,7 @@ Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [pl
        run.py next_visit FOLDER [SURVEY ...]
        run.py sheets RESULTS FOLDER [SURVEY ...]
        run.py ids RESULTS FOLDER SURVEY ...
+       run.py odometry FOLDER [DRIVE ...]
 
 Without a name all of them but wall_quality, which takes minutes, plans, which measures the surveys
 that `make compare` has finished under results/, and validation, which damages the plans there; a
@@ -34,6 +35,10 @@ and as far again at random, and counts what is settled rightly. Surveys are name
 `sheets` counts words that lie on others on the sheets of surveys that are registered in RESULTS,
 and `ids` the elements that keep their GlobalIds over twenty changes of settings. Their plans are
 made with this code, and kept in FOLDER.
+
+`odometry` registers drives with odometry alone, of 200 and 600 m with a planar and a spatial
+scanner, two seeds each, and a real one, and fails where poses are farther off than they may be;
+drives are named 200_2d_1 to 600_3d_2, and intel_odometry.
 """
 
 import sys
@@ -162,11 +167,22 @@ def bench_ids(results: str, folder: str, *names: str) -> None:
     exchange_bench.bench_ids(Path(results), Path(folder), names, SETTINGS)
 
 
+def bench_odometry(folder: str, *names: str) -> None:
+    """Poses of drives without a localiser against the truth."""
+    import odometry_bench
+
+    recordings = (ROOT.parent / "shared/data").resolve()
+    drives = names or odometry_bench.drive_names()
+    kept = Path(folder).resolve()
+    sys.exit(not odometry_bench.bench(ROOT, SETTINGS, kept, recordings, drives))
+
+
 APART: dict[str, Callable[..., None]] = {
     "guard": record_guard,
     "compare": compare_guards,
     "confidence": fit_confidence,
     "next_visit": bench_next_visit,
+    "odometry": bench_odometry,
     "pipeline": bench_pipeline,
     "sheets": bench_sheets,
     "ids": bench_ids,

@@ -82,6 +82,27 @@ def test_rooms_laid_over_one_another_are_told_as_a_fold():
     assert "1 of 1 places" in sentence and "folded" in sentence
 
 
+def test_walls_of_a_lobby_that_a_twin_of_it_has_not_are_told():
+    """Long corridors agree, and outweigh an end wall of 1.6 m that rays of the other pass."""
+    sides = [wall([x, -9], [x, 9]) for x in (-1, 1)]
+    end = wall([-0.8, 5], [0.8, 5])
+    closed, open_ended = submap([*sides, end]), submap([*sides, wall([-0.8, 8], [0.8, 8])])
+    agreement = recognition.compare_submaps(closed, open_ended, np.eye(4))
+    assert agreement.support > 0.9
+    # what lies within 0.2 m of the sides is on them
+    piece_m = recognition.measure_contradiction(closed, open_ended, np.eye(4))
+    assert abs(piece_m - 1.4) < 0.01
+    assert recognition.measure_contradiction(closed, closed, np.eye(4)) == 0.0
+    poses = planar_poses([[0, 0], [50, 0], [0.5, 0], [0.6, 0]], np.zeros(4))
+    way_m = np.array([0.0, 50.0, 99.5, 140.0])
+    # two of three places, or one, which a table that was moved would be, too
+    other = [submap([*sides, end], 2), submap([*sides, end], 3)]
+    twins = [submap([*sides, wall([-0.8, 8], [0.8, 8])], 0), submap(room(6, 6), 1), *other]
+    (sentence,) = folds.find_folds(twins, poses, way_m)
+    assert "2 of 3 places" in sentence and "folded there" in sentence
+    assert folds.find_folds(twins[:3], poses[:3], way_m[:3]) == []
+
+
 def test_parts_without_a_tie_are_told():
     def ties(*pairs):
         return folds.find_loose_parts(8, *np.array(pairs, np.int64).T)

@@ -8,21 +8,24 @@ _LEAST_KEPT = 0.85  # 28 sound surveys, ten of them recorded, keep 0.91 and more
 _UNASKED = ("too_few_points", "pose_gap")
 
 
-def find_misfit(scan_results: Sequence[ScanResult]) -> list[str]:
+def find_misfit(scan_results: Sequence[ScanResult], *, is_odometry: bool = False) -> list[str]:
     """Return whether most scans do not fit one another at their poses, as a sentence.
 
     Parameters
     ----------
     scan_results : sequence of sequential.ScanResult
         One per candidate.
+    is_odometry : bool
+        Whether the poses do not know where the robot is if it is carried.
     """
     asked = [result for result in scan_results if result.reason not in _UNASKED]
     n_kept = sum(result.kept for result in asked)
     # one scan alone may be of a door that closed
     if len(asked) - n_kept <= max(1, (1 - _LEAST_KEPT) * len(asked)):
         return []
+    carried = ", or the robot was carried" if is_odometry else ""
     return [
         f"only {n_kept:,} of {len(asked):,} scans fit one another where their poses put them: the"
         " clock of the poses, the mounting (input.base_from_sensor) or the unit of ranges may"
-        " be wrong"
+        f" be wrong{carried}"
     ]

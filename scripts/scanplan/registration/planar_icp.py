@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from scanplan.geometry.tolerances import SHORTEST_M
+from scanplan.geometry.tolerances import FACING, SHORTEST_M
 from scanplan.geometry.twists import PLANAR_DIMENSIONS
 from scanplan.registration.prepared_clouds import PreparedCloud
 from scanplan.types import FloatArray
@@ -46,7 +46,7 @@ def align_planar(
     information = np.zeros((3, 3))
     reach_m = float(np.sqrt(2 * np.mean(source.xyz_m[:, :2] ** 2)))
     for _ in range(max_iterations):
-        equations = _normal_equations(source.xyz_m[:, :2], target, motion, distance_m)
+        equations = _normal_equations(source, target, motion, distance_m)
         if equations is None:
             return None
         information, gradient = equations
@@ -58,16 +58,21 @@ def align_planar(
 
 
 def _normal_equations(
-    source_xy_m: FloatArray, target: PreparedCloud, motion: FloatArray, distance_m: float
+    source: PreparedCloud, target: PreparedCloud, motion: FloatArray, distance_m: float
 ) -> tuple[FloatArray, FloatArray] | None:
     """Return information (3, 3) and gradient (3,) of the point-to-line error; None without pairs.
 
     They are those of a step (dx, dy, turn) in the source's frame.
     """
+    source_xy_m = source.xyz_m[:, :2]
     moved_m = source_xy_m @ motion[:2, :2].T + motion[:2, 3]
     apart_m, nearest = target.tree.query(moved_m, distance_upper_bound=distance_m)
     pairs = np.flatnonzero(np.isfinite(apart_m))
     pairs = pairs[np.isfinite(target.normal[nearest[pairs], 0])]
+    moved_normal = source.normal[pairs] @ motion[:2, :2].T
+    cosine = np.einsum("ij,ij->i", moved_normal, target.normal[nearest[pairs]])
+    # the two sides of a wall, seen from either room, are not one; a corner faces no side
+    pairs = pairs[~(cosine < -FACING)]
     if len(pairs) < len(PLANAR_DIMENSIONS):
         return None
     normal = target.normal[nearest[pairs]]

@@ -60,8 +60,8 @@ def find_folds(
     driven_m = np.abs(way_m[rows][:, None] - way_m[rows][None])
     # so near that most of what one shows the other must show, too; and another pass
     pairs = np.argwhere(np.tril((apart_m < 1.5) & (driven_m > 10.0)))
-    agreements = [
-        recognition.compare_submaps(
+    views = [
+        (
             maps[source],
             maps[target],
             se3.invert_pose(world_from_level[target]) @ world_from_level[source],
@@ -69,11 +69,19 @@ def find_folds(
         for source, target in pairs.tolist()
     ]
     # chairs that moved leave nine tenths; rooms laid over one another about half
-    n_contradicting = sum(agreement.support < 0.8 for agreement in agreements)
-    if n_contradicting <= 0.1 * len(agreements):
+    is_other = np.array([recognition.compare_submaps(*view).support < 0.8 for view in views], bool)
+    # the leaf of a door is a metre wide at most: a longer piece of wall does not move
+    pieces_m = np.array([recognition.measure_contradiction(*view) for view in views])
+    is_contradicting = is_other | (pieces_m > 1.0)
+    n_contradicting = int(is_contradicting.sum())
+    # a long table may have been moved, at one place or at few
+    if not is_other.any() and n_contradicting <= max(1.0, 0.1 * len(views)):
         return []
+    worst = pairs[np.argmax(np.where(is_contradicting, pieces_m, -1.0))][0]
+    x_m, y_m = xy_m[worst]
     return [
-        f"{n_contradicting:,} of {len(agreements):,} places that the drive passed twice do not look"
-        " the same (walls where floor was free): the plan may be folded; record a localiser's"
-        " poses, or lower advanced.registration.drift if the odometry is better than it says"
+        f"{n_contradicting:,} of {len(views):,} places that the drive passed twice do not look"
+        f" the same (walls where floor was free), most at x = {x_m:.1f} m, y = {y_m:.1f} m: the"
+        " plan may be folded there; record a localiser's poses, or lower"
+        " advanced.registration.drift if the odometry is better than it says"
     ]

@@ -8,6 +8,9 @@ how exactly, and the rays of both whether it can be.
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import sparse
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import KDTree
 
 from scanplan.geometry import se3
 from scanplan.geometry.tolerances import ROUNDING
@@ -117,10 +120,48 @@ def compare_submaps(source: Submap, target: Submap, target_from_source: FloatArr
     return Agreement(float(overlap), float(support))
 
 
+def measure_contradiction(source: Submap, target: Submap, target_from_source: FloatArray) -> float:
+    """Return the longest piece of either's walls on the other's free floor, metres.
+
+    Parameters
+    ----------
+    source, target : Submap
+    target_from_source : (4, 4) float64
+        As they are placed.
+    """
+    views = [
+        (source, target, target_from_source),
+        (target, source, se3.invert_pose(target_from_source)),
+    ]
+    return max(_longest_piece_m(*_place_points(*view)) for view in views)
+
+
+def _longest_piece_m(xy_m: FloatArray, is_wall: BoolArray, is_free: BoolArray) -> float:
+    """Return the extent of the largest connected piece of points on free floor."""
+    contradicting_m = xy_m[is_free & ~is_wall]
+    if len(contradicting_m) == 0:
+        return 0.0
+    # neighbours along a wall are a cell apart, or two where a point is missing
+    near = KDTree(contradicting_m).query_pairs(2.5 * _FINE_M, output_type="ndarray")
+    shape = (len(contradicting_m), len(contradicting_m))
+    joined = sparse.coo_array((np.ones(len(near)), (near[:, 0], near[:, 1])), shape=shape)
+    n_pieces, piece = connected_components(joined, directed=False)
+    extents_m = [np.ptp(contradicting_m[piece == one], axis=0) for one in range(n_pieces)]
+    return float(np.linalg.norm(extents_m, axis=1).max())
+
+
 def _count_points(
     source: Submap, target: Submap, target_from_source: FloatArray
 ) -> tuple[int, int]:
     """Return how many points of a submap lie on walls and on free floor of another."""
+    _, is_wall, is_free = _place_points(source, target, target_from_source)
+    return int(is_wall.sum()), int((is_free & ~is_wall).sum())
+
+
+def _place_points(
+    source: Submap, target: Submap, target_from_source: FloatArray
+) -> tuple[FloatArray, BoolArray, BoolArray]:
+    """Return a submap's points (n, 2) in the frame of another; on its walls, on its free floor."""
     xy_m = se3.transform_points(target_from_source, source.cloud.xyz_m)[:, :2]
     low_m = np.minimum(xy_m.min(axis=0), target.cloud.xyz_m[:, :2].min(axis=0)) - 1
     high_m = np.maximum(xy_m.max(axis=0), target.cloud.xyz_m[:, :2].max(axis=0)) + 1
@@ -129,7 +170,7 @@ def _count_points(
     is_wall = np.isfinite(apart_m)
     free = _free_cells(target, low_m, shape)
     column, row = ((xy_m - low_m) / _FINE_M).astype(int).T
-    return int(is_wall.sum()), int((free[column, row] & ~is_wall).sum())
+    return xy_m, is_wall, free[column, row]
 
 
 def _free_cells(submap: Submap, low_m: FloatArray, shape: tuple[int, ...]) -> BoolArray:
