@@ -104,13 +104,7 @@ def _describe_openings(plan: FloorPlan, of_walls: FloatArray) -> dict[str, Float
     is_hosted = plan.hosts >= 0
     observed_m = centrelines_m(plan.faces)[plan.faces["state"] == "observed"]
     return {
-<<<<<<< HEAD
-        "kind": special.logit(p_kind),
-=======
-        "agreement": agreement,
         "kind": np.log(p_kind / (1 - p_kind)),
-        "rays": np.log1p(openings["n_rays"]),
->>>>>>> s14
         "sill": np.isfinite(openings["sill_m"]).astype(float),
         "lintel": np.isfinite(openings["lintel_m"]).astype(float),
         "usual": (is_way == is_inner).astype(float),
