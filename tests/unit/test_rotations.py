@@ -6,7 +6,7 @@ from scanplan.geometry import rotations
 
 TURNS = Rotation.concatenate(
     [
-        Rotation.random(300, random_state=1),
+        Rotation.random(300, rng=1),
         Rotation.identity(1),
         Rotation.from_rotvec(1e-10 * np.eye(3)),
         # half turns, about each axis and about one between

@@ -23,7 +23,7 @@ _FULL_HULLS = "hull"
 
 def count_nearby(xy_m: FloatArray, radius_m: float = NEARBY_M) -> IntArray:
     """Return how many other positions (n,) lie within `radius_m` of each position (n, 2)."""
-    places = shapely.points(xy_m)
+    places = np.asarray(shapely.points(xy_m), object)
     near, _ = shapely.STRtree(places).query(places, predicate="dwithin", distance=radius_m)
     return np.bincount(near, minlength=len(xy_m)) - 1
 
