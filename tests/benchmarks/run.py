@@ -18,7 +18,7 @@ FOLDER holds the dataset folders with the truths of those it did not simulate.
 `pipeline` runs the default target on a drive of 6,000 scans, or of 60,000 in ten bags (big; or in
 as many bags as are said, as big=3), with the code of the last commit, after that of other commits
 where some are named: time, memory and bytes of every stage, beside a raw read. The drives, 6 and
-11 GB, are simulated once and kept in FOLDER.
+5 GB, are simulated once and kept in FOLDER.
 
 `guard` makes the plans of 36 simulated drives and six real recordings with the code of a
 commit, in a folder of its own; `compare` prints what changed between two such folders, and fails

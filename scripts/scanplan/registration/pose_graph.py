@@ -119,16 +119,23 @@ def _least_squares_step(equations: GraphEquations, state: GraphState) -> FloatAr
         # matrix conjugate gradients take some five rounds, where factors of many visits to the
         # same rooms take time that grows with more than the scans. The next step corrects what a
         # thousandth leaves
-        near = LinearOperator(regular.shape, equations.factors.solve, dtype=regular.dtype)
+        solve = equations.factors.solve
+        # the stubs know the general class alone
+        near = LinearOperator(
+            regular.shape,
+            solve,
+            dtype=regular.dtype,  # pyright: ignore[reportCallIssue]
+        )
         step, n_rounds_missed = cg(regular, -gradient, rtol=1e-3, maxiter=15, M=near)
         if n_rounds_missed == 0:
             return step
     # the old ones may be the largest thing in memory
     equations.factors = None
-    equations.factors = splu(
+    factors = splu(
         regular,
         permc_spec="MMD_AT_PLUS_A",
         diag_pivot_thresh=0.0,
         options={"SymmetricMode": True},
     )
-    return -equations.factors.solve(gradient)
+    equations.factors = factors
+    return -factors.solve(gradient)
