@@ -87,7 +87,7 @@ def _measure_real(dataset: Path, folder: Path, started_s: float) -> bool:
     off_m = odometry_drives.errors_m(
         placed.t_ns[kept],
         placed.world_from_sensor[kept],
-        dataset / "reference.tum",
+        _sorted_copy(dataset / "reference.tum", folder / "reference.tum"),
         # the robot stood for longer than it takes to the next scan that is kept
         max_gap_s=5.0,
     )
@@ -99,6 +99,13 @@ def _measure_real(dataset: Path, folder: Path, started_s: float) -> bool:
         flush=True,
     )
     return is_good
+
+
+def _sorted_copy(reference: Path, copy: Path) -> Path:
+    """Write reference poses in the order of their stamps, each stamp once."""
+    rows = {float(row.split()[0]): row for row in reference.read_text().splitlines()}
+    copy.write_text("\n".join(rows[stamp] for stamp in sorted(rows)) + "\n")
+    return copy
 
 
 def _plan_way(building: Path, settings: Settings, route: str, metres: float) -> FloatArray:
