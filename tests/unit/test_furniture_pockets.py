@@ -89,6 +89,13 @@ def test_what_is_deeper_than_furniture_hides_more_than_it():
     assert all(front.left[0] is not face for pocket in found for face in pocket.fronts)
 
 
+def test_a_corner_that_surfaces_enclose_is_a_part_of_the_building_where_no_furniture_fills_it():
+    seen = [(2, 0, 5, 0), (5, 0, 5, 4), (5, 4, 0, 4), (0, 4, 0, 2)]
+    corner = [wall([face]) for face in [(0, 2, 2, 2), (2, 2, 2, 0)]]
+    floor = box(0, 0, 5, 4).difference(box(0, 0, 2, 2))
+    assert pockets([*(wall([face]) for face in seen), *corner], floor) == []
+
+
 def block(width_m, length_m):
     """A room with a block in its middle, seen from all sides."""
     x1, y1 = 1.5 + length_m, 1.5 + width_m

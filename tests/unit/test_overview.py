@@ -16,7 +16,7 @@ def some(schema, n, **columns):
     return filled | columns
 
 
-def make_results(folder):
+def make_results(folder, predicted=0.75):
     kept = np.array([True, True, False])
     registration = some(schemas.REGISTRATION, 3, scan_id=np.arange(3, dtype=np.int32), kept=kept)
     tables.write_table(folder / "registration.parquet", schemas.REGISTRATION, registration)
@@ -25,7 +25,7 @@ def make_results(folder):
     walls = some(schemas.PLAN_WALLS, 1, verify=np.array([True]))
     openings = some(schemas.OPENINGS, 3, opening=np.arange(3, dtype=np.int32))
     openings["type"] = np.array(["door", "window", "door"], object)
-    rays = some(schemas.VALIDATION, 1, share=np.array([0.75]))
+    rays = some(schemas.VALIDATION, 1, share=np.array([predicted]))
     numbers = [0, 1, 2, 1, 2, 0]
     rated = some(schemas.CONFIDENCE, 6, number=np.array(numbers, np.int32), p_true=np.ones(6))
     rated["table"] = np.array([*["openings"] * 3, *["rooms"] * 2, "walls"], object)
@@ -86,6 +86,15 @@ def test_the_page_says_all_and_takes_names_for_text(tmp_path, project_root):
     assert "1 with a plan" in text and "1 failed" in text
     assert "too few &lt;scans&gt;" in text and 'href="second' not in text
     pd.testing.assert_frame_equal(pd.read_parquet(table), rows)
+
+
+def test_what_is_not_known_is_left_blank(tmp_path, project_root):
+    folder = project_root / "workflow/report/page"
+    sources = {name: (folder / name).read_text() for name in ("overview.html.j2", "overview.css")}
+    make_results(tmp_path / "results/first", predicted=np.nan)
+    rows = overview.gather_overview(tmp_path / "results", {"first": []}, {"first": []})
+    _, page = overview.write_overview(rows, tmp_path / "results", sources)
+    assert '<td class="number"></td>' in page.read_text()
 
 
 def test_nothing_at_all_is_a_page_too(tmp_path, project_root):

@@ -46,6 +46,7 @@ def test_the_table_over_all_says_what_became_of_each(campus):
 def test_the_page_over_all_shows_a_plan_and_the_fault(campus, tmp_path):
     with browser.Page(tmp_path) as page:
         page.open((campus.folder / "results/summary.html").as_uri())
+        page.run("Promise.all([...document.images].map(i => i.decode()))")
         drawn = page.run("[...document.images].map(i => [i.getAttribute('src'), i.naturalWidth])")
         text = page.run("document.body.innerText")
         is_scrolled = page.run("document.documentElement.scrollWidth > innerWidth")

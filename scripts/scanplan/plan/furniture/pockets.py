@@ -97,7 +97,7 @@ def find_pockets(
         pocket = _make_pocket(hidden, fronts, unpaired_m)
         walls_seen = near if own is None else faces.behind(pocket.ground)
         goes_on = any(id(face) in continued for face in fronts)
-        if _has_corner_in(pocket.ground, parts[row]) and (
+        if not _is_part_of_building(pocket, parts[row]) and (
             _is_before_wall(pocket, walls_seen, grown[row])
             or (not goes_on and _is_block(pocket.ground, parts[row], unpaired_m, max_thickness_m))
         ):
@@ -201,6 +201,19 @@ def _faces_onto(face: FaceInterval, part: Polygon) -> bool:
 
 def _beside(face: FaceInterval, forward_m: float) -> LineString:
     return LineString(face.ends + forward_m * face.line.normal)
+
+
+def _is_part_of_building(pocket: Pocket, part: Polygon) -> bool:
+    """Return whether a pocket fills a room from wall to wall, or its fronts enclose too much.
+
+    What no front stands before may be floor that furniture hides; what fronts enclose on all sides
+    is one body.
+    """
+    if not _has_corner_in(pocket.ground, part):
+        return True
+    fronts = shapely.union_all([LineString(face.ends) for face in pocket.fronts])
+    bare = pocket.ground.boundary.intersection(part).difference(fronts.buffer(CORNER_M))
+    return pocket.ground.area > FURNITURE_M2 and bare.length < BEHIND_M
 
 
 def _has_corner_in(ground: BaseGeometry, part: Polygon) -> bool:
