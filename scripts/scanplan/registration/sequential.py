@@ -10,7 +10,7 @@ import numpy as np
 from scanplan.geometry import se3
 from scanplan.registration import constraints, prepared_clouds
 from scanplan.registration.constraints import PlacedScan, PoseConstraint
-from scanplan.registration.drift import recognition, submaps
+from scanplan.registration.drift import submaps
 from scanplan.registration.registration_settings import SequentialSettings
 from scanplan.types import FloatArray
 
@@ -220,6 +220,9 @@ class SequentialRegistrar(ScanRegistrar):
 
         Wheels that slip turn a rover by more than an alignment finds back.
         """
+        # scipy's 0.3 s, and few scans are searched for
+        from scanplan.registration.drift import recognition
+
         previous = submaps.merge_scans(
             np.arange(len(self._previous)),
             [other.cloud for other in self._previous],

@@ -1,7 +1,7 @@
 """The sheet of a plan, put together: what SVG, PDF, PNG and DXF render."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import shapely
@@ -79,7 +79,11 @@ def compose_sheet(
     # the scale bar with the axes takes six rows
     blocks = [6, len(legend), len(plan.areas)]
     turn_deg = -plan.main_direction_deg if turn_deg is None else turn_deg
-    page = choose_page(*_extent(marks, symbols, turn_deg), turn_deg, blocks, least_scale)
+    extent = _extent(marks, [symbol.ends_m for symbol in symbols], turn_deg)
+    page = choose_page(*extent, turn_deg, blocks, least_scale)
+    # doors that swing out put the chain before them farther off: room on the other side goes there
+    swings = [flatten(path) for symbol in symbols for path in symbol_paths(symbol)]
+    page = replace(page, middle_m=np.mean(_extent(marks, swings, turn_deg), axis=0))
     bar, legend_slots, table_slots = fill_slots(page.slots(), blocks) or ([], [], [])
     beside: list[Mark | Word] = [
         *title.draw_frame(page),
@@ -127,11 +131,10 @@ def _list_legend(plan: FloorPlan, marks: list[Mark], symbols: list[Symbol]) -> l
 
 
 def _extent(
-    marks: list[Mark], symbols: list[Symbol], turn_deg: float
+    marks: list[Mark], lines_m: list[FloatArray], turn_deg: float
 ) -> tuple[FloatArray, FloatArray]:
-    corners = [path[:, :2] for mark in marks for path in mark.paths]
-    corners += [symbol.ends_m for symbol in symbols]
-    turned = np.concatenate(corners) @ rotation(turn_deg).T
+    paths = [path for mark in marks for path in mark.paths] + lines_m
+    turned = np.concatenate([path[:, :2] for path in paths]) @ rotation(turn_deg).T
     return turned.min(axis=0), turned.max(axis=0)
 
 
@@ -226,7 +229,8 @@ def paper_marks(sheet: Sheet) -> Iterator[Mark]:
 def plan_extent_mm(sheet: Sheet) -> tuple[float, float, float, float]:
     """Return least x and y, greatest x and y of the plan on paper, without dimensions and words."""
     page = sheet.page
-    turned_m = np.stack(_extent(sheet.marks, sheet.symbols, page.turn_deg))
+    ends_m = [symbol.ends_m for symbol in sheet.symbols]
+    turned_m = np.stack(_extent(sheet.marks, ends_m, page.turn_deg))
     (x0, y0), (x1, y1) = page.to_paper(turned_m @ rotation(page.turn_deg)).tolist()
     return x0, y0, x1, y1
 
