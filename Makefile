@@ -20,7 +20,7 @@ $(if $(UNKNOWN),$(error $(UNKNOWN): no such variable; there are $(KNOWN)))
 # every stage is a process, which would compile the package anew
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help run compare quick test test-slurm lint style types faults audit bench figures pictures settings
+.PHONY: help run compare quick test tests test-slurm lint style types faults audit bench figures pictures settings
 .PHONY: environment kiss-icp clean
 .DEFAULT_GOAL := run
 
@@ -46,7 +46,10 @@ quick: environment style ## lint and the tests of what changed since main, under
 	    test -z "$$changed" || $(BIN)/basedpyright --project . $$changed
 	@$(PYTEST) -m "not workflow and not recordings" $$($(BIN)/python tests/changed_tests.py tests) $(ARGS)
 
-test: environment lint ## lint and all tests but Slurm's, about ten minutes
+test: environment style ## lint and all tests but Slurm's, about ten minutes
+	@$(MAKE) --no-print-directory --jobs $(CORES) types tests
+
+tests:
 	@$(PYTEST) -m "not slurm" $(ARGS)
 
 test-slurm: environment ## the profile for Slurm, on a Slurm installed and started here; as root on Debian
@@ -54,8 +57,7 @@ test-slurm: environment ## the profile for Slurm, on a Slurm installed and start
 	    $(BIN)/pip install -qq --disable-pip-version-check --no-deps --require-hashes -r environment-slurm.lock && \
 	    PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pytest -n 0 -s -m slurm tests/slurm $(ARGS)
 
-lint: environment ## style, types and the workflow's own checks, side by side
-	@$(MAKE) --no-print-directory --jobs $(CORES) --output-sync=target style types
+lint: environment style types ## style, types and the workflow's own checks
 
 types: environment
 	@$(BIN)/basedpyright --project .
