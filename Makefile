@@ -17,6 +17,10 @@ GIVEN := $(foreach name,$(.VARIABLES),$(if $(findstring command line,$(origin $(
 UNKNOWN := $(filter-out $(KNOWN),$(GIVEN))
 $(if $(UNKNOWN),$(error $(UNKNOWN): no such variable; there are $(KNOWN)))
 
+# of an option that is given twice Snakemake takes the last
+TWICE := $(if $(DATASET)$(REPLACE),$(filter --config --config=% -C,$(ARGS))) $(if $(CONFIG),$(filter --configfile%,$(ARGS)))
+$(if $(strip $(TWICE)),$(error ARGS: $(strip $(TWICE)) would take the place of DATASET, REPLACE or CONFIG; put settings into a file: CONFIG=FILE))
+
 # every stage is a process, which would compile the package anew
 unexport PYTHONDONTWRITEBYTECODE
 

@@ -1,5 +1,6 @@
 """Carry out what a person says of the plan: names, corrections, additions, a place on Earth."""
 
+import json
 from collections.abc import Mapping
 
 from scanplan.plan import planning
@@ -38,6 +39,8 @@ def correct_plan(
     reference = georeference.fit_reference(points)
     notes = tables.read_notes(plan["free"], schemas.FREE)
     notes |= {"n_corrections": str(outcome.n_applied)}
+    unmatched = [line.removeprefix(f"{corrections}: ") for line in outcome.unmatched]
+    notes |= {"unmatched_corrections": json.dumps(unmatched)} if unmatched else {}
     placed = ""
     if reference is not None:
         notes |= {"georeference": georeference.format_reference(reference)}

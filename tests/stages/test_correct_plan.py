@@ -135,6 +135,8 @@ def test_one_that_matches_nothing_is_told(plan, caplog):
     )
     said = caplog.text
     assert "entry 1: (20, 20) lies within 0.5 m of no wall: not applied" in said
+    why = "entry 1: (20, 20) lies within 0.5 m of no wall: not applied"
+    assert found.unmatched_corrections[0] == why
     assert "entry 2: (20, 20) lies in no room" in said and "entry 3: (20, 20) lies within" in said
     assert "entry 4: no wall lies within 0.5 m" in said
     assert "0 of 4 corrections applied" in said

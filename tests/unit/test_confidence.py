@@ -115,3 +115,14 @@ def test_where_no_height_is_seen_nothing_is_likely_or_not():
     assert np.isnan(found["p_true"][walls]).all()
     assert (found["verify"][walls] == PARTS["walls"]["verify"]).all()
     assert not found["verify"][found["table"] == "rooms"].any()
+
+
+def test_what_a_person_corrected_is_neither_rated_nor_to_be_verified():
+    by_hand = np.where(PARTS["openings"]["opening"] == 1, "changed by hand", "").astype(object)
+    openings = PARTS["openings"] | {"corrected": by_hand}
+    openings["type"] = np.full(len(by_hand), "gap", object)
+    plan = floorplan.make_floorplan(PARTS | {"openings": openings}, 0.0, 2.5)
+    found = confidence.rate_elements(plan, validation())
+    rows = found["table"] == "openings"
+    np.testing.assert_array_equal(found["verify"][rows], by_hand == "")
+    np.testing.assert_array_equal(np.isnan(found["p_true"][rows]), by_hand != "")

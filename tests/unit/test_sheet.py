@@ -283,7 +283,9 @@ def test_the_sides_of_a_wall_that_a_person_kept_are_in_no_doubt():
     walls = floorplan_making.walls()
     assert len(find_doubtful_faces(plan(faces=faces, walls=walls))) == 2
     walls["corrected"] = np.where(walls["wall"] == 5, "kept", "").astype(object)
+    is_judged = walls["verify"].copy()
     assert len(find_doubtful_faces(plan(faces=faces, walls=walls))) == 0
+    np.testing.assert_array_equal(walls["verify"], is_judged)
 
 
 def test_what_was_not_seen_of_a_room_is_dotted():

@@ -1,7 +1,7 @@
 """A floor plan as one thing: its tables, and the shapes that drawings and models make of them."""
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -100,6 +100,8 @@ class FloorPlan:
         Where the plan lies on Earth, where a person said so.
     n_corrections : int
         How many corrections by hand are carried out in it, removals with them.
+    unmatched_corrections : sequence of str
+        Of each that is not, why.
     doubted : doubts.Doubts
         What speaks against all of the plan.
     """
@@ -118,6 +120,7 @@ class FloorPlan:
     ceiling_z_m: float = np.nan
     georeference: GeoReference | None = None
     n_corrections: int = 0
+    unmatched_corrections: Sequence[str] = ()
     doubted: Doubts = NO_DOUBT
 
     @property
@@ -366,6 +369,9 @@ def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: f
         furniture=furniture,
         georeference=GeoReference(**json.loads(reference)) if reference else None,
         n_corrections=int(tables.read_note(files["free"], schemas.FREE, "n_corrections") or 0),
+        unmatched_corrections=json.loads(
+            tables.read_note(files["free"], schemas.FREE, "unmatched_corrections") or "[]"
+        ),
         doubted=read_doubts(files["free"], schemas.FREE),
         **assumed_m,
     )
@@ -410,11 +416,6 @@ def _join_confidence(table: str, columns: Columns, rated: Columns) -> Columns:
     added = {"p_true": np.append(rated["p_true"], 0.0)[known]}
     added["verify"] = np.append(rated["verify"], True)[known]
     added["doubt"] = np.append(rated["doubt"], "not seen")[known]
-    if "corrected" in columns:
-        # what a person has looked at needs no other to verify it
-        is_by_hand = columns["corrected"] != ""
-        added["verify"] &= ~is_by_hand
-        added["doubt"][is_by_hand] = ""
     return {**columns, **added}
 
 

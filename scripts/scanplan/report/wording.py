@@ -42,8 +42,9 @@ def prediction_sentence(prediction: PredictionFacts) -> str:
 
 
 def list_contradictions(plan: floorplan.FloorPlan, prediction: PredictionFacts) -> list[str]:
-    """Return what cannot be if units, mounting and clock are right, in sentences."""
+    """Return what speaks against all of a plan, and corrections not carried out, in sentences."""
     found = list(plan.doubted.contradictions)
+    found += [f"a correction by hand has no effect: {why}" for why in plan.unmatched_corrections]
     if not prediction.absent and prediction.share < 0.5:
         found.append(
             "most rays of scans that were not used contradict the plan: only"

@@ -98,8 +98,9 @@ def find_doubtful_faces(plan: FloorPlan) -> IntArray:
     n_walls = len(walls["wall"])
     is_judged = np.asarray(walls.get("verify", np.zeros(n_walls)), bool)
     # a person who was there answers for both sides
-    is_judged |= np.asarray(walls.get("corrected", np.full(n_walls, "")), str) != ""
-    return np.flatnonzero(is_doubtful & ~np.isin(faces["wall"], walls["wall"][is_judged]))
+    is_by_hand = np.asarray(walls.get("corrected", np.full(n_walls, "")), str) != ""
+    judged = walls["wall"][is_judged | is_by_hand]
+    return np.flatnonzero(is_doubtful & ~np.isin(faces["wall"], judged))
 
 
 def _doubts_of(kind: str, columns: Columns, names: list[str]) -> list[Doubt]:

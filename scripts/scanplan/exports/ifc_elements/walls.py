@@ -117,7 +117,7 @@ def _describe_wall(model: IfcModel, storey: StoreyPlan, row: int, wall: entity_i
     properties = {
         "State": ("IfcLabel", str(columns["state"][row])),
         **describe_doubt(columns, row),
-        "ThicknessMeasured": ("IfcBoolean", bool(plan.thick[row])),
+        "ThicknessMeasured": ("IfcBoolean", bool(plan.thick[row] and columns["n_points"][row])),
         "OffsetStandardDeviation": known_m("sigma_offset_m"),
         "StartStandardDeviation": known_m("sigma_end0_m"),
         "EndStandardDeviation": known_m("sigma_end1_m"),
