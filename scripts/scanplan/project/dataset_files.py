@@ -92,7 +92,7 @@ def find_files(path: FilePath) -> list[str]:
     if not path.exists():
         raise StageError(
             f"{path}: does not exist; give a dataset folder or a recording with"
-            " `--config dataset=PATH`"
+            " `make run DATASET=PATH` or `--config dataset=PATH`"
         )
     try:
         recordings = [path] if path.is_file() else dataset_entries.list_recordings(path)

@@ -265,8 +265,8 @@ FREE = Schema("free", 2, {"part": "int32", "geometry": "binary"}, ("part",), geo
 """The floor that rays went over: polygons that do not overlap.
 
 Of the whole plan the file states `floor_z_m` and `ceiling_z_m`: heights in the map frame, NaN where
-not seen; `georeference`, where the plan lies on Earth, where reference points say so; of a corrected
-plan `n_corrections`, carried out, and `unmatched_corrections`, why others are not.
+not seen; `georeference`, where the plan lies on Earth, where reference points say so; of a
+corrected plan `n_corrections`, carried out, and `unmatched_corrections`, why others are not.
 """
 FURNITURE = Schema(
     "furniture",

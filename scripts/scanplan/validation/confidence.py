@@ -50,7 +50,7 @@ def rate_elements(
             verify[is_unknown] = True
             doubt[is_unknown] = "not known what it is"
         if "corrected" in columns:
-            # a person has looked at it: nothing is left to verify, and rays do not rate what is said
+            # a person has looked at it: nothing is left to verify, and rays do not rate it
             is_by_hand = columns["corrected"] != ""
             p_true[is_by_hand], verify[is_by_hand], doubt[is_by_hand] = np.nan, False, ""
         parts.append(

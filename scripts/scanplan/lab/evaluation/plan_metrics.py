@@ -239,6 +239,7 @@ def summarise_plan_measures(row: Mapping[str, Any]) -> str:
         " {n_thickness} thicknesses off by {thickness_error_m:.3f} m; doors found"
         " {n_doors_found} of {n_doors_true}, right {door_precision:.3f}, width right"
         " {door_width_right:.3f}; windows found {n_windows_found} of {n_windows_true}, right"
-        " {window_precision:.3f}; rooms {n_rooms_found} of {n_rooms_true}, {n_rooms_false} false,"
+        " {window_precision:.3f}; rooms driven into found"
+        " {n_rooms_found} of {n_rooms_true}, {n_rooms_false} false,"
         " IoU {room_iou:.3f}"
     ).format_map(row)

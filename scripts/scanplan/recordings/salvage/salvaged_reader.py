@@ -24,6 +24,7 @@ _FINDERS = {
     ".mcap": find_mcap_records,
     ".db3": find_sqlite_records,
 }
+_ITS_END = "its end"
 _PACKED = ".zstd"
 
 
@@ -87,11 +88,12 @@ class SalvagedReader:
         if not lost and not spans:
             return ""
         topics = [f"{n:,} of {stated:,} of {topic}" for topic, (n, stated) in sorted(lost.items())]
-        counted = (
-            f"messages are lost: {', '.join(topics)}"
-            if topics
-            else ("no message is known to be lost")
-        )
+        # the list of what a recording holds lies at its end
+        is_cut = bool(spans) and spans[-1][1] == _ITS_END and not _read_stated_counts(self.path)
+        none = "no message is known to be lost"
+        if is_cut:
+            none = "how many messages are lost is not known"
+        counted = f"messages are lost: {', '.join(topics)}" if topics else none
         places = "one place" if len(spans) == 1 else f"{len(spans)} places"
         where = f"; it is damaged at {places}, {spans[0][0]} to {spans[-1][1]}" if spans else ""
         unknown = self._count_unknown()
@@ -128,7 +130,7 @@ class SalvagedReader:
         for gap in found.gaps:
             before, after = found.messages[:gap][-1:], found.messages[gap:][:1]
             first = f"from {self._time_in_words(before[0])}" if before else "from its beginning"
-            last = self._time_in_words(after[0]) if after else "its end"
+            last = self._time_in_words(after[0]) if after else _ITS_END
             spans.append((first, last))
         return spans
 
