@@ -11,7 +11,7 @@ from scanplan.validation.drawn_surfaces import FACE
 REASONS = {
     "agreement": "rays of other scans contradict it",
     "worst_span": "rays of other scans contradict a part of it",
-    "points": "few points",
+    "points": "few points, or none",
     "observed": "partly or wholly inferred",
     "length": "short",
     "smooth": "points scatter",
