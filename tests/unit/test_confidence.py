@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import shapely
 
 from helpers import floorplan_making
 from scanplan.plan import floorplan
@@ -76,6 +77,16 @@ def test_a_gap_that_is_not_known_is_always_to_be_verified():
     found = confidence.rate_elements(plan, validation())
     row = np.flatnonzero(found["table"] == "openings")[0]
     assert (found["verify"][row], found["doubt"][row]) == (True, "not known what it is")
+
+
+def test_a_doubt_is_of_size_where_evidence_as_usual_leaves_it():
+    """Far from any wall both rooms are doubted; with walls around the closet still would be."""
+    areas = [shapely.box(100, 0, 104, 4), shapely.box(104, 0, 105, 1)]
+    parts = PARTS | {"rooms": floorplan_making.rooms(areas)}
+    found = confidence.rate_elements(floorplan.make_floorplan(parts, 0.0, 2.5), validation())
+    rooms = found["table"] == "rooms"
+    assert found["verify"][rooms].tolist() == [True, True]
+    assert found["of_size"][rooms].tolist() == [False, True]
 
 
 def described_openings(**columns):

@@ -26,7 +26,8 @@ ENDS = [((8, 0), (8, 2)), ((2, 8), (0, 8))]
 def rated(columns, doubtful=()):
     numbers = next(iter(columns.values()))
     verify = np.isin(numbers, doubtful)
-    return columns | {"verify": verify, "doubt": np.where(verify, "few rays", "").astype(object)}
+    words = np.where(verify, "few rays", "").astype(object)
+    return columns | {"verify": verify, "doubt": words, "of_size": np.zeros(len(verify), bool)}
 
 
 def unseen(spans):
@@ -91,6 +92,14 @@ def test_what_lies_where_nobody_comes_is_said_to_be_out_of_sight():
     assert visit.questions["standpoint"].tolist() == [-1]
     assert visit.questions["seeable"].tolist() == [0.0]
     assert "1 cannot be seen from any place" in next_visit.summarise_visit(visit)
+
+
+def test_a_room_that_is_doubted_for_its_size_is_for_a_person_to_look_at():
+    plan = room_plan(BENT, ENDS, doubtful_rooms=[0])
+    plan.rooms["of_size"][:] = True
+    visit = visited(plan)
+    assert visit.questions["of_size"].tolist() == [k == "room" for k in visit.questions["kind"]]
+    assert "no scan settles 1 doubted for" in next_visit.summarise_visit(visit)
 
 
 def test_nothing_doubtful_is_said_and_gives_an_empty_collection():

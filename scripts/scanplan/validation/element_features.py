@@ -32,6 +32,8 @@ REASONS = {
     "broad": "small or narrow",
 }
 """Features of elements, each the better the greater, and the doubt where one is low."""
+OF_SIZE = ("length", "width", "broad")
+"""Features that are the same however often an element is seen."""
 
 
 def describe_elements(plan: FloorPlan, validation: Columns) -> dict[str, dict[str, FloatArray]]:
