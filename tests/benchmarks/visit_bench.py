@@ -2,8 +2,8 @@
 
 A drive is cut short, and its plan says from where a second visit would settle what it leaves open.
 The rover drives there; the bag is added to the first, and the plan made again. What was asked is
-settled rightly where the second plan is not in doubt and says what is true. What no scan can settle,
-as only its size is in doubt, is not promised, and counted apart.
+settled rightly where the second plan is not in doubt and says what is true. What needs a person is
+not promised to be.
 """
 
 import json
@@ -104,9 +104,9 @@ def _visit_again(
         for times in _MORE
     }
     reachable = asked["standpoint"] > 0
-    promised = reachable & ~asked["of_size"]
+    promised = reachable & ~asked["needs_person"]
     print(f"next_visit, {name}: {n_first} scans, {reachable.sum()} of {len(reachable)} questions"
-          f" can be seen, from {len(stops['standpoint'])} standpoints, and {promised.sum()} settled",
+          f" can be seen, from {len(stops['standpoint'])} places, {promised.sum()} settled",
           flush=True)  # fmt: skip
     right, _ = _judge(folder / "results" / first.name, first, asked, motion)
     settled = {"before, right": right[reachable].tolist()}

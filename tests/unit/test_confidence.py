@@ -86,7 +86,23 @@ def test_a_doubt_is_of_size_where_evidence_as_usual_leaves_it():
     found = confidence.rate_elements(floorplan.make_floorplan(parts, 0.0, 2.5), validation())
     rooms = found["table"] == "rooms"
     assert found["verify"][rooms].tolist() == [True, True]
-    assert found["of_size"][rooms].tolist() == [False, True]
+    assert found["needs_person"][rooms].tolist() == [False, True]
+
+
+@pytest.mark.parametrize(("in_wall", "needs_person"), [(True, False), (False, True)])
+def test_a_pane_in_no_wall_needs_a_person(in_wall, needs_person):
+    """A wall that rays contradict may yet be seen to stand, none may not."""
+    openings = PARTS["openings"]
+    n = len(openings["opening"])
+    unknown = {"sill_m": np.full(n, np.nan), "lintel_m": np.full(n, np.nan)}
+    panes = openings | unknown | {"type": np.full(n, "glass", object)}
+    if not in_wall:
+        panes["wall"] = np.full(n, -1)
+    plan = floorplan.make_floorplan(PARTS | {"openings": panes}, 0.0, 2.5)
+    found = confidence.rate_elements(plan, validation())
+    rows = np.flatnonzero((found["table"] == "openings") & found["verify"])
+    assert len(rows) > 0
+    assert (found["needs_person"][rows] == needs_person).all()
 
 
 def described_openings(**columns):

@@ -410,7 +410,7 @@ def _join_confidence(table: str, columns: Columns, rated: Columns) -> Columns:
     added = {"p_true": np.append(rated["p_true"], 0.0)[known]}
     added["verify"] = np.append(rated["verify"], True)[known]
     added["doubt"] = np.append(rated["doubt"], "not seen")[known]
-    added["of_size"] = np.append(rated["of_size"], False)[known]
+    added["needs_person"] = np.append(rated["needs_person"], False)[known]
     if "corrected" in columns:
         # what a person has looked at needs no other to verify it
         is_by_hand = columns["corrected"] != ""

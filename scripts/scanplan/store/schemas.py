@@ -349,7 +349,7 @@ CONFIDENCE = Schema(
         "p_true": "float64",
         "verify": "bool",
         "doubt": "string",
-        "of_size": "bool",
+        "needs_person": "bool",
     },
     ("table", "number"),
 )
@@ -358,8 +358,8 @@ CONFIDENCE = Schema(
 `table` is walls, faces, openings or rooms, `number` that of the element in it; `p_true` is NaN of
 a plan without heights above the floor. `verify` says that `p_true` is below the level of its kind
 (`validation/confidence_coefficients.py`), that a wall is weakly supported, or that it is not known
-what a gap is; `doubt` in words why, `of_size` that its size would be doubted however well it was
-seen.
+what a gap is; `doubt` in words why, `needs_person` that it would be doubted however well it was
+seen: for its size, or as an opening in no wall.
 """
 VALIDATION_RAYS = Schema(
     "validation_rays",
@@ -384,7 +384,7 @@ QUESTIONS = Schema(
         "kind": "string",
         "number": "int32",
         "doubt": "string",
-        "of_size": "bool",
+        "needs_person": "bool",
         **dict.fromkeys(("x_m", "y_m", "seeable", "seen"), "float64"),
         "standpoint": "int32",
         "geometry": "binary",
@@ -396,7 +396,7 @@ QUESTIONS = Schema(
 
 `kind` is wall, opening or room; unseen: a row of openings that was not seen; way: what an opening
 leads to, that no scan was taken at. `number` is that of its table, `doubt` why it is asked,
-`of_size` that no scan is expected to settle it: a person has to look. Of its length a share is
+`needs_person` that no scan is expected to settle it: a person has to look. Of its length a share is
 `seeable` from places that can be reached, and `seen` from the chosen ones; `standpoint` is the one
 that shows most of it, -1 where it cannot be seen.
 """

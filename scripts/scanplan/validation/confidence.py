@@ -13,7 +13,7 @@ import numpy as np
 from scanplan.plan.floorplan import NUMBERS, FloorPlan
 from scanplan.types import Array, BoolArray, Columns, FloatArray
 from scanplan.validation.confidence_coefficients import COEFFICIENTS
-from scanplan.validation.element_features import OF_SIZE, REASONS, describe_elements
+from scanplan.validation.element_features import OF_SIZE, OF_WALL, REASONS, describe_elements
 
 
 def rate_elements(
@@ -39,8 +39,8 @@ def rate_elements(
         if not has_heights:
             p_true = np.full(len(p_true), np.nan)
         verify = p_true < model["level"]
-        p_seen, _ = weigh_features(_raise_evidence(features, model), model)
-        of_size = verify & (p_seen < model["level"])
+        p_seen, _ = weigh_features(_raise_evidence(features, model, plan.hosts >= 0), model)
+        needs_person = verify & (p_seen < model["level"])
         doubt = _explain(shares, features, verify)
         if table == "walls":
             is_weak = columns["verify"] & ~verify
@@ -50,7 +50,7 @@ def rate_elements(
             is_unknown = columns["type"] == "gap"
             p_true[is_unknown & has_heights] = 0.0
             verify[is_unknown] = True
-            of_size[is_unknown] = False
+            needs_person[is_unknown] = False
             doubt[is_unknown] = "not known what it is"
         parts.append(
             {
@@ -59,7 +59,7 @@ def rate_elements(
                 "p_true": p_true,
                 "verify": verify,
                 "doubt": doubt,
-                "of_size": of_size,
+                "needs_person": needs_person,
             }
         )
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
@@ -85,13 +85,16 @@ def weigh_features(
 
 
 def _raise_evidence(
-    features: Mapping[str, FloatArray], model: Mapping[str, Any]
+    features: Mapping[str, FloatArray], model: Mapping[str, Any], in_wall: BoolArray
 ) -> dict[str, FloatArray]:
-    """Return features where all but an element's size are as good as they usually are."""
-    return {
-        name: values if name in OF_SIZE else np.maximum(values, model["features"][name]["mean"])
-        for name, values in features.items()
-    }
+    """Return features that are as good as usual, but for those that no scan betters."""
+    raised: dict[str, FloatArray] = {}
+    for name, values in features.items():
+        usual = np.maximum(values, model["features"][name]["mean"])
+        if name in OF_WALL:
+            usual = np.where(in_wall, usual, values)
+        raised[name] = values if name in OF_SIZE else usual
+    return raised
 
 
 def _explain(shares: FloatArray, features: Mapping[str, Any], verify: BoolArray) -> Array:

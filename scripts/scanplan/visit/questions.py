@@ -38,8 +38,8 @@ class Question:
     reach_m : float
         What one has to stand at is settled from so near, whichever way it faces; infinite where
         how far one sees is for the sensor to say.
-    of_size : bool
-        Whether it would be doubted however well it was seen.
+    needs_person : bool
+        Whether no scan is expected to settle it.
     """
 
     kind: str
@@ -48,7 +48,7 @@ class Question:
     lines_m: FloatArray
     sides_m: FloatArray
     reach_m: float = np.inf
-    of_size: bool = False
+    needs_person: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,8 +136,8 @@ def _ask_openings(plan: FloorPlan) -> Iterator[Question]:
         line_m, sides_m = _both_sides(plan, row)
         is_way = plan.openings["type"][row] in WAYS
         reach_m = float(line_lengths_m(line_m)[0]) / 2 if is_way else np.inf
-        of_size = bool(plan.openings["of_size"][row])
-        yield Question("opening", number, doubt, line_m, sides_m, reach_m, of_size)
+        needs_person = bool(plan.openings["needs_person"][row])
+        yield Question("opening", number, doubt, line_m, sides_m, reach_m, needs_person)
 
 
 def _ask_ways(plan: FloorPlan, track_m: FloatArray) -> Iterator[Question]:
@@ -169,8 +169,10 @@ def _ask_walls(plan: FloorPlan) -> Iterator[Question]:
         drawn = np.flatnonzero((plan.faces["wall"] == number) & (line_lengths_m(faces_m) > 0))
         if len(drawn):
             sides_m = np.column_stack([side_m[drawn], np.full(len(drawn), np.nan)])
-            of_size = bool(plan.walls["of_size"][row])
-            yield Question("wall", number, doubt, faces_m[drawn], sides_m, of_size=of_size)
+            needs_person = bool(plan.walls["needs_person"][row])
+            yield Question(
+                "wall", number, doubt, faces_m[drawn], sides_m, needs_person=needs_person
+            )
 
 
 def _ask_rooms(plan: FloorPlan) -> Iterator[Question]:
@@ -180,8 +182,8 @@ def _ask_rooms(plan: FloorPlan) -> Iterator[Question]:
         lines_m = lines_m[line_lengths_m(lines_m) > 0]
         doubt = str(plan.rooms["doubt"][row])
         sides_m = _inner_sides_m(lines_m, plan.areas[row])
-        number, of_size = int(plan.rooms["room"][row]), bool(plan.rooms["of_size"][row])
-        yield Question("room", number, doubt, lines_m, sides_m, of_size=of_size)
+        number, needs_person = int(plan.rooms["room"][row]), bool(plan.rooms["needs_person"][row])
+        yield Question("room", number, doubt, lines_m, sides_m, needs_person=needs_person)
 
 
 def _both_sides(plan: FloorPlan, row: int) -> tuple[FloatArray, FloatArray]:

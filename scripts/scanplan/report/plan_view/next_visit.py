@@ -61,7 +61,9 @@ def hidden_table(plan: floorplan.FloorPlan, visit: VisitFacts) -> PageTable:
     names = name_questions(plan, visit.questions)
     rows = [
         Row([Cell(names[i]), Cell(str(visit.questions["doubt"][i]))])
-        for i in np.flatnonzero((visit.questions["standpoint"] < 0) | visit.questions["of_size"])
+        for i in np.flatnonzero(
+            (visit.questions["standpoint"] < 0) | visit.questions["needs_person"]
+        )
     ]
     return PageTable("hidden", make_heads("not to be settled by scans", "why it is asked"), rows)
 
