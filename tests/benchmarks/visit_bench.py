@@ -2,7 +2,8 @@
 
 A drive is cut short, and its plan says from where a second visit would settle what it leaves open.
 The rover drives there; the bag is added to the first, and the plan made again. What was asked is
-settled rightly where the second plan is not in doubt and says what is true.
+settled rightly where the second plan is not in doubt and says what is true. What needs a person is
+not promised to be.
 """
 
 import json
@@ -103,8 +104,10 @@ def _visit_again(
         for times in _MORE
     }
     reachable = asked["standpoint"] > 0
+    promised = reachable & ~asked["needs_person"]
     print(f"next_visit, {name}: {n_first} scans, {reachable.sum()} of {len(reachable)} questions"
-          f" can be seen, from {len(stops['standpoint'])} standpoints", flush=True)  # fmt: skip
+          f" can be seen, from {len(stops['standpoint'])} places, {promised.sum()} settled",
+          flush=True)  # fmt: skip
     right, _ = _judge(folder / "results" / first.name, first, asked, motion)
     settled = {"before, right": right[reachable].tolist()}
     if not reachable.any():
@@ -117,6 +120,7 @@ def _visit_again(
         right, is_sure = _judge(folder / "results" / again.name, again, asked, motion)
         settled[f"{drive}, right"] = right[reachable].tolist()
         settled[f"{drive}, right and in no doubt"] = (right & is_sure)[reachable].tolist()
+        settled[f"{drive}, settled as promised"] = (right & is_sure)[promised].tolist()
         print(
             f"next_visit, {name}, {drive}: {n_scans} scans more, {right[reachable].sum()} of"
             f" {reachable.sum()} right, {(right & is_sure)[reachable].sum()} of them in no doubt;"

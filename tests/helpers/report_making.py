@@ -135,6 +135,7 @@ def confidence():
                 "p_true": np.where(verify, 0.5, 0.99),
                 "verify": verify,
                 "doubt": np.where(verify, "few points", "").astype(object),
+                "needs_person": np.zeros(n, bool),
             }
         )
     joined = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
@@ -149,6 +150,7 @@ def questions():
         "kind": np.array(["wall", "wall"], object),
         "number": np.array([1, 2], np.int32),
         "doubt": np.array(["short", "few points"], object),
+        "needs_person": np.array([True, False]),
         "x_m": np.full(2, 5.6),
         "y_m": np.full(2, 3.1),
         "seeable": np.array([1.0, 0.0]),

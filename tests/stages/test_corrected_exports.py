@@ -174,6 +174,7 @@ def test_who_has_looked_at_an_element_need_not_verify_it(tmp_path):
         "p_true": np.full(len(rows), 0.3),
         "verify": np.ones(len(rows), bool),
         "doubt": np.full(len(rows), "few rays", object),
+        "needs_person": np.zeros(len(rows), bool),
     }
     files = {table: tmp_path / f"corrected/{table}.parquet" for table in planning.TABLES}
     files["confidence"] = tmp_path / "confidence.parquet"

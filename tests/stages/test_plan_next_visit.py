@@ -38,6 +38,7 @@ def planned(house, folder, doubtful=()):
             "p_true": np.where(verify, 0.4, 0.99),
             "verify": verify,
             "doubt": np.where(verify, "few scans", "").astype(object),
+            "needs_person": np.zeros(len(numbers), bool),
         })  # fmt: skip
     rated = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     tables.write_table(folder / "confidence.parquet", schemas.CONFIDENCE, rated)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import shapely
 
 from helpers import floorplan_making
 from scanplan.plan import floorplan
@@ -76,6 +77,32 @@ def test_a_gap_that_is_not_known_is_always_to_be_verified():
     found = confidence.rate_elements(plan, validation())
     row = np.flatnonzero(found["table"] == "openings")[0]
     assert (found["verify"][row], found["doubt"][row]) == (True, "not known what it is")
+
+
+def test_a_doubt_is_of_size_where_evidence_as_usual_leaves_it():
+    """Far from any wall both rooms are doubted; with walls around the closet still would be."""
+    areas = [shapely.box(100, 0, 104, 4), shapely.box(104, 0, 105, 1)]
+    parts = PARTS | {"rooms": floorplan_making.rooms(areas)}
+    found = confidence.rate_elements(floorplan.make_floorplan(parts, 0.0, 2.5), validation())
+    rooms = found["table"] == "rooms"
+    assert found["verify"][rooms].tolist() == [True, True]
+    assert found["needs_person"][rooms].tolist() == [False, True]
+
+
+@pytest.mark.parametrize(("in_wall", "needs_person"), [(True, False), (False, True)])
+def test_a_pane_in_no_wall_needs_a_person(in_wall, needs_person):
+    """A wall that rays contradict may yet be seen to stand, none may not."""
+    openings = PARTS["openings"]
+    n = len(openings["opening"])
+    unknown = {"sill_m": np.full(n, np.nan), "lintel_m": np.full(n, np.nan)}
+    panes = openings | unknown | {"type": np.full(n, "glass", object)}
+    if not in_wall:
+        panes["wall"] = np.full(n, -1)
+    plan = floorplan.make_floorplan(PARTS | {"openings": panes}, 0.0, 2.5)
+    found = confidence.rate_elements(plan, validation())
+    rows = np.flatnonzero((found["table"] == "openings") & found["verify"])
+    assert len(rows) > 0
+    assert (found["needs_person"][rows] == needs_person).all()
 
 
 def described_openings(**columns):

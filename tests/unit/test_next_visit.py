@@ -26,7 +26,8 @@ ENDS = [((8, 0), (8, 2)), ((2, 8), (0, 8))]
 def rated(columns, doubtful=()):
     numbers = next(iter(columns.values()))
     verify = np.isin(numbers, doubtful)
-    return columns | {"verify": verify, "doubt": np.where(verify, "few rays", "").astype(object)}
+    words = np.where(verify, "few rays", "").astype(object)
+    return columns | {"verify": verify, "doubt": words, "needs_person": np.zeros(len(verify), bool)}
 
 
 def unseen(spans):
@@ -93,6 +94,16 @@ def test_what_lies_where_nobody_comes_is_said_to_be_out_of_sight():
     assert "1 cannot be seen from any place" in next_visit.summarise_visit(visit)
 
 
+def test_what_no_scan_settles_is_for_a_person_to_look_at():
+    plan = room_plan(BENT, ENDS, doubtful_rooms=[0])
+    plan.rooms["needs_person"][:] = True
+    visit = visited(plan)
+    assert visit.questions["needs_person"].tolist() == [
+        k == "room" for k in visit.questions["kind"]
+    ]
+    assert "1 of these no scan settles" in next_visit.summarise_visit(visit)
+
+
 def test_nothing_doubtful_is_said_and_gives_an_empty_collection():
     visit = visited(room_plan(BENT))
     words = next_visit.summarise_visit(visit)
@@ -129,6 +140,7 @@ def test_doubtful_openings_are_seen_from_either_side_and_rooms_from_within():
     plan.openings["verify"][:] = True
     opening, room = questions.list_questions(plan, np.array([[1.0, 1.0]]))
     np.testing.assert_allclose(opening.sides_m, [[0.1, -0.1]])
+    assert opening.reach_m == pytest.approx(0.5)
     pieces = questions.cut_questions([room])
     inside = shapely.contains_xy(plan.areas[0], pieces.place_m[:, 0])
     assert inside.all() and np.isnan(pieces.place_m[:, 1]).all()

@@ -118,3 +118,11 @@ def test_low_walls_end_at_their_top():
     plan = floorplan_making.plan(walls=walls, openings=openings)
     # 1.0 m and, at the wall, 1.6 m high: the second goes over
     assert judged((6.0, 1.5, 1.0), (7.1, 1.5, 2.5), plan=plan)[0] == ["passed", "explained"]
+
+
+def test_an_opening_in_no_wall_cuts_no_face_in_no_wall():
+    pane = ((2.2, 9.0, 2.8, 9.0), -1, "glass", np.nan, np.nan, 0, -1)
+    plan = floorplan_making.plan(openings=floorplan_making.openings([pane]))
+    elements = drawn_surfaces.list_surfaces(plan, 1.0, planar=False).elements
+    loose = (elements["kind"] == "face") & (elements["number"] == 8)
+    assert (elements["x0_m"][loose].tolist(), elements["x1_m"][loose].tolist()) == ([2.0], [3.0])

@@ -130,3 +130,10 @@ def test_poses_of_scans_agree_with_the_toy():
     np.testing.assert_allclose(
         se3.pose_yaw_rad(motion_of(1.0).at([T_NS + 5 * 10**8])), heading_rad(0.5, 1.0), atol=1e-3
     )
+
+
+@pytest.mark.parametrize(("n_better", "is_usual"), [(7, False), (8, True)])
+def test_a_reading_is_better_only_where_most_windows_say_so(n_better, is_usual):
+    """Ten windows of three places each: in some the second reading scatters half as much."""
+    groups = [np.array([[0.02] * 3, [0.01 if i < n_better else 0.03] * 3]) for i in range(10)]
+    assert time_check._is_usual([*groups, np.empty((2, 0))], 1) == is_usual

@@ -405,7 +405,7 @@ def make_floorplan(
 
 
 def _join_confidence(table: str, columns: Columns, rated: Columns) -> Columns:
-    """Return a table with the columns `p_true`, `verify` and `doubt` of its elements."""
+    """Return a table with the columns of `schemas.CONFIDENCE` of its elements."""
     if table not in NUMBERS:
         return columns
     rows = np.flatnonzero(rated["table"] == table)
@@ -416,6 +416,7 @@ def _join_confidence(table: str, columns: Columns, rated: Columns) -> Columns:
     added = {"p_true": np.append(rated["p_true"], 0.0)[known]}
     added["verify"] = np.append(rated["verify"], True)[known]
     added["doubt"] = np.append(rated["doubt"], "not seen")[known]
+    added["needs_person"] = np.append(rated["needs_person"], False)[known]
     return {**columns, **added}
 
 

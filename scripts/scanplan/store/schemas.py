@@ -343,13 +343,14 @@ The file states `n_left_out` and `n_scans` (scans left out, and drawn of them), 
 """
 CONFIDENCE = Schema(
     "confidence",
-    1,
+    2,
     {
         "table": "string",
         "number": "int32",
         "p_true": "float64",
         "verify": "bool",
         "doubt": "string",
+        "needs_person": "bool",
     },
     ("table", "number"),
 )
@@ -358,7 +359,8 @@ CONFIDENCE = Schema(
 `table` is walls, faces, openings or rooms, `number` that of the element in it; `p_true` is NaN of
 a plan without heights above the floor. `verify` says that `p_true` is below the level of its kind
 (`validation/confidence_coefficients.py`), that a wall is weakly supported, or that it is not known
-what a gap is; `doubt` in words why.
+what a gap is; `doubt` in words why, `needs_person` that it would be doubted however well it was
+seen: for its size, or as an opening in no wall.
 """
 VALIDATION_RAYS = Schema(
     "validation_rays",
@@ -378,11 +380,12 @@ the plan predicts nothing of it.
 """
 QUESTIONS = Schema(
     "questions",
-    1,
+    2,
     {
         "kind": "string",
         "number": "int32",
         "doubt": "string",
+        "needs_person": "bool",
         **dict.fromkeys(("x_m", "y_m", "seeable", "seen"), "float64"),
         "standpoint": "int32",
         "geometry": "binary",
@@ -393,9 +396,10 @@ QUESTIONS = Schema(
 """What a second visit is to settle: what of a plan is unseen or doubtful.
 
 `kind` is wall, opening or room; unseen: a row of openings that was not seen; way: what an opening
-leads to, that no scan was taken at. `number` is that of its table, `doubt` why it is asked. Of its
-length a share is `seeable` from places that can be reached, and `seen` from the chosen ones;
-`standpoint` is the one that shows most of it, -1 where it cannot be seen.
+leads to, that no scan was taken at. `number` is that of its table, `doubt` why it is asked,
+`needs_person` that no scan is expected to settle it: a person has to look. Of its length a share is
+`seeable` from places that can be reached, and `seen` from the chosen ones; `standpoint` is the one
+that shows most of it, -1 where it cannot be seen.
 """
 STANDPOINTS = Schema(
     "standpoints",

@@ -13,7 +13,7 @@ import numpy as np
 from scanplan.plan.floorplan import NUMBERS, FloorPlan
 from scanplan.types import Array, BoolArray, Columns, FloatArray
 from scanplan.validation.confidence_coefficients import COEFFICIENTS
-from scanplan.validation.element_features import REASONS, describe_elements
+from scanplan.validation.element_features import OF_SIZE, OF_WALL, REASONS, describe_elements
 
 
 def rate_elements(
@@ -34,11 +34,13 @@ def rate_elements(
     has_heights = np.isfinite(plan.floor_z_m)
     parts = []
     for table, number in sorted(NUMBERS.items()):
-        columns, features = getattr(plan, table), described[table]
-        p_true, shares = weigh_features(features, coefficients[table])
+        columns, features, model = getattr(plan, table), described[table], coefficients[table]
+        p_true, shares = weigh_features(features, model)
         if not has_heights:
             p_true = np.full(len(p_true), np.nan)
-        verify = p_true < coefficients[table]["level"]
+        verify = p_true < model["level"]
+        p_seen, _ = weigh_features(_raise_evidence(features, model, plan.hosts >= 0), model)
+        needs_person = verify & (p_seen < model["level"])
         doubt = _explain(shares, features, verify)
         if table == "walls":
             is_weak = columns["verify"] & ~verify
@@ -48,11 +50,13 @@ def rate_elements(
             is_unknown = columns["type"] == "gap"
             p_true[is_unknown & has_heights] = 0.0
             verify[is_unknown] = True
+            needs_person[is_unknown] = False
             doubt[is_unknown] = "not known what it is"
         if "corrected" in columns:
             # a person has looked at it: nothing is left to verify, and rays do not rate it
             is_by_hand = columns["corrected"] != ""
             p_true[is_by_hand], verify[is_by_hand], doubt[is_by_hand] = np.nan, False, ""
+            needs_person[is_by_hand] = False
         parts.append(
             {
                 "table": np.full(len(p_true), table, object),
@@ -60,6 +64,7 @@ def rate_elements(
                 "p_true": p_true,
                 "verify": verify,
                 "doubt": doubt,
+                "needs_person": needs_person,
             }
         )
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
@@ -82,6 +87,19 @@ def weigh_features(
     shares = (np.column_stack([features[name] for name in names]) - means) * weights
     logit = model["intercept"] + shares.sum(axis=1)
     return (1 + np.tanh(logit / 2)) / 2, shares
+
+
+def _raise_evidence(
+    features: Mapping[str, FloatArray], model: Mapping[str, Any], in_wall: BoolArray
+) -> dict[str, FloatArray]:
+    """Return features that are as good as usual, but for those that no scan betters."""
+    raised: dict[str, FloatArray] = {}
+    for name, values in features.items():
+        usual = np.maximum(values, model["features"][name]["mean"])
+        if name in OF_WALL:
+            usual = np.where(in_wall, usual, values)
+        raised[name] = values if name in OF_SIZE else usual
+    return raised
 
 
 def _explain(shares: FloatArray, features: Mapping[str, Any], verify: BoolArray) -> Array:

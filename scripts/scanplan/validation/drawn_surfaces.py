@@ -134,7 +134,9 @@ def _face_surfaces(plan: FloorPlan, span_m: float, *, planar: bool) -> Iterator[
         ends_low = is_low.get(wall, False) and not planar
         z_m = (-np.inf, tops_m[wall]) if ends_low else _EVERYWHERE_M
         span = 0
-        for part_m in _cut_out(ends_m, openings_m[plan.openings["wall"] == wall]):
+        # openings in no wall (-1) are none of every face in no wall
+        is_own = (plan.openings["wall"] == wall) & (wall >= 0)
+        for part_m in _cut_out(ends_m, openings_m[is_own]):
             n_spans = _count_spans(part_m, span_m)
             yield _Surface(part_m, z_m, element=(FACE, face, span), n_spans=n_spans)
             span += n_spans

@@ -22,7 +22,7 @@ REASONS = {
     "sill": "sill not seen",
     "lintel": "lintel not seen",
     "usual": "a way out of the known rooms, or a window inside",
-    "wall": "rays of other scans contradict its wall",
+    "wall": "in no wall, or rays of other scans contradict that",
     "alone": "another opening beside it",
     "width": "wide for what it is",
     "closed": "not closed by walls",
@@ -32,6 +32,10 @@ REASONS = {
     "broad": "small or narrow",
 }
 """Features of elements, each the better the greater, and the doubt where one is low."""
+OF_SIZE = ("length", "width", "broad")
+"""Features that are the same however often an element is seen."""
+OF_WALL = ("sill", "lintel", "wall")
+"""Features that an opening in no wall never has."""
 
 
 def describe_elements(plan: FloorPlan, validation: Columns) -> dict[str, dict[str, FloatArray]]:

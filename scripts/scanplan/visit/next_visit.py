@@ -109,6 +109,9 @@ def summarise_visit(visit: NextVisit) -> str:
     places = f"{n_stops} standpoint{'s' if n_stops != 1 else ''}"
     unseen = len(standpoint) - n_seen
     rest = f"; {unseen} cannot be seen from any place that can be reached" if unseen else ""
+    n_left = int((visit.questions["needs_person"] & (standpoint > 0)).sum())
+    if n_left:
+        rest += f"; {n_left} of these no scan settles: a person has to look"
     way_m = visit.standpoints["way_m"].sum()
     return (
         f"{n_seen} of {len(standpoint)} unseen or doubtful elements can be seen from {places}"
@@ -154,6 +157,7 @@ def _question_columns(
         "kind": np.array([a.kind for a in asked], object),
         "number": np.array([a.number for a in asked], np.int32),
         "doubt": np.array([a.doubt for a in asked], object),
+        "needs_person": np.array([a.needs_person for a in asked], bool),
         "x_m": x_m,
         "y_m": y_m,
         "seeable": seeable,

@@ -38,6 +38,8 @@ class Question:
     reach_m : float
         What one has to stand at is settled from so near, whichever way it faces; infinite where
         how far one sees is for the sensor to say.
+    needs_person : bool
+        Whether no scan is expected to settle it.
     """
 
     kind: str
@@ -46,6 +48,7 @@ class Question:
     lines_m: FloatArray
     sides_m: FloatArray
     reach_m: float = np.inf
+    needs_person: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,7 +136,8 @@ def _ask_openings(plan: FloorPlan) -> Iterator[Question]:
         line_m, sides_m = _both_sides(plan, row)
         is_way = plan.openings["type"][row] in WAYS
         reach_m = float(line_lengths_m(line_m)[0]) / 2 if is_way else np.inf
-        yield Question("opening", number, doubt, line_m, sides_m, reach_m)
+        needs_person = bool(plan.openings["needs_person"][row])
+        yield Question("opening", number, doubt, line_m, sides_m, reach_m, needs_person)
 
 
 def _ask_ways(plan: FloorPlan, track_m: FloatArray) -> Iterator[Question]:
@@ -165,7 +169,10 @@ def _ask_walls(plan: FloorPlan) -> Iterator[Question]:
         drawn = np.flatnonzero((plan.faces["wall"] == number) & (line_lengths_m(faces_m) > 0))
         if len(drawn):
             sides_m = np.column_stack([side_m[drawn], np.full(len(drawn), np.nan)])
-            yield Question("wall", number, doubt, faces_m[drawn], sides_m)
+            needs_person = bool(plan.walls["needs_person"][row])
+            yield Question(
+                "wall", number, doubt, faces_m[drawn], sides_m, needs_person=needs_person
+            )
 
 
 def _ask_rooms(plan: FloorPlan) -> Iterator[Question]:
@@ -175,7 +182,8 @@ def _ask_rooms(plan: FloorPlan) -> Iterator[Question]:
         lines_m = lines_m[line_lengths_m(lines_m) > 0]
         doubt = str(plan.rooms["doubt"][row])
         sides_m = _inner_sides_m(lines_m, plan.areas[row])
-        yield Question("room", int(plan.rooms["room"][row]), doubt, lines_m, sides_m)
+        number, needs_person = int(plan.rooms["room"][row]), bool(plan.rooms["needs_person"][row])
+        yield Question("room", number, doubt, lines_m, sides_m, needs_person=needs_person)
 
 
 def _both_sides(plan: FloorPlan, row: int) -> tuple[FloatArray, FloatArray]:

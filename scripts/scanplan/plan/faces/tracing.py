@@ -216,4 +216,5 @@ def _top_m(interval: FaceInterval, limits: FurnitureLimits) -> float:
 
 
 def _without_stubs(found: Iterable[FaceInterval]) -> list[FaceInterval]:
-    return [interval for interval in found if interval.length_m >= END_M]
+    """Return the intervals that are no noise at an end, and still shown once they were cut."""
+    return [i for i in found if i.length_m >= END_M and i.n_points > 0]

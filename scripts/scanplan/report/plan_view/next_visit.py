@@ -57,13 +57,15 @@ def standpoint_table(plan: floorplan.FloorPlan, visit: VisitFacts) -> PageTable:
 
 
 def hidden_table(plan: floorplan.FloorPlan, visit: VisitFacts) -> PageTable:
-    """Return the table of what cannot be seen from any place that can be reached."""
+    """Return the table of what no place that can be reached shows, or no scan can settle."""
     names = name_questions(plan, visit.questions)
     rows = [
         Row([Cell(names[i]), Cell(str(visit.questions["doubt"][i]))])
-        for i in np.flatnonzero(visit.questions["standpoint"] < 0)
+        for i in np.flatnonzero(
+            (visit.questions["standpoint"] < 0) | visit.questions["needs_person"]
+        )
     ]
-    return PageTable("hidden", make_heads("not to be seen", "why it is asked"), rows)
+    return PageTable("hidden", make_heads("not to be settled by scans", "why it is asked"), rows)
 
 
 def name_questions(plan: floorplan.FloorPlan, questions: Columns) -> Array:
