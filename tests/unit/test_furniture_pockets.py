@@ -135,5 +135,7 @@ def test_walls_are_left_without_the_fronts_and_their_ground_is_told():
     def assemble(faces):
         return [wall for wall in walls if any(face in faces for face in wall.members)]
 
-    left, grounds = fronts.drop_fronts(walls, floor, assemble, lambda _: 0.1, max_thickness_m=0.6)
-    assert left == walls[:4] and len(grounds) == 1
+    left, grounds, leaves = fronts.drop_fronts(
+        *(walls, floor, assemble, lambda _: 0.1), max_thickness_m=0.6
+    )
+    assert left == walls[:4] and len(grounds) == 1 and leaves == []
