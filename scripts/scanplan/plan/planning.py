@@ -322,6 +322,7 @@ class _Survey:
             min_area_m2=min_area_m2,
             unpaired_m=surfaces.unpaired_m,
             planar=self.rays.planar,
+            ways_m=[leaf.way_m for leaf in surfaces.leaves],
         )
         rooms = find_rooms(
             *([*surfaces.bounds, *partings], self.views, self.track_m),

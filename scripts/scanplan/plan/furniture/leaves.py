@@ -14,6 +14,7 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry.intersections import LEAST_RAD
 from scanplan.plan.faces.intervals import FaceInterval
+from scanplan.plan.openings import Opening
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.tolerances import ALONG_SHARE, CORNER_M, END_M
 from scanplan.rays.tolerances import BEHIND_M
@@ -57,7 +58,7 @@ def find_leaves(walls: Sequence[PlanWall], *, unpaired_m: float) -> list[Leaf]:
     unpaired_m : float
         How thick a wall is taken for of which one side is known.
     """
-    ways = [_Way.of_gap(wall, at, unpaired_m) for wall in walls for at in _gaps(wall)]
+    ways = [_Way.of_gap(wall, gap, unpaired_m) for wall in walls for gap in wall.openings]
     faces = [face for wall in walls for face in wall.members]
     leaves = []
     for wall in walls:
@@ -83,10 +84,6 @@ def _is_free(face: FaceInterval, tip_m: FloatArray, others: Sequence[FaceInterva
     return True
 
 
-def _gaps(wall: PlanWall) -> list[FloatArray]:
-    return [np.array([gap.low_m, gap.high_m]) for gap in wall.openings]
-
-
 @dataclass(frozen=True, eq=False)
 class _Way:
     """An opening (2, 2) of a wall, from jamb to jamb, and its jambs from face to face."""
@@ -96,11 +93,11 @@ class _Way:
     jambs: tuple[LineString, LineString]
 
     @staticmethod
-    def of_gap(wall: PlanWall, along_m: FloatArray, unpaired_m: float) -> "_Way":
-        """Return the way from one place along a wall to another."""
+    def of_gap(wall: PlanWall, gap: Opening, unpaired_m: float) -> "_Way":
+        """Return the way through an opening of a wall."""
         is_single = np.isnan(wall.thickness_m)
         across_m = np.array([-unpaired_m if is_single else -wall.half_m, wall.half_m])
-        ends_m = wall.line.at(along_m)
+        ends_m = wall.line.at(np.array([gap.low_m, gap.high_m]))
         low, high = (LineString(end + across_m[:, None] * wall.line.normal) for end in ends_m)
         return _Way(wall, ends_m, (low, high))
 
