@@ -44,8 +44,11 @@ def test_what_hangs_at_a_jamb_is_as_long_as_its_door_and_ends_free_is_a_leaf(tip
 
 @pytest.mark.parametrize(
     "ends",
-    [(2.0, 0.0, 2.0, 0.4), (2.0, 0.0, 2.0, 1.3), (1.4, 0.0, 1.4, 0.9), (2.9, 0.02, 2.0, 0.02)],
-    ids=["nib", "wall", "elsewhere", "shut"],
+    [
+        *[(2.0, 0.0, 2.0, 0.4), (2.0, 0.0, 2.0, 1.3), (1.4, 0.0, 1.4, 0.9)],
+        *[(2.9, 0.02, 2.0, 0.02), (1.1, 0.02, 2.0, 0.02), (2.9, -0.2, 2.0, -0.2)],
+    ],
+    ids=["nib", "wall", "elsewhere", "shut", "of the wall", "niche"],
 )
 def test_what_is_shorter_or_longer_or_hangs_elsewhere_is_none(ends):
     assert leaves(single(*ends)) == []

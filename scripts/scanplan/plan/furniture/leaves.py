@@ -106,9 +106,10 @@ class _Way:
         width_m = float(np.hypot(*(self.ends_m[1] - self.ends_m[0])))
         if not ALONG_SHARE * width_m <= face.length_m <= width_m + 2 * END_M:
             return None
-        middle = LineString(self.ends_m)
-        for hinge, tip in (face.ends, face.ends[::-1]):
-            near_m = min(jamb.distance(Point(hinge)) for jamb in self.jambs)
-            if near_m <= BEHIND_M + END_M and middle.distance(Point(tip)) > CORNER_M:
-                return tip
+        for hinge_m, tip_m in (face.ends, face.ends[::-1]):
+            near_m = min(jamb.distance(Point(hinge_m)) for jamb in self.jambs)
+            hinge_off_m, tip_off_m = abs(self.wall.line.offset_m(np.array([hinge_m, tip_m])))
+            # what runs along the wall is the wall, or the back of a niche
+            if near_m <= BEHIND_M + END_M and tip_off_m > hinge_off_m + CORNER_M:
+                return tip_m
         return None
