@@ -93,7 +93,7 @@ def find_partings(
     planar : bool
         Whether all scans lie in one plane.
     ways_m : sequence of (2, 2) float64
-        Doors, from jamb to jamb, some of which may stand in no wall: they part floor too.
+        Doors, from jamb to jamb: those that stand in no wall part floor, too.
     """
     strips = wall_ground.wall_strips(bounds, unpaired_m)
     known = shapely.union_all(strips).buffer(END_M)
