@@ -135,5 +135,16 @@ def test_walls_are_left_without_the_fronts_and_their_ground_is_told():
     def assemble(faces):
         return [wall for wall in walls if any(face in faces for face in wall.members)]
 
-    left, grounds = fronts.drop_fronts(walls, floor, assemble, lambda _: 0.1, max_thickness_m=0.6)
-    assert left == walls[:4] and len(grounds) == 1
+    left, grounds, leaves = fronts.drop_fronts(
+        *(walls, floor, assemble, lambda _: 0.1), max_thickness_m=0.6
+    )
+    assert left == walls[:4] and len(grounds) == 1 and leaves == []
+
+
+@pytest.mark.parametrize(("in_line", "n_pockets"), [([], 1), ([(2.5, 4.0), (5.0, 7.5)], 0)])
+def test_a_front_is_no_longer_with_what_stands_in_its_line_than_furniture(in_line, n_pockets):
+    """A surface of 1.5 m hides the corner, 1 m deep: 7.5 m of its line would be 7.5 m2."""
+    seen = [(1.5, 0, 12, 0), (12, 0, 12, 4), (12, 4, 0, 4), (0, 4, 0, 1)]
+    fronts_m = [(0, 1, 1.5, 1), *((low, 1, high, 1) for low, high in in_line)]
+    floor = box(0, 0, 12, 4).difference(box(0, 0, 1.5, 1))
+    assert len(pockets([wall([face]) for face in [*seen, *fronts_m]], floor)) == n_pockets

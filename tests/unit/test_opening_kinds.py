@@ -274,6 +274,13 @@ def test_nobody_calls_anything_a_window_in_a_plane():
     assert share[opening_kinds.KINDS.index("window")] == 0
 
 
+def test_a_leaf_makes_a_door_of_a_way_out_in_a_plane():
+    kind, share = likeliest(DOOR, is_outside=True, planar=True)
+    assert (kind, share < 0.8) == ("door", True)
+    kind, share = likeliest(DOOR, is_outside=True, planar=True, has_leaf=True)
+    assert (kind, share > 0.9) == ("door", True)
+
+
 def beside(place_m, wall):
     return 0, -1
 
@@ -293,6 +300,18 @@ def test_a_closed_gap_that_rays_go_through_at_eye_height_is_a_window():
     decided = decide(look((1.0, 2.2), (0.85, 2.4)), closed=[gap(CLOSED)])
     assert [opening.kind for opening in decided.openings] == ["window"]
     assert decided.closed == []
+
+
+@pytest.mark.parametrize(("middle_m", "kind"), [(1.6, GAP), (2.6, "glass")])
+def test_a_leaf_tells_only_of_the_gap_that_it_hangs_at(middle_m, kind):
+    """From 1 to 2.2 m rays go out; it would be a door, but that no floor was seen in it."""
+    way_m = np.array([(middle_m - 0.5, 0.0), (middle_m + 0.5, 0.0)])
+    looked = look((1.0, 2.2), (-1.0, 2.1))
+    gaps = [replace(wall(looked), openings=[gap(OPEN)])]
+    (decided,) = opening_kinds.decide_kinds(
+        *(gaps, looked, np.array(SENSORS)[:, :2], beside), ways_m=[way_m], **LIMITS
+    )
+    assert [opening.kind for opening in decided.openings] == [kind]
 
 
 def test_a_gap_where_rays_end_in_a_niche_is_closed():

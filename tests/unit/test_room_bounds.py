@@ -1,6 +1,7 @@
 """What bounds rooms without a ray ending there, seen from above: panes, narrow places."""
 
 import numpy as np
+import pytest
 import shapely
 from shapely import box
 
@@ -76,6 +77,32 @@ def test_a_gap_wider_than_a_door_parts_rooms_in_the_line_of_a_longer_wall():
 
 def test_a_gap_wider_than_the_wall_is_long_parts_nothing():
     assert part([wall(4.05, 0, 4.05, 1), wall(4.05, 3.4, 4.05, 4)]) == []
+
+
+@pytest.mark.parametrize("turn", [1, -1])
+def test_a_door_whose_leaf_was_seen_parts_floor_where_no_wall_has_it(turn):
+    """Two sides of a leaf tell of one door, 1 m wide, in the gap of 2.4 m."""
+    way_m = np.array([(4.05, 1.0), (4.05, 2.0)])
+    (parting,) = room_bounds.find_partings(
+        *([], TWO_ROOMS, TRACK_M),
+        **{"max_width_m": 0.5, "min_area_m2": 1.0, "unpaired_m": 0.1},
+        ways_m=[way_m, way_m[::turn] + 0.02],
+    )
+    (way,) = parting.openings
+    assert way.kind == "door"
+    assert way.width_m == pytest.approx(1.0)
+
+
+def test_a_door_that_a_wall_has_is_not_parted_twice():
+    way_m = np.array([(4.05, 1.0), (4.05, 2.0)])
+    assert (
+        room_bounds.find_partings(
+            *([wall(4.05, 0, 4.05, 4)], TWO_ROOMS, TRACK_M),
+            **{"max_width_m": 0.5, "min_area_m2": 1.0, "unpaired_m": 0.1},
+            ways_m=[way_m],
+        )
+        == []
+    )
 
 
 def test_a_corner_that_stands_into_a_room_parts_nothing():

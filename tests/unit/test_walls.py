@@ -87,3 +87,20 @@ def test_a_wall_goes_on_to_the_next_through_what_is_hidden(solid, crossed, end_m
     across = stretches(4, 4, 4, -4, [(0, 8)])
     ((_, high_m),) = ends(south, across)
     assert high_m == pytest.approx(end_m, abs=0.03)
+
+
+@pytest.mark.parametrize(
+    ("to_y", "lintel", "count", "spans"),
+    [
+        (-4, [], 0, [(0, 2), (3.8, 6)]),
+        (-4, [(2.0, 3.8)], 1, [(0, 6)]),
+        (0, [], 1, [(0, 6)]),
+    ],
+    ids=["corridor", "below a lintel", "end of a corridor"],
+)
+def test_where_a_corridor_crosses_a_wall_is_no_opening_of_it(to_y, lintel, count, spans):
+    south = stretches(0, 0, 6, 0, [(0, 2), (3.8, 6)], [(2, 3.8)], lintel)
+    west = stretches(2, to_y, 2, 4, [(0, 4 - to_y)])
+    east = stretches(3.8, 4, 3.8, to_y, [(0, 4 - to_y)])
+    assert len(openings(south, west, east)) == count
+    np.testing.assert_allclose(sorted(map(tuple, ends(south, west, east))), spans, atol=0.05)

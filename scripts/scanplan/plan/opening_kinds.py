@@ -16,7 +16,7 @@ from scanplan.geometry.lines import Line
 from scanplan.plan.opening_heights import estimate_lintel_m, estimate_sill_m
 from scanplan.plan.openings import CLOSED, GAP, OPEN, Opening
 from scanplan.plan.plan_wall import PlanWall
-from scanplan.plan.tolerances import END_M, ENOUGH_RAYS
+from scanplan.plan.tolerances import CORNER_M, END_M, ENOUGH_RAYS
 from scanplan.plan.wall_ground import BareSpan
 from scanplan.rays.face_observation import FaceObservation
 from scanplan.rays.face_raster import CELL_M
@@ -35,8 +35,10 @@ _LIKELY = {
     "hidden": np.array((0.5, 0.05, 0.5, 0.1)),
     "step": np.array((0.2, 0.02, 0.5, 0.05)),
     "driven": np.array((1e-3, 0.5, 1e-3, 1e-3)),
+    "leaf": np.array((1e-3, 0.2, 0.01, 0.01)),
 }  # in offices and houses: of ten gaps how many are of each kind; how often a floor is seen in or
-# behind them where rays pass low down, things stand before them, a sill is seen, a sensor passes
+# behind them where rays pass low down, things stand before them, a sill is seen, a sensor passes,
+# a leaf is seen to stand open
 _SURE = 0.8  # else it is not known what it is: one in five would be wrong
 
 
@@ -45,6 +47,7 @@ def weigh_kinds(
     *,
     is_outside: bool,
     is_driven: bool = False,
+    has_leaf: bool = False,
     sill_m: float = np.nan,
     planar: bool = False,
 ) -> FloatArray:
@@ -58,6 +61,8 @@ def weigh_kinds(
         Whether there is no room on one of its sides.
     is_driven : bool
         Whether a sensor went through.
+    has_leaf : bool
+        Whether a leaf stands open at one of its jambs.
     sill_m : float
         As high as something was seen below the lowest rays through; NaN where nothing was.
     planar : bool
@@ -94,6 +99,8 @@ def weigh_kinds(
             likely += np.log(_LIKELY["step"])
     if is_driven:
         likely += np.log(_LIKELY["driven"])
+    if has_leaf:
+        likely += np.log(_LIKELY["leaf"])
     weight = np.exp(likely - likely.max())
     return weight / weight.sum()
 
@@ -221,6 +228,7 @@ def decide_kinds(
     *,
     min_width_m: float,
     band_m: float,
+    ways_m: Sequence[FloatArray] = (),
 ) -> list[PlanWall]:
     """Return walls with the kinds of their gaps; what is wall after all is closed.
 
@@ -238,9 +246,14 @@ def decide_kinds(
         Of an opening.
     band_m : float, > 0
         Returns this near to a face are at it.
+    ways_m : sequence of (2, 2) float64
+        Gaps that leaves were seen to stand open at, from jamb to jamb.
     """
     track = _track_line(track_m)
-    return [_decide(wall, rays, track, rooms_beside, min_width_m, band_m) for wall in walls]
+    middles_m = np.mean([*ways_m, np.full((2, 2), np.inf)], axis=1)
+    return [
+        _decide(wall, rays, track, rooms_beside, min_width_m, band_m, middles_m) for wall in walls
+    ]
 
 
 def _decide(
@@ -250,15 +263,18 @@ def _decide(
     rooms_beside: Callable[[FloatArray, PlanWall], tuple[int, int]],
     min_width_m: float,
     band_m: float,
+    middles_m: FloatArray,
 ) -> PlanWall:
     openings: list[Opening] = []
     closed: list[Opening] = []
     for gap in [*wall.openings, *wall.closed]:
         ends_m = wall.line.at(np.array([gap.low_m, gap.high_m]))
         profile = observe_gap(wall, gap.low_m, gap.high_m, rays, band_m)
+        middle_m = ends_m.mean(axis=0)
         share = weigh_kinds(
             profile,
-            is_outside=min(rooms_beside(ends_m.mean(axis=0), wall)) < 0,
+            has_leaf=bool((np.hypot(*(middles_m - middle_m).T) <= CORNER_M).any()),
+            is_outside=min(rooms_beside(middle_m, wall)) < 0,
             is_driven=bool(shapely.intersects(track, shapely.linestrings(ends_m))),
             sill_m=gap.sill_m,
             planar=rays.planar,

@@ -10,6 +10,7 @@ from shapely.geometry import Polygon
 
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.furniture.pieces import Piece
+from scanplan.plan.openings import GAP
 from scanplan.plan.plan_wall import InferredFace, PlanWall
 from scanplan.plan.rooms import Room, rooms_beside
 from scanplan.plan.tolerances import LOW_PERCENT
@@ -127,8 +128,8 @@ def opening_columns(
 ) -> dict[str, Array]:
     """Return the rows of `schemas.OPENINGS`: those of each wall in order along it.
 
-    Then what is in no wall: panes, a passage for each parting between two rooms (inferred), and
-    what is bare of rooms' outlines.
+    Then what is in no wall: panes, a passage for each parting between two rooms (inferred), or a
+    door of which a leaf was seen, and what is bare of rooms' outlines.
     """
     rows: list[Row] = []
     for number, wall in enumerate(walls):
@@ -155,7 +156,8 @@ def opening_columns(
         ends_m = parting.line.at(np.array([opening.low_m, opening.high_m]))
         beside = rooms_beside(rooms, ends_m.mean(axis=0), parting)
         if beside[0] != beside[1] and min(beside) >= 0:
-            known = _NOT_IN_A_WALL | {"type": "passage", "n_rays": opening.n_rays}
+            kind = "passage" if opening.kind == GAP else opening.kind
+            known = _NOT_IN_A_WALL | {"type": kind, "n_rays": opening.n_rays}
             rows.append(known | _place_columns(ends_m, beside))
     for span in bare:
         known = _NOT_IN_A_WALL | {"type": span.kind, "p_kind": span.p_kind, "n_rays": span.n_rays}

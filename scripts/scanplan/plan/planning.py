@@ -22,6 +22,7 @@ from scanplan.plan import (
 from scanplan.plan.faces.merging import MergeSettings, merge_segments
 from scanplan.plan.faces.tracing import trace_faces
 from scanplan.plan.furniture import fronts
+from scanplan.plan.furniture.leaves import Leaf
 from scanplan.plan.furniture.pieces import Piece, find_pieces, pieces_in_rooms
 from scanplan.plan.openings import OpeningSettings
 from scanplan.plan.plan_wall import PlanWall
@@ -177,7 +178,7 @@ def make_plan(
     survey = _Survey(settings, rays, track_m, views, floor)
     surfaces = survey.find_surfaces(segments, threads)
     spaces = survey.find_spaces(surfaces)
-    walls = survey.decide_kinds(surfaces.walls, spaces.rooms)
+    walls = survey.decide_kinds(surfaces, spaces.rooms)
     surfaces = replace(surfaces, walls=walls)
     bare = survey.find_bare_spans(surfaces, spaces)
     floor_z_m = 0.0 if math.isnan(rays.floor_z_m) else rays.floor_z_m
@@ -217,7 +218,9 @@ class _Surfaces:
     unpaired_m : float
         How thick a wall is taken to be of which one side was seen.
     furnished : list of shapely geometry
-        Ground behind fronts of furniture, of planar scans.
+        Ground behind fronts of furniture and under leaves of doors, of planar scans.
+    leaves : list of leaves.Leaf
+        Of open doors, of planar scans.
     n_lines, n_dropped : int
         As in `Plan`.
     """
@@ -227,6 +230,7 @@ class _Surfaces:
     tops_m: list[float]
     unpaired_m: float
     furnished: list[BaseGeometry]
+    leaves: list[Leaf]
     n_lines: int
     n_dropped: int
 
@@ -282,9 +286,9 @@ class _Survey:
             corner_m=self.settings.merge.corner_m,
             door_height_m=reading.door_height_m,
         )
-        walls, furnished = assemble(traced.faces), []
+        walls, furnished, leaves = assemble(traced.faces), [], []
         if self.rays.planar:
-            walls, furnished = fronts.drop_fronts(
+            walls, furnished, leaves = fronts.drop_fronts(
                 *(walls, self.floor, assemble, _usual_thickness_m),
                 max_thickness_m=self.settings.pairs.max_thickness_m,
             )
@@ -302,6 +306,7 @@ class _Survey:
             tops_m=tops_m,
             unpaired_m=unpaired_m,
             furnished=furnished,
+            leaves=leaves,
             n_lines=traced.n_lines,
             n_dropped=traced.n_dropped,
         )
@@ -309,12 +314,15 @@ class _Survey:
     def find_spaces(self, surfaces: _Surfaces) -> _Spaces:
         """Return rooms and what stands in them."""
         min_area_m2 = self.settings.rooms.min_area_m2
+        leaves = [leaf.ground for leaf in surfaces.leaves]
+        floor = free_space.union_on_grid([self.floor, *leaves]) if leaves else self.floor
         partings = room_bounds.find_partings(
-            *(surfaces.bounds, self.floor, self.track_m),
+            *(surfaces.bounds, floor, self.track_m),
             max_width_m=self.settings.openings.max_door_m,
             min_area_m2=min_area_m2,
             unpaired_m=surfaces.unpaired_m,
             planar=self.rays.planar,
+            ways_m=[leaf.way_m for leaf in surfaces.leaves],
         )
         rooms = find_rooms(
             *([*surfaces.bounds, *partings], self.views, self.track_m),
@@ -341,10 +349,11 @@ class _Survey:
         pieces = pieces_in_rooms(pieces, [room.polygon for room in rooms])
         return _Spaces(rooms=rooms, partings=partings, pieces=pieces)
 
-    def decide_kinds(self, walls: list[PlanWall], rooms: list[Room]) -> list[PlanWall]:
+    def decide_kinds(self, surfaces: _Surfaces, rooms: list[Room]) -> list[PlanWall]:
         """Return walls with their openings as the kinds that rays show them to be."""
         return opening_kinds.decide_kinds(
-            *(walls, self.rays, self.track_m, functools.partial(rooms_beside, rooms)),
+            *(surfaces.walls, self.rays, self.track_m, functools.partial(rooms_beside, rooms)),
+            ways_m=[leaf.way_m for leaf in surfaces.leaves],
             min_width_m=self.settings.openings.min_opening_m,
             band_m=self.settings.reading.band_m,
         )

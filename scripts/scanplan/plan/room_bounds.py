@@ -5,12 +5,13 @@ from collections.abc import Sequence
 
 import numpy as np
 import shapely
+from shapely.geometry import LineString
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import intersections, narrow_places
 from scanplan.geometry.lines import Line
 from scanplan.plan import wall_ground
-from scanplan.plan.openings import OPEN, Opening
+from scanplan.plan.openings import GAP, OPEN, Opening
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.tolerances import CORNER_M, END_M
 from scanplan.rays import free_space
@@ -66,6 +67,7 @@ def find_partings(
     min_area_m2: float,
     unpaired_m: float,
     planar: bool = False,
+    ways_m: Sequence[FloatArray] = (),
 ) -> list[PlanWall]:
     """Return where free floor is narrow between walls: thin walls without faces, all an opening.
 
@@ -90,10 +92,16 @@ def find_partings(
         As in `find_glass_walls`.
     planar : bool
         Whether all scans lie in one plane.
+    ways_m : sequence of (2, 2) float64
+        Doors, from jamb to jamb: those that stand in no wall part floor, too.
     """
-    solid = free_space.union_on_grid(wall_ground.wall_strips(bounds, unpaired_m))
+    strips = wall_ground.wall_strips(bounds, unpaired_m)
+    known = shapely.union_all(strips).buffer(END_M)
+    doors = [_make_parting(way_m, "door") for way_m in _choose_ways(ways_m, known)]
+    strips += wall_ground.wall_strips(doors, unpaired_m)
+    solid = free_space.union_on_grid(strips)
     free = free_space.difference_on_grid(floor, solid)
-    partings = []
+    partings = list(doors)
     gaps_m = _find_line_gaps(bounds, free, max_width_m, unpaired_m) if planar else []
     for part in free_space.open_polygons(free, END_M):
         for ends_m in narrow_places.find_narrow_places(
@@ -151,12 +159,23 @@ def _snap(ends_m: FloatArray, walls: Sequence[PlanWall]) -> FloatArray:
     return ends_m if nearest is None else nearest.line.at(nearest.line.along_m(ends_m))
 
 
-def _make_parting(ends_m: FloatArray) -> PlanWall:
+def _choose_ways(ways_m: Sequence[FloatArray], solid: BaseGeometry) -> list[FloatArray]:
+    """Return the ways (2, 2) that no wall has an opening at, each once: a leaf has two sides."""
+    chosen: list[FloatArray] = []
+    for way_m in ways_m:
+        middle = shapely.Point(way_m.mean(axis=0))
+        known = [solid, *(LineString(other).buffer(CORNER_M) for other in chosen)]
+        if not any(shape.covers(middle) for shape in known):
+            chosen.append(way_m)
+    return chosen
+
+
+def _make_parting(ends_m: FloatArray, kind: str = GAP) -> PlanWall:
     """Return a thin wall between two places, a little longer, that is open all along."""
     way = ends_m[1] - ends_m[0]
     half_m = math.hypot(*way) / 2
     normal = np.array([-way[1], way[0]]) / (2 * half_m)
-    opening = Opening(-half_m, half_m, OPEN, 0, math.nan, math.nan, below_wall=False)
+    opening = Opening(-half_m, half_m, OPEN, 0, math.nan, math.nan, below_wall=False, kind=kind)
     line = Line(ends_m.mean(axis=0), normal)
     low_m, high_m = np.sort(line.along_m(ends_m))
     reach_m = (float(low_m) - 2 * END_M, float(high_m) + 2 * END_M)

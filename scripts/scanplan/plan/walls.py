@@ -43,6 +43,7 @@ def assemble_walls(
     3. through what is hidden there; both before ends move, as they need the gap between.
     4. Ends move to the middles of the walls that they meet.
     5. Openings end beside the walls that cross there, which step 4 has brought into place.
+    6. What is open from one wall that runs on there to another is a corridor that crosses.
 
     Parameters
     ----------
@@ -70,6 +71,9 @@ def assemble_walls(
     ):
         stacked = intersections.stack_spans(walls)
         walls = [change(wall, _find_crossings(wall, walls, stacked)) for wall in walls]
+    stacked = intersections.stack_spans(walls)
+    crossed = [(wall, _find_crossings(wall, walls, stacked)) for wall in walls]
+    walls = [part for one in crossed for part in _cut_at_corridors(*one)]
     return sorted(walls, key=lambda w: (-w.length_m, *w.ends.ravel()))
 
 
@@ -193,6 +197,53 @@ def _openings_between_things(gaps: Sequence[Opening], spans_m: FloatArray) -> li
     open_m = sum(g.width_m for g in ways)
     solid_m = np.ptp(spans_m) - unknown_m - open_m
     return [g for g in ways if not g.below_wall] if open_m > solid_m else []
+
+
+def _cut_at_corridors(wall: PlanWall, crossings: Sequence[Crossing]) -> list[PlanWall]:
+    """Return the parts of a wall beside corridors that cross it.
+
+    Such is an opening between two walls that both run on there, unless wall is seen above it.
+    """
+    through_m = np.array([m for other, m in crossings if _runs_through(other, wall, m)])
+    ends_m = [wall.low_m, wall.high_m]
+    crosses = False
+    for opening in wall.openings:
+        jambs_m = np.array([opening.low_m, opening.high_m])
+        near = np.abs(through_m - jambs_m[:, None]) <= CORNER_M
+        if near.any(axis=1).all() and not opening.below_wall:
+            crosses = True
+            ends_m += [float(through_m[row].mean()) for row in near]
+    if not crosses:
+        return [wall]
+    parts = [_between(wall, *span_m) for span_m in np.sort(ends_m).reshape(-1, 2).tolist()]
+    return [part for part in parts if part.members]
+
+
+def _runs_through(other: PlanWall, wall: PlanWall, place_m: float) -> bool:
+    """Return whether another wall goes on on both sides of one that it crosses at a place."""
+    at_m = float(other.line.along_m(wall.line.at(place_m)))
+    return min(at_m - other.low_m, other.high_m - at_m) > wall.half_m + CORNER_M
+
+
+def _between(wall: PlanWall, begin_m: float, end_m: float) -> PlanWall:
+    """Return a wall from one place to another, with what has its middle there."""
+
+    def is_inside(low_m: float, high_m: float) -> bool:
+        return begin_m < (low_m + high_m) / 2 < end_m
+
+    return replace(
+        wall,
+        low_m=begin_m,
+        high_m=end_m,
+        **{
+            side: [f for f in getattr(wall, side) if is_inside(*wall.line.along_m(f.ends).tolist())]
+            for side in ("left", "right")
+        },
+        **{
+            gaps: [g for g in getattr(wall, gaps) if is_inside(g.low_m, g.high_m)]
+            for gaps in ("openings", "closed")
+        },
+    )
 
 
 def _between_sides(gap: Opening, spans_m: FloatArray) -> Opening:

@@ -5,7 +5,8 @@ is all of the plan: behind a wall there is its other side, another room, or the 
 front there is a pocket no larger than furniture and what it hides, up to the wall behind: a wall on
 whose line floor of the same room ends beside the pocket, and that goes farther through all rooms
 than the front's own line. A block that stands alone on the floor of a room is furniture, too, if
-it is thicker than a wall of the building and longer than a column.
+it is thicker than a wall of the building and longer than a column. Leaves of open doors are taken
+off before.
 """
 
 from collections.abc import Callable, Sequence
@@ -13,6 +14,7 @@ from collections.abc import Callable, Sequence
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.plan.faces.intervals import FaceInterval
+from scanplan.plan.furniture.leaves import Leaf, find_leaves
 from scanplan.plan.furniture.pockets import find_pockets
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.rays import free_space
@@ -25,8 +27,8 @@ def drop_fronts(
     measure_thickness_m: Callable[[list[PlanWall]], float],
     *,
     max_thickness_m: float,
-) -> tuple[list[PlanWall], list[BaseGeometry]]:
-    """Return walls without fronts of furniture, and the ground that the furniture stands on.
+) -> tuple[list[PlanWall], list[BaseGeometry], list[Leaf]]:
+    """Return walls without fronts, the ground that furniture stands on, and leaves of doors.
 
     Without its fronts walls behind it may be joined, and close more pockets: until none is found.
 
@@ -42,7 +44,11 @@ def drop_fronts(
     max_thickness_m : float
         Of a wall.
     """
-    grounds: list[BaseGeometry] = []
+    leaves = find_leaves(walls, unpaired_m=measure_thickness_m(walls))
+    if leaves:
+        faces = [face for wall in walls for face in wall.members]
+        walls = assemble([face for face in faces if not any(leaf.hides(face) for leaf in leaves)])
+    grounds: list[BaseGeometry] = [leaf.ground for leaf in leaves]
     while pockets := find_pockets(
         *(walls, free_space.union_on_grid([floor, *grounds])),
         unpaired_m=measure_thickness_m(walls),
@@ -53,4 +59,4 @@ def drop_fronts(
         walls = assemble(
             [face for wall in walls for face in wall.members if id(face) not in dropped]
         )
-    return walls, grounds
+    return walls, grounds, leaves

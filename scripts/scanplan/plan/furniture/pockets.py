@@ -23,6 +23,7 @@ from scanplan.plan.tolerances import ALONG_SHARE, CORNER_M, END_M, FACE_M
 from scanplan.rays import free_space
 from scanplan.rays.face_raster import CELL_M
 from scanplan.rays.tolerances import BEHIND_M, STRETCH_M
+from scanplan.types import FloatArray
 
 _POCKET_M2 = 2 * FURNITURE_M2  # of two desks or a table, with the floor that they hide
 
@@ -137,12 +138,28 @@ class _AllFaces:
 
     def reach_on_line_m(self, face: FaceInterval) -> float:
         """Return how far all faces of the same way reach that lie on the line of one."""
+        low_m, high_m = self._along_line_m(face)
+        return float(high_m.max() - low_m.min())
+
+    def joined_m(self, face: FaceInterval) -> float:
+        """Return how long a surface is with others in its line, no farther away than it is long."""
+        lows_m, highs_m = self._along_line_m(face)
+        span_m, joined_m = (face.low_m, face.low_m), (face.low_m, face.high_m)
+        while joined_m != span_m:
+            span_m = joined_m
+            gap_m = np.maximum(lows_m - span_m[1], span_m[0] - highs_m)
+            is_near = gap_m <= span_m[1] - span_m[0]
+            joined_m = (float(lows_m[is_near].min()), float(highs_m[is_near].max()))
+        return span_m[1] - span_m[0]
+
+    def _along_line_m(self, face: FaceInterval) -> tuple[FloatArray, FloatArray]:
+        """Return from where (n,) to where faces of the same way lie on the line of one."""
         off_m = face.line.offset_m(self._centre_m)
         is_parallel = self._normal @ face.line.normal >= math.cos(intersections.LEAST_RAD)
         is_on = is_parallel & (np.abs(off_m) <= FACE_M)
         along_m = face.line.along_m(self._centre_m[is_on])
         half_m = self._length_m[is_on] / 2
-        return float((along_m + half_m).max() - (along_m - half_m).min())
+        return along_m - half_m, along_m + half_m
 
 
 def _find_holes(known: BaseGeometry) -> Iterator[Polygon]:
@@ -162,7 +179,7 @@ def _find_recesses(
     for front in fronts:
         reach_m = faces.reach_on_line_m(front)
         # no deeper than a table and its shadow, however short the front
-        most_m = min(_POCKET_M2 / front.length_m, math.sqrt(_POCKET_M2))
+        most_m = min(_POCKET_M2 / faces.joined_m(front), math.sqrt(_POCKET_M2))
         for wall in faces.parallel(front, most_m):
             along_m = wall.line.along_m(front.ends)
             gap_m = max(wall.low_m - along_m.max(), along_m.min() - wall.high_m)

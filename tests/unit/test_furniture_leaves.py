@@ -1,0 +1,73 @@
+"""Leaves of doors in the plane: a wall with a door of 0.9 m, and what stands at its jamb."""
+
+import numpy as np
+import pytest
+from shapely import box
+
+from helpers.observation_making import stretch
+from scanplan.plan.furniture import fronts
+from scanplan.plan.furniture.leaves import find_leaves
+from scanplan.plan.openings import OPEN, Opening
+from scanplan.plan.plan_wall import PlanWall
+
+JAMBS_M = [[2.0, 0.0], [2.9, 0.0]]
+
+
+def single(*ends, openings=()):
+    """A wall of one face that is seen from the left of its way."""
+    face = stretch(*ends, planar=True)
+    return PlanWall(face.line, face.low_m, face.high_m, np.nan, [face], [], list(openings))
+
+
+def south():
+    """A wall along x from 0 to 5, seen from the north, with a door."""
+    bare = single(0, 0, 5, 0)
+    low_m, high_m = np.sort(bare.line.along_m(np.array(JAMBS_M)))
+    return single(0, 0, 5, 0, openings=[Opening(low_m, high_m, OPEN, 99, np.nan, np.nan, False)])
+
+
+def leaves(*others):
+    return find_leaves([south(), *others], unpaired_m=0.1)
+
+
+@pytest.mark.parametrize(
+    "tip", [(2.0, 0.9), (1.9, 0.8), (2.6, 0.6)], ids=["square", "wide", "half"]
+)
+@pytest.mark.parametrize("turned", [False, True], ids=["from within", "from behind"])
+def test_what_hangs_at_a_jamb_is_as_long_as_its_door_and_ends_free_is_a_leaf(tip, turned):
+    ends = [(2.0, 0.05), tip]
+    body = single(*np.ravel(ends[::-1] if turned else ends))
+    (leaf,) = leaves(body)
+    assert leaf.face is body.left[0]
+    np.testing.assert_allclose(np.sort(leaf.way_m, axis=0), JAMBS_M, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "ends",
+    [
+        *[(2.0, 0.0, 2.0, 0.4), (2.0, 0.0, 2.0, 1.3), (1.4, 0.0, 1.4, 0.9)],
+        *[(2.9, 0.02, 2.0, 0.02), (1.1, 0.02, 2.0, 0.02), (2.9, -0.2, 2.0, -0.2)],
+    ],
+    ids=["nib", "wall", "elsewhere", "shut", "of the wall", "niche"],
+)
+def test_what_is_shorter_or_longer_or_hangs_elsewhere_is_none(ends):
+    assert leaves(single(*ends)) == []
+
+
+def test_a_return_that_ends_at_another_wall_is_no_leaf():
+    assert leaves(single(2.0, 0.05, 2.0, 0.9), single(2.0, 0.9, 0.5, 0.9)) == []
+
+
+def test_both_sides_of_a_leaf_are_found_and_taken_off_with_what_was_seen_of_it_at_other_times():
+    sides = [single(2.0, 0.05, 2.0, 0.9), single(2.05, 0.9, 2.05, 0.05)]
+    traces = [single(2.1, 0.4, 2.1, 0.8)]
+    walls = [south(), *sides, *traces]
+
+    def assemble(faces):
+        return [wall for wall in walls if any(face in faces for face in wall.members)]
+
+    left, grounds, found = fronts.drop_fronts(
+        *(walls, box(0, 0, 5, 4), assemble, lambda _: 0.1), max_thickness_m=0.6
+    )
+    assert left == walls[:1] and len(found) == len(grounds) == 2
+    assert {id(leaf.face) for leaf in found} == {id(side.left[0]) for side in sides}
