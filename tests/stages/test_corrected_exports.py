@@ -2,6 +2,7 @@
 
 import json
 import struct
+from dataclasses import replace
 from xml.etree import ElementTree
 
 import ezdxf
@@ -24,6 +25,8 @@ from scanplan.plan import floorplan, planning
 from scanplan.project import export_formats, stage_settings
 from scanplan.store import schemas, tables
 from scanplan.store.pose_columns import pose_columns
+from scanplan.validation import confidence
+from scanplan.validation.confidence_coefficients import COEFFICIENTS
 
 CORRECTIONS = [
     {"element": "room", "at": [5, 1], "name": "Küche"},
@@ -166,17 +169,13 @@ def test_sheets_show_it_and_explain_it(corrected, tmp_path):
 
 def test_who_has_looked_at_an_element_need_not_verify_it(tmp_path):
     exported(tmp_path, CORRECTIONS)
-    numbers = {"openings": (0, 2), "rooms": range(2), "walls": range(7)}
-    rows = [(table, number) for table, of_table in numbers.items() for number in of_table]
-    rated = {
-        "table": np.array([table for table, _ in rows], object),
-        "number": np.array([number for _, number in rows], np.int32),
-        "p_true": np.full(len(rows), 0.3),
-        "verify": np.ones(len(rows), bool),
-        "doubt": np.full(len(rows), "few rays", object),
-        "needs_person": np.zeros(len(rows), bool),
-    }
     files = {table: tmp_path / f"corrected/{table}.parquet" for table in planning.TABLES}
+    validation = {name: np.zeros(1) for name in schemas.VALIDATION.columns}
+    validation["kind"] = np.array(["plan_rays"], object)
+    # a level that nothing reaches
+    strict = {table: model | {"level": 2.0} for table, model in COEFFICIENTS.items()}
+    seen = replace(floorplan.read_floorplan(files), floor_z_m=0.0)
+    rated = confidence.rate_elements(seen, validation, strict)
     files["confidence"] = tmp_path / "confidence.parquet"
     tables.write_table(files["confidence"], schemas.CONFIDENCE, rated)
     plan = floorplan.read_floorplan(files)
