@@ -24,9 +24,10 @@ def tell_fault(
     """Tell what a stage raised before it began its log like what it raises later."""
     stage = getattr(sys.modules.get("__main__"), "snakemake", None)
     path = next(iter(getattr(stage, "log", ())), None)
+    if path is None:
+        sys.__excepthook__(kind, error, trace)
+        return
     try:
-        if path is None:
-            raise error
         from scanplan.stage import log
 
         with log.log_to_file(path):
@@ -34,8 +35,8 @@ def tell_fault(
     except SystemExit:
         pass
     except BaseException:
-        # no stage, or one that lacks code to tell it by
-        sys.__excepthook__(kind, error, trace)
+        # a stage that lacks code to tell it by
+        sys.__excepthook__(kind, error.with_traceback(trace), trace)
 
 
 sys.excepthook = tell_fault

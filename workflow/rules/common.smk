@@ -1,4 +1,5 @@
 import gc
+import io
 import os
 import sys
 from contextlib import redirect_stderr
@@ -14,9 +15,6 @@ if not IS_MODULE:
     gc.set_threshold(100_000)
 # of a plan of two threads an eighth of the memory: each would keep for itself what it has freed
 os.environ.setdefault("MALLOC_ARENA_MAX", "1")
-# arrays are multiplied in thousands of small pieces: threads for one of them would wait for the next
-# at full load, on the cores that other stages and workers have
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 sys.path.insert(0, f"{PROJECT}/scripts")
 from scanplan.errors import StageError
@@ -110,7 +108,7 @@ def given_targets():
         return []
     try:
         # what is no command of Snakemake's is another program's
-        with redirect_stderr(None):
+        with redirect_stderr(io.StringIO()):
             parsed, _ = command.get_argument_parser().parse_known_args(sys.argv[1:])
     except SystemExit:
         return []

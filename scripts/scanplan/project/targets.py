@@ -1,6 +1,7 @@
 """What is asked of a run on its command line: faults that Snakemake tells as a missing rule."""
 
 import json
+import shlex
 from collections.abc import Collection, Iterable
 from pathlib import PurePath
 
@@ -45,7 +46,7 @@ def _as_config(key: str, value: str) -> str:
     """Return a setting as `--config` takes it: sections are objects of JSON."""
     section, *keys = key.split(".")
     if not keys:
-        return f"{section}={value}"
+        return shlex.quote(f"{section}={value}")
     try:
         nested: object = json.loads(value)
     except ValueError:

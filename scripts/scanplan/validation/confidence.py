@@ -41,7 +41,7 @@ def rate_elements(
         verify = p_true < model["level"]
         p_seen, _ = weigh_features(_raise_evidence(features, model, plan.hosts >= 0), model)
         needs_person = verify & (p_seen < model["level"])
-        doubt = _explain(shares, features, verify)
+        doubt = _explain(shares, model["features"], verify)
         if table == "walls":
             is_weak = columns["verify"] & ~verify
             doubt[is_weak] = "place uncertain, or hardly seen"

@@ -61,7 +61,7 @@ def _refuse(path: Path) -> str:
 
 def _remedy(suffix: str) -> str:
     if suffix:
-        return f"rename it to *{suffix}"
+        return f"rename it to *{suffix}, in a metadata.yaml beside it too"
     return "unpack it, copy it again from the robot, or take it out of the dataset"
 
 
