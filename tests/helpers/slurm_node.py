@@ -14,6 +14,7 @@ import time
 from pathlib import Path
 
 PACKAGES = ("slurm-wlm", "munge")
+COMMANDS = ("slurmctld", "slurmd", "sbatch", "scancel", "scontrol", "sinfo", "squeue", "munged")
 CONFIGURATION = """\
 ClusterName=test
 SlurmctldHost={host}
@@ -55,8 +56,10 @@ def find_lack():
     """Install Slurm where it is missing and start it once; return why not, or nothing."""
     if os.getuid() != 0:
         return "only root may start one"
-    if not (shutil.which("slurmctld") and shutil.which("munged")) and not _is_installed():
+    if missing_commands() and not _is_installed():
         return f"no {' and '.join(PACKAGES)} can be installed"
+    if missing := missing_commands():
+        return f"{' and '.join(PACKAGES)} are installed without {', '.join(missing)}"
     with tempfile.TemporaryDirectory() as folder:
         node = SlurmNode(folder)
         try:
@@ -66,6 +69,10 @@ def find_lack():
         finally:
             node.stop()
     return ""
+
+
+def missing_commands():
+    return [name for name in COMMANDS if shutil.which(name) is None]
 
 
 def _is_installed():

@@ -1,7 +1,6 @@
 """The profile for Slurm, on a Slurm of this machine; `make test-slurm` installs what it needs."""
 
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -11,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from helpers.project_copy import TINY, Project
-from helpers.slurm_node import SlurmNode
+from helpers.slurm_node import SlurmNode, missing_commands
 from scanplan.project.run import slurm_jobs
 
 pytestmark = pytest.mark.slurm
@@ -22,7 +21,7 @@ POSES = "results/floor_1/poses.parquet"
 
 @pytest.fixture(scope="module")
 def node(tmp_path_factory):
-    if os.getuid() != 0 or not shutil.which("slurmctld"):
+    if os.getuid() != 0 or missing_commands():
         pytest.skip("no Slurm here that this user may start: make test-slurm installs one as root")
     node = SlurmNode(tmp_path_factory.mktemp("slurm"))
     node.start()
