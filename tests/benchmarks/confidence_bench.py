@@ -6,7 +6,7 @@ elements exist as they are drawn. What is fitted on some surveys is tested on ot
 
 import pprint
 import textwrap
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -40,6 +40,7 @@ _RIGHT_SHARE = 0.8  # of the length of a face or wall near a true one
 _WITHIN_M = 0.1
 _RIGHT_FLAGGED = 0.09  # of right elements lie below the level: on other surveys it may be a tenth
 _BINS = 10
+Rating = tuple[FloatArray, FloatArray, BoolArray]
 _KINDS = {"door": "door", "passage": "door", "window": "window", "glass": "window"}
 
 
@@ -54,17 +55,25 @@ def bench(
 ) -> None:
     """Fit on some surveys below `results`, test on others; write coefficients and a figure."""
     rows = {name: list(_rate_survey(results / name, settings)) for name in (*train, *test)}
-    fitted = {table: _fit(*_join(rows, train, table)) for table in floorplan.NUMBERS}
-    text = pprint.pformat(fitted, sort_dicts=False, width=90)
+    fitted = _fit_tables(rows, train)
+    level = _choose_level(rows, train, fitted)
+    text = pprint.pformat({"level": level} | fitted, sort_dicts=False, width=90)
     coefficients.write_text(
         '"""The model of `confidence.py`, written by `make bench ARGS="confidence ..."`.\n\n'
         + textwrap.fill(f"Fitted on {', '.join(train)}; tested on {', '.join(test)}.", 100)
-        + "\n"
-        '"""\n\nfrom typing import Any\n\nCOEFFICIENTS: dict[str, Any] = ' + text + "\n"
+        + '\n"""\n\nfrom typing import Any\n\n'
+        + f"COEFFICIENTS: dict[str, Any] = {text}\n"
     )
+    folds = []
+    for name in train:
+        others = [other for other in train if other != name]
+        without = _fit_tables(rows, others)
+        folds.append(_rate_tables(rows, [name], without, _choose_level(rows, others, without)))
+    left_out = {t: _join_ratings([fold[t] for fold in folds]) for t in floorplan.NUMBERS}
+    tested = _rate_tables(rows, test, fitted, level)
     sheet, axes = plt.subplots(1, 2, figsize=(9, 4.5), sharey=True)
-    for chart, names, title in zip(axes, (train, test), ("fitted on", "tested on"), strict=True):
-        _report(chart, rows, names, fitted, title)
+    _report(axes[0], left_out, f"{len(train)} surveys, each left out of its fit")
+    _report(axes[1], tested, f"tested on {', '.join(test)}")
     sheet.savefig(figure, dpi=110, bbox_inches="tight")
 
 
@@ -227,6 +236,38 @@ def _join(rows: Mapping[str, Any], names: Sequence[str], table: str) -> tuple[An
     return features, right[known]
 
 
+def _fit_tables(rows: Mapping[str, Any], names: Sequence[str]) -> dict[str, Any]:
+    return {table: _fit(*_join(rows, names, table)) for table in floorplan.NUMBERS}
+
+
+def _rate_tables(
+    rows: Mapping[str, Any], names: Sequence[str], fitted: Mapping[str, Any], level: float
+) -> dict[str, Rating]:
+    """Return, by table, of elements how likely they are, whether right, and whether flagged."""
+    ratings: dict[str, Rating] = {}
+    for table, model in fitted.items():
+        features, right = _join(rows, names, table)
+        p_true, _ = confidence.weigh_features(features, model)
+        ratings[table] = (p_true, right, p_true < level)
+    return ratings
+
+
+def _join_ratings(ratings: Iterable[Rating]) -> Rating:
+    p_true, right, verify = (np.concatenate(part) for part in zip(*ratings, strict=True))
+    return p_true, right, verify
+
+
+def _choose_level(
+    rows: Mapping[str, Any], names: Sequence[str], fitted: Mapping[str, Any]
+) -> float:
+    """Return the level below which a share of the right elements lies, of whatever kind.
+
+    Probabilities of walls and of rooms mean the same: one level misses the fewest wrong elements.
+    """
+    p_true, right, _ = _join_ratings(_rate_tables(rows, names, fitted, 0.0).values())
+    return round(float(np.quantile(p_true[right == 1], _RIGHT_FLAGGED)), 3)
+
+
 def _fit(features: Mapping[str, FloatArray], right: FloatArray) -> dict[str, Any]:
     """Fit a logistic model whose features speak for an element only.
 
@@ -248,28 +289,19 @@ def _fit(features: Mapping[str, FloatArray], right: FloatArray) -> dict[str, Any
     bounds = [(None, None), *[(0.0, None)] * len(features)]
     start = np.zeros(len(bounds))
     weights = optimize.minimize(lose, start, jac=True, bounds=bounds, method="L-BFGS-B").x
-    fitted = {
+    return {
         "intercept": round(float(weights[0]), 4),
         "features": {
             name: {"mean": round(float(m), 4), "weight": round(float(w), 4)}
             for name, m, w in zip(features, mean, weights[1:] / scale, strict=True)
         },
     }
-    p_true, _ = confidence.weigh_features(features, fitted)
-    level = np.quantile(p_true[right == 1], _RIGHT_FLAGGED)
-    return fitted | {"level": round(float(level), 3)}
 
 
-def _report(
-    chart: Any, rows: Mapping[str, Any], names: Sequence[str], coefficients: Any, title: str
-) -> None:
-    every: list[tuple[FloatArray, FloatArray, BoolArray]] = []
-    for table, model in coefficients.items():
-        features, right = _join(rows, names, table)
-        p_true, _ = confidence.weigh_features(features, model)
-        every.append((p_true, right, p_true < model["level"]))
-        _print_line(f"{title}, {table}", *every[-1])
-    p_true, right, verify = (np.concatenate(part) for part in zip(*every, strict=True))
+def _report(chart: Any, ratings: Mapping[str, Rating], title: str) -> None:
+    for table, rating in ratings.items():
+        _print_line(f"{title}, {table}", *rating)
+    p_true, right, verify = _join_ratings(ratings.values())
     _print_line(f"{title}, all", p_true, right, verify)
     bins = np.minimum((p_true * _BINS).astype(int), _BINS - 1)
     used = np.unique(bins)
@@ -279,7 +311,7 @@ def _report(
     chart.plot(said, held, "o-")
     for b, x, y in zip(used, said, held, strict=True):
         chart.annotate(f"{(bins == b).sum()}", (x, y), (4, -12), textcoords="offset points")
-    chart.set(title=f"{title} {', '.join(names)}", xlabel="stated probability")
+    chart.set(title=title, xlabel="stated probability")
     chart.set_ylabel("share that is right")
     chart.title.set_fontsize(7)
 

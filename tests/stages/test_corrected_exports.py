@@ -173,7 +173,7 @@ def test_who_has_looked_at_an_element_need_not_verify_it(tmp_path):
     validation = {name: np.zeros(1) for name in schemas.VALIDATION.columns}
     validation["kind"] = np.array(["plan_rays"], object)
     # a level that nothing reaches
-    strict = {table: model | {"level": 2.0} for table, model in COEFFICIENTS.items()}
+    strict = COEFFICIENTS | {"level": 2.0}
     seen = replace(floorplan.read_floorplan(files), floor_z_m=0.0)
     rated = confidence.rate_elements(seen, validation, strict)
     files["confidence"] = tmp_path / "confidence.parquet"

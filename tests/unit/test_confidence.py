@@ -37,11 +37,32 @@ def rated(table, **columns):
     return {name: values[of_table] for name, values in found.items()}
 
 
+def weighted(table, **weights):
+    """The coefficients, but for a table that these few features alone decide."""
+    features = {
+        name: known | {"weight": weights.get(name, 0.0)}
+        for name, known in COEFFICIENTS[table]["features"].items()
+    }
+    return COEFFICIENTS | {table: {"intercept": 5.0, "features": features}}
+
+
 def test_the_worst_span_tells_of_a_face_that_is_right_elsewhere():
     rows = [("face", 0, 0, 98, 98), ("face", 0, 1, 8, 0), ("face", 1, 0, 8, 4)]
     faces = confidence.describe_elements(PLAN, validation(*rows))["faces"]
     np.testing.assert_allclose(faces["agreement"][:3], [np.log(99 / 9), 0, 0])
     np.testing.assert_allclose(faces["worst_span"][:3], [np.log(1 / 9), 0, 0])
+
+
+def test_rays_that_end_at_two_faces_speak_for_none_of_them():
+    rows = [(0, 0, 4, 0, 0), (0, 0.1, 4, 0.1, 0), (0, 3, 4, 3, 0)]
+    faces = floorplan_making.faces(rows)
+    plan = floorplan.make_floorplan(PARTS | {"faces": faces}, 0.0, 2.5)
+    rows = [("face", number, 0, 98, 98) for number in faces["face"].tolist()]
+    found = confidence.describe_elements(plan, validation(*rows))["faces"]
+    np.testing.assert_allclose(found["agreement"], [0, 0, np.log(99)])
+    rows = [("face", number, 0, 98, 0) for number in faces["face"].tolist()]
+    found = confidence.describe_elements(plan, validation(*rows))["faces"]
+    np.testing.assert_allclose(found["agreement"], -np.log(99))
 
 
 def test_a_probability_is_the_logistic_of_what_its_features_add():
@@ -83,7 +104,8 @@ def test_a_doubt_is_of_size_where_evidence_as_usual_leaves_it():
     """Far from any wall both rooms are doubted; with walls around the closet still would be."""
     areas = [shapely.box(100, 0, 104, 4), shapely.box(104, 0, 105, 1)]
     parts = PARTS | {"rooms": floorplan_making.rooms(areas)}
-    found = confidence.rate_elements(floorplan.make_floorplan(parts, 0.0, 2.5), validation())
+    plan = floorplan.make_floorplan(parts, 0.0, 2.5)
+    found = confidence.rate_elements(plan, validation(), weighted("rooms", faced=9.0, broad=9.0))
     rooms = found["table"] == "rooms"
     assert found["verify"][rooms].tolist() == [True, True]
     assert found["needs_person"][rooms].tolist() == [False, True]
@@ -99,7 +121,7 @@ def test_a_pane_in_no_wall_needs_a_person(in_wall, needs_person):
     if not in_wall:
         panes["wall"] = np.full(n, -1)
     plan = floorplan.make_floorplan(PARTS | {"openings": panes}, 0.0, 2.5)
-    found = confidence.rate_elements(plan, validation())
+    found = confidence.rate_elements(plan, validation(), weighted("openings", wall=9.0))
     rows = np.flatnonzero((found["table"] == "openings") & found["verify"])
     assert len(rows) > 0
     assert (found["needs_person"][rows] == needs_person).all()
@@ -113,7 +135,7 @@ def described_openings(**columns):
 
 def test_ways_lead_between_rooms_and_windows_out_of_them():
     n = len(PARTS["openings"]["type"])
-    room_a, room_b = np.zeros(n, int), np.arange(n) % 2 - 1
+    room_a, room_b = np.zeros(n, int), np.arange(n) % 2 * 2 - 1
     ways = described_openings(type=np.full(n, "door"), room_a=room_a, room_b=room_b)
     panes = described_openings(type=np.full(n, "glass"), room_a=room_a, room_b=room_b)
     np.testing.assert_array_equal(ways["usual"], np.arange(n) % 2)
@@ -131,7 +153,7 @@ def test_the_coefficients_are_of_features_that_there_are(table):
     features = confidence.describe_elements(PLAN, validation())[table]
     assert list(COEFFICIENTS[table]["features"]) == list(features)
     assert set(features) <= set(confidence.REASONS)
-    assert 0 < COEFFICIENTS[table]["level"] < 1
+    assert 0 < COEFFICIENTS["level"] < 1
 
 
 def test_where_no_height_is_seen_nothing_is_likely_or_not():

@@ -27,10 +27,12 @@ def rate_elements(
     validation : dict of str to (n,) array
         The columns of `schemas.VALIDATION`.
     coefficients : dict
-        As `confidence_coefficients` has them. They hold where heights above the floor are seen;
-        of a plan without them, such as a planar survey's, probabilities are not known (NaN).
+        As `confidence_coefficients` has them: `level`, below which an element is to be verified,
+        and a model by table. They hold where heights above the floor are seen; of a plan without
+        them, such as a planar survey's, probabilities are not known (NaN).
     """
     described = describe_elements(plan, validation)
+    level = coefficients["level"]
     has_heights = np.isfinite(plan.floor_z_m)
     parts = []
     for table, number in sorted(NUMBERS.items()):
@@ -38,9 +40,9 @@ def rate_elements(
         p_true, shares = weigh_features(features, model)
         if not has_heights:
             p_true = np.full(len(p_true), np.nan)
-        verify = p_true < model["level"]
+        verify = p_true < level
         p_seen, _ = weigh_features(_raise_evidence(features, model, plan.hosts >= 0), model)
-        needs_person = verify & (p_seen < model["level"])
+        needs_person = verify & (p_seen < level)
         doubt = _explain(shares, model["features"], verify)
         if table == "walls":
             is_weak = columns["verify"] & ~verify

@@ -1,64 +1,58 @@
 """The model of `confidence.py`, written by `make bench ARGS="confidence ..."`.
 
-Fitted on office_11, duplexup_1, demo_2, office_12, ring_1; tested on duplex_1, fzk_1, office_13,
-demo_1, duplex_2, fzk_2, office_14, fzkup_1, duplexup_2.
+Fitted on drawn_22, drawn_23, drawn_24, drawn_25, drawn_26, drawn_27, drawn_28, drawn_29, drawn_30,
+drawn_31, drawn_32, drawn_35, drawn_36, drawn_37, drawn_38, drawn_41, drawn_44; tested on demo_1,
+demo_2, ring_1, ring_2, duplex_1, duplex_2, duplex_3, fzk_1, fzk_2, fzk_3.
 """
 
 from typing import Any
 
 COEFFICIENTS: dict[str, Any] = {
+    "level": 0.914,
     "walls": {
-        "intercept": 4.1878,
+        "intercept": 3.8289,
         "features": {
-            "agreement": {"mean": 4.8148, "weight": 0.0426},
-            "observed": {"mean": 0.9203, "weight": 1.9582},
-            "undoubled": {"mean": 0.888, "weight": 2.2126},
-            "joined": {"mean": 1.7784, "weight": 1.3588},
-            "bounding": {"mean": 0.9474, "weight": 1.9787},
-            "worst_span": {"mean": -0.4497, "weight": 0.6878},
-            "points": {"mean": 6.6137, "weight": 0.1912},
-            "length": {"mean": 1.846, "weight": 0.5167},
+            "agreement": {"mean": 4.9647, "weight": 0.4273},
+            "observed": {"mean": 0.949, "weight": 4.3745},
+            "undoubled": {"mean": 0.8946, "weight": 0.6441},
+            "joined": {"mean": 1.6732, "weight": 0.6832},
+            "bounding": {"mean": 0.9599, "weight": 0.8711},
+            "worst_span": {"mean": -0.4312, "weight": 0.4332},
+            "points": {"mean": 6.644, "weight": 0.1871},
+            "length": {"mean": 1.527, "weight": 0.4632},
         },
-        "level": 0.943,
     },
     "faces": {
-        "intercept": 6.5126,
+        "intercept": 5.5009,
         "features": {
-            "agreement": {"mean": 4.7928, "weight": 0.444},
-            "worst_span": {"mean": 3.6582, "weight": 0.3231},
-            "points": {"mean": 5.5957, "weight": 0.2452},
-            "observed": {"mean": 0.863, "weight": 0.0},
-            "length": {"mean": 0.5096, "weight": 0.5702},
-            "smooth": {"mean": -1.0763, "weight": 0.3689},
-            "undoubled": {"mean": 0.9458, "weight": 1.2237},
-            "joined": {"mean": 1.8937, "weight": 2.3886},
-            "bounding": {"mean": 0.9723, "weight": 1.4402},
+            "agreement": {"mean": 5.1411, "weight": 0.4508},
+            "worst_span": {"mean": 4.2539, "weight": 0.2949},
+            "points": {"mean": 5.8615, "weight": 0.2827},
+            "observed": {"mean": 0.8843, "weight": 0.0},
+            "length": {"mean": 0.3118, "weight": 0.4609},
+            "smooth": {"mean": -1.1945, "weight": 0.2312},
+            "undoubled": {"mean": 0.9333, "weight": 0.1893},
+            "joined": {"mean": 1.8362, "weight": 1.1314},
+            "bounding": {"mean": 0.9776, "weight": 0.6769},
         },
-        "level": 0.968,
     },
     "openings": {
-        "intercept": 5.7007,
+        "intercept": 3.0455,
         "features": {
-            "kind": {"mean": 2.9096, "weight": 3.3252},
-            "sill": {"mean": 0.9088, "weight": 0.6487},
-            "lintel": {"mean": 0.2134, "weight": 1.9438},
-            "usual": {"mean": 0.9625, "weight": 0.4842},
-            "wall": {"mean": 4.9899, "weight": 0.6326},
-            "joined": {"mean": 1.9837, "weight": 1.0046},
-            "alone": {"mean": 0.9153, "weight": 4.586},
-            "width": {"mean": -0.0706, "weight": 0.0836},
+            "kind": {"mean": 2.8077, "weight": 2.3799},
+            "usual": {"mean": 0.8485, "weight": 2.8536},
+            "wall": {"mean": 4.7297, "weight": 0.2628},
+            "joined": {"mean": 1.9257, "weight": 0.9836},
+            "alone": {"mean": 0.9106, "weight": 2.7083},
+            "width": {"mean": -0.1539, "weight": 0.5481},
         },
-        "level": 0.93,
     },
     "rooms": {
-        "intercept": 4.4546,
+        "intercept": 5.4429,
         "features": {
-            "closed": {"mean": 0.8304, "weight": 0.0},
-            "walled": {"mean": 0.9128, "weight": 0.0},
-            "faced": {"mean": 0.8516, "weight": 5.9468},
-            "parted": {"mean": -0.0017, "weight": 14.3066},
-            "broad": {"mean": 1.2778, "weight": 3.6336},
+            "walled": {"mean": 0.9182, "weight": 4.9828},
+            "faced": {"mean": 0.7977, "weight": 0.7423},
+            "broad": {"mean": 1.1909, "weight": 4.0942},
         },
-        "level": 0.958,
     },
 }

@@ -19,22 +19,18 @@ REASONS = {
     "joined": "its ends meet nothing",
     "bounding": "bounds no room",
     "kind": "kind uncertain",
-    "sill": "sill not seen",
-    "lintel": "lintel not seen",
-    "usual": "a way out of the known rooms, or a window inside",
+    "usual": "a way that leads to no other room, or a window inside",
     "wall": "in no wall, or rays of other scans contradict that",
     "alone": "another opening beside it",
     "width": "wide for what it is",
-    "closed": "not closed by walls",
     "walled": "outline partly not seen",
     "faced": "outline partly without walls",
-    "parted": "parted from the next where floor is narrow, by no wall",
     "broad": "small or narrow",
 }
 """Features of elements, each the better the greater, and the doubt where one is low."""
 OF_SIZE = ("length", "width", "broad")
 """Features that are the same however often an element is seen."""
-OF_WALL = ("sill", "lintel", "wall")
+OF_WALL = ("wall",)
 """Features that an opening in no wall never has."""
 
 
@@ -60,8 +56,13 @@ def describe_elements(plan: FloorPlan, validation: Columns) -> dict[str, dict[st
 def _describe_faces(plan: FloorPlan, validation: Columns) -> dict[str, FloatArray]:
     faces, lines_m = plan.faces, centrelines_m(plan.faces)
     length_m = np.maximum(line_lengths_m(lines_m), 0.1)
-    agreement, worst = _agreements(validation, faces["face"])
     normals = np.column_stack([faces["nx"], faces["ny"]])
+    undoubled = 1 - surroundings.share_doubled(lines_m, normals)
+    # rays that end at two surfaces one behind the other speak for one of them
+    agreement, worst = (
+        np.where(odds > 0, odds * undoubled, odds)
+        for odds in _agreements(validation, faces["face"])
+    )
     return {
         "agreement": agreement,
         "worst_span": worst,
@@ -69,7 +70,7 @@ def _describe_faces(plan: FloorPlan, validation: Columns) -> dict[str, FloatArra
         "observed": (faces["state"] == "observed").astype(float),
         "length": np.log(length_m),
         "smooth": -np.nan_to_num(faces["rmse_m"], nan=0.0) * 100,
-        "undoubled": 1 - surroundings.share_doubled(lines_m, normals),
+        "undoubled": undoubled,
         "joined": surroundings.count_joined_ends(lines_m, lines_m, same=True).astype(float),
         "bounding": surroundings.share_along(lines_m, plan.areas),
     }
@@ -105,13 +106,12 @@ def _describe_openings(plan: FloorPlan, of_walls: FloatArray) -> dict[str, Float
     p_kind = np.clip(np.nan_to_num(openings["p_kind"], nan=0.95).astype(float), 0.05, 0.95)
     is_way = np.isin(openings["type"].astype(str), WAYS)
     is_inner = np.minimum(openings["room_a"], openings["room_b"]) >= 0
+    is_between = is_inner & (openings["room_a"] != openings["room_b"])
     is_hosted = plan.hosts >= 0
     observed_m = centrelines_m(plan.faces)[plan.faces["state"] == "observed"]
     return {
         "kind": np.log(p_kind / (1 - p_kind)),
-        "sill": np.isfinite(openings["sill_m"]).astype(float),
-        "lintel": np.isfinite(openings["lintel_m"]).astype(float),
-        "usual": (is_way == is_inner).astype(float),
+        "usual": np.where(is_way, is_between, ~is_inner).astype(float),
         "wall": np.where(is_hosted, np.append(of_walls, 0.0)[plan.hosts], 0.0),
         "joined": surroundings.count_joined_ends(lines_m, observed_m, same=False).astype(float),
         "alone": surroundings.stand_alone(lines_m),
@@ -120,24 +120,17 @@ def _describe_openings(plan: FloorPlan, of_walls: FloatArray) -> dict[str, Float
 
 
 def _describe_rooms(plan: FloorPlan, validation: Columns) -> dict[str, FloatArray]:
-    rooms, openings = plan.rooms, plan.openings
+    rooms = plan.rooms
     is_bare = validation["kind"] == "outline"
     bare_m = _sum_by_room(
         rooms["room"],
         validation["number"][is_bare],
         line_lengths_m(centrelines_m(validation)[is_bare]),
     )
-    is_inferred = (openings["type"] == "passage") & (plan.hosts < 0)
-    parted_m = sum(
-        _sum_by_room(rooms["room"], openings[side][is_inferred], openings["width_m"][is_inferred])
-        for side in ("room_a", "room_b")
-    )
     perimeter_m = np.maximum(rooms["perimeter_m"], 0.1)
     return {
-        "closed": rooms["closed"].astype(float),
         "walled": 1 - bare_m / perimeter_m,
         "faced": surroundings.share_faced(plan.areas, centrelines_m(plan.faces)),
-        "parted": -parted_m / perimeter_m,
         "broad": np.log(np.maximum(surroundings.measure_breadth(plan.areas), 0.1)),
     }
 
