@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import shapely
 
+from scanplan.plan import floorplan
 from scanplan.validation import surroundings
 from scanplan.validation.confidence_coefficients import COEFFICIENTS
 
@@ -72,8 +73,8 @@ def test_openings_that_overlap_do_not_stand_alone():
 
 
 def test_what_speaks_for_an_element_never_lowers_its_probability():
-    for model in COEFFICIENTS.values():
-        for of_feature in model["features"].values():
+    for table in floorplan.NUMBERS:
+        for of_feature in COEFFICIENTS[table]["features"].values():
             assert of_feature["weight"] >= 0
 
 
