@@ -103,7 +103,8 @@ def _measure_real(dataset: Path, folder: Path, started_s: float) -> bool:
 
 def _sorted_copy(reference: Path, copy: Path) -> Path:
     """Write reference poses in the order of their stamps, each stamp once."""
-    rows = {float(row.split()[0]): row for row in reference.read_text().splitlines()}
+    stated = (row for row in reference.read_text().splitlines() if row.strip() and row[0] != "#")
+    rows = {float(row.split()[0]): row for row in stated}
     copy.write_text("\n".join(rows[stamp] for stamp in sorted(rows)) + "\n")
     return copy
 

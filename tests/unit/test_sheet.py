@@ -367,6 +367,13 @@ def test_furniture_smaller_than_a_letter_is_not_drawn():
     assert 0.02 * sheet.page.mm_per_m < Letters.SMALL < 0.5 * sheet.page.mm_per_m
     drawn = [mark.element for mark in sheet.marks if mark.kind == "furniture"]
     assert drawn == ["furniture-0"]
+    assert "furniture" in legend_kinds(sheet)
+    only_speck = composition.compose_sheet(plan(furniture=floorplan_making.furniture([speck])))
+    assert "furniture" not in legend_kinds(only_speck)
+
+
+def legend_kinds(sheet):
+    return {mark.kind for mark in sheet.paper_marks if mark.element.startswith("legend-")}
 
 
 def test_a_dimension_goes_where_it_crosses_no_door_though_its_words_lie_on_a_line():

@@ -75,15 +75,18 @@ def compose_sheet(
     marks = [*content.draw_walls(plan), *content.draw_axes(plan), *content.draw_doubts(plan)]
     marks += content.draw_furniture(plan)
     symbols = content.list_symbols(plan)
-    legend = _list_legend(plan, marks, symbols)
     # the scale bar with the axes takes six rows
-    blocks = [6, len(legend), len(plan.areas)]
+    blocks = [6, len(_list_legend(plan, marks, symbols)), len(plan.areas)]
     turn_deg = -plan.main_direction_deg if turn_deg is None else turn_deg
     extent = _extent(marks, [symbol.ends_m for symbol in symbols], turn_deg)
     page = choose_page(*extent, turn_deg, blocks, least_scale)
     # doors that swing out put the chain before them farther off: room on the other side goes there
     swings = [flatten(path) for symbol in symbols for path in symbol_paths(symbol)]
     page = replace(page, middle_m=np.mean(_extent(marks, swings, turn_deg), axis=0))
+    # the page is chosen with room for what its scale may make too small to draw
+    marks = _drop_specks(page, marks)
+    legend = _list_legend(plan, marks, symbols)
+    blocks[1] = len(legend)
     bar, legend_slots, table_slots = fill_slots(page.slots(), blocks) or ([], [], [])
     beside: list[Mark | Word] = [
         *title.draw_frame(page),
@@ -91,7 +94,7 @@ def compose_sheet(
         *title.draw_scale_bar(page, bar[0]),
         *title.draw_legend(legend, legend_slots),
     ]
-    marks = [*_drop_specks(page, marks), *content.draw_corrections(plan, _apart_m(page))]
+    marks += content.draw_corrections(plan, _apart_m(page))
     space = _open_space(page, marks, symbols)
     stamps = words.stamp_rooms(page, plan, space)
     beside += title.draw_room_table(stamps, table_slots)
