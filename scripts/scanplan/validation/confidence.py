@@ -13,7 +13,7 @@ import numpy as np
 from scanplan.plan.floorplan import NUMBERS, FloorPlan
 from scanplan.types import Array, BoolArray, Columns, FloatArray
 from scanplan.validation.confidence_coefficients import COEFFICIENTS
-from scanplan.validation.element_features import OF_SIZE, OF_WALL, REASONS, describe_elements
+from scanplan.validation.element_features import FIXED, OF_WALL, REASONS, describe_elements
 
 
 def rate_elements(
@@ -100,7 +100,7 @@ def _raise_evidence(
         usual = np.maximum(values, model["features"][name]["mean"])
         if name in OF_WALL:
             usual = np.where(in_wall, usual, values)
-        raised[name] = values if name in OF_SIZE else usual
+        raised[name] = values if name in FIXED else usual
     return raised
 
 
