@@ -85,6 +85,7 @@ def test_the_page_says_all_and_takes_names_for_text(tmp_path, project_root):
     assert 'href="first/report.html"' in text and "75.0%" in text
     assert "1 with a plan" in text and "1 failed" in text
     assert "too few &lt;scans&gt;" in text and 'href="second' not in text
+    assert text.index("too few") < text.index('href="first/report.html"')
     pd.testing.assert_frame_equal(pd.read_parquet(table), rows)
 
 

@@ -118,10 +118,13 @@ def write_overview(
     table, page = (Path(results, f"summary.{suffix}") for suffix in ("parquet", "html"))
     with atomic.replace_file(table) as temporary:
         overview.to_parquet(temporary, index=False)
+    # what failed among hundreds is looked for first
+    is_made = overview["state"] == MADE
+    shown = pd.concat([overview[~is_made], overview[is_made]]).astype(object)
     text = render_template(
         page_sources,
         "overview.html.j2",
-        rows=overview.astype(object).where(overview.notna(), None).to_dict("records"),
+        rows=shown.where(shown.notna(), None).to_dict("records"),
         totals=overview[list(_NUMBERS)].sum().to_dict(),
         states=overview["state"].value_counts().to_dict(),
         made=MADE,
