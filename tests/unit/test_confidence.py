@@ -160,6 +160,16 @@ def test_ways_lead_between_rooms_and_windows_out_of_them():
     np.testing.assert_array_equal(panes["usual"], 1 - np.arange(n) % 2)
 
 
+def test_a_way_that_was_driven_through_may_lead_anywhere():
+    n = len(PARTS["openings"]["type"])
+    out = {"room_a": np.zeros(n, int), "room_b": np.full(n, -1), "type": np.full(n, "door")}
+    sure = np.where(np.arange(n) == 0, 0.99, 0.9)
+    ways = described_openings(**out, p_kind=sure)
+    np.testing.assert_array_equal(ways["usual"], np.arange(n) == 0)
+    panes = described_openings(**out | {"room_b": np.ones(n, int), "type": np.full(n, "glass")})
+    assert not panes["usual"].any()
+
+
 def test_a_kind_that_was_weighed_is_no_surer_than_one_that_need_not_be():
     n = len(PARTS["openings"]["type"])
     kinds = described_openings(p_kind=np.array([0.8, 0.9999, np.nan, *[0.5] * (n - 3)]))["kind"]

@@ -106,7 +106,8 @@ def _describe_openings(plan: FloorPlan, of_walls: FloatArray) -> dict[str, Float
     openings, lines_m = plan.openings, centrelines_m(plan.openings)
     # rays of one gap depend on each other: what they say beyond 19 to 1 is not surer. A passage in
     # no wall is narrow floor, of whatever kind
-    p_kind = np.clip(np.nan_to_num(openings["p_kind"], nan=0.95).astype(float), 0.05, 0.95)
+    stated = np.nan_to_num(openings["p_kind"], nan=0.95).astype(float)
+    p_kind = np.clip(stated, 0.05, 0.95)
     is_way = np.isin(openings["type"].astype(str), WAYS)
     is_inner = np.minimum(openings["room_a"], openings["room_b"]) >= 0
     is_between = is_inner & (openings["room_a"] != openings["room_b"])
@@ -114,7 +115,8 @@ def _describe_openings(plan: FloorPlan, of_walls: FloatArray) -> dict[str, Float
     observed_m = centrelines_m(plan.faces)[plan.faces["state"] == "observed"]
     return {
         "kind": np.log(p_kind / (1 - p_kind)),
-        "usual": np.where(is_way, is_between, ~is_inner).astype(float),
+        # what was driven through is a way wherever it leads: nothing else makes one as sure
+        "usual": np.where(is_way, is_between | (stated > 0.95), ~is_inner).astype(float),
         "wall": np.where(is_hosted, np.append(of_walls, 0.0)[plan.hosts], 0.0),
         "joined": surroundings.count_joined_ends(lines_m, observed_m, same=False).astype(float),
         "alone": surroundings.stand_alone(lines_m),
