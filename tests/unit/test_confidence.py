@@ -127,6 +127,24 @@ def test_a_pane_in_no_wall_needs_a_person(in_wall, needs_person):
     assert (found["needs_person"][rows] == needs_person).all()
 
 
+@pytest.mark.parametrize(("room_b", "needs_person"), [(1, False), (-1, True)])
+def test_a_way_out_needs_a_person_and_one_between_rooms_does_not(room_b, needs_person):
+    """Both are in a wall that rays contradict: that may prove wrong, where a way leads may not."""
+    n = len(PARTS["openings"]["type"])
+    ways = {
+        "type": np.full(n, "door", object),
+        "room_a": np.zeros(n, int),
+        "wall": np.zeros(n, int),
+    }
+    openings = PARTS["openings"] | ways | {"room_b": np.full(n, room_b)}
+    plan = floorplan.make_floorplan(PARTS | {"openings": openings}, 0.0, 2.5)
+    weights = weighted("openings", wall=9.0, usual=9.0)
+    found = confidence.rate_elements(plan, validation(), weights)
+    rows = found["table"] == "openings"
+    assert found["verify"][rows].all()
+    assert (found["needs_person"][rows] == needs_person).all()
+
+
 def described_openings(**columns):
     openings = PARTS["openings"] | columns
     plan = floorplan.make_floorplan(PARTS | {"openings": openings}, 0.0, 2.5)

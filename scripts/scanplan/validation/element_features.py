@@ -28,8 +28,11 @@ REASONS = {
     "broad": "small or narrow",
 }
 """Features of elements, each the better the greater, and the doubt where one is low."""
-FIXED = ("length", "width", "broad")
-"""Features that are the same however often an element is seen."""
+FIXED = ("length", "width", "broad", "usual")
+"""Features that are the same however often an element is seen: its size, and where it leads.
+
+A way out that stands open and a pane down to the floor look alike.
+"""
 OF_WALL = ("wall",)
 """Features that an opening in no wall never has."""
 

@@ -80,9 +80,9 @@ def plan_visit(
     reach : SensorReach
     settings : VisitSettings
     """
-    grid = standpoints.find_ground(plan, track_m, settings.clearance_m)
-    asked = questions.list_questions(plan, track_m, grid.xy_m)
+    asked = questions.list_questions(plan, track_m)
     pieces = questions.cut_questions(asked)
+    grid = standpoints.find_ground(plan, track_m, settings.clearance_m)
     cells = standpoints.spread_cells(grid, settings.spacing_m)
     views = sight.turn_views(grid.xy_m[cells], reach)
     blocked = sight.block_sight(plan, reach.height_m)

@@ -75,7 +75,7 @@ class Pieces:
     reach_m: FloatArray
 
 
-def list_questions(plan: FloorPlan, track_m: FloatArray, ground_m: FloatArray) -> list[Question]:
+def list_questions(plan: FloorPlan, track_m: FloatArray) -> list[Question]:
     """List what was not seen of rooms' outlines, what is to be verified, and what ways lead to.
 
     Parameters
@@ -84,13 +84,11 @@ def list_questions(plan: FloorPlan, track_m: FloatArray, ground_m: FloatArray) -
         Read with its confidence.
     track_m : (n, 2) float64
         Where scans were taken, map frame.
-    ground_m : (k, 2) float64
-        Where a sensor may stand.
     """
     return [
         *_ask_unseen(plan),
-        *_ask_openings(plan, ground_m),
-        *_ask_ways(plan, track_m, ground_m),
+        *_ask_openings(plan),
+        *_ask_ways(plan, track_m),
         *_ask_walls(plan),
         *_ask_rooms(plan),
     ]
@@ -131,65 +129,32 @@ def _ask_unseen(plan: FloorPlan) -> Iterator[Question]:
             yield Question(UNSEEN, int(number), "not seen", line_m, sides_m)
 
 
-def _ask_openings(plan: FloorPlan, ground_m: FloatArray) -> Iterator[Question]:
-    """Yield doubtful openings; where one may go through one has to stand at them.
-
-    Of a way out only who has gone through knows that it is no pane.
-    """
+def _ask_openings(plan: FloorPlan) -> Iterator[Question]:
+    """Yield doubtful openings; where one may go through one has to stand at them."""
     for row in np.flatnonzero(plan.openings["verify"]).tolist():
         number, doubt = int(plan.openings["opening"][row]), str(plan.openings["doubt"][row])
+        line_m, sides_m = _both_sides(plan, row)
+        is_way = plan.openings["type"][row] in WAYS
+        reach_m = float(line_lengths_m(line_m)[0]) / 2 if is_way else np.inf
         needs_person = bool(plan.openings["needs_person"][row])
-        line_m, sides_m, reach_m = *_both_sides(plan, row), np.inf
-        if plan.openings["type"][row] in WAYS:
-            sides_m = _sides_to_stand_at(plan, row, ground_m)
-            reach_m = float(line_lengths_m(line_m)[0]) / 2
-            needs_person |= _leads_out(plan, row) and not np.isnan(sides_m).any()
         yield Question("opening", number, doubt, line_m, sides_m, reach_m, needs_person)
 
 
-def _ask_ways(plan: FloorPlan, track_m: FloatArray, ground_m: FloatArray) -> Iterator[Question]:
+def _ask_ways(plan: FloorPlan, track_m: FloatArray) -> Iterator[Question]:
     """Yield the ways out of the known rooms that no scan was taken at.
 
     Who stands there looks through; what one sees then is what a plan can know of it.
     """
-    is_way = np.isin(plan.openings["type"].astype(str), WAYS)
-    for row in np.flatnonzero(is_way).tolist():
-        if not _leads_out(plan, row):
-            continue
+    openings = plan.openings
+    leads_on = np.minimum(openings["room_a"], openings["room_b"]) < 0
+    for row in np.flatnonzero(leads_on & np.isin(openings["type"].astype(str), WAYS)).tolist():
         line_m, sides_m = _both_sides(plan, row)
         half_m = float(line_lengths_m(line_m)[0]) / 2
-        apart_m = np.linalg.norm(track_m[:, None] - _places_before(line_m, sides_m), axis=-1)
+        before_m = line_m[0].mean(axis=0) + sides_m[0, :, None] * _left_of(line_m)
+        apart_m = np.hypot(*np.moveaxis(track_m[:, None] - before_m, -1, 0))
         if apart_m.min(initial=np.inf) > half_m:
-            sides_m = _sides_to_stand_at(plan, row, ground_m)
             doubt = "nobody looked through it from near"
-            yield Question(WAY, int(plan.openings["opening"][row]), doubt, line_m, sides_m, half_m)
-
-
-def _leads_out(plan: FloorPlan, row: int) -> bool:
-    """Return whether an opening leads out of the known rooms."""
-    return min(int(plan.openings[side][row]) for side in ("room_a", "room_b")) < 0
-
-
-def _sides_to_stand_at(plan: FloorPlan, row: int, ground_m: FloatArray) -> FloatArray:
-    """Return the sides (1, 2) of a way: of one that leads out the far one, where one can get there.
-
-    NaN stands for the other.
-    """
-    line_m, sides_m = _both_sides(plan, row)
-    places_m = _places_before(line_m, sides_m)
-    way_m = ground_m[:, None] - places_m
-    half_m = float(line_lengths_m(line_m)[0]) / 2
-    is_before = (way_m @ _left_of(line_m)[0]) * np.sign(sides_m[0]) >= 0
-    can_stand = (is_before & (np.linalg.norm(way_m, axis=-1) <= half_m)).any(axis=0)
-    is_beyond = ~shapely.contains_xy(shapely.union_all(plan.areas), places_m) & can_stand
-    if _leads_out(plan, row) and is_beyond.any():
-        return np.where(is_beyond, sides_m, np.nan)
-    return sides_m
-
-
-def _places_before(line_m: FloatArray, sides_m: FloatArray) -> FloatArray:
-    """Return the places (2, 2) before the middle of a line (1, 2, 2), one on each side (1, 2)."""
-    return np.asarray(line_m[0].mean(axis=0) + sides_m[0, :, None] * _left_of(line_m))
+            yield Question(WAY, int(openings["opening"][row]), doubt, line_m, sides_m, half_m)
 
 
 def _ask_walls(plan: FloorPlan) -> Iterator[Question]:

@@ -58,8 +58,8 @@ def block_sight(plan: FloorPlan, height_m: float) -> BaseGeometry:
 def find_seen(views: Views, pieces: Pieces, blocked: BaseGeometry, reach: SensorReach) -> BoolArray:
     """Return which pieces (p,) are seen by which views (n,): (n, p) bool.
 
-    A piece is seen from in front of it, less than 60 degrees aside, within range and in the field,
-    where nothing stands between; what one stands at from any direction on the sides that it has.
+    A piece is seen from in front of it, less than 60 degrees aside (but for what one stands at),
+    within range and in the field, where nothing stands between.
 
     Parameters
     ----------
@@ -72,9 +72,6 @@ def find_seen(views: Views, pieces: Pieces, blocked: BaseGeometry, reach: Sensor
     shapely.prepare(blocked)
     range_m = np.minimum(pieces.reach_m, reach.range_m)[:, None]
     is_stood_at = np.isfinite(pieces.reach_m)[:, None]
-    is_one_sided = np.isnan(pieces.place_m[..., 0]).any(axis=1, keepdims=True)
-    # of what is stood at on both sides below that of any direction
-    least_cosine = np.where(is_stood_at, np.where(is_one_sided, 0.0, -2.0), FACING)
     seen = np.zeros((len(views.place_m), len(pieces.share)), bool)
     for view, (place_m, heading_rad) in enumerate(
         zip(views.place_m, views.heading_rad, strict=True)
@@ -82,7 +79,7 @@ def find_seen(views: Views, pieces: Pieces, blocked: BaseGeometry, reach: Sensor
         way_m = pieces.place_m - place_m
         apart_m = np.hypot(way_m[..., 0], way_m[..., 1])
         toward_m = -(way_m * pieces.normal).sum(axis=-1)
-        may: BoolArray = (toward_m >= least_cosine * apart_m) & (apart_m <= range_m)
+        may = (is_stood_at | (toward_m >= FACING * apart_m)) & (apart_m <= range_m)
         if reach.field_rad < 2 * np.pi:
             off_rad = np.arctan2(way_m[..., 1], way_m[..., 0]) - heading_rad
             may &= np.abs((off_rad + np.pi) % (2 * np.pi) - np.pi) <= reach.field_rad / 2
