@@ -127,24 +127,6 @@ def test_a_pane_in_no_wall_needs_a_person(in_wall, needs_person):
     assert (found["needs_person"][rows] == needs_person).all()
 
 
-@pytest.mark.parametrize(("room_b", "needs_person"), [(1, False), (-1, True)])
-def test_a_way_out_needs_a_person_and_one_between_rooms_does_not(room_b, needs_person):
-    """Both are in a wall that rays contradict: that may prove wrong, where a way leads may not."""
-    n = len(PARTS["openings"]["type"])
-    ways = {
-        "type": np.full(n, "door", object),
-        "room_a": np.zeros(n, int),
-        "wall": np.zeros(n, int),
-    }
-    openings = PARTS["openings"] | ways | {"room_b": np.full(n, room_b)}
-    plan = floorplan.make_floorplan(PARTS | {"openings": openings}, 0.0, 2.5)
-    weights = weighted("openings", wall=9.0, usual=9.0)
-    found = confidence.rate_elements(plan, validation(), weights)
-    rows = found["table"] == "openings"
-    assert found["verify"][rows].all()
-    assert (found["needs_person"][rows] == needs_person).all()
-
-
 def described_openings(**columns):
     openings = PARTS["openings"] | columns
     plan = floorplan.make_floorplan(PARTS | {"openings": openings}, 0.0, 2.5)
@@ -170,9 +152,30 @@ def test_a_way_that_was_driven_through_may_lead_anywhere():
     assert not panes["usual"].any()
 
 
+def test_floor_seen_beyond_a_way_out_speaks_for_it():
+    n = len(PARTS["openings"]["type"])
+    out = {"type": np.full(n, "door"), "room_a": np.zeros(n, int), "room_b": np.full(n, -1)}
+    # the only known room lies elsewhere, so that both sides of each are beyond
+    parts = PARTS | {
+        "openings": PARTS["openings"] | out,
+        "rooms": floorplan_making.rooms([shapely.box(200, 200, 204, 204)]),
+    }
+    nothing = floorplan_making.free([shapely.box(200, 200, 204, 204)])
+    around = floorplan_making.free([shapely.box(-50, -50, 50, 50)])
+    shares = []
+    for floor in (nothing, around):
+        plan = floorplan.make_floorplan(parts | {"free": floor}, 0.0, 2.5)
+        found = confidence.describe_elements(plan, validation())["openings"]
+        shares.append(found["usual"])
+        np.testing.assert_allclose(found["kind"], np.log(19))
+    np.testing.assert_allclose(shares[0], 0)
+    np.testing.assert_allclose(shares[1], 1)
+
+
 def test_a_kind_that_was_weighed_is_no_surer_than_one_that_need_not_be():
     n = len(PARTS["openings"]["type"])
-    kinds = described_openings(p_kind=np.array([0.8, 0.9999, np.nan, *[0.5] * (n - 3)]))["kind"]
+    weighed = np.array([0.8, 0.9999, np.nan, *[0.5] * (n - 3)])
+    kinds = described_openings(p_kind=weighed, type=np.full(n, "window"))["kind"]
     np.testing.assert_allclose(kinds[:3], np.log([4, 19, 19]))
 
 

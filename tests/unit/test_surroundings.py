@@ -83,3 +83,17 @@ def test_a_corridor_is_broader_than_a_slip_as_narrow():
     np.testing.assert_allclose(
         surroundings.measure_breadth(areas), [np.sqrt(72) / 2, 2, 3], rtol=1e-3
     )
+
+
+def test_the_ground_beyond_a_door_is_a_square_on_the_side_of_no_room():
+    door_m = np.array([[[4.0, 0.0], [4.0, 1.0]]])
+    room = np.array([shapely.box(0, 0, 3.9, 3)])
+    sides_m = np.array([[0.1, -0.1]])
+
+    def share(*floor):
+        seen = shapely.union_all([shapely.box(*bounds) for bounds in floor])
+        return surroundings.share_floor_beyond(door_m, sides_m, room, seen)[0]
+
+    assert share((0, 0, 3.9, 3)) == 0
+    assert share((0, 0, 3.9, 3), (4.1, 0, 4.6, 1)) == pytest.approx(0.5)
+    assert share((4.0, -1, 9, 2)) == pytest.approx(1.0)

@@ -13,7 +13,12 @@ import numpy as np
 from scanplan.plan.floorplan import NUMBERS, FloorPlan
 from scanplan.types import Array, BoolArray, Columns, FloatArray
 from scanplan.validation.confidence_coefficients import COEFFICIENTS
-from scanplan.validation.element_features import FIXED, OF_WALL, REASONS, describe_elements
+from scanplan.validation.element_features import (
+    FIXED,
+    OF_WALL,
+    REASONS,
+    describe_elements,
+)
 
 
 def rate_elements(
@@ -34,6 +39,7 @@ def rate_elements(
     described = describe_elements(plan, validation)
     level = coefficients["level"]
     has_heights = np.isfinite(plan.floor_z_m)
+    held = _find_held(plan)
     parts = []
     for table, number in sorted(NUMBERS.items()):
         columns, features, model = getattr(plan, table), described[table], coefficients[table]
@@ -41,7 +47,7 @@ def rate_elements(
         if not has_heights:
             p_true = np.full(len(p_true), np.nan)
         verify = p_true < level
-        p_seen, _ = weigh_features(_raise_evidence(features, model, plan.hosts >= 0), model)
+        p_seen, _ = weigh_features(_raise_evidence(features, model, held), model)
         needs_person = verify & (p_seen < level)
         doubt = _explain(shares, model["features"], verify)
         if table == "walls":
@@ -91,16 +97,20 @@ def weigh_features(
     return (1 + np.tanh(logit / 2)) / 2, shares
 
 
+def _find_held(plan: FloorPlan) -> dict[str, BoolArray]:
+    """Return, by feature, of which elements no scan betters it."""
+    held: dict[str, BoolArray] = dict.fromkeys(FIXED, np.ones(1, bool))
+    return held | dict.fromkeys(OF_WALL, plan.hosts < 0)
+
+
 def _raise_evidence(
-    features: Mapping[str, FloatArray], model: Mapping[str, Any], in_wall: BoolArray
+    features: Mapping[str, FloatArray], model: Mapping[str, Any], held: Mapping[str, BoolArray]
 ) -> dict[str, FloatArray]:
     """Return features that are as good as usual, but for those that no scan betters."""
     raised: dict[str, FloatArray] = {}
     for name, values in features.items():
         usual = np.maximum(values, model["features"][name]["mean"])
-        if name in OF_WALL:
-            usual = np.where(in_wall, usual, values)
-        raised[name] = values if name in FIXED else usual
+        raised[name] = np.where(held[name], values, usual) if name in held else usual
     return raised
 
 

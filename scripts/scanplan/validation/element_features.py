@@ -1,6 +1,7 @@
 """What is known of the elements of a plan without any truth: their evidence, and how they fit."""
 
 import numpy as np
+import shapely
 
 from scanplan.geometry.lines import line_lengths_m
 from scanplan.plan.floorplan import WAYS, FloorPlan, centrelines_m
@@ -19,7 +20,7 @@ REASONS = {
     "joined": "its ends meet nothing",
     "bounding": "bounds no room",
     "kind": "kind uncertain",
-    "usual": "a way that leads to no other room, or a window inside",
+    "usual": "no floor was seen beyond it, or a window inside",
     "wall": "in no wall, or rays of other scans contradict that",
     "alone": "another opening beside it",
     "width": "wide for what it is",
@@ -28,11 +29,8 @@ REASONS = {
     "broad": "small or narrow",
 }
 """Features of elements, each the better the greater, and the doubt where one is low."""
-FIXED = ("length", "width", "broad", "usual")
-"""Features that are the same however often an element is seen: its size, and where it leads.
-
-A way out that stands open and a pane down to the floor look alike.
-"""
+FIXED = ("length", "width", "broad")
+"""Features that are the same however often an element is seen."""
 OF_WALL = ("wall",)
 """Features that an opening in no wall never has."""
 
@@ -111,12 +109,19 @@ def _describe_openings(plan: FloorPlan, of_walls: FloatArray) -> dict[str, Float
     is_way = np.isin(openings["type"].astype(str), WAYS)
     is_inner = np.minimum(openings["room_a"], openings["room_b"]) >= 0
     is_between = is_inner & (openings["room_a"] != openings["room_b"])
+    # nothing but having been driven through makes a kind as sure
+    is_known = is_between | (stated > 0.95)
+    left_m, right_m = (np.append(side_m, 0.0)[plan.hosts] for side_m in plan.sides_m)
+    floor = shapely.union_all(shapely.from_wkb(np.asarray(plan.free["geometry"], object)))
+    beyond = surroundings.share_floor_beyond(
+        lines_m, np.column_stack([left_m, -right_m]), plan.areas, floor
+    )
     is_hosted = plan.hosts >= 0
     observed_m = centrelines_m(plan.faces)[plan.faces["state"] == "observed"]
     return {
-        "kind": np.log(p_kind / (1 - p_kind)),
-        # what was driven through is a way wherever it leads: nothing else makes one as sure
-        "usual": np.where(is_way, is_between | (stated > 0.95), ~is_inner).astype(float),
+        # whether a way out is one or a pane is asked below, by what speaks for either
+        "kind": np.where(is_way & ~is_inner, np.log(19), np.log(p_kind / (1 - p_kind))),
+        "usual": np.where(is_way, np.where(is_known, 1.0, beyond), ~is_inner),
         "wall": np.where(is_hosted, np.append(of_walls, 0.0)[plan.hosts], 0.0),
         "joined": surroundings.count_joined_ends(lines_m, observed_m, same=False).astype(float),
         "alone": surroundings.stand_alone(lines_m),

@@ -2,6 +2,7 @@
 
 import numpy as np
 import shapely
+from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry.intersections import LEAST_RAD
 from scanplan.geometry.lines import line_lengths_m
@@ -63,6 +64,39 @@ def share_doubled(lines_m: FloatArray, normals: FloatArray) -> FloatArray:
     doubled = np.zeros(len(lines_m))
     np.maximum.at(doubled, row, np.minimum(covered_m / length_m[row], 1))
     return doubled
+
+
+def share_floor_beyond(
+    lines_m: FloatArray, sides_m: FloatArray, areas: Array, floor: BaseGeometry
+) -> FloatArray:
+    """Return the share (n,) of the ground beyond openings that was seen as floor.
+
+    A square as wide as the opening on the side that is in no area; the greater share where both
+    sides are, 0 where neither is.
+
+    Parameters
+    ----------
+    lines_m : (n, 2, 2) float64
+        Centrelines of the openings.
+    sides_m : (n, 2) float64
+        How far to the left of each line the wall's one face lies, and its other.
+    areas : (r,) object
+        Shapely polygons of rooms.
+    floor : shapely geometry
+    """
+    way_m = lines_m[:, 1] - lines_m[:, 0]
+    width_m = np.maximum(np.hypot(*way_m.T), SHORTEST_M)
+    left = np.column_stack([-way_m[:, 1], way_m[:, 0]]) / width_m[:, None]
+    rooms = shapely.union_all(areas)
+    shares = np.zeros(len(lines_m))
+    for side_m, sign in zip(sides_m.T, (1, -1), strict=True):
+        near_m = lines_m + (side_m[:, None] * left)[:, None]
+        far_m = near_m + (sign * width_m[:, None] * left)[:, None]
+        ground = shapely.polygons(np.concatenate([near_m, far_m[:, ::-1]], axis=1))
+        is_beyond = ~shapely.contains(rooms, shapely.centroid(ground))
+        seen_m2 = shapely.area(shapely.intersection(ground, floor))
+        shares = np.maximum(shares, np.where(is_beyond, seen_m2 / width_m**2, 0.0))
+    return shares
 
 
 def share_along(lines_m: FloatArray, areas: Array) -> FloatArray:
