@@ -39,6 +39,6 @@ def test_chunks_of_a_long_recording_are_jobs_of_their_own(project_root, tmp_path
     (tmp_path / "long/dataset.yaml").write_text("advanced: {jobs: {chunk_gb: 1.0e-6}}")
     rules = planned_rules(project, groups, "--config", "dataset=long", "--", "comparison")
     alone = rules - set(groups)
-    stages = ("observe_walls", "build_visibility", "build_hulls", "extract_walls")
+    stages = ("register_scans", "observe_walls", "build_visibility", "build_hulls", "extract_walls")
     assert alone == {f"{stage}_chunk" for stage in stages}
     assert not rules & set(stages)
