@@ -4,14 +4,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
-from scanplan.registration import (
-    chunk_files,
-    contradictions,
-    gate_shares,
-    mapping,
-    registered_candidates,
-    results,
-)
+from scanplan.registration import contradictions, gate_shares, mapping, results
+from scanplan.registration.candidates import chunk_files, registered_candidates
 from scanplan.registration.registration_settings import registration_settings
 from scanplan.registration.sequential import ScanResult
 from scanplan.stage import log, workers

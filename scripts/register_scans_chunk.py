@@ -3,7 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from scanplan.registration import chunk_files, registered_candidates, results
+from scanplan.registration import results
+from scanplan.registration.candidates import chunk_files, registered_candidates
 from scanplan.registration.registration_settings import registration_settings
 from scanplan.stage import log, workers
 from scanplan.store import scan_cache

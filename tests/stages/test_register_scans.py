@@ -13,7 +13,7 @@ from scanplan.project import dataset_files
 from scanplan.project.settings import merge_settings
 from scanplan.project.stage_settings import select_section
 from scanplan.project.yaml_file import read_yaml
-from scanplan.registration.chunk_files import ChunkFiles
+from scanplan.registration.candidates.chunk_files import ChunkFiles
 from scanplan.store import doubts, schemas, tables
 
 STEP_NS = 100_000_000

@@ -10,13 +10,13 @@ from typing import NamedTuple
 import numpy as np
 
 from scanplan.errors import StageError
-from scanplan.registration.constraints import PoseConstraint
-from scanplan.registration.icp import IcpResult
-from scanplan.registration.registered_candidates import (
+from scanplan.registration.candidates.registered_candidates import (
     RegisteredCandidates,
     expect_damaged,
     read_candidates,
 )
+from scanplan.registration.constraints import PoseConstraint
+from scanplan.registration.icp import IcpResult
 from scanplan.registration.sequential import ScanResult
 from scanplan.store import schemas, tables
 from scanplan.store.scan_cache import ScanCache

@@ -1,0 +1,1 @@
+"""Poses that drift: motions between scans instead of places in a map, and the loops among them."""
