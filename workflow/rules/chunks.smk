@@ -42,7 +42,9 @@ def chunk_files(what):
 
     def files(wildcards):
         folder = f"results/{wildcards.dataset}"
-        return [f"{folder}/{what}_{chunk}.parquet" for chunk in chunks_of(wildcards.dataset)]
+        return [
+            f"{folder}/{what}_{chunk}.parquet" for chunk in chunks_of(wildcards.dataset)
+        ]
 
     return files
 
@@ -98,7 +100,9 @@ use rule extract_walls as extract_walls_chunk with:
 
 def chunks_of_table(wildcards):
     """The tables of a dataset's chunks, in the order of their scans."""
-    return chunk_files(wildcards.get("table") or f"walls/{wildcards.extractor}")(wildcards)
+    return chunk_files(wildcards.get("table") or f"walls/{wildcards.extractor}")(
+        wildcards
+    )
 
 
 rule gather_chunks:

@@ -32,7 +32,7 @@ def register_candidates(
     run: Callable[..., Iterator[Any]],
     settings: RegistrationSettings,
 ) -> tuple[list[ScanResult], list[PoseConstraint]]:
-    """Register candidates one after the other, in batches or by the thesis's frames in one sequence.
+    """Register candidates one after the other: in batches, or the thesis's frames as one sequence.
 
     Parameters
     ----------

@@ -1,1 +1,1 @@
-"""Poses that drift: motions between scans instead of places in a map, and the loops among them."""
+"""Candidates as they are registered, before their poses are optimised together: all, or chunks."""
