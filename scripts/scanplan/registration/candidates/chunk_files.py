@@ -5,7 +5,7 @@ Matrices are written number by number, so that nothing is rounded on the way.
 
 import json
 from collections.abc import Iterable, Iterator, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -132,17 +132,11 @@ def _candidate_columns(scan_ids: IntArray, scan_results: Sequence[ScanResult]) -
 
 def _read_results(columns: Columns) -> list[ScanResult]:
     poses = _unpack_matrices(columns["world_from_sensor"], 4)
+    outcomes = _iterate_rows(columns, "kept", "reason")
+    figures = _iterate_rows(columns, "prior_fitness", "refined_fitness", "rmse_m")
     return [
-        ScanResult(bool(kept), str(reason), pose, float(prior), float(refined), float(rmse_m))
-        for kept, reason, pose, prior, refined, rmse_m in zip(
-            columns["kept"],
-            columns["reason"],
-            poses,
-            columns["prior_fitness"],
-            columns["refined_fitness"],
-            columns["rmse_m"],
-            strict=True,
-        )
+        ScanResult(kept, reason, pose, *numbers)
+        for (kept, reason), pose, numbers in zip(outcomes, poses, figures, strict=True)
     ]
 
 
@@ -166,24 +160,18 @@ def _read_constraints(path: FilePath) -> list[PoseConstraint]:
     columns = tables.read_table(path, schemas.CHUNK_CONSTRAINTS, allow_empty=True)
     motions = _unpack_matrices(columns["target_from_source"], 4)
     information = _unpack_matrices(columns["information"], 6)
+    states = _iterate_rows(columns, "unobservable", "sound")
     fits = [
-        IcpResult(motion, inverse, int(n_unobservable), bool(sound))
-        for motion, inverse, n_unobservable, sound in zip(
-            motions, information, columns["unobservable"], columns["sound"], strict=True
-        )
+        IcpResult(motion, inverse, *state)
+        for motion, inverse, state in zip(motions, information, states, strict=True)
     ]
-    return [
-        PoseConstraint(int(source), int(target), str(kind), float(fitness), float(rmse_m), fit)
-        for source, target, kind, fitness, rmse_m, fit in zip(
-            columns["source"],
-            columns["target"],
-            columns["kind"],
-            columns["fitness"],
-            columns["rmse_m"],
-            fits,
-            strict=True,
-        )
-    ]
+    measured = _iterate_rows(columns, "source", "target", "kind", "fitness", "rmse_m")
+    return [PoseConstraint(*values, fit=fit) for values, fit in zip(measured, fits, strict=True)]
+
+
+def _iterate_rows(columns: Columns, *names: str) -> Iterator[tuple[Any, ...]]:
+    """Iterate over the values of some columns, row by row."""
+    return zip(*(columns[name].tolist() for name in names), strict=True)
 
 
 def _pack_matrices(matrices: Iterable[FloatArray]) -> Array:
