@@ -70,5 +70,5 @@ def test_chunks_have_every_scan_once_and_in_order(tmp_path):
 
 def test_more_chunks_than_scans_are_refused(tmp_path):
     scans, _ = write_survey(tmp_path)
-    with pytest.raises(StageError, match="holds 3 scans, too few for 4 jobs; raise"):
+    with pytest.raises(StageError, match="holds 3 scans, too few for job 4-of-4; raise"):
         per_scan.read_chunk_ids(scans, "4-of-4")

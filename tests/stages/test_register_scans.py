@@ -7,25 +7,40 @@ from helpers import bag_making
 from helpers.default_settings import SETTINGS
 from interpolate_poses import interpolate_poses
 from register_scans import register_scans
+from register_scans_chunk import register_scans_chunk
 from scanplan.errors import StageError
 from scanplan.project import dataset_files
 from scanplan.project.settings import merge_settings
 from scanplan.project.stage_settings import select_section
 from scanplan.project.yaml_file import read_yaml
-from scanplan.store import schemas, tables
+from scanplan.registration.candidates.chunk_files import ChunkFiles
+from scanplan.store import doubts, schemas, tables
 
 STEP_NS = 100_000_000
 
 
+def register_chunks(files, poses, folder, n_chunks, **given):
+    """Register the chunks of a survey; return their files."""
+    names = [f"{number}-of-{n_chunks}" for number in range(1, n_chunks + 1)]
+    chunks = [
+        ChunkFiles(*(folder / f"{what}_{name}.parquet" for what in ChunkFiles._fields))
+        for name in names
+    ]
+    for name, chunk in zip(names, chunks, strict=True):
+        register_scans_chunk(files, poses, chunk, chunk=name, **given)
+    return chunks
+
+
 @pytest.fixture
 def run(tmp_path):
-    def run_on(entries, name="a", threads=1, **changes):
+    def run_on(entries, name="a", threads=1, n_chunks=0, **changes):
         folder = tmp_path / name
         bag_making.Maker().write(folder / "run", entries)
         files = dataset_files.find_files(folder)
         reading = SETTINGS["input"] | changes.pop("reading", {})
+        topics = {key: value for key, value in reading.items() if key != "max_damaged_share"}
         interpolate_poses(
-            files, folder / "poses.parquet", **SETTINGS["poses"] | {"keep_every": 1}, **reading
+            files, folder / "poses.parquet", **SETTINGS["poses"] | {"keep_every": 1}, **topics
         )
         limits = select_section(SETTINGS, "registration") | changes
         outputs = (
@@ -33,14 +48,10 @@ def run(tmp_path):
             folder / "registration.parquet",
             folder / "edges.parquet",
         )
-        register_scans(
-            files,
-            folder / "poses.parquet",
-            *outputs,
-            reading=reading,
-            settings=limits,
-            threads=threads,
-        )
+        given = {"reading": reading, "settings": limits, "threads": threads}
+        poses = folder / "poses.parquet"
+        chunks = register_chunks(files, poses, folder, n_chunks, **given)
+        register_scans(files, poses, *outputs, chunks=chunks, **given)
         return outputs
 
     return run_on
@@ -97,6 +108,75 @@ def test_scans_without_points_are_named_and_left_out(run):
 def test_the_number_of_cores_changes_no_byte(run):
     one, two = run(survey(), "one", threads=1), run(survey(), "two", threads=2)
     assert [path.read_bytes() for path in one] == [path.read_bytes() for path in two]
+
+
+@pytest.mark.parametrize(
+    ("entries", "changes", "most_chunks"),
+    [
+        (survey(7, empty=[2, 3], moved=[4]), {}, 9),
+        (survey(5, moved=[3]), {"reading": {"pose_kind": "odometry"}}, 2),
+        (survey(5, empty=[4]), {"icp_method": "none"}, 2),
+    ],
+)
+def test_chunks_give_the_bytes_of_one_job(run, entries, changes, most_chunks):
+    """Of four batches; nine chunks leave some with none, and one of them keeps nothing."""
+    changes = {"batch_size": 2, "anchor_after": 1, "n_previous": 2} | changes
+    whole = [path.read_bytes() for path in run(entries, "whole", **changes)]
+    for n_chunks in {2, 3, most_chunks}:
+        joined = run(entries, f"{n_chunks}", n_chunks=n_chunks, **changes)
+        assert [path.read_bytes() for path in joined] == whole, n_chunks
+
+
+def damaged_survey(damaged, n_scans=6):
+    """Clouds of a drive, some of which state more points than they have."""
+    maker, entries = bag_making.Maker(), survey(n_scans)
+    clouds = [row for row, entry in enumerate(entries) if entry[0] == "/points"]
+    for row in (clouds[scan_id] for scan_id in damaged):
+        topic, t_ns, _ = entries[row]
+        entries[row] = topic, t_ns, maker.cloud(t_ns - 1, bag_making.room_points(), width=10**6)
+    return entries
+
+
+def test_damage_is_told_once_however_many_chunks_read_it(run, caplog):
+    """Scan 3 is the last of the second batch, and what the third looks back to."""
+    changes = {"batch_size": 2, "reading": {"max_damaged_share": 0.4}}
+    entries = damaged_survey([1, 3])
+    whole = run(entries, "whole", **changes)
+    caplog.clear()
+    joined = run(entries, "joined", n_chunks=3, **changes)
+    assert [path.read_bytes() for path in joined] == [path.read_bytes() for path in whole]
+    told = [line for line in caplog.messages if line.endswith("left out")]
+    assert [re.search(r"scan \d", line)[0] for line in told[:-1]] == ["scan 1", "scan 3"]
+    found = doubts.read_doubts(joined[1], schemas.REGISTRATION).damage
+    assert found == ("2 of 6 scans are damaged and left out",)
+    assert told[2:] == [f"register_scans: {found[0]}"]
+
+
+def test_too_much_damage_in_all_chunks_together_is_refused(run):
+    said = r"scan 3 .*2 of 6 scans are damaged so far, more than advanced.input.max_damaged_share"
+    with pytest.raises(StageError, match=said):
+        run(damaged_survey([0, 3]), n_chunks=3, batch_size=2, reading={"max_damaged_share": 0.2})
+
+
+def test_chunks_of_another_survey_are_refused(run, tmp_path):
+    run(survey(5), "five", n_chunks=2, batch_size=2)
+    run(survey(6), "six", n_chunks=2, batch_size=2)
+    chunks = [
+        ChunkFiles(*(tmp_path / f"five/{what}_{n}-of-2.parquet" for what in ChunkFiles._fields))
+        for n in (1, 2)
+    ]
+    outputs = [tmp_path / f"{name}.parquet" for name in ("scans", "registration", "edges")]
+    settings = select_section(SETTINGS, "registration")
+    reading = {"max_damaged_share": 0.0}
+    with pytest.raises(StageError, match=r"poses.parquet: the chunks are of other candidates"):
+        register_scans(
+            [],
+            tmp_path / "six/poses.parquet",
+            *outputs,
+            reading=reading,
+            settings=settings,
+            chunks=chunks,
+        )
 
 
 @pytest.mark.parametrize(

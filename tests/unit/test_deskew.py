@@ -48,7 +48,7 @@ class Survey:
     def __init__(self, scans):
         self._scans = scans
 
-    def scans(self, wanted):
+    def scans(self, wanted, damaged=None):
         return (s for s in self._scans if s.scan_id in wanted)
 
 

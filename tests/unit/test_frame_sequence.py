@@ -115,7 +115,7 @@ def nothing_survives(project_root, tmp_path):
 def test_where_nothing_survives_the_shares_and_a_distance_are_named(nothing_survives):
     limits, survey, raw, results, _, _ = nothing_survives
     with pytest.raises(StageError) as caught:
-        gate_shares.check_any_survives(results, survey, raw, limits, "drive.bag")
+        gate_shares.check_any_survives(results, survey, raw.part, limits, "drive.bag")
     text = str(caught.value)
     assert "\n" not in text and text.startswith("drive.bag: of 8 scans 0.0 % pass the first gate")
     assert "0.005 m" in text and "0 % the second" in text and "fitness_distance_m to 0." in text
@@ -123,7 +123,7 @@ def test_where_nothing_survives_the_shares_and_a_distance_are_named(nothing_surv
 
 def test_the_distance_named_keeps_some(project_root, nothing_survives):
     limits, survey, raw, _, scans, priors = nothing_survives
-    distance_m = gate_shares.find_passing_distance_m(survey, np.arange(N_SCANS), raw, limits)
+    distance_m = gate_shares.find_passing_distance_m(survey, np.arange(N_SCANS), raw.part, limits)
     wider = preset(project_root, fitness_distance_m=distance_m)
     assert any(result.kept for result in register(scans, priors, wider)[1:])
 
@@ -132,4 +132,4 @@ def test_where_some_survive_nothing_is_said(project_root, nothing_survives):
     _, survey, raw, _, scans, priors = nothing_survives
     limits = preset(project_root, fitness_distance_m=1.0)
     results = register(scans, priors, limits)
-    gate_shares.check_any_survives(results, survey, raw, limits, "drive.bag")
+    gate_shares.check_any_survives(results, survey, raw.part, limits, "drive.bag")

@@ -10,7 +10,7 @@ from helpers.default_settings import SETTINGS
 from scanplan.geometry import se3
 from scanplan.lab.evaluation import pose_errors
 from scanplan.project.stage_settings import select_section
-from scanplan.registration import mapping, results, sequential
+from scanplan.registration import batches, mapping, results, sequential
 from scanplan.registration.registration_settings import registration_settings
 from scanplan.stage import workers
 from scanplan.store import scan_cache, schemas, tables
@@ -78,7 +78,9 @@ def register(drive, folder, threads=1, **changes):
         scan_cache.open_scan_cache(folder / "b") as thinned,
         workers.open_pool(threads) as run,
     ):
-        return mapping.register_scans(survey, found, raw, thinned, run, settings)
+        cut = batches.cut_survey(N, settings)
+        judged, edges = mapping.register_candidates(survey, cut, found, raw, thinned, run, settings)
+        return mapping.optimise_map(survey, judged, edges, thinned, run, settings)
 
 
 @pytest.fixture(scope="module")

@@ -1,3 +1,5 @@
+import os
+
 import pytest
 from rosbags import rosbag1
 
@@ -85,3 +87,24 @@ def test_a_message_that_the_file_does_not_hold(tmp_path):
     path.write_bytes(b"abc")
     with path.open("rb") as file, pytest.raises(ValueError, match="5 bytes is cut short to 3"):
         rosbag1_messages.StoredMessage(file.fileno(), 0, 5, b"").read()
+
+
+@pytest.mark.parametrize("n_unread", [0, 1, 17, 100])
+def test_what_is_not_wanted_at_the_beginning_is_not_read(recording, monkeypatch, n_unread):
+    names = {"/points", "/amcl_pose"}
+    whole = plain(recording, names)
+    n_read = 0
+    pread = os.pread
+
+    def counted(*place):
+        nonlocal n_read
+        n_read += 1
+        return pread(*place)
+
+    monkeypatch.setattr(os, "pread", counted)
+    with bags.open_bag(recording) as bag:
+        found = list(bag.messages(names, n_unread=n_unread))
+        assert [(c.topic, t_ns) for c, t_ns, _ in found] == [item[:2] for item in whole]
+        assert [raw for _, _, raw in found[:n_unread]] == [b""] * min(n_unread, len(whole))
+        assert [raw.read() for _, _, raw in found[n_unread:]] == [i[3] for i in whole[n_unread:]]
+    assert (n_read == 0) == (n_unread >= len(whole))

@@ -39,6 +39,23 @@ def test_chunks_of_a_long_recording_are_jobs_of_their_own(project_root, tmp_path
     (tmp_path / "long/dataset.yaml").write_text("advanced: {jobs: {chunk_gb: 1.0e-6}}")
     rules = planned_rules(project, groups, "--config", "dataset=long", "--", "comparison")
     alone = rules - set(groups)
-    stages = ("observe_walls", "build_visibility", "build_hulls", "extract_walls")
-    assert alone == {f"{stage}_chunk" for stage in stages}
+    stages = ("register_scans", "observe_walls", "build_visibility", "build_hulls", "extract_walls")
+    # what joins chunks of registration lies between the groups
+    assert alone == {*(f"{stage}_chunk" for stage in stages), "gather_scan_chunks"}
     assert not rules & set(stages)
+
+
+def test_what_cannot_be_cut_is_registered_in_one_job(project_root, tmp_path, groups):
+    project = Project(project_root, tmp_path)
+    whole = {
+        "salvaged": "input: {salvage: true}\nadvanced: {jobs: {chunk_gb: 1.0e-6}}",
+        "frames": "advanced: {registration: {compare_with: frames}, jobs: {chunk_gb: 1.0e-6}}",
+    }
+    for name, settings in whole.items():
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "drive.bag").write_bytes(bytes(3000))
+        (tmp_path / name / "dataset.yaml").write_text(settings)
+    given = f"dataset=[{', '.join(whole)}]"
+    rules = planned_rules(project, groups, "--config", given, "--", "all")
+    assert {"observe_walls_chunk", "register_scans"} <= rules
+    assert not rules & {"register_scans_chunk", "gather_scan_chunks"}

@@ -1,11 +1,65 @@
-# Long recordings: each stage that treats scans one by one is a job for each chunk of the scans, and one
-# that joins their tables to the same bytes.
+# Long recordings: registration's batches, and each stage that treats scans one by one, are a job for each
+# chunk of the scans, and one that joins what they made to the same bytes.
 
 
 ruleorder: gather_chunks > observe_walls
 ruleorder: gather_chunks > build_visibility
 ruleorder: gather_chunks > build_hulls
 ruleorder: gather_wall_chunks > extract_walls
+ruleorder: gather_scan_chunks > register_scans
+
+
+rule register_scans_chunk:
+    """Register a chunk of a long recording's scans, each after its predecessors."""
+    input:
+        recordings=recordings,
+        poses="results/{dataset}/poses.parquet",
+        motion="results/{dataset}/motion.parquet",
+    output:
+        candidates=temp("results/{dataset}/candidates_{chunk}.parquet"),
+        constraints=temp("results/{dataset}/constraints_{chunk}.parquet"),
+        points=temp("results/{dataset}/points_{chunk}.parquet"),
+        thinned=temp("results/{dataset}/thinned_{chunk}.parquet"),
+    log:
+        "logs/{dataset}/register_scans_{chunk}.log",
+    benchmark:
+        "benchmarks/{dataset}/register_scans_{chunk}.tsv"
+    threads: registering_threads
+    resources:
+        mem_mb=grown(mem_mb=1500),
+        runtime=grown(runtime=120),
+    params:
+        code=code_of("register_scans_chunk"),
+        content=content_of_recordings,
+        reading=section("input"),
+        settings=section("registration"),
+    script:
+        "../../scripts/register_scans_chunk.py"
+
+
+def chunk_files(what):
+    """An input function: files of one kind of all chunks of a dataset, in their order."""
+
+    def files(wildcards):
+        folder = f"results/{wildcards.dataset}"
+        return [
+            f"{folder}/{what}_{chunk}.parquet" for chunk in chunks_of(wildcards.dataset)
+        ]
+
+    return files
+
+
+use rule register_scans as gather_scan_chunks with:
+    input:
+        recordings=recordings,
+        poses="results/{dataset}/poses.parquet",
+        motion="results/{dataset}/motion.parquet",
+        candidates=chunk_files("candidates"),
+        constraints=chunk_files("constraints"),
+        points=chunk_files("points"),
+        thinned=chunk_files("thinned"),
+    wildcard_constraints:
+        dataset=match_names(REGISTERED_IN_CHUNKS),
 
 
 use rule observe_walls as observe_walls_chunk with:
@@ -46,11 +100,9 @@ use rule extract_walls as extract_walls_chunk with:
 
 def chunks_of_table(wildcards):
     """The tables of a dataset's chunks, in the order of their scans."""
-    table = wildcards.get("table") or f"walls/{wildcards.extractor}"
-    return [
-        f"results/{wildcards.dataset}/{table}_{chunk}.parquet"
-        for chunk in chunks_of(wildcards.dataset)
-    ]
+    return chunk_files(wildcards.get("table") or f"walls/{wildcards.extractor}")(
+        wildcards
+    )
 
 
 rule gather_chunks:

@@ -240,11 +240,16 @@ def all_cores(wildcards):
     return workflow.resource_settings.cores or 2
 
 
+def is_one_sequence(name):
+    """Whether a dataset's scans are registered by the frames before them, all one after the other."""
+    settings = DATASETS[name].settings
+    registration = stage_settings.select_section(settings, "registration")
+    return registration["compare_with"] == "frames"
+
+
 def registering_threads(wildcards):
     """Batches share two cores; frames that go by those before them are one sequence, on one core."""
-    settings = DATASETS[wildcards.dataset].settings
-    registration = stage_settings.select_section(settings, "registration")
-    return 1 if registration["compare_with"] == "frames" else 2
+    return 1 if is_one_sequence(wildcards.dataset) else 2
 
 
 def setting(select, *arguments):
@@ -466,6 +471,12 @@ def storeys_beside(wildcards):
 
 # only those of which a stage is divided have rules for chunks
 CHUNKED = [name for name in GIVEN if n_chunks(name) > 1]
+# a salvaged recording's clouds have no numbers before all of them were read
+REGISTERED_IN_CHUNKS = [
+    name
+    for name in CHUNKED
+    if not is_one_sequence(name) and not GIVEN[name].settings["input"]["salvage"]
+]
 
 
 wildcard_constraints:

@@ -112,12 +112,15 @@ class Bag:
             stated_counts.check_checksums(reader)
             self._stated = stated_counts.count_stated_messages(reader)
 
-    def messages(self, names: Collection[str]) -> Iterator[BagMessage]:
+    def messages(self, names: Collection[str], *, n_unread: int = 0) -> Iterator[BagMessage]:
         """Iterate over the messages of some topics in the order of recording.
 
         Parameters
         ----------
         names : collection of str
+        n_unread : int
+            So many at the beginning are only counted: where an index tells them, they come as no
+            bytes.
 
         Yields
         ------
@@ -138,7 +141,7 @@ class Bag:
         came: Counter[str] = Counter()
         # what its reader does with a message is not raised in here
         with _explain_faults(self.path):
-            for item in self._iterate(connections):
+            for item in self._iterate(connections, n_unread):
                 came[item[0].topic] += 1
                 yield item
         if fault := stated_counts.find_lost_messages(came, self._stated, names):
@@ -166,12 +169,12 @@ class Bag:
             deserialize = store.deserialize_cdr if self.ros2 else store.deserialize_ros1
             return deserialize(data, connection.msgtype)
 
-    def _iterate(self, connections: list[Connection]) -> Iterator[BagMessage]:
+    def _iterate(self, connections: list[Connection], n_unread: int) -> Iterator[BagMessage]:
         reader = self._reader
         if isinstance(reader, SalvagedReader):
             return self._iterate_salvaged(reader, connections)
         if isinstance(reader, rosbag1.Reader) and is_uncompressed(reader):
-            return _iterate_uncompressed(reader, connections)
+            return _iterate_uncompressed(reader, connections, n_unread)
         if self._unpack is None:
             return reader.messages(connections)
         unpack = self._unpack
@@ -208,15 +211,15 @@ def is_uncompressed(reader: rosbag1.Reader) -> bool:
 
 
 def _iterate_uncompressed(
-    reader: rosbag1.Reader, connections: list[Connection]
+    reader: rosbag1.Reader, connections: list[Connection], n_unread: int
 ) -> Iterator[BagMessage]:
     """Iterate like rosbags' own reader, without reading the chunks around the messages."""
     if reader.bio is None:
         raise ValueError(f"{reader.path}: is not open")
     chunks = {position: (c.datapos, c.datasize) for position, c in reader.chunks.items()}
     by_id = {connection.id: connection for connection in connections}
-    indexes = [reader.indexes[number] for number in by_id]
-    messages = iterate_messages(reader.bio.fileno(), chunks, indexes)
+    indexes = {number: reader.indexes[number] for number in by_id}
+    messages = iterate_messages(reader.bio.fileno(), chunks, indexes, n_unread)
     return ((by_id[number], time_ns, stored) for number, time_ns, stored in messages)
 
 

@@ -165,10 +165,12 @@ class BagSurvey:
         """Return the header stamps of all clouds, (n,) int64, in scan_id order."""
         return self._index.stamps_ns
 
-    def scans(self, wanted: Iterable[int]) -> Iterator[clouds.Scan]:
+    def scans(
+        self, wanted: Iterable[int], damaged: DamagedClouds | None = None
+    ) -> Iterator[clouds.Scan]:
         """Iterate over the scans of the scan_ids in `wanted`, in recording order.
 
-        Only these are decoded.
+        Only these are decoded. `damaged` is as in `survey_protocol.Survey.scans`.
 
         Raises
         ------
@@ -178,7 +180,7 @@ class BagSurvey:
             If too many clouds cannot be decoded.
         """
         missing = {int(scan_id) for scan_id in wanted}
-        self._damaged = DamagedClouds(len(missing), self._max_damaged_share)
+        self._damaged = damaged or DamagedClouds(len(missing), self._max_damaged_share)
         for cloud in self._cloud_messages(missing.copy()):
             missing.remove(cloud.scan_id)
             received_ns = cloud.message[1]
@@ -303,13 +305,21 @@ class BagSurvey:
 
     def _cloud_messages(self, wanted: Collection[int] | None = None) -> Iterator[_CloudMessage]:
         """Iterate over the messages of the clouds wanted, or of all."""
+        first = 0 if wanted is None else min(wanted, default=0)
         last = np.inf if wanted is None else max(wanted, default=-1)
-        items = ((bag, item) for bag in self._bags for item in bag.messages({self._cloud.name}))
-        for scan_id, (bag, message) in enumerate(items):
-            if scan_id > last:
+        for cloud in self._number_clouds(first):
+            if cloud.scan_id > last:
                 return
-            if wanted is None or scan_id in wanted:
-                yield _CloudMessage(scan_id, bag, message)
+            if wanted is None or cloud.scan_id in wanted:
+                yield cloud
+
+    def _number_clouds(self, n_unread: int) -> Iterator[_CloudMessage]:
+        """Iterate over the messages of all clouds; the first so many may come without content."""
+        n_seen = 0
+        for bag in self._bags:
+            for message in bag.messages({self._cloud.name}, n_unread=max(0, n_unread - n_seen)):
+                yield _CloudMessage(n_seen, bag, message)
+                n_seen += 1
 
     def _read_scan(self, cloud: _CloudMessage) -> clouds.Scan:
         return self._keep_in_range(self._decode(cloud), self.sweep_times)

@@ -12,6 +12,7 @@ import io
 import os
 import struct
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import islice
 
 from rosbags.rosbag1.reader import RecordType
 
@@ -52,8 +53,9 @@ class StoredMessage:
 def iterate_messages(
     file: int,
     chunks: Mapping[int, tuple[int, int]],
-    indexes: Sequence[Sequence[tuple[int, int, int]]],
-) -> Iterator[tuple[int, int, StoredMessage]]:
+    indexes: Mapping[int, Sequence[tuple[int, int, int]]],
+    n_unread: int = 0,
+) -> Iterator[tuple[int, int, StoredMessage | bytes]]:
     """Iterate over messages in the order of their recording.
 
     Parameters
@@ -62,15 +64,17 @@ def iterate_messages(
         Descriptor of the open bag.
     chunks : dict of int to (int, int)
         Where the data of a chunk, named by its position, begin, and their number of bytes.
-    indexes : list of list of (time_ns, chunk, offset)
-        For each connection, sorted.
+    indexes : dict of int to list of (time_ns, chunk, offset)
+        For each connection by its id, sorted.
+    n_unread : int
+        So many at the beginning are told by the index alone, and come as no bytes.
 
     Yields
     ------
     connection_id : int
     time_ns : int
         When it was recorded.
-    message : StoredMessage
+    message : StoredMessage or bytes
 
     Raises
     ------
@@ -78,7 +82,11 @@ def iterate_messages(
         If the index leads to no message, or one reaches beyond its chunk.
     """
     blocks = _Blocks(file)
-    for time_ns, chunk, offset in heapq.merge(*indexes):
+    of_connections = [[(entry, number) for entry in index] for number, index in indexes.items()]
+    entries = heapq.merge(*of_connections)
+    for (time_ns, _, _), number in islice(entries, n_unread):
+        yield number, time_ns, b""
+    for (time_ns, chunk, offset), _ in entries:
         begin, size = chunks[chunk]
         connection_id, place, length, head = _read_record(blocks, begin + offset)
         if place + length > begin + size:

@@ -135,10 +135,12 @@ class ScanFolder:
         """Return (name, edges) of all that states how the sensor moved: the poses."""
         return [(str(self._poses_path), self.pose_edges())]
 
-    def scans(self, wanted: Iterable[int]) -> Iterator[clouds.Scan]:
+    def scans(
+        self, wanted: Iterable[int], damaged: DamagedClouds | None = None
+    ) -> Iterator[clouds.Scan]:
         """Iterate over the scans of the scan_ids in `wanted`, in scan_id order.
 
-        Only these files are read.
+        Only these files are read. `damaged` is as in `survey_protocol.Survey.scans`.
 
         Raises
         ------
@@ -153,7 +155,7 @@ class ScanFolder:
                 f"{self._poses_path.parent}: {len(self._clouds)} scans,"
                 f" asked for up to {scan_ids[-1]}"
             )
-        self._damaged = DamagedClouds(len(scan_ids), self._max_damaged_share)
+        self._damaged = damaged or DamagedClouds(len(scan_ids), self._max_damaged_share)
         for scan_id in scan_ids:
             read = partial(self._read_scan, scan_id, self.sweep_times)
             yield self._damaged.read(scan_id, int(self._stamps_ns[scan_id]), read)

@@ -5,6 +5,7 @@ from typing import Protocol
 
 from scanplan.recordings.clouds import Scan
 from scanplan.recordings.frame_edges import FrameEdge
+from scanplan.recordings.integrity.damaged_clouds import DamagedClouds
 from scanplan.recordings.motion.point_times import TimeConvention
 from scanplan.types import IntArray
 
@@ -46,6 +47,9 @@ class Survey(Protocol):
         """Return what could not be read so far, in sentences."""
         ...
 
-    def scans(self, wanted: Iterable[int]) -> Iterator[Scan]:
-        """Iterate over the scans of the scan_ids in `wanted`, in scan_id order."""
+    def scans(self, wanted: Iterable[int], damaged: DamagedClouds | None = None) -> Iterator[Scan]:
+        """Iterate over the scans of the scan_ids in `wanted`, in scan_id order.
+
+        `damaged` counts those that cannot be decoded; by default they may be a share of `wanted`.
+        """
         ...

@@ -3,7 +3,8 @@
 By the thesis's frames there are none: all candidates are one sequence.
 """
 
-from collections.abc import Iterable, Iterator
+from collections import deque
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -12,8 +13,9 @@ import numpy as np
 from scanplan.recordings.clouds import Scan
 from scanplan.registration.constraints import PoseConstraint
 from scanplan.registration.frame_sequence import FrameRegistrar
-from scanplan.registration.registration_settings import SequentialSettings
+from scanplan.registration.registration_settings import RegistrationSettings, SequentialSettings
 from scanplan.registration.sequential import ScanResult, SequentialRegistrar
+from scanplan.stage import chunks
 from scanplan.store.scan_cache import ScanCache, ScanCachePart
 from scanplan.types import FloatArray, IntArray
 
@@ -38,6 +40,36 @@ class CandidateScans:
     planar: bool
     is_odometry: bool = False
 
+    def take(self, rows: IntArray) -> "CandidateScans":
+        """Return some of the candidates."""
+        return replace(self, scan_ids=self.scan_ids[rows], priors=self.priors[rows])
+
+
+def cut_survey(
+    n_candidates: int, settings: RegistrationSettings, chunk: str | None = None
+) -> list[tuple[int, int, int]]:
+    """Cut a survey's candidates into batches.
+
+    Parameters
+    ----------
+    n_candidates : int
+    settings : registration_settings.RegistrationSettings
+    chunk : str, optional
+        `2-of-5`: of five contiguous parts of the batches the second alone; none where there are
+        fewer batches than parts.
+
+    Returns
+    -------
+    list of (first, begin, end)
+        As of `cut_batches`.
+    """
+    limits = settings.limits
+    # a batch's first candidate is an anchor, perhaps out of place: that is found out `anchor_after`
+    # scans later, and the scans after that need predecessors
+    n_early = limits.n_previous + min(limits.anchor_after, settings.batch_size)
+    cut = cut_batches(n_candidates, settings.batch_size, n_early)
+    return [cut[row] for row in chunks.rows_of_chunk(len(cut), chunk)]
+
 
 def cut_batches(n_candidates: int, batch_size: int, n_early: int) -> list[tuple[int, int, int]]:
     """Cut the candidates into batches.
@@ -60,32 +92,30 @@ def batch_jobs(
     scans: Iterable[Scan],
     raw: ScanCache,
     survey: CandidateScans,
+    cut: Sequence[tuple[int, int, int]],
     limits: SequentialSettings,
-    batch_size: int,
 ) -> Iterator[tuple[Any, ...]]:
     """Cache scans as they come; yield the arguments of `register_batch` of each complete batch.
 
     Parameters
     ----------
     scans : iterable of clouds.Scan
-        The candidates, in order.
+        The candidates of these batches, in order.
     raw : scan_cache.ScanCache
         Empty.
     survey : CandidateScans
+    cut : list of (first, begin, end)
+        Successive batches, as of `cut_survey`.
     limits : registration_settings.SequentialSettings
-    batch_size : int
     """
-    # a batch's first candidate is an anchor, perhaps out of place: that is found out `anchor_after`
-    # scans later, and the scans after that need predecessors
-    n_early = limits.n_previous + min(limits.anchor_after, batch_size)
-    pending = cut_batches(len(survey.scan_ids), batch_size, n_early)
+    pending = deque(cut)
+    n_before = cut[0][0] if cut else 0
     for scan in scans:
         raw.add(scan.xyz_m)
-        while pending and len(raw) == pending[0][2]:
-            first, begin, end = pending.pop(0)
+        while pending and n_before + len(raw) == pending[0][2]:
+            first, begin, end = pending.popleft()
             rows = np.arange(first, end)
-            batch = replace(survey, scan_ids=survey.scan_ids[rows], priors=survey.priors[rows])
-            yield raw.part(rows), batch, begin - first, limits
+            yield raw.part(rows - n_before), survey.take(rows), begin - first, limits
 
 
 def register_batch(

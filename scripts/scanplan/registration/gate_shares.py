@@ -1,6 +1,6 @@
 """What to say where the gates of algorithm 3 leave nothing: shares, and what would pass."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
@@ -10,9 +10,9 @@ from scanplan.registration.batches import CandidateScans
 from scanplan.registration.constraints import PlacedScan
 from scanplan.registration.registration_settings import FRAMES, SequentialSettings
 from scanplan.registration.sequential import ScanResult
-from scanplan.store.scan_cache import ScanCache
-from scanplan.types import FilePath, IntArray
+from scanplan.types import FilePath, FloatArray, IntArray
 
+ReadPoints = Callable[[IntArray], Iterable[FloatArray]]
 _MOST_ASKED = 40  # frames: a share of a tenth is known to a few per cent
 _SOME = 0.1  # of the frames: "some", which is enough for a drive through a building
 _STEP_M = 0.05  # distances are named in steps that one would set
@@ -21,7 +21,7 @@ _STEP_M = 0.05  # distances are named in steps that one would set
 def check_any_survives(
     scan_results: Sequence[ScanResult],
     survey: CandidateScans,
-    raw: ScanCache,
+    read_points: ReadPoints,
     limits: SequentialSettings,
     where: FilePath,
 ) -> None:
@@ -32,8 +32,8 @@ def check_any_survives(
     scan_results : sequence of sequential.ScanResult
         One per candidate.
     survey : batches.CandidateScans
-    raw : scan_cache.ScanCache
-        The points of all candidates.
+    read_points : callable
+        `read_points(rows)` iterates over the points of these candidates.
     limits : registration_settings.SequentialSettings
         Of which `compare_with` is `FRAMES`; nothing is checked otherwise.
     where : path-like
@@ -45,7 +45,9 @@ def check_any_survives(
         return
     passes = [result.prior_fitness >= limits.min_prior_fitness for result in scan_results]
     share = np.mean(np.array(passes)[is_compared])
-    distance_m = find_passing_distance_m(survey, np.flatnonzero(is_compared | is_kept), raw, limits)
+    distance_m = find_passing_distance_m(
+        survey, np.flatnonzero(is_compared | is_kept), read_points, limits
+    )
     raise StageError(
         f"{where}: of {is_compared.sum()} scans {100 * share:.1f} % pass the first gate"
         f" (registration.min_prior_fitness {limits.min_prior_fitness:g} within fitness_distance_m"
@@ -56,7 +58,7 @@ def check_any_survives(
 
 
 def find_passing_distance_m(
-    survey: CandidateScans, frames: IntArray, raw: ScanCache, limits: SequentialSettings
+    survey: CandidateScans, frames: IntArray, read_points: ReadPoints, limits: SequentialSettings
 ) -> float:
     """Return the fitness distance, metres, at which a tenth of the frames pass both gates.
 
@@ -67,7 +69,8 @@ def find_passing_distance_m(
     survey : batches.CandidateScans
     frames : (n,) int
         Rows of the candidates that have a pose and points, n >= 2.
-    raw : scan_cache.ScanCache
+    read_points : callable
+        As of `check_any_survives`.
     limits : registration_settings.SequentialSettings
     """
     n_asked = min(_MOST_ASKED, len(frames) - 1)
@@ -76,7 +79,7 @@ def find_passing_distance_m(
     needed_m = []
     for last in asked.tolist():
         rows = frames[max(0, last - limits.n_previous) : last + 1]
-        *previous, scan = _place_scans(survey, rows, raw, limits)
+        *previous, scan = _place_scans(survey, rows, read_points, limits)
         distances_m = [
             prepared_clouds.measure_distances(
                 scan.cloud,
@@ -91,12 +94,12 @@ def find_passing_distance_m(
 
 
 def _place_scans(
-    survey: CandidateScans, rows: IntArray, raw: ScanCache, limits: SequentialSettings
+    survey: CandidateScans, rows: IntArray, read_points: ReadPoints, limits: SequentialSettings
 ) -> list[PlacedScan]:
     """Return scans at the localiser's poses."""
     planar = survey.planar
     placed = []
-    for row, xyz_m in zip(rows.tolist(), raw.part(rows), strict=True):
+    for row, xyz_m in zip(rows.tolist(), read_points(rows), strict=True):
         prior = survey.priors[row]
         level = constraints.level_pose(prior, planar=planar)
         thinned_m = constraints.thin_scan(xyz_m, level, planar, limits)

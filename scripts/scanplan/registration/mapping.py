@@ -23,26 +23,66 @@ from scanplan.store.scan_cache import ScanCache
 from scanplan.types import BoolArray, FloatArray
 
 
-def register_scans(
+def register_candidates(
     survey: CandidateScans,
+    cut: Sequence[tuple[int, int, int]],
     scans: Iterable[Scan],
     raw: ScanCache,
     thinned: ScanCache,
     run: Callable[..., Iterator[Any]],
     settings: RegistrationSettings,
-) -> tuple[list[ScanResult], multiway.OptimisedMap | None]:
-    """Register all candidates, and bring those that are kept into one map.
+) -> tuple[list[ScanResult], list[PoseConstraint]]:
+    """Register candidates one after the other: in batches, or the thesis's frames as one sequence.
 
     Parameters
     ----------
     survey : CandidateScans
+    cut : list of (first, begin, end)
+        Batches of it, as of `batches.cut_survey`; all of them where frames are compared.
     scans : iterable of clouds.Scan
-        The candidates' points, in order.
+        The points of the candidates of these batches, in order.
     raw, thinned : scan_cache.ScanCache
-        Empty; left with the points of all candidates, and with the thinned points of the kept ones.
+        Empty; left with the points of these candidates, and with the thinned points of the kept
+        ones that belong to the batches.
     run : callable
         As `workers.open_pool` gives it.
     settings : registration_settings.RegistrationSettings
+
+    Returns
+    -------
+    list of sequential.ScanResult
+        One per candidate that belongs to the batches.
+    list of constraints.PoseConstraint
+        From them to their predecessors.
+    """
+    limits = settings.limits
+    if limits.compare_with == FRAMES:
+        return batches.register_frames(scans, raw, thinned, survey, limits)
+    jobs = batches.batch_jobs(scans, raw, survey, cut, limits)
+    n_candidates = cut[-1][2] - cut[0][1] if cut else 0
+    return _register_batches(jobs, n_candidates, thinned, run)
+
+
+def optimise_map(
+    survey: CandidateScans,
+    scan_results: Sequence[ScanResult],
+    edges: list[PoseConstraint],
+    thinned: ScanCache,
+    run: Callable[..., Iterator[Any]],
+    settings: RegistrationSettings,
+) -> tuple[list[ScanResult], multiway.OptimisedMap | None]:
+    """Bring all candidates that are kept into one map.
+
+    Parameters
+    ----------
+    survey : CandidateScans
+    scan_results : sequence of sequential.ScanResult
+    edges : list of constraints.PoseConstraint
+        Of all candidates, as registered one after the other.
+    thinned : scan_cache.ScanCache
+        The thinned points of the kept ones.
+    run, settings
+        As of `register_candidates`.
 
     Returns
     -------
@@ -51,17 +91,12 @@ def register_scans(
     multiway.OptimisedMap or None
         None where no scan was registered.
     """
-    limits = settings.limits
-    if limits.compare_with == FRAMES:
-        scan_results, edges = batches.register_frames(scans, raw, thinned, survey, limits)
-    else:
-        jobs = batches.batch_jobs(scans, raw, survey, limits, settings.batch_size)
-        scan_results, edges = _register_batches(jobs, len(survey.scan_ids), thinned, run)
-    is_any_kept = any(result.kept for result in scan_results)
-    if limits.icp_method == sequential.GIVEN_POSES or not is_any_kept:
-        return scan_results, None
-    optimised = _optimise(survey, scan_results, edges, thinned, run, settings)
-    return _drop_unconfirmed(survey, scan_results, optimised, limits.anchor_apart_m)
+    placed = list(scan_results)
+    is_any_kept = any(result.kept for result in placed)
+    if settings.limits.icp_method == sequential.GIVEN_POSES or not is_any_kept:
+        return placed, None
+    optimised = _optimise(survey, placed, edges, thinned, run, settings)
+    return _drop_unconfirmed(survey, placed, optimised, settings.limits.anchor_apart_m)
 
 
 def find_unconfirmed(

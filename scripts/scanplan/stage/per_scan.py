@@ -6,7 +6,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from scanplan.errors import StageError
-from scanplan.stage import log, workers
+from scanplan.stage import chunks, log, workers
 from scanplan.store import tables
 from scanplan.types import FilePath, IntArray
 
@@ -83,15 +83,13 @@ def read_chunk_ids(scans_path: FilePath, chunk: str | None) -> IntArray:
         If there are fewer scans than chunks.
     """
     scan_ids = tables.ScanStore(scans_path).scan_ids
-    if chunk is None:
-        return scan_ids
-    number, count = map(int, chunk.split("-of-"))
-    if len(scan_ids) < count:
+    rows = chunks.rows_of_chunk(len(scan_ids), chunk)
+    if len(rows) == 0:
         raise StageError(
-            f"{scans_path}: holds {len(scan_ids)} scans, too few for {count} jobs; raise"
+            f"{scans_path}: holds {len(scan_ids)} scans, too few for job {chunk}; raise"
             " advanced.jobs.chunk_gb"
         )
-    return np.array_split(scan_ids, count)[number - 1]
+    return scan_ids[rows]
 
 
 def _keywords_of(scan_ids: IntArray, keywords: Mapping[int, Keywords]) -> dict[int, Keywords]:

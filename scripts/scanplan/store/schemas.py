@@ -105,6 +105,44 @@ SCANS = Schema(
     {"scan_id": "int32", "x_m": "float32", "y_m": "float32", "z_m": "float32"},
     ("scan_id",),
 )
+CHUNK_POINTS = Schema("chunk_points", 1, SCANS.columns, ("scan_id",))
+"""Points of the candidates that a chunk keeps, in the sensor's frame; or what of them is aligned.
+
+The latter, thinned, are in the frame of the cloud, which in a planar survey is levelled.
+"""
+CHUNK_CANDIDATES = Schema(
+    "chunk_candidates",
+    1,
+    {
+        "scan_id": "int32",
+        "kept": "bool",
+        "reason": "string",
+        **dict.fromkeys(("prior_fitness", "refined_fitness", "rmse_m"), "float64"),
+        "world_from_sensor": "binary",
+    },
+    ("scan_id",),
+)
+"""Candidates of a chunk as registered one after the other; a pose is 16 float64, row by row.
+
+The file states how many points were dropped on reading, and what is wrong with damaged clouds.
+"""
+CHUNK_CONSTRAINTS = Schema(
+    "chunk_constraints",
+    1,
+    {
+        **dict.fromkeys(("constraint", "source", "target"), "int32"),
+        "kind": "string",
+        **dict.fromkeys(("fitness", "rmse_m"), "float64"),
+        **dict.fromkeys(("target_from_source", "information"), "binary"),
+        "unobservable": "int32",
+        "sound": "bool",
+    },
+    ("constraint",),
+)
+"""Constraints from a chunk's scans to those before them, in the order in which they were found.
+
+Matrices are 16 and 36 float64, row by row.
+"""
 HULLS = Schema(
     "hulls",
     1,

@@ -112,9 +112,13 @@ def read_notes(path: FilePath, schema: schemas.Schema) -> dict[str, str]:
 
 @contextmanager
 def open_scan_writer(
-    path: FilePath, *, planar: bool
+    path: FilePath,
+    *,
+    planar: bool,
+    schema: schemas.Schema = schemas.SCANS,
+    allow_empty: bool = False,
 ) -> Iterator[Callable[[int, FloatArray], None]]:
-    """Write the registered scans one by one, each a row group of its own.
+    """Write scans one by one, each a row group of its own.
 
     Parameters
     ----------
@@ -122,21 +126,24 @@ def open_scan_writer(
     planar : bool
         Whether the sensor measures in one plane only (a 2-D laser scanner); kept in the file for
         later stages.
+    schema : Schema
+        Of which scans and in which frame: by default the registered ones in the map.
+    allow_empty : bool
 
     Yields
     ------
     callable
-        `write(scan_id, xyz_m)` with increasing `scan_id` and (n, 3) float map coordinates, n >= 1.
+        `write(scan_id, xyz_m)` with increasing `scan_id` and (n, 3) float coordinates, n >= 1.
 
     Raises
     ------
     StageError
-        If no scan was written: the file does not appear.
+        If no scan was written and that is not allowed: the file does not appear.
     """
     last: int | None = None
     extra = {"planar": json.dumps(bool(planar))}
     # of points lz4 saves as much as zstd, and takes half the time to write and to read
-    with parquet.open_writer(path, schemas.SCANS, extra, compression="lz4") as write_rows:
+    with parquet.open_writer(path, schema, extra, compression="lz4") as write_rows:
 
         def write_scan(scan_id: int, xyz_m: FloatArray) -> None:
             nonlocal last
@@ -145,7 +152,7 @@ def open_scan_writer(
             last = scan_id
             xyz_m = np.asarray(xyz_m, np.float32)
             columns = [np.full(len(xyz_m), scan_id, np.int32), *xyz_m.T]
-            form = parquet.arrow_schema(schemas.SCANS)
+            form = parquet.arrow_schema(schema)
             arrays = [
                 arrow_arrays.to_arrow(column, field.type)
                 for column, field in zip(columns, form, strict=True)
@@ -154,7 +161,7 @@ def open_scan_writer(
             write_rows(rows, row_group_size=len(rows))
 
         yield write_scan
-        if last is None:
+        if last is None and not allow_empty:
             raise StageError(
                 f"{path}: no scan was kept, so there is nothing to go on with; see the stage's log"
             )
@@ -162,6 +169,13 @@ def open_scan_writer(
 
 class ScanStore:
     """The registered scans of a dataset, read one at a time.
+
+    Parameters
+    ----------
+    path : path-like
+    schema : Schema
+        As `open_scan_writer` wrote it.
+    allow_empty : bool
 
     Attributes
     ----------
@@ -171,16 +185,19 @@ class ScanStore:
         Whether the sensor measures in one plane only.
     """
 
-    def __init__(self, path: FilePath) -> None:
+    def __init__(
+        self, path: FilePath, schema: schemas.Schema = schemas.SCANS, *, allow_empty: bool = False
+    ) -> None:
         self.path = path
-        with parquet.open_file(path, schemas.SCANS) as file, parquet.explain_damage(path):
+        self._schema = schema
+        with parquet.open_file(path, schema) as file, parquet.explain_damage(path):
             metadata = file.metadata
             groups = [metadata.row_group(i) for i in range(metadata.num_row_groups)]
             ids = [group.column(0).statistics for group in groups]
             self.planar = bool(json.loads(parquet.read_notes(file, path)["planar"]))
             self.scan_ids = np.array([group.min for group in ids], np.int32)
         self.n_points = np.array([group.num_rows for group in groups], np.int64)
-        if len(self.scan_ids) == 0:
+        if len(self.scan_ids) == 0 and not allow_empty:
             raise StageError(f"{path}: holds no scan; {parquet.RERUN}")
         if (np.diff(self.scan_ids) <= 0).any() or any(group.min != group.max for group in ids):
             raise StageError(
@@ -207,7 +224,7 @@ class ScanStore:
         """
         group = {int(s): i for i, s in enumerate(self.scan_ids)}
         wanted = self.scan_ids.tolist() if scan_ids is None else map(int, scan_ids)
-        with parquet.open_file(self.path, schemas.SCANS) as file:
+        with parquet.open_file(self.path, self._schema) as file:
             for scan_id in wanted:
                 if scan_id not in group:
                     raise StageError(

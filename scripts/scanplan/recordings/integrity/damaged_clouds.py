@@ -18,12 +18,20 @@ class DamagedClouds:
         How many are read in all.
     max_share : float
         More than this share of them is no accident but a fault of the recording.
+    begin : int
+        Scans before this one are told and counted elsewhere.
+
+    Attributes
+    ----------
+    faults : list of str
+        What is wrong with each damaged one.
     """
 
-    def __init__(self, n_read: int, max_share: float) -> None:
+    def __init__(self, n_read: int, max_share: float, begin: int = 0) -> None:
         self._n_read = n_read
         self._max_share = max_share
-        self._n_damaged = 0
+        self._begin = begin
+        self.faults: list[str] = []
 
     def read(self, scan_id: int, t_ns: int, decode: Callable[[], Scan]) -> Scan:
         """Return what `decode` does; of a damaged cloud a scan without points.
@@ -36,17 +44,28 @@ class DamagedClouds:
         try:
             return decode()
         except StageError as error:
-            self._n_damaged += 1
-            if self._n_damaged > self._max_share * self._n_read:
-                raise StageError(
-                    f"{error}; {self._n_damaged} of {self._n_read} scans are damaged so far, more"
-                    " than advanced.input.max_damaged_share"
-                ) from None
-            log.log_warning(f"{error}; left out")
+            if scan_id >= self._begin:
+                self.leave_out(str(error))
+                log.log_warning(f"{error}; left out")
             return Scan(scan_id, t_ns, np.empty((0, 3), np.float32), None, 0)
+
+    def leave_out(self, fault: str) -> None:
+        """Count a damaged cloud, given what is wrong with it.
+
+        Raises
+        ------
+        StageError
+            If there are too many.
+        """
+        self.faults.append(fault)
+        if len(self.faults) > self._max_share * self._n_read:
+            raise StageError(
+                f"{fault}; {len(self.faults)} of {self._n_read} scans are damaged so far, more"
+                " than advanced.input.max_damaged_share"
+            ) from None
 
     def describe(self) -> list[str]:
         """Return how many were left out, as a sentence; none where all could be decoded."""
-        if self._n_damaged == 0:
+        if not self.faults:
             return []
-        return [f"{self._n_damaged:,} of {self._n_read:,} scans are damaged and left out"]
+        return [f"{len(self.faults):,} of {self._n_read:,} scans are damaged and left out"]

@@ -9,6 +9,7 @@ import numpy as np
 from scanplan.geometry import se3
 from scanplan.recordings.clouds import Scan
 from scanplan.recordings.frame_edges import FrameEdge
+from scanplan.recordings.integrity.damaged_clouds import DamagedClouds
 from scanplan.recordings.motion import point_times
 from scanplan.recordings.motion.trajectory import SensorMotion
 from scanplan.recordings.survey_protocol import NamedChain, Survey
@@ -152,11 +153,11 @@ class DeskewedSurvey:
         """Return (name, edges) of all that states how the sensor moved, the smoothest first."""
         return self._survey.motion_chains()
 
-    def scans(self, wanted: Iterable[int]) -> Iterator[Scan]:
+    def scans(self, wanted: Iterable[int], damaged: DamagedClouds | None = None) -> Iterator[Scan]:
         """Iterate over the scans asked for like the survey itself, with points at their stamps."""
         counts: Counter[str] = Counter()
         farthest_m = 0.0
-        for scan in self._survey.scans(wanted):
+        for scan in self._survey.scans(wanted, damaged):
             outcome, deskewed = self._deskew(scan)
             counts[outcome] += 1
             if outcome == "moved":

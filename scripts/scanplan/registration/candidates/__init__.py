@@ -1,0 +1,1 @@
+"""Candidates as they are registered, before their poses are optimised together: all, or chunks."""

@@ -1,0 +1,172 @@
+"""Candidates of a recorded survey, registered before the poses of all are optimised together.
+
+All of them, or a chunk: the batches of some contiguous part of a long survey.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from scanplan.recordings.clouds import Scan
+from scanplan.recordings.integrity.damaged_clouds import DamagedClouds
+from scanplan.recordings.motion import pose_kind, trajectory
+from scanplan.recordings.survey import open_survey
+from scanplan.registration import batches, mapping, results
+from scanplan.registration.batches import CandidateScans
+from scanplan.registration.constraints import PoseConstraint
+from scanplan.registration.registration_settings import RegistrationSettings
+from scanplan.registration.sequential import ScanResult
+from scanplan.stage import log
+from scanplan.store import schemas, tables
+from scanplan.store.scan_cache import ScanCache
+from scanplan.types import FilePath, FloatArray, IntArray, Settings
+
+
+@dataclass(frozen=True)
+class RegisteredCandidates:
+    """What registration knows of candidates before it optimises their poses.
+
+    Attributes
+    ----------
+    survey : batches.CandidateScans
+        These candidates.
+    results : list of sequential.ScanResult
+        One per candidate.
+    edges : list of constraints.PoseConstraint
+        From kept ones to their predecessors, which may be of the chunk before.
+    read_points : callable
+        `read_points(rows)` iterates over the points (n, 3) float32, sensor frame, of kept ones.
+    n_dropped : int
+        Points that were not finite or out of range.
+    faults : list of str
+        What is wrong with each candidate that could not be decoded.
+    damage : list of str
+        What of the recordings could not be read, in sentences.
+    """
+
+    survey: CandidateScans
+    results: list[ScanResult]
+    edges: list[PoseConstraint]
+    read_points: Callable[[IntArray], Iterable[FloatArray]]
+    n_dropped: int
+    faults: list[str]
+    damage: list[str]
+
+    @property
+    def kept(self) -> IntArray:
+        """Rows (n,) of the candidates that are kept."""
+        return find_kept(self.results)
+
+
+def find_kept(scan_results: Sequence[ScanResult]) -> IntArray:
+    """Return the rows (n,) of the candidates that are kept."""
+    return np.flatnonzero([result.kept for result in scan_results])
+
+
+def read_candidates(poses: FilePath, *, planar: bool) -> CandidateScans:
+    """Return the candidates that a poses.parquet lists.
+
+    Parameters
+    ----------
+    poses : path-like
+    planar : bool
+        Whether the sensor measures in one plane only.
+    """
+    columns = tables.read_table(poses, schemas.POSES)
+    is_odometry = pose_kind.is_drifting(tables.read_note(poses, schemas.POSES, pose_kind.NOTE))
+    priors = results.pose_matrices(columns)
+    return CandidateScans(columns["scan_id"], priors, planar, is_odometry=is_odometry)
+
+
+def expect_damaged(n_candidates: int, reading: Settings, begin: int = 0) -> DamagedClouds:
+    """Return what counts the damaged clouds among a survey's candidates from a scan on.
+
+    Parameters
+    ----------
+    n_candidates : int
+        Of the whole survey.
+    reading : dict
+        Keywords of `survey.open_survey`.
+    begin : int
+    """
+    return DamagedClouds(n_candidates, reading.get("max_damaged_share", 0.0), begin)
+
+
+def register_recorded(
+    recordings: Sequence[str],
+    poses: FilePath,
+    raw: ScanCache,
+    thinned: ScanCache,
+    run: Callable[..., Iterator[Any]],
+    *,
+    reading: Settings,
+    settings: RegistrationSettings,
+    moved: FilePath | None = None,
+    chunk: str | None = None,
+) -> RegisteredCandidates:
+    """Read candidates of a survey and register them one after the other.
+
+    Parameters
+    ----------
+    recordings : list of str
+        The dataset's files.
+    poses : path-like
+        poses.parquet.
+    raw, thinned : scan_cache.ScanCache
+        Empty; left with the points of all scans that were read, and with the thinned points of the
+        kept ones.
+    run : callable
+        As `workers.open_pool` gives it.
+    reading : dict
+        Keywords of `survey.open_survey`.
+    settings : registration_settings.RegistrationSettings
+    moved : path-like, optional
+        motion.parquet: how the sensor moved. Without it scans are not deskewed.
+    chunk : str, optional
+        Which batches, see `batches.cut_survey`; by default all.
+    """
+    motion = None if moved is None else _read_motion(moved)
+    with open_survey(recordings, **reading, motion=motion) as opened:
+        survey = read_candidates(poses, planar=opened.planar)
+        n_candidates = len(survey.scan_ids)
+        cut = batches.cut_survey(n_candidates, settings, chunk)
+        first, begin, end = (cut[0][0], cut[0][1], cut[-1][2]) if cut else (0, 0, 0)
+        own = survey.take(np.arange(begin, end))
+        own_begin = int(own.scan_ids[0]) if cut else 0
+        # what those before are registered against is told by the chunk that they belong to
+        damaged = expect_damaged(n_candidates, reading, own_begin)
+        counted = _CountedScans(opened.scans(survey.scan_ids[first:end], damaged), own_begin)
+        scans = log.report_progress(counted, "register_scans", total=end - first)
+        scan_results, edges = mapping.register_candidates(
+            survey, cut, scans, raw, thinned, run, settings
+        )
+        damage = opened.describe_damage()
+    return RegisteredCandidates(
+        survey=own,
+        results=scan_results,
+        edges=edges,
+        read_points=lambda rows: raw.part(rows + (begin - first)),
+        n_dropped=counted.n_dropped,
+        faults=damaged.faults,
+        damage=damage,
+    )
+
+
+class _CountedScans:
+    """Scans to iterate over once, and how many points were dropped so far from some scan on."""
+
+    def __init__(self, scans: Iterable[Scan], begin: int) -> None:
+        self._scans = scans
+        self._begin = begin
+        self.n_dropped = 0
+
+    def __iter__(self) -> Iterator[Scan]:
+        for scan in self._scans:
+            self.n_dropped += scan.n_dropped if scan.scan_id >= self._begin else 0
+            yield scan
+
+
+def _read_motion(moved: FilePath) -> trajectory.SensorMotion:
+    return trajectory.motion_from_columns(tables.read_table(moved, schemas.MOTION))
