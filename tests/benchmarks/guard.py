@@ -1,6 +1,6 @@
 """Plans of the same surveys by any commit, so that a change of the code shows what it does to them.
 
-The surveys are drives through four buildings with three seeds each, made from one recipe, and the
+The surveys are drives through five buildings with three seeds each, made from one recipe, and the
 real recordings that lie beside the project. A drive is recorded with what a VLP-16 and a localiser
 on a real rover show: the sweep of the moving sensor, constant errors of its beams, and poses that
 drift and jump.
@@ -23,6 +23,7 @@ BUILDINGS: dict[str, dict[str, Any]] = {
     "ring": {"building": "ring_office", "site": {"route": "rooms", "start_m": "random"}},
     "duplex": {"building": "duplex.ifc", "site": {"route": "rooms", "storey": "Level 1"}},
     "fzk": {"building": "AC20-FZK-Haus.ifc", "site": {"route": "rooms", "storey": "Erdgeschoss"}},
+    "pavilion": {"building": "pavilion"},
 }
 """Drive to its settings of `simulate`; a building with a suffix is a file among the recordings."""
 PLANAR: dict[str, dict[str, Any]] = {
@@ -49,7 +50,8 @@ PLANAR: dict[str, dict[str, Any]] = {
 """Kind of drive with a 2-D scanner to its settings: a scan each metre, or ten a second."""
 DRAWN = "drawn"
 """Drives of this name lead through buildings drawn at random by the seed behind it."""
-_CHAIRS = {"demo": 40, "ring": 120, "duplex": 12, "fzk": 16}  # one on each ten square metres
+# one on each ten square metres
+_CHAIRS = {"demo": 40, "ring": 120, "duplex": 12, "fzk": 16, "pavilion": 18}
 LOCALISER = {"noise_m": 0.05, "noise_deg": 1.0, "jumps_per_min": 1.0}
 SEEDS = (1, 2, 3)
 RECORDINGS = (

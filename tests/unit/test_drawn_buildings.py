@@ -48,3 +48,18 @@ def test_among_a_few_are_all_kinds_of_openings_with_and_without_panes():
     assert {o["type"] for o in openings} == {"door", "window", "passage"}
     panes = {(o["glazed"], o["sill_m"] > 0) for o in openings if o["type"] == "window"}
     assert panes == {(True, True), (True, False), (False, True)}
+
+
+def test_the_pavilion_has_what_is_easily_drawn_wrongly(project_root):
+    path = project_root / "config/buildings/pavilion.geojson"
+    floor = drawing_file.parse_drawing(path.read_bytes(), path)
+    free = shapely.union_all([wall.line_m.buffer(0.1) for wall in floor.walls])
+    columns = [part for part in shapely.get_parts(free) if part.length < 3]
+    panes = [o for o in floor.openings if o.glazed and o.lintel_m - o.sill_m > 2.5]
+    names = [str(feature["properties"].get("name")) for feature in _features(path)]
+    assert (len(columns), len(panes), len(floor.room_names)) == (2, 11, 6)
+    assert (names.count("radiator"), names.count("cupboard"), names.count("step")) == (4, 7, 8)
+
+
+def _features(path):
+    return json.loads(path.read_text())["features"]
