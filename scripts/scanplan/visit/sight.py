@@ -8,7 +8,7 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry.tolerances import FACING
 from scanplan.plan.floorplan import WAYS, FloorPlan, centrelines_m, line_shapes
-from scanplan.types import BoolArray, FloatArray
+from scanplan.types import BoolArray, FloatArray, IntArray
 from scanplan.visit.questions import Pieces
 from scanplan.visit.sensor_reach import SensorReach
 
@@ -70,21 +70,36 @@ def find_seen(views: Views, pieces: Pieces, blocked: BaseGeometry, reach: Sensor
     reach : SensorReach
     """
     shapely.prepare(blocked)
-    range_m = np.minimum(pieces.reach_m, reach.range_m)[:, None]
-    is_stood_at = np.isfinite(pieces.reach_m)[:, None]
     seen = np.zeros((len(views.place_m), len(pieces.share)), bool)
-    for view, (place_m, heading_rad) in enumerate(
-        zip(views.place_m, views.heading_rad, strict=True)
-    ):
-        way_m = pieces.place_m - place_m
-        apart_m = np.hypot(way_m[..., 0], way_m[..., 1])
-        toward_m = -(way_m * pieces.normal).sum(axis=-1)
-        may = (is_stood_at | (toward_m >= FACING * apart_m)) & (apart_m <= range_m)
-        if reach.field_rad < 2 * np.pi:
-            off_rad = np.arctan2(way_m[..., 1], way_m[..., 0]) - heading_rad
-            may &= np.abs((off_rad + np.pi) % (2 * np.pi) - np.pi) <= reach.field_rad / 2
-        piece, side = np.nonzero(may)
-        ends_m = pieces.place_m[piece, side]
-        sights = shapely.linestrings(np.stack([np.broadcast_to(place_m, ends_m.shape), ends_m], 1))
-        seen[view, piece[~shapely.intersects(blocked, sights)]] = True
+    places_m, place = np.unique(views.place_m, axis=0, return_inverse=True)
+    place = place.reshape(-1)
+    for number, place_m in enumerate(places_m):
+        piece, way_m = _find_clear(place_m, pieces, blocked, reach.range_m)
+        bearing_rad = np.arctan2(way_m[:, 1], way_m[:, 0])
+        for view in np.flatnonzero(place == number):
+            shown = piece
+            if reach.field_rad < 2 * np.pi:
+                off_rad = bearing_rad - views.heading_rad[view]
+                off_rad = np.abs((off_rad + np.pi) % (2 * np.pi) - np.pi)
+                shown = piece[off_rad <= reach.field_rad / 2]
+            seen[view, shown] = True
     return seen
+
+
+def _find_clear(
+    place_m: FloatArray, pieces: Pieces, blocked: BaseGeometry, range_m: float
+) -> tuple[IntArray, FloatArray]:
+    """Return the pieces (c,) that one looks at freely from a place, and the ways (c, 2) to them.
+
+    One that is seen from either side stands twice.
+    """
+    way_m = pieces.place_m - place_m
+    is_stood_at = np.isfinite(pieces.reach_m)[:, None]
+    apart_m = np.hypot(way_m[..., 0], way_m[..., 1])
+    toward_m = -(way_m * pieces.normal).sum(axis=-1)
+    is_near = apart_m <= np.minimum(pieces.reach_m, range_m)[:, None]
+    piece, side = np.nonzero((is_stood_at | (toward_m >= FACING * apart_m)) & is_near)
+    ends_m = pieces.place_m[piece, side]
+    sights = shapely.linestrings(np.stack([np.broadcast_to(place_m, ends_m.shape), ends_m], 1))
+    clear = np.flatnonzero(~shapely.intersects(blocked, sights))
+    return piece[clear], way_m[piece[clear], side[clear]]
