@@ -248,11 +248,11 @@ def test_a_column_that_is_sought_at_another_place_is_noticed(scans):
     for bit in range(8 * footer, 8 * (len(content) - 8)):
         spoilt = bytearray(content)
         spoilt[bit // 8] ^= 1 << bit % 8
-        scans.write_bytes(bytes(spoilt))
         with contextlib.suppress(OSError, ValueError, pa.ArrowException):
-            after = places_of_columns(scans)
+            after = places_of_columns(pa.BufferReader(bytes(spoilt)))
             if len(after) == len(before) and sum(map(operator.ne, after, before)) == 1:
                 n_moved += 1
+                scans.write_bytes(bytes(spoilt))
                 with pytest.raises(StageError, match=r"scans.parquet: damaged"):
                     tables.ScanStore(scans)
     assert n_moved > len(before)

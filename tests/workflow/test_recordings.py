@@ -14,10 +14,10 @@ pytestmark = [pytest.mark.workflow, pytest.mark.recordings]
 
 @pytest.fixture(scope="module")
 def project(project_root, recordings_dir, tmp_path_factory):
-    """Make everything of a recording, and what tells the same one in ROS 2 from it."""
+    """Make the plan of a recording, and what tells the same one in ROS 2 from it."""
     project = Project(project_root, tmp_path_factory.mktemp("recordings"))
     both = [str(recordings_dir / name) for name in ("jackal_ros1", "jackal_ros2")]
-    made = project.run("comparison", "--config", f"dataset={json.dumps(both[:1])}")
+    made = project.run("--config", f"dataset={json.dumps(both[:1])}")
     assert made.returncode == 0, made.stdout + made.stderr
     # all later stages read nothing but what these tables hold
     wanted = [f"results/jackal_ros2/{file}" for file in ("scans.parquet", "plan/plan.geojson")]
