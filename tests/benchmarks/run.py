@@ -20,7 +20,7 @@ as many bags as are said, as big=3), with the code of the last commit, after tha
 where some are named: time, memory and bytes of every stage, beside a raw read. The drives, 6 and
 5 GB, are simulated once and kept in FOLDER.
 
-`guard` makes the plans of 36 simulated drives and six real recordings with the code of a
+`guard` makes the plans of 45 simulated drives and six real recordings with the code of a
 commit, in a folder of its own; `compare` prints what changed between two such folders, and fails
 where a measure fell.
 

@@ -16,7 +16,7 @@ from scanplan.lab.beyond import (
     room_counts,
 )
 from scanplan.lab.beyond.measurements import Measurement, mean_by_level
-from scanplan.lab.beyond.shown import case_lines, equal_points, good_plans
+from scanplan.lab.beyond.shown import case_lines, connected_scans, equal_points, good_plans
 from scanplan.lab.beyond.shown.experiments import EXPERIMENTS
 from scanplan.lab.buildings import drawing_file, drawn_floor
 from scanplan.stage import run_times
@@ -142,6 +142,15 @@ def test_without_outliers_nothing_changes():
 def test_the_largest_part_is_that_which_most_pairs_connect():
     assert registrability.largest_part(5, [(0, 1), (1, 2), (3, 4)]) == 3 / 5
     assert registrability.largest_part(4, []) == 1 / 4
+
+
+def test_a_survey_of_next_to_no_scans_is_said_to_show_nothing():
+    """Of one that has fewer scans than the fewest to choose, only all scans are measured."""
+    rows = [
+        {"survey": 0, "level": 4.0, "case": "every_nth", "quantity": quantity, "value": 1.0}
+        for quantity in (registrability.ALIGNED, registrability.PAIRS_ALIGNED)
+    ]
+    assert "enough" in connected_scans.conclude_registrability(pd.DataFrame(rows))
 
 
 def test_pairs_are_judged_among_the_chosen_alone():

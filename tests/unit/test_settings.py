@@ -274,6 +274,15 @@ def test_a_file_for_the_command_line_is_checked_first(tmp_path, content, said):
     end_on_faulty_files(["snakemake", "--configfile", str(path), "--config", "dataset=d"])
 
 
+@pytest.mark.parametrize("option", ["--config", "-C"])
+def test_a_key_of_more_words_is_refused_with_what_to_write(option):
+    with pytest.raises(SystemExit) as end:
+        end_on_faulty_files(["snakemake", option, "dataset=d", "plan.rooms.min_area_m2=2", "-n"])
+    assert "plan.rooms.min_area_m2 is no name of a section" in str(end.value)
+    assert "--config 'plan={rooms: {min_area_m2: 2}}'" in str(end.value)
+    end_on_faulty_files(["snakemake", option, "dataset=d", "plan={rooms: {}}", "-n", "a.b"])
+
+
 def test_a_bomb_of_merge_keys_is_refused_at_once(tmp_path):
     levels = ["k0: &k0 {a: 1}"]
     copies = (", ".join([f"*k{i}"] * 9) for i in range(30))

@@ -175,6 +175,8 @@ def locate_fault(fault: str, layers: Sequence[Layer]) -> str:
 def end_on_faulty_files(arguments: Sequence[str]) -> None:
     """End the process in one line if a file for --configfile cannot be settings of a run.
 
+    Nor can a key of more words for --config, which Snakemake meets with a traceback.
+
     Parameters
     ----------
     arguments : list of str
@@ -186,23 +188,40 @@ def end_on_faulty_files(arguments: Sequence[str]) -> None:
     """
     schema = read_schema(_ROOT / "workflow/schemas/config.schema.yaml")
     try:
-        for path in _list_setting_files(arguments):
+        for path in _list_words(arguments, "--configf"):
             _check_file(path, schema)
+        for word in _list_words(arguments, "--config", "-C"):
+            _check_key(word)
     except StageError as error:
         raise SystemExit(f"scanplan: {error}") from None
 
 
-def _list_setting_files(arguments: Sequence[str]) -> list[str]:
-    """Return the files after --configfile, --configfiles or a shorter form of them."""
-    paths = []
-    is_of_files = False
+def _list_words(arguments: Sequence[str], *options: str) -> list[str]:
+    """Return the words after an option: of --configf, those of --configfile and --configfiles."""
+    words = []
+    is_of_option = False
     for word in arguments:
         if word.startswith("-"):
-            is_of_files = word.startswith("--configf")
-            word = word.partition("=")[2]
-        if is_of_files and word:
-            paths.append(word)
-    return paths
+            option, _, word = word.partition("=")
+            is_of_option = any(
+                option == known or (known == "--configf" and option.startswith(known))
+                for known in options
+            )
+        if is_of_option and word:
+            words.append(word)
+    return words
+
+
+def _check_key(word: str) -> None:
+    key, _, value = word.partition("=")
+    if key.isidentifier():
+        return
+    section, *keys = key.split(".")
+    within = "".join(f"{{{name}: " for name in keys) + (value or "VALUE") + "}" * len(keys)
+    raise StageError(
+        f"--config {word}: {key} is no name of a section; give a section with its keys, as"
+        f" --config '{section}={within}', or a file: --configfile FILE"
+    )
 
 
 def _check_file(path: str, schema: Schema) -> None:

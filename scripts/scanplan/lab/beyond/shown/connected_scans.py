@@ -36,6 +36,8 @@ def conclude_registrability(measured: pd.DataFrame) -> str:
     whole = parts.groupby("survey").tail(1)
     chosen = parts.index.difference(whole.index)
     sizes = chosen.get_level_values("level").unique()
+    if len(sizes) == 0:
+        return "No survey has scans enough to choose some of them."
     told = []
     for size in dict.fromkeys((sizes[len(sizes) // 2], sizes[-1])):
         own = parts.loc[size]
