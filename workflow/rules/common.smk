@@ -15,6 +15,10 @@ if not IS_MODULE:
     gc.set_threshold(100_000)
 # of a plan of two threads an eighth of the memory: each would keep for itself what it has freed
 os.environ.setdefault("MALLOC_ARENA_MAX", "1")
+# a scan's arrays take up to some megabytes: what they leave is for those of the next scan, and not
+# given back to the system, which would clear and map every page of it anew
+os.environ.setdefault("MALLOC_MMAP_THRESHOLD_", str(8 * 2**20))
+os.environ.setdefault("MALLOC_TRIM_THRESHOLD_", str(32 * 2**20))
 
 sys.path.insert(0, f"{PROJECT}/scripts")
 from scanplan.errors import StageError

@@ -74,13 +74,15 @@ def estimate_up_direction(normal: FloatArray, weight: FloatArray) -> FloatArray:
     """
     z = np.array([0.0, 0.0, 1.0])
     levels = np.flatnonzero(np.abs(normal[:, 2]) > DIAGONAL)
-    if len(levels) == 0:
+    upright = _is_square_or_along(np.abs(normal[:, 2]))
+    agreeing = _SURER * weight[upright].sum()
+    # nothing can be clearly better than what most agree with
+    if len(levels) == 0 or not weight.sum() > agreeing:
         return z
     chosen = levels[:: max(1, len(levels) // _CANDIDATES)]
     candidates = normal[chosen] * np.sign(normal[chosen, 2:])
     support = _is_square_or_along(np.abs(candidates @ normal.T)) @ weight
-    upright = _is_square_or_along(np.abs(normal[:, 2]))
-    if not support.max() > _SURER * weight[upright].sum():
+    if not support.max() > agreeing:
         return z
     best = candidates[np.argmax(support)]
     level = np.abs(normal @ best) > np.cos(_NEAR_RAD)

@@ -62,7 +62,7 @@ def draw_point_image(scans: Iterable[tuple[int, Array]], plan: FloorPlan) -> Poi
         column, row = np.floor((_between_levels(xyz_m, plan) - low_m) / pixel_m).astype(int).T
         inside = (column >= 0) & (column < width) & (row >= 0) & (row < height)
         pixels = row[inside] * width + column[inside]
-        counts += np.bincount(pixels, minlength=len(counts))
+        np.add.at(counts, pixels, 1)
     # the first row of an image is its uppermost
     shades = _shade(counts).reshape(height, width)[::-1]
     size_m = np.array([width, height]) * pixel_m

@@ -48,6 +48,8 @@ def log_to_file(path: FilePath) -> Iterator[None]:
         faulthandler.enable()
         # what is imported stays: the collector is not to look through it over and over
         gc.freeze()
+        # nor is it to look for garbage among all that is new after every 700 objects
+        gc.set_threshold(10_000)
         orphans.end_with_supervisor()
         outcome = "failed"
         handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}

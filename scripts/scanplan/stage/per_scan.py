@@ -13,6 +13,8 @@ from scanplan.types import FilePath, IntArray
 Result = TypeVar("Result")
 Keywords = Mapping[str, Any]
 
+_stores: dict[str, tables.ScanStore] = {}
+
 
 def map_scans(
     function: Callable[..., Result],
@@ -58,7 +60,7 @@ def map_scans(
         for part in parts
         if len(part)
     ]
-    with workers.open_pool(min(threads, len(jobs))) as run:
+    with workers.open_pool(min(threads, len(jobs)), _open_store, str(scans_path)) as run:
         results = (result for part in run(_map_part, jobs) for result in part)
         return list(log.report_progress(results, label, total=len(scan_ids)))
 
@@ -96,6 +98,11 @@ def _keywords_of(scan_ids: IntArray, keywords: Mapping[int, Keywords]) -> dict[i
     return {scan_id: keywords.get(scan_id, {}) for scan_id in scan_ids.tolist()}
 
 
+def _open_store(scans_path: str) -> None:
+    """Open a table of scans once in a process: its footer, which is checked, lists all scans."""
+    _stores[scans_path] = tables.ScanStore(scans_path)
+
+
 def _map_part(
     function: Callable[..., Result],
     scans_path: str,
@@ -103,8 +110,7 @@ def _map_part(
     per_scan: Mapping[int, Keywords],
     settings: Keywords,
 ) -> list[Result]:
-    store = tables.ScanStore(scans_path)
     return [
         function(scan_id, xyz_m, **per_scan[scan_id], **settings)
-        for scan_id, xyz_m in store.scans(scan_ids)
+        for scan_id, xyz_m in _stores[scans_path].scans(scan_ids)
     ]

@@ -122,8 +122,17 @@ def read_notes(file: pq.ParquetFile, path: FilePath) -> dict[str, str]:
 
 
 @contextmanager
-def open_file(path: FilePath, schema: Schema) -> Iterator[pq.ParquetFile]:
+def open_file(
+    path: FilePath, schema: Schema, footer: pq.FileMetaData | None = None
+) -> Iterator[pq.ParquetFile]:
     """Open a file of a schema to read it.
+
+    Parameters
+    ----------
+    path : path-like
+    schema : Schema
+    footer : pyarrow.parquet.FileMetaData, optional
+        The file's own, as it was checked when the file was opened before; it is not read again.
 
     Raises
     ------
@@ -131,9 +140,10 @@ def open_file(path: FilePath, schema: Schema) -> Iterator[pq.ParquetFile]:
         If it is missing, damaged or of another schema or version, or memory is not enough for it.
     """
     try:
-        with pq.ParquetFile(path, page_checksum_verification=True) as file:
-            with explain_damage(path):
-                _check_schema(file, schema, path)
+        with pq.ParquetFile(path, metadata=footer, page_checksum_verification=True) as file:
+            if footer is None:
+                with explain_damage(path):
+                    _check_schema(file, schema, path)
             yield file
     except FileNotFoundError:
         raise StageError(f"{path}: does not exist; run the stage that makes it") from None

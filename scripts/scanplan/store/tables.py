@@ -191,7 +191,7 @@ class ScanStore:
         self.path = path
         self._schema = schema
         with parquet.open_file(path, schema) as file, parquet.explain_damage(path):
-            metadata = file.metadata
+            metadata = self._footer = file.metadata
             groups = [metadata.row_group(i) for i in range(metadata.num_row_groups)]
             ids = [group.column(0).statistics for group in groups]
             self.planar = bool(json.loads(parquet.read_notes(file, path)["planar"]))
@@ -224,7 +224,7 @@ class ScanStore:
         """
         group = {int(s): i for i, s in enumerate(self.scan_ids)}
         wanted = self.scan_ids.tolist() if scan_ids is None else map(int, scan_ids)
-        with parquet.open_file(self.path, self._schema) as file:
+        with parquet.open_file(self.path, self._schema, self._footer) as file:
             for scan_id in wanted:
                 if scan_id not in group:
                     raise StageError(
