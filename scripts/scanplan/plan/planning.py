@@ -22,6 +22,7 @@ from scanplan.plan import (
 from scanplan.plan.faces.merging import MergeSettings, merge_segments
 from scanplan.plan.faces.tracing import trace_faces
 from scanplan.plan.furniture import fronts
+from scanplan.plan.furniture.columns import tell_columns
 from scanplan.plan.furniture.leaves import Leaf
 from scanplan.plan.furniture.pieces import Piece, find_pieces, pieces_in_rooms
 from scanplan.plan.openings import OpeningSettings
@@ -333,8 +334,9 @@ class _Survey:
             floor=free_space.union_on_grid([self.floor, *surfaces.furnished]),
             planar=self.rays.planar,
         )
+        strips = wall_ground.wall_strips(surfaces.bounds, surfaces.unpaired_m)
         pieces = find_pieces(
-            *(self.rays, wall_ground.wall_strips(surfaces.bounds, surfaces.unpaired_m)),
+            *(self.rays, strips),
             *([room.polygon for room in rooms], self.views),
             max_height_m=self.settings.furniture.furniture_height_m,
             hidden=surfaces.furnished,
@@ -347,6 +349,11 @@ class _Survey:
                 unpaired_m=surfaces.unpaired_m,
             )
         pieces = pieces_in_rooms(pieces, [room.polygon for room in rooms])
+        pieces = tell_columns(
+            *(pieces, self.rays, strips),
+            furniture_height_m=self.settings.furniture.furniture_height_m,
+            max_width_m=self.settings.pairs.max_thickness_m,
+        )
         return _Spaces(rooms=rooms, partings=partings, pieces=pieces)
 
     def decide_kinds(self, surfaces: _Surfaces, rooms: list[Room]) -> list[PlanWall]:
