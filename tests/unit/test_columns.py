@@ -6,8 +6,10 @@ import shapely
 from shapely import affinity, box
 
 from helpers.ray_making import rays
-from scanplan.plan.furniture.columns import tell_columns
+from scanplan.geometry.lines import Line
+from scanplan.plan.furniture.columns import find_column_faces, tell_columns
 from scanplan.plan.furniture.pieces import Piece
+from scanplan.plan.plan_wall import PlanWall
 from scanplan.store.schemas import COLUMN, PIECE
 
 WALLS = [box(0, 4, 6, 4.1)]
@@ -80,3 +82,41 @@ def test_other_pieces_stay_as_they_are():
     seen = rays((SENSORS[0], [(1.5, 1.5, 0.7)]))
     (told,) = tell_columns([table], seen, WALLS, furniture_height_m=2.1, max_width_m=0.6)
     assert told is table
+
+
+def wall(start, normal, length_m):
+    """A wall of one side that goes on from a place."""
+    return PlanWall(
+        Line(np.array(start, float), np.array(normal, float)), 0.0, length_m, np.nan, [], []
+    )
+
+
+LONG = wall((6, 4), (0, -1), 6.0)
+
+
+def are_faces(short, heights_m=HEIGHTS_M, panes=()):
+    """Whether a short wall is one side of what stands at x from 2.8 to 3.2, y from 1.8 to 2.2."""
+    points = returns(box(2.8, 1.8, 3.2, 2.2), heights_m)
+    seen = rays(*[(sensor, points) for sensor in SENSORS])
+    sizes = {"furniture_height_m": 2.1, "max_width_m": 0.6, "unpaired_m": 0.1}
+    return find_column_faces([LONG, short], panes, seen, **sizes)
+
+
+# a line goes with its normal on the left: this one towards x = 2.8
+FRONT = wall((3.2, 1.8), (0, -1), 0.4)
+
+
+def test_one_side_of_a_column_is_no_wall():
+    assert are_faces(FRONT) == [False, True]
+
+
+def test_a_short_wall_without_a_column_stays():
+    assert are_faces(FRONT, np.arange(0.1, 2.0, 0.1)) == [False, False]
+
+
+def test_a_mullion_beside_a_pane_stays():
+    assert are_faces(FRONT, panes=[wall((2.8, 1.8), (0, -1), 1.0)]) == [False, False]
+
+
+def test_a_longer_wall_stays():
+    assert are_faces(wall((3.2, 1.8), (0, -1), 0.9)) == [False, False]

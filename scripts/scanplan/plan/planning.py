@@ -22,7 +22,7 @@ from scanplan.plan import (
 from scanplan.plan.faces.merging import MergeSettings, merge_segments
 from scanplan.plan.faces.tracing import trace_faces
 from scanplan.plan.furniture import fronts
-from scanplan.plan.furniture.columns import tell_columns
+from scanplan.plan.furniture.columns import find_column_faces, tell_columns
 from scanplan.plan.furniture.leaves import Leaf
 from scanplan.plan.furniture.pieces import Piece, find_pieces, pieces_in_rooms
 from scanplan.plan.openings import OpeningSettings
@@ -299,11 +299,20 @@ class _Survey:
             walls, self.rays, min_width_m=min_width_m, band_m=reading.band_m
         )
         walls, tops_m = half_height.drop_low_surfaces(walls, self.settings.furniture.wall_height_m)
+        glass_walls = room_bounds.find_glass_walls(
+            walls, traced.panes, min_length_m=min_width_m, unpaired_m=unpaired_m
+        )
+        are_columns = find_column_faces(
+            *(walls, glass_walls, self.rays),
+            furniture_height_m=self.settings.furniture.furniture_height_m,
+            max_width_m=self.settings.pairs.max_thickness_m,
+            unpaired_m=unpaired_m,
+        )
+        tops_m = [top_m for top_m, is_one in zip(tops_m, are_columns, strict=True) if not is_one]
+        walls = [wall for wall, is_one in zip(walls, are_columns, strict=True) if not is_one]
         return _Surfaces(
             walls=walls,
-            glass_walls=room_bounds.find_glass_walls(
-                walls, traced.panes, min_length_m=min_width_m, unpaired_m=unpaired_m
-            ),
+            glass_walls=glass_walls,
             tops_m=tops_m,
             unpaired_m=unpaired_m,
             furnished=furnished,

@@ -9,7 +9,9 @@ from shapely import affinity
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.plan import wall_ground
 from scanplan.plan.furniture.pieces import Piece
+from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.tolerances import END_M, ENOUGH_RAYS, FACE_M, LOW_PERCENT, NOISE_M
 from scanplan.rays.face_raster import CELL_M
 from scanplan.rays.ray_set import RaySet
@@ -53,6 +55,55 @@ def tell_columns(
         return list(pieces)
     solid = shapely.union_all(list(walls))
     return [_tell(piece, rays, solid, furniture_height_m, max_width_m) for piece in pieces]
+
+
+def find_column_faces(
+    walls: Sequence[PlanWall],
+    panes: Sequence[PlanWall],
+    rays: RaySet,
+    *,
+    furniture_height_m: float,
+    max_width_m: float,
+    unpaired_m: float,
+) -> list[bool]:
+    """Return which walls are but one side of a column, of which the others were seen less.
+
+    Such is a single face as short as a column is wide, with an end at no other wall or pane, where
+    what stands around it is told to be a column.
+
+    Parameters
+    ----------
+    walls, panes : sequence of plan_wall.PlanWall
+    rays, furniture_height_m, max_width_m
+        As in `tell_columns`.
+    unpaired_m : float
+        How thick a wall is taken for of which one side is known.
+    """
+    if rays.planar:
+        return [False] * len(walls)
+    strips = wall_ground.wall_strips([*walls, *panes], unpaired_m)
+    are_faces: list[bool] = []
+    for number, wall in enumerate(walls):
+        is_short = not wall.right and not wall.openings and wall.length_m <= max_width_m
+        others = shapely.union_all([*strips[:number], *strips[number + 1 :]])
+        ends = shapely.points(wall.ends)
+        is_lone = is_short and bool((shapely.distance(ends, others) > END_M).all())
+        around = _ground_around(wall, max_width_m).difference(others.buffer(FACE_M))
+        if is_lone and not around.is_empty:
+            outline = max(shapely.get_parts(around), key=lambda part: part.area)
+            piece = Piece(outline, np.nan, np.nan, 0, 0)
+            told = _tell(piece, rays, others, furniture_height_m, max_width_m)
+            are_faces.append(told.kind == COLUMN)
+        else:
+            are_faces.append(False)
+    return are_faces
+
+
+def _ground_around(wall: PlanWall, depth_m: float) -> Polygon:
+    """Return the ground that a column stands on of which a wall is one side."""
+    ends_m = wall.line.at(np.array([wall.low_m - END_M, wall.high_m + END_M]))
+    before_m, behind_m = (off_m * wall.line.normal for off_m in (END_M, -depth_m))
+    return Polygon([*(ends_m + before_m), *(ends_m[::-1] + behind_m)])
 
 
 def _tell(
