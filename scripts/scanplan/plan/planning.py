@@ -298,7 +298,12 @@ class _Survey:
         walls = opening_kinds.add_windows(
             walls, self.rays, min_width_m=min_width_m, band_m=reading.band_m
         )
-        walls, tops_m = half_height.drop_low_surfaces(walls, self.settings.furniture.wall_height_m)
+        walls, tops_m = half_height.drop_low_surfaces(
+            walls,
+            wall_height_m=self.settings.furniture.wall_height_m,
+            furniture_height_m=self.settings.furniture.furniture_height_m,
+            furniture_side_m=self.settings.furniture.furniture_depth_m,
+        )
         glass_walls = room_bounds.find_glass_walls(
             walls, traced.panes, min_length_m=min_width_m, unpaired_m=unpaired_m
         )
