@@ -183,7 +183,11 @@ def make_plan(
     surfaces = replace(surfaces, walls=walls)
     bare = survey.find_bare_spans(surfaces, spaces)
     floor_z_m = 0.0 if math.isnan(rays.floor_z_m) else rays.floor_z_m
-    cut_walls = wall_faces.cut_wall_faces(walls, max_beyond_m=settings.openings.max_closed_m)
+    cut_walls = wall_faces.cut_wall_faces(
+        walls,
+        max_beyond_m=settings.openings.max_closed_m,
+        door_height_m=settings.reading.door_height_m,
+    )
     face_columns, main_rows = plan_tables.face_columns(cut_walls, floor_z_m)
     evidence = uncertainty.estimate_evidence(
         walls, surfaces.tops_m, registration_sigma_m=settings.merge.registration_sigma_m
