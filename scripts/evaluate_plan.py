@@ -32,7 +32,8 @@ def evaluate_plan(
     Parameters
     ----------
     plan : dict of str to path-like
-        plan/<name>.parquet by the names `faces`, `walls`, `openings`, `rooms` and `evidence`.
+        plan/<name>.parquet by the names `faces`, `walls`, `openings`, `rooms`, `furniture` and
+        `evidence`.
     registration, truth, true_poses, output : path-like
         registration.parquet, truth.geojson and truth_poses.tum; evaluation/plan.parquet, to write.
     max_range_m, bitmap_cell_m : float
@@ -69,7 +70,7 @@ def evaluate_plan(
 
 if __name__ == "__main__":
     with log.log_to_file(snakemake.log[0]):
-        names = ("faces", "walls", "openings", "rooms", "evidence")
+        names = ("faces", "walls", "openings", "rooms", "furniture", "evidence")
         evaluate_plan(
             {name: snakemake.input[name] for name in names},
             snakemake.input.registration,

@@ -36,7 +36,8 @@ def export_files(
     Parameters
     ----------
     plan : dict of str to path-like
-        `faces`, `walls`, `openings`, `rooms` and `free` of plan/; `registration` and `poses`.
+        `faces`, `walls`, `openings`, `rooms`, `free` and `furniture` of plan/; `registration` and
+        `poses`.
     outputs : dict of str to path-like
         `ids` and `known`, to write: the GlobalIds of the plan's elements, and all elements that
         plans of the dataset ever had. The latter is read, too, where there is one of the same

@@ -217,7 +217,7 @@ def _measure_plan(
 ) -> dict[str, float]:
     drawn = {
         table: {name: np.asarray(values) for name, values in getattr(made.plan, table).items()}
-        for table in ("faces", "walls", "openings", "rooms")
+        for table in ("faces", "walls", "openings", "rooms", "furniture")
     }
     lines_m = plan_metrics.moved_faces_m(drawn, np.eye(4))
     return _measure_lines(lines_m, floor) | plan_metrics.measure_plan(drawn, np.eye(4), true, floor)

@@ -138,10 +138,11 @@ def free(polygons=FREE):
     }
 
 
-def furniture(polygons=PIECES):
+def furniture(polygons=PIECES, kind="furniture"):
     n = len(polygons)
     return {
         "furniture": np.arange(n, dtype=np.int32),
+        "kind": np.full(n, kind, object),
         "area_m2": shapely.area(np.array(polygons, object)) if n else np.zeros(0),
         "z_min_m": np.full(n, 0.3),
         "z_max_m": np.full(n, 0.9),

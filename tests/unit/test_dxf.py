@@ -184,6 +184,12 @@ def test_furniture_has_a_layer_of_its_own():
     assert len(piece) == 4 and piece.closed
 
 
+def test_columns_have_a_layer_of_their_own():
+    document = reopened(plan(furniture=floorplan_making.furniture(kind="column")))
+    (column,) = document.modelspace().query('LWPOLYLINE[layer=="A-COLS"]')
+    assert len(column) == 4 and column.closed
+
+
 def test_doubt_has_layers_of_its_own():
     openings = floorplan_making.openings() | {
         "verify": np.array([True, False, True]),

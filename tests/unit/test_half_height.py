@@ -15,6 +15,7 @@ from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.plan_wall import PlanWall
 
 LINE = Line(np.zeros(2), np.array([0.0, 1.0]))
+LIMITS = {"wall_height_m": 1.0, "furniture_height_m": 2.1, "furniture_side_m": 1.0}
 RNG = np.random.default_rng(3)
 
 
@@ -105,12 +106,26 @@ def test_single_surfaces_that_end_lower_than_a_wall_are_left_out():
     partition = wall(rows(2000, 0.1, 1.6), rows(100, 1.62, 1.9))
     counter = wall(rows(2000, 0.1, 0.9), rows(100, 0.92, 1.2))
     counter = replace(counter, right=counter.left)
-    walls, tops_m = half_height.drop_low_surfaces([desk, partition, counter], 1.0)
+    walls, tops_m = half_height.drop_low_surfaces([desk, partition, counter], **LIMITS)
     assert walls == [partition, counter]
     assert tops_m == pytest.approx([1.61, 0.91], abs=0.02)
 
 
+def test_the_side_of_a_cupboard_is_no_half_height_wall():
+    hits, over = rows(2000, 0.1, 1.8, to_m=0.8), rows(100, 1.82, 2.0, to_m=0.8)
+    long = wall(hits, over)
+    sign = LINE.direction[0]
+    low_m, high_m = sorted((0.0, 0.8 * sign))
+    side = replace(long, low_m=low_m, high_m=high_m)
+    assert half_height.estimate_wall_top_m(side) == pytest.approx(1.81, abs=0.02)
+    both = replace(side, right=side.left)
+    tall = wall(rows(2000, 0.1, 2.3, to_m=0.8), rows(100, 2.32, 2.4, to_m=0.8))
+    tall = replace(tall, low_m=low_m, high_m=high_m)
+    walls, _ = half_height.drop_low_surfaces([side, both, tall], **LIMITS)
+    assert walls == [both, tall]
+
+
 def test_a_plane_shows_no_height():
     desk = wall(rows(2000, 0.1, 0.74), rows(100, 0.76, 1.04), planar=True)
-    walls, tops_m = half_height.drop_low_surfaces([desk], 1.0)
+    walls, tops_m = half_height.drop_low_surfaces([desk], **LIMITS)
     assert walls == [desk] and np.isnan(tops_m).all()

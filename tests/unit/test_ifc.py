@@ -443,3 +443,15 @@ def test_names_stay_words(name):
     assert model.by_type("IfcProject")[0].Name == name
     assert model.by_type("IfcSpace")[0].LongName == name
     assert len(model.by_type("IfcWall")) == 6 and faults(model) == []
+
+
+def test_a_column_is_as_high_as_the_storey_and_furniture_is_left_out():
+    columns = floorplan_making.furniture(kind="column")
+    model = opened(plan(furniture=columns, **SEEN))
+    (column,) = model.by_type("IfcColumn")
+    stated = psets(column)
+    assert column.Name == "Column 0" and not faults(model)
+    assert stated["Qto_ColumnBaseQuantities"]["GrossVolume"] == pytest.approx(0.5 * 2.5)
+    assert volume_m3(column) == pytest.approx(0.5 * 2.5)
+    assert stated["Scanplan_Evidence"]["Scans"] == 2
+    assert not opened(plan(furniture=floorplan_making.furniture())).by_type("IfcColumn")

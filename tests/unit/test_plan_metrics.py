@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import shapely
 
+from helpers import floorplan_making
 from scanplan.errors import StageError
 from scanplan.geometry.lines import line_lengths_m
 from scanplan.lab.evaluation import face_cells, plan_metrics, true_plan
@@ -47,6 +48,26 @@ class TestFaces:
     def test_inferred_faces_count_apart(self):
         row = self.measure(SQUARE, observed=[True, False, False, False])
         assert row["observed_visible_completeness_010m"] == pytest.approx(0.25, abs=0.03)
+
+
+class TestColumns:
+    def test_sides_of_columns_follow_the_faces_but_for_those_at_a_wall(self):
+        pieces = [shapely.box(1, 0, 1.4, 0.3), shapely.box(2, 2, 2.4, 2.4), shapely.box(3, 3, 4, 4)]
+        columns = floorplan_making.furniture(pieces, kind="column")
+        columns["kind"][2] = "furniture"
+        faces = {
+            f"{axis}{end}_m": np.array([at])
+            for axis, end, at in (("x", 0, 0.0), ("y", 0, 0.0), ("x", 1, 4.0), ("y", 1, 0.0))
+        }
+        lines_m = plan_metrics.moved_faces_m({"faces": faces, "furniture": columns}, np.eye(4))
+        np.testing.assert_allclose(lines_m[0], SQUARE[0])
+        assert len(lines_m) == 1 + 3 + 4
+        assert line_lengths_m(lines_m[1:]).sum() == pytest.approx(0.3 + 0.4 + 0.3 + 4 * 0.4)
+
+    def test_a_plan_without_columns_has_its_faces(self):
+        faces = {name: np.array([1.0]) for name in ("x0_m", "y0_m", "x1_m", "y1_m")}
+        drawn = {"faces": faces, "furniture": floorplan_making.furniture()}
+        assert len(plan_metrics.moved_faces_m(drawn, np.eye(4))) == 1
 
 
 class TestWalls:

@@ -355,7 +355,9 @@ class TestFaces:
     def test_a_face_is_cut_where_a_wall_butts_against_it(self):
         long = _shown(wall(0, 0, 8, 0, np.nan, closed=[(6, 7)]), (0, 6), (7, 8))
         cut = wall_faces.cut_wall_faces(
-            [long, wall(4, 3, 4, 0, 0.2), wall(6.5, 3, 6.5, 0, 0.2)], max_beyond_m=1
+            [long, wall(4, 3, 4, 0, 0.2), wall(6.5, 3, 6.5, 0, 0.2)],
+            max_beyond_m=1,
+            door_height_m=1.9,
         )
         observed = sorted(face.ends[:, 0].tolist() for one in cut for face in one.members)
         inferred = sorted(face.ends[:, 0].tolist() for one in cut for face in one.inferred)
@@ -368,13 +370,36 @@ class TestFaces:
             _shown(one, (0, 3), (4, 8)),
             right=[_stretch(one, -0.1, (0, 1)), _stretch(one, -0.1, (6, 6.5))],
         )
-        (cut,) = wall_faces.cut_wall_faces([one], max_beyond_m=2)
+        (cut,) = wall_faces.cut_wall_faces([one], max_beyond_m=2, door_height_m=1.9)
         spans = sorted(np.sort(face.ends[:, 0]).tolist() for face in cut.inferred)
         np.testing.assert_allclose(spans, [(1, 3), (4, 6), (6.5, 8)], atol=0.001)
         np.testing.assert_allclose([face.ends[:, 1] for face in cut.inferred], -0.1)
         assert not any(face.is_left for face in cut.inferred)
-        (cut,) = wall_faces.cut_wall_faces([one], max_beyond_m=1)
+        (cut,) = wall_faces.cut_wall_faces([one], max_beyond_m=1, door_height_m=1.9)
         assert max(face.ends[:, 0].max() for face in cut.inferred) == pytest.approx(6)
+
+    @pytest.mark.parametrize(
+        ("free_m", "openings", "expected"),
+        [
+            ((4, 5), (), [(3, 4), (5, 6)]),
+            ((4, 4.2), (), [(3, 6)]),
+            ((3.2, 5.8), [(3, 6)], []),
+        ],
+        ids=["a niche", "a stray trace", "an opening is one already"],
+    )
+    def test_no_face_is_inferred_where_rays_go_in(self, free_m, openings, expected):
+        one = _shown(wall(0, 0, 8, 0, 0.2, openings=openings), (0, 3), (6, 8))
+        one = replace(one, right=[_stretch(one, -0.1, (0, 8))])
+        line, places_m = one.left[0].line, np.arange(0.01, 8, 0.01)
+        shown = [(along_m, 0.5) for along_m in places_m if not 3 < along_m < 6]
+        through = [(a, 0.5) for a in places_m if free_m[0] < a < free_m[1]]
+        seen = observation(line, shown, through)
+        one = replace(one, left=[FaceInterval(seen, 0.0, 3.0), FaceInterval(seen, 6.0, 8.0)])
+        (cut,) = wall_faces.cut_wall_faces([one], max_beyond_m=1, door_height_m=1.9)
+        spans = sorted(np.sort(face.ends[:, 0]).tolist() for face in cut.inferred)
+        np.testing.assert_allclose(
+            np.reshape(spans, (-1, 2)), np.reshape(expected, (-1, 2)), atol=0.06
+        )
 
 
 def _shown(of, *spans):

@@ -303,6 +303,15 @@ def test_furniture_is_a_thin_outline_on_a_layer_of_its_own_with_its_evidence():
     assert any("furniture" in word.text for word in sheet.paper_words)
 
 
+def test_a_column_is_cut_like_a_wall_on_a_layer_of_its_own():
+    columns = floorplan_making.furniture(kind="column")
+    sheet = composition.compose_sheet(plan(furniture=columns))
+    (column,) = [mark for mark in sheet.marks if mark.kind == "column"]
+    assert STYLES["column"].layer == "A-COLS" and column.element == "column-0"
+    assert STYLES["column"].fill == STYLES["wall"].fill
+    assert "column" in legend_kinds(sheet)
+
+
 def test_the_title_block_states_the_survey():
     facts = SheetFacts("Town hall", "First floor", "2024-05-06", 12, "scanplan 1")
     rooms = floorplan_making.rooms() | {"name": np.array(["Foyer", ""], object)}

@@ -57,6 +57,7 @@ rule evaluate_plan:
         walls=plan_table("walls"),
         openings=plan_table("openings"),
         rooms=plan_table("rooms"),
+        furniture=plan_table("furniture"),
         evidence=plan_table("evidence"),
         registration="results/{dataset}/registration.parquet",
         truth=true_faces,

@@ -203,6 +203,7 @@ for number, formats in enumerate(chosen_formats()):
             openings=plan_table("openings"),
             rooms=plan_table("rooms"),
             free=plan_table("free"),
+            furniture=plan_table("furniture"),
             confidence="results/{dataset}/plan/confidence.parquet",
             registration="results/{dataset}/registration.parquet",
             poses="results/{dataset}/poses.parquet",

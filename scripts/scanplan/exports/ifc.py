@@ -3,7 +3,7 @@
 from scanplan.exports import envelope
 from scanplan.exports.data import element_ids
 from scanplan.exports.data.element_ids import ElementIds
-from scanplan.exports.ifc_elements import joints, openings, spaces, walls
+from scanplan.exports.ifc_elements import columns, joints, openings, spaces, walls
 from scanplan.exports.ifc_elements.storey_plan import StoreyPlan
 from scanplan.exports.ifc_model import IfcModel
 from scanplan.exports.model_origin import ModelOrigin
@@ -18,8 +18,8 @@ def format_ifc(
     Project, site, building and storey; an IfcWall of every wall, as high as the storey or up to
     where it was seen to end below the ceiling, with a type, a layer of material, and what is known
     of it as properties; an IfcOpeningElement with IfcDoor or IfcWindow in its wall; an IfcSpace of
-    every room; an IfcSlab where the floor was seen and an IfcCovering where the ceiling was; which
-    walls meet, and what bounds each space.
+    every room; an IfcColumn of every column; an IfcSlab where the floor was seen and an
+    IfcCovering where the ceiling was; which walls meet, and what bounds each space.
 
     Parameters
     ----------
@@ -51,7 +51,8 @@ def _add_storey(model: IfcModel, storey: StoreyPlan) -> None:
     floors = spaces.add_floors(model, storey)
     ceilings = spaces.add_ceilings(model, storey, rooms)
     fillings = [opening.filling for opening in drawn_openings if opening.filling is not None]
-    model.contain([*drawn_walls, *fillings, *floors, *ceilings])
+    drawn_columns = columns.add_columns(model, storey)
+    model.contain([*drawn_walls, *fillings, *drawn_columns, *floors, *ceilings])
     model.aggregate(model.storey, rooms)
     joints.connect_walls(model, storey, drawn_walls)
     joints.bound_spaces(model, storey, rooms, drawn_walls, drawn_openings)

@@ -6,6 +6,7 @@ from scanplan.types import Columns
 
 COLOURS: Mapping[str, str] = {
     "wall": "#d9d4ccff",
+    "column": "#d9d4ccff",
     "inferred wall": "#b3c7e0ff",
     "to verify": "#f29933ff",
     "door": "#996b42ff",

@@ -48,14 +48,33 @@ def estimate_wall_top_m(wall: PlanWall) -> float:
 
 
 def drop_low_surfaces(
-    walls: list[PlanWall], wall_height_m: float
+    walls: list[PlanWall],
+    *,
+    wall_height_m: float,
+    furniture_height_m: float,
+    furniture_side_m: float,
 ) -> tuple[list[PlanWall], list[float]]:
-    """Return walls and the heights of their tops, without single surfaces lower than a wall."""
+    """Return walls and the heights of their tops, without single surfaces that furniture has.
+
+    Those lower than a wall, and those as short as a side of furniture that are seen to end no
+    higher than furniture does: of a partition as short a scan beside it shows the other face, too.
+
+    Parameters
+    ----------
+    walls : list of plan_wall.PlanWall
+    wall_height_m, furniture_height_m : float
+        Walls reach as high at least, furniture no higher.
+    furniture_side_m : float
+        Sides of furniture are no longer.
+    """
     tops_m = [estimate_wall_top_m(wall) for wall in walls]
+    leasts_m = [
+        furniture_height_m if wall.length_m <= furniture_side_m else wall_height_m for wall in walls
+    ]
     rows = [
         (wall, top_m)
-        for wall, top_m in zip(walls, tops_m, strict=True)
-        if wall.right or not top_m < wall_height_m
+        for wall, top_m, least_m in zip(walls, tops_m, leasts_m, strict=True)
+        if wall.right or not top_m < least_m
     ]
     return [wall for wall, _ in rows], [top_m for _, top_m in rows]
 

@@ -7,6 +7,7 @@ from scanplan.plan.faces.intervals import LEAST_OPEN_COLUMNS
 from scanplan.plan.planning import Plan
 from scanplan.rays import free_space
 from scanplan.rays.ray_set import RaySet
+from scanplan.store.schemas import COLUMN
 from scanplan.types import BoolArray, Columns, FilePath, FloatArray
 
 
@@ -90,13 +91,15 @@ def summarise_plan(plan: Plan) -> str:
     n_doubtful = int(walls["verify"].sum())
     n_inferred = int((faces["state"] == "inferred").sum())
     n_closed = int(rooms["closed"].sum())
+    n_pieces = len(plan.furniture["furniture"])
+    n_columns = int(np.count_nonzero(plan.furniture["kind"] == COLUMN))
     parts = [
         f"{len(walls['wall'])} walls ({n_paired} with thickness, {n_doubtful} to verify),"
         f" {length_m:,.1f} m",
         f"{len(faces['face'])} faces, {n_inferred} of them inferred",
         f"{len(plan.openings['opening'])} openings",
         f"{len(rooms['room'])} rooms, {n_closed} closed, {rooms['area_m2'].sum():,.1f} m2",
-        f"{len(plan.furniture['furniture'])} pieces of furniture",
+        f"{n_pieces - n_columns} pieces of furniture, {n_columns} columns",
         f"{plan.n_dropped} of {plan.n_lines} lines of faces dropped",
         _summarise_range_bias(plan.range_errors_m),
     ]

@@ -229,6 +229,7 @@ def furniture_columns(pieces: Iterable[Piece], floor_z_m: float) -> dict[str, Ar
     rows = [
         {
             "furniture": number,
+            "kind": piece.kind,
             "area_m2": piece.outline.area,
             "z_min_m": piece.z_min_m + floor_z_m,
             "z_max_m": piece.z_max_m + floor_z_m,

@@ -22,6 +22,7 @@ from scanplan.plan import (
 from scanplan.plan.faces.merging import MergeSettings, merge_segments
 from scanplan.plan.faces.tracing import trace_faces
 from scanplan.plan.furniture import fronts
+from scanplan.plan.furniture.columns import find_column_faces, tell_columns
 from scanplan.plan.furniture.leaves import Leaf
 from scanplan.plan.furniture.pieces import Piece, find_pieces, pieces_in_rooms
 from scanplan.plan.openings import OpeningSettings
@@ -182,7 +183,11 @@ def make_plan(
     surfaces = replace(surfaces, walls=walls)
     bare = survey.find_bare_spans(surfaces, spaces)
     floor_z_m = 0.0 if math.isnan(rays.floor_z_m) else rays.floor_z_m
-    cut_walls = wall_faces.cut_wall_faces(walls, max_beyond_m=settings.openings.max_closed_m)
+    cut_walls = wall_faces.cut_wall_faces(
+        walls,
+        max_beyond_m=settings.openings.max_closed_m,
+        door_height_m=settings.reading.door_height_m,
+    )
     face_columns, main_rows = plan_tables.face_columns(cut_walls, floor_z_m)
     evidence = uncertainty.estimate_evidence(
         walls, surfaces.tops_m, registration_sigma_m=settings.merge.registration_sigma_m
@@ -297,12 +302,26 @@ class _Survey:
         walls = opening_kinds.add_windows(
             walls, self.rays, min_width_m=min_width_m, band_m=reading.band_m
         )
-        walls, tops_m = half_height.drop_low_surfaces(walls, self.settings.furniture.wall_height_m)
+        walls, tops_m = half_height.drop_low_surfaces(
+            walls,
+            wall_height_m=self.settings.furniture.wall_height_m,
+            furniture_height_m=self.settings.furniture.furniture_height_m,
+            furniture_side_m=self.settings.furniture.furniture_depth_m,
+        )
+        glass_walls = room_bounds.find_glass_walls(
+            walls, traced.panes, min_length_m=min_width_m, unpaired_m=unpaired_m
+        )
+        are_columns = find_column_faces(
+            *(walls, glass_walls, self.rays),
+            furniture_height_m=self.settings.furniture.furniture_height_m,
+            max_width_m=self.settings.pairs.max_thickness_m,
+            unpaired_m=unpaired_m,
+        )
+        tops_m = [top_m for top_m, is_one in zip(tops_m, are_columns, strict=True) if not is_one]
+        walls = [wall for wall, is_one in zip(walls, are_columns, strict=True) if not is_one]
         return _Surfaces(
             walls=walls,
-            glass_walls=room_bounds.find_glass_walls(
-                walls, traced.panes, min_length_m=min_width_m, unpaired_m=unpaired_m
-            ),
+            glass_walls=glass_walls,
             tops_m=tops_m,
             unpaired_m=unpaired_m,
             furnished=furnished,
@@ -333,8 +352,9 @@ class _Survey:
             floor=free_space.union_on_grid([self.floor, *surfaces.furnished]),
             planar=self.rays.planar,
         )
+        strips = wall_ground.wall_strips(surfaces.bounds, surfaces.unpaired_m)
         pieces = find_pieces(
-            *(self.rays, wall_ground.wall_strips(surfaces.bounds, surfaces.unpaired_m)),
+            *(self.rays, strips),
             *([room.polygon for room in rooms], self.views),
             max_height_m=self.settings.furniture.furniture_height_m,
             hidden=surfaces.furnished,
@@ -347,6 +367,11 @@ class _Survey:
                 unpaired_m=surfaces.unpaired_m,
             )
         pieces = pieces_in_rooms(pieces, [room.polygon for room in rooms])
+        pieces = tell_columns(
+            *(pieces, self.rays, strips),
+            furniture_height_m=self.settings.furniture.furniture_height_m,
+            max_width_m=self.settings.pairs.max_thickness_m,
+        )
         return _Spaces(rooms=rooms, partings=partings, pieces=pieces)
 
     def decide_kinds(self, surfaces: _Surfaces, rooms: list[Room]) -> list[PlanWall]:

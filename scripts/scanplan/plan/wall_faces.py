@@ -13,6 +13,7 @@ from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.plan_wall import InferredFace, PlanWall
 from scanplan.plan.tolerances import END_M
 from scanplan.rays.face_raster import CELL_M
+from scanplan.rays.tolerances import STRETCH_M
 
 _INSIDE_M = 0.01  # a face this near to a wall's surface is not in it: rounding of places and angles
 
@@ -20,17 +21,22 @@ Extent = tuple[float, float]
 """From where to where along a line, metres."""
 
 
-def cut_wall_faces(walls: Sequence[PlanWall], *, max_beyond_m: float) -> list[PlanWall]:
+def cut_wall_faces(
+    walls: Sequence[PlanWall], *, max_beyond_m: float, door_height_m: float
+) -> list[PlanWall]:
     """Return walls with their faces cut where other walls butt against them, hidden ones inferred.
 
     Where one side of a wall was seen and the other was not, the other is inferred between observed
-    intervals of it, and a little beyond; so is a gap that no ray went through; never an opening.
+    intervals of it, and a little beyond; so is a gap that no ray went through; never an opening,
+    nor where rays went through either side: into a niche, which the wall goes around.
 
     Parameters
     ----------
     walls : sequence of plan_wall.PlanWall
     max_beyond_m : float
         How far a side may go on to the wall's end beyond where it was seen.
+    door_height_m : float
+        Rays that are higher say nothing.
     """
     ground = _Ground(walls)
     cut = []
@@ -48,7 +54,8 @@ def cut_wall_faces(walls: Sequence[PlanWall], *, max_beyond_m: float) -> list[Pl
         )
         inferred = [
             InferredFace(line, low_m, high_m, is_left)
-            for line, extent_m, is_left in _inferred_extents(wall, max_beyond_m)
+            for line, whole_m, is_left in _inferred_extents(wall, max_beyond_m)
+            for extent_m in _without_open(wall, line, whole_m, door_height_m)
             for low_m, high_m in ground.cut(line, extent_m, number)
             if high_m - low_m >= END_M
         ]
@@ -118,6 +125,27 @@ def _between_intervals(
     high_m = end_m if end_m - last_m <= max_beyond_m else last_m
     occupied_m = np.concatenate([intervals_m, np.array(ways_m).reshape(-1, 2)])
     return [(begin_m, end_m) for begin_m, end_m in find_gaps(occupied_m, low_m, high_m).tolist()]
+
+
+def _without_open(
+    wall: PlanWall, line: Line, extent_m: Extent, door_height_m: float
+) -> list[Extent]:
+    """Return what is left of an extent of a side without stretches that rays went through."""
+    if not wall.right or wall.lines[0].planar:
+        return [extent_m]
+    taken_m = [_extent_m(line, wall, gap.low_m, gap.high_m) for gap in wall.openings]
+    open_m: list[Extent] = []
+    for seen in wall.lines:
+        raster = seen.raster
+        steps = np.diff(np.concatenate([[0], raster.is_opened(door_height_m), [0]]))
+        edges_m = raster.first_m + CELL_M * np.flatnonzero(steps).reshape(-1, 2)
+        for edges in edges_m[np.ptp(edges_m, axis=1) >= STRETCH_M]:
+            low_m, high_m = np.sort(line.along_m(seen.line.at(edges))).tolist()
+            if not any(low_m < end_m and high_m > begin_m for begin_m, end_m in taken_m):
+                open_m.append((low_m, high_m))
+    if not open_m:
+        return [extent_m]
+    return [(low, high) for low, high in find_gaps(np.array(open_m), *extent_m).tolist()]
 
 
 def _extent_m(line: Line, wall: PlanWall, low_m: float, high_m: float) -> Extent:

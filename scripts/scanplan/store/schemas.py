@@ -306,11 +306,14 @@ Of the whole plan the file states `floor_z_m` and `ceiling_z_m`: heights in the 
 not seen; `georeference`, where the plan lies on Earth, where reference points say so; of a
 corrected plan `n_corrections`, carried out, and `unmatched_corrections`, why others are not.
 """
+PIECE, COLUMN = "furniture", "column"
+"""Kinds of what stands in rooms: a column goes on to the ceiling."""
 FURNITURE = Schema(
     "furniture",
-    1,
+    2,
     {
         "furniture": "int32",
+        "kind": "string",
         **dict.fromkeys(("area_m2", "z_min_m", "z_max_m"), "float64"),
         "n_points": "int32",
         "n_scans": "int32",
@@ -321,6 +324,7 @@ FURNITURE = Schema(
 )
 """What stands in rooms and is no wall: outlines, by the points of chosen scans that show it.
 
+Of `kind` `PIECE` or `COLUMN`.
 Heights are in the map frame, NaN of planar scans.
 """
 EVIDENCE = Schema(

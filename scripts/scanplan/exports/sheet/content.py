@@ -124,12 +124,12 @@ def draw_corrections(plan: FloorPlan, apart_m: float) -> Iterator[Mark]:
 
 
 def draw_furniture(plan: FloorPlan) -> Iterator[Mark]:
-    """Yield the outlines of furniture, with what is known of it."""
+    """Yield the outlines of furniture and columns, with what is known of them."""
     outlines = shapely.from_wkb(np.asarray(plan.furniture["geometry"], object))
     for row, outline in enumerate(outlines):
         facts = facts_of("furniture", plan.furniture, row)
-        name = f"furniture-{facts['furniture']}"
-        yield _area("furniture", outline, name, "furniture", facts)
+        kind = str(plan.furniture["kind"][row])
+        yield _area(kind, outline, f"{kind}-{facts['furniture']}", kind, facts)
 
 
 def list_symbols(plan: FloorPlan) -> list[Symbol]:

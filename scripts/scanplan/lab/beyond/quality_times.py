@@ -62,7 +62,7 @@ class TimedSurvey:
         walls = [self._find_walls(int(row)) for row in rows]
         columns = segments.segment_columns(known.scan_ids[rows], [found for _, found in walls])
         seconds, plan = time_call(partial(self._make_plan, rows, columns))
-        drawn = {"faces": plan.faces}
+        drawn = {"faces": plan.faces, "furniture": plan.furniture}
         faces_m = plan_metrics.moved_faces_m(drawn, np.eye(4))
         measured = wall_metrics.measure_plan_lines(faces_m, self.truth.visible, self.bitmap_cell_m)
         return float(measured["visible_f1_010m"]), seconds + sum(took for took, _ in walls)

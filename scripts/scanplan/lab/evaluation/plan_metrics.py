@@ -12,6 +12,7 @@ from scanplan.lab.evaluation import length_metrics, opening_metrics, wall_findin
 from scanplan.lab.evaluation.face_cells import FaceCells
 from scanplan.lab.evaluation.true_plan import TruePlan
 from scanplan.lab.evaluation.wall_findings import JUDGED, WITHIN_M, VisibleTruth
+from scanplan.rays.face_raster import CELL_M
 from scanplan.store import schemas, tables
 from scanplan.types import BoolArray, Columns, FilePath, FloatArray, IntArray
 
@@ -23,6 +24,7 @@ _TABLES = {
     "walls": schemas.PLAN_WALLS,
     "openings": schemas.OPENINGS,
     "rooms": schemas.ROOMS,
+    "furniture": schemas.FURNITURE,
 }
 
 
@@ -60,7 +62,9 @@ def measure_plan(
         Columns of `schemas.PLAN_EVALUATION`.
     """
     faces_m = moved_faces_m(drawn, motion)
-    observed = drawn["faces"]["state"] == "observed"
+    # sides of columns, which follow the faces, are all fitted to returns
+    observed = np.full(len(faces_m), True)
+    observed[: len(drawn["faces"]["state"])] = drawn["faces"]["state"] == "observed"
     seen = np.asarray(floor.seen.any(axis=0))
     walls_m = _moved(length_metrics.table_lines_m(drawn["walls"]), motion)
     openings_m = _moved(length_metrics.table_lines_m(drawn["openings"]), motion)
@@ -81,8 +85,24 @@ def measure_plan(
 
 
 def moved_faces_m(drawn: Mapping[str, Columns], motion: FloatArray) -> FloatArray:
-    """Return the faces (n, 2, 2) of a plan after a rigid motion (4, 4)."""
-    return _moved(length_metrics.table_lines_m(drawn["faces"]), motion)
+    """Return the faces (n, 2, 2) of a plan, then the sides of its columns, after a rigid motion.
+
+    A side that a column stands against a wall with is no surface, and is left out.
+    """
+    faces_m = length_metrics.table_lines_m(drawn["faces"])
+    walls = shapely.union_all(shapely.linestrings(faces_m)).buffer(CELL_M)
+    sides_m = _column_sides_m(drawn["furniture"])
+    is_free = ~shapely.covers(walls, shapely.linestrings(sides_m))
+    return _moved(np.concatenate([faces_m, sides_m[is_free]]), motion)
+
+
+def _column_sides_m(furniture: Columns) -> FloatArray:
+    """Return the sides (n, 2, 2) of the columns among what stands in rooms."""
+    is_column = np.asarray(furniture["kind"]) == schemas.COLUMN
+    outlines = shapely.from_wkb(np.asarray(furniture["geometry"], object)[is_column])
+    corners_m = [shapely.get_coordinates(outline) for outline in outlines]
+    sides_m = [np.stack([ring_m[:-1], ring_m[1:]], axis=1) for ring_m in corners_m]
+    return np.concatenate([np.empty((0, 2, 2)), *sides_m])
 
 
 def _moved(xy_m: FloatArray, motion: FloatArray) -> FloatArray:

@@ -18,6 +18,7 @@ from scanplan.plan.tolerances import CORNER_M, ENOUGH_RAYS, FACE_M, LEAST_SCANS,
 from scanplan.rays.face_raster import CELL_M
 from scanplan.rays.ray_set import RaySet
 from scanplan.rays.tolerances import SKIRTING_M
+from scanplan.store.schemas import PIECE
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 
@@ -33,6 +34,8 @@ class Piece:
         Between which heights above the floor, NaN of planar scans.
     n_points, n_scans : int
         That show it.
+    kind : str
+        `schemas.PIECE` or `schemas.COLUMN`.
     """
 
     outline: Polygon
@@ -40,6 +43,7 @@ class Piece:
     z_max_m: float
     n_points: int
     n_scans: int
+    kind: str = PIECE
 
 
 @dataclass(frozen=True, eq=False)

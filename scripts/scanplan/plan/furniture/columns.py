@@ -1,0 +1,193 @@
+"""Columns, piers and casings: what stands in rooms like furniture, but goes on to the ceiling."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import shapely
+from shapely import affinity
+from shapely.geometry import Polygon
+from shapely.geometry.base import BaseGeometry
+
+from scanplan.plan import wall_ground
+from scanplan.plan.furniture.pieces import Piece
+from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.tolerances import END_M, ENOUGH_RAYS, FACE_M, LOW_PERCENT, NOISE_M
+from scanplan.rays.face_raster import CELL_M
+from scanplan.rays.ray_set import RaySet
+from scanplan.rays.tolerances import FEW, SKIRTING_M, STRETCH_M
+from scanplan.store.schemas import COLUMN
+from scanplan.types import FloatArray, IntArray
+
+
+def tell_columns(
+    pieces: Sequence[Piece],
+    rays: RaySet,
+    walls: Sequence[Polygon],
+    *,
+    furniture_height_m: float,
+    max_width_m: float,
+) -> list[Piece]:
+    """Return pieces of furniture, those that are columns as such.
+
+    A column is seen from near the floor up to where no furniture is, without a pause, by several
+    scans, and no side of it is wider than a wall is thick. It is drawn as the rectangle that its
+    returns fill, up to the wall that it stands against.
+
+    Parameters
+    ----------
+    pieces : sequence of pieces.Piece
+    rays : ray_set.RaySet
+        Planar scans show no heights: all pieces stay what they are.
+    walls : sequence of shapely.Polygon
+        The ground that walls and their openings stand on.
+    furniture_height_m : float
+        What is seen higher above the floor is no furniture.
+    max_width_m : float
+        Of either side of a column.
+
+    Returns
+    -------
+    list of pieces.Piece
+        In the order given.
+    """
+    if rays.planar:
+        return list(pieces)
+    solid = shapely.union_all(list(walls))
+    return [_tell(piece, rays, solid, furniture_height_m, max_width_m) for piece in pieces]
+
+
+def find_column_faces(
+    walls: Sequence[PlanWall],
+    panes: Sequence[PlanWall],
+    rays: RaySet,
+    *,
+    furniture_height_m: float,
+    max_width_m: float,
+    unpaired_m: float,
+) -> list[bool]:
+    """Return which walls are but one side of a column, of which the others were seen less.
+
+    Such is a single face as short as a column is wide, with an end at no other wall or pane, where
+    what stands around it is told to be a column.
+
+    Parameters
+    ----------
+    walls, panes : sequence of plan_wall.PlanWall
+    rays, furniture_height_m, max_width_m
+        As in `tell_columns`.
+    unpaired_m : float
+        How thick a wall is taken for of which one side is known.
+    """
+    if rays.planar:
+        return [False] * len(walls)
+    strips = wall_ground.wall_strips([*walls, *panes], unpaired_m)
+    are_faces: list[bool] = []
+    for number, wall in enumerate(walls):
+        is_short = not wall.right and not wall.openings and wall.length_m <= max_width_m
+        others = shapely.union_all([*strips[:number], *strips[number + 1 :]])
+        ends = shapely.points(wall.ends)
+        is_lone = is_short and bool((shapely.distance(ends, others) > END_M).all())
+        around = _ground_around(wall, max_width_m).difference(others.buffer(FACE_M))
+        if is_lone and not around.is_empty:
+            outline = max(shapely.get_parts(around), key=lambda part: part.area)
+            piece = Piece(outline, np.nan, np.nan, 0, 0)
+            told = _tell(piece, rays, others, furniture_height_m, max_width_m)
+            are_faces.append(told.kind == COLUMN)
+        else:
+            are_faces.append(False)
+    return are_faces
+
+
+def _ground_around(wall: PlanWall, depth_m: float) -> Polygon:
+    """Return the ground that a column stands on of which a wall is one side."""
+    ends_m = wall.line.at(np.array([wall.low_m - END_M, wall.high_m + END_M]))
+    before_m, behind_m = (off_m * wall.line.normal for off_m in (END_M, -depth_m))
+    return Polygon([*(ends_m + before_m), *(ends_m[::-1] + behind_m)])
+
+
+def _tell(
+    piece: Piece, rays: RaySet, solid: BaseGeometry, furniture_height_m: float, max_width_m: float
+) -> Piece:
+    xyz_m, scan = _returns_above(piece.outline, rays)
+    is_high = xyz_m[:, 2] >= furniture_height_m
+    if is_high.sum() < ENOUGH_RAYS or len(np.unique(scan[is_high])) < FEW:
+        return piece
+    # a lamp over a table is none, nor what hangs over a shelf
+    levels_m = np.concatenate([[0.0], np.sort(xyz_m[~is_high, 2]), [furniture_height_m]])
+    if np.diff(levels_m).max() > STRETCH_M:
+        return piece
+    drawn = _fit_rectangle(xyz_m[:, :2])
+    corners_m = shapely.get_coordinates(drawn)
+    sides_m = np.hypot(*(corners_m[1:3] - corners_m[:2]).T)
+    if sides_m.max() > max_width_m or sides_m.min() < END_M:
+        return piece
+    return replace(
+        piece,
+        outline=_extend_to(drawn, solid),
+        z_max_m=float(np.percentile(xyz_m[is_high, 2], 100 - LOW_PERCENT)),
+        n_points=len(xyz_m),
+        n_scans=len(np.unique(scan)),
+        kind=COLUMN,
+    )
+
+
+def _returns_above(outline: Polygon, rays: RaySet) -> tuple[FloatArray, IntArray]:
+    """Return the returns (n, 3) over an outline, heights above the floor, and their scans (n,)."""
+    x0_m, y0_m, x1_m, y1_m = outline.bounds
+    parts: list[FloatArray] = [np.empty((0, 3))]
+    scans: list[IntArray] = [np.empty(0, np.int64)]
+    for scan, of_scan in enumerate(rays.rows):
+        xyz_m = rays.xyz_m[of_scan]
+        is_near = (xyz_m[:, 0] >= x0_m) & (xyz_m[:, 0] <= x1_m)
+        is_near &= (xyz_m[:, 1] >= y0_m) & (xyz_m[:, 1] <= y1_m)
+        near_m = xyz_m[is_near] - (0.0, 0.0, rays.ground_z_m)
+        is_over = shapely.contains_xy(outline, near_m[:, :2]) & (near_m[:, 2] > SKIRTING_M)
+        parts.append(near_m[is_over])
+        scans.append(np.full(int(is_over.sum()), scan))
+    return np.concatenate(parts), np.concatenate(scans)
+
+
+def _fit_rectangle(xy_m: FloatArray) -> Polygon:
+    """Return the least rectangle that most of points (n, 2) lie in, its sides amid those at each.
+
+    Angles are tried in steps of a degree: over the width of a column, less than noise.
+    """
+    share = (LOW_PERCENT, 100 - LOW_PERCENT)
+    turns_rad = np.radians(np.arange(90))
+    extents_m = [np.ptp(np.percentile(_turned(xy_m, a), share, axis=0), axis=0) for a in turns_rad]
+    turn_rad = float(turns_rad[np.argmin(np.prod(extents_m, axis=1))])
+    own_m = _turned(xy_m, turn_rad)
+    low_m, high_m = np.percentile(own_m, share, axis=0)
+    bounds_m = [
+        np.median(own_m[np.abs(own_m[:, axis] - end_m[axis]) <= NOISE_M, axis])
+        for end_m in (low_m, high_m)
+        for axis in (0, 1)
+    ]
+    return affinity.rotate(shapely.box(*bounds_m), turn_rad, origin=(0, 0), use_radians=True)
+
+
+def _turned(xy_m: FloatArray, turn_rad: float) -> FloatArray:
+    """Return points (n, 2) in axes that are turned by an angle."""
+    cos, sin = np.cos(turn_rad), np.sin(turn_rad)
+    return xy_m @ np.array([[cos, -sin], [sin, cos]])
+
+
+def _extend_to(drawn: Polygon, solid: BaseGeometry) -> Polygon:
+    """Return a rectangle up to the wall that a side of it stands against, if there is one.
+
+    Returns as near to a wall as its own scatter are the wall's, so that none is of the column.
+    """
+    corners_m = shapely.get_coordinates(shapely.orient_polygons(drawn))[:4]
+    for side in range(4):
+        start_m, end_m = corners_m[side], corners_m[(side + 1) % 4]
+        along = (end_m - start_m) / np.hypot(*(end_m - start_m))
+        away_m = (FACE_M + 2 * CELL_M) * np.array([along[1], -along[0]])
+        beyond = Polygon([start_m, start_m + away_m, end_m + away_m, end_m])
+        met = shapely.intersection(beyond, solid)
+        if met.area > 0:
+            gap_m = shapely.LineString([start_m, end_m]).distance(solid)
+            step_m = gap_m * away_m / np.hypot(*away_m)
+            corners_m[side] = start_m + step_m
+            corners_m[(side + 1) % 4] = end_m + step_m
+    return Polygon(corners_m)
