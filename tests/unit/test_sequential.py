@@ -94,6 +94,21 @@ def test_a_scan_that_fits_badly_is_dropped_and_the_next_goes_on():
     assert reasons == ["anchor", "kept", "kept", "low_prior_fitness", "kept", "kept"]
 
 
+def test_a_scan_after_a_jump_is_searched_for_where_its_walls_are():
+    """It is too far off for its points to be paired with their own, and lies on others as well."""
+    scans, priors, true = drive(6, planar=True)
+    jump = pose(0.9, 0.0, 0)
+    priors[3] = jump @ priors[3]
+    lenient = {"min_prior_fitness": 0.05, "min_refined_fitness": 0.1, "icp_distances_m": (0.2, 0.1)}
+    verdicts = register(scans, priors, True, **lenient, max_correction_m=1.0, icp_targets=3)
+    assert all(verdict.kept for verdict in verdicts)
+    shifts = [
+        np.linalg.norm((se3.invert_pose(at) @ verdict.world_from_sensor)[:2, 3])
+        for at, verdict in zip(true, verdicts, strict=True)
+    ]
+    assert max(shifts) < 0.05
+
+
 def test_a_localiser_that_is_sure_of_itself_is_believed():
     scans, priors, _ = drive(6, planar=True)
     sure = {

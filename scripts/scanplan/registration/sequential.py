@@ -183,15 +183,38 @@ class SequentialRegistrar(ScanRegistrar):
             if earlier_result.kept:
                 self._previous = self._earlier
                 return earlier_result, earlier_edges
-        if not result.kept and self.is_odometry:
+        if self._is_in_question(result):
             found = self._search(scan)
             if found is not None:
                 searched, searched_edges = self._compare(found, level_from_sensor, self._previous)
-                if searched.kept:
+                if searched.kept and self._is_surer(searched, searched_edges, result):
                     return searched, searched_edges
         if not result.kept and self._is_anchor(scan):
             result = replace(result, kept=True, reason="anchor")
         return result, edges
+
+    def _is_in_question(self, result: ScanResult) -> bool:
+        """Return whether the scans before are to be searched for where a scan fits.
+
+        That is where odometry's does not, and where one in the plane fits no better than before it
+        was aligned: a few walls have it end in a place like its own.
+        """
+        if self.is_odometry:
+            return not result.kept
+        return self.planar and result.refined_fitness <= result.prior_fitness
+
+    def _is_surer(
+        self, found: ScanResult, edges: Sequence[PoseConstraint], result: ScanResult
+    ) -> bool:
+        """Return whether the place that a search found is to be preferred.
+
+        To odometry's it is; to a localiser's where less than half as much of it does not fit,
+        and its walls hold it in every direction: along a corridor any place is like the next.
+        """
+        if self.is_odometry:
+            return True
+        is_fixed = any(edge.fit.n_unobservable == 0 for edge in edges)
+        return is_fixed and 2 * (1 - found.refined_fitness) < 1 - result.refined_fitness
 
     def _compare(
         self, scan: PlacedScan, level_from_sensor: FloatArray, previous: deque[PlacedScan]
@@ -218,7 +241,8 @@ class SequentialRegistrar(ScanRegistrar):
     def _search(self, scan: PlacedScan) -> PlacedScan | None:
         """Return a scan where its walls lie on those of the scans before it, by correlation.
 
-        Wheels that slip turn a rover by more than an alignment finds back.
+        Wheels that slip turn a rover, and a localiser that jumps moves it, by more than an
+        alignment finds back.
         """
         # scipy's 0.3 s, and few scans are searched for
         from scanplan.registration.drift import recognition
