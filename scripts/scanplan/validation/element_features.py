@@ -109,7 +109,7 @@ def _describe_openings(plan: FloorPlan, of_walls: FloatArray) -> dict[str, Float
     is_way = np.isin(openings["type"].astype(str), WAYS)
     is_inner = np.minimum(openings["room_a"], openings["room_b"]) >= 0
     is_between = is_inner & (openings["room_a"] != openings["room_b"])
-    # nothing but having been driven through makes a kind as sure
+    # having been driven through makes a kind as sure, or an open leaf before floor that was seen
     is_known = is_between | (stated > 0.95)
     left_m, right_m = (np.append(side_m, 0.0)[plan.hosts] for side_m in plan.sides_m)
     floor = shapely.union_all(shapely.from_wkb(np.asarray(plan.free["geometry"], object)))
