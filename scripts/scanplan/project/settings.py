@@ -188,25 +188,22 @@ def end_on_faulty_files(arguments: Sequence[str]) -> None:
     """
     schema = read_schema(_ROOT / "workflow/schemas/config.schema.yaml")
     try:
-        for path in _list_words(arguments, "--configf"):
+        for path in _list_words(arguments, "--configf.*"):
             _check_file(path, schema)
-        for word in _list_words(arguments, "--config", "-C"):
+        for word in _list_words(arguments, "--config|-C"):
             _check_key(word)
     except StageError as error:
         raise SystemExit(f"scanplan: {error}") from None
 
 
-def _list_words(arguments: Sequence[str], *options: str) -> list[str]:
-    """Return the words after an option: of --configf, those of --configfile and --configfiles."""
+def _list_words(arguments: Sequence[str], options: str) -> list[str]:
+    """Return the words after the options that a regular expression matches."""
     words = []
     is_of_option = False
     for word in arguments:
         if word.startswith("-"):
             option, _, word = word.partition("=")
-            is_of_option = any(
-                option == known or (known == "--configf" and option.startswith(known))
-                for known in options
-            )
+            is_of_option = re.fullmatch(options, option) is not None
         if is_of_option and word:
             words.append(word)
     return words

@@ -82,21 +82,26 @@ def find_column_faces(
     if rays.planar:
         return [False] * len(walls)
     strips = wall_ground.wall_strips([*walls, *panes], unpaired_m)
-    are_faces: list[bool] = []
-    for number, wall in enumerate(walls):
-        is_short = not wall.right and not wall.openings and wall.length_m <= max_width_m
+
+    def is_side(number: int, wall: PlanWall) -> bool:
         others = shapely.union_all([*strips[:number], *strips[number + 1 :]])
-        ends = shapely.points(wall.ends)
-        is_lone = is_short and bool((shapely.distance(ends, others) > END_M).all())
+        if (shapely.distance(shapely.points(wall.ends), others) <= END_M).any():
+            return False
         around = _ground_around(wall, max_width_m).difference(others.buffer(FACE_M))
-        if is_lone and not around.is_empty:
-            outline = max(shapely.get_parts(around), key=lambda part: part.area)
-            piece = Piece(outline, np.nan, np.nan, 0, 0)
-            told = _tell(piece, rays, others, furniture_height_m, max_width_m)
-            are_faces.append(told.kind == COLUMN)
-        else:
-            are_faces.append(False)
-    return are_faces
+        if around.is_empty:
+            return False
+        outline = max(shapely.get_parts(around), key=lambda part: part.area)
+        piece = Piece(outline, np.nan, np.nan, 0, 0)
+        return _tell(piece, rays, others, furniture_height_m, max_width_m).kind == COLUMN
+
+    # few walls are as short: only of these is looked at what is around them
+    return [
+        not wall.right
+        and not wall.openings
+        and wall.length_m <= max_width_m
+        and is_side(number, wall)
+        for number, wall in enumerate(walls)
+    ]
 
 
 def _ground_around(wall: PlanWall, depth_m: float) -> Polygon:
