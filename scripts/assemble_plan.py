@@ -58,7 +58,9 @@ def assemble_plan(
     rows = registered_scans.rows_of_scans(scan_ids, registered, selection, registration)
     poses = registered.map_from_sensor
     sensors_m = dict(zip(scan_ids.tolist(), poses[rows, :3, 3], strict=True))
-    rays = ray_set.gather_rays(store.scans(scan_ids), sensors_m, planar=store.planar)
+    rays = ray_set.gather_rays(
+        store.scans(scan_ids), sensors_m, planar=store.planar, threads=threads
+    )
     # sums that a library shares out among cores differ in their last digits
     with threadpool_limits(1):
         plan = planning.make_plan(

@@ -114,3 +114,24 @@ def test_columns():
     assert columns["poses"] == ["a", "b"] and columns["n_places"] == [0, 3]
     np.testing.assert_array_equal(columns["sigma_m"], [np.nan, 2])
     np.testing.assert_array_equal(columns["quarter_above_m"], [np.nan, 2.5])
+
+
+def literal_sigma_m(xyz_m, scan_ids, centre_m, radius_m, axes):
+    """One neighbourhood after the other, as the module's text has it."""
+    is_near = np.linalg.norm(xyz_m[:, axes] - centre_m[axes], axis=1) <= radius_m
+    points_m = xyz_m[is_near][:, axes]
+    if len(points_m) < 10 or len(set(scan_ids[is_near].tolist())) < 3:
+        return np.nan
+    across_m2, *along_m2 = np.linalg.eigvalsh(np.cov(points_m.T))
+    return np.nan if along_m2[0] < (radius_m / 4) ** 2 else np.sqrt(max(across_m2, 0.0))
+
+
+@pytest.mark.parametrize("planar", [False, True])
+def test_neighbourhoods_at_once_are_as_one_by_one(planar):
+    xyz_m, scan_ids = walls(0.01, n=100 if planar else 400, planar=planar)
+    centres_m = xyz_m[::7]
+    found = plane_scatter.measure_scatter(xyz_m, scan_ids, centres_m, planar=planar, radius_m=0.2)
+    axes = [0, 1] if planar else [0, 1, 2]
+    literal = [literal_sigma_m(xyz_m, scan_ids, place, 0.2, axes) for place in centres_m]
+    assert 0 < np.isnan(literal).sum() < len(literal)
+    np.testing.assert_allclose(found.sigma_m, literal, rtol=1e-9)

@@ -48,10 +48,10 @@ def house():
     return house_making.looked()
 
 
-def plan(looked, table=None, sensors=SENSORS, settings=SETTINGS):
+def plan(looked, table=None, sensors=SENSORS, settings=SETTINGS, threads=1):
     made = house_making.segments() if table is None else table
     t_ns = house_making.T_NS[: len(sensors)]
-    return planning.make_plan(made, looked, sensors[:, :2], t_ns, settings)
+    return planning.make_plan(made, looked, sensors[:, :2], t_ns, settings, threads=threads)
 
 
 class TestPlan:
@@ -75,6 +75,14 @@ class TestPlan:
         inside = shapely.box(4.03, -0.5, 4.17, 1.4)
         crossing = shapely.intersects(shapely.linestrings(faces), inside)
         assert not crossing.any()
+
+    def test_the_plan_does_not_depend_on_the_cores(self, house):
+        alone, shared = plan(house), plan(house, threads=2)
+        for name in planning.TABLES:
+            one, two = getattr(alone, name), getattr(shared, name)
+            assert one.keys() == two.keys()
+            for column, values in one.items():
+                np.testing.assert_array_equal(values, two[column], err_msg=f"{name}.{column}")
 
     def test_what_one_scan_of_one_room_shows(self):
         made = plan(

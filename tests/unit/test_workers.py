@@ -98,3 +98,20 @@ def test_threads_share_the_memory_and_keep_the_order(threads):
 def test_what_a_job_in_a_thread_raises_is_raised(threads):
     with pytest.raises(ZeroDivisionError):
         workers.map_in_threads(lambda number: 1 / number, [1, 0], threads)
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_work_begun_in_a_thread_is_done_once_and_waited_for(threads):
+    seen = []
+    wait = workers.begin_in_thread(
+        lambda *numbers: seen.append(numbers) or 6, 2, 3, threads=threads
+    )
+    assert [wait(), wait()] == [6, 6]
+    assert seen == [(2, 3)]
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_what_work_begun_in_a_thread_raises_is_raised_where_it_is_waited_for(threads):
+    wait = workers.begin_in_thread(lambda number: 1 / number, 0, threads=threads)
+    with pytest.raises(ZeroDivisionError):
+        wait()

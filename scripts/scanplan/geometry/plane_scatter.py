@@ -141,9 +141,19 @@ def measure_scatter(
     SurfaceScatter
     """
     axes = slice(2) if planar else slice(3)
-    near = cKDTree(xyz_m[:, axes]).query_ball_point(centres_m[:, axes], radius_m)
-    sigma_m = [_sigma_m(xyz_m[points, axes], scan_ids[points], radius_m) for points in near]
-    return SurfaceScatter(np.asarray(centres_m, float), np.array(sigma_m, float))
+    centres_m = np.asarray(centres_m, float)
+    # of so few neighbourhoods a tree that is made fast serves better than one that is searched fast
+    tree = cKDTree(xyz_m[:, axes], balanced_tree=False, compact_nodes=False)
+    near = tree.query_ball_point(centres_m[:, axes], radius_m)
+    count = np.array([len(points) for points in near], np.int64)
+    place = np.repeat(np.arange(len(near)), count)
+    points = np.concatenate([np.empty(0, np.int64), *map(np.asarray, near)]).astype(np.int64)
+    offset_m = xyz_m[points, axes] - centres_m[place, axes]
+    across_m2, along_m2 = _variances(offset_m, place, count)
+    is_known = (count >= _FEWEST_POINTS) & (along_m2 >= (_LEAST_SPREAD * radius_m) ** 2)
+    is_known &= _count_owners(scan_ids[points], place, len(near)) >= _FEWEST_SCANS
+    sigma_m = np.where(is_known, np.sqrt(np.maximum(across_m2, 0.0)), np.nan)
+    return SurfaceScatter(centres_m, sigma_m)
 
 
 def measure_map_scatter(
@@ -181,11 +191,27 @@ def _quartiles(values: FloatArray) -> FloatArray:
     return np.percentile(values, (25, 50, 75)) if len(values) else np.full(3, np.nan)
 
 
-def _sigma_m(points_m: FloatArray, scan_ids: IntArray, radius_m: float) -> float:
-    if len(points_m) < _FEWEST_POINTS or len(np.unique(scan_ids)) < _FEWEST_SCANS:
-        return np.nan
-    centred = points_m - points_m.mean(axis=0)
-    across, *along = np.linalg.eigvalsh(centred.T @ centred / (len(points_m) - 1))
-    if along[0] < (_LEAST_SPREAD * radius_m) ** 2:
-        return np.nan
-    return float(np.sqrt(max(across, 0.0)))
+def _variances(
+    offset_m: FloatArray, place: IntArray, count: IntArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the least and the next variance of the points (n, d) of each place, (m,)."""
+    centred_m = offset_m.copy()
+    for axis in range(offset_m.shape[1]):
+        sums = np.bincount(place, offset_m[:, axis], len(count))
+        centred_m[:, axis] -= (sums / np.maximum(count, 1))[place]
+    d = offset_m.shape[1]
+    products = [
+        np.bincount(place, centred_m[:, i] * centred_m[:, j], len(count))
+        for i in range(d)
+        for j in range(d)
+    ]
+    covariance = np.array(products).T.reshape(-1, d, d) / np.maximum(count - 1, 1)[:, None, None]
+    variances = np.linalg.eigvalsh(covariance)
+    return variances[:, 0], variances[:, 1]
+
+
+def _count_owners(scan_ids: IntArray, place: IntArray, n_places: int) -> IntArray:
+    """Return of how many scans the points of each place are."""
+    _, owner = np.unique(scan_ids, return_inverse=True)
+    n_owners = int(owner.max(initial=0)) + 1
+    return np.bincount(np.unique(place * n_owners + owner) // n_owners, minlength=n_places)

@@ -2,7 +2,7 @@
 
 import functools
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -34,6 +34,7 @@ from scanplan.plan.walls import assemble_walls
 from scanplan.rays import free_space, range_bias
 from scanplan.rays.face_observation import RaySettings
 from scanplan.rays.ray_set import RaySet
+from scanplan.stage import workers
 from scanplan.store import schemas
 from scanplan.types import Array, Columns, FloatArray, IntArray, Settings
 
@@ -173,11 +174,11 @@ def make_plan(
     errors_m = range_bias.estimate_range_bias(
         rays, segments, settings.ranges, settings.reading.band_m, up
     )
-    rays = range_bias.remove_range_bias(rays, errors_m, up)
+    rays = range_bias.remove_range_bias(rays, errors_m, up, threads)
     views = free_space.free_polygons(rays, threads)
-    floor = free_space.union_on_grid(views)
-    survey = _Survey(settings, rays, track_m, views, floor)
-    surfaces = survey.find_surfaces(segments, threads)
+    find_floor = workers.begin_in_thread(free_space.union_on_grid, views, threads=threads)
+    survey = _Survey(settings, rays, track_m, views, find_floor, threads)
+    surfaces = survey.find_surfaces(segments)
     spaces = survey.find_spaces(surfaces)
     walls = survey.decide_kinds(surfaces, spaces.rooms)
     surfaces = replace(surfaces, walls=walls)
@@ -193,7 +194,7 @@ def make_plan(
         walls, surfaces.tops_m, registration_sigma_m=settings.merge.registration_sigma_m
     )
     doubtful = [known.needs_a_visit(settings.trust) for known in evidence]
-    free_floor = _find_free_floor(surfaces.bounds, floor, surfaces.unpaired_m)
+    free_floor = _find_free_floor(surfaces.bounds, survey.floor, surfaces.unpaired_m)
     return Plan(
         faces=face_columns,
         walls=plan_tables.wall_columns(walls, evidence, main_rows, doubtful, floor_z_m),
@@ -266,23 +267,30 @@ class _Survey:
     track_m : (k, 2) float64
     views : list of shapely geometry
         What each scan saw free.
-    floor : shapely.MultiPolygon
-        All that was seen free.
+    find_floor : callable
+        Returns all that was seen free, a shapely.MultiPolygon.
+    threads : int
     """
 
     settings: PlanSettings
     rays: RaySet
     track_m: FloatArray
     views: Sequence[BaseGeometry]
-    floor: shapely.MultiPolygon
+    find_floor: Callable[[], shapely.MultiPolygon]
+    threads: int
 
-    def find_surfaces(self, segments: Columns, threads: int) -> _Surfaces:
+    @property
+    def floor(self) -> shapely.MultiPolygon:
+        """All that was seen free."""
+        return self.find_floor()
+
+    def find_surfaces(self, segments: Columns) -> _Surfaces:
         """Return walls with their openings, kinds of openings not yet decided."""
         reading = self.settings.reading
         candidates = merge_segments(segments, self.settings.merge)
         traced = trace_faces(
             *(candidates, self.rays, self.settings.merge, reading, self.settings.furniture),
-            threads=threads,
+            threads=self.threads,
         )
         assemble = functools.partial(
             assemble_walls,
@@ -300,7 +308,10 @@ class _Survey:
         unpaired_m = _usual_thickness_m(walls)
         min_width_m = self.settings.openings.min_opening_m
         walls = opening_kinds.add_windows(
-            walls, self.rays, min_width_m=min_width_m, band_m=reading.band_m
+            *(walls, self.rays),
+            min_width_m=min_width_m,
+            band_m=reading.band_m,
+            threads=self.threads,
         )
         walls, tops_m = half_height.drop_low_surfaces(
             walls,
@@ -334,7 +345,7 @@ class _Survey:
         """Return rooms and what stands in them."""
         min_area_m2 = self.settings.rooms.min_area_m2
         leaves = [leaf.ground for leaf in surfaces.leaves]
-        floor = free_space.union_on_grid([self.floor, *leaves]) if leaves else self.floor
+        floor = self._floor_with(leaves)
         partings = room_bounds.find_partings(
             *(surfaces.bounds, floor, self.track_m),
             max_width_m=self.settings.openings.max_door_m,
@@ -349,8 +360,9 @@ class _Survey:
             min_walled=self.settings.rooms.min_walled,
             min_width_m=self.settings.pairs.max_thickness_m,
             unpaired_m=surfaces.unpaired_m,
-            floor=free_space.union_on_grid([self.floor, *surfaces.furnished]),
+            floor=self._floor_with(surfaces.furnished),
             planar=self.rays.planar,
+            threads=self.threads,
         )
         strips = wall_ground.wall_strips(surfaces.bounds, surfaces.unpaired_m)
         pieces = find_pieces(
@@ -381,7 +393,11 @@ class _Survey:
             ways_m=[leaf.way_m for leaf in surfaces.leaves],
             min_width_m=self.settings.openings.min_opening_m,
             band_m=self.settings.reading.band_m,
+            threads=self.threads,
         )
+
+    def _floor_with(self, grounds: Sequence[BaseGeometry]) -> BaseGeometry:
+        return free_space.union_on_grid([self.floor, *grounds]) if grounds else self.floor
 
     def find_bare_spans(self, surfaces: _Surfaces, spaces: _Spaces) -> list[wall_ground.BareSpan]:
         """Return the spans of rooms' outlines where nothing is drawn, and what each is."""

@@ -14,6 +14,7 @@ from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.tolerances import CORNER_M, END_M
 from scanplan.rays import free_space
 from scanplan.rays.face_raster import CELL_M
+from scanplan.stage import workers
 from scanplan.types import Array, FloatArray
 
 _MARGIN_M = 0.5  # of lines drawn around a part of the floor, and beyond walls as short as a jamb
@@ -64,6 +65,7 @@ def find_rooms(
     unpaired_m: float,
     floor: BaseGeometry | None = None,
     planar: bool = False,
+    threads: int = 1,
 ) -> list[Room]:
     """Find the rooms.
 
@@ -91,6 +93,8 @@ def find_rooms(
     planar : bool
         Whether scans lie in one plane. They look through glass and far out of the building: what of
         a room nobody was in, and hardly any wall bounds, is none of it.
+    threads : int
+        Cores to use.
 
     Returns
     -------
@@ -120,8 +124,13 @@ def find_rooms(
             is_wide = not polygon.buffer(-min_width_m / 2).is_empty
             is_room = is_entered or (walled >= min_walled and is_wide)
             if is_room and polygon.area >= min_area_m2:
-                rooms.append(Room(polygon, walled, is_entered, _count_scans(polygon, views)))
+                rooms.append(Room(polygon, walled, is_entered, n_scans=0))
                 occupied = free_space.union_on_grid([occupied, polygon])
+    all_views = np.array(views, object)
+    counts = workers.map_in_threads(
+        lambda room: _count_scans(room.polygon, all_views), rooms, threads
+    )
+    rooms = [replace(room, n_scans=count) for room, count in zip(rooms, counts, strict=True)]
     return sorted(rooms, key=lambda room: _largest_first(room.polygon))
 
 
@@ -196,9 +205,8 @@ def _largest(geometry: BaseGeometry) -> Polygon | None:
     return max(parts, key=lambda part: part.area, default=None)
 
 
-def _count_scans(polygon: Polygon, views: Sequence[BaseGeometry]) -> int:
+def _count_scans(polygon: Polygon, all_views: Array) -> int:
     """Return how many scans saw a part of a polygon, which is prepared."""
-    all_views = np.array(views, object)
     near = all_views[shapely.intersects(polygon, all_views)]
     seen_m2 = shapely.area(shapely.intersection(polygon, near))
     return int((seen_m2 >= _STEP_M**2).sum())

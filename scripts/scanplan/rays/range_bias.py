@@ -16,6 +16,7 @@ import numpy as np
 from scanplan.geometry.tolerances import ROUNDING
 from scanplan.rays.ray_set import RaySet
 from scanplan.rays.tolerances import ON_M
+from scanplan.stage import workers
 from scanplan.types import BoolArray, Columns, FloatArray, IntArray
 
 _MOST_POINTS = 600_000  # more cost time, and make no estimate better
@@ -130,17 +131,24 @@ def estimate_range_bias(
     return error_m
 
 
-def remove_range_bias(rays: RaySet, error_m: FloatArray, up: FloatArray) -> RaySet:
+def remove_range_bias(
+    rays: RaySet, error_m: FloatArray, up: FloatArray, threads: int = 1
+) -> RaySet:
     """Return rays with ranges shorter by `error_m` (181,), as `estimate_range_bias` returns it."""
     if not error_m.any():
         return rays
     moved = np.empty_like(rays.xyz_m)
-    for rows, sensor_m, axis in zip(rays.rows, rays.sensors_m, up, strict=True):
+
+    def move_scan(scan: tuple[slice, FloatArray, FloatArray]) -> None:
+        rows, sensor_m, axis = scan
         xyz_m = rays.xyz_m[rows]
         way = xyz_m - sensor_m
         range_m = np.maximum(_length(way), ROUNDING)
         way *= (error_m[_degrees(way @ axis / range_m)] / range_m)[:, None]
         np.subtract(xyz_m, way, out=moved[rows])
+
+    scans = zip(rays.rows, rays.sensors_m, up, strict=True)
+    workers.map_in_threads(move_scan, scans, threads)
     return rays.with_points(moved)
 
 

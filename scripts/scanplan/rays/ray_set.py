@@ -12,6 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from scanplan.rays import azimuth_sectors, expected_returns, levels
+from scanplan.stage import workers
 from scanplan.types import FloatArray, IntArray
 
 _TURN = 10.0  # more than a turn, so that the keys of scans do not overlap
@@ -160,7 +161,11 @@ class RaySet:
 
 
 def gather_rays(
-    scans: Iterable[tuple[int, FloatArray]], sensors_m: Mapping[int, FloatArray], *, planar: bool
+    scans: Iterable[tuple[int, FloatArray]],
+    sensors_m: Mapping[int, FloatArray],
+    *,
+    planar: bool,
+    threads: int = 1,
 ) -> RaySet:
     """Sort the points of scans by azimuth.
 
@@ -171,32 +176,37 @@ def gather_rays(
     sensors_m : dict of int to (3,) float
         Sensor's position by `scan_id`.
     planar : bool
+    threads : int
+        Cores to use.
 
     Returns
     -------
     RaySet
         Without points that are not finite.
     """
-    scan_ids, azimuths, points = [], [], []
-    for scan_id, scan_xyz_m in scans:
+
+    def sort_scan(scan: tuple[int, FloatArray]) -> tuple[int, FloatArray, FloatArray]:
+        scan_id, scan_xyz_m = scan
         xyz_m = np.asarray(scan_xyz_m, float)
         if not np.isfinite(xyz_m).all():
             xyz_m = xyz_m[np.isfinite(xyz_m).all(axis=1)]
         way = xyz_m[:, :2] - sensors_m[scan_id][:2]
         azimuth_rad = np.arctan2(way[:, 1], way[:, 0])
         order = _argsort_stably(azimuth_rad)
-        scan_ids.append(scan_id)
-        azimuths.append(azimuth_rad[order])
-        points.append(xyz_m.take(order, axis=0))
-    first = np.cumsum([0, *map(len, points)])
-    xyz_m = np.concatenate([np.empty((0, 3)), *points])
+        return scan_id, azimuth_rad[order], xyz_m.take(order, axis=0)
+
+    gathered = workers.map_in_threads(sort_scan, scans, threads)
+    scan_ids = [scan_id for scan_id, _, _ in gathered]
+    first = np.cumsum([0, *(len(azimuth_rad) for _, azimuth_rad, _ in gathered)])
+    azimuth_rad = np.concatenate([np.empty(0), *(azimuth_rad for _, azimuth_rad, _ in gathered)])
+    xyz_m = np.concatenate([np.empty((0, 3)), *(points_m for _, _, points_m in gathered)])
     # they are as large again
-    points.clear()
+    gathered.clear()
     return RaySet(
         scan_ids=np.array(scan_ids, np.int64),
         sensors_m=np.array([sensors_m[i] for i in scan_ids], float).reshape(-1, 3),
         first=first,
-        azimuth_rad=np.concatenate([np.empty(0), *azimuths]),
+        azimuth_rad=azimuth_rad,
         xyz_m=xyz_m,
         floor_z_m=np.nan if planar else levels.find_floor_z(xyz_m[:, 2]),
         planar=bool(planar),

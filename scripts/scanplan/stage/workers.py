@@ -1,5 +1,6 @@
 """Jobs on several cores, in processes or threads, whose results come back in order."""
 
+import functools
 import multiprocessing
 import sys
 from collections import deque
@@ -96,6 +97,32 @@ def map_in_threads(
         return [function(job) for job in jobs]
     with ThreadPoolExecutor(threads) as executor:
         return list(executor.map(function, jobs))
+
+
+def begin_in_thread(
+    function: Callable[..., Result], *arguments: Any, threads: int
+) -> Callable[[], Result]:
+    """Begin work on large arrays in another thread, where there is a core for it.
+
+    Parameters
+    ----------
+    function : callable
+    *arguments
+        Its arguments.
+    threads : int
+        Of one alone the work is done when it is first asked for.
+
+    Returns
+    -------
+    callable
+        `wait()` returns what the function returned, at every call.
+    """
+    if threads <= 1:
+        return functools.cache(lambda: function(*arguments))
+    with_one = ThreadPoolExecutor(1)
+    begun = with_one.submit(function, *arguments)
+    with_one.shutdown(wait=False)
+    return begun.result
 
 
 @contextmanager
