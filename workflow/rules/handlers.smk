@@ -17,6 +17,18 @@ def is_on_slurm():
     return plugin is not None and plugin.name == "slurm"
 
 
+def free_rate_of_jobs():
+    """Let this machine's jobs begin as soon as cores are free, unless the command limits how many may.
+
+    Snakemake counts those of the last second by timers, the last of which its process waits for at
+    its end: about a second of every run.
+    """
+    limit = workflow.scheduling_settings.max_jobs_per_timespan
+    is_usual = limit is not None and (limit.max_jobs, limit.timespan) == (100, 1)
+    if workflow.local_exec and is_usual:
+        workflow.scheduler.job_rate_limiter = None
+
+
 def end_older_jobs():
     """Leave no job of a killed run at work beside those of this one."""
     ended = slurm_jobs.end_older_jobs(Path.cwd())
@@ -123,6 +135,7 @@ def tell_overview():
 
 onstart:
     or_end(THIS_RUN.begin)
+    free_rate_of_jobs()
     if is_on_slurm():
         or_end(end_older_jobs)
     for name, dataset in GIVEN.items():
