@@ -257,3 +257,33 @@ def test_what_faces_elsewhere_is_no_fit(wall_of_second, reason):
     ]
     limits = {"min_prior_fitness": 0.0, "min_refined_fitness": 0.0, "min_facing_fitness": 0.3}
     assert register(scans, [np.eye(4)] * 2, False, **limits)[1].reason == reason
+
+
+def placed(scan_id, xyz_m, planar):
+    """A scan at the origin, its points as they are."""
+    return constraints.place_scan(
+        scan_id, xyz_m, np.eye(4), np.eye(4), planar=planar, settings=SETTINGS
+    )
+
+
+@pytest.mark.parametrize(("min_facing", "counts_for"), [(0.0, 1.0), (0.5, 1.0), (0.8, 0.625)])
+def test_in_the_plane_an_alignment_counts_by_the_surfaces_that_both_scans_see(
+    min_facing, counts_for
+):
+    """Two walls that both scans see, and as many points that the source alone sees."""
+    along_m = np.arange(0.05, 3, 0.1)
+    zero = np.zeros_like(along_m)
+    both = np.concatenate(
+        [np.column_stack([along_m, zero - 2, zero]), np.column_stack([zero - 2, along_m, zero])]
+    )
+    alone = both + np.array([8.0, 8.0, 0.0])
+    scan, target = placed(1, np.concatenate([both, alone]), True), placed(0, both, True)
+    settings = SequentialSettings(**{**vars(SETTINGS), "min_facing_fitness": min_facing})
+    found = [
+        constraints.measure_constraint(scan, target, "sequence", [0.15], limits)
+        for limits in (settings, SETTINGS)
+    ]
+    assert found[0].fitness == pytest.approx(0.5)
+    np.testing.assert_allclose(
+        found[0].fit.information, counts_for * found[1].fit.information, rtol=1e-9
+    )

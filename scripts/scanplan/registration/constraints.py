@@ -1,7 +1,7 @@
 """Pose-graph constraints: the motion between two scans, measured by aligning one to the other."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -136,6 +136,9 @@ def measure_constraint(
 ) -> PoseConstraint | None:
     """Measure the motion between two scans that are about in place; None without a sound alignment.
 
+    In the plane it counts for less where few points lie on surfaces that face the same way, and for
+    nothing where none does.
+
     Parameters
     ----------
     source, target : PlacedScan
@@ -160,6 +163,12 @@ def measure_constraint(
     world_from_source = target.world_from_cloud @ fit.target_from_source
     aligned = PlacedScan(source.scan_id, source.cloud, world_from_source)
     fitness, rmse_m = measure_facing_overlap(aligned, target, distances_m[-1], settings)
+    if target.cloud.planar and fitness < settings.min_facing_fitness:
+        # the few points that scans through a door share may be paired with other walls than theirs
+        if fitness == 0:
+            return None
+        share = fitness / settings.min_facing_fitness
+        fit = replace(fit, information=share * fit.information)
     return PoseConstraint(source.scan_id, target.scan_id, kind, fitness, rmse_m, fit)
 
 

@@ -99,6 +99,24 @@ class GraphEquations:
             relative, residual, prior_residual, weight, prior_weight, cost + prior_cost
         )
 
+    def errors_by_group(self, state: GraphState, group: IntArray) -> FloatArray:
+        """Return the robust squared errors (g,) of what was measured of poses of each group (n,).
+
+        The priors of a group count as one at most: a localiser that is lost once is so for a while.
+        """
+        # by Geman and McClure a measurement's error follows from its weight
+        error, prior_error = (
+            self.kernel**2 * (1 - np.sqrt(weight)) for weight in (state.weight, state.prior_weight)
+        )
+        n_groups = int(group.max(initial=-1)) + 1
+        source, target = group[self._source], group[self._target]
+        is_between = source != target
+        return (
+            np.minimum(np.bincount(group, prior_error, n_groups), self.kernel**2)
+            + np.bincount(source, error, n_groups)
+            + np.bincount(target[is_between], error[is_between], n_groups)
+        ).astype(float)
+
     def normal_equations(self, state: GraphState) -> tuple[sparse.csc_array, FloatArray]:
         """Return Hessian and gradient of the weighted squared error in the free dimensions."""
         prior_jacobian = self._reduce(_jacobian(state.prior_residual))

@@ -12,7 +12,7 @@ import numpy as np
 
 from scanplan.geometry import se3
 from scanplan.recordings.clouds import Scan
-from scanplan.registration import batches, constraints, multiway, results, sequential
+from scanplan.registration import batches, constraints, multiway, pose_graph, sequential
 from scanplan.registration.batches import CandidateScans
 from scanplan.registration.constraints import PoseConstraint
 from scanplan.registration.drift import drifting_map
@@ -207,7 +207,7 @@ def _drop_unconfirmed(
     apart_m: float,
 ) -> tuple[list[ScanResult], multiway.OptimisedMap]:
     """Drop the anchors that no other scan confirms, and their constraints."""
-    is_inlier = optimised.weight >= results.INLIER_WEIGHT
+    is_inlier = optimised.weight >= pose_graph.INLIER_WEIGHT
     inliers = [edge for edge, inlier in zip(optimised.edges, is_inlier, strict=True) if inlier]
     constrained_ids = [scan_id for edge in inliers for scan_id in (edge.source, edge.target)]
     is_constrained = np.isin(survey.scan_ids, constrained_ids)

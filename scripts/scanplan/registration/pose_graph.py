@@ -12,9 +12,10 @@ from scipy.sparse.linalg import LinearOperator, cg, splu
 
 from scanplan.geometry.tolerances import ROUNDING
 from scanplan.registration.graph_equations import GraphEquations, GraphState, MotionConstraints
-from scanplan.types import FloatArray
+from scanplan.types import BoolArray, FloatArray
 
 _WIDE_KERNELS = (1000.0, 30.0, 3.0)  # times the kernel: at first all measurements count in full
+INLIER_WEIGHT = 0.25  # a measurement `kernel_sigmas` off counts as much: beyond it is an outlier
 _STEP_DONE = 1e-5  # metres and radians: far below what measurements are off by
 
 
@@ -52,7 +53,9 @@ def solve_pose_graph(
 
     The kernel begins so wide that all measurements count and closes in steps (graduated
     non-convexity, Yang et al. 2020): where the start is poor, good measurements look false at
-    first.
+    first. A wide kernel, though, lets a false constraint turn a stretch of scans until all else
+    that was measured of them looks false: a stretch whose priors do begins once more at these, and
+    is left where the error is less.
 
     Parameters
     ----------
@@ -74,16 +77,44 @@ def solve_pose_graph(
     """
     # a millimetre is enough for poses that another solution starts from
     rough_done = 100 * _STEP_DONE
-
     equations = GraphEquations(constraints, priors, prior_information, planar=planar, kernel=kernel)
+
+    def minimise(begin: FloatArray, step_done: float) -> tuple[FloatArray, GraphState]:
+        return _minimise(equations, begin, max_iterations, step_done)
+
     pose = np.array(start, float)
     for width in _WIDE_KERNELS:
         equations.kernel = kernel * width
-        pose, _ = _minimise(equations, pose, max_iterations, rough_done)
+        pose, _ = minimise(pose, rough_done)
     equations.kernel = kernel
     step_done = rough_done if is_start else _STEP_DONE
-    pose, state = _minimise(equations, pose, max_iterations, step_done)
+    pose, state = minimise(pose, step_done)
+    is_doubted = state.prior_weight < INLIER_WEIGHT
+    if is_doubted.any():
+        at_priors, at_state = minimise(_place(is_doubted, priors, pose), rough_done)
+        is_better = is_doubted & _has_less_error(equations, at_state, state, is_doubted)
+        if is_better.any():
+            moved, moved_state = minimise(_place(is_better, at_priors, pose), step_done)
+            if moved_state.cost < state.cost:
+                pose, state = moved, moved_state
     return PoseGraphSolution(pose, state.residual, state.weight, state.prior_weight)
+
+
+def _place(chosen: BoolArray, poses: FloatArray, others: FloatArray) -> FloatArray:
+    """Return the chosen (n,) of some poses (n, 4, 4), and others where they are not."""
+    return np.where(chosen[:, None, None], poses, others)
+
+
+def _has_less_error(
+    equations: GraphEquations, one: GraphState, other: GraphState, is_doubted: BoolArray
+) -> BoolArray:
+    """Return which poses (n,) are of a stretch, all doubted or none, that agrees better in `one`.
+
+    Measurements between two stretches are errors of both.
+    """
+    stretch = np.cumsum(np.diff(is_doubted, prepend=False))
+    error, other_error = (equations.errors_by_group(state, stretch) for state in (one, other))
+    return (error < other_error)[stretch]
 
 
 def _minimise(

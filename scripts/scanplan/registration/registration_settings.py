@@ -38,7 +38,8 @@ class SequentialSettings:
     min_prior_fitness, min_refined_fitness : float
         Share, 0 to 1. Thresholds on the fitness at the localiser's pose and after alignment.
     min_facing_fitness : float
-        Share, 0 to 1. Threshold on the overlap of surfaces that face the same way, in space.
+        Share, 0 to 1. Threshold on the overlap of surfaces that face the same way, in space; in the
+        plane an alignment with less counts for as much less.
     icp_method : str
         A method of `icp.align_clouds`, or `sequential.GIVEN_POSES`.
     icp_targets : int

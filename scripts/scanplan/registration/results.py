@@ -9,11 +9,11 @@ from scanplan.errors import StageError
 from scanplan.geometry import se3
 from scanplan.geometry.tolerances import ROUNDING, SHORTEST_M
 from scanplan.registration.multiway import OptimisedMap
+from scanplan.registration.pose_graph import INLIER_WEIGHT
 from scanplan.registration.sequential import ScanResult
 from scanplan.store import schemas
 from scanplan.types import Array, Columns, FilePath, FloatArray, IntArray
 
-INLIER_WEIGHT = 0.25  # a measurement `kernel_sigmas` off counts as much: beyond it is an outlier
 _FARTHEST_M = SHORTEST_M / np.finfo(np.float32).eps  # single precision resolves no more there
 
 

@@ -14,7 +14,7 @@ from scipy import sparse
 from scipy.sparse.csgraph import dijkstra
 
 from scanplan.geometry import se3, twists
-from scanplan.registration import multiway, results
+from scanplan.registration import multiway, pose_graph
 from scanplan.registration.constraints import PoseConstraint
 from scanplan.registration.drift import recognition
 from scanplan.registration.drift.submaps import Submap
@@ -94,7 +94,7 @@ class LoopCloser:
             if new:
                 self.links += new
                 world_from_cloud, weight = solve(self.constraints(world_from_cloud))
-                is_kept = weight >= results.INLIER_WEIGHT
+                is_kept = weight >= pose_graph.INLIER_WEIGHT
                 self.links = [link for link, kept in zip(self.links, is_kept, strict=True) if kept]
         return self.constraints(world_from_cloud)
 

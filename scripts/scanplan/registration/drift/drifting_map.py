@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from scanplan.registration import multiway, pose_graph, prepared_clouds, results
+from scanplan.registration import multiway, pose_graph, prepared_clouds
 from scanplan.registration.constraints import PoseConstraint, neighbour_reach_m
 from scanplan.registration.drift import closing, folds, odometry, submaps
 from scanplan.registration.graph_equations import MotionConstraints
@@ -69,7 +69,7 @@ def optimise_drifting_poses(
     solution = graph.solve(all_edges)
     weight = solution.weight[: len(all_edges)]
     ends = np.array([multiway.edge_ends(edge) for edge in all_edges], np.int64).reshape(-1, 2)
-    source, target = np.searchsorted(scan_ids, ends[weight >= results.INLIER_WEIGHT]).T
+    source, target = np.searchsorted(scan_ids, ends[weight >= pose_graph.INLIER_WEIGHT]).T
     return multiway.OptimisedMap(
         solution.world_from_scan,
         all_edges,
