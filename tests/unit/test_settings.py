@@ -9,7 +9,7 @@ from helpers.default_settings import SCHEMA, SETTINGS
 from scanplan.errors import StageError
 from scanplan.project.settings import (
     Layer,
-    end_on_faulty_files,
+    end_on_faulty_settings,
     find_origin,
     locate_fault,
     merge_settings,
@@ -268,19 +268,19 @@ def test_a_file_for_the_command_line_is_checked_first(tmp_path, content, said):
         arguments = ["snakemake", "--cores", "2", *given, "--config", "dataset=d"]
         with pytest.MonkeyPatch.context() as patch, pytest.raises(SystemExit) as end:
             patch.chdir(tmp_path)
-            end_on_faulty_files(arguments)
+            end_on_faulty_settings(arguments)
         assert str(end.value).startswith(f"scanplan: {path}: ") and said in str(end.value)
     path.write_text("poses: {keep_every: 2}")
-    end_on_faulty_files(["snakemake", "--configfile", str(path), "--config", "dataset=d"])
+    end_on_faulty_settings(["snakemake", "--configfile", str(path), "--config", "dataset=d"])
 
 
 @pytest.mark.parametrize("option", ["--config", "-C"])
 def test_a_key_of_more_words_is_refused_with_what_to_write(option):
     with pytest.raises(SystemExit) as end:
-        end_on_faulty_files(["snakemake", option, "dataset=d", "plan.rooms.min_area_m2=2", "-n"])
+        end_on_faulty_settings(["snakemake", option, "dataset=d", "plan.rooms.min_area_m2=2", "-n"])
     assert "plan.rooms.min_area_m2 is no name of a section" in str(end.value)
     assert "--config 'plan={rooms: {min_area_m2: 2}}'" in str(end.value)
-    end_on_faulty_files(["snakemake", option, "dataset=d", "plan={rooms: {}}", "-n", "a.b"])
+    end_on_faulty_settings(["snakemake", option, "dataset=d", "plan={rooms: {}}", "-n", "a.b"])
 
 
 def test_a_bomb_of_merge_keys_is_refused_at_once(tmp_path):

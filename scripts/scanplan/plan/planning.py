@@ -344,8 +344,7 @@ class _Survey:
     def find_spaces(self, surfaces: _Surfaces) -> _Spaces:
         """Return rooms and what stands in them."""
         min_area_m2 = self.settings.rooms.min_area_m2
-        leaves = [leaf.ground for leaf in surfaces.leaves]
-        floor = self._floor_with(leaves)
+        floor = self._floor_with([leaf.ground for leaf in surfaces.leaves])
         partings = room_bounds.find_partings(
             *(surfaces.bounds, floor, self.track_m),
             max_width_m=self.settings.openings.max_door_m,
@@ -372,7 +371,7 @@ class _Survey:
             hidden=surfaces.furnished,
         )
         if self.rays.planar:
-            seen = free_space.union_on_grid([self.floor, *(piece.outline for piece in pieces)])
+            seen = self._floor_with([piece.outline for piece in pieces])
             rooms = leave_out_unseen(
                 *(rooms, seen, surfaces.bounds, self.track_m),
                 min_area_m2=min_area_m2,
@@ -396,9 +395,6 @@ class _Survey:
             threads=self.threads,
         )
 
-    def _floor_with(self, grounds: Sequence[BaseGeometry]) -> BaseGeometry:
-        return free_space.union_on_grid([self.floor, *grounds]) if grounds else self.floor
-
     def find_bare_spans(self, surfaces: _Surfaces, spaces: _Spaces) -> list[wall_ground.BareSpan]:
         """Return the spans of rooms' outlines where nothing is drawn, and what each is."""
         areas = [room.polygon for room in spaces.rooms]
@@ -412,6 +408,9 @@ class _Survey:
             max_width_m=self.settings.openings.max_opening_m,
             band_m=self.settings.reading.band_m,
         )
+
+    def _floor_with(self, grounds: Sequence[BaseGeometry]) -> BaseGeometry:
+        return free_space.union_on_grid([self.floor, *grounds]) if grounds else self.floor
 
 
 def _usual_thickness_m(walls: list[PlanWall]) -> float:

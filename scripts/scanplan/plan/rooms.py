@@ -108,7 +108,7 @@ def find_rooms(
     track = np.asarray(shapely.points(track_m), object)
     way = _draw_way(track_m)
     facing = wall_ground.ground_before(walls, unpaired_m)
-    rooms: list[Room] = []
+    found: list[tuple[Polygon, float, bool]] = []
     occupied: BaseGeometry = MultiPolygon()
     for part in _large_parts(seen, min_area_m2):
         drawn, outline = _draw_room(part, track, walls, strips, solid, occupied, unpaired_m)
@@ -124,13 +124,11 @@ def find_rooms(
             is_wide = not polygon.buffer(-min_width_m / 2).is_empty
             is_room = is_entered or (walled >= min_walled and is_wide)
             if is_room and polygon.area >= min_area_m2:
-                rooms.append(Room(polygon, walled, is_entered, n_scans=0))
+                found.append((polygon, walled, is_entered))
                 occupied = free_space.union_on_grid([occupied, polygon])
     all_views = np.array(views, object)
-    counts = workers.map_in_threads(
-        lambda room: _count_scans(room.polygon, all_views), rooms, threads
-    )
-    rooms = [replace(room, n_scans=count) for room, count in zip(rooms, counts, strict=True)]
+    counts = workers.map_in_threads(lambda of: _count_scans(of[0], all_views), found, threads)
+    rooms = [Room(*of, count) for of, count in zip(found, counts, strict=True)]
     return sorted(rooms, key=lambda room: _largest_first(room.polygon))
 
 

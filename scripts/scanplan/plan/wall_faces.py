@@ -12,8 +12,7 @@ from scanplan.geometry.lines import Line
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.plan_wall import InferredFace, PlanWall
 from scanplan.plan.tolerances import END_M
-from scanplan.rays.face_raster import CELL_M
-from scanplan.rays.tolerances import STRETCH_M
+from scanplan.rays.face_raster import CELL_M, find_stretches
 
 _INSIDE_M = 0.01  # a face this near to a wall's surface is not in it: rounding of places and angles
 
@@ -137,10 +136,8 @@ def _without_open(
     open_m: list[Extent] = []
     for seen in wall.lines:
         raster = seen.raster
-        steps = np.diff(np.concatenate([[0], raster.is_opened(door_height_m), [0]]))
-        edges_m = raster.first_m + CELL_M * np.flatnonzero(steps).reshape(-1, 2)
-        for edges in edges_m[np.ptp(edges_m, axis=1) >= STRETCH_M]:
-            low_m, high_m = np.sort(line.along_m(seen.line.at(edges))).tolist()
+        for ends_m in find_stretches(raster.is_opened(door_height_m), raster.first_m):
+            low_m, high_m = np.sort(line.along_m(seen.line.at(ends_m))).tolist()
             if not any(low_m < end_m and high_m > begin_m for begin_m, end_m in taken_m):
                 open_m.append((low_m, high_m))
     if not open_m:

@@ -172,10 +172,11 @@ def locate_fault(fault: str, layers: Sequence[Layer]) -> str:
     return f"{origin}: {fault}" if origin else fault
 
 
-def end_on_faulty_files(arguments: Sequence[str]) -> None:
-    """End the process in one line if a file for --configfile cannot be settings of a run.
+def end_on_faulty_settings(arguments: Sequence[str]) -> None:
+    """End the process in one line if what a command gives cannot be settings of a run.
 
-    Nor can a key of more words for --config, which Snakemake meets with a traceback.
+    A file for --configfile that holds none, or a key of more words for --config, which Snakemake
+    meets with a traceback.
 
     Parameters
     ----------

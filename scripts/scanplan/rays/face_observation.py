@@ -13,7 +13,7 @@ from scanplan.rays import expected_returns, face_raster
 from scanplan.rays.face_raster import CELL_M, FaceRaster
 from scanplan.rays.face_rays import FaceRays, cast_at_face
 from scanplan.rays.ray_set import RaySet
-from scanplan.rays.tolerances import BEHIND_M, FEW, SKIRTING_M, STRETCH_M
+from scanplan.rays.tolerances import BEHIND_M, FEW, SKIRTING_M
 from scanplan.types import FloatArray, IntArray
 
 _MOST_SHARE = 0.5  # of rays return from any wall; of a pane's length has a frame
@@ -173,9 +173,7 @@ def _find_glass(rays: RaySet, face: FaceRays, low_m: float, high_m: float) -> Fl
             sent = expected_returns.count_sent_rays(rays, face, low_m, count, CELL_M, heights_m)
             reached, returned, _ = sent.reached(least_scans=FEW)
             is_lost &= returned < _MOST_SHARE * reached
-    steps = np.diff(np.concatenate([[False], is_lost, [False]]).astype(np.int8))
-    spans_m = (low_m + CELL_M * np.flatnonzero(steps)).reshape(-1, 2)
-    return spans_m[np.diff(spans_m, axis=1)[:, 0] >= STRETCH_M]
+    return face_raster.find_stretches(is_lost, low_m)
 
 
 def _between(places_m: FloatArray, low_m: float, high_m: float) -> slice:

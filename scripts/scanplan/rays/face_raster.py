@@ -143,6 +143,23 @@ class FaceRaster:
         return Cells(self.column_of(along_m), 0 * row if self.planar else row)
 
 
+def find_stretches(is_found: BoolArray, first_m: float) -> FloatArray:
+    """Return the stretches (n, 2) along a line of neighbouring columns where something is found.
+
+    Shorter ones than `STRETCH_M` are left out.
+
+    Parameters
+    ----------
+    is_found : (c,) bool
+        Of each column, `CELL_M` wide.
+    first_m : float
+        Where the first column begins.
+    """
+    steps = np.diff(np.concatenate([[False], is_found, [False]]).astype(np.int8))
+    stretches_m = (first_m + CELL_M * np.flatnonzero(steps)).reshape(-1, 2)
+    return stretches_m[np.diff(stretches_m, axis=1)[:, 0] >= STRETCH_M]
+
+
 def highest_of_each(cell: IntArray, height_m: FloatArray, n_cells: int) -> FloatArray:
     """Return the greatest of heights (n,) in each of some cells; minus infinity without any."""
     top_m = np.full(n_cells, -np.inf)

@@ -41,8 +41,8 @@ class GraphState:
         target_from_source of the poses.
     residual, prior_residual : (m, 6), (n, 6) float64
     weight, prior_weight : (m,), (n,) float64
-    cost : float
-        Robust squared error.
+    error, prior_error : (m,), (n,) float64
+        Robust squared errors.
     """
 
     relative: FloatArray
@@ -50,7 +50,13 @@ class GraphState:
     prior_residual: FloatArray
     weight: FloatArray
     prior_weight: FloatArray
-    cost: float
+    error: FloatArray
+    prior_error: FloatArray
+
+    @property
+    def cost(self) -> float:
+        """Robust squared error of all measurements."""
+        return float(self.error.sum()) + float(self.prior_error.sum())
 
 
 class GraphEquations:
@@ -93,10 +99,10 @@ class GraphEquations:
         relative = se3.invert_pose(pose[self._target]) @ pose[self._source]
         residual = twists.motion_to_twist(self._source_from_target @ relative)
         prior_residual = twists.motion_to_twist(self._scan_from_world @ pose)
-        weight, cost = self._robust(residual, self._information)
-        prior_weight, prior_cost = self._robust(prior_residual, self._prior_information)
+        weight, error = self._robust(residual, self._information)
+        prior_weight, prior_error = self._robust(prior_residual, self._prior_information)
         return GraphState(
-            relative, residual, prior_residual, weight, prior_weight, cost + prior_cost
+            relative, residual, prior_residual, weight, prior_weight, error, prior_error
         )
 
     def errors_by_group(self, state: GraphState, group: IntArray) -> FloatArray:
@@ -104,17 +110,13 @@ class GraphEquations:
 
         The priors of a group count as one at most: a localiser that is lost once is so for a while.
         """
-        # by Geman and McClure a measurement's error follows from its weight
-        error, prior_error = (
-            self.kernel**2 * (1 - np.sqrt(weight)) for weight in (state.weight, state.prior_weight)
-        )
         n_groups = int(group.max(initial=-1)) + 1
         source, target = group[self._source], group[self._target]
         is_between = source != target
         return (
-            np.minimum(np.bincount(group, prior_error, n_groups), self.kernel**2)
-            + np.bincount(source, error, n_groups)
-            + np.bincount(target[is_between], error[is_between], n_groups)
+            np.minimum(np.bincount(group, state.prior_error, n_groups), self.kernel**2)
+            + np.bincount(source, state.error, n_groups)
+            + np.bincount(target[is_between], state.error[is_between], n_groups)
         ).astype(float)
 
     def normal_equations(self, state: GraphState) -> tuple[sparse.csc_array, FloatArray]:
@@ -152,12 +154,14 @@ class GraphEquations:
         """Return the free dimensions of matrices (m, 6, 6)."""
         return matrices[:, self._dimensions[:, None], self._dimensions]
 
-    def _robust(self, residual: FloatArray, information: FloatArray) -> tuple[FloatArray, float]:
-        """Return weights (m,) and the robust squared error (Geman and McClure)."""
+    def _robust(
+        self, residual: FloatArray, information: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return weights and robust squared errors, (m,) each (Geman and McClure)."""
         reduced = residual[:, self._dimensions]
         squared = np.einsum("ni,nij,nj->n", reduced, information, reduced)
         share = self.kernel**2 / (self.kernel**2 + squared)
-        return share**2, float((squared * share).sum())
+        return share**2, squared * share
 
 
 def _jacobian(residual: FloatArray) -> FloatArray:

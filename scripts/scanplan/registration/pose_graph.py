@@ -94,9 +94,8 @@ def solve_pose_graph(
         at_priors, at_state = minimise(_place(is_doubted, priors, pose), rough_done)
         is_better = is_doubted & _has_less_error(equations, at_state, state, is_doubted)
         if is_better.any():
-            moved, moved_state = minimise(_place(is_better, at_priors, pose), step_done)
-            if moved_state.cost < state.cost:
-                pose, state = moved, moved_state
+            again = minimise(_place(is_better, at_priors, pose), step_done)
+            pose, state = min((pose, state), again, key=lambda found: found[1].cost)
     return PoseGraphSolution(pose, state.residual, state.weight, state.prior_weight)
 
 
