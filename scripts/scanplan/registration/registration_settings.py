@@ -42,8 +42,9 @@ class SequentialSettings:
         plane an alignment with less counts for as much less.
     icp_method : str
         A method of `icp.align_clouds`, or `sequential.GIVEN_POSES`.
-    icp_targets : int
-        A scan is aligned to this many of the last retained scans.
+    icp_targets, icp_targets_planar : int
+        A scan is aligned to this many retained scans: in space evenly chosen among the last
+        `n_previous`, in the plane the last ones.
     icp_distances_m : sequence of float
         Metres. Largest distance of corresponding points: in the rough, then in the fine alignment.
     icp_max_iterations : int
@@ -75,6 +76,7 @@ class SequentialSettings:
     min_facing_fitness: float
     icp_method: str
     icp_targets: int
+    icp_targets_planar: int
     icp_distances_m: Sequence[float]
     icp_max_iterations: int
     max_correction_m: float

@@ -226,8 +226,7 @@ class SequentialRegistrar(ScanRegistrar):
         prior_fitness, _ = self.measure_overlap(scan, comparable)
         if prior_fitness < settings.min_prior_fitness:
             return ScanResult(False, "low_prior_fitness", prior, prior_fitness), []
-        targets = list(previous)[: -settings.icp_targets - 1 : -1]
-        refined, edges = constraints.refine_scan(scan, targets, settings)
+        refined, edges = constraints.refine_scan(scan, self._choose_targets(previous), settings)
         if refined is None:
             return ScanResult(False, "icp_diverged", prior, prior_fitness), []
         fitness, rmse_m = self.measure_overlap(refined, comparable)
@@ -237,6 +236,20 @@ class SequentialRegistrar(ScanRegistrar):
         return ScanResult(
             True, "kept", refined.world_from_cloud @ level_from_sensor, *figures
         ), edges
+
+    def _choose_targets(self, previous: Sequence[PlacedScan]) -> list[PlacedScan]:
+        """Return the scans to align to, the last one first.
+
+        In space they are evenly chosen among the previous: one farther back holds the drift of a
+        chain of alignments. In the plane they are the last ones: walls that a scan shows of a few
+        points each are soon out of view.
+        """
+        newest = list(previous)[::-1]
+        if self.planar:
+            return newest[: self.settings.icp_targets_planar]
+        n_targets = min(self.settings.icp_targets, len(newest))
+        rows = np.linspace(0, len(newest) - 1, n_targets).round().astype(int)
+        return [newest[row] for row in rows]
 
     def _search(self, scan: PlacedScan) -> PlacedScan | None:
         """Return a scan where its walls lie on those of the scans before it, by correlation.

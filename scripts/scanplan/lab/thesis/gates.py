@@ -25,6 +25,7 @@ _MOST_PAIRS = 40  # of successive scans, over the whole drive
 _WITHOUT_LIMITS = {
     "compare_with": BY_RETAINED,
     "icp_targets": 1,
+    "icp_targets_planar": 1,
     "previous_apart_m": np.inf,
     "previous_turn_deg": np.inf,
     "min_facing_fitness": 0.0,
