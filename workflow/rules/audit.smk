@@ -10,7 +10,7 @@ rule measure_crispness:
         "logs/{dataset}/measure_crispness.log",
     benchmark:
         "benchmarks/{dataset}/measure_crispness.tsv"
-    # the plan does not wait for it: it goes beside a stage that leaves a core free
+    # the plan does not wait for it: on two cores it goes beside the plan's validation
     priority: -1
     threads: 1
     resources:
