@@ -59,6 +59,25 @@ def test_two_fans_are_cut_each_at_its_own_mouth():
     assert left.symmetric_difference(ROOM).area < 0.3
 
 
+def test_two_fans_that_meet_outside_are_cut_together():
+    """What they enclose nobody saw: their mouth leads over it."""
+    arms = Polygon([(6, 0.5), (6, 1.1), (14.7, 2), (6, 2.9), (6, 3.5), (16, 2.3), (16, 1.7)])
+    walls = ROOM.exterior.difference(LineString([(6, 0.5), (6, 3.5)]))
+    whole = shapely.union(ROOM, arms)
+    assert len(whole.interiors) == 1
+    assert cut(whole, walls).symmetric_difference(ROOM).area < 0.2
+
+
+def test_a_mouth_does_not_lead_over_a_hole_with_walls():
+    """A corridor around a block, whose far end shows no walls but the block's."""
+    block = box(2, 1, 7, 3)
+    corridor = box(0, 0, 12, 4).difference(block)
+    near = LineString([(5, 4), (0, 4), (0, 0), (5, 0)])
+    way = LineString([(1, 0.5), (1, 3.5)])
+    assert cut(corridor, shapely.union(near, block.exterior), visited=way).equals(corridor)
+    assert cut(corridor, near, visited=way).area < corridor.area / 2
+
+
 def test_ground_without_any_wall_is_all_that_is_known():
     whole = shapely.union(ROOM, FAN)
     assert cut(whole, LineString(), visited=shapely.union(INSIDE, FAN.centroid)).area > 20

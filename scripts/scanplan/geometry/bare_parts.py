@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 import shapely
-from shapely.geometry import Polygon
+from shapely.geometry import LinearRing, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry.tolerances import SHORTEST_M
@@ -23,7 +23,8 @@ def cut_bare_parts(
 
     A mouth is a straight line to where the outline passes nearest, from a corner of it that points
     inwards, or from where a wall ends. It is worth a cut if the bare outline that it takes away is
-    longer than twice the mouth and the walls that go with it: what lies in a corner is not.
+    longer than twice the mouth and the walls that go with it: what lies in a corner is not. A mouth
+    may lead over a hole whose outline is as bare: two fans that meet outside enclose one.
 
     Parameters
     ----------
@@ -76,12 +77,8 @@ def _find_bare_parts(
     step_m: float,
 ) -> Iterator[Polygon]:
     """Yield bare parts of ground that do not overlap, those that are worth most first."""
-    ring = shapely.orient_polygons(ground).exterior
-    places_m = shapely.get_coordinates(shapely.segmentize(ring, step_m))[:-1]
-    steps_m = np.roll(places_m, -1, axis=0) - places_m
-    middle_m = places_m + steps_m / 2
-    length_m = np.hypot(*steps_m.T)
-    is_walled = shapely.contains_xy(walled, *middle_m.T)
+    oriented = shapely.orient_polygons(ground)
+    places_m, steps_m, length_m, is_walled = _sample_ring(oriented.exterior, walled, step_m)
     may_begin = _points_inwards(steps_m) | (is_walled != np.roll(is_walled, 1))
     begin, end, chord_m = _find_mouths(places_m, np.flatnonzero(may_begin))
     walled_m = _between(np.where(is_walled, length_m, 0), begin, end)
@@ -90,7 +87,8 @@ def _find_bare_parts(
     is_bare = (worth_m > step_m) & (walled_m <= max_walled * (walled_m + bare_m))
     rows = np.flatnonzero(is_bare)
     chords = shapely.linestrings(np.stack([places_m[begin[rows]], places_m[end[rows]]], axis=1))
-    inner = ground.buffer(SHORTEST_M)
+    holes = [hole for hole in ground.interiors if _walled_share(hole, walled, step_m) > max_walled]
+    inner = Polygon(ground.exterior, holes).buffer(SHORTEST_M)
     shapely.prepare(inner)
     rows = rows[shapely.covers(inner, chords)]
     is_taken = np.zeros(len(places_m), bool)
@@ -102,6 +100,25 @@ def _find_bare_parts(
         if part.is_valid and not visited.intersects(part):
             is_taken[chain] = True
             yield part
+
+
+def _sample_ring(
+    ring: LinearRing, walled: BaseGeometry, step_m: float
+) -> tuple[FloatArray, FloatArray, FloatArray, BoolArray]:
+    """Return places (n, 2) along a ring, the steps (n, 2) from each to the next, and their lengths.
+
+    The last (n,) is which of the steps lie in ground before walls.
+    """
+    places_m = shapely.get_coordinates(shapely.segmentize(ring, step_m))[:-1]
+    steps_m = np.roll(places_m, -1, axis=0) - places_m
+    is_walled = shapely.contains_xy(walled, *(places_m + steps_m / 2).T)
+    return places_m, steps_m, np.hypot(*steps_m.T), is_walled
+
+
+def _walled_share(ring: LinearRing, walled: BaseGeometry, step_m: float) -> float:
+    """Return the share of a ring that lies in ground before walls."""
+    _, _, length_m, is_walled = _sample_ring(ring, walled, step_m)
+    return float(length_m[is_walled].sum() / length_m.sum())
 
 
 def _points_inwards(steps_m: FloatArray) -> BoolArray:
