@@ -86,6 +86,12 @@ def _find_bare_parts(
     worth_m = bare_m - walled_m - 2 * chord_m
     is_bare = (worth_m > step_m) & (walled_m <= max_walled * (walled_m + bare_m))
     rows = np.flatnonzero(is_bare)
+    chains = [_chain(b, e, len(places_m)) for b, e in zip(begin[rows].tolist(), end[rows].tolist(), strict=True)]
+    around_m = shapely.length(shapely.convex_hull(np.array([shapely.LineString(places_m[c]) for c in chains], object)))
+    bare_m[rows] = np.minimum(bare_m[rows], around_m - chord_m[rows] - walled_m[rows])
+    worth_m = bare_m - walled_m - 2 * chord_m
+    is_bare = (worth_m > step_m) & (walled_m <= max_walled * (walled_m + bare_m))
+    rows = np.flatnonzero(is_bare)
     chords = shapely.linestrings(np.stack([places_m[begin[rows]], places_m[end[rows]]], axis=1))
     holes = [hole for hole in ground.interiors if _walled_share(hole, walled, step_m) > max_walled]
     inner = Polygon(ground.exterior, holes).buffer(SHORTEST_M)
