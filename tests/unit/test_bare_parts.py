@@ -68,6 +68,17 @@ def test_two_fans_that_meet_outside_are_cut_together():
     assert cut(whole, walls).symmetric_difference(ROOM).area < 0.2
 
 
+def test_a_room_whose_far_sides_are_jagged_stays():
+    """Edges of shadows make its outline long, and not what it leaves open."""
+    depth_m = np.tile([0.3, 0.0], 6)[:11]
+    end = np.column_stack([9 - depth_m, np.linspace(-0.5, 4.5, 13)[1:-1]])
+    side = np.column_stack([np.linspace(9, 6, 13)[1:-1], 4.5 - depth_m])
+    beyond = Polygon([(6, -0.5), (9, -0.5), *end, (9, 4.5), *side, (6, 4.5)])
+    whole = shapely.union(ROOM, beyond)
+    left = cut(whole, shapely.union(WALLS, LineString([(6, -0.5), (9, -0.5)])))
+    assert left.area == pytest.approx(whole.area, abs=0.1)
+
+
 def test_a_mouth_does_not_lead_over_a_hole_with_walls():
     """A corridor around a block, whose far end shows no walls but the block's."""
     block = box(2, 1, 7, 3)

@@ -7,7 +7,7 @@ import shapely
 from shapely.geometry import LinearRing, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from scanplan.geometry.tolerances import SHORTEST_M
+from scanplan.geometry.tolerances import ROUNDING, SHORTEST_M
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 
@@ -83,22 +83,21 @@ def _find_bare_parts(
     begin, end, chord_m = _find_mouths(places_m, np.flatnonzero(may_begin))
     walled_m = _between(np.where(is_walled, length_m, 0), begin, end)
     bare_m = _between(np.where(is_walled, 0, length_m), begin, end)
-    worth_m = bare_m - walled_m - 2 * chord_m
-    is_bare = (worth_m > step_m) & (walled_m <= max_walled * (walled_m + bare_m))
-    rows = np.flatnonzero(is_bare)
-    chains = [_chain(b, e, len(places_m)) for b, e in zip(begin[rows].tolist(), end[rows].tolist(), strict=True)]
-    around_m = shapely.length(shapely.convex_hull(np.array([shapely.LineString(places_m[c]) for c in chains], object)))
-    bare_m[rows] = np.minimum(bare_m[rows], around_m - chord_m[rows] - walled_m[rows])
-    worth_m = bare_m - walled_m - 2 * chord_m
-    is_bare = (worth_m > step_m) & (walled_m <= max_walled * (walled_m + bare_m))
-    rows = np.flatnonzero(is_bare)
+    rows = _find_worthy(bare_m, walled_m, chord_m, max_walled, step_m)
     chords = shapely.linestrings(np.stack([places_m[begin[rows]], places_m[end[rows]]], axis=1))
     holes = [hole for hole in ground.interiors if _walled_share(hole, walled, step_m) > max_walled]
     inner = Polygon(ground.exterior, holes).buffer(SHORTEST_M)
     shapely.prepare(inner)
     rows = rows[shapely.covers(inner, chords)]
+    begin, end = begin[rows], end[rows]
+    chord_m, walled_m, bare_m = chord_m[rows], walled_m[rows], bare_m[rows]
+    # what jagged edges of shadows leave open is no more than a line around them
+    hull_m = _hull_length_m(places_m, begin, end)
+    bare_m = np.minimum(bare_m, hull_m - chord_m - walled_m)
+    worth = (bare_m - walled_m) / chord_m
+    worthy = _find_worthy(bare_m, walled_m, chord_m, max_walled, step_m)
     is_taken = np.zeros(len(places_m), bool)
-    for row in rows[np.argsort(-worth_m[rows] / chord_m[rows], kind="stable")].tolist():
+    for row in worthy[np.argsort(-worth[worthy], kind="stable")].tolist():
         chain = _chain(int(begin[row]), int(end[row]), len(places_m))
         if is_taken[chain].any():
             continue
@@ -129,10 +128,15 @@ def _walled_share(ring: LinearRing, walled: BaseGeometry, step_m: float) -> floa
 
 def _points_inwards(steps_m: FloatArray) -> BoolArray:
     """Return at which places (n,) of an outline, counterclockwise, ground has a corner in it."""
+    # a tenth of a radian: flatter ones are of the outline's noise
+    return _turns(steps_m) < -0.1
+
+
+def _turns(steps_m: FloatArray) -> FloatArray:
+    """Return the sines (n,) of the turns of an outline, at the places where its steps begin."""
     before_m = np.roll(steps_m, 1, axis=0)
     turn = before_m[:, 0] * steps_m[:, 1] - before_m[:, 1] * steps_m[:, 0]
-    # a tenth of a radian: flatter ones are of the outline's noise
-    return turn < -0.1 * np.hypot(*steps_m.T) * np.hypot(*before_m.T)
+    return turn / (np.hypot(*steps_m.T) * np.hypot(*before_m.T))
 
 
 def _find_mouths(places_m: FloatArray, corners: IntArray) -> tuple[IntArray, IntArray, FloatArray]:
@@ -150,6 +154,25 @@ def _between(length_m: FloatArray, begin: IntArray, end: IntArray) -> FloatArray
     sums_m = np.concatenate([[0.0], np.cumsum(length_m)])
     along_m = sums_m[end] - sums_m[begin]
     return np.where(end < begin, along_m + sums_m[-1], along_m)
+
+
+def _find_worthy(
+    bare_m: FloatArray, walled_m: FloatArray, chord_m: FloatArray, max_walled: float, least_m: float
+) -> IntArray:
+    """Return which mouths (k,) are worth a cut, see `cut_bare_parts`."""
+    is_worth = bare_m - walled_m - 2 * chord_m > least_m
+    return np.flatnonzero(is_worth & (walled_m <= max_walled * (walled_m + bare_m)))
+
+
+def _hull_length_m(places_m: FloatArray, begin: IntArray, end: IntArray) -> FloatArray:
+    """Return how far (k,) it is around the places of a ring from one to another."""
+    # places on straight edges are most, and change no hull
+    is_corner = np.abs(_turns(np.roll(places_m, -1, axis=0) - places_m)) > ROUNDING
+    is_corner[[*begin, *end]] = True
+    corners_m, number = places_m[is_corner], np.cumsum(is_corner) - 1
+    pairs = zip(number[begin].tolist(), number[end].tolist(), strict=True)
+    chains = [shapely.linestrings(corners_m[_chain(*pair, len(corners_m))]) for pair in pairs]
+    return shapely.length(shapely.convex_hull(np.array(chains, object)))
 
 
 def _chain(begin: int, end: int, count: int) -> IntArray:

@@ -48,7 +48,6 @@ TABLES = {
     "furniture": schemas.FURNITURE,
 }
 """The tables of a plan by the names of their files."""
-_ROVER_M = 0.2  # half the width of what carries a sensor through doors, at least
 _THICKNESS_M = 0.1  # of a partition, where no wall shows both sides
 
 
@@ -177,8 +176,12 @@ def make_plan(
     )
     rays = range_bias.remove_range_bias(rays, errors_m, up, threads)
     views = free_space.free_polygons(rays, threads)
-    driven = _driven_ground(track_m, settings.openings.max_door_m) if rays.planar else []
-    floors = [*views, *driven]
+    openings = settings.openings
+    driven = free_space.driven_ground(
+        track_m, width_m=openings.min_opening_m, max_step_m=openings.max_door_m
+    )
+    # in space beams of other elevations see the floor beside a chair
+    floors = [*views, *driven] if rays.planar else views
     find_floor = workers.begin_in_thread(free_space.union_on_grid, floors, threads=threads)
     survey = _Survey(settings, rays, track_m, views, find_floor, threads)
     surfaces = survey.find_surfaces(segments)
@@ -414,16 +417,6 @@ class _Survey:
 
     def _floor_with(self, grounds: Sequence[BaseGeometry]) -> BaseGeometry:
         return free_space.union_on_grid([self.floor, *grounds]) if grounds else self.floor
-
-
-def _driven_ground(track_m: FloatArray, max_step_m: float) -> list[BaseGeometry]:
-    """Return the ground between places (k, 2) where sensors were, one after the other.
-
-    Nothing stood there, whatever shadows of chairs and of people leave of it unseen. From one place
-    to another farther off the way is not known.
-    """
-    steps = shapely.linestrings(np.stack([track_m[:-1], track_m[1:]], axis=1))
-    return list(shapely.buffer(steps[shapely.length(steps) <= max_step_m], _ROVER_M))
 
 
 def _usual_thickness_m(walls: list[PlanWall]) -> float:

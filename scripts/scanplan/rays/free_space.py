@@ -109,6 +109,25 @@ def _star(origin_m: FloatArray, azimuth_rad: FloatArray, way_m: FloatArray) -> M
     return union_on_grid(open_polygons(star, 2 * _SIMPLIFY_M))
 
 
+def driven_ground(track_m: FloatArray, *, width_m: float, max_step_m: float) -> list[Polygon]:
+    """Return the ground that was driven over between places, one after the other.
+
+    Nothing stood there, whatever shadows of chairs and of people leave of it unseen.
+
+    Parameters
+    ----------
+    track_m : (n, 2) float64
+        Where sensors were, in order.
+    width_m : float
+        Of what carried them, at least.
+    max_step_m : float
+        Between places farther apart the way is not known.
+    """
+    is_known = np.hypot(*np.diff(track_m, axis=0).T) <= max_step_m
+    steps_m = np.stack([track_m[:-1], track_m[1:]], axis=1)[is_known]
+    return [shapely.LineString(step_m).buffer(width_m / 2) for step_m in steps_m]
+
+
 def union_on_grid(polygons: Sequence[BaseGeometry]) -> MultiPolygon:
     """Return the union of polygons, polygons whose corners are on a grid of a millimetre."""
     return (
