@@ -294,6 +294,15 @@ def order_settings(wildcards):
     )
 
 
+def ordering_threads(wildcards):
+    """The plan's own ordering, a second's work, keeps what can wait from beginning beside it.
+
+    The extraction that follows would wait for a core.
+    """
+    method = DATASETS[wildcards.dataset].settings["plan"]["method"]
+    return 2 if wildcards.method == method else 1
+
+
 def of_dataset(dataset, files):
     """A dataset's recordings or truth: results of a simulated one, else files of the user, whom no module's prefix concerns."""
     return list(files) if dataset.building else list(map(local, files))

@@ -42,15 +42,6 @@ rule build_visibility:
         "../../scripts/build_visibility.py"
 
 
-def ordering_threads(wildcards):
-    """The plan's own ordering, a second's work, keeps what can wait from beginning beside it.
-
-    The extraction that follows would wait for a core.
-    """
-    method = DATASETS[wildcards.dataset].settings["plan"]["method"]
-    return 2 if wildcards.method == method else 1
-
-
 rule order_scans:
     """Order the scans by how much each adds to what those before it show."""
     input:
