@@ -136,7 +136,8 @@ def _turns(steps_m: FloatArray) -> FloatArray:
     """Return the sines (n,) of the turns of an outline, at the places where its steps begin."""
     before_m = np.roll(steps_m, 1, axis=0)
     turn = before_m[:, 0] * steps_m[:, 1] - before_m[:, 1] * steps_m[:, 0]
-    return turn / (np.hypot(*steps_m.T) * np.hypot(*before_m.T))
+    lengths_m2 = np.hypot(*steps_m.T) * np.hypot(*before_m.T)
+    return np.divide(turn, lengths_m2, out=np.zeros_like(turn), where=lengths_m2 > 0)
 
 
 def _find_mouths(places_m: FloatArray, corners: IntArray) -> tuple[IntArray, IntArray, FloatArray]:
