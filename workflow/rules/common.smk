@@ -299,8 +299,7 @@ def ordering_threads(wildcards):
 
     The extraction that follows would wait for a core.
     """
-    method = DATASETS[wildcards.dataset].settings["plan"]["method"]
-    return 2 if wildcards.method == method else 1
+    return 2 if wildcards.method == plan_method(wildcards) else 1
 
 
 def of_dataset(dataset, files):
@@ -333,10 +332,14 @@ def true_poses(wildcards):
     return of_dataset(dataset, or_end(find_truth, dataset))[1]
 
 
+def plan_method(wildcards):
+    """What orders the scans whose first make the plan."""
+    return DATASETS[wildcards.dataset].settings["plan"]["method"]
+
+
 def plan_selection(wildcards):
     """The ordering whose first scans make the plan."""
-    method = DATASETS[wildcards.dataset].settings["plan"]["method"]
-    return f"results/{wildcards.dataset}/selection/{method}.parquet"
+    return f"results/{wildcards.dataset}/selection/{plan_method(wildcards)}.parquet"
 
 
 def plan_table(table):

@@ -52,7 +52,7 @@ def run_times(orderings, extractors=(), comparing=()):
     """A param function: Snakemake's measurements of the stages of a report, in their order."""
 
     def measured(wildcards):
-        of_plan = DATASETS[wildcards.dataset].settings["plan"]["method"]
+        of_plan = plan_method(wildcards)
         ordered = [m for m in METHODS if m in orderings or m == of_plan]
         tables = {table for m in ordered for table in methods.METHODS[m].tables}
         stages = [

@@ -23,8 +23,9 @@ def cut_bare_parts(
 
     A mouth is a straight line to where the outline passes nearest, from a corner of it that points
     inwards, or from where a wall ends. It is worth a cut if the bare outline that it takes away is
-    longer than twice the mouth and the walls that go with it: what lies in a corner is not. A mouth
-    may lead over a hole whose outline is as bare: two fans that meet outside enclose one.
+    longer than twice the mouth and the walls that go with it: what lies in a corner is not. Of
+    jagged outline no more counts than of a line around it. A mouth may lead over a hole whose
+    outline is as bare: two fans that meet outside enclose one.
 
     Parameters
     ----------
@@ -69,6 +70,19 @@ def take_visited(ground: BaseGeometry, visited: BaseGeometry) -> list[Polygon]:
     return [polygon for polygon in largest if polygon.intersects(visited)] or largest[:1]
 
 
+def walled_share(ring: LinearRing, walled: BaseGeometry) -> float:
+    """Return the share of a ring that runs along walls.
+
+    Parameters
+    ----------
+    ring : shapely.LinearRing
+        Outline of ground, or of a hole in it.
+    walled : shapely geometry
+        Ground of or before walls, which outlines along walls lie in.
+    """
+    return float(ring.intersection(walled).length / ring.length)
+
+
 def _find_bare_parts(
     ground: Polygon,
     walled: BaseGeometry,
@@ -77,22 +91,27 @@ def _find_bare_parts(
     step_m: float,
 ) -> Iterator[Polygon]:
     """Yield bare parts of ground that do not overlap, those that are worth most first."""
-    oriented = shapely.orient_polygons(ground)
-    places_m, steps_m, length_m, is_walled = _sample_ring(oriented.exterior, walled, step_m)
-    may_begin = _points_inwards(steps_m) | (is_walled != np.roll(is_walled, 1))
+    ring = shapely.orient_polygons(ground).exterior
+    places_m = shapely.get_coordinates(shapely.segmentize(ring, step_m))[:-1]
+    steps_m = np.roll(places_m, -1, axis=0) - places_m
+    length_m = np.hypot(*steps_m.T)
+    is_walled = shapely.contains_xy(walled, *(places_m + steps_m / 2).T)
+    turn = _find_turns(steps_m)
+    # a tenth of a radian: flatter ones are of the outline's noise
+    may_begin = (turn < -0.1) | (is_walled != np.roll(is_walled, 1))
     begin, end, chord_m = _find_mouths(places_m, np.flatnonzero(may_begin))
     walled_m = _between(np.where(is_walled, length_m, 0), begin, end)
     bare_m = _between(np.where(is_walled, 0, length_m), begin, end)
     rows = _find_worthy(bare_m, walled_m, chord_m, max_walled, step_m)
     chords = shapely.linestrings(np.stack([places_m[begin[rows]], places_m[end[rows]]], axis=1))
-    holes = [hole for hole in ground.interiors if _walled_share(hole, walled, step_m) > max_walled]
+    holes = [hole for hole in ground.interiors if walled_share(hole, walled) > max_walled]
     inner = Polygon(ground.exterior, holes).buffer(SHORTEST_M)
     shapely.prepare(inner)
     rows = rows[shapely.covers(inner, chords)]
     begin, end = begin[rows], end[rows]
     chord_m, walled_m, bare_m = chord_m[rows], walled_m[rows], bare_m[rows]
-    # what jagged edges of shadows leave open is no more than a line around them
-    hull_m = _hull_length_m(places_m, begin, end)
+    # edges of shadows are longer than what they leave open
+    hull_m = _hull_length_m(places_m, np.abs(turn) > ROUNDING, begin, end)
     bare_m = np.minimum(bare_m, hull_m - chord_m - walled_m)
     worth = (bare_m - walled_m) / chord_m
     worthy = _find_worthy(bare_m, walled_m, chord_m, max_walled, step_m)
@@ -107,33 +126,11 @@ def _find_bare_parts(
             yield part
 
 
-def _sample_ring(
-    ring: LinearRing, walled: BaseGeometry, step_m: float
-) -> tuple[FloatArray, FloatArray, FloatArray, BoolArray]:
-    """Return places (n, 2) along a ring, the steps (n, 2) from each to the next, and their lengths.
+def _find_turns(steps_m: FloatArray) -> FloatArray:
+    """Return the sines (n,) of the turns of an outline, at the places where its steps begin.
 
-    The last (n,) is which of the steps lie in ground before walls.
+    Of one that goes counterclockwise they are negative where ground has a corner in it.
     """
-    places_m = shapely.get_coordinates(shapely.segmentize(ring, step_m))[:-1]
-    steps_m = np.roll(places_m, -1, axis=0) - places_m
-    is_walled = shapely.contains_xy(walled, *(places_m + steps_m / 2).T)
-    return places_m, steps_m, np.hypot(*steps_m.T), is_walled
-
-
-def _walled_share(ring: LinearRing, walled: BaseGeometry, step_m: float) -> float:
-    """Return the share of a ring that lies in ground before walls."""
-    _, _, length_m, is_walled = _sample_ring(ring, walled, step_m)
-    return float(length_m[is_walled].sum() / length_m.sum())
-
-
-def _points_inwards(steps_m: FloatArray) -> BoolArray:
-    """Return at which places (n,) of an outline, counterclockwise, ground has a corner in it."""
-    # a tenth of a radian: flatter ones are of the outline's noise
-    return _turns(steps_m) < -0.1
-
-
-def _turns(steps_m: FloatArray) -> FloatArray:
-    """Return the sines (n,) of the turns of an outline, at the places where its steps begin."""
     before_m = np.roll(steps_m, 1, axis=0)
     turn = before_m[:, 0] * steps_m[:, 1] - before_m[:, 1] * steps_m[:, 0]
     lengths_m2 = np.hypot(*steps_m.T) * np.hypot(*before_m.T)
@@ -165,12 +162,14 @@ def _find_worthy(
     return np.flatnonzero(is_worth & (walled_m <= max_walled * (walled_m + bare_m)))
 
 
-def _hull_length_m(places_m: FloatArray, begin: IntArray, end: IntArray) -> FloatArray:
-    """Return how far (k,) it is around the places of a ring from one to another."""
+def _hull_length_m(
+    places_m: FloatArray, is_corner: BoolArray, begin: IntArray, end: IntArray
+) -> FloatArray:
+    """Return how far (k,) it is around the places (n, 2) of a ring from one to another."""
     # places on straight edges are most, and change no hull
-    is_corner = np.abs(_turns(np.roll(places_m, -1, axis=0) - places_m)) > ROUNDING
-    is_corner[[*begin, *end]] = True
-    corners_m, number = places_m[is_corner], np.cumsum(is_corner) - 1
+    is_kept = is_corner.copy()
+    is_kept[[*begin, *end]] = True
+    corners_m, number = places_m[is_kept], np.cumsum(is_kept) - 1
     pairs = zip(number[begin].tolist(), number[end].tolist(), strict=True)
     chains = [shapely.linestrings(corners_m[_chain(*pair, len(corners_m))]) for pair in pairs]
     return shapely.length(shapely.convex_hull(np.array(chains, object)))

@@ -176,12 +176,14 @@ def make_plan(
     )
     rays = range_bias.remove_range_bias(rays, errors_m, up, threads)
     views = free_space.free_polygons(rays, threads)
-    openings = settings.openings
-    driven = free_space.driven_ground(
-        track_m, width_m=openings.min_opening_m, max_step_m=openings.max_door_m
-    )
+    floors = list(views)
     # in space beams of other elevations see the floor beside a chair
-    floors = [*views, *driven] if rays.planar else views
+    if rays.planar:
+        floors += free_space.driven_ground(
+            track_m,
+            width_m=settings.openings.min_opening_m,
+            max_step_m=settings.openings.max_door_m,
+        )
     find_floor = workers.begin_in_thread(free_space.union_on_grid, floors, threads=threads)
     survey = _Survey(settings, rays, track_m, views, find_floor, threads)
     surfaces = survey.find_surfaces(segments)

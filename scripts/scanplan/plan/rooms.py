@@ -118,7 +118,7 @@ def find_rooms(
                 *(drawn, facing, way), max_walled=1 - min_walled, step_m=END_M
             )
         for polygon in polygons:
-            walled = _walled_share(polygon, outline)
+            walled = bare_parts.walled_share(polygon.exterior, outline)
             shapely.prepare(polygon)
             is_entered = bool(shapely.contains(polygon, track).any())
             is_wide = not polygon.buffer(-min_width_m / 2).is_empty
@@ -160,7 +160,7 @@ def leave_out_unseen(
     outline = shapely.union_all(strips).buffer(END_M)
     way = _draw_way(track_m)
     left = [
-        replace(room, polygon=polygon, walled=_walled_share(polygon, outline))
+        replace(room, polygon=polygon, walled=bare_parts.walled_share(polygon.exterior, outline))
         for room in rooms
         for polygon in _without_unseen(room.polygon, seen, way)
         if polygon.area >= min_area_m2
@@ -257,14 +257,14 @@ def _fill_cells(
     share = shapely.area(shapely.intersection(cells, rough)) / shapely.area(cells)
     is_floor = share > 1 - share
     for row in np.flatnonzero(~is_floor & (share > _LEAST_CELL_SHARE)):
-        is_floor[row] = _walled_share(cells[row], outline) >= _CLOSED_SHARE
+        is_floor[row] = bare_parts.walled_share(cells[row].exterior, outline) >= _CLOSED_SHARE
     ground = free_space.union_on_grid(list(cells[is_floor]))
     drawn = _largest(free_space.difference_on_grid(ground, solid))
     if drawn is None:
         return rough
     common_m2 = shapely.intersection(drawn, rough).area
     agreement = common_m2 / shapely.union(drawn, rough).area
-    is_closed = _walled_share(drawn, outline) >= _CLOSED_SHARE
+    is_closed = bare_parts.walled_share(drawn.exterior, outline) >= _CLOSED_SHARE
     return drawn if agreement >= _LEAST_AGREEMENT or is_closed else rough
 
 
@@ -282,11 +282,6 @@ def _without_unseen(polygon: Polygon, seen: BaseGeometry, way: BaseGeometry) -> 
     rest = free_space.difference_on_grid(polygon, free_space.union_on_grid(taken))
     opened = free_space.open_polygons(rest, END_M)
     return bare_parts.take_visited(shapely.GeometryCollection(opened), way)
-
-
-def _walled_share(polygon: Polygon, outline: BaseGeometry) -> float:
-    """Return the share of a polygon's outline that runs along walls."""
-    return float(polygon.exterior.intersection(outline).length / polygon.exterior.length)
 
 
 def _cells(part: BaseGeometry, walls: Sequence[PlanWall], unpaired_m: float) -> Array:
