@@ -44,7 +44,7 @@ def measure_premises(
     clouds = log.report_progress(store.scans(), "measure_premises", total=len(store.scan_ids))
     for row, (scan_id, xyz_m) in enumerate(clouds):
         sensor_m = truth.registered.map_from_sensor[row, :3, 3]
-        centred_m = sensor_frame.centre_on_sensor(xyz_m, sensor_m)
+        centred_m = sensor_frame.centre_in_order(xyz_m, sensor_m)
         steps = steps_figure.find_steps(centred_m, scan_id, settings)
         share = premises.share_on_one_wall(
             steps, truth.placed[row, :2, 3], truth.faces.inner_m, min_points=settings.min_points

@@ -95,7 +95,7 @@ def _print_speed(
 def _normal_times(survey: wall_scans.Survey, scans: Scans, reach_deg: float) -> list[float]:
     times = []
     for i, xyz_m in scans:
-        around_m = sensor_frame.centre_on_sensor(xyz_m, survey.sensors[i])
+        around_m = sensor_frame.centre_in_order(xyz_m, survey.sensors[i])
         times.append(
             _milliseconds(lambda p=around_m: normals.cut_surface_cells(p, reach_deg=reach_deg))
         )
@@ -106,7 +106,7 @@ def _print_literal(
     survey: wall_scans.Survey, scan: tuple[int, FloatArray], ours_ms: float, settings: Settings
 ) -> None:
     scan_id, xyz_m = scan
-    few_m = sensor_frame.centre_on_sensor(xyz_m, survey.sensors[scan_id])[::_LITERAL_EVERY]
+    few_m = sensor_frame.centre_in_order(xyz_m, survey.sensors[scan_id])[::_LITERAL_EVERY]
     limits = {key: settings[key] for key in _LITERAL_KEYS} | {"max_trials": settings["trials"]}
     literal_ms = _milliseconds(
         lambda: literal_clusters.lines(few_m, **limits, rng=np.random.default_rng(1))

@@ -8,8 +8,8 @@ def test_order_of_points_depends_on_the_points_alone():
     points = np.random.default_rng(1).normal(size=(50, 3)).round(1)
     shuffled = np.random.default_rng(2).permutation(points)
     assert (
-        sensor_frame.centre_on_sensor(points, (1, 2, 3))
-        == sensor_frame.centre_on_sensor(shuffled, (1, 2, 3))
+        sensor_frame.centre_in_order(points, (1, 2, 3))
+        == sensor_frame.centre_in_order(shuffled, (1, 2, 3))
     ).all()
 
 

@@ -19,6 +19,9 @@ os.environ.setdefault("MALLOC_ARENA_MAX", "1")
 # given back to the system, which would clear and map every page of it anew
 os.environ.setdefault("MALLOC_MMAP_THRESHOLD_", str(8 * 2**20))
 os.environ.setdefault("MALLOC_TRIM_THRESHOLD_", str(32 * 2**20))
+# stages share out their cores themselves: a product of matrices would keep a second one waiting for
+# more, and its sums would depend on how many there are
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 sys.path.insert(0, f"{PROJECT}/scripts")
 from scanplan.errors import StageError

@@ -16,7 +16,7 @@ from scanplan.extraction import (
 )
 from scanplan.extraction.segment_limits import ExtractorSettings, Row
 from scanplan.rays.ray_set import RaySet
-from scanplan.rays.sensor_frame import centre_on_sensor
+from scanplan.rays.sensor_frame import centre_in_order
 from scanplan.types import FloatArray, Settings
 
 if TYPE_CHECKING:
@@ -110,7 +110,7 @@ def find_wall_segments(
     ValueError
         If a coordinate is not finite.
     """
-    points = centre_on_sensor(xyz_m, sensor_xyz_m)
+    points = centre_in_order(xyz_m, sensor_xyz_m)
     scan = segments.view_scan(points, planar=planar)
     rows = extractor.extract(scan_id, points, scan, settings)
     if limits is not None:

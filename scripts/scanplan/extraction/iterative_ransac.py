@@ -45,7 +45,7 @@ def extract_iteratively(
     scan_id : int
         Random draws depend on it.
     points : (n, 3) float64
-        The scan's points relative to its sensor, as `sensor_frame.centre_on_sensor` returns them.
+        The scan's points relative to its sensor, as `sensor_frame.centre_in_order` returns them.
     scan : ray_set.RaySet, optional
         Its rays; None in the plane.
     settings : IterativeRansacSettings

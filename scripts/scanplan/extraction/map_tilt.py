@@ -42,7 +42,7 @@ def tilt_warning(scans: Iterable[tuple[FloatArray, FloatArray]], reach_deg: floa
     normal: list[FloatArray] = [np.empty((0, 3))]
     weight: list[Array] = [np.empty(0)]
     for xyz_m, sensor_xyz_m in scans:
-        points = sensor_frame.centre_on_sensor(xyz_m, sensor_xyz_m)
+        points = sensor_frame.centre_in_order(xyz_m, sensor_xyz_m)
         cells = normals.cut_surface_cells(points, reach_deg=reach_deg)
         has_normal = np.isfinite(cells.normal[:, 0])
         normal.append(cells.normal[has_normal])

@@ -7,7 +7,7 @@ from scanplan.types import FloatArray, IntArray
 
 
 def centre_on_sensor(xyz_m: npt.ArrayLike, sensor_xyz_m: npt.ArrayLike) -> FloatArray:
-    """Return a scan's points relative to its sensor, in an order that depends on the points alone.
+    """Return a scan's points relative to its sensor, in the order given.
 
     Parameters
     ----------
@@ -33,7 +33,16 @@ def centre_on_sensor(xyz_m: npt.ArrayLike, sensor_xyz_m: npt.ArrayLike) -> Float
         )
     if not (np.isfinite(points_m).all() and np.isfinite(sensor_m).all()):
         raise ValueError("points and sensor position must be finite")
-    return points_m.take(_order_points(points_m), axis=0) - sensor_m
+    return points_m - sensor_m
+
+
+def centre_in_order(xyz_m: npt.ArrayLike, sensor_xyz_m: npt.ArrayLike) -> FloatArray:
+    """Return a scan's points relative to its sensor, in an order that depends on the points alone.
+
+    For what draws some of them at random, or takes one before another: as `centre_on_sensor`.
+    """
+    points_m = centre_on_sensor(xyz_m, sensor_xyz_m)
+    return points_m.take(_order_points(np.asarray(xyz_m, float)), axis=0)
 
 
 def _order_points(xyz_m: FloatArray) -> IntArray:

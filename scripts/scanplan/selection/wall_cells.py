@@ -85,7 +85,7 @@ def observe_wall_cells(
     Parameters
     ----------
     xyz_m : (n, 3) float
-        The scan's points, map frame; their order does not matter.
+        The scan's points, map frame; their order matters by rounding alone.
     sensor_xyz_m : (3,) float
         The sensor's position, map frame.
     planar : bool

@@ -201,7 +201,7 @@ def _draw_typical_steps(survey: RoomSurvey) -> Figure:
     row, _, _ = _find_typical_scan(survey)
     scan_id = int(survey.scan_ids[row])
     sensor_m = survey.sensor_xyz_m[row]
-    points_m = sensor_frame.centre_on_sensor(survey.store.read(scan_id), sensor_m)
+    points_m = sensor_frame.centre_in_order(survey.store.read(scan_id), sensor_m)
     steps = steps_figure.find_steps(points_m, scan_id, survey.extraction)
     is_of_scan = survey.walls["scan_id"] == scan_id
     segments_m = length_metrics.table_lines_m(survey.walls)[is_of_scan] - sensor_m[:2]
