@@ -4,6 +4,8 @@ MORE_MEMORY = (
     "close other programs, use fewer cores, or allow more (`ulimit -v`, `mem_mb` of a job)"
 )
 """What to do where memory is not enough."""
+MOST_NAMED = 8
+"""Things in one line: nobody reads a longer one."""
 
 
 class StageError(Exception):

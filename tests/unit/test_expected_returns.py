@@ -6,7 +6,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from helpers.ray_making import NORTH, rays
-from scanplan.rays.expected_returns import SentRays, count_returns_below, count_sent_rays
+from scanplan.rays.expected_returns import (
+    SentRays,
+    count_returns_below,
+    count_sent_rays,
+    find_fields_of_view,
+)
 from scanplan.rays.face_rays import cast_at_face
 
 AZIMUTH_RAD = np.radians(np.arange(-179.5, 180))
@@ -15,6 +20,26 @@ ELEVATIONS_DEG = np.arange(-4.5, 5, 1.0)  # ten beams
 
 def below_deg(counts, elevation_deg):
     return counts[round((elevation_deg + 90) * 10)]
+
+
+class TestFieldsOfView:
+    def test_a_scan_looks_from_its_first_beam_to_its_last(self):
+        (field,) = find_fields_of_view([np.radians(np.arange(-90.0, 91.0))])
+        np.testing.assert_allclose(field, [-np.pi / 2, np.pi, 1.0])
+
+    def test_beams_that_never_came_back_are_no_edge_of_it(self):
+        degrees = np.arange(-90.0, 91.0)
+        (field,) = find_fields_of_view([np.radians(degrees[np.abs(degrees) > 20])])
+        np.testing.assert_allclose(field, [-np.pi / 2, np.pi, 1.0])
+
+    def test_it_may_go_on_beyond_half_a_turn(self):
+        azimuth_rad = np.radians(np.sort((np.arange(90.0, 271.0) + 180) % 360 - 180))
+        (field,) = find_fields_of_view([azimuth_rad])
+        np.testing.assert_allclose(field, [np.pi / 2, np.pi, 1.0])
+
+    def test_of_no_scans_and_of_one_beam_none_is_known(self):
+        assert find_fields_of_view([]).shape == (0, 3)
+        assert find_fields_of_view([np.zeros(1)])[0, 1:].tolist() == [0, 0]
 
 
 class TestUsualReturns:
@@ -82,6 +107,20 @@ def test_as_many_rays_are_expected_as_fit_into_the_angle_of_a_wall():
     assert found.missing_share == pytest.approx(0, abs=0.03)
     # square to the wall a column is wider
     assert found.expected[0, 20] == pytest.approx(10 * np.degrees(0.05 / 2), rel=0.01)
+
+
+def test_of_a_plane_beams_are_expected_where_it_looks():
+    """One a degree, from 1 to 90 degrees left of south: to the right of it there are none."""
+    turn_deg = np.arange(1.0, 91.0)
+    azimuth_rad = np.radians(turn_deg - 90)
+    reach_m = np.minimum(2 / np.maximum(np.cos(np.radians(turn_deg)), 0.1), 8.0)[:, None]
+    ends_m = reach_m * np.column_stack([np.cos(azimuth_rad), np.sin(azimuth_rad), 0 * azimuth_rad])
+    looked = rays(((0, 2, 0), ends_m + np.array((0, 2, 0))), planar=True)
+    face = cast_at_face(looked, NORTH, -2.0, 2.0, at_m=0.08)
+    found = count_sent_rays(looked, face, -2.0, 80, 0.05, (0.0, 1.0))
+    assert found.expected[0, :40].sum() == 0
+    assert found.expected[0, 40:].sum() == pytest.approx(44.5, abs=1)
+    assert found.returned.sum() == pytest.approx(44.5, abs=1)
 
 
 def test_of_glass_little_comes_back():

@@ -85,7 +85,7 @@ def test_a_stretch_ends_where_most_of_what_is_near_is_seen_to_end():
 
 
 def test_a_pane_is_no_wall():
-    pane = observation(AXIS, row(0, 3), glass=[(1.0, 2.0)])
+    pane = observation(AXIS, row(0, 3), lost=[(1.0, 2.0)])
     spans = [
         (s.low_m, s.high_m)
         for s in intervals.find_face_intervals(pane, **(LIMITS | {"max_gap_m": 0.0}))

@@ -65,7 +65,7 @@ def test_from_behind_nothing_is_told():
 
 def test_a_pane_has_a_frame():
     sill = [(x_m, 0.1) for x_m in np.arange(1.0, 2.0, 0.02)]
-    seen = observation(SOUTH, low=sill, glass=[(1.0, 2.0), (2.0, 3.5)])
+    seen = observation(SOUTH, low=sill, lost=[(1.0, 2.0), (2.0, 3.5)])
     np.testing.assert_allclose(seen.framed_m, [(1.0, 2.0)])
 
 

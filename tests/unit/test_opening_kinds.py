@@ -11,11 +11,19 @@ import shapely
 
 from helpers import house_making
 from helpers.observation_making import line_through, observation
+from helpers.ray_making import rays
 from helpers.wall_making import walls
 from scanplan.geometry.lines import Line
 from scanplan.plan import opening_kinds, planning
 from scanplan.plan.faces import intervals
-from scanplan.plan.openings import CLOSED, GAP, OPEN, Opening
+from scanplan.plan.openings import (
+    CLOSED,
+    GAP,
+    OPEN,
+    Opening,
+    OpeningSettings,
+    classify_gap,
+)
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.wall_ground import UNSEEN, BareSpan, find_bare_spans
 from scanplan.rays import ray_set
@@ -29,6 +37,7 @@ LIMITS = {
     "min_width_m": SETTINGS.openings.min_opening_m,
     "band_m": SETTINGS.reading.band_m,
 }
+MAX_DOOR_M = SETTINGS.openings.max_door_m
 ENDS_M = (0.0, 4.0)
 LOST, NICHE, BEYOND, BEFORE = None, "niche", 1.5, 0.7
 
@@ -281,13 +290,71 @@ def test_a_leaf_makes_a_door_of_a_way_out_in_a_plane():
     assert (kind, share > 0.9) == ("door", True)
 
 
+def test_what_is_as_wide_as_a_door_is_one_in_a_plane():
+    """A door to glass as 1 to 0.5 of what leads out, and 0.9 to 0.3 by width: 6 of 7."""
+    kind, share = likeliest(DOOR, is_outside=True, planar=True, is_door_wide=True)
+    assert (kind, share) == ("door", pytest.approx(6 / 7, abs=0.01))
+    # in space heights say more
+    wide = likeliest(DOOR, is_outside=True, is_door_wide=True)
+    assert wide == likeliest(DOOR, is_outside=True)
+
+
+def flat_facade(low_m, high_m, beyond_m):
+    """Return planar scans, 2.5 m before a facade, of beams each half degree.
+
+    Those between two places of it end at `beyond_m` behind it, or never.
+    """
+    azimuth_rad = np.radians(np.arange(-179.75, 0, 0.5))
+    scans = []
+    for x_m in (1.5, 2.0, 2.5):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            at_m = x_m + 2.5 / np.tan(-azimuth_rad)
+            reach_m = 2.5 / np.sin(-azimuth_rad)
+            goes_on = (at_m > low_m) & (at_m < high_m)
+            reach_m = np.where(goes_on, reach_m * (1 + beyond_m / 2.5), reach_m)
+        kept = reach_m < 12
+        ends_m = reach_m[kept, None] * np.column_stack(
+            [np.cos(azimuth_rad[kept]), np.sin(azimuth_rad[kept]), 0 * azimuth_rad[kept]]
+        )
+        scans.append(((x_m, 2.5, 0.3), ends_m + np.array((x_m, 2.5, 0.3))))
+    return rays(*scans, planar=True)
+
+
+@pytest.mark.parametrize(
+    ("span_m", "beyond_m", "kind"),
+    [
+        ((1.5, 2.5), np.nan, "door"),
+        ((1.5, 2.5), 2.0, "door"),
+        ((1.7, 2.4), 2.0, "door"),
+        # a narrow pane rather than a way out of the building
+        ((1.7, 2.4), np.nan, GAP),
+        ((1.0, 3.0), np.nan, GAP),
+    ],
+)
+def test_rays_that_never_come_back_show_a_way_out_of_a_plane(span_m, beyond_m, kind):
+    looked = flat_facade(*span_m, beyond_m)
+    facade = intervals.observe_along(looked, SOUTH, *ENDS_M, band_m=0.08, reach_m=0.0)
+    limits = OpeningSettings(0.5, 2.5, 1.0, MAX_DOOR_M)
+    found = classify_gap(SOUTH, *span_m, [facade], limits, door_height_m=1.9)
+    assert found.state == OPEN
+    face = intervals.FaceInterval(facade, *ENDS_M)
+    wall = PlanWall(SOUTH, *ENDS_M, np.nan, [face], [], [found])
+    track_m = looked.sensors_m[:, :2]
+    (decided,) = opening_kinds.decide_kinds(
+        [wall], looked, track_m, beside, max_door_m=MAX_DOOR_M, **LIMITS
+    )
+    assert [opening.kind for opening in decided.openings] == [kind]
+
+
 def beside(place_m, wall):
     return 0, -1
 
 
 def decide(looked, **gaps):
     (decided,) = opening_kinds.decide_kinds(
-        [replace(wall(looked), **gaps)], looked, np.array(SENSORS)[:, :2], beside, **LIMITS
+        *([replace(wall(looked), **gaps)], looked, np.array(SENSORS)[:, :2], beside),
+        max_door_m=MAX_DOOR_M,
+        **LIMITS,
     )
     return decided
 
@@ -309,7 +376,10 @@ def test_a_leaf_tells_only_of_the_gap_that_it_hangs_at(middle_m, kind):
     looked = look((1.0, 2.2), (-1.0, 2.1))
     gaps = [replace(wall(looked), openings=[gap(OPEN)])]
     (decided,) = opening_kinds.decide_kinds(
-        *(gaps, looked, np.array(SENSORS)[:, :2], beside), ways_m=[way_m], **LIMITS
+        *(gaps, looked, np.array(SENSORS)[:, :2], beside),
+        ways_m=[way_m],
+        max_door_m=MAX_DOOR_M,
+        **LIMITS,
     )
     assert [opening.kind for opening in decided.openings] == [kind]
 

@@ -84,7 +84,7 @@ def test_a_floor_or_what_stands_on_it_is_no_sill(low):
     ("lost", "state"), [((1.05, 1.6), openings.OPEN), ((1.05, 1.3), openings.CLOSED)]
 )
 def test_where_rays_go_and_do_not_come_back_there_is_an_opening(lost, state):
-    line = seen([], [], glass=[lost])
+    line = seen([], [], lost=[lost])
     assert classify(1.0, 1.9, [line]).state == state
 
 

@@ -37,9 +37,11 @@ _LIKELY = {
     "step": np.array((0.2, 0.02, 0.5, 0.05)),
     "driven": np.array((1e-3, 0.5, 1e-3, 1e-3)),
     "leaf": np.array((1e-3, 0.2, 0.01, 0.01)),
+    "as wide as a door": np.array((0.3, 0.9, 0.3, 0.3)),
 }  # in offices and houses: of ten gaps how many are of each kind; how often a floor is seen in or
 # behind them where rays pass low down, things stand before them, a sill is seen, a sensor passes,
 # a leaf is seen to stand open
+_OUTER_DOOR_M = 0.8  # what leads out of a building and is narrower is rather a pane
 _SURE = 0.8  # else it is not known what it is: one in five would be wrong
 
 
@@ -51,6 +53,7 @@ def weigh_kinds(
     has_leaf: bool = False,
     sill_m: float = np.nan,
     planar: bool = False,
+    is_door_wide: bool = False,
 ) -> FloatArray:
     """Return the probability (4,) of each of `KINDS`.
 
@@ -67,7 +70,9 @@ def weigh_kinds(
     sill_m : float
         As high as something was seen below the lowest rays through; NaN where nothing was.
     planar : bool
-        Whether heights mean nothing: then nobody tells a window from glass.
+        Whether heights mean nothing: then nobody tells a window from glass, but by its width.
+    is_door_wide : bool
+        Whether it is neither wider nor narrower than a door there; asked of planar scans alone.
     """
     wall, is_open = (
         np.concatenate([[0.0], np.cumsum(of_rows)]) for of_rows in profile.log_likelihoods()
@@ -98,6 +103,8 @@ def weigh_kinds(
             likely += np.log(1 - _LIKELY["floor"])
         if sill_m > NEAR_FLOOR_M:
             likely += np.log(_LIKELY["step"])
+    elif is_door_wide:
+        likely += np.log(_LIKELY["as wide as a door"])
     if is_driven:
         likely += np.log(_LIKELY["driven"])
     if has_leaf:
@@ -237,6 +244,7 @@ def decide_kinds(
     rooms_beside: Callable[[FloatArray, PlanWall], tuple[int, int]],
     *,
     min_width_m: float,
+    max_door_m: float,
     band_m: float,
     ways_m: Sequence[FloatArray] = (),
     threads: int = 1,
@@ -253,8 +261,8 @@ def decide_kinds(
         Where sensors were, in the order of time.
     rooms_beside : function
         Of a place (2,) and its wall: the rooms on both sides, -1 for none.
-    min_width_m : float
-        Of an opening.
+    min_width_m, max_door_m : float
+        Of an opening, of a door.
     band_m : float, > 0
         Returns this near to a face are at it.
     ways_m : sequence of (2, 2) float64
@@ -266,7 +274,9 @@ def decide_kinds(
     middles_m = np.mean([*ways_m, np.full((2, 2), np.inf)], axis=1)
 
     def decide(wall: PlanWall) -> PlanWall:
-        return _decide(wall, rays, track, rooms_beside, min_width_m, band_m, middles_m)
+        return _decide(
+            *(wall, rays, track, rooms_beside, min_width_m, max_door_m, band_m, middles_m)
+        )
 
     return workers.map_in_threads(decide, walls, threads)
 
@@ -277,6 +287,7 @@ def _decide(
     track: shapely.Geometry,
     rooms_beside: Callable[[FloatArray, PlanWall], tuple[int, int]],
     min_width_m: float,
+    max_door_m: float,
     band_m: float,
     middles_m: FloatArray,
 ) -> PlanWall:
@@ -286,6 +297,7 @@ def _decide(
         ends_m = wall.line.at(np.array([gap.low_m, gap.high_m]))
         profile = observe_gap(wall, gap.low_m, gap.high_m, rays, band_m)
         middle_m = ends_m.mean(axis=0)
+        least_m = _OUTER_DOOR_M if profile.is_into_nothing else min_width_m
         share = weigh_kinds(
             profile,
             has_leaf=bool((np.hypot(*(middles_m - middle_m).T) <= CORNER_M).any()),
@@ -293,6 +305,7 @@ def _decide(
             is_driven=bool(shapely.intersects(track, shapely.linestrings(ends_m))),
             sill_m=gap.sill_m,
             planar=rays.planar,
+            is_door_wide=least_m <= gap.width_m <= max_door_m,
         )
         best = int(share.argmax())
         kind = KINDS[best] if share[best] >= _SURE else GAP

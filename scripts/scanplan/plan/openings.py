@@ -140,7 +140,7 @@ def classify_gap(
     least_share = _OPEN_SHARE / 2 if below_wall else _OPEN_SHARE
     is_open = n_rays >= ENOUGH_RAYS and open_share >= least_share
     # rays went in and did not come back: through glass, or out of the building
-    is_open |= max(side.glass_share for side in shown) >= _OPEN_SHARE
+    is_open |= max(side.lost_share for side in shown) >= _OPEN_SHARE
     # wall above, some rays through a window, and what is below them hidden: no way through was seen
     is_hidden = below_wall and np.isnan(sill_m)
     is_solid = open_share <= _CLOSED_SHARE or n_rays < FEW
@@ -154,9 +154,9 @@ def classify_gap(
     return Opening(float(low_m), float(high_m), state, n_rays, sill_m, lintel_m, below_wall)
 
 
-def _glass_share(face: FaceObservation, span_m: FloatArray) -> float:
+def _lost_share(face: FaceObservation, span_m: FloatArray) -> float:
     """Return on what share of the width rays did not come back."""
-    inside_m = [min(high_m, span_m[1]) - max(low_m, span_m[0]) for low_m, high_m in face.glass_m]
+    inside_m = [min(high_m, span_m[1]) - max(low_m, span_m[0]) for low_m, high_m in face.lost_m]
     return float(sum(max(m, 0.0) for m in inside_m) / (span_m[1] - span_m[0]))
 
 
@@ -174,22 +174,22 @@ class _GapEvidence:
 
     n_rays: int = 0
     open_share: float = 0.0
-    glass_share: float = 0.0
+    lost_share: float = 0.0
     sill_m: float = math.nan
     lintel_m: float = math.nan
     below_wall: bool = False
 
 
 def _observe_gap(face: FaceObservation, span_m: FloatArray, door_height_m: float) -> _GapEvidence:
-    glass_share = _glass_share(face, span_m)
+    lost_share = _lost_share(face, span_m)
     low_m, high_m = span_m[0] + NOISE_M, span_m[1] - NOISE_M
     if high_m <= low_m:
-        return _GapEvidence(glass_share=glass_share)
+        return _GapEvidence(lost_share=lost_share)
     free = face.free_between(low_m, high_m)
     is_crossed = face.raster.is_crossed(door_height_m)
     n_crossed = is_crossed[face.raster.between(low_m, high_m)].sum()
     open_share = min(float(n_crossed / max(round((high_m - low_m) / CELL_M), 1)), 1.0)
-    evidence = _GapEvidence(free.stop - free.start, open_share, glass_share)
+    evidence = _GapEvidence(free.stop - free.start, open_share, lost_share)
     if face.planar or evidence.n_rays < ENOUGH_RAYS:
         return evidence
     free_z_m = face.free_z_m[free]

@@ -399,6 +399,7 @@ class _Survey:
             *(surfaces.walls, self.rays, self.track_m, functools.partial(rooms_beside, rooms)),
             ways_m=[leaf.way_m for leaf in surfaces.leaves],
             min_width_m=self.settings.openings.min_opening_m,
+            max_door_m=self.settings.openings.max_door_m,
             band_m=self.settings.reading.band_m,
             threads=self.threads,
         )

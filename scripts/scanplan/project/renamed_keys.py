@@ -2,6 +2,8 @@
 
 from collections.abc import Iterable
 
+from scanplan.errors import MOST_NAMED
+
 _EXTRACTORS = ("cluster_ransac", "iterative_ransac")
 _OF_BOTH_EXTRACTORS = {
     **{
@@ -64,8 +66,6 @@ DROPPED = {
 }
 """Key or section that is gone, and why."""
 
-_MOST_NAMED = 8  # a whole old file would make a line that nobody reads
-
 
 def explain_old_keys(given: Iterable[str], known: Iterable[str]) -> str | None:
     """Return what became of keys of earlier versions, in one line; None where none of them is one.
@@ -82,8 +82,9 @@ def explain_old_keys(given: Iterable[str], known: Iterable[str]) -> str | None:
     changes = [change for change in explained if change]
     if not changes:
         return None
-    more = f", and {len(changes) - _MOST_NAMED} more" if len(changes) > _MOST_NAMED else ""
-    return "old keys: " + ", ".join(changes[:_MOST_NAMED]) + more
+    n_more = len(changes) - MOST_NAMED
+    more = f", and {n_more} more" if n_more > 0 else ""
+    return "old keys: " + ", ".join(changes[:MOST_NAMED]) + more
 
 
 def _what_became(key: str, known: set[str]) -> str | None:

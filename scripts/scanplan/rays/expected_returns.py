@@ -3,17 +3,20 @@
 The missing-return test.
 
 Of the rays themselves nothing is known but their returns. How many a scan sends at an elevation is
-estimated by how many it usually gets back there. Whatever is opaque returns the rays that reach it;
-glass lets most through, to where there may be nothing, and mirrors others away.
+estimated by how many it usually gets back there; a planar scan's beams are evenly spread, but for
+where it does not look. Whatever is opaque returns the rays that reach it; glass lets most through,
+to where there may be nothing, and mirrors others away.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from scanplan.geometry.tolerances import ROUNDING
 from scanplan.rays.azimuth_sectors import N_SECTORS
-from scanplan.rays.tolerances import FEW, ON_M, STRAY_SHARE
+from scanplan.rays.tolerances import FEW, ON_M, STRAY_SHARE, STRETCH_M
 from scanplan.types import Array, FloatArray, IntArray
 
 if TYPE_CHECKING:
@@ -57,6 +60,30 @@ def count_returns_below(azimuth_rad: FloatArray, xyz_m: FloatArray) -> FloatArra
     return np.concatenate([[0.0], np.cumsum(np.bincount(row, minlength=n_rows))]) / seen_deg
 
 
+def find_fields_of_view(azimuth_rads: Iterable[FloatArray]) -> FloatArray:
+    """Return where planar scans look, and how densely: (s, 3) float64.
+
+    Where the field of view begins, how far it goes on from there, radians, and how many beams there
+    are to a degree. The widest gap between returns counts as not looked at.
+
+    Parameters
+    ----------
+    azimuth_rads : iterable of (n,) float
+        Of each scan's returns, increasing, -pi to pi.
+    """
+    fields = []
+    for azimuth_rad in azimuth_rads:
+        if len(azimuth_rad) < 2:
+            fields.append((0.0, 0.0, 0.0))
+            continue
+        steps_rad = np.diff(azimuth_rad, append=azimuth_rad[0] + 2 * np.pi)
+        widest = int(steps_rad.argmax())
+        begin_rad = azimuth_rad[(widest + 1) % len(azimuth_rad)]
+        per_deg = 1 / np.rad2deg(max(float(np.median(steps_rad)), ROUNDING))
+        fields.append((begin_rad, 2 * np.pi - steps_rad[widest], per_deg))
+    return np.array(fields, float).reshape(-1, 3)
+
+
 @dataclass(frozen=True, eq=False)
 class SentRays:
     """Rays of some views to the columns of surfaces at some heights, (v, n) each.
@@ -73,6 +100,8 @@ class SentRays:
         That ended at the surface or beyond.
     in_wall : array
         Of these, at the surface or no further behind it than a wall is thick.
+    width : int
+        So many columns around each are judged together.
     """
 
     view: IntArray
@@ -80,6 +109,7 @@ class SentRays:
     occluded: IntArray
     returned: IntArray
     in_wall: IntArray
+    width: int = _WIDTH
 
     @property
     def missing_share(self) -> FloatArray:
@@ -97,14 +127,14 @@ class SentRays:
         NaN where too few are to be expected for anything to be said, or fewer scans than
         `least_scans` sent any.
         """
-        expected = _sum_neighbours(self.expected)
-        occluded = _sum_neighbours(self.occluded)
+        expected = _sum_neighbours(self.expected, self.width)
+        occluded = _sum_neighbours(self.occluded, self.width)
         # where things hide the surface from a scan it says nothing: rays along the tops of
         # furniture get lost
         clear = occluded < STRAY_SHARE * expected
         reached = ((expected - occluded) * clear).sum(axis=0)
-        returned = (_sum_neighbours(self.returned) * clear).sum(axis=0)
-        in_wall = (_sum_neighbours(self.in_wall) * clear).sum(axis=0)
+        returned = (_sum_neighbours(self.returned, self.width) * clear).sum(axis=0)
+        in_wall = (_sum_neighbours(self.in_wall, self.width) * clear).sum(axis=0)
         n_scans = (clear & (expected >= FEW)).sum(axis=0)
         enough = (n_scans >= least_scans) & (reached >= _LEAST_RAYS)
         known = [np.where(enough, rows, np.nan) for rows in (reached, returned, in_wall)]
@@ -113,7 +143,7 @@ class SentRays:
     def lost(self) -> FloatArray:
         """Return how many of the rays that reached the columns (n,) of one surface are nowhere."""
         reached, returned, _ = self.reached(least_scans=2)
-        return np.nan_to_num(np.maximum(reached - returned, 0.0)) / _WIDTH
+        return np.nan_to_num(np.maximum(reached - returned, 0.0)) / self.width
 
 
 def count_sent_rays(
@@ -129,7 +159,6 @@ def count_sent_rays(
     Parameters
     ----------
     rays : ray_set.RaySet
-        Of scans in space.
     face : face_rays.FaceRays
         Of these, with what is occluded within `NEAR_M`.
     low_m : float
@@ -138,7 +167,7 @@ def count_sent_rays(
         Number of columns, if not of all views the same.
     column_m : float
     heights_m : (2,) or (v, 2) float
-        From where to where above the floor.
+        From where to where above the floor; of planar scans all is one height.
 
     Returns
     -------
@@ -157,19 +186,21 @@ def count_sent_rays(
     number = np.arange(counts.max(initial=0))
     away_m = low_m + column_m * (number + 0.5) - views.sensor_along_m[looking, None]
     bottom_m, top_m = np.broadcast_to(heights_m, (len(counts), 2)).T
-    expected = _expect_returns(
-        rays,
-        views.scan[looking],
-        views.side_m[looking, None],
-        away_m,
-        column_m,
-        (bottom_m[looking, None], top_m[looking, None]),
-    )
+    distance_m = np.hypot(away_m, views.side_m[looking, None])
+    if rays.planar:
+        turn_rad = np.arctan2(away_m, views.side_m[looking, None])
+        azimuth_rad = views.facing_rad[looking, None] + turn_rad
+        per_deg = _beams_per_deg(rays.fields_of_view[views.scan[looking]], azimuth_rad)
+    else:
+        heights = bottom_m[looking, None], top_m[looking, None]
+        per_deg = _returns_per_deg(rays, views.scan[looking], distance_m, heights)
+    expected = per_deg * np.rad2deg(column_m * views.side_m[looking, None] / distance_m**2)
     expected *= np.abs(away_m) < grazing_m[looking, None]
     expected *= number < counts[looking, None]
     view, along_m, height_m = face.view, face.along_m, face.height_m
     is_inside = is_looking.take(view) & (along_m >= low_m) & (along_m < high_m.take(view))
-    is_inside &= (height_m >= bottom_m.take(view)) & (height_m < top_m.take(view))
+    if not rays.planar:
+        is_inside &= (height_m >= bottom_m.take(view)) & (height_m < top_m.take(view))
     is_inside &= np.abs(along_m - views.sensor_along_m.take(view)) < grazing_m.take(view)
     (rows,) = np.nonzero(is_inside)
     behind_m = face.behind_m.take(rows)
@@ -181,29 +212,26 @@ def count_sent_rays(
     occluded, returned, in_wall = (
         np.bincount(cell[kind], minlength=expected.size).reshape(expected.shape) for kind in kinds
     )
-    return SentRays(looking, expected, occluded, returned, in_wall)
+    # of one beam there are few
+    width = round(2 * STRETCH_M / column_m) if rays.planar else _WIDTH
+    return SentRays(looking, expected, occluded, returned, in_wall, width)
 
 
-def _expect_returns(
+def _returns_per_deg(
     rays: "RaySet",
     scans: IntArray,
-    side_m: FloatArray,
-    away_m: FloatArray,
-    column_m: float,
+    distance_m: FloatArray,
     heights_m: tuple[FloatArray, FloatArray],
 ) -> FloatArray:
-    """Return how many returns scans (s,) usually have in the direction of columns (s, n).
+    """Return how many returns scans (s,) usually have to a degree of azimuth, (s, n).
 
     Parameters
     ----------
-    side_m : (s, 1) float64
-        How far the sensors lie from the line.
-    away_m : (s, n) float64
-        How far the columns lie from there, along the line.
+    distance_m : (s, n) float64
+        How far away, level.
     heights_m : (s, 1) and (s, 1) float64
         From where to where.
     """
-    distance_m = np.hypot(away_m, side_m)
     low, high = (
         _below(
             rays.usual,
@@ -212,7 +240,16 @@ def _expect_returns(
         )
         for height_m in heights_m
     )
-    return (high - low) * np.rad2deg(column_m * side_m / distance_m**2)
+    return high - low
+
+
+def _beams_per_deg(fields: FloatArray, azimuth_rad: FloatArray) -> FloatArray:
+    """Return how many beams scans send to a degree around azimuths (s, n), 0 where none looks.
+
+    Their fields (s, 3) are those of `find_fields_of_view`.
+    """
+    begin_rad, wide_rad, per_deg = fields.T[:, :, None]
+    return np.where((azimuth_rad - begin_rad) % (2 * np.pi) <= wide_rad, per_deg, 0.0)
 
 
 def _below(usual: FloatArray, scan: IntArray, elevation_rad: FloatArray) -> FloatArray:
@@ -223,11 +260,11 @@ def _below(usual: FloatArray, scan: IntArray, elevation_rad: FloatArray) -> Floa
     return below + (at - row) * (usual[scan, row + 1] - below)
 
 
-def _sum_neighbours(rows: Array) -> FloatArray:
-    """Return running sums over `_WIDTH` columns around each, of rows (s, n)."""
+def _sum_neighbours(rows: Array, width: int) -> FloatArray:
+    """Return running sums over so many columns around each, of rows (s, n)."""
     n_rows, n_columns = rows.shape
     # numpy's own padding takes ten times as long as the sums
-    padded = np.zeros((n_rows, n_columns + _WIDTH))
-    padded[:, _WIDTH // 2 + 1 : _WIDTH // 2 + 1 + n_columns] = rows
+    padded = np.zeros((n_rows, n_columns + width))
+    padded[:, width // 2 + 1 : width // 2 + 1 + n_columns] = rows
     sums = np.cumsum(padded, axis=1)
-    return sums[:, _WIDTH:] - sums[:, :-_WIDTH]
+    return sums[:, width:] - sums[:, :-width]

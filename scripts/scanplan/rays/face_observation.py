@@ -3,7 +3,7 @@
 Returns, rays through it, glass, and the raster of these.
 """
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -58,7 +58,7 @@ class FaceObservation:
     low_m, low_z_m : (f,) float64
         Returns at it that are too low for a wall: a sill, or clutter.
     planar : bool
-    glass_m : (n, 2) float64
+    lost_m : (n, 2) float64
         From where to where too few of the rays that reach it come back for what is opaque.
     """
 
@@ -73,7 +73,7 @@ class FaceObservation:
     low_m: FloatArray
     low_z_m: FloatArray
     planar: bool
-    glass_m: FloatArray = field(default_factory=lambda: np.empty((0, 2)))
+    lost_m: FloatArray = field(default_factory=lambda: np.empty((0, 2)))
 
     @cached_property
     def raster(self) -> FaceRaster:
@@ -85,6 +85,14 @@ class FaceObservation:
             span_m=(places_m.min(initial=0.0), places_m.max(initial=0.0)),
             planar=self.planar,
         )
+
+    @property
+    def glass_m(self) -> FloatArray:
+        """Where rays are lost (n, 2) in what has wall, sill or frame as well: in space alone.
+
+        In the plane what sends few rays back may be dark, and a gap may lead out of the building.
+        """
+        return self.lost_m[:0] if self.planar else self.lost_m
 
     @property
     def framed_m(self) -> FloatArray:
@@ -124,8 +132,9 @@ def observe_face(
         Returns this near to the line are at its surface; a ray goes through it that ends farther
         behind than that and what poses err by.
     """
-    within_m = 0.0 if rays.planar else expected_returns.NEAR_M
-    face = cast_at_face(rays, line, low_m, high_m, at_m=band_m, occluded_within_m=within_m)
+    face = cast_at_face(
+        *(rays, line, low_m, high_m), at_m=band_m, occluded_within_m=expected_returns.NEAR_M
+    )
     is_free = face.is_free(band_m + BEHIND_M)
     # most rays end before the surface and are not asked for by their place: sorting is for the rest
     met = np.flatnonzero(face.is_occupied | is_free)
@@ -137,7 +146,7 @@ def observe_face(
     occupied = order[is_occupied & is_upright]
     free = order[is_free.take(order)]
     low = order[is_occupied & ~is_upright]
-    seen = FaceObservation(
+    return FaceObservation(
         line=line,
         occupied_m=face.along_m[occupied],
         occupied_off_m=-face.behind_m[occupied],
@@ -149,8 +158,8 @@ def observe_face(
         low_m=face.along_m[low],
         low_z_m=face.height_m[low],
         planar=rays.planar,
+        lost_m=_find_lost(rays, face, low_m, high_m),
     )
-    return seen if rays.planar else replace(seen, glass_m=_find_glass(rays, face, low_m, high_m))
 
 
 def filled_share(places_m: FloatArray, low_m: float, high_m: float) -> float:
@@ -160,18 +169,18 @@ def filled_share(places_m: FloatArray, low_m: float, high_m: float) -> float:
     return len(np.unique(((inside_m - low_m) / CELL_M).astype(np.int64))) / columns
 
 
-def _find_glass(rays: RaySet, face: FaceRays, low_m: float, high_m: float) -> FloatArray:
+def _find_lost(rays: RaySet, face: FaceRays, low_m: float, high_m: float) -> FloatArray:
     """Return the spans (n, 2) where less than half of the rays return that reach a surface.
 
     A wall below a window is wall, and so is one above an oven: both bands of height have to show
-    it. Where few returns are to be expected nothing is said.
+    it; planar scans have one. Where few returns are to be expected nothing is said.
     """
     count = max(int(np.ceil((high_m - low_m) / CELL_M)), 1)
     is_lost = np.full(count, True)
-    for heights_m in _GLASS_HEIGHTS_M:
+    for heights_m in _GLASS_HEIGHTS_M[:1] if rays.planar else _GLASS_HEIGHTS_M:
         if is_lost.any():
             sent = expected_returns.count_sent_rays(rays, face, low_m, count, CELL_M, heights_m)
-            reached, returned, _ = sent.reached(least_scans=FEW)
+            reached, returned, _ = sent.reached(least_scans=2 if rays.planar else FEW)
             is_lost &= returned < _MOST_SHARE * reached
     return face_raster.find_stretches(is_lost, low_m)
 

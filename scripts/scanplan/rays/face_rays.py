@@ -40,6 +40,8 @@ class Views:
     sensor_along_m, side_m : (v,) float64
         Where its sensor stands: along the line, and how far from the upright plane over it,
         positive on the side of the line's normal.
+    facing_rad : (v,) float64
+        Azimuth of the shortest way from there to that plane, for sensors on that side.
     least_side_m : float
         Of views whose sensor is nearer to the plane no rays are looked at.
     """
@@ -47,6 +49,7 @@ class Views:
     scan: IntArray
     sensor_along_m: FloatArray
     side_m: FloatArray
+    facing_rad: FloatArray
     least_side_m: float
 
 
@@ -151,7 +154,8 @@ def cast_at_face(
         scans = np.concatenate([scans[is_near], scans[far[row]]])
     xyz_m, view = rays.gather_rows(low, high, scans)
     ends_m = line.along_m(xyz_m[:, :2]), line.offset_m(xyz_m[:, :2]), xyz_m[:, 2]
-    views = Views(np.arange(len(sensors_m)), sensor_along_m, side_m, least_side_m)
+    facing_rad = np.full(len(sensors_m), np.arctan2(-line.normal[1], -line.normal[0]))
+    views = Views(np.arange(len(sensors_m)), sensor_along_m, side_m, facing_rad, least_side_m)
     return _meet(rays, views, view, *ends_m, at_m)
 
 
@@ -182,6 +186,7 @@ def cast_at_faces(
         scan=np.zeros(len(normal), np.int64),
         sensor_along_m=(from_start_m * direction).sum(axis=1),
         side_m=(from_start_m * normal).sum(axis=1),
+        facing_rad=np.arctan2(-normal[:, 1], -normal[:, 0]),
         least_side_m=least_side_m,
     )
     seen = np.flatnonzero(np.abs(views.side_m) >= least_side_m)

@@ -39,11 +39,14 @@ class HeightProfile:
         How many came down to the floor behind the face.
     open_share : float
         On what share of the length more rays went on than ended at some height of windows.
+    n_lost : float
+        How many of those that ended beyond or never did never.
     """
 
     ends: FloatArray
     n_floor: int
     open_share: float
+    n_lost: float = 0.0
 
     def __add__(self, other: "HeightProfile") -> "HeightProfile":
         """Return what two sides of a wall show together."""
@@ -51,12 +54,18 @@ class HeightProfile:
             self.ends + other.ends,
             self.n_floor + other.n_floor,
             max(self.open_share, other.open_share),
+            self.n_lost + other.n_lost,
         )
 
     @property
     def is_hidden(self) -> bool:
         """Whether hardly a ray reached the lowest half metre: something stands before it."""
         return bool(self.ends[:2].sum() < FEW)
+
+    @property
+    def is_into_nothing(self) -> bool:
+        """Whether most of what went on never came back: nothing is near beyond."""
+        return 2 * self.n_lost > self.n_through.sum()
 
     @property
     def n_through(self) -> FloatArray:
@@ -116,14 +125,16 @@ def observe_heights(
     cell = ((row * n_columns + column) * 3 + state)[is_counted]
     ends = np.bincount(cell, minlength=n_rows * n_columns * 3).astype(float)
     ends = ends.reshape(n_rows, n_columns, 3)
-    if not rays.planar:
-        ends[:, :, _OPEN] += _count_lost(rays, face, low_m, n_columns)
+    lost = _count_lost(rays, face, low_m, n_columns)
+    ends[:, :, _OPEN] += lost
     # some row of these is between the sill and the lintel of any window
     around_eye = slice(EYE_ROWS.start - 2, EYE_ROWS.stop + 1)
     is_open = (ends[around_eye, :, _OPEN] > ends[around_eye, :, _SOLID]).any(axis=0)
     is_on_floor = is_reaching & (state != _SOLID)
     is_on_floor &= np.abs(_heights_of_returns_m(rays, face)) <= NEAR_FLOOR_M
-    return HeightProfile(ends.sum(axis=1), int(is_on_floor.sum()), float(is_open.mean()))
+    return HeightProfile(
+        ends.sum(axis=1), int(is_on_floor.sum()), float(is_open.mean()), float(lost.sum())
+    )
 
 
 def _heights_of_returns_m(rays: RaySet, face: FaceRays) -> FloatArray:
@@ -137,6 +148,11 @@ def _heights_of_returns_m(rays: RaySet, face: FaceRays) -> FloatArray:
 def _count_lost(rays: RaySet, face: FaceRays, low_m: float, n_columns: int) -> FloatArray:
     """Return how many rays of each row and column (r, c) reached it and never came back."""
     lost = np.zeros((len(ROWS_M) - 1, n_columns))
+    if rays.planar:
+        heights_m = ROWS_M[0], ROWS_M[-1]
+        sent = expected_returns.count_sent_rays(rays, face, low_m, n_columns, CELL_M, heights_m)
+        lost[0] = sent.lost()
+        return lost
     # of two rows together: single ones expect too few rays
     for row in range(0, len(lost), 2):
         heights_m = ROWS_M[row], ROWS_M[min(row + 2, len(lost))]

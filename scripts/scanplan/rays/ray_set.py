@@ -84,6 +84,14 @@ class RaySet:
             ]
         )
 
+    @cached_property
+    def fields_of_view(self) -> FloatArray:
+        """Where planar scans look, and how densely, (s, 3).
+
+        See `expected_returns`.
+        """
+        return expected_returns.find_fields_of_view(self.azimuth_rad[rows] for rows in self.rows)
+
     @property
     def rows(self) -> list[slice]:
         """The rows of each scan."""

@@ -7,13 +7,12 @@ from operator import attrgetter
 
 import numpy as np
 
+from scanplan.errors import MOST_NAMED
 from scanplan.plan import floorplan
 from scanplan.report import page_tables, wording
 from scanplan.report.facts import SurveyFacts
 from scanplan.types import FloatArray
 from scanplan.validation.doubts import list_doubts, list_unrated
-
-_NAMED = 8  # of more than these the report has the list
 
 
 def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
@@ -82,6 +81,7 @@ def _area(area_m2: FloatArray) -> str:
 
 def _name_some(noun: str, numbers: Sequence[int], fault: str) -> str:
     """Return which elements have a fault."""
-    named = ", ".join(map(str, numbers[:_NAMED]))
-    more = f" and {len(numbers) - _NAMED} more" if len(numbers) > _NAMED else ""
+    named = ", ".join(map(str, numbers[:MOST_NAMED]))
+    n_more = len(numbers) - MOST_NAMED
+    more = f" and {n_more} more" if n_more > 0 else ""
     return f"{_count(len(numbers), noun)} ({named}{more}) {fault}"
