@@ -37,9 +37,15 @@ class TestFieldsOfView:
         (field,) = find_fields_of_view([azimuth_rad])
         np.testing.assert_allclose(field, [np.pi / 2, np.pi, 1.0])
 
+    def test_echoes_of_one_beam_are_one_beam(self):
+        once = np.radians(np.arange(-90.0, 91.0))
+        (field,) = find_fields_of_view([np.repeat(once, 3)])
+        np.testing.assert_allclose(field, [-np.pi / 2, np.pi, 1.0])
+
     def test_of_no_scans_and_of_one_beam_none_is_known(self):
         assert find_fields_of_view([]).shape == (0, 3)
-        assert find_fields_of_view([np.zeros(1)])[0, 1:].tolist() == [0, 0]
+        for few in (np.empty(0), np.zeros(1), np.zeros(3)):
+            assert find_fields_of_view([few]).tolist() == [[0, 0, 0]]
 
 
 class TestUsualReturns:

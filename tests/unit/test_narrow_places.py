@@ -57,6 +57,20 @@ def test_a_corner_behind_a_cupboard_is_no_room_but_one_that_was_visited_is():
     assert len(find(LEFT, corner, mouth, visited_m=visited_m)) == 1
 
 
+@pytest.mark.parametrize(
+    ("visited_m", "place_m"),
+    # what lies between goes with the side that nobody was on, else where it is narrower
+    [(IN_BOTH[:1], 4.1), (IN_BOTH[1:], 5.5), (IN_BOTH, 5.5)],
+)
+def test_a_corner_between_two_rooms_is_of_one_of_them(visited_m, place_m):
+    """A place of 1.2 m by 1.2 m between two doors, the right one the narrower, is no room."""
+    porch = box(4.2, 1.4, 5.4, 2.6)
+    far = box(5.6, 0, 10, 4)
+    doors = [box(3.9, 1.65, 4.3, 2.35), box(5.3, 1.7, 5.7, 2.3)]
+    (line,) = find(LEFT, porch, far, *doors, visited_m=visited_m)
+    assert abs(line[:, 0].mean() - place_m) < 0.2
+
+
 def test_chairs_part_nothing():
     chairs = [box(x, 1.9, x + 0.1, 2.0) for x in (0.5, 1.2, 1.9, 2.6, 3.3)]
     assert find(LEFT.difference(shapely.union_all(chairs)), visited_m=IN_BOTH[:1]) == []

@@ -283,21 +283,26 @@ def _part_enough(
 ) -> list[FloatArray]:
     """Return the lines that, all together, part ground into large enough parts.
 
-    Those that are wider than a width, into visited ones.
+    Those that are wider than a width, into visited ones. A part that is too small goes with one
+    beside it, first with one that nobody was in.
     """
     chosen = list(lines)
     while True:
         cuts = [_lengthen(line).buffer(SHORTEST_M) for line in chosen]
         parts = shapely.get_parts(shapely.difference(ground, shapely.union_all(cuts)))
         is_visited = np.array([_is_visited(part, visited) for part in parts], bool)
-        is_large = shapely.area(parts) >= np.where(is_visited, min_area_m2, FURNITURE_M2)
+        is_small = shapely.area(parts) < np.where(is_visited, min_area_m2, FURNITURE_M2)
         beside = [_parts_beside(cut, parts) for cut in cuts]
+        cut_off = [i for i, rows in enumerate(beside) if len(rows) > 1 and is_small[rows].any()]
+        if cut_off:
+            # one at a time: what is small joins what is behind it, and another line parts both
+            inner = [i for i in cut_off if not is_visited[beside[i]].any()]
+            chosen.pop(max(inner or cut_off, key=lambda i: _length_m(chosen[i])))
+            continue
         kept = [
             line
             for line, rows in zip(chosen, beside, strict=True)
-            if len(rows) > 1
-            and is_large[rows].all()
-            and (is_visited[rows].all() or _length_m(line) <= max_width_m)
+            if len(rows) > 1 and (is_visited[rows].all() or _length_m(line) <= max_width_m)
         ]
         if len(kept) == len(chosen):
             return chosen

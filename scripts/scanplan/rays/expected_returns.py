@@ -73,13 +73,15 @@ def find_fields_of_view(azimuth_rads: Iterable[FloatArray]) -> FloatArray:
     """
     fields = []
     for azimuth_rad in azimuth_rads:
-        if len(azimuth_rad) < 2:
+        steps_rad = np.diff(azimuth_rad, append=azimuth_rad[:1] + 2 * np.pi)
+        # a beam may have several echoes
+        apart_rad = steps_rad[steps_rad > ROUNDING]
+        if len(apart_rad) < 2:
             fields.append((0.0, 0.0, 0.0))
             continue
-        steps_rad = np.diff(azimuth_rad, append=azimuth_rad[0] + 2 * np.pi)
         widest = int(steps_rad.argmax())
         begin_rad = azimuth_rad[(widest + 1) % len(azimuth_rad)]
-        per_deg = 1 / np.rad2deg(max(float(np.median(steps_rad)), ROUNDING))
+        per_deg = 1 / np.rad2deg(np.median(apart_rad))
         fields.append((begin_rad, 2 * np.pi - steps_rad[widest], per_deg))
     return np.array(fields, float).reshape(-1, 3)
 
