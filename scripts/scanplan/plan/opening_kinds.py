@@ -312,7 +312,9 @@ def _decide(
         is_open = gap.width_m >= min_width_m and profile.open_share >= 1 - profile.open_share
         is_known = any(gap.low_m < other.high_m and gap.high_m > other.low_m for other in openings)
         is_wall = kind == KINDS[_WALL] or (gap.state == CLOSED and (is_known or not is_open))
-        decided = replace(gap, kind=kind, p_kind=float(share[best]))
+        # of a window they are counted above its sill
+        n_lost = round(profile.n_lost) if rays.planar else 0
+        decided = replace(gap, kind=kind, p_kind=float(share[best]), n_rays=gap.n_rays + n_lost)
         (closed if is_wall else openings).append(decided)
     openings, closed = (sorted(gaps, key=lambda gap: gap.low_m) for gaps in (openings, closed))
     return replace(wall, openings=openings, closed=closed)

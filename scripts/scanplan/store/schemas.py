@@ -282,7 +282,7 @@ probability of the likeliest kind, NaN where none was weighed.
 
 Heights are above the floor, NaN where not known; -1 stands for no wall or no room. A passage in no
 wall is inferred: there free floor is narrow, and parts two rooms. Missing returns count as rays,
-too: as many as were expected through a window above its sill.
+too: as many as were expected through a window above its sill, or through a gap of planar scans.
 """
 ROOMS = Schema(
     "rooms",
