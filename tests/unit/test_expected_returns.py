@@ -5,12 +5,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from helpers.ray_making import NORTH, rays
+from helpers.ray_making import NORTH, rays, turned
+from scanplan.geometry.lines import Line
 from scanplan.rays.expected_returns import (
     SentRays,
     count_returns_below,
     count_sent_rays,
-    find_fields_of_view,
+    observe_beams,
 )
 from scanplan.rays.face_rays import cast_at_face
 
@@ -22,30 +23,56 @@ def below_deg(counts, elevation_deg):
     return counts[round((elevation_deg + 90) * 10)]
 
 
-class TestFieldsOfView:
+def beams(*azimuth_degs, range_m=3.0):
+    """Return what scans show of their sensor's beams, of returns at these azimuths."""
+    scans = []
+    for azimuth_deg in azimuth_degs:
+        azimuth_rad = np.radians(np.sort((np.asarray(azimuth_deg, float) + 180) % 360 - 180))
+        way = np.column_stack([np.cos(azimuth_rad), np.sin(azimuth_rad), 0 * azimuth_rad])
+        scans.append((azimuth_rad, range_m * way))
+    return observe_beams(scans)
+
+
+HALF_TURN = np.arange(-90.0, 91.0)
+
+
+class TestPlanarBeams:
     def test_a_scan_looks_from_its_first_beam_to_its_last(self):
-        (field,) = find_fields_of_view([np.radians(np.arange(-90.0, 91.0))])
-        np.testing.assert_allclose(field, [-np.pi / 2, np.pi, 1.0])
+        found = beams(HALF_TURN, HALF_TURN + 180)
+        np.testing.assert_allclose(found.begin_rad, [-np.pi / 2, np.pi / 2])
+        np.testing.assert_allclose(found.wide_rad, np.pi)
+        np.testing.assert_allclose(found.per_deg, 1.0)
 
     def test_beams_that_never_came_back_are_no_edge_of_it(self):
-        degrees = np.arange(-90.0, 91.0)
-        (field,) = find_fields_of_view([np.radians(degrees[np.abs(degrees) > 20])])
-        np.testing.assert_allclose(field, [-np.pi / 2, np.pi, 1.0])
+        found = beams(HALF_TURN[np.abs(HALF_TURN) > 20])
+        np.testing.assert_allclose(found.begin_rad, -np.pi / 2)
+        np.testing.assert_allclose(found.wide_rad, np.pi)
 
-    def test_it_may_go_on_beyond_half_a_turn(self):
-        azimuth_rad = np.radians(np.sort((np.arange(90.0, 271.0) + 180) % 360 - 180))
-        (field,) = find_fields_of_view([azimuth_rad])
-        np.testing.assert_allclose(field, [np.pi / 2, np.pi, 1.0])
+    def test_of_a_sensor_that_looks_all_around_no_gap_is_the_end(self):
+        around = np.arange(-180.0, 180.0)
+        found = beams(around, around[np.abs(around) > 20])
+        np.testing.assert_allclose(found.wide_rad, 2 * np.pi)
 
-    def test_echoes_of_one_beam_are_one_beam(self):
-        once = np.radians(np.arange(-90.0, 91.0))
-        (field,) = find_fields_of_view([np.repeat(once, 3)])
-        np.testing.assert_allclose(field, [-np.pi / 2, np.pi, 1.0])
+    def test_echoes_of_one_beam_are_one_beam_though_they_are_rounded(self):
+        rng = np.random.default_rng(1)
+        echoes = np.repeat(HALF_TURN, 3) + rng.uniform(-1e-5, 1e-5, 3 * len(HALF_TURN))
+        assert beams(echoes).per_deg == pytest.approx(1.0, rel=1e-3)
+
+    def test_it_reaches_as_far_as_some_returns_came_from(self):
+        azimuth_rad = np.radians(HALF_TURN)
+        range_m = np.full(len(HALF_TURN), 4.0)
+        range_m[[5, 50]], range_m[[20, 70, 90]] = 100.0, 6.0
+        ways_m = range_m[:, None] * np.column_stack(
+            [np.cos(azimuth_rad), np.sin(azimuth_rad), 0 * azimuth_rad]
+        )
+        # two may be stray
+        assert observe_beams([(azimuth_rad, ways_m)]).reach_m == pytest.approx(6.0)
 
     def test_of_no_scans_and_of_one_beam_none_is_known(self):
-        assert find_fields_of_view([]).shape == (0, 3)
-        for few in (np.empty(0), np.zeros(1), np.zeros(3)):
-            assert find_fields_of_view([few]).tolist() == [[0, 0, 0]]
+        assert beams().per_deg.shape == (0,) and beams().reach_m == 0
+        for few in ((), (0.0,), (0.0, 0.0, 0.0)):
+            found = beams(few)
+            assert (found.wide_rad, found.per_deg) == (0, 0)
 
 
 class TestUsualReturns:
@@ -115,18 +142,40 @@ def test_as_many_rays_are_expected_as_fit_into_the_angle_of_a_wall():
     assert found.expected[0, 20] == pytest.approx(10 * np.degrees(0.05 / 2), rel=0.01)
 
 
-def test_of_a_plane_beams_are_expected_where_it_looks():
+@pytest.mark.parametrize("angle_deg", [0, 100, 200, 300])
+def test_of_a_plane_beams_are_expected_where_it_looks(angle_deg):
     """One a degree, from 1 to 90 degrees left of south: to the right of it there are none."""
     turn_deg = np.arange(1.0, 91.0)
     azimuth_rad = np.radians(turn_deg - 90)
     reach_m = np.minimum(2 / np.maximum(np.cos(np.radians(turn_deg)), 0.1), 8.0)[:, None]
     ends_m = reach_m * np.column_stack([np.cos(azimuth_rad), np.sin(azimuth_rad), 0 * azimuth_rad])
-    looked = rays(((0, 2, 0), ends_m + np.array((0, 2, 0))), planar=True)
-    face = cast_at_face(looked, NORTH, -2.0, 2.0, at_m=0.08)
+    angle_rad = np.radians(angle_deg)
+    sensor_m, ends_m = (
+        turned(places_m, angle_rad) for places_m in ([0, 2, 0], ends_m + np.array((0, 2, 0)))
+    )
+    looked = rays((sensor_m, ends_m), planar=True)
+    line = Line(np.zeros(2), turned([0.0, 1.0], angle_rad))
+    face = cast_at_face(looked, line, -2.0, 2.0, at_m=0.08)
     found = count_sent_rays(looked, face, -2.0, 80, 0.05, (0.0, 1.0))
-    assert found.expected[0, :40].sum() == 0
+    assert found.expected[0, :40].sum() == pytest.approx(0, abs=1)
     assert found.expected[0, 40:].sum() == pytest.approx(44.5, abs=1)
     assert found.returned.sum() == pytest.approx(44.5, abs=1)
+
+
+def test_of_a_plane_nothing_is_expected_from_farther_than_any_return():
+    """A wall of 8 m, 3 m before a sensor, is seen for 5 m: what is farther sends nothing back."""
+    turn_deg = np.arange(-80.0, 81.0)
+    azimuth_rad = np.radians(turn_deg - 90)
+    reach_m = 3 / np.cos(np.radians(turn_deg))
+    ends_m = reach_m[:, None] * np.column_stack(
+        [np.cos(azimuth_rad), np.sin(azimuth_rad), 0 * azimuth_rad]
+    )
+    looked = rays(((0, 3, 0), ends_m[reach_m <= 5] + np.array((0, 3, 0))), planar=True)
+    face = cast_at_face(looked, NORTH, -8.0, 8.0, at_m=0.08)
+    found = count_sent_rays(looked, face, -8.0, 320, 0.05, (0.0, 1.0))
+    # 4 m to either side
+    assert found.expected.sum() == pytest.approx(2 * np.degrees(np.arctan(4 / 3)), abs=3)
+    assert found.missing_share == pytest.approx(0, abs=0.03)
 
 
 def test_of_glass_little_comes_back():

@@ -13,6 +13,13 @@ def test_order_of_points_depends_on_the_points_alone():
     ).all()
 
 
+def test_points_are_relative_to_the_sensor_in_the_order_given():
+    points = np.random.default_rng(1).normal(size=(50, 3))
+    np.testing.assert_array_equal(
+        sensor_frame.centre_on_sensor(points, (1, 2, 3)), points - np.array((1, 2, 3))
+    )
+
+
 @pytest.mark.parametrize(
     ("xyz_m", "sensor"),
     [

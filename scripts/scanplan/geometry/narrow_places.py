@@ -284,7 +284,7 @@ def _part_enough(
     """Return the lines that, all together, part ground into large enough parts.
 
     Those that are wider than a width, into visited ones. A part that is too small goes with one
-    beside it, first with one that nobody was in.
+    beside it: if nobody was in it, first with another that nobody was in.
     """
     chosen = list(lines)
     while True:

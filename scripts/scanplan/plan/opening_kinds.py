@@ -40,8 +40,8 @@ _LIKELY = {
     "as wide as a door": np.array((0.3, 0.9, 0.3, 0.3)),
 }  # in offices and houses: of ten gaps how many are of each kind; how often a floor is seen in or
 # behind them where rays pass low down, things stand before them, a sill is seen, a sensor passes,
-# a leaf is seen to stand open
-_OUTER_DOOR_M = 0.8  # what leads out of a building and is narrower is rather a pane
+# a leaf is seen to stand open, they are as wide as doors are there (wider ones may be passages)
+_OUTER_DOOR_M = 0.8  # what nothing is near behind and is narrower is rather a pane
 _SURE = 0.8  # else it is not known what it is: one in five would be wrong
 
 
@@ -70,7 +70,8 @@ def weigh_kinds(
     sill_m : float
         As high as something was seen below the lowest rays through; NaN where nothing was.
     planar : bool
-        Whether heights mean nothing: then nobody tells a window from glass, but by its width.
+        Whether heights mean nothing: then nobody tells a window from glass, and a door from either
+        by its width alone.
     is_door_wide : bool
         Whether it is neither wider nor narrower than a door there; asked of planar scans alone.
     """

@@ -56,7 +56,7 @@ class Opening:
     state : str
         `OPEN`, `CLOSED` or `UNKNOWN`.
     n_rays : int
-        That went through.
+        That went through; of windows and in planar scans also those that never came back.
     sill_m, lintel_m : float
         Above the floor; NaN where not seen.
     below_wall : bool

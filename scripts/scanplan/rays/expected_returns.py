@@ -4,8 +4,8 @@ The missing-return test.
 
 Of the rays themselves nothing is known but their returns. How many a scan sends at an elevation is
 estimated by how many it usually gets back there; a planar scan's beams are evenly spread, but for
-where it does not look. Whatever is opaque returns the rays that reach it; glass lets most through,
-to where there may be nothing, and mirrors others away.
+where it does not look and what is too far. Whatever is opaque returns the rays that reach it; glass
+lets most through, to where there may be nothing, and mirrors others away.
 """
 
 from collections.abc import Iterable
@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from scanplan.geometry.tolerances import ROUNDING
-from scanplan.rays.azimuth_sectors import N_SECTORS
+from scanplan.rays.azimuth_sectors import N_SECTORS, WIDEST_GAP_RAD, column_spacing_rad
 from scanplan.rays.tolerances import FEW, ON_M, STRAY_SHARE, STRETCH_M
 from scanplan.types import Array, FloatArray, IntArray
 
@@ -60,30 +59,55 @@ def count_returns_below(azimuth_rad: FloatArray, xyz_m: FloatArray) -> FloatArra
     return np.concatenate([[0.0], np.cumsum(np.bincount(row, minlength=n_rows))]) / seen_deg
 
 
-def find_fields_of_view(azimuth_rads: Iterable[FloatArray]) -> FloatArray:
-    """Return where planar scans look, and how densely: (s, 3) float64.
+@dataclass(frozen=True, eq=False)
+class PlanarBeams:
+    """Where planar scans look, how densely, and how far.
 
-    Where the field of view begins, how far it goes on from there, radians, and how many beams there
-    are to a degree. The widest gap between returns counts as not looked at.
+    Attributes
+    ----------
+    begin_rad, wide_rad : (s,) float64
+        Azimuth that each scan's field of view begins at, and how far it goes on from there. Its
+        end is the widest gap between returns, unless some scan shows that the sensor looks all
+        around.
+    per_deg : (s,) float64
+        Beams to a degree of azimuth.
+    reach_m : float
+        As far as returns came from in any scan, but for a few that may be stray: of what is farther
+        it is not known whether it would return any.
+    """
+
+    begin_rad: FloatArray
+    wide_rad: FloatArray
+    per_deg: FloatArray
+    reach_m: float
+
+
+def observe_beams(scans: Iterable[tuple[FloatArray, FloatArray]]) -> PlanarBeams:
+    """Return what planar scans show of the beams that their sensor sends.
 
     Parameters
     ----------
-    azimuth_rads : iterable of (n,) float
-        Of each scan's returns, increasing, -pi to pi.
+    scans : iterable of ((n,) float, (n, 3) float)
+        Azimuths of each scan's returns, increasing, -pi to pi, and the ways to them from its
+        sensor.
     """
     fields = []
-    for azimuth_rad in azimuth_rads:
-        steps_rad = np.diff(azimuth_rad, append=azimuth_rad[:1] + 2 * np.pi)
-        # a beam may have several echoes
-        apart_rad = steps_rad[steps_rad > ROUNDING]
-        if len(apart_rad) < 2:
+    ranges_m = [np.zeros(FEW)]
+    for azimuth_rad, way_m in scans:
+        spacing_rad = column_spacing_rad(azimuth_rad, way_m)
+        if spacing_rad <= 0:
             fields.append((0.0, 0.0, 0.0))
             continue
+        steps_rad = np.diff(azimuth_rad, append=azimuth_rad[:1] + 2 * np.pi)
         widest = int(steps_rad.argmax())
         begin_rad = azimuth_rad[(widest + 1) % len(azimuth_rad)]
-        per_deg = 1 / np.rad2deg(np.median(apart_rad))
-        fields.append((begin_rad, 2 * np.pi - steps_rad[widest], per_deg))
-    return np.array(fields, float).reshape(-1, 3)
+        fields.append((begin_rad, 2 * np.pi - steps_rad[widest], 1 / np.rad2deg(spacing_rad)))
+        ranges_m.append(np.hypot(way_m[:, 0], way_m[:, 1]))
+    begin_rad, wide_rad, per_deg = np.array(fields, float).reshape(-1, 3).T
+    if wide_rad.max(initial=0.0) >= 2 * np.pi - WIDEST_GAP_RAD:
+        wide_rad = np.where(per_deg > 0, 2 * np.pi, 0.0)
+    reach_m = float(np.partition(np.concatenate(ranges_m), -FEW)[-FEW])
+    return PlanarBeams(begin_rad, wide_rad, per_deg, reach_m)
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,7 +169,8 @@ class SentRays:
     def lost(self) -> FloatArray:
         """Return how many of the rays that reached the columns (n,) of one surface are nowhere."""
         reached, returned, _ = self.reached(least_scans=2)
-        return np.nan_to_num(np.maximum(reached - returned, 0.0)) / self.width
+        n_columns = _sum_neighbours(np.ones((1, self.expected.shape[1])), self.width)[0]
+        return np.nan_to_num(np.maximum(reached - returned, 0.0)) / n_columns
 
 
 def count_sent_rays(
@@ -192,7 +217,7 @@ def count_sent_rays(
     if rays.planar:
         turn_rad = np.arctan2(away_m, views.side_m[looking, None])
         azimuth_rad = views.facing_rad[looking, None] + turn_rad
-        per_deg = _beams_per_deg(rays.fields_of_view[views.scan[looking]], azimuth_rad)
+        per_deg = _beams_per_deg(rays.beams, views.scan[looking], azimuth_rad, distance_m)
     else:
         heights = bottom_m[looking, None], top_m[looking, None]
         per_deg = _returns_per_deg(rays, views.scan[looking], distance_m, heights)
@@ -214,8 +239,8 @@ def count_sent_rays(
     occluded, returned, in_wall = (
         np.bincount(cell[kind], minlength=expected.size).reshape(expected.shape) for kind in kinds
     )
-    # of one beam there are few
-    width = round(2 * STRETCH_M / column_m) if rays.planar else _WIDTH
+    # of one beam there are few; as many columns on either side
+    width = 2 * round(STRETCH_M / column_m) + 1 if rays.planar else _WIDTH
     return SentRays(looking, expected, occluded, returned, in_wall, width)
 
 
@@ -245,13 +270,15 @@ def _returns_per_deg(
     return high - low
 
 
-def _beams_per_deg(fields: FloatArray, azimuth_rad: FloatArray) -> FloatArray:
-    """Return how many beams scans send to a degree around azimuths (s, n), 0 where none looks.
-
-    Their fields (s, 3) are those of `find_fields_of_view`.
-    """
-    begin_rad, wide_rad, per_deg = fields.T[:, :, None]
-    return np.where((azimuth_rad - begin_rad) % (2 * np.pi) <= wide_rad, per_deg, 0.0)
+def _beams_per_deg(
+    beams: PlanarBeams, scans: IntArray, azimuth_rad: FloatArray, distance_m: FloatArray
+) -> FloatArray:
+    """Return how many beams scans (s,) send to a degree around places (s, n) that they reach."""
+    begin_rad, wide_rad, per_deg = (
+        values[scans, None] for values in (beams.begin_rad, beams.wide_rad, beams.per_deg)
+    )
+    is_seen = (azimuth_rad - begin_rad) % (2 * np.pi) <= wide_rad
+    return np.where(is_seen & (distance_m <= beams.reach_m), per_deg, 0.0)
 
 
 def _below(usual: FloatArray, scan: IntArray, elevation_rad: FloatArray) -> FloatArray:

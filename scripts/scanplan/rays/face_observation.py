@@ -88,9 +88,10 @@ class FaceObservation:
 
     @property
     def glass_m(self) -> FloatArray:
-        """Where rays are lost (n, 2) in what has wall, sill or frame as well: in space alone.
+        """Where rays are lost, (n, 2), as in glass: of scans in space alone.
 
-        In the plane what sends few rays back may be dark, and a gap may lead out of the building.
+        In the plane a line that sends few rays back may as well be dark: there they tell of gaps
+        between walls, and of nothing else.
         """
         return self.lost_m[:0] if self.planar else self.lost_m
 

@@ -8,15 +8,13 @@ from shapely.geometry import MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry.tolerances import SHORTEST_M
+from scanplan.rays.azimuth_sectors import column_spacing_rad
 from scanplan.rays.ray_set import RaySet
 from scanplan.stage import workers
 from scanplan.types import FloatArray
 
 _SECTOR_RAD = np.radians(0.5)
 _SPARE = 1.1  # a sector is so much wider than what has to be in it, however rays fall
-# ASSUME wider gaps than this are the end of a sensor's field, or openings that nothing came back
-# from
-_WIDEST_RAD = np.radians(10)
 _SIMPLIFY_M = 0.02  # what an outline may err by: spikes of twice that on either side are no floor
 GRID_M = (
     SHORTEST_M  # corners of grounds lie on this: GEOS needs one, and nothing is surveyed as well
@@ -47,38 +45,6 @@ def free_polygons(rays: RaySet, threads: int = 1) -> list[MultiPolygon]:
         return _star(sensor_m[:2], rays.azimuth_rad[rows], rays.xyz_m[rows] - sensor_m)
 
     return workers.map_in_threads(draw_star, range(len(rays.rows)), threads)
-
-
-def column_spacing_rad(azimuth_rad: FloatArray, way_m: FloatArray) -> float:
-    """Return the angle between a scan's columns of rays: those of one beam, one after the other.
-
-    Of the rays within the degree of elevation that most of them lie in, half of the directions
-    between them lie in gaps up to this. Those of all beams together say nothing of it: they stand
-    one above the other, or beams fire in turns and rays lie anywhere from one column to the next.
-
-    Parameters
-    ----------
-    azimuth_rad : (n,) float64, increasing
-    way_m : (n, 3) float64
-        From the sensor to where each ray ends.
-
-    Returns
-    -------
-    float
-        0 where there are no two directions.
-    """
-    if not len(azimuth_rad):
-        return 0.0
-    elevation_rad = np.arctan2(way_m[:, 2], np.hypot(way_m[:, 0], way_m[:, 1]))
-    # rounded, so that what is level is of one degree
-    degree = np.rint(np.degrees(elevation_rad)).astype(np.int64)
-    degree -= degree.min()
-    steps_rad = np.sort(np.diff(azimuth_rad[degree == np.bincount(degree).argmax()]))
-    steps_rad = steps_rad[steps_rad <= _WIDEST_RAD]
-    turned_rad = np.cumsum(steps_rad)
-    return (
-        float(steps_rad[np.searchsorted(turned_rad, turned_rad[-1] / 2)]) if len(steps_rad) else 0.0
-    )
 
 
 def _star(origin_m: FloatArray, azimuth_rad: FloatArray, way_m: FloatArray) -> MultiPolygon:

@@ -40,7 +40,7 @@ class HeightProfile:
     open_share : float
         On what share of the length more rays went on than ended at some height of windows.
     n_lost : float
-        How many of those that ended beyond or never did never.
+        How many never came back: of those that count as ended beyond or never.
     """
 
     ends: FloatArray

@@ -2,7 +2,7 @@
 
 A ray runs straight from the sensor to the return that it measured. Nothing else is known of a
 sensor but its place: a direction without any return is known by how many the others of its
-elevation have (`expected_returns`).
+elevation have, or in the plane by the gap between them (`expected_returns`).
 """
 
 from collections.abc import Iterable, Mapping
@@ -85,12 +85,12 @@ class RaySet:
         )
 
     @cached_property
-    def fields_of_view(self) -> FloatArray:
-        """Where planar scans look, and how densely, (s, 3).
-
-        See `expected_returns`.
-        """
-        return expected_returns.find_fields_of_view(self.azimuth_rad[rows] for rows in self.rows)
+    def beams(self) -> expected_returns.PlanarBeams:
+        """What planar scans show of the beams that their sensor sends."""
+        return expected_returns.observe_beams(
+            (self.azimuth_rad[rows], self.xyz_m[rows] - sensor_m)
+            for rows, sensor_m in zip(self.rows, self.sensors_m, strict=True)
+        )
 
     @property
     def rows(self) -> list[slice]:
@@ -101,6 +101,7 @@ class RaySet:
         """Make what rays are found by now: threads that first ask together would each make it."""
         _ = self.sectors
         _ = self._key
+        _ = self.beams if self.planar else self.usual
 
     def with_points(self, xyz_m: FloatArray) -> "RaySet":
         """Return rays that end at other points (n, 3), in the same directions."""

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from scanplan.rays.azimuth_sectors import column_spacing_rad
 from scanplan.rays.face_raster import SCAN_COLUMN_M
-from scanplan.rays.free_space import column_spacing_rad
 from scanplan.types import FloatArray
 
 _SECTORS = 36  # of ten degrees: wider gaps are the end of a field
