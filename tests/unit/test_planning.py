@@ -17,7 +17,7 @@ from scanplan.plan import messages, planning, rooms, uncertainty, wall_faces, wa
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.openings import CLOSED, OPEN, Opening
 from scanplan.plan.plan_wall import PlanWall
-from scanplan.rays import azimuth_sectors, free_space, ray_set
+from scanplan.rays import beam_spread, free_space, ray_set
 
 SETTINGS = planning.make_plan_settings(**house_making.PLAN)
 TRUST = SETTINGS.trust
@@ -314,7 +314,7 @@ class TestFreeSpace:
         assert free_space.free_polygons(gathered)[0].intersection(
             shapely.box(0, 0, 4, 4)
         ).area == pytest.approx(16, rel=0.06)
-        spacing_rad = azimuth_sectors.column_spacing_rad(
+        spacing_rad = beam_spread.column_spacing_rad(
             gathered.azimuth_rad, gathered.xyz_m - SENSORS[0]
         )
         assert np.degrees(spacing_rad) == pytest.approx(360 / columns, abs=0.02)
@@ -346,7 +346,7 @@ class TestFreeSpace:
     ):
         azimuth_rad = np.radians(directions_deg)
         level = np.column_stack([np.cos(azimuth_rad), np.sin(azimuth_rad), 0 * azimuth_rad])
-        assert azimuth_sectors.column_spacing_rad(azimuth_rad, level) == pytest.approx(
+        assert beam_spread.column_spacing_rad(azimuth_rad, level) == pytest.approx(
             np.radians(spacing_deg)
         )
 

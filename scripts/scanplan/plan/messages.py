@@ -5,7 +5,7 @@ import numpy as np
 from scanplan.errors import StageError
 from scanplan.plan.faces.intervals import LEAST_OPEN_COLUMNS
 from scanplan.plan.planning import Plan
-from scanplan.rays import azimuth_sectors
+from scanplan.rays.beam_spread import column_spacing_rad
 from scanplan.rays.ray_set import RaySet
 from scanplan.store.schemas import COLUMN
 from scanplan.types import BoolArray, Columns, FilePath, FloatArray
@@ -62,10 +62,7 @@ def sparse_rays_warning(rays: RaySet, min_opening_m: float) -> str:
     str
         Empty where most points are near enough.
     """
-    spacings_rad = [
-        azimuth_sectors.column_spacing_rad(rays.azimuth_rad[rows], rays.xyz_m[rows] - sensor_m)
-        for rows, sensor_m in zip(rays.rows, rays.sensors_m, strict=True)
-    ]
+    spacings_rad = [column_spacing_rad(*way) for way in rays.ways()]
     spacing_rad = float(np.median(spacings_rad))
     if spacing_rad <= 0:
         return ""

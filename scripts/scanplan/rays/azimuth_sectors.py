@@ -1,6 +1,6 @@
-"""How far the rays of scans go, by azimuth sector, and how far apart they are.
+"""How far the rays of scans go, by azimuth sector.
 
-The first is a bound that shows which rays cannot come near a line.
+A bound that shows which rays cannot come near a line.
 """
 
 from dataclasses import dataclass
@@ -12,8 +12,6 @@ from scanplan.types import FloatArray, IntArray
 
 N_SECTORS = 72
 """Of 5 degrees each: wider than what is between two firings of any sensor."""
-WIDEST_GAP_RAD = np.radians(10)
-"""ASSUME wider ones are the end of a sensor's field, or openings that nothing came back from."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,35 +100,3 @@ def cull_spans(
     row, sector = np.nonzero(gone_m >= np.abs(side_m)[:, None] - at_m - ROUNDING)
     first, stop = sectors.first[scans[row], sector], sectors.first[scans[row], sector + 1]
     return np.maximum(low[:, row], first), np.minimum(high[:, row], stop), row
-
-
-def column_spacing_rad(azimuth_rad: FloatArray, way_m: FloatArray) -> float:
-    """Return the angle between a scan's columns of rays: those of one beam, one after the other.
-
-    Of the rays within the degree of elevation that most of them lie in, half of the directions
-    between them lie in gaps up to this. Those of all beams together say nothing of it: they stand
-    one above the other, or beams fire in turns and rays lie anywhere from one column to the next.
-
-    Parameters
-    ----------
-    azimuth_rad : (n,) float64, increasing
-    way_m : (n, 3) float64
-        From the sensor to where each ray ends.
-
-    Returns
-    -------
-    float
-        0 where there are no two directions.
-    """
-    if not len(azimuth_rad):
-        return 0.0
-    elevation_rad = np.arctan2(way_m[:, 2], np.hypot(way_m[:, 0], way_m[:, 1]))
-    # rounded, so that what is level is of one degree
-    degree = np.rint(np.degrees(elevation_rad)).astype(np.int64)
-    degree -= degree.min()
-    steps_rad = np.sort(np.diff(azimuth_rad[degree == np.bincount(degree).argmax()]))
-    steps_rad = steps_rad[steps_rad <= WIDEST_GAP_RAD]
-    turned_rad = np.cumsum(steps_rad)
-    return (
-        float(steps_rad[np.searchsorted(turned_rad, turned_rad[-1] / 2)]) if len(steps_rad) else 0.0
-    )

@@ -8,13 +8,12 @@ where it does not look and what is too far. Whatever is opaque returns the rays 
 lets most through, to where there may be nothing, and mirrors others away.
 """
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from scanplan.rays.azimuth_sectors import N_SECTORS, WIDEST_GAP_RAD, column_spacing_rad
+from scanplan.rays.azimuth_sectors import N_SECTORS
 from scanplan.rays.tolerances import FEW, ON_M, STRAY_SHARE, STRETCH_M
 from scanplan.types import Array, FloatArray, IntArray
 
@@ -33,6 +32,7 @@ Their rays are few, and much stands before the surface.
 _ROWS_PER_DEG = 10  # of elevation: beams of a VLP-16 are 2 degrees apart, of dense sensors 0.2
 _LEAST_RAYS = 20.0  # half of so many are not lost by chance
 DEEP_M = 0.6  # no wall is thicker
+ALL_HEIGHTS_M = (-np.inf, np.inf)
 _WIDTH = 5  # columns that are judged together: single ones expect too few rays
 
 
@@ -57,57 +57,6 @@ def count_returns_below(azimuth_rad: FloatArray, xyz_m: FloatArray) -> FloatArra
     n_rows = 180 * _ROWS_PER_DEG
     row = np.clip((elevation_deg + 90) * _ROWS_PER_DEG, 0, n_rows - 1).astype(np.int64)
     return np.concatenate([[0.0], np.cumsum(np.bincount(row, minlength=n_rows))]) / seen_deg
-
-
-@dataclass(frozen=True, eq=False)
-class PlanarBeams:
-    """Where planar scans look, how densely, and how far.
-
-    Attributes
-    ----------
-    begin_rad, wide_rad : (s,) float64
-        Azimuth that each scan's field of view begins at, and how far it goes on from there. Its
-        end is the widest gap between returns, unless some scan shows that the sensor looks all
-        around.
-    per_deg : (s,) float64
-        Beams to a degree of azimuth.
-    reach_m : float
-        As far as returns came from in any scan, but for a few that may be stray: of what is farther
-        it is not known whether it would return any.
-    """
-
-    begin_rad: FloatArray
-    wide_rad: FloatArray
-    per_deg: FloatArray
-    reach_m: float
-
-
-def observe_beams(scans: Iterable[tuple[FloatArray, FloatArray]]) -> PlanarBeams:
-    """Return what planar scans show of the beams that their sensor sends.
-
-    Parameters
-    ----------
-    scans : iterable of ((n,) float, (n, 3) float)
-        Azimuths of each scan's returns, increasing, -pi to pi, and the ways to them from its
-        sensor.
-    """
-    fields = []
-    ranges_m = [np.zeros(FEW)]
-    for azimuth_rad, way_m in scans:
-        spacing_rad = column_spacing_rad(azimuth_rad, way_m)
-        if spacing_rad <= 0:
-            fields.append((0.0, 0.0, 0.0))
-            continue
-        steps_rad = np.diff(azimuth_rad, append=azimuth_rad[:1] + 2 * np.pi)
-        widest = int(steps_rad.argmax())
-        begin_rad = azimuth_rad[(widest + 1) % len(azimuth_rad)]
-        fields.append((begin_rad, 2 * np.pi - steps_rad[widest], 1 / np.rad2deg(spacing_rad)))
-        ranges_m.append(np.hypot(way_m[:, 0], way_m[:, 1]))
-    begin_rad, wide_rad, per_deg = np.array(fields, float).reshape(-1, 3).T
-    if wide_rad.max(initial=0.0) >= 2 * np.pi - WIDEST_GAP_RAD:
-        wide_rad = np.where(per_deg > 0, 2 * np.pi, 0.0)
-    reach_m = float(np.partition(np.concatenate(ranges_m), -FEW)[-FEW])
-    return PlanarBeams(begin_rad, wide_rad, per_deg, reach_m)
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,7 +143,7 @@ def count_sent_rays(
         Number of columns, if not of all views the same.
     column_m : float
     heights_m : (2,) or (v, 2) float
-        From where to where above the floor; of planar scans all is one height.
+        From where to where above the floor; `ALL_HEIGHTS_M` of planar scans.
 
     Returns
     -------
@@ -215,9 +164,11 @@ def count_sent_rays(
     bottom_m, top_m = np.broadcast_to(heights_m, (len(counts), 2)).T
     distance_m = np.hypot(away_m, views.side_m[looking, None])
     if rays.planar:
+        # from the shortest way to the plane
         turn_rad = np.arctan2(away_m, views.side_m[looking, None])
-        azimuth_rad = views.facing_rad[looking, None] + turn_rad
-        per_deg = _beams_per_deg(rays.beams, views.scan[looking], azimuth_rad, distance_m)
+        normal_x, normal_y = views.normal[looking].T[:, :, None]
+        azimuth_rad = np.arctan2(-normal_y, -normal_x) + turn_rad
+        per_deg = rays.beams.per_deg_at(views.scan[looking], azimuth_rad, distance_m)
     else:
         heights = bottom_m[looking, None], top_m[looking, None]
         per_deg = _returns_per_deg(rays, views.scan[looking], distance_m, heights)
@@ -226,8 +177,7 @@ def count_sent_rays(
     expected *= number < counts[looking, None]
     view, along_m, height_m = face.view, face.along_m, face.height_m
     is_inside = is_looking.take(view) & (along_m >= low_m) & (along_m < high_m.take(view))
-    if not rays.planar:
-        is_inside &= (height_m >= bottom_m.take(view)) & (height_m < top_m.take(view))
+    is_inside &= (height_m >= bottom_m.take(view)) & (height_m < top_m.take(view))
     is_inside &= np.abs(along_m - views.sensor_along_m.take(view)) < grazing_m.take(view)
     (rows,) = np.nonzero(is_inside)
     behind_m = face.behind_m.take(rows)
@@ -268,17 +218,6 @@ def _returns_per_deg(
         for height_m in heights_m
     )
     return high - low
-
-
-def _beams_per_deg(
-    beams: PlanarBeams, scans: IntArray, azimuth_rad: FloatArray, distance_m: FloatArray
-) -> FloatArray:
-    """Return how many beams scans (s,) send to a degree around places (s, n) that they reach."""
-    begin_rad, wide_rad, per_deg = (
-        values[scans, None] for values in (beams.begin_rad, beams.wide_rad, beams.per_deg)
-    )
-    is_seen = (azimuth_rad - begin_rad) % (2 * np.pi) <= wide_rad
-    return np.where(is_seen & (distance_m <= beams.reach_m), per_deg, 0.0)
 
 
 def _below(usual: FloatArray, scan: IntArray, elevation_rad: FloatArray) -> FloatArray:

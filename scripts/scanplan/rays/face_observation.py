@@ -178,10 +178,13 @@ def _find_lost(rays: RaySet, face: FaceRays, low_m: float, high_m: float) -> Flo
     """
     count = max(int(np.ceil((high_m - low_m) / CELL_M)), 1)
     is_lost = np.full(count, True)
-    for heights_m in _GLASS_HEIGHTS_M[:1] if rays.planar else _GLASS_HEIGHTS_M:
+    bands_m = (expected_returns.ALL_HEIGHTS_M,) if rays.planar else _GLASS_HEIGHTS_M
+    # of a drive with a scan each metre few look at a gap
+    least_scans = 2 if rays.planar else FEW
+    for heights_m in bands_m:
         if is_lost.any():
             sent = expected_returns.count_sent_rays(rays, face, low_m, count, CELL_M, heights_m)
-            reached, returned, _ = sent.reached(least_scans=2 if rays.planar else FEW)
+            reached, returned, _ = sent.reached(least_scans=least_scans)
             is_lost &= returned < _MOST_SHARE * reached
     return face_raster.find_stretches(is_lost, low_m)
 

@@ -40,8 +40,8 @@ class Views:
     sensor_along_m, side_m : (v,) float64
         Where its sensor stands: along the line, and how far from the upright plane over it,
         positive on the side of the line's normal.
-    facing_rad : (v,) float64
-        Azimuth of the shortest way from there to that plane, for sensors on that side.
+    normal : (v, 2) float64
+        The line's.
     least_side_m : float
         Of views whose sensor is nearer to the plane no rays are looked at.
     """
@@ -49,7 +49,7 @@ class Views:
     scan: IntArray
     sensor_along_m: FloatArray
     side_m: FloatArray
-    facing_rad: FloatArray
+    normal: FloatArray
     least_side_m: float
 
 
@@ -154,8 +154,8 @@ def cast_at_face(
         scans = np.concatenate([scans[is_near], scans[far[row]]])
     xyz_m, view = rays.gather_rows(low, high, scans)
     ends_m = line.along_m(xyz_m[:, :2]), line.offset_m(xyz_m[:, :2]), xyz_m[:, 2]
-    facing_rad = np.full(len(sensors_m), np.arctan2(-line.normal[1], -line.normal[0]))
-    views = Views(np.arange(len(sensors_m)), sensor_along_m, side_m, facing_rad, least_side_m)
+    normal = np.broadcast_to(line.normal, (len(sensors_m), 2))
+    views = Views(np.arange(len(sensors_m)), sensor_along_m, side_m, normal, least_side_m)
     return _meet(rays, views, view, *ends_m, at_m)
 
 
@@ -186,7 +186,7 @@ def cast_at_faces(
         scan=np.zeros(len(normal), np.int64),
         sensor_along_m=(from_start_m * direction).sum(axis=1),
         side_m=(from_start_m * normal).sum(axis=1),
-        facing_rad=np.arctan2(-normal[:, 1], -normal[:, 0]),
+        normal=normal,
         least_side_m=least_side_m,
     )
     seen = np.flatnonzero(np.abs(views.side_m) >= least_side_m)

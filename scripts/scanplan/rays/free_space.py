@@ -8,7 +8,7 @@ from shapely.geometry import MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry.tolerances import SHORTEST_M
-from scanplan.rays.azimuth_sectors import column_spacing_rad
+from scanplan.rays.beam_spread import column_spacing_rad
 from scanplan.rays.ray_set import RaySet
 from scanplan.stage import workers
 from scanplan.types import FloatArray

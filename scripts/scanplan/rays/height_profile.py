@@ -149,8 +149,8 @@ def _count_lost(rays: RaySet, face: FaceRays, low_m: float, n_columns: int) -> F
     """Return how many rays of each row and column (r, c) reached it and never came back."""
     lost = np.zeros((len(ROWS_M) - 1, n_columns))
     if rays.planar:
-        heights_m = ROWS_M[0], ROWS_M[-1]
-        sent = expected_returns.count_sent_rays(rays, face, low_m, n_columns, CELL_M, heights_m)
+        every_m = expected_returns.ALL_HEIGHTS_M
+        sent = expected_returns.count_sent_rays(rays, face, low_m, n_columns, CELL_M, every_m)
         lost[0] = sent.lost()
         return lost
     # of two rows together: single ones expect too few rays

@@ -5,13 +5,13 @@ sensor but its place: a direction without any return is known by how many the ot
 elevation have, or in the plane by the gap between them (`expected_returns`).
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
-from scanplan.rays import azimuth_sectors, expected_returns, levels
+from scanplan.rays import azimuth_sectors, beam_spread, expected_returns, levels
 from scanplan.stage import workers
 from scanplan.types import FloatArray, IntArray
 
@@ -77,25 +77,25 @@ class RaySet:
         """
         return np.array(
             [
-                expected_returns.count_returns_below(
-                    self.azimuth_rad[rows], self.xyz_m[rows] - sensor_m
-                )
-                for rows, sensor_m in zip(self.rows, self.sensors_m, strict=True)
+                expected_returns.count_returns_below(azimuth_rad, way_m)
+                for azimuth_rad, way_m in self.ways()
             ]
         )
 
     @cached_property
-    def beams(self) -> expected_returns.PlanarBeams:
+    def beams(self) -> beam_spread.PlanarBeams:
         """What planar scans show of the beams that their sensor sends."""
-        return expected_returns.observe_beams(
-            (self.azimuth_rad[rows], self.xyz_m[rows] - sensor_m)
-            for rows, sensor_m in zip(self.rows, self.sensors_m, strict=True)
-        )
+        return beam_spread.observe_beams(self.ways())
 
     @property
     def rows(self) -> list[slice]:
         """The rows of each scan."""
         return [slice(a, b) for a, b in zip(self.first[:-1], self.first[1:], strict=True)]
+
+    def ways(self) -> Iterator[tuple[FloatArray, FloatArray]]:
+        """Iterate over the azimuths (n,) of each scan's rays and the ways (n, 3) that they go."""
+        for rows, sensor_m in zip(self.rows, self.sensors_m, strict=True):
+            yield self.azimuth_rad[rows], self.xyz_m[rows] - sensor_m
 
     def index_rays(self) -> None:
         """Make what rays are found by now: threads that first ask together would each make it."""

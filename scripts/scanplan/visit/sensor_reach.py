@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan.rays.azimuth_sectors import column_spacing_rad
+from scanplan.rays.beam_spread import column_spacing_rad
 from scanplan.rays.face_raster import SCAN_COLUMN_M
 from scanplan.types import FloatArray
 
