@@ -1,14 +1,10 @@
-from unittest import mock
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from helpers.ray_making import rays
-from scanplan.rays import azimuth_sectors
 from scanplan.rays.ray_set import gather_rays
-from scanplan.stage import workers
 
 EAST, NORTH, WEST, SOUTH = (1, 0, 0), (0, 1, 0), (-1, 0, 0), (0, -1, 0)
 ORIGIN = (0, 0, 0)
@@ -48,15 +44,10 @@ def test_heights_are_counted_from_the_floor_or_from_zero_in_the_plane():
     assert flat.ground_z_m == 0 and np.isnan(flat.floor_z_m)
 
 
-def test_what_rays_are_found_by_is_made_once_for_all_threads():
+def test_the_way_of_a_ray_is_from_its_own_sensor_and_level():
     found = rays((ORIGIN, [NORTH, EAST]), ((5, 0, 1), [(5, 3, 0)]))
     assert found.level_way_m.tolist() == [[1, 0], [0, 1], [0, 3]]
-    sort = azimuth_sectors.sort_into_sectors
-    with mock.patch.object(azimuth_sectors, "sort_into_sectors", side_effect=sort) as made:
-        found.index_rays()
-        reaches_m = workers.map_in_threads(lambda _: found.sectors.reach_m.max(), range(4), 2)
-    assert made.call_count == 1
-    assert reaches_m == [3] * 4
+    assert found.sectors.reach_m.max() == 3
 
 
 def between(found, one, other, scans=(0,)):

@@ -23,7 +23,6 @@ from scanplan.rays.face_raster import CELL_M
 from scanplan.rays.height_profile import EYE_ROWS, ROWS_M, HeightProfile, observe_heights
 from scanplan.rays.ray_set import RaySet
 from scanplan.rays.tolerances import FEW, NEAR_FLOOR_M, STRETCH_M
-from scanplan.stage import workers
 from scanplan.types import FloatArray
 
 KINDS = ("wall", "door", "window", "glass")
@@ -124,7 +123,6 @@ def add_windows(
     *,
     min_width_m: float,
     band_m: float,
-    threads: int = 1,
 ) -> list[PlanWall]:
     """Return walls with what may be windows in them: gaps at eye height that are no other gap's.
 
@@ -139,14 +137,10 @@ def add_windows(
     min_width_m : float
     band_m : float, > 0
         Returns this near to a face are at it.
-    threads : int
-        Cores to use.
     """
     if rays.planar:
         return list(walls)
-    return workers.map_in_threads(
-        lambda wall: _with_windows(wall, rays, min_width_m, band_m), walls, threads
-    )
+    return [_with_windows(wall, rays, min_width_m, band_m) for wall in walls]
 
 
 def _with_windows(wall: PlanWall, rays: RaySet, min_width_m: float, band_m: float) -> PlanWall:
@@ -248,7 +242,6 @@ def decide_kinds(
     max_door_m: float,
     band_m: float,
     ways_m: Sequence[FloatArray] = (),
-    threads: int = 1,
 ) -> list[PlanWall]:
     """Return walls with the kinds of their gaps; what is wall after all is closed.
 
@@ -268,18 +261,13 @@ def decide_kinds(
         Returns this near to a face are at it.
     ways_m : sequence of (2, 2) float64
         Gaps that leaves were seen to stand open at, from jamb to jamb.
-    threads : int
-        Cores to use.
     """
     track = _track_line(track_m)
     middles_m = np.mean([*ways_m, np.full((2, 2), np.inf)], axis=1)
-
-    def decide(wall: PlanWall) -> PlanWall:
-        return _decide(
-            *(wall, rays, track, rooms_beside, min_width_m, max_door_m, band_m, middles_m)
-        )
-
-    return workers.map_in_threads(decide, walls, threads)
+    return [
+        _decide(*(wall, rays, track, rooms_beside, min_width_m, max_door_m, band_m, middles_m))
+        for wall in walls
+    ]
 
 
 def _decide(

@@ -48,6 +48,7 @@ TABLES = {
     "furniture": schemas.FURNITURE,
 }
 """The tables of a plan by the names of their files."""
+_Free = tuple[list[shapely.MultiPolygon], shapely.MultiPolygon]
 _THICKNESS_M = 0.1  # of a partition, where no wall shows both sides
 
 
@@ -175,17 +176,11 @@ def make_plan(
         rays, segments, settings.ranges, settings.reading.band_m, up
     )
     rays = range_bias.remove_range_bias(rays, errors_m, up, threads)
-    views = free_space.free_polygons(rays, threads)
-    floors = list(views)
-    # in space beams of other elevations see the floor beside a chair
-    if rays.planar:
-        floors += free_space.driven_ground(
-            track_m,
-            width_m=settings.openings.min_opening_m,
-            max_step_m=settings.openings.max_door_m,
-        )
-    find_floor = workers.begin_in_thread(free_space.union_on_grid, floors, threads=threads)
-    survey = _Survey(settings, rays, track_m, views, find_floor, threads)
+    gaps = settings.openings
+    find_free = workers.begin_in_thread(
+        *(_find_free, rays, track_m, gaps.min_opening_m, gaps.max_door_m), threads=threads
+    )
+    survey = _Survey(settings, rays, track_m, find_free, threads)
     surfaces = survey.find_surfaces(segments)
     spaces = survey.find_spaces(surfaces)
     walls = survey.decide_kinds(surfaces, spaces.rooms)
@@ -273,32 +268,33 @@ class _Survey:
     rays : ray_set.RaySet
         Their ranges set right.
     track_m : (k, 2) float64
-    views : list of shapely geometry
-        What each scan saw free.
-    find_floor : callable
-        Returns all that was seen free, a shapely.MultiPolygon.
+    find_free : callable
+        Returns `views` and `floor`, for which lines need not wait.
     threads : int
     """
 
     settings: PlanSettings
     rays: RaySet
     track_m: FloatArray
-    views: Sequence[BaseGeometry]
-    find_floor: Callable[[], shapely.MultiPolygon]
+    find_free: Callable[[], _Free]
     threads: int
+
+    @property
+    def views(self) -> list[shapely.MultiPolygon]:
+        """What each scan saw free."""
+        return self.find_free()[0]
 
     @property
     def floor(self) -> shapely.MultiPolygon:
         """All that was seen free."""
-        return self.find_floor()
+        return self.find_free()[1]
 
     def find_surfaces(self, segments: Columns) -> _Surfaces:
         """Return walls with their openings, kinds of openings not yet decided."""
         reading = self.settings.reading
         candidates = merge_segments(segments, self.settings.merge)
         traced = trace_faces(
-            *(candidates, self.rays, self.settings.merge, reading, self.settings.furniture),
-            threads=self.threads,
+            candidates, self.rays, self.settings.merge, reading, self.settings.furniture
         )
         assemble = functools.partial(
             assemble_walls,
@@ -319,7 +315,6 @@ class _Survey:
             *(walls, self.rays),
             min_width_m=min_width_m,
             band_m=reading.band_m,
-            threads=self.threads,
         )
         walls, tops_m = half_height.drop_low_surfaces(
             walls,
@@ -401,7 +396,6 @@ class _Survey:
             min_width_m=self.settings.openings.min_opening_m,
             max_door_m=self.settings.openings.max_door_m,
             band_m=self.settings.reading.band_m,
-            threads=self.threads,
         )
 
     def find_bare_spans(self, surfaces: _Surfaces, spaces: _Spaces) -> list[wall_ground.BareSpan]:
@@ -420,6 +414,16 @@ class _Survey:
 
     def _floor_with(self, grounds: Sequence[BaseGeometry]) -> BaseGeometry:
         return free_space.union_on_grid([self.floor, *grounds]) if grounds else self.floor
+
+
+def _find_free(rays: RaySet, track_m: FloatArray, width_m: float, max_step_m: float) -> _Free:
+    """Return what each scan saw free, and all that was."""
+    views = free_space.free_polygons(rays)
+    floors: list[BaseGeometry] = list(views)
+    # in space beams of other elevations see the floor beside a chair
+    if rays.planar:
+        floors += free_space.driven_ground(track_m, width_m=width_m, max_step_m=max_step_m)
+    return views, free_space.union_on_grid(floors)
 
 
 def _usual_thickness_m(walls: list[PlanWall]) -> float:

@@ -10,7 +10,6 @@ from shapely.geometry.base import BaseGeometry
 from scanplan.geometry.tolerances import SHORTEST_M
 from scanplan.rays.beam_spread import column_spacing_rad
 from scanplan.rays.ray_set import RaySet
-from scanplan.stage import workers
 from scanplan.types import FloatArray
 
 _SECTOR_RAD = np.radians(0.5)
@@ -21,7 +20,7 @@ GRID_M = (
 )
 
 
-def free_polygons(rays: RaySet, threads: int = 1) -> list[MultiPolygon]:
+def free_polygons(rays: RaySet) -> list[MultiPolygon]:
     """Return what each scan's rays went over, as polygons.
 
     In every half degree (more where a sensor's rays are further apart) a ray of the longest tenth
@@ -31,20 +30,16 @@ def free_polygons(rays: RaySet, threads: int = 1) -> list[MultiPolygon]:
     Parameters
     ----------
     rays : ray_set.RaySet
-    threads : int
-        Cores to use; the result does not depend on it.
 
     Returns
     -------
     list of shapely geometry
         A polygon, polygons, or an empty one, per scan.
     """
-
-    def draw_star(scan: int) -> MultiPolygon:
-        rows, sensor_m = rays.rows[scan], rays.sensors_m[scan]
-        return _star(sensor_m[:2], rays.azimuth_rad[rows], rays.xyz_m[rows] - sensor_m)
-
-    return workers.map_in_threads(draw_star, range(len(rays.rows)), threads)
+    return [
+        _star(sensor_m[:2], rays.azimuth_rad[rows], rays.xyz_m[rows] - sensor_m)
+        for rows, sensor_m in zip(rays.rows, rays.sensors_m, strict=True)
+    ]
 
 
 def _star(origin_m: FloatArray, azimuth_rad: FloatArray, way_m: FloatArray) -> MultiPolygon:

@@ -97,12 +97,6 @@ class RaySet:
         for rows, sensor_m in zip(self.rows, self.sensors_m, strict=True):
             yield self.azimuth_rad[rows], self.xyz_m[rows] - sensor_m
 
-    def index_rays(self) -> None:
-        """Make what rays are found by now: threads that first ask together would each make it."""
-        _ = self.sectors
-        _ = self._key
-        _ = self.beams if self.planar else self.usual
-
     def with_points(self, xyz_m: FloatArray) -> "RaySet":
         """Return rays that end at other points (n, 3), in the same directions."""
         return replace(self, xyz_m=xyz_m)

@@ -20,7 +20,6 @@ from scanplan.plan.faces.owned_points import owned_intervals
 from scanplan.plan.tolerances import END_M, FACE_M
 from scanplan.rays.face_observation import FaceObservation, RaySettings
 from scanplan.rays.ray_set import RaySet
-from scanplan.stage import workers
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,8 +48,6 @@ def trace_faces(
     merging: MergeSettings,
     reading: RaySettings,
     furniture: FurnitureLimits,
-    *,
-    threads: int = 1,
 ) -> TracedFaces:
     """Trace the faces along the lines of candidates.
 
@@ -83,8 +80,6 @@ def trace_faces(
     merging : merging.MergeSettings
     reading : face_observation.RaySettings
     furniture : furniture.FurnitureLimits
-    threads : int
-        Cores to use; the result does not depend on it.
 
     Returns
     -------
@@ -97,7 +92,7 @@ def trace_faces(
         door_height_m=reading.door_height_m,
         max_gap_m=reading.max_gap_m,
     )
-    observations = _observe_lines(face_candidates, rays, reading, threads)
+    observations = _observe_lines(face_candidates, rays, reading)
     owners = selection.select_walls(find_intervals(seen) for seen in observations)
     owned_m = owned_intervals(observations, owners)
     walls = selection.select_walls(
@@ -119,7 +114,7 @@ def trace_faces(
 
 
 def _observe_lines(
-    face_candidates: Iterable[FaceCandidate], rays: RaySet, reading: RaySettings, threads: int
+    face_candidates: Iterable[FaceCandidate], rays: RaySet, reading: RaySettings
 ) -> list[FaceObservation]:
     """Return the observation of each line that candidates share, from the first to the last."""
     of_line: dict[int, list[FaceCandidate]] = {}
@@ -133,8 +128,8 @@ def _observe_lines(
             *(rays, group[0].line, low_m, high_m), band_m=reading.band_m, reach_m=reading.reach_m
         )
 
-    rays.index_rays()
-    return workers.map_in_threads(observe_line, of_line.values(), threads)
+    # one after the other: two threads would wait for each other's many short steps
+    return [observe_line(group) for group in of_line.values()]
 
 
 @dataclass(frozen=True)
