@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from scanplan.extraction import known_segments
-from scanplan.selection import wall_cells
+from scanplan.selection import persistence
 from scanplan.stage import log
 from scanplan.store import schemas, tables
 from scanplan.types import FilePath
@@ -38,7 +38,7 @@ def gather_chunks(
     parts = [tables.read_table(chunk, schema, allow_empty=allow_empty) for chunk in chunks]
     columns = {name: np.concatenate([part[name] for part in parts]) for name in schema.columns}
     if schema is schemas.OBSERVATIONS and tables.ScanStore(scans).planar:
-        columns = wall_cells.even_out_noise(columns)
+        columns = persistence.weigh_by_persistence(columns)
     notes = known_segments.join_notes([tables.read_notes(chunk, schema) for chunk in chunks])
     tables.write_table(output, schema, columns, allow_empty=allow_empty, notes=notes)
     n_rows = len(columns["scan_id"])

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from scanplan.selection import wall_cells
+from scanplan.selection import persistence, wall_cells
 from scanplan.stage import log
 from scanplan.stage.per_registered_scan import map_registered_scans
 from scanplan.store import schemas, tables
@@ -45,7 +45,7 @@ def observe_walls(
     columns = wall_cells.observation_columns(scan_ids, observations)
     # a cell's best scan may be in another chunk: that is for `gather_chunks`
     if chunk is None and tables.ScanStore(scans).planar:
-        columns = wall_cells.even_out_noise(columns)
+        columns = persistence.weigh_by_persistence(columns)
     tables.write_table(output, schemas.OBSERVATIONS, columns, allow_empty=True)
     mean_m = columns["length_m"].sum() / len(observations)
     n_blind = sum(len(observation["length_m"]) == 0 for observation in observations)

@@ -144,18 +144,3 @@ def test_what_is_seen_neither_to_a_wall_s_height_nor_to_its_end_counts_half():
     }
     assert shown[0.6] == pytest.approx(1.0, rel=0.1)
     assert shown[1.0] == pytest.approx(shown[0.6] / 2)
-
-
-def test_half_of_the_best_shows_a_cell_and_less_counts_in_proportion():
-    columns = {
-        "scan_id": np.array([0, 1, 2, 0]),
-        "facing": np.array([0, 0, 0, 1]),
-        "along": np.array([5, 5, 5, 5]),
-        "across": np.array([2, 2, 2, 2]),
-        "length_m": np.array([0.2, 0.1, 0.04, 0.03]),
-    }
-    evened = wall_cells.even_out_noise(columns)
-    np.testing.assert_allclose(evened["length_m"], [0.2, 0.2, 0.08, 0.03])
-    assert all(evened[name] is columns[name] for name in columns if name != "length_m")
-    empty = {name: values[:0] for name, values in columns.items()}
-    assert len(wall_cells.even_out_noise(empty)["length_m"]) == 0

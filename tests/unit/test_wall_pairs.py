@@ -48,6 +48,24 @@ def test_a_long_face_and_two_short_ones_behind_it_are_one_wall():
     assert wall.thickness_m == pytest.approx(0.195, abs=0.002)
 
 
+@pytest.mark.parametrize(
+    ("other", "may_be"),
+    [
+        ((3.5, 0, 2.5, 0), True),
+        ((4.5, 0, 3.5, 0), False),
+        ((2.5, 0, 3.5, 0), False),
+        ((3.5, 0.17, 2.5, 0.17), False),
+        ((3.5, -0.5, 2.5, -0.5), False),
+        ((3.5, 0.2, 2.5, -0.1), False),
+    ],
+    ids=["other_jamb", "too_far_on", "same_side", "too_thin", "too_thick", "turned"],
+)
+def test_sides_of_one_wall_may_be_seen_at_different_ends_of_it(other, may_be):
+    one, other = stretch(0, 0.2, 1, 0.2), stretch(*other)
+    assert SETTINGS.may_be_sides(one, other) is may_be
+    assert SETTINGS.may_be_sides(other, one) is may_be
+
+
 def test_a_single_face_goes_on_behind_a_pause():
     (wall,) = pair(stretch(0, 0, 4, 0), stretch(5, 0.01, 9, 0.01))
     assert math.isnan(wall.thickness_m)

@@ -12,6 +12,7 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.plan import wall_footprints
 from scanplan.plan.wall_ground import UNSEEN
+from scanplan.rays import levels
 from scanplan.store import schemas, tables
 from scanplan.store.doubts import NO_DOUBT, Doubts, read_doubts
 from scanplan.types import Array, BoolArray, Columns, FilePath, FloatArray, IntArray
@@ -35,7 +36,6 @@ NUMBERS = {"walls": "wall", "faces": "face", "openings": "opening", "rooms": "ro
 _ENDS = ("x0_m", "y0_m", "x1_m", "y1_m")
 _CLEARANCE_M = 0.02  # an opening is cut this much deeper than its wall, so that no skin is left
 _GRID_M = 1e-4  # of corners: a tenth of a millimetre, what drawings are rounded to
-_FLAT_M = 0.5  # a ceiling this near to the floor is none: half of the least storey of `levels`
 
 
 def centrelines_m(columns: Columns) -> FloatArray:
@@ -251,7 +251,7 @@ class FloorPlan:
     def height_from(self) -> str:
         """What the height of the storey follows from: a key of `HEIGHTS`."""
         floor_m, highest_m = self._walls_z_m
-        if self.ceiling_z_m - floor_m > _FLAT_M:
+        if self.ceiling_z_m - floor_m > levels.SEARCH_M:
             return "ceiling"
         return "walls" if highest_m > self.assumed_height_m else "assumed"
 
@@ -268,7 +268,7 @@ class FloorPlan:
         """How high above the floor its ceiling or else its walls were seen; NaN of planar scans."""
         _, highest_m = self._walls_z_m
         seen_m = self.storey_m[1] if self.height_from == "ceiling" else highest_m
-        return seen_m if seen_m > _FLAT_M else np.nan
+        return seen_m if seen_m > levels.SEARCH_M else np.nan
 
     @cached_property
     def _walls_z_m(self) -> tuple[float, float]:

@@ -294,7 +294,8 @@ class _Survey:
         reading = self.settings.reading
         candidates = merge_segments(segments, self.settings.merge)
         traced = trace_faces(
-            candidates, self.rays, self.settings.merge, reading, self.settings.furniture
+            *(candidates, self.rays, self.settings.merge, reading),
+            *(self.settings.furniture, self.settings.pairs),
         )
         assemble = functools.partial(
             assemble_walls,

@@ -45,6 +45,14 @@ class PairSettings:
         is_in_range = self.min_thickness_m <= thickness_m <= self.max_thickness_m
         return is_in_range or math.isnan(thickness_m)
 
+    def may_be_sides(self, one: FaceInterval, other: FaceInterval) -> bool:
+        """Return whether two faces, maybe at different ends of a wall, may be its two sides."""
+        cosine = one.line.normal @ other.line.normal
+        if cosine > -math.cos(math.radians(self.max_angle_deg)):
+            return False
+        overlap_m, behind_m = _overlap(one, other)
+        return self.is_thick(behind_m) and -overlap_m <= self.max_gap_m
+
 
 def pair_faces(
     faces: Sequence[FaceInterval], settings: PairSettings, *, door_height_m: float

@@ -6,7 +6,8 @@ from scanplan.rays.face_raster import CELL_M
 from scanplan.types import FloatArray
 
 _LOWEST_PERCENTILE = 1  # fewer returns lie below the floor, by reflections
-_SEARCH_M = 0.5  # above the lowest points: less than furniture is high
+SEARCH_M = 0.5
+"""Above the lowest points: less than furniture is high, and half of the least storey."""
 _LEAST_POINTS = 30  # fewer show no level
 _PROMINENT = 1.5  # times what walls alone leave in layers that hold no level
 
@@ -51,7 +52,7 @@ def find_floor_and_ceiling(z_m: FloatArray) -> tuple[float, float]:
     z_m = np.asarray(z_m, float)
     z_m = z_m[np.isfinite(z_m)]
     floor_z_m, ceiling_z_m = _lowest_level(z_m), -_lowest_level(-z_m)
-    if ceiling_z_m - floor_z_m < 2 * _SEARCH_M:
+    if ceiling_z_m - floor_z_m < 2 * SEARCH_M:
         return floor_z_m, np.nan
     return floor_z_m, ceiling_z_m
 
@@ -63,7 +64,7 @@ def _lowest_level(z_m: FloatArray) -> float:
     counts = np.bincount(np.floor((z_m - low_m) / CELL_M).astype(np.int64))
     # stray points far below are no storey
     first = int((_find_lowest(z_m) - low_m) / CELL_M)
-    n = round(_SEARCH_M / CELL_M)
+    n = round(SEARCH_M / CELL_M)
     at = first + int(counts[first : first + n].argmax())
     # a level may lie across the border of two layers
     level = counts[at] + max(counts[max(at - 1, 0) : at].sum(), counts[at + 1 : at + 2].sum())

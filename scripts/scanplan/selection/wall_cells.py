@@ -19,11 +19,11 @@ from scanplan.rays import levels, sensor_frame
 from scanplan.types import Array, Columns, FloatArray, IntArray
 
 FACINGS = ("-x", "+x", "-y", "+y")
+HALF_SURE = 0.5
+"""What may be a wall or furniture, or found or not, counts half; half of a wall is the wall."""
 _FARTHEST_M = 150.0  # beams 0.1 degrees apart leave a cell of 0.25 m with one return or none there
 _ROWS = 3  # a wall's returns are in two rows of cells, noise puts some into a third
 _SAME_SIDE = 1e-3  # cosine; a wall that is square to a facing faces it by rounding alone
-_HALF_SURE = 0.5  # what may be a wall or furniture counts half; half of a wall is the wall
-_SURE = 2  # times the fewest returns: an extractor may split fewer otherwise
 KEYS = ("facing", "along", "across")
 
 _Cells = tuple[IntArray, IntArray, FloatArray]
@@ -138,26 +138,6 @@ def observation_columns(
     return {"scan_id": scan_id, **values}
 
 
-def even_out_noise(columns: Columns) -> dict[str, Array]:
-    """Return observations of which every cell counts in full where half of it is shown.
-
-    Of a cell's best scan. Where few returns stand for a cell, as of a planar scanner, noise parts
-    them between two rows otherwise in every scan, and each scan would add a little more of a wall
-    that others show as well.
-
-    Parameters
-    ----------
-    columns : dict of str to (m,) array
-        Columns of `schemas.OBSERVATIONS`.
-    """
-    length_m = np.asarray(columns["length_m"], float)
-    _, cell = np.unique(number_cells(columns), return_inverse=True)
-    best_m = np.zeros(len(length_m))
-    np.maximum.at(best_m, cell, length_m)
-    evened_m = np.minimum(length_m / _HALF_SURE, best_m[cell])
-    return {**columns, "length_m": evened_m}
-
-
 def number_cells(columns: Mapping[str, Array]) -> IntArray:
     """Return a number (m,), 0 or above, for each row's cell: the same for the same cell."""
     cell = np.zeros(len(columns["facing"]), np.int64)
@@ -204,7 +184,7 @@ def _rate_tallness(
     slope = z_m / np.maximum(range_m, ROUNDING)
     lowest_rad = max(np.arctan(slope.max(initial=-np.inf)) - reach_rad, -np.pi / 2)
     as_high = slope >= np.tan(lowest_rad)
-    return np.where(z_m >= height_m, 1.0, np.where(as_high, _HALF_SURE, 0.0))
+    return np.where(z_m >= height_m, 1.0, np.where(as_high, HALF_SURE, 0.0))
 
 
 def _measure_facing(
@@ -233,7 +213,8 @@ def _measure_facing(
     window = 2 * round(settings.max_gap_m / settings.cell_m) + 1
     wanted = settings.min_points_planar if heights is None else settings.min_points
     n_together = _join_window(n_beside, window, np.add, 0.0)
-    findable = np.minimum(n_together / (_SURE * wanted), 1.0)
+    # an extractor may part the fewest returns otherwise
+    findable = np.minimum(HALF_SURE * n_together / wanted, 1.0)
     if heights is not None:
         z_m, tallness = (values.take(there) for values in heights)
         extent_m = grid.top(z_m, window) + grid.top(-z_m, window)

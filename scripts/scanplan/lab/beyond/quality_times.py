@@ -22,7 +22,7 @@ from scanplan.lab.evaluation.survey_findings import SurveyTruth
 from scanplan.lab.thesis.timing import time_call
 from scanplan.plan import planning
 from scanplan.rays import ray_set
-from scanplan.selection import area_greedy, baselines, hulls, objectives, wall_cells
+from scanplan.selection import area_greedy, baselines, hulls, objectives, persistence, wall_cells
 from scanplan.selection.survey_scans import SurveyScans
 from scanplan.selection.wall_cells import WallCellSettings
 from scanplan.store.tables import ScanStore
@@ -182,7 +182,7 @@ def _order_by_walls(survey: TimedSurvey, settings: WallCellSettings) -> IntArray
     ]
     columns = wall_cells.observation_columns(known.scan_ids, observed)
     if survey.store.planar:
-        columns = wall_cells.even_out_noise(columns)
+        columns = persistence.weigh_by_persistence(columns)
     scans = SurveyScans(known.scan_ids, {"observations": columns})
     return objectives.cover_wall_length(scans).greedy().order
 

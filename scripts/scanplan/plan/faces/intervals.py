@@ -56,10 +56,15 @@ class FaceInterval(Span):
         raster = self.seen.raster
         return raster.seen_top_m(raster.between(self.low_m, self.high_m))
 
+    @cached_property
+    def scans(self) -> IntArray:
+        """The scans (k,) that show it, increasing."""
+        return np.unique(self.seen.occupied_scan[self.points])
+
     @property
     def n_scans(self) -> int:
         """How many scans show it."""
-        return len(np.unique(self.seen.occupied_scan[self.points]))
+        return len(self.scans)
 
 
 def observe_along(

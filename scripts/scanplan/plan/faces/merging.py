@@ -42,7 +42,8 @@ class MergeSettings:
     min_points_per_m : float, >= 0
         thinner ones too,
     min_scans : int, >= 1
-        and those that fewer scans show (`faces`, by the points of all of them),
+        and those that fewer scans show (`faces`, by the points of all of them, with those of the
+        wall's other side),
     lone_length_m : float, >= 0
         unless they are this long.
     """

@@ -18,6 +18,7 @@ from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.faces.merging import MergeSettings
 from scanplan.plan.faces.owned_points import owned_intervals
 from scanplan.plan.tolerances import END_M, FACE_M
+from scanplan.plan.wall_pairs import PairSettings
 from scanplan.rays.face_observation import FaceObservation, RaySettings
 from scanplan.rays.ray_set import RaySet
 
@@ -48,6 +49,7 @@ def trace_faces(
     merging: MergeSettings,
     reading: RaySettings,
     furniture: FurnitureLimits,
+    pairing: PairSettings,
 ) -> TracedFaces:
     """Trace the faces along the lines of candidates.
 
@@ -56,9 +58,10 @@ def trace_faces(
     1. Observe (`_observe_lines`): each common line is refitted to the points at it, once; every
        later pass reads this observation.
     2. First intervals (`_FaceSelection.select_walls`): the solid intervals of each line, whatever
-       crosses it. Those too little supported go first, so that none of them takes away from
-       others; then doubles, since a ghost of a wall behind it could make a front of the wall; then
-       fronts of furniture. Only what stays may own points of another line.
+       crosses it. Those too little supported, with what may be the wall's other side, go first, so
+       that none of them takes away from others; then doubles, since a ghost of a wall behind it
+       could make a front of the wall; then fronts of furniture. Only what stays may own points of
+       another line.
     3. Owned points (`owned_intervals`): where those faces cross other lines, the points at a
        crossing are theirs.
     4. Second intervals (`select_walls` again): the observations are cut anew, without the owned
@@ -80,13 +83,14 @@ def trace_faces(
     merging : merging.MergeSettings
     reading : face_observation.RaySettings
     furniture : furniture.FurnitureLimits
+    pairing : wall_pairs.PairSettings
 
     Returns
     -------
     TracedFaces
         Its faces meet at corners, none beside a stronger one.
     """
-    selection = _FaceSelection(merging, furniture)
+    selection = _FaceSelection(merging, furniture, pairing)
     find_intervals = partial(
         intervals.find_face_intervals,
         door_height_m=reading.door_height_m,
@@ -138,13 +142,18 @@ class _FaceSelection:
 
     merging: MergeSettings
     furniture: FurnitureLimits
+    pairing: PairSettings
 
     def select_walls(self, of_lines: Iterable[Sequence[FaceInterval]]) -> list[FaceInterval]:
         """Return the intervals, listed by line, that are walls.
 
         Supported, none beside a stronger one, none a front of furniture.
         """
-        supported = [interval for of_line in of_lines for interval in self._supported(of_line)]
+        dense = [self._find_dense(of_line) for of_line in of_lines]
+        all_dense = [interval for of_line in dense for interval in of_line]
+        supported = [
+            interval for of_line in dense for interval in self._supported(of_line, all_dense)
+        ]
         return _without_furniture(self.merging.remove_doubles(supported), self.furniture)
 
     def trim(self, walls: Sequence[FaceInterval]) -> list[FaceInterval]:
@@ -159,28 +168,38 @@ class _FaceSelection:
         met = trimming.trim_tails(met, share=self.merging.ghost_share)
         return _without_stubs(self.merging.remove_doubles(met))
 
-    def _supported(self, of_line: Iterable[FaceInterval]) -> list[FaceInterval]:
-        """Return the intervals of one line that enough points show.
+    def _find_dense(self, of_line: Iterable[FaceInterval]) -> list[FaceInterval]:
+        """Return the intervals of one line that have enough points for their length."""
+        least = self.merging.min_points_per_m
+        return [interval for interval in of_line if interval.n_points >= least * interval.length_m]
+
+    def _supported(
+        self, of_line: Sequence[FaceInterval], found: Sequence[FaceInterval]
+    ) -> list[FaceInterval]:
+        """Return the intervals of one line that enough scans show, among all that were found.
 
         Where one is sure, short ones beside it stay, too.
         """
-        merging = self.merging
-        dense = [
-            interval
-            for interval in of_line
-            if interval.n_points >= merging.min_points_per_m * interval.length_m
-        ]
         is_sure = any(
-            interval.length_m >= merging.min_length_m and self._is_shown(interval)
-            for interval in dense
+            interval.length_m >= self.merging.min_length_m and self._is_shown(interval, found)
+            for interval in of_line
         )
-        return _without_stubs(dense) if is_sure else []
+        return _without_stubs(of_line) if is_sure else []
 
-    def _is_shown(self, interval: FaceInterval) -> bool:
-        """Return whether an interval is long, or enough scans show it."""
+    def _is_shown(self, interval: FaceInterval, found: Sequence[FaceInterval]) -> bool:
+        """Return whether an interval is long, or enough scans show it or the wall's other side."""
         # its ends may have been left to faces that cross it there
         is_long = interval.length_m + 2 * FACE_M >= self.merging.lone_length_m
-        return is_long or interval.n_scans >= self.merging.min_scans
+        if is_long or interval.n_scans >= self.merging.min_scans:
+            return True
+        sides = [
+            other
+            for other in found
+            if other.length_m >= self.merging.min_length_m
+            and self.pairing.may_be_sides(interval, other)
+        ]
+        scans = [interval.scans, *(side.scans for side in sides)]
+        return len(np.unique(np.concatenate(scans))) >= self.merging.min_scans
 
 
 def _without_furniture(

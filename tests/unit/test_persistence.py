@@ -1,0 +1,56 @@
+"""What planar scans agree on, on cells small enough to count by hand."""
+
+import numpy as np
+import pytest
+
+from scanplan.selection.persistence import weigh_by_persistence
+
+
+def observations(rows):
+    """Return the columns of rows of (scan_id, facing, along, across, length_m)."""
+    columns = np.array(rows, float).reshape(-1, 5).T
+    names = ("scan_id", "facing", "along", "across")
+    numbers = dict(zip(names, columns[:4].astype(np.int32), strict=True))
+    return {**numbers, "length_m": columns[4]}
+
+
+def test_half_of_the_best_shows_a_cell_and_less_counts_in_proportion():
+    one_cell = [(0, 0, 5, 2, 0.2), (1, 0, 5, 2, 0.1), (2, 0, 5, 2, 0.04)]
+    columns = observations([*one_cell, (0, 1, 5, 2, 0.03)])
+    weighed = weigh_by_persistence(columns)
+    np.testing.assert_allclose(weighed["length_m"], [0.2, 0.2, 0.08, 0.03])
+    assert all(weighed[name] is columns[name] for name in columns if name != "length_m")
+
+
+def test_no_observation_is_none():
+    assert len(weigh_by_persistence(observations([]))["length_m"]) == 0
+
+
+@pytest.mark.parametrize(("n_showing", "counts"), [(1, 0.25), (2, 0.5), (3, 0.75), (4, 1), (9, 1)])
+@pytest.mark.parametrize("across", [-3, 2])
+def test_of_what_less_than_a_fifth_of_the_scans_show_as_much_less_counts(n_showing, counts, across):
+    wall = [(scan, 0, 0, 0, 0.25) for scan in range(20)]
+    chair = [(scan, 0, 1, across, 0.1) for scan in range(n_showing)]
+    weighed = weigh_by_persistence(observations([*wall, *chair]))
+    assert weighed["length_m"][:20] == pytest.approx(0.25)
+    assert weighed["length_m"][20:] == pytest.approx(0.1 * counts)
+
+
+@pytest.mark.parametrize(("facing", "along"), [(1, 0), (0, 8), (0, -5)])
+def test_scans_that_look_elsewhere_or_at_the_other_side_do_not_count(facing, along):
+    wall = [(scan, 0, 0, 0, 0.25) for scan in range(20)]
+    weighed = weigh_by_persistence(observations([*wall, (0, facing, along, 0, 0.1)]))
+    assert weighed["length_m"][20] == pytest.approx(0.1)
+
+
+def test_a_wall_that_noise_parts_between_two_rows_is_shown_by_all_its_scans():
+    rows = [(scan, 2, 0, scan % 2, 0.25) for scan in range(20)]
+    beside = [(20 + scan, 2, 3, 3, 0.25) for scan in range(75)]
+    weighed = weigh_by_persistence(observations([*rows, *beside]))
+    assert weighed["length_m"] == pytest.approx(0.25)
+
+
+def test_places_below_zero_are_near_those_above():
+    wall = [(scan, 3, scan % 2 - 1, 0, 0.25) for scan in range(20)]
+    weighed = weigh_by_persistence(observations([*wall, (0, 3, -4, -4, 0.1)]))
+    assert weighed["length_m"][-1] == pytest.approx(0.1 * 0.25)
