@@ -67,7 +67,7 @@ def test_both_sides_of_a_leaf_are_found_and_taken_off_with_what_was_seen_of_it_a
         return [wall for wall in walls if any(face in faces for face in wall.members)]
 
     left, grounds, found = fronts.drop_fronts(
-        *(walls, box(0, 0, 5, 4), assemble, lambda _: 0.1), max_thickness_m=0.6
+        *(walls, box(0, 0, 5, 4), assemble, lambda _: 0.1), max_thickness_m=0.6, max_depth_m=1.0
     )
     assert left == walls[:1] and len(found) == len(grounds) == 2
     assert {id(leaf.face) for leaf in found} == {id(side.left[0]) for side in sides}

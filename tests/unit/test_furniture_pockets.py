@@ -1,6 +1,7 @@
 """Fronts of furniture in the plane: rooms with cupboards of known place, seen from above."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ from shapely import box
 
 from helpers.observation_making import stretch
 from scanplan.plan.furniture import fronts
-from scanplan.plan.furniture.pockets import find_pockets
+from scanplan.plan.furniture.pockets import find_blocks, find_pockets
 from scanplan.plan.openings import OPEN, Opening
 from scanplan.plan.plan_wall import PlanWall
 
@@ -27,7 +28,7 @@ def wall(faces, openings=()):
 
 
 def pockets(walls, floor):
-    return find_pockets(walls, floor, unpaired_m=0.1, max_thickness_m=0.6)
+    return find_pockets(walls, floor, unpaired_m=0.1, max_thickness_m=0.6, max_depth_m=1.0)
 
 
 def room_with_cupboard(x0, x1, depth_m):
@@ -98,17 +99,18 @@ def test_a_corner_that_surfaces_enclose_is_a_part_of_the_building_where_no_furni
 
 def block(width_m, length_m):
     """A room with a block in its middle, seen from all sides."""
-    x1, y1 = 1.5 + length_m, 1.5 + width_m
+    x1, y1, x2 = 1.5 + length_m, 1.5 + width_m, 4 + length_m
     corners = [(1.5, 1.5), (1.5, y1), (x1, y1), (x1, 1.5), (1.5, 1.5)]
     sides = [wall([(*a, *b)]) for a, b in itertools.pairwise(corners)]
-    outside = [wall([face]) for face in [*ROOM, (5, 4, 0, 4)]]
-    return [*outside, *sides], box(0, 0, 5, 4).difference(box(1.5, 1.5, x1, y1))
+    faces = [(0, 0, x2, 0), (x2, 0, x2, 4), (x2, 4, 0, 4), (0, 4, 0, 0)]
+    floor = box(0, 0, x2, 4).difference(box(1.5, 1.5, x1, y1))
+    return [*(wall([face]) for face in faces), *sides], floor
 
 
 @pytest.mark.parametrize(
     ("width_m", "length_m", "n_pockets"),
-    [(0.7, 1.6, 1), (0.5, 0.5, 0), (0.19, 1.6, 0)],
-    ids=["table", "column", "wall"],
+    [(0.7, 1.6, 1), (0.5, 0.5, 0), (0.19, 1.6, 0), (0.7, 4.6, 1), (1.5, 2.2, 0), (0.7, 9.0, 0)],
+    ids=["table", "column", "wall", "row", "shaft", "long"],
 )
 def test_a_block_is_furniture_if_it_is_no_wall_and_no_column(width_m, length_m, n_pockets):
     assert len(pockets(*block(width_m, length_m))) == n_pockets
@@ -116,9 +118,48 @@ def test_a_block_is_furniture_if_it_is_no_wall_and_no_column(width_m, length_m, 
 
 def test_a_block_that_goes_on_beyond_a_door_is_wall():
     walls, floor = block(0.7, 1.6)
+    walls[5] = PlanWall(walls[5].line, 0.0, 3.4, np.nan, walls[5].left, [],
+                        [Opening(1.7, 2.6, OPEN, 99, 0.0, np.nan, False)])  # fmt: skip
+    assert pockets(walls, floor) == []
+
+
+def test_the_short_end_of_a_long_block_may_lie_in_the_line_of_a_wall():
+    walls, floor = block(0.7, 3.0)
     walls[4] = PlanWall(walls[4].line, 0.0, 2.5, np.nan, walls[4].left, [],
                         [Opening(0.8, 1.7, OPEN, 99, 0.0, np.nan, False)])  # fmt: skip
-    assert pockets(walls, floor) == []
+    (pocket,) = pockets(walls, floor)
+    assert {id(wall.left[0]) for wall in walls[4:]} == {id(face) for face in pocket.fronts}
+
+
+def two_sided(thickness_m, beside=()):
+    """A room of 5 m by 4 m with what two surfaces of 2 m make in its middle."""
+    left, right = ((1.5, y, 3.5, y) for y in (2 + thickness_m, 2.0))
+    left, right = (stretch(*face, planar=True) for face in (left, right[2:] + right[:2]))
+    middle = replace(left.line, centre=left.line.centre - thickness_m / 2 * left.line.normal)
+    ends_m = np.sort(middle.along_m(left.ends))
+    both = PlanWall(middle, *ends_m, thickness_m, [left], [right])
+    outside = [wall([face]) for face in [*ROOM, (5, 4, 0, 4), *beside]]
+    return [*outside, both], box(0, 0, 5, 4).difference(box(1.5, 2, 3.5, 2 + thickness_m))
+
+
+@pytest.mark.parametrize(
+    ("thickness_m", "beside", "n_fronts"),
+    [
+        (0.5, [], 2),
+        (0.5, [(1.5, 2, 1.5, 2.5)], 3),
+        (0.5, [(3.5, 2, 3.5, 0.5)], 0),
+        (0.15, [], 0),
+    ],
+    ids=["block", "with_its_end", "at_a_wall", "wall"],
+)
+def test_two_sides_are_a_block_where_they_stand_alone_and_thicker_than_walls(
+    thickness_m, beside, n_fronts
+):
+    blocks = find_blocks(
+        *two_sided(thickness_m, beside), lambda _: 0.1, max_thickness_m=0.6, max_depth_m=1.0
+    )
+    assert sum(len(block.fronts) for block in blocks) == n_fronts
+    assert all(block.ground.covers(box(1.5, 2, 3.5, 2.5)) for block in blocks)
 
 
 def test_a_surface_of_the_next_room_is_no_front():
@@ -136,7 +177,7 @@ def test_walls_are_left_without_the_fronts_and_their_ground_is_told():
         return [wall for wall in walls if any(face in faces for face in wall.members)]
 
     left, grounds, leaves = fronts.drop_fronts(
-        *(walls, floor, assemble, lambda _: 0.1), max_thickness_m=0.6
+        *(walls, floor, assemble, lambda _: 0.1), max_thickness_m=0.6, max_depth_m=1.0
     )
     assert left == walls[:4] and len(grounds) == 1 and leaves == []
 

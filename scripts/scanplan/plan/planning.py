@@ -309,6 +309,7 @@ class _Survey:
             walls, furnished, leaves = fronts.drop_fronts(
                 *(walls, self.floor, assemble, _usual_thickness_m),
                 max_thickness_m=self.settings.pairs.max_thickness_m,
+                max_depth_m=self.settings.furniture.furniture_depth_m,
             )
         unpaired_m = _usual_thickness_m(walls)
         min_width_m = self.settings.openings.min_opening_m
@@ -427,7 +428,7 @@ def _find_free(rays: RaySet, track_m: FloatArray, width_m: float, max_step_m: fl
     return views, free_space.union_on_grid(floors)
 
 
-def _usual_thickness_m(walls: list[PlanWall]) -> float:
+def _usual_thickness_m(walls: Sequence[PlanWall]) -> float:
     known_m = [wall.thickness_m for wall in walls if not math.isnan(wall.thickness_m)]
     return float(np.median(known_m)) if known_m else _THICKNESS_M
 

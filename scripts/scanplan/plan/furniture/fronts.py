@@ -5,8 +5,9 @@ is all of the plan: behind a wall there is its other side, another room, or the 
 front there is a pocket no larger than furniture and what it hides, up to the wall behind: a wall on
 whose line floor of the same room ends beside the pocket, and that goes farther through all rooms
 than the front's own line. A block that stands alone on the floor of a room is furniture, too, if
-it is thicker than a wall of the building and longer than a column. Leaves of open doors are taken
-off before.
+it is thicker than a wall of the building and longer than a column; an island or a row of cupboards
+is as long as furniture is that is less deep than one reaches. Leaves of open doors are taken off
+before.
 """
 
 from collections.abc import Callable, Sequence
@@ -15,7 +16,7 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.furniture.leaves import Leaf, find_leaves
-from scanplan.plan.furniture.pockets import find_pockets
+from scanplan.plan.furniture.pockets import Pocket, find_blocks, find_pockets
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.rays import free_space
 
@@ -24,9 +25,10 @@ def drop_fronts(
     walls: list[PlanWall],
     floor: BaseGeometry,
     assemble: Callable[[Sequence[FaceInterval]], list[PlanWall]],
-    measure_thickness_m: Callable[[list[PlanWall]], float],
+    measure_thickness_m: Callable[[Sequence[PlanWall]], float],
     *,
     max_thickness_m: float,
+    max_depth_m: float,
 ) -> tuple[list[PlanWall], list[BaseGeometry], list[Leaf]]:
     """Return walls without fronts, the ground that furniture stands on, and leaves of doors.
 
@@ -41,19 +43,22 @@ def drop_fronts(
         Makes walls of faces.
     measure_thickness_m : callable
         Says how thick walls usually are.
-    max_thickness_m : float
-        Of a wall.
+    max_thickness_m, max_depth_m : float
+        Of a wall, and of furniture from its front to its back.
     """
+    most = {"max_thickness_m": max_thickness_m, "max_depth_m": max_depth_m}
     leaves = find_leaves(walls, unpaired_m=measure_thickness_m(walls))
     if leaves:
         faces = [face for wall in walls for face in wall.members]
         walls = assemble([face for face in faces if not any(leaf.hides(face) for leaf in leaves)])
     grounds: list[BaseGeometry] = [leaf.ground for leaf in leaves]
-    while pockets := find_pockets(
-        *(walls, free_space.union_on_grid([floor, *grounds])),
-        unpaired_m=measure_thickness_m(walls),
-        max_thickness_m=max_thickness_m,
-    ):
+
+    def find_more() -> list[Pocket]:
+        free = free_space.union_on_grid([floor, *grounds])
+        blocks = find_blocks(walls, free, measure_thickness_m, **most)
+        return blocks or find_pockets(walls, free, unpaired_m=measure_thickness_m(walls), **most)
+
+    while pockets := find_more():
         grounds += [pocket.ground for pocket in pockets]
         dropped = {id(front) for pocket in pockets for front in pocket.fronts}
         walls = assemble(

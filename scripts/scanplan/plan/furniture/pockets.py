@@ -6,7 +6,7 @@ fronts before them.
 
 import itertools
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -50,6 +50,7 @@ def find_pockets(
     *,
     unpaired_m: float,
     max_thickness_m: float,
+    max_depth_m: float,
 ) -> list[Pocket]:
     """Find the pockets behind fronts of furniture.
 
@@ -62,11 +63,14 @@ def find_pockets(
         How thick a wall is taken for of which one side is known: as walls of the plan usually are.
     max_thickness_m : float
         Of a wall.
+    max_depth_m : float
+        Of furniture, from its front to its back.
 
     Returns
     -------
     list of Pocket
     """
+    most = {"max_thickness_m": max_thickness_m, "max_depth_m": max_depth_m}
     solid = shapely.union_all(wall_ground.wall_strips(walls, unpaired_m))
     parts = np.array(
         [*free_space.open_polygons(shapely.difference(floor, solid), END_M), Polygon()], object
@@ -97,14 +101,55 @@ def find_pockets(
             continue
         pocket = _make_pocket(hidden, fronts, unpaired_m)
         walls_seen = near if own is None else faces.behind(pocket.ground)
-        goes_on = any(id(face) in continued for face in fronts)
-        if not _is_part_of_building(pocket, parts[row]) and (
+        # the short end of a long block may lie in the line of a wall beyond a way
+        longest_m = max((face.length_m for face in fronts), default=0.0)
+        goes_on = any(id(face) in continued and 2 * face.length_m > longest_m for face in fronts)
+        if not _is_part_of_building(pocket, parts[row], max_depth_m) and (
             _is_before_wall(pocket, walls_seen, grown[row])
-            or (not goes_on and _is_block(pocket.ground, parts[row], unpaired_m, max_thickness_m))
+            or (not goes_on and _is_block(pocket.ground, parts[row], unpaired_m, **most))
         ):
             pockets.append(pocket)
             found.update(map(id, fronts))
     return pockets
+
+
+def find_blocks(
+    walls: Sequence[PlanWall],
+    floor: BaseGeometry,
+    measure_thickness_m: Callable[[Sequence[PlanWall]], float],
+    *,
+    max_thickness_m: float,
+    max_depth_m: float,
+) -> list[Pocket]:
+    """Find blocks that stand alone, seen from two sides like walls.
+
+    Parameters
+    ----------
+    walls : sequence of plan_wall.PlanWall
+    floor : shapely geometry
+        That was seen free.
+    measure_thickness_m : callable
+        Says how thick walls usually are.
+    max_thickness_m, max_depth_m : float
+        Of a wall, of furniture.
+    """
+    most = {"max_thickness_m": max_thickness_m, "max_depth_m": max_depth_m}
+    faces = _AllFaces([face for wall in walls for face in wall.members])
+    solid = shapely.union_all(wall_ground.wall_strips(walls, measure_thickness_m(walls)))
+    ground_before = shapely.difference(floor, solid)
+    blocks = []
+    for wall in walls:
+        if not wall.right or wall.openings:
+            continue
+        others_m = measure_thickness_m([other for other in walls if other is not wall])
+        ground = wall_ground.wall_strips([wall], others_m)[0]
+        around, near = ground.buffer(CORNER_M), faces.within(ground, CORNER_M)
+        # a wall that begins at another has floor on most sides, too
+        if all(around.covers(LineString(face.ends)) for face in near) and _is_block(
+            ground, ground_before, others_m, **most
+        ):
+            blocks.append(Pocket(ground.buffer(CELL_M, join_style="mitre"), near))
+    return blocks
 
 
 class _AllFaces:
@@ -220,7 +265,7 @@ def _beside(face: FaceInterval, forward_m: float) -> LineString:
     return LineString(face.ends + forward_m * face.line.normal)
 
 
-def _is_part_of_building(pocket: Pocket, part: Polygon) -> bool:
+def _is_part_of_building(pocket: Pocket, part: Polygon, max_depth_m: float) -> bool:
     """Return whether a pocket fills a room from wall to wall, or its fronts enclose too much.
 
     What no front stands before may be floor that furniture hides; what fronts enclose on all sides
@@ -230,7 +275,13 @@ def _is_part_of_building(pocket: Pocket, part: Polygon) -> bool:
         return True
     fronts = shapely.union_all([LineString(face.ends) for face in pocket.fronts])
     bare = pocket.ground.boundary.intersection(part).difference(fronts.buffer(CORNER_M))
-    return pocket.ground.area > FURNITURE_M2 and bare.length < BEHIND_M
+    return _is_large(pocket.ground, max_depth_m) and bare.length < BEHIND_M
+
+
+def _is_large(ground: BaseGeometry, max_depth_m: float) -> bool:
+    """Return whether ground is more than furniture stands on, alone or, where narrow, in a row."""
+    is_deep = _sides_m(ground.buffer(-CELL_M))[0] > max_depth_m
+    return ground.area > (FURNITURE_M2 if is_deep else _POCKET_M2)
 
 
 def _has_corner_in(ground: BaseGeometry, part: Polygon) -> bool:
@@ -274,13 +325,18 @@ def _is_before_wall(pocket: Pocket, faces: Sequence[FaceInterval], part: Polygon
 
 
 def _is_block(
-    ground: BaseGeometry, part: Polygon, unpaired_m: float, max_thickness_m: float
+    ground: BaseGeometry,
+    part: BaseGeometry,
+    unpaired_m: float,
+    *,
+    max_thickness_m: float,
+    max_depth_m: float,
 ) -> bool:
     """Return whether ground stands alone, no wall and no column.
 
     It is thicker than walls are, and longer than the thickest.
     """
-    if ground.area > FURNITURE_M2:
+    if _is_large(ground, max_depth_m):
         return False
     around = ground.buffer(CORNER_M).difference(ground)
     if around.intersection(part).area < ALONG_SHARE * around.area:
