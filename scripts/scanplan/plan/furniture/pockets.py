@@ -104,12 +104,15 @@ def find_pockets(
         # the short end of a long block may lie in the line of a wall beyond a way
         longest_m = max((face.length_m for face in fronts), default=0.0)
         goes_on = any(id(face) in continued and 2 * face.length_m > longest_m for face in fronts)
-        if not _is_part_of_building(pocket, parts[row], max_depth_m) and (
-            _is_before_wall(pocket, walls_seen, grown[row])
-            or (not goes_on and _is_block(pocket.ground, parts[row], unpaired_m, **most))
-        ):
-            pockets.append(pocket)
-            found.update(map(id, fronts))
+        if _is_part_of_building(pocket, parts[row], max_depth_m):
+            continue
+        if not _is_before_wall(pocket, walls_seen, grown[row]):
+            if goes_on or not _is_block(pocket.ground, parts[row], unpaired_m, **most):
+                continue
+            # its ends, too, that were paired with what stands in their line
+            pocket = Pocket(pocket.ground, _faces_on(pocket.ground, near))
+        pockets.append(pocket)
+        found.update(map(id, pocket.fronts))
     return pockets
 
 
@@ -143,11 +146,10 @@ def find_blocks(
             continue
         others_m = measure_thickness_m([other for other in walls if other is not wall])
         ground = wall_ground.wall_strips([wall], others_m)[0]
-        around, near = ground.buffer(CORNER_M), faces.within(ground, CORNER_M)
+        near = faces.within(ground, CORNER_M)
         # a wall that begins at another has floor on most sides, too
-        if all(around.covers(LineString(face.ends)) for face in near) and _is_block(
-            ground, ground_before, others_m, **most
-        ):
+        is_alone = len(_faces_on(ground, near)) == len(near)
+        if is_alone and _is_block(ground, ground_before, others_m, **most):
             blocks.append(Pocket(ground.buffer(CELL_M, join_style="mitre"), near))
     return blocks
 
@@ -253,6 +255,12 @@ def _backs_onto(face: FaceInterval, hidden: Polygon, unpaired_m: float) -> bool:
     """Return whether most of a surface has hidden ground close behind it."""
     behind = _beside(face, -unpaired_m - END_M)
     return behind.intersection(hidden).length >= behind.length / 2
+
+
+def _faces_on(ground: BaseGeometry, faces: Sequence[FaceInterval]) -> list[FaceInterval]:
+    """Return the surfaces that lie on ground, or on its edges."""
+    around = ground.buffer(CORNER_M)
+    return [face for face in faces if around.covers(LineString(face.ends))]
 
 
 def _faces_onto(face: FaceInterval, part: Polygon) -> bool:
