@@ -7,7 +7,7 @@ import numpy as np
 from scanplan.extraction import known_segments
 from scanplan.selection import persistence
 from scanplan.stage import log
-from scanplan.store import schemas, tables
+from scanplan.store import registered_scans, schemas, tables
 from scanplan.types import FilePath
 
 _SCHEMAS = {
@@ -18,7 +18,12 @@ _MAY_BE_EMPTY = (schemas.OBSERVATIONS, schemas.WALLS)
 
 
 def gather_chunks(
-    chunks: Sequence[FilePath], scans: FilePath, output: FilePath, *, table: str
+    chunks: Sequence[FilePath],
+    scans: FilePath,
+    registration: FilePath,
+    output: FilePath,
+    *,
+    table: str,
 ) -> None:
     """Write the table of all scans.
 
@@ -26,8 +31,8 @@ def gather_chunks(
     ----------
     chunks : sequence of path-like
         Tables of chunks of the scans, in the order of the scans.
-    scans : path-like
-        scans.parquet.
+    scans, registration : path-like
+        scans.parquet and registration.parquet.
     output : path-like
         The table of all of them, to write.
     table : str
@@ -38,7 +43,10 @@ def gather_chunks(
     parts = [tables.read_table(chunk, schema, allow_empty=allow_empty) for chunk in chunks]
     columns = {name: np.concatenate([part[name] for part in parts]) for name in schema.columns}
     if schema is schemas.OBSERVATIONS and tables.ScanStore(scans).planar:
-        columns = persistence.weigh_by_persistence(columns)
+        known = registered_scans.read_registered_scans(registration)
+        columns = persistence.weigh_by_persistence(
+            columns, known.scan_ids, known.map_from_sensor[:, :2, 3]
+        )
     notes = known_segments.join_notes([tables.read_notes(chunk, schema) for chunk in chunks])
     tables.write_table(output, schema, columns, allow_empty=allow_empty, notes=notes)
     n_rows = len(columns["scan_id"])
@@ -50,6 +58,7 @@ if __name__ == "__main__":
         gather_chunks(
             snakemake.input.chunks,
             snakemake.input.scans,
+            snakemake.input.registration,
             snakemake.output.gathered,
             table=snakemake.wildcards.get("table", "walls"),
         )

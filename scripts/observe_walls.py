@@ -6,7 +6,7 @@ from typing import Any
 from scanplan.selection import persistence, wall_cells
 from scanplan.stage import log
 from scanplan.stage.per_registered_scan import map_registered_scans
-from scanplan.store import schemas, tables
+from scanplan.store import registered_scans, schemas, tables
 from scanplan.types import FilePath
 
 
@@ -43,9 +43,12 @@ def observe_walls(
         chunk=chunk,
     )
     columns = wall_cells.observation_columns(scan_ids, observations)
-    # a cell's best scan may be in another chunk: that is for `gather_chunks`
+    # what other scans show there may be in another chunk: that is for `gather_chunks`
     if chunk is None and tables.ScanStore(scans).planar:
-        columns = persistence.weigh_by_persistence(columns)
+        known = registered_scans.read_registered_scans(registration)
+        columns = persistence.weigh_by_persistence(
+            columns, known.scan_ids, known.map_from_sensor[:, :2, 3]
+        )
     tables.write_table(output, schemas.OBSERVATIONS, columns, allow_empty=True)
     mean_m = columns["length_m"].sum() / len(observations)
     n_blind = sum(len(observation["length_m"]) == 0 for observation in observations)

@@ -55,7 +55,7 @@ def test_one_two_and_three_chunks_give_the_bytes_of_one_job(table, planar, tmp_p
         for number in range(1, count + 1):
             chunks.append(tmp_path / f"{number}-of-{count}.parquet")
             make(*survey, chunks[-1], chunk=chunks[-1].stem)
-        gather_chunks(chunks, survey[0], tmp_path / "gathered.parquet", table=table)
+        gather_chunks(chunks, *survey, tmp_path / "gathered.parquet", table=table)
         gathered = (tmp_path / "gathered.parquet").read_bytes()
         assert gathered == (tmp_path / "whole.parquet").read_bytes()
 

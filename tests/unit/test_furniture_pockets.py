@@ -131,35 +131,74 @@ def test_the_short_end_of_a_long_block_may_lie_in_the_line_of_a_wall():
     assert {id(wall.left[0]) for wall in walls[4:]} == {id(face) for face in pocket.fronts}
 
 
-def two_sided(thickness_m, beside=()):
-    """A room of 5 m by 4 m with what two surfaces of 2 m make in its middle."""
-    left, right = ((1.5, y, 3.5, y) for y in (2 + thickness_m, 2.0))
-    left, right = (stretch(*face, planar=True) for face in (left, right[2:] + right[:2]))
+def two_sided(x0, x1, y, thickness_m, **gaps):
+    """A wall whose two sides were seen."""
+    left, right = (stretch(*face, planar=True) for face in
+                   [(x0, y + thickness_m, x1, y + thickness_m), (x1, y, x0, y)])  # fmt: skip
     middle = replace(left.line, centre=left.line.centre - thickness_m / 2 * left.line.normal)
-    ends_m = np.sort(middle.along_m(left.ends))
-    both = PlanWall(middle, *ends_m, thickness_m, [left], [right])
-    outside = [wall([face]) for face in [*ROOM, (5, 4, 0, 4), *beside]]
-    return [*outside, both], box(0, 0, 5, 4).difference(box(1.5, 2, 3.5, 2 + thickness_m))
+    return PlanWall(middle, *np.sort(middle.along_m(left.ends)), thickness_m, [left], [right],
+                    **gaps)  # fmt: skip
+
+
+def room_with_two_sides(length_m, thickness_m, beside=(), others_m=(0.1,), **gaps):
+    """A room in the middle of which a wall stands, and others of other thickness elsewhere."""
+    x1 = 1.5 + length_m
+    faces = [(0, 0, x1 + 1.5, 0), (x1 + 1.5, 0, x1 + 1.5, 4), (x1 + 1.5, 4, 0, 4), (0, 4, 0, 0)]
+    outside = [wall([face]) for face in [*faces, *beside]]
+    elsewhere = [two_sided(20, 25, 5 * k, thick_m) for k, thick_m in enumerate(others_m)]
+    floor = box(0, 0, x1 + 1.5, 4).difference(box(1.5, 2, x1, 2 + thickness_m))
+    return [*outside, *elsewhere, two_sided(1.5, x1, 2, thickness_m, **gaps)], floor
+
+
+def usual_m(walls):
+    known_m = [wall.thickness_m for wall in walls if wall.right]
+    return float(np.median(known_m)) if known_m else 0.1
+
+
+def blocks(walls, floor):
+    return find_blocks(walls, floor, usual_m, max_thickness_m=0.6, max_depth_m=1.0)
 
 
 @pytest.mark.parametrize(
-    ("thickness_m", "beside", "n_fronts"),
+    ("length_m", "thickness_m", "rest", "n_fronts"),
     [
-        (0.5, [], 2),
-        (0.5, [(1.5, 2, 1.5, 2.5)], 3),
-        (0.5, [(3.5, 2, 3.5, 0.5)], 0),
-        (0.15, [], 0),
+        (2, 0.5, {}, 2),
+        (2, 0.5, {"beside": [(1.5, 2, 1.5, 2.5)]}, 3),
+        (2, 0.5, {"beside": [(3.5, 2, 3.5, 0.5)]}, 0),
+        (2, 0.15, {}, 0),
+        (2, 0.5, {"others_m": (0.3, 0.3)}, 0),
+        (2, 0.5, {"others_m": ()}, 0),
+        (10, 0.4, {}, 0),
+        (2, 0.5, {"openings": [Opening(0.5, 1.4, OPEN, 99, 0.0, np.nan, False)]}, 0),
     ],
-    ids=["block", "with_its_end", "at_a_wall", "wall"],
+    ids=["block", "with_its_end", "at_a_wall", "thin", "as_others", "alone", "long", "with_a_door"],
 )
 def test_two_sides_are_a_block_where_they_stand_alone_and_thicker_than_walls(
-    thickness_m, beside, n_fronts
+    length_m, thickness_m, rest, n_fronts
 ):
-    blocks = find_blocks(
-        *two_sided(thickness_m, beside), lambda _: 0.1, max_thickness_m=0.6, max_depth_m=1.0
+    found = blocks(*room_with_two_sides(length_m, thickness_m, **rest))
+    assert sum(len(block.fronts) for block in found) == n_fronts
+    assert all(block.ground.covers(box(1.5, 2, 3.5, 2.5)) for block in found)
+
+
+def test_walls_are_left_without_blocks_of_two_sides():
+    walls, floor = room_with_two_sides(2, 0.5)
+
+    def assemble(faces):
+        return [wall for wall in walls if all(face in faces for face in wall.members)]
+
+    left, (ground,), _ = fronts.drop_fronts(
+        *(walls, floor, assemble, usual_m), max_thickness_m=0.6, max_depth_m=1.0
     )
-    assert sum(len(block.fronts) for block in blocks) == n_fronts
-    assert all(block.ground.covers(box(1.5, 2, 3.5, 2.5)) for block in blocks)
+    assert left == walls[:-1] and ground.covers(box(1.5, 2, 3.5, 2.5))
+
+
+def test_a_block_whose_side_goes_on_with_another_side_beyond_a_door_is_wall():
+    walls, floor = block(0.7, 1.6)
+    beyond = stretch(4.0, 2.1, 5.0, 2.1, planar=True)
+    walls[5] = PlanWall(walls[5].line, 0.0, 3.4, 0.1, walls[5].left, [beyond],
+                        [Opening(1.7, 2.6, OPEN, 99, 0.0, np.nan, False)])  # fmt: skip
+    assert pockets(walls, floor) == []
 
 
 def test_a_surface_of_the_next_room_is_no_front():

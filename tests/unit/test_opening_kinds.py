@@ -347,7 +347,7 @@ def test_rays_that_never_come_back_show_a_way_out_of_a_plane(span_m, beyond_m, k
     wall = PlanWall(SOUTH, *ENDS_M, np.nan, [face], [], [found])
     track_m = looked.sensors_m[:, :2]
     (decided,) = opening_kinds.decide_kinds(
-        [wall], looked, track_m, beside, max_door_m=MAX_DOOR_M, **LIMITS
+        [wall], looked, track_m, beside, max_door_m=MAX_DOOR_M, niche_m=1.0, **LIMITS
     )
     assert [opening.kind for opening in decided.openings] == [kind]
     # those between its jambs, less 0.1 m at either; what ends behind it is counted there as a whole
@@ -364,6 +364,7 @@ def decide(looked, **gaps):
     (decided,) = opening_kinds.decide_kinds(
         *([replace(wall(looked), **gaps)], looked, np.array(SENSORS)[:, :2], beside),
         max_door_m=MAX_DOOR_M,
+        niche_m=1.0,
         **LIMITS,
     )
     return decided
@@ -389,6 +390,7 @@ def test_a_leaf_tells_only_of_the_gap_that_it_hangs_at(middle_m, kind):
         *(gaps, looked, np.array(SENSORS)[:, :2], beside),
         ways_m=[way_m],
         max_door_m=MAX_DOOR_M,
+        niche_m=1.0,
         **LIMITS,
     )
     assert [opening.kind for opening in decided.openings] == [kind]
@@ -452,3 +454,21 @@ def test_what_no_wall_stands_along_is_open_where_the_floor_goes_on(floor, kind):
     assert (span.kind, span.room) == (kind, 0)
     np.testing.assert_allclose(np.sort(span.ends_m[:, 0]), [0.1, 3.9], atol=0.11)
     np.testing.assert_allclose(span.ends_m[:, 1], 0)
+
+
+@pytest.mark.parametrize(("depth_m", "kind"), [(0.8, GAP), (1.6, "door")])
+def test_what_ends_in_a_plane_no_deeper_than_furniture_may_be_a_pause_between_cupboards(
+    depth_m, kind
+):
+    looked = flat_facade(1.0, 2.0, depth_m)
+    facade = intervals.observe_along(looked, SOUTH, *ENDS_M, band_m=0.08, reach_m=0.0)
+    way = Opening(1.0, 2.0, OPEN, 0, np.nan, np.nan, False)
+    face = intervals.FaceInterval(facade, *ENDS_M)
+    (decided,) = opening_kinds.decide_kinds(
+        *([PlanWall(SOUTH, *ENDS_M, np.nan, [face], [], [way])], looked),
+        *(looked.sensors_m[:, :2], beside),
+        max_door_m=MAX_DOOR_M,
+        niche_m=1.0,
+        **LIMITS,
+    )
+    assert [opening.kind for opening in decided.openings] == [kind]

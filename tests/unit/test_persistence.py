@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from scanplan.selection.persistence import weigh_by_persistence
+from scanplan.selection import persistence
 
 
 def observations(rows):
@@ -12,6 +12,16 @@ def observations(rows):
     names = ("scan_id", "facing", "along", "across")
     numbers = dict(zip(names, columns[:4].astype(np.int32), strict=True))
     return {**numbers, "length_m": columns[4]}
+
+
+def weigh_by_persistence(columns, places_m=None):
+    """Weigh observations of scans that are a metre apart, or at some places."""
+    scan_ids = np.unique(columns["scan_id"])
+    if places_m is None:
+        places_m = [(scan, 0.2) for scan in scan_ids]
+    return persistence.weigh_by_persistence(
+        columns, scan_ids, np.array(places_m, float).reshape(-1, 2)
+    )
 
 
 def test_half_of_the_best_shows_a_cell_and_less_counts_in_proportion():
@@ -54,3 +64,22 @@ def test_places_below_zero_are_near_those_above():
     wall = [(scan, 3, scan % 2 - 1, 0, 0.25) for scan in range(20)]
     weighed = weigh_by_persistence(observations([*wall, (0, 3, -4, -4, 0.1)]))
     assert weighed["length_m"][-1] == pytest.approx(0.1 * 0.25)
+
+
+def test_however_long_a_sensor_stands_at_a_place_it_looks_from_there_once():
+    """100 scans from one place show half of a wall, 4 on the way past it the other half."""
+    rows = [(scan, 0, 0, 0, 0.25) for scan in range(100)]
+    rows += [(100 + scan, 0, along, 0, 0.25) for scan in range(4) for along in (0, 3)]
+    places_m = [(-0.1, 0.2)] * 100 + [(scan, 3.2) for scan in range(4)]
+    weighed = weigh_by_persistence(observations(rows), places_m)
+    assert weighed["length_m"] == pytest.approx(0.25)
+    chair = [(50, 0, 2, 2, 0.1), (51, 0, 2, 2, 0.1)]
+    seen_twice = weigh_by_persistence(observations(sorted([*rows, *chair])), places_m)
+    assert seen_twice["length_m"].min() == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize("far", [2_000_000, -2_000_000])
+def test_cells_far_from_the_origin_of_the_map_count_alike(far):
+    wall = [(scan, 0, far, 10 * far, 0.25) for scan in range(2000)]
+    weighed = weigh_by_persistence(observations([*wall, (0, 0, far + 1, 10 * far + 3, 0.1)]))
+    assert weighed["length_m"].sum() == pytest.approx(500 + 0.1 / (0.2 * 2000))

@@ -110,6 +110,7 @@ rule gather_chunks:
     input:
         chunks=chunks_of_table,
         scans="results/{dataset}/scans.parquet",
+        registration="results/{dataset}/registration.parquet",
     output:
         gathered="results/{dataset}/{table}.parquet",
     log:

@@ -18,6 +18,7 @@ from scanplan.plan.openings import CLOSED, GAP, OPEN, Opening
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.tolerances import CORNER_M, END_M, ENOUGH_RAYS
 from scanplan.plan.wall_ground import BareSpan
+from scanplan.rays import expected_returns
 from scanplan.rays.face_observation import FaceObservation
 from scanplan.rays.face_raster import CELL_M
 from scanplan.rays.height_profile import EYE_ROWS, ROWS_M, HeightProfile, observe_heights
@@ -195,13 +196,22 @@ def _clear_above_sill(seen: FaceObservation, span_m: tuple[float, float]) -> tup
 
 
 def observe_gap(
-    wall: PlanWall, low_m: float, high_m: float, rays: RaySet, band_m: float
+    wall: PlanWall,
+    low_m: float,
+    high_m: float,
+    rays: RaySet,
+    band_m: float,
+    deep_m: float = expected_returns.DEEP_M,
 ) -> HeightProfile:
     """Return what all sides of a wall show of a gap of it, by height; its jambs are left out."""
     margin_m = min(END_M, (high_m - low_m) / 4)  # of a narrow one half is left
     ends = wall.line.at(np.array([low_m + margin_m, high_m - margin_m]))
     shown = [
-        observe_heights(rays, seen.line, *np.sort(seen.line.along_m(ends)).tolist(), band_m=band_m)
+        observe_heights(
+            *(rays, seen.line, *np.sort(seen.line.along_m(ends)).tolist()),
+            band_m=band_m,
+            deep_m=deep_m,
+        )
         for seen in wall.lines
     ]
     return sum(shown[1:], start=shown[0])
@@ -241,6 +251,7 @@ def decide_kinds(
     min_width_m: float,
     max_door_m: float,
     band_m: float,
+    niche_m: float,
     ways_m: Sequence[FloatArray] = (),
 ) -> list[PlanWall]:
     """Return walls with the kinds of their gaps; what is wall after all is closed.
@@ -259,13 +270,18 @@ def decide_kinds(
         Of an opening, of a door.
     band_m : float, > 0
         Returns this near to a face are at it.
+    niche_m : float
+        A gap of planar scans in which rays get no deeper, with no room behind it, may be a pause
+        between cupboards as well as a door.
     ways_m : sequence of (2, 2) float64
         Gaps that leaves were seen to stand open at, from jamb to jamb.
     """
     track = _track_line(track_m)
     middles_m = np.mean([*ways_m, np.full((2, 2), np.inf)], axis=1)
     return [
-        _decide(*(wall, rays, track, rooms_beside, min_width_m, max_door_m, band_m, middles_m))
+        _decide(
+            *(wall, rays, track, rooms_beside, min_width_m, max_door_m, band_m, niche_m, middles_m)
+        )
         for wall in walls
     ]
 
@@ -278,6 +294,7 @@ def _decide(
     min_width_m: float,
     max_door_m: float,
     band_m: float,
+    niche_m: float,
     middles_m: FloatArray,
 ) -> PlanWall:
     openings: list[Opening] = []
@@ -287,10 +304,11 @@ def _decide(
         profile = observe_gap(wall, gap.low_m, gap.high_m, rays, band_m)
         middle_m = ends_m.mean(axis=0)
         least_m = _OUTER_DOOR_M if profile.is_into_nothing else min_width_m
+        is_outside = min(rooms_beside(middle_m, wall)) < 0
         share = weigh_kinds(
             profile,
             has_leaf=bool((np.hypot(*(middles_m - middle_m).T) <= CORNER_M).any()),
-            is_outside=min(rooms_beside(middle_m, wall)) < 0,
+            is_outside=is_outside,
             is_driven=bool(shapely.intersects(track, shapely.linestrings(ends_m))),
             sill_m=gap.sill_m,
             planar=rays.planar,
@@ -298,6 +316,9 @@ def _decide(
         )
         best = int(share.argmax())
         kind = KINDS[best] if share[best] >= _SURE else GAP
+        if rays.planar and is_outside and best == _DOOR:
+            deep = observe_gap(wall, gap.low_m, gap.high_m, rays, band_m, niche_m)
+            kind = kind if deep.n_through.sum() >= FEW else GAP
         is_open = gap.width_m >= min_width_m and profile.open_share >= 1 - profile.open_share
         is_known = any(gap.low_m < other.high_m and gap.high_m > other.low_m for other in openings)
         is_wall = kind == KINDS[_WALL] or (gap.state == CLOSED and (is_known or not is_open))

@@ -398,6 +398,7 @@ class _Survey:
             min_width_m=self.settings.openings.min_opening_m,
             max_door_m=self.settings.openings.max_door_m,
             band_m=self.settings.reading.band_m,
+            niche_m=self.settings.furniture.furniture_depth_m,
         )
 
     def find_bare_spans(self, surfaces: _Surfaces, spaces: _Spaces) -> list[wall_ground.BareSpan]:

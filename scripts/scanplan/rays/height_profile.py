@@ -92,7 +92,13 @@ class HeightProfile:
 
 
 def observe_heights(
-    rays: RaySet, line: Line, low_m: float, high_m: float, *, band_m: float
+    rays: RaySet,
+    line: Line,
+    low_m: float,
+    high_m: float,
+    *,
+    band_m: float,
+    deep_m: float = expected_returns.DEEP_M,
 ) -> HeightProfile:
     """Return what becomes of the rays from the side of a line's normal at a stretch of it.
 
@@ -104,6 +110,8 @@ def observe_heights(
         The stretch along the line.
     band_m : float, > 0
         Returns this near to the line are at the face.
+    deep_m : float
+        Those this near behind it are in the wall.
     """
     face = cast_at_face(
         *(rays, line, low_m, high_m),
@@ -113,7 +121,7 @@ def observe_heights(
     is_reaching = face.is_facing & (face.behind_m >= -band_m)
     is_reaching &= (face.along_m >= low_m) & (face.along_m <= high_m)
     state = np.select(
-        [face.behind_m <= band_m, face.behind_m <= expected_returns.DEEP_M],
+        [face.behind_m <= band_m, face.behind_m <= deep_m],
         [_SOLID, _RECESSED],
         _OPEN,
     )

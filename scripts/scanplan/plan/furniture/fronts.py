@@ -5,9 +5,8 @@ is all of the plan: behind a wall there is its other side, another room, or the 
 front there is a pocket no larger than furniture and what it hides, up to the wall behind: a wall on
 whose line floor of the same room ends beside the pocket, and that goes farther through all rooms
 than the front's own line. A block that stands alone on the floor of a room is furniture, too, if
-it is thicker than a wall of the building and longer than a column; an island or a row of cupboards
-is as long as furniture is that is less deep than one reaches. Leaves of open doors are taken off
-before.
+it is thicker than a wall of the building and longer than a column; an island or a row of cupboards,
+no deeper than furniture, may be twice as large. Leaves of open doors are taken off before.
 """
 
 from collections.abc import Callable, Sequence

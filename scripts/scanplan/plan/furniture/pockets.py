@@ -35,7 +35,7 @@ class Pocket:
     Attributes
     ----------
     ground : shapely geometry
-        Never seen, up to the fronts and the wall behind.
+        Never seen, up to the fronts and the wall behind; of a block all that it stands on.
     fronts : list of intervals.FaceInterval
         Surfaces that are fronts of it.
     """
@@ -101,16 +101,14 @@ def find_pockets(
             continue
         pocket = _make_pocket(hidden, fronts, unpaired_m)
         walls_seen = near if own is None else faces.behind(pocket.ground)
-        # the short end of a long block may lie in the line of a wall beyond a way
-        longest_m = max((face.length_m for face in fronts), default=0.0)
-        goes_on = any(id(face) in continued and 2 * face.length_m > longest_m for face in fronts)
         if _is_part_of_building(pocket, parts[row], max_depth_m):
             continue
         if not _is_before_wall(pocket, walls_seen, grown[row]):
-            if goes_on or not _is_block(pocket.ground, parts[row], unpaired_m, **most):
-                continue
             # its ends, too, that were paired with what stands in their line
             pocket = Pocket(pocket.ground, _faces_on(pocket.ground, near))
+            is_block = _is_block(pocket.ground, parts[row], unpaired_m, **most)
+            if not is_block or _goes_on(pocket, continued):
+                continue
         pockets.append(pocket)
         found.update(map(id, pocket.fronts))
     return pockets
@@ -135,16 +133,23 @@ def find_blocks(
         Says how thick walls usually are.
     max_thickness_m, max_depth_m : float
         Of a wall, of furniture.
+
+    Returns
+    -------
+    list of Pocket
+        Their grounds, and all surfaces on them; none where no other wall's thickness is known.
     """
     most = {"max_thickness_m": max_thickness_m, "max_depth_m": max_depth_m}
     faces = _AllFaces([face for wall in walls for face in wall.members])
     solid = shapely.union_all(wall_ground.wall_strips(walls, measure_thickness_m(walls)))
     ground_before = shapely.difference(floor, solid)
     blocks = []
-    for wall in walls:
-        if not wall.right or wall.openings:
+    two_sided = [wall for wall in walls if wall.right]
+    for wall in two_sided:
+        others = [other for other in two_sided if other is not wall]
+        if not others or wall.openings:
             continue
-        others_m = measure_thickness_m([other for other in walls if other is not wall])
+        others_m = measure_thickness_m(others)
         ground = wall_ground.wall_strips([wall], others_m)[0]
         near = faces.within(ground, CORNER_M)
         # a wall that begins at another has floor on most sides, too
@@ -257,6 +262,12 @@ def _backs_onto(face: FaceInterval, hidden: Polygon, unpaired_m: float) -> bool:
     return behind.intersection(hidden).length >= behind.length / 2
 
 
+def _goes_on(pocket: Pocket, continued: set[int]) -> bool:
+    """Return whether a block's sides, not its short ends alone, go on beyond an opening."""
+    longest_m = max((face.length_m for face in pocket.fronts), default=0.0)
+    return any(id(face) in continued and 2 * face.length_m > longest_m for face in pocket.fronts)
+
+
 def _faces_on(ground: BaseGeometry, faces: Sequence[FaceInterval]) -> list[FaceInterval]:
     """Return the surfaces that lie on ground, or on its edges."""
     around = ground.buffer(CORNER_M)
@@ -288,8 +299,9 @@ def _is_part_of_building(pocket: Pocket, part: Polygon, max_depth_m: float) -> b
 
 def _is_large(ground: BaseGeometry, max_depth_m: float) -> bool:
     """Return whether ground is more than furniture stands on, alone or, where narrow, in a row."""
-    is_deep = _sides_m(ground.buffer(-CELL_M))[0] > max_depth_m
-    return ground.area > (FURNITURE_M2 if is_deep else _POCKET_M2)
+    depth_m, length_m = _sides_m(ground.buffer(-CELL_M))
+    is_row = depth_m <= max_depth_m and length_m <= _POCKET_M2 / max_depth_m
+    return ground.area > (_POCKET_M2 if is_row else FURNITURE_M2)
 
 
 def _has_corner_in(ground: BaseGeometry, part: Polygon) -> bool:
@@ -344,10 +356,9 @@ def _is_block(
 
     It is thicker than walls are, and longer than the thickest.
     """
-    if _is_large(ground, max_depth_m):
+    width_m, length_m = _sides_m(ground.buffer(-CELL_M))
+    is_thick = width_m > 2 * unpaired_m and length_m > max_thickness_m
+    if not is_thick or _is_large(ground, max_depth_m):
         return False
     around = ground.buffer(CORNER_M).difference(ground)
-    if around.intersection(part).area < ALONG_SHARE * around.area:
-        return False
-    width_m, length_m = _sides_m(ground.buffer(-CELL_M))
-    return width_m > 2 * unpaired_m and length_m > max_thickness_m
+    return around.intersection(part).area >= ALONG_SHARE * around.area
