@@ -44,9 +44,7 @@ def gather_chunks(
     columns = {name: np.concatenate([part[name] for part in parts]) for name in schema.columns}
     if schema is schemas.OBSERVATIONS and tables.ScanStore(scans).planar:
         known = registered_scans.read_registered_scans(registration)
-        columns = persistence.weigh_by_persistence(
-            columns, known.scan_ids, known.map_from_sensor[:, :2, 3]
-        )
+        columns = persistence.weigh_by_persistence(columns, known)
     notes = known_segments.join_notes([tables.read_notes(chunk, schema) for chunk in chunks])
     tables.write_table(output, schema, columns, allow_empty=allow_empty, notes=notes)
     n_rows = len(columns["scan_id"])

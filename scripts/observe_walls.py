@@ -46,9 +46,7 @@ def observe_walls(
     # what other scans show there may be in another chunk: that is for `gather_chunks`
     if chunk is None and tables.ScanStore(scans).planar:
         known = registered_scans.read_registered_scans(registration)
-        columns = persistence.weigh_by_persistence(
-            columns, known.scan_ids, known.map_from_sensor[:, :2, 3]
-        )
+        columns = persistence.weigh_by_persistence(columns, known)
     tables.write_table(output, schemas.OBSERVATIONS, columns, allow_empty=True)
     mean_m = columns["length_m"].sum() / len(observations)
     n_blind = sum(len(observation["length_m"]) == 0 for observation in observations)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from scanplan.selection import persistence
+from scanplan.store.registered_scans import RegisteredScans
 
 
 def observations(rows):
@@ -19,9 +20,10 @@ def weigh_by_persistence(columns, places_m=None):
     scan_ids = np.unique(columns["scan_id"])
     if places_m is None:
         places_m = [(scan, 0.2) for scan in scan_ids]
-    return persistence.weigh_by_persistence(
-        columns, scan_ids, np.array(places_m, float).reshape(-1, 2)
-    )
+    map_from_sensor = np.tile(np.eye(4), (len(scan_ids), 1, 1))
+    map_from_sensor[:, :2, 3] = np.array(places_m, float).reshape(-1, 2)
+    registered = RegisteredScans(scan_ids, 10**8 * scan_ids.astype(np.int64), map_from_sensor)
+    return persistence.weigh_by_persistence(columns, registered)
 
 
 def test_half_of_the_best_shows_a_cell_and_less_counts_in_proportion():

@@ -316,7 +316,7 @@ def _decide(
         )
         best = int(share.argmax())
         kind = KINDS[best] if share[best] >= _SURE else GAP
-        if rays.planar and is_outside and best == _DOOR:
+        if rays.planar and is_outside and kind == KINDS[_DOOR]:
             deep = observe_gap(wall, gap.low_m, gap.high_m, rays, band_m, niche_m)
             kind = kind if deep.n_through.sum() >= FEW else GAP
         is_open = gap.width_m >= min_width_m and profile.open_share >= 1 - profile.open_share

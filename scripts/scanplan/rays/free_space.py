@@ -37,8 +37,7 @@ def free_polygons(rays: RaySet) -> list[MultiPolygon]:
         A polygon, polygons, or an empty one, per scan.
     """
     return [
-        _star(sensor_m[:2], rays.azimuth_rad[rows], rays.xyz_m[rows] - sensor_m)
-        for rows, sensor_m in zip(rays.rows, rays.sensors_m, strict=True)
+        _star(sensor_m[:2], *way) for sensor_m, way in zip(rays.sensors_m, rays.ways(), strict=True)
     ]
 
 

@@ -6,7 +6,8 @@ import numpy as np
 
 from scanplan.selection import wall_cells
 from scanplan.selection.wall_cells import HALF_SURE
-from scanplan.types import Array, BoolArray, Columns, FloatArray, IntArray
+from scanplan.store.registered_scans import RegisteredScans
+from scanplan.types import Array, BoolArray, Columns, IntArray
 
 _VIEW_CELLS = 4  # a scan that shows anything in a square of so many, or one beside it, looks there
 _STAYING = 0.2  # of the places that look there; of what more of them show 19 of 20 are wall
@@ -14,9 +15,7 @@ _ACROSS = [(0, across) for across in (-1, 0, 1)]
 _AROUND = [(along, across) for along in (-1, 0, 1) for across in (-1, 0, 1)]
 
 
-def weigh_by_persistence(
-    columns: Columns, scan_ids: IntArray, sensor_xy_m: FloatArray
-) -> dict[str, Array]:
+def weigh_by_persistence(columns: Columns, registered: RegisteredScans) -> dict[str, Array]:
     """Return observations of planar scans in which what stays counts, and what does not, less.
 
     A cell counts in full where half of its best scan is shown: few returns stand for it, noise
@@ -31,14 +30,13 @@ def weigh_by_persistence(
     ----------
     columns : dict of str to (m,) array
         Columns of `schemas.OBSERVATIONS`, of all scans.
-    scan_ids : (n,) int, increasing
-        All scans.
-    sensor_xy_m : (n, 2) float
-        Where the sensor of each was.
+    registered : registered_scans.RegisteredScans
+        All scans, and where their sensor was.
     """
     # from within a quarter of a metre scans see the same, however long the sensor stood there
-    place_of = np.unique(np.floor(4 * sensor_xy_m), axis=0, return_inverse=True)[1]
-    place = place_of[np.searchsorted(scan_ids, columns["scan_id"])]
+    square = np.floor(4 * registered.map_from_sensor[:, :2, 3])
+    place_of = np.unique(square, axis=0, return_inverse=True)[1]
+    place = place_of[np.searchsorted(registered.scan_ids, columns["scan_id"])]
     length_m = np.asarray(columns["length_m"], float)
     _, cell = np.unique(wall_cells.number_cells(columns), return_inverse=True)
     best_m = np.zeros(len(length_m))

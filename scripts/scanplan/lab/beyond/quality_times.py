@@ -182,7 +182,7 @@ def _order_by_walls(survey: TimedSurvey, settings: WallCellSettings) -> IntArray
     ]
     columns = wall_cells.observation_columns(known.scan_ids, observed)
     if survey.store.planar:
-        columns = persistence.weigh_by_persistence(columns, known.scan_ids, sensors_m[:, :2])
+        columns = persistence.weigh_by_persistence(columns, known)
     scans = SurveyScans(known.scan_ids, {"observations": columns})
     return objectives.cover_wall_length(scans).greedy().order
 

@@ -3,7 +3,7 @@
 Lines that segments agree on, cut to what the points and rays of the chosen scans show.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -15,6 +15,7 @@ from scanplan.extraction.furniture import FurnitureLimits, find_furniture_fronts
 from scanplan.geometry.lines import Line
 from scanplan.plan.faces import candidates, intervals, trimming
 from scanplan.plan.faces.candidates import FaceCandidate
+from scanplan.plan.faces.face_tree import FaceTree
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.faces.merging import MergeSettings
 from scanplan.plan.faces.owned_points import owned_intervals
@@ -151,12 +152,10 @@ class _FaceSelection:
         Supported, none beside a stronger one, none a front of furniture.
         """
         dense = [self._find_dense(of_line) for of_line in of_lines]
-        sides = _Sides(
-            [i for of_line in dense for i in of_line if i.length_m >= self.merging.min_length_m],
-            self.pairing.may_be_sides,
-            self.pairing.max_gap_m + self.pairing.max_thickness_m,
+        found = FaceTree(
+            [i for of_line in dense for i in of_line if i.length_m >= self.merging.min_length_m]
         )
-        supported = [interval for of_line in dense for interval in self._supported(of_line, sides)]
+        supported = [interval for of_line in dense for interval in self._supported(of_line, found)]
         return _without_furniture(self.merging.remove_doubles(supported), self.furniture)
 
     def trim(self, walls: Sequence[FaceInterval]) -> list[FaceInterval]:
@@ -176,57 +175,28 @@ class _FaceSelection:
         least = self.merging.min_points_per_m
         return [interval for interval in of_line if interval.n_points >= least * interval.length_m]
 
-    def _supported(self, of_line: Sequence[FaceInterval], sides: "_Sides") -> list[FaceInterval]:
+    def _supported(self, of_line: Sequence[FaceInterval], found: FaceTree) -> list[FaceInterval]:
         """Return the intervals of one line that enough scans show, with their walls' other sides.
 
         Where one is sure, short ones beside it stay, too.
         """
         is_sure = any(
-            interval.length_m >= self.merging.min_length_m and self._is_shown(interval, sides)
+            interval.length_m >= self.merging.min_length_m and self._is_shown(interval, found)
             for interval in of_line
         )
         return _without_stubs(of_line) if is_sure else []
 
-    def _is_shown(self, interval: FaceInterval, sides: "_Sides") -> bool:
+    def _is_shown(self, interval: FaceInterval, found: FaceTree) -> bool:
         """Return whether an interval is long, or enough scans show it or the wall's other side."""
         # its ends may have been left to faces that cross it there
         is_long = interval.length_m + 2 * FACE_M >= self.merging.lone_length_m
         if is_long or interval.n_scans >= self.merging.min_scans:
             return True
-        scans = [interval.scans, *(other.scans for other in sides.of(interval))]
+        reach_m = self.pairing.max_gap_m + self.pairing.max_thickness_m
+        near = found.within(shapely.LineString(interval.ends), reach_m)
+        sides = (other for other in near if self.pairing.may_be_sides(interval, other))
+        scans = [interval.scans, *(other.scans for other in sides)]
         return len(np.unique(np.concatenate(scans))) >= self.merging.min_scans
-
-
-class _Sides:
-    """Intervals, to be found by those that they may be the other side of the wall of.
-
-    Parameters
-    ----------
-    intervals_ : sequence of intervals.FaceInterval
-    may_be_sides : callable
-        Says whether two of them may be sides of one wall.
-    reach_m : float
-        No two that may be are farther apart.
-    """
-
-    def __init__(
-        self,
-        intervals_: Sequence[FaceInterval],
-        may_be_sides: Callable[[FaceInterval, FaceInterval], bool],
-        reach_m: float,
-    ) -> None:
-        self._intervals = intervals_
-        self._may_be_sides = may_be_sides
-        self._reach_m = reach_m
-        ends_m = np.array([interval.ends for interval in intervals_]).reshape(-1, 2, 2)
-        self._tree = shapely.STRtree(np.asarray(shapely.linestrings(ends_m), object))
-
-    def of(self, interval: FaceInterval) -> list[FaceInterval]:
-        """Return what may be the other side of the wall of an interval."""
-        line = shapely.linestrings(interval.ends)
-        rows = self._tree.query(line, predicate="dwithin", distance=self._reach_m)
-        near = (self._intervals[row] for row in np.sort(rows))
-        return [other for other in near if self._may_be_sides(interval, other)]
 
 
 def _without_furniture(

@@ -17,6 +17,7 @@ from shapely.geometry.base import BaseGeometry
 from scanplan.geometry import intersections
 from scanplan.geometry.narrow_places import FURNITURE_M2
 from scanplan.plan import wall_ground
+from scanplan.plan.faces.face_tree import FaceTree
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.tolerances import ALONG_SHARE, CORNER_M, END_M, FACE_M
@@ -140,7 +141,7 @@ def find_blocks(
         Their grounds, and all surfaces on them; none where no other wall's thickness is known.
     """
     most = {"max_thickness_m": max_thickness_m, "max_depth_m": max_depth_m}
-    faces = _AllFaces([face for wall in walls for face in wall.members])
+    faces = FaceTree([face for wall in walls for face in wall.members])
     solid = shapely.union_all(wall_ground.wall_strips(walls, measure_thickness_m(walls)))
     ground_before = shapely.difference(floor, solid)
     blocks = []
@@ -159,21 +160,14 @@ def find_blocks(
     return blocks
 
 
-class _AllFaces:
+class _AllFaces(FaceTree):
     """The faces of a plan, to be found by where they and their lines are."""
 
     def __init__(self, faces: Sequence[FaceInterval]) -> None:
-        self._faces = np.array([*faces, None], object)[:-1]
-        ends_m = np.array([face.ends for face in faces]).reshape(-1, 2, 2)
-        self._tree = shapely.STRtree(np.asarray(shapely.linestrings(ends_m), object))
-        self._centre_m = ends_m.mean(axis=1)
+        super().__init__(faces)
+        self._centre_m = self._ends_m.mean(axis=1)
         self._length_m = np.array([face.length_m for face in faces])
         self._normal = np.array([face.line.normal for face in faces]).reshape(-1, 2)
-
-    def within(self, shape: BaseGeometry, distance_m: float) -> list[FaceInterval]:
-        """Return the faces no farther from a shape than a distance."""
-        rows = self._tree.query(shape, predicate="dwithin", distance=distance_m)
-        return self._faces[np.sort(rows)].tolist()
 
     def behind(self, ground: BaseGeometry) -> list[FaceInterval]:
         """Return the faces on whose lines ground before them ends, or near."""
