@@ -38,16 +38,24 @@ def group_moments(points: FloatArray, group: IntArray, n_groups: int) -> FloatAr
     return np.stack([np.bincount(group, c, n_groups) for c in columns]).astype(float)
 
 
-def least_variance_direction(sums: FloatArray) -> FloatArray:
-    """Return the direction (d, m) of least variance of each group, NaN where it is not clear."""
+def means_and_covariances(
+    sums: FloatArray,
+) -> tuple[FloatArray, dict[tuple[int, int], FloatArray]]:
+    """Return the means (d, m) of groups, and the covariances (m,) of axes i and j, i <= j."""
     d = 2 if len(sums) == 6 else 3
     count = np.maximum(sums[0], 1)
     mean = sums[1 : 1 + d] / count
     pairs = [(i, j) for i in range(d) for j in range(i, d)]
-    covariance = {
+    return mean, {
         (i, j): products / count - mean[i] * mean[j]
         for (i, j), products in zip(pairs, sums[1 + d :], strict=True)
     }
+
+
+def least_variance_direction(sums: FloatArray) -> FloatArray:
+    """Return the direction (d, m) of least variance of each group, NaN where it is not clear."""
+    d = 2 if len(sums) == 6 else 3
+    _, covariance = means_and_covariances(sums)
     least, middle, largest, axis = (_spread_2d if d == 2 else _spread_3d)(covariance)
     enough = sums[0] >= FEWEST[d]
     # a group whose points are on a line has no normal

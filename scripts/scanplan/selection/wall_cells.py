@@ -13,9 +13,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan.extraction import normals
+from scanplan.extraction import upright_surfaces
+from scanplan.extraction.upright_surfaces import UprightSurfaces
 from scanplan.geometry.tolerances import ROUNDING, SHORTEST_M
 from scanplan.rays import levels, sensor_frame
+from scanplan.rays.tolerances import NEAR_FLOOR_M
 from scanplan.types import Array, Columns, FloatArray, IntArray
 
 FACINGS = ("-x", "+x", "-y", "+y")
@@ -108,18 +110,12 @@ def observe_wall_cells(
     far = range_m > _FARTHEST_M
     if far.any():
         points_m, range_m = points_m[~far], range_m[~far]
-    door_top_m = _door_top_m(points_m, settings, planar)
-    wall_top_m = door_top_m - settings.door_height_m + settings.wall_height_m
-    tallness = _rate_tallness(points_m[:, 2], range_m, wall_top_m, np.deg2rad(settings.reach_deg))
-    # by number and not by mask: a third of the time
-    low = np.flatnonzero(points_m[:, 2] <= door_top_m)
-    points_m, tallness = points_m.take(low, axis=0), tallness.take(low)
-    upright, facing = _find_upright(points_m, planar, settings)
-    upright_m = points_m.take(upright, axis=0)
-    xy_m = upright_m[:, :2] + np.asarray(sensor_xyz_m, float)[:2]
-    heights = None if planar else (upright_m[:, 2].copy(), tallness.take(upright))
+    find = _find_in_the_plane if planar else _find_in_space
+    surfaces, tallness = find(points_m, range_m, settings)
+    sensor_xy_m = np.asarray(sensor_xyz_m, float)[:2]
     parts = [
-        _measure_facing(which, xy_m, facing, heights, settings) for which in range(len(FACINGS))
+        _measure_facing(which, surfaces, tallness, sensor_xy_m, settings)
+        for which in range(len(FACINGS))
     ]
     along, across, length_m = (np.concatenate(column) for column in zip(*parts, strict=True))
     facings = np.repeat(np.arange(len(FACINGS)), [len(part[0]) for part in parts])
@@ -148,78 +144,83 @@ def number_cells(columns: Mapping[str, Array]) -> IntArray:
     return cell
 
 
-def _door_top_m(points_m: FloatArray, settings: WallCellSettings, planar: bool) -> float:
-    """Return the height above which returns may be the wall above a door; infinite in the plane."""
-    if planar or len(points_m) == 0:
-        return np.inf
-    return levels.find_floor_z(points_m[:, 2]) + settings.door_height_m
+def _find_in_the_plane(
+    points_m: FloatArray, _range_m: FloatArray, settings: WallCellSettings
+) -> tuple[UprightSurfaces, None]:
+    surfaces = upright_surfaces.find_in_the_plane(points_m[:, :2], reach_deg=settings.reach_deg)
+    return surfaces, None
 
 
-def _find_upright(
-    points_m: FloatArray, planar: bool, settings: WallCellSettings
-) -> tuple[IntArray, FloatArray]:
-    """Return which rows (m,) are on upright surfaces, and the horizontal normals (m, 2) there."""
-    if planar:
-        facing = normals.estimate_outline_normals(points_m[:, :2], reach_deg=settings.reach_deg)
-        upright = np.flatnonzero(np.isfinite(facing[:, 0]))
-        return upright, facing[upright]
-    of_point, normal = normals.estimate_cell_normals(points_m, reach_deg=settings.reach_deg)
-    is_upright = np.abs(normal[:, 2]) <= np.sin(np.deg2rad(settings.max_tilt_deg))
-    upright = np.flatnonzero(is_upright.take(of_point))
-    level = np.hypot(normal[:, 0], normal[:, 1])[:, None]
-    # a floor's normal may have no direction in plan view; it is not upright
-    facing = np.divide(normal[:, :2], level, out=np.zeros_like(normal[:, :2]), where=level > 0)
-    return upright, facing.take(of_point.take(upright), axis=0)
+def _find_in_space(
+    points_m: FloatArray, range_m: FloatArray, settings: WallCellSettings
+) -> tuple[UprightSurfaces, FloatArray]:
+    """Return what is upright between the floor and a door's top, and its `_rate_tallness`."""
+    z_m = points_m[:, 2]
+    floor_z_m = levels.find_floor_z(z_m)
+    is_between = (z_m > floor_z_m + NEAR_FLOOR_M) & (z_m <= floor_z_m + settings.door_height_m)
+    surfaces = upright_surfaces.find_in_space(
+        # by number and not by mask: a third of the time
+        points_m.take(np.flatnonzero(is_between), axis=0),
+        reach_deg=settings.reach_deg,
+        max_tilt_deg=settings.max_tilt_deg,
+        # no cell that a surface runs through is left without a piece
+        max_length_m=settings.cell_m / 2,
+    )
+    high_slope = _high_slope(z_m, range_m, np.deg2rad(settings.reach_deg))
+    return surfaces, _rate_tallness(surfaces, floor_z_m + settings.wall_height_m, high_slope)
 
 
-def _rate_tallness(
-    z_m: FloatArray, range_m: FloatArray, height_m: float, reach_rad: float
-) -> FloatArray:
-    """Return how surely each point (n,) shows something as tall as a wall, 0 to 1.
-
-    1 above a height, half for those about as high as the scan looks there, 0 for others. Ranges are
-    horizontal.
-    """
+def _high_slope(z_m: FloatArray, range_m: FloatArray, reach_rad: float) -> float:
+    """Return the slope of what is about as high as the scan looks anywhere."""
     # the slope rises with the elevation: angles of all points take five times as long
     slope = z_m / np.maximum(range_m, ROUNDING)
-    lowest_rad = max(np.arctan(slope.max(initial=-np.inf)) - reach_rad, -np.pi / 2)
-    as_high = slope >= np.tan(lowest_rad)
-    return np.where(z_m >= height_m, 1.0, np.where(as_high, HALF_SURE, 0.0))
+    return np.tan(max(np.arctan(slope.max(initial=-np.inf)) - reach_rad, -np.pi / 2))
+
+
+def _rate_tallness(surfaces: UprightSurfaces, height_m: float, high_slope: float) -> FloatArray:
+    """Return how surely each piece (n,) shows something as tall as a wall, 0 to 1.
+
+    1 above a height, half for those about as high as the scan looks there, 0 for others.
+    """
+    top_m = surfaces.z_m + surfaces.half_height_m
+    range_m = np.hypot(surfaces.xy_m[:, 0], surfaces.xy_m[:, 1])
+    as_high = top_m >= high_slope * np.maximum(range_m, ROUNDING)
+    return np.where(top_m >= height_m, 1.0, np.where(as_high, HALF_SURE, 0.0))
 
 
 def _measure_facing(
     which: int,
-    xy_m: FloatArray,
-    facing: FloatArray,
-    heights: tuple[FloatArray, FloatArray] | None,
+    surfaces: UprightSurfaces,
+    tallness: FloatArray | None,
+    sensor_xy_m: FloatArray,
     settings: WallCellSettings,
 ) -> _Cells:
     """Return the cells along and across (m,) int32 that face one way, and the wall's length there.
 
-    Heights are z and `_rate_tallness` of each point, (n,) each, or None of a planar scan.
+    Tallness is that of each piece, see `_rate_tallness`, or None of a planar scan.
     """
     axis = which // 2
     sign = 2 * (which % 2) - 1
-    there = np.flatnonzero(facing[:, axis] * sign > _SAME_SIDE)
+    there = np.flatnonzero(surfaces.normal[:, axis] * sign > _SAME_SIDE)
     if not len(there):
         return np.empty(0, np.int32), np.empty(0, np.int32), np.empty(0)
-    cosine = np.abs(facing[:, axis].take(there))
-    across_m, along_m = xy_m[:, axis].take(there), xy_m[:, 1 - axis].take(there)
+    cosine = np.abs(surfaces.normal[:, axis].take(there))
+    across_m, along_m = (surfaces.xy_m[:, i].take(there) + sensor_xy_m[i] for i in (axis, 1 - axis))
     grid = _Grid(along_m, across_m, settings.cell_m)
-    share = cosine * cosine
+    share = cosine * cosine * surfaces.n_points.take(there)
     n_points = grid.sums(share)
     mean_cosine = _ratio(grid.sums(share * cosine), n_points)
     n_beside = _join_window(n_points.T, _ROWS, np.add, 0.0).T
     window = 2 * round(settings.max_gap_m / settings.cell_m) + 1
-    wanted = settings.min_points_planar if heights is None else settings.min_points
+    wanted = settings.min_points_planar if tallness is None else settings.min_points
     n_together = _join_window(n_beside, window, np.add, 0.0)
     # an extractor may part the fewest returns otherwise
     findable = np.minimum(HALF_SURE * n_together / wanted, 1.0)
-    if heights is not None:
-        z_m, tallness = (values.take(there) for values in heights)
-        extent_m = grid.top(z_m, window) + grid.top(-z_m, window)
+    if tallness is not None:
+        z_m, half_m = (heights.take(there) for heights in (surfaces.z_m, surfaces.half_height_m))
+        extent_m = grid.top(z_m + half_m, window) + grid.top(half_m - z_m, window)
         findable = findable * (extent_m >= settings.min_height_m)
-        findable = findable * np.maximum(grid.top(tallness, window), 0.0)
+        findable = findable * np.maximum(grid.top(tallness.take(there), window), 0.0)
     length_m = settings.cell_m * mean_cosine * _ratio(n_points, n_beside) * findable
     along, across = np.nonzero(length_m >= SHORTEST_M)
     origin = grid.origin.astype(np.int32)
@@ -231,7 +232,7 @@ def _measure_facing(
 
 
 class _Grid:
-    """Cells of the plane: points (n,) lie in one cell along and are shared by two across."""
+    """Cells of the plane: pieces (n,) lie in one cell along and are shared by two across."""
 
     def __init__(self, along_m: FloatArray, across_m: FloatArray, cell_m: float) -> None:
         at = across_m / cell_m - 0.5
@@ -242,14 +243,14 @@ class _Grid:
         self._upper_share = at - across
 
     def sums(self, weight: FloatArray) -> FloatArray:
-        """Add up a weight (n,) of the points in every cell."""
+        """Add up a weight (n,) of the pieces in every cell."""
         n_cells = int(np.prod(self.shape))
         lower = np.bincount(self._lower, weight * (1 - self._upper_share), minlength=n_cells)
         upper = np.bincount(self._lower + 1, weight * self._upper_share, minlength=n_cells)
         return np.asarray(lower + upper, float).reshape(self.shape)
 
     def top(self, value: FloatArray, window: int) -> FloatArray:
-        """Return the largest value of points about every cell, -inf without any.
+        """Return the largest value of pieces about every cell, -inf without any.
 
         In a window along, and in `_ROWS` across.
         """
