@@ -1,7 +1,7 @@
 """Select continuous scans and register them in the map frame (thesis, algorithm 3)."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 from scanplan.registration import contradictions, gate_shares, mapping, results
@@ -96,20 +96,19 @@ def _write_kept_scans(
     scans_xyz_m: Iterable[FloatArray],
 ) -> None:
     """Write the scans that registration kept, given in the sensor's frame, in the map frame."""
+    moved = (
+        (int(scan_id), results.move_to_map(int(scan_id), xyz_m, verdicts[row].world_from_sensor))
+        for row, scan_id, xyz_m in zip(kept, survey.scan_ids[kept], scans_xyz_m, strict=True)
+    )
     with (
         tables.open_scan_writer(path, planar=survey.planar) as write_scan,
-        ThreadPoolExecutor(max_workers=1) as writer,
+        ThreadPoolExecutor(max_workers=1) as mover,
     ):
-        written: Future[None] | None = None
-        for row, xyz_m in zip(kept.tolist(), scans_xyz_m, strict=True):
-            scan_id = int(survey.scan_ids[row])
-            moved_m = results.move_to_map(scan_id, xyz_m, verdicts[row].world_from_sensor)
-            # the next scan is moved while this one is packed
-            if written is not None:
-                written.result()
-            written = writer.submit(write_scan, scan_id, moved_m)
-        if written is not None:
-            written.result()
+        # the next scan is moved while this one is packed
+        waiting = mover.submit(next, moved, None)
+        while (scan := waiting.result()) is not None:
+            waiting = mover.submit(next, moved, None)
+            write_scan(*scan)
 
 
 if __name__ == "__main__":
