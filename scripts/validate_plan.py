@@ -1,14 +1,16 @@
-"""Measure how well the plan predicts the rays of scans that it was not made of."""
+"""Measure how well the plan predicts rays of scans it was not made of, and rate its elements."""
 
 from collections.abc import Mapping
 from typing import Any
+
+import numpy as np
 
 from scanplan.plan import floorplan
 from scanplan.selection import stopping
 from scanplan.stage import log
 from scanplan.store import registered_scans, schemas, tables
-from scanplan.types import FilePath, Settings
-from scanplan.validation import left_out_scans, prediction
+from scanplan.types import Columns, FilePath, Settings
+from scanplan.validation import confidence, left_out_scans, prediction
 
 
 def validate_plan(
@@ -21,7 +23,9 @@ def validate_plan(
     settings: Settings,
     **stop: Any,
 ) -> None:
-    """Write the tables of a plan's validation; no truth is asked.
+    """Write the tables of a plan's validation, and how likely its elements are right.
+
+    No truth is asked.
 
     Parameters
     ----------
@@ -30,7 +34,8 @@ def validate_plan(
     selection, scans, registration : path-like
         selection/<method>.parquet, scans.parquet and registration.parquet.
     outputs : dict of str to path-like
-        `elements` and `rays`, to write: plan/validation.parquet and plan/validation_rays.parquet.
+        `elements`, `rays` and `confidence`, to write: plan/validation.parquet,
+        plan/validation_rays.parquet and plan/confidence.parquet.
     settings : dict
         Keywords of `prediction.ValidationSettings`.
     **stop
@@ -61,7 +66,23 @@ def validate_plan(
     tables.write_table(outputs["elements"], schemas.VALIDATION, found.elements, notes=notes)
     tables.write_table(outputs["rays"], schemas.VALIDATION_RAYS, found.rays, allow_empty=True)
     result = absent or prediction.summarise_counts(found)
-    log.log_line(f"validate_plan: {n_drawn} of {n_left_out} scans left out; {result}")
+    rated = confidence.rate_elements(drawn, found.elements)
+    tables.write_table(outputs["confidence"], schemas.CONFIDENCE, rated)
+    log.log_line(
+        f"validate_plan: {n_drawn} of {n_left_out} scans left out; {result};"
+        f" {_summarise_confidence(rated)}"
+    )
+
+
+def _summarise_confidence(rated: Columns) -> str:
+    counts = [
+        f"{np.sum(rated['verify'][rated['table'] == table])}"
+        f" of {np.sum(rated['table'] == table)} {table}"
+        for table in floorplan.NUMBERS
+    ]
+    is_rated = np.isfinite(rated["p_true"]).any()
+    words = "" if is_rated else "; not rated, as no heights above the floor are known"
+    return f"to verify on site: {', '.join(counts)}{words}"
 
 
 if __name__ == "__main__":

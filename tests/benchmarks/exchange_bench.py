@@ -15,7 +15,6 @@ import shapely
 
 import assemble_plan
 import extract_chosen_walls
-import rate_plan
 import validate_plan
 from scanplan.exports.data import element_ids
 from scanplan.exports.data.element_ids import Elements
@@ -164,17 +163,19 @@ def _make_tables(results: Path, settings: Settings, kept: Path, *, rate: bool) -
     )
     if not rate:
         return
-    validation = kept / "validation.parquet"
     validate_plan.validate_plan(
         tables,
         selection,
         scans,
         registration,
-        {"elements": validation, "rays": kept / "validation_rays.parquet"},
+        {
+            "elements": kept / "validation.parquet",
+            "rays": kept / "validation_rays.parquet",
+            "confidence": kept / "confidence.parquet",
+        },
         settings=stage_settings.select_validation(settings),
         **stop,
     )
-    rate_plan.rate_plan(tables, validation, kept / "confidence.parquet")
 
 
 @contextlib.contextmanager

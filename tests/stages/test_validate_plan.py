@@ -7,7 +7,6 @@ import pytest
 
 from assemble_plan import assemble_plan
 from helpers import house_making
-from rate_plan import rate_plan
 from scanplan.plan import floorplan, planning
 from scanplan.project import code_files
 from scanplan.report import validation_figure
@@ -43,7 +42,7 @@ def house(tmp_path_factory):
 def validated(house, folder, *, settings=SETTINGS, n_scans=2):
     folder.mkdir(exist_ok=True)
     inputs, plan = house
-    outputs = {"elements": folder / "elements.parquet", "rays": folder / "rays.parquet"}
+    outputs = {name: folder / f"{name}.parquet" for name in ("elements", "rays", "confidence")}
     validate_plan(plan, *inputs, outputs, settings=settings, n_scans=n_scans)
     elements = tables.read_table(outputs["elements"], schemas.VALIDATION)
     rays = tables.read_table(outputs["rays"], schemas.VALIDATION_RAYS, allow_empty=True)
@@ -104,8 +103,7 @@ def test_from_one_place_the_share_is_absent(tmp_path):
 
 def test_every_element_of_a_plan_is_rated(house, tmp_path):
     _, _, _, outputs = validated(house, tmp_path)
-    rate_plan(house[1], outputs["elements"], tmp_path / "confidence.parquet")
-    plan = floorplan.read_floorplan(house[1] | {"confidence": tmp_path / "confidence.parquet"})
+    plan = floorplan.read_floorplan(house[1] | {"confidence": outputs["confidence"]})
     for table in floorplan.NUMBERS:
         columns = getattr(plan, table)
         # the toy's scans are planar, and see no heights
@@ -114,13 +112,12 @@ def test_every_element_of_a_plan_is_rated(house, tmp_path):
     assert np.isnan(floorplan.read_floorplan(house[1]).walls.get("p_true", np.nan))
 
 
-@pytest.mark.parametrize("stage", ["validate_plan", "rate_plan"])
-def test_no_truth_is_read(stage):
+def test_no_truth_is_read():
     """Neither is it an input of the rule, nor does the stage import what reads truths."""
     rules = (ROOT / "workflow/rules/plan.smk").read_text()
-    rule = rules.partition(f"rule {stage}:")[2].partition("\nrule ")[0]
+    rule = rules.partition("rule validate_plan:")[2].partition("\nrule ")[0]
     assert "rooms=" in rule and "truth" not in rule and "evaluation" not in rule
-    helpers = code_files.list_helpers(ROOT / f"scripts/{stage}.py")
+    helpers = code_files.list_helpers(ROOT / "scripts/validate_plan.py")
     assert len(helpers) > 5 and not any("lab" in path.parts for path in helpers)
 
 

@@ -198,7 +198,7 @@ def test_what_rules_import_is_light():
 
 
 WITHOUT_SCIPY = (
-    *("observe_walls", "order_scans", "extract_chosen_walls", "validate_plan", "rate_plan"),
+    *("observe_walls", "order_scans", "extract_chosen_walls", "validate_plan"),
     *("draw_figures", "export_plan", "export_files", "write_report"),
     # what worker processes of the registration import
     *("scanplan.registration.batches", "scanplan.registration.loops"),

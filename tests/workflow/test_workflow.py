@@ -33,7 +33,7 @@ def project(project_root, tmp_path_factory):
 
 
 PLANNED = {
-    *("assemble_plan", "validate_plan", "rate_plan", "plan_next_visit"),
+    *("assemble_plan", "validate_plan", "plan_next_visit"),
     *("export_plan", "export_files"),
     *("draw_figures", "evaluate_plan"),
 }

@@ -63,7 +63,7 @@ rule correct_plan:
 
 
 rule validate_plan:
-    """Measure how well the plan predicts rays of scans that it was not made of."""
+    """Measure how well the plan predicts rays of scans it was not made of; rate its elements."""
     input:
         faces=plan_table("faces"),
         walls=plan_table("walls"),
@@ -76,6 +76,7 @@ rule validate_plan:
     output:
         elements="results/{dataset}/plan/validation.parquet",
         rays="results/{dataset}/plan/validation_rays.parquet",
+        confidence="results/{dataset}/plan/confidence.parquet",
     log:
         "logs/{dataset}/validate_plan.log",
     benchmark:
@@ -90,31 +91,6 @@ rule validate_plan:
         settings=setting(stage_settings.select_validation),
     script:
         "../../scripts/validate_plan.py"
-
-
-rule rate_plan:
-    """Say how likely each element of the plan exists as it is drawn."""
-    input:
-        faces=plan_table("faces"),
-        walls=plan_table("walls"),
-        openings=plan_table("openings"),
-        rooms=plan_table("rooms"),
-        free=plan_table("free"),
-        validation="results/{dataset}/plan/validation.parquet",
-    output:
-        confidence="results/{dataset}/plan/confidence.parquet",
-    log:
-        "logs/{dataset}/rate_plan.log",
-    benchmark:
-        "benchmarks/{dataset}/rate_plan.tsv"
-    threads: 1
-    resources:
-        mem_mb=grown(mem_mb=1000),
-        runtime=grown(runtime=5),
-    params:
-        code=code_of("rate_plan"),
-    script:
-        "../../scripts/rate_plan.py"
 
 
 rule plan_next_visit:

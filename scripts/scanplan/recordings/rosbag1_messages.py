@@ -7,7 +7,6 @@ the disk is spared. The price is that `bags` hands over what rosbags keeps for i
 (`bio`), and its tables of chunks and indexes.
 """
 
-import heapq
 import io
 import os
 import struct
@@ -82,8 +81,7 @@ def iterate_messages(
         If the index leads to no message, or one reaches beyond its chunk.
     """
     blocks = _Blocks(file)
-    of_connections = [[(entry, number) for entry in index] for number, index in indexes.items()]
-    entries = heapq.merge(*of_connections)
+    entries = iter(sorted((entry, number) for number, index in indexes.items() for entry in index))
     for (time_ns, _, _), number in islice(entries, n_unread):
         yield number, time_ns, b""
     for (time_ns, chunk, offset), _ in entries:
