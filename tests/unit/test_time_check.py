@@ -2,6 +2,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from scanplan.geometry import se3
@@ -137,3 +139,29 @@ def test_a_reading_is_better_only_where_most_windows_say_so(n_better, is_usual):
     """Ten windows of three places each: in some the second reading scatters half as much."""
     groups = [np.array([[0.02] * 3, [0.01 if i < n_better else 0.03] * 3]) for i in range(10)]
     assert time_check._is_usual([*groups, np.empty((2, 0))], 1) == is_usual
+
+
+@given(st.lists(st.lists(st.integers(1, 9), min_size=3, max_size=3), min_size=1, max_size=10))
+def test_no_reading_becomes_usual_after_it_is_settled_that_none_can(medians):
+    groups = [np.repeat(np.array(of_group, float)[:, None], 5, axis=1) for of_group in medians]
+    settled = [
+        n for n in range(1, len(groups) + 1) if time_check._is_settled(groups[:n], len(groups))
+    ]
+    if settled:
+        for n in range(settled[0], len(groups) + 1):
+            assert not any(time_check._is_usual(groups[:n], reading) for reading in (1, 2))
+
+
+def test_groups_are_measured_until_it_is_settled(monkeypatch):
+    measured = []
+
+    def measure(group, readings, motion, planar):
+        measured.append(group)
+        return np.tile(np.arange(1.0, 1 + len(readings))[:, None], 200)
+
+    monkeypatch.setattr(time_check, "_measure_scatters", measure)
+    groups = [[scan(i, WAYS["as stated"], 1.0, 0.003)] for i in range(10)]
+    best, scatters = time_check.choose_reading(groups, motion_of(1.0), planar=True)
+    assert best.name == "as stated" and scatters.startswith("as stated 1000.0 mm")
+    # three of ten are more than a quarter
+    assert len(measured) == 3

@@ -17,7 +17,7 @@ from scanplan.recordings.motion import deskew
 from scanplan.recordings.motion.trajectory import SensorMotion
 from scanplan.recordings.survey_protocol import Survey
 from scanplan.stage import log
-from scanplan.types import FloatArray, IntArray
+from scanplan.types import BoolArray, FloatArray, IntArray
 
 _WINDOW_S = 3.0  # a turn begins and ends within it, and the rover stays in a room
 _MOST = 10  # windows, and scans of each: more are long decoded and seldom change the answer
@@ -172,14 +172,19 @@ def choose_reading(
         The one as stated, unless another is clearly better, over all and in most groups: where
         a localiser jumps any reading may be.
     scatters : str
-        The median scatter across surfaces by each of them.
+        The median scatter across surfaces by each of them, in the groups that were measured: once
+        no reading can be clearly better any more, the others are not.
     """
     times_s = [scan.time_s for group in groups for scan in group if scan.time_s is not None]
     first_s = float(np.median([time_s.min() for time_s in times_s]))
     last_s = float(np.median([time_s.max() for time_s in times_s]))
     readings = list_time_readings(first_s, last_s)
-    measured = [_measure_scatters(group, readings, motion, planar) for group in groups]
-    of_groups = [sigma_m[:, np.isfinite(sigma_m).all(axis=0)] for sigma_m in measured]
+    of_groups: list[FloatArray] = []
+    for group in groups:
+        sigma_m = _measure_scatters(group, readings, motion, planar)
+        of_groups.append(sigma_m[:, np.isfinite(sigma_m).all(axis=0)])
+        if _is_settled(of_groups, len(groups)):
+            break
     sigma_m = np.concatenate(of_groups, axis=1)
     n_places = sigma_m.shape[1]
     if n_places < _FEWEST_PLACES:
@@ -198,8 +203,20 @@ def _is_usual(of_groups: Sequence[FloatArray], reading: int) -> bool:
 
     Of ten, as likely one way as the other, eight or more agree five times in a hundred.
     """
-    medians_m = np.array([np.median(sigma_m, axis=1) for sigma_m in of_groups if sigma_m.size])
-    return bool(np.mean(medians_m[:, reading] < medians_m[:, 0]) > 3 / 4)
+    return bool(np.mean(_are_thinner(of_groups)[:, reading]) > 3 / 4)
+
+
+def _is_settled(of_groups: Sequence[FloatArray], n_groups: int) -> bool:
+    """Return whether no reading can become usual any more, whatever the other groups show."""
+    n_thicker = (~_are_thinner(of_groups)).sum(axis=0)
+    return bool((n_thicker >= n_groups / 4).all())
+
+
+def _are_thinner(of_groups: Sequence[FloatArray]) -> BoolArray:
+    """Return in which groups with places (n, readings) surfaces are thinner than as stated."""
+    medians_m = [np.median(sigma_m, axis=1) for sigma_m in of_groups if sigma_m.size]
+    as_array = np.array(medians_m).reshape(len(medians_m), len(of_groups[0]))
+    return as_array < as_array[:, :1]
 
 
 def _measure_scatters(
