@@ -13,7 +13,7 @@ from scanplan.plan import messages, planning
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.rays import levels, ray_set
 from scanplan.selection import stopping
-from scanplan.stage import log
+from scanplan.stage import log, workers
 from scanplan.store import doubts, registered_scans, schemas, tables
 from scanplan.types import FilePath, Settings
 from scanplan.validation import contradictions
@@ -61,6 +61,9 @@ def assemble_plan(
     rays = ray_set.gather_rays(
         store.scans(scan_ids), sensors_m, planar=store.planar, threads=threads
     )
+    rays_told = workers.begin_in_thread(
+        _read_rays, rays, settings["openings"]["min_opening_m"], threads=threads
+    )
     # sums that a library shares out among cores differ in their last digits
     with threadpool_limits(1):
         plan = planning.make_plan(
@@ -73,7 +76,7 @@ def assemble_plan(
             threads=threads,
         )
     messages.check_plan(walls, plan, is_used.sum(), count)
-    heights_m = _find_heights(rays)
+    heights_m, warning = rays_told()
     drawn = FloorPlan(
         name="",
         **{name: getattr(plan, name) for name in ("faces", "walls", "openings", "rooms", "free")},
@@ -88,12 +91,17 @@ def assemble_plan(
         notes = {**heights_m, **found.as_notes()} if name == "free" else None
         columns = getattr(plan, name)
         tables.write_table(outputs[name], schema, columns, allow_empty=True, notes=notes)
-    if warning := messages.sparse_rays_warning(rays, settings["openings"]["min_opening_m"]):
+    if warning:
         log.log_warning(f"assemble_plan: {warning}")
     log.log_line(
         f"assemble_plan: {is_used.sum():,} segments of {count} scans ({reason})"
         f" make {messages.summarise_plan(plan)}"
     )
+
+
+def _read_rays(rays: ray_set.RaySet, min_opening_m: float) -> tuple[dict[str, str], str]:
+    """Return `_find_heights`, and a warning where rays are too few to see openings."""
+    return _find_heights(rays), messages.sparse_rays_warning(rays, min_opening_m)
 
 
 def _find_heights(rays: ray_set.RaySet) -> dict[str, str]:
