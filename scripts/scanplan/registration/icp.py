@@ -20,7 +20,7 @@ _LEAST_SHARE = 0.005  # of the largest eigenvalue: a direction with less is not 
 _LEAST_TURNED = 0.01  # of the points: fewer are badly known normals at edges
 # metres and radians: of a step this small less than half is left to go
 _STEP_DONE = 1e-3
-_ROUGH_EVERY = 3  # of the points, the third is enough for a rough alignment in space
+_ROUGH_STEP_DONE = 2e-3  # a rough alignment needs not arrive
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,6 @@ def align_clouds(
     target_from_source : (4, 4) float64
         Where to start.
     method : {"gicp", "point_to_plane", "point_to_point"}
-        Of the fine alignment in space; the rough one pairs a part of the points with planes.
     distances_m : sequence of float, at least one
         Points farther apart are no pair: first for the rough, then for the fine alignment.
     max_iterations : int
@@ -84,17 +83,14 @@ def align_clouds(
     information = np.zeros((6, 6))
     for distance_m in distances_m:
         is_fine = distance_m == distances_m[-1]
-        # a rough alignment needs not arrive
-        step_done = _STEP_DONE if is_fine else 2 * _STEP_DONE
+        step_done = _STEP_DONE if is_fine else _ROUGH_STEP_DONE
         limits = (distance_m, max_iterations, step_done)
         if target.planar:
             aligned = planar_icp.align_planar(source, target, motion, *limits)
-        elif is_fine:
-            source = _without_other_sides(source, target, motion, distance_m)
-            aligned = _align_spatial(source.features, target, motion, method, *limits)
         else:
-            few = small_gicp.PointCloud(np.ascontiguousarray(source.xyz_m[::_ROUGH_EVERY]))
-            aligned = _align_spatial(few, target, motion, "point_to_plane", *limits)
+            if is_fine:
+                source = _without_other_sides(source, target, motion, distance_m)
+            aligned = _align_spatial(source, target, motion, method, *limits)
         if aligned is None:
             return _unsound(target_from_source)
         motion, information = aligned
@@ -143,7 +139,7 @@ def _without_other_sides(
 
 
 def _align_spatial(
-    source: small_gicp.PointCloud | None,
+    source: PreparedCloud,
     target: PreparedCloud,
     start: FloatArray,
     method: str,
@@ -154,7 +150,7 @@ def _align_spatial(
     """Return motion and information, None without pairs."""
     result = small_gicp.align(
         target.features,
-        source,
+        source.features,
         target.tree,
         init_T_target_source=start,
         registration_type=_METHODS[method],
