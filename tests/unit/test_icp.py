@@ -2,6 +2,9 @@
 
 import numpy as np
 import pytest
+import small_gicp
+from hypothesis import given
+from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from scanplan.geometry import se3, twists
@@ -240,3 +243,20 @@ def test_the_two_sides_of_a_partition_are_not_drawn_together(planar):
         source, target, truth, method="gicp", distances_m=distances_m, max_iterations=30
     )
     assert np.linalg.norm(fit.target_from_source[:3, 3] - truth[:3, 3]) < 0.015
+
+
+@given(
+    points=st.lists(st.tuples(*[st.floats(-20, 20, width=32)] * 3), min_size=1, max_size=40),
+    voxel_m=st.sampled_from([0.1, 0.25, 3.0]),
+)
+def test_voxels_are_those_of_small_gicp(points, voxel_m):
+    xyz_m = np.array(points)
+    found = prepared_clouds.thin_voxels(xyz_m, planar=False, voxel_m=voxel_m)
+    theirs = small_gicp.voxelgrid_sampling(xyz_m, voxel_m, 1).points()[:, :3]
+    np.testing.assert_allclose(found, theirs, rtol=1e-6, atol=1e-5)
+
+
+def test_voxels_far_apart_need_no_table():
+    xyz_m = np.array([[-500.0, -500, -10], [500, 500, 10], [500, 500, 10.02]])
+    found = prepared_clouds.thin_voxels(xyz_m, planar=False, voxel_m=0.1)
+    np.testing.assert_allclose(found, [[-500, -500, -10], [500, 500, 10.01]], atol=1e-3)

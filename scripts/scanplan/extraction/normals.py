@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.geometry.moments import FEWEST, group_moments, least_variance_direction
+from scanplan.geometry.occupied_cells import TABLE_SIZE, number_occupied
 from scanplan.geometry.tolerances import ROUNDING
 from scanplan.rays.tolerances import ON_M
 from scanplan.types import FloatArray, IntArray
@@ -19,7 +20,6 @@ _NEAREST_2D = 5  # neighbours, where beams lie apart: enough that noise does not
 _NEAREST_REACH_2D = 3.0  # reaches: what is farther apart may be of different walls
 _FAR_M = 1000.0  # ranges above count as this: no surface of a building is there
 _STEEPEST = 4.0  # of z / r, likewise: right above or below the sensor is no wall
-_TABLE_SIZE = 2**23  # cells: up to here a table, 40 MB, is faster than a search in the sorted keys
 
 
 @dataclass(frozen=True)
@@ -172,20 +172,15 @@ class _Grid:
         self.shells = int(distance.max()) + 2
         key = ((azimuth % self.turn) * self.rows + height) * self.shells + distance
         self.size = self.turn * self.rows * self.shells
-        if self.size > _TABLE_SIZE:
-            self.key, self.of_point = np.unique(key, return_inverse=True)
-            return
-        occupied = np.zeros(self.size, bool)
-        occupied[key] = True
-        self.key = np.flatnonzero(occupied)
-        # runs of equal numbers take a tenth of the time of a running sum
-        ends = np.concatenate([[-1], self.key, [self.size]])
-        self._before = np.repeat(np.arange(len(self.key) + 1, dtype=np.int32), np.diff(ends))
-        self.of_point = self._before.take(key).astype(np.int64)
+        self.key, self.of_point = number_occupied(key, self.size)
+        if self.size <= TABLE_SIZE:
+            # runs of equal numbers take a tenth of the time of a running sum
+            ends = np.concatenate([[-1], self.key, [self.size]])
+            self._before = np.repeat(np.arange(len(self.key) + 1, dtype=np.int32), np.diff(ends))
 
     def before(self, key: IntArray) -> IntArray:
         """Return the number of occupied cells before each key."""
-        return np.searchsorted(self.key, key) if self.size > _TABLE_SIZE else self._before.take(key)
+        return np.searchsorted(self.key, key) if self.size > TABLE_SIZE else self._before.take(key)
 
     def neighbourhood_sums(self, moments: FloatArray) -> FloatArray:
         """Return each cell's moments (k, m) with those of its occupied neighbours added.

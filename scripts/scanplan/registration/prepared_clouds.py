@@ -7,6 +7,7 @@ import numpy as np
 import small_gicp
 
 from scanplan.geometry import se3
+from scanplan.geometry.occupied_cells import number_occupied
 from scanplan.geometry.tolerances import FACING
 from scanplan.types import FloatArray, IntArray
 
@@ -63,13 +64,19 @@ def thin_voxels(xyz_m: FloatArray, *, planar: bool, voxel_m: float) -> FloatArra
     voxel_m : float
         Edge of a voxel, metres.
     """
-    points = np.array(xyz_m, np.float64)
-    if planar:
-        points[:, 2] = 0
-    if len(points) == 0:
+    axes = np.ascontiguousarray(np.transpose(xyz_m), np.float64)
+    if axes.shape[1] == 0:
         return np.zeros((0, 3), np.float32)
-    means = small_gicp.voxelgrid_sampling(points, voxel_m, 1).points()
-    return np.asarray(means[:, :3], np.float32)
+    if planar:
+        axes[2] = 0
+    voxel = np.floor(axes * (1 / voxel_m)).astype(np.int64)
+    x, y, z = voxel - voxel.min(axis=1)[:, None]
+    row, layer = int(x.max()) + 1, int(y.max()) + 1
+    key = (z * layer + y) * row + x
+    occupied, of_point = number_occupied(key, (int(z.max()) + 1) * layer * row)
+    # small_gicp's own sorts the points, which takes three times as long
+    sums_m = np.array([np.bincount(of_point, axis, len(occupied)) for axis in axes])
+    return (sums_m / np.bincount(of_point)).T.astype(np.float32)
 
 
 def prepare_cloud(thinned_m: FloatArray, *, planar: bool, reach_m: float = 1.0) -> PreparedCloud:
