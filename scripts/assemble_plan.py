@@ -61,7 +61,7 @@ def assemble_plan(
     rays = ray_set.gather_rays(
         store.scans(scan_ids), sensors_m, planar=store.planar, threads=threads
     )
-    rays_told = workers.begin_in_thread(
+    wait_for_rays = workers.begin_in_thread(
         _read_rays, rays, settings["openings"]["min_opening_m"], threads=threads
     )
     # sums that a library shares out among cores differ in their last digits
@@ -76,7 +76,7 @@ def assemble_plan(
             threads=threads,
         )
     messages.check_plan(walls, plan, is_used.sum(), count)
-    heights_m, warning = rays_told()
+    heights_m, warning = wait_for_rays()
     drawn = FloorPlan(
         name="",
         **{name: getattr(plan, name) for name in ("faces", "walls", "openings", "rooms", "free")},

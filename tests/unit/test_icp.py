@@ -260,3 +260,11 @@ def test_voxels_far_apart_need_no_table():
     xyz_m = np.array([[-500.0, -500, -10], [500, 500, 10], [500, 500, 10.02]])
     found = prepared_clouds.thin_voxels(xyz_m, planar=False, voxel_m=0.1)
     np.testing.assert_allclose(found, [[-500, -500, -10], [500, 500, 10.01]], atol=1e-3)
+
+
+@pytest.mark.parametrize("order", ["C", "F"])
+def test_thinning_in_the_plane_leaves_the_points_as_they_are(order):
+    xyz_m = np.array(np.random.default_rng(1).random((5, 3)), order=order)
+    given = xyz_m.copy()
+    prepared_clouds.thin_voxels(xyz_m, planar=True, voxel_m=0.1)
+    np.testing.assert_array_equal(xyz_m, given)

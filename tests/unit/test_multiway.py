@@ -35,3 +35,25 @@ def test_no_pair_is_linked_twice():
         multiway.choose_pairs(there_and_back, in_sequence | {(19, 0)}, near, planar=True)
         == expected[:-1]
     )
+
+
+def test_pairs_of_a_place_are_aligned_in_one_job():
+    """Ten visits to 30 places: each scan is in the job of its place, and each pair in one job."""
+    poses = np.tile(np.eye(4), (300, 1, 1))
+    poses[:, 0, 3] = np.tile(np.arange(30), 10) + 0.5
+    pairs = [
+        (later, earlier)
+        for later in range(300)
+        for earlier in range(later % 30, later, 30)
+        if (later - earlier) // 30 <= 4
+    ]
+    cache = SimpleNamespace(part=lambda rows: rows)
+    limits, settings = None, SimpleNamespace(loop_min_fitness=0.5, loop_apart=6)
+    jobs = list(
+        multiway.alignment_jobs(pairs, np.arange(300), poses, cache, True, limits, settings)
+    )
+    assert sorted(pair for job in jobs for pair in job[4]) == pairs
+    assert sum(len(job[1]) for job in jobs) < 1.3 * 300
+    for part, rows, scan_ids, placed, of_job, *_ in jobs:
+        assert part == rows == scan_ids.tolist() == sorted({row for pair in of_job for row in pair})
+        np.testing.assert_array_equal(placed, poses[rows])

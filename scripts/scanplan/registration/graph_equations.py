@@ -66,6 +66,8 @@ class GraphEquations:
     ----------
     kernel : float
         A measurement this many standard deviations off counts with a quarter of its weight.
+    size : int
+        How many numbers of a pose are sought.
     factors : scipy.sparse.linalg.SuperLU or None
         Those of an earlier Hessian, kept for the steps after it.
     """
@@ -92,7 +94,8 @@ class GraphEquations:
         every_pose = np.arange(len(priors))
         ends = (self._source, self._target)
         places = [(every_pose, every_pose), *((row, column) for row in ends for column in ends)]
-        self._hessian = _BlockMatrix(places, len(priors), len(self._dimensions))
+        self.size = len(self._dimensions)
+        self._hessian = _BlockMatrix(places, len(priors), self.size)
 
     def evaluate(self, pose: FloatArray) -> GraphState:
         """Compare poses (n, 4, 4) with the measurements."""
@@ -121,18 +124,21 @@ class GraphEquations:
 
     def normal_equations(self, state: GraphState) -> tuple[sparse.csc_array, FloatArray]:
         """Return Hessian and gradient of the weighted squared error in the free dimensions."""
-        prior_jacobian = self._reduce(_jacobian(state.prior_residual))
-        prior_information = state.prior_weight[:, None, None] * self._prior_information
-        hessian = _quadratic(prior_jacobian, prior_information, prior_jacobian)
-        blocks = [hessian]
-        prior_residual = state.prior_residual[:, self._dimensions]
-        gradient = _pull(prior_jacobian, prior_information, prior_residual)
+        jacobian = self._reduce(_jacobian(state.prior_residual))
+        pulled = _transpose(jacobian) @ (
+            state.prior_weight[:, None, None] * self._prior_information
+        )
+        own = pulled @ jacobian
+        gradient = _apply(pulled, state.prior_residual[:, self._dimensions])
         information = state.weight[:, None, None] * self._information
         residual = state.residual[:, self._dimensions]
-        sides = self._sides(state)
-        for row, left in sides:
-            np.add.at(gradient, row, _pull(left, information, residual))
-            blocks += [_quadratic(left, information, right) for _, right in sides]
+        by_source, by_target = self._jacobians(state)
+        from_source = _transpose(by_source) @ information
+        from_target = _transpose(by_target) @ information
+        np.add.at(gradient, self._source, _apply(from_source, residual))
+        np.add.at(gradient, self._target, _apply(from_target, residual))
+        across = from_source @ by_target
+        blocks = [own, from_source @ by_source, across, _transpose(across), from_target @ by_target]
         return self._hessian.fill(blocks), gradient.ravel()
 
     def move(self, pose: FloatArray, step: FloatArray) -> FloatArray:
@@ -144,11 +150,11 @@ class GraphEquations:
         moved[:, :3, :3] = left @ right
         return moved
 
-    def _sides(self, state: GraphState) -> list[tuple[IntArray, FloatArray]]:
-        """Return rows of the source poses and Jacobians (m, d, d) by them; so of the targets."""
+    def _jacobians(self, state: GraphState) -> tuple[FloatArray, FloatArray]:
+        """Return how the residuals change with the source poses, (m, d, d), and the targets."""
         by_source = _jacobian(state.residual)
         by_target = -by_source @ twists.twist_adjoint(se3.invert_pose(state.relative))
-        return [(self._source, self._reduce(by_source)), (self._target, self._reduce(by_target))]
+        return self._reduce(by_source), self._reduce(by_target)
 
     def _reduce(self, matrices: FloatArray) -> FloatArray:
         """Return the free dimensions of matrices (m, 6, 6)."""
@@ -176,12 +182,12 @@ def _jacobian(residual: FloatArray) -> FloatArray:
     return result
 
 
-def _quadratic(left: FloatArray, information: FloatArray, right: FloatArray) -> FloatArray:
-    return np.swapaxes(left, -1, -2) @ information @ right
+def _transpose(matrices: FloatArray) -> FloatArray:
+    return np.swapaxes(matrices, -1, -2)
 
 
-def _pull(jacobian: FloatArray, information: FloatArray, residual: FloatArray) -> FloatArray:
-    return np.einsum("nji,njk,nk->ni", jacobian, information, residual)
+def _apply(matrices: FloatArray, vectors: FloatArray) -> FloatArray:
+    return (matrices @ vectors[:, :, None])[:, :, 0]
 
 
 class _BlockMatrix:

@@ -223,9 +223,14 @@ def alignment_jobs(
     limits: SequentialSettings,
     settings: PoseGraphSettings,
 ) -> Iterator[tuple[Any, ...]]:
-    """Yield the arguments of `loops.align_pairs` of some pairs at a time."""
-    for begin in range(0, len(pairs), _PAIRS_PER_JOB):
-        of_job = pairs[begin : begin + _PAIRS_PER_JOB]
+    """Yield the arguments of `loops.align_pairs` of some pairs at a time, place by place.
+
+    Of ten visits to a room a job prepares each scan once for all that it is paired with.
+    """
+    place = np.floor(world_from_cloud[:, :2, 3]).astype(np.int64)  # squares of a metre
+    ordered = sorted(pairs, key=lambda pair: (*place[pair[0]], *pair))
+    for begin in range(0, len(ordered), _PAIRS_PER_JOB):
+        of_job = ordered[begin : begin + _PAIRS_PER_JOB]
         rows = sorted({row for pair in of_job for row in pair})
         yield (
             thinned.part(rows),

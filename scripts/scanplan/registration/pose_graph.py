@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.linalg import LinearOperator, cg, splu
+from scipy.sparse.linalg import LinearOperator, SuperLU, cg, splu
 
 from scanplan.geometry.tolerances import ROUNDING
 from scanplan.registration.graph_equations import GraphEquations, GraphState, MotionConstraints
@@ -16,7 +16,7 @@ from scanplan.types import BoolArray, FloatArray
 
 _WIDE_KERNELS = (1000.0, 30.0, 3.0)  # times the kernel: at first all measurements count in full
 INLIER_WEIGHT = 0.25  # a measurement `kernel_sigmas` off counts as much: beyond it is an outlier
-_STEP_DONE = 1e-5  # metres and radians: far below what measurements are off by
+_STEP_DONE = 1e-4  # metres and radians: far below what measurements are off by
 
 
 @dataclass(frozen=True)
@@ -54,8 +54,8 @@ def solve_pose_graph(
     The kernel begins so wide that all measurements count and closes in steps (graduated
     non-convexity, Yang et al. 2020): where the start is poor, good measurements look false at
     first. A wide kernel, though, lets a false constraint turn a stretch of scans until all else
-    that was measured of them looks false: a stretch whose priors do begins once more at these, and
-    is left where the error is less.
+    that was measured of them looks false: a stretch whose priors do begins once more at these, the
+    others left where they are, and all begin where it comes to if its error is less.
 
     Parameters
     ----------
@@ -76,11 +76,13 @@ def solve_pose_graph(
         Whether the poses are only where another solution starts.
     """
     # a millimetre is enough for poses that another solution starts from
-    rough_done = 100 * _STEP_DONE
+    rough_done = 10 * _STEP_DONE
     equations = GraphEquations(constraints, priors, prior_information, planar=planar, kernel=kernel)
 
-    def minimise(begin: FloatArray, step_done: float) -> tuple[FloatArray, GraphState]:
-        return _minimise(equations, begin, max_iterations, step_done)
+    def minimise(
+        begin: FloatArray, step_done: float, is_free: BoolArray | None = None
+    ) -> tuple[FloatArray, GraphState]:
+        return _minimise(equations, begin, max_iterations, step_done, is_free)
 
     pose = np.array(start, float)
     for width in _WIDE_KERNELS:
@@ -91,7 +93,7 @@ def solve_pose_graph(
     pose, state = minimise(pose, step_done)
     is_doubted = state.prior_weight < INLIER_WEIGHT
     if is_doubted.any():
-        at_priors, at_state = minimise(_place(is_doubted, priors, pose), rough_done)
+        at_priors, at_state = minimise(_place(is_doubted, priors, pose), rough_done, is_doubted)
         is_better = is_doubted & _has_less_error(equations, at_state, state, is_doubted)
         if is_better.any():
             again = minimise(_place(is_better, at_priors, pose), step_done)
@@ -117,7 +119,11 @@ def _has_less_error(
 
 
 def _minimise(
-    equations: GraphEquations, pose: FloatArray, max_iterations: int, step_done: float
+    equations: GraphEquations,
+    pose: FloatArray,
+    max_iterations: int,
+    step_done: float,
+    is_free: BoolArray | None = None,
 ) -> tuple[FloatArray, GraphState]:
     """Step to the least squares of the reweighted equations, again and again.
 
@@ -125,7 +131,7 @@ def _minimise(
     lowers it but for the curvature of turns: where it would not, half of the step is tried.
     """
     state = equations.evaluate(pose)
-    step = _least_squares_step(equations, state)
+    step = _least_squares_step(equations, state, is_free)
     for _ in range(max_iterations):
         moved = equations.move(pose, step)
         moved_state = equations.evaluate(moved)
@@ -136,36 +142,59 @@ def _minimise(
             state = moved_state
         if is_done:
             break
-        step = _least_squares_step(equations, state) if is_better else step / 2
+        step = _least_squares_step(equations, state, is_free) if is_better else step / 2
     return pose, state
 
 
-def _least_squares_step(equations: GraphEquations, state: GraphState) -> FloatArray:
+def _least_squares_step(
+    equations: GraphEquations, state: GraphState, is_free: BoolArray | None
+) -> FloatArray:
+    """Return the step (n * d,) to the least squares; of poses that are not free (n,) it is zero."""
     hessian, gradient = equations.normal_equations(state)
     # regular even where no measurement says anything
-    regular = (hessian + sparse.diags_array(ROUNDING * (hessian.diagonal() + 1.0))).tocsc()
+    hessian.setdiag(hessian.diagonal() * (1 + ROUNDING) + ROUNDING)
+    if is_free is not None:
+        rows = np.flatnonzero(np.repeat(is_free, equations.size))
+        step = np.zeros_like(gradient)
+        step[rows] = _factorise(hessian[rows][:, rows]).solve(-gradient[rows])
+        return step
     if equations.factors is not None:
-        # weights and turns change a little from step to step: with the factors of an earlier
-        # matrix conjugate gradients take some five rounds, where factors of many visits to the
-        # same rooms take time that grows with more than the scans. The next step corrects what a
-        # thousandth leaves
-        solve = equations.factors.solve
-        # the stubs know the general class alone
-        near = LinearOperator(
-            regular.shape,
-            solve,
-            dtype=regular.dtype,  # pyright: ignore[reportCallIssue]
-        )
-        step, n_rounds_missed = cg(regular, -gradient, rtol=1e-3, maxiter=15, M=near)
-        if n_rounds_missed == 0:
+        step = _solve_by_gradients(hessian, -gradient, equations.factors)
+        if step is not None:
             return step
     # the old ones may be the largest thing in memory
     equations.factors = None
-    factors = splu(
-        regular,
+    factors = _factorise(hessian)
+    equations.factors = factors
+    return factors.solve(-gradient)
+
+
+def _factorise(matrix: sparse.csc_array) -> SuperLU:
+    """Return factors of a symmetric, positive definite matrix."""
+    return splu(
+        matrix,
         permc_spec="MMD_AT_PLUS_A",
         diag_pivot_thresh=0.0,
+        relax=1,  # the default joins columns: for ten visits to the same rooms, 20 times the time
         options={"SymmetricMode": True},
     )
-    equations.factors = factors
-    return -factors.solve(gradient)
+
+
+def _solve_by_gradients(
+    matrix: sparse.csc_array, wanted: FloatArray, factors: SuperLU
+) -> FloatArray | None:
+    """Solve equations by conjugate gradients with the factors of similar ones; None if it is far.
+
+    Weights and turns change a little from step to step: with the factors of an earlier matrix some
+    five rounds are enough, where factors of many visits to the same rooms take time that grows with
+    more than the scans. The next step corrects what a hundredth leaves.
+    """
+    # the stubs know the general class alone
+    near = LinearOperator(
+        matrix.shape,
+        factors.solve,
+        dtype=matrix.dtype,  # pyright: ignore[reportCallIssue]
+    )
+    # as many rounds as take about as long as new factors
+    step, n_rounds_missed = cg(matrix, wanted, rtol=1e-2, maxiter=40, M=near)
+    return step if n_rounds_missed == 0 else None

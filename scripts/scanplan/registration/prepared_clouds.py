@@ -64,7 +64,7 @@ def thin_voxels(xyz_m: FloatArray, *, planar: bool, voxel_m: float) -> FloatArra
     voxel_m : float
         Edge of a voxel, metres.
     """
-    axes = np.ascontiguousarray(np.transpose(xyz_m), np.float64)
+    axes = np.array(np.transpose(xyz_m), np.float64, order="C")
     if axes.shape[1] == 0:
         return np.zeros((0, 3), np.float32)
     if planar:
@@ -74,7 +74,7 @@ def thin_voxels(xyz_m: FloatArray, *, planar: bool, voxel_m: float) -> FloatArra
     row, layer = int(x.max()) + 1, int(y.max()) + 1
     key = (z * layer + y) * row + x
     occupied, of_point = number_occupied(key, (int(z.max()) + 1) * layer * row)
-    # small_gicp's own sorts the points, which takes three times as long
+    # small_gicp's own sorts the points: two to four times as long, in the same order
     sums_m = np.array([np.bincount(of_point, axis, len(occupied)) for axis in axes])
     return (sums_m / np.bincount(of_point)).T.astype(np.float32)
 

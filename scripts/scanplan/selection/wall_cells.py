@@ -5,7 +5,9 @@ The floor plan is divided into square cells, once for each of the four ways a su
 share nx^2 and to facing y with share ny^2; across its wall it is shared between the two nearest
 rows of cells, in proportion. Along the wall every cell stands for its edge, times |nx| or |ny|. So
 a wall of any direction counts its own length, L nx^2 + L ny^2, and as much in whichever row it
-lies; a wall that two scans place a little apart is counted little more than once.
+lies; a wall that two scans place a little apart is counted little more than once. In space what
+faces is a piece of a surface that several returns show (`upright_surfaces`), and counts as many of
+them.
 """
 
 from collections.abc import Mapping, Sequence
@@ -52,8 +54,8 @@ class WallCellSettings:
         as the sensor looks at that distance, but not up to here, may be one and counts half; what
         ends below is furniture and does not. For 3-D scans alone.
     door_height_m : float
-        Above the scan's floor; higher returns are left out: they may be the wall above a door. For
-        3-D scans alone.
+        Above the scan's floor; higher returns are left out: they may be the wall above a door. So
+        are those at the floor itself. For 3-D scans alone.
     min_points, min_points_planar : int
         The fewest returns of a wall; twice as many are one for sure, fewer count in proportion: an
         extractor may part them otherwise. Of a 3-D scan, of a planar one.
@@ -171,7 +173,7 @@ def _find_in_space(
 
 
 def _high_slope(z_m: FloatArray, range_m: FloatArray, reach_rad: float) -> float:
-    """Return the slope of what is about as high as the scan looks anywhere."""
+    """Return the slope of the highest return, less a neighbourhood's half-width."""
     # the slope rises with the elevation: angles of all points take five times as long
     slope = z_m / np.maximum(range_m, ROUNDING)
     return np.tan(max(np.arctan(slope.max(initial=-np.inf)) - reach_rad, -np.pi / 2))

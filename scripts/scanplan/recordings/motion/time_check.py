@@ -183,7 +183,8 @@ def choose_reading(
     for group in groups:
         sigma_m = _measure_scatters(group, readings, motion, planar)
         of_groups.append(sigma_m[:, np.isfinite(sigma_m).all(axis=0)])
-        if _is_settled(of_groups, len(groups)):
+        n_places = sum(measured.shape[1] for measured in of_groups)
+        if n_places >= _FEWEST_PLACES and _is_settled(of_groups, len(groups)):
             break
     sigma_m = np.concatenate(of_groups, axis=1)
     n_places = sigma_m.shape[1]
