@@ -1,3 +1,4 @@
+from collections import Counter
 from types import SimpleNamespace
 
 import numpy as np
@@ -26,7 +27,7 @@ def test_no_pair_is_linked_twice():
     there_and_back = np.tile(np.eye(4), (20, 1, 1))
     there_and_back[:, 0, 3] = [*range(10), *range(9, -1, -1)]
     near = SimpleNamespace(
-        loop_radius_m=0.5, loop_apart=2, loops_per_scan=4, loop_step_planar_m=0.5, loop_step_m=9
+        loop_radius_m=0.5, loop_apart=2, loops_per_scan_planar=4, loop_step_planar_m=0.5
     )
     in_sequence = {(row, row - 1) for row in range(1, 20)}
     expected = [(row, 19 - row) for row in range(11, 20)]
@@ -35,6 +36,26 @@ def test_no_pair_is_linked_twice():
         multiway.choose_pairs(there_and_back, in_sequence | {(19, 0)}, near, planar=True)
         == expected[:-1]
     )
+
+
+def test_a_scan_in_space_is_linked_to_fewer_visits_than_one_in_the_plane():
+    """Back and forth, two rows apart: the third visit of a place has two before it."""
+    thrice = np.tile(np.eye(4), (30, 1, 1))
+    thrice[:, 0, 3] = [*range(10), *range(9, -1, -1), *range(10)]
+    limits = SimpleNamespace(
+        **{"loop_radius_m": 0.5, "loop_apart": 2, "loop_step_m": 0.5, "loop_step_planar_m": 0.5},
+        **{"loops_per_scan": 1, "loops_per_scan_planar": 2},
+    )
+    in_sequence = {(row, row - 1) for row in range(1, 30)}
+    n_pairs = {
+        planar: Counter(
+            source
+            for source, _ in multiway.choose_pairs(thrice, in_sequence, limits, planar=planar)
+        )
+        for planar in (False, True)
+    }
+    assert n_pairs[False][25] == 1
+    assert n_pairs[True][25] == 2
 
 
 def test_pairs_of_a_place_are_aligned_in_one_job():

@@ -202,12 +202,13 @@ def choose_pairs(
     """Return the pairs of rows to align, but for those that are constrained already."""
     # a planar scan constrains less than a spatial one, and costs less to align
     step_m = settings.loop_step_planar_m if planar else settings.loop_step_m
+    most = settings.loops_per_scan_planar if planar else settings.loops_per_scan
     xy_m = world_from_scan[:, :2, 3]
     radius_m = settings.loop_radius_m
     apart = settings.loop_apart
     is_station = loops.choose_stations(world_from_scan, step_m)
     visits = loops.choose_loop_pairs(
-        xy_m, is_station, radius_m=radius_m, apart=apart, most=settings.loops_per_scan
+        xy_m, is_station, radius_m=radius_m, apart=apart, most=most
     )
     is_constrained = np.isin(np.arange(len(xy_m)), [source for source, _ in constrained])
     bridges = loops.choose_bridges(is_constrained, xy_m, radius_m=radius_m, apart=apart)

@@ -112,7 +112,7 @@ class PoseGraphSettings:
         Nor do scans with fewer retained scans than this between them (loops).
     loop_step_m, loop_step_planar_m : float
         Metres. Scans this far apart along the way get loop constraints, in space and in the plane.
-    loops_per_scan : int
+    loops_per_scan, loops_per_scan_planar : int
         Such a scan is aligned to this many earlier visits of its surroundings.
     loop_min_fitness : float
         Share, 0 to 1. Pairs whose surfaces that face the same way overlap less get no constraint.
@@ -128,6 +128,7 @@ class PoseGraphSettings:
     loop_step_m: float
     loop_step_planar_m: float
     loops_per_scan: int
+    loops_per_scan_planar: int
     loop_min_fitness: float
     edge_sigma_m: float
     edge_sigma_deg: float
