@@ -54,6 +54,20 @@ def test_what_is_shorter_or_longer_or_hangs_elsewhere_is_none(ends):
     assert leaves(single(*ends)) == []
 
 
+def test_a_leaf_hung_on_the_far_side_of_its_wall_is_as_long_as_it_is_from_the_jamb_on():
+    body = single(2.0, -0.08, 2.0, 1.05)
+    assert body.length_m > 0.9 + 0.2
+    assert [leaf.face for leaf in leaves(body)] == body.left
+
+
+def test_what_faces_as_a_leaf_does_is_the_same_leaf_farther_off_than_its_other_side():
+    """A scan placed badly shows it once more; what faces the other way is another body."""
+    (leaf,) = leaves(single(2.0, 0.05, 2.0, 0.9))
+    assert leaf.hides(single(2.25, 0.1, 2.25, 0.8).left[0])
+    assert not leaf.hides(single(2.25, 0.8, 2.25, 0.1).left[0])
+    assert not leaf.hides(single(2.35, 0.1, 2.35, 0.8).left[0])
+
+
 def test_a_return_that_ends_at_another_wall_is_no_leaf():
     assert leaves(single(2.0, 0.05, 2.0, 0.9), single(2.0, 0.9, 0.5, 0.9)) == []
 

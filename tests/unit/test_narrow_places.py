@@ -90,10 +90,14 @@ GAP = np.array([[4.1, 1.0], [4.1, 3.0]])  # 2 m wide, in the line of the wall be
 WIDE = box(3.9, 1, 4.3, 3)
 
 
-def test_a_wide_gap_of_a_wall_parts_rooms_that_were_both_visited():
-    (line,) = find(LEFT, RIGHT, WIDE, gaps_m=[GAP])
+@pytest.mark.parametrize("visited_m", [IN_BOTH, IN_BOTH[:1]])
+def test_a_wide_gap_of_a_wall_parts_rooms_though_one_was_only_looked_into(visited_m):
+    (line,) = find(LEFT, RIGHT, WIDE, gaps_m=[GAP], visited_m=visited_m)
     np.testing.assert_array_equal(line, GAP)
-    assert find(LEFT, RIGHT, WIDE, gaps_m=[GAP], visited_m=IN_BOTH[:1]) == []
+
+
+def test_what_is_wide_beside_no_wall_goes_on():
+    assert find(LEFT, RIGHT, WIDE) == []
 
 
 def test_where_a_corridor_goes_on_as_wide_no_gap_parts_it():

@@ -45,8 +45,7 @@ def find_narrow_places(
     visited_m : (n, 2) float64
         Places that were visited.
     gaps_m : sequence of (2, 2) float64
-        Lines across ground that may part visited places however wide they are, if ground is wider
-        on both sides.
+        Lines across ground that may part it however wide they are, if it is wider on both sides.
     max_width_m : float, > 0
         Of other lines.
     min_area_m2 : float, >= 0
@@ -84,7 +83,7 @@ def find_narrow_places(
             lines.append(line)
     lines += _choose_gaps(filled, gaps_m, lines)
     visits = np.asarray(shapely.points(visited_m))
-    return _part_enough(filled, lines, visits, min_area_m2, max_width_m)
+    return _part_enough(filled, lines, visits, min_area_m2)
 
 
 def _choose_gaps(
@@ -279,12 +278,11 @@ def _part_enough(
     lines: Sequence[FloatArray],
     visited: Array,
     min_area_m2: float,
-    max_width_m: float,
 ) -> list[FloatArray]:
     """Return the lines that, all together, part ground into large enough parts.
 
-    Those that are wider than a width, into visited ones. A part that is too small goes with one
-    beside it: if nobody was in it, first with another that nobody was in.
+    A part that is too small goes with one beside it: if nobody was in it, first with another that
+    nobody was in.
     """
     chosen = list(lines)
     while True:
@@ -294,19 +292,11 @@ def _part_enough(
         is_small = shapely.area(parts) < np.where(is_visited, min_area_m2, FURNITURE_M2)
         beside = [_parts_beside(cut, parts) for cut in cuts]
         cut_off = [i for i, rows in enumerate(beside) if len(rows) > 1 and is_small[rows].any()]
-        if cut_off:
-            # one at a time: what is small joins what is behind it, and another line parts both
-            inner = [i for i in cut_off if not is_visited[beside[i]].any()]
-            chosen.pop(max(inner or cut_off, key=lambda i: _length_m(chosen[i])))
-            continue
-        kept = [
-            line
-            for line, rows in zip(chosen, beside, strict=True)
-            if len(rows) > 1 and (is_visited[rows].all() or _length_m(line) <= max_width_m)
-        ]
-        if len(kept) == len(chosen):
-            return chosen
-        chosen = kept
+        if not cut_off:
+            return [line for line, rows in zip(chosen, beside, strict=True) if len(rows) > 1]
+        # one at a time: what is small joins what is behind it, and another line parts both
+        inner = [i for i in cut_off if not is_visited[beside[i]].any()]
+        chosen.pop(max(inner or cut_off, key=lambda i: _length_m(chosen[i])))
 
 
 def _parts_beside(cut: Polygon, parts: Array) -> IntArray:

@@ -73,8 +73,7 @@ def find_partings(
 
     There a wall was not seen, or its door was not; on the line of a wall nearby it stands in that.
     In planar scans, which show no lintel and less of walls behind furniture, what is wider than a
-    door parts floor too: where it is a gap in the line of a wall, no wider than the wall is long,
-    between places that were visited.
+    door parts floor too: where it is a gap in the line of a wall, no wider than the wall is long.
 
     Parameters
     ----------

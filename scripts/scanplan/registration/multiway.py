@@ -207,9 +207,7 @@ def choose_pairs(
     radius_m = settings.loop_radius_m
     apart = settings.loop_apart
     is_station = loops.choose_stations(world_from_scan, step_m)
-    visits = loops.choose_loop_pairs(
-        xy_m, is_station, radius_m=radius_m, apart=apart, most=most
-    )
+    visits = loops.choose_loop_pairs(xy_m, is_station, radius_m=radius_m, apart=apart, most=most)
     is_constrained = np.isin(np.arange(len(xy_m)), [source for source, _ in constrained])
     bridges = loops.choose_bridges(is_constrained, xy_m, radius_m=radius_m, apart=apart)
     return sorted(set(visits + bridges) - constrained)

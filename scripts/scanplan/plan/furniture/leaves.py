@@ -41,10 +41,14 @@ class Leaf:
         return LineString(self.face.ends).buffer(END_M, cap_style="square")
 
     def hides(self, face: FaceInterval) -> bool:
-        """Return whether most of a surface is of the same leaf, as it stood at another time."""
-        is_parallel = abs(face.line.normal @ self.face.line.normal) >= math.cos(LEAST_RAD)
+        """Return whether most of a surface is of the same leaf, as it stood at another time.
+
+        What faces the same way may lie farther off: nothing else fits between.
+        """
+        cosine = float(face.line.normal @ self.face.line.normal)
+        is_parallel = abs(cosine) >= math.cos(LEAST_RAD)
         along = LineString(face.ends)
-        near = LineString(self.face.ends).buffer(BEHIND_M)
+        near = LineString(self.face.ends).buffer(CORNER_M if cosine > 0 else BEHIND_M)
         return bool(is_parallel and along.intersection(near).length >= ALONG_SHARE * along.length)
 
 
@@ -104,10 +108,13 @@ class _Way:
     def find_tip(self, face: FaceInterval) -> FloatArray | None:
         """Return the end (2,) of a leaf that hangs here at its other; None of another surface."""
         width_m = float(np.hypot(*(self.ends_m[1] - self.ends_m[0])))
-        if not ALONG_SHARE * width_m <= face.length_m <= width_m + 2 * END_M:
-            return None
         for hinge_m, tip_m in (face.ends, face.ends[::-1]):
-            near_m = min(jamb.distance(Point(hinge_m)) for jamb in self.jambs)
+            near_m, jamb = min(
+                ((jamb.distance(Point(hinge_m)), jamb) for jamb in self.jambs), key=lambda of: of[0]
+            )
+            # a part of it may stand in the wall, as hinges may be anywhere in a jamb
+            if not ALONG_SHARE * width_m <= jamb.distance(Point(tip_m)) <= width_m + 2 * END_M:
+                continue
             hinge_off_m, tip_off_m = abs(self.wall.line.offset_m(np.array([hinge_m, tip_m])))
             # what runs along the wall is the wall, or the back of a niche
             if near_m <= BEHIND_M + END_M and tip_off_m > hinge_off_m + CORNER_M:
