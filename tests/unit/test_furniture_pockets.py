@@ -181,6 +181,17 @@ def test_two_sides_are_a_block_where_they_stand_alone_and_thicker_than_walls(
     assert all(block.ground.covers(box(1.5, 2, 3.5, 2.5)) for block in found)
 
 
+def test_of_two_islands_neither_says_how_thick_walls_are():
+    walls, floor = room_with_two_sides(2, 0.6)
+    # three of them: their median would be that of all
+    islands = [two_sided(10, 12, y, 0.6) for y in (2, 5)]
+    around = shapely.union_all([box(9, y - 1, 13, y + 2) for y in (2, 5)])
+    floor = floor.union(
+        around.difference(shapely.union_all([box(10, y, 12, y + 0.6) for y in (2, 5)]))
+    )
+    assert len(blocks([*walls, *islands], floor)) == 3
+
+
 def test_walls_are_left_without_blocks_of_two_sides():
     walls, floor = room_with_two_sides(2, 0.5)
 

@@ -2,6 +2,7 @@
 
 import functools
 import math
+import statistics
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -431,7 +432,8 @@ def _find_free(rays: RaySet, track_m: FloatArray, width_m: float, max_step_m: fl
 
 def _usual_thickness_m(walls: Sequence[PlanWall]) -> float:
     known_m = [wall.thickness_m for wall in walls if not math.isnan(wall.thickness_m)]
-    return float(np.median(known_m)) if known_m else _THICKNESS_M
+    # of two the thinner: the other may be a wall with what stands before it
+    return float(statistics.median_low(known_m)) if known_m else _THICKNESS_M
 
 
 def _find_free_floor(

@@ -142,20 +142,25 @@ def find_blocks(
     """
     most = {"max_thickness_m": max_thickness_m, "max_depth_m": max_depth_m}
     faces = FaceTree([face for wall in walls for face in wall.members])
-    solid = shapely.union_all(wall_ground.wall_strips(walls, measure_thickness_m(walls)))
+    unpaired_m = measure_thickness_m(walls)
+    solid = shapely.union_all(wall_ground.wall_strips(walls, unpaired_m))
     ground_before = shapely.difference(floor, solid)
-    blocks = []
-    two_sided = [wall for wall in walls if wall.right]
-    for wall in two_sided:
-        others = [other for other in two_sided if other is not wall]
-        if not others or wall.openings:
-            continue
-        others_m = measure_thickness_m(others)
-        ground = wall_ground.wall_strips([wall], others_m)[0]
+    alone = []
+    others = []
+    for wall in (wall for wall in walls if wall.right):
+        ground = wall_ground.wall_strips([wall], unpaired_m)[0]
         near = faces.within(ground, CORNER_M)
         # a wall that begins at another has floor on most sides, too
-        is_alone = len(_faces_on(ground, near)) == len(near)
-        if is_alone and _is_block(ground, ground_before, others_m, **most):
+        is_alone = not wall.openings and len(_faces_on(ground, near)) == len(near)
+        if is_alone and _stands_alone(ground, ground_before, **most):
+            alone.append((wall, ground, near))
+        else:
+            others.append(wall)
+    blocks = []
+    for wall, ground, near in alone:
+        # two islands would say of each other that walls are as thick
+        known = others or [other for other, *_ in alone if other is not wall]
+        if known and _is_thick(ground, measure_thickness_m(known)):
             blocks.append(Pocket(ground.buffer(CELL_M, join_style="mitre"), near))
     return blocks
 
@@ -346,13 +351,21 @@ def _is_block(
     max_thickness_m: float,
     max_depth_m: float,
 ) -> bool:
-    """Return whether ground stands alone, no wall and no column.
+    """Return whether ground stands alone, no wall and no column."""
+    most = {"max_thickness_m": max_thickness_m, "max_depth_m": max_depth_m}
+    return _is_thick(ground, unpaired_m) and _stands_alone(ground, part, **most)
 
-    It is thicker than walls are, and longer than the thickest.
-    """
-    width_m, length_m = _sides_m(ground.buffer(-CELL_M))
-    is_thick = width_m > 2 * unpaired_m and length_m > max_thickness_m
-    if not is_thick or _is_large(ground, max_depth_m):
+
+def _is_thick(ground: BaseGeometry, wall_m: float) -> bool:
+    """Return whether ground is clearly wider than walls are thick."""
+    return _sides_m(ground.buffer(-CELL_M))[0] > 2 * wall_m
+
+
+def _stands_alone(
+    ground: BaseGeometry, part: BaseGeometry, *, max_thickness_m: float, max_depth_m: float
+) -> bool:
+    """Return whether floor is around ground longer than a column and no larger than furniture."""
+    if _sides_m(ground.buffer(-CELL_M))[1] <= max_thickness_m or _is_large(ground, max_depth_m):
         return False
     around = ground.buffer(CORNER_M).difference(ground)
     return around.intersection(part).area >= ALONG_SHARE * around.area
