@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from scanplan.selection import persistence, wall_cells
 from scanplan.stage import log
 from scanplan.stage.per_registered_scan import map_registered_scans
@@ -33,14 +35,17 @@ def observe_walls(
     chunk : str, optional
         Which scans, see `per_scan.read_chunk_ids`; all by default.
     """
+    own = wall_cells.WallCellSettings(**settings)
+    axes_deg = _find_main_direction(scans, registration, own)
     scan_ids, observations = map_registered_scans(
         wall_cells.observe_wall_cells,
         scans,
         registration,
         label="observe_walls",
         threads=threads,
-        settings=wall_cells.WallCellSettings(**settings),
+        settings=own,
         chunk=chunk,
+        axes_deg=axes_deg,
     )
     columns = wall_cells.observation_columns(scan_ids, observations)
     # what other scans show there may be in another chunk: that is for `gather_chunks`
@@ -52,8 +57,24 @@ def observe_walls(
     n_blind = sum(len(observation["length_m"]) == 0 for observation in observations)
     log.log_line(
         f"observe_walls: {len(observations):,} scans, {mean_m:.1f} m of wall a scan,"
-        f" {n_blind:,} show none"
+        f" {n_blind:,} show none; most walls run {axes_deg} degrees from the axes of the map"
     )
+
+
+def _find_main_direction(
+    scans: FilePath, registration: FilePath, settings: wall_cells.WallCellSettings
+) -> int:
+    """Return the way of most walls in the map, the same whichever chunk is observed."""
+    store = tables.ScanStore(scans)
+    known = registered_scans.read_registered_scans(registration, store)
+    # some of all along the drive: walls of one room may stand askew
+    rows = np.linspace(0, len(store.scan_ids) - 1, 16).round().astype(int)
+    some_ids = np.unique(store.scan_ids[rows])
+    sensors_m = registered_scans.sensor_positions(some_ids, known, scans, registration)
+    shown = (
+        (xyz_m, at_m) for (_, xyz_m), at_m in zip(store.scans(some_ids), sensors_m, strict=True)
+    )
+    return wall_cells.find_main_direction(shown, planar=store.planar, settings=settings)
 
 
 if __name__ == "__main__":

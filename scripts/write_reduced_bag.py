@@ -71,14 +71,21 @@ def write_reduced_bag(
         chosen = candidates.choose_candidates(known, **spacing)
         own = WallCellSettings(**cells)
         planar = survey.planar
+        axes_deg: int | None = None
 
         def is_taken(scan: Scan) -> bool:
+            nonlocal axes_deg
             pose = known[scan.scan_id]
             xyz_m = se3.transform_points(pose, scan.xyz_m)
-            return selection.take(
-                wall_cells.observe_wall_cells(
-                    scan.scan_id, xyz_m, sensor_xyz_m=pose[:3, 3], planar=planar, settings=own
+            sensor_m = pose[:3, 3]
+            if axes_deg is None:
+                # by the walls of the first scan: no later one is known yet
+                axes_deg = wall_cells.find_main_direction(
+                    [(xyz_m, sensor_m)], planar=planar, settings=own
                 )
+            where = {"sensor_xyz_m": sensor_m, "planar": planar, "axes_deg": axes_deg}
+            return selection.take(
+                wall_cells.observe_wall_cells(scan.scan_id, xyz_m, **where, settings=own)
             )
 
         placed = set(chosen[covered[chosen]].tolist())

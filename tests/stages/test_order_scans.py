@@ -44,6 +44,7 @@ def write_others(folder, method, n):
                 "along": ids // 7,
                 "across": zeros.astype(int),
                 "length_m": zeros + 0.2,
+                "axes_deg": zeros.astype(int),
             },
         ),
         "registration": (

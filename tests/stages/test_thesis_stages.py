@@ -366,6 +366,7 @@ def test_experiments_beyond_the_thesis_stand_on_their_page(survey, tmp_path, pro
     for method in ("wall_length", "distance"):
         write_selection(survey, method, SCAN_IDS)
     cells = {"facing": [0, 1, 2], "along": [4] * 3, "across": [2] * 3, "length_m": [0.2] * 3}
+    cells["axes_deg"] = [0] * 3
     tables.write_table(
         survey / "observations.parquet", schemas.OBSERVATIONS, {"scan_id": SCAN_IDS, **cells}
     )

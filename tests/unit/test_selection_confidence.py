@@ -44,10 +44,10 @@ def test_offsets_are_to_the_nearest_wall_of_the_cells_facing():
     )
     centre_m = np.array([[1.0, 1.1], [1.0, 1.1], [1.0, 0.9], [4.3, 1.0], [1.0, 1.1]])
     # -y, +y, -y, -y beyond the wall's end, and a facing that no wall has
-    facing = np.array([2, 3, 2, 2, 0])
-    found = confidence.measure_offsets(centre_m, facing, walls, 0.25)
+    normal = np.array([[0.0, -1], [0, 1], [0, -1], [0, -1], [-1, 0]])
+    found = confidence.measure_offsets(centre_m, normal, walls, 0.25)
     np.testing.assert_allclose(found, [-0.1, -0.1, 0.1, np.nan, np.nan], atol=1e-12)
-    nothing = confidence.measure_offsets(centre_m, facing, NOTHING, 0.25)
+    nothing = confidence.measure_offsets(centre_m, normal, NOTHING, 0.25)
     assert np.isnan(nothing).all()
 
 
@@ -58,12 +58,17 @@ def test_cells_lie_where_observations_have_them():
         "along": np.array([4, 4, 4]),
         "across": np.array([1, 1, 1]),
         "length_m": np.array([0.2, 0.1, 0.05]),
+        "axes_deg": np.zeros(3, int),
     }
     views = confidence.view_cells_of(columns, np.array([3, 5, 7]), 0.5)
     assert views.first.tolist() == [0, 2, 2, 3]
     assert views.cell[0] == views.cell[2] != views.cell[1]
     # of a facing along x: across is x, along y; along y the other way round
     np.testing.assert_allclose(views.centre_m[views.cell[:2]], [[0.75, 2.25], [2.25, 0.75]])
+    np.testing.assert_array_equal(views.normal[views.cell[:2]], [[-1, 0], [0, -1]])
+    askew = confidence.view_cells_of({**columns, "axes_deg": np.full(3, 90)}, np.array([3, 7]), 0.5)
+    np.testing.assert_allclose(askew.centre_m[askew.cell[:2]], [[-2.25, 0.75], [-0.75, 2.25]])
+    np.testing.assert_allclose(askew.normal[askew.cell[:2]], [[0, -1], [1, 0]], atol=1e-12)
 
 
 def views_of(shown, n_cells):
@@ -72,7 +77,7 @@ def views_of(shown, n_cells):
     counts = [len(cells) for cells in shown]
     cell = np.array([c for cells in shown for c in cells], int)
     first = np.concatenate([[0], np.cumsum(counts)])
-    return CellViews(first, cell, np.ones(len(cell)), centre_m, np.full(n_cells, 2))
+    return CellViews(first, cell, np.ones(len(cell)), centre_m, np.tile([0.0, -1.0], (n_cells, 1)))
 
 
 def test_a_gap_comes_before_a_second_look_at_a_longer_wall():

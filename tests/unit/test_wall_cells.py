@@ -50,6 +50,46 @@ def test_walls_of_any_direction_count_their_length(angle_deg, planar):
     assert seen["length_m"].sum() == pytest.approx(SEEN_M, rel=0.12)
 
 
+@pytest.mark.parametrize("planar", [False, True])
+@pytest.mark.parametrize("angle_deg", [-45, -20, 1, 33, 44])
+def test_along_the_walls_a_turned_room_has_the_same_cells(angle_deg, planar):
+    scan = MAKE[planar]()
+    angle = np.deg2rad(angle_deg)
+    there = turned(scan, angle), turned(toy_rooms.SENSOR, angle)
+    found_deg = wall_cells.find_main_direction([there], planar=planar, settings=SETTINGS)
+    assert abs((found_deg - angle_deg + 45) % 90 - 45) <= 1
+    here = observe(scan, planar=planar)
+    # a sensor's cells of equal angle are turned with the map's axes: no others are compared
+    if planar:
+        seen = wall_cells.observe_wall_cells(
+            *(3, there[0]),
+            sensor_xyz_m=there[1],
+            planar=True,
+            settings=SETTINGS,
+            axes_deg=angle_deg,
+        )
+        for name in (*wall_cells.KEYS, "length_m"):
+            np.testing.assert_allclose(seen[name], here[name], atol=1e-3)
+        assert (seen["axes_deg"] == angle_deg).all()
+
+
+def test_most_walls_decide_and_none_are_along_the_map():
+    askew = turned(toy_rooms.laser(), np.deg2rad(30)), turned(toy_rooms.SENSOR, np.deg2rad(30))
+    straight = toy_rooms.laser(), toy_rooms.SENSOR
+    assert (
+        wall_cells.find_main_direction([straight, askew, askew], planar=True, settings=SETTINGS)
+        == 30
+    )
+    empty = np.zeros((0, 3)), toy_rooms.SENSOR
+    assert wall_cells.find_main_direction([empty], planar=True, settings=SETTINGS) == 0
+
+
+def test_what_is_given_along_the_cells_is_turned_to_the_map():
+    np.testing.assert_allclose(
+        wall_cells.turn_to_map(np.array([[2.0, 1.0]]), 90), [[-1, 2]], atol=1e-12
+    )
+
+
 def test_a_quarter_turn_and_whole_cells_change_nothing_but_the_cells():
     scan, whole = toy_rooms.vlp16(), np.array([40 * SETTINGS.cell_m, -8 * SETTINGS.cell_m, 0])
     here, there = observe(scan), observe(scan + whole, toy_rooms.SENSOR + whole)
@@ -85,7 +125,7 @@ def test_fewer_returns_show_less_and_none_nothing():
     ]
     assert (np.diff(lengths) < 0).all()
     for empty in (np.empty((0, 3)), scan[:3]):
-        assert [len(column) for column in observe(empty).values()] == [0, 0, 0, 0]
+        assert not any(len(column) for column in observe(empty).values())
 
 
 def test_low_things_are_no_walls():

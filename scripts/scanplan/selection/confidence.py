@@ -19,7 +19,7 @@ from scanplan.selection import wall_cells
 from scanplan.types import BoolArray, Columns, FloatArray, IntArray
 
 _OUTWARD = np.array([[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]])
-"""Unit normals of `wall_cells.FACINGS`."""
+"""Unit normals of `wall_cells.FACINGS`, along the cells' axes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,15 +36,15 @@ class CellViews:
         The length of wall that it shows.
     centre_m : (c, 2) float
         Of the cells, map frame.
-    facing : (c,) int
-        Which of `wall_cells.FACINGS` the wall in each cell has.
+    normal : (c, 2) float
+        Unit normals of the way that the wall in each cell faces, map frame.
     """
 
     first: IntArray
     cell: IntArray
     length_m: FloatArray
     centre_m: FloatArray
-    facing: IntArray
+    normal: FloatArray
 
 
 @dataclass(frozen=True)
@@ -83,8 +83,13 @@ def view_cells_of(columns: Columns, scan_ids: IntArray, cell_m: float) -> CellVi
     centre_m[rows, axis] = (columns["across"][first] + 0.5) * cell_m
     centre_m[rows, 1 - axis] = (columns["along"][first] + 0.5) * cell_m
     begins = np.searchsorted(columns["scan_id"], scan_ids)
+    axes_deg = int(columns["axes_deg"][0]) if len(number) else 0
     return CellViews(
-        np.append(begins, len(number)), cell.reshape(-1), columns["length_m"], centre_m, facing
+        np.append(begins, len(number)),
+        cell.reshape(-1),
+        columns["length_m"],
+        wall_cells.turn_to_map(centre_m, axes_deg),
+        wall_cells.turn_to_map(_OUTWARD[facing], axes_deg),
     )
 
 
@@ -168,20 +173,20 @@ def order_by_confidence(
         order.append(best)
         cells = views.cell[views.first[best] : views.first[best + 1]]
         walls = extract(best)
-        offset_m = measure_offsets(views.centre_m[cells], views.facing[cells], walls, near_m)
+        offset_m = measure_offsets(views.centre_m[cells], views.normal[cells], walls, near_m)
         confidence.add(cells, offset_m)
     return np.array(order, int)
 
 
 def measure_offsets(
-    centre_m: FloatArray, facing: IntArray, walls: Walls, near_m: float
+    centre_m: FloatArray, normal: FloatArray, walls: Walls, near_m: float
 ) -> FloatArray:
     """Return how far (m,) the nearest wall lies from each cell's centre, against its facing.
 
     Parameters
     ----------
     centre_m : (m, 2) float
-    facing : (m,) int
+    normal : (m, 2) float
         See `CellViews`.
     walls : Walls
     near_m : float
@@ -202,7 +207,7 @@ def measure_offsets(
     at_m = np.einsum("mkj,kj->mk", apart_m, along)
     beyond_m = np.maximum(np.maximum(-at_m, at_m - length_m), 0)
     away_m = np.hypot(across_m, beyond_m)
-    is_other = _OUTWARD[facing] @ walls.normal.T < FACING
+    is_other = normal @ walls.normal.T < FACING
     away_m[is_other] = np.inf
     nearest = away_m.argmin(axis=1)
     rows = np.arange(len(centre_m))

@@ -5,13 +5,14 @@ The floor plan is divided into square cells, once for each of the four ways a su
 share nx^2 and to facing y with share ny^2; across its wall it is shared between the two nearest
 rows of cells, in proportion. Along the wall every cell stands for its edge, times |nx| or |ny|. So
 a wall of any direction counts its own length, L nx^2 + L ny^2, and as much in whichever row it
-lies; a wall that two scans place a little apart is counted little more than once. In space what
-faces is a piece of a surface that several returns show (`upright_surfaces`), and counts as many of
-them.
+lies; a wall that two scans place a little apart is counted little more than once. Of a wall that
+runs across cells noise puts other parts into each in every scan, and each scan would add some: the
+cells lie along most of the building's walls (`find_main_direction`). In space what faces is a piece
+of a surface that several returns show (`upright_surfaces`), and counts as many of them.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -79,6 +80,7 @@ def observe_wall_cells(
     sensor_xyz_m: FloatArray,
     planar: bool,
     settings: WallCellSettings,
+    axes_deg: int = 0,
 ) -> dict[str, Array]:
     """Measure the length of wall that one scan shows in every cell.
 
@@ -95,6 +97,9 @@ def observe_wall_cells(
     planar : bool
         Whether all points are in one horizontal plane.
     settings : WallCellSettings
+    axes_deg : int
+        How far the cells' axes are turned from the map's, counter-clockwise: the same for all scans
+        of a survey, see `find_main_direction`.
 
     Returns
     -------
@@ -107,21 +112,63 @@ def observe_wall_cells(
     ValueError
         If a coordinate is not finite.
     """
-    points_m = sensor_frame.centre_on_sensor(xyz_m, sensor_xyz_m)
-    range_m = np.hypot(points_m[:, 0], points_m[:, 1])
-    far = range_m > _FARTHEST_M
-    if far.any():
-        points_m, range_m = points_m[~far], range_m[~far]
-    find = _find_in_the_plane if planar else _find_in_space
-    surfaces, tallness = find(points_m, range_m, settings)
+    surfaces, tallness = _find_surfaces(xyz_m, sensor_xyz_m, settings, planar=planar)
     sensor_xy_m = np.asarray(sensor_xyz_m, float)[:2]
+    if axes_deg:
+        map_from_cells = _turn(axes_deg)
+        surfaces = replace(
+            surfaces,
+            xy_m=surfaces.xy_m @ map_from_cells,
+            normal=surfaces.normal @ map_from_cells,
+        )
+        sensor_xy_m = sensor_xy_m @ map_from_cells
     parts = [
         _measure_facing(which, surfaces, tallness, sensor_xy_m, settings)
         for which in range(len(FACINGS))
     ]
     along, across, length_m = (np.concatenate(column) for column in zip(*parts, strict=True))
     facings = np.repeat(np.arange(len(FACINGS)), [len(part[0]) for part in parts])
-    return {"facing": facings, "along": along, "across": across, "length_m": length_m}
+    axes = np.full(len(facings), axes_deg, np.int32)
+    return {
+        **{"facing": facings, "along": along, "across": across, "length_m": length_m},
+        "axes_deg": axes,
+    }
+
+
+def find_main_direction(
+    scans: Iterable[tuple[FloatArray, FloatArray]], *, planar: bool, settings: WallCellSettings
+) -> int:
+    """Return the way that most of the wall that some scans show runs along or across.
+
+    Parameters
+    ----------
+    scans : iterable of ((n, 3) float, (3,) float)
+        Points and the sensor's position, map frame.
+    planar, settings
+        As of `observe_wall_cells`.
+
+    Returns
+    -------
+    int
+        Whole degrees from the map's x axis, -45 to 44; a few more or less change nothing. 0 without
+        any wall.
+    """
+    shown = np.zeros(90)
+    for xyz_m, sensor_xyz_m in scans:
+        surfaces, tallness = _find_surfaces(xyz_m, sensor_xyz_m, settings, planar=planar)
+        direction_deg = np.degrees(np.arctan2(surfaces.normal[:, 1], surfaces.normal[:, 0]))
+        number = np.round(direction_deg).astype(int) % 90
+        weight = surfaces.n_points if tallness is None else surfaces.n_points * tallness
+        shown += np.bincount(number, weight, minlength=90)
+    # normals of single scans scatter by two degrees
+    near = [np.roll(shown, step) for step in range(-2, 3)]
+    best = int(np.sum(near, axis=0).argmax())
+    return best - 90 if best >= 45 else best
+
+
+def turn_to_map(xy: FloatArray, axes_deg: int) -> FloatArray:
+    """Return places or ways (n, 2) in the map frame that are given along the cells' axes."""
+    return xy @ _turn(axes_deg).T
 
 
 def observation_columns(
@@ -130,9 +177,8 @@ def observation_columns(
     """Return the columns of `schemas.OBSERVATIONS` of several scans, in their order."""
     counts = [len(part["length_m"]) for part in observed]
     scan_id = np.repeat(np.asarray(scan_ids, np.int32), counts)
-    values = {
-        name: np.concatenate([part[name] for part in observed]) for name in (*KEYS, "length_m")
-    }
+    names = (*KEYS, "length_m", "axes_deg")
+    values = {name: np.concatenate([part[name] for part in observed]) for name in names}
     return {"scan_id": scan_id, **values}
 
 
@@ -144,6 +190,25 @@ def number_cells(columns: Mapping[str, Array]) -> IntArray:
         low = values.min(initial=0)
         cell = cell * (values.max(initial=0) - low + 1) + values - low
     return cell
+
+
+def _turn(axes_deg: int) -> FloatArray:
+    """Return the matrix (2, 2) of the turn from the cells' axes to the map's."""
+    axes_rad = np.radians(axes_deg)
+    return np.array([[np.cos(axes_rad), -np.sin(axes_rad)], [np.sin(axes_rad), np.cos(axes_rad)]])
+
+
+def _find_surfaces(
+    xyz_m: FloatArray, sensor_xyz_m: FloatArray, settings: WallCellSettings, *, planar: bool
+) -> tuple[UprightSurfaces, FloatArray | None]:
+    """Return what is upright of a scan, axes of the map, and its `_rate_tallness` in space."""
+    points_m = sensor_frame.centre_on_sensor(xyz_m, sensor_xyz_m)
+    range_m = np.hypot(points_m[:, 0], points_m[:, 1])
+    far = range_m > _FARTHEST_M
+    if far.any():
+        points_m, range_m = points_m[~far], range_m[~far]
+    find = _find_in_the_plane if planar else _find_in_space
+    return find(points_m, range_m, settings)
 
 
 def _find_in_the_plane(

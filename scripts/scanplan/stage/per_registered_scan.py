@@ -1,6 +1,7 @@
 """Work that treats scans one by one and needs to know where their sensor was."""
 
 from collections.abc import Callable
+from typing import Any
 
 from scanplan.stage.per_scan import Result, map_scans, read_chunk_ids
 from scanplan.store import registered_scans, tables
@@ -16,6 +17,7 @@ def map_registered_scans(
     threads: int,
     settings: object,
     chunk: str | None = None,
+    **common: Any,
 ) -> tuple[IntArray, list[Result]]:
     """Call `function(scan_id, xyz_m, sensor_xyz_m=, planar=, settings=)` for registered scans.
 
@@ -33,6 +35,8 @@ def map_registered_scans(
         Passed on.
     chunk : str, optional
         Which scans, see `per_scan.read_chunk_ids`; all by default.
+    **common
+        Further keywords of every call.
 
     Returns
     -------
@@ -57,6 +61,7 @@ def map_registered_scans(
         per_scan=sensor_keywords(scan_ids, scans, registration),
         planar=store.planar,
         settings=settings,
+        **common,
     )
     return scan_ids, results
 

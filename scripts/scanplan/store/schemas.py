@@ -158,13 +158,14 @@ HULLS = Schema(
 )
 OBSERVATIONS = Schema(
     "observations",
-    1,
+    2,
     {
         "scan_id": "int32",
         "facing": "int32",
         "along": "int32",
         "across": "int32",
         "length_m": "float64",
+        "axes_deg": "int32",
     },
     ("scan_id", "facing", "along", "across"),
 )
