@@ -3,8 +3,6 @@
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
 from scanplan.selection import persistence, wall_cells
 from scanplan.stage import log
 from scanplan.stage.per_registered_scan import map_registered_scans
@@ -67,14 +65,11 @@ def _find_main_direction(
     """Return the way of most walls in the map, the same whichever chunk is observed."""
     store = tables.ScanStore(scans)
     known = registered_scans.read_registered_scans(registration, store)
-    # some of all along the drive: walls of one room may stand askew
-    rows = np.linspace(0, len(store.scan_ids) - 1, 16).round().astype(int)
-    some_ids = np.unique(store.scan_ids[rows])
-    sensors_m = registered_scans.sensor_positions(some_ids, known, scans, registration)
-    shown = (
-        (xyz_m, at_m) for (_, xyz_m), at_m in zip(store.scans(some_ids), sensors_m, strict=True)
-    )
-    return wall_cells.find_main_direction(shown, planar=store.planar, settings=settings)
+    sensors_m = registered_scans.sensor_positions(store.scan_ids, known, scans, registration)
+    rows = wall_cells.choose_direction_scans(len(store.scan_ids))
+    some = zip(store.scans(store.scan_ids[rows]), sensors_m[rows], strict=True)
+    shown = ((xyz_m, sensor_m) for (_, xyz_m), sensor_m in some)
+    return wall_cells.find_main_direction(shown, planar=store.planar, settings=settings) or 0
 
 
 if __name__ == "__main__":

@@ -79,13 +79,19 @@ def write_reduced_bag(
             xyz_m = se3.transform_points(pose, scan.xyz_m)
             sensor_m = pose[:3, 3]
             if axes_deg is None:
-                # by the walls of the first scan: no later one is known yet
+                # by the first scan that shows a wall: no later one is known yet
                 axes_deg = wall_cells.find_main_direction(
                     [(xyz_m, sensor_m)], planar=planar, settings=own
                 )
-            where = {"sensor_xyz_m": sensor_m, "planar": planar, "axes_deg": axes_deg}
             return selection.take(
-                wall_cells.observe_wall_cells(scan.scan_id, xyz_m, **where, settings=own)
+                wall_cells.observe_wall_cells(
+                    scan.scan_id,
+                    xyz_m,
+                    sensor_xyz_m=sensor_m,
+                    planar=planar,
+                    settings=own,
+                    axes_deg=axes_deg or 0,
+                )
             )
 
         placed = set(chosen[covered[chosen]].tolist())

@@ -1,5 +1,6 @@
 import logging
 
+import numpy as np
 import pytest
 
 import observe_walls
@@ -23,6 +24,20 @@ def test_every_scan_shows_the_room(planar, tmp_path, caplog):
     for scan_id in SENSORS:
         assert 18 < seen["length_m"][seen["scan_id"] == scan_id].sum() < 24
     assert "observe_walls: 3 scans, " in caplog.text and "0 show none" in caplog.text
+
+
+@pytest.mark.parametrize("planar", [False, True])
+def test_cells_lie_along_the_walls_however_the_map_is_turned_in_every_chunk(planar, tmp_path):
+    survey = write_survey(tmp_path, planar=planar, turn_deg=30.0)
+    axes_deg = []
+    for chunk in (None, "1-of-2", "2-of-2"):
+        output = tmp_path / f"{chunk}.parquet"
+        observe_walls.observe_walls(*survey, output, settings=SETTINGS, chunk=chunk)
+        seen = tables.read_table(output, schemas.OBSERVATIONS)
+        axes_deg.append(np.unique(seen["axes_deg"]).tolist())
+        # a wall along its cells lies in few of them
+        assert len(np.unique(seen["across"][seen["facing"] == 0])) < 8
+    assert axes_deg == [axes_deg[0]] * 3 and abs(axes_deg[0][0] - 30) <= 1
 
 
 def test_same_bytes_for_one_and_two_processes(tmp_path):

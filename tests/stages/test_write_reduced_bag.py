@@ -1,6 +1,7 @@
 """A recording reduced while it is read, read back by rosbags and by the stages."""
 
 import json
+from unittest import mock
 
 import pytest
 
@@ -10,6 +11,7 @@ from interpolate_poses import interpolate_poses
 from scanplan.errors import StageError
 from scanplan.project.settings import merge_settings
 from scanplan.project.stage_settings import select_section, select_wall_cells
+from scanplan.selection import wall_cells
 from scanplan.selection.methods import WALL_LIMITS
 from scanplan.store import schemas, tables
 from write_reduced_bag import write_reduced_bag
@@ -50,6 +52,18 @@ def test_where_the_least_new_wall_is_enough_more_scans_are_taken(tmp_path):
     output, _ = reduce(tmp_path, files, ".bag", min_new_share=1e-9)
     taken = len(messages_of(output, "/points"))
     assert 1 < taken <= N_SCANS
+
+
+def test_cells_lie_along_the_walls_of_the_first_scan_that_shows_any(tmp_path):
+    files = record(tmp_path, "ros1")
+    found = mock.patch.object(wall_cells, "find_main_direction", side_effect=[None, 30])
+    measured = mock.patch.object(
+        wall_cells, "observe_wall_cells", wraps=wall_cells.observe_wall_cells
+    )
+    with found, measured as observe:
+        reduce(tmp_path, files, ".bag")
+    axes_deg = [call.kwargs["axes_deg"] for call in observe.call_args_list]
+    assert axes_deg == [0, *[30] * (N_SCANS - 1)]
 
 
 def test_without_memory_no_place_is_known_again(tmp_path):

@@ -6,7 +6,7 @@ from shapely import box
 
 from helpers.observation_making import stretch
 from scanplan.plan.furniture import fronts
-from scanplan.plan.furniture.leaves import find_leaves
+from scanplan.plan.furniture.leaves import find_leaves, find_traces
 from scanplan.plan.openings import OPEN, Opening
 from scanplan.plan.plan_wall import PlanWall
 
@@ -60,12 +60,24 @@ def test_a_leaf_hung_on_the_far_side_of_its_wall_is_as_long_as_it_is_from_the_ja
     assert [leaf.face for leaf in leaves(body)] == body.left
 
 
-def test_what_faces_as_a_leaf_does_is_the_same_leaf_farther_off_than_its_other_side():
-    """A scan placed badly shows it once more; what faces the other way is another body."""
-    (leaf,) = leaves(single(2.0, 0.05, 2.0, 0.9))
-    assert leaf.hides(single(2.25, 0.1, 2.25, 0.8).left[0])
-    assert not leaf.hides(single(2.25, 0.8, 2.25, 0.1).left[0])
-    assert not leaf.hides(single(2.35, 0.1, 2.35, 0.8).left[0])
+@pytest.mark.parametrize(
+    ("ends", "n_traces"),
+    [((2.25, 0.1, 2.25, 0.8), 2), ((2.25, 0.8, 2.25, 0.1), 1), ((2.35, 0.1, 2.35, 0.8), 1)],
+    ids=["once more", "facing the other way", "too far off"],
+)
+def test_a_scan_placed_badly_shows_a_leaf_once_more(ends, n_traces):
+    body = single(2.0, 0.05, 2.0, 0.9)
+    other = single(*ends).left[0]
+    assert len(find_traces(leaves(body), [*south().left, *body.left, other])) == n_traces
+
+
+def test_a_wall_behind_a_leaf_that_ends_at_another_is_no_trace():
+    """Of a niche 0.55 m deep, 0.2 m beside the hinge."""
+    body = single(2.0, 0.05, 2.0, 0.9)
+    side, back = single(2.2, 0.05, 2.2, 0.6), single(2.2, 0.6, 0.5, 0.6)
+    faces = [*south().left, *body.left, *side.left, *back.left]
+    (leaf,) = [leaf for leaf in leaves(body) if leaf.face is body.left[0]]
+    assert find_traces([leaf], faces) == body.left
 
 
 def test_a_return_that_ends_at_another_wall_is_no_leaf():

@@ -12,7 +12,7 @@ from helpers.observation_making import stretch
 from scanplan.plan.furniture import fronts
 from scanplan.plan.furniture.pockets import find_blocks, find_pockets
 from scanplan.plan.openings import OPEN, Opening
-from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.plan_wall import PlanWall, usual_thickness_m
 
 ROOM = [(0, 0, 5, 0), (5, 0, 5, 4), (0, 4, 0, 0)]
 """South, east and west face of a room of 5 m by 4 m, seen from within."""
@@ -150,13 +150,8 @@ def room_with_two_sides(length_m, thickness_m, beside=(), others_m=(0.1,), **gap
     return [*outside, *elsewhere, two_sided(1.5, x1, 2, thickness_m, **gaps)], floor
 
 
-def usual_m(walls):
-    known_m = [wall.thickness_m for wall in walls if wall.right]
-    return float(np.median(known_m)) if known_m else 0.1
-
-
 def blocks(walls, floor):
-    return find_blocks(walls, floor, usual_m, max_thickness_m=0.6, max_depth_m=1.0)
+    return find_blocks(walls, floor, usual_thickness_m, max_thickness_m=0.6, max_depth_m=1.0)
 
 
 @pytest.mark.parametrize(
@@ -192,6 +187,23 @@ def test_of_two_islands_neither_says_how_thick_walls_are():
     assert len(blocks([*walls, *islands], floor)) == 3
 
 
+def test_of_two_walls_the_thinner_is_as_walls_usually_are():
+    walls = [two_sided(0, 3, 5 * k, thick_m) for k, thick_m in enumerate((0.3, 0.1))]
+    assert usual_thickness_m([*walls, wall([(0, 9, 3, 9)])]) == pytest.approx(0.1)
+    assert usual_thickness_m([*walls, walls[0]]) == pytest.approx(0.3)
+    assert usual_thickness_m([]) == pytest.approx(0.1)
+
+
+def test_partitions_that_stand_free_say_how_thick_walls_are_and_islands_do_not():
+    """Two partitions, an island, and a counter at a wall as thick as the island."""
+    walls, floor = room_with_two_sides(2, 0.6, others_m=(0.6,))
+    partitions = [two_sided(10, 12.5, y, 0.14) for y in (2, 5)]
+    around = shapely.union_all([box(9, y - 1, 13.5, y + 2) for y in (2, 5)])
+    stand = shapely.union_all([box(10, y, 12.5, y + 0.14) for y in (2, 5)])
+    (found,) = blocks([*walls, *partitions], floor.union(around.difference(stand)))
+    assert found.ground.covers(box(1.5, 2, 3.5, 2.6))
+
+
 def test_walls_are_left_without_blocks_of_two_sides():
     walls, floor = room_with_two_sides(2, 0.5)
 
@@ -199,7 +211,7 @@ def test_walls_are_left_without_blocks_of_two_sides():
         return [wall for wall in walls if all(face in faces for face in wall.members)]
 
     left, (ground,), _ = fronts.drop_fronts(
-        *(walls, floor, assemble, usual_m), max_thickness_m=0.6, max_depth_m=1.0
+        *(walls, floor, assemble, usual_thickness_m), max_thickness_m=0.6, max_depth_m=1.0
     )
     assert left == walls[:-1] and ground.covers(box(1.5, 2, 3.5, 2.5))
 

@@ -1,4 +1,5 @@
 import tracemalloc
+from unittest import mock
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -96,3 +97,35 @@ def test_standing_still_takes_no_memory_for_all_pairs():
     peak_bytes = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert peak_bytes < 1500**2
+
+
+def align(pairs, places_m, most, fails=()):
+    """Align pairs of scans at places on a line, of which some do not fit."""
+
+    def constrain(source, target, kind, _settings, _min_fitness):
+        pair = source.scan_id, target.scan_id
+        return None if pair in fails else (kind, *pair)
+
+    poses = np.tile(np.eye(4), (len(places_m), 1, 1))
+    poses[:, 0, 3] = places_m
+    rows = list(range(len(places_m)))
+    clouds = [np.zeros((0, 3))] * len(rows)
+    with (
+        mock.patch.object(loops, "_constrain", constrain),
+        mock.patch.object(loops.prepared_clouds, "prepare_cloud", lambda *_, **__: None),
+        mock.patch.object(loops.constraints, "neighbour_reach_m", lambda _: 0.0),
+    ):
+        return loops.align_pairs(
+            clouds, rows, np.array(rows), poses, pairs, False, None, 0.5, 2, most
+        )
+
+
+def test_the_nearest_visits_that_align_are_linked_and_no_more():
+    """Scan 9 has four visits, of which the nearest lies behind a wall; 8 and 9 are neighbours."""
+    places_m = [0.0, 0.3, 9.0, 0.6, 9.0, 0.9, 9.0, 9.0, 1.0, 1.0]
+    pairs = [(9, 0), (9, 1), (9, 3), (9, 5), (9, 8)]
+    assert align(pairs, places_m, 1, fails=[(9, 5)]) == [("sequence", 9, 8), ("loop", 9, 3)]
+    assert align(pairs, places_m, 2) == [("sequence", 9, 8), ("loop", 9, 5), ("loop", 9, 3)]
+    assert align(pairs, places_m, 1, fails=[(9, row) for row in (0, 1, 3, 5)]) == [
+        ("sequence", 9, 8)
+    ]

@@ -1,7 +1,7 @@
-from collections import Counter
 from types import SimpleNamespace
 
 import numpy as np
+import pytest
 
 from scanplan.registration import multiway
 
@@ -38,26 +38,6 @@ def test_no_pair_is_linked_twice():
     )
 
 
-def test_a_scan_in_space_is_linked_to_fewer_visits_than_one_in_the_plane():
-    """Back and forth, two rows apart: the third visit of a place has two before it."""
-    thrice = np.tile(np.eye(4), (30, 1, 1))
-    thrice[:, 0, 3] = [*range(10), *range(9, -1, -1), *range(10)]
-    limits = SimpleNamespace(
-        **{"loop_radius_m": 0.5, "loop_apart": 2, "loop_step_m": 0.5, "loop_step_planar_m": 0.5},
-        **{"loops_per_scan": 1, "loops_per_scan_planar": 2},
-    )
-    in_sequence = {(row, row - 1) for row in range(1, 30)}
-    n_pairs = {
-        planar: Counter(
-            source
-            for source, _ in multiway.choose_pairs(thrice, in_sequence, limits, planar=planar)
-        )
-        for planar in (False, True)
-    }
-    assert n_pairs[False][25] == 1
-    assert n_pairs[True][25] == 2
-
-
 def test_pairs_of_a_place_are_aligned_in_one_job():
     """Ten visits to 30 places: each scan is in the job of its place, and each pair in one job."""
     poses = np.tile(np.eye(4), (300, 1, 1))
@@ -69,7 +49,8 @@ def test_pairs_of_a_place_are_aligned_in_one_job():
         if (later - earlier) // 30 <= 4
     ]
     cache = SimpleNamespace(part=lambda rows: rows)
-    limits, settings = None, SimpleNamespace(loop_min_fitness=0.5, loop_apart=6)
+    limits = None
+    settings = SimpleNamespace(loop_min_fitness=0.5, loop_apart=6, loops_per_scan_planar=3)
     jobs = list(
         multiway.alignment_jobs(pairs, np.arange(300), poses, cache, True, limits, settings)
     )
@@ -78,3 +59,20 @@ def test_pairs_of_a_place_are_aligned_in_one_job():
     for part, rows, scan_ids, placed, of_job, *_ in jobs:
         assert part == rows == scan_ids.tolist() == sorted({row for pair in of_job for row in pair})
         np.testing.assert_array_equal(placed, poses[rows])
+    sources = [{source for source, _ in job[4]} for job in jobs]
+    assert len(set.union(*sources)) == sum(map(len, sources))
+    assert {job[-1] for job in jobs} == {3}
+
+
+@pytest.mark.parametrize(("planar", "n_pairs"), [(True, 2), (False, 4)])
+def test_in_space_more_visits_are_tried_than_are_linked(planar, n_pairs):
+    """Back and forth six times, a scan a metre: the last has five visits before it."""
+    ways = np.tile(np.eye(4), (60, 1, 1))
+    ways[:, 0, 3] = np.tile([*range(10), *range(9, -1, -1)], 3)
+    limits = SimpleNamespace(
+        **{"loop_radius_m": 0.5, "loop_apart": 2, "loop_step_m": 0.5, "loop_step_planar_m": 0.5},
+        **{"loops_per_scan": 1, "loops_per_scan_planar": 2},
+    )
+    in_sequence = {(row, row - 1) for row in range(1, 60)}
+    pairs = multiway.choose_pairs(ways, in_sequence, limits, planar=planar)
+    assert sum(source == 55 for source, _ in pairs) == n_pairs

@@ -96,8 +96,10 @@ def test_a_wide_gap_of_a_wall_parts_rooms_though_one_was_only_looked_into(visite
     np.testing.assert_array_equal(line, GAP)
 
 
-def test_what_is_wide_beside_no_wall_goes_on():
-    assert find(LEFT, RIGHT, WIDE) == []
+def test_a_narrow_place_of_a_ring_parts_nothing_by_itself():
+    """A corridor around a courtyard, 2 m wide but where a pillar leaves 0.8 m."""
+    ring = box(0, 0, 12, 12).difference(box(2, 2, 10, 10))
+    assert find(ring.difference(box(0, 6, 1.2, 6.5)), visited_m=np.array([[1, 1], [1, 11.0]])) == []
 
 
 def test_where_a_corridor_goes_on_as_wide_no_gap_parts_it():

@@ -17,7 +17,11 @@ MAKE = {False: toy_rooms.vlp16, True: toy_rooms.laser}
 
 def observe(xyz_m, sensor_xyz_m=toy_rooms.SENSOR, *, planar=False, settings=SETTINGS):
     return wall_cells.observe_wall_cells(
-        3, xyz_m, sensor_xyz_m=np.asarray(sensor_xyz_m, float), planar=planar, settings=settings
+        *(3, xyz_m),
+        sensor_xyz_m=np.asarray(sensor_xyz_m, float),
+        planar=planar,
+        settings=settings,
+        axes_deg=0,
     )
 
 
@@ -73,6 +77,28 @@ def test_along_the_walls_a_turned_room_has_the_same_cells(angle_deg, planar):
         assert (seen["axes_deg"] == angle_deg).all()
 
 
+def observe_by(facings_deg):
+    """Points of a scan in the plane on one wall 4 m long and 2 m away for each way it faces."""
+    along_m = np.linspace(-2, 2, 200)
+    wall = np.column_stack([np.full(200, -2.0), along_m, np.zeros(200)])
+    return np.concatenate([turned(wall, np.deg2rad(degrees)) for degrees in facings_deg])
+
+
+@pytest.mark.parametrize("planar", [False, True])
+@pytest.mark.parametrize("angle_deg", [0, 30])
+def test_without_noise_the_direction_is_that_of_the_walls(angle_deg, planar):
+    scan = toy_rooms.laser(noise_m=0.0) if planar else toy_rooms.vlp16(noise_m=0.0)
+    angle = np.deg2rad(angle_deg)
+    there = turned(scan, angle), turned(toy_rooms.SENSOR, angle)
+    found_deg = wall_cells.find_main_direction([there], planar=planar, settings=SETTINGS)
+    assert found_deg == angle_deg
+
+
+def test_a_wall_somewhat_askew_does_not_turn_the_direction_of_the_others():
+    most = [(observe_by([angle]), np.zeros(3)) for angle in (0, 90, 180, 0, 90, 3)]
+    assert wall_cells.find_main_direction(most, planar=True, settings=SETTINGS) == 0
+
+
 def test_most_walls_decide_and_none_are_along_the_map():
     askew = turned(toy_rooms.laser(), np.deg2rad(30)), turned(toy_rooms.SENSOR, np.deg2rad(30))
     straight = toy_rooms.laser(), toy_rooms.SENSOR
@@ -81,7 +107,7 @@ def test_most_walls_decide_and_none_are_along_the_map():
         == 30
     )
     empty = np.zeros((0, 3)), toy_rooms.SENSOR
-    assert wall_cells.find_main_direction([empty], planar=True, settings=SETTINGS) == 0
+    assert wall_cells.find_main_direction([empty], planar=True, settings=SETTINGS) is None
 
 
 def test_what_is_given_along_the_cells_is_turned_to_the_map():

@@ -1,12 +1,16 @@
 """A wall of the plan: its middle, its faces on both sides, and its gaps."""
 
 import math
+import statistics
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from scanplan.geometry.lines import Line, Span
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.openings import Opening
 from scanplan.rays.face_observation import FaceObservation
+
+_THICKNESS_M = 0.1  # of a partition, where no wall shows both sides
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,3 +71,12 @@ class PlanWall(Span):
     def half_m(self) -> float:
         """From the middle to either face; 0 where the line is that of the face."""
         return 0.0 if math.isnan(self.thickness_m) else self.thickness_m / 2
+
+
+def usual_thickness_m(walls: Sequence[PlanWall]) -> float:
+    """Return how thick walls usually are: the lower middle of those that show both sides.
+
+    Of two it is the thinner: the other may be a wall with what stands before it.
+    """
+    known_m = [wall.thickness_m for wall in walls if not math.isnan(wall.thickness_m)]
+    return float(statistics.median_low(known_m)) if known_m else _THICKNESS_M

@@ -2,7 +2,6 @@
 
 import functools
 import math
-import statistics
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -27,7 +26,7 @@ from scanplan.plan.furniture.columns import find_column_faces, tell_columns
 from scanplan.plan.furniture.leaves import Leaf
 from scanplan.plan.furniture.pieces import Piece, find_pieces, pieces_in_rooms
 from scanplan.plan.openings import OpeningSettings
-from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.plan_wall import PlanWall, usual_thickness_m
 from scanplan.plan.rooms import Room, find_rooms, leave_out_unseen, rooms_beside
 from scanplan.plan.uncertainty import ReviewCriteria
 from scanplan.plan.wall_pairs import PairSettings
@@ -50,7 +49,6 @@ TABLES = {
 }
 """The tables of a plan by the names of their files."""
 _Free = tuple[list[shapely.MultiPolygon], shapely.MultiPolygon]
-_THICKNESS_M = 0.1  # of a partition, where no wall shows both sides
 
 
 @dataclass(frozen=True)
@@ -308,11 +306,11 @@ class _Survey:
         walls, furnished, leaves = assemble(traced.faces), [], []
         if self.rays.planar:
             walls, furnished, leaves = fronts.drop_fronts(
-                *(walls, self.floor, assemble, _usual_thickness_m),
+                *(walls, self.floor, assemble, usual_thickness_m),
                 max_thickness_m=self.settings.pairs.max_thickness_m,
                 max_depth_m=self.settings.furniture.furniture_depth_m,
             )
-        unpaired_m = _usual_thickness_m(walls)
+        unpaired_m = usual_thickness_m(walls)
         min_width_m = self.settings.openings.min_opening_m
         walls = opening_kinds.add_windows(
             *(walls, self.rays),
@@ -428,12 +426,6 @@ def _find_free(rays: RaySet, track_m: FloatArray, width_m: float, max_step_m: fl
     if rays.planar:
         floors += free_space.driven_ground(track_m, width_m=width_m, max_step_m=max_step_m)
     return views, free_space.union_on_grid(floors)
-
-
-def _usual_thickness_m(walls: Sequence[PlanWall]) -> float:
-    known_m = [wall.thickness_m for wall in walls if not math.isnan(wall.thickness_m)]
-    # of two the thinner: the other may be a wall with what stands before it
-    return float(statistics.median_low(known_m)) if known_m else _THICKNESS_M
 
 
 def _find_free_floor(

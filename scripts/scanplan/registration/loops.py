@@ -1,5 +1,6 @@
 """Loop constraints: between scans that are near each other but not registered to each other."""
 
+from collections import Counter
 from collections.abc import Sequence
 from functools import cache
 
@@ -142,6 +143,7 @@ def align_pairs(
     settings: SequentialSettings,
     min_fitness: float,
     apart: int,
+    most: int,
 ) -> list[PoseConstraint]:
     """Align pairs of scans.
 
@@ -163,10 +165,13 @@ def align_pairs(
     apart : int
         Pairs with no more rows than this between them are of the kind `sequence`, the others of the
         kind `loop`.
+    most : int
+        Of the loops of a source only so many that align count; the nearest are tried first.
 
     Returns
     -------
     list of constraints.PoseConstraint
+        In the order of the pairs of the kind `sequence`, then of the loops by source and distance.
     """
     thinned_m = dict(zip(rows, part, strict=True))
     place_of_row = {row: place for place, row in enumerate(rows)}
@@ -178,12 +183,21 @@ def align_pairs(
         place = place_of_row[row]
         return PlacedScan(int(scan_ids[place]), cloud, world_from_cloud[place])
 
+    def apart_m(pair: RowPair) -> float:
+        source, target = (world_from_cloud[place_of_row[row], :3, 3] for row in pair)
+        return float(np.linalg.norm(source - target))
+
+    ordered = sorted((s - t > apart, s, apart_m((s, t)), t) for s, t in pairs)
+    n_loops: Counter[int] = Counter()
     edges: list[PoseConstraint] = []
-    for source, target in pairs:
-        kind = "sequence" if source - target <= apart else "loop"
+    for is_loop, source, _, target in ordered:
+        if is_loop and n_loops[source] == most:
+            continue
+        kind = "loop" if is_loop else "sequence"
         edge = _constrain(prepare_scan(source), prepare_scan(target), kind, settings, min_fitness)
         if edge is not None:
             edges.append(edge)
+            n_loops[source] += is_loop
     return edges
 
 

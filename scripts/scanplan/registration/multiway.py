@@ -199,10 +199,14 @@ def choose_pairs(
     *,
     planar: bool,
 ) -> list[RowPair]:
-    """Return the pairs of rows to align, but for those that are constrained already."""
+    """Return the pairs of rows to align, but for those that are constrained already.
+
+    Of the loops of a scan in space the nearest that align count, `loops_per_scan` of them.
+    """
     # a planar scan constrains less than a spatial one, and costs less to align
     step_m = settings.loop_step_planar_m if planar else settings.loop_step_m
-    most = settings.loops_per_scan_planar if planar else settings.loops_per_scan
+    # the nearest may lie behind a wall and show nothing of what a scan does
+    most = settings.loops_per_scan_planar if planar else 4 * settings.loops_per_scan
     xy_m = world_from_scan[:, :2, 3]
     radius_m = settings.loop_radius_m
     apart = settings.loop_apart
@@ -224,12 +228,13 @@ def alignment_jobs(
 ) -> Iterator[tuple[Any, ...]]:
     """Yield the arguments of `loops.align_pairs` of some pairs at a time, place by place.
 
-    Of ten visits to a room a job prepares each scan once for all that it is paired with.
+    Of ten visits to a room a job prepares each scan once for all that it is paired with. All pairs
+    of a source are in one job.
     """
     place = np.floor(world_from_cloud[:, :2, 3]).astype(np.int64)  # squares of a metre
     ordered = sorted(pairs, key=lambda pair: (*place[pair[0]], *pair))
-    for begin in range(0, len(ordered), _PAIRS_PER_JOB):
-        of_job = ordered[begin : begin + _PAIRS_PER_JOB]
+    most = settings.loops_per_scan_planar if planar else settings.loops_per_scan
+    for of_job in _cut_by_source(ordered):
         rows = sorted({row for pair in of_job for row in pair})
         yield (
             thinned.part(rows),
@@ -241,7 +246,20 @@ def alignment_jobs(
             limits,
             settings.loop_min_fitness,
             settings.loop_apart,
+            most,
         )
+
+
+def _cut_by_source(pairs: Sequence[RowPair]) -> Iterator[list[RowPair]]:
+    """Yield successive pairs, `_PAIRS_PER_JOB` or a few more, until a source has no other."""
+    of_job: list[RowPair] = []
+    for pair in pairs:
+        if len(of_job) >= _PAIRS_PER_JOB and pair[0] != of_job[-1][0]:
+            yield of_job
+            of_job = []
+        of_job.append(pair)
+    if of_job:
+        yield of_job
 
 
 def align_jobs(

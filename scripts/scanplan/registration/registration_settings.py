@@ -113,7 +113,8 @@ class PoseGraphSettings:
     loop_step_m, loop_step_planar_m : float
         Metres. Scans this far apart along the way get loop constraints, in space and in the plane.
     loops_per_scan, loops_per_scan_planar : int
-        Such a scan is aligned to this many earlier visits of its surroundings.
+        Such a scan is aligned to this many earlier visits of its surroundings, in space and in the
+        plane.
     loop_min_fitness : float
         Share, 0 to 1. Pairs whose surfaces that face the same way overlap less get no constraint.
     edge_sigma_m, edge_sigma_deg : float

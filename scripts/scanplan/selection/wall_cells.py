@@ -80,7 +80,7 @@ def observe_wall_cells(
     sensor_xyz_m: FloatArray,
     planar: bool,
     settings: WallCellSettings,
-    axes_deg: int = 0,
+    axes_deg: int,
 ) -> dict[str, Array]:
     """Measure the length of wall that one scan shows in every cell.
 
@@ -135,10 +135,18 @@ def observe_wall_cells(
     }
 
 
+def choose_direction_scans(n_scans: int) -> IntArray:
+    """Return the rows (m,) of the scans that `find_main_direction` is asked by.
+
+    Some of all along the drive: walls of one room may stand askew.
+    """
+    return np.unique(np.linspace(0, n_scans - 1, 16).round().astype(int))
+
+
 def find_main_direction(
     scans: Iterable[tuple[FloatArray, FloatArray]], *, planar: bool, settings: WallCellSettings
-) -> int:
-    """Return the way that most of the wall that some scans show runs along or across.
+) -> int | None:
+    """Return the way that most returns on walls of some scans show them to run along or across.
 
     Parameters
     ----------
@@ -149,9 +157,14 @@ def find_main_direction(
 
     Returns
     -------
-    int
-        Whole degrees from the map's x axis, -45 to 44; a few more or less change nothing. 0 without
-        any wall.
+    int or None
+        Whole degrees from the map's x axis, -45 to 44; None without any wall. By a few more or less
+        hardly more scans are needed to show as much.
+
+    Raises
+    ------
+    ValueError
+        If a coordinate is not finite.
     """
     shown = np.zeros(90)
     for xyz_m, sensor_xyz_m in scans:
@@ -160,8 +173,10 @@ def find_main_direction(
         number = np.round(direction_deg).astype(int) % 90
         weight = surfaces.n_points if tallness is None else surfaces.n_points * tallness
         shown += np.bincount(number, weight, minlength=90)
-    # normals of single scans scatter by two degrees
-    near = [np.roll(shown, step) for step in range(-2, 3)]
+    if not shown.any():
+        return None
+    # normals scatter by two degrees; the nearest count most, so that a peak has one top
+    near = [(3 - abs(step)) * np.roll(shown, step) for step in range(-2, 3)]
     best = int(np.sum(near, axis=0).argmax())
     return best - 90 if best >= 45 else best
 

@@ -143,6 +143,9 @@ def cover_by_each(
     """Return what scans cover together, square metres or metres, and their order, by surrogate."""
     made: dict[str, list[Columns]] = {TRIMMED: [], CLUSTERS: []}
     free, observed = [], []
+    axes_deg = wall_cells.find_main_direction(
+        zip(clouds, sensors_m, strict=True), planar=False, settings=cells
+    )
     for scan_id, xyz_m, sensor_m in zip(scan_ids.tolist(), clouds, sensors_m, strict=True):
         where: dict[str, Any] = {"sensor_xyz_m": sensor_m, "planar": False}
         for name, radius in ((TRIMMED, sampling["radius"]), (CLUSTERS, "none")):
@@ -150,7 +153,11 @@ def cover_by_each(
             made[name].append(hulls.make_cluster_hulls(scan_id, xyz_m, **own))
         seen = visibility_polygon.scan_free_space(scan_id, xyz_m, settings=visibility, **where)
         free.append(shapely.from_wkb(seen["geometry"]))
-        observed.append(wall_cells.observe_wall_cells(scan_id, xyz_m, settings=cells, **where))
+        observed.append(
+            wall_cells.observe_wall_cells(
+                scan_id, xyz_m, settings=cells, axes_deg=axes_deg or 0, **where
+            )
+        )
     tables = {name: hulls.concatenate_hulls(parts) for name, parts in made.items()}
     shapes: dict[str, Array] = {
         ONE_HULL: hulls.scan_full_hulls(tables[TRIMMED])[1],

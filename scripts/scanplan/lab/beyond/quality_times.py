@@ -170,18 +170,25 @@ def _order_by_hulls(survey: TimedSurvey, sampling: Settings, most: int | None = 
 def _order_by_walls(survey: TimedSurvey, settings: WallCellSettings) -> IntArray:
     known = survey.truth.registered
     sensors_m: FloatArray = known.map_from_sensor[:, :3, 3]
+    planar = survey.store.planar
+    rows = wall_cells.choose_direction_scans(len(sensors_m))
+    some = zip(survey.store.scans(known.scan_ids[rows]), sensors_m[rows], strict=True)
+    axes_deg = wall_cells.find_main_direction(
+        ((xyz_m, sensor_m) for (_, xyz_m), sensor_m in some), planar=planar, settings=settings
+    )
     observed = [
         wall_cells.observe_wall_cells(
             scan_id,
             xyz_m,
             sensor_xyz_m=sensor_m,
-            planar=survey.store.planar,
+            planar=planar,
             settings=settings,
+            axes_deg=axes_deg or 0,
         )
         for (scan_id, xyz_m), sensor_m in zip(survey.store.scans(), sensors_m, strict=True)
     ]
     columns = wall_cells.observation_columns(known.scan_ids, observed)
-    if survey.store.planar:
+    if planar:
         columns = persistence.weigh_by_persistence(columns, known)
     scans = SurveyScans(known.scan_ids, {"observations": columns})
     return objectives.cover_wall_length(scans).greedy().order

@@ -138,7 +138,12 @@ def look_at_scans(
         walls.append(search.find(scan_id, xyz_m, sensor_m))
         observed.append(
             wall_cells.observe_wall_cells(
-                scan_id, xyz_m, sensor_xyz_m=sensor_m, planar=search.planar, settings=cells
+                scan_id,
+                xyz_m,
+                sensor_xyz_m=sensor_m,
+                planar=search.planar,
+                settings=cells,
+                axes_deg=0,  # its floors lie along the axes
             )
         )
     ids = np.arange(len(poses))

@@ -14,7 +14,7 @@ from collections.abc import Callable, Sequence
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.plan.faces.intervals import FaceInterval
-from scanplan.plan.furniture.leaves import Leaf, find_leaves
+from scanplan.plan.furniture.leaves import Leaf, find_leaves, find_traces
 from scanplan.plan.furniture.pockets import Pocket, find_blocks, find_pockets
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.rays import free_space
@@ -49,7 +49,8 @@ def drop_fronts(
     leaves = find_leaves(walls, unpaired_m=measure_thickness_m(walls))
     if leaves:
         faces = [face for wall in walls for face in wall.members]
-        walls = assemble([face for face in faces if not any(leaf.hides(face) for leaf in leaves)])
+        traces = set(map(id, find_traces(leaves, faces)))
+        walls = assemble([face for face in faces if id(face) not in traces])
     grounds: list[BaseGeometry] = [leaf.ground for leaf in leaves]
 
     def find_more() -> list[Pocket]:

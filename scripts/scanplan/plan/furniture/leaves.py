@@ -41,15 +41,23 @@ class Leaf:
         return LineString(self.face.ends).buffer(END_M, cap_style="square")
 
     def hides(self, face: FaceInterval) -> bool:
-        """Return whether most of a surface is of the same leaf, as it stood at another time.
+        """Return whether most of a surface is of the same leaf, as it stood at another time."""
+        is_parallel = abs(face.line.normal @ self.face.line.normal) >= math.cos(LEAST_RAD)
+        return is_parallel and self._is_beside(face, BEHIND_M)
 
-        What faces the same way may lie farther off: nothing else fits between.
+    def is_shown_again_by(self, face: FaceInterval) -> bool:
+        """Return whether a surface may be the same one farther off, of a scan placed badly.
+
+        It faces the same way and is no longer: nothing else but a wall behind it does.
         """
-        cosine = float(face.line.normal @ self.face.line.normal)
-        is_parallel = abs(cosine) >= math.cos(LEAST_RAD)
+        faces_alike = face.line.normal @ self.face.line.normal >= math.cos(LEAST_RAD)
+        is_as_short = face.length_m <= self.face.length_m + END_M
+        return bool(faces_alike and is_as_short) and self._is_beside(face, CORNER_M)
+
+    def _is_beside(self, face: FaceInterval, most_m: float) -> bool:
         along = LineString(face.ends)
-        near = LineString(self.face.ends).buffer(CORNER_M if cosine > 0 else BEHIND_M)
-        return bool(is_parallel and along.intersection(near).length >= ALONG_SHARE * along.length)
+        near = LineString(self.face.ends).buffer(most_m)
+        return bool(along.intersection(near).length >= ALONG_SHARE * along.length)
 
 
 def find_leaves(walls: Sequence[PlanWall], *, unpaired_m: float) -> list[Leaf]:
@@ -73,6 +81,30 @@ def find_leaves(walls: Sequence[PlanWall], *, unpaired_m: float) -> list[Leaf]:
                     leaves.append(Leaf(face, way.ends_m))
                     break
     return leaves
+
+
+def find_traces(leaves: Sequence[Leaf], faces: Sequence[FaceInterval]) -> list[FaceInterval]:
+    """Return the surfaces among faces that are of leaves, as others are that stood elsewhere.
+
+    What lies farther off than a leaf is thick is a trace of it where it ends free: a wall behind a
+    leaf ends at another.
+    """
+    of_leaves = [face for face in faces if any(leaf.hides(face) for leaf in leaves)]
+    known = set(map(id, of_leaves))
+    others = [face for face in faces if id(face) not in known]
+    traces = []
+    for face in others:
+        around = [leaf for leaf in leaves if leaf.is_shown_again_by(face)]
+        if around and _is_free(face, _farther_end(face, around[0].way_m), others):
+            traces.append(face)
+    return [*of_leaves, *traces]
+
+
+def _farther_end(face: FaceInterval, way_m: FloatArray) -> FloatArray:
+    """Return the end (2,) of a surface that is farther from a way (2, 2)."""
+    way = LineString(way_m)
+    one_m, other_m = face.ends
+    return max(one_m, other_m, key=lambda end_m: way.distance(Point(end_m)))
 
 
 def _is_free(face: FaceInterval, tip_m: FloatArray, others: Sequence[FaceInterval]) -> bool:

@@ -158,8 +158,8 @@ def find_blocks(
             others.append(wall)
     blocks = []
     for wall, ground, near in alone:
-        # two islands would say of each other that walls are as thick
-        known = others or [other for other, *_ in alone if other is not wall]
+        # what stands alone may be a partition, which is thinner; an island says nothing of walls
+        known = [*others, *(one for one, *_ in alone if one.thickness_m < wall.thickness_m)]
         if known and _is_thick(ground, measure_thickness_m(known)):
             blocks.append(Pocket(ground.buffer(CELL_M, join_style="mitre"), near))
     return blocks
