@@ -206,3 +206,17 @@ def test_what_a_person_corrected_is_neither_rated_nor_to_be_verified():
     rows = found["table"] == "openings"
     np.testing.assert_array_equal(found["verify"][rows], by_hand == "")
     np.testing.assert_array_equal(np.isnan(found["p_true"][rows]), by_hand != "")
+
+
+@pytest.mark.parametrize("floor_z_m", [0.0, np.nan], ids=["rated", "no heights"])
+def test_a_room_whose_outline_is_not_closed_is_to_be_verified_unless_it_was_corrected(floor_z_m):
+    rooms = {**PARTS["rooms"], "closed": np.zeros(len(PARTS["rooms"]["room"]), bool)}
+    sure = {"level": 0.0}
+    for corrected, expected in (("", (True, confidence.NOT_CLOSED)), ("name", (False, ""))):
+        rooms["corrected"] = np.full(len(rooms["room"]), corrected, object)
+        plan = floorplan.make_floorplan(PARTS | {"rooms": rooms}, floor_z_m, 2.5)
+        found = confidence.rate_elements(plan, validation(), COEFFICIENTS | sure)
+        rows = np.flatnonzero(found["table"] == "rooms")
+        assert [(found["verify"][row], found["doubt"][row]) for row in rows] == [expected] * len(
+            rows
+        )

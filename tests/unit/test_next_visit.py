@@ -13,6 +13,7 @@ from helpers import floorplan_making
 from scanplan.exports import visit_geojson
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.rays.tolerances import STRAY_SHARE
+from scanplan.validation.confidence import NOT_CLOSED
 from scanplan.visit import next_visit, questions, sight, standpoints
 from scanplan.visit.sensor_reach import SensorReach
 
@@ -132,6 +133,12 @@ def test_where_a_way_out_leads_is_asked_until_someone_stood_at_it(place, asked):
     plan = room_plan([(0, 0), (4, 0), (4, 2), (0, 2)], openings=[door])
     found = questions.list_questions(plan, np.array([place]))
     assert [one.kind for one in found] == asked
+
+
+def test_of_an_outline_that_is_not_closed_only_what_is_unseen_is_asked():
+    plan = room_plan(BENT, ENDS, doubtful_rooms=[0])
+    plan.rooms["doubt"][:] = NOT_CLOSED
+    assert set(visited(plan, start=(7, 1)).questions["kind"]) == {"unseen"}
 
 
 def test_doubtful_openings_are_seen_from_either_side_and_rooms_from_within():

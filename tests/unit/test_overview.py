@@ -29,7 +29,7 @@ def make_results(folder, predicted=0.75):
     numbers = [0, 1, 2, 1, 2, 0]
     rated = some(schemas.CONFIDENCE, 6, number=np.array(numbers, np.int32), p_true=np.ones(6))
     rated["table"] = np.array([*["openings"] * 3, *["rooms"] * 2, "walls"], object)
-    rated["verify"] = np.array([False, False, True, False, False, True])
+    rated["verify"] = np.array([False, False, True, False, True, True])
     plan = {
         "faces": (schemas.FACES, some(schemas.FACES, 1)),
         "free": (schemas.FREE, some(schemas.FREE, 0)),

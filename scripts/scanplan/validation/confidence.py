@@ -20,6 +20,9 @@ from scanplan.validation.element_features import (
     describe_elements,
 )
 
+NOT_CLOSED = "its outline is not closed: the area is a guess"
+"""Why a room is to be verified that is likely enough."""
+
 
 def rate_elements(
     plan: FloorPlan, validation: Columns, coefficients: Mapping[str, Any] = COEFFICIENTS
@@ -60,6 +63,10 @@ def rate_elements(
             verify[is_unknown] = True
             needs_person[is_unknown] = False
             doubt[is_unknown] = "not known what it is"
+        if table == "rooms":
+            is_open = ~columns["closed"] & ~verify
+            doubt[is_open] = NOT_CLOSED
+            verify = verify | is_open
         if "corrected" in columns:
             # a person has looked at it: nothing is left to verify, and rays do not rate it
             is_by_hand = columns["corrected"] != ""

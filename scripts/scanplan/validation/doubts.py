@@ -6,9 +6,9 @@ import numpy as np
 
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.types import BoolArray, Columns, IntArray
+from scanplan.validation.confidence import NOT_CLOSED
 
 _WEAK = "few scans show it, or its place is uncertain"
-_NOT_CLOSED = "its outline is not closed: the area is a guess"
 
 
 @dataclass(frozen=True)
@@ -68,13 +68,10 @@ def list_unrated(plan: FloorPlan) -> list[str]:
 
 def explain_doubt(kind: str, columns: Columns, row: int) -> str:
     """Return why a row of a table of elements is doubtful; nothing if it is not."""
-    reasons: list[str] = []
-    if "verify" in columns and columns["verify"][row]:
+    if "verify" in columns:
         told = str(columns["doubt"][row]) if "doubt" in columns else ""
-        reasons.append(told or _WEAK)
-    if kind == "room" and not columns["closed"][row] and not reasons:
-        reasons.append(_NOT_CLOSED)
-    return "; ".join(reasons)
+        return (told or _WEAK) if columns["verify"][row] else ""
+    return NOT_CLOSED if kind == "room" and not columns["closed"][row] else ""
 
 
 def _doubts_of_faces(plan: FloorPlan) -> list[Doubt]:

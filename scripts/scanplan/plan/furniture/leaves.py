@@ -43,7 +43,7 @@ class Leaf:
     def hides(self, face: FaceInterval) -> bool:
         """Return whether most of a surface is of the same leaf, as it stood at another time."""
         is_parallel = abs(face.line.normal @ self.face.line.normal) >= math.cos(LEAST_RAD)
-        return is_parallel and self._is_beside(face, BEHIND_M)
+        return bool(is_parallel) and self._is_beside(face, BEHIND_M)
 
     def is_shown_again_by(self, face: FaceInterval) -> bool:
         """Return whether a surface may be the same one farther off, of a scan placed badly.
