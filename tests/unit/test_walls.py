@@ -1,5 +1,7 @@
 """Openings of walls made of stretches whose points and rays are known on paper."""
 
+import functools
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,9 @@ from helpers import house_making
 from helpers.observation_making import line_through, observation
 from scanplan.plan import planning
 from scanplan.plan.faces.intervals import FaceInterval
+from scanplan.plan.furniture.pillars import cut_off_pillars
+from scanplan.plan.openings import classify_gap
+from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.walls import assemble_walls
 
 SETTINGS = planning.make_plan_settings(**house_making.PLAN)
@@ -54,6 +59,54 @@ def test_the_jambs_of_both_sides_are_averaged():
 @pytest.mark.parametrize(("lintel", "count"), [([], 0), ([(0.4, 1.6)], 1)])
 def test_between_two_things_there_is_no_door_but_below_a_lintel(lintel, count):
     assert len(openings(stretches(0, 0, 2, 0, [(0, 0.4), (1.6, 2)], [(0.4, 1.6)], lintel))) == count
+
+
+PILLAR = [(0, 3), (3.8, 4)]
+"""Of a line: a wall, and a pillar of 0.2 m behind a gap."""
+
+
+def parts_at_pillars(solid, crossed, lintel=(), others=(), glass=()):
+    """Spans along x, and openings, of a wall's parts."""
+    made = assemble_walls(
+        stretches(0, 0, 6, 0, solid, crossed, lintel) + [s for of_line in others for s in of_line],
+        *(SETTINGS.pairs, SETTINGS.openings),
+        corner_m=0.25,
+        door_height_m=SETTINGS.reading.door_height_m,
+    )
+    classify = functools.partial(
+        classify_gap, settings=SETTINGS.openings, door_height_m=SETTINGS.reading.door_height_m
+    )
+    found = cut_off_pillars(made, glass, classify, min_width_m=0.6, max_thickness_m=0.6)
+    of_wall = next(
+        parts for parts in found if any(abs(part.line.normal[1]) > 0.9 for part in parts)
+    )
+    spans = sorted(np.sort(part.ends[:, 0]).round(1).tolist() for part in of_wall)
+    return spans, sum(len(part.openings) for part in of_wall)
+
+
+def test_beside_a_pillar_there_is_no_door():
+    crossed = [(3, 3.8), (4, 6)]
+    assert parts_at_pillars(PILLAR, crossed) == ([[0.0, 3.0], [3.8, 4.0]], 0)
+
+
+@pytest.mark.parametrize(
+    ("solid", "crossed", "more"),
+    [
+        (PILLAR, [(3, 3.8)], {}),
+        (PILLAR, [(3, 3.8), (4, 6)], {"lintel": [(2.6, 4)]}),
+        ([(0, 3), (3.8, 4.6)], [(3, 3.8), (4.6, 6)], {}),
+        (PILLAR, [(3, 3.8), (4, 6)], {"others": [stretches(4, 3, 4, 0.05, [(0, 2.95)])]}),
+        (
+            PILLAR,
+            [(3, 3.8), (4, 6)],
+            {"glass": [PlanWall(line_through(5, 0, 6, 0), -1, 1, np.nan, [], [])]},
+        ),
+    ],
+    ids=["end not seen", "below a lintel", "longer", "where a wall begins", "where glass begins"],
+)
+def test_a_short_end_that_is_no_pillar_is_the_jamb_of_a_door(solid, crossed, more):
+    spans, n_openings = parts_at_pillars(solid, crossed, **more)
+    assert n_openings == 1 and len(spans) == 1
 
 
 def ends(*found):

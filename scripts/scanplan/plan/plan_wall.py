@@ -3,7 +3,7 @@
 import math
 import statistics
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from scanplan.geometry.lines import Line, Span
 from scanplan.plan.faces.intervals import FaceInterval
@@ -66,6 +66,30 @@ class PlanWall(Span):
     def lines(self) -> list[FaceObservation]:
         """What was observed of the lines of its faces, each once."""
         return list({id(face.seen): face.seen for face in self.members}.values())
+
+    def between(self, begin_m: float, end_m: float) -> "PlanWall":
+        """Return the wall from one place to another along it, with what has its middle there."""
+
+        def is_inside(low_m: float, high_m: float) -> bool:
+            return begin_m < (low_m + high_m) / 2 < end_m
+
+        left, right = (
+            [face for face in side if is_inside(*self.line.along_m(face.ends).tolist())]
+            for side in (self.left, self.right)
+        )
+        openings, closed = (
+            [gap for gap in gaps if is_inside(gap.low_m, gap.high_m)]
+            for gaps in (self.openings, self.closed)
+        )
+        return replace(
+            self,
+            low_m=begin_m,
+            high_m=end_m,
+            left=left,
+            right=right,
+            openings=openings,
+            closed=closed,
+        )
 
     @property
     def half_m(self) -> float:

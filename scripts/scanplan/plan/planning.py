@@ -25,7 +25,8 @@ from scanplan.plan.furniture import fronts
 from scanplan.plan.furniture.columns import find_column_faces, tell_columns
 from scanplan.plan.furniture.leaves import Leaf
 from scanplan.plan.furniture.pieces import Piece, find_pieces, pieces_in_rooms
-from scanplan.plan.openings import OpeningSettings
+from scanplan.plan.furniture.pillars import cut_off_pillars
+from scanplan.plan.openings import OpeningSettings, classify_gap
 from scanplan.plan.plan_wall import PlanWall, usual_thickness_m
 from scanplan.plan.rooms import Room, find_rooms, leave_out_unseen, rooms_beside
 from scanplan.plan.uncertainty import ReviewCriteria
@@ -326,6 +327,18 @@ class _Survey:
         glass_walls = room_bounds.find_glass_walls(
             walls, traced.panes, min_length_m=min_width_m, unpaired_m=unpaired_m
         )
+        # in the plane a few beams say that a wall ends free, and nothing what is above it
+        if not self.rays.planar:
+            classify = functools.partial(
+                classify_gap, settings=self.settings.openings, door_height_m=reading.door_height_m
+            )
+            parts = cut_off_pillars(
+                *(walls, glass_walls, classify),
+                min_width_m=min_width_m,
+                max_thickness_m=self.settings.pairs.max_thickness_m,
+            )
+            tops_m = [top_m for top_m, of_wall in zip(tops_m, parts, strict=True) for _ in of_wall]
+            walls = [part for of_wall in parts for part in of_wall]
         are_columns = find_column_faces(
             *(walls, glass_walls, self.rays),
             furniture_height_m=self.settings.furniture.furniture_height_m,

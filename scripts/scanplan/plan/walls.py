@@ -215,7 +215,7 @@ def _cut_at_corridors(wall: PlanWall, crossings: Sequence[Crossing]) -> list[Pla
             ends_m += [float(through_m[row].mean()) for row in near]
     if not crosses:
         return [wall]
-    parts = [_between(wall, *span_m) for span_m in np.sort(ends_m).reshape(-1, 2).tolist()]
+    parts = [wall.between(*span_m) for span_m in np.sort(ends_m).reshape(-1, 2).tolist()]
     return [part for part in parts if part.members]
 
 
@@ -223,27 +223,6 @@ def _runs_through(other: PlanWall, wall: PlanWall, place_m: float) -> bool:
     """Return whether another wall goes on on both sides of one that it crosses at a place."""
     at_m = float(other.line.along_m(wall.line.at(place_m)))
     return min(at_m - other.low_m, other.high_m - at_m) > wall.half_m + CORNER_M
-
-
-def _between(wall: PlanWall, begin_m: float, end_m: float) -> PlanWall:
-    """Return a wall from one place to another, with what has its middle there."""
-
-    def is_inside(low_m: float, high_m: float) -> bool:
-        return begin_m < (low_m + high_m) / 2 < end_m
-
-    return replace(
-        wall,
-        low_m=begin_m,
-        high_m=end_m,
-        **{
-            side: [f for f in getattr(wall, side) if is_inside(*wall.line.along_m(f.ends).tolist())]
-            for side in ("left", "right")
-        },
-        **{
-            gaps: [g for g in getattr(wall, gaps) if is_inside(g.low_m, g.high_m)]
-            for gaps in ("openings", "closed")
-        },
-    )
 
 
 def _between_sides(gap: Opening, spans_m: FloatArray) -> Opening:
