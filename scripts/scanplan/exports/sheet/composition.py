@@ -206,7 +206,9 @@ def _dimension(
         for path in symbol_paths(symbol)
     ]
     reach = shapely.union_all([outline, *swings])
-    return list(dimensions.dimension_facades(page, outline, reach, openings_m, space))
+    assumed = page.place_shape(plan.assumed)
+    found = dimensions.dimension_facades(page, outline, reach, assumed, openings_m, space)
+    return list(found)
 
 
 def _find_stated(symbols: list[Symbol], drawn: list[Dimension]) -> list[bool]:

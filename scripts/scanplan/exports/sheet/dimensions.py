@@ -33,10 +33,13 @@ def dimension_facades(
     page: Page,
     outline: BaseGeometry,
     reach: BaseGeometry,
+    assumed: BaseGeometry,
     openings_m: FloatArray,
     space: LabelSpace,
 ) -> Iterator[Dimension]:
     """Yield chains along all four sides of a plan, and its whole width and depth.
+
+    A length that ends at a wall whose thickness is assumed is about so long (`~`).
 
     Parameters
     ----------
@@ -45,6 +48,8 @@ def dimension_facades(
         All that is built, openings closed, on paper.
     reach : shapely geometry
         All that chains keep off: outline and symbols, on paper.
+    assumed : shapely geometry
+        What of walls is assumed, on paper.
     openings_m : (n, 2, 2) float
         Map frame.
     space : LabelSpace
@@ -53,17 +58,33 @@ def dimension_facades(
     for quarter in range(4):
         # each side in turn is brought below
         turn = rotation(-90 * quarter)
-        turned = shapely.transform(outline, lambda xy, turn=turn: xy @ turn.T)
+        turned, turned_assumed, turned_reach = (
+            shapely.transform(shape, lambda xy, turn=turn: xy @ turn.T)
+            for shape in (outline, assumed, reach)
+        )
         x0, y0, x1, _ = turned.bounds
         gap = END_M * page.mm_per_m
         facades = _find_facades(turned, gap)
         stops = _chain_stops(facades, openings @ turn.T, gap, (x0, x1))
-        level = shapely.transform(reach, lambda xy, turn=turn: xy @ turn.T).bounds[1]
+        about = _find_assumed_ends(turned, turned_assumed, gap)
+        level = turned_reach.bounds[1]
         if len(stops) > 2:
             level -= Paper.CHAIN
-            yield from _draw_chain(page, stops, level, turn, space)
+            yield from _draw_chain(page, stops, level, turn, space, about)
         if quarter in (0, 3):
-            yield from _draw_chain(page, [(x0, y0), (x1, y0)], level - Paper.CHAIN, turn, space)
+            whole = [(x0, y0), (x1, y0)]
+            yield from _draw_chain(page, whole, level - Paper.CHAIN, turn, space, about)
+
+
+def _find_assumed_ends(
+    outline: BaseGeometry, assumed: BaseGeometry, gap: float
+) -> frozenset[float]:
+    """Return those of a plan's ends (x, on turned paper) that nothing but assumed wall reaches."""
+    ends = outline.bounds[::2]
+    known = shapely.difference(outline, assumed).bounds[::2]
+    return frozenset(
+        x for x, known_x in zip(ends, known, strict=True) if not abs(x - known_x) < gap / 10
+    )
 
 
 def _find_facades(outline: BaseGeometry, gap: float) -> list[_Facade]:
@@ -140,15 +161,20 @@ def _draw_chain(
     level: float,
     turn: FloatArray,
     space: LabelSpace,
+    about: frozenset[float],
 ) -> Iterator[Dimension]:
-    """Yield the dimensions of a chain, whose stops and level are on turned paper."""
+    """Yield the dimensions of a chain, whose stops and level are on turned paper.
+
+    At some of its places (x) it is not known where they are.
+    """
     for start, end in itertools.pairwise(stops):
         # what has hardly any width is not measured
         if end[0] - start[0] < Paper.GAP:
             continue
         line = np.array([[start[0], level], [end[0], level]])
         length_mm = line[1, 0] - line[0, 0]
-        words = f"{length_mm / page.mm_per_m:.2f}"
+        sign = "~" if about.intersection((start[0], end[0])) else ""
+        words = f"{sign}{length_mm / page.mm_per_m:.2f}"
         candidates = _beside_line(line @ turn, words)
         chosen = space.place(candidates)
         if chosen is None:
