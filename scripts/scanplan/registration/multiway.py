@@ -17,7 +17,7 @@ from scanplan.registration.registration_settings import PoseGraphSettings, Seque
 from scanplan.store.scan_cache import ScanCache
 from scanplan.types import FloatArray, IntArray
 
-_PAIRS_PER_JOB = 100  # fewer reload clouds more often, more leave cores idle at the end
+_PAIRS_PER_JOB = 100  # aligned: fewer reload clouds more often, more leave cores idle at the end
 
 
 @dataclass(frozen=True)
@@ -205,8 +205,7 @@ def choose_pairs(
     """
     # a planar scan constrains less than a spatial one, and costs less to align
     step_m = settings.loop_step_planar_m if planar else settings.loop_step_m
-    # the nearest may lie behind a wall and show nothing of what a scan does
-    most = settings.loops_per_scan_planar if planar else 4 * settings.loops_per_scan
+    most = _count_links(settings, planar) * _count_tries(planar)
     xy_m = world_from_scan[:, :2, 3]
     radius_m = settings.loop_radius_m
     apart = settings.loop_apart
@@ -233,8 +232,8 @@ def alignment_jobs(
     """
     place = np.floor(world_from_cloud[:, :2, 3]).astype(np.int64)  # squares of a metre
     ordered = sorted(pairs, key=lambda pair: (*place[pair[0]], *pair))
-    most = settings.loops_per_scan_planar if planar else settings.loops_per_scan
-    for of_job in _cut_by_source(ordered):
+    most = _count_links(settings, planar)
+    for of_job in _cut_by_source(ordered, _PAIRS_PER_JOB * _count_tries(planar)):
         rows = sorted({row for pair in of_job for row in pair})
         yield (
             thinned.part(rows),
@@ -250,11 +249,25 @@ def alignment_jobs(
         )
 
 
-def _cut_by_source(pairs: Sequence[RowPair]) -> Iterator[list[RowPair]]:
-    """Yield successive pairs, `_PAIRS_PER_JOB` or a few more, until a source has no other."""
+def _count_links(settings: PoseGraphSettings, planar: bool) -> int:
+    """Return how many loops a scan has at most."""
+    return settings.loops_per_scan_planar if planar else settings.loops_per_scan
+
+
+def _count_tries(planar: bool) -> int:
+    """Return how many visits are chosen for each loop.
+
+    In space the nearest may lie behind a wall and show nothing of what a scan does; in the plane
+    several count.
+    """
+    return 1 if planar else 4
+
+
+def _cut_by_source(pairs: Sequence[RowPair], least: int) -> Iterator[list[RowPair]]:
+    """Yield successive pairs, so many or a few more, until a source has no other."""
     of_job: list[RowPair] = []
     for pair in pairs:
-        if len(of_job) >= _PAIRS_PER_JOB and pair[0] != of_job[-1][0]:
+        if len(of_job) >= least and pair[0] != of_job[-1][0]:
             yield of_job
             of_job = []
         of_job.append(pair)
