@@ -206,9 +206,13 @@ def _dimension(
         for path in symbol_paths(symbol)
     ]
     reach = shapely.union_all([outline, *swings])
-    assumed = page.place_shape(plan.assumed)
-    found = dimensions.dimension_facades(page, outline, reach, assumed, openings_m, space)
-    return list(found)
+    known = outline if built.is_empty else page.place_shape(_find_known(plan))
+    return list(dimensions.dimension_facades(page, outline, reach, known, openings_m, space))
+
+
+def _find_known(plan: FloorPlan) -> BaseGeometry:
+    """Return the ground of rooms and of walls of which both sides were seen."""
+    return shapely.union_all([*plan.areas, *plan.known_bodies])
 
 
 def _find_stated(symbols: list[Symbol], drawn: list[Dimension]) -> list[bool]:

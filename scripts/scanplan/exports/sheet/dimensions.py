@@ -33,7 +33,7 @@ def dimension_facades(
     page: Page,
     outline: BaseGeometry,
     reach: BaseGeometry,
-    assumed: BaseGeometry,
+    known: BaseGeometry,
     openings_m: FloatArray,
     space: LabelSpace,
 ) -> Iterator[Dimension]:
@@ -48,8 +48,8 @@ def dimension_facades(
         All that is built, openings closed, on paper.
     reach : shapely geometry
         All that chains keep off: outline and symbols, on paper.
-    assumed : shapely geometry
-        What of walls is assumed, on paper.
+    known : shapely geometry
+        Of the outline: rooms, and walls of which both sides were seen, on paper.
     openings_m : (n, 2, 2) float
         Map frame.
     space : LabelSpace
@@ -58,15 +58,15 @@ def dimension_facades(
     for quarter in range(4):
         # each side in turn is brought below
         turn = rotation(-90 * quarter)
-        turned, turned_assumed, turned_reach = (
+        turned, turned_known, turned_reach = (
             shapely.transform(shape, lambda xy, turn=turn: xy @ turn.T)
-            for shape in (outline, assumed, reach)
+            for shape in (outline, known, reach)
         )
         x0, y0, x1, _ = turned.bounds
         gap = END_M * page.mm_per_m
         facades = _find_facades(turned, gap)
         stops = _chain_stops(facades, openings @ turn.T, gap, (x0, x1))
-        about = _find_assumed_ends(turned, turned_assumed, gap)
+        about = _find_assumed_ends(turned, turned_known, gap)
         level = turned_reach.bounds[1]
         if len(stops) > 2:
             level -= Paper.CHAIN
@@ -76,15 +76,10 @@ def dimension_facades(
             yield from _draw_chain(page, whole, level - Paper.CHAIN, turn, space, about)
 
 
-def _find_assumed_ends(
-    outline: BaseGeometry, assumed: BaseGeometry, gap: float
-) -> frozenset[float]:
-    """Return those of a plan's ends (x, on turned paper) that nothing but assumed wall reaches."""
-    ends = outline.bounds[::2]
-    known = shapely.difference(outline, assumed).bounds[::2]
-    return frozenset(
-        x for x, known_x in zip(ends, known, strict=True) if not abs(x - known_x) < gap / 10
-    )
+def _find_assumed_ends(outline: BaseGeometry, known: BaseGeometry, gap: float) -> frozenset[float]:
+    """Return those of a plan's ends (x, on turned paper) that lie beyond all that is known."""
+    ends = zip(outline.bounds[::2], known.bounds[::2], strict=True)
+    return frozenset(x for x, known_x in ends if not abs(x - known_x) < gap / 10)
 
 
 def _find_facades(outline: BaseGeometry, gap: float) -> list[_Facade]:
