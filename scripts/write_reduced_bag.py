@@ -71,7 +71,7 @@ def write_reduced_bag(
         chosen = candidates.choose_candidates(known, **spacing)
         own = WallCellSettings(**cells)
         planar = survey.planar
-        axes_deg: int | None = None
+        axes_deg: int | None = 0 if planar else None
 
         def is_taken(scan: Scan) -> bool:
             nonlocal axes_deg

@@ -173,9 +173,8 @@ def _order_by_walls(survey: TimedSurvey, settings: WallCellSettings) -> IntArray
     planar = survey.store.planar
     rows = wall_cells.choose_direction_scans(len(sensors_m))
     some = zip(survey.store.scans(known.scan_ids[rows]), sensors_m[rows], strict=True)
-    axes_deg = wall_cells.find_main_direction(
-        ((xyz_m, sensor_m) for (_, xyz_m), sensor_m in some), planar=planar, settings=settings
-    )
+    shown = [] if planar else ((xyz_m, sensor_m) for (_, xyz_m), sensor_m in some)
+    axes_deg = wall_cells.find_main_direction(shown, planar=planar, settings=settings)
     observed = [
         wall_cells.observe_wall_cells(
             scan_id,
