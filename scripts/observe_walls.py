@@ -34,7 +34,10 @@ def observe_walls(
         Which scans, see `per_scan.read_chunk_ids`; all by default.
     """
     own = wall_cells.WallCellSettings(**settings)
-    axes_deg = _find_main_direction(scans, registration, own)
+    store = tables.ScanStore(scans)
+    known = registered_scans.read_registered_scans(registration, store)
+    sensors_m = registered_scans.sensor_positions(store.scan_ids, known, scans, registration)
+    axes_deg = wall_cells.choose_axes_deg(store, sensors_m, own)
     scan_ids, observations = map_registered_scans(
         wall_cells.observe_wall_cells,
         scans,
@@ -47,8 +50,7 @@ def observe_walls(
     )
     columns = wall_cells.observation_columns(scan_ids, observations)
     # what other scans show there may be in another chunk: that is for `gather_chunks`
-    if chunk is None and tables.ScanStore(scans).planar:
-        known = registered_scans.read_registered_scans(registration)
+    if chunk is None and store.planar:
         columns = persistence.weigh_by_persistence(columns, known)
     tables.write_table(output, schemas.OBSERVATIONS, columns, allow_empty=True)
     mean_m = columns["length_m"].sum() / len(observations)
@@ -57,24 +59,6 @@ def observe_walls(
         f"observe_walls: {len(observations):,} scans, {mean_m:.1f} m of wall a scan,"
         f" {n_blind:,} show none; cells turned by {axes_deg} degrees"
     )
-
-
-def _find_main_direction(
-    scans: FilePath, registration: FilePath, settings: wall_cells.WallCellSettings
-) -> int:
-    """Return the way of most walls in the map, the same whichever chunk is observed.
-
-    In the plane it is the map's: there half of the best shows a cell, so that noise adds little.
-    """
-    store = tables.ScanStore(scans)
-    if store.planar:
-        return 0
-    known = registered_scans.read_registered_scans(registration, store)
-    sensors_m = registered_scans.sensor_positions(store.scan_ids, known, scans, registration)
-    rows = wall_cells.choose_direction_scans(len(store.scan_ids))
-    some = zip(store.scans(store.scan_ids[rows]), sensors_m[rows], strict=True)
-    shown = ((xyz_m, sensor_m) for (_, xyz_m), sensor_m in some)
-    return wall_cells.find_main_direction(shown, planar=False, settings=settings) or 0
 
 
 if __name__ == "__main__":

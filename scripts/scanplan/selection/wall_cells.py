@@ -21,6 +21,7 @@ from scanplan.extraction.upright_surfaces import UprightSurfaces
 from scanplan.geometry.tolerances import ROUNDING, SHORTEST_M
 from scanplan.rays import levels, sensor_frame
 from scanplan.rays.tolerances import NEAR_FLOOR_M
+from scanplan.store.tables import ScanStore
 from scanplan.types import Array, Columns, FloatArray, IntArray
 
 FACINGS = ("-x", "+x", "-y", "+y")
@@ -135,12 +136,26 @@ def observe_wall_cells(
     }
 
 
-def choose_direction_scans(n_scans: int) -> IntArray:
-    """Return the rows (m,) of the scans that `find_main_direction` is asked by.
+def choose_axes_deg(store: ScanStore, sensors_m: FloatArray, settings: WallCellSettings) -> int:
+    """Return how far the axes of a survey's cells are turned, by some scans all along the drive.
 
-    Some of all along the drive: walls of one room may stand askew.
+    In the plane they are the map's: there half of the best shows a cell, so that noise adds little.
+
+    Parameters
+    ----------
+    store : tables.ScanStore
+        All scans, map frame.
+    sensors_m : (n, 3) float
+        Where the sensor was at each.
+    settings : WallCellSettings
     """
-    return np.unique(np.linspace(0, n_scans - 1, 16).round().astype(int))
+    if store.planar:
+        return 0
+    # walls of one room may stand askew
+    rows = np.unique(np.linspace(0, len(sensors_m) - 1, 16).round().astype(int))
+    some = zip(store.scans(store.scan_ids[rows]), sensors_m[rows], strict=True)
+    shown = ((xyz_m, sensor_m) for (_, xyz_m), sensor_m in some)
+    return find_main_direction(shown, planar=False, settings=settings) or 0
 
 
 def find_main_direction(

@@ -171,10 +171,7 @@ def _order_by_walls(survey: TimedSurvey, settings: WallCellSettings) -> IntArray
     known = survey.truth.registered
     sensors_m: FloatArray = known.map_from_sensor[:, :3, 3]
     planar = survey.store.planar
-    rows = wall_cells.choose_direction_scans(len(sensors_m))
-    some = zip(survey.store.scans(known.scan_ids[rows]), sensors_m[rows], strict=True)
-    shown = [] if planar else ((xyz_m, sensor_m) for (_, xyz_m), sensor_m in some)
-    axes_deg = wall_cells.find_main_direction(shown, planar=planar, settings=settings)
+    axes_deg = wall_cells.choose_axes_deg(survey.store, sensors_m, settings)
     observed = [
         wall_cells.observe_wall_cells(
             scan_id,
@@ -182,7 +179,7 @@ def _order_by_walls(survey: TimedSurvey, settings: WallCellSettings) -> IntArray
             sensor_xyz_m=sensor_m,
             planar=planar,
             settings=settings,
-            axes_deg=axes_deg or 0,
+            axes_deg=axes_deg,
         )
         for (scan_id, xyz_m), sensor_m in zip(survey.store.scans(), sensors_m, strict=True)
     ]
