@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from scanplan.geometry import se3, twists
+from scanplan.geometry.tolerances import SHORTEST_M
 from scanplan.registration import icp, prepared_clouds
 from scanplan.registration.registration_settings import SequentialSettings
 from scanplan.types import FloatArray
@@ -137,7 +138,8 @@ def measure_constraint(
     """Measure the motion between two scans that are about in place; None without a sound alignment.
 
     In the plane it counts for less where few points lie on surfaces that face the same way, and for
-    nothing where none does.
+    nothing where none does: the few that two scans through a door share may be paired with other
+    walls than theirs, all of them as far off.
 
     Parameters
     ----------
@@ -164,12 +166,22 @@ def measure_constraint(
     aligned = PlacedScan(source.scan_id, source.cloud, world_from_source)
     fitness, rmse_m = measure_facing_overlap(aligned, target, distances_m[-1], settings)
     if target.cloud.planar and fitness < settings.min_facing_fitness:
-        # the few points that scans through a door share may be paired with other walls than theirs
         if fitness == 0:
             return None
-        share = fitness / settings.min_facing_fitness
-        fit = replace(fit, information=share * fit.information)
+        lacking = 1 - fitness / settings.min_facing_fitness
+        error_m = lacking * distances_m[-1]
+        fit = replace(fit, information=_with_error(fit.information, error_m, source.cloud.xyz_m))
     return PoseConstraint(source.scan_id, target.scan_id, kind, fitness, rmse_m, fit)
+
+
+def _with_error(information: FloatArray, error_m: float, xyz_m: FloatArray) -> FloatArray:
+    """Return the information (6, 6) of a motion that may also be off by an error, or turned by it.
+
+    The turn is the one by which points (n, 3) about the sensor are off by as much.
+    """
+    reach_m = float(np.sqrt(3 * np.mean(xyz_m**2)))
+    error = np.repeat([error_m, error_m / max(reach_m, SHORTEST_M)], 3)
+    return np.asarray(information @ np.linalg.inv(np.eye(6) + error[:, None] ** 2 * information))
 
 
 def measure_facing_overlap(
