@@ -11,6 +11,7 @@ from scanplan.plan.openings import OPEN, Opening
 from scanplan.plan.plan_wall import PlanWall
 
 JAMBS_M = [[2.0, 0.0], [2.9, 0.0]]
+MOST = {"max_door_m": 1.5, "max_thickness_m": 0.6, "max_depth_m": 1.0}
 
 
 def single(*ends, openings=()):
@@ -27,7 +28,7 @@ def south():
 
 
 def leaves(*others):
-    return find_leaves([south(), *others], unpaired_m=0.1)
+    return find_leaves([south(), *others], unpaired_m=0.1, max_width_m=1.5)
 
 
 @pytest.mark.parametrize(
@@ -84,6 +85,41 @@ def test_a_return_that_ends_at_another_wall_is_no_leaf():
     assert leaves(single(2.0, 0.05, 2.0, 0.9), single(2.0, 0.9, 0.5, 0.9)) == []
 
 
+@pytest.mark.parametrize(("begin_m", "n_leaves"), [(2.9, 1), (3.6, 0)], ids=["door", "too wide"])
+def test_a_door_may_be_where_one_wall_ends_and_another_goes_on(begin_m, n_leaves):
+    walls = [single(0, 0, 2, 0), single(begin_m, 0, 6, 0), single(2.0, 0.05, 2.0, 0.9)]
+    found = find_leaves(walls, unpaired_m=0.1, max_width_m=1.5)
+    assert [leaf.face for leaf in found] == walls[2].left[:n_leaves]
+
+
+def test_a_leaf_that_is_in_one_line_with_a_cupboard_beyond_its_door_is_taken_off_it():
+    """No wall runs on through a door: it was seen as one surface of 1.5 m."""
+    body = single(2.0, -0.6, 2.0, 0.9)
+    (leaf,) = leaves(body)
+    np.testing.assert_allclose(np.sort(leaf.face.ends[:, 1]), [0.05, 0.9], atol=0.06)
+    front, rest = sorted(leaf.cut_off(body.left[0]), key=lambda face: -face.ends[:, 1].max())
+    assert front is leaf.face and rest.ends[:, 1].max() < 0.06
+    assert leaf.cut_off(rest) == [rest]
+
+
+def test_a_leaf_may_hang_where_a_cupboard_hides_its_jamb():
+    """The wall is not seen from 2 to 2.9, nor beyond it to 3.4: the leaf is as wide as the door."""
+    bare = single(0, 0, 5, 0)
+    low_m, high_m = np.sort(bare.line.along_m(np.array([[2.0, 0.0], [3.4, 0.0]])))
+    wall = single(0, 0, 5, 0, openings=[Opening(low_m, high_m, OPEN, 99, np.nan, np.nan, False)])
+    body = single(2.9, 0.05, 2.9, 0.9)
+    (leaf,) = find_leaves([wall, body], unpaired_m=0.1, max_width_m=1.5)
+    np.testing.assert_allclose(np.sort(leaf.way_m, axis=0), JAMBS_M, atol=0.01)
+
+
+@pytest.mark.parametrize(("thin", "n_leaves"), [(True, 2), (False, 0)])
+def test_a_thin_leaf_may_have_been_seen_where_it_stood_at_another_time(thin, n_leaves):
+    """0.25 m beside it, from the other side; what is not seen to be thin may be a pier."""
+    sides = [single(2.0, 0.05, 2.0, 0.9), single(2.05, 0.9, 2.05, 0.05)]
+    other = single(2.25, 0.9, 2.25, 0.05)
+    assert len(leaves(*sides[: 1 + thin], other)) == n_leaves
+
+
 def test_both_sides_of_a_leaf_are_found_and_taken_off_with_what_was_seen_of_it_at_other_times():
     sides = [single(2.0, 0.05, 2.0, 0.9), single(2.05, 0.9, 2.05, 0.05)]
     traces = [single(2.1, 0.4, 2.1, 0.8)]
@@ -93,7 +129,7 @@ def test_both_sides_of_a_leaf_are_found_and_taken_off_with_what_was_seen_of_it_a
         return [wall for wall in walls if any(face in faces for face in wall.members)]
 
     left, grounds, found = fronts.drop_fronts(
-        *(walls, box(0, 0, 5, 4), assemble, lambda _: 0.1), max_thickness_m=0.6, max_depth_m=1.0
+        *(walls, box(0, 0, 5, 4), assemble, lambda _: 0.1), **MOST
     )
     assert left == walls[:1] and len(found) == len(grounds) == 2
     assert {id(leaf.face) for leaf in found} == {id(side.left[0]) for side in sides}

@@ -16,6 +16,7 @@ from scanplan.plan.plan_wall import PlanWall, usual_thickness_m
 
 ROOM = [(0, 0, 5, 0), (5, 0, 5, 4), (0, 4, 0, 0)]
 """South, east and west face of a room of 5 m by 4 m, seen from within."""
+MOST = {"max_door_m": 1.5, "max_thickness_m": 0.6, "max_depth_m": 1.0}
 
 
 def wall(faces, openings=()):
@@ -211,7 +212,10 @@ def test_walls_are_left_without_blocks_of_two_sides():
         return [wall for wall in walls if all(face in faces for face in wall.members)]
 
     left, (ground,), _ = fronts.drop_fronts(
-        *(walls, floor, assemble, usual_thickness_m), max_thickness_m=0.6, max_depth_m=1.0
+        *(walls, floor, assemble, usual_thickness_m),
+        max_door_m=1.5,
+        max_thickness_m=0.6,
+        max_depth_m=1.0,
     )
     assert left == walls[:-1] and ground.covers(box(1.5, 2, 3.5, 2.5))
 
@@ -239,7 +243,10 @@ def test_walls_are_left_without_the_fronts_and_their_ground_is_told():
         return [wall for wall in walls if any(face in faces for face in wall.members)]
 
     left, grounds, leaves = fronts.drop_fronts(
-        *(walls, floor, assemble, lambda _: 0.1), max_thickness_m=0.6, max_depth_m=1.0
+        *(walls, floor, assemble, lambda _: 0.1),
+        max_door_m=1.5,
+        max_thickness_m=0.6,
+        max_depth_m=1.0,
     )
     assert left == walls[:4] and len(grounds) == 1 and leaves == []
 
@@ -251,3 +258,18 @@ def test_a_front_is_no_longer_with_what_stands_in_its_line_than_furniture(in_lin
     fronts_m = [(0, 1, 1.5, 1), *((low, 1, high, 1) for low, high in in_line)]
     floor = box(0, 0, 12, 4).difference(box(0, 0, 1.5, 1))
     assert len(pockets([wall([face]) for face in [*seen, *fronts_m]], floor)) == n_pockets
+
+
+@pytest.mark.parametrize(("east_m", "n_pockets"), [(12, 0), (5, 2)])
+def test_corners_beside_a_door_are_no_furniture_if_the_wall_goes_farther_than_that_across(
+    east_m, n_pockets
+):
+    """A room whose door was driven through: behind the wall on either side nothing was seen.
+
+    The walls across are 8 m long; the wall with the door is 12 m long, or it may be two cupboards.
+    """
+    faces = [(0, 0, east_m, 0), (east_m, 0, east_m, 4), (east_m, 4, 3, 4), (2, 4, 0, 4)]
+    faces += [(0, 4, 0, 0), (5, 4.1, 5, 8), (5, 8, 0, 8), (0, 8, 0, 4.1)]
+    fan = shapely.Polygon([(2, 4), (3, 4), (5, 5.8), (5, 8), (0, 8), (0, 5.8)])
+    floor = shapely.union(box(0, 0, east_m, 4), fan)
+    assert len(pockets([wall([face]) for face in faces], floor)) == n_pockets

@@ -26,6 +26,7 @@ def drop_fronts(
     assemble: Callable[[Sequence[FaceInterval]], list[PlanWall]],
     measure_thickness_m: Callable[[Sequence[PlanWall]], float],
     *,
+    max_door_m: float,
     max_thickness_m: float,
     max_depth_m: float,
 ) -> tuple[list[PlanWall], list[BaseGeometry], list[Leaf]]:
@@ -46,9 +47,11 @@ def drop_fronts(
         Of a wall, and of furniture from its front to its back.
     """
     most = {"max_thickness_m": max_thickness_m, "max_depth_m": max_depth_m}
-    leaves = find_leaves(walls, unpaired_m=measure_thickness_m(walls))
+    leaves = find_leaves(walls, unpaired_m=measure_thickness_m(walls), max_width_m=max_door_m)
     if leaves:
         faces = [face for wall in walls for face in wall.members]
+        for leaf in leaves:
+            faces = [piece for face in faces for piece in leaf.cut_off(face)]
         traces = set(map(id, find_traces(leaves, faces)))
         walls = assemble([face for face in faces if id(face) not in traces])
     grounds: list[BaseGeometry] = [leaf.ground for leaf in leaves]

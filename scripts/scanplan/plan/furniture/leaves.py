@@ -5,8 +5,8 @@ is wide, and ends free: a wall ends at another, or is as long as its room asks f
 """
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from shapely.geometry import LineString, Point
@@ -14,7 +14,6 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry.intersections import LEAST_RAD
 from scanplan.plan.faces.intervals import FaceInterval
-from scanplan.plan.openings import Opening
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.tolerances import ALONG_SHARE, CORNER_M, END_M
 from scanplan.rays.tolerances import BEHIND_M
@@ -40,6 +39,16 @@ class Leaf:
         """What it stands on: as thick as ends err by."""
         return LineString(self.face.ends).buffer(END_M, cap_style="square")
 
+    def cut_off(self, face: FaceInterval) -> list[FaceInterval]:
+        """Return a surface, or it and the rest of the one that it was seen as a part of."""
+        if face.seen is not self.face.seen:
+            return [face]
+        low_m, high_m = self.face.low_m, self.face.high_m
+        if not face.low_m <= low_m < high_m <= face.high_m:
+            return [face]
+        before, behind = replace(face, high_m=low_m), replace(face, low_m=high_m)
+        return [self.face, *(rest for rest in (before, behind) if rest.length_m > CORNER_M)]
+
     def hides(self, face: FaceInterval) -> bool:
         """Return whether most of a surface is of the same leaf, as it stood at another time."""
         is_parallel = abs(face.line.normal @ self.face.line.normal) >= math.cos(LEAST_RAD)
@@ -60,7 +69,7 @@ class Leaf:
         return bool(along.intersection(near).length >= ALONG_SHARE * along.length)
 
 
-def find_leaves(walls: Sequence[PlanWall], *, unpaired_m: float) -> list[Leaf]:
+def find_leaves(walls: Sequence[PlanWall], *, unpaired_m: float, max_width_m: float) -> list[Leaf]:
     """Find the surfaces of leaves.
 
     Parameters
@@ -69,18 +78,50 @@ def find_leaves(walls: Sequence[PlanWall], *, unpaired_m: float) -> list[Leaf]:
         With their openings.
     unpaired_m : float
         How thick a wall is taken for of which one side is known.
+    max_width_m : float
+        Of a door from where one wall ends to where another goes on in its line.
     """
-    ways = [_Way.of_gap(wall, gap, unpaired_m) for wall in walls for gap in wall.openings]
+    ways = [
+        _Way.of_gap(wall, *gap_m, unpaired_m)
+        for wall in walls
+        for gap_m in _find_gaps(wall, walls, max_width_m)
+    ]
     faces = [face for wall in walls for face in wall.members]
     leaves = []
     for wall in walls:
+        others = [way for way in ways if way.wall is not wall]
         for face in wall.members:
-            for way in ways:
-                tip_m = None if way.wall is wall else way.find_tip(face)
-                if tip_m is not None and _is_free(face, tip_m, faces):
-                    leaves.append(Leaf(face, way.ends_m))
-                    break
+            leaf = next(_find_leaves_of(face, others, faces), None)
+            if leaf:
+                leaves.append(leaf)
     return leaves
+
+
+def _find_leaves_of(
+    face: FaceInterval, ways: Sequence["_Way"], faces: Sequence[FaceInterval]
+) -> Iterator[Leaf]:
+    """Yield the leaves that a surface may be, or what of it lies on one side of a way."""
+    for way in ways:
+        for piece in way.cut(face):
+            for part in way.parts(piece):
+                tip_m = part.find_tip(piece)
+                if tip_m is not None and _is_free(piece, tip_m, faces):
+                    yield Leaf(piece, part.ends_m)
+
+
+def _find_gaps(
+    wall: PlanWall, walls: Sequence[PlanWall], max_width_m: float
+) -> Iterator[tuple[float, float]]:
+    """Yield from where to where along a wall it is open, or another goes on beyond a door."""
+    for opening in wall.openings:
+        yield opening.low_m, opening.high_m
+    for other in walls:
+        low_m, high_m = np.sort(wall.line.along_m(other.ends)).tolist()
+        gaps_m = ((high_m, wall.low_m), (wall.high_m, low_m))
+        gap_m = next((gap for gap in gaps_m if 0 < gap[1] - gap[0] <= max_width_m), None)
+        is_parallel = abs(wall.line.normal @ other.line.normal) >= math.cos(LEAST_RAD)
+        if gap_m and is_parallel and np.abs(wall.line.offset_m(other.ends)).min() <= CORNER_M:
+            yield gap_m
 
 
 def find_traces(leaves: Sequence[Leaf], faces: Sequence[FaceInterval]) -> list[FaceInterval]:
@@ -108,16 +149,31 @@ def _farther_end(face: FaceInterval, way_m: FloatArray) -> FloatArray:
 
 
 def _is_free(face: FaceInterval, tip_m: FloatArray, others: Sequence[FaceInterval]) -> bool:
-    """Return whether nothing stands at an end of a surface but the other side of its body."""
+    """Return whether nothing stands at an end of a surface but the other side of its body.
+
+    What is seen to be thin may also have been seen where it stood at another time.
+    """
     tip = Point(tip_m)
+    is_thin = any(_is_other_side(face, other) for other in others)
+    most_off_m = CORNER_M if is_thin else BEHIND_M
     for other in others:
-        if LineString(other.ends).distance(tip) > CORNER_M:
+        is_whole = (
+            other.seen is face.seen and other.low_m <= face.low_m < face.high_m <= other.high_m
+        )
+        if is_whole or LineString(other.ends).distance(tip) > CORNER_M:
             continue
         along_m = face.line.along_m(other.ends)
         beyond_m = max(face.low_m - along_m.min(), along_m.max() - face.high_m)
-        if np.abs(face.line.offset_m(other.ends)).max() > BEHIND_M or beyond_m > CORNER_M:
+        if np.abs(face.line.offset_m(other.ends)).max() > most_off_m or beyond_m > CORNER_M:
             return False
     return True
+
+
+def _is_other_side(face: FaceInterval, other: FaceInterval) -> bool:
+    """Return whether a surface is that of a thin body's other side."""
+    is_opposite = face.line.normal @ other.line.normal <= -math.cos(LEAST_RAD)
+    along = LineString(other.ends).intersection(LineString(face.ends).buffer(BEHIND_M))
+    return bool(is_opposite) and along.length >= ALONG_SHARE * face.length_m
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,15 +183,41 @@ class _Way:
     wall: PlanWall
     ends_m: FloatArray
     jambs: tuple[LineString, LineString]
+    unpaired_m: float
 
     @staticmethod
-    def of_gap(wall: PlanWall, gap: Opening, unpaired_m: float) -> "_Way":
-        """Return the way through an opening of a wall."""
+    def of_gap(wall: PlanWall, low_m: float, high_m: float, unpaired_m: float) -> "_Way":
+        """Return the way through a wall, or beyond its end, from one place along it to another."""
         is_single = np.isnan(wall.thickness_m)
         across_m = np.array([-unpaired_m if is_single else -wall.half_m, wall.half_m])
-        ends_m = wall.line.at(np.array([gap.low_m, gap.high_m]))
+        ends_m = wall.line.at(np.array([low_m, high_m]))
         low, high = (LineString(end + across_m[:, None] * wall.line.normal) for end in ends_m)
-        return _Way(wall, ends_m, (low, high))
+        return _Way(wall, ends_m, (low, high), unpaired_m)
+
+    def cut(self, face: FaceInterval) -> list[FaceInterval]:
+        """Return a surface, or its pieces on either side: no wall runs on through a way."""
+        across = LineString(face.ends).intersection(LineString(self.ends_m))
+        if across.geom_type != "Point" or across.is_empty:
+            return [face]
+        (at_m,) = face.line.along_m(np.array(across.coords)).tolist()
+        half_m = self.jambs[0].length / 2
+        low, high = replace(face, high_m=at_m - half_m), replace(face, low_m=at_m + half_m)
+        return [low, high] if min(low.length_m, high.length_m) > CORNER_M else [face]
+
+    def parts(self, face: FaceInterval) -> "Iterator[_Way]":
+        """Yield the way, and what of it lies on either side of where a surface hangs in it.
+
+        There a jamb is that something before it hides.
+        """
+        yield self
+        low_m, high_m = np.sort(self.wall.line.along_m(self.ends_m)).tolist()
+        middle = LineString(self.ends_m)
+        near_m = self.jambs[0].length / 2 + BEHIND_M + END_M
+        hung_m = [end_m for end_m in face.ends if middle.distance(Point(end_m)) <= near_m]
+        for along_m in self.wall.line.along_m(np.array(hung_m).reshape(-1, 2)).tolist():
+            if low_m + CORNER_M < along_m < high_m - CORNER_M:
+                yield _Way.of_gap(self.wall, low_m, along_m, self.unpaired_m)
+                yield _Way.of_gap(self.wall, along_m, high_m, self.unpaired_m)
 
     def find_tip(self, face: FaceInterval) -> FloatArray | None:
         """Return the end (2,) of a leaf that hangs here at its other; None of another surface."""

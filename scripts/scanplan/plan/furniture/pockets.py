@@ -101,10 +101,10 @@ def find_pockets(
         if own is not None and own not in fronts:
             continue
         pocket = _make_pocket(hidden, fronts, unpaired_m)
-        walls_seen = near if own is None else faces.behind(pocket.ground)
+        behind_it = faces.behind(pocket.ground) if own else faces.backs(near, fronts)
         if _is_part_of_building(pocket, parts[row], max_depth_m):
             continue
-        if not _is_before_wall(pocket, walls_seen, grown[row]):
+        if not _is_before_wall(pocket, behind_it, grown[row]):
             # its ends, too, that were paired with what stands in their line
             pocket = Pocket(pocket.ground, _faces_on(pocket.ground, near))
             is_block = _is_block(pocket.ground, parts[row], unpaired_m, **most)
@@ -179,6 +179,23 @@ class _AllFaces(FaceTree):
         places_m = shapely.get_coordinates(ground)
         off_m = np.einsum("fpi,fi->fp", places_m - self._centre_m[:, None], self._normal)
         return self._faces[np.abs(off_m.min(axis=1)) <= CORNER_M].tolist()
+
+    def backs(
+        self, near: Sequence[FaceInterval], fronts: Sequence[FaceInterval]
+    ) -> list[FaceInterval]:
+        """Return the faces near a pocket that its fronts may stand before.
+
+        Those that face the same way; and others, such as the wall that a corner's cupboard ends at,
+        if they go farther through the plan than the fronts do: else these are the wall.
+        """
+        reach_m = max((self.reach_on_line_m(front) for front in fronts), default=0.0)
+        least = math.cos(intersections.LEAST_RAD)
+        return [
+            face
+            for face in near
+            if any(face.line.normal @ front.line.normal >= least for front in fronts)
+            or self.reach_on_line_m(face) > reach_m
+        ]
 
     def parallel(self, face: FaceInterval, most_m: float) -> list[FaceInterval]:
         """Return the faces of the same way whose lines lie behind a face, no farther than that."""
