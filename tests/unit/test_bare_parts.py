@@ -16,10 +16,11 @@ MOUTH_M = (1.0, 3.0)
 FAN = Polygon([(6, 1), (16, -4), (16, 8), (6, 3)])  # seen through a mouth of 2 m
 WALLS = ROOM.exterior.difference(LineString([(6, 1), (6, 3)]))
 INSIDE = LineString([(1, 2), (5, 2)])
+LIMITS = {"max_walled": 0.3, "beside_m": 0.6, "step_m": 0.1}
 
 
 def cut(ground, walls: BaseGeometry = WALLS, visited: BaseGeometry = INSIDE):
-    (left,) = cut_bare_parts(ground, walls.buffer(0.1), visited, max_walled=0.3, step_m=0.1)
+    (left,) = cut_bare_parts(ground, walls.buffer(0.1), visited, **LIMITS)
     return left
 
 
@@ -48,7 +49,10 @@ def test_a_corner_whose_walls_nobody_saw_stays():
 
 
 def test_a_fan_alone_is_all_cut():
-    assert cut_bare_parts(FAN, WALLS, INSIDE, max_walled=0.3, step_m=0.1) in ([], [FAN])
+    assert cut_bare_parts(FAN, WALLS, INSIDE, **LIMITS) in (
+        [],
+        [FAN],
+    )
     assert take_visited(Polygon(), INSIDE) == []
 
 
@@ -100,7 +104,7 @@ def test_of_ground_that_a_cut_parts_all_that_was_visited_stays():
     walls = shapely.union(WALLS, second.exterior.difference(LineString([(16, 0), (16, 4)])))
     ground = shapely.union_all([ROOM, FAN, second])
     ways = shapely.MultiLineString([[(1, 2), (5, 2)], [(17, 2), (19, 2)]])
-    found = cut_bare_parts(ground, walls.buffer(0.1), ways, max_walled=0.3, step_m=0.1)
+    found = cut_bare_parts(ground, walls.buffer(0.1), ways, **LIMITS)
     assert all(any(part.covers(way) for part in found) for way in ways.geoms)
 
 
@@ -122,3 +126,16 @@ def test_what_is_left_is_of_the_ground_and_holds_all_ways(half_m, depth_m, aside
     assert left.difference(ground).area < 1e-2
     assert left.covers(INSIDE)
     assert np.isfinite(left.area)
+
+
+def test_shadows_in_the_middle_of_a_room_are_no_mouth():
+    """Of a room whose far half is seen as a fan between what stands in it, none of it by walls."""
+    fan = Polygon([(2, 1.5), (6, 0.2), (6, 3.8), (2, 2.5)])
+    ground = shapely.union(box(0, 0, 2.1, 4), fan)
+    walls = LineString([(2.1, 0), (0, 0), (0, 4), (2.1, 4)])
+    left = cut(ground, walls, LineString([(1, 1), (1, 3)]))
+    assert left.area == pytest.approx(ground.area)
+    jambs = shapely.union(
+        walls, shapely.MultiLineString([[(2.1, 0), (2.1, 1.4)], [(2.1, 2.6), (2.1, 4)]])
+    )
+    assert cut(ground, jambs, LineString([(1, 1), (1, 3)])).area < 9

@@ -112,3 +112,24 @@ def test_of_two_gaps_in_one_place_the_narrower_parts():
     longer = np.array([[4.0, 1.0], [4.25, 3.1]])
     (line,) = find(LEFT, RIGHT, WIDE, gaps_m=[longer, GAP])
     np.testing.assert_array_equal(line, GAP)
+
+
+def test_a_sliver_beside_a_gap_does_not_join_the_rooms_on_either_side():
+    """The line also crosses the end of a niche of the room on the left."""
+    niche = box(3.5, 0.6, 4.15, 0.9)
+    left = box(0, 0, 3.6, 4)
+    gap = np.array([[4.1, 0.5], [4.1, 3.0]])
+    (line,) = find(left, RIGHT, box(3.5, 1, 4.3, 3.0), niche, gaps_m=[gap])
+    np.testing.assert_allclose(line, gap)
+
+
+@pytest.mark.parametrize(("is_wall", "n_lines"), [(True, 2), (False, 0)])
+def test_a_wall_between_two_doors_is_no_island_of_furniture(is_wall, n_lines):
+    """3 m of it, 0.2 m thick, stand alone between doors of 0.5 m."""
+    between = box(4, 0.5, 4.2, 3.5)
+    ground = box(0, 0, 8, 4).difference(between)
+    walls = between if is_wall else None
+    found = find_narrow_places(
+        *(ground, IN_BOTH, (), walls), max_width_m=1.5, min_area_m2=1.0, cell_m=0.05
+    )
+    assert len(found) == n_lines

@@ -250,17 +250,53 @@ class TestRooms:
         (leaking,) = rooms.find_rooms(walls_, [floor], track_m, **ROOMS)
         assert leaking.polygon.area > 100
 
-    def test_of_a_room_no_more_than_a_fiftieth_is_left_that_was_not_seen(self):
+    def test_a_planar_room_is_drawn_without_the_shadows_of_what_is_narrow(self):
+        """Half a disc before the one wall that was found, which cannot draw it."""
+        legs = [np.array([2 + 2 * np.cos(angle), 2 * np.sin(angle)]) for angle in (0.6, 1.4, 2.2)]
+        shadows = [shapely.LineString([leg, 2.5 * leg - [3, 0]]).buffer(0.15) for leg in legs]
+        disc = shapely.Point(2, 0).buffer(3).intersection(shapely.box(-2, 0.1, 6, 4))
+        floor = disc.difference(shapely.union_all(shadows))
+        below = box()[:1]
+        track_m = np.array([(2.0, 0.5), (2.2, 0.5)])
+        (spiky,), (smooth,) = (
+            rooms.find_rooms(below, [floor], track_m, **ROOMS, planar=planar)
+            for planar in (False, True)
+        )
+        assert spiky.polygon.area < smooth.polygon.area - 0.5
+        assert smooth.polygon.length < spiky.polygon.length - 4
+
+    def test_what_furniture_may_hide_before_a_wall_stays_in_a_room(self):
+        """Unseen from x = 1 to 4 before the upper wall: 3 m and 1 m would be bare, `depth` deep."""
+
+        def leave_out(depth_m: float) -> rooms.Room:
+            seen = shapely.box(0, 0, 4, 3.9 - depth_m).union(shapely.box(0, 0, 1, 4))
+            (left,) = rooms.leave_out_unseen([room], seen, box(), **rest)
+            return left
+
         room = rooms.Room(shapely.box(0.1, 0.1, 3.9, 3.9), 1.0, entered=True, n_scans=1)
-        seen = shapely.box(0, 0, 4, 3).union(shapely.box(0, 3, 1, 3.5))
-        piece = shapely.box(1, 3, 3, 4)
-        rest = {"track_m": np.array([(2.0, 1.0)]), "min_area_m2": 1.0, "unpaired_m": 0.1}
-        (bare,) = rooms.leave_out_unseen([room], seen, box(), **rest)
-        assert bare.polygon.difference(seen).area <= 0.02 * bare.polygon.area
-        assert bare.walled < room.walled
-        (furnished,) = rooms.leave_out_unseen([room], seen.union(piece), box(), **rest)
-        assert furnished.polygon.covers(piece.intersection(room.polygon))
+        rest = {
+            **{"track_m": np.array([(2.0, 1.0)]), "min_area_m2": 1.0},
+            **{"max_depth_m": 1.0, "unpaired_m": 0.1},
+        }
+        # 2.9 d < 2.9 + d below 1.5 m
+        assert leave_out(1.4).polygon.area == pytest.approx(room.polygon.area)
+        shallow = leave_out(1.6)
+        assert shallow.polygon.area == pytest.approx(room.polygon.area - 2.9 * 1.6, abs=0.02)
+        assert shallow.walled < room.walled
         assert rooms.leave_out_unseen([room], shapely.box(0, 0, 0.9, 1), box(), **rest) == []
+
+    def test_unseen_floor_beyond_which_no_wall_is_drawn_is_left_out(self):
+        room = rooms.Room(shapely.box(0.1, 0.1, 3.9, 3.9), 1.0, entered=True, n_scans=1)
+        seen = shapely.box(0, 0, 4, 3.5)
+        rest = {
+            **{"track_m": np.array([(2.0, 1.0)]), "min_area_m2": 1.0},
+            **{"max_depth_m": 1.0, "unpaired_m": 0.1},
+        }
+        below, right, _, left = box()
+        (bare,) = rooms.leave_out_unseen([room], seen, [below, right, left], **rest)
+        assert bare.polygon.bounds[3] == pytest.approx(3.5)
+        (hidden,) = rooms.leave_out_unseen([room], seen, box(), **rest)
+        assert hidden.polygon.bounds[3] == pytest.approx(3.9)
 
     def test_no_place_that_was_driven_to_is_drawn_out_of_its_room(self):
         """A corridor of which no wall was found hangs on a square with four walls."""
@@ -275,7 +311,7 @@ class TestRooms:
     def test_a_room_that_falls_apart_is_every_part_of_it_that_was_driven_into(self):
         room = rooms.Room(shapely.box(0.1, 0.1, 3.9, 3.9), 1.0, entered=True, n_scans=1)
         seen = shapely.union(shapely.box(0, 0, 4, 1.9), shapely.box(0, 2.4, 4, 4))
-        rest = {"min_area_m2": 1.0, "unpaired_m": 0.1}
+        rest = {"min_area_m2": 1.0, "max_depth_m": 0.2, "unpaired_m": 0.1}
         ways = np.array([(2.0, 1.0), (2.0, 3.0)])
         assert len(rooms.leave_out_unseen([room], seen, box(), ways, **rest)) == 2
         assert len(rooms.leave_out_unseen([room], seen, box(), ways[:1], **rest)) == 1

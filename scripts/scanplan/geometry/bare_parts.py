@@ -17,15 +17,17 @@ def cut_bare_parts(
     visited: BaseGeometry,
     *,
     max_walled: float,
+    beside_m: float,
     step_m: float,
 ) -> list[Polygon]:
     """Cut ground at the mouths of parts that nobody was in, and whose outline is bare.
 
     A mouth is a straight line to where the outline passes nearest, from a corner of it that points
-    inwards, or from where a wall ends. It is worth a cut if the bare outline that it takes away is
-    longer than twice the mouth and the walls that go with it: what lies in a corner is not. Of
-    jagged outline no more counts than of a line around it. A mouth may lead over a hole whose
-    outline is as bare: two fans that meet outside enclose one.
+    inwards, or from where a wall ends. It lies between walls: within a room the shadows of what
+    stands there leave fans with a bare outline, too. It is worth a cut if the bare outline that it
+    takes away is longer than twice the mouth and the walls that go with it: what lies in a corner
+    is not. Of jagged outline no more counts than of a line around it. A mouth may lead over a hole
+    whose outline is as bare: two fans that meet outside enclose one.
 
     Parameters
     ----------
@@ -36,6 +38,8 @@ def cut_bare_parts(
         Ways or places where somebody was.
     max_walled : float, 0 to 1
         A part with a larger share of its outline along walls stays.
+    beside_m : float, >= 0
+        How far from walls a mouth may begin or end.
     step_m : float, > 0
         What places along the outline are apart, at most.
 
@@ -49,7 +53,7 @@ def cut_bare_parts(
     rest, whole = [ground], []
     while rest:
         polygon = rest.pop()
-        bare = list(_find_bare_parts(polygon, walled, visited, max_walled, step_m))
+        bare = list(_find_bare_parts(polygon, walled, visited, max_walled, beside_m, step_m))
         left = shapely.difference(polygon, shapely.union_all(bare), grid_size=SHORTEST_M)
         if left.area < polygon.area - SHORTEST_M:
             rest += take_visited(left, visited)
@@ -88,6 +92,7 @@ def _find_bare_parts(
     walled: BaseGeometry,
     visited: BaseGeometry,
     max_walled: float,
+    beside_m: float,
     step_m: float,
 ) -> Iterator[Polygon]:
     """Yield bare parts of ground that do not overlap, those that are worth most first."""
@@ -99,7 +104,11 @@ def _find_bare_parts(
     turn = _find_turns(steps_m)
     # a tenth of a radian: flatter ones are of the outline's noise
     may_begin = (turn < -0.1) | (is_walled != np.roll(is_walled, 1))
-    begin, end, chord_m = _find_mouths(places_m, np.flatnonzero(may_begin))
+    near = walled.buffer(beside_m)
+    shapely.prepare(near)
+    begin, end, chord_m = _find_mouths(
+        places_m, np.flatnonzero(may_begin), shapely.contains_xy(near, *places_m.T)
+    )
     walled_m = _between(np.where(is_walled, length_m, 0), begin, end)
     bare_m = _between(np.where(is_walled, 0, length_m), begin, end)
     rows = _find_worthy(bare_m, walled_m, chord_m, max_walled, step_m)
@@ -137,11 +146,17 @@ def _find_turns(steps_m: FloatArray) -> FloatArray:
     return np.divide(turn, lengths_m2, out=np.zeros_like(turn), where=lengths_m2 > 0)
 
 
-def _find_mouths(places_m: FloatArray, corners: IntArray) -> tuple[IntArray, IntArray, FloatArray]:
-    """Return where mouths begin and end (k,), both ways round, and how wide (k,) they are."""
+def _find_mouths(
+    places_m: FloatArray, corners: IntArray, is_near: BoolArray
+) -> tuple[IntArray, IntArray, FloatArray]:
+    """Return where mouths begin and end (k,), both ways round, and how wide (k,) they are.
+
+    They begin at corners and end, as they begin, at places that are near walls.
+    """
+    corners = corners[is_near[corners]]
     away_m = np.hypot(*(places_m[corners, None] - places_m).transpose(2, 0, 1))
     is_nearest = (away_m <= np.roll(away_m, 1, axis=1)) & (away_m <= np.roll(away_m, -1, axis=1))
-    row, other = np.nonzero(is_nearest & (away_m > 0))
+    row, other = np.nonzero(is_nearest & is_near & (away_m > 0))
     corner = corners[row]
     chord_m = away_m[row, other]
     return np.append(corner, other), np.append(other, corner), np.tile(chord_m, 2)

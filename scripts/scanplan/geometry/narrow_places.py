@@ -28,6 +28,7 @@ def find_narrow_places(
     ground: BaseGeometry,
     visited_m: FloatArray,
     gaps_m: Sequence[FloatArray] = (),
+    walls: BaseGeometry | None = None,
     *,
     max_width_m: float,
     min_area_m2: float,
@@ -41,11 +42,13 @@ def find_narrow_places(
     Parameters
     ----------
     ground : Polygon or MultiPolygon
-        What small islands leave out of it counts as ground.
+        What small islands leave out of it counts as ground, but where walls stand.
     visited_m : (n, 2) float64
         Places that were visited.
     gaps_m : sequence of (2, 2) float64
         Lines across ground that may part it however wide they are, if it is wider on both sides.
+    walls : shapely geometry, optional
+        Where walls stand that are no furniture.
     max_width_m : float, > 0
         Of other lines.
     min_area_m2 : float, >= 0
@@ -59,7 +62,7 @@ def find_narrow_places(
     list of (2, 2) float64
         The shortest lines across, from outline to outline.
     """
-    filled = _fill_islands(ground)
+    filled = _fill_islands(ground, shapely.MultiPolygon() if walls is None else walls)
     if filled.is_empty:
         return []
     grid = _fit_grid(filled, cell_m)
@@ -110,10 +113,12 @@ def _fit_grid(ground: BaseGeometry, cell_m: float) -> Grid:
     return Grid(low_m, cell_m, (int(rows), int(columns)))
 
 
-def _fill_islands(ground: BaseGeometry) -> BaseGeometry:
+def _fill_islands(ground: BaseGeometry, walls: BaseGeometry) -> BaseGeometry:
     parts = [part for part in shapely.get_parts(ground) if part.geom_type == "Polygon"]
     holes = [Polygon(ring) for part in parts for ring in part.interiors]
-    islands = [hole for hole in holes if hole.area <= FURNITURE_M2]
+    small = [hole for hole in holes if hole.area <= FURNITURE_M2]
+    # a wall between two doors stands alone, too
+    islands = [hole for hole in small if hole.intersection(walls).area < hole.area / 2]
     return shapely.union_all([*parts, *islands], grid_size=SHORTEST_M)
 
 
@@ -291,7 +296,10 @@ def _part_enough(
         is_visited = np.array([_is_visited(part, visited) for part in parts], bool)
         is_small = shapely.area(parts) < np.where(is_visited, min_area_m2, FURNITURE_M2)
         beside = [_parts_beside(cut, parts) for cut in cuts]
-        cut_off = [i for i, rows in enumerate(beside) if len(rows) > 1 and is_small[rows].any()]
+        # slivers beside a line that parts what is large matter nothing
+        cut_off = [
+            i for i, rows in enumerate(beside) if len(rows) > 1 and (~is_small[rows]).sum() < 2
+        ]
         if not cut_off:
             return [line for line, rows in zip(chosen, beside, strict=True) if len(rows) > 1]
         # one at a time: what is small joins what is behind it, and another line parts both

@@ -362,7 +362,7 @@ class _Survey:
     def find_spaces(self, surfaces: _Surfaces) -> _Spaces:
         """Return rooms and what stands in them."""
         min_area_m2 = self.settings.rooms.min_area_m2
-        floor = self._floor_with([leaf.ground for leaf in surfaces.leaves])
+        floor = self._floor_with(surfaces.furnished)
         partings = room_bounds.find_partings(
             *(surfaces.bounds, floor, self.track_m),
             max_width_m=self.settings.openings.max_door_m,
@@ -393,6 +393,7 @@ class _Survey:
             rooms = leave_out_unseen(
                 *(rooms, seen, surfaces.bounds, self.track_m),
                 min_area_m2=min_area_m2,
+                max_depth_m=self.settings.furniture.furniture_depth_m,
                 unpaired_m=surfaces.unpaired_m,
             )
         pieces = pieces_in_rooms(pieces, [room.polygon for room in rooms])

@@ -102,9 +102,15 @@ def find_partings(
     free = free_space.difference_on_grid(floor, solid)
     partings = list(doors)
     gaps_m = _find_line_gaps(bounds, free, max_width_m, unpaired_m) if planar else []
+    # shorter ones may be sides of what stands in a room
+    long = [wall for wall in bounds if wall.length_m > 2 * max_width_m]
+    walls = shapely.union_all(wall_ground.wall_strips(long, unpaired_m))
     for part in free_space.open_polygons(free, END_M):
         for ends_m in narrow_places.find_narrow_places(
-            part, track_m, gaps_m, max_width_m=max_width_m, min_area_m2=min_area_m2, cell_m=CELL_M
+            *(part, track_m, gaps_m, walls),
+            max_width_m=max_width_m,
+            min_area_m2=min_area_m2,
+            cell_m=CELL_M,
         ):
             partings.append(_make_parting(_snap(ends_m, bounds)))
     return partings

@@ -20,9 +20,7 @@ from scanplan.types import Array, FloatArray
 _MARGIN_M = 0.5  # of lines drawn around a part of the floor, and beyond walls as short as a jamb
 _LEAST_CELL_SHARE = 0.25  # seen of a cell that walls enclose: what hides the rest is in the room
 _LEAST_AGREEMENT = 0.75  # of cells and floor, intersection over union: else lines are missing
-_MOST_UNSEEN = 0.02  # of a room: slivers between rays, and what stands on its floor
 _CLOSED_SHARE = 0.9  # of an outline along walls: corners and short gaps leave a tenth
-_STEP_M = 0.25  # edge of the least square of floor that a scan must see of a room
 _BESIDE_WALL_M = np.array(
     [0.15, 0.3, 0.5]
 )  # from a wall: what stands at it may hide the nearest floor
@@ -111,11 +109,16 @@ def find_rooms(
     found: list[tuple[Polygon, float, bool]] = []
     occupied: BaseGeometry = MultiPolygon()
     for part in _large_parts(seen, min_area_m2):
+        if planar:
+            part = _without_shadows(part, solid)
         drawn, outline = _draw_room(part, track, walls, strips, solid, occupied, unpaired_m)
         polygons = [] if drawn is None else [drawn]
         if planar and drawn is not None and drawn.intersects(way):
             polygons = bare_parts.cut_bare_parts(
-                *(drawn, facing, way), max_walled=1 - min_walled, step_m=END_M
+                *(drawn, facing, way),
+                max_walled=1 - min_walled,
+                beside_m=2 * CORNER_M,
+                step_m=END_M,
             )
         for polygon in polygons:
             walled = bare_parts.walled_share(polygon.exterior, outline)
@@ -139,15 +142,21 @@ def leave_out_unseen(
     track_m: FloatArray,
     *,
     min_area_m2: float,
+    max_depth_m: float,
     unpaired_m: float,
 ) -> list[Room]:
-    """Return rooms without the largest parts of them that were not seen, all but a fiftieth.
+    """Return rooms without unseen floor, but for what furniture may hide between it and a wall.
+
+    An unseen part stays if leaving it out would bare more of the outline, in metres, than the part
+    has square metres for each metre of `max_depth_m`, and bare outline of its own.
 
     Parameters
     ----------
     rooms : sequence of Room
     seen : shapely geometry
         Floor that was seen, and what is drawn to stand on it.
+    max_depth_m : float, > 0
+        How deep a part may be that is hidden from wall to wall.
     walls, track_m, min_area_m2, unpaired_m
         As in `find_rooms`.
 
@@ -162,7 +171,7 @@ def leave_out_unseen(
     left = [
         replace(room, polygon=polygon, walled=bare_parts.walled_share(polygon.exterior, outline))
         for room in rooms
-        for polygon in _without_unseen(room.polygon, seen, way)
+        for polygon in _without_unseen(room.polygon, seen, outline, way, max_depth_m)
         if polygon.area >= min_area_m2
     ]
     return sorted(left, key=lambda room: _largest_first(room.polygon))
@@ -198,16 +207,23 @@ def _large_parts(floor: BaseGeometry, min_area_m2: float) -> list[Polygon]:
     return sorted((part for part in parts if part.area >= min_area_m2), key=_largest_first)
 
 
+def _without_shadows(part: Polygon, solid: BaseGeometry) -> Polygon:
+    """Return a part of the floor with the shadows of what is as narrow as a chair's legs."""
+    grown = part.buffer(CORNER_M, join_style="mitre")
+    closed = shapely.union(grown.buffer(-CORNER_M, join_style="mitre"), part)
+    return _largest(free_space.difference_on_grid(closed, solid)) or part
+
+
 def _largest(geometry: BaseGeometry) -> Polygon | None:
     parts = free_space.open_polygons(geometry, END_M)
     return max(parts, key=lambda part: part.area, default=None)
 
 
 def _count_scans(polygon: Polygon, all_views: Array) -> int:
-    """Return how many scans saw a part of a polygon, which is prepared."""
+    """Return how many scans saw more of a polygon, which is prepared, than lies in a corner."""
     near = all_views[shapely.intersects(polygon, all_views)]
     seen_m2 = shapely.area(shapely.intersection(polygon, near))
-    return int((seen_m2 >= _STEP_M**2).sum())
+    return int((seen_m2 >= CORNER_M**2).sum())
 
 
 def _draw_room(
@@ -268,15 +284,21 @@ def _fill_cells(
     return drawn if agreement >= _LEAST_AGREEMENT or is_closed else rough
 
 
-def _without_unseen(polygon: Polygon, seen: BaseGeometry, way: BaseGeometry) -> list[Polygon]:
-    unseen = sorted(
-        free_space.difference_on_grid(polygon, seen).geoms, key=_largest_first, reverse=True
-    )
-    left_m2 = sum(part.area for part in unseen)
-    taken: list[Polygon] = []
-    while unseen and left_m2 > _MOST_UNSEEN * (polygon.area - sum(part.area for part in taken)):
-        taken.append(unseen.pop())
-        left_m2 -= taken[-1].area
+def _without_unseen(
+    polygon: Polygon,
+    seen: BaseGeometry,
+    outline: BaseGeometry,
+    way: BaseGeometry,
+    max_depth_m: float,
+) -> list[Polygon]:
+    edge = polygon.boundary.buffer(2 * free_space.GRID_M)
+    bare = polygon.boundary.difference(outline).buffer(2 * free_space.GRID_M)
+    taken = [
+        part
+        for part in free_space.difference_on_grid(polygon, seen).geoms
+        if part.boundary.intersection(bare).length + part.area / max_depth_m
+        > part.boundary.difference(edge).length
+    ]
     if not taken:
         return [polygon]
     rest = free_space.difference_on_grid(polygon, free_space.union_on_grid(taken))
