@@ -300,6 +300,19 @@ def test_what_was_not_seen_of_a_room_is_dotted():
     assert shapely.LineString(blank.paths[0][:, :2]).length == 2
 
 
+def test_floor_of_a_room_that_was_not_seen_is_shown_but_for_what_stands_there():
+    """Of the second room the last metre of three; a cupboard takes 2 m of it, a sliver is left."""
+    sheet = composition.compose_sheet(plan())
+    (hidden,) = [mark for mark in sheet.marks if mark.kind == "hidden"]
+    assert shapely.Polygon(hidden.paths[0][:, :2]).equals(shapely.box(4.1, 2, 7.1, 3))
+    assert hidden.title == "floor not seen, 3.0 m²"
+    assert any("floor that was not seen" in word.text for word in sheet.paper_words)
+    row = floorplan_making.furniture([shapely.box(4.1, 2, 6.1, 3), shapely.box(6.1, 2, 7.1, 2.85)])
+    assert len(plan(furniture=row).hidden_floor) == 0
+    (left,) = plan(furniture={name: values[:1] for name, values in row.items()}).hidden_floor
+    assert left.area == pytest.approx(1)
+
+
 def test_furniture_is_a_thin_outline_on_a_layer_of_its_own_with_its_evidence():
     sheet = composition.compose_sheet(plan(furniture=floorplan_making.furniture()))
     (piece,) = [mark for mark in sheet.marks if mark.kind == "furniture"]

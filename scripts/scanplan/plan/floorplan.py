@@ -11,6 +11,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.plan import wall_footprints
+from scanplan.plan.tolerances import END_M
 from scanplan.plan.wall_ground import UNSEEN
 from scanplan.rays import levels
 from scanplan.store import schemas, tables
@@ -309,6 +310,23 @@ class FloorPlan:
     def areas(self) -> Array:
         """The rooms' polygons, (r,)."""
         return shapely.from_wkb(np.asarray(self.rooms["geometry"], object))
+
+    @cached_property
+    def hidden_floor(self) -> Array:
+        """Floor of rooms that no chosen scan saw, nor furniture on it, (k,) Polygons.
+
+        What is narrow, as shadows of legs and feet of walls are, is left out; nothing where no
+        floor is known to be seen.
+        """
+        seen, pieces = (
+            shapely.from_wkb(np.asarray(columns["geometry"], object))
+            for columns in (self.free, self.furniture)
+        )
+        if len(seen) == 0:
+            return np.empty(0, object)
+        known = shapely.union_all([*seen, *pieces], grid_size=_GRID_M)
+        parts = shapely.get_parts(shapely.difference(self.areas, known, grid_size=_GRID_M))
+        return parts[~shapely.is_empty(shapely.buffer(parts, -END_M))]
 
     @cached_property
     def room_names(self) -> list[str]:

@@ -161,7 +161,7 @@ def _open_space(page: Page, marks: list[Mark], symbols: list[Symbol]) -> LabelSp
     loose = [
         path
         for mark in marks
-        if mark.kind not in {*solid, "room", "axis", "verify", "corrected", "furniture"}
+        if mark.kind not in {*solid, "room", "hidden", "axis", "verify", "corrected", "furniture"}
         for path in mark.paths
     ]
     loose += [path for symbol in symbols for path in symbol_paths(symbol)]

@@ -92,6 +92,7 @@ class Style:
 # the order of drawing, so that nothing covers the walls
 LAYERS = {
     "A-AREA": Layer(0.13, 9, plots=False),
+    "A-AREA-NSEN": Layer(0.13, 9, "DOTTED"),
     "A-AREA-VRFY": Layer(0.18, 1, "DASHED"),
     "A-WALL-PATT": Layer(0.13, 8),
     "A-WALL-CNTR": Layer(0.13, 9, plots=False),
@@ -124,8 +125,9 @@ _DASHED = DASHES_MM["DASHED"]
 STYLES = {
     "room": Style("A-AREA", ink="none"),
     "axis": Style("A-WALL-CNTR", ink="none"),
+    "hidden": Style("A-AREA-NSEN", "floor that was not seen", FAINT, "#f4f4f4", (0.3, 0.9)),
     "furniture": Style("A-FURN", "furniture, as far as seen", ink=FAINT),
-    "not-seen": Style("A-WALL-NSEN", "not seen", ink=FAINT, dashes_mm=DASHES_MM["DOTTED"]),
+    "not-seen": Style("A-WALL-NSEN", "outline that was not seen", FAINT, dashes_mm=(0.3, 0.9)),
     "assumed": Style("A-WALL-ASMD", "wall, its thickness assumed", FAINT, "#e3e3e3", (1.2, 0.8)),
     "inferred": Style("A-WALL-INFR", "inferred wall", FAINT, "#f4f4f4", _DASHED),
     "low": Style("A-WALL-PRHT", "wall or furniture below the ceiling", FAINT, "#ffffff"),
