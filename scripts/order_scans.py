@@ -1,5 +1,6 @@
 """Put the scans in the order in which they are worth most for the plan."""
 
+import json
 from collections.abc import Mapping
 from typing import Any
 
@@ -46,7 +47,8 @@ def order_scans(
     others : dict of str to path-like, optional
         The tables that `methods.METHODS` names for the method.
     """
-    columns = _read_scans(scans) if hulls is None else _read_hulls(hulls)
+    store = tables.ScanStore(scans)
+    columns = _read_scans(store) if hulls is None else _read_hulls(hulls)
     other_tables = {
         name: tables.read_table(path, _SCHEMAS[name], allow_empty=True)
         for name, path in (others or {}).items()
@@ -66,12 +68,12 @@ def order_scans(
             " every cluster of their points lies on one line: use fewer clusters (n_clusters) or"
             " check the recording"
         )
-    tables.write_table(output, schemas.SELECTION, selection)
+    notes = {"planar": json.dumps(store.planar)}
+    tables.write_table(output, schemas.SELECTION, selection, notes=notes)
     log.log_line(f"order_scans: {orderings.summarise_order(method, selection)}")
 
 
-def _read_scans(path: FilePath) -> Columns:
-    store = tables.ScanStore(path)
+def _read_scans(store: tables.ScanStore) -> Columns:
     return {"scan_id": store.scan_ids, "n_points": store.n_points}
 
 

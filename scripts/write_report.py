@@ -91,7 +91,7 @@ def _read_chosen_scans(path: FilePath, survey: SurveyFacts) -> Iterator[tuple[in
 
 
 def _read_survey(files: Mapping[str, Any], stop: Settings) -> SurveyFacts:
-    selection = tables.read_table(files["selection"], schemas.SELECTION)
+    selection, chosen, _ = stopping.read_choice(files["selection"], **stop)
     evaluation = {Path(path).stem: path for path in files["evaluation"]}
     return SurveyFacts(
         selection=selection,
@@ -99,7 +99,7 @@ def _read_survey(files: Mapping[str, Any], stop: Settings) -> SurveyFacts:
         poses=tables.read_table(files["poses"], schemas.POSES),
         segments=tables.read_table(files["segments"], schemas.WALLS, allow_empty=True),
         evidence=tables.read_table(files["evidence"], schemas.EVIDENCE, allow_empty=True),
-        chosen=stopping.choose_n_scans(selection, **stop)[0],
+        chosen=chosen,
         prediction=_read_prediction(files["validation"]),
         visit=VisitFacts(
             tables.read_table(files["questions"], schemas.QUESTIONS, allow_empty=True),

@@ -6,7 +6,7 @@ import shapely
 
 import order_scans
 from scanplan.errors import StageError
-from scanplan.selection import methods, orderings
+from scanplan.selection import methods, orderings, stopping
 from scanplan.store import schemas, tables
 
 
@@ -64,13 +64,21 @@ def write_others(folder, method, n):
     return written
 
 
+def write_scans(path, *, planar=False):
+    with tables.open_scan_writer(path, planar=planar) as write:
+        for scan_id in range(0, 60, 5):
+            write(scan_id, np.zeros((9, 3)))
+    return path
+
+
 @pytest.mark.parametrize("method", orderings.METHODS)
 def test_an_order_of_all_scans(hulls, tmp_path, caplog, method):
     caplog.set_level(logging.INFO)
+    scans = write_scans(tmp_path / "scans.parquet")
     output = tmp_path / "selection" / f"{method}.parquet"
     others = write_others(tmp_path, method, 12)
     options = {"method": method, "hulls": hulls, "seed": 1, "others": others}
-    order_scans.order_scans(tmp_path / "scans.parquet", output, **options)
+    order_scans.order_scans(scans, output, **options)
     selection = tables.read_table(output, schemas.SELECTION)
     assert sorted(selection["scan_id"]) == list(range(0, 60, 5))
     assert selection["covered_m2"][-1] == pytest.approx(15)
@@ -78,16 +86,22 @@ def test_an_order_of_all_scans(hulls, tmp_path, caplog, method):
     covered = {"visibility": "24.0 m2", "wall_length": "1.6 m"}.get(method, "15.0 m2")
     assert f"order_scans: {method}, 12 scans, {covered}; 99% at " in caplog.text
     again = tmp_path / "again.parquet"
-    order_scans.order_scans(tmp_path / "scans.parquet", again, **options)
+    order_scans.order_scans(scans, again, **options)
     assert again.read_bytes() == output.read_bytes()
+
+
+@pytest.mark.parametrize(("planar", "count"), [(False, 3), (True, 2)])
+def test_fewer_scans_of_a_planar_survey_are_chosen_by_themselves(tmp_path, planar, count):
+    boxes = [shapely.box(x, 0, x + width, 1) for x, width in ((0, 80), (80, 11), (91, 5), (96, 4))]
+    hulls = write_hulls(tmp_path / "hulls.parquet", boxes)
+    scans = write_scans(tmp_path / "scans.parquet", planar=planar)
+    order_scans.order_scans(scans, tmp_path / "order", method="cluster_hull", hulls=hulls)
+    assert stopping.read_choice(tmp_path / "order", area_share="auto")[1] == count
 
 
 @pytest.mark.parametrize("method", ["wall_length", "visibility"])
 def test_an_order_by_something_else_needs_no_hulls(hulls, tmp_path, method):
-    scans = tmp_path / "scans.parquet"
-    with tables.open_scan_writer(scans, planar=False) as write:
-        for scan_id in range(0, 60, 5):
-            write(scan_id, np.zeros((9, 3)))
+    scans = write_scans(tmp_path / "scans.parquet")
     paths = [tmp_path / "without.parquet", tmp_path / "with.parquet"]
     options = {"method": method, "others": write_others(tmp_path, method, 12)}
     for path, table in zip(paths, (None, hulls), strict=True):
@@ -105,7 +119,7 @@ def test_scans_that_cover_nothing_are_refused(tmp_path):
     )
     with pytest.raises(StageError, match="3 scans cover 0 m2"):
         order_scans.order_scans(
-            tmp_path / "scans.parquet",
+            write_scans(tmp_path / "scans.parquet"),
             tmp_path / "selection.parquet",
             method="cluster_hull",
             hulls=hulls,

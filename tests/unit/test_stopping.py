@@ -3,6 +3,7 @@ import pytest
 
 from scanplan.errors import StageError
 from scanplan.selection import stopping
+from scanplan.store import schemas, tables
 
 COLUMNS = {
     "covered_m2": np.array([50.0, 80.0, 95.0, 100.0, 100.0]),
@@ -47,6 +48,27 @@ def test_a_share_is_of_the_method_s_own_measure():
         stopping.choose_n_scans({**COLUMNS, "covered": COLUMNS["covered_m2"]}, area_share=0.8)[0]
         == 2
     )
+
+
+COUNTED = ("rank", "scan_id", "n_points")
+
+
+@pytest.mark.parametrize(("planar", "k"), [(False, 3), (True, 2)])
+def test_an_automatic_share_is_less_in_the_plane(tmp_path, planar, k):
+    covered_m2 = np.array([50.0, 91.0, 96.0, 100.0])
+    limits = {"area_share": "auto", "planar": planar}
+    assert stopping.choose_n_scans({"covered_m2": covered_m2}, **limits)[0] == k
+    columns = {
+        **{name: np.zeros(4, int) for name in COUNTED},
+        **{name: covered_m2 for name in schemas.SELECTION.columns if name not in COUNTED},
+        "rank": np.arange(1, 5),
+    }
+    path = tmp_path / "wall_length.parquet"
+    notes = {"planar": "true"} if planar else None
+    tables.write_table(path, schemas.SELECTION, columns, notes=notes)
+    chosen_ids, reason = stopping.read_chosen_scans(path, area_share="auto")
+    assert len(chosen_ids) == k
+    assert f"{'0.9' if planar else '0.95'} of" in reason
 
 
 def test_rounding_of_areas_needs_no_further_scan():

@@ -1,6 +1,7 @@
 """How many scans of an ordering the plan is made of, and why."""
 
-from typing import Any
+import json
+from typing import Any, Literal
 
 import numpy as np
 
@@ -11,13 +12,17 @@ from scanplan.types import Columns, FilePath, FloatArray, IntArray
 
 BYTES_PER_POINT = scan_cache.POINT.itemsize
 """As registered scans are stored before they are compressed."""
+AUTO = "auto"
+AUTO_SHARE, AUTO_SHARE_PLANAR = 0.95, 0.9
+"""In space the last twentieth holds windows, in the plane mostly furniture, from other sides."""
 
 
 def choose_n_scans(
     columns: Columns,
     *,
+    planar: bool = False,
     n_scans: int | None = None,
-    area_share: float | None = None,
+    area_share: float | Literal["auto"] | None = None,
     min_gain_m2: float | None = None,
     max_points: int | None = None,
     max_bytes: int | None = None,
@@ -32,11 +37,14 @@ def choose_n_scans(
     columns : dict of str to (n,) numpy.ndarray, n >= 1
         `covered_m2`, or both it and `covered`, of a table of an ordering, by rank; `gain_m2` for
         `min_gain_m2`, `n_points` for a budget.
+    planar : bool
+        Whether the sensor measures in one plane only.
     n_scans : int, >= 1, optional
         Use so many scans, or all if there are fewer.
-    area_share : float in (0, 1], optional
+    area_share : float in (0, 1] or "auto", optional
         Use the fewest scans that cover this share of what all cover (within a square millimetre),
-        `covered`, the objective of the method itself, where it is given.
+        `covered`, the objective of the method itself, where it is given; automatically
+        `AUTO_SHARE_PLANAR` of planar scans, `AUTO_SHARE` of others.
     min_gain_m2 : float, > 0, optional
         Use no scan after the last that adds this much area.
     max_points, max_bytes : int, >= 1, optional
@@ -60,6 +68,8 @@ def choose_n_scans(
     limits = [(n, f"all {n} scans")]
     if n_scans is not None:
         limits.append(_by_number(n, n_scans))
+    if area_share == AUTO:
+        area_share = AUTO_SHARE_PLANAR if planar else AUTO_SHARE
     if area_share is not None:
         limits.append(_by_share(columns, area_share))
     if min_gain_m2 is not None:
@@ -87,9 +97,18 @@ def read_chosen_scans(selection: FilePath, **stop: Any) -> tuple[IntArray, str]:
         By rank.
     reason : str
     """
-    ordering = tables.read_table(selection, schemas.SELECTION)
-    count, reason = choose_n_scans(ordering, **stop)
+    ordering, count, reason = read_choice(selection, **stop)
     return ordering["scan_id"][:count], reason
+
+
+def read_choice(selection: FilePath, **stop: Any) -> tuple[Columns, int, str]:
+    """Return the columns of an ordering, how many of its first scans to use, and why.
+
+    Parameters as of `read_chosen_scans`.
+    """
+    ordering = tables.read_table(selection, schemas.SELECTION)
+    planar = json.loads(tables.read_note(selection, schemas.SELECTION, "planar") or "false")
+    return ordering, *choose_n_scans(ordering, planar=planar, **stop)
 
 
 def points_budget(*, max_points: int | None = None, max_bytes: int | None = None) -> int | None:
