@@ -28,7 +28,7 @@ from scanplan.project import stage_settings
 from scanplan.rays import levels, ray_set
 from scanplan.selection import stopping
 from scanplan.stage.per_registered_scan import sensor_keywords
-from scanplan.store import registered_scans, schemas, tables
+from scanplan.store import registered_scans, tables
 from scanplan.types import BoolArray, FloatArray, IntArray, Settings
 from scanplan.validation import confidence, left_out_scans, prediction
 from scanplan.validation.element_features import describe_elements
@@ -80,9 +80,8 @@ def bench(
 def _rate_survey(folder: Path, settings: Settings) -> Iterator[dict[str, Any]]:
     """Yield, of plans of a survey, features and rightness by table."""
     method = settings["plan"]["method"]
-    ordering = tables.read_table(folder / f"selection/{method}.parquet", schemas.SELECTION)
     stop = stage_settings.select_section(settings, "selection", "stop")
-    count, _ = stopping.choose_n_scans(ordering, **stop)
+    ordering, count, _ = stopping.read_choice(folder / f"selection/{method}.parquet", **stop)
     for share, shift_m in _PLANS:
         chosen = np.sort(ordering["scan_id"][: max(round(share * count), 3)])
         plan, validation, motion = _make_plan(folder, chosen, settings, shift_m)

@@ -113,7 +113,8 @@ def _read_results(folder: Path, settings: Settings) -> Results:
 
 
 def _bench_survey(found: Results, truth: Path, settings: Settings) -> None:
-    count, _ = stopping.choose_n_scans(found.ordering, **settings["selection"]["stop"])
+    stop = settings["selection"]["stop"]
+    count, _ = stopping.choose_n_scans(found.ordering, planar=found.store.planar, **stop)
     all_ids = np.sort(found.ordering["scan_id"])
     share = count / len(all_ids)
     print(

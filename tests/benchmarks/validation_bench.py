@@ -16,7 +16,7 @@ from scanplan.plan import floorplan
 from scanplan.project import stage_settings
 from scanplan.rays import ray_set
 from scanplan.selection import stopping
-from scanplan.store import registered_scans, schemas, tables
+from scanplan.store import registered_scans, tables
 from scanplan.types import Columns, FloatArray, IntArray, Settings
 from scanplan.validation import left_out_scans, prediction
 
@@ -56,9 +56,9 @@ def _read_survey(folder: Path, truth: Path, settings: Settings) -> Survey:
     parts = ("faces", "walls", "openings", "rooms", "free")
     plan = floorplan.read_floorplan({name: folder / f"plan/{name}.parquet" for name in parts})
     method = settings["plan"]["method"]
-    ordering = tables.read_table(folder / f"selection/{method}.parquet", schemas.SELECTION)
-    count, _ = stopping.choose_n_scans(ordering, **settings["selection"]["stop"])
-    chosen_ids = np.sort(ordering["scan_id"][:count])
+    stop = settings["selection"]["stop"]
+    chosen_ids, _ = stopping.read_chosen_scans(folder / f"selection/{method}.parquet", **stop)
+    chosen_ids = np.sort(chosen_ids)
     known = registered_scans.read_registered_scans(folder / "registration.parquet")
     rays = left_out_scans.draw_left_out_rays(
         tables.ScanStore(folder / "scans.parquet"),

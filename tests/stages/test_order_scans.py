@@ -90,9 +90,10 @@ def test_an_order_of_all_scans(hulls, tmp_path, caplog, method):
     assert again.read_bytes() == output.read_bytes()
 
 
-@pytest.mark.parametrize(("planar", "count"), [(False, 3), (True, 2)])
+@pytest.mark.parametrize(("planar", "count"), [(False, 12), (True, 11)])
 def test_fewer_scans_of_a_planar_survey_are_chosen_by_themselves(tmp_path, planar, count):
-    boxes = [shapely.box(x, 0, x + width, 1) for x, width in ((0, 80), (80, 11), (91, 5), (96, 4))]
+    """Eleven boxes show 0.92 of what twelve show, ten show 0.84."""
+    boxes = [shapely.box(x, 0, x + 1, 1) for x in range(12)]
     hulls = write_hulls(tmp_path / "hulls.parquet", boxes)
     scans = write_scans(tmp_path / "scans.parquet", planar=planar)
     order_scans.order_scans(scans, tmp_path / "order", method="cluster_hull", hulls=hulls)

@@ -102,6 +102,17 @@ def test_a_leaf_that_is_in_one_line_with_a_cupboard_beyond_its_door_is_taken_off
     assert leaf.cut_off(rest) == [rest]
 
 
+def test_what_a_leaf_was_seen_in_one_line_with_stays_a_wall():
+    walls = [south(), single(2.0, -0.6, 2.0, 0.9)]
+    left, _, (leaf,) = fronts.drop_fronts(
+        *(walls, box(0, -2, 5, 4), lambda faces: [single(*np.ravel(f.ends)) for f in faces]),
+        *(lambda _: 0.1,),
+        **MOST,
+    )
+    assert leaf.face.ends[:, 1].max() == pytest.approx(0.9)
+    assert sorted(wall.ends[:, 1].max().round(2) for wall in left) == [0.0, 0.05]
+
+
 def test_a_leaf_may_hang_where_a_cupboard_hides_its_jamb():
     """The wall is not seen from 2 to 2.9, nor beyond it to 3.4: the leaf is as wide as the door."""
     bare = single(0, 0, 5, 0)
@@ -110,6 +121,24 @@ def test_a_leaf_may_hang_where_a_cupboard_hides_its_jamb():
     body = single(2.9, 0.05, 2.9, 0.9)
     (leaf,) = find_leaves([wall, body], unpaired_m=0.1, max_width_m=1.5)
     np.testing.assert_allclose(np.sort(leaf.way_m, axis=0), JAMBS_M, atol=0.01)
+
+
+def test_a_partition_in_a_wide_opening_is_no_leaf_of_half_of_it():
+    bare = single(0, 0, 10, 0)
+    low_m, high_m = np.sort(bare.line.along_m(np.array([[1.0, 0.0], [9.0, 0.0]])))
+    wide = Opening(low_m, high_m, OPEN, 99, np.nan, np.nan, False)
+    walls = [single(0, 0, 10, 0, openings=[wide]), single(5.0, 0.05, 5.0, 3.9)]
+    assert find_leaves(walls, unpaired_m=0.1, max_width_m=1.5) == []
+
+
+@pytest.mark.parametrize(
+    "others",
+    [[(2.9, 0.5, 6, 0.5)], [(2.9, 0.0, 2.9, -3.0)], [(2.9, 0, 6, 0), (2.0, 0.1, 2.9, 0.1)]],
+    ids=["beside it", "across", "another wall in the gap"],
+)
+def test_a_wall_that_ends_where_none_goes_on_has_no_door_beyond_it(others):
+    walls = [single(0, 0, 2, 0), single(2.0, 0.15, 2.0, 0.95), *(single(*o) for o in others)]
+    assert find_leaves(walls, unpaired_m=0.1, max_width_m=1.5) == []
 
 
 @pytest.mark.parametrize(("thin", "n_leaves"), [(True, 2), (False, 0)])

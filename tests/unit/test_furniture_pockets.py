@@ -213,9 +213,7 @@ def test_walls_are_left_without_blocks_of_two_sides():
 
     left, (ground,), _ = fronts.drop_fronts(
         *(walls, floor, assemble, usual_thickness_m),
-        max_door_m=1.5,
-        max_thickness_m=0.6,
-        max_depth_m=1.0,
+        **MOST,
     )
     assert left == walls[:-1] and ground.covers(box(1.5, 2, 3.5, 2.5))
 
@@ -244,9 +242,7 @@ def test_walls_are_left_without_the_fronts_and_their_ground_is_told():
 
     left, grounds, leaves = fronts.drop_fronts(
         *(walls, floor, assemble, lambda _: 0.1),
-        max_door_m=1.5,
-        max_thickness_m=0.6,
-        max_depth_m=1.0,
+        **MOST,
     )
     assert left == walls[:4] and len(grounds) == 1 and leaves == []
 

@@ -275,8 +275,10 @@ class TestRooms:
 
         room = rooms.Room(shapely.box(0.1, 0.1, 3.9, 3.9), 1.0, entered=True, n_scans=1)
         rest = {
-            **{"track_m": np.array([(2.0, 1.0)]), "min_area_m2": 1.0},
-            **{"max_depth_m": 1.0, "unpaired_m": 0.1},
+            "track_m": np.array([(2.0, 1.0)]),
+            "min_area_m2": 1.0,
+            "max_depth_m": 1.0,
+            "unpaired_m": 0.1,
         }
         # 2.9 d < 2.9 + d below 1.5 m
         assert leave_out(1.4).polygon.area == pytest.approx(room.polygon.area)
@@ -285,12 +287,37 @@ class TestRooms:
         assert shallow.walled < room.walled
         assert rooms.leave_out_unseen([room], shapely.box(0, 0, 0.9, 1), box(), **rest) == []
 
+    @pytest.mark.parametrize(("side_m", "is_left"), [(1.7, True), (1.8, False)])
+    def test_what_was_not_seen_in_the_middle_of_a_room_is_no_larger_than_furniture(
+        self, side_m, is_left
+    ):
+        room = rooms.Room(shapely.box(0.1, 0.1, 11.9, 11.9), 1.0, entered=True, n_scans=1)
+        hidden = shapely.box(5, 5, 5 + side_m, 5 + side_m)
+        (left,) = rooms.leave_out_unseen(
+            *([room], shapely.box(0, 0, 12, 12).difference(hidden), box(12.0)),
+            track_m=np.array([(2.0, 1.0)]),
+            min_area_m2=1.0,
+            max_depth_m=1.0,
+            unpaired_m=0.1,
+        )
+        assert left.polygon.covers(hidden) == is_left
+
+    def test_a_room_without_furniture_keeps_nothing_that_was_not_seen(self):
+        room = rooms.Room(shapely.box(0.1, 0.1, 3.9, 3.9), 1.0, entered=True, n_scans=1)
+        (left,) = rooms.leave_out_unseen(
+            *([room], shapely.box(0, 0, 4, 3), box(), np.array([(2.0, 1.0)])),
+            **{"min_area_m2": 1.0, "max_depth_m": 0.0, "unpaired_m": 0.1},
+        )
+        assert left.polygon.bounds[3] == pytest.approx(3)
+
     def test_unseen_floor_beyond_which_no_wall_is_drawn_is_left_out(self):
         room = rooms.Room(shapely.box(0.1, 0.1, 3.9, 3.9), 1.0, entered=True, n_scans=1)
         seen = shapely.box(0, 0, 4, 3.5)
         rest = {
-            **{"track_m": np.array([(2.0, 1.0)]), "min_area_m2": 1.0},
-            **{"max_depth_m": 1.0, "unpaired_m": 0.1},
+            "track_m": np.array([(2.0, 1.0)]),
+            "min_area_m2": 1.0,
+            "max_depth_m": 1.0,
+            "unpaired_m": 0.1,
         }
         below, right, _, left = box()
         (bare,) = rooms.leave_out_unseen([room], seen, [below, right, left], **rest)

@@ -50,25 +50,48 @@ def test_a_share_is_of_the_method_s_own_measure():
     )
 
 
+def test_an_automatic_share_needs_to_know_the_scanner():
+    with pytest.raises(ValueError, match="planar"):
+        stopping.choose_n_scans(COLUMNS, area_share="auto")
+
+
 COUNTED = ("rank", "scan_id", "n_points")
 
 
-@pytest.mark.parametrize(("planar", "k"), [(False, 3), (True, 2)])
-def test_an_automatic_share_is_less_in_the_plane(tmp_path, planar, k):
-    covered_m2 = np.array([50.0, 91.0, 96.0, 100.0])
-    limits = {"area_share": "auto", "planar": planar}
-    assert stopping.choose_n_scans({"covered_m2": covered_m2}, **limits)[0] == k
+# 19 scans of equal worth, and one of a twentieth
+EVEN_M2 = np.append(np.arange(5.0, 100, 5), 100.0)
+
+
+@pytest.mark.parametrize(
+    ("planar", "k", "said"), [(False, 19, "show 0.95 of"), (True, 18, "show 0.9 of")]
+)
+def test_an_automatic_share_is_less_in_the_plane(tmp_path, planar, k, said):
     columns = {
-        **{name: np.zeros(4, int) for name in COUNTED},
-        **{name: covered_m2 for name in schemas.SELECTION.columns if name not in COUNTED},
-        "rank": np.arange(1, 5),
+        **dict.fromkeys(COUNTED, np.zeros(20, int)),
+        **{name: EVEN_M2 for name in schemas.SELECTION.columns if name not in COUNTED},
+        **{"rank": np.arange(1, 21), "covered_m2": EVEN_M2 / 2},
     }
     path = tmp_path / "wall_length.parquet"
     notes = {"planar": "true"} if planar else None
     tables.write_table(path, schemas.SELECTION, columns, notes=notes)
     chosen_ids, reason = stopping.read_chosen_scans(path, area_share="auto")
-    assert len(chosen_ids) == k
-    assert f"{'0.9' if planar else '0.95'} of" in reason
+    assert len(chosen_ids) == k and said in reason
+
+
+@pytest.mark.parametrize(
+    ("covered_m2", "k"),
+    [
+        # 4 scans show 0.9, and 7 show 0.95; 4 and 12; 11 and 12
+        ([50, 70, 80, 90, 92, 94, 96, 98, 99, 99.5, 99.8, 100], 7),
+        ([50, 70, 80, 90, 91, 92, 92.5, 93, 93.5, 94, 94.5, 100], 10),
+        ([50, 60, 70, 75, 80, 82, 84, 86, 88, 89, 91, 100], 11),
+    ],
+)
+def test_of_few_planar_scans_none_are_spared(covered_m2, k):
+    found, _ = stopping.choose_n_scans(
+        {"covered_m2": np.array(covered_m2, float)}, area_share="auto", planar=True
+    )
+    assert found == k
 
 
 def test_rounding_of_areas_needs_no_further_scan():

@@ -86,7 +86,7 @@ def find_narrow_places(
             lines.append(line)
     lines += _choose_gaps(filled, gaps_m, lines)
     visits = np.asarray(shapely.points(visited_m))
-    return _part_enough(filled, lines, visits, min_area_m2)
+    return _part_enough(filled, lines, visits, min_area_m2, sliver_m=4 * cell_m)
 
 
 def _choose_gaps(
@@ -283,11 +283,13 @@ def _part_enough(
     lines: Sequence[FloatArray],
     visited: Array,
     min_area_m2: float,
+    *,
+    sliver_m: float,
 ) -> list[FloatArray]:
     """Return the lines that, all together, part ground into large enough parts.
 
     A part that is too small goes with one beside it: if nobody was in it, first with another that
-    nobody was in.
+    nobody was in. Parts narrower than twice a sliver count for nothing.
     """
     chosen = list(lines)
     while True:
@@ -295,10 +297,12 @@ def _part_enough(
         parts = shapely.get_parts(shapely.difference(ground, shapely.union_all(cuts)))
         is_visited = np.array([_is_visited(part, visited) for part in parts], bool)
         is_small = shapely.area(parts) < np.where(is_visited, min_area_m2, FURNITURE_M2)
+        is_wide = ~shapely.is_empty(shapely.buffer(parts, -sliver_m))
         beside = [_parts_beside(cut, parts) for cut in cuts]
-        # slivers beside a line that parts what is large matter nothing
         cut_off = [
-            i for i, rows in enumerate(beside) if len(rows) > 1 and (~is_small[rows]).sum() < 2
+            i
+            for i, rows in enumerate(beside)
+            if len(rows) > 1 and (is_wide[rows].sum() < 2 or is_small[rows[is_wide[rows]]].any())
         ]
         if not cut_off:
             return [line for line, rows in zip(chosen, beside, strict=True) if len(rows) > 1]

@@ -13,7 +13,7 @@ from shapely.geometry.base import BaseGeometry
 from scanplan.plan import wall_footprints
 from scanplan.plan.tolerances import END_M
 from scanplan.plan.wall_ground import UNSEEN
-from scanplan.rays import levels
+from scanplan.rays import free_space, levels
 from scanplan.store import schemas, tables
 from scanplan.store.doubts import NO_DOUBT, Doubts, read_doubts
 from scanplan.types import Array, BoolArray, Columns, FilePath, FloatArray, IntArray
@@ -325,8 +325,9 @@ class FloorPlan:
         if len(seen) == 0:
             return np.empty(0, object)
         known = shapely.union_all([*seen, *pieces], grid_size=_GRID_M)
-        parts = shapely.get_parts(shapely.difference(self.areas, known, grid_size=_GRID_M))
-        return parts[~shapely.is_empty(shapely.buffer(parts, -END_M))]
+        hidden = shapely.difference(self.areas, known, grid_size=_GRID_M)
+        parts = [part for of_room in hidden for part in free_space.open_polygons(of_room, END_M)]
+        return np.array(parts, object)
 
     @cached_property
     def room_names(self) -> list[str]:

@@ -377,7 +377,7 @@ class _Survey:
             min_walled=self.settings.rooms.min_walled,
             min_width_m=self.settings.pairs.max_thickness_m,
             unpaired_m=surfaces.unpaired_m,
-            floor=self._floor_with(surfaces.furnished),
+            floor=floor,
             planar=self.rays.planar,
             threads=self.threads,
         )

@@ -103,7 +103,7 @@ def find_partings(
     partings = list(doors)
     gaps_m = _find_line_gaps(bounds, free, max_width_m, unpaired_m) if planar else []
     # shorter ones may be sides of what stands in a room
-    long = [wall for wall in bounds if wall.length_m > 2 * max_width_m]
+    long = [wall for wall in bounds if planar and wall.length_m > 2 * max_width_m]
     walls = shapely.union_all(wall_ground.wall_strips(long, unpaired_m))
     for part in free_space.open_polygons(free, END_M):
         for ends_m in narrow_places.find_narrow_places(

@@ -9,6 +9,7 @@ from shapely.geometry import LineString, MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import bare_parts
+from scanplan.geometry.narrow_places import FURNITURE_M2
 from scanplan.plan import wall_ground
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.tolerances import CORNER_M, END_M
@@ -148,14 +149,15 @@ def leave_out_unseen(
     """Return rooms without unseen floor, but for what furniture may hide between it and a wall.
 
     An unseen part stays if leaving it out would bare more of the outline, in metres, than the part
-    has square metres for each metre of `max_depth_m`, and bare outline of its own.
+    has square metres for each metre of `max_depth_m`, and bare outline of its own. What is not at a
+    wall is no larger than furniture, too.
 
     Parameters
     ----------
     rooms : sequence of Room
     seen : shapely geometry
         Floor that was seen, and what is drawn to stand on it.
-    max_depth_m : float, > 0
+    max_depth_m : float, >= 0
         How deep a part may be that is hidden from wall to wall.
     walls, track_m, min_area_m2, unpaired_m
         As in `find_rooms`.
@@ -293,12 +295,16 @@ def _without_unseen(
 ) -> list[Polygon]:
     edge = polygon.boundary.buffer(2 * free_space.GRID_M)
     bare = polygon.boundary.difference(outline).buffer(2 * free_space.GRID_M)
-    taken = [
-        part
-        for part in free_space.difference_on_grid(polygon, seen).geoms
-        if part.boundary.intersection(bare).length + part.area / max_depth_m
-        > part.boundary.difference(edge).length
-    ]
+
+    def is_hidden(part: Polygon) -> bool:
+        # edges of shadows are longer than what they leave bare
+        mouth = shapely.line_merge(part.boundary.difference(edge)).simplify(END_M)
+        bared_m = mouth.length - part.boundary.intersection(bare).length
+        is_at_wall = part.intersects(outline) or part.area <= FURNITURE_M2
+        return is_at_wall and part.area <= max_depth_m * bared_m
+
+    unseen = free_space.difference_on_grid(polygon, seen).geoms
+    taken = [part for part in unseen if not is_hidden(part)]
     if not taken:
         return [polygon]
     rest = free_space.difference_on_grid(polygon, free_space.union_on_grid(taken))

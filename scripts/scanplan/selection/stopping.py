@@ -13,14 +13,15 @@ from scanplan.types import Columns, FilePath, FloatArray, IntArray
 BYTES_PER_POINT = scan_cache.POINT.itemsize
 """As registered scans are stored before they are compressed."""
 AUTO = "auto"
-AUTO_SHARE, AUTO_SHARE_PLANAR = 0.95, 0.9
-"""In space the last twentieth holds windows, in the plane mostly furniture, from other sides."""
+AUTO_SHARES = {False: 0.95, True: 0.9}
+"""By whether scans are planar: in space the last twentieth holds windows, else it is furniture."""
+_FEW = 10  # planar scans: so many cost nothing, and may close the corners of one room
 
 
 def choose_n_scans(
     columns: Columns,
     *,
-    planar: bool = False,
+    planar: bool | None = None,
     n_scans: int | None = None,
     area_share: float | Literal["auto"] | None = None,
     min_gain_m2: float | None = None,
@@ -37,14 +38,14 @@ def choose_n_scans(
     columns : dict of str to (n,) numpy.ndarray, n >= 1
         `covered_m2`, or both it and `covered`, of a table of an ordering, by rank; `gain_m2` for
         `min_gain_m2`, `n_points` for a budget.
-    planar : bool
-        Whether the sensor measures in one plane only.
+    planar : bool, optional
+        Whether the sensor measures in one plane only; what is automatic needs to know.
     n_scans : int, >= 1, optional
         Use so many scans, or all if there are fewer.
     area_share : float in (0, 1] or "auto", optional
         Use the fewest scans that cover this share of what all cover (within a square millimetre),
         `covered`, the objective of the method itself, where it is given; automatically
-        `AUTO_SHARE_PLANAR` of planar scans, `AUTO_SHARE` of others.
+        `AUTO_SHARES`, of planar scans no fewer than ten unless the others' share needs fewer.
     min_gain_m2 : float, > 0, optional
         Use no scan after the last that adds this much area.
     max_points, max_bytes : int, >= 1, optional
@@ -69,8 +70,10 @@ def choose_n_scans(
     if n_scans is not None:
         limits.append(_by_number(n, n_scans))
     if area_share == AUTO:
-        area_share = AUTO_SHARE_PLANAR if planar else AUTO_SHARE
-    if area_share is not None:
+        if planar is None:
+            raise ValueError("area_share is auto, but not whether scans are planar")
+        limits.append(_by_scanner(columns, planar))
+    elif area_share is not None:
         limits.append(_by_share(columns, area_share))
     if min_gain_m2 is not None:
         limits.append(_by_gain(columns["gain_m2"], min_gain_m2))
@@ -134,6 +137,16 @@ def _by_share(columns: Columns, share: float) -> tuple[int, str]:
     if np.array_equal(covered, columns["covered_m2"]):
         return k, f"{chosen} cover {share:.4g} of the {covered[-1]:.1f} m2 that all cover"
     return k, f"{chosen} show {share:.4g} of what all show, by the method's own measure"
+
+
+def _by_scanner(columns: Columns, planar: bool) -> tuple[int, str]:
+    enough = _by_share(columns, AUTO_SHARES[False])
+    if not planar or enough[0] <= _FEW:
+        return enough
+    fewer = _by_share(columns, AUTO_SHARES[True])
+    if fewer[0] >= _FEW:
+        return fewer
+    return _FEW, f"{_FEW} of {len(columns['covered_m2'])} scans: so few are not thinned further"
 
 
 def _by_gain(gain_m2: FloatArray, least_m2: float) -> tuple[int, str]:

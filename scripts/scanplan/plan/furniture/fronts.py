@@ -43,6 +43,8 @@ def drop_fronts(
         Makes walls of faces.
     measure_thickness_m : callable
         Says how thick walls usually are.
+    max_door_m : float
+        How wide a door is at most.
     max_thickness_m, max_depth_m : float
         Of a wall, and of furniture from its front to its back.
     """

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from shapely import STRtree
 from shapely.geometry import LineString, Point
 from shapely.geometry.base import BaseGeometry
 
@@ -86,24 +87,30 @@ def find_leaves(walls: Sequence[PlanWall], *, unpaired_m: float, max_width_m: fl
         for wall in walls
         for gap_m in _find_gaps(wall, walls, max_width_m)
     ]
+    tree = STRtree([LineString(way.ends_m) for way in ways])
+    reach_m = max((way.reach_m for way in ways), default=0.0)
     faces = [face for wall in walls for face in wall.members]
     leaves = []
     for wall in walls:
-        others = [way for way in ways if way.wall is not wall]
         for face in wall.members:
-            leaf = next(_find_leaves_of(face, others, faces), None)
+            near = tree.query(LineString(face.ends), predicate="dwithin", distance=reach_m)
+            others = [ways[i] for i in np.sort(near) if ways[i].wall is not wall]
+            leaf = next(_find_leaves_of(face, others, faces, max_width_m), None)
             if leaf:
                 leaves.append(leaf)
     return leaves
 
 
 def _find_leaves_of(
-    face: FaceInterval, ways: Sequence["_Way"], faces: Sequence[FaceInterval]
+    face: FaceInterval,
+    ways: Sequence["_Way"],
+    faces: Sequence[FaceInterval],
+    max_width_m: float,
 ) -> Iterator[Leaf]:
     """Yield the leaves that a surface may be, or what of it lies on one side of a way."""
     for way in ways:
         for piece in way.cut(face):
-            for part in way.parts(piece):
+            for part in way.parts(piece, max_width_m):
                 tip_m = part.find_tip(piece)
                 if tip_m is not None and _is_free(piece, tip_m, faces):
                     yield Leaf(piece, part.ends_m)
@@ -120,8 +127,15 @@ def _find_gaps(
         gaps_m = ((high_m, wall.low_m), (wall.high_m, low_m))
         gap_m = next((gap for gap in gaps_m if 0 < gap[1] - gap[0] <= max_width_m), None)
         is_parallel = abs(wall.line.normal @ other.line.normal) >= math.cos(LEAST_RAD)
-        if gap_m and is_parallel and np.abs(wall.line.offset_m(other.ends)).min() <= CORNER_M:
+        is_in_line = np.abs(wall.line.offset_m(other.ends)).min() <= CORNER_M
+        if gap_m and is_parallel and is_in_line and not _is_closed(wall, gap_m, walls):
             yield gap_m
+
+
+def _is_closed(wall: PlanWall, gap_m: tuple[float, float], walls: Sequence[PlanWall]) -> bool:
+    """Return whether another wall stands where one is to be open."""
+    middle = Point(wall.line.at(sum(gap_m) / 2))
+    return any(LineString(other.ends).distance(middle) <= BEHIND_M for other in walls)
 
 
 def find_traces(leaves: Sequence[Leaf], faces: Sequence[FaceInterval]) -> list[FaceInterval]:
@@ -204,20 +218,27 @@ class _Way:
         low, high = replace(face, high_m=at_m - half_m), replace(face, low_m=at_m + half_m)
         return [low, high] if min(low.length_m, high.length_m) > CORNER_M else [face]
 
-    def parts(self, face: FaceInterval) -> "Iterator[_Way]":
-        """Yield the way, and what of it lies on either side of where a surface hangs in it.
+    @property
+    def reach_m(self) -> float:
+        """How far from its middle line a leaf may begin: hinges are anywhere in a jamb."""
+        return self.jambs[0].length / 2 + BEHIND_M + END_M
+
+    def parts(self, face: FaceInterval, max_width_m: float) -> "Iterator[_Way]":
+        """Yield the way, and doors on either side of where a surface hangs in it.
 
         There a jamb is that something before it hides.
         """
         yield self
         low_m, high_m = np.sort(self.wall.line.along_m(self.ends_m)).tolist()
         middle = LineString(self.ends_m)
-        near_m = self.jambs[0].length / 2 + BEHIND_M + END_M
-        hung_m = [end_m for end_m in face.ends if middle.distance(Point(end_m)) <= near_m]
+        hung_m = [end_m for end_m in face.ends if middle.distance(Point(end_m)) <= self.reach_m]
         for along_m in self.wall.line.along_m(np.array(hung_m).reshape(-1, 2)).tolist():
-            if low_m + CORNER_M < along_m < high_m - CORNER_M:
-                yield _Way.of_gap(self.wall, low_m, along_m, self.unpaired_m)
-                yield _Way.of_gap(self.wall, along_m, high_m, self.unpaired_m)
+            sides_m = ((low_m, along_m), (along_m, high_m))
+            if min(end_m - begin_m for begin_m, end_m in sides_m) <= CORNER_M:
+                continue
+            for begin_m, end_m in sides_m:
+                if end_m - begin_m <= max_width_m:
+                    yield _Way.of_gap(self.wall, begin_m, end_m, self.unpaired_m)
 
     def find_tip(self, face: FaceInterval) -> FloatArray | None:
         """Return the end (2,) of a leaf that hangs here at its other; None of another surface."""
