@@ -49,11 +49,12 @@ def cut_bare_parts(
         What is left: of several parts those that somebody was in, or else the largest; none where
         all of it is bare.
     """
-    shapely.prepare([walled, visited])
+    near = walled.buffer(beside_m)
+    shapely.prepare([walled, near, visited])
     rest, whole = [ground], []
     while rest:
         polygon = rest.pop()
-        bare = list(_find_bare_parts(polygon, walled, visited, max_walled, beside_m, step_m))
+        bare = list(_find_bare_parts(polygon, walled, near, visited, max_walled, step_m))
         left = shapely.difference(polygon, shapely.union_all(bare), grid_size=SHORTEST_M)
         if left.area < polygon.area - SHORTEST_M:
             rest += take_visited(left, visited)
@@ -90,12 +91,15 @@ def walled_share(ring: LinearRing, walled: BaseGeometry) -> float:
 def _find_bare_parts(
     ground: Polygon,
     walled: BaseGeometry,
+    near: BaseGeometry,
     visited: BaseGeometry,
     max_walled: float,
-    beside_m: float,
     step_m: float,
 ) -> Iterator[Polygon]:
-    """Yield bare parts of ground that do not overlap, those that are worth most first."""
+    """Yield bare parts of ground that do not overlap, those that are worth most first.
+
+    `near` is where mouths may begin and end.
+    """
     ring = shapely.orient_polygons(ground).exterior
     places_m = shapely.get_coordinates(shapely.segmentize(ring, step_m))[:-1]
     steps_m = np.roll(places_m, -1, axis=0) - places_m
@@ -104,11 +108,8 @@ def _find_bare_parts(
     turn = _find_turns(steps_m)
     # a tenth of a radian: flatter ones are of the outline's noise
     may_begin = (turn < -0.1) | (is_walled != np.roll(is_walled, 1))
-    near = walled.buffer(beside_m)
-    shapely.prepare(near)
-    begin, end, chord_m = _find_mouths(
-        places_m, np.flatnonzero(may_begin), shapely.contains_xy(near, *places_m.T)
-    )
+    is_near = shapely.contains_xy(near, *places_m.T)
+    begin, end, chord_m = _find_mouths(places_m, np.flatnonzero(may_begin), is_near)
     walled_m = _between(np.where(is_walled, length_m, 0), begin, end)
     bare_m = _between(np.where(is_walled, 0, length_m), begin, end)
     rows = _find_worthy(bare_m, walled_m, chord_m, max_walled, step_m)

@@ -5,9 +5,13 @@ import statistics
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
+from scanplan.geometry.intersections import LEAST_RAD
 from scanplan.geometry.lines import Line, Span
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.openings import Opening
+from scanplan.plan.tolerances import CORNER_M
 from scanplan.rays.face_observation import FaceObservation
 
 _THICKNESS_M = 0.1  # of a partition, where no wall shows both sides
@@ -90,6 +94,12 @@ class PlanWall(Span):
             openings=openings,
             closed=closed,
         )
+
+    def goes_on_as(self, other: "PlanWall") -> bool:
+        """Return whether another wall is much the same way, in the line of this one."""
+        turn = abs(float(self.line.direction @ other.line.direction))
+        nearest_m = float(np.abs(self.line.offset_m(other.ends)).min())
+        return turn >= math.cos(LEAST_RAD) and nearest_m <= CORNER_M
 
     @property
     def half_m(self) -> float:

@@ -140,16 +140,9 @@ def _find_line_gaps(
             ends_m = shapely.get_coordinates(first)[[0, -1]]
             far = max(map(shapely.Point, ends_m), key=start.distance)
             beyond = (walls[i] for i in tree.query(far, predicate="dwithin", distance=END_M))
-            if any(_goes_on(wall, other) for other in beyond if other is not wall):
+            if any(wall.goes_on_as(other) for other in beyond if other is not wall):
                 gaps_m.append(ends_m)
     return gaps_m
-
-
-def _goes_on(wall: PlanWall, other: PlanWall) -> bool:
-    """Return whether another wall is much the same way, in the line of one."""
-    turn = abs(float(wall.line.direction @ other.line.direction))
-    nearest_m = float(np.abs(wall.line.offset_m(other.ends)).min())
-    return turn >= math.cos(intersections.LEAST_RAD) and nearest_m <= CORNER_M
 
 
 def _snap(ends_m: FloatArray, walls: Sequence[PlanWall]) -> FloatArray:

@@ -170,16 +170,15 @@ def measure_constraint(
             return None
         lacking = 1 - fitness / settings.min_facing_fitness
         error_m = lacking * distances_m[-1]
-        fit = replace(fit, information=_with_error(fit.information, error_m, source.cloud.xyz_m))
+        fit = replace(fit, information=_with_error(fit.information, error_m, source.cloud.reach_m))
     return PoseConstraint(source.scan_id, target.scan_id, kind, fitness, rmse_m, fit)
 
 
-def _with_error(information: FloatArray, error_m: float, xyz_m: FloatArray) -> FloatArray:
+def _with_error(information: FloatArray, error_m: float, reach_m: float) -> FloatArray:
     """Return the information (6, 6) of a motion that may also be off by an error, or turned by it.
 
-    The turn is the one by which points (n, 3) about the sensor are off by as much.
+    The turn is the one by which points so far from the sensor are off by as much.
     """
-    reach_m = float(np.sqrt(3 * np.mean(xyz_m**2)))
     error = np.repeat([error_m, error_m / max(reach_m, SHORTEST_M)], 3)
     return np.asarray(information @ np.linalg.inv(np.eye(6) + error[:, None] ** 2 * information))
 

@@ -94,8 +94,7 @@ def align_clouds(
         if aligned is None:
             return _unsound(target_from_source)
         motion, information = aligned
-    reach_m = float(np.sqrt(np.mean(source.xyz_m**2) * 3))
-    return _keep_unobservable(target_from_source, motion, information, reach_m)
+    return _keep_unobservable(target_from_source, motion, information, source.reach_m)
 
 
 def _align_by_points(

@@ -43,6 +43,11 @@ class PreparedCloud:
     normal: FloatArray
     features: small_gicp.PointCloud | None
 
+    @property
+    def reach_m(self) -> float:
+        """Root of the mean square distance of the points from the sensor."""
+        return float(np.sqrt(np.mean(self.xyz_m**2) * 3))
+
     def nearest_points(self, xyz_m: FloatArray) -> tuple[IntArray, FloatArray]:
         """Return the rows (k,) of the nearest points to those of (k, 3), and the squared distances.
 

@@ -121,13 +121,13 @@ LAYERS = {
 }
 DASHES_MM = {"DASHED": (2.0, 1.0), "DOTTED": (0.3, 0.9)}
 """Dash and gap of the line types on paper (ISO 128-2)."""
-_DASHED = DASHES_MM["DASHED"]
+_DASHED, _DOTTED = DASHES_MM["DASHED"], DASHES_MM["DOTTED"]
 STYLES = {
     "room": Style("A-AREA", ink="none"),
     "axis": Style("A-WALL-CNTR", ink="none"),
-    "hidden": Style("A-AREA-NSEN", "floor that was not seen", FAINT, "#f4f4f4", (0.3, 0.9)),
+    "hidden": Style("A-AREA-NSEN", "floor that was not seen", FAINT, "#f4f4f4", _DOTTED),
     "furniture": Style("A-FURN", "furniture, as far as seen", ink=FAINT),
-    "not-seen": Style("A-WALL-NSEN", "outline that was not seen", FAINT, dashes_mm=(0.3, 0.9)),
+    "not-seen": Style("A-WALL-NSEN", "outline that was not seen", FAINT, dashes_mm=_DOTTED),
     "assumed": Style("A-WALL-ASMD", "wall, its thickness assumed", FAINT, "#e3e3e3", (1.2, 0.8)),
     "inferred": Style("A-WALL-INFR", "inferred wall", FAINT, "#f4f4f4", _DASHED),
     "low": Style("A-WALL-PRHT", "wall or furniture below the ceiling", FAINT, "#ffffff"),
@@ -136,7 +136,7 @@ STYLES = {
     "surface": Style("A-WALL-SURF", "surface, seen from one side"),
     "surface-inferred": Style("A-WALL-INFR", "inferred surface", FAINT, dashes_mm=_DASHED),
     "passage": Style("A-WALL-OPNG", "passage", FAINT, dashes_mm=(1.2, 0.8)),
-    "gap": Style("A-WALL-OPNG", "gap, not known what", FAINT, dashes_mm=DASHES_MM["DOTTED"]),
+    "gap": Style("A-WALL-OPNG", "gap, not known what", FAINT, dashes_mm=_DOTTED),
     "glass": Style("A-GLAZ", "glass down to the floor"),
     "door": Style("A-DOOR", "door, swing not known: both ways"),
     "window": Style("A-GLAZ", "window", fill="#ffffff"),

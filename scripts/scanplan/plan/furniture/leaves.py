@@ -65,9 +65,7 @@ class Leaf:
         return bool(faces_alike and is_as_short) and self._is_beside(face, CORNER_M)
 
     def _is_beside(self, face: FaceInterval, most_m: float) -> bool:
-        along = LineString(face.ends)
-        near = LineString(self.face.ends).buffer(most_m)
-        return bool(along.intersection(near).length >= ALONG_SHARE * along.length)
+        return _beside_m(self.face, face, most_m) >= ALONG_SHARE * face.length_m
 
 
 def find_leaves(walls: Sequence[PlanWall], *, unpaired_m: float, max_width_m: float) -> list[Leaf]:
@@ -126,9 +124,7 @@ def _find_gaps(
         low_m, high_m = np.sort(wall.line.along_m(other.ends)).tolist()
         gaps_m = ((high_m, wall.low_m), (wall.high_m, low_m))
         gap_m = next((gap for gap in gaps_m if 0 < gap[1] - gap[0] <= max_width_m), None)
-        is_parallel = abs(wall.line.normal @ other.line.normal) >= math.cos(LEAST_RAD)
-        is_in_line = np.abs(wall.line.offset_m(other.ends)).min() <= CORNER_M
-        if gap_m and is_parallel and is_in_line and not _is_closed(wall, gap_m, walls):
+        if gap_m and wall.goes_on_as(other) and not _is_closed(wall, gap_m, walls):
             yield gap_m
 
 
@@ -185,9 +181,13 @@ def _is_free(face: FaceInterval, tip_m: FloatArray, others: Sequence[FaceInterva
 
 def _is_other_side(face: FaceInterval, other: FaceInterval) -> bool:
     """Return whether a surface is that of a thin body's other side."""
-    is_opposite = face.line.normal @ other.line.normal <= -math.cos(LEAST_RAD)
-    along = LineString(other.ends).intersection(LineString(face.ends).buffer(BEHIND_M))
-    return bool(is_opposite) and along.length >= ALONG_SHARE * face.length_m
+    is_opposite = bool(face.line.normal @ other.line.normal <= -math.cos(LEAST_RAD))
+    return is_opposite and _beside_m(face, other, BEHIND_M) >= ALONG_SHARE * face.length_m
+
+
+def _beside_m(face: FaceInterval, other: FaceInterval, most_m: float) -> float:
+    """Return how much of another surface lies no farther from a surface than that, metres."""
+    return float(LineString(other.ends).intersection(LineString(face.ends).buffer(most_m)).length)
 
 
 @dataclass(frozen=True, eq=False)
