@@ -41,32 +41,39 @@ def through(low_z, high_z):
     )
 
 
-def glass_m(looked, line=SOUTH, low_m=0, high_m=4):
-    return observe_face(looked, line, low_m, high_m, band_m=0.06).glass_m
+def lost_m(looked, line=SOUTH, low_m=0, high_m=4):
+    return observe_face(looked, line, low_m, high_m, band_m=0.06).lost_m
 
 
 def test_a_pane_down_to_the_floor_is_found():
-    np.testing.assert_allclose(glass_m(look(through(0.1, 2.4))), [(1, 3)], atol=0.16)
+    np.testing.assert_allclose(lost_m(look(through(0.1, 2.4))), [(1, 3)], atol=0.16)
 
 
 @pytest.mark.parametrize("heights", [(1.3, 2.4), (0.1, 1.1), (9, 9)])
 def test_a_wall_below_a_window_or_above_an_oven_is_wall(heights):
-    assert len(glass_m(look(through(*heights)))) == 0
+    assert len(lost_m(look(through(*heights)))) == 0
 
 
 def test_two_scans_are_not_enough():
-    assert len(glass_m(look(through(0.1, 2.4), SENSORS[:2]))) == 0
+    assert len(lost_m(look(through(0.1, 2.4), SENSORS[:2]))) == 0
 
 
 def test_from_behind_nothing_is_told():
     behind = Line(SOUTH.centre, -SOUTH.normal)
-    assert len(glass_m(look(through(0.1, 2.4)), behind, -4, 0)) == 0
+    assert len(lost_m(look(through(0.1, 2.4)), behind, -4, 0)) == 0
 
 
 def test_a_pane_has_a_frame():
     sill = [(x_m, 0.1) for x_m in np.arange(1.0, 2.0, 0.02)]
     seen = observation(SOUTH, low=sill, lost=[(1.0, 2.0), (2.0, 3.5)])
     np.testing.assert_allclose(seen.framed_m, [(1.0, 2.0)])
+
+
+def test_a_pane_in_the_plane_sends_a_ray_back_now_and_then():
+    """One return every 0.4 m on the left; on the right one in 2 m, as of somebody in a way out."""
+    returns = [(x_m, 0.0) for x_m in (1.1, 1.5, 1.9, 2.3, 2.7, 4.0)]
+    seen = observation(SOUTH, returns, lost=[(1.0, 3.0), (3.5, 5.5)], planar=True)
+    np.testing.assert_allclose(seen.framed_m, [(1.0, 3.0)])
 
 
 def test_returns_at_a_wall_and_rays_through_its_door():

@@ -79,3 +79,12 @@ def test_ground_behind_a_front_is_of_its_piece():
     (piece,) = find_pieces(found, WALLS, [ROOM], views, max_height_m=2.1, hidden=[behind])
     assert piece.outline.covers(box(2.05, 3.55, 2.95, 3.9))
     assert (piece.n_points, piece.n_scans) == (42, 2)
+
+
+def test_a_front_that_one_scan_shows_is_a_piece_though_others_see_over_it():
+    found = rays(((1, 1, 0), cupboard([0.0])), *[((4, 1, 0), [(6, 1, 0)])] * 3, planar=True)
+    views = [ROOM] * 4
+    behind = box(2, 3.45, 3, 4)
+    (piece,) = find_pieces(found, WALLS, [ROOM], views, max_height_m=2.1, hidden=[behind])
+    assert piece.n_scans == 1 and piece.outline.covers(box(2.05, 3.5, 2.95, 3.9))
+    assert find_pieces(found, WALLS, [ROOM], views, max_height_m=2.1) == []

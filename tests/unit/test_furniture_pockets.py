@@ -117,11 +117,16 @@ def test_a_block_is_furniture_if_it_is_no_wall_and_no_column(width_m, length_m, 
     assert len(pockets(*block(width_m, length_m))) == n_pockets
 
 
-def test_a_block_that_goes_on_beyond_a_door_is_wall():
+@pytest.mark.parametrize(("beyond_m", "n_pockets"), [(0.8, 0), (0.2, 1)], ids=["wall", "chair"])
+def test_a_block_that_goes_on_beyond_a_door_is_wall(beyond_m, n_pockets):
     walls, floor = block(0.7, 1.6)
-    walls[5] = PlanWall(walls[5].line, 0.0, 3.4, np.nan, walls[5].left, [],
-                        [Opening(1.7, 2.6, OPEN, 99, 0.0, np.nan, False)])  # fmt: skip
-    assert pockets(walls, floor) == []
+    # its north side, with what stands in that line 0.9 m farther on
+    front = walls[5].left[0]
+    ends_m = front.line.at(np.array([front.high_m + 0.9, front.high_m + 0.9 + beyond_m]))
+    beyond = stretch(*ends_m.ravel(), planar=True)
+    walls[5] = PlanWall(walls[5].line, 0.0, 2.5 + beyond_m, np.nan, [front, beyond], [],
+                        [Opening(1.6, 2.5, OPEN, 99, 0.0, np.nan, False)])  # fmt: skip
+    assert len(pockets(walls, floor)) == n_pockets
 
 
 def test_the_short_end_of_a_long_block_may_lie_in_the_line_of_a_wall():
@@ -269,3 +274,81 @@ def test_corners_beside_a_door_are_no_furniture_if_the_wall_goes_farther_than_th
     fan = shapely.Polygon([(2, 4), (3, 4), (5, 5.8), (5, 8), (0, 8), (0, 5.8)])
     floor = shapely.union(box(0, 0, east_m, 4), fan)
     assert len(pockets([wall([face]) for face in faces], floor)) == n_pockets
+
+
+def facade_rooms(bench_m, beyond=()):
+    """Two rooms whose south wall is y = 0; in the west one a bench stands before all of it."""
+    faces = [(0, bench_m, 4, bench_m), (4, bench_m, 4, 4), (4, 4, 0, 4), (0, 4, 0, bench_m)]
+    faces += [(4.1, 0, 10, 0), (10, 0, 10, 4), (10, 4, 4.1, 4), (4.1, 4, 4.1, 0), *beyond]
+    floor = shapely.union(box(0, bench_m, 4, 4), box(4.1, 0, 10, 4))
+    walls = [wall([face]) for face in faces]
+    return walls, walls[0].left[0], floor
+
+
+@pytest.mark.parametrize(
+    ("bench_m", "beyond", "n_pockets"),
+    [
+        (0.9, (), 1),
+        (1.4, (), 0),
+        # another room lies south of the wall
+        (0.9, [(0, -0.1, 10, -0.1), (0, -3, 0, -0.1), (10, -3, 0, -3)], 0),
+        # a house across the court: the wall is not the last
+        (0.9, [(2, -6, 8, -6)], 0),
+        (0.9, [(12, -6, 18, -6)], 1),
+    ],
+    ids=["bench", "room", "closet", "court", "wing_elsewhere"],
+)
+def test_what_fills_a_room_before_the_outer_wall_is_furniture(bench_m, beyond, n_pockets):
+    walls, front, floor = facade_rooms(bench_m, beyond)
+    found = pockets(walls, floor)
+    assert [front in pocket.fronts for pocket in found] == [True] * n_pockets
+    assert all(pocket.ground.covers(box(0, 0.01, 4, bench_m)) for pocket in found)
+
+
+def test_an_outer_wall_with_a_door_is_no_bench():
+    walls, front, floor = facade_rooms(0.9)
+    beside = stretch(3.0, 0.9, 4.0, 0.9, planar=True)
+    west = stretch(0.0, 0.9, 2.0, 0.9, planar=True)
+    way = Opening(2.0, 3.0, OPEN, 99, 0.0, np.nan, False)
+    walls[0] = PlanWall(front.line, 0.0, 4.0, np.nan, [west, beside], [], [way])
+    assert pockets(walls, floor) == []
+
+
+def test_a_bench_is_found_where_chairs_hide_the_floor_before_it():
+    walls, front, floor = facade_rooms(0.9)
+    (pocket,) = pockets(walls, floor.difference(box(0, 0, 3.5, 1.3)))
+    assert pocket.fronts == [front]
+
+
+def kitchen(depth_m, ends_m=(1.0, 4.0)):
+    """A row between walls of a room of 5 m, as long as the wall that shows on both sides of it."""
+    first_m, last_m = ends_m
+    faces = [(last_m, 4, last_m, 4 - depth_m), (first_m, 4 - depth_m, first_m, 4)]
+    front = (last_m, 4 - depth_m, first_m, 4 - depth_m)
+    beside = [(5, 4, last_m, 4), (first_m, 4, 0, 4)]
+    # what else lies in the front's line reaches as far as the wall does
+    in_line = (-1, 4 - depth_m, -2, 4 - depth_m)
+    walls = [wall([face]) for face in [*ROOM, *beside, *faces, front, in_line]]
+    return walls, box(0, 0, 5, 4).difference(box(first_m, 4 - depth_m, last_m, 4))
+
+
+@pytest.mark.parametrize(
+    ("depth_m", "ends_m", "n_pockets"),
+    [(0.6, (1.0, 4.0), 1), (0.25, (1.0, 4.0), 0), (1.4, (1.0, 4.0), 0), (0.6, (0.2, 4.0), 0)],
+    ids=["row", "pier_between_niches", "shaft", "one_side"],
+)
+def test_before_a_wall_that_goes_on_on_both_sides_stands_furniture(depth_m, ends_m, n_pockets):
+    walls, floor = kitchen(depth_m, ends_m)
+    found = [pocket for pocket in pockets(walls, floor) if walls[-2].left[0] in pocket.fronts]
+    assert len(found) == n_pockets
+
+
+def test_a_front_is_as_far_from_a_wall_as_from_the_nearest_of_its_pieces():
+    """The wall reaches 10 m; its long piece is 11 m from the front, a short tilted one 4 m."""
+    pieces = [(14, 0, 17, 0), (7, -0.03, 8, 0.03)]
+    around = [(17, 0, 17, 4), (17, 4, 0, 4), (0, 4, 0, 0.6), (0, -3, 17, -3)]
+    front, side = (wall([face]) for face in [(0, 0.6, 3, 0.6), (3, 0.6, 3, 0)])
+    floor = box(0, 0, 17, 4).difference(box(0, 0, 3, 0.6))
+    walls = [*(wall([face]) for face in [*pieces, *around]), front, side]
+    (pocket,) = [one for one in pockets(walls, floor) if front.left[0] in one.fronts]
+    assert side.left[0] in pocket.fronts

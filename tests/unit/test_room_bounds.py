@@ -38,6 +38,13 @@ def test_a_glass_door_in_a_wall_is_an_opening_of_it():
     assert between([wall(0, 0, 4, 0, openings=[(1, 2)])], 1.1, 1.9) == []
 
 
+def test_a_pane_that_two_lines_show_is_one():
+    again = Line(np.array([0.0, 0.04]), SOUTH.normal)
+    spans = [(again, 1.2, 2.6), (SOUTH, 1.0, 3.0), (again, 4.0, 5.0)]
+    found = room_bounds.find_glass_walls([], spans, min_length_m=0.5, unpaired_m=0.1)
+    np.testing.assert_allclose([pane.ends[:, 0] for pane in found], [(1, 3), (4, 5)])
+
+
 def test_a_slit_bounds_nothing():
     assert between([], 1.0, 1.3) == []
 

@@ -45,17 +45,19 @@ def find_glass_walls(
     """
     ways = [(wall, opening) for wall in walls for opening in wall.openings]
     grounds = [wall_ground.opening_polygon(*way, unpaired_m).buffer(END_M) for way in ways]
-    open_m2 = shapely.union_all(grounds)
-    shapely.prepare(open_m2)
+    known = shapely.union_all(grounds)
     stacked = intersections.stack_spans(walls)
     extended = (_extend(*span, walls, stacked) for span in spans)
     panes = [PlanWall(*span, math.nan, [], []) for span in extended]
-    return [
-        pane
-        for pane in panes
-        if pane.length_m >= min_length_m
-        and not open_m2.covers(shapely.Point(pane.ends.mean(axis=0)))
-    ]
+    found = []
+    # several lines show one pane, each another part of it
+    for pane in sorted(panes, key=lambda pane: (-pane.length_m, *pane.ends.ravel())):
+        if pane.length_m < min_length_m or known.covers(shapely.Point(pane.ends.mean(axis=0))):
+            continue
+        found.append(pane)
+        grounds = wall_ground.wall_strips([pane], unpaired_m)
+        known = shapely.union_all([known, *(ground.buffer(END_M) for ground in grounds)])
+    return found
 
 
 def find_partings(

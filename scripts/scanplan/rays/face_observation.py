@@ -13,7 +13,7 @@ from scanplan.rays import expected_returns, face_raster
 from scanplan.rays.face_raster import CELL_M, FaceRaster
 from scanplan.rays.face_rays import FaceRays, cast_at_face
 from scanplan.rays.ray_set import RaySet
-from scanplan.rays.tolerances import BEHIND_M, FEW, SKIRTING_M
+from scanplan.rays.tolerances import BEHIND_M, FEW, SKIRTING_M, STRETCH_M
 from scanplan.types import FloatArray, IntArray
 
 _MOST_SHARE = 0.5  # of rays return from any wall; of a pane's length has a frame
@@ -59,7 +59,8 @@ class FaceObservation:
         Returns at it that are too low for a wall: a sill, or clutter.
     planar : bool
     lost_m : (n, 2) float64
-        From where to where too few of the rays that reach it come back for what is opaque.
+        From where to where too few of the rays that reach it come back for what is opaque: glass,
+        or nothing.
     """
 
     line: Line
@@ -87,23 +88,20 @@ class FaceObservation:
         )
 
     @property
-    def glass_m(self) -> FloatArray:
-        """Where rays are lost, (n, 2), as in glass: of scans in space alone.
-
-        In the plane a line that sends few rays back may as well be dark: there they tell of gaps
-        between walls, and of nothing else.
-        """
-        return self.lost_m[:0] if self.planar else self.lost_m
-
-    @property
     def framed_m(self) -> FloatArray:
         """The panes (k, 2) that returns of any height are at, along most of their length.
 
         Glass has a frame, a sill or a lintel; a line that merely goes on before a pane has none.
+        A planar scanner sees none of them, but for mullions: there it is what a pane itself returns
+        now and then, and columns are as wide as the least stretch of a surface.
         """
         returns_m = np.sort(np.concatenate([self.occupied_m, self.low_m]))
-        share = [filled_share(returns_m, *span_m) for span_m in self.glass_m]
-        return self.glass_m[np.array(share, float) >= _MOST_SHARE]
+        column_m = STRETCH_M if self.planar else CELL_M
+        share = [
+            filled_share(returns_m, low_m, high_m, column_m)
+            for low_m, high_m in self.lost_m.tolist()
+        ]
+        return self.lost_m[np.array(share, float) >= _MOST_SHARE]
 
     def occupied_between(self, low_m: float, high_m: float) -> slice:
         """Return which returns lie between two places."""
@@ -163,11 +161,13 @@ def observe_face(
     )
 
 
-def filled_share(places_m: FloatArray, low_m: float, high_m: float) -> float:
-    """Return the share of the columns of 5 cm between two places that hold any of sorted places."""
+def filled_share(
+    places_m: FloatArray, low_m: float, high_m: float, column_m: float = CELL_M
+) -> float:
+    """Return the share of the columns between two places that hold any of sorted places."""
     inside_m = places_m[np.searchsorted(places_m, low_m) : np.searchsorted(places_m, high_m)]
-    columns = max(round((high_m - low_m) / CELL_M), 1)
-    return len(np.unique(((inside_m - low_m) / CELL_M).astype(np.int64))) / columns
+    columns = max(round((high_m - low_m) / column_m), 1)
+    return len(np.unique(((inside_m - low_m) / column_m).astype(np.int64))) / columns
 
 
 def _find_lost(rays: RaySet, face: FaceRays, low_m: float, high_m: float) -> FloatArray:

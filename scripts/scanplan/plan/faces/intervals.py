@@ -87,7 +87,7 @@ def observe_along(
     beyond_m = np.full(2, reach_m)
     observation, span_m = _observe_refitted(rays, line, own_m, beyond_m, band_m)
     for _ in range(_MOST_DOUBLINGS):
-        nearest_m = [np.abs(observation.glass_m - end_m).min(initial=np.inf) for end_m in span_m]
+        nearest_m = [np.abs(observation.lost_m - end_m).min(initial=np.inf) for end_m in span_m]
         is_in_glass = np.array(nearest_m) < END_M
         if not is_in_glass.any():
             break
@@ -172,7 +172,7 @@ def find_face_intervals(
     if len(seen.occupied_m) == 0:
         return []
     raster = seen.raster
-    is_foreign = _is_within(raster, [*foreign_m, *seen.glass_m])
+    is_foreign = _is_within(raster, [*foreign_m, *seen.lost_m])
     is_solid = raster.is_solid(door_height_m) & ~is_foreign
     is_overlooked = raster.is_overlooked(door_height_m)
     is_opened = raster.is_opened(door_height_m)

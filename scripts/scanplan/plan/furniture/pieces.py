@@ -99,23 +99,24 @@ def find_pieces(
     x0_m, y0_m, x1_m, y1_m = ground.buffer(CELL_M).bounds
     grid = bitmap.fit_grid([[(x0_m, y0_m), (x1_m, y1_m)]], CELL_M)
     returns = _gather_returns(rays, grid, bitmap.fill_polygons([ground], grid), max_height_m)
-    returns = _without_passers(returns, grid, views if rays.planar else [])
     taken = shapely.intersection(shapely.union_all(list(hidden)), ground)
-    is_there = bitmap.fill_polygons([taken], grid)
+    is_taken = bitmap.fill_polygons([taken], grid)
+    # a front that all scans together show is no passer
+    is_passer = _find_passers(returns, grid, views if rays.planar else [])
+    returns = returns.take(is_taken.flat[returns.cell] | ~is_passer)
+    is_there = is_taken.copy()
     is_there.flat[returns.cell] = True
     # pauses of a cell join
     labels = np.zeros(grid.shape, np.int64)
     ndimage.label(ndimage.binary_dilation(is_there, np.ones((3, 3), bool)), output=labels)
-    found = [
-        _make_piece(returns.take(rows), cells, grid, rays)
-        for rows, cells in _group_by_label(labels, returns.cell, np.flatnonzero(is_there))
-    ]
+    found = []
+    for rows, cells in _group_by_label(labels, returns.cell, np.flatnonzero(is_there)):
+        piece = _make_piece(returns.take(rows), cells, grid, rays)
+        least_scans = 1 if is_taken.flat[cells].any() else LEAST_SCANS
+        if piece.n_points >= ENOUGH_RAYS and piece.n_scans >= least_scans:
+            found.append(piece)
     return sorted(
-        (
-            piece
-            for piece in found
-            if piece.n_points >= ENOUGH_RAYS and piece.n_scans >= LEAST_SCANS
-        ),
+        found,
         key=lambda piece: (-piece.outline.area, *piece.outline.bounds),
     )
 
@@ -153,10 +154,8 @@ def _gather_returns(
     )
 
 
-def _without_passers(
-    returns: _Returns, grid: bitmap.Grid, views: Sequence[BaseGeometry]
-) -> _Returns:
-    """Return the returns in cells that several scans show, and no more scans see through."""
+def _find_passers(returns: _Returns, grid: bitmap.Grid, views: Sequence[BaseGeometry]) -> BoolArray:
+    """Return which returns are in cells that one scan shows alone, or more scans see through."""
     n_scans = int(returns.scan.max(initial=-1)) + 1
     shown = np.unique(returns.cell * max(n_scans, 1) + returns.scan) // max(n_scans, 1)
     cells, n_shown = np.unique(shown, return_counts=True)
@@ -168,7 +167,7 @@ def _without_passers(
         shapely.prepare(inner)
         n_free += shapely.contains_xy(inner, middle_m)
     stays = cells[(n_shown >= LEAST_SCANS) & (n_shown > n_free)]
-    return returns.take(np.isin(returns.cell, stays))
+    return ~np.isin(returns.cell, stays)
 
 
 def _group_by_label(

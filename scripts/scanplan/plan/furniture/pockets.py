@@ -1,11 +1,10 @@
 """Pockets of ground behind fronts of furniture in planar scans, that no ray reached.
 
 Found from holes of what is known, and from lines of walls that go farther through the plan than the
-fronts before them.
+fronts before them, that go on on both sides of them, or that the building ends at.
 """
 
 import itertools
-import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
@@ -14,19 +13,23 @@ import shapely
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from scanplan.geometry import intersections
 from scanplan.geometry.narrow_places import FURNITURE_M2
 from scanplan.plan import wall_ground
 from scanplan.plan.faces.face_tree import FaceTree
 from scanplan.plan.faces.intervals import FaceInterval
+from scanplan.plan.furniture.plan_faces import PlanFaces
+from scanplan.plan.furniture.recesses import (
+    POCKET_M2,
+    find_holes,
+    find_recesses,
+    stands_before_facade,
+)
 from scanplan.plan.plan_wall import PlanWall
-from scanplan.plan.tolerances import ALONG_SHARE, CORNER_M, END_M, FACE_M
+from scanplan.plan.tolerances import ALONG_SHARE, CORNER_M, END_M
 from scanplan.rays import free_space
 from scanplan.rays.face_raster import CELL_M
 from scanplan.rays.tolerances import BEHIND_M, STRETCH_M
-from scanplan.types import FloatArray
-
-_POCKET_M2 = 2 * FURNITURE_M2  # of two desks or a table, with the floor that they hide
+from scanplan.types import Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,48 +74,124 @@ def find_pockets(
     -------
     list of Pocket
     """
-    most = {"max_thickness_m": max_thickness_m, "max_depth_m": max_depth_m}
     solid = shapely.union_all(wall_ground.wall_strips(walls, unpaired_m))
     parts = np.array(
         [*free_space.open_polygons(shapely.difference(floor, solid), END_M), Polygon()], object
     )
-    grown = shapely.buffer(parts, CELL_M)
     known = shapely.union_all([floor, solid]).buffer(CELL_M, join_style="mitre")
-    faces = _AllFaces([face for wall in walls for face in wall.members])
     alone = [face for wall in walls if not wall.right for face in wall.left]
-    single = {id(face) for face in alone}
-    continued = {id(face) for wall in walls if wall.openings for face in wall.members}
+    search = _Search(
+        faces=PlanFaces([face for wall in walls for face in wall.members]),
+        parts=parts,
+        grown=shapely.buffer(parts, CELL_M),
+        single={id(face) for face in alone},
+        continued={id(face) for wall in walls for face in _find_continued(wall)},
+        unpaired_m=unpaired_m,
+        max_thickness_m=max_thickness_m,
+        max_depth_m=max_depth_m,
+    )
     pockets: list[Pocket] = []
     found: set[int] = set()
-    holes = ((None, hole) for hole in _find_holes(known))
-    for own, hidden in itertools.chain(holes, _find_recesses(alone, faces, floor)):
-        if id(own) in found:
-            continue
-        near = faces.within(hidden, unpaired_m + CORNER_M)
-        behind = [
-            face for face in near if id(face) in single and _backs_onto(face, hidden, unpaired_m)
-        ]
-        around = hidden.buffer(CORNER_M)
-        seen_m2 = shapely.area(shapely.intersection(around, parts))
-        row = int(np.argmax(seen_m2))
-        if not seen_m2[row]:
-            continue
-        fronts = [face for face in behind if _faces_onto(face, parts[row])]
-        if own is not None and own not in fronts:
-            continue
-        pocket = _make_pocket(hidden, fronts, unpaired_m)
-        behind_it = faces.behind(pocket.ground) if own else faces.backs(near, fronts)
-        if _is_part_of_building(pocket, parts[row], max_depth_m):
-            continue
-        if not _is_before_wall(pocket, behind_it, grown[row]):
-            # its ends, too, that were paired with what stands in their line
-            pocket = Pocket(pocket.ground, _faces_on(pocket.ground, near))
-            is_block = _is_block(pocket.ground, parts[row], unpaired_m, **most)
-            if not is_block or _goes_on(pocket, continued):
-                continue
-        pockets.append(pocket)
-        found.update(map(id, pocket.fronts))
+    holes = ((None, hole) for hole in find_holes(known))
+    recesses = find_recesses(alone, search.faces, floor, max_depth_m)
+    for own, hidden in itertools.chain(holes, recesses):
+        pocket = None if id(own) in found else search.find_pocket(own, hidden)
+        if pocket is not None:
+            pockets.append(pocket)
+            found.update(map(id, pocket.fronts))
     return pockets
+
+
+@dataclass(frozen=True, eq=False)
+class _Search:
+    """What is known around hidden ground.
+
+    Attributes
+    ----------
+    faces : plan_faces.PlanFaces
+        All of the plan.
+    parts, grown : (n,) object
+        Of the floor that was seen, polygons; the same, by a cell larger.
+    single, continued : set of int
+        Identities of the faces of walls seen from one side, and of those that go on beyond an
+        opening.
+    unpaired_m, max_thickness_m, max_depth_m : float
+        As in `find_pockets`.
+    """
+
+    faces: PlanFaces
+    parts: Array
+    grown: Array
+    single: set[int]
+    continued: set[int]
+    unpaired_m: float
+    max_thickness_m: float
+    max_depth_m: float
+
+    def find_pocket(self, own: FaceInterval | None, hidden: Polygon) -> Pocket | None:
+        """Return the pocket of hidden ground behind a front, or of a hole; None if it is none."""
+        near = self.faces.within(hidden, self.unpaired_m + CORNER_M)
+        behind = [
+            face
+            for face in near
+            if id(face) in self.single and _backs_onto(face, hidden, self.unpaired_m)
+        ]
+        seen_m2 = shapely.area(shapely.intersection(hidden.buffer(CORNER_M), self.parts))
+        if not seen_m2.any():
+            return None
+        row = int(np.argmax(seen_m2))
+        fronts = [face for face in behind if _faces_onto(face, self.parts[row])]
+        return self._before_facade(own, hidden, behind, fronts) or self._before_wall(
+            own, hidden, near, fronts, row
+        )
+
+    def _before_facade(
+        self,
+        own: FaceInterval | None,
+        hidden: Polygon,
+        behind: Sequence[FaceInterval],
+        fronts: Sequence[FaceInterval],
+    ) -> Pocket | None:
+        """Return the pocket of what stands before the building's outer wall."""
+        outer = [
+            face
+            for face in ([own] if own else fronts)
+            if id(face) not in self.continued
+            and stands_before_facade(face, self.faces, self.max_depth_m)
+        ]
+        if not outer:
+            return None
+        ahead_m = shapely.length(shapely.intersection(_before(outer[0]), self.parts))
+        part = self.parts[int(np.argmax(ahead_m))]
+        with_sides = [face for face in behind if face in outer or _faces_onto(face, part)]
+        return _make_pocket(hidden, with_sides, self.unpaired_m)
+
+    def _before_wall(
+        self,
+        own: FaceInterval | None,
+        hidden: Polygon,
+        near: Sequence[FaceInterval],
+        fronts: Sequence[FaceInterval],
+        row: int,
+    ) -> Pocket | None:
+        """Return the pocket of what stands before a wall, or alone, on one of the parts."""
+        if own is not None and own not in fronts:
+            return None
+        part = self.parts[row]
+        pocket = _make_pocket(hidden, fronts, self.unpaired_m)
+        if _is_part_of_building(pocket, part, self.max_depth_m):
+            return None
+        walls = self.faces.behind(pocket.ground) if own else self.faces.backs(near, fronts)
+        if _is_before_wall(pocket, walls, self.grown[row]):
+            return pocket
+        # its ends, too, that were paired with what stands in their line
+        pocket = Pocket(pocket.ground, _faces_on(pocket.ground, near))
+        is_block = _is_block(
+            *(pocket.ground, part, self.unpaired_m),
+            max_thickness_m=self.max_thickness_m,
+            max_depth_m=self.max_depth_m,
+        )
+        return pocket if is_block and not _goes_on(pocket, self.continued) else None
 
 
 def find_blocks(
@@ -165,103 +244,6 @@ def find_blocks(
     return blocks
 
 
-class _AllFaces(FaceTree):
-    """The faces of a plan, to be found by where they and their lines are."""
-
-    def __init__(self, faces: Sequence[FaceInterval]) -> None:
-        super().__init__(faces)
-        self._centre_m = self._ends_m.mean(axis=1)
-        self._length_m = np.array([face.length_m for face in faces])
-        self._normal = np.array([face.line.normal for face in faces]).reshape(-1, 2)
-
-    def behind(self, ground: BaseGeometry) -> list[FaceInterval]:
-        """Return the faces on whose lines ground before them ends, or near."""
-        places_m = shapely.get_coordinates(ground)
-        off_m = np.einsum("fpi,fi->fp", places_m - self._centre_m[:, None], self._normal)
-        return self._faces[np.abs(off_m.min(axis=1)) <= CORNER_M].tolist()
-
-    def backs(
-        self, near: Sequence[FaceInterval], fronts: Sequence[FaceInterval]
-    ) -> list[FaceInterval]:
-        """Return the faces near a pocket that its fronts may stand before.
-
-        Those that face the same way; and others, such as the wall that a corner's cupboard ends at,
-        if they go farther through the plan than the fronts do: else these are the wall.
-        """
-        reach_m = max((self.reach_on_line_m(front) for front in fronts), default=0.0)
-        least = math.cos(intersections.LEAST_RAD)
-        return [
-            face
-            for face in near
-            if any(face.line.normal @ front.line.normal >= least for front in fronts)
-            or self.reach_on_line_m(face) > reach_m
-        ]
-
-    def parallel(self, face: FaceInterval, most_m: float) -> list[FaceInterval]:
-        """Return the faces of the same way whose lines lie behind a face, no farther than that."""
-        off_m = np.einsum("fpi,fi->fp", face.ends - self._centre_m[:, None], self._normal)
-        is_parallel = self._normal @ face.line.normal >= math.cos(intersections.LEAST_RAD)
-        is_behind = (off_m.min(axis=1) > BEHIND_M) & (off_m.max(axis=1) <= most_m)
-        return self._faces[is_parallel & is_behind].tolist()
-
-    def reach_on_line_m(self, face: FaceInterval) -> float:
-        """Return how far all faces of the same way reach that lie on the line of one."""
-        low_m, high_m = self._along_line_m(face)
-        return float(high_m.max() - low_m.min())
-
-    def joined_m(self, face: FaceInterval) -> float:
-        """Return how long a surface is with others in its line, no farther away than it is long."""
-        lows_m, highs_m = self._along_line_m(face)
-        span_m, joined_m = (face.low_m, face.low_m), (face.low_m, face.high_m)
-        while joined_m != span_m:
-            span_m = joined_m
-            gap_m = np.maximum(lows_m - span_m[1], span_m[0] - highs_m)
-            is_near = gap_m <= span_m[1] - span_m[0]
-            joined_m = (float(lows_m[is_near].min()), float(highs_m[is_near].max()))
-        return span_m[1] - span_m[0]
-
-    def _along_line_m(self, face: FaceInterval) -> tuple[FloatArray, FloatArray]:
-        """Return from where (n,) to where faces of the same way lie on the line of one."""
-        off_m = face.line.offset_m(self._centre_m)
-        is_parallel = self._normal @ face.line.normal >= math.cos(intersections.LEAST_RAD)
-        is_on = is_parallel & (np.abs(off_m) <= FACE_M)
-        along_m = face.line.along_m(self._centre_m[is_on])
-        half_m = self._length_m[is_on] / 2
-        return along_m - half_m, along_m + half_m
-
-
-def _find_holes(known: BaseGeometry) -> Iterator[Polygon]:
-    """Yield the holes of known ground no larger than furniture, by what it was grown by larger."""
-    for part in free_space.polygon_parts(known).geoms:
-        for ring in part.interiors:
-            hole = Polygon(ring).buffer(CELL_M, join_style="mitre")
-            if hole.area <= _POCKET_M2:
-                yield hole
-
-
-def _find_recesses(
-    fronts: Sequence[FaceInterval], faces: _AllFaces, floor: BaseGeometry
-) -> Iterator[tuple[FaceInterval, Polygon]]:
-    """Yield fronts, and the hidden ground between each and lines behind it that reach farther."""
-    seen = floor.buffer(CELL_M)
-    for front in fronts:
-        reach_m = faces.reach_on_line_m(front)
-        # no deeper than a table and its shadow, however short the front
-        most_m = min(_POCKET_M2 / faces.joined_m(front), math.sqrt(_POCKET_M2))
-        for wall in faces.parallel(front, most_m):
-            along_m = wall.line.along_m(front.ends)
-            gap_m = max(wall.low_m - along_m.max(), along_m.min() - wall.high_m)
-            farthest_m = faces.reach_on_line_m(wall)
-            if farthest_m <= max(reach_m, gap_m):
-                continue
-            foot_m = wall.line.at(along_m)
-            between = Polygon([*front.ends, *foot_m[::-1]])
-            hidden = free_space.difference_on_grid(between, seen)
-            largest = max(hidden.geoms, key=lambda part: part.area, default=None)
-            if largest is not None and largest.area >= ALONG_SHARE * between.area:
-                yield front, largest.buffer(CELL_M, join_style="mitre")
-
-
 def _make_pocket(hidden: Polygon, fronts: Sequence[FaceInterval], unpaired_m: float) -> Pocket:
     """Return the pocket of hidden ground and the strips behind its fronts."""
     strips = [
@@ -278,6 +260,17 @@ def _backs_onto(face: FaceInterval, hidden: Polygon, unpaired_m: float) -> bool:
     return behind.intersection(hidden).length >= behind.length / 2
 
 
+def _find_continued(wall: PlanWall) -> Iterator[FaceInterval]:
+    """Yield the faces of a wall that go on beyond an opening, as more than a chair beside them."""
+    middles = [(face, wall.line.along_m(face.ends).mean()) for face in wall.members]
+    for opening in wall.openings:
+        before = [face for face, middle_m in middles if middle_m <= opening.low_m]
+        beyond = [face for face, middle_m in middles if middle_m > opening.low_m]
+        for side, other in ((before, beyond), (beyond, before)):
+            if max((face.length_m for face in other), default=0.0) > STRETCH_M:
+                yield from side
+
+
 def _goes_on(pocket: Pocket, continued: set[int]) -> bool:
     """Return whether a block's sides, not its short ends alone, go on beyond an opening."""
     longest_m = max((face.length_m for face in pocket.fronts), default=0.0)
@@ -292,8 +285,12 @@ def _faces_on(ground: BaseGeometry, faces: Sequence[FaceInterval]) -> list[FaceI
 
 def _faces_onto(face: FaceInterval, part: Polygon) -> bool:
     """Return whether most of a surface has a part of the floor before it."""
-    before = _beside(face, END_M)
+    before = _before(face)
     return before.intersection(part).length >= before.length / 2
+
+
+def _before(face: FaceInterval) -> LineString:
+    return _beside(face, END_M)
 
 
 def _beside(face: FaceInterval, forward_m: float) -> LineString:
@@ -316,8 +313,8 @@ def _is_part_of_building(pocket: Pocket, part: Polygon, max_depth_m: float) -> b
 def _is_large(ground: BaseGeometry, max_depth_m: float) -> bool:
     """Return whether ground is more than furniture stands on, alone or, where narrow, in a row."""
     depth_m, length_m = _sides_m(ground.buffer(-CELL_M))
-    is_row = depth_m <= max_depth_m and length_m <= _POCKET_M2 / max_depth_m
-    return ground.area > (_POCKET_M2 if is_row else FURNITURE_M2)
+    is_row = depth_m <= max_depth_m and length_m <= POCKET_M2 / max_depth_m
+    return ground.area > (POCKET_M2 if is_row else FURNITURE_M2)
 
 
 def _has_corner_in(ground: BaseGeometry, part: Polygon) -> bool:

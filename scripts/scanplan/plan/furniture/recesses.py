@@ -1,0 +1,93 @@
+"""Ground that no ray of a planar scanner reached, and the walls that fronts may stand before."""
+
+import math
+from collections.abc import Iterator, Sequence
+
+from shapely.geometry import Polygon
+from shapely.geometry.base import BaseGeometry
+
+from scanplan.geometry.narrow_places import FURNITURE_M2
+from scanplan.plan.faces.intervals import FaceInterval
+from scanplan.plan.furniture.plan_faces import PlanFaces
+from scanplan.plan.tolerances import ALONG_SHARE, CORNER_M, END_M
+from scanplan.rays import free_space
+from scanplan.rays.face_raster import CELL_M
+
+POCKET_M2 = 2 * FURNITURE_M2
+"""Of two desks or a table, with the floor that they hide."""
+
+
+def find_holes(known: BaseGeometry) -> Iterator[Polygon]:
+    """Yield the holes of known ground no larger than furniture, by what it was grown by larger."""
+    for part in free_space.polygon_parts(known).geoms:
+        for ring in part.interiors:
+            hole = Polygon(ring).buffer(CELL_M, join_style="mitre")
+            if hole.area <= POCKET_M2:
+                yield hole
+
+
+def find_recesses(
+    fronts: Sequence[FaceInterval], faces: PlanFaces, floor: BaseGeometry, max_depth_m: float
+) -> Iterator[tuple[FaceInterval, Polygon]]:
+    """Yield fronts, and the hidden ground between each and walls that it may stand before.
+
+    Parameters
+    ----------
+    fronts : sequence of intervals.FaceInterval
+    faces : plan_faces.PlanFaces
+        All of the plan.
+    floor : shapely geometry
+        That was seen free.
+    max_depth_m : float
+        Of furniture, from its front to its back.
+    """
+    seen = floor.buffer(CELL_M)
+    for front in fronts:
+        for wall in _find_walls_behind(front, faces, max_depth_m):
+            foot_m = wall.line.at(wall.line.along_m(front.ends))
+            between = Polygon([*front.ends, *foot_m[::-1]])
+            hidden = free_space.difference_on_grid(between, seen)
+            largest = max(hidden.geoms, key=lambda part: part.area, default=None)
+            if largest is not None and largest.area >= ALONG_SHARE * between.area:
+                yield front, largest.buffer(CELL_M, join_style="mitre")
+
+
+def stands_before_facade(front: FaceInterval, faces: PlanFaces, max_depth_m: float) -> bool:
+    """Return whether the building ends at a wall that a front of furniture may stand before.
+
+    Rooms reach up to it: between the two nothing has room but furniture, for a facade seldom steps
+    back from its own line by less than a room.
+    """
+    return any(
+        _is_near(front, wall, faces, max_depth_m)
+        and faces.is_outermost(wall, wall.line.along_m(front.ends))
+        for wall in _find_walls_behind(front, faces, max_depth_m)
+    )
+
+
+def _find_walls_behind(
+    front: FaceInterval, faces: PlanFaces, max_depth_m: float
+) -> Iterator[FaceInterval]:
+    """Yield the faces that a front may stand before.
+
+    Their lines reach farther through the plan than the front's, and farther than they are away from
+    it; or they go on on both sides of it, behind it by more than a niche is deep.
+    """
+    reach_m = faces.reach_on_line_m(front)
+    # no deeper than a table and its shadow, however short the front
+    most_m = min(POCKET_M2 / faces.joined_m(front), math.sqrt(POCKET_M2))
+    for wall in faces.parallel(front, most_m + CORNER_M):
+        along_m, off_m = wall.line.along_m(front.ends), wall.line.offset_m(front.ends)
+        farthest_m = faces.reach_on_line_m(wall)
+        is_near = _is_near(front, wall, faces, max_depth_m)
+        if farthest_m > max(reach_m, faces.gap_on_line_m(wall, along_m)):
+            if off_m.max() <= most_m or (is_near and faces.is_outermost(wall, along_m)):
+                yield wall
+        elif is_near and off_m.min() > CORNER_M and faces.goes_on_beside(wall, along_m):
+            yield wall
+
+
+def _is_near(front: FaceInterval, wall: FaceInterval, faces: PlanFaces, max_depth_m: float) -> bool:
+    """Return whether a front is no farther before a wall than furniture is deep, in the mean."""
+    most_m = min(max_depth_m + END_M, POCKET_M2 / faces.joined_m(front))
+    return bool(wall.line.offset_m(front.ends).mean() <= most_m)
