@@ -16,6 +16,7 @@ from shapely.geometry.base import BaseGeometry
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.furniture.leaves import Leaf, find_leaves, find_traces
 from scanplan.plan.furniture.pockets import Pocket, find_blocks, find_pockets
+from scanplan.plan.furniture.strays import find_strays
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.rays import free_space
 
@@ -49,6 +50,9 @@ def drop_fronts(
         Of a wall, and of furniture from its front to its back.
     """
     most = {"max_thickness_m": max_thickness_m, "max_depth_m": max_depth_m}
+    if strays := set(map(id, find_strays(walls, max_length_m=max_door_m))):
+        faces = [face for wall in walls for face in wall.members]
+        walls = assemble([face for face in faces if id(face) not in strays])
     leaves = find_leaves(walls, unpaired_m=measure_thickness_m(walls), max_width_m=max_door_m)
     if leaves:
         faces = [face for wall in walls for face in wall.members]
