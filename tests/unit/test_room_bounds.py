@@ -113,6 +113,36 @@ def test_a_door_that_a_wall_has_is_not_parted_twice():
 
 
 def test_a_corner_that_stands_into_a_room_parts_nothing():
-    """The wall's line ends at a wall across: it may be one room around a corner."""
-    assert part([wall(4.05, -2, 4.05, 1), wall(8, 3.5, 0, 3.5)]) == []
+    """The wall's line ends at a wall across: around a corner it may be one room."""
+    across = wall(8, 3.5, 0, 3.5)
+    assert part([wall(4.05, -2, 4.05, 1), wall(4.15, 1, 7, 1), across]) == []
     assert part([wall(4.05, -2, 4.05, 1)]) == []
+
+
+@pytest.mark.parametrize(
+    ("first_m", "openings", "n_partings"),
+    [(-2, (), 1), (-1, (), 0), (-2, [(0.2, 1.1)], 0), (-4, [(0.2, 1.1)], 1)],
+    ids=["long", "shorter_than_the_gap", "short_beside_a_door", "long_beside_a_door"],
+)
+def test_a_wall_that_ends_free_parts_rooms_up_to_the_wall_across(first_m, openings, n_partings):
+    """The gap is 2.5 m wide, from the wall's end at y = 1 to the wall across."""
+    walls = [wall(4.05, first_m, 4.05, 1, openings), wall(8, 3.5, 0, 3.5)]
+    found = part(walls)
+    assert len(found) == n_partings
+    for parting in found:
+        (way,) = parting.openings
+        assert abs(way.width_m - 2.4) < 0.02
+
+
+def test_what_is_hidden_beside_a_door_parts_floor_with_it():
+    """A leaf told of a door 1 m wide in a gap of 2.4 m: the rest is no wider than a door."""
+    way_m = np.array([(4.05, 1.0), (4.05, 2.0)])
+    found = room_bounds.find_partings(
+        *([wall(4.05, -2, 4.05, 1)], TWO_ROOMS, TRACK_M),
+        **{"max_width_m": 1.5, "min_area_m2": 1.0, "unpaired_m": 0.1, "planar": True},
+        ways_m=[way_m],
+    )
+    widths_m = sorted(parting.openings[0].width_m for parting in found)
+    assert widths_m[0] == pytest.approx(1.0)
+    # a door's strip is a little longer than the door
+    assert [1.1 < width_m < 1.4 for width_m in widths_m[1:]] == [True]

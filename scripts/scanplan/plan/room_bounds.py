@@ -99,7 +99,9 @@ def find_partings(
     strips = wall_ground.wall_strips(bounds, unpaired_m)
     known = shapely.union_all(strips).buffer(END_M)
     doors = [_make_parting(way_m, "door") for way_m in _choose_ways(ways_m, known)]
-    strips += wall_ground.wall_strips(doors, unpaired_m)
+    # no narrower than the cells that narrow places are looked for in
+    ways = wall_ground.wall_strips(doors, unpaired_m)
+    strips += [way.buffer(CELL_M, join_style="mitre") for way in ways]
     solid = free_space.union_on_grid(strips)
     free = free_space.difference_on_grid(floor, solid)
     partings = list(doors)
@@ -123,7 +125,9 @@ def _find_line_gaps(
 ) -> list[FloatArray]:
     """Return lines (2, 2) over free floor, from where a wall ends to where one goes on in its line.
 
-    What only ends at a wall across may be a corner that stands into one room.
+    Also to a wall across, where nothing meets the wall's end and it is as long, from there to its
+    next opening, as the gap is wide: beside a door furniture hides what goes on. What meets another
+    wall at its end is a corner that stands into one room.
     """
     strips = np.array(wall_ground.wall_strips(walls, unpaired_m), object)
     tree = shapely.STRtree(strips)
@@ -141,10 +145,19 @@ def _find_line_gaps(
                 continue
             ends_m = shapely.get_coordinates(first)[[0, -1]]
             far = max(map(shapely.Point, ends_m), key=start.distance)
-            beyond = (walls[i] for i in tree.query(far, predicate="dwithin", distance=END_M))
-            if any(wall.goes_on_as(other) for other in beyond if other is not wall):
+            beyond = [walls[i] for i in tree.query(far, predicate="dwithin", distance=CORNER_M)]
+            beyond = [other for other in beyond if other is not wall]
+            is_alone = len(tree.query(start, predicate="dwithin", distance=END_M)) == 1
+            ends_at_wall = beyond and is_alone and first.length <= _solid_m(wall, end_m)
+            if ends_at_wall or any(wall.goes_on_as(other) for other in beyond):
                 gaps_m.append(ends_m)
     return gaps_m
+
+
+def _solid_m(wall: PlanWall, end_m: float) -> float:
+    """Return how long a wall is from one of its ends to the opening next to it."""
+    jambs_m = [m for gap in wall.openings for m in (gap.low_m, gap.high_m)]
+    return min((abs(m - end_m) for m in jambs_m), default=wall.length_m)
 
 
 def _snap(ends_m: FloatArray, walls: Sequence[PlanWall]) -> FloatArray:

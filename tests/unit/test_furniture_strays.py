@@ -1,0 +1,58 @@
+"""Short surfaces that stand free and oblique in a room of 8 m by 6 m, seen from above."""
+
+import numpy as np
+import pytest
+
+from helpers.observation_making import stretch
+from scanplan.plan.furniture.strays import find_strays
+from scanplan.plan.openings import OPEN, Opening
+from scanplan.plan.plan_wall import PlanWall
+
+ROOM = [(0, 0, 8, 0), (8, 0, 8, 6), (8, 6, 0, 6), (0, 6, 0, 0)]
+
+
+def wall(*ends_m, right=(), openings=()):
+    face = stretch(*ends_m, planar=True)
+    return PlanWall(face.line, 0.0, face.high_m, np.nan, [face], list(right), list(openings))
+
+
+def oblique(length_m, turn_deg, at_m=(4.0, 3.0)):
+    way_m = length_m * np.array([np.cos(np.radians(turn_deg)), np.sin(np.radians(turn_deg))])
+    return (*at_m, *(np.array(at_m) + way_m))
+
+
+def strays(*walls):
+    found = find_strays([*(wall(*ends) for ends in ROOM), *walls], max_length_m=1.5)
+    return [next(i for i, one in enumerate(walls) if one.left == [face]) for face in found]
+
+
+@pytest.mark.parametrize(
+    ("length_m", "turn_deg", "is_stray"),
+    [(1.0, 40, True), (1.0, 70, True), (1.0, 10, False), (1.0, 95, False), (2.0, 40, False)],
+    ids=["oblique", "steep", "along", "across", "long"],
+)
+def test_a_short_surface_oblique_to_all_walls_is_a_stray(length_m, turn_deg, is_stray):
+    assert strays(wall(*oblique(length_m, turn_deg))) == [0] * is_stray
+
+
+def test_one_along_a_longer_oblique_wall_is_a_wall():
+    beside = wall(*oblique(3.0, 40, (1, 1)))
+    assert strays(wall(*oblique(1.0, 40)), beside) == []
+
+
+def test_one_that_meets_a_wall_stays_and_so_does_what_meets_it():
+    chain = [wall(*oblique(1.0, 40, (0.1, 2))), wall(0.87, 2.7, 1.6, 3.3)]
+    assert strays(*chain) == []
+    apart = [wall(*oblique(1.0, 40, (2.1, 2))), wall(2.87, 2.7, 3.6, 3.4)]
+    assert strays(*apart) == [0, 1]
+
+
+def test_what_shows_its_other_side_or_has_an_opening_is_a_wall():
+    ends_m = oblique(1.0, 40)
+    behind = stretch(*ends_m[2:], *ends_m[:2], planar=True)
+    way = Opening(0.2, 0.8, OPEN, 99, 0.0, np.nan, False)
+    assert strays(wall(*ends_m, right=[behind])) == strays(wall(*ends_m, openings=[way])) == []
+
+
+def test_a_plan_without_walls_has_none():
+    assert find_strays([], max_length_m=1.5) == []
