@@ -51,13 +51,14 @@ def find_glass_walls(
     panes = [PlanWall(*span, math.nan, [], []) for span in extended]
     found = []
     # several lines show one pane, each another part of it
-    for pane in sorted(panes, key=lambda pane: (-pane.length_m, *pane.ends.ravel())):
+    for row in sorted(range(len(panes)), key=lambda row: (-panes[row].length_m, row)):
+        pane = panes[row]
         if pane.length_m < min_length_m or known.covers(shapely.Point(pane.ends.mean(axis=0))):
             continue
-        found.append(pane)
+        found.append(row)
         grounds = wall_ground.wall_strips([pane], unpaired_m)
         known = shapely.union_all([known, *(ground.buffer(END_M) for ground in grounds)])
-    return found
+    return [panes[row] for row in sorted(found)]
 
 
 def find_partings(
