@@ -146,3 +146,15 @@ def test_what_is_hidden_beside_a_door_parts_floor_with_it():
     assert widths_m[0] == pytest.approx(1.0)
     # a door's strip is a little longer than the door
     assert [1.1 < width_m < 1.4 for width_m in widths_m[1:]] == [True]
+
+
+@pytest.mark.parametrize(("hidden_m", "kind"), [(2.0, "unseen"), (1.0, "gap")])
+def test_what_furniture_hides_of_a_parting_is_not_known_to_be_a_way(hidden_m, kind):
+    """Furniture stands on that much of a gap of 2.4 m, on either side of the line."""
+    (parting,) = room_bounds.find_partings(
+        *([wall(4.05, -2, 4.05, 1), wall(4.05, 3.4, 4.05, 4)], TWO_ROOMS, TRACK_M),
+        **{"max_width_m": 1.5, "min_area_m2": 1.0, "unpaired_m": 0.1, "planar": True},
+        hidden=box(3.5, 1.0, 4.6, 1.0 + hidden_m),
+    )
+    (way,) = parting.openings
+    assert way.kind == kind

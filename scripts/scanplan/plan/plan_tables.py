@@ -128,8 +128,8 @@ def opening_columns(
 ) -> dict[str, Array]:
     """Return the rows of `schemas.OPENINGS`: those of each wall in order along it.
 
-    Then what is in no wall: panes, a passage for each parting between two rooms (inferred), or a
-    door of which a leaf was seen, and what is bare of rooms' outlines.
+    Then what is in no wall: panes; for each parting between two rooms a passage (inferred), a door
+    of which a leaf was seen, or what furniture hides; and what is bare of rooms' outlines.
     """
     rows: list[Row] = []
     for number, wall in enumerate(walls):

@@ -370,6 +370,7 @@ class _Survey:
             unpaired_m=surfaces.unpaired_m,
             planar=self.rays.planar,
             ways_m=[leaf.way_m for leaf in surfaces.leaves],
+            hidden=free_space.difference_on_grid(floor, self.floor) if self.rays.planar else None,
         )
         rooms = find_rooms(
             *([*surfaces.bounds, *partings], self.views, self.track_m),

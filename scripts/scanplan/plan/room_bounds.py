@@ -71,10 +71,12 @@ def find_partings(
     unpaired_m: float,
     planar: bool = False,
     ways_m: Sequence[FloatArray] = (),
+    hidden: BaseGeometry | None = None,
 ) -> list[PlanWall]:
     """Return where free floor is narrow between walls: thin walls without faces, all an opening.
 
     There a wall was not seen, or its door was not; on the line of a wall nearby it stands in that.
+    Where furniture hides most of the floor nothing is known of what is between.
     In planar scans, which show no lintel and less of walls behind furniture, what is wider than a
     door parts floor too: where it is a gap in the line of a wall, no wider than the wall is long.
 
@@ -96,6 +98,8 @@ def find_partings(
         Whether all scans lie in one plane.
     ways_m : sequence of (2, 2) float64
         Doors, from jamb to jamb: those that stand in no wall part floor, too.
+    hidden : shapely geometry, optional
+        What of the floor furniture stands on: it was not seen.
     """
     strips = wall_ground.wall_strips(bounds, unpaired_m)
     known = shapely.union_all(strips).buffer(END_M)
@@ -117,7 +121,12 @@ def find_partings(
             min_area_m2=min_area_m2,
             cell_m=CELL_M,
         ):
-            partings.append(_make_parting(_snap(ends_m, bounds)))
+            across = LineString(ends_m)
+            is_hidden = (
+                hidden is not None and across.intersection(hidden).length > across.length / 2
+            )
+            kind = wall_ground.UNSEEN if is_hidden else GAP
+            partings.append(_make_parting(_snap(ends_m, bounds), kind))
     return partings
 
 
