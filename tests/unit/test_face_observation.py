@@ -76,6 +76,16 @@ def test_a_pane_in_the_plane_sends_a_ray_back_now_and_then():
     np.testing.assert_allclose(seen.framed_m, [(1.0, 3.0)])
 
 
+@pytest.mark.parametrize(
+    ("places_m", "width_m"),
+    [([0.3], 0.6), ([0.45], 0.9), ([0.05, 0.85], 0.9), ([0.04, 1.17], 1.2), ([0.5, 0.6], 1.2)],
+    ids=["one", "one_in_a_door", "jambs", "jambs_of_a_wide_door", "legs"],
+)
+def test_returns_of_jambs_or_of_somebody_in_a_way_make_no_pane_in_the_plane(places_m, width_m):
+    returns = [(x_m, 0.0) for x_m in places_m]
+    assert len(observation(SOUTH, returns, lost=[(0, width_m)], planar=True).framed_m) == 0
+
+
 def test_returns_at_a_wall_and_rays_through_its_door():
     """The wall between the rooms of the house from the left; its door is at y = 1.5 to 2.4."""
     wall = Line(np.array([4.0, 0.0]), np.array([-1.0, 0.0]))

@@ -10,7 +10,9 @@ from shapely import box
 
 from helpers.observation_making import stretch
 from scanplan.plan.furniture import fronts
+from scanplan.plan.furniture.plan_faces import PlanFaces
 from scanplan.plan.furniture.pockets import find_blocks, find_pockets
+from scanplan.plan.furniture.recesses import stands_before_facade
 from scanplan.plan.openings import OPEN, Opening
 from scanplan.plan.plan_wall import PlanWall, usual_thickness_m
 
@@ -305,11 +307,12 @@ def test_what_fills_a_room_before_the_outer_wall_is_furniture(bench_m, beyond, n
     assert all(pocket.ground.covers(box(0, 0.01, 4, bench_m)) for pocket in found)
 
 
-def test_an_outer_wall_with_a_door_is_no_bench():
+@pytest.mark.parametrize("jamb_m", [0.15, 1.0])
+def test_an_outer_wall_with_a_door_is_no_bench(jamb_m):
     walls, front, floor = facade_rooms(0.9)
-    beside = stretch(3.0, 0.9, 4.0, 0.9, planar=True)
-    west = stretch(0.0, 0.9, 2.0, 0.9, planar=True)
-    way = Opening(2.0, 3.0, OPEN, 99, 0.0, np.nan, False)
+    beside = stretch(4.0 - jamb_m, 0.9, 4.0, 0.9, planar=True)
+    west = stretch(0.0, 0.9, 3.0 - jamb_m, 0.9, planar=True)
+    way = Opening(3.0 - jamb_m, 4.0 - jamb_m, OPEN, 99, 0.0, np.nan, False)
     walls[0] = PlanWall(front.line, 0.0, 4.0, np.nan, [west, beside], [], [way])
     assert pockets(walls, floor) == []
 
@@ -320,13 +323,49 @@ def test_a_bench_is_found_where_chairs_hide_the_floor_before_it():
     assert pocket.fronts == [front]
 
 
+@pytest.mark.parametrize("mirrored", [False, True])
+@pytest.mark.parametrize("nudge_m", [-1e-9, 0.0, 1e-9])
+def test_a_house_behind_either_end_of_a_wall_tells_that_it_is_not_the_last(mirrored, nudge_m):
+    """The wall shows as far to the left of a room as to the right; the house is behind one side."""
+    sign = -1 if mirrored else 1
+    front = stretch(-2, 0.9, 2, 0.9, planar=True)
+    beside = [stretch(-8, 0, -3 + nudge_m, 0, planar=True), stretch(3, 0, 8, 0, planar=True)]
+    across = sorted([sign * 4.0, sign * 7.0])
+    house = stretch(across[0], -4, across[1], -4, planar=True)
+    faces = PlanFaces([front, *beside, house])
+    assert not stands_before_facade(front, faces, 1.0)
+    assert stands_before_facade(front, PlanFaces([front, *beside]), 1.0)
+
+
+def test_ground_is_not_told_of_where_no_front_is():
+    """Behind a wall 0.3 m thick, as all are, there is no room for anything."""
+    walls, front, floor = facade_rooms(0.3)
+    found = find_pockets(walls, floor, unpaired_m=0.3, max_thickness_m=0.6, max_depth_m=1.0)
+    assert all(front in pocket.fronts for pocket in found)
+
+
+def test_piers_between_niches_stay():
+    """An outer wall with four piers of 1.4 m and three niches of 1.6 m, 0.5 m deep."""
+    piers = [(3.0 * k, 0, 3.0 * k + 1.4, 0) for k in range(4)]
+    niches = [(3.0 * k + 1.4, -0.5, 3.0 * k + 3, -0.5) for k in range(3)]
+    sides = [(x, y0, x, y1) for k in range(3) for x, y0, y1 in
+             [(3.0 * k + 1.4, 0, -0.5), (3.0 * k + 3, -0.5, 0)]]  # fmt: skip
+    around = [(10.4, 0, 10.4, 4), (10.4, 4, 0, 4), (0, 4, 0, 0)]
+    floor = shapely.union_all(
+        [box(0, 0, 10.4, 4), *(box(x0, -0.5, x1, 0) for x0, _, x1, _ in niches)]
+    )
+    walls = [wall([face]) for face in [*piers, *niches, *sides, *around]]
+    middle = [walls[1].left[0], walls[2].left[0]]
+    assert not any(face in pocket.fronts for pocket in pockets(walls, floor) for face in middle)
+
+
 def kitchen(depth_m, ends_m=(1.0, 4.0)):
     """A row between walls of a room of 5 m, as long as the wall that shows on both sides of it."""
     first_m, last_m = ends_m
     faces = [(last_m, 4, last_m, 4 - depth_m), (first_m, 4 - depth_m, first_m, 4)]
     front = (last_m, 4 - depth_m, first_m, 4 - depth_m)
     beside = [(5, 4, last_m, 4), (first_m, 4, 0, 4)]
-    # what else lies in the front's line reaches as far as the wall does
+    # what else lies in the front's line on one side reaches as far as the wall does
     in_line = (-1, 4 - depth_m, -2, 4 - depth_m)
     walls = [wall([face]) for face in [*ROOM, *beside, *faces, front, in_line]]
     return walls, box(0, 0, 5, 4).difference(box(first_m, 4 - depth_m, last_m, 4))

@@ -1,5 +1,7 @@
 """Short surfaces that stand free and oblique in a room of 8 m by 6 m, seen from above."""
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -56,3 +58,30 @@ def test_what_shows_its_other_side_or_has_an_opening_is_a_wall():
 
 def test_a_plan_without_walls_has_none():
     assert find_strays([], max_length_m=1.5) == []
+
+
+def ring(n_sides, radius_m, share, at_m=(4.0, 3.0)):
+    """Faces along a share of the sides of a polygon, seen from its middle."""
+    for side in range(n_sides):
+        a, b = (
+            radius_m * np.array([np.cos(t), np.sin(t)]) + at_m
+            for t in 2 * np.pi * (side + 0.5 + share / 2 * np.array([1, -1])) / n_sides
+        )
+        yield wall(*a, *b)
+
+
+def test_the_piers_of_a_round_room_and_the_sides_of_a_turned_pillar_stay():
+    assert strays(*ring(12, 2.5, 0.6)) == []
+    assert strays(*ring(4, 0.5, 1.0, (4.0, 3.2))) == []
+
+
+def test_pieces_of_an_oblique_wall_stay():
+    pieces = [wall(*oblique(1.2, 30, (1 + 1.73 * k, 0.5 + k))) for k in range(4)]
+    assert strays(*pieces) == []
+
+
+def test_a_small_room_without_a_long_wall_stays():
+    corners = [(0, 0), (1.1, 0), (1.1, 1.4), (0, 1.4), (0, 0)]
+    walls = [wall(*a, *b) for a, b in itertools.pairwise(corners)]
+    assert find_strays(walls, max_length_m=1.5) == []
+    assert find_strays(list(ring(8, 1.8, 1.0)), max_length_m=1.5) == []

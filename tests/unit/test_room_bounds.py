@@ -45,6 +45,28 @@ def test_a_pane_that_two_lines_show_is_one():
     np.testing.assert_allclose([pane.ends[:, 0] for pane in found], [(1, 3), (4, 5)])
 
 
+@pytest.mark.parametrize(
+    ("spans", "drawn"),
+    [
+        ([(1, 3), (1.9, 5)], [(1, 1.8), (1.9, 5)]),
+        ([(0, 4), (1, 5.1)], [(0, 0.9), (1, 5.1)]),
+        ([(1, 3), (0.8, 2.9)], [(0.8, 2.9)]),
+    ],
+)
+def test_lines_that_show_parts_of_a_pane_show_all_of_it(spans, drawn):
+    found = room_bounds.find_glass_walls(
+        [], [(SOUTH, *span) for span in spans], min_length_m=0.5, unpaired_m=0.1
+    )
+    np.testing.assert_allclose([np.sort(pane.ends[:, 0]) for pane in found], drawn, atol=0.02)
+
+
+def test_panes_that_cross_are_both_drawn():
+    across = Line(np.array([2.0, 0.0]), np.array([1.0, 0.0]))
+    spans = [(SOUTH, 0.0, 4.0), (across, -1.5, 1.5)]
+    found = room_bounds.find_glass_walls([], spans, min_length_m=0.5, unpaired_m=0.1)
+    assert [round(pane.length_m, 2) for pane in found] == [4.0, 3.0]
+
+
 def test_a_slit_bounds_nothing():
     assert between([], 1.0, 1.3) == []
 
@@ -132,6 +154,41 @@ def test_a_wall_that_ends_free_parts_rooms_up_to_the_wall_across(first_m, openin
     for parting in found:
         (way,) = parting.openings
         assert abs(way.width_m - 2.4) < 0.02
+
+
+HALL = box(0, 0, 10, 8)
+
+
+def hall_partings(spur, others=(), across=((10, 8, 0, 8),), thickness_m=0.1):
+    """Partings of a hall driven through from west to east, with a wall that stands into it."""
+    x_m, high_m = spur
+    end = PlanWall(line_through(x_m, -0.5, x_m, high_m), 0.0, high_m + 0.5, thickness_m, [], [])
+    around = [*(wall(*ends) for ends in across), *others]
+    track_m = np.array([[2.0, 4.0], [5.0, 7.5], [8.0, 4.0]])
+    return room_bounds.find_partings(
+        *([end, *around], HALL, track_m),
+        **{"max_width_m": 1.5, "min_area_m2": 1.0, "unpaired_m": 0.1, "planar": True},
+    )
+
+
+def test_a_wide_opening_beside_a_spur_parts_nothing():
+    """4.2 m of wall, and 3.7 m open: one living room. 2.2 m of the same would be parted."""
+    assert hall_partings((5.0, 4.2)) == []
+    assert len(hall_partings((5.0, 5.7))) == 1
+
+
+@pytest.mark.parametrize("thickness_m", [0.1, 0.3])
+def test_a_spur_with_a_return_is_a_corner(thickness_m):
+    """The return butts at the face of the spur's end, however thick that is."""
+    side = wall(5 + thickness_m / 2 + 0.1, 5.7, 7.0, 5.7)
+    assert hall_partings((5.0, 5.7), [side], thickness_m=thickness_m) == []
+
+
+def test_a_screen_beyond_a_free_end_is_no_wall_across():
+    """What stands obliquely where the line leaves the floor neither crosses it nor goes on."""
+    screen = wall(4.6, 7.5, 5.4, 8.6)
+    assert hall_partings((5.0, 5.7), [screen], across=()) == []
+    assert len(hall_partings((5.0, 5.7), [wall(4.4, 8.05, 5.6, 8.05)], across=())) == 1
 
 
 def test_what_is_hidden_beside_a_door_parts_floor_with_it():

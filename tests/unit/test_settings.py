@@ -94,6 +94,14 @@ def test_a_dataset_that_is_none(defaults, schema, given, said):
             "poses: {keep_evry: 2}",
             "poses: unknown key keep_evry (did you mean keep_every?); known ",
         ),
+        (
+            "poses.keep_every: 2",
+            "unknown key poses.keep_every (write `poses:`, and indented below it `keep_every:`)",
+        ),
+        (
+            "selection: {stop: {area_share: '0,95'}}",
+            "selection.stop.area_share: is '0,95', expected: auto or a share",
+        ),
         ("poses: {keep_every: two}", "poses.keep_every: 'two' is not of type 'integer'"),
         ("poses: {max_gap_s: .nan}", "poses.max_gap_s: nan"),
         ("pose: {}", "settings: unknown key pose"),

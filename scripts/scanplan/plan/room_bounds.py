@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import shapely
@@ -45,20 +46,32 @@ def find_glass_walls(
     """
     ways = [(wall, opening) for wall in walls for opening in wall.openings]
     grounds = [wall_ground.opening_polygon(*way, unpaired_m).buffer(END_M) for way in ways]
-    known = shapely.union_all(grounds)
+    open_m2 = shapely.union_all(grounds)
+    shapely.prepare(open_m2)
     stacked = intersections.stack_spans(walls)
     extended = (_extend(*span, walls, stacked) for span in spans)
     panes = [PlanWall(*span, math.nan, [], []) for span in extended]
-    found = []
-    # several lines show one pane, each another part of it
-    for row in sorted(range(len(panes)), key=lambda row: (-panes[row].length_m, row)):
+    found: dict[int, list[PlanWall]] = {}
+    # several lines show one pane, or each another part of it; rounding does not choose among them
+    for row in sorted(range(len(panes)), key=lambda row: (-round(panes[row].length_m, 3), row)):
         pane = panes[row]
-        if pane.length_m < min_length_m or known.covers(shapely.Point(pane.ends.mean(axis=0))):
-            continue
-        found.append(row)
-        grounds = wall_ground.wall_strips([pane], unpaired_m)
-        known = shapely.union_all([known, *(ground.buffer(END_M) for ground in grounds)])
-    return [panes[row] for row in sorted(found)]
+        if not open_m2.covers(shapely.Point(pane.ends.mean(axis=0))):
+            known = [other for parts in found.values() for other in parts]
+            parts = _cut_known(pane, known, unpaired_m)
+            found[row] = [part for part in parts if part.length_m >= min_length_m]
+    return [part for row in sorted(found) for part in found[row]]
+
+
+def _cut_known(pane: PlanWall, known: Sequence[PlanWall], unpaired_m: float) -> list[PlanWall]:
+    """Return what of a pane lies on none of those known that run the same way."""
+    along = [other for other in known if pane.goes_on_as(other)]
+    if not along:
+        return [pane]
+    strips = wall_ground.wall_strips(along, unpaired_m)
+    ground = shapely.union_all(shapely.buffer(np.array(strips, object), END_M))
+    parts = shapely.get_parts(shapely.difference(LineString(pane.ends), ground))
+    spans_m = [np.sort(pane.line.along_m(shapely.get_coordinates(part))) for part in parts]
+    return [replace(pane, low_m=float(m[0]), high_m=float(m[-1])) for m in spans_m if len(m)]
 
 
 def find_partings(
@@ -135,9 +148,9 @@ def _find_line_gaps(
 ) -> list[FloatArray]:
     """Return lines (2, 2) over free floor, from where a wall ends to where one goes on in its line.
 
-    Also to a wall across, where nothing meets the wall's end and it is as long, from there to its
-    next opening, as the gap is wide: beside a door furniture hides what goes on. What meets another
-    wall at its end is a corner that stands into one room.
+    Also to a wall across, where nothing meets the wall's end, the gap is no wider than two doors,
+    and the wall as long from there to its next opening: beside a door furniture hides what goes on.
+    What meets another wall at its end is a corner that stands into one room.
     """
     strips = np.array(wall_ground.wall_strips(walls, unpaired_m), object)
     tree = shapely.STRtree(strips)
@@ -155,13 +168,21 @@ def _find_line_gaps(
                 continue
             ends_m = shapely.get_coordinates(first)[[0, -1]]
             far = max(map(shapely.Point, ends_m), key=start.distance)
-            beyond = [walls[i] for i in tree.query(far, predicate="dwithin", distance=CORNER_M)]
-            beyond = [other for other in beyond if other is not wall]
-            is_alone = len(tree.query(start, predicate="dwithin", distance=END_M)) == 1
-            ends_at_wall = beyond and is_alone and first.length <= _solid_m(wall, end_m)
+            near = tree.query(far, predicate="dwithin", distance=CORNER_M)
+            beyond = [walls[i] for i in near if walls[i] is not wall]
+            around_m = wall.half_m + END_M
+            is_free = len(tree.query(start, predicate="dwithin", distance=around_m)) == 1
+            most_m = min(2 * min_width_m, _solid_m(wall, end_m))
+            is_crossed = any(_crosses(wall, other) for other in beyond)
+            ends_at_wall = is_free and is_crossed and first.length <= most_m
             if ends_at_wall or any(wall.goes_on_as(other) for other in beyond):
                 gaps_m.append(ends_m)
     return gaps_m
+
+
+def _crosses(wall: PlanWall, other: PlanWall) -> bool:
+    """Return whether another wall runs across one."""
+    return abs(float(wall.line.direction @ other.line.normal)) >= math.cos(intersections.LEAST_RAD)
 
 
 def _solid_m(wall: PlanWall, end_m: float) -> float:

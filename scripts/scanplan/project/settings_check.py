@@ -124,6 +124,9 @@ def _explain(fault: ValidationError, origin: str) -> str:
         extra = sorted(map(str, set(value) - set(node["properties"])))
         meant = [near for name in extra for near in get_close_matches(name, node["properties"], 1)]
         ask = f" (did you mean {', '.join(meant)}?)" if meant else ""
+        section, dot, below = extra[0].partition(".")
+        if dot and section in node["properties"]:
+            ask = f" (write `{section}:`, and indented below it `{below}:`)"
         return f"{key}: unknown key {', '.join(extra)}{ask}; known are {known}"
     if fault.validator == "type" and fault.validator_value == "object":
         remedy = "leave the section out if there are none"
@@ -131,6 +134,8 @@ def _explain(fault: ValidationError, origin: str) -> str:
     if origin == COMMAND_LINE and isinstance(value, str) and fault.validator == "type":
         remedy = "nested values of --config arrive as text: put them into a file for --configfile"
         return f"{key}: {fault.message} ({remedy})"
+    if fault.validator == "pattern" and "x-unit" in node:
+        return f"{key}: is {value!r}, expected: {node['x-unit']}"
     if fault.validator in ("anyOf", "oneOf"):
         numeral = origin == COMMAND_LINE and isinstance(value, (int, float))
         remedy = f" (a name of digits wants to be in a list: --config '{key}=[\"NAME\"]')"

@@ -3,6 +3,7 @@
 Returns, rays through it, glass, and the raster of these.
 """
 
+import math
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -13,7 +14,7 @@ from scanplan.rays import expected_returns, face_raster
 from scanplan.rays.face_raster import CELL_M, FaceRaster
 from scanplan.rays.face_rays import FaceRays, cast_at_face
 from scanplan.rays.ray_set import RaySet
-from scanplan.rays.tolerances import BEHIND_M, FEW, SKIRTING_M, STRETCH_M
+from scanplan.rays.tolerances import BEHIND_M, FEW, ON_M, SKIRTING_M, STRETCH_M
 from scanplan.types import FloatArray, IntArray
 
 _MOST_SHARE = 0.5  # of rays return from any wall; of a pane's length has a frame
@@ -93,15 +94,19 @@ class FaceObservation:
 
         Glass has a frame, a sill or a lintel; a line that merely goes on before a pane has none.
         A planar scanner sees none of them, but for mullions: there it is what a pane itself returns
-        now and then, and columns are as wide as the least stretch of a surface.
+        now and then, all along but for its jambs.
         """
         returns_m = np.sort(np.concatenate([self.occupied_m, self.low_m]))
-        column_m = STRETCH_M if self.planar else CELL_M
-        share = [
-            filled_share(returns_m, low_m, high_m, column_m)
-            for low_m, high_m in self.lost_m.tolist()
-        ]
-        return self.lost_m[np.array(share, float) >= _MOST_SHARE]
+        is_pane = [self._is_framed(returns_m, *span_m) for span_m in self.lost_m.tolist()]
+        return self.lost_m[np.array(is_pane, bool)]
+
+    def _is_framed(self, returns_m: FloatArray, low_m: float, high_m: float) -> bool:
+        if not self.planar:
+            return filled_share(returns_m, low_m, high_m) >= _MOST_SHARE
+        # what is close to the ends may be of jambs, and fewer stretches of somebody in a way
+        low_m, high_m = low_m + ON_M, high_m - ON_M
+        is_long = high_m - low_m >= FEW * STRETCH_M
+        return is_long and filled_share(returns_m, low_m, high_m, STRETCH_M) >= _MOST_SHARE
 
     def occupied_between(self, low_m: float, high_m: float) -> slice:
         """Return which returns lie between two places."""
@@ -166,7 +171,7 @@ def filled_share(
 ) -> float:
     """Return the share of the columns between two places that hold any of sorted places."""
     inside_m = places_m[np.searchsorted(places_m, low_m) : np.searchsorted(places_m, high_m)]
-    columns = max(round((high_m - low_m) / column_m), 1)
+    columns = max(math.ceil(round((high_m - low_m) / column_m, 6)), 1)
     return len(np.unique(((inside_m - low_m) / column_m).astype(np.int64))) / columns
 
 

@@ -4,9 +4,12 @@ No ray of a planar scanner passes over a cupboard, so that its front looks like 
 is all of the plan: behind a wall there is its other side, another room, or the outside. Behind a
 front there is a pocket no larger than furniture and what it hides, up to the wall behind: a wall on
 whose line floor of the same room ends beside the pocket, and that goes farther through all rooms
-than the front's own line. A block that stands alone on the floor of a room is furniture, too, if
-it is thicker than a wall of the building and longer than a column; an island or a row of cupboards,
-no deeper than furniture, may be twice as large. Leaves of open doors are taken off before.
+than the front's own line; that goes on on both sides of it; or that the building ends at. A facade
+that steps back by less than furniture is deep, and shows no opening, cannot be told from a bench: a
+room's outline there is one that was not seen. A block that stands alone on the floor of a room is
+furniture, too, if it is thicker than a wall of the building and longer than a column; an island or
+a row of cupboards, no deeper than furniture, may be twice as large. Leaves of open doors are taken
+off before, and then short surfaces that stand free and oblique.
 """
 
 from collections.abc import Callable, Sequence
@@ -31,7 +34,7 @@ def drop_fronts(
     max_thickness_m: float,
     max_depth_m: float,
 ) -> tuple[list[PlanWall], list[BaseGeometry], list[Leaf]]:
-    """Return walls without fronts, the ground that furniture stands on, and leaves of doors.
+    """Return walls without fronts or strays, the ground of furniture, and leaves of doors.
 
     Without its fronts walls behind it may be joined, and close more pockets: until none is found.
 
@@ -50,9 +53,6 @@ def drop_fronts(
         Of a wall, and of furniture from its front to its back.
     """
     most = {"max_thickness_m": max_thickness_m, "max_depth_m": max_depth_m}
-    if strays := set(map(id, find_strays(walls, max_length_m=max_door_m))):
-        faces = [face for wall in walls for face in wall.members]
-        walls = assemble([face for face in faces if id(face) not in strays])
     leaves = find_leaves(walls, unpaired_m=measure_thickness_m(walls), max_width_m=max_door_m)
     if leaves:
         faces = [face for wall in walls for face in wall.members]
@@ -60,6 +60,9 @@ def drop_fronts(
             faces = [piece for face in faces for piece in leaf.cut_off(face)]
         traces = set(map(id, find_traces(leaves, faces)))
         walls = assemble([face for face in faces if id(face) not in traces])
+    if strays := set(map(id, find_strays(walls, max_length_m=max_door_m))):
+        faces = [face for wall in walls for face in wall.members]
+        walls = assemble([face for face in faces if id(face) not in strays])
     grounds: list[BaseGeometry] = [leaf.ground for leaf in leaves]
 
     def find_more() -> list[Pocket]:

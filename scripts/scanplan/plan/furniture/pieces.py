@@ -70,7 +70,8 @@ def find_pieces(
     """Find the furniture in rooms and close to them, as are the reveals of windows.
 
     People that pass leave returns where other scans see free floor, or no other scan sees
-    anything: cells that one scan alone shows, or in the plane more scans see through, are left out.
+    anything: cells that one scan alone shows, or in the plane more scans see through, are left out,
+    but for fronts, which all scans together told.
 
     Parameters
     ----------

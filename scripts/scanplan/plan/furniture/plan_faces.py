@@ -10,7 +10,7 @@ from shapely.geometry.base import BaseGeometry
 from scanplan.geometry import intersections
 from scanplan.plan.faces.face_tree import FaceTree
 from scanplan.plan.faces.intervals import FaceInterval
-from scanplan.plan.tolerances import CORNER_M, FACE_M
+from scanplan.plan.tolerances import CORNER_M, END_M, FACE_M
 from scanplan.rays.tolerances import BEHIND_M, STRETCH_M
 from scanplan.types import FloatArray
 
@@ -23,6 +23,7 @@ class PlanFaces(FaceTree):
         self._centre_m = self._ends_m.mean(axis=1)
         self._length_m = np.array([face.length_m for face in faces])
         self._normal = np.array([face.line.normal for face in faces]).reshape(-1, 2)
+        self._on_line_m: dict[int, tuple[FloatArray, FloatArray]] = {}
 
     def behind(self, ground: BaseGeometry) -> list[FaceInterval]:
         """Return the faces on whose lines ground before them ends, or near."""
@@ -65,7 +66,7 @@ class PlanFaces(FaceTree):
         return float(np.maximum(low_m - places_m.max(), places_m.min() - high_m).min())
 
     def goes_on_beside(self, face: FaceInterval, places_m: FloatArray) -> bool:
-        """Return whether more than a trace lies on the line of a face on both sides of places.
+        """Return whether more than a trace lies on the line of a face on both sides of places (n,).
 
         What lies there begins where they end.
         """
@@ -75,16 +76,22 @@ class PlanFaces(FaceTree):
         after = (np.abs(low_m - last_m) <= CORNER_M) & (high_m > last_m + STRETCH_M)
         return bool(before.any() and after.any())
 
+    def is_between_others(self, face: FaceInterval) -> bool:
+        """Return whether others lie on the line of a face on both sides of it, not next to it."""
+        low_m, high_m = self._along_line_m(face)
+        before = (high_m < face.low_m - CORNER_M).any()
+        return bool(before and (low_m > face.high_m + CORNER_M).any())
+
     def is_outermost(self, face: FaceInterval, places_m: FloatArray) -> bool:
         """Return whether no surface lies behind the line of a face.
 
-        From places along it to the nearest that lies on it.
+        From places (n,) along it to the nearest that lies on it; to all that are about as near.
         """
         low_m, high_m = self._along_line_m(face)
         gap_m = np.maximum(low_m - places_m.max(), places_m.min() - high_m)
-        nearest = int(gap_m.argmin())
-        first_m = min(low_m[nearest], places_m.min())
-        last_m = max(high_m[nearest], places_m.max())
+        is_nearest = gap_m <= gap_m.min() + END_M
+        first_m = min(low_m[is_nearest].min(), places_m.min())
+        last_m = max(high_m[is_nearest].max(), places_m.max())
         along_m = face.line.along_m(self._ends_m)
         off_m = face.line.offset_m(self._ends_m)
         is_beside = (along_m.max(axis=1) > first_m) & (along_m.min(axis=1) < last_m)
@@ -103,9 +110,11 @@ class PlanFaces(FaceTree):
 
     def _along_line_m(self, face: FaceInterval) -> tuple[FloatArray, FloatArray]:
         """Return from where (n,) to where faces of the same way lie on the line of one."""
-        off_m = face.line.offset_m(self._centre_m)
-        is_parallel = self._normal @ face.line.normal >= math.cos(intersections.LEAST_RAD)
-        is_on = is_parallel & (np.abs(off_m) <= FACE_M)
-        along_m = face.line.along_m(self._centre_m[is_on])
-        half_m = self._length_m[is_on] / 2
-        return along_m - half_m, along_m + half_m
+        if id(face) not in self._on_line_m:
+            off_m = face.line.offset_m(self._centre_m)
+            is_parallel = self._normal @ face.line.normal >= math.cos(intersections.LEAST_RAD)
+            is_on = is_parallel & (np.abs(off_m) <= FACE_M)
+            along_m = face.line.along_m(self._centre_m[is_on])
+            half_m = self._length_m[is_on] / 2
+            self._on_line_m[id(face)] = along_m - half_m, along_m + half_m
+        return self._on_line_m[id(face)]

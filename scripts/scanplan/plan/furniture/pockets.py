@@ -85,6 +85,7 @@ def find_pockets(
         parts=parts,
         grown=shapely.buffer(parts, CELL_M),
         single={id(face) for face in alone},
+        opened={id(face) for wall in walls if wall.openings for face in wall.members},
         continued={id(face) for wall in walls for face in _find_continued(wall)},
         unpaired_m=unpaired_m,
         max_thickness_m=max_thickness_m,
@@ -112,9 +113,9 @@ class _Search:
         All of the plan.
     parts, grown : (n,) object
         Of the floor that was seen, polygons; the same, by a cell larger.
-    single, continued : set of int
-        Identities of the faces of walls seen from one side, and of those that go on beyond an
-        opening.
+    single, opened, continued : set of int
+        Identities of the faces of walls seen from one side, of those with an opening, and of those
+        that go on beyond one.
     unpaired_m, max_thickness_m, max_depth_m : float
         As in `find_pockets`.
     """
@@ -123,6 +124,7 @@ class _Search:
     parts: Array
     grown: Array
     single: set[int]
+    opened: set[int]
     continued: set[int]
     unpaired_m: float
     max_thickness_m: float
@@ -141,7 +143,7 @@ class _Search:
             return None
         row = int(np.argmax(seen_m2))
         fronts = [face for face in behind if _faces_onto(face, self.parts[row])]
-        return self._before_facade(own, hidden, behind, fronts) or self._before_wall(
+        return self._before_facade(own, hidden, behind, fronts, row) or self._before_wall(
             own, hidden, near, fronts, row
         )
 
@@ -151,18 +153,19 @@ class _Search:
         hidden: Polygon,
         behind: Sequence[FaceInterval],
         fronts: Sequence[FaceInterval],
+        row: int,
     ) -> Pocket | None:
         """Return the pocket of what stands before the building's outer wall."""
         outer = [
             face
-            for face in ([own] if own else fronts)
-            if id(face) not in self.continued
+            for face in (fronts if own is None else [face for face in behind if face is own])
+            if id(face) not in self.opened
             and stands_before_facade(face, self.faces, self.max_depth_m)
         ]
         if not outer:
             return None
         ahead_m = shapely.length(shapely.intersection(_before(outer[0]), self.parts))
-        part = self.parts[int(np.argmax(ahead_m))]
+        part = self.parts[int(np.argmax(ahead_m)) if ahead_m.any() else row]
         with_sides = [face for face in behind if face in outer or _faces_onto(face, part)]
         return _make_pocket(hidden, with_sides, self.unpaired_m)
 

@@ -71,19 +71,21 @@ def _find_walls_behind(
     """Yield the faces that a front may stand before.
 
     Their lines reach farther through the plan than the front's, and farther than they are away from
-    it; or they go on on both sides of it, behind it by more than a niche is deep.
+    it. Or they go on on both sides of it, where it is not one of the piers between niches.
     """
     reach_m = faces.reach_on_line_m(front)
+    is_pier = faces.is_between_others(front)
     # no deeper than a table and its shadow, however short the front
     most_m = min(POCKET_M2 / faces.joined_m(front), math.sqrt(POCKET_M2))
     for wall in faces.parallel(front, most_m + CORNER_M):
         along_m, off_m = wall.line.along_m(front.ends), wall.line.offset_m(front.ends)
-        farthest_m = faces.reach_on_line_m(wall)
         is_near = _is_near(front, wall, faces, max_depth_m)
-        if farthest_m > max(reach_m, faces.gap_on_line_m(wall, along_m)):
-            if off_m.max() <= most_m or (is_near and faces.is_outermost(wall, along_m)):
-                yield wall
-        elif is_near and off_m.min() > CORNER_M and faces.goes_on_beside(wall, along_m):
+        if faces.reach_on_line_m(wall) > max(reach_m, faces.gap_on_line_m(wall, along_m)):
+            may_stand = off_m.max() <= most_m or (is_near and faces.is_outermost(wall, along_m))
+        else:
+            is_behind = is_near and off_m.min() > CORNER_M
+            may_stand = is_behind and not is_pier and faces.goes_on_beside(wall, along_m)
+        if may_stand:
             yield wall
 
 

@@ -1,18 +1,18 @@
 """Short surfaces of planar scans that stand free and oblique to a building: no walls."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
+import shapely
 from shapely.geometry import Point
 
+from scanplan.geometry.intersections import LEAST_RAD
 from scanplan.plan.faces.face_tree import FaceTree
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.tolerances import CORNER_M
-
-_OBLIQUE_RAD = math.radians(15)
-"""A surface as short as a door is turned by noise by up to 10 degrees."""
+from scanplan.rays.tolerances import FEW
 
 
 def find_strays(walls: Sequence[PlanWall], *, max_length_m: float) -> list[FaceInterval]:
@@ -32,28 +32,49 @@ def find_strays(walls: Sequence[PlanWall], *, max_length_m: float) -> list[FaceI
     list of intervals.FaceInterval
         None of whose ends is near a surface that is not among them.
     """
-    strays = {id(face): face for face in _find_oblique(walls, max_length_m)}
+    short = [
+        wall
+        for wall in walls
+        if len(wall.members) == 1 and not wall.openings and wall.length_m <= max_length_m
+    ]
+    strays = {
+        id(wall.members[0]): wall.members[0]
+        for wall in _choose_few(short, max_length_m)
+        if _is_oblique(wall, walls)
+    }
     tree = FaceTree([face for wall in walls for face in wall.members])
-    near = {
+    met_by = {
         key: [id(other) for end_m in face.ends for other in tree.within(Point(end_m), CORNER_M)]
         for key, face in strays.items()
     }
-    while met := [key for key in strays if any(other not in strays for other in near[key])]:
+    while met := [key for key in strays if any(other not in strays for other in met_by[key])]:
         for key in met:
             del strays[key]
     return list(strays.values())
 
 
-def _find_oblique(walls: Sequence[PlanWall], max_length_m: float) -> Iterator[FaceInterval]:
-    """Yield the faces of short walls of one face that turn from all walls twice as long."""
-    length_m = np.array([wall.length_m for wall in walls])
-    direction = np.array([wall.line.direction for wall in walls]).reshape(-1, 2)
-    turn_rad = np.arctan2(*direction.T)
-    for row, wall in enumerate(walls):
-        if len(wall.members) != 1 or wall.openings or wall.length_m > max_length_m:
-            continue
-        # from the nearest of along and across
-        off_rad = (turn_rad - turn_rad[row] + math.pi / 4) % (math.pi / 2) - math.pi / 4
-        is_long = length_m >= 2 * wall.length_m
-        if not (is_long & (np.abs(off_rad) <= _OBLIQUE_RAD)).any():
-            yield wall.members[0]
+def _choose_few(short: Sequence[PlanWall], apart_m: float) -> list[PlanWall]:
+    """Return the walls that are in a group of few: those no farther apart are in one.
+
+    Three or more in a row are the piers of a round wall, pieces of an oblique one, or the sides of
+    a pillar; two may be of a flight of stairs.
+    """
+    ends_m = np.array([wall.ends for wall in short]).reshape(-1, 2, 2)
+    lines = np.asarray(shapely.linestrings(ends_m), object)
+    grown = shapely.buffer(lines, apart_m / 2)
+    group = shapely.get_parts(shapely.union_all(grown))
+    inside = shapely.intersects(lines[:, None], group[None])
+    is_few = inside.sum(axis=0) < FEW
+    return [wall for wall, of in zip(short, inside, strict=True) if is_few[of].all()]
+
+
+def _is_oblique(wall: PlanWall, walls: Sequence[PlanWall]) -> bool:
+    """Return whether a wall turns from all walls twice as long, and there is any."""
+    long = [other.line.direction for other in walls if other.length_m >= 2 * wall.length_m]
+    if not long:
+        return False
+    turn_rad = np.arctan2(*np.transpose(long)) - math.atan2(*wall.line.direction)
+    # from the nearer of along and across
+    off_rad = (turn_rad + math.pi / 4) % (math.pi / 2) - math.pi / 4
+    # of 105 short surfaces of walls, in simulated drives, noise turned none by more than 14 degrees
+    return bool((np.abs(off_rad) > LEAST_RAD / 2).all())
