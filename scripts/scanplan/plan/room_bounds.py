@@ -67,9 +67,14 @@ def _cut_known(pane: PlanWall, known: Sequence[PlanWall], unpaired_m: float) -> 
     along = [other for other in known if pane.goes_on_as(other)]
     if not along:
         return [pane]
-    strips = wall_ground.wall_strips(along, unpaired_m)
-    ground = shapely.union_all(shapely.buffer(np.array(strips, object), END_M))
-    parts = shapely.get_parts(shapely.difference(LineString(pane.ends), ground))
+    # wider by what lines err, and no longer: panes may meet at a mullion
+    inner = [replace(p, low_m=p.low_m + END_M, high_m=p.high_m - END_M) for p in along]
+    strips = wall_ground.wall_strips(inner, unpaired_m)
+    ground = shapely.union_all([strip.buffer(END_M, join_style="mitre") for strip in strips])
+    rest = shapely.difference(LineString(pane.ends), ground)
+    if rest.length >= pane.length_m - free_space.GRID_M:
+        return [pane]
+    parts = shapely.get_parts(rest)
     spans_m = [np.sort(pane.line.along_m(shapely.get_coordinates(part))) for part in parts]
     return [replace(pane, low_m=float(m[0]), high_m=float(m[-1])) for m in spans_m if len(m)]
 

@@ -105,8 +105,11 @@ class FaceObservation:
             return filled_share(returns_m, low_m, high_m) >= _MOST_SHARE
         # what is close to the ends may be of jambs, and fewer stretches of somebody in a way
         low_m, high_m = low_m + ON_M, high_m - ON_M
-        is_long = high_m - low_m >= FEW * STRETCH_M
-        return is_long and filled_share(returns_m, low_m, high_m, STRETCH_M) >= _MOST_SHARE
+        if high_m - low_m < FEW * STRETCH_M:
+            return False
+        whole_m = math.ceil(round((high_m - low_m) / STRETCH_M, 6)) * STRETCH_M
+        inside_m = returns_m[returns_m < high_m]
+        return filled_share(inside_m, low_m, low_m + whole_m, STRETCH_M) >= _MOST_SHARE
 
     def occupied_between(self, low_m: float, high_m: float) -> slice:
         """Return which returns lie between two places."""
@@ -171,7 +174,7 @@ def filled_share(
 ) -> float:
     """Return the share of the columns between two places that hold any of sorted places."""
     inside_m = places_m[np.searchsorted(places_m, low_m) : np.searchsorted(places_m, high_m)]
-    columns = max(math.ceil(round((high_m - low_m) / column_m, 6)), 1)
+    columns = max(round((high_m - low_m) / column_m), 1)
     return len(np.unique(((inside_m - low_m) / column_m).astype(np.int64))) / columns
 
 

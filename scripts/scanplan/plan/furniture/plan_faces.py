@@ -62,8 +62,7 @@ class PlanFaces(FaceTree):
 
     def gap_on_line_m(self, face: FaceInterval, places_m: FloatArray) -> float:
         """Return how far places (n,) along the line of a face are from what lies on it."""
-        low_m, high_m = self._along_line_m(face)
-        return float(np.maximum(low_m - places_m.max(), places_m.min() - high_m).min())
+        return float(self._gaps_m(face, places_m).min())
 
     def goes_on_beside(self, face: FaceInterval, places_m: FloatArray) -> bool:
         """Return whether more than a trace lies on the line of a face on both sides of places (n,).
@@ -88,7 +87,7 @@ class PlanFaces(FaceTree):
         From places (n,) along it to the nearest that lies on it; to all that are about as near.
         """
         low_m, high_m = self._along_line_m(face)
-        gap_m = np.maximum(low_m - places_m.max(), places_m.min() - high_m)
+        gap_m = self._gaps_m(face, places_m)
         is_nearest = gap_m <= gap_m.min() + END_M
         first_m = min(low_m[is_nearest].min(), places_m.min())
         last_m = max(high_m[is_nearest].max(), places_m.max())
@@ -103,10 +102,14 @@ class PlanFaces(FaceTree):
         span_m, joined_m = (face.low_m, face.low_m), (face.low_m, face.high_m)
         while joined_m != span_m:
             span_m = joined_m
-            gap_m = np.maximum(lows_m - span_m[1], span_m[0] - highs_m)
-            is_near = gap_m <= span_m[1] - span_m[0]
+            is_near = self._gaps_m(face, np.array(span_m)) <= span_m[1] - span_m[0]
             joined_m = (float(lows_m[is_near].min()), float(highs_m[is_near].max()))
         return span_m[1] - span_m[0]
+
+    def _gaps_m(self, face: FaceInterval, places_m: FloatArray) -> FloatArray:
+        """Return how far places along the line of a face are from each (n,) that lies on it."""
+        low_m, high_m = self._along_line_m(face)
+        return np.maximum(low_m - places_m.max(), places_m.min() - high_m)
 
     def _along_line_m(self, face: FaceInterval) -> tuple[FloatArray, FloatArray]:
         """Return from where (n,) to where faces of the same way lie on the line of one."""
