@@ -60,9 +60,8 @@ def drop_fronts(
             faces = [piece for face in faces for piece in leaf.cut_off(face)]
         traces = set(map(id, find_traces(leaves, faces)))
         walls = assemble([face for face in faces if id(face) not in traces])
-    if strays := set(map(id, find_strays(walls, max_length_m=max_door_m))):
-        faces = [face for wall in walls for face in wall.members]
-        walls = assemble([face for face in faces if id(face) not in strays])
+    if strays := find_strays(walls, max_length_m=max_door_m):
+        walls = assemble(_faces_but(walls, strays))
     grounds: list[BaseGeometry] = [leaf.ground for leaf in leaves]
 
     def find_more() -> list[Pocket]:
@@ -72,8 +71,12 @@ def drop_fronts(
 
     while pockets := find_more():
         grounds += [pocket.ground for pocket in pockets]
-        dropped = {id(front) for pocket in pockets for front in pocket.fronts}
-        walls = assemble(
-            [face for wall in walls for face in wall.members if id(face) not in dropped]
-        )
+        fronts = [front for pocket in pockets for front in pocket.fronts]
+        walls = assemble(_faces_but(walls, fronts))
     return walls, grounds, leaves
+
+
+def _faces_but(walls: Sequence[PlanWall], dropped: Sequence[FaceInterval]) -> list[FaceInterval]:
+    """Return the faces of walls without those dropped."""
+    without = set(map(id, dropped))
+    return [face for wall in walls for face in wall.members if id(face) not in without]

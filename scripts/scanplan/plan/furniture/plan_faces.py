@@ -12,7 +12,7 @@ from scanplan.plan.faces.face_tree import FaceTree
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.tolerances import CORNER_M, END_M, FACE_M
 from scanplan.rays.tolerances import BEHIND_M, STRETCH_M
-from scanplan.types import FloatArray
+from scanplan.types import BoolArray, FloatArray
 
 
 class PlanFaces(FaceTree):
@@ -51,9 +51,8 @@ class PlanFaces(FaceTree):
     def parallel(self, face: FaceInterval, most_m: float) -> list[FaceInterval]:
         """Return the faces of the same way whose lines lie behind a face, no farther than that."""
         off_m = np.einsum("fpi,fi->fp", face.ends - self._centre_m[:, None], self._normal)
-        is_parallel = self._normal @ face.line.normal >= math.cos(intersections.LEAST_RAD)
         is_behind = (off_m.min(axis=1) > BEHIND_M) & (off_m.max(axis=1) <= most_m)
-        return self._faces[is_parallel & is_behind].tolist()
+        return self._faces[self._faces_alike(face) & is_behind].tolist()
 
     def reach_on_line_m(self, face: FaceInterval) -> float:
         """Return how far all faces of the same way reach that lie on the line of one."""
@@ -115,9 +114,12 @@ class PlanFaces(FaceTree):
         """Return from where (n,) to where faces of the same way lie on the line of one."""
         if id(face) not in self._on_line_m:
             off_m = face.line.offset_m(self._centre_m)
-            is_parallel = self._normal @ face.line.normal >= math.cos(intersections.LEAST_RAD)
-            is_on = is_parallel & (np.abs(off_m) <= FACE_M)
+            is_on = self._faces_alike(face) & (np.abs(off_m) <= FACE_M)
             along_m = face.line.along_m(self._centre_m[is_on])
             half_m = self._length_m[is_on] / 2
             self._on_line_m[id(face)] = along_m - half_m, along_m + half_m
         return self._on_line_m[id(face)]
+
+    def _faces_alike(self, face: FaceInterval) -> BoolArray:
+        """Return which faces (n,) face much the same way as one."""
+        return self._normal @ face.line.normal >= math.cos(intersections.LEAST_RAD)
