@@ -6,6 +6,7 @@ on a real rover show: the sweep of the moving sensor, constant errors of its bea
 drift and jump.
 """
 
+import functools
 import json
 import os
 import subprocess
@@ -49,7 +50,13 @@ PLANAR: dict[str, dict[str, Any]] = {
 }
 """Kind of drive with a 2-D scanner to its settings: a scan each metre, or ten a second."""
 DRAWN = "drawn"
-"""Drives of this name lead through buildings drawn at random by the seed behind it."""
+"""Drives of this name lead through buildings drawn at random by the seed behind it.
+
+Between the two may stand the kind of a drive with a 2-D scanner, as in drawn_laser180_201.
+"""
+_DRAWN: dict[str, dict[str, Any]] = {DRAWN: {}} | {
+    f"{DRAWN}_{kind}": planar for kind, planar in PLANAR.items()
+}
 # one on each ten square metres
 _CHAIRS = {"demo": 40, "ring": 120, "duplex": 12, "fzk": 16, "pavilion": 18}
 LOCALISER = {"noise_m": 0.05, "noise_deg": 1.0, "jumps_per_min": 1.0}
@@ -94,7 +101,7 @@ def record(
     recordings : Path
         Folder with the real recordings and the buildings.
     names : sequence of str
-        Only these surveys; all but drawn ones if empty.
+        Only these surveys, of any seed, or real recordings; all but drawn ones if empty.
 
     Raises
     ------
@@ -103,14 +110,10 @@ def record(
     """
     folder.mkdir(parents=True, exist_ok=True)
     code = check_out(project, revision, folder)
-    surveys = _surveys(folder, recordings) | _drawn_surveys(folder, names)
-    unknown = set(names) - set(surveys)
-    if unknown:
-        sys.exit(f"guard: no survey {', '.join(sorted(unknown))}; there are {', '.join(surveys)}")
-    chosen = {name: path for name, path in surveys.items() if not names or name in names}
-    targets = [f"results/{name}/{table}" for name in chosen for table in _wanted(name)]
+    surveys = {name: _find_survey(name, folder, recordings) for name in names or default_names()}
+    targets = [f"results/{name}/{table}" for name in surveys for table in _wanted(name)]
     environment = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
-    given = json.dumps([str(path) for path in chosen.values()])
+    given = json.dumps([str(path) for path in surveys.values()])
     command = [
         sys.executable,
         "-m",
@@ -143,37 +146,35 @@ def _git(folder: Path, *words: str) -> str:
     return done.stdout.strip()
 
 
-def _surveys(folder: Path, recordings: Path) -> dict[str, Path]:
-    surveys = folder / "surveys"
-    surveys.mkdir(exist_ok=True)
-    paths = {}
-    for name, settings in _drives():
-        building = settings["building"]
-        place = str(recordings / "buildings" / building) if Path(building).suffix else building
-        for seed in SEEDS:
-            drive = {**settings, "building": place, "seed": seed, "localiser": LOCALISER}
-            path = surveys / f"{name}_{seed}.yaml"
-            text = yaml.safe_dump({"simulate": drive})
-            if not path.exists() or path.read_text() != text:
-                path.write_text(text)
-            paths[path.stem] = path
-    return paths | {name: recordings / name for name in RECORDINGS}
+def default_names() -> tuple[str, ...]:
+    """Return the names of all surveys but drawn ones."""
+    drives = (f"{name}_{seed}" for name in _drives() if name not in _DRAWN for seed in SEEDS)
+    return (*drives, *RECORDINGS)
 
 
-def _drawn_surveys(folder: Path, names: Sequence[str]) -> dict[str, Path]:
-    """Return the drives among names through buildings drawn at random, made where missing."""
-    paths = {}
-    for name in names:
-        kind, _, seed = name.partition("_")
-        if kind != DRAWN or not seed.isdecimal():
-            continue
-        path, drawing = (folder / f"surveys/{name}{suffix}" for suffix in (".yaml", ".geojson"))
+def _find_survey(name: str, folder: Path, recordings: Path) -> Path:
+    """Return the dataset of a survey: a real recording, or a drive's settings, made if missing."""
+    kind, _, seed = name.rpartition("_")
+    if kind not in _drives() or not seed.isdecimal():
+        if (recordings / name).is_dir():
+            return recordings / name
+        sys.exit(
+            f"guard: no survey {name}; there are {', '.join(default_names())}, with any seed,"
+            f" and {', '.join(f'{kind}_9' for kind in _DRAWN)}"
+        )
+    path = folder / f"surveys/{name}.yaml"
+    path.parent.mkdir(exist_ok=True)
+    drive = {**_drives()[kind], "seed": int(seed), "localiser": LOCALISER}
+    if kind in _DRAWN:
+        drawing = path.with_suffix(".geojson")
         drawing.write_bytes(drawn_buildings.draw_building(int(seed)))
-        drive = {"building": str(drawing), "seed": int(seed), "localiser": LOCALISER}
-        site = {"route": "rooms", **_clutter(int(seed))}
-        path.write_text(yaml.safe_dump({"simulate": {**drive, "site": site}}))
-        paths[name] = path
-    return paths
+        drive |= {"building": str(drawing), "site": {"route": "rooms", **_clutter(int(seed))}}
+    elif Path(drive["building"]).suffix:
+        drive["building"] = str(recordings / "buildings" / drive["building"])
+    text = yaml.safe_dump({"simulate": drive})
+    if not path.exists() or path.read_text() != text:
+        path.write_text(text)
+    return path
 
 
 def _clutter(seed: int) -> dict[str, Any]:
@@ -181,22 +182,28 @@ def _clutter(seed: int) -> dict[str, Any]:
     return {"chairs": 12, "doors_ajar": 0.4} if seed % 2 else {}
 
 
-def _drives() -> Iterator[tuple[str, dict[str, Any]]]:
-    """Yield names and settings of the drives: in space, and in the plane among chairs."""
-    yield from BUILDINGS.items()
+@functools.cache
+def _drives() -> dict[str, dict[str, Any]]:
+    """Return settings by drive: in space, and in the plane among chairs."""
+    drives = {**BUILDINGS, **_DRAWN}
     for building, settings in BUILDINGS.items():
         clutter = {"chairs": _CHAIRS[building], "doors_ajar": 0.5}
         site = {**settings.get("site", {}), **clutter}
         for kind, planar in PLANAR.items():
-            yield f"{building}_{kind}", {**settings, **planar, "site": site}
+            drives[f"{building}_{kind}"] = {**settings, **planar, "site": site}
+    return drives
 
 
 def _wanted(name: str) -> tuple[str, ...]:
-    if name.startswith(DRAWN):
+    kind = name.rpartition("_")[0]
+    if kind == DRAWN:
         return ("selection/wall_length.parquet",)
-    drawn = ("plan/plan.svg", "plan/plan.geojson")
-    measured = ("evaluation/plan.parquet", "evaluation/walls.parquet")
-    return drawn if name in RECORDINGS else drawn + measured
+    wanted = ["plan/plan.svg", "plan/plan.geojson"]
+    if kind in _drives():
+        wanted.append("evaluation/plan.parquet")
+    if kind in _drives() and kind not in _DRAWN:
+        wanted.append("evaluation/walls.parquet")
+    return tuple(wanted)
 
 
 def compare(before: Path, after: Path) -> int:
@@ -212,8 +219,8 @@ def compare(before: Path, after: Path) -> int:
     int
         How many measures fell by more than `MAX_DROP`.
     """
-    drives = [f"{name}_{seed}" for name, _ in _drives() for seed in SEEDS]
-    fallen = sum(_compare_survey(name, before, after) for name in (*drives, *RECORDINGS))
+    folders = [path.parent.parent for path in before.glob("code/results/*/plan/plan.geojson")]
+    fallen = sum(_compare_survey(folder.name, before, after) for folder in sorted(folders))
     print(f"guard: {fallen} measures fell by more than {MAX_DROP:g}")
     return fallen
 
@@ -222,11 +229,11 @@ def _compare_survey(name: str, before: Path, after: Path) -> int:
     """Print what changed of one survey, and return how many measures fell."""
     folders = [folder / "code/results" / name for folder in (before, after)]
     if not all((folder / "plan/plan.geojson").exists() for folder in folders):
-        print(f"{name}: not in both")
+        print(f"{name}: not in {after}")
         return 0
     changed = _changed_files(*folders)
     print(f"{name}: {'differ: ' + ', '.join(changed) if changed else 'all tables equal in bytes'}")
-    if name in RECORDINGS:
+    if not (folders[0] / "evaluation/plan.parquet").exists():
         return 0
     rows = list(_changed_measures(*folders))
     for measure, old, new, falls in rows:
@@ -257,10 +264,12 @@ def _changed_measures(before: Path, after: Path) -> Iterator[tuple[str, float, f
 def _measures(folder: Path) -> dict[str, float]:
     """Return the guard's measures by name: of the plan by frame, and means of the walls over k."""
     plan = pq.read_table(folder / "evaluation/plan.parquet").to_pandas().set_index("frame")
-    walls = pq.read_table(folder / "evaluation/walls.parquet").to_pandas()
-    by_kind = walls.groupby(["method", "extractor"]).mean(numeric_only=True)
+    frames = {"plan": plan}
+    if (folder / "evaluation/walls.parquet").exists():
+        walls = pq.read_table(folder / "evaluation/walls.parquet").to_pandas()
+        frames["walls"] = walls.groupby(["method", "extractor"]).mean(numeric_only=True)
     measures = {}
-    for table, frame in (("plan", plan), ("walls", by_kind)):
+    for table, frame in frames.items():
         names = [column for column in frame.columns if _is_measure(column)]
         for index, row in frame[names].dropna(axis=1, how="all").iterrows():
             label = index if isinstance(index, str) else " ".join(index)

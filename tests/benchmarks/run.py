@@ -4,6 +4,7 @@ Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [pl
               [FOLDER ...]
        run.py pipeline [big | big=BAGS] [FOLDER] [REVISION ...]
        run.py guard REVISION FOLDER [SURVEY ...]
+       run.py table FOLDER [SURVEY ...]
        run.py compare FOLDER FOLDER
        run.py confidence FOLDER SURVEY,... SURVEY,...
        run.py next_visit FOLDER [SURVEY ...]
@@ -21,8 +22,9 @@ where some are named: time, memory and bytes of every stage, beside a raw read. 
 5 GB, are simulated once and kept in FOLDER.
 
 `guard` makes the plans of 45 simulated drives and six real recordings with the code of a
-commit, in a folder of its own; `compare` prints what changed between two such folders, and fails
-where a measure fell.
+commit, in a folder of its own, or those of any seed and recording that are named; `table` prints
+what they are worth; `compare` what changed between two such folders, and fails where a measure
+fell.
 
 `confidence` fits how likely elements of a plan are right on the first of the surveys in a folder
 that `guard` has made, tests it on the others, and writes the coefficients into the package, with a
@@ -111,6 +113,13 @@ def record_guard(revision: str, folder: str, *names: str) -> None:
     guard.record(ROOT, revision, Path(folder).resolve(), recordings, names)
 
 
+def print_table(folder: str, *names: str) -> None:
+    """Print what the plans of the guard's drives are worth."""
+    import drive_table
+
+    drive_table.print_table(Path(folder), names)
+
+
 def compare_guards(before: str, after: str) -> None:
     """Compare two folders of the guard."""
     import guard
@@ -179,6 +188,7 @@ def bench_odometry(folder: str, *names: str) -> None:
 
 APART: dict[str, Callable[..., None]] = {
     "guard": record_guard,
+    "table": print_table,
     "compare": compare_guards,
     "confidence": fit_confidence,
     "next_visit": bench_next_visit,

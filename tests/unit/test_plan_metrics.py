@@ -79,6 +79,7 @@ class TestWalls:
         assert row["plan_walls_per_true_wall"] == pytest.approx(3 / 2)
         assert (row["n_plan_walls"], row["n_thickness"]) == (3, 2)
         assert row["thickness_error_m"] == pytest.approx((0.01 + 0.05) / 2)
+        assert row["worst_thickness_error_m"] == pytest.approx(0.05)
 
     def test_a_wall_across_belongs_to_none(self):
         row = plan_metrics.measure_walls(

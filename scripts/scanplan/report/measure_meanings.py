@@ -37,6 +37,7 @@ _WORDS = {
     "plan_walls_per_true_wall": "walls of the plan per true wall that has any: 1 is best",
     "n_thickness": "walls whose thickness is known and can be compared",
     "thickness_error_m": "error of their thickness, median, metres",
+    "worst_thickness_error_m": "of the wall whose thickness is most wrong, metres",
     "n_doors_true": "doors and passages of rooms that were entered",
     "n_doors_found": "of these drawn within 0.35 m",
     "n_doors_drawn": "doors and passages drawn",

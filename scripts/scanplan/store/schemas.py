@@ -697,7 +697,7 @@ CLAIMS = Schema(
 )
 PLAN_EVALUATION = Schema(
     "plan_evaluation",
-    4,
+    5,
     {
         "frame": "string",
         "n_scans": "int32",
@@ -717,7 +717,7 @@ PLAN_EVALUATION = Schema(
         "n_plan_walls": "int32",
         "plan_walls_per_true_wall": "float64",
         "n_thickness": "int32",
-        "thickness_error_m": "float64",
+        **dict.fromkeys(("thickness_error_m", "worst_thickness_error_m"), "float64"),
         **dict.fromkeys(("n_doors_true", "n_doors_found", "n_doors_drawn"), "int32"),
         **dict.fromkeys(
             ("door_recall", "door_precision", "door_width_error_m", "door_width_right"), "float64"

@@ -197,6 +197,7 @@ def measure_walls(
         else np.nan,
         "n_thickness": int(is_known.sum()),
         "thickness_error_m": float(np.median(error_m)) if is_known.any() else np.nan,
+        "worst_thickness_error_m": float(error_m.max()) if is_known.any() else np.nan,
     }
 
 
@@ -256,7 +257,8 @@ def summarise_plan_measures(row: Mapping[str, Any]) -> str:
         "faces right {correctness_010m:.3f}, of the visible found"
         " {visible_completeness_010m:.3f} (of what the {n_scans} scans see"
         " {seen_completeness_010m:.3f}); {plan_walls_per_true_wall:.2f} walls a true wall,"
-        " {n_thickness} thicknesses off by {thickness_error_m:.3f} m; doors found"
+        " {n_thickness} thicknesses off by {thickness_error_m:.3f} m (at worst"
+        " {worst_thickness_error_m:.3f}); doors found"
         " {n_doors_found} of {n_doors_true}, right {door_precision:.3f}, width right"
         " {door_width_right:.3f}; windows found {n_windows_found} of {n_windows_true}, right"
         " {window_precision:.3f}; rooms driven into found"
