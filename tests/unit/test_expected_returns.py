@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from helpers.ray_making import NORTH, rays, turned
 from scanplan.geometry.lines import Line
 from scanplan.rays.expected_returns import (
+    ALL_HEIGHTS_M,
     SentRays,
     count_returns_below,
     count_sent_rays,
@@ -123,6 +124,25 @@ def test_of_a_plane_nothing_is_expected_from_farther_than_any_return():
     # 4 m to either side
     assert found.expected.sum() == pytest.approx(2 * np.degrees(np.arctan(4 / 3)), abs=3)
     assert found.missing_share == pytest.approx(0, abs=0.03)
+
+
+@pytest.mark.parametrize("n_scans", [2, 1])
+def test_of_a_plane_ten_beams_of_two_scans_say_whether_they_come_back(n_scans):
+    """Nothing comes back from a metre of wall 5 m away: 11 beams a degree apart of each scan."""
+    turn_deg = np.arange(-59.5, 60.0)
+    reach_m = 5 / np.cos(np.radians(turn_deg))
+    azimuth_rad = np.radians(turn_deg - 90)
+    ends_m = reach_m[:, None] * np.column_stack(
+        [np.cos(azimuth_rad), np.sin(azimuth_rad), 0 * azimuth_rad]
+    )
+    ends_m = ends_m[np.abs(ends_m[:, 0]) > 0.5] + np.array((0, 5, 0))
+    looked = rays(*[((0, 5, 0), ends_m)] * n_scans, planar=True)
+    face = cast_at_face(looked, NORTH, -0.5, 0.5, at_m=0.08)
+    sent_rays = count_sent_rays(looked, face, -0.5, 20, 0.05, ALL_HEIGHTS_M)
+    reached, returned, _ = sent_rays.reached(least_scans=2)
+    known = np.isfinite(reached)
+    assert known.any() == (n_scans == 2)
+    assert (reached[known] >= 10).all() and not returned[known].any()
 
 
 def test_of_glass_little_comes_back():

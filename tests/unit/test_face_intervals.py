@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from helpers import house_making
+from helpers import house_making, ray_making
 from helpers.observation_making import observation
 from scanplan.geometry.lines import Line
 from scanplan.plan.faces import intervals
@@ -137,3 +137,23 @@ def test_a_face_of_the_house_ends_at_its_door():
         s for s in intervals.find_face_intervals(seen, **LIMITS) if s.length_m > 0.5
     ).ends[:, 1]
     assert (low, high) == (pytest.approx(0, abs=0.1), pytest.approx(1.5, abs=0.06))
+
+
+@pytest.mark.parametrize("planar", [True, False])
+def test_beyond_what_is_looked_for_rays_in_the_plane_tell_where_they_go_by(planar):
+    """Of a wall of 4 m the first metre was extracted; 2 m more are looked at, then 2 m for rays."""
+    along_m = np.arange(0.0, 6.0, 0.02)
+    depth_m = np.where(along_m > 4, -2.0, 0.0)
+    ends_m = np.column_stack([along_m, depth_m, 0 * along_m + 0.3])
+    looked = ray_making.rays(((3.0, 2.0, 0.3), ends_m), planar=planar)
+    seen = intervals.observe_along(looked, AXIS, 0.0, 1.0, band_m=BAND_M, reach_m=2.0)
+    start_m = seen.line.along_m(np.zeros(2))
+    ends_m = np.array([seen.low_end_m, seen.high_end_m]) - start_m
+    np.testing.assert_allclose(ends_m, (-4, 5) if planar else (-2, 3), atol=0.01)
+    assert seen.occupied_m.max() - start_m == pytest.approx(3.0, abs=0.05)
+    # to 4.02 m and farther, 2 m behind the wall: half as far along it as from 3 m on
+    passed_m = seen.free_m - start_m
+    assert (len(passed_m) > 10) == planar
+    assert ((passed_m > 3.4) & (passed_m < 4.6)).all()
+    assert seen.covers(seen.low_end_m, seen.high_end_m)
+    assert not seen.covers(seen.low_end_m, seen.high_end_m + 0.01)

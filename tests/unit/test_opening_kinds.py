@@ -335,6 +335,9 @@ def count_beams(low_m, high_m):
         # a narrow pane rather than a way out of the building
         ((1.7, 2.4), np.nan, GAP),
         ((1.0, 3.0), np.nan, GAP),
+        # as wide as two leaves: of what leads out rather a pane, between rooms a door
+        ((1.4, 2.7), np.nan, GAP),
+        ((1.4, 2.7), 2.0, "door"),
     ],
 )
 def test_rays_that_never_come_back_show_a_way_out_of_a_plane(span_m, beyond_m, kind):

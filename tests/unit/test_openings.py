@@ -29,8 +29,8 @@ def classify(low, high, sides, **more):
     )
 
 
-def judge(hits, passes, low=1.0, high=1.9, n_scans=1, behind_m=0.0, **more):
-    line = seen(hits, passes, n_scans, behind_m)
+def judge(hits, passes, low=1.0, high=1.9, n_scans=1, behind_m=0.0, *, planar=False, **more):
+    line = seen(hits, passes, n_scans, behind_m, planar=planar)
     return classify(low, high, [line], **more)
 
 
@@ -186,3 +186,25 @@ def test_one_or_two_rays_through_open_no_wall(n_rays, state):
     """Each goes through a column of its own, more than a tenth of all."""
     passes = [(1.1 + 0.2 * number, 1.0) for number in range(n_rays)]
     assert judge([], passes).state == state
+
+
+def test_a_few_rays_of_planar_scans_show_a_way_by_the_share_of_its_width():
+    """Six rays 0.15 m apart, as a scanner of one degree sends them 8 m away."""
+    passes = [(x, 0.0) for x in np.arange(1.05, 1.9, 0.15)]
+    assert judge([], passes, planar=True).state == openings.OPEN
+    assert judge([], passes[:3], planar=True).state == openings.UNKNOWN
+    assert judge([], passes).state == openings.UNKNOWN
+
+
+def test_a_way_in_the_plane_is_where_more_rays_go_through_than_end():
+    passes = [(x, 0.0) for x in np.arange(1.05, 1.9, 0.15)]
+    hits = [(x + 0.01 * i, 0.0) for x in np.arange(1.05, 1.9, 0.15) for i in (-1, 1)]
+    assert judge(hits, passes, planar=True).state != openings.OPEN
+
+
+@pytest.mark.parametrize(("end_m", "state"), [(1.85, openings.CLOSED), (1.5, openings.UNKNOWN)])
+def test_of_a_gap_where_no_rays_were_gathered_nothing_is_known(end_m, state):
+    line = replace(seen([], []), low_end_m=-3.0, high_end_m=end_m)
+    assert classify(1.0, 1.9, [line]).state == state
+    whole = replace(line, high_end_m=3.0)
+    assert classify(1.0, 1.9, [line, whole]).state == openings.CLOSED

@@ -41,7 +41,8 @@ _LIKELY = {
 }  # in offices and houses: of ten gaps how many are of each kind; how often a floor is seen in or
 # behind them where rays pass low down, things stand before them, a sill is seen, a sensor passes,
 # a leaf is seen to stand open, they are as wide as doors are there (wider ones may be passages)
-_OUTER_DOOR_M = 0.8  # what nothing is near behind and is narrower is rather a pane
+# of one leaf; what nothing is near behind and is narrower or wider is rather a pane
+_OUTER_DOOR_M = (0.8, 1.1)
 _SURE = 0.8  # else it is not known what it is: one in five would be wrong
 
 
@@ -303,7 +304,7 @@ def _decide(
         ends_m = wall.line.at(np.array([gap.low_m, gap.high_m]))
         profile = observe_gap(wall, gap.low_m, gap.high_m, rays, band_m)
         middle_m = ends_m.mean(axis=0)
-        least_m = _OUTER_DOOR_M if profile.is_into_nothing else min_width_m
+        widths_m = _OUTER_DOOR_M if profile.is_into_nothing else (min_width_m, max_door_m)
         is_outside = min(rooms_beside(middle_m, wall)) < 0
         share = weigh_kinds(
             profile,
@@ -312,7 +313,7 @@ def _decide(
             is_driven=bool(shapely.intersects(track, shapely.linestrings(ends_m))),
             sill_m=gap.sill_m,
             planar=rays.planar,
-            is_door_wide=least_m <= gap.width_m <= max_door_m,
+            is_door_wide=widths_m[0] <= gap.width_m <= widths_m[1],
         )
         best = int(share.argmax())
         kind = KINDS[best] if share[best] >= _SURE else GAP

@@ -13,9 +13,9 @@ from scanplan.plan.opening_heights import (
     estimate_sill_m,
     robust_highest_m,
 )
-from scanplan.plan.tolerances import ENOUGH_RAYS, NOISE_M
+from scanplan.plan.tolerances import END_M, ENOUGH_RAYS, NOISE_M
 from scanplan.rays.face_observation import FaceObservation
-from scanplan.rays.face_raster import CELL_M
+from scanplan.rays.face_raster import CELL_M, SCAN_COLUMN_M
 from scanplan.rays.tolerances import FEW
 from scanplan.types import FloatArray
 
@@ -138,17 +138,23 @@ def classify_gap(
     width_m = high_m - low_m
     is_wide = settings.min_opening_m <= width_m <= settings.max_opening_m
     least_share = _OPEN_SHARE / 2 if below_wall else _OPEN_SHARE
-    is_open = n_rays >= ENOUGH_RAYS and open_share >= least_share
+    # a planar scanner sends one ray through a column: few scans make few, and columns count
+    least_rays = FEW if faces[0].planar else ENOUGH_RAYS
+    is_open = n_rays >= least_rays and open_share >= least_share
     # rays went in and did not come back: through glass, or out of the building
     is_open |= max(side.lost_share for side in shown) >= _OPEN_SHARE
     # wall above, some rays through a window, and what is below them hidden: no way through was seen
     is_hidden = below_wall and np.isnan(sill_m)
     is_solid = open_share <= _CLOSED_SHARE or n_rays < FEW
     is_short = width_m <= settings.max_closed_m
+    is_known = any(
+        face.covers(span_m[0] + END_M, span_m[1] - END_M)
+        for face, span_m in zip(faces, spans_m, strict=True)
+    )
     state = UNKNOWN
     if is_wide and is_open and (below_wall or not needs_lintel):
         state = OPEN
-    elif (is_solid or is_hidden) and is_short and not needs_lintel:
+    elif (is_solid or is_hidden) and is_short and is_known and not needs_lintel:
         state = CLOSED
     lintel_m = _first_known(side.lintel_m for side in shown)
     return Opening(float(low_m), float(high_m), state, n_rays, sill_m, lintel_m, below_wall)
@@ -158,6 +164,13 @@ def _lost_share(face: FaceObservation, span_m: FloatArray) -> float:
     """Return on what share of the width rays did not come back."""
     inside_m = [min(high_m, span_m[1]) - max(low_m, span_m[0]) for low_m, high_m in face.lost_m]
     return float(sum(max(m, 0.0) for m in inside_m) / (span_m[1] - span_m[0]))
+
+
+def _crossed_share(face: FaceObservation, low_m: float, high_m: float) -> float:
+    """Return on what share of the width more rays of planar scans go through than end there."""
+    edges_m = np.linspace(low_m, high_m, max(round((high_m - low_m) / SCAN_COLUMN_M), 1) + 1)
+    n_free, n_occupied = (np.histogram(of_m, edges_m)[0] for of_m in (face.free_m, face.occupied_m))
+    return float((n_free > n_occupied).mean())
 
 
 def _first_known(values_m: Iterable[float]) -> float:
@@ -186,9 +199,12 @@ def _observe_gap(face: FaceObservation, span_m: FloatArray, door_height_m: float
     if high_m <= low_m:
         return _GapEvidence(lost_share=lost_share)
     free = face.free_between(low_m, high_m)
-    is_crossed = face.raster.is_crossed(door_height_m)
-    n_crossed = is_crossed[face.raster.between(low_m, high_m)].sum()
-    open_share = min(float(n_crossed / max(round((high_m - low_m) / CELL_M), 1)), 1.0)
+    if face.planar:
+        open_share = _crossed_share(face, low_m, high_m)
+    else:
+        is_crossed = face.raster.is_crossed(door_height_m)
+        n_crossed = is_crossed[face.raster.between(low_m, high_m)].sum()
+        open_share = min(float(n_crossed / max(round((high_m - low_m) / CELL_M), 1)), 1.0)
     evidence = _GapEvidence(free.stop - free.start, open_share, lost_share)
     if face.planar or evidence.n_rays < ENOUGH_RAYS:
         return evidence

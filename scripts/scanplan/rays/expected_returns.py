@@ -77,6 +77,8 @@ class SentRays:
         Of these, at the surface or no further behind it than a wall is thick.
     width : int
         So many columns around each are judged together.
+    least_rays : float
+        Where fewer are to be expected nothing is said.
     """
 
     view: IntArray
@@ -85,6 +87,7 @@ class SentRays:
     returned: IntArray
     in_wall: IntArray
     width: int = _WIDTH
+    least_rays: float = _LEAST_RAYS
 
     @property
     def missing_share(self) -> FloatArray:
@@ -111,7 +114,7 @@ class SentRays:
         returned = (_sum_neighbours(self.returned, self.width) * clear).sum(axis=0)
         in_wall = (_sum_neighbours(self.in_wall, self.width) * clear).sum(axis=0)
         n_scans = (clear & (expected >= FEW)).sum(axis=0)
-        enough = (n_scans >= least_scans) & (reached >= _LEAST_RAYS)
+        enough = (n_scans >= least_scans) & (reached >= self.least_rays)
         known = [np.where(enough, rows, np.nan) for rows in (reached, returned, in_wall)]
         return known[0], known[1], known[2]
 
@@ -191,7 +194,9 @@ def count_sent_rays(
     )
     # of one beam there are few; as many columns on either side
     width = 2 * round(STRETCH_M / column_m) + 1 if rays.planar else _WIDTH
-    return SentRays(looking, expected, occluded, returned, in_wall, width)
+    # of a planar scanner it is known which beams it sent, and walls return nearly all
+    least_rays = _LEAST_RAYS / 2 if rays.planar else _LEAST_RAYS
+    return SentRays(looking, expected, occluded, returned, in_wall, width, least_rays)
 
 
 def _returns_per_deg(

@@ -62,6 +62,8 @@ class FaceObservation:
     lost_m : (n, 2) float64
         From where to where too few of the rays that reach it come back for what is opaque: glass,
         or nothing.
+    low_end_m, high_end_m : float
+        From where to where rays were gathered: of what is beyond nothing is known.
     """
 
     line: Line
@@ -76,6 +78,8 @@ class FaceObservation:
     low_z_m: FloatArray
     planar: bool
     lost_m: FloatArray = field(default_factory=lambda: np.empty((0, 2)))
+    low_end_m: float = -math.inf
+    high_end_m: float = math.inf
 
     @cached_property
     def raster(self) -> FaceRaster:
@@ -110,6 +114,10 @@ class FaceObservation:
         whole_m = math.ceil(round((high_m - low_m) / STRETCH_M, 6)) * STRETCH_M
         inside_m = returns_m[returns_m < high_m]
         return filled_share(inside_m, low_m, low_m + whole_m, STRETCH_M) >= _MOST_SHARE
+
+    def covers(self, low_m: float, high_m: float) -> bool:
+        """Return whether rays were gathered all the way between two places."""
+        return self.low_end_m <= low_m and high_m <= self.high_end_m
 
     def occupied_between(self, low_m: float, high_m: float) -> slice:
         """Return which returns lie between two places."""
@@ -166,6 +174,8 @@ def observe_face(
         low_z_m=face.height_m[low],
         planar=rays.planar,
         lost_m=_find_lost(rays, face, low_m, high_m),
+        low_end_m=low_m,
+        high_end_m=high_m,
     )
 
 
