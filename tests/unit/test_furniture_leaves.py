@@ -92,6 +92,13 @@ def test_a_door_may_be_where_one_wall_ends_and_another_goes_on(begin_m, n_leaves
     assert [leaf.face for leaf in found] == walls[2].left[:n_leaves]
 
 
+def test_what_is_open_for_longer_than_it_is_wall_is_no_door_between_two_walls():
+    walls = [single(1.6, 0, 2, 0), single(2.9, 0, 3.3, 0), single(2.0, 0.05, 2.0, 0.9)]
+    assert find_leaves(walls, unpaired_m=0.1, max_width_m=1.5) == []
+    longer = [single(1.4, 0, 2, 0), *walls[1:]]
+    assert len(find_leaves(longer, unpaired_m=0.1, max_width_m=1.5)) == 1
+
+
 def test_a_leaf_that_is_in_one_line_with_a_cupboard_beyond_its_door_is_taken_off_it():
     """No wall runs on through a door: it was seen as one surface of 1.5 m."""
     body = single(2.0, -0.6, 2.0, 0.9)

@@ -10,11 +10,12 @@ from shapely import box
 
 from helpers.observation_making import stretch
 from scanplan.plan.furniture import fronts
+from scanplan.plan.furniture.blocks import find_blocks
 from scanplan.plan.furniture.plan_faces import PlanFaces
-from scanplan.plan.furniture.pockets import find_blocks, find_pockets
+from scanplan.plan.furniture.pockets import find_pockets
 from scanplan.plan.furniture.recesses import stands_before_facade
 from scanplan.plan.openings import OPEN, Opening
-from scanplan.plan.plan_wall import PlanWall, usual_thickness_m
+from scanplan.plan.plan_wall import PlanWall, greatest_thickness_m, usual_thickness_m
 
 ROOM = [(0, 0, 5, 0), (5, 0, 5, 4), (0, 4, 0, 0)]
 """South, east and west face of a room of 5 m by 4 m, seen from within."""
@@ -200,6 +201,28 @@ def test_of_two_walls_the_thinner_is_as_walls_usually_are():
     assert usual_thickness_m([*walls, wall([(0, 9, 3, 9)])]) == pytest.approx(0.1)
     assert usual_thickness_m([*walls, walls[0]]) == pytest.approx(0.3)
     assert usual_thickness_m([]) == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize(
+    ("thickness_m", "gaps", "most_m"),
+    [
+        ((0.1, 0.1, 0.5), {}, 0.2),
+        ((0.1, 0.1, 0.1, 0.42, 0.5), {}, 0.5),
+        ((0.1, 0.1, 0.5), {"openings": [Opening(1, 1.9, OPEN, 9, 0.0, np.nan, False)]}, 0.5),
+    ],
+    ids=["alone", "as_another", "with_a_door"],
+)
+def test_no_wall_is_much_thicker_than_all_others(thickness_m, gaps, most_m):
+    """The last may be a partition and a cupboard before it; jambs of a door show what it is."""
+    *others, last = (two_sided(0, 3, 5 * k, thick_m) for k, thick_m in enumerate(thickness_m))
+    walls = [*others, replace(last, **gaps), wall([(0, 30, 3, 30)])]
+    assert greatest_thickness_m(walls) == pytest.approx(most_m)
+
+
+def test_a_pier_may_be_thicker_than_walls_are():
+    walls = [two_sided(0, 3, 0, 0.1), two_sided(0, 3, 5, 0.1), two_sided(0, 0.8, 9, 0.5)]
+    assert greatest_thickness_m(walls) == pytest.approx(0.5)
+    assert greatest_thickness_m([]) == pytest.approx(0.2)
 
 
 def test_partitions_that_stand_free_say_how_thick_walls_are_and_islands_do_not():
@@ -391,3 +414,23 @@ def test_a_front_is_as_far_from_a_wall_as_from_the_nearest_of_its_pieces():
     walls = [*(wall([face]) for face in [*pieces, *around]), front, side]
     (pocket,) = [one for one in pockets(walls, floor) if front.left[0] in one.fronts]
     assert side.left[0] in pocket.fronts
+
+
+def divided_room(east_m):
+    """A room that a partition with a door divides, seen from the south, from x = 0 to `east_m`.
+
+    From the north both of its pieces stand before ground that no scan saw.
+    """
+    partition = wall([(east_m, 4, 3, 4), (2, 4, 0, 4)], openings=[(east_m - 3, east_m - 2)])
+    hidden = [shapely.Polygon([(0, 4), (1.9, 4), (1.4, 4.6), (0, 4.8)])]
+    hidden.append(shapely.Polygon([(3.1, 4), (east_m, 4), (east_m, 4.8), (3.6, 4.6)]))
+    sides = [[(5, 0, 5, 4), (5, 4.8, 5, 8)], [(0, 8, 0, 4.8), (0, 4, 0, 0)]]
+    floor = box(0, 0, 5, 8).difference(shapely.union_all(hidden))
+    ends = [(0, 0, 5, 0), (5, 8, 0, 8)]
+    return [*(wall([face]) for face in ends), *map(wall, sides), partition], floor
+
+
+@pytest.mark.parametrize(("east_m", "n_fronts"), [(5.0, 0), (4.2, 1)])
+def test_a_partition_from_wall_to_wall_with_a_door_is_no_row_of_cupboards(east_m, n_fronts):
+    found = pockets(*divided_room(east_m))
+    assert sum(len(pocket.fronts) for pocket in found) == n_fronts

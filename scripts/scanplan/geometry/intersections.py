@@ -57,6 +57,11 @@ def stack_spans(spans: Sequence[SpanLike]) -> SpanArrays:
     )
 
 
+def run_across(one: Line, other: Line) -> bool:
+    """Return whether two lines are about square to each other."""
+    return abs(float(one.direction @ other.normal)) >= math.cos(LEAST_RAD)
+
+
 def find_crossings(line: Line, others: SpanArrays, *, reach_m: float) -> Crossings:
     """Find the spans that cross a line steeply.
 

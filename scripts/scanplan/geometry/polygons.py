@@ -16,6 +16,15 @@ Polygons = Sequence[BaseGeometry] | Array
 _POLYGONAL = (shapely.GeometryType.POLYGON, shapely.GeometryType.MULTIPOLYGON)
 
 
+def rectangle_sides_m(shape: BaseGeometry) -> tuple[float, float]:
+    """Return the shorter and the longer side of the least rectangle around a shape."""
+    box = shapely.get_coordinates(shapely.minimum_rotated_rectangle(shape))
+    if len(box) < 3:
+        return 0.0, 0.0
+    one_m, other_m = np.hypot(*(box[1:3] - box[:2]).T).tolist()
+    return min(one_m, other_m), max(one_m, other_m)
+
+
 def move_near_origin(polygons: Polygons) -> Array:
     """Check and repair polygons, and move them near the origin: far from it, areas lose digits.
 

@@ -11,7 +11,7 @@ from scanplan.geometry.intersections import LEAST_RAD
 from scanplan.geometry.lines import Line, Span
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.openings import Opening
-from scanplan.plan.tolerances import CORNER_M
+from scanplan.plan.tolerances import CORNER_M, END_M
 from scanplan.rays.face_observation import FaceObservation
 
 _THICKNESS_M = 0.1  # of a partition, where no wall shows both sides
@@ -114,3 +114,16 @@ def usual_thickness_m(walls: Sequence[PlanWall]) -> float:
     """
     known_m = [wall.thickness_m for wall in walls if not math.isnan(wall.thickness_m)]
     return float(statistics.median_low(known_m)) if known_m else _THICKNESS_M
+
+
+def greatest_thickness_m(walls: Sequence[PlanWall]) -> float:
+    """Return how thick walls are at most: as several are, one with a door, a pier, or twice usual.
+
+    A wall that is thicker than all others, and shows no jamb, may be one with a cupboard before it.
+    """
+    paired = [wall for wall in walls if wall.right]
+    thickness_m = np.array([wall.thickness_m for wall in paired])
+    n_alike = (np.abs(thickness_m[:, None] - thickness_m) <= END_M).sum(axis=1)
+    has_ends = [bool(w.openings) or w.length_m <= 2 * w.thickness_m for w in paired]
+    shown_m = thickness_m[(n_alike > 1) | np.array(has_ends, bool)]
+    return max(2 * usual_thickness_m(walls), float(shown_m.max(initial=0.0)))

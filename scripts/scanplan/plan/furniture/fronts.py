@@ -17,8 +17,10 @@ from collections.abc import Callable, Sequence
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.plan.faces.intervals import FaceInterval
+from scanplan.plan.furniture.blocks import find_blocks
 from scanplan.plan.furniture.leaves import Leaf, find_leaves, find_traces
-from scanplan.plan.furniture.pockets import Pocket, find_blocks, find_pockets
+from scanplan.plan.furniture.pocket import Pocket
+from scanplan.plan.furniture.pockets import find_pockets
 from scanplan.plan.furniture.strays import find_strays
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.rays import free_space

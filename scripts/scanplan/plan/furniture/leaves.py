@@ -123,7 +123,9 @@ def _find_gaps(
     for other in walls:
         low_m, high_m = np.sort(wall.line.along_m(other.ends)).tolist()
         gaps_m = ((high_m, wall.low_m), (wall.high_m, low_m))
-        gap_m = next((gap for gap in gaps_m if 0 < gap[1] - gap[0] <= max_width_m), None)
+        # what is open for longer than it is wall is the space between two things
+        most_m = min(max_width_m, wall.length_m + other.length_m)
+        gap_m = next((gap for gap in gaps_m if 0 < gap[1] - gap[0] <= most_m), None)
         if gap_m and wall.goes_on_as(other) and not _is_closed(wall, gap_m, walls):
             yield gap_m
 

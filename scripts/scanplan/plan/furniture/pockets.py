@@ -5,7 +5,7 @@ fronts before them, that go on on both sides of them, or that the building ends 
 """
 
 import itertools
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,39 +13,24 @@ import shapely
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from scanplan.geometry.narrow_places import FURNITURE_M2
+from scanplan.geometry.intersections import run_across
+from scanplan.geometry.polygons import rectangle_sides_m
 from scanplan.plan import wall_ground
-from scanplan.plan.faces.face_tree import FaceTree
 from scanplan.plan.faces.intervals import FaceInterval
+from scanplan.plan.furniture.blocks import is_block
 from scanplan.plan.furniture.plan_faces import PlanFaces
+from scanplan.plan.furniture.pocket import Pocket, faces_on, is_large
 from scanplan.plan.furniture.recesses import (
-    POCKET_M2,
     find_holes,
     find_recesses,
     stands_before_facade,
 )
 from scanplan.plan.plan_wall import PlanWall
-from scanplan.plan.tolerances import ALONG_SHARE, CORNER_M, END_M
+from scanplan.plan.tolerances import CORNER_M, END_M
 from scanplan.rays import free_space
 from scanplan.rays.face_raster import CELL_M
 from scanplan.rays.tolerances import BEHIND_M, STRETCH_M
 from scanplan.types import Array
-
-
-@dataclass(frozen=True, eq=False)
-class Pocket:
-    """Ground that furniture stands on.
-
-    Attributes
-    ----------
-    ground : shapely geometry
-        Never seen, up to the fronts and the wall behind; of a block all that it stands on.
-    fronts : list of intervals.FaceInterval
-        Surfaces that are fronts of it.
-    """
-
-    ground: BaseGeometry
-    fronts: list[FaceInterval]
 
 
 def find_pockets(
@@ -74,7 +59,8 @@ def find_pockets(
     -------
     list of Pocket
     """
-    solid = shapely.union_all(wall_ground.wall_strips(walls, unpaired_m))
+    strips = wall_ground.wall_strips(walls, unpaired_m)
+    solid = shapely.union_all(strips)
     parts = np.array(
         [*free_space.open_polygons(shapely.difference(floor, solid), END_M), Polygon()], object
     )
@@ -87,6 +73,7 @@ def find_pockets(
         single={id(face) for face in alone},
         opened={id(face) for wall in walls if wall.openings for face in wall.members},
         continued={id(face) for wall in walls for face in _find_continued(wall)},
+        dividing=set(map(id, _find_dividing(walls, strips, unpaired_m))),
         unpaired_m=unpaired_m,
         max_thickness_m=max_thickness_m,
         max_depth_m=max_depth_m,
@@ -113,9 +100,9 @@ class _Search:
         All of the plan.
     parts, grown : (n,) object
         Of the floor that was seen, polygons; the same, by a cell larger.
-    single, opened, continued : set of int
-        Identities of the faces of walls seen from one side, of those with an opening, and of those
-        that go on beyond one.
+    single, opened, continued, dividing : set of int
+        Identities of the faces of walls seen from one side, of those with an opening, of those that
+        go on beyond one, and of those that run from wall to wall with one.
     unpaired_m, max_thickness_m, max_depth_m : float
         As in `find_pockets`.
     """
@@ -126,6 +113,7 @@ class _Search:
     single: set[int]
     opened: set[int]
     continued: set[int]
+    dividing: set[int]
     unpaired_m: float
     max_thickness_m: float
     max_depth_m: float
@@ -185,66 +173,21 @@ class _Search:
         if _is_part_of_building(pocket, part, self.max_depth_m):
             return None
         walls = self.faces.behind(pocket.ground) if own else self.faces.backs(near, fronts)
+        # a row of cupboards before a wall has gaps, too; it does not run from wall to wall
+        dividing = [face for face in fronts if id(face) in self.dividing]
+        walls = [
+            wall for wall in walls if not any(run_across(wall.line, face.line) for face in dividing)
+        ]
         if _is_before_wall(pocket, walls, self.grown[row]):
             return pocket
         # its ends, too, that were paired with what stands in their line
-        pocket = Pocket(pocket.ground, _faces_on(pocket.ground, near))
-        is_block = _is_block(
+        pocket = Pocket(pocket.ground, faces_on(pocket.ground, near))
+        stands_alone = is_block(
             *(pocket.ground, part, self.unpaired_m),
             max_thickness_m=self.max_thickness_m,
             max_depth_m=self.max_depth_m,
         )
-        return pocket if is_block and not _goes_on(pocket, self.continued) else None
-
-
-def find_blocks(
-    walls: Sequence[PlanWall],
-    floor: BaseGeometry,
-    measure_thickness_m: Callable[[Sequence[PlanWall]], float],
-    *,
-    max_thickness_m: float,
-    max_depth_m: float,
-) -> list[Pocket]:
-    """Find blocks that stand alone, seen from two sides like walls.
-
-    Parameters
-    ----------
-    walls : sequence of plan_wall.PlanWall
-    floor : shapely geometry
-        That was seen free.
-    measure_thickness_m : callable
-        Says how thick walls usually are.
-    max_thickness_m, max_depth_m : float
-        Of a wall, of furniture.
-
-    Returns
-    -------
-    list of Pocket
-        Their grounds, and all surfaces on them; none where no other wall's thickness is known.
-    """
-    most = {"max_thickness_m": max_thickness_m, "max_depth_m": max_depth_m}
-    faces = FaceTree([face for wall in walls for face in wall.members])
-    unpaired_m = measure_thickness_m(walls)
-    solid = shapely.union_all(wall_ground.wall_strips(walls, unpaired_m))
-    ground_before = shapely.difference(floor, solid)
-    alone = []
-    others = []
-    for wall in (wall for wall in walls if wall.right):
-        ground = wall_ground.wall_strips([wall], unpaired_m)[0]
-        near = faces.within(ground, CORNER_M)
-        # a wall that begins at another has floor on most sides, too
-        is_alone = not wall.openings and len(_faces_on(ground, near)) == len(near)
-        if is_alone and _stands_alone(ground, ground_before, **most):
-            alone.append((wall, ground, near))
-        else:
-            others.append(wall)
-    blocks = []
-    for wall, ground, near in alone:
-        # what stands alone may be a partition, which is thinner; an island says nothing of walls
-        known = [*others, *(one for one, *_ in alone if one.thickness_m < wall.thickness_m)]
-        if known and _is_thick(ground, measure_thickness_m(known)):
-            blocks.append(Pocket(ground.buffer(CELL_M, join_style="mitre"), near))
-    return blocks
+        return pocket if stands_alone and not _goes_on(pocket, self.continued) else None
 
 
 def _make_pocket(hidden: Polygon, fronts: Sequence[FaceInterval], unpaired_m: float) -> Pocket:
@@ -274,16 +217,22 @@ def _find_continued(wall: PlanWall) -> Iterator[FaceInterval]:
                 yield from side
 
 
+def _find_dividing(
+    walls: Sequence[PlanWall], strips: Sequence[Polygon], unpaired_m: float
+) -> Iterator[FaceInterval]:
+    """Yield the faces of walls with an opening that run from one wall to another."""
+    tree = shapely.STRtree(strips)
+    for row, wall in enumerate(walls):
+        reach_m = CORNER_M + unpaired_m
+        near = [tree.query(shapely.Point(end), "dwithin", distance=reach_m) for end in wall.ends]
+        if wall.openings and all((rows != row).any() for rows in near):
+            yield from wall.members
+
+
 def _goes_on(pocket: Pocket, continued: set[int]) -> bool:
     """Return whether a block's sides, not its short ends alone, go on beyond an opening."""
     longest_m = max((face.length_m for face in pocket.fronts), default=0.0)
     return any(id(face) in continued and 2 * face.length_m > longest_m for face in pocket.fronts)
-
-
-def _faces_on(ground: BaseGeometry, faces: Sequence[FaceInterval]) -> list[FaceInterval]:
-    """Return the surfaces that lie on ground, or on its edges."""
-    around = ground.buffer(CORNER_M)
-    return [face for face in faces if around.covers(LineString(face.ends))]
 
 
 def _faces_onto(face: FaceInterval, part: Polygon) -> bool:
@@ -310,14 +259,7 @@ def _is_part_of_building(pocket: Pocket, part: Polygon, max_depth_m: float) -> b
         return True
     fronts = shapely.union_all([LineString(face.ends) for face in pocket.fronts])
     bare = pocket.ground.boundary.intersection(part).difference(fronts.buffer(CORNER_M))
-    return _is_large(pocket.ground, max_depth_m) and bare.length < BEHIND_M
-
-
-def _is_large(ground: BaseGeometry, max_depth_m: float) -> bool:
-    """Return whether ground is more than furniture stands on, alone or, where narrow, in a row."""
-    depth_m, length_m = _sides_m(ground.buffer(-CELL_M))
-    is_row = depth_m <= max_depth_m and length_m <= POCKET_M2 / max_depth_m
-    return ground.area > (POCKET_M2 if is_row else FURNITURE_M2)
+    return is_large(pocket.ground, max_depth_m) and bare.length < BEHIND_M
 
 
 def _has_corner_in(ground: BaseGeometry, part: Polygon) -> bool:
@@ -326,16 +268,7 @@ def _has_corner_in(ground: BaseGeometry, part: Polygon) -> bool:
     What fills a room from wall to wall may be a closet behind a wall as well.
     """
     exposed = ground.boundary.intersection(part)
-    return min(_sides_m(exposed)) >= BEHIND_M
-
-
-def _sides_m(shape: BaseGeometry) -> tuple[float, float]:
-    """Return the shorter and the longer side of the least rectangle around a shape."""
-    box = shapely.get_coordinates(shapely.minimum_rotated_rectangle(shape))
-    if len(box) < 3:
-        return 0.0, 0.0
-    one_m, other_m = np.hypot(*(box[1:3] - box[:2]).T).tolist()
-    return min(one_m, other_m), max(one_m, other_m)
+    return min(rectangle_sides_m(exposed)) >= BEHIND_M
 
 
 def _is_before_wall(pocket: Pocket, faces: Sequence[FaceInterval], part: Polygon) -> bool:
@@ -358,31 +291,3 @@ def _is_before_wall(pocket: Pocket, faces: Sequence[FaceInterval], part: Polygon
         if floor_m >= END_M and passed_m < floor_m / 2:
             return True
     return False
-
-
-def _is_block(
-    ground: BaseGeometry,
-    part: BaseGeometry,
-    unpaired_m: float,
-    *,
-    max_thickness_m: float,
-    max_depth_m: float,
-) -> bool:
-    """Return whether ground stands alone, no wall and no column."""
-    most = {"max_thickness_m": max_thickness_m, "max_depth_m": max_depth_m}
-    return _is_thick(ground, unpaired_m) and _stands_alone(ground, part, **most)
-
-
-def _is_thick(ground: BaseGeometry, wall_m: float) -> bool:
-    """Return whether ground is clearly wider than walls are thick."""
-    return _sides_m(ground.buffer(-CELL_M))[0] > 2 * wall_m
-
-
-def _stands_alone(
-    ground: BaseGeometry, part: BaseGeometry, *, max_thickness_m: float, max_depth_m: float
-) -> bool:
-    """Return whether floor is around ground longer than a column and no larger than furniture."""
-    if _sides_m(ground.buffer(-CELL_M))[1] <= max_thickness_m or _is_large(ground, max_depth_m):
-        return False
-    around = ground.buffer(CORNER_M).difference(ground)
-    return around.intersection(part).area >= ALONG_SHARE * around.area
