@@ -1,5 +1,7 @@
 """What bounds rooms without a ray ending there, seen from above: panes, narrow places."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
@@ -11,6 +13,7 @@ from scanplan.plan import room_bounds
 from scanplan.plan.openings import OPEN, Opening
 from scanplan.plan.plan_wall import PlanWall
 
+LIMITS = {"min_area_m2": 1.0, "unpaired_m": 0.1, "max_thickness_m": 0.6, "max_depth_m": 0.8}
 SOUTH = Line(np.array([0.0, 0.0]), np.array([0.0, 1.0]))
 
 
@@ -76,9 +79,7 @@ def test_floor_without_a_door_is_parted_on_the_line_of_the_wall_beside():
     wall = PlanWall(Line(np.array([4.05, 0.0]), np.array([1.0, 0.0])), -1.6, 0.0, 0.1, [], [])
     rooms = shapely.union_all([box(0, 0, 4, 4), box(4.1, 0, 8, 4), box(3.9, 1.6, 4.2, 2.5)])
     track_m = np.array([[2.0, 2.0], [6.0, 2.0]])
-    (parting,) = room_bounds.find_partings(
-        [wall], rooms, track_m, max_width_m=1.5, min_area_m2=1.0, unpaired_m=0.1
-    )
+    (parting,) = room_bounds.find_partings([wall], rooms, track_m, max_width_m=1.5, **LIMITS)
     (way,) = parting.openings
     np.testing.assert_allclose(parting.line.at(way.low_m)[0], 4.05)
     assert abs(way.width_m - 0.9) < 0.1
@@ -89,9 +90,9 @@ TWO_ROOMS = shapely.union_all([box(0, 0, 4, 4), box(4.1, 0, 8, 4), box(3.9, 1.0,
 TRACK_M = np.array([[2.0, 2.0], [6.0, 2.0]])
 
 
-def part(walls, *, planar=True):
+def part(walls, *, planar=True, floor=TWO_ROOMS):
     return room_bounds.find_partings(
-        walls, TWO_ROOMS, TRACK_M, max_width_m=1.5, min_area_m2=1.0, unpaired_m=0.1, planar=planar
+        walls, floor, TRACK_M, max_width_m=1.5, planar=planar, **LIMITS
     )
 
 
@@ -109,13 +110,65 @@ def test_a_gap_wider_than_the_wall_is_long_parts_nothing():
     assert part([wall(4.05, 0, 4.05, 1), wall(4.05, 3.4, 4.05, 4)]) == []
 
 
+def test_walls_of_two_sides_part_rooms_whose_gap_is_wider_than_they_are_long():
+    """Pieces of 0.9 and 0.6 m on either side of a way of 2.3 m; screens would say nothing."""
+    pieces = [wall(4.05, 0, 4.05, 1), wall(4.05, 3.4, 4.05, 4)]
+    paired = [replace(piece, left=["west"], right=["east"]) for piece in pieces]
+    (parting,) = part(paired)
+    assert abs(parting.openings[0].width_m - 2.4) < 0.02
+    assert part([paired[0], pieces[1]]) == []
+
+
+@pytest.mark.parametrize(("begin_m", "n_partings"), [(-1.2, 1), (-1.0, 0)])
+@pytest.mark.parametrize("right", [["east"], []], ids=["two sides", "one side"])
+def test_a_gap_is_as_wide_as_a_wall_is_long_but_for_a_corner(begin_m, n_partings, right):
+    """A way of 2.4 m beside 2.2 or 2.0 m of wall, whether or not its other side was seen."""
+    west = replace(wall(4.05, begin_m, 4.05, 1), right=right)
+    assert len(part([west, wall(4.05, 3.4, 4.05, 4)])) == n_partings
+
+
+def test_a_hairline_shadow_does_not_end_a_gap():
+    shadow = box(3.0, 2.0, 5.0, 2.03)
+    walls = [wall(4.05, -2, 4.05, 1), wall(4.05, 3.4, 4.05, 4)]
+    (parting,) = part(walls, floor=TWO_ROOMS.difference(shadow))
+    assert abs(parting.openings[0].width_m - 2.4) < 0.02
+
+
+def corridor_partings(unseen, others=()):
+    """Partings of a corridor 2 m wide and 12 m long, of which some ground was not seen."""
+    sides = [wall(12, 2.05, 0, 2.05), wall(0, -0.05, 12, -0.05)]
+    track_m = np.array([[1.0, 0.6], [6.0, 0.6], [11.0, 0.6]])
+    floor = box(0, 0, 12, 2).difference(unseen)
+    ends = [wall(0, -0.05, 0, 2.05), wall(12, 2.05, 12, -0.05)]
+    return room_bounds.find_partings(
+        *([*sides, *ends, *others], floor, track_m), max_width_m=1.5, planar=True, **LIMITS
+    )
+
+
+def test_a_cupboard_in_a_corridor_does_not_part_it():
+    """Ground 1.2 m long and 0.7 m deep at a wall that goes on behind it, not drawn as anything."""
+    assert corridor_partings(box(5.4, 1.3, 6.6, 2.1)) == []
+
+
+def test_the_stubs_of_a_door_in_a_corridor_part_it():
+    """What hides nothing longer than a wall is thick may be one, drawn or not."""
+    stubs = box(5.8, 1.4, 6.2, 2.1).union(box(5.8, -0.1, 6.2, 0.4))
+    (parting,) = corridor_partings(stubs)
+    assert parting.openings[0].width_m == pytest.approx(1.0, abs=0.15)
+
+
+def test_what_is_deeper_than_furniture_parts_a_corridor():
+    (parting,) = corridor_partings(box(5.4, 0.9, 6.6, 2.1))
+    assert parting.openings[0].width_m == pytest.approx(0.9, abs=0.15)
+
+
 @pytest.mark.parametrize("turn", [1, -1])
 def test_a_door_whose_leaf_was_seen_parts_floor_where_no_wall_has_it(turn):
     """Two sides of a leaf tell of one door, 1 m wide, in the gap of 2.4 m."""
     way_m = np.array([(4.05, 1.0), (4.05, 2.0)])
     (parting,) = room_bounds.find_partings(
         *([], TWO_ROOMS, TRACK_M),
-        **{"max_width_m": 0.5, "min_area_m2": 1.0, "unpaired_m": 0.1},
+        **{"max_width_m": 0.5, **LIMITS},
         ways_m=[way_m, way_m[::turn] + 0.02],
     )
     (way,) = parting.openings
@@ -128,7 +181,7 @@ def test_a_door_that_a_wall_has_is_not_parted_twice():
     assert (
         room_bounds.find_partings(
             *([wall(4.05, 0, 4.05, 4)], TWO_ROOMS, TRACK_M),
-            **{"max_width_m": 0.5, "min_area_m2": 1.0, "unpaired_m": 0.1},
+            **{"max_width_m": 0.5, **LIMITS},
             ways_m=[way_m],
         )
         == []
@@ -168,7 +221,7 @@ def hall_partings(spur, others=(), across=((10, 8, 0, 8),), thickness_m=0.1):
     track_m = np.array([[2.0, 4.0], [5.0, 7.5], [8.0, 4.0]])
     return room_bounds.find_partings(
         *([end, *around], HALL, track_m),
-        **{"max_width_m": 1.5, "min_area_m2": 1.0, "unpaired_m": 0.1, "planar": True},
+        **{"max_width_m": 1.5, **LIMITS, "planar": True},
     )
 
 
@@ -196,8 +249,8 @@ def test_what_is_hidden_beside_a_door_parts_floor_with_it():
     """A leaf told of a door 1 m wide in a gap of 2.4 m: the rest is no wider than a door."""
     way_m = np.array([(4.05, 1.0), (4.05, 2.0)])
     found = room_bounds.find_partings(
-        *([wall(4.05, -2, 4.05, 1)], TWO_ROOMS, TRACK_M),
-        **{"max_width_m": 1.5, "min_area_m2": 1.0, "unpaired_m": 0.1, "planar": True},
+        *([wall(4.05, -2, 4.05, 1), wall(4.05, 3.4, 4.05, 4)], TWO_ROOMS, TRACK_M),
+        **{"max_width_m": 1.5, **LIMITS, "planar": True},
         ways_m=[way_m],
     )
     widths_m = sorted(parting.openings[0].width_m for parting in found)
@@ -211,7 +264,7 @@ def test_what_furniture_hides_of_a_parting_is_not_known_to_be_a_way(hidden_m, ki
     """Furniture stands on that much of a gap of 2.4 m, on either side of the line."""
     (parting,) = room_bounds.find_partings(
         *([wall(4.05, -2, 4.05, 1), wall(4.05, 3.4, 4.05, 4)], TWO_ROOMS, TRACK_M),
-        **{"max_width_m": 1.5, "min_area_m2": 1.0, "unpaired_m": 0.1, "planar": True},
+        **{"max_width_m": 1.5, **LIMITS, "planar": True},
         hidden=box(3.5, 1.0, 4.6, 1.0 + hidden_m),
     )
     (way,) = parting.openings

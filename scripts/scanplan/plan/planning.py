@@ -27,7 +27,7 @@ from scanplan.plan.furniture.leaves import Leaf
 from scanplan.plan.furniture.pieces import Piece, find_pieces, pieces_in_rooms
 from scanplan.plan.furniture.pillars import cut_off_pillars
 from scanplan.plan.openings import OpeningSettings, classify_gap
-from scanplan.plan.plan_wall import PlanWall, usual_thickness_m
+from scanplan.plan.plan_wall import PlanWall, greatest_thickness_m, usual_thickness_m
 from scanplan.plan.rooms import Room, find_rooms, leave_out_unseen, rooms_beside
 from scanplan.plan.uncertainty import ReviewCriteria
 from scanplan.plan.wall_pairs import PairSettings
@@ -312,6 +312,11 @@ class _Survey:
                 max_thickness_m=self.settings.pairs.max_thickness_m,
                 max_depth_m=self.settings.furniture.furniture_depth_m,
             )
+            # a plane shows no more of what is between two faces than its ends
+            most_m = greatest_thickness_m(walls)
+            if any(wall.thickness_m > most_m for wall in walls):
+                pairing = replace(self.settings.pairs, max_thickness_m=most_m)
+                walls = assemble([f for wall in walls for f in wall.members], pairing=pairing)
         unpaired_m = usual_thickness_m(walls)
         min_width_m = self.settings.openings.min_opening_m
         walls = opening_kinds.add_windows(
@@ -368,6 +373,8 @@ class _Survey:
             max_width_m=self.settings.openings.max_door_m,
             min_area_m2=min_area_m2,
             unpaired_m=surfaces.unpaired_m,
+            max_thickness_m=self.settings.pairs.max_thickness_m,
+            max_depth_m=self.settings.furniture.furniture_depth_m,
             planar=self.rays.planar,
             ways_m=[leaf.way_m for leaf in surfaces.leaves],
             hidden=free_space.difference_on_grid(floor, self.floor) if self.rays.planar else None,

@@ -11,7 +11,9 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import intersections, narrow_places
 from scanplan.geometry.lines import Line
+from scanplan.geometry.polygons import rectangle_sides_m
 from scanplan.plan import wall_ground
+from scanplan.plan.furniture.recesses import find_holes
 from scanplan.plan.openings import GAP, OPEN, Opening
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.tolerances import CORNER_M, END_M
@@ -87,6 +89,8 @@ def find_partings(
     max_width_m: float,
     min_area_m2: float,
     unpaired_m: float,
+    max_thickness_m: float,
+    max_depth_m: float,
     planar: bool = False,
     ways_m: Sequence[FloatArray] = (),
     hidden: BaseGeometry | None = None,
@@ -96,7 +100,8 @@ def find_partings(
     There a wall was not seen, or its door was not; on the line of a wall nearby it stands in that.
     Where furniture hides most of the floor nothing is known of what is between.
     In planar scans, which show no lintel and less of walls behind furniture, what is wider than a
-    door parts floor too: where it is a gap in the line of a wall, no wider than the wall is long.
+    door parts floor too: where it is a gap in the line of a wall, no wider than the wall is long or
+    between two that show both sides. What only furniture at a wall narrows parts nothing.
 
     Parameters
     ----------
@@ -112,6 +117,8 @@ def find_partings(
         Of a room; less is not parted off.
     unpaired_m : float
         As in `find_glass_walls`.
+    max_thickness_m, max_depth_m : float
+        Of a wall, and of furniture from its front to its back.
     planar : bool
         Whether all scans lie in one plane.
     ways_m : sequence of (2, 2) float64
@@ -126,15 +133,18 @@ def find_partings(
     ways = wall_ground.wall_strips(doors, unpaired_m)
     strips += [way.buffer(CELL_M, join_style="mitre") for way in ways]
     solid = free_space.union_on_grid(strips)
-    free = free_space.difference_on_grid(floor, solid)
+    # what is as narrow as a chair's leg casts a shadow, which is no place to stop at
+    whole = free_space.close_shadows(floor, END_M) if planar else floor
+    free = free_space.difference_on_grid(whole, solid)
     partings = list(doors)
     gaps_m = _find_line_gaps(bounds, free, max_width_m, unpaired_m) if planar else []
     # shorter ones may be sides of what stands in a room
     long = [wall for wall in bounds if planar and wall.length_m > 2 * max_width_m]
     walls = shapely.union_all(wall_ground.wall_strips(long, unpaired_m))
+    behind = _find_hidden_floor(free, solid, max_thickness_m, max_depth_m) if planar else None
     for part in free_space.open_polygons(free, END_M):
         for ends_m in narrow_places.find_narrow_places(
-            *(part, track_m, gaps_m, walls),
+            *(part, track_m, gaps_m, walls, behind),
             max_width_m=max_width_m,
             min_area_m2=min_area_m2,
             cell_m=CELL_M,
@@ -148,13 +158,37 @@ def find_partings(
     return partings
 
 
+def _find_hidden_floor(
+    free: BaseGeometry, solid: BaseGeometry, max_thickness_m: float, max_depth_m: float
+) -> BaseGeometry:
+    """Return what furniture at walls hides of the floor.
+
+    It is no deeper than furniture, and longer along a wall than any wall across that is thick; and
+    on both sides of it floor goes on along the wall.
+    """
+    known = shapely.union_all([free, solid]).buffer(CELL_M, join_style="mitre")
+    along = solid.buffer(END_M + 2 * CELL_M)
+    hidden = []
+    for hole in find_holes(known):
+        _, length_m = rectangle_sides_m(hole.intersection(along))
+        beside = shapely.intersection(hole.buffer(CORNER_M), along).intersection(free.union(hole))
+        _, reach_m = rectangle_sides_m(beside)
+        # on one side alone as much as a corner, and not quite as much on both, at oblique ends
+        goes_on = reach_m >= length_m + 1.5 * CORNER_M
+        if length_m > max_thickness_m and goes_on and hole.area <= max_depth_m * length_m:
+            hidden.append(hole.buffer(CELL_M, join_style="mitre"))
+    return free_space.difference_on_grid(free_space.union_on_grid(hidden), solid)
+
+
 def _find_line_gaps(
     walls: Sequence[PlanWall], free: BaseGeometry, min_width_m: float, unpaired_m: float
 ) -> list[FloatArray]:
     """Return lines (2, 2) over free floor, from where a wall ends to where one goes on in its line.
 
-    Also to a wall across, where nothing meets the wall's end, the gap is no wider than two doors,
-    and the wall as long from there to its next opening: beside a door furniture hides what goes on.
+    They are no wider than the wall is long; or, between two walls seen from both sides, than two
+    doors. Also to a wall across, where nothing meets the wall's end, the gap is no wider than two
+    doors, and the wall as long from there to its next opening: beside a door furniture hides what
+    goes on.
     What meets another wall at its end is a corner that stands into one room.
     """
     strips = np.array(wall_ground.wall_strips(walls, unpaired_m), object)
@@ -163,7 +197,8 @@ def _find_line_gaps(
     for wall in walls:
         back_m = unpaired_m / 2 if math.isnan(wall.thickness_m) else 0.0
         for end_m, sign in ((wall.low_m, -1), (wall.high_m, 1)):
-            ray_m = wall.line.at(end_m + sign * np.array([0.0, wall.length_m]))
+            reach_m = max(wall.length_m, 2 * min_width_m) if wall.right else wall.length_m
+            ray_m = wall.line.at(end_m + sign * np.array([0.0, reach_m]))
             ray_m -= back_m * wall.line.normal
             over = shapely.intersection(free, shapely.LineString(ray_m))
             pieces = [p for p in shapely.get_parts(over) if p.geom_type == "LineString"]
@@ -178,16 +213,14 @@ def _find_line_gaps(
             around_m = wall.half_m + END_M
             is_free = len(tree.query(start, predicate="dwithin", distance=around_m)) == 1
             most_m = min(2 * min_width_m, _solid_m(wall, end_m))
-            is_crossed = any(_crosses(wall, other) for other in beyond)
+            is_crossed = any(intersections.run_across(wall.line, other.line) for other in beyond)
             ends_at_wall = is_free and is_crossed and first.length <= most_m
-            if ends_at_wall or any(wall.goes_on_as(other) for other in beyond):
+            on_line = [other for other in beyond if wall.goes_on_as(other)]
+            is_short = first.length <= wall.length_m + CORNER_M
+            goes_on = any(is_short or other.right for other in on_line)
+            if ends_at_wall or goes_on:
                 gaps_m.append(ends_m)
     return gaps_m
-
-
-def _crosses(wall: PlanWall, other: PlanWall) -> bool:
-    """Return whether another wall runs across one."""
-    return abs(float(wall.line.direction @ other.line.normal)) >= math.cos(intersections.LEAST_RAD)
 
 
 def _solid_m(wall: PlanWall, end_m: float) -> float:

@@ -211,8 +211,7 @@ def _large_parts(floor: BaseGeometry, min_area_m2: float) -> list[Polygon]:
 
 def _without_shadows(part: Polygon, solid: BaseGeometry) -> Polygon:
     """Return a part of the floor with the shadows of what is as narrow as a chair's legs."""
-    grown = part.buffer(CORNER_M, join_style="mitre")
-    closed = shapely.union(grown.buffer(-CORNER_M, join_style="mitre"), part)
+    closed = free_space.close_shadows(part, CORNER_M)
     return _largest(free_space.difference_on_grid(closed, solid)) or part
 
 

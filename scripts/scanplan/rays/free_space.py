@@ -127,6 +127,12 @@ def open_polygons(ground: BaseGeometry, half_m: float) -> list[Polygon]:
     return opened
 
 
+def close_shadows(ground: BaseGeometry, half_m: float) -> BaseGeometry:
+    """Return ground with what is narrower than twice a width between parts of it."""
+    grown = ground.buffer(half_m, join_style="mitre")
+    return shapely.union(grown.buffer(-half_m, join_style="mitre"), ground)
+
+
 def polygon_parts(geometry: BaseGeometry) -> MultiPolygon:
     """Return what of a geometry has an area."""
     parts = [p for p in shapely.get_parts(geometry) if p.geom_type == "Polygon" and p.area > 0]
