@@ -201,8 +201,8 @@ def _wanted(name: str) -> tuple[str, ...]:
     wanted = ["plan/plan.svg", "plan/plan.geojson"]
     if kind in _drives():
         wanted.append("evaluation/plan.parquet")
-    if kind in _drives() and kind not in _DRAWN:
-        wanted.append("evaluation/walls.parquet")
+        if kind not in _DRAWN:
+            wanted.append("evaluation/walls.parquet")
     return tuple(wanted)
 
 

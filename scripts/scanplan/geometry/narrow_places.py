@@ -273,7 +273,7 @@ def _is_narrowed(ground: BaseGeometry, line: FloatArray, hidden: BaseGeometry | 
     """Return whether a line parts ground for what hides a part of it alone."""
     if hidden is None or LineString(line).distance(hidden) > SHORTEST_M:
         return False
-    whole = shapely.union_all([ground, hidden.intersection(shapely.box(*ground.bounds))])
+    whole = shapely.union_all([ground, shapely.clip_by_rect(hidden, *ground.bounds)])
     middle_m = line.mean(axis=0)
     across = _line_across(whole, middle_m, (line[1] - line[0]) / _length_m(line))
     return across is not None and not _widens_on_both_sides(whole, across)

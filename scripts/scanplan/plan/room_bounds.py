@@ -171,11 +171,12 @@ def _find_hidden_floor(
     hidden = []
     for hole in find_holes(known):
         _, length_m = rectangle_sides_m(hole.intersection(along))
-        beside = shapely.intersection(hole.buffer(CORNER_M), along).intersection(free.union(hole))
-        _, reach_m = rectangle_sides_m(beside)
+        if length_m <= max_thickness_m or hole.area > max_depth_m * length_m:
+            continue
+        around = hole.buffer(CORNER_M).intersection(along)
+        beside = shapely.union(around.intersection(free), around.intersection(hole))
         # on one side alone as much as a corner, and not quite as much on both, at oblique ends
-        goes_on = reach_m >= length_m + 1.5 * CORNER_M
-        if length_m > max_thickness_m and goes_on and hole.area <= max_depth_m * length_m:
+        if rectangle_sides_m(beside)[1] >= length_m + 1.5 * CORNER_M:
             hidden.append(hole.buffer(CELL_M, join_style="mitre"))
     return free_space.difference_on_grid(free_space.union_on_grid(hidden), solid)
 

@@ -4,7 +4,7 @@ Returns, rays through it, glass, and the raster of these.
 """
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -174,6 +174,30 @@ def observe_face(
         low_z_m=face.height_m[low],
         planar=rays.planar,
         lost_m=_find_lost(rays, face, low_m, high_m),
+        low_end_m=low_m,
+        high_end_m=high_m,
+    )
+
+
+def look_beyond(
+    seen: FaceObservation, rays: RaySet, low_m: float, high_m: float, *, band_m: float
+) -> FaceObservation:
+    """Return an observation with the rays that go through a longer stretch of its line.
+
+    Parameters
+    ----------
+    seen : FaceObservation
+    rays, low_m, high_m, band_m
+        As of `observe_face`.
+    """
+    face = cast_at_face(rays, seen.line, low_m, high_m, at_m=band_m, occluded_within_m=0.0)
+    free = np.flatnonzero(face.is_free(band_m + BEHIND_M))
+    free = free.take(np.argsort(face.along_m.take(free), kind="stable"))
+    return replace(
+        seen,
+        free_m=face.along_m[free],
+        free_z_m=face.height_m[free],
+        free_scan=face.scan[free],
         low_end_m=low_m,
         high_end_m=high_m,
     )

@@ -11,6 +11,7 @@ from scanplan.geometry.tolerances import ROUNDING
 from scanplan.plan.tolerances import END_M, ENOUGH_RAYS
 from scanplan.rays.face_observation import (
     FaceObservation,
+    look_beyond,
     observe_face,
 )
 from scanplan.rays.face_raster import CELL_M, FaceRaster
@@ -23,7 +24,6 @@ _REFIT_M = 0.04  # from the median: what points of one face scatter by; others d
 LEAST_OPEN_COLUMNS = 2
 """A single column may be opened by what points at its edges leave out, or pass beside a way."""
 
-_PASSING = ("free_m", "free_z_m", "free_scan", "low_end_m", "high_end_m")
 _MOST_TURN_RAD = np.radians(3)  # a line of segments turns by noise alone; more is another face
 _MOST_DOUBLINGS = 3  # of the reach beyond an end: panes are shorter than that
 
@@ -99,8 +99,7 @@ def observe_along(
         return observation
     # where a wall ends it is asked whether rays go by; what returns there is of other lines
     span_m = span_m + reach_m * np.array([-1, 1])
-    wide = observe_face(rays, observation.line, *span_m, band_m=band_m)
-    return replace(observation, **{name: getattr(wide, name) for name in _PASSING})
+    return look_beyond(observation, rays, *span_m, band_m=band_m)
 
 
 def _observe_refitted(

@@ -20,11 +20,7 @@ from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.furniture.blocks import is_block
 from scanplan.plan.furniture.plan_faces import PlanFaces
 from scanplan.plan.furniture.pocket import Pocket, faces_on, is_large
-from scanplan.plan.furniture.recesses import (
-    find_holes,
-    find_recesses,
-    stands_before_facade,
-)
+from scanplan.plan.furniture.recesses import find_holes, find_recesses, stands_before_facade
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.tolerances import CORNER_M, END_M
 from scanplan.rays import free_space
