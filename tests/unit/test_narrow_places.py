@@ -114,6 +114,19 @@ def test_of_two_gaps_in_one_place_the_narrower_parts():
     np.testing.assert_array_equal(line, GAP)
 
 
+def test_a_door_beyond_the_end_of_a_gap_does_not_stand_for_it():
+    gap = np.array([[4.1, 0.8], [4.1, 3.0]])
+    above, door = box(2, 4.2, 4, 7), box(3.4, 3.9, 4, 4.3)
+    lines = find(LEFT, RIGHT, box(3.9, 0.8, 4.3, 3), above, door, gaps_m=[gap])
+    assert len(lines) == 2
+
+
+def test_a_cupboard_behind_the_wall_that_a_gap_ends_at_is_not_beside_the_gap():
+    cupboard, mouth = box(4.05, 3.1, 5.5, 4.4), box(3.9, 3.5, 4.1, 3.8)
+    (line,) = find(LEFT, box(4.2, 0, 8, 3), WIDE, cupboard, mouth, gaps_m=[GAP])
+    np.testing.assert_allclose(line, GAP)
+
+
 def test_a_sliver_beside_a_gap_does_not_join_the_rooms_on_either_side():
     """The line also crosses the end of a niche of the room on the left."""
     niche = box(3.5, 0.6, 4.15, 0.9)

@@ -99,9 +99,9 @@ def _choose_gaps(
     """Return the gaps that ground is much wider beside, the narrowest of those near each other."""
     chosen: list[FloatArray] = []
     for gap in sorted(gaps_m, key=_length_m):
-        across = LineString(gap)
-        reach_m = _length_m(gap) / 2
-        is_known = any(LineString(line).distance(across) < reach_m for line in [*lines, *chosen])
+        # what is beyond its ends parts other ground
+        beside = LineString(gap).buffer(_length_m(gap) / 2, cap_style="flat")
+        is_known = any(beside.intersects(LineString(line)) for line in [*lines, *chosen])
         if is_known or not shapely.contains_xy(ground, *gap.mean(axis=0)):
             continue
         if _widens_on_both_sides(ground, gap):
@@ -316,7 +316,7 @@ def _part_enough(
         is_visited = np.array([_is_visited(part, visited) for part in parts], bool)
         is_small = shapely.area(parts) < np.where(is_visited, min_area_m2, FURNITURE_M2)
         is_wide = ~shapely.is_empty(shapely.buffer(parts, -sliver_m))
-        beside = [_parts_beside(cut, parts) for cut in cuts]
+        beside = [_parts_beside(line, parts) for line in chosen]
         cut_off = [
             i
             for i, rows in enumerate(beside)
@@ -329,9 +329,10 @@ def _part_enough(
         chosen.pop(max(inner or cut_off, key=lambda i: _length_m(chosen[i])))
 
 
-def _parts_beside(cut: Polygon, parts: Array) -> IntArray:
-    """Return the rows of the parts that a cut went along."""
-    return np.flatnonzero(shapely.area(shapely.intersection(parts, cut.buffer(SHORTEST_M))) > 0)
+def _parts_beside(line: FloatArray, parts: Array) -> IntArray:
+    """Return the rows of the parts along a line that was cut; not of what is beyond its ends."""
+    beside = LineString(line).buffer(2 * SHORTEST_M, cap_style="flat")
+    return np.flatnonzero(shapely.area(shapely.intersection(parts, beside)) > 0)
 
 
 def _is_visited(part: Polygon, visited: Array) -> bool:
