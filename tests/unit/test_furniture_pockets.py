@@ -416,21 +416,28 @@ def test_a_front_is_as_far_from_a_wall_as_from_the_nearest_of_its_pieces():
     assert side.left[0] in pocket.fronts
 
 
-def divided_room(east_m):
-    """A room that a partition with a door divides, seen from the south, from x = 0 to `east_m`.
+def divided_room(east_m, *, has_door):
+    """A room that a partition divides, seen from the south, from x = 0 to `east_m`.
 
     From the north both of its pieces stand before ground that no scan saw.
     """
-    partition = wall([(east_m, 4, 3, 4), (2, 4, 0, 4)], openings=[(east_m - 3, east_m - 2)])
+    pieces = [(east_m, 4, 3, 4), (2, 4, 0, 4)]
+    apart = (
+        [wall(pieces, openings=[(east_m - 3, east_m - 2)])]
+        if has_door
+        else [wall([piece]) for piece in pieces]
+    )
     hidden = [shapely.Polygon([(0, 4), (1.9, 4), (1.4, 4.6), (0, 4.8)])]
     hidden.append(shapely.Polygon([(3.1, 4), (east_m, 4), (east_m, 4.8), (3.6, 4.6)]))
     sides = [[(5, 0, 5, 4), (5, 4.8, 5, 8)], [(0, 8, 0, 4.8), (0, 4, 0, 0)]]
     floor = box(0, 0, 5, 8).difference(shapely.union_all(hidden))
     ends = [(0, 0, 5, 0), (5, 8, 0, 8)]
-    return [*(wall([face]) for face in ends), *map(wall, sides), partition], floor
+    return [*(wall([face]) for face in ends), *map(wall, sides), *apart], floor
 
 
-@pytest.mark.parametrize(("east_m", "n_fronts"), [(5.0, 0), (4.2, 1)])
-def test_a_partition_from_wall_to_wall_with_a_door_is_no_row_of_cupboards(east_m, n_fronts):
-    found = pockets(*divided_room(east_m))
+@pytest.mark.parametrize(
+    ("east_m", "has_door", "n_fronts"), [(5.0, True, 0), (4.2, True, 0), (4.2, False, 2)]
+)
+def test_a_partition_with_a_door_that_meets_a_wall_is_no_cupboard(east_m, has_door, n_fronts):
+    found = pockets(*divided_room(east_m, has_door=has_door))
     assert sum(len(pocket.fronts) for pocket in found) == n_fronts

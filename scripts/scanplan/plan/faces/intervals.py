@@ -88,8 +88,9 @@ def observe_along(
     beyond_m = np.full(2, reach_m)
     observation, span_m = _observe_refitted(rays, line, own_m, beyond_m, band_m)
     for _ in range(_MOST_DOUBLINGS):
-        nearest_m = [np.abs(observation.lost_m - end_m).min(initial=np.inf) for end_m in span_m]
-        is_in_glass = np.array(nearest_m) < END_M
+        # refitted, the line's own ends are as far from those of what was observed as before
+        ends_m = zip(span_m + beyond_m * np.array([1, -1]), span_m, strict=True)
+        is_in_glass = np.array([_leads_into_glass(observation, *pair_m) for pair_m in ends_m])
         if not is_in_glass.any():
             break
         # a pane is observed as a whole
@@ -100,6 +101,18 @@ def observe_along(
     # where a wall ends it is asked whether rays go by; what returns there is of other lines
     span_m = span_m + reach_m * np.array([-1, 1])
     return look_beyond(observation, rays, *span_m, band_m=band_m)
+
+
+def _leads_into_glass(seen: FaceObservation, inner_m: float, end_m: float) -> bool:
+    """Return whether glass is at an end of what was observed, or along most of what leads there.
+
+    Of mullions a planar scanner sees a few returns, which part a pane's rays that are lost.
+    """
+    if np.abs(seen.lost_m - end_m).min(initial=np.inf) < END_M:
+        return True
+    low_m, high_m = sorted((inner_m, end_m))
+    lost_m = np.clip(seen.lost_m, low_m, high_m)
+    return seen.planar and bool(np.ptp(lost_m, axis=1).sum() >= (high_m - low_m) / 2)
 
 
 def _observe_refitted(

@@ -98,7 +98,7 @@ class _Search:
         Of the floor that was seen, polygons; the same, by a cell larger.
     single, opened, continued, dividing : set of int
         Identities of the faces of walls seen from one side, of those with an opening, of those that
-        go on beyond one, and of those that run from wall to wall with one.
+        go on beyond one, and of those with one that begin at another wall.
     unpaired_m, max_thickness_m, max_depth_m : float
         As in `find_pockets`.
     """
@@ -169,7 +169,7 @@ class _Search:
         if _is_part_of_building(pocket, part, self.max_depth_m):
             return None
         walls = self.faces.behind(pocket.ground) if own else self.faces.backs(near, fronts)
-        # a row of cupboards before a wall has gaps, too; it does not run from wall to wall
+        # a row of cupboards along a wall has gaps, too; it does not begin at a wall across
         dividing = [face for face in fronts if id(face) in self.dividing]
         walls = [
             wall for wall in walls if not any(run_across(wall.line, face.line) for face in dividing)
@@ -216,12 +216,12 @@ def _find_continued(wall: PlanWall) -> Iterator[FaceInterval]:
 def _find_dividing(
     walls: Sequence[PlanWall], strips: Sequence[Polygon], unpaired_m: float
 ) -> Iterator[FaceInterval]:
-    """Yield the faces of walls with an opening that run from one wall to another."""
+    """Yield the faces of walls with an opening that begin or end at another wall."""
     tree = shapely.STRtree(strips)
     for row, wall in enumerate(walls):
         reach_m = CORNER_M + unpaired_m
         near = [tree.query(shapely.Point(end), "dwithin", distance=reach_m) for end in wall.ends]
-        if wall.openings and all((rows != row).any() for rows in near):
+        if wall.openings and any((rows != row).any() for rows in near):
             yield from wall.members
 
 
