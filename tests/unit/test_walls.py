@@ -50,6 +50,19 @@ def test_an_opening_begins_beside_the_wall_that_ends_there():
     np.testing.assert_allclose(openings(south, crossing), [(2.2, 3)], atol=0.02)
 
 
+@pytest.mark.parametrize(
+    ("across_m", "expected"),
+    [(3.95, [(2.6, 3.5)]), (0.9, [(2, 3.5)])],
+    ids=["a wall", "as long as a leaf"],
+)
+def test_an_opening_does_not_go_on_across_a_wall(across_m, expected):
+    """What is south of the opening's first part is hidden by the wall that ends amid it."""
+    south = stretches(0, 0, 6, 0, [(0, 2), (3.5, 6)], [(2.6, 3.5)])
+    crossing = stretches(2.6, 0.05 + across_m, 2.6, 0.05, [(0, across_m)])
+    crossing += stretches(2.4, 0.05, 2.4, 0.05 + across_m, [(0, across_m)])
+    np.testing.assert_allclose(openings(south, crossing), expected, atol=0.02)
+
+
 def test_the_jambs_of_both_sides_are_averaged():
     one = stretches(0, 0, 6, 0, [(0, 2), (3, 6)], [(2, 3)])
     other = stretches(6, -0.2, 0, -0.2, [(0, 2.96), (3.96, 6)], [(2.96, 3.96)])

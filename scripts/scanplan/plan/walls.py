@@ -148,11 +148,20 @@ class _Assembly:
         return replace(wall, **moved) if is_long else wall
 
     def trim_openings(self, wall: PlanWall, crossings: Sequence[Crossing]) -> PlanWall:
-        """Let openings begin beside the walls that cross there."""
+        """Let openings begin beside the walls that cross there, and none go on across a wall."""
         bodies_m = [
             (place_m - other.half_m, place_m + other.half_m) for other, place_m in crossings
         ]
-        openings = [_trim(opening, bodies_m) for opening in wall.openings]
+        # what is no longer than a door is wide may be its leaf
+        is_wall = [other.length_m > self.settings.max_door_m for other, _ in crossings]
+        across_m = list(itertools.compress(bodies_m, is_wall))
+        openings = []
+        for opening in wall.openings:
+            trimmed = _trim(opening, bodies_m)
+            parts = _split(trimmed, across_m)
+            if len(parts) > 1:
+                parts = [self._classify(wall, part.low_m, part.high_m) for part in parts]
+            openings += [part for part in parts if part.state == OPEN]
         least_m = self.settings.min_opening_m
         return replace(wall, openings=[g for g in openings if g.width_m >= least_m])
 
@@ -254,6 +263,16 @@ def _trim(opening: Opening, bodies_m: Sequence[tuple[float, float]]) -> Opening:
         if begin_m <= opening.high_m <= end_m + END_M:
             high_m = min(high_m, begin_m)
     return replace(opening, low_m=float(low_m), high_m=float(high_m))
+
+
+def _split(opening: Opening, bodies_m: Sequence[tuple[float, float]]) -> list[Opening]:
+    """Return what of an opening is on either side of the walls that cross it."""
+    parts = [opening]
+    for begin_m, end_m in bodies_m:
+        for part in [p for p in parts if p.low_m < begin_m and end_m < p.high_m]:
+            parts.remove(part)
+            parts += [replace(part, high_m=begin_m), replace(part, low_m=end_m)]
+    return sorted(parts, key=lambda part: part.low_m)
 
 
 def _find_crossings(
