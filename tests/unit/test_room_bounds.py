@@ -106,6 +106,14 @@ def test_a_gap_wider_than_a_door_parts_rooms_in_the_line_of_a_longer_wall():
     assert abs(way.width_m - 2.4) < 0.02
 
 
+def test_a_gap_as_wide_as_a_door_parts_rooms_in_the_line_of_a_wall():
+    """It is 1.46 m wide, and the room west of it 2.2 m: by distances alone it is hardly narrow."""
+    floor = shapely.union_all([box(0, 0, 4, 2.2), box(4.1, 0, 8, 4), box(3.9, 0.25, 4.2, 1.71)])
+    walls = [wall(4.05, -2, 4.05, 0.25), wall(4.05, 1.71, 4.05, 4)]
+    (parting,) = part(walls, floor=floor)
+    assert abs(parting.openings[0].width_m - 1.46) < 0.02
+
+
 def test_a_gap_wider_than_the_wall_is_long_parts_nothing():
     assert part([wall(4.05, 0, 4.05, 1), wall(4.05, 3.4, 4.05, 4)]) == []
 

@@ -99,8 +99,8 @@ def find_partings(
 
     There a wall was not seen, or its door was not; on the line of a wall nearby it stands in that.
     Where furniture hides most of the floor nothing is known of what is between.
-    In planar scans, which show no lintel and less of walls behind furniture, what is wider than a
-    door parts floor too: where it is a gap in the line of a wall, no wider than the wall is long or
+    In planar scans, which show no lintel and less of walls behind furniture, gaps in the line of a
+    wall part floor too: those wider than a door where they are no wider than the wall is long, or
     between two that show both sides. What only furniture at a wall narrows parts nothing.
 
     Parameters
@@ -182,7 +182,7 @@ def _find_hidden_floor(
 
 
 def _find_line_gaps(
-    walls: Sequence[PlanWall], free: BaseGeometry, min_width_m: float, unpaired_m: float
+    walls: Sequence[PlanWall], free: BaseGeometry, max_door_m: float, unpaired_m: float
 ) -> list[FloatArray]:
     """Return lines (2, 2) over free floor, from where a wall ends to where one goes on in its line.
 
@@ -192,36 +192,48 @@ def _find_line_gaps(
     goes on.
     What meets another wall at its end is a corner that stands into one room.
     """
-    strips = np.array(wall_ground.wall_strips(walls, unpaired_m), object)
-    tree = shapely.STRtree(strips)
+    tree = shapely.STRtree(wall_ground.wall_strips(walls, unpaired_m))
     gaps_m: list[FloatArray] = []
     for wall in walls:
-        back_m = unpaired_m / 2 if math.isnan(wall.thickness_m) else 0.0
-        for end_m, sign in ((wall.low_m, -1), (wall.high_m, 1)):
-            reach_m = max(wall.length_m, 2 * min_width_m) if wall.right else wall.length_m
-            ray_m = wall.line.at(end_m + sign * np.array([0.0, reach_m]))
-            ray_m -= back_m * wall.line.normal
-            over = shapely.intersection(free, shapely.LineString(ray_m))
-            pieces = [p for p in shapely.get_parts(over) if p.geom_type == "LineString"]
-            start = shapely.Point(ray_m[0])
-            first = min(pieces, key=start.distance, default=None)
-            if first is None or start.distance(first) > CORNER_M or first.length <= min_width_m:
+        reach_m = max(wall.length_m, 2 * max_door_m) if wall.right else wall.length_m
+        for end_m, way_m in ((wall.low_m, -reach_m), (wall.high_m, reach_m)):
+            gap_m = _find_free_line(wall, end_m, way_m, free, unpaired_m)
+            if gap_m is None:
                 continue
-            ends_m = shapely.get_coordinates(first)[[0, -1]]
-            far = max(map(shapely.Point, ends_m), key=start.distance)
-            near = tree.query(far, predicate="dwithin", distance=CORNER_M)
+            near = tree.query(shapely.Point(gap_m[1]), predicate="dwithin", distance=CORNER_M)
             beyond = [walls[i] for i in near if walls[i] is not wall]
-            around_m = wall.half_m + END_M
-            is_free = len(tree.query(start, predicate="dwithin", distance=around_m)) == 1
-            most_m = min(2 * min_width_m, _solid_m(wall, end_m))
-            is_crossed = any(intersections.run_across(wall.line, other.line) for other in beyond)
-            ends_at_wall = is_free and is_crossed and first.length <= most_m
+            width_m = math.hypot(*(gap_m[1] - gap_m[0]))
+            is_short = width_m <= wall.length_m + CORNER_M
             on_line = [other for other in beyond if wall.goes_on_as(other)]
-            is_short = first.length <= wall.length_m + CORNER_M
             goes_on = any(is_short or other.right for other in on_line)
-            if ends_at_wall or goes_on:
-                gaps_m.append(ends_m)
+            start, around_m = shapely.Point(gap_m[0]), wall.half_m + END_M
+            is_free = len(tree.query(start, predicate="dwithin", distance=around_m)) == 1
+            most_m = min(2 * max_door_m, _solid_m(wall, end_m))
+            is_crossed = any(intersections.run_across(wall.line, other.line) for other in beyond)
+            ends_at_wall = is_free and is_crossed and width_m <= most_m
+            if goes_on or ends_at_wall:
+                gaps_m.append(gap_m)
     return gaps_m
+
+
+def _find_free_line(
+    wall: PlanWall, end_m: float, way_m: float, free: BaseGeometry, unpaired_m: float
+) -> FloatArray | None:
+    """Return from where to where (2, 2) floor is free next to an end of a wall, on its middle line.
+
+    None if that is nothing, or begins farther from the end than a corner.
+    """
+    behind_m = unpaired_m / 2 if math.isnan(wall.thickness_m) else 0.0
+    ray_m = wall.line.at(end_m + np.array([0.0, way_m])) - behind_m * wall.line.normal
+    start = shapely.Point(ray_m[0])
+    over = shapely.intersection(free, LineString(ray_m))
+    pieces = [piece for piece in shapely.get_parts(over) if piece.geom_type == "LineString"]
+    first = min(pieces, key=start.distance, default=None)
+    if first is None or start.distance(first) > CORNER_M or first.length <= CORNER_M:
+        return None
+    ends_m = shapely.get_coordinates(first)[[0, -1]]
+    off_m = np.hypot(*(ends_m - ray_m[0]).T)
+    return ends_m[np.argsort(off_m, kind="stable")]
 
 
 def _solid_m(wall: PlanWall, end_m: float) -> float:
