@@ -21,7 +21,7 @@ from rosbags.typesys.store import Typestore
 
 from scanplan.errors import StageError
 from scanplan.recordings import topics, typestores
-from scanplan.recordings.integrity import file_kind, stated_counts, unpacking
+from scanplan.recordings.integrity import fault_words, file_kind, stated_counts, unpacking
 from scanplan.recordings.messages import read_header
 from scanplan.recordings.rosbag1_messages import StoredMessage, iterate_messages
 from scanplan.recordings.salvage.salvaged_reader import SalvagedReader
@@ -65,7 +65,7 @@ def open_bag(
     store = typestores.release_store(ros2_release)
     is_ros2 = path.suffix != ".bag" or path.is_dir()
     with ExitStack() as stack:
-        with _explain_faults(path):
+        with _explain_faults(path, part=fault_words.INDEX):
             file_kind.check_kind(path)
             reader = SalvagedReader(path) if salvage else _choose_reader(path, is_ros2, stack)
             stack.enter_context(reader)
@@ -242,11 +242,14 @@ def _openable_name(path: Path, stack: ExitStack) -> Path:
 class _explain_faults:  # noqa: N801 -- a context like those of functions, entered for every message
     """Turn whatever rosbags, SQLite or a decompressor raises on bad data into one line."""
 
-    __slots__ = ("_path", "_topic")
+    __slots__ = ("_part", "_path", "_topic")
 
-    def __init__(self, path: Path, topic: str | None = None) -> None:
+    def __init__(
+        self, path: Path, topic: str | None = None, *, part: str = fault_words.MESSAGES
+    ) -> None:
         self._path = path
         self._topic = topic
+        self._part = part
 
     def __enter__(self) -> None:
         pass
@@ -254,7 +257,7 @@ class _explain_faults:  # noqa: N801 -- a context like those of functions, enter
     def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
         if not isinstance(error, Exception) or isinstance(error, StageError):
             return
-        reason = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+        reason = fault_words.describe_fault(self._path, error, self._part)
         where = f"{self._path}: topic {self._topic}" if self._topic else str(self._path)
         remedy = _remedy(self._path, error)
         raise StageError(f"{where}: cannot be read ({reason}); {remedy}") from error
@@ -266,7 +269,7 @@ def _remedy(path: Path, error: Exception) -> str:
             "the message is damaged, or (ROS 2) set input.ros2_release to the release that"
             " recorded it"
         )
-    if isinstance(error, KeyError):
+    if isinstance(error, KeyError) and path.suffix != ".bag":
         return (
             "it describes a topic in a way that is not known;"
             " copy the clouds, poses and tf to a bag of their own"
