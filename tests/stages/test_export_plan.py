@@ -55,7 +55,7 @@ def test_all_files_hold_the_same_plan(plan, tmp_path):
     assert {"door-0", "door-1", "window-2"} <= drawn
     assert files["pdf"].read_bytes().startswith(b"%PDF")
     with Image.open(files["png"]) as picture:
-        assert max(picture.size) == 2400
+        assert picture.size == (1753, 1240)  # 150 dots an inch of A4
     about = yaml.safe_load(files["yaml"].read_text())
     with Image.open(files["yaml"].parent / about["image"]) as image:
         width, height = image.size

@@ -1,9 +1,12 @@
+import io
 import re
 from dataclasses import replace
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
+from PIL import Image
 
 from helpers import floorplan_making
 from helpers.floorplan_making import bare, plan
@@ -88,6 +91,14 @@ def test_the_same_plan_gives_the_same_bytes():
     once, again = (drawing.draw_sheet(sheet) for sheet in sheets)
     assert figure_files.format_pdf([once]) == figure_files.format_pdf([again])
     assert figure_files.format_png(once) == figure_files.format_png(again)
+
+
+@pytest.mark.parametrize("size_mm", [(297, 210), (594, 841)])
+def test_letters_are_as_many_pixels_high_on_every_sheet(size_mm):
+    figure = Figure(figsize=[side / 25.4 for side in size_mm])
+    with Image.open(io.BytesIO(figure_files.format_png(figure))) as picture:
+        pixels_per_mm = np.array(picture.size) / size_mm
+    np.testing.assert_allclose(pixels_per_mm, 150 / 25.4, atol=0.01)
 
 
 def test_pdf_is_one_page_of_the_sheet_s_size_with_letters_of_its_own():

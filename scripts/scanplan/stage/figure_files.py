@@ -34,12 +34,12 @@ def format_pdf(figures: Sequence[Figure], title: str | None = None) -> bytes:
     return file.getvalue()
 
 
-def format_png(figure: Figure, pixels: int = 2400) -> bytes:
-    """Return a figure as PNG bytes that are the same for the same figure, its longer side so long.
+def format_png(figure: Figure, dots_per_inch: int = 150) -> bytes:
+    """Return a figure as PNG bytes that are the same for the same figure.
 
-    By default letters of an A3 sheet can be read.
+    By default the smallest letters of a sheet, capitals of 1.8 mm, are ten pixels high: they can be
+    read. A sheet of A0, the largest, has 35 million pixels.
     """
     picture = io.BytesIO()
-    resolution = pixels / max(figure.get_size_inches())
-    figure.savefig(picture, format="png", dpi=resolution, metadata={"Software": None})
+    figure.savefig(picture, format="png", dpi=dots_per_inch, metadata={"Software": None})
     return picture.getvalue()
