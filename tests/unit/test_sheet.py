@@ -17,6 +17,7 @@ from scanplan.exports.sheet.marks import Symbol, Word, flatten
 from scanplan.exports.sheet.paper import Slot
 from scanplan.exports.sheet.styles import LAYERS, STYLES, Letters, Paper, doubt_layer
 from scanplan.exports.sheet.title import SheetFacts, summarise_survey
+from scanplan.store.doubts import Doubts
 from scanplan.validation.doubts import find_doubtful_faces, list_doubts
 
 
@@ -341,6 +342,17 @@ def test_the_title_block_states_the_survey():
     assert {"Foyer", "Room 1", "12.0", "9.0", "14.00"} <= set(said)
 
 
+def test_a_long_value_of_the_title_block_is_written_on_two_lines():
+    version = "scanplan, code 0123456789ab"
+    doubted = Doubts(damage=("cut off",), contradictions=("walls lean",))
+    sheet = composition.compose_sheet(plan(doubted=doubted), SheetFacts(version=version))
+    values = {word.element: word for word in sheet.paper_words if word.element.startswith("title:")}
+    software = values["title:SOFTWARE"], values["title:SOFTWARE_2"]
+    assert " ".join(word.text for word in software) == version
+    assert software[0].place[1] > software[1].place[1]
+    assert not any(word.text.endswith("…") for word in values.values())
+
+
 @pytest.mark.parametrize(
     ("sigma_m", "name"), [(0.0005, "LOA50"), (0.003, "LOA30"), (0.02, "LOA20"), (0.1, "LOA10")]
 )
@@ -359,6 +371,16 @@ def test_texts_are_one_line_and_cut_where_they_are_too_long():
     cut = lettering.shorten_text("W" * 50, 1.8, 20.0)
     assert cut.endswith("…") and lettering.measure_width_mm(cut, 1.8) <= 20
     assert lettering.shorten_text("short", 1.8, 20.0) == "short"
+
+
+def test_a_text_is_broken_between_words_once():
+    assert lettering.wrap_text("as short\nas this", 1.8, 40.0) == ["as short as this"]
+    wide_mm = lettering.measure_width_mm("one two", 1.8)
+    assert lettering.wrap_text("one two three", 1.8, wide_mm) == ["one two", "three"]
+    first, second = lettering.wrap_text("one two " * 5, 1.8, wide_mm)
+    assert first == "one two" and second.endswith("…")
+    (cut,) = lettering.wrap_text("W" * 50, 1.8, 20.0)
+    assert cut.endswith("…")
 
 
 def test_every_style_has_a_layer_and_walls_are_drawn_over_rooms():

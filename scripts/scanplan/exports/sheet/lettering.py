@@ -51,6 +51,17 @@ def shorten_text(text: str, capitals_mm: float, width_mm: float) -> str:
     return f"{text.rstrip()}…"
 
 
+def wrap_text(text: str, capitals_mm: float, width_mm: float) -> list[str]:
+    """Return a clean text on one line, or broken between words on two; what is over is cut off."""
+    words = clean_text(text).split()
+    for n_words in range(len(words), 0, -1):
+        first = " ".join(words[:n_words])
+        if measure_width_mm(first, capitals_mm) <= width_mm:
+            rest = " ".join(words[n_words:])
+            return [first, shorten_text(rest, capitals_mm, width_mm)] if rest else [first]
+    return [shorten_text(text, capitals_mm, width_mm)]
+
+
 def word_box(word: Word, clear: float = 0.0) -> shapely.Polygon:
     """Return the rectangle of a word on paper, with a share of its capitals' height around."""
     length = measure_width_mm(word.text, word.size_mm)

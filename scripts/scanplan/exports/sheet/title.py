@@ -6,7 +6,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from scanplan.exports.sheet.accuracy import state_accuracy
-from scanplan.exports.sheet.lettering import rotation, shorten_text
+from scanplan.exports.sheet.lettering import (
+    clean_text,
+    measure_width_mm,
+    rotation,
+    shorten_text,
+    wrap_text,
+)
 from scanplan.exports.sheet.marks import Mark, Stamp, Symbol, Word, flatten, straight
 from scanplan.exports.sheet.paper import TITLE_ROWS, Page, Slot
 from scanplan.exports.sheet.styles import STYLES, Letters, Paper
@@ -115,15 +121,23 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
             width = columns * Paper.COLUMN
             if x > x0:
                 yield _rule(x, top, x, top - height)
-            is_large = head == "Project"
-            size = Letters.LARGE if is_large else Letters.SMALL
             yield _word("note", head, x + Paper.GAP, top - height / 2, Letters.SMALL)
-            indent = 24.0
-            text = shorten_text(value, size, width - indent - Paper.GAP)
-            place = np.array([x + indent, top - height / 2])
-            tag = TITLE_TAG + head.upper().replace(" ", "_")
-            yield Word("title", text, place, size, align=0.0, element=tag)
+            ends = (x + 24.0, x + width - Paper.GAP)
+            yield from _draw_value(head, clean_text(value), ends, top - height / 2)
             x += width
+
+
+def _draw_value(head: str, value: str, ends: tuple[float, float], y: float) -> Iterator[Word]:
+    """Yield a value of the title block between x and x, on two lines where one does not hold it."""
+    x0, x1 = ends
+    is_large = head == "Project" and measure_width_mm(value, Letters.LARGE) <= x1 - x0
+    size = Letters.LARGE if is_large else Letters.SMALL
+    lines = wrap_text(value, size, x1 - x0)
+    tag = TITLE_TAG + head.upper().replace(" ", "_")
+    for number, text in enumerate(lines):
+        level = y + ((len(lines) - 1) / 2 - number) * 1.4 * size
+        element = f"{tag}_{number + 1}" if number else tag
+        yield Word("title", text, np.array([x0, level]), size, align=0.0, element=element)
 
 
 def list_legend(marks: Sequence[Mark], kinds: set[str]) -> list[str]:
