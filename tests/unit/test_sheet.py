@@ -223,6 +223,28 @@ def test_chains_and_rooms_measure_the_house():
     assert {4.0, 3.0} <= set(measured)
 
 
+def test_walls_that_stand_apart_from_all_rooms_are_not_measured_with_the_building():
+    stub = ((9.0, -2.0, 9.0, -1.0), 0.2, -1, -1, "observed")
+    walls = floorplan_making.walls([*floorplan_making.WALLS, stub])
+    house, with_stub = (composition.compose_sheet(p) for p in (plan(), plan(walls=walls)))
+
+    def texts(sheet):
+        return sorted(dimension.word.text for dimension in sheet.dimensions)
+
+    assert texts(with_stub) == texts(house)
+    # chains keep off it all the same
+    lines = [shapely.LineString(d.line_m) for d in with_stub.dimensions]
+    assert min(line.distance(shapely.box(8.9, -2, 9.1, -1)) for line in lines) > 0.1
+
+
+def test_without_rooms_all_walls_are_measured():
+    stub = ((9.0, -2.0, 9.0, -1.0), 0.2, -1, -1, "observed")
+    walls = floorplan_making.walls([*floorplan_making.WALLS, stub])
+    drawn = plan(walls=walls, rooms=floorplan_making.rooms([]))
+    texts = {dimension.word.text for dimension in composition.compose_sheet(drawn).dimensions}
+    assert "9.30" in texts
+
+
 def test_what_a_chain_states_is_not_written_again():
     sheet = composition.compose_sheet(plan())
     widths = [word.text for word in sheet.words if word.kind == "width"]

@@ -183,7 +183,7 @@ def _rings(page: Page, paths: list[FloatArray]) -> list[BaseGeometry]:
 def _dimension(
     page: Page, plan: FloorPlan, marks: list[Mark], symbols: list[Symbol], space: LabelSpace
 ) -> list[Dimension]:
-    """Return the chains along the facades of all that is built.
+    """Return the chains along the facades of the building, off all that is drawn.
 
     That is walls, openings and the rooms that these close; surfaces where there is no wall.
     """
@@ -194,25 +194,41 @@ def _dimension(
     built = shapely.union_all([*plan.bodies, *rooms, *openings])
     if built.is_empty:
         lines = [shapely.LineString(path[:, :2]) for mark in marks for path in mark.paths]
-        outline = page.place_shape(shapely.union_all(lines)).envelope
+        drawn = page.place_shape(shapely.union_all(lines)).envelope
+        outline = known = drawn
     else:
         closed = shapely.buffer(built, 2 * END_M, join_style="mitre").buffer(
             -2 * END_M, join_style="mitre"
         )
-        outline = page.place_shape(closed)
+        building = _leave_loose_walls(closed, plan)
+        drawn, outline = page.place_shape(closed), page.place_shape(building)
+        known = page.place_shape(_find_known(plan, building))
     swings = [
         shapely.LineString(page.to_paper(flatten(path)))
         for symbol in symbols
         for path in symbol_paths(symbol)
     ]
-    reach = shapely.union_all([outline, *swings])
-    known = outline if built.is_empty else page.place_shape(_find_known(plan))
+    reach = shapely.union_all([drawn, *swings])
     return list(dimensions.dimension_facades(page, outline, reach, known, openings_m, space))
 
 
-def _find_known(plan: FloorPlan) -> BaseGeometry:
-    """Return the ground of rooms and of walls of which both sides were seen."""
-    return shapely.union_all([*plan.areas, *plan.known_bodies])
+def _leave_loose_walls(built: BaseGeometry, plan: FloorPlan) -> BaseGeometry:
+    """Return those parts of what is built that bound rooms: what stands apart is no facade.
+
+    All of it where most ground of walls bounds no room that is known.
+    """
+    parts = shapely.get_parts(built)
+    rooms = shapely.union_all(plan.areas)
+    bodies = shapely.union_all(plan.bodies)
+    building = shapely.union_all(parts[shapely.dwithin(parts, rooms, END_M)])
+    is_most = 2 * shapely.intersection(bodies, building).area > bodies.area
+    return building if is_most else built
+
+
+def _find_known(plan: FloorPlan, building: BaseGeometry) -> BaseGeometry:
+    """Return the ground of rooms, and of walls of the building of which both sides were seen."""
+    bodies = shapely.intersection(shapely.union_all(plan.known_bodies), building)
+    return shapely.union_all([*plan.areas, bodies])
 
 
 def _find_stated(symbols: list[Symbol], drawn: list[Dimension]) -> list[bool]:
