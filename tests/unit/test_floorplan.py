@@ -31,6 +31,20 @@ def test_single_faces_end_at_the_surfaces_of_the_walls_they_meet():
     assert len(plan().single("inferred")) == 0
 
 
+def test_a_surface_that_runs_on_beyond_a_corner_is_cut_there():
+    rows = [
+        ((-4.0, 0.0, 0.25, 0.0), np.nan, 0, -1, "observed"),
+        ((0.0, -0.25, 0.0, 3.0), np.nan, 1, -1, "observed"),
+    ]
+    drawn = plan(
+        faces=floorplan_making.faces([(-4, 0, 0.25, 0, 0), (0, -0.25, 0, 3, 1)]),
+        walls=floorplan_making.walls(rows),
+        openings=floorplan_making.openings([]),
+        rooms=floorplan_making.rooms([]),
+    )
+    assert sorted(line.length for line in drawn.single("observed")) == pytest.approx([3, 4])
+
+
 def test_what_is_assumed_lies_behind_the_face():
     assert plan().bodies[1].bounds == pytest.approx((7.1, -0.2, 7.2, 3.2))
     turned = floorplan_making.walls()

@@ -77,6 +77,47 @@ def test_a_sharp_corner_has_no_endless_tip():
         assert body.bounds[2] < 4.8
 
 
+def test_walls_that_cross_near_their_ends_make_a_corner_there():
+    # both run on for 0.35 m beyond where they cross at 30 degrees
+    way = np.array([np.cos(np.pi / 6), np.sin(np.pi / 6)])
+    crossing = [(-4, 0, 0.35, 0), (*(-0.35 * way), *(4 * way))]
+    meeting = [(-4, 0, 0, 0), (0, 0, *(4 * way))]
+    for found, expected in zip(bodies(crossing, 0.1), bodies(meeting, 0.1), strict=True):
+        assert the_same(found, expected)
+
+
+def test_walls_that_cross_in_their_middles_overlap():
+    lines = [(-4, 0, 4, 0), (-3, -1, 3, 1)]
+    for found, line in zip(bodies(lines, 0.1), lines, strict=True):
+        assert the_same(found, bodies([line], 0.1)[0])
+
+
+def test_a_short_wall_across_another_is_cut_off_square():
+    # both its ends are near the other wall, which it crosses at 15 degrees
+    end = 0.25 * np.array([np.cos(np.pi / 12), np.sin(np.pi / 12)])
+    short = (*-end, *end)
+    assert the_same(bodies([(-4, 0, 4, 0), short], 0.1)[1], bodies([short], 0.1)[0])
+
+
+def test_a_wall_that_nearly_runs_along_another_has_no_long_tip():
+    # 12 degrees: its upper corner would meet the other wall 0.9 m on
+    way = np.array([np.cos(np.pi / 15), np.sin(np.pi / 15)])
+    line = (0, 0.18, *(np.array([0, 0.18]) + 3 * way))
+    assert the_same(bodies([(-4, 0, 4, 0), line], 0.1)[1], bodies([line], 0.1)[0])
+
+
+def test_sides_end_where_walls_cross_and_are_never_longer_than_walls():
+    lines_m = np.array([[[-4, 0], [0.25, 0]], [[0, -0.25], [0, 3.0]]])
+    zero, tenth = np.zeros(2), np.full(2, 0.1)
+    # seen from the left, in the corner of a room
+    left_m, _ = wall_footprints.cut_sides(lines_m, zero, tenth)
+    np.testing.assert_allclose(left_m, [[[-4, 0], [0, 0]], [[0, 0], [0, 3]]], atol=1e-9)
+    # from the right, around the corner, sides would have to be drawn on where walls end before it
+    ends_m = np.array([[[-4, 0], [-0.05, 0]], [[0, 0.05], [0, 3.0]]])
+    _, right_m = wall_footprints.cut_sides(ends_m, tenth, zero)
+    np.testing.assert_allclose(right_m, ends_m, atol=1e-9)
+
+
 def test_the_walls_of_a_plan_tile_its_footprint():
     walls = floorplan_making.walls()
     half_m = walls["thickness_m"] / 2

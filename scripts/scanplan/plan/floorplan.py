@@ -159,6 +159,13 @@ class FloorPlan:
         return wall_footprints.draw_footprints(centrelines_m(self.walls), *self.sides_m)
 
     @cached_property
+    def _surfaces_m(self) -> FloatArray:
+        """The side (n, 2, 2) of each wall that was seen, less what runs on beyond its corners."""
+        left_m, right_m = wall_footprints.cut_sides(centrelines_m(self.walls), *self.sides_m)
+        is_left = self.walls["face_left"] >= 0
+        return np.where(is_left[:, None, None], left_m, right_m)
+
+    @cached_property
     def known_bodies(self) -> Array:
         """Likewise of the walls of known thickness, none of them mitred with an assumed one."""
         left_m, right_m = self.sides_m
@@ -198,7 +205,7 @@ class FloorPlan:
         # a face that is a side of a wall is drawn with it
         is_loose = (self.faces["wall"] < 0) & (self.faces["state"] == state)
         is_one_sided = ~self.thick & (self.walls["state"] == state)
-        wall_lines_m = centrelines_m(self.walls)[is_one_sided]
+        wall_lines_m = self._surfaces_m[is_one_sided]
         face_lines_m = centrelines_m(self.faces)[is_loose]
         lines = line_shapes(np.concatenate([wall_lines_m, face_lines_m]))
         # they end at the surfaces of the walls that they meet

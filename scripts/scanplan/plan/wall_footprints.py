@@ -1,5 +1,6 @@
 """Wall footprints: polygons that are mitred at corners and butt at junctions, as draughtsmen do."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,11 +49,14 @@ class _Joints:
     ----------
     corners : list of list of int
         Numbers of ends that meet each other.
+    crossings : list of (end, end)
+        Ends that run on beyond where their walls cross.
     stops : list of (end, wall)
         Ends that butt at the side of a wall.
     """
 
     corners: list[list[int]]
+    crossings: list[tuple[int, int]]
     stops: list[tuple[int, int]]
 
 
@@ -61,7 +65,7 @@ def draw_footprints(lines_m: FloatArray, left_m: FloatArray, right_m: FloatArray
 
     Walls whose ends meet are mitred: their surfaces are drawn on to where they cross those of the
     next wall around the corner. A wall that ends at the side of another stops at its surface. Walls
-    that cross overlap.
+    that cross near their ends are mitred there, others that cross overlap.
 
     Parameters
     ----------
@@ -81,17 +85,60 @@ def draw_footprints(lines_m: FloatArray, left_m: FloatArray, right_m: FloatArray
     ValueError
         If a wall has no length or no thickness.
     """
-    lines_m = np.asarray(lines_m, float).reshape(-1, 2, 2)
-    left_m = np.asarray(left_m, float).reshape(-1)
-    right_m = np.asarray(right_m, float).reshape(-1)
+    corners = _find_corners(lines_m, left_m, right_m)
+    n_walls = len(corners) // 2
+    rings = [_ring(corners[2 * wall], corners[2 * wall + 1]) for wall in range(n_walls)]
+    return np.array([shapely.orient_polygons(ring) for ring in rings], object)
+
+
+def cut_sides(
+    lines_m: FloatArray, left_m: FloatArray, right_m: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the left and the right side (n, 2, 2) of each wall, first end first.
+
+    They end where the wall does, or before it in the corners of its footprint: what runs on beyond
+    a wall that it meets is left out. `draw_footprints` has the parameters.
+    """
+    corners = _find_corners(lines_m, left_m, right_m)
+    ends = _ends(*_as_walls(lines_m, left_m, right_m))
+    sides: list[list[FloatArray]] = [[], []]
+    for e in range(len(corners)):
+        square = _square(ends, e, ends.place_m[e])
+        # seen from its end, the sides of a wall are the other way round at the second one
+        for side, at in zip(sides, (-1, 0) if e % 2 == 0 else (0, -1), strict=True):
+            inward_m = max((corners[e][at] - square[at]) @ ends.way[e], 0.0)
+            side.append(square[at] + inward_m * ends.way[e])
+    left, right = (np.array(side).reshape(-1, 2, 2) for side in sides)
+    return left, right
+
+
+def _as_walls(
+    lines_m: FloatArray, left_m: FloatArray, right_m: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    left_m, right_m = (np.asarray(side_m, float).reshape(-1) for side_m in (left_m, right_m))
+    return np.asarray(lines_m, float).reshape(-1, 2, 2), left_m, right_m
+
+
+def _find_corners(lines_m: FloatArray, left_m: FloatArray, right_m: FloatArray) -> Corners:
+    """Return the corners of all ends; square ones where others turn a wall inside out."""
+    lines_m, left_m, right_m = _as_walls(lines_m, left_m, right_m)
     ends = _ends(lines_m, left_m, right_m)
     corners: Corners = {e: _square(ends, e, ends.place_m[e]) for e in range(len(ends.place_m))}
     joints = _find_joints(lines_m, np.maximum(left_m, right_m))
     for end, wall in joints.stops:
         corners[end] = _butt(ends, end, 2 * wall, corners[end])
     for meeting in joints.corners:
-        corners.update(_mitre(ends, meeting))
-    return np.array([_polygon(corners, ends, wall) for wall in range(len(lines_m))], object)
+        corners.update(_mitre(ends, meeting, ends.place_m[meeting].mean(axis=0)))
+    for e, other in joints.crossings:
+        places_m, ways = ends.place_m[[e, other]], ends.way[[e, other]]
+        corners.update(
+            _mitre(ends, [e, other], _crossing(places_m[0], ways[0], places_m[1], ways[1]))
+        )
+    for first in range(0, len(corners), 2):
+        ring = _ring(corners[first], corners[first + 1])
+        if not ring.is_valid or ring.area == 0:
+            corners.update({e: _square(ends, e, ends.place_m[e]) for e in (first, first + 1)})
+    return corners
 
 
 def _ends(lines_m: FloatArray, left_m: FloatArray, right_m: FloatArray) -> _Ends:
@@ -128,9 +175,27 @@ def _find_joints(lines_m: FloatArray, half_m: FloatArray) -> _Joints:
     first = end[is_corner]
     second = 2 * wall[is_corner] + nearest[is_corner]
     at_corner = np.unique(np.concatenate([first, second]))
-    is_stop = ~is_corner & ~np.isin(end, at_corner)
+    # a wall that is near to another with both its ends lies along or across it
+    is_both = np.isin((end ^ 1) + len(ends_m) * wall, end + len(ends_m) * wall)
+    is_stop = ~is_corner & ~np.isin(end, at_corner) & ~is_both
     stops = list(zip(end[is_stop].tolist(), wall[is_stop].tolist(), strict=True))
-    return _Joints(_group_ends(first, second, at_corner, len(ends_m)), stops)
+    crossed = list(_cross_at_ends(lines_m, stops))
+    in_crossing = {end for pair in crossed for end in pair}
+    stops = [(end, wall) for end, wall in stops if end not in in_crossing]
+    return _Joints(_group_ends(first, second, at_corner, len(ends_m)), crossed, stops)
+
+
+def _cross_at_ends(lines_m: FloatArray, stops: list[tuple[int, int]]) -> Iterator[tuple[int, int]]:
+    """Yield the pairs of ends that would stop at each other's wall though the walls cross."""
+    stopping = set(stops)
+    taken: set[int] = set()
+    for end, wall in stops:
+        others = [e for e in (2 * wall, 2 * wall + 1) if (e, end // 2) in stopping]
+        is_free = not taken.intersection({end, *others})
+        line, crossed = (shapely.LineString(lines_m[row]) for row in (end // 2, wall))
+        if others and is_free and line.intersects(crossed):
+            taken |= {end, others[0]}
+            yield end, others[0]
 
 
 def _near_walls(lines_m: FloatArray, half_m: FloatArray) -> tuple[Array, Array]:
@@ -159,7 +224,8 @@ def _group_ends(first: Array, second: Array, at_corner: Array, n_ends: int) -> l
 def _butt(ends: _Ends, e: int, other: int, square: list[FloatArray]) -> list[FloatArray]:
     """Return the corners of an end that stops at the surface of another wall.
 
-    They stay as they were if it runs along that wall.
+    They stay as they were if it runs along that wall, or would have to be drawn on so far that it
+    ends in a tip.
     """
     way = ends.way[other]
     if abs(_cross(ends.way[e], way)) < _MIN_SINE:
@@ -167,16 +233,17 @@ def _butt(ends: _Ends, e: int, other: int, square: list[FloatArray]) -> list[Flo
     is_from_left = _cross(way, ends.way[e]) > 0
     side_m = ends.left_m[other] if is_from_left else -ends.right_m[other]
     surface_m = ends.place_m[other] + _left_of(way) * side_m
-    return [_crossing(corner_m, ends.way[e], surface_m, way) for corner_m in square]
+    met_m = [_crossing(corner_m, ends.way[e], surface_m, way) for corner_m in square]
+    beyond_m = np.max((np.array(square) - met_m) @ ends.way[e])
+    return met_m if beyond_m <= _MITRE_LIMIT * ends.width_m[e] + END_M else square
 
 
-def _mitre(ends: _Ends, meeting: list[int]) -> Corners:
-    """Return the corners of ends that meet.
+def _mitre(ends: _Ends, meeting: list[int], centre_m: FloatArray) -> Corners:
+    """Return the corners of ends that meet at a place.
 
     Every wall's left surface goes to where it crosses the right one of the next wall around.
     """
     is_junction = len(meeting) > 2
-    centre_m = ends.place_m[meeting].mean(axis=0)
     if is_junction:
         centre_m = np.mean([_foot(ends, e, centre_m) for e in meeting], axis=0)
     around = sorted(meeting, key=lambda e: (np.arctan2(*ends.way[e][::-1]), e))
@@ -206,16 +273,6 @@ def _cross(a: FloatArray, b: FloatArray) -> float:
 def _crossing(a_m: FloatArray, way_a: FloatArray, b_m: FloatArray, way_b: FloatArray) -> FloatArray:
     """Return where two lines cross, each through a point along a way; they are not parallel."""
     return a_m + way_a * (_cross(b_m - a_m, way_b) / _cross(way_a, way_b))
-
-
-def _polygon(corners: Corners, ends: _Ends, wall: int) -> Polygon:
-    """Return a wall's polygon; cut off square where its corners have turned it inside out."""
-    first = 2 * wall
-    second = first + 1
-    ring = _ring(corners[first], corners[second])
-    if not ring.is_valid or ring.area == 0:
-        ring = _ring(*(_square(ends, e, ends.place_m[e]) for e in (first, second)))
-    return shapely.orient_polygons(ring)
 
 
 def _ring(first: list[FloatArray], second: list[FloatArray]) -> Polygon:
