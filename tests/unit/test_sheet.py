@@ -328,12 +328,25 @@ def test_floor_of_a_room_that_was_not_seen_is_shown_but_for_what_stands_there():
     sheet = composition.compose_sheet(plan())
     (hidden,) = [mark for mark in sheet.marks if mark.kind == "hidden"]
     assert shapely.Polygon(hidden.paths[0][:, :2]).equals(shapely.box(4.1, 2, 7.1, 3))
-    assert hidden.title == "floor not seen, 3.0 m²"
-    assert any("floor that was not seen" in word.text for word in sheet.paper_words)
+    assert hidden.title == "not seen, 3.0 m²"
+    assert any("ground that was not seen" in word.text for word in sheet.paper_words)
     row = floorplan_making.furniture([shapely.box(4.1, 2, 6.1, 3), shapely.box(6.1, 2, 7.1, 2.85)])
     assert len(plan(furniture=row).hidden_floor) == 0
     (left,) = plan(furniture={name: values[:1] for name, values in row.items()}).hidden_floor
     assert left.area == pytest.approx(1)
+
+
+def test_unseen_ground_that_the_building_encloses_is_shown_as_what_is_around_it_is_not():
+    """A corridor around 4 m x 4 m, into which rays went for 1 m."""
+    corridor = shapely.box(0, 0, 8, 8) - shapely.box(2, 2, 6, 6)
+    drawn = plan(
+        walls=floorplan_making.walls([]),
+        openings=floorplan_making.openings([]),
+        rooms=floorplan_making.rooms([corridor]),
+        free=floorplan_making.free([corridor, shapely.box(2, 2, 3, 6)]),
+    )
+    (hidden,) = [mark for mark in composition.compose_sheet(drawn).marks if mark.kind == "hidden"]
+    assert shapely.Polygon(hidden.paths[0][:, :2]).equals(shapely.box(3, 2, 6, 6))
 
 
 def test_furniture_is_a_thin_outline_on_a_layer_of_its_own_with_its_evidence():

@@ -325,6 +325,18 @@ class FloorPlan:
         What is narrow, as shadows of legs and feet of walls are, is left out; nothing where no
         floor is known to be seen.
         """
+        return self._leave_unseen(self.areas)
+
+    @cached_property
+    def enclosed_ground(self) -> Array:
+        """Ground that rooms and walls enclose on all sides, of no room, likewise unseen, (k,)."""
+        built = shapely.union_all([*self.areas, *self.bodies], grid_size=_GRID_M)
+        parts = shapely.get_parts(close_gaps(built))
+        holes = [shapely.Polygon(ring) for part in parts for ring in part.interiors]
+        return self._leave_unseen(np.array(holes, object))
+
+    def _leave_unseen(self, grounds: Array) -> Array:
+        """Return what no chosen scan saw of grounds, nor furniture on it, (k,) Polygons."""
         seen, pieces = (
             shapely.from_wkb(np.asarray(columns["geometry"], object))
             for columns in (self.free, self.furniture)
@@ -332,8 +344,8 @@ class FloorPlan:
         if len(seen) == 0:
             return np.empty(0, object)
         known = shapely.union_all([*seen, *pieces], grid_size=_GRID_M)
-        hidden = shapely.difference(self.areas, known, grid_size=_GRID_M)
-        parts = [part for of_room in hidden for part in free_space.open_polygons(of_room, END_M)]
+        hidden = shapely.difference(grounds, known, grid_size=_GRID_M)
+        parts = [part for ground in hidden for part in free_space.open_polygons(ground, END_M)]
         return np.array(parts, object)
 
     @cached_property
@@ -469,6 +481,12 @@ def buffer_lines(lines: FloatArray, half_m: FloatArray) -> Array:
     if len(lines) == 0:
         return np.array([], object)
     return shapely.buffer(line_shapes(lines), half_m, cap_style="flat")
+
+
+def close_gaps(built: BaseGeometry) -> BaseGeometry:
+    """Return what is built with gaps closed that ends of walls leave, which err on both sides."""
+    grown = shapely.buffer(built, 2 * END_M, join_style="mitre")
+    return shapely.buffer(grown, -2 * END_M, join_style="mitre")
 
 
 def _bounds(shapes: Iterable[BaseGeometry]) -> tuple[FloatArray, FloatArray]:

@@ -197,9 +197,7 @@ def _dimension(
         drawn = page.place_shape(shapely.union_all(lines)).envelope
         outline = known = drawn
     else:
-        closed = shapely.buffer(built, 2 * END_M, join_style="mitre").buffer(
-            -2 * END_M, join_style="mitre"
-        )
+        closed = floorplan.close_gaps(built)
         building = _leave_loose_walls(closed, plan)
         drawn, outline = page.place_shape(closed), page.place_shape(building)
         known = page.place_shape(_find_known(plan, building))

@@ -60,14 +60,14 @@ def is_corrected(columns: Columns) -> BoolArray:
 
 
 def draw_walls(plan: FloorPlan) -> Iterator[Mark]:
-    """Yield rooms, what was not seen of them, walls by what is known, and surfaces."""
+    """Yield rooms, what was not seen in and between them, walls by what is known, and surfaces."""
     doubtful = doubts.find_doubtful_rooms(plan)
     for row, area in enumerate(plan.areas):
         room, name = plan.rooms["room"][row], clean_text(plan.room_names[row])
         facts = {"name": name, **facts_of("room", plan.rooms, row)}
         yield _area("room", area, f"room-{room}", name, facts, verify=bool(doubtful[row]))
-    for number, part in enumerate(plan.hidden_floor):
-        yield _area("hidden", part, f"hidden-{number}", f"floor not seen, {part.area:.1f} m²")
+    for number, part in enumerate([*plan.hidden_floor, *plan.enclosed_ground]):
+        yield _area("hidden", part, f"hidden-{number}", f"not seen, {part.area:.1f} m²")
     unseen_m = floorplan.centrelines_m(plan.unseen)
     for number, line_m in zip(plan.unseen["opening"], unseen_m, strict=True):
         path = [straight(line_m)]
