@@ -1,7 +1,5 @@
 """A plan in a few lines of text: what there is, what is doubtful, what it was made of."""
 
-from collections import Counter
-from collections.abc import Sequence
 from itertools import groupby
 from operator import attrgetter
 
@@ -40,7 +38,7 @@ def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
     )
     doubts = [
         *wording.list_contradictions(plan, survey.prediction),
-        *_name_doubts(plan),
+        *_count_doubts(plan),
         *list_unrated(plan),
     ]
     n_kept, n_candidates = (int(f(survey.registration["kept"])) for f in (np.sum, np.size))
@@ -60,15 +58,14 @@ def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
     return "".join(f"{what:<9}{text}\n" for what, text in lines)
 
 
-def _name_doubts(plan: floorplan.FloorPlan) -> list[str]:
-    """Return which elements to verify on site, those of each kind with what most of them have."""
+def _count_doubts(plan: floorplan.FloorPlan) -> list[str]:
+    """Return in a phrase which elements to verify on site, the few of a kind by their numbers."""
     named: list[str] = []
     for kind, group in groupby(list_doubts(plan), attrgetter("kind")):
-        of_kind = list(group)
-        ((most, _),) = Counter(doubt.reason for doubt in of_kind).most_common(1)
-        numbers = [doubt.number for doubt in of_kind]
-        named.append(_name_some(kind, numbers, f"verify on site, {most}"))
-    return named
+        numbers = [doubt.number for doubt in group]
+        few = f" ({', '.join(map(str, numbers))})" if len(numbers) <= MOST_NAMED else ""
+        named.append(_count(len(numbers), kind) + few)
+    return [f"{', '.join(named)} to verify on site (report.html says why)"] if named else []
 
 
 def _count(n: int, noun: str) -> str:
@@ -77,11 +74,3 @@ def _count(n: int, noun: str) -> str:
 
 def _area(area_m2: FloatArray) -> str:
     return f"{area_m2.sum():,.1f} m²"
-
-
-def _name_some(noun: str, numbers: Sequence[int], fault: str) -> str:
-    """Return which elements have a fault."""
-    named = ", ".join(map(str, numbers[:MOST_NAMED]))
-    n_more = len(numbers) - MOST_NAMED
-    more = f" and {n_more} more" if n_more > 0 else ""
-    return f"{_count(len(numbers), noun)} ({named}{more}) {fault}"
