@@ -1,5 +1,6 @@
 """A drive round a block of rooms: candidates to one map, and what links them."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -11,6 +12,7 @@ from scanplan.geometry import se3
 from scanplan.lab.evaluation import pose_errors
 from scanplan.project.stage_settings import select_section
 from scanplan.registration import batches, mapping, results, sequential
+from scanplan.registration.icp import IcpResult
 from scanplan.registration.registration_settings import registration_settings
 from scanplan.stage import workers
 from scanplan.store import scan_cache, schemas, tables
@@ -133,6 +135,17 @@ def test_links_make_a_table(drive, mapped, tmp_path):
     truth = se3.invert_pose(true[edges["target"] // 5]) @ true[edges["source"] // 5]
     assert np.median(np.linalg.norm((motion - truth)[:, :3, 3], axis=1)) < 0.01
     assert "sequence (0 outliers)" in results.summarise_constraints(result)
+
+
+def test_a_link_of_no_pairs_has_no_residual(mapped):
+    links = mapped[1]
+    fit = IcpResult(np.eye(4), np.zeros((6, 6)), n_unobservable=6, sound=False)
+    without = replace(links, edges=[replace(links.edges[0], fit=fit), *links.edges[1:]])
+    residual_m = results.constraint_columns(without)["residual_m"]
+    assert residual_m[0] == 0
+    np.testing.assert_array_equal(
+        residual_m[1:], results.constraint_columns(links)["residual_m"][1:]
+    )
 
 
 def test_no_links_make_an_empty_table(tmp_path):

@@ -142,6 +142,7 @@ def _observable_residual(optimised: OptimisedMap) -> FloatArray:
     """Return the residuals (m, 6) in the directions that each constraint determines."""
     information = np.array([edge.fit.information for edge in optimised.edges]).reshape(-1, 6, 6)
     trace = np.trace(information, axis1=1, axis2=2)
+    trace = np.where(trace > 0, trace, 1.0)  # an alignment without pairs determines nothing
     # only directions without information feel it
     regularised = information + ROUNDING * trace[:, None, None] * np.eye(6)
     weighted = information @ optimised.residual[:, :, None]
