@@ -1,5 +1,7 @@
 """Algorithm 3 by the previous frames, on a hall whose scans and faults are known."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -126,6 +128,26 @@ def test_the_distance_named_keeps_some(project_root, nothing_survives):
     distance_m = gate_shares.find_passing_distance_m(survey, np.arange(N_SCANS), raw.part, limits)
     wider = preset(project_root, fitness_distance_m=distance_m)
     assert any(result.kept for result in register(scans, priors, wider)[1:])
+
+
+@pytest.mark.parametrize(
+    ("keep_every", "remedy"),
+    [
+        (5, "set poses.keep_every to 1 in config/thesis.yaml, or leave that file out"),
+        (1, "leave config/thesis.yaml out"),
+    ],
+)
+def test_a_distance_at_which_rooms_lie_on_others_is_no_advice(
+    project_root, nothing_survives, keep_every, remedy
+):
+    _, survey, raw, results, _, _ = nothing_survives
+    near = preset(project_root, fitness_distance_m=0.005, previous_apart_m=0.01)
+    kept = replace(survey, scan_ids=keep_every * survey.scan_ids)
+    with pytest.raises(StageError) as caught:
+        gate_shares.check_any_survives(results, kept, raw.part, near, "drive.bag")
+    text = str(caught.value)
+    assert "set registration.fitness_distance_m" not in text
+    assert text.endswith(f"at which rooms lie on other rooms); {remedy}")
 
 
 def test_where_some_survive_nothing_is_said(project_root, nothing_survives):

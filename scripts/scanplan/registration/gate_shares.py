@@ -25,7 +25,7 @@ def check_any_survives(
     limits: SequentialSettings,
     where: FilePath,
 ) -> None:
-    """Raise StageError if no frame but the first passes both gates; name a distance for some.
+    """Raise StageError if no frame but the first passes both gates; say what would let some pass.
 
     Parameters
     ----------
@@ -45,15 +45,34 @@ def check_any_survives(
         return
     passes = [result.prior_fitness >= limits.min_prior_fitness for result in scan_results]
     share = np.mean(np.array(passes)[is_compared])
-    distance_m = find_passing_distance_m(
-        survey, np.flatnonzero(is_compared | is_kept), read_points, limits
-    )
+    frames = np.flatnonzero(is_compared | is_kept)
+    distance_m = find_passing_distance_m(survey, frames, read_points, limits)
     raise StageError(
         f"{where}: of {is_compared.sum()} scans {100 * share:.1f} % pass the first gate"
         f" (registration.min_prior_fitness {limits.min_prior_fitness:g} within fitness_distance_m"
         f" {limits.fitness_distance_m:g} m) and 0 % the second (min_refined_fitness"
-        f" {limits.min_refined_fitness:g}); set registration.fitness_distance_m to"
-        f" {distance_m:.2f}, with which about a tenth would pass, or leave config/thesis.yaml out"
+        f" {limits.min_refined_fitness:g}); {_advise(distance_m, survey.take(frames), limits)}"
+    )
+
+
+def _advise(distance_m: float, frames: CandidateScans, limits: SequentialSettings) -> str:
+    """Return what to set where a tenth of the frames would pass at a distance.
+
+    One beyond which scans show other rooms (`previous_apart_m`) is no remedy: any scan would fit.
+    """
+    leave_out = "leave config/thesis.yaml out"
+    take_all = "set poses.keep_every to 1 in config/thesis.yaml, or leave that file out"
+    if distance_m <= limits.previous_apart_m:
+        return (
+            f"set registration.fitness_distance_m to {distance_m:.2f}, with which about a tenth"
+            f" would pass, or {leave_out}"
+        )
+    step_m = np.median(np.linalg.norm(np.diff(frames.priors[:, :3, 3], axis=0), axis=1))
+    is_thinned = bool(np.median(np.diff(frames.scan_ids)) > 1)
+    return (
+        f"scans that lie {step_m:.1f} m apart show too little of one another for these limits"
+        f" ({distance_m:.1f} m would do, at which rooms lie on other rooms);"
+        f" {take_all if is_thinned else leave_out}"
     )
 
 
