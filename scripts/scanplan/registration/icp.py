@@ -1,5 +1,6 @@
 """Alignment of one scan to another by iterative closest point, in space or in the plane."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -16,7 +17,6 @@ POINT_TO_POINT = "point_to_point"
 """The thesis's method, as Open3D has it: all pairs count, and nothing is held."""
 _METHODS = {"gicp": "GICP", "point_to_plane": "PLANE_ICP"}
 """Names of the other methods in space, and what small_gicp calls them."""
-_LEAST_SHARE = 0.005  # of the largest eigenvalue: a direction with less is not observable
 _LEAST_TURNED = 0.01  # of the points: fewer are badly known normals at edges
 # metres and radians: of a step this small less than half is left to go
 _STEP_DONE = 1e-3
@@ -54,6 +54,7 @@ def align_clouds(
     distances_m: Sequence[float],
     max_iterations: int,
     n_points: int | None = None,
+    sure_within_m: float = math.inf,
 ) -> IcpResult:
     """Refine the motion from source to target by iterative closest point (thesis, 3.2.2 and 3.5).
 
@@ -74,6 +75,9 @@ def align_clouds(
         Of each of these.
     n_points : int, optional
         Point to point pairs about so many of the source's points, evenly chosen; all by default.
+    sure_within_m : float
+        In the plane, a motion farther than that counts only as far as it does not hang on one thing
+        that may have moved, see `planar_icp.leave_out_a_thing`.
     """
     if method == POINT_TO_POINT and not target.planar:
         step = prepared_clouds.probe_step(source, n_points)
@@ -94,6 +98,9 @@ def align_clouds(
         if aligned is None:
             return _unsound(target_from_source)
         motion, information = aligned
+    moved_m = np.linalg.norm((motion - target_from_source)[:3, 3])
+    if target.planar and moved_m > sure_within_m:
+        information = planar_icp.leave_out_a_thing(source, target, motion, distances_m[-1])
     return _keep_unobservable(target_from_source, motion, information, source.reach_m)
 
 
@@ -178,7 +185,7 @@ def _keep_unobservable(
     if not value[-1] > 0:
         return _unsound(start)
     is_free = np.diag(information) > 0
-    is_observable = value > _LEAST_SHARE * value[-1]
+    is_observable = value > planar_icp.LEAST_SHARE * value[-1]
     n_unobservable = int(is_free.sum() - is_observable.sum())
     if n_unobservable == 0:
         return IcpResult(motion, information, 0, True)

@@ -1,5 +1,7 @@
 """Point-to-line ICP in the plane (Chen and Medioni 1992 in 2-D) with a robust (Cauchy) weight."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from scanplan.geometry.tolerances import FACING, SHORTEST_M
@@ -10,7 +12,10 @@ from scanplan.types import FloatArray
 # GICP weighs a pair as if it were off by this much along the normal: 1e-3 from each side in its
 # covariances; the information of other methods, the planar one's too, is stated alike
 PAIR_SIGMA_M = 0.045
-_LEAST_SHARE = 1e-3  # of the largest eigenvalue: a direction with less is not observable
+LEAST_SHARE = 0.005
+"""Of the largest eigenvalue: a direction with less is not observable."""
+_LEAST_STEPPED = 1e-3  # likewise, of a step: where it arrives, more may be
+_THING_M = 0.4  # around its middle: somebody who walks, or pushes a trolley
 _LEAST_SCALE_PART = 10  # the robust scale is at least this part of the pairs' largest distance
 
 
@@ -44,26 +49,74 @@ def align_planar(
     """
     motion = np.array(start, float)
     information = np.zeros((3, 3))
-    reach_m = float(np.sqrt(2 * np.mean(source.xyz_m[:, :2] ** 2)))
     for _ in range(max_iterations):
-        equations = _normal_equations(source, target, motion, distance_m)
-        if equations is None:
+        pairs = _pair_points(source, target, motion, distance_m)
+        if pairs is None:
             return None
-        information, gradient = equations
-        step = _solve(information, gradient, reach_m)
+        information = pairs.information
+        step = _solve(information, pairs.gradient, source.reach_m)
         motion = motion @ _motion(step)
         if np.abs(step).max() < step_done:
             break
     return motion, _in_space(information)
 
 
-def _normal_equations(
+def leave_out_a_thing(
     source: PreparedCloud, target: PreparedCloud, motion: FloatArray, distance_m: float
-) -> tuple[FloatArray, FloatArray] | None:
-    """Return information (3, 3) and gradient (3,) of the point-to-line error; None without pairs.
+) -> FloatArray:
+    """Return the information (6, 6) of an alignment, without a thing that it hangs on alone.
 
-    They are those of a step (dx, dy, turn) in the source's frame.
+    In a corridor nothing but somebody who walks there may face along it: scans would be moved with
+    them. Where the rest determines the motion as well, all pairs count.
+
+    Parameters
+    ----------
+    source, target, motion, distance_m
+        As `align_planar` takes and returns them.
     """
+    pairs = _pair_points(source, target, motion, distance_m)
+    if pairs is None:
+        return np.zeros((6, 6))
+    scale = _turn_scale(source.reach_m)
+    _, vector = np.linalg.eigh(pairs.information * np.outer(scale, scale))
+    # of the direction that is determined least
+    share = pairs.weight * (pairs.jacobian @ (scale * vector[:, 0])) ** 2
+    middle_m = pairs.point_m[share >= share.max() / 10]
+    is_near = np.hypot(*(middle_m[:, None] - pairs.point_m).transpose(2, 0, 1)) <= _THING_M
+    is_thing = is_near[np.argmax(is_near @ share)]
+    rest = (pairs.weight * ~is_thing * pairs.jacobian.T) @ pairs.jacobian
+    value = np.linalg.eigvalsh(rest * np.outer(scale, scale))
+    return _in_space(pairs.information if value[0] > LEAST_SHARE * value[-1] else rest)
+
+
+@dataclass(frozen=True, eq=False)
+class _Pairs:
+    """Points of a source (n, 2) on lines of a target.
+
+    How their distances (n,) to these change with a step (dx, dy, turn) in the source's frame,
+    (n, 3), and their robust weights (n,).
+    """
+
+    point_m: FloatArray
+    residual_m: FloatArray
+    jacobian: FloatArray
+    weight: FloatArray
+
+    @property
+    def information(self) -> FloatArray:
+        """Of a step, (3, 3)."""
+        return (self.weight * self.jacobian.T) @ self.jacobian
+
+    @property
+    def gradient(self) -> FloatArray:
+        """Of half the squared distances by a step, (3,)."""
+        return (self.weight * self.jacobian.T) @ self.residual_m
+
+
+def _pair_points(
+    source: PreparedCloud, target: PreparedCloud, motion: FloatArray, distance_m: float
+) -> _Pairs | None:
+    """Return the pairs of points no farther apart than a distance; None of too few."""
     source_xy_m = source.xyz_m[:, :2]
     moved_m = source_xy_m @ motion[:2, :2].T + motion[:2, 3]
     apart_m, nearest = target.tree.query(moved_m, distance_upper_bound=distance_m)
@@ -85,17 +138,21 @@ def _normal_equations(
     # of a normal distribution by its median absolute deviation
     sigma_m = 1.4826 * np.median(np.abs(residual_m))
     scale_m = max(sigma_m, distance_m / _LEAST_SCALE_PART)
-    weighted = jacobian.T / (1 + (residual_m / scale_m) ** 2)
-    return weighted @ jacobian, weighted @ residual_m
+    return _Pairs(point_m, residual_m, jacobian, 1 / (1 + (residual_m / scale_m) ** 2))
 
 
 def _solve(information: FloatArray, gradient: FloatArray, reach_m: float) -> FloatArray:
     """Return the step (3,): zero in directions that the pairs hardly determine."""
-    scale = np.array([1, 1, 1 / max(reach_m, SHORTEST_M)])
+    scale = _turn_scale(reach_m)
     value, vector = np.linalg.eigh(information * np.outer(scale, scale))
-    is_observable = value > _LEAST_SHARE * value[-1]
+    is_observable = value > _LEAST_STEPPED * value[-1]
     directions = vector[:, is_observable]
     return -scale * (directions @ ((directions.T @ (scale * gradient)) / value[is_observable]))
+
+
+def _turn_scale(reach_m: float) -> FloatArray:
+    """Return what makes a turn count by the way that points make in it, (3,)."""
+    return np.array([1, 1, 1 / max(reach_m, SHORTEST_M)])
 
 
 def _motion(step: FloatArray) -> FloatArray:
