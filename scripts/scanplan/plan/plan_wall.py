@@ -107,6 +107,11 @@ class PlanWall(Span):
         return 0.0 if math.isnan(self.thickness_m) else self.thickness_m / 2
 
 
+def list_faces(walls: Sequence[PlanWall]) -> list[FaceInterval]:
+    """Return the faces of walls, those of one after those of the other."""
+    return [face for wall in walls for face in wall.members]
+
+
 def usual_thickness_m(walls: Sequence[PlanWall]) -> float:
     """Return how thick walls usually are: the lower middle of those that show both sides.
 

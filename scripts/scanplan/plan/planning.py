@@ -27,7 +27,7 @@ from scanplan.plan.furniture.leaves import Leaf
 from scanplan.plan.furniture.pieces import Piece, find_pieces, pieces_in_rooms
 from scanplan.plan.furniture.pillars import cut_off_pillars
 from scanplan.plan.openings import OpeningSettings, classify_gap
-from scanplan.plan.plan_wall import PlanWall, greatest_thickness_m, usual_thickness_m
+from scanplan.plan.plan_wall import PlanWall, greatest_thickness_m, list_faces, usual_thickness_m
 from scanplan.plan.rooms import Room, find_rooms, leave_out_unseen, rooms_beside
 from scanplan.plan.uncertainty import ReviewCriteria
 from scanplan.plan.wall_pairs import PairSettings
@@ -316,7 +316,7 @@ class _Survey:
             most_m = greatest_thickness_m(walls)
             if any(wall.thickness_m > most_m for wall in walls):
                 pairing = replace(self.settings.pairs, max_thickness_m=most_m)
-                walls = assemble([f for wall in walls for f in wall.members], pairing=pairing)
+                walls = assemble(list_faces(walls), pairing=pairing)
         unpaired_m = usual_thickness_m(walls)
         min_width_m = self.settings.openings.min_opening_m
         walls = opening_kinds.add_windows(

@@ -9,7 +9,7 @@ from scanplan.geometry.polygons import rectangle_sides_m
 from scanplan.plan import wall_ground
 from scanplan.plan.faces.face_tree import FaceTree
 from scanplan.plan.furniture.pocket import Pocket, faces_on, is_large
-from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.plan_wall import PlanWall, list_faces
 from scanplan.plan.tolerances import ALONG_SHARE, CORNER_M
 from scanplan.rays.face_raster import CELL_M
 
@@ -40,7 +40,7 @@ def find_blocks(
         Their grounds, and all surfaces on them; none where no other wall's thickness is known.
     """
     most = {"max_thickness_m": max_thickness_m, "max_depth_m": max_depth_m}
-    faces = FaceTree([face for wall in walls for face in wall.members])
+    faces = FaceTree(list_faces(walls))
     unpaired_m = measure_thickness_m(walls)
     solid = shapely.union_all(wall_ground.wall_strips(walls, unpaired_m))
     ground_before = shapely.difference(floor, solid)

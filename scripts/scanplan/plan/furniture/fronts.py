@@ -22,7 +22,7 @@ from scanplan.plan.furniture.leaves import Leaf, find_leaves, find_traces
 from scanplan.plan.furniture.pocket import Pocket
 from scanplan.plan.furniture.pockets import find_pockets
 from scanplan.plan.furniture.strays import find_strays
-from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.plan_wall import PlanWall, list_faces
 from scanplan.rays import free_space
 
 
@@ -57,7 +57,7 @@ def drop_fronts(
     most = {"max_thickness_m": max_thickness_m, "max_depth_m": max_depth_m}
     leaves = find_leaves(walls, unpaired_m=measure_thickness_m(walls), max_width_m=max_door_m)
     if leaves:
-        faces = [face for wall in walls for face in wall.members]
+        faces = list_faces(walls)
         for leaf in leaves:
             faces = [piece for face in faces for piece in leaf.cut_off(face)]
         traces = set(map(id, find_traces(leaves, faces)))
@@ -81,4 +81,4 @@ def drop_fronts(
 def _faces_but(walls: Sequence[PlanWall], dropped: Sequence[FaceInterval]) -> list[FaceInterval]:
     """Return the faces of walls without those dropped."""
     without = set(map(id, dropped))
-    return [face for wall in walls for face in wall.members if id(face) not in without]
+    return [face for face in list_faces(walls) if id(face) not in without]

@@ -15,7 +15,7 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry.intersections import LEAST_RAD
 from scanplan.plan.faces.intervals import FaceInterval
-from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.plan_wall import PlanWall, list_faces
 from scanplan.plan.tolerances import ALONG_SHARE, CORNER_M, END_M
 from scanplan.rays.tolerances import BEHIND_M
 from scanplan.types import FloatArray
@@ -87,7 +87,7 @@ def find_leaves(walls: Sequence[PlanWall], *, unpaired_m: float, max_width_m: fl
     ]
     tree = STRtree([LineString(way.ends_m) for way in ways])
     reach_m = max((way.reach_m for way in ways), default=0.0)
-    faces = [face for wall in walls for face in wall.members]
+    faces = list_faces(walls)
     leaves = []
     for wall in walls:
         for face in wall.members:

@@ -21,7 +21,7 @@ from scanplan.plan.furniture.blocks import is_block
 from scanplan.plan.furniture.plan_faces import PlanFaces
 from scanplan.plan.furniture.pocket import Pocket, faces_on, is_large
 from scanplan.plan.furniture.recesses import find_holes, find_recesses, stands_before_facade
-from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.plan_wall import PlanWall, list_faces
 from scanplan.plan.tolerances import CORNER_M, END_M
 from scanplan.rays import free_space
 from scanplan.rays.face_raster import CELL_M
@@ -63,11 +63,11 @@ def find_pockets(
     known = shapely.union_all([floor, solid]).buffer(CELL_M, join_style="mitre")
     alone = [face for wall in walls if not wall.right for face in wall.left]
     search = _Search(
-        faces=PlanFaces([face for wall in walls for face in wall.members]),
+        faces=PlanFaces(list_faces(walls)),
         parts=parts,
         grown=shapely.buffer(parts, CELL_M),
         single={id(face) for face in alone},
-        opened={id(face) for wall in walls if wall.openings for face in wall.members},
+        opened=set(map(id, list_faces([wall for wall in walls if wall.openings]))),
         continued={id(face) for wall in walls for face in _find_continued(wall)},
         dividing=set(map(id, _find_dividing(walls, strips, unpaired_m))),
         unpaired_m=unpaired_m,

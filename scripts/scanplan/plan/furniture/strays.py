@@ -10,7 +10,7 @@ from shapely.geometry import Point
 from scanplan.geometry.intersections import LEAST_RAD
 from scanplan.plan.faces.face_tree import FaceTree
 from scanplan.plan.faces.intervals import FaceInterval
-from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.plan_wall import PlanWall, list_faces
 from scanplan.plan.tolerances import CORNER_M
 from scanplan.rays.tolerances import FEW
 
@@ -42,7 +42,7 @@ def find_strays(walls: Sequence[PlanWall], *, max_length_m: float) -> list[FaceI
         for wall in _choose_few(short, max_length_m)
         if _is_oblique(wall, walls)
     }
-    tree = FaceTree([face for wall in walls for face in wall.members])
+    tree = FaceTree(list_faces(walls))
     met_by = {
         key: [id(other) for end_m in face.ends for other in tree.within(Point(end_m), CORNER_M)]
         for key, face in strays.items()
