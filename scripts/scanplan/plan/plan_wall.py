@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from scanplan.geometry.intersections import LEAST_RAD
+from scanplan.geometry import intersections
 from scanplan.geometry.lines import Line, Span
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.openings import Opening
@@ -99,7 +99,11 @@ class PlanWall(Span):
         """Return whether another wall is much the same way, in the line of this one."""
         turn = abs(float(self.line.direction @ other.line.direction))
         nearest_m = float(np.abs(self.line.offset_m(other.ends)).min())
-        return turn >= math.cos(LEAST_RAD) and nearest_m <= CORNER_M
+        return turn >= math.cos(intersections.LEAST_RAD) and nearest_m <= CORNER_M
+
+    def find_crossings(self, spans: intersections.SpanArrays) -> intersections.Crossings:
+        """Find the spans that cross it, or end as near before it as walls that meet it do."""
+        return intersections.find_crossings(self.line, spans, reach_m=self.half_m + CORNER_M)
 
     @property
     def half_m(self) -> float:

@@ -11,7 +11,7 @@ from scanplan.geometry.intervals import added_lengths_m
 from scanplan.geometry.tolerances import ROUNDING
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.plan_wall import PlanWall
-from scanplan.plan.tolerances import CORNER_M, ENOUGH_RAYS, LOW_PERCENT
+from scanplan.plan.tolerances import ENOUGH_RAYS, LOW_PERCENT
 from scanplan.types import FloatArray, IntArray
 
 _NEAR_END_M = 0.25  # points this near to an end show it: several columns of a scan at 10 m
@@ -185,7 +185,7 @@ def _end_sigma_m(
         Of all walls.
     registration_sigma_m : float
     """
-    crossings = intersections.find_crossings(wall.line, spans, reach_m=wall.half_m + CORNER_M)
+    crossings = wall.find_crossings(spans)
     is_at_end = np.abs(crossings.place_m - end_m) < ROUNDING
     if is_at_end.any():
         return float((offset_sigmas_m[crossings.which] / crossings.sine)[is_at_end].min())

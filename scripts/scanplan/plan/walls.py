@@ -69,11 +69,9 @@ def assemble_walls(
         assembly.meet_walls,
         assembly.trim_openings,
     ):
-        stacked = intersections.stack_spans(walls)
-        walls = [change(wall, _find_crossings(wall, walls, stacked)) for wall in walls]
-    stacked = intersections.stack_spans(walls)
-    crossed = [(wall, _find_crossings(wall, walls, stacked)) for wall in walls]
-    walls = [part for one in crossed for part in _cut_at_corridors(*one)]
+        walls = [change(wall, crossings) for wall, crossings in _with_crossings(walls)]
+    crossed = _with_crossings(walls)
+    walls = [part for wall, crossings in crossed for part in _cut_at_corridors(wall, crossings)]
     return sorted(walls, key=lambda w: (-w.length_m, *w.ends.ravel()))
 
 
@@ -275,9 +273,11 @@ def _split(opening: Opening, bodies_m: Sequence[tuple[float, float]]) -> list[Op
     return sorted(parts, key=lambda part: part.low_m)
 
 
-def _find_crossings(
-    wall: PlanWall, walls: Sequence[PlanWall], stacked: intersections.SpanArrays
-) -> list[Crossing]:
-    reach_m = wall.half_m + CORNER_M
-    found = intersections.find_crossings(wall.line, stacked, reach_m=reach_m)
-    return [(walls[i], place_m) for i, place_m in zip(found.which, found.place_m, strict=True)]
+def _with_crossings(walls: Sequence[PlanWall]) -> list[tuple[PlanWall, list[Crossing]]]:
+    """Return each wall with those that cross it."""
+    spans = intersections.stack_spans(walls)
+    found = [wall.find_crossings(spans) for wall in walls]
+    return [
+        (wall, [(walls[row], m) for row, m in zip(of.which, of.place_m, strict=True)])
+        for wall, of in zip(walls, found, strict=True)
+    ]

@@ -52,9 +52,8 @@ def cut_off_pillars(
 
     parts = []
     for wall in walls:
-        reach_m = wall.half_m + CORNER_M
-        crossings = intersections.find_crossings(wall.line, stacked, reach_m=reach_m)
-        met_m = [*crossings.place_m.tolist(), *_ends_on_line(wall, glass_walls)]
+        crossed_m = wall.find_crossings(stacked).place_m
+        met_m = [*crossed_m.tolist(), *_ends_on_line(wall, glass_walls)]
         beside = [
             opening
             for opening in wall.openings
