@@ -43,7 +43,7 @@ def find_recesses(
     """
     seen = floor.buffer(CELL_M)
     for front in fronts:
-        for wall in _find_walls_behind(front, faces, max_depth_m):
+        for wall, _ in _find_walls_behind(front, faces, max_depth_m):
             foot_m = wall.line.at(wall.line.along_m(front.ends))
             between = Polygon([*front.ends, *foot_m[::-1]])
             hidden = free_space.difference_on_grid(between, seen)
@@ -58,38 +58,32 @@ def stands_before_facade(front: FaceInterval, faces: PlanFaces, max_depth_m: flo
     Rooms reach up to it: between the two nothing has room but furniture, for a facade seldom steps
     back from its own line by less than a room.
     """
-    return any(
-        _is_near(front, wall, faces, max_depth_m)
-        and faces.is_outermost(wall, wall.line.along_m(front.ends))
-        for wall in _find_walls_behind(front, faces, max_depth_m)
-    )
+    return any(is_facade for _, is_facade in _find_walls_behind(front, faces, max_depth_m))
 
 
 def _find_walls_behind(
     front: FaceInterval, faces: PlanFaces, max_depth_m: float
-) -> Iterator[FaceInterval]:
-    """Yield the faces that a front may stand before.
+) -> Iterator[tuple[FaceInterval, bool]]:
+    """Yield the faces that a front may stand before, and whether the building ends at each.
 
     Their lines reach farther through the plan than the front's, and farther than they are away from
-    it. Or they go on on both sides of it, where it is not one of the piers between niches.
+    it. Or they go on on both sides of it, where it is not one of the piers between niches. The
+    building ends at a facade no farther behind, in the mean, than furniture is deep.
     """
     reach_m = faces.reach_on_line_m(front)
     is_pier = faces.is_between_others(front)
+    joined_m = faces.joined_m(front)
     # no deeper than a table and its shadow, however short the front
-    most_m = min(POCKET_M2 / faces.joined_m(front), math.sqrt(POCKET_M2))
+    most_m = min(POCKET_M2 / joined_m, math.sqrt(POCKET_M2))
+    near_m = min(POCKET_M2 / joined_m, max_depth_m + END_M)
     for wall in faces.parallel(front, most_m + CORNER_M):
         along_m, off_m = wall.line.along_m(front.ends), wall.line.offset_m(front.ends)
-        is_near = _is_near(front, wall, faces, max_depth_m)
+        is_near = bool(off_m.mean() <= near_m)
+        is_facade = is_near and faces.is_outermost(wall, along_m)
         if faces.reach_on_line_m(wall) > max(reach_m, faces.gap_on_line_m(wall, along_m)):
-            may_stand = off_m.max() <= most_m or (is_near and faces.is_outermost(wall, along_m))
+            may_stand = off_m.max() <= most_m or is_facade
         else:
             is_behind = is_near and off_m.min() > CORNER_M
             may_stand = is_behind and not is_pier and faces.goes_on_beside(wall, along_m)
         if may_stand:
-            yield wall
-
-
-def _is_near(front: FaceInterval, wall: FaceInterval, faces: PlanFaces, max_depth_m: float) -> bool:
-    """Return whether a front is no farther before a wall than furniture is deep, in the mean."""
-    most_m = min(max_depth_m + END_M, POCKET_M2 / faces.joined_m(front))
-    return bool(wall.line.offset_m(front.ends).mean() <= most_m)
+            yield wall, is_facade
