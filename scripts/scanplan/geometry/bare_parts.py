@@ -7,6 +7,7 @@ import shapely
 from shapely.geometry import LinearRing, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry.polygons import largest_first
 from scanplan.geometry.tolerances import ROUNDING, SHORTEST_M
 from scanplan.types import BoolArray, FloatArray, IntArray
 
@@ -71,7 +72,7 @@ def take_visited(ground: BaseGeometry, visited: BaseGeometry) -> list[Polygon]:
     ground, visited : shapely geometry
     """
     polygons = [part for part in shapely.get_parts(ground) if shapely.area(part)]
-    largest = sorted(polygons, key=lambda polygon: (-polygon.area, *polygon.bounds))
+    largest = sorted(polygons, key=largest_first)
     return [polygon for polygon in largest if polygon.intersects(visited)] or largest[:1]
 
 

@@ -25,6 +25,11 @@ def rectangle_sides_m(shape: BaseGeometry) -> tuple[float, float]:
     return min(one_m, other_m), max(one_m, other_m)
 
 
+def largest_first(polygon: BaseGeometry) -> tuple[float, ...]:
+    """Return what polygons are sorted by: the largest first, those of one size by their place."""
+    return (-polygon.area, *polygon.bounds)
+
+
 def move_near_origin(polygons: Polygons) -> Array:
     """Check and repair polygons, and move them near the origin: far from it, areas lose digits.
 

@@ -8,6 +8,7 @@ import numpy as np
 import shapely
 from shapely.geometry import Polygon
 
+from scanplan.geometry.polygons import largest_first
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.furniture.pieces import Piece
 from scanplan.plan.openings import GAP
@@ -219,7 +220,7 @@ def evidence_columns(
 
 def free_columns(polygons: Iterable[Polygon]) -> dict[str, Array]:
     """Return the rows of `schemas.FREE` of polygons, the largest first."""
-    parts = sorted(polygons, key=lambda polygon: (-polygon.area, *polygon.bounds))
+    parts = sorted(polygons, key=largest_first)
     rows = [{"part": i, "geometry": shapely.to_wkb(part)} for i, part in enumerate(parts)]
     return columns_of_rows(rows, schemas.FREE)
 

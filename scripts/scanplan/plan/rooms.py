@@ -10,6 +10,7 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import bare_parts
 from scanplan.geometry.narrow_places import FURNITURE_M2
+from scanplan.geometry.polygons import largest_first
 from scanplan.plan import wall_ground
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.tolerances import CORNER_M, END_M
@@ -133,7 +134,7 @@ def find_rooms(
     all_views = np.array(views, object)
     counts = workers.map_in_threads(lambda of: _count_scans(of[0], all_views), found, threads)
     rooms = [Room(*of, count) for of, count in zip(found, counts, strict=True)]
-    return sorted(rooms, key=lambda room: _largest_first(room.polygon))
+    return sorted(rooms, key=lambda room: largest_first(room.polygon))
 
 
 def leave_out_unseen(
@@ -176,7 +177,7 @@ def leave_out_unseen(
         for polygon in _without_unseen(room.polygon, seen, outline, way, max_depth_m)
         if polygon.area >= min_area_m2
     ]
-    return sorted(left, key=lambda room: _largest_first(room.polygon))
+    return sorted(left, key=lambda room: largest_first(room.polygon))
 
 
 def _draw_way(track_m: FloatArray) -> BaseGeometry:
@@ -199,14 +200,10 @@ def _first_room(rooms: Sequence[Room], places_m: FloatArray) -> int:
     return -1
 
 
-def _largest_first(polygon: Polygon) -> tuple[float, ...]:
-    return (-polygon.area, *polygon.bounds)
-
-
 def _large_parts(floor: BaseGeometry, min_area_m2: float) -> list[Polygon]:
     """Return the parts that a floor falls into at its necks, the largest first."""
     parts = free_space.open_polygons(floor, END_M)
-    return sorted((part for part in parts if part.area >= min_area_m2), key=_largest_first)
+    return sorted((part for part in parts if part.area >= min_area_m2), key=largest_first)
 
 
 def _without_shadows(part: Polygon, solid: BaseGeometry) -> Polygon:

@@ -14,6 +14,7 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import bitmap
+from scanplan.geometry.polygons import largest_first
 from scanplan.plan.tolerances import CORNER_M, ENOUGH_RAYS, FACE_M, LEAST_SCANS, LOW_PERCENT
 from scanplan.rays.face_raster import CELL_M
 from scanplan.rays.ray_set import RaySet
@@ -116,10 +117,7 @@ def find_pieces(
         least_scans = 1 if is_taken.flat[cells].any() else LEAST_SCANS
         if piece.n_points >= ENOUGH_RAYS and piece.n_scans >= least_scans:
             found.append(piece)
-    return sorted(
-        found,
-        key=lambda piece: (-piece.outline.area, *piece.outline.bounds),
-    )
+    return sorted(found, key=lambda piece: largest_first(piece.outline))
 
 
 def pieces_in_rooms(pieces: Sequence[Piece], rooms: Sequence[Polygon]) -> list[Piece]:
