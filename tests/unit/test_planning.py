@@ -1,4 +1,4 @@
-"""Walls, faces, rooms and evidence of houses known on paper."""
+"""Walls, faces and evidence of houses known on paper."""
 
 from dataclasses import replace
 
@@ -10,37 +10,17 @@ from hypothesis import strategies as st
 
 from helpers import house_making
 from helpers.observation_making import observation
+from helpers.plan_wall_making import wall
 from helpers.toy_rooms import laser
 from helpers.wall_making import moved, walls
 from scanplan.geometry.lines import Line
-from scanplan.plan import messages, planning, rooms, uncertainty, wall_faces, wall_ground
+from scanplan.plan import messages, planning, uncertainty, wall_faces, wall_ground
 from scanplan.plan.faces.intervals import FaceInterval
-from scanplan.plan.openings import CLOSED, OPEN, Opening
-from scanplan.plan.plan_wall import PlanWall
 from scanplan.rays import beam_spread, free_space, ray_set
 
 SETTINGS = planning.make_plan_settings(**house_making.PLAN)
 TRUST = SETTINGS.trust
 SENSORS = np.array(house_making.SENSORS, float)
-ROOMS = {"min_area_m2": 1, "min_walled": 0.7, "min_width_m": 0.6, "unpaired_m": 0.1}
-
-
-def wall(x0, y0, x1, y1, thickness=0.2, openings=(), closed=()):
-    """A wall without points, for what looks at its shape alone."""
-    start, end = np.array([x0, y0], float), np.array([x1, y1], float)
-    length = np.hypot(*(end - start))
-    along = (end - start) / length
-    line = Line(start, np.array([-along[1], along[0]]))
-    ways = [Opening(low, high, OPEN, 99, 0.0, np.nan, False) for low, high in openings]
-    taken = [Opening(low, high, CLOSED, 0, np.nan, np.nan, False) for low, high in closed]
-    return PlanWall(line, 0.0, length, thickness, [], [], ways, taken)
-
-
-def box(size=4.0, thickness=np.nan, **of_first):
-    """Walls around a square, seen from inside: on the left of their way."""
-    corners = [(0, 0), (size, 0), (size, size), (0, size), (0, 0)]
-    drawn = zip(corners[:-1], corners[1:], [of_first, {}, {}, {}], strict=True)
-    return [wall(*a, *b, thickness, **more) for a, b, more in drawn]
 
 
 @pytest.fixture(scope="module")
@@ -188,165 +168,6 @@ def _with_low_box(desk, height_m, sensors):
         for (i, far), (_, near) in zip(full, cut, strict=True)
     ]
     return ray_set.gather_rays(points, dict(enumerate(sensors)), planar=False)
-
-
-class TestRooms:
-    def test_a_square_is_filled_to_its_faces(self):
-        star = shapely.Point(2, 2).buffer(1.9)
-        (room,) = rooms.find_rooms(box(), [star], np.array([(2.0, 2.0)]), **ROOMS)
-        assert room.polygon.area == pytest.approx(16, abs=0.05)
-        assert (room.closed, room.entered, room.n_scans) == (True, True, 1)
-
-    def test_an_opening_parts_rooms_and_tells_which(self):
-        walls_ = [*box(4.0), wall(2, 0, 2, 4, 0.2, openings=[(1.0, 1.9)])]
-        star = shapely.box(0, 0, 4, 4)
-        found = rooms.find_rooms(walls_, [star], np.array([(1.0, 1.0)]), **ROOMS)
-        np.testing.assert_allclose([r.polygon.area for r in found], [7.6, 7.6], rtol=0.01)
-        left, right = rooms.rooms_beside(found, np.array([2.0, 1.45]), walls_[-1])
-        assert {left, right} == {0, 1}
-        assert found[left].polygon.centroid.x < found[right].polygon.centroid.x
-
-    def test_what_is_seen_through_a_window_is_no_room(self):
-        found = rooms.find_rooms(
-            *(
-                box(),
-                [shapely.box(0, 0, 4, 4), shapely.box(-3, 1, -0.2, 3)],
-                np.array([(2.0, 2.0)]),
-            ),
-            **ROOMS,
-        )
-        assert len(found) == 1
-
-    @pytest.mark.parametrize(("width", "count"), [(0.5, 1), (0.9, 2)])
-    def test_a_strip_as_narrow_as_a_wall_is_no_room_unless_entered(self, width, count):
-        walls_ = [*box(), wall(0, 4 - width, 4, 4 - width, 0.02)]
-        found = rooms.find_rooms(walls_, [shapely.box(0, 0, 4, 4)], np.array([(2.0, 2.0)]), **ROOMS)
-        assert len(found) == count
-        assert (
-            len(
-                rooms.find_rooms(
-                    walls_, [shapely.box(0, 0, 4, 4)], np.array([(2, 2), (2, 3.8)]), **ROOMS
-                )
-            )
-            == 2
-        )
-
-    def test_walls_that_never_close_still_bound_a_room_that_was_entered(self):
-        open_side = box()[:3]
-        (room,) = rooms.find_rooms(
-            *(open_side, [shapely.box(0.5, 0.1, 3.9, 3.9)], np.array([(2.0, 2.0)])),
-            **ROOMS,
-        )
-        assert not room.closed
-        assert room.walled == pytest.approx(0.75, abs=0.06)
-
-    def test_a_planar_scanner_that_looks_out_through_glass_leaves_its_room_inside(self):
-        fan = shapely.Polygon([(3.9, 0.5), (3.9, 3.5), (20, 9), (20, -5)])
-        floor = shapely.union(shapely.box(0.1, 0.1, 3.9, 3.9), fan)
-        track_m = np.array([(1.0, 1.0), (2.0, 2.0)])
-        walls_ = [w for w in box() if np.abs(w.ends[:, 0] - 4).max() > 0.1]
-        (room,) = rooms.find_rooms(walls_, [floor], track_m, **ROOMS, planar=True)
-        assert room.polygon.area == pytest.approx(14.4, abs=0.5)
-        (leaking,) = rooms.find_rooms(walls_, [floor], track_m, **ROOMS)
-        assert leaking.polygon.area > 100
-
-    def test_a_planar_room_is_drawn_without_the_shadows_of_what_is_narrow(self):
-        """Half a disc before the one wall that was found, which cannot draw it."""
-        legs = [np.array([2 + 2 * np.cos(angle), 2 * np.sin(angle)]) for angle in (0.6, 1.4, 2.2)]
-        shadows = [shapely.LineString([leg, 2.5 * leg - [3, 0]]).buffer(0.15) for leg in legs]
-        disc = shapely.Point(2, 0).buffer(3).intersection(shapely.box(-2, 0.1, 6, 4))
-        floor = disc.difference(shapely.union_all(shadows))
-        below = box()[:1]
-        track_m = np.array([(2.0, 0.5), (2.2, 0.5)])
-        (spiky,), (smooth,) = (
-            rooms.find_rooms(below, [floor], track_m, **ROOMS, planar=planar)
-            for planar in (False, True)
-        )
-        assert spiky.polygon.area < smooth.polygon.area - 0.5
-        assert smooth.polygon.length < spiky.polygon.length - 4
-
-    def test_what_furniture_may_hide_before_a_wall_stays_in_a_room(self):
-        """Unseen from x = 1 to 4 before the upper wall: 3 m and 1 m would be bare, `depth` deep."""
-
-        def leave_out(depth_m: float) -> rooms.Room:
-            seen = shapely.box(0, 0, 4, 3.9 - depth_m).union(shapely.box(0, 0, 1, 4))
-            (left,) = rooms.leave_out_unseen([room], seen, box(), **rest)
-            return left
-
-        room = rooms.Room(shapely.box(0.1, 0.1, 3.9, 3.9), 1.0, entered=True, n_scans=1)
-        rest = {
-            "track_m": np.array([(2.0, 1.0)]),
-            "min_area_m2": 1.0,
-            "max_depth_m": 1.0,
-            "unpaired_m": 0.1,
-        }
-        # 2.9 d < 2.9 + d below 1.5 m
-        assert leave_out(1.4).polygon.area == pytest.approx(room.polygon.area)
-        shallow = leave_out(1.6)
-        assert shallow.polygon.area == pytest.approx(room.polygon.area - 2.9 * 1.6, abs=0.02)
-        assert shallow.walled < room.walled
-        assert rooms.leave_out_unseen([room], shapely.box(0, 0, 0.9, 1), box(), **rest) == []
-
-    @pytest.mark.parametrize(("side_m", "is_left"), [(1.7, True), (1.8, False)])
-    def test_what_was_not_seen_in_the_middle_of_a_room_is_no_larger_than_furniture(
-        self, side_m, is_left
-    ):
-        room = rooms.Room(shapely.box(0.1, 0.1, 11.9, 11.9), 1.0, entered=True, n_scans=1)
-        hidden = shapely.box(5, 5, 5 + side_m, 5 + side_m)
-        (left,) = rooms.leave_out_unseen(
-            *([room], shapely.box(0, 0, 12, 12).difference(hidden), box(12.0)),
-            track_m=np.array([(2.0, 1.0)]),
-            min_area_m2=1.0,
-            max_depth_m=1.0,
-            unpaired_m=0.1,
-        )
-        assert left.polygon.covers(hidden) == is_left
-
-    def test_a_room_without_furniture_keeps_nothing_that_was_not_seen(self):
-        room = rooms.Room(shapely.box(0.1, 0.1, 3.9, 3.9), 1.0, entered=True, n_scans=1)
-        (left,) = rooms.leave_out_unseen(
-            *([room], shapely.box(0, 0, 4, 3), box(), np.array([(2.0, 1.0)])),
-            **{"min_area_m2": 1.0, "max_depth_m": 0.0, "unpaired_m": 0.1},
-        )
-        assert left.polygon.bounds[3] == pytest.approx(3)
-
-    def test_unseen_floor_beyond_which_no_wall_is_drawn_is_left_out(self):
-        room = rooms.Room(shapely.box(0.1, 0.1, 3.9, 3.9), 1.0, entered=True, n_scans=1)
-        seen = shapely.box(0, 0, 4, 3.5)
-        rest = {
-            "track_m": np.array([(2.0, 1.0)]),
-            "min_area_m2": 1.0,
-            "max_depth_m": 1.0,
-            "unpaired_m": 0.1,
-        }
-        below, right, _, left = box()
-        (bare,) = rooms.leave_out_unseen([room], seen, [below, right, left], **rest)
-        assert bare.polygon.bounds[3] == pytest.approx(3.5)
-        (hidden,) = rooms.leave_out_unseen([room], seen, box(), **rest)
-        assert hidden.polygon.bounds[3] == pytest.approx(3.9)
-
-    def test_no_place_that_was_driven_to_is_drawn_out_of_its_room(self):
-        """A corridor of which no wall was found hangs on a square with four walls."""
-        corridor = shapely.box(3.5, 1.5, 12, 2.5)
-        floor = shapely.union(shapely.box(0.1, 0.1, 3.9, 3.9), corridor)
-        walls_ = [wall(0, 0, 4, 0), wall(0, 4, 0, 0), wall(4, 4, 0, 4), wall(4, 0, 4, 1.4)]
-        walls_.append(wall(4, 2.6, 4, 4))
-        ways = np.array([(2.0, 2.0), (11.0, 2.0)])
-        (room,) = rooms.find_rooms(walls_, [floor], ways, **ROOMS)
-        assert room.polygon.covers(shapely.LineString(ways))
-
-    def test_a_room_that_falls_apart_is_every_part_of_it_that_was_driven_into(self):
-        room = rooms.Room(shapely.box(0.1, 0.1, 3.9, 3.9), 1.0, entered=True, n_scans=1)
-        seen = shapely.union(shapely.box(0, 0, 4, 1.9), shapely.box(0, 2.4, 4, 4))
-        rest = {"min_area_m2": 1.0, "max_depth_m": 0.2, "unpaired_m": 0.1}
-        ways = np.array([(2.0, 1.0), (2.0, 3.0)])
-        assert len(rooms.leave_out_unseen([room], seen, box(), ways, **rest)) == 2
-        assert len(rooms.leave_out_unseen([room], seen, box(), ways[:1], **rest)) == 1
-
-    def test_no_walls_leave_what_was_seen(self):
-        found = rooms.find_rooms([], [shapely.box(0, 0, 3, 3)], np.array([(1.0, 1.0)]), **ROOMS)
-        assert [r.polygon.area for r in found] == [pytest.approx(9, rel=0.01)]
-        assert rooms.find_rooms([], [], np.empty((0, 2)), **ROOMS) == []
 
 
 class TestFreeSpace:

@@ -9,9 +9,9 @@ from shapely import box
 
 from helpers.observation_making import line_through
 from scanplan.geometry.lines import Line
-from scanplan.plan import room_bounds
 from scanplan.plan.openings import OPEN, Opening
 from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.rooms import room_bounds
 
 LIMITS = {"min_area_m2": 1.0, "unpaired_m": 0.1, "max_thickness_m": 0.6, "max_depth_m": 0.8}
 SOUTH = Line(np.array([0.0, 0.0]), np.array([0.0, 1.0]))

@@ -76,6 +76,11 @@ def take_visited(ground: BaseGeometry, visited: BaseGeometry) -> list[Polygon]:
     return [polygon for polygon in largest if polygon.intersects(visited)] or largest[:1]
 
 
+def draw_way(track_m: FloatArray) -> BaseGeometry:
+    """Return the way from each visited place (n, 2) to the next."""
+    return shapely.LineString(track_m) if len(track_m) > 1 else shapely.MultiPoint(track_m)
+
+
 def walled_share(ring: LinearRing, walled: BaseGeometry) -> float:
     """Return the share of a ring that runs along walls.
 

@@ -13,7 +13,7 @@ from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.furniture.pieces import Piece
 from scanplan.plan.openings import GAP
 from scanplan.plan.plan_wall import InferredFace, PlanWall
-from scanplan.plan.rooms import Room, rooms_beside
+from scanplan.plan.rooms.room import Room, rooms_beside
 from scanplan.plan.tolerances import LOW_PERCENT
 from scanplan.plan.uncertainty import WallEvidence
 from scanplan.plan.wall_ground import BareSpan

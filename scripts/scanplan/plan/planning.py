@@ -14,7 +14,6 @@ from scanplan.plan import (
     half_height,
     opening_kinds,
     plan_tables,
-    room_bounds,
     uncertainty,
     wall_faces,
     wall_ground,
@@ -28,7 +27,10 @@ from scanplan.plan.furniture.pieces import Piece, find_pieces, pieces_in_rooms
 from scanplan.plan.furniture.pillars import cut_off_pillars
 from scanplan.plan.openings import OpeningSettings, classify_gap
 from scanplan.plan.plan_wall import PlanWall, greatest_thickness_m, list_faces, usual_thickness_m
-from scanplan.plan.rooms import Room, find_rooms, leave_out_unseen, rooms_beside
+from scanplan.plan.rooms import room_bounds
+from scanplan.plan.rooms.room import Room, rooms_beside
+from scanplan.plan.rooms.room_outlines import find_rooms
+from scanplan.plan.rooms.unseen_floor import leave_out_unseen
 from scanplan.plan.uncertainty import ReviewCriteria
 from scanplan.plan.wall_pairs import PairSettings
 from scanplan.plan.walls import assemble_walls

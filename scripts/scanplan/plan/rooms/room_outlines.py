@@ -1,7 +1,6 @@
-"""Rooms: floor that walls and openings enclose."""
+"""Outlines of rooms: floor that walls and openings enclose."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -9,10 +8,10 @@ from shapely.geometry import LineString, MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import bare_parts
-from scanplan.geometry.narrow_places import FURNITURE_M2
 from scanplan.geometry.polygons import largest_first
 from scanplan.plan import wall_ground
 from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.rooms.room import CLOSED_SHARE, Room
 from scanplan.plan.tolerances import CORNER_M, END_M
 from scanplan.rays import free_space
 from scanplan.rays.face_raster import CELL_M
@@ -22,36 +21,6 @@ from scanplan.types import Array, FloatArray
 _MARGIN_M = 0.5  # of lines drawn around a part of the floor, and beyond walls as short as a jamb
 _LEAST_CELL_SHARE = 0.25  # seen of a cell that walls enclose: what hides the rest is in the room
 _LEAST_AGREEMENT = 0.75  # of cells and floor, intersection over union: else lines are missing
-_CLOSED_SHARE = 0.9  # of an outline along walls: corners and short gaps leave a tenth
-_BESIDE_WALL_M = np.array(
-    [0.15, 0.3, 0.5]
-)  # from a wall: what stands at it may hide the nearest floor
-
-
-@dataclass(frozen=True, eq=False)
-class Room:
-    """A room of the plan.
-
-    Attributes
-    ----------
-    polygon : shapely.Polygon
-    walled : float
-        Share of its outline that runs along walls and openings.
-    entered : bool
-        Whether a sensor was in it.
-    n_scans : int
-        How many of the chosen scans saw a part of its floor.
-    """
-
-    polygon: Polygon
-    walled: float
-    entered: bool
-    n_scans: int
-
-    @property
-    def closed(self) -> bool:
-        """Whether walls and openings enclose it, all but a tenth of its outline."""
-        return self.walled >= _CLOSED_SHARE
 
 
 def find_rooms(
@@ -106,7 +75,7 @@ def find_rooms(
     whole = free_space.union_on_grid(views) if floor is None else floor
     seen = free_space.difference_on_grid(whole, solid)
     track = np.asarray(shapely.points(track_m), object)
-    way = _draw_way(track_m)
+    way = bare_parts.draw_way(track_m)
     facing = wall_ground.ground_before(walls, unpaired_m)
     found: list[tuple[Polygon, float, bool]] = []
     occupied: BaseGeometry = MultiPolygon()
@@ -135,69 +104,6 @@ def find_rooms(
     counts = workers.map_in_threads(lambda of: _count_scans(of[0], all_views), found, threads)
     rooms = [Room(*of, count) for of, count in zip(found, counts, strict=True)]
     return sorted(rooms, key=lambda room: largest_first(room.polygon))
-
-
-def leave_out_unseen(
-    rooms: Sequence[Room],
-    seen: BaseGeometry,
-    walls: Sequence[PlanWall],
-    track_m: FloatArray,
-    *,
-    min_area_m2: float,
-    max_depth_m: float,
-    unpaired_m: float,
-) -> list[Room]:
-    """Return rooms without unseen floor, but for what furniture may hide between it and a wall.
-
-    An unseen part stays if leaving it out would bare more of the outline, in metres, than the part
-    has square metres for each metre of `max_depth_m`, and bare outline of its own. What is not at a
-    wall is no larger than furniture, too.
-
-    Parameters
-    ----------
-    rooms : sequence of Room
-    seen : shapely geometry
-        Floor that was seen, and what is drawn to stand on it.
-    max_depth_m : float, >= 0
-        How deep a part may be that is hidden from wall to wall.
-    walls, track_m, min_area_m2, unpaired_m
-        As in `find_rooms`.
-
-    Returns
-    -------
-    list of Room
-        A room that falls apart becomes those parts that sensors were in, or its largest part.
-    """
-    strips = wall_ground.wall_strips(walls, unpaired_m)
-    outline = shapely.union_all(strips).buffer(END_M)
-    way = _draw_way(track_m)
-    left = [
-        replace(room, polygon=polygon, walled=bare_parts.walled_share(polygon.exterior, outline))
-        for room in rooms
-        for polygon in _without_unseen(room.polygon, seen, outline, way, max_depth_m)
-        if polygon.area >= min_area_m2
-    ]
-    return sorted(left, key=lambda room: largest_first(room.polygon))
-
-
-def _draw_way(track_m: FloatArray) -> BaseGeometry:
-    """Return the way from each place (n, 2) to the next."""
-    return shapely.LineString(track_m) if len(track_m) > 1 else shapely.MultiPoint(track_m)
-
-
-def rooms_beside(rooms: Sequence[Room], place_m: FloatArray, wall: PlanWall) -> tuple[int, int]:
-    """Return the rooms (indices, -1: none) on the left and right of a place (2,) in a wall."""
-    away = np.outer(wall.half_m + _BESIDE_WALL_M, wall.line.normal)
-    return _first_room(rooms, place_m + away), _first_room(rooms, place_m - away)
-
-
-def _first_room(rooms: Sequence[Room], places_m: FloatArray) -> int:
-    """Return the room that the first of places (n, 2) in any room is in; -1 for none."""
-    for place in np.asarray(shapely.points(places_m), object):
-        for number, room in enumerate(rooms):
-            if room.polygon.covers(place):
-                return number
-    return -1
 
 
 def _large_parts(floor: BaseGeometry, min_area_m2: float) -> list[Polygon]:
@@ -271,41 +177,15 @@ def _fill_cells(
     share = shapely.area(shapely.intersection(cells, rough)) / shapely.area(cells)
     is_floor = share > 1 - share
     for row in np.flatnonzero(~is_floor & (share > _LEAST_CELL_SHARE)):
-        is_floor[row] = bare_parts.walled_share(cells[row].exterior, outline) >= _CLOSED_SHARE
+        is_floor[row] = bare_parts.walled_share(cells[row].exterior, outline) >= CLOSED_SHARE
     ground = free_space.union_on_grid(list(cells[is_floor]))
     drawn = _largest(free_space.difference_on_grid(ground, solid))
     if drawn is None:
         return rough
     common_m2 = shapely.intersection(drawn, rough).area
     agreement = common_m2 / shapely.union(drawn, rough).area
-    is_closed = bare_parts.walled_share(drawn.exterior, outline) >= _CLOSED_SHARE
+    is_closed = bare_parts.walled_share(drawn.exterior, outline) >= CLOSED_SHARE
     return drawn if agreement >= _LEAST_AGREEMENT or is_closed else rough
-
-
-def _without_unseen(
-    polygon: Polygon,
-    seen: BaseGeometry,
-    outline: BaseGeometry,
-    way: BaseGeometry,
-    max_depth_m: float,
-) -> list[Polygon]:
-    edge = polygon.boundary.buffer(2 * free_space.GRID_M)
-    bare = polygon.boundary.difference(outline).buffer(2 * free_space.GRID_M)
-
-    def is_hidden(part: Polygon) -> bool:
-        # edges of shadows are longer than what they leave bare
-        mouth = shapely.line_merge(part.boundary.difference(edge)).simplify(END_M)
-        bared_m = mouth.length - part.boundary.intersection(bare).length
-        is_at_wall = part.intersects(outline) or part.area <= FURNITURE_M2
-        return is_at_wall and part.area <= max_depth_m * bared_m
-
-    unseen = free_space.difference_on_grid(polygon, seen).geoms
-    taken = [part for part in unseen if not is_hidden(part)]
-    if not taken:
-        return [polygon]
-    rest = free_space.difference_on_grid(polygon, free_space.union_on_grid(taken))
-    opened = free_space.open_polygons(rest, END_M)
-    return bare_parts.take_visited(shapely.GeometryCollection(opened), way)
 
 
 def _cells(part: BaseGeometry, walls: Sequence[PlanWall], unpaired_m: float) -> Array:

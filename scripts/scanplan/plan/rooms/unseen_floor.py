@@ -1,0 +1,88 @@
+"""Floor of rooms that no planar scan saw: what furniture may hide stays in a room."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import shapely
+from shapely.geometry import Polygon
+from shapely.geometry.base import BaseGeometry
+
+from scanplan.geometry import bare_parts
+from scanplan.geometry.narrow_places import FURNITURE_M2
+from scanplan.geometry.polygons import largest_first
+from scanplan.plan import wall_ground
+from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.rooms.room import Room
+from scanplan.plan.tolerances import END_M
+from scanplan.rays import free_space
+from scanplan.types import FloatArray
+
+
+def leave_out_unseen(
+    rooms: Sequence[Room],
+    seen: BaseGeometry,
+    walls: Sequence[PlanWall],
+    track_m: FloatArray,
+    *,
+    min_area_m2: float,
+    max_depth_m: float,
+    unpaired_m: float,
+) -> list[Room]:
+    """Return rooms without unseen floor, but for what furniture may hide between it and a wall.
+
+    An unseen part stays if leaving it out would bare more of the outline, in metres, than the part
+    has square metres for each metre of `max_depth_m`, and bare outline of its own. What is not at a
+    wall is no larger than furniture, too.
+
+    Parameters
+    ----------
+    rooms : sequence of Room
+    seen : shapely geometry
+        Floor that was seen, and what is drawn to stand on it.
+    max_depth_m : float, >= 0
+        How deep a part may be that is hidden from wall to wall.
+    walls, track_m, min_area_m2, unpaired_m
+        As in `room_outlines.find_rooms`.
+
+    Returns
+    -------
+    list of Room
+        A room that falls apart becomes those parts that sensors were in, or its largest part.
+    """
+    strips = wall_ground.wall_strips(walls, unpaired_m)
+    outline = shapely.union_all(strips).buffer(END_M)
+    way = bare_parts.draw_way(track_m)
+    left = [
+        replace(room, polygon=polygon, walled=bare_parts.walled_share(polygon.exterior, outline))
+        for room in rooms
+        for polygon in _without_unseen(room.polygon, seen, outline, way, max_depth_m)
+        if polygon.area >= min_area_m2
+    ]
+    return sorted(left, key=lambda room: largest_first(room.polygon))
+
+
+def _without_unseen(
+    polygon: Polygon,
+    seen: BaseGeometry,
+    outline: BaseGeometry,
+    way: BaseGeometry,
+    max_depth_m: float,
+) -> list[Polygon]:
+    """Return what of a polygon was seen, or may be hidden, see `leave_out_unseen`."""
+    edge = polygon.boundary.buffer(2 * free_space.GRID_M)
+    bare = polygon.boundary.difference(outline).buffer(2 * free_space.GRID_M)
+
+    def is_hidden(part: Polygon) -> bool:
+        # edges of shadows are longer than what they leave bare
+        mouth = shapely.line_merge(part.boundary.difference(edge)).simplify(END_M)
+        bared_m = mouth.length - part.boundary.intersection(bare).length
+        is_at_wall = part.intersects(outline) or part.area <= FURNITURE_M2
+        return is_at_wall and part.area <= max_depth_m * bared_m
+
+    unseen = free_space.difference_on_grid(polygon, seen).geoms
+    taken = [part for part in unseen if not is_hidden(part)]
+    if not taken:
+        return [polygon]
+    rest = free_space.difference_on_grid(polygon, free_space.union_on_grid(taken))
+    opened = free_space.open_polygons(rest, END_M)
+    return bare_parts.take_visited(shapely.GeometryCollection(opened), way)

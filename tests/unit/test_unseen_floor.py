@@ -1,0 +1,80 @@
+"""Floor of rooms that was not seen: what furniture may hide, worked out on paper."""
+
+import numpy as np
+import pytest
+import shapely
+
+from helpers.plan_wall_making import box
+from scanplan.plan.rooms.room import Room
+from scanplan.plan.rooms.unseen_floor import leave_out_unseen
+
+
+def test_what_furniture_may_hide_before_a_wall_stays_in_a_room():
+    """Unseen from x = 1 to 4 before the upper wall: 3 m and 1 m would be bare, `depth` deep."""
+
+    def leave_out(depth_m: float) -> Room:
+        seen = shapely.box(0, 0, 4, 3.9 - depth_m).union(shapely.box(0, 0, 1, 4))
+        (left,) = leave_out_unseen([room], seen, box(), **rest)
+        return left
+
+    room = Room(shapely.box(0.1, 0.1, 3.9, 3.9), 1.0, entered=True, n_scans=1)
+    rest = {
+        "track_m": np.array([(2.0, 1.0)]),
+        "min_area_m2": 1.0,
+        "max_depth_m": 1.0,
+        "unpaired_m": 0.1,
+    }
+    # 2.9 d < 2.9 + d below 1.5 m
+    assert leave_out(1.4).polygon.area == pytest.approx(room.polygon.area)
+    shallow = leave_out(1.6)
+    assert shallow.polygon.area == pytest.approx(room.polygon.area - 2.9 * 1.6, abs=0.02)
+    assert shallow.walled < room.walled
+    assert leave_out_unseen([room], shapely.box(0, 0, 0.9, 1), box(), **rest) == []
+
+
+@pytest.mark.parametrize(("side_m", "is_left"), [(1.7, True), (1.8, False)])
+def test_what_was_not_seen_in_the_middle_of_a_room_is_no_larger_than_furniture(side_m, is_left):
+    room = Room(shapely.box(0.1, 0.1, 11.9, 11.9), 1.0, entered=True, n_scans=1)
+    hidden = shapely.box(5, 5, 5 + side_m, 5 + side_m)
+    (left,) = leave_out_unseen(
+        *([room], shapely.box(0, 0, 12, 12).difference(hidden), box(12.0)),
+        track_m=np.array([(2.0, 1.0)]),
+        min_area_m2=1.0,
+        max_depth_m=1.0,
+        unpaired_m=0.1,
+    )
+    assert left.polygon.covers(hidden) == is_left
+
+
+def test_a_room_without_furniture_keeps_nothing_that_was_not_seen():
+    room = Room(shapely.box(0.1, 0.1, 3.9, 3.9), 1.0, entered=True, n_scans=1)
+    (left,) = leave_out_unseen(
+        *([room], shapely.box(0, 0, 4, 3), box(), np.array([(2.0, 1.0)])),
+        **{"min_area_m2": 1.0, "max_depth_m": 0.0, "unpaired_m": 0.1},
+    )
+    assert left.polygon.bounds[3] == pytest.approx(3)
+
+
+def test_unseen_floor_beyond_which_no_wall_is_drawn_is_left_out():
+    room = Room(shapely.box(0.1, 0.1, 3.9, 3.9), 1.0, entered=True, n_scans=1)
+    seen = shapely.box(0, 0, 4, 3.5)
+    rest = {
+        "track_m": np.array([(2.0, 1.0)]),
+        "min_area_m2": 1.0,
+        "max_depth_m": 1.0,
+        "unpaired_m": 0.1,
+    }
+    below, right, _, left = box()
+    (bare,) = leave_out_unseen([room], seen, [below, right, left], **rest)
+    assert bare.polygon.bounds[3] == pytest.approx(3.5)
+    (hidden,) = leave_out_unseen([room], seen, box(), **rest)
+    assert hidden.polygon.bounds[3] == pytest.approx(3.9)
+
+
+def test_a_room_that_falls_apart_is_every_part_of_it_that_was_driven_into():
+    room = Room(shapely.box(0.1, 0.1, 3.9, 3.9), 1.0, entered=True, n_scans=1)
+    seen = shapely.union(shapely.box(0, 0, 4, 1.9), shapely.box(0, 2.4, 4, 4))
+    rest = {"min_area_m2": 1.0, "max_depth_m": 0.2, "unpaired_m": 0.1}
+    ways = np.array([(2.0, 1.0), (2.0, 3.0)])
+    assert len(leave_out_unseen([room], seen, box(), ways, **rest)) == 2
+    assert len(leave_out_unseen([room], seen, box(), ways[:1], **rest)) == 1
