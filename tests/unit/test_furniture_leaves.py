@@ -11,7 +11,7 @@ from scanplan.plan.openings import OPEN, Opening
 from scanplan.plan.plan_wall import PlanWall
 
 JAMBS_M = [[2.0, 0.0], [2.9, 0.0]]
-MOST = {"max_door_m": 1.5, "max_thickness_m": 0.6, "max_depth_m": 1.0}
+MOST = {"max_door_m": 1.5, "max_thickness_m": 0.6, "max_depth_m": 1.0, "ghost_distance_m": 0.3}
 
 
 def single(*ends, openings=()):
@@ -69,7 +69,8 @@ def test_a_leaf_hung_on_the_far_side_of_its_wall_is_as_long_as_it_is_from_the_ja
 def test_a_scan_placed_badly_shows_a_leaf_once_more(ends, n_traces):
     body = single(2.0, 0.05, 2.0, 0.9)
     other = single(*ends).left[0]
-    assert len(find_traces(leaves(body), [*south().left, *body.left, other])) == n_traces
+    faces = [*south().left, *body.left, other]
+    assert len(find_traces(leaves(body), faces, ghost_distance_m=0.3)) == n_traces
 
 
 def test_a_wall_behind_a_leaf_that_ends_at_another_is_no_trace():
@@ -78,7 +79,7 @@ def test_a_wall_behind_a_leaf_that_ends_at_another_is_no_trace():
     side, back = single(2.2, 0.05, 2.2, 0.6), single(2.2, 0.6, 0.5, 0.6)
     faces = [*south().left, *body.left, *side.left, *back.left]
     (leaf,) = [leaf for leaf in leaves(body) if leaf.face is body.left[0]]
-    assert find_traces([leaf], faces) == body.left
+    assert find_traces([leaf], faces, ghost_distance_m=0.3) == body.left
 
 
 def test_a_return_that_ends_at_another_wall_is_no_leaf():

@@ -19,7 +19,7 @@ from scanplan.plan.plan_wall import PlanWall, greatest_thickness_m, usual_thickn
 
 ROOM = [(0, 0, 5, 0), (5, 0, 5, 4), (0, 4, 0, 0)]
 """South, east and west face of a room of 5 m by 4 m, seen from within."""
-MOST = {"max_door_m": 1.5, "max_thickness_m": 0.6, "max_depth_m": 1.0}
+MOST = {"max_door_m": 1.5, "max_thickness_m": 0.6, "max_depth_m": 1.0, "ghost_distance_m": 0.3}
 
 
 def wall(faces, openings=()):

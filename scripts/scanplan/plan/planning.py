@@ -313,6 +313,7 @@ class _Survey:
                 max_door_m=self.settings.openings.max_door_m,
                 max_thickness_m=self.settings.pairs.max_thickness_m,
                 max_depth_m=self.settings.furniture.furniture_depth_m,
+                ghost_distance_m=self.settings.merge.ghost_distance_m,
             )
             # a plane shows no more of what is between two faces than its ends
             most_m = greatest_thickness_m(walls)

@@ -9,7 +9,7 @@ NEAR_FLOOR_M = 0.06
 SKIRTING_M = 0.2
 """Above the floor: lower returns may be the floor's, or a skirting board's."""
 STRETCH_M = 0.3
-"""Of a surface's length: less of it may be a trace of something else."""
+"""Of a surface's length or height: less of it may be a trace of something else, or hidden."""
 STRAY_SHARE = 0.15
 """Of rays, or of a length: less may be stray, or noise of heights and poses."""
 FEW = 3

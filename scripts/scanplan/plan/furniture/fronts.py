@@ -35,6 +35,7 @@ def drop_fronts(
     max_door_m: float,
     max_thickness_m: float,
     max_depth_m: float,
+    ghost_distance_m: float,
 ) -> tuple[list[PlanWall], list[BaseGeometry], list[Leaf]]:
     """Return walls without fronts or strays, the ground of furniture, and leaves of doors.
 
@@ -53,6 +54,8 @@ def drop_fronts(
         How wide a door is at most.
     max_thickness_m, max_depth_m : float
         Of a wall, and of furniture from its front to its back.
+    ghost_distance_m : float
+        As far off the same surface may be shown once more, of a scan placed badly.
     """
     most = {"max_thickness_m": max_thickness_m, "max_depth_m": max_depth_m}
     leaves = find_leaves(walls, unpaired_m=measure_thickness_m(walls), max_width_m=max_door_m)
@@ -60,8 +63,9 @@ def drop_fronts(
         faces = list_faces(walls)
         for leaf in leaves:
             faces = [piece for face in faces for piece in leaf.cut_off(face)]
-        traces = set(map(id, find_traces(leaves, faces)))
-        walls = assemble([face for face in faces if id(face) not in traces])
+        traces = find_traces(leaves, faces, ghost_distance_m=ghost_distance_m)
+        are_traces = set(map(id, traces))
+        walls = assemble([face for face in faces if id(face) not in are_traces])
     if strays := find_strays(walls, max_length_m=max_door_m):
         walls = assemble(_faces_but(walls, strays))
     grounds: list[BaseGeometry] = [leaf.ground for leaf in leaves]

@@ -17,7 +17,7 @@ from scanplan.geometry.intersections import LEAST_RAD
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.plan_wall import PlanWall, list_faces
 from scanplan.plan.tolerances import ALONG_SHARE, CORNER_M, END_M
-from scanplan.rays.tolerances import BEHIND_M
+from scanplan.rays.tolerances import BEHIND_M, STRETCH_M
 from scanplan.types import FloatArray
 
 
@@ -48,21 +48,21 @@ class Leaf:
         if not face.low_m <= low_m < high_m <= face.high_m:
             return [face]
         before, behind = replace(face, high_m=low_m), replace(face, low_m=high_m)
-        return [self.face, *(rest for rest in (before, behind) if rest.length_m > CORNER_M)]
+        return [self.face, *(rest for rest in (before, behind) if rest.length_m > STRETCH_M)]
 
     def hides(self, face: FaceInterval) -> bool:
         """Return whether most of a surface is of the same leaf, as it stood at another time."""
         is_parallel = abs(face.line.normal @ self.face.line.normal) >= math.cos(LEAST_RAD)
         return bool(is_parallel) and self._is_beside(face, BEHIND_M)
 
-    def is_shown_again_by(self, face: FaceInterval) -> bool:
+    def is_shown_again_by(self, face: FaceInterval, most_m: float) -> bool:
         """Return whether a surface may be the same one farther off, of a scan placed badly.
 
         It faces the same way and is no longer: nothing else but a wall behind it does.
         """
         faces_alike = face.line.normal @ self.face.line.normal >= math.cos(LEAST_RAD)
         is_as_short = face.length_m <= self.face.length_m + END_M
-        return bool(faces_alike and is_as_short) and self._is_beside(face, CORNER_M)
+        return bool(faces_alike and is_as_short) and self._is_beside(face, most_m)
 
     def _is_beside(self, face: FaceInterval, most_m: float) -> bool:
         return _beside_m(self.face, face, most_m) >= ALONG_SHARE * face.length_m
@@ -136,18 +136,20 @@ def _is_closed(wall: PlanWall, gap_m: tuple[float, float], walls: Sequence[PlanW
     return any(LineString(other.ends).distance(middle) <= BEHIND_M for other in walls)
 
 
-def find_traces(leaves: Sequence[Leaf], faces: Sequence[FaceInterval]) -> list[FaceInterval]:
+def find_traces(
+    leaves: Sequence[Leaf], faces: Sequence[FaceInterval], *, ghost_distance_m: float
+) -> list[FaceInterval]:
     """Return the surfaces among faces that are of leaves, as others are that stood elsewhere.
 
-    What lies farther off than a leaf is thick is a trace of it where it ends free: a wall behind a
-    leaf ends at another.
+    What lies farther off than a leaf is thick, up to `ghost_distance_m`, is a trace of it where it
+    ends free: a wall behind a leaf ends at another.
     """
     of_leaves = [face for face in faces if any(leaf.hides(face) for leaf in leaves)]
     known = set(map(id, of_leaves))
     others = [face for face in faces if id(face) not in known]
     traces = []
     for face in others:
-        around = [leaf for leaf in leaves if leaf.is_shown_again_by(face)]
+        around = [leaf for leaf in leaves if leaf.is_shown_again_by(face, ghost_distance_m)]
         if around and _is_free(face, _farther_end(face, around[0].way_m), others):
             traces.append(face)
     return [*of_leaves, *traces]
@@ -176,7 +178,7 @@ def _is_free(face: FaceInterval, tip_m: FloatArray, others: Sequence[FaceInterva
             continue
         along_m = face.line.along_m(other.ends)
         beyond_m = max(face.low_m - along_m.min(), along_m.max() - face.high_m)
-        if np.abs(face.line.offset_m(other.ends)).max() > most_off_m or beyond_m > CORNER_M:
+        if np.abs(face.line.offset_m(other.ends)).max() > most_off_m or beyond_m > STRETCH_M:
             return False
     return True
 
@@ -218,7 +220,7 @@ class _Way:
         (at_m,) = face.line.along_m(np.array(across.coords)).tolist()
         half_m = self.jambs[0].length / 2
         low, high = replace(face, high_m=at_m - half_m), replace(face, low_m=at_m + half_m)
-        return [low, high] if min(low.length_m, high.length_m) > CORNER_M else [face]
+        return [low, high] if min(low.length_m, high.length_m) > STRETCH_M else [face]
 
     @property
     def reach_m(self) -> float:
