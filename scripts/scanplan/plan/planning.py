@@ -17,6 +17,7 @@ from scanplan.plan import (
     uncertainty,
     wall_faces,
     wall_ground,
+    windows,
 )
 from scanplan.plan.faces.merging import MergeSettings, merge_segments
 from scanplan.plan.faces.tracing import trace_faces
@@ -322,7 +323,7 @@ class _Survey:
                 walls = assemble(list_faces(walls), pairing=pairing)
         unpaired_m = usual_thickness_m(walls)
         min_width_m = self.settings.openings.min_opening_m
-        walls = opening_kinds.add_windows(
+        walls = windows.add_windows(
             *(walls, self.rays),
             min_width_m=min_width_m,
             band_m=reading.band_m,
