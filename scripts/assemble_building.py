@@ -13,7 +13,7 @@ from scanplan.exports.building.placed_storey import PlacedStorey
 from scanplan.exports.building.sheet_set import compose_sheets
 from scanplan.exports.sheet.composition import Sheet
 from scanplan.exports.sheet.title import summarise_survey
-from scanplan.plan import floorplan
+from scanplan.plan import floorplan_files
 from scanplan.project import code_files
 from scanplan.stage import figure_files, log
 from scanplan.store import atomic, schemas, tables
@@ -93,7 +93,7 @@ def _compose_sheets(
     for number, (storey, own) in enumerate(zip(storeys, settings, strict=True)):
         paths = {table: files[table][number] for table in files if table != "ifc"}
         assumed_m = {key: own[key] for key in ("assumed_thickness_m", "assumed_height_m")}
-        plans.append(floorplan.read_floorplan(paths, storey["dataset"], **assumed_m))
+        plans.append(floorplan_files.read_floorplan(paths, storey["dataset"], **assumed_m))
         evidence = tables.read_table(paths["evidence"], schemas.EVIDENCE, allow_empty=True)
         stated = {"project": own["project"] or name, "storey": storey["name"], "version": version}
         sheet = {"number": number + 1, "of": len(storeys)}

@@ -12,7 +12,7 @@ from scanplan.exports import ifc
 from scanplan.exports.data import element_ids, element_tables, geopackage, mesh, room_graph
 from scanplan.exports.data.element_ids import ElementIds
 from scanplan.exports.model_origin import ModelOrigin, Site
-from scanplan.plan import floorplan
+from scanplan.plan import floorplan_files
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.stage import log
 from scanplan.store import atomic, registered_scans, schemas, tables, tum
@@ -54,7 +54,7 @@ def export_files(
         Files of formats that were asked for before: they are removed, being of an older plan.
     """
     assumed_m = {key: settings[key] for key in ("assumed_thickness_m", "assumed_height_m")}
-    drawn = floorplan.read_floorplan(plan, name, **assumed_m)
+    drawn = floorplan_files.read_floorplan(plan, name, **assumed_m)
     registered = registered_scans.read_registered_scans(plan["registration"])
     t_ns = int(registered.t_ns[-1])
     ids = _identify_elements(drawn, outputs["ids"], outputs["known"], source)

@@ -6,7 +6,7 @@ from pathlib import Path
 from scanplan.exports import drawing, dxf, geojson, grid_map, svg
 from scanplan.exports.sheet import composition
 from scanplan.exports.sheet.title import summarise_survey
-from scanplan.plan import floorplan
+from scanplan.plan import floorplan, floorplan_files
 from scanplan.project import code_files
 from scanplan.recordings import clocks
 from scanplan.stage import figure_files, log
@@ -41,7 +41,7 @@ def export_plan(
     """
     evidence = tables.read_table(plan["evidence"], schemas.EVIDENCE, allow_empty=True)
     assumed_m = {key: settings[key] for key in ("assumed_thickness_m", "assumed_height_m")}
-    drawn = floorplan.read_floorplan(plan, name, **assumed_m)
+    drawn = floorplan_files.read_floorplan(plan, name, **assumed_m)
     facts = summarise_survey(
         evidence,
         project=settings["project"] or "",

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from scanplan.exports import visit_geojson
-from scanplan.plan import floorplan
+from scanplan.plan import floorplan_files
 from scanplan.rays.tolerances import FEW
 from scanplan.selection import stopping
 from scanplan.stage import log
@@ -43,7 +43,7 @@ def plan_next_visit(
     **stop
         How many scans make the plan, see `stopping.choose_n_scans`.
     """
-    drawn = floorplan.read_floorplan(plan, name)
+    drawn = floorplan_files.read_floorplan(plan, name)
     registered = registered_scans.read_registered_scans(registration)
     chosen_ids, _ = stopping.read_chosen_scans(selection, **stop)
     # what one scan does not show of the sensor's field, others do; the first are of most places

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from scanplan.plan import floorplan
+from scanplan.plan import floorplan, floorplan_files
 from scanplan.selection import stopping
 from scanplan.stage import log
 from scanplan.store import registered_scans, schemas, tables
@@ -42,7 +42,7 @@ def validate_plan(
         How many scans make the plan, see `stopping.choose_n_scans`.
     """
     limits = prediction.ValidationSettings(**settings)
-    drawn = floorplan.read_floorplan(plan)
+    drawn = floorplan_files.read_floorplan(plan)
     chosen_ids, _ = stopping.read_chosen_scans(selection, **stop)
     registered = registered_scans.read_registered_scans(registration)
     rays = left_out_scans.draw_left_out_rays(

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from scanplan.plan import floorplan
+from scanplan.plan import floorplan, floorplan_files
 from scanplan.project import code_files, corrections_file
 from scanplan.report import point_image
 from scanplan.report.facts import PredictionFacts, RunFacts, Storey, SurveyFacts, VisitFacts
@@ -52,7 +52,7 @@ def write_report(
     storeys : iterable of (str, str)
         Names and datasets of the storeys of its building, from the lowest up, if it is of one.
     """
-    plan = floorplan.read_floorplan(files, name)
+    plan = floorplan_files.read_floorplan(files, name)
     survey = _read_survey(files, settings["selection"]["stop"])
     points = point_image.draw_point_image(_read_chosen_scans(files["scans"], survey), plan)
     recorded = [("recording", Path(path).name, _size(path)) for path in files["recordings"]]

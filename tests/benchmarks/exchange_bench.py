@@ -19,7 +19,7 @@ import validate_plan
 from scanplan.exports.data import element_ids
 from scanplan.exports.data.element_ids import Elements
 from scanplan.exports.sheet import composition, lettering
-from scanplan.plan import floorplan, planning
+from scanplan.plan import floorplan_files, planning
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.project import stage_settings
 from scanplan.project.settings import merge_settings
@@ -133,7 +133,7 @@ def make_plan(results: Path, settings: Settings, kept: Path, *, rate: bool = Fal
         kept.mkdir(parents=True, exist_ok=True)
         with _silence():
             _make_tables(results, settings, kept, rate=rate)
-    return floorplan.read_floorplan(files, results.name)
+    return floorplan_files.read_floorplan(files, results.name)
 
 
 def _make_tables(results: Path, settings: Settings, kept: Path, *, rate: bool) -> None:

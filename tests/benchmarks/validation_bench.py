@@ -12,7 +12,7 @@ from plans_bench import find_truth, visible_truth
 from scipy import stats
 
 from scanplan.lab.evaluation import wall_findings, wall_metrics
-from scanplan.plan import floorplan
+from scanplan.plan import floorplan, floorplan_files
 from scanplan.project import stage_settings
 from scanplan.rays import ray_set
 from scanplan.selection import stopping
@@ -54,7 +54,7 @@ def bench(results: Path, surveys: Sequence[Path], settings: Settings) -> None:
 def _read_survey(folder: Path, truth: Path, settings: Settings) -> Survey:
     limits = prediction.ValidationSettings(**stage_settings.select_validation(settings))
     parts = ("faces", "walls", "openings", "rooms", "free")
-    plan = floorplan.read_floorplan({name: folder / f"plan/{name}.parquet" for name in parts})
+    plan = floorplan_files.read_floorplan({name: folder / f"plan/{name}.parquet" for name in parts})
     method = settings["plan"]["method"]
     stop = settings["selection"]["stop"]
     chosen_ids, _ = stopping.read_chosen_scans(folder / f"selection/{method}.parquet", **stop)

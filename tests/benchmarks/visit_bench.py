@@ -24,7 +24,7 @@ import simulate_survey
 from scanplan.lab.buildings import route
 from scanplan.lab.evaluation import opening_metrics, pose_errors, true_plan, truth_file
 from scanplan.lab.simulation import rover, survey_bag, survey_setup
-from scanplan.plan import floorplan
+from scanplan.plan import floorplan, floorplan_files
 from scanplan.project import stage_settings
 from scanplan.store import registered_scans, schemas, tables
 from scanplan.types import Array, FloatArray, Settings
@@ -265,7 +265,7 @@ class _Statements:
 
 def _judge(results: Path, survey: Path, asked: Any, motion: FloatArray) -> tuple[Array, Array]:
     """Return of which questions of the first plan another says what is true, and is sure: (q,)."""
-    plan = floorplan.read_floorplan({t: results / f"plan/{t}.parquet" for t in _TABLES})
+    plan = floorplan_files.read_floorplan({t: results / f"plan/{t}.parquet" for t in _TABLES})
     true = true_plan.read_true_plan(survey / "truth.geojson")
     known = truth_file.read_true_faces(survey / "truth.geojson")
     own = _find_motion(results, survey)

@@ -10,7 +10,7 @@ import yaml
 from correct_plan import correct_plan
 from helpers import floorplan_making
 from scanplan.errors import StageError
-from scanplan.plan import floorplan, planning
+from scanplan.plan import floorplan, floorplan_files, planning
 from scanplan.store import tables
 
 MADE = {name: getattr(floorplan_making, name) for name in planning.TABLES}
@@ -33,7 +33,7 @@ def corrected(plan, *entries):
     path.write_text(yaml.safe_dump({"corrections": list(entries)}))
     outputs = {name: folder / f"corrected/{name}.parquet" for name in planning.TABLES}
     correct_plan(path, plan, outputs)
-    return floorplan.read_floorplan(outputs, "office")
+    return floorplan_files.read_floorplan(outputs, "office")
 
 
 def faces_of(plan, wall):

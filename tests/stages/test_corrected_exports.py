@@ -21,7 +21,7 @@ from export_plan import export_plan
 from helpers import floorplan_making
 from helpers.default_settings import SETTINGS
 from helpers.report_making import registration
-from scanplan.plan import floorplan, planning
+from scanplan.plan import floorplan_files, planning
 from scanplan.project import export_formats, stage_settings
 from scanplan.store import schemas, tables
 from scanplan.store.pose_columns import pose_columns
@@ -174,11 +174,11 @@ def test_who_has_looked_at_an_element_need_not_verify_it(tmp_path):
     validation["kind"] = np.array(["plan_rays"], object)
     # a level that nothing reaches
     strict = COEFFICIENTS | {"level": 2.0}
-    seen = replace(floorplan.read_floorplan(files), floor_z_m=0.0)
+    seen = replace(floorplan_files.read_floorplan(files), floor_z_m=0.0)
     rated = confidence.rate_elements(seen, validation, strict)
     files["confidence"] = tmp_path / "confidence.parquet"
     tables.write_table(files["confidence"], schemas.CONFIDENCE, rated)
-    plan = floorplan.read_floorplan(files)
+    plan = floorplan_files.read_floorplan(files)
     for table, kind in (("walls", "wall"), ("openings", "opening"), ("rooms", "room")):
         columns = getattr(plan, table)
         is_by_hand = np.isin(columns[kind], list(SAID[kind]))

@@ -8,7 +8,7 @@ import pytest
 from assemble_plan import assemble_plan
 from helpers import house_making
 from plan_next_visit import plan_next_visit
-from scanplan.plan import floorplan, planning
+from scanplan.plan import floorplan, floorplan_files, planning
 from scanplan.store import schemas, tables
 
 PARTS = ("faces", "walls", "openings", "rooms", "free")
@@ -59,7 +59,7 @@ def test_where_nothing_is_doubtful_nobody_has_to_come_again(house, tmp_path):
 
 
 def test_a_doubtful_room_is_seen_from_within(house, tmp_path):
-    areas = floorplan.read_floorplan(house[1]).areas
+    areas = floorplan_files.read_floorplan(house[1]).areas
     for room, area in enumerate(areas):
         asked, stops, _ = planned(house, tmp_path, doubtful=[room])
         assert (asked["kind"].tolist(), asked["number"].tolist()) == (["room"], [room])

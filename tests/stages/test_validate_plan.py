@@ -7,7 +7,7 @@ import pytest
 
 from assemble_plan import assemble_plan
 from helpers import house_making
-from scanplan.plan import floorplan, planning
+from scanplan.plan import floorplan, floorplan_files, planning
 from scanplan.project import code_files
 from scanplan.report import validation_figure
 from scanplan.store import schemas, tables
@@ -103,13 +103,13 @@ def test_from_one_place_the_share_is_absent(tmp_path):
 
 def test_every_element_of_a_plan_is_rated(house, tmp_path):
     _, _, _, outputs = validated(house, tmp_path)
-    plan = floorplan.read_floorplan(house[1] | {"confidence": outputs["confidence"]})
+    plan = floorplan_files.read_floorplan(house[1] | {"confidence": outputs["confidence"]})
     for table in floorplan.NUMBERS:
         columns = getattr(plan, table)
         # the toy's scans are planar, and see no heights
         assert np.isnan(columns["p_true"]).all()
         assert [bool(words) for words in columns["doubt"]] == columns["verify"].tolist()
-    assert np.isnan(floorplan.read_floorplan(house[1]).walls.get("p_true", np.nan))
+    assert np.isnan(floorplan_files.read_floorplan(house[1]).walls.get("p_true", np.nan))
 
 
 def test_no_truth_is_read():
@@ -137,7 +137,7 @@ def place(elements, kind, at_m):
 @pytest.fixture(scope="module")
 def tested(house):
     """The plan, and rays from sixteen other places."""
-    plan = floorplan.read_floorplan(house[1])
+    plan = floorplan_files.read_floorplan(house[1])
     sensors = [(x, y, 0.9) for x in (1, 3, 5, 7.2) for y in (0.6, 1.4, 2.6, 3.4)]
     return plan, house_making.looked(sensors=sensors, columns=300)
 

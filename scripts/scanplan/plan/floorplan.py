@@ -1,6 +1,5 @@
 """A floor plan as one thing: its tables, and the shapes that drawings and models make of them."""
 
-import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -14,9 +13,9 @@ from scanplan.plan import wall_footprints
 from scanplan.plan.tolerances import END_M
 from scanplan.plan.wall_ground import UNSEEN
 from scanplan.rays import free_space, levels
-from scanplan.store import schemas, tables
-from scanplan.store.doubts import NO_DOUBT, Doubts, read_doubts
-from scanplan.types import Array, BoolArray, Columns, FilePath, FloatArray, IntArray
+from scanplan.store import schemas
+from scanplan.store.doubts import NO_DOUBT, Doubts
+from scanplan.types import Array, BoolArray, Columns, FloatArray, IntArray
 
 STATES = ("observed", "inferred")
 """Of faces and walls."""
@@ -362,59 +361,6 @@ class FloorPlan:
         return 2 * shapely.distance(places, shapely.boundary(self.areas))
 
 
-def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: float) -> FloorPlan:
-    """Read a plan from its tables.
-
-    Parameters
-    ----------
-    files : dict of str to path-like
-        `faces`, `walls`, `openings`, `rooms` and `free` of plan/, where they are wanted `furniture`
-        and `confidence`; `free` states the heights of floor and ceiling, and doubts.
-    name : str
-    **assumed_m
-        What `FloorPlan` assumes, where it is not the default.
-
-    Raises
-    ------
-    StageError
-        If one is missing, damaged, or there is no face.
-    """
-
-    def read(table: str, schema: schemas.Schema) -> Columns:
-        return tables.read_table(files[table], schema, allow_empty=table != "faces")
-
-    floor_z_m, ceiling_z_m = (
-        float(tables.read_note(files["free"], schemas.FREE, note) or "nan")
-        for note in ("floor_z_m", "ceiling_z_m")
-    )
-    parts = {
-        "faces": read("faces", schemas.FACES),
-        "walls": read("walls", schemas.PLAN_WALLS),
-        "openings": read("openings", schemas.OPENINGS),
-        "rooms": read("rooms", schemas.ROOMS),
-        "free": read("free", schemas.FREE),
-    }
-    if "confidence" in files:
-        rated = tables.read_table(files["confidence"], schemas.CONFIDENCE, allow_empty=True)
-        parts = {table: _join_confidence(table, columns, rated) for table, columns in parts.items()}
-    furniture = read("furniture", schemas.FURNITURE) if "furniture" in files else _no_furniture()
-    reference = tables.read_note(files["free"], schemas.FREE, "georeference")
-    return make_floorplan(
-        parts,
-        floor_z_m,
-        ceiling_z_m,
-        name,
-        furniture=furniture,
-        georeference=GeoReference(**json.loads(reference)) if reference else None,
-        n_corrections=int(tables.read_note(files["free"], schemas.FREE, "n_corrections") or 0),
-        unmatched_corrections=json.loads(
-            tables.read_note(files["free"], schemas.FREE, "unmatched_corrections") or "[]"
-        ),
-        doubted=read_doubts(files["free"], schemas.FREE),
-        **assumed_m,
-    )
-
-
 def make_floorplan(
     parts: Mapping[str, Columns],
     floor_z_m: float,
@@ -440,22 +386,6 @@ def make_floorplan(
         ceiling_z_m=ceiling_z_m,
         **known,
     )
-
-
-def _join_confidence(table: str, columns: Columns, rated: Columns) -> Columns:
-    """Return a table with the columns of `schemas.CONFIDENCE` of its elements."""
-    if table not in NUMBERS:
-        return columns
-    rows = np.flatnonzero(rated["table"] == table)
-    row_of = dict(zip(rated["number"][rows].tolist(), rows, strict=True))
-    numbers = columns[NUMBERS[table]].tolist()
-    known = np.array([row_of.get(number, -1) for number in numbers], np.int64)
-    # what was not seen is rated by none
-    added = {"p_true": np.append(rated["p_true"], 0.0)[known]}
-    added["verify"] = np.append(rated["verify"], True)[known]
-    added["doubt"] = np.append(rated["doubt"], "not seen")[known]
-    added["needs_person"] = np.append(rated["needs_person"], False)[known]
-    return {**columns, **added}
 
 
 def summarise_floorplan(plan: FloorPlan) -> str:

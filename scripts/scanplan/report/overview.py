@@ -7,7 +7,7 @@ from typing import Any
 
 import pandas as pd
 
-from scanplan.plan import floorplan
+from scanplan.plan import floorplan, floorplan_files
 from scanplan.report.templates import render_template
 from scanplan.stage.run_times import read_job_costs
 from scanplan.store import atomic, schemas, tables
@@ -88,7 +88,7 @@ def _describe_results(folder: Path, faults: Sequence[str], plan: str) -> dict[st
 
 
 def _describe_plan(files: Mapping[str, Path]) -> dict[str, Any]:
-    plan = floorplan.read_floorplan(files)
+    plan = floorplan_files.read_floorplan(files)
     validation = tables.read_table(files["validation"], schemas.VALIDATION, allow_empty=True)
     kinds = plan.openings["type"]
     return {

@@ -36,5 +36,5 @@ def fit_reference(points: Sequence[Correction]) -> GeoReference | None:
 
 
 def format_reference(reference: GeoReference) -> str:
-    """Return a reference as the note of `schemas.FREE` that `floorplan.read_floorplan` reads."""
+    """Return a reference as the note of `schemas.FREE` that `floorplan_files` reads."""
     return json.dumps(vars(reference))
