@@ -19,6 +19,7 @@ from scanplan.plan import (
     wall_ground,
     windows,
 )
+from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.faces.merging import MergeSettings, merge_segments
 from scanplan.plan.faces.tracing import trace_faces
 from scanplan.plan.furniture import fronts
@@ -300,27 +301,7 @@ class _Survey:
             *(candidates, self.rays, self.settings.merge, reading),
             *(self.settings.furniture, self.settings.pairs),
         )
-        assemble = functools.partial(
-            assemble_walls,
-            pairing=self.settings.pairs,
-            opening=self.settings.openings,
-            corner_m=self.settings.merge.corner_m,
-            door_height_m=reading.door_height_m,
-        )
-        walls, furnished, leaves = assemble(traced.faces), [], []
-        if self.rays.planar:
-            walls, furnished, leaves = fronts.drop_fronts(
-                *(walls, self.floor, assemble, usual_thickness_m),
-                max_door_m=self.settings.openings.max_door_m,
-                max_thickness_m=self.settings.pairs.max_thickness_m,
-                max_depth_m=self.settings.furniture.furniture_depth_m,
-                ghost_distance_m=self.settings.merge.ghost_distance_m,
-            )
-            # a plane shows no more of what is between two faces than its ends
-            most_m = greatest_thickness_m(walls)
-            if any(wall.thickness_m > most_m for wall in walls):
-                pairing = replace(self.settings.pairs, max_thickness_m=most_m)
-                walls = assemble(list_faces(walls), pairing=pairing)
+        walls, furnished, leaves = self._make_walls(traced.faces)
         unpaired_m = usual_thickness_m(walls)
         min_width_m = self.settings.openings.min_opening_m
         walls = windows.add_windows(
@@ -337,26 +318,7 @@ class _Survey:
         glass_walls = room_bounds.find_glass_walls(
             walls, traced.panes, min_length_m=min_width_m, unpaired_m=unpaired_m
         )
-        # in the plane a few beams say that a wall ends free, and nothing what is above it
-        if not self.rays.planar:
-            classify = functools.partial(
-                classify_gap, settings=self.settings.openings, door_height_m=reading.door_height_m
-            )
-            parts = cut_off_pillars(
-                *(walls, glass_walls, classify),
-                min_width_m=min_width_m,
-                max_thickness_m=self.settings.pairs.max_thickness_m,
-            )
-            tops_m = [top_m for top_m, of_wall in zip(tops_m, parts, strict=True) for _ in of_wall]
-            walls = [part for of_wall in parts for part in of_wall]
-        are_columns = find_column_faces(
-            *(walls, glass_walls, self.rays),
-            furniture_height_m=self.settings.furniture.furniture_height_m,
-            max_width_m=self.settings.pairs.max_thickness_m,
-            unpaired_m=unpaired_m,
-        )
-        tops_m = [top_m for top_m, is_one in zip(tops_m, are_columns, strict=True) if not is_one]
-        walls = [wall for wall, is_one in zip(walls, are_columns, strict=True) if not is_one]
+        walls, tops_m = self._leave_out_columns(walls, tops_m, glass_walls, unpaired_m)
         return _Surfaces(
             walls=walls,
             glass_walls=glass_walls,
@@ -367,6 +329,71 @@ class _Survey:
             n_lines=traced.n_lines,
             n_dropped=traced.n_dropped,
         )
+
+    def _make_walls(
+        self, faces: Sequence[FaceInterval]
+    ) -> tuple[list[PlanWall], list[BaseGeometry], list[Leaf]]:
+        """Return walls of faces, and of planar scans the ground of furniture, and leaves of doors.
+
+        Fronts of furniture and leaves are none of the walls.
+        """
+        assemble = functools.partial(
+            assemble_walls,
+            pairing=self.settings.pairs,
+            opening=self.settings.openings,
+            corner_m=self.settings.merge.corner_m,
+            door_height_m=self.settings.reading.door_height_m,
+        )
+        walls = assemble(faces)
+        if not self.rays.planar:
+            return walls, [], []
+        walls, furnished, leaves = fronts.drop_fronts(
+            *(walls, self.floor, assemble, usual_thickness_m),
+            max_door_m=self.settings.openings.max_door_m,
+            max_thickness_m=self.settings.pairs.max_thickness_m,
+            max_depth_m=self.settings.furniture.furniture_depth_m,
+            ghost_distance_m=self.settings.merge.ghost_distance_m,
+        )
+        # a plane shows no more of what is between two faces than its ends
+        most_m = greatest_thickness_m(walls)
+        if any(wall.thickness_m > most_m for wall in walls):
+            pairing = replace(self.settings.pairs, max_thickness_m=most_m)
+            walls = assemble(list_faces(walls), pairing=pairing)
+        return walls, furnished, leaves
+
+    def _leave_out_columns(
+        self,
+        walls: list[PlanWall],
+        tops_m: list[float],
+        glass_walls: list[PlanWall],
+        unpaired_m: float,
+    ) -> tuple[list[PlanWall], list[float]]:
+        """Return walls and their tops, without pillars at their ends, and sides of columns."""
+        # in the plane a few beams say that a wall ends free, and nothing what is above it
+        if self.rays.planar:
+            return walls, tops_m
+        max_width_m = self.settings.pairs.max_thickness_m
+        classify = functools.partial(
+            classify_gap,
+            settings=self.settings.openings,
+            door_height_m=self.settings.reading.door_height_m,
+        )
+        cut = cut_off_pillars(
+            *(walls, glass_walls, classify),
+            min_width_m=self.settings.openings.min_opening_m,
+            max_thickness_m=max_width_m,
+        )
+        parts = [
+            (part, top_m) for of_wall, top_m in zip(cut, tops_m, strict=True) for part in of_wall
+        ]
+        are_columns = find_column_faces(
+            *([part for part, _ in parts], glass_walls, self.rays),
+            furniture_height_m=self.settings.furniture.furniture_height_m,
+            max_width_m=max_width_m,
+            unpaired_m=unpaired_m,
+        )
+        left = [of for of, is_column in zip(parts, are_columns, strict=True) if not is_column]
+        return [wall for wall, _ in left], [top_m for _, top_m in left]
 
     def find_spaces(self, surfaces: _Surfaces) -> _Spaces:
         """Return rooms and what stands in them."""
