@@ -69,6 +69,28 @@ def test_a_corridor_leaves_the_way_along_it_to_the_start():
     assert abs(fit.target_from_source[0, 3] - 0.4) < 0.02
 
 
+@pytest.mark.parametrize(
+    ("sure_within_m", "wide_m", "x_m"), [(0.2, 0.4, 0.25), (0.3, 0.4, 0.0), (0.2, 1.6, 0.0)]
+)
+def test_somebody_who_walks_along_a_corridor_does_not_hold_a_scan(sure_within_m, wide_m, x_m):
+    """The rover and what faces it 4 m ahead, a person or a wall, went on by 0.25 m."""
+    x = np.arange(0, 6, 0.1)
+    walls = [np.column_stack([x, 0 * x + y, 0 * x]) for y in (-1.0, 1.0)]
+    y = np.arange(-wide_m / 2, wide_m / 2, 0.05)
+    cloud = cloud_of(
+        np.concatenate([*walls, np.column_stack([0 * y + 4, y, 0 * y])]), planar=True, voxel_m=0.05
+    )
+    fit = icp.align_clouds(
+        *(cloud, cloud, motion([0.25, 0, 0], 0)),
+        method="gicp",
+        distances_m=[0.5, 0.15],
+        max_iterations=30,
+        sure_within_m=sure_within_m,
+    )
+    assert abs(fit.target_from_source[0, 3] - x_m) < 0.02
+    assert fit.n_unobservable == (1 if x_m else 0)
+
+
 def test_fitness_is_the_share_of_points_with_a_neighbour():
     target = cloud_of([[0, 0, 0], [1, 0, 0], [2, 0, 0]], planar=True, voxel_m=0.01)
     source = cloud_of(

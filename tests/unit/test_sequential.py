@@ -112,6 +112,26 @@ def test_a_scan_after_a_jump_is_searched_for_where_its_walls_are():
     assert max(shifts) < 0.05
 
 
+@pytest.mark.parametrize(("shift_m", "is_moved"), [(0.3, False), (0.1, True)])
+def test_a_scan_that_is_moved_and_fits_no_better_stays_where_it_was(monkeypatch, shift_m, is_moved):
+    """Farther than what fits may be apart, a true correction would have shown."""
+    scans, _, true = drive(2, planar=True)
+
+    def slip(scan, targets, settings):
+        moved = scan.world_from_cloud.copy()
+        moved[0, 3] += shift_m
+        return constraints.PlacedScan(scan.scan_id, scan.cloud, moved), []
+
+    monkeypatch.setattr(constraints, "refine_scan", slip)
+    monkeypatch.setattr(sequential.SequentialRegistrar, "_search", lambda self, scan: None)
+    lenient = {"min_prior_fitness": 0.05, "min_refined_fitness": 0.05}
+    verdict = register(scans, true, True, **lenient)[1]
+    assert verdict.reason == "kept"
+    off_m = np.linalg.norm((verdict.world_from_sensor - true[1])[:2, 3])
+    assert off_m == pytest.approx(shift_m if is_moved else 0, abs=1e-9)
+    assert verdict.refined_fitness == verdict.prior_fitness
+
+
 def test_a_localiser_that_is_sure_of_itself_is_believed():
     scans, priors, _ = drive(6, planar=True)
     sure = {

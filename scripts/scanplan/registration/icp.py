@@ -20,7 +20,6 @@ _METHODS = {"gicp": "GICP", "point_to_plane": "PLANE_ICP"}
 _LEAST_TURNED = 0.01  # of the points: fewer are badly known normals at edges
 # metres and radians: of a step this small less than half is left to go
 _STEP_DONE = 1e-3
-_ROUGH_STEP_DONE = 2e-3  # a rough alignment needs not arrive
 
 
 @dataclass(frozen=True)
@@ -87,7 +86,8 @@ def align_clouds(
     information = np.zeros((6, 6))
     for distance_m in distances_m:
         is_fine = distance_m == distances_m[-1]
-        step_done = _STEP_DONE if is_fine else _ROUGH_STEP_DONE
+        # a rough alignment needs not arrive
+        step_done = _STEP_DONE if is_fine else 2 * _STEP_DONE
         limits = (distance_m, max_iterations, step_done)
         if target.planar:
             aligned = planar_icp.align_planar(source, target, motion, *limits)

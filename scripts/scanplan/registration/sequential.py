@@ -233,6 +233,7 @@ class SequentialRegistrar(ScanRegistrar):
     def _keep_prior(
         self, scan: PlacedScan, result: ScanResult, level_from_sensor: FloatArray
     ) -> ScanResult:
+        """Return the result of a scan that is left where it was before it was aligned."""
         comparable = constraints.comparable_scans(scan, self._previous, self.settings)
         fitness, rmse_m = self.measure_overlap(scan, comparable)
         prior = scan.world_from_cloud @ level_from_sensor
