@@ -135,6 +135,13 @@ def test_a_gap_is_as_wide_as_a_wall_is_long_but_for_a_corner(begin_m, n_partings
     assert len(part([west, wall(4.05, 3.4, 4.05, 4)])) == n_partings
 
 
+def test_floor_that_begins_beyond_the_end_of_a_wall_leaves_that_end_free():
+    """As in the test of walls across, but for 0.2 m beside the end that nobody saw."""
+    walls = [wall(4.05, -2, 4.05, 1), wall(0, 3.4, 8, 3.4)]
+    floor = TWO_ROOMS.difference(box(3.9, 0.9, 4.2, 1.2))
+    assert len(part(walls, floor=floor)) == 1
+
+
 def test_a_hairline_shadow_does_not_end_a_gap():
     shadow = box(3.0, 2.0, 5.0, 2.03)
     walls = [wall(4.05, -2, 4.05, 1), wall(4.05, 3.4, 4.05, 4)]

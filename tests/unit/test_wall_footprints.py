@@ -86,6 +86,19 @@ def test_walls_that_cross_near_their_ends_make_a_corner_there():
         assert the_same(found, expected)
 
 
+def test_walls_in_one_line_that_overlap_stay_as_long_as_they_are():
+    one, other = bodies([(0, 0, 5, 0), (4, 0, 9, 0)], 0.1)
+    assert the_same(one, shapely.box(0, -0.05, 5, 0.05))
+    assert the_same(other, shapely.box(4, -0.05, 9, 0.05))
+
+
+def test_walls_that_hardly_turn_are_not_cut_where_their_lines_cross():
+    rise = np.tan(np.radians(1))
+    lines = np.array([[[0, 0], [10, 0]], [[3, -3 * rise], [15, 9 * rise]]])
+    sides, _ = wall_footprints.cut_sides(lines, np.full(2, 0.05), np.full(2, 0.05))
+    np.testing.assert_allclose(sides[:, :, 0], lines[:, :, 0], atol=0.01)
+
+
 def test_walls_that_cross_in_their_middles_overlap():
     lines = [(-4, 0, 4, 0), (-3, -1, 3, 1)]
     for found, line in zip(bodies(lines, 0.1), lines, strict=True):

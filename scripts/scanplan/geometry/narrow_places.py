@@ -17,7 +17,7 @@ from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry.bitmap import Grid, fill_polygons
-from scanplan.geometry.tolerances import SHORTEST_M
+from scanplan.geometry.tolerances import SHORTEST_M, SMALLEST_M2
 from scanplan.types import Array, FloatArray, IntArray
 
 _NARROWER = 0.75  # of the widest on either side: a corridor's pillars and cupboards leave more
@@ -332,7 +332,7 @@ def _part_enough(
 def _parts_beside(line: FloatArray, parts: Array) -> IntArray:
     """Return the rows of the parts along a line that was cut; not of what is beyond its ends."""
     beside = LineString(line).buffer(2 * SHORTEST_M, cap_style="flat")
-    return np.flatnonzero(shapely.area(shapely.intersection(parts, beside)) > 0)
+    return np.flatnonzero(shapely.area(shapely.intersection(parts, beside)) > SMALLEST_M2)
 
 
 def _is_visited(part: Polygon, visited: Array) -> bool:

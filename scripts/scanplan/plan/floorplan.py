@@ -332,7 +332,8 @@ class FloorPlan:
         built = shapely.union_all([*self.areas, *self.bodies], grid_size=_GRID_M)
         parts = shapely.get_parts(close_gaps(built))
         holes = [shapely.Polygon(ring) for part in parts for ring in part.interiors]
-        return self._leave_unseen(np.array(holes, object))
+        grounds = shapely.difference(np.array(holes, object), built, grid_size=_GRID_M)
+        return self._leave_unseen(grounds)
 
     def _leave_unseen(self, grounds: Array) -> Array:
         """Return what no chosen scan saw of grounds, nor furniture on it, (k,) Polygons."""

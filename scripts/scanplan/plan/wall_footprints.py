@@ -186,14 +186,20 @@ def _find_joints(lines_m: FloatArray, half_m: FloatArray) -> _Joints:
 
 
 def _cross_at_ends(lines_m: FloatArray, stops: list[tuple[int, int]]) -> Iterator[tuple[int, int]]:
-    """Yield the pairs of ends that would stop at each other's wall though the walls cross."""
+    """Yield the pairs of ends that would stop at each other's wall though the walls cross.
+
+    Walls that turn too little for a corner run on beside each other.
+    """
+    way = lines_m[:, 1] - lines_m[:, 0]
+    way /= np.hypot(*way.T)[:, None]
     stopping = set(stops)
     taken: set[int] = set()
     for end, wall in stops:
         others = [e for e in (2 * wall, 2 * wall + 1) if (e, end // 2) in stopping]
         is_free = not taken.intersection({end, *others})
         line, crossed = (shapely.LineString(lines_m[row]) for row in (end // 2, wall))
-        if others and is_free and line.intersects(crossed):
+        is_turned = abs(_cross(way[end // 2], way[wall])) >= _MIN_SINE
+        if others and is_free and is_turned and line.intersects(crossed):
             taken |= {end, others[0]}
             yield end, others[0]
 

@@ -153,15 +153,19 @@ class _Assembly:
         # what is no longer than a door is wide may be its leaf
         is_wall = [other.length_m > self.settings.max_door_m for other, _ in crossings]
         across_m = list(itertools.compress(bodies_m, is_wall))
-        openings = []
+        gaps = list(wall.closed)
         for opening in wall.openings:
             trimmed = _trim(opening, bodies_m)
             parts = _split(trimmed, across_m)
             if len(parts) > 1:
                 parts = [self._classify(wall, part.low_m, part.high_m) for part in parts]
-            openings += [part for part in parts if part.state == OPEN]
-        least_m = self.settings.min_opening_m
-        return replace(wall, openings=[g for g in openings if g.width_m >= least_m])
+            gaps += [part for part in parts if part.width_m >= self.settings.min_opening_m]
+        gaps.sort(key=lambda g: g.low_m)
+        return replace(
+            wall,
+            openings=[g for g in gaps if g.state == OPEN],
+            closed=[g for g in gaps if g.state == CLOSED],
+        )
 
     def _classify(
         self, wall: PlanWall, low_m: float, high_m: float, *, needs_lintel: bool = False

@@ -78,7 +78,9 @@ def leave_out_a_thing(
     if pairs is None:
         return np.zeros((6, 6))
     scale = _turn_scale(source.reach_m)
-    _, vector = np.linalg.eigh(pairs.information * np.outer(scale, scale))
+    value, vector = np.linalg.eigh(pairs.information * np.outer(scale, scale))
+    if value[0] <= LEAST_SHARE * value[-1]:
+        return _in_space(pairs.information)
     # of the direction that is determined least
     share = pairs.weight * (pairs.jacobian @ (scale * vector[:, 0])) ** 2
     middle_m = pairs.point_m[share >= share.max() / 10]

@@ -30,7 +30,8 @@ class ScanResult:
         `low_prior_fitness`, `icp_diverged`, `low_refined_fitness`, or `unconfirmed` (see
         `mapping.find_unconfirmed`).
     world_from_sensor : (4, 4) float64
-        After refinement where the scan is kept, the localiser's otherwise; NaN without a pose.
+        After refinement where the scan is kept, but for one whose refinement is not believed; the
+        localiser's otherwise; NaN without a pose.
     prior_fitness, refined_fitness, rmse_m : float
         Mean fitness against the previous retained scans before and after refinement, residual of
         the refinement; NaN where it did not come to that.
@@ -168,7 +169,7 @@ class SequentialRegistrar(ScanRegistrar):
         if self.is_odometry and result.kept:
             world_from_cloud = result.world_from_sensor @ se3.invert_pose(level_from_sensor)
             self._world_from_odometry = world_from_cloud @ se3.invert_pose(odometry_from_cloud)
-        self._remember(scan, result, level_from_sensor)
+        self._remember(scan, result, level_from_sensor, is_linked=bool(edges))
         return result, edges
 
     def _register(
@@ -337,14 +338,19 @@ class SequentialRegistrar(ScanRegistrar):
         return min(distances_m) > self.settings.anchor_apart_m
 
     def _remember(
-        self, scan: PlacedScan, result: ScanResult, level_from_sensor: FloatArray
+        self,
+        scan: PlacedScan,
+        result: ScanResult,
+        level_from_sensor: FloatArray,
+        *,
+        is_linked: bool,
     ) -> None:
         self._rejected_in_a_row = 0 if result.kept else self._rejected_in_a_row + 1
         if result.reason == "anchor":
             self._earlier = self._previous if self._confirmed else self._earlier
             self._previous = self._no_scans()
         if result.kept:
-            self._confirmed = result.reason == "kept"
+            self._confirmed = is_linked or (self._confirmed and result.reason == "kept")
             self._after_gap = False
             world_from_cloud = result.world_from_sensor @ se3.invert_pose(level_from_sensor)
             self._previous.append(replace(scan, world_from_cloud=world_from_cloud))

@@ -112,7 +112,7 @@ def _leads_into_glass(seen: FaceObservation, inner_m: float, end_m: float) -> bo
         return True
     low_m, high_m = sorted((inner_m, end_m))
     lost_m = np.clip(seen.lost_m, low_m, high_m)
-    return seen.planar and bool(np.ptp(lost_m, axis=1).sum() >= (high_m - low_m) / 2)
+    return seen.planar and bool(np.ptp(lost_m, axis=1).sum() > (high_m - low_m) / 2)
 
 
 def _observe_refitted(

@@ -100,8 +100,7 @@ def find_partings(
     There a wall was not seen, or its door was not; on the line of a wall nearby it stands in that.
     Where furniture hides most of the floor nothing is known of what is between.
     In planar scans, which show no lintel and less of walls behind furniture, gaps in the line of a
-    wall part floor too: those wider than a door where they are no wider than the wall is long, or
-    between two that show both sides. What only furniture at a wall narrows parts nothing.
+    wall part floor too (`_find_line_gaps`). What only furniture at a wall narrows parts nothing.
 
     Parameters
     ----------
@@ -206,8 +205,8 @@ def _find_line_gaps(
             is_short = width_m <= wall.length_m + CORNER_M
             on_line = [other for other in beyond if wall.goes_on_as(other)]
             goes_on = any(is_short or other.right for other in on_line)
-            start, around_m = shapely.Point(gap_m[0]), wall.half_m + END_M
-            is_free = len(tree.query(start, predicate="dwithin", distance=around_m)) == 1
+            end, around_m = shapely.Point(wall.line.at(end_m)), wall.half_m + END_M
+            is_free = len(tree.query(end, predicate="dwithin", distance=around_m)) == 1
             most_m = min(2 * max_door_m, _solid_m(wall, end_m))
             is_crossed = any(intersections.run_across(wall.line, other.line) for other in beyond)
             ends_at_wall = is_free and is_crossed and width_m <= most_m

@@ -37,11 +37,11 @@ def describe_fault(path: Path, error: Exception, part: str) -> str:
         return error.strerror
     if type(error).__name__ == "ReaderError" and _TELLING.search(text):
         return text.rstrip(".")
+    if isinstance(error, SerdeError):
+        return text.rstrip(".")
     for file in sorted(path.iterdir()) if path.is_dir() else [path]:
         if shape := _describe_shape(file):
             return shape if file == path else f"{file.name}: {shape}"
-    if isinstance(error, SerdeError):
-        return text.rstrip(".")
     if type(error) is ValueError:  # of a check of this project, in words of its own
         return f"{part}: {text}"
     if isinstance(error, EOFError):
@@ -56,7 +56,10 @@ def _describe_shape(path: Path) -> str | None:
     describe = _SHAPES.get(path.suffix)
     if describe is None or not path.is_file():
         return None
-    return describe(path) if path.stat().st_size else "it is empty"
+    try:
+        return describe(path) if path.stat().st_size else "it is empty"
+    except (OSError, MemoryError):
+        return None
 
 
 def _describe_rosbag1(path: Path) -> str | None:
@@ -68,7 +71,7 @@ def _describe_rosbag1(path: Path) -> str | None:
         try:
             index_place = Header.read(file, RecordType.BAGHEADER).get_uint64("index_pos")
         except (ReaderError, ValueError):
-            return _BEGINNING
+            return _BEGINNING if file.read(1) else "it is cut off"
     if index_place == 0:
         return "it was not closed when it was recorded: its index is missing"
     return _describe_cut(path, index_place + 1)
