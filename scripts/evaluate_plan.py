@@ -1,6 +1,7 @@
 """Measure the plan against the true one (thesis, section 5.1, and also openings and rooms)."""
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -12,13 +13,20 @@ from scanplan.lab.evaluation import (
     wall_findings,
     wall_metrics,
 )
+from scanplan.recordings.motion import pose_kind
 from scanplan.stage import log
 from scanplan.store import registered_scans, schemas, tables
 from scanplan.types import FilePath
 
+_FRAMES = {
+    "aligned": "moved onto the truth by one rigid motion",
+    "registered": "where it is in the map",
+}
+
 
 def evaluate_plan(
     plan: Mapping[str, FilePath],
+    poses: FilePath,
     registration: FilePath,
     truth: FilePath,
     true_poses: FilePath,
@@ -32,23 +40,24 @@ def evaluate_plan(
     Parameters
     ----------
     plan : dict of str to path-like
-        plan/<name>.parquet by the names `faces`, `walls`, `openings`, `rooms`, `furniture` and
-        `evidence`.
-    registration, truth, true_poses, output : path-like
-        registration.parquet, truth.geojson and truth_poses.tum; evaluation/plan.parquet, to write.
+        plan/<name>.parquet by the names `faces`, `walls`, `openings`, `rooms`, `furniture`, `free`
+        and `evidence`.
+    poses, registration, truth, true_poses, output : path-like
+        poses.parquet, registration.parquet, truth.geojson and truth_poses.tum;
+        evaluation/plan.parquet, to write.
     max_range_m, bitmap_cell_m : float
         How far a scan can see; edge of a bitmap's cell.
     """
     scans = registered_scans.read_registered_scans(registration)
-    poses = truth_file.read_true_poses(true_poses)
-    placed = truth_file.interpolate_true_poses(poses, scans.t_ns, true_poses)
+    track = truth_file.read_true_poses(true_poses)
+    placed = truth_file.interpolate_true_poses(track, scans.t_ns, true_poses)
     drawn = plan_metrics.read_plan_tables(plan)
     plan_scan_ids = plan_metrics.evidence_scan_ids(plan["evidence"])
     rows = registered_scans.rows_of_scans(plan_scan_ids, scans, plan["evidence"], registration)
     floor = wall_findings.observe_truth(
         truth_file.read_true_faces(truth),
         placed[rows],
-        truth_file.true_pose_matrices(poses),
+        truth_file.true_pose_matrices(track),
         sight=truth_file.read_sensor_view(truth, max_range_m=max_range_m),
     )
     true = true_plan.read_true_plan(truth)
@@ -62,17 +71,34 @@ def evaluate_plan(
             **wall_metrics.measure_plan_lines(faces_m, floor, bitmap_cell_m),
             **plan_metrics.measure_plan(drawn, moved, true, floor),
         }
-        log.log_line(f"evaluate_plan: {frame}, {plan_metrics.summarise_plan_measures(row)}")
         measures.append(row)
+    _log_measures({row["frame"]: row for row in measures}, plan["free"], poses)
     columns = plan_metrics.plan_evaluation_columns(measures)
     tables.write_table(output, schemas.PLAN_EVALUATION, columns)
 
 
+def _log_measures(measures: Mapping[str, Any], free: FilePath, poses: FilePath) -> None:
+    """Tell the measures by frame, those first that mean something for the kind of poses."""
+    has_heights = tables.read_note(free, schemas.FREE, "floor_z_m") not in ("", "nan")
+    frames = ["registered", "aligned"]
+    if pose_kind.is_drifting(tables.read_note(poses, schemas.POSES, pose_kind.NOTE)):
+        frames = ["aligned"]
+        log.log_line(
+            "evaluate_plan: the poses are odometry, so that the plan lies in the frame of the first"
+            " scan and not of the truth: only what is measured after one rigid motion says how good"
+            " it is"
+        )
+    for frame in frames:
+        words = plan_metrics.summarise_plan_measures(measures[frame], has_heights=has_heights)
+        log.log_line(f"evaluate_plan: {frame} ({_FRAMES[frame]}): {words}")
+
+
 if __name__ == "__main__":
     with log.log_to_file(snakemake.log[0]):
-        names = ("faces", "walls", "openings", "rooms", "furniture", "evidence")
+        names = ("faces", "walls", "openings", "rooms", "furniture", "free", "evidence")
         evaluate_plan(
             {name: snakemake.input[name] for name in names},
+            snakemake.input.poses,
             snakemake.input.registration,
             snakemake.input.truth,
             snakemake.input.true_poses,

@@ -7,6 +7,7 @@ from typing import Any
 
 from scanplan.plan import floorplan, floorplan_files
 from scanplan.project import code_files, corrections_file
+from scanplan.recordings.motion import pose_kind
 from scanplan.report import point_image
 from scanplan.report.facts import PredictionFacts, RunFacts, Storey, SurveyFacts, VisitFacts
 from scanplan.report.page import report_page
@@ -108,6 +109,9 @@ def _read_survey(files: Mapping[str, Any], stop: Settings) -> SurveyFacts:
         ),
         plan_measures=_read_if_known(evaluation.get("plan"), schemas.PLAN_EVALUATION),
         wall_measures=_read_if_known(evaluation.get("walls"), schemas.EVALUATION),
+        is_drifting=pose_kind.is_drifting(
+            tables.read_note(files["poses"], schemas.POSES, pose_kind.NOTE)
+        ),
     )
 
 

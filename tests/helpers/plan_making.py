@@ -65,8 +65,9 @@ def write(folder, scan_ids, *, face_segments, wall_rows=(), opening_rows=(), roo
     made["evidence"] = table(schemas.EVIDENCE, [{"scan_id": scan_id} for scan_id in scan_ids])
     made["faces"] = faces(face_segments)
     made["furniture"] = table(schemas.FURNITURE)
+    made["free"] = table(schemas.FREE)
     kinds |= {"evidence": schemas.EVIDENCE, "faces": schemas.FACES}
-    kinds["furniture"] = schemas.FURNITURE
+    kinds |= {"furniture": schemas.FURNITURE, "free": schemas.FREE}
     paths = {name: folder / f"{name}.parquet" for name in made}
     for name, path in paths.items():
         tables.write_table(path, kinds[name], made[name], allow_empty=True)

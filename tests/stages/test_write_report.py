@@ -7,6 +7,7 @@ import pytest
 from helpers import browser, floorplan_making, report_making
 from scanplan.errors import StageError
 from scanplan.project import corrections_file
+from scanplan.recordings.motion import pose_kind
 from scanplan.store import schemas, tables
 from write_report import write_report
 
@@ -70,9 +71,19 @@ def test_tables_state_what_the_stages_found(report):
         ["all", "2.6", "3.4", ""],
     ]
     is_true = "share of the drawn faces' length that is true, within 0.10 m"
-    assert ["correctness 010m", "0.970", "0.980", is_true] in found["truth"]
+    assert found["truth"][0] == ["measure", "registered", "aligned", "meaning"]
+    assert ["correctness 010m", "0.980", "0.970", is_true] in found["truth"]
     assert found["sizes"][1] == ["recording", "survey.bag", "2.500"]
     assert ["plan.merge.min_scans", "2"] in found["settings"]
+
+
+def test_of_odometry_the_figures_after_one_motion_come_first(tmp_path):
+    files = report_making.files(tmp_path)
+    notes = {pose_kind.NOTE: pose_kind.ODOMETRY}
+    tables.write_table(files["poses"], schemas.POSES, report_making.poses(), notes=notes)
+    text = written(tmp_path, files).read_text()
+    assert Tables(text).rows["truth"][0][1:3] == ["aligned", "registered"]
+    assert "registered, where it lies, says nothing" in text
 
 
 def test_it_says_what_it_was_made_of_and_how_good_that_is(report):

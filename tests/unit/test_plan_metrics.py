@@ -8,6 +8,7 @@ from helpers import floorplan_making
 from scanplan.errors import StageError
 from scanplan.geometry.lines import line_lengths_m
 from scanplan.lab.evaluation import face_cells, plan_metrics, true_plan
+from scanplan.store import schemas
 
 SQUARE = np.array([[(0, 0), (4, 0)], [(4, 0), (4, 4)], [(4, 4), (0, 4)], [(0, 4), (0, 0)]], float)
 
@@ -147,3 +148,18 @@ class TestTruth:
         )
         with pytest.raises(StageError, match=r"truth\.geojson: feature 0 is no wall"):
             true_plan.read_true_plan(path)
+
+
+def test_thicknesses_that_cannot_be_compared_are_no_figures():
+    row = dict.fromkeys(schemas.PLAN_EVALUATION.columns, 1) | {
+        "n_thickness": 0,
+        "thickness_error_m": np.nan,
+        "worst_thickness_error_m": np.nan,
+    }
+    told = plan_metrics.summarise_plan_measures(row, has_heights=True)
+    assert "1.00 walls a true wall, no thickness to compare; doors found 1 of 1" in told
+    of_known = plan_metrics.summarise_plan_measures(
+        row | {"n_thickness": 2, "thickness_error_m": 0.01, "worst_thickness_error_m": 0.02},
+        has_heights=True,
+    )
+    assert "2 thicknesses off by 0.010 m (at worst 0.020)" in of_known

@@ -70,6 +70,8 @@ class SurveyFacts:
     plan_measures, wall_measures : dict of str to (n,) array or None
         The columns of `schemas.PLAN_EVALUATION` and of `schemas.EVALUATION`, where the truth is
         known and they were measured.
+    is_drifting : bool
+        Whether the poses were odometry, so that the plan lies in its first scan's frame.
     """
 
     selection: Columns
@@ -82,6 +84,7 @@ class SurveyFacts:
     visit: VisitFacts
     plan_measures: Columns | None = None
     wall_measures: Columns | None = None
+    is_drifting: bool = False
 
 
 @dataclass(frozen=True)

@@ -105,7 +105,8 @@ def report_page(
         chart=Markup(chart.chart_svg(curves, n_scans, survey.chosen)),
         curves=[(css, curve.name) for css, curve in curves.items()],
         certificate=wording.coverage_note(survey, of_plan["method"]),
-        truth=page_tables.truth_table(survey.plan_measures) if survey.plan_measures else None,
+        truth=_truth_table(survey),
+        truth_note=wording.truth_note(survey),
         review=wording.review_note(plan),
         walls=page_tables.wall_table(plan, survey.evidence),
         faces=page_tables.face_table(plan),
@@ -120,6 +121,14 @@ def report_page(
         version=run.version,
         data=_script_data(survey, run, objective),
     )
+
+
+def _truth_table(survey: SurveyFacts) -> page_tables.PageTable | None:
+    """Return the table of the plan against the truth where that is known."""
+    if not survey.plan_measures:
+        return None
+    leads = "aligned" if survey.is_drifting else "registered"
+    return page_tables.truth_table(survey.plan_measures, leads=leads)
 
 
 def _list_opening_kinds(plan: floorplan.FloorPlan) -> list[tuple[str, str]]:

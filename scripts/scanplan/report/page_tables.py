@@ -191,18 +191,23 @@ def registration_table(verdicts: Columns, shift_m: FloatArray) -> PageTable:
     return PageTable("registration", heads, rows)
 
 
-def truth_table(measures: Columns) -> PageTable:
-    """Return the table of the plan against the truth, from `schemas.PLAN_EVALUATION`'s columns."""
+def truth_table(measures: Columns, *, leads: str) -> PageTable:
+    """Return the table of the plan against the truth, from `schemas.PLAN_EVALUATION`'s columns.
+
+    The frame that leads comes first.
+    """
+    order = np.argsort(measures["frame"] != leads, kind="stable")
     rows = []
     for name, values in measures.items():
         if name == "frame":
             continue
         numbers = [
-            number_cell(value, 0 if name.startswith("n_") else 3) for value in values.tolist()
+            number_cell(value, 0 if name.startswith("n_") else 3)
+            for value in values[order].tolist()
         ]
         meaning = Cell(measure_meanings.measure_meaning(name))
         rows.append(Row([Cell(name.replace("_", " ")), *numbers, meaning]))
-    heads = make_heads("measure", *(f"#{frame}" for frame in measures["frame"]), "meaning")
+    heads = make_heads("measure", *(f"#{frame}" for frame in measures["frame"][order]), "meaning")
     return PageTable("truth", heads, rows)
 
 

@@ -113,6 +113,20 @@ def registration_note(survey: SurveyFacts) -> str:
     )
 
 
+def truth_note(survey: SurveyFacts) -> str:
+    """Return in which frames the plan is measured, and which of the two says how good it is."""
+    if survey.is_drifting:
+        return (
+            "As the poses are odometry, the plan lies in the frame of its first scan: how good"
+            " it is says aligned, after the one rigid motion that fits the registered scans to the"
+            " true poses; registered, where it lies, says nothing."
+        )
+    return (
+        "Measured where the plan is in the map (registered), and after the one rigid motion that"
+        " fits the registered scans to the true poses (aligned)."
+    )
+
+
 def _count_candidates(survey: SurveyFacts) -> tuple[int, int]:
     """Return how many scans registration kept, and how many it was given."""
     kept = survey.registration["kept"]

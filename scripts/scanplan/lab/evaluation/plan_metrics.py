@@ -19,6 +19,7 @@ from scanplan.types import BoolArray, Columns, FilePath, FloatArray, IntArray
 _MISPLACED_M = 0.30  # farther off a face is another one: twice a thin wall's thickness
 _DOORS = ("door", "passage")
 _WINDOWS = ("window", "glass")
+_NO_HEIGHTS = ", as no heights are known, without which windows cannot be found"
 _TABLES = {
     "faces": schemas.FACES,
     "walls": schemas.PLAN_WALLS,
@@ -251,17 +252,45 @@ def plan_evaluation_columns(rows: Sequence[Mapping[str, Any]]) -> dict[str, list
     return {name: [row[name] for row in rows] for name in schemas.PLAN_EVALUATION.columns}
 
 
-def summarise_plan_measures(row: Mapping[str, Any]) -> str:
-    """Return in a line what a plan is worth."""
+def summarise_plan_measures(row: Mapping[str, Any], *, has_heights: bool) -> str:
+    """Return in a line what a plan is worth.
+
+    Parameters
+    ----------
+    row : dict
+        Columns of `schemas.PLAN_EVALUATION`.
+    has_heights : bool
+        Whether any were measured: without them windows are not told from glass or wall.
+    """
     return (
         "faces right {correctness_010m:.3f}, of the visible found"
         " {visible_completeness_010m:.3f} (of what the {n_scans} scans see"
-        " {seen_completeness_010m:.3f}); {plan_walls_per_true_wall:.2f} walls a true wall,"
-        " {n_thickness} thicknesses off by {thickness_error_m:.3f} m (at worst"
-        " {worst_thickness_error_m:.3f}); doors found"
-        " {n_doors_found} of {n_doors_true}, right {door_precision:.3f}, width right"
-        " {door_width_right:.3f}; windows found {n_windows_found} of {n_windows_true}, right"
-        " {window_precision:.3f}; rooms driven into found"
-        " {n_rooms_found} of {n_rooms_true}, {n_rooms_false} false,"
-        " IoU {room_iou:.3f}"
-    ).format_map(row)
+        " {seen_completeness_010m:.3f}); {walls}; {doors}; {windows}; rooms driven into found"
+        " {n_rooms_found} of {n_rooms_true}, {n_rooms_false} false{overlap}"
+    ).format(
+        **row,
+        overlap=f", IoU {row['room_iou']:.3f}" if row["n_rooms_true"] else "",
+        walls=_summarise_walls(row),
+        doors=_summarise_openings("door", row),
+        windows=_summarise_openings("window", row, unless="" if has_heights else _NO_HEIGHTS),
+    )
+
+
+def _summarise_walls(row: Mapping[str, Any]) -> str:
+    """Return how many walls there are for a true one, and how wrong their thicknesses are."""
+    if not np.isfinite(row["plan_walls_per_true_wall"]):
+        return "no wall is beside a true one"
+    words = "{plan_walls_per_true_wall:.2f} walls a true wall, ".format_map(row)
+    if not row["n_thickness"]:
+        return words + "no thickness to compare"
+    off = "{n_thickness} thicknesses off by {thickness_error_m:.3f} m (at worst {worst:.3f})"
+    return words + off.format(**row, worst=row["worst_thickness_error_m"])
+
+
+def _summarise_openings(kind: str, row: Mapping[str, Any], unless: str = "") -> str:
+    """Return how many openings of a kind are found and right, or why none is drawn."""
+    n_true, n_found = row[f"n_{kind}s_true"], row[f"n_{kind}s_found"]
+    if not row[f"n_{kind}s_drawn"]:
+        return f"{kind}s: none drawn of {n_true}{unless}"
+    words = f"{kind}s found {n_found} of {n_true}, right {row[f'{kind}_precision']:.3f}"
+    return f"{words}, width right {row[f'{kind}_width_right']:.3f}" if n_found else words
