@@ -69,7 +69,21 @@ def test_returns_beside_the_walls_are_doubted(share, is_doubted):
 def test_a_way_through_walls_is_doubted():
     plan = floorplan_making.plan()
     middle = contradictions.centrelines_m(plan.walls)[0].mean(axis=0)
-    there_and_back = np.tile([middle - 0.5, middle + 0.5], (5, 1))
+    there_and_back = np.tile([middle - 0.2, middle + 0.2], (6, 1))
     share = contradictions.measure_share_through_walls(plan, there_and_back)
     beside = contradictions.measure_share_through_walls(plan, there_and_back + 1000)
     assert share == 1.0 and beside == 0.0
+
+
+def test_a_line_between_scans_far_apart_is_no_way_that_was_driven():
+    plan = floorplan_making.plan()
+    middle = contradictions.centrelines_m(plan.walls)[0].mean(axis=0)
+    far_apart = np.tile([middle - 0.9, middle + 0.9], (20, 1))
+    assert contradictions.measure_share_through_walls(plan, far_apart) == 0.0
+
+
+def test_of_few_steps_nothing_is_said():
+    plan = floorplan_making.plan()
+    middle = contradictions.centrelines_m(plan.walls)[0].mean(axis=0)
+    few = np.tile([middle - 0.2, middle + 0.2], (5, 1))
+    assert contradictions.measure_share_through_walls(plan, few) == 0.0

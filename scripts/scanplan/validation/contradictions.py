@@ -5,7 +5,7 @@ import shapely
 
 from scanplan.geometry.tolerances import SHORTEST_M
 from scanplan.plan.floorplan import FloorPlan, centrelines_m, line_shapes
-from scanplan.plan.tolerances import END_M
+from scanplan.plan.tolerances import CORNER_M, END_M, ENOUGH_RAYS
 from scanplan.rays.ray_set import RaySet
 from scanplan.rays.tolerances import STRETCH_M
 from scanplan.types import FloatArray
@@ -62,10 +62,17 @@ def measure_share_on_walls(plan: FloorPlan, rays: RaySet) -> float:
 
 
 def measure_share_through_walls(plan: FloorPlan, track_m: FloatArray) -> float:
-    """Return the share of the steps between two scans that cross a wall where there is no way."""
+    """Return the share of the steps between two scans that cross a wall where there is no way.
+
+    A straight line between scans farther apart than a thick wall and what a rover keeps from both
+    of its sides may cut the corner that it drove around, and is not judged. Nothing is said of few
+    steps.
+    """
     steps = line_shapes(np.stack([track_m[:-1], track_m[1:]], axis=1))
-    length = shapely.length(steps)
-    steps = steps[length > SHORTEST_M]
+    length_m = shapely.length(steps)
+    steps = steps[(length_m > SHORTEST_M) & (length_m <= 2 * (CORNER_M + STRETCH_M))]
+    if len(steps) < ENOUGH_RAYS:
+        return 0.0
     ways = shapely.union_all(shapely.buffer(plan.gaps, END_M))
     walls = shapely.difference(shapely.union_all(line_shapes(centrelines_m(plan.walls))), ways)
-    return float(shapely.intersects(steps, walls).mean()) if len(steps) else 0.0
+    return float(shapely.intersects(steps, walls).mean())
