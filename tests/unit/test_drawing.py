@@ -11,7 +11,7 @@ from PIL import Image
 from helpers import floorplan_making
 from helpers.floorplan_making import bare, plan
 from scanplan.exports import drawing, svg
-from scanplan.exports.sheet import composition
+from scanplan.exports.sheet import composition, lettering
 from scanplan.exports.sheet.title import SheetFacts
 from scanplan.stage import figure_files
 
@@ -130,3 +130,14 @@ def test_svg_has_the_sheet_s_size():
     size = [float(root.get(side).removesuffix("mm")) for side in ("width", "height")]
     assert [0, 0, *size] == [float(number) for number in root.get("viewBox").split()]
     assert sorted(size) == [210, 297]
+
+
+def test_a_line_of_a_png_is_as_long_as_it_was_measured():
+    text, inch_mm = "from a damaged recording; 41 walls, 6 doors, 6 passages, 3 unknown gaps,", 25.4
+    figure = Figure(figsize=(130 / inch_mm, 10 / inch_mm))
+    size = lettering.font_size_mm(1.8) * lettering.POINTS_PER_MM
+    figure.text(0.02, 0.5, text, fontsize=size, family=lettering.FONT)
+    with Image.open(io.BytesIO(figure_files.format_png(figure))) as picture:
+        _, columns = np.nonzero(np.asarray(picture.convert("L")) < 128)
+    drawn_mm = np.ptp(columns) * inch_mm / 150
+    assert drawn_mm == pytest.approx(lettering.measure_width_mm(text, 1.8), abs=1.0)
