@@ -19,6 +19,7 @@ from scanplan.project.settings import (
     settings_of_run,
 )
 from scanplan.project.settings_check import COMMAND_LINE, check_settings
+from scanplan.project.settings_schema import type_texts
 from scanplan.project.yaml_file import read_yaml
 
 
@@ -177,9 +178,33 @@ def test_a_fault_names_file_key_value_and_limit(defaults, schema, tmp_path, text
     )
 
 
-def test_text_for_a_number_on_the_command_line_is_explained(defaults, schema):
-    with pytest.raises(StageError, match="--configfile"):
-        settings_of_dataset(defaults, [Layer(COMMAND_LINE, {"poses": {"keep_every": "2"}})], schema)
+@pytest.mark.parametrize(
+    ("given", "read"),
+    [
+        ({"poses": {"keep_every": "2"}}, {"poses": {"keep_every": 2}}),
+        ({"poses": {"max_gap_s": "0.5"}}, {"poses": {"max_gap_s": 0.5}}),
+        ({"poses": {"max_gap_s": "3"}}, {"poses": {"max_gap_s": 3}}),
+        ({"input": {"salvage": "true"}}, {"input": {"salvage": True}}),
+        ({"input": {"cloud_topic": "null"}}, {"input": {"cloud_topic": None}}),
+        ({"input": {"cloud_topic": "12"}}, {"input": {"cloud_topic": "12"}}),
+        (
+            {"input": {"base_from_sensor": ["0", "0", "1.5", "0", "0", "90"]}},
+            {"input": {"base_from_sensor": [0, 0, 1.5, 0, 0, 90]}},
+        ),
+        ({"dataset": ["1", "b"], "seed": 3}, {"dataset": ["1", "b"], "seed": 3}),
+        ({"poses": {"keep_every": "1:30"}}, {"poses": {"keep_every": "1:30"}}),
+        ({"poses": {"keep_every": "two"}}, {"poses": {"keep_every": "two"}}),
+        ({"poses": {"unknown": "2"}, "other": "x"}, {"poses": {"unknown": "2"}, "other": "x"}),
+    ],
+)
+def test_text_on_the_command_line_is_what_a_file_would_give(given, read, schema):
+    assert type_texts(given, schema) == read
+
+
+def test_text_for_a_number_is_refused(defaults, schema):
+    given = Layer(COMMAND_LINE, type_texts({"poses": {"keep_every": "two"}}, schema))
+    with pytest.raises(StageError, match=r"poses.keep_every: 'two' is not of type 'integer'"):
+        settings_of_dataset(defaults, [given], schema)
 
 
 def limits_in_pairs(node, where=""):

@@ -54,7 +54,7 @@ from scanplan.project.settings import (
     settings_of_run,
 )
 from scanplan.project.settings_check import COMMAND_LINE, MODULE
-from scanplan.project.settings_schema import list_choices, read_schema
+from scanplan.project.settings_schema import list_choices, read_schema, type_texts
 from scanplan.project.targets import check_targets
 from scanplan.project.yaml_file import read_yaml
 from scanplan.selection import methods
@@ -81,7 +81,7 @@ def given_settings():
         return [Layer(MODULE, dict(config))]
     files = map(os.path.relpath, workflow.config_settings.configfiles)
     layers = [Layer(file, read_yaml(file)) for file in files]
-    alone = Layer(COMMAND_LINE, dict(workflow.config_settings.config))
+    alone = Layer(COMMAND_LINE, type_texts(dict(workflow.config_settings.config), SCHEMA))
     return [*layers, alone]
 
 

@@ -131,9 +131,6 @@ def _explain(fault: ValidationError, origin: str) -> str:
     if fault.validator == "type" and fault.validator_value == "object":
         remedy = "leave the section out if there are none"
         return f"{key}: is {value!r}, expected keys with values below it; {remedy}"
-    if origin == COMMAND_LINE and isinstance(value, str) and fault.validator == "type":
-        remedy = "nested values of --config arrive as text: put them into a file for --configfile"
-        return f"{key}: {fault.message} ({remedy})"
     if fault.validator == "pattern" and "x-unit" in node:
         return f"{key}: is {value!r}, expected: {node['x-unit']}"
     if fault.validator in ("anyOf", "oneOf"):

@@ -60,6 +60,52 @@ def iterate_keys(schema: Schema, prefix: str = "") -> Iterator[tuple[str, Schema
             yield f"{prefix}{key}", node
 
 
+def type_texts(values: Any, node: Schema) -> Any:
+    """Return values whose texts are what a file of the same words would give.
+
+    Below a section Snakemake reads what is behind --config as text, numbers too.
+
+    Parameters
+    ----------
+    values : dict, list, str, or any other
+        Settings, or the value of one; what is no text stays as it is.
+    node : dict
+        The part of the schema that describes it. Text stays text where none of the types of its
+        key is that of the value it would be.
+    """
+    if isinstance(values, dict):
+        below = node.get("properties", {})
+        return {key: type_texts(value, below.get(key, {})) for key, value in values.items()}
+    kinds = [node, *node.get("anyOf", []), *node.get("oneOf", [])]
+    if isinstance(values, list):
+        items: Schema = next((kind["items"] for kind in kinds if "items" in kind), {})
+        return [type_texts(value, items) for value in values]
+    if not isinstance(values, str):
+        return values
+    allowed = {name for kind in kinds for name in _list_types(kind)}
+    return _type_text(values, allowed)
+
+
+def _list_types(node: Schema) -> list[str]:
+    named = node.get("type", [])
+    return [named] if isinstance(named, str) else list(named)
+
+
+def _type_text(text: str, allowed: set[str]) -> Any:
+    try:
+        # a colon would make minutes of a number
+        value = text if ":" in text else yaml.load(text, _Loader)
+    except (yaml.YAMLError, ValueError):
+        return text
+    names = {
+        type(None): {"null"},
+        bool: {"boolean"},
+        int: {"integer", "number"},
+        float: {"number"},
+    }
+    return value if names.get(type(value), set()) & allowed else text
+
+
 def list_choices(schema: Schema, *keys: str) -> list[str]:
     """Return what a setting may be, in the schema's order, as the workflow's list of it."""
     for key in keys:
