@@ -342,3 +342,17 @@ class TestEvidence:
             {"observed": 0.2},
         ):
             assert uncertainty.WallEvidence(**known, **(sure | doubt)).needs_a_visit(TRUST)
+
+
+@pytest.mark.parametrize(
+    ("errors_mm", "said"),
+    [
+        ([0, 0], "ranges taken as they are"),
+        ([0, -0.3, -0.31], "ranges 0.3 mm too short, corrected"),
+        ([0, -0.3, -2], "ranges 0.3 to 2.0 mm too short, corrected"),
+        ([0, 4, 12.5], "ranges 4.0 to 12.5 mm too long, corrected"),
+        ([-1, 3], "ranges 1.0 mm too short to 3.0 mm too long, corrected"),
+    ],
+)
+def test_errors_of_ranges_are_told_without_signs(errors_mm, said):
+    assert messages.summarise_range_bias(np.array(errors_mm) / 1000) == said

@@ -98,16 +98,22 @@ def summarise_plan(plan: Plan) -> str:
         f"{len(rooms['room'])} rooms, {n_closed} closed, {rooms['area_m2'].sum():,.1f} m2",
         f"{n_pieces - n_columns} pieces of furniture, {n_columns} columns",
         f"{plan.n_dropped} of {plan.n_lines} lines of faces dropped",
-        _summarise_range_bias(plan.range_errors_m),
+        summarise_range_bias(plan.range_errors_m),
     ]
     return "; ".join(parts)
 
 
-def _summarise_range_bias(range_errors_m: FloatArray) -> str:
+def summarise_range_bias(range_errors_m: FloatArray) -> str:
+    """Return in a phrase how wrong ranges were, of the (181,) metres that they are too long by."""
     errors_mm = 1000 * range_errors_m[range_errors_m != 0]
     if len(errors_mm) == 0:
         return "ranges taken as they are"
-    return f"ranges too long by {errors_mm.min():.1f} to {errors_mm.max():.1f} mm, corrected"
+    low, high = (round(float(error), 1) for error in (errors_mm.min(), errors_mm.max()))
+    if low < 0 < high:
+        return f"ranges {-low:.1f} mm too short to {high:.1f} mm too long, corrected"
+    least, most = sorted((abs(low), abs(high)))
+    size = f"{most:.1f}" if least == most else f"{least:.1f} to {most:.1f}"
+    return f"ranges {size} mm too {'short' if low < 0 else 'long'}, corrected"
 
 
 def _ranges_m(rays: RaySet) -> FloatArray:
