@@ -67,7 +67,10 @@ def interpolate_poses(
             motion = time_check.check_point_times(survey, motion)
             tables.write_table(moved, schemas.MOTION, motion.columns())
     columns = candidates.pose_columns(chosen, t_ns, pose, gap_s, covered)
-    notes = found.as_notes() | {pose_kind.NOTE: survey.pose_kind}
+    notes = found.as_notes() | {
+        pose_kind.NOTE: survey.pose_kind,
+        schemas.N_RECORDED: str(len(t_ns)),
+    }
     tables.write_table(output, schemas.POSES, columns, notes=notes)
     for sentence in found.sentences:
         log.log_warning(f"interpolate_poses: {sentence}")

@@ -101,6 +101,7 @@ def _read_survey(files: Mapping[str, Any], stop: Settings) -> SurveyFacts:
         segments=tables.read_table(files["segments"], schemas.WALLS, allow_empty=True),
         evidence=tables.read_table(files["evidence"], schemas.EVIDENCE, allow_empty=True),
         chosen=chosen,
+        n_recorded=int(tables.read_note(files["poses"], schemas.POSES, schemas.N_RECORDED)),
         prediction=_read_prediction(files["validation"]),
         visit=VisitFacts(
             tables.read_table(files["questions"], schemas.QUESTIONS, allow_empty=True),

@@ -200,8 +200,9 @@ def files(folder):
         "evaluation/plan": (schemas.PLAN_EVALUATION, plan_evaluation()),
     }
     paths = {name: folder / f"{name}.parquet" for name in made}
+    notes = {"poses": {schemas.N_RECORDED: "23"}}
     for name, (schema, columns) in made.items():
-        tables.write_table(paths[name], schema, columns)
+        tables.write_table(paths[name], schema, columns, notes=notes.get(name))
     paths["scans"] = folder / "scans.parquet"
     with tables.open_scan_writer(paths["scans"], planar=False) as write:
         for scan_id in SCAN_IDS[:4]:

@@ -49,6 +49,12 @@ def test_every_fifth_scan_gets_its_pose(run, entries):
     np.testing.assert_allclose(poses["gap_s"], 0, atol=1e-9)  # each has a pose of its own stamp
 
 
+def test_the_table_says_how_many_scans_were_recorded(run, entries, tmp_path):
+    run(entries)
+    path = tmp_path / "poses.parquet"
+    assert tables.read_note(path, schemas.POSES, schemas.N_RECORDED) == "12"
+
+
 def test_few_clouds_are_read_here_so_that_none_is_too_many_damaged(tmp_path, monkeypatch):
     maker = bag_making.Maker()
     entries = list(bag_making.survey(maker, n_scans=12))

@@ -79,7 +79,7 @@ def test_tables_state_what_the_stages_found(report):
 
 def test_of_odometry_the_figures_after_one_motion_come_first(tmp_path):
     files = report_making.files(tmp_path)
-    notes = {pose_kind.NOTE: pose_kind.ODOMETRY}
+    notes = {pose_kind.NOTE: pose_kind.ODOMETRY, schemas.N_RECORDED: "23"}
     tables.write_table(files["poses"], schemas.POSES, report_making.poses(), notes=notes)
     text = written(tmp_path, files).read_text()
     assert Tables(text).rows["truth"][0][1:3] == ["aligned", "registered"]

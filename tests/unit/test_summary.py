@@ -16,6 +16,7 @@ def survey(prediction=report_making.PREDICTION):
         segments=report_making.segments(),
         evidence=floorplan_making.evidence(),
         chosen=3,
+        n_recorded=1064,
         prediction=prediction,
         visit=report_making.VISIT,
     )
@@ -31,7 +32,7 @@ def test_it_counts_what_was_found_and_names_what_is_doubtful():
     found, _, made_of, tested = summarise_survey(plan(), survey()).splitlines()
     n_rooms = len(floorplan_making.rooms()["room"])
     assert found.startswith(f"found    {n_rooms} rooms, ") and "m² of floor" in found
-    assert made_of.startswith("made of  3 of 4 registered scans (5 candidates of about ")
+    assert made_of.startswith("made of  3 of 4 registered scans (5 candidates of 1,064 recorded)")
     assert tested.startswith(
         "tested   It predicts 90.0% (85.0% to 93.0%) of 1,000 rays of 1 scan that was not used:"
         " 7.0% stopped"

@@ -65,6 +65,8 @@ class SurveyFacts:
         (the plan's extractor) and `EVIDENCE`.
     chosen : int
         How many scans of the selection make the plan.
+    n_recorded : int
+        How many scans were recorded, candidates and others.
     prediction : PredictionFacts
     visit : VisitFacts
     plan_measures, wall_measures : dict of str to (n,) array or None
@@ -80,6 +82,7 @@ class SurveyFacts:
     segments: Columns
     evidence: Columns
     chosen: int
+    n_recorded: int
     prediction: PredictionFacts
     visit: VisitFacts
     plan_measures: Columns | None = None

@@ -42,10 +42,9 @@ def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
         *list_unrated(plan),
     ]
     n_kept, n_candidates = (int(f(survey.registration["kept"])) for f in (np.sum, np.size))
-    n_recorded = survey.poses["scan_id"][-1] + 1  # a few more may follow the last candidate
     used = (
         f"{survey.chosen:,} of {_count(n_kept, 'registered scan')}"
-        f" ({n_candidates:,} candidates of about {n_recorded:,} recorded)"
+        f" ({n_candidates:,} candidates of {survey.n_recorded:,} recorded)"
     )
     damage = plan.doubted.damage
     lines = [

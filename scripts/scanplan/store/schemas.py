@@ -42,6 +42,8 @@ POSES = Schema(
     {"scan_id": "int32", "t_ns": "int64", **_POSE, "gap_s": "float64", "covered": "bool"},
     ("scan_id",),
 )
+N_RECORDED = "n_recorded"
+"""Under this name a table of poses says how many scans were recorded."""
 MOTION = Schema(
     "motion",
     1,
