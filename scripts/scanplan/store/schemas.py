@@ -279,9 +279,10 @@ OPENINGS = Schema(
 )
 """What is no wall of rooms' outlines and walls: openings, and what is not known.
 
-`type` is door, window, passage, glass (down to the floor), gap (rays go through, and it is not
-known what it is), or unseen (a span of a room's outline of which nothing is known); `p_kind` the
-probability of the likeliest kind, NaN where none was weighed.
+`type` is door, window, passage, glass (down to the floor), gap (rays go through, or floor goes on
+beyond an outline, whose rays are not counted, and it is not known what it is), or unseen (a span of
+a room's outline of which nothing is known); `p_kind` the probability of the likeliest kind, NaN
+where none was weighed.
 
 Heights are above the floor, NaN where not known; -1 stands for no wall or no room. A passage in no
 wall is inferred: there free floor is narrow, and parts two rooms. Missing returns count as rays,
