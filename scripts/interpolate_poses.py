@@ -53,6 +53,7 @@ def interpolate_poses(
         t_ns = survey.stamps()
         # what of it is lost, and not which of the clouds that are read here are damaged
         found = doubts.Doubts().add(survey.describe_damage())
+        gaps = survey.describe_gaps()
         edges = survey.pose_edges()
         if pose_kind.is_drifting(survey.pose_kind):
             edges, resets = _join_resets(edges, max_speed_m_s)
@@ -72,7 +73,7 @@ def interpolate_poses(
         schemas.N_RECORDED: str(len(t_ns)),
     }
     tables.write_table(output, schemas.POSES, columns, notes=notes)
-    for sentence in found.sentences:
+    for sentence in (*found.sentences, *gaps):
         log.log_warning(f"interpolate_poses: {sentence}")
     n_covered = int(covered[chosen].sum())
     log.log_line(

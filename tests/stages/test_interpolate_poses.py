@@ -174,3 +174,17 @@ def test_intel_keeps_the_scans_that_are_far_apart(recordings_dir, tmp_path):
     xy = np.column_stack([poses["x_m"], poses["y_m"]])
     assert len(xy) > 600
     assert np.ptp(xy, axis=0).min() > 20
+
+
+@pytest.mark.parametrize(("apart_s", "is_told"), [(3600, False), (90_000, True)])
+def test_recordings_that_lie_days_apart_are_told(tmp_path, caplog, apart_s, is_told):
+    maker = bag_making.Maker()
+    for name, start_ns in (("x", START), ("y", START + apart_s * 10**9)):
+        entries = bag_making.survey(maker, n_scans=12, start_ns=start_ns)
+        maker.write(tmp_path / "two" / name / name, entries)
+    output = tmp_path / "poses.parquet"
+    interpolate_poses(dataset_files.find_files(tmp_path / "two"), output, **SETTINGS)
+    told = [line for line in caplog.messages if "lie far apart in time" in line]
+    assert len(told) == is_told
+    if told:
+        assert "y/y.bag begins 1.0 days after" in told[0] and "x/x.bag; if they" in told[0]

@@ -109,3 +109,10 @@ def test_of_a_year_at_most_some_hours_are_no_date(t_s):
     # one may be in the first hour of a year, one in that of a hundred million seconds
     hours = [clocks.read_date((max(t_s, 400_000_000) + 3600 * n) * S) for n in range(4)]
     assert any(hours)
+
+
+def test_of_several_gaps_the_widest_is_named():
+    day_ns = 86_400 * 10**9
+    assert clocks.describe_gaps([("a", 0), ("b", day_ns)]) == []
+    (said,) = clocks.describe_gaps([("a", 0), ("b", 2 * day_ns), ("c", 5 * day_ns)])
+    assert "c begins 3.0 days after b, and 1 more lie more than a day after another" in said

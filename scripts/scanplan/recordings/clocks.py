@@ -1,11 +1,12 @@
 """Stamps that cannot be true, judged by one another and by the times of receipt."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime, timedelta
+from itertools import pairwise
 
 import numpy as np
 
-from scanplan.types import BoolArray, IntArray
+from scanplan.types import BoolArray, FilePath, IntArray
 
 OF_ANOTHER_CLOCK_S = 1.0
 """Stamps off by more are of a clock that was set, or another one: recorders delay messages by less,
@@ -44,6 +45,30 @@ def state_date(t_ns: int, form: str = "%Y-%m-%d") -> str:
     """Return when a recording began, or that its clock was not set."""
     date = read_date(t_ns)
     return date.strftime(form) if date else "not known, clock not set"
+
+
+def describe_gaps(starts: Sequence[tuple[FilePath, int]]) -> list[str]:
+    """Return whether recordings of one survey lie more than a day apart, as a sentence.
+
+    Parameters
+    ----------
+    starts : sequence of (path-like, int)
+        The recordings, and when each began in nanoseconds, the first first.
+    """
+    gaps = [
+        (timedelta(microseconds=(later[1] - earlier[1]) / 1000), earlier[0], later[0])
+        for earlier, later in pairwise(starts)
+    ]
+    far = [gap for gap in gaps if gap[0] > timedelta(days=1)]
+    if not far:
+        return []
+    widest, earlier_path, later_path = max(far, key=lambda gap: gap[0])
+    more = f", and {len(far) - 1} more lie more than a day after another" if far[1:] else ""
+    return [
+        f"recordings of one survey lie far apart in time: {later_path} begins"
+        f" {widest / timedelta(days=1):,.1f} days after {earlier_path}{more}; if they are not of"
+        " one floor in one state, give each as a dataset of its own"
+    ]
 
 
 def count_stamp_faults(t_ns: IntArray, receive_ns: IntArray) -> dict[str, int]:

@@ -8,6 +8,7 @@ import numpy as np
 
 from scanplan.errors import StageError
 from scanplan.recordings import (
+    clocks,
     clouds,
     frame_edges,
     messages,
@@ -202,6 +203,11 @@ class BagSurvey:
         """Return what could not be read so far, in sentences."""
         losses = filter(None, (bag.describe_loss() for bag in self._bags))
         return [*losses, *self._damaged.describe()]
+
+    def describe_gaps(self) -> list[str]:
+        """Return whether its recordings lie far apart in time, as a sentence."""
+        recorded = (bag for bag in self._bags if any(topic.count for topic in bag.topics))
+        return clocks.describe_gaps([(bag.path, bag.start_ns) for bag in recorded])
 
     def pose_edges(self) -> list[FrameEdge]:
         """Return the chain of transforms whose product is world_from_sensor.

@@ -116,6 +116,10 @@ class ScanFolder:
         """Return the stamps of all clouds, (n,) int64, in scan_id order."""
         return self._stamps_ns
 
+    def describe_gaps(self) -> list[str]:
+        """Return nothing: it is one recording."""
+        return []
+
     def describe_damage(self) -> list[str]:
         """Return what could not be read so far, in sentences."""
         return self._damaged.describe()

@@ -47,6 +47,10 @@ class Survey(Protocol):
         """Return what could not be read so far, in sentences."""
         ...
 
+    def describe_gaps(self) -> list[str]:
+        """Return whether its recordings lie far apart in time, as a sentence."""
+        ...
+
     def scans(self, wanted: Iterable[int], damaged: DamagedClouds | None = None) -> Iterator[Scan]:
         """Iterate over the scans of the scan_ids in `wanted`, in scan_id order.
 

@@ -145,6 +145,10 @@ class DeskewedSurvey:
         """Return what could not be read so far, in sentences."""
         return self._survey.describe_damage()
 
+    def describe_gaps(self) -> list[str]:
+        """Return whether its recordings lie far apart in time, as a sentence."""
+        return self._survey.describe_gaps()
+
     def pose_edges(self) -> list[FrameEdge]:
         """Return the chain of transforms whose product is world_from_sensor."""
         return self._survey.pose_edges()
