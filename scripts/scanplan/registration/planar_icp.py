@@ -95,24 +95,16 @@ def leave_out_a_thing(
 class _Pairs:
     """Points of a source (n, 2) on lines of a target.
 
-    How their distances (n,) to these change with a step (dx, dy, turn) in the source's frame,
-    (n, 3), and their robust weights (n,).
+    How their distances to these change with a step (dx, dy, turn) in the source's frame, (n, 3),
+    and their robust weights (n,); the information (3, 3) of such a step, and the gradient (3,) of
+    half the squared distances by it.
     """
 
     point_m: FloatArray
-    residual_m: FloatArray
     jacobian: FloatArray
     weight: FloatArray
-
-    @property
-    def information(self) -> FloatArray:
-        """Of a step, (3, 3)."""
-        return (self.weight * self.jacobian.T) @ self.jacobian
-
-    @property
-    def gradient(self) -> FloatArray:
-        """Of half the squared distances by a step, (3,)."""
-        return (self.weight * self.jacobian.T) @ self.residual_m
+    information: FloatArray
+    gradient: FloatArray
 
 
 def _pair_points(
@@ -140,7 +132,9 @@ def _pair_points(
     # of a normal distribution by its median absolute deviation
     sigma_m = 1.4826 * np.median(np.abs(residual_m))
     scale_m = max(sigma_m, distance_m / _LEAST_SCALE_PART)
-    return _Pairs(point_m, residual_m, jacobian, 1 / (1 + (residual_m / scale_m) ** 2))
+    weight = 1 / (1 + (residual_m / scale_m) ** 2)
+    weighted = weight * jacobian.T
+    return _Pairs(point_m, jacobian, weight, weighted @ jacobian, weighted @ residual_m)
 
 
 def _solve(information: FloatArray, gradient: FloatArray, reach_m: float) -> FloatArray:

@@ -175,8 +175,9 @@ class SequentialRegistrar(ScanRegistrar):
     def _register(
         self, scan: PlacedScan, level_from_sensor: FloatArray
     ) -> tuple[ScanResult, list[PoseConstraint]]:
+        prior = scan.world_from_cloud @ level_from_sensor
         if not self._previous:
-            return ScanResult(True, "anchor", scan.world_from_cloud @ level_from_sensor), []
+            return ScanResult(True, "anchor", prior), []
         result, edges = self._compare(scan, level_from_sensor, self._previous)
         if not result.kept and not self._confirmed and self._earlier:
             # the anchor may have been the scan that was out of place
@@ -190,8 +191,8 @@ class SequentialRegistrar(ScanRegistrar):
                 searched, searched_edges = self._compare(found, level_from_sensor, self._previous)
                 if searched.kept and self._is_surer(searched, searched_edges, result):
                     return searched, searched_edges
-            if result.kept and self._has_slipped(scan, result, level_from_sensor):
-                return self._keep_prior(scan, result, level_from_sensor), []
+            if result.kept and self._has_slipped(result, prior):
+                return self._keep_prior(scan, result, prior), []
         if not result.kept and self._is_anchor(scan):
             result = replace(result, kept=True, reason="anchor")
         return result, edges
@@ -219,25 +220,19 @@ class SequentialRegistrar(ScanRegistrar):
         is_fixed = any(edge.fit.n_unobservable == 0 for edge in edges)
         return is_fixed and 2 * (1 - found.refined_fitness) < 1 - result.refined_fitness
 
-    def _has_slipped(
-        self, scan: PlacedScan, result: ScanResult, level_from_sensor: FloatArray
-    ) -> bool:
+    def _has_slipped(self, result: ScanResult, prior: FloatArray) -> bool:
         """Return whether an alignment that fits no better moved a scan by more than would show.
 
         Points that lie farther than `fitness_distance_m` from where they belong do not fit: a
         localiser that is off by more, and is corrected, fits better.
         """
-        prior = scan.world_from_cloud @ level_from_sensor
         moved_m = np.linalg.norm((result.world_from_sensor - prior)[:3, 3])
-        return not self.is_odometry and bool(moved_m > self.settings.fitness_distance_m)
+        return bool(moved_m > self.settings.fitness_distance_m)
 
-    def _keep_prior(
-        self, scan: PlacedScan, result: ScanResult, level_from_sensor: FloatArray
-    ) -> ScanResult:
+    def _keep_prior(self, scan: PlacedScan, result: ScanResult, prior: FloatArray) -> ScanResult:
         """Return the result of a scan that is left where it was before it was aligned."""
         comparable = constraints.comparable_scans(scan, self._previous, self.settings)
         fitness, rmse_m = self.measure_overlap(scan, comparable)
-        prior = scan.world_from_cloud @ level_from_sensor
         return replace(result, world_from_sensor=prior, refined_fitness=fitness, rmse_m=rmse_m)
 
     def _compare(

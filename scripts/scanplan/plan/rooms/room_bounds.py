@@ -1,5 +1,6 @@
 """What bounds a room though hardly a ray ends there: glass, and where free floor is narrow."""
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import replace
@@ -126,20 +127,21 @@ def find_partings(
         What of the floor furniture stands on: it was not seen.
     """
     strips = wall_ground.wall_strips(bounds, unpaired_m)
+    tree = shapely.STRtree(strips)
     known = shapely.union_all(strips).buffer(END_M)
     doors = [_make_parting(way_m, "door") for way_m in _choose_ways(ways_m, known)]
     # no narrower than the cells that narrow places are looked for in
     ways = wall_ground.wall_strips(doors, unpaired_m)
-    strips += [way.buffer(CELL_M, join_style="mitre") for way in ways]
-    solid = free_space.union_on_grid(strips)
+    grown = [way.buffer(CELL_M, join_style="mitre") for way in ways]
+    solid = free_space.union_on_grid([*strips, *grown])
     # what is as narrow as a chair's leg casts a shadow, which is no place to stop at
     whole = free_space.close_shadows(floor, END_M) if planar else floor
     free = free_space.difference_on_grid(whole, solid)
     partings = list(doors)
-    gaps_m = _find_line_gaps(bounds, free, max_width_m, unpaired_m) if planar else []
+    gaps_m = _find_line_gaps(bounds, tree, free, max_width_m, unpaired_m) if planar else []
     # shorter ones may be sides of what stands in a room
-    long = [wall for wall in bounds if planar and wall.length_m > 2 * max_width_m]
-    walls = shapely.union_all(wall_ground.wall_strips(long, unpaired_m))
+    is_long = [planar and wall.length_m > 2 * max_width_m for wall in bounds]
+    walls = shapely.union_all(list(itertools.compress(strips, is_long)))
     behind = _find_hidden_floor(free, solid, max_thickness_m, max_depth_m) if planar else None
     for part in free_space.open_polygons(free, END_M):
         for ends_m in narrow_places.find_narrow_places(
@@ -181,7 +183,11 @@ def _find_hidden_floor(
 
 
 def _find_line_gaps(
-    walls: Sequence[PlanWall], free: BaseGeometry, max_door_m: float, unpaired_m: float
+    walls: Sequence[PlanWall],
+    tree: shapely.STRtree,
+    free: BaseGeometry,
+    max_door_m: float,
+    unpaired_m: float,
 ) -> list[FloatArray]:
     """Return lines (2, 2) over free floor, from where a wall ends to where one goes on in its line.
 
@@ -189,9 +195,9 @@ def _find_line_gaps(
     doors. Also to a wall across, where nothing meets the wall's end, the gap is no wider than two
     doors, and the wall as long from there to its next opening: beside a door furniture hides what
     goes on.
-    What meets another wall at its end is a corner that stands into one room.
+    What meets another wall at its end is a corner that stands into one room. `tree` is that of the
+    walls' strips.
     """
-    tree = shapely.STRtree(wall_ground.wall_strips(walls, unpaired_m))
     gaps_m: list[FloatArray] = []
     for wall in walls:
         reach_m = max(wall.length_m, 2 * max_door_m) if wall.right else wall.length_m
