@@ -81,7 +81,9 @@ def given_settings():
         return [Layer(MODULE, dict(config))]
     files = map(os.path.relpath, workflow.config_settings.configfiles)
     layers = [Layer(file, read_yaml(file)) for file in files]
-    alone = Layer(COMMAND_LINE, type_texts(dict(workflow.config_settings.config), SCHEMA))
+    alone = Layer(
+        COMMAND_LINE, type_texts(dict(workflow.config_settings.config), SCHEMA)
+    )
     return [*layers, alone]
 
 
