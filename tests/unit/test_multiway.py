@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from scanplan.registration import multiway
+from scanplan.store import scan_cache
 
 
 def test_a_floor_adds_to_the_covariance():
@@ -31,11 +32,33 @@ def test_no_pair_is_linked_twice():
     )
     in_sequence = {(row, row - 1) for row in range(1, 20)}
     expected = [(row, 19 - row) for row in range(11, 20)]
-    assert multiway.choose_pairs(there_and_back, in_sequence, near, planar=True) == expected
-    assert (
-        multiway.choose_pairs(there_and_back, in_sequence | {(19, 0)}, near, planar=True)
-        == expected[:-1]
+    at_sensor = np.zeros((20, 3))
+
+    def choose(constrained):
+        return multiway.choose_pairs(there_and_back, at_sensor, constrained, near, planar=True)
+
+    assert choose(in_sequence) == expected
+    assert choose(in_sequence | {(19, 0)}) == expected[:-1]
+
+
+def test_half_circles_are_linked_by_what_they_show(tmp_path):
+    """A corridor there and back, a scan a metre, each showing what is 3 m before it."""
+    there_and_back = np.tile(np.eye(4), (40, 1, 1))
+    there_and_back[:, 0, 3] = [*range(20), *range(19, -1, -1)]
+    there_and_back[20:, :2, :2] = [[-1, 0], [0, -1]]
+    near = SimpleNamespace(
+        loop_radius_m=0.5, loop_apart=2, loops_per_scan_planar=4, loop_step_planar_m=0.5
     )
+    with scan_cache.open_scan_cache(tmp_path / "thinned") as cache:
+        for _ in there_and_back:
+            cache.add(np.array([[2, 1, 0], [4, -1, 0]]))
+        ahead = multiway.find_seen_middles(cache, planar=True)
+        assert not multiway.find_seen_middles(cache, planar=False).any()
+    np.testing.assert_array_equal(ahead, np.tile([3.0, 0, 0], (40, 1)))
+    in_sequence = {(row, row - 1) for row in range(1, 40)}
+    pairs = multiway.choose_pairs(there_and_back, ahead, in_sequence, near, planar=True)
+    # seen at x + 3 on the way there, at x - 3 on the way back
+    assert pairs == [(39 - x, x - 6) for x in range(19, 5, -1)]
 
 
 def test_pairs_of_a_place_are_aligned_in_one_job():
@@ -74,5 +97,6 @@ def test_in_space_more_visits_are_tried_than_are_linked(planar, n_pairs):
         **{"loops_per_scan": 1, "loops_per_scan_planar": 2},
     )
     in_sequence = {(row, row - 1) for row in range(1, 60)}
-    pairs = multiway.choose_pairs(ways, in_sequence, limits, planar=planar)
+    at_sensor = np.zeros((60, 3))
+    pairs = multiway.choose_pairs(ways, at_sensor, in_sequence, limits, planar=planar)
     assert sum(source == 55 for source, _ in pairs) == n_pairs

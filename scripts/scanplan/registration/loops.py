@@ -61,11 +61,11 @@ def choose_loop_pairs(
     Parameters
     ----------
     xy_m : (n, 2) float
-        Where the scans are, in the order of their recording.
+        The middle of what each scan shows, in the order of their recording.
     is_station : (n,) bool
         See `choose_stations`.
     radius_m : float
-        Two scans farther apart are no pair.
+        Two scans whose middles are farther apart are no pair.
     apart : int
         Nor are two with fewer scans than this between them, nor do such belong to different visits.
     most : int

@@ -130,7 +130,8 @@ def optimise_poses(
     sequence = edges_between(edges, row_of_scan)
     poses = solve(start, sequence, is_start=True).world_from_scan
     constrained = {(row_of_scan[edge.source], row_of_scan[edge.target]) for edge in sequence}
-    pairs = choose_pairs(poses, constrained, settings, planar=planar)
+    seen_m = find_seen_middles(thinned, planar=planar)
+    pairs = choose_pairs(poses, seen_m, constrained, settings, planar=planar)
     jobs = alignment_jobs(pairs, scan_ids, poses, thinned, planar, limits, settings)
     loop_edges = align_jobs(jobs, run)
     all_edges = sorted([*sequence, *loop_edges], key=edge_ends)
@@ -192,16 +193,46 @@ def edge_motions(
     return replace(motions, information=add_covariance(motions.information, least))
 
 
+def find_seen_middles(thinned: ScanCache, *, planar: bool) -> FloatArray:
+    """Return the middle (n, 3) of what each scan shows, in its cloud's frame.
+
+    In the plane the mean of its points: many scanners see a half circle. In space, where most see
+    all around, it is the sensor.
+    """
+    if not planar:
+        return np.zeros((len(thinned), 3))
+    clouds = thinned.part(range(len(thinned)))
+    return np.array([xyz_m.mean(axis=0, dtype=float) for xyz_m in clouds]).reshape(-1, 3)
+
+
 def choose_pairs(
     world_from_scan: FloatArray,
+    seen_m: FloatArray,
     constrained: set[RowPair],
     settings: PoseGraphSettings,
     *,
     planar: bool,
 ) -> list[RowPair]:
-    """Return the pairs of rows to align, but for those that are constrained already.
+    """Choose the pairs of scans to align, other than those in sequence: what shows the same.
 
-    Of the loops of a scan in space the nearest that align count, `loops_per_scan` of them.
+    Two half circles that pass in a corridor, turned against each other, have nothing in common
+    where they meet, and most while each has the other before it.
+
+    Parameters
+    ----------
+    world_from_scan : (n, 4, 4) float64
+    seen_m : (n, 3) float64
+        As of `find_seen_middles`: the nearer these are to each other, the more two scans share.
+    constrained : set of (source, target)
+        Rows that have a constraint already.
+    settings : registration_settings.PoseGraphSettings
+    planar : bool
+
+    Returns
+    -------
+    list of (source, target)
+        Rows, sorted. Of the loops of a scan in space the nearest that align count, `loops_per_scan`
+        of them.
     """
     # a planar scan constrains less than a spatial one, and costs less to align
     step_m = settings.loop_step_planar_m if planar else settings.loop_step_m
@@ -210,7 +241,10 @@ def choose_pairs(
     radius_m = settings.loop_radius_m
     apart = settings.loop_apart
     is_station = loops.choose_stations(world_from_scan, step_m)
-    visits = loops.choose_loop_pairs(xy_m, is_station, radius_m=radius_m, apart=apart, most=most)
+    seen_xy_m = xy_m + np.einsum("nij,nj->ni", world_from_scan[:, :2, :3], seen_m)
+    visits = loops.choose_loop_pairs(
+        seen_xy_m, is_station, radius_m=radius_m, apart=apart, most=most
+    )
     is_constrained = np.isin(np.arange(len(xy_m)), [source for source, _ in constrained])
     bridges = loops.choose_bridges(is_constrained, xy_m, radius_m=radius_m, apart=apart)
     return sorted(set(visits + bridges) - constrained)

@@ -148,7 +148,10 @@ class _DriftingGraph:
             (self._row_of_scan[edge.source], self._row_of_scan[edge.target])
             for edge in self.sequence
         }
-        pairs = multiway.choose_pairs(self.poses, known, self._settings, planar=self._planar)
+        seen_m = multiway.find_seen_middles(thinned, planar=self._planar)
+        pairs = multiway.choose_pairs(
+            self.poses, seen_m, known, self._settings, planar=self._planar
+        )
         jobs = multiway.alignment_jobs(
             pairs, self._scan_ids, self.poses, thinned, self._planar, self._limits, self._settings
         )
