@@ -73,6 +73,7 @@ def assemble_plan(
             registered.t_ns[rows],
             planning.make_plan_settings(**settings),
             poses[rows, :3, 2],
+            registered.covariance[rows],
             threads=threads,
         )
     messages.check_plan(walls, plan, is_used.sum(), count)

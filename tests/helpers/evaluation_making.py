@@ -51,7 +51,9 @@ def write_registration(folder, map_from_true=None, positions=POSITIONS):
             {
                 "kept": np.array([False, True, True, True]),
                 "reason": ["low_prior_fitness", "kept", "kept", "kept"],
-                **dict.fromkeys(("prior_fitness", "refined_fitness", "rmse_m"), np.zeros(4)),
+                **dict.fromkeys(
+                    ("prior_fitness", "refined_fitness", "rmse_m", *schemas.COVARIANCE), np.zeros(4)
+                ),
             },
         ),
     ):

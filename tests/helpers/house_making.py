@@ -85,6 +85,7 @@ def write(folder, table, sensors=SENSORS):
         )
     )
     fitness = dict.fromkeys(("prior_fitness", "refined_fitness", "rmse_m"), np.ones(count))
+    fitness |= dict.fromkeys(schemas.COVARIANCE, np.full(count, np.nan))
     judged = {"kept": np.ones(count, bool), "reason": ["kept"] * count}
     known = {"scan_id": np.arange(count), "t_ns": T_NS[:count]}
     tables.write_table(paths[3], schemas.REGISTRATION, known | fitness | judged | pose)

@@ -50,7 +50,8 @@ def poses():
 def registration():
     stamps, pose = _poses()
     pose["x_m"] = pose["x_m"] + 0.03
-    return stamps | pose | {
+    unknown = dict.fromkeys(schemas.COVARIANCE, np.full(5, np.nan))
+    return stamps | pose | unknown | {
         "prior_fitness": np.array([np.nan, 0.8, 0.7, 0.9, 0.2]),
         "refined_fitness": np.array([np.nan, 0.9, 0.8, 0.95, np.nan]),
         "rmse_m": np.array([np.nan, 0.05, 0.06, 0.04, np.nan]),

@@ -33,6 +33,7 @@ def write_survey(folder, *, planar, shown=tuple(SENSORS), scan=None):
             write(scan_id, make(np.array(SENSORS[scan_id]), seed=scan_id))
     n, pose = len(shown), np.array([SENSORS[s] for s in shown])
     same = {"prior_fitness": 1.0, "refined_fitness": 1.0, "rmse_m": 0.0, "kept": True, "reason": ""}
+    same |= dict.fromkeys(schemas.COVARIANCE, np.nan)
     turn = {"qx": 0.0, "qy": 0.0, "qz": 0.0, "qw": 1.0}
     columns = {
         name: np.full(n, value, object if value == "" else None)

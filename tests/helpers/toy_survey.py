@@ -37,7 +37,8 @@ def write_registration(path, registered, positions_m):
         "reason": ["kept"] * n,
     }
     columns |= dict.fromkeys(
-        ("prior_fitness", "refined_fitness", "rmse_m", "qx", "qy", "qz"), np.zeros(n)
+        ("prior_fitness", "refined_fitness", "rmse_m", "qx", "qy", "qz", *schemas.COVARIANCE),
+        np.zeros(n),
     )
     columns |= dict(zip(schemas.XYZ, np.array(positions_m, float).T.copy(), strict=True))
     tables.write_table(path, schemas.REGISTRATION, {**columns, "qw": np.ones(n)})

@@ -41,7 +41,7 @@ def results(tmp_path):
             "kept": [True, False, True],
             "reason": ["kept", "fit", "kept"],
         }
-        | dict.fromkeys(("prior_fitness", "refined_fitness", "rmse_m"), ones)
+        | dict.fromkeys(("prior_fitness", "refined_fitness", "rmse_m", *schemas.COVARIANCE), ones)
         | pose,
     )
     for method in ("cluster_hull", "random"):

@@ -19,7 +19,9 @@ def survey(tmp_path):
         for scan_id in (2, 5, 7):
             write(scan_id, np.array([(scan_id, 0, 0), (scan_id, 0, 0.01), (scan_id, 1, 0)]))
     ids = np.array([2, 5, 7], np.int32)
-    graded = dict.fromkeys(("prior_fitness", "refined_fitness", "rmse_m"), np.ones(3))
+    graded = dict.fromkeys(
+        ("prior_fitness", "refined_fitness", "rmse_m", *schemas.COVARIANCE), np.ones(3)
+    )
     poses = pose_columns(np.zeros((3, 3)), np.tile([0.0, 0.0, 0.0, 1.0], (3, 1)))
     kept = {"kept": np.ones(3, bool), "reason": np.full(3, "", object)}
     stamps = {"scan_id": ids, "t_ns": (T_S + ids.astype(np.int64)) * 10**9}

@@ -42,7 +42,9 @@ def registration():
         **pose_columns(xyz_m, np.tile([0.0, 0.0, 0.0, 1.0], (4, 1))),
     }
     graded = {
-        **dict.fromkeys(("prior_fitness", "refined_fitness", "rmse_m"), np.ones(4)),
+        **dict.fromkeys(
+            ("prior_fitness", "refined_fitness", "rmse_m", *schemas.COVARIANCE), np.ones(4)
+        ),
         "kept": np.array([True, False, True, True]),
         "reason": np.array(["", "icp_diverged", "", ""], object),
     }

@@ -54,6 +54,7 @@ def write_others(folder, method, n):
                 ("prior_fitness", "refined_fitness", "rmse_m", "qx", "qy", "qz", "y_m", "z_m"),
                 zeros,
             )
+            | dict.fromkeys(schemas.COVARIANCE, zeros)
             | {"qw": zeros + 1, "x_m": ids.astype(float)},
         ),
     }

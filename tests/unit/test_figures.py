@@ -9,7 +9,7 @@ from helpers.wall_making import BARE, walls
 from scanplan.errors import StageError
 from scanplan.report import figures, top_view
 from scanplan.stage import figure_files
-from scanplan.store import registered_scans
+from scanplan.store import registered_scans, schemas
 
 
 def ordering(covered_m2):
@@ -59,7 +59,7 @@ class TestPositions:
         "y_m": np.array([4.0, 5, 6]),
         "t_ns": np.array([1, 2, 3]),
         "z_m": np.zeros(3),
-        **dict.fromkeys(("qx", "qy", "qz"), np.zeros(3)),
+        **dict.fromkeys(("qx", "qy", "qz", *schemas.COVARIANCE), np.zeros(3)),
         "qw": np.ones(3),
     }
 

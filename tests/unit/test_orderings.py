@@ -48,7 +48,7 @@ def others(scan_ids):
             "t_ns": np.arange(n),
             "kept": np.ones(n, bool),
             "x_m": np.arange(n) ** 2.0,
-            **dict.fromkeys(("y_m", "z_m", "qx", "qy", "qz"), np.zeros(n)),
+            **dict.fromkeys(("y_m", "z_m", "qx", "qy", "qz", *schemas.COVARIANCE), np.zeros(n)),
             "qw": np.ones(n),
         },
     }

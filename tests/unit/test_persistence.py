@@ -22,7 +22,9 @@ def weigh_by_persistence(columns, places_m=None):
         places_m = [(scan, 0.2) for scan in scan_ids]
     map_from_sensor = np.tile(np.eye(4), (len(scan_ids), 1, 1))
     map_from_sensor[:, :2, 3] = np.array(places_m, float).reshape(-1, 2)
-    registered = RegisteredScans(scan_ids, 10**8 * scan_ids.astype(np.int64), map_from_sensor)
+    unknown = np.full((len(scan_ids), 3, 3), np.nan)
+    t_ns = 10**8 * scan_ids.astype(np.int64)
+    registered = RegisteredScans(scan_ids, t_ns, map_from_sensor, unknown)
     return persistence.weigh_by_persistence(columns, registered)
 
 

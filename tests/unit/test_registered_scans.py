@@ -13,6 +13,7 @@ def registration(**changed):
     columns = {"scan_id": np.array([0, 5, 10]), "t_ns": np.array([1, 2, 3]), "kept": KEPT}
     columns |= {"x_m": np.array([1.0, 2, 3]), "y_m": np.array([4.0, 5, 6]), "z_m": np.zeros(3)}
     columns |= {name: np.full(3, float(name == "qw")) for name in schemas.QUAT}
+    columns |= dict.fromkeys(schemas.COVARIANCE, np.full(3, np.nan))
     return columns | changed
 
 
@@ -47,7 +48,8 @@ def test_a_scan_that_was_not_kept_is_refused(scan_id):
 
 
 def test_prior_poses_follow_the_registered_scans(tmp_path):
-    poses = {name: values for name, values in registration().items() if name != "kept"}
+    unasked = {"kept", *schemas.COVARIANCE}
+    poses = {name: values for name, values in registration().items() if name not in unasked}
     poses |= {"gap_s": np.zeros(3), "covered": np.ones(3, bool)}
     tables.write_table(tmp_path / "poses.parquet", schemas.POSES, poses)
     prior = registered_scans.read_prior_poses(tmp_path / "poses.parquet", kept(), "registration")
@@ -56,7 +58,9 @@ def test_prior_poses_follow_the_registered_scans(tmp_path):
 
 def test_a_registered_scan_without_points_is_told(tmp_path):
     path = tmp_path / "registration.parquet"
-    others = dict.fromkeys(("prior_fitness", "refined_fitness", "rmse_m"), np.zeros(3))
+    others = dict.fromkeys(
+        ("prior_fitness", "refined_fitness", "rmse_m", *schemas.COVARIANCE), np.zeros(3)
+    )
     tables.write_table(path, schemas.REGISTRATION, registration(reason=["kept"] * 3, **others))
     with tables.open_scan_writer(tmp_path / "scans.parquet", planar=False) as write:
         write(0, np.ones((2, 3)))

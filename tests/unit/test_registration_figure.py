@@ -29,7 +29,7 @@ def results(tmp_path):
         "x_m": x_m,
         "qw": zeros + 1,
     }
-    columns |= dict.fromkeys(("y_m", "z_m", "qx", "qy", "qz"), zeros)
+    columns |= dict.fromkeys(("y_m", "z_m", "qx", "qy", "qz", *schemas.COVARIANCE), zeros)
     columns |= dict.fromkeys(("prior_fitness", "refined_fitness"), zeros) | {
         "rmse_m": np.arange(8) / 100
     }

@@ -148,6 +148,7 @@ def make_plan(
     t_ns: IntArray,
     settings: PlanSettings,
     up: FloatArray | None = None,
+    covariance: FloatArray | None = None,
     *,
     threads: int = 1,
 ) -> Plan:
@@ -167,6 +168,9 @@ def make_plan(
     up : (s, 3) float, optional
         The axis that the beams of each chosen scan's sensor are inclined to, in the map frame;
         plumb by default.
+    covariance : (s, 3, 3) float64, optional
+        Of the x, y and heading of each chosen scan, metres and radians; NaN where it is not known,
+        which it is nowhere by default.
     threads : int
         Cores to use; the plan does not depend on it.
 
@@ -197,9 +201,10 @@ def make_plan(
         door_height_m=settings.reading.door_height_m,
     )
     face_columns, main_rows = plan_tables.face_columns(cut_walls, floor_z_m)
-    evidence = uncertainty.estimate_evidence(
-        walls, surfaces.tops_m, registration_sigma_m=settings.merge.registration_sigma_m
+    scans = uncertainty.place_scans(
+        rays.sensors_m[:, :2], covariance, settings.merge.registration_sigma_m
     )
+    evidence = uncertainty.estimate_evidence(walls, surfaces.tops_m, scans)
     doubtful = [known.needs_a_visit(settings.trust) for known in evidence]
     free_floor = _find_free_floor(surfaces.bounds, survey.floor, surfaces.unpaired_m)
     return Plan(

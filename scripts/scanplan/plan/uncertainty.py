@@ -80,8 +80,50 @@ class WallEvidence:
         )
 
 
+@dataclass(frozen=True, eq=False)
+class PlacedScans:
+    """Where scans were taken, and how far that may be off.
+
+    Attributes
+    ----------
+    sensors_m : (s, 2) float64
+    covariance : (s, 3, 3) float64
+        Of x, y and heading, metres and radians.
+    """
+
+    sensors_m: FloatArray
+    covariance: FloatArray
+
+    def sigmas_m(self, scans: IntArray, points_m: FloatArray, normal: FloatArray) -> FloatArray:
+        """Return how far points (k, 2) of scans (k,) may be off along a normal (2,) with these."""
+        from_sensor_m = points_m - self.sensors_m[scans]
+        by_turn_m = from_sensor_m[:, 0] * normal[1] - from_sensor_m[:, 1] * normal[0]
+        change = np.column_stack([np.tile(normal, (len(scans), 1)), by_turn_m])
+        variance = np.einsum("ki,kij,kj->k", change, self.covariance[scans], change)
+        return np.sqrt(np.maximum(variance, 0))
+
+
+def place_scans(
+    sensors_m: FloatArray, covariance: FloatArray | None, registration_sigma_m: float
+) -> PlacedScans:
+    """Return scans as placed; where the covariance is not known, it is that of a usual scan.
+
+    Parameters
+    ----------
+    sensors_m : (s, 2) float64
+    covariance : (s, 3, 3) float64, optional
+        NaN where it is not known.
+    registration_sigma_m : float, > 0
+        Standard deviation of a registered scan's place.
+    """
+    usual = np.diag([registration_sigma_m**2, registration_sigma_m**2, 0.0])
+    if covariance is None:
+        covariance = np.full((len(sensors_m), 3, 3), np.nan)
+    return PlacedScans(sensors_m, np.where(np.isnan(covariance), usual, covariance))
+
+
 def estimate_evidence(
-    walls: Sequence[PlanWall], tops_m: Sequence[float], *, registration_sigma_m: float
+    walls: Sequence[PlanWall], tops_m: Sequence[float], scans: PlacedScans
 ) -> list[WallEvidence]:
     """Return the evidence of every wall.
 
@@ -90,13 +132,13 @@ def estimate_evidence(
     walls : sequence of plan_wall.PlanWall
     tops_m : sequence of float
         Where each ends below the ceiling, above the floor; NaN where it was not seen to.
-    registration_sigma_m : float, > 0
-        Standard deviation of a registered scan's place.
+    scans : PlacedScans
+        All that were used.
     """
-    offset_sigmas_m = np.array([_offset_sigma_m(wall, registration_sigma_m) for wall in walls])
+    offset_sigmas_m = np.array([_offset_sigma_m(wall, scans) for wall in walls])
     spans = intersections.stack_spans(walls)
     return [
-        _estimate_wall(wall, row, top_m, spans, offset_sigmas_m, registration_sigma_m)
+        _estimate_wall(wall, row, top_m, spans, offset_sigmas_m, scans)
         for row, (wall, top_m) in enumerate(zip(walls, tops_m, strict=True))
     ]
 
@@ -107,12 +149,12 @@ def _estimate_wall(
     top_m: float,
     spans: intersections.SpanArrays,
     offset_sigmas_m: FloatArray,
-    registration_sigma_m: float,
+    placed: PlacedScans,
 ) -> WallEvidence:
     scan, residual_m, z_m = _hits(wall.members)
     scans, points = np.unique(scan, return_counts=True)
-    start_sigma_m = _end_sigma_m(wall, wall.low_m, spans, offset_sigmas_m, registration_sigma_m)
-    end_sigma_m = _end_sigma_m(wall, wall.high_m, spans, offset_sigmas_m, registration_sigma_m)
+    start_sigma_m = _end_sigma_m(wall, wall.low_m, spans, offset_sigmas_m, placed)
+    end_sigma_m = _end_sigma_m(wall, wall.high_m, spans, offset_sigmas_m, placed)
     return WallEvidence(
         rmse_m=float(np.sqrt(np.mean(residual_m**2))),
         sigma_offset_m=float(offset_sigmas_m[row]),
@@ -142,27 +184,38 @@ def _highest_m(z_m: FloatArray) -> float:
     return float(np.sort(z_m)[max(len(z_m) - 1 - ENOUGH_RAYS, len(z_m) // 2)])
 
 
-def _offset_sigma_m(wall: PlanWall, registration_sigma_m: float) -> float:
-    """Return the standard deviation of a wall's middle: the mean of its sides."""
-    sides = [side for side in (wall.left, wall.right) if side]
-    variances = [_side_sigma_m(side, registration_sigma_m) ** 2 for side in sides]
-    return math.sqrt(sum(variances)) / len(sides)
+def _offset_sigma_m(wall: PlanWall, scans: PlacedScans) -> float:
+    """Return the standard deviation of a wall's middle: the mean of its sides.
 
-
-def _side_sigma_m(intervals: Sequence[FaceInterval], registration_sigma_m: float) -> float:
-    """Return the standard deviation of a side's offset.
-
-    Scans err independently, a scan's points together. The spread of the scans' means is taken where
-    it is wider than registration is said to be.
+    Scans of a room hang together, and err together: what their poses may be off by does not become
+    less with their number. What each adds of its own does.
     """
+    sides = [side for side in (wall.left, wall.right) if side]
+    of_poses_m = [_pose_sigma_m(side, wall.line.normal, scans) for side in sides]
+    own_m = math.hypot(*(_own_sigma_m(side) for side in sides))
+    return math.hypot(float(np.mean(of_poses_m)), own_m / len(sides))
+
+
+def _pose_sigma_m(
+    intervals: Sequence[FaceInterval], normal: FloatArray, placed: PlacedScans
+) -> float:
+    """Return by how much the poses of its scans may shift a side along a normal (2,)."""
+    scan, _, _ = _hits(intervals)
+    xy_m = np.concatenate([i.line.at(i.seen.occupied_m[i.points]) for i in intervals])
+    scans, index, count = np.unique(scan, return_inverse=True, return_counts=True)
+    middle_m = [np.bincount(index, values) / count for values in xy_m.T]
+    sigmas_m = placed.sigmas_m(scans, np.column_stack(middle_m), normal)
+    return float(np.average(sigmas_m, weights=count))
+
+
+def _own_sigma_m(intervals: Sequence[FaceInterval]) -> float:
+    """Return the standard deviation of a side's offset by the spread of its scans and points."""
     scan, offset_m, _ = _hits(intervals)
     _, index, count = np.unique(scan, return_inverse=True, return_counts=True)
     mean_m = np.bincount(index, offset_m) / count
     deviation_m = mean_m - np.average(mean_m, weights=count)
     spread_m = np.sqrt(np.average(deviation_m**2, weights=count))
-    of_scans_m = max(spread_m, registration_sigma_m) / math.sqrt(len(count))
-    of_points_m = offset_m.std() / len(scan) ** 0.5
-    return math.hypot(of_scans_m, of_points_m)
+    return math.hypot(spread_m / len(count) ** 0.5, offset_m.std() / len(scan) ** 0.5)
 
 
 def _end_sigma_m(
@@ -170,7 +223,7 @@ def _end_sigma_m(
     end_m: float,
     spans: intersections.SpanArrays,
     offset_sigmas_m: FloatArray,
-    registration_sigma_m: float,
+    placed: PlacedScans,
 ) -> float:
     """Return the standard deviation of an end: of the wall it meets there, or by its last points.
 
@@ -183,23 +236,26 @@ def _end_sigma_m(
         All walls.
     offset_sigmas_m : (n,) float64
         Of all walls.
-    registration_sigma_m : float
+    placed : PlacedScans
     """
     crossings = wall.find_crossings(spans)
     is_at_end = np.abs(crossings.place_m - end_m) < ROUNDING
     if is_at_end.any():
         return float((offset_sigmas_m[crossings.which] / crossings.sine)[is_at_end].min())
-    n_scans = 0
+    end_at_m = wall.line.at(np.array([end_m]))
+    sigmas_m: list[float] = []
     pitch_m = math.inf
     for interval in wall.members:
         seen = interval.seen
         along_m = wall.line.along_m(interval.line.at(seen.occupied_m[interval.points]))
         is_near = np.abs(along_m - end_m) <= _NEAR_END_M
         if is_near.any():
-            n_scans += len(np.unique(seen.occupied_scan[interval.points][is_near]))
+            scans = np.unique(seen.occupied_scan[interval.points][is_near])
+            points_m = np.repeat(end_at_m, len(scans), axis=0)
+            sigmas_m += placed.sigmas_m(scans, points_m, wall.line.direction).tolist()
             pitch_m = min(pitch_m, _NEAR_END_M / is_near.sum())
-    of_scans_m = registration_sigma_m / math.sqrt(max(n_scans, 1))
-    return math.hypot(of_scans_m, min(pitch_m, _NEAR_END_M))
+    of_poses_m = float(np.mean(sigmas_m)) if sigmas_m else 0.0
+    return math.hypot(of_poses_m, min(pitch_m, _NEAR_END_M))
 
 
 def _observed_share(wall: PlanWall) -> float:

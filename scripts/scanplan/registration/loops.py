@@ -16,7 +16,6 @@ from scanplan.types import BoolArray, FloatArray, IntArray
 RowPair = tuple[int, int]
 """Rows (source, target) of two scans."""
 _STATION_TURN_DEG = 30.0  # a camera that turned this far shows other things
-_LOOSE = 2  # what overlaps after alignment overlaps within this many times the distance before
 
 
 def choose_stations(world_from_scan: FloatArray, step_m: float) -> BoolArray:
@@ -210,7 +209,8 @@ def _constrain(
 ) -> PoseConstraint | None:
     # the poses are good already: a wider search would take one side of a wall for the other
     fine_m = settings.icp_distances_m[-1]
-    overlap, _ = constraints.measure_facing_overlap(source, target, _LOOSE * fine_m, settings)
+    rough_m = settings.fitness_distance_m
+    overlap, _ = constraints.measure_facing_overlap(source, target, rough_m, settings)
     if overlap < min_fitness:
         return None
     edge = constraints.measure_constraint(source, target, kind, [fine_m], settings)

@@ -139,7 +139,14 @@ def find_unconfirmed(
 
 def drop_anchor(result: ScanResult, prior: FloatArray) -> ScanResult:
     """Return the result of an unconfirmed anchor, at the localiser's pose."""
-    return replace(result, kept=False, reason="unconfirmed", world_from_sensor=prior)
+    unknown = np.full((3, 3), np.nan)
+    return replace(
+        result,
+        kept=False,
+        reason="unconfirmed",
+        world_from_sensor=prior,
+        covariance=unknown,
+    )
 
 
 def _register_batches(
@@ -195,8 +202,10 @@ def _optimise(
             survey.scan_ids[kept], start, given, edges, thinned, run, **common
         )
     poses = optimised.world_from_cloud @ level_from_sensor
-    for row, pose in zip(kept, poses, strict=True):
-        scan_results[row] = replace(scan_results[row], world_from_sensor=pose)
+    for row, pose, covariance in zip(kept, poses, optimised.covariance, strict=True):
+        scan_results[row] = replace(
+            scan_results[row], world_from_sensor=pose, covariance=covariance
+        )
     return optimised
 
 

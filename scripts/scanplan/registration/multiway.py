@@ -35,6 +35,9 @@ class OptimisedMap:
         Share of its information with which each counts, 0 to 1.
     prior_weight : (n,) float64
         The same of what was recorded of the poses.
+    covariance : (n, 3, 3) float64
+        Of x, y and heading of each pose, metres and radians, as far as poses err against each
+        other; NaN where they were not optimised together.
     recorded : str
         What that is: a localiser's poses, or odometry's motions.
     doubts : tuple of str
@@ -46,6 +49,7 @@ class OptimisedMap:
     residual: FloatArray
     weight: FloatArray
     prior_weight: FloatArray
+    covariance: FloatArray
     recorded: str = "the localiser's poses"
     doubts: tuple[str, ...] = ()
 
@@ -78,7 +82,8 @@ def keep_sequential(
     target_from_world = se3.invert_pose(start[motions.target])
     error = source_from_target @ target_from_world @ start[motions.source]
     residual = twists.motion_to_twist(error)
-    return OptimisedMap(start, kept, residual, np.ones(len(kept)), np.ones(len(start)))
+    unknown = np.full((len(start), 3, 3), np.nan)
+    return OptimisedMap(start, kept, residual, np.ones(len(kept)), np.ones(len(start)), unknown)
 
 
 def optimise_poses(
@@ -142,6 +147,7 @@ def optimise_poses(
         solution.residual,
         solution.weight,
         solution.prior_weight,
+        solution.covariance,
     )
 
 

@@ -11,6 +11,7 @@ from scipy import sparse
 from scipy.sparse.linalg import LinearOperator, SuperLU, cg, splu
 
 from scanplan.geometry.tolerances import ROUNDING
+from scanplan.registration import pose_covariance
 from scanplan.registration.graph_equations import GraphEquations, GraphState, MotionConstraints
 from scanplan.types import BoolArray, FloatArray
 
@@ -30,12 +31,15 @@ class PoseGraphSolution:
         Shift and turn by which each constraint is off.
     weight, prior_weight : (m,), (n,) float64
         Share of its information with which each constraint and each prior counts, 0 to 1.
+    covariance : (n, 3, 3) float64
+        See `pose_covariance.estimate_covariance`; NaN of poses where another solution starts.
     """
 
     world_from_scan: FloatArray
     residual: FloatArray
     weight: FloatArray
     prior_weight: FloatArray
+    covariance: FloatArray
 
 
 def solve_pose_graph(
@@ -98,7 +102,11 @@ def solve_pose_graph(
         if is_better.any():
             again = minimise(_place(is_better, at_priors, pose), step_done)
             pose, state = min((pose, state), again, key=lambda found: found[1].cost)
-    return PoseGraphSolution(pose, state.residual, state.weight, state.prior_weight)
+    covariance = np.full((len(pose), 3, 3), np.nan)
+    if not is_start:
+        factors = _factorise(_regular_equations(equations, state)[0])
+        covariance = pose_covariance.estimate_covariance(factors, pose)
+    return PoseGraphSolution(pose, state.residual, state.weight, state.prior_weight, covariance)
 
 
 def _place(chosen: BoolArray, poses: FloatArray, others: FloatArray) -> FloatArray:
@@ -150,9 +158,7 @@ def _least_squares_step(
     equations: GraphEquations, state: GraphState, is_free: BoolArray | None
 ) -> FloatArray:
     """Return the step (n * d,) to the least squares; of poses that are not free (n,) it is zero."""
-    hessian, gradient = equations.normal_equations(state)
-    # regular even where no measurement says anything
-    hessian.setdiag(hessian.diagonal() * (1 + ROUNDING) + ROUNDING)
+    hessian, gradient = _regular_equations(equations, state)
     if is_free is not None:
         rows = np.flatnonzero(np.repeat(is_free, equations.size))
         step = np.zeros_like(gradient)
@@ -167,6 +173,15 @@ def _least_squares_step(
     factors = _factorise(hessian)
     equations.factors = factors
     return factors.solve(-gradient)
+
+
+def _regular_equations(
+    equations: GraphEquations, state: GraphState
+) -> tuple[sparse.csc_array, FloatArray]:
+    """Return Hessian and gradient, regular even where no measurement says anything."""
+    hessian, gradient = equations.normal_equations(state)
+    hessian.setdiag(hessian.diagonal() * (1 + ROUNDING) + ROUNDING)
+    return hessian, gradient
 
 
 def _factorise(matrix: sparse.csc_array) -> SuperLU:

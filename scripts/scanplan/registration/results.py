@@ -11,7 +11,7 @@ from scanplan.geometry.tolerances import ROUNDING, SHORTEST_M
 from scanplan.registration.multiway import OptimisedMap
 from scanplan.registration.pose_graph import INLIER_WEIGHT
 from scanplan.registration.sequential import ScanResult
-from scanplan.store import schemas
+from scanplan.store import pose_columns, schemas
 from scanplan.types import Array, Columns, FilePath, FloatArray, IntArray
 
 _FARTHEST_M = SHORTEST_M / np.finfo(np.float32).eps  # single precision resolves no more there
@@ -42,6 +42,7 @@ def registration_columns(
 ) -> dict[str, Array]:
     """Return the columns of schemas.REGISTRATION, one result per candidate."""
     poses = np.array([result.world_from_sensor for result in results])
+    covariance = np.array([result.covariance for result in results])
     return {
         "scan_id": scan_ids,
         "t_ns": t_ns,
@@ -51,6 +52,7 @@ def registration_columns(
         "kept": np.array([result.kept for result in results]),
         "reason": np.array([result.reason for result in results], object),
         **_pose_columns(poses),
+        **pose_columns.covariance_columns(covariance),
     }
 
 
@@ -124,9 +126,11 @@ def summarise_constraints(optimised: OptimisedMap | None) -> str:
         n_outliers = (is_outlier & of_kind).sum()
         counts.append(f"{of_kind.sum():,} {kind} ({n_outliers:,} outliers)")
     n_jumps = int((optimised.prior_weight < INLIER_WEIGHT).sum())
+    sigma_m = np.sqrt(np.median(np.trace(optimised.covariance[:, :2, :2], axis1=1, axis2=2)))
+    spread = "" if np.isnan(sigma_m) else f"; poses within {sigma_m:.3f} m (standard deviation)"
     return (
         f"constraints: {', '.join(counts) or 'none'};"
-        f" {n_jumps:,} of {optimised.recorded} are outliers"
+        f" {n_jumps:,} of {optimised.recorded} are outliers{spread}"
     )
 
 

@@ -35,6 +35,8 @@ class ScanResult:
     prior_fitness, refined_fitness, rmse_m : float
         Mean fitness against the previous retained scans before and after refinement, residual of
         the refinement; NaN where it did not come to that.
+    covariance : (3, 3) float64
+        See `multiway.OptimisedMap`; NaN of scans that are not in the map.
     """
 
     kept: bool
@@ -43,6 +45,7 @@ class ScanResult:
     prior_fitness: float = np.nan
     refined_fitness: float = np.nan
     rmse_m: float = np.nan
+    covariance: FloatArray = field(default_factory=lambda: np.full((3, 3), np.nan))
 
 
 @dataclass

@@ -1,4 +1,4 @@
-"""Poses as columns of a table, `schemas.XYZ` and `schemas.QUAT`, and back."""
+"""Poses and their covariances as columns of a table, and back."""
 
 import numpy as np
 
@@ -23,3 +23,18 @@ def split_pose_columns(columns: Columns) -> tuple[FloatArray, FloatArray]:
 def pose_matrices(columns: Columns) -> FloatArray:
     """Return the poses of a table as matrices (n, 4, 4); NaN where not known."""
     return se3.pose_matrix(*split_pose_columns(columns))
+
+
+def covariance_columns(covariance: FloatArray) -> dict[str, Array]:
+    """Return the columns `schemas.COVARIANCE` of covariances (n, 3, 3)."""
+    values = covariance[:, *np.triu_indices(3)].T
+    return dict(zip(schemas.COVARIANCE, values, strict=True))
+
+
+def covariance_matrices(columns: Columns) -> FloatArray:
+    """Return the covariances (n, 3, 3) of a table; NaN where not known."""
+    row, column = np.triu_indices(3)
+    covariance = np.empty((len(columns[schemas.COVARIANCE[0]]), 3, 3))
+    for name, i, j in zip(schemas.COVARIANCE, row, column, strict=True):
+        covariance[:, i, j] = covariance[:, j, i] = columns[name]
+    return covariance

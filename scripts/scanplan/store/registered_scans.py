@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.errors import StageError
-from scanplan.store import schemas, tables
+from scanplan.store import pose_columns, schemas, tables
 from scanplan.store.pose_columns import pose_matrices
 from scanplan.types import Array, Columns, FilePath, FloatArray, IntArray
 
@@ -20,11 +20,15 @@ class RegisteredScans:
     t_ns : (n,) int64
     map_from_sensor : (n, 4, 4) float64
         As registered.
+    covariance : (n, 3, 3) float64
+        Of x, y and heading, metres and radians, as far as the poses err against each other; NaN
+        where they were not optimised together.
     """
 
     scan_ids: IntArray
     t_ns: IntArray
     map_from_sensor: FloatArray
+    covariance: FloatArray
 
 
 def read_registered_scans(path: FilePath, store: tables.ScanStore | None = None) -> RegisteredScans:
@@ -67,7 +71,8 @@ def select_kept_scans(columns: Columns, path: FilePath) -> RegisteredScans:
             f"{path}: {len(pose)} scans are kept, {n_unknown} of them without a pose;"
             f" {tables.RERUN_ALL}"
         )
-    return RegisteredScans(kept["scan_id"], kept["t_ns"], pose)
+    covariance = pose_columns.covariance_matrices(kept)
+    return RegisteredScans(kept["scan_id"], kept["t_ns"], pose, covariance)
 
 
 def read_prior_poses(path: FilePath, scans: RegisteredScans, origin: FilePath) -> FloatArray:

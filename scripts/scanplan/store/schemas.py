@@ -9,6 +9,11 @@ from dataclasses import dataclass
 XYZ = ("x_m", "y_m", "z_m")
 QUAT = ("qx", "qy", "qz", "qw")
 _POSE = dict.fromkeys((*XYZ, *QUAT), "float64")
+COVARIANCE = (
+    *("cov_x_x_m2", "cov_x_y_m2", "cov_x_yaw_m_rad"),
+    *("cov_y_y_m2", "cov_y_yaw_m_rad", "cov_yaw_yaw_rad2"),
+)
+"""The upper half of a covariance (3, 3) of x, y and heading, row by row."""
 _SEGMENT = dict.fromkeys(("x0_m", "y0_m", "x1_m", "y1_m", "nx", "ny"), "float64")
 
 
@@ -58,7 +63,7 @@ MOTION = Schema(
 )
 REGISTRATION = Schema(
     "registration",
-    1,
+    2,
     {
         "scan_id": "int32",
         "t_ns": "int64",
@@ -68,6 +73,7 @@ REGISTRATION = Schema(
         "kept": "bool",
         "reason": "string",
         **_POSE,
+        **dict.fromkeys(COVARIANCE, "float64"),
     },
     ("scan_id",),
 )

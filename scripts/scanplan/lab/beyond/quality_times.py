@@ -90,6 +90,7 @@ class TimedSurvey:
             known.t_ns[rows],
             planning.make_plan_settings(**self.plan),
             poses[rows, :3, 2],
+            known.covariance[rows],
         )
 
 

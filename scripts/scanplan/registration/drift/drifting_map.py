@@ -76,6 +76,7 @@ def optimise_drifting_poses(
         solution.residual[: len(all_edges)],
         weight,
         solution.weight[len(all_edges) :],
+        solution.covariance,
         recorded="odometry's motions",
         doubts=(
             *folds.find_loose_parts(len(scan_ids), source, target),
