@@ -16,16 +16,17 @@ from scanplan.rays.tolerances import FEW
 
 
 def find_strays(walls: Sequence[PlanWall], *, max_length_m: float) -> list[FaceInterval]:
-    """Find single surfaces that nothing else meets, along or across no wall twice as long.
+    """Find surfaces that nothing else meets, along or across no wall twice as long.
 
-    The sides of a flight of stairs, of a person's legs, or of what was carried in: a wall is built
+    Several in one line are seen from the same side, and no longer together than one. They are the
+    sides of a flight of stairs, of a person's legs, or of what was carried in: a wall is built
     along others, meets them, or shows its other side to who goes round it.
 
     Parameters
     ----------
     walls : sequence of plan_wall.PlanWall
     max_length_m : float
-        Longer surfaces are walls.
+        What shows more is a wall.
 
     Returns
     -------
@@ -35,12 +36,14 @@ def find_strays(walls: Sequence[PlanWall], *, max_length_m: float) -> list[FaceI
     short = [
         wall
         for wall in walls
-        if len(wall.members) == 1 and not wall.openings and wall.length_m <= max_length_m
+        if not (wall.left and wall.right)
+        and sum(face.length_m for face in wall.members) <= max_length_m
     ]
     strays = {
-        id(wall.members[0]): wall.members[0]
+        id(face): face
         for wall in _choose_few(short, max_length_m)
         if _is_oblique(wall, walls)
+        for face in wall.members
     }
     tree = FaceTree(list_faces(walls))
     met_by = {
