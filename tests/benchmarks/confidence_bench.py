@@ -116,6 +116,7 @@ def _make_plan(
         registered.t_ns[rows],
         planning.make_plan_settings(**stage_settings.select_plan(settings)),
         poses[rows, :3, 2],
+        registered.covariance[rows],
     )
     z_m = levels.find_floor_and_ceiling(np.empty(0) if rays.planar else rays.xyz_m[:, 2])
     parts = {name: getattr(made, name) for name in ("faces", "walls", "openings", "rooms", "free")}

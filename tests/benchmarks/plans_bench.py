@@ -209,6 +209,7 @@ def _make_plan(found: Results, rows: IntArray, scan_ids: IntArray, settings: Set
         found.registered.t_ns[rows],
         planning.make_plan_settings(**stage_settings.select_plan(settings)),
         poses[rows, :3, 2],
+        found.registered.covariance[rows],
     )
     return Plan(plan, rays.floor_z_m)
 

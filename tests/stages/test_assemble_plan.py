@@ -54,6 +54,18 @@ def test_a_house_of_two_rooms(house, tmp_path):
     )
 
 
+def test_walls_are_as_sure_as_registration_says_that_poses_are(house, tmp_path):
+    """Off by 3 cm along x, and known along y."""
+    table = tables.read_table(house[3], schemas.REGISTRATION)
+    table |= {name: np.zeros(len(table["kept"])) for name in schemas.COVARIANCE}
+    table["cov_x_x_m2"] += 0.03**2
+    tables.write_table(tmp_path / "registration.parquet", schemas.REGISTRATION, table)
+    found = assembled([*house[:3], tmp_path / "registration.parquet"], tmp_path / "plan")["walls"]
+    along_x = np.abs(found["x1_m"] - found["x0_m"]) > np.abs(found["y1_m"] - found["y0_m"])
+    np.testing.assert_allclose(found["sigma_offset_m"][~along_x], 0.03, rtol=1e-2)
+    assert (found["sigma_offset_m"][along_x] < 0.002).all()
+
+
 def test_tables_refer_to_each_other(house, tmp_path):
     plan = assembled(house, tmp_path / "plan")
     assert np.isin(plan["faces"]["wall"], plan["walls"]["wall"]).all()

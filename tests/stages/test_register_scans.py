@@ -85,6 +85,8 @@ def test_retained_scans_lie_in_the_map(run):
     verdicts = tables.read_table(registered, schemas.REGISTRATION)
     assert verdicts["reason"].tolist() == ["anchor"] + ["kept"] * 4
     np.testing.assert_allclose(verdicts["x_m"], [1.0, 1.1, 1.2, 1.3, 1.4], atol=0.015)
+    for name in ("cov_x_x_m2", "cov_y_y_m2"):
+        assert (verdicts[name] > 1e-8).all() and (verdicts[name] < 0.01**2).all()
     store = tables.ScanStore(scans)
     assert store.scan_ids.tolist() == [0, 1, 2, 3, 4] and not store.planar
     for scan_id, xyz_m in store.scans():
@@ -103,6 +105,8 @@ def test_scans_without_points_are_named_and_left_out(run):
         "kept",
     ]
     assert tables.ScanStore(scans).scan_ids.tolist() == [0, 2, 4]
+    for name in schemas.COVARIANCE:
+        assert np.isnan(verdicts[name]).tolist() == [False, True, False, True, False]
 
 
 def test_the_number_of_cores_changes_no_byte(run):

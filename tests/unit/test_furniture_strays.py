@@ -55,16 +55,21 @@ def test_what_shows_its_other_side_is_a_wall():
     assert strays(wall(*ends_m, right=[behind])) == []
 
 
-@pytest.mark.parametrize(("second_m", "n_strays"), [(0.4, 2), (0.9, 0)])
-def test_two_things_in_one_line_make_no_wall_with_a_way_between(second_m, n_strays):
-    """A leaf of 0.7 m, and 0.9 m beyond it what one scan saw: 1.1 m together, or 1.6 m."""
-    whole = wall(*oblique(1.6 + second_m, 40))
+@pytest.mark.parametrize(
+    ("way_m", "second_m", "n_strays"),
+    [(0.9, 0.4, 2), (0.9, 0.9, 0), (2.0, 0.4, 0)],
+    ids=["a door apart", "long together", "far apart"],
+)
+def test_two_things_in_one_line_make_no_wall_with_a_door_between(way_m, second_m, n_strays):
+    """A leaf of 0.7 m, and beyond a way what one scan saw."""
+    begin_m = 0.7 + way_m
+    whole = wall(*oblique(begin_m + second_m, 40))
     line = whole.line
     leaf, other = (
         stretch(*line.at(low_m), *line.at(high_m), planar=True)
-        for low_m, high_m in ((0.0, 0.7), (1.6, 1.6 + second_m))
+        for low_m, high_m in ((0.0, 0.7), (begin_m, begin_m + second_m))
     )
-    way = Opening(0.7, 1.6, OPEN, 99, 0.0, np.nan, False)
+    way = Opening(0.7, begin_m, OPEN, 99, 0.0, np.nan, False)
     both = PlanWall(line, 0.0, whole.high_m, np.nan, [leaf, other], [], [way])
     room = [wall(*ends) for ends in ROOM]
     assert len(find_strays([*room, both], max_length_m=1.5)) == n_strays

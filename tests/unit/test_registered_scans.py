@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from scanplan.errors import StageError
-from scanplan.store import registered_scans, schemas, tables
+from scanplan.store import pose_columns, registered_scans, schemas, tables
 
 KEPT = np.array([True, False, True])
 
@@ -33,6 +33,16 @@ def test_only_kept_scans_remain():
 def test_no_scan_and_no_pose_are_refused(changed):
     with pytest.raises(StageError, match=r"registration\.parquet: .* scans are kept"):
         kept(**changed)
+
+
+def test_covariances_come_back_as_they_were_written():
+    root = np.random.default_rng(0).normal(size=(3, 3, 3))
+    covariance = root @ root.transpose(0, 2, 1)
+    columns = pose_columns.covariance_columns(covariance)
+    assert columns["cov_x_yaw_m_rad"][1] == covariance[1, 0, 2]
+    assert columns["cov_y_y_m2"][1] == covariance[1, 1, 1]
+    np.testing.assert_array_equal(pose_columns.covariance_matrices(columns), covariance)
+    np.testing.assert_array_equal(kept(**columns).covariance, covariance[[0, 2]])
 
 
 def test_positions_come_in_the_order_asked_for():

@@ -141,6 +141,25 @@ class GraphEquations:
         blocks = [own, from_source @ by_source, across, _transpose(across), from_target @ by_target]
         return self._hessian.fill(blocks), gradient.ravel()
 
+    def draw_gradients(
+        self, state: GraphState, rng: np.random.Generator, n_draws: int
+    ) -> FloatArray:
+        """Draw gradients (n * d, n_draws) as noise of the measurements makes them.
+
+        Their covariance is the Hessian of `normal_equations`.
+        """
+        priors = state.prior_weight[:, None, None] * self._prior_information
+        prior_pull = _transpose(self._reduce(_jacobian(state.prior_residual))) @ _root(priors)
+        noise = rng.standard_normal((len(prior_pull), self.size, n_draws))
+        gradient = prior_pull @ noise
+        root = _root(state.weight[:, None, None] * self._information)
+        noise = rng.standard_normal((len(root), self.size, n_draws))
+        for jacobian, rows in zip(
+            self._jacobians(state), (self._source, self._target), strict=True
+        ):
+            np.add.at(gradient, rows, _transpose(jacobian) @ root @ noise)
+        return gradient.reshape(-1, n_draws)
+
     def move(self, pose: FloatArray, step: FloatArray) -> FloatArray:
         """Return poses (n, 4, 4) after a step, true rotations again."""
         twist = np.zeros((len(pose), 6))
@@ -180,6 +199,12 @@ def _jacobian(residual: FloatArray) -> FloatArray:
     result[:, :3, :3] = twists.twist_to_motion(residual)[:, :3, :3]
     result[:, 3:, 3:] = np.eye(3) + rotations.cross_matrix(turn) / 2
     return result
+
+
+def _root(information: FloatArray) -> FloatArray:
+    """Return R (m, d, d) with R R' = information, which may be singular."""
+    value, vector = np.linalg.eigh(information)
+    return vector * np.sqrt(np.maximum(value, 0))[:, None]
 
 
 def _transpose(matrices: FloatArray) -> FloatArray:

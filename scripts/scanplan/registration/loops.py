@@ -209,8 +209,8 @@ def _constrain(
 ) -> PoseConstraint | None:
     # the poses are good already: a wider search would take one side of a wall for the other
     fine_m = settings.icp_distances_m[-1]
-    rough_m = settings.fitness_distance_m
-    overlap, _ = constraints.measure_facing_overlap(source, target, rough_m, settings)
+    # what overlaps after alignment overlaps within twice the distance before
+    overlap, _ = constraints.measure_facing_overlap(source, target, 2 * fine_m, settings)
     if overlap < min_fitness:
         return None
     edge = constraints.measure_constraint(source, target, kind, [fine_m], settings)

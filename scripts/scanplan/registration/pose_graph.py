@@ -104,8 +104,12 @@ def solve_pose_graph(
             pose, state = min((pose, state), again, key=lambda found: found[1].cost)
     covariance = np.full((len(pose), 3, 3), np.nan)
     if not is_start:
-        factors = _factorise(_regular_equations(equations, state)[0])
-        covariance = pose_covariance.estimate_covariance(factors, pose)
+        # the old ones may be the largest thing in memory
+        equations.factors = None
+        hessian, _ = equations.normal_equations(state)
+        hessian.setdiag(hessian.diagonal() + ROUNDING)
+        factors = _factorise(hessian)
+        covariance = pose_covariance.estimate_covariance(equations, state, factors, pose)
     return PoseGraphSolution(pose, state.residual, state.weight, state.prior_weight, covariance)
 
 
@@ -158,7 +162,9 @@ def _least_squares_step(
     equations: GraphEquations, state: GraphState, is_free: BoolArray | None
 ) -> FloatArray:
     """Return the step (n * d,) to the least squares; of poses that are not free (n,) it is zero."""
-    hessian, gradient = _regular_equations(equations, state)
+    hessian, gradient = equations.normal_equations(state)
+    # regular even where no measurement says anything
+    hessian.setdiag(hessian.diagonal() * (1 + ROUNDING) + ROUNDING)
     if is_free is not None:
         rows = np.flatnonzero(np.repeat(is_free, equations.size))
         step = np.zeros_like(gradient)
@@ -173,15 +179,6 @@ def _least_squares_step(
     factors = _factorise(hessian)
     equations.factors = factors
     return factors.solve(-gradient)
-
-
-def _regular_equations(
-    equations: GraphEquations, state: GraphState
-) -> tuple[sparse.csc_array, FloatArray]:
-    """Return Hessian and gradient, regular even where no measurement says anything."""
-    hessian, gradient = equations.normal_equations(state)
-    hessian.setdiag(hessian.diagonal() * (1 + ROUNDING) + ROUNDING)
-    return hessian, gradient
 
 
 def _factorise(matrix: sparse.csc_array) -> SuperLU:

@@ -107,7 +107,8 @@ class PoseGraphSettings:
     optimise : bool
         Whether they are; otherwise they stay as registered one after the other.
     loop_radius_m : float
-        Metres. Scans farther apart get no constraint.
+        Metres. Scans farther apart get no constraint; of loops in the plane the middles of what
+        they show.
     loop_apart : int
         Nor do scans with fewer retained scans than this between them (loops).
     loop_step_m, loop_step_planar_m : float

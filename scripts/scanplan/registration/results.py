@@ -126,8 +126,11 @@ def summarise_constraints(optimised: OptimisedMap | None) -> str:
         n_outliers = (is_outlier & of_kind).sum()
         counts.append(f"{of_kind.sum():,} {kind} ({n_outliers:,} outliers)")
     n_jumps = int((optimised.prior_weight < INLIER_WEIGHT).sum())
-    sigma_m = np.sqrt(np.median(np.trace(optimised.covariance[:, :2, :2], axis1=1, axis2=2)))
-    spread = "" if np.isnan(sigma_m) else f"; poses within {sigma_m:.3f} m (standard deviation)"
+    variance_m2 = np.trace(optimised.covariance[:, :2, :2], axis1=1, axis2=2) / 2
+    sigma_m = np.sqrt(np.median(variance_m2))
+    spread = (
+        "" if np.isnan(sigma_m) else f"; half of the poses are known to {sigma_m:.3f} m an axis"
+    )
     return (
         f"constraints: {', '.join(counts) or 'none'};"
         f" {n_jumps:,} of {optimised.recorded} are outliers{spread}"

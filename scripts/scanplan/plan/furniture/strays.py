@@ -18,7 +18,8 @@ from scanplan.rays.tolerances import FEW
 def find_strays(walls: Sequence[PlanWall], *, max_length_m: float) -> list[FaceInterval]:
     """Find surfaces that nothing else meets, along or across no wall twice as long.
 
-    Several in one line are seen from the same side, and no longer together than one. They are the
+    Several in one line are seen from the same side, show no more together than one may, and are no
+    farther apart than the posts of a door. They are the
     sides of a flight of stairs, of a person's legs, or of what was carried in: a wall is built
     along others, meets them, or shows its other side to who goes round it.
 
@@ -37,6 +38,7 @@ def find_strays(walls: Sequence[PlanWall], *, max_length_m: float) -> list[FaceI
         wall
         for wall in walls
         if not (wall.left and wall.right)
+        and all(opening.width_m <= max_length_m for opening in wall.openings)
         and sum(face.length_m for face in wall.members) <= max_length_m
     ]
     strays = {
