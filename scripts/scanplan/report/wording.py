@@ -98,8 +98,9 @@ def review_note(plan: floorplan.FloorPlan) -> str:
     """Return how many walls are weakly supported."""
     n_to_verify = int(plan.walls["verify"].sum())
     return (
-        "Standard deviations of a wall's offset and of both its ends as the scans that show it"
-        f" tell. {n_to_verify:,} of {len(plan.walls['wall']):,} walls are weakly supported and"
+        "Standard deviations of a wall's offset and of both its ends, against the rest of the plan:"
+        " by how far the poses of the scans that show it may be off, and by the spread of its"
+        f" points. {n_to_verify:,} of {len(plan.walls['wall']):,} walls are weakly supported and"
         " marked to be verified on site. Choosing a row shows what it is of in the plan."
     )
 

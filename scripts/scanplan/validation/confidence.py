@@ -55,7 +55,7 @@ def rate_elements(
         doubt = _explain(shares, model["features"], verify)
         if table == "walls":
             is_weak = columns["verify"] & ~verify
-            doubt[is_weak] = "place uncertain, or hardly seen"
+            doubt[is_weak] = "place or end uncertain, or hardly seen"
             verify = verify | is_weak
         if table == "openings":
             is_unknown = columns["type"] == "gap"

@@ -24,4 +24,5 @@ def state_accuracy(plan: FloorPlan) -> str:
     # 95 % of a normal distribution lie within as many standard deviations
     error_m = 1.96 * float(np.sqrt(square_m2))
     name = next((n for n, limit_m in CLASSES_M.items() if error_m <= limit_m), "LOA10")
-    return f"{name}: walls ± {1000 * error_m:.1f} mm (95 %), relative"
+    places = 1 if error_m < 0.01 else 0
+    return f"{name}: walls ± {1000 * error_m:.{places}f} mm (95 %), relative"
