@@ -228,8 +228,11 @@ class BagSurvey:
     def motion_chains(self) -> list[NamedChain]:
         """Return (name, edges) of all that states how the sensor moved, the smoothest first."""
         odometry = self._chains.of_odometry(self._odometry)
-        name = "the clouds" if self._pose_source is None else str(self._pose_source)
-        return [*odometry, (name, self.pose_edges())]
+        if self._pose_source is not None:
+            return [*odometry, (str(self._pose_source), self.pose_edges())]
+        track, *mounting = self.pose_edges()
+        steady = [lidar_odometry.steady_track(track), *mounting]
+        return [*odometry, ("the clouds, steadily", steady), ("the clouds", [track, *mounting])]
 
     @cached_property
     def _pose_edges(self) -> list[FrameEdge]:

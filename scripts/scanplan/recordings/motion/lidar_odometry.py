@@ -4,13 +4,16 @@ Each cloud is aligned to those before it by KISS-ICP (Vizzo et al. 2023, "KISS-I
 point-to-point ICP"), an optional package. The poses drift; registration finds the loops.
 """
 
+import itertools
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.ndimage import median_filter
 
 from scanplan.errors import StageError
-from scanplan.geometry import se3
+from scanplan.geometry import se3, twists
 from scanplan.recordings import frame_edges
 from scanplan.recordings.clouds import Scan
 from scanplan.recordings.survey_protocol import Survey
@@ -102,6 +105,51 @@ def is_rolling(t_ns: IntArray, world_from_base: FloatArray) -> bool:
         sway_deg = sway_deg[is_moving]
     # noise is some tenths of a degree (measured in rooms); who walks sways by several
     return float(np.median(sway_deg)) < 1.0
+
+
+def steady_track(track: frame_edges.FrameEdge) -> frame_edges.FrameEdge:
+    """Return how a rover moved within sweeps, by its estimated track; what is carried as it is."""
+    if track.t_ns is None:
+        return track
+    world_from_base = se3.pose_matrix(track.xyz_m, track.quat_xyzw)
+    if not is_rolling(track.t_ns, world_from_base):
+        return track
+    xyz_m, quat_xyzw = se3.split_pose(steady_way(track.t_ns, world_from_base))
+    return replace(track, xyz_m=xyz_m, quat_xyzw=quat_xyzw)
+
+
+def steady_way(t_ns: IntArray, world_from_base: FloatArray) -> FloatArray:
+    """Return the way of a rover that moves at each moment as it does for most of a second.
+
+    From cloud to cloud estimates jump, forth and back, by more than a rover moves between them; and
+    points of a sweep are moved by what they say of it. Wheels go steadily. On the whole the way
+    drifts farther than the estimates do.
+
+    Parameters
+    ----------
+    t_ns : (n,) int64
+        Increasing.
+    world_from_base : (n, 4, 4) float64
+
+    Returns
+    -------
+    (n, 4, 4) float64
+        From the same first pose on, by the median of the velocities ahead, aside, and of the turn.
+    """
+    duration_s = np.diff(t_ns) / 1e9
+    if not duration_s.any():
+        return world_from_base
+    step = se3.invert_pose(world_from_base[:-1]) @ world_from_base[1:]
+    per_s = 1 / np.where(duration_s > 0, duration_s, np.inf)
+    velocity = twists.motion_to_twist(step) * per_s[:, None]
+    n_beside = round(0.5 / float(np.median(duration_s[duration_s > 0])))
+    steady = median_filter(velocity, size=(2 * n_beside + 1, 1), mode="nearest")
+    moved = twists.twist_to_motion(steady * duration_s[:, None])
+    # products of matrices drift off true rotations
+    way = itertools.accumulate(
+        [world_from_base[0], *moved], lambda pose, motion: se3.nearest_rigid(pose @ motion)
+    )
+    return np.array(list(way))
 
 
 def _start_odometry(missing: str) -> "KissICP":
