@@ -191,31 +191,28 @@ def _offset_sigma_m(wall: PlanWall, scans: PlacedScans) -> float:
     less with their number. What each adds of its own does.
     """
     sides = [side for side in (wall.left, wall.right) if side]
-    of_poses_m = [_pose_sigma_m(side, wall.line.normal, scans) for side in sides]
-    own_m = math.hypot(*(_own_sigma_m(side) for side in sides))
-    return math.hypot(float(np.mean(of_poses_m)), own_m / len(sides))
+    of_poses_m, own_m = np.transpose(
+        [_side_sigmas_m(side, wall.line.normal, scans) for side in sides]
+    )
+    return math.hypot(float(np.mean(of_poses_m)), math.hypot(*own_m) / len(sides))
 
 
-def _pose_sigma_m(
+def _side_sigmas_m(
     intervals: Sequence[FaceInterval], normal: FloatArray, placed: PlacedScans
-) -> float:
-    """Return by how much the poses of its scans may shift a side along a normal (2,)."""
-    scan, _, _ = _hits(intervals)
-    xy_m = np.concatenate([i.line.at(i.seen.occupied_m[i.points]) for i in intervals])
-    scans, index, count = np.unique(scan, return_inverse=True, return_counts=True)
-    middle_m = [np.bincount(index, values) / count for values in xy_m.T]
-    sigmas_m = placed.sigmas_m(scans, np.column_stack(middle_m), normal)
-    return float(np.average(sigmas_m, weights=count))
+) -> tuple[float, float]:
+    """Return how far a side may be off along a normal (2,): with its scans' poses, and else.
 
-
-def _own_sigma_m(intervals: Sequence[FaceInterval]) -> float:
-    """Return the standard deviation of a side's offset by the spread of its scans and points."""
+    Else is by the spread of the scans' means, and of points.
+    """
     scan, offset_m, _ = _hits(intervals)
-    _, index, count = np.unique(scan, return_inverse=True, return_counts=True)
-    mean_m = np.bincount(index, offset_m) / count
+    scans, index, count = np.unique(scan, return_inverse=True, return_counts=True)
+    xy_m = np.concatenate([i.line.at(i.seen.occupied_m[i.points]) for i in intervals])
+    x_m, y_m, mean_m = (np.bincount(index, values) / count for values in (*xy_m.T, offset_m))
+    sigmas_m = placed.sigmas_m(scans, np.column_stack([x_m, y_m]), normal)
     deviation_m = mean_m - np.average(mean_m, weights=count)
     spread_m = np.sqrt(np.average(deviation_m**2, weights=count))
-    return math.hypot(spread_m / len(count) ** 0.5, offset_m.std() / len(scan) ** 0.5)
+    own_m = math.hypot(spread_m / len(count) ** 0.5, offset_m.std() / len(scan) ** 0.5)
+    return float(np.average(sigmas_m, weights=count)), own_m
 
 
 def _end_sigma_m(

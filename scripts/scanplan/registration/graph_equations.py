@@ -1,6 +1,6 @@
 """The measurements of a pose graph as equations: residuals, robust weights, normal equations."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -143,22 +143,26 @@ class GraphEquations:
 
     def draw_gradients(
         self, state: GraphState, rng: np.random.Generator, n_draws: int
-    ) -> FloatArray:
-        """Draw gradients (n * d, n_draws) as noise of the measurements makes them.
+    ) -> Iterator[FloatArray]:
+        """Draw gradients (n * d, n_draws), without end, as noise of the measurements makes them.
 
         Their covariance is the Hessian of `normal_equations`.
         """
         priors = state.prior_weight[:, None, None] * self._prior_information
-        prior_pull = _transpose(self._reduce(_jacobian(state.prior_residual))) @ _root(priors)
-        noise = rng.standard_normal((len(prior_pull), self.size, n_draws))
-        gradient = prior_pull @ noise
+        of_priors = _transpose(self._reduce(_jacobian(state.prior_residual))) @ _root(priors)
         root = _root(state.weight[:, None, None] * self._information)
-        noise = rng.standard_normal((len(root), self.size, n_draws))
-        for jacobian, rows in zip(
-            self._jacobians(state), (self._source, self._target), strict=True
-        ):
-            np.add.at(gradient, rows, _transpose(jacobian) @ root @ noise)
-        return gradient.reshape(-1, n_draws)
+        of_ends = [
+            (rows, _transpose(jacobian) @ root)
+            for rows, jacobian in zip(
+                (self._source, self._target), self._jacobians(state), strict=True
+            )
+        ]
+        while True:
+            gradient = of_priors @ rng.standard_normal((len(of_priors), self.size, n_draws))
+            noise = rng.standard_normal((len(root), self.size, n_draws))
+            for rows, of_end in of_ends:
+                np.add.at(gradient, rows, of_end @ noise)
+            yield gradient.reshape(-1, n_draws)
 
     def move(self, pose: FloatArray, step: FloatArray) -> FloatArray:
         """Return poses (n, 4, 4) after a step, true rotations again."""

@@ -134,11 +134,9 @@ def optimise_poses(
 
     sequence = edges_between(edges, row_of_scan)
     poses = solve(start, sequence, is_start=True).world_from_scan
-    constrained = {(row_of_scan[edge.source], row_of_scan[edge.target]) for edge in sequence}
-    seen_m = find_seen_middles(thinned, planar=planar)
-    pairs = choose_pairs(poses, seen_m, constrained, settings, planar=planar)
-    jobs = alignment_jobs(pairs, scan_ids, poses, thinned, planar, limits, settings)
-    loop_edges = align_jobs(jobs, run)
+    loop_edges = align_visits(
+        scan_ids, poses, sequence, thinned, run, planar=planar, limits=limits, settings=settings
+    )
     all_edges = sorted([*sequence, *loop_edges], key=edge_ends)
     solution = solve(poses, all_edges)
     return OptimisedMap(
@@ -197,6 +195,35 @@ def edge_motions(
     variance = np.array([settings.edge_sigma_m**2, np.radians(settings.edge_sigma_deg) ** 2])
     least = np.diag(np.repeat(variance, 3))
     return replace(motions, information=add_covariance(motions.information, least))
+
+
+def align_visits(
+    scan_ids: IntArray,
+    world_from_scan: FloatArray,
+    sequence: Sequence[PoseConstraint],
+    thinned: ScanCache,
+    run: Callable[..., Iterator[Any]],
+    *,
+    planar: bool,
+    limits: SequentialSettings,
+    settings: PoseGraphSettings,
+) -> list[PoseConstraint]:
+    """Align scans to those of other visits that show the same, and those that lack a predecessor.
+
+    Parameters
+    ----------
+    scan_ids, thinned, run, planar, limits, settings
+        As of `optimise_poses`.
+    world_from_scan : (n, 4, 4) float64
+    sequence : sequence of constraints.PoseConstraint
+        What the scans are constrained by already.
+    """
+    row_of_scan = find_rows(scan_ids)
+    constrained = {(row_of_scan[edge.source], row_of_scan[edge.target]) for edge in sequence}
+    seen_m = find_seen_middles(thinned, planar=planar)
+    pairs = choose_pairs(world_from_scan, seen_m, constrained, settings, planar=planar)
+    jobs = alignment_jobs(pairs, scan_ids, world_from_scan, thinned, planar, limits, settings)
+    return align_jobs(jobs, run)
 
 
 def find_seen_middles(thinned: ScanCache, *, planar: bool) -> FloatArray:

@@ -1,5 +1,7 @@
 """How far the poses of a pose graph may be off: what its measurements leave open."""
 
+from itertools import islice
+
 import numpy as np
 from scipy.sparse.linalg import SuperLU
 
@@ -37,14 +39,10 @@ def estimate_covariance(
     """
     rng = np.random.default_rng(0)
     at_once = _N_DRAWS // 10  # as many gradients are in memory
-    draws = [
-        _to_world(factors.solve(gradient), world_from_scan)
-        for gradient in (
-            equations.draw_gradients(state, rng, at_once)
-            + ROUNDING**0.5 * rng.standard_normal((factors.shape[0], at_once))
-            for _ in range(0, _N_DRAWS, at_once)
-        )
-    ]
+    draws = []
+    for gradient in islice(equations.draw_gradients(state, rng, at_once), _N_DRAWS // at_once):
+        unmeasured = ROUNDING**0.5 * rng.standard_normal(gradient.shape)
+        draws.append(_to_world(factors.solve(gradient + unmeasured), world_from_scan))
     error = _without_common_motion(np.concatenate(draws, axis=2), world_from_scan[:, :2, 3])
     return np.asarray(error @ error.transpose(0, 2, 1) / error.shape[2])
 

@@ -51,7 +51,7 @@ def registration_columns(
         "rmse_m": np.array([result.rmse_m for result in results]),
         "kept": np.array([result.kept for result in results]),
         "reason": np.array([result.reason for result in results], object),
-        **_pose_columns(poses),
+        **pose_columns.pose_columns(*se3.split_pose(poses)),
         **pose_columns.covariance_columns(covariance),
     }
 
@@ -105,7 +105,7 @@ def constraint_columns(optimised: OptimisedMap | None) -> dict[str, Array]:
         "kind": np.array([edge.kind for edge in edges], object),
         "fitness": np.array([edge.fitness for edge in edges], np.float64),
         "rmse_m": np.array([edge.rmse_m for edge in edges], np.float64),
-        **_pose_columns(motions),
+        **pose_columns.pose_columns(*se3.split_pose(motions)),
         "unobservable": np.array([edge.fit.n_unobservable for edge in edges], np.int64),
         "residual_m": np.linalg.norm(residual[:, :3], axis=1),
         "residual_deg": np.degrees(np.linalg.norm(residual[:, 3:], axis=1)),
@@ -135,14 +135,6 @@ def summarise_constraints(optimised: OptimisedMap | None) -> str:
         f"constraints: {', '.join(counts) or 'none'};"
         f" {n_jumps:,} of {optimised.recorded} are outliers{spread}"
     )
-
-
-def _pose_columns(poses: FloatArray) -> dict[str, FloatArray]:
-    """Return positions and quaternions of poses (n, 4, 4) as columns."""
-    xyz_m, quat_xyzw = se3.split_pose(poses)
-    names = (*schemas.XYZ, *schemas.QUAT)
-    values = np.column_stack([xyz_m, quat_xyzw])
-    return dict(zip(names, values.T, strict=True))
 
 
 def _observable_residual(optimised: OptimisedMap) -> FloatArray:

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.errors import StageError
-from scanplan.store import pose_columns, schemas, tables
-from scanplan.store.pose_columns import pose_matrices
+from scanplan.store import schemas, tables
+from scanplan.store.pose_columns import covariance_matrices, pose_matrices
 from scanplan.types import Array, Columns, FilePath, FloatArray, IntArray
 
 
@@ -71,8 +71,7 @@ def select_kept_scans(columns: Columns, path: FilePath) -> RegisteredScans:
             f"{path}: {len(pose)} scans are kept, {n_unknown} of them without a pose;"
             f" {tables.RERUN_ALL}"
         )
-    covariance = pose_columns.covariance_matrices(kept)
-    return RegisteredScans(kept["scan_id"], kept["t_ns"], pose, covariance)
+    return RegisteredScans(kept["scan_id"], kept["t_ns"], pose, covariance_matrices(kept))
 
 
 def read_prior_poses(path: FilePath, scans: RegisteredScans, origin: FilePath) -> FloatArray:

@@ -10,7 +10,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.ndimage import median_filter
 
 from scanplan.errors import StageError
 from scanplan.geometry import se3, twists
@@ -136,6 +135,8 @@ def steady_way(t_ns: IntArray, world_from_base: FloatArray) -> FloatArray:
     (n, 4, 4) float64
         From the same first pose on, by the median of the velocities ahead, aside, and of the turn.
     """
+    from scipy.ndimage import median_filter  # 0.2 s, and most recordings have poses
+
     duration_s = np.diff(t_ns) / 1e9
     if not duration_s.any():
         return world_from_base

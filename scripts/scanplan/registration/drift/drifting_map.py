@@ -145,18 +145,12 @@ class _DriftingGraph:
         self, thinned: ScanCache, run: Callable[..., Iterator[Any]]
     ) -> list[PoseConstraint]:
         """Align scans that are near each other, as where a localiser placed them."""
-        known = {
-            (self._row_of_scan[edge.source], self._row_of_scan[edge.target])
-            for edge in self.sequence
-        }
-        seen_m = multiway.find_seen_middles(thinned, planar=self._planar)
-        pairs = multiway.choose_pairs(
-            self.poses, seen_m, known, self._settings, planar=self._planar
+        return multiway.align_visits(
+            *(self._scan_ids, self.poses, self.sequence, thinned, run),
+            planar=self._planar,
+            limits=self._limits,
+            settings=self._settings,
         )
-        jobs = multiway.alignment_jobs(
-            pairs, self._scan_ids, self.poses, thinned, self._planar, self._limits, self._settings
-        )
-        return multiway.align_jobs(jobs, run)
 
 
 def _prior_information(odometry_from_cloud: FloatArray, limits: SequentialSettings) -> FloatArray:
