@@ -53,6 +53,21 @@ def test_every_wall_of_the_room_in_space(seed):
     assert (found.z_range_m[:, 1] < toy_rooms.HEIGHT_M + 0.05).all()
 
 
+@pytest.mark.parametrize("depth_m", [0.15, 0.2, 0.3])
+def test_a_recess_no_deeper_than_the_bandwidth_is_a_wall_of_its_own(depth_m):
+    """In the wall at y = 4, from x = 1.5 to x = 2.7; mean shift puts both into one cluster."""
+    y_m = 4 + depth_m
+    recess = [(1.5, 4, 1.5, y_m), (1.5, y_m, 2.7, y_m), (2.7, y_m, 2.7, 4)]
+    around = [(0, 4, 1.5, 4), (2.7, 4, 6, 4)]
+    others = [wall for wall in toy_rooms.ROOM.tolist() if not wall[1] == wall[3] == 4]
+    room = np.array([*others, *around, *recess], float)
+    found = extract(toy_rooms.laser(segments=room), planar=True)
+    ends_m = np.stack([found.start_m, found.end_m], axis=1)
+    (row,) = np.flatnonzero((np.abs(ends_m[:, :, 1] - y_m) < 0.02).all(axis=1))
+    np.testing.assert_allclose(np.sort(ends_m[row, :, 0]), [1.5, 2.7], atol=0.1)
+    assert (np.abs(ends_m[:, :, 1] - 4) < 0.02).all(axis=1).sum() == 2
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_every_wall_of_the_room_in_the_plane(seed):
     check_toy_room(extract(toy_rooms.laser(seed=seed), planar=True), turn_rad=0.015)

@@ -13,6 +13,7 @@ from scanplan.plan.faces import tracing
 
 LIMITS = FurnitureLimits(**toy_rooms.FURNITURE)
 NORTH = np.array([0.0, 1.0])
+TURN = np.array([[0.6, 0.8], [-0.8, 0.6]])
 
 
 def pieces(y_m, *spans_m, top_m=1.5, normal=NORTH):
@@ -56,6 +57,28 @@ def test_what_is_no_front_stays(change, why):
     thing = {"y_m": 0.5, "spans": (2.0, 4.0), **change}
     thing = pieces(thing.pop("y_m"), thing.pop("spans"), **thing)
     assert kept(WALL, thing) == [True, True, True], why
+
+
+@pytest.mark.parametrize(
+    ("behind_m", "span_m", "stays"),
+    [
+        (0.12, (2.0, 4.0), True),  # between the front and the wall
+        (0.12, (2.0, 3.1), True),
+        (0.12, (2.0, 2.9), False),  # of less than half
+        (0.12, (5.0, 7.0), False),
+        (0.62, (0.0, 6.0), False),  # the other side of the wall behind the cabinet
+        (-0.2, (2.0, 4.0), False),  # of what stands before the cabinet
+    ],
+)
+def test_a_front_whose_back_is_seen_before_the_wall_is_a_wall(behind_m, span_m, stays):
+    back = pieces(0.5 - behind_m, span_m, normal=-NORTH)
+    assert kept(WALL, pieces(0.5, (2.0, 4.0)), back) == [True, True, stays, True]
+    # whichever way the building is turned
+    turned = [
+        [(np.array(end) @ TURN, normal @ TURN, top_m) for end, normal, top_m in line]
+        for line in (WALL, pieces(0.5, (2.0, 4.0)), back)
+    ]
+    assert kept(*turned) == [True, True, stays, True]
 
 
 def test_a_wall_too_far_beside_says_nothing():

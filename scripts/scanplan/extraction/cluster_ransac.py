@@ -78,8 +78,9 @@ def extract_by_clusters(
     """Extract the wall segments of one scan.
 
     Points on vertical surfaces are projected along their normals to dual points: those of one wall
-    coincide, and mean shift clusters them. One RANSAC line per cluster, heaviest first, takes every
-    point on it that faces its way; the runs in which these do not pause are the walls.
+    coincide, and mean shift clusters them. A RANSAC line in each cluster, heaviest first, takes
+    every point on it that faces its way; the runs in which these do not pause are the walls. In
+    the plane another is fitted to what it leaves of the cluster, as long as that is enough.
 
     Parameters
     ----------
@@ -103,23 +104,26 @@ def extract_by_clusters(
     least = settings.least_points(scan is None)
     rows: list[Row] = []
     for cluster in _cluster_cells(surfaces, settings.bandwidth_m):
-        own = cluster[free[cluster]]
-        if surfaces.cells.count[own].sum() < least:
-            continue
-        wall = _fit_wall(points, surfaces, own, free, settings, rng)
-        wall_rows = segments.cut_line(
-            wall.normal,
-            wall.offset_m,
-            wall.facing_xyz_m,
-            settings,
-            scan=scan,
-            spare_xyz_m=wall.spare_xyz_m,
-            reach_rad=reach_rad,
-        )
-        # twice as wide as what belongs to them, else noise leaves a second wall beside the first
-        is_beside = _is_beside(surfaces.xy_m, wall_rows, _WIDE * settings.inlier_m)
-        free &= ~(_is_alike(surfaces, wall.normal) & is_beside)
-        rows += wall_rows
+        # faces nearer to each other than the bandwidth are in one cluster: a recess and its wall
+        while surfaces.cells.count[own := cluster[free[cluster]]].sum() >= least:
+            wall = _fit_wall(points, surfaces, own, free, settings, rng)
+            wall_rows = segments.cut_line(
+                wall.normal,
+                wall.offset_m,
+                wall.facing_xyz_m,
+                settings,
+                scan=scan,
+                spare_xyz_m=wall.spare_xyz_m,
+                reach_rad=reach_rad,
+            )
+            rows += wall_rows
+            # twice as wide as what belongs to them, else noise leaves a second wall beside them
+            is_beside = _is_beside(surfaces.xy_m, wall_rows, _WIDE * settings.inlier_m)
+            taken = _is_alike(surfaces, wall.normal) & is_beside
+            free &= ~taken
+            # in space what is near a wall, and faces its way, is a sill or furniture before it
+            if scan is not None or not taken[own].any():
+                break
     return rows
 
 

@@ -118,6 +118,22 @@ def stand_before(faces: Faces, chosen: BoolArray, *, depth_m: float, door_m: flo
     return before
 
 
+def are_seen_from_behind(faces: Faces) -> FloatArray:
+    """Return how near behind each face (n,) one that faces away from it covers half of it, metres.
+
+    Infinite where none does.
+    """
+    is_opposite = faces.normal @ faces.normal.T < -_PARALLEL
+    behind_m = -faces.forward_m.T
+    direction = np.column_stack([faces.normal[:, 1], -faces.normal[:, 0]])
+    ends_m = np.sort(faces.ends_m @ direction.T, axis=1)  # (n, 2, n): along each face's line
+    low_m, high_m = ends_m[:, 0], ends_m[:, 1]
+    shared_m = np.minimum(high_m, np.diag(high_m)) - np.maximum(low_m, np.diag(low_m))
+    covers = shared_m >= faces.length_m / 2
+    is_back = is_opposite & covers.T & (behind_m > 0)
+    return np.where(is_back, behind_m, np.inf).min(axis=1, initial=np.inf)
+
+
 def find_corner_faces(faces: Faces, reach_m: float) -> tuple[BoolArray, BoolArray]:
     """Return which faces meet at the ends of others, across them.
 

@@ -16,6 +16,7 @@ import numpy as np
 from scanplan.extraction import face_evidence
 from scanplan.extraction.face_arrangement import (
     Faces,
+    are_seen_from_behind,
     find_collinear_faces,
     find_corner_faces,
     stand_before,
@@ -24,7 +25,7 @@ from scanplan.extraction.face_arrangement import (
 from scanplan.extraction.segment_limits import Row
 from scanplan.geometry.lines import Line
 from scanplan.rays.ray_set import RaySet
-from scanplan.rays.tolerances import BEHIND_M
+from scanplan.rays.tolerances import BEHIND_M, ON_M
 from scanplan.types import BoolArray, FloatArray
 
 
@@ -87,7 +88,8 @@ def find_furniture_fronts(
 
     The wall is what is longer of the two lines: of a niche and the walls beside it these stay, as
     does the wall of a room beside one that is deeper. A pilaster of which no more is seen than of a
-    cabinet goes with those.
+    cabinet goes with those. What has its other side before the wall's line is a wall that steps
+    forward: of the niche on its other side.
 
     Parameters
     ----------
@@ -106,6 +108,7 @@ def find_furniture_fronts(
         faces, is_small, depth_m=limits.furniture_depth_m, door_m=limits.door_width_m
     )
     before &= may_be_behind
+    before &= are_seen_from_behind(faces)[:, None] > faces.forward_m - ON_M
     fronts = is_small & before.any(axis=1)
     # a shelf before a cabinet is furniture because of the wall behind both
     return fronts & (before & ~fronts).any(axis=1)
