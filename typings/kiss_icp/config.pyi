@@ -6,6 +6,7 @@ class _MappingConfig:
     voxel_size: float | None
 
 class _RegistrationConfig:
+    convergence_criterion: float | None
     max_num_threads: int
 
 class KISSConfig:

@@ -2,9 +2,16 @@
 
 Each cloud is aligned to those before it by KISS-ICP (Vizzo et al. 2023, "KISS-ICP: In defense of
 point-to-point ICP"), an optional package. The poses drift; registration finds the loops.
+
+KISS-ICP moves the points of a sweep by how the sensor moved from the last cloud to the one before:
+what is wrong there goes into the next cloud, and on. So the motion ahead is the median of the last
+few, and the clouds of what rolls are aligned once more, moved by the steady way that the first time
+has found. In rooms that halves the errors of the motion and of the drift (measured on simulated
+drives, against KISS-ICP's own prediction and one time).
 """
 
 import itertools
+from collections import deque
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -15,6 +22,8 @@ from scanplan.errors import StageError
 from scanplan.geometry import se3, twists
 from scanplan.recordings import frame_edges
 from scanplan.recordings.clouds import Scan
+from scanplan.recordings.motion.deskew import DeskewedSurvey
+from scanplan.recordings.motion.trajectory import SensorMotion
 from scanplan.recordings.survey_protocol import Survey
 from scanplan.stage import log
 from scanplan.types import FloatArray, IntArray
@@ -57,16 +66,19 @@ def estimate_track(
             " localiser, odometry (/odom), or slam_toolbox's /pose or /tf, run live or on this"
             " recording"
         )
-    odometry = _start_odometry(missing)
-    n_scans = len(survey.stamps())
-    scans = log.report_progress(survey.scans(range(n_scans)), "estimate_poses", n_scans)
-    t_ns, first_from_sensor = _align_scans(odometry, scans, missing)
-    if len(t_ns) == 0:
-        raise StageError(f"{missing}; and no cloud has points to estimate poses from; record again")
-    base_from_sensor, _, _ = frame_edges.chain_poses(mounting, t_ns, max_gap_s=np.inf)
-    world_from_base = base_from_sensor[0] @ first_from_sensor @ se3.invert_pose(base_from_sensor)
+    t_ns, first_from_sensor = _align_survey(survey, missing)
+    world_from_base = _move_base(t_ns, first_from_sensor, mounting)
     ground = "heights and tilts are kept"
     if is_rolling(t_ns, world_from_base):
+        if survey.sweep_times is not None:
+            motion = SensorMotion(
+                t_ns,
+                *se3.split_pose(steady_way(t_ns, first_from_sensor)),
+                piece=np.zeros(len(t_ns), np.int32),
+            )
+            log.log_line("estimate_poses: once more, sweeps moved by the way so far")
+            t_ns, first_from_sensor = _align_survey(DeskewedSurvey(survey, motion), missing)
+            world_from_base = _move_base(t_ns, first_from_sensor, mounting)
         world_from_base = se3.level_frame(world_from_base)
         world_from_base[:, 2, 3] = 0.0
         ground = "it rolls on a level floor: heights and tilts are taken for drift"
@@ -118,7 +130,7 @@ def steady_track(track: frame_edges.FrameEdge) -> frame_edges.FrameEdge:
 
 
 def steady_way(t_ns: IntArray, world_from_base: FloatArray) -> FloatArray:
-    """Return the way of a rover that moves at each moment as it does for most of a second.
+    """Return the way of a rover that moves at each moment as it does for most of half a second.
 
     From cloud to cloud estimates jump, forth and back, by more than a rover moves between them; and
     points of a sweep are moved by what they say of it. Wheels go steadily. On the whole the way
@@ -143,7 +155,7 @@ def steady_way(t_ns: IntArray, world_from_base: FloatArray) -> FloatArray:
     step = se3.invert_pose(world_from_base[:-1]) @ world_from_base[1:]
     per_s = 1 / np.where(duration_s > 0, duration_s, np.inf)
     velocity = twists.motion_to_twist(step) * per_s[:, None]
-    n_beside = round(0.5 / float(np.median(duration_s[duration_s > 0])))
+    n_beside = round(0.25 / float(np.median(duration_s[duration_s > 0])))
     steady = median_filter(velocity, size=(2 * n_beside + 1, 1), mode="nearest")
     moved = twists.twist_to_motion(steady * duration_s[:, None])
     # products of matrices drift off true rotations
@@ -170,9 +182,39 @@ def _start_odometry(missing: str) -> "KissICP":
     # a quarter of a metre tells two walls of a narrow room apart; coarser, the way through rooms is
     # lost, finer takes four times as long (tried: 1.0, 0.5, 0.25, 0.1)
     config.mapping.voxel_size = 0.25
+    # a millimetre: finer takes half as long again, and its way is no better (tried: 0.0001)
+    config.registration.convergence_criterion = 0.001
     # sums in an order of their own would differ from run to run
     config.registration.max_num_threads = 1
     return KissICP(config)
+
+
+def _align_survey(survey: Survey | DeskewedSurvey, missing: str) -> tuple[IntArray, FloatArray]:
+    """Align all clouds of a survey, those that are deskewed without their times.
+
+    Returns
+    -------
+    t_ns : (n,) int64, n >= 1, strictly increasing
+    first_from_sensor : (n, 4, 4) float64
+    """
+    n_scans = len(survey.stamps())
+    scans: Iterable[Scan] = survey.scans(range(n_scans))
+    if isinstance(survey, DeskewedSurvey):
+        scans = (replace(scan, time_s=None) for scan in scans)
+    scans = log.report_progress(scans, "estimate_poses", n_scans)
+    t_ns, first_from_sensor = _align_scans(_start_odometry(missing), scans, missing)
+    if len(t_ns) == 0:
+        raise StageError(f"{missing}; and no cloud has points to estimate poses from; record again")
+    t_ns, first = np.unique(t_ns, return_index=True)
+    return t_ns, first_from_sensor[first]
+
+
+def _move_base(
+    t_ns: IntArray, first_from_sensor: FloatArray, mounting: Sequence[frame_edges.FrameEdge]
+) -> FloatArray:
+    """Return the poses (n, 4, 4) of what the sensor is mounted on, from its own first one."""
+    base_from_sensor, _, _ = frame_edges.chain_poses(mounting, t_ns, max_gap_s=np.inf)
+    return base_from_sensor[0] @ first_from_sensor @ se3.invert_pose(base_from_sensor)
 
 
 def _align_scans(
@@ -181,6 +223,8 @@ def _align_scans(
     """Return the moments (n,) of the scans that have points, and first_from_sensor (n, 4, 4)."""
     moments_ns = []
     poses = []
+    # of the last three, one may be wrong
+    motions = deque(maxlen=3)
     for scan in scans:
         if len(scan.xyz_m) == 0:
             continue
@@ -193,7 +237,8 @@ def _align_scans(
             )
         # its products of matrices drift off true rotations, on a long way without bound
         odometry.last_pose = se3.nearest_rigid(odometry.last_pose)
-        odometry.last_delta = se3.nearest_rigid(odometry.last_delta)
+        motions.append(twists.motion_to_twist(odometry.last_delta))
+        odometry.last_delta = twists.twist_to_motion(np.median(motions, axis=0))
         # it moves points to where they would have been seen at the end of the sweep
         end_s = 0.0 if scan.time_s is None else float(scan.time_s.max())
         moments_ns.append(scan.t_ns + round(end_s * 1e9))
