@@ -65,14 +65,18 @@ class Faces:
         return self.normal @ self.normal.T > _PARALLEL
 
     @cached_property
-    def apart_m(self) -> FloatArray:
-        """How far each face (rows) and other (columns) are apart along the other's line, (n, n)."""
+    def spans_m(self) -> tuple[FloatArray, FloatArray]:
+        """From where to where each face (rows) is along each other's line (columns), (n, n)."""
         direction = np.column_stack([self.normal[:, 1], -self.normal[:, 0]])
         starts_m = self.ends_m[:, 0] @ direction.T
         stops_m = self.ends_m[:, 1] @ direction.T
-        before_m = np.diag(starts_m) - np.maximum(starts_m, stops_m)
-        behind_m = np.minimum(starts_m, stops_m) - np.diag(stops_m)
-        return np.maximum(before_m, behind_m)
+        return np.minimum(starts_m, stops_m), np.maximum(starts_m, stops_m)
+
+    @cached_property
+    def apart_m(self) -> FloatArray:
+        """How far each face (rows) and other (columns) are apart along the other's line, (n, n)."""
+        low_m, high_m = self.spans_m
+        return np.maximum(np.diag(low_m) - high_m, low_m - np.diag(high_m))
 
     def along_m(self, one: int, points_m: FloatArray) -> FloatArray:
         """Return places of points (..., 2) along a face's line, from its middle."""
@@ -118,16 +122,14 @@ def stand_before(faces: Faces, chosen: BoolArray, *, depth_m: float, door_m: flo
     return before
 
 
-def are_seen_from_behind(faces: Faces) -> FloatArray:
+def find_backs_m(faces: Faces) -> FloatArray:
     """Return how near behind each face (n,) one that faces away from it covers half of it, metres.
 
     Infinite where none does.
     """
     is_opposite = faces.normal @ faces.normal.T < -_PARALLEL
     behind_m = -faces.forward_m.T
-    direction = np.column_stack([faces.normal[:, 1], -faces.normal[:, 0]])
-    ends_m = np.sort(faces.ends_m @ direction.T, axis=1)  # (n, 2, n): along each face's line
-    low_m, high_m = ends_m[:, 0], ends_m[:, 1]
+    low_m, high_m = faces.spans_m
     shared_m = np.minimum(high_m, np.diag(high_m)) - np.maximum(low_m, np.diag(low_m))
     covers = shared_m >= faces.length_m / 2
     is_back = is_opposite & covers.T & (behind_m > 0)

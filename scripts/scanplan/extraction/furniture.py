@@ -16,7 +16,7 @@ import numpy as np
 from scanplan.extraction import face_evidence
 from scanplan.extraction.face_arrangement import (
     Faces,
-    are_seen_from_behind,
+    find_backs_m,
     find_collinear_faces,
     find_corner_faces,
     stand_before,
@@ -108,7 +108,7 @@ def find_furniture_fronts(
         faces, is_small, depth_m=limits.furniture_depth_m, door_m=limits.door_width_m
     )
     before &= may_be_behind
-    before &= are_seen_from_behind(faces)[:, None] > faces.forward_m - ON_M
+    before &= find_backs_m(faces)[:, None] > faces.forward_m - ON_M
     fronts = is_small & before.any(axis=1)
     # a shelf before a cabinet is furniture because of the wall behind both
     return fronts & (before & ~fronts).any(axis=1)

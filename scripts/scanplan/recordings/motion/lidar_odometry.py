@@ -66,7 +66,8 @@ def estimate_track(
             " localiser, odometry (/odom), or slam_toolbox's /pose or /tf, run live or on this"
             " recording"
         )
-    t_ns, first_from_sensor = _align_survey(survey, missing)
+    n_scans = len(survey.stamps())
+    t_ns, first_from_sensor = _align_clouds(survey.scans(range(n_scans)), n_scans, missing)
     world_from_base = _move_base(t_ns, first_from_sensor, mounting)
     ground = "heights and tilts are kept"
     if is_rolling(t_ns, world_from_base):
@@ -77,7 +78,9 @@ def estimate_track(
                 piece=np.zeros(len(t_ns), np.int32),
             )
             log.log_line("estimate_poses: once more, sweeps moved by the way so far")
-            t_ns, first_from_sensor = _align_survey(DeskewedSurvey(survey, motion), missing)
+            deskewed = DeskewedSurvey(survey, motion).scans(range(n_scans))
+            at_stamps = (replace(scan, time_s=None) for scan in deskewed)
+            t_ns, first_from_sensor = _align_clouds(at_stamps, n_scans, missing)
             world_from_base = _move_base(t_ns, first_from_sensor, mounting)
         world_from_base = se3.level_frame(world_from_base)
         world_from_base[:, 2, 3] = 0.0
@@ -189,18 +192,14 @@ def _start_odometry(missing: str) -> "KissICP":
     return KissICP(config)
 
 
-def _align_survey(survey: Survey | DeskewedSurvey, missing: str) -> tuple[IntArray, FloatArray]:
-    """Align all clouds of a survey, those that are deskewed without their times.
+def _align_clouds(scans: Iterable[Scan], n_scans: int, missing: str) -> tuple[IntArray, FloatArray]:
+    """Align all clouds of a survey; what they say of the times of points is used.
 
     Returns
     -------
     t_ns : (n,) int64, n >= 1, strictly increasing
     first_from_sensor : (n, 4, 4) float64
     """
-    n_scans = len(survey.stamps())
-    scans: Iterable[Scan] = survey.scans(range(n_scans))
-    if isinstance(survey, DeskewedSurvey):
-        scans = (replace(scan, time_s=None) for scan in scans)
     scans = log.report_progress(scans, "estimate_poses", n_scans)
     t_ns, first_from_sensor = _align_scans(_start_odometry(missing), scans, missing)
     if len(t_ns) == 0:
