@@ -178,7 +178,7 @@ def _judge(plan: Any, motion: FloatArray, truth: Path) -> dict[str, FloatArray]:
         "faces": (share >= _RIGHT_SHARE).astype(float),
         "walls": (np.array(share_of_wall) >= _RIGHT_SHARE).astype(float),
         "openings": _judge_openings(plan, moved(floorplan.centrelines_m(plan.openings)), true),
-        "rooms": (np.array(ious) > opening_metrics.MOST).astype(float),
+        "rooms": (np.array(ious) > 0.5).astype(float),
     }
 
 

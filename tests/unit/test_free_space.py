@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 import shapely
 
-from scanplan.rays import free_space
+from scanplan.rays import free_space, ray_set
 
 # the corners of a room of ring_office lie up to 1e-6 m off those of the hole that it fills among
 # walls and neighbours
@@ -86,3 +86,48 @@ def test_ground_between_places_was_driven_over():
     driven = free_space.driven_ground(track_m, width_m=0.5, max_step_m=1.5)
     assert [way.bounds for way in driven] == [(-0.25, -0.25, 1.25, 0.25), (0.75, 4.75, 2.25, 5.25)]
     assert not free_space.driven_ground(track_m[:1], width_m=0.5, max_step_m=1.5)
+
+
+def see(range_m, step_deg=1.0):
+    """What a laser at the origin sees, whose rays go so far, the first along x."""
+    azimuth_rad = np.radians(step_deg * np.arange(len(range_m)))
+    xy_m = np.asarray(range_m)[:, None] * np.column_stack([np.cos(azimuth_rad), np.sin(azimuth_rad)])
+    points = [(0, np.column_stack([xy_m, np.zeros(len(xy_m))]))]
+    return free_space.free_polygons(ray_set.gather_rays(points, {0: np.zeros(3)}, planar=True))[0]
+
+
+def ray(azimuth_deg, from_m, to_m):
+    way = np.array([np.cos(np.radians(azimuth_deg)), np.sin(np.radians(azimuth_deg))])
+    return shapely.LineString([from_m * way, to_m * way])
+
+
+def test_a_laser_sees_up_to_the_straight_line_between_two_returns():
+    """An oblique wall, x = 10 m: no more than noise of what is behind it, all before it."""
+    seen = see(10 / np.cos(np.radians(np.arange(60))))
+    before = shapely.Polygon([(0, 0), (10, 0), (10, 10 * np.tan(np.radians(59)))])
+    assert shapely.symmetric_difference(seen, before).area < 0.002 * before.area
+
+
+def test_behind_what_two_rays_of_a_laser_meet_it_sees_nothing():
+    """At 19 m rays of a degree are 0.33 m apart; beside a leaf they pass."""
+    range_m = np.full(40, 24.0)
+    range_m[20:22] = 19.0
+    seen = see(range_m)
+    assert not seen.intersects(ray(20.5, 19.1, 24))
+    # half of the ground up to the ray beside it
+    assert seen.intersection(ray(19.5, 19, 23.9)).length == pytest.approx(2.2, abs=0.4)
+    assert seen.covers(ray(18.5, 1, 23.9))
+
+
+def test_one_ray_that_goes_on_through_a_wall_opens_no_way():
+    range_m = np.full(40, 5.0)
+    range_m[20] = 12.0
+    assert not see(range_m).intersects(ray(20, 5.1, 12))
+
+
+def test_a_laser_sees_nothing_where_nothing_came_back():
+    range_m = np.full(40, 5.0)
+    seen = see(range_m)
+    assert seen.area == pytest.approx(np.radians(39) * 5**2 / 2, rel=0.01)
+    half = see(np.full(20, 5.0))
+    assert not half.intersects(ray(25, 0.5, 5)) and seen.covers(ray(25, 0.5, 4.9))

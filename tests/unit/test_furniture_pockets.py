@@ -101,6 +101,16 @@ def test_a_corner_that_surfaces_enclose_is_a_part_of_the_building_where_no_furni
     assert pockets([*(wall([face]) for face in seen), *corner], floor) == []
 
 
+@pytest.mark.parametrize(("length_m", "n_pockets"), [(6.0, 0), (2.0, 1)], ids=["wall", "cupboard"])
+def test_a_wall_that_ends_at_one_across_stands_before_none_in_a_line_far_away(length_m, n_pockets):
+    """Beyond it nothing was seen; floor goes round its other end."""
+    faces = [(5, 0, 5, length_m), (5, length_m, 0, length_m), (0, length_m, 0, -1), (0, -1, 7, -1)]
+    far = wall([(5.65, 8, 5.65, 18)])
+    outer = wall([(12, -1, 12, 20)])
+    floor = box(0, 0, 5, length_m).union(box(0, -1, 7, 0))
+    assert len(pockets([*(wall([face]) for face in faces), far, outer], floor)) == n_pockets
+
+
 def block(width_m, length_m):
     """A room with a block in its middle, seen from all sides."""
     x1, y1, x2 = 1.5 + length_m, 1.5 + width_m, 4 + length_m

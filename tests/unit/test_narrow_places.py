@@ -82,6 +82,19 @@ def test_a_fan_seen_through_a_gap_is_parted_off():
     assert line[:, 0].min() > 3.9
 
 
+@pytest.mark.parametrize("is_passed", [False, True])
+def test_a_fan_between_two_visited_rooms_parts_them_where_nobody_passed(is_passed):
+    """Seen from the left room; a corridor that is wider leads to the right one."""
+    fan = shapely.Polygon([(4, 2.0), (4, 2.4), (8, 3.2), (8, 1.6)])
+    around = box(1, -3, 11, -1)
+    places_m = [[1.5, -2], [2, 2], [9, 2]] if is_passed else [[2, 2], [1.5, -2], [9.5, -2], [9, 2]]
+    lines = find(
+        *(LEFT, fan, box(8, 0, 12, 4), around, box(1, -1.1, 2, 0.1), box(9, -1.1, 10, 0.1)),
+        visited_m=np.array(places_m, float),
+    )
+    assert any((3.9 < line[:, 0]).all() and (line[:, 0] < 5).all() for line in lines) != is_passed
+
+
 def test_no_ground_has_no_narrow_place():
     assert find(shapely.Polygon()) == []
 

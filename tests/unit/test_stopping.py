@@ -58,8 +58,8 @@ def test_an_automatic_share_needs_to_know_the_scanner():
 COUNTED = ("rank", "scan_id", "n_points")
 
 
-# 19 scans of equal worth, and one of a twentieth
-EVEN_M2 = np.append(np.arange(5.0, 100, 5), 100.0)
+# 20 scans of equal worth, too little to go on for
+EVEN_M2 = np.arange(1.0, 21.0)
 
 
 @pytest.mark.parametrize(
@@ -81,10 +81,10 @@ def test_an_automatic_share_is_less_in_the_plane(tmp_path, planar, k, said):
 @pytest.mark.parametrize(
     ("covered_m2", "k"),
     [
-        # 4 scans show 0.9, and 7 show 0.95; 4 and 12; 11 and 12
+        # 4 scans show 0.9, and 7 show 0.95; 4 and 12; 11 and 13
         ([50, 70, 80, 90, 92, 94, 96, 98, 99, 99.5, 99.8, 100], 7),
         ([50, 70, 80, 90, 91, 92, 92.5, 93, 93.5, 94, 94.5, 100], 10),
-        ([50, 60, 70, 75, 80, 82, 84, 86, 88, 89, 91, 100], 11),
+        ([50, 60, 70, 75, 80, 82, 84, 86, 88, 89, 91, 92, 100], 11),
     ],
 )
 def test_of_few_planar_scans_none_are_spared(covered_m2, k):
@@ -92,6 +92,21 @@ def test_of_few_planar_scans_none_are_spared(covered_m2, k):
         {"covered_m2": np.array(covered_m2, float)}, area_share="auto", planar=True
     )
     assert found == k
+
+
+@pytest.mark.parametrize(
+    ("gain_m", "k"),
+    [
+        # 0.9 of 100 m is shown by 12 scans, 0.95 by 15 and by 14
+        ([10.0] * 7 + [4.0] * 5 + [1.6, 1.4, 2.0, 2.0, 2.0, 1.0], 13),
+        ([10.0] * 7 + [4.0] * 5 + [3.0, 3.0, 2.0, 2.0], 14),
+        ([10.0] * 7 + [4.0] * 5 + [1.4, 3.0, 2.0, 2.0, 1.6], 12),
+    ],
+)
+def test_planar_scans_are_taken_while_each_shows_much(gain_m, k):
+    columns = {"covered_m2": np.ones(len(gain_m)), "covered": np.cumsum(gain_m)}
+    assert columns["covered"][-1] == pytest.approx(100)
+    assert stopping.choose_n_scans(columns, area_share="auto", planar=True)[0] == k
 
 
 def test_rounding_of_areas_needs_no_further_scan():

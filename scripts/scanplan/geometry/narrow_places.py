@@ -16,6 +16,7 @@ from scipy.sparse.csgraph import connected_components
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry.bare_parts import draw_way
 from scanplan.geometry.bitmap import Grid, fill_polygons
 from scanplan.geometry.tolerances import SHORTEST_M, SMALLEST_M2
 from scanplan.types import Array, FloatArray, IntArray
@@ -37,15 +38,15 @@ def find_narrow_places(
 ) -> list[FloatArray]:
     """Find where ground is narrower than on both sides, and no wider than a given width.
 
-    Where nobody was on one side, it need not be wider just there: through a door one sees no more
-    than a fan of what is behind it.
+    Where nobody passed, it need not be wider just there: through a door one sees no more than a fan
+    of what is behind it.
 
     Parameters
     ----------
     ground : Polygon or MultiPolygon
         What small islands leave out of it counts as ground, but where walls stand.
     visited_m : (n, 2) float64
-        Places that were visited.
+        Places that were visited, one after another.
     gaps_m : sequence of (2, 2) float64
         Lines across ground that may part it however wide they are, if it is wider on both sides.
     walls : shapely geometry, optional
@@ -72,6 +73,7 @@ def find_narrow_places(
     inside = fill_polygons([filled], grid)
     far_m = np.asarray(ndimage.distance_transform_edt(inside)) * cell_m
     basin = _flood(far_m, max_width_m / 2, cell_m)
+    way = draw_way(visited_m)
     visited_m = visited_m[shapely.contains_xy(filled, *visited_m.T)]
     column, row = np.floor((visited_m - grid.low_m) / cell_m).astype(int).T
     visited = set(basin[row, column].tolist())
@@ -85,7 +87,8 @@ def find_narrow_places(
         line = _shortest_across(near, middle_m)
         if line is None or not 0 < _length_m(line) <= max_width_m:
             continue
-        is_narrow = not visited.issuperset(pair) or _widens_on_both_sides(near, line)
+        is_passed = visited.issuperset(pair) and way.intersects(LineString(line))
+        is_narrow = not is_passed or _widens_on_both_sides(near, line)
         if is_narrow and not _is_narrowed(near, line, hidden):
             lines.append(line)
     lines += _choose_gaps(filled, gaps_m, lines)

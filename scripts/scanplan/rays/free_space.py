@@ -24,8 +24,9 @@ def free_polygons(rays: RaySet) -> list[MultiPolygon]:
     """Return what each scan's rays went over, as polygons.
 
     In every half degree (more where a sensor's rays are further apart) a ray of the longest tenth
-    shows how far one can see; where no ray came back from, nothing is known. The outline is true
-    within 2 cm; spikes thinner than 8 cm are taken off.
+    shows how far one can see; a planar scan has one ray a direction, and its outline runs from one
+    to the next. Where no ray came back from, nothing is known. The outline is true within 2 cm;
+    spikes thinner than 8 cm are taken off.
 
     Parameters
     ----------
@@ -36,12 +37,40 @@ def free_polygons(rays: RaySet) -> list[MultiPolygon]:
     list of shapely geometry
         A polygon, polygons, or an empty one, per scan.
     """
-    return [
-        _star(sensor_m[:2], *way) for sensor_m, way in zip(rays.sensors_m, rays.ways(), strict=True)
-    ]
+    find_outline = _outline_of_beams if rays.planar else _outline_of_sectors
+    outlines_m = (
+        sensor_m[:2] + find_outline(*way)
+        for sensor_m, way in zip(rays.sensors_m, rays.ways(), strict=True)
+    )
+    return [_make_star(outline_m) for outline_m in outlines_m]
 
 
-def _star(origin_m: FloatArray, azimuth_rad: FloatArray, way_m: FloatArray) -> MultiPolygon:
+def _make_star(outline_m: FloatArray) -> MultiPolygon:
+    if len(outline_m) < 3:
+        return MultiPolygon()
+    star = shapely.make_valid(Polygon(outline_m)).simplify(_SIMPLIFY_M)
+    return union_on_grid(open_polygons(star, 2 * _SIMPLIFY_M))
+
+
+def _outline_of_beams(azimuth_rad: FloatArray, way_m: FloatArray) -> FloatArray:
+    """Return the outline (n, 2) that a planar scan's rays end at, from its sensor."""
+    if len(azimuth_rad) < 2:
+        return np.empty((0, 2))
+    level_m = way_m[:, :2]
+    range_m = np.hypot(*level_m.T)
+    gap_rad = np.diff(azimuth_rad, append=azimuth_rad[0] + 2 * np.pi)
+    is_gap = gap_rad > 2 * _SPARE * column_spacing_rad(azimuth_rad, way_m)
+    # no ray goes farther than both beside it: one stray point would open a way through a wall
+    after_m = np.where(is_gap, 0.0, np.roll(range_m, -1))
+    before_m = np.where(np.roll(is_gap, 1), 0.0, np.roll(range_m, 1))
+    reach_m = np.minimum(range_m, np.maximum(after_m, before_m))
+    ends_m = level_m * (reach_m / range_m)[:, None]
+    # between two rays with a gap between them nothing is known but the sensor's place
+    return np.insert(ends_m, np.flatnonzero(is_gap) + 1, 0.0, axis=0)
+
+
+def _outline_of_sectors(azimuth_rad: FloatArray, way_m: FloatArray) -> FloatArray:
+    """Return the outline (n, 2) that a scan's rays reach in each sector, from its sensor."""
     range_m = np.hypot(way_m[:, 0], way_m[:, 1])
     steps_rad = np.diff(azimuth_rad)
     steps_rad = steps_rad[steps_rad > 0]
@@ -64,9 +93,7 @@ def _star(origin_m: FloatArray, azimuth_rad: FloatArray, way_m: FloatArray) -> M
     begin, end = (
         np.column_stack([np.cos(e), np.sin(e)]) * reach_m[:, None] for e in (edge[:-1], edge[1:])
     )
-    corners = origin_m + np.stack([begin, end], axis=1).reshape(-1, 2)
-    star = shapely.make_valid(Polygon(corners)).simplify(_SIMPLIFY_M)
-    return union_on_grid(open_polygons(star, 2 * _SIMPLIFY_M))
+    return np.stack([begin, end], axis=1).reshape(-1, 2)
 
 
 def driven_ground(track_m: FloatArray, *, width_m: float, max_step_m: float) -> list[Polygon]:

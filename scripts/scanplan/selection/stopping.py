@@ -16,6 +16,7 @@ AUTO = "auto"
 AUTO_SHARES = {False: 0.95, True: 0.9}
 """By whether scans are planar: in space the last twentieth holds windows, else it is furniture."""
 _FEW = 10  # planar scans: so many cost nothing, and may close the corners of one room
+_PAYS = 1.5  # m of wall: a tenth of a large building is many such pieces, and rooms that they close
 
 
 def choose_n_scans(
@@ -45,7 +46,8 @@ def choose_n_scans(
     area_share : float in (0, 1] or "auto", optional
         Use the fewest scans that cover this share of what all cover (within a square millimetre),
         `covered`, the objective of the method itself, where it is given; automatically
-        `AUTO_SHARES`, of planar scans no fewer than ten unless the others' share needs fewer.
+        `AUTO_SHARES`. Of planar scans no fewer than ten, and as long as each adds 1.5 m of wall
+        (or of another method's unit), unless the others' share needs fewer.
     min_gain_m2 : float, > 0, optional
         Use no scan after the last that adds this much area.
     max_points, max_bytes : int, >= 1, optional
@@ -144,9 +146,21 @@ def _by_scanner(columns: Columns, planar: bool) -> tuple[int, str]:
     if not planar or enough[0] <= _FEW:
         return enough
     fewer = _by_share(columns, AUTO_SHARES[True])
-    if fewer[0] >= _FEW:
+    covered = columns.get("covered", columns["covered_m2"])
+    later = np.diff(covered)[fewer[0] - 1 :]
+    paying = fewer[0] + int(np.argmax(np.append(later, 0.0) < _PAYS))
+    if paying >= enough[0]:
+        return enough
+    of_all = f"of {len(covered)} scans"
+    if paying < _FEW:
+        return _FEW, f"{_FEW} {of_all}: so few are not thinned further"
+    if paying == fewer[0]:
         return fewer
-    return _FEW, f"{_FEW} of {len(columns['covered_m2'])} scans: so few are not thinned further"
+    share = covered[paying - 1] / covered[-1]
+    return paying, (
+        f"{paying} {of_all} show {share:.2f} of what all show, by the method's own measure, and the"
+        f" next would add less than {_PAYS:.4g}"
+    )
 
 
 def _by_gain(gain_m2: FloatArray, least_m2: float) -> tuple[int, str]:

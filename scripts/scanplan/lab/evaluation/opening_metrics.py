@@ -16,8 +16,6 @@ from scanplan.types import BoolArray, FloatArray
 PARALLEL = np.cos(np.radians(10))  # as far as a short line may be turned by noise at its ends
 WALL_M = 0.35  # a wall with both faces and what it is off by; less than half a door: never the next
 _BESIDE_M = 0.5  # a jamb's worth of wall has to be seen for a window to be found
-MOST = 0.5
-"""Share of a room, or of the wall beside a window, above which no other has as much of it."""
 
 
 def measure_doors(
@@ -78,7 +76,7 @@ def _is_visible(line_m: FloatArray, cells: FaceCells, visible: BoolArray) -> boo
     beside = is_near & (np.abs(along) >= PARALLEL)
     for side in (beside & (along > 0), beside & (along < 0)):
         visible_m = cells.length_m[side & visible].sum()
-        if side.any() and visible_m >= MOST * cells.length_m[side].sum():
+        if side.any() and 2 * visible_m >= cells.length_m[side].sum():
             return True
     return False
 

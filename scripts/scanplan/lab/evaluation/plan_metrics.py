@@ -238,10 +238,11 @@ def measure_rooms(
         shared_m2 = shapely.area(shapely.intersection(room, shapes))
         row[:] = shared_m2 / (room.area + shapely.area(shapes) - shared_m2)
     best = iou.max(axis=1, initial=0.0)[visited]
+    of_drawn = iou.max(axis=0, initial=0.0)
     return {
         "n_rooms_true": int(visited.sum()),
-        "n_rooms_found": int((best > opening_metrics.MOST).sum()),
-        "n_rooms_false": int((iou.max(axis=0, initial=0.0) <= opening_metrics.MOST).sum()),
+        "n_rooms_found": int((best > 1 - best).sum()),
+        "n_rooms_false": int((of_drawn <= 1 - of_drawn).sum()),
         "room_iou": float(best.mean()) if len(best) else np.nan,
         "least_room_iou": float(best.min()) if len(best) else np.nan,
     }

@@ -5,6 +5,7 @@ fronts before them, that go on on both sides of them, or that the building ends 
 """
 
 import itertools
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -20,7 +21,12 @@ from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.furniture.blocks import is_block
 from scanplan.plan.furniture.plan_faces import PlanFaces
 from scanplan.plan.furniture.pocket import Pocket, faces_on, is_large
-from scanplan.plan.furniture.recesses import find_holes, find_recesses, stands_before_facade
+from scanplan.plan.furniture.recesses import (
+    POCKET_M2,
+    find_holes,
+    find_recesses,
+    stands_before_facade,
+)
 from scanplan.plan.plan_wall import PlanWall, list_faces
 from scanplan.plan.tolerances import CORNER_M, END_M
 from scanplan.rays import free_space
@@ -171,6 +177,9 @@ class _Search:
         walls = self.faces.behind(pocket.ground) if own else self.faces.backs(near, fronts)
         # a row of cupboards along a wall has gaps, too; it does not begin at a wall across
         dividing = [face for face in fronts if id(face) in self.dividing]
+        # a wall across at its end does not tell a long front from a wall that ends in a corner
+        if own is not None and own.length_m > math.sqrt(POCKET_M2):
+            dividing.append(own)
         walls = [
             wall for wall in walls if not any(run_across(wall.line, face.line) for face in dividing)
         ]
