@@ -1,6 +1,7 @@
 """Rays given cell by cell: columns of 5 cm along a surface of half a metre, rows of 5 cm."""
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -23,6 +24,20 @@ def column(number, *heights_m):
 
 def cells(found):
     return np.column_stack(found).tolist()
+
+
+def test_in_the_plane_columns_beside_each_other_tell_together_where_rays_go_through():
+    """In two of three columns of a metre one ray goes on; of others one returns in each."""
+    free = [ray for number in range(20, 40) if number % 3 for ray in column(number, 0.0)]
+    wall = [ray for number in (*range(20), *range(40, 60)) for ray in column(number, 0.0)]
+    ((low_m, high_m),) = rasterise(wall, free, span_m=(0.0, 2.99), planar=True).find_opened(DOOR_M)
+    assert (low_m, high_m) == pytest.approx((1.0, 2.0), abs=0.11)
+    # of two rays, or where as many end, nothing is known
+    assert len(rasterise(wall, free[:2], span_m=(0.0, 2.99), planar=True).find_opened(DOOR_M)) == 0
+    both = [*wall, *free]
+    assert len(rasterise(both, free, span_m=(0.0, 2.99), planar=True).find_opened(DOOR_M)) == 0
+    # in space each column says it, or not
+    assert len(rasterise(wall, free, span_m=(0.0, 2.99)).find_opened(DOOR_M)) == 0
 
 
 class TestCells:

@@ -91,7 +91,9 @@ def test_ground_between_places_was_driven_over():
 def see(range_m, step_deg=1.0):
     """What a laser at the origin sees, whose rays go so far, the first along x."""
     azimuth_rad = np.radians(step_deg * np.arange(len(range_m)))
-    xy_m = np.asarray(range_m)[:, None] * np.column_stack([np.cos(azimuth_rad), np.sin(azimuth_rad)])
+    xy_m = np.asarray(range_m)[:, None] * np.column_stack(
+        [np.cos(azimuth_rad), np.sin(azimuth_rad)]
+    )
     points = [(0, np.column_stack([xy_m, np.zeros(len(xy_m))]))]
     return free_space.free_polygons(ray_set.gather_rays(points, {0: np.zeros(3)}, planar=True))[0]
 

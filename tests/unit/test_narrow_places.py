@@ -92,7 +92,7 @@ def test_a_fan_between_two_visited_rooms_parts_them_where_nobody_passed(is_passe
         *(LEFT, fan, box(8, 0, 12, 4), around, box(1, -1.1, 2, 0.1), box(9, -1.1, 10, 0.1)),
         visited_m=np.array(places_m, float),
     )
-    assert any((3.9 < line[:, 0]).all() and (line[:, 0] < 5).all() for line in lines) != is_passed
+    assert any((line[:, 0] > 3.9).all() and (line[:, 0] < 5).all() for line in lines) != is_passed
 
 
 def test_no_ground_has_no_narrow_place():

@@ -12,7 +12,7 @@ from scanplan.geometry.lines import Line
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.plan_wall import InferredFace, PlanWall
 from scanplan.plan.tolerances import END_M
-from scanplan.rays.face_raster import CELL_M, find_stretches
+from scanplan.rays.face_raster import CELL_M
 
 _INSIDE_M = 0.01  # a face this near to a wall's surface is not in it: rounding of places and angles
 
@@ -130,13 +130,12 @@ def _without_open(
     wall: PlanWall, line: Line, extent_m: Extent, door_height_m: float
 ) -> list[Extent]:
     """Return what is left of an extent of a side without stretches that rays went through."""
-    if not wall.right or wall.lines[0].planar:
+    if not wall.right:
         return [extent_m]
     taken_m = [_extent_m(line, wall, gap.low_m, gap.high_m) for gap in wall.openings]
     open_m: list[Extent] = []
     for seen in wall.lines:
-        raster = seen.raster
-        for ends_m in find_stretches(raster.is_opened(door_height_m), raster.first_m):
+        for ends_m in seen.raster.find_opened(door_height_m):
             low_m, high_m = np.sort(line.along_m(seen.line.at(ends_m))).tolist()
             if not any(low_m < end_m and high_m > begin_m for begin_m, end_m in taken_m):
                 open_m.append((low_m, high_m))

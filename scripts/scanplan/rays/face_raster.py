@@ -101,6 +101,21 @@ class FaceRaster:
         """Return in which columns (c,) that are crossed not just one or two rays go through."""
         return self.is_crossed(below_m) & (self.count_free(below_m) >= FEW)
 
+    def find_opened(self, below_m: float) -> FloatArray:
+        """Return the stretches (n, 2) along the line that rays go through below a height.
+
+        In the plane a column alone has few: those beside it count with it.
+        """
+        is_opened = self.is_opened(below_m)
+        if self.planar:
+            around = np.ones(2 * round(SCAN_COLUMN_M / CELL_M) + 1)
+            n_free, n_occupied = (
+                np.convolve(count, around, mode="same")[: self.n_columns]
+                for count in (self.count_free(below_m), self.count_occupied(below_m))
+            )
+            is_opened = (n_free > n_occupied) & (n_free >= FEW)
+        return find_stretches(is_opened, self.first_m)
+
     def is_solid(self, below_m: float) -> BoolArray:
         """Return in which columns (c,) rays end below a height and hardly one goes through."""
         return (self.count_occupied(below_m) > 0) & ~self.is_opened(below_m)
