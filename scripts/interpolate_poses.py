@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 
 from scanplan.recordings import candidates, frame_edges
-from scanplan.recordings.motion import pose_kind, time_check, trajectory
+from scanplan.recordings.motion import lidar_odometry, pose_kind, time_check, trajectory
 from scanplan.recordings.survey import open_survey
 from scanplan.stage import log
 from scanplan.store import doubts, schemas, tables
-from scanplan.types import FilePath
+from scanplan.types import BoolArray, FilePath, IntArray
 
 
 def interpolate_poses(
@@ -59,12 +59,15 @@ def interpolate_poses(
             edges, resets = _join_resets(edges, max_speed_m_s)
             found = found.add(contradictions=resets)
         pose, gap_s, covered = frame_edges.chain_poses(edges, t_ns, **limits)
-        chosen = candidates.choose_candidates(
-            pose, keep_every=keep_every, max_step_m=max_step_m, max_turn_deg=max_turn_deg
-        )
+        spacing = {"keep_every": keep_every, "max_step_m": max_step_m, "max_turn_deg": max_turn_deg}
+        chosen = candidates.choose_candidates(pose, **spacing)
         candidates.require_poses(chosen, t_ns, covered, edges, files[0], **limits)
         if moved is not None:
             motion = trajectory.choose_motion(survey.motion_chains(), t_ns, **limits)
+            if survey.pose_kind == pose_kind.ESTIMATED and survey.sweep_times is not None:
+                is_steady = lidar_odometry.find_steady(motion, t_ns)
+                chosen = candidates.choose_candidates(pose, is_steady=is_steady, **spacing)
+                _log_unsteady(is_steady, chosen)
             motion = time_check.check_point_times(survey, motion)
             tables.write_table(moved, schemas.MOTION, motion.columns())
     columns = candidates.pose_columns(chosen, t_ns, pose, gap_s, covered)
@@ -97,6 +100,16 @@ def _join_resets(
         f"the odometry jumps or is reset {n_jumps} times: how the rover moved meanwhile is taken"
         " from the scans alone"
     ]
+
+
+def _log_unsteady(is_steady: BoolArray, chosen: IntArray) -> None:
+    n_left = int((~is_steady).sum())
+    if n_left:
+        log.log_line(
+            f"interpolate_poses: during {n_left:,} of {len(is_steady):,} scans a turn begins or"
+            " ends, and clouds do not say when: others are candidates, but for"
+            f" {int((~is_steady[chosen]).sum()):,} that no other overlaps enough"
+        )
 
 
 def _log_pose_kind(kind: str, *, is_set: bool) -> None:

@@ -72,6 +72,17 @@ def test_scans_without_pose_go_by_their_number():
     ).tolist() == [0, 1, 4, 7]
 
 
+def test_instead_of_a_scan_whose_motion_is_not_known_the_next_is_taken_unless_it_is_far():
+    pose = poses(np.arange(30) * 0.1)
+    is_steady = np.ones(30, bool)
+    is_steady[5:7] = is_steady[16:28] = False
+    chosen = candidates.choose_candidates(
+        pose, keep_every=5, max_step_m=0.55, max_turn_deg=30, is_steady=is_steady
+    )
+    # 7 for 5; and 27, where 15 lies 1.1 m behind, for 20 and 25
+    assert chosen.tolist() == [0, 7, 10, 15, 27]
+
+
 def test_wrong_call():
     with pytest.raises(ValueError, match="keep_every"):
         candidates.choose_candidates(poses([0]), keep_every=0, **FAR)

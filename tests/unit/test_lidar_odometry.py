@@ -12,6 +12,7 @@ from scanplan.errors import StageError
 from scanplan.geometry import se3
 from scanplan.recordings import frame_edges
 from scanplan.recordings.motion import lidar_odometry, pose_kind
+from scanplan.recordings.motion.trajectory import SensorMotion
 from scanplan.recordings.survey import open_survey
 
 STEP_NS = 100_000_000
@@ -92,6 +93,26 @@ def test_a_rover_goes_steadily_where_its_estimates_jump():
     np.testing.assert_allclose(steady, true, atol=1e-3)
     still = lidar_odometry.steady_way(np.zeros(3, np.int64), true[:3])
     np.testing.assert_array_equal(still, true[:3])
+
+
+def moving(turn_rad):
+    t_ns = 10**8 * np.arange(len(turn_rad), dtype=np.int64)
+    quat = Rotation.from_euler("z", turn_rad[:, None]).as_quat()
+    return SensorMotion(t_ns, np.zeros((len(t_ns), 3)), quat, np.zeros(len(t_ns), np.int32))
+
+
+def test_while_a_turn_begins_or_ends_it_is_not_known_how_a_rover_turned():
+    """It stands for three seconds, turns for two at 45 degrees a second, and stands."""
+    motion = moving(np.radians(4.5 * np.clip(np.arange(80) - 30, 0, 20)))
+    is_steady = lidar_odometry.find_steady(motion, motion.t_ns)
+    near = np.abs(np.arange(80)[:, None] - [30, 50]).min(axis=1)
+    assert not is_steady[near <= 2].any() and is_steady[near >= 5].all()
+
+
+def test_of_who_sways_all_scans_are_as_good():
+    """Ten degrees to either side, twice in three seconds."""
+    motion = moving(np.radians(10) * np.sin(2 * np.pi * np.arange(80) / 15))
+    assert lidar_odometry.find_steady(motion, motion.t_ns).all()
 
 
 def test_2_d_scans_without_poses_are_told_what_to_record(tmp_path):

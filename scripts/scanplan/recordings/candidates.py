@@ -14,7 +14,12 @@ from scanplan.types import Array, BoolArray, FloatArray, IntArray
 
 
 def choose_candidates(
-    world_from_sensor: FloatArray, *, keep_every: int, max_step_m: float, max_turn_deg: float
+    world_from_sensor: FloatArray,
+    *,
+    keep_every: int,
+    max_step_m: float,
+    max_turn_deg: float,
+    is_steady: BoolArray | None = None,
 ) -> IntArray:
     """Take every `keep_every`-th scan (thesis, algorithm 3, step 2), more if the rover is fast.
 
@@ -29,6 +34,9 @@ def choose_candidates(
         NaN where not known.
     keep_every : int
     max_step_m, max_turn_deg : float
+    is_steady : (n,) bool, optional
+        During which scans it is known how the sensor moved, by default all. Instead of another the
+        next of these is taken, unless the sensor moves on twice as far or turns twice as much.
 
     Returns
     -------
@@ -38,17 +46,22 @@ def choose_candidates(
     if keep_every < 1:
         raise ValueError(f"keep_every is {keep_every}")
     pose = np.asarray(world_from_sensor, float)
+    is_usable = np.ones(len(pose), bool) if is_steady is None else is_steady
     has_pose = [bool(np.isfinite(matrix).all()) for matrix in pose]
     chosen: list[int] = []
     last: int | None = None
+    is_due = False
     for i in range(len(pose)):
+        is_due |= i % keep_every == 0
+        most = 1 if is_usable[i] else 2
         has_moved = (
             has_pose[i]
             and last is not None
-            and _has_moved(pose[last], pose[i], max_step_m, max_turn_deg)
+            and _has_moved(pose[last], pose[i], most * max_step_m, most * max_turn_deg)
         )
-        if i % keep_every == 0 or has_moved:
+        if (is_due and is_usable[i]) or has_moved:
             chosen.append(i)
+            is_due = False
             last = i if has_pose[i] else last
     return np.array(chosen, np.int64)
 

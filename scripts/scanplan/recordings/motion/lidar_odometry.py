@@ -26,7 +26,7 @@ from scanplan.recordings.motion.deskew import DeskewedSurvey
 from scanplan.recordings.motion.trajectory import SensorMotion
 from scanplan.recordings.survey_protocol import Survey
 from scanplan.stage import log
-from scanplan.types import FloatArray, IntArray
+from scanplan.types import BoolArray, FloatArray, IntArray
 
 if TYPE_CHECKING:
     from kiss_icp.kiss_icp import KissICP
@@ -166,6 +166,43 @@ def steady_way(t_ns: IntArray, world_from_base: FloatArray) -> FloatArray:
         [world_from_base[0], *moved], lambda pose, motion: se3.nearest_rigid(pose @ motion)
     )
     return np.array(list(way))
+
+
+def find_steady(motion: SensorMotion, t_ns: IntArray) -> BoolArray:
+    """Return during which sweeps it is known how a rover turned.
+
+    Clouds say how it moved from one to the next: where a turn begins or ends within a sweep nothing
+    says when, and points five metres away err by decimetres. What turns forth and back most of the
+    time does not roll, and all of its sweeps are as good.
+
+    Parameters
+    ----------
+    motion : trajectory.SensorMotion
+        By the clouds.
+    t_ns : (n,) int64
+        Stamps of the sweeps.
+
+    Returns
+    -------
+    (n,) bool
+    """
+    duration_s = np.diff(motion.t_ns) / 1e9
+    pose = steady_way(motion.t_ns, se3.pose_matrix(motion.xyz_m, motion.quat_xyzw))
+    step = se3.invert_pose(pose[:-1]) @ pose[1:]
+    turn_rad_s = twists.motion_to_twist(step)[:, 3:] / duration_s[:, None]
+    # a sweep may lie before its stamp or after it, and a median of half a second moves the begin
+    # of a turn by half as much
+    first, last = (
+        np.searchsorted(motion.t_ns, t_ns + offset_ns) for offset_ns in (-350_000_000, 350_000_000)
+    )
+    spread_rad_s = np.array(
+        [
+            np.ptp(turn_rad_s[low:high], axis=0).max() if low < high else 0.0
+            for low, high in zip(first, last, strict=True)
+        ]
+    )
+    is_steady = spread_rad_s < np.radians(5)
+    return is_steady if is_steady.mean() >= 0.5 else np.ones(len(t_ns), bool)
 
 
 def _start_odometry(missing: str) -> "KissICP":
