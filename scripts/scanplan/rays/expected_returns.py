@@ -79,6 +79,8 @@ class SentRays:
         So many columns around each are judged together.
     least_rays : float
         Where fewer are to be expected nothing is said.
+    lone_rays : float
+        So many say something however few scans sent them.
     """
 
     view: IntArray
@@ -88,6 +90,7 @@ class SentRays:
     in_wall: IntArray
     width: int = _WIDTH
     least_rays: float = _LEAST_RAYS
+    lone_rays: float = np.inf
 
     @property
     def missing_share(self) -> FloatArray:
@@ -103,7 +106,7 @@ class SentRays:
         In all, of these those that came back, and those that ended in the wall.
 
         NaN where too few are to be expected for anything to be said, or fewer scans than
-        `least_scans` sent any.
+        `least_scans` sent any and these not `lone_rays`.
         """
         expected = _sum_neighbours(self.expected, self.width)
         occluded = _sum_neighbours(self.occluded, self.width)
@@ -115,6 +118,7 @@ class SentRays:
         in_wall = (_sum_neighbours(self.in_wall, self.width) * clear).sum(axis=0)
         n_scans = (clear & (expected >= FEW)).sum(axis=0)
         enough = (n_scans >= least_scans) & (reached >= self.least_rays)
+        enough |= reached >= self.lone_rays
         known = [np.where(enough, rows, np.nan) for rows in (reached, returned, in_wall)]
         return known[0], known[1], known[2]
 
@@ -195,8 +199,8 @@ def count_sent_rays(
     # of one beam there are few; as many columns on either side
     width = 2 * round(STRETCH_M / column_m) + 1 if rays.planar else _WIDTH
     # of a planar scanner it is known which beams it sent, and walls return nearly all
-    least_rays = _LEAST_RAYS / 2 if rays.planar else _LEAST_RAYS
-    return SentRays(looking, expected, occluded, returned, in_wall, width, least_rays)
+    least, lone = (_LEAST_RAYS / 2, _LEAST_RAYS) if rays.planar else (_LEAST_RAYS, np.inf)
+    return SentRays(looking, expected, occluded, returned, in_wall, width, least, lone)
 
 
 def _returns_per_deg(
