@@ -31,7 +31,7 @@ CHANGES: list[dict[str, Any]] = [
     *({"plan": {"merge": {"max_angle_deg": v}}} for v in (8.0, 12.0)),
     {"plan": {"merge": {"merge_distance_m": 0.12}}},
     {"plan": {"openings": {"min_opening_m": 0.55}}},
-    {"plan": {"openings": {"max_opening_m": 2.2}}},
+    {"plan": {"openings": {"max_opening_m": 2.4}}},
     {"plan": {"rooms": {"min_area_m2": 1.2}}},
     {"building": {"max_door_m": 1.4}},
     {"building": {"door_height_m": 1.95}},
