@@ -38,7 +38,7 @@ def interpolate_poses(
     max_gap_s, max_speed_m_s : float
         Longest time between two poses to interpolate over, and fastest way.
     moved : path-like, optional
-        motion.parquet, to write.
+        motion.parquet, to write. By it scans are candidates whose points are moved well.
     **reading
         Keywords of `survey.open_survey`, but for how many clouds may be damaged: few are read
         here, so that `register_scans` counts them.
@@ -60,16 +60,17 @@ def interpolate_poses(
             found = found.add(contradictions=resets)
         pose, gap_s, covered = frame_edges.chain_poses(edges, t_ns, **limits)
         spacing = {"keep_every": keep_every, "max_step_m": max_step_m, "max_turn_deg": max_turn_deg}
-        chosen = candidates.choose_candidates(pose, **spacing)
-        candidates.require_poses(chosen, t_ns, covered, edges, files[0], **limits)
+        is_steady = np.ones(len(t_ns), bool)
         if moved is not None:
             motion = trajectory.choose_motion(survey.motion_chains(), t_ns, **limits)
-            if survey.pose_kind == pose_kind.ESTIMATED and survey.sweep_times is not None:
-                is_steady = lidar_odometry.find_steady(motion, t_ns)
-                chosen = candidates.choose_candidates(pose, is_steady=is_steady, **spacing)
-                _log_unsteady(is_steady, chosen)
             motion = time_check.check_point_times(survey, motion)
             tables.write_table(moved, schemas.MOTION, motion.columns())
+            is_moved = survey.sweep_times is not None and motion.time_scale > 0
+            if survey.pose_kind == pose_kind.ESTIMATED and is_moved:
+                is_steady = lidar_odometry.find_steady(survey.pose_edges()[0], motion, t_ns)
+        chosen = candidates.choose_candidates(pose, is_steady=is_steady, **spacing)
+        candidates.require_poses(chosen, t_ns, covered, edges, files[0], **limits)
+        _log_unsteady(is_steady, chosen)
     columns = candidates.pose_columns(chosen, t_ns, pose, gap_s, covered)
     notes = found.as_notes() | {
         pose_kind.NOTE: survey.pose_kind,

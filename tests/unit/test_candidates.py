@@ -81,6 +81,17 @@ def test_instead_of_a_scan_whose_motion_is_not_known_the_next_is_taken_unless_it
     )
     # 7 for 5; and 27, where 15 lies 1.1 m behind, for 20 and 25
     assert chosen.tolist() == [0, 7, 10, 15, 27]
+    turning = poses(np.zeros(30), 5.0 * np.arange(30))
+    is_steady[:20] = False
+    begins = candidates.choose_candidates(
+        turning, keep_every=5, max_step_m=9, max_turn_deg=29, is_steady=is_steady
+    )
+    # 12 is the first that is turned by more than 58 degrees from 0, and 24 from 12
+    assert begins.tolist() == [12, 24, 28]
+    pose = np.full((30, 4, 4), np.nan)
+    assert candidates.choose_candidates(
+        pose, keep_every=10, max_step_m=1, max_turn_deg=30, is_steady=np.zeros(30, bool)
+    ).tolist() == [0, 10, 20]
 
 
 def test_wrong_call():

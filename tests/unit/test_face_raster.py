@@ -33,9 +33,22 @@ def test_in_the_plane_columns_beside_each_other_tell_together_where_rays_go_thro
     ((low_m, high_m),) = rasterise(wall, free, span_m=(0.0, 2.99), planar=True).find_opened(DOOR_M)
     assert (low_m, high_m) == pytest.approx((1.0, 2.0), abs=0.11)
     # of two rays, or where as many end, nothing is known
-    assert len(rasterise(wall, free[:2], span_m=(0.0, 2.99), planar=True).find_opened(DOOR_M)) == 0
+    few = [*column(22, 0.0), *column(26, 0.0)]
+    assert len(rasterise(wall, few, span_m=(0.0, 2.99), planar=True).find_opened(DOOR_M)) == 0
     both = [*wall, *free]
     assert len(rasterise(both, free, span_m=(0.0, 2.99), planar=True).find_opened(DOOR_M)) == 0
+    # a pier of two columns between two recesses is none of them
+    pier = [ray for number in (29, 30) for ray in column(number, 0.0)]
+    free = [ray for ray in free if not 1.45 < ray[0] < 1.55]
+    beside = rasterise([*wall, *pier], free, span_m=(0.0, 2.99), planar=True).find_opened(DOOR_M)
+    assert len(beside) == 2 and beside[0, 1] <= 1.451 and beside[1, 0] >= 1.549
+    # nor do two columns make a stretch, wherever they lie
+    for number in range(12, 40):
+        lone = [ray for _ in range(5) for ray in (*column(number, 0.0), *column(number + 1, 0.0))]
+        solid = [ray for other in range(60) if other not in (number, number + 1)
+                 for ray in column(other, 0.0)]  # fmt: skip
+        seen = rasterise(solid, lone, span_m=(0.0, 2.99), planar=True)
+        assert len(seen.find_opened(DOOR_M)) == 0
     # in space each column says it, or not
     assert len(rasterise(wall, free, span_m=(0.0, 2.99)).find_opened(DOOR_M)) == 0
 

@@ -88,14 +88,17 @@ def test_ground_between_places_was_driven_over():
     assert not free_space.driven_ground(track_m[:1], width_m=0.5, max_step_m=1.5)
 
 
-def see(range_m, step_deg=1.0):
-    """What a laser at the origin sees, whose rays go so far, the first along x."""
-    azimuth_rad = np.radians(step_deg * np.arange(len(range_m)))
-    xy_m = np.asarray(range_m)[:, None] * np.column_stack(
-        [np.cos(azimuth_rad), np.sin(azimuth_rad)]
-    )
-    points = [(0, np.column_stack([xy_m, np.zeros(len(xy_m))]))]
-    return free_space.free_polygons(ray_set.gather_rays(points, {0: np.zeros(3)}, planar=True))[0]
+def see(range_m):
+    """What a laser at the origin sees, whose rays go so far, a degree apart from x on."""
+    return see_at(np.arange(len(range_m), dtype=float), range_m)
+
+
+def see_at(azimuth_deg, range_m):
+    azimuth_rad = np.radians(azimuth_deg)
+    way = np.column_stack([np.cos(azimuth_rad), np.sin(azimuth_rad), 0 * azimuth_rad])
+    xyz_m = np.broadcast_to(range_m, azimuth_rad.shape)[:, None] * way
+    scans = [(0, xyz_m)]
+    return free_space.free_polygons(ray_set.gather_rays(scans, {0: np.zeros(3)}, planar=True))[0]
 
 
 def ray(azimuth_deg, from_m, to_m):
@@ -131,5 +134,21 @@ def test_a_laser_sees_nothing_where_nothing_came_back():
     range_m = np.full(40, 5.0)
     seen = see(range_m)
     assert seen.area == pytest.approx(np.radians(39) * 5**2 / 2, rel=0.01)
-    half = see(np.full(20, 5.0))
-    assert not half.intersects(ray(25, 0.5, 5)) and seen.covers(ray(25, 0.5, 4.9))
+    # ten beams of forty; a beam alone, or two, may get lost
+    azimuth_deg = np.arange(40.0)
+    gap = see_at(np.delete(azimuth_deg, slice(15, 25)), 5.0)
+    assert not gap.intersects(ray(19.5, 0.5, 5))
+    assert gap.covers(ray(10, 0.5, 4.9)) and gap.covers(ray(30, 0.5, 4.9))
+    assert see_at(np.delete(azimuth_deg, slice(15, 17)), 5.0).covers(ray(15.5, 0.5, 4.9))
+
+
+def test_few_beams_doubled_ones_and_none_at_all_are_no_error():
+    """A beam each twelve degrees; each return twice; returns at the sensor itself; one, two."""
+    assert see_at(np.arange(0.0, 360, 12), 5.0).area == pytest.approx(np.pi * 5**2, rel=0.06)
+    twice = np.full(80, 5.0)
+    twice[40:42] = 12.0
+    assert not see_at(np.repeat(np.arange(40.0), 2), twice).intersects(ray(20, 5.1, 12))
+    near = np.full(40, 5.0)
+    near[10] = 0.0
+    assert see(near).area > 0
+    assert see(np.full(1, 5.0)).is_empty and see(np.full(2, 5.0)).area < 0.3

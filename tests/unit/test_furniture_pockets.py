@@ -101,7 +101,9 @@ def test_a_corner_that_surfaces_enclose_is_a_part_of_the_building_where_no_furni
     assert pockets([*(wall([face]) for face in seen), *corner], floor) == []
 
 
-@pytest.mark.parametrize(("length_m", "n_pockets"), [(6.0, 0), (2.0, 1)], ids=["wall", "cupboard"])
+@pytest.mark.parametrize(
+    ("length_m", "n_pockets"), [(6.0, 0), (2.6, 0), (2.3, 1)], ids=["wall", "short", "cupboard"]
+)
 def test_a_wall_that_ends_at_one_across_stands_before_none_in_a_line_far_away(length_m, n_pockets):
     """Beyond it nothing was seen; floor goes round its other end."""
     faces = [(5, 0, 5, length_m), (5, length_m, 0, length_m), (0, length_m, 0, -1), (0, -1, 7, -1)]

@@ -1,6 +1,7 @@
 """Poses from clouds alone: what moves on wheels, what is told, and KISS-ICP itself where it is."""
 
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -95,24 +96,48 @@ def test_a_rover_goes_steadily_where_its_estimates_jump():
     np.testing.assert_array_equal(still, true[:3])
 
 
-def moving(turn_rad):
-    t_ns = 10**8 * np.arange(len(turn_rad), dtype=np.int64)
-    quat = Rotation.from_euler("z", turn_rad[:, None]).as_quat()
-    return SensorMotion(t_ns, np.zeros((len(t_ns), 3)), quat, np.zeros(len(t_ns), np.int32))
+def rolling(turn_deg, step_ns=10**8):
+    """A track of 0.5 m/s that turns so far until each cloud, and the motion that it says."""
+    t_ns = step_ns * np.arange(len(turn_deg), dtype=np.int64)
+    quat = Rotation.from_euler("z", np.reshape(turn_deg, (-1, 1)), degrees=True).as_quat()
+    xyz_m = np.column_stack([0.5e-9 * t_ns, 0 * t_ns, 0 * t_ns])
+    track, _ = frame_edges.make_track_edge("map", "", t_ns, t_ns, np.column_stack([xyz_m, quat]))
+    return track, SensorMotion(t_ns, xyz_m, quat, np.zeros(len(t_ns), np.int32))
 
 
-def test_while_a_turn_begins_or_ends_it_is_not_known_how_a_rover_turned():
-    """It stands for three seconds, turns for two at 45 degrees a second, and stands."""
-    motion = moving(np.radians(4.5 * np.clip(np.arange(80) - 30, 0, 20)))
-    is_steady = lidar_odometry.find_steady(motion, motion.t_ns)
+@pytest.mark.parametrize(("rate_deg_s", "is_told"), [(45.0, True), (6.0, True), (4.0, False)])
+def test_while_a_turn_begins_or_ends_it_is_not_known_how_a_rover_turned(rate_deg_s, is_told):
+    """It goes straight for three seconds, turns for two, and goes straight."""
+    track, motion = rolling(rate_deg_s / 10 * np.clip(np.arange(80) - 30, 0, 20))
+    is_steady = lidar_odometry.find_steady(track, motion, motion.t_ns)
     near = np.abs(np.arange(80)[:, None] - [30, 50]).min(axis=1)
-    assert not is_steady[near <= 2].any() and is_steady[near >= 5].all()
+    assert is_steady[near >= 5].all()
+    assert (not is_steady[near <= 2].any()) if is_told else is_steady.all()
 
 
-def test_of_who_sways_all_scans_are_as_good():
-    """Ten degrees to either side, twice in three seconds."""
-    motion = moving(np.radians(10) * np.sin(2 * np.pi * np.arange(80) / 15))
-    assert lidar_odometry.find_steady(motion, motion.t_ns).all()
+def test_of_slow_scanners_the_steps_beside_a_turn_s_begin_are_not_known():
+    """Two clouds a second, fewer where the first or the last stands alone; one cloud, or none."""
+    track, motion = rolling(20.0 * np.clip(np.arange(20) - 10, 0, 10), 5 * 10**8)
+    is_steady = lidar_odometry.find_steady(track, motion, motion.t_ns)
+    assert not is_steady[10] and is_steady[:8].all() and is_steady[13:].all()
+    for n in (1, 2, 3):
+        track, motion = rolling(np.zeros(n), 5 * 10**8)
+        assert lidar_odometry.find_steady(track, motion, motion.t_ns).all()
+
+
+def test_who_is_carried_or_has_odometry_loses_no_scans():
+    """Ten degrees to either side, twice in three seconds, with a walk's sway; 50 poses a second."""
+    turn_deg = 10 * np.sin(2 * np.pi * np.arange(80) / 15)
+    track, motion = rolling(turn_deg)
+    sway = Rotation.from_euler(
+        "x", np.reshape(4 * np.sin(np.pi * np.arange(80) / 5), (-1, 1)), True
+    )
+    swaying = (Rotation.from_quat(track.quat_xyzw) * sway).as_quat()
+    carried = replace(track, quat_xyzw=swaying)
+    assert lidar_odometry.find_steady(carried, motion, motion.t_ns).all()
+    assert not lidar_odometry.find_steady(track, motion, motion.t_ns).all()
+    _, odometry = rolling(np.interp(np.arange(400) / 5, np.arange(80), turn_deg), 2 * 10**7)
+    assert lidar_odometry.find_steady(track, odometry, motion.t_ns).all()
 
 
 def test_2_d_scans_without_poses_are_told_what_to_record(tmp_path):

@@ -77,8 +77,15 @@ def take_visited(ground: BaseGeometry, visited: BaseGeometry) -> list[Polygon]:
 
 
 def draw_way(track_m: FloatArray) -> BaseGeometry:
-    """Return the way from each visited place (n, 2) to the next."""
-    return shapely.LineString(track_m) if len(track_m) > 1 else shapely.MultiPoint(track_m)
+    """Return visited places (n, 2) and the way from each to the next, but for long steps.
+
+    These are no straight lines: of a gap, of another recording, of scans far apart.
+    """
+    steps_m = np.stack([track_m[:-1], track_m[1:]], axis=1)
+    length_m = np.hypot(*(steps_m[:, 1] - steps_m[:, 0]).T)
+    is_short = length_m <= 3 * np.median(length_m) if len(length_m) else np.zeros(0, bool)
+    parts = [shapely.MultiPoint(track_m), shapely.MultiLineString(list(steps_m[is_short]))]
+    return shapely.GeometryCollection(parts)
 
 
 def walled_share(ring: LinearRing, walled: BaseGeometry) -> float:

@@ -11,6 +11,7 @@ from dataclasses import replace
 import numpy as np
 import shapely
 
+from scanplan.geometry.bare_parts import draw_way
 from scanplan.geometry.lines import Line
 from scanplan.plan.openings import CLOSED, GAP, Opening
 from scanplan.plan.plan_wall import PlanWall
@@ -177,7 +178,7 @@ def decide_kinds(
     ways_m : sequence of (2, 2) float64
         Gaps that leaves were seen to stand open at, from jamb to jamb.
     """
-    track = _track_line(track_m)
+    track = draw_way(track_m)
     middles_m = np.mean([*ways_m, np.full((2, 2), np.inf)], axis=1)
     return [
         _decide(
@@ -255,7 +256,7 @@ def decide_bare_spans(
     """
     if rays.planar:
         return list(spans)
-    track = _track_line(track_m)
+    track = draw_way(track_m)
     decided: list[BareSpan] = []
     for span in spans:
         line = _facing_line(span.ends_m, rooms[span.room])
@@ -283,11 +284,3 @@ def _facing_line(ends_m: FloatArray, room: shapely.Polygon) -> Line:
     normal = np.array([-along[1], along[0]])
     inside = room.covers(shapely.Point(ends_m.mean(axis=0) + END_M * normal))
     return Line(ends_m[0], normal if inside else -normal)
-
-
-def _track_line(track_m: FloatArray) -> shapely.Geometry:
-    """Return the way (n, 2) of a sensor without steps that are too long to be straight."""
-    steps_m = np.stack([track_m[:-1], track_m[1:]], axis=1)
-    length_m = np.hypot(*(steps_m[:, 1] - steps_m[:, 0]).T)
-    usual_m = np.median(length_m) if len(length_m) else 0.0
-    return shapely.MultiLineString([*steps_m[length_m <= FEW * usual_m]])

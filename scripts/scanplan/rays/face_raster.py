@@ -106,14 +106,15 @@ class FaceRaster:
 
         In the plane a column alone has few: those beside it count with it.
         """
-        is_opened = self.is_opened(below_m)
-        if self.planar:
-            around = np.ones(2 * round(SCAN_COLUMN_M / CELL_M) + 1)
-            n_free, n_occupied = (
-                np.convolve(count, around, mode="same")[: self.n_columns]
-                for count in (self.count_free(below_m), self.count_occupied(below_m))
-            )
-            is_opened = (n_free > n_occupied) & (n_free >= FEW)
+        if not self.planar:
+            return find_stretches(self.is_opened(below_m), self.first_m)
+        free, occupied = self.count_free(below_m), self.count_occupied(below_m)
+        around = np.ones(2 * round(SCAN_COLUMN_M / CELL_M) + 1)
+        n_free, n_occupied = (
+            np.convolve(count, around, mode="same")[: self.n_columns] for count in (free, occupied)
+        )
+        # a column that rays end in is none of it, whatever is beside it
+        is_opened = (n_free > n_occupied) & (n_free >= FEW) & (free >= occupied)
         return find_stretches(is_opened, self.first_m)
 
     def is_solid(self, below_m: float) -> BoolArray:
@@ -171,8 +172,9 @@ def find_stretches(is_found: BoolArray, first_m: float) -> FloatArray:
         Where the first column begins.
     """
     steps = np.diff(np.concatenate([[False], is_found, [False]]).astype(np.int8))
-    stretches_m = (first_m + CELL_M * np.flatnonzero(steps)).reshape(-1, 2)
-    return stretches_m[np.diff(stretches_m, axis=1)[:, 0] >= STRETCH_M]
+    columns = np.flatnonzero(steps).reshape(-1, 2)
+    is_long = np.diff(columns, axis=1)[:, 0] >= round(STRETCH_M / CELL_M)
+    return first_m + CELL_M * columns[is_long]
 
 
 def highest_of_each(cell: IntArray, height_m: FloatArray, n_cells: int) -> FloatArray:

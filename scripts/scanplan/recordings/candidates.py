@@ -37,6 +37,7 @@ def choose_candidates(
     is_steady : (n,) bool, optional
         During which scans it is known how the sensor moved, by default all. Instead of another the
         next of these is taken, unless the sensor moves on twice as far or turns twice as much.
+        Scans without a pose are taken all the same.
 
     Returns
     -------
@@ -46,13 +47,15 @@ def choose_candidates(
     if keep_every < 1:
         raise ValueError(f"keep_every is {keep_every}")
     pose = np.asarray(world_from_sensor, float)
-    is_usable = np.ones(len(pose), bool) if is_steady is None else is_steady
     has_pose = [bool(np.isfinite(matrix).all()) for matrix in pose]
+    is_usable = np.ones(len(pose), bool) if is_steady is None else is_steady | ~np.array(has_pose)
     chosen: list[int] = []
     last: int | None = None
     is_due = False
     for i in range(len(pose)):
         is_due |= i % keep_every == 0
+        if is_due and not is_usable[i] and last is None:
+            last = i
         most = 1 if is_usable[i] else 2
         has_moved = (
             has_pose[i]

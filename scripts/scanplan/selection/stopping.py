@@ -135,10 +135,7 @@ def _by_share(columns: Columns, share: float) -> tuple[int, str]:
         raise ValueError(f"area_share is {share}, must be above 0 and at most 1")
     covered = columns.get("covered", columns["covered_m2"])
     k = int((covered >= share * covered[-1] - SMALLEST_M2).argmax()) + 1
-    chosen = f"{k} of {len(covered)} scans"
-    if np.array_equal(covered, columns["covered_m2"]):
-        return k, f"{chosen} cover {share:.4g} of the {covered[-1]:.1f} m2 that all cover"
-    return k, f"{chosen} show {share:.4g} of what all show, by the method's own measure"
+    return k, _say_share(k, f"{share:.4g}", columns)
 
 
 def _by_scanner(columns: Columns, planar: bool) -> tuple[int, str]:
@@ -148,19 +145,23 @@ def _by_scanner(columns: Columns, planar: bool) -> tuple[int, str]:
     fewer = _by_share(columns, AUTO_SHARES[True])
     covered = columns.get("covered", columns["covered_m2"])
     later = np.diff(covered)[fewer[0] - 1 :]
-    paying = fewer[0] + int(np.argmax(np.append(later, 0.0) < _PAYS))
+    paying = fewer[0] + int(np.argmax(np.append(later, 0.0) < _PAYS - SMALLEST_M2))
     if paying >= enough[0]:
         return enough
-    of_all = f"of {len(covered)} scans"
     if paying < _FEW:
-        return _FEW, f"{_FEW} {of_all}: so few are not thinned further"
+        return _FEW, f"{_FEW} of {len(covered)} scans: so few are not thinned further"
     if paying == fewer[0]:
         return fewer
-    share = covered[paying - 1] / covered[-1]
-    return paying, (
-        f"{paying} {of_all} show {share:.2f} of what all show, by the method's own measure, and the"
-        f" next would add less than {_PAYS:.4g}"
-    )
+    said = _say_share(paying, f"{covered[paying - 1] / covered[-1]:.3f}", columns)
+    return paying, f"{said}; the next adds less than {_PAYS:.4g} m, or m2"
+
+
+def _say_share(k: int, share: str, columns: Columns) -> str:
+    covered_m2 = columns["covered_m2"]
+    chosen = f"{k} of {len(covered_m2)} scans"
+    if np.array_equal(columns.get("covered", covered_m2), covered_m2):
+        return f"{chosen} cover {share} of the {covered_m2[-1]:.1f} m2 that all cover"
+    return f"{chosen} show {share} of what all show, by the method's own measure"
 
 
 def _by_gain(gain_m2: FloatArray, least_m2: float) -> tuple[int, str]:

@@ -241,8 +241,8 @@ def measure_rooms(
     of_drawn = iou.max(axis=0, initial=0.0)
     return {
         "n_rooms_true": int(visited.sum()),
-        "n_rooms_found": int((best > 1 - best).sum()),
-        "n_rooms_false": int((of_drawn <= 1 - of_drawn).sum()),
+        "n_rooms_found": int((best > 0.5).sum()),
+        "n_rooms_false": int((of_drawn <= 0.5).sum()),
         "room_iou": float(best.mean()) if len(best) else np.nan,
         "least_room_iou": float(best.min()) if len(best) else np.nan,
     }

@@ -5,7 +5,6 @@ fronts before them, that go on on both sides of them, or that the building ends 
 """
 
 import itertools
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -22,7 +21,7 @@ from scanplan.plan.furniture.blocks import is_block
 from scanplan.plan.furniture.plan_faces import PlanFaces
 from scanplan.plan.furniture.pocket import Pocket, faces_on, is_large
 from scanplan.plan.furniture.recesses import (
-    POCKET_M2,
+    DEEPEST_M,
     find_holes,
     find_recesses,
     stands_before_facade,
@@ -178,10 +177,9 @@ class _Search:
         # a row of cupboards along a wall has gaps, too; it does not begin at a wall across
         dividing = [face for face in fronts if id(face) in self.dividing]
         # a wall across at its end does not tell a long front from a wall that ends in a corner
-        if own is not None and own.length_m > math.sqrt(POCKET_M2):
-            dividing.append(own)
+        beside = [*dividing, own] if own is not None and own.length_m > DEEPEST_M else dividing
         walls = [
-            wall for wall in walls if not any(run_across(wall.line, face.line) for face in dividing)
+            wall for wall in walls if not any(run_across(wall.line, face.line) for face in beside)
         ]
         if _is_before_wall(pocket, walls, self.grown[row]):
             return pocket

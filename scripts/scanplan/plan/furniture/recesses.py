@@ -15,6 +15,8 @@ from scanplan.rays.face_raster import CELL_M
 
 POCKET_M2 = 2 * FURNITURE_M2
 """Of two desks or a table, with the floor that they hide."""
+DEEPEST_M = math.sqrt(POCKET_M2)
+"""No table and its shadow are deeper."""
 
 
 def find_holes(known: BaseGeometry) -> Iterator[Polygon]:
@@ -74,7 +76,7 @@ def _find_walls_behind(
     is_pier = faces.is_between_others(front)
     joined_m = faces.joined_m(front)
     # no deeper than a table and its shadow, however short the front
-    most_m = min(POCKET_M2 / joined_m, math.sqrt(POCKET_M2))
+    most_m = min(POCKET_M2 / joined_m, DEEPEST_M)
     near_m = min(POCKET_M2 / joined_m, max_depth_m + END_M)
     for wall in faces.parallel(front, most_m + CORNER_M):
         along_m, off_m = wall.line.along_m(front.ends), wall.line.offset_m(front.ends)

@@ -168,17 +168,19 @@ def steady_way(t_ns: IntArray, world_from_base: FloatArray) -> FloatArray:
     return np.array(list(way))
 
 
-def find_steady(motion: SensorMotion, t_ns: IntArray) -> BoolArray:
+def find_steady(track: frame_edges.FrameEdge, motion: SensorMotion, t_ns: IntArray) -> BoolArray:
     """Return during which sweeps it is known how a rover turned.
 
     Clouds say how it moved from one to the next: where a turn begins or ends within a sweep nothing
-    says when, and points five metres away err by decimetres. What turns forth and back most of the
-    time does not roll, and all of its sweeps are as good.
+    says when, and points five metres away err by decimetres. What is carried turns all the time,
+    and all of its sweeps are as good.
 
     Parameters
     ----------
+    track : frame_edges.FrameEdge
+        Estimated from the clouds.
     motion : trajectory.SensorMotion
-        By the clouds.
+        That points of sweeps are moved by. Where it is not the clouds', it knows more than these.
     t_ns : (n,) int64
         Stamps of the sweeps.
 
@@ -186,23 +188,26 @@ def find_steady(motion: SensorMotion, t_ns: IntArray) -> BoolArray:
     -------
     (n,) bool
     """
-    duration_s = np.diff(motion.t_ns) / 1e9
-    pose = steady_way(motion.t_ns, se3.pose_matrix(motion.xyz_m, motion.quat_xyzw))
-    step = se3.invert_pose(pose[:-1]) @ pose[1:]
-    turn_rad_s = twists.motion_to_twist(step)[:, 3:] / duration_s[:, None]
-    # a sweep may lie before its stamp or after it, and a median of half a second moves the begin
-    # of a turn by half as much
-    first, last = (
-        np.searchsorted(motion.t_ns, t_ns + offset_ns) for offset_ns in (-350_000_000, 350_000_000)
-    )
-    spread_rad_s = np.array(
-        [
-            np.ptp(turn_rad_s[low:high], axis=0).max() if low < high else 0.0
-            for low, high in zip(first, last, strict=True)
-        ]
-    )
-    is_steady = spread_rad_s < np.radians(5)
-    return is_steady if is_steady.mean() >= 0.5 else np.ones(len(t_ns), bool)
+    is_steady = np.ones(len(t_ns), bool)
+    if track.t_ns is None or len(track.t_ns) < 2 or not np.isin(motion.t_ns, track.t_ns).all():
+        return is_steady
+    world_from_base = se3.pose_matrix(track.xyz_m, track.quat_xyzw)
+    if not is_rolling(track.t_ns, world_from_base):
+        return is_steady
+    way = steady_way(track.t_ns, world_from_base)
+    step = se3.invert_pose(way[:-1]) @ way[1:]
+    turn_rad_s = twists.motion_to_twist(step)[:, 3:] / (np.diff(track.t_ns) / 1e9)[:, None]
+    # a median of half a second moves the begin of a turn by up to half of it, and a sweep of a
+    # tenth lies before its stamp or after it; of slow scanners the steps beside
+    begin_ns, near_ns = track.t_ns[:-1], 350_000_000
+    inside = np.searchsorted(begin_ns, t_ns, side="right") - 1
+    first = np.minimum(np.searchsorted(begin_ns, t_ns - near_ns), np.maximum(inside - 1, 0))
+    last = np.maximum(np.searchsorted(begin_ns, t_ns + near_ns), inside + 2)
+    for row, (low, high) in enumerate(zip(first.tolist(), last.tolist(), strict=True)):
+        spread_rad_s = np.ptp(turn_rad_s[low:high], axis=0).max()
+        # half a degree in a sweep: a scan's own walls bend by as much as its ranges err
+        is_steady[row] = spread_rad_s < np.radians(5)
+    return is_steady
 
 
 def _start_odometry(missing: str) -> "KissICP":
