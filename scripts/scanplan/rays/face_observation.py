@@ -17,7 +17,6 @@ from scanplan.rays.ray_set import RaySet
 from scanplan.rays.tolerances import BEHIND_M, FEW, ON_M, SKIRTING_M, STRETCH_M
 from scanplan.types import FloatArray, IntArray
 
-_MOST_SHARE = 0.5  # of rays return from any wall; of a pane's length has a frame
 _GLASS_HEIGHTS_M = ((0.2, 0.7), (0.9, 1.6))  # skirting to sill; above sills, below low lintels
 
 
@@ -106,14 +105,14 @@ class FaceObservation:
 
     def _is_framed(self, returns_m: FloatArray, low_m: float, high_m: float) -> bool:
         if not self.planar:
-            return filled_share(returns_m, low_m, high_m) >= _MOST_SHARE
+            return 2 * filled_share(returns_m, low_m, high_m) >= 1
         # what is close to the ends may be of jambs, and fewer stretches of somebody in a way
         low_m, high_m = low_m + ON_M, high_m - ON_M
         if high_m - low_m < FEW * STRETCH_M:
             return False
         whole_m = math.ceil(round((high_m - low_m) / STRETCH_M, 6)) * STRETCH_M
         inside_m = returns_m[returns_m < high_m]
-        return filled_share(inside_m, low_m, low_m + whole_m, STRETCH_M) >= _MOST_SHARE
+        return 2 * filled_share(inside_m, low_m, low_m + whole_m, STRETCH_M) >= 1
 
     def covers(self, low_m: float, high_m: float) -> bool:
         """Return whether rays were gathered all the way between two places."""
@@ -227,7 +226,7 @@ def _find_lost(rays: RaySet, face: FaceRays, low_m: float, high_m: float) -> Flo
         if is_lost.any():
             sent = expected_returns.count_sent_rays(rays, face, low_m, count, CELL_M, heights_m)
             reached, returned, _ = sent.reached(least_scans=least_scans)
-            is_lost &= returned < _MOST_SHARE * reached
+            is_lost &= 2 * returned < reached
     return face_raster.find_stretches(is_lost, low_m)
 
 

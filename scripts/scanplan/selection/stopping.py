@@ -13,9 +13,15 @@ from scanplan.types import Columns, FilePath, FloatArray, IntArray
 BYTES_PER_POINT = scan_cache.POINT.itemsize
 """As registered scans are stored before they are compressed."""
 AUTO = "auto"
-AUTO_SHARES = {False: 0.95, True: 0.9}
-"""By whether scans are planar: in space the last twentieth holds windows, else it is furniture."""
+AUTO_SHARES = {False: (0.95,), True: (0.85, 0.9, 0.95)}
+"""By whether scans are planar: in space the last twentieth holds windows, else it is furniture.
+
+Of planar scans at least, usually, and at most.
+"""
 _FEW = 10  # planar scans: so many cost nothing, and may close the corners of one room
+_MOST_SCANS = (
+    0.3  # of planar ones: of a drive with a scan a metre a third finds 0.01 more than these
+)
 _PAYS = 1.5  # m of wall: a tenth of a large building is many such pieces, and rooms that they close
 
 
@@ -46,8 +52,9 @@ def choose_n_scans(
     area_share : float in (0, 1] or "auto", optional
         Use the fewest scans that cover this share of what all cover (within a square millimetre),
         `covered`, the objective of the method itself, where it is given; automatically
-        `AUTO_SHARES`. Of planar scans no fewer than ten, and as long as each adds 1.5 m of wall
-        (or of another method's unit), unless the others' share needs fewer.
+        `AUTO_SHARES`. Of planar scans no fewer than ten, for more than the usual share as long as
+        each adds 1.5 m of wall (or of another method's unit), and for more than the least no more
+        than three of ten.
     min_gain_m2 : float, > 0, optional
         Use no scan after the last that adds this much area.
     max_points, max_bytes : int, >= 1, optional
@@ -139,21 +146,24 @@ def _by_share(columns: Columns, share: float) -> tuple[int, str]:
 
 
 def _by_scanner(columns: Columns, planar: bool) -> tuple[int, str]:
-    enough = _by_share(columns, AUTO_SHARES[False])
+    *fewer, enough = (_by_share(columns, share) for share in AUTO_SHARES[planar])
     if not planar or enough[0] <= _FEW:
         return enough
-    fewer = _by_share(columns, AUTO_SHARES[True])
+    least, usual = fewer
     covered = columns.get("covered", columns["covered_m2"])
-    later = np.diff(covered)[fewer[0] - 1 :]
-    paying = fewer[0] + int(np.argmax(np.append(later, 0.0) < _PAYS - SMALLEST_M2))
-    if paying >= enough[0]:
-        return enough
-    if paying < _FEW:
-        return _FEW, f"{_FEW} of {len(covered)} scans: so few are not thinned further"
-    if paying == fewer[0]:
-        return fewer
-    said = _say_share(paying, f"{covered[paying - 1] / covered[-1]:.3f}", columns)
-    return paying, f"{said}; the next adds less than {_PAYS:.4g} m, or m2"
+    later = np.diff(covered)[usual[0] - 1 :]
+    paying = usual[0] + int(np.argmax(np.append(later, 0.0) < _PAYS - SMALLEST_M2))
+    most = max(int(_MOST_SCANS * len(covered)), least[0], _FEW)
+    k = min(max(paying, _FEW), most, enough[0])
+    for limit in (enough, usual):
+        if k == limit[0]:
+            return limit
+    if k == _FEW:
+        return k, f"{k} of {len(covered)} scans: so few are not thinned further"
+    said = _say_share(k, f"{covered[k - 1] / covered[-1]:.3f}", columns)
+    if k == most:
+        return k, f"{said}; of planar scans {_MOST_SCANS:.0%} are enough"
+    return k, f"{said}; the next adds less than {_PAYS:.4g} m, or m2"
 
 
 def _say_share(k: int, share: str, columns: Columns) -> str:
