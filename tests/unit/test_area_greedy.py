@@ -56,7 +56,8 @@ def test_same_order_as_algorithm_1(polygons):
     order, covered_m2 = hull_selection.hull_selection(polygons)
     result = area_greedy.order_by_area(polygons)
     assert result.order.tolist() == order
-    assert result.covered == pytest.approx(covered_m2, abs=1e-9)
+    # corners a nanometre apart count for what the order itself takes for nothing
+    assert result.covered == pytest.approx(covered_m2, abs=SMALLEST_M2)
 
 
 @settings(max_examples=100, deadline=None)
