@@ -60,7 +60,8 @@ def _outline_of_beams(azimuth_rad: FloatArray, way_m: FloatArray) -> FloatArray:
     # of two returns in one direction the nearer ends it
     first = np.flatnonzero(np.diff(azimuth_rad, prepend=-np.inf) > 0)
     range_m = np.minimum.reduceat(np.hypot(way_m[:, 0], way_m[:, 1]), first)
-    azimuth_rad, width_rad = azimuth_rad[first], _sector_rad(azimuth_rad, way_m)
+    width_rad = _sector_rad(azimuth_rad, way_m)
+    azimuth_rad = azimuth_rad[first]
     is_gap = np.diff(azimuth_rad, append=azimuth_rad[0] + 2 * np.pi) > 2 * width_rad
     # one stray point would open a way through a wall
     after_m = np.where(is_gap, 0.0, np.roll(range_m, -1))

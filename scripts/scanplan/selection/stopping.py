@@ -19,9 +19,7 @@ AUTO_SHARES = {False: (0.95,), True: (0.85, 0.9, 0.95)}
 Of planar scans at least, usually, and at most.
 """
 _FEW = 10  # planar scans: so many cost nothing, and may close the corners of one room
-_MOST_SCANS = (
-    0.3  # of planar ones: of a drive with a scan a metre a third finds 0.01 more than these
-)
+_MOST_SCANS = 0.3  # of planar ones: with a scan a metre a third finds but a hundredth more
 _PAYS = 1.5  # m of wall: a tenth of a large building is many such pieces, and rooms that they close
 
 

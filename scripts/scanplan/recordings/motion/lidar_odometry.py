@@ -150,22 +150,28 @@ def steady_way(t_ns: IntArray, world_from_base: FloatArray) -> FloatArray:
     (n, 4, 4) float64
         From the same first pose on, by the median of the velocities ahead, aside, and of the turn.
     """
-    from scipy.ndimage import median_filter  # 0.2 s, and most recordings have poses
-
     duration_s = np.diff(t_ns) / 1e9
     if not duration_s.any():
         return world_from_base
-    step = se3.invert_pose(world_from_base[:-1]) @ world_from_base[1:]
-    per_s = 1 / np.where(duration_s > 0, duration_s, np.inf)
-    velocity = twists.motion_to_twist(step) * per_s[:, None]
-    n_beside = round(0.25 / float(np.median(duration_s[duration_s > 0])))
-    steady = median_filter(velocity, size=(2 * n_beside + 1, 1), mode="nearest")
+    steady = _steady_velocity(t_ns, world_from_base)
     moved = twists.twist_to_motion(steady * duration_s[:, None])
     # products of matrices drift off true rotations
     way = itertools.accumulate(
         [world_from_base[0], *moved], lambda pose, motion: se3.nearest_rigid(pose @ motion)
     )
     return np.array(list(way))
+
+
+def _steady_velocity(t_ns: IntArray, world_from_base: FloatArray) -> FloatArray:
+    """Return the twists a second (n - 1, 6) of `steady_way`; some time has to pass."""
+    from scipy.ndimage import median_filter  # 0.2 s, and most recordings have poses
+
+    duration_s = np.diff(t_ns) / 1e9
+    step = se3.invert_pose(world_from_base[:-1]) @ world_from_base[1:]
+    per_s = 1 / np.where(duration_s > 0, duration_s, np.inf)
+    velocity = twists.motion_to_twist(step) * per_s[:, None]
+    n_beside = round(0.25 / float(np.median(duration_s[duration_s > 0])))
+    return median_filter(velocity, size=(2 * n_beside + 1, 1), mode="nearest")
 
 
 def find_steady(track: frame_edges.FrameEdge, motion: SensorMotion, t_ns: IntArray) -> BoolArray:
@@ -194,9 +200,7 @@ def find_steady(track: frame_edges.FrameEdge, motion: SensorMotion, t_ns: IntArr
     world_from_base = se3.pose_matrix(track.xyz_m, track.quat_xyzw)
     if not is_rolling(track.t_ns, world_from_base):
         return is_steady
-    way = steady_way(track.t_ns, world_from_base)
-    step = se3.invert_pose(way[:-1]) @ way[1:]
-    turn_rad_s = twists.motion_to_twist(step)[:, 3:] / (np.diff(track.t_ns) / 1e9)[:, None]
+    turn_rad_s = _steady_velocity(track.t_ns, world_from_base)[:, 3:]
     # a median of half a second moves the begin of a turn by up to half of it, and a sweep of a
     # tenth lies before its stamp or after it; of slow scanners the steps beside
     begin_ns, near_ns = track.t_ns[:-1], 350_000_000
