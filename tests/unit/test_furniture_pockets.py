@@ -289,11 +289,21 @@ def test_walls_are_left_without_the_fronts_and_their_ground_is_told():
     assert left == walls[:4] and len(grounds) == 1 and leaves == []
 
 
-@pytest.mark.parametrize(("in_line", "n_pockets"), [([], 1), ([(2.5, 4.0), (5.0, 7.5)], 0)])
+@pytest.mark.parametrize(
+    ("in_line", "n_pockets"),
+    [
+        ([], 1),
+        ([(2.5, 4.0, 1.0), (5.0, 7.5, 1.0)], 0),
+        # scans placed badly show it in steps
+        ([(1.5, 4.0, 1.1), (4.05, 7.5, 1.2)], 0),
+        ([(2.5, 4.0, 1.1), (5.0, 7.5, 1.2)], 1),
+    ],
+    ids=["alone", "in_line", "in_steps", "beside"],
+)
 def test_a_front_is_no_longer_with_what_stands_in_its_line_than_furniture(in_line, n_pockets):
     """A surface of 1.5 m hides the corner, 1 m deep: 7.5 m of its line would be 7.5 m2."""
     seen = [(1.5, 0, 12, 0), (12, 0, 12, 4), (12, 4, 0, 4), (0, 4, 0, 1)]
-    fronts_m = [(0, 1, 1.5, 1), *((low, 1, high, 1) for low, high in in_line)]
+    fronts_m = [(0, 1, 1.5, 1), *((low, y, high, y) for low, high, y in in_line)]
     floor = box(0, 0, 12, 4).difference(box(0, 0, 1.5, 1))
     assert len(pockets([wall([face]) for face in [*seen, *fronts_m]], floor)) == n_pockets
 
@@ -367,9 +377,19 @@ def test_a_house_behind_either_end_of_a_wall_tells_that_it_is_not_the_last(mirro
     beside = [stretch(-8, 0, -3 + nudge_m, 0, planar=True), stretch(3, 0, 8, 0, planar=True)]
     across = sorted([sign * 4.0, sign * 7.0])
     house = stretch(across[0], -4, across[1], -4, planar=True)
+    hidden = box(-2, 0, 2, 0.9)
     faces = PlanFaces([front, *beside, house])
-    assert not stands_before_facade(front, faces, 1.0)
-    assert stands_before_facade(front, PlanFaces([front, *beside]), 1.0)
+    assert not stands_before_facade(front, hidden, faces, 1.0)
+    assert stands_before_facade(front, hidden, PlanFaces([front, *beside]), 1.0)
+
+
+@pytest.mark.parametrize(("behind_m", "is_before"), [(0.2, True), (0.4, False)])
+def test_ground_that_goes_on_behind_a_facade_is_not_before_it(behind_m, is_before):
+    front, *facade = (
+        stretch(*ends, planar=True) for ends in [(-2, 0.9, 2, 0.9), (-8, 0, -3, 0), (3, 0, 8, 0)]
+    )
+    hidden = box(-2, -behind_m, 2, 0.9)
+    assert stands_before_facade(front, hidden, PlanFaces([front, *facade]), 1.0) == is_before
 
 
 def test_ground_is_not_told_of_where_no_front_is():

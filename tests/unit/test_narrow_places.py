@@ -95,6 +95,14 @@ def test_a_fan_between_two_visited_rooms_parts_them_where_nobody_passed(is_passe
     assert any((line[:, 0] > 3.9).all() and (line[:, 0] < 5).all() for line in lines) != is_passed
 
 
+@pytest.mark.parametrize(("places_m", "n_lines"), [([], 1), ([[6.0, 5.0]], 0)])
+def test_what_nobody_entered_is_parted_where_it_narrows_the_less(places_m, n_lines):
+    """An opening of 1.75 m beside a corridor of 1.8 m, that is 2.2 m wide where it begins."""
+    shapes = [box(0, 0, 12, 1.8), box(2, 2.2, 10, 8), box(5, 1.7, 6.75, 2.3)]
+    visited_m = np.array([[1.0, 0.9], [11.0, 0.9], *places_m])
+    assert len(find(*shapes, visited_m=visited_m, max_width_m=2.2)) == n_lines
+
+
 def test_no_ground_has_no_narrow_place():
     assert find(shapely.Polygon()) == []
 

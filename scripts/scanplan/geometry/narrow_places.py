@@ -19,9 +19,10 @@ from shapely.geometry.base import BaseGeometry
 from scanplan.geometry.bare_parts import draw_way
 from scanplan.geometry.bitmap import Grid, fill_polygons
 from scanplan.geometry.tolerances import SHORTEST_M, SMALLEST_M2
-from scanplan.types import Array, FloatArray, IntArray
+from scanplan.types import Array, BoolArray, FloatArray, IntArray
 
 _NARROWER = 0.75  # of the widest on either side: a corridor's pillars and cupboards leave more
+_NARROWER_UNVISITED = 0.8  # if one side was only looked into: what is seen of it widens less
 FURNITURE_M2 = 3.0  # that furniture stands on, or parts off between it and a wall, at most
 
 
@@ -72,10 +73,12 @@ def find_narrow_places(
     grid = _fit_grid(filled, cell_m)
     inside = fill_polygons([filled], grid)
     far_m = np.asarray(ndimage.distance_transform_edt(inside)) * cell_m
-    basin = _flood(far_m, max_width_m / 2, cell_m)
     way = draw_way(visited_m)
     visited_m = visited_m[shapely.contains_xy(filled, *visited_m.T)]
     column, row = np.floor((visited_m - grid.low_m) / cell_m).astype(int).T
+    is_visited = np.zeros(far_m.shape, bool)
+    is_visited[row, column] = True
+    basin = _flood(far_m, is_visited, max_width_m / 2, cell_m)
     visited = set(basin[row, column].tolist())
     # what is wider around a place than this is much wider
     reach_m = 3 * max_width_m
@@ -129,14 +132,16 @@ def _fill_islands(ground: BaseGeometry, walls: BaseGeometry) -> BaseGeometry:
     return shapely.union_all([*parts, *islands], grid_size=SHORTEST_M)
 
 
-def _flood(far_m: FloatArray, most_m: float, cell_m: float) -> IntArray:
+def _flood(far_m: FloatArray, is_visited: BoolArray, most_m: float, cell_m: float) -> IntArray:
     """Return the basin of each cell, 0 outside, of ground flooded from its widest places down.
 
     Basins stay apart that meet where it is much narrower than at the widest place of either.
+    Cells are visited or not.
     """
     basin = np.zeros(far_m.size, np.int64)
     number = np.full(far_m.size, -1)
-    joined = _JoinedBasins()
+    widest_m = np.zeros(1)
+    meetings = []
     steps = far_m.shape[1] * np.repeat((-1, 0, 1), 3) + np.tile((-1, 0, 1), 3)
     level_of = np.minimum(np.floor(far_m / cell_m + 0.5), max(round(most_m / cell_m), 1))
     of_level = np.argsort(-level_of, axis=None, kind="stable")
@@ -146,12 +151,13 @@ def _flood(far_m: FloatArray, most_m: float, cell_m: float) -> IntArray:
         _grow(basin, cells, steps)
         rest = cells[basin[cells] == 0]
         count, fresh = _connect(rest, number, steps)
-        basin[rest] = fresh + len(joined.widest_m)
-        widest_m = np.zeros(count)
-        np.maximum.at(widest_m, fresh, far_m.flat[rest])
-        joined.add(widest_m)
-        for one, other in _touching(basin, cells, steps):
-            joined.meet(one, other, level * cell_m)
+        basin[rest] = fresh + len(widest_m)
+        widest_m = np.append(widest_m, np.zeros(count))
+        np.maximum.at(widest_m, basin[rest], far_m.flat[rest])
+        meetings += [(*pair, level * cell_m) for pair in _touching(basin, cells, steps)]
+    joined = _JoinedBasins(widest_m, set(basin[is_visited.ravel()].tolist()))
+    for one, other, level_m in meetings:
+        joined.meet(one, other, level_m)
     return joined.joined[basin].reshape(far_m.shape)
 
 
@@ -190,28 +196,35 @@ def _touching(basin: IntArray, cells: IntArray, steps: IntArray) -> list[tuple[i
 
 
 class _JoinedBasins:
-    """Which basins were joined, by number from 1; 0 is no basin."""
+    """Which basins were joined, by number from 1; 0 is no basin.
 
-    def __init__(self) -> None:
-        self.widest_m: list[float] = [0.0]
-        self.joined = np.zeros(1, np.int64)
+    Parameters
+    ----------
+    widest_m : (n,) float64
+        Distances at the widest place of each.
+    visited : set of int
+        Numbers of those that were visited.
+    """
+
+    def __init__(self, widest_m: FloatArray, visited: set[int]) -> None:
+        self._widest_m = widest_m
+        self._visited = visited
+        self.joined = np.arange(len(widest_m))
         self._apart: set[tuple[int, int]] = set()
-
-    def add(self, widest_m: FloatArray) -> None:
-        """Add basins by the distance at the widest place of each."""
-        first = len(self.widest_m)
-        self.widest_m += widest_m.tolist()
-        self.joined = np.append(self.joined, np.arange(first, len(self.widest_m)))
 
     def meet(self, one: int, other: int, level_m: float) -> None:
         """Join two basins that touch at a level, unless it is narrow there beside both."""
-        weak, strong = sorted(self.joined[[one, other]].tolist(), key=lambda b: self.widest_m[b])
+        weak, strong = sorted(self.joined[[one, other]].tolist(), key=lambda b: self._widest_m[b])
         pair = (min(weak, strong), max(weak, strong))
         if weak == strong or pair in self._apart:
             return
-        if level_m < _NARROWER * self.widest_m[weak]:
+        one_visited = len(self._visited.intersection(pair)) == 1
+        narrower = _NARROWER_UNVISITED if one_visited else _NARROWER
+        if level_m < narrower * self._widest_m[weak]:
             self._apart.add(pair)
             return
+        if weak in self._visited:
+            self._visited.add(strong)
         self.joined[self.joined == weak] = strong
         renamed = [
             sorted((strong if a == weak else a, strong if b == weak else b)) for a, b in self._apart

@@ -13,9 +13,9 @@ from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.tolerances import END_M
 from scanplan.rays.face_raster import CELL_M
+from scanplan.rays.tolerances import STRETCH_M
 from scanplan.types import FloatArray
 
-_LEAST_OPEN_M = 0.3  # less that rays go through is noise of poses at an end
 _OPEN_SHARE = 0.3  # of one side's length: more that is free while the other is seen contradicts
 _SAME_LINE, _OPPOSITE, _ONWARD = range(3)  # order in which pairs are joined: the surest first
 
@@ -135,7 +135,7 @@ def _contradict(one: FaceInterval, other: FaceInterval, door_height_m: float) ->
             if high_m > low_m:
                 open_m += CELL_M * is_opened[raster.between(low_m, high_m)].sum()
                 unseen_m += high_m - low_m
-        if open_m > max(_LEAST_OPEN_M, _OPEN_SHARE * unseen_m):
+        if open_m > max(STRETCH_M, _OPEN_SHARE * unseen_m):
             return True
     return False
 

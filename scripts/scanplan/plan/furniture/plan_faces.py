@@ -96,12 +96,20 @@ class PlanFaces(FaceTree):
         return not (is_beside & (off_m.min(axis=1) < -BEHIND_M)).any()
 
     def joined_m(self, face: FaceInterval) -> float:
-        """Return how long a surface is with others in its line, no farther away than it is long."""
-        lows_m, highs_m = self._along_line_m(face)
+        """Return how long a surface is with others in its line, no farther away than it is long.
+
+        Pieces of it that scans placed badly show beside its line are parts of it where they touch.
+        """
+        along_m, off_m = face.line.along_m(self._ends_m), face.line.offset_m(self._ends_m)
+        lows_m, highs_m = along_m.min(axis=1), along_m.max(axis=1)
+        is_alike = self._faces_alike(face)
+        is_on = is_alike & (np.abs(off_m.mean(axis=1)) <= FACE_M)
+        is_beside = is_alike & (np.abs(off_m).min(axis=1) <= CORNER_M)
         span_m, joined_m = (face.low_m, face.low_m), (face.low_m, face.high_m)
         while joined_m != span_m:
             span_m = joined_m
-            is_near = self._gaps_m(face, np.array(span_m)) <= span_m[1] - span_m[0]
+            gap_m = np.maximum(lows_m - span_m[1], span_m[0] - highs_m)
+            is_near = (is_on & (gap_m <= span_m[1] - span_m[0])) | (is_beside & (gap_m <= END_M))
             joined_m = (float(lows_m[is_near].min()), float(highs_m[is_near].max()))
         return span_m[1] - span_m[0]
 

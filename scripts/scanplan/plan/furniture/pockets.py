@@ -149,7 +149,7 @@ class _Search:
             face
             for face in (fronts if own is None else [face for face in behind if face is own])
             if id(face) not in self.opened
-            and stands_before_facade(face, self.faces, self.max_depth_m)
+            and stands_before_facade(face, hidden, self.faces, self.max_depth_m)
         ]
         if not outer:
             return None

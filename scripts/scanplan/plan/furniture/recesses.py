@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator, Sequence
 
+import shapely
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
@@ -54,13 +55,19 @@ def find_recesses(
                 yield front, largest.buffer(CELL_M, join_style="mitre")
 
 
-def stands_before_facade(front: FaceInterval, faces: PlanFaces, max_depth_m: float) -> bool:
+def stands_before_facade(
+    front: FaceInterval, hidden: Polygon, faces: PlanFaces, max_depth_m: float
+) -> bool:
     """Return whether the building ends at a wall that a front of furniture may stand before.
 
-    Rooms reach up to it: between the two nothing has room but furniture, for a facade seldom steps
-    back from its own line by less than a room.
+    Hidden ground behind the front ends at it. Rooms reach up to it: between the two nothing has
+    room but furniture, for a facade seldom steps back from its own line by less than a room.
     """
-    return any(is_facade for _, is_facade in _find_walls_behind(front, faces, max_depth_m))
+    corners_m = shapely.get_coordinates(hidden)
+    return any(
+        is_facade and wall.line.offset_m(corners_m).min() >= -CORNER_M
+        for wall, is_facade in _find_walls_behind(front, faces, max_depth_m)
+    )
 
 
 def _find_walls_behind(
