@@ -295,10 +295,13 @@ def test_walls_are_left_without_the_fronts_and_their_ground_is_told():
         ([], 1),
         ([(2.5, 4.0, 1.0), (5.0, 7.5, 1.0)], 0),
         # scans placed badly show it in steps
-        ([(1.5, 4.0, 1.1), (4.05, 7.5, 1.2)], 0),
-        ([(2.5, 4.0, 1.1), (5.0, 7.5, 1.2)], 1),
+        ([(1.5, 4.0, 1.1), (4.05, 7.5, 1.14)], 0),
+        ([(1.7, 4.0, 1.1), (4.05, 7.5, 1.14)], 1),
+        ([(1.5, 4.0, 1.2), (4.05, 7.5, 1.2)], 1),
+        # seen from the other side
+        ([(4.0, 1.5, 1.1), (7.5, 4.05, 1.1)], 1),
     ],
-    ids=["alone", "in_line", "in_steps", "beside"],
+    ids=["alone", "in_line", "in_steps", "farther_on", "farther_off", "turned"],
 )
 def test_a_front_is_no_longer_with_what_stands_in_its_line_than_furniture(in_line, n_pockets):
     """A surface of 1.5 m hides the corner, 1 m deep: 7.5 m of its line would be 7.5 m2."""
@@ -306,6 +309,15 @@ def test_a_front_is_no_longer_with_what_stands_in_its_line_than_furniture(in_lin
     fronts_m = [(0, 1, 1.5, 1), *((low, y, high, y) for low, high, y in in_line)]
     floor = box(0, 0, 12, 4).difference(box(0, 0, 1.5, 1))
     assert len(pockets([wall([face]) for face in [*seen, *fronts_m]], floor)) == n_pockets
+
+
+@pytest.mark.parametrize("depth_m", [0.25, 0.28])
+def test_a_cupboard_is_no_longer_for_the_wall_close_behind_it(depth_m):
+    """One of 1.2 m in a corridor of 30 m, whose wall is seen beside it."""
+    around = [(0, 0, 30, 0), (30, 0, 30, 2), (0, 2, 0, 0), (30, 2, 14.2, 2), (13, 2, 0, 2)]
+    cupboard = [(14.2, 2 - depth_m, 13, 2 - depth_m)]
+    floor = box(0, 0, 30, 2).difference(box(13, 2 - depth_m, 14.2, 2))
+    assert len(pockets([wall([face]) for face in [*around, *cupboard]], floor)) == 1
 
 
 @pytest.mark.parametrize(("east_m", "n_pockets"), [(12, 0), (5, 2)])
@@ -383,7 +395,7 @@ def test_a_house_behind_either_end_of_a_wall_tells_that_it_is_not_the_last(mirro
     assert stands_before_facade(front, hidden, PlanFaces([front, *beside]), 1.0)
 
 
-@pytest.mark.parametrize(("behind_m", "is_before"), [(0.2, True), (0.4, False)])
+@pytest.mark.parametrize(("behind_m", "is_before"), [(0.28, True), (0.32, False)])
 def test_ground_that_goes_on_behind_a_facade_is_not_before_it(behind_m, is_before):
     front, *facade = (
         stretch(*ends, planar=True) for ends in [(-2, 0.9, 2, 0.9), (-8, 0, -3, 0), (3, 0, 8, 0)]

@@ -95,12 +95,27 @@ def test_a_fan_between_two_visited_rooms_parts_them_where_nobody_passed(is_passe
     assert any((line[:, 0] > 3.9).all() and (line[:, 0] < 5).all() for line in lines) != is_passed
 
 
-@pytest.mark.parametrize(("places_m", "n_lines"), [([], 1), ([[6.0, 5.0]], 0)])
-def test_what_nobody_entered_is_parted_where_it_narrows_the_less(places_m, n_lines):
-    """An opening of 1.75 m beside a corridor of 1.8 m, that is 2.2 m wide where it begins."""
-    shapes = [box(0, 0, 12, 1.8), box(2, 2.2, 10, 8), box(5, 1.7, 6.75, 2.3)]
-    visited_m = np.array([[1.0, 0.9], [11.0, 0.9], *places_m])
-    assert len(find(*shapes, visited_m=visited_m, max_width_m=2.2)) == n_lines
+CORRIDOR_M = [[1.0, 0.9], [11.0, 0.9]]
+
+
+@pytest.mark.parametrize(
+    ("visited_m", "width_m", "n_lines"),
+    [
+        (CORRIDOR_M, 1.75, 1),
+        ([[6.0, 5.0]], 1.75, 1),
+        ([*CORRIDOR_M, [6.0, 5.0]], 1.75, 0),
+        # in a corner of the room that is hardly narrower
+        ([*CORRIDOR_M, [11.4, 4.6]], 1.75, 0),
+        (np.zeros((0, 2)), 1.75, 0),
+        (CORRIDOR_M, 1.9, 0),
+    ],
+    ids=["looked_into", "from_the_room", "entered", "its_corner", "nobody", "wider"],
+)
+def test_what_nobody_entered_is_parted_where_it_narrows_the_less(visited_m, width_m, n_lines):
+    """An opening of a corridor of 1.8 m, that is 2.2 m wide where it begins."""
+    corner = box(10.3, 3.6, 12.4, 5.7).union(box(9.9, 3.7, 10.4, 5.6))
+    shapes = [box(0, 0, 12, 1.8), box(2, 2.2, 10, 8), corner, box(5, 1.7, 5 + width_m, 2.3)]
+    assert len(find(*shapes, visited_m=np.array(visited_m), max_width_m=2.2)) == n_lines
 
 
 def test_no_ground_has_no_narrow_place():

@@ -22,7 +22,7 @@ from scanplan.geometry.tolerances import SHORTEST_M, SMALLEST_M2
 from scanplan.types import Array, BoolArray, FloatArray, IntArray
 
 _NARROWER = 0.75  # of the widest on either side: a corridor's pillars and cupboards leave more
-_NARROWER_UNVISITED = 0.8  # if one side was only looked into: what is seen of it widens less
+_NARROWER_UNVISITED = 0.8  # where nobody went on no way says that both sides are one room
 FURNITURE_M2 = 3.0  # that furniture stands on, or parts off between it and a wall, at most
 
 
@@ -135,8 +135,17 @@ def _fill_islands(ground: BaseGeometry, walls: BaseGeometry) -> BaseGeometry:
 def _flood(far_m: FloatArray, is_visited: BoolArray, most_m: float, cell_m: float) -> IntArray:
     """Return the basin of each cell, 0 outside, of ground flooded from its widest places down.
 
-    Basins stay apart that meet where it is much narrower than at the widest place of either.
-    Cells are visited or not.
+    Basins stay apart that meet where it is much narrower than at the widest place of either; the
+    less narrow, if one of them is a part of ground that was visited and the other is not.
+
+    Parameters
+    ----------
+    far_m : (rows, columns) float64
+        Distance of each cell to the outline of ground, 0 outside.
+    is_visited : (rows, columns) bool
+    most_m : float
+        Distances beyond this count as this: what is as wide is one basin.
+    cell_m : float
     """
     basin = np.zeros(far_m.size, np.int64)
     number = np.full(far_m.size, -1)
@@ -155,9 +164,14 @@ def _flood(far_m: FloatArray, is_visited: BoolArray, most_m: float, cell_m: floa
         widest_m = np.append(widest_m, np.zeros(count))
         np.maximum.at(widest_m, basin[rest], far_m.flat[rest])
         meetings += [(*pair, level * cell_m) for pair in _touching(basin, cells, steps)]
-    joined = _JoinedBasins(widest_m, set(basin[is_visited.ravel()].tolist()))
+    parts = _JoinedBasins(widest_m)
     for one, other, level_m in meetings:
-        joined.meet(one, other, level_m)
+        parts.meet(one, other, level_m, _NARROWER_UNVISITED)
+    visited = np.isin(parts.joined, parts.joined[basin[is_visited.ravel()]])
+    joined = _JoinedBasins(widest_m)
+    for one, other, level_m in meetings:
+        is_looked_into = visited[one] != visited[other]
+        joined.meet(one, other, level_m, _NARROWER_UNVISITED if is_looked_into else _NARROWER)
     return joined.joined[basin].reshape(far_m.shape)
 
 
@@ -201,30 +215,23 @@ class _JoinedBasins:
     Parameters
     ----------
     widest_m : (n,) float64
-        Distances at the widest place of each.
-    visited : set of int
-        Numbers of those that were visited.
+        Distance at the widest place of each.
     """
 
-    def __init__(self, widest_m: FloatArray, visited: set[int]) -> None:
+    def __init__(self, widest_m: FloatArray) -> None:
         self._widest_m = widest_m
-        self._visited = visited
         self.joined = np.arange(len(widest_m))
         self._apart: set[tuple[int, int]] = set()
 
-    def meet(self, one: int, other: int, level_m: float) -> None:
-        """Join two basins that touch at a level, unless it is narrow there beside both."""
+    def meet(self, one: int, other: int, level_m: float, narrower: float) -> None:
+        """Join two basins that touch at a level, unless it is so much narrower than both."""
         weak, strong = sorted(self.joined[[one, other]].tolist(), key=lambda b: self._widest_m[b])
         pair = (min(weak, strong), max(weak, strong))
         if weak == strong or pair in self._apart:
             return
-        one_visited = len(self._visited.intersection(pair)) == 1
-        narrower = _NARROWER_UNVISITED if one_visited else _NARROWER
         if level_m < narrower * self._widest_m[weak]:
             self._apart.add(pair)
             return
-        if weak in self._visited:
-            self._visited.add(strong)
         self.joined[self.joined == weak] = strong
         renamed = [
             sorted((strong if a == weak else a, strong if b == weak else b)) for a, b in self._apart

@@ -135,6 +135,7 @@ def _contradict(one: FaceInterval, other: FaceInterval, door_height_m: float) ->
             if high_m > low_m:
                 open_m += CELL_M * is_opened[raster.between(low_m, high_m)].sum()
                 unseen_m += high_m - low_m
+        # less may be noise of poses at an end
         if open_m > max(STRETCH_M, _OPEN_SHARE * unseen_m):
             return True
     return False

@@ -104,6 +104,7 @@ class FaceObservation:
         return self.lost_m[np.array(is_pane, bool)]
 
     def _is_framed(self, returns_m: FloatArray, low_m: float, high_m: float) -> bool:
+        # a pane's frame shows along half of it at least
         if not self.planar:
             return 2 * filled_share(returns_m, low_m, high_m) >= 1
         # what is close to the ends may be of jambs, and fewer stretches of somebody in a way
@@ -226,7 +227,7 @@ def _find_lost(rays: RaySet, face: FaceRays, low_m: float, high_m: float) -> Flo
         if is_lost.any():
             sent = expected_returns.count_sent_rays(rays, face, low_m, count, CELL_M, heights_m)
             reached, returned, _ = sent.reached(least_scans=least_scans)
-            is_lost &= 2 * returned < reached
+            is_lost &= 2 * returned < reached  # of any wall half return
     return face_raster.find_stretches(is_lost, low_m)
 
 

@@ -19,7 +19,7 @@ AUTO_SHARES = {False: (0.95,), True: (0.85, 0.9, 0.95)}
 Of planar scans at least, usually, and at most.
 """
 _FEW = 10  # planar scans: so many cost nothing, and may close the corners of one room
-_MOST_SCANS = 0.3  # of planar ones: with a scan a metre a third finds but a hundredth more
+_MOST_SCANS = 0.3  # of planar ones: a third finds no more than a fiftieth more of the walls
 _PAYS = 1.5  # m of wall: a tenth of a large building is many such pieces, and rooms that they close
 
 
@@ -51,8 +51,8 @@ def choose_n_scans(
         Use the fewest scans that cover this share of what all cover (within a square millimetre),
         `covered`, the objective of the method itself, where it is given; automatically
         `AUTO_SHARES`. Of planar scans no fewer than ten, for more than the usual share as long as
-        each adds 1.5 m of wall (or of another method's unit), and for more than the least no more
-        than three of ten.
+        each adds 1.5 m of wall (or of another method's unit), and no more than three of ten but for
+        the least share.
     min_gain_m2 : float, > 0, optional
         Use no scan after the last that adds this much area.
     max_points, max_bytes : int, >= 1, optional
@@ -153,14 +153,16 @@ def _by_scanner(columns: Columns, planar: bool) -> tuple[int, str]:
     paying = usual[0] + int(np.argmax(np.append(later, 0.0) < _PAYS - SMALLEST_M2))
     most = max(int(_MOST_SCANS * len(covered)), least[0], _FEW)
     k = min(max(paying, _FEW), most, enough[0])
-    for limit in (enough, usual):
-        if k == limit[0]:
-            return limit
-    if k == _FEW:
-        return k, f"{k} of {len(covered)} scans: so few are not thinned further"
+    if k == enough[0]:
+        return enough
     said = _say_share(k, f"{covered[k - 1] / covered[-1]:.3f}", columns)
-    if k == most:
-        return k, f"{said}; of planar scans {_MOST_SCANS:.0%} are enough"
+    if k < paying:
+        limits = f"{_MOST_SCANS:.0%}, {_FEW}, or as many as show {AUTO_SHARES[planar][0]}"
+        return k, f"{said}; of planar scans no more are taken than {limits}"
+    if k > paying:
+        return k, f"{k} of {len(covered)} scans: so few are not thinned further"
+    if k == usual[0]:
+        return usual
     return k, f"{said}; the next adds less than {_PAYS:.4g} m, or m2"
 
 

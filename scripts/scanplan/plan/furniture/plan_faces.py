@@ -98,13 +98,13 @@ class PlanFaces(FaceTree):
     def joined_m(self, face: FaceInterval) -> float:
         """Return how long a surface is with others in its line, no farther away than it is long.
 
-        Pieces of it that scans placed badly show beside its line are parts of it where they touch.
+        Pieces that begin where it ends, beside its line by what poses err by, are parts of it, too.
         """
         along_m, off_m = face.line.along_m(self._ends_m), face.line.offset_m(self._ends_m)
         lows_m, highs_m = along_m.min(axis=1), along_m.max(axis=1)
         is_alike = self._faces_alike(face)
         is_on = is_alike & (np.abs(off_m.mean(axis=1)) <= FACE_M)
-        is_beside = is_alike & (np.abs(off_m).min(axis=1) <= CORNER_M)
+        is_beside = is_alike & (np.abs(off_m).min(axis=1) <= BEHIND_M)
         span_m, joined_m = (face.low_m, face.low_m), (face.low_m, face.high_m)
         while joined_m != span_m:
             span_m = joined_m

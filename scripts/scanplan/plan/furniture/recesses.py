@@ -60,8 +60,9 @@ def stands_before_facade(
 ) -> bool:
     """Return whether the building ends at a wall that a front of furniture may stand before.
 
-    Hidden ground behind the front ends at it. Rooms reach up to it: between the two nothing has
-    room but furniture, for a facade seldom steps back from its own line by less than a room.
+    Hidden ground behind the front does not go on beyond it. Rooms reach up to it: between the two
+    nothing has room but furniture, for a facade seldom steps back from its own line by less than a
+    room.
     """
     corners_m = shapely.get_coordinates(hidden)
     return any(
