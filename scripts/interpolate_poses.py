@@ -1,5 +1,6 @@
 """Give every candidate scan the pose its sensor had at that moment."""
 
+import json
 from collections.abc import Sequence
 from typing import Any
 
@@ -64,7 +65,8 @@ def interpolate_poses(
         if moved is not None:
             motion = trajectory.choose_motion(survey.motion_chains(), t_ns, **limits)
             motion = time_check.check_point_times(survey, motion)
-            tables.write_table(moved, schemas.MOTION, motion.columns())
+            notes = {schemas.OF_POSES: json.dumps(motion.of_poses)}
+            tables.write_table(moved, schemas.MOTION, motion.columns(), notes=notes)
             is_moved = survey.sweep_times is not None and motion.time_scale > 0
             if survey.pose_kind == pose_kind.ESTIMATED and is_moved:
                 is_steady = lidar_odometry.find_steady(survey.pose_edges()[0], motion, t_ns)

@@ -61,8 +61,11 @@ def register_scans(
                 recordings, poses, raw, thinned, run, reading=reading, settings=limits, moved=moved
             )
         survey = found.survey
+        odometry = None
+        if moved is not None and not survey.is_odometry:
+            odometry = registered_candidates.read_odometry(moved, poses)
         verdicts, constraints = mapping.optimise_map(
-            survey, found.results, found.edges, thinned, run, limits
+            survey, found.results, found.edges, thinned, run, limits, odometry
         )
         results.check_any_kept(verdicts, found.n_dropped, recordings[0])
         gate_shares.check_any_survives(

@@ -13,6 +13,7 @@ from scanplan.project import dataset_files
 from scanplan.project.settings import merge_settings
 from scanplan.project.stage_settings import select_section
 from scanplan.project.yaml_file import read_yaml
+from scanplan.registration import mapping
 from scanplan.registration.candidates.chunk_files import ChunkFiles
 from scanplan.store import doubts, schemas, tables
 
@@ -33,15 +34,15 @@ def register_chunks(files, poses, folder, n_chunks, **given):
 
 @pytest.fixture
 def run(tmp_path):
-    def run_on(entries, name="a", threads=1, n_chunks=0, **changes):
+    def run_on(entries, name="a", threads=1, n_chunks=0, with_motion=False, **changes):
         folder = tmp_path / name
         bag_making.Maker().write(folder / "run", entries)
         files = dataset_files.find_files(folder)
         reading = SETTINGS["input"] | changes.pop("reading", {})
         topics = {key: value for key, value in reading.items() if key != "max_damaged_share"}
-        interpolate_poses(
-            files, folder / "poses.parquet", **SETTINGS["poses"] | {"keep_every": 1}, **topics
-        )
+        moved = folder / "motion.parquet" if with_motion else None
+        spacing = SETTINGS["poses"] | {"keep_every": 1}
+        interpolate_poses(files, folder / "poses.parquet", moved=moved, **spacing, **topics)
         limits = select_section(SETTINGS, "registration") | changes
         outputs = (
             folder / "scans.parquet",
@@ -51,7 +52,7 @@ def run(tmp_path):
         given = {"reading": reading, "settings": limits, "threads": threads}
         poses = folder / "poses.parquet"
         chunks = register_chunks(files, poses, folder, n_chunks, **given)
-        register_scans(files, poses, *outputs, chunks=chunks, **given)
+        register_scans(files, poses, *outputs, moved=moved, chunks=chunks, **given)
         return outputs
 
     return run_on
@@ -92,6 +93,31 @@ def test_retained_scans_lie_in_the_map(run):
     for scan_id, xyz_m in store.scans():
         assert len(xyz_m) == 4000
         assert np.abs(np.sort(xyz_m[:, 0])[[0, -1]] - (0, 6)).max() < 0.03, scan_id
+
+
+@pytest.mark.parametrize("kind", ["localiser", "odometry"])
+@pytest.mark.parametrize("is_recorded", [False, True])
+def test_odometry_beside_a_localiser_says_how_the_sensor_moved(run, monkeypatch, is_recorded, kind):
+    """Of five scans the third is empty: of odometry the step over it is twice as long."""
+    maker, entries = bag_making.Maker(), survey(empty=[2])
+    for i in range(5 if is_recorded else 0):
+        t_ns = bag_making.START_NS + i * STEP_NS
+        entries.append(("/odom", t_ns, maker.odometry(t_ns, (0.125 * i, 0, 0))))
+    given = []
+    optimise_map = mapping.optimise_map
+
+    def spy(*args):
+        given.append(args[-1])
+        return optimise_map(*args)
+
+    monkeypatch.setattr(mapping, "optimise_map", spy)
+    reading = {"pose_topic": "/amcl_pose", "pose_kind": kind}
+    run(entries, with_motion=True, reading=reading)
+    (odometry,) = given
+    assert (odometry is not None) == (is_recorded and kind == "localiser")
+    if odometry is not None:
+        steps = odometry(np.array([0, 1, 3, 4]))
+        np.testing.assert_allclose(steps[:, 0, 3], [0.125, 0.25, 0.125], atol=1e-9)
 
 
 def test_scans_without_points_are_named_and_left_out(run):

@@ -38,6 +38,34 @@ def test_steps_count_where_alignments_leave_a_motion_open():
     np.testing.assert_allclose(steps.information[:, 5, 5], [0, turn])
 
 
+def test_steps_of_placed_scans_count_beside_alignments():
+    motion = se3.invert_pose(STRAIGHT[:-1]) @ STRAIGHT[1:]
+    motion[1] = np.nan
+    steps = odometry.constrain_placed_scans(IDS, motion, [edge(20, 10, motion[0])], DRIFT)
+    assert steps.source.tolist() == [1, 3] and steps.target.tolist() == [0, 2]
+    np.testing.assert_array_equal(steps.target_from_source, motion[[0, 2]])
+    np.testing.assert_allclose(steps.information[:, 0, 0], 1 / (0.02**2 + 0.01**2))
+    # the second of them was aligned to none before it: its turn is open
+    turn = 1 / (np.radians(0.1) ** 2 + np.radians(0.2) ** 2)
+    np.testing.assert_allclose(steps.information[:, 5, 5], [0, turn])
+
+
+def test_steps_count_for_less_the_farther_they_are_off_the_alignments():
+    """All wheels too large by a tenth: half of normal errors would be within 1.18 deviations."""
+    motion = se3.invert_pose(STRAIGHT[:-1]) @ STRAIGHT[1:]
+    edges = [edge(after, before, motion[0]) for after, before in [(20, 10), (30, 20), (40, 30)]]
+    longer = planar_poses([[1.1, 0]] * 3, [0] * 3)
+    steps = odometry.constrain_placed_scans(IDS, longer, edges, DRIFT)
+    sigma_m = np.hypot(0.01, 0.02 * 1.1)
+    off_sigmas = 0.1 / sigma_m
+    expected_m = sigma_m * off_sigmas / np.sqrt(2 * np.log(2))
+    np.testing.assert_allclose(steps.information[:, 0, 0], expected_m**-2)
+    # an alignment that leaves a direction open says nothing of them
+    edges = [edge(20, 10, motion[0], n_unobservable=1)]
+    steps = odometry.constrain_placed_scans(IDS, longer, edges, DRIFT)
+    np.testing.assert_allclose(steps.information[:, 0, 0], sigma_m**-2)
+
+
 def test_a_break_counts_as_a_long_way():
     way_m = odometry.measure_way(STRAIGHT)
     np.testing.assert_allclose(way_m, [0, 1, 2, 3])

@@ -1,9 +1,15 @@
+import dataclasses
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from helpers.default_settings import SETTINGS
+from scanplan.lab.simulation.rover import planar_poses
+from scanplan.project.stage_settings import select_section
 from scanplan.registration import multiway
+from scanplan.registration.graph_equations import MotionConstraints
+from scanplan.registration.registration_settings import registration_settings
 from scanplan.store import scan_cache
 
 
@@ -59,6 +65,33 @@ def test_half_circles_are_linked_by_what_they_show(tmp_path):
     pairs = multiway.choose_pairs(there_and_back, ahead, in_sequence, near, planar=True)
     # seen at x + 3 on the way there, at x - 3 on the way back
     assert pairs == [(39 - x, x - 6) for x in range(19, 5, -1)]
+
+
+def test_odometry_ties_scans_that_a_localiser_places_otherwise(monkeypatch):
+    """Two poses 1.3 m apart, off by 0.1 m, and a step of 1 m, off by 0.02: least squares."""
+    monkeypatch.setattr(multiway, "align_visits", lambda *_, **__: [])
+    known = select_section(SETTINGS, "registration") | {"localiser_sigma_m": 0.1}
+    settings = registration_settings(known)
+    priors = planar_poses([[0, 0], [1.3, 0]], np.zeros(2))
+    information = np.diag([0.02**-2] * 3 + [0.0] * 3)[None]
+    step = planar_poses([[1, 0]], [0])
+    steps = MotionConstraints(np.array([1]), np.array([0]), step, information)
+
+    def place(odometry):
+        return multiway.optimise_poses(
+            *(np.array([3, 8]), priors, priors, [], None, None),
+            planar=True,
+            limits=settings.limits,
+            settings=dataclasses.replace(settings.graph, kernel_sigmas=1e6),
+            odometry=odometry,
+        )
+
+    assert place(None).world_from_cloud[1, 0, 3] == pytest.approx(1.3)
+    placed = place(steps)
+    # each pose gives way by its part of 0.3 m
+    x_m = 0.3 * 0.1**2 / (2 * 0.1**2 + 0.02**2)
+    np.testing.assert_allclose(placed.world_from_cloud[:, 0, 3], [x_m, 1.3 - x_m], atol=1e-4)
+    assert len(placed.edges) == len(placed.weight) == len(placed.residual) == 0
 
 
 def test_pairs_of_a_place_are_aligned_in_one_job():

@@ -75,6 +75,17 @@ def test_nothing_is_known_across_a_gap_or_beyond_the_ends():
         assert way.at(np.array([first, last])) is None
 
 
+def test_steps_are_known_within_a_piece():
+    """Known from 0 to 2 s and from 5 to 6 s, along a line at one metre a second."""
+    way = trajectory.motion_along([edge([0, 1, 2, 5, 6], [0, 1, 2, 5, 6])], SCANS, max_gap_s=1.5)
+    steps = way.steps(np.array([0.5, 1.75, 3.0, 5.0, 5.5, 8.0]) * S)
+    np.testing.assert_allclose(steps[[0, 3], 0, 3], [1.25, 0.5])
+    assert np.isnan(steps[[1, 2, 4]]).all()
+    # two pieces that are both known are no step
+    assert np.isnan(way.steps(np.array([1.0, 5.5]) * S)).all()
+    assert way.steps(SCANS[:1]).shape == (0, 4, 4)
+
+
 def test_the_table_gives_the_motion_back():
     way = trajectory.motion_along([edge([0, 1, 5, 6], [0, 1, 5, 6])], SCANS, max_gap_s=1.5)
     way = dataclasses.replace(way, time_scale=-1.0, time_shift_s=0.1)
@@ -92,14 +103,15 @@ POSES = ("/amcl_pose", [line(every_s=0.5)])
 
 
 def test_odometry_goes_before_poses():
-    assert len(chosen(("odometry", [line()]), POSES).t_ns) == 101
-    assert len(chosen(POSES).t_ns) == 21
+    odometry, poses = chosen(("odometry", [line()]), POSES), chosen(POSES)
+    assert (len(odometry.t_ns), odometry.of_poses) == (101, False)
+    assert (len(poses.t_ns), poses.of_poses) == (21, True)
 
 
 def test_odometry_that_knows_less_is_left_out(caplog):
     with caplog.at_level("INFO"):
         way = chosen(("odometry", [line(0, 3)]), POSES)
-    assert len(way.t_ns) == 21
+    assert len(way.t_ns) == 21 and way.of_poses
     assert "odometry covers 33% of the scans only" in caplog.text
 
 

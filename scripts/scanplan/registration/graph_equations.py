@@ -30,6 +30,15 @@ class MotionConstraints:
     target_from_source: FloatArray
     information: FloatArray
 
+    def join(self, other: "MotionConstraints") -> "MotionConstraints":
+        """Return these and then others."""
+        return MotionConstraints(
+            np.concatenate([self.source, other.source]),
+            np.concatenate([self.target, other.target]),
+            np.concatenate([self.target_from_source, other.target_from_source]),
+            np.concatenate([self.information, other.information]),
+        )
+
 
 @dataclass(frozen=True)
 class GraphState:

@@ -16,11 +16,14 @@ from scanplan.registration import batches, constraints, multiway, pose_graph, se
 from scanplan.registration.batches import CandidateScans
 from scanplan.registration.constraints import PoseConstraint
 from scanplan.registration.drift import drifting_map
+from scanplan.registration.drift.odometry import constrain_placed_scans
 from scanplan.registration.registration_settings import FRAMES, RegistrationSettings
 from scanplan.registration.sequential import ScanResult
 from scanplan.stage import log
 from scanplan.store.scan_cache import ScanCache
-from scanplan.types import BoolArray, FloatArray
+from scanplan.types import BoolArray, FloatArray, IntArray
+
+StepsBetween = Callable[[IntArray], FloatArray]
 
 
 def register_candidates(
@@ -70,6 +73,7 @@ def optimise_map(
     thinned: ScanCache,
     run: Callable[..., Iterator[Any]],
     settings: RegistrationSettings,
+    odometry: StepsBetween | None = None,
 ) -> tuple[list[ScanResult], multiway.OptimisedMap | None]:
     """Bring all candidates that are kept into one map.
 
@@ -83,6 +87,9 @@ def optimise_map(
         The thinned points of the kept ones.
     run, settings
         As of `register_candidates`.
+    odometry : callable, optional
+        Returns how the sensor moved from each of some candidates, (n,) rows, to the next,
+        (n - 1, 4, 4) float64, NaN where that is not known, as measured beside a localiser's poses.
 
     Returns
     -------
@@ -95,7 +102,7 @@ def optimise_map(
     is_any_kept = any(result.kept for result in placed)
     if settings.limits.icp_method == sequential.GIVEN_POSES or not is_any_kept:
         return placed, None
-    optimised = _optimise(survey, placed, edges, thinned, run, settings)
+    optimised = _optimise(survey, placed, edges, thinned, run, settings, odometry)
     return _drop_unconfirmed(survey, placed, optimised, settings.limits.anchor_apart_m)
 
 
@@ -182,24 +189,30 @@ def _optimise(
     thinned: ScanCache,
     run: Callable[..., Iterator[Any]],
     settings: RegistrationSettings,
+    odometry: StepsBetween | None,
 ) -> multiway.OptimisedMap:
     """Optimise the kept scans together, and write their poses into `scan_results`."""
-    kept = np.flatnonzero([result.kept for result in scan_results]).tolist()
-    level_from_sensor = np.array([_level_from_sensor(survey, row) for row in kept])
+    kept = np.flatnonzero([result.kept for result in scan_results])
+    level_from_sensor = np.array([_level_from_sensor(survey, int(row)) for row in kept])
     sensor_from_level = se3.invert_pose(level_from_sensor)
     world_from_sensor = np.array([scan_results[row].world_from_sensor for row in kept])
     start = world_from_sensor @ sensor_from_level
+    scan_ids = survey.scan_ids[kept]
     if not settings.graph.optimise:
-        return multiway.keep_sequential(survey.scan_ids[kept], start, edges)
+        return multiway.keep_sequential(scan_ids, start, edges)
     given = survey.priors[kept] @ sensor_from_level
     common = {"planar": survey.planar, "limits": settings.limits, "settings": settings.graph}
     if survey.is_odometry:
         optimised = drifting_map.optimise_drifting_poses(
-            survey.scan_ids[kept], given, edges, thinned, run, **common, drift=settings.drift
+            scan_ids, given, edges, thinned, run, **common, drift=settings.drift
         )
     else:
+        steps = None
+        if odometry is not None:
+            motion = level_from_sensor[:-1] @ odometry(kept) @ sensor_from_level[1:]
+            steps = constrain_placed_scans(scan_ids, motion, edges, settings.drift)
         optimised = multiway.optimise_poses(
-            survey.scan_ids[kept], start, given, edges, thinned, run, **common
+            scan_ids, start, given, edges, thinned, run, **common, odometry=steps
         )
     poses = optimised.world_from_cloud @ level_from_sensor
     for row, pose, covariance in zip(kept, poses, optimised.covariance, strict=True):

@@ -12,6 +12,7 @@ import numpy as np
 from scanplan.geometry import se3, twists
 from scanplan.registration import loops, pose_graph
 from scanplan.registration.constraints import PoseConstraint
+from scanplan.registration.graph_equations import MotionConstraints
 from scanplan.registration.loops import RowPair
 from scanplan.registration.registration_settings import PoseGraphSettings, SequentialSettings
 from scanplan.store.scan_cache import ScanCache
@@ -97,6 +98,7 @@ def optimise_poses(
     planar: bool,
     limits: SequentialSettings,
     settings: PoseGraphSettings,
+    odometry: MotionConstraints | None = None,
 ) -> OptimisedMap:
     """Find the poses of all retained scans at once.
 
@@ -115,6 +117,8 @@ def optimise_poses(
     planar : bool
     limits : registration_settings.SequentialSettings
     settings : registration_settings.PoseGraphSettings
+    odometry : graph_equations.MotionConstraints, optional
+        Motions between scans that were measured beside the localiser's poses.
     """
     row_of_scan = find_rows(scan_ids)
     prior_information = limits.localiser_information(priors)
@@ -122,9 +126,10 @@ def optimise_poses(
     def solve(
         begin: FloatArray, constraints: Sequence[PoseConstraint], *, is_start: bool = False
     ) -> pose_graph.PoseGraphSolution:
+        motions = edge_motions(constraints, row_of_scan, settings)
         return pose_graph.solve_pose_graph(
             begin,
-            edge_motions(constraints, row_of_scan, settings),
+            motions if odometry is None else motions.join(odometry),
             priors,
             prior_information,
             planar=planar,
@@ -142,8 +147,8 @@ def optimise_poses(
     return OptimisedMap(
         solution.world_from_scan,
         all_edges,
-        solution.residual,
-        solution.weight,
+        solution.residual[: len(all_edges)],
+        solution.weight[: len(all_edges)],
         solution.prior_weight,
         solution.covariance,
     )
@@ -175,11 +180,9 @@ def edges_between(
     return [edge for edge in edges if edge.source in row_of_scan and edge.target in row_of_scan]
 
 
-def _motions(
-    edges: Sequence[PoseConstraint], row_of_scan: dict[int, int]
-) -> pose_graph.MotionConstraints:
+def _motions(edges: Sequence[PoseConstraint], row_of_scan: dict[int, int]) -> MotionConstraints:
     """Return constraints as arrays."""
-    return pose_graph.MotionConstraints(
+    return MotionConstraints(
         np.array([row_of_scan[edge.source] for edge in edges], np.int64),
         np.array([row_of_scan[edge.target] for edge in edges], np.int64),
         np.array([edge.fit.target_from_source for edge in edges]).reshape(-1, 4, 4),
@@ -189,7 +192,7 @@ def _motions(
 
 def edge_motions(
     edges: Sequence[PoseConstraint], row_of_scan: dict[int, int], settings: PoseGraphSettings
-) -> pose_graph.MotionConstraints:
+) -> MotionConstraints:
     """Return constraints with the sensor's systematic errors added, which pairs do not show."""
     motions = _motions(edges, row_of_scan)
     variance = np.array([settings.edge_sigma_m**2, np.radians(settings.edge_sigma_deg) ** 2])

@@ -6,7 +6,7 @@ witness.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -37,6 +37,8 @@ class SensorMotion:
     time_scale, time_shift_s : float
         How the times of points are to be read: seconds after the stamp are `time_scale` times those
         stated plus `time_shift_s`; not at all if the scale is 0. See `time_check`.
+    of_poses : bool
+        Whether it is the motion of the poses themselves, not one that was measured beside them.
     """
 
     t_ns: IntArray
@@ -45,6 +47,7 @@ class SensorMotion:
     piece: IntArray
     time_scale: float = 1.0
     time_shift_s: float = 0.0
+    of_poses: bool = True
 
     def columns(self) -> dict[str, Array]:
         """Return the columns of `schemas.MOTION`."""
@@ -79,6 +82,30 @@ class SensorMotion:
             self.t_ns[near], self.xyz_m[near], self.quat_xyzw[near], query_ns, max_gap_s=np.inf
         )
         return se3.pose_matrix(xyz_m, quat)
+
+    def steps(self, query_ns: IntArray) -> FloatArray:
+        """Return how the sensor moved from each of some times to the next.
+
+        Parameters
+        ----------
+        query_ns : (m,) int64, increasing, m >= 1
+
+        Returns
+        -------
+        (m - 1, 4, 4) float64
+            Of its earlier frame the pose of the later one; NaN where they are not of one piece.
+        """
+        covered = self.covered(query_ns)
+        # of what is not covered any pose will do
+        known_ns = np.clip(query_ns, self.t_ns[0], self.t_ns[-1])
+        xyz_m, quat, _, _ = se3.interpolate_poses(
+            self.t_ns, self.xyz_m, self.quat_xyzw, known_ns, max_gap_s=np.inf
+        )
+        pose = se3.pose_matrix(xyz_m, quat)
+        piece = self.piece[np.searchsorted(self.t_ns, known_ns)]
+        is_known = covered[:-1] & covered[1:] & (piece[:-1] == piece[1:])
+        step = se3.invert_pose(pose[:-1]) @ pose[1:]
+        return np.where(is_known[:, None, None], step, np.nan)
 
     def covered(self, query_ns: IntArray) -> BoolArray:
         """Return for each time (m,) whether the pose at it is known."""
@@ -200,7 +227,7 @@ def choose_motion(
         )
     name, motion = _first_that_agrees(motions, t_ns)
     log.log_line(f"motion within sweeps from {name}: {len(motion.t_ns):,} poses")
-    return motion
+    return replace(motion, of_poses=name == chains[-1][0])
 
 
 def _first_that_agrees(

@@ -3,6 +3,7 @@
 All of them, or a chunk: the batches of some contiguous part of a long survey.
 """
 
+import json
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -78,6 +79,28 @@ def read_candidates(poses: FilePath, *, planar: bool) -> CandidateScans:
     is_odometry = pose_kind.is_drifting(tables.read_note(poses, schemas.POSES, pose_kind.NOTE))
     priors = results.pose_matrices(columns)
     return CandidateScans(columns["scan_id"], priors, planar, is_odometry=is_odometry)
+
+
+def read_odometry(moved: FilePath, poses: FilePath) -> mapping.StepsBetween | None:
+    """Return what was measured of the motion between candidates beside their poses.
+
+    Parameters
+    ----------
+    moved : path-like
+        motion.parquet.
+    poses : path-like
+        poses.parquet.
+
+    Returns
+    -------
+    callable or None
+        See `mapping.optimise_map`; None where the poses alone say how the sensor moved.
+    """
+    if tables.read_note(moved, schemas.MOTION, schemas.OF_POSES) != json.dumps(False):
+        return None
+    motion = _read_motion(moved)
+    t_ns = tables.read_table(poses, schemas.POSES, ["t_ns"])["t_ns"]
+    return lambda rows: motion.steps(t_ns[rows])
 
 
 def expect_damaged(n_candidates: int, reading: Settings, begin: int = 0) -> DamagedClouds:

@@ -12,7 +12,6 @@ import numpy as np
 from scanplan.registration import multiway, pose_graph, prepared_clouds
 from scanplan.registration.constraints import PoseConstraint, neighbour_reach_m
 from scanplan.registration.drift import closing, folds, odometry, submaps
-from scanplan.registration.graph_equations import MotionConstraints
 from scanplan.registration.registration_settings import (
     DriftSettings,
     PoseGraphSettings,
@@ -126,7 +125,7 @@ class _DriftingGraph:
         measured = multiway.edge_motions(constraints, self._row_of_scan, self._settings)
         return pose_graph.solve_pose_graph(
             self.poses,
-            _join(measured, self._steps),
+            measured.join(self._steps),
             odometry.level_priors(self.poses, self._odometry),
             self._prior_information,
             planar=self._planar,
@@ -189,12 +188,3 @@ def _make_submaps(
         if merged is not None:
             maps.append(merged)
     return maps
-
-
-def _join(one: MotionConstraints, other: MotionConstraints) -> MotionConstraints:
-    return MotionConstraints(
-        np.concatenate([one.source, other.source]),
-        np.concatenate([one.target, other.target]),
-        np.concatenate([one.target_from_source, other.target_from_source]),
-        np.concatenate([one.information, other.information]),
-    )

@@ -8,7 +8,7 @@ from scanplan.geometry import se3, twists
 from scanplan.registration.constraints import PoseConstraint
 from scanplan.registration.graph_equations import MotionConstraints
 from scanplan.registration.registration_settings import DriftSettings
-from scanplan.types import FloatArray, IntArray
+from scanplan.types import BoolArray, FloatArray, IntArray
 
 
 def measure_way(odometry_from_cloud: FloatArray) -> FloatArray:
@@ -95,10 +95,61 @@ def measure_steps(
         From scans to those before them.
     drift : registration_settings.DriftSettings
     """
-    is_linked = np.isin(scan_ids, [edge.source for edge in edges])
     whole = [edge.source for edge in edges if edge.fit.n_unobservable == 0]
     is_whole = np.isin(scan_ids, whole)
     motion = se3.invert_pose(odometry_from_cloud[:-1]) @ odometry_from_cloud[1:]
+    source = np.flatnonzero(~is_whole[1:]) + 1
+    information = _weigh_motions(motion, _are_linked(scan_ids, edges), drift)
+    return MotionConstraints(source, source - 1, motion[source - 1], information[source - 1])
+
+
+def constrain_placed_scans(
+    scan_ids: IntArray,
+    motion: FloatArray,
+    edges: Sequence[PoseConstraint],
+    drift: DriftSettings,
+) -> MotionConstraints:
+    """Return odometry's motions between scans that a localiser placed, too, as constraints.
+
+    They count beside alignments, for the localiser bounds what their errors add up to: its own
+    errors last for many scans, which in a room that is seen through its door alone nothing else
+    tells. They count for less where they are farther off the alignments than drift allows, as of
+    wheels that slip or are misscaled.
+
+    Parameters
+    ----------
+    scan_ids : (n,) int, increasing
+    motion : (n - 1, 4, 4) float64
+        Of each scan's cloud the pose of the next one by odometry; NaN where it does not know.
+    edges : sequence of constraints.PoseConstraint
+        From scans to those before them.
+    drift : registration_settings.DriftSettings
+    """
+    source = np.flatnonzero(np.isfinite(motion).all(axis=(1, 2))) + 1
+    motion = motion[source - 1]
+    information = _weigh_motions(motion, _are_linked(scan_ids, edges)[source - 1], drift)
+    aligned = {
+        (edge.source, edge.target): edge.fit.target_from_source[:3, 3]
+        for edge in edges
+        if edge.fit.n_unobservable == 0
+    }
+    ends = zip(scan_ids[source], scan_ids[source - 1], strict=True)
+    shift_m = np.array([aligned.get(pair, [np.nan] * 3) for pair in ends]).reshape(-1, 3)
+    off_m = np.linalg.norm(motion[:, :3, 3] - shift_m, axis=1)
+    off_sigmas = off_m * np.sqrt(information[:, 0, 0])
+    off_sigmas = off_sigmas[np.isfinite(off_sigmas)]
+    # half of normal errors in the plane are within this many standard deviations
+    times = np.median(off_sigmas) / np.sqrt(2 * np.log(2)) if len(off_sigmas) else 1.0
+    return MotionConstraints(source, source - 1, motion, information / max(times, 1.0) ** 2)
+
+
+def _are_linked(scan_ids: IntArray, edges: Sequence[PoseConstraint]) -> BoolArray:
+    """Return which scans (n - 1,), the first left out, were aligned to one before them."""
+    return np.isin(scan_ids, [edge.source for edge in edges])[1:]
+
+
+def _weigh_motions(motion: FloatArray, is_linked: BoolArray, drift: DriftSettings) -> FloatArray:
+    """Return the information (m, 6, 6) of odometry's motions; of turns where no scan shows them."""
     twist = twists.motion_to_twist(motion)
     way_m = np.linalg.norm(twist[:, :3], axis=1)
     turn_rad = np.linalg.norm(twist[:, 3:], axis=1)
@@ -109,9 +160,8 @@ def measure_steps(
     information = np.zeros((len(motion), 6, 6))
     every = np.arange(3)
     information[:, every, every] = sigma_m[:, None] ** -2
-    information[:, every + 3, every + 3] = np.where(is_linked[1:], 0.0, sigma_rad**-2)[:, None]
-    source = np.flatnonzero(~is_whole[1:]) + 1
-    return MotionConstraints(source, source - 1, motion[source - 1], information[source - 1])
+    information[:, every + 3, every + 3] = np.where(is_linked, 0.0, sigma_rad**-2)[:, None]
+    return information
 
 
 def level_priors(world_from_cloud: FloatArray, odometry_from_cloud: FloatArray) -> FloatArray:
