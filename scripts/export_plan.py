@@ -70,7 +70,8 @@ def export_plan(
 def _summarise_heights(plan: floorplan.FloorPlan) -> str:
     _, height_m = plan.storey_m
     height_from = floorplan.HEIGHTS[plan.height_from]
-    return f"{height_m:.2f} m high ({height_from}), {plan.low.sum()} walls lower"
+    lower = floorplan.say_count(int(plan.low.sum()), "wall")
+    return f"{height_m:.2f} m high ({height_from}), {lower} lower"
 
 
 if __name__ == "__main__":

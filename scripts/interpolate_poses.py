@@ -116,7 +116,8 @@ def _log_unsteady(is_steady: BoolArray, chosen: IntArray) -> None:
 
 
 def _log_pose_kind(kind: str, *, is_set: bool) -> None:
-    by = "set by advanced.input.pose_kind" if is_set else "found by topic and frame"
+    found = "as none are recorded" if kind == pose_kind.ESTIMATED else "found by topic and frame"
+    by = "set by advanced.input.pose_kind" if is_set else found
     of = {
         pose_kind.LOCALISER: "a localiser's, in its map",
         pose_kind.ODOMETRY: "odometry, which drifts",

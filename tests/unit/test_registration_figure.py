@@ -63,7 +63,7 @@ def test_the_figure_names_every_reason_with_its_number(results):
     ElementTree.fromstring(text)
     for told in (
         "kept (3)",
-        "kept at the localiser's pose (2)",
+        "kept at the recorded pose (2)",
         "dropped: little overlap (1)",
         "dropped: pose gap (1, nowhere on the map)",
         "dropped: odd thing (1)",

@@ -399,7 +399,12 @@ def summarise_floorplan(plan: FloorPlan) -> str:
     for kind, noun in OPENINGS.items():
         counts[noun] = int((plan.openings["type"] == kind).sum())
     counts["room"] = len(plan.rooms["room"])
-    return ", ".join(f"{n} {noun}{'s' if n != 1 else ''}" for noun, n in counts.items() if n)
+    return ", ".join(say_count(n, noun) for noun, n in counts.items() if n)
+
+
+def say_count(n: int, noun: str) -> str:
+    """Return how many there are of what a noun names: `1 wall`, `2 walls`."""
+    return f"{n} {noun}" if n == 1 else f"{n} {noun}s"
 
 
 def line_shapes(lines_m: FloatArray) -> Array:

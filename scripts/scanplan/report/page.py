@@ -28,7 +28,7 @@ _CAPTIONS = {
     "scans": "Points of the registered scans from above, where each was taken, and the selected"
     " scans by rank.",
     "registration": "The sensor's way, kept and dropped scans by reason, links between scans by"
-    " what is left of their disagreement, and the thickness of walls by the localiser's poses and"
+    " what is left of their disagreement, and the thickness of walls by the recorded poses and"
     " the registered ones.",
     "area": "Covered area against the number of scans for every ordering, and the most any choice"
     " could cover.",

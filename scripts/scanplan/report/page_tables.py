@@ -185,7 +185,7 @@ def registration_table(verdicts: Columns, shift_m: FloatArray) -> PageTable:
         ]
         rows.append(Row(cells))
     heads = make_heads(
-        "verdict", "kept", "#scans", "#share (%)", "#fitness at the localiser's pose",
+        "verdict", "kept", "#scans", "#share (%)", "#fitness at the recorded pose",
         "#fitness after alignment", "#residual (mm)", "#shift (mm)",
     )  # fmt: skip
     return PageTable("registration", heads, rows)

@@ -12,7 +12,7 @@ from scanplan.report import top_view
 from scanplan.types import Array, Columns, FloatArray, IntArray
 
 _MARKS = {
-    "anchor": ("s", "#000000", "kept at the localiser's pose"),
+    "anchor": ("s", "#000000", "kept at the recorded pose"),
     "low_prior_fitness": ("x", "#d55e00", "dropped: little overlap"),
     "low_refined_fitness": ("+", "#cc79a7", "dropped: little overlap after refinement"),
     "icp_diverged": ("^", "#0072b2", "dropped: refinement went astray"),

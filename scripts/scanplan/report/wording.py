@@ -18,7 +18,8 @@ def plan_sentence(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
     """Return what the plan is and what it was made of, in one sentence."""
     n_kept, n_candidates = _count_candidates(survey)
     return (
-        f"A plan of {floorplan.summarise_floorplan(plan)}, made of {survey.chosen} scans chosen"
+        f"A plan of {floorplan.summarise_floorplan(plan)}, made of"
+        f" {floorplan.say_count(survey.chosen, 'scan')} chosen"
         f" from {n_kept:,} registered ones; {n_candidates:,} were candidates."
     )
 
@@ -108,9 +109,10 @@ def review_note(plan: floorplan.FloorPlan) -> str:
 def registration_note(survey: SurveyFacts) -> str:
     """Return how many candidates were kept."""
     n_kept, n_candidates = _count_candidates(survey)
+    source = "odometry" if survey.is_drifting else "the localiser"
     return (
         f"{n_kept:,} of {n_candidates:,} candidate scans were kept. Medians by verdict; the shift"
-        " is the way from where the localiser put a scan to where it was registered."
+        f" is the way from where {source} put a scan to where it was registered."
     )
 
 

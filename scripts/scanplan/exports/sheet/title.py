@@ -18,7 +18,7 @@ from scanplan.exports.sheet.paper import TITLE_ROWS, Page, Slot
 from scanplan.exports.sheet.styles import STYLES, Letters, Paper
 from scanplan.exports.sheet.symbols import BLOCKS, symbol_paths
 from scanplan.plan import floorplan
-from scanplan.plan.floorplan import OPENINGS, FloorPlan
+from scanplan.plan.floorplan import OPENINGS, FloorPlan, say_count
 from scanplan.recordings.clocks import state_date
 from scanplan.types import Columns, FloatArray
 from scanplan.validation.doubts import list_doubts
@@ -98,7 +98,7 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
             ("Accuracy", state_accuracy(plan), 2),
         ],
         [
-            ("Made of", f"{facts.n_scans} scans", 1),
+            ("Made of", say_count(facts.n_scans, "scan"), 1),
             ("Contents", contents, 2),
         ],
         [
