@@ -311,6 +311,15 @@ def test_a_front_is_no_longer_with_what_stands_in_its_line_than_furniture(in_lin
     assert len(pockets([wall([face]) for face in [*seen, *fronts_m]], floor)) == n_pockets
 
 
+@pytest.mark.parametrize(("aslant_m", "is_behind"), [(0.12, True), (0.18, False)])
+def test_a_wall_behind_is_as_far_from_one_end_of_a_front_as_from_the_other(aslant_m, is_behind):
+    """A front of 2.4 m, and what is 1.2 m long: a wall, or the leaf of a door that is open."""
+    front = stretch(4, 2.4, 4, 0, planar=True)
+    behind = stretch(3 + aslant_m, 3.6, 3, 2.4, planar=True)
+    found = PlanFaces([front, behind]).backs([front, behind], [front])
+    assert found == [front, behind] if is_behind else found == [front]
+
+
 @pytest.mark.parametrize("depth_m", [0.25, 0.28])
 def test_a_cupboard_is_no_longer_for_the_wall_close_behind_it(depth_m):
     """One of 1.2 m in a corridor of 30 m, whose wall is seen beside it."""

@@ -36,15 +36,21 @@ class PlanFaces(FaceTree):
     ) -> list[FaceInterval]:
         """Return the faces near a pocket that its fronts may stand before.
 
-        Those that face the same way; and others, such as the wall that a corner's cupboard ends at,
-        if they go farther through the plan than the fronts do: else these are the wall.
+        Those that face the same way, as far from one end of a front as from the other; and others,
+        such as the wall that a corner's cupboard ends at, if they go farther through the plan than
+        the fronts do: else these are the wall.
         """
         reach_m = max((self.reach_on_line_m(front) for front in fronts), default=0.0)
         least = math.cos(intersections.LEAST_RAD)
+
+        def is_along(face: FaceInterval, front: FaceInterval) -> bool:
+            is_alike = face.line.normal @ front.line.normal >= least
+            return bool(is_alike and np.ptp(face.line.offset_m(front.ends)) <= CORNER_M)
+
         return [
             face
             for face in near
-            if any(face.line.normal @ front.line.normal >= least for front in fronts)
+            if any(is_along(face, front) for front in fronts)
             or self.reach_on_line_m(face) > reach_m
         ]
 
