@@ -41,7 +41,8 @@ def test_steps_count_where_alignments_leave_a_motion_open():
 def test_steps_of_placed_scans_count_beside_alignments():
     motion = se3.invert_pose(STRAIGHT[:-1]) @ STRAIGHT[1:]
     motion[1] = np.nan
-    steps = odometry.constrain_placed_scans(IDS, motion, [edge(20, 10, motion[0])], DRIFT)
+    edges = [edge(20, 10, motion[0])]
+    steps = odometry.constrain_placed_scans(IDS, motion, edges, DRIFT, planar=False)
     assert steps.source.tolist() == [1, 3] and steps.target.tolist() == [0, 2]
     np.testing.assert_array_equal(steps.target_from_source, motion[[0, 2]])
     np.testing.assert_allclose(steps.information[:, 0, 0], 1 / (0.02**2 + 0.01**2))
@@ -55,15 +56,30 @@ def test_steps_count_for_less_the_farther_they_are_off_the_alignments():
     motion = se3.invert_pose(STRAIGHT[:-1]) @ STRAIGHT[1:]
     edges = [edge(after, before, motion[0]) for after, before in [(20, 10), (30, 20), (40, 30)]]
     longer = planar_poses([[1.1, 0]] * 3, [0] * 3)
-    steps = odometry.constrain_placed_scans(IDS, longer, edges, DRIFT)
+    steps = odometry.constrain_placed_scans(IDS, longer, edges, DRIFT, planar=True)
     sigma_m = np.hypot(0.01, 0.02 * 1.1)
     off_sigmas = 0.1 / sigma_m
     expected_m = sigma_m * off_sigmas / np.sqrt(2 * np.log(2))
     np.testing.assert_allclose(steps.information[:, 0, 0], expected_m**-2)
     # an alignment that leaves a direction open says nothing of them
     edges = [edge(20, 10, motion[0], n_unobservable=1)]
-    steps = odometry.constrain_placed_scans(IDS, longer, edges, DRIFT)
+    steps = odometry.constrain_placed_scans(IDS, longer, edges, DRIFT, planar=True)
     np.testing.assert_allclose(steps.information[:, 0, 0], sigma_m**-2)
+
+
+def test_in_the_plane_heights_do_not_say_that_steps_are_off():
+    motion = se3.invert_pose(STRAIGHT[:-1]) @ STRAIGHT[1:]
+    edges = [edge(after, before, motion[0]) for after, before in [(20, 10), (30, 20), (40, 30)]]
+    climbing = motion.copy()
+    climbing[:, 2, 3] = 0.3
+    planar, spatial = (
+        odometry.constrain_placed_scans(IDS, climbing, edges, DRIFT, planar=planar).information
+        for planar in (True, False)
+    )
+    sigma_m = np.hypot(0.01, 0.02 * np.hypot(1, 0.3))
+    np.testing.assert_allclose(planar[:, 0, 0], sigma_m**-2)
+    # half of normal errors in space are within 1.54 deviations
+    np.testing.assert_allclose(spatial[:, 0, 0], (0.3 / 1.5382) ** -2, rtol=1e-4)
 
 
 def test_a_break_counts_as_a_long_way():

@@ -103,9 +103,18 @@ POSES = ("/amcl_pose", [line(every_s=0.5)])
 
 
 def test_odometry_goes_before_poses():
-    odometry, poses = chosen(("odometry", [line()]), POSES), chosen(POSES)
+    odometry, poses = chosen(("odometry", [line(speed=1.02)]), POSES), chosen(POSES)
     assert (len(odometry.t_ns), odometry.of_poses) == (101, False)
     assert (len(poses.t_ns), poses.of_poses) == (21, True)
+
+
+def test_what_says_the_same_as_the_poses_or_lies_in_a_map_is_no_odometry():
+    """Poses may be recorded by two names, and a map's jump as a localiser corrects them."""
+    again = chosen(("tf from odom", [line(every_s=0.5)]), POSES)
+    assert len(again.t_ns) == 21 and again.of_poses
+    in_map = [edge(np.arange(0, 10.01, 0.1), 1.02 * np.arange(0, 10.01, 0.1), parent="map")]
+    found = chosen(("odometry", in_map), POSES)
+    assert len(found.t_ns) == 101 and found.of_poses
 
 
 def test_odometry_that_knows_less_is_left_out(caplog):

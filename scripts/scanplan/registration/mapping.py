@@ -210,7 +210,14 @@ def _optimise(
         steps = None
         if odometry is not None:
             motion = level_from_sensor[:-1] @ odometry(kept) @ sensor_from_level[1:]
-            steps = constrain_placed_scans(scan_ids, motion, edges, settings.drift)
+            between = multiway.edges_between(edges, multiway.find_rows(scan_ids))
+            steps = constrain_placed_scans(
+                scan_ids, motion, between, settings.drift, planar=survey.planar
+            )
+            log.log_line(
+                f"register_scans: odometry ties {len(steps.source):,} of {len(kept):,} retained"
+                " scans to the one before"
+            )
         optimised = multiway.optimise_poses(
             scan_ids, start, given, edges, thinned, run, **common, odometry=steps
         )

@@ -104,7 +104,7 @@ class PlanFaces(FaceTree):
     def joined_m(self, face: FaceInterval) -> float:
         """Return how long a surface is with others in its line, no farther away than it is long.
 
-        Pieces that begin where it ends, beside its line by what poses err by, are parts of it, too.
+        Pieces at its ends or along it, beside its line by what poses err by, are parts of it, too.
         """
         along_m, off_m = face.line.along_m(self._ends_m), face.line.offset_m(self._ends_m)
         lows_m, highs_m = along_m.min(axis=1), along_m.max(axis=1)

@@ -12,7 +12,9 @@ import numpy as np
 
 from scanplan.errors import StageError
 from scanplan.geometry import se3
-from scanplan.recordings import frame_edges, pose_jumps
+from scanplan.geometry.tolerances import SAME_M
+from scanplan.recordings import frame_edges, pose_jumps, topics
+from scanplan.recordings.motion import pose_kind
 from scanplan.recordings.survey_protocol import NamedChain
 from scanplan.stage import log
 from scanplan.store.pose_columns import pose_columns, split_pose_columns
@@ -38,7 +40,8 @@ class SensorMotion:
         How the times of points are to be read: seconds after the stamp are `time_scale` times those
         stated plus `time_shift_s`; not at all if the scale is 0. See `time_check`.
     of_poses : bool
-        Whether it is the motion of the poses themselves, not one that was measured beside them.
+        Whether it is the motion of the poses themselves, or of others in a map, which jump where a
+        localiser corrects them; not of odometry that was measured beside them.
     """
 
     t_ns: IntArray
@@ -115,8 +118,8 @@ class SensorMotion:
         return inside & (self.piece[before] == self.piece[np.minimum(after, len(self.t_ns) - 1)])
 
 
-def motion_from_columns(columns: Columns) -> SensorMotion:
-    """Return the motion whose `columns` these are."""
+def motion_from_columns(columns: Columns, *, of_poses: bool = True) -> SensorMotion:
+    """Return the motion whose `columns` these are; `of_poses` is not among them."""
     xyz_m, quat_xyzw = split_pose_columns(columns)
     return SensorMotion(
         columns["t_ns"],
@@ -125,6 +128,7 @@ def motion_from_columns(columns: Columns) -> SensorMotion:
         columns["piece"],
         time_scale=float(columns["time_scale"][0]),
         time_shift_s=float(columns["time_shift_s"][0]),
+        of_poses=of_poses,
     )
 
 
@@ -227,7 +231,9 @@ def choose_motion(
         )
     name, motion = _first_that_agrees(motions, t_ns)
     log.log_line(f"motion within sweeps from {name}: {len(motion.t_ns):,} poses")
-    return replace(motion, of_poses=name == chains[-1][0])
+    frames = {name: edges[0].parent for name, edges in chains}
+    is_global = pose_kind.find_pose_kind(topics.ODOMETRY, frames[name]) == pose_kind.LOCALISER
+    return replace(motion, of_poses=is_global or _is_same(motion, motions[-1][1]))
 
 
 def _first_that_agrees(
@@ -247,6 +253,15 @@ def _first_that_agrees(
         else:
             return name, motion
     return motions[-1]
+
+
+def _is_same(motion: SensorMotion, poses: SensorMotion) -> bool:
+    """Return whether a motion says nothing but what the poses say, be it by another name."""
+    known_ns = poses.t_ns[motion.covered(poses.t_ns)]
+    if len(known_ns) < 2:
+        return True
+    steps = (known.steps(known_ns) for known in (motion, poses))
+    return bool(np.allclose(*steps, rtol=0, atol=SAME_M, equal_nan=True))
 
 
 def _way_ratio(motion: SensorMotion, poses: SensorMotion) -> float:

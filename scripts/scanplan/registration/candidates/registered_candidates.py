@@ -96,9 +96,9 @@ def read_odometry(moved: FilePath, poses: FilePath) -> mapping.StepsBetween | No
     callable or None
         See `mapping.optimise_map`; None where the poses alone say how the sensor moved.
     """
-    if tables.read_note(moved, schemas.MOTION, schemas.OF_POSES) != json.dumps(False):
-        return None
     motion = _read_motion(moved)
+    if motion.of_poses:
+        return None
     t_ns = tables.read_table(poses, schemas.POSES, ["t_ns"])["t_ns"]
     return lambda rows: motion.steps(t_ns[rows])
 
@@ -192,4 +192,7 @@ class _CountedScans:
 
 
 def _read_motion(moved: FilePath) -> trajectory.SensorMotion:
-    return trajectory.motion_from_columns(tables.read_table(moved, schemas.MOTION))
+    told = tables.read_note(moved, schemas.MOTION, schemas.OF_POSES)
+    return trajectory.motion_from_columns(
+        tables.read_table(moved, schemas.MOTION), of_poses=told != json.dumps(False)
+    )

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
+from scipy import stats
 
 from scanplan.geometry import se3, twists
 from scanplan.registration.constraints import PoseConstraint
@@ -108,13 +109,15 @@ def constrain_placed_scans(
     motion: FloatArray,
     edges: Sequence[PoseConstraint],
     drift: DriftSettings,
+    *,
+    planar: bool,
 ) -> MotionConstraints:
     """Return odometry's motions between scans that a localiser placed, too, as constraints.
 
     They count beside alignments, for the localiser bounds what their errors add up to: its own
     errors last for many scans, which in a room that is seen through its door alone nothing else
-    tells. They count for less where they are farther off the alignments than drift allows, as of
-    wheels that slip or are misscaled.
+    tells. If they are farther off the alignments, in the median, than drift allows, as of wheels
+    that are misscaled, all count for as much less.
 
     Parameters
     ----------
@@ -122,8 +125,10 @@ def constrain_placed_scans(
     motion : (n - 1, 4, 4) float64
         Of each scan's cloud the pose of the next one by odometry; NaN where it does not know.
     edges : sequence of constraints.PoseConstraint
-        From scans to those before them.
+        From these scans to those before them.
     drift : registration_settings.DriftSettings
+    planar : bool
+        Whether only shifts in the plane are aligned.
     """
     source = np.flatnonzero(np.isfinite(motion).all(axis=(1, 2))) + 1
     motion = motion[source - 1]
@@ -135,11 +140,12 @@ def constrain_placed_scans(
     }
     ends = zip(scan_ids[source], scan_ids[source - 1], strict=True)
     shift_m = np.array([aligned.get(pair, [np.nan] * 3) for pair in ends]).reshape(-1, 3)
-    off_m = np.linalg.norm(motion[:, :3, 3] - shift_m, axis=1)
+    n_free = 2 if planar else 3
+    off_m = np.linalg.norm((motion[:, :3, 3] - shift_m)[:, :n_free], axis=1)
     off_sigmas = off_m * np.sqrt(information[:, 0, 0])
     off_sigmas = off_sigmas[np.isfinite(off_sigmas)]
-    # half of normal errors in the plane are within this many standard deviations
-    times = np.median(off_sigmas) / np.sqrt(2 * np.log(2)) if len(off_sigmas) else 1.0
+    # half of normal errors are within so many standard deviations
+    times = np.median(off_sigmas) / stats.chi.median(n_free) if len(off_sigmas) else 1.0
     return MotionConstraints(source, source - 1, motion, information / max(times, 1.0) ** 2)
 
 
