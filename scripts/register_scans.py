@@ -49,6 +49,7 @@ def register_scans(
         Cores to use; the result does not depend on it.
     """
     limits = registration_settings(settings)
+    t_ns = tables.read_table(poses, schemas.POSES, ["t_ns"])["t_ns"]
     with (
         scan_cache.open_scan_cache(scans) as raw,
         scan_cache.open_scan_cache(registered) as thinned,
@@ -63,7 +64,7 @@ def register_scans(
         survey = found.survey
         odometry = None
         if moved is not None and not survey.is_odometry:
-            odometry = registered_candidates.read_odometry(moved, poses)
+            odometry = registered_candidates.read_odometry(moved, t_ns)
         verdicts, constraints = mapping.optimise_map(
             survey, found.results, found.edges, thinned, run, limits, odometry
         )
@@ -79,8 +80,7 @@ def register_scans(
     )
     columns = results.constraint_columns(constraints)
     tables.write_table(edges, schemas.EDGES, columns, allow_empty=True)
-    stamps = tables.read_table(poses, schemas.POSES, ["t_ns"])
-    columns = results.registration_columns(survey.scan_ids, stamps["t_ns"], verdicts)
+    columns = results.registration_columns(survey.scan_ids, t_ns, verdicts)
     told = doubts.read_doubts(poses, schemas.POSES).add(
         found.damage, contradictions.find_misfit(verdicts, is_odometry=survey.is_odometry)
     )

@@ -50,7 +50,7 @@ POSES = Schema(
 N_RECORDED = "n_recorded"
 """Under this name a table of poses says how many scans were recorded."""
 OF_POSES = "of_poses"
-"""Under this name a table of motion says whether it is that of the poses, for want of another."""
+"""Under this name a table of motion says whether it is that of the poses, or of others in a map."""
 MOTION = Schema(
     "motion",
     1,

@@ -114,15 +114,14 @@ class PlanFaces(FaceTree):
         span_m, joined_m = (face.low_m, face.low_m), (face.low_m, face.high_m)
         while joined_m != span_m:
             span_m = joined_m
-            gap_m = np.maximum(lows_m - span_m[1], span_m[0] - highs_m)
+            gap_m = _gaps_between(lows_m, highs_m, np.array(span_m))
             is_near = (is_on & (gap_m <= span_m[1] - span_m[0])) | (is_beside & (gap_m <= END_M))
             joined_m = (float(lows_m[is_near].min()), float(highs_m[is_near].max()))
         return span_m[1] - span_m[0]
 
     def _gaps_m(self, face: FaceInterval, places_m: FloatArray) -> FloatArray:
         """Return how far places along the line of a face are from each (n,) that lies on it."""
-        low_m, high_m = self._along_line_m(face)
-        return np.maximum(low_m - places_m.max(), places_m.min() - high_m)
+        return _gaps_between(*self._along_line_m(face), places_m)
 
     def _along_line_m(self, face: FaceInterval) -> tuple[FloatArray, FloatArray]:
         """Return from where (n,) to where faces of the same way lie on the line of one."""
@@ -137,3 +136,8 @@ class PlanFaces(FaceTree):
     def _faces_alike(self, face: FaceInterval) -> BoolArray:
         """Return which faces (n,) face much the same way as one."""
         return self._normal @ face.line.normal >= math.cos(intersections.LEAST_RAD)
+
+
+def _gaps_between(low_m: FloatArray, high_m: FloatArray, places_m: FloatArray) -> FloatArray:
+    """Return how far places along a line are from each stretch (n,) of it, negative inside."""
+    return np.maximum(low_m - places_m.max(), places_m.min() - high_m)

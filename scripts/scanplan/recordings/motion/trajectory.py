@@ -231,8 +231,8 @@ def choose_motion(
         )
     name, motion = _first_that_agrees(motions, t_ns)
     log.log_line(f"motion within sweeps from {name}: {len(motion.t_ns):,} poses")
-    frames = {name: edges[0].parent for name, edges in chains}
-    is_global = pose_kind.find_pose_kind(topics.ODOMETRY, frames[name]) == pose_kind.LOCALISER
+    frame = dict(chains)[name][0].parent
+    is_global = pose_kind.find_pose_kind(topics.ODOMETRY, frame) == pose_kind.LOCALISER
     return replace(motion, of_poses=is_global or _is_same(motion, motions[-1][1]))
 
 

@@ -81,15 +81,15 @@ def read_candidates(poses: FilePath, *, planar: bool) -> CandidateScans:
     return CandidateScans(columns["scan_id"], priors, planar, is_odometry=is_odometry)
 
 
-def read_odometry(moved: FilePath, poses: FilePath) -> mapping.StepsBetween | None:
+def read_odometry(moved: FilePath, t_ns: IntArray) -> mapping.StepsBetween | None:
     """Return what was measured of the motion between candidates beside their poses.
 
     Parameters
     ----------
     moved : path-like
         motion.parquet.
-    poses : path-like
-        poses.parquet.
+    t_ns : (n,) int64
+        Stamps of the candidates.
 
     Returns
     -------
@@ -99,7 +99,6 @@ def read_odometry(moved: FilePath, poses: FilePath) -> mapping.StepsBetween | No
     motion = _read_motion(moved)
     if motion.of_poses:
         return None
-    t_ns = tables.read_table(poses, schemas.POSES, ["t_ns"])["t_ns"]
     return lambda rows: motion.steps(t_ns[rows])
 
 
@@ -192,7 +191,6 @@ class _CountedScans:
 
 
 def _read_motion(moved: FilePath) -> trajectory.SensorMotion:
-    told = tables.read_note(moved, schemas.MOTION, schemas.OF_POSES)
-    return trajectory.motion_from_columns(
-        tables.read_table(moved, schemas.MOTION), of_poses=told != json.dumps(False)
-    )
+    of_poses = json.loads(tables.read_note(moved, schemas.MOTION, schemas.OF_POSES) or "true")
+    columns = tables.read_table(moved, schemas.MOTION)
+    return trajectory.motion_from_columns(columns, of_poses=of_poses)
