@@ -7,11 +7,12 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from shapely.geometry import MultiPolygon
 from threadpoolctl import threadpool_limits
 
 from scanplan.plan import messages, planning
 from scanplan.plan.floorplan import FloorPlan
-from scanplan.rays import levels, ray_set
+from scanplan.rays import free_space, levels, ray_set
 from scanplan.selection import stopping
 from scanplan.stage import log, workers
 from scanplan.store import doubts, registered_scans, schemas, tables
@@ -64,6 +65,9 @@ def assemble_plan(
     wait_for_rays = workers.begin_in_thread(
         _read_rays, rays, settings["openings"]["min_opening_m"], threads=threads
     )
+    find_seen = None
+    if store.planar:
+        find_seen = workers.begin_in_thread(_find_seen_floor, store, registered, threads=threads)
     # sums that a library shares out among cores differ in their last digits
     with threadpool_limits(1):
         plan = planning.make_plan(
@@ -74,6 +78,7 @@ def assemble_plan(
             planning.make_plan_settings(**settings),
             poses[rows, :3, 2],
             registered.covariance[rows],
+            find_seen=find_seen,
             threads=threads,
         )
     messages.check_plan(walls, plan, is_used.sum(), count)
@@ -103,6 +108,19 @@ def assemble_plan(
 def _read_rays(rays: ray_set.RaySet, min_opening_m: float) -> tuple[dict[str, str], str]:
     """Return `_find_heights`, and a warning where rays are too few to see openings."""
     return _find_heights(rays), messages.sparse_rays_warning(rays, min_opening_m)
+
+
+def _find_seen_floor(
+    store: tables.ScanStore, registered: registered_scans.RegisteredScans
+) -> MultiPolygon:
+    """Return the floor that all planar scans saw."""
+    sensors_m = registered.map_from_sensor[:, :3, 3]
+    rays = ray_set.gather_rays(
+        store.scans(np.sort(registered.scan_ids)),
+        dict(zip(registered.scan_ids.tolist(), sensors_m, strict=True)),
+        planar=True,
+    )
+    return free_space.union_on_grid(free_space.free_polygons(rays))
 
 
 def _find_heights(rays: ray_set.RaySet) -> dict[str, str]:

@@ -1,6 +1,7 @@
 """Walls, faces and evidence of houses known on paper."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -82,6 +83,25 @@ class TestPlan:
         made = plan(ray_set.gather_rays(flat, dict(enumerate(SENSORS)), planar=True))
         assert np.isnan(made.openings["sill_m"]).all() and np.isnan(made.walls["top_m"]).all()
         np.testing.assert_allclose(np.sort(made.rooms["area_m2"]), [15.2, 16], rtol=0.03)
+
+    def test_floor_that_a_scan_saw_that_was_not_chosen_stays_in_a_room(self):
+        """Who moved a box that is 1.2 m long and wide saw the floor under it."""
+        corners = [(2.2, 2.2), (3.4, 2.2), (3.4, 3.4), (2.2, 3.4)]
+        box = [(*a, *b) for a, b in zip(corners, [*corners[1:], corners[0]], strict=True)]
+        points = house_making.scans(house_making.HOUSE + box, SENSORS[:2])
+        flat = [(i, (xyz * [1, 1, 0])[::8]) for i, xyz in points]
+        rays = ray_set.gather_rays(flat, dict(enumerate(SENSORS[:2])), planar=True)
+
+        def measure_room(**other: Any) -> float:
+            t_ns = house_making.T_NS[:2]
+            table = walls(house_making.ROOM_A * 2, scan_id=[0] * 5 + [1] * 5)
+            made = planning.make_plan(table, rays, SENSORS[:2, :2], t_ns, SETTINGS, **other)
+            return float(made.rooms["area_m2"].max())
+
+        assert measure_room() < 15.5
+        assert measure_room(find_seen=lambda: shapely.box(2, 2, 4, 4)) == pytest.approx(
+            16, rel=0.02
+        )
 
     @pytest.mark.parametrize("sensor_z_m", [0.4, 0.9])
     def test_a_table_is_no_wall(self, sensor_z_m):

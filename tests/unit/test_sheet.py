@@ -329,7 +329,7 @@ def test_floor_of_a_room_that_was_not_seen_is_shown_but_for_what_stands_there():
     (hidden,) = [mark for mark in sheet.marks if mark.kind == "hidden"]
     assert shapely.Polygon(hidden.paths[0][:, :2]).equals(shapely.box(4.1, 2, 7.1, 3))
     assert hidden.title == "not seen, 3.0 m²"
-    assert any("ground that was not seen" in word.text for word in sheet.paper_words)
+    assert any("ground not seen by the scans used" in word.text for word in sheet.paper_words)
     row = floorplan_making.furniture([shapely.box(4.1, 2, 6.1, 3), shapely.box(6.1, 2, 7.1, 2.85)])
     assert len(plan(furniture=row).hidden_floor) == 0
     (left,) = plan(furniture={name: values[:1] for name, values in row.items()}).hidden_floor

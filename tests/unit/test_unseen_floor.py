@@ -22,6 +22,7 @@ def test_what_furniture_may_hide_before_a_wall_stays_in_a_room():
         "track_m": np.array([(2.0, 1.0)]),
         "min_area_m2": 1.0,
         "max_depth_m": 1.0,
+        "max_unseen": 1.0,
         "unpaired_m": 0.1,
     }
     # 2.9 d < 2.9 + d below 1.5 m
@@ -41,6 +42,7 @@ def test_what_was_not_seen_in_the_middle_of_a_room_is_no_larger_than_furniture(s
         track_m=np.array([(2.0, 1.0)]),
         min_area_m2=1.0,
         max_depth_m=1.0,
+        max_unseen=1.0,
         unpaired_m=0.1,
     )
     assert left.polygon.covers(hidden) == is_left
@@ -50,7 +52,7 @@ def test_a_room_without_furniture_keeps_nothing_that_was_not_seen():
     room = Room(shapely.box(0.1, 0.1, 3.9, 3.9), 1.0, entered=True, n_scans=1)
     (left,) = leave_out_unseen(
         *([room], shapely.box(0, 0, 4, 3), box(), np.array([(2.0, 1.0)])),
-        **{"min_area_m2": 1.0, "max_depth_m": 0.0, "unpaired_m": 0.1},
+        **{"min_area_m2": 1.0, "max_depth_m": 0.0, "max_unseen": 1.0, "unpaired_m": 0.1},
     )
     assert left.polygon.bounds[3] == pytest.approx(3)
 
@@ -62,6 +64,7 @@ def test_unseen_floor_beyond_which_no_wall_is_drawn_is_left_out():
         "track_m": np.array([(2.0, 1.0)]),
         "min_area_m2": 1.0,
         "max_depth_m": 1.0,
+        "max_unseen": 1.0,
         "unpaired_m": 0.1,
     }
     below, right, _, left = box()
@@ -74,7 +77,24 @@ def test_unseen_floor_beyond_which_no_wall_is_drawn_is_left_out():
 def test_a_room_that_falls_apart_is_every_part_of_it_that_was_driven_into():
     room = Room(shapely.box(0.1, 0.1, 3.9, 3.9), 1.0, entered=True, n_scans=1)
     seen = shapely.union(shapely.box(0, 0, 4, 1.9), shapely.box(0, 2.4, 4, 4))
-    rest = {"min_area_m2": 1.0, "max_depth_m": 0.2, "unpaired_m": 0.1}
+    rest = {"min_area_m2": 1.0, "max_depth_m": 0.2, "max_unseen": 1.0, "unpaired_m": 0.1}
     ways = np.array([(2.0, 1.0), (2.0, 3.0)])
     assert len(leave_out_unseen([room], seen, box(), ways, **rest)) == 2
     assert len(leave_out_unseen([room], seen, box(), ways[:1], **rest)) == 1
+
+
+@pytest.mark.parametrize(
+    ("max_unseen", "left_m2"),
+    [(0.26, 16), (0.24, 14), (0.13, 14), (0.12, 12.8), (0.06, 12.8), (0.04, 12)],
+)
+def test_of_what_furniture_may_hide_the_largest_parts_are_left_out(max_unseen, left_m2):
+    """In three corners of 16 m2 are hidden 0.8, 1.2 and 2 m2, after the narrow shadow of a leg."""
+    room = Room(shapely.box(0, 0, 4, 4), 1.0, entered=True, n_scans=1)
+    corners = [shapely.box(0, 3.2, 1, 4), shapely.box(3, 2.8, 4, 4), shapely.box(2, 0, 4, 1)]
+    seen = shapely.box(0, 0, 4, 4).difference(shapely.union_all(corners))
+    (left,) = leave_out_unseen(
+        *([room], seen.difference(shapely.box(0, 1.5, 1, 1.6)), box()),
+        **{"track_m": np.array([(2.0, 2.0)]), "min_area_m2": 1.0, "unpaired_m": 0.1},
+        **{"max_depth_m": 2.0, "max_unseen": max_unseen},
+    )
+    assert left.polygon.area == pytest.approx(left_m2, abs=0.02)

@@ -66,10 +66,13 @@ class RoomSettings:
     min_walled : float, 0 to 1
         Least share of the outline of a room that no sensor was in, that runs along walls and
         openings.
+    max_unseen : float, 0 to 1
+        Largest share of a room's floor that furniture may hide from all planar scans.
     """
 
     min_area_m2: float
     min_walled: float
+    max_unseen: float
 
 
 @dataclass(frozen=True)
@@ -150,6 +153,7 @@ def make_plan(
     up: FloatArray | None = None,
     covariance: FloatArray | None = None,
     *,
+    find_seen: Callable[[], BaseGeometry] | None = None,
     threads: int = 1,
 ) -> Plan:
     """Make a plan.
@@ -171,6 +175,9 @@ def make_plan(
     covariance : (s, 3, 3) float64, optional
         Of the x, y and heading of each chosen scan, metres and radians; NaN where it is not known,
         which it is nowhere by default.
+    find_seen : callable, optional
+        Returns the floor that planar scans saw, those that were not chosen, too: it stays in rooms.
+        By default it is what the chosen ones saw.
     threads : int
         Cores to use; the plan does not depend on it.
 
@@ -188,7 +195,7 @@ def make_plan(
     find_free = workers.begin_in_thread(
         *(_find_free, rays, track_m, gaps.min_opening_m, gaps.max_door_m), threads=threads
     )
-    survey = _Survey(settings, rays, track_m, find_free, threads)
+    survey = _Survey(settings, rays, track_m, find_free, find_seen, threads)
     surfaces = survey.find_surfaces(segments)
     spaces = survey.find_spaces(surfaces)
     walls = survey.decide_kinds(surfaces, spaces.rooms)
@@ -279,6 +286,8 @@ class _Survey:
     track_m : (k, 2) float64
     find_free : callable
         Returns `views` and `floor`, for which lines need not wait.
+    find_seen : callable, optional
+        As in `make_plan`.
     threads : int
     """
 
@@ -286,6 +295,7 @@ class _Survey:
     rays: RaySet
     track_m: FloatArray
     find_free: Callable[[], _Free]
+    find_seen: Callable[[], BaseGeometry] | None
     threads: int
 
     @property
@@ -433,11 +443,13 @@ class _Survey:
             hidden=surfaces.furnished,
         )
         if self.rays.planar:
-            seen = self._floor_with([piece.outline for piece in pieces])
+            of_others = [self.find_seen()] if self.find_seen else []
+            seen = self._floor_with([*of_others, *(piece.outline for piece in pieces)])
             rooms = leave_out_unseen(
                 *(rooms, seen, surfaces.bounds, self.track_m),
                 min_area_m2=min_area_m2,
                 max_depth_m=self.settings.furniture.furniture_depth_m,
+                max_unseen=self.settings.rooms.max_unseen,
                 unpaired_m=surfaces.unpaired_m,
             )
         pieces = pieces_in_rooms(pieces, [room.polygon for room in rooms])

@@ -125,7 +125,7 @@ _DASHED, _DOTTED = DASHES_MM["DASHED"], DASHES_MM["DOTTED"]
 STYLES = {
     "room": Style("A-AREA", ink="none"),
     "axis": Style("A-WALL-CNTR", ink="none"),
-    "hidden": Style("A-AREA-NSEN", "ground that was not seen", FAINT, "#f4f4f4", _DOTTED),
+    "hidden": Style("A-AREA-NSEN", "ground not seen by the scans used", FAINT, "#f4f4f4", _DOTTED),
     "furniture": Style("A-FURN", "furniture, as far as seen", ink=FAINT),
     "not-seen": Style("A-WALL-NSEN", "outline that was not seen", FAINT, dashes_mm=_DOTTED),
     "assumed": Style("A-WALL-ASMD", "wall, its thickness assumed", FAINT, "#e3e3e3", (1.2, 0.8)),

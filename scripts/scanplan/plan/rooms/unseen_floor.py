@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
 import shapely
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
@@ -26,21 +27,25 @@ def leave_out_unseen(
     *,
     min_area_m2: float,
     max_depth_m: float,
+    max_unseen: float,
     unpaired_m: float,
 ) -> list[Room]:
     """Return rooms without unseen floor, but for what furniture may hide between it and a wall.
 
-    An unseen part stays if leaving it out would bare more of the outline, in metres, than the part
-    has square metres for each metre of `max_depth_m`, and bare outline of its own. What is not at a
-    wall is no larger than furniture, too.
+    An unseen part may be hidden if leaving it out would bare more of the outline, in metres, than
+    the part has square metres for each metre of `max_depth_m`, and bare outline of its own. What is
+    not at a wall is no larger than furniture, too. Of what may be hidden the largest parts are left
+    out until the rest is `max_unseen` of the room. Shadows that are narrow stay, and do not count.
 
     Parameters
     ----------
     rooms : sequence of Room
     seen : shapely geometry
-        Floor that was seen, and what is drawn to stand on it.
+        Floor that any scan saw, and what is drawn to stand on it.
     max_depth_m : float, >= 0
         How deep a part may be that is hidden from wall to wall.
+    max_unseen : float, 0 to 1
+        How much of a room may be hidden.
     walls, track_m, min_area_m2, unpaired_m
         As in `room_outlines.find_rooms`.
 
@@ -55,7 +60,7 @@ def leave_out_unseen(
     left = [
         replace(room, polygon=polygon, walled=bare_parts.walled_share(polygon.exterior, outline))
         for room in rooms
-        for polygon in _without_unseen(room.polygon, seen, outline, way, max_depth_m)
+        for polygon in _without_unseen(room.polygon, seen, outline, way, max_depth_m, max_unseen)
         if polygon.area >= min_area_m2
     ]
     return sorted(left, key=lambda room: largest_first(room.polygon))
@@ -67,6 +72,7 @@ def _without_unseen(
     outline: BaseGeometry,
     way: BaseGeometry,
     max_depth_m: float,
+    max_unseen: float,
 ) -> list[Polygon]:
     """Return what of a polygon was seen, or may be hidden, see `leave_out_unseen`."""
     edge = polygon.boundary.buffer(2 * free_space.GRID_M)
@@ -80,9 +86,20 @@ def _without_unseen(
         return is_at_wall and part.area <= max_depth_m * bared_m
 
     unseen = free_space.difference_on_grid(polygon, seen).geoms
-    taken = [part for part in unseen if not is_hidden(part)]
+    hidden, bare_floor = [], []
+    for part in unseen:
+        (hidden if is_hidden(part) else bare_floor).append(part)
+    wide = [whole for part in hidden for whole in free_space.open_polygons(part, END_M)]
+    taken = [*bare_floor, *_exceeding(wide, max_unseen * polygon.area)]
     if not taken:
         return [polygon]
     rest = free_space.difference_on_grid(polygon, free_space.union_on_grid(taken))
     opened = free_space.open_polygons(rest, END_M)
     return bare_parts.take_visited(shapely.GeometryCollection(opened), way)
+
+
+def _exceeding(parts: Sequence[Polygon], most_m2: float) -> list[Polygon]:
+    """Return the largest parts, without which the others are no larger than an area together."""
+    by_area = sorted(parts, key=lambda part: part.area)
+    together_m2 = np.cumsum([part.area for part in by_area])
+    return by_area[np.searchsorted(together_m2, most_m2, side="right") :]
