@@ -223,6 +223,38 @@ def test_chains_and_rooms_measure_the_house():
     assert {4.0, 3.0} <= set(measured)
 
 
+def test_a_length_to_an_outline_that_was_not_seen_is_about_so_long():
+    """The small room's north side was not seen, nor its east side north of 1.5 m."""
+    north = ((4.1, 3, 7.1, 3), -1, "unseen", np.nan, np.nan, 1, -1)
+    east = ((7.1, 1.5, 7.1, 3), -1, "unseen", np.nan, np.nan, 1, -1)
+
+    def said(unseen):
+        sheet = composition.compose_sheet(plan(unseen=floorplan_making.openings(unseen)))
+        room = floorplan_making.ROOMS[1].buffer(0.01)
+        inside = [d for d in sheet.dimensions if room.covers(shapely.LineString(d.line_m))]
+        return sorted(dimension.word.text for dimension in inside)
+
+    assert said([]) == ["3.00", "3.00"]
+    # its width is measured where it is known
+    assert said([north, east]) == ["3.00", "~3.00"]
+    whole = ((7.1, 0, 7.1, 3), *east[1:])
+    assert said([north, whole]) == ["~3.00", "~3.00"]
+
+
+def test_a_chain_that_ends_at_an_outline_that_was_not_seen_is_about_so_long():
+    west = ((-0.2, -0.2, -0.2, 3.2), -1, "unseen", np.nan, np.nan, 0, -1)
+    below = ((-0.2, -0.2, 7.2, -0.2), *west[1:])
+
+    def count(unseen):
+        sheet = composition.compose_sheet(plan(unseen=floorplan_making.openings(unseen)))
+        south = [d for d in sheet.dimensions if np.ptp(d.line_m[:, 1]) < 0.01]
+        first = [d for d in south if d.ends_m[:, 0].min() == pytest.approx(-0.2, abs=0.01)]
+        return {d.word.text for d in first if d.line_m[0, 1] < -0.2}
+
+    assert count([]) == count([below]) == {"1.20", "~7.40"}
+    assert count([west]) == {"~1.20", "~7.40"}
+
+
 def test_walls_that_stand_apart_from_all_rooms_are_not_measured_with_the_building():
     stub = ((9.0, -2.0, 9.0, -1.0), 0.2, -1, -1, "observed")
     walls = floorplan_making.walls([*floorplan_making.WALLS, stub])

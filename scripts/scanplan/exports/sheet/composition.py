@@ -98,12 +98,14 @@ def compose_sheet(
     space = _open_space(page, marks, symbols)
     stamps = words.stamp_rooms(page, plan, space)
     beside += title.draw_room_table(stamps, table_slots)
-    drawn = _dimension(page, plan, marks, symbols, space)
+    unseen_m = floorplan.centrelines_m(plan.unseen)
+    not_seen = page.place_shape(shapely.union_all(floorplan.line_shapes(unseen_m)))
+    drawn = _dimension(page, plan, marks, symbols, not_seen, space)
     is_stated = _find_stated(symbols, drawn)
     rooms = [
         dimension
         for area in plan.areas
-        for dimension in dimensions.dimension_room(page, page.place_shape(area), space)
+        for dimension in dimensions.dimension_room(page, page.place_shape(area), not_seen, space)
     ]
     labels = [
         *words.label_openings(page, symbols, is_stated, space),
@@ -181,7 +183,12 @@ def _rings(page: Page, paths: list[FloatArray]) -> list[BaseGeometry]:
 
 
 def _dimension(
-    page: Page, plan: FloorPlan, marks: list[Mark], symbols: list[Symbol], space: LabelSpace
+    page: Page,
+    plan: FloorPlan,
+    marks: list[Mark],
+    symbols: list[Symbol],
+    not_seen: BaseGeometry,
+    space: LabelSpace,
 ) -> list[Dimension]:
     """Return the chains along the facades of the building, off all that is drawn.
 
@@ -207,7 +214,9 @@ def _dimension(
         for path in symbol_paths(symbol)
     ]
     reach = shapely.union_all([drawn, *swings])
-    return list(dimensions.dimension_facades(page, outline, reach, known, openings_m, space))
+    return list(
+        dimensions.dimension_facades(page, outline, reach, known, not_seen, openings_m, space)
+    )
 
 
 def _leave_loose_walls(built: BaseGeometry, plan: FloorPlan) -> BaseGeometry:

@@ -34,12 +34,14 @@ def dimension_facades(
     outline: BaseGeometry,
     reach: BaseGeometry,
     known: BaseGeometry,
+    not_seen: BaseGeometry,
     openings_m: FloatArray,
     space: LabelSpace,
 ) -> Iterator[Dimension]:
     """Yield chains along all four sides of a plan, and its whole width and depth.
 
-    A length that ends at a wall whose thickness is assumed is about so long (`~`).
+    A length that ends at a wall whose thickness is assumed, or at a side that was not seen, is
+    about so long (`~`).
 
     Parameters
     ----------
@@ -50,6 +52,8 @@ def dimension_facades(
         All that chains keep off: outline and symbols, on paper.
     known : shapely geometry
         Of the outline: rooms, and walls of which both sides were seen, on paper.
+    not_seen : shapely geometry
+        Spans of rooms' outlines that were not seen, on paper.
     openings_m : (n, 2, 2) float
         Map frame.
     space : LabelSpace
@@ -58,15 +62,16 @@ def dimension_facades(
     for quarter in range(4):
         # each side in turn is brought below
         turn = rotation(-90 * quarter)
-        turned, turned_known, turned_reach = (
+        turned, turned_known, turned_not_seen, turned_reach = (
             shapely.transform(shape, lambda xy, turn=turn: xy @ turn.T)
-            for shape in (outline, known, reach)
+            for shape in (outline, known, not_seen, reach)
         )
         x0, y0, x1, _ = turned.bounds
         gap = END_M * page.mm_per_m
         facades = _find_facades(turned, gap)
         stops = _chain_stops(facades, openings @ turn.T, gap, (x0, x1))
         about = _find_assumed_ends(turned, turned_known, gap)
+        about |= {stop[0] for stop in stops if _is_beside(stop, turned_not_seen, gap)}
         level = turned_reach.bounds[1]
         if len(stops) > 2:
             level -= Paper.CHAIN
@@ -80,6 +85,13 @@ def _find_assumed_ends(outline: BaseGeometry, known: BaseGeometry, gap: float) -
     """Return those of a plan's ends (x, on turned paper) that lie beyond all that is known."""
     ends = zip(outline.bounds[::2], known.bounds[::2], strict=True)
     return frozenset(x for x, known_x in ends if not abs(x - known_x) < gap / 10)
+
+
+def _is_beside(stop: tuple[float, float], not_seen: BaseGeometry, gap: float) -> bool:
+    """Return whether the side that goes up from a stop (x, y) runs along what was not seen."""
+    x, y = stop
+    side = shapely.LineString([(x, y), (x, y + 4 * gap)])
+    return bool(shapely.intersection(side, not_seen.buffer(gap)).length > side.length / 2)
 
 
 def _find_facades(outline: BaseGeometry, gap: float) -> list[_Facade]:
@@ -168,13 +180,17 @@ def _draw_chain(
             continue
         line = np.array([[start[0], level], [end[0], level]])
         length_mm = line[1, 0] - line[0, 0]
-        sign = "~" if about.intersection((start[0], end[0])) else ""
-        words = f"{sign}{length_mm / page.mm_per_m:.2f}"
+        is_about = bool(about.intersection((start[0], end[0])))
+        words = _state_length(page, length_mm, is_about=is_about)
         candidates = _beside_line(line @ turn, words)
         chosen = space.place(candidates)
         if chosen is None:
             continue
         yield _make_dimension(page, np.array([start, end]) @ turn, line @ turn, chosen.words[0])
+
+
+def _state_length(page: Page, length_mm: float, *, is_about: bool) -> str:
+    return f"{'~' if is_about else ''}{length_mm / page.mm_per_m:.2f}"
 
 
 def _beside_line(line: FloatArray, text: str, base: float = 0.0) -> Iterator[Candidate]:
@@ -217,30 +233,45 @@ def to_plan_word(page: Page, word: Word) -> Word:
     )
 
 
-def dimension_room(page: Page, room: BaseGeometry, space: LabelSpace) -> Iterator[Dimension]:
-    """Yield a room's width and depth (its outline on paper), where its sides are square to them.
+def dimension_room(
+    page: Page, room: BaseGeometry, not_seen: BaseGeometry, space: LabelSpace
+) -> Iterator[Dimension]:
+    """Yield a room's width and depth, where its sides are square to them.
 
     Each is measured where the room is as wide a little beside it, too; the widest such place is
-    the best, and one that no words or doors are in the way.
+    the best, where both sides were seen, and no words or doors are in the way.
+
+    Parameters
+    ----------
+    page : Page
+    room, not_seen : shapely geometry
+        Its outline, and the spans of all rooms' outlines that were not seen, on paper: a length
+        that ends there is about so long (`~`).
+    space : LabelSpace
     """
     for turn_deg in (0, -90):
         turn = rotation(turn_deg)
-        turned = shapely.transform(room, lambda xy, turn=turn: xy @ turn.T)
+        turned, turned_not_seen = (
+            shapely.transform(shape, lambda xy, turn=turn: xy @ turn.T)
+            for shape in (room, not_seen)
+        )
+        gap = END_M * page.mm_per_m
         _, y0, _, y1 = turned.bounds
         candidates: list[Candidate] = []
         for share in (0.2, 0.8, 0.35, 0.65, 0.5, 0.12, 0.88, 0.28, 0.72, 0.42, 0.58):
-            chord = _find_chord(turned, y0 + share * (y1 - y0), END_M * page.mm_per_m)
+            chord = _find_chord(turned, y0 + share * (y1 - y0), gap)
             if chord is None:
                 continue
             length_mm = float(chord[1, 0] - chord[0, 0])
-            words = f"{length_mm / page.mm_per_m:.2f}"
+            is_about = bool(shapely.dwithin(shapely.points(chord), turned_not_seen, gap).any())
+            words = _state_length(page, length_mm, is_about=is_about)
             if length_mm < measure_width_mm(words, Letters.SMALL) + Paper.LEAST:
                 continue
             drawn = chord @ turn
-            short = 20 * (1 - length_mm / (turned.bounds[2] - turned.bounds[0]))
+            worse = 20 * (1 - length_mm / (turned.bounds[2] - turned.bounds[0])) + 5 * is_about
             for part in (0.5, 0.3, 0.7):
                 shifted = drawn + (part - 0.5) * (drawn[1] - drawn[0])
-                for found in _beside_line(shifted, words, 0.5 + short + abs(part - 0.5)):
+                for found in _beside_line(shifted, words, 0.5 + worse + abs(part - 0.5)):
                     candidates.append(Candidate(found.words, found.cost, (drawn,)))
         chosen = space.place(candidates, most=10.0)
         if chosen is not None:
