@@ -110,6 +110,7 @@ $(VENV)/.ready: environment.lock
 
 kiss-icp: environment ## add KISS-ICP, which estimates poses of recordings that have none (2 MB)
 	@$(BIN)/pip install -qq --disable-pip-version-check --no-deps --require-hashes -r environment-kiss-icp.lock
+	@echo "KISS-ICP is there: recordings of clouds without poses can be run"
 
 clean: ## remove .venv and everything that was made
 	rm -rf $(VENV) results logs benchmarks .snakemake

@@ -78,6 +78,15 @@ def test_an_automatic_share_is_less_in_the_plane(tmp_path, planar, k, said):
     assert len(chosen_ids) == k and said in reason
 
 
+@pytest.mark.parametrize("planar", [False, True])
+@pytest.mark.parametrize(("n", "k"), [(40, 3), (2, 2)])
+def test_three_scans_are_chosen_though_one_shows_all(planar, n, k):
+    found, reason = stopping.choose_n_scans(
+        {"covered_m2": np.full(n, 50.0)}, area_share="auto", planar=planar
+    )
+    assert (found, reason) == (k, f"{k} of {n} scans: what fewer show is doubtful")
+
+
 @pytest.mark.parametrize(
     ("covered_m2", "k"),
     [

@@ -19,6 +19,7 @@ AUTO_SHARES = {False: (0.95,), True: (0.85, 0.9, 0.95)}
 Of planar scans at least, usually, and at most.
 """
 _FEW = 10  # planar scans: so many cost nothing, and may close the corners of one room
+_FEWEST = 3  # what a scan shows that others of one room show, too, is not to be doubted
 _MOST_SCANS = 0.3  # of planar ones: a third finds no more than a fiftieth more of the walls
 _PAYS = 1.5  # m of wall: a tenth of a large building is many such pieces, and rooms that they close
 
@@ -50,9 +51,9 @@ def choose_n_scans(
     area_share : float in (0, 1] or "auto", optional
         Use the fewest scans that cover this share of what all cover (within a square millimetre),
         `covered`, the objective of the method itself, where it is given; automatically
-        `AUTO_SHARES`. Of planar scans no fewer than ten, for more than the usual share as long as
-        each adds 1.5 m of wall (or of another method's unit), and no more than three of ten but for
-        the least share.
+        `AUTO_SHARES`, and at least three. Of planar scans no fewer than ten, for more than the
+        usual share as long as each adds 1.5 m of wall (or of another method's unit), and no more
+        than three of ten but for the least share.
     min_gain_m2 : float, > 0, optional
         Use no scan after the last that adds this much area.
     max_points, max_bytes : int, >= 1, optional
@@ -144,6 +145,14 @@ def _by_share(columns: Columns, share: float) -> tuple[int, str]:
 
 
 def _by_scanner(columns: Columns, planar: bool) -> tuple[int, str]:
+    n = len(columns["covered_m2"])
+    k, said = _by_shares(columns, planar)
+    if k < min(_FEWEST, n):
+        return min(_FEWEST, n), f"{min(_FEWEST, n)} of {n} scans: what fewer show is doubtful"
+    return k, said
+
+
+def _by_shares(columns: Columns, planar: bool) -> tuple[int, str]:
     *fewer, enough = (_by_share(columns, share) for share in AUTO_SHARES[planar])
     if not planar or enough[0] <= _FEW:
         return enough
