@@ -2,6 +2,8 @@ import tracemalloc
 from unittest import mock
 
 import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from scanplan.geometry import se3
@@ -128,4 +130,40 @@ def test_the_nearest_visits_that_align_are_linked_and_no_more():
     assert align(pairs, places_m, 2) == [("sequence", 9, 8), ("loop", 9, 5), ("loop", 9, 3)]
     assert align(pairs, places_m, 1, fails=[(9, row) for row in (0, 1, 3, 5)]) == [
         ("sequence", 9, 8)
+    ]
+
+
+@given(
+    st.lists(
+        st.lists(st.tuples(st.integers(0, 5), st.integers(0, 3)), min_size=1, max_size=8),
+        min_size=1,
+        max_size=12,
+    ),
+    st.sampled_from([0.0, 0.3, 0.5, 1.0]),
+    st.integers(0, 4),
+    st.integers(1, 4),
+)
+def test_planar_scans_are_paired_with_those_that_show_most_of_the_same(squares, least, apart, most):
+    """Squares of half a metre counted in sets, scans moved apart so that few show the same."""
+    n = len(squares)
+    pose = np.tile(np.eye(4), (n, 1, 1))
+    pose[:, 0, 3] = 0.5 * np.arange(n)
+    clouds = [np.array([(0.5 * x + 0.2, 0.5 * y + 0.2, 0.0) for x, y in of]) for of in squares]
+    expected = []
+    for source in range(n):
+        placed = [(x + source, y) for x, y in squares[source]]
+        known = [{(x + target, y) for x, y in squares[target]} for target in range(n)]
+        shares = {
+            target: sum(square in known[target] for square in placed)
+            for target in range(max(source - apart, 0))
+        }
+        ranked = sorted(shares, key=lambda target: (-shares[target], target))
+        enough = [t for t in ranked if shares[t] >= max(least * len(placed), 1)]
+        expected += [(source, target) for target in enough[:most]]
+    rest = {"apart": apart, "least": least, "most": most}
+    found = loops.choose_shared_views(clouds, pose, np.ones(n, bool), **rest)
+    assert found == sorted(expected)
+    no_last = np.arange(n) < n - 1
+    assert loops.choose_shared_views(clouds, pose, no_last, **rest) == [
+        pair for pair in sorted(expected) if pair[0] != n - 1
     ]

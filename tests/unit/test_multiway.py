@@ -29,41 +29,51 @@ def test_a_floor_gives_no_information_where_there_is_none():
     )
 
 
-def test_no_pair_is_linked_twice():
+PLANAR_PAIRS = {
+    **{"loop_radius_m": 0.5, "loop_apart": 2, "loop_step_planar_m": 0.5},
+    **{"loops_per_scan_planar": 4, "loop_min_fitness": 0.25},
+}
+
+
+@pytest.fixture
+def thinned(tmp_path):
+    """Return a cache of as many equal clouds as are asked for."""
+    with scan_cache.open_scan_cache(tmp_path / "thinned") as cache:
+
+        def fill(n, points_m):
+            for _ in range(n):
+                cache.add(np.array(points_m, float))
+            return cache
+
+        yield fill
+
+
+def test_no_pair_is_linked_twice(thinned):
     """Across anchors a scan may have been registered against one far back: here the last one."""
     there_and_back = np.tile(np.eye(4), (20, 1, 1))
     there_and_back[:, 0, 3] = [*range(10), *range(9, -1, -1)]
-    near = SimpleNamespace(
-        loop_radius_m=0.5, loop_apart=2, loops_per_scan_planar=4, loop_step_planar_m=0.5
-    )
+    near = SimpleNamespace(**PLANAR_PAIRS)
     in_sequence = {(row, row - 1) for row in range(1, 20)}
     expected = [(row, 19 - row) for row in range(11, 20)]
-    at_sensor = np.zeros((20, 3))
+    cache = thinned(20, [[0.2, 0.2, 0]])
 
     def choose(constrained):
-        return multiway.choose_pairs(there_and_back, at_sensor, constrained, near, planar=True)
+        return multiway.choose_pairs(there_and_back, cache, constrained, near, planar=True)
 
     assert choose(in_sequence) == expected
     assert choose(in_sequence | {(19, 0)}) == expected[:-1]
 
 
-def test_half_circles_are_linked_by_what_they_show(tmp_path):
-    """A corridor there and back, a scan a metre, each showing what is 3 m before it."""
+def test_half_circles_are_linked_by_what_they_show(thinned):
+    """A corridor there and back, a scan a metre, each showing what is 2 and 4 m before it."""
     there_and_back = np.tile(np.eye(4), (40, 1, 1))
     there_and_back[:, 0, 3] = [*range(20), *range(19, -1, -1)]
     there_and_back[20:, :2, :2] = [[-1, 0], [0, -1]]
-    near = SimpleNamespace(
-        loop_radius_m=0.5, loop_apart=2, loops_per_scan_planar=4, loop_step_planar_m=0.5
-    )
-    with scan_cache.open_scan_cache(tmp_path / "thinned") as cache:
-        for _ in there_and_back:
-            cache.add(np.array([[2, 1, 0], [4, -1, 0]]))
-        ahead = multiway.find_seen_middles(cache, planar=True)
-        assert not multiway.find_seen_middles(cache, planar=False).any()
-    np.testing.assert_array_equal(ahead, np.tile([3.0, 0, 0], (40, 1)))
+    near = SimpleNamespace(**PLANAR_PAIRS)
+    cache = thinned(40, [[2, 1, 0], [4, -1, 0]])
     in_sequence = {(row, row - 1) for row in range(1, 40)}
-    pairs = multiway.choose_pairs(there_and_back, ahead, in_sequence, near, planar=True)
-    # seen at x + 3 on the way there, at x - 3 on the way back
+    pairs = multiway.choose_pairs(there_and_back, cache, in_sequence, near, planar=True)
+    # seen from x on the way there, and from x + 6 on the way back
     assert pairs == [(39 - x, x - 6) for x in range(19, 5, -1)]
 
 
@@ -120,16 +130,15 @@ def test_pairs_of_a_place_are_aligned_in_one_job():
     assert {job[-1] for job in jobs} == {3}
 
 
-@pytest.mark.parametrize(("planar", "n_pairs"), [(True, 2), (False, 4)])
-def test_in_space_more_visits_are_tried_than_are_linked(planar, n_pairs):
+@pytest.mark.parametrize(("planar", "n_pairs"), [(True, 5), (False, 4)])
+def test_more_visits_are_tried_than_are_linked(thinned, planar, n_pairs):
     """Back and forth six times, a scan a metre: the last has five visits before it."""
     ways = np.tile(np.eye(4), (60, 1, 1))
     ways[:, 0, 3] = np.tile([*range(10), *range(9, -1, -1)], 3)
     limits = SimpleNamespace(
-        **{"loop_radius_m": 0.5, "loop_apart": 2, "loop_step_m": 0.5, "loop_step_planar_m": 0.5},
-        **{"loops_per_scan": 1, "loops_per_scan_planar": 2},
+        **(PLANAR_PAIRS | {"loops_per_scan_planar": 2}), loops_per_scan=1, loop_step_m=0.5
     )
     in_sequence = {(row, row - 1) for row in range(1, 60)}
-    at_sensor = np.zeros((60, 3))
-    pairs = multiway.choose_pairs(ways, at_sensor, in_sequence, limits, planar=planar)
+    cache = thinned(60, [[0.2, 0.2, 0]])
+    pairs = multiway.choose_pairs(ways, cache, in_sequence, limits, planar=planar)
     assert sum(source == 55 for source, _ in pairs) == n_pairs

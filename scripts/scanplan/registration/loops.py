@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Sequence
 from functools import cache
+from typing import Any
 
 import numpy as np
 
@@ -16,6 +17,8 @@ from scanplan.types import BoolArray, FloatArray, IntArray
 RowPair = tuple[int, int]
 """Rows (source, target) of two scans."""
 _STATION_TURN_DEG = 30.0  # a camera that turned this far shows other things
+_CELL_M = 0.5  # what is shared is counted in such squares: poses err by less
+_ROWS_AT_ONCE = 256
 
 
 def choose_stations(world_from_scan: FloatArray, step_m: float) -> BoolArray:
@@ -53,18 +56,18 @@ def _is_step(last: FloatArray, pose: FloatArray, step_m: float) -> bool:
 def choose_loop_pairs(
     xy_m: FloatArray, is_station: BoolArray, *, radius_m: float, apart: int, most: int
 ) -> list[RowPair]:
-    """Choose loop candidates: stations and every earlier visit of their surroundings.
+    """Choose loop candidates in space: stations and every earlier visit of their surroundings.
 
     A visit is a run of scans near a station; the pair is with its nearest station.
 
     Parameters
     ----------
     xy_m : (n, 2) float
-        The middle of what each scan shows, in the order of their recording.
+        Where the sensor was, in the order of their recording.
     is_station : (n,) bool
         See `choose_stations`.
     radius_m : float
-        Two scans whose middles are farther apart are no pair.
+        Two scans farther apart are no pair.
     apart : int
         Nor are two with fewer scans than this between them, nor do such belong to different visits.
     most : int
@@ -100,6 +103,78 @@ def _nearest_of_visit(
     rows = visit[is_station[visit]] if is_station[visit].any() else visit
     distance_m = np.linalg.norm(xy_m[rows] - xy_m[source], axis=1)
     return float(distance_m.min()), int(rows[distance_m.argmin()])
+
+
+def choose_shared_views(
+    clouds_m: Sequence[FloatArray],
+    world_from_scan: FloatArray,
+    is_station: BoolArray,
+    *,
+    apart: int,
+    least: float,
+    most: int,
+) -> list[RowPair]:
+    """Choose loop candidates in the plane: stations and earlier ones that show most of the same.
+
+    Where scanners see half a circle those that are near each other may show nothing in common, and
+    those at both ends of a corridor all of it.
+
+    Parameters
+    ----------
+    clouds_m : sequence of (k, >= 2) float
+        Points of each scan, in the order of their recording.
+    world_from_scan : (n, 4, 4) float64
+    is_station : (n,) bool
+        See `choose_stations`.
+    apart : int
+        Two with fewer scans than this between them are no pair.
+    least : float, 0 to 1
+        Nor are two of which the later has a smaller share of its points in squares of 0.5 m where
+        the earlier has any.
+    most : int
+        A station is paired with this many, those with the largest shares.
+
+    Returns
+    -------
+    list of (source, target)
+        Rows, source > target, sorted.
+    """
+    from scipy import sparse  # as in `choose_loop_pairs`
+
+    stations = np.flatnonzero(is_station)
+    counts = _count_in_squares(
+        [clouds_m[row] for row in stations.tolist()], world_from_scan[stations]
+    )
+    shown = (counts > 0).astype(np.int64).T.tocsc()
+    pairs: list[RowPair] = []
+    for begin in range(0, len(stations), _ROWS_AT_ONCE):
+        block = counts[begin : begin + _ROWS_AT_ONCE]
+        shared = sparse.csr_array(block @ shown)
+        shared.sort_indices()
+        n_needed = np.maximum(least * np.asarray(block.sum(axis=1), float), 1)
+        for i in range(block.shape[0]):
+            first, end = shared.indptr[i : i + 2]
+            source, n_shared = int(stations[begin + i]), np.asarray(shared.data[first:end], float)
+            targets = stations[shared.indices[first:end]]
+            is_pair = (targets < source - apart) & (n_shared >= n_needed[i])
+            best = np.argsort(-n_shared[is_pair], kind="stable")[:most]
+            pairs += [(source, target) for target in targets[is_pair][best].tolist()]
+    return sorted(pairs)
+
+
+def _count_in_squares(clouds_m: Sequence[FloatArray], world_from_scan: FloatArray) -> Any:
+    """Return how many points of each scan lie in each square that has any, a sparse array."""
+    from scipy import sparse
+
+    rows = np.repeat(np.arange(len(clouds_m)), [len(xyz_m) for xyz_m in clouds_m])
+    xy_m = np.concatenate([np.empty((0, 2)), *(np.asarray(xyz_m)[:, :2] for xyz_m in clouds_m)])
+    placed_m = np.einsum("nij,nj->ni", world_from_scan[rows, :2, :2], xy_m)
+    square = np.floor((placed_m + world_from_scan[rows, :2, 3]) / _CELL_M).astype(np.int64)
+    known, column = np.unique(square, axis=0, return_inverse=True)
+    ones = np.ones(len(rows), np.int64)
+    return sparse.csr_array(
+        sparse.coo_array((ones, (rows, column.ravel())), shape=(len(clouds_m), len(known)))
+    )
 
 
 def choose_bridges(

@@ -18,6 +18,7 @@ from scanplan.registration.registration_settings import PoseGraphSettings, Seque
 from scanplan.store.scan_cache import ScanCache
 from scanplan.types import FloatArray, IntArray
 
+_TRIES = 4  # pairs are chosen for each loop: some show what is behind a wall
 _PAIRS_PER_JOB = 100  # aligned: fewer reload clouds more often, more leave cores idle at the end
 
 
@@ -223,27 +224,14 @@ def align_visits(
     """
     row_of_scan = find_rows(scan_ids)
     constrained = {(row_of_scan[edge.source], row_of_scan[edge.target]) for edge in sequence}
-    seen_m = find_seen_middles(thinned, planar=planar)
-    pairs = choose_pairs(world_from_scan, seen_m, constrained, settings, planar=planar)
+    pairs = choose_pairs(world_from_scan, thinned, constrained, settings, planar=planar)
     jobs = alignment_jobs(pairs, scan_ids, world_from_scan, thinned, planar, limits, settings)
     return align_jobs(jobs, run)
 
 
-def find_seen_middles(thinned: ScanCache, *, planar: bool) -> FloatArray:
-    """Return the middle (n, 3) of what each scan shows, in its cloud's frame.
-
-    In the plane the mean of its points: many scanners see a half circle. In space, where most see
-    all around, it is the sensor.
-    """
-    if not planar:
-        return np.zeros((len(thinned), 3))
-    clouds = thinned.part(range(len(thinned)))
-    return np.array([xyz_m.mean(axis=0, dtype=float) for xyz_m in clouds]).reshape(-1, 3)
-
-
 def choose_pairs(
     world_from_scan: FloatArray,
-    seen_m: FloatArray,
+    thinned: ScanCache,
     constrained: set[RowPair],
     settings: PoseGraphSettings,
     *,
@@ -251,14 +239,11 @@ def choose_pairs(
 ) -> list[RowPair]:
     """Choose the pairs of scans to align, other than those in sequence: what shows the same.
 
-    Two half circles that pass in a corridor, turned against each other, have nothing in common
-    where they meet, and most while each has the other before it.
-
     Parameters
     ----------
     world_from_scan : (n, 4, 4) float64
-    seen_m : (n, 3) float64
-        As of `find_seen_middles`: the nearer these are to each other, the more two scans share.
+    thinned : scan_cache.ScanCache
+        As of `optimise_poses`.
     constrained : set of (source, target)
         Rows that have a constraint already.
     settings : registration_settings.PoseGraphSettings
@@ -267,20 +252,25 @@ def choose_pairs(
     Returns
     -------
     list of (source, target)
-        Rows, sorted. Of the loops of a scan in space the nearest that align count, `loops_per_scan`
-        of them.
+        Rows, sorted. Of the loops of a scan the nearest that align count, `loops_per_scan` of them.
     """
     # a planar scan constrains less than a spatial one, and costs less to align
     step_m = settings.loop_step_planar_m if planar else settings.loop_step_m
-    most = _count_links(settings, planar) * _count_tries(planar)
     xy_m = world_from_scan[:, :2, 3]
     radius_m = settings.loop_radius_m
     apart = settings.loop_apart
     is_station = loops.choose_stations(world_from_scan, step_m)
-    seen_xy_m = xy_m + np.einsum("nij,nj->ni", world_from_scan[:, :2, :3], seen_m)
-    visits = loops.choose_loop_pairs(
-        seen_xy_m, is_station, radius_m=radius_m, apart=apart, most=most
-    )
+    most = _TRIES * _count_links(settings, planar)
+    if planar:
+        clouds_m = list(thinned.part(range(len(thinned))))
+        least = settings.loop_min_fitness
+        visits = loops.choose_shared_views(
+            clouds_m, world_from_scan, is_station, apart=apart, least=least, most=most
+        )
+    else:
+        visits = loops.choose_loop_pairs(
+            xy_m, is_station, radius_m=radius_m, apart=apart, most=most
+        )
     is_constrained = np.isin(np.arange(len(xy_m)), [source for source, _ in constrained])
     bridges = loops.choose_bridges(is_constrained, xy_m, radius_m=radius_m, apart=apart)
     return sorted(set(visits + bridges) - constrained)
@@ -303,7 +293,7 @@ def alignment_jobs(
     place = np.floor(world_from_cloud[:, :2, 3]).astype(np.int64)  # squares of a metre
     ordered = sorted(pairs, key=lambda pair: (*place[pair[0]], *pair))
     most = _count_links(settings, planar)
-    for of_job in _cut_by_source(ordered, _PAIRS_PER_JOB * _count_tries(planar)):
+    for of_job in _cut_by_source(ordered, _PAIRS_PER_JOB * _TRIES):
         rows = sorted({row for pair in of_job for row in pair})
         yield (
             thinned.part(rows),
@@ -322,15 +312,6 @@ def alignment_jobs(
 def _count_links(settings: PoseGraphSettings, planar: bool) -> int:
     """Return how many loops a scan has at most."""
     return settings.loops_per_scan_planar if planar else settings.loops_per_scan
-
-
-def _count_tries(planar: bool) -> int:
-    """Return how many visits are chosen for each loop.
-
-    In space the nearest may lie behind a wall and show nothing of what a scan does; in the plane
-    several count.
-    """
-    return 1 if planar else 4
 
 
 def _cut_by_source(pairs: Sequence[RowPair], least: int) -> Iterator[list[RowPair]]:

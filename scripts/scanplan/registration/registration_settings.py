@@ -107,15 +107,14 @@ class PoseGraphSettings:
     optimise : bool
         Whether they are; otherwise they stay as registered one after the other.
     loop_radius_m : float
-        Metres. Scans farther apart get no constraint; of loops in the plane the middles of what
-        they show.
+        Metres. Scans farther apart get no constraint, but loops in the plane if they show the same.
     loop_apart : int
         Nor do scans with fewer retained scans than this between them (loops).
     loop_step_m, loop_step_planar_m : float
         Metres. Scans this far apart along the way get loop constraints, in space and in the plane.
     loops_per_scan, loops_per_scan_planar : int
-        Such a scan is aligned to this many earlier visits of its surroundings, in space and in the
-        plane.
+        Such a scan is linked to this many earlier visits of its surroundings, in space, and in the
+        plane to this many earlier scans that show the same.
     loop_min_fitness : float
         Share, 0 to 1. Pairs whose surfaces that face the same way overlap less get no constraint.
     edge_sigma_m, edge_sigma_deg : float
