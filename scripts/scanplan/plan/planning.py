@@ -176,8 +176,8 @@ def make_plan(
         Of the x, y and heading of each chosen scan, metres and radians; NaN where it is not known,
         which it is nowhere by default.
     find_seen : callable, optional
-        Returns the floor that planar scans saw, those that were not chosen, too: it stays in rooms.
-        By default it is what the chosen ones saw.
+        Returns the floor that planar scans saw, those that were not chosen, too: rooms are made of
+        it. By default it is what the chosen ones saw.
     threads : int
         Cores to use; the plan does not depend on it.
 
@@ -308,6 +308,13 @@ class _Survey:
         """All that was seen free."""
         return self.find_free()[1]
 
+    @functools.cached_property
+    def seen(self) -> BaseGeometry:
+        """Likewise by any scan, chosen or not: what rooms are made of."""
+        if self.find_seen is None:
+            return self.floor
+        return free_space.union_on_grid([self.floor, self.find_seen()])
+
     def find_surfaces(self, segments: Columns) -> _Surfaces:
         """Return walls with their openings, kinds of openings not yet decided."""
         reading = self.settings.reading
@@ -423,7 +430,7 @@ class _Survey:
             max_depth_m=self.settings.furniture.furniture_depth_m,
             planar=self.rays.planar,
             ways_m=[leaf.way_m for leaf in surfaces.leaves],
-            hidden=free_space.difference_on_grid(floor, self.floor) if self.rays.planar else None,
+            hidden=free_space.difference_on_grid(floor, self.seen) if self.rays.planar else None,
         )
         rooms = find_rooms(
             *([*surfaces.bounds, *partings], self.views, self.track_m),
@@ -443,8 +450,7 @@ class _Survey:
             hidden=surfaces.furnished,
         )
         if self.rays.planar:
-            of_others = [self.find_seen()] if self.find_seen else []
-            seen = self._floor_with([*of_others, *(piece.outline for piece in pieces)])
+            seen = self._floor_with([piece.outline for piece in pieces])
             rooms = leave_out_unseen(
                 *(rooms, seen, surfaces.bounds, self.track_m),
                 min_area_m2=min_area_m2,
@@ -486,7 +492,7 @@ class _Survey:
         )
 
     def _floor_with(self, grounds: Sequence[BaseGeometry]) -> BaseGeometry:
-        return free_space.union_on_grid([self.floor, *grounds]) if grounds else self.floor
+        return free_space.union_on_grid([self.seen, *grounds]) if grounds else self.seen
 
 
 def _find_free(rays: RaySet, track_m: FloatArray, width_m: float, max_step_m: float) -> _Free:

@@ -35,7 +35,7 @@ def leave_out_unseen(
     An unseen part may be hidden if leaving it out would bare more of the outline, in metres, than
     the part has square metres for each metre of `max_depth_m`, and bare outline of its own. What is
     not at a wall is no larger than furniture, too. Of what may be hidden the largest parts are left
-    out until the rest is `max_unseen` of the room. Shadows that are narrow stay, and do not count.
+    out until the rest is `max_unseen` of the room. Shadows that are narrow stay.
 
     Parameters
     ----------
@@ -90,12 +90,17 @@ def _without_unseen(
     for part in unseen:
         (hidden if is_hidden(part) else bare_floor).append(part)
     wide = [whole for part in hidden for whole in free_space.open_polygons(part, END_M)]
-    taken = [*bare_floor, *_exceeding(wide, max_unseen * polygon.area)]
+    narrow_m2 = _total_area_m2(hidden) - _total_area_m2(wide)
+    taken = [*bare_floor, *_exceeding(wide, max_unseen * polygon.area - narrow_m2)]
     if not taken:
         return [polygon]
     rest = free_space.difference_on_grid(polygon, free_space.union_on_grid(taken))
     opened = free_space.open_polygons(rest, END_M)
     return bare_parts.take_visited(shapely.GeometryCollection(opened), way)
+
+
+def _total_area_m2(parts: Sequence[Polygon]) -> float:
+    return sum(part.area for part in parts)
 
 
 def _exceeding(parts: Sequence[Polygon], most_m2: float) -> list[Polygon]:
