@@ -144,11 +144,11 @@ def test_the_nearest_visits_that_align_are_linked_and_no_more():
     st.integers(1, 4),
 )
 def test_planar_scans_are_paired_with_those_that_show_most_of_the_same(squares, least, apart, most):
-    """Squares of half a metre counted in sets, scans moved apart so that few show the same."""
+    """Squares of a metre counted in sets, scans moved apart so that few show the same."""
     n = len(squares)
     pose = np.tile(np.eye(4), (n, 1, 1))
-    pose[:, 0, 3] = 0.5 * np.arange(n)
-    clouds = [np.array([(0.5 * x + 0.2, 0.5 * y + 0.2, 0.0) for x, y in of]) for of in squares]
+    pose[:, 0, 3] = np.arange(n)
+    clouds = [np.array([(x + 0.2, y + 0.2, 0.0) for x, y in of]) for of in squares]
     expected = []
     for source in range(n):
         placed = [(x + source, y) for x, y in squares[source]]
@@ -160,7 +160,7 @@ def test_planar_scans_are_paired_with_those_that_show_most_of_the_same(squares, 
         ranked = sorted(shares, key=lambda target: (-shares[target], target))
         enough = [t for t in ranked if shares[t] >= max(least * len(placed), 1)]
         expected += [(source, target) for target in enough[:most]]
-    rest = {"apart": apart, "least": least, "most": most}
+    rest = {"apart": apart, "least": least, "most": most, "rows_at_once": 5}
     found = loops.choose_shared_views(clouds, pose, np.ones(n, bool), **rest)
     assert found == sorted(expected)
     no_last = np.arange(n) < n - 1

@@ -17,8 +17,6 @@ from scanplan.types import BoolArray, FloatArray, IntArray
 RowPair = tuple[int, int]
 """Rows (source, target) of two scans."""
 _STATION_TURN_DEG = 30.0  # a camera that turned this far shows other things
-_CELL_M = 0.5  # what is shared is counted in such squares: poses err by less
-_ROWS_AT_ONCE = 256
 
 
 def choose_stations(world_from_scan: FloatArray, step_m: float) -> BoolArray:
@@ -113,6 +111,7 @@ def choose_shared_views(
     apart: int,
     least: float,
     most: int,
+    rows_at_once: int = 256,
 ) -> list[RowPair]:
     """Choose loop candidates in the plane: stations and earlier ones that show most of the same.
 
@@ -129,10 +128,12 @@ def choose_shared_views(
     apart : int
         Two with fewer scans than this between them are no pair.
     least : float, 0 to 1
-        Nor are two of which the later has a smaller share of its points in squares of 0.5 m where
-        the earlier has any.
+        Nor are two of which the later has a smaller share of its points in squares of a metre
+        where the earlier has any: poses are off by much less.
     most : int
         A station is paired with this many, those with the largest shares.
+    rows_at_once : int
+        Stations that are looked at together: bounds the memory.
 
     Returns
     -------
@@ -142,34 +143,35 @@ def choose_shared_views(
     from scipy import sparse  # as in `choose_loop_pairs`
 
     stations = np.flatnonzero(is_station)
-    counts = _count_in_squares(
-        [clouds_m[row] for row in stations.tolist()], world_from_scan[stations]
-    )
+    of_stations = [clouds_m[row] for row in stations.tolist()]
+    counts = _count_in_squares(of_stations, world_from_scan[stations])
+    n_needed = least * np.array([len(xyz_m) for xyz_m in of_stations])
     shown = (counts > 0).astype(np.int64).T.tocsc()
     pairs: list[RowPair] = []
-    for begin in range(0, len(stations), _ROWS_AT_ONCE):
-        block = counts[begin : begin + _ROWS_AT_ONCE]
-        shared = sparse.csr_array(block @ shown)
-        shared.sort_indices()
-        n_needed = np.maximum(least * np.asarray(block.sum(axis=1), float), 1)
-        for i in range(block.shape[0]):
-            first, end = shared.indptr[i : i + 2]
-            source, n_shared = int(stations[begin + i]), np.asarray(shared.data[first:end], float)
-            targets = stations[shared.indices[first:end]]
-            is_pair = (targets < source - apart) & (n_shared >= n_needed[i])
-            best = np.argsort(-n_shared[is_pair], kind="stable")[:most]
-            pairs += [(source, target) for target in targets[is_pair][best].tolist()]
+    for begin in range(0, len(stations), rows_at_once):
+        block = sparse.coo_array(counts[begin : begin + rows_at_once] @ shown)
+        row, column = block.coords
+        source, target = stations[begin + row], stations[column]
+        n_shared = np.asarray(block.data, np.int64)
+        is_pair = (target < source - apart) & (n_shared >= np.maximum(n_needed[begin + row], 1))
+        source, target, n_shared = source[is_pair], target[is_pair], n_shared[is_pair]
+        order = np.lexsort((target, -n_shared, source))
+        # how many pairs of the same source are before each
+        source, target = source[order], target[order]
+        rank = np.arange(len(source)) - np.searchsorted(source, source)
+        is_taken = rank < most
+        pairs += zip(source[is_taken].tolist(), target[is_taken].tolist(), strict=True)
     return sorted(pairs)
 
 
 def _count_in_squares(clouds_m: Sequence[FloatArray], world_from_scan: FloatArray) -> Any:
-    """Return how many points of each scan lie in each square that has any, a sparse array."""
+    """Return how many points of each scan lie in each square metre that has any, a sparse array."""
     from scipy import sparse
 
     rows = np.repeat(np.arange(len(clouds_m)), [len(xyz_m) for xyz_m in clouds_m])
     xy_m = np.concatenate([np.empty((0, 2)), *(np.asarray(xyz_m)[:, :2] for xyz_m in clouds_m)])
     placed_m = np.einsum("nij,nj->ni", world_from_scan[rows, :2, :2], xy_m)
-    square = np.floor((placed_m + world_from_scan[rows, :2, 3]) / _CELL_M).astype(np.int64)
+    square = np.floor(placed_m + world_from_scan[rows, :2, 3]).astype(np.int64)
     known, column = np.unique(square, axis=0, return_inverse=True)
     ones = np.ones(len(rows), np.int64)
     return sparse.csr_array(

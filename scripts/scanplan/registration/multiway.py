@@ -18,8 +18,7 @@ from scanplan.registration.registration_settings import PoseGraphSettings, Seque
 from scanplan.store.scan_cache import ScanCache
 from scanplan.types import FloatArray, IntArray
 
-_TRIES = 4  # pairs are chosen for each loop: some show what is behind a wall
-_PAIRS_PER_JOB = 100  # aligned: fewer reload clouds more often, more leave cores idle at the end
+_PAIRS_PER_JOB = 400  # fewer reload clouds more often, more leave cores idle at the end
 
 
 @dataclass(frozen=True)
@@ -260,12 +259,15 @@ def choose_pairs(
     radius_m = settings.loop_radius_m
     apart = settings.loop_apart
     is_station = loops.choose_stations(world_from_scan, step_m)
-    most = _TRIES * _count_links(settings, planar)
+    # some show what is behind a wall
+    most = 4 * _count_links(settings, planar)
     if planar:
         clouds_m = list(thinned.part(range(len(thinned))))
-        least = settings.loop_min_fitness
         visits = loops.choose_shared_views(
-            clouds_m, world_from_scan, is_station, apart=apart, least=least, most=most
+            *(clouds_m, world_from_scan, is_station),
+            apart=apart,
+            least=settings.loop_min_fitness,
+            most=most,
         )
     else:
         visits = loops.choose_loop_pairs(
@@ -293,7 +295,7 @@ def alignment_jobs(
     place = np.floor(world_from_cloud[:, :2, 3]).astype(np.int64)  # squares of a metre
     ordered = sorted(pairs, key=lambda pair: (*place[pair[0]], *pair))
     most = _count_links(settings, planar)
-    for of_job in _cut_by_source(ordered, _PAIRS_PER_JOB * _TRIES):
+    for of_job in _cut_by_source(ordered, _PAIRS_PER_JOB):
         rows = sorted({row for pair in of_job for row in pair})
         yield (
             thinned.part(rows),

@@ -18,8 +18,12 @@ AUTO_SHARES = {False: (0.95,), True: (0.85, 0.9, 0.95)}
 
 Of planar scans at least, usually, and at most.
 """
-_FEW = 10  # planar scans: so many cost nothing, and may close the corners of one room
-_FEWEST = 3  # what a scan shows that others of one room show, too, is not to be doubted
+_FEWEST = {False: 3, True: 10}
+"""By whether scans are planar: so many cost nothing.
+
+What one scan alone shows is doubtful, however many more show it; planar ones may close the corners
+of one room.
+"""
 _MOST_SCANS = 0.3  # of planar ones: a third finds no more than a fiftieth more of the walls
 _PAYS = 1.5  # m of wall: a tenth of a large building is many such pieces, and rooms that they close
 
@@ -51,9 +55,9 @@ def choose_n_scans(
     area_share : float in (0, 1] or "auto", optional
         Use the fewest scans that cover this share of what all cover (within a square millimetre),
         `covered`, the objective of the method itself, where it is given; automatically
-        `AUTO_SHARES`, and at least three. Of planar scans no fewer than ten, for more than the
-        usual share as long as each adds 1.5 m of wall (or of another method's unit), and no more
-        than three of ten but for the least share.
+        `AUTO_SHARES`, and at least three scans, or ten planar ones. Of planar scans for more than
+        the usual share as long as each adds 1.5 m of wall (or of another method's unit), and no
+        more than three of ten but for the least share.
     min_gain_m2 : float, > 0, optional
         Use no scan after the last that adds this much area.
     max_points, max_bytes : int, >= 1, optional
@@ -145,31 +149,29 @@ def _by_share(columns: Columns, share: float) -> tuple[int, str]:
 
 
 def _by_scanner(columns: Columns, planar: bool) -> tuple[int, str]:
-    n = len(columns["covered_m2"])
-    k, said = _by_shares(columns, planar)
-    if k < min(_FEWEST, n):
-        return min(_FEWEST, n), f"{min(_FEWEST, n)} of {n} scans: what fewer show is doubtful"
+    n, fewest = len(columns["covered_m2"]), _FEWEST[planar]
+    k, said = _by_shares(columns, AUTO_SHARES[planar])
+    if k < min(fewest, n):
+        return min(fewest, n), f"{min(fewest, n)} of {n} scans: so few are not thinned further"
     return k, said
 
 
-def _by_shares(columns: Columns, planar: bool) -> tuple[int, str]:
-    *fewer, enough = (_by_share(columns, share) for share in AUTO_SHARES[planar])
-    if not planar or enough[0] <= _FEW:
+def _by_shares(columns: Columns, shares: tuple[float, ...]) -> tuple[int, str]:
+    *fewer, enough = (_by_share(columns, share) for share in shares)
+    if not fewer:
         return enough
     least, usual = fewer
     covered = columns.get("covered", columns["covered_m2"])
     later = np.diff(covered)[usual[0] - 1 :]
     paying = usual[0] + int(np.argmax(np.append(later, 0.0) < _PAYS - SMALLEST_M2))
-    most = max(int(_MOST_SCANS * len(covered)), least[0], _FEW)
-    k = min(max(paying, _FEW), most, enough[0])
+    most = max(int(_MOST_SCANS * len(covered)), least[0], _FEWEST[True])
+    k = min(paying, most, enough[0])
     if k == enough[0]:
         return enough
     said = _say_share(k, f"{covered[k - 1] / covered[-1]:.3f}", columns)
     if k < paying:
-        limits = f"{_MOST_SCANS:.0%}, {_FEW}, or as many as show {AUTO_SHARES[planar][0]}"
+        limits = f"{_MOST_SCANS:.0%}, {_FEWEST[True]}, or as many as show {shares[0]}"
         return k, f"{said}; of planar scans no more are taken than {limits}"
-    if k > paying:
-        return k, f"{k} of {len(covered)} scans: so few are not thinned further"
     if k == usual[0]:
         return usual
     return k, f"{said}; the next adds less than {_PAYS:.4g} m, or m2"
