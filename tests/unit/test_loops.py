@@ -1,3 +1,4 @@
+import itertools
 import tracemalloc
 from unittest import mock
 
@@ -157,8 +158,16 @@ def test_planar_scans_are_paired_with_those_that_show_most_of_the_same(squares, 
             target: sum(square in known[target] for square in placed)
             for target in range(max(source - apart, 0))
         }
-        ranked = sorted(shares, key=lambda target: (-shares[target], target))
-        enough = [t for t in ranked if shares[t] >= max(least * len(placed), 1)]
+        eligible = [t for t in shares if shares[t] >= max(least * len(placed), 1)]
+        visit = {
+            t: sum(b - a > apart for a, b in itertools.pairwise(eligible[: i + 1]))
+            for i, t in enumerate(eligible)
+        }
+        place = {
+            t: sum(visit[u] == visit[t] and (-shares[u], u) < (-shares[t], t) for u in eligible)
+            for t in eligible
+        }
+        enough = sorted(eligible, key=lambda t: (place[t], -shares[t], t))
         expected += [(source, target) for target in enough[:most]]
     rest = {"apart": apart, "least": least, "most": most, "rows_at_once": 5}
     found = loops.choose_shared_views(clouds, pose, np.ones(n, bool), **rest)

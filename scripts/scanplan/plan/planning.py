@@ -458,6 +458,8 @@ class _Survey:
                 max_unseen=self.settings.rooms.max_unseen,
                 unpaired_m=surfaces.unpaired_m,
             )
+            # nothing of the plan is known of what other scans alone saw
+            rooms = [room for room in rooms if room.n_scans]
         pieces = pieces_in_rooms(pieces, [room.polygon for room in rooms])
         pieces = tell_columns(
             *(pieces, self.rays, strips),

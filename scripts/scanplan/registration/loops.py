@@ -1,5 +1,6 @@
 """Loop constraints: between scans that are near each other but not registered to each other."""
 
+import itertools
 from collections import Counter
 from collections.abc import Sequence
 from functools import cache
@@ -131,7 +132,8 @@ def choose_shared_views(
         Nor are two of which the later has a smaller share of its points in squares of a metre
         where the earlier has any: poses are off by much less.
     most : int
-        A station is paired with this many, those with the largest shares.
+        A station is paired with this many: of each visit the one with the largest share, then the
+        second ones, and so on.
     rows_at_once : int
         Stations that are looked at together: bounds the memory.
 
@@ -155,13 +157,37 @@ def choose_shared_views(
         n_shared = np.asarray(block.data, np.int64)
         is_pair = (target < source - apart) & (n_shared >= np.maximum(n_needed[begin + row], 1))
         source, target, n_shared = source[is_pair], target[is_pair], n_shared[is_pair]
-        order = np.lexsort((target, -n_shared, source))
-        # how many pairs of the same source are before each
-        source, target = source[order], target[order]
-        rank = np.arange(len(source)) - np.searchsorted(source, source)
-        is_taken = rank < most
-        pairs += zip(source[is_taken].tolist(), target[is_taken].tolist(), strict=True)
+        order = np.argsort(source, kind="stable")
+        source, target, n_shared = source[order], target[order], n_shared[order]
+        for of_source in np.split(np.arange(len(source)), _starts(source)):
+            if len(of_source):
+                row, by_row = int(source[of_source[0]]), of_source[np.argsort(target[of_source])]
+                rank = rank_in_visits(target[by_row], -n_shared[by_row].astype(float), apart)
+                best = by_row[np.lexsort((-n_shared[by_row], rank))][:most]
+                pairs += [(row, earlier) for earlier in target[best].tolist()]
     return sorted(pairs)
+
+
+def _starts(values: IntArray) -> IntArray:
+    """Return where other values than the one before begin."""
+    return np.flatnonzero(np.diff(values)) + 1
+
+
+def rank_in_visits(rows: IntArray, cost: FloatArray, apart: int) -> IntArray:
+    """Return which place each of some scans has in its visit, 0 for the cheapest.
+
+    Parameters
+    ----------
+    rows : (n,) int, increasing
+        Those more than `apart` after the one before are of another visit.
+    cost : (n,) float
+    apart : int
+    """
+    visit = np.cumsum(np.diff(rows, prepend=rows[:1]) > apart)
+    order = np.lexsort((cost, visit))
+    rank = np.empty(len(rows), np.int64)
+    rank[order] = np.arange(len(rows)) - np.searchsorted(visit[order], visit[order])
+    return rank
 
 
 def _count_in_squares(clouds_m: Sequence[FloatArray], world_from_scan: FloatArray) -> Any:
@@ -242,7 +268,8 @@ def align_pairs(
         Pairs with no more rows than this between them are of the kind `sequence`, the others of the
         kind `loop`.
     most : int
-        Of the loops of a source only so many that align count; the nearest are tried first.
+        Of the loops of a source only so many that align count; the nearest of each visit are tried
+        first.
 
     Returns
     -------
@@ -263,10 +290,19 @@ def align_pairs(
         source, target = (world_from_cloud[place_of_row[row], :3, 3] for row in pair)
         return float(np.linalg.norm(source - target))
 
-    ordered = sorted((s - t > apart, s, apart_m((s, t)), t) for s, t in pairs)
+    ranks: dict[RowPair, int] = {}
+    for _, of_source in itertools.groupby(sorted(pairs), key=lambda pair: pair[0]):
+        found = list(of_source)
+        targets = np.array([target for _, target in found], np.int64)
+        distances_m = np.array([apart_m(pair) for pair in found])
+        rank = rank_in_visits(targets, distances_m, apart).tolist()
+        ranks |= dict(zip(found, rank, strict=True))
+    # of each visit the nearest first, so that not all are of one
+    keyed = ((p[0] - p[1] > apart, p[0], ranks[p], apart_m(p), p[1]) for p in pairs)
+    ordered = sorted(keyed)
     n_loops: Counter[int] = Counter()
     edges: list[PoseConstraint] = []
-    for is_loop, source, _, target in ordered:
+    for is_loop, source, _, _, target in ordered:
         if is_loop and n_loops[source] == most:
             continue
         kind = "loop" if is_loop else "sequence"
