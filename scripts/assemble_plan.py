@@ -16,7 +16,7 @@ from scanplan.rays import free_space, levels, ray_set
 from scanplan.selection import stopping
 from scanplan.stage import log, workers
 from scanplan.store import doubts, registered_scans, schemas, tables
-from scanplan.types import FilePath, Settings
+from scanplan.types import FilePath, FloatArray, Settings
 from scanplan.validation import contradictions
 
 
@@ -58,7 +58,7 @@ def assemble_plan(
     registered = registered_scans.read_registered_scans(registration, store)
     rows = registered_scans.rows_of_scans(scan_ids, registered, selection, registration)
     poses = registered.map_from_sensor
-    sensors_m = dict(zip(scan_ids.tolist(), poses[rows, :3, 3], strict=True))
+    sensors_m = dict(zip(registered.scan_ids.tolist(), poses[:, :3, 3], strict=True))
     rays = ray_set.gather_rays(
         store.scans(scan_ids), sensors_m, planar=store.planar, threads=threads
     )
@@ -67,7 +67,7 @@ def assemble_plan(
     )
     find_seen = None
     if store.planar:
-        find_seen = workers.begin_in_thread(_find_seen_floor, store, registered, threads=threads)
+        find_seen = workers.begin_in_thread(_find_seen_floor, store, sensors_m, threads=threads)
     # sums that a library shares out among cores differ in their last digits
     with threadpool_limits(1):
         plan = planning.make_plan(
@@ -110,16 +110,10 @@ def _read_rays(rays: ray_set.RaySet, min_opening_m: float) -> tuple[dict[str, st
     return _find_heights(rays), messages.sparse_rays_warning(rays, min_opening_m)
 
 
-def _find_seen_floor(
-    store: tables.ScanStore, registered: registered_scans.RegisteredScans
-) -> MultiPolygon:
-    """Return the floor that all planar scans saw."""
-    sensors_m = registered.map_from_sensor[:, :3, 3]
-    rays = ray_set.gather_rays(
-        store.scans(np.sort(registered.scan_ids)),
-        dict(zip(registered.scan_ids.tolist(), sensors_m, strict=True)),
-        planar=True,
-    )
+def _find_seen_floor(store: tables.ScanStore, sensors_m: Mapping[int, FloatArray]) -> MultiPolygon:
+    """Return the floor that planar scans saw, by the ids of which the sensor's places are known."""
+    scans = store.scans(np.array(list(sensors_m), np.int64))
+    rays = ray_set.gather_rays(scans, sensors_m, planar=True)
     return free_space.union_on_grid(free_space.free_polygons(rays))
 
 

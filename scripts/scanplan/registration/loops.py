@@ -4,6 +4,7 @@ import itertools
 from collections import Counter
 from collections.abc import Sequence
 from functools import cache
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -89,7 +90,7 @@ def choose_loop_pairs(
             continue
         nearest = sorted(
             _nearest_of_visit(visit, xy_m, source, is_station)
-            for visit in np.split(earlier, np.flatnonzero(np.diff(earlier) > apart) + 1)
+            for visit in np.split(earlier, _find_visits(earlier, apart))
         )
         pairs += [(source, target) for _, target in nearest[:most]]
     return sorted(pairs)
@@ -151,26 +152,18 @@ def choose_shared_views(
     shown = (counts > 0).astype(np.int64).T.tocsc()
     pairs: list[RowPair] = []
     for begin in range(0, len(stations), rows_at_once):
-        block = sparse.coo_array(counts[begin : begin + rows_at_once] @ shown)
-        row, column = block.coords
-        source, target = stations[begin + row], stations[column]
-        n_shared = np.asarray(block.data, np.int64)
-        is_pair = (target < source - apart) & (n_shared >= np.maximum(n_needed[begin + row], 1))
-        source, target, n_shared = source[is_pair], target[is_pair], n_shared[is_pair]
-        order = np.argsort(source, kind="stable")
-        source, target, n_shared = source[order], target[order], n_shared[order]
-        for of_source in np.split(np.arange(len(source)), _starts(source)):
-            if len(of_source):
-                row, by_row = int(source[of_source[0]]), of_source[np.argsort(target[of_source])]
-                rank = rank_in_visits(target[by_row], -n_shared[by_row].astype(float), apart)
-                best = by_row[np.lexsort((-n_shared[by_row], rank))][:most]
-                pairs += [(row, earlier) for earlier in target[best].tolist()]
+        shared = sparse.csr_array(counts[begin : begin + rows_at_once] @ shown)
+        shared.sort_indices()
+        bounds = np.asarray(shared.indptr, np.int64).tolist()
+        for i in range(len(bounds) - 1):
+            first, end = bounds[i : i + 2]
+            source, targets = int(stations[begin + i]), stations[shared.indices[first:end]]
+            cost = -np.asarray(shared.data[first:end], float)
+            is_pair = (targets < source - apart) & (-cost >= max(n_needed[begin + i], 1))
+            targets, cost = targets[is_pair], cost[is_pair]
+            best = np.lexsort((cost, rank_in_visits(targets, cost, apart)))[:most]
+            pairs += [(source, target) for target in targets[best].tolist()]
     return sorted(pairs)
-
-
-def _starts(values: IntArray) -> IntArray:
-    """Return where other values than the one before begin."""
-    return np.flatnonzero(np.diff(values)) + 1
 
 
 def rank_in_visits(rows: IntArray, cost: FloatArray, apart: int) -> IntArray:
@@ -183,11 +176,13 @@ def rank_in_visits(rows: IntArray, cost: FloatArray, apart: int) -> IntArray:
     cost : (n,) float
     apart : int
     """
-    visit = np.cumsum(np.diff(rows, prepend=rows[:1]) > apart)
-    order = np.lexsort((cost, visit))
-    rank = np.empty(len(rows), np.int64)
-    rank[order] = np.arange(len(rows)) - np.searchsorted(visit[order], visit[order])
-    return rank
+    of_visits = np.split(cost, _find_visits(rows, apart))
+    return np.concatenate([of_visit.argsort(kind="stable").argsort() for of_visit in of_visits])
+
+
+def _find_visits(rows: IntArray, apart: int) -> IntArray:
+    """Return where visits but the first begin in rows of scans, which increase."""
+    return np.flatnonzero(np.diff(rows) > apart) + 1
 
 
 def _count_in_squares(clouds_m: Sequence[FloatArray], world_from_scan: FloatArray) -> Any:
@@ -290,19 +285,18 @@ def align_pairs(
         source, target = (world_from_cloud[place_of_row[row], :3, 3] for row in pair)
         return float(np.linalg.norm(source - target))
 
-    ranks: dict[RowPair, int] = {}
-    for _, of_source in itertools.groupby(sorted(pairs), key=lambda pair: pair[0]):
+    # of each visit the nearest first, so that not all are of one
+    keyed: list[tuple[bool, int, int, float, int]] = []
+    for source, of_source in itertools.groupby(sorted(pairs), key=itemgetter(0)):
         found = list(of_source)
         targets = np.array([target for _, target in found], np.int64)
-        distances_m = np.array([apart_m(pair) for pair in found])
-        rank = rank_in_visits(targets, distances_m, apart).tolist()
-        ranks |= dict(zip(found, rank, strict=True))
-    # of each visit the nearest first, so that not all are of one
-    keyed = ((p[0] - p[1] > apart, p[0], ranks[p], apart_m(p), p[1]) for p in pairs)
-    ordered = sorted(keyed)
+        distance_m = np.array([apart_m(pair) for pair in found])
+        ranks = rank_in_visits(targets, distance_m, apart).tolist()
+        for target, rank, away_m in zip(targets.tolist(), ranks, distance_m.tolist(), strict=True):
+            keyed.append((source - target > apart, source, rank, away_m, target))
     n_loops: Counter[int] = Counter()
     edges: list[PoseConstraint] = []
-    for is_loop, source, _, _, target in ordered:
+    for is_loop, source, _, _, target in sorted(keyed):
         if is_loop and n_loops[source] == most:
             continue
         kind = "loop" if is_loop else "sequence"

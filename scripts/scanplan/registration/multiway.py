@@ -251,7 +251,8 @@ def choose_pairs(
     Returns
     -------
     list of (source, target)
-        Rows, sorted. Of the loops of a scan the nearest that align count, `loops_per_scan` of them.
+        Rows, sorted. Of the loops of a scan only `loops_per_scan` that align count, see
+        `loops.align_pairs`.
     """
     # a planar scan constrains less than a spatial one, and costs less to align
     step_m = settings.loop_step_planar_m if planar else settings.loop_step_m

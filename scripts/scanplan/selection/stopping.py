@@ -19,10 +19,9 @@ AUTO_SHARES = {False: (0.95,), True: (0.85, 0.9, 0.95)}
 Of planar scans at least, usually, and at most.
 """
 _FEWEST = {False: 3, True: 10}
-"""By whether scans are planar: so many cost nothing.
+"""By whether scans are planar: so many are taken, though fewer show enough.
 
-What one scan alone shows is doubtful, however many more show it; planar ones may close the corners
-of one room.
+Walls that a single chosen scan shows are doubtful, and planar scans may close corners of a room.
 """
 _MOST_SCANS = 0.3  # of planar ones: a third finds no more than a fiftieth more of the walls
 _PAYS = 1.5  # m of wall: a tenth of a large building is many such pieces, and rooms that they close
@@ -149,10 +148,11 @@ def _by_share(columns: Columns, share: float) -> tuple[int, str]:
 
 
 def _by_scanner(columns: Columns, planar: bool) -> tuple[int, str]:
-    n, fewest = len(columns["covered_m2"]), _FEWEST[planar]
+    n = len(columns["covered_m2"])
+    fewest = min(_FEWEST[planar], n)
     k, said = _by_shares(columns, AUTO_SHARES[planar])
-    if k < min(fewest, n):
-        return min(fewest, n), f"{min(fewest, n)} of {n} scans: so few are not thinned further"
+    if k < fewest:
+        return fewest, f"{fewest} of {n} scans: so few are not thinned further"
     return k, said
 
 

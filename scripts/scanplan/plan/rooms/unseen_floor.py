@@ -90,7 +90,7 @@ def _without_unseen(
     for part in unseen:
         (hidden if is_hidden(part) else bare_floor).append(part)
     wide = [whole for part in hidden for whole in free_space.open_polygons(part, END_M)]
-    narrow_m2 = _total_area_m2(hidden) - _total_area_m2(wide)
+    narrow_m2 = shapely.area(hidden).sum() - shapely.area(wide).sum()
     taken = [*bare_floor, *_exceeding(wide, max_unseen * polygon.area - narrow_m2)]
     if not taken:
         return [polygon]
@@ -99,12 +99,8 @@ def _without_unseen(
     return bare_parts.take_visited(shapely.GeometryCollection(opened), way)
 
 
-def _total_area_m2(parts: Sequence[Polygon]) -> float:
-    return sum(part.area for part in parts)
-
-
 def _exceeding(parts: Sequence[Polygon], most_m2: float) -> list[Polygon]:
     """Return the largest parts, without which the others are no larger than an area together."""
     by_area = sorted(parts, key=lambda part: part.area)
-    together_m2 = np.cumsum([part.area for part in by_area])
+    together_m2 = np.cumsum(shapely.area(by_area))
     return by_area[np.searchsorted(together_m2, most_m2, side="right") :]
