@@ -95,6 +95,7 @@ environment: $(VENV)/.ready ## set up .venv from environment.lock (run, test and
 $(VENV)/.ready: environment.lock
 	@"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 	    { echo "scanplan needs Python 3.11 or newer; name one with: make PYTHON=/path/to/python3.11"; exit 1; }
+	@test ! -L $(VENV) || { echo "$(VENV) is a link, and what it leads to would be emptied; remove the link: rm $(VENV)"; exit 1; }
 	@echo "setting up $(VENV) from environment.lock (about 2 GB, once; some minutes in silence)"
 	@"$(PYTHON)" -m venv --clear $(VENV) || \
 	    { echo "this Python has no venv module; on Debian: apt-get install python3-venv"; exit 1; }

@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from shapely.geometry import MultiPolygon
 from threadpoolctl import threadpool_limits
 
 from scanplan.plan import messages, planning
@@ -16,7 +15,7 @@ from scanplan.rays import free_space, levels, ray_set
 from scanplan.selection import stopping
 from scanplan.stage import log, workers
 from scanplan.store import doubts, registered_scans, schemas, tables
-from scanplan.types import FilePath, FloatArray, Settings
+from scanplan.types import FilePath, Settings
 from scanplan.validation import contradictions
 
 
@@ -67,7 +66,10 @@ def assemble_plan(
     )
     find_seen = None
     if store.planar:
-        find_seen = workers.begin_in_thread(_find_seen_floor, store, sensors_m, threads=threads)
+        retained = store.scans(registered.scan_ids)
+        find_seen = workers.begin_in_thread(
+            free_space.find_seen_floor, retained, sensors_m, threads=threads
+        )
     # sums that a library shares out among cores differ in their last digits
     with threadpool_limits(1):
         plan = planning.make_plan(
@@ -108,13 +110,6 @@ def assemble_plan(
 def _read_rays(rays: ray_set.RaySet, min_opening_m: float) -> tuple[dict[str, str], str]:
     """Return `_find_heights`, and a warning where rays are too few to see openings."""
     return _find_heights(rays), messages.sparse_rays_warning(rays, min_opening_m)
-
-
-def _find_seen_floor(store: tables.ScanStore, sensors_m: Mapping[int, FloatArray]) -> MultiPolygon:
-    """Return the floor that planar scans saw, by the ids of which the sensor's places are known."""
-    scans = store.scans(np.array(list(sensors_m), np.int64))
-    rays = ray_set.gather_rays(scans, sensors_m, planar=True)
-    return free_space.union_on_grid(free_space.free_polygons(rays))
 
 
 def _find_heights(rays: ray_set.RaySet) -> dict[str, str]:

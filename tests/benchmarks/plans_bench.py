@@ -1,5 +1,6 @@
 """Plans of finished surveys against the truth: of chosen scans, of all, and a line detector's."""
 
+import functools
 import importlib.util
 import time
 from collections.abc import Mapping, Sequence
@@ -202,6 +203,11 @@ def _make_plan(found: Results, rows: IntArray, scan_ids: IntArray, settings: Set
     positions = dict(zip(scan_ids.tolist(), poses[rows, :3, 3], strict=True))
     rays = ray_set.gather_rays(found.store.scans(scan_ids), positions, planar=found.store.planar)
     used = np.isin(found.walls["scan_id"], scan_ids)
+    find_seen = None
+    if found.store.planar:
+        retained = found.store.scans(found.registered.scan_ids)
+        all_sensors_m = dict(zip(found.registered.scan_ids.tolist(), poses[:, :3, 3], strict=True))
+        find_seen = functools.partial(free_space.find_seen_floor, retained, all_sensors_m)
     plan = planning.make_plan(
         {column: values[used] for column, values in found.walls.items()},
         rays,
@@ -210,6 +216,7 @@ def _make_plan(found: Results, rows: IntArray, scan_ids: IntArray, settings: Set
         planning.make_plan_settings(**stage_settings.select_plan(settings)),
         poses[rows, :3, 2],
         found.registered.covariance[rows],
+        find_seen=find_seen,
     )
     return Plan(plan, rays.floor_z_m)
 

@@ -220,3 +220,18 @@ def test_a_room_whose_outline_is_not_closed_is_to_be_verified_unless_it_was_corr
         assert [(found["verify"][row], found["doubt"][row]) for row in rows] == [expected] * len(
             rows
         )
+
+
+@pytest.mark.parametrize("floor_z_m", [0.0, np.nan], ids=["rated", "no heights"])
+def test_a_room_is_to_be_verified_where_most_of_its_walls_are(floor_z_m):
+    """The second room is 3 m square: its wall in the east counts for a fourth, with those in the
+    south and north, which the first room shares, for three fourths.
+    """
+    sure = COEFFICIENTS | {"level": 0.0}
+    for doubtful, expected in (([1], ["", ""]), ([0, 1, 2], ["", confidence.OF_DOUBTFUL_WALLS])):
+        walls = PARTS["walls"] | {"verify": np.isin(PARTS["walls"]["wall"], doubtful)}
+        plan = floorplan.make_floorplan(PARTS | {"walls": walls}, floor_z_m, 2.5)
+        found = confidence.rate_elements(plan, validation(), sure)
+        is_room = found["table"] == "rooms"
+        assert found["doubt"][is_room].tolist() == expected
+        assert found["verify"][is_room].tolist() == [bool(doubt) for doubt in expected]

@@ -13,7 +13,7 @@ from helpers import floorplan_making
 from scanplan.exports import visit_geojson
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.rays.tolerances import STRAY_SHARE
-from scanplan.validation.confidence import NOT_CLOSED
+from scanplan.validation.confidence import NOT_CLOSED, OF_DOUBTFUL_WALLS
 from scanplan.visit import next_visit, questions, sight, standpoints
 from scanplan.visit.sensor_reach import SensorReach
 
@@ -135,9 +135,10 @@ def test_where_a_way_out_leads_is_asked_until_someone_stood_at_it(place, asked):
     assert [one.kind for one in found] == asked
 
 
-def test_of_an_outline_that_is_not_closed_only_what_is_unseen_is_asked():
+@pytest.mark.parametrize("doubt", [NOT_CLOSED, OF_DOUBTFUL_WALLS])
+def test_of_a_room_that_is_doubtful_by_what_bounds_it_only_that_is_asked(doubt):
     plan = room_plan(BENT, ENDS, doubtful_rooms=[0])
-    plan.rooms["doubt"][:] = NOT_CLOSED
+    plan.rooms["doubt"][:] = doubt
     assert set(visited(plan, start=(7, 1)).questions["kind"]) == {"unseen"}
 
 

@@ -213,10 +213,12 @@ def test_chains_and_rooms_measure_the_house():
         along = (line[1] - line[0]) / np.hypot(*(line[1] - line[0]))
         stated_m = float(dimension.word.text.removeprefix("~"))
         assert (ends[1] - ends[0]) @ along == pytest.approx(stated_m, abs=0.006)
-        # of the wall in the east one side was seen, the thickness of the others is known
+        # of the wall in the east one side was seen, the thickness of the others is known; that in
+        # the north of the small room is to be verified
         is_along_x = abs(along[0]) > abs(along[1])
-        ends_there = is_along_x and ends[:, 0].max() == pytest.approx(east_m, abs=0.01)
-        assert dimension.word.text.startswith("~") == ends_there
+        ends_in_east = is_along_x and ends[:, 0].max() == pytest.approx(east_m, abs=0.01)
+        ends_in_north = ends[:, 1].max() == pytest.approx(3) and ends[0, 0] > 4.1
+        assert dimension.word.text.startswith("~") == (ends_in_east or ends_in_north)
     # outside: 7.4 x 3.4 m; the window, 1.2 m wide, begins 1.2 m from the west; the entrance is 1 m
     assert {7.4, 3.4, 1.2, 1.0} <= set(measured)
     # inside: rooms of 4 x 3 and 3 x 3 m
@@ -228,13 +230,18 @@ def test_a_length_to_an_outline_that_was_not_seen_is_about_so_long():
     north = ((4.1, 3, 7.1, 3), -1, "unseen", np.nan, np.nan, 1, -1)
     east = ((7.1, 1.5, 7.1, 3), -1, "unseen", np.nan, np.nan, 1, -1)
 
-    def said(unseen):
-        sheet = composition.compose_sheet(plan(unseen=floorplan_making.openings(unseen)))
+    def said(unseen, verify=()):
+        walls = floorplan_making.walls()
+        walls["verify"] = np.isin(walls["wall"], verify)
+        drawn = plan(unseen=floorplan_making.openings(unseen), walls=walls)
+        sheet = composition.compose_sheet(drawn)
         room = floorplan_making.ROOMS[1].buffer(0.01)
         inside = [d for d in sheet.dimensions if room.covers(shapely.LineString(d.line_m))]
         return sorted(dimension.word.text for dimension in inside)
 
     assert said([]) == ["3.00", "3.00"]
+    # likewise the wall in its north is to be verified, or that in its east
+    assert said([], [2]) == said([], [1]) == ["3.00", "~3.00"]
     # its width is measured where it is known
     assert said([north, east]) == ["3.00", "~3.00"]
     whole = ((7.1, 0, 7.1, 3), *east[1:])
@@ -242,7 +249,10 @@ def test_a_length_to_an_outline_that_was_not_seen_is_about_so_long():
 
 
 def test_a_chain_that_ends_at_an_outline_that_was_not_seen_is_about_so_long():
-    west = ((-0.2, -0.2, -0.2, 3.2), -1, "unseen", np.nan, np.nan, 0, -1)
+    """The west side of 3.4 m was not seen, or from 0.6 or 2 m above its corner on."""
+    west, above_corner, upper_half = (
+        ((-0.2, y, -0.2, 3.2), -1, "unseen", np.nan, np.nan, 0, -1) for y in (-0.2, 0.4, 1.8)
+    )
     below = ((-0.2, -0.2, 7.2, -0.2), *west[1:])
 
     def count(unseen):
@@ -251,8 +261,28 @@ def test_a_chain_that_ends_at_an_outline_that_was_not_seen_is_about_so_long():
         first = [d for d in south if d.ends_m[:, 0].min() == pytest.approx(-0.2, abs=0.01)]
         return {d.word.text for d in first if d.line_m[0, 1] < -0.2}
 
-    assert count([]) == count([below]) == {"1.20", "~7.40"}
-    assert count([west]) == {"~1.20", "~7.40"}
+    assert count([]) == count([below]) == count([upper_half]) == {"1.20", "~7.40"}
+    assert count([west]) == count([above_corner]) == {"~1.20", "~7.40"}
+
+
+def test_a_step_of_a_facade_that_was_not_seen_is_about_where_it_is():
+    """The second room is a metre shallower; of the first only the side beside it was not seen."""
+    rooms = [shapely.box(0, 0, 4, 3), shapely.box(4, 1, 7, 3)]
+    step = ((4, 0, 4, 1), -1, "unseen", np.nan, np.nan, 0, -1)
+
+    def south(unseen):
+        sheet = composition.compose_sheet(
+            plan(
+                walls=floorplan_making.walls([]),
+                openings=floorplan_making.openings([]),
+                unseen=floorplan_making.openings(unseen),
+                rooms=floorplan_making.rooms(rooms),
+            )
+        )
+        return sorted(d.word.text for d in sheet.dimensions if d.line_m[:, 1].max() < -0.2)
+
+    assert south([]) == ["3.00", "4.00", "7.00"]
+    assert south([step]) == ["7.00", "~3.00", "~4.00"]
 
 
 def test_walls_that_stand_apart_from_all_rooms_are_not_measured_with_the_building():
@@ -347,6 +377,16 @@ def test_the_sides_of_a_wall_that_a_person_kept_are_in_no_doubt():
     is_judged = walls["verify"].copy()
     assert len(find_doubtful_faces(plan(faces=faces, walls=walls))) == 0
     np.testing.assert_array_equal(walls["verify"], is_judged)
+
+
+def test_a_passage_in_no_wall_is_drawn_as_what_is_inferred():
+    through = ((4.05, 1, 4.05, 2), -1, "passage", np.nan, np.nan, 0, 1)
+    in_wall = (*through[:1], 4, *through[2:])
+    for opening, kind in ((through, "parting"), (in_wall, "passage")):
+        sheet = composition.compose_sheet(plan(openings=floorplan_making.openings([opening])))
+        (symbol,) = sheet.symbols
+        assert (symbol.kind, symbol.element) == (kind, "passage-0")
+        assert any(mark.element == f"legend-{kind}" for mark in sheet.paper_marks)
 
 
 def test_what_was_not_seen_of_a_room_is_dotted():

@@ -328,12 +328,18 @@ class FloorPlan:
 
     @cached_property
     def enclosed_ground(self) -> Array:
-        """Ground that rooms and walls enclose on all sides, of no room, likewise unseen, (k,)."""
+        """Ground of no room, likewise unseen, (k,).
+
+        What rooms and walls enclose on all sides, and what is between a room and a wall near it.
+        """
         built = shapely.union_all([*self.areas, *self.bodies], grid_size=_GRID_M)
-        parts = shapely.get_parts(close_gaps(built))
-        holes = [shapely.Polygon(ring) for part in parts for ring in part.interiors]
-        grounds = shapely.difference(np.array(holes, object), built, grid_size=_GRID_M)
-        return self._leave_unseen(grounds)
+        closed = close_gaps(built)
+        holes = [shapely.Polygon(r) for part in shapely.get_parts(closed) for r in part.interiors]
+        enclosed = shapely.difference(np.array(holes, object), built, grid_size=_GRID_M)
+        gaps = shapely.get_parts(shapely.difference(closed, built, grid_size=_GRID_M))
+        rooms = shapely.union_all(self.areas)
+        beside = gaps[shapely.dwithin(gaps, rooms, _GRID_M)]
+        return self._leave_unseen(np.concatenate([enclosed, beside]))
 
     def _leave_unseen(self, grounds: Array) -> Array:
         """Return what no chosen scan saw of grounds, nor furniture on it, (k,) Polygons."""

@@ -1,6 +1,6 @@
 """Floor that rays went over: what each scan sees of it, and all of them together."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 import shapely
@@ -8,6 +8,7 @@ from shapely.geometry import MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry.tolerances import SHORTEST_M
+from scanplan.rays import ray_set
 from scanplan.rays.beam_spread import column_spacing_rad
 from scanplan.rays.ray_set import RaySet
 from scanplan.types import FloatArray
@@ -44,6 +45,22 @@ def free_polygons(rays: RaySet) -> list[MultiPolygon]:
         for sensor_m, way in zip(rays.sensors_m, rays.ways(), strict=True)
     )
     return [_make_star(outline_m) for outline_m in outlines_m]
+
+
+def find_seen_floor(
+    scans: Iterable[tuple[int, FloatArray]], sensors_m: Mapping[int, FloatArray]
+) -> MultiPolygon:
+    """Return the floor that planar scans saw together.
+
+    Parameters
+    ----------
+    scans : iterable of (int, (n, 3) float64)
+        Scan ids and points, map frame.
+    sensors_m : dict of int to (3,) float64
+        Where the sensor was, by scan id, map frame.
+    """
+    rays = ray_set.gather_rays(scans, sensors_m, planar=True)
+    return union_on_grid(free_polygons(rays))
 
 
 def _make_star(outline_m: FloatArray) -> MultiPolygon:

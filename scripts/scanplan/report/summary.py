@@ -9,7 +9,6 @@ from scanplan.errors import MOST_NAMED
 from scanplan.plan import floorplan
 from scanplan.report import page_tables, wording
 from scanplan.report.facts import SurveyFacts
-from scanplan.types import FloatArray
 from scanplan.validation.doubts import list_doubts, list_unrated
 
 
@@ -32,7 +31,7 @@ def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
         for kind, noun in floorplan.OPENINGS.items()
     ]
     found = (
-        f"{_count(len(rooms['room']), 'room')}, {_area(rooms['area_m2'])} of floor;"
+        f"{_count(len(rooms['room']), 'room')}, {_state_floor(plan)};"
         f" {', '.join(ways)}; {_count(len(walls['wall']), 'wall')},"
         f" {page_tables.wall_lengths_m(plan).sum():,.1f} m"
     )
@@ -71,5 +70,9 @@ def _count(n: int, noun: str) -> str:
     return f"{n:,} {noun}{'' if n == 1 else 's'}"
 
 
-def _area(area_m2: FloatArray) -> str:
-    return f"{area_m2.sum():,.1f} m²"
+def _state_floor(plan: floorplan.FloorPlan) -> str:
+    """Return in a phrase how much floor rooms have: about so much where outlines are not closed."""
+    areas_m2 = plan.rooms["area_m2"]
+    open_m2 = areas_m2[~plan.rooms["closed"].astype(bool)].sum()
+    whole = f"{areas_m2.sum():,.1f} m² of floor"
+    return f"about {whole} ({open_m2:,.1f} m² in rooms that are not closed)" if open_m2 else whole

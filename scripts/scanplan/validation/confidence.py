@@ -9,8 +9,10 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+import shapely
 
 from scanplan.plan.floorplan import NUMBERS, FloorPlan
+from scanplan.plan.tolerances import END_M
 from scanplan.types import Array, BoolArray, Columns, FloatArray
 from scanplan.validation.confidence_coefficients import COEFFICIENTS
 from scanplan.validation.element_features import (
@@ -22,6 +24,8 @@ from scanplan.validation.element_features import (
 
 NOT_CLOSED = "its outline is not closed: the area is a guess"
 """Why a room is to be verified that is likely enough."""
+OF_DOUBTFUL_WALLS = "most of the walls around it are to be verified"
+"""Likewise of one that is closed."""
 
 
 def rate_elements(
@@ -43,8 +47,10 @@ def rate_elements(
     level = coefficients["level"]
     has_heights = np.isfinite(plan.floor_z_m)
     held = _find_held(plan)
-    parts = []
-    for table, number in sorted(NUMBERS.items()):
+    parts: list[Columns] = []
+    # rooms are judged by their walls
+    for table in ("faces", "openings", "walls", "rooms"):
+        number = NUMBERS[table]
         columns, features, model = getattr(plan, table), described[table], coefficients[table]
         p_true, shares = weigh_features(features, model)
         if not has_heights:
@@ -67,6 +73,9 @@ def rate_elements(
             is_open = ~columns["closed"] & ~verify
             doubt[is_open] = NOT_CLOSED
             verify = verify | is_open
+            is_weak = _have_doubtful_walls(plan, parts[-1]["verify"]) & ~verify
+            doubt[is_weak] = OF_DOUBTFUL_WALLS
+            verify = verify | is_weak
         if "corrected" in columns:
             # a person has looked at it: nothing is left to verify, and rays do not rate it
             is_by_hand = columns["corrected"] != ""
@@ -82,7 +91,20 @@ def rate_elements(
                 "needs_person": needs_person,
             }
         )
+    parts.sort(key=lambda part: part["table"][:1].tolist())
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+
+def _have_doubtful_walls(plan: FloorPlan, verify: BoolArray) -> BoolArray:
+    """Return around which rooms (r,) most length of walls is of those (n,) to be verified."""
+    outlines = shapely.boundary(plan.areas)
+    doubtful, walls = (
+        shapely.union_all(bodies).buffer(END_M) for bodies in (plan.bodies[verify], plan.bodies)
+    )
+    along_doubtful_m, along_m = (
+        shapely.length(shapely.intersection(outlines, ground)) for ground in (doubtful, walls)
+    )
+    return 2 * along_doubtful_m > along_m
 
 
 def weigh_features(

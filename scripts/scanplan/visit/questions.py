@@ -11,7 +11,7 @@ from scanplan.plan.floorplan import WAYS, FloorPlan, centrelines_m
 from scanplan.plan.tolerances import END_M
 from scanplan.rays.tolerances import STRETCH_M
 from scanplan.types import FloatArray, IntArray
-from scanplan.validation.confidence import NOT_CLOSED
+from scanplan.validation.confidence import NOT_CLOSED, OF_DOUBTFUL_WALLS
 
 UNSEEN, WAY = "unseen", "way"
 """Kinds of questions besides opening, wall and room: a span of an outline, and where a way leads.
@@ -177,8 +177,8 @@ def _ask_walls(plan: FloorPlan) -> Iterator[Question]:
 
 
 def _ask_rooms(plan: FloorPlan) -> Iterator[Question]:
-    # what is not seen of an outline is asked for stretch by stretch
-    is_asked = plan.rooms["verify"] & (plan.rooms["doubt"] != NOT_CLOSED)
+    # what is not seen of an outline, and its walls, are asked for stretch by stretch
+    is_asked = plan.rooms["verify"] & ~np.isin(plan.rooms["doubt"], (NOT_CLOSED, OF_DOUBTFUL_WALLS))
     for row in np.flatnonzero(is_asked):
         rings_m = [shapely.get_coordinates(r) for r in shapely.get_rings(plan.areas[row])]
         lines_m = np.concatenate([np.stack([c[:-1], c[1:]], axis=1) for c in rings_m])

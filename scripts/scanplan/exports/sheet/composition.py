@@ -98,14 +98,13 @@ def compose_sheet(
     space = _open_space(page, marks, symbols)
     stamps = words.stamp_rooms(page, plan, space)
     beside += title.draw_room_table(stamps, table_slots)
-    unseen_m = floorplan.centrelines_m(plan.unseen)
-    not_seen = page.place_shape(shapely.union_all(floorplan.line_shapes(unseen_m)))
-    drawn = _dimension(page, plan, marks, symbols, not_seen, space)
+    uncertain = page.place_shape(_find_uncertain(plan))
+    drawn = _dimension(page, plan, marks, symbols, uncertain, space)
     is_stated = _find_stated(symbols, drawn)
     rooms = [
         dimension
         for area in plan.areas
-        for dimension in dimensions.dimension_room(page, page.place_shape(area), not_seen, space)
+        for dimension in dimensions.dimension_room(page, page.place_shape(area), uncertain, space)
     ]
     labels = [
         *words.label_openings(page, symbols, is_stated, space),
@@ -132,6 +131,8 @@ def _list_legend(plan: FloorPlan, marks: list[Mark], symbols: list[Symbol]) -> l
     tables = (plan.walls, plan.openings, plan.rooms)
     if any(content.is_corrected(columns).any() for columns in tables):
         kinds.add("corrected")
+    if not (plan.assumed.is_empty and _find_uncertain(plan).is_empty):
+        kinds.add("dimension")
     return title.list_legend(marks, kinds)
 
 
@@ -187,7 +188,7 @@ def _dimension(
     plan: FloorPlan,
     marks: list[Mark],
     symbols: list[Symbol],
-    not_seen: BaseGeometry,
+    uncertain: BaseGeometry,
     space: LabelSpace,
 ) -> list[Dimension]:
     """Return the chains along the facades of the building, off all that is drawn.
@@ -215,7 +216,7 @@ def _dimension(
     ]
     reach = shapely.union_all([drawn, *swings])
     return list(
-        dimensions.dimension_facades(page, outline, reach, known, not_seen, openings_m, space)
+        dimensions.dimension_facades(page, outline, reach, known, uncertain, openings_m, space)
     )
 
 
@@ -230,6 +231,13 @@ def _leave_loose_walls(built: BaseGeometry, plan: FloorPlan) -> BaseGeometry:
     building = shapely.union_all(parts[shapely.dwithin(parts, rooms, END_M)])
     is_most = 2 * shapely.intersection(bodies, building).area > bodies.area
     return building if is_most else built
+
+
+def _find_uncertain(plan: FloorPlan) -> BaseGeometry:
+    """Return the spans of rooms' outlines that were not seen, and walls that are to be verified."""
+    unseen_m = floorplan.centrelines_m(plan.unseen)
+    doubtful = plan.bodies[content.is_doubtful(plan.walls)]
+    return shapely.union_all([*floorplan.line_shapes(unseen_m), *doubtful])
 
 
 def _find_known(plan: FloorPlan, building: BaseGeometry) -> BaseGeometry:

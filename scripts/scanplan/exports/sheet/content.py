@@ -135,7 +135,10 @@ def draw_furniture(plan: FloorPlan) -> Iterator[Mark]:
 
 
 def list_symbols(plan: FloorPlan) -> list[Symbol]:
-    """Return the symbols of doors, windows and passages, in the middle of their walls."""
+    """Return the symbols of doors, windows and passages, in the middle of their walls.
+
+    A passage in no wall is inferred: it parts two rooms, and nothing of it stands there.
+    """
     left_m, right_m = (np.append(side_m, 0.0) for side_m in plan.sides_m)
     doubtful = is_doubtful(plan.openings)
     symbols: list[Symbol] = []
@@ -153,7 +156,7 @@ def list_symbols(plan: FloorPlan) -> list[Symbol]:
         said += [str(facts[name]) for name in ("doubt", "corrected") if name in facts]
         symbols.append(
             Symbol(
-                kind,
+                "parting" if kind == "passage" and host < 0 else kind,
                 ends_m + shift_m * left,
                 thick_m,
                 f"{kind}-{number}",

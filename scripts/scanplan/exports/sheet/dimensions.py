@@ -14,7 +14,7 @@ from scanplan.exports.sheet.marks import Dimension, Word
 from scanplan.exports.sheet.paper import Page
 from scanplan.exports.sheet.styles import Letters, Paper
 from scanplan.plan.tolerances import END_M
-from scanplan.types import FloatArray
+from scanplan.types import Array, FloatArray
 
 _READ_ALONG = np.array([1.0, 0.1])  # an almost upright line is read from the right
 _SQUARE = 0.1  # of a facade's direction: by less it runs along the sheet's
@@ -34,13 +34,13 @@ def dimension_facades(
     outline: BaseGeometry,
     reach: BaseGeometry,
     known: BaseGeometry,
-    not_seen: BaseGeometry,
+    uncertain: BaseGeometry,
     openings_m: FloatArray,
     space: LabelSpace,
 ) -> Iterator[Dimension]:
     """Yield chains along all four sides of a plan, and its whole width and depth.
 
-    A length that ends at a wall whose thickness is assumed, or at a side that was not seen, is
+    A length that ends at a wall whose thickness is assumed, or at a side that is uncertain, is
     about so long (`~`).
 
     Parameters
@@ -52,8 +52,8 @@ def dimension_facades(
         All that chains keep off: outline and symbols, on paper.
     known : shapely geometry
         Of the outline: rooms, and walls of which both sides were seen, on paper.
-    not_seen : shapely geometry
-        Spans of rooms' outlines that were not seen, on paper.
+    uncertain : shapely geometry
+        Spans of rooms' outlines that were not seen, and walls that are to be verified, on paper.
     openings_m : (n, 2, 2) float
         Map frame.
     space : LabelSpace
@@ -62,16 +62,18 @@ def dimension_facades(
     for quarter in range(4):
         # each side in turn is brought below
         turn = rotation(-90 * quarter)
-        turned, turned_known, turned_not_seen, turned_reach = (
+        turned, turned_known, turned_uncertain, turned_reach = (
             shapely.transform(shape, lambda xy, turn=turn: xy @ turn.T)
-            for shape in (outline, known, not_seen, reach)
+            for shape in (outline, known, uncertain, reach)
         )
         x0, y0, x1, _ = turned.bounds
         gap = END_M * page.mm_per_m
         facades = _find_facades(turned, gap)
         stops = _chain_stops(facades, openings @ turn.T, gap, (x0, x1))
         about = _find_assumed_ends(turned, turned_known, gap)
-        about |= {stop[0] for stop in stops if _is_beside(stop, turned_not_seen, gap)}
+        upright = _find_upright_edges(turned)
+        uncertain_strip = turned_uncertain.buffer(gap)
+        about |= {stop[0] for stop in stops if _is_beside(stop, upright, uncertain_strip, gap)}
         level = turned_reach.bounds[1]
         if len(stops) > 2:
             level -= Paper.CHAIN
@@ -87,11 +89,28 @@ def _find_assumed_ends(outline: BaseGeometry, known: BaseGeometry, gap: float) -
     return frozenset(x for x, known_x in ends if not abs(x - known_x) < gap / 10)
 
 
-def _is_beside(stop: tuple[float, float], not_seen: BaseGeometry, gap: float) -> bool:
-    """Return whether the side that goes up from a stop (x, y) runs along what was not seen."""
+def _find_upright_edges(outline: BaseGeometry) -> Array:
+    """Return the edges of an outline that are upright, as LineStrings."""
+    rings = shapely.get_exterior_ring(shapely.get_parts(outline))
+    corners = [shapely.get_coordinates(ring) for ring in rings]
+    edges = np.array([edge for ring in corners for edge in itertools.pairwise(ring)])
+    edges = edges.reshape(-1, 2, 2)
+    width, height = np.abs(edges[:, 1] - edges[:, 0]).T
+    return np.asarray(shapely.linestrings(edges[width <= _SQUARE * height]), object)
+
+
+def _is_beside(
+    stop: tuple[float, float], upright: Array, uncertain_strip: BaseGeometry, gap: float
+) -> bool:
+    """Return whether most of the side that a stop (x, y) is an end of is uncertain."""
     x, y = stop
-    side = shapely.LineString([(x, y), (x, y + 4 * gap)])
-    return bool(shapely.intersection(side, not_seen.buffer(gap)).length > side.length / 2)
+    west, _, east, _ = shapely.bounds(upright).T
+    at_x = shapely.union_all(upright[(west - gap <= x) & (x <= east + gap)])
+    sides = shapely.get_parts(at_x.buffer(gap))
+    side = shapely.intersection(
+        at_x, shapely.union_all(sides[shapely.dwithin(sides, shapely.Point(x, y), gap)])
+    )
+    return bool(shapely.intersection(side, uncertain_strip).length > side.length / 2)
 
 
 def _find_facades(outline: BaseGeometry, gap: float) -> list[_Facade]:
@@ -234,26 +253,26 @@ def to_plan_word(page: Page, word: Word) -> Word:
 
 
 def dimension_room(
-    page: Page, room: BaseGeometry, not_seen: BaseGeometry, space: LabelSpace
+    page: Page, room: BaseGeometry, uncertain: BaseGeometry, space: LabelSpace
 ) -> Iterator[Dimension]:
     """Yield a room's width and depth, where its sides are square to them.
 
     Each is measured where the room is as wide a little beside it, too; the widest such place is
-    the best, where both sides were seen, and no words or doors are in the way.
+    the best, where both sides are certain, and no words or doors are in the way.
 
     Parameters
     ----------
     page : Page
-    room, not_seen : shapely geometry
-        Its outline, and the spans of all rooms' outlines that were not seen, on paper: a length
-        that ends there is about so long (`~`).
+    room, uncertain : shapely geometry
+        Its outline, and what `dimension_facades` takes for uncertain, on paper: a length that ends
+        there is about so long (`~`).
     space : LabelSpace
     """
     for turn_deg in (0, -90):
         turn = rotation(turn_deg)
-        turned, turned_not_seen = (
+        turned, turned_uncertain = (
             shapely.transform(shape, lambda xy, turn=turn: xy @ turn.T)
-            for shape in (room, not_seen)
+            for shape in (room, uncertain)
         )
         gap = END_M * page.mm_per_m
         _, y0, _, y1 = turned.bounds
@@ -263,7 +282,7 @@ def dimension_room(
             if chord is None:
                 continue
             length_mm = float(chord[1, 0] - chord[0, 0])
-            is_about = bool(shapely.dwithin(shapely.points(chord), turned_not_seen, gap).any())
+            is_about = bool(shapely.dwithin(shapely.points(chord), turned_uncertain, gap).any())
             words = _state_length(page, length_mm, is_about=is_about)
             if length_mm < measure_width_mm(words, Letters.SMALL) + Paper.LEAST:
                 continue

@@ -31,6 +31,7 @@ BLOCKS = {
         np.array([[0, 0, 0], [1, 0, 0]]),
     ],
     "PASSAGE": _SIDES,
+    "PARTING": [np.array([[0, 0, 0], [1, 0, 0]])],
     "GLASS": [np.array([[0, y, 0], [1, y, 0]]) for y in (-0.1, 0.1)],
     "GAP": [*_SIDES, np.array([[0, -0.5, 0], [1, 0.5, 0]])],
 }

@@ -152,7 +152,7 @@ def draw_legend(kinds: Sequence[str], slots: Sequence[Slot]) -> Iterator[Mark | 
     yield from _heads(slots, ["Legend"], [0.0])
     for kind, x, y in rows:
         low, high = y - 0.3 * Paper.ROW, y + 0.3 * Paper.ROW
-        if kind in OPENINGS:
+        if kind in (*OPENINGS, "parting"):
             paths, closed = _sample_symbol(kind, x + Paper.SAMPLE / 2, y), False
         elif STYLES[kind].fill != "none" or kind == "verify":
             paths, closed = [_box(x + Paper.GAP, low, x + Paper.SAMPLE, high)], True

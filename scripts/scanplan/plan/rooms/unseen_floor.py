@@ -35,7 +35,8 @@ def leave_out_unseen(
     An unseen part may be hidden if leaving it out would bare more of the outline, in metres, than
     the part has square metres for each metre of `max_depth_m`, and bare outline of its own. What is
     not at a wall is no larger than furniture, too. Of what may be hidden the largest parts are left
-    out until the rest is `max_unseen` of the room. Shadows that are narrow stay.
+    out until the rest is `max_unseen` of what else the room is. Shadows that are narrow stay,
+    unless they alone are more.
 
     Parameters
     ----------
@@ -89,9 +90,12 @@ def _without_unseen(
     hidden, bare_floor = [], []
     for part in unseen:
         (hidden if is_hidden(part) else bare_floor).append(part)
+    most_m2 = max_unseen * (polygon.area - shapely.area(bare_floor).sum())
     wide = [whole for part in hidden for whole in free_space.open_polygons(part, END_M)]
     narrow_m2 = shapely.area(hidden).sum() - shapely.area(wide).sum()
-    taken = [*bare_floor, *_exceeding(wide, max_unseen * polygon.area - narrow_m2)]
+    # edges that rays graze are ragged: where that is much, the outline follows them
+    is_ragged = narrow_m2 > most_m2
+    taken = [*bare_floor, *(hidden if is_ragged else _exceeding(wide, most_m2 - narrow_m2))]
     if not taken:
         return [polygon]
     rest = free_space.difference_on_grid(polygon, free_space.union_on_grid(taken))
