@@ -113,7 +113,11 @@ def test_a_leaf_that_is_in_one_line_with_a_cupboard_beyond_its_door_is_taken_off
 def test_what_a_leaf_was_seen_in_one_line_with_stays_a_wall():
     walls = [south(), single(2.0, -0.6, 2.0, 0.9)]
     left, _, (leaf,) = fronts.drop_fronts(
-        *(walls, box(0, -2, 5, 4), lambda faces: [single(*np.ravel(f.ends)) for f in faces]),
+        *(
+            walls,
+            *2 * (box(0, -2, 5, 4),),
+            lambda faces: [single(*np.ravel(f.ends)) for f in faces],
+        ),
         *(lambda _: 0.1,),
         **MOST,
     )
@@ -166,7 +170,7 @@ def test_both_sides_of_a_leaf_are_found_and_taken_off_with_what_was_seen_of_it_a
         return [wall for wall in walls if any(face in faces for face in wall.members)]
 
     left, grounds, found = fronts.drop_fronts(
-        *(walls, box(0, 0, 5, 4), assemble, lambda _: 0.1), **MOST
+        *(walls, *2 * (box(0, 0, 5, 4),), assemble, lambda _: 0.1), **MOST
     )
     assert left == walls[:1] and len(found) == len(grounds) == 2
     assert {id(leaf.face) for leaf in found} == {id(side.left[0]) for side in sides}

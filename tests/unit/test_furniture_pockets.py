@@ -254,7 +254,7 @@ def test_walls_are_left_without_blocks_of_two_sides():
         return [wall for wall in walls if all(face in faces for face in wall.members)]
 
     left, (ground,), _ = fronts.drop_fronts(
-        *(walls, floor, assemble, usual_thickness_m),
+        *(walls, floor, floor, assemble, usual_thickness_m),
         **MOST,
     )
     assert left == walls[:-1] and ground.covers(box(1.5, 2, 3.5, 2.5))
@@ -276,17 +276,20 @@ def test_a_surface_of_the_next_room_is_no_front():
     assert all(beyond.left[0] is not face for pocket in found for face in pocket.fronts)
 
 
-def test_walls_are_left_without_the_fronts_and_their_ground_is_told():
+@pytest.mark.parametrize(("seen_m", "is_front"), [(0.0, True), (0.2, True), (0.3, False)])
+def test_walls_are_left_without_fronts_unless_other_scans_saw_most_behind_them(seen_m, is_front):
     walls, floor = room_with_cupboard(2.0, 3.5, 0.5)
+    seen = floor.union(box(2.0, 3.5, 3.5, 3.5 + seen_m))
 
     def assemble(faces):
         return [wall for wall in walls if any(face in faces for face in wall.members)]
 
     left, grounds, leaves = fronts.drop_fronts(
-        *(walls, floor, assemble, lambda _: 0.1),
+        *(walls, floor, seen, assemble, lambda _: 0.1),
         **MOST,
     )
-    assert left == walls[:4] and len(grounds) == 1 and leaves == []
+    assert left == (walls[:4] if is_front else walls)
+    assert len(grounds) == is_front and leaves == []
 
 
 @pytest.mark.parametrize(

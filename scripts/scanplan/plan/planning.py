@@ -370,7 +370,7 @@ class _Survey:
         if not self.rays.planar:
             return walls, [], []
         walls, furnished, leaves = fronts.drop_fronts(
-            *(walls, self.floor, assemble, usual_thickness_m),
+            *(walls, self.floor, self.seen, assemble, usual_thickness_m),
             max_door_m=self.settings.openings.max_door_m,
             max_thickness_m=self.settings.pairs.max_thickness_m,
             max_depth_m=self.settings.furniture.furniture_depth_m,

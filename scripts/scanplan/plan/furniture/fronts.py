@@ -14,6 +14,7 @@ off before, and then short surfaces that stand free and oblique.
 
 from collections.abc import Callable, Sequence
 
+import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.plan.faces.intervals import FaceInterval
@@ -29,6 +30,7 @@ from scanplan.rays import free_space
 def drop_fronts(
     walls: list[PlanWall],
     floor: BaseGeometry,
+    seen: BaseGeometry,
     assemble: Callable[[Sequence[FaceInterval]], list[PlanWall]],
     measure_thickness_m: Callable[[Sequence[PlanWall]], float],
     *,
@@ -44,8 +46,9 @@ def drop_fronts(
     Parameters
     ----------
     walls : list of plan_wall.PlanWall
-    floor : shapely geometry
-        That was seen free.
+    floor, seen : shapely geometry
+        That was seen free, by the scans that show the walls, and by any. What others saw of a
+        pocket may be a sliver through a door: it is none if they saw most of it.
     assemble : callable
         Makes walls of faces.
     measure_thickness_m : callable
@@ -72,8 +75,19 @@ def drop_fronts(
 
     def find_more() -> list[Pocket]:
         free = free_space.union_on_grid([floor, *grounds])
-        blocks = find_blocks(walls, free, measure_thickness_m, **most)
-        return blocks or find_pockets(walls, free, unpaired_m=measure_thickness_m(walls), **most)
+        blocks = find_hidden(find_blocks(walls, free, measure_thickness_m, **most))
+        return blocks or find_hidden(
+            find_pockets(walls, free, unpaired_m=measure_thickness_m(walls), **most)
+        )
+
+    def find_hidden(pockets: Sequence[Pocket]) -> list[Pocket]:
+        grounds = [pocket.ground for pocket in pockets]
+        seen_m2 = shapely.area(shapely.intersection(grounds, seen))
+        return [
+            pocket
+            for pocket, of_it_m2 in zip(pockets, seen_m2, strict=True)
+            if 2 * of_it_m2 <= pocket.ground.area
+        ]
 
     while pockets := find_more():
         grounds += [pocket.ground for pocket in pockets]
