@@ -90,9 +90,9 @@ TWO_ROOMS = shapely.union_all([box(0, 0, 4, 4), box(4.1, 0, 8, 4), box(3.9, 1.0,
 TRACK_M = np.array([[2.0, 2.0], [6.0, 2.0]])
 
 
-def part(walls, *, planar=True, floor=TWO_ROOMS):
+def part(walls, *, planar=True, floor=TWO_ROOMS, hidden=None):
     return room_bounds.find_partings(
-        walls, floor, TRACK_M, max_width_m=1.5, planar=planar, **LIMITS
+        walls, floor, TRACK_M, max_width_m=1.5, planar=planar, hidden=hidden, **LIMITS
     )
 
 
@@ -139,7 +139,7 @@ def test_floor_that_begins_beyond_the_end_of_a_wall_leaves_that_end_free():
     """As in the test of walls across, but for 0.2 m beside the end that nobody saw."""
     walls = [wall(4.05, -2, 4.05, 1), wall(0, 3.4, 8, 3.4)]
     floor = TWO_ROOMS.difference(box(3.9, 0.9, 4.2, 1.2))
-    assert len(part(walls, floor=floor)) == 1
+    assert len(part(walls, floor=floor, hidden=box(3, 2, 5, 3.4))) == 1
 
 
 def test_a_hairline_shadow_does_not_end_a_gap():
@@ -216,9 +216,13 @@ def test_a_corner_that_stands_into_a_room_parts_nothing():
     ids=["long", "shorter_than_the_gap", "short_beside_a_door", "long_beside_a_door"],
 )
 def test_a_wall_that_ends_free_parts_rooms_up_to_the_wall_across(first_m, openings, n_partings):
-    """The gap is 2.5 m wide, from the wall's end at y = 1 to the wall across."""
+    """The gap is 2.5 m wide, from the wall's end at y = 1 to the wall across; of it 1 m is seen.
+
+    All of it would be one room.
+    """
     walls = [wall(4.05, first_m, 4.05, 1, openings), wall(8, 3.5, 0, 3.5)]
-    found = part(walls)
+    assert part(walls) == part(walls, hidden=box(3, 2.6, 5, 3.5)) == []
+    found = part(walls, hidden=box(3, 2, 5, 3.5))
     assert len(found) == n_partings
     for parting in found:
         (way,) = parting.openings
@@ -229,14 +233,17 @@ HALL = box(0, 0, 10, 8)
 
 
 def hall_partings(spur, others=(), across=((10, 8, 0, 8),), thickness_m=0.1):
-    """Partings of a hall driven through from west to east, with a wall that stands into it."""
+    """Partings of a hall driven through from west to east, with a wall that stands into it.
+
+    Furniture in the north hides the last metre of the wall's line.
+    """
     x_m, high_m = spur
     end = PlanWall(line_through(x_m, -0.5, x_m, high_m), 0.0, high_m + 0.5, thickness_m, [], [])
     around = [*(wall(*ends) for ends in across), *others]
     track_m = np.array([[2.0, 4.0], [5.0, 7.5], [8.0, 4.0]])
     return room_bounds.find_partings(
         *([end, *around], HALL, track_m),
-        **{"max_width_m": 1.5, **LIMITS, "planar": True},
+        **{"max_width_m": 1.5, **LIMITS, "planar": True, "hidden": box(4, 7, 6, 8)},
     )
 
 

@@ -138,7 +138,9 @@ def find_partings(
     whole = free_space.close_shadows(floor, END_M) if planar else floor
     free = free_space.difference_on_grid(whole, solid)
     partings = list(doors)
-    gaps_m = _find_line_gaps(bounds, tree, free, max_width_m, unpaired_m) if planar else []
+    gaps_m = []
+    if planar:
+        gaps_m = _find_line_gaps(bounds, tree, free, max_width_m, unpaired_m, hidden)
     # shorter ones may be sides of what stands in a room
     is_long = [planar and wall.length_m > 2 * max_width_m for wall in bounds]
     walls = shapely.union_all(list(itertools.compress(strips, is_long)))
@@ -150,10 +152,7 @@ def find_partings(
             min_area_m2=min_area_m2,
             cell_m=CELL_M,
         ):
-            across = LineString(ends_m)
-            is_hidden = (
-                hidden is not None and across.intersection(hidden).length > across.length / 2
-            )
+            is_hidden = 2 * _seen_m(ends_m, hidden) < math.hypot(*(ends_m[1] - ends_m[0]))
             kind = wall_ground.UNSEEN if is_hidden else GAP
             partings.append(_make_parting(_snap(ends_m, bounds), kind))
     return partings
@@ -188,13 +187,14 @@ def _find_line_gaps(
     free: BaseGeometry,
     max_door_m: float,
     unpaired_m: float,
+    hidden: BaseGeometry | None,
 ) -> list[FloatArray]:
     """Return lines (2, 2) over free floor, from where a wall ends to where one goes on in its line.
 
     They are no wider than the wall is long; or, between two walls seen from both sides, than two
     doors. Also to a wall across, where nothing meets the wall's end, the gap is no wider than two
     doors, and the wall as long from there to its next opening: beside a door furniture hides what
-    goes on.
+    goes on, so that no more than a door of it was seen free.
     What meets another wall at its end is a corner that stands into one room. `tree` is that of the
     walls' strips.
     """
@@ -215,7 +215,8 @@ def _find_line_gaps(
             is_free = len(tree.query(end, predicate="dwithin", distance=around_m)) == 1
             most_m = min(2 * max_door_m, _solid_m(wall, end_m))
             is_crossed = any(intersections.run_across(wall.line, other.line) for other in beyond)
-            ends_at_wall = is_free and is_crossed and width_m <= most_m
+            is_narrow = width_m <= most_m and _seen_m(gap_m, hidden) <= max_door_m
+            ends_at_wall = is_free and is_crossed and is_narrow
             if goes_on or ends_at_wall:
                 gaps_m.append(gap_m)
     return gaps_m
@@ -239,6 +240,12 @@ def _find_free_line(
     ends_m = shapely.get_coordinates(first)[[0, -1]]
     off_m = np.hypot(*(ends_m - ray_m[0]).T)
     return ends_m[np.argsort(off_m, kind="stable")]
+
+
+def _seen_m(gap_m: FloatArray, hidden: BaseGeometry | None) -> float:
+    """Return how much of a line (2, 2) over floor furniture does not hide."""
+    across = LineString(gap_m)
+    return across.length if hidden is None else shapely.difference(across, hidden).length
 
 
 def _solid_m(wall: PlanWall, end_m: float) -> float:
