@@ -9,7 +9,7 @@ from shapely import box
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from scanplan.geometry.bare_parts import cut_bare_parts, take_visited
+from scanplan.geometry.bare_parts import cut_bare_parts, draw_way, take_visited
 
 ROOM = box(0, 0, 6, 4)
 MOUTH_M = (1.0, 3.0)
@@ -91,6 +91,31 @@ def test_a_mouth_does_not_lead_over_a_hole_with_walls():
     way = LineString([(1, 0.5), (1, 3.5)])
     assert cut(corridor, shapely.union(near, block.exterior), visited=way).equals(corridor)
     assert cut(corridor, near, visited=way).area < corridor.area / 2
+
+
+@pytest.mark.parametrize(("thick_m", "is_cut"), [(0.2, True), (0.5, True), (0.7, False)])
+def test_a_wall_that_stands_in_a_mouth_leaves_less_of_it_open(thick_m, is_cut):
+    """Half a metre long, where the mouth is; what is as thick as no wall may be a room's block."""
+    pillar = box(6 - thick_m / 2, 1.7, 6 + thick_m / 2, 2.5)
+    ground = shapely.union(ROOM, FAN).difference(pillar)
+    left = cut(ground, shapely.union(WALLS, pillar.exterior))
+    assert (left.area < ROOM.area + 1) == is_cut
+
+
+@pytest.mark.parametrize("n_still", [0, 30, 300])
+def test_what_stands_takes_no_steps_however_long(n_still):
+    """6 m driven in steps of 0.25 m, on both sides of a long stand; 50 m on nobody saw the way."""
+    rng = np.random.default_rng(0)
+    out = np.column_stack([np.arange(0, 3.01, 0.25), np.zeros(13)])
+    still = out[-1] + rng.normal(0, 0.003, (n_still, 2))
+    on, away = out + np.array([3.0, 0.0]), np.array([[60.0, 0.0]])
+    track_m = np.concatenate([out, still, on, away])
+    assert draw_way(track_m, 0.1).length == pytest.approx(6, abs=0.1)
+
+
+@pytest.mark.parametrize("n_places", [0, 1])
+def test_no_step_is_no_way(n_places):
+    assert draw_way(np.zeros((n_places, 2)), 0.1).length == 0
 
 
 def test_ground_without_any_wall_is_all_that_is_known():

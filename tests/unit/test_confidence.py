@@ -197,6 +197,16 @@ def test_where_no_height_is_seen_nothing_is_likely_or_not():
     assert not found["verify"][found["table"] == "rooms"].any()
 
 
+@pytest.mark.parametrize(("floor_z_m", "is_unknown"), [(0.0, False), (np.nan, True)])
+def test_glass_in_one_plane_may_be_a_way_out(floor_z_m, is_unknown):
+    kinds = np.full(len(PARTS["openings"]["type"]), "glass", object)
+    parts = PARTS | {"openings": PARTS["openings"] | {"type": kinds}}
+    plan = floorplan.make_floorplan(parts, floor_z_m, 2.5)
+    found = confidence.rate_elements(plan, validation(), COEFFICIENTS | {"level": 0.0})
+    of_openings = found["table"] == "openings"
+    assert (found["verify"][of_openings] == is_unknown).all()
+
+
 def test_what_a_person_corrected_is_neither_rated_nor_to_be_verified():
     by_hand = np.where(PARTS["openings"]["opening"] == 1, "changed by hand", "").astype(object)
     openings = PARTS["openings"] | {"corrected": by_hand}

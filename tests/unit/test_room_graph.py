@@ -32,6 +32,15 @@ def test_a_way_has_a_place_in_either_room():
     assert between["ends_m"] == [[4.05, 1.0], [4.05, 1.9]]
 
 
+def test_a_place_in_a_shallow_room_is_in_it():
+    """The second room is half a metre deep behind a door of 0.9 m; a third lies behind it."""
+    rooms = [ROOMS[0], shapely.box(4.1, 0, 4.6, 3), shapely.box(4.7, 0, 7.1, 3)]
+    drawn = plan(rooms=floorplan_making.rooms(rooms))
+    _, between = read(drawn)["ways"]
+    left, right = (shapely.Point(place) for place in between["through_m"])
+    assert rooms[0].contains(left) and rooms[1].contains(right)
+
+
 def test_the_places_stand_in_the_order_of_the_rooms():
     openings = floorplan_making.openings()
     turned = {"room_a": openings["room_b"], "room_b": openings["room_a"]}

@@ -285,6 +285,22 @@ def test_a_step_of_a_facade_that_was_not_seen_is_about_where_it_is():
     assert south([step]) == ["7.00", "~3.00", "~4.00"]
 
 
+@pytest.mark.parametrize("depth_m", [0.3, 0.8, 1.2])
+def test_rooms_may_be_shallow(depth_m):
+    closet = shapely.box(4.1, 0, 7.1, depth_m)
+    drawn = plan(rooms=floorplan_making.rooms([floorplan_making.ROOMS[0], closet]))
+    assert len(composition.compose_sheet(drawn).stamps) == 2
+
+
+def test_a_small_doubtful_room_is_doubtful_on_the_sheet():
+    drawn = crowded()
+    rooms = drawn.rooms | {"closed": np.zeros(len(drawn.areas), bool)}
+    stamps = composition.compose_sheet(replace(drawn, rooms=rooms)).stamps
+    labels = [stamp.words[0].text for stamp in stamps if stamp.words]
+    assert any(len(label) <= 4 for label in labels)
+    assert all(label.endswith(" ?") for label in labels)
+
+
 def test_walls_that_stand_apart_from_all_rooms_are_not_measured_with_the_building():
     stub = ((9.0, -2.0, 9.0, -1.0), 0.2, -1, -1, "observed")
     walls = floorplan_making.walls([*floorplan_making.WALLS, stub])
@@ -382,7 +398,8 @@ def test_the_sides_of_a_wall_that_a_person_kept_are_in_no_doubt():
 def test_a_passage_in_no_wall_is_drawn_as_what_is_inferred():
     through = ((4.05, 1, 4.05, 2), -1, "passage", np.nan, np.nan, 0, 1)
     in_wall = (*through[:1], 4, *through[2:])
-    for opening, kind in ((through, "parting"), (in_wall, "passage")):
+    leads_out = (*through[:-1], -1)
+    for opening, kind in ((through, "parting"), (in_wall, "passage"), (leads_out, "passage")):
         sheet = composition.compose_sheet(plan(openings=floorplan_making.openings([opening])))
         (symbol,) = sheet.symbols
         assert (symbol.kind, symbol.element) == (kind, "passage-0")

@@ -4,9 +4,13 @@ import numpy as np
 import pytest
 import shapely
 
+from helpers.observation_making import line_through
 from helpers.plan_wall_making import box
+from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.rooms.room import Room
 from scanplan.plan.rooms.unseen_floor import leave_out_unseen
+
+ALONE = {"partings": (), "views": ()}
 
 
 def test_what_furniture_may_hide_before_a_wall_stays_in_a_room():
@@ -23,6 +27,7 @@ def test_what_furniture_may_hide_before_a_wall_stays_in_a_room():
         "min_area_m2": 1.0,
         "max_depth_m": 1.0,
         "max_unseen": 1.0,
+        **ALONE,
         "unpaired_m": 0.1,
     }
     # 2.9 d < 2.9 + d below 1.5 m
@@ -43,6 +48,7 @@ def test_what_was_not_seen_in_the_middle_of_a_room_is_no_larger_than_furniture(s
         min_area_m2=1.0,
         max_depth_m=1.0,
         max_unseen=1.0,
+        **ALONE,
         unpaired_m=0.1,
     )
     assert left.polygon.covers(hidden) == is_left
@@ -52,7 +58,7 @@ def test_a_room_without_furniture_keeps_nothing_that_was_not_seen():
     room = Room(shapely.box(0.1, 0.1, 3.9, 3.9), 1.0, entered=True, n_scans=1)
     (left,) = leave_out_unseen(
         *([room], shapely.box(0, 0, 4, 3), box(), np.array([(2.0, 1.0)])),
-        **{"min_area_m2": 1.0, "max_depth_m": 0.0, "max_unseen": 1.0, "unpaired_m": 0.1},
+        **{"min_area_m2": 1.0, "max_depth_m": 0.0, "max_unseen": 1.0, "unpaired_m": 0.1, **ALONE},
     )
     assert left.polygon.bounds[3] == pytest.approx(3)
 
@@ -65,6 +71,7 @@ def test_unseen_floor_beyond_which_no_wall_is_drawn_is_left_out():
         "min_area_m2": 1.0,
         "max_depth_m": 1.0,
         "max_unseen": 1.0,
+        **ALONE,
         "unpaired_m": 0.1,
     }
     below, right, _, left = box()
@@ -77,7 +84,7 @@ def test_unseen_floor_beyond_which_no_wall_is_drawn_is_left_out():
 def test_a_room_that_falls_apart_is_every_part_of_it_that_was_driven_into():
     room = Room(shapely.box(0.1, 0.1, 3.9, 3.9), 1.0, entered=True, n_scans=1)
     seen = shapely.union(shapely.box(0, 0, 4, 1.9), shapely.box(0, 2.4, 4, 4))
-    rest = {"min_area_m2": 1.0, "max_depth_m": 0.2, "max_unseen": 1.0, "unpaired_m": 0.1}
+    rest = {"min_area_m2": 1.0, "max_depth_m": 0.2, "max_unseen": 1.0, "unpaired_m": 0.1, **ALONE}
     ways = np.array([(2.0, 1.0), (2.0, 3.0)])
     assert len(leave_out_unseen([room], seen, box(), ways, **rest)) == 2
     assert len(leave_out_unseen([room], seen, box(), ways[:1], **rest)) == 1
@@ -98,6 +105,36 @@ def test_of_what_furniture_may_hide_the_largest_parts_are_left_out(max_unseen, l
     (left,) = leave_out_unseen(
         *([room], seen.difference(shapely.box(0, 1.5, 1, 1.6)), box()),
         **{"track_m": np.array([(2.0, 2.0)]), "min_area_m2": 1.0, "unpaired_m": 0.1},
-        **{"max_depth_m": 2.0, "max_unseen": max_unseen},
+        **{"max_depth_m": 2.0, "max_unseen": max_unseen, **ALONE},
     )
     assert left.polygon.area == pytest.approx(left_m2, abs=0.02)
+
+
+@pytest.mark.parametrize("depth_m", [0.04, 0.09])
+def test_what_is_between_walls_and_where_rays_ended_stays_in_a_room(depth_m):
+    """All around 4 m x 4 m: of the area 4 and 9 %."""
+    room = Room(shapely.box(0, 0, 4, 4), 1.0, entered=True, n_scans=1)
+    (left,) = leave_out_unseen(
+        *([room], room.polygon.buffer(-depth_m), box(), np.array([(2.0, 2.0)])),
+        **{"min_area_m2": 1.0, "unpaired_m": 0.1, "max_depth_m": 1.0, "max_unseen": 0.02},
+        **ALONE,
+    )
+    assert left is room
+
+
+def test_parts_of_a_room_are_closed_by_partings_and_seen_by_their_own_scans():
+    """A strip from wall to wall was not seen; what is beyond it ends at a parting."""
+    room = Room(shapely.box(0.1, 0.1, 3.9, 3.9), 1.0, entered=True, n_scans=1)
+    parts = [shapely.box(0, 0, 4, 1.5), shapely.box(0, 2.5, 4, 4)]
+    parting = PlanWall(line_through(0, 2.45, 4, 2.45), 0.0, 4.0, 0.1, [], [])
+    lower, upper = sorted(
+        leave_out_unseen(
+            *([room], shapely.union_all(parts), box(), np.array([(2.0, 1.0), (2.0, 3.0)])),
+            **{"min_area_m2": 1.0, "unpaired_m": 0.1, "max_depth_m": 0.2, "max_unseen": 1.0},
+            partings=[parting],
+            views=[shapely.box(0, 0, 4, 1.0)],
+        ),
+        key=lambda part: part.polygon.bounds[1],
+    )
+    assert (lower.n_scans, upper.n_scans) == (1, 0)
+    assert upper.closed and not lower.closed

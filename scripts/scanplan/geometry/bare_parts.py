@@ -1,5 +1,6 @@
 """Parts of ground with hardly any wall around them: what is seen from far, through a wide mouth."""
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -28,7 +29,8 @@ def cut_bare_parts(
     stands there leave fans with a bare outline, too. It is worth a cut if the bare outline that it
     takes away is longer than twice the mouth and the walls that go with it: what lies in a corner
     is not. Of jagged outline no more counts than of a line around it. A mouth may lead over a hole
-    whose outline is as bare: two fans that meet outside enclose one.
+    whose outline is as bare, as two fans that meet outside enclose one, or that is no wider than
+    walls are: one that stands in a mouth.
 
     Parameters
     ----------
@@ -55,7 +57,7 @@ def cut_bare_parts(
     rest, whole = [ground], []
     while rest:
         polygon = rest.pop()
-        bare = list(_find_bare_parts(polygon, walled, near, visited, max_walled, step_m))
+        bare = list(_find_bare_parts(polygon, walled, near, visited, max_walled, beside_m, step_m))
         left = shapely.difference(polygon, shapely.union_all(bare), grid_size=SHORTEST_M)
         if left.area < polygon.area - SHORTEST_M:
             rest += take_visited(left, visited)
@@ -76,12 +78,17 @@ def take_visited(ground: BaseGeometry, visited: BaseGeometry) -> list[Polygon]:
     return [polygon for polygon in largest if polygon.intersects(visited)] or largest[:1]
 
 
-def draw_way(track_m: FloatArray) -> BaseGeometry:
+def draw_way(track_m: FloatArray, least_m: float) -> BaseGeometry:
     """Return visited places (n, 2) and the way from each to the next, but for long steps.
 
-    These are no straight lines: of a gap, of another recording, of scans far apart.
+    These are no straight lines: of a gap, of another recording, of scans far apart. A step is at
+    least so long: what stands takes none, however long it stands.
     """
-    steps_m = np.stack([track_m[:-1], track_m[1:]], axis=1)
+    steps = list(track_m[:1])
+    for place_m in track_m[1:]:
+        if math.dist(place_m, steps[-1]) >= least_m:
+            steps.append(place_m)
+    steps_m = np.stack([steps[:-1], steps[1:]], axis=1) if len(steps) > 1 else np.empty((0, 2, 2))
     length_m = np.hypot(*(steps_m[:, 1] - steps_m[:, 0]).T)
     is_short = length_m <= 3 * np.median(length_m) if len(length_m) else np.zeros(0, bool)
     parts = [shapely.MultiPoint(track_m), shapely.MultiLineString(list(steps_m[is_short]))]
@@ -107,6 +114,7 @@ def _find_bare_parts(
     near: BaseGeometry,
     visited: BaseGeometry,
     max_walled: float,
+    beside_m: float,
     step_m: float,
 ) -> Iterator[Polygon]:
     """Yield bare parts of ground that do not overlap, those that are worth most first.
@@ -127,7 +135,12 @@ def _find_bare_parts(
     bare_m = _between(np.where(is_walled, 0, length_m), begin, end)
     rows = _find_worthy(bare_m, walled_m, chord_m, max_walled, step_m)
     chords = shapely.linestrings(np.stack([places_m[begin[rows]], places_m[end[rows]]], axis=1))
-    holes = [hole for hole in ground.interiors if walled_share(hole, walled) > max_walled]
+    # a wall that stands in a mouth leaves less of it open
+    holes = [
+        hole
+        for hole in ground.interiors
+        if walled_share(hole, walled) > max_walled and not _is_narrow(hole, beside_m)
+    ]
     inner = Polygon(ground.exterior, holes).buffer(SHORTEST_M)
     shapely.prepare(inner)
     rows = rows[shapely.covers(inner, chords)]
@@ -147,6 +160,11 @@ def _find_bare_parts(
         if part.is_valid and not visited.intersects(part):
             is_taken[chain] = True
             yield part
+
+
+def _is_narrow(hole: LinearRing, width_m: float) -> bool:
+    """Return whether a hole is nowhere as wide."""
+    return Polygon(hole).buffer(-width_m / 2).is_empty
 
 
 def _find_turns(steps_m: FloatArray) -> FloatArray:

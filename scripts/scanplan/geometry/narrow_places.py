@@ -73,7 +73,7 @@ def find_narrow_places(
     grid = _fit_grid(filled, cell_m)
     inside = fill_polygons([filled], grid)
     far_m = np.asarray(ndimage.distance_transform_edt(inside)) * cell_m
-    way = draw_way(visited_m)
+    way = draw_way(visited_m, cell_m)
     visited_m = visited_m[shapely.contains_xy(filled, *visited_m.T)]
     column, row = np.floor((visited_m - grid.low_m) / cell_m).astype(int).T
     is_visited = np.zeros(far_m.shape, bool)

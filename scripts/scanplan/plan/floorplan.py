@@ -330,7 +330,8 @@ class FloorPlan:
     def enclosed_ground(self) -> Array:
         """Ground of no room, likewise unseen, (k,).
 
-        What rooms and walls enclose on all sides, and what is between a room and a wall near it.
+        What rooms and walls enclose on all sides, and narrow ground beside rooms: before a wall,
+        between two of them, in a notch of one.
         """
         built = shapely.union_all([*self.areas, *self.bodies], grid_size=_GRID_M)
         closed = close_gaps(built)

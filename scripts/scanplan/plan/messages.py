@@ -4,7 +4,9 @@ import numpy as np
 
 from scanplan.errors import StageError
 from scanplan.plan.faces.intervals import LEAST_OPEN_COLUMNS
+from scanplan.plan.floorplan import say_count
 from scanplan.plan.planning import Plan
+from scanplan.plan.wall_ground import UNSEEN
 from scanplan.rays.beam_spread import column_spacing_rad
 from scanplan.rays.ray_set import RaySet
 from scanplan.store.schemas import COLUMN
@@ -90,12 +92,14 @@ def summarise_plan(plan: Plan) -> str:
     n_closed = int(rooms["closed"].sum())
     n_pieces = len(plan.furniture["furniture"])
     n_columns = int(np.count_nonzero(plan.furniture["kind"] == COLUMN))
+    n_unseen = int((plan.openings["type"] == UNSEEN).sum())
     parts = [
         f"{len(walls['wall'])} walls ({n_paired} with thickness, {n_doubtful} to verify),"
         f" {length_m:,.1f} m",
         f"{len(faces['face'])} faces, {n_inferred} of them inferred",
-        f"{len(plan.openings['opening'])} openings",
-        f"{len(rooms['room'])} rooms, {n_closed} closed, {rooms['area_m2'].sum():,.1f} m2",
+        say_count(len(plan.openings["opening"]) - n_unseen, "opening"),
+        f"{say_count(len(rooms['room']), 'room')}, {n_closed} closed,"
+        f" {rooms['area_m2'].sum():,.1f} m2",
         f"{n_pieces - n_columns} pieces of furniture, {n_columns} columns",
         f"{plan.n_dropped} of {plan.n_lines} lines of faces dropped",
         summarise_range_bias(plan.range_errors_m),

@@ -178,7 +178,7 @@ def decide_kinds(
     ways_m : sequence of (2, 2) float64
         Gaps that leaves were seen to stand open at, from jamb to jamb.
     """
-    track = draw_way(track_m)
+    track = draw_way(track_m, END_M)
     middles_m = np.mean([*ways_m, np.full((2, 2), np.inf)], axis=1)
     return [
         _decide(
@@ -256,7 +256,7 @@ def decide_bare_spans(
     """
     if rays.planar:
         return list(spans)
-    track = draw_way(track_m)
+    track = draw_way(track_m, END_M)
     decided: list[BareSpan] = []
     for span in spans:
         line = _facing_line(span.ends_m, rooms[span.room])

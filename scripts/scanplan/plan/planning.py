@@ -453,6 +453,8 @@ class _Survey:
             seen = self._floor_with([piece.outline for piece in pieces])
             rooms = leave_out_unseen(
                 *(rooms, seen, surfaces.bounds, self.track_m),
+                partings=partings,
+                views=self.views,
                 min_area_m2=min_area_m2,
                 max_depth_m=self.settings.furniture.furniture_depth_m,
                 max_unseen=self.settings.rooms.max_unseen,

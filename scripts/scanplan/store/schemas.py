@@ -412,8 +412,9 @@ CONFIDENCE = Schema(
 
 `table` is walls, faces, openings or rooms, `number` that of the element in it; `p_true` is NaN of
 a plan without heights above the floor. `verify` says that `p_true` is below the level of its kind
-(`validation/confidence_coefficients.py`), that a wall is weakly supported, or that it is not known
-what a gap is; `doubt` in words why, `needs_person` that it would be doubted however well it was
+(`validation/confidence_coefficients.py`), that a wall is weakly supported, that it is not known
+what a gap is, or a pane of a planar survey, or that a room is not closed or most of its walls are
+to be verified; `doubt` in words why, `needs_person` that it would be doubted however well it was
 seen: for its size, or as an opening in no wall.
 """
 VALIDATION_RAYS = Schema(

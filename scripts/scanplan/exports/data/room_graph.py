@@ -61,7 +61,7 @@ def _describe_way(plan: FloorPlan, rows: Rows, row: int) -> dict[str, Any]:
     step_m = rows["width_m"][row] * np.array([-along[1], along[0]])
     middle_m = line_m.mean(axis=0)
     joined = [rows["room_a"][row], rows["room_b"][row]]
-    through_m = _order_places(plan, np.array([middle_m + step_m, middle_m - step_m]), joined)
+    through_m = _find_places(plan, middle_m, step_m, joined)
     stated = ("p_true", "verify", "doubt", "corrected")
     doubt = {name: rows[name][row] for name in stated if name in rows}
     return {
@@ -76,15 +76,32 @@ def _describe_way(plan: FloorPlan, rows: Rows, row: int) -> dict[str, Any]:
     }
 
 
-def _order_places(plan: FloorPlan, places_m: FloatArray, rooms: list[int | None]) -> FloatArray:
-    """Return two places (2, 2) in the order of the rooms that they are in or near."""
+def _find_places(
+    plan: FloorPlan, middle_m: FloatArray, step_m: FloatArray, rooms: list[int | None]
+) -> FloatArray:
+    """Return places (2, 2) on both sides of a way, in the order of the rooms that they are in.
+
+    Each is a step from the middle of the way, or where the room that is there is widest so far.
+    """
     areas = dict(zip(plan.rooms["room"].tolist(), plan.areas, strict=True))
+    sides_m = np.array([middle_m + step_m, middle_m - step_m])
 
     def off_m(ordered_m: FloatArray) -> float:
         pairs = zip(rooms, map(shapely.Point, ordered_m), strict=True)
         return sum(areas[room].distance(place) for room, place in pairs if room in areas)
 
-    return min((places_m, places_m[::-1]), key=off_m)
+    def find_place(side_m: FloatArray, room: int | None) -> FloatArray:
+        if room not in areas or areas[room].covers(shapely.Point(side_m)):
+            return side_m
+        ahead = shapely.LineString([middle_m, side_m])
+        inside = [
+            part for part in shapely.get_parts(areas[room].intersection(ahead)) if part.length
+        ]
+        longest = max(inside, key=lambda part: part.length, default=ahead)
+        return shapely.get_coordinates(longest.interpolate(0.5, normalized=True))[0]
+
+    ordered_m = min((sides_m, sides_m[::-1]), key=off_m)
+    return np.array([find_place(*side) for side in zip(ordered_m, rooms, strict=True)])
 
 
 def _list_exits(ways: list[dict[str, Any]], room: int) -> list[dict[str, Any]]:

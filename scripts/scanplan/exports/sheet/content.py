@@ -137,7 +137,7 @@ def draw_furniture(plan: FloorPlan) -> Iterator[Mark]:
 def list_symbols(plan: FloorPlan) -> list[Symbol]:
     """Return the symbols of doors, windows and passages, in the middle of their walls.
 
-    A passage in no wall is inferred: it parts two rooms, and nothing of it stands there.
+    A passage in no wall between two rooms is inferred: nothing of it stands there.
     """
     left_m, right_m = (np.append(side_m, 0.0) for side_m in plan.sides_m)
     doubtful = is_doubtful(plan.openings)
@@ -154,9 +154,10 @@ def list_symbols(plan: FloorPlan) -> list[Symbol]:
         facts = facts_of("opening", plan.openings, row)
         said = [f"{kind} {number}, {plan.openings['width_m'][row]:.2f} m"]
         said += [str(facts[name]) for name in ("doubt", "corrected") if name in facts]
+        is_between = host < 0 <= plan.openings["room_b"][row]
         symbols.append(
             Symbol(
-                "parting" if kind == "passage" and host < 0 else kind,
+                "parting" if kind == "passage" and is_between else kind,
                 ends_m + shift_m * left,
                 thick_m,
                 f"{kind}-{number}",

@@ -315,7 +315,7 @@ def _find_chord(room: BaseGeometry, y: float, beside: float) -> FloatArray | Non
 def _longest_level(room: BaseGeometry, y: float) -> FloatArray | None:
     x0, _, x1, _ = room.bounds
     cut = shapely.intersection(room, shapely.LineString([(x0 - 1, y), (x1 + 1, y)]))
-    parts = [part for part in shapely.get_parts(cut) if part.geom_type == "LineString"]
+    parts = [part for part in shapely.get_parts(cut) if part.length > 0]
     if not parts:
         return None
     longest = shapely.get_coordinates(max(parts, key=lambda part: part.length))

@@ -42,17 +42,19 @@ def stamp_rooms(page: Page, plan: FloorPlan, space: LabelSpace) -> list[Stamp]:
         outline = page.place_shape(areas[row])
         middle = page.to_paper(np.array([rooms["x_m"][row], rooms["y_m"][row]]))
         title = shorten_text(name, Letters.MEDIUM, Paper.NAME)
-        title += " *" * int(corrected[row]) + " ?" * int(doubtful[row])
-        chosen = space.place(_stamp_places(outline, middle, number, title, area))
+        marks = " *" * int(corrected[row]) + " ?" * int(doubtful[row])
+        title += marks
+        label = f"{number}{marks}"
+        chosen = space.place(_stamp_places(outline, middle, number, title, area, label))
         words = [] if chosen is None else [to_plan_word(page, word) for word in chosen.words]
         stamps[row] = Stamp(words, facts, bool(doubtful[row]))
     return [stamps[row] for row in sorted(stamps)]
 
 
 def _stamp_places(
-    outline: BaseGeometry, middle: FloatArray, number: int, title: str, area: str
+    outline: BaseGeometry, middle: FloatArray, number: int, title: str, area: str, label: str
 ) -> Iterator[Candidate]:
-    """Yield a room's name and area in it, its number alone, and led out of it."""
+    """Yield a room's name and area in it, its label of a number alone, and that led out of it."""
     element = f"room-{number}"
     x0, y0, x1, y1 = outline.bounds
     shares = np.linspace(0, 1, 9)[1:-1]
@@ -69,10 +71,8 @@ def _stamp_places(
         yield Candidate(lines, off)
         short = Word("stamp", lines[0].text.removeprefix("Room "), lines[0].place, Letters.MEDIUM)
         yield Candidate([short, lines[1]], 3 + off)
-        yield Candidate(
-            [Word("stamp", str(number), place, Letters.SMALL, element=element)], 5 + off
-        )
-    yield from lead_out(Word("stamp", str(number), middle, Letters.SMALL, element=element), 6)
+        yield Candidate([Word("stamp", label, place, Letters.SMALL, element=element)], 5 + off)
+    yield from lead_out(Word("stamp", label, middle, Letters.SMALL, element=element), 6)
 
 
 def lead_out(word: Word, cost: float) -> Iterator[Candidate]:

@@ -215,7 +215,8 @@ def _find_line_gaps(
             is_free = len(tree.query(end, predicate="dwithin", distance=around_m)) == 1
             most_m = min(2 * max_door_m, _solid_m(wall, end_m))
             is_crossed = any(intersections.run_across(wall.line, other.line) for other in beyond)
-            is_narrow = width_m <= most_m and _seen_m(gap_m, hidden) <= max_door_m
+            seen_m = _seen_m(gap_m, hidden)
+            is_narrow = width_m <= most_m and seen_m <= max_door_m + CORNER_M
             ends_at_wall = is_free and is_crossed and is_narrow
             if goes_on or ends_at_wall:
                 gaps_m.append(gap_m)

@@ -75,7 +75,7 @@ def find_rooms(
     whole = free_space.union_on_grid(views) if floor is None else floor
     seen = free_space.difference_on_grid(whole, solid)
     track = np.asarray(shapely.points(track_m), object)
-    way = bare_parts.draw_way(track_m)
+    way = bare_parts.draw_way(track_m, END_M)
     facing = wall_ground.ground_before(walls, unpaired_m)
     found: list[tuple[Polygon, float, bool]] = []
     occupied: BaseGeometry = MultiPolygon()
@@ -101,9 +101,24 @@ def find_rooms(
                 found.append((polygon, walled, is_entered))
                 occupied = free_space.union_on_grid([occupied, polygon])
     all_views = np.array(views, object)
-    counts = workers.map_in_threads(lambda of: _count_scans(of[0], all_views), found, threads)
+    counts = workers.map_in_threads(lambda of: count_scans(of[0], all_views), found, threads)
     rooms = [Room(*of, count) for of, count in zip(found, counts, strict=True)]
     return sorted(rooms, key=lambda room: largest_first(room.polygon))
+
+
+def count_scans(polygon: Polygon, all_views: Array) -> int:
+    """Return how many scans saw more of a polygon than lies in a corner.
+
+    Parameters
+    ----------
+    polygon : Polygon
+        Prepared, or it takes longer.
+    all_views : (n,) object
+        What each scan saw.
+    """
+    near = all_views[shapely.intersects(polygon, all_views)]
+    seen_m2 = shapely.area(shapely.intersection(polygon, near))
+    return int((seen_m2 >= CORNER_M**2).sum())
 
 
 def _large_parts(floor: BaseGeometry, min_area_m2: float) -> list[Polygon]:
@@ -121,13 +136,6 @@ def _without_shadows(part: Polygon, solid: BaseGeometry) -> Polygon:
 def _largest(geometry: BaseGeometry) -> Polygon | None:
     parts = free_space.open_polygons(geometry, END_M)
     return max(parts, key=lambda part: part.area, default=None)
-
-
-def _count_scans(polygon: Polygon, all_views: Array) -> int:
-    """Return how many scans saw more of a polygon, which is prepared, than lies in a corner."""
-    near = all_views[shapely.intersects(polygon, all_views)]
-    seen_m2 = shapely.area(shapely.intersection(polygon, near))
-    return int((seen_m2 >= CORNER_M**2).sum())
 
 
 def _draw_room(

@@ -14,6 +14,7 @@ from scanplan.geometry.polygons import largest_first
 from scanplan.plan import wall_ground
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.rooms.room import Room
+from scanplan.plan.rooms.room_outlines import count_scans
 from scanplan.plan.tolerances import END_M
 from scanplan.rays import free_space
 from scanplan.types import FloatArray
@@ -25,6 +26,8 @@ def leave_out_unseen(
     walls: Sequence[PlanWall],
     track_m: FloatArray,
     *,
+    partings: Sequence[PlanWall],
+    views: Sequence[BaseGeometry],
     min_area_m2: float,
     max_depth_m: float,
     max_unseen: float,
@@ -35,8 +38,8 @@ def leave_out_unseen(
     An unseen part may be hidden if leaving it out would bare more of the outline, in metres, than
     the part has square metres for each metre of `max_depth_m`, and bare outline of its own. What is
     not at a wall is no larger than furniture, too. Of what may be hidden the largest parts are left
-    out until the rest is `max_unseen` of what else the room is. Shadows that are narrow stay,
-    unless they alone are more.
+    out until the rest is `max_unseen` of what else the room is. What is no wider before a wall than
+    faces err stays.
 
     Parameters
     ----------
@@ -47,7 +50,9 @@ def leave_out_unseen(
         How deep a part may be that is hidden from wall to wall.
     max_unseen : float, 0 to 1
         How much of a room may be hidden.
-    walls, track_m, min_area_m2, unpaired_m
+    partings : sequence of PlanWall
+        Where nothing stands, and rooms end nevertheless.
+    walls, views, track_m, min_area_m2, unpaired_m
         As in `room_outlines.find_rooms`.
 
     Returns
@@ -55,15 +60,23 @@ def leave_out_unseen(
     list of Room
         A room that falls apart becomes those parts that sensors were in, or its largest part.
     """
-    strips = wall_ground.wall_strips(walls, unpaired_m)
-    outline = shapely.union_all(strips).buffer(END_M)
-    way = bare_parts.draw_way(track_m)
-    left = [
-        replace(room, polygon=polygon, walled=bare_parts.walled_share(polygon.exterior, outline))
-        for room in rooms
-        for polygon in _without_unseen(room.polygon, seen, outline, way, max_depth_m, max_unseen)
-        if polygon.area >= min_area_m2
-    ]
+    outline, bounds = (
+        shapely.union_all(wall_ground.wall_strips(of, unpaired_m)).buffer(END_M)
+        for of in (walls, [*walls, *partings])
+    )
+    way = bare_parts.draw_way(track_m, END_M)
+    all_views = np.array(views, object)
+    left: list[Room] = []
+    for room in rooms:
+        parts = _without_unseen(room.polygon, seen, outline, way, max_depth_m, max_unseen)
+        if parts == [room.polygon]:
+            left.append(room)
+            continue
+        for polygon in parts:
+            if polygon.area >= min_area_m2:
+                walled = bare_parts.walled_share(polygon.exterior, bounds)
+                n_scans = count_scans(polygon, all_views)
+                left.append(replace(room, polygon=polygon, walled=walled, n_scans=n_scans))
     return sorted(left, key=lambda room: largest_first(room.polygon))
 
 
@@ -92,10 +105,13 @@ def _without_unseen(
         (hidden if is_hidden(part) else bare_floor).append(part)
     most_m2 = max_unseen * (polygon.area - shapely.area(bare_floor).sum())
     wide = [whole for part in hidden for whole in free_space.open_polygons(part, END_M)]
-    narrow_m2 = shapely.area(hidden).sum() - shapely.area(wide).sum()
-    # edges that rays graze are ragged: where that is much, the outline follows them
-    is_ragged = narrow_m2 > most_m2
-    taken = [*bare_floor, *(hidden if is_ragged else _exceeding(wide, most_m2 - narrow_m2))]
+    # outlines of what rays saw end before the faces that they met: that is hidden, and stays
+    shadows = free_space.difference_on_grid(
+        free_space.union_on_grid(hidden), free_space.union_on_grid([*wide, outline])
+    )
+    parts = [*wide, *shadows.geoms]
+    along_m2 = shapely.area(hidden).sum() - shapely.area(parts).sum()
+    taken = [*bare_floor, *_exceeding(parts, most_m2 - along_m2)]
     if not taken:
         return [polygon]
     rest = free_space.difference_on_grid(polygon, free_space.union_on_grid(taken))
