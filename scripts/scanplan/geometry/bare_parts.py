@@ -1,7 +1,7 @@
 """Parts of ground with hardly any wall around them: what is seen from far, through a wide mouth."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 import shapely
@@ -130,11 +130,17 @@ def _find_bare_parts(
     # a tenth of a radian: flatter ones are of the outline's noise
     may_begin = (turn < -0.1) | (is_walled != np.roll(is_walled, 1))
     is_near = shapely.contains_xy(near, *places_m.T)
-    begin, end, chord_m = _find_mouths(places_m, np.flatnonzero(may_begin), is_near)
-    walled_m = _between(np.where(is_walled, length_m, 0), begin, end)
-    bare_m = _between(np.where(is_walled, 0, length_m), begin, end)
-    rows = _find_worthy(bare_m, walled_m, chord_m, max_walled, step_m)
-    chords = shapely.linestrings(np.stack([places_m[begin[rows]], places_m[end[rows]]], axis=1))
+
+    def measure_m(begin: IntArray, end: IntArray) -> tuple[FloatArray, FloatArray]:
+        walled_m = _between(np.where(is_walled, length_m, 0), begin, end)
+        return walled_m, _between(np.where(is_walled, 0, length_m), begin, end)
+
+    def find_worthy(begin: IntArray, end: IntArray, chord_m: FloatArray) -> IntArray:
+        walled_m, bare_m = measure_m(begin, end)
+        return _find_worthy(bare_m, walled_m, chord_m, max_walled, step_m)
+
+    begin, end, chord_m = _find_mouths(places_m, np.flatnonzero(may_begin), is_near, find_worthy)
+    chords = shapely.linestrings(np.stack([places_m[begin], places_m[end]], axis=1))
     # a wall that stands in a mouth leaves less of it open
     holes = [
         hole
@@ -143,9 +149,9 @@ def _find_bare_parts(
     ]
     inner = Polygon(ground.exterior, holes).buffer(SHORTEST_M)
     shapely.prepare(inner)
-    rows = rows[shapely.covers(inner, chords)]
-    begin, end = begin[rows], end[rows]
-    chord_m, walled_m, bare_m = chord_m[rows], walled_m[rows], bare_m[rows]
+    is_inside = shapely.covers(inner, chords)
+    begin, end, chord_m = begin[is_inside], end[is_inside], chord_m[is_inside]
+    walled_m, bare_m = measure_m(begin, end)
     # edges of shadows are longer than what they leave open
     hull_m = _hull_length_m(places_m, np.abs(turn) > ROUNDING, begin, end)
     bare_m = np.minimum(bare_m, hull_m - chord_m - walled_m)
@@ -179,19 +185,30 @@ def _find_turns(steps_m: FloatArray) -> FloatArray:
 
 
 def _find_mouths(
-    places_m: FloatArray, corners: IntArray, is_near: BoolArray
+    places_m: FloatArray,
+    corners: IntArray,
+    is_near: BoolArray,
+    find_worthy: Callable[[IntArray, IntArray, FloatArray], IntArray],
 ) -> tuple[IntArray, IntArray, FloatArray]:
     """Return where mouths begin and end (k,), both ways round, and how wide (k,) they are.
 
-    They begin at corners and end, as they begin, at places that are near walls.
+    They begin at corners and end, as they begin, at places that are near walls. Of those that
+    `find_worthy` returns: an outline of a building has more than memory holds.
     """
-    corners = corners[is_near[corners]]
-    away_m = np.hypot(*(places_m[corners, None] - places_m).transpose(2, 0, 1))
-    is_nearest = (away_m <= np.roll(away_m, 1, axis=1)) & (away_m <= np.roll(away_m, -1, axis=1))
-    row, other = np.nonzero(is_nearest & is_near & (away_m > 0))
-    corner = corners[row]
-    chord_m = away_m[row, other]
-    return np.append(corner, other), np.append(other, corner), np.tile(chord_m, 2)
+    found: dict[bool, list[tuple[IntArray, IntArray, FloatArray]]] = {False: [], True: []}
+    near = corners[is_near[corners]]
+    for some in np.array_split(near, math.ceil(len(near) / 100) or 1):
+        away_m = np.hypot(*(places_m[some, None] - places_m).transpose(2, 0, 1))
+        is_nearest = away_m <= np.roll(away_m, 1, axis=1)
+        is_nearest &= away_m <= np.roll(away_m, -1, axis=1)
+        row, other = np.nonzero(is_nearest & is_near & (away_m > 0))
+        ends, chord_m = (some[row], other), away_m[row, other]
+        for is_back, of_way in found.items():
+            begin, end = ends[::-1] if is_back else ends
+            rows = find_worthy(begin, end, chord_m)
+            of_way.append((begin[rows], end[rows], chord_m[rows]))
+    begin, end, chord_m = map(np.concatenate, zip(*found[False], *found[True], strict=True))
+    return begin, end, chord_m
 
 
 def _between(length_m: FloatArray, begin: IntArray, end: IntArray) -> FloatArray:
@@ -218,8 +235,8 @@ def _hull_length_m(
     is_kept[[*begin, *end]] = True
     corners_m, number = places_m[is_kept], np.cumsum(is_kept) - 1
     pairs = zip(number[begin].tolist(), number[end].tolist(), strict=True)
-    chains = [shapely.linestrings(corners_m[_chain(*pair, len(corners_m))]) for pair in pairs]
-    return shapely.length(shapely.convex_hull(np.array(chains, object)))
+    chains = (corners_m[_chain(*pair, len(corners_m))] for pair in pairs)
+    return np.array([shapely.MultiPoint(c).convex_hull.length for c in chains], float)
 
 
 def _chain(begin: int, end: int, count: int) -> IntArray:
