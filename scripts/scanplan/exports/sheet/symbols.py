@@ -32,7 +32,7 @@ BLOCKS = {
     ],
     "PASSAGE": _SIDES,
     "PARTING": [np.array([[0, 0, 0], [1, 0, 0]])],
-    "GLASS": [np.array([[0, y, 0], [1, y, 0]]) for y in (-0.1, 0.1)],
+    "GLASS": [np.array([[0, y, 0], [1, y, 0]]) for y in (-0.3, 0.3)],
     "GAP": [*_SIDES, np.array([[0, -0.5, 0], [1, 0.5, 0]])],
 }
 """Paths of each symbol, from 0 to 1 along its wall; windows and passages are 1 thick, too."""
