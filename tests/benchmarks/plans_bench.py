@@ -200,14 +200,13 @@ def visible_truth(
 
 def _make_plan(found: Results, rows: IntArray, scan_ids: IntArray, settings: Settings) -> Plan:
     poses = found.registered.map_from_sensor
-    positions = dict(zip(scan_ids.tolist(), poses[rows, :3, 3], strict=True))
-    rays = ray_set.gather_rays(found.store.scans(scan_ids), positions, planar=found.store.planar)
+    sensors_m = dict(zip(found.registered.scan_ids.tolist(), poses[:, :3, 3], strict=True))
+    rays = ray_set.gather_rays(found.store.scans(scan_ids), sensors_m, planar=found.store.planar)
     used = np.isin(found.walls["scan_id"], scan_ids)
     find_seen = None
     if found.store.planar:
         retained = found.store.scans(found.registered.scan_ids)
-        all_sensors_m = dict(zip(found.registered.scan_ids.tolist(), poses[:, :3, 3], strict=True))
-        find_seen = functools.partial(free_space.find_seen_floor, retained, all_sensors_m)
+        find_seen = functools.partial(free_space.find_seen_floor, retained, sensors_m)
     plan = planning.make_plan(
         {column: values[used] for column, values in found.walls.items()},
         rays,

@@ -84,8 +84,9 @@ def draw_way(track_m: FloatArray, least_m: float) -> BaseGeometry:
     These are no straight lines: of a gap, of another recording, of scans far apart. A step is at
     least so long: what stands takes none, however long it stands.
     """
-    steps = list(track_m[:1])
-    for place_m in track_m[1:]:
+    places_m = track_m.tolist()
+    steps = places_m[:1]
+    for place_m in places_m[1:]:
         if math.dist(place_m, steps[-1]) >= least_m:
             steps.append(place_m)
     steps_m = np.stack([steps[:-1], steps[1:]], axis=1) if len(steps) > 1 else np.empty((0, 2, 2))
@@ -130,16 +131,16 @@ def _find_bare_parts(
     # a tenth of a radian: flatter ones are of the outline's noise
     may_begin = (turn < -0.1) | (is_walled != np.roll(is_walled, 1))
     is_near = shapely.contains_xy(near, *places_m.T)
+    steps_walled_m, steps_bare_m = (
+        np.where(is_walled, length_m, 0),
+        np.where(is_walled, 0, length_m),
+    )
 
-    def measure_m(begin: IntArray, end: IntArray) -> tuple[FloatArray, FloatArray]:
-        walled_m = _between(np.where(is_walled, length_m, 0), begin, end)
-        return walled_m, _between(np.where(is_walled, 0, length_m), begin, end)
-
-    def find_worthy(begin: IntArray, end: IntArray, chord_m: FloatArray) -> IntArray:
-        walled_m, bare_m = measure_m(begin, end)
+    def choose(begin: IntArray, end: IntArray, chord_m: FloatArray) -> IntArray:
+        walled_m, bare_m = (_between(m, begin, end) for m in (steps_walled_m, steps_bare_m))
         return _find_worthy(bare_m, walled_m, chord_m, max_walled, step_m)
 
-    begin, end, chord_m = _find_mouths(places_m, np.flatnonzero(may_begin), is_near, find_worthy)
+    begin, end, chord_m = _find_mouths(places_m, np.flatnonzero(may_begin), is_near, choose)
     chords = shapely.linestrings(np.stack([places_m[begin], places_m[end]], axis=1))
     # a wall that stands in a mouth leaves less of it open
     holes = [
@@ -151,7 +152,7 @@ def _find_bare_parts(
     shapely.prepare(inner)
     is_inside = shapely.covers(inner, chords)
     begin, end, chord_m = begin[is_inside], end[is_inside], chord_m[is_inside]
-    walled_m, bare_m = measure_m(begin, end)
+    walled_m, bare_m = (_between(m, begin, end) for m in (steps_walled_m, steps_bare_m))
     # edges of shadows are longer than what they leave open
     hull_m = _hull_length_m(places_m, np.abs(turn) > ROUNDING, begin, end)
     bare_m = np.minimum(bare_m, hull_m - chord_m - walled_m)
@@ -188,26 +189,26 @@ def _find_mouths(
     places_m: FloatArray,
     corners: IntArray,
     is_near: BoolArray,
-    find_worthy: Callable[[IntArray, IntArray, FloatArray], IntArray],
+    choose: Callable[[IntArray, IntArray, FloatArray], IntArray],
 ) -> tuple[IntArray, IntArray, FloatArray]:
     """Return where mouths begin and end (k,), both ways round, and how wide (k,) they are.
 
-    They begin at corners and end, as they begin, at places that are near walls. Of those that
-    `find_worthy` returns: an outline of a building has more than memory holds.
+    They begin at corners and end, as they begin, at places that are near walls. Only those whose
+    rows `choose` returns: the outline of a building has more than memory holds.
     """
-    found: dict[bool, list[tuple[IntArray, IntArray, FloatArray]]] = {False: [], True: []}
+    forth: list[tuple[IntArray, IntArray, FloatArray]] = []
+    back: list[tuple[IntArray, IntArray, FloatArray]] = []
     near = corners[is_near[corners]]
     for some in np.array_split(near, math.ceil(len(near) / 100) or 1):
         away_m = np.hypot(*(places_m[some, None] - places_m).transpose(2, 0, 1))
         is_nearest = away_m <= np.roll(away_m, 1, axis=1)
         is_nearest &= away_m <= np.roll(away_m, -1, axis=1)
         row, other = np.nonzero(is_nearest & is_near & (away_m > 0))
-        ends, chord_m = (some[row], other), away_m[row, other]
-        for is_back, of_way in found.items():
-            begin, end = ends[::-1] if is_back else ends
-            rows = find_worthy(begin, end, chord_m)
-            of_way.append((begin[rows], end[rows], chord_m[rows]))
-    begin, end, chord_m = map(np.concatenate, zip(*found[False], *found[True], strict=True))
+        corner, chord_m = some[row], away_m[row, other]
+        for found, begin, end in ((forth, corner, other), (back, other, corner)):
+            rows = choose(begin, end, chord_m)
+            found.append((begin[rows], end[rows], chord_m[rows]))
+    begin, end, chord_m = map(np.concatenate, zip(*forth, *back, strict=True))
     return begin, end, chord_m
 
 

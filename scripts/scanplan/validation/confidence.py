@@ -47,10 +47,9 @@ def rate_elements(
     level = coefficients["level"]
     has_heights = np.isfinite(plan.floor_z_m)
     held = _find_held(plan)
-    parts: list[Columns] = []
-    # rooms are judged by their walls
-    for table in ("faces", "openings", "walls", "rooms"):
-        number = NUMBERS[table]
+    parts: dict[str, Columns] = {}
+    # walls come before the rooms that are judged by them
+    for table, number in NUMBERS.items():
         columns, features, model = getattr(plan, table), described[table], coefficients[table]
         p_true, shares = weigh_features(features, model)
         if not has_heights:
@@ -75,7 +74,7 @@ def rate_elements(
             is_open = ~columns["closed"] & ~verify
             doubt[is_open] = NOT_CLOSED
             verify = verify | is_open
-            is_weak = _have_doubtful_walls(plan, parts[-1]["verify"]) & ~verify
+            is_weak = _have_doubtful_walls(plan, parts["walls"]["verify"]) & ~verify
             doubt[is_weak] = OF_DOUBTFUL_WALLS
             verify = verify | is_weak
         if "corrected" in columns:
@@ -83,18 +82,16 @@ def rate_elements(
             is_by_hand = columns["corrected"] != ""
             p_true[is_by_hand], verify[is_by_hand], doubt[is_by_hand] = np.nan, False, ""
             needs_person[is_by_hand] = False
-        parts.append(
-            {
-                "table": np.full(len(p_true), table, object),
-                "number": columns[number].astype(np.int32),
-                "p_true": p_true,
-                "verify": verify,
-                "doubt": doubt,
-                "needs_person": needs_person,
-            }
-        )
-    parts.sort(key=lambda part: part["table"][:1].tolist())
-    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+        parts[table] = {
+            "table": np.full(len(p_true), table, object),
+            "number": columns[number].astype(np.int32),
+            "p_true": p_true,
+            "verify": verify,
+            "doubt": doubt,
+            "needs_person": needs_person,
+        }
+    ordered = [parts[table] for table in sorted(parts)]
+    return {name: np.concatenate([part[name] for part in ordered]) for name in ordered[0]}
 
 
 def _have_doubtful_walls(plan: FloorPlan, verify: BoolArray) -> BoolArray:

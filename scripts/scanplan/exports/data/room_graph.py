@@ -81,7 +81,8 @@ def _find_places(
 ) -> FloatArray:
     """Return places (2, 2) on both sides of a way, in the order of the rooms that they are in.
 
-    Each is a step from the middle of the way, or where the room that is there is widest so far.
+    Each is a step from the middle of the way, or, if that is beyond the room, in the middle of the
+    longest stretch of the step that lies in it.
     """
     areas = dict(zip(plan.rooms["room"].tolist(), plan.areas, strict=True))
     sides_m = np.array([middle_m + step_m, middle_m - step_m])

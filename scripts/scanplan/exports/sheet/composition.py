@@ -75,8 +75,9 @@ def compose_sheet(
     marks = [*content.draw_walls(plan), *content.draw_axes(plan), *content.draw_doubts(plan)]
     marks += content.draw_furniture(plan)
     symbols = content.list_symbols(plan)
+    uncertain = _find_uncertain(plan)
     # the scale bar with the axes takes six rows
-    blocks = [6, len(_list_legend(plan, marks, symbols)), len(plan.areas)]
+    blocks = [6, len(_list_legend(plan, marks, symbols, uncertain)), len(plan.areas)]
     turn_deg = -plan.main_direction_deg if turn_deg is None else turn_deg
     extent = _extent(marks, [symbol.ends_m for symbol in symbols], turn_deg)
     page = choose_page(*extent, turn_deg, blocks, least_scale)
@@ -85,7 +86,7 @@ def compose_sheet(
     page = replace(page, middle_m=np.mean(_extent(marks, swings, turn_deg), axis=0))
     # the page is chosen with room for what its scale may make too small to draw
     marks = _drop_specks(page, marks)
-    legend = _list_legend(plan, marks, symbols)
+    legend = _list_legend(plan, marks, symbols, uncertain)
     blocks[1] = len(legend)
     bar, legend_slots, table_slots = fill_slots(page.slots(), blocks) or ([], [], [])
     beside: list[Mark | Word] = [
@@ -98,13 +99,13 @@ def compose_sheet(
     space = _open_space(page, marks, symbols)
     stamps = words.stamp_rooms(page, plan, space)
     beside += title.draw_room_table(stamps, table_slots)
-    uncertain = page.place_shape(_find_uncertain(plan))
-    drawn = _dimension(page, plan, marks, symbols, uncertain, space)
+    on_paper = page.place_shape(uncertain)
+    drawn = _dimension(page, plan, marks, symbols, on_paper, space)
     is_stated = _find_stated(symbols, drawn)
     rooms = [
         dimension
         for area in plan.areas
-        for dimension in dimensions.dimension_room(page, page.place_shape(area), uncertain, space)
+        for dimension in dimensions.dimension_room(page, page.place_shape(area), on_paper, space)
     ]
     labels = [
         *words.label_openings(page, symbols, is_stated, space),
@@ -124,14 +125,16 @@ def compose_sheet(
     )
 
 
-def _list_legend(plan: FloorPlan, marks: list[Mark], symbols: list[Symbol]) -> list[str]:
+def _list_legend(
+    plan: FloorPlan, marks: list[Mark], symbols: list[Symbol], uncertain: BaseGeometry
+) -> list[str]:
     kinds = {symbol.kind for symbol in symbols}
     if list_doubts(plan):
         kinds.add("verify")
     tables = (plan.walls, plan.openings, plan.rooms)
     if any(content.is_corrected(columns).any() for columns in tables):
         kinds.add("corrected")
-    if not (plan.assumed.is_empty and _find_uncertain(plan).is_empty):
+    if not (plan.assumed.is_empty and uncertain.is_empty):
         kinds.add("dimension")
     return title.list_legend(marks, kinds)
 

@@ -13,6 +13,7 @@ from scanplan.exports.sheet.lettering import measure_width_mm, rotation
 from scanplan.exports.sheet.marks import Dimension, Word
 from scanplan.exports.sheet.paper import Page
 from scanplan.exports.sheet.styles import Letters, Paper
+from scanplan.plan.floorplan import line_shapes
 from scanplan.plan.tolerances import END_M
 from scanplan.types import Array, FloatArray
 
@@ -96,7 +97,7 @@ def _find_upright_edges(outline: BaseGeometry) -> Array:
     edges = np.array([edge for ring in corners for edge in itertools.pairwise(ring)])
     edges = edges.reshape(-1, 2, 2)
     width, height = np.abs(edges[:, 1] - edges[:, 0]).T
-    return np.asarray(shapely.linestrings(edges[width <= _SQUARE * height]), object)
+    return line_shapes(edges[width <= _SQUARE * height])
 
 
 def _is_beside(
