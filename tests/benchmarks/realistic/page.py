@@ -1,0 +1,190 @@
+"""One page of the bench: what hurts most, figures by half and kind, a picture of every floor."""
+
+import html
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from realistic import pictures
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from scanplan.types import Array
+
+HEADLINES = {
+    "walls_correctness_010m": "walls correct",
+    "walls_completeness_010m": "walls complete",
+    "room_mean_iou": "rooms IoU",
+    "rooms_wrong_unflagged_share": "wrong, unflagged rooms",
+    "leaves_as_wall_share": "leaves as wall",
+    "leaves_found_share": "leaves found",
+    "doors_driven_recall": "doors driven",
+    "doors_seen_recall": "doors seen",
+    "windows_recall": "windows",
+    "columns_recall": "columns",
+    "thickness_off_share": "thickness off",
+    "wrong_flagged_share": "wrong flagged",
+    "right_flagged_share": "right flagged",
+    "total_cpu_s": "processor s",
+}
+"""Measure to its heading; see `scanplan.lab.evaluation.scores`."""
+_STYLE = """
+body{font:14px/1.45 system-ui,sans-serif;margin:1.5rem;color:#222}
+table{border-collapse:collapse;margin:.6rem 0}
+td,th{padding:.15rem .5rem;border-bottom:1px solid #ddd;text-align:right}
+td:first-child,th:first-child{text-align:left}
+.floors{display:flex;flex-wrap:wrap;gap:1rem}
+.floor{border:1px solid #ddd;padding:.5rem;width:470px}
+.key b{display:inline-block;width:1em;height:.6em;margin:0 .3em 0 1em}
+.bar{display:inline-block;height:.7em;background:#e41a1c}
+svg{background:#fff;max-height:420px}
+"""
+_SCRIPT = """
+function show(){const w=document.getElementById('filter').value.trim().split(/\\s+/);
+for(const f of document.querySelectorAll('.floor'))
+f.style.display=w.every(x=>f.dataset.words.includes(x))?'':'none'}
+"""
+
+
+def write_page(
+    path: Path,
+    title: str,
+    measures: "pd.DataFrame",
+    elements: "pd.DataFrame",
+    truths: Mapping[str, Sequence[pictures.TrueFeature]],
+) -> None:
+    """Write the page of a run.
+
+    Parameters
+    ----------
+    path : Path
+        An HTML file, which opens offline.
+    title : str
+    measures : DataFrame
+        A row a floor: `floor`, `kind`, `half`, `sensor`, `failed` and measures.
+    elements : DataFrame
+        A row an element, by `floor`.
+    truths : dict of str to list of pictures.TrueFeature
+        The truth's features of each floor.
+    """
+    parts = [
+        f"<!doctype html><meta charset=utf-8><title>{html.escape(title)}</title>",
+        f"<style>{_STYLE}</style><script>{_SCRIPT}</script><h1>{html.escape(title)}</h1>",
+        "<h2>What hurts most</h2>",
+        *_list_errors(elements, measures),
+        "<h2>Means</h2>",
+        _table_of_means(measures, ["half"]),
+        _table_of_means(measures[measures["half"] != "real"], ["half", "kind"]),
+        _table_of_means(measures[measures["half"] != "real"], ["half", "sensor"]),
+        *_list_failures(measures),
+        "<h2>Floors, the worst first</h2>",
+        f"<p class=key>{_key()}</p>",
+        '<p>show only <input id=filter oninput=show() placeholder="tuning museum planar"></p>',
+        "<div class=floors>",
+        *_draw_floors(measures, elements, truths),
+        "</div>",
+    ]
+    path.write_text("\n".join(parts), encoding="utf-8")
+
+
+def rank_floors(measures: "pd.DataFrame") -> "pd.DataFrame":
+    """Return the rows of floors with the worst first: by wrong walls, missed walls and rooms."""
+    bad = sum(
+        1 - measures[name].fillna(1.0)
+        for name in ("walls_correctness_010m", "walls_completeness_010m", "room_mean_iou")
+        if name in measures
+    )
+    failed = 10.0 * (measures["failed"] != "")
+    order = np.argsort(-(np.asarray(bad, float) + np.asarray(failed, float)), kind="stable")
+    return measures.iloc[order]
+
+
+def _list_errors(elements: "pd.DataFrame", measures: "pd.DataFrame") -> Iterator[str]:
+    """Yield a table a half: kinds of errors, by how much of all there is they are."""
+    halves = measures.set_index("floor")["half"]
+    of_half = elements["floor"].map(halves)
+    for half in dict.fromkeys(measures["half"]):
+        rows = elements[of_half == half]
+        wrong = rows[rows["verdict"] != "right"]
+        if wrong.empty:
+            continue
+        whole = rows.groupby("table").agg(n=("size", "size"), size=("size", "sum"))
+        kinds = wrong.groupby(["table", "verdict"]).agg(
+            n=("size", "size"),
+            size=("size", "sum"),
+            floors=("floor", "nunique"),
+            flagged=("flagged", "mean"),
+        )
+        kinds["share"] = [n / whole.loc[table, "n"] for (table, _), n in kinds["n"].items()]
+        lines = [
+            f"<tr><td>{table}: {verdict}</td><td>{row['n']:.0f}</td><td>{row['size']:.0f}</td>"
+            f"<td>{row['share']:.0%}</td><td>{row['flagged']:.0%}</td><td>{row['floors']:.0f}</td>"
+            f'<td style="text-align:left"><i class=bar style="width:{300 * row["share"]:.0f}px;'
+            f'background:{pictures.colour_of(str(verdict))}"></i></td></tr>'
+            for (table, verdict), row in kinds.sort_values("share", ascending=False).iterrows()
+        ]
+        yield (
+            f"<h3>{half}</h3><table><tr><th>error</th><th>elements</th><th>m or m2</th>"
+            "<th>of the kind's</th><th>flagged</th><th>floors</th><th></th></tr>"
+        )
+        yield "".join(lines) + "</table>"
+
+
+def _table_of_means(measures: "pd.DataFrame", by: list[str]) -> str:
+    names = [name for name in HEADLINES if name in measures]
+    heads = "".join(f"<th>{HEADLINES[name]}</th>" for name in names)
+    rows = []
+    for key, group in measures.groupby(by, sort=True):
+        label = html.escape(" ".join(map(str, key)))
+        cells = "".join(f"<td>{_number(group[name].mean())}</td>" for name in names)
+        rows.append(f"<tr><td>{label}</td><td>{len(group)}</td>{cells}</tr>")
+    return f"<table><tr><th></th><th>floors</th>{heads}</tr>{''.join(rows)}</table>"
+
+
+def _list_failures(measures: "pd.DataFrame") -> Iterator[str]:
+    failed = measures[measures["failed"] != ""]
+    if len(failed):
+        yield f"<h2>{len(failed)} floors without a plan</h2><ul>"
+        for _, row in failed.iterrows():
+            yield f"<li>{html.escape(row['floor'])}: {html.escape(row['failed'])}</li>"
+        yield "</ul>"
+
+
+def _draw_floors(
+    measures: "pd.DataFrame",
+    elements: "pd.DataFrame",
+    truths: Mapping[str, Sequence[pictures.TrueFeature]],
+) -> Iterator[str]:
+    by_floor = {str(name): rows for name, rows in elements.groupby("floor")}
+    for _, row in rank_floors(measures).iterrows():
+        name = row["floor"]
+        words = html.escape(f"{name} {row['kind']} {row['half']} {row['sensor']}")
+        figures = "; ".join(
+            f"{HEADLINES[key]} {_number(row[key])}" for key in HEADLINES if _is_known(row, key)
+        )
+        picture = ""
+        if name in by_floor:
+            columns: dict[str, Array] = {c: by_floor[name][c].to_numpy() for c in by_floor[name]}
+            picture = pictures.draw_floor(truths[name], columns)
+        yield (
+            f'<div class=floor data-words="{words}"><b>{words}</b><br>{picture}'
+            f"<br>{figures}{html.escape(row['failed'])}</div>"
+        )
+
+
+def _is_known(row: "pd.Series", key: str) -> bool:
+    return key in row and row[key] == row[key]
+
+
+def _number(value: float) -> str:
+    if value != value:
+        return "-"
+    return f"{value:.3f}" if abs(value) < 10 else f"{value:.1f}"
+
+
+def _key() -> str:
+    entries = {"right": pictures.colour_of("right"), **pictures.COLOURS}
+    return "".join(f'<b style="background:{c}"></b>{name}' for name, c in entries.items())

@@ -1,0 +1,100 @@
+"""Plans of the bench's floors by the code of a commit, and what each of its stages took."""
+
+import csv
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import guard
+
+from realistic.recordings import Recorded
+
+_TABLES = ("rooms", "confidence")
+_AT_ONCE = 24  # datasets in one run: every job of it parses all of them
+STAGES = (
+    "interpolate_poses",
+    "register_scans",
+    "observe_walls",
+    "order_scans_wall_length",
+    "extract_chosen_walls",
+    "assemble_plan",
+    "validate_plan",
+)
+
+
+def make_plans(
+    project: Path, revision: str, folder: Path, recorded: Mapping[str, Recorded]
+) -> Path:
+    """Make the plans of floors with the code of a commit.
+
+    Parameters
+    ----------
+    project : Path
+        The checkout that the commit is taken from.
+    revision : str
+    folder : Path
+        Gets `code/`, a checkout with its results; a second call reruns what changed in between.
+    recorded : dict of str to recordings.Recorded
+
+    Returns
+    -------
+    Path
+        The folder of the results. A floor whose plan could not be made lacks its tables.
+    """
+    code = guard.check_out(project, revision, folder)
+    names = sorted(recorded)
+    for first in range(0, len(names), _AT_ONCE):
+        part = names[first : first + _AT_ONCE]
+        print(f"realistic: plans {first + 1} to {first + len(part)} of {len(names)}", flush=True)
+        _run_workflow(code, part, recorded)
+    return code / "results"
+
+
+def _run_workflow(code: Path, names: Sequence[str], recorded: Mapping[str, Recorded]) -> None:
+    given = json.dumps([str(recorded[name].dataset) for name in names])
+    targets = [f"results/{name}/plan/{table}.parquet" for name in names for table in _TABLES]
+    environment = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
+    command = [sys.executable, "-m", "snakemake", "--cores", "2", "--quiet", "all"]
+    command += ["--keep-going", "--rerun-incomplete", "--config", f"dataset={given}"]
+    with (code.parent / "workflow.log").open("a") as log:
+        # one that fails is told with its last words by `last_words`
+        subprocess.run(
+            [*command, "--", *targets],
+            cwd=code,
+            env=environment,
+            stdout=log,
+            stderr=subprocess.STDOUT,
+            check=False,
+        )
+
+
+def last_words(results: Path, name: str) -> str:
+    """Return the last line of the log of the stage that ended a floor's run; "" if none did."""
+    missing = [t for t in _TABLES if not (results / name / f"plan/{t}.parquet").is_file()]
+    if not missing:
+        return ""
+    logs = sorted((results.parent / "logs" / name).glob("*.log"), key=lambda p: p.stat().st_mtime)
+    lines = logs[-1].read_text(errors="replace").strip().splitlines() if logs else []
+    return f"{logs[-1].stem}: {lines[-1]}" if lines else "no stage has run"
+
+
+def stage_costs(results: Path, name: str) -> dict[str, float]:
+    """Return wall seconds, processor seconds and peak memory (MB) of a floor's stages."""
+    costs = {}
+    for stage in STAGES:
+        file = results.parent / "benchmarks" / name / f"{stage}.tsv"
+        if not file.is_file():
+            continue
+        with file.open() as lines:
+            row = next(csv.DictReader(lines, delimiter="\t"))
+        costs[f"{stage}_s"] = float(row["s"])
+        costs[f"{stage}_cpu_s"] = _number(row["cpu_time"])
+        costs[f"{stage}_mb"] = _number(row["max_rss"])
+    return costs
+
+
+def _number(text: str) -> float:
+    return float(text) if text not in ("", "NA", "-") else float("nan")
