@@ -75,7 +75,7 @@ def _bowed_lobby(plan: Plan, lobby: Box, thickness_m: float) -> np.ndarray:
     plan.wall((x0, y0), (x1, y0), thickness_m)
     plan.wall((x0, y1), (x1, y1), thickness_m)
     sagitta_m = float(plan.rng.uniform(1.0, 1.5))
-    return common.bow(plan, (x0, y0), (x0, y1), -sagitta_m, thickness_m, windows=3)
+    return common.bow(plan, (x0, y0), (x0, y1), sagitta_m, thickness_m, windows=3)
 
 
 def _bath_of(cell: Box, hall: Box, side: int) -> Box:
