@@ -5,6 +5,7 @@ import shapely
 from shapely import LineString
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry.tolerances import SAME_M
 from scanplan.lab.random_streams import RandomStream, open_stream
 from scanplan.lab.simulation import people, rover
 from scanplan.types import FloatArray
@@ -74,17 +75,12 @@ def _follow(free: BaseGeometry, drive: rover.Drive, lag_m: float) -> people.Pers
     track_way_m = np.concatenate([[-lag_m], way_m])
     track_m = np.vstack([start_m, drive.xy_m])
     # its corners are passed when the sensor is ahead by the lag: until then and then straight on
-    passed_s = np.interp(way_m + lag_m, *_when_driven(way_m, drive.t_s))
+    # (while it turns a hair of way keeps ways and moments one to one)
+    passed_s = np.interp(way_m + lag_m, way_m + SAME_M * drive.t_s / drive.t_s[-1], drive.t_s)
     t_s = np.union1d(drive.t_s, passed_s)
     at_m = np.interp(t_s, drive.t_s, way_m) - lag_m
     xy_m = np.column_stack([np.interp(at_m, track_way_m, axis) for axis in track_m.T])
     return people.Person(t_s, xy_m)
-
-
-def _when_driven(way_m: FloatArray, t_s: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return ways that increase strictly, and when each was first reached."""
-    way_m, first = np.unique(way_m, return_index=True)
-    return way_m, t_s[first]
 
 
 def _heading(drive: rover.Drive) -> FloatArray:
@@ -97,4 +93,4 @@ def _room_behind_m(free: BaseGeometry, drive: rover.Drive, lag_m: float) -> floa
     walked = shapely.intersection(back, shapely.buffer(free, -people.CLEARANCE_M))
     parts = [part for part in shapely.get_parts(walked) if part.length > 0]
     start = shapely.Point(drive.xy_m[0])
-    return max((part.length for part in parts if part.distance(start) < 1e-9), default=0.0)
+    return max((part.length for part in parts if part.distance(start) < SAME_M), default=0.0)

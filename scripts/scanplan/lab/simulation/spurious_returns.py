@@ -13,6 +13,7 @@ _PULSE_M = 1.5
 _EDGE_M = 0.05  # ASSUME lower steps are within what a range errs by
 # ASSUME rays that differ by more than on a surface at 80 degrees to its normal pass an edge
 _EDGE_SLOPE = float(np.tan(np.radians(80)))
+_LEAST_RAD = 1e-4  # ASSUME no sensor's rays are nearer to one another
 _STRAY_REFLECTIVITY = np.float32(2.0)  # ASSUME dust and crosstalk are faint
 _FLATTEST_COSINE = 0.17  # of 80 degrees: ASSUME ranges at flatter angles are no farther off
 
@@ -49,7 +50,8 @@ def mix_edges(
     -------
     raycast.RayHits
     """
-    (ray,) = np.nonzero(find_edges(rays.direction, hits.range_m, sensor) & is_direct)
+    is_edge = find_edges(rays.direction, hits.range_m, sensor, errors.mixed_rad)
+    (ray,) = np.nonzero(is_edge & is_direct & np.isfinite(hits.range_m))
     own = rays.direction.reshape(-1, 3)[ray]
     beside = jitter_rays(own, errors.mixed_rad, generator)
     other, _ = scene.meet(rays.turn_rays(ray, beside))
@@ -61,8 +63,10 @@ def mix_edges(
     return raycast.RayHits(range_m, hits.cosine, hits.reflectivity)
 
 
-def find_edges(direction: FloatArray, range_m: FloatArray, sensor: Sensor) -> BoolArray:
-    """Return which rays (n,) have a neighbour at another depth.
+def find_edges(
+    direction: FloatArray, range_m: FloatArray, sensor: Sensor, width_rad: float
+) -> BoolArray:
+    """Return which rays (n,) can have an edge of depth within their beam.
 
     Parameters
     ----------
@@ -71,29 +75,44 @@ def find_edges(direction: FloatArray, range_m: FloatArray, sensor: Sensor) -> Bo
         Of these rays, flat.
     sensor : sensors.Sensor
         Whose rings say which beams are neighbours.
+    width_rad : float
+        Of the beam.
 
     Returns
     -------
     (n,) bool
+        Those that differ in depth from a neighbour, and those so near to one that does.
     """
     order = np.argsort(sensor.ring, kind="stable")
     depth_m = range_m.reshape(direction.shape[:2])[:, order]
     rays = direction[:, order]
     is_edge = np.zeros(depth_m.shape, bool)
-    for before, after in ((np.s_[:-1], np.s_[1:]), (np.s_[:, :-1], np.s_[:, 1:])):
-        step = rays[after] - rays[before]
-        angle_rad = np.sqrt(np.einsum("cbi,cbi->cb", step, step))
-        nearer_m = np.minimum(depth_m[before], depth_m[after])
-        # beside a ray that nothing returns there is nothing to mix with
-        with np.errstate(invalid="ignore"):
-            apart_m = np.abs(depth_m[after] - depth_m[before])
-        limit_m = np.maximum(_EDGE_M, _EDGE_SLOPE * angle_rad * nearer_m)
-        is_step = (apart_m > limit_m) & np.isfinite(apart_m)
-        is_edge[before] |= is_step
-        is_edge[after] |= is_step
+    for axis in (0, 1):
+        if depth_m.shape[axis] > 1:
+            is_edge |= _edges_along(axis, rays, depth_m, width_rad)
     unordered = np.empty_like(is_edge)
     unordered[:, order] = is_edge
     return unordered.ravel()
+
+
+def _edges_along(axis: int, rays: FloatArray, depth_m: FloatArray, width_rad: float) -> BoolArray:
+    """Return which rays (c, b) are at or near a step of depth from column to column or up."""
+    n = depth_m.shape[axis]
+    step = np.diff(rays, axis=axis)
+    angle_rad = np.sqrt(np.einsum("cbi,cbi->cb", step, step))
+    before_m, after_m = np.take(depth_m, range(n - 1), axis), np.take(depth_m, range(1, n), axis)
+    # beside a ray that nothing returns there is nothing to mix with
+    with np.errstate(invalid="ignore"):
+        apart_m = np.abs(after_m - before_m)
+    limit_m = np.maximum(_EDGE_M, _EDGE_SLOPE * angle_rad * np.minimum(before_m, after_m))
+    is_step = (apart_m > limit_m) & np.isfinite(apart_m)
+    # so many rays to either side have the step within half their beam
+    reach = max(int(np.ceil(width_rad / 2 / max(np.median(angle_rad), _LEAST_RAD))), 1)
+    counts = np.cumsum(is_step, axis=axis)
+    counts = np.concatenate([np.zeros_like(np.take(counts, [0], axis)), counts], axis)
+    row = np.arange(n)
+    upto = np.take(counts, np.minimum(row + reach, n - 1), axis)
+    return upto > np.take(counts, np.maximum(row - reach, 0), axis)
 
 
 def jitter_rays(
