@@ -10,45 +10,21 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.errors import StageError
 from scanplan.geometry.tolerances import SAME_M
+from scanplan.lab.buildings.details.things import (
+    DrawnCeiling,
+    DrawnColumn,
+    DrawnFacade,
+    DrawnFurniture,
+    DrawnGround,
+    DrawnMirror,
+    DrawnOpening,
+    DrawnPlatform,
+    DrawnStairs,
+    DrawnVoid,
+    DrawnWall,
+)
 from scanplan.lab.buildings.tolerances import DRAWN_M
 from scanplan.types import FloatArray
-
-
-@dataclass(frozen=True)
-class DrawnWall:
-    """A wall: its centreline, thickness and height above the floor."""
-
-    line_m: LineString
-    thickness_m: float
-    height_m: float
-
-
-@dataclass(frozen=True)
-class DrawnOpening:
-    """A hole through a wall: its stretch of the centreline, its edges above the floor.
-
-    A pane of glass stands in it if it is glazed.
-    """
-
-    line_m: LineString
-    thickness_m: float
-    sill_m: float
-    lintel_m: float
-    type: str
-    glazed: bool = False
-
-    @property
-    def pane_m(self) -> Polygon:
-        """The ground below its pane, as thick as double glazing."""
-        return Polygon(self.line_m.buffer(0.01, cap_style="flat"))
-
-
-@dataclass(frozen=True)
-class DrawnFurniture:
-    """A box on the floor."""
-
-    footprint_m: Polygon
-    height_m: float
 
 
 @dataclass(frozen=True)
@@ -65,6 +41,12 @@ class DrawnFloor:
         A name and a point inside the room that bears it.
     waypoints_m : (n, 2) float64, n >= 2, or None
         The corners of the rover's way, where one is drawn.
+    columns, ceilings, voids, stairs, platforms, mirrors : tuples
+        Of the things that their names say; `ceilings` holds beams, too.
+    polished_m : tuple of Polygon
+        Where the floor is polished.
+    grounds, facades : tuples
+        What is seen outside.
     """
 
     height_m: float
@@ -73,6 +55,28 @@ class DrawnFloor:
     furniture: tuple[DrawnFurniture, ...]
     room_names: tuple[tuple[str, Point], ...]
     waypoints_m: FloatArray | None
+    columns: tuple[DrawnColumn, ...] = ()
+    ceilings: tuple[DrawnCeiling, ...] = ()
+    voids: tuple[DrawnVoid, ...] = ()
+    stairs: tuple[DrawnStairs, ...] = ()
+    platforms: tuple[DrawnPlatform, ...] = ()
+    mirrors: tuple[DrawnMirror, ...] = ()
+    polished_m: tuple[Polygon, ...] = ()
+    grounds: tuple[DrawnGround, ...] = ()
+    facades: tuple[DrawnFacade, ...] = ()
+
+    @property
+    def is_detailed(self) -> bool:
+        """Whether it has more than walls, holes, panes in them and nameless furniture."""
+        things = (*self.columns, *self.ceilings, *self.voids, *self.stairs, *self.platforms)
+        around = (*self.mirrors, *self.polished_m, *self.grounds, *self.facades)
+        return bool(
+            things
+            or around
+            or any(o.leaf or o.frame_m > 0 for o in self.openings)
+            or any(f.type or f.base_m > 0 for f in self.furniture)
+            or any(w.is_glass or w.is_curved or w.end_thickness_m for w in self.walls)
+        )
 
 
 def cut_walls(plan: DrawnFloor, z_m: float) -> BaseGeometry:

@@ -12,7 +12,10 @@ from scanplan.geometry.tolerances import SAME_M
 from scanplan.lab.buildings import drawn_floor
 from scanplan.types import FloatArray, IntArray
 
-SURFACES = ("wall", "floor", "ceiling", "furniture", "glass", "door", "other")
+SURFACES = (
+    *("wall", "floor", "ceiling", "furniture", "glass", "door", "other"),
+    *("mirror", "polished"),
+)
 
 Band = tuple[float, float, BaseGeometry]
 """Lower edge, upper edge and section of a slab."""

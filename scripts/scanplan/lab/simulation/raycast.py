@@ -19,6 +19,8 @@ REFLECTIVITY = {
     "door": 60.0,
     "other": 50.0,
     "person": 40.0,
+    "mirror": 10.0,
+    "polished": 20.0,
 }
 
 
