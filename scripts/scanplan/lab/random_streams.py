@@ -19,6 +19,7 @@ class RandomStream(IntEnum):
     LOCALISER_JUMPS = 8
     ROUTE_START = 9
     CLUTTER = 10
+    LEAVES = 30
 
 
 def open_stream(seed: int, stream: RandomStream, *index: int) -> np.random.Generator:

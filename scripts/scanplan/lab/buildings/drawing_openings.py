@@ -4,8 +4,8 @@ import math
 from collections.abc import Sequence
 from itertools import pairwise
 
-import shapely
 from shapely import LineString, Point
+from shapely.ops import substring
 
 from scanplan.errors import StageError
 from scanplan.lab.buildings.details.feature_reading import DrawnPart
@@ -41,6 +41,7 @@ def read_opening(part: DrawnPart, walls: Sequence[DrawnWall]) -> DrawnOpening:
         glazed=glazed,
         frame_m=part.number("frame_m", 0.0, max(widest_m, 0.0), default=0.0),
         bow_m=bow_m,
+        in_glass=wall.is_glass,
         leaf=_read_leaf(part, kind, thickness_m, glazed=glazed) if part.has("leaf") else None,
     )
 
@@ -120,8 +121,8 @@ def _depth_there(wall: DrawnWall, line_m: LineString) -> tuple[float, float]:
     The line is the chord of a curve's stretch.
     """
     if wall.is_curved:
-        stretch_m = [wall.line_m.project(Point(xy)) for xy in line_m.coords]
-        curve = shapely.ops.substring(wall.line_m, *stretch_m)
+        start_m, end_m = (wall.line_m.project(Point(xy)) for xy in line_m.coords)
+        curve = substring(wall.line_m, start_m, end_m)
         bow_m = max(line_m.distance(Point(xy)) for xy in curve.coords)
         return wall.thickness_m, bow_m
     if wall.end_thickness_m is None:

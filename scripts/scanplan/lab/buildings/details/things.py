@@ -98,6 +98,8 @@ class DrawnOpening:
     bow_m : float
         How far beyond half the thickness its wall reaches somewhere along the line, as it bends or
         grows thicker.
+    in_glass : bool
+        Whether its wall is a pane.
     leaf : DrawnLeaf or None
     """
 
@@ -109,6 +111,7 @@ class DrawnOpening:
     glazed: bool = False
     frame_m: float = 0.0
     bow_m: float = 0.0
+    in_glass: bool = False
     leaf: DrawnLeaf | None = None
 
     @property
