@@ -29,6 +29,7 @@ class RandomStream(IntEnum):
     ODOMETRY_WALK = 27
     SLIP = 28
     STANDING = 29
+    LEAVES = 30
 
 
 def open_stream(seed: int, stream: RandomStream, *index: int) -> np.random.Generator:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from shapely.geometry.base import BaseGeometry
 
-from scanplan.lab.buildings import building, building_route, clutter
+from scanplan.lab.buildings import building, building_route, clutter, random_leaves
 from scanplan.lab.buildings.truth import Feature
 from scanplan.lab.evaluation import visible_faces
 from scanplan.lab.simulation import (
@@ -38,6 +38,7 @@ def prepare_site(
     clearance_m: float,
     chairs: int,
     doors_ajar: float,
+    leaves: float = 0.0,
     **reading: Any,
 ) -> building.Building:
     """Read a building and find the rover's way through it.
@@ -53,6 +54,8 @@ def prepare_site(
         See `building_route.plan_building_route`.
     chairs, doors_ajar
         See `clutter.add_clutter`.
+    leaves
+        Share of doors, see `random_leaves.hang_leaves`.
     **reading
         Settings of `building.load_building`; `planar` for a 2-D scanner.
 
@@ -62,6 +65,17 @@ def prepare_site(
         With a way.
     """
     site = building.load_building(data, source, slice_height_m=mount["height_m"], **reading)
+    if leaves > 0:
+        given_m = site.waypoints_m if waypoints_m is None else waypoints_m
+        site = random_leaves.hang_leaves(
+            site,
+            share=leaves,
+            seed=seed,
+            slice_height_m=mount["height_m"],
+            planar=reading.get("planar", False),
+            waypoints_m=given_m if route == "given" else None,
+            clearance_m=max(building_route.ROVER_RADIUS_M, abs(mount["forward_m"])),
+        )
     driven = building_route.plan_building_route(
         site,
         source,
