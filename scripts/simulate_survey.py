@@ -43,7 +43,9 @@ def simulate_survey(
         place, seed=seed, mount=mount, sensor=sensor, errors=errors, drive=drive, people=people
     )
     errors_of_poses = {key: value for key, value in localiser.items() if key != "present"}
-    belief = survey_setup.survey_belief(survey, odometry, **errors_of_poses)
+    belief = survey_setup.survey_belief(
+        survey, odometry, sway_known=drive["sway_known"], **errors_of_poses
+    )
     scans = log.report_progress(
         sweeps.simulate_scans(survey, threads=threads), "simulate_survey", total=len(survey.t_ns)
     )

@@ -172,7 +172,8 @@ def _wander(
 
 
 def _duration_s(corners_m: FloatArray, simulated: Settings) -> float:
-    return float(rover.plan_drive(corners_m, **simulated["drive"]).t_s[-1])
+    rates = {key: simulated["drive"][key] for key in ("speed_m_s", "turn_rate_deg_s")}
+    return float(rover.plan_drive(corners_m, **rates).t_s[-1])
 
 
 def _drive(

@@ -39,7 +39,7 @@ BAD_FEATURES = [
     ),
     (drawn.door(2, -0.1, glazed="yes"), "glazed is 'yes'; expected true or false"),
     (drawn.feature("room", "Point", [9, 9], name="attic"), "'attic' at .* is not enclosed"),
-    (drawn.feature("stairs", "Point", [1, 1]), "kind is 'stairs'; expected one of wall"),
+    (drawn.feature("pond", "Point", [1, 1]), "kind is 'pond'; expected one of wall"),
     (drawn.feature("wall", "Point", [1, 1], thickness_m=0.1), "is a Point"),
     (drawn.feature("wall", "Circle", [1, 1], thickness_m=0.1), "cannot be read"),
     ({"type": "Feature", "properties": {"kind": "wall"}}, "cannot be read"),

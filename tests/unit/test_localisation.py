@@ -20,13 +20,23 @@ SURE = {
     "max_jump_m": 0.3,
     "seed": 1,
 }
-WHEELS = {"scale_share": 0.01, "drift_deg_per_m": 0.0}
+WHEELS = {
+    "scale_share": 0.01,
+    "drift_deg_per_m": 0.0,
+    "random_m": 0.0,
+    "random_deg": 0.0,
+    "slips_per_m": 0.0,
+    "max_slip_m": 0.2,
+    "max_slip_deg": 5.0,
+}
+CONVERGED = {"start_off_m": 0.0, "start_off_deg": 0.0, "converge_m": 5.0}
+KNOWING = {"start": CONVERGED, "slam": None, "sway": None}
 SPEAKING = {"update_distance_m": 0.25, "update_angle_deg": 11.5, "transform_tolerance_s": 0.1}
 
 
 def believe(**changes):
     return localisation.simulate_belief(
-        TICKS, TRUE, odometry=WHEELS, **{**SURE, **SPEAKING, **changes}
+        TICKS, TRUE, odometry=WHEELS, **{**SURE, **SPEAKING, **KNOWING, **changes}
     )
 
 
@@ -43,7 +53,8 @@ def test_localiser_speaks_first_last_and_after_enough_motion():
 def test_a_sure_localiser_tells_the_truth():
     belief = believe()
     np.testing.assert_allclose(belief.map_from_base, TRUE[belief.update], atol=1e-12)
-    assert (belief.deviation_m, belief.deviation_rad, belief.ahead_ns) == (0, 0, 100_000_000)
+    assert not belief.deviation_m.any() and not belief.deviation_rad.any()
+    assert belief.ahead_ns == 100_000_000
 
 
 def test_white_noise_has_its_deviation_and_no_memory():
@@ -94,8 +105,8 @@ def test_a_jump_decays_with_the_drifts_time(monkeypatch):
 
 def test_stated_deviation_is_that_of_noise_and_drift():
     belief = believe(noise_m=0.03, drift_m=0.04, noise_deg=0.6, drift_deg=0.8)
-    assert belief.deviation_m == pytest.approx(0.05)
-    assert belief.deviation_rad == pytest.approx(np.radians(1.0))
+    np.testing.assert_allclose(belief.deviation_m, 0.05)
+    np.testing.assert_allclose(belief.deviation_rad, np.radians(1.0))
 
 
 def test_transform_holds_what_the_last_update_said():
@@ -107,29 +118,37 @@ def test_transform_holds_what_the_last_update_said():
         np.testing.assert_allclose(told, belief.map_from_base[last], atol=1e-12)
 
 
-def test_odometry_starts_at_zero_and_drifts_slowly():
-    drifting = localisation.integrate_odometry(TRUE, **WHEELS, seed=5)
-    np.testing.assert_allclose(drifting[0], np.eye(4), atol=1e-12)
-    off_m = np.linalg.norm(drifting[-1, :2, 3] - TRUE[-1, :2, 3])
-    assert 0.001 < off_m < 0.15
+def test_a_wrong_start_fades_over_its_way():
+    line = rover.planar_poses([[0, 0], [1, 0], [2, 0], [4, 0], [6, 0]], np.zeros(5))
+    off = localisation.draw_start(line, start_off_m=2.0, start_off_deg=30.0, converge_m=4.0, seed=1)
+    off_m = np.hypot(off[:, 0], off[:, 1])
+    # half a wave of the cosine over 4 m
+    half = (1 + np.sqrt(0.5)) / 2
+    np.testing.assert_allclose(off_m, [2, 2 * half, 1, 0, 0], atol=1e-12)
+    np.testing.assert_allclose(np.degrees(np.abs(off[:, 2])), [30, 30 * half, 15, 0, 0], atol=1e-9)
 
 
-def test_heading_of_odometry_drifts_with_the_way():
-    straight = rover.planar_poses([[0, 0], [1, 0], [2, 0], [4, 0]], np.zeros(4))
-    drifting = localisation.integrate_odometry(
-        straight, scale_share=0.0, drift_deg_per_m=0.5, seed=1
-    )
-    np.testing.assert_allclose(np.degrees(se3.pose_yaw_rad(drifting)), [0, 0.5, 1, 2], atol=1e-9)
+def test_a_localiser_says_that_it_has_not_converged():
+    start = {"start_off_m": 1.0, "start_off_deg": 10.0, "converge_m": 1.0}
+    belief = believe(start=start)
+    off_m = np.linalg.norm((belief.map_from_base - TRUE[belief.update])[:, :2, 3], axis=1)
+    np.testing.assert_allclose(belief.deviation_m, off_m, atol=1e-9)
+    assert off_m[0] == pytest.approx(1.0) and off_m[-1] < 1e-9
 
 
-def test_odometry_without_error_is_the_motion_from_the_start():
-    turned = rover.plan_drive([[1, 1], [1, 3], [2, 3]], speed_m_s=0.5, turn_rate_deg_s=60.0)
-    true = rover.drive_poses(turned, rover.tick_stamps(turned, 100_000_000))
-    np.testing.assert_allclose(
-        localisation.integrate_odometry(true, scale_share=0.0, drift_deg_per_m=0.0, seed=5),
-        se3.invert_pose(true[0]) @ true,
-        atol=1e-9,
-    )
+def test_slam_has_no_drift_of_a_particle_filter():
+    walk = {"walk_m": 0.0, "walk_deg": 0.0, "loop_late_m": 1.0}
+    belief = believe(slam=walk, drift_m=0.5, drift_deg=5.0, jumps_per_min=60.0)
+    np.testing.assert_allclose(belief.map_from_base, TRUE[belief.update], atol=1e-9)
+
+
+def test_sway_that_is_known_is_in_both_poses_and_not_in_the_correction():
+    sway = np.tile(np.eye(4), (len(TRUE), 1, 1))
+    sway[:, 2, 3] = 0.03 * np.sin(np.arange(len(TRUE)))
+    belief, level = believe(sway=sway), believe()
+    np.testing.assert_allclose(belief.map_from_base, (TRUE @ sway)[belief.update], atol=1e-12)
+    np.testing.assert_allclose(belief.map_from_odom, level.map_from_odom, atol=1e-12)
+    np.testing.assert_allclose(belief.odom_from_base, level.odom_from_base @ sway, atol=1e-12)
 
 
 def _correlation(error, steps):

@@ -4,7 +4,13 @@ import numpy as np
 import pytest
 import shapely
 
-from scanplan.lab.simulation.people import Person, find_person_hits, merge_hits, simulate_walkers
+from scanplan.lab.simulation.people import (
+    Person,
+    find_person_hits,
+    list_apart,
+    merge_hits,
+    simulate_walkers,
+)
 from scanplan.lab.simulation.raycast import RayHits
 
 STANDING = Person(np.array([0.0, 1.0]), np.array([[3.0, 0.0], [3.0, 0.0]]))
@@ -53,7 +59,8 @@ def test_the_nearer_person_is_met():
 
 
 def test_whoever_stands_at_the_sensor_steps_aside():
-    assert np.isinf(meet([STANDING], [[1, 0, 0]], origin=(2.9, 0.0, 0.4)).range_m).all()
+    apart = [list_apart([STANDING], np.zeros(1), np.array([[x_m, 0, 0.4]])) for x_m in (2.9, 2.6)]
+    assert apart == [(), (STANDING,)]
 
 
 def test_in_front_takes_what_comes_first():

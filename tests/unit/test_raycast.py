@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 
 from helpers import simple_rooms as drawn
 from scanplan.lab.buildings import extrusion
-from scanplan.lab.simulation import raycast, rover, sensors
+from scanplan.lab.simulation import raycast, rover, sensor_models
 
 SIZE_M = np.array([4.0, 3.0, 2.5])
 MESH = extrusion.make_building_mesh(drawn.plan())
-DIRECTION = sensors.make_vlp16(
+DIRECTION = sensor_models.make_vlp16(
     360, rate_hz=10.0, sweep=False, min_range_m=0.0, max_range_m=100.0
 ).direction
 

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from scanplan.errors import StageError
-from scanplan.lab.simulation import sensors
+from scanplan.lab.simulation import sensor_models, sensors
 
 COMMON = {"rate_hz": 10.0, "sweep": True, "min_range_m": 0.3, "max_range_m": 100.0}
 
 
 def test_vlp16_has_its_sixteen_beams_and_turns_clockwise():
-    sensor = sensors.make_vlp16(4, **COMMON)
+    sensor = sensor_models.make_vlp16(4, **COMMON)
     np.testing.assert_allclose(np.linalg.norm(sensor.direction, axis=2), 1, rtol=1e-6)
     elevation_deg = np.degrees(np.arcsin(sensor.direction[..., 2]))
     np.testing.assert_allclose(elevation_deg, np.tile(-15 + 2.0 * sensor.ring, (4, 1)), atol=1e-4)
@@ -21,8 +21,12 @@ def test_vlp16_has_its_sixteen_beams_and_turns_clockwise():
 
 
 def test_a_lidars_stamp_is_its_last_firing():
-    np.testing.assert_allclose(sensors.make_vlp16(4, **COMMON).time_s, [-0.075, -0.05, -0.025, 0])
-    np.testing.assert_array_equal(sensors.make_vlp16(4, **{**COMMON, "sweep": False}).time_s, 0)
+    np.testing.assert_allclose(
+        sensor_models.make_vlp16(4, **COMMON).time_s, [-0.075, -0.05, -0.025, 0]
+    )
+    np.testing.assert_array_equal(
+        sensor_models.make_vlp16(4, **{**COMMON, "sweep": False}).time_s, 0
+    )
 
 
 def test_a_lidar_of_any_beams():
@@ -61,13 +65,13 @@ def test_a_whole_turn_has_no_beam_twice():
 @pytest.mark.parametrize(
     ("make", "changes"),
     [
-        (lambda **c: sensors.make_vlp16(0, **c), {}),
+        (lambda **c: sensor_models.make_vlp16(0, **c), {}),
         (lambda **c: sensors.make_lidar([], 8, **c), {}),
         (lambda **c: sensors.make_laser(1, 270.0, **c), {}),
         (lambda **c: sensors.make_laser(10, 400.0, **c), {}),
-        (lambda **c: sensors.make_vlp16(8, **c), {"max_range_m": 0.2}),
-        (lambda **c: sensors.make_vlp16(8, **c), {"min_range_m": -1.0}),
-        (lambda **c: sensors.make_vlp16(8, **c), {"rate_hz": 0.0}),
+        (lambda **c: sensor_models.make_vlp16(8, **c), {"max_range_m": 0.2}),
+        (lambda **c: sensor_models.make_vlp16(8, **c), {"min_range_m": -1.0}),
+        (lambda **c: sensor_models.make_vlp16(8, **c), {"rate_hz": 0.0}),
     ],
 )
 def test_no_sensor(make, changes):
@@ -80,7 +84,7 @@ def test_no_sensor(make, changes):
 )
 def test_elevations_belong_to_a_lidar_alone(model, elevations_deg):
     with pytest.raises(StageError, match="elevations_deg"):
-        sensors.make_sensor(
+        sensor_models.make_sensor(
             model, n_azimuth=8, elevations_deg=elevations_deg, field_deg=270.0, **COMMON
         )
 
@@ -90,4 +94,61 @@ def test_a_laser_knows_its_field(field_deg):
     assert np.degrees(sensors.make_laser(181, field_deg, **COMMON).field_rad) == pytest.approx(
         field_deg, abs=1e-3
     )
-    assert sensors.make_vlp16(8, **COMMON).field_rad == 2 * np.pi
+    assert sensor_models.make_vlp16(8, **COMMON).field_rad == 2 * np.pi
+
+
+def elevations_deg(sensor):
+    return np.degrees(np.arcsin(sensor.direction[..., 2]))
+
+
+def make(model, n_azimuth=900):
+    return sensor_models.make_sensor(
+        model, n_azimuth=n_azimuth, elevations_deg=None, field_deg=270.0, **COMMON
+    )
+
+
+def test_ouster_spreads_64_beams_over_90_degrees():
+    beams = elevations_deg(make("ouster64"))[0]
+    np.testing.assert_allclose(beams[[0, 63]], [-45, 45], atol=1e-4)
+    np.testing.assert_allclose(np.diff(beams), 90 / 63, atol=1e-4)
+
+
+def test_uneven_beams_crowd_about_the_horizon():
+    beams = elevations_deg(make("uneven32"))[0]
+    assert len(beams) == 32 and (np.diff(beams) > 0).all()
+    np.testing.assert_allclose(beams[[0, 31]], [-25, 15], atol=1e-4)
+    assert (np.abs(beams) < 5).sum() == 22 and np.diff(beams).min() == pytest.approx(
+        0.333, abs=1e-3
+    )
+
+
+def test_a_rosette_looks_up_never_repeats_and_fills_its_field():
+    sensor = make("rosette", 5000)
+    turns = [sensors.turn_directions(sensor, turn) for turn in range(3)]
+    np.testing.assert_array_equal(turns[0], sensor.direction)
+    assert sensor.direction.shape == (5000, 4, 3) and len(sensor.time_s) == 5000
+    for direction in turns:
+        np.testing.assert_allclose(np.linalg.norm(direction, axis=2), 1, rtol=1e-6)
+        height_deg = np.degrees(np.arcsin(direction[..., 2]))
+        assert -7.001 < height_deg.min() < -6.9 and 51.9 < height_deg.max() < 52.001
+        # evenly up and down: a quarter of the field holds a quarter of the rays
+        assert (height_deg < -7 + 59 / 4).mean() == pytest.approx(0.25, abs=0.01)
+    assert np.abs(turns[0] - turns[1]).max() > 0.1 and np.abs(turns[1] - turns[2]).max() > 0.1
+
+
+def test_only_a_rosettes_turns_differ():
+    sensor = make("ouster64")
+    assert sensors.turn_directions(sensor, 7) is sensor.direction
+
+
+def test_scans_of_a_rosette_fill_what_one_leaves_out():
+    def seen(n_turns):
+        rays = np.concatenate([sensors.turn_directions(sensor, turn) for turn in range(n_turns)])
+        azimuth, height = np.degrees(
+            [np.arctan2(rays[..., 1], rays[..., 0]), np.arcsin(rays[..., 2])]
+        )
+        cells = np.floor([azimuth.ravel() / 2, height.ravel() / 2]).astype(int)
+        return len(np.unique(cells, axis=1).T)
+
+    sensor = make("rosette")
+    assert seen(10) > 1.7 * seen(1)

@@ -7,7 +7,7 @@ import pytest
 
 from helpers import simple_rooms as drawn
 from scanplan.lab.buildings import extrusion
-from scanplan.lab.simulation import raycast, rover, sensor_errors, sensors, sweeps
+from scanplan.lab.simulation import raycast, rover, sensor_errors, sensor_models, sensors, sweeps
 from scanplan.lab.simulation.people import Person
 
 MESH = extrusion.make_building_mesh(drawn.plan())
@@ -19,7 +19,7 @@ MOUNT = rover.mount_sensor(height_m=0.4, forward_m=0.1, yaw_deg=0.0)
 
 def vlp16(n_azimuth=360, **changes):
     common = {"rate_hz": 10.0, "sweep": True, "min_range_m": 0.0, "max_range_m": 100.0}
-    return sensors.make_vlp16(n_azimuth, **{**common, **changes})
+    return sensor_models.make_vlp16(n_azimuth, **{**common, **changes})
 
 
 def survey(sensor=None, errors=EXACT, t_s=(1.0,), people=(), seed=0, mesh=MESH):

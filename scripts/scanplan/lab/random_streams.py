@@ -19,6 +19,17 @@ class RandomStream(IntEnum):
     LOCALISER_JUMPS = 8
     ROUTE_START = 9
     CLUTTER = 10
+    MIRROR = 20
+    POLISHED = 21
+    MIXED = 22
+    STRAY = 23
+    SWAY = 24
+    SLAM = 25
+    START = 26
+    ODOMETRY_WALK = 27
+    SLIP = 28
+    STANDING = 29
+    LEAVES = 30
 
 
 def open_stream(seed: int, stream: RandomStream, *index: int) -> np.random.Generator:

@@ -1,6 +1,6 @@
 """A building of any kind of file as a simulation needs it: surfaces, truth, ground to drive on."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -39,6 +39,8 @@ class Building:
         The way that the file gives.
     notes : tuple of str
         What is odd in the file and used all the same.
+    doorways : tuple of (int, DrawnOpening)
+        Doors without a leaf: row among the openings of the truth, and the hole.
     """
 
     mesh: extrusion.Mesh
@@ -48,6 +50,7 @@ class Building:
     obstacles_m: BaseGeometry
     waypoints_m: FloatArray | None
     notes: tuple[str, ...] = ()
+    doorways: tuple[storeys.Doorway, ...] = ()
 
 
 def load_building(
@@ -126,6 +129,8 @@ def building_of_model(
 ) -> Building:
     """Return one storey of a building model that is read already; as `load_building` otherwise."""
     storey = storeys.storey_of_model(model, index, doors=doors, windows=windows)
+    if doors == "closed":
+        storey = replace(storey, doorways=())
     if not 0 < slice_height_m < storey.height_m:
         raise StageError(
             f"{source}: the sensor is {slice_height_m:g} m above the floor, and the next storey's"
@@ -144,6 +149,11 @@ def _building_of_drawing(
         floor_m=drawn_floor.floor_footprint(plan),
         obstacles_m=drawn_floor.floor_obstacles(plan, slice_height_m),
         waypoints_m=plan.waypoints_m,
+        doorways=tuple(
+            (row, opening)
+            for row, opening in enumerate(plan.openings)
+            if opening.type == "door" and opening.leaf is None and not opening.glazed
+        ),
     )
 
 
@@ -196,4 +206,5 @@ def _building_of_storey(
         obstacles_m=cut.obstacles_m,
         waypoints_m=None,
         notes=(*notes, *cut.notes),
+        doorways=storey.doorways,
     )

@@ -31,17 +31,19 @@ def add_clutter(
     chairs : int, >= 0
         On the whole floor; fewer where no place is left for them.
     doors_ajar : float, 0 to 1
-        Share of the doors whose leaf stands open; the others have none.
+        Share of the doors without a leaf in which one stands open; the others have none.
     seed : int
     """
     generator = open_stream(seed, RandomStream.CLUTTER)
     way = LineString(site.waypoints_m).buffer(1.2 * ROVER_RADIUS_M)
     taken = shapely.union_all([way, site.obstacles_m])
     shapely.prepare(taken)
+    openings = [feature for feature in site.truth if feature[1]["kind"] == "opening"]
+    hung = {values["opening"] for _, values in site.truth if values["kind"] == "leaf"}
     doors = [
         line
-        for line, values in site.truth
-        if values["kind"] == "opening" and values["type"] == "door"
+        for row, (line, values) in enumerate(openings)
+        if values["type"] == "door" and row not in hung
     ]
     leaves = list(_draw_leaves(doors, doors_ajar, way, generator))
     legs = [

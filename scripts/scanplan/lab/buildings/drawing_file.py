@@ -1,50 +1,20 @@
 """Reading a drawn floor: GeoJSON in local metres."""
 
 import json
-import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from itertools import pairwise
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import shapely
-from shapely import LineString, Point
-from shapely.geometry import shape
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.errors import StageError
-from scanplan.lab.buildings import drawn_floor
-from scanplan.lab.buildings.drawn_floor import (
-    DrawnFloor,
-    DrawnFurniture,
-    DrawnOpening,
-    DrawnWall,
-)
-from scanplan.lab.buildings.tolerances import DRAWN_M, MAX_EXTENT_M
+from scanplan.lab.buildings import drawing_openings, drawn_floor
+from scanplan.lab.buildings.details import feature_reading, thing_reading
+from scanplan.lab.buildings.details.feature_reading import DrawnPart
+from scanplan.lab.buildings.drawn_floor import DrawnFloor
+from scanplan.lab.buildings.tolerances import MAX_EXTENT_M
 from scanplan.types import FilePath
-
-OPENING_TYPES = ("door", "window", "passage")
-_GEOMETRIES = {
-    "wall": ("LineString",),
-    "opening": ("Point", "LineString"),
-    "room": ("Point", "Polygon"),
-    "furniture": ("Polygon",),
-    "waypoints": ("LineString",),
-}
-
-
-@dataclass(frozen=True)
-class _DrawnPart:
-    """One feature: its kind, geometry and properties, and how errors name it."""
-
-    kind: str
-    geometry_m: Any
-    values: Mapping[str, Any]
-    where: str
-
-    def number(self, name: str, low: float, high: float, default: float | None = None) -> float:
-        return _number(self.values, name, low, high, self.where, default)
 
 
 def parse_drawing(text: str | bytes, source: FilePath) -> DrawnFloor:
@@ -53,12 +23,9 @@ def parse_drawing(text: str | bytes, source: FilePath) -> DrawnFloor:
     Parameters
     ----------
     text : str or bytes
-        GeoJSON FeatureCollection, coordinates in metres. Every feature has a property `kind`:
-        `wall` (LineString with `thickness_m` and optionally `height_m`), `opening` (Point with
-        `width_m`, or LineString along a wall; with `type`, `sill_m`, `lintel_m`, and `glazed`
-        where a pane is in it, otherwise it is empty), `furniture`
-        (Polygon with `height_m`), `room` (Point or Polygon with `name`), and at most one
-        `waypoints` (LineString). The member `height_m` of the collection is the ceiling (2.7).
+        GeoJSON FeatureCollection, coordinates in metres; its member `height_m` is the main ceiling
+        (2.7). Every feature has a property `kind`; its other properties are as below, with their
+        defaults, heights in metres above the floor.
     source : path-like
         What errors name as their origin.
 
@@ -70,31 +37,82 @@ def parse_drawing(text: str | bytes, source: FilePath) -> DrawnFloor:
     ------
     StageError
         If the text is no such collection, is not in metres, or an opening is on no wall, or a
-        room's name in no room.
+        room's name in no room; if a property is not what it may be.
+
+    Notes
+    -----
+    The building:
+
+    - `wall` (LineString): `thickness_m`; `height_m` (the ceiling); `end_thickness_m` at the last
+      of two vertices, where the sides are not parallel; `material` `wall` or `glass`, a pane of
+      0.05 m at most; `curved` (false): the vertices, 0.3 m apart at most, follow a curve.
+    - `opening` (Point with `width_m`, or LineString, along a wall): `type` `door`, `window` or
+      `passage`; `sill_m` (0), `lintel_m`; `glazed` (false): a pane is in it, otherwise it is empty;
+      `frame_m` (0): width of a frame at both jambs and the lintel, as deep as the wall. Of doors
+      `leaf` `hinged`, `double` or `sliding` (none), with `open_deg` (0: shut) or, of a sliding
+      one, `open_share` (0) of its width, to the hinge's end; `hinge` `start` or `end` of the
+      opening in its wall's direction; `side` `left` or `right` of that, where it opens to;
+      `leaf_thickness_m` (0.04), `leaf_glass` (false); `recess_m`: depth of a shut leaf's middle
+      behind the wall's face on that side (flush with the face; a sliding leaf hangs before it).
+      A leaf has 5 mm of play on all sides.
+    - `column` (Polygon): `type` `column` or `pilaster`, `height_m` (the ceiling).
+    - `ceiling` (Polygon): solid from `height_m` at its first vertex, rising by `rise_x`, `rise_y`
+      (0, metres a metre), to the main ceiling. `beam` (Polygon): the same from `underside_m`.
+    - `void` (Polygon): no floor, down to a floor `depth_m` (3.0) below. `stairs` (Polygon of four
+      corners, from its first edge to the opposite one): `rise_m`, negative into a void, `steps`.
+      `platform` (Polygon): `height_m`. `floor` (Polygon): `polished` (false).
+    - `furniture` (Polygon): `height_m`, `base_m` (0) of its underside, `type` (any word; only
+      furniture with a type is told by the truth). `mirror` (LineString along a wall's face):
+      `sill_m` (0), `lintel_m`.
+    - `room` (Point or Polygon): `name`. At most one `waypoints` (LineString): the rover's way.
+
+    Around it, and no part of its floor, rooms or truth: `ground` (Polygon) at `z_m` (-0.15),
+    `facade` (LineString) from -0.5 m up to `height_m`.
     """
     document = _parse_collection(text, source)
     features = enumerate(document["features"])
-    parts = [_parse_feature(feature, f"{source}: feature {i}") for i, feature in features]
+    parts = [
+        feature_reading.parse_feature(feature, f"{source}: feature {i}") for i, feature in features
+    ]
     _check_extent([part.geometry_m for part in parts], source)
-    height_m = _number(document, "height_m", 1.0, 20.0, source, default=2.7)
-    of_kind = {kind: [part for part in parts if part.kind == kind] for kind in _GEOMETRIES}
-    walls = tuple(_wall(part, height_m) for part in of_kind["wall"])
+    height_m = feature_reading.read_number(document, "height_m", 1.0, 20.0, source, default=2.7)
+    plan = _read_floor(parts, height_m, source)
+    _check_names(plan, source)
+    return plan
+
+
+def _read_floor(parts: Sequence[DrawnPart], height_m: float, source: FilePath) -> DrawnFloor:
+    of_kind: dict[str, list[DrawnPart]] = {kind: [] for kind in feature_reading.GEOMETRIES}
+    for part in parts:
+        of_kind[part.kind].append(part)
+    walls = tuple(thing_reading.read_wall(part, height_m) for part in of_kind["wall"])
     ways = of_kind["waypoints"]
     if not walls or len(ways) > 1:
         raise StageError(
             f"{source}: {len(walls)} walls and {len(ways)} features of kind waypoints;"
             " draw at least one wall and at most one way for the rover"
         )
-    plan = DrawnFloor(
+    read = thing_reading
+    ceilings = [*of_kind["ceiling"], *of_kind["beam"]]
+    voids = tuple(map(read.read_void, of_kind["void"]))
+    polished = [part for part in of_kind["floor"] if part.switch("polished")]
+    return DrawnFloor(
         height_m=height_m,
         walls=walls,
-        openings=tuple(_opening(part, walls) for part in of_kind["opening"]),
-        furniture=tuple(_furniture(part, height_m) for part in of_kind["furniture"]),
-        room_names=tuple(_room_name(part) for part in of_kind["room"]),
+        openings=tuple(drawing_openings.read_opening(o, walls) for o in of_kind["opening"]),
+        furniture=tuple(read.read_furniture(part, height_m) for part in of_kind["furniture"]),
+        room_names=tuple(map(read.read_room_name, of_kind["room"])),
         waypoints_m=shapely.get_coordinates(ways[0].geometry_m) if ways else None,
+        columns=tuple(read.read_column(part, height_m) for part in of_kind["column"]),
+        ceilings=tuple(read.read_ceiling(part, height_m) for part in ceilings),
+        voids=voids,
+        stairs=tuple(read.read_stairs(part, voids) for part in of_kind["stairs"]),
+        platforms=tuple(read.read_platform(part, height_m) for part in of_kind["platform"]),
+        mirrors=tuple(read.read_mirror(part, height_m, walls) for part in of_kind["mirror"]),
+        polished_m=tuple(part.geometry_m for part in polished),
+        grounds=tuple(map(read.read_ground, of_kind["ground"])),
+        facades=tuple(map(read.read_facade, of_kind["facade"])),
     )
-    _check_names(plan, source)
-    return plan
 
 
 def _parse_collection(text: str | bytes, source: FilePath) -> dict[str, Any]:
@@ -112,33 +130,6 @@ def _parse_collection(text: str | bytes, source: FilePath) -> dict[str, Any]:
     return document
 
 
-def _parse_feature(feature: Any, where: str) -> _DrawnPart:
-    values = (feature.get("properties") or {}) if isinstance(feature, dict) else {}
-    kind = values.get("kind") if isinstance(values, dict) else None
-    if not isinstance(kind, str) or kind not in _GEOMETRIES:
-        raise StageError(f"{where}: kind is {kind!r}; expected one of {', '.join(_GEOMETRIES)}")
-    where = f"{where} ({kind})"
-    try:
-        # NaN, which Python's JSON allows, is refused with what else is invalid below
-        with np.errstate(invalid="ignore"):
-            geometry = shapely.force_2d(shape(feature["geometry"]))
-    except (
-        TypeError,
-        ValueError,
-        KeyError,
-        AttributeError,
-        IndexError,
-        shapely.errors.ShapelyError,
-    ) as error:
-        raise StageError(f"{where}: its geometry cannot be read ({error}); draw it again") from None
-    if geometry.geom_type not in _GEOMETRIES[kind] or geometry.is_empty or not geometry.is_valid:
-        raise StageError(
-            f"{where}: is a {geometry.geom_type} ({shapely.is_valid_reason(geometry)});"
-            f" expected a {' or '.join(_GEOMETRIES[kind])}, valid and not empty"
-        )
-    return _DrawnPart(kind, geometry, values, where)
-
-
 def _check_extent(geometries: Sequence[BaseGeometry], source: FilePath) -> None:
     bounds = shapely.total_bounds(geometries) if geometries else np.zeros(4)
     extent_m = float(np.max(bounds[2:] - bounds[:2]))
@@ -147,84 +138,6 @@ def _check_extent(geometries: Sequence[BaseGeometry], source: FilePath) -> None:
             f"{source}: spans {extent_m:g} m, the limit is {MAX_EXTENT_M:g} m;"
             " coordinates must be metres (divide millimetres by 1000)"
         )
-
-
-def _number(
-    values: Mapping[str, Any],
-    name: str,
-    low: float,
-    high: float,
-    where: FilePath,
-    default: float | None = None,
-) -> float:
-    value = values.get(name, default)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
-        raise StageError(
-            f"{where}: {name} is {value!r}; expected a number from {low:g} to {high:g}"
-        )
-    return float(value)
-
-
-def _wall(part: _DrawnPart, ceiling_m: float) -> DrawnWall:
-    return DrawnWall(
-        line_m=LineString(shapely.remove_repeated_points(part.geometry_m)),
-        thickness_m=part.number("thickness_m", 0.01, 2.0),
-        height_m=part.number("height_m", 0.01, ceiling_m, default=ceiling_m),
-    )
-
-
-def _furniture(part: _DrawnPart, ceiling_m: float) -> DrawnFurniture:
-    return DrawnFurniture(part.geometry_m, part.number("height_m", 0.01, ceiling_m))
-
-
-def _room_name(part: _DrawnPart) -> tuple[str, Point]:
-    return str(part.values.get("name", "")), part.geometry_m.representative_point()
-
-
-def _opening(part: _DrawnPart, walls: Sequence[DrawnWall]) -> DrawnOpening:
-    if part.values.get("type") not in OPENING_TYPES:
-        raise StageError(
-            f"{part.where}: type is {part.values.get('type')!r}; expected one of"
-            f" {', '.join(OPENING_TYPES)}"
-        )
-    glazed = part.values.get("glazed", False)
-    if not isinstance(glazed, bool):
-        raise StageError(f"{part.where}: glazed is {glazed!r}; expected true or false")
-    wall, line_m = _place_on_wall(part, walls)
-    sill_m = part.number("sill_m", 0.0, wall.height_m, default=0.0)
-    return DrawnOpening(
-        line_m=line_m,
-        thickness_m=wall.thickness_m,
-        sill_m=sill_m,
-        lintel_m=part.number("lintel_m", sill_m + 0.01, wall.height_m),
-        type=part.values["type"],
-        glazed=glazed,
-    )
-
-
-def _place_on_wall(part: _DrawnPart, walls: Sequence[DrawnWall]) -> tuple[DrawnWall, LineString]:
-    """Return the wall that an opening is in, and its stretch of the wall's centreline."""
-    geometry_m = part.geometry_m
-    is_line = geometry_m.geom_type == "LineString"
-    middle = geometry_m.interpolate(0.5, normalized=True) if is_line else geometry_m
-    runs = [(wall, LineString(pair)) for wall in walls for pair in pairwise(wall.line_m.coords)]
-    wall, run = min(runs, key=lambda pair: pair[1].distance(middle) - pair[0].thickness_m / 2)
-    width_m = geometry_m.length or part.number("width_m", 0.05, 50.0)
-    along_m = run.project(middle)
-    ends = [run.interpolate(max(along_m + side * width_m / 2, 0.0)) for side in (-1, 1)]
-    off_m = max(Point(xy).distance(run) for xy in geometry_m.coords)
-    at = f"at ({middle.x:g}, {middle.y:g})"
-    if off_m > wall.thickness_m / 2 + DRAWN_M:
-        raise StageError(
-            f"{part.where}: {at}, {off_m:.3f} m off the nearest wall's centreline; draw it on a"
-            " wall"
-        )
-    if not math.isclose(ends[0].distance(ends[1]), width_m, abs_tol=DRAWN_M):
-        raise StageError(
-            f"{part.where}: {at}, {width_m:g} m wide, reaches beyond its wall's straight run;"
-            " narrow or move it"
-        )
-    return wall, LineString(ends)
 
 
 def _check_names(plan: DrawnFloor, source: FilePath) -> None:

@@ -10,45 +10,24 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.errors import StageError
 from scanplan.geometry.tolerances import SAME_M
-from scanplan.lab.buildings.tolerances import DRAWN_M
+from scanplan.lab.buildings.details.ceilings import low_ground
+from scanplan.lab.buildings.details.leaves import stand_leaves
+from scanplan.lab.buildings.details.things import (
+    DrawnCeiling,
+    DrawnColumn,
+    DrawnFacade,
+    DrawnFurniture,
+    DrawnGround,
+    DrawnMirror,
+    DrawnOpening,
+    DrawnPlatform,
+    DrawnStairs,
+    DrawnVoid,
+    DrawnWall,
+)
+from scanplan.lab.buildings.ground import HEADROOM_M
+from scanplan.lab.buildings.tolerances import DRAWN_M, ROOM_M
 from scanplan.types import FloatArray
-
-
-@dataclass(frozen=True)
-class DrawnWall:
-    """A wall: its centreline, thickness and height above the floor."""
-
-    line_m: LineString
-    thickness_m: float
-    height_m: float
-
-
-@dataclass(frozen=True)
-class DrawnOpening:
-    """A hole through a wall: its stretch of the centreline, its edges above the floor.
-
-    A pane of glass stands in it if it is glazed.
-    """
-
-    line_m: LineString
-    thickness_m: float
-    sill_m: float
-    lintel_m: float
-    type: str
-    glazed: bool = False
-
-    @property
-    def pane_m(self) -> Polygon:
-        """The ground below its pane, as thick as double glazing."""
-        return Polygon(self.line_m.buffer(0.01, cap_style="flat"))
-
-
-@dataclass(frozen=True)
-class DrawnFurniture:
-    """A box on the floor."""
-
-    footprint_m: Polygon
-    height_m: float
 
 
 @dataclass(frozen=True)
@@ -65,6 +44,12 @@ class DrawnFloor:
         A name and a point inside the room that bears it.
     waypoints_m : (n, 2) float64, n >= 2, or None
         The corners of the rover's way, where one is drawn.
+    columns, ceilings, voids, stairs, platforms, mirrors : tuples
+        Of the things that their names say; `ceilings` holds beams, too.
+    polished_m : tuple of Polygon
+        Where the floor is polished.
+    grounds, facades : tuples
+        What is seen outside.
     """
 
     height_m: float
@@ -73,20 +58,49 @@ class DrawnFloor:
     furniture: tuple[DrawnFurniture, ...]
     room_names: tuple[tuple[str, Point], ...]
     waypoints_m: FloatArray | None
+    columns: tuple[DrawnColumn, ...] = ()
+    ceilings: tuple[DrawnCeiling, ...] = ()
+    voids: tuple[DrawnVoid, ...] = ()
+    stairs: tuple[DrawnStairs, ...] = ()
+    platforms: tuple[DrawnPlatform, ...] = ()
+    mirrors: tuple[DrawnMirror, ...] = ()
+    polished_m: tuple[Polygon, ...] = ()
+    grounds: tuple[DrawnGround, ...] = ()
+    facades: tuple[DrawnFacade, ...] = ()
+
+    @property
+    def is_detailed(self) -> bool:
+        """Whether it has more than walls, holes, panes in them and nameless furniture."""
+        things = (*self.columns, *self.ceilings, *self.voids, *self.stairs, *self.platforms)
+        around = (*self.mirrors, *self.polished_m, *self.grounds, *self.facades)
+        return bool(
+            things
+            or around
+            or any(o.leaf or o.frame_m > 0 for o in self.openings)
+            or any(f.type or f.base_m > 0 for f in self.furniture)
+            or any(w.is_glass or w.is_curved or w.end_thickness_m for w in self.walls)
+        )
 
 
-def cut_walls(plan: DrawnFloor, z_m: float) -> BaseGeometry:
-    """Return the section of the walls at a height, openings left out: (Multi)Polygon, map frame."""
-    bodies = [body for body, height_m in _bodies(plan) if z_m < height_m]
-    open_here = [o for o in plan.openings if o.sill_m < z_m < o.lintel_m]
-    holes = [o.line_m.buffer(o.thickness_m / 2 + DRAWN_M, cap_style="flat") for o in open_here]
+def cut_walls(plan: DrawnFloor, z_m: float, *, glass: bool | None = None) -> BaseGeometry:
+    """Return the section of the walls at a height, openings left out: (Multi)Polygon, map frame.
+
+    Of panes alone if `glass`, without them if it is False; frames of openings in panes count
+    as walls where both are asked for.
+    """
+    bodies = [body for body, height_m, _ in _bodies(plan, glass) if z_m < height_m]
     solid = shapely.union_all(bodies, grid_size=SAME_M)
-    hole = shapely.union_all(holes, grid_size=SAME_M)
+    holes = (_hole(opening, z_m, whole=glass is True) for opening in plan.openings)
+    hole = shapely.union_all([h for h in holes if h is not None], grid_size=SAME_M)
+    if glass:
+        hole = shapely.union(hole, cut_walls(plan, z_m, glass=False), grid_size=SAME_M)
     return shapely.difference(solid, hole, grid_size=SAME_M).normalize()
 
 
-def cut_wall_bands(plan: DrawnFloor) -> list[tuple[float, float, BaseGeometry]]:
-    """Cut the walls into slabs of constant section.
+def cut_wall_bands(
+    plan: DrawnFloor, *, glass: bool | None = None
+) -> list[tuple[float, float, BaseGeometry]]:
+    """Cut the walls into slabs of constant section, see `cut_walls`.
 
     Returns
     -------
@@ -96,11 +110,17 @@ def cut_wall_bands(plan: DrawnFloor) -> list[tuple[float, float, BaseGeometry]]:
     edges = {0.0, plan.height_m}
     edges.update(wall.height_m for wall in plan.walls)
     for opening in plan.openings:
-        edges.update((opening.sill_m, opening.lintel_m))
+        edges.update((opening.sill_m, opening.clear_lintel_m, opening.lintel_m))
     return [
-        (low_m, high_m, cut_walls(plan, (low_m + high_m) / 2))
+        (low_m, high_m, cut_walls(plan, (low_m + high_m) / 2, glass=glass))
         for low_m, high_m in pairwise(sorted(edges))
     ]
+
+
+def cut_curves(plan: DrawnFloor) -> BaseGeometry:
+    """Return the ground that curved walls stand on."""
+    curved = [_body(wall) for wall in plan.walls if wall.is_curved]
+    return shapely.union_all(curved, grid_size=SAME_M)
 
 
 def floor_footprint(plan: DrawnFloor) -> BaseGeometry:
@@ -115,16 +135,24 @@ def floor_rooms(plan: DrawnFloor) -> list[tuple[str, Polygon]]:
     Returns
     -------
     list of (str, Polygon)
-        Name ("" where none is drawn) and floor, in a fixed order.
+        Name ("" where none is drawn) and floor, without voids, in a fixed order.
     """
     walls = _footprint_of_walls(plan)
     free = shapely.difference(floor_footprint(plan), walls, grid_size=SAME_M).normalize()
     rooms = [room for room in shapely.get_parts(free) if not room.is_empty]
+    if plan.voids:
+        hole = shapely.union_all([void.footprint_m for void in plan.voids], grid_size=SAME_M)
+        parts = [room.difference(hole, grid_size=SAME_M).normalize() for room in rooms]
+        # what a void leaves of the ground within its parapet is no room
+        rooms = [r for r in shapely.get_parts(parts) if not r.buffer(-ROOM_M / 2).is_empty]
     return [(_name_of_room(plan, room), room) for room in rooms]
 
 
 def floor_obstacles(plan: DrawnFloor, height_m: float) -> BaseGeometry:
-    """Return the ground that a vehicle of a height cannot stand on: walls, panes, furniture.
+    """Return the ground that a vehicle of a height cannot stand on.
+
+    That is walls, panes, furniture, leaves, columns, voids, stairs, platforms, and what is below
+    ceilings that it would touch.
 
     Raises
     ------
@@ -138,35 +166,66 @@ def floor_obstacles(plan: DrawnFloor, height_m: float) -> BaseGeometry:
         )
     sections = [section for low_m, _, section in cut_wall_bands(plan) if low_m < height_m]
     panes = [o.pane_m for o in plan.openings if o.glazed and o.sill_m < height_m]
-    return shapely.union_all([*sections, *panes, *(f.footprint_m for f in plan.furniture)])
+    head_m = height_m + HEADROOM_M
+    # ASSUME no rover drives below tables, where chairs stand and legs are seen late
+    boxes = [f.footprint_m for f in plan.furniture if f.base_m < max(head_m, 1.2)]
+    things = (*plan.columns, *plan.voids, *plan.stairs, *plan.platforms)
+    standing = [thing.footprint_m for thing in things]
+    doors = [body.footprint_m for o in plan.openings for body in stand_leaves(o)]
+    low = [ground for c in plan.ceilings if (ground := low_ground(c, head_m)).area > 0]
+    return shapely.union_all([*sections, *panes, *boxes, *standing, *doors, *low])
 
 
 def _footprint_of_walls(plan: DrawnFloor) -> BaseGeometry:
-    return shapely.union_all([body for body, _ in _bodies(plan)], grid_size=SAME_M)
+    return shapely.union_all([body for body, _, _ in _bodies(plan)], grid_size=SAME_M)
 
 
 def _name_of_room(plan: DrawnFloor, room: Polygon) -> str:
     return next((name for name, point in plan.room_names if room.contains(point)), "")
 
 
-def _bodies(plan: DrawnFloor) -> list[tuple[BaseGeometry, float]]:
-    """Return footprint and height of walls, openings not cut, and of corners where ends meet."""
-    bodies = [(_thick(w.line_m, w.thickness_m), w.height_m) for w in plan.walls]
-    ends = [(wall, *end) for wall in plan.walls for end in _ends(wall.line_m)]
-    for (a, place_a, run_a), (b, place_b, run_b) in combinations(ends, 2):
+def _bodies(plan: DrawnFloor, glass: bool | None = None) -> list[tuple[BaseGeometry, float, bool]]:
+    """Return footprint and height of walls, openings not cut, and of corners where ends meet.
+
+    Each with whether it is a pane; those alone, or all others, where `glass` is not None.
+    """
+    bodies = [(_body(wall), wall.height_m, wall.is_glass) for wall in plan.walls]
+    ends = [(wall, *end) for wall in plan.walls for end in _ends(wall)]
+    for (a, place_a, run_a, wide_a), (b, place_b, run_b, wide_b) in combinations(ends, 2):
         if place_a == place_b:
-            corner = _thick(LineString([*run_a, *run_b[-2::-1]]), min(a.thickness_m, b.thickness_m))
-            bodies.append((corner, min(a.height_m, b.height_m)))
-    return bodies
+            corner = _thick(LineString([*run_a, *run_b[-2::-1]]), min(wide_a, wide_b))
+            bodies.append((corner, min(a.height_m, b.height_m), a.is_glass and b.is_glass))
+    return [body for body in bodies if glass is None or body[2] == glass]
 
 
-def _ends(line_m: LineString) -> list[tuple[tuple[float, ...], FloatArray]]:
-    """Return the place of each end of a line, to the millimetre, and the run that leads to it."""
-    if line_m.is_closed:
+def _hole(opening: DrawnOpening, z_m: float, *, whole: bool) -> BaseGeometry | None:
+    """Return the ground that an opening leaves free at a height, if `whole` with its frame."""
+    lintel_m = opening.lintel_m if whole else opening.clear_lintel_m
+    if not opening.sill_m < z_m < lintel_m:
+        return None
+    line_m = opening.line_m if whole else opening.clear_line_m
+    half_m = opening.thickness_m / 2 + opening.bow_m + DRAWN_M
+    return line_m.buffer(half_m, cap_style="flat")
+
+
+def _body(wall: DrawnWall) -> BaseGeometry:
+    """Return the ground that a wall stands on, openings not cut."""
+    if wall.end_thickness_m is None:
+        return _thick(wall.line_m, wall.thickness_m)
+    start, end = shapely.get_coordinates(wall.line_m)
+    along = (end - start) / np.hypot(*(end - start))
+    left = np.array([-along[1], along[0]])
+    from_m, to_m = wall.thickness_m / 2 * left, wall.end_thickness_m / 2 * left
+    return Polygon([start - from_m, end - to_m, end + to_m, start + from_m])
+
+
+def _ends(wall: DrawnWall) -> list[tuple[tuple[float, ...], FloatArray, float]]:
+    """Return of each end of a wall its place to the millimetre, the run to it, the thickness."""
+    if wall.line_m.is_closed:
         return []
-    xy = shapely.get_coordinates(line_m)
-    runs = (xy[1::-1], xy[-2:])
-    return [(tuple(np.round(run[-1], 3)), run) for run in runs]
+    xy = shapely.get_coordinates(wall.line_m)
+    runs = ((xy[1::-1], wall.thickness_m), (xy[-2:], wall.last_thickness_m))
+    return [(tuple(np.round(run[-1], 3)), run, wide_m) for run, wide_m in runs]
 
 
 def _thick(line_m: LineString, thickness_m: float) -> BaseGeometry:

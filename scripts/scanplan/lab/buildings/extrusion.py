@@ -4,18 +4,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import shapely
-from shapely import Polygon
-from shapely.geometry.base import BaseGeometry
 
-from scanplan.geometry.tolerances import SAME_M
 from scanplan.lab.buildings import drawn_floor
+from scanplan.lab.buildings.details import leaves, solids
+from scanplan.lab.buildings.details.triangles import extrude_bands, triangulate
 from scanplan.types import FloatArray, IntArray
 
-SURFACES = ("wall", "floor", "ceiling", "furniture", "glass", "door", "other")
-
-Band = tuple[float, float, BaseGeometry]
-"""Lower edge, upper edge and section of a slab."""
+SURFACES = (
+    *("wall", "floor", "ceiling", "furniture", "glass", "door", "other"),
+    *("mirror", "polished"),
+)
 
 
 @dataclass(frozen=True)
@@ -52,17 +50,35 @@ def make_building_mesh(plan: drawn_floor.DrawnFloor) -> Mesh:
     """
     footprint = drawn_floor.floor_footprint(plan)
     soups = [
-        ("wall", extrude_bands(drawn_floor.cut_wall_bands(plan))),
-        ("floor", _triangulate(footprint, 0.0, up=True)),
-        ("ceiling", _triangulate(footprint, plan.height_m, up=False)),
+        ("wall", extrude_bands(drawn_floor.cut_wall_bands(plan, glass=False))),
+        *solids.floor_soups(footprint, plan.voids, plan.polished_m),
+        ("ceiling", triangulate(footprint, plan.height_m, up=False)),
     ]
     for box in plan.furniture:
-        soups.append(("furniture", extrude_bands([(0.0, box.height_m, box.footprint_m)])))
+        soups.append(solids.box_soup("furniture", box.footprint_m, box.base_m, box.height_m))
     for opening in plan.openings:
         if opening.glazed:
-            pane = (opening.sill_m, opening.lintel_m, opening.pane_m)
-            soups.append(("glass", extrude_bands([pane])))
+            soups.append(solids.box_soup("glass", opening.pane_m, opening.sill_m, opening.lintel_m))
+    if plan.is_detailed:
+        soups += _detail_soups(plan)
+        soups += [solids.ground_soup(ground, footprint) for ground in plan.grounds]
     return join_meshes(soups)
+
+
+def _detail_soups(plan: drawn_floor.DrawnFloor) -> list[solids.Soup]:
+    soups = []
+    if any(wall.is_glass for wall in plan.walls):
+        soups.append(("glass", extrude_bands(drawn_floor.cut_wall_bands(plan, glass=True))))
+    soups += solids.glass_frame_soups(plan.openings)
+    bodies = [body for opening in plan.openings for body in leaves.stand_leaves(opening)]
+    soups += solids.leaf_soups(bodies)
+    soups += [solids.box_soup("wall", c.footprint_m, 0.0, c.height_m) for c in plan.columns]
+    soups += [solids.ceiling_soup(ceiling, plan.height_m) for ceiling in plan.ceilings]
+    soups += [step for stairs in plan.stairs for step in solids.stair_soups(stairs)]
+    soups += [solids.box_soup("floor", p.footprint_m, 0.0, p.height_m) for p in plan.platforms]
+    soups += map(solids.mirror_soup, plan.mirrors)
+    soups += map(solids.facade_soup, plan.facades)
+    return soups
 
 
 def join_meshes(soups: Sequence[tuple[str, FloatArray]]) -> Mesh:
@@ -93,56 +109,3 @@ def extend_mesh(mesh: Mesh, soups: Sequence[tuple[str, FloatArray]]) -> Mesh:
         np.concatenate([mesh.triangles, more.triangles + np.int32(len(mesh.vertices_m))]),
         np.concatenate([mesh.surface, more.surface]),
     )
-
-
-def extrude_bands(bands: Sequence[Band]) -> FloatArray:
-    """Return the closed surface of slabs stacked without gaps.
-
-    Parameters
-    ----------
-    bands : sequence of (float, float, Polygon or MultiPolygon)
-        Lower edge, upper edge (the next one's lower edge), section.
-
-    Returns
-    -------
-    (t, 3, 3) float64
-        Corners of the triangles, normals outwards.
-    """
-    surfaces = [_sides(section, low_m, high_m) for low_m, high_m, section in bands]
-    sections = [section for _, _, section in bands]
-    levels_m = [bands[0][0], *(high_m for _, high_m, _ in bands)]
-    below = [Polygon(), *sections]
-    above = [*sections, Polygon()]
-    for z_m, under, over in zip(levels_m, below, above, strict=True):
-        tops = shapely.difference(under, over, grid_size=SAME_M)
-        undersides = shapely.difference(over, under, grid_size=SAME_M)
-        surfaces.append(_triangulate(tops, z_m, up=True))
-        surfaces.append(_triangulate(undersides, z_m, up=False))
-    return np.concatenate(surfaces)
-
-
-def _sides(section: BaseGeometry, low_m: float, high_m: float) -> FloatArray:
-    """Return two triangles for every edge of a section."""
-    rings = shapely.get_rings(shapely.get_parts(shapely.orient_polygons(section)))
-    edges = [np.hstack([xy[:-1], xy[1:]]) for xy in map(shapely.get_coordinates, rings)]
-    a, b = np.split(np.concatenate([np.empty((0, 4)), *edges]), 2, axis=1)
-    a_low = _raise_to(a, low_m)
-    b_low = _raise_to(b, low_m)
-    b_high = _raise_to(b, high_m)
-    a_high = _raise_to(a, high_m)
-    return np.concatenate(
-        [np.stack([a_low, b_low, b_high], 1), np.stack([a_low, b_high, a_high], 1)]
-    )
-
-
-def _triangulate(polygons: BaseGeometry, z_m: float, *, up: bool) -> FloatArray:
-    """Return triangles of a level surface; lines and points that an overlay left are no surface."""
-    parts = [p for p in shapely.get_parts(polygons) if p.geom_type == "Polygon" and not p.is_empty]
-    pieces = shapely.get_parts(shapely.constrained_delaunay_triangles(parts)) if parts else []
-    pieces = shapely.orient_polygons(pieces, exterior_cw=not up)
-    corners = shapely.get_coordinates(pieces).reshape(-1, 4, 2)[:, :3]
-    return _raise_to(corners.reshape(-1, 2), z_m).reshape(-1, 3, 3)
-
-
-def _raise_to(xy_m: FloatArray, z_m: float) -> FloatArray:
-    return np.column_stack([xy_m, np.full(len(xy_m), z_m)])

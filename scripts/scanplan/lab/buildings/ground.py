@@ -15,7 +15,7 @@ from scanplan.types import FilePath, FloatArray
 
 _SCREEN_M = 1.5  # ASSUME lower things occlude no wall: the sensor's upper beams pass over them
 _CUT_STEP_M = 0.12  # between cuts: they meet what is over a door, and the slopes of obstacles
-_HEADROOM_M = 0.15  # above the sensor: its housing, and what would hang into its view
+HEADROOM_M = 0.15  # above the sensor: its housing, and what would hang into its view
 _MIN_FLOOR_SHARE = 0.05  # of the outline; less is a stray surface of a building without floor
 
 
@@ -179,7 +179,7 @@ def _obstacles(storey: storeys.Storey, solid: BaseGeometry, slice_height_m: floa
     """Return the ground under what stands, lies or hangs between a step and the sensor's head."""
     triangles_m = np.concatenate([body.triangles_m for body in storey.bodies])
     z_m = triangles_m[..., 2]
-    top_m = slice_height_m + _HEADROOM_M
+    top_m = slice_height_m + HEADROOM_M
     is_within = ((z_m > THRESHOLD_M) & (z_m < top_m)).all(axis=1)
     n_cuts = int(np.ceil((top_m - THRESHOLD_M) / _CUT_STEP_M)) + 1
     heights_m = np.linspace(THRESHOLD_M, top_m, n_cuts)

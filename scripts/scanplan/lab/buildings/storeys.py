@@ -8,7 +8,8 @@ import shapely
 from shapely import LineString
 
 from scanplan.errors import StageError
-from scanplan.lab.buildings.tolerances import DECIMALS, THRESHOLD_M
+from scanplan.lab.buildings.details.things import DrawnOpening
+from scanplan.lab.buildings.tolerances import DECIMALS, ROOM_M, THRESHOLD_M
 from scanplan.types import FilePath, FloatArray
 
 if TYPE_CHECKING:
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
 
 Opening = tuple[LineString, str, float, float]
 """Stretch of the wall's middle line, type, lower and upper edge."""
+Doorway = tuple[int, DrawnOpening]
+"""Row of an opening, and the hole that a leaf may hang in."""
 Surface = tuple[str, FloatArray]
 """Kind of surface and its triangles (t, 3, 3)."""
 
@@ -62,12 +65,16 @@ class Storey:
         Name and surface of every room that the model states.
     height_m : float
         Up to the next storey's floor.
+    doorways : tuple of (int, DrawnOpening)
+        Row in `openings` of each that a door fills, and the hole: as wide and high as its leaf, of
+        which a model's door shows the casing, too.
     """
 
     bodies: tuple[Body, ...]
     openings: tuple[Opening, ...]
     spaces: tuple[Surface, ...]
     height_m: float
+    doorways: tuple[Doorway, ...] = ()
 
 
 def storey_of_mesh(triangles_m: FloatArray, slice_height_m: float, source: FilePath) -> Storey:
@@ -116,11 +123,17 @@ def storey_of_model(model: "IfcBuilding", index: int, *, doors: str, windows: st
     if windows == "empty":
         left_out.add("glass")
     spaces = [(part, t) for part, t in near if part.kind == "space"]
+    openings = _openings(model, near, top_m)
     return Storey(
         bodies=tuple(_body(part, t) for part, t in near if part.kind not in left_out),
-        openings=_openings(model, near, top_m),
+        openings=tuple(opening for opening, _ in openings),
         spaces=tuple((p.name, t) for p, t in spaces if t[..., 2].min() > -_SLAB_M),
         height_m=float(top_m),
+        doorways=tuple(
+            (row, DrawnOpening(line, thickness_m, sill_m, lintel_m, kind))
+            for row, ((line, kind, sill_m, lintel_m), thickness_m) in enumerate(openings)
+            if kind == "door" and line.length > ROOM_M / 2
+        ),
     )
 
 
@@ -146,7 +159,8 @@ def _is_near(triangles_m: FloatArray, top_m: float) -> bool:
 
 def _openings(
     model: "IfcBuilding", parts: list[tuple["IfcPart", FloatArray]], top_m: float
-) -> tuple[Opening, ...]:
+) -> list[tuple[Opening, float]]:
+    """Return the openings of walls, each with its wall's thickness."""
     hosts = {part.guid: part for part in model.parts if part.kind == "wall"}
     openings = []
     for part, triangles_m in parts:
@@ -155,18 +169,18 @@ def _openings(
         z_m = triangles_m[..., 2]
         if -THRESHOLD_M <= (z_m.min() + z_m.max()) / 2 < top_m:
             openings.append(_opening(part, triangles_m, hosts[part.host]))
-    return tuple(openings)
+    return openings
 
 
-def _opening(part: "IfcPart", triangles_m: FloatArray, host: "IfcPart") -> Opening:
+def _opening(part: "IfcPart", triangles_m: FloatArray, host: "IfcPart") -> tuple[Opening, float]:
     """Return an opening as its stretch of its wall's middle line, and its edges."""
     line, _ = middle_axis(host.along, triangles_m)
-    middle, _ = middle_axis(host.along, host.triangles_m)
+    middle, thickness_m = middle_axis(host.along, host.triangles_m)
     ends = [middle.interpolate(middle.project(shapely.Point(xy))) for xy in line.coords]
     sill_m = round(float(triangles_m[..., 2].min()), DECIMALS)
     lintel_m = round(float(triangles_m[..., 2].max()), DECIMALS)
     empty = "passage" if sill_m < THRESHOLD_M else "window"
-    return LineString(ends), part.fills or empty, sill_m, lintel_m
+    return (LineString(ends), part.fills or empty, sill_m, lintel_m), thickness_m
 
 
 def _body(part: "IfcPart", triangles_m: FloatArray) -> Body:

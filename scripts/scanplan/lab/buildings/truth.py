@@ -12,7 +12,8 @@ from shapely import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry.tolerances import SAME_M
-from scanplan.lab.buildings import drawn_floor, ground, slicing
+from scanplan.lab.buildings import detailed_truth, drawn_floor, ground, slicing
+from scanplan.lab.buildings.details.things import DrawnOpening, DrawnWall
 from scanplan.lab.buildings.tolerances import DECIMALS
 
 Feature = tuple[BaseGeometry, dict[str, Any]]
@@ -41,20 +42,54 @@ def truth_features(
         furniture that occludes walls), `wall` (straight centreline with `thickness_m`,
         `height_m`), `opening` (stretch of a centreline with `type`, `width_m`, `sill_m`,
         `lintel_m`), `room` (Polygon with `name`, `area_m2` and whether the rover `visited` it).
+        Of a floor that has more than walls and holes also its leaves, columns and other things
+        (`detailed_truth.detail_features`), whether openings are `glazed`, of faces that they are
+        of glass (`material`) or `curved`, and how high ceilings are over a room.
     """
     lowest_m = ground.least_screen_m(slice_height_m, planar=planar)
-    tall = [shapely.boundary(f.footprint_m) for f in plan.furniture if f.height_m >= lowest_m]
-    screens = slicing.find_screens(tall, drawn_floor.cut_walls(plan, slice_height_m))
-    features = [face_feature(*face) for face in true_wall_faces(plan, slice_height_m)]
+    outlines = detailed_truth.find_outlines(plan, slice_height_m, lowest_m)
+    screens = slicing.find_screens(outlines, drawn_floor.cut_walls(plan, slice_height_m))
+    features = _face_features(plan, slice_height_m)
     features += [screen_feature(line) for line in screens]
-    for wall in plan.walls:
-        runs = map(LineString, pairwise(wall.line_m.coords))
-        features += [wall_feature(run, wall.thickness_m, wall.height_m) for run in runs]
-    for o in plan.openings:
-        features.append(opening_feature(o.line_m, o.type, o.sill_m, o.lintel_m))
+    features += [feature for wall in plan.walls for feature in _wall_features(wall)]
+    features += [_opening_of_floor(plan, opening) for opening in plan.openings]
     rooms = room_features(drawn_floor.floor_rooms(plan))
+    rooms = [(g, {**values, **detailed_truth.ceiling_values(plan, g)}) for g, values in rooms]
     way_m = plan.waypoints_m
-    return features + (rooms if way_m is None else mark_visited(rooms, way_m))
+    features += rooms if way_m is None else mark_visited(rooms, way_m)
+    return features + (detailed_truth.detail_features(plan) if plan.is_detailed else [])
+
+
+def _face_features(plan: drawn_floor.DrawnFloor, slice_height_m: float) -> list[Feature]:
+    faces = true_wall_faces(plan, slice_height_m)
+    if not any(wall.is_glass or wall.is_curved for wall in plan.walls):
+        return [face_feature(*face) for face in faces]
+    described = detailed_truth.describe_faces(plan, faces, slice_height_m)
+    common = [(face_feature(line, side), values) for line, side, values in described]
+    return [(line, {**shared, **values}) for (line, shared), values in common]
+
+
+def _wall_features(wall: DrawnWall) -> list[Feature]:
+    """Return the straight walls that a drawn one consists of."""
+    more: dict[str, Any] = {}
+    if wall.end_thickness_m is not None:
+        more["end_thickness_m"] = wall.end_thickness_m
+    if wall.is_glass:
+        more["material"] = "glass"
+    if wall.is_curved:
+        more["curved"] = True
+    runs = map(LineString, pairwise(wall.line_m.coords))
+    walls = [wall_feature(run, wall.thickness_m, wall.height_m) for run in runs]
+    return [(line, {**values, **more}) for line, values in walls]
+
+
+def _opening_of_floor(plan: drawn_floor.DrawnFloor, opening: DrawnOpening) -> Feature:
+    line, values = opening_feature(opening.line_m, opening.type, opening.sill_m, opening.lintel_m)
+    if plan.is_detailed:
+        values["glazed"] = opening.glazed
+    if opening.frame_m > 0:
+        values["frame_m"] = opening.frame_m
+    return line, values
 
 
 def true_wall_faces(

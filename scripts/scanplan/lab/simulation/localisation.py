@@ -1,4 +1,4 @@
-"""What the rover estimates of its own pose: a particle filter's poses, and wheel odometry."""
+"""What the rover estimates of its own pose: a localiser's poses, and how odometry is corrected."""
 
 from dataclasses import dataclass
 
@@ -8,6 +8,8 @@ from numpy.typing import ArrayLike
 from scanplan.geometry import se3
 from scanplan.lab.random_streams import RandomStream, open_stream
 from scanplan.lab.simulation import rover
+from scanplan.lab.simulation.odometry import integrate_odometry
+from scanplan.lab.simulation.slam import track_poses
 from scanplan.types import FloatArray, IntArray, Settings
 
 _TICKS_PER_TRANSFORM = 5  # ASSUME laser scans at 10 Hz; AMCL sends its transform with each
@@ -27,8 +29,8 @@ class Belief:
         The ticks at which the localiser sends a pose.
     map_from_base : (m, 4, 4) float64
         That pose.
-    deviation_m, deviation_rad : float
-        What it states as its standard deviations: of all but the jumps.
+    deviation_m, deviation_rad : (m,) float64
+        What it states as its standard deviations: of all but the jumps and what SLAM drifts.
     transform : (k,) int64
         The ticks at which it sends its transform.
     map_from_odom : (k, 4, 4) float64
@@ -41,8 +43,8 @@ class Belief:
     odom_from_base: FloatArray
     update: IntArray
     map_from_base: FloatArray
-    deviation_m: float
-    deviation_rad: float
+    deviation_m: FloatArray
+    deviation_rad: FloatArray
     transform: IntArray
     map_from_odom: FloatArray
     ahead_ns: int
@@ -56,6 +58,9 @@ def simulate_belief(
     update_angle_deg: float,
     transform_tolerance_s: float,
     odometry: Settings,
+    start: Settings,
+    slam: Settings | None,
+    sway: FloatArray | None,
     seed: int,
     **error_settings: float,
 ) -> Belief:
@@ -71,7 +76,14 @@ def simulate_belief(
     transform_tolerance_s : float
         AMCL's parameter of that name.
     odometry : dict
-        Settings of `integrate_odometry`.
+        Settings of `odometry.integrate_odometry`.
+    start : dict
+        Settings of `draw_start`.
+    slam : dict or None
+        Settings of `slam.track_poses`; None where the localiser knows the map, as AMCL does.
+    sway : (n, 4, 4) float64 or None
+        What both know of level_from_base at the ticks: 6-DoF, as odometry of a hand-held device
+        by its inertial unit. None where they are planar, and know nothing of it.
     seed : int
     **error_settings
         As for `draw_pose_errors`.
@@ -83,22 +95,70 @@ def simulate_belief(
     update = choose_updates(
         world_from_base, distance_m=update_distance_m, angle_rad=np.radians(update_angle_deg)
     )
+    tracked = world_from_base[update]
+    if slam is not None:
+        tracked = track_poses(tracked, **slam, seed=seed)
+        error_settings |= {"drift_m": 0.0, "drift_deg": 0.0, "jumps_per_min": 0.0}
     errors = draw_pose_errors(t_ns[update] / 1e9, **error_settings, seed=seed)
-    map_from_base = add_pose_errors(world_from_base[update], errors)
+    off = draw_start(world_from_base[update], **start, seed=seed)
+    map_from_base = add_pose_errors(tracked, errors + off)
     odom_from_base = integrate_odometry(world_from_base, **odometry, seed=seed)
+    if sway is not None:
+        map_from_base = map_from_base @ sway[update]
+        odom_from_base = odom_from_base @ sway
     transform = np.arange(0, len(t_ns), _TICKS_PER_TRANSFORM)
+    deviation_m = np.hypot(error_settings["noise_m"], error_settings["drift_m"])
     deviation_deg = np.hypot(error_settings["noise_deg"], error_settings["drift_deg"])
     return Belief(
         t_ns=t_ns,
         odom_from_base=odom_from_base,
         update=update,
         map_from_base=map_from_base,
-        deviation_m=float(np.hypot(error_settings["noise_m"], error_settings["drift_m"])),
-        deviation_rad=float(np.radians(deviation_deg)),
+        # a filter whose particles have not gathered yet says so
+        deviation_m=np.hypot(deviation_m, np.hypot(off[:, 0], off[:, 1])),
+        deviation_rad=np.hypot(np.radians(deviation_deg), off[:, 2]),
         transform=transform,
         map_from_odom=correction_at(update, map_from_base, odom_from_base, transform),
         ahead_ns=round(transform_tolerance_s * 1e9),
     )
+
+
+def draw_start(
+    world_from_base: FloatArray,
+    *,
+    start_off_m: float,
+    start_off_deg: float,
+    converge_m: float,
+    seed: int,
+) -> FloatArray:
+    """Return what a localiser errs by that was told a wrong place at the start.
+
+    ASSUME the error falls off evenly, as half a wave of the cosine, over the way that it needs to
+    converge, and is of the full size, in a random direction and to a random side, at the start.
+
+    Parameters
+    ----------
+    world_from_base : (m, 4, 4) float64
+        True planar poses at the updates.
+    start_off_m, start_off_deg : float
+        Error of position and heading at the start.
+    converge_m : float
+        Way after which nothing is left of it.
+    seed : int
+
+    Returns
+    -------
+    (m, 3) float64
+        Error of x, y (metres) and heading (radians).
+    """
+    generator = open_stream(seed, RandomStream.START)
+    towards = generator.uniform(0, 2 * np.pi)
+    side = generator.choice([-1, 1])
+    step_m = np.hypot(*np.diff(world_from_base[:, :2, 3], axis=0).T)
+    way_m = np.concatenate([[0], np.cumsum(step_m)])
+    left = (1 + np.cos(np.pi * np.clip(way_m / converge_m, 0, 1))) / 2
+    full = np.array([np.cos(towards), np.sin(towards), side])
+    return np.outer(left, full * [start_off_m, start_off_m, np.radians(start_off_deg)])
 
 
 def choose_updates(world_from_base: FloatArray, *, distance_m: float, angle_rad: float) -> IntArray:
@@ -201,37 +261,6 @@ def add_pose_errors(world_from_base: FloatArray, error: FloatArray) -> FloatArra
     """Return planar poses (m, 4, 4) with errors (m, 3) of x, y and heading added."""
     xy_m = world_from_base[:, :2, 3] + error[:, :2]
     return rover.planar_poses(xy_m, se3.pose_yaw_rad(world_from_base) + error[:, 2])
-
-
-def integrate_odometry(
-    world_from_base: FloatArray, *, scale_share: float, drift_deg_per_m: float, seed: int
-) -> FloatArray:
-    """Return odom_from_base (n, 4, 4): the motion summed up from its start with a scale error.
-
-    The small errors of turns and steps are constant over the drive, so the odometry drifts.
-
-    Parameters
-    ----------
-    world_from_base : (n, 4, 4) float64
-        True planar poses.
-    scale_share : float
-        Standard deviation of the scales of turns and of steps, which are drawn once.
-    drift_deg_per_m : float
-        What the heading turns by, a metre of way: to the left.
-    seed : int
-    """
-    generator = open_stream(seed, RandomStream.ODOMETRY)
-    turn_scale, step_scale = 1 + scale_share * generator.standard_normal(2)
-    yaw_rad = np.unwrap(se3.pose_yaw_rad(world_from_base))
-    step_m = np.diff(world_from_base[:, :2, 3], axis=0)
-    way_m = np.concatenate([[0], np.cumsum(np.hypot(*step_m.T))])
-    drift_rad = np.radians(drift_deg_per_m) * way_m
-    odometry_yaw_rad = turn_scale * (yaw_rad - yaw_rad[0]) + drift_rad
-    # a step is measured in the base's frame, and added in the direction the base seems to face
-    error_rad = odometry_yaw_rad[:-1] - yaw_rad[:-1]
-    step = step_scale * (step_m[:, 0] + 1j * step_m[:, 1]) * np.exp(1j * error_rad)
-    path = np.concatenate([[0], np.cumsum(step)])
-    return rover.planar_poses(np.column_stack([np.real(path), np.imag(path)]), odometry_yaw_rad)
 
 
 def correction_at(

@@ -14,7 +14,7 @@ from scanplan.types import FloatArray
 
 RADIUS_M = 0.2  # ASSUME an adult seen from above is a disc of 40 cm
 HEIGHT_M = 1.75  # ASSUME an adult
-_CLEARANCE_M = RADIUS_M + 0.1  # to walls, and to the sensor, of which they step out of the way
+CLEARANCE_M = RADIUS_M + 0.1  # to walls, and to the sensor, of which they step out of the way
 _GOAL_TRIES = 30  # places drawn for one in sight: few rests against the time of a simulation
 
 
@@ -56,12 +56,23 @@ def simulate_walkers(
     tuple of Person
         Empty where there is no room to walk.
     """
-    room = shapely.buffer(free, -_CLEARANCE_M)
+    room = shapely.buffer(free, -CLEARANCE_M)
     if room.is_empty:
         return ()
     shapely.prepare(room)
     generators = (open_stream(seed, RandomStream.PEOPLE, i) for i in range(count))
     return tuple(_walk(room, speed_m_s, until_s, generator) for generator in generators)
+
+
+def list_apart(
+    people: Sequence[Person], t_s: FloatArray, sensor_m: FloatArray
+) -> tuple[Person, ...]:
+    """Return the people who at no moment (c,) stand at the sensor (c, 3): others step aside."""
+    return tuple(
+        person
+        for person in people
+        if np.hypot(*(_places(person, t_s) - sensor_m[:, :2]).T).min() >= CLEARANCE_M
+    )
 
 
 def find_person_hits(
@@ -74,6 +85,7 @@ def find_person_hits(
     Parameters
     ----------
     people : sequence of Person
+        Who stands at the sensor is none of them (`list_apart`).
     t_s : (c,) float
         When each column of rays starts.
     origin_m : (c, 3) float
@@ -91,10 +103,8 @@ def find_person_hits(
     range_m = np.full(len(rays), np.inf, np.float32)
     cosine = np.zeros(len(rays), np.float32)
     for person in people:
-        place_m = np.column_stack([np.interp(t_s, person.t_s, axis) for axis in person.xy_m.T])
+        place_m = _places(person, t_s)
         ahead_m = place_m - origin_m[:, :2]
-        if np.hypot(*ahead_m.T).min() < _CLEARANCE_M:
-            continue
         met, met_m, met_cosine = _meet_cylinder(rays, np.repeat(ahead_m, n_beams, axis=0))
         z_m = origin_m[met // n_beams, 2] + met_m * rays[met, 2]
         first = (z_m >= 0) & (z_m <= HEIGHT_M) & (met_m < range_m[met])
@@ -112,6 +122,11 @@ def merge_hits(building: raycast.RayHits, people: raycast.RayHits) -> raycast.Ra
         np.where(is_person, people.cosine, building.cosine),
         np.where(is_person, people.reflectivity, building.reflectivity),
     )
+
+
+def _places(person: Person, t_s: FloatArray) -> FloatArray:
+    """Return where a person is (c, 2) at some moments (c,)."""
+    return np.column_stack([np.interp(t_s, person.t_s, axis) for axis in person.xy_m.T])
 
 
 def _meet_cylinder(
@@ -136,7 +151,7 @@ def _walk(
     room: BaseGeometry, speed_m_s: float, until_s: float, generator: np.random.Generator
 ) -> Person:
     t_s = [0.0]
-    xy_m = [_draw_place(room, generator)]
+    xy_m = [draw_place(room, generator)]
     while t_s[-1] < until_s:
         here = xy_m[-1]
         goal = _draw_goal(room, here, generator)
@@ -155,13 +170,13 @@ def _draw_goal(
 ) -> tuple[float, float] | None:
     """Return a random place in sight, None if none of some tries is."""
     for _ in range(_GOAL_TRIES):
-        goal = _draw_place(room, generator)
+        goal = draw_place(room, generator)
         if goal != here and room.contains(LineString([here, goal])):
             return goal
     return None
 
 
-def _draw_place(room: BaseGeometry, generator: np.random.Generator) -> tuple[float, float]:
+def draw_place(room: BaseGeometry, generator: np.random.Generator) -> tuple[float, float]:
     """Return a point (x, y) inside, evenly distributed."""
     low, high = np.array(room.bounds).reshape(2, 2)
     while True:

@@ -6,10 +6,11 @@ import numpy as np
 import open3d as o3d
 
 from scanplan.lab.buildings.extrusion import SURFACES, Mesh
-from scanplan.types import FloatArray, IntArray
+from scanplan.types import BoolArray, FloatArray, IntArray
 
-# ASSUME paint, flooring, fabric, clothes, glass, on Velodyne's scale of 0 to 100 for diffuse ones;
-# it fills the intensity of the recorded points, which no stage reads
+# ASSUME paint, flooring, fabric, clothes, glass, dark stone, on Velodyne's scale of 0 to 100 for
+# diffuse ones; it fills the intensity of the recorded points, which no stage reads, and says how
+# dark a surface is that ranges are biased by
 REFLECTIVITY = {
     "wall": 80.0,
     "floor": 30.0,
@@ -18,7 +19,11 @@ REFLECTIVITY = {
     "glass": 10.0,
     "door": 60.0,
     "other": 50.0,
+    "mirror": 5.0,
+    "polished": 10.0,
     "person": 40.0,
+    "mirror": 10.0,
+    "polished": 20.0,
 }
 
 
@@ -40,6 +45,28 @@ class RayHits:
     reflectivity: FloatArray
 
 
+@dataclass(frozen=True)
+class MeshHits(RayHits):
+    """The first surface of a mesh that each ray meets.
+
+    Attributes
+    ----------
+    normal : (n, 3) float32
+        Unit normal of the triangle hit, to either side; undefined where nothing is hit.
+    surface : (n,) uint8
+        Its index in `extrusion.SURFACES`; undefined where nothing is hit.
+    """
+
+    normal: FloatArray
+    surface: IntArray
+
+    def is_of(self, name: str) -> BoolArray:
+        """Return which rays (n,) hit a surface of `extrusion.SURFACES`."""
+        if name not in SURFACES:
+            return np.zeros(len(self.range_m), bool)
+        return (self.surface == SURFACES.index(name)) & np.isfinite(self.range_m)
+
+
 class RayScene:
     """A mesh ready for ray casting, its panes of glass apart from its opaque surfaces.
 
@@ -54,15 +81,17 @@ class RayScene:
         self._centre_m = mesh.vertices_m.mean(axis=0)
         vertices_m = np.ascontiguousarray(mesh.vertices_m - self._centre_m, np.float32)
         is_glass = (np.array(SURFACES) == "glass")[mesh.surface]
-        of_surface = np.array([REFLECTIVITY[name] for name in SURFACES], np.float32)
-        reflectivity = of_surface[mesh.surface]
-        opaque = ~is_glass
-        self._opaque = _make_layer(vertices_m, mesh.triangles[opaque], reflectivity[opaque])
-        self._glass = _make_layer(vertices_m, mesh.triangles[is_glass], reflectivity[is_glass])
+        self._opaque = _make_layer(vertices_m, mesh, ~is_glass)
+        self._glass = _make_layer(vertices_m, mesh, is_glass)
+        self._names = frozenset(SURFACES[i] for i in np.unique(mesh.surface).tolist())
+
+    def has(self, name: str) -> bool:
+        """Return whether the mesh has a surface of `extrusion.SURFACES`."""
+        return name in self._names
 
     def first_hits(
         self, origin_m: FloatArray, direction: FloatArray
-    ) -> tuple[RayHits, RayHits | None]:
+    ) -> tuple[MeshHits, MeshHits | None]:
         """Find the first opaque surface and the first pane that each ray meets.
 
         Parameters
@@ -74,43 +103,57 @@ class RayScene:
 
         Returns
         -------
-        opaque : RayHits
+        opaque : MeshHits
             The first surface that is no glass, for all rays, flat (c * b,).
-        pane : RayHits or None
+        pane : MeshHits or None
             The first pane, before or behind that surface; None if the mesh has none.
         """
+        rays = self._list_rays(origin_m, direction)
+        return self._opaque_hits(rays), self._glass.hits(rays) if self._glass else None
+
+    def opaque_hits(self, origin_m: FloatArray, direction: FloatArray) -> MeshHits:
+        """Find the first opaque surface that each ray meets; as `first_hits`, which casts both."""
+        return self._opaque_hits(self._list_rays(origin_m, direction))
+
+    def _list_rays(self, origin_m: FloatArray, direction: FloatArray) -> FloatArray:
+        """Return the rays (c * b, 6) float32 about the mesh's own centre."""
         rays = np.empty((*direction.shape[:2], 6), np.float32)
         rays[..., :3] = (origin_m - self._centre_m)[:, None]
         rays[..., 3:] = direction
-        rays = rays.reshape(-1, 6)
+        return rays.reshape(-1, 6)
+
+    def _opaque_hits(self, rays: FloatArray) -> MeshHits:
         if self._opaque:
-            opaque = self._opaque.hits(rays)
-        else:
-            opaque = RayHits(*np.full((3, len(rays)), np.inf, np.float32))
-        return opaque, self._glass.hits(rays) if self._glass else None
+            return self._opaque.hits(rays)
+        nothing = np.full((3, len(rays)), np.inf, np.float32)
+        return MeshHits(*nothing, np.zeros((len(rays), 3), np.float32), np.zeros(len(rays), int))
 
 
 class _Layer:
-    """Triangles with the reflectivity of each."""
+    """Triangles with the surface of each."""
 
-    def __init__(self, vertices_m: FloatArray, triangles: IntArray, reflectivity: FloatArray):
-        self._reflectivity = reflectivity
+    def __init__(self, vertices_m: FloatArray, triangles: IntArray, surface: IntArray):
+        self._surface = surface
+        of_surface = np.array([REFLECTIVITY[name] for name in SURFACES], np.float32)
+        self._reflectivity = of_surface[surface]
         self._scene = o3d.t.geometry.RaycastingScene(nthreads=1)
         rows = np.ascontiguousarray(triangles, np.uint32)
         self._scene.add_triangles(
             o3d.core.Tensor.from_numpy(vertices_m), o3d.core.Tensor.from_numpy(rows)
         )
 
-    def hits(self, rays: FloatArray) -> RayHits:
+    def hits(self, rays: FloatArray) -> MeshHits:
         cast = self._scene.cast_rays(o3d.core.Tensor.from_numpy(rays), nthreads=1)
-        cosine = np.abs(np.einsum("ij,ij->i", cast["primitive_normals"].numpy(), rays[:, 3:]))
+        normal = cast["primitive_normals"].numpy()
+        cosine = np.abs(np.einsum("ij,ij->i", normal, rays[:, 3:]))
         # the row that Open3D gives a miss is no row
-        row = np.minimum(cast["primitive_ids"].numpy(), len(self._reflectivity) - 1)
-        return RayHits(cast["t_hit"].numpy(), cosine, self._reflectivity[row])
+        row = np.minimum(cast["primitive_ids"].numpy(), len(self._surface) - 1)
+        range_m = cast["t_hit"].numpy()
+        return MeshHits(range_m, cosine, self._reflectivity[row], normal, self._surface[row])
 
 
-def _make_layer(
-    vertices_m: FloatArray, triangles: IntArray, reflectivity: FloatArray
-) -> _Layer | None:
+def _make_layer(vertices_m: FloatArray, mesh: Mesh, chosen: BoolArray) -> _Layer | None:
     """Return the layer of some triangles, None where there are none."""
-    return _Layer(vertices_m, triangles, reflectivity) if len(triangles) else None
+    if not chosen.any():
+        return None
+    return _Layer(vertices_m, mesh.triangles[chosen], mesh.surface[chosen])

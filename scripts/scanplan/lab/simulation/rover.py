@@ -1,10 +1,11 @@
 """The rover: its motion along a way, its pose at any moment, and when it records."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from scanplan.lab.simulation import hand_sway
 from scanplan.types import FloatArray, IntArray
 
 TICK_NS = 20_000_000  # ASSUME odometry at 50 Hz, usual of small rovers' bases
@@ -12,7 +13,7 @@ TICK_NS = 20_000_000  # ASSUME odometry at 50 Hz, usual of small rovers' bases
 
 @dataclass(frozen=True)
 class Drive:
-    """A planar motion, linear between key moments; the rover stands still before and after them.
+    """A planar motion, linear between key moments, still before and after them; and its sway.
 
     Attributes
     ----------
@@ -21,11 +22,46 @@ class Drive:
         The base's position in the map.
     yaw_rad : (k,) float64
         Its heading, continuous (not wrapped).
+    sway : hand_sway.Sway or None
+        What a walking hand adds; None on wheels.
     """
 
     t_s: FloatArray
     xy_m: FloatArray
     yaw_rad: FloatArray
+    sway: hand_sway.Sway | None = None
+
+
+def carry_in_hand(
+    drive: Drive,
+    base_from_sensor: FloatArray,
+    *,
+    sway_m: float,
+    sway_deg: float,
+    sway_hz: float,
+    seed: int,
+) -> Drive:
+    """Return a drive as a walking hand makes it, which sways about the sensor.
+
+    Parameters
+    ----------
+    drive : Drive
+    base_from_sensor : (4, 4) float64
+    sway_m, sway_deg, sway_hz, seed
+        As for `hand_sway.draw_sway`.
+
+    Returns
+    -------
+    Drive
+        As given where nothing sways.
+    """
+    if not sway_m and not sway_deg:
+        return drive
+    pivot_m = base_from_sensor[:3, 3]
+    swaying = hand_sway.draw_sway(
+        pivot_m, sway_m=sway_m, sway_deg=sway_deg, sway_hz=sway_hz, seed=seed
+    )
+    return replace(drive, sway=swaying)
 
 
 def plan_drive(waypoints_m: ArrayLike, *, speed_m_s: float, turn_rate_deg_s: float) -> Drive:
@@ -94,9 +130,12 @@ def trace_stamps(drive: Drive, margin_ns: int) -> IntArray:
 
     100 a second from the drive's start, and every moment at which the motion changes: interpolated
     linearly (positions) and spherically (rotations), the poses then are those of a sensor on the
-    rover to a few micrometres. They reach `margin_ns` beyond both ends.
+    rover to a few micrometres; in a hand that sways, so many a second that they are to 10
+    micrometres and 10 microradians. They reach `margin_ns` beyond both ends.
     """
     step_ns = TICK_NS // 2
+    if drive.sway is not None:
+        step_ns = min(step_ns, hand_sway.longest_step_ns(drive.sway))
     grid = np.arange(-margin_ns, _end_ns(drive) + margin_ns + step_ns, step_ns, dtype=np.int64)
     return np.union1d(grid, np.round(drive.t_s * 1e9).astype(np.int64))
 
@@ -106,18 +145,38 @@ def _end_ns(drive: Drive) -> int:
 
 
 def drive_poses(drive: Drive, t_ns: ArrayLike) -> FloatArray:
-    """Return world_from_base at moments of a drive: (n, 4, 4) float64."""
+    """Return world_from_base at moments of a drive, sway included: (n, 4, 4) float64."""
+    level = level_poses(drive, t_ns)
+    return level if drive.sway is None else level @ hand_sway.sway_poses(drive.sway, t_ns)
+
+
+def level_poses(drive: Drive, t_ns: ArrayLike) -> FloatArray:
+    """Return the planar world_from_base at moments of a drive, without sway: (n, 4, 4) float64."""
     t_s = np.asarray(t_ns) / 1e9
     xy_m = np.column_stack([np.interp(t_s, drive.t_s, axis) for axis in drive.xy_m.T])
     return planar_poses(xy_m, np.interp(t_s, drive.t_s, drive.yaw_rad))
 
 
-def mount_sensor(*, height_m: float, forward_m: float, yaw_deg: float) -> FloatArray:
-    """Return base_from_sensor (4, 4), the extrinsics of a level sensor.
+def mount_sensor(
+    *,
+    height_m: float,
+    forward_m: float,
+    yaw_deg: float,
+    roll_deg: float = 0.0,
+    pitch_deg: float = 0.0,
+) -> FloatArray:
+    """Return base_from_sensor (4, 4), the extrinsics of a sensor.
 
-    It sits above the floor, ahead of the rover's middle, turned about the vertical.
+    It sits above the floor, ahead of the rover's middle: rolled about its own forward axis (by 180
+    degrees it hangs upside down), then pitched (positive: it looks down), then turned about the
+    vertical.
     """
-    return planar_poses([[forward_m, 0.0]], np.radians([yaw_deg]), height_m)[0]
+    level = planar_poses([[forward_m, 0.0]], np.radians([yaw_deg]), height_m)[0]
+    if not roll_deg and not pitch_deg:
+        return level
+    tilt = hand_sway.tilt_matrices(np.radians([[roll_deg, pitch_deg, 0.0]]))[0]
+    level[:3, :3] = level[:3, :3] @ tilt
+    return level
 
 
 def planar_poses(xy_m: ArrayLike, yaw_rad: ArrayLike, z_m: float = 0.0) -> FloatArray:

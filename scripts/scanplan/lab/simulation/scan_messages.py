@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from scanplan.lab.simulation.sensors import Sensor
+from scanplan.lab.simulation.sensors import Sensor, turn_directions
 from scanplan.lab.simulation.survey_messages import TYPE, RosMessage, make_header
 from scanplan.lab.simulation.sweeps import SimulatedScan
-from scanplan.types import Array, IntArray
+from scanplan.types import Array, FloatArray, IntArray
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Msg
@@ -75,7 +75,7 @@ def _encode_clouds(
         for name, (_, _, code) in _POINT.items()
     ]
     for seq, (stamp_ns, scan) in enumerate(zip(t_ns, scans, strict=True)):
-        points = _points(sensor, scan)
+        points = _points(sensor, turn_directions(sensor, seq), scan)
         content = TYPE["sensor_msgs/msg/PointCloud2"](
             header=make_header(seq, stamp_ns, sensor_frame(sensor)),
             height=1,
@@ -90,12 +90,12 @@ def _encode_clouds(
         yield RosMessage(stamp_ns, _CLOUD_TOPIC, content)
 
 
-def _points(sensor: Sensor, scan: SimulatedScan) -> Array:
-    """Return the returns of a scan as records, in the order fired."""
+def _points(sensor: Sensor, direction: FloatArray, scan: SimulatedScan) -> Array:
+    """Return the returns of a scan as records, in the order fired; `direction` as its turn's."""
     ray = np.flatnonzero(np.isfinite(scan.range_m))
     column, beam = np.divmod(ray, len(sensor.ring))
     points = np.empty(len(ray), POINT_DTYPE)
-    xyz_m = sensor.direction.reshape(-1, 3).take(ray, axis=0) * scan.range_m.take(ray)[:, None]
+    xyz_m = direction.reshape(-1, 3).take(ray, axis=0) * scan.range_m.take(ray)[:, None]
     points["x"], points["y"], points["z"] = xyz_m.T
     points["intensity"] = scan.intensity.take(ray)
     points["ring"] = sensor.ring[beam]

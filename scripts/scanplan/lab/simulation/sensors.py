@@ -1,18 +1,33 @@
 """Laser sensors: the directions and moments of the rays of one turn."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scanplan.errors import StageError
 from scanplan.types import FloatArray, IntArray
 
-# Velodyne VLP-16 user manual: elevations of its beams, and the beams in the order of firing
-_VLP16_ELEVATIONS_DEG = tuple(range(-15, 16, 2))
-# of which each of the lower half is followed by its like of the upper half
-_VLP16_FIRING_ORDER = tuple(np.arange(16).reshape(2, 8).T.ravel().tolist())
+# ASSUME some 25 columns a swing: 2 degrees of azimuth at the 5000 columns of a Livox Mid-360. Pi
+# makes it irrational, so that the pattern wanders from turn to turn
+_COLUMNS_PER_SWING = 8 * np.pi
+
+
+@dataclass(frozen=True)
+class Rosette:
+    """How the lines of an upward-looking sensor swing up and down while it turns.
+
+    Attributes
+    ----------
+    low_rad, high_rad : float
+        Between these elevations.
+    columns_per_swing : float
+        Columns from one lowest point of a line to its next; where it is irrational no turn repeats
+        another.
+    """
+
+    low_rad: float
+    high_rad: float
+    columns_per_swing: float
 
 
 @dataclass(frozen=True)
@@ -22,7 +37,8 @@ class Sensor:
     Attributes
     ----------
     direction : (c, b, 3) float32
-        Unit vectors in the sensor's frame: x forward, z up.
+        Unit vectors in the sensor's frame: x forward, z up; of the first turn where each differs
+        (`turn_directions`).
     ring : (b,) uint16
         The beam, counted from the lowest.
     time_s : (c,) float64
@@ -36,6 +52,8 @@ class Sensor:
         Angle from beam to beam of a 2-D scanner; None for a sensor that gives clouds.
     min_range_m, max_range_m : float
         Nothing comes back from outside.
+    rosette : Rosette or None
+        Of a sensor whose turns differ.
     """
 
     direction: FloatArray
@@ -45,6 +63,7 @@ class Sensor:
     increment_rad: float | None
     min_range_m: float
     max_range_m: float
+    rosette: Rosette | None = None
 
     @property
     def field_rad(self) -> float:
@@ -55,14 +74,6 @@ class Sensor:
         turn_rad = self.increment_rad * len(self.direction)
         is_whole = np.isclose(turn_rad, 2 * np.pi, rtol=1e-5)
         return 2 * np.pi if is_whole else turn_rad - self.increment_rad
-
-
-def make_vlp16(n_azimuth: int, **common: Any) -> Sensor:
-    """Return a Velodyne VLP-16: 16 beams from -15 to +15 degrees; see `make_lidar`.
-
-    The real sensor fires 1800 columns at 10 Hz.
-    """
-    return make_lidar(_VLP16_ELEVATIONS_DEG, n_azimuth, firing_order=_VLP16_FIRING_ORDER, **common)
 
 
 def make_lidar(
@@ -157,48 +168,65 @@ def make_laser(
     )
 
 
-def make_sensor(
-    model: str,
-    *,
+def make_rosette(
+    elevations_deg: tuple[float, float],
     n_azimuth: int,
-    elevations_deg: Sequence[float] | None,
-    field_deg: float,
-    **common: Any,
+    n_lines: int,
+    *,
+    rate_hz: float,
+    sweep: bool,
+    min_range_m: float,
+    max_range_m: float,
 ) -> Sensor:
-    """Return the sensor that the config names.
+    """Return a lidar whose few lines swing up and down while it turns, never twice the same way.
 
     Parameters
     ----------
-    model : {"vlp16", "lidar", "laser"}
+    elevations_deg : (float, float)
+        Lowest and highest that a line reaches.
     n_azimuth : int
-        Columns of a turn; the beams of a 2-D scanner.
-    elevations_deg : sequence of float or None
-        Of a `make_lidar`; must be None for the others.
-    field_deg : float
-        Of a `make_laser`.
-    **common
-        `rate_hz`, `sweep`, `min_range_m`, `max_range_m`.
+        Columns per turn.
+    n_lines : int
+        Their swings are evenly spread in time.
+    rate_hz, sweep, min_range_m, max_range_m
+        As for `make_lidar`.
+
+    Returns
+    -------
+    Sensor
 
     Raises
     ------
-    StageError
-        If the settings contradict each other.
+    ValueError
+        If there is no line or column, or no range between the limits.
     """
-    if (elevations_deg is None) == (model == "lidar"):
-        raise StageError(
-            f"simulate.sensor.elevations_deg: is {elevations_deg} with model {model};"
-            " list the beams of a lidar, and leave it null for vlp16 and laser"
-        )
-    if common["min_range_m"] >= common["max_range_m"]:
-        raise StageError(
-            f"simulate.sensor: min_range_m {common['min_range_m']:g} is not below max_range_m"
-            f" {common['max_range_m']:g}; lower it"
-        )
-    if model == "laser":
-        return make_laser(n_azimuth, field_deg, **common)
-    if elevations_deg is None:
-        return make_vlp16(n_azimuth, **common)
-    return make_lidar(sorted(elevations_deg), n_azimuth, **common)
+    common = {"rate_hz": rate_hz, "sweep": sweep}
+    limits = {"min_range_m": min_range_m, "max_range_m": max_range_m}
+    level = make_lidar([0.0] * n_lines, n_azimuth, **common, **limits)
+    low_rad, high_rad = np.radians(elevations_deg).tolist()
+    swinging = replace(level, rosette=Rosette(low_rad, high_rad, _COLUMNS_PER_SWING))
+    return replace(swinging, direction=turn_directions(swinging, 0))
+
+
+def turn_directions(sensor: Sensor, turn: int) -> FloatArray:
+    """Return the directions (c, b, 3) float32 of one turn, counted from 0, as `Sensor.direction`.
+
+    Only those of a rosette differ from turn to turn.
+    """
+    rosette = sensor.rosette
+    if rosette is None:
+        return sensor.direction
+    n, n_lines = sensor.direction.shape[:2]
+    column = np.arange(n) + n * turn
+    swing = column[:, None] / rosette.columns_per_swing + np.arange(n_lines) / n_lines
+    # up and down evenly: 0 at a swing's begin and end, 1 in its middle
+    height = 1 - np.abs(2 * (swing % 1) - 1)
+    elevation_rad = rosette.low_rad + (rosette.high_rad - rosette.low_rad) * height
+    azimuth_rad = -2 * np.pi * np.arange(n)[:, None] / n
+    level = np.cos(elevation_rad)
+    ahead = np.cos(azimuth_rad) * level
+    left = np.sin(azimuth_rad) * level
+    return np.stack([ahead, left, np.sin(elevation_rad)], axis=-1).astype(np.float32)
 
 
 def _directions(azimuth_rad: FloatArray, elevation_rad: FloatArray) -> FloatArray:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from scanplan.exports import bag_writer
 from scanplan.geometry import se3
@@ -80,7 +81,7 @@ def encode_belief(start_ns: int, belief: Belief, *, localised: bool) -> list[Ite
 
 
 def encode_localiser_poses(
-    t_ns: IntArray, map_from_base: FloatArray, *, noise_m: float, noise_rad: float
+    t_ns: IntArray, map_from_base: FloatArray, *, noise_m: ArrayLike, noise_rad: ArrayLike
 ) -> Iterator[RosMessage]:
     """Encode a localiser's poses as `geometry_msgs/PoseWithCovarianceStamped`.
 
@@ -90,15 +91,18 @@ def encode_localiser_poses(
     ----------
     t_ns : (n,) int64
     map_from_base : (n, 4, 4) float64
-    noise_m, noise_rad : float
+    noise_m, noise_rad : float or (n,) float
         Standard deviations that the localiser states.
 
     Yields
     ------
     RosMessage
     """
-    covariance = np.diag([noise_m**2, noise_m**2, 0, 0, 0, noise_rad**2]).ravel()
+    deviation = np.zeros((len(map_from_base), 6))
+    deviation[:, :2] = np.reshape(noise_m, (-1, 1))
+    deviation[:, 5] = noise_rad
     for seq, (stamp_ns, pose) in enumerate(_encode_poses(t_ns, map_from_base)):
+        covariance = np.diag(deviation[seq] ** 2).ravel()
         content = TYPE["geometry_msgs/msg/PoseWithCovarianceStamped"](
             header=make_header(seq, stamp_ns, MAP_FRAME),
             pose=TYPE["geometry_msgs/msg/PoseWithCovariance"](pose=pose, covariance=covariance),

@@ -4,14 +4,26 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from shapely.geometry.base import BaseGeometry
 
-from scanplan.lab.buildings import building, building_route, clutter
+from scanplan.lab.buildings import building, building_route, clutter, random_leaves
 from scanplan.lab.buildings.truth import Feature
 from scanplan.lab.evaluation import visible_faces
-from scanplan.lab.simulation import localisation, rover, sensor_errors, sensors, sweeps
-from scanplan.lab.simulation.people import simulate_walkers
+from scanplan.lab.simulation import (
+    companions,
+    hand_sway,
+    localisation,
+    people,
+    rover,
+    sensor_errors,
+    sensor_models,
+    sweeps,
+)
 from scanplan.lab.simulation.survey_truth import mark_visible
 from scanplan.types import FloatArray, IntArray, Settings
+
+_START = ("start_off_m", "start_off_deg", "converge_m")
+_SLAM = ("walk_m", "walk_deg", "loop_late_m")
 
 
 def prepare_site(
@@ -26,6 +38,7 @@ def prepare_site(
     clearance_m: float,
     chairs: int,
     doors_ajar: float,
+    leaves: float = 0.0,
     **reading: Any,
 ) -> building.Building:
     """Read a building and find the rover's way through it.
@@ -41,6 +54,8 @@ def prepare_site(
         See `building_route.plan_building_route`.
     chairs, doors_ajar
         See `clutter.add_clutter`.
+    leaves
+        Share of doors, see `random_leaves.hang_leaves`.
     **reading
         Settings of `building.load_building`; `planar` for a 2-D scanner.
 
@@ -50,6 +65,17 @@ def prepare_site(
         With a way.
     """
     site = building.load_building(data, source, slice_height_m=mount["height_m"], **reading)
+    if leaves > 0:
+        given_m = site.waypoints_m if waypoints_m is None else waypoints_m
+        site = random_leaves.hang_leaves(
+            site,
+            share=leaves,
+            seed=seed,
+            slice_height_m=mount["height_m"],
+            planar=reading.get("planar", False),
+            waypoints_m=given_m if route == "given" else None,
+            clearance_m=max(building_route.ROVER_RADIUS_M, abs(mount["forward_m"])),
+        )
     driven = building_route.plan_building_route(
         site,
         source,
@@ -81,8 +107,8 @@ def prepare_survey(
         With a way.
     seed : int
     mount, sensor, errors, drive, people : dict
-        Settings of `rover.mount_sensor`, `sensors.make_sensor`,
-        `sensor_errors.draw_sensor_errors`, `rover.plan_drive` and `people.simulate_walkers`.
+        Settings of `rover.mount_sensor`, `sensor_models.make_sensor`,
+        `sensor_errors.draw_sensor_errors`, `plan_motion` and `invite_people`.
 
     Returns
     -------
@@ -97,23 +123,73 @@ def prepare_survey(
     """
     if site.waypoints_m is None:
         raise ValueError("a survey needs a building with a way through it")
-    lidar = sensors.make_sensor(**sensor)
-    way = rover.plan_drive(site.waypoints_m, **drive)
+    lidar = sensor_models.make_sensor(**sensor)
+    base_from_sensor = rover.mount_sensor(**mount)
+    way = plan_motion(site.waypoints_m, base_from_sensor, **drive, seed=seed)
     free = site.floor_m.difference(site.obstacles_m)
     return sweeps.SimulatedSurvey(
         mesh=site.mesh,
         sensor=lidar,
         errors=sensor_errors.draw_sensor_errors(lidar, **errors, seed=seed),
         drive=way,
-        base_from_sensor=rover.mount_sensor(**mount),
-        people=simulate_walkers(free, until_s=way.t_s[-1], **people, seed=seed),
+        base_from_sensor=base_from_sensor,
+        people=invite_people(free, way, **people, seed=seed),
         t_ns=rover.scan_stamps(way, sensor["rate_hz"]),
         seed=seed,
     )
 
 
+def plan_motion(
+    waypoints_m: FloatArray,
+    base_from_sensor: FloatArray,
+    *,
+    speed_m_s: float,
+    turn_rate_deg_s: float,
+    sway_m: float,
+    sway_deg: float,
+    sway_hz: float,
+    sway_known: bool,
+    seed: int,
+) -> rover.Drive:
+    """Return a drive as `rover.plan_drive`, swaying as `rover.carry_in_hand`.
+
+    `sway_known` says whether the recorded poses state the sway; the motion is the same.
+    """
+    del sway_known
+    way = rover.plan_drive(waypoints_m, speed_m_s=speed_m_s, turn_rate_deg_s=turn_rate_deg_s)
+    hand = {"sway_m": sway_m, "sway_deg": sway_deg, "sway_hz": sway_hz}
+    return rover.carry_in_hand(way, base_from_sensor, **hand, seed=seed)
+
+
+def invite_people(
+    free: BaseGeometry,
+    way: rover.Drive,
+    *,
+    count: int,
+    speed_m_s: float,
+    standing: int,
+    followers: int,
+    seed: int,
+) -> tuple[people.Person, ...]:
+    """Return so many people who wander, who stand about and who follow the sensor.
+
+    See `people.simulate_walkers`, `companions.place_standing` and `companions.follow_sensor`.
+    """
+    until_s = way.t_s[-1]
+    return (
+        *people.simulate_walkers(free, count, speed_m_s=speed_m_s, until_s=until_s, seed=seed),
+        *companions.place_standing(free, way, standing, seed=seed),
+        *companions.follow_sensor(free, way, followers),
+    )
+
+
 def survey_belief(
-    survey: sweeps.SimulatedSurvey, odometry: Settings, **localiser: Any
+    survey: sweeps.SimulatedSurvey,
+    odometry: Settings,
+    *,
+    kind: str,
+    sway_known: bool,
+    **localiser: Any,
 ) -> localisation.Belief:
     """Return what wheels and localiser estimate, a turn of the sensor beyond either end.
 
@@ -121,14 +197,27 @@ def survey_belief(
     ----------
     survey : sweeps.SimulatedSurvey
     odometry : dict
-        Settings of `localisation.integrate_odometry`.
+        Settings of `odometry.integrate_odometry`.
+    kind : {"amcl", "slam"}
+        Whether the localiser knows the map, or makes it.
+    sway_known : bool
+        Whether odometry and localiser state how the hand sways; otherwise they are planar.
     **localiser
-        Settings of `localisation.simulate_belief`.
+        Settings of `localisation.simulate_belief`, `localisation.draw_start` and
+        `slam.track_poses`.
     """
     tick_ns = rover.tick_stamps(survey.drive, _turn_ns(survey))
-    world_from_base = rover.drive_poses(survey.drive, tick_ns)
+    swaying = survey.drive.sway if sway_known else None
+    slam = {key: localiser.pop(key) for key in _SLAM}
     return localisation.simulate_belief(
-        tick_ns, world_from_base, odometry=odometry, **localiser, seed=survey.seed
+        tick_ns,
+        rover.level_poses(survey.drive, tick_ns),
+        odometry=odometry,
+        start={key: localiser.pop(key) for key in _START},
+        slam=slam if kind == "slam" else None,
+        sway=None if swaying is None else hand_sway.sway_poses(swaying, tick_ns),
+        **localiser,
+        seed=survey.seed,
     )
 
 

@@ -37,17 +37,29 @@ def mark_visible(
     faces = select_faces(features)
     cells = face_cells.cut_faces(faces.inner_m)
     is_seen = visible_faces.cells_seen_by_any(cells, faces.outer_m, poses, sensor)
+    is_pane = np.array([features[i][1].get("material") == "glass" for i in inner], bool)
+    if is_pane.any():
+        is_seen[~is_pane[cells.face]] = _seen_through_panes(faces, is_pane, poses, sensor)
     length_m = np.where(is_seen, cells.length_m, 0.0)
     by_face_m = np.bincount(cells.face, length_m, len(inner))
     visible_m = dict(zip(inner, by_face_m.tolist(), strict=True))
     for i, (geometry, values) in enumerate(features):
         if values["kind"] == "wall":
-            on_wall = _on_wall(geometry, values["thickness_m"], cells)
+            widest_m = max(values["thickness_m"], values.get("end_thickness_m", 0.0))
+            on_wall = _on_wall(geometry, widest_m, cells)
             visible_m[i] = float(length_m[on_wall].sum())
     return [
         (g, {**values, "visible_m": round(visible_m[i], 3)} if i in visible_m else values)
         for i, (g, values) in enumerate(features)
     ]
+
+
+def _seen_through_panes(
+    faces: TrueFaces, is_pane: BoolArray, poses: FloatArray, sensor: visible_faces.SensorView
+) -> BoolArray:
+    """Return which cells of the faces that are no panes a scan could see, were there no panes."""
+    cells = face_cells.cut_faces(faces.inner_m[~is_pane])
+    return visible_faces.cells_seen_by_any(cells, faces.outer_m, poses, sensor)
 
 
 def select_faces(features: Sequence[Feature]) -> TrueFaces:

@@ -7,8 +7,9 @@ import numpy as np
 
 from scanplan.lab.buildings.extrusion import Mesh
 from scanplan.lab.random_streams import RandomStream, open_stream
-from scanplan.lab.simulation import people, raycast, rover, sensor_errors
-from scanplan.lab.simulation.sensors import Sensor
+from scanplan.lab.simulation import people, ray_fates, raycast, rover, sensor_errors
+from scanplan.lab.simulation.scan_rays import ScanRays, Scene
+from scanplan.lab.simulation.sensors import Sensor, turn_directions
 from scanplan.stage import workers
 from scanplan.types import FloatArray, IntArray
 
@@ -103,13 +104,17 @@ def take_scan(survey: SimulatedSurvey, scene: raycast.RayScene, scan_id: int) ->
     sensor = survey.sensor
     fired_ns = survey.t_ns[scan_id] + np.round(sensor.time_s * 1e9).astype(np.int64)
     world_from_sensor = rover.drive_poses(survey.drive, fired_ns) @ survey.base_from_sensor
-    hits = _cast_rays(survey, scene, scan_id, fired_ns, world_from_sensor)
-    returned_m = sensor_errors.drop_grazing(
-        hits, survey.errors, open_stream(survey.seed, RandomStream.GRAZING_LOSS, scan_id)
+    origin_m = world_from_sensor[:, :3, 3]
+    map_from_sensor = world_from_sensor[:, :3, :3].transpose(0, 2, 1).astype(np.float32)
+    direction = turn_directions(sensor, scan_id) @ map_from_sensor
+    rays = ScanRays(fired_ns / 1e9, origin_m, direction)
+    apart = people.list_apart(survey.people, rays.t_s, origin_m)
+    hits = ray_fates.find_returns(
+        rays, Scene(scene, apart), sensor, survey.errors, survey.seed, scan_id
     )
     shape = sensor.direction.shape[:2]
     measured_m = sensor_errors.add_range_errors(
-        returned_m.reshape(shape),
+        hits.range_m.reshape(shape),
         survey.errors,
         open_stream(survey.seed, RandomStream.RANGE_NOISE, scan_id),
     )
@@ -117,30 +122,6 @@ def take_scan(survey: SimulatedSurvey, scene: raycast.RayScene, scan_id: int) ->
     is_within = (measured_m >= sensor.min_range_m) & (measured_m <= sensor.max_range_m)
     measured_m = np.where(is_within, measured_m, np.float32(np.nan))
     return SimulatedScan(measured_m, hits.reflectivity.reshape(shape))
-
-
-def _cast_rays(
-    survey: SimulatedSurvey,
-    scene: raycast.RayScene,
-    scan_id: int,
-    fired_ns: IntArray,
-    world_from_sensor: FloatArray,
-) -> raycast.RayHits:
-    """Return what the rays of a scan meet first: the building, people, or panes of glass.
-
-    Columns fire at `fired_ns` (c,) from the poses (c, 4, 4).
-    """
-    origin_m = world_from_sensor[:, :3, 3]
-    map_from_sensor = world_from_sensor[:, :3, :3].transpose(0, 2, 1).astype(np.float32)
-    direction = survey.sensor.direction @ map_from_sensor
-    hits, pane = scene.first_hits(origin_m, direction)
-    if survey.people:
-        met = people.find_person_hits(survey.people, fired_ns / 1e9, origin_m, direction)
-        hits = people.merge_hits(hits, met)
-    if pane is not None:
-        generator = open_stream(survey.seed, RandomStream.GLASS, scan_id)
-        hits = sensor_errors.pass_glass(hits, pane, survey.errors, generator)
-    return hits
 
 
 def _prepare(survey: SimulatedSurvey) -> None:

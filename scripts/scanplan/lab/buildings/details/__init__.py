@@ -1,0 +1,1 @@
+"""What drawn buildings have beside walls and holes: leaves, columns, ceilings, stairs."""

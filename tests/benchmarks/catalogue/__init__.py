@@ -1,0 +1,1 @@
+"""Buildings as they are, and drives through them, from seeds."""

@@ -1,0 +1,1 @@
+"""One module for each kind of building; each draws one with `draw(plan)`."""
