@@ -10,13 +10,14 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from scanplan.lab.evaluation.opening_metrics import unit_directions
+from scanplan.lab.evaluation.opening_metrics import WALL_M, unit_directions
 from scanplan.types import Array, BoolArray, FloatArray, IntArray
 
 DOORS = ("door", "passage")
 WINDOWS = ("window", "glass")
 LOW_WALL_M = 1.5  # lower than this a wall is a parapet: no face at the height of a hand's sensor
 PARAPET_M = 0.3  # below a sill as high as this is wall, so that a face there is right
+BESIDE_M = 0.25  # a room's edge is no farther from a face of its wall
 _OUTSIDE_M = 0.1  # a face of a wall is off by no more
 
 
@@ -78,7 +79,7 @@ class TrueOpenings:
     def footprints(self, margin_m: float) -> Array:
         """Return the ground (n,) of the openings in their walls, deeper by a margin each side."""
         half_m = np.nan_to_num(self.thickness_m) / 2 + margin_m
-        return shapely.buffer(shapely.linestrings(self.lines_m), half_m, cap_style="flat")
+        return shapely.buffer(line_shapes_of(self.lines_m), half_m, cap_style="flat")
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,6 +140,8 @@ class Scene:
         Ground of which the truth says nothing.
     track_m : (t, 2) float64
         The way of the sensor, where it is known.
+    opening_m : float
+        How far the middle of an opening is known.
     is_whole : bool
         Whether all walls are in it: of a truth that is a part, no drawn wall is known to be false.
     """
@@ -164,6 +167,7 @@ class Scene:
     ceiling_m: FloatArray = field(default_factory=lambda: np.empty((0, 2)))
     ignored: BaseGeometry = field(default_factory=shapely.Polygon)
     track_m: FloatArray = field(default_factory=lambda: np.empty((0, 2)))
+    opening_m: float = WALL_M
     is_whole: bool = True
 
     @cached_property
@@ -191,7 +195,7 @@ class Scene:
     def ground(self) -> BaseGeometry:
         """The ground of the building: rooms, walls, and what stands or opens in them."""
         half_m = self.thickness_m.max(axis=1, initial=0.0) / 2
-        bodies = shapely.buffer(shapely.linestrings(self.walls_m), half_m, cap_style="square")
+        bodies = shapely.buffer(line_shapes_of(self.walls_m), half_m, cap_style="square")
         parts = [*self.rooms, *bodies, *self.columns, *self.voids]
         return shapely.union_all(parts).buffer(_OUTSIDE_M)
 
@@ -199,6 +203,13 @@ class Scene:
     def entered_rooms(self) -> Array:
         """The rooms (e,) that the survey went into."""
         return self.rooms[self.entered]
+
+
+def line_shapes_of(lines_m: FloatArray) -> Array:
+    """Return lines (n, 2, 2) as LineStrings (n,), of none an empty array too."""
+    shapes = np.empty(len(lines_m), object)
+    shapes[:] = shapely.linestrings(lines_m)
+    return shapes
 
 
 def outline_sides_m(shape: BaseGeometry) -> FloatArray:

@@ -11,20 +11,16 @@ from shapely.geometry.base import BaseGeometry
 from scanplan.errors import StageError
 from scanplan.lab.evaluation import true_plan, truth_file
 from scanplan.lab.evaluation.scores.scene import (
+    BESIDE_M,
     Scene,
-    TrueLeaves,
-    TrueOpenings,
+    line_shapes_of,
     no_lines,
     outline_sides_m,
 )
+from scanplan.lab.evaluation.scores.scene_openings import read_leaves, read_openings
 from scanplan.types import Array, BoolArray, FilePath, FloatArray
 
 _REMEDY = "simulate the survey again, or mend it"
-_THIN_M = 0.1  # ASSUME of a wall whose opening lies in none that is known
-_BESIDE_M = 0.25  # a room's edge is no farther from a face of its wall
-_SHUT_SHARE = 0.8  # of an opening's width that a leaf or a screen stands in
-_ALONG_DEG = 15.0  # a leaf that is turned by less stands in its wall
-_SLACK_M = 0.03  # frames, and play of a leaf in its wall
 
 Parts = Mapping[str, list[tuple[dict[str, Any], BaseGeometry]]]
 """Properties and geometries by kind, in the order of the file."""
@@ -51,9 +47,10 @@ def read_scene(path: FilePath, track_m: FloatArray | None = None) -> Scene:
     walls_m, owners = _runs(parts.get("wall", []))
     values = [parts["wall"][owner][0] for owner in owners]
     thickness_m = np.array([_end_thickness_m(v) for v in values], float).reshape(-1, 2)
+    heights_m = np.array([v.get("height_m", np.inf) for v in values], float)
     screens_m = np.concatenate([no_lines(), *_lines(parts, "screen")])
     rooms, names, entered, ceiling_m = _rooms(parts.get("room", []))
-    leaves = _leaves(parts.get("leaf", []), parts.get("opening", []))
+    leaves = read_leaves(parts.get("leaf", []), parts.get("opening", []))
     return Scene(
         inner_m=inner[0],
         glass=inner[1],
@@ -62,8 +59,8 @@ def read_scene(path: FilePath, track_m: FloatArray | None = None) -> Scene:
         screens_m=screens_m,
         walls_m=walls_m,
         thickness_m=thickness_m,
-        height_m=np.array([v.get("height_m", np.inf) for v in values], float),
-        openings=_openings(
+        height_m=heights_m,
+        openings=read_openings(
             parts.get("opening", []),
             walls_m,
             thickness_m,
@@ -80,7 +77,7 @@ def read_scene(path: FilePath, track_m: FloatArray | None = None) -> Scene:
         rooms=rooms,
         names=names,
         entered=entered,
-        ceiling_m=ceiling_m,
+        ceiling_m=_complete_ceilings_m(ceiling_m, rooms, walls_m, thickness_m, heights_m),
         track_m=way_m,
     )
 
@@ -167,104 +164,19 @@ def _rooms(
     )
 
 
-def _leaves(
-    features: Sequence[tuple[dict[str, Any], BaseGeometry]],
-    openings: Sequence[tuple[dict[str, Any], BaseGeometry]],
-) -> TrueLeaves:
-    lines_m = [shapely.get_coordinates(geometry)[[0, -1]] for _, geometry in features]
-    values = [v for v, _ in features]
-    rows = [int(v.get("opening", -1)) for v in values]
-    shut = []
-    for line_m, row in zip(lines_m, rows, strict=True):
-        in_way = openings[row][1] if 0 <= row < len(openings) else None
-        shut.append(in_way is not None and _stands_in(line_m, shapely.get_coordinates(in_way)))
-    return TrueLeaves(
-        lines_m=np.array(lines_m, float).reshape(-1, 2, 2),
-        type=np.array([v.get("type", "hinged") for v in values], object),
-        open_deg=np.array([v.get("open_deg", np.nan) for v in values], float),
-        thickness_m=np.array([v.get("thickness_m", 0.04) for v in values], float),
-        opening=np.array(rows, np.int64),
-        shut=np.array(shut, bool),
-    )
-
-
-def _stands_in(line_m: FloatArray, opening_m: FloatArray) -> bool:
-    """Return whether a leaf stands along its opening, and within its width for the most part."""
-    way, across = _axes(opening_m[[0, -1]])
-    leaf_m = line_m[1] - line_m[0]
-    is_along = abs(leaf_m @ across) <= np.hypot(*leaf_m) * np.sin(np.radians(_ALONG_DEG))
-    low_m, high_m = np.sort((line_m - opening_m[0]) @ way)
-    width_m = np.hypot(*(opening_m[-1] - opening_m[0]))
-    inside_m = min(high_m, width_m) - max(low_m, 0.0)
-    return bool(is_along and inside_m >= _SHUT_SHARE * np.hypot(*leaf_m))
-
-
-def _axes(line_m: FloatArray) -> tuple[FloatArray, FloatArray]:
-    way = (line_m[1] - line_m[0]) / np.hypot(*(line_m[1] - line_m[0]))
-    return way, np.array([-way[1], way[0]])
-
-
-def _openings(
-    features: Sequence[tuple[dict[str, Any], BaseGeometry]],
+def _complete_ceilings_m(
+    ceiling_m: FloatArray,
+    rooms: Array,
     walls_m: FloatArray,
     thickness_m: FloatArray,
-    entered: Array,
-    track_m: FloatArray,
-    closing_m: FloatArray,
-) -> TrueOpenings:
-    values = [v for v, _ in features]
-    lines_m = np.array([shapely.get_coordinates(g)[[0, -1]] for _, g in features], float)
-    lines_m = lines_m.reshape(-1, 2, 2)
-    host_m = _host_thickness_m(lines_m, walls_m, thickness_m)
-    lines = shapely.linestrings(lines_m)
-    apart_m = shapely.distance(lines, shapely.union_all(entered))
-    way = shapely.LineString(track_m) if len(track_m) > 1 else shapely.Point()
-    is_door = np.array([v.get("type") != "window" for v in values], bool)
-    return TrueOpenings(
-        lines_m=lines_m,
-        type=np.array([v.get("type", "door") for v in values], object),
-        sill_m=np.array([v.get("sill_m", np.nan) for v in values], float),
-        lintel_m=np.array([v.get("lintel_m", np.nan) for v in values], float),
-        thickness_m=host_m,
-        glazed=np.array([bool(v.get("glazed", False)) for v in values], bool),
-        # without rooms nothing is known to be entered, and no distance is a number
-        entered=np.nan_to_num(apart_m, nan=np.inf) <= host_m / 2 + _BESIDE_M,
-        driven=is_door & shapely.intersects(lines, way),
-        shut=is_door & _find_shut(lines_m, host_m, closing_m),
-    )
-
-
-def _host_thickness_m(
-    lines_m: FloatArray, walls_m: FloatArray, thickness_m: FloatArray
+    heights_m: FloatArray,
 ) -> FloatArray:
-    """Return how thick (n,) the nearest wall at the middle of each opening is."""
-    if not len(walls_m):
-        return np.full(len(lines_m), _THIN_M)
-    middles = shapely.points(lines_m.mean(axis=1))
-    apart_m = shapely.distance(middles[:, None], shapely.linestrings(walls_m)[None])
-    nearest = apart_m.argmin(axis=1)
-    share = shapely.line_locate_point(
-        shapely.linestrings(walls_m)[nearest], middles, normalized=True
-    )
-    start_m, end_m = thickness_m[nearest].T
-    known_m = start_m + share * (end_m - start_m)
-    lies_in = apart_m.min(axis=1) <= np.nan_to_num(known_m, nan=_THIN_M) / 2 + _SLACK_M
-    return np.where(lies_in & np.isfinite(known_m), known_m, _THIN_M)
-
-
-def _find_shut(
-    lines_m: FloatArray, thickness_m: FloatArray, closing_m: FloatArray
-) -> BoolArray:
-    """Return which openings (n,) lines that stand in their walls close for the most part."""
-    shut = np.zeros(len(lines_m), bool)
-    for row, (line_m, thick_m) in enumerate(zip(lines_m, thickness_m, strict=True)):
-        way, across = _axes(line_m)
-        width_m = np.hypot(*(line_m[1] - line_m[0]))
-        offset_m = closing_m - line_m[0]
-        in_wall = (np.abs(offset_m @ across) <= thick_m / 2 + _SLACK_M).all(axis=1)
-        along_m = np.clip(np.sort(offset_m[in_wall] @ way, axis=1), 0.0, width_m)
-        spans = shapely.linestrings(
-            np.stack([along_m, np.zeros_like(along_m)], axis=-1).reshape(-1, 2, 2)
-        )
-        shut[row] = shapely.union_all(spans).length >= _SHUT_SHARE * width_m
-    return shut
+    """Return heights of ceilings (r, 2), where none is stated that of the highest wall beside."""
+    lines = line_shapes_of(walls_m)
+    half_m = np.nan_to_num(thickness_m.max(axis=1, initial=0.0)) / 2
+    known_m = np.where(np.isfinite(heights_m), heights_m, np.nan)
+    completed_m = ceiling_m.copy()
+    for row in np.flatnonzero(np.isnan(ceiling_m).any(axis=1)).tolist():
+        beside = shapely.distance(lines, rooms[row]) <= half_m + BESIDE_M
+        completed_m[row] = np.fmax.reduce(known_m[beside], initial=np.nan)
+    return completed_m
