@@ -77,14 +77,14 @@ def read_true_plan(path: FilePath) -> TruePlan:
             raise StageError(
                 f"{path}: feature {number} is no {kind} ({error!r}); {_REMEDY}"
             ) from None
-    rooms, visited = _join_touching(rooms, visited)
+    joined = join_touching(rooms)
     return TruePlan(
         walls_m=np.array(walls_m, float).reshape(-1, 2, 2),
         thickness_m=np.array(thickness_m),
         doors_m=np.array(openings_m["door"]).reshape(-1, 2, 2),
         windows_m=np.array(openings_m["window"]).reshape(-1, 2, 2),
-        rooms=rooms,
-        visited=np.array(visited, bool),
+        rooms=[room for room, _ in joined],
+        visited=np.array([any(visited[row] for row in rows) for _, rows in joined], bool),
     )
 
 
@@ -95,20 +95,27 @@ def _line(feature: Any) -> FloatArray:
     return xy_m
 
 
-def _join_touching(
-    rooms: Sequence[BaseGeometry], visited: Sequence[bool]
-) -> tuple[list[BaseGeometry], list[bool]]:
-    """Join rooms that share an edge: a model may part a space in two where no wall stands."""
+def join_touching(rooms: Sequence[BaseGeometry]) -> list[tuple[BaseGeometry, list[int]]]:
+    """Join rooms that share an edge: a model may part a space in two where no wall stands.
+
+    Parameters
+    ----------
+    rooms : sequence of shapely geometry
+
+    Returns
+    -------
+    list of (geometry, list of int)
+        Each space, and the rows of the rooms that it is made of.
+    """
     grown = [shapely.buffer(room, _TOUCH_M) for room in rooms]
-    joined_rooms, joined_visited = [], []
+    joined = []
     for rows in _touching_groups(grown):
         if len(rows) == 1:
-            joined_rooms.append(rooms[rows[0]])
+            joined.append((rooms[rows[0]], rows))
         else:
             space = shapely.union_all([grown[row] for row in rows]).buffer(-_TOUCH_M)
-            joined_rooms.append(MultiPolygon(shapely.get_parts(space).tolist()))
-        joined_visited.append(any(visited[row] for row in rows))
-    return joined_rooms, joined_visited
+            joined.append((MultiPolygon(shapely.get_parts(space).tolist()), rows))
+    return joined
 
 
 def _touching_groups(grown: Sequence[BaseGeometry]) -> list[list[int]]:
