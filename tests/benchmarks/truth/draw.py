@@ -188,14 +188,17 @@ def draw_floor(rough: dict[str, Any], returns: Returns) -> list[dict[str, Any]]:
             _feature("room", polygon, name=room["name"], entered=n_inside > 0)
         )
         outlines.append((room["name"], np.array(polygon.exterior.coords)))
-    for text in rough.get("walls", []):
+    n_rooms = len(outlines)
+    for text in rough.get("walls", []) + rough.get("glass", []):
         fitted = fit_line(returns, parse_corners(text), is_closed=False)
         outlines.append(("corridor", fitted))
+    first_glass = n_rooms + len(rough.get("walls", []))
     openings = [draw_opening(entry, outlines) for entry in rough.get("openings", [])]
     gaps = shapely.union_all([shapely.geometry.shape(one["geometry"]) for one in openings])
     masked = shapely.union_all([_polygon(text) for text in rough.get("ignore", [])])
-    for name, corners_m in outlines:
-        features += _draw_surfaces(name, corners_m, returns, gaps, masked)
+    for i, (name, corners_m) in enumerate(outlines):
+        of = {"of": name} | ({"material": "glass"} if i >= first_glass else {})
+        features += _draw_surfaces(of, corners_m, returns, gaps, masked)
     features += openings
     for entry in rough.get("leaves", []):
         ends = parse_corners(entry)
@@ -221,24 +224,24 @@ def draw_opening(entry: dict[str, str], outlines: list[tuple[str, FloatArray]]) 
 
 
 def _draw_surfaces(
-    name: str, corners_m: FloatArray, returns: Returns, gaps: Any, masked: Any
+    of: dict[str, str], corners_m: FloatArray, returns: Returns, gaps: Any, masked: Any
 ) -> list[dict[str, Any]]:
     line = shapely.LineString(corners_m)
     stretches = find_supported(returns, corners_m)
     seen = [shapely.ops.substring(line, low, high) for low, high in stretches]
     holes = shapely.union(gaps.buffer(_AT_GAP_M), masked)
     features = [
-        _feature("surface", part, of=name)
+        _feature("surface", part, **of)
         for part in shapely.get_parts(shapely.difference(seen, holes))
         if part.length >= _LEAST_M
     ]
     rest = line.difference(shapely.union_all(seen).buffer(0.01)).difference(holes)
     features += [
-        _feature("unseen", part, of=name)
+        _feature("unseen", part, **of)
         for part in shapely.get_parts(rest)
         if part.length >= _LEAST_UNSEEN_M
     ]
-    return features + [_feature("recess", edge, of=name) for edge in find_recesses(corners_m)]
+    return features + [_feature("recess", edge, **of) for edge in find_recesses(corners_m)]
 
 
 def find_recesses(corners_m: FloatArray) -> list[shapely.LineString]:
