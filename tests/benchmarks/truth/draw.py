@@ -24,15 +24,18 @@ FOLDER = Path(__file__).parent
 _REACH_M = 0.12  # of a rough edge: what is drawn by eye lies within a few centimetres
 _SHORT_M = 0.5  # edges below keep their direction: too few returns to turn them by
 _SHORT_REACH_M = 0.07  # recesses are 0.1 m deep
+_COVERED = 0.15  # least share of an edge, in steps of 0.1 m, with returns: else the rough one stays
 _LATERAL_M = 0.06  # of a return that supports a surface: three times the scanners' noise
 _STEP_M = 0.05  # along a surface
 _ALONG_M = 0.15  # returns this far apart support what lies between them
 _LEAST_M = 0.2  # of a surface
 _AT_GAP_M = 0.06  # what of a wall lies this near to an opening is its jamb
+_RAIL_M = 0.25  # about a rail nothing counts: its posts may be drawn or not
 _LEAST_UNSEEN_M = 0.3
 _MOVED_M = 0.25  # a fitted corner farther from the rough one is a wrong crossing
 _RECESS_M = (0.7, 2.2)  # leaves, single and double
 _RECESS_DEPTH_M = 0.45
+_AS_DRAWN = {"columns": "column", "furniture": "furniture", "ignore": "ignore"}
 _PARALLEL = 0.2  # sine of the angle below which two edges have no sharp crossing
 
 
@@ -100,7 +103,8 @@ def fit_edge(returns: Returns, start_m: FloatArray, end_m: FloatArray) -> Edge:
     margin_m = min(0.08, 0.2 * length_m)
     is_inner = (s_m > margin_m) & (s_m < length_m - margin_m)
     s_m, e_m = s_m[is_inner], e_m[is_inner]
-    if len(s_m) < 6:
+    n_cells = len(np.unique(np.floor(s_m / 0.1)))
+    if n_cells < max(2, _COVERED * length_m / 0.1):
         return Edge(start_m, along, 0)
     weight = np.ones(len(s_m))
     slope, height_m = 0.0, 0.0
@@ -204,8 +208,11 @@ def draw_floor(rough: dict[str, Any], returns: Returns) -> list[dict[str, Any]]:
         ends = parse_corners(entry)
         seen = max((ends, ends[::-1]), key=lambda line: fit_edge(returns, *line).n_returns)
         features.append(_feature("leaf", shapely.LineString(fit_line(returns, seen, is_closed=False))))
-    for kind in ("furniture", "ignore"):
-        features += [_feature(kind, _polygon(text)) for text in rough.get(kind, [])]
+    for text in rough.get("rails", []):
+        rail = shapely.LineString(parse_corners(text))
+        features += [_feature("rail", rail), _feature("ignore", rail.buffer(_RAIL_M, 2))]
+    for name, kind in _AS_DRAWN.items():
+        features += [_feature(kind, _polygon(text)) for text in rough.get(name, [])]
     return features
 
 
@@ -276,7 +283,7 @@ def compare_again(
 ) -> list[str]:
     """Return a line for each room that was drawn twice: how far the two drawings differ."""
     lines = []
-    for room in rough.get("again", []):
+    for room in rough.get("again") or []:
         ring = parse_corners(room["corners"])
         ring = ring if shapely.LinearRing(ring).is_ccw else ring[::-1]
         second = shapely.Polygon(fit_line(returns, ring, is_closed=True))
