@@ -6,6 +6,7 @@ Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [pl
        run.py guard REVISION FOLDER [SURVEY ...]
        run.py table FOLDER [SURVEY ...]
        run.py compare FOLDER FOLDER
+       run.py ablate FOLDER [SURVEY ...]
        run.py confidence FOLDER SURVEY,... SURVEY,...
        run.py next_visit FOLDER [SURVEY ...]
        run.py sheets RESULTS FOLDER [SURVEY ...]
@@ -25,6 +26,9 @@ where some are named: time, memory and bytes of every stage, beside a raw read. 
 commit, in a folder of its own, or those of any seed and recording that are named; `table` prints
 what they are worth; `compare` what changed between two such folders, and fails where a measure
 fell.
+
+`ablate` makes the plans of surveys that a bench has finished in FOLDER again, without one rule of
+the plan at a time, and prints what each rule is worth: two drives at once, a few seconds a rule.
 
 `confidence` fits how likely elements of a plan are right on the first of the surveys in a folder
 that `guard` has made, tests it on the others, and writes the coefficients into the package, with a
@@ -127,6 +131,13 @@ def compare_guards(before: str, after: str) -> None:
     sys.exit(guard.compare(Path(before), Path(after)) > 0)
 
 
+def ablate_rules(folder: str, *names: str) -> None:
+    """Price the rules of the plan."""
+    import ablation
+
+    ablation.bench(Path(folder), names, SETTINGS)
+
+
 def bench_pipeline(*words: str) -> None:
     """Bag to plan and report on a long drive."""
     import pipeline_bench
@@ -187,6 +198,7 @@ def bench_odometry(folder: str, *names: str) -> None:
 
 
 APART: dict[str, Callable[..., None]] = {
+    "ablate": ablate_rules,
     "guard": record_guard,
     "table": print_table,
     "compare": compare_guards,

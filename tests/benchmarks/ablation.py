@@ -1,0 +1,198 @@
+"""What each rule of the plan is worth: plans of finished surveys with one rule off at a time.
+
+A plan is made from the walls, the choice of scans and the poses that are there, by the stage's own
+function with the settings that the workflow would give it. What was made is kept by drive and rule
+under a name that says code, settings and survey, so that a run that was stopped goes on.
+"""
+
+import contextlib
+import hashlib
+import json
+import tempfile
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import ablation_scores
+import ablation_table
+from ablation_rules import RULES
+from ablation_switches import Rule, switched_off
+
+import assemble_plan
+import extract_chosen_walls
+from scanplan.plan import planning
+from scanplan.project import code_files, dataset_files, stage_settings
+from scanplan.project.settings import merge_settings, read_own_layers
+from scanplan.stage import workers
+from scanplan.store import tables
+from scanplan.types import Settings
+
+BASE = "nothing"
+"""The name of the plan with no rule off."""
+_ANEW = "nothing, walls of scans extracted anew"
+BASES = {name: _ANEW if rule.extracts else BASE for name, rule in RULES.items()}
+"""By the name of each rule that of the plan it is compared with."""
+_PLACES = ("code/results", "results", ".")
+_PROCESSES = 2
+_SCRIPTS = Path(assemble_plan.__file__).parent
+_OF_SURVEY = ("registration.parquet", "plan/segments.parquet", "poses.parquet")
+
+
+def bench(folder: Path, names: Sequence[str], settings: Settings) -> None:
+    """Print what each rule changes on drives, and write it to `ablation.csv` and `ablation.md`.
+
+    Parameters
+    ----------
+    folder : Path
+        As a bench made it: with results of the workflow, or below `results` or `code/results`.
+    names : sequence of str
+        Datasets; all that are finished if empty.
+    settings : dict
+        Default settings.
+    """
+    results = next((folder / place for place in _PLACES if (folder / place).is_dir()), folder)
+    finished = sorted(path.parents[1] for path in results.glob("*/plan/segments.parquet"))
+    drives = [path for path in finished if not names or path.name in names]
+    kept = folder / "ablation"
+    jobs = [(path, kept / path.name, settings) for path in drives]
+    with workers.open_pool(min(_PROCESSES, len(jobs) or 1)) as run:
+        found = dict(zip([path.name for path in drives], run(ablate, jobs), strict=True))
+    for kind, of_kind in _by_kind(drives, found).items():
+        ablation_table.report(kind, of_kind, RULES, BASES, kept)
+
+
+def ablate(results: Path, kept: Path, settings: Settings) -> dict[str, dict[str, Any]]:
+    """Return, by the name of each rule, what the plan of a survey is worth without it.
+
+    Parameters
+    ----------
+    results : Path
+        What the workflow made of the survey.
+    kept : Path
+        Folder for what was found.
+    settings : dict
+        Default settings.
+
+    Returns
+    -------
+    dict of str to dict
+        `scores`, and `tables`, a digest that tells plans apart; `BASE` is without any rule off.
+    """
+    kept.mkdir(parents=True, exist_ok=True)
+    own = _own_settings(results, settings)
+    survey = _digest([json.dumps(own, sort_keys=True), *_survey_parts(results, own)])
+    rules = {BASE: Rule({}, ()), _ANEW: Rule({}, (), extracts=True), **RULES}
+    found: dict[str, dict[str, Any]] = {}
+    for name, rule in rules.items():
+        file = kept / f"{name.replace(' ', '_').replace(',', '')}.json"
+        digest = _digest([code_digest(), survey, name])
+        found[name] = _read_kept(file, digest) or _measure(results, own, rule, found)
+        file.write_text(json.dumps({"code": digest, **found[name]}, sort_keys=True))
+    n_changed = sum(found[name]["tables"] != found[BASES[name]]["tables"] for name in RULES)
+    print(f"ablate, {results.name}: {n_changed} of {len(RULES)} rules change the plan", flush=True)
+    return found
+
+
+def _measure(
+    results: Path, settings: Settings, rule: Rule, found: dict[str, dict[str, Any]]
+) -> dict[str, Any]:
+    with tempfile.TemporaryDirectory() as folder:
+        plan = Path(folder)
+        try:
+            _make_plan(results, settings, rule, plan)
+        except Exception as error:
+            # that there is no plan without it is what a rule is worth
+            if not rule.switches:
+                raise
+            return {"tables": f"none: {error!r}", "scores": {}}
+        written = [plan / f"{table}.parquet" for table in planning.TABLES]
+        digest = _digest(path.read_bytes() for path in written)
+        same = [of for of in found.values() if of["tables"] == digest]
+        scores = same[0]["scores"] if same else ablation_scores.score(plan, results, settings)
+        return {"tables": digest, "scores": scores}
+
+
+def _make_plan(results: Path, settings: Settings, rule: Rule, plan: Path) -> None:
+    """Write the tables of a survey's plan without a rule."""
+    selection = results / f"selection/{settings['plan']['method']}.parquet"
+    scans, registration = results / "scans.parquet", results / "registration.parquet"
+    segments = results / "plan/segments.parquet"
+    stop = stage_settings.select_section(settings, "selection", "stop")
+    with switched_off(rule), _silence():
+        if rule.extracts:
+            extractor, segments = settings["plan"]["extractor"], plan / "segments.parquet"
+            extract_chosen_walls.extract_chosen_walls(
+                *(scans, registration, selection, segments),
+                extractor=extractor,
+                settings=stage_settings.select_extractor(settings, extractor),
+                stop=stop,
+            )
+        assemble_plan.assemble_plan(
+            *(segments, selection, scans, registration),
+            {table: plan / f"{table}.parquet" for table in planning.TABLES},
+            settings=stage_settings.select_plan(settings),
+            **stop,
+        )
+
+
+def _own_settings(results: Path, settings: Settings) -> Settings:
+    """Return settings with what the dataset's own file says, where that is still there."""
+    source = Path((results / "source.txt").read_text().strip())
+    if not dataset_files.is_survey_file(source):
+        source = source / dataset_files.SETTINGS_FILE
+    for layer in read_own_layers(source):
+        settings = merge_settings(settings, layer.values)
+    return settings
+
+
+def _survey_parts(results: Path, settings: Settings) -> Iterable[bytes | str]:
+    """Yield what tells the inputs of a plan apart."""
+    for name in (*_OF_SURVEY, f"selection/{settings['plan']['method']}.parquet"):
+        yield (results / name).read_bytes()
+    # the points themselves are gigabytes, and the poses are made of them
+    yield str((results / "scans.parquet").stat().st_size)
+
+
+@cache
+def code_digest() -> str:
+    """Return what names the code that a plan is made and measured with, and the rules."""
+    stages = ("assemble_plan", "extract_chosen_walls", "evaluate_plan", "validate_plan")
+    scripts = [_SCRIPTS / f"{stage}.py" for stage in stages]
+    helpers = {file for script in scripts for file in (script, *code_files.list_helpers(script))}
+    own = Path(__file__).parent.glob("ablation_*.py")
+    return _digest(file.read_bytes() for file in (*sorted(helpers), *sorted(own)))
+
+
+def _digest(parts: Iterable[bytes | str]) -> str:
+    total = hashlib.sha256()
+    for part in parts:
+        total.update(part.encode() if isinstance(part, str) else part)
+    return total.hexdigest()[:16]
+
+
+def _read_kept(file: Path, digest: str) -> dict[str, Any] | None:
+    if not file.exists():
+        return None
+    kept = json.loads(file.read_text())
+    return kept if kept.pop("code") == digest else None
+
+
+def _by_kind(
+    drives: Iterable[Path], found: dict[str, dict[str, dict[str, Any]]]
+) -> dict[str, dict[str, dict[str, dict[str, Any]]]]:
+    """Return what was found by kind of survey: rules that heights decide are none in the plane."""
+    kinds: dict[str, dict[str, dict[str, dict[str, Any]]]] = {}
+    for drive in drives:
+        planar = "planar" if tables.ScanStore(drive / "scans.parquet").planar else "in space"
+        is_measured = (drive / "survey/truth.geojson").exists()
+        kind = f"{planar}, {'measured' if is_measured else 'without a truth'}"
+        kinds.setdefault(kind, {})[drive.name] = found[drive.name]
+    return kinds
+
+
+@contextlib.contextmanager
+def _silence() -> Iterator[None]:
+    """Leave out what stages say of their work."""
+    with contextlib.redirect_stdout(None), contextlib.redirect_stderr(None):
+        yield

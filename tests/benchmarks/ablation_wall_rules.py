@@ -1,0 +1,166 @@
+"""Rules of faces and walls that can be switched off one at a time, and the code of each."""
+
+import math
+
+import numpy as np
+from ablation_switches import (
+    Rule,
+    answer,
+    ask_with,
+    find_none,
+    give_alone,
+    give_back,
+    give_each,
+    keep_all_returns,
+    keep_low_surfaces,
+    keep_whole,
+    make_rule,
+    mark_no_column,
+    name_by_sill,
+    put,
+    stand_nowhere,
+)
+
+FACES: dict[str, Rule] = {
+    "furniture in single scans": make_rule(
+        "extraction.furniture:keep_walls",
+        give_back(0),
+        "extraction.furniture",
+        "extraction.face_evidence",
+        "extraction.face_arrangement",
+        extracts=True,
+    ),
+    "fronts of single scans": make_rule(
+        "extraction.furniture:stand_in_front",
+        stand_nowhere,
+        "extraction.face_arrangement:stand_in_front",
+        extracts=True,
+    ),
+    "walls by corners in single scans": make_rule(
+        "extraction.furniture:_are_walls_by_corners",
+        give_back(1),
+        "extraction.furniture:_are_walls_by_corners",
+        "extraction.furniture:_go_on_beyond_doors",
+        "extraction.furniture:_is_door_between",
+        "extraction.face_arrangement:find_corner_faces",
+        "extraction.face_arrangement:find_collinear_faces",
+        "extraction.face_evidence:gap_leads_on",
+        extracts=True,
+    ),
+    "range bias": make_rule(
+        "rays.range_bias:estimate_range_bias", answer(np.zeros(181)), "rays.range_bias"
+    ),
+    "groups joined": make_rule("plan.faces.segment_groups:_join", give_back(1)),
+    "lines refitted": make_rule("plan.faces.intervals:refit_to_points", give_back(0)),
+    "lines that lead into glass": make_rule(
+        "plan.faces.intervals:_leads_into_glass", answer(value=False)
+    ),
+    "looking beyond ends": make_rule(
+        "plan.faces.intervals:look_beyond", give_back(0), "rays.face_observation:look_beyond"
+    ),
+    "columns joined": make_rule("plan.faces.intervals:_join_columns", put(2, 0.0)),
+    "overlooked columns": make_rule("rays.face_raster:FaceRaster.is_overlooked", mark_no_column),
+    "ends by scans": make_rule(
+        "plan.faces.intervals:_trim_ends",
+        give_back(0),
+        "plan.faces.intervals:_trim_ends",
+        "plan.faces.intervals:_usual_end_m",
+    ),
+    "glass by lost rays": make_rule(
+        "rays.face_observation:_find_lost",
+        answer(np.empty((0, 2))),
+        "rays.face_observation:_find_lost",
+        "rays.expected_returns",
+    ),
+    "framed panes": make_rule(
+        "rays.face_observation:FaceObservation._is_framed", answer(value=True)
+    ),
+    "points a metre": make_rule("plan.faces.tracing:_FaceSelection._find_dense", give_back(1)),
+    "scans that show a face": make_rule(
+        "plan.faces.tracing:_FaceSelection._is_shown", answer(value=True)
+    ),
+    "moved": make_rule("plan.faces.tracing:_has_moved", answer(value=False)),
+    "stubs": make_rule("plan.faces.tracing:_without_stubs", give_back(0)),
+    "doubles": make_rule("plan.faces.candidates:remove_doubles", ask_with(distance_m=0.0)),
+    "ghosts": make_rule("plan.faces.candidates:remove_doubles", ask_with(ghost_share=0.0)),
+    "fronts in tracing": make_rule(
+        "plan.faces.tracing:_without_furniture",
+        give_back(0),
+        "plan.faces.tracing:_without_furniture",
+        "extraction.furniture:find_furniture_fronts",
+        "extraction.face_arrangement:stand_before",
+        "extraction.face_arrangement:find_backs_m",
+    ),
+    "owned points": make_rule(
+        "plan.faces.tracing:owned_intervals", give_each(lambda _: []), "plan.faces.owned_points"
+    ),
+    "overshoots": make_rule("plan.faces.trimming:trim_overshoots", give_back(0)),
+    "tails": make_rule("plan.faces.trimming:trim_tails", give_back(0)),
+    "corners of faces": make_rule(
+        "plan.faces.candidates:meet_at_corners",
+        give_back(0),
+        "plan.faces.candidates:meet_at_corners",
+        "plan.faces.candidates:_move_ends",
+        "plan.faces.face_pairs:find_corner_moves",
+        "plan.faces.face_pairs:_do_meet",
+    ),
+}
+WALLS: dict[str, Rule] = {
+    "sides contradict": make_rule("plan.wall_pairs:_contradict", answer(value=False)),
+    "thick walls paired anew": make_rule(
+        "plan.planning:greatest_thickness_m",
+        answer(math.inf),
+        "plan.plan_wall:greatest_thickness_m",
+    ),
+    "cut at what was not seen": make_rule("plan.walls:_Assembly.cut", keep_whole),
+    "openings between things": make_rule("plan.walls:_openings_between_things", find_none),
+    "on over openings": make_rule("plan.walls:_Assembly.extend_over_openings", give_back(1)),
+    "on through hidden": make_rule("plan.walls:_Assembly.extend_through_hidden", give_back(1)),
+    "junctions": make_rule("plan.walls:_Assembly.meet_walls", give_back(1)),
+    "openings trimmed": make_rule(
+        "plan.walls:_Assembly.trim_openings",
+        give_back(1),
+        "plan.walls:_Assembly.trim_openings",
+        "plan.walls:_trim",
+        "plan.walls:_split",
+    ),
+    "corridors": make_rule(
+        "plan.walls:_cut_at_corridors",
+        give_alone(0),
+        "plan.walls:_cut_at_corridors",
+        "plan.walls:_runs_through",
+    ),
+    "inferred faces": make_rule(
+        "plan.wall_faces:_inferred_extents",
+        find_none,
+        "plan.wall_faces:_inferred_extents",
+        "plan.wall_faces:_between_intervals",
+        "plan.wall_faces:_without_open",
+    ),
+    "inferred but where open": make_rule("plan.wall_faces:_without_open", give_alone(2)),
+    "windows": make_rule("plan.windows:add_windows", give_back(0), "plan.windows"),
+    "kinds by likelihood": make_rule(
+        "plan.opening_kinds:decide_kinds",
+        name_by_sill,
+        "plan.opening_kinds:decide_kinds",
+        "plan.opening_kinds:_decide",
+        "plan.opening_kinds:weigh_kinds",
+    ),
+    "low surfaces": make_rule(
+        "plan.half_height:drop_low_surfaces",
+        keep_low_surfaces,
+    ),
+    "tops of walls": make_rule(
+        "plan.half_height:estimate_wall_top_m", answer(math.nan), "plan.half_height"
+    ),
+    "pillars": make_rule(
+        "plan.planning:cut_off_pillars", give_each(lambda wall: [wall]), "plan.furniture.pillars"
+    ),
+    "sides of columns": make_rule(
+        "plan.planning:find_column_faces",
+        give_each(lambda _: False),
+        "plan.furniture.columns:find_column_faces",
+    ),
+    "columns": make_rule("plan.planning:tell_columns", give_back(0), "plan.furniture.columns"),
+    "people": make_rule("plan.furniture.pieces:_find_passers", keep_all_returns),
+}
