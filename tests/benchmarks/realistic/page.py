@@ -15,19 +15,23 @@ if TYPE_CHECKING:
     from scanplan.types import Array
 
 HEADLINES = {
-    "walls_correctness_010m": "walls correct",
-    "walls_completeness_010m": "walls complete",
-    "room_mean_iou": "rooms IoU",
-    "rooms_wrong_unflagged_share": "wrong, unflagged rooms",
+    "wall_correctness_010": "walls correct",
+    "wall_completeness_010": "complete",
+    "room_iou": "rooms IoU",
+    "watershed_room_iou": "the watershed's",
+    "room_wrong_flagged": "wrong rooms flagged",
     "leaves_as_wall_share": "leaves as wall",
     "leaves_found_share": "leaves found",
     "doors_driven_recall": "doors driven",
     "doors_seen_recall": "doors seen",
+    "door_precision": "doors right",
     "windows_recall": "windows",
-    "columns_recall": "columns",
-    "thickness_off_share": "thickness off",
-    "wrong_flagged_share": "wrong flagged",
-    "right_flagged_share": "right flagged",
+    "window_precision": "windows right",
+    "column_recall": "columns",
+    "thickness_off": "thickness off",
+    "room_height_right": "room heights",
+    "face_wrong_flagged": "wrong faces flagged",
+    "face_right_flagged": "right faces flagged",
     "total_cpu_s": "processor s",
 }
 """Measure to its heading; see `scanplan.lab.evaluation.scores`."""
@@ -94,7 +98,7 @@ def rank_floors(measures: "pd.DataFrame") -> "pd.DataFrame":
     """Return the rows of floors with the worst first: by wrong walls, missed walls and rooms."""
     bad = sum(
         1 - measures[name].fillna(1.0)
-        for name in ("walls_correctness_010m", "walls_completeness_010m", "room_mean_iou")
+        for name in ("wall_correctness_010", "wall_completeness_010", "room_iou")
         if name in measures
     )
     failed = 10.0 * (measures["failed"] != "")

@@ -19,7 +19,7 @@ COLOURS = {
     "off": "#f781bf",
     "bridge": "#00a0a0",
     "other": "#d0006f",
-    "wrong": "#e41a1c",
+    "wrong_type": "#008000",
     "missed": "#1f60ff",
 }
 """Verdict to colour; what is right is dark."""

@@ -1,0 +1,93 @@
+"""Scores of the bench's plans: a row of measures a floor, and a row for each element."""
+
+import json
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import asdict
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import shapely
+
+from realistic import peers, pictures, plans
+from realistic.floors import Floor
+from realistic.recordings import Recorded
+from scanplan.lab.evaluation.scores import score_files
+from scanplan.lab.evaluation.scores.score import Score
+from scanplan.lab.evaluation.truth_file import parse_features
+
+_N_PROCESSES = 2  # of the machine that the bench is timed for
+
+
+def score_floors(
+    floors: Sequence[Floor], recorded: Mapping[str, Recorded], results: Path
+) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Return the measures of floors, a row each, and their elements.
+
+    A floor without a plan has a row that says in `failed` why.
+    """
+    with ProcessPoolExecutor(_N_PROCESSES, mp_context=get_context("spawn")) as pool:
+        jobs = [pool.submit(_score, floor, recorded[floor.name], results) for floor in floors]
+        done = [job.result() for job in jobs]
+    rows = [row for row, _ in done]
+    parts = [
+        pd.DataFrame(elements).assign(floor=str(row["floor"]))
+        for row, elements in done
+        if elements is not None
+    ]
+    elements = pd.concat(parts, ignore_index=True) if parts else pd.DataFrame()
+    if len(elements):
+        elements["size"] = elements["length_m"].fillna(elements["area_m2"]).fillna(0.0)
+    return pd.DataFrame(rows), elements
+
+
+def _score(
+    floor: Floor, recorded: Recorded, results: Path
+) -> tuple[dict[str, Any], Mapping[str, Any] | None]:
+    costs = plans.stage_costs(results, floor.name)
+    named = ("name", "kind", "sensor", "half")
+    row: dict[str, Any] = {key: value for key, value in asdict(floor).items() if key in named}
+    row = {"floor": row.pop("name"), **row, "failed": plans.last_words(results, floor.name)}
+    row |= {"simulate_cpu_s": recorded.seconds, **costs}
+    row["total_cpu_s"] = sum(v for k, v in costs.items() if k.endswith("_cpu_s") and v == v)
+    if row["failed"]:
+        return row, None
+    folder = results / floor.name
+    score = _score_plan(folder, recorded)
+    row |= score.measures | peers.measure_peers(folder, recorded)
+    return row, score.elements
+
+
+def _score_plan(folder: Path, recorded: Recorded) -> Score:
+    if recorded.true_poses is not None:
+        return score_files.score_results(
+            folder, recorded.truth, recorded.true_poses, with_points=True
+        )
+    if recorded.truth.suffix == ".npz":
+        return score_files.score_results_by_raster(folder, recorded.truth)
+    return score_files.score_results_by_hand(folder, recorded.truth)
+
+
+def read_true_features(recorded: Recorded, building: Path | None) -> list[pictures.TrueFeature]:
+    """Return what is true of a floor, and the furniture of its drawing, to be drawn."""
+    if recorded.truth.suffix == ".npz":
+        return _trace_rooms(recorded.truth)
+    features = list(parse_features(recorded.truth))
+    if building is not None:
+        drawn = json.loads(building.read_text())["features"]
+        features += [f for f in drawn if f["properties"]["kind"] == "furniture"]
+    return [
+        (f["properties"]["kind"], shapely.geometry.shape(f["geometry"]), f["properties"])
+        for f in features
+    ]
+
+
+def _trace_rooms(truth: Path) -> list[pictures.TrueFeature]:
+    """Return the rooms of a raster of labels as polygons of its rows."""
+    from scanplan.lab.evaluation.scores import raster_truth
+
+    scene = raster_truth.read_raster_scene(truth)
+    return [("room", np.asarray(scene.rooms, object)[i], {}) for i in range(len(scene.rooms))]
