@@ -144,6 +144,13 @@ def test_a_tapering_wall_is_as_thick_at_its_ends_as_drawn():
         assert hit(plan, (x, 0.5, 0.4), (0, 1, 0)) == (1.0 - half_m, "wall")
 
 
+def test_a_corner_of_a_tapering_wall_leaves_its_thin_end_thin():
+    taper = drawn.wall((0, 1.5), (2, 1.5), thickness_m=0.1, end_thickness_m=0.5)
+    plan = drawn.plan(taper, drawn.wall((2, 1.5), (2, 2.5), thickness_m=0.5))
+    for x, half_m in ((0.5, 0.1), (1.5, 0.2), (2.2, 0.25)):
+        assert hit(plan, (x, 0.5, 0.4), (0, 1, 0)) == (1.0 - half_m, "wall")
+
+
 def test_a_door_in_a_tapering_wall_goes_through_it():
     taper = drawn.wall((0, 1.5), (4, 1.5), thickness_m=0.1, end_thickness_m=0.5)
     plan = drawn.plan(taper, drawn.door(2.0, 1.5))
