@@ -90,6 +90,16 @@ def test_a_given_way_is_left_free_and_a_planned_one_goes_around(seed):
     assert shapely.LineString(planned.waypoints_m).distance(loose.obstacles_m) > 0.23
 
 
+def test_a_room_behind_a_shut_door_is_not_visited():
+    shut = drawn.door(1.0, 1.5, width_m=0.9, leaf="hinged", frame_m=0.05)
+    for doors, n_visited in (((shut,), 1), ((shut, DOORS[1]), 2)):
+        site = building_route.plan_building_route(
+            load(*doors), "box.geojson", route="rooms", clearance_m=0.25
+        )
+        rooms = [values for _, values in site.truth if values["kind"] == "room"]
+        assert sum(values["visited"] for values in rooms) == n_visited
+
+
 def test_a_leaf_stands_in_no_cupboard():
     cupboards = [
         drawn.feature(
@@ -128,4 +138,5 @@ def test_doors_of_a_model_get_leaves_of_their_own_size():
     assert values["height_m"] == pytest.approx(said["lintel_m"] - 0.005)
     assert line.distance(door) < 0.2
     assert leaves_of(without) == []
-    assert leaves_of(prepare(leaves=1.0, doors="closed")) == []
+    shut = prepare(leaves=1.0, doors="closed")
+    assert leaves_of(shut) == [] and "no door without a leaf" in " ".join(shut.notes)
