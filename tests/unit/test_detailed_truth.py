@@ -95,7 +95,8 @@ def test_a_pane_that_goes_on_in_line_with_a_wall_as_thick_parts_the_face():
 
 
 def test_panes_of_a_glass_wall_are_what_its_door_leaves():
-    panes = of_kind(drawn.plan(GLASS, drawn.door(2.0, 1.5)), "pane")
+    into_walls = drawn.wall((-0.1, 1.5), (4.1, 1.5), thickness_m=0.02, material="glass")
+    panes = of_kind(drawn.plan(into_walls, drawn.door(2.0, 1.5)), "pane")
     found = sorted((round(g.length, 2), v["sill_m"], v["lintel_m"]) for g, v in panes)
     assert found == [(1.0, 2.0, 2.5), (1.5, 0.0, 2.5), (1.5, 0.0, 2.5)]
 
