@@ -41,9 +41,9 @@ class DoorStyle:
 def draw_style(rng: np.random.Generator) -> DoorStyle:
     """Draw what common doors are like: steel or wooden frames, lintels of 2.0 to 2.1 m."""
     return DoorStyle(
-        width_m=float(rng.choice([0.8, 0.85, 0.9, 0.95])),
+        width_m=float(rng.choice([0.85, 0.9, 0.95, 1.0])),
         lintel_m=float(rng.choice([2.0, 2.05, 2.1])),
-        frame_m=float(rng.choice([0.0, 0.02, 0.03, 0.05])),
+        frame_m=float(rng.choice([0.0, 0.02, 0.03, 0.04])),
         leaf_m=float(rng.choice([0.038, 0.04, 0.045])),
     )
 

@@ -52,7 +52,8 @@ def draw(plan: Plan) -> None:
         driven = k in (0, 3, 5) or bool(rng.random() < 0.3)
         _doors(plan, cell, bath, style, driven=driven)
     line = ((lobby_m, low_m), (lobby_m, high_m))
-    doors.door(plan, *line, style, leaf="double", width_m=1.3, into=(0.0, low_m), open_deg=90.0)
+    wide = {"leaf": "double", "width_m": round(min(1.4, high_m - low_m - 0.3), 2)}
+    doors.door(plan, *line, style, into=(0.0, low_m), open_deg=90.0, **wide)
     common.exit_door(plan, hall, "e", style, width_m=0.95)
     window = facade.WindowStyle(width_m=1.6, pitch_m=2.2, sill_m=0.6, lintel_m=2.3, radiators=0.8)
     for room in rooms:

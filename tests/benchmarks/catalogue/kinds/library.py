@@ -75,7 +75,7 @@ def _named(plan: Plan, office: Box, wash: Box, lecture: Box) -> list[Room]:
 def _group_room(plan: Plan, box: Box, number: int) -> Room:
     """Draw a room behind panes at the north facade, with a glass door."""
     x0, y0, x1, y1 = box
-    panes = facade.glass_wall(plan, (x0, y0), (x1, y0), pitch_m=1.05)
+    panes = facade.glass_wall(plan, (x0, y0), (x1, y0), pitch_m=1.2)
     if number == 0:
         plan.wall((x0, y0), (x0, y1), 0.1)
     plan.wall((x1, y0), (x1, y1), 0.1)

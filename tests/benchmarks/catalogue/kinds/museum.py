@@ -53,12 +53,13 @@ def _rotunda(
 
     Returns the directions of these, degrees.
     """
-    count = int(2 * np.pi * radius_m / 0.28)
-    rim = np.linspace(0, 2 * np.pi, count + 1)
-    circle = np.asarray(middle) + radius_m * np.column_stack([np.cos(rim), np.sin(rim)])
-    plan.wall_along(circle, 0.3, curved=True)
     first = float(plan.rng.uniform(20, 70))
     turns = [(first + k * 120 + float(plan.rng.uniform(-20, 20))) % 360 for k in range(3)]
+    # the ring begins where a wall meets it, where no passage is
+    count = int(2 * np.pi * radius_m / 0.28)
+    rim = np.radians(min(turns)) + np.linspace(0, 2 * np.pi, count + 1)
+    circle = np.asarray(middle) + radius_m * np.column_stack([np.cos(rim), np.sin(rim)])
+    plan.wall_along(circle, 0.3, curved=True)
     box = rectangle((0.0, 0.0, west_m, extent[3]))
     for k, turn in enumerate(sorted(turns)):
         way = np.array([np.cos(np.radians(turn)), np.sin(np.radians(turn))])
